@@ -1,0 +1,157 @@
+// The immutable description of a world, and its discretisation at one particle spacing.
+// Plain data: no parsing, no simulation. SI units, right-handed, y up (as glTF). scenes/README.md has the
+// glTF fields each of these comes from.
+#pragma once
+
+#include "sim/math/distance_field.h"
+#include "sim/math/pose.h"
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+namespace slosh {
+
+/// Triangles with any scale already applied, in the frame of the node that carries them.
+struct TriangleMesh {
+  std::string name;
+  std::vector<glm::vec3> positions;   ///< m
+  std::vector<glm::vec3> normals;     ///< unit, one a position (smooth or flat as the file has them)
+  std::vector<glm::uvec3> triangles;  ///< counter-clockwise seen from outside
+};
+
+/// How a surface looks (linear sRGB primaries, glTF metallic-roughness).
+struct Material {
+  glm::vec3 base_color{0.7f};
+  float metallic = 0.0f;   ///< 0–1
+  float roughness = 0.6f;  ///< 0–1
+  float opacity = 1.0f;    ///< 1 opaque; below 1 drawn blended (a glass)
+};
+
+struct Fluid {
+  std::string name;
+  double rest_density = 1000.0;      ///< kg/m³, > 0 (Eq 7's ρ⁰)
+  double dynamic_viscosity = 0.001;  ///< Pa·s, >= 0 (Eq 6's μ)
+  glm::vec3 color{0.10f, 0.35f, 0.55f};    ///< F_c of Eq 15
+  glm::vec3 extinction{12.0f, 4.0f, 2.5f};  ///< F_e of Eq 15, 1/m
+};
+
+/// A closed mesh that starts full of fluid.
+struct FluidVolume {
+  std::string name;
+  int mesh = -1;   ///< index into Scene::meshes
+  int fluid = 0;   ///< index into Scene::fluids
+  Pose pose;
+  glm::dvec3 velocity{0.0};  ///< initial, m/s
+};
+
+struct MassProperties {
+  double mass = 0.0;                 ///< kg, > 0
+  glm::dvec3 center_of_mass{0.0};    ///< m, in the body's mesh frame
+  glm::dmat3 inertia{0.0};           ///< kg·m², about the centre of mass, mesh axes
+};
+
+enum class BodyMotion : std::uint8_t { kFixed, kFree };
+
+/// A rigid body made of particles on its surface (paper, section 4.1), or one particle (section 3).
+struct Body {
+  std::string name;
+  int mesh = -1;  ///< index into Scene::meshes, closed and outward-facing; −1 for a point probe
+  BodyMotion motion = BodyMotion::kFixed;
+  bool point_probe = false;  ///< one particle that behaves as fluid (Eq 8), without rotation
+  Pose pose;                 ///< initial pose of the mesh frame
+  Twist twist;               ///< initial twist of the centre of mass
+  MassProperties mass;       ///< meaningful when free
+  double particle_density = 0.0;   ///< kg/m³: the constant density of its particles (section 4.1); 0 = chosen by the plan
+  double dynamic_viscosity = 0.0;  ///< Pa·s: its side of Eq 9's (μᵢ + μⱼ)/2
+  double friction = 0.4;           ///< Coulomb, with the smaller of two touching bodies' values used
+  double restitution = 0.0;        ///< 0–1
+  bool measured = false;           ///< report the fluid's wrench on it even though it is fixed
+  Material material;
+};
+
+/// A mesh that is only looked at.
+struct Picture {
+  std::string name;
+  int mesh = -1;
+  Pose pose;
+  Material material;
+};
+
+struct PoseKey {
+  double time = 0.0;  ///< s, rising
+  Pose pose;          ///< world
+};
+
+/// Where one haptic handle takes hold of one body: a virtual coupling (section 4.4). The order of
+/// Scene::grips is the order of the devices. Ranges are those at which the step was tested.
+struct Grip {
+  std::string name;
+  int body = -1;  ///< index into Scene::bodies, free
+  Pose pose;      ///< in the body's mesh frame
+  double stiffness = 1000.0;           ///< N/m, 0–10⁶
+  double damping = 20.0;               ///< N·s/m, 0–10⁴
+  double rotational_stiffness = 10.0;  ///< N·m/rad, 0–10⁴; 0 for a 3-DoF device
+  double rotational_damping = 0.2;     ///< N·m·s/rad, 0–10³
+  std::vector<PoseKey> hand_motion;    ///< scripted handle pose (glTF animation of the hand); may be empty
+};
+
+struct Camera {
+  glm::dvec3 eye{0.6, 0.5, 0.9};
+  glm::dvec3 target{0.0};
+  double vertical_fov_deg = 40.0;
+};
+
+struct Scene {
+  std::string name;         ///< e.g. "bucket"
+  std::string title;        ///< one line for `slosh scenes`
+  std::string source_file;  ///< where it was read from, for errors
+  std::vector<TriangleMesh> meshes;
+  std::vector<Fluid> fluids;
+  std::vector<FluidVolume> fluid_volumes;
+  std::vector<Body> bodies;
+  std::vector<Picture> pictures;
+  std::vector<Grip> grips;
+  Camera camera;
+  glm::vec3 light_direction{-0.4f, -1.0f, -0.35f};  ///< the way the light travels
+
+  glm::dvec3 gravity{0.0, -9.81, 0.0};  ///< m/s²
+  double spacing = 0.0;       ///< m between particles; 0 = auto within [spacing_min, spacing_max]
+  double spacing_min = 0.004;  ///< m
+  double spacing_max = 0.02;   ///< m; below the thinnest wall
+  double support_ratio = 2.0;  ///< support radius (W = 0, the paper's h) over spacing, 1.5–4
+  double stiffness = 0.0;      ///< Eq 7's k = c², m²/s²; 0 = chosen by the plan from depth and gravity
+  double tension = 0.0;        ///< share of Eq 7's negative pressure that is kept, 0–1 (sim/README.md)
+  double duration = 10.0;      ///< s, of the scripted motion
+  glm::dvec3 domain_min{0.0};  ///< m; particles that leave the domain are retired
+  glm::dvec3 domain_max{0.0};
+};
+
+/// Particles of a body's surface, in its mesh frame.
+struct SurfaceSamples {
+  std::vector<glm::vec3> positions;  ///< m
+  std::vector<glm::vec3> normals;    ///< unit, outward
+  float particle_volume = 0.0f;      ///< m³, the same for every particle (area · spacing / count)
+};
+
+struct DistanceField {
+  glm::vec3 origin{0.0f};
+  float cell = 0.0f;
+  glm::ivec3 size{0};
+  std::vector<float> distance;
+
+  DistanceFieldView view() const { return {origin, cell, size, distance.data()}; }
+};
+
+/// A scene at one particle spacing.
+struct SampledScene {
+  double spacing = 0.0;                          ///< m
+  std::vector<SurfaceSamples> surfaces;          ///< one a body
+  std::vector<DistanceField> distance_fields;    ///< one a body; empty (size 0) for a point probe
+  std::vector<glm::vec3> fluid_positions;        ///< m, world
+  std::vector<glm::vec3> fluid_velocities;       ///< m/s
+  std::vector<std::uint8_t> fluid_index;         ///< into Scene::fluids, one a particle
+};
+
+}  // namespace slosh
