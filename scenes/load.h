@@ -1,8 +1,8 @@
 // Reading a scene from glTF, and finding the shipped ones.
 #pragma once
 
-#include "scenes/result.h"
 #include "scenes/scene.h"
+#include "sim/math/result.h"
 
 #include <filesystem>
 #include <string>

@@ -1,8 +1,8 @@
 // From meshes to particles and distance fields at one spacing.
 #pragma once
 
-#include "scenes/result.h"
 #include "scenes/scene.h"
+#include "sim/math/result.h"
 
 #include <cstddef>
 

@@ -1,7 +1,6 @@
 // The world moving: owns all state, steps it by the plan, hands out snapshots.
 #pragma once
 
-#include "scenes/result.h"
 #include "scenes/scene.h"
 #include "sim/plan.h"
 #include "sim/snapshot.h"
