@@ -1,0 +1,105 @@
+// Frame → image: the paper's section 5 in OpenGL 4.5. README.md lists the passes. No GL types here.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <glm/glm.hpp>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "render/context.h"
+#include "render/frame.h"
+#include "render/image.h"
+#include "sim/math/result.h"
+
+namespace slosh {
+
+/// From scene-linear light to the screen.
+enum class Display : std::uint8_t {
+  kAces,  ///< ACES SDR video output transform, sRGB display (OpenColorIO)
+  kSrgb,  ///< clip to 0–1 and encode as sRGB: a colour below 1 stays what it is
+};
+
+struct RenderOptions {
+  int width = 960;  ///< pixels of the picture, 1–16384
+  int height = 540;
+
+  int bilateral_iterations = 4;  ///< of section 5.1's filter, 0–64
+  bool wide_filter = true;       ///< beyond the paper: taps spread with the splat's size on screen (README)
+  float bilateral_range = 2.0f;  ///< standard deviation of the filter's depth weight, particle radii, > 0
+  float splat_scale = 1.2f;      ///< splat radius over particle radius (5.1), > 0
+  bool half_resolution_back = true;  ///< back depth at half the picture's size (5.1)
+
+  bool fresnel = true;    ///< beyond the paper: Schlick reflection of the surroundings, F0 0.02
+  bool lit_fluid = true;  ///< beyond the paper: F_c of Eq 15 is lit by the light and the sky
+
+  int shadow_size = 1024;         ///< texels a side of the light's shadow map, 0 = no shadows, up to 8192
+  bool ambient_occlusion = true;  ///< darken creases of the meshes
+  bool draw_background = true;    ///< false: black behind everything
+  Display display = Display::kAces;
+  float exposure = 1.0f;  ///< factor on scene-linear light before the display transform, > 0
+};
+
+/// Milliseconds of one pass of the last frame, when timing is on.
+struct PassTime {
+  std::string pass;
+  double milliseconds = 0.0;
+};
+
+/// What tests may look at. Depths are linear eye depths in m; kNoFluidDepth or more = no fluid here.
+enum class Buffer : std::uint8_t {
+  kSceneDepth,   ///< S_d; beyond the far plane where there is no mesh
+  kSceneColor,   ///< S_c, three channels, scene-linear, before the fluid
+  kFinalColor,   ///< three channels, scene-linear, after the fluid, the translucent meshes and the arrows
+  kFrontDepth,   ///< F_fD before the filter
+  kSmoothDepth,  ///< F_fD after the filter
+  kBackDepth,    ///< F_bD, at half size if so asked; 0 where there is no fluid
+  kThickness,    ///< T of Eq 15, m; 0 = no fluid seen
+  kFluidIndex,   ///< the front-most particle's index into Frame::fluids, −1 = none
+};
+
+inline constexpr float kNoFluidDepth = 1.0e6f;
+
+/// Draws frames with one context. All calls on the thread the context is current on. The context must outlive
+/// it.
+class Renderer {
+ public:
+  /// Errors: sizes or factors out of range, a shader that the driver refuses, no display transform.
+  static Result<std::unique_ptr<Renderer>> create(Context& context, const RenderOptions& options = {});
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  /// Copies a mesh to the GPU for good. One normal a position; triangles counter-clockwise seen from outside;
+  /// a triangle with an index out of range is left out.
+  MeshHandle add_mesh(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
+                      std::span<const glm::uvec3> triangles);
+
+  /// Draws one frame, and shows it in the window if the context has one (stretched to it, HUD included; call
+  /// Context::swap after). Unknown mesh handles, non-finite particles and arrows, and particles whose fluid
+  /// is not in Frame::fluids are left out.
+  void draw(const Frame& frame);
+
+  /// The picture drawn last.
+  Image read_back();
+  FloatImage read_buffer(Buffer buffer);
+
+  const RenderOptions& options() const;
+  /// Takes effect at the next draw. Errors as create; the old options then stay.
+  Result<bool> set_options(const RenderOptions& options);
+  /// Changes the picture's size; out-of-range sizes are clamped.
+  void resize(int width, int height);
+
+  /// Time each pass with a glFinish behind it (slows drawing down); pass_times() then holds the last frame.
+  void set_timing(bool on);
+  const std::vector<PassTime>& pass_times() const;
+
+ private:
+  struct Parts;
+  explicit Renderer(std::unique_ptr<Parts> parts);
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace slosh
