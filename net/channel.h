@@ -1,0 +1,58 @@
+// The in-process channel: what passes between one host and one peer, with the messages a network will carry.
+#pragma once
+
+#include "net/snapshot_queue.h"
+#include "net/triple_buffer.h"
+#include "sim/snapshot.h"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace slosh {
+
+/// Up: where one handle is.
+struct PoseMessage {
+  std::int64_t stamp_ns = 0;   ///< the peer's steady clock when the device was read
+  std::uint64_t tick_ack = 0;  ///< tick of the newest body state that the peer had
+  std::uint32_t device = 0;    ///< index into Scene::grips
+  Pose pose;                   ///< handle, world
+  Twist twist;                 ///< handle, world
+  bool engaged = false;
+};
+
+/// Down, every tick: where the bodies are.
+struct BodyMessage {
+  std::int64_t stamp_ns = 0;  ///< the host's steady clock when the step ended
+  double rate = 0.0;          ///< simulated seconds a wall second right now, 0 while standing still
+  double time_step = 0.0;     ///< s, a tick's length
+  BodySnapshot bodies;
+};
+
+/// Joins one host and one peer in one process. Poses and body states are newest-value exchanges without a
+/// lock; pictures queue. Each member names the one thread that writes and the one that reads.
+class Channel {
+ public:
+  /// `initial` is what the peer sees before the first step. `picture_bytes` bounds the queue of pictures.
+  Channel(std::size_t devices, const BodyMessage& initial, std::size_t picture_bytes)
+      : bodies_(initial), pictures_(picture_bytes) {
+    poses_.reserve(devices);
+    for (std::size_t i = 0; i < devices; ++i) {
+      PoseMessage nothing;
+      nothing.device = static_cast<std::uint32_t>(i);
+      poses_.push_back(std::make_unique<TripleBuffer<PoseMessage>>(nothing));
+    }
+  }
+
+  std::size_t devices() const { return poses_.size(); }
+  TripleBuffer<PoseMessage>& pose(std::size_t device) { return *poses_[device]; }  ///< device loop → host
+  TripleBuffer<BodyMessage>& bodies() { return bodies_; }                          ///< host → device loop
+  SnapshotQueue& pictures() { return pictures_; }                                  ///< host → viewer
+
+ private:
+  std::vector<std::unique_ptr<TripleBuffer<PoseMessage>>> poses_;
+  TripleBuffer<BodyMessage> bodies_;
+  SnapshotQueue pictures_;
+};
+
+}  // namespace slosh

@@ -1,0 +1,100 @@
+// Pictures of the world on their way from the host to one viewer.
+#pragma once
+
+#include "sim/snapshot.h"
+
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+
+namespace slosh {
+
+using SnapshotPointer = std::shared_ptr<const Snapshot>;
+
+/// Bytes that a snapshot holds on to.
+inline std::size_t size_in_bytes(const Snapshot& snapshot) {
+  return sizeof(Snapshot) + snapshot.positions.capacity() * sizeof(glm::vec3) + snapshot.fluid_index.capacity() +
+         snapshot.rigid.bodies.capacity() * sizeof(BodyState) + snapshot.rigid.grips.capacity() * sizeof(GripState);
+}
+
+/// First in, first out, bounded by bytes. Neither end is a device loop, so it may lock. A picture that does
+/// not fit is dropped and counted: those already waiting are older and keep the film without a gap there.
+class SnapshotQueue {
+ public:
+  explicit SnapshotQueue(std::size_t max_bytes) : max_bytes_(max_bytes) {}
+
+  /// False when the picture was dropped. A picture always fits in an empty queue.
+  bool push(SnapshotPointer snapshot) {
+    const std::size_t bytes = size_in_bytes(*snapshot);
+    {
+      const std::lock_guard lock(mutex_);
+      if (!waiting_.empty() && bytes_ + bytes > max_bytes_) {
+        dropped_ += 1;
+        return false;
+      }
+      bytes_ += bytes;
+      waiting_.push_back(std::move(snapshot));
+    }
+    changed_.notify_one();
+    return true;
+  }
+
+  /// No more pictures will come; a waiting pop() returns.
+  void close() {
+    {
+      const std::lock_guard lock(mutex_);
+      closed_ = true;
+    }
+    changed_.notify_all();
+  }
+
+  /// The oldest picture; waits up to `patience`. Null when none came, or when closed and empty.
+  SnapshotPointer pop(std::chrono::milliseconds patience) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, patience, [this] { return !waiting_.empty() || closed_; });
+    if (waiting_.empty()) return nullptr;
+    SnapshotPointer oldest = std::move(waiting_.front());
+    waiting_.pop_front();
+    bytes_ -= size_in_bytes(*oldest);
+    return oldest;
+  }
+
+  /// The newest picture, the others thrown away (a window wants what is now); null when none waits.
+  SnapshotPointer pop_newest() {
+    const std::lock_guard lock(mutex_);
+    if (waiting_.empty()) return nullptr;
+    SnapshotPointer newest = std::move(waiting_.back());
+    waiting_.clear();
+    bytes_ = 0;
+    return newest;
+  }
+
+  /// Closed, and every picture taken.
+  bool finished() const {
+    const std::lock_guard lock(mutex_);
+    return closed_ && waiting_.empty();
+  }
+  std::size_t waiting() const {
+    const std::lock_guard lock(mutex_);
+    return waiting_.size();
+  }
+  std::uint64_t dropped() const {
+    const std::lock_guard lock(mutex_);
+    return dropped_;
+  }
+
+ private:
+  const std::size_t max_bytes_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<SnapshotPointer> waiting_;
+  std::size_t bytes_ = 0;
+  std::uint64_t dropped_ = 0;
+  bool closed_ = false;
+};
+
+}  // namespace slosh
