@@ -1,0 +1,210 @@
+#include "host/host.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "host/pacer.h"
+#include "net/clock.h"
+
+namespace slosh {
+namespace {
+
+constexpr double kStatusMemory = 0.5;  // simulated s that a status stays on show
+constexpr double kRateWindow = 0.25;   // wall s over which the shown rates are averaged
+
+/// Rates over the last window, and a quick estimate for extrapolation.
+class RateMeter {
+ public:
+  void restart(std::int64_t now_ns) {
+    last_ns_ = window_ns_ = now_ns;
+    window_steps_ = 0;
+    window_step_time_ = 0.0;
+  }
+
+  /// Simulated seconds a wall second, from step to step, smoothed over about ten steps. Never above 1: a
+  /// loop that catches up must not throw the extrapolated hands ahead.
+  double quick(double time_step, std::int64_t now_ns) {
+    const double elapsed = std::max(to_seconds(now_ns - last_ns_), 1e-9);
+    last_ns_ = now_ns;
+    mean_interval_ += 0.1 * (elapsed - mean_interval_);
+    return std::min(1.0, time_step / std::max(mean_interval_, 1e-9));
+  }
+  void seed(double interval) { mean_interval_ = interval; }
+
+  /// True when a window is over; then the rates are new.
+  bool add(double step_time, std::int64_t now_ns) {
+    window_steps_ += 1;
+    window_step_time_ += step_time;
+    const double elapsed = to_seconds(now_ns - window_ns_);
+    if (elapsed < kRateWindow) return false;
+    step_rate = static_cast<double>(window_steps_) / elapsed;
+    step_ms = 1e3 * window_step_time_ / static_cast<double>(window_steps_);
+    window_ns_ = now_ns;
+    window_steps_ = 0;
+    window_step_time_ = 0.0;
+    return true;
+  }
+
+  double step_rate = 0.0;
+  double step_ms = 0.0;
+
+ private:
+  std::int64_t last_ns_ = 0;
+  std::int64_t window_ns_ = 0;
+  double mean_interval_ = 0.0;
+  std::uint64_t window_steps_ = 0;
+  double window_step_time_ = 0.0;
+};
+
+}  // namespace
+
+BodyMessage initial_message(const World& world) {
+  BodyMessage message;
+  message.stamp_ns = steady_now_ns();
+  message.time_step = world.plan().time_step;
+  world.fill(message.bodies);
+  return message;
+}
+
+Host::Host(World world, const Scene& scene, Channel& channel, HostOptions options)
+    : world_(std::move(world)), channel_(channel), options_(options), gate_(scene) {
+  world_.fill(latest_);
+  report_.start_mass = world_.diagnostics().mass;
+  shown_time_ = world_.time();
+}
+
+Host::~Host() {
+  request_stop();
+  wait();
+}
+
+void Host::start() {
+  if (thread_.joinable()) return;
+  running_.store(true, std::memory_order_release);
+  thread_ = std::thread([this] { run(); });
+}
+
+void Host::wait() {
+  if (thread_.joinable()) thread_.join();
+}
+
+HostProgress Host::progress() const {
+  HostProgress progress;
+  progress.time = shown_time_.load(std::memory_order_relaxed);
+  progress.rate = shown_rate_.load(std::memory_order_relaxed);
+  progress.step_rate = shown_step_rate_.load(std::memory_order_relaxed);
+  progress.step_ms = shown_step_ms_.load(std::memory_order_relaxed);
+  progress.tick = shown_tick_.load(std::memory_order_relaxed);
+  progress.status = shown_status_.load(std::memory_order_relaxed);
+  return progress;
+}
+
+void Host::note_status(std::uint32_t status) {
+  report_.status |= status;
+  for (int bit = 0; bit < 32; ++bit) {
+    if (status & (1u << bit)) status_until_[bit] = world_.time() + kStatusMemory;
+  }
+}
+
+std::uint32_t Host::recent_status() const {
+  std::uint32_t status = 0;
+  for (int bit = 0; bit < 32; ++bit) {
+    if (status_until_[bit] > world_.time()) status |= 1u << bit;
+  }
+  return status;
+}
+
+void Host::publish_bodies(double rate) {
+  BodyMessage& message = channel_.bodies().back();
+  world_.fill(message.bodies);
+  message.bodies.status = recent_status();
+  message.rate = rate;
+  message.time_step = world_.plan().time_step;
+  message.stamp_ns = steady_now_ns();
+  channel_.bodies().publish();
+}
+
+void Host::publish_picture_if_due() {
+  const double half_step = 0.5 * world_.plan().time_step;
+  if (options_.picture_rate <= 0.0 || world_.time() + half_step < next_picture_) return;
+  auto snapshot = std::make_shared<Snapshot>();
+  world_.fill(*snapshot);
+  snapshot->rigid.status = recent_status();
+  if (channel_.pictures().push(std::move(snapshot))) report_.pictures += 1;
+  next_picture_ += 1.0 / options_.picture_rate;
+}
+
+void Host::run() {
+  const double time_step = world_.plan().time_step;
+  Pacer pacer(time_step);
+  RateMeter meter;
+  std::int64_t begin_ns = steady_now_ns();
+  pacer.restart(begin_ns);
+  meter.restart(begin_ns);
+  meter.seed(time_step);
+  publish_picture_if_due();
+
+  while (!stop_.load(std::memory_order_relaxed) && world_.time() + 0.5 * time_step < options_.until) {
+    if (pause_.load(std::memory_order_relaxed)) {
+      report_.wall += to_seconds(steady_now_ns() - begin_ns);
+      publish_bodies(0.0);
+      shown_rate_ = 0.0;
+      while (pause_.load(std::memory_order_relaxed) && !stop_.load(std::memory_order_relaxed)) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      }
+      begin_ns = steady_now_ns();
+      pacer.restart(begin_ns);
+      meter.restart(begin_ns);
+      meter.seed(time_step);
+      continue;
+    }
+    if (options_.paced) {
+      const Pacer::Turn turn = pacer.next(steady_now_ns());
+      if (turn.slipped) note_status(kStatusTimeSlipped);
+      sleep_until_ns(turn.deadline_ns);
+    }
+    const std::uint64_t rejected_before = gate_.rejected();
+    const std::span<const HandleInput> input = gate_.take(channel_, latest_);
+    if (gate_.rejected() != rejected_before) note_status(kStatusInputRejected);
+
+    const std::int64_t step_begin_ns = steady_now_ns();
+    world_.step(input);
+    const std::int64_t step_end_ns = steady_now_ns();
+
+    note_status(world_.take_status());
+    world_.fill(latest_);
+    const double rate = meter.quick(time_step, step_end_ns);
+    publish_bodies(rate);
+    publish_picture_if_due();
+
+    const double step_time = to_seconds(step_end_ns - step_begin_ns);
+    report_.steps += 1;
+    report_.step_time.add(step_time);
+    const StepTimes& parts = world_.times();
+    report_.total.sort += parts.sort;
+    report_.total.density += parts.density;
+    report_.total.force += parts.force;
+    report_.total.body += parts.body;
+    report_.total.total += parts.total;
+    shown_time_.store(world_.time(), std::memory_order_relaxed);
+    shown_tick_.store(world_.tick(), std::memory_order_relaxed);
+    shown_status_.store(recent_status(), std::memory_order_relaxed);
+    if (meter.add(step_time, step_end_ns)) {
+      shown_rate_.store(meter.step_rate * time_step, std::memory_order_relaxed);
+      shown_step_rate_.store(meter.step_rate, std::memory_order_relaxed);
+      shown_step_ms_.store(meter.step_ms, std::memory_order_relaxed);
+    }
+  }
+
+  report_.wall += to_seconds(steady_now_ns() - begin_ns);
+  report_.simulated = world_.time();
+  report_.slips = pacer.slips();
+  report_.slipped = pacer.slipped_seconds();
+  report_.rejected_poses = gate_.rejected();
+  report_.diagnostics = world_.diagnostics();
+  publish_bodies(0.0);
+  channel_.pictures().close();
+  running_.store(false, std::memory_order_release);
+}
+
+}  // namespace slosh

@@ -1,0 +1,26 @@
+// From `--device script|mouse|replay:FILE` to devices, one a grip.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "peer/haptics/device.h"
+#include "peer/haptics/mouse_device.h"
+#include "scenes/scene.h"
+
+namespace slosh {
+
+struct DeviceSet {
+  std::vector<std::unique_ptr<Device>> devices;                ///< one a grip
+  std::vector<std::shared_ptr<MouseTarget>> mouse_targets;    ///< one a grip, null where it is not a mouse
+};
+
+/// World pose of a grip at the start of the scene.
+Pose grip_start(const Scene& scene, std::size_t grip);
+
+/// `specs`: none (all `script`), one for all, or one a grip. `has_window` is what a mouse needs. Errors: an
+/// unknown kind, more specs than grips, a mouse without a window, a replay file that cannot be used.
+Result<DeviceSet> make_devices(const Scene& scene, const std::vector<std::string>& specs, bool has_window);
+
+}  // namespace slosh
