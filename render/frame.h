@@ -53,12 +53,13 @@ struct Frame {
   View view;
   glm::vec3 light_direction{-0.4f, -1.0f, -0.35f};  ///< the way the light travels
   std::vector<MeshInstance> meshes;
-  std::span<const glm::vec3> particles;             ///< m, world
-  std::span<const std::uint8_t> particle_fluid;     ///< index into fluids, 255 = not drawn
+  std::span<const glm::vec3> particles;          ///< m, world
+  std::span<const std::uint8_t> particle_fluid;  ///< index into fluids, 255 = not drawn
   std::vector<FluidLook> fluids;
-  float particle_radius = 0.005f;                   ///< m, half the spacing; splats are 1.2 times larger (5.1)
+  float particle_radius = 0.005f;  ///< m, half the spacing; splats are 1.2 times larger (5.1)
   std::vector<Arrow> arrows;
-  std::function<void()> hud;  ///< Dear ImGui calls for this frame, run between NewFrame and Render; may be empty
+  std::function<void()>
+      hud;  ///< Dear ImGui calls for this frame, run between NewFrame and Render; may be empty
 };
 
 }  // namespace slosh

@@ -1,0 +1,144 @@
+// Headless contexts through EGL.
+#include <epoxy/egl.h>
+
+#include <array>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "render/context.h"
+
+namespace slosh {
+namespace {
+
+class EglContext final : public Context {
+ public:
+  EglContext(EGLDisplay display, EGLContext context) : display_(display), context_(context) {
+    EglContext::make_current();
+    describe_current();
+  }
+  // The display is not terminated: EGL gives every caller the same one, and others may still draw with it.
+  ~EglContext() override {
+    if (eglGetCurrentContext() == context_) EglContext::release_current();
+    eglDestroyContext(display_, context_);
+  }
+
+  void make_current() override { eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_); }
+  void release_current() override {
+    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+  }
+  bool has_window() const override { return false; }
+  glm::ivec2 framebuffer_size() const override { return glm::ivec2(0); }
+  const InputState& poll() override { return input_; }
+  bool should_close() const override { return false; }
+  void swap() override {}
+
+ private:
+  EGLDisplay display_;
+  EGLContext context_;
+  InputState input_;
+};
+
+bool has_word(const char* list, const char* word) {
+  return list && (" " + std::string(list) + " ").find(" " + std::string(word) + " ") != std::string::npos;
+}
+
+/// A 4.5 core context on `display`, or EGL_NO_CONTEXT with the reason appended to `reasons`.
+EGLContext try_display(EGLDisplay display, const char* name, bool debug, std::string& reasons) {
+  const auto fail = [&](const std::string& why) {
+    reasons += (reasons.empty() ? "" : "; ") + std::string(name) + ": " + why;
+    return EGL_NO_CONTEXT;
+  };
+  if (display == EGL_NO_DISPLAY) return fail("no display");
+  EGLint major = 0;
+  EGLint minor = 0;
+  if (!eglInitialize(display, &major, &minor)) return fail("cannot be initialised");
+  const char* extensions = eglQueryString(display, EGL_EXTENSIONS);
+  for (const char* needed : {"EGL_KHR_no_config_context", "EGL_KHR_surfaceless_context"}) {
+    if (!has_word(extensions, needed)) return fail(std::string("lacks ") + needed);
+  }
+  if (!eglBindAPI(EGL_OPENGL_API)) return fail("has no desktop OpenGL");
+  const std::array<EGLint, 9> attributes{EGL_CONTEXT_MAJOR_VERSION,
+                                         4,
+                                         EGL_CONTEXT_MINOR_VERSION,
+                                         5,
+                                         EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                         EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                         EGL_CONTEXT_OPENGL_DEBUG,
+                                         debug ? EGL_TRUE : EGL_FALSE,
+                                         EGL_NONE};
+  const EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
+  if (context == EGL_NO_CONTEXT) return fail("has no OpenGL 4.5 core");
+  if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) {
+    eglDestroyContext(display, context);
+    return fail("cannot make a context current without a surface");
+  }
+  return context;
+}
+
+struct Candidate {
+  EGLDisplay display;
+  const char* name;
+};
+
+/// Displays in the order they are worth trying. EGL devices of GPUs come before Mesa's software device.
+std::vector<Candidate> candidate_displays() {
+  std::vector<Candidate> found;
+  const char* client = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
+  if (!has_word(client, "EGL_EXT_platform_base")) {
+    found.push_back({eglGetDisplay(EGL_DEFAULT_DISPLAY), "default display"});
+    return found;
+  }
+  std::vector<EGLDeviceEXT> hardware;
+  std::vector<EGLDeviceEXT> software;
+  if (has_word(client, "EGL_EXT_platform_device") && has_word(client, "EGL_EXT_device_enumeration")) {
+    std::array<EGLDeviceEXT, 16> devices{};
+    EGLint count = 0;
+    if (eglQueryDevicesEXT(static_cast<EGLint>(devices.size()), devices.data(), &count)) {
+      for (EGLint i = 0; i < count; ++i) {
+        const bool is_software =
+            has_word(eglQueryDeviceStringEXT(devices[i], EGL_EXTENSIONS), "EGL_MESA_device_software");
+        (is_software ? software : hardware).push_back(devices[i]);
+      }
+    }
+  }
+  const auto add_devices = [&](const std::vector<EGLDeviceEXT>& devices, const char* name) {
+    for (EGLDeviceEXT device : devices) {
+      found.push_back({eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, nullptr), name});
+    }
+  };
+  // Mesa's surfaceless platform picks a Mesa GPU by itself; another vendor's GPU shows only as a device.
+  const bool mesa_surfaceless = has_word(client, "EGL_MESA_platform_surfaceless");
+  add_devices(hardware, "EGL device");
+  if (mesa_surfaceless) {
+    found.push_back({eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr),
+                     "surfaceless platform"});
+  }
+  add_devices(software, "software EGL device");
+  found.push_back({eglGetDisplay(EGL_DEFAULT_DISPLAY), "default display"});
+  return found;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Context>> make_headless_context(const HeadlessOptions& options) {
+  if (options.software_threads < 0 || options.software_threads > 64) {
+    return Error{"software_threads", std::to_string(options.software_threads) + " is not within 0–64",
+                 "Use 0"};
+  }
+  // llvmpipe reads it when its first screen is made, which the first eglInitialize does.
+  if (options.software_threads > 0) {
+    setenv("LP_NUM_THREADS", std::to_string(options.software_threads).c_str(), 1);
+  }
+  std::string reasons;
+  for (const Candidate& candidate : candidate_displays()) {
+    const EGLContext context = try_display(candidate.display, candidate.name, options.debug, reasons);
+    if (context != EGL_NO_CONTEXT)
+      return std::unique_ptr<Context>(new EglContext(candidate.display, context));
+  }
+  return Error{"headless OpenGL", reasons.empty() ? "no EGL display" : reasons,
+               "Install libegl1, libegl-mesa0 and libgl1-mesa-dri, or the driver of your GPU"};
+}
+
+}  // namespace slosh

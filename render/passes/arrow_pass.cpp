@@ -1,0 +1,104 @@
+#include "render/passes/arrow_pass.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+namespace slosh {
+namespace {
+
+constexpr int kSides = 16;
+
+struct Ring {
+  float along;   ///< m from the arrow's start
+  float radius;  ///< m
+};
+
+/// The surface between two rings round an axis; a ring of radius 0 is a point.
+void append_band(const glm::mat3& axes, const glm::vec3& start, const Ring& a, const Ring& b,
+                 const glm::vec3& color, std::vector<ArrowVertex>& out) {
+  const glm::vec2 slope =
+      glm::normalize(glm::vec2(b.along - a.along, a.radius - b.radius));  // outward, along
+  const auto vertex = [&](const Ring& ring, int side) {
+    const float angle = glm::two_pi<float>() * static_cast<float>(side) / kSides;
+    const glm::vec3 outward = axes[0] * std::cos(angle) + axes[1] * std::sin(angle);
+    return ArrowVertex{start + axes[2] * ring.along + outward * ring.radius,
+                       outward * slope.x + axes[2] * slope.y, color};
+  };
+  for (int side = 0; side < kSides; ++side) {
+    const ArrowVertex a0 = vertex(a, side);
+    const ArrowVertex a1 = vertex(a, side + 1);
+    const ArrowVertex b0 = vertex(b, side);
+    const ArrowVertex b1 = vertex(b, side + 1);
+    out.insert(out.end(), {a0, a1, b1, a0, b1, b0});
+  }
+}
+
+}  // namespace
+
+void append_arrow(const Arrow& arrow, float eye_distance, std::vector<ArrowVertex>& out) {
+  const glm::vec3 way = arrow.to - arrow.from;
+  const float length = glm::length(way);
+  if (!std::isfinite(length) || !std::isfinite(glm::dot(arrow.from, arrow.to)) || length < 1e-5f) return;
+  const float width = std::clamp(0.05f * length, 0.002f * eye_distance, 0.006f * eye_distance);
+  const float head = std::min(5.0f * width, 0.6f * length);
+
+  glm::mat3 axes;
+  axes[2] = way / length;
+  const glm::vec3 other =
+      std::abs(axes[2].y) < 0.9f ? glm::vec3(0.0f, 1.0f, 0.0f) : glm::vec3(1.0f, 0.0f, 0.0f);
+  axes[0] = glm::normalize(glm::cross(other, axes[2]));
+  axes[1] = glm::cross(axes[2], axes[0]);
+  const Ring rings[] = {
+      {0.0f, 0.0f}, {0.0f, width}, {length - head, width}, {length - head, 2.4f * width}, {length, 0.0f}};
+  for (std::size_t i = 0; i + 1 < std::size(rings); ++i) {
+    append_band(axes, arrow.from, rings[i], rings[i + 1], arrow.color, out);
+  }
+}
+
+Result<ArrowPass> ArrowPass::create() {
+  auto program = gl::Program::create("arrow.vert", "arrow.frag");
+  if (!program) return program.error();
+  ArrowPass pass;
+  pass.program_ = std::move(program.value());
+  pass.array_ = gl::make_vertex_array();
+  for (GLuint attribute = 0; attribute < 3; ++attribute) {
+    glEnableVertexArrayAttrib(pass.array_.name(), attribute);
+    glVertexArrayAttribFormat(pass.array_.name(), attribute, 3, GL_FLOAT, GL_FALSE,
+                              attribute * sizeof(glm::vec3));
+    glVertexArrayAttribBinding(pass.array_.name(), attribute, 0);
+  }
+  return pass;
+}
+
+void ArrowPass::draw(const Frame& frame, const Targets& targets, const gl::Texture* fluid) {
+  vertices_.clear();
+  for (const Arrow& arrow : frame.arrows) {
+    const float distance = -(frame.view.view * glm::vec4(arrow.from, 1.0f)).z;
+    append_arrow(arrow, std::clamp(distance, frame.view.near_plane, frame.view.far_plane), vertices_);
+  }
+  if (vertices_.empty()) return;
+  buffer_.upload(std::span<const ArrowVertex>(vertices_));
+  glVertexArrayVertexBuffer(array_.name(), 0, buffer_.name(), 0, sizeof(ArrowVertex));
+
+  program_.use();
+  program_.set("has_fluid", fluid ? 1 : 0);
+  gl::bind_textures({fluid ? fluid : &targets.scene_depth, &targets.scene_depth});
+  const float farthest = 1.0f;
+  // Arrows hide each other but are seen through the scene: they get the depth buffer to themselves.
+  glClearNamedFramebufferfv(targets.blend_target.name(), GL_DEPTH, 0, &farthest);
+  glBindFramebuffer(GL_FRAMEBUFFER, targets.blend_target.name());
+  glViewport(0, 0, targets.size.x, targets.size.y);
+  glEnable(GL_DEPTH_TEST);
+  glEnable(GL_CULL_FACE);
+  glCullFace(GL_BACK);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  glBindVertexArray(array_.name());
+  glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(vertices_.size()));
+  glDisable(GL_BLEND);
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_DEPTH_TEST);
+}
+
+}  // namespace slosh

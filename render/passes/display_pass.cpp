@@ -1,0 +1,42 @@
+#include "render/passes/display_pass.h"
+
+#include "render/color/display_transform.h"
+
+namespace slosh {
+
+Result<DisplayPass> DisplayPass::create(Display display) {
+  auto table = make_display_table(display);
+  if (!table) return table.error();
+  auto program = gl::Program::create("fullscreen.vert", "display.frag");
+  if (!program) return program.error();
+
+  DisplayPass pass;
+  pass.display_ = display;
+  pass.program_ = std::move(program.value());
+  pass.no_vertices_ = gl::make_vertex_array();
+  constexpr int n = kDisplayTableSize;
+  GLuint name = 0;
+  glCreateTextures(GL_TEXTURE_3D, 1, &name);
+  pass.table_ = gl::Texture(name);
+  glTextureStorage3D(name, 1, GL_RGBA16F, n, n, n);
+  glTextureSubImage3D(name, 0, 0, 0, 0, n, n, n, GL_RGB, GL_FLOAT, table.value().data());
+  glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  for (GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R}) {
+    glTextureParameteri(name, wrap, GL_CLAMP_TO_EDGE);
+  }
+  pass.program_.set("table_scale", glm::vec2((n - 1.0f) / n, 0.5f / n));
+  return pass;
+}
+
+void DisplayPass::draw(const Targets& targets, float exposure) {
+  glBindFramebuffer(GL_FRAMEBUFFER, targets.display_target.name());
+  glViewport(0, 0, targets.size.x, targets.size.y);
+  gl::bind_textures({&targets.color, &table_});
+  program_.use();
+  program_.set("exposure", exposure);
+  glBindVertexArray(no_vertices_.name());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+}  // namespace slosh

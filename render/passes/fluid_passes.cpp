@@ -1,0 +1,125 @@
+#include "render/passes/fluid_passes.h"
+
+#include <algorithm>
+
+namespace slosh {
+namespace {
+
+void clear_to(const gl::Framebuffer& target, float depth) {
+  const glm::vec4 value(depth);
+  glClearNamedFramebufferfv(target.name(), GL_COLOR, 0, &value.x);
+}
+
+void draw_into(const gl::Framebuffer& target, glm::ivec2 size) {
+  glBindFramebuffer(GL_FRAMEBUFFER, target.name());
+  glViewport(0, 0, size.x, size.y);
+}
+
+/// How far the wide filter's iteration `i` of `count` reaches, in splat radii on screen: coarse first, so
+/// that later ones take away the pattern that far taps leave. README.md has the measurement.
+float spread_of(int i, int count) {
+  const float rest = static_cast<float>(count - i) / static_cast<float>(count);
+  return 0.55f * rest;
+}
+
+}  // namespace
+
+Result<FluidPasses> FluidPasses::create() {
+  FluidPasses passes;
+  const auto load = [](gl::Program& into, const char* vertex, const char* fragment,
+                       std::vector<std::string> defines = {}) -> Result<bool> {
+    auto program = gl::Program::create(vertex, fragment, std::move(defines));
+    if (!program) return program.error();
+    into = std::move(program.value());
+    return true;
+  };
+  for (const Result<bool>& loaded : {load(passes.front_program_, "splat.vert", "splat.frag", {"FRONT"}),
+                                     load(passes.back_program_, "splat.vert", "splat.frag"),
+                                     load(passes.smooth_program_, "tiles.vert", "smooth.frag"),
+                                     load(passes.composite_program_, "tiles.vert", "composite.frag"),
+                                     load(passes.thickness_program_, "tiles.vert", "thickness.frag")}) {
+    if (!loaded) return loaded.error();
+  }
+  passes.no_vertices_ = gl::make_vertex_array();
+  passes.tile_vertices_ = gl::make_vertex_array();
+  glEnableVertexArrayAttrib(passes.tile_vertices_.name(), 0);
+  glVertexArrayAttribFormat(passes.tile_vertices_.name(), 0, 2, GL_FLOAT, GL_FALSE, 0);
+  glVertexArrayAttribBinding(passes.tile_vertices_.name(), 0, 0);
+  return passes;
+}
+
+void FluidPasses::upload(const Splats& splats) {
+  sphere_buffer_.upload(std::span<const glm::vec4>(splats.spheres));
+  tile_buffer_.upload(std::span<const glm::vec2>(splats.tiles));
+  glVertexArrayVertexBuffer(tile_vertices_.name(), 0, tile_buffer_.name(), 0, sizeof(glm::vec2));
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, sphere_buffer_.name());
+  splat_count_ = static_cast<GLsizei>(splats.spheres.size());
+  tile_corners_ = static_cast<GLsizei>(splats.tiles.size());
+}
+
+void FluidPasses::splat_front(const Targets& targets) {
+  clear_to(targets.front_target, kNoFluidDepth);
+  draw_into(targets.front_target, targets.size);
+  glEnable(GL_BLEND);
+  glBlendEquation(GL_MIN);
+  front_program_.use();
+  glBindVertexArray(no_vertices_.name());
+  glDrawArrays(GL_TRIANGLES, 0, 3 * splat_count_);
+  glBlendEquation(GL_FUNC_ADD);
+  glDisable(GL_BLEND);
+}
+
+void FluidPasses::splat_back(const Targets& targets) {
+  clear_to(targets.back_target, 0.0f);
+  draw_into(targets.back_target, targets.back_size);
+  glEnable(GL_BLEND);
+  glBlendEquation(GL_MAX);
+  back_program_.use();
+  glBindVertexArray(no_vertices_.name());
+  glDrawArrays(GL_TRIANGLES, 0, 3 * splat_count_);
+  glBlendEquation(GL_FUNC_ADD);
+  glDisable(GL_BLEND);
+}
+
+void FluidPasses::smooth(const Targets& targets, const RenderOptions& options) {
+  smoothed_ = -1;
+  const int count = options.bilateral_iterations;
+  for (int i = 0; i < std::min(count, 2); ++i)
+    clear_to(targets.smooth_target[static_cast<std::size_t>(i)], kNoFluidDepth);
+  smooth_program_.use();
+  for (int i = 0; i < count; ++i) {
+    const int into = i % 2;
+    gl::bind_textures({&smoothed(targets)});
+    draw_into(targets.smooth_target[static_cast<std::size_t>(into)], targets.size);
+    smooth_program_.set("spread", options.wide_filter ? spread_of(i, count) : 0.0f);
+    draw_tiles();
+    smoothed_ = into;
+  }
+}
+
+void FluidPasses::composite(const Targets& targets) {
+  gl::bind_textures(
+      {&targets.front, &smoothed(targets), &targets.back, &targets.scene_depth, &targets.scene_color});
+  draw_into(targets.color_target, targets.size);
+  composite_program_.use();
+  draw_tiles();
+}
+
+void FluidPasses::thickness(const Targets& targets, const gl::Framebuffer& target) {
+  gl::bind_textures({&targets.front, &smoothed(targets), &targets.back, &targets.scene_depth});
+  clear_to(target, 0.0f);
+  draw_into(target, targets.size);
+  thickness_program_.use();
+  draw_tiles();
+}
+
+const gl::Texture& FluidPasses::smoothed(const Targets& targets) const {
+  return smoothed_ < 0 ? targets.front : targets.smooth[static_cast<std::size_t>(smoothed_)];
+}
+
+void FluidPasses::draw_tiles() {
+  glBindVertexArray(tile_vertices_.name());
+  glDrawArrays(GL_TRIANGLES, 0, tile_corners_);
+}
+
+}  // namespace slosh

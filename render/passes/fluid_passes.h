@@ -1,0 +1,47 @@
+// Section 5's fluid: splat, smooth, composite.
+#pragma once
+
+#include "render/gl/objects.h"
+#include "render/passes/splats.h"
+#include "render/passes/targets.h"
+#include "render/renderer.h"
+
+namespace slosh {
+
+class FluidPasses {
+ public:
+  static Result<FluidPasses> create();
+
+  /// Uploads this frame's splats and tiles.
+  void upload(const Splats& splats);
+  /// 5.1. Reads the splats; writes front and back.
+  void splat_front(const Targets& targets);
+  void splat_back(const Targets& targets);
+  /// 5.1, Fig 5. Reads front; writes smooth by turns.
+  void smooth(const Targets& targets, const RenderOptions& options);
+  /// 5.2, Eq 15. Reads front, smooth, back, scene_depth, scene_color; writes color where there is fluid.
+  void composite(const Targets& targets);
+  /// T for tests, into an R32F target of the picture's size.
+  void thickness(const Targets& targets, const gl::Framebuffer& target);
+
+  /// F_fD after the last smooth(), or before it if no iteration was asked for.
+  const gl::Texture& smoothed(const Targets& targets) const;
+
+ private:
+  void draw_tiles();
+
+  gl::Program front_program_;
+  gl::Program back_program_;
+  gl::Program smooth_program_;
+  gl::Program composite_program_;
+  gl::Program thickness_program_;
+  gl::StreamBuffer sphere_buffer_;
+  gl::StreamBuffer tile_buffer_;
+  gl::VertexArray no_vertices_;
+  gl::VertexArray tile_vertices_;
+  GLsizei splat_count_ = 0;
+  GLsizei tile_corners_ = 0;
+  int smoothed_ = -1;  ///< index into Targets::smooth, −1 = front
+};
+
+}  // namespace slosh

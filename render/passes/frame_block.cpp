@@ -1,0 +1,67 @@
+#include "render/passes/frame_block.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace slosh {
+namespace {
+
+/// Mirrors Look in shaders/composite.frag.
+struct LookBlock {
+  glm::vec4 color_refraction;
+  glm::vec4 extinction;
+  glm::vec4 specular_exponent;
+};
+
+}  // namespace
+
+glm::vec3 direction_to_light(const Frame& frame) {
+  const float length = glm::length(frame.light_direction);
+  if (!std::isfinite(length) || length < 1e-6f) return {0.0f, 1.0f, 0.0f};
+  return -frame.light_direction / length;
+}
+
+FrameBlock make_frame_block(const Frame& frame, const RenderOptions& options, const ShadowView& shadow) {
+  const Studio studio;
+  const glm::mat4& projection = frame.view.projection;
+  const glm::vec2 size(options.width, options.height);
+  const glm::vec3 to_light = direction_to_light(frame);
+
+  FrameBlock block{};
+  block.eye_from_world = frame.view.view;
+  block.world_from_eye = glm::inverse(frame.view.view);
+  block.clip_from_eye = projection;
+  block.shadow_from_world = shadow.shadow_from_world;
+  block.unproject = {1.0f / projection[0][0], 1.0f / projection[1][1], projection[2][0], projection[2][1]};
+  block.picture = {size, 1.0f / size};
+  block.to_light_world = {to_light, shadow.size > 0 ? 1.0f : 0.0f};
+  block.to_light_eye = {glm::mat3(frame.view.view) * to_light,
+                        shadow.size > 0 ? 1.0f / static_cast<float>(shadow.size) : 0.0f};
+  block.camera = {glm::vec3(block.world_from_eye[3]), frame.view.far_plane};
+  block.splat = {options.splat_scale * frame.particle_radius, 0.5f * projection[1][1] * size.y,
+                 1.0f / (options.bilateral_range * frame.particle_radius), 0.0f};
+  block.key_light = {studio.key_light, 0.0f};
+  block.sky = {studio.sky, 0.0f};
+  block.horizon = {studio.horizon, 0.0f};
+  block.ground = {studio.ground, 0.0f};
+  block.softbox = {studio.softbox, 0.0f};
+  block.switches = {options.fresnel ? 1.0f : 0.0f, options.lit_fluid ? 1.0f : 0.0f,
+                    options.draw_background ? 1.0f : 0.0f, 0.0f};
+  return block;
+}
+
+void FrameUniforms::upload(const FrameBlock& block, std::span<const FluidLook> fluids) {
+  frame_.upload(std::span(&block, 1));
+  glBindBufferBase(GL_UNIFORM_BUFFER, 0, frame_.name());
+  std::array<LookBlock, kMaxFluidLooks> looks{};
+  for (std::size_t i = 0; i < std::min(fluids.size(), looks.size()); ++i) {
+    const FluidLook& fluid = fluids[i];
+    looks[i] = {
+        {fluid.color, fluid.refraction}, {fluid.extinction, 0.0f}, {fluid.specular, fluid.specular_exponent}};
+  }
+  looks_.upload(std::span<const LookBlock>(looks));
+  glBindBufferBase(GL_UNIFORM_BUFFER, 1, looks_.name());
+}
+
+}  // namespace slosh

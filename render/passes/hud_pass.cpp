@@ -1,0 +1,61 @@
+#include "render/passes/hud_pass.h"
+
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+namespace slosh {
+
+Result<std::unique_ptr<HudPass>> HudPass::create(Context& context) {
+  std::unique_ptr<HudPass> pass(new HudPass());
+  ImGuiContext* before = ImGui::GetCurrentContext();
+  pass->imgui_ = ImGui::CreateContext();
+  ImGui::SetCurrentContext(pass->imgui_);
+  ImGuiIO& io = ImGui::GetIO();
+  io.IniFilename = nullptr;  // no file of ours appears in the user's folder
+  io.LogFilename = nullptr;
+  ImGui::StyleColorsDark();
+  ImGui::GetStyle().WindowRounding = 4.0f;
+  ImGui::GetStyle().Colors[ImGuiCol_WindowBg].w = 0.72f;
+  if (auto* window = static_cast<GLFWwindow*>(context.native_window())) {
+    pass->has_window_ = ImGui_ImplGlfw_InitForOpenGL(window, true);
+  }
+  pass->gl_ready_ = ImGui_ImplOpenGL3_Init("#version 450 core");
+  if (before) ImGui::SetCurrentContext(before);
+  if (!pass->gl_ready_)
+    return Error{"HUD", "Dear ImGui cannot start its OpenGL backend", "Update the graphics driver"};
+  return pass;
+}
+
+HudPass::~HudPass() {
+  ImGuiContext* before = ImGui::GetCurrentContext();
+  ImGui::SetCurrentContext(imgui_);
+  if (gl_ready_) ImGui_ImplOpenGL3_Shutdown();
+  if (has_window_) ImGui_ImplGlfw_Shutdown();
+  ImGui::DestroyContext(imgui_);
+  ImGui::SetCurrentContext(before == imgui_ ? nullptr : before);
+}
+
+void HudPass::draw(const std::function<void()>& hud, const Targets& targets) {
+  ImGui::SetCurrentContext(imgui_);
+  ImGuiIO& io = ImGui::GetIO();
+  ImGui_ImplOpenGL3_NewFrame();
+  if (has_window_) {
+    ImGui_ImplGlfw_NewFrame();
+    // The picture is stretched to the window, and the HUD with it.
+    if (io.DisplaySize.x > 0.0f && io.DisplaySize.y > 0.0f) {
+      io.DisplayFramebufferScale = ImVec2(static_cast<float>(targets.size.x) / io.DisplaySize.x,
+                                          static_cast<float>(targets.size.y) / io.DisplaySize.y);
+    }
+  } else {
+    io.DisplaySize = ImVec2(static_cast<float>(targets.size.x), static_cast<float>(targets.size.y));
+    io.DeltaTime = 1.0f / 60.0f;
+  }
+  ImGui::NewFrame();
+  if (hud) hud();
+  ImGui::Render();
+  glBindFramebuffer(GL_FRAMEBUFFER, targets.display_target.name());
+  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+}  // namespace slosh

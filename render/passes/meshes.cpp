@@ -1,0 +1,66 @@
+#include "render/passes/meshes.h"
+
+#include <cmath>
+
+namespace slosh {
+namespace {
+
+struct Vertex {
+  glm::vec3 position;
+  glm::vec3 normal;
+};
+
+bool finite(const glm::vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+}  // namespace
+
+MeshHandle MeshStore::add(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
+                          std::span<const glm::uvec3> triangles) {
+  const auto handle = static_cast<MeshHandle>(meshes_.size());
+  Mesh mesh;
+  std::vector<Vertex> vertices;
+  vertices.reserve(positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    vertices.push_back({positions[i], i < normals.size() ? normals[i] : glm::vec3(0.0f, 1.0f, 0.0f)});
+  }
+  std::vector<glm::uvec3> kept;
+  kept.reserve(triangles.size());
+  for (const glm::uvec3& triangle : triangles) {
+    bool good = true;
+    for (int k = 0; k < 3; ++k)
+      good = good && triangle[k] < positions.size() && finite(positions[triangle[k]]);
+    if (!good) continue;
+    kept.push_back(triangle);
+    for (int k = 0; k < 3; ++k) mesh.bounds.add(positions[triangle[k]]);
+  }
+  if (!kept.empty()) {
+    mesh.vertices = gl::make_buffer();
+    mesh.indices = gl::make_buffer();
+    mesh.array = gl::make_vertex_array();
+    glNamedBufferStorage(mesh.vertices.name(), static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)),
+                         vertices.data(), 0);
+    glNamedBufferStorage(mesh.indices.name(), static_cast<GLsizeiptr>(kept.size() * sizeof(glm::uvec3)),
+                         kept.data(), 0);
+    const GLuint array = mesh.array.name();
+    glVertexArrayVertexBuffer(array, 0, mesh.vertices.name(), 0, sizeof(Vertex));
+    glVertexArrayElementBuffer(array, mesh.indices.name());
+    for (GLuint attribute = 0; attribute < 2; ++attribute) {
+      glEnableVertexArrayAttrib(array, attribute);
+      glVertexArrayAttribFormat(array, attribute, 3, GL_FLOAT, GL_FALSE, attribute * sizeof(glm::vec3));
+      glVertexArrayAttribBinding(array, attribute, 0);
+    }
+    mesh.index_count = static_cast<GLsizei>(3 * kept.size());
+  }
+  meshes_.push_back(std::move(mesh));
+  return handle;
+}
+
+void MeshStore::draw(MeshHandle handle) const {
+  const Mesh& mesh = meshes_[handle];
+  glBindVertexArray(mesh.array.name());
+  glDrawElements(GL_TRIANGLES, mesh.index_count, GL_UNSIGNED_INT, nullptr);
+}
+
+}  // namespace slosh

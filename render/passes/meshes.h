@@ -1,0 +1,47 @@
+// Meshes kept on the GPU.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "render/frame.h"
+#include "render/gl/objects.h"
+
+namespace slosh {
+
+/// An axis-aligned box; empty while low > high.
+struct Bounds {
+  glm::vec3 low{1e30f};
+  glm::vec3 high{-1e30f};
+
+  void add(const glm::vec3& point) {
+    low = glm::min(low, point);
+    high = glm::max(high, point);
+  }
+  bool empty() const { return low.x > high.x; }
+};
+
+class MeshStore {
+ public:
+  MeshHandle add(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
+                 std::span<const glm::uvec3> triangles);
+
+  bool has(MeshHandle handle) const { return handle < meshes_.size() && meshes_[handle].index_count > 0; }
+  /// The mesh's box in its own frame.
+  const Bounds& bounds(MeshHandle handle) const { return meshes_[handle].bounds; }
+  /// Issues the draw call; the program is the caller's.
+  void draw(MeshHandle handle) const;
+
+ private:
+  struct Mesh {
+    gl::Buffer vertices;
+    gl::Buffer indices;
+    gl::VertexArray array;
+    GLsizei index_count = 0;
+    Bounds bounds;
+  };
+  std::vector<Mesh> meshes_;
+};
+
+}  // namespace slosh

@@ -1,0 +1,135 @@
+#include "render/passes/scene_pass.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace slosh {
+namespace {
+
+void set_look(const gl::Program& program, const MeshInstance& instance) {
+  program.set("model", instance.model);
+  program.set("base", glm::vec4(instance.look.base_color, glm::clamp(instance.look.opacity, 0.0f, 1.0f)));
+  program.set("roughness", glm::vec2(instance.look.metallic, instance.look.roughness));
+}
+
+float distance_to(const View& view, const MeshInstance& instance, const MeshStore& meshes) {
+  const Bounds& box = meshes.bounds(instance.mesh);
+  return -(view.view * instance.model * glm::vec4(0.5f * (box.low + box.high), 1.0f)).z;
+}
+
+}  // namespace
+
+bool has_translucent(const Frame& frame) {
+  return std::ranges::any_of(frame.meshes, [](const MeshInstance& m) { return m.look.opacity < 1.0f; });
+}
+
+Result<ScenePass> ScenePass::create() {
+  ScenePass pass;
+  const auto load = [](gl::Program& into, const char* vertex, const char* fragment,
+                       std::vector<std::string> defines = {}) -> Result<bool> {
+    auto program = gl::Program::create(vertex, fragment, std::move(defines));
+    if (!program) return program.error();
+    into = std::move(program.value());
+    return true;
+  };
+  for (const Result<bool>& loaded :
+       {load(pass.opaque_, "mesh.vert", "mesh.frag"),
+        load(pass.background_, "fullscreen.vert", "background.frag"),
+        load(pass.occlusion_, "fullscreen.vert", "occlusion.frag", {"TAPS 8"}),
+        load(pass.resolve_, "fullscreen.vert", "resolve.frag"),
+        load(pass.translucent_behind_, "mesh.vert", "translucent.frag", {"BEHIND"}),
+        load(pass.translucent_front_, "mesh.vert", "translucent.frag")}) {
+    if (!loaded) return loaded.error();
+  }
+  pass.no_vertices_ = gl::make_vertex_array();
+  return pass;
+}
+
+void ScenePass::draw_opaque(const Frame& frame, const MeshStore& meshes, const Targets& targets,
+                            const RenderOptions& options) {
+  const gl::Framebuffer& target = options.ambient_occlusion ? targets.mesh_target : targets.plain_mesh_target;
+  const glm::vec4 black(0.0f);
+  const glm::vec4 nothing(kNoFluidDepth);
+  const float farthest = 1.0f;
+  if (!options.draw_background) glClearNamedFramebufferfv(target.name(), GL_COLOR, 0, &black.x);
+  glClearNamedFramebufferfv(target.name(), GL_COLOR, 1, &nothing.x);
+  glClearNamedFramebufferfv(target.name(), GL_DEPTH, 0, &farthest);
+  glBindFramebuffer(GL_FRAMEBUFFER, target.name());
+  glViewport(0, 0, targets.size.x, targets.size.y);
+  glEnable(GL_DEPTH_TEST);
+  glDepthMask(GL_TRUE);
+  opaque_.use();
+  for (const MeshInstance& instance : frame.meshes) {
+    if (!meshes.has(instance.mesh) || instance.look.opacity < 1.0f) continue;
+    set_look(opaque_, instance);
+    meshes.draw(instance.mesh);
+  }
+  if (options.draw_background) {
+    // The triangle lies on the far plane: it fills what the meshes left. It writes no depth.
+    glColorMaski(1, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    glDepthMask(GL_FALSE);
+    glDepthFunc(GL_LEQUAL);
+    background_.use();
+    glBindVertexArray(no_vertices_.name());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDepthFunc(GL_LESS);
+    glDepthMask(GL_TRUE);
+    glColorMaski(1, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  }
+  glDisable(GL_DEPTH_TEST);
+}
+
+void ScenePass::draw_occlusion(const Targets& targets, float reach) {
+  glBindFramebuffer(GL_FRAMEBUFFER, targets.occlusion_target.name());
+  glViewport(0, 0, targets.half_size.x, targets.half_size.y);
+  gl::bind_textures({&targets.scene_depth});
+  occlusion_.use();
+  occlusion_.set("reach", reach);
+  glBindVertexArray(no_vertices_.name());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void ScenePass::resolve_occlusion(const Targets& targets) {
+  glBindFramebuffer(GL_FRAMEBUFFER, targets.color_target.name());
+  glViewport(0, 0, targets.size.x, targets.size.y);
+  gl::bind_textures({&targets.mesh_color, &targets.occlusion});
+  resolve_.use();
+  glBindVertexArray(no_vertices_.name());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void ScenePass::draw_translucent(const Frame& frame, const MeshStore& meshes, const Targets& targets,
+                                 const gl::Texture* fluid, bool behind) {
+  std::vector<std::pair<float, const MeshInstance*>> sorted;
+  for (const MeshInstance& instance : frame.meshes) {
+    if (!meshes.has(instance.mesh) || instance.look.opacity >= 1.0f) continue;
+    sorted.emplace_back(distance_to(frame.view, instance, meshes), &instance);
+  }
+  if (sorted.empty()) return;
+  std::ranges::stable_sort(sorted, [](const auto& a, const auto& b) { return a.first > b.first; });
+
+  const gl::Program& program = behind ? translucent_behind_ : translucent_front_;
+  program.use();
+  program.set("has_fluid", fluid ? 1 : 0);
+  if (fluid) gl::bind_textures({fluid});
+  glBindFramebuffer(GL_FRAMEBUFFER, targets.blend_target.name());
+  glViewport(0, 0, targets.size.x, targets.size.y);
+  glEnable(GL_DEPTH_TEST);
+  glDepthMask(GL_FALSE);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  glEnable(GL_CULL_FACE);
+  for (const auto& [distance, instance] : sorted) {
+    set_look(program, *instance);
+    for (GLenum culled : {GL_FRONT, GL_BACK}) {  // the far side first
+      glCullFace(culled);
+      meshes.draw(instance->mesh);
+    }
+  }
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_BLEND);
+  glDepthMask(GL_TRUE);
+  glDisable(GL_DEPTH_TEST);
+}
+
+}  // namespace slosh

@@ -1,0 +1,41 @@
+// The meshes: opaque ones before the fluid, translucent ones round it.
+#pragma once
+
+#include "render/frame.h"
+#include "render/gl/objects.h"
+#include "render/passes/meshes.h"
+#include "render/passes/targets.h"
+#include "render/renderer.h"
+
+namespace slosh {
+
+class ScenePass {
+ public:
+  static Result<ScenePass> create();
+
+  /// Reads opaque meshes and the shadow map; writes S_d, the depth buffer and the colour (mesh_color if
+  /// occlusion follows, else color).
+  void draw_opaque(const Frame& frame, const MeshStore& meshes, const Targets& targets,
+                   const RenderOptions& options);
+  /// Reads S_d and mesh_color; writes occlusion, then color.
+  void draw_occlusion(const Targets& targets, float reach);
+  void resolve_occlusion(const Targets& targets);
+  /// Blends translucent meshes into color: those behind the fluid's surface, or those in front of it. `fluid`
+  /// is the smoothed F_fD, null without fluid.
+  void draw_translucent(const Frame& frame, const MeshStore& meshes, const Targets& targets,
+                        const gl::Texture* fluid, bool behind);
+
+ private:
+  gl::Program opaque_;
+  gl::Program background_;
+  gl::Program occlusion_;
+  gl::Program resolve_;
+  gl::Program translucent_behind_;
+  gl::Program translucent_front_;
+  gl::VertexArray no_vertices_;
+};
+
+/// The frame has a mesh that is drawn blended.
+bool has_translucent(const Frame& frame);
+
+}  // namespace slosh

@@ -1,0 +1,263 @@
+#include "render/renderer.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "render/gl/objects.h"
+#include "render/passes/arrow_pass.h"
+#include "render/passes/display_pass.h"
+#include "render/passes/fluid_passes.h"
+#include "render/passes/frame_block.h"
+#include "render/passes/hud_pass.h"
+#include "render/passes/meshes.h"
+#include "render/passes/scene_pass.h"
+#include "render/passes/shadow_pass.h"
+#include "render/passes/splats.h"
+#include "render/passes/targets.h"
+#include "render/read_back.h"
+
+namespace slosh {
+namespace {
+
+constexpr int kMaxSide = 16384;
+
+std::optional<Error> check(const RenderOptions& o) {
+  const auto wrong = [](const char* field, auto value, const char* mend) {
+    return Error{std::string("RenderOptions::") + field, std::to_string(value) + " is out of range", mend};
+  };
+  const auto positive = [](float value) { return std::isfinite(value) && value > 0.0f; };
+  if (o.width < 1 || o.width > kMaxSide) return wrong("width", o.width, "Use 1 to 16384 pixels");
+  if (o.height < 1 || o.height > kMaxSide) return wrong("height", o.height, "Use 1 to 16384 pixels");
+  if (o.bilateral_iterations < 0 || o.bilateral_iterations > 64) {
+    return wrong("bilateral_iterations", o.bilateral_iterations, "Use 0 to 64");
+  }
+  if (!positive(o.bilateral_range))
+    return wrong("bilateral_range", o.bilateral_range, "Use a positive number");
+  if (!positive(o.splat_scale)) return wrong("splat_scale", o.splat_scale, "Use a positive number");
+  if (!positive(o.exposure)) return wrong("exposure", o.exposure, "Use a positive number");
+  if (o.shadow_size < 0 || o.shadow_size > 8192)
+    return wrong("shadow_size", o.shadow_size, "Use 0 to 8192 texels");
+  return std::nullopt;
+}
+
+/// How far ambient occlusion looks, in multiples of the distance to what is looked at.
+constexpr float kOcclusionReach = 0.06f;
+
+}  // namespace
+
+struct Renderer::Parts {
+  Parts(Context& where, const RenderOptions& what) : context(where), options(what) {}
+
+  Context& context;
+  RenderOptions options;
+  MeshStore meshes;
+  FrameUniforms uniforms;
+  Splats splats;
+  Targets targets;
+  std::optional<ShadowPass> shadow_pass;
+  std::optional<ScenePass> scene_pass;
+  std::optional<FluidPasses> fluid_passes;
+  std::optional<ArrowPass> arrow_pass;
+  std::optional<DisplayPass> display_pass;
+  std::unique_ptr<HudPass> hud_pass;
+  bool drew_fluid = false;  ///< in the last frame
+  bool timing = false;
+  std::vector<PassTime> times;
+
+  /// Makes what `options` asks for and is not there yet.
+  Result<bool> fit_to_options();
+  const gl::Texture* fluid_depth() const { return drew_fluid ? &fluid_passes->smoothed(targets) : nullptr; }
+  void show_in_window();
+
+  /// Runs one pass, timed if asked.
+  template <class Pass>
+  void run(const char* name, Pass&& pass) {
+    if (!timing) {
+      pass();
+      return;
+    }
+    glFinish();
+    const auto start = std::chrono::steady_clock::now();
+    pass();
+    glFinish();
+    const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
+    times.push_back({name, took.count()});
+  }
+};
+
+Result<bool> Renderer::Parts::fit_to_options() {
+  const glm::ivec2 size(options.width, options.height);
+  const glm::ivec2 back = options.half_resolution_back ? (size + 1) / 2 : size;
+  if (targets.size != size || targets.back_size != back) {
+    targets = make_targets(size, options.half_resolution_back);
+    drew_fluid = false;
+  }
+  if (options.shadow_size == 0) {
+    shadow_pass.reset();
+  } else if (!shadow_pass || shadow_pass->size() != options.shadow_size) {
+    auto pass = ShadowPass::create(options.shadow_size);
+    if (!pass) return pass.error();
+    shadow_pass = std::move(pass.value());
+  }
+  if (!display_pass || display_pass->display() != options.display) {
+    auto pass = DisplayPass::create(options.display);
+    if (!pass) return pass.error();
+    display_pass = std::move(pass.value());
+  }
+  return true;
+}
+
+void Renderer::Parts::show_in_window() {
+  const glm::ivec2 window = context.framebuffer_size();
+  if (window.x < 1 || window.y < 1) return;
+  glBlitNamedFramebuffer(targets.display_target.name(), 0, 0, 0, targets.size.x, targets.size.y, 0, 0,
+                         window.x, window.y, GL_COLOR_BUFFER_BIT,
+                         window == targets.size ? GL_NEAREST : GL_LINEAR);
+}
+
+Renderer::Renderer(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+Renderer::~Renderer() = default;
+
+Result<std::unique_ptr<Renderer>> Renderer::create(Context& context, const RenderOptions& options) {
+  if (auto wrong = check(options)) return *wrong;
+  auto parts = std::make_unique<Parts>(context, options);
+  auto scene = ScenePass::create();
+  if (!scene) return scene.error();
+  auto fluid = FluidPasses::create();
+  if (!fluid) return fluid.error();
+  auto arrows = ArrowPass::create();
+  if (!arrows) return arrows.error();
+  auto hud = HudPass::create(context);
+  if (!hud) return hud.error();
+  parts->scene_pass = std::move(scene.value());
+  parts->fluid_passes = std::move(fluid.value());
+  parts->arrow_pass = std::move(arrows.value());
+  parts->hud_pass = std::move(hud.value());
+  if (auto fitted = parts->fit_to_options(); !fitted) return fitted.error();
+  return std::unique_ptr<Renderer>(new Renderer(std::move(parts)));
+}
+
+MeshHandle Renderer::add_mesh(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
+                              std::span<const glm::uvec3> triangles) {
+  return parts_->meshes.add(positions, normals, triangles);
+}
+
+void Renderer::draw(const Frame& frame) {
+  Parts& p = *parts_;
+  p.times.clear();
+  ShadowView shadow;
+  if (p.shadow_pass) {
+    p.run("shadow map", [&] { shadow = p.shadow_pass->draw(frame, p.meshes); });
+  }
+  p.uniforms.upload(make_frame_block(frame, p.options, shadow), frame.fluids);
+
+  p.run("prepare splats", [&] {
+    prepare_splats(frame, p.options, p.splats);
+    p.drew_fluid = !p.splats.empty();
+    if (p.drew_fluid) p.fluid_passes->upload(p.splats);
+  });
+  if (p.drew_fluid) {
+    p.run("front depth", [&] { p.fluid_passes->splat_front(p.targets); });
+    p.run("back depth", [&] { p.fluid_passes->splat_back(p.targets); });
+    p.run("bilateral filter", [&] { p.fluid_passes->smooth(p.targets, p.options); });
+  }
+
+  p.run("opaque meshes", [&] { p.scene_pass->draw_opaque(frame, p.meshes, p.targets, p.options); });
+  if (p.options.ambient_occlusion) {
+    p.run("occlusion", [&] { p.scene_pass->draw_occlusion(p.targets, kOcclusionReach); });
+    p.run("resolve", [&] { p.scene_pass->resolve_occlusion(p.targets); });
+  }
+  const bool translucent = has_translucent(frame);
+  if (p.drew_fluid) {
+    if (translucent) {
+      p.run("translucent behind",
+            [&] { p.scene_pass->draw_translucent(frame, p.meshes, p.targets, p.fluid_depth(), true); });
+    }
+    p.run("copy scene colour", [&] {
+      glCopyImageSubData(p.targets.color.name(), GL_TEXTURE_2D, 0, 0, 0, 0, p.targets.scene_color.name(),
+                         GL_TEXTURE_2D, 0, 0, 0, 0, p.targets.size.x, p.targets.size.y, 1);
+    });
+    p.run("composite", [&] { p.fluid_passes->composite(p.targets); });
+  }
+  if (translucent) {
+    p.run("translucent",
+          [&] { p.scene_pass->draw_translucent(frame, p.meshes, p.targets, p.fluid_depth(), false); });
+  }
+  if (!frame.arrows.empty()) {
+    p.run("arrows", [&] { p.arrow_pass->draw(frame, p.targets, p.fluid_depth()); });
+  }
+  p.run("display", [&] { p.display_pass->draw(p.targets, p.options.exposure); });
+  if (frame.hud) {
+    p.run("hud", [&] { p.hud_pass->draw(frame.hud, p.targets); });
+  }
+  if (p.context.has_window()) {
+    p.run("window", [&] { p.show_in_window(); });
+  }
+}
+
+Image Renderer::read_back() {
+  return read_image(parts_->targets.display_target, parts_->targets.size);
+}
+
+FloatImage Renderer::read_buffer(Buffer buffer) {
+  Parts& p = *parts_;
+  const Targets& t = p.targets;
+  const auto no_fluid = [&](float value) {
+    const auto pixels = static_cast<std::size_t>(t.size.x) * static_cast<std::size_t>(t.size.y);
+    return FloatImage{t.size.x, t.size.y, 1, std::vector<float>(pixels, value)};
+  };
+  switch (buffer) {
+    case Buffer::kSceneDepth:
+      return read_floats(t.scene_depth, t.size, 1);
+    case Buffer::kSceneColor:
+      return read_floats(p.drew_fluid ? t.scene_color : t.color, t.size, 3);
+    case Buffer::kFinalColor:
+      return read_floats(t.color, t.size, 3);
+    case Buffer::kFrontDepth:
+      return p.drew_fluid ? read_floats(t.front, t.size, 1) : no_fluid(kNoFluidDepth);
+    case Buffer::kSmoothDepth:
+      return p.drew_fluid ? read_floats(p.fluid_passes->smoothed(t), t.size, 1) : no_fluid(kNoFluidDepth);
+    case Buffer::kBackDepth:
+      return p.drew_fluid ? read_floats(t.back, t.back_size, 1) : no_fluid(0.0f);
+    case Buffer::kThickness: {
+      if (!p.drew_fluid) return no_fluid(0.0f);
+      const gl::Texture texture = gl::make_texture(t.size, GL_R32F, GL_NEAREST);
+      p.fluid_passes->thickness(t, gl::make_framebuffer({&texture}));
+      return read_floats(texture, t.size, 1);
+    }
+    case Buffer::kFluidIndex:
+      return p.drew_fluid ? fluid_indices(read_floats(t.front, t.size, 1)) : no_fluid(-1.0f);
+  }
+  return {};
+}
+
+const RenderOptions& Renderer::options() const {
+  return parts_->options;
+}
+
+Result<bool> Renderer::set_options(const RenderOptions& options) {
+  if (auto wrong = check(options)) return *wrong;
+  const RenderOptions old = std::exchange(parts_->options, options);
+  auto fitted = parts_->fit_to_options();
+  if (!fitted) parts_->options = old;
+  return fitted;
+}
+
+void Renderer::resize(int width, int height) {
+  RenderOptions wanted = parts_->options;
+  wanted.width = std::clamp(width, 1, kMaxSide);
+  wanted.height = std::clamp(height, 1, kMaxSide);
+  (void)set_options(wanted);  // only the size changed, and it is within range
+}
+
+void Renderer::set_timing(bool on) {
+  parts_->timing = on;
+}
+const std::vector<PassTime>& Renderer::pass_times() const {
+  return parts_->times;
+}
+
+}  // namespace slosh

@@ -1,0 +1,61 @@
+// Eq 15. Pixels without fluid are left as the scene drew them.
+#include "fluid_data.glsl"
+#include "environment.glsl"
+#include "shadow.glsl"
+layout(binding = 4) uniform sampler2D scene_color;
+
+struct Look {
+  vec4 color_refraction;   // F_c, β
+  vec4 extinction;         // F_e, 1/m
+  vec4 specular_exponent;  // k_s, α
+};
+layout(std140, binding = 1) uniform Looks { Look looks[16]; };
+
+layout(location = 0) out vec4 color;
+
+// The smaller of the two one-sided differences: at an edge, the one that stays on the surface.
+vec3 difference(vec3 here, ivec2 texel, ivec2 step_to) {
+  float ahead = texelFetch(smooth_depth, texel + step_to, 0).r;
+  float behind = texelFetch(smooth_depth, texel - step_to, 0).r;
+  bool take_ahead = abs(ahead + here.z) < abs(behind + here.z);
+  float d = take_ahead ? ahead : behind;
+  vec2 to = vec2(take_ahead ? step_to : -step_to);
+  if (d > kFluidDepthLimit) d = -here.z;  // a lone pixel faces the eye
+  vec3 there = eye_position(vec2(texel) + 0.5 + to, d);
+  return take_ahead ? there - here : here - there;
+}
+
+void main() {
+  ivec2 texel = ivec2(gl_FragCoord.xy);
+  float front = texelFetch(smooth_depth, texel, 0).r;
+  float thickness = thickness_at(texel, front);
+  if (thickness <= 0.0) discard;
+
+  Look look = looks[floatBitsToUint(texelFetch(front_depth, texel, 0).r) & 15u];
+  vec3 eye = eye_position(gl_FragCoord.xy, front);
+  vec3 n = normalize(cross(difference(eye, texel, ivec2(1, 0)), difference(eye, texel, ivec2(0, 1))));
+  vec3 to_eye = normalize(-eye);
+
+  // A body in front of the fluid must not show through it.
+  vec2 here = gl_FragCoord.xy * picture.zw;
+  vec2 there = here + refraction_offset(n, look.color_refraction.a, thickness, picture.x * picture.w);
+  if (textureLod(scene_depth, there, 0.0).r < front) there = here;
+  vec3 behind = textureLod(scene_color, there, 0.0).rgb;
+
+  vec3 world_n = mat3(world_from_eye) * n;
+  float light = 1.0;
+  vec3 fluid_color = look.color_refraction.rgb;
+  if (switches.y > 0.5) {
+    vec3 world = (world_from_eye * vec4(eye, 1.0)).xyz;
+    light = light_reaching(world, world_n);
+    float wrapped = max((dot(n, to_light_eye.xyz) + 0.3) / 1.3, 0.0);
+    fluid_color *= key_light.rgb * (0.31830989 * wrapped * light) + ambient_light(world_n);
+  }
+  vec3 seen = seen_through(fluid_color, behind, look.extinction.rgb, thickness);
+  if (switches.x > 0.5) {
+    vec3 mirror = studio(mat3(world_from_eye) * reflect(-to_eye, n));
+    seen = mix(seen, mirror, schlick(0.02, dot(n, to_eye)));
+  }
+  float glint = blinn(n, to_light_eye.xyz, to_eye, look.specular_exponent.a) * light;
+  color = vec4(seen + look.specular_exponent.rgb * glint, 0.0);
+}

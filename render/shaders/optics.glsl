@@ -1,0 +1,36 @@
+// Optics of the fluid's surface (paper, section 5.2). GLSL and C++; pure functions.
+
+// T(p): how much fluid is seen in front of the scene, m, never negative. Linear eye depths.
+SHARED float fluid_thickness(float front_depth, float back_depth, float scene_depth) {
+  return max(min(back_depth, scene_depth) - min(front_depth, scene_depth), 0.0f);
+}
+
+// exp(−T·F_e): the share of the light from behind that comes through, per channel. Extinction in 1/m.
+SHARED vec3 transmittance(vec3 extinction, float thickness) { return exp(-thickness * extinction); }
+
+// Eq 15's first term: the fluid's own colour, through which the scene shows.
+SHARED vec3 seen_through(vec3 fluid_color, vec3 scene_color, vec3 extinction, float thickness) {
+  return mix(fluid_color, scene_color, transmittance(extinction, thickness));
+}
+
+// Eq 15's (n·h)^α with Blinn's half vector; all unit vectors away from the surface.
+SHARED float blinn(vec3 normal, vec3 to_light, vec3 to_eye, float exponent) {
+  vec3 sum = to_light + to_eye;
+  float size = length(sum);
+  if (size < 1.0e-6f) return 0.0f;  // light straight from behind: no half vector
+  return pow(max(dot(normal, sum / size), 0.0f), exponent);
+}
+
+// Schlick's Fresnel reflectance. Beyond the paper.
+SHARED float schlick(float f0, float cos_angle) {
+  float m = clamp(1.0f - cos_angle, 0.0f, 1.0f);
+  float m2 = m * m;
+  return f0 + (1.0f - f0) * m2 * m2 * m;
+}
+
+// Where Eq 15 looks the scene up: the displacement in texture coordinates. refraction (β) is in screen heights
+// a metre of thickness; normal.xy in eye axes.
+SHARED vec2 refraction_offset(vec3 normal, float refraction, float thickness, float aspect) {
+  vec2 heights = vec2(normal.x, normal.y) * (refraction * thickness);
+  return vec2(heights.x / aspect, heights.y);
+}

@@ -1,0 +1,7 @@
+// A particle as a sphere splat (paper, section 5.1). GLSL and C++; pure functions.
+
+// Eye depth of the splat's near (side = −1) or far (side = +1) surface, m, at `disc` (−1 to 1 across the splat,
+// inside the unit disc). The sphere is seen as if from afar: its outline is a circle in the screen's plane.
+SHARED float sphere_depth(float center_depth, float radius, vec2 disc, float side) {
+  return center_depth + side * radius * sqrt(max(1.0f - dot(disc, disc), 0.0f));
+}
