@@ -1,9 +1,11 @@
 // Headless contexts through EGL.
 #include <epoxy/egl.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <cstring>
+#include <iterator>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -41,13 +43,16 @@ class EglContext final : public Context {
 };
 
 bool has_word(const char* list, const char* word) {
-  return list && (" " + std::string(list) + " ").find(" " + std::string(word) + " ") != std::string::npos;
+  std::istringstream words(list ? list : "");
+  return std::find(std::istream_iterator<std::string>(words), {}, word) !=
+         std::istream_iterator<std::string>();
 }
 
 /// A 4.5 core context on `display`, or EGL_NO_CONTEXT with the reason appended to `reasons`.
 EGLContext try_display(EGLDisplay display, const char* name, bool debug, std::string& reasons) {
   const auto fail = [&](const std::string& why) {
-    reasons += (reasons.empty() ? "" : "; ") + std::string(name) + ": " + why;
+    if (!reasons.empty()) reasons += "; ";
+    reasons.append(name).append(": ").append(why);
     return EGL_NO_CONTEXT;
   };
   if (display == EGL_NO_DISPLAY) return fail("no display");

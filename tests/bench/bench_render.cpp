@@ -1,0 +1,120 @@
+// How long each pass of a frame takes: bench_render [--width W] [--height H] [--particles N] [--frames F]
+// [--threads T] [--batter] [--paper] [--out PICTURE.png]. Times are medians over the frames, with a glFinish
+// after each pass.
+#include <imgui.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "render/renderer.h"
+#include "tests/render/scene_kit.h"
+
+namespace {
+
+struct Wishes {
+  int width = 640;
+  int height = 480;
+  int particles = 5000;
+  int frames = 30;
+  int threads = 1;
+  bool batter = false;
+  bool paper = false;
+  bool hud = false;
+  std::string out;
+};
+
+Wishes read_arguments(int count, char** words) {
+  Wishes wishes;
+  for (int i = 1; i < count; ++i) {
+    const std::string word = words[i];
+    const char* next = i + 1 < count ? words[i + 1] : "";
+    if (word == "--width") wishes.width = std::atoi(next);
+    if (word == "--height") wishes.height = std::atoi(next);
+    if (word == "--particles") wishes.particles = std::max(std::atoi(next), 1);
+    if (word == "--frames") wishes.frames = std::max(std::atoi(next), 1);
+    if (word == "--threads") wishes.threads = std::atoi(next);
+    if (word == "--batter") wishes.batter = true;
+    if (word == "--paper") wishes.paper = true;
+    if (word == "--hud") wishes.hud = true;
+    if (word == "--out") wishes.out = next;
+  }
+  return wishes;
+}
+
+double median(std::vector<double> values) {
+  std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
+  return values[values.size() / 2];
+}
+
+int fail(const slosh::Error& error) {
+  std::fprintf(stderr, "%s\n", error.text().c_str());
+  return 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace slosh;
+  const Wishes wishes = read_arguments(argc, argv);
+  HeadlessOptions headless;
+  headless.software_threads = wishes.threads;
+  auto context = make_headless_context(headless);
+  if (!context) return fail(context.error());
+  RenderOptions options;
+  options.width = wishes.width;
+  options.height = wishes.height;
+  if (wishes.paper) options.wide_filter = options.fresnel = options.lit_fluid = false;
+  auto made = Renderer::create(*context.value(), options);
+  if (!made) return fail(made.error());
+  Renderer& renderer = *made.value();
+  kit::DamBreak scene(renderer, wishes.particles, wishes.width, wishes.height);
+  if (wishes.batter) scene.frame.fluids = {kit::batter()};
+  if (wishes.hud) {
+    scene.frame.arrows = {{{0.1f, 0.06f, 0.02f}, {0.1f, 0.26f, 0.02f}, {0.9f, 0.5f, 0.1f}}};
+    scene.frame.hud = [] {
+      ImGui::Begin("forces");
+      ImGui::Text("left hand  12.3 N");
+      ImGui::Text("right hand  9.8 N");
+      ImGui::End();
+    };
+  }
+
+  std::map<std::string, std::vector<double>> times;
+  std::vector<std::string> order;
+  std::vector<double> whole;
+  std::vector<double> read;
+  for (int i = 0; i < wishes.frames + 2; ++i) {
+    renderer.set_timing(true);
+    renderer.draw(scene.frame);
+    const auto passes = renderer.pass_times();
+    renderer.set_timing(false);
+    const auto start = std::chrono::steady_clock::now();
+    renderer.draw(scene.frame);
+    const auto drawn = std::chrono::steady_clock::now();
+    const Image image = renderer.read_back();
+    const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
+    if (i < 2) continue;  // shaders are compiled at their first use
+    for (const PassTime& pass : passes) {
+      if (!times.contains(pass.pass)) order.push_back(pass.pass);
+      times[pass.pass].push_back(pass.milliseconds);
+    }
+    whole.push_back(took.count());
+    (void)drawn;
+  }
+  std::printf("%s, threads %d\n%d x %d, %zu particles, median of %d frames\n",
+              context.value()->description().c_str(), wishes.threads, wishes.width, wishes.height,
+              scene.particles.size(), wishes.frames);
+  for (const std::string& pass : order) std::printf("%-20s %7.2f ms\n", pass.c_str(), median(times[pass]));
+  std::printf("%-20s %7.2f ms\n", "frame + read-back", median(whole));
+  if (!wishes.out.empty()) {
+    const auto written = write_png(wishes.out, renderer.read_back());
+    if (!written) return fail(written.error());
+  }
+  return 0;
+}

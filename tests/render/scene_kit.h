@@ -1,0 +1,59 @@
+// Shapes, particles and views that the renderer's tests and its benchmark draw.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "render/renderer.h"
+
+namespace slosh::kit {
+
+struct Shape {
+  std::vector<glm::vec3> positions;
+  std::vector<glm::vec3> normals;
+  std::vector<glm::uvec3> triangles;
+};
+
+Shape make_box(const glm::vec3& low, const glm::vec3& high);
+Shape make_sphere(float radius, int rings = 24, int segments = 48);
+/// An open box: a floor and four walls of `wall` thickness outside `low`–`high`.
+Shape make_tank(const glm::vec3& low, const glm::vec3& high, float wall);
+void append(Shape& to, const Shape& from);
+
+/// Looks from `eye` to `target`.
+View make_view(const glm::vec3& eye, const glm::vec3& target, int width, int height, float fov_deg = 40.0f);
+
+/// Particles at `spacing` in [low, high] below the height `surface(x, z)`, jittered off their lattice and
+/// then pushed apart, as a fluid's are. The same seed gives the same particles.
+template <class Surface>
+std::vector<glm::vec3> make_fluid(const glm::vec3& low, const glm::vec3& high, float spacing,
+                                  Surface surface);
+std::vector<glm::vec3> jitter_lattice(const glm::vec3& low, const glm::vec3& high, float spacing,
+                                      std::uint32_t seed);
+void relax(std::vector<glm::vec3>& points, float spacing, const glm::vec3& low, const glm::vec3& high,
+           int iterations);
+
+template <class Surface>
+std::vector<glm::vec3> make_fluid(const glm::vec3& low, const glm::vec3& high, float spacing,
+                                  Surface surface) {
+  std::vector<glm::vec3> points = jitter_lattice(low, high, spacing, 1);
+  std::erase_if(points, [&](const glm::vec3& p) { return p.y > surface(p.x, p.z); });
+  relax(points, spacing, low, high, 8);
+  return points;
+}
+
+/// A dam break's slumped column of about `particles` in a glass tank on a table, a red ball half in it: the
+/// picture to judge looks by, and the benchmark's load.
+struct DamBreak {
+  std::vector<glm::vec3> particles;
+  std::vector<std::uint8_t> fluids;
+  Frame frame;
+
+  DamBreak(Renderer& renderer, int particles, int width, int height);
+};
+
+FluidLook water();
+FluidLook batter();
+
+}  // namespace slosh::kit
