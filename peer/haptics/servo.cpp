@@ -16,8 +16,7 @@ Servo::Servo(const Scene& scene, std::vector<std::unique_ptr<Device>> devices, C
              ServoOptions options)
     : channel_(channel),
       options_(options),
-      samples_(options.sample_capacity),
-      felt_(std::vector<ServoSample>(devices.size())) {
+      samples_(options.sample_capacity) {
   hands_.reserve(devices.size());
   for (std::size_t i = 0; i < devices.size(); ++i) {
     const Grip& grip = scene.grips[i];
@@ -42,7 +41,6 @@ void Servo::tick(std::int64_t now_ns) noexcept {
   const double fresh = message.rate > 0.0 || bodies.tick == 0 ? freshness(age, interval) : 0.0;
 
   const bool sample_due = time_ >= next_sample_;
-  std::vector<ServoSample>& felt = felt_.back();
   for (std::size_t i = 0; i < hands_.size(); ++i) {
     Hand& hand = hands_[i];
     const DeviceReport report = hand.device->read({time_, options_.period});
@@ -78,10 +76,10 @@ void Servo::tick(std::int64_t now_ns) noexcept {
     up.engaged = good.engaged;
     channel_.pose(i).publish();
 
-    felt[i] = {time_, static_cast<std::uint32_t>(i), outcome.wrench, good.pose};
-    if (sample_due && !samples_.push(felt[i])) lost_.fetch_add(1, std::memory_order_relaxed);
+    if (sample_due && !samples_.push({time_, static_cast<std::uint32_t>(i), outcome.wrench, good.pose})) {
+      lost_.fetch_add(1, std::memory_order_relaxed);
+    }
   }
-  felt_.publish();
   if (sample_due) {
     // On the grid of intervals, whatever the tick that met it: rows stay evenly spread over the run.
     while (next_sample_ <= time_) next_sample_ += options_.sample_interval;

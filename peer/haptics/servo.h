@@ -9,7 +9,6 @@
 #include "net/channel.h"
 #include "net/engagement.h"
 #include "net/ring.h"
-#include "net/triple_buffer.h"
 #include "peer/haptics/device.h"
 #include "peer/haptics/force_limiter.h"
 #include "scenes/scene.h"
@@ -39,8 +38,7 @@ constexpr double kFadeStale = 0.3;
 /// `interval` s.
 double freshness(double age, double interval);
 
-/// tick() belongs to the device loop's thread and neither allocates, locks nor logs. samples() has one reader,
-/// felt() another.
+/// tick() belongs to the device loop's thread and neither allocates, locks nor logs. samples() has one reader.
 class Servo {
  public:
   /// The channel must outlive the servo. One device a grip.
@@ -50,8 +48,7 @@ class Servo {
 
   std::size_t devices() const { return hands_.size(); }
   const Device& device(std::size_t i) const { return *hands_[i].device; }
-  Ring<ServoSample>& samples() { return samples_; }                        ///< device loop → recorder
-  TripleBuffer<std::vector<ServoSample>>& felt() { return felt_; }         ///< device loop → HUD, every tick
+  Ring<ServoSample>& samples() { return samples_; }  ///< device loop → recorder
   std::uint64_t samples_lost() const { return lost_.load(std::memory_order_relaxed); }
   std::uint64_t reports_rejected() const { return rejected_.load(std::memory_order_relaxed); }
   /// StatusBits that were ever set here.
@@ -79,7 +76,6 @@ class Servo {
   double time_ = 0.0;
   double next_sample_ = 0.0;
   Ring<ServoSample> samples_;
-  TripleBuffer<std::vector<ServoSample>> felt_;
   std::atomic<std::uint64_t> lost_{0};
   std::atomic<std::uint64_t> rejected_{0};
   std::atomic<std::uint32_t> status_{0};

@@ -1,0 +1,38 @@
+// A program that is fed through its standard input: ffmpeg, gnuplot.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/math/result.h"
+
+namespace slosh {
+
+/// Started in a process group of its own, so that Ctrl-C reaches this program alone and the child can finish
+/// its file. Its output is kept and shown when it fails. SIGPIPE must be ignored by the process.
+class ChildProcess {
+ public:
+  /// `arguments[0]` is looked up in PATH. Errors: it is not installed or cannot start.
+  static Result<std::unique_ptr<ChildProcess>> start(const std::vector<std::string>& arguments);
+  ~ChildProcess();
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+
+  /// Waits while the pipe is full. False when the child is gone.
+  bool write(const void* data, std::size_t bytes);
+  /// Closes its input, waits for its end. Errors: it failed; the end of what it said is in `what`.
+  Result<bool> finish();
+
+ private:
+  ChildProcess(std::string name, pid_t pid, int input, int log);
+  std::string name_;
+  pid_t pid_;
+  int input_;
+  int log_;
+};
+
+}  // namespace slosh

@@ -1,0 +1,92 @@
+#include "peer/output/progress.h"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <string_view>
+
+#include "net/clock.h"
+
+namespace slosh {
+namespace {
+
+bool good_terminal() {
+  const char* term = std::getenv("TERM");
+  return isatty(STDERR_FILENO) && term != nullptr && std::string_view(term) != "dumb";
+}
+
+std::size_t terminal_width() {
+  winsize size{};
+  if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 10) return size.ws_col;
+  return 80;
+}
+
+/// The first `most` columns of UTF-8 text.
+std::string cut(const std::string& text, std::size_t most) {
+  std::size_t seen = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool begins = (static_cast<unsigned char>(text[i]) & 0xC0) != 0x80;
+    if (begins && ++seen > most) return text.substr(0, i);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::size_t columns(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+Progress::Progress() : Progress(good_terminal(), 2.0) {}
+
+Progress::Progress(bool terminal, double seconds_between_lines)
+    : terminal_(terminal), between_ns_(to_nanoseconds(seconds_between_lines)) {}
+
+Progress::~Progress() { end_line(); }
+
+void Progress::end_line() {
+  if (line_open_) std::fputc('\n', stderr);
+  line_open_ = false;
+}
+
+void Progress::phase(const std::string& name, const std::string& detail) {
+  end_line();
+  phase_ = name;
+  const std::string line = detail.empty() ? name : name + " " + detail;
+  if (terminal_) {
+    std::fprintf(stderr, "%s …", line.c_str());
+    line_open_ = true;
+  } else {
+    std::fprintf(stderr, "%s\n", line.c_str());
+  }
+  std::fflush(stderr);
+  last_line_ns_ = steady_now_ns();
+}
+
+void Progress::update(double fraction, const std::string& text) {
+  const std::int64_t now_ns = steady_now_ns();
+  if (!terminal_ && now_ns - last_line_ns_ < between_ns_) return;
+  last_line_ns_ = now_ns;
+  char percent[16] = "";
+  if (fraction >= 0.0) std::snprintf(percent, sizeof percent, " %3.0f %%", 100.0 * std::min(fraction, 1.0));
+  const std::string line = phase_ + percent + "  " + text;
+  if (terminal_) {
+    std::fprintf(stderr, "\r\033[K%s", cut(line, terminal_width() - 1).c_str());
+    line_open_ = true;
+  } else {
+    std::fprintf(stderr, "%s\n", line.c_str());
+  }
+  std::fflush(stderr);
+}
+
+void Progress::note(const std::string& text) {
+  end_line();
+  std::fprintf(stderr, "%s\n", text.c_str());
+  std::fflush(stderr);
+}
+
+}  // namespace slosh

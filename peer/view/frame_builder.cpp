@@ -1,0 +1,115 @@
+#include "peer/view/frame_builder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "peer/palette.h"
+
+namespace slosh {
+namespace {
+
+constexpr float kHandRadius = 0.008f;   // m, the ball that marks a handle
+constexpr double kArrowLength = 0.22;  // of the view distance, for the largest force so far
+constexpr double kSmallestReference = 1.0;  // N: below it noise would be drawn large
+
+MeshLook look_of(const Material& m) { return {m.base_color, m.metallic, m.roughness, m.opacity}; }
+
+}  // namespace
+
+glm::mat4 model_matrix(const Pose& pose) {
+  return glm::translate(glm::mat4(1.0f), glm::vec3(pose.position)) * glm::mat4_cast(glm::quat(pose.orientation));
+}
+
+TriangleMesh unit_ball() {
+  constexpr int kRings = 12;
+  constexpr int kSides = 20;
+  TriangleMesh ball;
+  ball.name = "ball";
+  for (int ring = 0; ring <= kRings; ++ring) {
+    const float polar = glm::pi<float>() * static_cast<float>(ring) / kRings;
+    for (int side = 0; side <= kSides; ++side) {
+      const float around = glm::two_pi<float>() * static_cast<float>(side) / kSides;
+      ball.positions.emplace_back(std::sin(polar) * std::sin(around), std::cos(polar),
+                                  std::sin(polar) * std::cos(around));
+    }
+  }
+  ball.normals = ball.positions;
+  const auto at = [](int ring, int side) { return static_cast<unsigned>(ring * (kSides + 1) + side); };
+  for (int ring = 0; ring < kRings; ++ring) {
+    for (int side = 0; side < kSides; ++side) {
+      ball.triangles.emplace_back(at(ring, side), at(ring + 1, side), at(ring + 1, side + 1));
+      ball.triangles.emplace_back(at(ring, side), at(ring + 1, side + 1), at(ring, side + 1));
+    }
+  }
+  return ball;
+}
+
+FrameBuilder::FrameBuilder(const Scene& scene, double spacing, Renderer& renderer)
+    : scene_(scene), particle_radius_(static_cast<float>(0.5 * spacing)) {
+  std::vector<MeshHandle> handles(scene.meshes.size());
+  std::vector<bool> loaded(scene.meshes.size(), false);
+  const auto upload = [&](int index) {
+    const auto i = static_cast<std::size_t>(index);
+    if (!loaded[i]) {
+      const TriangleMesh& mesh = scene.meshes[i];
+      handles[i] = renderer.add_mesh(mesh.positions, mesh.normals, mesh.triangles);
+      loaded[i] = true;
+    }
+    return handles[i];
+  };
+  const TriangleMesh ball = unit_ball();
+  ball_ = renderer.add_mesh(ball.positions, ball.normals, ball.triangles);
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Body& body = scene.bodies[i];
+    if (body.mesh < 0) continue;
+    placed_.push_back({upload(body.mesh), static_cast<int>(i), look_of(body.material), glm::mat4(1.0f)});
+  }
+  for (const Picture& picture : scene.pictures) {
+    if (picture.mesh < 0) continue;
+    placed_.push_back({upload(picture.mesh), -1, look_of(picture.material), model_matrix(picture.pose)});
+  }
+  for (const Fluid& fluid : scene.fluids) {
+    FluidLook look;
+    look.color = fluid.color;
+    look.extinction = fluid.extinction;
+    fluids_.push_back(look);
+  }
+}
+
+Frame FrameBuilder::build(const Snapshot& snapshot, double view_distance) {
+  Frame frame;
+  frame.light_direction = scene_.light_direction;
+  frame.particles = snapshot.positions;
+  frame.particle_fluid = snapshot.fluid_index;
+  frame.fluids = fluids_;
+  frame.particle_radius = particle_radius_;
+
+  const BodySnapshot& rigid = snapshot.rigid;
+  for (const Placed& placed : placed_) {
+    const auto body = static_cast<std::size_t>(placed.body);
+    const bool moves = placed.body >= 0 && body < rigid.bodies.size();
+    frame.meshes.push_back({placed.mesh, moves ? model_matrix(rigid.bodies[body].pose) : placed.model, placed.look});
+  }
+  for (std::size_t i = 0; i < scene_.bodies.size() && i < rigid.bodies.size(); ++i) {
+    if (scene_.bodies[i].mesh >= 0) continue;  // a point probe: as large as a particle
+    const glm::mat4 size = glm::scale(glm::mat4(1.0f), glm::vec3(particle_radius_));
+    frame.meshes.push_back({ball_, model_matrix(rigid.bodies[i].pose) * size, look_of(scene_.bodies[i].material)});
+  }
+  for (const GripState& grip : rigid.grips) {
+    reference_force_ = std::max({reference_force_, kSmallestReference, glm::length(grip.on_hand.force)});
+  }
+  for (std::size_t i = 0; i < rigid.grips.size(); ++i) {
+    const GripState& grip = rigid.grips[i];
+    const glm::vec3 color = linear_color(device_color(i));
+    const glm::mat4 size = glm::scale(glm::mat4(1.0f), glm::vec3(kHandRadius));
+    frame.meshes.push_back({ball_, model_matrix(grip.handle) * size, {color, 0.0f, 0.45f, 1.0f}});
+    const glm::dvec3 arrow = grip.on_hand.force * (kArrowLength * view_distance / reference_force_);
+    if (glm::length(arrow) < 0.01 * view_distance) continue;
+    frame.arrows.push_back({glm::vec3(grip.handle.position), glm::vec3(grip.handle.position + arrow), color});
+  }
+  return frame;
+}
+
+}  // namespace slosh

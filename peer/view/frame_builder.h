@@ -1,0 +1,42 @@
+// Scene and snapshot → Frame.
+#pragma once
+
+#include <vector>
+
+#include "render/frame.h"
+#include "render/renderer.h"
+#include "scenes/scene.h"
+#include "sim/snapshot.h"
+
+namespace slosh {
+
+/// Puts the scene's meshes on the GPU once and places them for every snapshot. On the renderer's thread.
+class FrameBuilder {
+ public:
+  /// `scene` must outlive it. `spacing` in m.
+  FrameBuilder(const Scene& scene, double spacing, Renderer& renderer);
+
+  /// The returned frame points into `snapshot`, which must live until it is drawn. Without view and HUD.
+  /// `view_distance` (m, eye to target) sizes the force arrows.
+  Frame build(const Snapshot& snapshot, double view_distance);
+
+ private:
+  struct Placed {
+    MeshHandle mesh;
+    int body;  // index, or −1 for a picture
+    MeshLook look;
+    glm::mat4 model;  // of a picture
+  };
+  const Scene& scene_;
+  std::vector<Placed> placed_;
+  std::vector<FluidLook> fluids_;
+  MeshHandle ball_ = 0;
+  float particle_radius_;
+  double reference_force_ = 1.0;  // N that an arrow of full length stands for: the largest so far
+};
+
+/// A ball of radius 1 about the origin.
+TriangleMesh unit_ball();
+glm::mat4 model_matrix(const Pose& pose);
+
+}  // namespace slosh

@@ -1,0 +1,42 @@
+// A camera that turns about what it looks at.
+#pragma once
+
+#include "render/frame.h"
+#include "render/input.h"
+#include "scenes/scene.h"
+
+namespace slosh {
+
+class OrbitCamera {
+ public:
+  explicit OrbitCamera(const Camera& camera);
+
+  /// Angles in rad; the height is kept short of straight up and down.
+  void turn(double about_y, double up);
+  /// Factor on the distance, > 0.
+  void zoom(double factor);
+  /// Shifts the target in the picture's plane, in picture heights.
+  void pan(const glm::dvec2& heights);
+  /// Left drag turns, right or middle drag pans, the wheel zooms.
+  void follow(const InputState& input, int picture_height);
+  void reset();
+
+  View view(double aspect) const;
+  glm::dvec3 eye() const;
+  glm::dvec3 target() const { return target_; }
+  double distance() const { return distance_; }  ///< m, eye to target
+  glm::dvec3 right() const;
+  glm::dvec3 up() const;
+  glm::dvec3 forward() const;
+  /// World metres that a picture's height spans at the target.
+  double height_at_target() const;
+
+ private:
+  Camera start_;
+  glm::dvec3 target_{0.0};
+  double distance_ = 1.0;
+  double azimuth_ = 0.0;    // rad about y, from +z
+  double elevation_ = 0.0;  // rad above the horizon
+};
+
+}  // namespace slosh
