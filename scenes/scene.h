@@ -52,6 +52,12 @@ struct MassProperties {
   glm::dmat3 inertia{0.0};           ///< kg·m², about the centre of mass, mesh axes
 };
 
+/// Which particle model a scene runs. sim/README.md compares the two in numbers.
+enum class ParticleModel : std::uint8_t {
+  kConsistent,  ///< density and pressure from one kernel, walls counted in both: the default
+  kPaper,       ///< Eq 2 with poly6 and without body particles, Eq 5 as printed, constant body pressure
+};
+
 enum class BodyMotion : std::uint8_t { kFixed, kFree };
 
 /// A rigid body made of particles on its surface (paper, section 4.1), or one particle (section 3).
@@ -121,6 +127,7 @@ struct Scene {
   double spacing_min = 0.004;  ///< m
   double spacing_max = 0.02;   ///< m; below the thinnest wall
   double support_ratio = 2.0;  ///< support radius (W = 0, the paper's h) over spacing, 1.5–4
+  ParticleModel model = ParticleModel::kConsistent;
   double stiffness = 0.0;      ///< Eq 7's k = c², m²/s²; 0 = chosen by the plan from depth and gravity
   double tension = 0.0;        ///< share of Eq 7's negative pressure that is kept, 0–1 (sim/README.md)
   double duration = 10.0;      ///< s, of the scripted motion

@@ -1,41 +1,41 @@
 // What leaves the simulation: an immutable picture of the world at the end of one step.
 #pragma once
 
-#include "sim/math/pose.h"
-
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <string>
 #include <vector>
 
+#include "sim/math/pose.h"
+
 namespace slosh {
 
 /// What the step had to report. Several may be set; they stay set until read (World::take_status).
 enum StatusBit : std::uint32_t {
-  kStatusNonFinite = 1u << 0,        ///< a particle or body went non-finite and was put out of the world
-  kStatusEscaped = 1u << 1,          ///< particles left the domain and were retired
-  kStatusSpeedLimited = 1u << 2,     ///< a particle was faster than a support radius a step and was slowed
-  kStatusInputRejected = 1u << 3,    ///< a handle's pose was non-finite or out of range and was not used
-  kStatusForceLimited = 1u << 4,     ///< a device's force met its limit
-  kStatusTimeSlipped = 1u << 5,      ///< the step did not keep real time and the world slowed down
-  kStatusCompressed = 1u << 6,       ///< fluid denser than 1.2 times rest: too soft or crushed; raise stiffness
+  kStatusNonFinite = 1u << 0,      ///< a particle or body went non-finite and was put out of the world
+  kStatusEscaped = 1u << 1,        ///< particles left the domain and were retired
+  kStatusSpeedLimited = 1u << 2,   ///< a particle was faster than a support radius a step and was slowed
+  kStatusInputRejected = 1u << 3,  ///< a handle's pose was non-finite or out of range and was not used
+  kStatusForceLimited = 1u << 4,   ///< a device's force met its limit
+  kStatusTimeSlipped = 1u << 5,    ///< the step did not keep real time and the world slowed down
+  kStatusCompressed = 1u << 6,     ///< fluid denser than 1.2 times rest: too soft or crushed; raise stiffness
 };
 
 /// The status in words, "; " between, empty when nothing is set.
 std::string status_text(std::uint32_t status);
 
 struct BodyState {
-  Pose pose;         ///< of the mesh frame
-  Twist twist;       ///< of the centre of mass, world axes
+  Pose pose;                       ///< of the mesh frame
+  Twist twist;                     ///< of the centre of mass, world axes
   glm::dvec3 center_of_mass{0.0};  ///< world
-  Wrench fluid;      ///< on the body by the fluid, about its centre of mass, last step
+  Wrench fluid;                    ///< on the body by the fluid, about its centre of mass, last step
 };
 
 struct GripState {
-  Pose pose;         ///< of the grip frame on the body, world
-  Twist twist;       ///< of the grip point
-  Pose handle;       ///< the pose that the step used
-  Wrench on_hand;    ///< reaction that the host computed, on the hand, about the handle
+  Pose pose;       ///< of the grip frame on the body, world
+  Twist twist;     ///< of the grip point
+  Pose handle;     ///< the pose that the step used
+  Wrench on_hand;  ///< reaction that the host computed, on the hand, about the handle
 };
 
 /// Body and grip states: what the 1 kHz loops need, small and often.
@@ -50,8 +50,8 @@ struct BodySnapshot {
 /// Everything that is seen: what a viewer needs, at the picture's rate.
 struct Snapshot {
   BodySnapshot rigid;
-  std::vector<glm::vec3> positions;        ///< fluid particles, in an order that is fixed for the run (by id)
-  std::vector<std::uint8_t> fluid_index;   ///< into Scene::fluids; 255 = retired, not to be drawn
+  std::vector<glm::vec3> positions;       ///< fluid particles, in an order that is fixed for the run (by id)
+  std::vector<std::uint8_t> fluid_index;  ///< into Scene::fluids; 255 = retired, not to be drawn
 };
 
 }  // namespace slosh

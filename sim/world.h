@@ -1,31 +1,31 @@
 // The world moving: owns all state, steps it by the plan, hands out snapshots.
 #pragma once
 
-#include "scenes/scene.h"
-#include "sim/plan.h"
-#include "sim/snapshot.h"
-
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include "scenes/scene.h"
+#include "sim/plan.h"
+#include "sim/snapshot.h"
+
 namespace slosh {
 
 /// One handle's input for one step, in the order of Scene::grips.
 struct HandleInput {
-  Pose pose;          ///< world
-  Twist twist;        ///< world
+  Pose pose;             ///< world
+  Twist twist;           ///< world
   bool engaged = false;  ///< false: the grip is let go, no coupling
   double scale = 1.0;    ///< 0–1, ramps the coupling in on engaging
 };
 
 /// Wall time of each part of a step, s.
 struct StepTimes {
-  double sort = 0.0;      ///< cell ids, counting sort, reordering, body particle placement
-  double density = 0.0;   ///< Eq 2, 7
-  double force = 0.0;     ///< Eq 5, 6, 9 and integration
-  double body = 0.0;      ///< Eq 10–14, couplings, contacts
+  double sort = 0.0;     ///< cell ids, counting sort, reordering, body particle placement
+  double density = 0.0;  ///< Eq 2, 7
+  double force = 0.0;    ///< Eq 5, 6, 9 and integration
+  double body = 0.0;     ///< Eq 10–14, couplings, contacts
   double total = 0.0;
 };
 
@@ -37,12 +37,12 @@ struct WorldOptions {
 struct Diagnostics {
   std::uint64_t particles = 0;  ///< still in the world
   std::uint64_t retired = 0;
-  double mass = 0.0;            ///< kg
-  glm::dvec3 momentum{0.0};     ///< kg·m/s
-  glm::dvec3 center{0.0};       ///< m, centre of mass
-  double kinetic_energy = 0.0;  ///< J
-  double max_speed = 0.0;       ///< m/s
-  double max_compression = 0.0; ///< largest ρ/ρ⁰ − 1
+  double mass = 0.0;             ///< kg
+  glm::dvec3 momentum{0.0};      ///< kg·m/s
+  glm::dvec3 center{0.0};        ///< m, centre of mass
+  double kinetic_energy = 0.0;   ///< J
+  double max_speed = 0.0;        ///< m/s
+  double max_compression = 0.0;  ///< largest ρ/ρ⁰ − 1
 };
 
 /// The simulated world. One thread calls it; it uses `threads` cores inside. The same inputs give the same
@@ -59,7 +59,7 @@ class World {
   void step(std::span<const HandleInput> handles);
 
   const Plan& plan() const;
-  double time() const;            ///< s
+  double time() const;  ///< s
   std::uint64_t tick() const;
   std::size_t fluid_count() const;     ///< particles at the start, retired ones included
   std::size_t boundary_count() const;  ///< body particles
@@ -69,8 +69,8 @@ class World {
   void fill(BodySnapshot& out) const;
   void fill(Snapshot& out) const;
 
-  std::uint32_t take_status();   ///< StatusBits since the last call, then cleared
-  std::uint64_t hash() const;    ///< of positions, velocities and body states, by particle id
+  std::uint32_t take_status();  ///< StatusBits since the last call, then cleared
+  std::uint64_t hash() const;   ///< of positions, velocities and body states, by particle id
   Diagnostics diagnostics() const;
 
  private:

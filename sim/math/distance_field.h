@@ -1,17 +1,17 @@
 // Reading a signed distance field sampled on a regular grid.
 #pragma once
 
-#include "sim/math/host_device.h"
-
 #include <glm/glm.hpp>
+
+#include "sim/math/host_device.h"
 
 namespace slosh {
 
-/// A read-only view of a regular grid of signed distances (m, negative inside the solid), in the mesh's frame.
-/// Node (i, j, k) sits at origin + cell·(i, j, k) and at index i + size.x·(j + size.y·k).
+/// A read-only view of a regular grid of signed distances (m, negative inside the solid), in the mesh's
+/// frame. Node (i, j, k) sits at origin + cell·(i, j, k) and at index i + size.x·(j + size.y·k).
 struct DistanceFieldView {
   glm::vec3 origin{0.0f};
-  float cell = 0.0f;  ///< spacing of the nodes, m, > 0
+  float cell = 0.0f;   ///< spacing of the nodes, m, > 0
   glm::ivec3 size{0};  ///< nodes along each axis, each >= 2
   const float* distance = nullptr;
 };
@@ -43,8 +43,9 @@ SLOSH_HD inline DistanceSample sample_distance(const DistanceFieldView& field, c
   const float gx1 = along_x(slab) + f.y * (along_x(slab + row) - along_x(slab));
   DistanceSample sample;
   sample.distance = y0 + f.z * (y1 - y0);
-  sample.gradient = glm::vec3(gx0 + f.z * (gx1 - gx0), (x10 - x00) + f.z * ((x11 - x01) - (x10 - x00)), y1 - y0) /
-                    field.cell;
+  sample.gradient =
+      glm::vec3(gx0 + f.z * (gx1 - gx0), (x10 - x00) + f.z * ((x11 - x01) - (x10 - x00)), y1 - y0) /
+      field.cell;
   const glm::vec3 outside = (raw - grid) * field.cell;
   const float away = glm::length(outside);
   if (away > 0.0f) {

@@ -1,10 +1,10 @@
 // Poses, twists and wrenches: the vocabulary shared by every room. SI units, right-handed, y up.
 #pragma once
 
-#include "sim/math/host_device.h"
-
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
+
+#include "sim/math/host_device.h"
 
 namespace slosh {
 

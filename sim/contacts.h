@@ -1,0 +1,51 @@
+// Bodies that rest on and bump into each other and the fixed scene: each body's surface particles against the
+// other's distance field, solved at velocity level by projected Gauss–Seidel.
+#pragma once
+
+#include <vector>
+
+#include "scenes/scene.h"
+#include "sim/bodies.h"
+
+namespace slosh {
+
+/// One touching point. The normal points from `b` to `a`, world.
+struct Contact {
+  int a = 0, b = 0;
+  glm::dvec3 point{0.0};   ///< world
+  glm::dvec3 normal{0.0};  ///< unit
+  double distance = 0.0;   ///< m, negative when the bodies overlap
+};
+
+/// Finds contacts between bodies of which at least one is free. A pair gets at most kMaxContactsPerPair,
+/// spread over the touching patch. Deterministic.
+class ContactFinder {
+ public:
+  static constexpr int kMaxContactsPerPair = 16;
+
+  ContactFinder(const Scene& scene, const SampledScene& sampled);
+
+  /// Points closer than `margin` (m) to the other body's surface. `contacts` is cleared first.
+  void find(const std::vector<RigidBody>& bodies, double margin, std::vector<Contact>& contacts);
+
+ private:
+  struct Shape {
+    std::vector<glm::vec3> points;  // surface particles, mesh frame
+    DistanceField field;
+    glm::vec3 lower{0.0f}, upper{0.0f};  // bounds of the points, mesh frame
+  };
+  void keep_spread(std::vector<Contact>& contacts);
+  void points_against_field(const std::vector<RigidBody>& bodies, int points_of, int field_of, double margin);
+
+  std::vector<Shape> shapes_;
+  double spacing_;
+  std::vector<Contact> found_;
+};
+
+/// Changes the solved velocities so that no contact closes faster than its gap allows, with Coulomb friction
+/// and restitution. `solves` has one entry a body; fixed bodies' are not used. Overlap is undone at a bounded
+/// rate.
+void solve_contacts(const std::vector<Contact>& contacts, const Scene& scene,
+                    const std::vector<RigidBody>& bodies, double time_step, std::vector<BodySolve>& solves);
+
+}  // namespace slosh

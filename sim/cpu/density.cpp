@@ -1,0 +1,98 @@
+// Eq 2 and 7. Density is counted in numbers of neighbours (Solenthaler & Pajarola 2008: ρ_p = m_p Σ W) rather
+// than in their masses: for one fluid the two are the same, and where two fluids touch a light particle is
+// not taken for dense because its neighbours are heavy. It is measured against the rest lattice, so that a
+// fluid at rest has its rest density whatever the support ratio.
+#include "sim/cpu/passes.h"
+#include "sim/math/sph.h"
+#include "sim/snapshot.h"
+
+namespace slosh {
+
+namespace {
+
+constexpr std::size_t kRunsPerChunk = 32;
+constexpr float kTooCompressed = 0.2f;
+
+template <bool consistent>
+FloatBatch kernel_shape(FloatBatch r_squared, FloatBatch h, FloatBatch h_squared) {
+  if constexpr (consistent) return spiky_shape(r_squared, h);
+  return poly6_shape(r_squared, h_squared);
+}
+
+// Σ shape over rows; with a share, each neighbour counts by it (wall particles).
+template <bool consistent, bool shared>
+FloatBatch sum_rows(const float* xs, const float* ys, const float* zs, const float* shares,
+                    const RowList& rows, const FluidParticles& fluid, std::uint32_t p, float support_radius) {
+  const FloatBatch x(fluid.x[p]), y(fluid.y[p]), z(fluid.z[p]);
+  const FloatBatch h(support_radius), h_squared(support_radius * support_radius);
+  const auto shape = [&](std::uint32_t j) {
+    const FloatBatch dx = x - FloatBatch::load_unaligned(xs + j);
+    const FloatBatch dy = y - FloatBatch::load_unaligned(ys + j);
+    const FloatBatch dz = z - FloatBatch::load_unaligned(zs + j);
+    const FloatBatch w = kernel_shape<consistent>(dx * dx + dy * dy + dz * dz, h, h_squared);
+    if constexpr (shared) return w * FloatBatch::load_unaligned(shares + j);
+    return w;
+  };
+  FloatBatch sum(0.0f);
+  for (int row = 0; row < rows.count; ++row) {
+    const ParticleRange range = rows.rows[row];
+    std::uint32_t j = range.begin;
+    for (; j + kLanes <= range.end; j += kLanes) sum += shape(j);
+    if (j < range.end) sum += first_lanes(range.end - j) * shape(j);
+  }
+  return sum;
+}
+
+template <bool consistent>
+FloatBatch sum_fluid(const RowList& rows, const FluidParticles& fluid, std::uint32_t p, float h) {
+  return sum_rows<consistent, false>(fluid.x.data(), fluid.y.data(), fluid.z.data(), nullptr, rows, fluid, p,
+                                     h);
+}
+
+FloatBatch sum_walls(const BoundaryParticles& walls, const RowList& rows, const FluidParticles& fluid,
+                     std::uint32_t p, float h) {
+  return sum_rows<true, true>(walls.x.data(), walls.y.data(), walls.z.data(), walls.pressure.data(), rows,
+                              fluid, p, h);
+}
+
+}  // namespace
+
+void compute_density(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
+                     const BoundaryParticles& fixed, const BoundaryParticles& moving) {
+  const std::vector<CellRun>& runs = fluid.index.runs();
+  const Plan& plan = context.plan;
+  const bool consistent = plan.model == ParticleModel::kConsistent;
+  const float h = context.kernels.support_radius;
+  const float stiffness = static_cast<float>(plan.stiffness);
+  const float tension = static_cast<float>(plan.tension);
+  const bool viscosities = plan.viscosity && !plan.one_viscosity;
+  team.run(runs.size(), kRunsPerChunk, [&](std::size_t begin, std::size_t end) {
+    float densest = 0.0f;
+    for (std::size_t r = begin; r < end; ++r) {
+      const RowList rows = fluid.index.rows(context.grid, runs[r].cell);
+      RowList fixed_rows, moving_rows;
+      if (consistent) {
+        fixed_rows = fixed.index.rows(context.grid, runs[r].cell);
+        moving_rows = moving.index.rows(context.grid, runs[r].cell);
+      }
+      for (std::uint32_t p = runs[r].particles.begin; p < runs[r].particles.end; ++p) {
+        FloatBatch sum =
+            consistent ? sum_fluid<true>(rows, fluid, p, h) : sum_fluid<false>(rows, fluid, p, h);
+        if (fixed_rows.count) sum += sum_walls(fixed, fixed_rows, fluid, p, h);
+        if (moving_rows.count) sum += sum_walls(moving, moving_rows, fluid, p, h);
+        const ParticleKind& kind = context.kinds[fluid.kind[p]];
+        const float compression = xsimd::hadd(sum) / context.rest_number_density - 1.0f;
+        const float effective = effective_compression(compression, tension);
+        densest = std::max(densest, compression);
+        const float pressure = stiffness * kind.rest_density * effective;
+        const float volume = context.rest_volume / (1.0f + effective);
+        fluid.pressure[p] = consistent ? volume * volume * pressure : pressure;
+        fluid.volume[p] = volume;
+        if (viscosities) fluid.viscosity[p] = kind.viscosity;
+      }
+    }
+    if (densest > kTooCompressed) context.status.fetch_or(kStatusCompressed, std::memory_order_relaxed);
+  });
+}
+
+}  // namespace slosh

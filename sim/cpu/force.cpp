@@ -1,0 +1,103 @@
+// Eq 5, 6 and 9 on fluid particles, and Eq 10–12 on bodies.
+#include "sim/cpu/passes.h"
+#include "sim/cpu/row_force.h"
+
+namespace slosh {
+
+namespace {
+
+constexpr std::size_t kRunsPerChunk = 16;
+
+NeighborColumns columns(const FluidParticles& f) {
+  return {f.x.data(),  f.y.data(),        f.z.data(),      f.vx.data(),       f.vy.data(),
+          f.vz.data(), f.pressure.data(), f.volume.data(), f.viscosity.data()};
+}
+
+NeighborColumns columns(const BoundaryParticles& b) {
+  return {b.x.data(),  b.y.data(),        b.z.data(),      b.vx.data(),       b.vy.data(),
+          b.vz.data(), b.pressure.data(), b.volume.data(), b.viscosity.data()};
+}
+
+}  // namespace
+
+void compute_fluid_forces(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
+                          const BoundaryParticles& fixed, const BoundaryParticles& moving) {
+  const std::vector<CellRun>& runs = fluid.index.runs();
+  const NeighborColumns fluid_columns = columns(fluid);
+  const NeighborColumns fixed_columns = columns(fixed);
+  const NeighborColumns moving_columns = columns(moving);
+  const FloatBatch h(context.kernels.support_radius);
+  const Plan& plan = context.plan;
+  with_physics(plan, plan.one_viscosity, [&]<bool consistent, Viscosity viscosity>() {
+    constexpr PairRule kFluids = consistent ? PairRule::kConsistent : PairRule::kPaper;
+    constexpr PairRule kWalls = consistent ? PairRule::kWall : PairRule::kPaper;
+    // Body particles have viscosities of their own, so against them Eq 9 holds even where one fluid has Eq 6.
+    constexpr Viscosity kAgainstBodies = viscosity == Viscosity::kNone ? Viscosity::kNone : Viscosity::kPair;
+    team.run(runs.size(), kRunsPerChunk, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t r = begin; r < end; ++r) {
+        const RowList fluid_rows = fluid.index.rows(context.grid, runs[r].cell);
+        const RowList fixed_rows = fixed.index.rows(context.grid, runs[r].cell);
+        const RowList moving_rows = moving.index.rows(context.grid, runs[r].cell);
+        for (std::uint32_t p = runs[r].particles.begin; p < runs[r].particles.end; ++p) {
+          const ParticleView<FloatBatch> self =
+              broadcast(fluid_columns, p, context.kinds[fluid.kind[p]].viscosity);
+          ForceSum<FloatBatch> sum{FloatBatch(0.0f), FloatBatch(0.0f), FloatBatch(0.0f)};
+          add_row_forces<kFluids, viscosity>(self, fluid_columns, fluid_rows, h, sum);
+          if (fixed_rows.count)
+            add_row_forces<kWalls, kAgainstBodies>(self, fixed_columns, fixed_rows, h, sum);
+          if (moving_rows.count)
+            add_row_forces<kWalls, kAgainstBodies>(self, moving_columns, moving_rows, h, sum);
+          const float scale = context.kernels.spiky;
+          fluid.fx[p] = scale * xsimd::hadd(sum.x);
+          fluid.fy[p] = scale * xsimd::hadd(sum.y);
+          fluid.fz[p] = scale * xsimd::hadd(sum.z);
+        }
+      }
+    });
+  });
+}
+
+void sum_body_wrenches(PassContext& context, ThreadTeam& team, const FluidParticles& fluid,
+                       const BoundaryParticles& boundary, const std::vector<RigidBody>& bodies,
+                       const std::vector<char>& wanted, std::vector<glm::vec3>& scratch,
+                       std::vector<Wrench>& wrenches) {
+  const std::vector<CellRun>& runs = boundary.index.runs();
+  const std::size_t count = boundary.index.particles();
+  if (count == 0) return;
+  scratch.resize(count);
+  const NeighborColumns fluid_columns = columns(fluid);
+  const NeighborColumns own = columns(boundary);
+  const FloatBatch h(context.kernels.support_radius);
+  const Plan& plan = context.plan;
+  with_physics(plan, plan.one_viscosity, [&]<bool consistent, Viscosity viscosity>() {
+    constexpr PairRule kWalls = consistent ? PairRule::kWall : PairRule::kPaper;
+    team.run(runs.size(), kRunsPerChunk, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t r = begin; r < end; ++r) {
+        const RowList rows = fluid.index.rows(context.grid, runs[r].cell);
+        for (std::uint32_t i = runs[r].particles.begin; i < runs[r].particles.end; ++i) {
+          scratch[i] = glm::vec3(0.0f);
+          if (rows.count == 0 || !wanted[boundary.body[i]]) continue;
+          ForceSum<FloatBatch> sum{FloatBatch(0.0f), FloatBatch(0.0f), FloatBatch(0.0f)};
+          // Where the fluid has one viscosity its column is not filled: Eq 9's mean is known up front.
+          const float mean = 0.5f * (boundary.viscosity[i] + context.kinds.front().viscosity);
+          const ParticleView<FloatBatch> self =
+              broadcast(own, i, viscosity == Viscosity::kOne ? mean : boundary.viscosity[i]);
+          add_row_forces<kWalls, viscosity>(self, fluid_columns, rows, h, sum);
+          const float scale = context.kernels.spiky;
+          scratch[i] = scale * glm::vec3(xsimd::hadd(sum.x), xsimd::hadd(sum.y), xsimd::hadd(sum.z));
+        }
+      }
+    });
+  });
+  // One fixed order (that of the cells), so that the sum does not depend on the threads.
+  for (std::size_t i = 0; i < count; ++i) {
+    const int body = boundary.body[i];
+    if (!wanted[body]) continue;
+    const glm::dvec3 force(scratch[i]);
+    const glm::dvec3 arm = glm::dvec3(boundary.x[i], boundary.y[i], boundary.z[i]) - bodies[body].position;
+    wrenches[body].force += force;
+    wrenches[body].torque += glm::cross(arm, force);
+  }
+}
+
+}  // namespace slosh

@@ -1,0 +1,78 @@
+// Leap-frog for fluid particles, and putting particles in order for the next step.
+#include <cmath>
+
+#include "sim/cpu/passes.h"
+#include "sim/snapshot.h"
+
+namespace slosh {
+
+namespace {
+constexpr std::size_t kParticlesPerChunk = 2048;
+}
+
+void integrate_fluid(PassContext& context, ThreadTeam& team, FluidParticles& fluid) {
+  const float dt = static_cast<float>(context.plan.time_step);
+  const float max_speed = static_cast<float>(context.plan.max_speed);
+  team.run(fluid.active, kParticlesPerChunk, [&](std::size_t begin, std::size_t end) {
+    std::uint32_t status = 0;
+    for (std::size_t p = begin; p < end; ++p) {
+      const ParticleKind& kind = context.kinds[fluid.kind[p]];
+      if (kind.probe) continue;  // its body moves it
+      const float per_mass = dt / kind.mass;
+      glm::vec3 v(fluid.vx[p] + per_mass * fluid.fx[p], fluid.vy[p] + per_mass * fluid.fy[p],
+                  fluid.vz[p] + per_mass * fluid.fz[p]);
+      v += dt * context.gravity;
+      const float speed = glm::length(v);
+      if (speed > max_speed) {
+        v *= max_speed / speed;
+        status |= kStatusSpeedLimited;
+      }
+      fluid.vx[p] = v.x;
+      fluid.vy[p] = v.y;
+      fluid.vz[p] = v.z;
+      fluid.x[p] += dt * v.x;
+      fluid.y[p] += dt * v.y;
+      fluid.z[p] += dt * v.z;
+      if (context.grid.contains(fluid.x[p], fluid.y[p], fluid.z[p])) {
+        fluid.key[p] = context.grid.cell_of(fluid.x[p], fluid.y[p], fluid.z[p]);
+      } else {
+        fluid.key[p] = context.grid.retired_key();
+        const bool finite =
+            std::isfinite(fluid.x[p]) && std::isfinite(fluid.y[p]) && std::isfinite(fluid.z[p]);
+        status |= finite ? kStatusEscaped : kStatusNonFinite;
+      }
+    }
+    if (status) context.status.fetch_or(status, std::memory_order_relaxed);
+  });
+}
+
+void sort_fluid(PassContext& context, ThreadTeam& team, FluidParticles& fluid, KeySorter& sorter,
+                FluidParticles& scratch) {
+  sorter.sort(fluid.key.data(), fluid.active, context.grid.retired_key());
+  const std::uint32_t* order = sorter.order();
+  team.run(fluid.active, kParticlesPerChunk, [&](std::size_t begin, std::size_t end) {
+    const auto gather = [&](const auto& from, auto& to) {
+      for (std::size_t p = begin; p < end; ++p) to[p] = from[order[p]];
+    };
+    gather(fluid.x, scratch.x);
+    gather(fluid.y, scratch.y);
+    gather(fluid.z, scratch.z);
+    gather(fluid.vx, scratch.vx);
+    gather(fluid.vy, scratch.vy);
+    gather(fluid.vz, scratch.vz);
+    gather(fluid.id, scratch.id);
+    gather(fluid.kind, scratch.kind);
+  });
+  fluid.x.swap(scratch.x);
+  fluid.y.swap(scratch.y);
+  fluid.z.swap(scratch.z);
+  fluid.vx.swap(scratch.vx);
+  fluid.vy.swap(scratch.vy);
+  fluid.vz.swap(scratch.vz);
+  fluid.id.swap(scratch.id);
+  fluid.kind.swap(scratch.kind);
+  fluid.index.rebuild(context.grid, fluid.key.data(), fluid.active);
+  fluid.active = fluid.index.particles();
+}
+
+}  // namespace slosh

@@ -1,0 +1,78 @@
+#include "sim/cpu/parallel.h"
+
+#include <algorithm>
+
+namespace slosh {
+
+namespace {
+// About 20 µs: passes of one step follow each other faster than a sleeping thread wakes up.
+constexpr int kSpins = 2000;
+
+void relax() {
+#if defined(__x86_64__)
+  __builtin_ia32_pause();
+#endif
+}
+
+// Returns once `value` differs from `old`, spinning first and sleeping after.
+std::uint32_t wait_for_change(const std::atomic<std::uint32_t>& value, std::uint32_t old) {
+  for (int spin = 0; spin < kSpins; ++spin) {
+    const std::uint32_t now = value.load(std::memory_order_acquire);
+    if (now != old) return now;
+    relax();
+  }
+  value.wait(old, std::memory_order_acquire);
+  return value.load(std::memory_order_acquire);
+}
+}  // namespace
+
+ThreadTeam::ThreadTeam(int threads) {
+  if (threads <= 0) threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  for (int i = 1; i < threads; ++i) workers_.emplace_back([this] { worker_loop(); });
+}
+
+ThreadTeam::~ThreadTeam() {
+  stopping_.store(true, std::memory_order_relaxed);
+  generation_.fetch_add(1, std::memory_order_release);
+  generation_.notify_all();
+  for (std::thread& worker : workers_) worker.join();
+}
+
+void ThreadTeam::run(std::size_t count, std::size_t chunk,
+                     const std::function<void(std::size_t, std::size_t)>& body) {
+  if (count == 0) return;
+  if (workers_.empty() || count <= chunk) {
+    body(0, count);
+    return;
+  }
+  body_ = &body;
+  count_ = count;
+  chunk_ = chunk;
+  next_.store(0, std::memory_order_relaxed);
+  unfinished_.store(static_cast<std::uint32_t>(workers_.size()), std::memory_order_relaxed);
+  generation_.fetch_add(1, std::memory_order_release);
+  generation_.notify_all();
+  work_on_chunks();
+  std::uint32_t left = unfinished_.load(std::memory_order_acquire);
+  while (left != 0) left = wait_for_change(unfinished_, left);
+}
+
+void ThreadTeam::work_on_chunks() {
+  for (;;) {
+    const std::size_t begin = next_.fetch_add(chunk_, std::memory_order_relaxed);
+    if (begin >= count_) return;
+    (*body_)(begin, std::min(begin + chunk_, count_));
+  }
+}
+
+void ThreadTeam::worker_loop() {
+  std::uint32_t seen = 0;
+  for (;;) {
+    seen = wait_for_change(generation_, seen);
+    if (stopping_.load(std::memory_order_relaxed)) return;
+    work_on_chunks();
+    if (unfinished_.fetch_sub(1, std::memory_order_acq_rel) == 1) unfinished_.notify_one();
+  }
+}
+
+}  // namespace slosh

@@ -1,0 +1,43 @@
+// A fixed team of threads for the passes of a step.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <thread>
+#include <vector>
+
+namespace slosh {
+
+/// Runs a body over [0, count) in chunks on all its threads, the caller's included. Chunks are handed out as
+/// threads come free; a body must write only its own indices, so that the result does not depend on who ran
+/// what.
+class ThreadTeam {
+ public:
+  /// threads: in all, the caller's among them; 0 = all cores.
+  explicit ThreadTeam(int threads);
+  ~ThreadTeam();
+  ThreadTeam(const ThreadTeam&) = delete;
+  ThreadTeam& operator=(const ThreadTeam&) = delete;
+
+  int size() const { return static_cast<int>(workers_.size()) + 1; }
+
+  /// body(begin, end) for chunks of at most `chunk` indices. Returns when all are done.
+  void run(std::size_t count, std::size_t chunk, const std::function<void(std::size_t, std::size_t)>& body);
+
+ private:
+  void work_on_chunks();
+  void worker_loop();
+
+  std::vector<std::thread> workers_;
+  const std::function<void(std::size_t, std::size_t)>* body_ = nullptr;
+  std::size_t count_ = 0;
+  std::size_t chunk_ = 1;
+  std::atomic<std::size_t> next_{0};
+  std::atomic<std::uint32_t> generation_{0};
+  std::atomic<std::uint32_t> unfinished_{0};
+  std::atomic<bool> stopping_{false};
+};
+
+}  // namespace slosh

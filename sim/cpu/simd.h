@@ -1,0 +1,61 @@
+// The CPU's batch of neighbours: the widest float vector of the machine this was compiled for.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <new>
+#include <vector>
+#include <xsimd/xsimd.hpp>
+
+#include "sim/math/kernels.h"
+
+namespace slosh {
+
+using FloatBatch = xsimd::batch<float>;
+inline constexpr std::size_t kLanes = FloatBatch::size;
+
+template <>
+struct RealOps<FloatBatch> {
+  static FloatBatch positive_part(FloatBatch x) { return xsimd::max(x, FloatBatch(0.0f)); }
+  // The hardware's estimate has 12 to 14 bits; one Newton step brings it to within a few last places.
+  static FloatBatch inverse_sqrt(FloatBatch x) {
+#ifdef __AVX512F__
+    // xsimd 8.1 (Debian 12) names an intrinsic that does not exist here.
+    const FloatBatch guess(_mm512_rsqrt14_ps(x));
+#else
+    const FloatBatch guess = xsimd::rsqrt(x);
+#endif
+    return guess * (FloatBatch(1.5f) - FloatBatch(0.5f) * x * guess * guess);
+  }
+};
+
+/// 1 in the lanes before `count`, 0 in the others: for the last, partly filled batch of a row.
+inline FloatBatch first_lanes(std::size_t count) {
+  alignas(64) static constexpr auto kTable = [] {
+    std::array<float, 2 * 64> table{};
+    for (std::size_t i = 0; i < 64; ++i) table[i] = 1.0f;
+    return table;
+  }();
+  return FloatBatch::load_unaligned(kTable.data() + 64 - count);
+}
+
+/// Memory on cache lines, so that a batch does not straddle two at the start of an array.
+template <class T>
+struct LineAllocator {
+  using value_type = T;
+  LineAllocator() = default;
+  template <class U>
+  LineAllocator(const LineAllocator<U>&) {}
+  T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), std::align_val_t(64))); }
+  void deallocate(T* p, std::size_t) { ::operator delete(p, std::align_val_t(64)); }
+  template <class U>
+  bool operator==(const LineAllocator<U>&) const {
+    return true;
+  }
+};
+
+/// A column of particle data. Allocate kLanes more than there are particles: batches read past a row's end.
+template <class T>
+using Column = std::vector<T, LineAllocator<T>>;
+
+}  // namespace slosh

@@ -1,0 +1,27 @@
+#include "sim/snapshot.h"
+
+#include <array>
+#include <utility>
+
+namespace slosh {
+
+std::string status_text(std::uint32_t status) {
+  static constexpr std::array<std::pair<StatusBit, const char*>, 7> kWords{{
+      {kStatusNonFinite, "a particle or body became non-finite and was put out of the world"},
+      {kStatusEscaped, "particles left the domain and were retired"},
+      {kStatusSpeedLimited, "particles were too fast and were slowed"},
+      {kStatusInputRejected, "a handle's pose was not usable and the last good one was kept"},
+      {kStatusForceLimited, "a device's force met its limit"},
+      {kStatusTimeSlipped, "the simulation did not keep real time"},
+      {kStatusCompressed, "fluid is squeezed by more than a fifth: raise stiffness_m2_s2"},
+  }};
+  std::string text;
+  for (const auto& [bit, words] : kWords) {
+    if (!(status & bit)) continue;
+    if (!text.empty()) text += "; ";
+    text += words;
+  }
+  return text;
+}
+
+}  // namespace slosh
