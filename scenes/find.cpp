@@ -1,0 +1,79 @@
+// The shipped scenes, found by name.
+#include <algorithm>
+#include <cstdlib>
+#include <system_error>
+
+#include "scenes/gltf/container.h"
+#include "scenes/load.h"
+
+namespace slosh {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kOrder[] = {"bucket", "spoon", "pour", "spin", "pool", "probe"};
+
+fs::path scenes_folder() {
+  const char* given = std::getenv("SLOSH_SCENES");
+  return given && *given ? fs::path(given) : fs::path(SLOSH_SCENES_FOLDER);
+}
+
+bool is_gltf(const fs::path& file) {
+  return file.extension() == ".gltf" || file.extension() == ".glb";
+}
+
+std::string read_title(const fs::path& file) {
+  try {
+    const auto container = gltf::read_container(file);
+    if (!container) return "(" + container.error().what + ")";
+    const nlohmann::json& json = container.value().json;
+    const std::size_t scene = json.value("scene", std::size_t{0});
+    return json.at("scenes").at(scene).at("extras").at("title").get<std::string>();
+  } catch (const std::exception&) {
+    return "";  // a scene needs no title
+  }
+}
+
+std::size_t rank(const std::string& name) {
+  return static_cast<std::size_t>(std::find(std::begin(kOrder), std::end(kOrder), name) - std::begin(kOrder));
+}
+
+}  // namespace
+
+std::vector<SceneEntry> shipped_scenes() {
+  std::vector<SceneEntry> entries;
+  std::error_code code;
+  for (fs::directory_iterator it(scenes_folder(), code), end; !code && it != end; it.increment(code)) {
+    if (is_gltf(it->path()))
+      entries.push_back({it->path().stem().string(), read_title(it->path()), it->path()});
+  }
+  std::sort(entries.begin(), entries.end(), [](const SceneEntry& a, const SceneEntry& b) {
+    return rank(a.name) != rank(b.name) ? rank(a.name) < rank(b.name) : a.file < b.file;
+  });
+  return entries;
+}
+
+Result<fs::path> find_scene(const std::string& name_or_path) {
+  const fs::path path(name_or_path);
+  std::error_code code;
+  if (is_gltf(path)) {
+    if (fs::is_regular_file(path, code)) return path;
+    return Error{name_or_path, "there is no such file",
+                 "Check the path, or list the shipped scenes with 'slosh scenes'"};
+  }
+  std::string names;
+  for (const char* extension : {".gltf", ".glb"}) {
+    if (path.has_parent_path() || name_or_path.empty()) break;
+    const fs::path file = scenes_folder() / (name_or_path + extension);
+    if (fs::is_regular_file(file, code)) return file;
+  }
+  for (fs::directory_iterator it(scenes_folder(), code), end; !code && it != end; it.increment(code)) {
+    if (is_gltf(it->path())) names += (names.empty() ? "" : ", ") + it->path().stem().string();
+  }
+  return Error{"scene '" + name_or_path + "'", "is neither a shipped scene nor a .gltf or .glb file",
+               names.empty() ? "There are no shipped scenes in " + scenes_folder().string() +
+                                   ": build them, or set SLOSH_SCENES"
+                             : "Shipped: " + names};
+}
+
+}  // namespace slosh

@@ -1,0 +1,135 @@
+#include "scenes/gltf/container.h"
+
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+
+namespace slosh::gltf {
+namespace {
+
+constexpr std::uintmax_t kLargestFile = 512ull << 20;
+constexpr int kDeepestJson = 64;                  // the library below walks JSON by recursion
+constexpr std::uint32_t kMagic = 0x46546C67;      // "glTF"
+constexpr std::uint32_t kJsonChunk = 0x4E4F534A;  // "JSON"
+constexpr std::uint32_t kBinChunk = 0x004E4942;   // "BIN"
+
+std::uint32_t read_u32(const std::string& bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  std::memcpy(&value, bytes.data() + at, sizeof(value));
+  return value;
+}
+
+void append_u32(std::string& bytes, std::uint32_t value) {
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
+}
+
+Result<std::string> read_bytes(const std::filesystem::path& file) {
+  const std::string where = file.string();
+  std::error_code code;
+  const auto status = std::filesystem::status(file, code);
+  if (code || status.type() == std::filesystem::file_type::not_found) {
+    return Error{where, "there is no such file",
+                 "Check the path, or list the shipped scenes with 'slosh scenes'"};
+  }
+  if (status.type() != std::filesystem::file_type::regular) {
+    return Error{where, "this is not a file", "Name a .gltf or .glb file"};
+  }
+  const std::uintmax_t size = std::filesystem::file_size(file, code);
+  if (code) return Error{where, "cannot be read: " + code.message(), "Check its permissions"};
+  if (size > kLargestFile) {
+    return Error{where, "the file has " + std::to_string(size >> 20) + " MB, the limit is 512 MB",
+                 "Export without textures, and with fewer triangles"};
+  }
+  std::ifstream in(file, std::ios::binary);
+  std::string bytes(size, '\0');
+  if (!in || !in.read(bytes.data(), static_cast<std::streamsize>(size))) {
+    return Error{where, "cannot be read", "Check its permissions"};
+  }
+  return bytes;
+}
+
+/// Splits a .glb; `text` receives the JSON chunk.
+std::string split_glb(const std::string& bytes, std::string& text, std::string& binary) {
+  if (bytes.size() < 20) return "the header is cut off";
+  if (read_u32(bytes, 4) != 2)
+    return "version " + std::to_string(read_u32(bytes, 4)) + ", version 2 is needed";
+  const std::uint64_t total = read_u32(bytes, 8);
+  if (total > bytes.size()) {
+    return "the header promises " + std::to_string(total) + " bytes, the file has " +
+           std::to_string(bytes.size());
+  }
+  std::uint64_t at = 12;
+  for (int chunk = 0; chunk < 2 && at + 8 <= total; ++chunk) {
+    const std::uint64_t length = read_u32(bytes, at);
+    const std::uint32_t type = read_u32(bytes, at + 4);
+    if (length > total - at - 8) return "chunk " + std::to_string(chunk) + " is cut off";
+    if (chunk == 0) {
+      if (type != kJsonChunk) return "the first chunk is not JSON";
+      text = bytes.substr(at + 8, length);
+    } else if (type == kBinChunk) {
+      binary = bytes.substr(at + 8, length);
+    }
+    at += 8 + length;
+  }
+  return "";
+}
+
+}  // namespace
+
+Result<Container> read_container(const std::filesystem::path& file) {
+  Result<std::string> read = read_bytes(file);
+  if (!read) return read.error();
+  std::string& bytes = read.value();
+  Container out;
+  std::string text;
+  if (bytes.size() >= 4 && read_u32(bytes, 0) == kMagic) {
+    out.is_binary = true;
+    const std::string problem = split_glb(bytes, text, out.binary);
+    if (!problem.empty()) return Error{file.string(), "broken .glb: " + problem, "Export the file again"};
+  } else {
+    text = std::move(bytes);
+  }
+  int deepest = 0;
+  const auto watch_depth = [&](int depth, nlohmann::json::parse_event_t, nlohmann::json&) {
+    deepest = std::max(deepest, depth);
+    return depth <= kDeepestJson;
+  };
+  try {
+    out.json = nlohmann::json::parse(text, watch_depth);
+  } catch (const std::exception& problem) {
+    return Error{file.string(), std::string("unreadable JSON: ") + problem.what(),
+                 "Export the file again; glTF has no NaN, no comments and no trailing commas"};
+  }
+  if (deepest > kDeepestJson) {
+    return Error{file.string(), "JSON nested deeper than " + std::to_string(kDeepestJson) + " levels",
+                 "Remove the nested custom properties"};
+  }
+  if (!out.json.is_object())
+    return Error{file.string(), "the JSON is not an object", "Export the file again"};
+  return out;
+}
+
+std::string to_bytes(const Container& container) {
+  std::string text = container.json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  if (!container.is_binary) return text;
+  text.resize((text.size() + 3) & ~std::size_t{3}, ' ');
+  std::string binary = container.binary;
+  binary.resize((binary.size() + 3) & ~std::size_t{3}, '\0');
+  const bool has_binary = !binary.empty();
+  std::string out;
+  append_u32(out, kMagic);
+  append_u32(out, 2);
+  append_u32(out, static_cast<std::uint32_t>(20 + text.size() + (has_binary ? 8 + binary.size() : 0)));
+  append_u32(out, static_cast<std::uint32_t>(text.size()));
+  append_u32(out, kJsonChunk);
+  out += text;
+  if (has_binary) {
+    append_u32(out, static_cast<std::uint32_t>(binary.size()));
+    append_u32(out, kBinChunk);
+    out += binary;
+  }
+  return out;
+}
+
+}  // namespace slosh::gltf

@@ -1,0 +1,24 @@
+// The bytes of a glTF file, as JSON and binary chunk, before anything looks inside.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "sim/math/result.h"
+
+namespace slosh::gltf {
+
+struct Container {
+  nlohmann::json json;  ///< an object
+  std::string binary;   ///< a .glb's second chunk; empty for .gltf
+  bool is_binary = false;
+};
+
+/// Reads a file of at most 512 MB. Errors: missing, empty, too large, truncated .glb, text that is not JSON.
+Result<Container> read_container(const std::filesystem::path& file);
+
+/// The container as the bytes of a .glb (is_binary) or of a .gltf.
+std::string to_bytes(const Container& container);
+
+}  // namespace slosh::gltf

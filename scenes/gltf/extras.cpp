@@ -1,0 +1,142 @@
+#include "scenes/gltf/extras.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+
+namespace slosh::gltf {
+namespace {
+
+constexpr const char* kExporterKeys[] = {"targetNames", "glTF2ExportSettings"};
+
+std::string shown(const nlohmann::json& value) {
+  std::string text = value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  if (text.size() > 60) text = text.substr(0, 57) + "...";
+  return text;
+}
+
+std::string range_text(const Range& range) {
+  if (range.low == 0.0 && range.high >= 1e9)
+    return range.above_low ? "a number above 0" : "a number of at least 0";
+  if (range.high >= 1e9) return "a number";
+  return "a number from " + short_number(range.low) + " to " + short_number(range.high) +
+         (range.above_low ? " (not " + short_number(range.low) + " itself)" : "");
+}
+
+bool in_range(double value, const Range& range) {
+  return std::isfinite(value) && (range.above_low ? value > range.low : value >= range.low) &&
+         value <= range.high;
+}
+
+}  // namespace
+
+std::string short_number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.6g", value);
+  return text;
+}
+
+void Extras::fail(const std::string& key, std::string what, std::string mend) {
+  if (!error_) error_ = Error{owner_ + ": extras." + key, std::move(what), std::move(mend)};
+}
+
+const nlohmann::json* Extras::find(const char* key) {
+  if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.emplace_back(key);
+  return has(key) ? &object_[key] : nullptr;
+}
+
+double Extras::number(const char* key, double fallback, Range range) {
+  const nlohmann::json* value = find(key);
+  if (!value) return fallback;
+  if (!value->is_number()) {
+    fail(key, "is " + shown(*value) + ", not a number", "Give " + range_text(range));
+    return fallback;
+  }
+  const double number = value->get<double>();
+  if (in_range(number, range)) return number;
+  fail(key, "is " + short_number(number), "Give " + range_text(range));
+  return fallback;
+}
+
+int Extras::integer(const char* key, int fallback, int low, int high) {
+  const double value = number(key, fallback, {static_cast<double>(low), static_cast<double>(high), false});
+  if (value == std::floor(value)) return static_cast<int>(value);
+  fail(key, "is " + short_number(value) + ", not a whole number", "Give a whole number");
+  return fallback;
+}
+
+bool Extras::flag(const char* key, bool fallback) {
+  const nlohmann::json* value = find(key);
+  if (!value) return fallback;
+  if (value->is_boolean()) return value->get<bool>();
+  if (value->is_number() && (*value == 0 || *value == 1)) return *value == 1;
+  fail(key, "is " + shown(*value) + ", neither true nor false", "Give true or false (or 1 or 0)");
+  return fallback;
+}
+
+std::string Extras::text(const char* key, std::string fallback) {
+  const nlohmann::json* value = find(key);
+  if (!value) return fallback;
+  if (value->is_string()) return value->get<std::string>();
+  fail(key, "is " + shown(*value) + ", not a text", "Give a text");
+  return fallback;
+}
+
+std::string Extras::choice(const char* key, std::string fallback,
+                           std::initializer_list<const char*> choices) {
+  std::string value = text(key, fallback);
+  if (!has(key) || std::find(choices.begin(), choices.end(), value) != choices.end()) return value;
+  std::string list;
+  for (const char* choice : choices) list += (list.empty() ? "" : ", ") + std::string(choice);
+  fail(key, "is \"" + value + "\"", "Give one of: " + list);
+  return fallback;
+}
+
+std::vector<double> Extras::numbers(const char* key, std::size_t count, Range each) {
+  const nlohmann::json* value = find(key);
+  if (!value) return {};
+  const std::string mend = "Give a list of " + std::to_string(count) + " numbers, each " + range_text(each);
+  if (!value->is_array() || value->size() != count) {
+    fail(key, "is " + shown(*value), mend);
+    return {};
+  }
+  std::vector<double> out;
+  for (const nlohmann::json& item : *value) {
+    if (!item.is_number() || !in_range(item.get<double>(), each)) {
+      fail(key, "holds " + shown(item), mend);
+      return {};
+    }
+    out.push_back(item.get<double>());
+  }
+  return out;
+}
+
+glm::dvec3 Extras::vector(const char* key, glm::dvec3 fallback, Range each) {
+  const std::vector<double> values = numbers(key, 3, each);
+  return values.empty() ? fallback : glm::dvec3(values[0], values[1], values[2]);
+}
+
+const nlohmann::json* Extras::object(const char* key) {
+  const nlohmann::json* value = find(key);
+  if (!value || value->is_object()) return value;
+  fail(key, "is " + shown(*value) + ", not a group of properties", "Give a group of named properties");
+  return nullptr;
+}
+
+std::optional<Error> Extras::error() const {
+  if (error_) return error_;
+  for (const auto& [key, value] : object_.items()) {
+    if (key.empty() || key[0] == '_' || std::isupper(static_cast<unsigned char>(key[0]))) continue;
+    if (std::find(std::begin(kExporterKeys), std::end(kExporterKeys), key) != std::end(kExporterKeys))
+      continue;
+    if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
+    std::string list;
+    for (const std::string& known : known_) list += (list.empty() ? "" : ", ") + known;
+    return Error{owner_ + ": extras." + key, "is not a property that is known here",
+                 "Use one of: " + list + "; or begin the name with _ to have it ignored"};
+  }
+  return std::nullopt;
+}
+
+}  // namespace slosh::gltf

@@ -1,0 +1,133 @@
+#include "scenes/gltf/meshes.h"
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+
+#include "scenes/gltf/accessor.h"
+
+namespace slosh::gltf {
+namespace {
+
+std::optional<Error> append_primitive(const Document& document, const tinygltf::Primitive& primitive,
+                                      const std::string& where, TriangleMesh& out) {
+  if (primitive.mode != TINYGLTF_MODE_TRIANGLES && primitive.mode != -1) {
+    return Error{where, "is not made of triangles (primitive mode " + std::to_string(primitive.mode) + ")",
+                 "In Blender, convert to a mesh with faces and export again"};
+  }
+  const auto position = primitive.attributes.find("POSITION");
+  if (position == primitive.attributes.end()) return Error{where, "has no POSITION", "Export the file again"};
+  const auto positions = read_numbers(document.model, position->second, 3, false, where + ": POSITION");
+  if (!positions) return positions.error();
+  const std::size_t count = positions.value().size() / 3;
+  std::vector<std::uint32_t> indices(count);
+  if (primitive.indices >= 0) {
+    auto read = read_indices(document.model, primitive.indices, count, where + ": indices");
+    if (!read) return read.error();
+    indices = std::move(read.value());
+  } else {
+    std::iota(indices.begin(), indices.end(), 0u);
+  }
+  if (indices.size() % 3 != 0) {
+    return Error{where, "has " + std::to_string(indices.size()) + " indices, not a multiple of 3",
+                 "Export the file again"};
+  }
+  if (out.triangles.size() + indices.size() / 3 > kMostTriangles || count > 3 * kMostTriangles) {
+    return Error{where, "has more than " + std::to_string(kMostTriangles) + " triangles",
+                 "Reduce it, in Blender with the Decimate modifier"};
+  }
+  const auto base = static_cast<std::uint32_t>(out.positions.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const double* p = positions.value().data() + 3 * i;
+    out.positions.emplace_back(p[0], p[1], p[2]);
+  }
+  out.normals.resize(out.positions.size(), glm::vec3(0.0f));
+  const auto normal = primitive.attributes.find("NORMAL");
+  if (normal != primitive.attributes.end()) {
+    const auto normals = read_numbers(document.model, normal->second, 3, false, where + ": NORMAL");
+    if (!normals) return normals.error();
+    if (normals.value().size() / 3 != count) {
+      return Error{where + ": NORMAL", "has another count than POSITION", "Export the file again"};
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const double* n = normals.value().data() + 3 * i;
+      out.normals[base + i] = glm::vec3(n[0], n[1], n[2]);
+    }
+  }
+  for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
+    out.triangles.emplace_back(base + indices[i], base + indices[i + 1], base + indices[i + 2]);
+  }
+  return std::nullopt;
+}
+
+/// Gives every vertex without a usable normal the area-weighted mean of its faces.
+void mend_normals(TriangleMesh& mesh) {
+  std::vector<glm::dvec3> sums(mesh.positions.size(), glm::dvec3(0.0));
+  for (const glm::uvec3& t : mesh.triangles) {
+    const glm::dvec3 a(mesh.positions[t.x]);
+    const glm::dvec3 face =
+        glm::cross(glm::dvec3(mesh.positions[t.y]) - a, glm::dvec3(mesh.positions[t.z]) - a);
+    for (int i = 0; i < 3; ++i) sums[t[i]] += face;
+  }
+  for (std::size_t i = 0; i < mesh.normals.size(); ++i) {
+    const float length = glm::length(mesh.normals[i]);
+    if (length > 1e-6f) {
+      mesh.normals[i] /= length;
+    } else {
+      const double sum = glm::length(sums[i]);
+      mesh.normals[i] = sum > 0.0 ? glm::vec3(sums[i] / sum) : glm::vec3(0.0f, 1.0f, 0.0f);
+    }
+  }
+}
+
+void bake(const glm::dmat3& rest, TriangleMesh& mesh) {
+  const glm::dmat3 for_normals = glm::transpose(glm::inverse(rest));
+  for (glm::vec3& p : mesh.positions) p = glm::vec3(rest * glm::dvec3(p));
+  for (glm::vec3& n : mesh.normals) n = glm::vec3(for_normals * glm::dvec3(n));
+  if (glm::determinant(rest) < 0.0) {
+    for (glm::uvec3& t : mesh.triangles) std::swap(t.y, t.z);
+  }
+}
+
+}  // namespace
+
+Result<TriangleMesh> read_mesh(const Document& document, int mesh, const glm::dmat3& rest,
+                               const std::string& where) {
+  const tinygltf::Mesh& source = document.model.meshes[mesh];
+  TriangleMesh out;
+  out.name = source.name.empty() ? "#" + std::to_string(mesh) : source.name;
+  const std::string who = where + ": mesh '" + out.name + "'";
+  for (const tinygltf::Primitive& primitive : source.primitives) {
+    if (const auto problem = append_primitive(document, primitive, who, out)) return *problem;
+  }
+  if (out.triangles.empty()) return Error{who, "has no triangles", "Give it faces, or take the node out"};
+  bake(rest, out);
+  for (const glm::vec3& p : out.positions) {
+    if (glm::any(glm::greaterThan(glm::abs(p), glm::vec3(1e4f)))) {
+      return Error{who, "reaches further than 10 km", "Work in metres"};
+    }
+  }
+  mend_normals(out);
+  return out;
+}
+
+Material read_material(const Document& document, int mesh) {
+  Material out;
+  for (const tinygltf::Primitive& primitive : document.model.meshes[mesh].primitives) {
+    if (primitive.material < 0) continue;
+    const tinygltf::Material& source = document.model.materials[primitive.material];
+    const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
+    const auto unit = [](double v) { return static_cast<float>(v >= 0.0 ? std::min(v, 1.0) : 0.0); };
+    if (pbr.baseColorFactor.size() == 4) {
+      for (int i = 0; i < 3; ++i) out.base_color[i] = unit(pbr.baseColorFactor[i]);
+      // Alpha counts only where the material asks for blending, as glTF has it.
+      if (source.alphaMode == "BLEND") out.opacity = unit(pbr.baseColorFactor[3]);
+    }
+    out.metallic = unit(pbr.metallicFactor);
+    out.roughness = unit(pbr.roughnessFactor);
+    break;
+  }
+  return out;
+}
+
+}  // namespace slosh::gltf

@@ -1,0 +1,70 @@
+#include "scenes/load.h"
+
+#include <exception>
+
+#include "scenes/gltf/document.h"
+#include "scenes/reading/reading.h"
+
+namespace slosh {
+namespace {
+
+using reading::NodeKind;
+using reading::Problem;
+using reading::Reading;
+
+using ReadNode = Problem (*)(Reading&, int);
+
+Problem read_all(Reading& reading, NodeKind kind, ReadNode read) {
+  for (const int node : reading.document.nodes) {
+    if (reading.kinds[node] != kind) continue;
+    if (Problem problem = read(reading, node)) return problem;
+  }
+  return std::nullopt;
+}
+
+Problem something_to_simulate(Reading& reading) {
+  if (!reading.scene.bodies.empty() || !reading.scene.fluid_volumes.empty()) return std::nullopt;
+  return Error{
+      reading.document.file, "the scene has neither a body nor a fluid",
+      "Give at least one object the custom property slosh = \"body\" or \"fluid\", and export with custom "
+      "properties on"};
+}
+
+Result<Scene> read_scene(const std::filesystem::path& file) {
+  const Result<gltf::Document> document = gltf::read_document(file);
+  if (!document) return document.error();
+  Reading reading{document.value(), {}, {}, {}, {}, {}, {}, 0, {}};
+  reading.scene.name = file.stem().string();
+  reading.scene.source_file = file.string();
+  const auto stages = {
+      +[](Reading& r) { return reading::read_kinds(r); },
+      +[](Reading& r) { return reading::read_scene_fields(r); },
+      +[](Reading& r) { return read_all(r, NodeKind::kFluid, reading::read_fluid_volume); },
+      +[](Reading& r) { return read_all(r, NodeKind::kBody, reading::read_body); },
+      +[](Reading& r) { return read_all(r, NodeKind::kProbe, reading::read_probe); },
+      +[](Reading& r) { return read_all(r, NodeKind::kPicture, reading::read_picture); },
+      +[](Reading& r) { return something_to_simulate(r); },
+      +[](Reading& r) { return read_all(r, NodeKind::kGrip, reading::read_grip); },
+      +[](Reading& r) { return reading::order_grips(r); },
+      +[](Reading& r) { return read_all(r, NodeKind::kHand, reading::read_hand); },
+      +[](Reading& r) { return reading::read_camera(r); },
+      +[](Reading& r) { return reading::read_domain(r); },
+  };
+  for (const auto stage : stages) {
+    if (const Problem problem = stage(reading)) return *problem;
+  }
+  return std::move(reading.scene);
+}
+
+}  // namespace
+
+Result<Scene> load_scene(const std::filesystem::path& file) {
+  try {
+    return read_scene(file);
+  } catch (
+      const std::exception& problem) {  // out of memory, a library's own; never the way of an expected error
+    return Error{file.string(), std::string("cannot be read: ") + problem.what(), "Export the file again"};
+  }
+}
+
+}  // namespace slosh

@@ -1,0 +1,24 @@
+// The shipped scenes, one function and one file each.
+#pragma once
+
+#include "scenes/make/writer.h"
+
+namespace slosh::make {
+
+/// Walls of vessels. m
+inline constexpr double kWall = 0.014;
+
+SceneWriter make_bucket();  ///< paper, section 6.4.4
+SceneWriter make_spoon();   ///< paper, section 6.4.1
+SceneWriter make_pour();    ///< paper, section 6.4.2
+SceneWriter make_spin();    ///< paper, section 6.4.3
+SceneWriter make_pool();    ///< paper, section 6.2
+SceneWriter make_probe();   ///< paper, section 3
+
+/// A fixed wooden slab, its top at y = 0.
+void add_table(SceneWriter& writer, double width, double depth, double thickness = 0.04);
+
+/// A list for `extras`.
+nlohmann::json list(const glm::dvec3& v);
+
+}  // namespace slosh::make

@@ -1,0 +1,49 @@
+// Writing a scene as glTF, through tinygltf: nodes, physics in extras, animation, camera.
+#pragma once
+
+#include <tiny_gltf.h>
+
+#include <filesystem>
+#include <functional>
+#include <glm/glm.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "scenes/make/solid.h"
+#include "sim/math/pose.h"
+
+namespace slosh::make {
+
+struct Paint {
+  glm::dvec4 color{0.7, 0.7, 0.7, 1.0};  ///< linear; alpha below 1 is blended
+  double metallic = 0.0;
+  double roughness = 0.6;
+};
+
+class SceneWriter {
+ public:
+  /// Properties of the whole scene (scenes/README.md).
+  explicit SceneWriter(const nlohmann::json& scene_extras);
+
+  int add_material(const std::string& name, const Paint& paint);
+  int add_mesh(const std::string& name, const Solid& solid, int material);
+  /// `mesh` −1 makes an empty; `parent` −1 a root.
+  int add_node(const std::string& name, int mesh, const Pose& pose, const nlohmann::json& extras,
+               int parent = -1);
+  /// A hand: an empty that holds `grip` and follows `pose_at` (world) from 0 to `duration`, keyed at `rate`
+  /// Hz.
+  void add_hand(const std::string& name, const std::string& grip, const std::function<Pose(double)>& pose_at,
+                double duration, double rate = 60.0);
+  void add_camera(const glm::dvec3& eye, const glm::dvec3& target, double vertical_fov_deg);
+
+  /// One self-contained file: .glb when the name ends so, else .gltf with the buffer inside. False on
+  /// failure.
+  bool write(const std::filesystem::path& file);
+
+ private:
+  int add_accessor(const std::vector<float>& numbers, int components, bool with_bounds, int target);
+
+  tinygltf::Model model_;
+};
+
+}  // namespace slosh::make

@@ -1,0 +1,177 @@
+// Bodies, probes, fluids and pictures.
+#include <cmath>
+
+#include "scenes/gltf/meshes.h"
+#include "scenes/mesh/closed.h"
+#include "scenes/reading/reading.h"
+
+namespace slosh::reading {
+namespace {
+
+using gltf::Extras;
+using gltf::Range;
+
+/// A point probe turns with nothing; its inertia only has to be a number that divides.
+constexpr double kProbeRadius = 0.005;
+constexpr double kProbeMass = 0.05;
+constexpr std::size_t kMostBodies = 10'000;
+
+/// Symmetric positive definite, and no moment above the sum of the other two.
+bool is_inertia(const glm::dmat3& m) {
+  const double minor = m[0][0] * m[1][1] - m[0][1] * m[1][0];
+  const double trace = m[0][0] + m[1][1] + m[2][2];
+  for (int axis = 0; axis < 3; ++axis) {
+    if (m[axis][axis] > 0.5001 * trace) return false;
+  }
+  return m[0][0] > 0.0 && minor > 0.0 && glm::determinant(m) > 0.0;
+}
+
+void read_common(Extras& extras, Body& body) {
+  body.particle_density = extras.number("particle_density_kg_m3", 0.0, Range{0.0, 1e6});
+  body.dynamic_viscosity = extras.number("viscosity_pa_s", 0.0, Range{0.0, 1e7});
+  body.friction = extras.number("friction", body.friction, Range{0.0, 10.0});
+  body.restitution = extras.number("restitution", body.restitution, Range{0.0, 1.0});
+}
+
+void read_mass(Extras& extras, const mesh::VolumeIntegrals& volume, Body& body) {
+  const double mass = extras.number("mass_kg", 0.0, gltf::kPositive);
+  const double density = extras.number("density_kg_m3", 0.0, Range{0.0, 1e6, true});
+  if (extras.has("mass_kg") && extras.has("density_kg_m3")) {
+    extras.fail("mass_kg", "is given together with density_kg_m3", "Keep one of the two");
+  }
+  if (body.motion == BodyMotion::kFree && !extras.has("mass_kg") && !extras.has("density_kg_m3")) {
+    extras.fail("mass_kg", "is missing on a free body",
+                "Give mass_kg or density_kg_m3, or motion = \"fixed\"");
+  }
+  body.mass.mass = extras.has("density_kg_m3") ? density * volume.volume : mass;
+  body.mass.center_of_mass = extras.vector("center_of_mass_m", volume.centroid, Range{-1e4, 1e4});
+  body.mass.inertia = volume.inertia * (body.mass.mass / volume.volume);
+  if (extras.has("center_of_mass_m") && !extras.has("inertia_kg_m2")) {
+    // The mesh's inertia is about its own centroid: carry it over (parallel axes).
+    const glm::dvec3 d = body.mass.center_of_mass - volume.centroid;
+    body.mass.inertia += body.mass.mass * (glm::dmat3(glm::dot(d, d)) - glm::outerProduct(d, d));
+  }
+  const std::vector<double> i = extras.numbers("inertia_kg_m2", 6, Range{-1e9, 1e9});
+  if (!i.empty()) {
+    body.mass.inertia = glm::dmat3(i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2]);
+    if (!is_inertia(body.mass.inertia)) {
+      extras.fail("inertia_kg_m2", "is not the inertia of a solid",
+                  "Give xx, yy, zz, xy, xz, yz about the centre of mass, or leave it out");
+    }
+  }
+}
+
+}  // namespace
+
+Problem read_body(Reading& reading, int node) {
+  Body body;
+  body.name = reading.document.name(node);
+  glm::dmat3 rest;
+  if (Problem problem = read_pose(reading, node, body.pose, rest)) return problem;
+  Extras extras(reading.document.extras[node], reading.document.owner(node));
+  extras.text("slosh", "");
+  const std::string motion = extras.choice("motion", "fixed", {"fixed", "free"});
+  body.motion = motion == "free" ? BodyMotion::kFree : BodyMotion::kFixed;
+  if (Problem problem = read_node_mesh(reading, node, rest, true, body.mesh)) return problem;
+  const mesh::WeldedMesh welded = mesh::weld(reading.scene.meshes[body.mesh]);
+  mesh::Components parts;
+  mesh::find_defects(welded, &parts);
+  read_mass(extras, mesh::integrate_volume(welded, parts), body);
+  read_common(extras, body);
+  body.measured = extras.flag("measured", false);
+  body.twist.linear = extras.vector("velocity_m_s", glm::dvec3(0.0), Range{-1e3, 1e3});
+  body.twist.angular = extras.vector("angular_velocity_rad_s", glm::dvec3(0.0), Range{-1e3, 1e3});
+  body.material = gltf::read_material(reading.document, reading.document.model.nodes[node].mesh);
+  if (Problem problem = extras.error()) return problem;
+  if (reading.scene.bodies.size() >= kMostBodies) {
+    return Error{reading.document.owner(node), "more than " + std::to_string(kMostBodies) + " bodies",
+                 "Use fewer"};
+  }
+  reading.body_of_node[node] = static_cast<int>(reading.scene.bodies.size());
+  reading.scene.bodies.push_back(std::move(body));
+  return std::nullopt;
+}
+
+Problem read_probe(Reading& reading, int node) {
+  Body body;
+  body.name = reading.document.name(node);
+  body.motion = BodyMotion::kFree;
+  body.point_probe = true;
+  glm::dmat3 rest;
+  if (Problem problem = read_pose(reading, node, body.pose, rest)) return problem;
+  Extras extras(reading.document.extras[node], reading.document.owner(node));
+  extras.text("slosh", "");
+  body.mass.mass = extras.number("mass_kg", kProbeMass, gltf::kPositive);
+  body.mass.inertia = glm::dmat3(0.4 * body.mass.mass * kProbeRadius * kProbeRadius);
+  read_common(extras, body);
+  if (Problem problem = extras.error()) return problem;
+  const int look = reading.document.model.nodes[node].mesh;
+  if (look >= 0) {
+    if (Problem problem = read_node_mesh(reading, node, rest, false, body.mesh)) return problem;
+    body.material = gltf::read_material(reading.document, look);
+  }
+  reading.body_of_node[node] = static_cast<int>(reading.scene.bodies.size());
+  reading.scene.bodies.push_back(std::move(body));
+  return std::nullopt;
+}
+
+Problem read_fluid_volume(Reading& reading, int node) {
+  Scene& scene = reading.scene;
+  FluidVolume volume;
+  volume.name = reading.document.name(node);
+  glm::dmat3 rest;
+  if (Problem problem = read_pose(reading, node, volume.pose, rest)) return problem;
+  Extras extras(reading.document.extras[node], reading.document.owner(node));
+  extras.text("slosh", "");
+  const std::string name = extras.text("fluid", volume.name);
+  volume.velocity = extras.vector("velocity_m_s", glm::dvec3(0.0), Range{-1e3, 1e3});
+  Fluid fluid;
+  fluid.name = name;
+  read_fluid_fields(extras, fluid);
+  const auto declared = reading.declared_fluids.find(name);
+  if (declared != reading.declared_fluids.end()) {
+    for (const char* key : {"density_kg_m3", "viscosity_pa_s", "color", "extinction_per_m"}) {
+      if (extras.has(key)) {
+        extras.fail(key, "is given here and, for fluid \"" + name + "\", in the scene's fluids",
+                    "Keep one of the two");
+      }
+    }
+    volume.fluid = declared->second;
+  } else {
+    // Nodes that name one fluid without the scene declaring it share it when they agree.
+    volume.fluid = -1;
+    for (std::size_t i = 0; i < scene.fluids.size(); ++i) {
+      const Fluid& other = scene.fluids[i];
+      if (other.name != name) continue;
+      volume.fluid = static_cast<int>(i);
+      if (other.rest_density != fluid.rest_density || other.dynamic_viscosity != fluid.dynamic_viscosity ||
+          other.color != fluid.color || other.extinction != fluid.extinction) {
+        extras.fail("fluid", "\"" + name + "\" has other properties on another node",
+                    "Give both nodes the same, or declare the fluid once in the scene's fluids");
+      }
+    }
+    if (volume.fluid < 0) {
+      volume.fluid = static_cast<int>(scene.fluids.size());
+      scene.fluids.push_back(fluid);
+    }
+  }
+  if (scene.fluids.size() > 250) extras.fail("fluid", "is one of more than 250 fluids", "Use fewer");
+  if (Problem problem = extras.error()) return problem;
+  if (Problem problem = read_node_mesh(reading, node, rest, true, volume.mesh)) return problem;
+  scene.fluid_volumes.push_back(std::move(volume));
+  return std::nullopt;
+}
+
+Problem read_picture(Reading& reading, int node) {
+  Picture picture;
+  picture.name = reading.document.name(node);
+  glm::dmat3 rest;
+  if (Problem problem = read_pose(reading, node, picture.pose, rest)) return problem;
+  // A node without the key is only looked at: its properties, if any, are somebody else's.
+  if (Problem problem = read_node_mesh(reading, node, rest, false, picture.mesh)) return problem;
+  picture.material = gltf::read_material(reading.document, reading.document.model.nodes[node].mesh);
+  reading.scene.pictures.push_back(std::move(picture));
+  return std::nullopt;
+}
+
+}  // namespace slosh::reading

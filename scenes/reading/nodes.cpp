@@ -1,0 +1,163 @@
+// What each node is, where it stands, and its mesh.
+#include <cmath>
+
+#include "scenes/gltf/meshes.h"
+#include "scenes/mesh/closed.h"
+#include "scenes/mesh/tree.h"
+#include "scenes/reading/reading.h"
+
+namespace slosh::reading {
+namespace {
+
+constexpr const char* kKinds[] = {"picture", "body", "fluid", "grip", "hand", "probe"};
+
+std::string point_text(const glm::dvec3& p) {
+  using gltf::short_number;
+  return "(" + short_number(p.x) + ", " + short_number(p.y) + ", " + short_number(p.z) + ") m";
+}
+
+std::string defects_text(const mesh::Defects& d) {
+  std::string text;
+  const auto add = [&](std::size_t count, const char* what) {
+    if (count > 0) text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + what;
+  };
+  add(d.open_edges, "boundary edges (holes)");
+  add(d.crowded_edges, "edges with more than two faces");
+  add(d.flipped_edges, "edges whose faces look opposite ways");
+  return text;
+}
+
+Problem check_parts(const mesh::WeldedMesh& welded, const mesh::Components& parts, const std::string& where) {
+  const char* const mend = "In Blender: Edit Mode, select all, Mesh > Normals > Recalculate Outside";
+  const mesh::VolumeIntegrals whole = mesh::integrate_volume(welded, parts);
+  if (!(whole.volume > 1e-12)) {
+    return Error{where,
+                 whole.volume < 0.0
+                     ? "its faces look inward (volume " + gltf::short_number(whole.volume) + " m³)"
+                     : "it encloses no volume",
+                 mend};
+  }
+  if (parts.count == 1) return std::nullopt;
+  // A part that faces inward is a cavity when it lies inside another part, and a mistake otherwise. Inside
+  // the cavity's own faces the whole winds to 0, so the test point is moved out to where the other part is.
+  for (int part = 0; part < parts.count; ++part) {
+    if (mesh::integrate_volume(welded, parts, part).volume > 0.0) continue;
+    TriangleMesh others;
+    others.positions.assign(welded.points.begin(), welded.points.end());
+    glm::dvec3 point(0.0);
+    for (std::size_t t = 0; t < welded.triangles.size(); ++t) {
+      if (parts.of_triangle[t] == part)
+        point = welded.points[welded.triangles[t].x];
+      else
+        others.triangles.push_back(welded.triangles[t]);
+    }
+    if (!mesh::MeshTree(others).inside(glm::vec3(point))) {
+      return Error{where, "the faces of the part at " + point_text(point) + " look inward", mend};
+    }
+  }
+  return std::nullopt;
+}
+
+Problem check_closed(const TriangleMesh& triangles, const std::string& where) {
+  const mesh::WeldedMesh welded = mesh::weld(triangles);
+  mesh::Components parts;
+  const mesh::Defects defects = mesh::find_defects(welded, &parts);
+  if (defects.any()) {
+    return Error{
+        where, "is not closed: " + defects_text(defects) + ", the first at " + point_text(defects.where),
+        "In Blender: Edit Mode, select all, Mesh > Merge > By Distance, Mesh > Clean Up > Fill Holes, "
+        "Mesh > Normals > Recalculate Outside"};
+  }
+  return check_parts(welded, parts, where);
+}
+
+}  // namespace
+
+Problem read_kinds(Reading& reading) {
+  const gltf::Document& document = reading.document;
+  reading.kinds.assign(document.model.nodes.size(), NodeKind::kNone);
+  std::map<std::string, int> names;
+  for (const int node : document.nodes) {
+    const bool has_mesh = document.model.nodes[node].mesh >= 0;
+    gltf::Extras extras(document.extras[node], document.owner(node));
+    if (!extras.has("slosh")) {
+      if (has_mesh) reading.kinds[node] = NodeKind::kPicture;
+      continue;
+    }
+    const std::string kind =
+        extras.choice("slosh", "", {kKinds[0], kKinds[1], kKinds[2], kKinds[3], kKinds[4], kKinds[5]});
+    constexpr NodeKind kOrder[] = {NodeKind::kPicture, NodeKind::kBody, NodeKind::kFluid,
+                                   NodeKind::kGrip,    NodeKind::kHand, NodeKind::kProbe};
+    for (int i = 0; i < 6; ++i) {
+      if (kind == kKinds[i]) reading.kinds[node] = kOrder[i];
+    }
+    if (reading.kinds[node] == NodeKind::kNone) return extras.error();
+    const bool needs_mesh = kind == "body" || kind == "fluid" || kind == "picture";
+    if (needs_mesh && !has_mesh) {
+      extras.fail("slosh", "is \"" + kind + "\", but the node has no mesh",
+                  "Put the property on the mesh object");
+      return extras.error();
+    }
+    const std::string name = document.name(node);
+    if (!names.emplace(name, node).second) {
+      return Error{document.owner(node), "another node has this name too", "Give every node its own name"};
+    }
+  }
+  for (const int node : document.nodes) {
+    const bool still = reading.kinds[node] == NodeKind::kBody || reading.kinds[node] == NodeKind::kFluid ||
+                       reading.kinds[node] == NodeKind::kGrip || reading.kinds[node] == NodeKind::kProbe;
+    if (!still) continue;
+    for (const tinygltf::Animation& animation : document.model.animations) {
+      for (const tinygltf::AnimationChannel& channel : animation.channels) {
+        if (channel.target_node != node) continue;
+        return Error{document.owner(node) + ": animation '" + animation.name + "'",
+                     "only a hand can be animated; bodies and fluids move by physics",
+                     "Animate an empty with slosh = \"hand\" and grip = \"<grip's name>\" instead"};
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+Problem read_pose(const Reading& reading, int node, Pose& pose, glm::dmat3& rest) {
+  const glm::dmat4& world = reading.document.world[node];
+  pose.position = glm::dvec3(world[3]);
+  if (gltf::split_rotation(glm::dmat3(world), pose.orientation, rest)) return std::nullopt;
+  return Error{reading.document.owner(node) + ": scale", "is zero along some axis, or far too large",
+               "Give it a scale other than 0"};
+}
+
+Problem read_node_mesh(Reading& reading, int node, const glm::dmat3& rest, bool closed, int& mesh) {
+  const gltf::Document& document = reading.document;
+  const int source = document.model.nodes[node].mesh;
+  std::vector<double> matrix;
+  for (int c = 0; c < 3; ++c) {
+    // Rounded: two poses of one mesh differ in the last digits of their rest.
+    for (int r = 0; r < 3; ++r) matrix.push_back(std::round(rest[c][r] * 1e9) * 1e-9 + 0.0);
+  }
+  const std::string where = document.owner(node);
+  const auto key = std::make_tuple(source, matrix);
+  auto found = reading.shared.find(key);
+  if (found == reading.shared.end()) {
+    Result<TriangleMesh> read = gltf::read_mesh(document, source, rest, where);
+    if (!read) return read.error();
+    reading.triangles += read.value().triangles.size();
+    if (reading.triangles > gltf::kMostTriangles) {
+      return Error{where, "the scene has more than " + std::to_string(gltf::kMostTriangles) + " triangles",
+                   "Reduce the meshes, in Blender with the Decimate modifier"};
+    }
+    reading.scene.meshes.push_back(std::move(read.value()));
+    found = reading.shared
+                .emplace(key, Reading::SharedMesh{static_cast<int>(reading.scene.meshes.size()) - 1, false})
+                .first;
+  }
+  mesh = found->second.mesh;
+  if (closed && !found->second.checked) {
+    const TriangleMesh& triangles = reading.scene.meshes[mesh];
+    if (Problem problem = check_closed(triangles, where + ": mesh '" + triangles.name + "'")) return problem;
+    found->second.checked = true;
+  }
+  return std::nullopt;
+}
+
+}  // namespace slosh::reading

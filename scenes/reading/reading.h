@@ -1,0 +1,72 @@
+// The stages of reading a scene; load.cpp calls them in order.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "scenes/gltf/document.h"
+#include "scenes/gltf/extras.h"
+#include "scenes/scene.h"
+
+namespace slosh::reading {
+
+using Problem = std::optional<Error>;
+
+/// What a node is, by its `slosh` property.
+enum class NodeKind { kNone, kPicture, kBody, kFluid, kGrip, kHand, kProbe };
+
+/// A scene under way.
+struct Reading {
+  const gltf::Document& document;
+  Scene scene;
+  std::vector<NodeKind> kinds;                 ///< by node
+  std::map<int, int> body_of_node;             ///< node → Scene::bodies
+  std::vector<int> devices;                    ///< one a grip: its `device`, −1 when not given
+  std::vector<int> grip_nodes;                 ///< one a grip
+  std::map<std::string, int> declared_fluids;  ///< name → Scene::fluids, from the scene's own extras
+  std::size_t triangles = 0;
+  /// glTF mesh and baked matrix → Scene::meshes and whether it was found to be closed.
+  struct SharedMesh {
+    int mesh;
+    bool checked;
+  };
+  std::map<std::tuple<int, std::vector<double>>, SharedMesh> shared;
+};
+
+/// Sets Reading::kinds. Errors: unknown `slosh`, a name used twice.
+Problem read_kinds(Reading& reading);
+
+/// Scene extras but the domain's defaults: spacing, gravity, fluids declared by name.
+Problem read_scene_fields(Reading& reading);
+
+Problem read_fluid_volume(Reading& reading, int node);
+Problem read_body(Reading& reading, int node);
+Problem read_probe(Reading& reading, int node);
+Problem read_picture(Reading& reading, int node);
+Problem read_grip(Reading& reading, int node);  ///< after all bodies
+Problem order_grips(Reading& reading);          ///< after all grips: by `device`, the others behind
+Problem read_hand(Reading& reading, int node);  ///< after all grips
+Problem read_camera(Reading& reading);          ///< after everything with a size
+Problem read_domain(Reading& reading);          ///< likewise
+
+/// Rigid pose of a node, and what the pose leaves of its transform.
+Problem read_pose(const Reading& reading, int node, Pose& pose, glm::dmat3& rest);
+
+/// The node's mesh as an index into Scene::meshes, shared between nodes that bake to the same triangles.
+/// With `closed`, an open, non-manifold or inward-facing mesh is an error that says how to mend it.
+Problem read_node_mesh(Reading& reading, int node, const glm::dmat3& rest, bool closed, int& mesh);
+
+/// Fields of a fluid, from a fluid node or from the scene's `fluids`.
+void read_fluid_fields(gltf::Extras& extras, Fluid& fluid);
+
+/// World bounds of fluid volumes and bodies.
+struct Bounds {
+  glm::dvec3 low{std::numeric_limits<double>::infinity()};
+  glm::dvec3 high{-std::numeric_limits<double>::infinity()};
+};
+Bounds bounds_of_scene(const Scene& scene);
+
+}  // namespace slosh::reading

@@ -1,0 +1,124 @@
+#include "scenes/sample.h"
+
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <map>
+
+#include "scenes/gltf/extras.h"
+#include "scenes/mesh/closed.h"
+#include "scenes/mesh/tree.h"
+#include "scenes/sampling/distance.h"
+#include "scenes/sampling/fill.h"
+#include "scenes/sampling/surface.h"
+#include "scenes/sampling/thickness.h"
+
+namespace slosh {
+namespace {
+
+using gltf::short_number;
+
+/// A wall counts as thick enough from this share of the spacing on: a round rod made of flat faces is a
+/// little thinner than its name.
+constexpr double kThinnest = 0.95;
+
+/// What one mesh gives every body that has it.
+struct SampledMesh {
+  SurfaceSamples surface;
+  DistanceField field;
+};
+
+Result<SampledMesh> sample_mesh(const Scene& scene, const Body& body, double spacing) {
+  const TriangleMesh& triangles = scene.meshes[body.mesh];
+  const mesh::MeshTree tree(triangles);
+  const double thickness = sampling::wall_thickness(triangles, tree);
+  if (thickness < kThinnest * spacing) {
+    return Error{scene.source_file + ": node '" + body.name + "'",
+                 "its walls are " + short_number(1000.0 * thickness) + " mm thick, the particles are " +
+                     short_number(1000.0 * spacing) + " mm apart: fluid on one side would feel the other",
+                 "Lower the scene's spacing_max_m (or the spacing asked for) to " +
+                     short_number(0.001 * std::floor(1e4 * thickness) * 0.1) + ", or thicken the wall"};
+  }
+  mesh::Components parts;
+  mesh::find_defects(mesh::weld(triangles), &parts);
+  return SampledMesh{sampling::sample_surface(triangles, tree, parts.count, spacing),
+                     sampling::make_distance_field(triangles, tree, spacing)};
+}
+
+SurfaceSamples sample_probe(double spacing) {
+  const auto volume = static_cast<float>(spacing * spacing * spacing);
+  return {{glm::vec3(0.0f)}, {glm::vec3(0.0f, 1.0f, 0.0f)}, volume};
+}
+
+Result<SampledScene> sample(const Scene& scene, double spacing) {
+  if (!(spacing >= 1e-5 && spacing <= 10.0)) {
+    return Error{scene.source_file + ": spacing", "is " + short_number(spacing) + " m",
+                 "Give 0.00001 to 10 m"};
+  }
+  SampledScene out;
+  out.spacing = spacing;
+  std::map<int, std::size_t> first_with_mesh;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const Body& body = scene.bodies[b];
+    if (body.point_probe) {
+      out.surfaces.push_back(sample_probe(spacing));
+      out.distance_fields.emplace_back();
+      continue;
+    }
+    const auto [known, is_new] = first_with_mesh.try_emplace(body.mesh, b);
+    if (is_new) {
+      Result<SampledMesh> sampled = sample_mesh(scene, body, spacing);
+      if (!sampled) return sampled.error();
+      out.surfaces.push_back(std::move(sampled.value().surface));
+      out.distance_fields.push_back(std::move(sampled.value().field));
+    } else {
+      out.surfaces.push_back(SurfaceSamples(out.surfaces[known->second]));
+      out.distance_fields.push_back(DistanceField(out.distance_fields[known->second]));
+    }
+  }
+  if (const auto problem = sampling::fill_fluids(scene, out)) return *problem;
+  return out;
+}
+
+}  // namespace
+
+Result<SampledScene> sample_scene(const Scene& scene, double spacing) {
+  try {
+    return sample(scene, spacing);
+  } catch (const std::exception& problem) {  // out of memory
+    return Error{scene.source_file, std::string("cannot be sampled: ") + problem.what(),
+                 "Choose a larger spacing"};
+  }
+}
+
+ParticleEstimate estimate_particles(const Scene& scene, double spacing) {
+  ParticleEstimate estimate;
+  for (const FluidVolume& volume : scene.fluid_volumes) {
+    const mesh::WeldedMesh welded = mesh::weld(scene.meshes[volume.mesh]);
+    mesh::Components parts;
+    mesh::find_defects(welded, &parts);
+    estimate.fluid += mesh::integrate_volume(welded, parts).volume / (spacing * spacing * spacing);
+  }
+  for (const Body& body : scene.bodies) {
+    estimate.surface +=
+        body.point_probe ? 1.0 : mesh::surface_area(scene.meshes[body.mesh]) / (spacing * spacing);
+  }
+  return estimate;
+}
+
+double thinnest_wall(const Scene& scene, std::size_t* body) {
+  double thinnest = std::numeric_limits<double>::infinity();
+  std::map<int, double> known;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    if (scene.bodies[b].point_probe) continue;
+    const TriangleMesh& triangles = scene.meshes[scene.bodies[b].mesh];
+    const auto [entry, is_new] = known.try_emplace(scene.bodies[b].mesh, 0.0);
+    if (is_new) entry->second = sampling::wall_thickness(triangles, mesh::MeshTree(triangles));
+    if (entry->second >= thinnest) continue;
+    thinnest = entry->second;
+    if (body) *body = b;
+  }
+  return thinnest;
+}
+
+}  // namespace slosh

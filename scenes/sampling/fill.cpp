@@ -1,0 +1,136 @@
+#include "scenes/sampling/fill.h"
+
+#include <cmath>
+
+#include "scenes/gltf/extras.h"
+#include "scenes/mesh/winding.h"
+#include "scenes/sampling/point_grid.h"
+
+namespace slosh::sampling {
+namespace {
+
+constexpr double kMostOverlap = 0.05;
+constexpr double kMostPoints = 3e7;
+// Lattice planes lie exactly half a spacing off a wall that the volume touches: a hair of slack for rounding.
+constexpr double kClear = 0.5 * 0.98;
+
+/// A body as an obstacle for a fluid.
+struct Obstacle {
+  DistanceFieldView field;
+  Pose to_body;    ///< world to mesh frame
+  glm::dvec3 low;  ///< world bounds, `clear` around it
+  glm::dvec3 high;
+  std::size_t body;
+  std::size_t overlaps = 0;  ///< lattice points inside it
+};
+
+std::vector<Obstacle> find_obstacles(const Scene& scene, const SampledScene& sampled, double clear) {
+  std::vector<Obstacle> out;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const Body& body = scene.bodies[b];
+    if (body.point_probe || sampled.distance_fields[b].size.x == 0) continue;
+    Obstacle o{sampled.distance_fields[b].view(),
+               inverse(body.pose),
+               glm::dvec3(INFINITY),
+               glm::dvec3(-INFINITY),
+               b,
+               0};
+    for (const glm::vec3& p : scene.meshes[body.mesh].positions) {
+      const glm::dvec3 w = transform_point(body.pose, glm::dvec3(p));
+      o.low = glm::min(o.low, w - clear);
+      o.high = glm::max(o.high, w + clear);
+    }
+    out.push_back(o);
+  }
+  return out;
+}
+
+mesh::Grid lattice(const TriangleMesh& mesh, double spacing) {
+  glm::dvec3 low(INFINITY);
+  glm::dvec3 high(-INFINITY);
+  for (const glm::vec3& p : mesh.positions) {
+    low = glm::min(low, glm::dvec3(p));
+    high = glm::max(high, glm::dvec3(p));
+  }
+  mesh::Grid grid;
+  grid.cell = spacing;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double extent = high[axis] - low[axis];
+    const double count = std::min(std::max(1.0, std::floor(extent / spacing + 1e-3)), 1e6);
+    grid.size[axis] = static_cast<int>(count);
+    const double slack = axis == 1 ? 0.0 : std::max(0.0, extent - count * spacing);
+    grid.origin[axis] = low[axis] + 0.5 * slack + 0.5 * std::min(spacing, extent);
+  }
+  return grid;
+}
+
+bool clear_of(std::vector<Obstacle>& obstacles, const glm::dvec3& point, double clear) {
+  bool is_clear = true;
+  for (Obstacle& o : obstacles) {
+    if (glm::any(glm::lessThan(point, o.low)) || glm::any(glm::greaterThan(point, o.high))) continue;
+    const float distance = sample_distance(o.field, glm::vec3(transform_point(o.to_body, point))).distance;
+    if (distance < 0.0f) ++o.overlaps;
+    if (distance < clear) is_clear = false;
+  }
+  return is_clear;
+}
+
+}  // namespace
+
+std::optional<Error> fill_fluids(const Scene& scene, SampledScene& sampled) {
+  using gltf::short_number;
+  const double spacing = sampled.spacing;
+  const double clear = kClear * spacing;
+  std::vector<Obstacle> obstacles = find_obstacles(scene, sampled, clear);
+  for (const FluidVolume& volume : scene.fluid_volumes) {
+    const std::string where = scene.source_file + ": node '" + volume.name + "'";
+    const TriangleMesh& mesh = scene.meshes[volume.mesh];
+    const mesh::Grid grid = lattice(mesh, spacing);
+    if (static_cast<double>(grid.size.x) * grid.size.y * grid.size.z > kMostPoints) {
+      return Error{where,
+                   "would take more than 30 million lattice points at a spacing of " +
+                       short_number(1000.0 * spacing) + " mm",
+                   "Choose a larger spacing (the scene's spacing_min_m)"};
+    }
+    const std::vector<std::int8_t> winding = mesh::winding_numbers(mesh, grid);
+    const PointGrid earlier(sampled.fluid_positions, static_cast<float>(0.9 * spacing));
+    for (Obstacle& o : obstacles) o.overlaps = 0;
+    std::size_t inside = 0;
+    std::vector<glm::vec3> kept;
+    std::size_t index = 0;
+    for (int k = 0; k < grid.size.z; ++k) {
+      for (int j = 0; j < grid.size.y; ++j) {
+        for (int i = 0; i < grid.size.x; ++i, ++index) {
+          if (winding[index] <= 0) continue;
+          ++inside;
+          const glm::dvec3 point =
+              transform_point(volume.pose, grid.origin + grid.cell * glm::dvec3(i, j, k));
+          if (!clear_of(obstacles, point, clear)) continue;
+          bool taken = false;
+          earlier.each_near(glm::vec3(point), [&](std::uint32_t other) {
+            taken = taken || glm::distance(sampled.fluid_positions[other], glm::vec3(point)) < 0.9 * spacing;
+          });
+          if (!taken) kept.emplace_back(point);
+        }
+      }
+    }
+    for (const Obstacle& o : obstacles) {
+      if (static_cast<double>(o.overlaps) <= kMostOverlap * static_cast<double>(inside)) continue;
+      return Error{where,
+                   "overlaps the body '" + scene.bodies[o.body].name + "': " +
+                       short_number(100.0 * static_cast<double>(o.overlaps) / static_cast<double>(inside)) +
+                       " % of the fluid starts inside it",
+                   "Make the fluid's mesh smaller, so that it ends at the wall's surface"};
+    }
+    if (kept.empty()) {
+      return Error{where, "holds no particle at a spacing of " + short_number(1000.0 * spacing) + " mm",
+                   "Make the fluid's mesh larger, or the scene's spacing_max_m smaller"};
+    }
+    sampled.fluid_positions.insert(sampled.fluid_positions.end(), kept.begin(), kept.end());
+    sampled.fluid_velocities.resize(sampled.fluid_positions.size(), glm::vec3(volume.velocity));
+    sampled.fluid_index.resize(sampled.fluid_positions.size(), static_cast<std::uint8_t>(volume.fluid));
+  }
+  return std::nullopt;
+}
+
+}  // namespace slosh::sampling
