@@ -64,6 +64,7 @@ struct Renderer::Parts {
   std::optional<DisplayPass> display_pass;
   std::unique_ptr<HudPass> hud_pass;
   bool drew_fluid = false;  ///< in the last frame
+  bool fast = false;        ///< Quality, resolved
   bool timing = false;
   std::vector<PassTime> times;
 
@@ -89,16 +90,29 @@ struct Renderer::Parts {
 };
 
 Result<bool> Renderer::Parts::fit_to_options() {
+  const bool want_fast =
+      options.quality == Quality::kAuto ? context.is_software() : options.quality == Quality::kFast;
+  if (!scene_pass || want_fast != fast) {
+    auto scene = ScenePass::create(want_fast);
+    if (!scene) return scene.error();
+    auto fluid = FluidPasses::create(want_fast);
+    if (!fluid) return fluid.error();
+    scene_pass = std::move(scene.value());
+    fluid_passes = std::move(fluid.value());
+    drew_fluid = false;
+    fast = want_fast;
+  }
   const glm::ivec2 size(options.width, options.height);
   const glm::ivec2 back = options.half_resolution_back ? (size + 1) / 2 : size;
   if (targets.size != size || targets.back_size != back) {
     targets = make_targets(size, options.half_resolution_back);
     drew_fluid = false;
   }
-  if (options.shadow_size == 0) {
+  const int shadow_size = fast ? (options.shadow_size + 1) / 2 : options.shadow_size;
+  if (shadow_size == 0) {
     shadow_pass.reset();
-  } else if (!shadow_pass || shadow_pass->size() != options.shadow_size) {
-    auto pass = ShadowPass::create(options.shadow_size);
+  } else if (!shadow_pass || shadow_pass->size() != shadow_size) {
+    auto pass = ShadowPass::create(shadow_size);
     if (!pass) return pass.error();
     shadow_pass = std::move(pass.value());
   }
@@ -124,16 +138,10 @@ Renderer::~Renderer() = default;
 Result<std::unique_ptr<Renderer>> Renderer::create(Context& context, const RenderOptions& options) {
   if (auto wrong = check(options)) return *wrong;
   auto parts = std::make_unique<Parts>(context, options);
-  auto scene = ScenePass::create();
-  if (!scene) return scene.error();
-  auto fluid = FluidPasses::create();
-  if (!fluid) return fluid.error();
   auto arrows = ArrowPass::create();
   if (!arrows) return arrows.error();
   auto hud = HudPass::create(context);
   if (!hud) return hud.error();
-  parts->scene_pass = std::move(scene.value());
-  parts->fluid_passes = std::move(fluid.value());
   parts->arrow_pass = std::move(arrows.value());
   parts->hud_pass = std::move(hud.value());
   if (auto fitted = parts->fit_to_options(); !fitted) return fitted.error();
@@ -156,6 +164,7 @@ void Renderer::draw(const Frame& frame) {
 
   p.run("prepare splats", [&] {
     prepare_splats(frame, p.options, p.splats);
+    if (p.fast) leave_out_hidden(frame, p.options, p.splats);
     p.drew_fluid = !p.splats.empty();
     if (p.drew_fluid) p.fluid_passes->upload(p.splats);
   });
@@ -165,14 +174,16 @@ void Renderer::draw(const Frame& frame) {
     p.run("bilateral filter", [&] { p.fluid_passes->smooth(p.targets, p.options); });
   }
 
-  p.run("opaque meshes", [&] { p.scene_pass->draw_opaque(frame, p.meshes, p.targets, p.options); });
-  if (p.options.ambient_occlusion) {
+  const bool occlusion = p.options.ambient_occlusion && !p.fast;
+  p.run("opaque meshes",
+        [&] { p.scene_pass->draw_opaque(frame, p.meshes, p.targets, p.options.draw_background, occlusion); });
+  if (occlusion) {
     p.run("occlusion", [&] { p.scene_pass->draw_occlusion(p.targets, kOcclusionReach); });
     p.run("resolve", [&] { p.scene_pass->resolve_occlusion(p.targets); });
   }
   const bool translucent = has_translucent(frame);
   if (p.drew_fluid) {
-    if (translucent) {
+    if (translucent && !p.fast) {
       p.run("translucent behind",
             [&] { p.scene_pass->draw_translucent(frame, p.meshes, p.targets, p.fluid_depth(), true); });
     }

@@ -22,22 +22,31 @@ enum class Display : std::uint8_t {
   kSrgb,  ///< clip to 0–1 and encode as sRGB: a colour below 1 stays what it is
 };
 
+/// How much is spent on looks where the paper leaves it open.
+enum class Quality : std::uint8_t {
+  kAuto,  ///< kFast where a CPU draws (llvmpipe), else kFull
+  kFast,  ///< one shadow tap, shadow map of half the size, no occlusion, no glass seen through the fluid
+  kFull,
+};
+
 struct RenderOptions {
   int width = 960;  ///< pixels of the picture, 1–16384
   int height = 540;
 
   int bilateral_iterations = 4;  ///< of section 5.1's filter, 0–64
   bool wide_filter = true;       ///< beyond the paper: taps spread with the splat's size on screen (README)
-  float bilateral_range = 2.0f;  ///< standard deviation of the filter's depth weight, particle radii, > 0
-  float splat_scale = 1.2f;      ///< splat radius over particle radius (5.1), > 0
+  float bilateral_range =
+      6.0f;                  ///< difference in depth at which the filter's weight is 0, particle radii, > 0
+  float splat_scale = 1.2f;  ///< splat radius over particle radius (5.1), > 0
   bool half_resolution_back = true;  ///< back depth at half the picture's size (5.1)
 
   bool fresnel = true;    ///< beyond the paper: Schlick reflection of the surroundings, F0 0.02
   bool lit_fluid = true;  ///< beyond the paper: F_c of Eq 15 is lit by the light and the sky
 
   int shadow_size = 1024;         ///< texels a side of the light's shadow map, 0 = no shadows, up to 8192
-  bool ambient_occlusion = true;  ///< darken creases of the meshes
+  bool ambient_occlusion = true;  ///< darken creases of the meshes (kFull)
   bool draw_background = true;    ///< false: black behind everything
+  Quality quality = Quality::kAuto;
   Display display = Display::kAces;
   float exposure = 1.0f;  ///< factor on scene-linear light before the display transform, > 0
 };

@@ -18,7 +18,7 @@ Result<DisplayPass> DisplayPass::create(Display display) {
   GLuint name = 0;
   glCreateTextures(GL_TEXTURE_3D, 1, &name);
   pass.table_ = gl::Texture(name);
-  glTextureStorage3D(name, 1, GL_RGBA16F, n, n, n);
+  glTextureStorage3D(name, 1, GL_RGBA8, n, n, n);
   glTextureSubImage3D(name, 0, 0, 0, 0, n, n, n, GL_RGB, GL_FLOAT, table.value().data());
   glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
   glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_LINEAR);

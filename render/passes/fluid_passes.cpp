@@ -19,12 +19,12 @@ void draw_into(const gl::Framebuffer& target, glm::ivec2 size) {
 /// that later ones take away the pattern that far taps leave. README.md has the measurement.
 float spread_of(int i, int count) {
   const float rest = static_cast<float>(count - i) / static_cast<float>(count);
-  return 0.55f * rest;
+  return 1.0f * rest;
 }
 
 }  // namespace
 
-Result<FluidPasses> FluidPasses::create() {
+Result<FluidPasses> FluidPasses::create(bool fast) {
   FluidPasses passes;
   const auto load = [](gl::Program& into, const char* vertex, const char* fragment,
                        std::vector<std::string> defines = {}) -> Result<bool> {
@@ -36,7 +36,8 @@ Result<FluidPasses> FluidPasses::create() {
   for (const Result<bool>& loaded : {load(passes.front_program_, "splat.vert", "splat.frag", {"FRONT"}),
                                      load(passes.back_program_, "splat.vert", "splat.frag"),
                                      load(passes.smooth_program_, "tiles.vert", "smooth.frag"),
-                                     load(passes.composite_program_, "tiles.vert", "composite.frag"),
+                                     load(passes.composite_program_, "tiles.vert", "composite.frag",
+                                          std::vector<std::string>(fast ? 1 : 0, "FAST")),
                                      load(passes.thickness_program_, "tiles.vert", "thickness.frag")}) {
     if (!loaded) return loaded.error();
   }
@@ -52,8 +53,9 @@ void FluidPasses::upload(const Splats& splats) {
   sphere_buffer_.upload(std::span<const glm::vec4>(splats.spheres));
   tile_buffer_.upload(std::span<const glm::vec2>(splats.tiles));
   glVertexArrayVertexBuffer(tile_vertices_.name(), 0, tile_buffer_.name(), 0, sizeof(glm::vec2));
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, sphere_buffer_.name());
-  splat_count_ = static_cast<GLsizei>(splats.spheres.size());
+  front_count_ = static_cast<GLsizei>(splats.spheres.size());
+  back_buffer_.upload(std::span<const glm::vec4>(splats.back));
+  back_count_ = static_cast<GLsizei>(splats.back.size());
   tile_corners_ = static_cast<GLsizei>(splats.tiles.size());
 }
 
@@ -63,8 +65,9 @@ void FluidPasses::splat_front(const Targets& targets) {
   glEnable(GL_BLEND);
   glBlendEquation(GL_MIN);
   front_program_.use();
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, sphere_buffer_.name());
   glBindVertexArray(no_vertices_.name());
-  glDrawArrays(GL_TRIANGLES, 0, 3 * splat_count_);
+  glDrawArrays(GL_TRIANGLES, 0, 3 * front_count_);
   glBlendEquation(GL_FUNC_ADD);
   glDisable(GL_BLEND);
 }
@@ -75,8 +78,10 @@ void FluidPasses::splat_back(const Targets& targets) {
   glEnable(GL_BLEND);
   glBlendEquation(GL_MAX);
   back_program_.use();
+  const bool own = back_count_ > 0;
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, own ? back_buffer_.name() : sphere_buffer_.name());
   glBindVertexArray(no_vertices_.name());
-  glDrawArrays(GL_TRIANGLES, 0, 3 * splat_count_);
+  glDrawArrays(GL_TRIANGLES, 0, 3 * (own ? back_count_ : front_count_));
   glBlendEquation(GL_FUNC_ADD);
   glDisable(GL_BLEND);
 }

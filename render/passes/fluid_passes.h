@@ -10,7 +10,7 @@ namespace slosh {
 
 class FluidPasses {
  public:
-  static Result<FluidPasses> create();
+  static Result<FluidPasses> create(bool fast);
 
   /// Uploads this frame's splats and tiles.
   void upload(const Splats& splats);
@@ -36,10 +36,12 @@ class FluidPasses {
   gl::Program composite_program_;
   gl::Program thickness_program_;
   gl::StreamBuffer sphere_buffer_;
+  gl::StreamBuffer back_buffer_;
   gl::StreamBuffer tile_buffer_;
   gl::VertexArray no_vertices_;
   gl::VertexArray tile_vertices_;
-  GLsizei splat_count_ = 0;
+  GLsizei front_count_ = 0;
+  GLsizei back_count_ = 0;
   GLsizei tile_corners_ = 0;
   int smoothed_ = -1;  ///< index into Targets::smooth, −1 = front
 };

@@ -12,10 +12,10 @@ namespace slosh {
 
 /// The studio that every scene stands in. Scene-linear Rec.709.
 struct Studio {
-  glm::vec3 key_light{3.1f, 2.95f, 2.75f};  ///< irradiance of the light on a surface that faces it
-  glm::vec3 sky{0.55f, 0.60f, 0.68f};       ///< radiance from straight above
-  glm::vec3 horizon{0.78f, 0.80f, 0.83f};   ///< from the side
-  glm::vec3 ground{0.20f, 0.205f, 0.22f};   ///< from below
+  glm::vec3 key_light{3.6f, 3.4f, 3.15f};   ///< irradiance of the light on a surface that faces it
+  glm::vec3 sky{0.36f, 0.41f, 0.48f};       ///< radiance from straight above
+  glm::vec3 horizon{0.56f, 0.58f, 0.61f};   ///< from the side
+  glm::vec3 ground{0.12f, 0.125f, 0.135f};  ///< from below
   glm::vec3 softbox{4.0f, 3.9f, 3.7f};      ///< radiance of the light as a mirror shows it
 };
 

@@ -23,8 +23,9 @@ bool has_translucent(const Frame& frame) {
   return std::ranges::any_of(frame.meshes, [](const MeshInstance& m) { return m.look.opacity < 1.0f; });
 }
 
-Result<ScenePass> ScenePass::create() {
+Result<ScenePass> ScenePass::create(bool fast) {
   ScenePass pass;
+  const std::vector<std::string> quality(fast ? 1 : 0, "FAST");
   const auto load = [](gl::Program& into, const char* vertex, const char* fragment,
                        std::vector<std::string> defines = {}) -> Result<bool> {
     auto program = gl::Program::create(vertex, fragment, std::move(defines));
@@ -33,7 +34,7 @@ Result<ScenePass> ScenePass::create() {
     return true;
   };
   for (const Result<bool>& loaded :
-       {load(pass.opaque_, "mesh.vert", "mesh.frag"),
+       {load(pass.opaque_, "mesh.vert", "mesh.frag", quality),
         load(pass.background_, "fullscreen.vert", "background.frag"),
         load(pass.occlusion_, "fullscreen.vert", "occlusion.frag", {"TAPS 8"}),
         load(pass.resolve_, "fullscreen.vert", "resolve.frag"),
@@ -46,12 +47,12 @@ Result<ScenePass> ScenePass::create() {
 }
 
 void ScenePass::draw_opaque(const Frame& frame, const MeshStore& meshes, const Targets& targets,
-                            const RenderOptions& options) {
-  const gl::Framebuffer& target = options.ambient_occlusion ? targets.mesh_target : targets.plain_mesh_target;
+                            bool background, bool occlusion_follows) {
+  const gl::Framebuffer& target = occlusion_follows ? targets.mesh_target : targets.plain_mesh_target;
   const glm::vec4 black(0.0f);
   const glm::vec4 nothing(kNoFluidDepth);
   const float farthest = 1.0f;
-  if (!options.draw_background) glClearNamedFramebufferfv(target.name(), GL_COLOR, 0, &black.x);
+  if (!background) glClearNamedFramebufferfv(target.name(), GL_COLOR, 0, &black.x);
   glClearNamedFramebufferfv(target.name(), GL_COLOR, 1, &nothing.x);
   glClearNamedFramebufferfv(target.name(), GL_DEPTH, 0, &farthest);
   glBindFramebuffer(GL_FRAMEBUFFER, target.name());
@@ -64,7 +65,7 @@ void ScenePass::draw_opaque(const Frame& frame, const MeshStore& meshes, const T
     set_look(opaque_, instance);
     meshes.draw(instance.mesh);
   }
-  if (options.draw_background) {
+  if (background) {
     // The triangle lies on the far plane: it fills what the meshes left. It writes no depth.
     glColorMaski(1, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     glDepthMask(GL_FALSE);

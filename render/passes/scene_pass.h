@@ -11,12 +11,12 @@ namespace slosh {
 
 class ScenePass {
  public:
-  static Result<ScenePass> create();
+  static Result<ScenePass> create(bool fast);
 
   /// Reads opaque meshes and the shadow map; writes S_d, the depth buffer and the colour (mesh_color if
   /// occlusion follows, else color).
-  void draw_opaque(const Frame& frame, const MeshStore& meshes, const Targets& targets,
-                   const RenderOptions& options);
+  void draw_opaque(const Frame& frame, const MeshStore& meshes, const Targets& targets, bool background,
+                   bool occlusion_follows);
   /// Reads S_d and mesh_color; writes occlusion, then color.
   void draw_occlusion(const Targets& targets, float reach);
   void resolve_occlusion(const Targets& targets);

@@ -55,6 +55,7 @@ class TileGrid {
 
 void prepare_splats(const Frame& frame, const RenderOptions& options, Splats& out) {
   out.spheres.clear();
+  out.back.clear();
   out.tiles.clear();
   const std::size_t count = std::min(frame.particles.size(), frame.particle_fluid.size());
   const std::size_t fluids = std::min(frame.fluids.size(), kMaxFluidLooks);

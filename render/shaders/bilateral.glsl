@@ -21,11 +21,13 @@ SHARED vec2 bilateral_offset(int k) {
   return (k == 0 || k == 2) ? a : vec2(-a.y, a.x);
 }
 
-// Weight of an outer sample: 4 if its depth is S_i's, falling with the difference; 0 unless all of it is fluid.
-// inverse_range: 1/m, one over the standard deviation of depth that still counts as the same surface.
+// Weight of an outer sample: 4 if its depth is S_i's, falling with the difference to 0 at the range (a biweight, the
+// paper names no function). A sample that is not all fluid is far outside the range, so it weighs 0.
+// inverse_range: 1/m, one over the difference in depth that no longer counts as the same surface.
 SHARED float bilateral_weight(float outer, float inner, float inverse_range) {
-  float difference = (outer - inner) * inverse_range;
-  return outer < kFluidDepthLimit ? kOuterWeight * exp(-0.5f * difference * difference) : 0.0f;
+  float x = (outer - inner) * inverse_range;
+  float near = max(1.0f - x * x, 0.0f);
+  return kOuterWeight * near * near;
 }
 
 // The filtered depth of one pixel that is fluid. outer: S_o of the four blocks.

@@ -1,6 +1,7 @@
 // A glass: what lies behind (BEHIND) or in front of the fluid's surface, blended (premultiplied alpha).
-#include "surface.glsl"
-#include "shadow.glsl"
+#include "environment.glsl"
+#include "shared.glsl"
+#include "optics.glsl"
 #include "bilateral.glsl"
 layout(binding = 0) uniform sampler2D fluid_depth;
 in vec3 world;
@@ -20,7 +21,10 @@ void main() {
   vec3 to_eye = normalize(camera.xyz - world);
   vec3 n = normalize(world_normal);
   if (dot(n, to_eye) < 0.0) n = -n;
-  Lit lit = light_surface(n, to_eye, base.rgb, roughness.x, roughness.y, vec3(light_reaching(world, n)));
-  float opacity = base.a + (1.0 - base.a) * schlick(0.0, dot(n, to_eye));
-  color = vec4(lit.diffuse * base.a + lit.specular, opacity);
+  // No shadow and no glint of its own: the mirrored softbox is the glint.
+  vec3 key = key_light.rgb * (0.31830989 * max(dot(n, to_light_world.xyz), 0.0));
+  float mirroring = schlick(0.04, dot(n, to_eye));
+  float opacity = base.a + (1.0 - base.a) * mirroring;
+  vec3 mirror = mirrored(reflect(-to_eye, n)) * (1.0 - roughness.y);
+  color = vec4(base.rgb * (key + ambient_light(n)) * base.a + mirror * mirroring, opacity);
 }

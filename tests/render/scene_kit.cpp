@@ -164,6 +164,9 @@ DamBreak::DamBreak(Renderer& renderer, int wanted, int width, int height) {
   // Volume under the surface, roughly, shared among the particles.
   const float spacing = std::cbrt(0.0145f * 1.05f / static_cast<float>(wanted));
   particles = make_fluid(low + 0.5f * spacing, high - 0.5f * spacing, spacing, surface);
+  const glm::vec3 ball(0.10f, 0.058f, 0.02f);
+  std::erase_if(particles,
+                [&](const glm::vec3& p) { return glm::distance(p, ball) < 0.045f + 0.5f * spacing; });
   fluids.assign(particles.size(), 0);
 
   const auto add = [&](const Shape& shape, const MeshLook& look, const glm::vec3& at) {
@@ -172,9 +175,9 @@ DamBreak::DamBreak(Renderer& renderer, int wanted, int width, int height) {
   };
   add(make_box({-0.9f, -0.05f, -0.6f}, {0.9f, -0.006f, 0.6f}), {{0.42f, 0.30f, 0.20f}, 0.0f, 0.55f, 1.0f},
       {});
-  add(make_sphere(0.045f), {{0.75f, 0.10f, 0.06f}, 0.0f, 0.3f, 1.0f}, {0.10f, 0.058f, 0.02f});
+  add(make_sphere(0.045f), {{0.75f, 0.10f, 0.06f}, 0.0f, 0.3f, 1.0f}, ball);
   add(make_sphere(0.03f), {{0.85f, 0.85f, 0.82f}, 1.0f, 0.25f, 1.0f}, {0.36f, 0.024f, 0.10f});
-  add(make_tank(low, high, 0.004f), {{0.85f, 0.95f, 0.95f}, 0.0f, 0.05f, 0.05f}, {});
+  add(make_tank(low, high, 0.004f), {{0.85f, 0.95f, 0.95f}, 0.0f, 0.05f, 0.02f}, {});
 
   frame.view = make_view({0.28f, 0.42f, 0.78f}, {0.0f, 0.07f, 0.0f}, width, height);
   frame.particles = particles;
