@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "net/channel.h"
+#include "net/clock.h"
 #include "net/engagement.h"
 #include "scenes/scene.h"
 #include "sim/math/coupling.h"

@@ -1,0 +1,152 @@
+#include "peer/hud/hud.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "peer/palette.h"
+
+namespace slosh {
+namespace {
+
+constexpr double kChartSeconds = 5.0;
+constexpr float kPanelWidth = 186.0f;  // px: leaves 640 × 480 mostly to the picture
+constexpr float kChartHeight = 34.0f;
+constexpr float kMargin = 8.0f;
+
+constexpr ImGuiWindowFlags kPanel = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
+                                    ImGuiWindowFlags_NoNav | ImGuiWindowFlags_AlwaysAutoResize;
+
+/// Brighter than on paper: the panel is dark.
+ImVec4 bright(const DeviceColor& color) {
+  const glm::vec3 c = glm::mix(color.srgb, glm::vec3(1.0f), 0.35f);
+  return {c.r, c.g, c.b, 1.0f};
+}
+
+void labelled(const char* label, const char* value) {
+  ImGui::TextColored(ImVec4(0.72f, 0.76f, 0.80f, 1.0f), "%s", label);
+  ImGui::SameLine(66.0f);
+  ImGui::TextUnformatted(value);
+}
+
+template <class... Numbers>
+void labelled(const char* label, const char* pattern, Numbers... numbers) {
+  char text[96];
+  std::snprintf(text, sizeof text, pattern, numbers...);
+  labelled(label, static_cast<const char*>(text));
+}
+
+}  // namespace
+
+Hud::Hud(const Scene& scene, HudFacts facts) : facts_(std::move(facts)) {
+  const auto samples = static_cast<std::size_t>(std::max(2.0, kChartSeconds * facts_.picture_rate));
+  for (const Grip& grip : scene.grips) {
+    Chart chart;
+    chart.grip = grip.name;
+    chart.force.assign(samples, 0.0f);
+    chart.torque.assign(samples, 0.0f);
+    charts_.push_back(std::move(chart));
+  }
+}
+
+void Hud::record(const Snapshot& snapshot) {
+  time_ = snapshot.rigid.time;
+  status_ = snapshot.rigid.status;
+  for (std::size_t i = 0; i < charts_.size() && i < snapshot.rigid.grips.size(); ++i) {
+    Chart& chart = charts_[i];
+    chart.now = snapshot.rigid.grips[i].on_hand;
+    const auto force = static_cast<float>(glm::length(chart.now.force));
+    chart.force[next_ % chart.force.size()] = force;
+    chart.torque[next_ % chart.torque.size()] = static_cast<float>(glm::length(chart.now.torque));
+    chart.top_force = std::max(chart.top_force, force);
+  }
+  next_ += 1;
+}
+
+void Hud::draw_run(const Rates& rates) const {
+  ImGui::TextUnformatted(facts_.title.c_str());
+  ImGui::Separator();
+  labelled("time", "%.2f s%s", time_, paused ? "  paused" : "");
+  if (rates.real_time > 0.0) {
+    labelled("real time", "\xC3\x97 %.2f", rates.real_time);
+    labelled("steps", "%.0f Hz  %.2f ms", rates.step_rate, rates.step_ms);
+  }
+  if (rates.device_rate > 0.0) labelled("devices", "%.0f Hz", rates.device_rate);
+  labelled("fluid", "%zu", facts_.fluid_particles);
+  labelled("bodies", "%zu", facts_.boundary_particles);
+  labelled("spacing", "%.1f mm", 1e3 * facts_.spacing);
+  const std::string status = status_text(status_);
+  if (!status.empty()) {
+    ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 0.78f, 0.35f, 1.0f));
+    ImGui::PushTextWrapPos(kPanelWidth);
+    ImGui::TextUnformatted(status.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::PopStyleColor();
+  }
+}
+
+void Hud::draw_chart(std::size_t device) const {
+  const Chart& chart = charts_[device];
+  ImGui::PushID(static_cast<int>(device));
+  ImGui::PushStyleColor(ImGuiCol_PlotLines, bright(device_color(device)));
+  ImGui::PushStyleColor(ImGuiCol_FrameBg, ImVec4(1.0f, 1.0f, 1.0f, 0.06f));
+  ImGui::TextColored(bright(device_color(device)), "%s", chart.grip.c_str());
+  ImGui::Text("%6.2f N  %6.3f Nm", glm::length(chart.now.force), glm::length(chart.now.torque));
+  ImGui::PlotLines("##force", chart.force.data(), static_cast<int>(chart.force.size()),
+                   static_cast<int>(next_ % chart.force.size()), nullptr, 0.0f, 1.05f * chart.top_force,
+                   ImVec2(kPanelWidth, kChartHeight));
+  ImGui::PopStyleColor(2);
+  ImGui::PopID();
+}
+
+void Hud::draw_help() const {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos(ImVec2(0.5f * size.x, 0.5f * size.y), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
+  ImGui::SetNextWindowBgAlpha(0.8f);
+  if (ImGui::Begin("help", nullptr, kPanel)) {
+    if (mouse_hand) {
+      ImGui::TextUnformatted("move        the handle in the picture's plane\n"
+                             "wheel       the handle nearer and farther\n"
+                             "right drag  turn the handle\n"
+                             "left drag   turn the camera");
+    } else {
+      ImGui::TextUnformatted("left drag   turn the camera\n"
+                             "right drag  shift the camera\n"
+                             "wheel       nearer and farther");
+    }
+    ImGui::TextUnformatted("\nSpace       pause, go on\n"
+                           "R           start again\n"
+                           "C           the camera back to where it was\n"
+                           "H           this help\n"
+                           "Esc, Q      end");
+  }
+  ImGui::End();
+}
+
+void Hud::draw(const Rates& rates) {
+  ImGui::SetNextWindowPos(ImVec2(kMargin, kMargin));
+  ImGui::SetNextWindowBgAlpha(0.55f);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 4.0f);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0f);
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(6.0f, 2.0f));
+  if (ImGui::Begin("run", nullptr, kPanel)) {
+    draw_run(rates);
+    ImGui::Dummy(ImVec2(kPanelWidth, 1.0f));
+  }
+  ImGui::End();
+  if (!charts_.empty()) {
+    const float bottom = ImGui::GetIO().DisplaySize.y - kMargin;
+    ImGui::SetNextWindowPos(ImVec2(kMargin, bottom), ImGuiCond_Always, ImVec2(0.0f, 1.0f));
+    ImGui::SetNextWindowBgAlpha(0.55f);
+    if (ImGui::Begin("forces", nullptr, kPanel)) {
+      for (std::size_t i = 0; i < charts_.size(); ++i) draw_chart(i);
+    }
+    ImGui::End();
+  }
+  if (show_help) draw_help();
+  ImGui::PopStyleVar(3);
+}
+
+}  // namespace slosh

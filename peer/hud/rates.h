@@ -1,0 +1,38 @@
+// How fast things ran when the world stood at a given time: pictures are drawn later than they were taken.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <mutex>
+
+namespace slosh {
+
+struct Rates {
+  double time = 0.0;         ///< simulated s
+  double real_time = 0.0;    ///< simulated s a wall s
+  double step_rate = 0.0;    ///< Hz
+  double step_ms = 0.0;
+  double device_rate = 0.0;  ///< Hz
+};
+
+/// Written by the thread that watches the run, read by the one that draws. Neither is the device loop.
+class RateLog {
+ public:
+  void add(const Rates& rates) {
+    const std::lock_guard lock(mutex_);
+    log_.push_back(rates);
+  }
+  /// The last entry at or before `time`, else the first; zeros when there is none. Entries before it are
+  /// forgotten: ask with rising times.
+  Rates at(double time) {
+    const std::lock_guard lock(mutex_);
+    while (log_.size() > 1 && log_[1].time <= time) log_.pop_front();
+    return log_.empty() ? Rates{} : log_.front();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::deque<Rates> log_;
+};
+
+}  // namespace slosh

@@ -1,0 +1,46 @@
+// The program `slosh`: reads the command line and runs one verb.
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+
+#include "peer/verbs/verbs.h"
+
+namespace slosh {
+namespace {
+
+int run(int argc, char** argv) {
+  CLI::App app("Touch simulated fluids together.", "slosh");
+  app.set_version_flag("--version", "slosh " SLOSH_VERSION);
+  app.require_subcommand(1);
+  app.get_formatter()->column_width(34);
+  VerbRun chosen;
+  add_play(app, chosen);
+  add_scenes(app, chosen);
+  add_check(app, chosen);
+  add_plan(app, chosen);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    std::string verb;
+    for (const CLI::App* sub : app.get_subcommands()) verb = sub->get_name() + " ";
+    std::fprintf(stderr, "slosh: %s. See `slosh %s--help`.\n", error.what(), verb.c_str());
+    return kExitUsage;
+  }
+  return chosen();
+}
+
+}  // namespace
+}  // namespace slosh
+
+int main(int argc, char** argv) {
+  // A child (ffmpeg) that dies must be an error to report, not the end of this program.
+  std::signal(SIGPIPE, SIG_IGN);
+  try {
+    return slosh::run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "slosh: %s\n", error.what());
+    return slosh::kExitFailed;
+  }
+}

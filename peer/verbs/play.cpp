@@ -1,0 +1,87 @@
+// The verb `play`: its options, and the choice between a window and a film.
+#include <cstdio>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+
+#include "peer/verbs/interrupt.h"
+#include "peer/verbs/play_modes.h"
+#include "peer/verbs/verbs.h"
+#include "render/context.h"
+
+namespace slosh {
+namespace {
+
+constexpr const char* kFooter =
+    "Without a display, or with --headless, the run becomes a film. DIR gets\n"
+    "  wrenches.csv   time_s,device,fx_n,fy_n,fz_n,tx_nm,ty_nm,tz_nm: simulated time, device from 0, and the\n"
+    "                 wrench on the hand (what is felt: a held weight is negative fy), torque about the\n"
+    "                 handle, world axes, y up\n"
+    "  poses.csv      where the handles were; --device replay:FILE plays it again\n"
+    "  wrenches.png   force above, torque below, one colour a device\n"
+    "  view.mp4, final.png, summary.json\n"
+    "\n"
+    "In the window: left drag turns the camera, the wheel zooms, Space pauses, R starts again, H helps,\n"
+    "Esc ends. Ctrl-C ends a run in order, with everything written (exit code 130).\n"
+    "\n"
+    "Examples:\n"
+    "  slosh play\n"
+    "  slosh play pour --seconds 5 --out out/pour --headless\n"
+    "  slosh play bucket --device script --device mouse\n"
+    "  slosh play my_scene.glb --spacing 0.008 --threads 4\n"
+    "  slosh play bucket --headless --device replay:out/bucket/poses.csv";
+
+int play(const PlayOptions& options) {
+  catch_interrupts();
+  Progress progress;
+  bool headless = options.headless || !options.render;
+  if (!headless && !display_available()) {
+    progress.note("slosh: no display here, so the run becomes a film (--headless)");
+    headless = true;
+  }
+  Result<Prepared> prepared = prepare(options, headless, progress);
+  if (!prepared) {
+    progress.note("");
+    return fail(prepared.error());
+  }
+  RunSummary summary;
+  const Result<bool> played = headless ? play_headless(prepared.value(), options, progress, summary)
+                                       : play_in_window(prepared.value(), options, progress, summary);
+  if (!played) return fail(played.error());
+  return finish_run(prepared.value(), progress, summary);
+}
+
+}  // namespace
+
+void add_play(CLI::App& app, VerbRun& chosen) {
+  CLI::App* verb = app.add_subcommand("play", "Play a scene: feel it, see it, record it");
+  auto o = std::make_shared<PlayOptions>();
+  verb->add_option("SCENE", o->scene, "A shipped scene's name, or a .gltf or .glb file")->capture_default_str();
+  verb->add_option("--seconds", o->seconds, "Simulated seconds (the scene's duration; a window: until closed)")
+      ->check(CLI::Range(0.01, 1e6));
+  verb->add_option("--out", o->out, "Folder for the results (headless: out/<scene>; a window: none)");
+  verb->add_flag("--headless", o->headless, "No window, even with a display");
+  verb->add_option("--backend", o->backend, "What the simulation runs on")
+      ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
+      ->capture_default_str();
+  verb->add_option("--device", o->devices, "script, mouse or replay:FILE; one for all handles, or one each")
+      ->allow_extra_args(false);
+  verb->add_option("--spacing", o->spacing, "Metres between particles, or auto: the finest in real time");
+  verb->add_option("--particles", o->particles, "Fluid particles to aim at, in place of a spacing")
+      ->check(CLI::Range(1, 100000000))
+      ->excludes("--spacing");
+  verb->add_option("--threads", o->threads, "Cores for the simulation (all but one; all with --no-render)")
+      ->check(CLI::Range(1, 1024));
+  verb->add_option("--size", o->size, "Picture in pixels, WxH (640x480 headless, 1280x720 in a window)");
+  verb->add_option("--fps", o->frames_per_second, "Pictures a second of the film")
+      ->check(CLI::Range(1.0, 240.0))
+      ->capture_default_str();
+  verb->add_option("--bilateral", o->bilateral, "Iterations of the fluid surface's filter")
+      ->check(CLI::Range(0, 64))
+      ->capture_default_str();
+  verb->add_flag("!--no-render", o->render, "No picture at all");
+  verb->footer(kFooter);
+  verb->callback([&chosen, o] { chosen = [o] { return play(*o); }; });
+}
+
+}  // namespace slosh

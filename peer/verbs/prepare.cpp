@@ -1,0 +1,127 @@
+#include "peer/verbs/prepare.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <tuple>
+
+#include "host/auto_spacing.h"
+#include "peer/output/summary.h"
+#include "scenes/load.h"
+
+namespace slosh {
+namespace {
+
+struct Spacing {
+  double metres = 0.0;
+  std::string reason;
+};
+
+Result<Spacing> spacing_for_particles(const Scene& scene, std::size_t particles) {
+  const double volume = estimate_particles(scene, 1.0).fluid;  // particles of 1 m³
+  if (volume <= 0.0) return Error{"--particles", "the scene has no fluid", "Use --spacing"};
+  const double spacing = std::cbrt(volume / static_cast<double>(particles));
+  return Spacing{spacing, "asked for " + grouped(particles) + " fluid particles"};
+}
+
+Result<Spacing> choose(const Scene& scene, const PlayOptions& options, int threads, Progress& progress) {
+  if (options.particles > 0) return spacing_for_particles(scene, options.particles);
+  if (!options.spacing.empty() && options.spacing != "auto") {
+    double metres = 0.0;
+    const char* end = options.spacing.data() + options.spacing.size();
+    const auto [at, code] = std::from_chars(options.spacing.data(), end, metres);
+    if (code != std::errc() || at != end || !(metres >= 1e-4 && metres <= 1.0)) {
+      return Error{"--spacing", "'" + options.spacing + "' is neither auto nor 0.0001 to 1 metres",
+                   "For 10 mm give 0.01"};
+    }
+    return Spacing{metres, "asked for"};
+  }
+  if (options.spacing.empty() && scene.spacing > 0.0) return Spacing{scene.spacing, "the scene asks for it"};
+
+  progress.phase("measuring");
+  SpacingOptions measure;
+  measure.threads = threads;
+  measure.tell = [&progress](const std::string& text) { progress.update(-1.0, text); };
+  const Result<SpacingChoice> choice = measure_spacing(scene, measure);
+  if (!choice) return choice.error();
+  return Spacing{choice.value().spacing, choice.value().reason};
+}
+
+Result<std::filesystem::path> make_folder(const PlayOptions& options, const Scene& scene, bool headless) {
+  if (options.out.empty() && !headless) return std::filesystem::path();
+  const std::filesystem::path folder = options.out.empty() ? std::filesystem::path("out") / scene.name : std::filesystem::path(options.out);
+  std::error_code code;
+  std::filesystem::create_directories(folder, code);
+  if (code || !std::filesystem::is_directory(folder)) {
+    return Error{folder.string(), "cannot be made: " + (code ? code.message() : "it is a file"),
+                 "Choose another folder with --out"};
+  }
+  return folder;
+}
+
+}  // namespace
+
+Result<Scene> load_named_scene(const std::string& name_or_path) {
+  const Result<std::filesystem::path> file = find_scene(name_or_path);
+  if (!file) return file.error();
+  return load_scene(file.value());
+}
+
+Result<std::pair<int, int>> parse_size(const std::string& text) {
+  int width = 0;
+  int height = 0;
+  const char* end = text.data() + text.size();
+  auto [at, code] = std::from_chars(text.data(), end, width);
+  if (code == std::errc() && at != end && *at == 'x') {
+    const auto [after, second] = std::from_chars(at + 1, end, height);
+    if (second == std::errc() && after == end && width >= 16 && width <= 8192 && height >= 16 && height <= 8192) {
+      return std::pair{width, height};
+    }
+  }
+  return Error{"--size", "'" + text + "' is not WIDTHxHEIGHT in pixels, 16 to 8192 each", "For example 640x480"};
+}
+
+Result<Prepared> prepare(const PlayOptions& options, bool headless, Progress& progress) {
+  Prepared p;
+  if (options.backend == "cuda") {
+    return Error{"--backend cuda", "this build has no CUDA backend", "Use --backend cpu or auto"};
+  }
+  p.backend = "cpu";
+  p.machine = this_machine();
+  // Drawing takes a core of its own; the device loop and the encoder take little.
+  p.threads = options.threads > 0 ? options.threads
+                                  : std::max(1, options.render ? p.machine.cores - 1 : p.machine.cores);
+  const Result<std::pair<int, int>> size =
+      parse_size(!options.size.empty() ? options.size : headless ? "640x480" : "1280x720");
+  if (!size) return size.error();
+  std::tie(p.width, p.height) = size.value();
+
+  progress.phase("loading", options.scene);
+  Result<Scene> scene = load_named_scene(options.scene);
+  if (!scene) return scene.error();
+  p.scene = std::move(scene.value());
+  p.seconds = options.seconds > 0.0 ? options.seconds
+              : headless            ? p.scene.duration
+                                    : std::numeric_limits<double>::infinity();
+  Result<std::filesystem::path> folder = make_folder(options, p.scene, headless);
+  if (!folder) return folder.error();
+  p.folder = folder.value();
+
+  const Result<Spacing> spacing = choose(p.scene, options, p.threads, progress);
+  if (!spacing) return spacing.error();
+  p.spacing_reason = spacing.value().reason;
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f mm", 1e3 * spacing.value().metres);
+  progress.note(std::string("spacing ") + text + ": " + p.spacing_reason);
+
+  progress.phase("sampling");
+  Result<SampledScene> sampled = sample_scene(p.scene, spacing.value().metres);
+  if (!sampled) return sampled.error();
+  p.sampled = std::move(sampled.value());
+  p.plan = make_plan(p.scene, spacing.value().metres);
+  return p;
+}
+
+}  // namespace slosh

@@ -1,0 +1,39 @@
+// From what was asked for to everything that a run needs.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "peer/output/machine.h"
+#include "peer/output/progress.h"
+#include "peer/verbs/play_options.h"
+#include "scenes/sample.h"
+#include "scenes/scene.h"
+#include "sim/plan.h"
+
+namespace slosh {
+
+struct Prepared {
+  Scene scene;
+  SampledScene sampled;
+  Plan plan;
+  std::string spacing_reason;
+  Machine machine;
+  std::string backend;  ///< what was chosen
+  int threads = 1;      ///< the simulation's
+  double seconds = 0.0;  ///< simulated; infinity = until the window closes
+  std::filesystem::path folder;  ///< exists, or empty
+  int width = 0;
+  int height = 0;
+};
+
+/// Finds and loads a shipped name or a file.
+Result<Scene> load_named_scene(const std::string& name_or_path);
+
+/// "640x480" to two numbers of pixels, 16–8192 each. Errors: anything else.
+Result<std::pair<int, int>> parse_size(const std::string& text);
+
+/// Loads, measures, samples, plans, makes the folder. Errors: anything of these.
+Result<Prepared> prepare(const PlayOptions& options, bool headless, Progress& progress);
+
+}  // namespace slosh

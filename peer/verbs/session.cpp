@@ -1,0 +1,117 @@
+#include "peer/verbs/session.h"
+
+#include <algorithm>
+
+namespace slosh {
+namespace {
+
+constexpr std::size_t kPictureBytes = std::size_t{512} << 20;
+
+Spread spread_of(const Histogram& histogram, double unit) {
+  return {histogram.percentile(0.5) * unit, histogram.percentile(0.99) * unit, histogram.max() * unit};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Session>> Session::create(const Prepared& prepared, DeviceSet devices, double picture_rate) {
+  std::unique_ptr<Session> session(new Session(prepared));
+  for (const std::unique_ptr<Device>& device : devices.devices) {
+    const Result<bool> opened = device->open();
+    if (!opened) return opened.error();
+  }
+  const Scene& scene = prepared.scene;
+  World world(scene, prepared.sampled, prepared.plan, WorldOptions{prepared.threads});
+  session->channel_ = std::make_unique<Channel>(scene.grips.size(), initial_message(world), kPictureBytes);
+  HostOptions options;
+  options.picture_rate = picture_rate;
+  options.until = prepared.seconds;
+  session->host_ = std::make_unique<Host>(std::move(world), scene, *session->channel_, options);
+  session->servo_ =
+      std::make_unique<Servo>(scene, std::move(devices.devices), *session->channel_, ServoOptions{});
+  session->loop_ = std::make_unique<DeviceLoop>(*session->servo_);
+  Result<std::unique_ptr<Recorder>> recorder = Recorder::start(*session->servo_, prepared.folder);
+  if (!recorder) return recorder.error();
+  session->recorder_ = std::move(recorder.value());
+  return session;
+}
+
+Session::~Session() { stop(); }
+
+void Session::start() {
+  loop_->start();  // first, so that the hands hold on when the first step is taken
+  host_->start();
+}
+
+void Session::stop() {
+  if (host_) {
+    host_->request_stop();
+    host_->wait();
+  }
+  if (loop_) loop_->stop();
+  if (recorder_) recorder_->stop();
+}
+
+HudFacts Session::facts(double picture_rate) const {
+  HudFacts facts;
+  facts.title = prepared_.scene.name;
+  facts.spacing = prepared_.sampled.spacing;
+  facts.fluid_particles = prepared_.sampled.fluid_positions.size();
+  for (const SurfaceSamples& surface : prepared_.sampled.surfaces) {
+    facts.boundary_particles += surface.positions.size();
+  }
+  facts.picture_rate = picture_rate;
+  return facts;
+}
+
+Rates Session::note_rates() {
+  const HostProgress progress = host_->progress();
+  const Rates rates{progress.time, progress.rate, progress.step_rate, progress.step_ms,
+                    servo_->devices() == 0 ? 0.0 : loop_->rate()};
+  rates_.add(rates);
+  return rates;
+}
+
+void Session::report(RunSummary& s) const {
+  const HostReport& host = host_->report();
+  s.scene = prepared_.scene.name;
+  s.scene_file = prepared_.scene.source_file;
+  s.spacing = prepared_.sampled.spacing;
+  s.spacing_reason = prepared_.spacing_reason;
+  s.fluid_particles = host_->world().fluid_count();
+  s.boundary_particles = host_->world().boundary_count();
+  s.retired_particles = host.diagnostics.retired;
+  s.steps = host.steps;
+  s.time_step = prepared_.plan.time_step;
+  s.simulated = host.simulated;
+  s.wall = host.wall;
+  s.real_time_factor = host.wall > 0.0 ? host.simulated / host.wall : 0.0;
+  s.step_ms = spread_of(host.step_time, 1e3);
+  const double total = host.total.total > 0.0 ? host.total.total : 1.0;
+  s.share_sort = host.total.sort / total;
+  s.share_density = host.total.density / total;
+  s.share_force = host.total.force / total;
+  s.share_body = host.total.body / total;
+  const DeviceLoopReport& loop = loop_->report();
+  s.device_loop_us = spread_of(loop.period, 1e6);
+  s.device_ticks = loop.ticks;
+  s.device_missed = loop.missed;
+  s.device_scheduler = loop.scheduler();
+  s.status = host.status | servo_->status();
+  s.slips = host.slips;
+  s.slipped = host.slipped;
+  s.rejected_poses = host.rejected_poses + servo_->reports_rejected();
+  s.samples_lost = servo_->samples_lost();
+  s.fluid_mass_start = host.start_mass;
+  s.fluid_mass_end = host.diagnostics.mass;
+  for (std::size_t i = 0; i < servo_->devices(); ++i) {
+    const Peak& peak = recorder_->peaks()[i];
+    s.devices.push_back({prepared_.scene.grips[i].name, servo_->device(i).kind(), peak.force, peak.torque});
+  }
+  s.backend = prepared_.backend;
+  s.threads = prepared_.threads;
+  s.machine = prepared_.machine;
+  s.version = SLOSH_VERSION;
+  s.folder = prepared_.folder.string();
+}
+
+}  // namespace slosh

@@ -1,0 +1,27 @@
+// The program's verbs: each adds its subcommand and, when chosen, runs and returns an exit code.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <functional>
+#include <string>
+
+#include "sim/math/result.h"
+
+namespace slosh {
+
+constexpr int kExitOk = 0;
+constexpr int kExitFailed = 1;
+constexpr int kExitUsage = 2;
+
+/// What the chosen verb will do once the command line is read.
+using VerbRun = std::function<int()>;
+
+void add_play(CLI::App& app, VerbRun& chosen);
+void add_scenes(CLI::App& app, VerbRun& chosen);
+void add_check(CLI::App& app, VerbRun& chosen);
+void add_plan(CLI::App& app, VerbRun& chosen);
+
+/// "slosh: <where>: <what>. <mend>." on stderr; returns kExitFailed.
+int fail(const Error& error);
+
+}  // namespace slosh

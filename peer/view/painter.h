@@ -1,0 +1,39 @@
+// One snapshot to one picture: camera, frame and HUD together.
+#pragma once
+
+#include <memory>
+
+#include "peer/hud/hud.h"
+#include "peer/view/frame_builder.h"
+#include "peer/view/orbit_camera.h"
+
+namespace slosh {
+
+/// On the renderer's thread. The scene must outlive it.
+class Painter {
+ public:
+  Painter(const Scene& scene, const HudFacts& facts, Renderer& renderer)
+      : renderer_(renderer), builder_(scene, facts.spacing, renderer), camera_(scene.camera), hud_(scene, facts) {}
+
+  /// A new snapshot for the charts.
+  void record(const Snapshot& snapshot) { hud_.record(snapshot); }
+
+  void draw(const Snapshot& snapshot, const Rates& rates) {
+    Frame frame = builder_.build(snapshot, camera_.distance());
+    const RenderOptions& size = renderer_.options();
+    frame.view = camera_.view(static_cast<double>(size.width) / size.height);
+    frame.hud = [this, &rates] { hud_.draw(rates); };
+    renderer_.draw(frame);
+  }
+
+  OrbitCamera& camera() { return camera_; }
+  Hud& hud() { return hud_; }
+
+ private:
+  Renderer& renderer_;
+  FrameBuilder builder_;
+  OrbitCamera camera_;
+  Hud hud_;
+};
+
+}  // namespace slosh
