@@ -13,7 +13,7 @@ std::string status_text(std::uint32_t status) {
       {kStatusInputRejected, "a handle's pose was not usable and the last good one was kept"},
       {kStatusForceLimited, "a device's force met its limit"},
       {kStatusTimeSlipped, "the simulation did not keep real time"},
-      {kStatusCompressed, "fluid is squeezed by more than a fifth: raise stiffness_m2_s2"},
+      {kStatusCompressed, "fluid is squeezed to twice its density: raise stiffness_m2_s2"},
   }};
   std::string text;
   for (const auto& [bit, words] : kWords) {

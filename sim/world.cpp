@@ -123,6 +123,8 @@ struct World::Impl {
     velocities.resize(positions.size(), glm::vec3(0.0f));
     std::vector<std::uint8_t> kinds = sampled.fluid_index;
     snapshot_count = positions.size();
+    fluid_starts_moving = std::any_of(velocities.begin(), velocities.end(),
+                                      [](const glm::vec3& v) { return v != glm::vec3(0.0f); });
     // A probe is one more particle of the first fluid's kind (Eq 8), moved by its body.
     const Fluid reference = scene.fluids.empty() ? Fluid{} : scene.fluids.front();
     for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -298,6 +300,7 @@ struct World::Impl {
     int body;
   };
   std::vector<Probe> probes;
+  bool fluid_starts_moving = false;
   std::size_t snapshot_count = 0;  // fluid particles without probes
   std::vector<glm::vec3> body_scratch;
   std::uint64_t tick = 0;
@@ -319,6 +322,22 @@ void World::step(std::span<const HandleInput> handles) {
   impl_->times.body = watch.lap();
   impl_->times.total = whole.lap();
   ++impl_->tick;
+}
+
+void World::settle(double seconds) {
+  Impl& w = *impl_;
+  if (!w.context.plan.has_fluid || w.fluid_starts_moving) return;
+  constexpr double kDampingTime = 0.05;  // s: past critical for a hand-sized vessel's slosh, so it creeps to its level
+  const float keep = static_cast<float>(std::exp(-w.context.plan.time_step / kDampingTime));
+  Stopwatch watch;
+  for (double done = 0.0; done < seconds; done += w.context.plan.time_step) {
+    w.step_particles(watch);
+    for (std::size_t p = 0; p < w.fluid.active; ++p) {
+      w.fluid.vx[p] *= keep;
+      w.fluid.vy[p] *= keep;
+      w.fluid.vz[p] *= keep;
+    }
+  }
 }
 
 const Plan& World::plan() const {

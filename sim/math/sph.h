@@ -66,7 +66,8 @@ SLOSH_HD void add_pair_force(const ParticleView<Real>& p, const ParticleView<Rea
   sum.y += push * dy;
   sum.z += push * dz;
   if constexpr (with_viscosity) {
-    const Real drag = Real(0.5f) * (p.volume * i.volume) * (p.viscosity + i.viscosity) * reach;
+    // What p alone decides comes first, so that it leaves the loop where all share one viscosity.
+    const Real drag = (Real(0.5f) * (p.viscosity + i.viscosity) * p.volume) * (i.volume * reach);
     sum.x += drag * (i.vx - p.vx);
     sum.y += drag * (i.vy - p.vy);
     sum.z += drag * (i.vz - p.vz);
