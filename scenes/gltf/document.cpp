@@ -119,7 +119,7 @@ std::optional<Error> walk(Document& document) {
 
 std::string Document::name(int node) const {
   const std::string& given = model.nodes[node].name;
-  return given.empty() ? "#" + std::to_string(node) : given;
+  return given.empty() ? std::string("#").append(std::to_string(node)) : given;
 }
 
 std::string Document::owner(int node) const {

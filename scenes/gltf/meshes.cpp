@@ -95,7 +95,7 @@ Result<TriangleMesh> read_mesh(const Document& document, int mesh, const glm::dm
                                const std::string& where) {
   const tinygltf::Mesh& source = document.model.meshes[mesh];
   TriangleMesh out;
-  out.name = source.name.empty() ? "#" + std::to_string(mesh) : source.name;
+  out.name = source.name.empty() ? std::string("#").append(std::to_string(mesh)) : source.name;
   const std::string who = where + ": mesh '" + out.name + "'";
   for (const tinygltf::Primitive& primitive : source.primitives) {
     if (const auto problem = append_primitive(document, primitive, who, out)) return *problem;

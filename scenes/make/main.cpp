@@ -13,7 +13,9 @@ struct Shipped {
 };
 
 constexpr Shipped kShipped[] = {
-    {"bucket", slosh::make::make_bucket},
+    {"bucket", slosh::make::make_bucket}, {"spoon", slosh::make::make_spoon},
+    {"pour", slosh::make::make_pour},     {"spin", slosh::make::make_spin},
+    {"pool", slosh::make::make_pool},     {"probe", slosh::make::make_probe},
 };
 
 }  // namespace

@@ -29,4 +29,22 @@ inline double follow(const std::vector<Key>& keys, double time) {
   return keys.back().value;
 }
 
+/// A steady turn with a smooth start and stop.
+struct Turn {
+  double start;   ///< s, when the speed begins to rise
+  double ramp;    ///< s, of the rise and of the fall
+  double steady;  ///< s at full speed between them
+  double rate;    ///< rad/s at full speed
+};
+
+/// The angle turned until `time`, rad: the speed follows a minimum-jerk rise, stays, and falls likewise.
+inline double turned(const Turn& turn, double time) {
+  // ∫ minimum_jerk from 0 to u
+  const auto rise = [](double u) { return u * u * u * u * (2.5 + u * (-3.0 + u)); };
+  const double up = std::clamp((time - turn.start) / turn.ramp, 0.0, 1.0);
+  const double level = std::clamp(time - turn.start - turn.ramp, 0.0, turn.steady);
+  const double down = std::clamp((time - turn.start - turn.ramp - turn.steady) / turn.ramp, 0.0, 1.0);
+  return turn.rate * (turn.ramp * rise(up) + level + turn.ramp * (down - rise(down)));
+}
+
 }  // namespace slosh::make

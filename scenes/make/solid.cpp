@@ -5,6 +5,12 @@
 #include <glm/gtc/constants.hpp>
 
 namespace slosh::make {
+namespace {
+
+/// A corner of less than about 25° is part of a curve already.
+constexpr double kGentleTurn = -0.9;
+
+}  // namespace
 
 Solid lathe(const std::vector<glm::dvec2>& profile, int segments) {
   Solid out;
@@ -50,6 +56,10 @@ std::vector<glm::dvec2> round_corners(const std::vector<glm::dvec2>& profile, do
     const glm::dvec2 p = profile[i];
     const glm::dvec2 back = profile[(i + count - 1) % count] - p;
     const glm::dvec2 ahead = profile[(i + 1) % count] - p;
+    if (glm::dot(glm::normalize(back), glm::normalize(ahead)) < kGentleTurn) {
+      out.push_back(p);
+      continue;
+    }
     const double reach = std::min({radius, 0.45 * glm::length(back), 0.45 * glm::length(ahead)});
     const glm::dvec2 from = p + reach * glm::normalize(back);
     const glm::dvec2 to = p + reach * glm::normalize(ahead);

@@ -13,7 +13,7 @@ constexpr const char* kKinds[] = {"picture", "body", "fluid", "grip", "hand", "p
 
 std::string point_text(const glm::dvec3& p) {
   using gltf::short_number;
-  return "(" + short_number(p.x) + ", " + short_number(p.y) + ", " + short_number(p.z) + ") m";
+  return std::string("(") + short_number(p.x) + ", " + short_number(p.y) + ", " + short_number(p.z) + ") m";
 }
 
 std::string defects_text(const mesh::Defects& d) {

@@ -12,8 +12,9 @@ namespace slosh::sampling {
 namespace {
 
 constexpr int kCandidatesEach = 5;  // Yuksel's advice
-constexpr int kRelaxations = 12;
-constexpr float kSameSheet = -0.3f;  // cosine between normals above which two samples feel each other
+constexpr int kRelaxations = 8;
+constexpr float kSameSheet = -0.3f;     // cosine between normals above which two samples feel each other
+constexpr double kLeastDistance = 0.6;  // between two samples, in spacings
 constexpr double kFewestSamples = 6.0;
 constexpr double kMostSamples = 5e6;
 
@@ -167,6 +168,21 @@ void relax(Points& points, const mesh::MeshTree& tree, const std::vector<bool>& 
   }
 }
 
+/// Takes away the later of two points that came too close: round a sharp edge, or between points that stay.
+Points thin_out(const Points& points, float least_distance) {
+  const PointGrid grid(points.at, least_distance);
+  std::vector<bool> gone(points.size(), false);
+  Points out;
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    grid.each_near(points.at[i], [&](std::uint32_t j) {
+      if (j >= i || gone[j] || !same_sheet(points, i, j)) return;
+      if (glm::distance(points.at[i], points.at[j]) < least_distance) gone[i] = true;
+    });
+    if (!gone[i]) out.add(points.at[i], points.normal[i], points.triangle[i]);
+  }
+  return out;
+}
+
 }  // namespace
 
 SurfaceSamples sample_surface(const TriangleMesh& mesh, const mesh::MeshTree& tree, int parts,
@@ -184,6 +200,7 @@ SurfaceSamples sample_surface(const TriangleMesh& mesh, const mesh::MeshTree& tr
   points = eliminate(points, target, exposed_area);
   const double even = std::sqrt(2.0 / std::sqrt(3.0) * exposed_area / static_cast<double>(target));
   relax(points, tree, find_frozen(points, buried, static_cast<float>(spacing)), static_cast<float>(even));
+  points = thin_out(points, static_cast<float>(kLeastDistance * spacing));
   SurfaceSamples out;
   out.positions = std::move(points.at);
   out.normals = std::move(points.normal);

@@ -1,0 +1,110 @@
+// Batter is poured from a bowl into a pan; each is held by a hand.
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+#include "scenes/make/motion.h"
+#include "scenes/make/shipped.h"
+
+namespace slosh::make {
+namespace {
+
+constexpr double kBowlRadius = 0.075;             ///< inner
+constexpr double kBowlRim = kBowlRadius + kWall;  ///< height of the rim over the underside
+constexpr double kBelowRim = 0.015;               ///< of the batter at the start
+constexpr double kBowlHeld = 0.25;                ///< of the underside over the table
+constexpr double kPanRadius = 0.105;              ///< inner
+constexpr double kPanDepth = 0.040;
+constexpr double kPanHeld = 0.08;
+constexpr double kBarRadius = 0.008;
+/// Where the lip stays while the bowl tilts: the stream lands a little beyond, in the pan's middle.
+const glm::dvec3 kLip(-0.03, kBowlHeld + kBowlRim, 0.0);
+constexpr double kDuration = 10.0;
+
+std::vector<glm::dvec2> arc(double radius, double from_deg, double to_deg, int steps) {
+  std::vector<glm::dvec2> line;
+  for (int i = 0; i <= steps; ++i) {
+    const double angle = glm::radians(from_deg + (to_deg - from_deg) * i / steps);
+    const double r = radius * std::cos(angle);
+    line.emplace_back(r < 1e-9 ? 0.0 : r, kBowlRim + radius * std::sin(angle));
+  }
+  return line;
+}
+
+Solid bar(double from, double to, double height) {
+  return tube({{from, height, 0.0}, {0.5 * (from + to), height, 0.0}, {to, height, 0.0}}, kBarRadius, 24);
+}
+
+Solid bowl() {
+  std::vector<glm::dvec2> profile = arc(kBowlRadius + kWall, -90.0, 0.0, 20);
+  const std::vector<glm::dvec2> inside = arc(kBowlRadius, 0.0, -90.0, 20);
+  profile.insert(profile.end(), inside.begin(), inside.end());
+  return merged(lathe(round_corners(profile, 0.003, 3), 64), bar(-0.082, -0.165, kBowlRim - 0.014));
+}
+
+Solid batter() {
+  const double top = -glm::degrees(std::asin(kBelowRim / kBowlRadius));
+  std::vector<glm::dvec2> profile = arc(kBowlRadius, -90.0, top, 20);
+  profile.emplace_back(0.0, profile.back().y);
+  return lathe(profile, 64);
+}
+
+Solid pan() {
+  const double outer = kPanRadius + kWall;
+  const std::vector<glm::dvec2> profile{
+      {0.0, 0.0},          {outer, 0.0}, {outer, kWall + kPanDepth}, {kPanRadius, kWall + kPanDepth},
+      {kPanRadius, kWall}, {0.0, kWall}};
+  return merged(lathe(round_corners(profile, 0.004, 3), 72), bar(kPanRadius + 0.5 * kWall, 0.28, 0.036));
+}
+
+/// Turned about the lip, the +x side down.
+Pose bowl_pose(double time) {
+  const double angle = glm::radians(follow({{1.0, 0.0}, {4.0, 115.0}, {7.0, 115.0}, {9.4, 0.0}}, time));
+  const glm::dquat turn = glm::angleAxis(-angle, glm::dvec3(0.0, 0.0, 1.0));
+  const glm::dvec3 lip(kBowlRadius + 0.5 * kWall, kBowlRim, 0.0);  // in the bowl's frame
+  return {kLip - turn * lip, turn};
+}
+
+void add_held(SceneWriter& writer, const std::string& name, int node, const Pose& grip, int device,
+              const std::function<Pose(double)>& body_pose) {
+  writer.add_node(name, -1, grip,
+                  {{"slosh", "grip"},
+                   {"stiffness_n_m", 2000.0},
+                   {"damping_n_s_m", 60.0},
+                   {"rotational_stiffness_nm_rad", 60.0},
+                   {"rotational_damping_nm_s_rad", 1.5},
+                   {"device", device}},
+                  node);
+  writer.add_hand(name + "_motion", name, [=](double t) { return compose(body_pose(t), grip); }, kDuration);
+}
+
+}  // namespace
+
+SceneWriter make_pour() {
+  SceneWriter writer({{"title", "Batter is poured from a bowl into a pan (6.4.2)"},
+                      {"spacing_min_m", 0.006},
+                      {"spacing_max_m", 0.012},
+                      {"duration_s", kDuration},
+                      {"domain_min_m", list({-0.45, -0.15, -0.35})},
+                      {"domain_max_m", list({0.50, 0.75, 0.35})}});
+  add_table(writer, 0.7, 0.5);
+  const int blue = writer.add_material("blue glaze", {{0.10, 0.22, 0.45, 1.0}, 0.0, 0.25});
+  const int iron = writer.add_material("cast iron", {{0.06, 0.06, 0.07, 1.0}, 0.7, 0.50});
+  const int look = writer.add_material("batter", {{0.90, 0.78, 0.42, 1.0}, 0.0, 0.6});
+  const auto pan_pose = [](double) { return Pose{{0.0, kPanHeld, 0.0}, {1.0, 0.0, 0.0, 0.0}}; };
+  const int bowl_node = writer.add_node("bowl_body", writer.add_mesh("bowl", bowl(), blue), bowl_pose(0.0),
+                                        {{"slosh", "body"}, {"motion", "free"}, {"mass_kg", 0.5}});
+  const int pan_node = writer.add_node("pan_body", writer.add_mesh("pan", pan(), iron), pan_pose(0.0),
+                                       {{"slosh", "body"}, {"motion", "free"}, {"mass_kg", 0.7}});
+  writer.add_node("batter", writer.add_mesh("batter", batter(), look), bowl_pose(0.0),
+                  {{"slosh", "fluid"},
+                   {"density_kg_m3", 1100.0},
+                   {"viscosity_pa_s", 1.5},
+                   {"color", list({0.92, 0.80, 0.45})},
+                   {"extinction_per_m", list({250.0, 280.0, 400.0})}});
+  add_held(writer, "bowl", bowl_node, {{-0.13, kBowlRim - 0.014, 0.0}, {1.0, 0.0, 0.0, 0.0}}, 0, bowl_pose);
+  add_held(writer, "pan", pan_node, {{0.17, 0.036, 0.0}, {1.0, 0.0, 0.0, 0.0}}, 1, pan_pose);
+  writer.add_camera({0.30, 0.62, 0.95}, {0.0, 0.22, 0.0}, 36.0);
+  return writer;
+}
+
+}  // namespace slosh::make

@@ -1,0 +1,58 @@
+// One particle on a 3-DoF device goes down into a tank and swipes sideways three times.
+#include "scenes/make/motion.h"
+#include "scenes/make/shipped.h"
+
+namespace slosh::make {
+namespace {
+
+const glm::dvec3 kInner(0.160, 0.100, 0.120);
+constexpr double kFluidDepth = 0.070;
+constexpr double kAbove = kWall + kFluidDepth + 0.035;
+constexpr double kUnder = kWall + 0.5 * kFluidDepth;
+constexpr double kSwipe = 0.045;
+constexpr double kDuration = 8.0;
+
+Pose probe_pose(double time) {
+  const double y = follow({{1.0, kAbove}, {2.2, kUnder}, {6.4, kUnder}, {7.4, kAbove}}, time);
+  const double x = follow(
+      {{2.4, -kSwipe}, {3.6, kSwipe}, {3.8, kSwipe}, {5.0, -kSwipe}, {5.2, -kSwipe}, {6.4, kSwipe}}, time);
+  return {{x, y, 0.0}, {1.0, 0.0, 0.0, 0.0}};
+}
+
+}  // namespace
+
+SceneWriter make_probe() {
+  SceneWriter writer({{"title", "One particle feels a fluid on a 3-DoF device (section 3)"},
+                      {"spacing_min_m", 0.005},
+                      {"spacing_max_m", 0.012},
+                      {"duration_s", kDuration},
+                      {"domain_min_m", list({-0.25, -0.15, -0.22})},
+                      {"domain_max_m", list({0.25, 0.35, 0.22})}});
+  const int wood = writer.add_material("wood", {{0.32, 0.18, 0.09, 1.0}, 0.0, 0.55});
+  writer.add_node("table", writer.add_mesh("table", box({-0.25, -0.04, -0.2}, {0.25, 0.0, 0.2}), wood), {},
+                  {{"slosh", "picture"}});
+  const int clear = writer.add_material("clear plastic", {{0.75, 0.82, 0.85, 0.30}, 0.0, 0.15});
+  const int red = writer.add_material("red", {{0.80, 0.08, 0.05, 1.0}, 0.0, 0.4});
+  const int look = writer.add_material("water", {{0.10, 0.35, 0.55, 0.5}, 0.0, 0.1});
+  writer.add_node("tank", writer.add_mesh("tank", tank(kInner, kWall), clear), {},
+                  {{"slosh", "body"}, {"motion", "fixed"}});
+  const Solid fluid =
+      box({-0.5 * kInner.x, kWall, -0.5 * kInner.z}, {0.5 * kInner.x, kWall + kFluidDepth, 0.5 * kInner.z});
+  writer.add_node("water", writer.add_mesh("water", fluid, look), {},
+                  {{"slosh", "fluid"}, {"density_kg_m3", 1000.0}, {"viscosity_pa_s", 0.05}});
+  const int node = writer.add_node("probe", writer.add_mesh("probe", sphere(0.006, 12, 24), red),
+                                   probe_pose(0.0), {{"slosh", "probe"}, {"mass_kg", 0.05}});
+  writer.add_node("probe_hand", -1, {},
+                  {{"slosh", "grip"},
+                   {"stiffness_n_m", 500.0},
+                   {"damping_n_s_m", 10.0},
+                   {"rotational_stiffness_nm_rad", 0.0},
+                   {"rotational_damping_nm_s_rad", 0.0},
+                   {"device", 0}},
+                  node);
+  writer.add_hand("probe_motion", "probe_hand", probe_pose, kDuration);
+  writer.add_camera({0.22, 0.34, 0.46}, {0.0, 0.06, 0.0}, 34.0);
+  return writer;
+}
+
+}  // namespace slosh::make
