@@ -15,11 +15,10 @@ void draw_into(const gl::Framebuffer& target, glm::ivec2 size) {
   glViewport(0, 0, size.x, size.y);
 }
 
-/// How far the wide filter's iteration `i` of `count` reaches, in splat radii on screen: coarse first, so
-/// that later ones take away the pattern that far taps leave. README.md has the measurement.
+/// How far the wide filter's iteration `i` of `count` reaches, in splat radii on screen: coarse first and the
+/// paper's own kernel last, which takes away the pattern that far taps leave.
 float spread_of(int i, int count) {
-  const float rest = static_cast<float>(count - i) / static_cast<float>(count);
-  return 1.0f * rest;
+  return count < 2 ? 0.0f : 0.9f * static_cast<float>(count - 1 - i) / static_cast<float>(count - 1);
 }
 
 }  // namespace

@@ -173,7 +173,7 @@ DamBreak::DamBreak(Renderer& renderer, int wanted, int width, int height) {
     const MeshHandle mesh = renderer.add_mesh(shape.positions, shape.normals, shape.triangles);
     frame.meshes.push_back({mesh, glm::translate(glm::mat4(1.0f), at), look});
   };
-  add(make_box({-0.9f, -0.05f, -0.6f}, {0.9f, -0.006f, 0.6f}), {{0.42f, 0.30f, 0.20f}, 0.0f, 0.55f, 1.0f},
+  add(make_box({-0.9f, -0.05f, -0.6f}, {0.9f, -0.006f, 0.6f}), {{0.24f, 0.15f, 0.09f}, 0.0f, 0.55f, 1.0f},
       {});
   add(make_sphere(0.045f), {{0.75f, 0.10f, 0.06f}, 0.0f, 0.3f, 1.0f}, ball);
   add(make_sphere(0.03f), {{0.85f, 0.85f, 0.82f}, 1.0f, 0.25f, 1.0f}, {0.36f, 0.024f, 0.10f});
