@@ -1,5 +1,7 @@
 #include "sim/plan.h"
 
+#include "sim/math/sph.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdarg>
@@ -23,6 +25,8 @@ constexpr double kCourant = 0.8;
 constexpr double kLightBody = 0.05;
 // Explicit viscosity is stable below 2/λ; λ of the roughest mode is about twice the lattice sum.
 constexpr double kViscousFactor = 0.8;
+// What a wall adds to that sum for the fluid's first layer, as a share of the whole lattice.
+constexpr double kWallPart = 0.35;
 // Body particles stand for fluid denser than rest by this much: enough pressure to hold a column back before
 // the fluid itself is compressed, little enough not to push it far off the wall.
 constexpr double kBodyCompression = 0.08;
@@ -143,12 +147,15 @@ StepLimit step_limit(const Scene& scene, const Plan& plan, const FluidExtremes& 
   }
   if (plan.viscosity) {
     double most_viscous_body = 0.0;
-    for (const Body& body : scene.bodies)
-      most_viscous_body = std::max(most_viscous_body, body.dynamic_viscosity);
-    const double viscosity = std::max(fluids.most_viscous, 0.5 * (fluids.most_viscous + most_viscous_body));
-    const double rate = viscosity / fluids.lightest * lattice_viscosity_sum(scene.support_ratio) /
+    for (const Body& body : scene.bodies) most_viscous_body = std::max(most_viscous_body, body.dynamic_viscosity);
+    const double viscosity =
+        fluids.most_viscous + kWallPart * 0.5 * (fluids.most_viscous + most_viscous_body);
+    const double central = plan.model == ParticleModel::kPaper ? 1.0 : kCentralDrag / 3.0;
+    const double rate = central * viscosity / fluids.lightest * lattice_viscosity_sum(scene.support_ratio) /
                         (plan.spacing * plan.spacing);
-    limit.lower_to(kViscousFactor / rate, format("explicit viscosity of %.3g Pa·s", viscosity));
+    limit.lower_to(kViscousFactor / rate,
+                   format("explicit viscosity of %.3g Pa·s in the fluid, %.3g Pa·s at walls", fluids.most_viscous,
+                          0.5 * (fluids.most_viscous + most_viscous_body)));
   }
   return limit;
 }
