@@ -18,8 +18,8 @@ struct Solid {
 /// to the left of the way. It either begins and ends on the axis (r = 0) or is a closed ring off the axis.
 Solid lathe(const std::vector<glm::dvec2>& profile, int segments);
 
-/// Replaces each corner sharper than about 25° by a curve that begins and ends `radius` away from it (less on short edges).
-/// Corners on the axis and the ends of the line stay.
+/// Replaces each corner sharper than about 25° by a curve that begins and ends `radius` away from it (less on
+/// short edges). Corners on the axis and the ends of the line stay.
 std::vector<glm::dvec2> round_corners(const std::vector<glm::dvec2>& profile, double radius, int steps);
 
 Solid box(const glm::dvec3& low, const glm::dvec3& high);

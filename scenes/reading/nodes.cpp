@@ -1,5 +1,6 @@
 // What each node is, where it stands, and its mesh.
 #include <cmath>
+#include <cstdio>
 
 #include "scenes/gltf/meshes.h"
 #include "scenes/mesh/closed.h"
@@ -12,8 +13,9 @@ namespace {
 constexpr const char* kKinds[] = {"picture", "body", "fluid", "grip", "hand", "probe"};
 
 std::string point_text(const glm::dvec3& p) {
-  using gltf::short_number;
-  return std::string("(") + short_number(p.x) + ", " + short_number(p.y) + ", " + short_number(p.z) + ") m";
+  char text[96];
+  std::snprintf(text, sizeof(text), "(%.4g, %.4g, %.4g) m", p.x, p.y, p.z);
+  return text;
 }
 
 std::string defects_text(const mesh::Defects& d) {

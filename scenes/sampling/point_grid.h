@@ -24,7 +24,7 @@ class PointGrid {
     for (;; cell_ *= 1.5f) {
       const glm::dvec3 cells = glm::dvec3(high - low_) / static_cast<double>(cell_) + 1.0;
       if (cells.x * cells.y * cells.z > kMostCells) continue;
-      size_ = glm::ivec3(cells);
+      size_ = glm::ivec3(cells) + 1;  // one to spare: the quotient may round up
       break;
     }
     // A counting sort: cell → its points, rising.
