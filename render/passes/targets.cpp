@@ -12,7 +12,7 @@ Targets make_targets(glm::ivec2 size, bool half_resolution_back) {
 
   t.mesh_color = make_texture(size, GL_RGBA16F, GL_NEAREST);
   t.color = make_texture(size, GL_RGBA16F, GL_NEAREST);
-  t.scene_color = make_texture(size, GL_RGBA16F, GL_LINEAR);
+  t.scene_color = make_texture(size, GL_RGBA16F, GL_NEAREST);
   t.scene_depth = make_texture(size, GL_R32F, GL_NEAREST);
   t.depth = make_texture(size, GL_DEPTH_COMPONENT32F, GL_NEAREST);
   t.front = make_texture(size, GL_R32F, GL_LINEAR);

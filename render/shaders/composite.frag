@@ -36,11 +36,12 @@ void main() {
   vec3 n = normalize(cross(difference(eye, texel, ivec2(1, 0)), difference(eye, texel, ivec2(0, 1))));
   vec3 to_eye = normalize(-eye);
 
-  // A body in front of the fluid must not show through it.
+  // A body in front of the fluid must not show through it. Whole texels, as a mean would mix such a body in.
   vec2 here = gl_FragCoord.xy * picture.zw;
   vec2 there = here + refraction_offset(n, look.color_refraction.a, thickness, picture.x * picture.w);
-  if (textureLod(scene_depth, there, 0.0).r < front) there = here;
-  vec3 behind = textureLod(scene_color, there, 0.0).rgb;
+  ivec2 looked_up = clamp(ivec2(there * picture.xy), ivec2(0), ivec2(picture.xy) - 1);
+  if (texelFetch(scene_depth, looked_up, 0).r < front) looked_up = texel;
+  vec3 behind = texelFetch(scene_color, looked_up, 0).rgb;
 
   vec3 world_n = mat3(world_from_eye) * n;
   float light = 1.0;

@@ -1,0 +1,225 @@
+// What the renderer does on the CPU: shader text, splats, display table, PNG, arrows, the light's box.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <limits>
+
+#include "render/color/display_transform.h"
+#include "render/gl/shader_source.h"
+#include "render/image.h"
+#include "render/passes/arrow_pass.h"
+#include "render/passes/shadow_pass.h"
+#include "render/passes/splats.h"
+#include "render/shader_math.h"
+#include "tests/render/scene_kit.h"
+
+namespace slosh {
+namespace {
+
+TEST(ShaderSource, IncludesEachFileOnceAndPutsDefinesFirst) {
+  const EmbeddedShader files[] = {{"a", "#include \"b\"\n#include \"c\"\nvoid main() {}\n"},
+                                  {"b", "#include \"c\"\nfloat b;\n"},
+                                  {"c", "float c;\n"}};
+  const auto text = shader_source("a", std::vector<std::string>{"FAST"}, files);
+  ASSERT_TRUE(text);
+  EXPECT_EQ(text.value(), "#version 450 core\n#define FAST\nfloat c;\nfloat b;\nvoid main() {}\n");
+}
+
+TEST(ShaderSource, NamesAMissingFile) {
+  const EmbeddedShader files[] = {{"a", "#include \"gone.glsl\"\n"}};
+  const auto text = shader_source("a", {}, files);
+  ASSERT_FALSE(text);
+  EXPECT_NE(text.error().text().find("gone.glsl"), std::string::npos);
+}
+
+Frame frame_at(const std::vector<glm::vec3>& particles, const std::vector<std::uint8_t>& fluids) {
+  Frame frame;
+  frame.view = kit::make_view({0.0f, 0.0f, 1.0f}, {0.0f, 0.0f, 0.0f}, 320, 240);
+  frame.particles = particles;
+  frame.particle_fluid = fluids;
+  frame.fluids = {FluidLook{}};
+  frame.particle_radius = 0.01f;
+  return frame;
+}
+
+RenderOptions options_of(int width, int height) {
+  RenderOptions options;
+  options.width = width;
+  options.height = height;
+  return options;
+}
+
+TEST(Splats, LeavesOutWhatCannotBeDrawn) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float inf = std::numeric_limits<float>::infinity();
+  const std::vector<glm::vec3> particles{{0, 0, 0},   {nan, 0, 0}, {0, inf, 0}, {0, 0, 2},   {0, 0, 0.99f},
+                                         {0, 0, -50}, {5, 0, 0},   {0, 0, 0},   {0, 0, 0.1f}};
+  const std::vector<std::uint8_t> fluids{0, 0, 0, 0, 0, 0, 0, 255, 1};
+  Splats splats;
+  prepare_splats(frame_at(particles, fluids), options_of(320, 240), splats);
+  ASSERT_EQ(splats.spheres.size(), 1u);
+  EXPECT_NEAR(splats.spheres[0].z, -1.0f, 1e-6f);
+}
+
+TEST(Splats, TilesCoverTheDiscAndLittleMore) {
+  const std::vector<glm::vec3> particles{{0, 0, 0}};
+  const std::vector<std::uint8_t> fluids{0};
+  Splats splats;
+  prepare_splats(frame_at(particles, fluids), options_of(320, 240), splats);
+  glm::vec2 low(2.0f);
+  glm::vec2 high(-2.0f);
+  for (const glm::vec2& corner : splats.tiles) {
+    low = glm::min(low, corner);
+    high = glm::max(high, corner);
+  }
+  const float reach = 1.2f * 0.01f / std::tan(glm::radians(20.0f));  // clip units, vertical
+  EXPECT_LE(low.y, -reach);
+  EXPECT_GE(high.y, reach);
+  EXPECT_LE(high.y - low.y, 2.0f * reach + 4.0f * kTileSize / 240.0f);
+}
+
+TEST(Splats, MostOfADeepFluidIsHidden) {
+  std::vector<glm::vec3> particles = kit::jitter_lattice(glm::vec3(-0.2f), glm::vec3(0.2f), 0.016f, 3);
+  const std::vector<std::uint8_t> fluids(particles.size(), 0);
+  const Frame frame = frame_at(particles, fluids);
+  Splats splats;
+  prepare_splats(frame, options_of(640, 480), splats);
+  const std::size_t all = splats.spheres.size();
+  leave_out_hidden(frame, options_of(640, 480), splats);
+  EXPECT_LT(splats.spheres.size(), all / 3);
+  EXPECT_LT(splats.back.size(), all / 3);
+  EXPECT_GT(splats.spheres.size(), all / 40);
+}
+
+TEST(DisplayTransform, KeepsBlackAndGreysInOrder) {
+  for (Display display : {Display::kAces, Display::kSrgb}) {
+    std::vector<glm::vec3> greys;
+    for (float light = 0.0f; light <= 16.0f; light = light * 1.15f + 0.002f) greys.emplace_back(light);
+    const auto shown = display_colors(display, greys);
+    ASSERT_TRUE(shown) << shown.error().text();
+    EXPECT_NEAR(shown.value().front().y, 0.0f, 0.004f);
+    for (std::size_t i = 1; i < greys.size(); ++i) {
+      const glm::vec3& color = shown.value()[i];
+      EXPECT_GE(color.y, shown.value()[i - 1].y);
+      EXPECT_NEAR(color.x, color.y, 0.01f);  // a grey stays grey
+      EXPECT_NEAR(color.z, color.y, 0.01f);
+    }
+    EXPECT_GT(shown.value().back().y, 0.97f);
+  }
+}
+
+TEST(DisplayTransform, PutsMidGreyWhereItsStandardDoes) {
+  const glm::vec3 grey(0.18f);
+  // IEC 61966-2-1: 1.055 · 0.18^(1/2.4) − 0.055.
+  EXPECT_NEAR(display_colors(Display::kSrgb, std::span(&grey, 1)).value()[0].y, 0.4613f, 0.001f);
+  // The ACES SDR rendering puts 18 % at about 10 % of the display's light: sRGB 0.35.
+  EXPECT_NEAR(display_colors(Display::kAces, std::span(&grey, 1)).value()[0].y, 0.35f, 0.02f);
+}
+
+TEST(DisplayTransform, TheTableComesCloseToTheTransform) {
+  constexpr int n = kDisplayTableSize;
+  for (Display display : {Display::kAces, Display::kSrgb}) {
+    const auto table = make_display_table(display);
+    ASSERT_TRUE(table);
+    ASSERT_EQ(table.value().size(), std::size_t{n} * n * n);
+    std::vector<glm::vec3> colors;
+    for (float light = 0.003f; light < 8.0f; light *= 1.31f) {
+      for (const glm::vec3& tint :
+           {glm::vec3(1.0f), glm::vec3(1.0f, 0.4f, 0.2f), glm::vec3(0.1f, 0.35f, 0.55f)}) {
+        colors.push_back(light * tint);
+      }
+    }
+    const auto exact = display_colors(display, colors);
+    const auto node = [&](const glm::ivec3& i) {
+      return table.value()[static_cast<std::size_t>(i.x + n * (i.y + n * i.z))];
+    };
+    double worst = 0.0;
+    for (std::size_t c = 0; c < colors.size(); ++c) {
+      const glm::vec3 at = shader::display_shape(colors[c]) * static_cast<float>(n - 1);
+      const glm::ivec3 low = glm::min(glm::ivec3(at), glm::ivec3(n - 2));
+      glm::vec3 mixed(0.0f);
+      for (int corner = 0; corner < 8; ++corner) {
+        const glm::ivec3 step(corner & 1, corner >> 1 & 1, corner >> 2);
+        const glm::vec3 f = glm::mix(1.0f - (at - glm::vec3(low)), at - glm::vec3(low), glm::vec3(step));
+        mixed += f.x * f.y * f.z * node(low + step);
+      }
+      const glm::vec3 off = glm::abs(mixed - exact.value()[c]);
+      worst = std::max<double>(worst, std::max({off.x, off.y, off.z}));
+    }
+    EXPECT_LT(worst, 4.0 / 255.0);
+  }
+}
+
+TEST(Png, ComesBackAsItWasWritten) {
+  Image image{3, 2, {}};
+  for (int i = 0; i < 24; ++i) image.rgba.push_back(static_cast<std::uint8_t>(10 * i + 3));
+  const std::filesystem::path path = std::filesystem::path(SLOSH_BINARY_DIR) / "png_comes_back.png";
+  const auto written = write_png(path, image);
+  ASSERT_TRUE(written) << written.error().text();
+  const auto read = read_png(path);
+  ASSERT_TRUE(read) << read.error().text();
+  EXPECT_EQ(read.value().width, 3);
+  EXPECT_EQ(read.value().height, 2);
+  EXPECT_EQ(read.value().rgba, image.rgba);
+  std::filesystem::remove(path);
+}
+
+TEST(Png, SaysWhatIsWrong) {
+  Image image{2, 2, std::vector<std::uint8_t>(16)};
+  EXPECT_FALSE(write_png(std::filesystem::path(SLOSH_BINARY_DIR) / "no such folder" / "a.png", image));
+  image.rgba.pop_back();
+  EXPECT_FALSE(write_png(std::filesystem::path(SLOSH_BINARY_DIR) / "short.png", image));
+  const std::filesystem::path text = std::filesystem::path(SLOSH_BINARY_DIR) / "not_a_picture.png";
+  std::ofstream(text) << "hello";
+  EXPECT_FALSE(read_png(text));
+  EXPECT_FALSE(read_png(text.string() + ".gone"));
+  std::filesystem::remove(text);
+}
+
+TEST(Arrows, SpanTheirEndsAndSkipBadOnes) {
+  std::vector<ArrowVertex> out;
+  append_arrow({{0, 0, 0}, {0, 0, 0}, {1, 1, 1}}, 1.0f, out);
+  append_arrow({{0, 0, 0}, {0, std::numeric_limits<float>::quiet_NaN(), 0}, {1, 1, 1}}, 1.0f, out);
+  append_arrow({{std::numeric_limits<float>::infinity(), 0, 0}, {0, 1, 0}, {1, 1, 1}}, 1.0f, out);
+  EXPECT_TRUE(out.empty());
+  append_arrow({{0.1f, 0, 0}, {0.1f, 0.2f, 0}, {1, 0, 0}}, 1.0f, out);
+  ASSERT_FALSE(out.empty());
+  float low = 1.0f;
+  float high = -1.0f;
+  for (const ArrowVertex& vertex : out) {
+    low = std::min(low, vertex.position.y);
+    high = std::max(high, vertex.position.y);
+    EXPECT_NEAR(glm::length(vertex.normal), 1.0f, 1e-4f);
+  }
+  EXPECT_NEAR(low, 0.0f, 1e-6f);
+  EXPECT_NEAR(high, 0.2f, 1e-6f);
+}
+
+TEST(Shadow, TheLightsBoxHoldsTheScene) {
+  Bounds box;
+  box.add({-0.7f, -0.1f, -0.4f});
+  box.add({0.5f, 0.6f, 0.9f});
+  for (const glm::vec3& to_light : {glm::vec3(0, 1, 0), glm::normalize(glm::vec3(0.4f, 1.0f, 0.35f))}) {
+    const glm::mat4 clip = light_clip_from_world(box, to_light, 512);
+    for (int corner = 0; corner < 8; ++corner) {
+      const glm::vec3 at(corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
+                         corner & 4 ? box.high.z : box.low.z);
+      const glm::vec3 seen(clip * glm::vec4(at, 1.0f));
+      EXPECT_LE(std::max({std::abs(seen.x), std::abs(seen.y), std::abs(seen.z)}), 1.0f);
+    }
+    // Nearer the light is nearer in the map.
+    EXPECT_LT((clip * glm::vec4(to_light * 0.1f, 1.0f)).z, (clip * glm::vec4(-to_light * 0.1f, 1.0f)).z);
+  }
+}
+
+TEST(Contexts, SayWhyThereIsNoWindow) {
+  EXPECT_FALSE(make_window_context("none", 0, 100));
+  EXPECT_FALSE(make_headless_context({.software_threads = -1}));
+  if (display_available()) return;  // the next is about machines without one
+  const auto window = make_window_context("slosh", 320, 240);
+  ASSERT_FALSE(window);
+  EXPECT_NE(window.error().text().find("display"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace slosh
