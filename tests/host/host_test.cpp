@@ -1,0 +1,171 @@
+// The authoritative loop on a shipped scene, unpaced: nothing here waits for or asserts a wall time.
+#include "host/host.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "scenes/load.h"
+#include "scenes/sample.h"
+
+namespace slosh {
+namespace {
+
+class HostTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    Result<std::filesystem::path> file = find_scene("probe");
+    ASSERT_TRUE(file) << file.error().text();
+    Result<Scene> loaded = load_scene(file.value());
+    ASSERT_TRUE(loaded) << loaded.error().text();
+    scene = std::move(loaded.value());
+    Result<SampledScene> result = sample_scene(scene, scene.spacing_max);
+    ASSERT_TRUE(result) << result.error().text();
+    sampled = std::move(result.value());
+    plan = make_plan(scene, scene.spacing_max);
+  }
+
+  World world() const { return World(scene, sampled, plan, WorldOptions{1}); }
+
+  /// A host with its channel; the hands are where `place` says, for the whole run.
+  struct Rig {
+    Channel channel;
+    Host host;
+    Rig(const HostTest& test, World made, HostOptions options)
+        : channel(test.scene.grips.size(), initial_message(made), 64 << 20),
+          host(std::move(made), test.scene, channel, options) {}
+  };
+  std::unique_ptr<Rig> rig(HostOptions options) const {
+    options.paced = false;
+    return std::make_unique<Rig>(*this, world(), options);
+  }
+  void hold(Channel& channel) const {
+    PoseMessage m;
+    m.engaged = true;
+    m.pose = channel.bodies().front().bodies.grips[0].pose;
+    channel.pose(0).back() = m;
+    channel.pose(0).publish();
+  }
+
+  Scene scene;
+  SampledScene sampled;
+  Plan plan;
+};
+
+TEST_F(HostTest, RunsForTheTimeAskedAndReportsIt) {
+  HostOptions options;
+  options.until = 0.1;
+  const auto r = rig(options);
+  hold(r->channel);
+  r->host.start();
+  r->host.wait();
+  EXPECT_FALSE(r->host.running());
+  const HostReport& report = r->host.report();
+  const auto expected = static_cast<std::uint64_t>(std::llround(0.1 / plan.time_step));
+  EXPECT_EQ(report.steps, expected);
+  EXPECT_EQ(report.step_time.count(), expected);
+  EXPECT_NEAR(report.simulated, 0.1, plan.time_step);
+  EXPECT_GT(report.wall, 0.0);
+  EXPECT_GT(report.total.total, 0.0);
+  EXPECT_EQ(report.rejected_poses, 0u);
+  EXPECT_EQ(report.status & kStatusInputRejected, 0u);
+  EXPECT_NEAR(report.diagnostics.mass, report.start_mass, 1e-6 * report.start_mass);
+}
+
+TEST_F(HostTest, PublishesPicturesAtTheRateOfSimulatedTime) {
+  HostOptions options;
+  options.until = 0.2;
+  options.picture_rate = 50.0;
+  const auto r = rig(options);
+  r->host.start();
+  r->host.wait();
+  SnapshotQueue& pictures = r->channel.pictures();
+  double expected = 0.0;
+  int count = 0;
+  while (SnapshotPointer picture = pictures.pop(std::chrono::milliseconds(0))) {
+    EXPECT_NEAR(picture->rigid.time, expected, plan.time_step);
+    EXPECT_EQ(picture->positions.size(), sampled.fluid_positions.size());
+    expected += 0.02;
+    count += 1;
+  }
+  EXPECT_EQ(count, 11);
+  EXPECT_TRUE(pictures.finished());
+}
+
+TEST_F(HostTest, PublishesNoPictureWithoutAViewer) {
+  HostOptions options;
+  options.until = 0.05;
+  options.picture_rate = 0.0;
+  const auto r = rig(options);
+  r->host.start();
+  r->host.wait();
+  EXPECT_EQ(r->host.report().pictures, 0u);
+  EXPECT_TRUE(r->channel.pictures().finished());
+}
+
+TEST_F(HostTest, PublishesTheBodiesAfterEveryTick) {
+  HostOptions options;
+  options.until = 0.02;
+  const auto r = rig(options);
+  r->host.start();
+  r->host.wait();
+  ASSERT_TRUE(r->channel.bodies().update());
+  const BodyMessage& last = r->channel.bodies().front();
+  EXPECT_EQ(last.bodies.tick, r->host.report().steps);
+  EXPECT_EQ(last.bodies.bodies.size(), scene.bodies.size());
+  EXPECT_EQ(last.time_step, plan.time_step);
+  EXPECT_EQ(last.rate, 0.0) << "the world has stopped, and says so";
+}
+
+TEST_F(HostTest, ABadPoseSetsAStatusAndTheWorldStaysFinite) {
+  HostOptions options;
+  options.until = 0.02;
+  const auto r = rig(options);
+  PoseMessage m;
+  m.engaged = true;
+  m.pose.position.x = std::numeric_limits<double>::quiet_NaN();
+  r->channel.pose(0).back() = m;
+  r->channel.pose(0).publish();
+  r->host.start();
+  r->host.wait();
+  EXPECT_EQ(r->host.report().rejected_poses, 1u);
+  EXPECT_NE(r->host.report().status & kStatusInputRejected, 0u);
+  EXPECT_EQ(r->host.report().status & kStatusNonFinite, 0u);
+  ASSERT_TRUE(r->channel.bodies().update());
+  for (const BodyState& body : r->channel.bodies().front().bodies.bodies) {
+    EXPECT_TRUE(std::isfinite(glm::length(body.pose.position)));
+  }
+}
+
+TEST_F(HostTest, TheSameInputGivesTheSameWorld) {
+  HostOptions options;
+  options.until = 0.1;
+  std::uint64_t hashes[2];
+  for (std::uint64_t& hash : hashes) {
+    const auto r = rig(options);
+    hold(r->channel);
+    r->host.start();
+    r->host.wait();
+    hash = r->host.world().hash();
+  }
+  EXPECT_EQ(hashes[0], hashes[1]);
+}
+
+TEST_F(HostTest, StopsWhenAskedAndGoesOnAfterAPause) {
+  HostOptions options;  // no end
+  const auto r = rig(options);
+  r->host.pause(true);
+  r->host.start();
+  EXPECT_TRUE(r->host.running());
+  EXPECT_EQ(r->host.progress().tick, 0u) << "paused from the start";
+  r->host.pause(false);
+  while (r->host.progress().tick < 10) std::this_thread::yield();
+  r->host.request_stop();
+  r->host.wait();
+  EXPECT_FALSE(r->host.running());
+  EXPECT_GE(r->host.report().steps, 10u);
+}
+
+}  // namespace
+}  // namespace slosh

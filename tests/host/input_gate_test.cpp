@@ -1,0 +1,138 @@
+#include "host/input_gate.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace slosh {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+Scene scene_with_grips(std::size_t count) {
+  Scene scene;
+  scene.domain_min = {-1, -1, -1};
+  scene.domain_max = {1, 1, 1};
+  scene.grips.resize(count);
+  for (Grip& grip : scene.grips) grip.body = 0;
+  return scene;
+}
+
+PoseMessage message(std::uint32_t device, double x = 0.0, std::int64_t stamp_ns = 0) {
+  PoseMessage m;
+  m.device = device;
+  m.engaged = true;
+  m.stamp_ns = stamp_ns;
+  m.pose.position.x = x;
+  return m;
+}
+
+TEST(InputGate, RefusesWhatIsNoPose) {
+  InputGate gate(scene_with_grips(1));
+  PoseMessage m = message(0);
+  m.pose.position.y = kNaN;
+  EXPECT_FALSE(gate.accept(m));
+  EXPECT_EQ(gate.last_fault(), PoseFault::kNonFinite);
+  m = message(0);
+  m.pose.orientation.z = std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(gate.accept(m));
+  m = message(0);
+  m.twist.angular.x = kNaN;
+  EXPECT_FALSE(gate.accept(m));
+  m = message(0);
+  m.pose.orientation = glm::dquat(0, 0, 0, 0);
+  EXPECT_FALSE(gate.accept(m));
+  EXPECT_EQ(gate.last_fault(), PoseFault::kNotARotation);
+  m = message(0, 100.0);
+  EXPECT_FALSE(gate.accept(m));
+  EXPECT_EQ(gate.last_fault(), PoseFault::kOutOfRange);
+  m = message(0);
+  m.twist.linear.z = 2.0 * kHandleSpeed;
+  EXPECT_FALSE(gate.accept(m));
+  EXPECT_EQ(gate.last_fault(), PoseFault::kTooFast);
+  EXPECT_FALSE(gate.accept(message(7))) << "no such device";
+  EXPECT_EQ(gate.rejected(), 7u);
+  EXPECT_TRUE(gate.accept(message(0)));
+}
+
+TEST(InputGate, KeepsTheLastGoodPoseStandingStill) {
+  const Scene scene = scene_with_grips(1);
+  InputGate gate(scene);
+  Channel channel(1, BodyMessage{}, 1 << 20);
+  BodySnapshot now;
+  now.grips.resize(1);
+
+  PoseMessage m = message(0, 0.25);
+  m.twist.linear.x = 1.0;
+  channel.pose(0).back() = m;
+  channel.pose(0).publish();
+  EXPECT_EQ(gate.take(channel, now)[0].twist.linear.x, 1.0);
+
+  m.pose.position.x = kNaN;
+  channel.pose(0).back() = m;
+  channel.pose(0).publish();
+  const HandleInput held = gate.take(channel, now)[0];
+  EXPECT_EQ(held.pose.position.x, 0.25);
+  EXPECT_EQ(held.twist.linear.x, 0.0);
+  EXPECT_TRUE(held.engaged);
+  EXPECT_EQ(gate.rejected(), 1u);
+}
+
+TEST(InputGate, AJumpIsRefusedUntilItCouldHaveBeenTravelled) {
+  InputGate gate(scene_with_grips(1));
+  EXPECT_TRUE(gate.accept(message(0, 0.0, 0)));
+  EXPECT_FALSE(gate.accept(message(0, 0.9, 1'000'000))) << "0.9 m in a millisecond";
+  EXPECT_EQ(gate.last_fault(), PoseFault::kTooFast);
+  EXPECT_TRUE(gate.accept(message(0, 0.9, 100'000'000))) << "0.9 m in 0.1 s";
+}
+
+TEST(InputGate, NormalisesASlightlyOffQuaternion) {
+  const Scene scene = scene_with_grips(1);
+  InputGate gate(scene);
+  Channel channel(1, BodyMessage{}, 1 << 20);
+  BodySnapshot now;
+  now.grips.resize(1);
+  PoseMessage m = message(0);
+  m.pose.orientation = glm::dquat(1.005, 0, 0, 0);
+  channel.pose(0).back() = m;
+  channel.pose(0).publish();
+  EXPECT_DOUBLE_EQ(glm::length(gate.take(channel, now)[0].pose.orientation), 1.0);
+}
+
+TEST(InputGate, EachDeviceKeepsItsPlace) {
+  const Scene scene = scene_with_grips(3);
+  InputGate gate(scene);
+  Channel channel(3, BodyMessage{}, 1 << 20);
+  BodySnapshot now;
+  now.grips.resize(3);
+  channel.pose(2).back() = message(2, 0.5);
+  channel.pose(2).publish();
+  const std::span<const HandleInput> input = gate.take(channel, now);
+  ASSERT_EQ(input.size(), 3u);
+  EXPECT_FALSE(input[0].engaged);
+  EXPECT_FALSE(input[1].engaged);
+  EXPECT_EQ(input[0].scale, 0.0);
+  EXPECT_TRUE(input[2].engaged);
+  EXPECT_EQ(input[2].pose.position.x, 0.5);
+}
+
+TEST(InputGate, RampsAGripThatIsTakenFarFromTheBody) {
+  const Scene scene = scene_with_grips(2);
+  InputGate gate(scene);
+  Channel channel(2, BodyMessage{}, 1 << 20);
+  BodySnapshot now;
+  now.grips.resize(2);
+  channel.pose(0).back() = message(0, 0.0);   // on the grip
+  channel.pose(0).publish();
+  channel.pose(1).back() = message(1, 0.10);  // 100 N away from it
+  channel.pose(1).publish();
+  std::span<const HandleInput> input = gate.take(channel, now);
+  EXPECT_EQ(input[0].scale, 1.0);
+  EXPECT_EQ(input[1].scale, 0.0);
+  now.time = 0.25;
+  input = gate.take(channel, now);
+  EXPECT_NEAR(input[1].scale, 0.5, 1e-12);
+}
+
+}  // namespace
+}  // namespace slosh

@@ -1,0 +1,83 @@
+#include "net/channel.h"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+namespace slosh {
+namespace {
+
+SnapshotPointer picture(std::size_t particles, double time = 0.0) {
+  auto snapshot = std::make_shared<Snapshot>();
+  snapshot->positions.resize(particles);
+  snapshot->rigid.time = time;
+  return snapshot;
+}
+
+TEST(SnapshotQueue, HandsPicturesOnInOrder) {
+  SnapshotQueue queue(1 << 20);
+  for (int i = 0; i < 5; ++i) EXPECT_TRUE(queue.push(picture(10, i)));
+  EXPECT_EQ(queue.waiting(), 5u);
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(queue.pop(std::chrono::milliseconds(0))->rigid.time, i);
+  EXPECT_EQ(queue.pop(std::chrono::milliseconds(0)), nullptr);
+}
+
+TEST(SnapshotQueue, DropsWhatDoesNotFitAndCountsIt) {
+  const std::size_t one = size_in_bytes(*picture(1000));
+  SnapshotQueue queue(2 * one);
+  EXPECT_TRUE(queue.push(picture(1000)));
+  EXPECT_TRUE(queue.push(picture(1000)));
+  EXPECT_FALSE(queue.push(picture(1000)));
+  EXPECT_EQ(queue.dropped(), 1u);
+  EXPECT_NE(queue.pop(std::chrono::milliseconds(0)), nullptr);
+  EXPECT_TRUE(queue.push(picture(1000))) << "room was made";
+}
+
+TEST(SnapshotQueue, APictureLargerThanTheBoundStillGetsThroughAlone) {
+  SnapshotQueue queue(10);
+  EXPECT_TRUE(queue.push(picture(1000)));
+  EXPECT_FALSE(queue.push(picture(1)));
+}
+
+TEST(SnapshotQueue, NewestThrowsTheOthersAway) {
+  SnapshotQueue queue(1 << 20);
+  EXPECT_EQ(queue.pop_newest(), nullptr);
+  for (int i = 0; i < 4; ++i) queue.push(picture(10, i));
+  EXPECT_EQ(queue.pop_newest()->rigid.time, 3.0);
+  EXPECT_EQ(queue.waiting(), 0u);
+}
+
+TEST(SnapshotQueue, ClosingWakesAWaitingReaderAfterTheLastPicture) {
+  SnapshotQueue queue(1 << 20);
+  std::thread writer([&] {
+    queue.push(picture(10, 1.0));
+    queue.close();
+  });
+  int pictures = 0;
+  while (!queue.finished()) pictures += queue.pop(std::chrono::milliseconds(10000)) != nullptr;
+  writer.join();
+  EXPECT_EQ(pictures, 1);
+}
+
+TEST(Channel, CarriesPosesUpAndBodiesDown) {
+  BodyMessage initial;
+  initial.bodies.bodies.resize(2);
+  Channel channel(3, initial, 1 << 20);
+  ASSERT_EQ(channel.devices(), 3u);
+  EXPECT_EQ(channel.bodies().front().bodies.bodies.size(), 2u) << "the peer sees the start before any step";
+  EXPECT_EQ(channel.pose(2).front().device, 2u);
+
+  channel.pose(1).back().pose.position.y = 4.0;
+  channel.pose(1).publish();
+  EXPECT_FALSE(channel.pose(0).update());
+  ASSERT_TRUE(channel.pose(1).update());
+  EXPECT_EQ(channel.pose(1).front().pose.position.y, 4.0);
+
+  channel.bodies().back().bodies.tick = 9;
+  channel.bodies().publish();
+  ASSERT_TRUE(channel.bodies().update());
+  EXPECT_EQ(channel.bodies().front().bodies.tick, 9u);
+}
+
+}  // namespace
+}  // namespace slosh

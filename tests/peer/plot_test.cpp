@@ -1,0 +1,103 @@
+#include "peer/output/plot.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <csignal>
+#include <fstream>
+
+#include "peer/output/recorder.h"
+#include "peer/palette.h"
+#include "render/image.h"
+
+namespace slosh {
+namespace {
+
+std::filesystem::path temporary(const std::string& name) {
+  return std::filesystem::path(::testing::TempDir()) / ("plot_test_" + name);
+}
+
+void write_rows(const std::filesystem::path& file, int rows) {
+  std::ofstream out(file);
+  out << kWrenchesHeader << '\n';
+  for (int i = 0; i < rows; ++i) {
+    const double t = 0.01 * i;
+    out << t << ",0," << 0.1 * std::sin(t) << ",-10,0,0,0,0.2\n";
+    out << t << ",1,0," << -10 - 3 * std::sin(t) << ",0,0.1,0,0\n";
+  }
+}
+
+TEST(ReadWrenches, SortsRowsByDevice) {
+  const std::filesystem::path file = temporary("sort.csv");
+  write_rows(file, 50);
+  const Result<std::vector<WrenchSeries>> series = read_wrenches(file);
+  ASSERT_TRUE(series) << series.error().text();
+  ASSERT_EQ(series.value().size(), 2u);
+  EXPECT_EQ(series.value()[0].time.size(), 50u);
+  EXPECT_EQ(series.value()[1].on_hand[0].force.y, -10.0);
+  EXPECT_EQ(series.value()[0].on_hand[7].torque.z, 0.2);
+}
+
+TEST(ReadWrenches, NamesTheLineThatIsCutShort) {
+  const std::filesystem::path file = temporary("cut.csv");
+  std::ofstream(file) << kWrenchesHeader << "\n0,0,1,2,3,4,5,6\n0.002,0,1,2";
+  const Result<std::vector<WrenchSeries>> series = read_wrenches(file);
+  ASSERT_FALSE(series);
+  EXPECT_NE(series.error().where.find("line 3"), std::string::npos);
+}
+
+TEST(Thinned, KeepsMeansAndTheNumberOfRows) {
+  WrenchSeries series;
+  for (int i = 0; i < 1000; ++i) {
+    series.time.push_back(i);
+    series.on_hand.push_back({{static_cast<double>(i), 0, 0}, {}});
+  }
+  const WrenchSeries thin = thinned(series, 100);
+  ASSERT_EQ(thin.time.size(), 100u);
+  EXPECT_DOUBLE_EQ(thin.time[0], 4.5);
+  EXPECT_DOUBLE_EQ(thin.on_hand[99].force.x, 994.5);
+  EXPECT_EQ(thinned(series, 5000).time.size(), 1000u);
+}
+
+TEST(PlotScript, ForceAboveTorqueBelowOneColourADevice) {
+  const std::filesystem::path file = temporary("script.csv");
+  write_rows(file, 100);
+  const std::string script =
+      plot_script(read_wrenches(file).value(), {"left \"hand\"", "right"}, "a title", "out.png");
+  EXPECT_LT(script.find("force on the hand, N"), script.find("torque on the hand, N·m"));
+  EXPECT_NE(script.find(device_color(0).hex), std::string::npos);
+  EXPECT_NE(script.find(device_color(1).hex), std::string::npos);
+  EXPECT_NE(script.find("left \\\"hand\\\": magnitude"), std::string::npos) << "quotes are escaped";
+  EXPECT_NE(script.find("right: along y"), std::string::npos) << "the force varies most along y";
+  EXPECT_NE(script.find("set output \"out.png\""), std::string::npos);
+}
+
+TEST(PlotWrenches, GnuplotDrawsBothColours) {
+  std::signal(SIGPIPE, SIG_IGN);
+  const std::filesystem::path file = temporary("draw.csv");
+  const std::filesystem::path png = temporary("draw.png");
+  write_rows(file, 300);
+  const Result<bool> drawn = plot_wrenches(file, {"left", "right"}, "test", png);
+  ASSERT_TRUE(drawn) << drawn.error().text();
+  const Result<Image> image = read_png(png);
+  ASSERT_TRUE(image) << image.error().text();
+  EXPECT_EQ(image.value().width, 1200);
+  int red = 0;
+  int blue = 0;
+  for (std::size_t i = 0; i + 3 < image.value().rgba.size(); i += 4) {
+    const std::uint8_t* p = &image.value().rgba[i];
+    red += p[0] > 180 && p[1] < 90 && p[2] < 90;
+    blue += p[0] < 70 && p[1] < 130 && p[2] > 150;
+  }
+  EXPECT_GT(red, 1000);
+  EXPECT_GT(blue, 1000);
+}
+
+TEST(PlotWrenches, NothingRecordedIsAnError) {
+  const std::filesystem::path file = temporary("nothing.csv");
+  std::ofstream(file) << kWrenchesHeader << '\n';
+  EXPECT_FALSE(plot_wrenches(file, {}, "test", temporary("nothing.png")));
+}
+
+}  // namespace
+}  // namespace slosh

@@ -1,0 +1,83 @@
+// A one-grip scene and a channel, without a world: the servo against made-up body states.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "net/clock.h"
+#include "peer/haptics/servo.h"
+
+namespace slosh::test {
+
+constexpr double kTick = 0.002;  // the made-up world's time step
+
+/// Reports what the test sets, remembers what it was sent.
+class FakeDevice final : public Device {
+ public:
+  DeviceReport next;
+  DeviceLimits limit;
+  Wrench last;
+  double last_time = -1.0;
+
+  DeviceReport read(const DeviceMoment& moment) noexcept override {
+    last_time = moment.time;
+    return next;
+  }
+  void write(const Wrench& on_hand) noexcept override { last = on_hand; }
+  DeviceLimits limits() const override { return limit; }
+  std::string kind() const override { return "fake"; }
+};
+
+inline Scene one_grip_scene() {
+  Scene scene;
+  scene.bodies.resize(1);
+  Grip grip;
+  grip.name = "grip";
+  grip.body = 0;
+  grip.stiffness = 1000.0;
+  grip.damping = 20.0;
+  grip.rotational_stiffness = 10.0;
+  grip.rotational_damping = 0.2;
+  scene.grips.push_back(grip);
+  return scene;
+}
+
+struct ServoKit {
+  Scene scene = one_grip_scene();
+  Channel channel{1, first(), 1 << 20};
+  FakeDevice* device = nullptr;
+  std::unique_ptr<Servo> servo;
+
+  explicit ServoKit(DeviceLimits limits = {}, ServoOptions options = {}) {
+    auto made = std::make_unique<FakeDevice>();
+    made->limit = limits;
+    device = made.get();
+    std::vector<std::unique_ptr<Device>> devices;
+    devices.push_back(std::move(made));
+    servo = std::make_unique<Servo>(scene, std::move(devices), channel, options);
+  }
+
+  static BodyMessage first() {
+    BodyMessage message;
+    message.time_step = kTick;
+    message.bodies.bodies.resize(1);
+    message.bodies.grips.resize(1);
+    return message;
+  }
+
+  /// A body state of simulated time `time`, published at the same wall time.
+  void publish(double time, const Pose& grip = {}, const Twist& twist = {}, double rate = 1.0) {
+    BodyMessage& message = channel.bodies().back();
+    message = first();
+    message.stamp_ns = to_nanoseconds(time);
+    message.rate = rate;
+    message.bodies.tick = static_cast<std::uint64_t>(time / kTick + 0.5);
+    message.bodies.time = time;
+    message.bodies.grips[0].pose = grip;
+    message.bodies.grips[0].twist = twist;
+    channel.bodies().publish();
+  }
+  void tick(double wall) { servo->tick(to_nanoseconds(wall)); }
+};
+
+}  // namespace slosh::test

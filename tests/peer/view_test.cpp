@@ -1,0 +1,113 @@
+// Camera, mouse hand and rates: no renderer needed.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "peer/hud/rates.h"
+#include "peer/view/frame_builder.h"
+#include "peer/view/mouse_hand.h"
+#include "peer/view/orbit_camera.h"
+
+namespace slosh {
+namespace {
+
+Camera camera() {
+  Camera c;
+  c.eye = {0.0, 0.5, 1.0};
+  c.target = {0.0, 0.1, 0.0};
+  return c;
+}
+
+glm::vec3 clip(const View& view, const glm::dvec3& point) {
+  const glm::vec4 p = view.projection * view.view * glm::vec4(glm::vec3(point), 1.0f);
+  return glm::vec3(p) / p.w;
+}
+
+TEST(OrbitCamera, StartsAsTheSceneSays) {
+  const OrbitCamera orbit(camera());
+  EXPECT_NEAR(glm::distance(orbit.eye(), camera().eye), 0.0, 1e-12);
+  const glm::vec3 middle = clip(orbit.view(1.5), camera().target);
+  EXPECT_NEAR(middle.x, 0.0f, 1e-5f);
+  EXPECT_NEAR(middle.y, 0.0f, 1e-5f);
+}
+
+TEST(OrbitCamera, TurningKeepsTheDistanceAndTheTarget) {
+  OrbitCamera orbit(camera());
+  const double distance = orbit.distance();
+  orbit.turn(1.0, 9.0);  // as far up as it goes
+  EXPECT_NEAR(glm::distance(orbit.eye(), orbit.target()), distance, 1e-12);
+  EXPECT_TRUE(std::isfinite(orbit.view(1.0).view[0][0]));
+  EXPECT_GT(orbit.up().y, 0.0);
+  orbit.reset();
+  EXPECT_NEAR(glm::distance(orbit.eye(), camera().eye), 0.0, 1e-12);
+}
+
+TEST(OrbitCamera, DraggingMovesTheWorldWithTheMouse) {
+  OrbitCamera orbit(camera());
+  InputState input;
+  input.mouse_delta = {50.0f, 0.0f};
+  input.buttons[static_cast<std::size_t>(MouseButton::kRight)] = true;
+  orbit.follow(input, 500);
+  EXPECT_GT(clip(orbit.view(1.0), camera().target).x, 0.0f) << "what was in the middle went right";
+  input.hud_wants_mouse = true;
+  const glm::dvec3 eye = orbit.eye();
+  orbit.follow(input, 500);
+  EXPECT_EQ(orbit.eye(), eye) << "the HUD has the mouse";
+}
+
+TEST(MouseHand, StaysUnderThePointer) {
+  const OrbitCamera orbit(camera());
+  Pose start;
+  start.position = {0.1, 0.2, 0.3};
+  MouseHand hand(start);
+  InputState input;
+  input.mouse_delta = {30.0f, -20.0f};  // right and up
+  const int height = 600;
+  EXPECT_TRUE(hand.follow(input, orbit, height));
+  const glm::vec3 before = clip(orbit.view(1.0), start.position);
+  const glm::vec3 after = clip(orbit.view(1.0), hand.wanted().position);
+  EXPECT_NEAR((after.x - before.x) * 0.5f * height, 30.0f, 0.2f);
+  EXPECT_NEAR((after.y - before.y) * 0.5f * height, 20.0f, 0.2f);
+  EXPECT_FALSE(hand.follow(InputState{}, orbit, height));
+}
+
+TEST(MouseHand, TheWheelMovesAwayAndTheRightButtonTurns) {
+  const OrbitCamera orbit(camera());
+  MouseHand hand(Pose{});
+  InputState input;
+  input.scroll.y = 2.0f;
+  hand.follow(input, orbit, 600);
+  EXPECT_GT(glm::dot(hand.wanted().position, orbit.forward()), 0.0);
+  input = {};
+  input.mouse_delta = {10.0f, 0.0f};
+  input.buttons[static_cast<std::size_t>(MouseButton::kRight)] = true;
+  const glm::dvec3 place = hand.wanted().position;
+  hand.follow(input, orbit, 600);
+  EXPECT_EQ(hand.wanted().position, place);
+  EXPECT_GT(glm::angle(hand.wanted().orientation), 0.01);
+}
+
+TEST(RateLog, AnswersForTheTimeOfAPicture) {
+  RateLog log;
+  EXPECT_EQ(log.at(1.0).real_time, 0.0);
+  for (int i = 0; i < 5; ++i) log.add({0.1 * i, 1.0 + i, 0, 0, 0});
+  EXPECT_EQ(log.at(0.0).real_time, 1.0);
+  EXPECT_EQ(log.at(0.25).real_time, 3.0);
+  EXPECT_EQ(log.at(9.0).real_time, 5.0);
+}
+
+TEST(UnitBall, IsClosedRoundAndFacesOutward) {
+  const TriangleMesh ball = unit_ball();
+  double volume = 0.0;
+  for (const glm::uvec3& t : ball.triangles) {
+    const glm::dvec3 a = ball.positions[t.x];
+    const glm::dvec3 b = ball.positions[t.y];
+    const glm::dvec3 c = ball.positions[t.z];
+    volume += glm::dot(a, glm::cross(b, c)) / 6.0;
+  }
+  EXPECT_GT(volume, 0.9 * 4.18879) << "positive: counter-clockwise from outside";
+  EXPECT_LT(volume, 4.18879);
+}
+
+}  // namespace
+}  // namespace slosh
