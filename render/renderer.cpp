@@ -10,6 +10,7 @@
 #include "render/passes/arrow_pass.h"
 #include "render/passes/display_pass.h"
 #include "render/passes/fluid_passes.h"
+#include "render/passes/fluid_shadow_pass.h"
 #include "render/passes/frame_block.h"
 #include "render/passes/hud_pass.h"
 #include "render/passes/meshes.h"
@@ -58,6 +59,7 @@ struct Renderer::Parts {
   Splats splats;
   Targets targets;
   std::optional<ShadowPass> shadow_pass;
+  std::optional<FluidShadowPass> fluid_shadow_pass;
   std::optional<ScenePass> scene_pass;
   std::optional<FluidPasses> fluid_passes;
   std::optional<ArrowPass> arrow_pass;
@@ -97,7 +99,10 @@ Result<bool> Renderer::Parts::fit_to_options() {
     if (!scene) return scene.error();
     auto fluid = FluidPasses::create(want_fast);
     if (!fluid) return fluid.error();
+    auto fluid_shadow = FluidShadowPass::create(want_fast);
+    if (!fluid_shadow) return fluid_shadow.error();
     scene_pass = std::move(scene.value());
+    fluid_shadow_pass = std::move(fluid_shadow.value());
     fluid_passes = std::move(fluid.value());
     drew_fluid = false;
     fast = want_fast;
@@ -160,6 +165,7 @@ void Renderer::draw(const Frame& frame) {
   if (p.shadow_pass) {
     p.run("shadow map", [&] { shadow = p.shadow_pass->draw(frame, p.meshes); });
   }
+  p.run("fluid shadow", [&] { p.fluid_shadow_pass->draw(frame, p.options, shadow); });
   p.uniforms.upload(make_frame_block(frame, p.options, shadow), frame.fluids);
 
   p.run("prepare splats", [&] {

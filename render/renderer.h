@@ -25,7 +25,8 @@ enum class Display : std::uint8_t {
 /// How much is spent on looks where the paper leaves it open.
 enum class Quality : std::uint8_t {
   kAuto,  ///< kFast where a CPU draws (llvmpipe), else kFull
-  kFast,  ///< one shadow tap, shadow map of half the size, no occlusion, no glass seen through the fluid
+  kFast,  ///< one shadow tap, shadow map of half the size, no occlusion, only the
+          ///< sides of glass that face the eye and are before the fluid
   kFull,
 };
 
@@ -45,7 +46,8 @@ struct RenderOptions {
 
   int shadow_size = 1024;         ///< texels a side of the light's shadow map, 0 = no shadows, up to 8192
   bool ambient_occlusion = true;  ///< darken creases of the meshes (kFull)
-  bool draw_background = true;    ///< false: black behind everything
+  bool fluid_shadow = true;  ///< beyond the paper: fluid dims the light that passes it; needs shadow_size > 0
+  bool draw_background = true;  ///< false: black behind everything
   Quality quality = Quality::kAuto;
   Display display = Display::kAces;
   float exposure = 1.0f;  ///< factor on scene-linear light before the display transform, > 0

@@ -40,7 +40,8 @@ FrameBlock make_frame_block(const Frame& frame, const RenderOptions& options, co
                         shadow.size > 0 ? 1.0f / static_cast<float>(shadow.size) : 0.0f};
   block.camera = {glm::vec3(block.world_from_eye[3]), frame.view.far_plane};
   block.splat = {options.splat_scale * frame.particle_radius, 0.5f * projection[1][1] * size.y,
-                 1.0f / (options.bilateral_range * frame.particle_radius), 0.0f};
+                 1.0f / (options.bilateral_range * frame.particle_radius),
+                 1.0f / (shadow.depth_per_metre * options.splat_scale * frame.particle_radius)};
   block.key_light = {studio.key_light, 0.0f};
   block.sky = {studio.sky, 0.0f};
   block.horizon = {studio.horizon, 0.0f};

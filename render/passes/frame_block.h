@@ -43,10 +43,12 @@ static_assert(sizeof(FrameBlock) == 16 * (4 * 4 + 12));
 /// Looks a scene can mix: four bits beside the depth carry the index.
 inline constexpr std::size_t kMaxFluidLooks = 16;
 
-/// Light's matrix to shadow texture coordinates, or none.
+/// How the light sees the scene.
 struct ShadowView {
-  glm::mat4 shadow_from_world{1.0f};
-  int size = 0;  ///< texels a side, 0 = no shadows
+  glm::mat4 clip_from_world{1.0f};
+  glm::mat4 shadow_from_world{1.0f};  ///< to the map's texture coordinates and depth, 0–1
+  float depth_per_metre = 1.0f;       ///< of the map's depth
+  int size = 0;                       ///< texels a side, 0 = no shadows
 };
 
 /// Unit vector towards the light; straight up if the frame's direction is zero or not finite.

@@ -25,6 +25,7 @@ bool has_translucent(const Frame& frame) {
 
 Result<ScenePass> ScenePass::create(bool fast) {
   ScenePass pass;
+  pass.fast_ = fast;
   const std::vector<std::string> quality(fast ? 1 : 0, "FAST");
   const auto load = [](gl::Program& into, const char* vertex, const char* fragment,
                        std::vector<std::string> defines = {}) -> Result<bool> {
@@ -123,6 +124,7 @@ void ScenePass::draw_translucent(const Frame& frame, const MeshStore& meshes, co
   for (const auto& [distance, instance] : sorted) {
     set_look(program, *instance);
     for (GLenum culled : {GL_FRONT, GL_BACK}) {  // the far side first
+      if (fast_ && culled == GL_FRONT) continue;
       glCullFace(culled);
       meshes.draw(instance->mesh);
     }

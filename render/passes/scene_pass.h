@@ -26,6 +26,7 @@ class ScenePass {
                         const gl::Texture* fluid, bool behind);
 
  private:
+  bool fast_ = false;  ///< glass: only the sides that face the eye
   gl::Program opaque_;
   gl::Program background_;
   gl::Program occlusion_;

@@ -17,9 +17,7 @@ Bounds caster_bounds(const Frame& frame, const MeshStore& meshes) {
     if (!meshes.has(instance.mesh) || instance.look.opacity < 1.0f) continue;
     const Bounds& own = meshes.bounds(instance.mesh);
     for (int corner = 0; corner < 8; ++corner) {
-      const glm::vec3 at((corner & 1) ? own.high.x : own.low.x, (corner & 2) ? own.high.y : own.low.y,
-                         (corner & 4) ? own.high.z : own.low.z);
-      const glm::vec3 world(instance.model * glm::vec4(at, 1.0f));
+      const glm::vec3 world(instance.model * glm::vec4(box_corner(own, corner), 1.0f));
       box.add(glm::clamp(world, eye - frame.view.far_plane, eye + frame.view.far_plane));
     }
   }
@@ -28,15 +26,18 @@ Bounds caster_bounds(const Frame& frame, const MeshStore& meshes) {
 
 }  // namespace
 
+glm::vec3 box_corner(const Bounds& box, int corner) {
+  return {(corner & 1) ? box.high.x : box.low.x, (corner & 2) ? box.high.y : box.low.y,
+          (corner & 4) ? box.high.z : box.low.z};
+}
+
 glm::mat4 light_clip_from_world(const Bounds& box, const glm::vec3& to_light, int size) {
   const glm::vec3 up =
       std::abs(to_light.y) > 0.99f ? glm::vec3(0.0f, 0.0f, 1.0f) : glm::vec3(0.0f, 1.0f, 0.0f);
   const glm::mat4 light = glm::lookAt(glm::vec3(0.0f), -to_light, up);
   Bounds seen;
   for (int corner = 0; corner < 8; ++corner) {
-    const glm::vec3 at((corner & 1) ? box.high.x : box.low.x, (corner & 2) ? box.high.y : box.low.y,
-                       (corner & 4) ? box.high.z : box.low.z);
-    seen.add(glm::vec3(light * glm::vec4(at, 1.0f)));
+    seen.add(glm::vec3(light * glm::vec4(box_corner(box, corner), 1.0f)));
   }
   // Round the extent up and the centre to whole texels: a body that moves the box must not make the edges
   // crawl.
@@ -88,7 +89,10 @@ ShadowView ShadowPass::draw(const Frame& frame, const MeshStore& meshes) {
 
   const glm::mat4 to_texture =
       glm::translate(glm::mat4(1.0f), glm::vec3(0.5f)) * glm::scale(glm::mat4(1.0f), glm::vec3(0.5f));
-  return {to_texture * clip_from_world, size_};
+  // An orthographic view's depth rises by this a metre.
+  const float depth_per_metre =
+      0.5f * glm::length(glm::vec3(clip_from_world[0][2], clip_from_world[1][2], clip_from_world[2][2]));
+  return {clip_from_world, to_texture * clip_from_world, depth_per_metre, size_};
 }
 
 }  // namespace slosh

@@ -30,4 +30,7 @@ class ShadowPass {
 /// box.
 glm::mat4 light_clip_from_world(const Bounds& box, const glm::vec3& to_light, int size);
 
+/// The eight corners of a box, one by one.
+glm::vec3 box_corner(const Bounds& box, int corner);
+
 }  // namespace slosh

@@ -48,14 +48,17 @@ void main() {
   vec3 fluid_color = look.color_refraction.rgb;
   if (switches.y > 0.5) {
     vec3 world = (world_from_eye * vec4(eye, 1.0)).xyz;
-    light = light_reaching(world, world_n);
+    light = light_past_meshes(world);
     float wrapped = max((dot(n, to_light_eye.xyz) + 0.3) / 1.3, 0.0);
     fluid_color *= key_light.rgb * (0.31830989 * wrapped * light) + ambient_light(world_n);
   }
   vec3 seen = seen_through(fluid_color, behind, look.extinction.rgb, thickness);
   if (switches.x > 0.5) {
-    vec3 mirror = studio(mat3(world_from_eye) * reflect(-to_eye, n));
-    seen = mix(seen, mirror, schlick(0.02, dot(n, to_eye)));
+    // What a surface reflects from below the horizon is more fluid, or its vessel: never darker than the horizon here,
+    // or the few normals that are wrong at an outline would stand out.
+    vec3 way = mat3(world_from_eye) * reflect(-to_eye, n);
+    vec3 mirror = studio(vec3(way.x, max(way.y, 0.0), way.z));
+    seen = mix(seen, mirror, schlick(0.02, max(dot(n, to_eye), 0.1)));
   }
   float glint = blinn(n, to_light_eye.xyz, to_eye, look.specular_exponent.a) * light;
   color = vec4(seen + look.specular_exponent.rgb * glint, 0.0);

@@ -2,21 +2,33 @@
 #include "frame_block.glsl"
 
 layout(binding = 8) uniform sampler2DShadow shadow_map;
-layout(binding = 9) uniform sampler2D fluid_shadow;  // thickness of fluid towards the light, m; light depth of its top
+layout(binding = 9) uniform sampler2D fluid_shadow;  // dimming per channel; 1 − depth of the fluid's top (fluid_shadow.frag)
 
-float light_reaching(vec3 world, vec3 normal) {
-  if (to_light_world.w < 0.5) return 1.0;
-  float texel = to_light_eye.w;
-  vec4 at = shadow_from_world * vec4(world, 1.0);
-  if (any(greaterThan(abs(at.xyz - 0.5), vec3(0.5)))) return 1.0;
+vec3 in_shadow_map(vec3 world) { return (shadow_from_world * vec4(world, 1.0)).xyz; }
+
+float light_past_meshes(vec3 world) {
+  vec3 at = in_shadow_map(world);
+  float reaching;
 #ifdef FAST
-  return texture(shadow_map, at.xyz);
+  reaching = texture(shadow_map, at);
 #else
   // Four bilinear taps, turned so that their footprints do not line up with the texels.
-  float sum = texture(shadow_map, vec3(at.xy + texel * vec2(0.55, 1.3), at.z));
-  sum += texture(shadow_map, vec3(at.xy + texel * vec2(-1.3, 0.55), at.z));
-  sum += texture(shadow_map, vec3(at.xy + texel * vec2(-0.55, -1.3), at.z));
-  sum += texture(shadow_map, vec3(at.xy + texel * vec2(1.3, -0.55), at.z));
-  return 0.25 * sum;
+  float texel = to_light_eye.w;
+  reaching = texture(shadow_map, vec3(at.xy + texel * vec2(0.55, 1.3), at.z));
+  reaching += texture(shadow_map, vec3(at.xy + texel * vec2(-1.3, 0.55), at.z));
+  reaching += texture(shadow_map, vec3(at.xy + texel * vec2(-0.55, -1.3), at.z));
+  reaching += texture(shadow_map, vec3(at.xy + texel * vec2(1.3, -0.55), at.z));
+  reaching *= 0.25;
 #endif
+  bool outside = to_light_world.w < 0.5 || any(greaterThan(abs(at - 0.5), vec3(0.5)));
+  return outside ? 1.0 : reaching;
+}
+
+// The same for fluid, per channel: exp of what the light passes through. The whole of it counts for a point anywhere
+// below the fluid's top, so a point in the middle of the fluid is a little too dark. Beyond the paper.
+vec3 light_past_fluid(vec3 world) {
+  vec3 at = in_shadow_map(world);
+  vec4 dimming = texture(fluid_shadow, at.xy);
+  float below = clamp((at.z - (1.0 - dimming.a)) * splat.w, 0.0, 1.0);
+  return to_light_world.w < 0.5 ? vec3(1.0) : exp(-dimming.rgb * below);
 }

@@ -1,0 +1,83 @@
+#include "render/passes/fluid_shadow_pass.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace slosh {
+namespace {
+
+/// Texture unit of shaders/shadow.glsl.
+constexpr GLuint kFluidShadowUnit = 9;
+
+}  // namespace
+
+Result<FluidShadowPass> FluidShadowPass::create(bool fast) {
+  auto program = gl::Program::create("fluid_shadow.vert", "fluid_shadow.frag");
+  if (!program) return program.error();
+  FluidShadowPass pass;
+  pass.program_ = std::move(program.value());
+  pass.size_ = fast ? 256 : 512;
+  pass.most_ = fast ? 4000 : 1000000;
+  pass.map_ = gl::make_texture(glm::ivec2(pass.size_), GL_RGBA16F, GL_LINEAR);
+  pass.target_ = gl::make_framebuffer({&pass.map_});
+  pass.array_ = gl::make_vertex_array();
+  glEnableVertexArrayAttrib(pass.array_.name(), 0);
+  glVertexArrayAttribFormat(pass.array_.name(), 0, 4, GL_FLOAT, GL_FALSE, 0);
+  glVertexArrayAttribBinding(pass.array_.name(), 0, 0);
+  return pass;
+}
+
+void FluidShadowPass::draw(const Frame& frame, const RenderOptions& options, const ShadowView& shadow) {
+  glBindTextureUnit(kFluidShadowUnit, map_.name());
+  const glm::vec4 clear(0.0f);
+  glClearNamedFramebufferfv(target_.name(), GL_COLOR, 0, &clear.x);
+  const std::size_t count = std::min(frame.particles.size(), frame.particle_fluid.size());
+  const std::size_t fluids = std::min(frame.fluids.size(), kMaxFluidLooks);
+  if (!options.fluid_shadow || shadow.size == 0 || count == 0 || fluids == 0) return;
+
+  const std::size_t step = (count + most_ - 1) / most_;
+  particles_.clear();
+  for (std::size_t i = 0; i < count; i += step) {
+    const glm::vec3& at = frame.particles[i];
+    const float sum = at.x + at.y + at.z;
+    if (frame.particle_fluid[i] < fluids && std::isfinite(sum)) {
+      particles_.emplace_back(at, static_cast<float>(frame.particle_fluid[i]));
+    }
+  }
+  if (particles_.empty()) return;
+  buffer_.upload(std::span<const glm::vec4>(particles_));
+  glVertexArrayVertexBuffer(array_.name(), 0, buffer_.name(), 0, sizeof(glm::vec4));
+
+  std::array<glm::vec3, kMaxFluidLooks> extinction{};
+  for (std::size_t i = 0; i < fluids; ++i) extinction[i] = frame.fluids[i].extinction;
+  glProgramUniform3fv(program_.name(), glGetUniformLocation(program_.name(), "extinction"),
+                      static_cast<GLsizei>(extinction.size()), &extinction[0].x);
+  // Fewer splats are drawn wider, so that they still close up, and their sum stays the same.
+  const float radius = options.splat_scale * frame.particle_radius * std::cbrt(static_cast<float>(step));
+  const glm::mat4& clip = shadow.clip_from_world;
+  const float clip_per_metre = glm::length(glm::vec3(clip[0][0], clip[1][0], clip[2][0]));
+  const float texels = std::clamp(radius * clip_per_metre * static_cast<float>(size_), 1.0f, 64.0f);
+  const float drawn_radius = texels / (clip_per_metre * static_cast<float>(size_));
+  const float volume = options.splat_scale * frame.particle_radius;
+  program_.set("clip_from_world", clip);
+  program_.set("point_size", texels);
+  program_.set("weight", static_cast<float>(step));
+  // A disc of another size keeps the sphere's volume.
+  program_.set("chord", 2.0f * volume * volume * volume / (drawn_radius * drawn_radius));
+
+  glBindFramebuffer(GL_FRAMEBUFFER, target_.name());
+  glViewport(0, 0, size_, size_);
+  glEnable(GL_PROGRAM_POINT_SIZE);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ONE, GL_ONE);
+  glBlendEquationSeparate(GL_FUNC_ADD, GL_MAX);
+  program_.use();
+  glBindVertexArray(array_.name());
+  glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(particles_.size()));
+  glBlendEquation(GL_FUNC_ADD);
+  glDisable(GL_BLEND);
+  glDisable(GL_PROGRAM_POINT_SIZE);
+}
+
+}  // namespace slosh

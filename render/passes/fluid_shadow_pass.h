@@ -1,0 +1,32 @@
+// How much of the light each channel loses on its way through the fluid: a map over the light's view. Beyond
+// the paper.
+#pragma once
+
+#include <vector>
+
+#include "render/frame.h"
+#include "render/gl/objects.h"
+#include "render/passes/frame_block.h"
+#include "render/renderer.h"
+
+namespace slosh {
+
+class FluidShadowPass {
+ public:
+  static Result<FluidShadowPass> create(bool fast);
+
+  /// Reads all particles of the frame; writes the map and binds it. The map is empty without a shadow view.
+  void draw(const Frame& frame, const RenderOptions& options, const ShadowView& shadow);
+
+ private:
+  gl::Program program_;
+  gl::Texture map_;
+  gl::Framebuffer target_;
+  gl::VertexArray array_;
+  gl::StreamBuffer buffer_;
+  std::vector<glm::vec4> particles_;
+  int size_ = 0;
+  std::size_t most_ = 0;  ///< particles drawn at most; each then stands for several
+};
+
+}  // namespace slosh

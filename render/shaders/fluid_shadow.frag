@@ -1,0 +1,7 @@
+// Sums how much each channel is dimmed on the light's way through the fluid; alpha keeps the particle nearest the light.
+in vec4 optical;
+layout(location = 0) out vec4 depth_of_fluid;
+void main() {
+  vec2 disc = gl_PointCoord * 2.0 - 1.0;
+  depth_of_fluid = vec4(optical.rgb * sqrt(max(1.0 - dot(disc, disc), 0.0)), optical.a);
+}
