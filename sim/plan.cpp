@@ -1,12 +1,12 @@
 #include "sim/plan.h"
 
-#include "sim/math/sph.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
 #include <limits>
+
+#include "sim/math/sph.h"
 
 namespace slosh {
 
@@ -20,8 +20,8 @@ constexpr double kCompressionAtDepth = 0.04;
 // consistent model (tests/stability); Eq 5 as printed has half the pressure gradient and so more room, but
 // loses it at walls.
 constexpr double kCourant = 0.8;
-// Free bodies above this share of the fluid layer around them need no shorter step; a bucket held by two hands was
-// stable down to 0.01 (tests/stability).
+// Free bodies above this share of the fluid layer around them need no shorter step; a bucket held by two
+// hands was stable down to 0.01 (tests/stability).
 constexpr double kLightBody = 0.05;
 // Explicit viscosity is stable below 2/λ; λ of the roughest mode is about twice the lattice sum.
 constexpr double kViscousFactor = 0.8;
@@ -29,7 +29,7 @@ constexpr double kViscousFactor = 0.8;
 constexpr double kWallPart = 0.35;
 // Body particles stand for fluid denser than rest by this much: enough pressure to hold a column back before
 // the fluid itself is compressed, little enough not to push it far off the wall.
-constexpr double kBodyCompression = 0.08;
+constexpr double kBodyCompression = 0.3;
 
 [[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...) {
   char text[512];
@@ -139,7 +139,8 @@ StepLimit step_limit(const Scene& scene, const Plan& plan, const FluidExtremes& 
     limit.lower_to(courant / std::sqrt(contrast), format("sound, at a density ratio of %.3g between fluids",
                                                          fluids.heaviest / fluids.lightest));
   }
-  // A light body is thrown about by single fluid particles, so its step must be shorter by the root of its share.
+  // A light body is thrown about by single fluid particles, so its step must be shorter by the root of its
+  // share.
   const double share = lightest_body_share(scene, plan.spacing, fluids.heaviest);
   if (share < kLightBody) {
     limit.lower_to(courant * std::sqrt(share / kLightBody / contrast),
@@ -147,15 +148,16 @@ StepLimit step_limit(const Scene& scene, const Plan& plan, const FluidExtremes& 
   }
   if (plan.viscosity) {
     double most_viscous_body = 0.0;
-    for (const Body& body : scene.bodies) most_viscous_body = std::max(most_viscous_body, body.dynamic_viscosity);
+    for (const Body& body : scene.bodies)
+      most_viscous_body = std::max(most_viscous_body, body.dynamic_viscosity);
     const double viscosity =
         fluids.most_viscous + kWallPart * 0.5 * (fluids.most_viscous + most_viscous_body);
     const double central = plan.model == ParticleModel::kPaper ? 1.0 : kCentralDrag / 3.0;
     const double rate = central * viscosity / fluids.lightest * lattice_viscosity_sum(scene.support_ratio) /
                         (plan.spacing * plan.spacing);
     limit.lower_to(kViscousFactor / rate,
-                   format("explicit viscosity of %.3g Pa·s in the fluid, %.3g Pa·s at walls", fluids.most_viscous,
-                          0.5 * (fluids.most_viscous + most_viscous_body)));
+                   format("explicit viscosity of %.3g Pa·s in the fluid, %.3g Pa·s at walls",
+                          fluids.most_viscous, 0.5 * (fluids.most_viscous + most_viscous_body)));
   }
   return limit;
 }
@@ -207,8 +209,12 @@ void list_passes(const Scene& scene, const FluidExtremes& fluids, Plan& plan) {
            "cells of the support radius, so that neighbour rows are contiguous", "no fluid");
   add_pass(plan, plan.boundary && free_solid, "place body particles",
            "free bodies carry their particles (Eq 14)", "no free body with a surface meets fluid");
-  add_pass(plan, plan.has_fluid, "density", "Eq 2 and 7, fluid particles only (section 4.1)", "no fluid");
-  add_pass(plan, plan.has_fluid, "pressure force", "Eq 5", "no fluid");
+  const bool paper = plan.model == ParticleModel::kPaper;
+  add_pass(plan, plan.has_fluid, "density",
+           paper ? "Eq 2 and 7, fluid particles only (section 4.1)" : "Eq 2 and 7, body particles counted",
+           "no fluid");
+  add_pass(plan, plan.has_fluid, "pressure force", paper ? "Eq 5" : "Eq 5 as the gradient of an energy",
+           "no fluid");
   add_pass(plan, plan.viscosity && plan.one_viscosity, "viscous force, one viscosity",
            format("Eq 6: every fluid has %.3g Pa·s", fluids.most_viscous),
            pairs ? "fluids differ: Eq 9 takes its place" : "nothing is viscous");
@@ -268,6 +274,7 @@ Plan make_plan(const Scene& scene, double spacing) {
 
 std::string describe(const Plan& plan) {
   std::string text;
+  text += format("model           %s\n", plan.model == ParticleModel::kPaper ? "paper" : "consistent");
   text += format("spacing         %.4g mm\n", plan.spacing * 1e3);
   text += format("support radius  %.4g mm\n", plan.support_radius * 1e3);
   text +=

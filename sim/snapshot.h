@@ -18,7 +18,8 @@ enum StatusBit : std::uint32_t {
   kStatusInputRejected = 1u << 3,  ///< a handle's pose was non-finite or out of range and was not used
   kStatusForceLimited = 1u << 4,   ///< a device's force met its limit
   kStatusTimeSlipped = 1u << 5,    ///< the step did not keep real time and the world slowed down
-  kStatusCompressed = 1u << 6,     ///< fluid denser than twice rest: crushed, or too soft for its speed; raise stiffness
+  kStatusCompressed =
+      1u << 6,  ///< fluid denser than twice rest: crushed, or too soft for its speed; raise stiffness
 };
 
 /// The status in words, "; " between, empty when nothing is set.

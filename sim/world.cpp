@@ -327,7 +327,8 @@ void World::step(std::span<const HandleInput> handles) {
 void World::settle(double seconds) {
   Impl& w = *impl_;
   if (!w.context.plan.has_fluid || w.fluid_starts_moving) return;
-  constexpr double kDampingTime = 0.05;  // s: past critical for a hand-sized vessel's slosh, so it creeps to its level
+  constexpr double kDampingTime =
+      0.05;  // s: past critical for a hand-sized vessel's slosh, so it creeps to its level
   const float keep = static_cast<float>(std::exp(-w.context.plan.time_step / kDampingTime));
   Stopwatch watch;
   for (double done = 0.0; done < seconds; done += w.context.plan.time_step) {

@@ -58,8 +58,9 @@ class World {
   /// Advances by plan().time_step. `handles` has one entry a grip; missing ones count as not engaged.
   void step(std::span<const HandleInput> handles);
 
-  /// Lets the fluid find its level before the run: `seconds` of simulated time in which the bodies stay where they
-  /// are and the fluid is damped. Neither time() nor tick() moves. Fluid that starts with a velocity is left alone.
+  /// Lets the fluid find its level before the run: `seconds` of simulated time in which the bodies stay where
+  /// they are and the fluid is damped. Neither time() nor tick() moves. Fluid that starts with a velocity is
+  /// left alone.
   void settle(double seconds);
 
   const Plan& plan() const;

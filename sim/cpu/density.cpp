@@ -11,7 +11,8 @@ namespace slosh {
 namespace {
 
 constexpr std::size_t kRunsPerChunk = 32;
-constexpr float kTooCompressed = 1.0f;  // a drop that hits a table at half the speed of sound gets to half of this
+constexpr float kTooCompressed =
+    1.0f;  // a drop that hits a table at half the speed of sound gets to half of this
 
 template <bool consistent>
 FloatBatch kernel_shape(FloatBatch r_squared, FloatBatch h, FloatBatch h_squared) {

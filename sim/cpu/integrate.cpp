@@ -1,4 +1,5 @@
 // Leap-frog for fluid particles, and putting particles in order for the next step.
+#include <algorithm>
 #include <cmath>
 
 #include "sim/cpu/passes.h"
@@ -73,6 +74,11 @@ void sort_fluid(PassContext& context, ThreadTeam& team, FluidParticles& fluid, K
   fluid.kind.swap(scratch.kind);
   fluid.index.rebuild(context.grid, fluid.key.data(), fluid.active);
   fluid.active = fluid.index.particles();
+  // The last row's batch reads on into what was retired, and zero times not-a-number is not zero.
+  for (Column<float>* column : {&fluid.x, &fluid.y, &fluid.z, &fluid.vx, &fluid.vy, &fluid.vz,
+                                &fluid.pressure, &fluid.volume, &fluid.viscosity}) {
+    std::fill_n(column->begin() + static_cast<std::ptrdiff_t>(fluid.active), kLanes, 0.0f);
+  }
 }
 
 }  // namespace slosh

@@ -1,0 +1,97 @@
+#include "sim/cpu/cell_grid.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <set>
+
+namespace slosh {
+namespace {
+
+TEST(KeySorter, SortsStably) {
+  std::mt19937 random(3);
+  std::vector<std::uint32_t> keys(5000);
+  for (std::uint32_t& key : keys) key = random() % 3000000;
+  const std::vector<std::uint32_t> before = keys;
+  KeySorter sorter;
+  sorter.sort(keys.data(), keys.size(), 3000000);
+  EXPECT_TRUE(std::is_sorted(keys.begin(), keys.end()));
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    EXPECT_EQ(keys[i], before[sorter.order()[i]]);
+    if (i > 0 && keys[i] == keys[i - 1]) {
+      EXPECT_LT(sorter.order()[i - 1], sorter.order()[i]);
+    }
+  }
+}
+
+TEST(KeySorter, TakesNothingAndOne) {
+  KeySorter sorter;
+  sorter.sort(nullptr, 0, 100);
+  std::uint32_t key = 42;
+  sorter.sort(&key, 1, 100);
+  EXPECT_EQ(key, 42u);
+  EXPECT_EQ(sorter.order()[0], 0u);
+}
+
+// The rows around a particle's cell must hold every particle within the support radius, and hold each once.
+TEST(CellIndex, RowsHoldEveryNeighborOnce) {
+  constexpr double kSupport = 0.1;
+  const CellGrid grid(glm::dvec3(-0.5), glm::dvec3(0.5), kSupport);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> place(-0.5f, 0.5f);
+  std::vector<glm::vec3> points(3000);
+  std::vector<std::uint32_t> keys;
+  for (glm::vec3& p : points) {
+    p = {place(random), place(random), place(random)};
+    keys.push_back(grid.cell_of(p.x, p.y, p.z));
+  }
+  KeySorter sorter;
+  sorter.sort(keys.data(), keys.size(), grid.retired_key());
+  CellIndex index;
+  index.rebuild(grid, keys.data(), keys.size());
+  ASSERT_EQ(index.particles(), points.size());
+  for (const CellRun& run : index.runs()) {
+    const RowList rows = index.rows(grid, run.cell);
+    std::multiset<std::uint32_t> seen;
+    for (int row = 0; row < rows.count; ++row) {
+      for (std::uint32_t j = rows.rows[row].begin; j < rows.rows[row].end; ++j) seen.insert(j);
+    }
+    const glm::vec3 p = points[sorter.order()[run.particles.begin]];
+    for (std::uint32_t j = 0; j < points.size(); ++j) {
+      ASSERT_LE(seen.count(j), 1u);
+      if (glm::distance(p, points[sorter.order()[j]]) < kSupport) {
+        ASSERT_EQ(seen.count(j), 1u);
+      }
+    }
+  }
+}
+
+TEST(CellIndex, RetiredParticlesAreNotIndexed) {
+  const CellGrid grid(glm::dvec3(0.0), glm::dvec3(1.0), 0.25);
+  const std::uint32_t cell = grid.cell_of(0.5f, 0.5f, 0.5f);
+  const std::vector<std::uint32_t> keys{cell, cell, grid.retired_key()};
+  CellIndex index;
+  index.rebuild(grid, keys.data(), keys.size());
+  EXPECT_EQ(index.particles(), 2u);
+  index.rebuild(grid, keys.data(), 0);
+  EXPECT_EQ(index.particles(), 0u);
+  EXPECT_EQ(index.rows(grid, cell).count, 0);
+}
+
+TEST(CellGrid, GrowsItsCellsRatherThanTheirNumber) {
+  const CellGrid grid(glm::dvec3(-1000.0), glm::dvec3(1000.0), 0.001);
+  EXPECT_LE(grid.cell_count(), CellGrid::kMaxCells);
+  EXPECT_LT(grid.cell_of(1e30f, -1e30f, 0.0f), grid.cell_count());
+}
+
+TEST(CellGrid, KnowsWhatIsOutside) {
+  const CellGrid grid(glm::dvec3(0.0), glm::dvec3(1.0), 0.1);
+  EXPECT_TRUE(grid.contains(0.5f, 0.5f, 0.5f));
+  EXPECT_FALSE(grid.contains(1.5f, 0.5f, 0.5f));
+  EXPECT_FALSE(grid.contains(std::numeric_limits<float>::quiet_NaN(), 0.5f, 0.5f));
+  EXPECT_FALSE(grid.contains(0.5f, std::numeric_limits<float>::infinity(), 0.5f));
+}
+
+}  // namespace
+}  // namespace slosh

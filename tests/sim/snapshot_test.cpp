@@ -1,0 +1,18 @@
+#include "sim/snapshot.h"
+
+#include <gtest/gtest.h>
+
+namespace slosh {
+namespace {
+
+TEST(StatusText, SaysEveryBitInWords) {
+  EXPECT_EQ(status_text(0), "");
+  for (std::uint32_t bit = 1; bit <= kStatusCompressed; bit <<= 1)
+    EXPECT_FALSE(status_text(bit).empty()) << bit;
+  const std::string both = status_text(kStatusEscaped | kStatusTimeSlipped);
+  EXPECT_NE(both.find("left the domain"), std::string::npos);
+  EXPECT_NE(both.find("; "), std::string::npos);
+}
+
+}  // namespace
+}  // namespace slosh
