@@ -40,11 +40,16 @@ constexpr double kBodyCompression = 0.3;
   return text;
 }
 
-// Height of all fluid along gravity, m: the deepest column it could stand in as it is placed.
-double fluid_depth(const Scene& scene) {
+struct FluidHeights {
+  double depth = 0.0;  // m, the deepest column that a fluid could stand in as it is placed
+  double drop = 0.0;   // m, from the highest fluid to the floor of the domain
+};
+
+FluidHeights fluid_heights(const Scene& scene) {
   const double g = glm::length(scene.gravity);
   const glm::dvec3 up = g > 0.0 ? -scene.gravity / g : glm::dvec3(0.0, 1.0, 0.0);
-  double deepest = 0.0;
+  FluidHeights heights;
+  double top = -std::numeric_limits<double>::infinity();
   for (const FluidVolume& volume : scene.fluid_volumes) {
     double low = std::numeric_limits<double>::infinity();
     double high = -low;
@@ -53,9 +58,13 @@ double fluid_depth(const Scene& scene) {
       low = std::min(low, height);
       high = std::max(high, height);
     }
-    deepest = std::max(deepest, high - low);
+    heights.depth = std::max(heights.depth, high - low);
+    top = std::max(top, high);
   }
-  return deepest;
+  const glm::dvec3 lowest_corner =
+      glm::mix(scene.domain_max, scene.domain_min, glm::greaterThanEqual(up, glm::dvec3(0.0)));
+  if (scene.domain_min != scene.domain_max) heights.drop = std::max(0.0, top - glm::dot(up, lowest_corner));
+  return heights;
 }
 
 // Σ V ∇²W over the neighbours of a rest lattice, times spacing²: the damping rate of one particle among still
@@ -125,13 +134,15 @@ struct StepLimit {
   }
 };
 
-StepLimit step_limit(const Scene& scene, const Plan& plan, const FluidExtremes& fluids, double depth) {
+StepLimit step_limit(const Scene& scene, const Plan& plan, const FluidExtremes& fluids,
+                     const FluidHeights& heights) {
   StepLimit limit;
   limit.lower_to(1.0 / 250.0, "bodies and couplings alone: 250 Hz");
   if (!plan.has_fluid) return limit;
   const double sound = std::sqrt(plan.stiffness);
   const double g = glm::length(scene.gravity);
-  const double speed = std::sqrt(2.0 * g * depth) + 1.0;  // a collapse over its own depth, and a hand
+  // A collapse over its own depth while a hand moves it, or a fall to the floor.
+  const double speed = std::max(std::sqrt(2.0 * g * heights.depth) + 1.0, std::sqrt(2.0 * g * heights.drop));
   const double courant = kCourant * plan.support_radius / (sound + speed);
   limit.lower_to(courant, format("sound: %.2f · support radius / (%.1f + %.1f m/s)", kCourant, sound, speed));
   const double contrast = 0.5 * (1.0 + fluids.heaviest / fluids.lightest);
@@ -250,10 +261,10 @@ Plan make_plan(const Scene& scene, double spacing) {
                                                                [](const Body& b) { return b.point_probe; });
   FluidExtremes fluids = fluid_extremes(scene);
   if (scene.fluid_volumes.empty()) fluids = {1000.0, 1000.0, 0.0, 0.0};
-  const double depth = fluid_depth(scene);
+  const FluidHeights heights = fluid_heights(scene);
   plan.stiffness = scene.stiffness > 0.0
                        ? scene.stiffness
-                       : std::max(glm::length(scene.gravity) * depth / kCompressionAtDepth, 1.0);
+                       : std::max(glm::length(scene.gravity) * heights.depth / kCompressionAtDepth, 1.0);
   bool viscous_body = false;
   bool probe_differs = false;
   for (const Body& body : scene.bodies) {
@@ -264,7 +275,7 @@ Plan make_plan(const Scene& scene, double spacing) {
   plan.viscosity = plan.has_fluid && (fluids.most_viscous > 0.0 || viscous_body);
   plan.one_viscosity = plan.viscosity && fluids.least_viscous == fluids.most_viscous && !probe_differs;
   decide_bodies(scene, fluids, plan);
-  const StepLimit limit = step_limit(scene, plan, fluids, depth);
+  const StepLimit limit = step_limit(scene, plan, fluids, heights);
   plan.time_step = limit.step;
   plan.time_step_reason = limit.reason;
   plan.max_speed = 0.5 * plan.support_radius / plan.time_step;
