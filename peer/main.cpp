@@ -15,10 +15,15 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   app.get_formatter()->column_width(34);
   VerbRun chosen;
+  const bool names_a_verb = argc > 1 && argv[1][0] != '-';
   add_play(app, chosen);
   add_scenes(app, chosen);
   add_check(app, chosen);
   add_plan(app, chosen);
+  if (names_a_verb && app.get_subcommands([&](const CLI::App* sub) { return sub->check_name(argv[1]); }).empty()) {
+    std::fprintf(stderr, "slosh: there is no verb '%s'. See `slosh --help`.\n", argv[1]);
+    return kExitUsage;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -6,6 +6,11 @@
 #include "peer/haptics/make_device.h"
 
 namespace slosh {
+namespace {
+
+constexpr double kRounding = 1e-9;  // s: sums of time steps miss a multiple by less than this
+
+}  // namespace
 
 double freshness(double age, double interval) {
   const double hold = std::max(kHoldStale, 4.0 * interval);
@@ -40,7 +45,7 @@ void Servo::tick(std::int64_t now_ns) noexcept {
   const double interval = message.rate > 0.0 ? message.time_step / message.rate : 0.0;
   const double fresh = message.rate > 0.0 || bodies.tick == 0 ? freshness(age, interval) : 0.0;
 
-  const bool sample_due = time_ >= next_sample_;
+  const bool sample_due = time_ + kRounding >= next_sample_;
   for (std::size_t i = 0; i < hands_.size(); ++i) {
     Hand& hand = hands_[i];
     const DeviceReport report = hand.device->read({time_, options_.period});
@@ -82,7 +87,7 @@ void Servo::tick(std::int64_t now_ns) noexcept {
   }
   if (sample_due) {
     // On the grid of intervals, whatever the tick that met it: rows stay evenly spread over the run.
-    while (next_sample_ <= time_) next_sample_ += options_.sample_interval;
+    while (next_sample_ <= time_ + kRounding) next_sample_ += options_.sample_interval;
   }
   shown_time_.store(time_, std::memory_order_relaxed);
 }

@@ -27,7 +27,7 @@ ImVec4 bright(const DeviceColor& color) {
 
 void labelled(const char* label, const char* value) {
   ImGui::TextColored(ImVec4(0.72f, 0.76f, 0.80f, 1.0f), "%s", label);
-  ImGui::SameLine(66.0f);
+  ImGui::SameLine(80.0f);
   ImGui::TextUnformatted(value);
 }
 

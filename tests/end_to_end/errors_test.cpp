@@ -1,0 +1,114 @@
+// What a person reads when something is wrong, and the verbs that only look.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "process.h"
+
+namespace slosh {
+namespace {
+
+using test::Outcome;
+using Arguments = std::vector<std::string>;
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+/// Fails with `code`, and stderr says every one of `parts`; nothing crashes.
+void expect_error(const Arguments& arguments, int code, const std::vector<std::string>& parts) {
+  const Outcome outcome = test::slosh(arguments);
+  EXPECT_EQ(outcome.code, code) << outcome.err;
+  for (const std::string& part : parts) {
+    EXPECT_TRUE(contains(outcome.err, part)) << "'" << part << "' is not in:\n" << outcome.err;
+  }
+}
+
+TEST(Errors, AnUnknownSceneNamesTheKnownOnes) {
+  expect_error({"play", "bukket", "--headless"}, 1, {"slosh: ", "bukket", "bucket", "pour"});
+  expect_error({"plan", "bukket"}, 1, {"bukket"});
+  expect_error({"check", "nowhere.gltf"}, 1, {"nowhere.gltf"});
+}
+
+TEST(Errors, BadCommandLinesPointToHelp) {
+  expect_error({}, 2, {"--help"});
+  expect_error({"dance"}, 2, {"dance", "--help"});
+  expect_error({"play", "--frobnicate"}, 2, {"--frobnicate", "slosh play --help"});
+  expect_error({"play", "--seconds", "soon"}, 2, {"--seconds", "--help"});
+  expect_error({"play", "--seconds", "-1"}, 2, {"--seconds"});
+  expect_error({"play", "--backend", "abacus"}, 2, {"--backend", "cuda"});
+  expect_error({"play", "--spacing", "0.01", "--particles", "10"}, 2, {"--particles"});
+  expect_error({"check"}, 2, {"FILE"});
+}
+
+TEST(Errors, OptionsThatCannotBeMetSayWhy) {
+  expect_error({"play", "--headless", "--backend", "cuda"}, 1, {"CUDA", "--backend cpu"});
+  expect_error({"play", "--headless", "--size", "640"}, 1, {"--size", "640x480"});
+  expect_error({"play", "--headless", "--spacing", "thin"}, 1, {"--spacing", "thin", "auto"});
+  const Arguments quick = {"play", "probe", "--no-render", "--seconds", "0.1", "--spacing", "0.012"};
+  const auto with = [&quick](const Arguments& more) {
+    Arguments all = quick;
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  expect_error(with({"--device", "joystick"}), 1, {"joystick", "script", "replay:FILE"});
+  expect_error(with({"--device", "mouse"}), 1, {"mouse", "window"});
+  expect_error(with({"--device", "script", "--device", "script"}), 1, {"2 devices", "1 grip"});
+  expect_error(with({"--device", "replay:nothing.csv"}), 1, {"nothing.csv"});
+  expect_error(with({"--out", "/proc/nowhere"}), 1, {"/proc/nowhere", "--out"});
+  expect_error({"play", "bucket", "--no-render", "--spacing", "0.05"}, 1, {"bucket", "50 mm"});
+}
+
+TEST(Errors, AReplayWithANaNNamesItsLine) {
+  std::filesystem::create_directories(test::test_folder());
+  std::ofstream(test::test_folder() / "bad.csv")
+      << "time_s,device,x_m,y_m,z_m,qw,qx,qy,qz\n0,0,0,0,0,1,0,0,0\n0.1,0,nan,0,0,1,0,0,0\n";
+  expect_error({"play", "probe", "--no-render", "--seconds", "0.1", "--spacing", "0.012", "--device",
+                "replay:bad.csv"},
+               1, {"bad.csv: line 3", "x_m", "nan"});
+}
+
+TEST(Errors, FilesThatAreNoScenesAreRefused) {
+  std::filesystem::create_directories(test::test_folder());
+  std::ofstream(test::test_folder() / "text.gltf") << "not json";
+  std::ofstream(test::test_folder() / "empty.glb") << "";
+  std::ofstream(test::test_folder() / "bare.gltf") << "{\"asset\":{\"version\":\"2.0\"}}";
+  expect_error({"check", "text.gltf"}, 1, {"text.gltf"});
+  expect_error({"check", "empty.glb"}, 1, {"empty.glb"});
+  expect_error({"check", "bare.gltf"}, 1, {"bare.gltf"});
+  expect_error({"play", "text.gltf", "--headless"}, 1, {"text.gltf"});
+}
+
+TEST(Verbs, ScenesListsEveryShippedScene) {
+  const Outcome outcome = test::slosh({"scenes"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  for (const char* name : {"bucket", "spoon", "pour", "spin", "pool", "probe"}) {
+    EXPECT_TRUE(contains(outcome.out, name)) << name;
+  }
+}
+
+TEST(Verbs, EveryShippedSceneChecksAndPlans) {
+  for (const char* name : {"bucket", "spoon", "pour", "spin", "pool", "probe"}) {
+    const Outcome check = test::slosh({"check", name});
+    EXPECT_EQ(check.code, 0) << check.err;
+    EXPECT_EQ(check.out.rfind("ok", 0), 0u) << check.out;
+    EXPECT_TRUE(contains(check.out, "litres"));
+    const Outcome plan = test::slosh({"plan", name});
+    EXPECT_EQ(plan.code, 0) << plan.err;
+    EXPECT_TRUE(contains(plan.out, "density")) << plan.out;
+  }
+}
+
+TEST(Verbs, HelpExplainsWithExamples) {
+  const Outcome all = test::slosh({"--help"});
+  EXPECT_EQ(all.code, 0);
+  for (const char* verb : {"play", "scenes", "check", "plan"}) {
+    EXPECT_TRUE(contains(all.out, verb));
+    const Outcome one = test::slosh({verb, "--help"});
+    EXPECT_EQ(one.code, 0);
+    EXPECT_TRUE(contains(one.out, "Example")) << verb;
+  }
+  EXPECT_TRUE(contains(test::slosh({"play", "--help"}).out, "wrench on the hand"));
+  EXPECT_TRUE(contains(test::slosh({"--version"}).out, "slosh "));
+}
+
+}  // namespace
+}  // namespace slosh

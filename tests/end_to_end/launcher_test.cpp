@@ -1,0 +1,63 @@
+// The launcher at the top of the repository. Where this is the build that it uses, through it to the program.
+#include <gtest/gtest.h>
+
+#include "process.h"
+
+namespace slosh {
+namespace {
+
+using test::Outcome;
+
+const std::filesystem::path kRoot = SLOSH_SOURCE_DIR;
+
+Outcome launcher(const std::vector<std::string>& arguments) {
+  std::vector<std::string> all{"env", "SLOSH_SKIP_PACKAGES=1", (kRoot / "slosh").string()};
+  all.insert(all.end(), arguments.begin(), arguments.end());
+  return test::Process(all, test::test_folder()).wait();
+}
+
+bool is_the_launchers_build() { return std::filesystem::path(SLOSH_BINARY_DIR) == kRoot / "build" / "release"; }
+
+TEST(Launcher, HelpListsTheVerbs) {
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{}, {"help"}, {"--help"}}) {
+    const Outcome outcome = launcher(arguments);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    for (const char* verb : {"play", "scenes", "check", "plan", "test", "bench", "format", "help"}) {
+      EXPECT_NE(outcome.out.find(std::string("./slosh ") + verb), std::string::npos) << verb;
+    }
+  }
+}
+
+TEST(Launcher, AnUnknownVerbGetsTheNearest) {
+  const Outcome near = launcher({"paly"});
+  EXPECT_EQ(near.code, 2);
+  EXPECT_NE(near.err.find("'play'"), std::string::npos) << near.err;
+  const Outcome far = launcher({"xylophone"});
+  EXPECT_EQ(far.code, 2);
+  EXPECT_EQ(far.err.find("Did you mean"), std::string::npos) << far.err;
+}
+
+TEST(Launcher, ExplainsItsOwnVerbsWithoutBuilding) {
+  for (const char* verb : {"test", "bench", "format"}) {
+    const Outcome outcome = launcher({verb, "--help"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("Usage"), std::string::npos);
+  }
+  EXPECT_EQ(launcher({"test", "--preset", "quick"}).code, 2);
+}
+
+TEST(Launcher, WorksThroughASymbolicLinkFromAnotherFolder) {
+  std::filesystem::create_directories(test::test_folder());
+  const std::filesystem::path link = test::test_folder() / "linked";
+  std::filesystem::remove(link);
+  std::filesystem::create_symlink(kRoot / "slosh", link);
+  // A verb that builds only where the build is there already.
+  const std::string verb = is_the_launchers_build() ? "scenes" : "help";
+  const Outcome outcome =
+      test::Process({"env", "SLOSH_SKIP_PACKAGES=1", "./linked", verb}, test::test_folder()).wait();
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find(verb == "scenes" ? "bucket" : "./slosh play"), std::string::npos) << outcome.out;
+}
+
+}  // namespace
+}  // namespace slosh

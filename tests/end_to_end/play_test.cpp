@@ -1,0 +1,182 @@
+// `slosh play` from the command line to its files.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "peer/haptics/script_device.h"
+#include "peer/output/plot.h"
+#include "peer/output/recorder.h"
+#include "process.h"
+#include "render/image.h"
+
+namespace slosh {
+namespace {
+
+using nlohmann::json;
+using test::Outcome;
+using test::read_text;
+
+class PlayTest : public ::testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::remove_all(test::test_folder()); }
+  std::filesystem::path out(const std::string& name = "out") const { return test::test_folder() / name; }
+};
+
+/// One value of ffprobe's about the first video stream.
+std::string probe(const std::filesystem::path& film, const std::string& entry) {
+  const Outcome outcome =
+      test::Process({"ffprobe", "-v", "error", "-count_frames", "-select_streams", "v:0", "-show_entries",
+                     "stream=" + entry, "-of", "csv=p=0", film.string()},
+                    test::test_folder() / "ffprobe")
+          .wait();
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  return outcome.out.substr(0, outcome.out.find_first_of("\n,"));
+}
+
+void expect_rows(const std::filesystem::path& folder, std::size_t devices, double seconds) {
+  const Result<std::vector<WrenchSeries>> series = read_wrenches(folder / "wrenches.csv");
+  ASSERT_TRUE(series) << series.error().text();
+  ASSERT_EQ(series.value().size(), devices);
+  for (const WrenchSeries& s : series.value()) {
+    ASSERT_GT(s.time.size(), 10u);
+    EXPECT_LT(s.time.front(), 0.05);
+    EXPECT_NEAR(s.time.back(), seconds, 0.1);
+    for (std::size_t i = 1; i < s.time.size(); ++i) ASSERT_GT(s.time[i], s.time[i - 1]);
+    for (const Wrench& w : s.on_hand) {
+      ASSERT_TRUE(std::isfinite(glm::length(w.force)));
+      ASSERT_TRUE(std::isfinite(glm::length(w.torque)));
+    }
+  }
+}
+
+TEST_F(PlayTest, WritesEveryFileOfARun) {
+  const Outcome outcome =
+      test::slosh({"play", "bucket", "--headless", "--seconds", "1", "--spacing", "0.012", "--size", "320x240",
+                   "--fps", "10", "--out", "out"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  for (const char* file :
+       {"wrenches.csv", "poses.csv", "wrenches.png", "view.mp4", "final.png", "summary.json"}) {
+    EXPECT_TRUE(std::filesystem::is_regular_file(out() / file)) << file;
+    EXPECT_NE(outcome.out.find(file), std::string::npos) << "the summary names " << file;
+  }
+  for (const char* phase : {"loading", "sampling", "running", "encoding", "plotting"}) {
+    EXPECT_NE(outcome.err.find(phase), std::string::npos) << phase;
+  }
+  EXPECT_EQ(read_text(out() / "wrenches.csv").find(std::string(kWrenchesHeader) + "\n"), 0u);
+  expect_rows(out(), 2, 1.0);
+
+  const json summary = json::parse(read_text(out() / "summary.json"));
+  EXPECT_EQ(summary["scene"], "bucket");
+  EXPECT_EQ(summary["spacing_m"], 0.012);
+  EXPECT_GT(summary["particles"]["fluid"], 100);
+  EXPECT_NEAR(summary["simulated_s"].get<double>(), 1.0, 0.01);
+  EXPECT_NEAR(summary["steps"].get<double>() * summary["time_step_s"].get<double>(), 1.0, 0.01);
+  EXPECT_GT(summary["step_ms"]["p50"], 0.0);
+  EXPECT_GE(summary["step_ms"]["p99"], summary["step_ms"]["p50"]);
+  EXPECT_GT(summary["device_loop_us"]["p50"], 0.0);
+  EXPECT_GE(summary["device_loop_us"]["max"], summary["device_loop_us"]["p99"]);
+  EXPECT_EQ(summary["render"]["frames"], 11);
+  EXPECT_EQ(summary["render"]["dropped"], 0);
+  EXPECT_EQ(summary["backend"], "cpu");
+  EXPECT_EQ(summary["samples_lost"], 0);
+  EXPECT_FALSE(summary["interrupted"]);
+
+  EXPECT_EQ(probe(out() / "view.mp4", "nb_read_frames"), "11");
+  EXPECT_EQ(probe(out() / "view.mp4", "codec_name"), "h264");
+  const Result<Image> last = read_png(out() / "final.png");
+  ASSERT_TRUE(last) << last.error().text();
+  EXPECT_EQ(last.value().width, 320);
+  EXPECT_EQ(last.value().height, 240);
+
+  // Two hands hold one bucket: after the first swing they carry it, so both are pulled down.
+  const std::vector<WrenchSeries> felt = read_wrenches(out() / "wrenches.csv").value();
+  for (const WrenchSeries& hand : felt) EXPECT_LT(hand.on_hand.back().force.y, -2.0);
+}
+
+TEST_F(PlayTest, ARecordedRunCanBeReplayed) {
+  const std::vector<std::string> common = {"play",      "probe", "--no-render", "--seconds", "1",
+                                           "--spacing", "0.012", "--out"};
+  std::vector<std::string> first = common;
+  first.push_back("first");
+  Outcome outcome = test::slosh(first);
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  std::vector<std::string> second = common;
+  second.insert(second.end(), {"second", "--device", "replay:first/poses.csv"});
+  outcome = test::slosh(second);
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::vector<PoseKey> a = read_poses(out("first") / "poses.csv", 0).value();
+  const std::vector<PoseKey> b = read_poses(out("second") / "poses.csv", 0).value();
+  EXPECT_NEAR(glm::distance(a.back().pose.position, b.back().pose.position), 0.0, 0.002);
+  EXPECT_EQ(json::parse(read_text(out("second") / "summary.json"))["devices"][0]["device"], "replay");
+}
+
+TEST_F(PlayTest, WithoutADisplayItSaysThatItBecomesAFilm) {
+  const Outcome outcome = test::slosh({"play", "probe", "--seconds", "0.1", "--spacing", "0.012", "--size", "64x48"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("no display"), std::string::npos);
+  EXPECT_TRUE(std::filesystem::exists(test::test_folder() / "out" / "probe" / "view.mp4")) << "the default folder";
+}
+
+TEST_F(PlayTest, ChoosesASpacingAndSaysWhy) {
+  const Outcome outcome = test::slosh({"play", "probe", "--no-render", "--seconds", "0.1", "--out", "out"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("measuring"), std::string::npos);
+  const json summary = json::parse(read_text(out() / "summary.json"));
+  EXPECT_GE(summary["spacing_m"], 0.001);
+  EXPECT_NE(summary["spacing_reason"].get<std::string>().find("real time"), std::string::npos);
+}
+
+TEST_F(PlayTest, AimsAtANumberOfParticles) {
+  const Outcome outcome =
+      test::slosh({"play", "pool", "--no-render", "--seconds", "0.05", "--particles", "4000", "--out", "out"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const double fluid = json::parse(read_text(out() / "summary.json"))["particles"]["fluid"];
+  EXPECT_NEAR(fluid, 4000.0, 1000.0);
+}
+
+TEST_F(PlayTest, AnInterruptedRunLeavesValidFiles) {
+  test::Process run({test::program(), "play", "probe", "--headless", "--seconds", "3600", "--spacing", "0.012",
+                     "--size", "160x120", "--fps", "10", "--out", "out"},
+                    test::test_folder());
+  // As soon as something was recorded and drawn.
+  while (run.running()) {
+    const Result<std::vector<WrenchSeries>> felt = read_wrenches(out() / "wrenches.csv");
+    if (felt && !felt.value().empty() && felt.value()[0].time.back() > 0.3) break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  ASSERT_TRUE(run.running());
+  run.signal(SIGINT);
+  const Outcome outcome = run.wait();
+  EXPECT_EQ(outcome.code, 128 + SIGINT) << outcome.err;
+  EXPECT_NE(outcome.out.find("interrupted"), std::string::npos);
+  const json summary = json::parse(read_text(out() / "summary.json"));
+  EXPECT_TRUE(summary["interrupted"]);
+  expect_rows(out(), 1, summary["simulated_s"].get<double>());
+  EXPECT_EQ(std::stoi(probe(out() / "view.mp4", "nb_read_frames")), summary["render"]["frames"].get<int>());
+  EXPECT_TRUE(read_png(out() / "final.png"));
+  EXPECT_TRUE(read_png(out() / "wrenches.png"));
+}
+
+TEST_F(PlayTest, AKilledRunKeepsWhatWasWritten) {
+  test::Process run({test::program(), "play", "probe", "--headless", "--seconds", "3600", "--spacing", "0.012",
+                     "--size", "160x120", "--fps", "10", "--out", "out"},
+                    test::test_folder());
+  while (run.running()) {
+    const Result<std::vector<WrenchSeries>> felt = read_wrenches(out() / "wrenches.csv");
+    if (felt && !felt.value().empty() && felt.value()[0].time.back() > 0.3) break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  run.signal(SIGKILL);
+  EXPECT_EQ(run.wait().code, 128 + SIGKILL);
+  std::string text = read_text(out() / "wrenches.csv");
+  EXPECT_GT(std::count(text.begin(), text.end(), '\n'), 100);
+}
+
+}  // namespace
+}  // namespace slosh
