@@ -69,6 +69,7 @@ void FluidShadowPass::draw(const Frame& frame, const RenderOptions& options, con
   glBindFramebuffer(GL_FRAMEBUFFER, target_.name());
   glViewport(0, 0, size_, size_);
   glEnable(GL_PROGRAM_POINT_SIZE);
+  glEnable(GL_DEPTH_CLAMP);  // what flies out of the light's box still shades
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE);
   glBlendEquationSeparate(GL_FUNC_ADD, GL_MAX);
@@ -77,6 +78,7 @@ void FluidShadowPass::draw(const Frame& frame, const RenderOptions& options, con
   glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(particles_.size()));
   glBlendEquation(GL_FUNC_ADD);
   glDisable(GL_BLEND);
+  glDisable(GL_DEPTH_CLAMP);
   glDisable(GL_PROGRAM_POINT_SIZE);
 }
 

@@ -1,5 +1,6 @@
 #include "render/passes/shadow_pass.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -24,6 +25,17 @@ Bounds caster_bounds(const Frame& frame, const MeshStore& meshes) {
   return box;
 }
 
+/// Of the particles within the far plane's distance of the eye, along to_light, m.
+float highest_fluid(const Frame& frame, const glm::vec3& to_light) {
+  const float eye = glm::dot(glm::vec3(glm::inverse(frame.view.view)[3]), to_light);
+  float highest = -1e30f;
+  for (const glm::vec3& particle : frame.particles) {
+    const float height = glm::dot(particle, to_light);
+    if (height > highest && height < eye + frame.view.far_plane) highest = height;
+  }
+  return highest;
+}
+
 }  // namespace
 
 glm::vec3 box_corner(const Bounds& box, int corner) {
@@ -31,7 +43,7 @@ glm::vec3 box_corner(const Bounds& box, int corner) {
           (corner & 4) ? box.high.z : box.low.z};
 }
 
-glm::mat4 light_clip_from_world(const Bounds& box, const glm::vec3& to_light, int size) {
+glm::mat4 light_clip_from_world(const Bounds& box, const glm::vec3& to_light, float highest, int size) {
   const glm::vec3 up =
       std::abs(to_light.y) > 0.99f ? glm::vec3(0.0f, 0.0f, 1.0f) : glm::vec3(0.0f, 1.0f, 0.0f);
   const glm::mat4 light = glm::lookAt(glm::vec3(0.0f), -to_light, up);
@@ -39,6 +51,7 @@ glm::mat4 light_clip_from_world(const Bounds& box, const glm::vec3& to_light, in
   for (int corner = 0; corner < 8; ++corner) {
     seen.add(glm::vec3(light * glm::vec4(box_corner(box, corner), 1.0f)));
   }
+  seen.high.z = std::max(seen.high.z, highest);
   // Round the extent up and the centre to whole texels: a body that moves the box must not make the edges
   // crawl.
   const glm::vec3 span = glm::max(seen.high - seen.low, glm::vec3(1e-3f));
@@ -68,7 +81,9 @@ ShadowView ShadowPass::draw(const Frame& frame, const MeshStore& meshes) {
   glBindTextureUnit(kShadowUnit, map_.name());
   const Bounds box = caster_bounds(frame, meshes);
   if (box.empty()) return {};
-  const glm::mat4 clip_from_world = light_clip_from_world(box, direction_to_light(frame), size_);
+  const glm::vec3 to_light = direction_to_light(frame);
+  const glm::mat4 clip_from_world =
+      light_clip_from_world(box, to_light, highest_fluid(frame, to_light), size_);
 
   glBindFramebuffer(GL_FRAMEBUFFER, target_.name());
   glViewport(0, 0, size_, size_);

@@ -13,8 +13,8 @@ class ShadowPass {
   /// size: texels a side, > 0.
   static Result<ShadowPass> create(int size);
 
-  /// Reads the opaque meshes; writes the depth map and binds it. Returns no shadow (size 0) for an empty
-  /// scene.
+  /// Reads the opaque meshes, and how high the fluid stands; writes the depth map and binds it. Returns no
+  /// shadow (size 0) for an empty scene.
   ShadowView draw(const Frame& frame, const MeshStore& meshes);
 
   int size() const { return size_; }
@@ -27,8 +27,8 @@ class ShadowPass {
 };
 
 /// World to the light's clip space, its orthographic box drawn round `box`. Its depth range holds all of the
-/// box.
-glm::mat4 light_clip_from_world(const Bounds& box, const glm::vec3& to_light, int size);
+/// box, and what is up to `highest` m along to_light.
+glm::mat4 light_clip_from_world(const Bounds& box, const glm::vec3& to_light, float highest, int size);
 
 /// The eight corners of a box, one by one.
 glm::vec3 box_corner(const Bounds& box, int corner);

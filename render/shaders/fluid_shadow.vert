@@ -9,5 +9,5 @@ out vec4 optical;          // through the middle, per channel; 1 − depth in th
 void main() {
   gl_Position = clip_from_world * vec4(particle.xyz, 1.0);
   gl_PointSize = point_size;
-  optical = vec4(extinction[int(particle.w)] * (weight * chord), 0.5 - 0.5 * gl_Position.z);
+  optical = vec4(extinction[int(particle.w)] * (weight * chord), clamp(0.5 - 0.5 * gl_Position.z, 0.0, 1.0));
 }

@@ -200,13 +200,14 @@ TEST(Shadow, TheLightsBoxHoldsTheScene) {
   box.add({-0.7f, -0.1f, -0.4f});
   box.add({0.5f, 0.6f, 0.9f});
   for (const glm::vec3& to_light : {glm::vec3(0, 1, 0), glm::normalize(glm::vec3(0.4f, 1.0f, 0.35f))}) {
-    const glm::mat4 clip = light_clip_from_world(box, to_light, 512);
+    const glm::mat4 clip = light_clip_from_world(box, to_light, 2.0f, 512);
     for (int corner = 0; corner < 8; ++corner) {
       const glm::vec3 at(corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
                          corner & 4 ? box.high.z : box.low.z);
       const glm::vec3 seen(clip * glm::vec4(at, 1.0f));
       EXPECT_LE(std::max({std::abs(seen.x), std::abs(seen.y), std::abs(seen.z)}), 1.0f);
     }
+    EXPECT_LE(std::abs((clip * glm::vec4(2.0f * to_light, 1.0f)).z), 1.0f);
     // Nearer the light is nearer in the map.
     EXPECT_LT((clip * glm::vec4(to_light * 0.1f, 1.0f)).z, (clip * glm::vec4(-to_light * 0.1f, 1.0f)).z);
   }

@@ -119,6 +119,42 @@ TEST_F(RendererTest, ABallCastsAShadow) {
   }
 }
 
+TEST_F(RendererTest, FluidDimsTheLightPerChannel) {
+  RenderOptions options = small();
+  auto renderer = make(options);
+  // A slab of fluid 0.1 m thick over a floor, seen from beneath its edge so that the floor is not seen
+  // through it.
+  const float spacing = 0.02f;
+  const auto points = kit::jitter_lattice({-0.3f, 0.3f, -0.3f}, {0.3f, 0.4f, 0.3f}, spacing, 3);
+  const std::vector<std::uint8_t> fluids(points.size(), 0);
+  Frame frame = frame_of(points, fluids, 0.5f * spacing);
+  frame.view = kit::make_view({0.0f, 0.15f, 0.9f}, {0.0f, 0.0f, 0.0f}, kWidth, kHeight);
+  frame.light_direction = {0.0f, -1.0f, 0.0f};
+  frame.fluids[0].extinction = {20.0f, 5.0f, 0.0f};
+  MeshLook white;
+  white.base_color = glm::vec3(0.8f);
+  white.roughness = 1.0f;
+  frame.meshes = {place(*renderer, kit::make_box({-0.8f, -0.1f, -0.8f}, {0.8f, 0.0f, 0.8f}), white)};
+  renderer->draw(frame);
+  const FloatImage dimmed = renderer->read_buffer(Buffer::kSceneColor);
+  ASSERT_EQ(renderer->read_buffer(Buffer::kThickness).at(kWidth / 2, kHeight / 2), 0.0f);
+  options.fluid_shadow = false;
+  ASSERT_TRUE(renderer->set_options(options));
+  renderer->draw(frame);
+  const FloatImage lit = renderer->read_buffer(Buffer::kSceneColor);
+  // What the sky alone gives: the same floor in the shadow of a roof.
+  frame.meshes.push_back(place(*renderer, kit::make_box({-0.8f, 0.7f, -0.8f}, {0.8f, 0.75f, 0.8f})));
+  renderer->draw(frame);
+  const FloatImage sky = renderer->read_buffer(Buffer::kSceneColor);
+  const int x = kWidth / 2;
+  const int y = kHeight / 2;
+  for (int c = 0; c < 3; ++c) {
+    const float share = (dimmed.at(x, y, c) - sky.at(x, y, c)) / (lit.at(x, y, c) - sky.at(x, y, c));
+    // Spheres of 1.2 radii fill 0.9 of the slab's volume.
+    EXPECT_NEAR(share, std::exp(-0.9f * 0.1f * frame.fluids[0].extinction[c]), 0.12f) << c;
+  }
+}
+
 TEST_F(RendererTest, OcclusionDarkensACreaseAndLittleElse) {
   RenderOptions options = small();
   options.quality = Quality::kFull;
