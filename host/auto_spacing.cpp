@@ -13,8 +13,8 @@ namespace slosh {
 namespace {
 
 struct Line {
-  double at_zero = 0.0;   // s
-  double each = 0.0;      // s a particle
+  double at_zero = 0.0;  // s
+  double each = 0.0;     // s a particle
   double operator()(double particles) const { return at_zero + each * particles; }
 };
 
@@ -84,8 +84,8 @@ Result<StepTiming> time_steps(const Scene& scene, double spacing, const SpacingO
 
 }  // namespace
 
-SpacingChoice choose_spacing(std::span<const StepTiming> timings, std::span<const SpacingCandidate> candidates,
-                             double margin) {
+SpacingChoice choose_spacing(std::span<const StepTiming> timings,
+                             std::span<const SpacingCandidate> candidates, double margin) {
   const Line cost = fit(timings);
   SpacingChoice best;
   const SpacingCandidate* coarsest = nullptr;
@@ -97,7 +97,8 @@ SpacingChoice choose_spacing(std::span<const StepTiming> timings, std::span<cons
     best = {candidate.spacing, candidate.particles, candidate.time_step, predicted, true, {}};
   }
   if (!best.real_time && coarsest != nullptr) {
-    best = {coarsest->spacing, coarsest->particles, coarsest->time_step, cost(coarsest->particles), false, {}};
+    best = {
+        coarsest->spacing, coarsest->particles, coarsest->time_step, cost(coarsest->particles), false, {}};
   }
   best.reason = sentence(best, margin);
   return best;

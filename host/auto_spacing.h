@@ -39,8 +39,8 @@ constexpr double kSpacingMargin = 1.4;  ///< steps of a moving scene cost more t
 /// The finest candidate whose predicted step, times `margin`, is below its time step; the coarsest when none
 /// is. The prediction is the straight line (least squares, both coefficients >= 0) through the timings.
 /// Pure. Needs at least one of each.
-SpacingChoice choose_spacing(std::span<const StepTiming> timings, std::span<const SpacingCandidate> candidates,
-                             double margin = kSpacingMargin);
+SpacingChoice choose_spacing(std::span<const StepTiming> timings,
+                             std::span<const SpacingCandidate> candidates, double margin = kSpacingMargin);
 
 /// Spacings from the scene's coarsest to its finest, about 4 % apart, in tenths of a millimetre.
 std::vector<SpacingCandidate> spacing_candidates(const Scene& scene);

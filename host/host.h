@@ -22,10 +22,10 @@ struct HostOptions {
 
 /// What may be asked at any time, from any thread.
 struct HostProgress {
-  double time = 0.0;        ///< simulated s
-  double rate = 0.0;        ///< simulated s a wall s, lately
-  double step_rate = 0.0;   ///< steps a wall s, lately
-  double step_ms = 0.0;     ///< mean step time, lately
+  double time = 0.0;       ///< simulated s
+  double rate = 0.0;       ///< simulated s a wall s, lately
+  double step_rate = 0.0;  ///< steps a wall s, lately
+  double step_ms = 0.0;    ///< mean step time, lately
   std::uint64_t tick = 0;
   std::uint32_t status = 0;  ///< StatusBits of about the last half second
 };
@@ -33,17 +33,17 @@ struct HostProgress {
 /// What a run amounted to; complete after it has ended.
 struct HostReport {
   std::uint64_t steps = 0;
-  double simulated = 0.0;         ///< s
-  double wall = 0.0;              ///< s, pauses left out
-  Histogram step_time;            ///< of World::step alone
-  StepTimes total;                ///< summed over the run, s
-  std::uint64_t slips = 0;        ///< times the schedule was given up
-  double slipped = 0.0;           ///< s
+  double simulated = 0.0;   ///< s
+  double wall = 0.0;        ///< s, pauses left out
+  Histogram step_time;      ///< of World::step alone
+  StepTimes total;          ///< summed over the run, s
+  std::uint64_t slips = 0;  ///< times the schedule was given up
+  double slipped = 0.0;     ///< s
   std::uint64_t rejected_poses = 0;
   std::uint64_t pictures = 0;
-  std::uint32_t status = 0;       ///< every StatusBit that was ever set
-  Diagnostics diagnostics;        ///< of the last state
-  double start_mass = 0.0;        ///< kg of fluid at the start
+  std::uint32_t status = 0;  ///< every StatusBit that was ever set
+  Diagnostics diagnostics;   ///< of the last state
+  double start_mass = 0.0;   ///< kg of fluid at the start
 };
 
 /// Owns the world and steps it on a thread of its own. Made, started and ended by one thread.

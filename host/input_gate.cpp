@@ -6,7 +6,9 @@
 namespace slosh {
 namespace {
 
-bool finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+bool finite(const glm::dvec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
 bool finite(const PoseMessage& m) {
   const glm::dquat& q = m.pose.orientation;
@@ -38,7 +40,8 @@ PoseFault InputGate::check(const PoseMessage& message, const Hand& hand) const {
     return PoseFault::kTooFast;
   }
   if (hand.has_good && hand.good.engaged && message.engaged) {
-    // The longer the last good pose is ago, the farther the hand may honestly be: a jump is not refused for ever.
+    // The longer the last good pose is ago, the farther the hand may honestly be: a jump is not refused for
+    // ever.
     const double elapsed = std::max(to_seconds(message.stamp_ns - hand.good.stamp_ns), 0.001);
     if (glm::length(p - hand.good.pose.position) > kHandleSpeed * elapsed + 0.01) return PoseFault::kTooFast;
   }

@@ -17,10 +17,10 @@ namespace slosh {
 /// Why a pose was not used.
 enum class PoseFault : std::uint8_t {
   kNone,
-  kNonFinite,       ///< a NaN or an infinity
-  kNotARotation,    ///< the quaternion's length is off 1 by more than 1 %
-  kOutOfRange,      ///< farther outside the domain than kHandleReach
-  kTooFast,         ///< a twist, or a jump since the last good pose, above the limits below
+  kNonFinite,     ///< a NaN or an infinity
+  kNotARotation,  ///< the quaternion's length is off 1 by more than 1 %
+  kOutOfRange,    ///< farther outside the domain than kHandleReach
+  kTooFast,       ///< a twist, or a jump since the last good pose, above the limits below
 };
 
 constexpr double kHandleReach = 5.0;           ///< m beyond the scene's domain

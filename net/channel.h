@@ -1,13 +1,13 @@
 // The in-process channel: what passes between one host and one peer, with the messages a network will carry.
 #pragma once
 
-#include "net/snapshot_queue.h"
-#include "net/triple_buffer.h"
-#include "sim/snapshot.h"
-
 #include <cstdint>
 #include <memory>
 #include <vector>
+
+#include "net/snapshot_queue.h"
+#include "net/triple_buffer.h"
+#include "sim/snapshot.h"
 
 namespace slosh {
 

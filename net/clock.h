@@ -27,7 +27,11 @@ inline void sleep_until_ns(std::int64_t deadline_ns) {
   }
 }
 
-inline double to_seconds(std::int64_t nanoseconds) { return 1e-9 * static_cast<double>(nanoseconds); }
-inline std::int64_t to_nanoseconds(double seconds) { return static_cast<std::int64_t>(seconds * 1e9); }
+inline double to_seconds(std::int64_t nanoseconds) {
+  return 1e-9 * static_cast<double>(nanoseconds);
+}
+inline std::int64_t to_nanoseconds(double seconds) {
+  return static_cast<std::int64_t>(seconds * 1e9);
+}
 
 }  // namespace slosh

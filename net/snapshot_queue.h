@@ -1,8 +1,6 @@
 // Pictures of the world on their way from the host to one viewer.
 #pragma once
 
-#include "sim/snapshot.h"
-
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
@@ -11,14 +9,17 @@
 #include <memory>
 #include <mutex>
 
+#include "sim/snapshot.h"
+
 namespace slosh {
 
 using SnapshotPointer = std::shared_ptr<const Snapshot>;
 
 /// Bytes that a snapshot holds on to.
 inline std::size_t size_in_bytes(const Snapshot& snapshot) {
-  return sizeof(Snapshot) + snapshot.positions.capacity() * sizeof(glm::vec3) + snapshot.fluid_index.capacity() +
-         snapshot.rigid.bodies.capacity() * sizeof(BodyState) + snapshot.rigid.grips.capacity() * sizeof(GripState);
+  return sizeof(Snapshot) + snapshot.positions.capacity() * sizeof(glm::vec3) +
+         snapshot.fluid_index.capacity() + snapshot.rigid.bodies.capacity() * sizeof(BodyState) +
+         snapshot.rigid.grips.capacity() * sizeof(GripState);
 }
 
 /// First in, first out, bounded by bytes. Neither end is a device loop, so it may lock. A picture that does

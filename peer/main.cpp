@@ -20,7 +20,8 @@ int run(int argc, char** argv) {
   add_scenes(app, chosen);
   add_check(app, chosen);
   add_plan(app, chosen);
-  if (names_a_verb && app.get_subcommands([&](const CLI::App* sub) { return sub->check_name(argv[1]); }).empty()) {
+  if (names_a_verb &&
+      app.get_subcommands([&](const CLI::App* sub) { return sub->check_name(argv[1]); }).empty()) {
     std::fprintf(stderr, "slosh: there is no verb '%s'. See `slosh --help`.\n", argv[1]);
     return kExitUsage;
   }

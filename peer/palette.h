@@ -25,6 +25,8 @@ inline const DeviceColor& device_color(std::size_t device) {
 }
 
 /// To scene-linear light, as Frame's arrows and meshes want it.
-inline glm::vec3 linear_color(const DeviceColor& color) { return glm::pow(color.srgb, glm::vec3(2.2f)); }
+inline glm::vec3 linear_color(const DeviceColor& color) {
+  return glm::pow(color.srgb, glm::vec3(2.2f));
+}
 
 }  // namespace slosh

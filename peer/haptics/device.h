@@ -12,10 +12,10 @@ namespace slosh {
 
 /// What may be sent to a device. The rates limit how fast the wrench may change.
 struct DeviceLimits {
-  double max_force = 1000.0;        ///< N
-  double max_torque = 100.0;        ///< N·m
-  double max_force_rate = 2.0e5;    ///< N/s
-  double max_torque_rate = 2.0e4;   ///< N·m/s
+  double max_force = 1000.0;       ///< N
+  double max_torque = 100.0;       ///< N·m
+  double max_force_rate = 2.0e5;   ///< N/s
+  double max_torque_rate = 2.0e4;  ///< N·m/s
 };
 
 /// One reading.

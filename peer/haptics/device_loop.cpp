@@ -31,7 +31,9 @@ bool ask_for_real_time() {
 
 DeviceLoop::DeviceLoop(Servo& servo, double period) : servo_(servo), period_ns_(to_nanoseconds(period)) {}
 
-DeviceLoop::~DeviceLoop() { stop(); }
+DeviceLoop::~DeviceLoop() {
+  stop();
+}
 
 void DeviceLoop::start() {
   if (thread_.joinable()) return;
@@ -77,7 +79,8 @@ void DeviceLoop::run() {
     }
     window_ticks += 1;
     if (done - window_begin > kNanosecondsPerSecond / 4) {
-      rate_.store(static_cast<double>(window_ticks) / to_seconds(done - window_begin), std::memory_order_relaxed);
+      rate_.store(static_cast<double>(window_ticks) / to_seconds(done - window_begin),
+                  std::memory_order_relaxed);
       window_begin = done;
       window_ticks = 0;
     }

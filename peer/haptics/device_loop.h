@@ -12,11 +12,11 @@
 namespace slosh {
 
 struct DeviceLoopReport {
-  Histogram period;           ///< from wake to wake
-  Histogram busy;             ///< from wake to the end of the tick
+  Histogram period;  ///< from wake to wake
+  Histogram busy;    ///< from wake to the end of the tick
   std::uint64_t ticks = 0;
-  std::uint64_t missed = 0;   ///< deadlines that passed while the loop was not there
-  bool real_time = false;     ///< the kernel granted SCHED_FIFO
+  std::uint64_t missed = 0;  ///< deadlines that passed while the loop was not there
+  bool real_time = false;    ///< the kernel granted SCHED_FIFO
   std::string scheduler() const { return real_time ? "SCHED_FIFO" : "SCHED_OTHER"; }
 };
 

@@ -28,7 +28,8 @@ Result<DeviceSet> make_devices(const Scene& scene, const std::vector<std::string
     const Pose start = grip_start(scene, i);
     std::shared_ptr<MouseTarget> target;
     if (spec == "script") {
-      set.devices.push_back(std::make_unique<TrackDevice>(PoseTrack(scene.grips[i].hand_motion, start), spec));
+      set.devices.push_back(
+          std::make_unique<TrackDevice>(PoseTrack(scene.grips[i].hand_motion, start), spec));
     } else if (spec == "mouse") {
       if (!has_window) {
         return Error{"--device mouse", "there is no window to move the mouse in",

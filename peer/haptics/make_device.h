@@ -12,8 +12,8 @@
 namespace slosh {
 
 struct DeviceSet {
-  std::vector<std::unique_ptr<Device>> devices;                ///< one a grip
-  std::vector<std::shared_ptr<MouseTarget>> mouse_targets;    ///< one a grip, null where it is not a mouse
+  std::vector<std::unique_ptr<Device>> devices;             ///< one a grip
+  std::vector<std::shared_ptr<MouseTarget>> mouse_targets;  ///< one a grip, null where it is not a mouse
 };
 
 /// World pose of a grip at the start of the scene.

@@ -19,7 +19,7 @@ glm::dvec3 monotone_slope(const glm::dvec3& before, double h0, const glm::dvec3&
 }
 
 struct Hermite {
-  double value, d0, d1;                // weights of the end value and of the two tangents (times h)
+  double value, d0, d1;                 // weights of the end value and of the two tangents (times h)
   double rate_value, rate_d0, rate_d1;  // the same for the derivative (value: over h)
 };
 

@@ -10,9 +10,9 @@
 namespace slosh {
 
 /// A smooth motion through keys. Between keys each coordinate follows a monotone cubic (Fritsch and Carlson):
-/// the velocity has no jumps, and nothing overshoots a key, so a hand that rests between two equal keys rests.
-/// Orientations do the same with the rotation vector from one key to the next. Before the first and after the
-/// last key the hand stands still.
+/// the velocity has no jumps, and nothing overshoots a key, so a hand that rests between two equal keys
+/// rests. Orientations do the same with the rotation vector from one key to the next. Before the first and
+/// after the last key the hand stands still.
 class PoseTrack {
  public:
   /// Keys in rising time (a key that is not later than the one before is left out). No keys: `rest` for ever.

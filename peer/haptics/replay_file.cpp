@@ -9,7 +9,8 @@ namespace slosh {
 namespace {
 
 constexpr int kFields = 9;
-constexpr const char* kFieldNames[kFields] = {"time_s", "device", "x_m", "y_m", "z_m", "qw", "qx", "qy", "qz"};
+constexpr const char* kFieldNames[kFields] = {"time_s", "device", "x_m", "y_m", "z_m",
+                                              "qw",     "qx",     "qy",  "qz"};
 
 std::string at_line(const std::filesystem::path& file, std::size_t line) {
   return file.string() + ": line " + std::to_string(line);
@@ -28,7 +29,8 @@ Result<bool> parse_row(std::string_view row, double (&values)[kFields]) {
     const std::size_t comma = row.find(',');
     const std::string_view text = trimmed(row.substr(0, comma));
     if (field >= kFields) {
-      return Error{{}, "more than " + std::to_string(kFields) + " fields", "Keep to " + std::string(kPosesHeader)};
+      return Error{
+          {}, "more than " + std::to_string(kFields) + " fields", "Keep to " + std::string(kPosesHeader)};
     }
     const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), values[field]);
     if (code != std::errc() || end != text.data() + text.size() || !std::isfinite(values[field])) {
@@ -41,7 +43,8 @@ Result<bool> parse_row(std::string_view row, double (&values)[kFields]) {
     row.remove_prefix(comma + 1);
   }
   if (field < kFields) {
-    return Error{{}, std::to_string(field) + " fields where " + std::to_string(kFields) + " belong",
+    return Error{{},
+                 std::to_string(field) + " fields where " + std::to_string(kFields) + " belong",
                  "Keep to " + std::string(kPosesHeader)};
   }
   return true;

@@ -19,9 +19,7 @@ double freshness(double age, double interval) {
 
 Servo::Servo(const Scene& scene, std::vector<std::unique_ptr<Device>> devices, Channel& channel,
              ServoOptions options)
-    : channel_(channel),
-      options_(options),
-      samples_(options.sample_capacity) {
+    : channel_(channel), options_(options), samples_(options.sample_capacity) {
   hands_.reserve(devices.size());
   for (std::size_t i = 0; i < devices.size(); ++i) {
     const Grip& grip = scene.grips[i];
@@ -64,7 +62,8 @@ void Servo::tick(std::int64_t now_ns) noexcept {
       const Pose proxy = extrapolate(grip.pose, grip.twist, ahead);
       const Wrench full = coupling_wrench_on_hand(hand.gains, good.pose, good.twist, proxy, grip.twist);
       const double scale =
-          hand.engagement.update(good.engaged, time_, glm::length(full.force), glm::length(full.torque)) * fresh;
+          hand.engagement.update(good.engaged, time_, glm::length(full.force), glm::length(full.torque)) *
+          fresh;
       wanted = {scale * full.force, scale * full.torque};
     }
     const ForceLimiter::Outcome outcome = hand.limiter.limit(wanted, options_.period);

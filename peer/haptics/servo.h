@@ -38,11 +38,13 @@ constexpr double kFadeStale = 0.3;
 /// `interval` s.
 double freshness(double age, double interval);
 
-/// tick() belongs to the device loop's thread and neither allocates, locks nor logs. samples() has one reader.
+/// tick() belongs to the device loop's thread and neither allocates, locks nor logs. samples() has one
+/// reader.
 class Servo {
  public:
   /// The channel must outlive the servo. One device a grip.
-  Servo(const Scene& scene, std::vector<std::unique_ptr<Device>> devices, Channel& channel, ServoOptions options);
+  Servo(const Scene& scene, std::vector<std::unique_ptr<Device>> devices, Channel& channel,
+        ServoOptions options);
 
   void tick(std::int64_t now_ns) noexcept;
 

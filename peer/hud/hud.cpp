@@ -107,20 +107,23 @@ void Hud::draw_help() const {
   ImGui::SetNextWindowBgAlpha(0.8f);
   if (ImGui::Begin("help", nullptr, kPanel)) {
     if (mouse_hand) {
-      ImGui::TextUnformatted("move        the handle in the picture's plane\n"
-                             "wheel       the handle nearer and farther\n"
-                             "right drag  turn the handle\n"
-                             "left drag   turn the camera");
+      ImGui::TextUnformatted(
+          "move        the handle in the picture's plane\n"
+          "wheel       the handle nearer and farther\n"
+          "right drag  turn the handle\n"
+          "left drag   turn the camera");
     } else {
-      ImGui::TextUnformatted("left drag   turn the camera\n"
-                             "right drag  shift the camera\n"
-                             "wheel       nearer and farther");
+      ImGui::TextUnformatted(
+          "left drag   turn the camera\n"
+          "right drag  shift the camera\n"
+          "wheel       nearer and farther");
     }
-    ImGui::TextUnformatted("\nSpace       pause, go on\n"
-                           "R           start again\n"
-                           "C           the camera back to where it was\n"
-                           "H           this help\n"
-                           "Esc, Q      end");
+    ImGui::TextUnformatted(
+        "\nSpace       pause, go on\n"
+        "R           start again\n"
+        "C           the camera back to where it was\n"
+        "H           this help\n"
+        "Esc, Q      end");
   }
   ImGui::End();
 }

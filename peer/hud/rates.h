@@ -8,9 +8,9 @@
 namespace slosh {
 
 struct Rates {
-  double time = 0.0;         ///< simulated s
-  double real_time = 0.0;    ///< simulated s a wall s
-  double step_rate = 0.0;    ///< Hz
+  double time = 0.0;       ///< simulated s
+  double real_time = 0.0;  ///< simulated s a wall s
+  double step_rate = 0.0;  ///< Hz
   double step_ms = 0.0;
   double device_rate = 0.0;  ///< Hz
 };

@@ -31,7 +31,9 @@ std::string last_line(int file) {
 ChildProcess::ChildProcess(std::string name, pid_t pid, int input, int log)
     : name_(std::move(name)), pid_(pid), input_(input), log_(log) {}
 
-ChildProcess::~ChildProcess() { (void)finish(); }
+ChildProcess::~ChildProcess() {
+  (void)finish();
+}
 
 Result<std::unique_ptr<ChildProcess>> ChildProcess::start(const std::vector<std::string>& arguments) {
   int ends[2];
@@ -94,7 +96,8 @@ Result<bool> ChildProcess::finish() {
   if (log_ >= 0) close(log_);
   log_ = -1;
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return true;
-  return Error{name_, said.empty() ? "failed" : "failed: " + said, "Check the disk's free space and the folder"};
+  return Error{name_, said.empty() ? "failed" : "failed: " + said,
+               "Check the disk's free space and the folder"};
 }
 
 }  // namespace slosh

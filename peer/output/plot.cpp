@@ -28,8 +28,9 @@ std::string quoted(const std::string& text) {
 
 std::string row_text(double time, const Wrench& w) {
   char text[200];
-  std::snprintf(text, sizeof text, "%.5f %.6g %.6g %.6g %.6g %.6g %.6g %.6g %.6g\n", time, glm::length(w.force),
-                w.force.x, w.force.y, w.force.z, glm::length(w.torque), w.torque.x, w.torque.y, w.torque.z);
+  std::snprintf(text, sizeof text, "%.5f %.6g %.6g %.6g %.6g %.6g %.6g %.6g %.6g\n", time,
+                glm::length(w.force), w.force.x, w.force.y, w.force.z, glm::length(w.torque), w.torque.x,
+                w.torque.y, w.torque.z);
   return text;
 }
 
@@ -68,8 +69,8 @@ void add_curves(std::string& script, std::size_t devices, const std::vector<std:
     script += "  " + data + " using 1:" + std::to_string(magnitude_column + 1 + axis) + " with lines lw 1 " +
               std::string("lc rgb \"#90") + (device_color(i).hex + 1) + "\" title " +
               quoted(name + ": " + quantity + " " + kAxes[axis]) + ", \\\n";
-    script += "  " + data + " using 1:" + std::to_string(magnitude_column) + " with lines lw " + width + " " + color +
-              "\" title " + quoted(name + ": magnitude") + (i + 1 < devices ? ", \\\n" : "\n");
+    script += "  " + data + " using 1:" + std::to_string(magnitude_column) + " with lines lw " + width + " " +
+              color + "\" title " + quoted(name + ": magnitude") + (i + 1 < devices ? ", \\\n" : "\n");
   }
 }
 
@@ -134,13 +135,15 @@ std::string plot_script(const std::vector<WrenchSeries>& series, const std::vect
   for (std::size_t i = 0; i < series.size(); ++i) {
     script += "$device" + std::to_string(i) + " << END_OF_DATA\n";
     const WrenchSeries rows = thinned(series[i], kPlotRows);
-    for (std::size_t row = 0; row < rows.time.size(); ++row) script += row_text(rows.time[row], rows.on_hand[row]);
+    for (std::size_t row = 0; row < rows.time.size(); ++row)
+      script += row_text(rows.time[row], rows.on_hand[row]);
     script += "END_OF_DATA\n";
   }
   const int force_axis = liveliest_axis(series, [](const Wrench& w) { return w.force; });
   const int torque_axis = liveliest_axis(series, [](const Wrench& w) { return w.torque; });
   script += "set encoding utf8\n";
-  script += "set terminal pngcairo size 1200,900 noenhanced font \"DejaVu Sans,12\" background rgb \"white\"\n";
+  script +=
+      "set terminal pngcairo size 1200,900 noenhanced font \"DejaVu Sans,12\" background rgb \"white\"\n";
   script += "set output " + quoted(png.string()) + "\n";
   script +=
       "set multiplot layout 2,1 margins 0.075,0.79,0.075,0.925 spacing 0,0.06\n"

@@ -46,7 +46,9 @@ Progress::Progress() : Progress(good_terminal(), 2.0) {}
 Progress::Progress(bool terminal, double seconds_between_lines)
     : terminal_(terminal), between_ns_(to_nanoseconds(seconds_between_lines)) {}
 
-Progress::~Progress() { end_line(); }
+Progress::~Progress() {
+  end_line();
+}
 
 void Progress::end_line() {
   if (line_open_) std::fputc('\n', stderr);

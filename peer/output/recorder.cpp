@@ -13,8 +13,8 @@ Result<std::unique_ptr<Recorder>> Recorder::start(Servo& servo, const std::files
   File wrenches;
   File poses;
   if (!folder.empty()) {
-    for (const auto& [file, name, header] :
-         {std::tuple{&wrenches, "wrenches.csv", kWrenchesHeader}, std::tuple{&poses, "poses.csv", kPosesHeader}}) {
+    for (const auto& [file, name, header] : {std::tuple{&wrenches, "wrenches.csv", kWrenchesHeader},
+                                             std::tuple{&poses, "poses.csv", kPosesHeader}}) {
       const std::filesystem::path path = folder / name;
       file->reset(std::fopen(path.c_str(), "w"));
       if (!*file) {
@@ -38,7 +38,9 @@ Recorder::Recorder(Servo& servo, File wrenches, File poses)
   });
 }
 
-Recorder::~Recorder() { stop(); }
+Recorder::~Recorder() {
+  stop();
+}
 
 void Recorder::stop() {
   if (!thread_.joinable()) return;
@@ -61,14 +63,15 @@ void Recorder::drain() {
     if (!wrenches_) continue;
     const glm::dvec3& f = s.on_hand.force;
     const glm::dvec3& t = s.on_hand.torque;
-    std::fprintf(wrenches_.get(), "%.6f,%u,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g\n", s.time, s.device, f.x, f.y, f.z, t.x,
-                 t.y, t.z);
+    std::fprintf(wrenches_.get(), "%.6f,%u,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g\n", s.time, s.device, f.x, f.y, f.z,
+                 t.x, t.y, t.z);
     const glm::dvec3& p = s.handle.position;
     const glm::dquat& q = s.handle.orientation;
-    std::fprintf(poses_.get(), "%.6f,%u,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", s.time, s.device, p.x, p.y, p.z,
-                 q.w, q.x, q.y, q.z);
+    std::fprintf(poses_.get(), "%.6f,%u,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", s.time, s.device, p.x, p.y,
+                 p.z, q.w, q.x, q.y, q.z);
   }
-  if (any && wrenches_ && (std::fflush(wrenches_.get()) != 0 || std::fflush(poses_.get()) != 0)) failed_ = true;
+  if (any && wrenches_ && (std::fflush(wrenches_.get()) != 0 || std::fflush(poses_.get()) != 0))
+    failed_ = true;
 }
 
 }  // namespace slosh

@@ -13,7 +13,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json spread(const Spread& s) { return {{"p50", s.p50}, {"p99", s.p99}, {"max", s.max}}; }
+Json spread(const Spread& s) {
+  return {{"p50", s.p50}, {"p99", s.p99}, {"max", s.max}};
+}
 
 template <class... Numbers>
 std::string format(const char* pattern, Numbers... numbers) {
@@ -65,17 +67,14 @@ Json to_json(const RunSummary& s) {
   json["wall_s"] = s.wall;
   json["real_time_factor"] = s.real_time_factor;
   json["step_ms"] = spread(s.step_ms);
-  json["step_share"] = {{"sort", s.share_sort},
-                        {"density", s.share_density},
-                        {"force", s.share_force},
-                        {"body", s.share_body}};
+  json["step_share"] = {
+      {"sort", s.share_sort}, {"density", s.share_density}, {"force", s.share_force}, {"body", s.share_body}};
   json["device_loop_us"] = spread(s.device_loop_us);
   json["device_loop_us"]["ticks"] = s.device_ticks;
   json["device_loop_us"]["missed"] = s.device_missed;
   json["device_loop_us"]["scheduler"] = s.device_scheduler;
-  json["render"] = {{"on", s.rendered},       {"renderer", s.renderer},
-                    {"width", s.width},       {"height", s.height},
-                    {"frames", s.frames},     {"dropped", s.frames_dropped},
+  json["render"] = {{"on", s.rendered},        {"renderer", s.renderer}, {"width", s.width},
+                    {"height", s.height},      {"frames", s.frames},     {"dropped", s.frames_dropped},
                     {"ms", spread(s.frame_ms)}};
   json["status"] = status_words(s.status);
   json["slips"] = {{"count", s.slips}, {"seconds", s.slipped}};
@@ -93,9 +92,10 @@ Json to_json(const RunSummary& s) {
 }
 
 std::string in_words(const RunSummary& s) {
-  std::string text = format("%s: %.1f s of %s fluid and %s body particles at %.1f mm in %.1f s (real time × %.2f)",
-                            s.scene.c_str(), s.simulated, grouped(s.fluid_particles).c_str(),
-                            grouped(s.boundary_particles).c_str(), 1e3 * s.spacing, s.wall, s.real_time_factor);
+  std::string text =
+      format("%s: %.1f s of %s fluid and %s body particles at %.1f mm in %.1f s (real time × %.2f)",
+             s.scene.c_str(), s.simulated, grouped(s.fluid_particles).c_str(),
+             grouped(s.boundary_particles).c_str(), 1e3 * s.spacing, s.wall, s.real_time_factor);
   text += s.interrupted ? ", interrupted.\n" : ".\n";
   text += format("A step of %.2f ms took %.2f ms (p99 %.2f) on %d thread%s (%s).\n", 1e3 * s.time_step,
                  s.step_ms.p50, s.step_ms.p99, s.threads, s.threads == 1 ? "" : "s", s.backend.c_str());
@@ -104,8 +104,8 @@ std::string in_words(const RunSummary& s) {
                    s.device_loop_us.p50, s.device_loop_us.p99, s.device_loop_us.max,
                    grouped(s.device_missed).c_str(), s.device_scheduler.c_str());
     for (const DeviceSummary& d : s.devices) {
-      text += format("%s (%s) felt up to %.1f N and %.2f N·m.\n", d.grip.c_str(), d.device.c_str(), d.peak_force,
-                     d.peak_torque);
+      text += format("%s (%s) felt up to %.1f N and %.2f N·m.\n", d.grip.c_str(), d.device.c_str(),
+                     d.peak_force, d.peak_torque);
     }
   }
   if (s.rendered) {
@@ -139,7 +139,8 @@ Result<bool> write_summary(const std::filesystem::path& file, const RunSummary& 
   }
   std::error_code code;
   std::filesystem::rename(part, file, code);
-  if (code) return Error{file.string(), "cannot be written: " + code.message(), "Choose another folder with --out"};
+  if (code)
+    return Error{file.string(), "cannot be written: " + code.message(), "Choose another folder with --out"};
   return true;
 }
 

@@ -20,10 +20,10 @@ struct Spread {
 };
 
 struct DeviceSummary {
-  std::string grip;           ///< the grip's name in the scene
-  std::string device;         ///< script, mouse, replay
-  double peak_force = 0.0;    ///< N, on the hand
-  double peak_torque = 0.0;   ///< N·m
+  std::string grip;          ///< the grip's name in the scene
+  std::string device;        ///< script, mouse, replay
+  double peak_force = 0.0;   ///< N, on the hand
+  double peak_torque = 0.0;  ///< N·m
 };
 
 /// Plain numbers, filled from the host's and the peer's reports.
@@ -42,7 +42,7 @@ struct RunSummary {
   double real_time_factor = 0.0;  ///< simulated over wall
   Spread step_ms;
   double share_sort = 0.0, share_density = 0.0, share_force = 0.0, share_body = 0.0;  ///< of the step, 0–1
-  Spread device_loop_us;           ///< period, wake to wake
+  Spread device_loop_us;  ///< period, wake to wake
   std::uint64_t device_ticks = 0;
   std::uint64_t device_missed = 0;
   std::string device_scheduler;
@@ -52,13 +52,13 @@ struct RunSummary {
   std::uint64_t frames = 0;
   std::uint64_t frames_dropped = 0;
   Spread frame_ms;
-  std::uint32_t status = 0;        ///< StatusBits
+  std::uint32_t status = 0;  ///< StatusBits
   std::uint64_t slips = 0;
-  double slipped = 0.0;            ///< s
+  double slipped = 0.0;  ///< s
   std::uint64_t rejected_poses = 0;
   std::uint64_t samples_lost = 0;
-  double fluid_mass_start = 0.0;   ///< kg
-  double fluid_mass_end = 0.0;     ///< kg still in the world
+  double fluid_mass_start = 0.0;  ///< kg
+  double fluid_mass_end = 0.0;    ///< kg still in the world
   std::vector<DeviceSummary> devices;
   std::string backend;
   int threads = 1;

@@ -15,8 +15,9 @@ int finish_run(const Prepared& prepared, Progress& progress, RunSummary& summary
       progress.phase("plotting");
       std::vector<std::string> names;
       for (const Grip& grip : prepared.scene.grips) names.push_back(grip.name);
-      const std::string title =
-          prepared.scene.title.empty() ? prepared.scene.name : prepared.scene.name + ": " + prepared.scene.title;
+      const std::string title = prepared.scene.title.empty()
+                                    ? prepared.scene.name
+                                    : prepared.scene.name + ": " + prepared.scene.title;
       const Result<bool> plotted =
           plot_wrenches(prepared.folder / "wrenches.csv", names, title, prepared.folder / "wrenches.png");
       if (plotted) {

@@ -21,7 +21,9 @@ int list_scenes() {
   return kExitOk;
 }
 
-double litres(const Scene& scene) { return 1e3 * estimate_particles(scene, 1.0).fluid; }
+double litres(const Scene& scene) {
+  return 1e3 * estimate_particles(scene, 1.0).fluid;
+}
 
 double fluid_mass(const Scene& scene, const SampledScene& sampled) {
   double mass = 0.0;
@@ -62,8 +64,8 @@ int check(const std::string& name) {
     std::printf("  thinnest    wall %.1f mm, of %s\n", 1e3 * wall, scene.bodies[thinnest_body].name.c_str());
   }
   std::printf("  particles   %s fluid and %s body particles at %.1f mm (range %.1f to %.1f mm)\n",
-              grouped(sampled.value().fluid_positions.size()).c_str(), grouped(surface).c_str(), 1e3 * spacing,
-              1e3 * scene.spacing_min, 1e3 * scene.spacing_max);
+              grouped(sampled.value().fluid_positions.size()).c_str(), grouped(surface).c_str(),
+              1e3 * spacing, 1e3 * scene.spacing_min, 1e3 * scene.spacing_max);
   return kExitOk;
 }
 
@@ -103,7 +105,8 @@ void add_plan(CLI::App& app, VerbRun& chosen) {
   verb->add_option("--spacing", *spacing, "Metres between particles (the scene's own, else its coarsest)")
       ->check(CLI::Range(1e-4, 1.0));
   verb->footer("Examples:\n  slosh plan bucket\n  slosh plan pour --spacing 0.008");
-  verb->callback([&chosen, name, spacing] { chosen = [name, spacing] { return print_plan(*name, *spacing); }; });
+  verb->callback(
+      [&chosen, name, spacing] { chosen = [name, spacing] { return print_plan(*name, *spacing); }; });
 }
 
 int fail(const Error& error) {

@@ -7,7 +7,9 @@ namespace {
 
 volatile sig_atomic_t caught = 0;
 
-extern "C" void note_signal(int signal_number) { caught = signal_number; }
+extern "C" void note_signal(int signal_number) {
+  caught = signal_number;
+}
 
 }  // namespace
 
@@ -21,6 +23,8 @@ void catch_interrupts() {
   sigaction(SIGTERM, &action, nullptr);
 }
 
-int interrupted_by() { return caught; }
+int interrupted_by() {
+  return caught;
+}
 
 }  // namespace slosh

@@ -1,8 +1,7 @@
 // The verb `play`: its options, and the choice between a window and a film.
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
-
-#include <CLI/CLI.hpp>
 
 #include "peer/verbs/interrupt.h"
 #include "peer/verbs/play_modes.h"
@@ -14,7 +13,8 @@ namespace {
 
 constexpr const char* kFooter =
     "Without a display, or with --headless, the run becomes a film. DIR gets\n"
-    "  wrenches.csv   time_s,device,fx_n,fy_n,fz_n,tx_nm,ty_nm,tz_nm: simulated time, device from 0, and the\n"
+    "  wrenches.csv   time_s,device,fx_n,fy_n,fz_n,tx_nm,ty_nm,tz_nm: simulated time, device from 0, and "
+    "the\n"
     "                 wrench on the hand (what is felt: a held weight is negative fy), torque about the\n"
     "                 handle, world axes, y up\n"
     "  poses.csv      where the handles were; --device replay:FILE plays it again\n"
@@ -56,8 +56,10 @@ int play(const PlayOptions& options) {
 void add_play(CLI::App& app, VerbRun& chosen) {
   CLI::App* verb = app.add_subcommand("play", "Play a scene: feel it, see it, record it");
   auto o = std::make_shared<PlayOptions>();
-  verb->add_option("SCENE", o->scene, "A shipped scene's name, or a .gltf or .glb file")->capture_default_str();
-  verb->add_option("--seconds", o->seconds, "Simulated seconds (the scene's duration; a window: until closed)")
+  verb->add_option("SCENE", o->scene, "A shipped scene's name, or a .gltf or .glb file")
+      ->capture_default_str();
+  verb->add_option("--seconds", o->seconds,
+                   "Simulated seconds (the scene's duration; a window: until closed)")
       ->check(CLI::Range(0.01, 1e6));
   verb->add_option("--out", o->out, "Folder for the results (headless: out/<scene>; a window: none)");
   verb->add_flag("--headless", o->headless, "No window, even with a display");

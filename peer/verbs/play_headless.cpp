@@ -34,10 +34,11 @@ std::string running_text(const Rates& rates, double seconds) {
   int used = std::snprintf(text, sizeof text, "%.2f s", rates.time);
   if (seconds < 1e9) used += std::snprintf(text + used, sizeof text - used, " of %.2f s", seconds);
   if (rates.real_time > 0.0) {
-    used += std::snprintf(text + used, sizeof text - used, ", real time × %.2f, step %.2f ms", rates.real_time,
-                          rates.step_ms);
+    used += std::snprintf(text + used, sizeof text - used, ", real time × %.2f, step %.2f ms",
+                          rates.real_time, rates.step_ms);
   }
-  if (rates.device_rate > 0.0) std::snprintf(text + used, sizeof text - used, ", devices %.0f Hz", rates.device_rate);
+  if (rates.device_rate > 0.0)
+    std::snprintf(text + used, sizeof text - used, ", devices %.0f Hz", rates.device_rate);
   return text;
 }
 
@@ -46,7 +47,8 @@ Result<bool> play_headless(const Prepared& prepared, const PlayOptions& options,
   Result<DeviceSet> devices = make_devices(prepared.scene, options.devices, false);
   if (!devices) return devices.error();
   const double picture_rate = options.render ? options.frames_per_second : 0.0;
-  Result<std::unique_ptr<Session>> created = Session::create(prepared, std::move(devices.value()), picture_rate);
+  Result<std::unique_ptr<Session>> created =
+      Session::create(prepared, std::move(devices.value()), picture_rate);
   if (!created) return created.error();
   Session& session = *created.value();
 
@@ -59,8 +61,9 @@ Result<bool> play_headless(const Prepared& prepared, const PlayOptions& options,
     view_options.render.bilateral_iterations = options.bilateral;
     view_options.frames_per_second = options.frames_per_second;
     view_options.folder = prepared.folder;
-    Result<std::unique_ptr<HeadlessView>> started = HeadlessView::start(
-        prepared.scene, session.facts(picture_rate), session.channel().pictures(), session.rates(), view_options);
+    Result<std::unique_ptr<HeadlessView>> started =
+        HeadlessView::start(prepared.scene, session.facts(picture_rate), session.channel().pictures(),
+                            session.rates(), view_options);
     if (!started) {
       Error error = started.error();
       session.channel().pictures().close();

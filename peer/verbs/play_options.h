@@ -8,8 +8,8 @@ namespace slosh {
 
 struct PlayOptions {
   std::string scene = "bucket";
-  double seconds = 0.0;              ///< simulated; 0 = the scene's duration (a window: until closed)
-  std::string out;                   ///< folder; empty = out/<scene> when headless, nothing with a window
+  double seconds = 0.0;  ///< simulated; 0 = the scene's duration (a window: until closed)
+  std::string out;       ///< folder; empty = out/<scene> when headless, nothing with a window
   bool headless = false;
   std::string backend = "auto";      ///< auto, cpu, cuda
   std::vector<std::string> devices;  ///< none, one for all, or one a grip

@@ -20,7 +20,8 @@ constexpr double kPictureRate = 60.0;  // snapshots a simulated second, for a sm
 /// The film of a window, when a folder was given: what is on show, at a fixed rate of wall time.
 class WindowFilm {
  public:
-  WindowFilm(const std::filesystem::path& folder, const PlayOptions& options) : folder_(folder), options_(options) {}
+  WindowFilm(const std::filesystem::path& folder, const PlayOptions& options)
+      : folder_(folder), options_(options) {}
 
   /// Call after each draw.
   void offer(Renderer& renderer) {
@@ -181,7 +182,8 @@ Result<bool> play_in_window(const Prepared& prepared, const PlayOptions& options
     Result<DeviceSet> devices = make_devices(prepared.scene, options.devices, true);
     if (!devices) return devices.error();
     std::vector<std::shared_ptr<MouseTarget>> targets = devices.value().mouse_targets;
-    Result<std::unique_ptr<Session>> session = Session::create(prepared, std::move(devices.value()), kPictureRate);
+    Result<std::unique_ptr<Session>> session =
+        Session::create(prepared, std::move(devices.value()), kPictureRate);
     if (!session) return session.error();
     WindowRun run(prepared, *session.value(), std::move(targets), *context.value(), *renderer.value(), film);
     session.value()->start();

@@ -51,7 +51,8 @@ Result<Spacing> choose(const Scene& scene, const PlayOptions& options, int threa
 
 Result<std::filesystem::path> make_folder(const PlayOptions& options, const Scene& scene, bool headless) {
   if (options.out.empty() && !headless) return std::filesystem::path();
-  const std::filesystem::path folder = options.out.empty() ? std::filesystem::path("out") / scene.name : std::filesystem::path(options.out);
+  const std::filesystem::path folder =
+      options.out.empty() ? std::filesystem::path("out") / scene.name : std::filesystem::path(options.out);
   std::error_code code;
   std::filesystem::create_directories(folder, code);
   if (code || !std::filesystem::is_directory(folder)) {
@@ -76,11 +77,13 @@ Result<std::pair<int, int>> parse_size(const std::string& text) {
   auto [at, code] = std::from_chars(text.data(), end, width);
   if (code == std::errc() && at != end && *at == 'x') {
     const auto [after, second] = std::from_chars(at + 1, end, height);
-    if (second == std::errc() && after == end && width >= 16 && width <= 8192 && height >= 16 && height <= 8192) {
+    if (second == std::errc() && after == end && width >= 16 && width <= 8192 && height >= 16 &&
+        height <= 8192) {
       return std::pair{width, height};
     }
   }
-  return Error{"--size", "'" + text + "' is not WIDTHxHEIGHT in pixels, 16 to 8192 each", "For example 640x480"};
+  return Error{"--size", "'" + text + "' is not WIDTHxHEIGHT in pixels, 16 to 8192 each",
+               "For example 640x480"};
 }
 
 Result<Prepared> prepare(const PlayOptions& options, bool headless, Progress& progress) {
@@ -93,8 +96,9 @@ Result<Prepared> prepare(const PlayOptions& options, bool headless, Progress& pr
   // Drawing takes a core of its own; the device loop and the encoder take little.
   p.threads = options.threads > 0 ? options.threads
                                   : std::max(1, options.render ? p.machine.cores - 1 : p.machine.cores);
-  const Result<std::pair<int, int>> size =
-      parse_size(!options.size.empty() ? options.size : headless ? "640x480" : "1280x720");
+  const Result<std::pair<int, int>> size = parse_size(!options.size.empty() ? options.size
+                                                      : headless            ? "640x480"
+                                                                            : "1280x720");
   if (!size) return size.error();
   std::tie(p.width, p.height) = size.value();
 

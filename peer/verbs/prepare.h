@@ -19,9 +19,9 @@ struct Prepared {
   Plan plan;
   std::string spacing_reason;
   Machine machine;
-  std::string backend;  ///< what was chosen
-  int threads = 1;      ///< the simulation's
-  double seconds = 0.0;  ///< simulated; infinity = until the window closes
+  std::string backend;           ///< what was chosen
+  int threads = 1;               ///< the simulation's
+  double seconds = 0.0;          ///< simulated; infinity = until the window closes
   std::filesystem::path folder;  ///< exists, or empty
   int width = 0;
   int height = 0;

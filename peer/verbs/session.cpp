@@ -13,7 +13,8 @@ Spread spread_of(const Histogram& histogram, double unit) {
 
 }  // namespace
 
-Result<std::unique_ptr<Session>> Session::create(const Prepared& prepared, DeviceSet devices, double picture_rate) {
+Result<std::unique_ptr<Session>> Session::create(const Prepared& prepared, DeviceSet devices,
+                                                 double picture_rate) {
   std::unique_ptr<Session> session(new Session(prepared));
   for (const std::unique_ptr<Device>& device : devices.devices) {
     const Result<bool> opened = device->open();
@@ -35,7 +36,9 @@ Result<std::unique_ptr<Session>> Session::create(const Prepared& prepared, Devic
   return session;
 }
 
-Session::~Session() { stop(); }
+Session::~Session() {
+  stop();
+}
 
 void Session::start() {
   loop_->start();  // first, so that the hands hold on when the first step is taken

@@ -18,7 +18,8 @@ namespace slosh {
 class Session {
  public:
   /// `picture_rate` as in HostOptions. Errors: a device cannot be opened, a file cannot be written.
-  static Result<std::unique_ptr<Session>> create(const Prepared& prepared, DeviceSet devices, double picture_rate);
+  static Result<std::unique_ptr<Session>> create(const Prepared& prepared, DeviceSet devices,
+                                                 double picture_rate);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;

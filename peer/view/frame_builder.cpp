@@ -10,16 +10,19 @@
 namespace slosh {
 namespace {
 
-constexpr float kHandRadius = 0.008f;   // m, the ball that marks a handle
-constexpr double kArrowLength = 0.22;  // of the view distance, for the largest force so far
+constexpr float kHandRadius = 0.008f;       // m, the ball that marks a handle
+constexpr double kArrowLength = 0.22;       // of the view distance, for the largest force so far
 constexpr double kSmallestReference = 1.0;  // N: below it noise would be drawn large
 
-MeshLook look_of(const Material& m) { return {m.base_color, m.metallic, m.roughness, m.opacity}; }
+MeshLook look_of(const Material& m) {
+  return {m.base_color, m.metallic, m.roughness, m.opacity};
+}
 
 }  // namespace
 
 glm::mat4 model_matrix(const Pose& pose) {
-  return glm::translate(glm::mat4(1.0f), glm::vec3(pose.position)) * glm::mat4_cast(glm::quat(pose.orientation));
+  return glm::translate(glm::mat4(1.0f), glm::vec3(pose.position)) *
+         glm::mat4_cast(glm::quat(pose.orientation));
 }
 
 TriangleMesh unit_ball() {
@@ -90,12 +93,14 @@ Frame FrameBuilder::build(const Snapshot& snapshot, double view_distance) {
   for (const Placed& placed : placed_) {
     const auto body = static_cast<std::size_t>(placed.body);
     const bool moves = placed.body >= 0 && body < rigid.bodies.size();
-    frame.meshes.push_back({placed.mesh, moves ? model_matrix(rigid.bodies[body].pose) : placed.model, placed.look});
+    frame.meshes.push_back(
+        {placed.mesh, moves ? model_matrix(rigid.bodies[body].pose) : placed.model, placed.look});
   }
   for (std::size_t i = 0; i < scene_.bodies.size() && i < rigid.bodies.size(); ++i) {
     if (scene_.bodies[i].mesh >= 0) continue;  // a point probe: as large as a particle
     const glm::mat4 size = glm::scale(glm::mat4(1.0f), glm::vec3(particle_radius_));
-    frame.meshes.push_back({ball_, model_matrix(rigid.bodies[i].pose) * size, look_of(scene_.bodies[i].material)});
+    frame.meshes.push_back(
+        {ball_, model_matrix(rigid.bodies[i].pose) * size, look_of(scene_.bodies[i].material)});
   }
   for (const GripState& grip : rigid.grips) {
     reference_force_ = std::max({reference_force_, kSmallestReference, glm::length(grip.on_hand.force)});

@@ -17,17 +17,17 @@
 namespace slosh {
 
 struct ViewOptions {
-  RenderOptions render;                ///< size, filter iterations
-  double frames_per_second = 30.0;     ///< of the film
-  std::filesystem::path folder;        ///< gets view.mp4 and final.png; must exist
+  RenderOptions render;             ///< size, filter iterations
+  double frames_per_second = 30.0;  ///< of the film
+  std::filesystem::path folder;     ///< gets view.mp4 and final.png; must exist
 };
 
 /// What the viewer did; complete after wait().
 struct ViewReport {
   std::uint64_t frames = 0;
-  Histogram frame_time;   ///< drawing and reading back, s
+  Histogram frame_time;  ///< drawing and reading back, s
   std::string renderer;
-  std::string problem;    ///< an error's text, empty when all went well
+  std::string problem;  ///< an error's text, empty when all went well
 };
 
 /// Draws on a thread of its own, at low priority: the simulation comes first.

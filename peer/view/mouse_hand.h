@@ -18,8 +18,7 @@ class MouseHand {
     if (input.hud_wants_mouse || input.held(MouseButton::kLeft)) return false;
     // A pixel at the handle's own depth, so that the handle stays under the pointer.
     const double depth = glm::max(glm::dot(wanted_.position - camera.eye(), camera.forward()), 0.01);
-    const double metres =
-        camera.height_at_target() * depth / camera.distance() / glm::max(picture_height, 1);
+    const double metres = camera.height_at_target() * depth / camera.distance() / glm::max(picture_height, 1);
     const glm::dvec2 moved(input.mouse_delta);
     if (input.held(MouseButton::kRight)) {
       const glm::dvec3 turn = kTurnPerPixel * (moved.x * camera.up() + moved.y * camera.right());
@@ -33,7 +32,7 @@ class MouseHand {
   const Pose& wanted() const { return wanted_; }
 
  private:
-  static constexpr double kTurnPerPixel = 0.006;  // rad
+  static constexpr double kTurnPerPixel = 0.006;   // rad
   static constexpr double kDepthPerNotch = 0.015;  // of the eye's distance
   Pose wanted_;
 };

@@ -7,12 +7,14 @@
 namespace slosh {
 namespace {
 
-constexpr double kSteepest = 1.55;      // rad: the up direction stays defined
+constexpr double kSteepest = 1.55;       // rad: the up direction stays defined
 constexpr double kTurnPerPixel = 0.006;  // rad
 
 }  // namespace
 
-OrbitCamera::OrbitCamera(const Camera& camera) : start_(camera) { reset(); }
+OrbitCamera::OrbitCamera(const Camera& camera) : start_(camera) {
+  reset();
+}
 
 void OrbitCamera::reset() {
   target_ = start_.target;
@@ -27,7 +29,9 @@ void OrbitCamera::turn(double about_y, double up) {
   elevation_ = std::clamp(elevation_ + up, -kSteepest, kSteepest);
 }
 
-void OrbitCamera::zoom(double factor) { distance_ = std::clamp(distance_ * factor, 0.02, 50.0); }
+void OrbitCamera::zoom(double factor) {
+  distance_ = std::clamp(distance_ * factor, 0.02, 50.0);
+}
 
 void OrbitCamera::pan(const glm::dvec2& heights) {
   target_ += height_at_target() * (heights.x * right() + heights.y * up());
@@ -49,9 +53,15 @@ glm::dvec3 OrbitCamera::forward() const {
   return {-std::cos(elevation_) * std::sin(azimuth_), -std::sin(elevation_),
           -std::cos(elevation_) * std::cos(azimuth_)};
 }
-glm::dvec3 OrbitCamera::right() const { return glm::normalize(glm::cross(forward(), glm::dvec3(0, 1, 0))); }
-glm::dvec3 OrbitCamera::up() const { return glm::cross(right(), forward()); }
-glm::dvec3 OrbitCamera::eye() const { return target_ - distance_ * forward(); }
+glm::dvec3 OrbitCamera::right() const {
+  return glm::normalize(glm::cross(forward(), glm::dvec3(0, 1, 0)));
+}
+glm::dvec3 OrbitCamera::up() const {
+  return glm::cross(right(), forward());
+}
+glm::dvec3 OrbitCamera::eye() const {
+  return target_ - distance_ * forward();
+}
 
 double OrbitCamera::height_at_target() const {
   return 2.0 * distance_ * std::tan(0.5 * glm::radians(start_.vertical_fov_deg));

@@ -13,7 +13,10 @@ namespace slosh {
 class Painter {
  public:
   Painter(const Scene& scene, const HudFacts& facts, Renderer& renderer)
-      : renderer_(renderer), builder_(scene, facts.spacing, renderer), camera_(scene.camera), hud_(scene, facts) {}
+      : renderer_(renderer),
+        builder_(scene, facts.spacing, renderer),
+        camera_(scene.camera),
+        hud_(scene, facts) {}
 
   /// A new snapshot for the charts.
   void record(const Snapshot& snapshot) { hud_.record(snapshot); }

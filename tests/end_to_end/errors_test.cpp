@@ -11,7 +11,9 @@ namespace {
 using test::Outcome;
 using Arguments = std::vector<std::string>;
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
 
 /// Fails with `code`, and stderr says every one of `parts`; nothing crashes.
 void expect_error(const Arguments& arguments, int code, const std::vector<std::string>& parts) {

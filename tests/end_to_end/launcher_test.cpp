@@ -16,7 +16,9 @@ Outcome launcher(const std::vector<std::string>& arguments) {
   return test::Process(all, test::test_folder()).wait();
 }
 
-bool is_the_launchers_build() { return std::filesystem::path(SLOSH_BINARY_DIR) == kRoot / "build" / "release"; }
+bool is_the_launchers_build() {
+  return std::filesystem::path(SLOSH_BINARY_DIR) == kRoot / "build" / "release";
+}
 
 TEST(Launcher, HelpListsTheVerbs) {
   for (const std::vector<std::string>& arguments : {std::vector<std::string>{}, {"help"}, {"--help"}}) {

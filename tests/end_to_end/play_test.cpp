@@ -30,11 +30,10 @@ class PlayTest : public ::testing::Test {
 
 /// One value of ffprobe's about the first video stream.
 std::string probe(const std::filesystem::path& film, const std::string& entry) {
-  const Outcome outcome =
-      test::Process({"ffprobe", "-v", "error", "-count_frames", "-select_streams", "v:0", "-show_entries",
-                     "stream=" + entry, "-of", "csv=p=0", film.string()},
-                    test::test_folder() / "ffprobe")
-          .wait();
+  const Outcome outcome = test::Process({"ffprobe", "-v", "error", "-count_frames", "-select_streams", "v:0",
+                                         "-show_entries", "stream=" + entry, "-of", "csv=p=0", film.string()},
+                                        test::test_folder() / "ffprobe")
+                              .wait();
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   return outcome.out.substr(0, outcome.out.find_first_of("\n,"));
 }
@@ -56,9 +55,8 @@ void expect_rows(const std::filesystem::path& folder, std::size_t devices, doubl
 }
 
 TEST_F(PlayTest, WritesEveryFileOfARun) {
-  const Outcome outcome =
-      test::slosh({"play", "bucket", "--headless", "--seconds", "1", "--spacing", "0.012", "--size", "320x240",
-                   "--fps", "10", "--out", "out"});
+  const Outcome outcome = test::slosh({"play", "bucket", "--headless", "--seconds", "1", "--spacing", "0.012",
+                                       "--size", "320x240", "--fps", "10", "--out", "out"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   for (const char* file :
        {"wrenches.csv", "poses.csv", "wrenches.png", "view.mp4", "final.png", "summary.json"}) {
@@ -100,8 +98,8 @@ TEST_F(PlayTest, WritesEveryFileOfARun) {
 }
 
 TEST_F(PlayTest, ARecordedRunCanBeReplayed) {
-  const std::vector<std::string> common = {"play",      "probe", "--no-render", "--seconds", "1",
-                                           "--spacing", "0.012", "--out"};
+  const std::vector<std::string> common = {"play", "probe",     "--no-render", "--seconds",
+                                           "1",    "--spacing", "0.012",       "--out"};
   std::vector<std::string> first = common;
   first.push_back("first");
   Outcome outcome = test::slosh(first);
@@ -117,10 +115,12 @@ TEST_F(PlayTest, ARecordedRunCanBeReplayed) {
 }
 
 TEST_F(PlayTest, WithoutADisplayItSaysThatItBecomesAFilm) {
-  const Outcome outcome = test::slosh({"play", "probe", "--seconds", "0.1", "--spacing", "0.012", "--size", "64x48"});
+  const Outcome outcome =
+      test::slosh({"play", "probe", "--seconds", "0.1", "--spacing", "0.012", "--size", "64x48"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.err.find("no display"), std::string::npos);
-  EXPECT_TRUE(std::filesystem::exists(test::test_folder() / "out" / "probe" / "view.mp4")) << "the default folder";
+  EXPECT_TRUE(std::filesystem::exists(test::test_folder() / "out" / "probe" / "view.mp4"))
+      << "the default folder";
 }
 
 TEST_F(PlayTest, ChoosesASpacingAndSaysWhy) {
@@ -133,16 +133,16 @@ TEST_F(PlayTest, ChoosesASpacingAndSaysWhy) {
 }
 
 TEST_F(PlayTest, AimsAtANumberOfParticles) {
-  const Outcome outcome =
-      test::slosh({"play", "pool", "--no-render", "--seconds", "0.05", "--particles", "4000", "--out", "out"});
+  const Outcome outcome = test::slosh(
+      {"play", "pool", "--no-render", "--seconds", "0.05", "--particles", "4000", "--out", "out"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const double fluid = json::parse(read_text(out() / "summary.json"))["particles"]["fluid"];
   EXPECT_NEAR(fluid, 4000.0, 1000.0);
 }
 
 TEST_F(PlayTest, AnInterruptedRunLeavesValidFiles) {
-  test::Process run({test::program(), "play", "probe", "--headless", "--seconds", "3600", "--spacing", "0.012",
-                     "--size", "160x120", "--fps", "10", "--out", "out"},
+  test::Process run({test::program(), "play", "probe", "--headless", "--seconds", "3600", "--spacing",
+                     "0.012", "--size", "160x120", "--fps", "10", "--out", "out"},
                     test::test_folder());
   // As soon as something was recorded and drawn.
   while (run.running()) {
@@ -164,8 +164,8 @@ TEST_F(PlayTest, AnInterruptedRunLeavesValidFiles) {
 }
 
 TEST_F(PlayTest, AKilledRunKeepsWhatWasWritten) {
-  test::Process run({test::program(), "play", "probe", "--headless", "--seconds", "3600", "--spacing", "0.012",
-                     "--size", "160x120", "--fps", "10", "--out", "out"},
+  test::Process run({test::program(), "play", "probe", "--headless", "--seconds", "3600", "--spacing",
+                     "0.012", "--size", "160x120", "--fps", "10", "--out", "out"},
                     test::test_folder());
   while (run.running()) {
     const Result<std::vector<WrenchSeries>> felt = read_wrenches(out() / "wrenches.csv");

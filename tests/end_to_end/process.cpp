@@ -13,7 +13,8 @@
 
 namespace slosh::test {
 
-Process::Process(const std::vector<std::string>& arguments, const std::filesystem::path& folder) : folder_(folder) {
+Process::Process(const std::vector<std::string>& arguments, const std::filesystem::path& folder)
+    : folder_(folder) {
   std::filesystem::create_directories(folder);
   std::vector<char*> argv;
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
@@ -44,7 +45,9 @@ Process::~Process() {
   }
 }
 
-void Process::signal(int number) const { kill(pid_, number); }
+void Process::signal(int number) const {
+  kill(pid_, number);
+}
 
 bool Process::running() {
   if (!ended_ && waitpid(pid_, &status_, WNOHANG) == pid_) ended_ = true;
@@ -61,7 +64,9 @@ Outcome Process::wait() {
   return {code, read_text(folder_ / "stdout.txt"), read_text(folder_ / "stderr.txt")};
 }
 
-std::string program() { return SLOSH_PROGRAM; }
+std::string program() {
+  return SLOSH_PROGRAM;
+}
 
 std::filesystem::path test_folder() {
   const ::testing::TestInfo* info = ::testing::UnitTest::GetInstance()->current_test_info();

@@ -122,7 +122,7 @@ TEST(InputGate, RampsAGripThatIsTakenFarFromTheBody) {
   Channel channel(2, BodyMessage{}, 1 << 20);
   BodySnapshot now;
   now.grips.resize(2);
-  channel.pose(0).back() = message(0, 0.0);   // on the grip
+  channel.pose(0).back() = message(0, 0.0);  // on the grip
   channel.pose(0).publish();
   channel.pose(1).back() = message(1, 0.10);  // 100 N away from it
   channel.pose(1).publish();

@@ -28,7 +28,8 @@ TEST(ChooseSpacing, TakesTheFinestThatFits) {
 
 TEST(ChooseSpacing, ALargerMarginChoosesCoarser) {
   const std::array<StepTiming, 2> timings{{{0.020, 125, 135e-6}, {0.015, 296, 306e-6}}};
-  EXPECT_GT(choose_spacing(timings, candidates(), 2.5).spacing, choose_spacing(timings, candidates(), 1.4).spacing);
+  EXPECT_GT(choose_spacing(timings, candidates(), 2.5).spacing,
+            choose_spacing(timings, candidates(), 1.4).spacing);
 }
 
 TEST(ChooseSpacing, SaysSoWhenNothingFits) {

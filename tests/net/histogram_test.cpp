@@ -29,7 +29,7 @@ TEST(Histogram, ExtremesLandInTheEndBins) {
   Histogram h;
   h.add(0.0);
   h.add(1e9);
-  h.add(-1.0);                                         // not a duration
+  h.add(-1.0);                                      // not a duration
   h.add(std::numeric_limits<double>::quiet_NaN());  // nor this
   EXPECT_EQ(h.count(), 2u);
   EXPECT_EQ(h.max(), 1e9);

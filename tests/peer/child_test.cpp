@@ -1,9 +1,9 @@
-#include "peer/output/child_process.h"
-
 #include <gtest/gtest.h>
 
 #include <csignal>
 #include <string>
+
+#include "peer/output/child_process.h"
 
 namespace slosh {
 namespace {

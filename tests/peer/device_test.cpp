@@ -49,8 +49,10 @@ TEST(MakeDevices, OneSpecServesAllAndOneEachIsKeptInOrder) {
 
 TEST(MakeDevices, RefusesWhatCannotBe) {
   const Scene scene = two_grips();
-  for (const std::vector<std::string>& specs :
-       {std::vector<std::string>{"joystick"}, {"script", "script", "script"}, {"mouse"}, {"replay:/nowhere.csv"}}) {
+  for (const std::vector<std::string>& specs : {std::vector<std::string>{"joystick"},
+                                                {"script", "script", "script"},
+                                                {"mouse"},
+                                                {"replay:/nowhere.csv"}}) {
     const Result<DeviceSet> set = make_devices(scene, specs, false);
     ASSERT_FALSE(set) << specs[0];
     EXPECT_FALSE(set.error().what.empty());
@@ -60,7 +62,8 @@ TEST(MakeDevices, RefusesWhatCannotBe) {
 
 TEST(MakeDevices, ReplaysARecordedHand) {
   const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "device_poses.csv";
-  std::ofstream(file) << kPosesHeader << "\n0,0,0,0,0,1,0,0,0\n0,1,5,0,0,1,0,0,0\n1,0,2,0,0,1,0,0,0\n1,1,5,0,0,1,0,0,0\n";
+  std::ofstream(file) << kPosesHeader
+                      << "\n0,0,0,0,0,1,0,0,0\n0,1,5,0,0,1,0,0,0\n1,0,2,0,0,1,0,0,0\n1,1,5,0,0,1,0,0,0\n";
   Result<DeviceSet> set = make_devices(two_grips(), {"replay:" + file.string()}, false);
   ASSERT_TRUE(set) << set.error().text();
   EXPECT_NEAR(set.value().devices[0]->read({0.5, 0.001}).pose.position.x, 1.0, 1e-9);

@@ -1,8 +1,8 @@
-#include "peer/haptics/force_limiter.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
+
+#include "peer/haptics/force_limiter.h"
 
 namespace slosh {
 namespace {

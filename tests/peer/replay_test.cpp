@@ -11,9 +11,9 @@ namespace {
 class ReplayTest : public ::testing::Test {
  protected:
   Result<std::vector<PoseKey>> read(const std::string& rows, int device = 0) {
-    const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) /
-                                       (std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) +
-                                        "_poses.csv");
+    const std::filesystem::path file =
+        std::filesystem::path(::testing::TempDir()) /
+        (std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + "_poses.csv");
     std::ofstream(file) << kPosesHeader << '\n' << rows;
     return read_poses(file, device);
   }

@@ -38,10 +38,9 @@ RunSummary example() {
 
 TEST(Summary, JsonHasEveryFieldThatIsPromised) {
   const nlohmann::ordered_json json = to_json(example());
-  for (const char* field :
-       {"scene", "spacing_m", "spacing_reason", "particles", "steps", "simulated_s", "wall_s", "real_time_factor",
-        "step_ms", "step_share", "device_loop_us", "render", "status", "backend", "threads", "machine", "version",
-        "devices", "interrupted"}) {
+  for (const char* field : {"scene", "spacing_m", "spacing_reason", "particles", "steps", "simulated_s",
+                            "wall_s", "real_time_factor", "step_ms", "step_share", "device_loop_us", "render",
+                            "status", "backend", "threads", "machine", "version", "devices", "interrupted"}) {
     EXPECT_TRUE(json.contains(field)) << field;
   }
   EXPECT_EQ(json["particles"]["fluid"], 2812);
@@ -56,8 +55,8 @@ TEST(Summary, JsonHasEveryFieldThatIsPromised) {
 
 TEST(Summary, InWordsSaysTheNumbers) {
   const std::string text = in_words(example());
-  for (const char* part : {"2 812", "13 104", "11.0 mm", "× 0.95", "left_hand (script) felt up to 31.2 N and 1.25",
-                           "out/bucket", "wrenches.csv"}) {
+  for (const char* part : {"2 812", "13 104", "11.0 mm", "× 0.95",
+                           "left_hand (script) felt up to 31.2 N and 1.25", "out/bucket", "wrenches.csv"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
   }
   EXPECT_EQ(text.find("interrupted"), std::string::npos);
