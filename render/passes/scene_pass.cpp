@@ -1,6 +1,8 @@
 #include "render/passes/scene_pass.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 #include <vector>
 
 namespace slosh {
@@ -12,9 +14,22 @@ void set_look(const gl::Program& program, const MeshInstance& instance) {
   program.set("roughness", glm::vec2(instance.look.metallic, instance.look.roughness));
 }
 
-float distance_to(const View& view, const MeshInstance& instance, const MeshStore& meshes) {
-  const Bounds& box = meshes.bounds(instance.mesh);
-  return -(view.view * instance.model * glm::vec4(0.5f * (box.low + box.high), 1.0f)).z;
+/// The frame's known meshes of a wanted opacity, nearest centre first.
+template <class Wanted>
+std::vector<const MeshInstance*> sorted_by_distance(const Frame& frame, const MeshStore& meshes,
+                                                    Wanted wanted) {
+  std::vector<std::pair<float, const MeshInstance*>> found;
+  for (const MeshInstance& instance : frame.meshes) {
+    if (!meshes.has(instance.mesh) || !wanted(instance.look.opacity)) continue;
+    const Bounds& box = meshes.bounds(instance.mesh);
+    const glm::vec4 middle(0.5f * (box.low + box.high), 1.0f);
+    const float distance = -(frame.view.view * instance.model * middle).z;
+    if (std::isfinite(distance)) found.emplace_back(distance, &instance);  // a body that blew up is not drawn
+  }
+  std::ranges::stable_sort(found, [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<const MeshInstance*> sorted;
+  for (const auto& [distance, instance] : found) sorted.push_back(instance);
+  return sorted;
 }
 
 }  // namespace
@@ -61,11 +76,18 @@ void ScenePass::draw_opaque(const Frame& frame, const MeshStore& meshes, const T
   glEnable(GL_DEPTH_TEST);
   glDepthMask(GL_TRUE);
   opaque_.use();
-  for (const MeshInstance& instance : frame.meshes) {
-    if (!meshes.has(instance.mesh) || instance.look.opacity < 1.0f) continue;
-    set_look(opaque_, instance);
-    meshes.draw(instance.mesh);
+  // Near before far and outsides before insides: what is hidden is then not shaded. Insides show where a mesh
+  // is open or the eye is in it.
+  const auto sorted = sorted_by_distance(frame, meshes, [](float opacity) { return opacity >= 1.0f; });
+  glEnable(GL_CULL_FACE);
+  for (GLenum culled : {GL_BACK, GL_FRONT}) {
+    glCullFace(culled);
+    for (const MeshInstance* instance : sorted) {
+      set_look(opaque_, *instance);
+      meshes.draw(instance->mesh);
+    }
   }
+  glDisable(GL_CULL_FACE);
   if (background) {
     // The triangle lies on the far plane: it fills what the meshes left. It writes no depth.
     glColorMaski(1, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
@@ -102,14 +124,8 @@ void ScenePass::resolve_occlusion(const Targets& targets) {
 
 void ScenePass::draw_translucent(const Frame& frame, const MeshStore& meshes, const Targets& targets,
                                  const gl::Texture* fluid, bool behind) {
-  std::vector<std::pair<float, const MeshInstance*>> sorted;
-  for (const MeshInstance& instance : frame.meshes) {
-    if (!meshes.has(instance.mesh) || instance.look.opacity >= 1.0f) continue;
-    sorted.emplace_back(distance_to(frame.view, instance, meshes), &instance);
-  }
+  const auto sorted = sorted_by_distance(frame, meshes, [](float opacity) { return opacity < 1.0f; });
   if (sorted.empty()) return;
-  std::ranges::stable_sort(sorted, [](const auto& a, const auto& b) { return a.first > b.first; });
-
   const gl::Program& program = behind ? translucent_behind_ : translucent_front_;
   program.use();
   program.set("has_fluid", fluid ? 1 : 0);
@@ -121,7 +137,8 @@ void ScenePass::draw_translucent(const Frame& frame, const MeshStore& meshes, co
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   glEnable(GL_CULL_FACE);
-  for (const auto& [distance, instance] : sorted) {
+  for (auto at = sorted.rbegin(); at != sorted.rend(); ++at) {  // far before near
+    const MeshInstance* instance = *at;
     set_look(program, *instance);
     for (GLenum culled : {GL_FRONT, GL_BACK}) {  // the far side first
       if (fast_ && culled == GL_FRONT) continue;

@@ -1,6 +1,6 @@
 // How long each pass of a frame takes: bench_render [--width W] [--height H] [--particles N] [--frames F]
-// [--threads T] [--batter] [--paper] [--out PICTURE.png]. Times are medians over the frames, with a glFinish
-// after each pass.
+// [--threads T] [--batter] [--paper] [--full] [--out PICTURE.png]. Times are medians over the frames, with a
+// glFinish after each pass.
 #include <imgui.h>
 
 #include <algorithm>
@@ -25,6 +25,7 @@ struct Wishes {
   int threads = 1;
   bool batter = false;
   bool paper = false;
+  bool full = false;
   bool hud = false;
   std::string out;
 };
@@ -41,6 +42,7 @@ Wishes read_arguments(int count, char** words) {
     if (word == "--threads") wishes.threads = std::atoi(next);
     if (word == "--batter") wishes.batter = true;
     if (word == "--paper") wishes.paper = true;
+    if (word == "--full") wishes.full = true;
     if (word == "--hud") wishes.hud = true;
     if (word == "--out") wishes.out = next;
   }
@@ -70,6 +72,7 @@ int main(int argc, char** argv) {
   options.width = wishes.width;
   options.height = wishes.height;
   if (wishes.paper) options.wide_filter = options.fresnel = options.lit_fluid = false;
+  if (wishes.full) options.quality = Quality::kFull;
   auto made = Renderer::create(*context.value(), options);
   if (!made) return fail(made.error());
   Renderer& renderer = *made.value();

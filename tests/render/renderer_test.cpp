@@ -317,6 +317,9 @@ TEST_F(RendererTest, BadInputIsLeftOut) {
   const glm::uvec3 beyond(0, 1, 99999);
   frame.meshes.push_back({renderer->add_mesh(good, good, std::span(&beyond, 1)), glm::mat4(1.0f), {}});
   frame.meshes.push_back({renderer->add_mesh({}, {}, {}), glm::mat4(1.0f), {}});
+  MeshInstance blown_up = place(*renderer, kit::make_sphere(0.1f));
+  blown_up.model[3] = glm::vec4(nan, nan, nan, 1.0f);
+  frame.meshes.push_back(blown_up);
   renderer->draw(frame);
   EXPECT_EQ(difference(renderer->read_back(), expected), 0.0);
   frame.particle_fluid = frame.particle_fluid.first(3);  // shorter than the particles
