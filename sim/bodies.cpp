@@ -96,9 +96,12 @@ bool solve_body(const RigidBody& body, const Wrench& external, std::span<const A
       add_vector(rhs, 3, dt * (glm::cross(arm, f.at_rest.force) + f.at_rest.torque));
     }
   }
+  solve.moves = false;
   if (!cholesky(matrix, solve.factor)) return false;
   solve.velocity = cholesky_solve(solve.factor, rhs);
-  return std::all_of(solve.velocity.begin(), solve.velocity.end(), [](double v) { return std::isfinite(v); });
+  solve.moves =
+      std::all_of(solve.velocity.begin(), solve.velocity.end(), [](double v) { return std::isfinite(v); });
+  return solve.moves;
 }
 
 void advance_body(RigidBody& body, const BodySolve& solve, double dt) {

@@ -52,6 +52,7 @@ struct ActiveCoupling {
 /// One body's velocity solve: M v⁺ = rhs with the couplings' stiffness and damping implicit in M, so that no
 /// stiffness can blow the step up. Contacts then act on v⁺ through M⁻¹.
 struct BodySolve {
+  bool moves = false;  ///< false: the body stands still this step, whatever touches it
   Matrix6 factor{};    ///< Cholesky of M (linear first, angular after)
   Vector6 velocity{};  ///< v⁺, ω⁺
 };

@@ -246,11 +246,19 @@ struct World::Impl {
     return {first, last};
   }
 
+  // During settling only held bodies move.
+  bool moves(std::size_t b) const {
+    return bodies[b].free && (!settling || !couplings_of(static_cast<int>(b)).empty());
+  }
+
   // A body that went non-finite is put back to rest where it last was, and the step goes on.
   void solve_all() {
     for (std::size_t b = 0; b < bodies.size(); ++b) {
       RigidBody& body = bodies[b];
-      if (!body.free) continue;
+      if (!moves(b)) {
+        solves[b] = BodySolve{};
+        continue;
+      }
       Wrench external = wrenches[b];
       external.force += body.mass * scene.gravity;
       const auto held = couplings_of(static_cast<int>(b));
@@ -275,7 +283,23 @@ struct World::Impl {
       grips[c.grip].handle = c.handle;
     }
     for (std::size_t b = 0; b < bodies.size(); ++b) {
-      if (bodies[b].free) advance_body(bodies[b], solves[b], context.plan.time_step);
+      if (solves[b].moves) advance_body(bodies[b], solves[b], context.plan.time_step);
+    }
+  }
+
+  void damp_fluid(float keep) {
+    for (Column<float>* column : {&fluid.vx, &fluid.vy, &fluid.vz}) {
+      for (std::size_t p = 0; p < fluid.active; ++p) (*column)[p] *= keep;
+    }
+  }
+
+  // Bodies that no hand holds keep their initial motion for the run.
+  void damp_held_bodies(double keep) {
+    for (const ActiveCoupling& c : couplings) {
+      RigidBody& body = bodies[c.body];
+      body.velocity *= keep;
+      body.angular_momentum *= keep;
+      body.angular_velocity *= keep;
     }
   }
 
@@ -301,6 +325,7 @@ struct World::Impl {
   };
   std::vector<Probe> probes;
   bool fluid_starts_moving = false;
+  bool settling = false;
   std::size_t snapshot_count = 0;  // fluid particles without probes
   std::vector<glm::vec3> body_scratch;
   std::uint64_t tick = 0;
@@ -324,20 +349,21 @@ void World::step(std::span<const HandleInput> handles) {
   ++impl_->tick;
 }
 
-void World::settle(double seconds) {
+void World::settle(double seconds, std::span<const HandleInput> handles) {
   Impl& w = *impl_;
-  if (!w.context.plan.has_fluid || w.fluid_starts_moving) return;
+  if (w.fluid_starts_moving) return;
   constexpr double kDampingTime =
       0.05;  // s: past critical for a hand-sized vessel's slosh, so it creeps to its level
-  const float keep = static_cast<float>(std::exp(-w.context.plan.time_step / kDampingTime));
+  const double keep = std::exp(-w.context.plan.time_step / kDampingTime);
   Stopwatch watch;
   for (double done = 0.0; done < seconds; done += w.context.plan.time_step) {
-    w.step_particles(watch);
-    for (std::size_t p = 0; p < w.fluid.active; ++p) {
-      w.fluid.vx[p] *= keep;
-      w.fluid.vy[p] *= keep;
-      w.fluid.vz[p] *= keep;
-    }
+    if (w.context.plan.has_fluid) w.step_particles(watch);
+    w.damp_fluid(static_cast<float>(keep));
+    if (handles.empty() || done < 0.5 * seconds) continue;
+    w.settling = true;
+    w.step_bodies(handles);
+    w.settling = false;
+    w.damp_held_bodies(keep);
   }
 }
 

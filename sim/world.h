@@ -58,10 +58,11 @@ class World {
   /// Advances by plan().time_step. `handles` has one entry a grip; missing ones count as not engaged.
   void step(std::span<const HandleInput> handles);
 
-  /// Lets the fluid find its level before the run: `seconds` of simulated time in which the bodies stay where
-  /// they are and the fluid is damped. Neither time() nor tick() moves. Fluid that starts with a velocity is
-  /// left alone.
-  void settle(double seconds);
+  /// Lets the world come to rest before the run: fluid finds its level, then bodies their place in the hands
+  /// that hold them, all damped, over `seconds` of simulated time (half of it with the bodies where the scene
+  /// has them). `handles` as for step, standing still; without any, no body moves. Neither time() nor tick()
+  /// advances. A world whose fluid starts with a velocity is left alone.
+  void settle(double seconds, std::span<const HandleInput> handles = {});
 
   const Plan& plan() const;
   double time() const;  ///< s

@@ -177,6 +177,21 @@ TEST(World, SettlingBringsRestAndKeepsTime) {
   EXPECT_LT(world.diagnostics().max_speed, 0.1);
 }
 
+TEST(World, SettlingHangsABodyInTheHandThatHoldsIt) {
+  const Tank tank = stirred_tank();
+  World world = make_world(tank);
+  HandleInput hand;
+  hand.engaged = true;
+  hand.pose.position = {-0.05, 0.09, 0.0};
+  world.settle(1.0, {&hand, 1});
+  BodySnapshot at_rest, later;
+  world.fill(at_rest);
+  for (int i = 0; i < 100; ++i) world.step({&hand, 1});
+  world.fill(later);
+  EXPECT_LT(at_rest.bodies[1].pose.position.y, 0.09);
+  EXPECT_LT(glm::distance(at_rest.bodies[1].pose.position, later.bodies[1].pose.position), 3e-4);
+}
+
 TEST(World, SettlingLeavesMovingFluidAlone) {
   Tank tank = make_tank({});
   tank.sampled.fluid_velocities[0] = {0.0f, 1.0f, 0.0f};
