@@ -42,7 +42,8 @@ FrameBlock make_frame_block(const Frame& frame, const RenderOptions& options, co
   block.splat = {options.splat_scale * frame.particle_radius, 0.5f * projection[1][1] * size.y,
                  1.0f / (options.bilateral_range * frame.particle_radius),
                  1.0f / (shadow.depth_per_metre * options.splat_scale * frame.particle_radius)};
-  block.key_light = {studio.key_light, 0.0f};
+  // The filter reaches two texels to the side; on a steep surface that is as much in depth.
+  block.key_light = {studio.key_light, 2.0f * shadow.texel};
   block.sky = {studio.sky, 0.0f};
   block.horizon = {studio.horizon, 0.0f};
   block.ground = {studio.ground, 0.0f};

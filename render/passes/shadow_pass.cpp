@@ -104,10 +104,16 @@ ShadowView ShadowPass::draw(const Frame& frame, const MeshStore& meshes) {
 
   const glm::mat4 to_texture =
       glm::translate(glm::mat4(1.0f), glm::vec3(0.5f)) * glm::scale(glm::mat4(1.0f), glm::vec3(0.5f));
-  // An orthographic view's depth rises by this a metre.
-  const float depth_per_metre =
-      0.5f * glm::length(glm::vec3(clip_from_world[0][2], clip_from_world[1][2], clip_from_world[2][2]));
-  return {clip_from_world, to_texture * clip_from_world, depth_per_metre, size_};
+  ShadowView view;
+  view.clip_from_world = clip_from_world;
+  view.shadow_from_world = to_texture * clip_from_world;
+  const auto row = [&](int i) {
+    return glm::vec3(clip_from_world[0][i], clip_from_world[1][i], clip_from_world[2][i]);
+  };
+  view.depth_per_metre = 0.5f * glm::length(row(2));  // an orthographic view's depth rises evenly
+  view.texel = 2.0f / (glm::length(row(0)) * static_cast<float>(size_));
+  view.size = size_;
+  return view;
 }
 
 }  // namespace slosh

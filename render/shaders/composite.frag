@@ -48,7 +48,7 @@ void main() {
   vec3 fluid_color = look.color_refraction.rgb;
   if (switches.y > 0.5) {
     vec3 world = (world_from_eye * vec4(eye, 1.0)).xyz;
-    light = light_past_meshes(world);
+    light = light_past_meshes(world, world_n);
     float wrapped = max((dot(n, to_light_eye.xyz) + 0.3) / 1.3, 0.0);
     fluid_color *= key_light.rgb * (0.31830989 * wrapped * light) + ambient_light(world_n);
   }

@@ -10,7 +10,7 @@ layout(std140, binding = 0) uniform FrameBlock {
   vec4 to_light_eye;       // unit; w: texel of the shadow map in texture coordinates
   vec4 camera;             // position in the world; w: far plane
   vec4 splat;              // radius m, pixels of a metre at one metre, 1/range of the filter, 1/radius in the light's depth
-  vec4 key_light;          // radiance · π of the light
+  vec4 key_light;          // irradiance of the light on what faces it; w: m by which shadow look-ups move off a surface
   vec4 sky;                // radiance from above
   vec4 horizon;            // from the side
   vec4 ground;             // from below

@@ -12,7 +12,7 @@ void main() {
   vec3 n = normalize(world_normal);
   vec3 to_eye = normalize(camera.xyz - world);
   if (dot(n, to_eye) < 0.0 && !gl_FrontFacing) n = -n;  // seen from inside
-  Lit lit = light_surface(n, to_eye, base.rgb, roughness.x, roughness.y, light_past_meshes(world) * light_past_fluid(world));
+  Lit lit = light_surface(n, to_eye, base.rgb, roughness.x, roughness.y, light_past_meshes(world, n) * light_past_fluid(world));
   color = vec4(lit.diffuse + lit.specular, lit.ambient);
   depth = eye_depth;
 }

@@ -6,8 +6,9 @@ layout(binding = 9) uniform sampler2D fluid_shadow;  // dimming per channel; 1 â
 
 vec3 in_shadow_map(vec3 world) { return (shadow_from_world * vec4(world, 1.0)).xyz; }
 
-float light_past_meshes(vec3 world) {
-  vec3 at = in_shadow_map(world);
+// normal: unit, world. The look-up moves off the surface, so that a surface does not shade itself.
+float light_past_meshes(vec3 world, vec3 normal) {
+  vec3 at = in_shadow_map(world + normal * key_light.w);
   float reaching;
 #ifdef FAST
   reaching = texture(shadow_map, at);
