@@ -162,7 +162,7 @@ DamBreak::DamBreak(Renderer& renderer, int wanted, int width, int height) {
            0.008f * std::sin(24.0f * x + 14.0f * z) + 0.006f * std::cos(31.0f * z - 11.0f * x);
   };
   // Volume under the surface, roughly, shared among the particles.
-  const float spacing = std::cbrt(0.0145f * 1.05f / static_cast<float>(wanted));
+  const float spacing = std::cbrt(0.0113f / static_cast<float>(wanted));
   particles = make_fluid(low + 0.5f * spacing, high - 0.5f * spacing, spacing, surface);
   const glm::vec3 ball(0.10f, 0.058f, 0.02f);
   std::erase_if(particles,
