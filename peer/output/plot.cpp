@@ -63,7 +63,7 @@ void add_curves(std::string& script, std::size_t devices, const std::vector<std:
     const std::string data = "$device" + std::to_string(i);
     // Hands that feel the same lie on top of each other: the later, the thinner, so that all are seen.
     const double later = devices > 1 ? static_cast<double>(i) / static_cast<double>(devices - 1) : 1.0;
-    const std::string width = i + 1 == devices ? "1.8" : later < 0.5 ? "4.2" : "2.8";
+    const std::string width = i + 1 == devices ? "1.8" : later < 0.5 ? "3.4" : "2.6";
     const std::string color = std::string("lc rgb \"") + device_color(i).hex;
     const std::string name = i < names.size() ? names[i] : "device " + std::to_string(i);
     script += "  " + data + " using 1:" + std::to_string(magnitude_column + 1 + axis) + " with lines lw 1 " +
