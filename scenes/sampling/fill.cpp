@@ -1,8 +1,11 @@
 #include "scenes/sampling/fill.h"
 
 #include <cmath>
+#include <map>
+#include <memory>
 
 #include "scenes/gltf/extras.h"
+#include "scenes/mesh/tree.h"
 #include "scenes/mesh/winding.h"
 #include "scenes/sampling/point_grid.h"
 
@@ -12,13 +15,16 @@ namespace {
 constexpr double kMostOverlap = 0.05;
 constexpr double kMostPoints = 3e7;
 // Lattice planes lie exactly half a spacing off a wall that the volume touches: a hair of slack for rounding.
-constexpr double kClear = 0.5 * 0.98;
+constexpr double kClear = 0.5 * 0.999;
+// How far a trilinear distance may be off, in cells: most beside a concave edge.
+constexpr double kFieldError = 0.75;
 
 /// A body as an obstacle for a fluid.
 struct Obstacle {
   DistanceFieldView field;
-  Pose to_body;    ///< world to mesh frame
-  glm::dvec3 low;  ///< world bounds, `clear` around it
+  std::shared_ptr<const mesh::MeshTree> tree;  ///< shared by bodies of one mesh
+  Pose to_body;                                ///< world to mesh frame
+  glm::dvec3 low;                              ///< world bounds, `clear` around it
   glm::dvec3 high;
   std::size_t body;
   std::size_t overlaps = 0;  ///< lattice points inside it
@@ -26,6 +32,7 @@ struct Obstacle {
 
 std::vector<Obstacle> find_obstacles(const Scene& scene, const SampledScene& sampled, double clear) {
   std::vector<Obstacle> out;
+  std::map<int, std::shared_ptr<const mesh::MeshTree>> trees;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
     if (body.point_probe || sampled.distance_fields[b].size.x == 0) continue;
@@ -64,12 +71,22 @@ mesh::Grid lattice(const TriangleMesh& mesh, double spacing) {
   return grid;
 }
 
+/// The signed distance to a body: by the field where that is clear enough, else exact.
+double distance_to(const Obstacle& o, const glm::vec3& local, double clear) {
+  const double distance = sample_distance(o.field, local).distance;
+  const double error = kFieldError * o.field.cell;
+  if (distance > clear + error || distance < -error) return distance;
+  const double exact = o.tree->nearest(local).distance;
+  const bool inside = distance < error ? o.tree->inside(local) : false;
+  return inside ? -exact : exact;
+}
+
 bool clear_of(std::vector<Obstacle>& obstacles, const glm::dvec3& point, double clear) {
   bool is_clear = true;
   for (Obstacle& o : obstacles) {
     if (glm::any(glm::lessThan(point, o.low)) || glm::any(glm::greaterThan(point, o.high))) continue;
-    const float distance = sample_distance(o.field, glm::vec3(transform_point(o.to_body, point))).distance;
-    if (distance < 0.0f) ++o.overlaps;
+    const double distance = distance_to(o, glm::vec3(transform_point(o.to_body, point)), clear);
+    if (distance < 0.0) ++o.overlaps;
     if (distance < clear) is_clear = false;
   }
   return is_clear;

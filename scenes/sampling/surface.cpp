@@ -15,6 +15,7 @@ constexpr int kCandidatesEach = 5;  // Yuksel's advice
 constexpr int kRelaxations = 8;
 constexpr float kSameSheet = -0.3f;     // cosine between normals above which two samples feel each other
 constexpr double kLeastDistance = 0.6;  // between two samples, in spacings
+constexpr double kLargestGap = 0.7;     // from a candidate to the nearest sample, in spacings
 constexpr double kFewestSamples = 6.0;
 constexpr double kMostSamples = 5e6;
 
@@ -183,6 +184,25 @@ Points thin_out(const Points& points, float least_distance) {
   return out;
 }
 
+/// Adds candidates that lie too far from every sample, so that no gap is left for fluid to see.
+void plug_gaps(Points& points, const Points& candidates, float largest_gap) {
+  const PointGrid grid(points.at, largest_gap);
+  const std::size_t before = points.size();
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const auto near = [&](const glm::vec3& at, const glm::vec3& normal) {
+      return glm::distance(at, candidates.at[i]) < largest_gap &&
+             glm::dot(normal, candidates.normal[i]) > kSameSheet;
+    };
+    bool covered = false;
+    grid.each_near(candidates.at[i],
+                   [&](std::uint32_t j) { covered = covered || near(points.at[j], points.normal[j]); });
+    // Those just added are few and not in the grid.
+    for (std::size_t j = before; j < points.size() && !covered; ++j)
+      covered = near(points.at[j], points.normal[j]);
+    if (!covered) points.add(candidates.at[i], candidates.normal[i], candidates.triangle[i]);
+  }
+}
+
 }  // namespace
 
 SurfaceSamples sample_surface(const TriangleMesh& mesh, const mesh::MeshTree& tree, int parts,
@@ -197,10 +217,12 @@ SurfaceSamples sample_surface(const TriangleMesh& mesh, const mesh::MeshTree& tr
   const double exposed_share = static_cast<double>(points.size()) / static_cast<double>(all);
   const double exposed_area = area * exposed_share;
   const auto target = static_cast<std::size_t>(std::lround(std::max(wanted * exposed_share, 1.0)));
-  points = eliminate(points, target, exposed_area);
+  const Points exposed = points;
+  points = eliminate(exposed, target, exposed_area);
   const double even = std::sqrt(2.0 / std::sqrt(3.0) * exposed_area / static_cast<double>(target));
   relax(points, tree, find_frozen(points, buried, static_cast<float>(spacing)), static_cast<float>(even));
   points = thin_out(points, static_cast<float>(kLeastDistance * spacing));
+  plug_gaps(points, exposed, static_cast<float>(kLargestGap * spacing));
   SurfaceSamples out;
   out.positions = std::move(points.at);
   out.normals = std::move(points.normal);

@@ -1,0 +1,54 @@
+// What only shows when a scene is sampled.
+#include <cmath>
+
+#include "scenes/sample.h"
+#include "support.h"
+
+namespace slosh {
+namespace {
+
+Scene load_cup(const make::Solid* cup, const make::Solid* water) {
+  const test::TempFolder folder;
+  EXPECT_TRUE(test::make_cup({{"title", "x"}}, cup, water).write(folder / "cup.gltf"));
+  auto scene = load_scene(folder / "cup.gltf");
+  EXPECT_TRUE(scene) << scene.error().text();
+  return scene ? std::move(scene.value()) : Scene{};
+}
+
+TEST(SampleErrors, FluidThatOverlapsAWall) {
+  const make::Solid water = make::box({-0.06, 0.01, -0.06}, {0.06, 0.09, 0.06});
+  test::expect_error(sample_scene(load_cup(nullptr, &water), 0.008),
+                     {"cup.gltf", "'water'", "'cup'", "overlaps", "%"});
+}
+
+TEST(SampleErrors, SpacingAboveTheWall) {
+  const make::Solid cup = make::tank({0.1, 0.1, 0.1}, 0.006);
+  const Scene scene = load_cup(&cup, nullptr);
+  std::size_t body = 99;
+  EXPECT_NEAR(thinnest_wall(scene, &body), 0.006, 1e-5);
+  EXPECT_EQ(body, 0u);
+  test::expect_error(sample_scene(scene, 0.01),
+                     {"cup.gltf", "'cup'", "6 mm", "10 mm", "spacing_max_m", "thicken"});
+}
+
+TEST(SampleErrors, NoRoomForAParticle) {
+  const make::Solid water = make::box({-0.003, 0.02, -0.003}, {0.003, 0.026, 0.003});
+  test::expect_error(sample_scene(load_cup(nullptr, &water), 0.018), {"'water'", "no particle", "18 mm"});
+}
+
+TEST(SampleErrors, Spacing) {
+  const Scene scene = load_cup(nullptr, nullptr);
+  for (const double spacing : {0.0, -0.01, std::nan(""), 1e9})
+    test::expect_error(sample_scene(scene, spacing), {"spacing"});
+}
+
+TEST(SampleErrors, TooFine) {
+  test::expect_error(sample_scene(load_cup(nullptr, nullptr), 0.0002), {"'water'", "30 million"});
+}
+
+TEST(SampleErrors, ThinnestWallWithoutWallsIsInfinite) {
+  EXPECT_TRUE(std::isinf(thinnest_wall(Scene{})));
+}
+
+}  // namespace
+}  // namespace slosh
