@@ -16,9 +16,11 @@ Outcome launcher(const std::vector<std::string>& arguments) {
   return test::Process(all, test::test_folder()).wait();
 }
 
-bool is_the_launchers_build() {
-  return std::filesystem::path(SLOSH_BINARY_DIR) == kRoot / "build" / "release";
-}
+#ifdef SLOSH_LAUNCHER_BUILD
+constexpr bool kIsTheLaunchersBuild = true;
+#else
+constexpr bool kIsTheLaunchersBuild = false;
+#endif
 
 TEST(Launcher, HelpListsTheVerbs) {
   for (const std::vector<std::string>& arguments : {std::vector<std::string>{}, {"help"}, {"--help"}}) {
@@ -54,12 +56,26 @@ TEST(Launcher, WorksThroughASymbolicLinkFromAnotherFolder) {
   std::filesystem::remove(link);
   std::filesystem::create_symlink(kRoot / "slosh", link);
   // A verb that builds only where the build is there already.
-  const std::string verb = is_the_launchers_build() ? "scenes" : "help";
+  const std::string verb = kIsTheLaunchersBuild ? "scenes" : "help";
   const Outcome outcome =
       test::Process({"env", "SLOSH_SKIP_PACKAGES=1", "./linked", verb}, test::test_folder()).wait();
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find(verb == "scenes" ? "bucket" : "./slosh play"), std::string::npos) << outcome.out;
 }
+
+#ifdef SLOSH_LAUNCHER_BUILD
+TEST(Launcher, PlaysAndPassesTheExitCodeOn) {
+  std::filesystem::remove_all(test::test_folder());
+  const Outcome played = launcher({"play", "bucket", "--headless", "--seconds", "1", "--spacing", "0.012",
+                                   "--size", "160x120", "--fps", "5", "--out", "out"});
+  EXPECT_EQ(played.code, 0) << played.err;
+  for (const char* file : {"wrenches.csv", "wrenches.png", "view.mp4", "final.png", "summary.json"}) {
+    EXPECT_TRUE(std::filesystem::exists(test::test_folder() / "out" / file)) << file;
+  }
+  EXPECT_EQ(launcher({"check", "nowhere.gltf"}).code, 1);
+  EXPECT_EQ(launcher({"play", "--frobnicate"}).code, 2);
+}
+#endif
 
 }  // namespace
 }  // namespace slosh
