@@ -43,6 +43,7 @@ class Device {
   /// The wrench on the hand, within limits().
   virtual void write(const Wrench& on_hand) noexcept { (void)on_hand; }
   virtual DeviceLimits limits() const { return {}; }
+  /// May be called more than once.
   virtual void close() {}
   virtual std::string kind() const = 0;
 };

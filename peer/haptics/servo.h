@@ -50,6 +50,10 @@ class Servo {
 
   std::size_t devices() const { return hands_.size(); }
   const Device& device(std::size_t i) const { return *hands_[i].device; }
+  /// After the device loop has stopped; may be called again.
+  void close_devices() {
+    for (Hand& hand : hands_) hand.device->close();
+  }
   Ring<ServoSample>& samples() { return samples_; }  ///< device loop → recorder
   std::uint64_t samples_lost() const { return lost_.load(std::memory_order_relaxed); }
   std::uint64_t reports_rejected() const { return rejected_.load(std::memory_order_relaxed); }

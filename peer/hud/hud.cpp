@@ -77,7 +77,7 @@ void Hud::draw_run(const Rates& rates) const {
   labelled("fluid", "%zu", facts_.fluid_particles);
   labelled("bodies", "%zu", facts_.boundary_particles);
   labelled("spacing", "%.1f mm", 1e3 * facts_.spacing);
-  const std::string status = status_text(status_);
+  const std::string status = status_text(status_ | rates.device_status);
   if (!status.empty()) {
     ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 0.78f, 0.35f, 1.0f));
     ImGui::PushTextWrapPos(kPanelWidth);

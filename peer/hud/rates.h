@@ -12,7 +12,8 @@ struct Rates {
   double real_time = 0.0;  ///< simulated s a wall s
   double step_rate = 0.0;  ///< Hz
   double step_ms = 0.0;
-  double device_rate = 0.0;  ///< Hz
+  double device_rate = 0.0;         ///< Hz
+  std::uint32_t device_status = 0;  ///< StatusBits that the device loop ever set
 };
 
 /// Written by the thread that watches the run, read by the one that draws. Neither is the device loop.

@@ -25,7 +25,7 @@ class WindowFilm {
 
   /// Call after each draw.
   void offer(Renderer& renderer) {
-    if (folder_.empty() || !options_.render) return;
+    if (folder_.empty()) return;
     const std::int64_t now_ns = steady_now_ns();
     if (frames_ > 0 && now_ns < next_ns_) return;
     if (frames_ == 0) next_ns_ = now_ns;

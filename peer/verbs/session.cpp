@@ -51,6 +51,7 @@ void Session::stop() {
     host_->wait();
   }
   if (loop_) loop_->stop();
+  if (servo_) servo_->close_devices();
   if (recorder_) recorder_->stop();
 }
 
@@ -68,8 +69,12 @@ HudFacts Session::facts(double picture_rate) const {
 
 Rates Session::note_rates() {
   const HostProgress progress = host_->progress();
-  const Rates rates{progress.time, progress.rate, progress.step_rate, progress.step_ms,
-                    servo_->devices() == 0 ? 0.0 : loop_->rate()};
+  const Rates rates{progress.time,
+                    progress.rate,
+                    progress.step_rate,
+                    progress.step_ms,
+                    servo_->devices() == 0 ? 0.0 : loop_->rate(),
+                    servo_->status()};
   rates_.add(rates);
   return rates;
 }
