@@ -37,6 +37,7 @@ std::vector<Obstacle> find_obstacles(const Scene& scene, const SampledScene& sam
     const Body& body = scene.bodies[b];
     if (body.point_probe || sampled.distance_fields[b].size.x == 0) continue;
     Obstacle o{sampled.distance_fields[b].view(),
+               tree,
                inverse(body.pose),
                glm::dvec3(INFINITY),
                glm::dvec3(-INFINITY),
