@@ -36,6 +36,8 @@ std::vector<Obstacle> find_obstacles(const Scene& scene, const SampledScene& sam
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
     if (body.point_probe || sampled.distance_fields[b].size.x == 0) continue;
+    std::shared_ptr<const mesh::MeshTree>& tree = trees[body.mesh];
+    if (!tree) tree = std::make_shared<const mesh::MeshTree>(scene.meshes[body.mesh]);
     Obstacle o{sampled.distance_fields[b].view(),
                tree,
                inverse(body.pose),
