@@ -44,26 +44,9 @@ std::string last_glfw_error() {
   return text ? text : "unknown reason";
 }
 
-/// Keeps GLFW initialised while windows live. All windows are on one thread (context.h), so a plain count
-/// does.
-class GlfwUse {
- public:
-  GlfwUse() : good_(glfwInit() == GLFW_TRUE) { count_ += good_ ? 1 : 0; }
-  GlfwUse(GlfwUse&& other) noexcept : good_(std::exchange(other.good_, false)) {}
-  GlfwUse& operator=(GlfwUse&&) = delete;
-  ~GlfwUse() {
-    if (good_ && --count_ == 0) glfwTerminate();
-  }
-  bool good() const { return good_; }
-
- private:
-  static inline int count_ = 0;
-  bool good_;
-};
-
 class GlfwContext final : public Context {
  public:
-  GlfwContext(GlfwUse use, GLFWwindow* window) : use_(std::move(use)), window_(window) {
+  explicit GlfwContext(GLFWwindow* window) : window_(window) {
     glfwMakeContextCurrent(window_);
     glfwSwapInterval(1);
     glfwSetWindowUserPointer(window_, this);
@@ -141,7 +124,6 @@ class GlfwContext final : public Context {
     if (action == GLFW_PRESS) input_.keys_pressed[index_of(key)] = true;
   }
 
-  GlfwUse use_;
   GLFWwindow* window_;
   InputState input_;
   glm::vec2 scroll_{0.0f};
@@ -159,8 +141,9 @@ Result<std::unique_ptr<Context>> make_window_context(const std::string& title, i
     return Error{"window", "there is no display (neither DISPLAY nor WAYLAND_DISPLAY is set)",
                  "Run on a desktop, or without a window"};
   }
-  GlfwUse use;
-  if (!use.good()) {
+  // Initialising twice does nothing. It is never terminated: the libraries of X11 that GLFW loads leak when
+  // unloaded.
+  if (glfwInit() != GLFW_TRUE) {
     return Error{"window", "the display cannot be reached: " + last_glfw_error(),
                  "Check DISPLAY, or run without a window"};
   }
@@ -175,7 +158,7 @@ Result<std::unique_ptr<Context>> make_window_context(const std::string& title, i
     return Error{"window", "OpenGL 4.5 core is not to be had: " + last_glfw_error(),
                  "Update the graphics driver, or run without a window"};
   }
-  return std::unique_ptr<Context>(new GlfwContext(std::move(use), window));
+  return std::unique_ptr<Context>(new GlfwContext(window));
 }
 
 }  // namespace slosh

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
+#include <thread>
 
 #include "render/color/display_transform.h"
 #include "tests/render/render_test.h"
@@ -49,6 +50,26 @@ TEST_F(RendererTest, RefusesBadOptions) {
   refused([](RenderOptions& o) { o.splat_scale = std::numeric_limits<float>::quiet_NaN(); }, "splat_scale");
   refused([](RenderOptions& o) { o.exposure = -1.0f; }, "exposure");
   refused([](RenderOptions& o) { o.shadow_size = -1; }, "shadow_size");
+}
+
+TEST_F(RendererTest, WorksOnAThreadOfItsOwn) {
+  Image here;
+  Image there;
+  const auto picture = [](Context& context) {
+    auto renderer = Renderer::create(context, small());
+    EXPECT_TRUE(renderer);
+    kit::DamBreak scene(*renderer.value(), 500, kWidth, kHeight);
+    renderer.value()->draw(scene.frame);
+    return renderer.value()->read_back();
+  };
+  here = picture(*context_);
+  std::thread([&] {
+    auto own = make_headless_context();
+    ASSERT_TRUE(own) << own.error().text();
+    there = picture(*own.value());
+  }).join();
+  EXPECT_EQ(here.rgba, there.rgba);
+  EXPECT_EQ(picture(*context_).rgba, here.rgba);  // this thread's context is still current here
 }
 
 TEST_F(RendererTest, ReadsBackThePictureItsSize) {
