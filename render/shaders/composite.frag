@@ -1,5 +1,6 @@
 // Eq 15. Pixels without fluid are left as the scene drew them.
 #include "fluid_data.glsl"
+#include "depth_normal.glsl"
 #include "environment.glsl"
 #include "shadow.glsl"
 layout(binding = 4) uniform sampler2D scene_color;
@@ -13,18 +14,6 @@ layout(std140, binding = 1) uniform Looks { Look looks[16]; };
 
 layout(location = 0) out vec4 color;
 
-// The smaller of the two one-sided differences: at an edge, the one that stays on the surface.
-vec3 difference(vec3 here, ivec2 texel, ivec2 step_to) {
-  float ahead = texelFetch(smooth_depth, texel + step_to, 0).r;
-  float behind = texelFetch(smooth_depth, texel - step_to, 0).r;
-  bool take_ahead = abs(ahead + here.z) < abs(behind + here.z);
-  float d = take_ahead ? ahead : behind;
-  vec2 to = vec2(take_ahead ? step_to : -step_to);
-  if (d > kFluidDepthLimit) d = -here.z;  // a lone pixel faces the eye
-  vec3 there = eye_position(vec2(texel) + 0.5 + to, d);
-  return take_ahead ? there - here : here - there;
-}
-
 void main() {
   ivec2 texel = ivec2(gl_FragCoord.xy);
   float front = texelFetch(smooth_depth, texel, 0).r;
@@ -33,7 +22,7 @@ void main() {
 
   Look look = looks[floatBitsToUint(texelFetch(front_depth, texel, 0).r) & 15u];
   vec3 eye = eye_position(gl_FragCoord.xy, front);
-  vec3 n = normalize(cross(difference(eye, texel, ivec2(1, 0)), difference(eye, texel, ivec2(0, 1))));
+  vec3 n = depth_normal(smooth_depth, eye, texel, kFluidDepthLimit);
   vec3 to_eye = normalize(-eye);
 
   // A body in front of the fluid must not show through it. Whole texels, as a mean would mix such a body in.

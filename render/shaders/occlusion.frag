@@ -1,24 +1,16 @@
 // Ambient occlusion at half size, from S_d alone.
-#include "frame_block.glsl"
+#include "depth_normal.glsl"
 layout(binding = 0) uniform sampler2D scene_depth;
 uniform float reach;  // m
 layout(location = 0) out float open;
 
-vec3 difference(vec3 here, ivec2 texel, ivec2 step_to) {
-  float ahead = texelFetch(scene_depth, texel + step_to, 0).r;
-  float behind = texelFetch(scene_depth, texel - step_to, 0).r;
-  bool take_ahead = abs(ahead + here.z) < abs(behind + here.z);
-  vec3 there = eye_position(vec2(texel) + 0.5 + vec2(take_ahead ? step_to : -step_to), take_ahead ? ahead : behind);
-  return take_ahead ? there - here : here - there;
-}
-
 void main() {
-  ivec2 texel = ivec2(gl_FragCoord.xy) * 2;
+  ivec2 texel = min(ivec2(gl_FragCoord.xy) * 2, ivec2(picture.xy) - 1);
   float d = texelFetch(scene_depth, texel, 0).r;
   open = 1.0;
   if (d > camera.w) return;
   vec3 here = eye_position(vec2(texel) + 0.5, d);
-  vec3 n = normalize(cross(difference(here, texel, ivec2(1, 0)), difference(here, texel, ivec2(0, 1))));
+  vec3 n = depth_normal(scene_depth, here, texel, camera.w);
   float pixels = min(reach * splat.y / d, 120.0);
   // A spiral turned by a 4×4 pattern, which the 4×4 blur of the resolve takes away again.
   ivec2 cell = ivec2(gl_FragCoord.xy) & 3;
