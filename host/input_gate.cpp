@@ -80,8 +80,8 @@ std::span<const HandleInput> InputGate::take(Channel& channel, const BodySnapsho
     if (input.engaged && !hand.engagement.engaged() && i < now.grips.size()) {
       const Wrench full =
           coupling_wrench_on_hand(hand.gains, input.pose, input.twist, now.grips[i].pose, now.grips[i].twist);
-      force = glm::length(full.force);
-      torque = glm::length(full.torque);
+      force = glm::length(full.force - now.grips[i].on_hand.force);
+      torque = glm::length(full.torque - now.grips[i].on_hand.torque);
     }
     input.scale = hand.engagement.update(input.engaged, now.time, force, torque);
   }

@@ -61,9 +61,9 @@ void Servo::tick(std::int64_t now_ns) noexcept {
       const GripState& grip = bodies.grips[i];
       const Pose proxy = extrapolate(grip.pose, grip.twist, ahead);
       const Wrench full = coupling_wrench_on_hand(hand.gains, good.pose, good.twist, proxy, grip.twist);
-      const double scale =
-          hand.engagement.update(good.engaged, time_, glm::length(full.force), glm::length(full.torque)) *
-          fresh;
+      const double jolt = glm::length(full.force - grip.on_hand.force);
+      const double twist = glm::length(full.torque - grip.on_hand.torque);
+      const double scale = hand.engagement.update(good.engaged, time_, jolt, twist) * fresh;
       wanted = {scale * full.force, scale * full.torque};
     }
     const ForceLimiter::Outcome outcome = hand.limiter.limit(wanted, options_.period);

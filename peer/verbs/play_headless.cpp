@@ -46,6 +46,7 @@ Result<bool> play_headless(const Prepared& prepared, const PlayOptions& options,
                            RunSummary& summary) {
   Result<DeviceSet> devices = make_devices(prepared.scene, options.devices, false);
   if (!devices) return devices.error();
+  progress.phase("settling");
   const double picture_rate = options.render ? options.frames_per_second : 0.0;
   Result<std::unique_ptr<Session>> created =
       Session::create(prepared, std::move(devices.value()), picture_rate);

@@ -5,6 +5,7 @@
 namespace slosh {
 namespace {
 
+constexpr double kSettle = 1.0;  // simulated s
 constexpr std::size_t kPictureBytes = std::size_t{512} << 20;
 
 Spread spread_of(const Histogram& histogram, double unit) {
@@ -22,6 +23,13 @@ Result<std::unique_ptr<Session>> Session::create(const Prepared& prepared, Devic
   }
   const Scene& scene = prepared.scene;
   World world(scene, prepared.sampled, prepared.plan, WorldOptions{prepared.threads});
+  // The world comes to rest in the hands as they are before the run. Nobody else reads the devices yet.
+  std::vector<HandleInput> hands;
+  for (const std::unique_ptr<Device>& device : devices.devices) {
+    const DeviceReport report = device->read({0.0, 0.0});
+    hands.push_back({report.pose, Twist{}, is_sound(report) && report.engaged, 1.0});
+  }
+  world.settle(kSettle, hands);
   session->channel_ = std::make_unique<Channel>(scene.grips.size(), initial_message(world), kPictureBytes);
   HostOptions options;
   options.picture_rate = picture_rate;

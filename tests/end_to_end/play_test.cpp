@@ -98,8 +98,8 @@ TEST_F(PlayTest, WritesEveryFileOfARun) {
 }
 
 TEST_F(PlayTest, ARecordedRunCanBeReplayed) {
-  const std::vector<std::string> common = {"play", "probe",     "--no-render", "--seconds",
-                                           "1",    "--spacing", "0.012",       "--out"};
+  const std::vector<std::string> common = {"play",      "probe", "--no-render", "--threads", "1",
+                                           "--seconds", "1",     "--spacing",   "0.012",     "--out"};
   std::vector<std::string> first = common;
   first.push_back("first");
   Outcome outcome = test::slosh(first);
@@ -124,7 +124,8 @@ TEST_F(PlayTest, WithoutADisplayItSaysThatItBecomesAFilm) {
 }
 
 TEST_F(PlayTest, ChoosesASpacingAndSaysWhy) {
-  const Outcome outcome = test::slosh({"play", "probe", "--no-render", "--seconds", "0.1", "--out", "out"});
+  const Outcome outcome =
+      test::slosh({"play", "probe", "--no-render", "--threads", "1", "--seconds", "0.1", "--out", "out"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.err.find("measuring"), std::string::npos);
   const json summary = json::parse(read_text(out() / "summary.json"));
@@ -133,8 +134,8 @@ TEST_F(PlayTest, ChoosesASpacingAndSaysWhy) {
 }
 
 TEST_F(PlayTest, AimsAtANumberOfParticles) {
-  const Outcome outcome = test::slosh(
-      {"play", "pool", "--no-render", "--seconds", "0.05", "--particles", "4000", "--out", "out"});
+  const Outcome outcome = test::slosh({"play", "pool", "--no-render", "--threads", "1", "--seconds", "0.05",
+                                       "--particles", "4000", "--out", "out"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const double fluid = json::parse(read_text(out() / "summary.json"))["particles"]["fluid"];
   EXPECT_NEAR(fluid, 4000.0, 1000.0);
