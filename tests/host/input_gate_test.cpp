@@ -134,5 +134,18 @@ TEST(InputGate, RampsAGripThatIsTakenFarFromTheBody) {
   EXPECT_NEAR(input[1].scale, 0.5, 1e-12);
 }
 
+TEST(InputGate, ABodyThatAlreadyHangsInTheHandIsNotLetDrop) {
+  const Scene scene = scene_with_grips(1);
+  InputGate gate(scene);
+  Channel channel(1, BodyMessage{}, 1 << 20);
+  BodySnapshot now;
+  now.grips.resize(1);
+  now.grips[0].pose.position.y = -0.013;  // 13 mm below the hand,
+  now.grips[0].on_hand.force.y = -13.0;   // and the coupling carries it already
+  channel.pose(0).back() = message(0);
+  channel.pose(0).publish();
+  EXPECT_EQ(gate.take(channel, now)[0].scale, 1.0);
+}
+
 }  // namespace
 }  // namespace slosh

@@ -117,6 +117,18 @@ TEST(Servo, TakingHoldFarFromTheGripRampsIn) {
   EXPECT_NEAR(kit.device->last.force.x, -100.0, 1e-6);
 }
 
+TEST(Servo, AWeightThatHangsInTheHandIsFeltFromTheFirstTick) {
+  ServoKit kit;
+  BodyMessage& message = kit.channel.bodies().back();
+  message = ServoKit::first();
+  message.rate = 1.0;
+  message.bodies.grips[0].pose.position.y = -0.013;
+  message.bodies.grips[0].on_hand.force.y = -13.0;
+  kit.channel.bodies().publish();
+  kit.tick(0.0);
+  EXPECT_NEAR(kit.device->last.force.y, -13.0, 1e-9);
+}
+
 TEST(Servo, StaysWithinTheDevicesLimitsAndSaysSo) {
   DeviceLimits limits;
   limits.max_force = 8.0;
