@@ -4,6 +4,7 @@
 #include <exception>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include "scenes/gltf/extras.h"
 #include "scenes/mesh/closed.h"
@@ -21,6 +22,9 @@ using gltf::short_number;
 /// A wall counts as thick enough from this share of the spacing on: a round rod made of flat faces is a
 /// little thinner than its name.
 constexpr double kThinnest = 0.95;
+
+constexpr double kMostFluid = 2e7;
+constexpr double kMostSurface = 2e6;
 
 /// What one mesh gives every body that has it.
 struct SampledMesh {
@@ -45,6 +49,19 @@ Result<SampledMesh> sample_mesh(const Scene& scene, const Body& body, double spa
                      sampling::make_distance_field(triangles, tree, spacing)};
 }
 
+/// Sampling takes about 20 µs a particle of a surface: a spacing that is far too small must not look like a
+/// hang.
+std::optional<Error> check_size(const Scene& scene, double spacing) {
+  const ParticleEstimate estimate = estimate_particles(scene, spacing);
+  const bool fluid = estimate.fluid > kMostFluid;
+  if (!fluid && estimate.surface <= kMostSurface) return std::nullopt;
+  return Error{scene.source_file + ": spacing",
+               "is " + short_number(1000.0 * spacing) + " mm: about " +
+                   short_number(fluid ? estimate.fluid : estimate.surface) + (fluid ? " fluid" : " surface") +
+                   " particles, more than " + short_number(fluid ? kMostFluid : kMostSurface),
+               "Choose a larger spacing"};
+}
+
 SurfaceSamples sample_probe(double spacing) {
   const auto volume = static_cast<float>(spacing * spacing * spacing);
   return {{glm::vec3(0.0f)}, {glm::vec3(0.0f, 1.0f, 0.0f)}, volume};
@@ -55,6 +72,7 @@ Result<SampledScene> sample(const Scene& scene, double spacing) {
     return Error{scene.source_file + ": spacing", "is " + short_number(spacing) + " m",
                  "Give 0.00001 to 10 m"};
   }
+  if (const auto problem = check_size(scene, spacing)) return *problem;
   SampledScene out;
   out.spacing = spacing;
   std::map<int, std::size_t> first_with_mesh;

@@ -15,9 +15,10 @@ constexpr int kCandidatesEach = 5;  // Yuksel's advice
 constexpr int kRelaxations = 8;
 constexpr float kSameSheet = -0.3f;     // cosine between normals above which two samples feel each other
 constexpr double kLeastDistance = 0.6;  // between two samples, in spacings
-constexpr double kLargestGap = 0.7;     // from a candidate to the nearest sample, in spacings
+constexpr double kLargestGap = 0.75;    // from a point of the fine net to the nearest sample, in spacings
+constexpr double kNetEach = 16.0;       // points of the fine net a spacing²
 constexpr double kFewestSamples = 6.0;
-constexpr double kMostSamples = 5e6;
+constexpr double kMostSamples = 5e6;  // sample_scene refuses long before
 
 struct Points {
   std::vector<glm::vec3> at;
@@ -59,12 +60,17 @@ Points scatter(const TriangleMesh& mesh, const mesh::MeshTree& tree, double area
   return out;
 }
 
+/// A point of the surface that lies inside another part.
+bool is_buried(const mesh::MeshTree& tree, const glm::vec3& at, const glm::vec3& normal, float spacing) {
+  return tree.inside(at + normal * (1e-3f * spacing));
+}
+
 /// Takes away the points inside another part; they come back in `buried`.
 Points keep_exposed(const Points& points, const mesh::MeshTree& tree, float spacing,
                     std::vector<glm::vec3>& buried) {
   Points out;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (tree.inside(points.at[i] + points.normal[i] * (1e-3f * spacing))) {
+    if (is_buried(tree, points.at[i], points.normal[i], spacing)) {
       buried.push_back(points.at[i]);
     } else {
       out.add(points.at[i], points.normal[i], points.triangle[i]);
@@ -184,22 +190,50 @@ Points thin_out(const Points& points, float least_distance) {
   return out;
 }
 
-/// Adds candidates that lie too far from every sample, so that no gap is left for fluid to see.
-void plug_gaps(Points& points, const Points& candidates, float largest_gap) {
+/// A finer, more regular net of points than the candidates: a low-discrepancy sequence (Roberts' R2) in every
+/// triangle, and its corners. Where it shows no gap there is none much larger.
+Points fine_net(const TriangleMesh& mesh, const mesh::MeshTree& tree, double spacing) {
+  Points out;
+  const double share = spacing * spacing / kNetEach;
+  double due = 0.5 * share;
+  double walked = 0.0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const glm::vec3& a = mesh.positions[mesh.triangles[t].x];
+    const glm::vec3& b = mesh.positions[mesh.triangles[t].y];
+    const glm::vec3& c = mesh.positions[mesh.triangles[t].z];
+    const glm::vec3 normal = tree.face_normal(static_cast<int>(t));
+    const auto index = static_cast<std::int32_t>(t);
+    const glm::vec3 middle = (a + b + c) / 3.0f;
+    for (const glm::vec3& corner : {a, b, c}) out.add(glm::mix(corner, middle, 1e-3f), normal, index);
+    walked += 0.5 * glm::length(glm::cross(glm::dvec3(b - a), glm::dvec3(c - a)));
+    for (double n = 1.0; due < walked; due += share, n += 1.0) {
+      double u = std::fmod(0.5 + 0.7548776662466927 * n, 1.0);
+      double v = std::fmod(0.5 + 0.5698402909980532 * n, 1.0);
+      if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
+      out.add(a + static_cast<float>(u) * (b - a) + static_cast<float>(v) * (c - a), normal, index);
+    }
+  }
+  return out;
+}
+
+/// Adds those candidates that lie too far from every sample, so that fluid finds no gap. `buried` tells of a
+/// candidate that must not come in.
+template <class Buried>
+void plug_gaps(Points& points, const Points& candidates, float largest_gap, Buried buried) {
   const PointGrid grid(points.at, largest_gap);
   const std::size_t before = points.size();
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const auto near = [&](const glm::vec3& at, const glm::vec3& normal) {
-      return glm::distance(at, candidates.at[i]) < largest_gap &&
-             glm::dot(normal, candidates.normal[i]) > kSameSheet;
+    const auto near = [&](std::size_t j) {
+      return glm::distance(points.at[j], candidates.at[i]) < largest_gap &&
+             glm::dot(points.normal[j], candidates.normal[i]) > kSameSheet;
     };
     bool covered = false;
-    grid.each_near(candidates.at[i],
-                   [&](std::uint32_t j) { covered = covered || near(points.at[j], points.normal[j]); });
+    grid.each_near(candidates.at[i], [&](std::uint32_t j) { covered = covered || near(j); });
     // Those just added are few and not in the grid.
-    for (std::size_t j = before; j < points.size() && !covered; ++j)
-      covered = near(points.at[j], points.normal[j]);
-    if (!covered) points.add(candidates.at[i], candidates.normal[i], candidates.triangle[i]);
+    for (std::size_t j = before; j < points.size() && !covered; ++j) covered = near(j);
+    if (!covered && !buried(candidates.at[i], candidates.normal[i])) {
+      points.add(candidates.at[i], candidates.normal[i], candidates.triangle[i]);
+    }
   }
 }
 
@@ -217,12 +251,14 @@ SurfaceSamples sample_surface(const TriangleMesh& mesh, const mesh::MeshTree& tr
   const double exposed_share = static_cast<double>(points.size()) / static_cast<double>(all);
   const double exposed_area = area * exposed_share;
   const auto target = static_cast<std::size_t>(std::lround(std::max(wanted * exposed_share, 1.0)));
-  const Points exposed = points;
-  points = eliminate(exposed, target, exposed_area);
+  points = eliminate(points, target, exposed_area);
   const double even = std::sqrt(2.0 / std::sqrt(3.0) * exposed_area / static_cast<double>(target));
   relax(points, tree, find_frozen(points, buried, static_cast<float>(spacing)), static_cast<float>(even));
   points = thin_out(points, static_cast<float>(kLeastDistance * spacing));
-  plug_gaps(points, exposed, static_cast<float>(kLargestGap * spacing));
+  const auto gap = static_cast<float>(kLargestGap * spacing);
+  plug_gaps(points, fine_net(mesh, tree, spacing), gap, [&](const glm::vec3& at, const glm::vec3& normal) {
+    return parts > 1 && is_buried(tree, at, normal, static_cast<float>(spacing));
+  });
   SurfaceSamples out;
   out.positions = std::move(points.at);
   out.normals = std::move(points.normal);

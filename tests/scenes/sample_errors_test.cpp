@@ -43,7 +43,8 @@ TEST(SampleErrors, Spacing) {
 }
 
 TEST(SampleErrors, TooFine) {
-  test::expect_error(sample_scene(load_cup(nullptr, nullptr), 0.0002), {"'water'", "30 million"});
+  test::expect_error(sample_scene(load_cup(nullptr, nullptr), 0.0002),
+                     {"cup.gltf", "spacing", "0.2 mm", "fluid particles"});
 }
 
 TEST(SampleErrors, ThinnestWallWithoutWallsIsInfinite) {
