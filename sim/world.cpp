@@ -14,8 +14,10 @@ namespace slosh {
 
 namespace {
 
-// Handles further than this from everything are broken devices, not hands.
-constexpr double kFarthestHandle = 1.0e3;  // m
+// Handles beyond these are broken devices, not hands.
+constexpr double kFarthestHandle = 1.0e3;     // m
+constexpr double kFastestHandle = 1.0e3;      // m/s
+constexpr double kFastestHandleTurn = 1.0e4;  // rad/s
 
 bool finite(const glm::dvec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
@@ -26,7 +28,9 @@ bool usable(const HandleInput& input) {
   const double norm = glm::dot(q, q);
   return finite(input.pose.position) && finite(input.twist.linear) && finite(input.twist.angular) &&
          glm::length(input.pose.position) < kFarthestHandle && std::isfinite(norm) &&
-         std::abs(norm - 1.0) < 0.1 && std::isfinite(input.scale);
+         glm::length(input.twist.linear) < kFastestHandle &&
+         glm::length(input.twist.angular) < kFastestHandleTurn && std::abs(norm - 1.0) < 0.1 &&
+         std::isfinite(input.scale);
 }
 
 // Σ of the density kernel's shape over a cubic lattice, the particle itself included.
@@ -148,10 +152,11 @@ struct World::Impl {
       fluid.vz[i] = velocities[i].z;
       fluid.id[i] = static_cast<std::uint32_t>(i);
       fluid.kind[i] = kinds[i];
-      const bool inside = context.grid.contains(fluid.x[i], fluid.y[i], fluid.z[i]);
+      const bool whole = finite(glm::dvec3(positions[i])) && finite(glm::dvec3(velocities[i]));
+      const bool inside = whole && context.grid.contains(fluid.x[i], fluid.y[i], fluid.z[i]);
       fluid.key[i] =
           inside ? context.grid.cell_of(fluid.x[i], fluid.y[i], fluid.z[i]) : context.grid.retired_key();
-      if (!inside) context.status |= kStatusEscaped;
+      if (!inside) context.status |= whole ? kStatusEscaped : kStatusNonFinite;
     }
     fluid.active = positions.size();
   }
