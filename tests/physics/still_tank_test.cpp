@@ -1,0 +1,112 @@
+// A tank at rest: what the walls carry, where the surface stands, how both depend on the spacing.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/physics/lab.h"
+
+namespace slosh::lab {
+namespace {
+
+const glm::dvec3 kInner(0.2, 0.16, 0.2);
+constexpr double kFill = 0.1;
+constexpr double kWall = 0.05;
+
+Scene still_tank() {
+  SceneBuilder b;
+  b.add_fluid(1000.0, 0.05);
+  b.add_fixed("tank", tank_at_floor(kInner, kWall));
+  b.add_volume(make::box({-0.5 * kInner.x, 0.0, -0.5 * kInner.z}, {0.5 * kInner.x, kFill, 0.5 * kInner.z}));
+  b.set_domain({-0.3, -0.2, -0.3}, {0.3, 0.4, 0.3});
+  return b.scene;
+}
+
+// Height of the surface over the middle of the tank: the middle of the topmost layer and half a spacing.
+double surface_level(Experiment& e, double spacing) {
+  const Snapshot picture = e.picture();
+  std::vector<double> tops;
+  constexpr int kColumns = 4;
+  for (int i = 0; i < kColumns; ++i) {
+    for (int j = 0; j < kColumns; ++j) {
+      const double x = kInner.x * ((i + 0.5) / kColumns - 0.5), z = kInner.z * ((j + 0.5) / kColumns - 0.5);
+      double top = -1.0;
+      for (const glm::vec3& p : picture.positions) {
+        if (std::abs(p.x - x) < 1.5 * spacing && std::abs(p.z - z) < 1.5 * spacing)
+          top = std::max<double>(top, p.y);
+      }
+      tops.push_back(top + 0.5 * spacing);
+    }
+  }
+  double sum = 0.0;
+  for (const double t : tops) sum += t;
+  return sum / static_cast<double>(tops.size());
+}
+
+class StillTank : public ::testing::TestWithParam<double> {};
+
+// Momentum is conserved to rounding, so over a time in which nothing is left over in motion the walls carry
+// the weight; 1 % is the slosh that 0.5 s cannot average out. The surface is where a lattice at rest density
+// would put it, less the compression under its own weight (4 % at the floor by the plan, 2 % on average) and
+// less what the top layers move together for want of neighbours above: some 0.3 of a spacing.
+TEST_P(StillTank, wall_force_and_level) {
+  const double spacing = GetParam();
+  Experiment e(still_tank(), spacing);
+  e.world().settle(0.6);
+  e.run(0.1);
+  Average down;
+  e.run(0.5, [&] { down.add(-e.bodies().bodies[0].fluid.force.y); });
+  const std::string name =
+      "still tank, spacing " + std::to_string(std::lround(spacing * 1e4) / 10.0).substr(0, 4) + " mm, ";
+  const double weight = e.fluid_mass() * kGravity;
+  EXPECT_LT(std::abs(report(name + "wall force", down.mean(), weight, "N")), 0.01);
+  report_value(name + "peak noise", 100.0 * down.peak_share(), "%");
+  // The peers' noise at rest is 4 to 17 %.
+  EXPECT_LT(down.peak_share(), 0.04);
+  // The sampler fills whole layers only: the level to expect is that of the mass there is.
+  const double expected = e.fluid_mass() / (1000.0 * kInner.x * kInner.z);
+  const double level = surface_level(e, spacing);
+  report(name + "level", level, expected, "m");
+  EXPECT_LT(std::abs(level - expected), 0.6 * spacing);
+  EXPECT_EQ(e.world().diagnostics().retired, 0u);
+  EXPECT_EQ(e.world().take_status(), 0u);
+}
+
+INSTANTIATE_TEST_SUITE_P(spacings, StillTank, ::testing::Values(0.02, 0.0125, 0.01, 0.008));
+
+// A tank of five bodies: each wall alone carries ½ρgh²w, at a third of the depth above the floor.
+TEST(Hydrostatics, side_wall_force_and_center_of_pressure) {
+  constexpr double kSpacing = 0.01;
+  const double x = 0.5 * kInner.x, z = 0.5 * kInner.z, t = kWall;
+  SceneBuilder b;
+  b.add_fluid(1000.0, 0.05);
+  const int floor = b.add_fixed("floor", make::box({-x - t, -t, -z - t}, {x + t, 0.0, z + t}));
+  const int left = b.add_fixed("left", make::box({-x - t, 0.0, -z - t}, {-x, kInner.y, z + t}));
+  const int right = b.add_fixed("right", make::box({0.0, 0.0, -z - t}, {t, kInner.y, z + t}),
+                                {{x, 0.0, 0.0}, {1, 0, 0, 0}});
+  b.add_fixed("back", make::box({-x, 0.0, -z - t}, {x, kInner.y, -z}));
+  b.add_fixed("front", make::box({-x, 0.0, z}, {x, kInner.y, z + t}));
+  b.add_volume(make::box({-x, 0.0, -z}, {x, kFill, z}));
+  b.set_domain({-0.3, -0.2, -0.3}, {0.3, 0.4, 0.3});
+  Experiment e(b.scene, kSpacing);
+  e.world().settle(0.6);
+  Average down, push_left, push_right, moment;
+  e.run(0.5, [&] {
+    down.add(-e.bodies().bodies[floor].fluid.force.y);
+    push_left.add(-e.bodies().bodies[left].fluid.force.x);
+    push_right.add(e.bodies().bodies[right].fluid.force.x);
+    moment.add(-e.bodies().bodies[right].fluid.torque.z);  // about the wall's lower edge
+  });
+  const double depth = e.fluid_mass() / (1000.0 * kInner.x * kInner.z);
+  const double side = 0.5 * 1000.0 * kGravity * depth * depth * kInner.z;
+  // Two walls of the same tank differ by what the particles' arrangement leaves to chance.
+  const double mean = 0.5 * (push_left.mean() + push_right.mean());
+  EXPECT_LT(std::abs(report("hydrostatics, side wall", mean, side, "N")), 0.12);
+  report("hydrostatics, floor", down.mean(), e.fluid_mass() * kGravity, "N");
+  const double height = moment.mean() / push_right.mean();
+  report("hydrostatics, centre of pressure", height, depth / 3.0, "m");
+  EXPECT_LT(std::abs(height - depth / 3.0), 0.5 * kSpacing);
+}
+
+}  // namespace
+}  // namespace slosh::lab

@@ -1,0 +1,162 @@
+// Bodies of all weights in fluid, thin walls, and fluid with nowhere to go.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/physics/lab.h"
+
+namespace slosh::lab {
+namespace {
+
+constexpr double kSpacing = 0.01;
+
+class Floating : public ::testing::TestWithParam<double> {};
+
+// A free box of 4 cm of ρ_body = share · ρ_fluid, put just over the surface. It floats or sinks as it should,
+// and nothing diverges: explicit exchange is said to, below a share of ½.
+TEST_P(Floating, box_of_any_density) {
+  const double share = GetParam();
+  constexpr double kEdge = 0.04;
+  SceneBuilder b;
+  b.add_fluid(1000.0, 0.05);
+  b.add_fixed("tank", tank_at_floor({0.16, 0.2, 0.16}, 0.03));
+  const int box = b.add_free("box", make::box(glm::dvec3(-0.5 * kEdge), glm::dvec3(0.5 * kEdge)),
+                             share * 1000.0 * std::pow(kEdge, 3), {{0.0, 0.115, 0.0}, {1, 0, 0, 0}});
+  b.add_volume(make::box({-0.08, 0.0, -0.08}, {0.08, 0.08, 0.08}));
+  b.set_domain({-0.4, -0.3, -0.4}, {0.4, 1.0, 0.4});
+  Experiment e(b.scene, kSpacing);
+  e.run(3.0);
+  double fastest = 0.0, height = 0.0, count = 0.0;
+  e.run(0.5, [&] {
+    fastest = std::max(fastest, glm::length(e.bodies().bodies[box].twist.linear));
+    height += e.bodies().bodies[box].center_of_mass.y;
+    count += 1.0;
+  });
+  height /= count;
+  ASSERT_TRUE(all_finite(e.world()));
+  // A heavy box comes down at 1 m/s and shuts the last spacings of fluid between itself and the floor, which
+  // some particles leave through the floor.
+  const double lost =
+      static_cast<double>(e.world().diagnostics().retired) / static_cast<double>(e.world().fluid_count());
+  EXPECT_LE(lost, share > 1.0 ? 0.02 : 0.0);
+  const std::string name = "box of " + std::to_string(share).substr(0, 5) + " times the fluid's density, ";
+  report_value(name + "height", height, "m");
+  report_value(name + "speed", fastest, "m/s");
+  EXPECT_LT(fastest, 0.2);
+  if (share < 0.6) {
+    EXPECT_GT(height, 0.06) << "it should float";
+  } else if (share > 2.0) {
+    EXPECT_LT(height, 0.03) << "it should lie on the floor";
+  }
+  EXPECT_GT(height, 0.5 * kEdge - 0.005) << "it sank into the floor";
+}
+
+INSTANTIATE_TEST_SUITE_P(shares, Floating, ::testing::Values(0.01, 0.1, 0.5, 20.0));
+
+// The thinnest wall the sampler takes: as thick as the spacing. Fluid stays inside for 2 s, upright and
+// shaken.
+TEST(Walls, as_thick_as_the_spacing_do_not_leak) {
+  SceneBuilder b;
+  b.add_fluid(1000.0, 0.05);
+  const int cup = b.add_free("cup", tank_at_floor({0.12, 0.14, 0.12}, kSpacing), 0.5);
+  b.add_volume(make::box({-0.06, 0.0, -0.06}, {0.06, 0.07, 0.06}));
+  b.add_grip(cup, 2e4, 200.0, 100.0, 5.0);
+  b.set_domain({-0.4, -0.3, -0.4}, {0.4, 0.8, 0.4});
+  Experiment e(b.scene, kSpacing);
+  e.handle(0).engaged = true;
+  e.world().settle(0.5);
+  e.run(2.0, [&] {
+    const double rate = 2.0 * kPi * 1.0, angle = rate * e.world().time();
+    e.handle(0).pose.position.x = 0.02 * (1.0 - std::cos(angle));
+    e.handle(0).twist.linear.x = 0.02 * rate * std::sin(angle);
+  });
+  ASSERT_TRUE(all_finite(e.world()));
+  const Pose pose = e.bodies().bodies[cup].pose;
+  int below = 0, beside = 0;
+  for (const glm::vec3& p : e.picture().positions) {
+    const glm::dvec3 local = transform_point(inverse(pose), glm::dvec3(p));
+    below += local.y < -0.5 * kSpacing;
+    beside += std::abs(local.x) > 0.06 + 0.5 * kSpacing || std::abs(local.z) > 0.06 + 0.5 * kSpacing;
+  }
+  report_value("wall as thick as the spacing, particles below the floor", below, "");
+  report_value("wall as thick as the spacing, particles beside the walls", beside, "");
+  EXPECT_EQ(below + beside, 0);
+}
+
+TEST(Walls, thinner_than_the_spacing_are_refused) {
+  SceneBuilder b;
+  b.add_fluid(1000.0, 0.05);
+  b.add_free("cup", tank_at_floor({0.12, 0.14, 0.12}, 0.5 * kSpacing), 0.5);
+  b.add_volume(make::box({-0.06, 0.0, -0.06}, {0.06, 0.07, 0.06}));
+  const Result<SampledScene> sampled = sample_scene(b.scene, kSpacing);
+  ASSERT_FALSE(sampled);
+  EXPECT_NE(sampled.error().text().find("thick"), std::string::npos) << sampled.error().text();
+}
+
+// A press: a stiff hand drives a lid that fits the tank 3 cm into fluid that cannot get out but through the
+// gap around it. The fluid is crushed: the status says so or the fluid escapes past the lid; either way all
+// stays finite, and when the lid goes up again the fluid comes to rest.
+TEST(Walls, press_crushes_fluid) {
+  SceneBuilder b;
+  b.add_fluid(1000.0, 0.05);
+  b.add_fixed("tank", tank_at_floor({0.12, 0.2, 0.12}, 0.03));
+  const int lid = b.add_free("lid", make::box({-0.058, 0.0, -0.058}, {0.058, 0.03, 0.058}), 1.0,
+                             {{0.0, 0.08, 0.0}, {1, 0, 0, 0}});
+  b.add_volume(make::box({-0.06, 0.0, -0.06}, {0.06, 0.07, 0.06}));
+  b.add_grip(lid, 1e5, 1e3, 1e3, 10.0);
+  b.set_domain({-0.4, -0.3, -0.4}, {0.4, 0.8, 0.4});
+  Experiment e(b.scene, kSpacing);
+  const std::size_t count = e.world().fluid_count();
+  e.handle(0).engaged = true;
+  const auto lid_to = [&](double y, double seconds) {
+    const double from = e.handle(0).pose.position.y, start = e.world().time();
+    e.run(seconds, [&] {
+      e.handle(0).pose.position.y = glm::mix(from, y, std::min(1.0, (e.world().time() - start) / seconds));
+      e.handle(0).twist.linear.y = (y - from) / seconds;
+    });
+    e.handle(0).twist = {};
+  };
+  lid_to(0.02, 0.5);
+  e.run(0.5);
+  ASSERT_TRUE(all_finite(e.world()));
+  report_value("press, largest compression", e.world().diagnostics().max_compression, "");
+  const std::uint32_t status = e.world().take_status();
+  EXPECT_EQ(status & kStatusNonFinite, 0u);
+  EXPECT_NE(status & kStatusCompressed, 0u) << status_text(status);
+  lid_to(0.15, 0.5);
+  e.run(1.5);
+  ASSERT_TRUE(all_finite(e.world()));
+  const Diagnostics fluid = e.world().diagnostics();
+  EXPECT_EQ(fluid.particles + fluid.retired, count);
+  report_value("press, share of the fluid lost",
+               static_cast<double>(fluid.retired) / static_cast<double>(count), "");
+  EXPECT_LT(fluid.max_speed, 3.0);
+}
+
+// Five boxes dropped on each other in a heap: no explosion, none through the table.
+TEST(Bodies, heap_comes_to_rest) {
+  SceneBuilder b;
+  b.add_fixed("table", make::box({-0.3, -0.04, -0.3}, {0.3, 0.0, 0.3}));
+  for (int i = 0; i < 5; ++i) {
+    b.add_free("box", make::box(glm::dvec3(-0.03), glm::dvec3(0.03)), 0.2,
+               {{0.005 * (i % 2), 0.04 + 0.07 * i, 0.004 * (i % 3)}, {1, 0, 0, 0}});
+  }
+  b.set_domain({-1, -1, -1}, {1, 1, 1});
+  Experiment e(b.scene, kSpacing);
+  double fastest = 0.0;
+  e.run(2.0, [&] {
+    for (const BodyState& body : e.bodies().bodies)
+      fastest = std::max(fastest, glm::length(body.twist.linear));
+  });
+  ASSERT_TRUE(all_finite(e.world()));
+  // A fall over the heap's height is 2.6 m/s.
+  EXPECT_LT(fastest, 3.0);
+  for (std::size_t i = 1; i < e.bodies().bodies.size(); ++i) {
+    EXPECT_LT(glm::length(e.bodies().bodies[i].twist.linear), 0.05);
+    EXPECT_GT(e.bodies().bodies[i].center_of_mass.y, 0.028);
+  }
+}
+
+}  // namespace
+}  // namespace slosh::lab
