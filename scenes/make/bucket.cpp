@@ -110,7 +110,7 @@ SceneWriter make_bucket() {
     writer.add_hand(
         side + "_motion", side + "_hand", [=](double t) { return compose(bucket_pose(t), grip); }, kDuration);
   }
-  writer.add_camera({0.42, 0.72, 1.08}, {0.0, 0.30, 0.0}, 36.0);
+  writer.add_camera({0.36, 0.92, 0.84}, {-0.02, 0.26, 0.0}, 36.0);
   return writer;
 }
 

@@ -11,7 +11,7 @@ namespace {
 constexpr double kBowlRadius = 0.075;             ///< inner
 constexpr double kBowlRim = kBowlRadius + kWall;  ///< height of the rim over the underside
 constexpr double kBelowRim = 0.015;               ///< of the batter at the start
-constexpr double kBowlHeld = 0.25;                ///< of the underside over the table
+constexpr double kBowlHeld = 0.21;                ///< of the underside over the table
 constexpr double kPanRadius = 0.105;              ///< inner
 constexpr double kPanDepth = 0.040;
 constexpr double kPanHeld = 0.08;
@@ -103,7 +103,7 @@ SceneWriter make_pour() {
                    {"extinction_per_m", list({250.0, 280.0, 400.0})}});
   add_held(writer, "bowl", bowl_node, {{-0.13, kBowlRim - 0.014, 0.0}, {1.0, 0.0, 0.0, 0.0}}, 0, bowl_pose);
   add_held(writer, "pan", pan_node, {{0.17, 0.036, 0.0}, {1.0, 0.0, 0.0, 0.0}}, 1, pan_pose);
-  writer.add_camera({0.30, 0.62, 0.95}, {0.0, 0.22, 0.0}, 36.0);
+  writer.add_camera({0.26, 0.74, 0.80}, {0.0, 0.20, 0.0}, 36.0);
   return writer;
 }
 

@@ -76,7 +76,7 @@ SceneWriter make_spin() {
     // The start takes 0.15 s: keys close enough to keep its shape.
     writer.add_hand("motion_" + number, "hand_" + number, pose_at, kDuration, 120.0);
   }
-  writer.add_camera({0.0, 0.62, 1.25}, {0.0, 0.06, 0.0}, 38.0);
+  writer.add_camera({-0.06, 0.62, 0.98}, {-0.06, 0.06, 0.0}, 38.0);
   return writer;
 }
 
