@@ -2,13 +2,15 @@
 #include "sim/world.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "sim/bodies.h"
 #include "sim/contacts.h"
-#include "sim/cpu/passes.h"
 #include "sim/hash.h"
+#include "sim/particle_engine.h"
+#include "sim/stopwatch.h"
 
 namespace slosh {
 
@@ -33,186 +35,40 @@ bool usable(const HandleInput& input) {
          std::isfinite(input.scale);
 }
 
-// Σ of the density kernel's shape over a cubic lattice, the particle itself included.
-double rest_number_density(ParticleModel model, double spacing, double support_radius) {
-  const int reach = static_cast<int>(std::ceil(support_radius / spacing));
-  double sum = 0.0;
-  for (int x = -reach; x <= reach; ++x) {
-    for (int y = -reach; y <= reach; ++y) {
-      for (int z = -reach; z <= reach; ++z) {
-        const double r_squared = spacing * spacing * (x * x + y * y + z * z);
-        sum += model == ParticleModel::kPaper
-                   ? poly6_shape<double>(r_squared, support_radius * support_radius)
-                   : spiky_shape<double>(r_squared, support_radius);
-      }
-    }
-  }
-  return sum;
-}
-
-struct Box {
-  glm::dvec3 lower, upper;
-};
-
-// The scene's domain, or room around what there is when it names none.
-Box domain_of(const Scene& scene, const SampledScene& sampled, double support_radius) {
-  if (glm::all(glm::lessThan(scene.domain_min, scene.domain_max)))
-    return {scene.domain_min, scene.domain_max};
-  Box box{glm::dvec3(std::numeric_limits<double>::infinity()),
-          glm::dvec3(-std::numeric_limits<double>::infinity())};
-  const auto include = [&](const glm::dvec3& p) {
-    box.lower = glm::min(box.lower, p);
-    box.upper = glm::max(box.upper, p);
-  };
-  for (const glm::vec3& p : sampled.fluid_positions) include(glm::dvec3(p));
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    include(scene.bodies[b].pose.position);
-    for (const glm::vec3& p : sampled.surfaces[b].positions) {
-      include(transform_point(scene.bodies[b].pose, glm::dvec3(p)));
-    }
-  }
-  const glm::dvec3 room = glm::max(0.5 * (box.upper - box.lower), glm::dvec3(4.0 * support_radius));
-  return {box.lower - room, box.upper + room};
-}
-
-class Stopwatch {
- public:
-  /// Seconds since the last call (or the start).
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const double seconds = std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-    return seconds;
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
-
 }  // namespace
 
 struct World::Impl {
-  Impl(const Scene& scene_in, const SampledScene& sampled, Plan plan_in, WorldOptions options)
-      : scene(scene_in),
-        team(options.threads),
-        fixed(scene, sampled, plan_in, BodyMotion::kFixed),
-        moving(scene, sampled, plan_in, BodyMotion::kFree),
-        contact_finder(scene, sampled) {
-    context.plan = std::move(plan_in);
-    const Box domain = domain_of(scene, sampled, context.plan.support_radius);
-    context.grid = CellGrid(domain.lower, domain.upper, context.plan.support_radius);
-    context.kernels = make_kernel_constants(context.plan.support_radius);
-    context.rest_number_density = static_cast<float>(
-        rest_number_density(context.plan.model, context.plan.spacing, context.plan.support_radius));
-    context.rest_volume = static_cast<float>(std::pow(context.plan.spacing, 3));
-    context.gravity = glm::vec3(scene.gravity);
+  Impl(const Scene& scene_in, const SampledScene& sampled, Plan plan_in, WorldOptions options_in)
+      : scene(scene_in), options(options_in), contact_finder(scene, sampled) {
+    constants = make_run_constants(scene, sampled, std::move(plan_in));
     for (const Body& body : scene.bodies) bodies.push_back(make_rigid_body(body));
     wrenches.resize(bodies.size());
     solves.resize(bodies.size());
-    wrench_wanted.assign(bodies.size(), 0);
-    for (const int b : context.plan.wrench_bodies) wrench_wanted[b] = 1;
-    fixed_measured = std::any_of(context.plan.wrench_bodies.begin(), context.plan.wrench_bodies.end(),
-                                 [&](int b) { return !bodies[b].free; });
     grips.resize(scene.grips.size());
     last_input.resize(scene.grips.size());
-    place_fluid(sampled);
-    fixed.place(context, bodies);
     scene.meshes.clear();  // the surface particles stand for them from here on
   }
 
-  void place_fluid(const SampledScene& sampled) {
-    for (const Fluid& f : scene.fluids) add_kind(f.rest_density, f.dynamic_viscosity, false);
-    std::vector<glm::vec3> positions = sampled.fluid_positions;
-    std::vector<glm::vec3> velocities = sampled.fluid_velocities;
-    velocities.resize(positions.size(), glm::vec3(0.0f));
-    std::vector<std::uint8_t> kinds = sampled.fluid_index;
-    snapshot_count = positions.size();
-    fluid_starts_moving = std::any_of(velocities.begin(), velocities.end(),
-                                      [](const glm::vec3& v) { return v != glm::vec3(0.0f); });
-    // A probe is one more particle of the first fluid's kind (Eq 8), moved by its body.
-    const Fluid reference = scene.fluids.empty() ? Fluid{} : scene.fluids.front();
-    for (std::size_t b = 0; b < bodies.size(); ++b) {
-      if (!bodies[b].point) continue;
-      const Body& body = scene.bodies[b];
-      probes.push_back({static_cast<std::uint32_t>(positions.size()), static_cast<int>(b)});
-      positions.emplace_back(bodies[b].position);
-      velocities.emplace_back(bodies[b].velocity);
-      kinds.push_back(static_cast<std::uint8_t>(context.kinds.size()));
-      add_kind(body.particle_density > 0.0 ? body.particle_density : reference.rest_density,
-               body.dynamic_viscosity > 0.0 ? body.dynamic_viscosity : reference.dynamic_viscosity, true);
-    }
-    fluid.resize(positions.size());
-    scratch.resize(positions.size());
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-      fluid.x[i] = positions[i].x;
-      fluid.y[i] = positions[i].y;
-      fluid.z[i] = positions[i].z;
-      fluid.vx[i] = velocities[i].x;
-      fluid.vy[i] = velocities[i].y;
-      fluid.vz[i] = velocities[i].z;
-      fluid.id[i] = static_cast<std::uint32_t>(i);
-      fluid.kind[i] = kinds[i];
-      const bool whole = finite(glm::dvec3(positions[i])) && finite(glm::dvec3(velocities[i]));
-      const bool inside = whole && context.grid.contains(fluid.x[i], fluid.y[i], fluid.z[i]);
-      fluid.key[i] =
-          inside ? context.grid.cell_of(fluid.x[i], fluid.y[i], fluid.z[i]) : context.grid.retired_key();
-      if (!inside) context.status |= whole ? kStatusEscaped : kStatusNonFinite;
-    }
-    fluid.active = positions.size();
+  // Error: the backend that was asked for is not there.
+  std::optional<Error> start(const SampledScene& sampled) {
+    const ParticleStart particles = make_particle_start(scene, sampled, constants, bodies);
+    fluid_count = particles.fluid_count;
+    boundary_count = particles.fixed.size() + particles.moving.size();
+    fluid_starts_moving =
+        std::any_of(particles.velocities.begin(),
+                    particles.velocities.begin() +
+                        static_cast<std::ptrdiff_t>(std::min(fluid_count, sampled.fluid_velocities.size())),
+                    [](const glm::vec3& v) { return v != glm::vec3(0.0f); });
+    Result<std::unique_ptr<ParticleEngine>> made =
+        make_particle_engine(constants, particles, bodies, options);
+    if (!made) return made.error();
+    engine = std::move(made.value());
+    return std::nullopt;
   }
 
-  void add_kind(double rest_density, double viscosity, bool probe) {
-    context.kinds.push_back({static_cast<float>(rest_density), static_cast<float>(viscosity),
-                             static_cast<float>(rest_density * std::pow(context.plan.spacing, 3)), probe});
-  }
-
-  // Probes are particles that their body carries: their state goes in before the passes, the force comes out
-  // after.
-  void carry_probes_in() {
-    if (probes.empty()) return;
-    for (std::size_t p = 0; p < fluid.active; ++p) {
-      if (fluid.id[p] < snapshot_count) continue;
-      const RigidBody& body = bodies[probes[fluid.id[p] - snapshot_count].body];
-      fluid.x[p] = static_cast<float>(body.position.x);
-      fluid.y[p] = static_cast<float>(body.position.y);
-      fluid.z[p] = static_cast<float>(body.position.z);
-      fluid.vx[p] = static_cast<float>(body.velocity.x);
-      fluid.vy[p] = static_cast<float>(body.velocity.y);
-      fluid.vz[p] = static_cast<float>(body.velocity.z);
-      // A probe that a hand takes out of the domain comes back with it: it waits in the nearest cell.
-      fluid.key[p] = context.grid.cell_of(fluid.x[p], fluid.y[p], fluid.z[p]);
-    }
-  }
-
-  void carry_probe_forces_out() {
-    if (probes.empty()) return;
-    for (std::size_t p = 0; p < fluid.active; ++p) {
-      if (fluid.id[p] < snapshot_count) continue;
-      wrenches[probes[fluid.id[p] - snapshot_count].body].force +=
-          glm::dvec3(fluid.fx[p], fluid.fy[p], fluid.fz[p]);
-    }
-  }
-
-  void step_particles(Stopwatch& watch) {
-    const Plan& plan = context.plan;
-    carry_probes_in();
-    sort_fluid(context, team, fluid, sorter, scratch);
-    if (moving.size() > 0) moving.place(context, bodies);
-    times.sort = watch.lap();
-    compute_density(context, team, fluid, fixed.sorted(), moving.sorted());
-    times.density = watch.lap();
-    compute_fluid_forces(context, team, fluid, fixed.sorted(), moving.sorted());
-    std::fill(wrenches.begin(), wrenches.end(), Wrench{});
-    if (plan.body_wrench) {
-      sum_body_wrenches(context, team, fluid, moving.sorted(), bodies, wrench_wanted, body_scratch, wrenches);
-      if (fixed_measured) {
-        sum_body_wrenches(context, team, fluid, fixed.sorted(), bodies, wrench_wanted, body_scratch,
-                          wrenches);
-      }
-      carry_probe_forces_out();
-    }
-    integrate_fluid(context, team, fluid);
-    times.force = watch.lap();
+  void step_particles() {
+    engine->step(bodies, wrenches);
+    times = engine->times();
   }
 
   void take_input(std::span<const HandleInput> handles) {
@@ -220,7 +76,7 @@ struct World::Impl {
     for (std::size_t g = 0; g < grips.size(); ++g) {
       HandleInput input = g < handles.size() ? handles[g] : HandleInput{};
       if (input.engaged && !usable(input)) {
-        context.status |= kStatusInputRejected;
+        status |= kStatusInputRejected;
         input = last_input[g];
         input.twist = {};
       }
@@ -267,34 +123,28 @@ struct World::Impl {
       Wrench external = wrenches[b];
       external.force += body.mass * scene.gravity;
       const auto held = couplings_of(static_cast<int>(b));
-      if (solve_body(body, external, held, context.plan.time_step, solves[b])) continue;
-      context.status |= kStatusNonFinite;
+      if (solve_body(body, external, held, constants.plan.time_step, solves[b])) continue;
+      status |= kStatusNonFinite;
       body.velocity = body.angular_momentum = body.angular_velocity = glm::dvec3(0.0);
-      if (!solve_body(body, {}, {}, context.plan.time_step, solves[b])) solves[b] = BodySolve{};
+      if (!solve_body(body, {}, {}, constants.plan.time_step, solves[b])) solves[b] = BodySolve{};
     }
   }
 
   void step_bodies(std::span<const HandleInput> handles) {
     take_input(handles);
     solve_all();
-    if (context.plan.contacts) {
-      contact_finder.find(bodies, 0.25 * context.plan.spacing, contacts);
-      if (!contacts.empty()) solve_contacts(contacts, scene, bodies, context.plan.time_step, solves);
+    if (constants.plan.contacts) {
+      contact_finder.find(bodies, 0.25 * constants.plan.spacing, contacts);
+      if (!contacts.empty()) solve_contacts(contacts, scene, bodies, constants.plan.time_step, solves);
     }
     for (GripState& state : grips) state.on_hand = Wrench{};
     for (const ActiveCoupling& c : couplings) {
-      const Wrench on_body = coupling_wrench(c, solves[c.body], context.plan.time_step);
+      const Wrench on_body = coupling_wrench(c, solves[c.body], constants.plan.time_step);
       grips[c.grip].on_hand = {-on_body.force, -on_body.torque};
       grips[c.grip].handle = c.handle;
     }
     for (std::size_t b = 0; b < bodies.size(); ++b) {
-      if (solves[b].moves) advance_body(bodies[b], solves[b], context.plan.time_step);
-    }
-  }
-
-  void damp_fluid(float keep) {
-    for (Column<float>* column : {&fluid.vx, &fluid.vy, &fluid.vz}) {
-      for (std::size_t p = 0; p < fluid.active; ++p) (*column)[p] *= keep;
+      if (solves[b].moves) advance_body(bodies[b], solves[b], constants.plan.time_step);
     }
   }
 
@@ -309,36 +159,37 @@ struct World::Impl {
   }
 
   Scene scene;
-  PassContext context;
-  ThreadTeam team;
-  FluidParticles fluid, scratch;
-  KeySorter sorter;
-  BodySurface fixed, moving;
-  ContactFinder contact_finder;
+  WorldOptions options;
+  RunConstants constants;
   std::vector<RigidBody> bodies;
-  std::vector<Wrench> wrenches;     // by the fluid, one a body
-  std::vector<char> wrench_wanted;  // one a body
-  bool fixed_measured = false;
+  std::unique_ptr<ParticleEngine> engine;
+  ContactFinder contact_finder;
+  std::vector<Wrench> wrenches;  // by the fluid, one a body
   std::vector<BodySolve> solves;
   std::vector<Contact> contacts;
   std::vector<ActiveCoupling> couplings;
   std::vector<GripState> grips;
   std::vector<HandleInput> last_input;
-  struct Probe {
-    std::uint32_t id;
-    int body;
-  };
-  std::vector<Probe> probes;
   bool fluid_starts_moving = false;
   bool settling = false;
-  std::size_t snapshot_count = 0;  // fluid particles without probes
-  std::vector<glm::vec3> body_scratch;
+  std::size_t fluid_count = 0;  // without probes
+  std::size_t boundary_count = 0;
+  std::uint32_t status = 0;  // of bodies and inputs; the engine has its own
   std::uint64_t tick = 0;
   StepTimes times;
 };
 
+World::World(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 World::World(const Scene& scene, const SampledScene& sampled, Plan plan, WorldOptions options)
-    : impl_(std::make_unique<Impl>(scene, sampled, std::move(plan), options)) {}
+    : impl_(std::make_unique<Impl>(scene, sampled, std::move(plan), options)) {
+  if (options.backend == Backend::kCuda) impl_->options.backend = Backend::kAuto;
+  impl_->start(sampled);
+}
+Result<World> make_world(const Scene& scene, const SampledScene& sampled, Plan plan, WorldOptions options) {
+  auto impl = std::make_unique<World::Impl>(scene, sampled, std::move(plan), options);
+  if (std::optional<Error> error = impl->start(sampled)) return *error;
+  return World(std::move(impl));
+}
 World::~World() = default;
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
@@ -347,7 +198,8 @@ void World::step(std::span<const HandleInput> handles) {
   Stopwatch whole;
   Stopwatch watch;
   impl_->times = StepTimes{};
-  if (impl_->context.plan.has_fluid) impl_->step_particles(watch);
+  if (impl_->constants.plan.has_fluid) impl_->step_particles();
+  watch.lap();
   impl_->step_bodies(handles);
   impl_->times.body = watch.lap();
   impl_->times.total = whole.lap();
@@ -359,11 +211,10 @@ void World::settle(double seconds, std::span<const HandleInput> handles) {
   if (w.fluid_starts_moving) return;
   constexpr double kDampingTime =
       0.05;  // s: past critical for a hand-sized vessel's slosh, so it creeps to its level
-  const double keep = std::exp(-w.context.plan.time_step / kDampingTime);
-  Stopwatch watch;
-  for (double done = 0.0; done < seconds; done += w.context.plan.time_step) {
-    if (w.context.plan.has_fluid) w.step_particles(watch);
-    w.damp_fluid(static_cast<float>(keep));
+  const double keep = std::exp(-w.constants.plan.time_step / kDampingTime);
+  for (double done = 0.0; done < seconds; done += w.constants.plan.time_step) {
+    if (w.constants.plan.has_fluid) w.step_particles();
+    w.engine->damp(static_cast<float>(keep));
     if (handles.empty() || done < 0.5 * seconds) continue;
     w.settling = true;
     w.step_bodies(handles);
@@ -373,19 +224,19 @@ void World::settle(double seconds, std::span<const HandleInput> handles) {
 }
 
 const Plan& World::plan() const {
-  return impl_->context.plan;
+  return impl_->constants.plan;
 }
 double World::time() const {
-  return static_cast<double>(impl_->tick) * impl_->context.plan.time_step;
+  return static_cast<double>(impl_->tick) * impl_->constants.plan.time_step;
 }
 std::uint64_t World::tick() const {
   return impl_->tick;
 }
 std::size_t World::fluid_count() const {
-  return impl_->snapshot_count;
+  return impl_->fluid_count;
 }
 std::size_t World::boundary_count() const {
-  return impl_->fixed.size() + impl_->moving.size();
+  return impl_->boundary_count;
 }
 const StepTimes& World::times() const {
   return impl_->times;
@@ -394,7 +245,7 @@ const StepTimes& World::times() const {
 void World::fill(BodySnapshot& out) const {
   out.tick = impl_->tick;
   out.time = time();
-  out.status = impl_->context.status.load(std::memory_order_relaxed);
+  out.status = impl_->status | impl_->engine->status();
   out.bodies.resize(impl_->bodies.size());
   for (std::size_t b = 0; b < out.bodies.size(); ++b) {
     const RigidBody& body = impl_->bodies[b];
@@ -413,31 +264,18 @@ void World::fill(BodySnapshot& out) const {
 
 void World::fill(Snapshot& out) const {
   fill(out.rigid);
-  out.positions.resize(impl_->snapshot_count);
-  out.fluid_index.assign(impl_->snapshot_count, 255);
-  const FluidParticles& fluid = impl_->fluid;
-  for (std::size_t p = 0; p < fluid.active; ++p) {
-    const std::uint32_t id = fluid.id[p];
-    if (id >= impl_->snapshot_count || fluid.key[p] >= impl_->context.grid.retired_key()) continue;
-    out.positions[id] = glm::vec3(fluid.x[p], fluid.y[p], fluid.z[p]);
-    out.fluid_index[id] = fluid.kind[p];
-  }
+  out.positions.resize(impl_->fluid_count);
+  out.fluid_index.resize(impl_->fluid_count);
+  impl_->engine->fill(out.positions, out.fluid_index);
 }
 
 std::uint32_t World::take_status() {
-  return impl_->context.status.exchange(0);
+  return std::exchange(impl_->status, 0u) | impl_->engine->take_status();
 }
 
 std::uint64_t World::hash() const {
-  const FluidParticles& fluid = impl_->fluid;
-  // Particles are in cell order, which the state itself fixes, so their order need not be undone.
   Fingerprint print;
-  for (std::size_t p = 0; p < fluid.active; ++p) {
-    print.add(fluid.id[p]);
-    for (const Column<float>* column : {&fluid.x, &fluid.y, &fluid.z, &fluid.vx, &fluid.vy, &fluid.vz}) {
-      print.add((*column)[p]);
-    }
-  }
+  impl_->engine->add_to(print);
   for (const RigidBody& body : impl_->bodies) {
     print.add(body.position);
     print.add(body.orientation);
@@ -448,26 +286,11 @@ std::uint64_t World::hash() const {
 }
 
 Diagnostics World::diagnostics() const {
-  Diagnostics d;
-  const FluidParticles& fluid = impl_->fluid;
-  const PassContext& context = impl_->context;
-  for (std::size_t p = 0; p < fluid.active; ++p) {
-    const ParticleKind& kind = context.kinds[fluid.kind[p]];
-    if (kind.probe || fluid.key[p] >= context.grid.retired_key()) continue;
-    const glm::dvec3 x(fluid.x[p], fluid.y[p], fluid.z[p]);
-    const glm::dvec3 v(fluid.vx[p], fluid.vy[p], fluid.vz[p]);
-    const double mass = kind.mass;
-    ++d.particles;
-    d.mass += mass;
-    d.momentum += mass * v;
-    d.center += mass * x;
-    d.kinetic_energy += 0.5 * mass * glm::dot(v, v);
-    d.max_speed = std::max(d.max_speed, glm::length(v));
-    d.max_compression = std::max<double>(d.max_compression, context.rest_volume / fluid.volume[p] - 1.0);
-  }
-  if (d.mass > 0.0) d.center /= d.mass;
-  d.retired = impl_->snapshot_count - d.particles;
-  return d;
+  return impl_->engine->diagnostics();
+}
+
+std::string World::backend() const {
+  return impl_->engine->name();
 }
 
 }  // namespace slosh

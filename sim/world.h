@@ -4,9 +4,12 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "scenes/scene.h"
+#include "sim/backend.h"
+#include "sim/math/result.h"
 #include "sim/plan.h"
 #include "sim/snapshot.h"
 
@@ -20,7 +23,8 @@ struct HandleInput {
   double scale = 1.0;    ///< 0–1, ramps the coupling in on engaging
 };
 
-/// Wall time of each part of a step, s.
+/// Time of each part of a step, s: wall time; for the particle passes on a GPU the GPU's own, which overlap
+/// with `body`.
 struct StepTimes {
   double sort = 0.0;     ///< cell ids, counting sort, reordering, body particle placement
   double density = 0.0;  ///< Eq 2, 7
@@ -30,7 +34,8 @@ struct StepTimes {
 };
 
 struct WorldOptions {
-  int threads = 0;  ///< 0 = all cores
+  int threads = 0;  ///< of the CPU backend; 0 = all cores
+  Backend backend = Backend::kAuto;
 };
 
 /// Sums over the fluid, for checks and the summary (double precision).
@@ -46,10 +51,11 @@ struct Diagnostics {
 };
 
 /// The simulated world. One thread calls it; it uses `threads` cores inside. The same inputs give the same
-/// state to the bit whatever the thread count.
+/// state to the bit whatever the thread count; a GPU's differ from the CPU's by rounding.
 class World {
  public:
-  /// `scene` and `sampled` are copied as needed; neither must outlive the call.
+  /// `scene` and `sampled` are copied as needed; neither must outlive the call. kCuda counts as kAuto here:
+  /// make_world is for who must know.
   World(const Scene& scene, const SampledScene& sampled, Plan plan, WorldOptions options = {});
   ~World();
   World(World&&) noexcept;
@@ -78,10 +84,18 @@ class World {
   std::uint32_t take_status();  ///< StatusBits since the last call, then cleared
   std::uint64_t hash() const;   ///< of positions, velocities and body states, by particle id
   Diagnostics diagnostics() const;
+  std::string backend() const;  ///< where the particles live, in words: "CPU, 2 threads", "CUDA, NVIDIA H200"
 
  private:
   struct Impl;
+  explicit World(std::unique_ptr<Impl> impl);
+  friend Result<World> make_world(const Scene& scene, const SampledScene& sampled, Plan plan,
+                                  WorldOptions options);
   std::unique_ptr<Impl> impl_;
 };
+
+/// A world on the backend that `options` names. Errors: kCuda where no GPU answers or its memory does not do.
+Result<World> make_world(const Scene& scene, const SampledScene& sampled, Plan plan,
+                         WorldOptions options = {});
 
 }  // namespace slosh

@@ -1,177 +1,27 @@
-// Body particles: collected once, placed with their bodies each step (Eq 14).
-#include <cmath>
-#include <limits>
-#include <unordered_map>
-
+// Body particles placed with their bodies (Eq 14) and sorted.
 #include "sim/cpu/passes.h"
-#include "sim/math/kernels.h"
+#include "sim/math/particle_step.h"
 
 namespace slosh {
 
-namespace {
-
-// Where walls count in the density, the force on fluid is the gradient of an energy only if each wall
-// particle acts once (V_p² P_p). One lattice layer then yields under the pressure of a fluid, which acts
-// twice (P_p and P_i), so a wall particle stands for two, and sits so far behind the surface that the fluid's
-// first layer rests half a spacing off the mesh. Measured on a tank: share 1 leaks, 1.5 to 3 hold;
-// tests/physics checks level and weight.
-constexpr float kWallShare = 2.0f;
-constexpr float kWallInset = 0.7f;  // of a spacing
-
-float solid_depth(const DistanceFieldView& field, const glm::vec3& p) {
-  return field.distance ? -sample_distance(field, p).distance : std::numeric_limits<float>::infinity();
-}
-
-// Buckets of points, for asking who is near.
-class PointBuckets {
- public:
-  explicit PointBuckets(float cell) : cell_(cell) {}
-
-  void add(const glm::vec3& p) { buckets_[key(cell_of(p))].push_back(p); }
-
-  /// Calls f(point) for all points in the 27 buckets around p: those within one cell, and some more.
-  template <class F>
-  void around(const glm::vec3& p, F&& f) const {
-    const glm::ivec3 center = cell_of(p);
-    for (int n = 0; n < 27; ++n) {
-      const auto found = buckets_.find(key(center + glm::ivec3(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1)));
-      if (found == buckets_.end()) continue;
-      for (const glm::vec3& q : found->second) f(q);
-    }
-  }
-
- private:
-  glm::ivec3 cell_of(const glm::vec3& p) const { return glm::ivec3(glm::floor(p / cell_)); }
-  static std::int64_t key(const glm::ivec3& c) {
-    constexpr std::int64_t kOffset = 1 << 20;  // 21 bits an axis: a million cells to either side
-    return (c.x + kOffset) | ((c.y + kOffset) << 21) | ((c.z + kOffset) << 42);
-  }
-
-  float cell_;
-  std::unordered_map<std::int64_t, std::vector<glm::vec3>> buckets_;
-};
-
-// Moves a surface particle into the solid by kWallInset, or to the middle of a wall that is thinner than that
-// twice.
-glm::vec3 inset(const glm::vec3& surface, const glm::vec3& normal, float depth,
-                const DistanceFieldView& field) {
-  for (int tries = 0; tries < 5; ++tries, depth *= 0.8f) {
-    const glm::vec3 p = surface - normal * depth;
-    if (solid_depth(field, p) > 0.8f * depth) return p;
-  }
-  return surface - normal * depth;
-}
-
-// Holes wider than this leak. The sampler's own are up to 0.8; at 0.9 a tank of walls five spacings thick lost an
-// eighth of its fluid through its edges in 3 s (tests/physics, still tank).
-constexpr float kLargestHole = 0.7f;  // of a spacing
-
-// In a concave edge the sheets of the two faces part as they move back. Adds particles where the level set at
-// that depth has none within kLargestHole, walking the nodes of the distance field.
-void close_gaps(const DistanceFieldView& field, float depth, float spacing, std::vector<glm::vec3>& sheet) {
-  PointBuckets near(spacing);
-  for (const glm::vec3& p : sheet) near.add(p);
-  for (int z = 0; z < field.size.z; ++z) {
-    for (int y = 0; y < field.size.y; ++y) {
-      for (int x = 0; x < field.size.x; ++x) {
-        const float d = field.distance[x + field.size.x * (y + field.size.y * z)];
-        if (std::abs(d + depth) > field.cell) continue;
-        glm::vec3 p = field.origin + field.cell * glm::vec3(x, y, z);
-        for (int newton = 0; newton < 2; ++newton) {
-          const DistanceSample s = sample_distance(field, p);
-          const float slope = glm::dot(s.gradient, s.gradient);
-          if (slope > 0.25f) p -= s.gradient * ((s.distance + depth) / slope);
-        }
-        if (std::abs(sample_distance(field, p).distance + depth) > 0.1f * spacing) continue;
-        bool covered = false;
-        near.around(p, [&](const glm::vec3& q) { covered |= glm::distance(p, q) < kLargestHole * spacing; });
-        if (covered) continue;
-        sheet.push_back(p);
-        near.add(p);
-      }
-    }
-  }
-}
-
-// Positions of one body's particles in its mesh frame.
-std::vector<glm::vec3> sheet_positions(const SurfaceSamples& surface, const DistanceFieldView& field,
-                                       const Plan& plan) {
-  std::vector<glm::vec3> positions = surface.positions;
-  if (plan.model == ParticleModel::kPaper) return positions;
-  const float spacing = static_cast<float>(plan.spacing);
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    positions[i] = inset(positions[i], surface.normals[i], kWallInset * spacing, field);
-  }
-  if (field.distance) close_gaps(field, kWallInset * spacing, spacing, positions);
-  return positions;
-}
-
-// How many lattice particles each particle stands for (Akinci 2012's volume correction): kWallShare on a flat
-// sheet at the spacing; where sheets crowd or cross (corners, thin walls) the particles share what one sheet
-// would be.
-std::vector<float> crowding_shares(const std::vector<glm::vec3>& positions, const Plan& plan) {
-  const float h = static_cast<float>(plan.support_radius);
-  double sheet = 0.0;
-  const int reach = static_cast<int>(std::ceil(plan.support_radius / plan.spacing));
-  for (int x = -reach; x <= reach; ++x) {
-    for (int y = -reach; y <= reach; ++y) {
-      sheet += spiky_shape<double>(plan.spacing * plan.spacing * (x * x + y * y), h);
-    }
-  }
-  PointBuckets near(h);
-  for (const glm::vec3& p : positions) near.add(p);
-  std::vector<float> shares;
-  shares.reserve(positions.size());
-  for (const glm::vec3& p : positions) {
-    double sum = 0.0;
-    near.around(p, [&](const glm::vec3& q) { sum += spiky_shape<double>(glm::dot(p - q, p - q), h); });
-    shares.push_back(static_cast<float>(kWallShare * sheet / sum));
-  }
-  return shares;
-}
-
-}  // namespace
-
-BodySurface::BodySurface(const Scene& scene, const SampledScene& sampled, const Plan& plan,
-                         BodyMotion motion) {
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    const Body& body = scene.bodies[b];
-    if (!plan.boundary || body.motion != motion || body.point_probe) continue;
-    const std::vector<glm::vec3> positions =
-        sheet_positions(sampled.surfaces[b], sampled.distance_fields[b].view(), plan);
-    std::vector<float> pressures(positions.size(), static_cast<float>(plan.body_pressure[b]));
-    if (plan.model == ParticleModel::kConsistent) pressures = crowding_shares(positions, plan);
-    const float lattice_volume = static_cast<float>(std::pow(plan.spacing, 3));
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-      const float volume = plan.model == ParticleModel::kPaper ? sampled.surfaces[b].particle_volume
-                                                               : pressures[i] / kWallShare * lattice_volume;
-      local_.push_back({positions[i], static_cast<std::uint16_t>(b), pressures[i], volume,
-                        static_cast<float>(body.dynamic_viscosity)});
-    }
-  }
+BodySurface::BodySurface(std::vector<SurfaceParticle> particles) : local_(std::move(particles)) {
   keys_.resize(local_.size());
   placed_.resize(local_.size());
   velocity_.resize(local_.size());
   sorted_.resize(local_.size());
 }
 
-void BodySurface::place(const PassContext& context, const std::vector<RigidBody>& bodies) {
-  struct Motion {
-    glm::mat3 turn;
-    glm::vec3 shift, center, velocity, angular_velocity;
-  };
+void BodySurface::place(const PassContext& context, std::span<const RigidBody> bodies) {
   int current = -1;
-  Motion m{};
+  SurfaceMotion motion;
   for (std::size_t i = 0; i < local_.size(); ++i) {
     if (local_[i].body != current) {
       current = local_[i].body;
-      const RigidBody& body = bodies[current];
-      m = {glm::mat3(glm::mat3_cast(body.orientation)), glm::vec3(body.mesh_pose().position),
-           glm::vec3(body.position), glm::vec3(body.velocity), glm::vec3(body.angular_velocity)};
+      motion = surface_motion(bodies[current]);
     }
-    const glm::vec3 p = m.turn * local_[i].position + m.shift;
+    const glm::vec3 p = motion.place(local_[i].position);
     placed_[i] = p;
-    velocity_[i] = m.velocity + glm::cross(m.angular_velocity, p - m.center);
+    velocity_[i] = motion.velocity_at(p);
     // Outside the domain there is no fluid to meet.
     keys_[i] = context.grid.contains(p.x, p.y, p.z) ? context.grid.cell_of(p.x, p.y, p.z)
                                                     : context.grid.retired_key();

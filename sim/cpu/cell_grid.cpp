@@ -2,23 +2,8 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 
 namespace slosh {
-
-CellGrid::CellGrid(const glm::dvec3& lower, const glm::dvec3& upper, double support_radius)
-    : lower_(lower), upper_(upper) {
-  const glm::dvec3 extent = glm::max(upper - lower, glm::dvec3(support_radius));
-  // A hair more than the support radius: float rounding of a cell index must not hide a neighbour.
-  double cell = support_radius * 1.0001;
-  const auto count_at = [&](double size) {
-    const glm::dvec3 n = glm::floor(extent / size) + 3.0;
-    return n.x * n.y * n.z;
-  };
-  while (count_at(cell) > kMaxCells) cell *= 1.1;
-  inverse_cell_ = static_cast<float>(1.0 / cell);
-  cells_ = glm::uvec3(glm::floor(extent / cell) + 3.0);
-}
 
 void CellIndex::rebuild(const CellGrid& grid, const std::uint32_t* sorted_keys, std::size_t count) {
   if (cells_.size() != grid.cell_count() + 1) {
@@ -43,8 +28,8 @@ void CellIndex::rebuild(const CellGrid& grid, const std::uint32_t* sorted_keys, 
 RowList CellIndex::rows(const CellGrid& grid, std::uint32_t cell) const {
   RowList list;
   if (runs_.empty()) return list;
-  for (const std::uint32_t first : grid.rows_around(cell)) {
-    const ParticleRange* c = cells_.data() + first;
+  for (std::uint32_t n = 0; n < 9; ++n) {
+    const ParticleRange* c = cells_.data() + grid.row_around(cell, n);
     const std::uint32_t begin = std::min({c[0].begin, c[1].begin, c[2].begin});
     const std::uint32_t end = std::max({c[0].end, c[1].end, c[2].end});
     if (begin < end) list.rows[list.count++] = {begin, end};

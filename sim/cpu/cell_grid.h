@@ -1,59 +1,14 @@
-// Sorting particles by cell, and finding the rows of cells around one.
-//
-// Cells are cubes of at least the support radius, x fastest. Once particles are sorted by cell, the three
-// cells (x−1, x, x+1) of a row are one contiguous run of particles: a particle's neighbours lie in nine such
-// rows.
+// Sorting particles by cell on the CPU, and finding the rows of cells around one.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <glm/glm.hpp>
 #include <vector>
 
+#include "sim/math/cell_grid.h"
+
 namespace slosh {
-
-/// The geometry of the grid: a box of cells with one cell of margin all around.
-class CellGrid {
- public:
-  CellGrid() = default;
-  /// Covers [lower, upper] (m) with cells of at least `support_radius`. When that would take more than
-  /// kMaxCells cells, the cells grow: slower, not wrong.
-  CellGrid(const glm::dvec3& lower, const glm::dvec3& upper, double support_radius);
-
-  static constexpr double kMaxCells = 4.0e6;
-
-  /// True when the position is finite and inside the covered box.
-  bool contains(float x, float y, float z) const {
-    return x >= lower_.x && x <= upper_.x && y >= lower_.y && y <= upper_.y && z >= lower_.z && z <= upper_.z;
-  }
-  /// The cell of a position; positions outside count to the nearest cell.
-  std::uint32_t cell_of(float x, float y, float z) const {
-    const glm::vec3 p = glm::clamp(glm::vec3(x, y, z), lower_, upper_);
-    const glm::uvec3 c = glm::uvec3((p - lower_) * inverse_cell_) + 1u;
-    return c.x + cells_.x * (c.y + cells_.y * c.z);
-  }
-  std::uint32_t cell_count() const { return cells_.x * cells_.y * cells_.z; }
-  /// Key of a particle that is out of the world: sorts behind all cells.
-  std::uint32_t retired_key() const { return cell_count(); }
-  /// First cells (x−1) of the nine rows around `cell`.
-  std::array<std::uint32_t, 9> rows_around(std::uint32_t cell) const {
-    std::array<std::uint32_t, 9> rows;
-    const std::uint32_t line = cells_.x;
-    const std::uint32_t slab = cells_.x * cells_.y;
-    const std::uint32_t first = cell - slab - line - 1;
-    for (std::uint32_t z = 0; z < 3; ++z) {
-      for (std::uint32_t y = 0; y < 3; ++y) rows[3 * z + y] = first + z * slab + y * line;
-    }
-    return rows;
-  }
-
- private:
-  glm::vec3 lower_{0.0f};
-  glm::vec3 upper_{0.0f};
-  float inverse_cell_ = 1.0f;
-  glm::uvec3 cells_{3u};
-};
 
 /// A contiguous range of sorted particles.
 struct ParticleRange {

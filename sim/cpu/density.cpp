@@ -3,7 +3,7 @@
 // not taken for dense because its neighbours are heavy. It is measured against the rest lattice, so that a
 // fluid at rest has its rest density whatever the support ratio.
 #include "sim/cpu/passes.h"
-#include "sim/math/sph.h"
+#include "sim/math/particle_step.h"
 #include "sim/snapshot.h"
 
 namespace slosh {
@@ -11,8 +11,6 @@ namespace slosh {
 namespace {
 
 constexpr std::size_t kRunsPerChunk = 32;
-constexpr float kTooCompressed =
-    1.0f;  // a drop that hits a table at half the speed of sound gets to half of this
 
 template <bool consistent>
 FloatBatch kernel_shape(FloatBatch r_squared, FloatBatch h, FloatBatch h_squared) {
@@ -82,13 +80,12 @@ void compute_density(PassContext& context, ThreadTeam& team, FluidParticles& flu
         if (fixed_rows.count) sum += sum_walls(fixed, fixed_rows, fluid, p, h);
         if (moving_rows.count) sum += sum_walls(moving, moving_rows, fluid, p, h);
         const ParticleKind& kind = context.kinds[fluid.kind[p]];
-        const float compression = xsimd::hadd(sum) / context.rest_number_density - 1.0f;
-        const float effective = effective_compression(compression, tension);
-        densest = std::max(densest, compression);
-        const float pressure = stiffness * kind.rest_density * effective;
-        const float volume = context.rest_volume / (1.0f + effective);
-        fluid.pressure[p] = consistent ? volume * volume * pressure : pressure;
-        fluid.volume[p] = volume;
+        const PressureState state =
+            pressure_state(xsimd::hadd(sum), context.rest_number_density, context.rest_volume,
+                           kind.rest_density, stiffness, tension, consistent);
+        densest = std::max(densest, state.compression);
+        fluid.pressure[p] = state.pressure;
+        fluid.volume[p] = state.volume;
         if (viscosities) fluid.viscosity[p] = kind.viscosity;
       }
     }

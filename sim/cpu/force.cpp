@@ -58,9 +58,9 @@ void compute_fluid_forces(PassContext& context, ThreadTeam& team, FluidParticles
 }
 
 void sum_body_wrenches(PassContext& context, ThreadTeam& team, const FluidParticles& fluid,
-                       const BoundaryParticles& boundary, const std::vector<RigidBody>& bodies,
+                       const BoundaryParticles& boundary, std::span<const RigidBody> bodies,
                        const std::vector<char>& wanted, std::vector<glm::vec3>& scratch,
-                       std::vector<Wrench>& wrenches) {
+                       std::span<Wrench> wrenches) {
   const std::vector<CellRun>& runs = boundary.index.runs();
   const std::size_t count = boundary.index.particles();
   if (count == 0) return;

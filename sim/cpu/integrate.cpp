@@ -20,20 +20,18 @@ void integrate_fluid(PassContext& context, ThreadTeam& team, FluidParticles& flu
       const ParticleKind& kind = context.kinds[fluid.kind[p]];
       if (kind.probe) continue;  // its body moves it
       const float per_mass = dt / kind.mass;
-      glm::vec3 v(fluid.vx[p] + per_mass * fluid.fx[p], fluid.vy[p] + per_mass * fluid.fy[p],
-                  fluid.vz[p] + per_mass * fluid.fz[p]);
-      v += dt * context.gravity;
-      const float speed = glm::length(v);
-      if (speed > max_speed) {
-        v *= max_speed / speed;
+      glm::vec3 x(fluid.x[p], fluid.y[p], fluid.z[p]);
+      glm::vec3 v(fluid.vx[p], fluid.vy[p], fluid.vz[p]);
+      if (advance_particle({fluid.fx[p], fluid.fy[p], fluid.fz[p]}, per_mass, context.gravity, dt, max_speed,
+                           x, v)) {
         status |= kStatusSpeedLimited;
       }
       fluid.vx[p] = v.x;
       fluid.vy[p] = v.y;
       fluid.vz[p] = v.z;
-      fluid.x[p] += dt * v.x;
-      fluid.y[p] += dt * v.y;
-      fluid.z[p] += dt * v.z;
+      fluid.x[p] = x.x;
+      fluid.y[p] = x.y;
+      fluid.z[p] = x.z;
       if (context.grid.contains(fluid.x[p], fluid.y[p], fluid.z[p])) {
         fluid.key[p] = context.grid.cell_of(fluid.x[p], fluid.y[p], fluid.z[p]);
       } else {

@@ -3,33 +3,17 @@
 
 #include <atomic>
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "sim/bodies.h"
 #include "sim/cpu/parallel.h"
 #include "sim/cpu/particles.h"
-#include "sim/plan.h"
+#include "sim/run_constants.h"
 
 namespace slosh {
 
-/// What all particles of one fluid (or one probe) share.
-struct ParticleKind {
-  float rest_density = 1000.0f;  ///< kg/m³
-  float viscosity = 0.0f;        ///< Pa·s
-  float mass = 0.0f;             ///< kg
-  bool probe = false;            ///< moved by its body, not by the fluid integrator
-};
-
 /// What the passes of one run share. Constant but for `status`.
-struct PassContext {
-  Plan plan;
-  CellGrid grid;
-  KernelConstants kernels;
-  float rest_number_density =
-      0.0f;  ///< Σ of the kernel's shape over the rest lattice: density is measured against it
-  float rest_volume = 0.0f;  ///< m³ of a particle at rest density
-  glm::vec3 gravity{0.0f};
-  std::vector<ParticleKind> kinds;
+struct PassContext : RunConstants {
   std::atomic<std::uint32_t> status{0};
 };
 
@@ -41,21 +25,15 @@ void sort_fluid(PassContext& context, ThreadTeam& team, FluidParticles& fluid, K
 /// cell, once for the fixed ones, every step for the free.
 class BodySurface {
  public:
-  /// Collects the particles of the bodies whose motion is `motion`. P_b and μ_b come from the scene.
-  BodySurface(const Scene& scene, const SampledScene& sampled, const Plan& plan, BodyMotion motion);
+  explicit BodySurface(std::vector<SurfaceParticle> particles);
   /// World positions and velocities from the bodies' states, sorted.
-  void place(const PassContext& context, const std::vector<RigidBody>& bodies);
+  void place(const PassContext& context, std::span<const RigidBody> bodies);
 
   const BoundaryParticles& sorted() const { return sorted_; }
   std::size_t size() const { return local_.size(); }
 
  private:
-  struct Local {
-    glm::vec3 position;  // in the mesh frame
-    std::uint16_t body;
-    float pressure, volume, viscosity;
-  };
-  std::vector<Local> local_;
+  std::vector<SurfaceParticle> local_;
   std::vector<std::uint32_t> keys_;
   std::vector<glm::vec3> placed_, velocity_;
   KeySorter sorter_;
@@ -74,9 +52,9 @@ void compute_fluid_forces(PassContext& context, ThreadTeam& team, FluidParticles
 /// marked in `wanted` (one flag a body). Adds to wrenches, about each body's centre of mass, in a fixed
 /// order.
 void sum_body_wrenches(PassContext& context, ThreadTeam& team, const FluidParticles& fluid,
-                       const BoundaryParticles& boundary, const std::vector<RigidBody>& bodies,
+                       const BoundaryParticles& boundary, std::span<const RigidBody> bodies,
                        const std::vector<char>& wanted, std::vector<glm::vec3>& scratch,
-                       std::vector<Wrench>& wrenches);
+                       std::span<Wrench> wrenches);
 
 /// Leap-frog (section 3.1): v(t+½) from forces and gravity, x(t+1), then the new cell or retirement.
 void integrate_fluid(PassContext& context, ThreadTeam& team, FluidParticles& fluid);

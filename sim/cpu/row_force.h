@@ -4,7 +4,7 @@
 #include "sim/cpu/cell_grid.h"
 #include "sim/cpu/simd.h"
 #include "sim/math/sph.h"
-#include "sim/plan.h"
+#include "sim/physics.h"
 
 namespace slosh {
 
@@ -14,10 +14,6 @@ struct NeighborColumns {
   const float *vx, *vy, *vz;
   const float *pressure, *volume, *viscosity;
 };
-
-/// kPair: both sides have their own viscosity (Eq 9). kOne: all share p's (Eq 6). kNone: pressure only (Eq
-/// 5).
-enum class Viscosity { kNone, kOne, kPair };
 
 template <PairRule rule, Viscosity viscosity>
 void add_row_forces(const ParticleView<FloatBatch>& p, const NeighborColumns& n, const RowList& rows,
@@ -50,25 +46,6 @@ inline ParticleView<FloatBatch> broadcast(const NeighborColumns& n, std::uint32_
   return {FloatBatch(n.x[j]),        FloatBatch(n.y[j]),      FloatBatch(n.z[j]),
           FloatBatch(n.vx[j]),       FloatBatch(n.vy[j]),     FloatBatch(n.vz[j]),
           FloatBatch(n.pressure[j]), FloatBatch(n.volume[j]), FloatBatch(viscosity)};
-}
-
-/// Calls f.template operator()<consistent, Viscosity>() for what the plan has.
-template <class F>
-void with_physics(const Plan& plan, bool one_viscosity, F&& f) {
-  const auto with_model = [&]<Viscosity viscosity>() {
-    if (plan.model == ParticleModel::kPaper) {
-      f.template operator()<false, viscosity>();
-    } else {
-      f.template operator()<true, viscosity>();
-    }
-  };
-  if (!plan.viscosity) {
-    with_model.template operator()<Viscosity::kNone>();
-  } else if (one_viscosity) {
-    with_model.template operator()<Viscosity::kOne>();
-  } else {
-    with_model.template operator()<Viscosity::kPair>();
-  }
 }
 
 }  // namespace slosh

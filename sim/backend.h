@@ -1,0 +1,30 @@
+// Which machine steps the particles.
+#pragma once
+
+#include <string>
+
+namespace slosh {
+
+enum class Backend {
+  kAuto,  ///< CUDA where a GPU answers, else the CPU
+  kCpu,
+  kCuda,
+};
+
+/// "auto", "cpu" or "cuda".
+const char* backend_name(Backend backend);
+
+struct CudaDevice {
+  bool available = false;
+  std::string name;    ///< of the GPU, empty without one
+  std::string reason;  ///< why there is none, in words; empty with one
+};
+
+/// Asks the machine for a GPU that this program can run on. Where it was built without CUDA there never is
+/// one.
+CudaDevice find_cuda_device();
+
+/// True where kCuda would work; `reason`, when given, receives why not.
+bool cuda_available(std::string* reason = nullptr);
+
+}  // namespace slosh

@@ -1,0 +1,16 @@
+// The particles on an NVIDIA GPU. Plain C++: what includes this needs no CUDA, and where the program is built
+// without it absent.cpp stands in.
+#pragma once
+
+#include <memory>
+
+#include "sim/particle_engine.h"
+
+namespace slosh {
+
+/// Errors: no GPU, or a CUDA call that failed (not enough memory, for one), in CUDA's words.
+Result<std::unique_ptr<ParticleEngine>> make_cuda_engine(const RunConstants& constants,
+                                                         const ParticleStart& start,
+                                                         std::span<const RigidBody> bodies);
+
+}  // namespace slosh

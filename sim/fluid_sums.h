@@ -1,0 +1,43 @@
+// The sums of Diagnostics, particle by particle, in double precision.
+#pragma once
+
+#include <algorithm>
+
+#include "sim/run_constants.h"
+#include "sim/world.h"
+
+namespace slosh {
+
+class FluidSums {
+ public:
+  /// `constants` must outlive this.
+  explicit FluidSums(const RunConstants& constants) : constants_(constants) {}
+
+  /// One particle that is still in the world; probes are left out.
+  void add(std::uint8_t kind_index, const glm::dvec3& x, const glm::dvec3& v, float volume) {
+    const ParticleKind& kind = constants_.kinds[kind_index];
+    if (kind.probe) return;
+    const double mass = kind.mass;
+    ++sums_.particles;
+    sums_.mass += mass;
+    sums_.momentum += mass * v;
+    sums_.center += mass * x;
+    sums_.kinetic_energy += 0.5 * mass * glm::dot(v, v);
+    sums_.max_speed = std::max(sums_.max_speed, glm::length(v));
+    sums_.max_compression = std::max<double>(sums_.max_compression, constants_.rest_volume / volume - 1.0);
+  }
+
+  /// `started`: fluid particles at the start.
+  Diagnostics finish(std::size_t started) const {
+    Diagnostics d = sums_;
+    if (d.mass > 0.0) d.center /= d.mass;
+    d.retired = started - d.particles;
+    return d;
+  }
+
+ private:
+  const RunConstants& constants_;
+  Diagnostics sums_;
+};
+
+}  // namespace slosh

@@ -1,0 +1,64 @@
+// The grid of cells that particles are sorted by: geometry alone, for both backends.
+//
+// Cells are cubes of at least the support radius, x fastest. Once particles are sorted by cell, the three
+// cells (x−1, x, x+1) of a row are one contiguous run of particles: a particle's neighbours lie in nine such
+// rows.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "sim/math/host_device.h"
+
+namespace slosh {
+
+/// The geometry of the grid: a box of cells with one cell of margin all around.
+class CellGrid {
+ public:
+  CellGrid() = default;
+  /// Covers [lower, upper] (m) with cells of at least `support_radius`. When that would take more than
+  /// kMaxCells cells, the cells grow: slower, not wrong.
+  CellGrid(const glm::dvec3& lower, const glm::dvec3& upper, double support_radius)
+      : lower_(lower), upper_(upper) {
+    const glm::dvec3 extent = glm::max(upper - lower, glm::dvec3(support_radius));
+    // A hair more than the support radius: float rounding of a cell index must not hide a neighbour.
+    double cell = support_radius * 1.0001;
+    const auto count_at = [&](double size) {
+      const glm::dvec3 n = glm::floor(extent / size) + 3.0;
+      return n.x * n.y * n.z;
+    };
+    while (count_at(cell) > kMaxCells) cell *= 1.1;
+    inverse_cell_ = static_cast<float>(1.0 / cell);
+    cells_ = glm::uvec3(glm::floor(extent / cell) + 3.0);
+  }
+
+  static constexpr double kMaxCells = 4.0e6;
+
+  /// True when the position is finite and inside the covered box.
+  SLOSH_HD bool contains(float x, float y, float z) const {
+    return x >= lower_.x && x <= upper_.x && y >= lower_.y && y <= upper_.y && z >= lower_.z && z <= upper_.z;
+  }
+  /// The cell of a position; positions outside count to the nearest cell.
+  SLOSH_HD std::uint32_t cell_of(float x, float y, float z) const {
+    const glm::vec3 p = glm::clamp(glm::vec3(x, y, z), lower_, upper_);
+    const glm::uvec3 c = glm::uvec3((p - lower_) * inverse_cell_) + 1u;
+    return c.x + cells_.x * (c.y + cells_.y * c.z);
+  }
+  SLOSH_HD std::uint32_t cell_count() const { return cells_.x * cells_.y * cells_.z; }
+  /// Key of a particle that is out of the world: sorts behind all cells.
+  SLOSH_HD std::uint32_t retired_key() const { return cell_count(); }
+  /// First cell (x−1) of the n-th of the nine rows around `cell`; n is 0–8, y before z.
+  SLOSH_HD std::uint32_t row_around(std::uint32_t cell, std::uint32_t n) const {
+    const std::uint32_t line = cells_.x;
+    const std::uint32_t slab = cells_.x * cells_.y;
+    return cell - slab - line - 1 + (n / 3) * slab + (n % 3) * line;
+  }
+
+ private:
+  glm::vec3 lower_{0.0f};
+  glm::vec3 upper_{0.0f};
+  float inverse_cell_ = 1.0f;
+  glm::uvec3 cells_{3u};
+};
+
+}  // namespace slosh

@@ -1,0 +1,67 @@
+// What the particle passes of one run share, on either backend, and what the particles start from.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "scenes/scene.h"
+#include "sim/bodies.h"
+#include "sim/math/cell_grid.h"
+#include "sim/math/kernels.h"
+#include "sim/math/particle_step.h"
+#include "sim/plan.h"
+#include "sim/surface.h"
+
+namespace slosh {
+
+/// What all particles of one fluid (or one probe) share.
+struct ParticleKind {
+  float rest_density = 1000.0f;  ///< kg/m³
+  float viscosity = 0.0f;        ///< Pa·s
+  float mass = 0.0f;             ///< kg
+  bool probe = false;            ///< moved by its body, not by the fluid integrator
+};
+
+struct RunConstants {
+  Plan plan;
+  CellGrid grid;
+  KernelConstants kernels;
+  float rest_number_density =
+      0.0f;  ///< Σ of the kernel's shape over the rest lattice: density is measured against it
+  float rest_volume = 0.0f;  ///< m³ of a particle at rest density
+  glm::vec3 gravity{0.0f};
+  std::vector<ParticleKind> kinds;
+};
+
+/// Fluid denser than this over rest (ρ/ρ⁰ − 1) sets kStatusCompressed: a drop that hits a table at half the
+/// speed of sound gets to half of this.
+inline constexpr float kTooCompressed = 1.0f;
+
+/// A probe is one more particle, moved by its body (section 3).
+struct Probe {
+  std::uint32_t id = 0;  ///< of the particle
+  int body = 0;
+};
+
+/// The particles at the start, by id: the scene's fluid first, the probes behind it.
+struct ParticleStart {
+  std::vector<glm::vec3> positions;   ///< m
+  std::vector<glm::vec3> velocities;  ///< m/s
+  std::vector<std::uint8_t> kinds;    ///< into RunConstants::kinds
+  std::vector<std::uint32_t> keys;    ///< cell; retired where it is outside the domain or not finite
+  std::uint32_t status = 0;           ///< StatusBits of those
+  std::vector<Probe> probes;
+  std::size_t fluid_count = 0;  ///< without the probes
+  std::vector<SurfaceParticle> fixed, moving;
+};
+
+/// Everything of a run's constants; kinds has one entry a fluid, and one a probe behind those.
+RunConstants make_run_constants(const Scene& scene, const SampledScene& sampled, Plan plan);
+
+ParticleStart make_particle_start(const Scene& scene, const SampledScene& sampled,
+                                  const RunConstants& constants, std::span<const RigidBody> bodies);
+
+SurfaceMotion surface_motion(const RigidBody& body);
+
+}  // namespace slosh

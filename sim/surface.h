@@ -1,0 +1,27 @@
+// The surface particles of rigid bodies (paper, section 4.1): collected once, in the bodies' own frames.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "scenes/scene.h"
+#include "sim/plan.h"
+
+namespace slosh {
+
+/// One particle of a body, as it stays for the run.
+struct SurfaceParticle {
+  glm::vec3 position;  ///< m, mesh frame
+  std::uint16_t body;  ///< index into Scene::bodies
+  float pressure;      ///< kPaper: Pa, Eq 7 at the body's constant density; kConsistent: how many lattice
+                       ///< particles it stands for, about two
+  float volume;        ///< m³
+  float viscosity;     ///< Pa·s
+};
+
+/// The particles of the bodies whose motion is `motion`, body by body; none when the plan has no boundary
+/// pass.
+std::vector<SurfaceParticle> surface_particles(const Scene& scene, const SampledScene& sampled,
+                                               const Plan& plan, BodyMotion motion);
+
+}  // namespace slosh

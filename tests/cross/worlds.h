@@ -1,0 +1,22 @@
+// The worlds on which the two backends are compared: every pass of the method, both models, probes, particles
+// that leave.
+#pragma once
+
+#include "sim/world.h"
+#include "tests/support/tank.h"
+
+namespace slosh::testing {
+
+/// Two fluids in a tank, and a paddle that one hand draws through them (hand_at).
+Tank stirred_tank(ParticleModel model);
+
+/// Where the paddle's or the probe's hand is, 0.2 m/s along x.
+HandleInput hand_at(double time, double height);
+
+/// One fluid and one point probe (section 3) at height 0.05 m, held by a hand.
+Tank probed_tank();
+
+/// A tank of about `particles` fluid particles half a metre deep at most, on an otherwise empty floor.
+Tank pool(double particles);
+
+}  // namespace slosh::testing
