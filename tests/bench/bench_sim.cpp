@@ -1,0 +1,297 @@
+// What the simulation costs and how far off it is: speed of a whole step of `pool` at several sizes, error
+// against run time, and what leaving a pass out saves. tests/bench/README.md says how to read it.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "scenes/load.h"
+#include "scenes/sample.h"
+#include "sim/world.h"
+#include "tests/physics/lab.h"
+
+namespace {
+
+using namespace slosh;
+
+struct Row {
+  std::string part, what;
+  std::vector<std::pair<std::string, double>> values;
+};
+
+/// Prints rows as they come and keeps them for the file.
+class Table {
+ public:
+  void add(Row row) {
+    std::printf("%-8s %-44s", row.part.c_str(), row.what.c_str());
+    for (const auto& [name, value] : row.values) std::printf("  %s %.4g", name.c_str(), value);
+    std::printf("\n");
+    std::fflush(stdout);
+    rows_.push_back(std::move(row));
+  }
+
+  /// One line a value: part,what,quantity,value.
+  bool write(const std::string& file) const {
+    std::ofstream out(file);
+    out << "part,what,quantity,value\n";
+    for (const Row& row : rows_) {
+      for (const auto& [name, value] : row.values)
+        out << row.part << ',' << row.what << ',' << name << ',' << value << '\n';
+    }
+    return out.good();
+  }
+
+ private:
+  std::vector<Row> rows_;
+};
+
+double percentile(std::vector<double> values, double share) {
+  const auto nth = values.begin() + static_cast<long>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), nth, values.end());
+  return *nth;
+}
+
+Result<Scene> shipped(const char* name) {
+  const auto file = find_scene(name);
+  if (!file) return file.error();
+  return load_scene(file.value());
+}
+
+/// Samples so that there are close to `count` fluid particles, then keeps exactly `count` (the lowest).
+Result<SampledScene> sample_count(const Scene& scene, std::size_t count) {
+  double spacing = std::cbrt(estimate_particles(scene, 1.0).fluid / static_cast<double>(count));
+  for (int tries = 0; tries < 12; ++tries) {
+    Result<SampledScene> sampled = sample_scene(scene, spacing);
+    if (!sampled) return sampled;
+    SampledScene& s = sampled.value();
+    if (s.fluid_positions.size() < count) {
+      spacing *= 0.99 * std::cbrt(static_cast<double>(s.fluid_positions.size()) / static_cast<double>(count));
+      continue;
+    }
+    std::sort(s.fluid_positions.begin(), s.fluid_positions.end(),
+              [](const glm::vec3& a, const glm::vec3& b) { return a.y < b.y; });
+    s.fluid_positions.resize(count);
+    s.fluid_velocities.assign(count, glm::vec3(0.0f));
+    s.fluid_index.resize(count);
+    return sampled;
+  }
+  return Error{"pool", "no spacing gives the particle count", "report this"};
+}
+
+struct Timing {
+  std::vector<double> total, sort, density, force, body;
+};
+
+Timing time_steps(World& world, const std::vector<HandleInput>& hands, int steps) {
+  Timing t;
+  for (int i = 0; i < steps; ++i) {
+    world.step(hands);
+    const StepTimes& s = world.times();
+    t.total.push_back(s.total);
+    t.sort.push_back(s.sort);
+    t.density.push_back(s.density);
+    t.force.push_back(s.force);
+    t.body.push_back(s.body);
+  }
+  return t;
+}
+
+std::vector<HandleInput> first_hands(const Scene& scene) {
+  std::vector<HandleInput> hands(scene.grips.size());
+  for (std::size_t g = 0; g < hands.size(); ++g) {
+    hands[g].pose = compose(scene.bodies[scene.grips[g].body].pose, scene.grips[g].pose);
+    hands[g].engaged = true;
+  }
+  return hands;
+}
+
+void add_timing(Table& table, const char* part, const std::string& what, const World& world,
+                const Timing& t) {
+  const double total = percentile(t.total, 0.5);
+  const double fluid = static_cast<double>(world.fluid_count());
+  table.add({part,
+             what,
+             {{"step_p50_ms", 1e3 * total},
+              {"step_p99_ms", 1e3 * percentile(t.total, 0.99)},
+              {"step_min_ms", 1e3 * percentile(t.total, 0.0)},
+              {"ns_per_particle", 1e9 * total / fluid},
+              {"sort_percent", 100.0 * percentile(t.sort, 0.5) / total},
+              {"density_percent", 100.0 * percentile(t.density, 0.5) / total},
+              {"force_percent", 100.0 * percentile(t.force, 0.5) / total},
+              {"body_percent", 100.0 * percentile(t.body, 0.5) / total},
+              {"steps_per_s", 1.0 / total},
+              {"dt_ms", 1e3 * world.plan().time_step},
+              {"real_time_factor", world.plan().time_step / total}}});
+}
+
+const char* model_name(ParticleModel model) {
+  return model == ParticleModel::kPaper ? "paper" : "consistent";
+}
+
+/// (a) A whole step of `pool`, its ball held and at rest, after the fluid has moved for a while.
+bool bench_speed(Table& table, const std::vector<std::size_t>& counts, int steps) {
+  Result<Scene> pool = shipped("pool");
+  if (!pool) return std::fprintf(stderr, "%s\n", pool.error().text().c_str()), false;
+  const int cores = static_cast<int>(std::thread::hardware_concurrency());
+  for (const std::size_t count : counts) {
+    // The scene's finest spacing is a wish for real time, not a limit of the sampler.
+    const Result<SampledScene> sampled = sample_count(pool.value(), count);
+    if (!sampled) return std::fprintf(stderr, "%s\n", sampled.error().text().c_str()), false;
+    for (const ParticleModel model : {ParticleModel::kConsistent, ParticleModel::kPaper}) {
+      Scene scene = pool.value();
+      scene.model = model;
+      for (const int threads : {1, cores}) {
+        World world(scene, sampled.value(), make_plan(scene, sampled.value().spacing), {threads});
+        const std::vector<HandleInput> hands = first_hands(scene);
+        time_steps(world, hands, 20);
+        const Timing t = time_steps(world, hands, steps);
+        add_timing(
+            table, "speed",
+            "pool " + std::to_string(count) + " " + model_name(model) + " threads " + std::to_string(threads),
+            world, t);
+        if (cores == 1) break;
+      }
+    }
+  }
+  return true;
+}
+
+/// (b) Still tank: weight error and noise against what a simulated second costs.
+void bench_still_tank(Table& table) {
+  for (const double spacing : {0.02, 0.0125, 0.01, 0.008, 0.00625}) {
+    for (const ParticleModel model : {ParticleModel::kConsistent, ParticleModel::kPaper}) {
+      lab::SceneBuilder b;
+      b.add_fluid(1000.0, 0.05);
+      b.add_fixed("tank", lab::tank_at_floor({0.2, 0.16, 0.2}, 0.05));
+      b.add_volume(make::box({-0.1, 0.0, -0.1}, {0.1, 0.1, 0.1}));
+      b.set_domain({-0.3, -0.2, -0.3}, {0.3, 0.4, 0.3});
+      b.scene.model = model;
+      lab::Experiment e(b.scene, spacing);
+      e.world().settle(0.6);
+      lab::Average down;
+      const auto start = std::chrono::steady_clock::now();
+      e.run(0.5, [&] { down.add(-e.bodies().bodies[0].fluid.force.y); });
+      const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      const double weight = e.fluid_mass() * lab::kGravity;
+      char what[80];
+      std::snprintf(what, sizeof what, "still tank %.4g mm %s", 1e3 * spacing, model_name(model));
+      table.add({"error",
+                 what,
+                 {{"particles", static_cast<double>(e.world().fluid_count())},
+                  {"wall_s_per_simulated_s", wall / 0.5},
+                  {"weight_error_percent", 100.0 * (down.mean() / weight - 1.0)},
+                  {"noise_rms_percent", 100.0 * down.noise_share()},
+                  {"noise_peak_percent", 100.0 * down.peak_share()},
+                  {"lost_percent", 100.0 * static_cast<double>(e.world().diagnostics().retired) /
+                                       static_cast<double>(e.world().fluid_count())}}});
+    }
+  }
+}
+
+/// (b) The shipped bucket in two hands.
+bool bench_bucket(Table& table) {
+  const Result<Scene> bucket = shipped("bucket");
+  if (!bucket) return std::fprintf(stderr, "%s\n", bucket.error().text().c_str()), false;
+  const Scene& scene = bucket.value();
+  for (const double spacing : {0.012, 0.010, 0.008, 0.006}) {
+    lab::Experiment e(scene, spacing);
+    for (std::size_t g = 0; g < scene.grips.size(); ++g) e.handle(g) = first_hands(scene)[g];
+    e.world().settle(0.6);
+    e.run(0.5);
+    lab::Average up;
+    const auto start = std::chrono::steady_clock::now();
+    e.run(0.5, [&] {
+      double force = 0.0;
+      for (const GripState& grip : e.bodies().grips) force -= grip.on_hand.force.y;
+      up.add(force);
+    });
+    const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double weight = (scene.bodies[scene.grips[0].body].mass.mass + e.fluid_mass()) * lab::kGravity;
+    char what[80];
+    std::snprintf(what, sizeof what, "bucket %.4g mm", 1e3 * spacing);
+    table.add({"error",
+               what,
+               {{"particles", static_cast<double>(e.world().fluid_count())},
+                {"wall_s_per_simulated_s", wall / 0.5},
+                {"hand_force_error_percent", 100.0 * (up.mean() / weight - 1.0)},
+                {"noise_rms_percent", 100.0 * up.noise_share()},
+                {"noise_peak_percent", 100.0 * up.peak_share()}}});
+  }
+  return true;
+}
+
+/// (c) The same pool without viscosity, with one for all, and with one a particle (a second fluid that
+/// differs a little).
+bool bench_passes(Table& table, std::size_t count, int steps) {
+  const Result<Scene> pool = shipped("pool");
+  if (!pool) return std::fprintf(stderr, "%s\n", pool.error().text().c_str()), false;
+  const Result<SampledScene> sampled = sample_count(pool.value(), count);
+  if (!sampled) return std::fprintf(stderr, "%s\n", sampled.error().text().c_str()), false;
+  const char* names[] = {"no viscosity", "one viscosity", "a viscosity a particle"};
+  std::vector<World> worlds;
+  std::array<Timing, 3> timings;
+  for (int i = 0; i < 3; ++i) {
+    Scene scene = pool.value();
+    SampledScene particles = sampled.value();
+    if (i == 0) scene.fluids[0].dynamic_viscosity = 0.0;
+    if (i == 2) {
+      Fluid other = scene.fluids[0];
+      other.dynamic_viscosity *= 0.5;
+      scene.fluids.push_back(other);
+      scene.fluid_volumes.push_back(scene.fluid_volumes[0]);
+      scene.fluid_volumes.back().fluid = 1;
+      for (std::size_t p = 0; p < particles.fluid_index.size(); p += 2) particles.fluid_index[p] = 1;
+    }
+    worlds.emplace_back(scene, particles, make_plan(scene, particles.spacing), WorldOptions{1});
+  }
+  const std::vector<HandleInput> hands = first_hands(pool.value());
+  // In turns, so that what else the machine does falls on all three alike.
+  for (int round = 0; round < steps; ++round) {
+    for (std::size_t i = 0; i < worlds.size(); ++i) {
+      const Timing one = time_steps(worlds[i], hands, 1);
+      if (round < 10) continue;
+      timings[i].total.push_back(one.total[0]);
+      timings[i].sort.push_back(one.sort[0]);
+      timings[i].density.push_back(one.density[0]);
+      timings[i].force.push_back(one.force[0]);
+      timings[i].body.push_back(one.body[0]);
+    }
+  }
+  for (std::size_t i = 0; i < worlds.size(); ++i)
+    add_timing(table, "passes", "pool " + std::to_string(count) + " " + names[i], worlds[i], timings[i]);
+  return true;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Speed and error of the simulation"};
+  std::string csv;
+  std::string only;
+  int steps = 100;
+  std::vector<std::size_t> counts{4096, 8192, 16384, 32768, 65536, 131072};
+  app.add_option("--csv", csv, "also write the results here");
+  app.add_option("--only", only, "one part")->check(CLI::IsMember({"speed", "error", "passes"}));
+  app.add_option("--steps", steps, "steps that are timed for each row")->check(CLI::Range(1, 100000));
+  app.add_option("--counts", counts, "particle counts of the speed part");
+  CLI11_PARSE(app, argc, argv);
+  Table table;
+  bool good = true;
+  if (only.empty() || only == "speed") good = bench_speed(table, counts, steps) && good;
+  if (only.empty() || only == "error") {
+    bench_still_tank(table);
+    good = bench_bucket(table) && good;
+  }
+  if (only.empty() || only == "passes") good = bench_passes(table, 32768, steps) && good;
+  if (!csv.empty() && !table.write(csv)) {
+    std::fprintf(stderr, "%s: cannot be written\n", csv.c_str());
+    good = false;
+  }
+  return good ? 0 : 1;
+}
