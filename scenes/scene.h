@@ -63,7 +63,7 @@ enum class BodyMotion : std::uint8_t { kFixed, kFree };
 /// A rigid body made of particles on its surface (paper, section 4.1), or one particle (section 3).
 struct Body {
   std::string name;
-  int mesh = -1;  ///< index into Scene::meshes, closed and outward-facing; −1 for a point probe
+  int mesh = -1;  ///< index into Scene::meshes, closed and outward-facing; of a point probe only its look, or −1
   BodyMotion motion = BodyMotion::kFixed;
   bool point_probe = false;  ///< one particle that behaves as fluid (Eq 8), without rotation
   Pose pose;                 ///< initial pose of the mesh frame
