@@ -120,6 +120,7 @@ ContactFinder::ContactFinder(const Scene& scene, const SampledScene& sampled) : 
     if (scene.bodies[i].point_probe) continue;
     Shape& shape = shapes_[i];
     shape.points = sampled.surfaces[i].positions;
+    shape.normals = sampled.surfaces[i].normals;
     shape.field = sampled.distance_fields[i];
     if (shape.points.empty()) continue;
     shape.lower = shape.upper = shape.points.front();
@@ -142,8 +143,8 @@ void ContactFinder::points_against_field(const std::vector<RigidBody>& bodies, i
   const glm::vec3 lower = solid.lower - static_cast<float>(margin);
   const glm::vec3 upper = solid.upper + static_cast<float>(margin);
   const DistanceFieldView field = solid.field.view();
-  for (const glm::vec3& point : points.points) {
-    const glm::vec3 p = turn * point + shift;
+  for (std::size_t i = 0; i < points.points.size(); ++i) {
+    const glm::vec3 p = turn * points.points[i] + shift;
     if (glm::any(glm::lessThan(p, lower)) || glm::any(glm::greaterThan(p, upper))) continue;
     const DistanceSample s = sample_distance(field, p);
     if (!(s.distance < margin)) continue;
@@ -151,7 +152,31 @@ void ContactFinder::points_against_field(const std::vector<RigidBody>& bodies, i
     if (!(length > 1e-3f)) continue;  // the middle of a solid: other points have the direction
     const glm::dvec3 outward = solid_pose.orientation * glm::dvec3(s.gradient / length);
     found_.push_back({points_of, field_of, transform_point(solid_pose, glm::dvec3(p)), outward, s.distance});
+    facing_.push_back(-glm::dot(turn * points.normals[i], s.gradient / length));
   }
+}
+
+// A table's point just ahead of a box that slides on it lies beside the box: the way out of the box is along
+// the table, and the box would run into it. Where points this close disagree about the direction, the one
+// whose two surfaces face each other knows better.
+void ContactFinder::drop_misleading() {
+  constexpr double kClearly = 0.1;
+  if (found_.empty()) return;
+  const double reach = 1.5 * spacing_;
+  const double best = *std::max_element(facing_.begin(), facing_.end());
+  std::size_t kept = 0;
+  std::vector<char> misleading(found_.size(), 0);
+  for (std::size_t i = 0; i < found_.size(); ++i) {
+    if (facing_[i] > best - kClearly) continue;
+    for (std::size_t j = 0; j < found_.size() && !misleading[i]; ++j) {
+      misleading[i] =
+          facing_[j] > facing_[i] + kClearly && glm::distance(found_[i].point, found_[j].point) < reach;
+    }
+  }
+  for (std::size_t i = 0; i < found_.size(); ++i) {
+    if (!misleading[i]) found_[kept++] = found_[i];
+  }
+  found_.resize(kept);
 }
 
 // The deepest point, then again and again the point furthest from those kept: few points that span the patch,
@@ -186,8 +211,10 @@ void ContactFinder::find(const std::vector<RigidBody>& bodies, double margin,
         continue;
       }
       found_.clear();
+      facing_.clear();
       points_against_field(bodies, i, j, margin);
       points_against_field(bodies, j, i, margin);
+      drop_misleading();
       keep_spread(contacts);
     }
   }

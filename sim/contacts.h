@@ -30,16 +30,20 @@ class ContactFinder {
 
  private:
   struct Shape {
-    std::vector<glm::vec3> points;  // surface particles, mesh frame
+    std::vector<glm::vec3> points;   // surface particles, mesh frame
+    std::vector<glm::vec3> normals;  // theirs, outward
     DistanceField field;
     glm::vec3 lower{0.0f}, upper{0.0f};  // bounds of the points, mesh frame
   };
+  void drop_misleading();
   void keep_spread(std::vector<Contact>& contacts);
   void points_against_field(const std::vector<RigidBody>& bodies, int points_of, int field_of, double margin);
 
   std::vector<Shape> shapes_;
   double spacing_;
   std::vector<Contact> found_;
+  std::vector<double>
+      facing_;  // one for each found: how squarely the two surfaces face each other, 1 = fully
 };
 
 /// Changes the solved velocities so that no contact closes faster than its gap allows, with Coulomb friction
