@@ -41,9 +41,12 @@ void Servo::tick(std::int64_t now_ns) noexcept {
   time_ = std::max(time_, bodies.time + std::min(age * message.rate, longest));
   const double ahead = std::min(time_ - bodies.time, longest);
   const double interval = message.rate > 0.0 ? message.time_step / message.rate : 0.0;
-  const double fresh = message.rate > 0.0 || bodies.tick == 0 ? freshness(age, interval) : 0.0;
+  // Before the first step the world waits, and its state holds; after that, a pace of 0 means that it
+  // stopped.
+  const bool stopped = message.rate <= 0.0 && bodies.tick > 0;
+  const double fresh = stopped ? 0.0 : bodies.tick == 0 ? 1.0 : freshness(age, interval);
 
-  const bool sample_due = time_ + kRounding >= next_sample_;
+  const bool sample_due = !stopped && time_ + kRounding >= next_sample_;
   for (std::size_t i = 0; i < hands_.size(); ++i) {
     Hand& hand = hands_[i];
     const DeviceReport report = hand.device->read({time_, options_.period});

@@ -155,6 +155,21 @@ TEST(Servo, FadesOutWhenBodyStatesStop) {
   EXPECT_EQ(kit.device->last.force.x, 0.0);
 }
 
+TEST(Servo, WaitsAtFullForceForTheFirstStepAndLetsGoWhenTheWorldStops) {
+  ServoKit kit;
+  kit.tick(0.0);
+  kit.device->next.pose = at(0.01);
+  kit.tick(5.0);  // the world has not begun; drawing was being set up
+  EXPECT_NEAR(kit.device->last.force.x, -10.0, 1e-9);
+  ServoSample sample;
+  while (kit.servo->samples().pop(sample)) {
+  }
+  kit.publish(1.0, {}, {}, 0.0);  // the last state: stopped
+  kit.tick(1.0);
+  EXPECT_EQ(kit.device->last.force.x, 0.0);
+  EXPECT_FALSE(kit.servo->samples().pop(sample)) << "the end is not felt as a drop to zero";
+}
+
 TEST(Freshness, WaitsLongerForASlowWorld) {
   EXPECT_EQ(freshness(0.05, 0.001), 1.0);
   EXPECT_EQ(freshness(0.05 + kHoldStale + kFadeStale, 0.001), 0.0);
