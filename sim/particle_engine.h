@@ -29,7 +29,8 @@ class ParticleEngine {
   virtual std::uint32_t status() const = 0;
   virtual std::uint32_t take_status() = 0;
 
-  /// By id; retired ones keep what `positions` held and get 255. Both have the fluid's count of entries.
+  /// By id; a retired one gets index 255 and a position that means nothing. Both have the fluid's count of
+  /// entries.
   virtual void fill(std::span<glm::vec3> positions, std::span<std::uint8_t> fluid_index) const = 0;
   /// Ids, positions and velocities in the order of the cells at the last sort, which the state itself fixes.
   virtual void add_to(Fingerprint& print) const = 0;
@@ -37,6 +38,8 @@ class ParticleEngine {
   /// Of the last step (a GPU's passes: of the last one that is known to be over). `body` and `total` are not
   /// set.
   virtual StepTimes times() const = 0;
+  /// Why kStatusDeviceLost was set, empty while all is well.
+  virtual std::string failure() const { return {}; }
   /// Where the particles live, for people: "CPU, 2 threads", "CUDA, NVIDIA H200".
   virtual std::string name() const = 0;
 };

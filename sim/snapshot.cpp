@@ -6,7 +6,7 @@
 namespace slosh {
 
 std::string status_text(std::uint32_t status) {
-  static constexpr std::array<std::pair<StatusBit, const char*>, 7> kWords{{
+  static constexpr std::array<std::pair<StatusBit, const char*>, 8> kWords{{
       {kStatusNonFinite, "a particle or body became non-finite and was put out of the world"},
       {kStatusEscaped, "particles left the domain and were retired"},
       {kStatusSpeedLimited, "particles were too fast and were slowed"},
@@ -14,6 +14,7 @@ std::string status_text(std::uint32_t status) {
       {kStatusForceLimited, "a device's force met its limit"},
       {kStatusTimeSlipped, "the simulation did not keep real time"},
       {kStatusCompressed, "fluid is squeezed to twice its density: raise stiffness_m2_s2"},
+      {kStatusDeviceLost, "the GPU failed and the fluid stands still: run again with the CPU backend"},
   }};
   std::string text;
   for (const auto& [bit, words] : kWords) {

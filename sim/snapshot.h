@@ -20,6 +20,8 @@ enum StatusBit : std::uint32_t {
   kStatusTimeSlipped = 1u << 5,    ///< the step did not keep real time and the world slowed down
   kStatusCompressed =
       1u << 6,  ///< fluid denser than twice rest: crushed, or too soft for its speed; raise stiffness
+  kStatusDeviceLost =
+      1u << 7,  ///< a GPU call failed: the fluid stands still from here on (World::failure says why)
 };
 
 /// The status in words, "; " between, empty when nothing is set.

@@ -289,6 +289,10 @@ Diagnostics World::diagnostics() const {
   return impl_->engine->diagnostics();
 }
 
+std::string World::failure() const {
+  return impl_->engine->failure();
+}
+
 std::string World::backend() const {
   return impl_->engine->name();
 }

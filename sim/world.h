@@ -85,6 +85,7 @@ class World {
   std::uint64_t hash() const;   ///< of positions, velocities and body states, by particle id
   Diagnostics diagnostics() const;
   std::string backend() const;  ///< where the particles live, in words: "CPU, 2 threads", "CUDA, NVIDIA H200"
+  std::string failure() const;  ///< why kStatusDeviceLost was set, in CUDA's words; empty while all is well
 
  private:
   struct Impl;

@@ -1,0 +1,392 @@
+#include "sim/cuda/cuda_engine.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "sim/cuda/device_particles.h"
+#include "sim/cuda/pass_clock.h"
+#include "sim/fluid_sums.h"
+
+namespace slosh {
+
+namespace cuda {
+namespace {
+
+constexpr std::uint32_t kChunk = 1024;  // body particles that one block sums
+
+StepConstants step_constants(const RunConstants& c) {
+  return {c.grid,
+          c.kernels.support_radius,
+          c.kernels.spiky,
+          c.rest_number_density,
+          c.rest_volume,
+          static_cast<float>(c.plan.stiffness),
+          static_cast<float>(c.plan.tension),
+          static_cast<float>(c.plan.time_step),
+          static_cast<float>(c.plan.max_speed),
+          c.gravity};
+}
+
+// The head of what comes back each step; the wrenches and the probes' forces follow it.
+struct alignas(16) ReportHead {
+  std::uint32_t status = 0;
+};
+
+class CudaEngine final : public ParticleEngine {
+ public:
+  CudaEngine(const RunConstants& constants, const ParticleStart& start, std::span<const RigidBody> bodies,
+             std::string device)
+      : constants_(constants),
+        step_(step_constants(constants)),
+        device_(std::move(device)),
+        probes_(start.probes),
+        fluid_count_(start.fluid_count),
+        status_(start.status) {
+    check_.ok(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "cudaStreamCreate");
+    check_.ok(cudaEventCreateWithFlags(&ready_, cudaEventDisableTiming), "cudaEventCreate");
+    clock_.start(check_);
+    fluid_.allocate(start, constants_, check_);
+    fixed_.allocate(start.fixed, constants_, check_);
+    moving_.allocate(start.moving, constants_, check_);
+    const std::size_t largest = std::max({start.positions.size(), start.fixed.size(), start.moving.size()});
+    space_.allocate(static_cast<std::uint32_t>(largest), std::bit_width(constants_.grid.retired_key()),
+                    check_);
+    kinds_.upload(constants_.kinds, check_);
+    plan_wrenches(start, bodies);
+    allocate_exchange(bodies.size());
+    check_.ok(cudaDeviceSynchronize(), "setting up");  // the stream does not wait for what filled the buffers
+    if (fixed_.count() > 0) {
+      send_bodies(bodies);
+      fixed_.place(step_, bodies_.data(), space_, check_, stream_);
+    }
+    check_.ok(cudaDeviceSynchronize(), "setting up");
+  }
+
+  ~CudaEngine() override {
+    if (stream_) cudaStreamSynchronize(stream_);
+    if (ready_) cudaEventDestroy(ready_);
+    if (stream_) cudaStreamDestroy(stream_);
+  }
+
+  void step(std::span<const RigidBody> bodies, std::span<Wrench> wrenches) override {
+    std::fill(wrenches.begin(), wrenches.end(), Wrench{});
+    if (check_.failed()) return;
+    if (fluid_.count() > 0) {
+      clock_.mark(PassClock::kBegin, check_, stream_);
+      send_bodies(bodies);
+      carry_probes_in(bodies);
+      if (!sorted_ahead_) fluid_.sort(step_, space_, check_, stream_);
+      moving_.place(step_, bodies_.data(), space_, check_, stream_);
+      clock_.mark(PassClock::kSorted, check_, stream_);
+      launch_density(step_, constants_.plan, kinds_.data(), fluid_.sorted(), fixed_.sorted(),
+                     moving_.sorted(), status_word(), stream_);
+      check_.launched("density");
+      clock_.mark(PassClock::kDensity, check_, stream_);
+      sum_wrenches();
+      // The bodies' solve on the CPU needs the wrenches alone: it runs while the GPU goes on. A probe's force
+      // comes out of the force pass.
+      if (probes_.empty()) fetch_report();
+      clock_.mark(PassClock::kWrench, check_, stream_);
+      move_fluid();
+      clock_.mark(PassClock::kForce, check_, stream_);
+      if (!probes_.empty()) fetch_report();
+      sorted_ahead_ = probes_.empty();
+      if (sorted_ahead_) fluid_.sort(step_, space_, check_, stream_);
+      clock_.mark(PassClock::kEnd, check_, stream_);
+      check_.ok(cudaEventSynchronize(ready_), "waiting for the step");
+      clock_.read(check_);
+    }
+    if (!check_.failed()) read_report(wrenches);
+  }
+
+  void damp(float keep) override {
+    if (check_.failed() || fluid_.count() == 0) return;
+    launch_damp(state().v, fluid_.count(), keep, stream_);
+    check_.launched("damping");
+  }
+
+  std::uint32_t status() const override { return status_ | (check_.failed() ? kStatusDeviceLost : 0u); }
+  std::uint32_t take_status() override {
+    const std::uint32_t seen = status();
+    status_ = 0;
+    return seen;
+  }
+
+  void fill(std::span<glm::vec3> positions, std::span<std::uint8_t> fluid_index) const override {
+    std::fill(fluid_index.begin(), fluid_index.end(), std::uint8_t{255});
+    if (check_.failed() || positions.empty()) return;
+    launch_scatter(step_, state(), fluid_.count(), static_cast<std::uint32_t>(fluid_count_), by_id_.data(),
+                   kind_by_id_.data(), stream_);
+    check_.launched("scattering");
+    fetch(by_id_.data(), reinterpret_cast<float*>(positions.data()), 3 * positions.size());
+    fetch(kind_by_id_.data(), fluid_index.data(), fluid_index.size());
+  }
+
+  void add_to(Fingerprint& print) const override {
+    const HostState s = fetch_state();
+    for (std::size_t p = 0; p < s.id.size(); ++p) {
+      if (s.key[p] >= constants_.grid.retired_key()) continue;
+      print.add(s.id[p]);
+      for (const float value : {s.x[p].x, s.x[p].y, s.x[p].z, s.v[p].x, s.v[p].y, s.v[p].z}) print.add(value);
+    }
+  }
+
+  Diagnostics diagnostics() const override {
+    FluidSums sums(constants_);
+    const HostState s = fetch_state();
+    for (std::size_t p = 0; p < s.id.size(); ++p) {
+      if (s.key[p] >= constants_.grid.retired_key()) continue;
+      sums.add(s.kind[p], {s.x[p].x, s.x[p].y, s.x[p].z}, {s.v[p].x, s.v[p].y, s.v[p].z}, s.v[p].w);
+    }
+    return sums.finish(fluid_count_);
+  }
+
+  StepTimes times() const override { return clock_.times(); }
+  std::string failure() const override { return check_.failure(); }
+  std::string name() const override { return "CUDA, " + device_; }
+
+ private:
+  struct HostState {
+    std::vector<float4> x, v;
+    std::vector<std::uint32_t> id, key;
+    std::vector<std::uint8_t> kind;
+  };
+
+  // What the last step left, in whichever of the two orders it is.
+  const FluidView& state() const { return sorted_ahead_ ? fluid_.sorted().state : fluid_.moved(); }
+
+  template <class T>
+  void fetch(const T* from, T* to, std::size_t count) const {
+    if (check_.failed() || count == 0) return;
+    check_.ok(cudaMemcpyAsync(to, from, count * sizeof(T), cudaMemcpyDeviceToHost, stream_), "download");
+    check_.ok(cudaStreamSynchronize(stream_), "download");
+  }
+
+  HostState fetch_state() const {
+    HostState s;
+    if (check_.failed()) return s;
+    const std::size_t count = fluid_.count();
+    s.x.resize(count);
+    s.v.resize(count);
+    s.id.resize(count);
+    s.key.resize(count);
+    s.kind.resize(count);
+    fetch(state().x, s.x.data(), count);
+    fetch(state().v, s.v.data(), count);
+    fetch(state().id, s.id.data(), count);
+    fetch(state().key, s.key.data(), count);
+    fetch(state().kind, s.kind.data(), count);
+    if (check_.failed()) return {};
+    return s;
+  }
+
+  // Cuts each measured body's particles into chunks; local order is body by body.
+  void plan_wrenches(const ParticleStart& start, std::span<const RigidBody> bodies) {
+    std::vector<std::uint8_t> wanted(bodies.size(), 0);
+    for (const int b : constants_.plan.wrench_bodies) wanted[b] = 1;
+    std::vector<WrenchChunk> chunks;
+    std::vector<WrenchRange> ranges;
+    const auto cut = [&](const std::vector<SurfaceParticle>& particles, bool moving) {
+      const std::uint32_t count = static_cast<std::uint32_t>(particles.size());
+      for (std::uint32_t begin = 0; begin < count;) {
+        const std::uint16_t body = particles[begin].body;
+        std::uint32_t end = begin;
+        while (end < count && particles[end].body == body) ++end;
+        if (wanted[body]) {
+          const std::uint32_t first = static_cast<std::uint32_t>(chunks.size());
+          for (std::uint32_t i = begin; i < end; i += kChunk) {
+            chunks.push_back({i, std::min(i + kChunk, end), body, moving ? 1u : 0u});
+          }
+          ranges.push_back({first, static_cast<std::uint32_t>(chunks.size()), body});
+          (moving ? moving_measured_ : fixed_measured_) = true;
+        }
+        begin = end;
+      }
+    };
+    if (constants_.plan.body_wrench) {
+      cut(start.moving, true);
+      cut(start.fixed, false);
+    }
+    for (const WrenchRange& range : ranges) wrench_bodies_.push_back(range.body);
+    wanted_.upload(wanted, check_);
+    chunks_.upload(chunks, check_);
+    ranges_.upload(ranges, check_);
+    partial_.allocate(chunks.size(), check_);
+  }
+
+  void allocate_exchange(std::size_t body_count) {
+    bodies_.allocate(body_count, check_);
+    sent_bodies_.allocate(body_count, check_);
+    device_probes_.allocate(probes_.size(), check_);
+    sent_probes_.allocate(probes_.size(), check_);
+    std::vector<std::uint32_t> slots;
+    for (const Probe& probe : probes_) slots.push_back(probe.id);
+    probe_slots_.upload(slots, check_);
+    wrenches_at_ = sizeof(ReportHead);
+    probes_at_ = wrenches_at_ + wrench_bodies_.size() * sizeof(DeviceWrench);
+    report_.allocate(probes_at_ + probes_.size() * sizeof(float4), check_);
+    got_report_.allocate(report_.size(), check_);
+    by_id_.allocate(3 * fluid_count_, check_);
+    kind_by_id_.allocate(fluid_count_, check_);
+  }
+
+  std::uint32_t* status_word() const { return reinterpret_cast<std::uint32_t*>(report_.data()); }
+
+  void send_bodies(std::span<const RigidBody> bodies) {
+    if (bodies.empty() || check_.failed()) return;
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      sent_bodies_[b] = {surface_motion(bodies[b]), bodies[b].position};
+    check_.ok(cudaMemcpyAsync(bodies_.data(), sent_bodies_.data(), bodies_.bytes(), cudaMemcpyHostToDevice,
+                              stream_),
+              "sending bodies");
+  }
+
+  void carry_probes_in(std::span<const RigidBody> bodies) {
+    if (probes_.empty() || check_.failed()) return;
+    for (std::size_t i = 0; i < probes_.size(); ++i) {
+      const glm::vec3 x(bodies[probes_[i].body].position);
+      const glm::vec3 v(bodies[probes_[i].body].velocity);
+      sent_probes_[i] = {{x.x, x.y, x.z, 0.0f}, {v.x, v.y, v.z, constants_.rest_volume}};
+    }
+    check_.ok(cudaMemcpyAsync(device_probes_.data(), sent_probes_.data(), device_probes_.bytes(),
+                              cudaMemcpyHostToDevice, stream_),
+              "sending probes");
+    launch_carry_probes(step_, device_probes_.data(), probe_slots_.data(),
+                        static_cast<std::uint32_t>(probes_.size()), fluid_.moved(), stream_);
+    check_.launched("placing probes");
+  }
+
+  void sum_wrenches() {
+    if (wrench_bodies_.empty() || check_.failed()) return;
+    const float first_viscosity = constants_.kinds.front().viscosity;
+    const auto forces = [&](const SurfaceBuffers& surface) {
+      launch_surface_forces(step_, constants_.plan, first_viscosity, fluid_.sorted(), surface.sorted(),
+                            wanted_.data(), surface.local().force, stream_);
+      check_.launched("forces on bodies");
+    };
+    if (moving_measured_) forces(moving_);
+    if (fixed_measured_) forces(fixed_);
+    launch_wrenches(fixed_.local(), moving_.local(), bodies_.data(), chunks_.data(),
+                    static_cast<std::uint32_t>(chunks_.size()), partial_.data(), ranges_.data(),
+                    static_cast<std::uint32_t>(ranges_.size()),
+                    reinterpret_cast<DeviceWrench*>(report_.data() + wrenches_at_), stream_);
+    check_.launched("wrenches");
+  }
+
+  void move_fluid() {
+    if (check_.failed()) return;
+    ForceOutput output;
+    output.next = fluid_.moved();
+    output.first_probe = static_cast<std::uint32_t>(fluid_count_);
+    output.probe_forces = reinterpret_cast<float4*>(report_.data() + probes_at_);
+    output.probe_slots = probe_slots_.data();
+    output.status = status_word();
+    launch_force(step_, constants_.plan, kinds_.data(), fluid_.sorted(), fixed_.sorted(), moving_.sorted(),
+                 output, stream_);
+    check_.launched("forces");
+  }
+
+  void fetch_report() {
+    if (check_.failed()) return;
+    check_.ok(
+        cudaMemcpyAsync(got_report_.data(), report_.data(), report_.bytes(), cudaMemcpyDeviceToHost, stream_),
+        "fetching the report");
+    check_.ok(cudaEventRecord(ready_, stream_), "cudaEventRecord");
+    check_.ok(cudaMemsetAsync(report_.data(), 0, sizeof(ReportHead), stream_), "clearing the status");
+  }
+
+  void read_report(std::span<Wrench> wrenches) {
+    ReportHead head;
+    std::memcpy(&head, got_report_.data(), sizeof head);
+    status_ |= head.status;
+    for (std::size_t i = 0; i < wrench_bodies_.size(); ++i) {
+      DeviceWrench w;
+      std::memcpy(&w, got_report_.data() + wrenches_at_ + i * sizeof w, sizeof w);
+      wrenches[wrench_bodies_[i]].force += glm::dvec3(w.force[0], w.force[1], w.force[2]);
+      wrenches[wrench_bodies_[i]].torque += glm::dvec3(w.torque[0], w.torque[1], w.torque[2]);
+    }
+    if (!constants_.plan.body_wrench) return;
+    for (std::size_t i = 0; i < probes_.size(); ++i) {
+      float4 f;
+      std::memcpy(&f, got_report_.data() + probes_at_ + i * sizeof f, sizeof f);
+      wrenches[probes_[i].body].force += glm::dvec3(f.x, f.y, f.z);
+    }
+  }
+
+  RunConstants constants_;
+  StepConstants step_;
+  std::string device_;
+  std::vector<Probe> probes_;
+  std::size_t fluid_count_;  // without probes
+  std::uint32_t status_;
+  mutable CallCheck check_;
+  cudaStream_t stream_ = nullptr;
+  cudaEvent_t ready_ = nullptr;
+  PassClock clock_;
+  bool sorted_ahead_ = false;  // the state is in the sorted columns, ready for the next step's density
+
+  FluidBuffers fluid_;
+  SurfaceBuffers fixed_, moving_;
+  SortSpace space_;
+  DeviceBuffer<ParticleKind> kinds_;
+  DeviceBuffer<std::uint8_t> wanted_;
+  DeviceBuffer<WrenchChunk> chunks_;
+  DeviceBuffer<WrenchRange> ranges_;
+  DeviceBuffer<DeviceWrench> partial_;
+  bool fixed_measured_ = false, moving_measured_ = false;
+  std::vector<std::uint32_t> wrench_bodies_;  // body of each range
+
+  DeviceBuffer<DeviceBody> bodies_;
+  PinnedBuffer<DeviceBody> sent_bodies_;
+  DeviceBuffer<DeviceProbe> device_probes_;
+  PinnedBuffer<DeviceProbe> sent_probes_;
+  DeviceBuffer<std::uint32_t> probe_slots_;
+  DeviceBuffer<unsigned char> report_;
+  PinnedBuffer<unsigned char> got_report_;
+  std::size_t wrenches_at_ = 0, probes_at_ = 0;  // in the report
+  DeviceBuffer<float> by_id_;
+  DeviceBuffer<std::uint8_t> kind_by_id_;
+};
+
+}  // namespace
+}  // namespace cuda
+
+CudaDevice find_cuda_device() {
+  cuda::CallCheck check;
+  int count = 0;
+  cudaDeviceProp properties{};
+  if (check.ok(cudaGetDeviceCount(&count), "no GPU") && count > 0) {
+    check.ok(cudaGetDeviceProperties(&properties, 0), "cudaGetDeviceProperties");
+    // Runs something: a GPU that this program has no code for is found here.
+    cuda::DeviceBuffer<std::uint32_t> probe;
+    probe.allocate(1, check);
+    if (!check.failed()) {
+      cuda::launch_identity(probe.data(), 1, nullptr);
+      check.launched("the GPU cannot run this program's code");
+      check.ok(cudaDeviceSynchronize(), "the GPU does not answer");
+    }
+  }
+  cudaGetLastError();  // what was asked here is no one else's error
+  if (check.failed()) return {false, "", check.failure()};
+  if (count == 0) return {false, "", "no GPU"};
+  return {true, properties.name, ""};
+}
+
+Result<std::unique_ptr<ParticleEngine>> make_cuda_engine(const RunConstants& constants,
+                                                         const ParticleStart& start,
+                                                         std::span<const RigidBody> bodies) {
+  const CudaDevice device = find_cuda_device();
+  if (!device.available) return Error{"backend cuda", device.reason, "Use the CPU backend"};
+  auto engine = std::make_unique<cuda::CudaEngine>(constants, start, bodies, device.name);
+  if (!engine->failure().empty()) {
+    const std::string failure = engine->failure();
+    engine.reset();
+    cudaGetLastError();
+    return Error{"backend cuda", failure,
+                 "Use the CPU backend, or a coarser spacing if the GPU's memory ran out"};
+  }
+  return std::unique_ptr<ParticleEngine>(std::move(engine));
+}
+
+}  // namespace slosh

@@ -1,0 +1,122 @@
+#include "sim/cuda/device_particles.h"
+
+#include <vector>
+
+namespace slosh::cuda {
+
+void SortSpace::allocate(std::uint32_t largest_count, int bits, CallCheck& check) {
+  bits_ = bits;
+  identity_.allocate(largest_count, check);
+  order_.allocate(largest_count, check);
+  std::size_t bytes = 0;
+  if (check.failed() || largest_count == 0) return;
+  check.ok(sort_by_key(nullptr, bytes, nullptr, nullptr, nullptr, nullptr, largest_count, bits_, nullptr),
+           "sizing the sort");
+  temp_.allocate(bytes, check);
+  if (check.failed()) return;
+  launch_identity(identity_.data(), largest_count, nullptr);
+  check.launched("identity");
+}
+
+void SortSpace::sort(const std::uint32_t* keys, std::uint32_t* sorted_keys, std::uint32_t* order,
+                     std::uint32_t count, CallCheck& check, cudaStream_t stream) {
+  std::size_t bytes = temp_.bytes();
+  check.ok(sort_by_key(temp_.data(), bytes, keys, sorted_keys, identity_.data(), order, count, bits_, stream),
+           "sort");
+}
+
+void CellTableBuffers::allocate(std::uint32_t cells, CallCheck& check) {
+  begin_.allocate(cells, check);
+  end_.allocate(cells, check);
+  if (!check.failed()) clear(check, nullptr);
+}
+
+void CellTableBuffers::clear(CallCheck& check, cudaStream_t stream) {
+  check.ok(cudaMemsetAsync(begin_.data(), 0xff, begin_.bytes(), stream), "clearing the cells");
+  check.ok(cudaMemsetAsync(end_.data(), 0, end_.bytes(), stream), "clearing the cells");
+}
+
+void FluidBuffers::allocate(const ParticleStart& start, const RunConstants& constants, CallCheck& check) {
+  count_ = static_cast<std::uint32_t>(start.positions.size());
+  std::vector<float4> x(count_), v(count_);
+  std::vector<std::uint32_t> id(count_);
+  for (std::uint32_t i = 0; i < count_; ++i) {
+    const glm::vec3& at = start.positions[i];
+    const glm::vec3& velocity = start.velocities[i];
+    x[i] = {at.x, at.y, at.z, 0.0f};
+    v[i] = {velocity.x, velocity.y, velocity.z, constants.rest_volume};
+    id[i] = i;
+  }
+  moved_.x.upload(x, check);
+  moved_.v.upload(v, check);
+  moved_.id.upload(id, check);
+  moved_.key.upload(start.keys, check);
+  moved_.kind.upload(start.kinds, check);
+  sorted_.x.allocate(count_, check);
+  sorted_.v.allocate(count_, check);
+  sorted_.id.allocate(count_, check);
+  sorted_.key.allocate(count_, check);
+  sorted_.kind.allocate(count_, check);
+  pressed_.allocate(count_, check);
+  if (constants.plan.viscosity && !constants.plan.one_viscosity) viscosity_.allocate(count_, check);
+  cells_.allocate(constants.grid.cell_count(), check);
+  moved_view_ = moved_.view();
+  sorted_view_ = {count_, sorted_.view(), pressed_.data(), viscosity_.data(), cells_.view()};
+}
+
+void FluidBuffers::sort(const StepConstants& constants, SortSpace& space, CallCheck& check,
+                        cudaStream_t stream) {
+  space.sort(moved_.key.data(), sorted_.key.data(), space.order(), count_, check, stream);
+  cells_.clear(check, stream);
+  if (check.failed()) return;
+  launch_gather_fluid(constants, moved_view_, space.order(), sorted_view_, stream);
+  check.launched("gathering fluid");
+}
+
+void SurfaceBuffers::allocate(const std::vector<SurfaceParticle>& particles, const RunConstants& constants,
+                              CallCheck& check) {
+  const std::uint32_t count = static_cast<std::uint32_t>(particles.size());
+  if (count == 0) return;
+  std::vector<float4> position;
+  std::vector<float2> material;
+  std::vector<std::uint16_t> body;
+  for (const SurfaceParticle& p : particles) {
+    position.push_back({p.position.x, p.position.y, p.position.z, p.pressure});
+    material.push_back({p.volume, p.viscosity});
+    body.push_back(p.body);
+  }
+  position_.upload(position, check);
+  material_.upload(material, check);
+  body_.upload(body, check);
+  for (DeviceBuffer<float4>* buffer : {&placed_, &velocity_, &force_, &sorted_x_, &sorted_v_}) {
+    buffer->allocate(count, check);
+  }
+  for (DeviceBuffer<std::uint32_t>* buffer : {&key_, &sorted_key_, &order_}) buffer->allocate(count, check);
+  viscosity_.allocate(count, check);
+  sorted_body_.allocate(count, check);
+  cells_.allocate(constants.grid.cell_count(), check);
+  local_view_ = {count,          position_.data(), material_.data(), body_.data(),
+                 placed_.data(), velocity_.data(), key_.data(),      force_.data()};
+  sorted_view_ = {count,
+                  sorted_x_.data(),
+                  sorted_v_.data(),
+                  viscosity_.data(),
+                  sorted_body_.data(),
+                  sorted_key_.data(),
+                  order_.data(),
+                  cells_.view()};
+}
+
+void SurfaceBuffers::place(const StepConstants& constants, const DeviceBody* bodies, SortSpace& space,
+                           CallCheck& check, cudaStream_t stream) {
+  if (count() == 0 || check.failed()) return;
+  launch_place_surface(constants, local_view_, bodies, stream);
+  check.launched("placing body particles");
+  space.sort(key_.data(), sorted_key_.data(), order_.data(), count(), check, stream);
+  cells_.clear(check, stream);
+  if (check.failed()) return;
+  launch_gather_surface(constants, local_view_, sorted_view_, stream);
+  check.launched("gathering body particles");
+}
+
+}  // namespace slosh::cuda

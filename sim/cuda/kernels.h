@@ -1,0 +1,159 @@
+// The passes on the GPU as functions that launch them. Views are plain pointers into device memory; every
+// launch goes to the given stream and returns at once.
+//
+// Columns are packed for 16-byte loads: a neighbour is one load in the density pass, two or three in the
+// force pass.
+#pragma once
+
+#include <cuda_runtime.h>
+
+#include <cstddef>
+#include <cstdint>
+
+#include "sim/run_constants.h"
+
+namespace slosh::cuda {
+
+/// RunConstants as the kernels need it.
+struct StepConstants {
+  CellGrid grid;
+  float support_radius = 0.0f;
+  float spiky = 0.0f;
+  float rest_number_density = 0.0f;
+  float rest_volume = 0.0f;
+  float stiffness = 0.0f;
+  float tension = 0.0f;
+  float time_step = 0.0f;
+  float max_speed = 0.0f;
+  glm::vec3 gravity{0.0f};
+};
+
+/// Where each cell's particles are: [begin, end), or {max, 0} where a cell is empty, so that a row of three
+/// cells is the minimum of the begins and the maximum of the ends.
+struct CellTable {
+  std::uint32_t* begin = nullptr;
+  std::uint32_t* end = nullptr;
+};
+
+/// Fluid particles (and probes) in some order.
+struct FluidView {
+  float4* x = nullptr;          ///< position, m; w is not used
+  float4* v = nullptr;          ///< velocity, m/s, half a step behind x; w: volume, m³, from the density pass
+  std::uint32_t* id = nullptr;  ///< fixed for the run
+  std::uint8_t* kind = nullptr;  ///< into the table of kinds
+  std::uint32_t* key = nullptr;  ///< cell, or retired
+};
+
+/// Sorted fluid with what the density pass adds.
+struct SortedFluid {
+  std::uint32_t count = 0;  ///< retired ones, at the end, included
+  FluidView state;
+  float4* pressed = nullptr;   ///< position, and in w the pressure (kConsistent: V²P)
+  float* viscosity = nullptr;  ///< Pa·s; written only where pairs differ
+  CellTable cells;
+};
+
+/// Body particles as they stay for the run, in local order: body by body.
+struct LocalSurface {
+  std::uint32_t count = 0;
+  const float4* position = nullptr;  ///< mesh frame, m; w: pressure or share
+  const float2* material = nullptr;  ///< volume m³, viscosity Pa·s
+  const std::uint16_t* body = nullptr;
+  float4* placed = nullptr;      ///< world, m, local order; w as in `position`
+  float4* velocity = nullptr;    ///< world, m/s, local order; w: volume
+  std::uint32_t* key = nullptr;  ///< local order
+  float4* force = nullptr;       ///< by the fluid, N, local order
+};
+
+/// Body particles sorted by cell.
+struct SortedSurface {
+  std::uint32_t count = 0;
+  float4* x = nullptr;  ///< world; w: pressure or share
+  float4* v = nullptr;  ///< w: volume
+  float* viscosity = nullptr;
+  std::uint16_t* body = nullptr;
+  std::uint32_t* key = nullptr;
+  std::uint32_t* order = nullptr;  ///< local index of each
+  CellTable cells;
+};
+
+/// A body's motion for a step.
+struct DeviceBody {
+  SurfaceMotion motion;
+  glm::dvec3 position{0.0};  ///< of the centre of mass, m, world
+};
+
+/// A probe's state for a step.
+struct DeviceProbe {
+  float4 x, v;
+};
+
+/// Particles [begin, end) of a body, in local order, that one block sums.
+struct WrenchChunk {
+  std::uint32_t begin = 0, end = 0;
+  std::uint32_t body = 0;
+  std::uint32_t moving = 0;  ///< 1: of the free bodies' particles, 0: of the fixed ones'
+};
+
+/// The chunks of one body.
+struct WrenchRange {
+  std::uint32_t begin = 0, end = 0;
+  std::uint32_t body = 0;
+};
+
+struct DeviceWrench {
+  double force[3] = {};
+  double torque[3] = {};
+};
+
+/// sort.cu. Stable; keys below 2^bits. Call with temp = nullptr to learn temp_bytes.
+cudaError_t sort_by_key(void* temp, std::size_t& temp_bytes, const std::uint32_t* keys,
+                        std::uint32_t* sorted_keys, const std::uint32_t* identity, std::uint32_t* order,
+                        std::uint32_t count, int bits, cudaStream_t stream);
+
+/// order.cu
+void launch_identity(std::uint32_t* values, std::uint32_t count, cudaStream_t stream);
+void launch_gather_fluid(const StepConstants& constants, const FluidView& from, const std::uint32_t* order,
+                         const SortedFluid& to, cudaStream_t stream);
+void launch_place_surface(const StepConstants& constants, const LocalSurface& local, const DeviceBody* bodies,
+                          cudaStream_t stream);
+void launch_gather_surface(const StepConstants& constants, const LocalSurface& from, const SortedSurface& to,
+                           cudaStream_t stream);
+void launch_carry_probes(const StepConstants& constants, const DeviceProbe* probes,
+                         const std::uint32_t* slots, std::uint32_t count, const FluidView& fluid,
+                         cudaStream_t stream);
+void launch_damp(float4* velocities, std::uint32_t count, float keep, cudaStream_t stream);
+/// By id; retired ones get kind 255.
+void launch_scatter(const StepConstants& constants, const FluidView& fluid, std::uint32_t count,
+                    std::uint32_t visible, float* positions, std::uint8_t* kinds, cudaStream_t stream);
+
+/// density.cu: Eq 2 and 7.
+void launch_density(const StepConstants& constants, const Plan& plan, const ParticleKind* kinds,
+                    const SortedFluid& fluid, const SortedSurface& fixed, const SortedSurface& moving,
+                    std::uint32_t* status, cudaStream_t stream);
+
+/// force.cu: Eq 5, 6 and 9 on fluid particles, then the leap-frog into `next` (in the same order) with its
+/// keys. Probes stay where they are; their force goes to probe_forces, their index to probe_slots, both by id
+/// less `first_probe`.
+struct ForceOutput {
+  FluidView next;
+  std::uint32_t first_probe = 0;
+  float4* probe_forces = nullptr;
+  std::uint32_t* probe_slots = nullptr;
+  std::uint32_t* status = nullptr;
+};
+void launch_force(const StepConstants& constants, const Plan& plan, const ParticleKind* kinds,
+                  const SortedFluid& fluid, const SortedSurface& fixed, const SortedSurface& moving,
+                  const ForceOutput& output, cudaStream_t stream);
+
+/// wrench.cu: Eq 5, 6 and 9 on the particles of `surface` whose body is wanted, to `force` in local order.
+void launch_surface_forces(const StepConstants& constants, const Plan& plan, float first_viscosity,
+                           const SortedFluid& fluid, const SortedSurface& surface, const std::uint8_t* wanted,
+                           float4* force, cudaStream_t stream);
+/// Eq 10–12, summed in double in a fixed shape: chunk by chunk, then body by body.
+void launch_wrenches(const LocalSurface& fixed, const LocalSurface& moving, const DeviceBody* bodies,
+                     const WrenchChunk* chunks, std::uint32_t chunk_count, DeviceWrench* partial,
+                     const WrenchRange* ranges, std::uint32_t range_count, DeviceWrench* wrenches,
+                     cudaStream_t stream);
+
+}  // namespace slosh::cuda

@@ -1,0 +1,261 @@
+// The same worlds on the CPU and on the GPU (tests/cross/README.md). Prints every comparison with its
+// tolerance; exits 1 when one fails, 77 where there is no GPU.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <optional>
+
+#include "tests/cross/worlds.h"
+
+namespace {
+
+using namespace slosh;
+using namespace slosh::testing;
+
+int failures = 0;
+
+void expect_at_most(const char* what, double value, double limit) {
+  const bool fine = value <= limit;  // false for not-a-number
+  failures += !fine;
+  std::printf("  %-58s %-11.3g <= %-8.3g %s\n", what, value, limit, fine ? "ok" : "FAILED");
+}
+
+void expect_true(const char* what, bool fine) {
+  failures += !fine;
+  std::printf("  %-82s %s\n", what, fine ? "ok" : "FAILED");
+}
+
+World world_on(Backend backend, const Tank& tank, Plan plan) {
+  Result<World> world = make_world(tank.scene, tank.sampled, std::move(plan), {1, backend});
+  if (!world) {
+    std::printf("%s\n", world.error().text().c_str());
+    std::exit(1);
+  }
+  return std::move(world.value());
+}
+
+World world_on(Backend backend, const Tank& tank) {
+  return world_on(backend, tank, make_plan(tank.scene, tank.sampled.spacing));
+}
+
+void step(World& world, double hand_height) {
+  const HandleInput hand = hand_at(world.time(), hand_height);
+  world.step({&hand, 1});
+}
+
+struct View {
+  Snapshot snapshot;
+  Diagnostics sums;
+  explicit View(const World& world) : sums(world.diagnostics()) { world.fill(snapshot); }
+};
+
+// Squeezed by 3 % and shaken, so that every term of the first step is at work.
+Tank shaken(Tank tank) {
+  unsigned state = 7;
+  const auto noise = [&] {
+    state = state * 1664525u + 1013904223u;
+    return static_cast<float>(state >> 8) / 8388608.0f - 1.0f;
+  };
+  for (glm::vec3& x : tank.sampled.fluid_positions)
+    x = x * 0.97f + 1e-3f * glm::vec3(noise(), noise(), noise());
+  for (glm::vec3& v : tank.sampled.fluid_velocities) v = 0.3f * glm::vec3(noise(), noise(), noise());
+  return tank;
+}
+
+// After one step from the same start the two differ by rounding alone; velocities show in momentum and
+// energy.
+void compare_steps(const char* name, const Tank& tank, const Plan& plan, int steps, double tolerance) {
+  std::printf("%s, %d step(s)\n", name, steps);
+  World cpu = world_on(Backend::kCpu, tank, plan);
+  World gpu = world_on(Backend::kCuda, tank, plan);
+  for (int i = 0; i < steps; ++i) {
+    step(cpu, 0.09);
+    step(gpu, 0.09);
+  }
+  const View a(cpu), b(gpu);
+  double apart = 0.0;
+  bool same_kinds = true;
+  for (std::size_t p = 0; p < a.snapshot.positions.size(); ++p) {
+    same_kinds &= a.snapshot.fluid_index[p] == b.snapshot.fluid_index[p];
+    if (a.snapshot.fluid_index[p] == 255) continue;
+    apart = std::max<double>(apart, glm::distance(a.snapshot.positions[p], b.snapshot.positions[p]));
+  }
+  expect_true("the same particles in the world", same_kinds && a.sums.particles == b.sums.particles);
+  expect_at_most("largest distance of a particle from itself / spacing", apart / plan.spacing, tolerance);
+  const double speed = std::sqrt(2.0 * a.sums.kinetic_energy / a.sums.mass);
+  expect_at_most("momentum / (mass rms speed)",
+                 glm::length(a.sums.momentum - b.sums.momentum) / (a.sums.mass * speed), tolerance);
+  expect_at_most("kinetic energy", std::abs(b.sums.kinetic_energy / a.sums.kinetic_energy - 1.0), tolerance);
+  expect_at_most("largest compression", std::abs(b.sums.max_compression - a.sums.max_compression), tolerance);
+  for (std::size_t body = 0; body < a.snapshot.rigid.bodies.size(); ++body) {
+    const Wrench& wa = a.snapshot.rigid.bodies[body].fluid;
+    const Wrench& wb = b.snapshot.rigid.bodies[body].fluid;
+    // Opposite walls cancel: the scale is that of the fluid's weight at least.
+    const double scale = std::max(glm::length(wa.force), 9.81 * a.sums.mass);
+    expect_at_most("force on a body / weight of the fluid", glm::length(wa.force - wb.force) / scale,
+                   tolerance);
+    expect_at_most("torque on a body / (weight 0.1 m)", glm::length(wa.torque - wb.torque) / (0.1 * scale),
+                   tolerance);
+  }
+}
+
+struct Mean {
+  double weight = 0.0, height = 0.0, kinetic = 0.0, compression = 0.0;
+};
+
+Mean last_fifth(World& world, double seconds, double hand_height) {
+  Mean mean;
+  int count = 0;
+  BodySnapshot snapshot;
+  while (world.time() < seconds) {
+    step(world, hand_height);
+    if (world.time() < 0.8 * seconds) continue;
+    world.fill(snapshot);
+    const Diagnostics d = world.diagnostics();
+    mean.weight -= snapshot.bodies[0].fluid.force.y / (9.81 * d.mass);
+    mean.height += d.center.y;
+    mean.kinetic += d.kinetic_energy;
+    mean.compression += d.max_compression;
+    ++count;
+  }
+  return {mean.weight / count, mean.height / count, mean.kinetic / count, mean.compression / count};
+}
+
+void compare_second(const char* name, const Tank& tank, double settle, double tolerance,
+                    double energy_tolerance) {
+  std::printf("%s, 1 s, means of its last fifth\n", name);
+  World cpu = world_on(Backend::kCpu, tank);
+  World gpu = world_on(Backend::kCuda, tank);
+  cpu.settle(settle);
+  gpu.settle(settle);
+  const Mean a = last_fifth(cpu, 1.0, 0.09);
+  const Mean b = last_fifth(gpu, 1.0, 0.09);
+  std::printf("  CPU: weight %.5f, height %.6f m, kinetic %.4g J; GPU: %.5f, %.6f m, %.4g J\n", a.weight,
+              a.height, a.kinetic, b.weight, b.height, b.kinetic);
+  expect_at_most("force on the walls / weight of the fluid", std::abs(a.weight - b.weight), tolerance);
+  expect_at_most("height of the centre of mass", std::abs(b.height / a.height - 1.0), tolerance);
+  const double potential = 9.81 * cpu.diagnostics().mass * a.height;
+  expect_at_most("kinetic energy / potential energy", std::abs(a.kinetic - b.kinetic) / potential,
+                 energy_tolerance);
+  expect_true("as many retired", cpu.diagnostics().retired == gpu.diagnostics().retired);
+  expect_true("the same status", cpu.take_status() == gpu.take_status());
+}
+
+std::uint64_t hash_after(World& world, int steps, double hand_height, bool look) {
+  Snapshot snapshot;
+  for (int i = 0; i < steps; ++i) {
+    step(world, hand_height);
+    if (!look) continue;
+    world.fill(snapshot);
+    world.diagnostics();
+  }
+  return world.hash();
+}
+
+void repeat(const char* name, const Tank& tank, double hand_height) {
+  std::printf("%s, 300 steps on the GPU, repeated\n", name);
+  World first = world_on(Backend::kCuda, tank);
+  const std::uint64_t once = hash_after(first, 300, hand_height, false);
+  World second = world_on(Backend::kCuda, tank);
+  expect_true("the same hash again", once == hash_after(second, 300, hand_height, false));
+  World watched = world_on(Backend::kCuda, tank);
+  expect_true("the same hash when looked at after every step",
+              once == hash_after(watched, 300, hand_height, true));
+  // Two worlds on one GPU at a time: blocks are scheduled differently.
+  World left = world_on(Backend::kCuda, tank);
+  World right = world_on(Backend::kCuda, tank);
+  for (int i = 0; i < 300; ++i) {
+    step(left, hand_height);
+    step(right, hand_height);
+  }
+  expect_true("the same hash beside another world", left.hash() == once && right.hash() == once);
+  step(left, hand_height);
+  expect_true("another hash one step later", left.hash() != once);
+}
+
+void compare_probe() {
+  std::printf("probe drawn through a tank, 200 steps\n");
+  const Tank tank = probed_tank();
+  glm::dvec3 mean[2]{};
+  glm::dvec3 at[2]{};
+  int n = 0;
+  for (const Backend backend : {Backend::kCpu, Backend::kCuda}) {
+    World world = world_on(backend, tank);
+    BodySnapshot snapshot;
+    for (int i = 0; i < 200; ++i) {
+      step(world, 0.05);
+      world.fill(snapshot);
+      mean[n] += snapshot.bodies[1].fluid.force / 200.0;
+    }
+    at[n++] = snapshot.bodies[1].pose.position;
+  }
+  std::printf("  CPU %.6f %.6f %.6f N, GPU %.6f %.6f %.6f N\n", mean[0].x, mean[0].y, mean[0].z, mean[1].x,
+              mean[1].y, mean[1].z);
+  expect_true("the fluid drags it", mean[0].x < -1e-4 && mean[1].x < -1e-4);
+  expect_at_most("mean force on the probe", glm::distance(mean[0], mean[1]) / glm::length(mean[0]), 0.05);
+  expect_at_most("where it is at last, m", glm::distance(at[0], at[1]), 5e-4);
+}
+
+void compare_retired() {
+  std::printf("particles that leave, are not numbers or are too fast\n");
+  Tank tank = make_tank({});
+  SampledScene& s = tank.sampled;
+  s.fluid_positions[0] = {100.0f, 0.0f, 0.0f};
+  s.fluid_positions[1].x = std::numeric_limits<float>::quiet_NaN();
+  for (int i = 5; i < 25; ++i) s.fluid_velocities[i] = {0.0f, 1e9f, 0.0f};
+  std::optional<View> views[2];
+  std::uint32_t status[2];
+  int n = 0;
+  for (const Backend backend : {Backend::kCpu, Backend::kCuda}) {
+    World world = world_on(backend, tank);
+    for (int i = 0; i < 150; ++i) world.step({});
+    views[n].emplace(world);
+    status[n++] = world.take_status();
+  }
+  std::printf("  CPU %llu retired, GPU %llu; status %s\n",
+              static_cast<unsigned long long>(views[0]->sums.retired),
+              static_cast<unsigned long long>(views[1]->sums.retired), status_text(status[1]).c_str());
+  expect_true("some are retired, the two from the start among them",
+              views[1]->sums.retired > 2 && views[1]->snapshot.fluid_index[0] == 255 &&
+                  views[1]->snapshot.fluid_index[1] == 255 && views[1]->snapshot.fluid_index[2] == 0);
+  expect_true("as many on both", views[0]->sums.retired == views[1]->sums.retired);
+  expect_true("the same status", status[0] == status[1]);
+  expect_true("energy stays finite", std::isfinite(views[1]->sums.kinetic_energy));
+}
+
+}  // namespace
+
+int main() {
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);
+  const CudaDevice device = find_cuda_device();
+  if (!device.available) {
+    std::printf("no GPU here (%s): compiled, not run\n", device.reason.c_str());
+    return 77;
+  }
+  std::printf("%s\n", device.name.c_str());
+  for (const ParticleModel model : {ParticleModel::kConsistent, ParticleModel::kPaper}) {
+    const Tank tank = shaken(stirred_tank(model));
+    const char* name =
+        model == ParticleModel::kPaper ? "paper model, two fluids, paddle" : "two fluids, paddle";
+    const Plan plan = make_plan(tank.scene, tank.sampled.spacing);
+    compare_steps(name, tank, plan, 1, 1e-5);
+    compare_steps(name, tank, plan, 10, 1e-3);
+    Tank one = shaken(make_tank({}));
+    one.scene.model = model;
+    one.scene.tension = 1.0;
+    Plan variant = make_plan(one.scene, one.sampled.spacing);
+    compare_steps("one viscosity, tension", one, variant, 1, 1e-5);
+    variant.viscosity = false;
+    compare_steps("no viscosity", one, variant, 1, 1e-5);
+  }
+  compare_second("tank at rest", make_tank({}), 0.5, 2e-3, 1e-4);
+  compare_second("two fluids stirred by a paddle", stirred_tank(ParticleModel::kConsistent), 0.0, 2e-2, 1e-2);
+  repeat("two fluids, paddle", stirred_tank(ParticleModel::kConsistent), 0.09);
+  repeat("paper model", stirred_tank(ParticleModel::kPaper), 0.09);
+  repeat("probe", probed_tank(), 0.05);
+  compare_probe();
+  compare_retired();
+  std::printf(failures ? "%d comparison(s) FAILED\n" : "all agree (%d failures)\n", failures);
+  return failures ? 1 : 0;
+}
