@@ -29,8 +29,9 @@ Result<bool> parse_row(std::string_view row, double (&values)[kFields]) {
     const std::size_t comma = row.find(',');
     const std::string_view text = trimmed(row.substr(0, comma));
     if (field >= kFields) {
-      return Error{
-          {}, "more than " + std::to_string(kFields) + " fields", "Keep to " + std::string(kPosesHeader)};
+      return Error{{},
+                   std::string("more than ") + std::to_string(kFields) + " fields",
+                   "Keep to " + std::string(kPosesHeader)};
     }
     const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), values[field]);
     if (code != std::errc() || end != text.data() + text.size() || !std::isfinite(values[field])) {
@@ -60,7 +61,8 @@ Result<std::vector<PoseKey>> read_poses(const std::filesystem::path& file, int d
   std::string line;
   std::getline(in, line);
   if (trimmed(line) != kPosesHeader) {
-    return Error{at_line(file, 1), "'" + std::string(trimmed(line)).substr(0, 80) + "' is not the header",
+    return Error{at_line(file, 1),
+                 std::string("'") + std::string(trimmed(line)).substr(0, 80) + "' is not the header",
                  "The first line must be " + std::string(kPosesHeader)};
   }
   std::vector<PoseKey> keys;

@@ -41,7 +41,7 @@ std::string grouped(std::uint64_t number) {
   std::string text = std::to_string(number);
   for (std::size_t at = text.size(); at > 3;) {
     at -= 3;
-    text.insert(at, " ");
+    text.insert(at, 1, ' ');
   }
   return text;
 }
@@ -109,9 +109,10 @@ std::string in_words(const RunSummary& s) {
     }
   }
   if (s.rendered) {
-    text += format("%s pictures of %d × %d, %.0f ms each%s.\n", grouped(s.frames).c_str(), s.width, s.height,
-                   s.frame_ms.p50,
-                   s.frames_dropped == 0 ? "" : (", " + grouped(s.frames_dropped) + " dropped").c_str());
+    text += format(
+        "%s pictures of %d × %d, %.0f ms each%s.\n", grouped(s.frames).c_str(), s.width, s.height,
+        s.frame_ms.p50,
+        s.frames_dropped == 0 ? "" : (std::string(", ") + grouped(s.frames_dropped) + " dropped").c_str());
   }
   if (s.fluid_mass_start > 0.0 && s.retired_particles > 0) {
     text += format("%.2f of %.2f kg of fluid left the domain.\n", s.fluid_mass_start - s.fluid_mass_end,
