@@ -14,8 +14,10 @@ constexpr double kRimRadius = 0.095;     ///< inner, at the rim
 constexpr double kInnerDepth = 0.160;
 constexpr double kFluidDepth = 0.105;
 constexpr double kHeld = 0.30;  ///< of the bucket's underside over the table
-constexpr double kHandleHeight = 0.150;
-constexpr double kHandleEnd = 0.096;     ///< where the loop enters the wall: nowhere does it come out inside
+// Below the middle of bucket and water: a hand that is lowered then gets the greater load, as with any vessel
+// that is carried by its sides; handles at the rim would let it swing like a pendulum towards the upper hand.
+constexpr double kHandleHeight = 0.055;
+constexpr double kHandleEnd = 0.088;     ///< where the loop enters the wall: nowhere does it come out inside
 constexpr double kHandleReach = 0.025;   ///< straight part
 constexpr double kHandleRadius = 0.030;  ///< of the loop's bend
 constexpr double kHandleThickness = 0.015;

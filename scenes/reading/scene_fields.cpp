@@ -28,6 +28,13 @@ Problem read_scene_fields(Reading& reading) {
   scene.support_ratio = extras.number("support_ratio", scene.support_ratio, gltf::Range{1.5, 4.0});
   scene.stiffness = extras.number("stiffness_m2_s2", 0.0, gltf::kNotNegative);
   scene.tension = extras.number("tension", 0.0, gltf::Range{0.0, 1.0});
+  const std::string model = extras.text("model", "consistent");
+  if (model == "paper") {
+    scene.model = ParticleModel::kPaper;
+  } else if (model != "consistent") {
+    extras.fail("model", "is '" + model + "'",
+                "Give \"consistent\" or \"paper\" (sim/README.md compares them)");
+  }
   scene.duration = extras.number("duration_s", scene.duration, gltf::Range{0.0, 86400.0, true});
   scene.light_direction =
       glm::vec3(extras.vector("light_direction", glm::dvec3(scene.light_direction), gltf::Range{-1e3, 1e3}));

@@ -1,10 +1,12 @@
 #include "scenes/sampling/fill.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <memory>
 
 #include "scenes/gltf/extras.h"
+#include "scenes/mesh/closed.h"
 #include "scenes/mesh/tree.h"
 #include "scenes/mesh/winding.h"
 #include "scenes/sampling/point_grid.h"
@@ -95,6 +97,65 @@ bool clear_of(std::vector<Obstacle>& obstacles, const glm::dvec3& point, double 
   return is_clear;
 }
 
+/// Lattice points of one volume.
+struct Filling {
+  mesh::Grid grid;
+  Pose pose;
+  std::vector<glm::ivec3> nodes;     ///< kept
+  std::vector<glm::vec3> positions;  ///< of the kept ones, world
+  std::size_t inside = 0;            ///< points inside the mesh
+  std::size_t given_up = 0;  ///< of these, to an earlier fluid or inside a body: not to be made up for
+
+  glm::dvec3 at(const glm::ivec3& node) const {
+    return transform_point(pose, grid.origin + grid.cell * glm::dvec3(node));
+  }
+};
+
+double closed_volume(const TriangleMesh& mesh) {
+  const mesh::WeldedMesh welded = mesh::weld(mesh);
+  mesh::Components parts;
+  mesh::find_defects(welded, &parts);
+  return mesh::integrate_volume(welded, parts).volume;
+}
+
+/// A wall keeps the lattice off itself by half a spacing, though the fluid will lie against it, and a lattice
+/// has whole layers only: what is missing goes on top, in layers over the highest, and finds its level when
+/// the world settles. Without this a round vessel of ten spacings would start a sixth too light.
+template <class Free>
+void top_up(Filling& filling, double wanted, Free&& is_free) {
+  const double have = static_cast<double>(filling.positions.size() + filling.given_up);
+  if (filling.nodes.empty() || wanted - have < 0.01 * wanted) return;
+  auto missing = static_cast<std::size_t>(wanted - have);
+  std::vector<std::size_t> layer_sizes(static_cast<std::size_t>(filling.grid.size.y), 0);
+  int top = 0;
+  for (const glm::ivec3& node : filling.nodes) {
+    top = std::max(top, node.y);
+    ++layer_sizes[static_cast<std::size_t>(node.y)];
+  }
+  // A shape that tapers to a tip (a drop, a cone) would grow a tower; it keeps its shape instead.
+  const std::size_t widest = *std::max_element(layer_sizes.begin(), layer_sizes.end());
+  if (4 * layer_sizes[static_cast<std::size_t>(top)] < widest) return;
+  std::vector<glm::ivec3> columns;
+  for (const glm::ivec3& node : filling.nodes) {
+    if (node.y == top) columns.push_back(node);
+  }
+  while (missing > 0) {
+    ++top;
+    std::vector<glm::ivec3> layer;
+    for (glm::ivec3 node : columns) {
+      node.y = top;
+      if (is_free(filling.at(node))) layer.push_back(node);
+    }
+    if (layer.empty()) return;
+    // A last layer that is not full is spread over the whole of it.
+    const std::size_t count = std::min(missing, layer.size());
+    for (std::size_t i = 0; i < count; ++i) {
+      filling.positions.emplace_back(filling.at(layer[i * layer.size() / count]));
+    }
+    missing -= count;
+  }
+}
+
 }  // namespace
 
 std::optional<Error> fill_fluids(const Scene& scene, SampledScene& sampled) {
@@ -115,33 +176,46 @@ std::optional<Error> fill_fluids(const Scene& scene, SampledScene& sampled) {
     const std::vector<std::int8_t> winding = mesh::winding_numbers(mesh, grid);
     const PointGrid earlier(sampled.fluid_positions, static_cast<float>(0.9 * spacing));
     for (Obstacle& o : obstacles) o.overlaps = 0;
-    std::size_t inside = 0;
-    std::vector<glm::vec3> kept;
+    std::size_t shared = 0;  // with an earlier fluid, to which this one gives way
+    const auto is_free = [&](const glm::dvec3& point) {
+      if (!clear_of(obstacles, point, clear)) return false;
+      bool taken = false;
+      earlier.each_near(glm::vec3(point), [&](std::uint32_t other) {
+        taken = taken || glm::distance(sampled.fluid_positions[other], glm::vec3(point)) < 0.9 * spacing;
+      });
+      shared += taken;
+      return !taken;
+    };
+    Filling filling{grid, volume.pose, {}, {}, 0, 0};
     std::size_t index = 0;
     for (int k = 0; k < grid.size.z; ++k) {
       for (int j = 0; j < grid.size.y; ++j) {
         for (int i = 0; i < grid.size.x; ++i, ++index) {
           if (winding[index] <= 0) continue;
-          ++inside;
-          const glm::dvec3 point =
-              transform_point(volume.pose, grid.origin + grid.cell * glm::dvec3(i, j, k));
-          if (!clear_of(obstacles, point, clear)) continue;
-          bool taken = false;
-          earlier.each_near(glm::vec3(point), [&](std::uint32_t other) {
-            taken = taken || glm::distance(sampled.fluid_positions[other], glm::vec3(point)) < 0.9 * spacing;
-          });
-          if (!taken) kept.emplace_back(point);
+          ++filling.inside;
+          const glm::ivec3 node(i, j, k);
+          const glm::dvec3 point = filling.at(node);
+          if (is_free(point)) {
+            filling.nodes.push_back(node);
+            filling.positions.emplace_back(point);
+          }
         }
       }
     }
+    std::size_t overlapping = 0;
     for (const Obstacle& o : obstacles) {
-      if (static_cast<double>(o.overlaps) <= kMostOverlap * static_cast<double>(inside)) continue;
-      return Error{where,
-                   "overlaps the body '" + scene.bodies[o.body].name + "': " +
-                       short_number(100.0 * static_cast<double>(o.overlaps) / static_cast<double>(inside)) +
-                       " % of the fluid starts inside it",
-                   "Make the fluid's mesh smaller, so that it ends at the wall's surface"};
+      overlapping += o.overlaps;
+      if (static_cast<double>(o.overlaps) <= kMostOverlap * static_cast<double>(filling.inside)) continue;
+      return Error{
+          where,
+          "overlaps the body '" + scene.bodies[o.body].name + "': " +
+              short_number(100.0 * static_cast<double>(o.overlaps) / static_cast<double>(filling.inside)) +
+              " % of the fluid starts inside it",
+          "Make the fluid's mesh smaller, so that it ends at the wall's surface"};
     }
+    filling.given_up = overlapping + shared;
+    top_up(filling, closed_volume(mesh) / (spacing * spacing * spacing), is_free);
+    const std::vector<glm::vec3>& kept = filling.positions;
     if (kept.empty()) {
       return Error{where, "holds no particle at a spacing of " + short_number(1000.0 * spacing) + " mm",
                    "Make the fluid's mesh larger, or the scene's spacing_max_m smaller"};

@@ -209,6 +209,19 @@ TEST(FieldValues, ScaleIsBakedAndPosesStayRigid) {
   EXPECT_NEAR(rotation_between({1, 0, 0, 0}, s.bodies[0].pose.orientation).x, 0.0, 1e-9);
 }
 
+TEST(FieldValues, ModelIsOneOfTwo) {
+  const auto with_model = [](const char* model) {
+    return test::load_edited([=](json& j) { j["scenes"][0]["extras"]["model"] = model; });
+  };
+  const auto paper = with_model("paper");
+  ASSERT_TRUE(paper) << paper.error().text();
+  EXPECT_EQ(paper.value().model, ParticleModel::kPaper);
+  const auto unknown = with_model("pbf");
+  ASSERT_FALSE(unknown);
+  EXPECT_NE(unknown.error().text().find("'pbf'"), std::string::npos);
+  EXPECT_NE(unknown.error().text().find("model"), std::string::npos);
+}
+
 TEST(FieldValues, MirroredBodyStaysClosedAndOutward) {
   const auto scene = test::load_edited([](json& j) { node_named(j, "cup")["scale"] = {-1, 1, 1}; });
   EXPECT_TRUE(scene) << scene.error().text();

@@ -55,6 +55,17 @@ TEST_P(ShippedScene, SamplesFine) {
   expect_samples(std::max(0.008, scene_.spacing_min));
 }
 
+// What the walls keep the lattice from goes on top: the fluid's mass is its mesh's, whatever the spacing.
+TEST_P(ShippedScene, HoldsTheFluidThatItsMeshSays) {
+  for (const double spacing : {scene_.spacing_max, std::max(0.008, scene_.spacing_min)}) {
+    const auto sampled = sample_scene(scene_, spacing);
+    ASSERT_TRUE(sampled) << sampled.error().text();
+    const double wanted = estimate_particles(scene_, spacing).fluid;
+    const auto count = static_cast<double>(sampled.value().fluid_positions.size());
+    EXPECT_NEAR(count, wanted, 0.03 * wanted) << "spacing " << spacing;
+  }
+}
+
 TEST_P(ShippedScene, HandsStartAtTheirGripsAndHoldStillForASecond) {
   ASSERT_FALSE(scene_.grips.empty());
   for (const Grip& grip : scene_.grips) {
