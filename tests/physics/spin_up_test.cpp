@@ -71,7 +71,7 @@ std::vector<double> torques(double spacing, double height) {
 // about 1.2 spacings (fitted with a Navier slip length: τ 0.005 to 0.02 then agree within 8 %). So the torque
 // comes late: too small while √(νt) is a spacing or two, too large afterwards, the impulse nearly right (it
 // is the fluid's final angular momentum, in which the mass left out at the round wall is missing). The bounds
-// are what is so measured and some 10 % more.
+// are what is so measured and some 5 to 10 % more.
 TEST(SpinUp, torque_of_a_long_cylinder) {
   constexpr double kSpacing = 0.005, kShort = 0.06, kTall = 0.12;
   const std::vector<double> low = torques(kSpacing, kShort), high = torques(kSpacing, kTall);
@@ -84,7 +84,7 @@ TEST(SpinUp, torque_of_a_long_cylinder) {
     EXPECT_LT(std::abs(error), kSpinUp[i].tau < 0.03 ? 0.35 : 0.95);
   }
   const double impulse = 0.5 * kPi * kDensity * kTurning * std::pow(kRadius, 4) * length;
-  EXPECT_LT(std::abs(report("spin-up, ∫T dt", high.back() - low.back(), impulse, "N·m·s")), 0.15);
+  EXPECT_LT(std::abs(report("spin-up, ∫T dt", high.back() - low.back(), impulse, "N·m·s")), 0.20);
 }
 
 }  // namespace
