@@ -41,7 +41,10 @@ TEST_P(EachModel, fluid_gains_what_gravity_and_walls_give) {
   }
   EXPECT_EQ(e.world().take_status() & kStatusSpeedLimited, 0u)
       << "a slowed particle's momentum is not given to anyone";
-  report_value("momentum identity, worst step, share of M g dt", worst, "");
+  report_value(std::string("momentum identity, ") +
+                   (GetParam() == ParticleModel::kPaper ? "paper's" : "consistent") +
+                   " model, worst step, share of M g dt",
+               worst, "");
   EXPECT_LT(worst, 1e-4);
 }
 
