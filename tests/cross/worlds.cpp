@@ -70,10 +70,11 @@ Tank stirred_tank(ParticleModel model) {
 }
 
 HandleInput hand_at(double time, double height) {
+  constexpr double kSway = 2.0 * 3.14159265358979323846;  // rad/s
   HandleInput hand;
   hand.engaged = true;
-  hand.pose.position = {-0.05 + 0.2 * time, height, 0.01 * std::sin(20.0 * time)};
-  hand.twist.linear = {0.2, 0.0, 0.2 * std::cos(20.0 * time)};
+  hand.pose.position = {-0.05 * std::cos(kSway * time), height, 0.01 * std::sin(20.0 * time)};
+  hand.twist.linear = {0.05 * kSway * std::sin(kSway * time), 0.0, 0.2 * std::cos(20.0 * time)};
   return hand;
 }
 

@@ -10,7 +10,8 @@ namespace slosh::testing {
 /// Two fluids in a tank, and a paddle that one hand draws through them (hand_at).
 Tank stirred_tank(ParticleModel model);
 
-/// Where the paddle's or the probe's hand is, 0.2 m/s along x.
+/// Where the paddle's or the probe's hand is: to and fro along x, 5 cm to either side in a second, shaking
+/// across.
 HandleInput hand_at(double time, double height);
 
 /// One fluid and one point probe (section 3) at height 0.05 m, held by a hand.

@@ -1,0 +1,71 @@
+#include "sim/backend.h"
+
+#include <gtest/gtest.h>
+
+#include "sim/world.h"
+#include "tests/support/tank.h"
+
+namespace slosh {
+namespace {
+
+using testing::make_tank;
+using testing::Tank;
+
+Result<World> tank_on(Backend backend) {
+  const Tank tank = make_tank({});
+  return make_world(tank.scene, tank.sampled, make_plan(tank.scene, tank.sampled.spacing), {1, backend});
+}
+
+TEST(Backend, HasNames) {
+  EXPECT_STREQ(backend_name(Backend::kAuto), "auto");
+  EXPECT_STREQ(backend_name(Backend::kCpu), "cpu");
+  EXPECT_STREQ(backend_name(Backend::kCuda), "cuda");
+}
+
+TEST(Backend, CudaIsThereOrSaysWhyNot) {
+  std::string reason;
+  const bool there = cuda_available(&reason);
+  EXPECT_EQ(there, reason.empty()) << reason;
+  const CudaDevice device = find_cuda_device();
+  EXPECT_EQ(device.available, there);
+  EXPECT_EQ(device.name.empty(), !there);
+}
+
+// Asked for by name, the GPU is used or an error says what to do; it is never quietly the CPU.
+TEST(Backend, AskingForCudaGivesCudaOrAnError) {
+  Result<World> world = tank_on(Backend::kCuda);
+  if (cuda_available()) {
+    ASSERT_TRUE(world) << world.error().text();
+    EXPECT_EQ(world.value().backend().rfind("CUDA, ", 0), 0u);
+    return;
+  }
+  ASSERT_FALSE(world);
+  EXPECT_FALSE(world.error().what.empty());
+  EXPECT_NE(world.error().mend.find("CPU"), std::string::npos);
+}
+
+TEST(Backend, AutoTakesWhatThereIs) {
+  Result<World> world = tank_on(Backend::kAuto);
+  ASSERT_TRUE(world);
+  EXPECT_EQ(world.value().backend().rfind(cuda_available() ? "CUDA, " : "CPU, ", 0), 0u);
+  world.value().step({});
+  EXPECT_EQ(world.value().take_status(), 0u);
+  EXPECT_EQ(world.value().failure(), "");
+}
+
+TEST(Backend, FactoryAndConstructorGiveTheSameWorld) {
+  const Tank tank = make_tank({});
+  World constructed(tank.scene, tank.sampled, make_plan(tank.scene, tank.sampled.spacing),
+                    {1, Backend::kCpu});
+  Result<World> made = tank_on(Backend::kCpu);
+  ASSERT_TRUE(made);
+  EXPECT_EQ(made.value().backend(), "CPU, 1 thread");
+  for (int i = 0; i < 20; ++i) {
+    constructed.step({});
+    made.value().step({});
+  }
+  EXPECT_EQ(made.value().hash(), constructed.hash());
+}
+
+}  // namespace
+}  // namespace slosh
