@@ -114,13 +114,13 @@ std::uint32_t Host::recent_status() const {
   return status;
 }
 
-void Host::publish_bodies(double rate) {
+void Host::publish_bodies(double rate, std::int64_t stamp_ns) {
   BodyMessage& message = channel_.bodies().back();
   world_.fill(message.bodies);
   message.bodies.status = recent_status();
   message.rate = rate;
   message.time_step = world_.plan().time_step;
-  message.stamp_ns = steady_now_ns();
+  message.stamp_ns = stamp_ns;
   channel_.bodies().publish();
 }
 
@@ -147,7 +147,7 @@ void Host::run() {
   while (!stop_.load(std::memory_order_relaxed) && world_.time() + 0.5 * time_step < options_.until) {
     if (pause_.load(std::memory_order_relaxed)) {
       report_.wall += to_seconds(steady_now_ns() - begin_ns);
-      publish_bodies(0.0);
+      publish_bodies(0.0, steady_now_ns());
       shown_rate_ = 0.0;
       while (pause_.load(std::memory_order_relaxed) && !stop_.load(std::memory_order_relaxed)) {
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -158,8 +158,12 @@ void Host::run() {
       meter.seed(time_step);
       continue;
     }
+    std::int64_t scheduled_end_ns = 0;
+    bool on_schedule = false;
     if (options_.paced) {
       const Pacer::Turn turn = pacer.next(steady_now_ns());
+      scheduled_end_ns = turn.deadline_ns + to_nanoseconds(time_step);
+      on_schedule = !turn.slipped;
       if (turn.slipped) note_status(kStatusTimeSlipped);
       sleep_until_ns(turn.deadline_ns);
     }
@@ -173,8 +177,9 @@ void Host::run() {
 
     note_status(world_.take_status());
     world_.fill(latest_);
-    const double rate = meter.quick(time_step, step_end_ns);
-    publish_bodies(rate);
+    const double measured_rate = meter.quick(time_step, step_end_ns);
+    const double rate = on_schedule ? 1.0 : measured_rate;
+    publish_bodies(rate, options_.paced ? scheduled_end_ns : step_end_ns);
     publish_picture_if_due();
 
     const double step_time = to_seconds(step_end_ns - step_begin_ns);
@@ -202,7 +207,7 @@ void Host::run() {
   report_.slipped = pacer.slipped_seconds();
   report_.rejected_poses = gate_.rejected();
   report_.diagnostics = world_.diagnostics();
-  publish_bodies(0.0);
+  publish_bodies(0.0, steady_now_ns());
   channel_.pictures().close();
   running_.store(false, std::memory_order_release);
 }

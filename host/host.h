@@ -70,7 +70,7 @@ class Host {
 
  private:
   void run();
-  void publish_bodies(double rate);
+  void publish_bodies(double rate, std::int64_t stamp_ns);
   void publish_picture_if_due();
   void note_status(std::uint32_t status);
   std::uint32_t recent_status() const;

@@ -6,6 +6,9 @@
 namespace slosh {
 namespace {
 
+// s of simulated time over which a pose is carried on by its own twist to the start of a step.
+constexpr double kMostCarried = 0.01;
+
 bool finite(const glm::dvec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
@@ -13,7 +16,7 @@ bool finite(const glm::dvec3& v) {
 bool finite(const PoseMessage& m) {
   const glm::dquat& q = m.pose.orientation;
   return finite(m.pose.position) && finite(m.twist.linear) && finite(m.twist.angular) && std::isfinite(q.w) &&
-         finite(glm::dvec3(q.x, q.y, q.z));
+         std::isfinite(m.time) && finite(glm::dvec3(q.x, q.y, q.z));
 }
 
 }  // namespace
@@ -72,7 +75,9 @@ std::span<const HandleInput> InputGate::take(Channel& channel, const BodySnapsho
     Hand& hand = hands_[i];
     if (i < channel.devices() && channel.pose(i).update()) accept(channel.pose(i).front());
     HandleInput& input = inputs_[i];
-    input.pose = hand.good.pose;
+    // The pose was read a little before or after the moment that this step starts from.
+    const double late = std::clamp(now.time - hand.good.time, -kMostCarried, kMostCarried);
+    input.pose = extrapolate(hand.good.pose, hand.good.twist, late);
     input.twist = hand.good.twist;
     input.engaged = hand.has_good && hand.good.engaged;
     double force = 0.0;

@@ -15,6 +15,7 @@ namespace slosh {
 struct PoseMessage {
   std::int64_t stamp_ns = 0;   ///< the peer's steady clock when the device was read
   std::uint64_t tick_ack = 0;  ///< tick of the newest body state that the peer had
+  double time = 0.0;           ///< simulated s that the pose belongs to, by the peer's reckoning
   std::uint32_t device = 0;    ///< index into Scene::grips
   Pose pose;                   ///< handle, world
   Twist twist;                 ///< handle, world
@@ -23,9 +24,13 @@ struct PoseMessage {
 
 /// Down, every tick: where the bodies are.
 struct BodyMessage {
-  std::int64_t stamp_ns = 0;  ///< the host's steady clock when the step ended
-  double rate = 0.0;          ///< simulated seconds a wall second right now, 0 while standing still
-  double time_step = 0.0;     ///< s, a tick's length
+  /// The host's steady clock at the moment that the state belongs to: when the step was scheduled to end, not
+  /// when it happened to be ready. Simulated time against this clock is a straight line while the world keeps
+  /// its pace, so that a hand between two states feels no jitter of the steps' durations. May be ahead of
+  /// now.
+  std::int64_t stamp_ns = 0;
+  double rate = 0.0;       ///< simulated seconds a wall second right now, 0 while standing still
+  double time_step = 0.0;  ///< s, a tick's length
   BodySnapshot bodies;
 };
 

@@ -56,7 +56,7 @@ struct Frame {
   std::span<const glm::vec3> particles;          ///< m, world
   std::span<const std::uint8_t> particle_fluid;  ///< index into fluids, 255 = not drawn
   std::vector<FluidLook> fluids;
-  float particle_radius = 0.005f;  ///< m, half the spacing; splats are 1.2 times larger (5.1)
+  float particle_radius = 0.005f;  ///< m; splats are 1.2 times larger (5.1)
   std::vector<Arrow> arrows;
   std::function<void()>
       hud;  ///< Dear ImGui calls for this frame, run between NewFrame and Render; may be empty

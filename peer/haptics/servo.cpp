@@ -34,12 +34,12 @@ void Servo::tick(std::int64_t now_ns) noexcept {
   channel_.bodies().update();
   const BodyMessage& message = channel_.bodies().front();
   const BodySnapshot& bodies = message.bodies;
-  const double age = std::max(0.0, to_seconds(now_ns - message.stamp_ns));
+  const double age = to_seconds(now_ns - message.stamp_ns);  // negative while the state is still to come
 
   // Simulated time now: the newest state's, carried on at the pace the world runs, at most two ticks.
   const double longest = 2.0 * message.time_step;
-  time_ = std::max(time_, bodies.time + std::min(age * message.rate, longest));
-  const double ahead = std::min(time_ - bodies.time, longest);
+  time_ = std::max(time_, bodies.time + std::clamp(age * message.rate, -longest, longest));
+  const double ahead = std::clamp(time_ - bodies.time, -longest, longest);
   const double interval = message.rate > 0.0 ? message.time_step / message.rate : 0.0;
   // Before the first step the world waits, and its state holds; after that, a pace of 0 means that it
   // stopped.
@@ -77,6 +77,7 @@ void Servo::tick(std::int64_t now_ns) noexcept {
     PoseMessage& up = channel_.pose(i).back();
     up.stamp_ns = now_ns;
     up.tick_ack = bodies.tick;
+    up.time = time_;
     up.device = static_cast<std::uint32_t>(i);
     up.pose = good.pose;
     up.twist = good.twist;

@@ -49,8 +49,13 @@ TriangleMesh unit_ball() {
   return ball;
 }
 
+namespace {
+// The ball that has a particle's volume, spacing³: in a thin stream neighbours then meet.
+constexpr double kRadiusOfSpacing = 0.6204;  // (3 / 4π)^(1/3)
+}  // namespace
+
 FrameBuilder::FrameBuilder(const Scene& scene, double spacing, Renderer& renderer)
-    : scene_(scene), particle_radius_(static_cast<float>(0.5 * spacing)) {
+    : scene_(scene), particle_radius_(static_cast<float>(kRadiusOfSpacing * spacing)) {
   std::vector<MeshHandle> handles(scene.meshes.size());
   std::vector<bool> loaded(scene.meshes.size(), false);
   const auto upload = [&](int index) {

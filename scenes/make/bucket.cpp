@@ -95,7 +95,11 @@ SceneWriter make_bucket() {
       writer.add_node("bucket", writer.add_mesh("bucket", bucket(), red), start,
                       {{"slosh", "body"}, {"motion", "free"}, {"mass_kg", 0.8}, {"friction", 0.4}});
   writer.add_node("water", writer.add_mesh("water", fluid(), look), start,
-                  {{"slosh", "fluid"}, {"density_kg_m3", 1000.0}, {"viscosity_pa_s", 0.05}});
+                  {{"slosh", "fluid"},
+                   {"density_kg_m3", 1000.0},
+                   {"viscosity_pa_s", 0.05},
+                   {"color", list({0.05, 0.30, 0.60})},
+                   {"extinction_per_m", list({40.0, 11.0, 6.0})}});
   for (const bool right : {false, true}) {
     const std::string side = right ? "right" : "left";
     const glm::dvec3 at((right ? 1.0 : -1.0) * (kHandleEnd + kHandleReach + kHandleRadius), kHandleHeight,
