@@ -59,7 +59,7 @@ SceneWriter make_spin() {
     const int node = writer.add_node("glass_" + number, glass_mesh, start,
                                      {{"slosh", "body"},
                                       {"motion", "free"},
-                                      {"mass_kg", 0.4},
+                                      {"mass_kg", 0.15},
                                       {"viscosity_pa_s", static_cast<double>(kViscosities[i])}});
     writer.add_node("syrup_" + number, syrup_mesh, start, {{"slosh", "fluid"}, {"fluid", "syrup"}});
     writer.add_node("hand_" + number, -1, {},
