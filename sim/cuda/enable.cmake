@@ -34,7 +34,7 @@ macro(slosh_look_for_cuda)
       if(slosh_nvcc EQUAL 0)
         set(SLOSH_CUDA_WORKS ON CACHE INTERNAL "")
       else()
-        set(SLOSH_CUDA_WORKS OFF CACHE INTERNAL "")
+        set(SLOSH_CUDA_WORKS OFF) # not cached: who mends it configures again
       endif()
     endif()
     if(NOT SLOSH_CUDA_WORKS)
