@@ -1,7 +1,9 @@
 // Which machine steps the particles.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 
 namespace slosh {
 
@@ -13,6 +15,8 @@ enum class Backend {
 
 /// "auto", "cpu" or "cuda".
 const char* backend_name(Backend backend);
+/// The reverse; nothing for any other word.
+std::optional<Backend> backend_named(std::string_view name);
 
 struct CudaDevice {
   bool available = false;

@@ -17,6 +17,13 @@ const char* backend_name(Backend backend) {
   return "";
 }
 
+std::optional<Backend> backend_named(std::string_view name) {
+  for (const Backend backend : {Backend::kAuto, Backend::kCpu, Backend::kCuda}) {
+    if (name == backend_name(backend)) return backend;
+  }
+  return std::nullopt;
+}
+
 bool cuda_available(std::string* reason) {
   const CudaDevice device = find_cuda_device();
   if (reason) *reason = device.reason;

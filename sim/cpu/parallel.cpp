@@ -7,6 +7,7 @@ namespace slosh {
 namespace {
 // About 20 µs: passes of one step follow each other faster than a sleeping thread wakes up.
 constexpr int kSpins = 2000;
+constexpr std::uint32_t kOpen = 1u << 31;
 
 void relax() {
 #if defined(__x86_64__)
@@ -49,12 +50,24 @@ void ThreadTeam::run(std::size_t count, std::size_t chunk,
   count_ = count;
   chunk_ = chunk;
   next_.store(0, std::memory_order_relaxed);
-  unfinished_.store(static_cast<std::uint32_t>(workers_.size()), std::memory_order_relaxed);
+  gate_.store(kOpen, std::memory_order_release);
   generation_.fetch_add(1, std::memory_order_release);
   generation_.notify_all();
   work_on_chunks();
-  std::uint32_t left = unfinished_.load(std::memory_order_acquire);
-  while (left != 0) left = wait_for_change(unfinished_, left);
+  std::uint32_t inside = gate_.fetch_and(~kOpen, std::memory_order_acq_rel) & ~kOpen;
+  while (inside != 0) inside = wait_for_change(gate_, inside);
+}
+
+bool ThreadTeam::join() {
+  std::uint32_t seen = gate_.load(std::memory_order_relaxed);
+  while (seen & kOpen) {
+    if (gate_.compare_exchange_weak(seen, seen + 1, std::memory_order_acq_rel)) return true;
+  }
+  return false;
+}
+
+void ThreadTeam::leave() {
+  if (gate_.fetch_sub(1, std::memory_order_acq_rel) == 1) gate_.notify_one();
 }
 
 void ThreadTeam::work_on_chunks() {
@@ -70,8 +83,9 @@ void ThreadTeam::worker_loop() {
   for (;;) {
     seen = wait_for_change(generation_, seen);
     if (stopping_.load(std::memory_order_relaxed)) return;
+    if (!join()) continue;
     work_on_chunks();
-    if (unfinished_.fetch_sub(1, std::memory_order_acq_rel) == 1) unfinished_.notify_one();
+    leave();
   }
 }
 

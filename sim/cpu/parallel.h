@@ -27,6 +27,8 @@ class ThreadTeam {
   void run(std::size_t count, std::size_t chunk, const std::function<void(std::size_t, std::size_t)>& body);
 
  private:
+  bool join();
+  void leave();
   void work_on_chunks();
   void worker_loop();
 
@@ -36,7 +38,9 @@ class ThreadTeam {
   std::size_t chunk_ = 1;
   std::atomic<std::size_t> next_{0};
   std::atomic<std::uint32_t> generation_{0};
-  std::atomic<std::uint32_t> unfinished_{0};
+  // Open for joining (the top bit), and how many workers are in. A worker that the system has put aside when
+  // the work is over never joins, and nobody waits for it.
+  std::atomic<std::uint32_t> gate_{0};
   std::atomic<bool> stopping_{false};
 };
 

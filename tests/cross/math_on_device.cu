@@ -1,14 +1,14 @@
-// sim/math as a CUDA kernel: "index, load, call, store". Built wherever there is a CUDA compiler, so that the shared
-// maths stays shared; run by hand where there is a GPU (tests/cross/README.md).
+// sim/math as a CUDA kernel: "index, load, call, store". Built wherever there is a CUDA compiler, so that the
+// shared maths stays shared; run by hand where there is a GPU (tests/cross/README.md).
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
 #include "sim/math/coupling.h"
 #include "sim/math/distance_field.h"
 #include "sim/math/kernels.h"
 #include "sim/math/pose.h"
 #include "sim/math/sph.h"
-
-#include <cmath>
-#include <cstdio>
-#include <vector>
 
 namespace {
 
@@ -62,10 +62,11 @@ double worst_difference(const std::vector<PairInput>& in, const std::vector<Pair
     const PairOutput host = evaluate(in[n], h);
     compare(host.poly6, device[n].poly6, std::pow(h, 6));
     compare(host.spiky, device[n].spiky, std::pow(h, 3));
-    // Towards the support radius the force goes to zero and its relative error with it: the scale has a hundredth of
-    // what the pair would do at no distance.
+    // Towards the support radius the force goes to zero and its relative error with it: the scale has a
+    // hundredth of what the pair would do at no distance.
     const double near = 0.01 * h * h * (std::abs(in[n].p.pressure) + std::abs(in[n].i.pressure));
-    const double push = std::abs(host.consistent.x) + std::abs(host.consistent.y) + std::abs(host.consistent.z);
+    const double push =
+        std::abs(host.consistent.x) + std::abs(host.consistent.y) + std::abs(host.consistent.z);
     compare(host.consistent.x, device[n].consistent.x, push + near);
     compare(host.hand.torque.y, device[n].hand.torque.y, 10.0);
   }
@@ -85,22 +86,26 @@ int main() {
   std::vector<PairInput> in(1 << 16);
   for (PairInput& pair : in) {
     const auto particle = [&] {
-      return ParticleView<float>{0.012f * next_random(state), 0.012f * next_random(state), 0.012f * next_random(state),
-                                 next_random(state),          next_random(state),          next_random(state),
-                                 next_random(state),          next_random(state),          next_random(state)};
+      return ParticleView<float>{
+          0.012f * next_random(state), 0.012f * next_random(state), 0.012f * next_random(state),
+          next_random(state),          next_random(state),          next_random(state),
+          next_random(state),          next_random(state),          next_random(state)};
     };
     pair = {particle(), particle()};
   }
   PairInput* device_in = nullptr;
   PairOutput* device_out = nullptr;
   std::vector<PairOutput> out(in.size());
-  bool fine = cudaMalloc(&device_in, in.size() * sizeof(PairInput)) == cudaSuccess &&
-              cudaMalloc(&device_out, out.size() * sizeof(PairOutput)) == cudaSuccess &&
-              cudaMemcpy(device_in, in.data(), in.size() * sizeof(PairInput), cudaMemcpyHostToDevice) == cudaSuccess;
+  bool fine =
+      cudaMalloc(&device_in, in.size() * sizeof(PairInput)) == cudaSuccess &&
+      cudaMalloc(&device_out, out.size() * sizeof(PairOutput)) == cudaSuccess &&
+      cudaMemcpy(device_in, in.data(), in.size() * sizeof(PairInput), cudaMemcpyHostToDevice) == cudaSuccess;
   if (fine) {
-    evaluate_all<<<static_cast<unsigned>(in.size() / 256), 256>>>(device_in, device_out, static_cast<int>(in.size()), h);
+    evaluate_all<<<static_cast<unsigned>(in.size() / 256), 256>>>(device_in, device_out,
+                                                                  static_cast<int>(in.size()), h);
     fine = cudaGetLastError() == cudaSuccess &&
-           cudaMemcpy(out.data(), device_out, out.size() * sizeof(PairOutput), cudaMemcpyDeviceToHost) == cudaSuccess;
+           cudaMemcpy(out.data(), device_out, out.size() * sizeof(PairOutput), cudaMemcpyDeviceToHost) ==
+               cudaSuccess;
   }
   if (!fine) {
     std::printf("CUDA failed: %s\n", cudaGetErrorString(cudaGetLastError()));

@@ -17,9 +17,12 @@ Result<World> tank_on(Backend backend) {
 }
 
 TEST(Backend, HasNames) {
-  EXPECT_STREQ(backend_name(Backend::kAuto), "auto");
-  EXPECT_STREQ(backend_name(Backend::kCpu), "cpu");
-  EXPECT_STREQ(backend_name(Backend::kCuda), "cuda");
+  for (const Backend backend : {Backend::kAuto, Backend::kCpu, Backend::kCuda}) {
+    EXPECT_EQ(backend_named(backend_name(backend)), backend);
+  }
+  EXPECT_EQ(backend_named("cpu"), Backend::kCpu);
+  EXPECT_EQ(backend_named("CPU"), std::nullopt);
+  EXPECT_EQ(backend_named(""), std::nullopt);
 }
 
 TEST(Backend, CudaIsThereOrSaysWhyNot) {
