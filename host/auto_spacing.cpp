@@ -57,7 +57,10 @@ std::string sentence(const SpacingChoice& c, double margin) {
 Result<StepTiming> time_steps(const Scene& scene, double spacing, const SpacingOptions& options) {
   Result<SampledScene> sampled = sample_scene(scene, spacing);
   if (!sampled) return sampled.error();
-  World world(scene, sampled.value(), make_plan(scene, spacing), WorldOptions{options.threads});
+  Result<World> made = make_world(scene, sampled.value(), make_plan(scene, spacing),
+                                  WorldOptions{options.threads, options.backend});
+  if (!made) return made.error();
+  World& world = made.value();
 
   // The hands hold on where the scene starts, so that the measured world does what the played one will.
   BodySnapshot bodies;

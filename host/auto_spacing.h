@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scenes/scene.h"
+#include "sim/backend.h"
 #include "sim/math/result.h"
 
 namespace slosh {
@@ -46,7 +47,8 @@ SpacingChoice choose_spacing(std::span<const StepTiming> timings,
 std::vector<SpacingCandidate> spacing_candidates(const Scene& scene);
 
 struct SpacingOptions {
-  int threads = 0;             ///< what the run will use, 0 = all cores
+  int threads = 0;  ///< what the run will use, 0 = all cores
+  Backend backend = Backend::kAuto;
   double seconds_each = 0.35;  ///< wall time of measuring at each of two spacings
   /// Told what is being measured; may be empty.
   std::function<void(const std::string&)> tell;

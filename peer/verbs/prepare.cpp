@@ -26,7 +26,8 @@ Result<Spacing> spacing_for_particles(const Scene& scene, std::size_t particles)
   return Spacing{spacing, "asked for " + grouped(particles) + " fluid particles"};
 }
 
-Result<Spacing> choose(const Scene& scene, const PlayOptions& options, int threads, Progress& progress) {
+Result<Spacing> choose(const Scene& scene, const PlayOptions& options, int threads, Backend backend,
+                       Progress& progress) {
   if (options.particles > 0) return spacing_for_particles(scene, options.particles);
   if (!options.spacing.empty() && options.spacing != "auto") {
     double metres = 0.0;
@@ -43,6 +44,7 @@ Result<Spacing> choose(const Scene& scene, const PlayOptions& options, int threa
   progress.phase("measuring");
   SpacingOptions measure;
   measure.threads = threads;
+  measure.backend = backend;
   measure.tell = [&progress](const std::string& text) { progress.update(-1.0, text); };
   const Result<SpacingChoice> choice = measure_spacing(scene, measure);
   if (!choice) return choice.error();
@@ -86,12 +88,22 @@ Result<std::pair<int, int>> parse_size(const std::string& text) {
                "For example 640x480"};
 }
 
+Result<Backend> choose_backend(const std::string& text) {
+  const std::optional<Backend> wanted = backend_named(text);
+  if (!wanted) return Error{"--backend", "'" + text + "' is unknown", "Choose auto, cpu or cuda"};
+  std::string reason;
+  const bool gpu = *wanted != Backend::kCpu && cuda_available(&reason);
+  if (*wanted == Backend::kCuda && !gpu) {
+    return Error{"--backend cuda", reason, "Use --backend cpu or auto"};
+  }
+  return gpu ? Backend::kCuda : Backend::kCpu;
+}
+
 Result<Prepared> prepare(const PlayOptions& options, bool headless, Progress& progress) {
   Prepared p;
-  if (options.backend == "cuda") {
-    return Error{"--backend cuda", "this build has no CUDA backend", "Use --backend cpu or auto"};
-  }
-  p.backend = "cpu";
+  const Result<Backend> backend = choose_backend(options.backend);
+  if (!backend) return backend.error();
+  p.backend = backend.value();
   p.machine = this_machine();
   // Drawing takes a core of its own; the device loop and the encoder take little.
   p.threads = options.threads > 0 ? options.threads
@@ -113,7 +125,7 @@ Result<Prepared> prepare(const PlayOptions& options, bool headless, Progress& pr
   if (!folder) return folder.error();
   p.folder = folder.value();
 
-  const Result<Spacing> spacing = choose(p.scene, options, p.threads, progress);
+  const Result<Spacing> spacing = choose(p.scene, options, p.threads, p.backend, progress);
   if (!spacing) return spacing.error();
   p.spacing_reason = spacing.value().reason;
   char text[32];

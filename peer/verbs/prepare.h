@@ -9,6 +9,7 @@
 #include "peer/verbs/play_options.h"
 #include "scenes/sample.h"
 #include "scenes/scene.h"
+#include "sim/backend.h"
 #include "sim/plan.h"
 
 namespace slosh {
@@ -19,16 +20,20 @@ struct Prepared {
   Plan plan;
   std::string spacing_reason;
   Machine machine;
-  std::string backend;           ///< what was chosen
-  int threads = 1;               ///< the simulation's
-  double seconds = 0.0;          ///< simulated; infinity = until the window closes
-  std::filesystem::path folder;  ///< exists, or empty
+  Backend backend = Backend::kCpu;  ///< what was chosen; never kAuto
+  int threads = 1;                  ///< the simulation's
+  double seconds = 0.0;             ///< simulated; infinity = until the window closes
+  std::filesystem::path folder;     ///< exists, or empty
   int width = 0;
   int height = 0;
 };
 
 /// Finds and loads a shipped name or a file.
 Result<Scene> load_named_scene(const std::string& name_or_path);
+
+/// What `--backend` comes to on this machine: kCpu or kCuda. Errors: another word than auto, cpu, cuda; cuda
+/// where no GPU answers.
+Result<Backend> choose_backend(const std::string& text);
 
 /// "640x480" to two numbers of pixels, 16–8192 each. Errors: anything else.
 Result<std::pair<int, int>> parse_size(const std::string& text);

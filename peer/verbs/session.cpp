@@ -22,7 +22,10 @@ Result<std::unique_ptr<Session>> Session::create(const Prepared& prepared, Devic
     if (!opened) return opened.error();
   }
   const Scene& scene = prepared.scene;
-  World world(scene, prepared.sampled, prepared.plan, WorldOptions{prepared.threads});
+  Result<World> made =
+      make_world(scene, prepared.sampled, prepared.plan, WorldOptions{prepared.threads, prepared.backend});
+  if (!made) return made.error();
+  World world = std::move(made.value());
   // The world comes to rest in the hands as they are before the run. Nobody else reads the devices yet.
   std::vector<HandleInput> hands;
   for (const std::unique_ptr<Device>& device : devices.devices) {
@@ -123,7 +126,7 @@ void Session::report(RunSummary& s) const {
     const Peak& peak = recorder_->peaks()[i];
     s.devices.push_back({prepared_.scene.grips[i].name, servo_->device(i).kind(), peak.force, peak.torque});
   }
-  s.backend = prepared_.backend;
+  s.backend = backend_name(prepared_.backend);
   s.threads = prepared_.threads;
   s.machine = prepared_.machine;
   s.version = SLOSH_VERSION;

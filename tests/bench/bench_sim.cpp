@@ -147,7 +147,7 @@ bool bench_speed(Table& table, const std::vector<std::size_t>& counts, int steps
       Scene scene = pool.value();
       scene.model = model;
       for (const int threads : {1, cores}) {
-        World world(scene, sampled.value(), make_plan(scene, sampled.value().spacing), {threads});
+        World world(scene, sampled.value(), make_plan(scene, sampled.value().spacing), {threads, Backend::kCpu});
         const std::vector<HandleInput> hands = first_hands(scene);
         time_steps(world, hands, 20);
         const Timing t = time_steps(world, hands, steps);
@@ -248,7 +248,7 @@ bool bench_passes(Table& table, std::size_t count, int steps) {
       scene.fluid_volumes.back().fluid = 1;
       for (std::size_t p = 0; p < particles.fluid_index.size(); p += 2) particles.fluid_index[p] = 1;
     }
-    worlds.emplace_back(scene, particles, make_plan(scene, particles.spacing), WorldOptions{1});
+    worlds.emplace_back(scene, particles, make_plan(scene, particles.spacing), WorldOptions{1, Backend::kCpu});
   }
   const std::vector<HandleInput> hands = first_hands(pool.value());
   // In turns, so that what else the machine does falls on all three alike.

@@ -112,7 +112,7 @@ Experiment::Experiment(const Scene& scene, const SampledScene& sampled) : sample
 }
 
 void Experiment::start(const Scene& scene) {
-  world_ = std::make_unique<World>(scene, sampled_, make_plan(scene, sampled_.spacing), WorldOptions{1});
+  world_ = std::make_unique<World>(scene, sampled_, make_plan(scene, sampled_.spacing), WorldOptions{1, Backend::kCpu});
   handles_.resize(scene.grips.size());
   for (std::size_t g = 0; g < handles_.size(); ++g) {
     handles_[g].pose = compose(scene.bodies[scene.grips[g].body].pose, scene.grips[g].pose);
