@@ -82,7 +82,7 @@ void compute_density(PassContext& context, ThreadTeam& team, FluidParticles& flu
         const ParticleKind& kind = context.kinds[fluid.kind[p]];
         const PressureState state =
             pressure_state(xsimd::hadd(sum), context.rest_number_density, context.rest_volume,
-                           kind.rest_density, stiffness, tension, consistent);
+                           kind.rest_density, stiffness, tension, fluid.volume[p], consistent);
         densest = std::max(densest, state.compression);
         fluid.pressure[p] = state.pressure;
         fluid.volume[p] = state.volume;

@@ -59,6 +59,7 @@ void sort_fluid(PassContext& context, ThreadTeam& team, FluidParticles& fluid, K
     gather(fluid.vx, scratch.vx);
     gather(fluid.vy, scratch.vy);
     gather(fluid.vz, scratch.vz);
+    gather(fluid.volume, scratch.volume);
     gather(fluid.id, scratch.id);
     gather(fluid.kind, scratch.kind);
   });
@@ -68,6 +69,7 @@ void sort_fluid(PassContext& context, ThreadTeam& team, FluidParticles& fluid, K
   fluid.vx.swap(scratch.vx);
   fluid.vy.swap(scratch.vy);
   fluid.vz.swap(scratch.vz);
+  fluid.volume.swap(scratch.volume);
   fluid.id.swap(scratch.id);
   fluid.kind.swap(scratch.kind);
   fluid.index.rebuild(context.grid, fluid.key.data(), fluid.active);

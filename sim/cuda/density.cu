@@ -45,7 +45,7 @@ __global__ __launch_bounds__(kThreads) void density_kernel(StepConstants c, cons
   }
   const ParticleKind kind = kinds[fluid.state.kind[p]];
   const PressureState state = pressure_state(sum, c.rest_number_density, c.rest_volume, kind.rest_density,
-                                             c.stiffness, c.tension, consistent);
+                                             c.stiffness, c.tension, fluid.state.v[p].w, consistent);
   fluid.pressed[p] = make_float4(x.x, x.y, x.z, state.pressure);
   fluid.state.v[p].w = state.volume;
   if (viscosities) fluid.viscosity[p] = kind.viscosity;
