@@ -99,6 +99,7 @@ class CpuEngine final : public ParticleEngine {
  private:
   void load(const ParticleStart& start) {
     fluid_.resize(start.positions.size());
+    std::fill(fluid_.volume.begin(), fluid_.volume.end(), context_.rest_volume);
     scratch_.resize(start.positions.size());
     for (std::size_t i = 0; i < start.positions.size(); ++i) {
       const glm::vec3& x = start.positions[i];

@@ -62,7 +62,7 @@ __global__ void carry_probes_kernel(StepConstants c, const DeviceProbe* probes, 
   const DeviceProbe probe = probes[i];
   const std::uint32_t slot = slots[i];
   fluid.x[slot] = probe.x;
-  fluid.v[slot] = probe.v;
+  fluid.v[slot] = make_float4(probe.v.x, probe.v.y, probe.v.z, fluid.v[slot].w);  // the volume stays its own
   // A probe that a hand takes out of the domain comes back with it: it waits in the nearest cell.
   fluid.key[slot] = c.grid.cell_of(probe.x.x, probe.x.y, probe.x.z);
 }

@@ -21,14 +21,14 @@ struct PressureState {
 inline constexpr float kBulkDamping = 0.25f;
 
 /// Eq 7 from the density kernel's sum over neighbours (itself included), measured against the rest lattice's
-/// sum. `last_volume` is the particle's volume one step ago, 0 where there is none.
+/// sum. `last_volume` (> 0) is the particle's volume one step ago, the rest volume at the start.
 SLOSH_HD inline PressureState pressure_state(float sum, float rest_sum, float rest_volume, float rest_density,
                                              float stiffness, float tension, float last_volume,
                                              bool consistent) {
   const float compression = sum / rest_sum - 1.0f;
   const float effective = effective_compression(compression, tension);
   float felt = effective;
-  if (consistent && effective > 0.0f && last_volume > 0.0f) {
+  if (consistent && effective > 0.0f) {
     const float gained = effective - (rest_volume / last_volume - 1.0f);
     felt = RealOps<float>::positive_part(effective + kBulkDamping * gained);
   }
