@@ -20,6 +20,7 @@ struct PoseMessage {
   Pose pose;                   ///< handle, world
   Twist twist;                 ///< handle, world
   bool engaged = false;
+  bool lost = false;  ///< not engaged because contact was lost: the host lets go gently
 };
 
 /// Down, every tick: where the bodies are.
@@ -29,6 +30,7 @@ struct BodyMessage {
   /// its pace, so that a hand between two states feels no jitter of the steps' durations. May be ahead of
   /// now.
   std::int64_t stamp_ns = 0;
+  std::uint32_t run = 0;   ///< rises by one with every reset, when simulated time starts anew
   double rate = 0.0;       ///< simulated seconds a wall second right now, 0 while standing still
   double time_step = 0.0;  ///< s, a tick's length
   BodySnapshot bodies;

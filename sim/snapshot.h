@@ -55,6 +55,8 @@ struct Snapshot {
   BodySnapshot rigid;
   std::vector<glm::vec3> positions;       ///< fluid particles, in an order that is fixed for the run (by id)
   std::vector<std::uint8_t> fluid_index;  ///< into Scene::fluids; 255 = retired, not to be drawn
+  /// 1 = seen from outside (sim/shell.h), one a particle; empty unless the shell was asked for.
+  std::vector<std::uint8_t> shell;
 };
 
 }  // namespace slosh

@@ -19,7 +19,7 @@ check_room() {
 
 check_room scenes 'sim/math/'
 check_room sim 'scenes/scene\.h"'
-check_room net 'sim/snapshot\.h"|sim/math/'
+check_room net 'sim/snapshot\.h"|sim/math/|scenes/scene\.h"'
 check_room host 'scenes/|sim/|net/'
 check_room peer 'scenes/|sim/|net/|render/|host/'
 check_room render 'sim/math/'
