@@ -5,66 +5,18 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/support/tank.h"
+#include "tests/support/stirred_tank.h"
 
 namespace slosh {
 namespace {
 
 using testing::make_tank;
+using testing::stirred_tank;
 using testing::Tank;
 using testing::TankOptions;
 
 World make_world(const Tank& tank, int threads = 1) {
   return World(tank.scene, tank.sampled, make_plan(tank.scene, tank.sampled.spacing), {threads});
-}
-
-// A tank that a paddle, held by one hand, is drawn through: every pass of the method at once.
-Tank stirred_tank() {
-  TankOptions options;
-  options.inner = {0.2, 0.2, 0.12};
-  options.fill = 0.08;
-  Tank tank = make_tank(options);
-  Fluid oil;
-  oil.name = "oil";
-  oil.rest_density = 900.0;
-  oil.dynamic_viscosity = 0.3;
-  tank.scene.fluids.push_back(oil);
-  testing::add_fluid_block(tank.scene, tank.sampled, 1, {-0.1, 0.08, -0.06}, {0.1, 0.1, 0.06});
-  Body paddle;
-  paddle.name = "paddle";
-  paddle.motion = BodyMotion::kFree;
-  paddle.mass = {0.2, glm::dvec3(0.0), glm::dmat3(2e-4)};
-  paddle.mesh = static_cast<int>(tank.scene.meshes.size());
-  paddle.pose.position = {-0.05, 0.09, 0.0};
-  tank.scene.meshes.push_back(
-      testing::box_mesh(glm::dvec3(-0.005, -0.04, -0.03), glm::dvec3(0.005, 0.04, 0.03)));
-  tank.scene.bodies.push_back(paddle);
-  SurfaceSamples samples;
-  for (int y = -4; y <= 4; ++y) {
-    for (int z = -3; z <= 3; ++z) {
-      for (const float side : {-0.005f, 0.005f}) {
-        samples.positions.emplace_back(side, 0.01f * y, 0.01f * z);
-        samples.normals.emplace_back(side > 0.0f ? 1.0f : -1.0f, 0.0f, 0.0f);
-      }
-    }
-  }
-  samples.particle_volume = 1e-6f;
-  tank.sampled.surfaces.push_back(samples);
-  tank.sampled.distance_fields.emplace_back();
-  // Nothing starts inside the paddle.
-  SampledScene& s = tank.sampled;
-  for (std::size_t p = s.fluid_positions.size(); p-- > 0;) {
-    const glm::vec3 d = glm::abs(s.fluid_positions[p] - glm::vec3(paddle.pose.position));
-    if (d.x > 0.012f || d.y > 0.047f || d.z > 0.037f) continue;
-    s.fluid_positions.erase(s.fluid_positions.begin() + static_cast<std::ptrdiff_t>(p));
-    s.fluid_velocities.erase(s.fluid_velocities.begin() + static_cast<std::ptrdiff_t>(p));
-    s.fluid_index.erase(s.fluid_index.begin() + static_cast<std::ptrdiff_t>(p));
-  }
-  Grip grip;
-  grip.name = "hand";
-  grip.body = 1;
-  tank.scene.grips.push_back(grip);
-  return tank;
 }
 
 HandleInput hand_at(double time) {
