@@ -22,7 +22,7 @@ inline constexpr char kAlpn[] =
     "slosh/1";  ///< the TLS application protocol; a peer of another version fails here
 
 constexpr std::size_t kMaxDatagram = 1150;           ///< bytes of payload, before path MTU discovery
-constexpr std::size_t kMaxControlMessage = 1 << 16;  ///< bytes
+constexpr std::size_t kMaxControlMessage = 1 << 17;  ///< bytes of payload; a full Roster is the largest
 constexpr std::size_t kMaxSceneBytes = 64u << 20;    ///< compressed and decompressed alike
 constexpr std::size_t kMaxName = 32;                 ///< bytes of a person's name
 constexpr std::size_t kMaxText = 400;                ///< bytes of a sentence
@@ -31,11 +31,13 @@ constexpr std::uint32_t kMaxBodies = 256;
 constexpr std::uint32_t kMaxPeers = 1024;
 constexpr std::uint32_t kMaxFluids = 32;
 constexpr std::uint64_t kMaxTick = std::uint64_t{1} << 48;
-constexpr double kMaxTime = 1e7;      ///< s
-constexpr double kMaxPosition = 1e4;  ///< m
-constexpr double kMaxSpeed = 1e4;     ///< m/s, rad/s
-constexpr double kMaxForce = 1e7;     ///< N, N·m
-constexpr std::size_t kMaxPoseRepeats = 32;
+constexpr double kMaxTime = 1e7;                ///< s
+constexpr double kMaxPosition = 1e4;            ///< m
+constexpr double kMaxSpeed = 1e4;               ///< m/s, rad/s
+constexpr double kMaxForce = 1e7;               ///< N, N·m
+constexpr std::size_t kMaxPoseRepeats = 13;     ///< as many as fit into a datagram
+constexpr std::size_t kMaxMissingRanges = 128;  ///< likewise
+constexpr double kMaxViscosity = 1e7;           ///< Pa·s, as scenes have it
 constexpr std::size_t kTokenBytes = 16;
 
 using Token = std::array<std::uint8_t, kTokenBytes>;
@@ -77,7 +79,7 @@ enum class ControlType : std::uint8_t {
 };
 
 enum class Role : std::uint8_t { kParticipant, kSpectator };
-constexpr std::uint64_t kRoles = 2;
+constexpr std::array kRoleNames{"participant", "spectator"};
 
 /// The peer's first message. Its key is the one of its TLS certificate.
 struct Hello {
@@ -110,7 +112,7 @@ void visit(V& v, GripRequest& m) {
 }
 
 enum class WorldAction : std::uint8_t { kPause, kContinue, kReset };
-constexpr std::uint64_t kWorldActions = 3;
+constexpr std::array kWorldActionNames{"pause", "continue", "reset"};
 
 struct WorldRequest {
   static constexpr ControlType kType = ControlType::kWorldRequest;
@@ -120,7 +122,7 @@ struct WorldRequest {
 template <class V>
 void visit(V& v, WorldRequest& m) {
   v.natural("request", m.request, 0, 0xffffffff);
-  v.choice("action", m.action, kWorldActions);
+  v.choice("action", m.action, kWorldActionNames);
 }
 
 /// What may change while the world runs.
@@ -128,7 +130,7 @@ enum class Parameter : std::uint8_t {
   kFluidViscosity,  ///< Pa·s; index = fluid
   kGravityScale,    ///< times the scene's, 0–2; index unused
 };
-constexpr std::uint64_t kParameters = 2;
+constexpr std::array kParameterNames{"fluid viscosity", "gravity scale"};
 
 struct ParameterRequest {
   static constexpr ControlType kType = ControlType::kParameterRequest;
@@ -140,9 +142,9 @@ struct ParameterRequest {
 template <class V>
 void visit(V& v, ParameterRequest& m) {
   v.natural("request", m.request, 0, 0xffffffff);
-  v.choice("parameter", m.parameter, kParameters);
+  v.choice("parameter", m.parameter, kParameterNames);
   v.natural("index", m.index, 0, kMaxFluids - 1);
-  v.real64("value", m.value, 0.0, 1e6);
+  v.real64("value", m.value, 0.0, kMaxViscosity);
 }
 
 /// Either side is about to close, and says why.
@@ -172,7 +174,7 @@ struct Welcome {
 template <class V>
 void visit(V& v, Welcome& m) {
   v.natural("peer", m.peer, 0, kMaxPeers - 1);
-  v.choice("role", m.role, kRoles);
+  v.choice("role", m.role, kRoleNames);
   v.text("name", m.name, kMaxName);
   v.bits64("session", m.session);
   v.natural("scene_bytes", m.scene_bytes, 0, kMaxSceneBytes);
@@ -195,7 +197,8 @@ enum class RefusalCode : std::uint8_t {
   kEnding,      ///< the host ends
   kTimedOut,
 };
-constexpr std::uint64_t kRefusalCodes = 10;
+constexpr std::array kRefusalNames{"bad token",   "revoked",  "expired",  "full",   "version",
+                                   "bad message", "too much", "replaced", "ending", "timed out"};
 
 /// The host's last message before it closes.
 struct Refused {
@@ -205,7 +208,7 @@ struct Refused {
 };
 template <class V>
 void visit(V& v, Refused& m) {
-  v.choice("code", m.code, kRefusalCodes);
+  v.choice("code", m.code, kRefusalNames);
   v.text("text", m.text, kMaxText);
 }
 
@@ -220,7 +223,7 @@ template <class V>
 void visit(V& v, RosterEntry& m) {
   v.natural("peer", m.peer, 0, kMaxPeers - 1);
   v.text("name", m.name, kMaxName);
-  v.choice("role", m.role, kRoles);
+  v.choice("role", m.role, kRoleNames);
   v.flag("connected", m.connected);
   v.list("grips", m.grips, kMaxGrips,
          [](auto& each, std::uint32_t& grip) { each.natural("grip", grip, 0, kMaxGrips - 1); });
@@ -264,7 +267,7 @@ void visit(V& v, WorldInfo& m) {
   v.natural("run", m.run, 0, 0xffffffff);
   v.real64("gravity_scale", m.gravity_scale, 0.0, 2.0);
   v.list("viscosities", m.viscosities, kMaxFluids,
-         [](auto& each, double& value) { each.real64("viscosity", value, 0.0, 1e6); });
+         [](auto& each, double& value) { each.real64("viscosity", value, 0.0, kMaxViscosity); });
 }
 
 /// Something to tell a person: who came, who went, what was refused.
@@ -409,7 +412,7 @@ void visit(V& v, Bodies& m) {
   v.natural("pose_number", m.pose_number, 0, kMaxTick);
   v.stamp("pose_stamp_ns", m.pose_stamp_ns);
   v.natural("parts", m.parts, 1, 256);
-  v.natural("part", m.part, 0, 255);
+  v.below("part", m.part, 255, "parts", m.parts);
   v.list("bodies", m.bodies, kMaxBodies, [](auto& each, BodyEntry& entry) { visit(each, entry); });
   v.list("grips", m.grips, kMaxGrips, [](auto& each, GripEntry& entry) { visit(each, entry); });
 }
@@ -449,6 +452,7 @@ template <class V>
 void visit(V& v, BlockRange& m) {
   v.natural("first", m.first, 0, 0xffffff);
   v.natural("count", m.count, 1, 0xffffff);
+  v.rule("count", m.first + m.count <= 0x1000000, "reaches past the last block");
 }
 struct SnapshotFeedback {
   static constexpr DatagramType kType = DatagramType::kSnapshotFeedback;
@@ -466,23 +470,26 @@ void visit(V& v, SnapshotFeedback& m) {
   v.natural("frame", m.frame, 0, kMaxTick);
   v.natural("pieces", m.pieces, 0, 0xffffffff);
   v.natural("pieces_sent", m.pieces_sent, 0, 0xffffffff);
-  v.list("missing", m.missing, 256, [](auto& each, BlockRange& range) { visit(each, range); });
+  v.list("missing", m.missing, kMaxMissingRanges, [](auto& each, BlockRange& range) { visit(each, range); });
 }
 
 // ---------------------------------------------------------------- envelopes
 
-/// Type and payload of a datagram in one array.
+/// Type and payload of a datagram in one array. Tells through `fault` what a Writer had to bring into range.
 template <class M>
-Bytes datagram(const M& message) {
+Bytes datagram(const M& message, Fault* fault = nullptr) {
   Bytes out{static_cast<std::uint8_t>(M::kType)};
-  encode(message, out);
+  const Fault found = encode(message, out);
+  if (fault) *fault = found;
   return out;
 }
 
-/// Type, length and payload of a control message.
+/// Type, length and payload of a control message; likewise.
 template <class M>
-Bytes control(const M& message) {
-  const Bytes payload = encoded(message);
+Bytes control(const M& message, Fault* fault = nullptr) {
+  Bytes payload;
+  const Fault found = encode(message, payload);
+  if (fault) *fault = found;
   Bytes out;
   Writer writer(out);
   std::uint64_t type = static_cast<std::uint64_t>(M::kType);

@@ -1,0 +1,32 @@
+// A scene as one block of bytes: over the network to a peer, which needs no files, and in recordings and
+// checkpoints.
+#pragma once
+
+#include "net/wire/messages.h"
+#include "scenes/scene.h"
+#include "sim/math/result.h"
+
+namespace slosh {
+
+enum class SceneParts {
+  kSeen,  ///< what a peer needs: without fluid volumes, meshes that nothing shows, and the file's name
+  kAll,   ///< what a host needs to carry on: all
+};
+
+/// The scene and its particle spacing (m). Every number comes back to the bit. Names are cleaned and cut
+/// (wire::clean_text). Errors: something that a peer could not take, named by its field: more than
+/// wire::kMaxBodies bodies, a mesh that reaches further than 10 km, above wire::kMaxSceneBytes in all.
+Result<wire::Bytes> pack_scene(const Scene& scene, double spacing, SceneParts parts);
+
+struct UnpackedScene {
+  Scene scene;
+  double spacing = 0.0;  ///< m
+};
+
+/// Takes nothing on trust. What comes back is as sound as what load_scene gives, but for closedness of
+/// meshes: every index in range, numbers finite and in range, as many normals as positions, hand motions
+/// rising in time, free bodies with a mass and an inertia. Allocates a small multiple of what was sent.
+/// Errors: what is damaged, and where.
+Result<UnpackedScene> unpack_scene(wire::ByteView package);
+
+}  // namespace slosh
