@@ -21,6 +21,7 @@ struct PoseMessage {
   Twist twist;                 ///< handle, world
   bool engaged = false;
   bool lost = false;  ///< not engaged because contact was lost: the host lets go gently
+  std::uint64_t number = 0;  ///< of the sender's samples, rising; comes back in BodyMessage::pose_numbers
 };
 
 /// Down, every tick: where the bodies are.
@@ -33,6 +34,7 @@ struct BodyMessage {
   std::uint32_t run = 0;   ///< rises by one with every reset, when simulated time starts anew
   double rate = 0.0;       ///< simulated seconds a wall second right now, 0 while standing still
   double time_step = 0.0;  ///< s, a tick's length
+  std::vector<std::uint64_t> pose_numbers;  ///< one a grip: PoseMessage::number of what the step used
   BodySnapshot bodies;
 };
 
