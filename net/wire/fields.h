@@ -7,8 +7,8 @@
 //     ...
 //   }
 //
-// The visitors are Writer and Reader, Describer (WIRE_FORMAT.md) in describer.h, and, for tests and fuzzers,
-// Randomizer and Mutator in randomizer.h and mutator.h. All numbers are little-endian; counts and naturals
+// The visitors are Writer and Reader, Describer (WIRE_FORMAT.md) in describe.h, and, for tests and fuzzers,
+// Randomizer and Mutator in randomize.h and mutate.h. All numbers are little-endian; counts and naturals
 // are LEB128 varints in their shortest form. What a list may name:
 //
 //   natural(name, value, least, most)            varint

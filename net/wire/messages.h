@@ -80,6 +80,7 @@ enum class ControlType : std::uint8_t {
 
 enum class Role : std::uint8_t { kParticipant, kSpectator };
 constexpr std::array kRoleNames{"participant", "spectator"};
+constexpr std::uint64_t kRoles = kRoleNames.size();
 
 /// The peer's first message. Its key is the one of its TLS certificate.
 struct Hello {
@@ -113,6 +114,7 @@ void visit(V& v, GripRequest& m) {
 
 enum class WorldAction : std::uint8_t { kPause, kContinue, kReset };
 constexpr std::array kWorldActionNames{"pause", "continue", "reset"};
+constexpr std::uint64_t kWorldActions = kWorldActionNames.size();
 
 struct WorldRequest {
   static constexpr ControlType kType = ControlType::kWorldRequest;
@@ -131,6 +133,7 @@ enum class Parameter : std::uint8_t {
   kGravityScale,    ///< times the scene's, 0–2; index unused
 };
 constexpr std::array kParameterNames{"fluid viscosity", "gravity scale"};
+constexpr std::uint64_t kParameters = kParameterNames.size();
 
 struct ParameterRequest {
   static constexpr ControlType kType = ControlType::kParameterRequest;
@@ -199,6 +202,7 @@ enum class RefusalCode : std::uint8_t {
 };
 constexpr std::array kRefusalNames{"bad token",   "revoked",  "expired",  "full",   "version",
                                    "bad message", "too much", "replaced", "ending", "timed out"};
+constexpr std::uint64_t kRefusalCodes = kRefusalNames.size();
 
 /// The host's last message before it closes.
 struct Refused {

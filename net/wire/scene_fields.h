@@ -1,0 +1,187 @@
+// The field lists of a scene. Numbers keep every bit: a host that carries on from a recording must step the
+// same world. The limits are those of scenes/README.md, or a network's (messages.h) where these are tighter.
+#pragma once
+
+#include "net/wire/messages.h"
+#include "scenes/scene.h"
+
+namespace slosh::wire {
+
+constexpr std::size_t kMaxMeshes = 4096;
+constexpr std::size_t kMaxMeshVertices = 6'000'000;
+constexpr std::size_t kMaxMeshTriangles = 2'000'000;
+constexpr std::size_t kMaxPictures = 4096;
+constexpr std::size_t kMaxFluidVolumes = 1024;
+constexpr std::size_t kMaxPoseKeys = 1'000'000;
+constexpr double kMaxDomain = 1e9;    ///< m
+constexpr double kMaxInertia = 1e18;  ///< kg·m²
+constexpr double kMaxMass = 1e9;      ///< kg
+
+constexpr std::array kBodyMotionNames{"fixed", "free"};
+constexpr std::array kParticleModelNames{"consistent", "paper"};
+
+/// What travels: a scene and the spacing of its particles.
+struct PackedScene {
+  Scene scene;
+  double spacing = 0.01;  ///< m
+};
+
+/// Positive definite, as a solid's is.
+inline bool can_turn(const glm::dmat3& inertia) {
+  const double minor = inertia[0][0] * inertia[1][1] - inertia[0][1] * inertia[1][0];
+  return inertia[0][0] > 0.0 && minor > 0.0 && glm::determinant(inertia) > 0.0;
+}
+
+template <class V>
+void visit_exact(V& v, Pose& m) {
+  v.vec3_exact("position", m.position, kMaxPosition);
+  v.rotation_exact("orientation", m.orientation);
+}
+
+template <class V>
+void visit(V& v, TriangleMesh& m) {
+  v.text("name", m.name, kMaxText);
+  v.list("positions", m.positions, kMaxMeshVertices,
+         [](auto& each, glm::vec3& p) { each.vec3("position", p, kMaxPosition); });
+  const std::size_t count = m.positions.size();
+  v.list_as_long("normals", m.normals, "positions", count,
+                 [](auto& each, glm::vec3& n) { each.direction("normal", n); });
+  v.list("triangles", m.triangles, kMaxMeshTriangles, [count](auto& each, glm::uvec3& t) {
+    each.below("a", t.x, kMaxMeshVertices - 1, "positions", count);
+    each.below("b", t.y, kMaxMeshVertices - 1, "positions", count);
+    each.below("c", t.z, kMaxMeshVertices - 1, "positions", count);
+  });
+}
+
+template <class V>
+void visit(V& v, Material& m) {
+  v.real32("red", m.base_color.x, 0.0, 1.0);
+  v.real32("green", m.base_color.y, 0.0, 1.0);
+  v.real32("blue", m.base_color.z, 0.0, 1.0);
+  v.real32("metallic", m.metallic, 0.0, 1.0);
+  v.real32("roughness", m.roughness, 0.0, 1.0);
+  v.real32("opacity", m.opacity, 0.0, 1.0);
+}
+
+template <class V>
+void visit(V& v, Fluid& m) {
+  v.text("name", m.name, kMaxText);
+  v.real64("rest_density", m.rest_density, 1e-6, 1e6);
+  v.real64("dynamic_viscosity", m.dynamic_viscosity, 0.0, kMaxViscosity);
+  v.real32("red", m.color.x, 0.0, 1.0);
+  v.real32("green", m.color.y, 0.0, 1.0);
+  v.real32("blue", m.color.z, 0.0, 1.0);
+  v.real32("extinction_red", m.extinction.x, 0.0, 1e5);
+  v.real32("extinction_green", m.extinction.y, 0.0, 1e5);
+  v.real32("extinction_blue", m.extinction.z, 0.0, 1e5);
+}
+
+template <class V>
+void visit(V& v, MassProperties& m) {
+  v.real64("mass", m.mass, 0.0, kMaxMass);
+  v.vec3_exact("center_of_mass", m.center_of_mass, kMaxPosition);
+  v.vec3_exact("inertia_x", m.inertia[0], kMaxInertia);
+  v.vec3_exact("inertia_y", m.inertia[1], kMaxInertia);
+  v.vec3_exact("inertia_z", m.inertia[2], kMaxInertia);
+}
+
+template <class V>
+void visit(V& v, Body& m, std::size_t meshes) {
+  v.text("name", m.name, kMaxText);
+  v.index("mesh", m.mesh, "meshes", meshes, true);
+  v.choice("motion", m.motion, kBodyMotionNames);
+  v.flag("point_probe", m.point_probe);
+  v.rule("mesh", m.mesh >= 0 || m.point_probe, "is missing");
+  visit_exact(v, m.pose);
+  v.vec3_exact("linear", m.twist.linear, kMaxSpeed);
+  v.vec3_exact("angular", m.twist.angular, kMaxSpeed);
+  visit(v, m.mass);
+  v.rule("mass", m.motion == BodyMotion::kFixed || m.mass.mass > 0.0, "is 0 on a free body");
+  v.rule("inertia_x", m.motion == BodyMotion::kFixed || can_turn(m.mass.inertia),
+         "is not the inertia of a solid");
+  v.real64("particle_density", m.particle_density, 0.0, 1e6);
+  v.real64("dynamic_viscosity", m.dynamic_viscosity, 0.0, kMaxViscosity);
+  v.real64("friction", m.friction, 0.0, 10.0);
+  v.real64("restitution", m.restitution, 0.0, 1.0);
+  v.flag("measured", m.measured);
+  visit(v, m.material);
+}
+
+template <class V>
+void visit(V& v, Grip& m, const std::vector<Body>& bodies) {
+  v.text("name", m.name, kMaxText);
+  v.index("body", m.body, "bodies", bodies.size(), false);
+  const bool there = m.body >= 0 && static_cast<std::size_t>(m.body) < bodies.size();
+  v.rule("body", there && bodies[static_cast<std::size_t>(m.body)].motion == BodyMotion::kFree,
+         "is not free");
+  visit_exact(v, m.pose);
+  v.real64("stiffness", m.stiffness, 0.0, 1e6);
+  v.real64("damping", m.damping, 0.0, 1e4);
+  v.real64("rotational_stiffness", m.rotational_stiffness, 0.0, 1e4);
+  v.real64("rotational_damping", m.rotational_damping, 0.0, 1e3);
+  double before = -1.0;
+  v.list("hand_motion", m.hand_motion, kMaxPoseKeys, [&before](auto& each, PoseKey& key) {
+    each.real64("time", key.time, 0.0, kMaxTime);
+    each.rule("time", key.time > before, "does not rise");
+    before = key.time;
+    visit_exact(each, key.pose);
+  });
+}
+
+template <class V>
+void visit(V& v, Camera& m) {
+  v.vec3_exact("eye", m.eye, kMaxDomain);
+  v.vec3_exact("target", m.target, kMaxDomain);
+  v.rule("target", glm::length(m.target - m.eye) > 1e-9, "is where the eye is");
+  v.real64("vertical_fov_deg", m.vertical_fov_deg, 1.0, 150.0);
+}
+
+template <class V>
+void visit(V& v, Scene& m) {
+  v.text("name", m.name, kMaxText);
+  v.text("title", m.title, kMaxText);
+  v.text("source_file", m.source_file, kMaxText);
+  v.list("meshes", m.meshes, kMaxMeshes, [](auto& each, TriangleMesh& mesh) { visit(each, mesh); });
+  v.list("fluids", m.fluids, kMaxFluids, [](auto& each, Fluid& fluid) { visit(each, fluid); });
+  const std::size_t meshes = m.meshes.size();
+  const std::size_t fluids = m.fluids.size();
+  v.list("fluid_volumes", m.fluid_volumes, kMaxFluidVolumes, [&](auto& each, FluidVolume& volume) {
+    each.text("name", volume.name, kMaxText);
+    each.index("mesh", volume.mesh, "meshes", meshes, false);
+    each.index("fluid", volume.fluid, "fluids", fluids, false);
+    visit_exact(each, volume.pose);
+    each.vec3_exact("velocity", volume.velocity, kMaxSpeed);
+  });
+  v.list("bodies", m.bodies, kMaxBodies, [&](auto& each, Body& body) { visit(each, body, meshes); });
+  v.list("pictures", m.pictures, kMaxPictures, [&](auto& each, Picture& picture) {
+    each.text("name", picture.name, kMaxText);
+    each.index("mesh", picture.mesh, "meshes", meshes, false);
+    visit_exact(each, picture.pose);
+    visit(each, picture.material);
+  });
+  v.list("grips", m.grips, kMaxGrips, [&](auto& each, Grip& grip) { visit(each, grip, m.bodies); });
+  visit(v, m.camera);
+  v.vec3("light_direction", m.light_direction, 1e3);
+  v.rule("light_direction", glm::length(m.light_direction) >= 1e-3f, "has no length");
+  v.vec3_exact("gravity", m.gravity, 1e4);
+  v.real64("spacing", m.spacing, 0.0, 10.0);
+  v.real64("spacing_min", m.spacing_min, 1e-5, 10.0);
+  v.real64("spacing_max", m.spacing_max, 1e-5, 10.0);
+  v.rule("spacing_min", m.spacing_min <= m.spacing_max, "is above spacing_max");
+  v.real64("support_ratio", m.support_ratio, 1.5, 4.0);
+  v.choice("model", m.model, kParticleModelNames);
+  v.real64("stiffness", m.stiffness, 0.0, 1e12);
+  v.real64("tension", m.tension, 0.0, 1.0);
+  v.real64("duration", m.duration, 1e-6, kMaxTime);
+  v.vec3_exact("domain_min", m.domain_min, kMaxDomain);
+  v.vec3_exact("domain_max", m.domain_max, kMaxDomain);
+  v.rule("domain_min", glm::all(glm::lessThan(m.domain_min, m.domain_max)), "is not below domain_max");
+}
+
+template <class V>
+void visit(V& v, PackedScene& m) {
+  v.real64("particle_spacing", m.spacing, 1e-5, 10.0);
+  visit(v, m.scene);
+}
+
+}  // namespace slosh::wire
