@@ -58,8 +58,9 @@ class RateMeter {
 
 }  // namespace
 
-BodyMessage initial_message(const World& world) {
+BodyMessage initial_message(const World& world, std::uint32_t run) {
   BodyMessage message;
+  message.run = run;
   message.stamp_ns = steady_now_ns();
   message.time_step = world.plan().time_step;
   world.fill(message.bodies);
@@ -67,10 +68,15 @@ BodyMessage initial_message(const World& world) {
 }
 
 Host::Host(World world, const Scene& scene, Channel& channel, HostOptions options)
-    : world_(std::move(world)), channel_(channel), options_(options), gate_(scene) {
+    : world_(std::move(world)), channel_(channel), options_(std::move(options)), gate_(scene) {
+  fluids_ = scene.fluids.size();
+  start_state_ = std::move(options_.start_state);
+  if (start_state_.empty()) (void)world_.save(start_state_);  // a world that cannot be saved refuses a reset
+  paused_ = options_.paused;
+  run_ = options_.run;
+  show_state();
   world_.fill(latest_);
   report_.start_mass = world_.diagnostics().mass;
-  shown_time_ = world_.time();
 }
 
 Host::~Host() {
@@ -94,6 +100,8 @@ HostProgress Host::progress() const {
   progress.rate = shown_rate_.load(std::memory_order_relaxed);
   progress.step_rate = shown_step_rate_.load(std::memory_order_relaxed);
   progress.step_ms = shown_step_ms_.load(std::memory_order_relaxed);
+  progress.run = shown_run_.load(std::memory_order_relaxed);
+  progress.paused = shown_paused_.load(std::memory_order_relaxed);
   progress.tick = shown_tick_.load(std::memory_order_relaxed);
   progress.status = shown_status_.load(std::memory_order_relaxed);
   return progress;
@@ -118,20 +126,40 @@ void Host::publish_bodies(double rate, std::int64_t stamp_ns) {
   BodyMessage& message = channel_.bodies().back();
   world_.fill(message.bodies);
   message.bodies.status = recent_status();
+  message.run = run_;
+  const std::span<const PoseMessage> used = gate_.poses();
+  message.pose_numbers.resize(used.size());
+  for (std::size_t i = 0; i < used.size(); ++i) message.pose_numbers[i] = used[i].number;
   message.rate = rate;
   message.time_step = world_.plan().time_step;
   message.stamp_ns = stamp_ns;
   channel_.bodies().publish();
 }
 
-void Host::publish_picture_if_due() {
-  const double half_step = 0.5 * world_.plan().time_step;
-  if (options_.picture_rate <= 0.0 || world_.time() + half_step < next_picture_) return;
+void Host::publish_picture() {
+  if (options_.picture_rate <= 0.0) return;
   auto snapshot = std::make_shared<Snapshot>();
   world_.fill(*snapshot);
   snapshot->rigid.status = recent_status();
   if (channel_.pictures().push(std::move(snapshot))) report_.pictures += 1;
+}
+
+void Host::publish_picture_if_due() {
+  const double half_step = 0.5 * world_.plan().time_step;
+  if (options_.picture_rate <= 0.0 || world_.time() + half_step < next_picture_) return;
+  publish_picture();
   next_picture_ += 1.0 / options_.picture_rate;
+}
+
+void Host::tell_published() {
+  for (HostTap* tap : taps_) tap->after_publish();
+}
+
+void Host::show_state() {
+  shown_time_.store(world_.time(), std::memory_order_relaxed);
+  shown_tick_.store(world_.tick(), std::memory_order_relaxed);
+  shown_run_.store(run_, std::memory_order_relaxed);
+  shown_paused_.store(paused_, std::memory_order_relaxed);
 }
 
 void Host::run() {
@@ -142,16 +170,16 @@ void Host::run() {
   pacer.restart(begin_ns);
   meter.restart(begin_ns);
   meter.seed(time_step);
+  next_picture_ = world_.time();
+  for (HostTap* tap : taps_) tap->on_start(world_, state());
   publish_picture_if_due();
+  tell_published();
 
   while (!stop_.load(std::memory_order_relaxed) && world_.time() + 0.5 * time_step < options_.until) {
-    if (pause_.load(std::memory_order_relaxed)) {
+    if (has_orders_.load(std::memory_order_acquire)) run_commands();
+    if (paused_) {
       report_.wall += to_seconds(steady_now_ns() - begin_ns);
-      publish_bodies(0.0, steady_now_ns());
-      shown_rate_ = 0.0;
-      while (pause_.load(std::memory_order_relaxed) && !stop_.load(std::memory_order_relaxed)) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(5));
-      }
+      stand_still();
       begin_ns = steady_now_ns();
       pacer.restart(begin_ns);
       meter.restart(begin_ns);
@@ -168,19 +196,22 @@ void Host::run() {
       sleep_until_ns(turn.deadline_ns);
     }
     const std::uint64_t rejected_before = gate_.rejected();
-    const std::span<const HandleInput> input = gate_.take(channel_, latest_);
+    const std::span<const HandleInput> input = gate_.take(channel_, latest_, steady_now_ns());
     if (gate_.rejected() != rejected_before) note_status(kStatusInputRejected);
 
+    for (HostTap* tap : taps_) tap->before_step(world_, {input, gate_.poses()});
     const std::int64_t step_begin_ns = steady_now_ns();
     world_.step(input);
     const std::int64_t step_end_ns = steady_now_ns();
 
     note_status(world_.take_status());
     world_.fill(latest_);
+    for (HostTap* tap : taps_) tap->after_step(world_);
     const double measured_rate = meter.quick(time_step, step_end_ns);
     const double rate = on_schedule ? 1.0 : measured_rate;
     publish_bodies(rate, options_.paced ? scheduled_end_ns : step_end_ns);
     publish_picture_if_due();
+    tell_published();
 
     const double step_time = to_seconds(step_end_ns - step_begin_ns);
     report_.steps += 1;
@@ -191,8 +222,7 @@ void Host::run() {
     report_.total.force += parts.force;
     report_.total.body += parts.body;
     report_.total.total += parts.total;
-    shown_time_.store(world_.time(), std::memory_order_relaxed);
-    shown_tick_.store(world_.tick(), std::memory_order_relaxed);
+    show_state();
     shown_status_.store(recent_status(), std::memory_order_relaxed);
     if (meter.add(step_time, step_end_ns)) {
       shown_rate_.store(meter.step_rate * time_step, std::memory_order_relaxed);
@@ -202,13 +232,16 @@ void Host::run() {
   }
 
   report_.wall += to_seconds(steady_now_ns() - begin_ns);
-  report_.simulated = world_.time();
+  report_.simulated = static_cast<double>(report_.steps) * time_step;
   report_.slips = pacer.slips();
   report_.slipped = pacer.slipped_seconds();
   report_.rejected_poses = gate_.rejected();
   report_.diagnostics = world_.diagnostics();
   publish_bodies(0.0, steady_now_ns());
   channel_.pictures().close();
+  for (HostTap* tap : taps_) tap->on_end(world_);
+  tell_published();
+  end_commands();
   running_.store(false, std::memory_order_release);
 }
 

@@ -2,11 +2,17 @@
 #pragma once
 
 #include <atomic>
+#include <condition_variable>
 #include <cstdint>
+#include <functional>
+#include <future>
 #include <limits>
+#include <mutex>
 #include <thread>
+#include <vector>
 
 #include "host/input_gate.h"
+#include "host/tap.h"
 #include "net/channel.h"
 #include "net/histogram.h"
 #include "scenes/scene.h"
@@ -17,7 +23,13 @@ namespace slosh {
 struct HostOptions {
   double picture_rate = 30.0;  ///< pictures a simulated second, > 0; 0 = none (no viewer, nothing to publish)
   double until = std::numeric_limits<double>::infinity();  ///< simulated s at which the run ends
-  bool paced = true;  ///< false: as fast as it goes, for tests that must not depend on the wall clock
+  bool paced = true;      ///< false: as fast as it goes, for tests that must not depend on the wall clock
+  bool shell = false;     ///< pictures say which particles are seen from outside (Snapshot::shell)
+  bool paused = false;    ///< starts standing still
+  std::uint32_t run = 0;  ///< what BodyMessage::run starts with: that of a world that was restored
+  /// World::save of what a reset goes back to; empty = the world as it is handed over. For a world that was
+  /// restored in mid-run.
+  std::vector<std::uint8_t> start_state;
 };
 
 /// What may be asked at any time, from any thread.
@@ -27,13 +39,15 @@ struct HostProgress {
   double step_rate = 0.0;  ///< steps a wall s, lately
   double step_ms = 0.0;    ///< mean step time, lately
   std::uint64_t tick = 0;
+  std::uint32_t run = 0;  ///< rises by one with every reset
+  bool paused = false;
   std::uint32_t status = 0;  ///< StatusBits of about the last half second
 };
 
 /// What a run amounted to; complete after it has ended.
 struct HostReport {
   std::uint64_t steps = 0;
-  double simulated = 0.0;   ///< s
+  double simulated = 0.0;   ///< s, over all resets
   double wall = 0.0;        ///< s, pauses left out
   Histogram step_time;      ///< of World::step alone
   StepTimes total;          ///< summed over the run, s
@@ -46,6 +60,9 @@ struct HostReport {
   double start_mass = 0.0;   ///< kg of fluid at the start
 };
 
+/// Called on the host's thread with what came of a command.
+using HostAnswer = std::function<void(const Result<bool>&)>;
+
 /// Owns the world and steps it on a thread of its own. Made, started and ended by one thread.
 class Host {
  public:
@@ -55,10 +72,18 @@ class Host {
   Host(const Host&) = delete;
   Host& operator=(const Host&) = delete;
 
+  /// Listens from start() on; must outlive the host. Before start().
+  void add_tap(HostTap& tap) { taps_.push_back(&tap); }
+
   void start();
   /// Asks the loop to end after its current step; any thread, also from a signal's flag.
   void request_stop() { stop_.store(true, std::memory_order_relaxed); }
-  void pause(bool paused) { pause_.store(paused, std::memory_order_relaxed); }
+  void pause(bool paused) { post({paused ? HostAction::kPause : HostAction::kContinue}); }
+  /// Queues a command for the next step's boundary, also while paused; in order; any thread. `answer` may be
+  /// empty; once the run is over it is called at once, with an error.
+  void post(const HostCommand& command, HostAnswer answer = {});
+  /// The same with the answer to wait for. Not on the host's thread.
+  std::future<Result<bool>> ask(const HostCommand& command);
   /// Waits for the end of the run.
   void wait();
   bool running() const { return running_.load(std::memory_order_acquire); }
@@ -69,9 +94,23 @@ class Host {
   const World& world() const { return world_; }
 
  private:
+  struct Order {
+    HostCommand command;
+    HostAnswer answer;
+  };
+
   void run();
+  void run_commands();
+  void end_commands();
+  void stand_still();
+  Result<bool> carry_out(const HostCommand& command);
+  Result<bool> reset();
+  HostState state() const;
+  void show_state();
   void publish_bodies(double rate, std::int64_t stamp_ns);
+  void publish_picture();
   void publish_picture_if_due();
+  void tell_published();
   void note_status(std::uint32_t status);
   std::uint32_t recent_status() const;
 
@@ -84,19 +123,32 @@ class Host {
   double next_picture_ = 0.0;     // simulated s
   double status_until_[32] = {};  // simulated s up to which each bit counts as recent
 
+  std::vector<HostTap*> taps_;
+  std::vector<std::uint8_t> start_state_;
+  std::size_t fluids_ = 0;  // of the scene
+  bool paused_ = false;
+  std::uint32_t run_ = 0;
+
+  std::mutex orders_mutex_;
+  std::condition_variable ordered_;
+  std::vector<Order> orders_;  // under the mutex
+  bool over_ = false;          // under the mutex: nobody carries orders out any more
+  std::atomic<bool> has_orders_{false};
+
   std::thread thread_;
   std::atomic<bool> stop_{false};
-  std::atomic<bool> pause_{false};
   std::atomic<bool> running_{false};
   std::atomic<double> shown_time_{0.0};
   std::atomic<double> shown_rate_{0.0};
   std::atomic<double> shown_step_rate_{0.0};
   std::atomic<double> shown_step_ms_{0.0};
   std::atomic<std::uint64_t> shown_tick_{0};
+  std::atomic<std::uint32_t> shown_run_{0};
+  std::atomic<bool> shown_paused_{false};
   std::atomic<std::uint32_t> shown_status_{0};
 };
 
 /// The message a channel starts with: the world before its first step, standing still.
-BodyMessage initial_message(const World& world);
+BodyMessage initial_message(const World& world, std::uint32_t run = 0);
 
 }  // namespace slosh

@@ -29,6 +29,8 @@ InputGate::InputGate(const Scene& scene)
     hands_.push_back(hand);
   }
   inputs_.resize(hands_.size());
+  used_.resize(hands_.size());
+  for (std::size_t i = 0; i < used_.size(); ++i) used_[i].device = static_cast<std::uint32_t>(i);
 }
 
 PoseFault InputGate::check(const PoseMessage& message, const Hand& hand) const {
@@ -42,7 +44,7 @@ PoseFault InputGate::check(const PoseMessage& message, const Hand& hand) const {
       glm::length(message.twist.angular) > kHandleAngularSpeed) {
     return PoseFault::kTooFast;
   }
-  if (hand.has_good && hand.good.engaged && message.engaged) {
+  if (hand.has_good && !hand.anew && hand.good.engaged && message.engaged) {
     // The longer the last good pose is ago, the farther the hand may honestly be: a jump is not refused for
     // ever.
     const double elapsed = std::max(to_seconds(message.stamp_ns - hand.good.stamp_ns), 0.001);
@@ -51,7 +53,7 @@ PoseFault InputGate::check(const PoseMessage& message, const Hand& hand) const {
   return PoseFault::kNone;
 }
 
-bool InputGate::accept(const PoseMessage& message) {
+bool InputGate::accept(const PoseMessage& message, std::int64_t clock_ns) {
   if (message.device >= hands_.size()) {
     rejected_ += 1;
     return false;
@@ -64,31 +66,86 @@ bool InputGate::accept(const PoseMessage& message) {
     hand.good.twist = Twist{};  // a pose that is no longer known to move must not be carried on
     return false;
   }
+  // Times of the run before a reset are ahead of those of the new one.
+  constexpr double kAhead = 0.1;
+  if (clock_ns < old_run_until_ns_ && message.time > time_ + kAhead) return false;
+  if (message.lost && !message.engaged) {
+    if (hand.has_good && hand.good.engaged) {
+      hand.lost_at = time_;
+      hand.lost_scale = hand.scale;
+    }
+  } else {
+    hand.lost_scale = 0.0;
+  }
+  // Where the hand is after a reset is where it was before; the body is elsewhere.
+  if (hand.anew) hand.engagement = Engagement{};
+  hand.anew = false;
   hand.good = message;
   hand.good.pose.orientation = glm::normalize(message.pose.orientation);
   hand.has_good = true;
+  hand.received_ns = clock_ns;
+  used_[message.device] = hand.good;
   return true;
 }
 
-std::span<const HandleInput> InputGate::take(Channel& channel, const BodySnapshot& now) {
-  for (std::size_t i = 0; i < hands_.size(); ++i) {
+void InputGate::reset(const BodySnapshot& now, std::int64_t clock_ns) {
+  old_run_until_ns_ = clock_ns + to_nanoseconds(kOldRun);
+  time_ = now.time;
+  for (std::size_t i = 0; i < hands_.size() && i < now.grips.size(); ++i) {
     Hand& hand = hands_[i];
-    if (i < channel.devices() && channel.pose(i).update()) accept(channel.pose(i).front());
-    HandleInput& input = inputs_[i];
-    // The pose was read a little before or after the moment that this step starts from.
-    const double late = std::clamp(now.time - hand.good.time, -kMostCarried, kMostCarried);
-    input.pose = extrapolate(hand.good.pose, hand.good.twist, late);
-    input.twist = hand.good.twist;
-    input.engaged = hand.has_good && hand.good.engaged;
-    double force = 0.0;
-    double torque = 0.0;
-    if (input.engaged && !hand.engagement.engaged() && i < now.grips.size()) {
-      const Wrench full =
-          coupling_wrench_on_hand(hand.gains, input.pose, input.twist, now.grips[i].pose, now.grips[i].twist);
-      force = glm::length(full.force - now.grips[i].on_hand.force);
-      torque = glm::length(full.torque - now.grips[i].on_hand.torque);
-    }
-    input.scale = hand.engagement.update(input.engaged, now.time, force, torque);
+    const GripState& grip = now.grips[i];
+    const bool settled = glm::length(grip.on_hand.force) + glm::length(grip.on_hand.torque) > 0.0;
+    hand.good.pose = settled ? grip.handle : grip.pose;
+    hand.good.twist = Twist{};
+    hand.good.time = now.time;
+    hand.received_ns = clock_ns;
+    hand.engagement = Engagement{};
+    hand.lost_scale = 0.0;
+    hand.anew = true;
+  }
+}
+
+// The coupling weakens where the hand was last, at rest.
+void InputGate::fade(Hand& hand, HandleInput& input, double time) {
+  const double left = 1.0 - (time - hand.lost_at) / kLostFade;
+  input.engaged = left > 0.0;
+  input.scale = input.engaged ? hand.lost_scale * left : 0.0;
+  input.pose = hand.last_held;
+  input.twist = Twist{};
+  if (!input.engaged) hand.lost_scale = 0.0;
+}
+
+void InputGate::fill_input(Hand& hand, std::size_t grip, const BodySnapshot& now, std::int64_t clock_ns) {
+  HandleInput& input = inputs_[grip];
+  // The pose was read a little before or after the moment that this step starts from.
+  const double late = std::clamp(now.time - hand.good.time, -kMostCarried, kMostCarried);
+  input.pose = extrapolate(hand.good.pose, hand.good.twist, late);
+  if (clock_ns - hand.received_ns > to_nanoseconds(kStaleTwist)) {
+    hand.good.pose = input.pose;
+    hand.good.twist = Twist{};
+  }
+  input.twist = hand.good.twist;
+  input.engaged = hand.has_good && hand.good.engaged;
+  double force = 0.0;
+  double torque = 0.0;
+  if (input.engaged && !hand.engagement.engaged() && grip < now.grips.size()) {
+    const GripState& held = now.grips[grip];
+    const Wrench full = coupling_wrench_on_hand(hand.gains, input.pose, input.twist, held.pose, held.twist);
+    force = glm::length(full.force - held.on_hand.force);
+    torque = glm::length(full.torque - held.on_hand.torque);
+  }
+  input.scale = hand.engagement.update(input.engaged, now.time, force, torque);
+  if (input.engaged) hand.last_held = input.pose;
+  if (!input.engaged && hand.lost_scale > 0.0) fade(hand, input, now.time);
+  hand.scale = input.scale;
+}
+
+std::span<const HandleInput> InputGate::take(Channel& channel, const BodySnapshot& now,
+                                             std::int64_t clock_ns) {
+  time_ = now.time;
+  for (std::size_t i = 0; i < hands_.size(); ++i) {
+    if (i < channel.devices() && channel.pose(i).update()) accept(channel.pose(i).front(), clock_ns);
+    fill_input(hands_[i], i, now, clock_ns);
   }
   return inputs_;
 }

@@ -27,17 +27,33 @@ constexpr double kHandleReach = 5.0;           ///< m beyond the scene's domain
 constexpr double kHandleSpeed = 20.0;          ///< m/s
 constexpr double kHandleAngularSpeed = 100.0;  ///< rad/s
 
+/// s of simulated time over which a coupling fades whose hand was lost (PoseMessage::lost).
+constexpr double kLostFade = 0.4;
+/// s of wall time without a message after which a hand counts as standing still: a twist as old as that would
+/// drag the body along.
+constexpr double kStaleTwist = 0.05;
+/// s of wall time after a reset in which messages of the run before may still come.
+constexpr double kOldRun = 1.0;
+
 /// Takes each device's newest message at a step's boundary, device 0 first. A pose that fails a check is not
 /// used: the last good one stays, standing still. Owned by the host's thread.
 class InputGate {
  public:
   explicit InputGate(const Scene& scene);
 
-  /// The inputs for the step that follows `now`, one a grip. The result is valid until the next call.
-  std::span<const HandleInput> take(Channel& channel, const BodySnapshot& now);
+  /// The inputs for the step that follows `now`, one a grip. `clock_ns` is the steady clock. The result is
+  /// valid until the next call.
+  std::span<const HandleInput> take(Channel& channel, const BodySnapshot& now,
+                                    std::int64_t clock_ns = steady_now_ns());
 
   /// Takes in one message; false (and the fault kept in last_fault()) when it is not used.
-  bool accept(const PoseMessage& message);
+  bool accept(const PoseMessage& message, std::int64_t clock_ns = steady_now_ns());
+
+  /// The world went back to its start, as `now` has it: hands that hold on hold there until they report anew.
+  void reset(const BodySnapshot& now, std::int64_t clock_ns);
+
+  /// The newest message of each grip that was used; valid until the next call of anything here.
+  std::span<const PoseMessage> poses() const { return used_; }
 
   std::uint64_t rejected() const { return rejected_; }
   PoseFault last_fault() const { return last_fault_; }
@@ -48,13 +64,24 @@ class InputGate {
     Engagement engagement;
     PoseMessage good;
     bool has_good = false;
+    std::int64_t received_ns = 0;  // when `good` came
+    bool anew = false;             // the next message is the first since a reset
+    double scale = 0.0;            // of the last step
+    double lost_at = 0.0;          // simulated s
+    double lost_scale = 0.0;       // what is left to fade; 0 = nothing
+    Pose last_held;                // the pose that the last engaged step used
   };
+  void fill_input(Hand& hand, std::size_t grip, const BodySnapshot& now, std::int64_t clock_ns);
+  void fade(Hand& hand, HandleInput& input, double time);
   PoseFault check(const PoseMessage& message, const Hand& hand) const;
 
   glm::dvec3 reach_min_;
   glm::dvec3 reach_max_;
   std::vector<Hand> hands_;
   std::vector<HandleInput> inputs_;
+  std::vector<PoseMessage> used_;
+  double time_ = 0.0;                  // simulated s of the last step
+  std::int64_t old_run_until_ns_ = 0;  // messages of the run before may come until then
   std::uint64_t rejected_ = 0;
   PoseFault last_fault_ = PoseFault::kNone;
 };

@@ -11,6 +11,7 @@
 #include "sim/hash.h"
 #include "sim/math/result.h"
 #include "sim/run_constants.h"
+#include "sim/saved_state.h"
 #include "sim/world.h"
 
 namespace slosh {
@@ -24,6 +25,14 @@ class ParticleEngine {
   virtual void step(std::span<const RigidBody> bodies, std::span<Wrench> wrenches) = 0;
   /// Multiplies every fluid velocity by `keep` (0–1).
   virtual void damp(float keep) = 0;
+
+  /// Takes over changed viscosities, passes and gravity; the rest is as it was.
+  virtual void set_constants(const RunConstants& constants) = 0;
+
+  /// All particles, in the engine's order. False when the GPU failed.
+  virtual bool save(ParticleState& out) const = 0;
+  /// Takes a checked state over; particles that it lacks are out of the world. Clears status().
+  virtual void restore(const ParticleState& state) = 0;
 
   /// StatusBits so far. A GPU's may be those of the step before: the step does not wait for its last pass.
   virtual std::uint32_t status() const = 0;

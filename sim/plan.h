@@ -21,9 +21,13 @@ struct Plan {
   std::string time_step_reason;  ///< which limit decided it
   double stiffness = 0.0;        ///< Eq 7's k, m²/s² (= sound speed²)
   ParticleModel model = ParticleModel::kConsistent;
-  double tension = 0.0;              ///< share of Eq 7's negative pressure that is kept
-  double max_speed = 0.0;            ///< m/s, above which a particle is slowed (half a support radius a step)
-  std::vector<double> body_density;  ///< kg/m³, the constant density of each body's particles (section 4.1)
+  double fluid_depth = 0.0;  ///< m, the deepest column that a fluid could stand in at the start
+  double fluid_drop = 0.0;   ///< m, from the highest fluid to the floor of the domain
+  double sound_share =
+      1.0;                 ///< of sound's own limit on the step, what density contrast and light bodies leave
+  double tension = 0.0;    ///< share of Eq 7's negative pressure that is kept
+  double max_speed = 0.0;  ///< m/s, above which a particle is slowed (half a support radius a step)
+  std::vector<double> body_density;   ///< kg/m³, the constant density of each body's particles (section 4.1)
   std::vector<double> body_pressure;  ///< Pa, Eq 7 at that density
 
   bool has_fluid = false;
@@ -41,6 +45,10 @@ struct Plan {
 
 /// Works out the plan for particles at `spacing` (m, > 0).
 Plan make_plan(const Scene& scene, double spacing);
+
+/// Takes over changed viscosities of the scene's fluids: which viscous passes run. The time step stays. Needs
+/// no mesh.
+void plan_viscosity(const Scene& scene, Plan& plan);
 
 /// The plan as the user reads it: numbers, then a line a pass, then what is left out and why.
 std::string describe(const Plan& plan);

@@ -62,6 +62,22 @@ ParticleKind make_kind(double rest_density, double viscosity, double spacing, bo
 
 }  // namespace
 
+std::vector<ParticleKind> particle_kinds(const Scene& scene, double spacing) {
+  std::vector<ParticleKind> kinds;
+  for (const Fluid& f : scene.fluids) {
+    kinds.push_back(make_kind(f.rest_density, f.dynamic_viscosity, spacing, false));
+  }
+  // A probe is one more particle of the first fluid's kind (Eq 8), moved by its body.
+  const Fluid reference = scene.fluids.empty() ? Fluid{} : scene.fluids.front();
+  for (const Body& body : scene.bodies) {
+    if (!body.point_probe) continue;
+    kinds.push_back(make_kind(
+        body.particle_density > 0.0 ? body.particle_density : reference.rest_density,
+        body.dynamic_viscosity > 0.0 ? body.dynamic_viscosity : reference.dynamic_viscosity, spacing, true));
+  }
+  return kinds;
+}
+
 RunConstants make_run_constants(const Scene& scene, const SampledScene& sampled, Plan plan) {
   RunConstants c;
   c.plan = std::move(plan);
@@ -73,17 +89,7 @@ RunConstants make_run_constants(const Scene& scene, const SampledScene& sampled,
   c.rest_number_density = static_cast<float>(rest_number_density(c.plan.model, spacing, h));
   c.rest_volume = static_cast<float>(std::pow(spacing, 3));
   c.gravity = glm::vec3(scene.gravity);
-  for (const Fluid& f : scene.fluids) {
-    c.kinds.push_back(make_kind(f.rest_density, f.dynamic_viscosity, spacing, false));
-  }
-  // A probe is one more particle of the first fluid's kind (Eq 8), moved by its body.
-  const Fluid reference = scene.fluids.empty() ? Fluid{} : scene.fluids.front();
-  for (const Body& body : scene.bodies) {
-    if (!body.point_probe) continue;
-    c.kinds.push_back(make_kind(
-        body.particle_density > 0.0 ? body.particle_density : reference.rest_density,
-        body.dynamic_viscosity > 0.0 ? body.dynamic_viscosity : reference.dynamic_viscosity, spacing, true));
-  }
+  c.kinds = particle_kinds(scene, spacing);
   return c;
 }
 

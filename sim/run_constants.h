@@ -56,6 +56,9 @@ struct ParticleStart {
   std::vector<SurfaceParticle> fixed, moving;
 };
 
+/// One entry a fluid of the scene, and one a probe behind those.
+std::vector<ParticleKind> particle_kinds(const Scene& scene, double spacing);
+
 /// Everything of a run's constants; kinds has one entry a fluid, and one a probe behind those.
 RunConstants make_run_constants(const Scene& scene, const SampledScene& sampled, Plan plan);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <optional>
 #include <utility>
 
@@ -10,6 +11,8 @@
 #include "sim/contacts.h"
 #include "sim/hash.h"
 #include "sim/particle_engine.h"
+#include "sim/saved_state.h"
+#include "sim/step_limits.h"
 #include "sim/stopwatch.h"
 
 namespace slosh {
@@ -35,6 +38,14 @@ bool usable(const HandleInput& input) {
          std::isfinite(input.scale);
 }
 
+Error too_much(const std::string& where, double value, double most, const char* unit) {
+  char text[160];
+  std::snprintf(text, sizeof text, "%.4g %s is too much for the time step of this run", value, unit);
+  char mend[80];
+  std::snprintf(mend, sizeof mend, "Up to %.4g %s will do", most, unit);
+  return {where, text, mend};
+}
+
 }  // namespace
 
 struct World::Impl {
@@ -45,6 +56,7 @@ struct World::Impl {
     wrenches.resize(bodies.size());
     solves.resize(bodies.size());
     grips.resize(scene.grips.size());
+    for (const Fluid& fluid : scene.fluids) scene_viscosities.push_back(fluid.dynamic_viscosity);
     last_input.resize(scene.grips.size());
     scene.meshes.clear();  // the surface particles stand for them from here on
   }
@@ -52,6 +64,7 @@ struct World::Impl {
   // Error: the backend that was asked for is not there.
   std::optional<Error> start(const SampledScene& sampled) {
     const ParticleStart particles = make_particle_start(scene, sampled, constants, bodies);
+    frame = state_frame(scene, constants.plan, particles);
     fluid_count = particles.fluid_count;
     boundary_count = particles.fixed.size() + particles.moving.size();
     fluid_starts_moving =
@@ -64,6 +77,36 @@ struct World::Impl {
     if (!made) return made.error();
     engine = std::move(made.value());
     return std::nullopt;
+  }
+
+  Result<bool> allows_viscosity(std::size_t fluid, double value) const {
+    const bool there = std::any_of(
+        scene.fluid_volumes.begin(), scene.fluid_volumes.end(),
+        [&](const auto& v) { return v.fluid >= 0 && static_cast<std::size_t>(v.fluid) == fluid; });
+    if (!there || fluid >= scene.fluids.size())
+      return Error{"viscosity", "there is no fluid " + std::to_string(fluid) + " in this world", ""};
+    const std::string where = "viscosity of " + scene.fluids[fluid].name;
+    if (!(value >= 0.0)) return Error{where, "it cannot be below 0", ""};
+    // The scene's own value is what the step was chosen for, whatever rounding says.
+    const double most = std::max(most_viscous_allowed(scene, constants.plan), scene_viscosities[fluid]);
+    if (value <= most) return true;
+    return too_much(where, value, most, "Pa·s");
+  }
+
+  Result<bool> allows_gravity(double scale) const {
+    if (!(scale >= 0.0 && scale <= kMostGravityScale))
+      return Error{"gravity", "it can be 0 to 2 times the scene's", ""};
+    const double most = std::max(most_gravity_allowed(scene, constants.plan), 1.0);
+    if (scale <= most) return true;
+    return too_much("gravity", scale, most, "times the scene's");
+  }
+
+  // What a live change means for everybody who has a copy of it.
+  void take_parameters() {
+    plan_viscosity(scene, constants.plan);
+    constants.kinds = particle_kinds(scene, constants.plan.spacing);
+    constants.gravity = glm::vec3(gravity_scale * scene.gravity);
+    engine->set_constants(constants);
   }
 
   void step_particles() {
@@ -121,7 +164,7 @@ struct World::Impl {
         continue;
       }
       Wrench external = wrenches[b];
-      external.force += body.mass * scene.gravity;
+      external.force += body.mass * gravity_scale * scene.gravity;
       const auto held = couplings_of(static_cast<int>(b));
       if (solve_body(body, external, held, constants.plan.time_step, solves[b])) continue;
       status |= kStatusNonFinite;
@@ -177,6 +220,9 @@ struct World::Impl {
   std::uint32_t status = 0;  // of bodies and inputs; the engine has its own
   std::uint64_t tick = 0;
   StepTimes times;
+  double gravity_scale = 1.0;
+  std::vector<double> scene_viscosities;  // Pa·s, one a fluid, as the scene has them
+  StateFrame frame;
 };
 
 World::World(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -267,6 +313,73 @@ void World::fill(Snapshot& out) const {
   out.positions.resize(impl_->fluid_count);
   out.fluid_index.resize(impl_->fluid_count);
   impl_->engine->fill(out.positions, out.fluid_index);
+}
+
+Result<bool> World::save(std::vector<std::uint8_t>& out) const {
+  const Impl& w = *impl_;
+  SavedState state;
+  state.tick = w.tick;
+  state.status = w.status | w.engine->status();
+  state.gravity_scale = w.gravity_scale;
+  for (const Fluid& fluid : w.scene.fluids) state.viscosities.push_back(fluid.dynamic_viscosity);
+  state.bodies = w.bodies;
+  state.wrenches = w.wrenches;
+  state.grips = w.grips;
+  state.last_input = w.last_input;
+  if (!w.engine->save(state.particles))
+    return Error{"the world", "cannot be saved: " + w.engine->failure(), "Run again with the CPU backend"};
+  write_state(w.frame, w.constants, state, out);
+  return true;
+}
+
+Result<bool> World::restore(std::span<const std::uint8_t> saved) {
+  Impl& w = *impl_;
+  SavedState state;
+  state.bodies = w.bodies;
+  const Result<bool> read = read_state(saved, w.frame, w.constants, state);
+  if (!read) return read;
+  for (std::size_t f = 0; f < state.viscosities.size(); ++f) {
+    if (state.viscosities[f] == w.scene_viscosities[f]) continue;
+    const Result<bool> allowed = w.allows_viscosity(f, state.viscosities[f]);
+    if (!allowed) return allowed;
+  }
+  if (const Result<bool> allowed = w.allows_gravity(state.gravity_scale); !allowed) return allowed;
+
+  for (std::size_t f = 0; f < state.viscosities.size(); ++f)
+    w.scene.fluids[f].dynamic_viscosity = state.viscosities[f];
+  w.gravity_scale = state.gravity_scale;
+  w.take_parameters();
+  w.bodies = std::move(state.bodies);
+  w.wrenches = std::move(state.wrenches);
+  w.grips = std::move(state.grips);
+  w.last_input = std::move(state.last_input);
+  w.engine->restore(state.particles);
+  w.status = state.status & ~kStatusDeviceLost;
+  w.tick = state.tick;
+  return true;
+}
+
+Result<bool> World::set_viscosity(std::size_t fluid, double pascal_seconds) {
+  const Result<bool> allowed = impl_->allows_viscosity(fluid, pascal_seconds);
+  if (!allowed) return allowed;
+  impl_->scene.fluids[fluid].dynamic_viscosity = pascal_seconds;
+  impl_->take_parameters();
+  return true;
+}
+
+Result<bool> World::set_gravity_scale(double scale) {
+  const Result<bool> allowed = impl_->allows_gravity(scale);
+  if (!allowed) return allowed;
+  impl_->gravity_scale = scale;
+  impl_->take_parameters();
+  return true;
+}
+
+double World::viscosity(std::size_t fluid) const {
+  return fluid < impl_->scene.fluids.size() ? impl_->scene.fluids[fluid].dynamic_viscosity : 0.0;
+}
+double World::gravity_scale() const {
+  return impl_->gravity_scale;
 }
 
 std::uint32_t World::take_status() {

@@ -15,6 +15,8 @@
 
 namespace slosh {
 
+constexpr double kMostGravityScale = 2.0;
+
 /// One handle's input for one step, in the order of Scene::grips.
 struct HandleInput {
   Pose pose;             ///< world
@@ -80,6 +82,22 @@ class World {
   /// Fills without allocating once the vectors have grown.
   void fill(BodySnapshot& out) const;
   void fill(Snapshot& out) const;
+
+  /// Appends everything that moves or can be changed, so that a world of the same scene, spacing and plan
+  /// goes on from it: on the CPU to the bit. About 33 bytes a particle; 0.2 ms for 32 768. Error: the GPU
+  /// failed.
+  Result<bool> save(std::vector<std::uint8_t>& out) const;
+  /// Takes over what save() wrote, on either backend. Errors, with the world as it was: other bytes, cut off,
+  /// another scene, spacing or version, a value that cannot be.
+  Result<bool> restore(std::span<const std::uint8_t> saved);
+
+  /// From the next step on. Errors: no such fluid in the world, or the time step would not be stable with it
+  /// (then with the largest value that is). `pascal_seconds` >= 0.
+  Result<bool> set_viscosity(std::size_t fluid, double pascal_seconds);
+  /// Times the scene's gravity, 0 to kMostGravityScale. Errors as above.
+  Result<bool> set_gravity_scale(double scale);
+  double viscosity(std::size_t fluid) const;  ///< Pa·s; 0 for a fluid that is not there
+  double gravity_scale() const;
 
   std::uint32_t take_status();  ///< StatusBits since the last call, then cleared
   std::uint64_t hash() const;   ///< of positions, velocities and body states, by particle id

@@ -18,6 +18,7 @@ class CpuEngine final : public ParticleEngine {
         fixed_(start.fixed),
         moving_(start.moving),
         probes_(start.probes),
+        kinds_(start.kinds),
         fluid_count_(start.fluid_count) {
     static_cast<RunConstants&>(context_) = constants;
     wanted_.assign(bodies.size(), 0);
@@ -55,6 +56,44 @@ class CpuEngine final : public ParticleEngine {
     for (Column<float>* column : {&fluid_.vx, &fluid_.vy, &fluid_.vz}) {
       for (std::size_t p = 0; p < fluid_.active; ++p) (*column)[p] *= keep;
     }
+  }
+
+  void set_constants(const RunConstants& constants) override {
+    static_cast<RunConstants&>(context_) = constants;
+  }
+
+  bool save(ParticleState& out) const override {
+    out.resize(fluid_.active);
+    const auto copy = [&](const auto& from, auto& to) {
+      std::copy_n(from.begin(), fluid_.active, to.begin());
+    };
+    copy(fluid_.x, out.x);
+    copy(fluid_.y, out.y);
+    copy(fluid_.z, out.z);
+    copy(fluid_.vx, out.vx);
+    copy(fluid_.vy, out.vy);
+    copy(fluid_.vz, out.vz);
+    copy(fluid_.volume, out.volume);
+    copy(fluid_.id, out.id);
+    copy(fluid_.key, out.key);
+    return true;
+  }
+
+  void restore(const ParticleState& state) override {
+    fluid_.resize(kinds_.size());
+    const auto copy = [&](const auto& from, auto& to) { std::copy(from.begin(), from.end(), to.begin()); };
+    copy(state.x, fluid_.x);
+    copy(state.y, fluid_.y);
+    copy(state.z, fluid_.z);
+    copy(state.vx, fluid_.vx);
+    copy(state.vy, fluid_.vy);
+    copy(state.vz, fluid_.vz);
+    copy(state.volume, fluid_.volume);
+    copy(state.id, fluid_.id);
+    copy(state.key, fluid_.key);
+    for (std::size_t p = 0; p < state.size(); ++p) fluid_.kind[p] = kinds_[state.id[p]];
+    fluid_.active = state.size();
+    context_.status = 0;
   }
 
   std::uint32_t status() const override { return context_.status.load(std::memory_order_relaxed); }
@@ -151,8 +190,9 @@ class CpuEngine final : public ParticleEngine {
   KeySorter sorter_;
   BodySurface fixed_, moving_;
   std::vector<Probe> probes_;
-  std::size_t fluid_count_;   // without probes
-  std::vector<char> wanted_;  // one a body: its wrench is summed
+  std::vector<std::uint8_t> kinds_;  // by id
+  std::size_t fluid_count_;          // without probes
+  std::vector<char> wanted_;         // one a body: its wrench is summed
   bool fixed_measured_ = false;
   std::vector<glm::vec3> body_scratch_;
   StepTimes times_;

@@ -41,6 +41,7 @@ class CudaEngine final : public ParticleEngine {
         step_(step_constants(constants)),
         device_(std::move(device)),
         probes_(start.probes),
+        kinds_by_id_(start.kinds),
         fluid_count_(start.fluid_count),
         status_(start.status) {
     check_.ok(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "cudaStreamCreate");
@@ -104,6 +105,67 @@ class CudaEngine final : public ParticleEngine {
     if (check_.failed() || fluid_.count() == 0) return;
     launch_damp(state().v, fluid_.count(), keep, stream_);
     check_.launched("damping");
+  }
+
+  void set_constants(const RunConstants& constants) override {
+    constants_ = constants;
+    step_ = step_constants(constants_);
+    if (check_.failed()) return;
+    kinds_.write(constants_.kinds, check_, stream_);
+    fluid_.allow_viscosities(constants_, check_);
+  }
+
+  bool save(ParticleState& out) const override {
+    const HostState s = fetch_state();
+    if (check_.failed()) return false;
+    out.resize(0);
+    std::size_t count = 0;
+    out.resize(s.id.size());
+    for (std::size_t p = 0; p < s.id.size(); ++p) {
+      if (s.key[p] >= constants_.grid.retired_key()) continue;  // what it leaves behind means nothing
+      out.x[count] = s.x[p].x;
+      out.y[count] = s.x[p].y;
+      out.z[count] = s.x[p].z;
+      out.vx[count] = s.v[p].x;
+      out.vy[count] = s.v[p].y;
+      out.vz[count] = s.v[p].z;
+      out.volume[count] = s.v[p].w;
+      out.id[count] = s.id[p];
+      out.key[count] = s.key[p];
+      ++count;
+    }
+    out.resize(count);
+    return true;
+  }
+
+  void restore(const ParticleState& state) override {
+    if (check_.failed()) return;
+    const std::size_t total = kinds_by_id_.size();
+    HostState s;
+    std::vector<bool> seen(total, false);
+    std::vector<std::uint32_t> slots(probes_.size());
+    const auto add = [&](const float4& x, const float4& v, std::uint32_t id, std::uint32_t key) {
+      if (id >= fluid_count_) slots[id - fluid_count_] = static_cast<std::uint32_t>(s.id.size());
+      seen[id] = true;
+      s.x.push_back(x);
+      s.v.push_back(v);
+      s.id.push_back(id);
+      s.key.push_back(key);
+      s.kind.push_back(kinds_by_id_[id]);
+    };
+    for (std::size_t p = 0; p < state.size(); ++p) {
+      add({state.x[p], state.y[p], state.z[p], 0.0f},
+          {state.vx[p], state.vy[p], state.vz[p], state.volume[p]}, state.id[p], state.key[p]);
+    }
+    for (std::uint32_t id = 0; id < total; ++id) {
+      if (!seen[id]) add({}, {0.0f, 0.0f, 0.0f, constants_.rest_volume}, id, constants_.grid.retired_key());
+    }
+    check_.ok(cudaStreamSynchronize(stream_), "waiting for the step");
+    fluid_.write_moved(s.x, s.v, s.id, s.key, s.kind, check_, stream_);
+    probe_slots_.write(slots, check_, stream_);
+    check_.ok(cudaMemsetAsync(report_.data(), 0, sizeof(ReportHead), stream_), "clearing the status");
+    sorted_ahead_ = false;
+    status_ = 0;
   }
 
   std::uint32_t status() const override { return status_ | (check_.failed() ? kStatusDeviceLost : 0u); }
@@ -318,6 +380,7 @@ class CudaEngine final : public ParticleEngine {
   StepConstants step_;
   std::string device_;
   std::vector<Probe> probes_;
+  std::vector<std::uint8_t> kinds_by_id_;
   std::size_t fluid_count_;  // without probes
   std::uint32_t status_;
   mutable CallCheck check_;

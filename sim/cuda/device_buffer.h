@@ -52,6 +52,14 @@ class DeviceBuffer {
     check.ok(cudaMemcpy(data_, from.data(), from.size_bytes(), cudaMemcpyHostToDevice), "upload");
   }
 
+  /// Into what is allocated; at most size() elements. Returns when they are there.
+  void write(std::span<const T> from, CallCheck& check, cudaStream_t stream) {
+    if (from.empty() || check.failed()) return;
+    check.ok(cudaMemcpyAsync(data_, from.data(), from.size_bytes(), cudaMemcpyHostToDevice, stream),
+             "upload");
+    check.ok(cudaStreamSynchronize(stream), "upload");
+  }
+
   T* data() const { return data_; }
   std::size_t size() const { return size_; }
   std::size_t bytes() const { return size_ * sizeof(T); }

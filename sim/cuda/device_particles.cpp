@@ -58,10 +58,26 @@ void FluidBuffers::allocate(const ParticleStart& start, const RunConstants& cons
   sorted_.key.allocate(count_, check);
   sorted_.kind.allocate(count_, check);
   pressed_.allocate(count_, check);
-  if (constants.plan.viscosity && !constants.plan.one_viscosity) viscosity_.allocate(count_, check);
   cells_.allocate(constants.grid.cell_count(), check);
   moved_view_ = moved_.view();
-  sorted_view_ = {count_, sorted_.view(), pressed_.data(), viscosity_.data(), cells_.view()};
+  sorted_view_ = {count_, sorted_.view(), pressed_.data(), nullptr, cells_.view()};
+  allow_viscosities(constants, check);
+}
+
+void FluidBuffers::allow_viscosities(const RunConstants& constants, CallCheck& check) {
+  if (!constants.plan.viscosity || constants.plan.one_viscosity || viscosity_.size() > 0) return;
+  viscosity_.allocate(count_, check);
+  sorted_view_.viscosity = viscosity_.data();
+}
+
+void FluidBuffers::write_moved(std::span<const float4> x, std::span<const float4> v,
+                               std::span<const std::uint32_t> id, std::span<const std::uint32_t> key,
+                               std::span<const std::uint8_t> kind, CallCheck& check, cudaStream_t stream) {
+  moved_.x.write(x, check, stream);
+  moved_.v.write(v, check, stream);
+  moved_.id.write(id, check, stream);
+  moved_.key.write(key, check, stream);
+  moved_.kind.write(kind, check, stream);
 }
 
 void FluidBuffers::sort(const StepConstants& constants, SortSpace& space, CallCheck& check,

@@ -37,6 +37,13 @@ class FluidBuffers {
   /// Brings the moved particles into the order of their cells.
   void sort(const StepConstants& constants, SortSpace& space, CallCheck& check, cudaStream_t stream);
 
+  /// Replaces the moved particles; all spans have count() entries.
+  void write_moved(std::span<const float4> x, std::span<const float4> v, std::span<const std::uint32_t> id,
+                   std::span<const std::uint32_t> key, std::span<const std::uint8_t> kind, CallCheck& check,
+                   cudaStream_t stream);
+  /// Makes room for a viscosity a particle where the plan has come to need it.
+  void allow_viscosities(const RunConstants& constants, CallCheck& check);
+
   std::uint32_t count() const { return count_; }
   const FluidView& moved() const { return moved_view_; }
   const SortedFluid& sorted() const { return sorted_view_; }

@@ -1,0 +1,122 @@
+// The part of the host that does what it is asked between steps.
+#include <chrono>
+#include <utility>
+
+#include "host/host.h"
+#include "net/clock.h"
+
+namespace slosh {
+namespace {
+
+const Error kOver{"the world", "has ended", ""};
+
+}  // namespace
+
+void Host::post(const HostCommand& command, HostAnswer answer) {
+  {
+    const std::lock_guard lock(orders_mutex_);
+    if (!over_) {
+      orders_.push_back({command, std::move(answer)});
+      has_orders_.store(true, std::memory_order_release);
+      ordered_.notify_one();
+      return;
+    }
+  }
+  if (answer) answer(kOver);
+}
+
+std::future<Result<bool>> Host::ask(const HostCommand& command) {
+  auto promise = std::make_shared<std::promise<Result<bool>>>();
+  post(command, [promise](const Result<bool>& answer) { promise->set_value(answer); });
+  return promise->get_future();
+}
+
+void Host::run_commands() {
+  std::vector<Order> orders;
+  {
+    const std::lock_guard lock(orders_mutex_);
+    orders.swap(orders_);
+    has_orders_.store(false, std::memory_order_relaxed);
+  }
+  for (Order& order : orders) {
+    const Result<bool> done = carry_out(order.command);
+    if (done) {
+      show_state();
+      for (HostTap* tap : taps_) tap->after_change(world_, order.command, state());
+    }
+    if (order.answer) order.answer(done);
+  }
+}
+
+void Host::end_commands() {
+  std::vector<Order> orders;
+  {
+    const std::lock_guard lock(orders_mutex_);
+    over_ = true;
+    orders.swap(orders_);
+  }
+  for (Order& order : orders) {
+    if (order.answer) order.answer(kOver);
+  }
+}
+
+Result<bool> Host::carry_out(const HostCommand& command) {
+  switch (command.action) {
+    case HostAction::kPause:
+      paused_ = true;
+      publish_bodies(0.0, steady_now_ns());
+      return true;
+    case HostAction::kContinue:
+      paused_ = false;
+      return true;
+    case HostAction::kReset:
+      return reset();
+    case HostAction::kViscosity:
+      return world_.set_viscosity(command.index, command.value);
+    case HostAction::kGravityScale:
+      return world_.set_gravity_scale(command.value);
+  }
+  return Error{"command", "is unknown", ""};
+}
+
+Result<bool> Host::reset() {
+  const HostState before = state();
+  const Result<bool> restored = world_.restore(start_state_);
+  if (!restored) return restored;
+  for (std::size_t i = 0; i < before.viscosities.size(); ++i) {
+    if (before.viscosities[i] != world_.viscosity(i)) (void)world_.set_viscosity(i, before.viscosities[i]);
+  }
+  (void)world_.set_gravity_scale(before.gravity_scale);
+  run_ += 1;
+  for (double& until : status_until_) until = 0.0;
+  world_.fill(latest_);
+  gate_.reset(latest_, steady_now_ns());
+  publish_bodies(0.0, steady_now_ns());
+  publish_picture();
+  next_picture_ = world_.time() + (options_.picture_rate > 0.0 ? 1.0 / options_.picture_rate : 0.0);
+  return true;
+}
+
+HostState Host::state() const {
+  HostState state{paused_, run_, world_.gravity_scale(), {}};
+  for (std::size_t i = 0; i < fluids_; ++i) state.viscosities.push_back(world_.viscosity(i));
+  return state;
+}
+
+void Host::stand_still() {
+  publish_bodies(0.0, steady_now_ns());
+  tell_published();
+  shown_rate_ = 0.0;
+  while (paused_ && !stop_.load(std::memory_order_relaxed)) {
+    {
+      // A stop may come from a signal and wakes nobody.
+      std::unique_lock lock(orders_mutex_);
+      ordered_.wait_for(lock, std::chrono::milliseconds(5), [this] { return !orders_.empty(); });
+    }
+    if (!has_orders_.load(std::memory_order_acquire)) continue;
+    run_commands();
+    tell_published();
+  }
+}
+
+}  // namespace slosh

@@ -1,0 +1,63 @@
+// Who listens to a host from inside its loop: a recording, a checkpoint, the network.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "net/channel.h"
+#include "sim/world.h"
+
+namespace slosh {
+
+/// What may be asked of a running world.
+enum class HostAction : std::uint8_t {
+  kPause,
+  kContinue,
+  kReset,         ///< back to the start; live parameters stay
+  kViscosity,     ///< index: fluid; value: Pa·s
+  kGravityScale,  ///< value: times the scene's, 0–2
+};
+
+struct HostCommand {
+  HostAction action = HostAction::kPause;
+  std::uint32_t index = 0;
+  double value = 0.0;
+};
+
+/// The world's switches as they are.
+struct HostState {
+  bool paused = false;
+  std::uint32_t run = 0;  ///< rises by one with every reset
+  double gravity_scale = 1.0;
+  std::vector<double> viscosities;  ///< Pa·s, one a fluid
+};
+
+/// What a step starts from, one entry a grip each.
+struct StepInput {
+  std::span<const HandleInput> hands;
+  /// The newest message that was taken in; its stamp_ns says which. device is right even where none came yet.
+  std::span<const PoseMessage> poses;
+};
+
+/// Called on the host's thread, between or right after steps: what takes long here makes the world late. What
+/// is handed over is valid for the call alone; the world may be read and saved, not changed.
+class HostTap {
+ public:
+  virtual ~HostTap() = default;
+  /// Once, before the first step.
+  virtual void on_start(const World& world, const HostState& state) { (void)world, (void)state; }
+  /// world.tick() is the step's number.
+  virtual void before_step(const World& world, const StepInput& input) { (void)world, (void)input; }
+  virtual void after_step(const World& world) { (void)world; }
+  /// Body states, and a picture where one was due, are in the channel: wake whoever sends them.
+  virtual void after_publish() {}
+  /// After a command that was granted; the channel has the world as it is now.
+  virtual void after_change(const World& world, const HostCommand& change, const HostState& state) {
+    (void)world, (void)change, (void)state;
+  }
+  /// Once, after the last step.
+  virtual void on_end(const World& world) { (void)world; }
+};
+
+}  // namespace slosh

@@ -1,0 +1,339 @@
+#include "sim/saved_state.h"
+
+#include <bit>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <string>
+
+#include "sim/hash.h"
+
+namespace slosh {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little);
+
+constexpr std::uint32_t kMagic = 0x54535753;  // "SWST"
+constexpr std::uint32_t kVersion = 1;
+constexpr double kLargest = 1.0e9;  // beyond this no position, speed or force of a body is one
+const char kWhere[] = "saved world";
+
+class Sink {
+ public:
+  explicit Sink(std::vector<std::uint8_t>& out) : out_(out) {}
+  static constexpr bool kReads = false;
+
+  template <class T>
+  void raw(const T& value) {
+    column(std::span<const T>(&value, 1));
+  }
+  template <class T>
+  void column(std::span<const T> values) {
+    const std::size_t at = out_.size();
+    out_.resize(at + values.size_bytes());
+    if (!values.empty()) std::memcpy(out_.data() + at, values.data(), values.size_bytes());
+  }
+  void real(double value) { raw(value); }
+
+ private:
+  std::vector<std::uint8_t>& out_;
+};
+
+// Reads as long as there is something; after the first problem everything stays as it was.
+class Source {
+ public:
+  explicit Source(std::span<const std::uint8_t> in) : in_(in) {}
+  static constexpr bool kReads = true;
+
+  template <class T>
+  void raw(T& value) {
+    column(std::span<T>(&value, 1));
+  }
+  template <class T>
+  void column(std::span<T> values) {
+    if (!problem_.empty()) return;
+    if (in_.size() - at_ < values.size_bytes()) return fail("it ends too early");
+    if (!values.empty()) std::memcpy(values.data(), in_.data() + at_, values.size_bytes());
+    at_ += values.size_bytes();
+  }
+  // A number of the bodies' side: finite and not absurd.
+  void real(double& value) {
+    double read = 0.0;
+    raw(read);
+    if (!problem_.empty()) return;
+    if (!(std::abs(read) <= kLargest)) return fail("it holds a number that is not finite or far too large");
+    value = read;
+  }
+  void fail(std::string problem) {
+    if (problem_.empty()) problem_ = std::move(problem);
+  }
+  bool ok() const { return problem_.empty(); }
+  const std::string& problem() const { return problem_; }
+  std::size_t left() const { return in_.size() - at_; }
+
+ private:
+  std::span<const std::uint8_t> in_;
+  std::size_t at_ = 0;
+  std::string problem_;
+};
+
+template <class S, class V>
+void three(S& s, V& v) {
+  for (int i = 0; i < 3; ++i) s.real(v[i]);
+}
+template <class S, class Q>
+void rotation(S& s, Q& q) {
+  for (auto* part : {&q.w, &q.x, &q.y, &q.z}) s.real(*part);
+  if constexpr (S::kReads) {
+    if (s.ok() && !(std::abs(glm::length(q) - 1.0) < 1e-3)) s.fail("it holds a rotation that is none");
+  }
+}
+template <class S, class W>
+void wrench(S& s, W& w) {
+  three(s, w.force);
+  three(s, w.torque);
+}
+template <class S, class B>
+void body_state(S& s, B& b) {
+  three(s, b.position);
+  rotation(s, b.orientation);
+  three(s, b.velocity);
+  three(s, b.angular_momentum);
+  three(s, b.angular_velocity);
+}
+template <class S, class G>
+void grip_state(S& s, G& g) {
+  three(s, g.handle.position);
+  rotation(s, g.handle.orientation);
+  wrench(s, g.on_hand);
+}
+template <class S, class I>
+void hand_state(S& s, I& input) {
+  three(s, input.pose.position);
+  rotation(s, input.pose.orientation);
+  three(s, input.twist.linear);
+  three(s, input.twist.angular);
+  s.real(input.scale);
+}
+
+template <class S, class P>
+void columns(S& s, P& p) {
+  for (auto* column : {&p.x, &p.y, &p.z, &p.vx, &p.vy, &p.vz, &p.volume})
+    s.column(std::span(column->data(), column->size()));
+  s.column(std::span(p.id.data(), p.id.size()));
+}
+
+void write_frame(Sink& s, const StateFrame& f) {
+  for (const std::uint64_t n :
+       {f.fluid_particles, f.probes, f.body_particles, f.bodies, f.grips, f.fluids, f.scene}) {
+    s.raw(n);
+  }
+  for (const double value : {f.spacing, f.time_step, f.stiffness}) s.raw(value);
+}
+
+std::string differs(const char* what, double saved, double here) {
+  char text[160];
+  std::snprintf(text, sizeof text, "it was saved with %s of %.10g, and here it is %.10g", what, saved, here);
+  return text;
+}
+
+void read_frame(Source& s, const StateFrame& here) {
+  const auto count = [&](const char* what, std::uint64_t wanted) {
+    std::uint64_t n = 0;
+    s.raw(n);
+    if (s.ok() && n != wanted) s.fail(differs(what, static_cast<double>(n), static_cast<double>(wanted)));
+  };
+  count("a number of fluid particles", here.fluid_particles);
+  count("a number of probes", here.probes);
+  count("a number of body particles", here.body_particles);
+  count("a number of bodies", here.bodies);
+  count("a number of grips", here.grips);
+  count("a number of fluids", here.fluids);
+  std::uint64_t scene = 0;
+  s.raw(scene);
+  const auto value = [&](const char* what, double wanted) {
+    double saved = 0.0;
+    s.raw(saved);
+    // Another compiler may round the plan's numbers otherwise.
+    if (s.ok() && !(std::abs(saved - wanted) <= 1e-9 * std::abs(wanted)))
+      s.fail(differs(what, saved, wanted));
+  };
+  value("a spacing", here.spacing);
+  value("a time step", here.time_step);
+  value("a stiffness", here.stiffness);
+  if (s.ok() && scene != here.scene)
+    s.fail("it was saved from another scene, or from this one before it was changed");
+}
+
+// Every particle once at most, probes all, and those in the world where they can be.
+void check_particles(Source& s, const StateFrame& frame, const RunConstants& constants,
+                     const std::vector<std::uint8_t>& gone, ParticleState& p) {
+  const std::uint64_t total = frame.fluid_particles + frame.probes;
+  std::vector<bool> seen(total, false);
+  std::uint64_t probes = 0;
+  for (std::size_t i = 0; i < p.size() && s.ok(); ++i) {
+    if (p.id[i] >= total || seen[p.id[i]])
+      return s.fail("it holds a particle that is not of this world, or one twice");
+    seen[p.id[i]] = true;
+    const bool probe = p.id[i] >= frame.fluid_particles;
+    probes += probe;
+    if (gone[i] > 1 || (gone[i] && probe))
+      return s.fail("it holds a particle that is neither in the world nor out of it");
+    if (gone[i]) {
+      p.key[i] = constants.grid.retired_key();
+      continue;
+    }
+    const bool finite = std::isfinite(p.x[i]) && std::isfinite(p.y[i]) && std::isfinite(p.z[i]) &&
+                        std::isfinite(p.vx[i]) && std::isfinite(p.vy[i]) && std::isfinite(p.vz[i]);
+    if (!finite || !(p.volume[i] > 0.0f) || !std::isfinite(p.volume[i]))
+      return s.fail("it holds a particle that is not finite");
+    // A probe may be outside, with the hand that holds it.
+    if (!probe && !constants.grid.contains(p.x[i], p.y[i], p.z[i]))
+      return s.fail("it holds a particle that is outside the domain");
+    p.key[i] = constants.grid.cell_of(p.x[i], p.y[i], p.z[i]);
+  }
+  if (s.ok() && probes != frame.probes) s.fail("a probe is missing in it");
+}
+
+}  // namespace
+
+void ParticleState::resize(std::size_t count) {
+  for (auto* column : {&x, &y, &z, &vx, &vy, &vz, &volume}) column->resize(count);
+  id.resize(count);
+  key.resize(count);
+}
+
+StateFrame state_frame(const Scene& scene, const Plan& plan, const ParticleStart& start) {
+  Fingerprint print;
+  // Rounded, so that the last bit of a sum does not tell one machine's build from another's.
+  const auto real = [&](double value) { print.add(static_cast<float>(value)); };
+  const auto vector = [&](const glm::dvec3& v) {
+    for (int i = 0; i < 3; ++i) real(v[i]);
+  };
+  vector(scene.gravity);
+  vector(scene.domain_min);
+  vector(scene.domain_max);
+  real(scene.support_ratio);
+  real(plan.tension);
+  print.add(static_cast<std::uint32_t>(plan.model));
+  for (const Fluid& fluid : scene.fluids) {
+    real(fluid.rest_density);
+    real(fluid.dynamic_viscosity);
+  }
+  for (const Body& body : scene.bodies) {
+    print.add(static_cast<std::uint32_t>(body.motion));
+    print.add(static_cast<std::uint32_t>(body.point_probe));
+    vector(body.pose.position);
+    for (const double part :
+         {body.pose.orientation.w, body.pose.orientation.x, body.pose.orientation.y, body.pose.orientation.z,
+          body.dynamic_viscosity, body.friction, body.restitution, body.particle_density}) {
+      real(part);
+    }
+    if (body.motion != BodyMotion::kFree) continue;
+    real(body.mass.mass);
+    vector(body.mass.center_of_mass);
+    for (int i = 0; i < 3; ++i) vector(body.mass.inertia[i]);
+  }
+  for (const Grip& grip : scene.grips) {
+    print.add(static_cast<std::uint32_t>(grip.body));
+    vector(grip.pose.position);
+    for (const double part :
+         {grip.stiffness, grip.damping, grip.rotational_stiffness, grip.rotational_damping}) {
+      real(part);
+    }
+  }
+  for (const std::uint8_t kind : start.kinds) print.add(kind);
+  return {start.fluid_count,   start.probes.size(), start.fixed.size() + start.moving.size(),
+          scene.bodies.size(), scene.grips.size(),  scene.fluids.size(),
+          plan.spacing,        plan.time_step,      plan.stiffness,
+          print.value()};
+}
+
+void write_state(const StateFrame& frame, const RunConstants& constants, const SavedState& state,
+                 std::vector<std::uint8_t>& out) {
+  const ParticleState& p = state.particles;
+  out.reserve(out.size() + 33 * p.size() + 400 * (state.bodies.size() + state.grips.size()) + 1024);
+  Sink s(out);
+  s.raw(kMagic);
+  s.raw(kVersion);
+  write_frame(s, frame);
+  s.raw(state.tick);
+  s.raw(state.status);
+  s.real(state.gravity_scale);
+  for (const double viscosity : state.viscosities) s.real(viscosity);
+  for (const RigidBody& body : state.bodies) body_state(s, body);
+  for (const Wrench& w : state.wrenches) wrench(s, w);
+  for (const GripState& grip : state.grips) grip_state(s, grip);
+  for (const HandleInput& input : state.last_input) {
+    s.raw(static_cast<std::uint8_t>(input.engaged));
+    // What a hand that is let go reads is never used, and need not even be a number.
+    const HandleInput nothing;
+    hand_state(s, input.engaged ? input : nothing);
+  }
+  s.raw(static_cast<std::uint32_t>(p.size()));
+  columns(s, p);
+  std::vector<std::uint8_t> gone(p.size());
+  for (std::size_t i = 0; i < p.size(); ++i) gone[i] = p.key[i] >= constants.grid.retired_key();
+  s.column(std::span<const std::uint8_t>(gone));
+}
+
+Result<bool> read_state(std::span<const std::uint8_t> bytes, const StateFrame& frame,
+                        const RunConstants& constants, SavedState& state) {
+  Source s(bytes);
+  std::uint32_t magic = 0;
+  std::uint32_t version = 0;
+  s.raw(magic);
+  s.raw(version);
+  if (magic != kMagic) s.fail("these are not the bytes of a saved world");
+  if (version != kVersion) {
+    s.fail("it has version " + std::to_string(version) + ", and this program reads version " +
+           std::to_string(kVersion));
+  }
+  if (s.ok()) read_frame(s, frame);
+  s.raw(state.tick);
+  if (state.tick > kMostTicks) s.fail("its tick is beyond all bounds");
+  s.raw(state.status);
+  s.real(state.gravity_scale);
+  if (!(state.gravity_scale >= 0.0 && state.gravity_scale <= kMostGravityScale))
+    s.fail("its gravity is beyond all bounds");
+  state.viscosities.resize(frame.fluids);
+  for (double& viscosity : state.viscosities) {
+    s.real(viscosity);
+    if (!(viscosity >= 0.0)) s.fail("a viscosity in it is negative");
+  }
+  for (RigidBody& body : state.bodies) {
+    RigidBody read = body;
+    body_state(s, read);
+    if (body.free) body = read;
+  }
+  state.wrenches.resize(frame.bodies);
+  for (Wrench& w : state.wrenches) wrench(s, w);
+  state.grips.resize(frame.grips);
+  for (GripState& grip : state.grips) grip_state(s, grip);
+  state.last_input.resize(frame.grips);
+  for (HandleInput& input : state.last_input) {
+    std::uint8_t engaged = 0;
+    s.raw(engaged);
+    hand_state(s, input);
+    input.engaged = engaged == 1;
+    if (engaged > 1) s.fail("a hand in it neither holds nor lets go");
+  }
+  std::uint32_t count = 0;
+  s.raw(count);
+  ParticleState& p = state.particles;
+  // Eight columns of four bytes and one of one: what is there decides how much is allocated.
+  if (s.ok() && s.left() != std::uint64_t{33} * count)
+    s.fail("its length does not fit its number of particles");
+  if (s.ok()) {
+    p.resize(count);
+    columns(s, p);
+    std::vector<std::uint8_t> gone(count);
+    s.column(std::span(gone));
+    check_particles(s, frame, constants, gone, p);
+  }
+  if (!s.ok()) return Error{kWhere, s.problem(), ""};
+  return true;
+}
+
+}  // namespace slosh

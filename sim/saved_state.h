@@ -1,0 +1,66 @@
+// A world's dynamic state as bytes, and back with every value checked.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sim/bodies.h"
+#include "sim/math/result.h"
+#include "sim/run_constants.h"
+#include "sim/world.h"
+
+namespace slosh {
+
+/// The particles in the order that the engine has them: sums over neighbours depend on it.
+struct ParticleState {
+  std::vector<float> x, y, z;     ///< m
+  std::vector<float> vx, vy, vz;  ///< m/s
+  std::vector<float> volume;      ///< m³, of the last density pass
+  std::vector<std::uint32_t> id;
+  std::vector<std::uint32_t> key;  ///< cell, or retired: follows from the position but for probes
+
+  void resize(std::size_t count);
+  std::size_t size() const { return id.size(); }
+};
+
+/// What stays the same for a run and must match for a state to fit.
+struct StateFrame {
+  std::uint64_t fluid_particles = 0;
+  std::uint64_t probes = 0;
+  std::uint64_t body_particles = 0;
+  std::uint64_t bodies = 0;
+  std::uint64_t grips = 0;
+  std::uint64_t fluids = 0;
+  double spacing = 0.0;     ///< m
+  double time_step = 0.0;   ///< s
+  double stiffness = 0.0;   ///< m²/s²
+  std::uint64_t scene = 0;  ///< fingerprint of masses, grips, gravity, domain, fluids, materials
+};
+
+StateFrame state_frame(const Scene& scene, const Plan& plan, const ParticleStart& start);
+
+struct SavedState {
+  std::uint64_t tick = 0;
+  std::uint32_t status = 0;
+  double gravity_scale = 1.0;
+  std::vector<double> viscosities;      ///< Pa·s, one a fluid
+  std::vector<RigidBody> bodies;        ///< only what moves is read back
+  std::vector<Wrench> wrenches;         ///< by the fluid, one a body
+  std::vector<GripState> grips;         ///< handle and on_hand
+  std::vector<HandleInput> last_input;  ///< one a grip
+  ParticleState particles;
+};
+
+constexpr std::uint64_t kMostTicks = std::uint64_t{1} << 48;
+
+/// Appends to `out`.
+void write_state(const StateFrame& frame, const RunConstants& constants, const SavedState& state,
+                 std::vector<std::uint8_t>& out);
+
+/// `state` comes with the bodies as the world has them now; fixed ones and constants are left as they are.
+/// Errors: not such bytes, cut off, of another scene, spacing or version, a value that cannot be.
+Result<bool> read_state(std::span<const std::uint8_t> bytes, const StateFrame& frame,
+                        const RunConstants& constants, SavedState& state);
+
+}  // namespace slosh
