@@ -81,8 +81,8 @@ void compute_density(PassContext& context, ThreadTeam& team, FluidParticles& flu
         if (moving_rows.count) sum += sum_walls(moving, moving_rows, fluid, p, h);
         const ParticleKind& kind = context.kinds[fluid.kind[p]];
         const PressureState state =
-            pressure_state(xsimd::hadd(sum), context.rest_number_density, context.rest_volume,
-                           kind.rest_density, stiffness, tension, fluid.volume[p], consistent);
+            pressure_state(lane_sum(sum), context.rest_number_density, context.rest_volume, kind.rest_density,
+                           stiffness, tension, fluid.volume[p], consistent);
         densest = std::max(densest, state.compression);
         fluid.pressure[p] = state.pressure;
         fluid.volume[p] = state.volume;

@@ -48,9 +48,9 @@ void compute_fluid_forces(PassContext& context, ThreadTeam& team, FluidParticles
           if (moving_rows.count)
             add_row_forces<kWalls, kAgainstBodies>(self, moving_columns, moving_rows, h, sum);
           const float scale = context.kernels.spiky;
-          fluid.fx[p] = scale * xsimd::hadd(sum.x);
-          fluid.fy[p] = scale * xsimd::hadd(sum.y);
-          fluid.fz[p] = scale * xsimd::hadd(sum.z);
+          fluid.fx[p] = scale * lane_sum(sum.x);
+          fluid.fy[p] = scale * lane_sum(sum.y);
+          fluid.fz[p] = scale * lane_sum(sum.z);
         }
       }
     });
@@ -84,7 +84,7 @@ void sum_body_wrenches(PassContext& context, ThreadTeam& team, const FluidPartic
               broadcast(own, i, viscosity == Viscosity::kOne ? mean : boundary.viscosity[i]);
           add_row_forces<kWalls, viscosity>(self, fluid_columns, rows, h, sum);
           const float scale = context.kernels.spiky;
-          scratch[i] = scale * glm::vec3(xsimd::hadd(sum.x), xsimd::hadd(sum.y), xsimd::hadd(sum.z));
+          scratch[i] = scale * glm::vec3(lane_sum(sum.x), lane_sum(sum.y), lane_sum(sum.z));
         }
       }
     });

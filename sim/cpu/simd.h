@@ -29,6 +29,16 @@ struct RealOps<FloatBatch> {
   }
 };
 
+/// The sum of all lanes. xsimd called it hadd (8.1, Debian 12) and calls it reduce_add (13, Debian 13).
+template <class Batch>
+float lane_sum(const Batch& x) {
+  if constexpr (requires { reduce_add(x); }) {
+    return reduce_add(x);
+  } else {
+    return hadd(x);
+  }
+}
+
 /// 1 in the lanes before `count`, 0 in the others: for the last, partly filled batch of a row.
 inline FloatBatch first_lanes(std::size_t count) {
   alignas(64) static constexpr auto kTable = [] {
