@@ -54,7 +54,9 @@ class Context {
 
 struct HeadlessOptions {
   /// Threads that llvmpipe draws with; 0 leaves the choice to it. It reads this (environment LP_NUM_THREADS)
-  /// once per process, so only the first headless context's wish counts. No effect on a GPU.
+  /// once per process, so only the first headless context's wish counts. No effect on a GPU. Setting it is
+  /// not safe while another thread reads the environment: make the first context before threads that do are
+  /// started.
   int software_threads = 0;
   /// Ask the driver for its debug output; slower on some GPUs.
   bool debug = false;

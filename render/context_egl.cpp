@@ -134,6 +134,8 @@ Result<std::unique_ptr<Context>> make_headless_context(const HeadlessOptions& op
   }
   // llvmpipe reads it when its first screen is made, which the first eglInitialize does.
   if (options.software_threads > 0) {
+    // There is no other way to tell it; context.h says when this is safe.
+    // NOLINTNEXTLINE(concurrency-mt-unsafe)
     setenv("LP_NUM_THREADS", std::to_string(options.software_threads).c_str(), 1);
   }
   std::string reasons;

@@ -8,9 +8,7 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstring>
-
-extern char** environ;
+#include <system_error>
 
 namespace slosh {
 namespace {
@@ -37,7 +35,8 @@ ChildProcess::~ChildProcess() {
 
 Result<std::unique_ptr<ChildProcess>> ChildProcess::start(const std::vector<std::string>& arguments) {
   int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) return Error{arguments[0], std::strerror(errno), "Close other programs"};
+  if (pipe2(ends, O_CLOEXEC) != 0)
+    return Error{arguments[0], std::generic_category().message(errno), "Close other programs"};
   // A file in memory rather than a pipe: nobody has to read along for the child not to stop.
   const int log = memfd_create("child-log", MFD_CLOEXEC);
 
@@ -66,7 +65,7 @@ Result<std::unique_ptr<ChildProcess>> ChildProcess::start(const std::vector<std:
   if (failed != 0) {
     close(ends[1]);
     if (log >= 0) close(log);
-    return Error{arguments[0], std::string("cannot be started: ") + std::strerror(failed),
+    return Error{arguments[0], std::string("cannot be started: ") + std::generic_category().message(failed),
                  "Install it (the launcher ./slosh does)"};
   }
   return std::unique_ptr<ChildProcess>(new ChildProcess(arguments[0], pid, ends[1], log));

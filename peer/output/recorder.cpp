@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
-#include <cstring>
+#include <system_error>
 
 #include "peer/haptics/script_device.h"
 
@@ -18,7 +18,8 @@ Result<std::unique_ptr<Recorder>> Recorder::start(Servo& servo, const std::files
       const std::filesystem::path path = folder / name;
       file->reset(std::fopen(path.c_str(), "w"));
       if (!*file) {
-        return Error{path.string(), std::string("cannot be written: ") + std::strerror(errno),
+        return Error{path.string(),
+                     std::string("cannot be written: ") + std::generic_category().message(errno),
                      "Choose another folder with --out"};
       }
       std::fprintf(file->get(), "%s\n", header);

@@ -2,9 +2,9 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "sim/snapshot.h"
 
@@ -134,7 +134,7 @@ Result<bool> write_summary(const std::filesystem::path& file, const RunSummary& 
     std::ofstream out(part);
     out << to_json(summary).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
     if (!out.flush()) {
-      return Error{file.string(), std::string("cannot be written: ") + std::strerror(errno),
+      return Error{file.string(), std::string("cannot be written: ") + std::generic_category().message(errno),
                    "Choose another folder with --out"};
     }
   }
