@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <vector>
 
@@ -18,7 +19,7 @@ namespace slosh {
 
 /// What was felt at one moment.
 struct ServoSample {
-  double time = 0.0;  ///< simulated s
+  double time = 0.0;  ///< simulated s; goes on across a reset of the world, see Servo
   std::uint32_t device = 0;
   Wrench on_hand;  ///< as sent to the device; torque about the handle, world axes
   Pose handle;     ///< world
@@ -39,21 +40,33 @@ constexpr double kFadeStale = 0.3;
 double freshness(double age, double interval);
 
 /// tick() belongs to the device loop's thread and neither allocates, locks nor logs. samples() has one
-/// reader.
+/// reader. set_device() and what asks about devices belong to one other thread.
+///
+/// A rising BodyMessage::run means that the world was reset: simulated time starts anew for the devices, and
+/// couplings are let in as if every hand had just taken hold. The time of samples goes on instead, so that
+/// files and plots of a run never step back.
 class Servo {
  public:
-  /// The channel must outlive the servo. One device a grip.
+  /// The channel must outlive the servo. One device a grip; null where the hand is not ours: then its pose in
+  /// the channel is left alone.
   Servo(const Scene& scene, std::vector<std::unique_ptr<Device>> devices, Channel& channel,
         ServoOptions options);
 
   void tick(std::int64_t now_ns) noexcept;
 
-  std::size_t devices() const { return hands_.size(); }
-  const Device& device(std::size_t i) const { return *hands_[i].device; }
-  /// After the device loop has stopped; may be called again.
-  void close_devices() {
-    for (Hand& hand : hands_) hand.device->close();
+  /// Hands `device`, already open, to grip `i` from the next tick on; null takes away what is there. What was
+  /// there is closed and freed as soon as the loop has let go of it: at a later call, or at the end.
+  void set_device(std::size_t i, std::unique_ptr<Device> device);
+
+  std::size_t devices() const { return hands_.size(); }  ///< grips, whoever holds them
+  /// The grip's device, or the last one that it had; null when there never was one.
+  const Device* device(std::size_t i) const {
+    return hands_[i].owned.empty() ? nullptr : hands_[i].owned.back().get();
   }
+  bool holds(std::size_t i) const { return hands_[i].wanted.load(std::memory_order_relaxed) != nullptr; }
+  bool holds_any() const;
+  /// After the device loop has stopped; may be called again.
+  void close_devices();
   Ring<ServoSample>& samples() { return samples_; }  ///< device loop → recorder
   std::uint64_t samples_lost() const { return lost_.load(std::memory_order_relaxed); }
   std::uint64_t reports_rejected() const { return rejected_.load(std::memory_order_relaxed); }
@@ -63,23 +76,33 @@ class Servo {
 
  private:
   struct Hand {
-    Hand(std::unique_ptr<Device> d, const CouplingGains& g, const Pose& start)
-        : device(std::move(d)), gains(g), limiter(device->limits()) {
-      good.pose = start;
-      good.engaged = false;
-    }
-    std::unique_ptr<Device> device;
+    Hand(const CouplingGains& g, const Pose& s) : gains(g), start(s) {}
+    // Between the threads: what the loop shall use, and what it uses.
+    std::atomic<Device*> wanted{nullptr};
+    std::atomic<Device*> in_use{nullptr};
+    std::vector<std::unique_ptr<Device>> owned;  // the newest last; the control thread's
+
+    // The loop's.
+    Device* device = nullptr;
     CouplingGains gains;
-    ForceLimiter limiter;
+    Pose start;
+    ForceLimiter limiter{DeviceLimits{}};
     Engagement engagement;
     DeviceReport good;
   };
+  void change_device(Hand& hand, Device* device) noexcept;
+  void free_unused(Hand& hand);
+  void follow_run(const BodyMessage& message) noexcept;
+  double freshness_now(const BodyMessage& message, double age) noexcept;
   void note(std::uint32_t bits) { status_.fetch_or(bits, std::memory_order_relaxed); }
 
   Channel& channel_;
   ServoOptions options_;
-  std::vector<Hand> hands_;
+  std::deque<Hand> hands_;  // a hand never moves: the loop and the control thread share it
+  std::uint32_t run_ = 0;
   double time_ = 0.0;
+  double sample_offset_ = 0.0;  // s that samples' time is ahead of the world's, after resets
+  double fresh_ = 1.0;
   double next_sample_ = 0.0;
   Ring<ServoSample> samples_;
   std::atomic<std::uint64_t> lost_{0};

@@ -69,14 +69,19 @@ void Hud::draw_run(const Rates& rates) const {
   ImGui::TextUnformatted(facts_.title.c_str());
   ImGui::Separator();
   labelled("time", "%.2f s%s", time_, paused ? "  paused" : "");
-  if (rates.real_time > 0.0) {
-    labelled("real time", "\xC3\x97 %.2f", rates.real_time);
-    labelled("steps", "%.0f Hz  %.2f ms", rates.step_rate, rates.step_ms);
-  }
+  if (rates.real_time > 0.0) labelled("real time", "\xC3\x97 %.2f", rates.real_time);
+  if (rates.step_rate > 0.0) labelled("steps", "%.0f Hz  %.2f ms", rates.step_rate, rates.step_ms);
   if (rates.device_rate > 0.0) labelled("devices", "%.0f Hz", rates.device_rate);
   labelled("fluid", "%zu", facts_.fluid_particles);
-  labelled("bodies", "%zu", facts_.boundary_particles);
+  if (facts_.boundary_particles > 0) labelled("bodies", "%zu", facts_.boundary_particles);
   labelled("spacing", "%.1f mm", 1e3 * facts_.spacing);
+  for (const std::string* lines : {&rates.people, &rates.connection}) {
+    if (lines->empty()) continue;
+    ImGui::Separator();
+    ImGui::PushTextWrapPos(kPanelWidth);
+    ImGui::TextUnformatted(lines->c_str());
+    ImGui::PopTextWrapPos();
+  }
   const std::string status = status_text(status_ | rates.device_status);
   if (!status.empty()) {
     ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 0.78f, 0.35f, 1.0f));
@@ -118,6 +123,7 @@ void Hud::draw_help() const {
           "right drag  shift the camera\n"
           "wheel       nearer and farther");
     }
+    if (facts_.shared) ImGui::TextUnformatted("\nG           take a free grip, let go");
     ImGui::TextUnformatted(
         "\nSpace       pause, go on\n"
         "R           start again\n"

@@ -17,6 +17,7 @@ struct HudFacts {
   double spacing = 0.0;  ///< m
   std::size_t fluid_particles = 0;
   std::size_t boundary_particles = 0;
+  bool shared = false;         ///< others may hold grips too: the help says how to take one
   double picture_rate = 30.0;  ///< snapshots a simulated second, spaces the strip charts
 };
 

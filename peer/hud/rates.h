@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <deque>
 #include <mutex>
+#include <string>
 
 namespace slosh {
 
@@ -14,6 +15,9 @@ struct Rates {
   double step_ms = 0.0;
   double device_rate = 0.0;         ///< Hz
   std::uint32_t device_status = 0;  ///< StatusBits that the device loop ever set
+  double start = 0.0;               ///< simulated s when this person's run began
+  std::string connection;           ///< the network in a few words; empty without one
+  std::string people;               ///< who is here, a line each; empty when alone
 };
 
 /// Written by the thread that watches the run, read by the one that draws. Neither is the device loop.

@@ -55,22 +55,28 @@ int liveliest_axis(const std::vector<WrenchSeries>& series, Pick pick) {
   return axis;
 }
 
-void add_curves(std::string& script, std::size_t devices, const std::vector<std::string>& names,
-                const char* quantity, int magnitude_column, int axis) {
+void add_curves(std::string& script, const std::vector<WrenchSeries>& series,
+                const std::vector<std::string>& names, const char* quantity, int magnitude_column, int axis) {
   constexpr const char* kAxes[] = {"x", "y", "z"};
   script += "plot \\\n";
-  for (std::size_t i = 0; i < devices; ++i) {
+  // A grip that somebody else held has no rows here.
+  std::vector<std::size_t> shown;
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    if (!series[i].time.empty()) shown.push_back(i);
+  }
+  for (const std::size_t i : shown) {
+    const bool last = i == shown.back();
     const std::string data = "$device" + std::to_string(i);
     // Hands that feel the same lie on top of each other: the later, the thinner, so that all are seen.
-    const double later = devices > 1 ? static_cast<double>(i) / static_cast<double>(devices - 1) : 1.0;
-    const std::string width = i + 1 == devices ? "1.8" : later < 0.5 ? "3.4" : "2.6";
+    const double later = static_cast<double>(i) / static_cast<double>(std::max<std::size_t>(shown.back(), 1));
+    const std::string width = last ? "1.8" : later < 0.5 ? "3.4" : "2.6";
     const std::string color = std::string("lc rgb \"") + device_color(i).hex;
     const std::string name = i < names.size() ? names[i] : "device " + std::to_string(i);
     script += "  " + data + " using 1:" + std::to_string(magnitude_column + 1 + axis) + " with lines lw 1 " +
               std::string("lc rgb \"#90") + (device_color(i).hex + 1) + "\" title " +
               quoted(name + ": " + quantity + " " + kAxes[axis]) + ", \\\n";
     script += "  " + data + " using 1:" + std::to_string(magnitude_column) + " with lines lw " + width + " " +
-              color + "\" title " + quoted(name + ": magnitude") + (i + 1 < devices ? ", \\\n" : "\n");
+              color + "\" title " + quoted(name + ": magnitude") + (last ? "\n" : ", \\\n");
   }
 }
 
@@ -156,10 +162,10 @@ std::string plot_script(const std::vector<WrenchSeries>& series, const std::vect
       "set offsets 0,0,graph 0.04,graph 0.04\n";
   script += "set title " + quoted(title) + " font \"DejaVu Sans,14\"\n";
   script += "set ylabel \"force on the hand, N\"\nset format x \"\"\n";
-  add_curves(script, series.size(), names, "along", 2, force_axis);
+  add_curves(script, series, names, "along", 2, force_axis);
   script += "unset title\nset format x \"%g\"\nset xlabel \"simulated time, s\"\n";
   script += "set ylabel \"torque on the hand, N·m\"\n";
-  add_curves(script, series.size(), names, "about", 6, torque_axis);
+  add_curves(script, series, names, "about", 6, torque_axis);
   script += "unset multiplot\n";
   return script;
 }

@@ -7,19 +7,18 @@
 
 namespace slosh {
 
-int finish_run(const Prepared& prepared, Progress& progress, RunSummary& summary) {
+int finish_run(const Stage& stage, Progress& progress, RunSummary& summary) {
   int code = kExitOk;
   summary.interrupted = interrupted_by() != 0;
-  if (!prepared.folder.empty()) {
-    if (!prepared.scene.grips.empty()) {
+  if (!stage.folder.empty()) {
+    if (!stage.scene.grips.empty()) {
       progress.phase("plotting");
       std::vector<std::string> names;
-      for (const Grip& grip : prepared.scene.grips) names.push_back(grip.name);
-      const std::string title = prepared.scene.title.empty()
-                                    ? prepared.scene.name
-                                    : prepared.scene.name + ": " + prepared.scene.title;
+      for (const Grip& grip : stage.scene.grips) names.push_back(grip.name);
+      const std::string title =
+          stage.scene.title.empty() ? stage.scene.name : stage.scene.name + ": " + stage.scene.title;
       const Result<bool> plotted =
-          plot_wrenches(prepared.folder / "wrenches.csv", names, title, prepared.folder / "wrenches.png");
+          plot_wrenches(stage.folder / "wrenches.csv", names, title, stage.folder / "wrenches.png");
       if (plotted) {
         summary.files.emplace_back("wrenches.png");
       } else {
@@ -27,7 +26,7 @@ int finish_run(const Prepared& prepared, Progress& progress, RunSummary& summary
       }
     }
     summary.files.emplace_back("summary.json");
-    const Result<bool> written = write_summary(prepared.folder / "summary.json", summary);
+    const Result<bool> written = write_summary(stage.folder / "summary.json", summary);
     if (!written) code = fail(written.error());
   }
   progress.note("");

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <thread>
@@ -30,16 +32,70 @@ void fill_view(RunSummary& summary, const HeadlessView& view, const ViewOptions&
 }  // namespace
 
 std::string running_text(const Rates& rates, double seconds) {
-  char text[160];
-  int used = std::snprintf(text, sizeof text, "%.2f s", rates.time);
-  if (seconds < 1e9) used += std::snprintf(text + used, sizeof text - used, " of %.2f s", seconds);
-  if (rates.real_time > 0.0) {
-    used += std::snprintf(text + used, sizeof text - used, ", real time × %.2f, step %.2f ms",
-                          rates.real_time, rates.step_ms);
-  }
-  if (rates.device_rate > 0.0)
-    std::snprintf(text + used, sizeof text - used, ", devices %.0f Hz", rates.device_rate);
+  char text[400];
+  int used = std::snprintf(text, sizeof text, "%.2f s", rates.time - rates.start);
+  const auto add = [&](const char* pattern, auto... values) {
+    used += std::snprintf(text + used, sizeof text - static_cast<std::size_t>(used), pattern, values...);
+    used = std::min(used, static_cast<int>(sizeof text) - 1);
+  };
+  if (seconds < 1e9) add(" of %.2f s", seconds);
+  if (rates.real_time > 0.0) add(", real time × %.2f", rates.real_time);
+  if (rates.step_ms > 0.0) add(", step %.2f ms", rates.step_ms);
+  if (rates.device_rate > 0.0) add(", devices %.0f Hz", rates.device_rate);
+  if (!rates.connection.empty()) add(", %s", rates.connection.c_str());
   return text;
+}
+
+Result<bool> show_headless(const Stage& stage, LiveRun& run, const ShowOptions& options, Progress& progress,
+                           RunSummary& summary) {
+  std::unique_ptr<HeadlessView> view;
+  ViewOptions view_options;
+  if (options.render) {
+    progress.phase("preparing the picture");
+    view_options.render.width = stage.width;
+    view_options.render.height = stage.height;
+    view_options.render.bilateral_iterations = options.bilateral;
+    view_options.frames_per_second = options.frames_per_second;
+    view_options.folder = stage.folder;
+    Result<std::unique_ptr<HeadlessView>> started = HeadlessView::start(
+        stage.scene, run.facts(options.frames_per_second), run.pictures(), run.rates(), view_options);
+    if (!started) {
+      Error error = started.error();
+      run.pictures().close();
+      error.mend += error.mend.empty() ? "Or run with --no-render" : "; or run with --no-render";
+      return error;
+    }
+    view = std::move(started.value());
+  }
+
+  progress.phase("running");
+  run.start();
+  while (run.running()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    const Rates rates = run.note_rates();
+    progress.update(std::isfinite(stage.seconds) ? (rates.time - rates.start) / stage.seconds : -1.0,
+                    running_text(rates, stage.seconds));
+    if (interrupted_by() != 0) run.request_stop();
+  }
+  run.stop();
+
+  if (view) {
+    progress.phase("encoding");
+    while (!view->finished()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      const double all = static_cast<double>(view->frames_done() + run.pictures().waiting());
+      const std::string left = std::to_string(run.pictures().waiting()) + " pictures left";
+      progress.update(all > 0.0 ? static_cast<double>(view->frames_done()) / all : 0.0, left);
+    }
+    view->wait();
+  }
+  run.report(summary);
+  if (!stage.folder.empty()) summary.files = {"wrenches.csv", "poses.csv"};
+  if (view) {
+    fill_view(summary, *view, view_options, run.pictures().dropped());
+    if (!view->report().problem.empty()) progress.note("slosh: the film: " + view->report().problem);
+  }
+  return true;
 }
 
 Result<bool> play_headless(const Prepared& prepared, const PlayOptions& options, Progress& progress,
@@ -51,56 +107,7 @@ Result<bool> play_headless(const Prepared& prepared, const PlayOptions& options,
   Result<std::unique_ptr<Session>> created =
       Session::create(prepared, std::move(devices.value()), picture_rate);
   if (!created) return created.error();
-  Session& session = *created.value();
-
-  std::unique_ptr<HeadlessView> view;
-  ViewOptions view_options;
-  if (options.render) {
-    progress.phase("preparing the picture");
-    view_options.render.width = prepared.width;
-    view_options.render.height = prepared.height;
-    view_options.render.bilateral_iterations = options.bilateral;
-    view_options.frames_per_second = options.frames_per_second;
-    view_options.folder = prepared.folder;
-    Result<std::unique_ptr<HeadlessView>> started =
-        HeadlessView::start(prepared.scene, session.facts(picture_rate), session.channel().pictures(),
-                            session.rates(), view_options);
-    if (!started) {
-      Error error = started.error();
-      session.channel().pictures().close();
-      error.mend += error.mend.empty() ? "Or play with --no-render" : "; or play with --no-render";
-      return error;
-    }
-    view = std::move(started.value());
-  }
-
-  progress.phase("running");
-  session.start();
-  while (session.host().running()) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    const Rates rates = session.note_rates();
-    progress.update(rates.time / prepared.seconds, running_text(rates, prepared.seconds));
-    if (interrupted_by() != 0) session.host().request_stop();
-  }
-  session.stop();
-
-  if (view) {
-    progress.phase("encoding");
-    while (!view->finished()) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-      const double all = static_cast<double>(view->frames_done() + session.channel().pictures().waiting());
-      const std::string left = std::to_string(session.channel().pictures().waiting()) + " pictures left";
-      progress.update(all > 0.0 ? static_cast<double>(view->frames_done()) / all : 0.0, left);
-    }
-    view->wait();
-  }
-  session.report(summary);
-  if (!prepared.folder.empty()) summary.files = {"wrenches.csv", "poses.csv"};
-  if (view) {
-    fill_view(summary, *view, view_options, session.channel().pictures().dropped());
-    if (!view->report().problem.empty()) progress.note("slosh: the film: " + view->report().problem);
-  }
-  return true;
+  return show_headless(prepared, *created.value(), options, progress, summary);
 }
 
 }  // namespace slosh

@@ -1,15 +1,30 @@
 // The two ways to watch a run: a film without a display, or a window.
 #pragma once
 
-#include "peer/hud/rates.h"
+#include <functional>
+#include <memory>
+
 #include "peer/output/progress.h"
-#include "peer/output/summary.h"
+#include "peer/verbs/live_run.h"
 #include "peer/verbs/play_options.h"
 #include "peer/verbs/prepare.h"
 
 namespace slosh {
 
-/// Each runs the world to its end and fills `summary`. Errors: no renderer, no device, no file.
+/// Snapshots a second that a window asks for, for a smooth picture.
+constexpr double kWindowPictureRate = 60.0;
+
+/// Starts `run`, films it to its end and fills `summary`. Errors: no renderer, no file.
+Result<bool> show_headless(const Stage& stage, LiveRun& run, const ShowOptions& options, Progress& progress,
+                           RunSummary& summary);
+
+/// Makes a run, also each time that the user starts again and the run cannot do that in place.
+using MakeRun = std::function<Result<std::unique_ptr<LiveRun>>()>;
+/// The same in a window, until it is closed or the run ends. Errors: no window, and what `make_run` has.
+Result<bool> show_in_window(const Stage& stage, const MakeRun& make_run, const ShowOptions& options,
+                            Progress& progress, RunSummary& summary);
+
+/// A world in this process, as a film or in a window.
 Result<bool> play_headless(const Prepared& prepared, const PlayOptions& options, Progress& progress,
                            RunSummary& summary);
 Result<bool> play_in_window(const Prepared& prepared, const PlayOptions& options, Progress& progress,
@@ -19,6 +34,6 @@ Result<bool> play_in_window(const Prepared& prepared, const PlayOptions& options
 std::string running_text(const Rates& rates, double seconds);
 
 /// Plot and summary, from what the run left in the folder. Returns the exit code.
-int finish_run(const Prepared& prepared, Progress& progress, RunSummary& summary);
+int finish_run(const Stage& stage, Progress& progress, RunSummary& summary);
 
 }  // namespace slosh

@@ -15,12 +15,10 @@
 namespace slosh {
 namespace {
 
-constexpr double kPictureRate = 60.0;  // snapshots a simulated second, for a smooth window
-
 /// The film of a window, when a folder was given: what is on show, at a fixed rate of wall time.
 class WindowFilm {
  public:
-  WindowFilm(const std::filesystem::path& folder, const PlayOptions& options)
+  WindowFilm(const std::filesystem::path& folder, const ShowOptions& options)
       : folder_(folder), options_(options) {}
 
   /// Call after each draw.
@@ -59,7 +57,7 @@ class WindowFilm {
 
  private:
   std::filesystem::path folder_;
-  const PlayOptions& options_;
+  const ShowOptions& options_;
   std::unique_ptr<Video> video_;
   Image image_;
   std::int64_t next_ns_ = 0;
@@ -72,19 +70,14 @@ enum class Outcome { kEnd, kAgain };
 /// Shows one session until it ends or the user wants another.
 class WindowRun {
  public:
-  WindowRun(const Prepared& prepared, Session& session, std::vector<std::shared_ptr<MouseTarget>> targets,
-            Context& context, Renderer& renderer, WindowFilm& film)
-      : prepared_(prepared),
-        session_(session),
+  WindowRun(const Stage& stage, LiveRun& run, Context& context, Renderer& renderer, WindowFilm& film)
+      : stage_(stage),
+        run_(run),
         context_(context),
         renderer_(renderer),
         film_(film),
-        painter_(prepared.scene, session.facts(kPictureRate), renderer),
-        targets_(std::move(targets)) {
-    for (std::size_t i = 0; i < targets_.size(); ++i) {
-      hands_.emplace_back(grip_start(prepared.scene, i));
-      painter_.hud().mouse_hand |= targets_[i] != nullptr;
-    }
+        painter_(stage.scene, run.facts(kWindowPictureRate), renderer) {
+    hands_.resize(stage.scene.grips.size());
   }
 
   Outcome show(Progress& progress, Histogram& frame_time, std::uint64_t& frames) {
@@ -93,16 +86,16 @@ class WindowRun {
       const InputState& input = context_.poll();
       if (context_.should_close() || interrupted_by() != 0) return Outcome::kEnd;
       if (input.pressed(Key::kEscape) || input.pressed(Key::kQ)) return Outcome::kEnd;
-      if (input.pressed(Key::kR)) return Outcome::kAgain;
+      if (input.pressed(Key::kR) && !run_.start_again()) return Outcome::kAgain;
       handle(input);
-      if (SnapshotPointer newest = session_.channel().pictures().pop_newest()) {
+      if (SnapshotPointer newest = run_.newest_picture()) {
         snapshot = std::move(newest);
         painter_.record(*snapshot);
       }
-      const Rates rates = session_.note_rates();
-      progress.update(std::isfinite(prepared_.seconds) ? rates.time / prepared_.seconds : -1.0,
-                      running_text(rates, prepared_.seconds));
-      if (!session_.host().running()) return Outcome::kEnd;
+      const Rates rates = run_.note_rates();
+      progress.update(std::isfinite(stage_.seconds) ? (rates.time - rates.start) / stage_.seconds : -1.0,
+                      running_text(rates, stage_.seconds));
+      if (!run_.running()) return Outcome::kEnd;
 
       const glm::ivec2 size = context_.framebuffer_size();
       if (!snapshot || size.x < 16 || size.y < 16) {  // minimised
@@ -126,10 +119,11 @@ class WindowRun {
     Hud& hud = painter_.hud();
     if (input.pressed(Key::kH)) hud.show_help = !hud.show_help;
     if (input.pressed(Key::kC)) painter_.camera().reset();
-    if (input.pressed(Key::kSpace)) {
-      hud.paused = !hud.paused;
-      session_.host().pause(hud.paused);
-    }
+    if (input.pressed(Key::kSpace)) run_.pause(!run_.paused());
+    if (input.pressed(Key::kG)) run_.change_grip();
+    hud.paused = run_.paused();
+    hud.mouse_hand = false;
+    for (std::size_t i = 0; i < hands_.size(); ++i) hud.mouse_hand |= run_.mouse_target(i) != nullptr;
     const int height = renderer_.options().height;
     if (!hud.mouse_hand) {
       painter_.camera().follow(input, height);
@@ -141,37 +135,42 @@ class WindowRun {
       camera_input.scroll = glm::vec2(0.0f);
       painter_.camera().follow(camera_input, height);
     }
-    for (std::size_t i = 0; i < targets_.size(); ++i) {
-      if (targets_[i] && hands_[i].follow(input, painter_.camera(), height)) {
-        targets_[i]->back() = hands_[i].wanted();
-        targets_[i]->publish();
+    for (std::size_t i = 0; i < hands_.size(); ++i) {
+      MouseTarget* const target = run_.mouse_target(i);
+      if (target != hands_[i].target) hands_[i] = {target, MouseHand(target ? target->back() : Pose{})};
+      if (target != nullptr && hands_[i].mouse.follow(input, painter_.camera(), height)) {
+        target->back() = hands_[i].mouse.wanted();
+        target->publish();
       }
     }
   }
 
-  const Prepared& prepared_;
-  Session& session_;
+  const Stage& stage_;
+  LiveRun& run_;
   Context& context_;
   Renderer& renderer_;
   WindowFilm& film_;
   Painter painter_;
-  std::vector<std::shared_ptr<MouseTarget>> targets_;
-  std::vector<MouseHand> hands_;
+  struct Hand {
+    MouseTarget* target = nullptr;
+    MouseHand mouse{Pose{}};
+  };
+  std::vector<Hand> hands_;
 };
 
 }  // namespace
 
-Result<bool> play_in_window(const Prepared& prepared, const PlayOptions& options, Progress& progress,
-                            RunSummary& summary) {
+Result<bool> show_in_window(const Stage& stage, const MakeRun& make_run, const ShowOptions& options,
+                            Progress& progress, RunSummary& summary) {
   Result<std::unique_ptr<Context>> context =
-      make_window_context("slosh: " + prepared.scene.name, prepared.width, prepared.height);
+      make_window_context("slosh: " + stage.scene.name, stage.width, stage.height);
   if (!context) return context.error();
   RenderOptions render;
-  render.width = prepared.width;
-  render.height = prepared.height;
+  render.width = stage.width;
+  render.height = stage.height;
   render.bilateral_iterations = options.bilateral;
   Histogram frame_time;
-  WindowFilm film(prepared.folder, options);
+  WindowFilm film(stage.folder, options);
   progress.phase("running", "(H in the window for help)");
 
   Outcome outcome = Outcome::kAgain;
@@ -179,18 +178,15 @@ Result<bool> play_in_window(const Prepared& prepared, const PlayOptions& options
     // A fresh renderer a run: it has no way to give meshes back.
     Result<std::unique_ptr<Renderer>> renderer = Renderer::create(*context.value(), render);
     if (!renderer) return renderer.error();
-    Result<DeviceSet> devices = make_devices(prepared.scene, options.devices, true);
-    if (!devices) return devices.error();
-    std::vector<std::shared_ptr<MouseTarget>> targets = devices.value().mouse_targets;
-    Result<std::unique_ptr<Session>> session =
-        Session::create(prepared, std::move(devices.value()), kPictureRate);
-    if (!session) return session.error();
-    WindowRun run(prepared, *session.value(), std::move(targets), *context.value(), *renderer.value(), film);
-    session.value()->start();
-    outcome = run.show(progress, frame_time, summary.frames);
-    session.value()->stop();
+    Result<std::unique_ptr<LiveRun>> made = make_run();
+    if (!made) return made.error();
+    LiveRun& run = *made.value();
+    WindowRun window(stage, run, *context.value(), *renderer.value(), film);
+    run.start();
+    outcome = window.show(progress, frame_time, summary.frames);
+    run.stop();
     if (outcome != Outcome::kEnd) continue;
-    session.value()->report(summary);
+    run.report(summary);
     summary.rendered = true;
     summary.renderer = context.value()->description();
     summary.width = renderer.value()->options().width;
@@ -198,9 +194,22 @@ Result<bool> play_in_window(const Prepared& prepared, const PlayOptions& options
     summary.frame_ms = {1e3 * frame_time.percentile(0.5), 1e3 * frame_time.percentile(0.99),
                         1e3 * frame_time.max()};
   }
-  if (!prepared.folder.empty()) summary.files = {"wrenches.csv", "poses.csv"};
+  if (!stage.folder.empty()) summary.files = {"wrenches.csv", "poses.csv"};
   film.finish(summary, progress);
   return true;
+}
+
+Result<bool> play_in_window(const Prepared& prepared, const PlayOptions& options, Progress& progress,
+                            RunSummary& summary) {
+  const MakeRun make_run = [&]() -> Result<std::unique_ptr<LiveRun>> {
+    Result<DeviceSet> devices = make_devices(prepared.scene, options.devices, true);
+    if (!devices) return devices.error();
+    Result<std::unique_ptr<Session>> session =
+        Session::create(prepared, std::move(devices.value()), kWindowPictureRate);
+    if (!session) return session.error();
+    return std::unique_ptr<LiveRun>(std::move(session.value()));
+  };
+  return show_in_window(prepared, make_run, options, progress, summary);
 }
 
 }  // namespace slosh

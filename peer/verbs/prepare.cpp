@@ -51,7 +51,7 @@ Result<Spacing> choose(const Scene& scene, const PlayOptions& options, int threa
   return Spacing{choice.value().spacing, choice.value().reason};
 }
 
-Result<std::filesystem::path> make_folder(const PlayOptions& options, const Scene& scene, bool headless) {
+Result<std::filesystem::path> make_folder(const ShowOptions& options, const Scene& scene, bool headless) {
   if (options.out.empty() && !headless) return std::filesystem::path();
   const std::filesystem::path folder =
       options.out.empty() ? std::filesystem::path("out") / scene.name : std::filesystem::path(options.out);
@@ -99,6 +99,21 @@ Result<Backend> choose_backend(const std::string& text) {
   return gpu ? Backend::kCuda : Backend::kCpu;
 }
 
+Result<bool> set_stage(const ShowOptions& options, bool headless, Stage& stage) {
+  const Result<std::pair<int, int>> size = parse_size(!options.size.empty() ? options.size
+                                                      : headless            ? "640x480"
+                                                                            : "1280x720");
+  if (!size) return size.error();
+  std::tie(stage.width, stage.height) = size.value();
+  stage.seconds = options.seconds > 0.0 ? options.seconds
+                  : headless            ? stage.scene.duration
+                                        : std::numeric_limits<double>::infinity();
+  Result<std::filesystem::path> folder = make_folder(options, stage.scene, headless);
+  if (!folder) return folder.error();
+  stage.folder = folder.value();
+  return true;
+}
+
 Result<Prepared> prepare(const PlayOptions& options, bool headless, Progress& progress) {
   Prepared p;
   const Result<Backend> backend = choose_backend(options.backend);
@@ -108,22 +123,13 @@ Result<Prepared> prepare(const PlayOptions& options, bool headless, Progress& pr
   // Drawing takes a core of its own; the device loop and the encoder take little.
   p.threads = options.threads > 0 ? options.threads
                                   : std::max(1, options.render ? p.machine.cores - 1 : p.machine.cores);
-  const Result<std::pair<int, int>> size = parse_size(!options.size.empty() ? options.size
-                                                      : headless            ? "640x480"
-                                                                            : "1280x720");
-  if (!size) return size.error();
-  std::tie(p.width, p.height) = size.value();
 
   progress.phase("loading", options.scene);
   Result<Scene> scene = load_named_scene(options.scene);
   if (!scene) return scene.error();
   p.scene = std::move(scene.value());
-  p.seconds = options.seconds > 0.0 ? options.seconds
-              : headless            ? p.scene.duration
-                                    : std::numeric_limits<double>::infinity();
-  Result<std::filesystem::path> folder = make_folder(options, p.scene, headless);
-  if (!folder) return folder.error();
-  p.folder = folder.value();
+  const Result<bool> set = set_stage(options, headless, p);
+  if (!set) return set.error();
 
   const Result<Spacing> spacing = choose(p.scene, options, p.threads, p.backend, progress);
   if (!spacing) return spacing.error();

@@ -14,18 +14,22 @@
 
 namespace slosh {
 
-struct Prepared {
+/// What a viewer needs of a run, wherever its world is.
+struct Stage {
   Scene scene;
+  Machine machine;
+  double seconds = 0.0;          ///< simulated; infinity = until the window closes
+  std::filesystem::path folder;  ///< exists, or empty
+  int width = 0;
+  int height = 0;
+};
+
+struct Prepared : Stage {
   SampledScene sampled;
   Plan plan;
   std::string spacing_reason;
-  Machine machine;
   Backend backend = Backend::kCpu;  ///< what was chosen; never kAuto
   int threads = 1;                  ///< the simulation's
-  double seconds = 0.0;             ///< simulated; infinity = until the window closes
-  std::filesystem::path folder;     ///< exists, or empty
-  int width = 0;
-  int height = 0;
 };
 
 /// Finds and loads a shipped name or a file.
@@ -37,6 +41,10 @@ Result<Backend> choose_backend(const std::string& text);
 
 /// "640x480" to two numbers of pixels, 16–8192 each. Errors: anything else.
 Result<std::pair<int, int>> parse_size(const std::string& text);
+
+/// Fills `stage` but for its scene, which must be there: size, seconds, folder (made). Errors: a size that is
+/// none, a folder that cannot be made.
+Result<bool> set_stage(const ShowOptions& options, bool headless, Stage& stage);
 
 /// Loads, measures, samples, plans, makes the folder. Errors: anything of these.
 Result<Prepared> prepare(const PlayOptions& options, bool headless, Progress& progress);

@@ -38,6 +38,7 @@ Result<std::unique_ptr<Session>> Session::create(const Prepared& prepared, Devic
   options.picture_rate = picture_rate;
   options.until = prepared.seconds;
   session->host_ = std::make_unique<Host>(std::move(world), scene, *session->channel_, options);
+  session->mouse_targets_ = std::move(devices.mouse_targets);
   session->servo_ =
       std::make_unique<Servo>(scene, std::move(devices.devices), *session->channel_, ServoOptions{});
   session->loop_ = std::make_unique<DeviceLoop>(*session->servo_);
@@ -80,12 +81,13 @@ HudFacts Session::facts(double picture_rate) const {
 
 Rates Session::note_rates() {
   const HostProgress progress = host_->progress();
-  const Rates rates{progress.time,
-                    progress.rate,
-                    progress.step_rate,
-                    progress.step_ms,
-                    servo_->devices() == 0 ? 0.0 : loop_->rate(),
-                    servo_->status()};
+  Rates rates;
+  rates.time = progress.time;
+  rates.real_time = progress.rate;
+  rates.step_rate = progress.step_rate;
+  rates.step_ms = progress.step_ms;
+  rates.device_rate = servo_->devices() == 0 ? 0.0 : loop_->rate();
+  rates.device_status = servo_->status();
   rates_.add(rates);
   return rates;
 }
@@ -124,7 +126,7 @@ void Session::report(RunSummary& s) const {
   s.fluid_mass_end = host.diagnostics.mass;
   for (std::size_t i = 0; i < servo_->devices(); ++i) {
     const Peak& peak = recorder_->peaks()[i];
-    s.devices.push_back({prepared_.scene.grips[i].name, servo_->device(i).kind(), peak.force, peak.torque});
+    s.devices.push_back({prepared_.scene.grips[i].name, servo_->device(i)->kind(), peak.force, peak.torque});
   }
   s.backend = backend_name(prepared_.backend);
   s.threads = prepared_.threads;

@@ -7,35 +7,41 @@
 #include "net/channel.h"
 #include "peer/haptics/device_loop.h"
 #include "peer/haptics/make_device.h"
-#include "peer/hud/hud.h"
 #include "peer/output/recorder.h"
-#include "peer/output/summary.h"
+#include "peer/verbs/live_run.h"
 #include "peer/verbs/prepare.h"
 
 namespace slosh {
 
 /// Made, started and ended by one thread. `prepared` must outlive it.
-class Session {
+class Session final : public LiveRun {
  public:
   /// `picture_rate` as in HostOptions. Errors: a device cannot be opened, a file cannot be written.
   static Result<std::unique_ptr<Session>> create(const Prepared& prepared, DeviceSet devices,
                                                  double picture_rate);
-  ~Session();
+  ~Session() override;
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  void start();
-  /// Ends the world, then the device loop, then the recording.
-  void stop();
+  void start() override;
+  void request_stop() override { host_->request_stop(); }
+  bool running() override { return host_->running(); }
+  void stop() override;
+  SnapshotQueue& pictures() override { return channel_->pictures(); }
+  SnapshotPointer newest_picture() override { return channel_->pictures().pop_newest(); }
+  HudFacts facts(double picture_rate) const override;
+  Rates note_rates() override;
+  RateLog& rates() override { return rates_; }
+  void pause(bool paused) override {
+    paused_ = paused;
+    host_->pause(paused);
+  }
+  bool paused() const override { return paused_; }
+  MouseTarget* mouse_target(std::size_t i) override { return mouse_targets_[i].get(); }
+  void report(RunSummary& summary) const override;
 
   Host& host() { return *host_; }
   Channel& channel() { return *channel_; }
-  RateLog& rates() { return rates_; }
-  HudFacts facts(double picture_rate) const;
-  /// What is known right now; also written to the rate log.
-  Rates note_rates();
-  /// Fills what the session knows; after stop().
-  void report(RunSummary& summary) const;
 
  private:
   explicit Session(const Prepared& prepared) : prepared_(prepared) {}
@@ -47,6 +53,8 @@ class Session {
   std::unique_ptr<DeviceLoop> loop_;
   std::unique_ptr<Recorder> recorder_;
   RateLog rates_;
+  std::vector<std::shared_ptr<MouseTarget>> mouse_targets_;  // one a grip, null where it is not a mouse
+  bool paused_ = false;
 };
 
 }  // namespace slosh

@@ -1,0 +1,48 @@
+// A world that runs while somebody looks on: in this process, or on a host elsewhere.
+#pragma once
+
+#include "net/snapshot_queue.h"
+#include "peer/haptics/mouse_device.h"
+#include "peer/hud/hud.h"
+#include "peer/hud/rates.h"
+#include "peer/output/summary.h"
+
+namespace slosh {
+
+/// What the film and the window need of a run. Made, started and ended by one thread, which is also the one
+/// that calls everything here; pictures() and rates() may be read by a viewer's thread as well.
+class LiveRun {
+ public:
+  virtual ~LiveRun() = default;
+
+  virtual void start() = 0;
+  /// Asks the run to end; running() tells when it has.
+  virtual void request_stop() = 0;
+  virtual bool running() = 0;
+  /// Ends the world's side, then the device loop, then the recording. May be called again.
+  virtual void stop() = 0;
+
+  /// Every picture in order, for a film; closed when there are no more.
+  virtual SnapshotQueue& pictures() = 0;
+  /// What to show now, for a window; null = what is on show already.
+  virtual SnapshotPointer newest_picture() = 0;
+
+  virtual HudFacts facts(double picture_rate) const = 0;
+  /// What is known right now; also written to the rate log.
+  virtual Rates note_rates() = 0;
+  virtual RateLog& rates() = 0;
+
+  virtual void pause(bool paused) = 0;
+  virtual bool paused() const = 0;
+  /// Starts the world again where that can be done in place. False: end this run and make another.
+  virtual bool start_again() { return false; }
+  /// The key for grips was pressed: take the next free one, or let go of what is held.
+  virtual void change_grip() {}
+  /// Where the mouse moves the handle of grip `i`; null when that hand is no mouse.
+  virtual MouseTarget* mouse_target(std::size_t i) = 0;
+
+  /// Fills what the run knows; after stop().
+  virtual void report(RunSummary& summary) const = 0;
+};
+
+}  // namespace slosh
