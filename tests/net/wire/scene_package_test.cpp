@@ -1,0 +1,180 @@
+#include "net/wire/scene_package.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include "net/wire/scene_fields.h"
+#include "scenes/load.h"
+#include "tests/net/wire/damage.h"
+#include "tests/net/wire/small_scene.h"
+
+namespace slosh {
+namespace {
+
+using wire::Bytes;
+using wire::ByteView;
+
+Bytes packed(const Scene& scene, SceneParts parts = SceneParts::kAll) {
+  const Result<Bytes> bytes = pack_scene(scene, 0.01, parts);
+  EXPECT_TRUE(static_cast<bool>(bytes)) << bytes.error().text();
+  return bytes ? bytes.value() : Bytes{};
+}
+
+/// A package whose content is stored as it is, so that its bytes can be chosen.
+Bytes stored(const Bytes& content) {
+  Bytes package{1, 0};
+  package.insert(package.end(), content.begin(), content.end());
+  return package;
+}
+
+std::string error_of(ByteView package) {
+  const Result<UnpackedScene> scene = unpack_scene(package);
+  return scene ? "" : scene.error().text();
+}
+
+TEST(ScenePackage, ShippedScenesComeBackToTheBit) {
+  for (const SceneEntry& entry : shipped_scenes()) {
+    SCOPED_TRACE(entry.name);
+    const Result<Scene> scene = load_scene(entry.file);
+    ASSERT_TRUE(static_cast<bool>(scene)) << scene.error().text();
+    const Bytes all = packed(scene.value());
+    const Result<UnpackedScene> back = unpack_scene(all);
+    ASSERT_TRUE(static_cast<bool>(back)) << back.error().text();
+    test::expect_same_scene(back.value().scene, scene.value());
+    EXPECT_EQ(back.value().spacing, 0.01);
+    const Bytes seen = packed(scene.value(), SceneParts::kSeen);
+    EXPECT_LE(seen.size(), all.size());
+    Bytes plain;
+    EXPECT_FALSE(wire::encode(wire::PackedScene{scene.value(), 0.01}, plain));
+    std::printf("%-8s %7zu bytes plain, %7zu packed, %7zu what is seen\n", entry.name.c_str(), plain.size(),
+                all.size(), seen.size());
+    EXPECT_LT(plain.size(), 32 * all.size()) << "stored for want of belief";
+  }
+}
+
+TEST(ScenePackage, KeepsWhatAPeerSeesAndHolds) {
+  const Scene scene = test::small_scene();
+  const Result<UnpackedScene> back = unpack_scene(packed(scene, SceneParts::kSeen));
+  ASSERT_TRUE(static_cast<bool>(back)) << back.error().text();
+  Scene expected = scene;
+  expected.source_file.clear();
+  expected.fluid_volumes.clear();
+  expected.meshes.erase(expected.meshes.begin());
+  expected.bodies[0].mesh = 0;
+  expected.bodies[1].mesh = 1;
+  expected.pictures[0].mesh = 1;
+  test::expect_same_scene(back.value().scene, expected);
+}
+
+TEST(ScenePackage, FieldsRoundTripAndEveryCutAndDamageIsRefused) {
+  const wire::PackedScene scene{test::small_scene(), 0.0123456789};
+  test::expect_round_trip(scene);
+  test::expect_cuts_refused(scene);
+  EXPECT_GT(test::expect_damages_refused(scene), 1000u);
+}
+
+TEST(ScenePackage, RulesBetweenFieldsHold) {
+  const struct {
+    const char* field;
+    std::function<void(Scene&)> damage;
+  } cases[] = {
+      {"meshes.triangles.b", [](Scene& s) { s.meshes[1].triangles[2].y = 4; }},
+      {"meshes.normals", [](Scene& s) { s.meshes[1].normals.pop_back(); }},
+      {"meshes.normals.normal", [](Scene& s) { s.meshes[1].normals[0] *= 1.1f; }},
+      {"fluid_volumes.mesh", [](Scene& s) { s.fluid_volumes[0].mesh = 3; }},
+      {"fluid_volumes.mesh", [](Scene& s) { s.fluid_volumes[0].mesh = -1; }},
+      {"fluid_volumes.fluid", [](Scene& s) { s.fluid_volumes[0].fluid = 1; }},
+      {"bodies.mesh", [](Scene& s) { s.bodies[1].mesh = -1; }},
+      {"bodies.mesh", [](Scene& s) { s.bodies[1].mesh = 9; }},
+      {"bodies.mass", [](Scene& s) { s.bodies[0].mass.mass = 0.0; }},
+      {"bodies.inertia_x", [](Scene& s) { s.bodies[0].mass.inertia = glm::dmat3(0.0); }},
+      {"bodies.inertia_x", [](Scene& s) { s.bodies[0].mass.inertia[1][1] = -0.01; }},
+      {"pictures.mesh", [](Scene& s) { s.pictures[0].mesh = -1; }},
+      {"grips.body", [](Scene& s) { s.grips[0].body = 3; }},
+      {"grips.body", [](Scene& s) { s.grips[0].body = -1; }},
+      {"grips.body", [](Scene& s) { s.grips[0].body = 1; }},  // fixed
+      {"grips.hand_motion.time", [](Scene& s) { s.grips[0].hand_motion[1].time = 1.0; }},
+      {"grips.hand_motion.time", [](Scene& s) { s.grips[0].hand_motion[1].time = 0.0; }},
+      {"target", [](Scene& s) { s.camera.target = s.camera.eye; }},
+      {"light_direction", [](Scene& s) { s.light_direction = glm::vec3(0.0f); }},
+      {"spacing_min", [](Scene& s) { s.spacing_min = 1.0; }},
+      {"domain_min", [](Scene& s) { s.domain_min.y = s.domain_max.y; }},
+  };
+  for (const auto& each : cases) {
+    wire::PackedScene scene{test::small_scene(), 0.01};
+    each.damage(scene.scene);
+    EXPECT_NE(pack_scene(scene.scene, 0.01, SceneParts::kAll).error().text().find(each.field),
+              std::string::npos)
+        << each.field;
+    Bytes content;
+    EXPECT_EQ(wire::encode(scene, content).field, each.field);
+    EXPECT_NE(error_of(stored(content)), "") << each.field;
+  }
+}
+
+TEST(ScenePackage, WhatDoesNotFitIsNamedAndNotCut) {
+  Scene scene = test::small_scene();
+  scene.bodies.resize(wire::kMaxBodies + 1, scene.bodies[1]);
+  const Result<Bytes> many = pack_scene(scene, 0.01, SceneParts::kAll);
+  ASSERT_FALSE(static_cast<bool>(many));
+  EXPECT_NE(many.error().text().find("bodies: 257 entries are too many"), std::string::npos)
+      << many.error().text();
+
+  scene = test::small_scene();
+  scene.bodies[0].pose.position.x = 1e5;
+  EXPECT_FALSE(static_cast<bool>(pack_scene(scene, 0.01, SceneParts::kSeen)));
+  EXPECT_FALSE(static_cast<bool>(pack_scene(test::small_scene(), std::nan(""), SceneParts::kAll)));
+}
+
+TEST(ScenePackage, AWildNameIsCleaned) {
+  Scene scene = test::small_scene();
+  scene.bodies[0].name = std::string(1000, 'b') + "\x1b[2J";
+  scene.title = "two\nlines";
+  const Result<UnpackedScene> back = unpack_scene(packed(scene));
+  ASSERT_TRUE(static_cast<bool>(back)) << back.error().text();
+  EXPECT_EQ(back.value().scene.bodies[0].name, std::string(wire::kMaxText, 'b'));
+  EXPECT_EQ(back.value().scene.title, "two?lines");
+}
+
+TEST(ScenePackage, EveryCutAndEveryFlippedBitOfTheCompressedIsStood) {
+  const Bytes whole = packed(test::small_scene());
+  ASSERT_EQ(whole[1], 1) << "compressed";
+  for (std::size_t size = 0; size < whole.size(); ++size)
+    EXPECT_NE(error_of(ByteView(whole).first(size)), "");
+  std::size_t refused = 0;
+  for (std::size_t bit = 0; bit < 8 * whole.size(); ++bit) {
+    Bytes damaged = whole;
+    damaged[bit / 8] ^= static_cast<std::uint8_t>(1u << (bit % 8));
+    refused += !error_of(damaged).empty();
+  }
+  EXPECT_GT(refused, whole.size());  // a flipped bit of a position is a position
+  Bytes longer = whole;
+  longer.push_back(0);
+  EXPECT_NE(error_of(longer), "");
+}
+
+TEST(ScenePackage, ALyingSizeIsNotBelieved) {
+  // A zstd frame of one byte that claims 60 MB.
+  const Bytes liar{1, 1, 0x28, 0xb5, 0x2f, 0xfd, 0xa0, 0x00, 0x00, 0xc0, 0x03, 0x03, 0x00, 0x00, 0x00};
+  EXPECT_NE(error_of(liar).find("claims to be 62914560 bytes"), std::string::npos) << error_of(liar);
+  EXPECT_NE(error_of(Bytes{1, 1, 'x', 'y'}).find("does not begin as zstd does"), std::string::npos);
+  EXPECT_NE(error_of(Bytes{2, 0}).find("its version is 2"), std::string::npos);
+  EXPECT_NE(error_of(Bytes{1, 7}).find("its coding is 7"), std::string::npos);
+}
+
+TEST(ScenePackage, WhatPacksTooWellIsStored) {
+  Scene scene = test::small_scene();
+  TriangleMesh& mesh = scene.meshes[2];
+  mesh.triangles.assign(200'000, mesh.triangles[0]);
+  const Bytes bytes = packed(scene);
+  EXPECT_EQ(bytes[1], 0);
+  const Result<UnpackedScene> back = unpack_scene(bytes);
+  ASSERT_TRUE(static_cast<bool>(back)) << back.error().text();
+  EXPECT_EQ(back.value().scene.meshes[2].triangles.size(), 200'000u);
+}
+
+}  // namespace
+}  // namespace slosh

@@ -1,0 +1,175 @@
+#include "tests/net/wire/small_scene.h"
+
+#include <gtest/gtest.h>
+
+namespace slosh::test {
+namespace {
+
+TriangleMesh tetrahedron(const std::string& name, float size) {
+  TriangleMesh mesh;
+  mesh.name = name;
+  mesh.positions = {{0, 0, 0}, {size, 0, 0}, {0, size, 0}, {0, 0, size}};
+  mesh.normals = {{-0.57735026f, -0.57735026f, -0.57735026f}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  return mesh;
+}
+
+template <class T>
+bool same(const T& a, const T& b) {
+  return a == b;
+}
+bool same(const Pose& a, const Pose& b) {
+  return a.position == b.position && a.orientation == b.orientation;
+}
+bool same(const Twist& a, const Twist& b) {
+  return a.linear == b.linear && a.angular == b.angular;
+}
+bool same(const Material& a, const Material& b) {
+  return a.base_color == b.base_color && a.metallic == b.metallic && a.roughness == b.roughness &&
+         a.opacity == b.opacity;
+}
+
+}  // namespace
+
+Scene small_scene() {
+  Scene scene;
+  scene.name = "small";
+  scene.title = "One of everything";
+  scene.source_file = "/somewhere/small.gltf";
+  scene.meshes = {tetrahedron("water", 0.1f), tetrahedron("bucket", 0.2f), tetrahedron("table", 1.0f / 3.0f)};
+  scene.fluids = {{"water", 998.2, 0.001002, {0.1f, 0.3f, 0.5f}, {12.0f, 4.0f, 2.5f}}};
+  FluidVolume volume;
+  volume.name = "fill";
+  volume.mesh = 0;
+  volume.pose.position = {0.1, 1.0 / 3.0, 0.0};
+  scene.fluid_volumes = {volume};
+
+  Body bucket;
+  bucket.name = "bucket";
+  bucket.mesh = 1;
+  bucket.motion = BodyMotion::kFree;
+  bucket.pose.orientation = glm::normalize(glm::dquat(0.9, 0.1, 0.2, 0.3));
+  bucket.twist.angular = {0.0, 0.1, 0.0};
+  bucket.mass = {1.1, {0.0, 0.05, 1e-300}, glm::dmat3(0.01)};
+  Body table;
+  table.name = "table";
+  table.mesh = 2;
+  table.measured = true;
+  Body probe;
+  probe.name = "probe";
+  probe.motion = BodyMotion::kFree;
+  probe.point_probe = true;
+  probe.mass = {0.05, {}, glm::dmat3(1e-6)};
+  scene.bodies = {bucket, table, probe};
+
+  Picture sign;
+  sign.name = "sign";
+  sign.mesh = 2;
+  sign.material.opacity = 0.25f;
+  scene.pictures = {sign};
+
+  Grip grip;
+  grip.name = "handle";
+  grip.body = 0;
+  grip.pose.position = {0.0, 0.2, 0.0};
+  for (int i = 0; i < 3; ++i) {
+    PoseKey key;
+    key.time = i / 60.0;
+    key.pose.position = {0.0, 0.2 + 0.01 * i, 0.0};
+    grip.hand_motion.push_back(key);
+  }
+  scene.grips = {grip};
+  scene.camera.target = {0.0, 0.1, 0.0};
+  scene.domain_min = glm::dvec3(-1.0);
+  scene.domain_max = glm::dvec3(1.0, 2.0, 1.0);
+  scene.spacing = 0.01;
+  return scene;
+}
+
+#define SAME(field) EXPECT_TRUE(same(a.field, b.field)) << #field
+
+void expect_same_scene(const Scene& a, const Scene& b) {
+  SAME(name);
+  SAME(title);
+  SAME(source_file);
+  ASSERT_EQ(a.meshes.size(), b.meshes.size());
+  ASSERT_EQ(a.fluids.size(), b.fluids.size());
+  ASSERT_EQ(a.fluid_volumes.size(), b.fluid_volumes.size());
+  ASSERT_EQ(a.bodies.size(), b.bodies.size());
+  ASSERT_EQ(a.pictures.size(), b.pictures.size());
+  ASSERT_EQ(a.grips.size(), b.grips.size());
+  for (std::size_t i = 0; i < a.meshes.size(); ++i) {
+    SAME(meshes[i].name);
+    SAME(meshes[i].positions);
+    SAME(meshes[i].normals);
+    SAME(meshes[i].triangles);
+  }
+  for (std::size_t i = 0; i < a.fluids.size(); ++i) {
+    SAME(fluids[i].name);
+    SAME(fluids[i].rest_density);
+    SAME(fluids[i].dynamic_viscosity);
+    SAME(fluids[i].color);
+    SAME(fluids[i].extinction);
+  }
+  for (std::size_t i = 0; i < a.fluid_volumes.size(); ++i) {
+    SAME(fluid_volumes[i].name);
+    SAME(fluid_volumes[i].mesh);
+    SAME(fluid_volumes[i].fluid);
+    SAME(fluid_volumes[i].pose);
+    SAME(fluid_volumes[i].velocity);
+  }
+  for (std::size_t i = 0; i < a.bodies.size(); ++i) {
+    SAME(bodies[i].name);
+    SAME(bodies[i].mesh);
+    SAME(bodies[i].motion);
+    SAME(bodies[i].point_probe);
+    SAME(bodies[i].pose);
+    SAME(bodies[i].twist);
+    SAME(bodies[i].mass.mass);
+    SAME(bodies[i].mass.center_of_mass);
+    SAME(bodies[i].mass.inertia);
+    SAME(bodies[i].particle_density);
+    SAME(bodies[i].dynamic_viscosity);
+    SAME(bodies[i].friction);
+    SAME(bodies[i].restitution);
+    SAME(bodies[i].measured);
+    SAME(bodies[i].material);
+  }
+  for (std::size_t i = 0; i < a.pictures.size(); ++i) {
+    SAME(pictures[i].name);
+    SAME(pictures[i].mesh);
+    SAME(pictures[i].pose);
+    SAME(pictures[i].material);
+  }
+  for (std::size_t i = 0; i < a.grips.size(); ++i) {
+    SAME(grips[i].name);
+    SAME(grips[i].body);
+    SAME(grips[i].pose);
+    SAME(grips[i].stiffness);
+    SAME(grips[i].damping);
+    SAME(grips[i].rotational_stiffness);
+    SAME(grips[i].rotational_damping);
+    ASSERT_EQ(a.grips[i].hand_motion.size(), b.grips[i].hand_motion.size());
+    for (std::size_t k = 0; k < a.grips[i].hand_motion.size(); ++k) {
+      SAME(grips[i].hand_motion[k].time);
+      SAME(grips[i].hand_motion[k].pose);
+    }
+  }
+  SAME(camera.eye);
+  SAME(camera.target);
+  SAME(camera.vertical_fov_deg);
+  SAME(light_direction);
+  SAME(gravity);
+  SAME(spacing);
+  SAME(spacing_min);
+  SAME(spacing_max);
+  SAME(support_ratio);
+  SAME(model);
+  SAME(stiffness);
+  SAME(tension);
+  SAME(duration);
+  SAME(domain_min);
+  SAME(domain_max);
+}
+
+}  // namespace slosh::test
