@@ -95,7 +95,7 @@ Result<std::vector<glm::vec3>> display_colors(Display display, std::span<const g
 }
 
 Result<std::vector<glm::vec3>> make_display_table(Display display) {
-  constexpr int n = kDisplayTableSize;
+  const int n = kDisplayTableSize;
   std::vector<glm::vec3> nodes;
   nodes.reserve(static_cast<std::size_t>(n) * n * n);
   for (int b = 0; b < n; ++b) {

@@ -14,7 +14,7 @@ Result<DisplayPass> DisplayPass::create(Display display) {
   pass.display_ = display;
   pass.program_ = std::move(program.value());
   pass.no_vertices_ = gl::make_vertex_array();
-  constexpr int n = kDisplayTableSize;
+  const int n = kDisplayTableSize;
   GLuint name = 0;
   glCreateTextures(GL_TEXTURE_3D, 1, &name);
   pass.table_ = gl::Texture(name);

@@ -117,7 +117,7 @@ TEST(DisplayTransform, PutsMidGreyWhereItsStandardDoes) {
 }
 
 TEST(DisplayTransform, TheTableComesCloseToTheTransform) {
-  constexpr int n = kDisplayTableSize;
+  const int n = kDisplayTableSize;
   for (Display display : {Display::kAces, Display::kSrgb}) {
     const auto table = make_display_table(display);
     ASSERT_TRUE(table);
