@@ -1,10 +1,20 @@
 #include "sim/cpu/parallel.h"
 
+#include <sched.h>
+
 #include <algorithm>
 
 namespace slosh {
 
 namespace {
+// Cores that this process may run on: taskset and containers count, which hardware_concurrency leaves out.
+int cores_allowed() {
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  if (sched_getaffinity(0, sizeof allowed, &allowed) == 0) return std::max(1, CPU_COUNT(&allowed));
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
 // About 20 µs: passes of one step follow each other faster than a sleeping thread wakes up.
 constexpr int kSpins = 2000;
 constexpr std::uint32_t kOpen = 1u << 31;
@@ -28,7 +38,7 @@ std::uint32_t wait_for_change(const std::atomic<std::uint32_t>& value, std::uint
 }  // namespace
 
 ThreadTeam::ThreadTeam(int threads) {
-  if (threads <= 0) threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  if (threads <= 0) threads = cores_allowed();
   for (int i = 1; i < threads; ++i) workers_.emplace_back([this] { worker_loop(); });
 }
 
