@@ -34,7 +34,8 @@ class Identity {
   std::shared_ptr<const Impl> impl_;
 };
 
-/// Order of sending when the link is full: pose before state before snapshot. Streams come last.
+/// Order of sending when the link is full: pose before state before snapshot. Streams come last, but get one
+/// packet after every fifteen snapshots.
 enum class Priority : std::uint8_t { kPose, kState, kSnapshot };
 constexpr int kPriorities = 3;
 
@@ -86,6 +87,7 @@ struct EndpointOptions {
   double keep_alive = 1.0;         ///< s between packets at the longest
   double handshake_timeout = 5.0;  ///< s
   std::size_t max_connections = 512;
+  double handshakes_per_second = 50.0;  ///< begun by one IPv4 address or IPv6 /64; twice that at once
   std::size_t queue_datagrams[kPriorities] = {64, 64, 512};  ///< a connection's; the oldest go first
   std::size_t stream_buffer = 80u << 20;  ///< bytes of unacknowledged stream data a connection may hold
 };
@@ -93,7 +95,7 @@ struct EndpointOptions {
 /// In-memory counters of what an endpoint refused before it kept any state.
 struct EndpointStats {
   std::uint64_t retries_sent = 0;
-  std::uint64_t packets_ignored = 0;  ///< not QUIC, unknown connection, bad Retry token
+  std::uint64_t packets_ignored = 0;  ///< not QUIC, unknown connection, bad Retry token, too many at once
   std::uint64_t handshakes_failed = 0;
   std::size_t connections = 0;
 };
@@ -117,12 +119,16 @@ class Endpoint {
   virtual bool send_stream(ConnectionId connection, std::int64_t stream, std::span<const std::uint8_t> bytes,
                            bool end) = 0;
   /// Sends what is queued on streams first, as far as the window lets it, then closes. `text` reaches the
-  /// other side.
+  /// other side. Nothing but on_closed() comes of the connection after this.
   virtual void close(ConnectionId connection, std::uint64_t code, const std::string& text) = 0;
 
   virtual ConnectionStats stats(ConnectionId connection) const = 0;
   virtual EndpointStats endpoint_stats() const = 0;
   virtual std::string local_address() const = 0;  ///< "127.0.0.1:4433", "[::]:4433"
+
+  /// Goes on from a new socket, as after a change of network. A peer's endpoint does so by itself when the
+  /// network fails it. False when there is nothing to move.
+  virtual bool rebind() { return false; }
 };
 
 /// Listens at "HOST:PORT" or "[IPv6]:PORT" ("0.0.0.0:0" takes any port; "[::]:PORT" takes IPv4 too). Every

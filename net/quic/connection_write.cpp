@@ -1,0 +1,139 @@
+// What a Connection sends, and in which order.
+#include <algorithm>
+
+#include "net/quic/connection.h"
+
+namespace slosh::quic {
+namespace {
+
+constexpr std::size_t kDatagramOverhead = 3;  // frame type and length
+// Room for frames in a packet of ours: less header, packet number and tag.
+constexpr std::size_t kRoom = kMaxPacket - 1 - 20 - 4 - 16;
+// Streams come last, but a full link must not silence them: one packet of theirs after so many snapshots.
+constexpr std::size_t kSnapshotsAStream = 15;
+constexpr double kBurst = 2e-3;  // s of the link's rate that may leave at once
+
+}  // namespace
+
+void Connection::flush(std::int64_t now) {
+  if (state_ == State::kClosed) return;
+  if (state_ == State::kLingering && streams_.settled()) {
+    abort(parting_.code, parting_.text, now);
+    return;
+  }
+  streams_.unblock_all();
+  const std::size_t limit = burst();
+  std::size_t sent = 0;
+  ngtcp2_path_storage path;
+  while (sent < limit) {
+    const std::span<std::uint8_t> out = socket_->space();
+    if (out.empty()) break;
+    ngtcp2_path_storage_zero(&path);
+    const ngtcp2_ssize size = write_packet(out, &path.path, now);
+    if (size < 0) {
+      fail(static_cast<int>(size), now);
+      return;
+    }
+    if (size == 0) break;
+    socket_->add(Address(path.path.local.addr, path.path.local.addrlen),
+                 Address(path.path.remote.addr, path.path.remote.addrlen), static_cast<std::size_t>(size));
+    sent += static_cast<std::size_t>(size);
+  }
+  bytes_sent_ += sent;
+  ngtcp2_conn_update_pkt_tx_time(conn_, static_cast<ngtcp2_tstamp>(now));
+}
+
+/// A pose that comes right after a burst waits for the pace to allow the next one: so bursts are short.
+std::size_t Connection::burst() const {
+  const std::size_t quantum = ngtcp2_conn_get_send_quantum(conn_);
+  const double rate = path_figures(conn_).pacing_rate;
+  if (rate <= 0.0) return quantum;
+  const double bytes = std::min(rate * kBurst, 65536.0);
+  return std::max<std::size_t>(static_cast<std::size_t>(bytes), 2 * kMaxPacket);
+}
+
+/// One packet into `out`: its size, 0 when nothing may or need be sent, or an error of the library.
+ngtcp2_ssize Connection::write_packet(std::span<std::uint8_t> out, ngtcp2_path* path, std::int64_t now) {
+  std::size_t packed = 0;
+  while (state_ == State::kOpen || state_ == State::kLingering) {
+    const int priority = queues_.next();
+    const bool snapshot = priority == static_cast<int>(Priority::kSnapshot);
+    const bool stream_turn = priority < 0 || (snapshot && snapshots_in_a_row_ >= kSnapshotsAStream);
+    if (stream_turn && streams_.pending()) {
+      snapshots_in_a_row_ = 0;
+      const ngtcp2_ssize size = write_stream(out, path, now);
+      if (size == NGTCP2_ERR_STREAM_DATA_BLOCKED || size == NGTCP2_ERR_STREAM_SHUT_WR ||
+          size == NGTCP2_ERR_STREAM_NOT_FOUND)
+        continue;
+      return size;
+    }
+    if (priority < 0) break;
+    bool accepted = false;
+    const ngtcp2_ssize size = write_datagram(out, path, priority, accepted, packed, now);
+    if (accepted) {
+      packed += queues_.front(priority)->size() + kDatagramOverhead;
+      ++counts_.datagrams_sent[priority];
+      snapshots_in_a_row_ = snapshot ? snapshots_in_a_row_ + 1 : snapshots_in_a_row_;
+      queues_.pop(priority);
+    }
+    if (size == NGTCP2_ERR_WRITE_MORE) continue;
+    if (size == NGTCP2_ERR_INVALID_ARGUMENT || size == NGTCP2_ERR_INVALID_STATE) {
+      queues_.pop(priority);  // the other side cannot take one as long
+      continue;
+    }
+    return size;
+  }
+  return ngtcp2_conn_write_pkt(conn_, path, nullptr, out.data(), out.size(), static_cast<ngtcp2_tstamp>(now));
+}
+
+ngtcp2_ssize Connection::write_datagram(std::span<std::uint8_t> out, ngtcp2_path* path, int priority,
+                                        bool& accepted, std::size_t packed, std::int64_t now) {
+  const SharedBytes& bytes = queues_.front(priority);
+  const std::size_t after = queues_.size_after_next();
+  const bool more = after > 0 && packed + bytes->size() + after + 2 * kDatagramOverhead <= kRoom;
+  ngtcp2_vec vector{const_cast<std::uint8_t*>(bytes->data()), bytes->size()};
+  int taken = 0;
+  const ngtcp2_ssize size =
+      ngtcp2_conn_writev_datagram(conn_, path, nullptr, out.data(), out.size(), &taken,
+                                  more ? NGTCP2_WRITE_DATAGRAM_FLAG_MORE : NGTCP2_WRITE_DATAGRAM_FLAG_NONE, 0,
+                                  &vector, 1, static_cast<ngtcp2_tstamp>(now));
+  accepted = taken != 0;
+  return size;
+}
+
+ngtcp2_ssize Connection::write_stream(std::span<std::uint8_t> out, ngtcp2_path* path, std::int64_t now) {
+  const std::int64_t stream = streams_.next();
+  ngtcp2_vec vectors[4];
+  bool end = false;
+  const std::size_t count = streams_.gather(stream, vectors, end);
+  ngtcp2_ssize taken = -1;
+  const ngtcp2_ssize size =
+      ngtcp2_conn_writev_stream(conn_, path, nullptr, out.data(), out.size(), &taken,
+                                end ? NGTCP2_WRITE_STREAM_FLAG_FIN : NGTCP2_WRITE_STREAM_FLAG_NONE, stream,
+                                vectors, count, static_cast<ngtcp2_tstamp>(now));
+  if (size == NGTCP2_ERR_STREAM_DATA_BLOCKED)
+    streams_.block(stream);
+  else if (size == NGTCP2_ERR_STREAM_SHUT_WR || size == NGTCP2_ERR_STREAM_NOT_FOUND)
+    streams_.abandon(stream);
+  else if (taken >= 0)
+    streams_.sent(stream, static_cast<std::size_t>(taken), end);
+  return size;
+}
+
+void Connection::write_close(const CloseError& error, std::int64_t now) {
+  std::uint8_t packet[kMaxPacket];
+  ngtcp2_path_storage path;
+  ngtcp2_path_storage_zero(&path);
+  const ngtcp2_ssize size = ngtcp2_conn_write_connection_close(
+      conn_, &path.path, nullptr, packet, sizeof(packet), &error, static_cast<ngtcp2_tstamp>(now));
+  if (size <= 0) return;
+  close_packet_.assign(packet, packet + size);
+  const std::span<std::uint8_t> out = socket_->space();
+  if (out.empty()) return;
+  std::copy(close_packet_.begin(), close_packet_.end(), out.begin());
+  socket_->add(Address(path.path.local.addr, path.path.local.addrlen),
+               Address(path.path.remote.addr, path.path.remote.addrlen), close_packet_.size());
+  bytes_sent_ += close_packet_.size();
+}
+
+}  // namespace slosh::quic

@@ -1,0 +1,153 @@
+#include "net/quic/server.h"
+
+#include <algorithm>
+
+#include "net/clock.h"
+#include "net/quic/random.h"
+
+namespace slosh::quic {
+namespace {
+
+constexpr std::int64_t kGraveTime = kNanosecondsPerSecond;
+constexpr std::size_t kGraves = 1024;
+constexpr std::int64_t kHousekeeping = kNanosecondsPerSecond / 4;
+
+std::string text_of(const ngtcp2_cid& id) {
+  return {reinterpret_cast<const char*>(id.data), id.datalen};
+}
+
+}  // namespace
+
+Server::Server(std::unique_ptr<UdpSocket> socket, const Identity& identity, EndpointEvents& events,
+               const EndpointOptions& options)
+    : EndpointBase(identity, {}, events, options),
+      limiter_(options.handshakes_per_second),
+      answers_left_(0.0) {
+  fill_random(token_secret_);
+  sockets_.push_back(std::move(socket));
+}
+
+Server::~Server() {
+  finish_all("the host ended");
+  connections_.clear();
+}
+
+void Server::packet_arrived(UdpSocket& socket, const Arrival& packet, std::int64_t now) {
+  ngtcp2_version_cid ids{};
+  const int code = ngtcp2_pkt_decode_version_cid(&ids, packet.bytes.data(), packet.bytes.size(), kCidSize);
+  if (code == NGTCP2_ERR_VERSION_NEGOTIATION) return answer_version(socket, packet, ids, now);
+  if (code != 0) {
+    ++counts_.packets_ignored;
+    return;
+  }
+  const std::string id(reinterpret_cast<const char*>(ids.dcid), ids.dcidlen);
+  const auto route = routes_.find(id);
+  if (route == routes_.end()) return unknown_packet(socket, packet, ids, now);
+  Connection& connection = *route->second;
+  connection.receive(packet.to, packet.from, packet.bytes, now);
+  touch(connection);
+}
+
+void Server::unknown_packet(UdpSocket& socket, const Arrival& packet, const ngtcp2_version_cid& ids,
+                            std::int64_t now) {
+  const auto grave = graves_.find(std::string(reinterpret_cast<const char*>(ids.dcid), ids.dcidlen));
+  if (grave != graves_.end()) {
+    Grave& found = *grave->second;
+    if (found.answers_left > 0 && found.remote == packet.from && !found.packet.empty()) {
+      --found.answers_left;
+      const auto out = socket.space();
+      if (out.empty()) return;
+      std::copy(found.packet.begin(), found.packet.end(), out.begin());
+      socket.add(packet.to, packet.from, found.packet.size());
+    }
+    return;
+  }
+  if (ids.version == 0) return answer_reset(socket, packet, ids, now);
+  first_packet(socket, packet, now);
+}
+
+void Server::confirmed(Connection& connection) {
+  announce(connection, next_id_++);
+  events_.on_connected(connection.id, connection.key(), connection.remote().text());
+}
+
+void Server::connection_over(Connection& connection, std::int64_t now) {
+  auto grave = std::make_shared<Grave>();
+  for (const ngtcp2_cid& id : connection.ids()) {
+    const std::string text = text_of(id);
+    const auto route = routes_.find(text);
+    if (route == routes_.end() || route->second != &connection) continue;
+    routes_.erase(route);
+    grave->ids.push_back(text);
+  }
+  // Late packets of a connection that is over get its last word again, or silence: not a new start.
+  grave->packet = connection.close_packet();
+  grave->remote = connection.remote();
+  grave->until = now + kGraveTime;
+  grave->answers_left = 4;
+  for (const std::string& id : grave->ids) graves_[id] = grave;
+  graves_by_age_.push_back(std::move(grave));
+  if (connection.announced())
+    events_.on_closed(connection.id, connection.reason());
+  else
+    ++counts_.handshakes_failed;
+}
+
+std::int64_t Server::housekeeping(std::int64_t now) {
+  while (!graves_by_age_.empty() &&
+         (graves_by_age_.front()->until <= now || graves_by_age_.size() > kGraves)) {
+    for (const std::string& id : graves_by_age_.front()->ids) graves_.erase(id);
+    graves_by_age_.pop_front();
+  }
+  while (!used_by_age_.empty() && used_by_age_.front().first <= now) {
+    used_tokens_.erase(used_by_age_.front().second);
+    used_by_age_.pop_front();
+  }
+  const bool idle = graves_by_age_.empty() && used_by_age_.empty();
+  return idle ? now + 4 * kHousekeeping : now + kHousekeeping;
+}
+
+void Server::id_issued(Connection& connection, const ngtcp2_cid& id) {
+  routes_[text_of(id)] = &connection;
+}
+
+void Server::id_retired(Connection&, const ngtcp2_cid& id) {
+  routes_.erase(text_of(id));
+}
+
+void Server::accept(UdpSocket& socket, const Arrival& packet, const FirstPacket& first, std::int64_t now) {
+  auto made = Connection::from_client(*this, tls_, options_, socket, packet.to, packet.from, first, now);
+  if (!made) {
+    ++counts_.packets_ignored;
+    return;
+  }
+  Connection& connection = *made;
+  connection.receive(packet.to, packet.from, packet.bytes, now);
+  if (connection.state() == Connection::State::kClosed && connection.close_packet().empty()) {
+    // Damaged on its way: the true one may still come with this token.
+    for (const ngtcp2_cid& id : connection.ids()) routes_.erase(text_of(id));
+    ++counts_.packets_ignored;
+    return;
+  }
+  for (const ngtcp2_cid& id : connection.ids()) routes_[text_of(id)] = &connection;
+  const std::string used = text_of(first.retry_id);
+  used_tokens_.insert(used);
+  used_by_age_.emplace_back(now + 10 * kNanosecondsPerSecond, used);
+  adopt(std::move(made));
+}
+
+}  // namespace slosh::quic
+
+namespace slosh {
+
+Result<std::unique_ptr<Endpoint>> listen_quic(const std::string& address, const Identity& identity,
+                                              EndpointEvents& events, const EndpointOptions& options) {
+  auto found = quic::resolve(address);
+  if (!found) return found.error();
+  auto socket = quic::UdpSocket::listen(found.value().front());
+  if (!socket) return socket.error();
+  return std::unique_ptr<Endpoint>(
+      std::make_unique<quic::Server>(std::move(socket.value()), identity, events, options));
+}
+
+}  // namespace slosh
