@@ -169,8 +169,8 @@ struct Welcome {
   std::uint64_t session = 0;      ///< the host's run; the same after a resume
   std::uint64_t scene_bytes = 0;  ///< compressed, on the scene's stream
   std::uint64_t particles = 0;    ///< fluid particles at the start
-  double spacing = 0.0;           ///< m between particles
-  double time_step = 0.0;         ///< s, a tick's length
+  double spacing = 0.01;          ///< m between particles
+  double time_step = 0.001;       ///< s, a tick's length
   double picture_rate = 0.0;      ///< snapshots a second that the host can send at most
   bool restored = false;          ///< a seat of the last minute was given back with its grips
 };

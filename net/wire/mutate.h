@@ -22,6 +22,8 @@ class Mutator {
   bool done() const { return !field_.empty(); }
   const std::string& field() const { return field_; }    ///< what a Fault must name
   const std::string& damage() const { return damage_; }  ///< in words
+  /// The message ends at the damage: a list around it may be what is found too short.
+  bool cut() const { return ended_; }
 
   template <class T>
   void natural(std::string_view name, T& value, std::uint64_t least, std::uint64_t most) {
@@ -251,6 +253,7 @@ struct Damaged {
   Bytes bytes;
   std::string field;
   std::string damage;
+  bool cut = false;  ///< Mutator::cut
 };
 template <class M>
 Damaged damaged_message(const M& message, std::size_t which) {
@@ -259,6 +262,7 @@ Damaged damaged_message(const M& message, std::size_t which) {
   visit(mutator, const_cast<M&>(message));  // a Mutator reads only
   out.field = mutator.field();
   out.damage = mutator.damage();
+  out.cut = mutator.cut();
   return out;
 }
 

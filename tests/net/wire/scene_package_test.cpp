@@ -9,7 +9,8 @@
 #include "net/wire/scene_fields.h"
 #include "scenes/load.h"
 #include "tests/net/wire/damage.h"
-#include "tests/net/wire/small_scene.h"
+#include "tests/net/wire/same_scene.h"
+#include "tests/support/small_scene.h"
 
 namespace slosh {
 namespace {
@@ -111,7 +112,10 @@ TEST(ScenePackage, RulesBetweenFieldsHold) {
         << each.field;
     Bytes content;
     EXPECT_EQ(wire::encode(scene, content).field, each.field);
-    EXPECT_NE(error_of(stored(content)), "") << each.field;
+    // A Writer mends a normal by itself; the rest is written as it is.
+    if (std::string(each.field) != "meshes.normals.normal") {
+      EXPECT_NE(error_of(stored(content)), "") << each.field;
+    }
   }
 }
 

@@ -8,7 +8,4 @@ namespace slosh::test {
 /// A free bucket with a grip and its hand, a table, a probe without a mesh, water, a picture.
 Scene small_scene();
 
-/// Every field equal to the bit; tells gtest where not.
-void expect_same_scene(const Scene& a, const Scene& b);
-
 }  // namespace slosh::test

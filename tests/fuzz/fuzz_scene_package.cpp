@@ -1,0 +1,66 @@
+// A scene's package, and what a peer does with the scene.
+#include <algorithm>
+
+#include "net/wire/scene_fields.h"
+#include "net/wire/scene_package.h"
+#include "tests/fuzz/messages.h"
+#include "tests/fuzz/seeds.h"
+#include "tests/support/small_scene.h"
+
+using namespace slosh;
+
+namespace {
+
+/// What a peer's code takes for granted.
+void check_scene(const Scene& scene) {
+  const auto at = [](const auto& list, int index) { return static_cast<std::size_t>(index) < list.size(); };
+  for (const TriangleMesh& mesh : scene.meshes) {
+    test::must(mesh.normals.size() == mesh.positions.size(), "a normal for each position");
+    for (const glm::uvec3& t : mesh.triangles)
+      test::must(std::max({t.x, t.y, t.z}) < mesh.positions.size(), "triangles of the mesh's positions");
+  }
+  for (const FluidVolume& volume : scene.fluid_volumes)
+    test::must(at(scene.meshes, volume.mesh) && at(scene.fluids, volume.fluid), "a volume's mesh and fluid");
+  for (const Body& body : scene.bodies) {
+    test::must(at(scene.meshes, body.mesh) || (body.mesh == -1 && body.point_probe), "a body's mesh");
+    test::must(body.motion == BodyMotion::kFixed || body.mass.mass > 0.0, "a free body's mass");
+  }
+  for (const Picture& picture : scene.pictures)
+    test::must(at(scene.meshes, picture.mesh), "a picture's mesh");
+  for (const Grip& grip : scene.grips) {
+    test::must(at(scene.bodies, grip.body), "a grip's body");
+    for (std::size_t i = 1; i < grip.hand_motion.size(); ++i)
+      test::must(grip.hand_motion[i].time > grip.hand_motion[i - 1].time, "motion goes forward in time");
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const Result<UnpackedScene> scene = unpack_scene({data, size});
+  if (!scene) {
+    test::must(wire::text_problem(scene.error().text()).empty(), "an error can be told");
+    return 0;
+  }
+  check_scene(scene.value().scene);
+  const Result<wire::Bytes> again = pack_scene(scene.value().scene, scene.value().spacing, SceneParts::kAll);
+  test::must(static_cast<bool>(again), "what was unpacked can be packed");
+  test::must(static_cast<bool>(unpack_scene(again.value())), "and unpacked");
+  test::must(static_cast<bool>(pack_scene(scene.value().scene, scene.value().spacing, SceneParts::kSeen)),
+             "also for a peer");
+  return 0;
+}
+
+std::vector<std::vector<std::uint8_t>> slosh_fuzz_seeds() {
+  std::vector<std::vector<std::uint8_t>> seeds;
+  for (const SceneParts parts : {SceneParts::kSeen, SceneParts::kAll}) {
+    const Scene scene = test::small_scene();
+    seeds.push_back(pack_scene(scene, 0.01, parts).value());
+    // As it is, so that damage reaches the fields and not only zstd.
+    std::vector<std::uint8_t> stored{1, 0};
+    wire::PackedScene packed{unpack_scene(seeds.back()).value().scene, 0.01};
+    wire::encode(packed, stored);
+    seeds.push_back(stored);
+  }
+  return seeds;
+}
