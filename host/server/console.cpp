@@ -1,0 +1,181 @@
+#include "host/server/console.h"
+
+#include <charconv>
+#include <cmath>
+#include <vector>
+
+#include "net/clock.h"
+#include "net/wire/messages.h"
+#include "net/wire/text.h"
+
+namespace slosh {
+namespace {
+
+std::vector<std::string> words_of(std::string_view line) {
+  std::vector<std::string> words;
+  std::size_t at = 0;
+  while (at < line.size()) {
+    const char c = line[at];
+    if (c == ' ' || c == '\t') {
+      at += 1;
+      continue;
+    }
+    // Quotes keep a name of several words together.
+    const bool quoted = c == '"' || c == '\'';
+    const std::size_t begin = quoted ? at + 1 : at;
+    std::size_t end = line.find_first_of(quoted ? std::string_view(&line[at], 1) : " \t", begin);
+    if (end == std::string_view::npos) end = line.size();
+    words.emplace_back(line.substr(begin, end - begin));
+    at = quoted ? end + 1 : end;
+  }
+  return words;
+}
+
+Error usage(const std::string& what, const std::string& mend) {
+  return {"", what, mend};
+}
+
+Result<ConsoleCommand> parse_link_command(const std::vector<std::string>& words) {
+  ConsoleCommand command;
+  command.verb = ConsoleVerb::kLink;
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    if (words[i] == "watch") {
+      command.watch = true;
+    } else if (words[i] == "for") {
+      if (i + 1 >= words.size()) return usage("'for' needs a time", "For example: link Ana for 30m");
+      const Result<std::int64_t> lifetime = parse_duration(words[++i]);
+      if (!lifetime) return lifetime.error();
+      command.lifetime_ns = lifetime.value();
+    } else if (command.text.empty()) {
+      command.text = words[i];
+    } else {
+      return usage("'" + words[i] + "' is too much", "As in: link [NAME] [watch] [for 30m]");
+    }
+  }
+  if (command.text.size() > wire::kMaxName)
+    return usage("a name has at most " + std::to_string(wire::kMaxName) + " bytes", "Choose a shorter one");
+  return command;
+}
+
+Result<ConsoleCommand> parse_expire(const std::vector<std::string>& words) {
+  if (words.size() != 3) return usage("expire needs a link and a time", "For example: expire bako 10m");
+  ConsoleCommand command;
+  command.verb = ConsoleVerb::kExpire;
+  command.text = words[1];
+  if (words[2] == "never") return command;
+  const Result<std::int64_t> lifetime = parse_duration(words[2]);
+  if (!lifetime) return lifetime.error();
+  command.lifetime_ns = lifetime.value();
+  return command;
+}
+
+Result<ConsoleCommand> parse_set(const std::vector<std::string>& words) {
+  const Error error =
+      usage("set needs what and a number", "As in: set viscosity [FLUID] 0.5, or: set gravity 0.5");
+  if (words.size() < 3 || words.size() > 4) return error;
+  ConsoleCommand command;
+  command.verb = ConsoleVerb::kSet;
+  command.gravity = words[1] == "gravity";
+  if (!command.gravity && words[1] != "viscosity") return error;
+  if (command.gravity && words.size() != 3) return error;
+  if (words.size() == 4) command.text = words[2];
+  const std::string& number = words.back();
+  const char* end = number.data() + number.size();
+  const auto [at, code] = std::from_chars(number.data(), end, command.value);
+  if (code != std::errc() || at != end || !std::isfinite(command.value) || command.value < 0.0)
+    return usage("'" + number + "' is no number of 0 or more", error.mend);
+  return command;
+}
+
+}  // namespace
+
+Result<std::int64_t> parse_duration(std::string_view text) {
+  const Error error =
+      usage("'" + wire::clean_text(text, 40) + "' is no time", "For example 90s, 10m, 2h, 1d or 1h30m");
+  std::int64_t seconds = 0;
+  std::size_t at = 0;
+  while (at < text.size()) {
+    std::int64_t count = 0;
+    const auto [end, code] = std::from_chars(text.data() + at, text.data() + text.size(), count);
+    if (code != std::errc() || count < 0 || count > 1'000'000'000) return error;
+    at = static_cast<std::size_t>(end - text.data());
+    if (at >= text.size()) return error;
+    const char unit = text[at++];
+    const std::int64_t scale = unit == 's'   ? 1
+                               : unit == 'm' ? 60
+                               : unit == 'h' ? 3600
+                               : unit == 'd' ? 86400
+                                             : 0;
+    if (scale == 0) return error;
+    seconds += count * scale;
+    if (seconds > 10ll * 365 * 86400) return error;
+  }
+  if (seconds < 1) return error;
+  return seconds * kNanosecondsPerSecond;
+}
+
+std::string duration_text(std::int64_t ns) {
+  const std::int64_t seconds = std::max<std::int64_t>(0, ns / kNanosecondsPerSecond);
+  const auto text = [](std::int64_t n, const char* unit) { return std::to_string(n) + " " + unit; };
+  if (seconds < 60) return text(seconds, "s");
+  if (seconds < 3600) return text(seconds / 60, "min");
+  if (seconds < 86400)
+    return text(seconds / 3600, "h") + (seconds / 60 % 60 ? " " + text(seconds / 60 % 60, "min") : "");
+  return text(seconds / 86400, seconds < 2 * 86400 ? "day" : "days");
+}
+
+Result<ConsoleCommand> parse_console(std::string_view line) {
+  while (!line.empty() && (line.back() == '\n' || line.back() == '\r')) line.remove_suffix(1);
+  if (line.size() > kMaxConsoleLine) return usage("the line is too long", "Type help for what may be said");
+  const std::string problem = wire::text_problem(line);
+  if (!problem.empty()) return usage("the line " + problem, "Type help for what may be said");
+  const std::vector<std::string> words = words_of(line);
+  if (words.empty()) return ConsoleCommand{};
+  const std::string& verb = words[0];
+
+  const auto alone = [&](ConsoleVerb of) -> Result<ConsoleCommand> {
+    if (words.size() > 1) return usage(verb + " stands alone", "Type help for what may be said");
+    ConsoleCommand command;
+    command.verb = of;
+    return command;
+  };
+  const auto with_one = [&](ConsoleVerb of, const char* what) -> Result<ConsoleCommand> {
+    if (words.size() != 2) return usage(verb + " needs " + what, "Put a name of several words in quotes");
+    ConsoleCommand command;
+    command.verb = of;
+    command.text = words[1];
+    return command;
+  };
+  if (verb == "help") return alone(ConsoleVerb::kHelp);
+  if (verb == "who") return alone(ConsoleVerb::kWho);
+  if (verb == "links") return alone(ConsoleVerb::kLinks);
+  if (verb == "link") return parse_link_command(words);
+  if (verb == "revoke") return with_one(ConsoleVerb::kRevoke, "the id of a link, as `links` shows it");
+  if (verb == "expire") return parse_expire(words);
+  if (verb == "release") return with_one(ConsoleVerb::kRelease, "a grip's name or number");
+  if (verb == "kick") return with_one(ConsoleVerb::kKick, "a person's name, as `who` shows it");
+  if (verb == "pause") return alone(ConsoleVerb::kPause);
+  if (verb == "continue") return alone(ConsoleVerb::kContinue);
+  if (verb == "reset") return alone(ConsoleVerb::kReset);
+  if (verb == "set") return parse_set(words);
+  if (verb == "status") return alone(ConsoleVerb::kStatus);
+  if (verb == "quit") return alone(ConsoleVerb::kQuit);
+  return usage("'" + wire::clean_text(verb, 40) + "' means nothing here", "Type help for what may be said");
+}
+
+const char* console_help() {
+  return "who                            who is here and holds what\n"
+         "links                          every link: id, for whom, until when, used by\n"
+         "link [NAME] [watch] [for 30m]  a new link: for anybody or one person, to hold or to watch\n"
+         "revoke ID                      end a link and whoever came in by it\n"
+         "expire ID 10m|never            let a link end later; who is in stays in\n"
+         "release GRIP                   take a grip away from its holder\n"
+         "kick NAME                      close somebody's connection; the seat is given up\n"
+         "pause, continue, reset         the world\n"
+         "set viscosity [FLUID] X        Pa·s, while the world runs\n"
+         "set gravity X                  times the scene's, 0 to 2\n"
+         "status                         how the world and the links do\n"
+         "quit                           end the session for everybody";
+}
+
+}  // namespace slosh

@@ -1,0 +1,54 @@
+// What may be typed at a running host, and what each line means.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "sim/math/result.h"
+
+namespace slosh {
+
+constexpr std::size_t kMaxConsoleLine = 1000;  ///< bytes
+
+enum class ConsoleVerb : std::uint8_t {
+  kNothing,  ///< an empty line
+  kHelp,
+  kWho,
+  kLinks,
+  kLink,
+  kRevoke,
+  kExpire,
+  kRelease,
+  kKick,
+  kPause,
+  kContinue,
+  kReset,
+  kSet,
+  kStatus,
+  kQuit,
+};
+
+struct ConsoleCommand {
+  ConsoleVerb verb = ConsoleVerb::kNothing;
+  std::string text;              ///< a person's name, a link's id, a grip's or fluid's name or number
+  bool watch = false;            ///< kLink
+  std::int64_t lifetime_ns = 0;  ///< kLink, kExpire; 0 = for ever
+  bool gravity = false;          ///< kSet: gravity rather than viscosity
+  double value = 0.0;            ///< kSet: Pa·s, or times the scene's gravity
+};
+
+/// Errors say what was expected. Any bytes may come.
+Result<ConsoleCommand> parse_console(std::string_view line);
+
+/// "10m", "2h", "90s", "1d30m" to ns, 1 s to 10 years. Errors: anything else.
+Result<std::int64_t> parse_duration(std::string_view text);
+
+/// ns in words, coarsely: "2 h 10 min".
+std::string duration_text(std::int64_t ns);
+
+/// What `help` prints.
+const char* console_help();
+
+}  // namespace slosh

@@ -1,0 +1,166 @@
+#include "host/server/hands.h"
+
+#include <algorithm>
+
+#include "net/clock.h"
+
+namespace slosh {
+namespace {
+
+// Two clocks drift apart by less than this, s a s.
+constexpr double kDrift = 2e-4;
+// ns: an older sample is a clock that was set anew, not a delay.
+constexpr std::int64_t kOldest = 5'000'000'000;
+
+}  // namespace
+
+Pose stand_pose(const Scene& scene, std::size_t grip) {
+  const Grip& g = scene.grips[grip];
+  return compose(scene.bodies[static_cast<std::size_t>(g.body)].pose, g.pose);
+}
+
+HandTable::HandTable(const Scene& scene, Channel& channel) : channel_(channel) {
+  for (std::size_t i = 0; i < scene.grips.size(); ++i) {
+    GripHand hand;
+    hand.start = stand_pose(scene, i);
+    hand.known.resize(kRemembered);
+    grips_.push_back(std::move(hand));
+  }
+}
+
+void HandTable::publish(std::size_t grip, const PoseMessage& message) {
+  grips_[grip].last = message.pose;
+  channel_.pose(grip).back() = message;
+  channel_.pose(grip).publish();
+}
+
+void HandTable::put_on_stand(std::size_t grip, const Pose& pose, std::int64_t now_ns) {
+  GripHand& hand = grips_[grip];
+  hand.stand = true;
+  hand.stand_at = pose;
+  PoseMessage message;
+  message.device = static_cast<std::uint32_t>(grip);
+  message.stamp_ns = now_ns;
+  message.pose = pose;
+  message.engaged = true;
+  message.number = hand.base + hand.newest;
+  publish(grip, message);
+}
+
+void HandTable::stand_all(std::int64_t now_ns) {
+  for (std::size_t i = 0; i < grips_.size(); ++i) {
+    if (!grips_[i].held) put_on_stand(i, grips_[i].start, now_ns);
+  }
+}
+
+void HandTable::carry_on(const BodySnapshot& bodies, std::int64_t now_ns) {
+  for (std::size_t i = 0; i < grips_.size() && i < bodies.grips.size(); ++i) {
+    const GripState& grip = bodies.grips[i];
+    const bool was_held = glm::length(grip.on_hand.force) + glm::length(grip.on_hand.torque) > 0.0;
+    if (was_held)
+      put_on_stand(i, grip.handle, now_ns);
+    else
+      let_go(i, now_ns, true);
+  }
+}
+
+void HandTable::taken(std::size_t grip, std::int64_t now_ns) {
+  GripHand& hand = grips_[grip];
+  hand.held = true;
+  hand.base += hand.newest + 1;
+  hand.newest = hand.first = hand.seen = 0;
+  hand.delivery = {};
+  hand.heard_ns = now_ns;
+  hand.glide_since_ns = 0;
+}
+
+void HandTable::let_go(std::size_t grip, std::int64_t now_ns, bool also_stand) {
+  GripHand& hand = grips_[grip];
+  hand.held = false;
+  if (hand.stand && !also_stand) return;
+  hand.stand = false;
+  PoseMessage message;
+  message.device = static_cast<std::uint32_t>(grip);
+  message.stamp_ns = now_ns;
+  message.pose = hand.last;
+  message.lost = true;
+  message.number = hand.base + hand.newest;
+  publish(grip, message);
+}
+
+bool HandTable::count(GripHand& hand, std::uint64_t number) {
+  if (hand.first == 0) {
+    hand.first = hand.newest = number;
+    hand.seen = 1;
+  } else if (number > hand.newest) {
+    const std::uint64_t ahead = number - hand.newest;
+    hand.seen = ahead < 64 ? hand.seen << ahead | 1 : 1;
+    hand.newest = number;
+  } else {
+    const std::uint64_t behind = hand.newest - number;
+    if (behind >= 64 || number < hand.first) return false;
+    if (!(hand.seen >> behind & 1)) hand.delivery.received += 1;
+    hand.seen |= std::uint64_t{1} << behind;
+    return false;
+  }
+  hand.delivery.received += 1;
+  hand.delivery.expected = hand.newest - hand.first + 1;
+  return true;
+}
+
+std::int64_t HandTable::on_our_clock(GripHand& hand, std::int64_t stamp_ns, std::int64_t now_ns) {
+  const std::int64_t offset = now_ns - stamp_ns;
+  const bool anew = hand.delivery.received <= 1 || offset - hand.clock_offset_ns > kOldest;
+  const std::int64_t drifted =
+      hand.clock_offset_ns + static_cast<std::int64_t>(kDrift * static_cast<double>(now_ns - hand.heard_ns));
+  hand.clock_offset_ns = anew ? offset : std::min(offset, drifted);
+  hand.heard_ns = now_ns;
+  return stamp_ns + hand.clock_offset_ns;
+}
+
+bool HandTable::sample(const wire::PoseSample& sample, std::int64_t now_ns) {
+  if (sample.grip >= grips_.size()) return false;
+  GripHand& hand = grips_[sample.grip];
+  // 0 stands for "none yet" in what comes back to the peer.
+  if (sample.number == 0 || !count(hand, sample.number)) return false;
+  hand.held = true;
+  hand.known[sample.number % kRemembered] = {sample.number, sample.stamp_ns};
+
+  PoseMessage message;
+  message.device = sample.grip;
+  message.stamp_ns = on_our_clock(hand, sample.stamp_ns, now_ns);
+  message.tick_ack = sample.tick_ack;
+  message.time = sample.time;
+  message.pose = sample.pose;
+  message.twist = sample.twist;
+  message.engaged = sample.engaged;
+  message.number = hand.base + sample.number;
+  if (hand.stand) {
+    if (!sample.engaged) return true;
+    hand.stand = false;
+    hand.glide_since_ns = now_ns;
+  }
+  if (hand.glide_since_ns != 0) {
+    const double share = to_seconds(now_ns - hand.glide_since_ns) / kHandOver;
+    if (share >= 1.0 || !sample.engaged) {
+      hand.glide_since_ns = 0;
+    } else {
+      message.pose.position = glm::mix(hand.stand_at.position, sample.pose.position, share);
+      message.pose.orientation = glm::slerp(hand.stand_at.orientation, sample.pose.orientation, share);
+      message.twist.linear *= share;
+      message.twist.angular *= share;
+    }
+  }
+  publish(sample.grip, message);
+  return true;
+}
+
+HandTable::Used HandTable::used(std::size_t grip, std::uint64_t pose_number) const {
+  const GripHand& hand = grips_[grip];
+  if (pose_number <= hand.base) return {};
+  const std::uint64_t number = pose_number - hand.base;
+  const Used& known = hand.known[number % kRemembered];
+  return known.number == number ? known : Used{};
+}
+
+}  // namespace slosh

@@ -1,0 +1,83 @@
+// What moves each grip: a person's samples, or the host's own stand until somebody has taken hold.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "net/channel.h"
+#include "net/wire/messages.h"
+#include "scenes/scene.h"
+
+namespace slosh {
+
+/// s in which a grip glides from the stand into the hand that took it.
+constexpr double kHandOver = 0.5;
+
+/// How a grip's samples arrived. Numbers, not repeats, are counted.
+struct Delivery {
+  std::uint64_t received = 0;  ///< distinct samples that came
+  std::uint64_t expected = 0;  ///< numbers from the first to the newest
+};
+
+/// Where each grip starts: on its body as the scene has it.
+Pose stand_pose(const Scene& scene, std::size_t grip);
+
+/// The writer of every channel.pose(i). A grip that nobody has held since the start (or a reset) is held by
+/// the host where it starts, so that nothing falls before people come. One thread; `now_ns` is the steady
+/// clock.
+class HandTable {
+ public:
+  HandTable(const Scene& scene, Channel& channel);
+
+  /// Puts every grip without a holder on its stand: at the start and after a reset.
+  void stand_all(std::int64_t now_ns);
+  /// A new holder, whose samples number anew. The stand holds on until its first engaged sample.
+  void taken(std::size_t grip, std::int64_t now_ns);
+  /// Not held any more, or contact with the holder is lost: the host lets go gently. A stand stays, unless
+  /// `also_stand`.
+  void let_go(std::size_t grip, std::int64_t now_ns, bool also_stand = false);
+  /// After a restart of the host: what was held stands where the hand was, until its holder is back.
+  void carry_on(const BodySnapshot& bodies, std::int64_t now_ns);
+
+  /// Takes in a sample of the holder's. True when it is the newest and went to the world.
+  bool sample(const wire::PoseSample& sample, std::int64_t now_ns);
+
+  struct Used {
+    std::uint64_t number = 0;   ///< the holder's; 0 = none of the holder's samples, or it is too long ago
+    std::int64_t stamp_ns = 0;  ///< on the holder's clock
+  };
+  /// From BodyMessage::pose_numbers to the holder's sample.
+  Used used(std::size_t grip, std::uint64_t pose_number) const;
+  const Delivery& delivery(std::size_t grip) const { return grips_[grip].delivery; }
+  bool on_stand(std::size_t grip) const { return grips_[grip].stand; }
+  std::size_t size() const { return grips_.size(); }
+
+ private:
+  static constexpr std::size_t kRemembered = 2048;  // stamps: 4 s at 500 a second
+  struct GripHand {
+    Pose start;  // as the scene has it
+    Pose stand_at;
+    bool stand = false;
+    bool held = false;
+    std::int64_t glide_since_ns = 0;  // 0 = no longer gliding
+    std::uint64_t base = 0;           // added to the holder's numbers, so that they rise over all holders
+    std::uint64_t newest = 0;         // holder's number; 0 = none yet
+    std::uint64_t first = 0;
+    std::uint64_t seen = 0;            // bit i: newest − i came
+    std::int64_t clock_offset_ns = 0;  // host's clock − holder's, by the quickest sample
+    std::int64_t heard_ns = 0;
+    Delivery delivery;
+    Pose last;
+    std::vector<Used> known;  // a ring by number
+  };
+  bool count(GripHand& hand, std::uint64_t number);
+  std::int64_t on_our_clock(GripHand& hand, std::int64_t stamp_ns, std::int64_t now_ns);
+  void put_on_stand(std::size_t grip, const Pose& pose, std::int64_t now_ns);
+  void publish(std::size_t grip, const PoseMessage& message);
+
+  Channel& channel_;
+  std::vector<GripHand> grips_;
+};
+
+}  // namespace slosh

@@ -1,0 +1,125 @@
+#include "host/server/links.h"
+
+#include <sys/random.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace slosh {
+namespace {
+
+bool same(std::span<const std::uint8_t> a, std::span<const std::uint8_t> b) {
+  // Always through to the end: the time taken must not tell how much of a guess was right.
+  volatile std::uint8_t difference = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    difference = static_cast<std::uint8_t>(difference | (a[i] ^ b[i]));
+  return difference == 0;
+}
+
+bool knows(const LinkRecord& link, const KeyFingerprint& key) {
+  return std::find(link.users.begin(), link.users.end(), key) != link.users.end();
+}
+
+// Two open syllables: nothing that sounds alike over a telephone.
+std::string random_id() {
+  constexpr std::string_view kConsonants = "bdfgklmnprstvz";
+  constexpr std::string_view kVowels = "aeiou";
+  std::array<std::uint8_t, 4> raw{};
+  fill_random(raw);
+  std::string id;
+  for (int i = 0; i < 2; ++i) {
+    id += kConsonants[raw[static_cast<std::size_t>(2 * i)] % kConsonants.size()];
+    id += kVowels[raw[static_cast<std::size_t>(2 * i + 1)] % kVowels.size()];
+  }
+  return id;
+}
+
+}  // namespace
+
+void fill_random(std::span<std::uint8_t> out) {
+  std::size_t done = 0;
+  while (done < out.size()) {
+    const ssize_t got = getrandom(out.data() + done, out.size() - done, 0);
+    // Without randomness every token could be guessed: better no host at all.
+    if (got < 0 && errno != EINTR) std::abort();
+    if (got > 0) done += static_cast<std::size_t>(got);
+  }
+}
+
+const LinkRecord* LinkRegistry::create(wire::Role role, const std::string& name, std::int64_t unix_ns,
+                                       std::int64_t lifetime_ns) {
+  if (links_.size() >= kMaxLinks) {
+    const auto dead = [&](const LinkRecord& link) {
+      return link.revoked || (link.expires_ns != 0 && link.expires_ns <= unix_ns);
+    };
+    links_.erase(std::remove_if(links_.begin(), links_.end(), dead), links_.end());
+    if (links_.size() >= kMaxLinks) return nullptr;
+  }
+  LinkRecord link;
+  do link.id = random_id();
+  while (find(link.id));
+  fill_random(link.token);
+  link.role = role;
+  link.name = name;
+  link.created_ns = unix_ns;
+  link.expires_ns = lifetime_ns > 0 ? unix_ns + lifetime_ns : 0;
+  links_.push_back(std::move(link));
+  return &links_.back();
+}
+
+LinkVerdict LinkRegistry::check(const wire::Token& token, const KeyFingerprint& key,
+                                std::int64_t unix_ns) const {
+  const LinkRecord* found = nullptr;
+  for (const LinkRecord& link : links_) {
+    if (same(link.token, token)) found = &link;
+  }
+  const LinkVerdict stranger{nullptr, wire::RefusalCode::kBadToken,
+                             "this link does not open this world. Ask the host for a new one"};
+  if (!found) return stranger;
+  const bool known = knows(*found, key);
+  if (found->revoked) {
+    if (!known) return stranger;
+    return {nullptr, wire::RefusalCode::kRevoked, "the host has revoked this link. Ask for a new one"};
+  }
+  if (found->expires_ns != 0 && found->expires_ns <= unix_ns) {
+    if (!known) return stranger;
+    return {nullptr, wire::RefusalCode::kExpired, "this link has expired. Ask the host for a new one"};
+  }
+  if (!found->name.empty() && !found->users.empty() && !known) {
+    return {nullptr, wire::RefusalCode::kBadToken,
+            "this link was for one person and is in use. Ask the host for one of your own"};
+  }
+  return {found, {}, {}};
+}
+
+void LinkRegistry::note_use(const std::string& id, const KeyFingerprint& key) {
+  LinkRecord* link = find_mutable(id);
+  if (!link || knows(*link, key)) return;
+  if (link->users.size() >= kMaxLinkUsers) link->users.erase(link->users.begin());
+  link->users.push_back(key);
+}
+
+bool LinkRegistry::revoke(std::string_view id) {
+  LinkRecord* link = find_mutable(id);
+  if (link) link->revoked = true;
+  return link != nullptr;
+}
+
+bool LinkRegistry::set_expiry(std::string_view id, std::int64_t expires_ns) {
+  LinkRecord* link = find_mutable(id);
+  if (link) link->expires_ns = expires_ns;
+  return link != nullptr;
+}
+
+const LinkRecord* LinkRegistry::find(std::string_view id) const {
+  for (const LinkRecord& link : links_) {
+    if (link.id == id) return &link;
+  }
+  return nullptr;
+}
+
+LinkRecord* LinkRegistry::find_mutable(std::string_view id) {
+  return const_cast<LinkRecord*>(find(id));
+}
+
+}  // namespace slosh

@@ -1,0 +1,134 @@
+#include "host/server/pictures.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "net/clock.h"
+
+namespace slosh {
+namespace {
+
+// Blocks mended for one peer in one frame at most; what is left is asked for again.
+constexpr std::uint32_t kMostMended = 4096;
+constexpr std::size_t kMostMendingPeers = 256;
+constexpr double kFreshEnough = 0.3;  // simulated s: an epoch as young as this need not be followed
+constexpr std::size_t kBehind = 2;    // pictures that may wait before one is left out
+constexpr double kStanding = 0.25;    // s without a new picture after which the world stands
+constexpr double kShownAgain = 0.1;   // s between two showings then
+
+}  // namespace
+
+PictureCoder::PictureCoder(double spacing, std::uint32_t run) : spacing_(spacing), run_(run) {}
+
+void PictureCoder::see(const Snapshot& snapshot) {
+  if (last_tick_ && snapshot.rigid.tick <= *last_tick_) {
+    run_ += 1;
+    last_key_.fill(-1e9);
+  }
+  last_tick_ = snapshot.rigid.tick;
+}
+
+void PictureCoder::code(const Snapshot& snapshot, PictureOrder order, std::vector<CodedPicture>& out,
+                        bool again) {
+  const std::int64_t begin = steady_now_ns();
+  for (MendOrder& wish : order.mends) {
+    const std::pair key{wish.peer, wish.tier};
+    if (mending_.size() < kMostMendingPeers || mending_.contains(key)) mending_[key] = {std::move(wish), 2};
+  }
+  for (int tier = 0; tier < kTierCount; ++tier) {
+    const auto i = static_cast<std::size_t>(tier);
+    if (!order.watched[i]) {
+      encoders_[i].reset();  // it starts with a key frame when it is wanted again
+      continue;
+    }
+    if (!again && count_ % kTiers[i].every != 0 && !order.fresh[i]) continue;
+    if (!encoders_[i]) {
+      CodecOptions options;
+      options.stream = static_cast<std::uint8_t>(tier);
+      options.tolerance = kTiers[i].tolerance;
+      options.spacing = spacing_;
+      options.shell_only = kTiers[i].shell_only;
+      encoders_[i].emplace(options);
+    }
+    const bool young = snapshot.rigid.time - last_key_[i] < kFreshEnough;
+    CodedPicture picture;
+    picture.tier = tier;
+    picture.frame = encoders_[i]->encode(snapshot, run_, order.fresh[i] && !young);
+    if (picture.frame.key) last_key_[i] = snapshot.rigid.time;
+    mend(tier, picture.frame, picture);
+    out.push_back(std::move(picture));
+  }
+  if (!again) count_ += 1;
+  std::erase_if(mending_, [&](const auto& entry) {
+    return entry.second.frames_left <= 0 || !order.watched[static_cast<std::size_t>(entry.first.second)];
+  });
+  seconds_ += to_seconds(steady_now_ns() - begin);
+}
+
+void PictureCoder::mend(int tier, const EncodedFrame& frame, CodedPicture& out) {
+  for (auto& [key, mending] : mending_) {
+    if (key.second != tier) continue;
+    const MendOrder& wish = mending.order;
+    // A key frame mends everybody, and block numbers of another epoch mean other particles.
+    const bool passed = frame.key || (!wish.all && wish.epoch != frame.epoch);
+    mending.frames_left = passed ? 0 : mending.frames_left - 1;
+    if (passed) continue;
+    std::vector<wire::BlockRange> blocks;
+    std::uint32_t room = kMostMended;
+    const auto add = [&](std::uint32_t first, std::uint32_t count) {
+      if (first >= frame.blocks || room == 0) return;
+      count = std::min({count, frame.blocks - first, room});
+      room -= count;
+      blocks.push_back({first, count});
+    };
+    if (wish.all) {
+      add(0, frame.blocks);
+    } else {
+      for (const wire::BlockRange& range : wish.blocks) add(range.first, range.count);
+    }
+    pieces_.clear();
+    encoders_[static_cast<std::size_t>(tier)]->mend(blocks, pieces_);
+    if (!pieces_.empty()) out.mended.emplace_back(key.first, pieces_);
+  }
+}
+
+PictureThread::PictureThread(SnapshotQueue& pictures, PictureDesk& desk, double spacing, std::uint32_t run,
+                             std::function<void()> wake)
+    : pictures_(pictures), desk_(desk), coder_(spacing, run), wake_(std::move(wake)) {
+  thread_ = std::thread([this] { this->run(); });
+}
+
+PictureThread::~PictureThread() {
+  if (thread_.joinable()) thread_.join();
+}
+
+void PictureThread::run() {
+  SnapshotPointer newest;
+  std::int64_t new_ns = 0;
+  std::int64_t coded_ns = 0;
+  std::vector<CodedPicture> coded;
+  while (!pictures_.finished()) {
+    SnapshotPointer picture = pictures_.pop(std::chrono::milliseconds(50));
+    const std::int64_t now = steady_now_ns();
+    const bool again = !picture;
+    if (again) {
+      if (!newest || now - new_ns < to_nanoseconds(kStanding) || now - coded_ns < to_nanoseconds(kShownAgain))
+        continue;
+    } else {
+      newest = std::move(picture);
+      new_ns = now;
+      coder_.see(*newest);
+      if (pictures_.waiting() > kBehind) continue;
+    }
+    coded_ns = now;
+    coded.clear();
+    coder_.code(*newest, desk_.take_order(), coded, again);
+    seconds_.store(coder_.seconds(), std::memory_order_relaxed);
+    if (coded.empty()) continue;
+    desk_.deliver(std::move(coded));
+    wake_();
+  }
+}
+
+}  // namespace slosh

@@ -1,0 +1,74 @@
+// From the world's pictures to coded ones, on a thread of its own, once for each tier that somebody watches.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "host/server/picture_desk.h"
+#include "net/snapshot_queue.h"
+
+namespace slosh {
+
+/// Owns the encoders. One thread.
+class PictureCoder {
+ public:
+  /// `spacing` in m; `run` is BodyMessage::run of the first picture.
+  explicit PictureCoder(double spacing, std::uint32_t run = 0);
+
+  /// Every picture of the world in order, also one that is not coded: one whose tick is not above the last
+  /// one's is of the next run.
+  void see(const Snapshot& snapshot);
+  /// Codes one picture for the tiers whose turn it is; for all that are watched when it is shown `again`.
+  void code(const Snapshot& snapshot, PictureOrder order, std::vector<CodedPicture>& out, bool again = false);
+
+  double seconds() const { return seconds_; }  ///< spent coding
+
+ private:
+  /// Two frames on end are mended: the codec predicts from two.
+  struct Mending {
+    MendOrder order;
+    int frames_left = 2;
+  };
+  void mend(int tier, const EncodedFrame& frame, CodedPicture& out);
+
+  double spacing_;
+  std::uint32_t run_;
+  std::optional<std::uint64_t> last_tick_;
+  std::uint64_t count_ = 0;
+  std::array<std::optional<SnapshotEncoder>, kTierCount> encoders_;
+  std::array<double, kTierCount> last_key_{};  // simulated s
+  std::map<std::pair<ConnectionId, int>, Mending> mending_;
+  std::vector<Piece> pieces_;
+  double seconds_ = 0.0;
+};
+
+/// Takes every picture from a queue, codes it, lays it on the desk and calls `wake`. Leaves pictures out when
+/// it falls behind. While the world stands it shows the last one again ten times a second, for who comes
+/// late.
+class PictureThread {
+ public:
+  PictureThread(SnapshotQueue& pictures, PictureDesk& desk, double spacing, std::uint32_t run,
+                std::function<void()> wake);
+  ~PictureThread();  ///< waits; the queue must be closed
+  PictureThread(const PictureThread&) = delete;
+  PictureThread& operator=(const PictureThread&) = delete;
+
+  double seconds() const { return seconds_.load(std::memory_order_relaxed); }
+
+ private:
+  void run();
+  SnapshotQueue& pictures_;
+  PictureDesk& desk_;
+  PictureCoder coder_;
+  std::function<void()> wake_;
+  std::atomic<double> seconds_{0.0};
+  std::thread thread_;
+};
+
+}  // namespace slosh

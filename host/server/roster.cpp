@@ -1,0 +1,211 @@
+#include "host/server/roster.h"
+
+#include <algorithm>
+
+#include "net/clock.h"
+#include "net/wire/text.h"
+
+namespace slosh {
+namespace {
+
+void drop(std::vector<std::uint32_t>& grips, std::uint32_t grip) {
+  grips.erase(std::remove(grips.begin(), grips.end(), grip), grips.end());
+}
+
+bool has(const std::vector<std::uint32_t>& grips, std::uint32_t grip) {
+  return std::find(grips.begin(), grips.end(), grip) != grips.end();
+}
+
+}  // namespace
+
+std::string SeatTable::free_name(const std::string& wish) const {
+  const auto taken = [&](const std::string& name) {
+    return std::any_of(seats_.begin(), seats_.end(),
+                       [&](const auto& entry) { return entry.second.name == name; });
+  };
+  if (!wish.empty() && !taken(wish)) return wish;
+  const std::string base = wish.empty() ? "guest" : wire::clean_text(wish, wire::kMaxName - 5);
+  for (int i = wish.empty() ? 1 : 2;; ++i) {
+    const std::string name = base + " " + std::to_string(i);
+    if (!taken(name)) return name;
+  }
+}
+
+bool SeatTable::make_room(wire::Role role) {
+  const std::size_t limit = role == wire::Role::kParticipant ? limits_.participants : limits_.spectators;
+  std::size_t connected = 0;
+  for (const auto& [number, seat] : seats_) connected += seat.connected && seat.role == role ? 1 : 0;
+  if (connected >= limit) return false;
+  // Seats of people who are away must not keep others out: the one away longest goes, one with grips last.
+  std::size_t of_role = 0;
+  const Seat* oldest = nullptr;
+  for (const auto& [number, seat] : seats_) {
+    of_role += seat.role == role ? 1 : 0;
+    if (seat.connected || (seat.role == role && !seat.grips.empty() && !seat.left)) continue;
+    if (!oldest || seat.away_since_ns < oldest->away_since_ns) oldest = &seat;
+  }
+  const std::size_t away_limit = limit + 32;
+  if ((of_role >= away_limit || seats_.size() >= wire::kMaxPeers) && oldest) {
+    seats_.erase(oldest->number);
+    return true;
+  }
+  return of_role < away_limit && seats_.size() < wire::kMaxPeers;
+}
+
+SeatTable::Arrival SeatTable::arrive(const KeyFingerprint& key, wire::Role role, const std::string& wish,
+                                     const std::string& link) {
+  if (Seat* seat = by_key(key)) {
+    seat->link = link;
+    const bool restored = !seat->connected;
+    seat->connected = true;
+    seat->left = false;
+    if (seat->role != role) {
+      seat->role = role;
+      seat->grips.clear();
+    }
+    return {seat, restored, {}};
+  }
+  if (!make_room(role)) {
+    return {nullptr, false,
+            role == wire::Role::kParticipant
+                ? "this world is full: no more hands find room. Try the link for watching"
+                : "this world is full: too many are watching. Try again later"};
+  }
+  Seat seat;
+  while (seats_.contains(seat.number)) seat.number += 1;
+  seat.key = key;
+  seat.name = free_name(wish);
+  seat.role = role;
+  seat.link = link;
+  const std::uint32_t number = seat.number;
+  return {&seats_.emplace(number, std::move(seat)).first->second, false, {}};
+}
+
+void SeatTable::lose(Seat& seat, std::int64_t now_ns) {
+  if (!seat.connected) return;
+  seat.connected = false;
+  seat.away_since_ns = now_ns;
+}
+
+void SeatTable::leave(Seat& seat, std::int64_t now_ns) {
+  lose(seat, now_ns);
+  seat.left = true;
+}
+
+std::vector<Seat> SeatTable::expire(std::int64_t now_ns) {
+  std::vector<Seat> gone;
+  for (auto at = seats_.begin(); at != seats_.end();) {
+    if (!at->second.connected && now_ns - at->second.away_since_ns > to_nanoseconds(kSeatKept)) {
+      gone.push_back(std::move(at->second));
+      at = seats_.erase(at);
+    } else {
+      ++at;
+    }
+  }
+  return gone;
+}
+
+void SeatTable::remove(std::uint32_t number) {
+  seats_.erase(number);
+}
+
+Outcome SeatTable::take(Seat& seat, std::uint32_t grip) {
+  if (seat.role != wire::Role::kParticipant)
+    return {false, "this link is for watching; taking hold needs the other one"};
+  if (grip >= grip_names_.size()) {
+    return {false, "there is no grip " + std::to_string(grip) + "; this scene has " +
+                       std::to_string(grip_names_.size())};
+  }
+  if (has(seat.grips, grip)) return {true, {}};
+  if (const Seat* other = holder(grip)) {
+    const std::string held = grip_name(grip) + " is held by " + other->name;
+    return {false, other->connected ? held
+                                    : grip_name(grip) + " is kept for " + other->name +
+                                          ", who lost contact less than a minute ago"};
+  }
+  for (auto& [number, other] : seats_) drop(other.grips, grip);  // of those who left
+  seat.grips.push_back(grip);
+  std::sort(seat.grips.begin(), seat.grips.end());
+  return {true, {}};
+}
+
+Outcome SeatTable::release(Seat& seat, std::uint32_t grip) {
+  if (!has(seat.grips, grip)) return {false, "you do not hold " + grip_name(grip)};
+  drop(seat.grips, grip);
+  return {true, {}};
+}
+
+const Seat* SeatTable::holder(std::uint32_t grip) const {
+  for (const auto& [number, seat] : seats_) {
+    if (!seat.left && has(seat.grips, grip)) return &seat;
+  }
+  return nullptr;
+}
+
+Seat* SeatTable::by_key(const KeyFingerprint& key) {
+  for (auto& [number, seat] : seats_) {
+    if (seat.key == key) return &seat;
+  }
+  return nullptr;
+}
+
+Seat* SeatTable::by_number(std::uint32_t number) {
+  const auto found = seats_.find(number);
+  return found == seats_.end() ? nullptr : &found->second;
+}
+
+Seat* SeatTable::by_name(const std::string& name) {
+  for (auto& [number, seat] : seats_) {
+    if (seat.name == name) return &seat;
+  }
+  return nullptr;
+}
+
+std::string SeatTable::grip_name(std::uint32_t grip) const {
+  if (grip < grip_names_.size() && !grip_names_[grip].empty()) return "grip '" + grip_names_[grip] + "'";
+  return "grip " + std::to_string(grip);
+}
+
+wire::Roster SeatTable::message() const {
+  wire::Roster roster;
+  roster.peers.reserve(seats_.size());
+  for (const auto& [number, seat] : seats_) {
+    wire::RosterEntry entry{number, seat.name, seat.role, seat.connected, {}};
+    if (!seat.left) entry.grips = seat.grips;
+    roster.peers.push_back(std::move(entry));
+  }
+  return roster;
+}
+
+std::vector<SeatRecord> SeatTable::records() const {
+  std::vector<SeatRecord> records;
+  for (const auto& [number, seat] : seats_) {
+    if (seat.left) continue;
+    records.push_back({number, seat.key, seat.name, seat.role, seat.grips, seat.link});
+  }
+  return records;
+}
+
+void SeatTable::restore(const std::vector<SeatRecord>& records, std::int64_t now_ns) {
+  seats_.clear();
+  for (const SeatRecord& record : records) {
+    if (seats_.contains(record.number) || by_key(record.key) || by_name(record.name)) continue;
+    Seat seat;
+    seat.number = record.number;
+    seat.key = record.key;
+    seat.name = record.name;
+    seat.role = record.role;
+    seat.link = record.link;
+    seat.connected = false;
+    seat.away_since_ns = now_ns;
+    for (const std::uint32_t grip : record.grips) {
+      if (record.role == wire::Role::kParticipant && grip < grip_names_.size() && !holder(grip) &&
+          !has(seat.grips, grip)) {
+        seat.grips.push_back(grip);
+      }
+    }
+    seats_.emplace(seat.number, std::move(seat));
+  }
+}
+
+}  // namespace slosh

@@ -1,0 +1,295 @@
+#include "host/server/server.h"
+
+#include <algorithm>
+
+#include "host/server/server_send.h"
+#include "net/clock.h"
+
+namespace slosh {
+namespace {
+
+constexpr std::int64_t kRosterEvery = 50'000'000;  // ns between two rosters: comings may come in crowds
+constexpr std::int64_t kCheckEvery = 50'000'000;   // ns between two looks at who is late
+constexpr std::int64_t kLongestNap = 50'000'000;   // ns
+
+std::vector<std::string> grip_names(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const Grip& grip : scene.grips) names.push_back(grip.name);
+  return names;
+}
+
+std::uint64_t random_number() {
+  std::array<std::uint8_t, 8> raw{};
+  fill_random(raw);
+  std::uint64_t number = 0;
+  for (const std::uint8_t byte : raw) number = number << 8 | byte;
+  return number;
+}
+
+}  // namespace
+
+Server::Server(ServedWorld world, ServerOptions options)
+    : world_(std::move(world)),
+      options_(std::move(options)),
+      seats_(grip_names(*world_.scene), options_.limits),
+      hands_(*world_.scene, *world_.channel),
+      bodies_(*world_.scene),
+      session_(random_number()) {
+  if (!options_.clock) options_.clock = [] { return steady_now_ns(); };
+  next_hands_ns_.resize(world_.scene->grips.size());
+  hands_.stand_all(now());
+  waits_for_hands_ = world_.state.paused && options_.hands_to_start > 0;
+}
+
+Server::~Server() {
+  mailbox_.set_wake({});
+}
+
+void Server::use(Endpoint& endpoint) {
+  endpoint_ = &endpoint;
+  mailbox_.set_wake([&endpoint] { endpoint.wake(); });
+}
+
+void Server::set_identity(wire::Bytes private_key, std::uint16_t port) {
+  private_key_ = std::move(private_key);
+  port_ = port;
+  session_dirty_ = true;
+}
+
+void Server::restore(const SessionState& state) {
+  session_ = state.session;
+  links_.restore(state.links);
+  seats_.restore(state.seats, now());
+  hands_.carry_on(world_.channel->bodies().front().bodies, now());
+  session_dirty_ = true;
+}
+
+Peer* Server::find(ConnectionId connection) {
+  const auto found = peers_.find(connection);
+  return found == peers_.end() || found->second->gone ? nullptr : found->second.get();
+}
+
+Peer* Server::peer_of(std::uint32_t seat) {
+  const auto found = by_seat_.find(seat);
+  return found == by_seat_.end() ? nullptr : find(found->second);
+}
+
+void Server::notice_all(const std::string& text, bool participants_only, const Peer* but) {
+  say(text);
+  send_all(wire::Notice{text}, participants_only, but);
+}
+
+void Server::on_connected(ConnectionId connection, const KeyFingerprint& key, const std::string& address) {
+  const auto host_of = [](const std::string& with_port) { return with_port.substr(0, with_port.rfind(':')); };
+  const std::string from = host_of(address);
+  std::size_t same = 0;
+  for (const auto& [id, peer] : peers_) same += !peer->gone && host_of(peer->address) == from ? 1 : 0;
+  if (ending_ || same >= options_.connections_an_address) {
+    past_.refused += 1;
+    const auto code = ending_ ? wire::RefusalCode::kEnding : wire::RefusalCode::kFull;
+    endpoint_->close(connection, close_code(code),
+                     ending_ ? "the host is ending" : "too many connections come from your address");
+    return;
+  }
+  auto peer = std::make_unique<Peer>();
+  peer->id = connection;
+  peer->key = key;
+  peer->address = address;
+  peer->connected_ns = peer->heard_ns = now();
+  peers_[connection] = std::move(peer);
+}
+
+void Server::on_stream(ConnectionId connection, std::int64_t stream, std::span<const std::uint8_t> bytes,
+                       bool end) {
+  Peer* peer = find(connection);
+  if (!peer) return;
+  if (peer->control_stream < 0 && stream % 4 == 0) peer->control_stream = stream;
+  if (stream != peer->control_stream)
+    return refuse(*peer, wire::RefusalCode::kBadMessage, "only one stream, both ways, may be opened");
+  wire::Fault fault = peer->splitter.feed(bytes, [&](std::uint64_t type, wire::ByteView payload) {
+    return peer->gone ? wire::Fault{} : control_message(*peer, type, payload);
+  });
+  if (!fault && end) fault = peer->splitter.finish();
+  if (peer->gone) return;
+  if (fault) return refuse(*peer, wire::RefusalCode::kBadMessage, fault.text());
+  if (end) lose(*peer, Parting::kLeft);
+}
+
+void Server::on_closed(ConnectionId connection, const CloseReason& reason) {
+  Peer* peer = find(connection);
+  if (!peer) return;
+  if (peer->in) say(name_of(*peer) + ": connection closed: " + reason.text);
+  lose(*peer, Parting::kLostContact);
+}
+
+void Server::refuse(Peer& peer, wire::RefusalCode code, const std::string& text) {
+  if (peer.gone) return;
+  const std::string words = wire::clean_text(text, wire::kMaxText);
+  send(peer, wire::Refused{code, words});
+  past_.refused += 1;
+  say((peer.in ? name_of(peer) : peer.address) + " is refused: " + words);
+  lose(peer, Parting::kPutOut);
+  endpoint_->close(peer.id, close_code(code), words);
+}
+
+void Server::let_go_all(const Seat& seat) {
+  for (const std::uint32_t grip : seat.grips) hands_.let_go(grip, now());
+  if (seat.grips.empty()) return;
+  wire::Hands hands;
+  for (const std::uint32_t grip : seat.grips)
+    hands.hands.push_back({grip, now(), stand_pose(*world_.scene, grip), Twist{}, false});
+  const auto bytes = std::make_shared<const wire::Bytes>(wire::datagram(hands));
+  for (auto& [id, other] : peers_) {
+    if (other->in && !other->gone && other->participant && other->seat != seat.number)
+      endpoint_->send_datagram(id, Priority::kPose, bytes);
+  }
+}
+
+// The connection is over for us. The seat stays for a while; its grips wait only for who lost contact.
+void Server::lose(Peer& peer, Parting parting) {
+  if (peer.gone) return;
+  peer.gone = true;
+  if (parting == Parting::kLeft) endpoint_->close(peer.id, 0, "goodbye");
+  if (!peer.in) return;
+  by_seat_.erase(peer.seat);
+  Seat* seat = seats_.by_number(peer.seat);
+  if (!seat) return;
+  let_go_all(*seat);
+  std::string text = seat->name;
+  if (parting == Parting::kLostContact) {
+    seats_.lose(*seat, now());
+    text = "contact with " + text + " is lost";
+    if (!seat->grips.empty()) text += "; what they hold is kept for them for a minute";
+  } else {
+    seats_.leave(*seat, now());
+    text += parting == Parting::kLeft ? " has left" : " was put out";
+  }
+  notice_all(text, seat->role == wire::Role::kSpectator);
+  roster_changed();
+}
+
+void Server::turn() {
+  mailbox_.run_all();
+  if (now() - checked_ns_ >= kCheckEvery) check_patience();
+  send_bodies();
+  send_pictures();
+  judge_links();
+  if (roster_dirty_ && now() - roster_sent_ns_ >= kRosterEvery) {
+    roster_dirty_ = false;
+    roster_sent_ns_ = now();
+    send_all(seats_.message());
+  }
+  if (session_dirty_) save_session();
+  sweep();
+}
+
+std::int64_t Server::next_turn_ns() const {
+  std::int64_t next = now() + kLongestNap;
+  if (roster_dirty_) next = std::min(next, roster_sent_ns_ + kRosterEvery);
+  return next;
+}
+
+void Server::check_patience() {
+  checked_ns_ = now();
+  for (auto& [id, peer] : peers_) {
+    if (peer->gone) continue;
+    if (!peer->in) {
+      if (now() - peer->connected_ns > to_nanoseconds(options_.hello_patience))
+        refuse(*peer, wire::RefusalCode::kTimedOut, "nothing was said for too long after connecting");
+      continue;
+    }
+    if (!peer->scene_sent) send_scene(*peer);
+    const Seat& seat = *seats_.by_number(peer->seat);
+    const bool quiet = now() - peer->heard_ns > to_nanoseconds(options_.silence);
+    if (quiet && !peer->silent && !seat.grips.empty()) {
+      peer->silent = true;
+      let_go_all(seat);
+      notice_all(seat.name + " is not heard any more; the grip is let go for now", false, peer.get());
+    } else if (!quiet && peer->silent) {
+      peer->silent = false;
+      notice_all(seat.name + " is heard again", false, peer.get());
+    }
+  }
+  for (const Seat& seat : seats_.expire(now())) {
+    for (const std::uint32_t grip : seat.grips) {
+      if (!seats_.holder(grip)) hands_.let_go(grip, now(), true);
+    }
+    if (!seat.left) {
+      notice_all(seat.name + " did not come back; the seat is free", seat.role == wire::Role::kSpectator);
+    }
+    roster_changed();
+  }
+}
+
+// Only here connections are forgotten, so that nobody's ground goes while he stands on it.
+void Server::sweep() {
+  for (auto at = peers_.begin(); at != peers_.end();) {
+    at = at->second->gone ? peers_.erase(at) : std::next(at);
+  }
+}
+
+void Server::save_session() {
+  session_dirty_ = false;
+  SessionState state{private_key_, session_, port_, links_.links(), seats_.records()};
+  wire::Bytes blob = wire::encoded(state);
+  const std::lock_guard lock(session_mutex_);
+  session_blob_ = std::move(blob);
+}
+
+wire::Bytes Server::session_blob() const {
+  const std::lock_guard lock(session_mutex_);
+  return session_blob_;
+}
+
+void Server::end(const std::string& why) {
+  ending_ = true;
+  for (auto& [id, peer] : peers_) {
+    if (peer->gone) continue;
+    peer->gone = true;
+    if (peer->control_stream >= 0)
+      send_bytes(*endpoint_, *peer, wire::control(wire::Refused{wire::RefusalCode::kEnding, why}));
+    endpoint_->close(id, close_code(wire::RefusalCode::kEnding), why);
+  }
+  by_seat_.clear();
+  for (std::uint32_t grip = 0; grip < hands_.size(); ++grip) hands_.let_go(grip, now());
+  sweep();
+}
+
+void Server::on_start(const World&, const HostState& state) {
+  mailbox_.post([this, state] { world_.state = state; });
+}
+
+void Server::after_change(const World&, const HostCommand& change, const HostState& state) {
+  mailbox_.post([this, change, state] { world_changed(change, state); });
+}
+
+ServerFigures Server::figures() const {
+  ServerFigures figures = past_;
+  std::string watching;
+  for (const auto& [number, seat] : seats_.seats()) {
+    if (!seat.connected) continue;
+    if (seat.role == wire::Role::kSpectator) {
+      figures.spectators += 1;
+      continue;
+    }
+    figures.participants += 1;
+    if (!figures.who.empty()) figures.who += ", ";
+    figures.who += seat.name;
+    for (const std::uint32_t grip : seat.grips) {
+      figures.who += (grip == seat.grips.front() ? " (" : ", ") + world_.scene->grips[grip].name;
+      figures.samples_received += hands_.delivery(grip).received;
+      figures.samples_expected += hands_.delivery(grip).expected;
+    }
+    if (!seat.grips.empty()) figures.who += ")";
+  }
+  if (figures.spectators > 0) {
+    if (!figures.who.empty()) figures.who += ", ";
+    figures.who += std::to_string(figures.spectators) + " watching";
+  }
+  for (const auto& [id, peer] : peers_) {
+    if (!peer->gone && endpoint_) figures.bytes_sent += endpoint_->stats(id).bytes_sent;
+  }
+  return figures;
+}
+
+}  // namespace slosh

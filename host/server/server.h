@@ -1,0 +1,213 @@
+// The host's side of the network: who may join, who holds what, what is sent to whom.
+//
+// One thread owns it, the network's: it calls everything here that does not say "any thread". It waits for
+// nobody: the world answers through the mailbox, pictures come coded from the desk.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <random>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "host/host.h"
+#include "host/server/body_parts.h"
+#include "host/server/console.h"
+#include "host/server/hands.h"
+#include "host/server/links.h"
+#include "host/server/mailbox.h"
+#include "host/server/peer.h"
+#include "host/server/picture_desk.h"
+#include "host/server/roster.h"
+#include "host/server/session_state.h"
+#include "net/quic/endpoint.h"
+
+namespace slosh {
+
+struct ServerOptions {
+  RosterLimits limits;
+  std::size_t connections_an_address = 256;
+  double hello_patience = 3.0;          ///< s until a connection must have said Hello
+  double silence = 0.5;                 ///< s without a datagram after which a holder counts as lost
+  double participant_bodies = 500.0;    ///< Hz at most
+  double spectator_bodies = 60.0;       ///< Hz at most
+  std::size_t hands_to_start = 1;       ///< grips that must be taken before the world starts; 0 = it runs
+  std::int64_t unix_offset_ns = 0;      ///< Unix time − clock
+  std::function<std::int64_t()> clock;  ///< ns; empty = the steady clock
+  std::function<void(const std::string&)> tell;  ///< lines for whoever runs the host; may be empty
+};
+
+/// The world as the server sees it.
+struct ServedWorld {
+  const Scene* scene = nullptr;  ///< must outlive the server
+  wire::Bytes package;           ///< pack_scene(…, kSeen)
+  Channel* channel = nullptr;    ///< the server writes poses and reads bodies
+  PictureDesk* desk = nullptr;
+  std::function<void(const HostCommand&, HostAnswer)> command;  ///< Host::post; answers on any thread
+  HostState state;
+  std::uint64_t particles = 0;
+  double spacing = 0.0;    ///< m
+  double time_step = 0.0;  ///< s
+};
+
+/// For the live line, the summary and the benchmarks.
+struct ServerFigures {
+  std::size_t participants = 0;  ///< connected
+  std::size_t spectators = 0;
+  std::uint64_t bytes_sent = 0;
+  std::uint64_t joins = 0;
+  std::uint64_t refused = 0;
+  std::uint64_t datagram_faults = 0;
+  std::uint64_t datagrams_ignored = 0;  ///< beyond a peer's limit
+  std::uint64_t samples_received = 0;   ///< distinct poses of present holders, and how many they numbered
+  std::uint64_t samples_expected = 0;
+  std::uint64_t frames_sent = 0;
+  std::uint64_t frames_withheld = 0;
+  std::string who;  ///< "Ana (left), Ben (right), 3 watching"
+};
+
+class Server final : public EndpointEvents, public HostTap {
+ public:
+  Server(ServedWorld world, ServerOptions options);
+  ~Server() override;
+
+  /// Before anything else; must outlive the server's use.
+  void use(Endpoint& endpoint);
+  /// Carries on an earlier session: links, seats (all away since now), the session's number. Before the first
+  /// turn().
+  void restore(const SessionState& state);
+
+  /// After every run_once: what came from the world goes out, and what is due is done.
+  void turn();
+  /// When the next turn is due if nothing happens; ns of the clock.
+  std::int64_t next_turn_ns() const;
+  /// Tells everybody and closes every connection; then a few more run_once to let it out.
+  void end(const std::string& why);
+  bool empty() const { return peers_.empty(); }
+
+  /// One line of the console to its answer, which may have several lines and ends without a line feed.
+  std::string command(const std::string& line);
+  bool quit_asked() const { return quit_asked_; }
+
+  LinkRegistry& links() { return links_; }
+  const SeatTable& seats() const { return seats_; }
+  ServerFigures figures() const;
+  std::uint64_t session() const { return session_; }
+  int tier_of(std::uint32_t seat) const;  ///< −1: not here
+
+  Mailbox& mailbox() { return mailbox_; }  ///< any thread posts
+  /// Any thread: what a checkpoint keeps, as of the last change, coded.
+  wire::Bytes session_blob() const;
+  void set_identity(wire::Bytes private_key, std::uint16_t port);
+  /// Text of a link for people, from its token; set by who knows the addresses.
+  std::function<std::string(const LinkRecord&)> link_text;
+
+  // EndpointEvents
+  void on_connected(ConnectionId connection, const KeyFingerprint& key, const std::string& address) override;
+  void on_stream(ConnectionId connection, std::int64_t stream, std::span<const std::uint8_t> bytes,
+                 bool end) override;
+  void on_datagram(ConnectionId connection, std::span<const std::uint8_t> bytes) override;
+  void on_closed(ConnectionId connection, const CloseReason& reason) override;
+
+  // HostTap, on the host's thread
+  void on_start(const World& world, const HostState& state) override;
+  void after_publish() override { mailbox_.wake(); }
+  void after_change(const World& world, const HostCommand& change, const HostState& state) override;
+
+ private:
+  std::int64_t now() const { return options_.clock(); }
+  std::int64_t unix_now() const { return now() + options_.unix_offset_ns; }
+  Peer* find(ConnectionId connection);
+  Peer* peer_of(std::uint32_t seat);
+  const std::string& name_of(const Peer& peer) { return seats_.by_number(peer.seat)->name; }
+  void say(const std::string& line) {
+    if (options_.tell) options_.tell(line);
+  }
+  template <class M>
+  void send(Peer& peer, const M& message);
+  template <class M>
+  void send_all(const M& message, bool participants_only = false, const Peer* but = nullptr);
+  void notice_all(const std::string& text, bool participants_only = false, const Peer* but = nullptr);
+  void refuse(Peer& peer, wire::RefusalCode code, const std::string& text);
+  /// How somebody went.
+  enum class Parting { kLostContact, kLeft, kPutOut };
+  void lose(Peer& peer, Parting parting);
+  void let_go_all(const Seat& seat);
+  void roster_changed() { roster_dirty_ = session_dirty_ = true; }
+
+  // server_control.cpp
+  wire::Fault control_message(Peer& peer, std::uint64_t type, wire::ByteView payload);
+  wire::Fault handle(Peer& peer, const wire::Hello& hello);
+  wire::Fault handle(Peer& peer, const wire::GripRequest& request);
+  wire::Fault handle(Peer& peer, const wire::WorldRequest& request);
+  wire::Fault handle(Peer& peer, const wire::ParameterRequest& request);
+  wire::Fault handle(Peer& peer, const wire::Bye& bye);
+  void welcome(Peer& peer, Seat& seat, bool restored);
+  void send_scene(Peer& peer);
+  void ask_world(Peer& peer, std::uint32_t request, const HostCommand& command, const std::string& did);
+  void answer(Peer& peer, std::uint32_t request, bool granted, const std::string& text);
+  void world_changed(const HostCommand& change, const HostState& state);
+  void start_if_held();
+  wire::WorldInfo world_info() const;
+
+  // server_traffic.cpp
+  void handle(Peer& peer, const wire::Poses& poses);
+  void handle(Peer& peer, const wire::ClockPing& ping);
+  void handle(Peer& peer, const wire::SnapshotFeedback& feedback);
+  void claimed(Peer& peer, std::uint32_t grip);
+  void forward(Peer& from, const wire::PoseSample& sample);
+  void send_bodies();
+  void send_pictures();
+  void judge_links();
+  void watch(Peer& peer, int tier);
+  bool has_room(Peer& peer, std::size_t pieces);
+  void send_piece(Peer& peer, const Piece& piece);
+
+  // server_console.cpp
+  std::string run(const ConsoleCommand& command);
+  std::string who_text() const;
+  std::string links_text() const;
+  std::string status_text() const;
+  std::string line_of(const LinkRecord& link) const;
+  void close_link(const std::string& id);
+
+  void check_patience();
+  void sweep();
+  void save_session();
+
+  ServedWorld world_;
+  ServerOptions options_;
+  Endpoint* endpoint_ = nullptr;
+  LinkRegistry links_;
+  SeatTable seats_;
+  HandTable hands_;
+  BodyParts bodies_;
+  Mailbox mailbox_;
+  std::uint64_t session_ = 0;
+  std::uint16_t port_ = 0;
+  wire::Bytes private_key_;
+
+  std::map<ConnectionId, std::unique_ptr<Peer>> peers_;
+  std::map<std::uint32_t, ConnectionId> by_seat_;
+  std::vector<std::int64_t> next_hands_ns_;  // one a grip: when it may be passed on again
+  PictureOrder order_;
+  bool roster_dirty_ = false;
+  std::int64_t roster_sent_ns_ = 0;
+  std::int64_t bodies_sent_ns_ = 0;
+  bool bodies_stale_ = true;
+  std::int64_t judged_ns_ = 0;
+  std::int64_t checked_ns_ = 0;
+  bool waits_for_hands_ = false;
+  bool quit_asked_ = false;
+  bool ending_ = false;
+
+  ServerFigures past_;  // of connections that are gone
+  mutable std::mutex session_mutex_;
+  wire::Bytes session_blob_;  // under the mutex
+  bool session_dirty_ = true;
+};
+
+}  // namespace slosh

@@ -1,0 +1,226 @@
+// The control stream: who is let in, and what they may ask for.
+#include <algorithm>
+
+#include "host/server/server.h"
+#include "host/server/server_send.h"
+#include "net/clock.h"
+#include "net/wire/all_messages.h"
+
+namespace slosh {
+namespace {
+
+template <class M>
+constexpr bool kIsRequest = requires(const M& m) { m.request; };
+
+}  // namespace
+
+wire::Fault Server::control_message(Peer& peer, std::uint64_t type, wire::ByteView payload) {
+  const bool hello = type == static_cast<std::uint64_t>(wire::ControlType::kHello);
+  if (peer.in == hello) return {"type", hello ? "Hello came a second time" : "something came before Hello"};
+  const bool too_many = !peer.limits.requests.take(now());
+  if (too_many && !peer.limits.excess.take(now())) {
+    refuse(peer, wire::RefusalCode::kTooMuch, "you asked for more than anybody could want");
+    return {};
+  }
+  return wire::dispatch(wire::PeerControl{}, type, payload, [&]<class M>(const M& message) -> wire::Fault {
+    if constexpr (kIsRequest<M>) {
+      if (too_many) {
+        answer(peer, message.request, false, "too many requests at once; wait a moment");
+        return {};
+      }
+    }
+    return handle(peer, message);
+  });
+}
+
+wire::Fault Server::handle(Peer& peer, const wire::Hello& hello) {
+  if (hello.version != wire::kProtocolVersion) {
+    refuse(peer, wire::RefusalCode::kVersion,
+           "the host speaks version " + std::to_string(wire::kProtocolVersion) + " and you speak version " +
+               std::to_string(hello.version) + ". Both need the same slosh");
+    return {};
+  }
+  const LinkVerdict verdict = links_.check(hello.token, peer.key, unix_now());
+  const Seat* kept = seats_.by_key(peer.key);
+  const LinkRecord* link = verdict.link;
+  // Who lost contact comes back by the same link even when it has expired meanwhile.
+  if (!link && verdict.code == wire::RefusalCode::kExpired && kept) link = links_.find(kept->link);
+  if (!link) {
+    refuse(peer, verdict.code, verdict.text);
+    return {};
+  }
+  if (kept) {
+    if (Peer* before = peer_of(kept->number)) {
+      before->gone = true;  // without a word to the others: the person is still here
+      let_go_all(*kept);
+      by_seat_.erase(kept->number);
+      const std::string text = "you came again from elsewhere, and this connection is closed";
+      if (before->control_stream >= 0) {
+        send_bytes(*endpoint_, *before, wire::control(wire::Refused{wire::RefusalCode::kReplaced, text}));
+      }
+      endpoint_->close(before->id, close_code(wire::RefusalCode::kReplaced), text);
+    }
+  }
+  const std::string id = link->id;
+  const std::string& wish = link->name.empty() ? hello.name : link->name;
+  const SeatTable::Arrival arrival = seats_.arrive(peer.key, link->role, wish, id);
+  if (!arrival.seat) {
+    refuse(peer, wire::RefusalCode::kFull, arrival.text);
+    return {};
+  }
+  links_.note_use(id, peer.key);
+  session_dirty_ = true;
+  peer.pictures.control = link->role == wire::Role::kParticipant
+                              ? TierControl(kAllParticles, hello.film ? kAllParticles : kAllParticles + 1)
+                              : TierControl(hello.film ? kAllParticles : kShell, kShell);
+  welcome(peer, *arrival.seat, arrival.restored);
+  return {};
+}
+
+void Server::welcome(Peer& peer, Seat& seat, bool restored) {
+  peer.in = true;
+  peer.seat = seat.number;
+  peer.participant = seat.role == wire::Role::kParticipant;
+  peer.heard_ns = now();
+  by_seat_[seat.number] = peer.id;
+  past_.joins += 1;
+  // A program that was started anew numbers its samples anew.
+  for (const std::uint32_t grip : seat.grips) hands_.taken(grip, now());
+
+  wire::Welcome message;
+  message.peer = seat.number;
+  message.role = seat.role;
+  message.name = seat.name;
+  message.session = session_;
+  message.scene_bytes = world_.package.size();
+  message.particles = world_.particles;
+  message.spacing = world_.spacing;
+  message.time_step = world_.time_step;
+  message.picture_rate = kTierPictureRate;
+  message.restored = restored;
+  send(peer, message);
+  send(peer, world_info());
+  send(peer, seats_.message());
+  if (waits_for_hands_ && !peer.gone) {
+    send(peer, wire::Notice{options_.hands_to_start == 1
+                                ? "the world waits for the first hand to take hold"
+                                : "the world waits until " + std::to_string(options_.hands_to_start) +
+                                      " grips are held"});
+  }
+  send_scene(peer);
+  if (peer.gone) return;
+  watch(peer, peer.pictures.control.tier());
+  notice_all(seat.name + (restored                              ? " is back"
+                          : seat.role == wire::Role::kSpectator ? " is watching"
+                                                                : " is here"),
+             seat.role == wire::Role::kSpectator, &peer);
+  roster_changed();
+}
+
+void Server::send_scene(Peer& peer) {
+  if (peer.scene_sent || peer.gone) return;
+  const std::int64_t stream = endpoint_->open_stream(peer.id, false);
+  if (stream < 0) return;  // tried again soon
+  peer.scene_sent = true;
+  if (endpoint_->send_stream(peer.id, stream, world_.package, true)) return;
+  lose(peer, Parting::kPutOut);
+  endpoint_->close(peer.id, close_code(wire::RefusalCode::kTooMuch),
+                   "the scene does not fit into the buffer");
+}
+
+void Server::answer(Peer& peer, std::uint32_t request, bool granted, const std::string& text) {
+  send(peer, wire::Answer{request, granted, wire::clean_text(text, wire::kMaxText)});
+}
+
+wire::Fault Server::handle(Peer& peer, const wire::GripRequest& request) {
+  Seat& seat = *seats_.by_number(peer.seat);
+  const bool held = request.take && seats_.holder(request.grip) == &seat;
+  const Outcome outcome = request.take ? seats_.take(seat, request.grip) : seats_.release(seat, request.grip);
+  answer(peer, request.request, outcome.granted, outcome.text);
+  if (!outcome.granted || held || peer.gone) return {};
+  if (request.take) {
+    peer.heard_ns = now();
+    hands_.taken(request.grip, now());
+    start_if_held();
+  } else {
+    hands_.let_go(request.grip, now());
+  }
+  roster_changed();
+  return {};
+}
+
+void Server::start_if_held() {
+  if (!waits_for_hands_) return;
+  std::size_t taken = 0;
+  for (std::uint32_t grip = 0; grip < hands_.size(); ++grip) taken += seats_.holder(grip) ? 1 : 0;
+  if (taken < std::min(options_.hands_to_start, hands_.size())) return;
+  waits_for_hands_ = false;
+  world_.command({HostAction::kContinue}, {});
+  notice_all("the world starts");
+}
+
+void Server::ask_world(Peer& peer, std::uint32_t request, const HostCommand& command,
+                       const std::string& did) {
+  if (!peer.participant)
+    return answer(peer, request, false,
+                  "this link is for watching; only those with hands may change the world");
+  waits_for_hands_ = false;
+  const ConnectionId connection = peer.id;
+  const std::string name = name_of(peer);
+  world_.command(command, [this, connection, request, name, did](const Result<bool>& done) {
+    const std::string problem = done ? std::string() : done.error().text();
+    mailbox_.post([this, connection, request, name, did, problem] {
+      Peer* asker = find(connection);
+      if (asker) answer(*asker, request, problem.empty(), problem);
+      if (problem.empty()) notice_all(name + " " + did, false, asker);
+    });
+  });
+}
+
+wire::Fault Server::handle(Peer& peer, const wire::WorldRequest& request) {
+  constexpr std::array kDone{"paused the world", "lets the world go on", "set the world back to its start"};
+  constexpr std::array kActions{HostAction::kPause, HostAction::kContinue, HostAction::kReset};
+  const auto i = static_cast<std::size_t>(request.action);
+  ask_world(peer, request.request, {kActions[i]}, kDone[i]);
+  return {};
+}
+
+wire::Fault Server::handle(Peer& peer, const wire::ParameterRequest& request) {
+  char did[120];
+  if (request.parameter == wire::Parameter::kGravityScale) {
+    std::snprintf(did, sizeof did, "set gravity to %.3g times the scene's", request.value);
+    ask_world(peer, request.request, {HostAction::kGravityScale, 0, request.value}, did);
+    return {};
+  }
+  if (request.index >= world_.scene->fluids.size()) {
+    answer(peer, request.request, false,
+           "there is no fluid " + std::to_string(request.index) + "; this scene has " +
+               std::to_string(world_.scene->fluids.size()));
+    return {};
+  }
+  std::snprintf(did, sizeof did, "set the viscosity of '%.40s' to %.4g Pa·s",
+                world_.scene->fluids[request.index].name.c_str(), request.value);
+  ask_world(peer, request.request, {HostAction::kViscosity, request.index, request.value}, did);
+  return {};
+}
+
+wire::Fault Server::handle(Peer& peer, const wire::Bye& bye) {
+  (void)bye;
+  lose(peer, Parting::kLeft);
+  return {};
+}
+
+wire::WorldInfo Server::world_info() const {
+  const HostState& state = world_.state;
+  wire::WorldInfo info{state.paused, state.run, state.gravity_scale, state.viscosities};
+  if (info.viscosities.size() > wire::kMaxFluids) info.viscosities.resize(wire::kMaxFluids);
+  return info;
+}
+
+void Server::world_changed(const HostCommand& change, const HostState& state) {
+  world_.state = state;
+  if (change.action == HostAction::kReset) hands_.stand_all(now());
+  send_all(world_info());
+}
+
+}  // namespace slosh

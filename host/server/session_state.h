@@ -1,0 +1,28 @@
+// What a session must keep over a restart of the host: its key, its links, who sat where.
+#pragma once
+
+#include <vector>
+
+#include "host/server/links.h"
+#include "host/server/roster.h"
+#include "net/wire/fields.h"
+
+namespace slosh {
+
+struct SessionState {
+  wire::Bytes private_key;    ///< Identity::private_key(): keep what holds it to its owner (mode 0600)
+  std::uint64_t session = 0;  ///< Welcome::session
+  std::uint16_t port = 0;     ///< where the host listened, so that the links stay right; 0 = not known
+  std::vector<LinkRecord> links;
+  std::vector<SeatRecord> seats;
+};
+template <class V>
+void visit(V& v, SessionState& m) {
+  v.bytes("private_key", m.private_key, 0, 1024);
+  v.bits64("session", m.session);
+  v.natural("port", m.port, 0, 65535);
+  v.list("links", m.links, kMaxLinks, [](auto& each, LinkRecord& link) { visit(each, link); });
+  v.list("seats", m.seats, wire::kMaxPeers, [](auto& each, SeatRecord& seat) { visit(each, seat); });
+}
+
+}  // namespace slosh
