@@ -102,9 +102,10 @@ void Describer::add_vector(std::string_view name, int size, double limit) {
       name, all, all);
 }
 
-void Describer::add_unit(std::string_view name, const char* coding, int size) {
-  add({"", coding, "", "of length 1 within 1 %", "is not a finite number; is not of unit length"}, name,
-      static_cast<std::uint64_t>(size), static_cast<std::uint64_t>(size));
+void Describer::add_unit(std::string_view name, const char* coding, int size, const char* tolerance) {
+  add({"", coding, "", std::string("of length 1 within ") + tolerance,
+       "is not a finite number; is not of unit length"},
+      name, static_cast<std::uint64_t>(size), static_cast<std::uint64_t>(size));
 }
 
 void Describer::text(std::string_view name, std::string&, std::size_t most) {

@@ -61,9 +61,11 @@ class Describer {
     add_vector(name, 4, limit);
   }
   void vec3_exact(std::string_view name, glm::dvec3&, double limit) { add_vector(name, 8, limit); }
-  void direction(std::string_view name, glm::vec3&) { add_unit(name, "real32 × 3", 12); }
-  void rotation(std::string_view name, glm::dquat&) { add_unit(name, "real32 × 4: w, x, y, z", 16); }
-  void rotation_exact(std::string_view name, glm::dquat&) { add_unit(name, "real64 × 4: w, x, y, z", 32); }
+  void direction(std::string_view name, glm::vec3&) { add_unit(name, "real32 × 3", 12, "1 %"); }
+  void rotation(std::string_view name, glm::dquat&) { add_unit(name, "real32 × 4: w, x, y, z", 16, "1 %"); }
+  void rotation_exact(std::string_view name, glm::dquat&) {
+    add_unit(name, "real64 × 4: w, x, y, z", 32, "10⁻⁶");
+  }
   void text(std::string_view name, std::string&, std::size_t most);
   void bytes(std::string_view name, Bytes&, std::size_t least, std::size_t most);
   template <std::size_t N>
@@ -99,7 +101,7 @@ class Describer {
   void add_choice(std::string_view name, std::uint64_t count, const char* const* names);
   void add_real(std::string_view name, int size, double least, double most);
   void add_vector(std::string_view name, int size, double limit);
-  void add_unit(std::string_view name, const char* coding, int size);
+  void add_unit(std::string_view name, const char* coding, int size, const char* tolerance);
   void add_array(std::string_view name, std::size_t size);
   void add_list(std::string_view name, std::size_t most);
   void add_list_as_long(std::string_view name, std::string_view of);

@@ -21,8 +21,9 @@
 //   real64, real32(name, value, least, most)     8 or 4 bytes, finite
 //   vec3, vec3_exact(name, value, limit)         three real32 or real64, each within ±limit
 //   direction(name, vec3)                        three real32, of unit length within 1 %
-//   rotation, rotation_exact(name, quat)         w, x, y, z as real32 or real64, of unit length within 1 %;
-//                                                rotation is read back at unit length, rotation_exact as is
+//   rotation(name, quat)                         w, x, y, z as real32, of unit length within 1 %, and brought
+//                                                to unit length when read
+//   rotation_exact(name, quat)                   w, x, y, z as real64, of unit length within 1e-6, read as is
 //   text(name, string, most)                     varint count of bytes, text.h
 //   bytes(name, bytes, least, most)              varint count of bytes, any
 //   array(name, array)                           that many bytes, any

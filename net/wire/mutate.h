@@ -210,8 +210,10 @@ class Mutator {
       if (here(name, "infinite")) parts[i] = std::numeric_limits<T>::infinity();
     }
     if (here(name, "of no length")) scaled(0);
-    if (here(name, "too short")) scaled(static_cast<T>(0.98));
-    if (here(name, "too long")) scaled(static_cast<T>(1.02));
+    // A real64 is a rotation that is read as it is.
+    constexpr double kOff = sizeof(T) == 8 ? 3.0 * kExactUnitTolerance : 2.0 * kUnitTolerance;
+    if (here(name, "too short")) scaled(static_cast<T>(1.0 - kOff));
+    if (here(name, "too long")) scaled(static_cast<T>(1.0 + kOff));
     for (const T part : parts) fixed(part);
   }
   void long_form(std::uint64_t value) {

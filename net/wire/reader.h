@@ -105,13 +105,13 @@ class Reader {
     std::array<float, 4> raw{};
     if (!parts(name, raw, 1.0 + kUnitTolerance)) return;
     const glm::dquat read(raw[0], raw[1], raw[2], raw[3]);
-    if (is_unit(name, read)) q = read / glm::length(read);
+    if (is_unit(name, read, kUnitTolerance)) q = read / glm::length(read);
   }
   void rotation_exact(std::string_view name, glm::dquat& q) {
     std::array<double, 4> raw{};
     if (!parts(name, raw, 1.0 + kUnitTolerance)) return;
     const glm::dquat read(raw[0], raw[1], raw[2], raw[3]);
-    if (is_unit(name, read)) q = read;
+    if (is_unit(name, read, kExactUnitTolerance)) q = read;
   }
   void text(std::string_view name, std::string& value, std::size_t most);
   void bytes(std::string_view name, Bytes& value, std::size_t least, std::size_t most);
@@ -178,8 +178,8 @@ class Reader {
     if (raw >= least && raw <= most) return true;  // false for a NaN
     return out_of_range(name, raw, least, most), false;
   }
-  bool is_unit(std::string_view name, const glm::dquat& q) {
-    if (std::abs(glm::length(q) - 1.0) <= kUnitTolerance) return true;
+  bool is_unit(std::string_view name, const glm::dquat& q, double tolerance) {
+    if (std::abs(glm::length(q) - 1.0) <= tolerance) return true;
     return fail(name, "is not of unit length"), false;
   }
   // The words, away from the hot path.

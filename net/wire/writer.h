@@ -20,6 +20,8 @@ constexpr std::int64_t kMaxStamp = (std::int64_t{1} << 61) - 1;
 
 /// How far a rotation's or a direction's length may be from 1.
 constexpr double kUnitTolerance = 0.01;
+/// The same for one that is used as it came.
+constexpr double kExactUnitTolerance = 1e-6;
 
 /// Appends a message's bytes. What it writes, a Reader takes: a value outside its field's range is brought to
 /// the nearest allowed one (a choice to the first, a list cut), and the first such value is kept in fault().
@@ -90,11 +92,12 @@ class Writer {
     for (int i = 0; i < 3; ++i) fixed(written[i]);
   }
   void rotation(std::string_view name, glm::dquat& q) {
-    const glm::dquat written = unit(name, q);
+    // Less than a Reader allows: single precision changes the length.
+    const glm::dquat written = unit(name, q, 0.5 * kUnitTolerance);
     for (const double part : {written.w, written.x, written.y, written.z}) fixed(static_cast<float>(part));
   }
   void rotation_exact(std::string_view name, glm::dquat& q) {
-    const glm::dquat written = unit(name, q);
+    const glm::dquat written = unit(name, q, kExactUnitTolerance);
     for (const double part : {written.w, written.x, written.y, written.z}) fixed(part);
   }
   void text(std::string_view, std::string& value, std::size_t most) {
@@ -155,9 +158,9 @@ class Writer {
     if (rounded < least) return std::nextafter(rounded, std::numeric_limits<float>::infinity());
     return rounded;
   }
-  glm::dquat unit(std::string_view name, const glm::dquat& q) {
+  glm::dquat unit(std::string_view name, const glm::dquat& q, double tolerance) {
     const double length = glm::length(q);
-    if (std::abs(length - 1.0) <= 0.5 * kUnitTolerance) return q;
+    if (std::abs(length - 1.0) <= tolerance) return q;
     note(name, "is not of unit length");
     return length > 1e-9 && length < 1e9 ? q / length : glm::dquat(1.0, 0.0, 0.0, 0.0);
   }

@@ -19,7 +19,7 @@ JoinLink example(std::uint32_t seed = 1) {
 
 std::string text_of(const JoinLink& link) {
   const Result<std::string> text = format_link(link);
-  return text ? text.value() : "(" + text.error().text() + ")";
+  return text ? text.value() : text.error().text();
 }
 
 void expect_same(const Result<JoinLink>& parsed, const JoinLink& link) {
