@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "host/host.h"
+#include "host/keep/rebuild.h"
 #include "net/clock.h"
 
 namespace slosh {
@@ -80,13 +81,8 @@ Result<bool> Host::carry_out(const HostCommand& command) {
 }
 
 Result<bool> Host::reset() {
-  const HostState before = state();
-  const Result<bool> restored = world_.restore(start_state_);
+  const Result<bool> restored = keep::reset_world(world_, fluids_, start_state_);
   if (!restored) return restored;
-  for (std::size_t i = 0; i < before.viscosities.size(); ++i) {
-    if (before.viscosities[i] != world_.viscosity(i)) (void)world_.set_viscosity(i, before.viscosities[i]);
-  }
-  (void)world_.set_gravity_scale(before.gravity_scale);
   run_ += 1;
   for (double& until : status_until_) until = 0.0;
   world_.fill(latest_);

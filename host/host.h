@@ -92,6 +92,10 @@ class Host {
   /// Only when not running.
   const HostReport& report() const { return report_; }
   const World& world() const { return world_; }
+  /// World::save of what a reset goes back to.
+  const std::vector<std::uint8_t>& start_state() const { return start_state_; }
+  /// Only when not running; while it runs, taps are told.
+  HostState state() const;
 
  private:
   struct Order {
@@ -105,7 +109,6 @@ class Host {
   void stand_still();
   Result<bool> carry_out(const HostCommand& command);
   Result<bool> reset();
-  HostState state() const;
   void show_state();
   void publish_bodies(double rate, std::int64_t stamp_ns);
   void publish_picture();

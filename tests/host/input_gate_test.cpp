@@ -27,6 +27,12 @@ PoseMessage message(std::uint32_t device, double x = 0.0, std::int64_t stamp_ns 
   return m;
 }
 
+BodySnapshot snapshot_with_grips(std::size_t count) {
+  BodySnapshot snapshot;
+  snapshot.grips.resize(count);
+  return snapshot;
+}
+
 TEST(InputGate, RefusesWhatIsNoPose) {
   InputGate gate(scene_with_grips(1));
   PoseMessage m = message(0);
@@ -145,6 +151,109 @@ TEST(InputGate, ABodyThatAlreadyHangsInTheHandIsNotLetDrop) {
   channel.pose(0).back() = message(0);
   channel.pose(0).publish();
   EXPECT_EQ(gate.take(channel, now)[0].scale, 1.0);
+}
+
+// A hand whose contact was lost lets go gently: where it was, at rest, ever weaker.
+TEST(InputGate, ALostHandFadesWhereItWasLast) {
+  const Scene scene = scene_with_grips(1);
+  Channel channel(1, BodyMessage{}, 1000);
+  InputGate gate(scene);
+  BodySnapshot now = snapshot_with_grips(1);
+  now.time = 1.0;
+  PoseMessage held = message(0, 0.2);
+  held.engaged = true;
+  held.time = 1.0;
+  held.twist.linear.x = 0.5;
+  ASSERT_TRUE(gate.accept(held, 0));
+  now.time = 2.0;  // the ramp is over
+  EXPECT_TRUE(gate.take(channel, now, 0)[0].engaged);
+  now.time = 3.0;
+  const HandleInput last = gate.take(channel, now, 0)[0];
+  ASSERT_EQ(last.scale, 1.0);
+
+  PoseMessage lost = message(0, 0.9);
+  lost.lost = true;
+  lost.engaged = false;
+  ASSERT_TRUE(gate.accept(lost, 0));
+  double before = 1.01;
+  for (double after = 0.0; after < 0.395; after += 0.01) {
+    now.time = 3.0 + after;
+    const HandleInput input = gate.take(channel, now, 0)[0];
+    ASSERT_TRUE(input.engaged) << after;
+    EXPECT_LT(input.scale, before);
+    EXPECT_NEAR(input.scale, 1.0 - after / kLostFade, 1e-9);
+    EXPECT_EQ(input.pose.position, last.pose.position);
+    EXPECT_EQ(input.twist.linear, glm::dvec3(0.0));
+    before = input.scale;
+    ASSERT_TRUE(gate.accept(lost, 0)) << "said again, it does not start anew";
+  }
+  now.time = 3.41;
+  EXPECT_FALSE(gate.take(channel, now, 0)[0].engaged);
+}
+
+TEST(InputGate, AHandThatLetsGoByItselfIsGoneAtOnce) {
+  const Scene scene = scene_with_grips(1);
+  Channel channel(1, BodyMessage{}, 1000);
+  InputGate gate(scene);
+  PoseMessage m = message(0);
+  m.engaged = true;
+  ASSERT_TRUE(gate.accept(m, 0));
+  EXPECT_TRUE(gate.take(channel, snapshot_with_grips(1), 0)[0].engaged);
+  m.engaged = false;
+  ASSERT_TRUE(gate.accept(m, 0));
+  EXPECT_FALSE(gate.take(channel, snapshot_with_grips(1), 0)[0].engaged);
+}
+
+TEST(InputGate, AHandThatFallsSilentStandsStill) {
+  const Scene scene = scene_with_grips(1);
+  Channel channel(1, BodyMessage{}, 1000);
+  InputGate gate(scene);
+  BodySnapshot now = snapshot_with_grips(1);
+  PoseMessage m = message(0, 0.1);
+  m.engaged = true;
+  m.twist.linear.x = 1.0;
+  ASSERT_TRUE(gate.accept(m, 1'000'000'000));
+  now.time = 0.005;
+  HandleInput input = gate.take(channel, now, 1'049'000'000)[0];
+  EXPECT_EQ(input.twist.linear.x, 1.0);
+  EXPECT_NEAR(input.pose.position.x, 0.105, 1e-12);
+  input = gate.take(channel, now, 1'051'000'000)[0];
+  EXPECT_EQ(input.twist.linear.x, 0.0);
+  for (int i = 1; i < 4; ++i) {
+    now.time = 0.1 * i;
+    input = gate.take(channel, now, 1'060'000'000)[0];
+    EXPECT_EQ(input.twist.linear.x, 0.0);
+    EXPECT_NEAR(input.pose.position.x, 0.105, 1e-12);
+    EXPECT_TRUE(input.engaged);
+  }
+}
+
+TEST(InputGate, AfterAResetHandsHoldAtTheStartUntilTheyReportAnew) {
+  const Scene scene = scene_with_grips(1);
+  Channel channel(1, BodyMessage{}, 1000);
+  InputGate gate(scene);
+  BodySnapshot now = snapshot_with_grips(1);
+  PoseMessage m = message(0, 0.8);
+  m.engaged = true;
+  m.time = now.time = 5.0;
+  ASSERT_TRUE(gate.accept(m, 0));
+  gate.take(channel, now, 0);
+  BodySnapshot start = snapshot_with_grips(1);
+  start.grips[0].handle.position = {0.01, 0.0, 0.0};
+  start.grips[0].on_hand.force = {0.0, -10.0, 0.0};
+  gate.reset(start, 0);
+  m.time = 5.01;
+  EXPECT_FALSE(gate.accept(m, 1'000'000)) << "still of the run before";
+  EXPECT_EQ(gate.rejected(), 0u) << "which is nobody's fault";
+  HandleInput input = gate.take(channel, start, 1'000'000)[0];
+  EXPECT_TRUE(input.engaged);
+  EXPECT_EQ(input.pose.position.x, 0.01);
+  m.time = 0.002;
+  m.pose.position.x = 0.8;
+  EXPECT_TRUE(gate.accept(m, 2'000'000)) << "wherever the hand is";
+  start.time = 0.002;
+  input = gate.take(channel, start, 2'000'000)[0];
+  EXPECT_EQ(input.scale, 0.0) << "far from the body: it is let in anew";
 }
 
 }  // namespace
