@@ -1,0 +1,54 @@
+// Where console lines come in: the terminal, and a Unix socket that only its owner may open.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/math/result.h"
+
+namespace slosh {
+
+/// $XDG_RUNTIME_DIR/slosh, else /tmp/slosh-UID: where running hosts have their sockets.
+std::filesystem::path console_folder();
+std::filesystem::path console_socket(std::uint16_t port);
+/// Ports of the hosts that have a socket there (a host that crashed leaves one).
+std::vector<std::uint16_t> console_ports();
+
+/// Sends one line to the host of that port and returns its answer. Errors: no such host, no answer.
+Result<std::string> ask_console(std::uint16_t port, const std::string& line);
+
+/// The host's end. One thread.
+class ConsoleDoor {
+ public:
+  using Answer = std::function<std::string(const std::string& line)>;
+
+  /// Errors: the folder is somebody else's, the socket cannot be made.
+  static Result<std::unique_ptr<ConsoleDoor>> open(std::uint16_t port);
+  ~ConsoleDoor();
+  ConsoleDoor(const ConsoleDoor&) = delete;
+  ConsoleDoor& operator=(const ConsoleDoor&) = delete;
+
+  /// Waits for lines at most so long and answers them: those of the socket there, those of stdin on stdout.
+  void serve(int wait_ms, bool with_stdin, const Answer& answer);
+
+ private:
+  ConsoleDoor() = default;
+  struct Caller {
+    int fd = -1;
+    std::string line;
+  };
+  bool hear(Caller& caller, const Answer& answer);
+  void hear_stdin(const Answer& answer);
+
+  std::filesystem::path path_;
+  int listening_ = -1;
+  std::vector<Caller> callers_;
+  std::string typed_;
+  bool stdin_over_ = false;
+};
+
+}  // namespace slosh

@@ -1,0 +1,85 @@
+// The verb `host`: its options and what it teaches.
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "host/server/console.h"
+#include "net/wire/messages.h"
+#include "peer/verbs/host_run.h"
+#include "peer/verbs/verbs.h"
+
+namespace slosh {
+namespace {
+
+std::string footer() {
+  return "Two links are printed: who joins by the first may take hold, who comes by the second may watch.\n"
+         "A link is all that a newcomer needs:\n"
+         "  slosh join LINK        slosh watch LINK\n"
+         "It carries this machine's addresses, the key by which the host is known, and a secret. Give it "
+         "only\n"
+         "to those you mean. Across the internet the port (UDP) must reach this machine.\n"
+         "\n"
+         "Until a grip is taken the host itself holds it where the scene has it, and the world stands still\n"
+         "until the first hand takes hold (--wait 2: the second; --wait 0: it starts at once).\n"
+         "\n"
+         "While it runs, type (or use `slosh links` from elsewhere):\n" +
+         std::string(console_help()) +
+         "\n\n"
+         "The world is saved to a file twice a second. Should the host die, --resume FILE carries on from\n"
+         "there, and peers come back by themselves.\n"
+         "\n"
+         "Examples:\n"
+         "  slosh host bucket\n"
+         "  slosh host bucket --for Ana --for Ben --wait 2 --expires 2h\n"
+         "  slosh host pour --listen 192.168.1.20:5000 --record pour.rec\n"
+         "  slosh host --resume ~/.local/state/slosh/bucket.checkpoint";
+}
+
+}  // namespace
+
+void add_host(CLI::App& app, VerbRun& chosen) {
+  CLI::App* verb = app.add_subcommand("host", "Let others in: print links to join by and to watch by");
+  auto o = std::make_shared<HostVerbOptions>();
+  verb->add_option("SCENE", o->scene, "A shipped scene's name, or a .gltf or .glb file")
+      ->capture_default_str();
+  verb->add_option("--listen", o->listen, "ADDR:PORT, e.g. 0.0.0.0:4433 or [::1]:0 ([::]:4433: everywhere)");
+  verb->add_option("--for", o->names, "A link of their own for these people; it works for one machine each")
+      ->check(CLI::Validator(
+          [](std::string& name) {
+            return name.empty() || name.size() > wire::kMaxName ? std::string("a name has 1 to 32 bytes")
+                                                                : "";
+          },
+          "NAME"));
+  verb->add_option("--expires", o->expires, "When the links end, e.g. 90m or 2h (never); who is in stays in")
+      ->check(CLI::Validator(
+          [](std::string& text) {
+            const Result<std::int64_t> time = parse_duration(text);
+            return time ? std::string() : time.error().text();
+          },
+          "TIME"));
+  verb->add_option("--links", o->links_file, "File for the links, one a line: hold LINK, watch LINK");
+  verb->add_option("--max-watchers", o->watchers, "People who may watch at a time")
+      ->check(CLI::Range(0, 900))
+      ->capture_default_str();
+  verb->add_option("--wait", o->wait, "Grips that must be held before the world starts")
+      ->check(CLI::Range(0, 64))
+      ->capture_default_str();
+  verb->add_option("--seconds", o->seconds, "Simulated seconds (until it is ended)")
+      ->check(CLI::Range(0.01, 1e6));
+  verb->add_option("--backend", o->backend, "What the simulation runs on")
+      ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
+      ->capture_default_str();
+  verb->add_option("--spacing", o->spacing, "Metres between particles, or auto: the finest in real time");
+  verb->add_option("--particles", o->particles, "Fluid particles to aim at, in place of a spacing")
+      ->check(CLI::Range(1, 100000000))
+      ->excludes("--spacing");
+  verb->add_option("--threads", o->threads, "Cores for the simulation (all but one)")
+      ->check(CLI::Range(1, 1024));
+  verb->add_option("--record", o->record, "File to record the run in; slosh replay plays it again");
+  verb->add_option("--checkpoint", o->checkpoint,
+                   "File to save the world in, or none (~/.local/state/slosh/SCENE.checkpoint)");
+  verb->add_option("--resume", o->resume, "Checkpoint to carry on from, with its links and its people");
+  verb->footer(footer());
+  verb->callback([&chosen, o] { chosen = [o] { return host_world(*o); }; });
+}
+
+}  // namespace slosh

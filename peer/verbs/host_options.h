@@ -1,0 +1,23 @@
+// What `slosh host` was asked for.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "peer/verbs/play_options.h"
+
+namespace slosh {
+
+struct HostVerbOptions : PlayOptions {
+  std::string listen;              ///< ADDR:PORT; empty = every address, port 4433 (or the resumed session's)
+  std::vector<std::string> names;  ///< a personal link each
+  std::string expires;             ///< of all links made at the start; empty = never
+  std::string links_file;
+  std::string record;
+  std::string checkpoint;  ///< file, "none", or empty = chosen
+  std::string resume;
+  std::size_t watchers = 150;
+  int wait = 1;  ///< grips that must be held before the world starts
+};
+
+}  // namespace slosh

@@ -1,0 +1,159 @@
+#include "peer/verbs/host_run.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "net/clock.h"
+#include "peer/output/summary.h"
+#include "peer/verbs/host_links.h"
+#include "peer/verbs/host_session.h"
+#include "peer/verbs/interrupt.h"
+#include "peer/verbs/verbs.h"
+
+namespace slosh {
+namespace {
+
+constexpr int kTurn_ms = 100;
+constexpr std::int64_t kLineEvery = 500'000'000;  // ns
+
+void print_links(const HostSession& session) {
+  for (const LinkRecord& link : session.first_links()) {
+    if (link.revoked) continue;
+    const bool hold = link.role == wire::Role::kParticipant;
+    const std::string whom = link.name.empty() ? std::string("Whoever has this link") : link.name;
+    std::printf("%s may %s (link %s):\n  ./slosh %s %s\n\n", whom.c_str(), hold ? "take hold" : "watch",
+                link.id.c_str(), hold ? "join" : "watch", session.text_of(link).c_str());
+  }
+  std::fflush(stdout);
+}
+
+/// Bytes a second between two looks.
+class RateOf {
+ public:
+  double update(std::uint64_t total, std::int64_t now_ns) {
+    if (last_ns_ != 0 && now_ns > last_ns_ && total >= last_)
+      rate_ = static_cast<double>(total - last_) / to_seconds(now_ns - last_ns_);
+    last_ = total;
+    last_ns_ = now_ns;
+    return rate_;
+  }
+
+ private:
+  std::uint64_t last_ = 0;
+  std::int64_t last_ns_ = 0;
+  double rate_ = 0.0;
+};
+
+std::string live_line(const HostProgress& progress, const ServerFigures& figures, double rate) {
+  char text[120];
+  if (progress.paused)
+    std::snprintf(text, sizeof text, "%.2f s, standing still", progress.time);
+  else
+    std::snprintf(text, sizeof text, "%.2f s, real time × %.2f, step %.2f ms", progress.time, progress.rate,
+                  progress.step_ms);
+  std::string line = text;
+  line += "; " + (figures.who.empty() ? std::string("nobody here yet") : figures.who);
+  if (rate > 0.0) {
+    std::snprintf(text, sizeof text, "; %.0f kB/s out", 1e-3 * rate);
+    line += text;
+  }
+  return line;
+}
+
+void print_summary(const HostSession& session, const HostReport& report, const ServerFigures& figures,
+                   double net_seconds) {
+  const double wall = std::max(report.wall, 1e-9);
+  std::printf("hosted     %.2f s in %.2f s, real time × %.2f, %llu steps of %.2f ms (p99 %.2f)\n",
+              report.simulated, report.wall, report.simulated / wall,
+              static_cast<unsigned long long>(report.steps), 1e3 * report.step_time.percentile(0.5),
+              1e3 * report.step_time.percentile(0.99));
+  std::printf("people     %llu joined, %llu refused\n", static_cast<unsigned long long>(figures.joins),
+              static_cast<unsigned long long>(figures.refused));
+  if (figures.samples_expected > 0) {
+    std::printf("poses      %s of %s came (%.2f %%)\n", grouped(figures.samples_received).c_str(),
+                grouped(figures.samples_expected).c_str(),
+                100.0 * static_cast<double>(figures.samples_received) /
+                    static_cast<double>(figures.samples_expected));
+  }
+  std::printf("pictures   %s sent, %s withheld from links that were full; %.1f s of coding\n",
+              grouped(figures.frames_sent).c_str(), grouped(figures.frames_withheld).c_str(),
+              session.coding_seconds());
+  std::printf("network    %.1f MB sent, %.1f s of processor time\n",
+              1e-6 * static_cast<double>(figures.bytes_sent), net_seconds);
+  if (report.status != 0) std::printf("status     %s\n", status_text(report.status).c_str());
+  if (session.checkpoint()) {
+    const keep::CheckpointReport saved = session.checkpoint()->report();
+    if (saved.problem.empty())
+      std::printf("saved      %s\n           carry on with: ./slosh host --resume %s\n",
+                  session.checkpoint_file().c_str(), session.checkpoint_file().c_str());
+    else
+      std::printf("saved      not: %s\n", saved.problem.c_str());
+  }
+  const keep::RecordingReport& recorded = session.recording();
+  if (recorded.bytes > 0) {
+    std::printf("recorded   %s steps, %.1f MB%s%s\n", grouped(recorded.totals.steps).c_str(),
+                1e-6 * static_cast<double>(recorded.bytes), recorded.problem.empty() ? "" : "; ",
+                recorded.problem.c_str());
+  }
+}
+
+// Until somebody or something ends it; tells why.
+std::string run_session(HostSession& session, Progress& progress) {
+  RateOf rate;
+  std::int64_t next_line_ns = 0;
+  while (session.host().running()) {
+    session.door().serve(kTurn_ms, true, [&](const std::string& line) { return session.net().ask(line); });
+    for (const std::string& line : session.news()) progress.note(line);
+    session.save_session();
+    if (interrupted_by() != 0) return "the host was stopped";
+    if (session.net().quit_asked()) return "the host has ended the session";
+    const std::int64_t now = steady_now_ns();
+    if (now < next_line_ns) continue;
+    next_line_ns = now + kLineEvery;
+    const ServerFigures figures = session.net().figures();
+    progress.update(-1.0,
+                    live_line(session.host().progress(), figures, rate.update(figures.bytes_sent, now)));
+  }
+  return "the world has come to its end";
+}
+
+}  // namespace
+
+int host_world(const HostVerbOptions& options) {
+  catch_interrupts();
+  Progress progress;
+  Result<HostedWorld> hosted = make_hosted_world(options, progress);
+  if (!hosted) {
+    progress.note("");
+    return fail(hosted.error());
+  }
+  Result<std::unique_ptr<HostSession>> created = HostSession::create(hosted.value(), options);
+  if (!created) {
+    progress.note("");
+    return fail(created.error());
+  }
+  HostSession& session = *created.value();
+  progress.note("listening at " + session.address());
+  if (!session.checkpoint_file().empty())
+    progress.note("saved twice a second in " + session.checkpoint_file());
+  print_links(session);
+  if (!options.links_file.empty()) {
+    const Result<bool> written = write_private(
+        options.links_file, links_for_scripts(session.first_links(),
+                                              [&](const LinkRecord& link) { return session.text_of(link); }));
+    if (!written) return fail(written.error());
+  }
+  progress.phase("hosting");
+  session.start();
+  const std::string why = run_session(session, progress);
+  const ServerFigures figures = session.net().figures();
+  const double net_seconds = session.net().cpu_seconds();
+  session.stop(why);
+  progress.note(why);
+  print_summary(session, session.host().report(), figures, net_seconds);
+  return interrupted_by() != 0 ? 128 + interrupted_by() : kExitOk;
+}
+
+}  // namespace slosh

@@ -1,0 +1,229 @@
+#include "peer/verbs/host_session.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+
+#include "host/server/console.h"
+#include "net/link.h"
+#include "net/wire/scene_package.h"
+#include "peer/verbs/host_links.h"
+
+namespace slosh {
+namespace {
+
+constexpr std::size_t kPictureBytes = std::size_t{256} << 20;
+constexpr std::uint16_t kPort = 4433;
+constexpr std::size_t kSpareHands = 4;  // participants beyond one a grip
+
+std::int64_t unix_offset_ns() {
+  const auto unix = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(unix).count() - steady_now_ns();
+}
+
+std::string state_folder() {
+  const char* state = std::getenv("XDG_STATE_HOME");
+  if (state && *state == '/') return std::string(state) + "/slosh";
+  const char* home = std::getenv("HOME");
+  return home && *home == '/' ? std::string(home) + "/.local/state/slosh" : std::string();
+}
+
+}  // namespace
+
+Result<std::unique_ptr<HostSession>> HostSession::create(HostedWorld& hosted,
+                                                         const HostVerbOptions& options) {
+  std::unique_ptr<HostSession> session(new HostSession(hosted, options));
+  HostSession& s = *session;
+  const Scene& scene = hosted.prepared.scene;
+  if (hosted.session) {
+    Result<Identity> kept = Identity::from_private_key(hosted.session->private_key);
+    if (!kept) return kept.error();
+    s.identity_ = std::move(kept.value());
+  }
+  s.channel_ = std::make_unique<Channel>(scene.grips.size(), initial_message(*hosted.world, hosted.state.run),
+                                         kPictureBytes);
+  const Result<bool> network = s.open_network();
+  if (!network) return network.error();
+  s.make_links();
+  const Result<bool> files = s.open_files();
+  if (!files) return files.error();
+
+  HostOptions host;
+  host.picture_rate = kTierPictureRate;
+  host.until = hosted.prepared.seconds;
+  host.shell = true;
+  host.paused = hosted.state.paused;
+  host.run = hosted.state.run;
+  host.start_state = hosted.start;
+  s.host_ = std::make_unique<Host>(std::move(*hosted.world), scene, *s.channel_, host);
+  s.host_->add_tap(*s.server_);
+  if (s.checkpoint_) s.host_->add_tap(*s.checkpoint_);
+  if (s.recording_) s.host_->add_tap(*s.recording_);
+  return session;
+}
+
+Result<bool> HostSession::open_network() {
+  const Prepared& p = hosted_.prepared;
+  ServedWorld world;
+  world.scene = &p.scene;
+  Result<wire::Bytes> package = pack_scene(p.scene, p.sampled.spacing, SceneParts::kSeen);
+  if (!package) return package.error();
+  world.package = std::move(package.value());
+  world.channel = channel_.get();
+  world.desk = &desk_;
+  world.command = [this](const HostCommand& command, HostAnswer answer) {
+    host_->post(command, std::move(answer));
+  };
+  world.state = hosted_.state;
+  world.particles = hosted_.particles;
+  world.spacing = p.sampled.spacing;
+  world.time_step = p.plan.time_step;
+  const std::size_t package_bytes = world.package.size();
+
+  ServerOptions server;
+  server.limits.participants = p.scene.grips.size() + kSpareHands;
+  server.limits.spectators = options_.watchers;
+  server.hands_to_start = hosted_.session ? 0 : static_cast<std::size_t>(options_.wait);
+  server.unix_offset_ns = unix_offset_ns();
+  server.tell = [this](const std::string& line) {
+    const std::lock_guard lock(news_mutex_);
+    news_.push_back(line);
+  };
+  server_ = std::make_unique<Server>(std::move(world), server);
+
+  EndpointOptions link;
+  link.max_connections = server.limits.participants + server.limits.spectators + 32;
+  link.stream_buffer = package_bytes + (2u << 20);
+  // A key frame takes about 1.4 bytes a particle; two of them must find room.
+  link.queue_datagrams[static_cast<std::size_t>(Priority::kSnapshot)] =
+      std::max<std::size_t>(512, hosted_.particles / 300);
+  const std::string kept_port = hosted_.session && hosted_.session->port != 0
+                                    ? std::to_string(hosted_.session->port)
+                                    : std::to_string(kPort);
+  Result<std::unique_ptr<Endpoint>> listening =
+      listen_quic(options_.listen.empty() ? "[::]:" + kept_port : options_.listen, identity_, *server_, link);
+  if (!listening && options_.listen.empty()) {
+    // A machine without IPv6, or a port in use: the second answer tells which.
+    listening = listen_quic("0.0.0.0:" + kept_port, identity_, *server_, link);
+  }
+  if (!listening) {
+    Error error = listening.error();
+    error.mend = "Choose another port with --listen, e.g. --listen '[::]:0' for any that is free";
+    return error;
+  }
+  endpoint_ = std::move(listening.value());
+  address_ = endpoint_->local_address();
+  reachable_ = reachable_addresses(address_);
+  server_->use(*endpoint_);
+  server_->set_identity(identity_.private_key(), port_of(address_));
+  server_->link_text = [this](const LinkRecord& link_record) { return text_of(link_record); };
+  Result<std::unique_ptr<ConsoleDoor>> door = ConsoleDoor::open(port_of(address_));
+  if (!door) return door.error();
+  door_ = std::move(door.value());
+  net_ = std::make_unique<NetLoop>(*server_, *endpoint_);
+  return true;
+}
+
+std::string HostSession::text_of(const LinkRecord& link) const {
+  const Result<std::string> text = format_link({reachable_, identity_.fingerprint(), link.token});
+  return text ? text.value() : text.error().text();
+}
+
+void HostSession::make_links() {
+  if (hosted_.session) {
+    server_->restore(*hosted_.session);
+  } else {
+    const std::int64_t now = steady_now_ns() + unix_offset_ns();
+    std::int64_t lifetime = 0;
+    if (!options_.expires.empty()) {
+      const Result<std::int64_t> parsed = parse_duration(options_.expires);
+      if (parsed) lifetime = parsed.value();
+    }
+    LinkRegistry& links = server_->links();
+    for (const std::string& name : options_.names)
+      links.create(wire::Role::kParticipant, wire::clean_text(name, wire::kMaxName), now, lifetime);
+    links.create(wire::Role::kParticipant, {}, now, lifetime);
+    links.create(wire::Role::kSpectator, {}, now, lifetime);
+  }
+  first_links_ = server_->links().links();
+}
+
+Result<bool> HostSession::open_files() {
+  const Prepared& p = hosted_.prepared;
+  const std::uint16_t port = port_of(address_);
+  const bool any_port = !options_.listen.empty() && port_of(options_.listen) == 0;
+  if (!options_.checkpoint.empty()) {
+    checkpoint_file_ = options_.checkpoint == "none" ? std::string() : options_.checkpoint;
+  } else if (!options_.resume.empty()) {
+    checkpoint_file_ = options_.resume;
+  } else if (!any_port && !state_folder().empty()) {
+    // Two hosts of one scene must not write over each other.
+    const std::string name = p.scene.name + (port == kPort ? "" : "-" + std::to_string(port));
+    std::error_code code;
+    std::filesystem::create_directories(state_folder(), code);
+    checkpoint_file_ = state_folder() + "/" + name + ".checkpoint";
+  }
+  if (!checkpoint_file_.empty()) {
+    keep::CheckpointOptions options;
+    options.file = checkpoint_file_;
+    options.version = SLOSH_VERSION;
+    auto writer = keep::CheckpointWriter::start(p.scene, p.sampled.spacing, hosted_.start, *hosted_.world,
+                                                hosted_.state, options);
+    if (!writer) return writer.error();
+    checkpoint_ = std::move(writer.value());
+  }
+  if (!options_.record.empty()) {
+    keep::RecordingOptions options;
+    options.file = options_.record;
+    options.version = SLOSH_VERSION;
+    options.backend = backend_name(p.backend);
+    auto writer = keep::RecordingWriter::start(p.scene, p.sampled.spacing, hosted_.start, *hosted_.world,
+                                               hosted_.state, options);
+    if (!writer) return writer.error();
+    recording_ = std::move(writer.value());
+  }
+  return true;
+}
+
+HostSession::~HostSession() {
+  stop("the host ends");
+}
+
+void HostSession::start() {
+  pictures_ = std::make_unique<PictureThread>(channel_->pictures(), desk_, hosted_.prepared.sampled.spacing,
+                                              hosted_.state.run, [this] { server_->mailbox().wake(); });
+  net_->start();
+  host_->start();
+}
+
+void HostSession::stop(const std::string& why) {
+  if (stopped_) return;
+  stopped_ = true;
+  if (net_) net_->stop(why);
+  if (host_) {
+    host_->request_stop();
+    host_->wait();
+  }
+  if (channel_) channel_->pictures().close();  // also when the host never started
+  if (pictures_) coding_seconds_ = pictures_->seconds();
+  pictures_.reset();
+  save_session();
+  if (checkpoint_) checkpoint_->flush();
+  if (recording_) recording_report_ = recording_->finish();
+}
+
+std::vector<std::string> HostSession::news() {
+  const std::lock_guard lock(news_mutex_);
+  return std::exchange(news_, {});
+}
+
+void HostSession::save_session() {
+  if (!checkpoint_) return;
+  wire::Bytes blob = server_->session_blob();
+  if (blob.empty() || blob == saved_session_) return;
+  saved_session_ = blob;
+  checkpoint_->set_session(std::move(blob));
+}
+
+}  // namespace slosh

@@ -1,0 +1,81 @@
+// One session of `slosh host`: the world, the network and the files, joined.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "host/host.h"
+#include "host/keep/checkpoint.h"
+#include "host/keep/recording.h"
+#include "host/server/console_door.h"
+#include "host/server/net_loop.h"
+#include "host/server/pictures.h"
+#include "peer/verbs/host_world.h"
+
+namespace slosh {
+
+/// Made, started and ended by one thread.
+class HostSession {
+ public:
+  /// `hosted` must outlive it; its world is taken. Errors: the address cannot be listened at, a file cannot
+  /// be written, the scene does not fit into a message.
+  static Result<std::unique_ptr<HostSession>> create(HostedWorld& hosted, const HostVerbOptions& options);
+  ~HostSession();
+  HostSession(const HostSession&) = delete;
+  HostSession& operator=(const HostSession&) = delete;
+
+  void start();
+  /// Says goodbye to everybody, ends the world, completes the files.
+  void stop(const std::string& why);
+
+  Host& host() { return *host_; }
+  NetLoop& net() { return *net_; }
+  ConsoleDoor& door() { return *door_; }
+  const std::string& address() const { return address_; }
+  const std::string& checkpoint_file() const { return checkpoint_file_; }
+  const std::vector<LinkRecord>& first_links() const { return first_links_; }
+  std::string text_of(const LinkRecord& link) const;
+  /// What the session has to say since the last call, line by line.
+  std::vector<std::string> news();
+  /// Hands what changed in links and seats to the checkpoint; now and then.
+  void save_session();
+  const keep::CheckpointWriter* checkpoint() const { return checkpoint_.get(); }
+  const keep::RecordingReport& recording() const { return recording_report_; }
+  double coding_seconds() const { return coding_seconds_; }
+
+ private:
+  HostSession(HostedWorld& hosted, const HostVerbOptions& options) : hosted_(hosted), options_(options) {}
+  Result<bool> open_network();
+  Result<bool> open_files();
+  void make_links();
+
+  HostedWorld& hosted_;
+  const HostVerbOptions& options_;
+  Identity identity_ = Identity::generate();
+  std::string address_;
+  std::string checkpoint_file_;
+  std::vector<std::string> reachable_;
+  std::vector<LinkRecord> first_links_;
+  std::mutex news_mutex_;
+  std::vector<std::string> news_;
+  wire::Bytes saved_session_;
+
+  // In the order in which they are needed; ended in the opposite one.
+  std::unique_ptr<Channel> channel_;
+  PictureDesk desk_;
+  std::unique_ptr<Server> server_;
+  std::unique_ptr<Endpoint> endpoint_;
+  std::unique_ptr<keep::CheckpointWriter> checkpoint_;
+  std::unique_ptr<keep::RecordingWriter> recording_;
+  std::unique_ptr<Host> host_;
+  std::unique_ptr<PictureThread> pictures_;
+  std::unique_ptr<NetLoop> net_;
+  std::unique_ptr<ConsoleDoor> door_;
+  keep::RecordingReport recording_report_;
+  double coding_seconds_ = 0.0;
+  bool stopped_ = false;
+};
+
+}  // namespace slosh

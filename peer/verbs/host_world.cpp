@@ -1,0 +1,80 @@
+#include "peer/verbs/host_world.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "host/keep/checkpoint.h"
+#include "host/keep/rebuild.h"
+#include "host/server/hands.h"
+#include "peer/output/summary.h"
+
+namespace slosh {
+namespace {
+
+constexpr double kSettle = 1.0;  // simulated s
+
+Result<HostedWorld> start_anew(const HostVerbOptions& options, Progress& progress) {
+  HostedWorld hosted;
+  Result<Prepared> prepared = prepare(options, false, progress);
+  if (!prepared) return prepared.error();
+  hosted.prepared = std::move(prepared.value());
+  const Prepared& p = hosted.prepared;
+  progress.phase("settling");
+  Result<World> made = make_world(p.scene, p.sampled, p.plan, WorldOptions{p.threads, p.backend});
+  if (!made) return made.error();
+  hosted.world = std::move(made.value());
+  // The host itself holds every grip where it starts until somebody takes it.
+  std::vector<HandleInput> hands;
+  for (std::size_t i = 0; i < p.scene.grips.size(); ++i)
+    hands.push_back({stand_pose(p.scene, i), Twist{}, true, 1.0});
+  hosted.world->settle(kSettle, hands);
+  const Result<bool> saved = hosted.world->save(hosted.start);
+  if (!saved) return saved.error();
+  hosted.state.paused = options.wait > 0 && !p.scene.grips.empty();
+  return hosted;
+}
+
+Result<HostedWorld> carry_on(const HostVerbOptions& options, Progress& progress) {
+  HostedWorld hosted;
+  progress.phase("reading", options.resume);
+  Result<keep::Checkpoint> read = keep::read_checkpoint(options.resume);
+  if (!read) return read.error();
+  keep::Checkpoint& kept = read.value();
+  if (!kept.note.empty()) progress.note("slosh: " + kept.note);
+  SessionState session;
+  const wire::Fault fault = wire::decode(kept.session, session);
+  if (fault) return Error{options.resume, "its session is damaged: " + fault.text(), "Host the scene anew"};
+  hosted.session = std::move(session);
+
+  Prepared& p = hosted.prepared;
+  const Result<Backend> backend = choose_backend(options.backend);
+  if (!backend) return backend.error();
+  p.backend = backend.value();
+  p.machine = this_machine();
+  p.threads = options.threads > 0 ? options.threads : std::max(1, p.machine.cores - 1);
+  p.seconds = options.seconds > 0.0 ? options.seconds : std::numeric_limits<double>::infinity();
+  p.scene = std::move(kept.scene);
+  progress.phase("sampling");
+  Result<keep::RebuiltWorld> rebuilt =
+      keep::rebuild_world(p.scene, kept.spacing, kept.world, WorldOptions{p.threads, p.backend});
+  if (!rebuilt) return rebuilt.error();
+  p.sampled = std::move(rebuilt.value().sampled);
+  p.plan = rebuilt.value().world.plan();
+  hosted.world = std::move(rebuilt.value().world);
+  hosted.state = kept.state;
+  hosted.start = std::move(kept.start);
+  return hosted;
+}
+
+}  // namespace
+
+Result<HostedWorld> make_hosted_world(const HostVerbOptions& options, Progress& progress) {
+  Result<HostedWorld> hosted =
+      options.resume.empty() ? start_anew(options, progress) : carry_on(options, progress);
+  if (!hosted) return hosted;
+  HostedWorld& h = hosted.value();
+  h.particles = h.prepared.sampled.fluid_positions.size();
+  return hosted;
+}
+
+}  // namespace slosh

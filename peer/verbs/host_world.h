@@ -1,0 +1,25 @@
+// The world of `slosh host`: a scene that starts, or a checkpoint that goes on.
+#pragma once
+
+#include <optional>
+
+#include "host/host.h"
+#include "host/server/session_state.h"
+#include "peer/verbs/host_options.h"
+#include "peer/verbs/prepare.h"
+
+namespace slosh {
+
+struct HostedWorld {
+  Prepared prepared;
+  std::optional<World> world;  ///< moved into the host
+  std::size_t particles = 0;
+  HostState state;
+  std::vector<std::uint8_t> start;      ///< World::save of what a reset goes back to
+  std::optional<SessionState> session;  ///< of a checkpoint
+};
+
+/// Loads and settles a scene, or reads a checkpoint. Errors: anything of these.
+Result<HostedWorld> make_hosted_world(const HostVerbOptions& options, Progress& progress);
+
+}  // namespace slosh
