@@ -32,6 +32,7 @@ struct CodecOptions {
 struct Piece {
   std::uint32_t first_block = 0;
   std::uint32_t blocks = 1;
+  std::uint32_t epoch = 0;                                 ///< that the blocks are numbered in
   std::shared_ptr<const std::vector<std::uint8_t>> bytes;  ///< a whole datagram
 };
 

@@ -1,0 +1,181 @@
+#include <algorithm>
+
+#include "net/codec/block_code.h"
+
+namespace slosh::codec {
+
+namespace {
+
+constexpr int kFirstClass = 5;
+constexpr char kOutside[] = "a particle is outside the lattice";
+constexpr char kTooShort[] = "ends too early";
+
+bool inside(std::int64_t coordinate) {
+  return coordinate > -kCoordinateLimit && coordinate < kCoordinateLimit;
+}
+
+}  // namespace
+
+BlockReader::BlockReader(std::span<const std::uint8_t> in) : in_(in) {
+  std::fill(class_before_, class_before_ + 3, kFirstClass);
+}
+
+const char* BlockReader::retired(Block& block, BlockPoints* before) {
+  const int many = static_cast<int>(in_.bits(7)) + 1;
+  if (many > block.count) return "more particles retire than there are";
+  std::uint8_t gone[kBlock];
+  for (int i = 0; i < many; ++i) {
+    gone[i] = static_cast<std::uint8_t>(in_.bits(7));
+    if (gone[i] >= block.count || (i > 0 && gone[i] <= gone[i - 1]))
+      return "retired particles are out of order";
+  }
+  if (before) remove_points(gone, many, block.count, *before);
+  remove_particles(gone, many, block);
+  return nullptr;
+}
+
+const char* BlockReader::temporal(Block& block, BlockPoints* before) {
+  const auto mode = static_cast<BlockMode>(in_.bits(2));
+  if (mode == BlockMode::kRest) return in_.overran() ? kTooShort : nullptr;
+  const bool some_retired =
+      mode == BlockMode::kMovedSomeRetired || (mode == BlockMode::kPacked && in_.bits(1) == 1);
+  if (some_retired) {
+    if (const char* fault = retired(block, before)) return fault;
+  }
+  if (mode == BlockMode::kPacked) return points(block);
+  if (block.count > 0) {
+    if (const char* fault = moved(block, before)) return fault;
+  }
+  return in_.overran() ? kTooShort : nullptr;
+}
+
+const char* BlockReader::moved(Block& block, const BlockPoints* before) {
+  BlockMotion motion;
+  const int n = block.count;
+  if (before) {
+    const int blend = static_cast<int>(in_.bits(2));
+    fit_motion(block.points, *before, n, motion);
+    for (int a = 0; a < 3; ++a) {
+      for (int i = 0; i < n; ++i)
+        motion.smooth[a][i] = blend_motion(motion.smooth[a][i], motion.own[a][i], blend);
+    }
+  } else {
+    std::int32_t drift[3];
+    for (std::int32_t& d : drift) d = static_cast<std::int32_t>(in_.bits(16)) - 32768;
+    uniform_motion(drift, n, motion);
+  }
+  const Models& models = Models::get();
+  for (int a = 0; a < 3; ++a) {
+    const int change = in_.symbol(models.class_change);
+    const int klass =
+        change == 0 || change == 15 ? static_cast<int>(in_.bits(4)) : class_before_[a] + change - 8;
+    if (klass < 0 || klass >= kClasses) return "a block's class is none of the 16";
+    if (klass == 0) continue;
+    class_before_[a] = klass;
+    if (!axis(motion.smooth[a], n, klass, block.points.at[a])) return kOutside;
+  }
+  return nullptr;
+}
+
+bool BlockReader::axis(const std::int32_t* predicted, int count, int klass, std::int32_t* at) {
+  const auto& tables = Models::get().residual[static_cast<std::size_t>(klass)];
+  const int low = Models::low_bits(klass);
+  std::int32_t residual[kBlock];
+  EntropyDecoder in = in_;  // a local one stays in registers
+  for (int i = 0; i < count; ++i) {
+    const int eighth = (predicted[i] >> (kFine - 3)) & 7;
+    const bool mirrored = low == 0 && eighth >= 4;
+    const int fraction = low > 0 ? 0 : mirrored ? 7 - eighth : eighth;
+    const int symbol = in.symbol(tables[static_cast<std::size_t>(fraction)]);
+    std::int32_t r = symbol - 7;
+    if (symbol == 0 || symbol == 15) [[unlikely]] {
+      const int length = static_cast<int>(in.bits(5));
+      const auto beyond = static_cast<std::int32_t>(in.bits(std::min(length, 22)));
+      r = symbol == 0 ? -7 - beyond : 8 + beyond;
+    }
+    if (low > 0) {
+      r = r * (1 << low) + static_cast<std::int32_t>(in.bits(low)) - (1 << (low - 1));
+    } else if (mirrored) {
+      r = 1 - r;
+    }
+    residual[i] = r;
+  }
+  in_ = in;
+  bool good = true;
+  for (int i = 0; i < count; ++i) {
+    at[i] += (predicted[i] >> kFine) + residual[i];
+    good &= inside(at[i]);
+  }
+  return good;
+}
+
+const char* BlockReader::points(Block& block) {
+  int width[3];
+  std::int64_t least[3];
+  for (int a = 0; a < 3; ++a) {
+    least[a] = static_cast<std::int64_t>(in_.bits(kCoordinateBits)) - kCoordinateLimit;
+    width[a] = static_cast<int>(in_.bits(5));
+    if (width[a] > kCoordinateBits) return "a coordinate has too many bits";
+  }
+  for (int i = 0; i < block.count; ++i) {
+    for (int a = 0; a < 3; ++a) {
+      const std::int64_t at = least[a] + static_cast<std::int64_t>(in_.bits(width[a]));
+      if (!inside(at)) return kOutside;
+      block.points.at[a][i] = static_cast<std::int32_t>(at);
+    }
+  }
+  return in_.overran() ? kTooShort : nullptr;
+}
+
+const char* BlockReader::fluids(Block& block) {
+  const auto lowest = in_.bits(8);
+  const int width = static_cast<int>(in_.bits(4));
+  if (width > 8) return "a fluid's index has too many bits";
+  for (int i = 0; i < block.count; ++i) {
+    const std::uint64_t fluid = lowest + in_.bits(width);
+    if (fluid >= kRetired) return "a fluid's index is above 254";
+    block.fluid[i] = static_cast<std::uint8_t>(fluid);
+  }
+  return in_.overran() ? kTooShort : nullptr;
+}
+
+const char* BlockReader::key(Block& block, int size, const std::int32_t origin[3]) {
+  block.count = size;
+  for (int i = 0; i < size; ++i) block.slot[i] = static_cast<std::uint8_t>(i);
+  if (in_.bits(1) == 1) {
+    if (const char* fault = points(block)) return fault;
+    return fluids(block);
+  }
+  constexpr std::uint64_t kMostCode = std::uint64_t{1} << 3 * kCoordinateBits;
+  const int first = static_cast<int>(in_.bits(6));
+  std::uint64_t code = in_.bits(std::min(first, 60));
+  const int typical = static_cast<int>(in_.bits(6));
+  const Table& table = Models::get().code_distance;
+  for (int i = 0; i < size; ++i) {
+    if (i > 0) {
+      const int symbol = in_.symbol(table);
+      const int length = symbol == 0 || symbol == 15 ? static_cast<int>(in_.bits(6)) : typical + symbol - 10;
+      if (length < 0 || length > 3 * kCoordinateBits) return kOutside;
+      if (length > 0) code += std::uint64_t{1} << (length - 1) | in_.bits(length - 1);
+    }
+    if (code >= kMostCode) return kOutside;
+    for (int a = 0; a < 3; ++a) {
+      const std::int64_t at = origin[a] + static_cast<std::int64_t>(gather_bits(code >> a));
+      if (!inside(at)) return kOutside;
+      block.points.at[a][i] = static_cast<std::int32_t>(at);
+    }
+  }
+  return fluids(block);
+}
+
+const char* BlockReader::mend(Block& block, int size) {
+  block.count = 0;
+  const bool whole = in_.bits(1) == 0;
+  for (int slot = 0; slot < size; ++slot) {
+    if (whole || in_.bits(1) == 1) block.slot[block.count++] = static_cast<std::uint8_t>(slot);
+  }
+  if (const char* fault = points(block)) return fault;
+  return fluids(block);
+}
+
+}  // namespace slosh::codec

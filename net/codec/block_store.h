@@ -1,0 +1,55 @@
+// What a peer has of an epoch: of every block the last few frames that came.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "net/codec/block_code.h"
+#include "net/codec/piece.h"
+
+namespace slosh::codec {
+
+constexpr std::uint64_t kKeptFrames = 4;  ///< also how late a piece may come and still be of use
+
+class BlockStore {
+ public:
+  BlockStore(std::uint32_t epoch, std::uint32_t run, const EpochHead& head)
+      : epoch_(epoch), run_(run), head_(head), histories_(block_count(head.particles)) {}
+
+  std::uint32_t epoch() const { return epoch_; }
+  std::uint32_t run() const { return run_; }
+  const EpochHead& head() const { return head_; }
+  std::uint32_t blocks() const { return static_cast<std::uint32_t>(histories_.size()); }
+
+  /// Null: that frame of the block did not come, or is forgotten.
+  const Block* find(std::uint32_t block, std::uint64_t frame) const;
+  /// The newest up to `frame`, else the oldest after it; null when there is none. `found` gets its frame.
+  const Block* nearest(std::uint32_t block, std::uint64_t frame, std::uint64_t& found) const;
+  /// Newest frame that came of the block; false when none did.
+  bool newest(std::uint32_t block, std::uint64_t& frame) const;
+  /// False: it was there, or is too old to be kept.
+  bool put(std::uint32_t block, std::uint64_t frame, const Block& content);
+  /// True when the temporal coding of `frame` can be read.
+  bool can_follow(std::uint32_t block, std::uint64_t frame) const {
+    if (frame <= head_.first_frame || !find(block, frame - 1)) return false;
+    return frame == head_.first_frame + 1 || find(block, frame - 2);
+  }
+
+ private:
+  struct Entry {
+    std::uint64_t frame = 0;
+    std::unique_ptr<Block> block;  // null: nothing came
+  };
+  using History = std::array<Entry, kKeptFrames>;
+
+  std::uint32_t epoch_, run_;
+  EpochHead head_;
+  std::vector<std::unique_ptr<History>> histories_;  // of a block, from its first piece on
+};
+
+/// Points of `from` for the particles of `to` alone, both of one block.
+void match_points(const Block& to, const Block& from, BlockPoints& out);
+
+}  // namespace slosh::codec

@@ -1,0 +1,278 @@
+#include <algorithm>
+#include <cmath>
+
+#include "net/codec/block_code.h"
+#include "net/codec/cell_order.h"
+#include "net/codec/piece.h"
+#include "net/codec/snapshot_codec.h"
+
+namespace slosh {
+
+using namespace codec;
+
+namespace {
+
+constexpr std::size_t kSmallestPiece = 1100;  // a block of any content fits
+constexpr int kKeepCuts = 30;                 // frames
+constexpr double kFirstFill = 0.93;           // of a piece, so that it holds for some frames
+constexpr std::size_t kSlack = 12;            // bytes that the size's estimate may be off
+constexpr std::uint32_t kMendGroup = 4;       // blocks, aligned
+
+struct Payload {
+  std::uint32_t first = 0, blocks = 0;
+  std::vector<std::uint8_t> bytes;
+};
+
+}  // namespace
+
+struct SnapshotEncoder::Impl {
+  explicit Impl(const CodecOptions& o)
+      : options(o), step(2.0 * o.tolerance), max_piece(std::max(o.max_piece, kSmallestPiece)) {}
+
+  CodecOptions options;
+  double step;
+  std::size_t max_piece;
+
+  // The epoch.
+  CellOrder order;
+  std::vector<Block> blocks;              // newest points
+  std::vector<BlockPoints> last, before;  // one and two frames ago, with the particles of those frames
+  std::vector<std::uint8_t> gone;         // retired in this frame: of each block its list …
+  std::vector<std::uint8_t> many;         // … and its length
+  std::uint64_t first_frame = 0;
+  double first_time = 0.0;
+  std::uint32_t particles = 0;
+  std::size_t snapshot_size = 0;
+  bool started = false;
+
+  // The frame.
+  EncodedFrame out;
+  std::uint32_t run = 0;
+  std::uint64_t time_us = 0;
+  BlockWriter writer;
+  std::vector<Payload> payloads;
+  std::size_t payload_count = 0;
+  std::vector<std::uint32_t> cuts;  // blocks at which pieces start
+  int cuts_age = 0;
+  std::vector<std::vector<Piece>> mended;  // by group
+
+  void take_positions(const Snapshot& snapshot);
+  void temporal_pieces();
+  void key_pieces(const Snapshot& snapshot);
+  template <class Code>
+  void cut(std::size_t room, bool keep_cuts, double fill, Code&& code);
+  void hand_out(PieceKind kind);
+  wire::Bytes head(PieceKind kind, std::uint32_t first, std::uint32_t count, std::uint32_t piece,
+                   std::uint32_t of) const;
+  std::size_t room(PieceKind kind) const {
+    return max_piece - head(kind, kMaxBlocks - 1, 127, 127, 127).size();
+  }
+  void mend_group(std::uint32_t first, std::uint32_t end, std::vector<Piece>& to);
+};
+
+wire::Bytes SnapshotEncoder::Impl::head(PieceKind kind, std::uint32_t first, std::uint32_t count,
+                                        std::uint32_t piece, std::uint32_t of) const {
+  PieceHead head;
+  head.stream = options.stream;
+  head.kind = kind;
+  head.run = run;
+  head.epoch = out.epoch;
+  head.frame = out.frame;
+  head.time_us = time_us;
+  head.pieces = of;
+  head.piece = piece;
+  head.first_block = first;
+  head.blocks = count;
+  wire::Bytes bytes{static_cast<std::uint8_t>(wire::DatagramType::kSnapshotPiece)};
+  wire::encode(head, bytes);
+  if (kind == PieceKind::kTemporal) return bytes;
+  EpochHead epoch;
+  epoch.particles = particles;
+  epoch.first_frame = first_frame;
+  epoch.tolerance = options.tolerance;
+  for (int a = 0; a < 3; ++a)
+    epoch.origin[a] = static_cast<std::uint32_t>(order.origin[a] + kCoordinateLimit);
+  wire::encode(epoch, bytes);
+  return bytes;
+}
+
+/// Fills pieces block by block: a piece ends where its room does, and at the kept cuts.
+template <class Code>
+void SnapshotEncoder::Impl::cut(std::size_t room, bool keep_cuts, double fill, Code&& code) {
+  payload_count = 0;
+  const auto count = static_cast<std::uint32_t>(blocks.size());
+  const auto limit = static_cast<std::size_t>(fill * static_cast<double>(room - kSlack));
+  std::size_t next_cut = 0;
+  for (std::uint32_t first = 0; first < count;) {
+    while (keep_cuts && next_cut < cuts.size() && cuts[next_cut] <= first) ++next_cut;
+    std::uint32_t end = keep_cuts && next_cut < cuts.size() ? cuts[next_cut] : count;
+    if (payloads.size() <= payload_count) payloads.emplace_back();
+    Payload& payload = payloads[payload_count++];
+    do {
+      writer.start();
+      std::uint32_t at = first;
+      for (; at < end; ++at) {
+        const BlockWriter::Mark mark = writer.mark();
+        code(at, false);
+        if (writer.size() <= (at == first ? room - kSlack : limit)) continue;
+        writer.back_to(mark);
+        if (at > first) break;
+        code(at, true);  // by itself a block always fits
+      }
+      payload.bytes.clear();
+      writer.finish(payload.bytes);
+      payload.first = first;
+      payload.blocks = at - first;
+      end = at - 1;
+    } while (payload.bytes.size() > room && payload.blocks > 1);
+    first += payload.blocks;
+  }
+}
+
+void SnapshotEncoder::Impl::hand_out(PieceKind kind) {
+  for (std::size_t i = 0; i < payload_count; ++i) {
+    const Payload& payload = payloads[i];
+    auto bytes =
+        std::make_shared<wire::Bytes>(head(kind, payload.first, payload.blocks, static_cast<std::uint32_t>(i),
+                                           static_cast<std::uint32_t>(payload_count)));
+    bytes->insert(bytes->end(), payload.bytes.begin(), payload.bytes.end());
+    out.bytes += bytes->size();
+    out.pieces.push_back({payload.first, payload.blocks, out.epoch, std::move(bytes)});
+  }
+}
+
+/// Moves the epoch's particles on to the snapshot.
+void SnapshotEncoder::Impl::take_positions(const Snapshot& snapshot) {
+  const double per_step = 1.0 / step;
+  std::swap(before, last);
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    Block& block = blocks[b];
+    last[b] = block.points;
+    std::uint8_t* list = gone.data() + b * kBlock;
+    int lost = 0;
+    for (int i = 0; i < block.count; ++i) {
+      const std::uint32_t id = order.ids[b * kBlock + block.slot[i]];
+      std::int32_t point[3];
+      if (!is_drawn(snapshot, id) || !to_lattice(snapshot.positions[id], per_step, point)) {
+        list[lost++] = static_cast<std::uint8_t>(i);
+        continue;
+      }
+      for (int a = 0; a < 3; ++a) block.points.at[a][i] = point[a];
+    }
+    many[b] = static_cast<std::uint8_t>(lost);
+    if (lost > 0) remove_particles(list, lost, block);
+  }
+}
+
+void SnapshotEncoder::Impl::temporal_pieces() {
+  const bool second = out.frame == first_frame + 1;
+  // A peer that lacks a piece lacks what it reaches into: pieces keep to the same blocks for a while.
+  const bool keep = !second && cuts_age > 0 && cuts_age < kKeepCuts;
+  cut(room(PieceKind::kTemporal), keep, second || keep ? 1.0 : kFirstFill, [&](std::uint32_t b, bool packed) {
+    writer.temporal(blocks[b], last[b], second ? nullptr : &before[b], gone.data() + b * kBlock, many[b],
+                    packed);
+  });
+  hand_out(PieceKind::kTemporal);
+  if (!second && !keep) cuts_age = 0;
+  if (!second) ++cuts_age;
+  cuts.clear();
+  for (std::size_t i = 0; i < payload_count; ++i) cuts.push_back(payloads[i].first);
+  // Where a particle has gone, the frame before loses it too: the next frame compares those that are left.
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    if (many[b] > 0) remove_points(gone.data() + b * kBlock, many[b], blocks[b].count + many[b], last[b]);
+  }
+}
+
+void SnapshotEncoder::Impl::key_pieces(const Snapshot& snapshot) {
+  order.sort(snapshot, 1.0 / step, options.shell_only);
+  particles = static_cast<std::uint32_t>(order.ids.size());
+  const std::uint32_t count = block_count(particles);
+  blocks.resize(count);
+  last.resize(count);
+  before.resize(count);
+  gone.resize(std::size_t{count} * kBlock);
+  many.resize(count);
+  for (std::uint32_t b = 0; b < count; ++b) {
+    Block& block = blocks[b];
+    block.count = block_size(particles, b);
+    for (int i = 0; i < block.count; ++i) {
+      const std::size_t from = std::size_t{b} * kBlock + static_cast<std::size_t>(i);
+      block.slot[i] = static_cast<std::uint8_t>(i);
+      const std::uint32_t id = order.ids[from];
+      block.fluid[i] = id < snapshot.fluid_index.size() ? snapshot.fluid_index[id] : std::uint8_t{0};
+      for (int a = 0; a < 3; ++a) block.points.at[a][i] = order.at[a][from];
+    }
+  }
+  first_frame = out.frame;
+  first_time = snapshot.rigid.time;
+  snapshot_size = snapshot.positions.size();
+  started = true;
+  cuts_age = 0;
+  cut(room(PieceKind::kKey), false, 1.0, [&](std::uint32_t b, bool) { writer.key(blocks[b], order.origin); });
+  hand_out(PieceKind::kKey);
+}
+
+void SnapshotEncoder::Impl::mend_group(std::uint32_t first, std::uint32_t end, std::vector<Piece>& to) {
+  const std::size_t space = room(PieceKind::kMend) - kSlack;
+  writer.start();
+  std::uint32_t at = first;
+  for (; at < end; ++at) {
+    const BlockWriter::Mark mark = writer.mark();
+    writer.mend(blocks[at], block_size(particles, at));
+    if (at == first || writer.size() <= space) continue;
+    writer.back_to(mark);
+    break;
+  }
+  auto bytes = std::make_shared<wire::Bytes>(head(PieceKind::kMend, first, at - first, 0, 0));
+  writer.finish(*bytes);
+  to.push_back({first, at - first, out.epoch, std::move(bytes)});
+  if (at < end) mend_group(at, end, to);
+}
+
+SnapshotEncoder::SnapshotEncoder(const CodecOptions& options) : impl_(std::make_unique<Impl>(options)) {}
+SnapshotEncoder::~SnapshotEncoder() = default;
+SnapshotEncoder::SnapshotEncoder(SnapshotEncoder&&) noexcept = default;
+SnapshotEncoder& SnapshotEncoder::operator=(SnapshotEncoder&&) noexcept = default;
+
+const EncodedFrame& SnapshotEncoder::encode(const Snapshot& snapshot, std::uint32_t run, bool new_epoch) {
+  Impl& i = *impl_;
+  const double time = snapshot.rigid.time;
+  const bool other_world = !i.started || run != i.run || snapshot.positions.size() != i.snapshot_size;
+  i.out.pieces.clear();
+  i.out.bytes = 0;
+  if (i.started) ++i.out.frame;
+  i.run = run;
+  i.time_us = static_cast<std::uint64_t>(std::clamp(std::round(time * 1e6), 0.0, 1e13));
+  if (!other_world) {
+    i.take_positions(snapshot);
+    i.temporal_pieces();
+  }
+  i.out.key = other_world || new_epoch || time - i.first_time >= i.options.epoch_seconds - 1e-9 ||
+              time < i.first_time;
+  if (i.out.key) {
+    if (i.started) ++i.out.epoch;
+    i.key_pieces(snapshot);
+  }
+  i.out.blocks = static_cast<std::uint32_t>(i.blocks.size());
+  i.out.particles = i.particles;
+  i.mended.assign((i.blocks.size() + kMendGroup - 1) / kMendGroup, {});
+  return i.out;
+}
+
+void SnapshotEncoder::mend(std::span<const wire::BlockRange> ranges, std::vector<Piece>& out) {
+  Impl& i = *impl_;
+  const auto count = static_cast<std::uint32_t>(i.blocks.size());
+  std::vector<bool> asked(i.mended.size());
+  for (const wire::BlockRange& range : ranges) {
+    const std::uint64_t end = std::min<std::uint64_t>(std::uint64_t{range.first} + range.count, count);
+    for (std::uint64_t b = range.first; b < end; ++b) asked[b / kMendGroup] = true;
+  }
+  for (std::uint32_t g = 0; g < asked.size(); ++g) {
+    if (!asked[g]) continue;
+    std::vector<Piece>& pieces = i.mended[g];
+    if (pieces.empty()) i.mend_group(g * kMendGroup, std::min((g + 1) * kMendGroup, count), pieces);
+    out.insert(out.end(), pieces.begin(), pieces.end());
+  }
+}
+
+}  // namespace slosh
