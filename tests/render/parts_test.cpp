@@ -1,6 +1,7 @@
 // What the renderer does on the CPU: shader text, splats, display table, PNG, arrows, the light's box.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <limits>
 

@@ -1,4 +1,7 @@
 // Files that are missing, broken or cut off: an error, never a crash.
+#include <fstream>
+#include <functional>
+#include <iterator>
 #include <random>
 
 #include "support.h"

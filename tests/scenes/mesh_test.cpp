@@ -1,6 +1,7 @@
 // Mass properties against closed forms; closedness; parts.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
 

@@ -1,5 +1,6 @@
 // Hand animation: LINEAR, STEP, CUBICSPLINE, parents, resampling.
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <glm/gtc/quaternion.hpp>
 

@@ -2,6 +2,7 @@
 #include "scenes/sampling/surface.h"
 
 #include <cmath>
+#include <cstdio>
 #include <random>
 
 #include "scenes/make/shipped.h"

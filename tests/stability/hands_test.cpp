@@ -1,6 +1,7 @@
 // Hands that do what hands should not: stiff, many, opposing, sudden, fast, broken.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
