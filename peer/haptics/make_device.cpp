@@ -14,6 +14,29 @@ Pose grip_start(const Scene& scene, std::size_t grip) {
   return compose(scene.bodies[static_cast<std::size_t>(g.body)].pose, g.pose);
 }
 
+Result<HandDevice> make_device(const Scene& scene, std::size_t grip, const std::string& spec,
+                               const Pose& start, bool has_window) {
+  HandDevice hand;
+  if (spec == "script") {
+    hand.device = std::make_unique<TrackDevice>(PoseTrack(scene.grips[grip].hand_motion, start), spec);
+  } else if (spec == "mouse") {
+    if (!has_window) {
+      return Error{"--device mouse", "there is no window to move the mouse in",
+                   "Run with a display and without --headless, or use script"};
+    }
+    hand.mouse = std::make_shared<MouseTarget>(start);
+    hand.device = std::make_unique<MouseDevice>(hand.mouse, start);
+  } else if (spec.rfind(kReplay, 0) == 0) {
+    const std::string file = spec.substr(std::char_traits<char>::length(kReplay));
+    Result<std::vector<PoseKey>> keys = read_poses(file, static_cast<int>(grip));
+    if (!keys) return keys.error();
+    hand.device = std::make_unique<TrackDevice>(PoseTrack(keys.value(), start), "replay");
+  } else {
+    return Error{"--device", "'" + spec + "' is no device", "Use script, mouse or replay:FILE"};
+  }
+  return hand;
+}
+
 Result<DeviceSet> make_devices(const Scene& scene, const std::vector<std::string>& specs, bool has_window) {
   const std::size_t grips = scene.grips.size();
   if (specs.size() > 1 && specs.size() != grips) {
@@ -25,27 +48,10 @@ Result<DeviceSet> make_devices(const Scene& scene, const std::vector<std::string
   DeviceSet set;
   for (std::size_t i = 0; i < grips; ++i) {
     const std::string spec = specs.empty() ? "script" : specs.size() == 1 ? specs[0] : specs[i];
-    const Pose start = grip_start(scene, i);
-    std::shared_ptr<MouseTarget> target;
-    if (spec == "script") {
-      set.devices.push_back(
-          std::make_unique<TrackDevice>(PoseTrack(scene.grips[i].hand_motion, start), spec));
-    } else if (spec == "mouse") {
-      if (!has_window) {
-        return Error{"--device mouse", "there is no window to move the mouse in",
-                     "Run with a display and without --headless, or use script"};
-      }
-      target = std::make_shared<MouseTarget>(start);
-      set.devices.push_back(std::make_unique<MouseDevice>(target, start));
-    } else if (spec.rfind(kReplay, 0) == 0) {
-      const std::string file = spec.substr(std::char_traits<char>::length(kReplay));
-      Result<std::vector<PoseKey>> keys = read_poses(file, static_cast<int>(i));
-      if (!keys) return keys.error();
-      set.devices.push_back(std::make_unique<TrackDevice>(PoseTrack(keys.value(), start), "replay"));
-    } else {
-      return Error{"--device", "'" + spec + "' is no device", "Use script, mouse or replay:FILE"};
-    }
-    set.mouse_targets.push_back(std::move(target));
+    Result<HandDevice> hand = make_device(scene, i, spec, grip_start(scene, i), has_window);
+    if (!hand) return hand.error();
+    set.devices.push_back(std::move(hand.value().device));
+    set.mouse_targets.push_back(std::move(hand.value().mouse));
   }
   return set;
 }

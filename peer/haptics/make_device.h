@@ -19,6 +19,16 @@ struct DeviceSet {
 /// World pose of a grip at the start of the scene.
 Pose grip_start(const Scene& scene, std::size_t grip);
 
+/// One hand's device; `mouse` where it is one.
+struct HandDevice {
+  std::unique_ptr<Device> device;
+  std::shared_ptr<MouseTarget> mouse;
+};
+/// The device that `spec` asks for, for grip `grip`; a mouse starts at `start`, and so does a script without
+/// a motion. Errors: as make_devices.
+Result<HandDevice> make_device(const Scene& scene, std::size_t grip, const std::string& spec,
+                               const Pose& start, bool has_window);
+
 /// `specs`: none (all `script`), one for all, or one a grip. `has_window` is what a mouse needs. Errors: an
 /// unknown kind, more specs than grips, a mouse without a window, a replay file that cannot be used.
 Result<DeviceSet> make_devices(const Scene& scene, const std::vector<std::string>& specs, bool has_window);

@@ -24,6 +24,60 @@ std::string format(const char* pattern, Numbers... numbers) {
   return text;
 }
 
+Json network_json(const NetworkSummary& n) {
+  const double seconds = n.seconds > 0.0 ? n.seconds : 1.0;
+  return {{"host", n.host},
+          {"name", n.name},
+          {"role", n.participant ? "participant" : "spectator"},
+          {"rtt_ms", 1e3 * n.round_trip},
+          {"send_loss", n.send_loss},
+          {"clock_error_ms", 1e3 * n.clock_error},
+          {"hand_delay_ms", 1e3 * n.hand_delay},
+          {"picture_delay_ms", 1e3 * n.picture_delay},
+          {"age_ms", spread(n.age_ms)},
+          {"bytes_received", n.bytes_received},
+          {"bytes_sent", n.bytes_sent},
+          {"received_bytes_per_s", static_cast<double>(n.bytes_received) / seconds},
+          {"sent_bytes_per_s", static_cast<double>(n.bytes_sent) / seconds},
+          {"poses_sent", n.poses_sent},
+          {"body_states", {{"used", n.states}, {"incomplete", n.states_incomplete}}},
+          {"snapshots", {{"complete", n.snapshots - n.snapshots_partial}, {"partial", n.snapshots_partial}}},
+          {"refused", {{"datagrams", n.datagrams_refused}, {"pieces", n.pieces_refused}}},
+          {"reconnects", n.reconnects},
+          {"live_after_s", n.to_live},
+          {"first_picture_after_s", n.to_first_picture},
+          {"picture_time_s", {{"first", n.first_picture_time}, {"last", n.last_picture_time}}},
+          {"ended", n.ended}};
+}
+
+std::string network_words(const RunSummary& s, const NetworkSummary& n) {
+  std::string text = format("%s, %s at %s: %.1f s of %s fluid particles at %.1f mm in %.1f s%s.\n",
+                            s.scene.c_str(), n.participant ? "a guest" : "looking on", n.host.c_str(),
+                            s.simulated, grouped(s.fluid_particles).c_str(), 1e3 * s.spacing, s.wall,
+                            s.interrupted ? ", interrupted" : "");
+  text += format(
+      "Round trip %.1f ms, %.1f %% of what was sent was lost; hands lived %.1f ms behind the host, "
+      "pictures %.0f ms (p99 %.0f).\n",
+      1e3 * n.round_trip, 100.0 * n.send_loss, 1e3 * n.hand_delay, n.age_ms.p50, n.age_ms.p99);
+  text += format("%s snapshots, %s of them with parts missing; %s kB received, %s kB sent; %s reconnects.\n",
+                 grouped(n.snapshots).c_str(), grouped(n.snapshots_partial).c_str(),
+                 grouped(n.bytes_received / 1000).c_str(), grouped(n.bytes_sent / 1000).c_str(),
+                 grouped(n.reconnects).c_str());
+  if (!n.ended.empty()) text += "Ended: " + n.ended + "\n";
+  return text;
+}
+
+std::string world_words(const RunSummary& s) {
+  std::string text =
+      format("%s: %.1f s of %s fluid and %s body particles at %.1f mm in %.1f s (real time × %.2f)",
+             s.scene.c_str(), s.simulated, grouped(s.fluid_particles).c_str(),
+             grouped(s.boundary_particles).c_str(), 1e3 * s.spacing, s.wall, s.real_time_factor);
+  text += s.interrupted ? ", interrupted.\n" : ".\n";
+  text += format("A step of %.2f ms took %.2f ms (p99 %.2f) on %d thread%s (%s).\n", 1e3 * s.time_step,
+                 s.step_ms.p50, s.step_ms.p99, s.threads, s.threads == 1 ? "" : "s", s.backend.c_str());
+  return text;
+}
+
 }  // namespace
 
 std::vector<std::string> status_words(std::uint32_t status) {
@@ -87,22 +141,21 @@ Json to_json(const RunSummary& s) {
   json["machine"] = {{"cpu", s.machine.cpu}, {"cores", s.machine.cores}, {"system", s.machine.system}};
   json["version"] = s.version;
   json["interrupted"] = s.interrupted;
+  if (!s.verdict.empty()) json["verdict"] = s.verdict;
+  if (!s.recording.empty()) json["recording"] = {{"file", s.recording}, {"problem", s.recording_problem}};
+  if (s.network) json["network"] = network_json(*s.network);
   json["files"] = s.files;
   return json;
 }
 
 std::string in_words(const RunSummary& s) {
-  std::string text =
-      format("%s: %.1f s of %s fluid and %s body particles at %.1f mm in %.1f s (real time × %.2f)",
-             s.scene.c_str(), s.simulated, grouped(s.fluid_particles).c_str(),
-             grouped(s.boundary_particles).c_str(), 1e3 * s.spacing, s.wall, s.real_time_factor);
-  text += s.interrupted ? ", interrupted.\n" : ".\n";
-  text += format("A step of %.2f ms took %.2f ms (p99 %.2f) on %d thread%s (%s).\n", 1e3 * s.time_step,
-                 s.step_ms.p50, s.step_ms.p99, s.threads, s.threads == 1 ? "" : "s", s.backend.c_str());
-  if (!s.devices.empty()) {
+  std::string text = s.network ? network_words(s, *s.network) : world_words(s);
+  if (!s.devices.empty() && s.device_ticks > 0) {
     text += format("The device loop ran every %.0f µs (p99 %.0f, longest %.0f, %s missed, %s).\n",
                    s.device_loop_us.p50, s.device_loop_us.p99, s.device_loop_us.max,
                    grouped(s.device_missed).c_str(), s.device_scheduler.c_str());
+  }
+  if (!s.devices.empty()) {
     for (const DeviceSummary& d : s.devices) {
       text += format("%s (%s) felt up to %.1f N and %.2f N·m.\n", d.grip.c_str(), d.device.c_str(),
                      d.peak_force, d.peak_torque);
@@ -118,6 +171,9 @@ std::string in_words(const RunSummary& s) {
     text += format("%.2f of %.2f kg of fluid left the domain.\n", s.fluid_mass_start - s.fluid_mass_end,
                    s.fluid_mass_start);
   }
+  if (!s.recording.empty()) text += "Recorded to " + s.recording + ".\n";
+  if (!s.recording_problem.empty()) text += "The recording is not whole: " + s.recording_problem + ".\n";
+  if (!s.verdict.empty()) text += "Compared with the recording: " + s.verdict + ".\n";
   const std::string status = status_text(s.status);
   if (!status.empty()) text += "Status: " + status + ".\n";
   if (!s.files.empty()) {

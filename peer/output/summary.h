@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,34 @@ struct DeviceSummary {
   std::string device;        ///< script, mouse, replay
   double peak_force = 0.0;   ///< N, on the hand
   double peak_torque = 0.0;  ///< N·m
+};
+
+/// What the network was like for a peer of somebody else's world.
+struct NetworkSummary {
+  std::string host;  ///< address
+  std::string name;  ///< ours, as the others saw it
+  bool participant = false;
+  double round_trip = 0.0;     ///< s
+  double send_loss = 0.0;      ///< share of our datagrams
+  double clock_error = 0.0;    ///< s, bound
+  double hand_delay = 0.0;     ///< s that the device loop lived behind the host
+  double picture_delay = 0.0;  ///< s that pictures were behind it, at the end
+  Spread age_ms;               ///< of what was shown, behind the host's world
+  std::uint64_t bytes_received = 0;
+  std::uint64_t bytes_sent = 0;
+  double seconds = 0.0;          ///< of wall time that these bytes took
+  std::uint64_t poses_sent = 0;  ///< distinct samples
+  std::uint64_t states = 0;      ///< body states used
+  std::uint64_t states_incomplete = 0;
+  std::uint64_t snapshots = 0;
+  std::uint64_t snapshots_partial = 0;
+  std::uint64_t pieces_refused = 0;
+  std::uint64_t datagrams_refused = 0;
+  std::uint64_t reconnects = 0;
+  double to_live = 0.0;                                      ///< s from the program's start until bodies came
+  double to_first_picture = 0.0;                             ///< s from the program's start; 0 = no picture
+  double first_picture_time = 0.0, last_picture_time = 0.0;  ///< simulated s
+  std::string ended;                                         ///< the host's last words, or ours
 };
 
 /// Plain numbers, filled from the host's and the peer's reports.
@@ -65,8 +94,12 @@ struct RunSummary {
   Machine machine;
   std::string version;
   bool interrupted = false;
+  std::string recording;           ///< file that the run was recorded to; empty = none
+  std::string recording_problem;   ///< why it is not whole; empty = it is
+  std::string verdict;             ///< of a replay: whether it came out as it was recorded; empty = none
   std::vector<std::string> files;  ///< written, summary.json included
   std::string folder;
+  std::optional<NetworkSummary> network;  ///< set when the world was elsewhere
 };
 
 nlohmann::ordered_json to_json(const RunSummary& summary);

@@ -11,7 +11,7 @@ int finish_run(const Stage& stage, Progress& progress, RunSummary& summary) {
   int code = kExitOk;
   summary.interrupted = interrupted_by() != 0;
   if (!stage.folder.empty()) {
-    if (!stage.scene.grips.empty()) {
+    if (!summary.devices.empty()) {
       progress.phase("plotting");
       std::vector<std::string> names;
       for (const Grip& grip : stage.scene.grips) names.push_back(grip.name);

@@ -90,7 +90,6 @@ Result<bool> show_headless(const Stage& stage, LiveRun& run, const ShowOptions& 
     view->wait();
   }
   run.report(summary);
-  if (!stage.folder.empty()) summary.files = {"wrenches.csv", "poses.csv"};
   if (view) {
     fill_view(summary, *view, view_options, run.pictures().dropped());
     if (!view->report().problem.empty()) progress.note("slosh: the film: " + view->report().problem);

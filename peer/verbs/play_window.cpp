@@ -194,7 +194,6 @@ Result<bool> show_in_window(const Stage& stage, const MakeRun& make_run, const S
     summary.frame_ms = {1e3 * frame_time.percentile(0.5), 1e3 * frame_time.percentile(0.99),
                         1e3 * frame_time.max()};
   }
-  if (!stage.folder.empty()) summary.files = {"wrenches.csv", "poses.csv"};
   film.finish(summary, progress);
   return true;
 }

@@ -133,6 +133,7 @@ void Session::report(RunSummary& s) const {
   s.machine = prepared_.machine;
   s.version = SLOSH_VERSION;
   s.folder = prepared_.folder.string();
+  if (!prepared_.folder.empty()) s.files = {"wrenches.csv", "poses.csv"};
 }
 
 }  // namespace slosh

@@ -1,0 +1,238 @@
+#include "peer/remote/picture_maker.h"
+
+#include <pthread.h>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "net/clock.h"
+
+namespace slosh {
+namespace {
+
+constexpr std::size_t kMostInbox = std::size_t{16} << 20;  // bytes of pieces that wait
+constexpr std::int64_t kFeedbackGap_ns = 100'000'000;
+constexpr auto kTurn = std::chrono::milliseconds(10);
+// Frames that a missing piece is waited for. A film is in no hurry.
+constexpr std::uint32_t kWindowPatience = 1;
+constexpr std::uint32_t kFilmPatience = 6;
+constexpr double kWithoutBodies = 0.3;     // s that a film waits for body states once it has particles
+constexpr double kWithoutParticles = 1.0;  // s that it waits for particles once it has body states
+
+}  // namespace
+
+PictureMaker::PictureMaker(const PictureMakerOptions& options, SnapshotQueue& film)
+    : options_(options), film_(film), times_(options.frames_per_second) {
+  shown_.restart();
+  thread_ = std::thread([this] { run(); });
+}
+
+PictureMaker::~PictureMaker() {
+  finish();
+}
+
+void PictureMaker::offer(std::span<const std::uint8_t> datagram) {
+  {
+    const std::lock_guard lock(inbox_mutex_);
+    if (inbox_bytes_ + datagram.size() > kMostInbox) {
+      overrun_ += 1;
+      return;
+    }
+    inbox_bytes_ += datagram.size();
+    inbox_.emplace_back(datagram.begin(), datagram.end());
+  }
+  changed_.notify_one();
+}
+
+void PictureMaker::note_bodies(const BodyMessage& bodies) {
+  const std::lock_guard lock(mutex_);
+  history_.add(bodies.run, bodies.bodies);
+}
+
+void PictureMaker::note_moment(const WorldMoment& moment) {
+  const std::lock_guard lock(mutex_);
+  if (moment.run != moment_.run) shown_.restart();
+  moment_ = moment;
+}
+
+void PictureMaker::note_clock(const ClockSync& clock) {
+  const std::lock_guard lock(mutex_);
+  clock_ = clock;
+}
+
+void PictureMaker::restart() {
+  {
+    const std::lock_guard lock(inbox_mutex_);
+    inbox_.clear();
+    inbox_bytes_ = 0;
+    feedback_.clear();
+    anew_ = true;
+  }
+  const std::lock_guard lock(mutex_);
+  history_.restart();
+  shown_.restart();
+  moment_.known = false;
+}
+
+std::vector<SharedBytes> PictureMaker::take_feedback() {
+  const std::lock_guard lock(inbox_mutex_);
+  return std::exchange(feedback_, {});
+}
+
+void PictureMaker::finish() {
+  {
+    const std::lock_guard lock(inbox_mutex_);
+    finish_ = true;
+  }
+  changed_.notify_one();
+  if (thread_.joinable()) thread_.join();
+}
+
+double PictureMaker::world_time(std::int64_t now_ns) const {
+  return moment_.time_at(clock_.to_host(now_ns));
+}
+
+SnapshotPointer PictureMaker::newest(std::int64_t now_ns) {
+  std::optional<Between> between;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!moment_.known) return nullptr;
+    const double world = world_time(now_ns);
+    const double time = shown_.at(world, now_ns);
+    between = history_.at(time);
+    if (!between || (options_.has_fluid && !between->before)) return nullptr;
+    if (time == last_shown_ && between->after.get() == last_frame_) return nullptr;
+    last_shown_ = time;
+    last_frame_ = between->after.get();
+    history_.forget_before(time);
+    const double newest = options_.has_fluid ? std::min(time, history_.last_frame_time()) : time;
+    report_.age.add(std::max(world - newest, 0.0));
+    report_.pictures += 1;
+    if (report_.first_picture_ns == 0) {
+      report_.first_picture_ns = now_ns;
+      report_.first_picture_time = time;
+    }
+    report_.last_picture_time = time;
+    report_.delay = shown_.delay();
+  }
+  return blend(*between);
+}
+
+PictureReport PictureMaker::report() const {
+  PictureReport report;
+  {
+    const std::lock_guard lock(mutex_);
+    report = report_;
+  }
+  const std::lock_guard lock(inbox_mutex_);
+  report.overrun = overrun_;
+  return report;
+}
+
+double PictureMaker::delay() const {
+  const std::lock_guard lock(mutex_);
+  return report_.delay;
+}
+
+void PictureMaker::run() {
+  pthread_setname_np(pthread_self(), "slosh-pictures");
+  std::vector<std::vector<std::uint8_t>> pieces;
+  for (;;) {
+    bool anew = false;
+    bool finish = false;
+    pieces.clear();
+    {
+      std::unique_lock lock(inbox_mutex_);
+      changed_.wait_for(lock, kTurn, [this] { return !inbox_.empty() || finish_; });
+      pieces.swap(inbox_);
+      inbox_bytes_ = 0;
+      anew = std::exchange(anew_, false);
+      finish = finish_;
+    }
+    take_pieces(pieces, anew, finish);
+    if (options_.film) make_film(finish);
+    if (finish) break;
+    make_feedback();
+  }
+  film_.close();
+}
+
+void PictureMaker::take_pieces(const std::vector<std::vector<std::uint8_t>>& pieces, bool anew,
+                               bool to_the_end) {
+  if (anew) decoder_ = SnapshotDecoder();
+  const std::uint32_t patience = to_the_end ? 0 : options_.film ? kFilmPatience : kWindowPatience;
+  for (const std::vector<std::uint8_t>& piece : pieces) {
+    const wire::Fault fault = decoder_.take(piece);
+    {
+      const std::lock_guard lock(mutex_);
+      report_.bytes += piece.size();
+      if (fault) {
+        report_.refused += 1;
+        report_.last_fault = fault.text();
+      }
+    }
+    while (std::optional<DecodedFrame> frame = decoder_.next(patience)) take_frame(std::move(*frame));
+  }
+  if (to_the_end) {
+    while (std::optional<DecodedFrame> frame = decoder_.next(0)) take_frame(std::move(*frame));
+  }
+}
+
+void PictureMaker::take_frame(DecodedFrame frame) {
+  const std::lock_guard lock(mutex_);
+  report_.frames += 1;
+  if (frame.complete >= 1.0) report_.whole += 1;
+  if (moment_.known && frame.run == moment_.run) {
+    shown_.arrived(frame.time, world_time(steady_now_ns()));
+  }
+  history_.add(std::move(frame));
+}
+
+std::optional<Between> PictureMaker::next_of_film(bool to_the_end) {
+  const std::lock_guard lock(mutex_);
+  const bool particles = history_.has_frames();
+  if (!history_.has_bodies() || (options_.has_fluid && !particles)) return std::nullopt;
+  const double bodies_to = history_.last_body_time();
+  const double particles_to = particles ? history_.last_frame_time() : bodies_to;
+  const double first = particles ? history_.first_frame_time() : history_.first_body_time();
+  if (!times_.started() || film_run_ != history_.run()) times_.start(first);
+  film_run_ = history_.run();
+  times_.follow(particles_to);
+
+  const double time = times_.next();
+  const double reached = std::max(particles_to, bodies_to);
+  const bool both = time <= particles_to + 1e-9 && time <= bodies_to + 1e-9;
+  const bool one_is_late = (time <= particles_to && time + kWithoutBodies < particles_to) ||
+                           (time <= bodies_to && time + kWithoutParticles < bodies_to);
+  if (!both && !one_is_late && !(to_the_end && time <= reached)) return std::nullopt;
+  std::optional<Between> between = history_.at(time);
+  if (!between) return std::nullopt;
+  times_.taken();
+  history_.forget_before(time);
+  const std::int64_t now_ns = steady_now_ns();
+  if (moment_.known) report_.age.add(std::max(world_time(now_ns) - time, 0.0));
+  report_.pictures += 1;
+  if (report_.first_picture_ns == 0) {
+    report_.first_picture_ns = now_ns;
+    report_.first_picture_time = time;
+  }
+  report_.last_picture_time = time;
+  report_.delay = moment_.known ? std::max(world_time(now_ns) - time, 0.0) : 0.0;
+  return between;
+}
+
+void PictureMaker::make_film(bool to_the_end) {
+  while (const std::optional<Between> between = next_of_film(to_the_end)) film_.push(blend(*between));
+}
+
+void PictureMaker::make_feedback() {
+  const std::int64_t now_ns = steady_now_ns();
+  if (now_ns < feedback_due_ns_) return;
+  feedback_due_ns_ = now_ns + kFeedbackGap_ns;
+  auto bytes = std::make_shared<const std::vector<std::uint8_t>>(wire::datagram(decoder_.feedback()));
+  const std::lock_guard lock(inbox_mutex_);
+  if (feedback_.size() < 4) feedback_.push_back(std::move(bytes));
+}
+
+}  // namespace slosh

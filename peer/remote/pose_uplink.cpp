@@ -1,0 +1,70 @@
+#include "peer/remote/pose_uplink.h"
+
+#include <algorithm>
+
+namespace slosh {
+namespace {
+
+wire::PoseSample sample_of(const PoseMessage& message, std::uint32_t grip, std::uint64_t number) {
+  wire::PoseSample sample;
+  sample.grip = grip;
+  sample.number = number;
+  sample.stamp_ns = message.stamp_ns;
+  sample.tick_ack = message.tick_ack;
+  sample.time = message.time;
+  sample.pose = message.pose;
+  sample.twist = message.twist;
+  sample.engaged = message.engaged;
+  return sample;
+}
+
+/// What a host would refuse, and our connection with it, is not sent: a device that is out of the world.
+bool can_be_sent(const wire::PoseSample& s) {
+  const auto within = [](const glm::dvec3& v, double limit) {
+    return std::abs(v.x) <= limit && std::abs(v.y) <= limit && std::abs(v.z) <= limit;
+  };
+  return within(s.pose.position, wire::kMaxPosition) && within(s.twist.linear, wire::kMaxSpeed) &&
+         within(s.twist.angular, wire::kMaxSpeed) && s.time >= -1.0 && s.time <= wire::kMaxTime &&
+         s.tick_ack <= wire::kMaxTick;
+}
+
+}  // namespace
+
+SharedBytes PoseUplink::make(const std::vector<bool>& held) {
+  bool anything_new = false;
+  for (std::size_t i = 0; i < hands_.size(); ++i) {
+    Hand& hand = hands_[i];
+    if (i >= held.size() || !held[i]) {
+      hand.last.clear();
+      continue;
+    }
+    channel_.pose(i).update();
+    const PoseMessage& message = channel_.pose(i).front();
+    if (message.stamp_ns == hand.last_stamp_ns || message.stamp_ns == 0) continue;
+    hand.last_stamp_ns = message.stamp_ns;
+    const wire::PoseSample sample = sample_of(message, static_cast<std::uint32_t>(i), hand.next);
+    if (!can_be_sent(sample)) continue;
+    hand.next += 1;
+    hand.last.push_front(sample);
+    if (hand.last.size() > kPoseSends) hand.last.pop_back();
+    numbered_ += 1;
+    anything_new = true;
+  }
+  if (!anything_new) return nullptr;
+
+  // The newest of every hand first: when they do not all fit, the oldest repeats stay away.
+  wire::Poses poses;
+  std::size_t bytes = 2;  // type and count
+  for (std::size_t age = 0; age < kPoseSends; ++age) {
+    for (const Hand& hand : hands_) {
+      if (age >= hand.last.size() || poses.samples.size() >= wire::kMaxPoseRepeats) continue;
+      const std::size_t size = wire::encoded(hand.last[age]).size();
+      if (bytes + size > wire::kMaxDatagram) continue;
+      bytes += size;
+      poses.samples.push_back(hand.last[age]);
+    }
+  }
+  return std::make_shared<const std::vector<std::uint8_t>>(wire::datagram(poses));
+}
+
+}  // namespace slosh

@@ -1,0 +1,333 @@
+// What a peer and its host say to each other on streams: RemoteLink's second half.
+#include <algorithm>
+#include <charconv>
+
+#include "net/clock.h"
+#include "net/wire/scene_package.h"
+#include "peer/remote/remote_link.h"
+
+namespace slosh {
+namespace {
+
+constexpr double kFirstStateWithin = 1.0;  // s that a world without a moving body is waited for
+constexpr std::size_t kMostNotices = 64;   // that nobody has read
+
+/// What to do about a refusal.
+std::string mend_of(wire::RefusalCode code) {
+  switch (code) {
+    case wire::RefusalCode::kBadToken:
+    case wire::RefusalCode::kRevoked:
+    case wire::RefusalCode::kExpired:
+      return "Ask the host for a new link";
+    case wire::RefusalCode::kFull:
+      return "Try again later, or watch";
+    case wire::RefusalCode::kVersion:
+      return "Use the same version of slosh as the host";
+    case wire::RefusalCode::kReplaced:
+      return "One key is one person: use another --key for a second one";
+    case wire::RefusalCode::kBadMessage:
+    case wire::RefusalCode::kTooMuch:
+      return "Report it: a peer should never do that";
+    case wire::RefusalCode::kEnding:
+    case wire::RefusalCode::kTimedOut:
+      break;
+  }
+  return {};
+}
+
+}  // namespace
+
+void RemoteLink::say_hello() {
+  control_ = endpoint_->open_stream(connection_, true);
+  if (control_ < 0) {
+    endpoint_->close(connection_, 0, "no stream");
+    return;
+  }
+  wire::Hello hello;
+  hello.token = options_.token;
+  hello.name = options_.name;
+  hello.film = options_.pictures.film;
+  say(hello);
+}
+
+wire::Fault RemoteLink::heard(std::uint64_t type, wire::ByteView payload) {
+  switch (static_cast<wire::ControlType>(type)) {
+    case wire::ControlType::kWelcome:
+      return on_welcome(payload);
+    case wire::ControlType::kRefused:
+      return on_refused(payload);
+    case wire::ControlType::kRoster:
+      return on_roster(payload);
+    case wire::ControlType::kAnswer:
+      return on_answer(payload);
+    case wire::ControlType::kWorldInfo:
+      return on_world_info(payload);
+    case wire::ControlType::kNotice:
+      return on_notice(payload);
+    case wire::ControlType::kBye: {
+      wire::Bye bye;
+      const wire::Fault fault = wire::decode(payload, bye);
+      if (!fault) end(std::nullopt, bye.reason);
+      return fault;
+    }
+    default:
+      return {"type", std::to_string(type) + " is no message of a host"};
+  }
+}
+
+wire::Fault RemoteLink::on_welcome(wire::ByteView payload) {
+  wire::Welcome welcome;
+  if (wire::Fault fault = wire::decode(payload, welcome)) return fault;
+  if (welcomed_) return {"welcome", "came twice"};
+  if (scene_came_ && welcome.session != status_.welcome.session) {
+    end(Error{options_.address, "the host has begun another world since contact was lost",
+              "Join again with the same link, or ask for a new one"});
+    return {};
+  }
+  welcomed_ = true;
+  status_.welcome = welcome;
+  publish(now());
+  return {};
+}
+
+wire::Fault RemoteLink::on_refused(wire::ByteView payload) {
+  wire::Refused refused;
+  if (wire::Fault fault = wire::decode(payload, refused)) return fault;
+  if (refused.code == wire::RefusalCode::kTimedOut && status_.state != LinkState::kJoining) {
+    return {};  // contact was bad; what follows is the end of the connection, and we come back
+  }
+  refused_ = true;
+  if (refused.code == wire::RefusalCode::kEnding && status_.live_ns != 0) {
+    end(std::nullopt, refused.text);
+  } else {
+    end(Error{options_.address, "the host says: " + (refused.text.empty() ? std::string("no") : refused.text),
+              mend_of(refused.code)},
+        refused.text);
+  }
+  return {};
+}
+
+wire::Fault RemoteLink::on_roster(wire::ByteView payload) {
+  wire::Roster roster;
+  if (wire::Fault fault = wire::decode(payload, roster)) return fault;
+  status_.peers = std::move(roster.peers);
+  roster_came_ = true;
+  std::fill(status_.held.begin(), status_.held.end(), false);
+  for (const wire::RosterEntry& entry : status_.peers) {
+    if (entry.peer != status_.welcome.peer || !welcomed_) continue;
+    for (const std::uint32_t grip : entry.grips) {
+      if (grip < status_.held.size()) status_.held[grip] = true;
+    }
+  }
+  publish(now());
+  return {};
+}
+
+wire::Fault RemoteLink::on_answer(wire::ByteView payload) {
+  wire::Answer answer;
+  if (wire::Fault fault = wire::decode(payload, answer)) return fault;
+  const auto found = std::find_if(requests_.begin(), requests_.end(),
+                                  [&](const Request& r) { return r.number == answer.request; });
+  if (found == requests_.end()) return {};
+  const Request request = *found;
+  requests_.erase(found);
+  const bool about_grip = request.type == wire::ControlType::kGripRequest;
+  if (answer.granted) {
+    if (about_grip) {
+      notice((request.take ? "you hold grip '" : "you let go of grip '") + grip_name(request.grip) + "'");
+    }
+    return {};
+  }
+  const std::string why = answer.text.empty() ? "the host refused" : answer.text;
+  if (!request.any || !take_a_free_grip(true)) notice(why);
+  return {};
+}
+
+wire::Fault RemoteLink::on_world_info(wire::ByteView payload) {
+  wire::WorldInfo info;
+  if (wire::Fault fault = wire::decode(payload, info)) return fault;
+  status_.world = info;
+  if (inbox_) inbox_->set_paused(info.paused);
+  publish(now());
+  return {};
+}
+
+wire::Fault RemoteLink::on_notice(wire::ByteView payload) {
+  wire::Notice said;
+  if (wire::Fault fault = wire::decode(payload, said)) return fault;
+  notice(said.text);
+  return {};
+}
+
+void RemoteLink::take_scene(std::span<const std::uint8_t> bytes, bool end_of_stream) {
+  if (scene_came_) return;  // the same world again: a peer that came back has it
+  if (scene_bytes_.size() + bytes.size() > wire::kMaxSceneBytes) {
+    return bad_host({"scene", "is larger than allowed"}, "the scene");
+  }
+  scene_bytes_.insert(scene_bytes_.end(), bytes.begin(), bytes.end());
+  if (!end_of_stream) return;
+  Result<UnpackedScene> unpacked = unpack_scene(scene_bytes_);
+  scene_bytes_ = {};
+  if (!unpacked) return bad_host({unpacked.error().where, unpacked.error().what}, "the scene");
+  world_.scene = std::move(unpacked.value().scene);
+  world_.spacing = unpacked.value().spacing;
+  scene_came_ = true;
+}
+
+/// Once the scene and the welcome are there: what the rest of the peer works with.
+void RemoteLink::build_world() {
+  const double time_step = status_.welcome.time_step;
+  inbox_ = std::make_unique<BodyInbox>(world_.scene, time_step);
+  inbox_->set_paused(status_.world.paused);
+  world_.channel =
+      std::make_unique<Channel>(world_.scene.grips.size(), inbox_->state(), options_.picture_bytes);
+  PictureMakerOptions pictures = options_.pictures;
+  pictures.has_fluid = status_.welcome.particles > 0;
+  world_.maker = std::make_unique<PictureMaker>(pictures, world_.channel->pictures());
+  world_.maker->note_clock(clock_);
+  uplink_ = std::make_unique<PoseUplink>(*world_.channel);
+  status_.held.assign(world_.scene.grips.size(), false);
+  for (const wire::RosterEntry& entry : status_.peers) {
+    if (entry.peer != status_.welcome.peer) continue;
+    for (const std::uint32_t grip : entry.grips) {
+      if (grip < status_.held.size()) status_.held[grip] = true;
+    }
+  }
+}
+
+void RemoteLink::go_live_if_ready(std::int64_t now_ns) {
+  if (!welcomed_ || !roster_came_ || !scene_came_) return;
+  if (!inbox_) build_world();
+  if (!grips_asked_) ask_for_grips();
+  const bool waited = to_seconds(now_ns - phase_ns_) > kFirstStateWithin;
+  if (!clock_.known() || (!inbox_->started() && !waited)) return;
+  if (status_.state == LinkState::kReconnecting) {
+    status_.numbers.reconnects += 1;
+    notice("back with the host after " +
+           std::to_string(static_cast<int>(to_seconds(now_ns - status_.lost_ns) + 0.5)) + " s");
+  }
+  phase_ = Phase::kLive;
+  status_.state = LinkState::kLive;
+  if (status_.live_ns == 0) status_.live_ns = now_ns;
+  pose_due_ns_ = now_ns;
+  publish(now_ns);
+}
+
+std::string RemoteLink::grip_name(std::uint32_t grip) const {
+  return grip < world_.scene.grips.size() ? world_.scene.grips[grip].name : std::to_string(grip);
+}
+
+void RemoteLink::ask_for_grips() {
+  grips_asked_ = true;
+  if (!options_.wants_grip || status_.welcome.role != wire::Role::kParticipant) return;
+  if (status_.live_ns != 0) {
+    // Back again: what is not ours any more is asked for once more.
+    for (const std::uint32_t grip : grips_had_) {
+      if (!status_.held[grip]) request_grip(grip, true, false);
+    }
+    return;
+  }
+  if (std::find(status_.held.begin(), status_.held.end(), true) != status_.held.end()) {
+    return;  // a seat that was kept
+  }
+  if (options_.grips.empty()) {
+    if (!world_.scene.grips.empty() && !take_a_free_grip(false)) {
+      notice("no grip is free: you look on until one is");
+    }
+    return;
+  }
+  for (const std::string& wish : options_.grips) {
+    std::uint32_t number = 0;
+    const auto& grips = world_.scene.grips;
+    const auto named =
+        std::find_if(grips.begin(), grips.end(), [&](const Grip& grip) { return grip.name == wish; });
+    const auto [at, code] = std::from_chars(wish.data(), wish.data() + wish.size(), number);
+    const bool is_number = code == std::errc() && at == wish.data() + wish.size() && number < grips.size();
+    if (named != grips.end()) {
+      request_grip(static_cast<std::uint32_t>(named - grips.begin()), true, false);
+    } else if (is_number) {
+      request_grip(number, true, false);
+    } else {
+      std::string names;
+      for (const Grip& grip : grips) names += (names.empty() ? "" : ", ") + grip.name;
+      end(Error{"--grip", "the scene has no grip '" + wish + "'",
+                names.empty() ? "It has none at all" : "It has " + names});
+      return;
+    }
+  }
+}
+
+void RemoteLink::request_grip(std::uint32_t grip, bool take, bool any) {
+  if (requests_.size() > 64) return;  // a host that never answers
+  requests_.push_back({next_request_, wire::ControlType::kGripRequest, grip, take, any});
+  wire::GripRequest request;
+  request.request = next_request_++;
+  request.grip = grip;
+  request.take = take;
+  say(request);
+}
+
+/// Asks for the first grip that nobody holds and that was not refused before.
+bool RemoteLink::take_a_free_grip(bool quietly) {
+  if (!quietly) grips_tried_.clear();
+  for (std::uint32_t grip = 0; grip < world_.scene.grips.size(); ++grip) {
+    const bool tried = std::find(grips_tried_.begin(), grips_tried_.end(), grip) != grips_tried_.end();
+    const bool taken =
+        std::any_of(status_.peers.begin(), status_.peers.end(), [&](const wire::RosterEntry& entry) {
+          return std::find(entry.grips.begin(), entry.grips.end(), grip) != entry.grips.end();
+        });
+    if (tried || taken) continue;
+    grips_tried_.push_back(grip);
+    request_grip(grip, true, true);
+    return true;
+  }
+  return false;
+}
+
+void RemoteLink::obey(const RemoteCommand& command) {
+  if (phase_ != Phase::kLive) {
+    notice("not now: there is no contact with the host");
+    return;
+  }
+  switch (command.kind) {
+    case RemoteCommand::Kind::kGrip:
+      request_grip(command.grip, command.take, false);
+      return;
+    case RemoteCommand::Kind::kNextGrip: {
+      // One key for both: let go of what is held, else take what is free.
+      bool let_go = false;
+      for (std::uint32_t i = 0; i < status_.held.size(); ++i) {
+        if (!status_.held[i]) continue;
+        request_grip(i, false, false);
+        let_go = true;
+      }
+      if (!let_go && !take_a_free_grip(false)) notice("no grip is free");
+      return;
+    }
+    case RemoteCommand::Kind::kWorld: {
+      requests_.push_back({next_request_, wire::ControlType::kWorldRequest, 0, false, false});
+      wire::WorldRequest request;
+      request.request = next_request_++;
+      request.action = command.action;
+      say(request);
+      return;
+    }
+  }
+}
+
+void RemoteLink::bad_host(const wire::Fault& fault, const std::string& what) {
+  refused_ = true;
+  if (endpoint_ && connection_ != 0) endpoint_->close(connection_, 1, "not understood: " + fault.text());
+  end(Error{options_.address, what + " of the host's is not understood (" + fault.text() + ")",
+            "Use the same version of slosh as the host"});
+}
+
+void RemoteLink::notice(const std::string& text) {
+  {
+    const std::lock_guard lock(shared_.mutex);
+    if (shared_.notices.size() < kMostNotices) shared_.notices.push_back(text);
+  }
+  shared_.changed.notify_all();
+}
+
+}  // namespace slosh

@@ -1,0 +1,352 @@
+#include "peer/remote/remote_link.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "net/clock.h"
+
+namespace slosh {
+namespace {
+
+constexpr double kWelcomeWithin = 10.0;  // s from the handshake to a live session
+constexpr double kRetryAnswer = 1.5;     // s that a try to come back waits for an answer
+constexpr double kSilence = 1.0;         // s without a word after which a person is told
+constexpr std::int64_t kPublishGap_ns = 50'000'000;
+constexpr std::int64_t kLongestTurn_ns = 20'000'000;
+constexpr std::int64_t kTrafficWindow_ns = 1'000'000'000;
+
+EndpointOptions endpoint_options(double answer_within) {
+  EndpointOptions options;
+  options.idle_timeout = 4.0;
+  options.keep_alive = 0.5;
+  options.handshake_timeout = answer_within;
+  options.max_connections = 1;
+  return options;
+}
+
+}  // namespace
+
+RemoteLink::RemoteLink(RemoteOptions options, Connect connect, RemoteShared& shared)
+    : options_(std::move(options)),
+      connect_(std::move(connect)),
+      shared_(shared),
+      backoff_(options_.patience) {
+  started_ns_ = now();
+}
+
+RemoteLink::~RemoteLink() {
+  drop_endpoint();
+  if (world_.maker) world_.maker->finish();
+}
+
+std::int64_t RemoteLink::now() const {
+  return options_.now ? options_.now() : steady_now_ns();
+}
+
+void RemoteLink::wake() {
+  const std::lock_guard lock(endpoint_mutex_);
+  if (endpoint_) endpoint_->wake();
+}
+
+void RemoteLink::drop_endpoint() {
+  if (endpoint_ && connection_ != 0) {
+    const ConnectionStats stats = endpoint_->stats(connection_);
+    earlier_received_ += stats.bytes_received;
+    earlier_sent_ += stats.bytes_sent;
+  }
+  std::unique_ptr<Endpoint> gone;
+  {
+    const std::lock_guard lock(endpoint_mutex_);
+    gone = std::move(endpoint_);
+  }
+  connection_ = 0;
+  control_ = -1;
+}
+
+bool RemoteLink::turn() {
+  const std::int64_t now_ns = now();
+  std::vector<RemoteCommand> commands;
+  {
+    const std::lock_guard lock(shared_.mutex);
+    commands.swap(shared_.commands);
+  }
+  for (const RemoteCommand& command : commands) obey(command);
+  const std::int64_t deadline_ns = work(now_ns);
+  if (status_.state == LinkState::kEnded) return false;
+  if (endpoint_) {
+    endpoint_->run_once(deadline_ns);
+  } else if (!options_.now) {
+    sleep_until_ns(std::min(deadline_ns, now_ns + kLongestTurn_ns));
+  }
+  if (closed_) {
+    closed_ = false;
+    drop_endpoint();
+    if (status_.state != LinkState::kEnded) lost(close_text_);
+  }
+  if (inbox_) pump_bodies(now());
+  return status_.state != LinkState::kEnded;
+}
+
+/// Everything that is due; tells when to come back.
+std::int64_t RemoteLink::work(std::int64_t now_ns) {
+  std::int64_t next_ns = now_ns + kLongestTurn_ns;
+  switch (phase_) {
+    case Phase::kIdle:
+      if (status_.state == LinkState::kReconnecting) {
+        if (backoff_.gave_up(now_ns)) {
+          end(Error{options_.address, "contact was lost and did not come back",
+                    "Join again with the same link"});
+          return now_ns;
+        }
+        if (now_ns >= backoff_.due_ns()) try_to_connect(now_ns);
+        next_ns = std::min(next_ns, backoff_.due_ns());
+      } else {
+        try_to_connect(now_ns);
+      }
+      break;
+    case Phase::kConnecting: {
+      const bool first = status_.state == LinkState::kConnecting;
+      const double within = first ? options_.answer_within : kRetryAnswer;
+      if (to_seconds(now_ns - phase_ns_) > within) {
+        drop_endpoint();
+        lost("no answer");
+      }
+      break;
+    }
+    case Phase::kGreeting:
+      go_live_if_ready(now_ns);
+      if (phase_ == Phase::kGreeting && to_seconds(now_ns - phase_ns_) > kWelcomeWithin) {
+        drop_endpoint();
+        lost("the host answered and then said nothing");
+      }
+      break;
+    case Phase::kLive:
+      break;
+  }
+  if ((phase_ == Phase::kGreeting || phase_ == Phase::kLive) && endpoint_) {
+    if (now_ns >= pings_.due_ns()) ping(now_ns);
+    next_ns = std::min(next_ns, pings_.due_ns());
+    if (inbox_) {
+      pump_bodies(now_ns);
+      next_ns = std::min(next_ns, inbox_->next_due_ns(clock_));
+    }
+    if (uplink_ && std::find(status_.held.begin(), status_.held.end(), true) != status_.held.end()) {
+      if (now_ns >= pose_due_ns_) {
+        // On a grid, but what was missed is not made up for.
+        pose_due_ns_ = std::max(pose_due_ns_ + kPoseGap_ns, now_ns);
+        if (SharedBytes poses = uplink_->make(status_.held)) send(Priority::kPose, std::move(poses));
+      }
+      next_ns = std::min(next_ns, pose_due_ns_);
+    }
+    if (world_.maker) {
+      for (SharedBytes& feedback : world_.maker->take_feedback()) send(Priority::kState, std::move(feedback));
+    }
+  }
+  if (now_ns >= publish_due_ns_) publish(now_ns);
+  return std::max(next_ns, now_ns);
+}
+
+void RemoteLink::pump_bodies(std::int64_t now_ns) {
+  const BodyMessage* const state = inbox_->next(now_ns, clock_);
+  if (state == nullptr || !world_.channel) return;
+  world_.channel->bodies().back() = *state;
+  world_.channel->bodies().publish();
+  world_.maker->note_bodies(*state);
+}
+
+void RemoteLink::send(Priority priority, SharedBytes bytes) {
+  (void)endpoint_->send_datagram(connection_, priority, std::move(bytes));
+}
+
+void RemoteLink::ping(std::int64_t now_ns) {
+  wire::ClockPing message;
+  message.number = next_ping_++;
+  message.sent_ns = now_ns;
+  pings_sent_[message.number % pings_sent_.size()] = {message.number, now_ns};
+  send(Priority::kPose, std::make_shared<const std::vector<std::uint8_t>>(wire::datagram(message)));
+  pings_.sent(now_ns);
+}
+
+void RemoteLink::try_to_connect(std::int64_t now_ns) {
+  const bool first = status_.state == LinkState::kConnecting;
+  Result<std::unique_ptr<Endpoint>> made =
+      connect_(*this, endpoint_options(first ? options_.answer_within : kRetryAnswer));
+  if (!made) {
+    // No way to send at all: no such address, no socket. While trying again that may be a cable.
+    if (first) return end(made.error());
+    return backoff_.failed(now_ns);
+  }
+  {
+    const std::lock_guard lock(endpoint_mutex_);
+    endpoint_ = std::move(made.value());
+  }
+  phase_ = Phase::kConnecting;
+  phase_ns_ = now_ns;
+}
+
+void RemoteLink::on_connected(ConnectionId connection, const KeyFingerprint&, const std::string&) {
+  connection_ = connection;
+  phase_ = Phase::kGreeting;
+  phase_ns_ = heard_ns_ = now();
+  splitter_ = {};
+  scene_bytes_.clear();
+  welcomed_ = roster_came_ = grips_asked_ = refused_ = false;
+  requests_.clear();
+  grips_tried_.clear();
+  if (status_.state == LinkState::kConnecting) status_.state = LinkState::kJoining;
+  clock_.restart();
+  pings_.restart(phase_ns_);
+  if (inbox_) inbox_->restart();
+  if (world_.maker) world_.maker->restart();
+  say_hello();
+}
+
+void RemoteLink::on_stream(ConnectionId, std::int64_t stream, std::span<const std::uint8_t> bytes,
+                           bool end_of_stream) {
+  if (status_.state == LinkState::kEnded || refused_) return;
+  heard_ns_ = now();
+  if (stream != control_) return take_scene(bytes, end_of_stream);
+  const wire::Fault fault = splitter_.feed(
+      bytes, [this](std::uint64_t type, wire::ByteView payload) { return heard(type, payload); });
+  if (fault && !refused_) bad_host(fault, "a message");
+}
+
+void RemoteLink::on_datagram(ConnectionId, std::span<const std::uint8_t> bytes) {
+  if (bytes.empty() || status_.state == LinkState::kEnded) return;
+  const std::int64_t now_ns = now();
+  heard_ns_ = now_ns;
+  const wire::ByteView payload = bytes.subspan(1);
+  switch (static_cast<wire::DatagramType>(bytes[0])) {
+    case wire::DatagramType::kClockPong: {
+      wire::ClockPong pong;
+      if (wire::decode(payload, pong)) break;
+      PingSent& sent = pings_sent_[pong.number % pings_sent_.size()];
+      // By our own note of when it went out, and once only.
+      if (pong.number == 0 || sent.number != pong.number) return;
+      sent.number = 0;
+      (void)clock_.add(sent.sent_ns, pong.received_ns, pong.sent_ns, now_ns);
+      if (world_.maker) world_.maker->note_clock(clock_);
+      return;
+    }
+    case wire::DatagramType::kBodies: {
+      wire::Bodies bodies;
+      if (wire::decode(payload, bodies)) break;
+      // Before the clock is known nothing can be said of when a state belongs.
+      if (!inbox_ || !clock_.known()) return;
+      inbox_->take(bodies, now_ns, clock_);
+      if (world_.maker) world_.maker->note_moment(inbox_->moment());
+      return;
+    }
+    case wire::DatagramType::kSnapshotPiece:
+      if (world_.maker) world_.maker->offer(bytes);
+      return;
+    case wire::DatagramType::kHands:
+      return;  // the device loop couples to the bodies alone
+    default:
+      break;
+  }
+  status_.numbers.bad_datagrams += 1;
+}
+
+void RemoteLink::on_closed(ConnectionId, const CloseReason& reason) {
+  closed_ = true;
+  close_text_ = reason.text;
+}
+
+/// Contact is gone (or never was): ends the session when it had not begun, else tries again.
+void RemoteLink::lost(const std::string& why) {
+  const std::int64_t now_ns = now();
+  phase_ = Phase::kIdle;
+  if (leaving_) return end(std::nullopt);
+  switch (status_.state) {
+    case LinkState::kConnecting:
+      return end(Error{options_.address, why.empty() ? "no answer" : why,
+                       why.empty() || why == "no answer"
+                           ? "See that the host runs, and that UDP reaches that address and port"
+                           : "Ask for a new link if this one is old"});
+    case LinkState::kJoining:
+      return end(Error{options_.address, why.empty() ? "the connection ended while joining" : why,
+                       "Join again with the same link"});
+    case LinkState::kLive:
+      status_.state = LinkState::kReconnecting;
+      status_.lost_ns = now_ns;
+      grips_had_.clear();
+      for (std::size_t i = 0; i < status_.held.size(); ++i) {
+        if (status_.held[i]) grips_had_.push_back(static_cast<std::uint32_t>(i));
+      }
+      backoff_.lost(now_ns);
+      notice("contact with the host was lost (" + (why.empty() ? std::string("no reason given") : why) +
+             "); trying to come back");
+      break;
+    case LinkState::kReconnecting:
+      backoff_.failed(now_ns);
+      break;
+    case LinkState::kEnded:
+      return;
+  }
+  publish(now_ns);
+}
+
+void RemoteLink::leave(const std::string& words) {
+  if (status_.state == LinkState::kEnded || leaving_) return;
+  leaving_ = true;
+  if (!endpoint_ || connection_ == 0) return end(std::nullopt);
+  wire::Bye bye;
+  bye.reason = words;
+  say(bye);
+  endpoint_->close(connection_, 0, words);
+  const std::int64_t until_ns = now() + to_nanoseconds(0.3);
+  while (!options_.now && !closed_ && now() < until_ns) endpoint_->run_once(until_ns);
+  end(std::nullopt);
+}
+
+void RemoteLink::end(std::optional<Error> error, const std::string& farewell) {
+  status_.state = LinkState::kEnded;
+  status_.error = std::move(error);
+  status_.farewell = farewell;
+  phase_ = Phase::kIdle;
+  publish(now());
+}
+
+void RemoteLink::note_traffic(std::int64_t now_ns) {
+  LinkNumbers& numbers = status_.numbers;
+  if (endpoint_ && connection_ != 0) {
+    const ConnectionStats stats = endpoint_->stats(connection_);
+    numbers.round_trip = stats.smoothed_rtt > 0.0 ? stats.smoothed_rtt : clock_.round_trip();
+    numbers.bytes_received = earlier_received_ + stats.bytes_received;
+    numbers.bytes_sent = earlier_sent_ + stats.bytes_sent;
+    std::uint64_t sent = 0;
+    for (const std::uint64_t each : stats.datagrams_sent) sent += each;
+    numbers.send_loss =
+        sent == 0 ? 0.0 : static_cast<double>(stats.datagrams_lost) / static_cast<double>(sent);
+  }
+  if (now_ns - traffic_ns_ > kTrafficWindow_ns) {
+    numbers.receive_rate =
+        static_cast<double>(numbers.bytes_received - std::min(traffic_bytes_, numbers.bytes_received)) /
+        to_seconds(now_ns - traffic_ns_);
+    traffic_ns_ = now_ns;
+    traffic_bytes_ = numbers.bytes_received;
+  }
+}
+
+void RemoteLink::publish(std::int64_t now_ns) {
+  publish_due_ns_ = now_ns + kPublishGap_ns;
+  note_traffic(now_ns);
+  LinkNumbers& numbers = status_.numbers;
+  numbers.clock_error = clock_.known() ? clock_.error_bound(now_ns) : 0.0;
+  numbers.clock_steps = clock_.steps();
+  if (inbox_) {
+    numbers.body_delay = inbox_->delay();
+    numbers.bodies = inbox_->counts();
+    status_.moment = inbox_->moment();
+    if (status_.moment.known) status_.world_time = status_.moment.time_at(clock_.to_host(now_ns));
+  }
+  if (uplink_) numbers.poses = uplink_->numbered();
+  {
+    const std::lock_guard lock(shared_.mutex);
+    shared_.status = status_;
+  }
+  shared_.changed.notify_all();
+}
+
+}  // namespace slosh

@@ -1,0 +1,169 @@
+// One peer's side of the network: joins, keeps the clock, fills the channel, comes back when contact is lost.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "net/channel.h"
+#include "net/link.h"
+#include "net/quic/endpoint.h"
+#include "net/wire/messages.h"
+#include "net/wire/stream_splitter.h"
+#include "peer/remote/backoff.h"
+#include "peer/remote/body_inbox.h"
+#include "peer/remote/clock_sync.h"
+#include "peer/remote/picture_maker.h"
+#include "peer/remote/pose_uplink.h"
+#include "peer/remote/remote_status.h"
+#include "scenes/scene.h"
+
+namespace slosh {
+
+/// Opens a connection to the host: connect_quic with a link's addresses, or a test's double.
+using Connect =
+    std::function<Result<std::unique_ptr<Endpoint>>(EndpointEvents& events, const EndpointOptions& options)>;
+
+struct RemoteOptions {
+  wire::Token token{};
+  std::string name;                ///< of this person; empty = the host chooses
+  std::string address;             ///< for messages: where the host is
+  bool wants_grip = true;          ///< false: only looks on
+  std::vector<std::string> grips;  ///< names or numbers; empty = the first free one
+  PictureMakerOptions pictures;
+  std::size_t picture_bytes = std::size_t{512} << 20;
+  double answer_within = 5.0;                   ///< s for the first answer
+  double patience = 300.0;                      ///< s of trying to come back
+  std::function<std::int64_t()> now = nullptr;  ///< a test's clock; null = the steady clock
+};
+
+/// What came of joining; complete and constant once the state is kLive.
+struct RemoteWorld {
+  Scene scene;
+  double spacing = 0.0;  ///< m
+  std::unique_ptr<Channel> channel;
+  std::unique_ptr<PictureMaker> maker;
+};
+
+/// One thread calls turn() again and again; RemoteSession is that thread. Writes channel.bodies(), reads
+/// channel.pose(i).
+class RemoteLink final : public EndpointEvents {
+ public:
+  RemoteLink(RemoteOptions options, Connect connect, RemoteShared& shared);
+  ~RemoteLink() override;
+
+  /// Does what is due, then waits for the network until the next thing is, or wake(). False when ended.
+  bool turn();
+  /// Ends a turn that waits. Any thread.
+  void wake();
+  /// Tells the host good-bye and ends.
+  void leave(const std::string& words);
+
+  RemoteWorld& world() { return world_; }
+
+  void on_connected(ConnectionId connection, const KeyFingerprint& key, const std::string& address) override;
+  void on_stream(ConnectionId connection, std::int64_t stream, std::span<const std::uint8_t> bytes,
+                 bool end) override;
+  void on_datagram(ConnectionId connection, std::span<const std::uint8_t> bytes) override;
+  void on_closed(ConnectionId connection, const CloseReason& reason) override;
+
+ private:
+  enum class Phase { kIdle, kConnecting, kGreeting, kLive };  // of the present connection
+  struct Request {
+    std::uint32_t number = 0;
+    wire::ControlType type{};
+    std::uint32_t grip = 0;
+    bool take = false;
+    bool any = false;  // any grip would do
+  };
+
+  // remote_link.cpp: the connection.
+  std::int64_t now() const;
+  void try_to_connect(std::int64_t now_ns);
+  void lost(const std::string& why);
+  void drop_endpoint();
+  std::int64_t work(std::int64_t now_ns);
+  void pump_bodies(std::int64_t now_ns);
+  void send(Priority priority, SharedBytes bytes);
+  void ping(std::int64_t now_ns);
+  void end(std::optional<Error> error, const std::string& farewell = {});
+  void publish(std::int64_t now_ns);
+  void note_traffic(std::int64_t now_ns);
+
+  // remote_control.cpp: what is said.
+  void say_hello();
+  wire::Fault heard(std::uint64_t type, wire::ByteView payload);
+  wire::Fault on_welcome(wire::ByteView payload);
+  wire::Fault on_refused(wire::ByteView payload);
+  wire::Fault on_roster(wire::ByteView payload);
+  wire::Fault on_answer(wire::ByteView payload);
+  wire::Fault on_world_info(wire::ByteView payload);
+  wire::Fault on_notice(wire::ByteView payload);
+  void take_scene(std::span<const std::uint8_t> bytes, bool end);
+  void build_world();
+  void go_live_if_ready(std::int64_t now_ns);
+  void ask_for_grips();
+  void request_grip(std::uint32_t grip, bool take, bool any);
+  bool take_a_free_grip(bool quietly);
+  void obey(const RemoteCommand& command);
+  void bad_host(const wire::Fault& fault, const std::string& what);
+  void notice(const std::string& text);
+  std::string grip_name(std::uint32_t grip) const;
+  template <class M>
+  void say(const M& message) {
+    if (endpoint_ && control_ >= 0)
+      (void)endpoint_->send_stream(connection_, control_, wire::control(message), false);
+  }
+
+  RemoteOptions options_;
+  Connect connect_;
+  RemoteShared& shared_;
+  RemoteWorld world_;
+  RemoteStatus status_;  // this thread's; publish() copies it
+  std::unique_ptr<BodyInbox> inbox_;
+  std::unique_ptr<PoseUplink> uplink_;
+  ClockSync clock_;
+  PingSchedule pings_;
+  Backoff backoff_;
+
+  std::unique_ptr<Endpoint> endpoint_;
+  std::mutex endpoint_mutex_;  // the pointer, against wake()
+  ConnectionId connection_ = 0;
+  std::int64_t control_ = -1;
+  wire::StreamSplitter splitter_;
+  wire::Bytes scene_bytes_;
+  Phase phase_ = Phase::kIdle;
+  bool welcomed_ = false;
+  bool roster_came_ = false;
+  bool scene_came_ = false;   // in this life, once
+  bool grips_asked_ = false;  // on this connection
+  bool closed_ = false;       // by the network: the endpoint goes at the end of the turn
+  bool refused_ = false;
+  bool leaving_ = false;
+  std::string close_text_;
+  std::int64_t started_ns_ = 0;
+  std::int64_t phase_ns_ = 0;  // when the phase began
+  std::int64_t heard_ns_ = 0;
+  std::int64_t pose_due_ns_ = 0;
+  std::int64_t publish_due_ns_ = 0;
+  std::int64_t traffic_ns_ = 0;
+  std::uint64_t traffic_bytes_ = 0;
+  std::uint64_t earlier_received_ = 0;  // by connections that are gone
+  std::uint64_t earlier_sent_ = 0;
+  struct PingSent {
+    std::uint32_t number = 0;
+    std::int64_t sent_ns = 0;
+  };
+  std::array<PingSent, 32> pings_sent_{};
+  std::uint32_t next_ping_ = 1;
+  std::uint32_t next_request_ = 1;
+  std::vector<Request> requests_;           // not answered yet
+  std::vector<std::uint32_t> grips_tried_;  // by take_a_free_grip
+  std::vector<std::uint32_t> grips_had_;    // before contact was lost
+};
+
+}  // namespace slosh

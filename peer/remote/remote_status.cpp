@@ -1,0 +1,60 @@
+#include "peer/remote/remote_status.h"
+
+#include <cstdio>
+
+#include "net/clock.h"
+
+namespace slosh {
+namespace {
+
+constexpr std::size_t kMostPeople = 8;  // in a HUD
+
+}  // namespace
+
+std::string connection_text(const RemoteStatus& status, double picture_delay, std::int64_t now_ns) {
+  char text[160] = "";
+  switch (status.state) {
+    case LinkState::kConnecting:
+      return "connecting";
+    case LinkState::kJoining:
+      return "joining";
+    case LinkState::kEnded:
+      return "ended";
+    case LinkState::kReconnecting:
+      std::snprintf(text, sizeof text, "contact lost, reconnecting for %.0f s",
+                    to_seconds(now_ns - status.lost_ns));
+      return text;
+    case LinkState::kLive:
+      break;
+  }
+  std::snprintf(text, sizeof text, "rtt %.0f ms, hands %.0f ms and pictures %.0f ms behind, %.0f kB/s",
+                1e3 * status.numbers.round_trip, 1e3 * status.numbers.body_delay, 1e3 * picture_delay,
+                1e-3 * status.numbers.receive_rate);
+  return text;
+}
+
+std::string people_text(const RemoteStatus& status, const std::vector<std::string>& grip_names) {
+  std::string text;
+  std::size_t shown = 0;
+  for (const wire::RosterEntry& entry : status.peers) {
+    if (shown == kMostPeople) {
+      text += "and " + std::to_string(status.peers.size() - shown) + " more\n";
+      break;
+    }
+    shown += 1;
+    text += entry.name;
+    if (entry.peer == status.welcome.peer) text += " (you)";
+    if (!entry.connected) text += " (away)";
+    std::string grips;
+    for (const std::uint32_t grip : entry.grips) {
+      if (grip >= grip_names.size()) continue;
+      grips += (grips.empty() ? ": " : ", ") + grip_names[grip];
+    }
+    text += grips.empty() && entry.role == wire::Role::kSpectator ? " looks on" : grips;
+    text += "\n";
+  }
+  if (!text.empty()) text.pop_back();
+  return text;
+}
+
+}  // namespace slosh

@@ -1,0 +1,77 @@
+// What a remote session tells the threads that show it, and what they ask of it.
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "net/wire/messages.h"
+#include "peer/remote/body_inbox.h"
+#include "sim/math/result.h"
+
+namespace slosh {
+
+enum class LinkState {
+  kConnecting,    ///< nobody answered yet
+  kJoining,       ///< the host answered; the scene is on its way
+  kLive,          ///< bodies and pictures come
+  kReconnecting,  ///< contact was lost; tried again and again
+  kEnded,
+};
+
+struct LinkNumbers {
+  double round_trip = 0.0;   ///< s, the transport's
+  double clock_error = 0.0;  ///< s, bound
+  double body_delay = 0.0;   ///< s that the device loop lives behind the host
+  double send_loss = 0.0;    ///< share of our datagrams that were never acknowledged
+  std::uint64_t bytes_received = 0;
+  std::uint64_t bytes_sent = 0;
+  double receive_rate = 0.0;        ///< bytes a s, lately
+  std::uint64_t poses = 0;          ///< distinct samples sent
+  std::uint64_t bad_datagrams = 0;  ///< that did not decode
+  std::uint64_t reconnects = 0;
+  std::uint64_t clock_steps = 0;
+  BodyInboxCounts bodies;
+};
+
+struct RemoteStatus {
+  LinkState state = LinkState::kConnecting;
+  wire::Welcome welcome;                 ///< from kJoining on
+  std::vector<wire::RosterEntry> peers;  ///< who is here
+  std::vector<bool> held;                ///< our grips, one a grip of the scene
+  wire::WorldInfo world;
+  WorldMoment moment;       ///< where the host's world stands
+  double world_time = 0.0;  ///< simulated s of the host's world now
+  LinkNumbers numbers;
+  std::int64_t lost_ns = 0;    ///< when contact was lost, while reconnecting
+  std::int64_t live_ns = 0;    ///< when the session first was live; 0 = not yet
+  std::optional<Error> error;  ///< kEnded: set when that was not as wished
+  std::string farewell;        ///< kEnded: the host's words
+};
+
+struct RemoteCommand {
+  enum class Kind { kGrip, kNextGrip, kWorld } kind = Kind::kGrip;
+  std::uint32_t grip = 0;
+  bool take = true;
+  wire::WorldAction action = wire::WorldAction::kPause;
+};
+
+/// Between the network's thread and the others. Everything under the mutex.
+struct RemoteShared {
+  mutable std::mutex mutex;
+  std::condition_variable changed;
+  RemoteStatus status;
+  std::vector<std::string> notices;  ///< for people, not yet shown
+  std::vector<RemoteCommand> commands;
+};
+
+/// "reconnecting for 3 s", "rtt 61 ms, delay 12 ms".
+std::string connection_text(const RemoteStatus& status, double picture_delay, std::int64_t now_ns);
+/// A line a person: "Ana: left_hand", "Ben (away)", "Cyd looks on".
+std::string people_text(const RemoteStatus& status, const std::vector<std::string>& grip_names);
+
+}  // namespace slosh

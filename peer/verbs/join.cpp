@@ -1,0 +1,208 @@
+// The verbs `join` and `watch`: somebody else's world, by a link.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <limits>
+#include <memory>
+
+#include "net/clock.h"
+#include "net/link.h"
+#include "peer/remote/peer_key.h"
+#include "peer/verbs/interrupt.h"
+#include "peer/verbs/play_modes.h"
+#include "peer/verbs/remote_run.h"
+#include "peer/verbs/verbs.h"
+#include "render/context.h"
+
+namespace slosh {
+namespace {
+
+struct JoinOptions : ShowOptions {
+  std::string link;
+  std::string name;
+  std::vector<std::string> grips;
+  std::string key;
+  bool watch = false;
+};
+
+constexpr const char* kFiles =
+    "Without a display, or with --headless, the run becomes a film. DIR gets what `play` writes: view.mp4,\n"
+    "final.png, summary.json (with what the network was like)";
+
+constexpr const char* kJoinFooter =
+    "; and of the hands that were yours wrenches.csv,\n"
+    "poses.csv and wrenches.png.\n"
+    "\n"
+    "LINK is all that is needed: the host prints it, and the scene comes over the network. Put it in quotes\n"
+    "or not; breaks that a mail program put in do no harm.\n"
+    "\n"
+    "You are one person by the key in $XDG_DATA_HOME/slosh/peer_key: when contact is lost, you get your "
+    "place\n"
+    "and your grips back, also after this program was ended and started again, within a minute.\n"
+    "\n"
+    "In the window: G takes a free grip or lets go, Space pauses the world for everybody, R starts it again\n"
+    "for everybody, left drag turns the camera, the wheel zooms, H helps, Esc ends. Ctrl-C ends in order.\n"
+    "\n"
+    "Examples:\n"
+    "  slosh join LINK\n"
+    "  slosh join LINK --name Ana --grip left_hand --device mouse\n"
+    "  slosh join LINK --headless --seconds 10 --out out/ana";
+
+constexpr const char* kWatchFooter =
+    ".\n"
+    "\n"
+    "LINK is all that is needed: the host prints one for those who only look on.\n"
+    "\n"
+    "Examples:\n"
+    "  slosh watch LINK\n"
+    "  slosh watch LINK --headless --seconds 10 --out out/film";
+
+/// Letters and digits only: names come from elsewhere and become a folder.
+std::string safe(const std::string& name, const char* otherwise) {
+  std::string out;
+  for (const char c : name) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    if (out.size() < 40) out += plain || c == '_' ? c : '-';
+  }
+  return out.empty() ? otherwise : out;
+}
+
+/// Waits for the scene and the first state. Errors: no answer, refused, a bad host, Ctrl-C.
+Result<bool> wait_for_world(RemoteSession& session, Progress& progress) {
+  for (;;) {
+    const LinkState state = session.wait_until_live(std::chrono::milliseconds(50));
+    for (const std::string& notice : session.take_notices()) progress.note(notice);
+    if (state == LinkState::kLive) return true;
+    if (state == LinkState::kEnded) {
+      const RemoteStatus status = session.status();
+      if (status.error) return *status.error;
+      return Error{"", "the host ended before the world came: " + status.farewell, ""};
+    }
+    if (interrupted_by() != 0) return Error{"", "interrupted while joining", ""};
+  }
+}
+
+std::string welcome_text(const RemoteStatus& status) {
+  const bool guest = status.welcome.role == wire::Role::kParticipant;
+  std::string text = "you are " + status.welcome.name + (guest ? "" : ", looking on");
+  if (status.welcome.restored) text += "; your place was kept";
+  const std::size_t others = status.peers.empty() ? 0 : status.peers.size() - 1;
+  if (others > 0)
+    text += "; " + std::to_string(others) + (others == 1 ? " other is here" : " others are here");
+  return text;
+}
+
+int join(JoinOptions options) {
+  const std::int64_t begin_ns = steady_now_ns();
+  catch_interrupts();
+  Progress progress;
+  const Result<JoinLink> link = parse_link(options.link);
+  if (!link) return fail(link.error());
+  if (const Result<std::pair<int, int>> size = parse_size(options.size); !options.size.empty() && !size) {
+    return fail(size.error());
+  }
+  const Result<PeerKey> key = open_peer_key(options.key);
+  if (!key) return fail(key.error());
+  if (!key.value().note.empty()) progress.note("slosh: " + key.value().note);
+  bool headless = options.headless || !options.render;
+  if (!headless && !display_available()) {
+    progress.note("slosh: no display here, so the run becomes a film (--headless)");
+    headless = true;
+  }
+
+  RemoteOptions remote;
+  remote.token = link.value().token;
+  remote.name = options.name;
+  for (const std::string& address : link.value().addresses) {
+    remote.address += (remote.address.empty() ? "" : ", ") + address;
+  }
+  remote.wants_grip = !options.watch;
+  remote.grips = options.grips;
+  remote.pictures.film = headless && options.render;
+  remote.pictures.frames_per_second = options.frames_per_second;
+  progress.phase("joining", remote.address);
+  RemoteSession session(remote, connect_by(link.value(), key.value().identity));
+  const Result<bool> came = wait_for_world(session, progress);
+  if (!came) {
+    progress.note("");
+    const int signal_number = interrupted_by();
+    if (signal_number == 0) return fail(came.error());
+    fail(came.error());
+    return 128 + signal_number;
+  }
+  const RemoteStatus status = session.status();
+  progress.note(welcome_text(status));
+
+  Stage stage;
+  stage.scene = session.world().scene;
+  stage.machine = this_machine();
+  if (options.out.empty() && headless) {
+    options.out = "out/" + safe(stage.scene.name, "scene") + "-" + safe(status.welcome.name, "peer");
+  }
+  const Result<bool> set = set_stage(options, headless, stage);
+  if (!set) return fail(set.error());
+  // Somebody else's world runs for as long as they like.
+  if (options.seconds <= 0.0) stage.seconds = std::numeric_limits<double>::infinity();
+
+  RemoteRunOptions run_options;
+  run_options.devices = options.devices;
+  run_options.has_window = !headless;
+  run_options.host = remote.address;
+  run_options.begin_ns = begin_ns;
+  run_options.tell = [&progress](const std::string& text) { progress.note(text); };
+  Result<std::unique_ptr<RemoteRun>> run = RemoteRun::create(stage, session, run_options);
+  if (!run) return fail(run.error());
+
+  RunSummary summary;
+  const MakeRun make_run = [&]() -> Result<std::unique_ptr<LiveRun>> {
+    return std::unique_ptr<LiveRun>(std::move(run.value()));
+  };
+  const Result<bool> shown = headless ? show_headless(stage, *run.value(), options, progress, summary)
+                                      : show_in_window(stage, make_run, options, progress, summary);
+  if (!shown) return fail(shown.error());
+  const int code = finish_run(stage, progress, summary);
+  const RemoteStatus last = session.status();
+  return last.error && code == kExitOk ? fail(*last.error) : code;
+}
+
+void add(CLI::App& app, VerbRun& chosen, bool watch) {
+  CLI::App* verb = watch ? app.add_subcommand("watch", "Look on at somebody's world")
+                         : app.add_subcommand("join", "Take hold of something in somebody's world");
+  auto o = std::make_shared<JoinOptions>();
+  o->watch = watch;
+  verb->add_option("LINK", o->link, "What the host printed: slosh://…")->required();
+  verb->add_option("--name", o->name, "How the others see you (the host chooses)");
+  if (!watch) {
+    verb->add_option("--grip", o->grips, "A grip by name or number, again for more (the first free one)")
+        ->allow_extra_args(false);
+    verb->add_option("--device", o->devices,
+                     "script, mouse or replay:FILE; one for all your hands, or one each, in order")
+        ->allow_extra_args(false);
+  }
+  verb->add_option("--seconds", o->seconds, "Simulated seconds to stay (until the host ends)")
+      ->check(CLI::Range(0.01, 1e6));
+  verb->add_option("--out", o->out, "Folder for the results (headless: out/<scene>-<name>; a window: none)");
+  verb->add_flag("--headless", o->headless, "No window, even with a display");
+  verb->add_option("--size", o->size, "Picture in pixels, WxH (640x480 headless, 1280x720 in a window)");
+  verb->add_option("--fps", o->frames_per_second, "Pictures a second of the film")
+      ->check(CLI::Range(1.0, 240.0))
+      ->capture_default_str();
+  verb->add_option("--bilateral", o->bilateral, "Iterations of the fluid surface's filter")
+      ->check(CLI::Range(0, 64))
+      ->capture_default_str();
+  verb->add_flag("!--no-render", o->render, "No picture at all");
+  verb->add_option("--key", o->key, "File with your key, made on first use (one for each person)");
+  verb->footer(std::string(kFiles) + (watch ? kWatchFooter : kJoinFooter));
+  verb->callback([&chosen, o] { chosen = [o] { return join(*o); }; });
+}
+
+}  // namespace
+
+void add_join(CLI::App& app, VerbRun& chosen) {
+  add(app, chosen, false);
+}
+
+void add_watch(CLI::App& app, VerbRun& chosen) {
+  add(app, chosen, true);
+}
+
+}  // namespace slosh

@@ -1,0 +1,226 @@
+#include "peer/verbs/remote_run.h"
+
+#include <algorithm>
+
+#include "net/clock.h"
+
+namespace slosh {
+
+RemoteRun::RemoteRun(const Stage& stage, RemoteSession& session, RemoteRunOptions options)
+    : stage_(stage),
+      session_(session),
+      options_(std::move(options)),
+      mice_(stage.scene.grips.size()),
+      device_on_(stage.scene.grips.size(), false) {
+  for (const Grip& grip : stage.scene.grips) grip_names_.push_back(grip.name);
+}
+
+Result<std::unique_ptr<RemoteRun>> RemoteRun::create(const Stage& stage, RemoteSession& session,
+                                                     RemoteRunOptions options) {
+  std::unique_ptr<RemoteRun> run(new RemoteRun(stage, session, std::move(options)));
+  run->status_ = session.status();
+  run->last_time_ = run->status_.world_time;
+  run->last_run_ = run->status_.moment.run;
+  run->servo_ = std::make_unique<Servo>(stage.scene, std::vector<std::unique_ptr<Device>>{},
+                                        *session.world().channel, ServoOptions{});
+  run->loop_ = std::make_unique<DeviceLoop>(*run->servo_);
+  const bool records = run->status_.welcome.role == wire::Role::kParticipant && !stage.scene.grips.empty();
+  Result<std::unique_ptr<Recorder>> recorder =
+      Recorder::start(*run->servo_, records ? stage.folder : std::filesystem::path());
+  if (!recorder) return recorder.error();
+  run->recorder_ = std::move(recorder.value());
+  const Result<bool> followed = run->follow_grips();
+  if (!followed) return followed.error();
+  return run;
+}
+
+RemoteRun::~RemoteRun() {
+  stop();
+}
+
+void RemoteRun::start() {
+  start_ns_ = steady_now_ns();
+  status_ = session_.status();
+  last_time_ = status_.world_time;
+  last_run_ = status_.moment.run;
+  loop_->start();
+}
+
+void RemoteRun::stop() {
+  if (stop_ns_ == 0) stop_ns_ = steady_now_ns();
+  session_.stop();
+  if (loop_) loop_->stop();
+  if (servo_) servo_->close_devices();
+  if (recorder_) recorder_->stop();
+}
+
+bool RemoteRun::running() {
+  return !stopping_ && status_.state != LinkState::kEnded && elapsed_ < stage_.seconds;
+}
+
+SnapshotPointer RemoteRun::newest_picture() {
+  SnapshotPointer picture = session_.world().maker->newest(steady_now_ns());
+  if (picture) last_picture_ = picture;
+  return picture;
+}
+
+HudFacts RemoteRun::facts(double picture_rate) const {
+  HudFacts facts;
+  facts.title = stage_.scene.name;
+  facts.spacing = session_.world().spacing;
+  facts.fluid_particles = status_.welcome.particles;
+  facts.shared = status_.welcome.role == wire::Role::kParticipant;
+  facts.picture_rate = picture_rate;
+  return facts;
+}
+
+Rates RemoteRun::note_rates() {
+  status_ = session_.status();
+  follow_time();
+  const Result<bool> followed = follow_grips();
+  (void)followed;  // each trouble was told, and the grip let go
+  for (const std::string& notice : session_.take_notices()) options_.tell(notice);
+  Rates rates;
+  rates.time = status_.world_time;
+  rates.start = rates.time - elapsed_;
+  rates.real_time = status_.state == LinkState::kLive ? status_.moment.rate : 0.0;
+  rates.device_rate = servo_->holds_any() ? loop_->rate() : 0.0;
+  rates.device_status = servo_->status();
+  rates.connection = connection_text(status_, session_.world().maker->delay(), steady_now_ns());
+  rates.people = people_text(status_, grip_names_);
+  rates_.add(rates);
+  return rates;
+}
+
+/// Simulated time that has passed for this person, whatever the world's own did in between.
+void RemoteRun::follow_time() {
+  if (!status_.moment.known) return;
+  if (status_.moment.run == last_run_) elapsed_ += std::max(status_.world_time - last_time_, 0.0);
+  last_run_ = status_.moment.run;
+  last_time_ = status_.world_time;
+}
+
+/// A device for each grip that is ours, none for the others.
+Result<bool> RemoteRun::follow_grips() {
+  const std::vector<std::string>& specs = options_.devices;
+  for (std::size_t i = 0; i < device_on_.size(); ++i) {
+    const bool held = i < status_.held.size() && status_.held[i];
+    if (held == device_on_[i]) continue;
+    device_on_[i] = held;
+    mice_[i].reset();
+    if (!held) {
+      servo_->set_device(i, nullptr);
+      continue;
+    }
+    const std::string spec = specs.empty() ? "script" : specs[std::min(grips_taken_, specs.size() - 1)];
+    grips_taken_ += 1;
+    Pose start = grip_start(stage_.scene, i);
+    if (last_picture_ && i < last_picture_->rigid.grips.size()) start = last_picture_->rigid.grips[i].pose;
+    Result<HandDevice> made = make_device(stage_.scene, i, spec, start, options_.has_window);
+    if (made) {
+      const Result<bool> opened = made.value().device->open();
+      if (!opened) made = opened.error();
+    }
+    if (!made) {
+      let_go(i, made.error());
+      return made.error();
+    }
+    mice_[i] = std::move(made.value().mouse);
+    servo_->set_device(i, std::move(made.value().device));
+  }
+  return true;
+}
+
+void RemoteRun::let_go(std::size_t grip, const Error& why) {
+  options_.tell("slosh: " + why.text());
+  RemoteCommand command;
+  command.grip = static_cast<std::uint32_t>(grip);
+  command.take = false;
+  session_.ask(command);
+}
+
+void RemoteRun::pause(bool paused) {
+  RemoteCommand command;
+  command.kind = RemoteCommand::Kind::kWorld;
+  command.action = paused ? wire::WorldAction::kPause : wire::WorldAction::kContinue;
+  session_.ask(command);
+}
+
+bool RemoteRun::start_again() {
+  RemoteCommand command;
+  command.kind = RemoteCommand::Kind::kWorld;
+  command.action = wire::WorldAction::kReset;
+  session_.ask(command);
+  return true;
+}
+
+void RemoteRun::change_grip() {
+  RemoteCommand command;
+  command.kind = RemoteCommand::Kind::kNextGrip;
+  session_.ask(command);
+}
+
+void RemoteRun::report(RunSummary& s) const {
+  const RemoteStatus status = session_.status();
+  const LinkNumbers& numbers = status.numbers;
+  const PictureReport pictures = session_.world().maker->report();
+  s.scene = stage_.scene.name;
+  s.spacing = session_.world().spacing;
+  s.spacing_reason = "the host's";
+  s.fluid_particles = status.welcome.particles;
+  s.time_step = status.welcome.time_step;
+  s.simulated = elapsed_;
+  s.wall = to_seconds(stop_ns_ - start_ns_);
+  s.real_time_factor = s.wall > 0.0 ? elapsed_ / s.wall : 0.0;
+  const DeviceLoopReport& loop = loop_->report();
+  s.device_loop_us = {1e6 * loop.period.percentile(0.5), 1e6 * loop.period.percentile(0.99),
+                      1e6 * loop.period.max()};
+  s.device_ticks = loop.ticks;
+  s.device_missed = loop.missed;
+  s.device_scheduler = loop.scheduler();
+  s.status = servo_->status();
+  s.rejected_poses = servo_->reports_rejected();
+  s.samples_lost = servo_->samples_lost();
+  for (std::size_t i = 0; i < servo_->devices(); ++i) {
+    if (servo_->device(i) == nullptr) continue;
+    const Peak& peak = recorder_->peaks()[i];
+    s.devices.push_back({grip_names_[i], servo_->device(i)->kind(), peak.force, peak.torque});
+  }
+  s.backend = "the host's";
+  s.machine = stage_.machine;
+  s.version = SLOSH_VERSION;
+  s.folder = stage_.folder.string();
+  if (!stage_.folder.empty() && !s.devices.empty()) s.files = {"wrenches.csv", "poses.csv"};
+
+  NetworkSummary n;
+  n.host = options_.host;
+  n.name = status.welcome.name;
+  n.participant = status.welcome.role == wire::Role::kParticipant;
+  n.round_trip = numbers.round_trip;
+  n.send_loss = numbers.send_loss;
+  n.clock_error = numbers.clock_error;
+  n.hand_delay = numbers.body_delay;
+  n.picture_delay = pictures.delay;
+  n.age_ms = {1e3 * pictures.age.percentile(0.5), 1e3 * pictures.age.percentile(0.99),
+              1e3 * pictures.age.max()};
+  n.bytes_received = numbers.bytes_received;
+  n.bytes_sent = numbers.bytes_sent;
+  n.seconds = to_seconds(stop_ns_ - options_.begin_ns);
+  n.poses_sent = numbers.poses;
+  n.states = numbers.bodies.states;
+  n.states_incomplete = numbers.bodies.incomplete;
+  n.snapshots = pictures.frames;
+  n.snapshots_partial = pictures.frames - pictures.whole;
+  n.pieces_refused = pictures.refused;
+  n.datagrams_refused = numbers.bad_datagrams;
+  n.reconnects = numbers.reconnects;
+  n.to_live = to_seconds(status.live_ns - options_.begin_ns);
+  n.to_first_picture =
+      pictures.first_picture_ns == 0 ? 0.0 : to_seconds(pictures.first_picture_ns - options_.begin_ns);
+  n.first_picture_time = pictures.first_picture_time;
+  n.last_picture_time = pictures.last_picture_time;
+  n.ended = status.error ? status.error->text() : status.farewell;
+  s.network = n;
+}
+
+}  // namespace slosh

@@ -1,0 +1,77 @@
+// A run of somebody else's world: the peer's own parts around a RemoteSession.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "peer/haptics/device_loop.h"
+#include "peer/haptics/make_device.h"
+#include "peer/output/recorder.h"
+#include "peer/remote/remote_session.h"
+#include "peer/verbs/live_run.h"
+#include "peer/verbs/prepare.h"
+
+namespace slosh {
+
+struct RemoteRunOptions {
+  std::vector<std::string> devices;  ///< none (script), one for all, or one for each grip in order of taking
+  bool has_window = false;
+  std::string host;                              ///< address, for the summary
+  std::int64_t begin_ns = 0;                     ///< when the program began
+  std::function<void(const std::string&)> tell;  ///< a line for the person
+};
+
+class RemoteRun final : public LiveRun {
+ public:
+  /// `stage` and `session`, which is live, must outlive it. Errors: a file cannot be written, a device of a
+  /// grip that is held already cannot be used.
+  static Result<std::unique_ptr<RemoteRun>> create(const Stage& stage, RemoteSession& session,
+                                                   RemoteRunOptions options);
+  ~RemoteRun() override;
+
+  void start() override;
+  void request_stop() override { stopping_ = true; }
+  bool running() override;
+  void stop() override;
+  SnapshotQueue& pictures() override { return session_.world().channel->pictures(); }
+  SnapshotPointer newest_picture() override;
+  HudFacts facts(double picture_rate) const override;
+  Rates note_rates() override;
+  RateLog& rates() override { return rates_; }
+  void pause(bool paused) override;
+  bool paused() const override { return status_.world.paused; }
+  bool start_again() override;
+  void change_grip() override;
+  MouseTarget* mouse_target(std::size_t i) override { return mice_[i].get(); }
+  void report(RunSummary& summary) const override;
+
+ private:
+  RemoteRun(const Stage& stage, RemoteSession& session, RemoteRunOptions options);
+  Result<bool> follow_grips();
+  void let_go(std::size_t grip, const Error& why);
+  void follow_time();
+
+  const Stage& stage_;
+  RemoteSession& session_;
+  RemoteRunOptions options_;
+  RemoteStatus status_;
+  std::unique_ptr<Servo> servo_;
+  std::unique_ptr<DeviceLoop> loop_;
+  std::unique_ptr<Recorder> recorder_;
+  RateLog rates_;
+  std::vector<std::shared_ptr<MouseTarget>> mice_;
+  std::vector<bool> device_on_;  // grips that have a device now
+  std::size_t grips_taken_ = 0;  // ever
+  SnapshotPointer last_picture_;
+  std::vector<std::string> grip_names_;
+  double elapsed_ = 0.0;    // simulated s since the start
+  double last_time_ = 0.0;  // simulated s
+  std::uint32_t last_run_ = 0;
+  std::int64_t start_ns_ = 0;
+  std::int64_t stop_ns_ = 0;
+  bool stopping_ = false;
+};
+
+}  // namespace slosh

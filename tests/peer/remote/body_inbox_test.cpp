@@ -1,0 +1,268 @@
+// Body states off the wire: parts, loss, order, runs, clocks.
+#include "peer/remote/body_inbox.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "net/clock.h"
+
+namespace slosh {
+namespace {
+
+constexpr double kStep = 0.002;
+
+Scene two_bodies() {
+  Scene scene;
+  scene.bodies.resize(2);
+  scene.bodies[0].mass.center_of_mass = {0.0, 0.1, 0.0};
+  Grip grip;
+  grip.body = 1;
+  grip.pose.position = {0.2, 0.0, 0.0};
+  scene.grips.push_back(grip);
+  return scene;
+}
+
+wire::Bodies state(std::uint64_t tick, std::uint32_t parts = 1, std::uint32_t part = 0) {
+  wire::Bodies m;
+  m.tick = tick;
+  m.time = kStep * static_cast<double>(tick);
+  m.stamp_ns = to_nanoseconds(50.0 + m.time);
+  m.rate = 1.0;
+  m.parts = parts;
+  m.part = part;
+  if (parts == 1 || part == 0) {
+    wire::BodyEntry entry;
+    entry.body = 0;
+    entry.pose.position.x = static_cast<double>(tick);
+    m.bodies.push_back(entry);
+  }
+  if (parts == 1 || part == 1) {
+    wire::BodyEntry entry;
+    entry.body = 1;
+    entry.pose.position.x = 100.0 + static_cast<double>(tick);
+    m.bodies.push_back(entry);
+  }
+  return m;
+}
+
+/// The same clock at both ends; states arrive `late` after their stamps.
+struct Inbox {
+  Scene scene = two_bodies();
+  BodyInbox inbox{scene, kStep};
+  ClockSync clock;
+  double late = 0.030;
+
+  Inbox() { clock.add(0, 0, 0, 0); }
+  void take(const wire::Bodies& m) { inbox.take(m, m.stamp_ns + to_nanoseconds(late), clock); }
+  /// What is due at the moment that state `tick` comes in.
+  const BodyMessage* next(std::uint64_t tick) {
+    return inbox.next(state(tick).stamp_ns + to_nanoseconds(late), clock);
+  }
+};
+
+TEST(BodyInbox, StartsAsTheSceneHasIt) {
+  const Inbox kit;
+  const BodyMessage& first = kit.inbox.state();
+  EXPECT_EQ(first.bodies.grips[0].pose.position.x, 0.2);
+  EXPECT_EQ(first.bodies.bodies[0].center_of_mass.y, 0.1);
+  EXPECT_EQ(first.rate, 0.0);
+  EXPECT_FALSE(kit.inbox.started());
+}
+
+TEST(BodyInbox, GripsFollowFromTheirBody) {
+  Inbox kit;
+  wire::Bodies m = state(1);
+  wire::BodyEntry& body = m.bodies[1];
+  body.pose.orientation = glm::angleAxis(1.57079632679489662, glm::dvec3(0, 0, 1));
+  body.center_of_mass = body.pose.position;
+  body.twist.linear = {1.0, 0.0, 0.0};
+  body.twist.angular = {0.0, 0.0, 2.0};
+  wire::GripEntry grip;
+  grip.handle.position.y = 7.0;
+  grip.on_hand.force.z = -3.0;
+  m.grips.push_back(grip);
+  kit.take(m);
+  const BodyMessage* out = kit.next(1);
+  ASSERT_NE(out, nullptr);
+  const GripState& g = out->bodies.grips[0];
+  EXPECT_NEAR(g.pose.position.x, 101.0, 1e-12);
+  EXPECT_NEAR(g.pose.position.y, 0.2, 1e-12);
+  EXPECT_NEAR(g.twist.linear.x, 1.0 - 0.4, 1e-12) << "ω × r";
+  EXPECT_NEAR(g.twist.angular.z, 2.0, 1e-12);
+  EXPECT_EQ(g.handle.position.y, 7.0);
+  EXPECT_EQ(g.on_hand.force.z, -3.0);
+}
+
+TEST(BodyInbox, PartsOfATickAreJoined) {
+  Inbox kit;
+  kit.take(state(1, 2, 1));
+  kit.take(state(1, 2, 0));
+  const BodyMessage* out = kit.next(1);
+  ASSERT_NE(out, nullptr);
+  EXPECT_EQ(out->bodies.bodies[0].pose.position.x, 1.0);
+  EXPECT_EQ(out->bodies.bodies[1].pose.position.x, 101.0);
+  EXPECT_EQ(kit.inbox.counts().incomplete, 0u);
+  EXPECT_TRUE(kit.inbox.started());
+}
+
+TEST(BodyInbox, AMissingPartLeavesItsBodiesAsTheyWere) {
+  Inbox kit;
+  kit.take(state(1, 2, 0));
+  kit.take(state(1, 2, 1));
+  kit.take(state(2, 2, 0));
+  const BodyMessage* out = kit.next(2);
+  ASSERT_NE(out, nullptr);
+  EXPECT_EQ(out->bodies.tick, 2u);
+  EXPECT_EQ(out->bodies.bodies[0].pose.position.x, 2.0);
+  EXPECT_EQ(out->bodies.bodies[1].pose.position.x, 101.0);
+  EXPECT_EQ(kit.inbox.counts().incomplete, 1u);
+}
+
+TEST(BodyInbox, OldTicksAndRepeatsAreDropped) {
+  Inbox kit;
+  kit.take(state(5));
+  ASSERT_NE(kit.next(5), nullptr);
+  kit.take(state(4));
+  kit.take(state(5));
+  EXPECT_EQ(kit.next(5), nullptr);
+  EXPECT_EQ(kit.inbox.counts().late, 2u);
+  kit.take(state(6, 2, 0));
+  kit.take(state(6, 2, 0));
+  EXPECT_EQ(kit.inbox.counts().late, 3u);
+}
+
+TEST(BodyInbox, ReorderAndLossNeverLetTimeGoBack) {
+  Inbox kit;
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<> chance(0.0, 1.0);
+  struct Arrival {
+    std::int64_t at_ns;
+    wire::Bodies m;
+  };
+  std::vector<Arrival> arrivals;
+  for (std::uint64_t tick = 1; tick <= 2000; ++tick) {
+    for (std::uint32_t part = 0; part < 2; ++part) {
+      if (chance(random) < 0.05) continue;
+      wire::Bodies m = state(tick, 2, part);
+      arrivals.push_back({m.stamp_ns + to_nanoseconds(0.030 + 0.020 * chance(random)), m});
+    }
+  }
+  std::sort(arrivals.begin(), arrivals.end(),
+            [](const Arrival& a, const Arrival& b) { return a.at_ns < b.at_ns; });
+  double last = 0.0;
+  std::size_t next = 0;
+  int smooth = 0;
+  int asked = 0;
+  const std::int64_t end_ns = arrivals.back().at_ns;
+  for (std::int64_t now_ns = arrivals.front().at_ns; now_ns < end_ns; now_ns += 1'000'000) {
+    while (next < arrivals.size() && arrivals[next].at_ns <= now_ns) {
+      kit.inbox.take(arrivals[next].m, arrivals[next].at_ns, kit.clock);
+      next += 1;
+    }
+    (void)kit.inbox.next(now_ns, kit.clock);
+    const BodyMessage& m = kit.inbox.state();
+    EXPECT_GE(m.bodies.time, last);
+    last = m.bodies.time;
+    if (to_seconds(now_ns - arrivals.front().at_ns) < 1.0) continue;
+    // What a device loop would take for the time: within two ticks of the state it has.
+    asked += 1;
+    if (std::abs(to_seconds(now_ns - m.stamp_ns)) <= 2.0 * m.time_step) smooth += 1;
+  }
+  EXPECT_GT(smooth, asked * 95 / 100);
+  EXPECT_NEAR(kit.inbox.delay(), 0.049, 0.003) << "the jitter's upper end";
+}
+
+TEST(BodyInbox, StatesAreHandedOnAtAnEvenPaceOverAFarLink) {
+  Inbox kit;
+  kit.late = 0.200;
+  for (std::uint64_t tick = 1; tick <= 500; ++tick) {
+    kit.take(state(tick));
+    (void)kit.next(tick);
+  }
+  const BodyMessage& m = kit.inbox.state();
+  const std::int64_t now_ns = state(500).stamp_ns + to_nanoseconds(kit.late);
+  EXPECT_NEAR(to_seconds(now_ns - m.stamp_ns), 0.0, 2.1 * kStep)
+      << "a stamp on the host's clock would be 0.2 s old, and the force would fade";
+  EXPECT_NEAR(kit.inbox.delay(), 0.200, 1e-3);
+}
+
+TEST(BodyInbox, ARisingRunStartsAnewAndALowerOneIsOld) {
+  Inbox kit;
+  kit.take(state(900));
+  ASSERT_NE(kit.next(900), nullptr);
+  wire::Bodies again = state(1);
+  again.run = 1;
+  again.stamp_ns = state(901).stamp_ns;
+  kit.take(again);
+  const BodyMessage* out = kit.next(901);
+  ASSERT_NE(out, nullptr);
+  EXPECT_EQ(out->run, 1u);
+  EXPECT_EQ(out->bodies.tick, 1u);
+  kit.take(state(902));
+  EXPECT_EQ(kit.next(902), nullptr) << "a straggler of the run before";
+}
+
+TEST(BodyInbox, ANewConnectionMayBringALowerRun) {
+  Inbox kit;
+  wire::Bodies m = state(900);
+  m.run = 3;
+  kit.take(m);
+  ASSERT_NE(kit.next(900), nullptr);
+  kit.inbox.restart();
+  EXPECT_FALSE(kit.inbox.moment().known);
+  kit.take(state(905));
+  ASSERT_NE(kit.next(905), nullptr);
+  EXPECT_EQ(kit.inbox.state().run, 0u);
+}
+
+TEST(BodyInbox, NamesThatTheSceneHasNotAreRefusedWhole) {
+  Inbox kit;
+  wire::Bodies m = state(1);
+  m.bodies[1].body = 2;
+  kit.take(m);
+  wire::Bodies g = state(2);
+  g.grips.push_back({});
+  g.grips.back().grip = 1;
+  kit.take(g);
+  wire::Bodies p = state(3);
+  p.part = 1;
+  kit.take(p);
+  EXPECT_EQ(kit.next(3), nullptr);
+  EXPECT_EQ(kit.inbox.counts().wrong, 3u);
+}
+
+TEST(BodyInbox, AFloodOfTheFutureTakesLittleMemory) {
+  Inbox kit;
+  for (std::uint64_t tick = 1; tick <= 5000; ++tick) {
+    kit.inbox.take(state(tick * 1000), to_nanoseconds(50.0), kit.clock);
+  }
+  EXPECT_GT(kit.inbox.counts().late, 4000u);
+}
+
+TEST(BodyInbox, APauseIsTold) {
+  Inbox kit;
+  kit.take(state(10));
+  ASSERT_NE(kit.next(10), nullptr);
+  kit.inbox.set_paused(true);
+  const BodyMessage* out = kit.next(11);
+  ASSERT_NE(out, nullptr);
+  EXPECT_EQ(out->rate, 0.0);
+  EXPECT_EQ(kit.next(12), nullptr) << "once";
+  kit.inbox.set_paused(false);
+  kit.take(state(13));
+  EXPECT_EQ(kit.next(13)->rate, 1.0);
+}
+
+TEST(BodyInbox, SparseStatesCountAsLongTicks) {
+  Inbox kit;
+  for (std::uint64_t tick = 8; tick <= 8000; tick += 8) {
+    kit.take(state(tick));
+    (void)kit.next(tick);
+  }
+  EXPECT_NEAR(kit.inbox.state().time_step, 0.016, 0.001) << "a device loop carries on by two of them";
+}
+
+}  // namespace
+}  // namespace slosh

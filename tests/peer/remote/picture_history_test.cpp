@@ -1,0 +1,150 @@
+// Pictures between two frames, on motions whose every moment is known.
+#include "peer/remote/picture_history.h"
+
+#include <gtest/gtest.h>
+
+namespace slosh {
+namespace {
+
+constexpr std::size_t kCount = 100;
+
+/// Particle i of the world at `time`: it moves evenly.
+glm::vec3 truth(std::size_t i, double time) {
+  const auto f = static_cast<double>(i);
+  return glm::vec3(glm::dvec3(0.01 * f + 0.1 * time, 0.02 * f, -0.3 * time));
+}
+
+/// A frame of `epoch`, whose order is the world's rolled by the epoch's number.
+DecodedFrame frame(std::uint64_t number, double time, std::uint32_t epoch, std::uint32_t run = 0) {
+  DecodedFrame f;
+  f.frame = number;
+  f.time = time;
+  f.epoch = epoch;
+  f.run = run;
+  f.complete = 1.0;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    f.positions.push_back(truth((i + epoch * 7) % kCount, time));
+    f.fluid_index.push_back(0);
+  }
+  return f;
+}
+
+BodySnapshot bodies(double time) {
+  BodySnapshot s;
+  s.time = time;
+  s.bodies.resize(1);
+  s.bodies[0].pose.position.x = 2.0 * time;
+  s.bodies[0].pose.orientation = glm::angleAxis(0.8 * time, glm::normalize(glm::dvec3(1, 2, 3)));
+  s.grips.resize(1);
+  s.grips[0].on_hand.force.y = -4.0 * time;
+  return s;
+}
+
+void expect_truth(const SnapshotPointer& picture, double time) {
+  ASSERT_NE(picture, nullptr);
+  ASSERT_EQ(picture->positions.size(), kCount);
+  EXPECT_NEAR(picture->rigid.time, time, 1e-12);
+  // Whatever the order, each particle of the world is there once.
+  std::vector<bool> seen(kCount, false);
+  for (const glm::vec3& p : picture->positions) {
+    const auto i = static_cast<std::size_t>(p.y / 0.02f + 0.5f);
+    ASSERT_LT(i, kCount);
+    EXPECT_FALSE(seen[i]);
+    seen[i] = true;
+    EXPECT_LT(glm::distance(p, truth(i, time)), 1e-6f) << time;
+  }
+  EXPECT_NEAR(picture->rigid.bodies[0].pose.position.x, 2.0 * time, 1e-9);
+  const glm::dquat turned = glm::angleAxis(0.8 * time, glm::normalize(glm::dvec3(1, 2, 3)));
+  EXPECT_NEAR(glm::length(rotation_between(picture->rigid.bodies[0].pose.orientation, turned)), 0.0, 1e-9);
+  EXPECT_NEAR(picture->rigid.grips[0].on_hand.force.y, -4.0 * time, 1e-9);
+}
+
+struct World {
+  PictureHistory history;
+  World() {
+    // Two epochs: frame 3 begins the second, and comes in both orders.
+    history.add(frame(1, 0.10, 1));
+    history.add(frame(2, 0.15, 1));
+    history.add(frame(3, 0.20, 1));
+    history.add(frame(3, 0.20, 2));
+    history.add(frame(4, 0.25, 2));
+    for (int i = 0; i < 30; ++i) history.add(0, bodies(0.01 * i));
+  }
+};
+
+TEST(PictureHistory, IsExactAtAndBetweenFramesAndAcrossEpochs) {
+  const World world;
+  for (double time = 0.10; time <= 0.2501; time += 0.01) {
+    const std::optional<Between> between = world.history.at(time);
+    ASSERT_TRUE(between);
+    expect_truth(blend(*between), time);
+  }
+}
+
+TEST(PictureHistory, TheOrderInWhichAnEpochsFirstFrameComesDoesNotMatter) {
+  PictureHistory history;
+  history.add(frame(1, 0.10, 1));
+  history.add(frame(2, 0.20, 2));
+  history.add(frame(2, 0.20, 1));
+  history.add(frame(3, 0.30, 2));
+  for (int i = 0; i < 40; ++i) history.add(0, bodies(0.01 * i));
+  for (const double time : {0.10, 0.15, 0.20, 0.25, 0.30}) expect_truth(blend(*history.at(time)), time);
+  history.forget_before(0.22);
+  for (const double time : {0.22, 0.25, 0.30}) expect_truth(blend(*history.at(time)), time);
+}
+
+TEST(PictureHistory, HoldsTheLastFrameWhereNothingJoins) {
+  PictureHistory history;
+  history.add(frame(1, 0.10, 1));
+  history.add(frame(9, 0.50, 2));  // the frames between were lost
+  for (int i = 0; i < 60; ++i) history.add(0, bodies(0.01 * i));
+  const SnapshotPointer picture = blend(*history.at(0.30));
+  EXPECT_LT(glm::distance(picture->positions[0], truth(7, 0.10)), 1e-6f);
+  EXPECT_NEAR(picture->rigid.bodies[0].pose.position.x, 0.6, 1e-9) << "bodies go on";
+  expect_truth(blend(*history.at(0.50)), 0.50);
+  EXPECT_LT(glm::distance(blend(*history.at(9.0))->positions[0], truth(14, 0.50)), 1e-6f);
+  EXPECT_LT(glm::distance(blend(*history.at(0.0))->positions[0], truth(7, 0.10)), 1e-6f);
+}
+
+TEST(PictureHistory, WhatHasLeftTheWorldIsNotDrawn) {
+  PictureHistory history;
+  DecodedFrame gone = frame(2, 0.20, 1);
+  gone.fluid_index[4] = 255;
+  history.add(frame(1, 0.10, 1));
+  history.add(std::move(gone));
+  EXPECT_EQ(blend(*history.at(0.15))->fluid_index[4], 255);
+  EXPECT_EQ(blend(*history.at(0.15))->fluid_index[5], 0);
+}
+
+TEST(PictureHistory, AResetForgetsWhatWas) {
+  World world;
+  world.history.add(frame(50, 0.0, 5, 1));
+  EXPECT_EQ(world.history.run(), 1u);
+  EXPECT_FALSE(world.history.has_bodies());
+  world.history.add(frame(5, 0.30, 2, 0));
+  EXPECT_DOUBLE_EQ(world.history.last_frame_time(), 0.0) << "a straggler of the run before";
+  world.history.add(1, bodies(0.0));
+  EXPECT_TRUE(world.history.has_bodies());
+  world.history.restart();
+  world.history.add(frame(1, 7.0, 1, 0));
+  EXPECT_DOUBLE_EQ(world.history.first_frame_time(), 7.0) << "a new connection may bring any run";
+}
+
+TEST(PictureHistory, ForgetsNoMoreThanItMay) {
+  World world;
+  world.history.forget_before(0.17);
+  for (const double time : {0.17, 0.20, 0.24}) expect_truth(blend(*world.history.at(time)), time);
+  EXPECT_DOUBLE_EQ(world.history.first_frame_time(), 0.15);
+}
+
+TEST(PictureHistory, IsEmptyAtFirstAndShowsBodiesAlone) {
+  PictureHistory history;
+  EXPECT_FALSE(history.at(0.0));
+  history.add(0, bodies(0.1));
+  const SnapshotPointer picture = blend(*history.at(0.1));
+  EXPECT_TRUE(picture->positions.empty());
+  EXPECT_NEAR(picture->rigid.bodies[0].pose.position.x, 0.2, 1e-12);
+}
+
+}  // namespace
+}  // namespace slosh

@@ -1,0 +1,118 @@
+#include "peer/remote/pose_uplink.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <random>
+#include <set>
+
+namespace slosh {
+namespace {
+
+struct Uplink {
+  explicit Uplink(std::size_t grips) : channel(grips, BodyMessage{}, 1 << 20), uplink(channel) {}
+  Channel channel;
+  PoseUplink uplink;
+
+  void post(std::size_t grip, std::int64_t stamp_ns, double x = 0.0) {
+    PoseMessage& m = channel.pose(grip).back();
+    m.device = static_cast<std::uint32_t>(grip);
+    m.stamp_ns = stamp_ns;
+    m.pose.position.x = x;
+    m.engaged = true;
+    channel.pose(grip).publish();
+  }
+  static wire::Poses read(const SharedBytes& bytes) {
+    wire::Poses poses;
+    const wire::Fault fault = wire::decode(wire::ByteView(*bytes).subspan(1), poses);
+    EXPECT_FALSE(fault) << fault.text();
+    EXPECT_EQ((*bytes)[0], static_cast<std::uint8_t>(wire::DatagramType::kPoses));
+    EXPECT_LE(bytes->size(), wire::kMaxDatagram);
+    return poses;
+  }
+};
+
+TEST(PoseUplink, NumbersEachReadingAndRepeatsTheLastFew) {
+  Uplink kit(1);
+  for (int i = 1; i <= 6; ++i) {
+    kit.post(0, 1000 * i, i);
+    const SharedBytes bytes = kit.uplink.make({true});
+    ASSERT_NE(bytes, nullptr);
+    const wire::Poses poses = Uplink::read(bytes);
+    ASSERT_EQ(poses.samples.size(), std::min<std::size_t>(i, kPoseSends));
+    for (std::size_t k = 0; k < poses.samples.size(); ++k) {
+      EXPECT_EQ(poses.samples[k].number, static_cast<std::uint64_t>(i) - k) << "newest first";
+      EXPECT_EQ(poses.samples[k].stamp_ns, 1000 * (i - static_cast<int>(k))) << "a repeat is the same";
+      EXPECT_EQ(poses.samples[k].pose.position.x, i - static_cast<int>(k));
+    }
+  }
+}
+
+TEST(PoseUplink, SaysNothingWhenThereIsNothingNew) {
+  Uplink kit(1);
+  EXPECT_EQ(kit.uplink.make({true}), nullptr) << "the device was not read yet";
+  kit.post(0, 1000);
+  EXPECT_NE(kit.uplink.make({true}), nullptr);
+  EXPECT_EQ(kit.uplink.make({true}), nullptr) << "the same reading";
+  EXPECT_EQ(kit.uplink.numbered(), 1u);
+}
+
+TEST(PoseUplink, SaysNothingOfHandsThatAreNotOurs) {
+  Uplink kit(2);
+  kit.post(0, 1000);
+  kit.post(1, 1000);
+  const wire::Poses poses = Uplink::read(kit.uplink.make({false, true}));
+  ASSERT_EQ(poses.samples.size(), 1u);
+  EXPECT_EQ(poses.samples[0].grip, 1u);
+  EXPECT_EQ(kit.uplink.make({}), nullptr);
+}
+
+TEST(PoseUplink, AGripTakenAgainDoesNotRepeatWhatWasBefore) {
+  Uplink kit(1);
+  kit.post(0, 1000);
+  (void)kit.uplink.make({true});
+  EXPECT_EQ(kit.uplink.make({false}), nullptr);
+  kit.post(0, 9000);
+  const wire::Poses poses = Uplink::read(kit.uplink.make({true}));
+  ASSERT_EQ(poses.samples.size(), 1u);
+  EXPECT_EQ(poses.samples[0].stamp_ns, 9000);
+  EXPECT_EQ(poses.samples[0].number, 2u) << "numbers go on";
+}
+
+TEST(PoseUplink, ManyHandsFitWithTheNewestOfEach) {
+  Uplink kit(12);
+  const std::vector<bool> held(12, true);
+  for (int i = 1; i <= 5; ++i) {
+    for (std::size_t grip = 0; grip < 12; ++grip) kit.post(grip, 1000 * i);
+    const wire::Poses poses = Uplink::read(kit.uplink.make(held));
+    std::set<std::uint32_t> newest;
+    for (const wire::PoseSample& s : poses.samples) {
+      if (s.stamp_ns == 1000 * i) newest.insert(s.grip);
+    }
+    EXPECT_EQ(newest.size(), 12u);
+  }
+}
+
+TEST(PoseUplink, WhatTheWireCannotCarryIsNotSent) {
+  Uplink kit(1);
+  kit.post(0, 1000, 1e9);
+  EXPECT_EQ(kit.uplink.make({true}), nullptr);
+}
+
+TEST(PoseUplink, RepeatsBringNearlyAllSamplesOverALossyLink) {
+  Uplink kit(1);
+  std::mt19937_64 random(2);
+  std::uniform_real_distribution<> chance(0.0, 1.0);
+  std::set<std::uint64_t> arrived;
+  constexpr int kCount = 20000;
+  for (int i = 1; i <= kCount; ++i) {
+    kit.post(0, i);
+    const SharedBytes bytes = kit.uplink.make({true});
+    if (chance(random) < 0.05) continue;
+    for (const wire::PoseSample& s : Uplink::read(bytes).samples) arrived.insert(s.number);
+  }
+  EXPECT_GT(static_cast<double>(arrived.size()), 0.999 * kCount);
+}
+
+}  // namespace
+}  // namespace slosh
