@@ -139,12 +139,13 @@ std::string field_table(const Describer& described) {
   std::string out =
       "| field | on the wire | bytes | range | a bad value is refused as |\n|---|---|---|---|---|\n";
   for (const FieldRow& row : described.rows()) {
-    std::string field = row.field;
-    if (row.coding == "rule") field = "(" + field + ")";
-    out += "| " + field + " | " + row.coding + " | " + row.bytes + " | " + row.range + " | " + row.refused +
-           " |\n";
+    const std::string field =
+        row.coding == "rule" ? std::string("(").append(row.field).append(")") : row.field;
+    for (const std::string& cell : {field, row.coding, row.bytes, row.range, row.refused})
+      out.append("| ").append(cell).append(" ");
+    out.append("|\n");
   }
-  out += "\n" + std::to_string(described.least_bytes());
+  out.append("\n").append(std::to_string(described.least_bytes()));
   if (described.most_bytes() == Describer::kUnbounded)
     out += " bytes or more.\n";
   else if (described.most_bytes() != described.least_bytes())
