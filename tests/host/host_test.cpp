@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "scenes/load.h"
 #include "scenes/sample.h"
@@ -38,7 +39,7 @@ class HostTest : public ::testing::Test {
   };
   std::unique_ptr<Rig> rig(HostOptions options) const {
     options.paced = false;
-    return std::make_unique<Rig>(*this, world(), options);
+    return std::make_unique<Rig>(*this, world(), std::move(options));
   }
   void hold(Channel& channel) const {
     PoseMessage m;

@@ -1,6 +1,7 @@
 // A one-grip scene and a channel, without a world: the servo against made-up body states.
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -71,7 +72,7 @@ struct ServoKit {
     message = first();
     message.stamp_ns = to_nanoseconds(time);
     message.rate = rate;
-    message.bodies.tick = static_cast<std::uint64_t>(time / kTick + 0.5);
+    message.bodies.tick = static_cast<std::uint64_t>(std::lround(time / kTick));
     message.bodies.time = time;
     message.bodies.grips[0].pose = grip;
     message.bodies.grips[0].twist = twist;
