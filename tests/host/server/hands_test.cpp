@@ -1,0 +1,127 @@
+#include "host/server/hands.h"
+
+#include <gtest/gtest.h>
+
+#include "net/clock.h"
+#include "tests/host/server/scripted_peer.h"
+
+namespace slosh {
+namespace {
+
+class Hands : public ::testing::Test {
+ protected:
+  const PoseMessage& newest(std::size_t grip) {
+    channel.pose(grip).update();
+    return channel.pose(grip).front();
+  }
+  bool sample(std::uint64_t number, double x, std::int64_t stamp_ns = 0, bool engaged = true) {
+    wire::PoseSample s;
+    s.number = number;
+    s.stamp_ns = stamp_ns;
+    s.pose.position = {x, 0.0, 0.0};
+    s.engaged = engaged;
+    return hands.sample(s, now);
+  }
+  Scene scene = served_scene();
+  Channel channel{scene.grips.size(), BodyMessage{}, 1000};
+  HandTable hands{scene, channel};
+  std::int64_t now = to_nanoseconds(100.0);
+};
+
+TEST_F(Hands, TheHostHoldsWhatNobodyHasTaken) {
+  hands.stand_all(now);
+  for (std::size_t i = 0; i < scene.grips.size(); ++i) {
+    EXPECT_TRUE(newest(i).engaged);
+    EXPECT_EQ(newest(i).pose.position, stand_pose(scene, i).position);
+    EXPECT_EQ(newest(i).twist.linear, glm::dvec3(0.0));
+  }
+  hands.let_go(0, now);
+  EXPECT_TRUE(newest(0).engaged) << "a stand stays";
+  hands.let_go(0, now, true);
+  EXPECT_FALSE(newest(0).engaged);
+  EXPECT_TRUE(newest(0).lost);
+}
+
+TEST_F(Hands, AStandGlidesIntoTheHandThatTakesIt) {
+  hands.stand_all(now);
+  const double start = stand_pose(scene, 0).position.x;
+  hands.taken(0, now);
+  ASSERT_TRUE(sample(1, start + 1.0, 0, false));
+  EXPECT_EQ(newest(0).pose.position.x, start) << "not engaged yet: the stand holds on";
+  double last = start;
+  for (std::uint64_t i = 2; i < 302; ++i) {
+    now += 2'000'000;
+    ASSERT_TRUE(sample(i, start + 1.0));
+    const double x = newest(0).pose.position.x;
+    EXPECT_LE(x - last, 0.01) << "no jump";
+    EXPECT_GE(x, last);
+    last = x;
+  }
+  EXPECT_EQ(last, start + 1.0);
+}
+
+TEST_F(Hands, OnlyNewerSamplesCountAndRepeatsAreCountedOnce) {
+  hands.let_go(0, now, true);
+  hands.taken(0, now);
+  EXPECT_TRUE(sample(5, 0.5));
+  EXPECT_FALSE(sample(5, 0.9));
+  EXPECT_FALSE(sample(4, 0.9)) << "before the first: not counted";
+  EXPECT_TRUE(sample(9, 0.6));
+  EXPECT_FALSE(sample(7, 0.9));
+  EXPECT_FALSE(sample(7, 0.9));
+  EXPECT_EQ(newest(0).pose.position.x, 0.6);
+  EXPECT_EQ(hands.delivery(0).received, 3u);
+  EXPECT_EQ(hands.delivery(0).expected, 5u);
+}
+
+TEST_F(Hands, StampsComeBackOnTheHoldersClock) {
+  hands.taken(0, now);
+  const std::int64_t far = -to_nanoseconds(1e6);  // a clock that is far off
+  for (std::uint64_t i = 1; i <= 500; ++i) {
+    now += 2'000'000;
+    ASSERT_TRUE(sample(i, 0.5, far + static_cast<std::int64_t>(i) * 2'000'000));
+  }
+  const PoseMessage& message = newest(0);
+  EXPECT_NEAR(to_seconds(now - message.stamp_ns), 0.0, 1e-3) << "on the host's clock";
+  EXPECT_EQ(hands.used(0, message.number).number, 500u);
+  EXPECT_EQ(hands.used(0, message.number).stamp_ns, far + 500 * 2'000'000);
+  EXPECT_EQ(hands.used(0, message.number - 499).number, 1u);
+  EXPECT_EQ(hands.used(0, 0).number, 0u);
+  hands.taken(0, now);  // somebody else
+  EXPECT_EQ(hands.used(0, message.number).number, 0u) << "another's number is nobody's";
+  ASSERT_TRUE(sample(1, 0.5, 77));
+  EXPECT_EQ(hands.used(0, newest(0).number).stamp_ns, 77);
+}
+
+TEST_F(Hands, ALateSampleKeepsItsDistanceInTime) {
+  hands.taken(0, now);
+  std::int64_t stamp = 0;
+  std::int64_t before = 0;
+  for (std::uint64_t i = 1; i <= 200; ++i) {
+    stamp += 4'000'000;
+    now += 4'000'000;
+    const std::int64_t jitter = i % 7 == 3 ? 3'000'000 : 0;
+    now += jitter;
+    ASSERT_TRUE(sample(i, 0.5, stamp));
+    now -= jitter;
+    const std::int64_t mapped = newest(0).stamp_ns;
+    if (i > 1) {
+      EXPECT_NEAR(static_cast<double>(mapped - before), 4e6, 2e4);
+    }
+    before = mapped;
+  }
+}
+
+TEST_F(Hands, AfterARestartWhatWasHeldStandsWhereTheHandWas) {
+  BodySnapshot bodies;
+  bodies.grips.resize(scene.grips.size());
+  bodies.grips[1].handle.position = {3.0, 2.0, 1.0};
+  bodies.grips[1].on_hand.force = {0.0, -5.0, 0.0};
+  hands.carry_on(bodies, now);
+  EXPECT_TRUE(newest(1).engaged);
+  EXPECT_EQ(newest(1).pose.position.x, 3.0);
+  EXPECT_FALSE(newest(0).engaged);
+}
+
+}  // namespace
+}  // namespace slosh

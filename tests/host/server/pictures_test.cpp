@@ -1,0 +1,167 @@
+// Pictures from the queue through the codec to peers, each at the quality of its link.
+#include "host/server/pictures.h"
+
+#include <cmath>
+#include <functional>
+
+#include "net/clock.h"
+#include "tests/host/server/scripted_peer.h"
+
+namespace slosh {
+namespace {
+
+ServerOptions running() {
+  ServerOptions options;
+  options.hands_to_start = 0;
+  return options;
+}
+
+/// A block of fluid that sways.
+Snapshot picture(std::uint64_t tick) {
+  Snapshot snapshot;
+  snapshot.rigid.tick = tick;
+  snapshot.rigid.time = static_cast<double>(tick) / kTierPictureRate;
+  for (int i = 0; i < 4000; ++i) {
+    const auto cell = [&](int n) { return 0.01f * static_cast<float>(n); };
+    const auto sway = static_cast<float>(0.02 * std::sin(snapshot.rigid.time * 3.0 + 0.1 * (i % 20)));
+    snapshot.positions.emplace_back(cell(i % 20) + sway, cell(i / 20 % 20), cell(i / 400));
+    snapshot.fluid_index.push_back(0);
+    snapshot.shell.push_back(i / 20 % 20 == 19 || i % 20 == 0 ? 1 : 0);
+  }
+  return snapshot;
+}
+
+class Pictures : public ServedTest {
+ protected:
+  Pictures() : ServedTest(running()) {}
+
+  /// The world runs for so long, 60 pictures a second.
+  void show(double seconds, const std::function<void()>& each = {}) {
+    go(seconds, 1.0 / kTierPictureRate, [&] {
+      std::vector<CodedPicture> coded;
+      const Snapshot snapshot = picture(++tick);
+      coder.see(snapshot);
+      coder.code(snapshot, desk.take_order(), coded);
+      desk.deliver(std::move(coded));
+      if (each) each();
+    });
+  }
+  PictureCoder coder{0.01};
+  std::uint64_t tick = 0;
+};
+
+/// What a real peer's decoder makes of what came.
+class Watcher final : public EndpointEvents {
+ public:
+  Watcher(MemoryNetwork& network, std::uint8_t key, const wire::Token& token) {
+    KeyFingerprint fingerprint{};
+    fingerprint.fill(key);
+    end = network.connect(*this, fingerprint, "192.0.2.9:" + std::to_string(key));
+    const std::int64_t stream = end->open_stream(1, true);
+    end->send_stream(1, stream, wire::control(wire::Hello{wire::kProtocolVersion, token, "w", false}), false);
+  }
+  void turn(std::int64_t now_ns) {
+    end->run_once(0);
+    while (std::optional<DecodedFrame> frame = decoder.next()) {
+      frames += 1;
+      complete = frame->complete;
+      particles = frame->positions.size();
+    }
+    if (now_ns < next_feedback_ns) return;
+    next_feedback_ns = now_ns + 100'000'000;
+    end->send_datagram(1, Priority::kState,
+                       std::make_shared<const wire::Bytes>(wire::datagram(decoder.feedback())));
+  }
+  void on_connected(ConnectionId, const KeyFingerprint&, const std::string&) override {}
+  void on_stream(ConnectionId, std::int64_t, std::span<const std::uint8_t>, bool) override {}
+  void on_closed(ConnectionId, const CloseReason&) override {}
+  void on_datagram(ConnectionId, std::span<const std::uint8_t> bytes) override {
+    if (bytes[0] != static_cast<std::uint8_t>(wire::DatagramType::kSnapshotPiece)) return;
+    received += bytes.size();
+    if (decoder.take(bytes)) faults += 1;
+  }
+  std::unique_ptr<Endpoint> end;
+  SnapshotDecoder decoder;
+  std::uint64_t frames = 0;
+  std::uint64_t faults = 0;
+  std::size_t received = 0;
+  std::size_t particles = 0;
+  double complete = 0.0;
+  std::int64_t next_feedback_ns = 0;
+};
+
+TEST_F(Pictures, NobodyWatchesAndNothingIsCoded) {
+  std::vector<CodedPicture> coded;
+  coder.code(picture(1), desk.take_order(), coded);
+  EXPECT_TRUE(coded.empty());
+}
+
+TEST_F(Pictures, ALateWatcherHasTheWholePictureSoon) {
+  Watcher first(network, 1, watch);
+  const auto both = [&] { first.turn(network.now_ns()); };
+  show(1.0, both);
+  EXPECT_EQ(first.complete, 1.0);
+  EXPECT_NEAR(static_cast<double>(first.frames), 30.0, 4.0);
+  Watcher late(network, 2, watch);
+  show(0.25, [&] {
+    both();
+    late.turn(network.now_ns());
+  });
+  EXPECT_GT(late.frames, 2u);
+  EXPECT_EQ(late.complete, 1.0) << "without waiting for the next epoch";
+  EXPECT_EQ(late.particles, first.particles);
+  EXPECT_EQ(first.faults + late.faults, 0u);
+}
+
+TEST_F(Pictures, LossIsMended) {
+  Watcher watcher(network, 1, watch);
+  MemoryLink lossy;
+  lossy.delay = 0.02;
+  lossy.loss = 0.05;
+  network.set_link(lossy);
+  show(0.5, [&] { watcher.turn(network.now_ns()); });
+  double complete = 0.0;
+  int looks = 0;
+  show(4.0, [&] {
+    watcher.turn(network.now_ns());
+    complete += watcher.complete;
+    looks += 1;
+  });
+  EXPECT_GT(complete / looks, 0.85);
+  EXPECT_EQ(watcher.faults, 0u);
+}
+
+TEST_F(Pictures, ASlowLinkLowersOnlyItsOwnQuality) {
+  Watcher fast(network, 1, watch);
+  Watcher slow(network, 2, watch);
+  const auto both = [&] {
+    fast.turn(network.now_ns());
+    slow.turn(network.now_ns());
+  };
+  show(2.0, both);
+  ASSERT_EQ(server->tier_of(0), kShell);
+  ASSERT_EQ(server->tier_of(1), kShell);
+  const double rate = static_cast<double>(fast.received) / 2.0;
+  MemoryLink thin;
+  thin.bytes_per_second = 0.35 * rate + 1e4;
+  network.set_link(*slow.end, thin);
+  const std::uint64_t frames = fast.frames;
+  show(8.0, both);
+  EXPECT_GT(server->tier_of(1), kShell) << "the slow one";
+  EXPECT_EQ(server->tier_of(0), kShell) << "the fast one";
+  EXPECT_NEAR(static_cast<double>(fast.frames - frames), 240.0, 12.0);
+  EXPECT_GT(slow.frames, 60u) << "it still sees something";
+}
+
+TEST_F(Pictures, AResetStartsAnotherRun) {
+  Watcher watcher(network, 1, watch);
+  show(0.5, [&] { watcher.turn(network.now_ns()); });
+  tick = 0;
+  const std::uint64_t before = watcher.frames;
+  show(0.5, [&] { watcher.turn(network.now_ns()); });
+  EXPECT_GT(watcher.frames, before + 5);
+  EXPECT_EQ(watcher.complete, 1.0);
+}
+
+}  // namespace
+}  // namespace slosh
