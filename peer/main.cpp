@@ -17,8 +17,11 @@ int run(int argc, char** argv) {
   VerbRun chosen;
   const bool names_a_verb = argc > 1 && argv[1][0] != '-';
   add_play(app, chosen);
+  add_host(app, chosen);
   add_join(app, chosen);
   add_watch(app, chosen);
+  add_replay(app, chosen);
+  add_links(app, chosen);
   add_scenes(app, chosen);
   add_check(app, chosen);
   add_plan(app, chosen);

@@ -17,8 +17,11 @@ constexpr int kExitUsage = 2;
 using VerbRun = std::function<int()>;
 
 void add_play(CLI::App& app, VerbRun& chosen);
+void add_host(CLI::App& app, VerbRun& chosen);
 void add_join(CLI::App& app, VerbRun& chosen);
 void add_watch(CLI::App& app, VerbRun& chosen);
+void add_replay(CLI::App& app, VerbRun& chosen);
+void add_links(CLI::App& app, VerbRun& chosen);
 void add_scenes(CLI::App& app, VerbRun& chosen);
 void add_check(CLI::App& app, VerbRun& chosen);
 void add_plan(CLI::App& app, VerbRun& chosen);
