@@ -1,6 +1,7 @@
 #include "net/link.h"
 
 #include <algorithm>
+#include <charconv>
 #include <optional>
 
 namespace slosh {
@@ -60,9 +61,9 @@ std::string address_problem(std::string_view address) {
   std::string_view host = address.substr(0, colon);
   const std::string_view port = address.substr(colon + 1);
   int number = 0;
-  for (const char c : port)
-    number = c >= '0' && c <= '9' && number < 100'000 ? 10 * number + (c - '0') : -1'000'000;
-  if (port.empty() || port.size() > 5 || number < 1 || number > 65535) return "has no port from 1 to 65535";
+  const auto [end, code] = std::from_chars(port.data(), port.data() + port.size(), number);
+  if (code != std::errc{} || end != port.data() + port.size() || number < 1 || number > 65535)
+    return "has no port from 1 to 65535";
   if (address.size() > kMaxAddress) return "is too long";
   if (host.size() > 1 && host.front() == '[' && host.back() == ']') {
     host = host.substr(1, host.size() - 2);
