@@ -42,17 +42,21 @@ bool obey(slosh::Relay& relay, const std::string& line) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Passes UDP between peers and a slosh host, as a bad network would. Give peers this program's "
-               "address in place of the host's."};
+  CLI::App app{
+      "Passes UDP between peers and a slosh host, as a bad network would. Give peers this program's "
+      "address in place of the host's."};
   slosh::RelayOptions options;
   bool down_only = false;
   bool up_only = false;
-  app.add_option("--listen", options.listen, "where peers send to, e.g. 127.0.0.1:5000")->capture_default_str();
+  app.add_option("--listen", options.listen, "where peers send to, e.g. 127.0.0.1:5000")
+      ->capture_default_str();
   app.add_option("--to", options.to, "the host, e.g. 127.0.0.1:4433")->required();
   app.add_option("--delay-ms", delay_ms, "one way")->check(CLI::Range(0.0, 10000.0));
-  app.add_option("--jitter-ms", jitter_ms, "0 to this much more delay, in order")->check(CLI::Range(0.0, 10000.0));
+  app.add_option("--jitter-ms", jitter_ms, "0 to this much more delay, in order")
+      ->check(CLI::Range(0.0, 10000.0));
   app.add_option("--loss", impairment.loss, "chance from 0 to 1")->check(CLI::Range(0.0, 1.0));
-  app.add_option("--burst", impairment.burst, "packets lost in a row, on average")->check(CLI::Range(1.0, 1e4));
+  app.add_option("--burst", impairment.burst, "packets lost in a row, on average")
+      ->check(CLI::Range(1.0, 1e4));
   app.add_option("--duplicate", impairment.duplicate, "chance from 0 to 1")->check(CLI::Range(0.0, 1.0));
   app.add_option("--reorder", impairment.reorder, "chance from 0 to 1")->check(CLI::Range(0.0, 1.0));
   app.add_option("--reorder-ms", reorder_ms, "how late those come")->check(CLI::Range(0.0, 10000.0));

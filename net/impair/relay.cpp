@@ -142,8 +142,8 @@ class UdpRelay final : public Relay {
     sockaddr_storage name{};
     for (int i = 0; i < 256; ++i) {
       socklen_t size = sizeof(name);
-      const ssize_t bytes = recvfrom(listener_, buffer_.data(), buffer_.size(), 0,
-                                     reinterpret_cast<sockaddr*>(&name), &size);
+      const ssize_t bytes =
+          recvfrom(listener_, buffer_.data(), buffer_.size(), 0, reinterpret_cast<sockaddr*>(&name), &size);
       if (bytes < 0) return;
       const std::size_t session = session_of(Address(reinterpret_cast<sockaddr*>(&name), size));
       if (session < sessions_.size()) take(Way::kUp, session, static_cast<std::size_t>(bytes));

@@ -42,6 +42,9 @@ struct Callbacks {
     // Taken in: the other side may send as much again.
     ngtcp2_conn_extend_max_stream_offset(conn, stream, size);
     ngtcp2_conn_extend_max_offset(conn, size);
+    // ngtcp2 0.12 never calls a one-way stream from the other side closed: its end makes room for the next.
+    if ((flags & NGTCP2_STREAM_DATA_FLAG_FIN) && !ngtcp2_is_bidi_stream(stream))
+      ngtcp2_conn_extend_max_streams_uni(conn, 1);
     return 0;
   }
 
@@ -54,11 +57,8 @@ struct Callbacks {
   static int stream_closed(ngtcp2_conn* conn, std::uint32_t, std::int64_t stream, std::uint64_t, void* user,
                            void*) {
     at(user).streams_.drop(stream);
-    if (ngtcp2_conn_is_local_stream(conn, stream)) return 0;
-    if (ngtcp2_is_bidi_stream(stream))
+    if (!ngtcp2_conn_is_local_stream(conn, stream) && ngtcp2_is_bidi_stream(stream))
       ngtcp2_conn_extend_max_streams_bidi(conn, 1);
-    else
-      ngtcp2_conn_extend_max_streams_uni(conn, 1);
     return 0;
   }
 

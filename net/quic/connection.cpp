@@ -77,7 +77,8 @@ ngtcp2_transport_params Connection::parameters(bool server) const {
   params.initial_max_stream_data_uni = window;
   params.initial_max_data = server ? kControlWindow : 2 * kSceneWindow;
   params.initial_max_streams_bidi = 4;
-  params.initial_max_streams_uni = 4;
+  // A host takes no one-way streams: ngtcp2 0.12 keeps a little of each until the connection ends.
+  params.initial_max_streams_uni = server ? 0 : 16;
   params.max_idle_timeout = nanoseconds(options_.idle_timeout);
   params.max_udp_payload_size = kMaxPacket;
   params.active_connection_id_limit = 7;
@@ -214,12 +215,17 @@ void Connection::abort(std::uint64_t code, const std::string& text, std::int64_t
   end({false, code, text});
 }
 
-void Connection::move_to(UdpSocket& socket, std::int64_t) {
+void Connection::move_to(UdpSocket& socket, std::int64_t now) {
   socket_ = &socket;
   Address local = socket.local();
   // The host sees a known connection from a new address and makes sure of it by itself.
   const ngtcp2_addr address{&local.any, local.length};
   ngtcp2_conn_set_local_addr(conn_, &address);
+  // It must see something: a keep-alive that is due at once.
+  ngtcp2_conn_set_keep_alive_timeout(conn_, 1);
+  expire(now);
+  flush(now);
+  if (state_ != State::kClosed) ngtcp2_conn_set_keep_alive_timeout(conn_, nanoseconds(options_.keep_alive));
 }
 
 ConnectionStats Connection::stats() const {

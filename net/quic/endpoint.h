@@ -113,7 +113,7 @@ class Endpoint {
   /// Queues a datagram of at most wire::kMaxDatagram bytes; the oldest of its priority goes when the queue is
   /// full. False when the connection is gone or the datagram too long. The bytes may be shared by many.
   virtual bool send_datagram(ConnectionId connection, Priority priority, SharedBytes bytes) = 0;
-  /// -1 when none can be opened (yet).
+  /// -1 when none can be opened (yet). One-way streams are the host's alone.
   virtual std::int64_t open_stream(ConnectionId connection, bool both_ways) = 0;
   /// Queues stream bytes; false when the connection is gone or its buffer is full.
   virtual bool send_stream(ConnectionId connection, std::int64_t stream, std::span<const std::uint8_t> bytes,

@@ -129,7 +129,8 @@ std::span<const Arrival> UdpSocket::receive() {
   if (count > 0 && send_error_ == ECONNREFUSED) send_error_ = 0;
   for (int i = 0; i < count; ++i) {
     const msghdr& header = b.in_headers[i].msg_hdr;
-    if (header.msg_flags & MSG_TRUNC) continue;  // longer than anybody may send us
+    // Longer than anybody may send us, or nothing at all (on which ngtcp2 asserts).
+    if ((header.msg_flags & MSG_TRUNC) || b.in_headers[i].msg_len == 0) continue;
     Arrival arrival;
     arrival.from = Address(reinterpret_cast<const sockaddr*>(&b.in_names[i]), header.msg_namelen);
     arrival.to = local_;

@@ -116,7 +116,8 @@ TEST(BadLink, IsSurvivedByStreamsAndDatagrams) {
   ASSERT_TRUE(pair.peer->send_stream(pair.at_peer(), stream, data, true));
   int sent = 0;
   ASSERT_TRUE(pair.run([&] {
-    if (sent < 400 && pair.peer->send_datagram(pair.at_peer(), Priority::kPose, shared(Bytes(100, 1)))) ++sent;
+    if (sent < 400 && pair.peer->send_datagram(pair.at_peer(), Priority::kPose, shared(Bytes(100, 1))))
+      ++sent;
     return pair.host_events.ended[stream] && sent == 400;
   }));
   EXPECT_EQ(pair.host_events.streams[stream], data);

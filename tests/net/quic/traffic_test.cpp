@@ -85,7 +85,8 @@ TEST(Datagrams, ArriveOfEveryPriorityAndLength) {
       ++sent;
     }
   }
-  EXPECT_FALSE(pair.peer->send_datagram(pair.at_peer(), Priority::kPose, shared(Bytes(wire::kMaxDatagram + 1))));
+  EXPECT_FALSE(
+      pair.peer->send_datagram(pair.at_peer(), Priority::kPose, shared(Bytes(wire::kMaxDatagram + 1))));
   EXPECT_FALSE(pair.peer->send_datagram(pair.at_peer(), Priority::kPose, nullptr));
   EXPECT_FALSE(pair.peer->send_datagram(99, Priority::kPose, shared({1})));
   ASSERT_TRUE(pair.run([&] {
@@ -148,7 +149,8 @@ TEST(Closing, OfTheProgramReachesTheOther) {
   Pair pair;
   ASSERT_TRUE(pair.establish());
   pair.peer.reset();
-  ASSERT_TRUE(pair.run([&] { return !pair.host_events.closed.empty(); }, 3.0)) << "only a timeout told the host";
+  ASSERT_TRUE(pair.run([&] { return !pair.host_events.closed.empty(); }, 3.0))
+      << "only a timeout told the host";
   EXPECT_EQ(pair.host_events.reasons[0].text, "the peer ended");
 }
 
@@ -167,9 +169,11 @@ TEST(Closing, MayBeAskedForInsideAnEvent) {
   Recorder peer_events;
   auto peer = connect_quic({host.value()->local_address()}, key.fingerprint(), key, peer_events);
   ASSERT_TRUE(peer);
-  ASSERT_TRUE(run_until({host.value().get(), peer.value().get()}, [&] { return !peer_events.connected.empty(); }));
+  ASSERT_TRUE(
+      run_until({host.value().get(), peer.value().get()}, [&] { return !peer_events.connected.empty(); }));
   for (int i = 0; i < 20; ++i) peer.value()->send_datagram(1, Priority::kState, shared({1, 2, 3}));
-  ASSERT_TRUE(run_until({host.value().get(), peer.value().get()}, [&] { return !peer_events.closed.empty(); }));
+  ASSERT_TRUE(
+      run_until({host.value().get(), peer.value().get()}, [&] { return !peer_events.closed.empty(); }));
   EXPECT_EQ(events.datagrams.size(), 1u) << "something followed after close()";
   EXPECT_EQ(peer_events.reasons[0].code, 5u);
 }
