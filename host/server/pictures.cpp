@@ -38,11 +38,11 @@ void PictureCoder::code(const Snapshot& snapshot, PictureOrder order, std::vecto
   }
   for (int tier = 0; tier < kTierCount; ++tier) {
     const auto i = static_cast<std::size_t>(tier);
-    if (!order.watched[i]) {
-      encoders_[i].reset();  // it starts with a key frame when it is wanted again
-      continue;
-    }
-    if (!again && count_ % kTiers[i].every != 0 && !order.fresh[i]) continue;
+    const bool first = order.watched[i] && !was_watched_[i];
+    was_watched_[i] = order.watched[i];
+    // An encoder that nobody watches rests, but stays: its epochs must go on rising.
+    if (!order.watched[i]) continue;
+    if (!again && count_ % kTiers[i].every != 0 && !order.fresh[i] && !first) continue;
     if (!encoders_[i]) {
       CodecOptions options;
       options.stream = static_cast<std::uint8_t>(tier);
@@ -54,7 +54,7 @@ void PictureCoder::code(const Snapshot& snapshot, PictureOrder order, std::vecto
     const bool young = snapshot.rigid.time - last_key_[i] < kFreshEnough;
     CodedPicture picture;
     picture.tier = tier;
-    picture.frame = encoders_[i]->encode(snapshot, run_, order.fresh[i] && !young);
+    picture.frame = encoders_[i]->encode(snapshot, run_, first || (order.fresh[i] && !young));
     if (picture.frame.key) last_key_[i] = snapshot.rigid.time;
     mend(tier, picture.frame, picture);
     out.push_back(std::move(picture));

@@ -43,6 +43,7 @@ class PictureCoder {
   std::uint64_t count_ = 0;
   std::array<std::optional<SnapshotEncoder>, kTierCount> encoders_;
   std::array<double, kTierCount> last_key_{};  // simulated s
+  std::array<bool, kTierCount> was_watched_{};
   std::map<std::pair<ConnectionId, int>, Mending> mending_;
   std::vector<Piece> pieces_;
   double seconds_ = 0.0;
