@@ -65,6 +65,10 @@ void BodyInbox::take(const wire::Bodies& part, std::int64_t now_ns, const ClockS
     pending_.clear();  // the world was reset
     given_ = false;
   }
+  // What came too late says most about how late things come. A world at rest is told of again and again.
+  if (part.rate > 0.0 && !(given_ && part.tick == given_tick_)) {
+    delay_.add(to_seconds(now_ns - clock.to_peer(part.stamp_ns)));
+  }
   if (given_ && part.tick <= given_tick_) {
     counts_.late += 1;
     return;
@@ -91,7 +95,6 @@ void BodyInbox::take(const wire::Bodies& part, std::int64_t now_ns, const ClockS
     return;
   }
   pending.received.set(part.part);
-  delay_.add(to_seconds(now_ns - clock.to_peer(part.stamp_ns)));
   pending.bodies.insert(pending.bodies.end(), part.bodies.begin(), part.bodies.end());
   pending.grips.insert(pending.grips.end(), part.grips.begin(), part.grips.end());
   counts_.parts += 1;

@@ -160,10 +160,10 @@ void PictureMaker::run() {
 
 void PictureMaker::take_pieces(const std::vector<std::vector<std::uint8_t>>& pieces, bool anew,
                                bool to_the_end) {
-  if (anew) decoder_ = SnapshotDecoder();
+  if (anew) decoders_ = StreamDecoders();
   const std::uint32_t patience = to_the_end ? 0 : options_.film ? kFilmPatience : kWindowPatience;
   for (const std::vector<std::uint8_t>& piece : pieces) {
-    const wire::Fault fault = decoder_.take(piece);
+    const wire::Fault fault = decoders_.take(piece);
     {
       const std::lock_guard lock(mutex_);
       report_.bytes += piece.size();
@@ -172,10 +172,10 @@ void PictureMaker::take_pieces(const std::vector<std::vector<std::uint8_t>>& pie
         report_.last_fault = fault.text();
       }
     }
-    while (std::optional<DecodedFrame> frame = decoder_.next(patience)) take_frame(std::move(*frame));
+    while (std::optional<DecodedFrame> frame = decoders_.next(patience)) take_frame(std::move(*frame));
   }
   if (to_the_end) {
-    while (std::optional<DecodedFrame> frame = decoder_.next(0)) take_frame(std::move(*frame));
+    while (std::optional<DecodedFrame> frame = decoders_.next(0)) take_frame(std::move(*frame));
   }
 }
 
@@ -230,7 +230,7 @@ void PictureMaker::make_feedback() {
   const std::int64_t now_ns = steady_now_ns();
   if (now_ns < feedback_due_ns_) return;
   feedback_due_ns_ = now_ns + kFeedbackGap_ns;
-  auto bytes = std::make_shared<const std::vector<std::uint8_t>>(wire::datagram(decoder_.feedback()));
+  auto bytes = std::make_shared<const std::vector<std::uint8_t>>(wire::datagram(decoders_.feedback()));
   const std::lock_guard lock(inbox_mutex_);
   if (feedback_.size() < 4) feedback_.push_back(std::move(bytes));
 }

@@ -12,7 +12,6 @@
 #include <thread>
 #include <vector>
 
-#include "net/codec/snapshot_codec.h"
 #include "net/histogram.h"
 #include "net/quic/endpoint.h"
 #include "net/snapshot_queue.h"
@@ -20,6 +19,7 @@
 #include "peer/remote/film_times.h"
 #include "peer/remote/picture_history.h"
 #include "peer/remote/shown_time.h"
+#include "peer/remote/stream_decoders.h"
 
 namespace slosh {
 
@@ -104,7 +104,7 @@ class PictureMaker {
   const DecodedFrame* last_frame_ = nullptr;  // compared only
 
   // The thread's own.
-  SnapshotDecoder decoder_;
+  StreamDecoders decoders_;
   FilmTimes times_;
   std::uint32_t film_run_ = 0;
   std::int64_t feedback_due_ns_ = 0;

@@ -91,20 +91,24 @@ wire::Fault RemoteLink::on_welcome(wire::ByteView payload) {
 }
 
 wire::Fault RemoteLink::on_refused(wire::ByteView payload) {
-  wire::Refused refused;
-  if (wire::Fault fault = wire::decode(payload, refused)) return fault;
-  if (refused.code == wire::RefusalCode::kTimedOut && status_.state != LinkState::kJoining) {
-    return {};  // contact was bad; what follows is the end of the connection, and we come back
+  wire::Refused message;
+  if (wire::Fault fault = wire::decode(payload, message)) return fault;
+  refused(message.code, message.text);
+  return {};
+}
+
+void RemoteLink::refused(wire::RefusalCode code, const std::string& words) {
+  if (code == wire::RefusalCode::kTimedOut && status_.live_ns != 0) {
+    return;  // contact was bad; what follows is the end of the connection, and we come back
   }
   refused_ = true;
-  if (refused.code == wire::RefusalCode::kEnding && status_.live_ns != 0) {
-    end(std::nullopt, refused.text);
+  if (code == wire::RefusalCode::kEnding && status_.live_ns != 0) {
+    end(std::nullopt, words);
   } else {
-    end(Error{options_.address, "the host says: " + (refused.text.empty() ? std::string("no") : refused.text),
-              mend_of(refused.code)},
-        refused.text);
+    end(Error{options_.address, "the host says: " + (words.empty() ? std::string("no") : words),
+              mend_of(code)},
+        words);
   }
-  return {};
 }
 
 wire::Fault RemoteLink::on_roster(wire::ByteView payload) {

@@ -251,6 +251,11 @@ void RemoteLink::on_datagram(ConnectionId, std::span<const std::uint8_t> bytes) 
 void RemoteLink::on_closed(ConnectionId, const CloseReason& reason) {
   closed_ = true;
   close_text_ = reason.text;
+  // A refusal whose message was lost with the connection is in the code all the same.
+  if (!reason.by_peer || reason.code == 0 || reason.code > wire::kRefusalCodes || refused_) return;
+  if (status_.state != LinkState::kEnded) {
+    refused(static_cast<wire::RefusalCode>(reason.code - 1), reason.text);
+  }
 }
 
 /// Contact is gone (or never was): ends the session when it had not begun, else tries again.
@@ -259,11 +264,14 @@ void RemoteLink::lost(const std::string& why) {
   phase_ = Phase::kIdle;
   if (leaving_) return end(std::nullopt);
   switch (status_.state) {
-    case LinkState::kConnecting:
-      return end(Error{options_.address, why.empty() ? "no answer" : why,
-                       why.empty() || why == "no answer"
-                           ? "See that the host runs, and that UDP reaches that address and port"
-                           : "Ask for a new link if this one is old"});
+    case LinkState::kConnecting: {
+      const std::string what = why.empty() ? "no answer" : why;
+      const bool silent = what.find("no answer") != std::string::npos;
+      const bool named = what.find(options_.address) != std::string::npos;
+      return end(Error{named ? "" : options_.address, what,
+                       silent ? "See that the host runs, and that UDP reaches that address and port"
+                              : "Ask the host for a new link"});
+    }
     case LinkState::kJoining:
       return end(Error{options_.address, why.empty() ? "the connection ended while joining" : why,
                        "Join again with the same link"});

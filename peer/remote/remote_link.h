@@ -99,6 +99,7 @@ class RemoteLink final : public EndpointEvents {
   wire::Fault heard(std::uint64_t type, wire::ByteView payload);
   wire::Fault on_welcome(wire::ByteView payload);
   wire::Fault on_refused(wire::ByteView payload);
+  void refused(wire::RefusalCode code, const std::string& words);
   wire::Fault on_roster(wire::ByteView payload);
   wire::Fault on_answer(wire::ByteView payload);
   wire::Fault on_world_info(wire::ByteView payload);

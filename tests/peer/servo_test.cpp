@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <thread>
 
 #include "peer/haptics/device_loop.h"
 #include "servo_kit.h"
@@ -169,6 +170,153 @@ TEST(Servo, WaitsAtFullForceForTheFirstStepAndLetsGoWhenTheWorldStops) {
   kit.tick(1.0);
   EXPECT_EQ(kit.device->last.force.x, 0.0);
   EXPECT_FALSE(kit.servo->samples().pop(sample)) << "the end is not felt as a drop to zero";
+}
+
+TEST(Servo, TheForceComesBackAsGentlyAsItWent) {
+  ServoKit kit;
+  kit.publish(0.0);
+  kit.tick(0.0);
+  kit.publish(kTick);
+  kit.device->next.pose = at(0.01);
+  kit.tick(1.0);
+  EXPECT_EQ(kit.device->last.force.x, 0.0) << "the link was gone for a second";
+  double last = 0.0;
+  for (int ms = 0; ms <= 300; ++ms) {
+    const double now = 1.0 + 0.001 * ms;
+    kit.publish(now);
+    kit.tick(now);
+    EXPECT_LT(last - kit.device->last.force.x, 0.05) << "no jump at " << ms << " ms";
+    last = kit.device->last.force.x;
+  }
+  EXPECT_NEAR(last, -10.0, 1e-6);
+}
+
+TEST(Servo, AResetWorldStartsTimeAnewAndTheRecordGoesOn) {
+  ServoKit kit;
+  for (int i = 0; i <= 500; ++i) {
+    kit.publish(0.002 * i);
+    kit.tick(0.002 * i);
+  }
+  EXPECT_NEAR(kit.device->last_time, 1.0, 1e-9);
+  for (int i = 0; i <= 500; ++i) {
+    BodyMessage& message = kit.channel.bodies().back();
+    message = ServoKit::first();
+    message.run = 1;
+    message.rate = 1.0;
+    message.stamp_ns = to_nanoseconds(1.002 + 0.002 * i);
+    message.bodies.tick = static_cast<std::uint64_t>(i);
+    message.bodies.time = 0.002 * i;
+    kit.channel.bodies().publish();
+    kit.device->next.pose = at(0.05);
+    kit.tick(1.002 + 0.002 * i);
+    if (i == 0) {
+      EXPECT_NEAR(kit.device->last_time, 0.0, 1e-9) << "devices follow the world's time";
+      EXPECT_EQ(kit.device->last.force.x, 0.0) << "a hand far from the grip is let in again";
+    }
+  }
+  EXPECT_NEAR(kit.device->last.force.x, -50.0, 1e-6);
+  ServoSample sample;
+  double last = -1.0;
+  int count = 0;
+  while (kit.servo->samples().pop(sample)) {
+    EXPECT_GT(sample.time, last) << "rows of a file rise";
+    last = sample.time;
+    count += 1;
+  }
+  EXPECT_NEAR(count, 1002, 2);
+  EXPECT_NEAR(last, 2.002, 0.005);
+}
+
+TEST(Servo, JoiningALongRunningWorldTakesNoTimeToCatchUp) {
+  ServoKit kit;
+  kit.publish(5e6);
+  kit.tick(5e6);
+  kit.publish(5e6 + 0.002);
+  kit.tick(5e6 + 0.002);
+  ServoSample sample;
+  int count = 0;
+  while (kit.servo->samples().pop(sample)) count += 1;
+  EXPECT_EQ(count, 2);
+}
+
+TEST(Servo, AHandThatIsNotOursIsLeftAlone) {
+  Scene scene = test::one_grip_scene();
+  scene.grips.push_back(scene.grips[0]);
+  Channel channel(2, ServoKit::first(), 1 << 20);
+  std::vector<std::unique_ptr<Device>> devices(2);
+  auto made = std::make_unique<test::FakeDevice>();
+  test::FakeDevice* const device = made.get();
+  devices[1] = std::move(made);
+  Servo servo(scene, std::move(devices), channel, {});
+  EXPECT_FALSE(servo.holds(0));
+  EXPECT_TRUE(servo.holds(1));
+  EXPECT_EQ(servo.device(0), nullptr);
+  servo.tick(1000);
+  EXPECT_FALSE(channel.pose(0).update()) << "whoever holds it writes its pose";
+  EXPECT_TRUE(channel.pose(1).update());
+  EXPECT_EQ(device->last_time, 0.0);
+  ServoSample sample;
+  ASSERT_TRUE(servo.samples().pop(sample));
+  EXPECT_EQ(sample.device, 1u);
+  EXPECT_FALSE(servo.samples().pop(sample));
+}
+
+/// Tells when it is closed.
+class ClosingDevice final : public Device {
+ public:
+  explicit ClosingDevice(int& closed) : closed_(closed) {}
+  DeviceReport read(const DeviceMoment&) noexcept override { return {}; }
+  void write(const Wrench& on_hand) noexcept override { last = on_hand; }
+  void close() override { closed_ += 1; }
+  std::string kind() const override { return "closing"; }
+  Wrench last;
+
+ private:
+  int& closed_;
+};
+
+TEST(Servo, DevicesComeAndGoWhileItRuns) {
+  Scene scene = test::one_grip_scene();
+  Channel channel(1, ServoKit::first(), 1 << 20);
+  Servo servo(scene, {}, channel, {});
+  EXPECT_FALSE(servo.holds_any());
+  servo.tick(1000);
+  EXPECT_FALSE(channel.pose(0).update());
+
+  int closed = 0;
+  servo.set_device(0, std::make_unique<ClosingDevice>(closed));
+  EXPECT_TRUE(servo.holds_any());
+  servo.tick(2000);
+  EXPECT_TRUE(channel.pose(0).update());
+
+  servo.set_device(0, nullptr);
+  EXPECT_FALSE(servo.holds(0));
+  EXPECT_EQ(closed, 0) << "the loop may still be using it";
+  servo.tick(3000);
+  EXPECT_FALSE(channel.pose(0).update());
+  servo.set_device(0, std::make_unique<ClosingDevice>(closed));
+  EXPECT_EQ(closed, 1) << "now it is free";
+  servo.tick(4000);
+  EXPECT_TRUE(channel.pose(0).update());
+  servo.close_devices();
+  EXPECT_EQ(closed, 2);
+}
+
+TEST(Servo, DevicesAreExchangedUnderARunningLoop) {
+  Scene scene = test::one_grip_scene();
+  Channel channel(1, ServoKit::first(), 1 << 20);
+  Servo servo(scene, {}, channel, {});
+  DeviceLoop loop(servo, 0.0001);
+  loop.start();
+  int closed = 0;
+  for (int i = 0; i < 300; ++i) {
+    servo.set_device(0, std::make_unique<ClosingDevice>(closed));
+    if (i % 3 == 0) servo.set_device(0, nullptr);
+    std::this_thread::yield();
+  }
+  loop.stop();
+  servo.close_devices();
+  EXPECT_GE(closed, 300) << "none is forgotten";
 }
 
 TEST(Freshness, WaitsLongerForASlowWorld) {

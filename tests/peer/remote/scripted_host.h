@@ -22,9 +22,14 @@ constexpr double kHostStep = 0.002;  // s
 inline Scene shared_scene() {
   Scene scene;
   scene.name = "shared";
+  TriangleMesh& mesh = scene.meshes.emplace_back();
+  mesh.positions = {{0, 0, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}, {0, 0, 0.1f}};
+  mesh.normals.assign(4, {0, 1, 0});
+  mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
   scene.bodies.resize(1);
   Body& body = scene.bodies[0];
   body.name = "beam";
+  body.mesh = 0;
   body.motion = BodyMotion::kFree;
   body.mass.mass = 1.0;
   body.mass.inertia = glm::dmat3(0.01);
