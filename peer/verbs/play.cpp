@@ -81,6 +81,7 @@ void add_play(CLI::App& app, VerbRun& chosen) {
   verb->add_option("--bilateral", o->bilateral, "Iterations of the fluid surface's filter")
       ->check(CLI::Range(0, 64))
       ->capture_default_str();
+  verb->add_option("--record", o->record, "Keep the run's inputs and states in a file, for `slosh replay`");
   verb->add_flag("!--no-render", o->render, "No picture at all");
   verb->footer(kFooter);
   verb->callback([&chosen, o] { chosen = [o] { return play(*o); }; });

@@ -24,6 +24,7 @@ struct PlayOptions : ShowOptions {
   std::string spacing;           ///< "", "auto" or metres
   std::size_t particles = 0;     ///< 0 = not asked for
   int threads = 0;               ///< 0 = chosen
+  std::string record;            ///< file for a recording; empty = none
 };
 
 }  // namespace slosh

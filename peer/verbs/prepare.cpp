@@ -119,6 +119,7 @@ Result<Prepared> prepare(const PlayOptions& options, bool headless, Progress& pr
   const Result<Backend> backend = choose_backend(options.backend);
   if (!backend) return backend.error();
   p.backend = backend.value();
+  p.record = options.record;
   p.machine = this_machine();
   // Drawing takes a core of its own; the device loop and the encoder take little.
   p.threads = options.threads > 0 ? options.threads

@@ -30,6 +30,7 @@ struct Prepared : Stage {
   std::string spacing_reason;
   Backend backend = Backend::kCpu;  ///< what was chosen; never kAuto
   int threads = 1;                  ///< the simulation's
+  std::filesystem::path record;     ///< where the run is recorded; empty = it is not
 };
 
 /// Finds and loads a shipped name or a file.

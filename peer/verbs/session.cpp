@@ -38,6 +38,18 @@ Result<std::unique_ptr<Session>> Session::create(const Prepared& prepared, Devic
   options.picture_rate = picture_rate;
   options.until = prepared.seconds;
   session->host_ = std::make_unique<Host>(std::move(world), scene, *session->channel_, options);
+  if (!prepared.record.empty()) {
+    keep::RecordingOptions recording;
+    recording.file = prepared.record;
+    recording.version = SLOSH_VERSION;
+    recording.backend = backend_name(prepared.backend);
+    const Host& host = *session->host_;
+    Result<std::unique_ptr<keep::RecordingWriter>> writer = keep::RecordingWriter::start(
+        scene, prepared.sampled.spacing, host.start_state(), host.world(), host.state(), recording);
+    if (!writer) return writer.error();
+    session->recording_ = std::move(writer.value());
+    session->host_->add_tap(*session->recording_);
+  }
   session->mouse_targets_ = std::move(devices.mouse_targets);
   session->servo_ =
       std::make_unique<Servo>(scene, std::move(devices.devices), *session->channel_, ServoOptions{});
@@ -65,6 +77,13 @@ void Session::stop() {
   if (loop_) loop_->stop();
   if (servo_) servo_->close_devices();
   if (recorder_) recorder_->stop();
+  if (recording_) recorded_ = recording_->finish();
+}
+
+bool Session::start_again() {
+  if (!recording_) return false;
+  host_->post({HostAction::kReset});
+  return true;
 }
 
 HudFacts Session::facts(double picture_rate) const {
@@ -133,6 +152,10 @@ void Session::report(RunSummary& s) const {
   s.machine = prepared_.machine;
   s.version = SLOSH_VERSION;
   s.folder = prepared_.folder.string();
+  if (recording_) {
+    s.recording = prepared_.record.string();
+    s.recording_problem = !recorded_.problem.empty() ? recorded_.problem : recorded_.totals.ended_early;
+  }
   if (!prepared_.folder.empty()) s.files = {"wrenches.csv", "poses.csv"};
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "host/host.h"
+#include "host/keep/recording.h"
 #include "net/channel.h"
 #include "peer/haptics/device_loop.h"
 #include "peer/haptics/make_device.h"
@@ -38,6 +39,8 @@ class Session final : public LiveRun {
   }
   bool paused() const override { return paused_; }
   MouseTarget* mouse_target(std::size_t i) override { return mouse_targets_[i].get(); }
+  /// In place where the run is recorded, so that the recording goes on.
+  bool start_again() override;
   void report(RunSummary& summary) const override;
 
   Host& host() { return *host_; }
@@ -48,6 +51,7 @@ class Session final : public LiveRun {
 
   const Prepared& prepared_;
   std::unique_ptr<Channel> channel_;
+  std::unique_ptr<keep::RecordingWriter> recording_;  // null where none was asked for; the host tells it
   std::unique_ptr<Host> host_;
   std::unique_ptr<Servo> servo_;
   std::unique_ptr<DeviceLoop> loop_;
@@ -55,6 +59,7 @@ class Session final : public LiveRun {
   RateLog rates_;
   std::vector<std::shared_ptr<MouseTarget>> mouse_targets_;  // one a grip, null where it is not a mouse
   bool paused_ = false;
+  keep::RecordingReport recorded_;
 };
 
 }  // namespace slosh

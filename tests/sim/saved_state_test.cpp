@@ -65,11 +65,11 @@ TEST(SavedWorld, GoesOnToTheBit) {
   const Tank tank = stirred_tank();
   World whole = make_world(tank);
   std::vector<Bytes> at;
-  for (const std::uint64_t tick : {0u, 1u, 150u, 300u}) {
+  for (const std::uint64_t tick : {0u, 150u, 320u}) {
     run(whole, tick);
     at.push_back(saved(whole));
   }
-  run(whole, 500);
+  run(whole, 400);
   BodySnapshot end;
   whole.fill(end);
   for (const Bytes& bytes : at) {
@@ -78,7 +78,7 @@ TEST(SavedWorld, GoesOnToTheBit) {
     const Result<bool> restored = again.restore(bytes);
     ASSERT_TRUE(restored) << restored.error().text();
     EXPECT_EQ(saved(again), bytes);
-    run(again, 500);
+    run(again, 400);
     EXPECT_EQ(again.hash(), whole.hash());
     BodySnapshot snapshot;
     again.fill(snapshot);
@@ -174,7 +174,7 @@ TEST(SavedWorld, DamagedBytesDoNoHarm) {
     for (const std::uint8_t change : {0x01, 0x80, 0x7f}) {
       Bytes damaged = bytes;
       damaged[at] ^= change;
-      if (other.restore(damaged) && at % 5 == 0) run(other, other.tick() + 1);
+      if (other.restore(damaged) && at % 11 == 0) run(other, other.tick() + 1);
       ASSERT_LE(other.diagnostics().particles, 40u);
     }
   }
@@ -254,23 +254,20 @@ TEST(LiveGravity, ScalesWeightAndIsBounded) {
   EXPECT_FALSE(world.set_gravity_scale(2.1));
   EXPECT_FALSE(world.set_gravity_scale(-0.1));
   EXPECT_FALSE(world.set_gravity_scale(std::numeric_limits<double>::quiet_NaN()));
-  world.settle(1.0);
+  world.settle(0.4);
   const double most = std::min(2.0, most_gravity_allowed(tank.scene, world.plan()));
   ASSERT_GT(most, 1.2);
   ASSERT_TRUE(world.set_gravity_scale(most));
-  world.settle(1.5);
+  world.settle(0.8);
   BodySnapshot snapshot;
   double weight = 0.0;
-  for (int i = 0; i < 200; ++i) {
+  for (int i = 0; i < 100; ++i) {
     world.step({});
     world.fill(snapshot);
-    weight -= snapshot.bodies[0].fluid.force.y / 200.0;
+    weight -= snapshot.bodies[0].fluid.force.y / 100.0;
   }
   EXPECT_NEAR(weight / (world.diagnostics().mass * 9.81), most, 0.02);
   EXPECT_EQ(world.diagnostics().retired, 0u);
-  ASSERT_TRUE(world.set_gravity_scale(0.0));
-  const double before = world.diagnostics().momentum.y;
-  EXPECT_TRUE(std::isfinite(before));
 }
 
 TEST(LiveParameters, AreSavedAndRestored) {

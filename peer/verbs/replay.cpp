@@ -1,0 +1,104 @@
+// The verb `replay`: a recording simulated again, compared and filmed.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+#include <memory>
+
+#include "peer/verbs/interrupt.h"
+#include "peer/verbs/play_modes.h"
+#include "peer/verbs/replay_run.h"
+#include "peer/verbs/verbs.h"
+
+namespace slosh {
+namespace {
+
+struct ReplayVerbOptions : ShowOptions {
+  std::string file;
+  std::string backend = "auto";
+  int threads = 0;
+};
+
+constexpr const char* kFooter =
+    "The world is simulated again from the recorded inputs, as fast as it goes. On the backend that it was\n"
+    "recorded on, every hash is compared: \"84 of 84 hashes agree\", or the first tick that differs and "
+    "exit\n"
+    "code 1. On another one bodies are compared within a spacing. With --out, DIR gets what `slosh play`\n"
+    "writes headless: view.mp4, final.png, wrenches.csv, wrenches.png, summary.json; wrenches are the "
+    "world's,\n"
+    "not the device loop's.\n"
+    "\n"
+    "Examples:\n"
+    "  slosh play bucket --headless --record bucket.rec\n"
+    "  slosh replay bucket.rec --no-render\n"
+    "  slosh replay bucket.rec --out out/again --size 1280x720";
+
+int replay(ReplayVerbOptions options) {
+  catch_interrupts();
+  Progress progress;
+  const std::optional<Backend> backend = backend_named(options.backend);
+  if (!backend)
+    return fail({"--backend", "'" + options.backend + "' is unknown", "Choose auto, cpu or cuda"});
+  const int cores = this_machine().cores;
+  const bool kept = !options.out.empty();
+  options.render = options.render && kept;  // without a folder there is nowhere for a film to go
+  if (options.threads == 0) options.threads = std::max(1, options.render ? cores - 1 : cores);
+  progress.phase("opening", options.file);
+  Result<std::unique_ptr<keep::Replayer>> opened =
+      keep::Replayer::open(options.file, {options.threads, *backend});
+  if (!opened) {
+    progress.note("");
+    return fail(opened.error());
+  }
+  keep::Replayer& replayer = *opened.value();
+
+  Stage stage;
+  stage.scene = replayer.head().scene;
+  stage.machine = this_machine();
+  const Result<bool> set = set_stage(options, kept, stage);
+  if (!set) return fail(set.error());
+  stage.seconds = options.seconds > 0.0 ? options.seconds : std::numeric_limits<double>::infinity();
+  Result<std::unique_ptr<ReplayRun>> run =
+      ReplayRun::create(replayer, stage, options.render ? options.frames_per_second : 0.0);
+  if (!run) return fail(run.error());
+  RunSummary summary;
+  const Result<bool> shown = show_headless(stage, *run.value(), options, progress, summary);
+  if (!shown) return fail(shown.error());
+  summary.threads = options.threads;
+  int code = finish_run(stage, progress, summary);
+  if (!run.value()->problem().empty()) {
+    std::fprintf(stderr, "slosh: %s.\n", run.value()->problem().c_str());
+    return kExitFailed;
+  }
+  if (code == kExitOk && !replayer.verdict().same(replayer.head().spacing)) code = kExitFailed;
+  return code;
+}
+
+}  // namespace
+
+void add_replay(CLI::App& app, VerbRun& chosen) {
+  CLI::App* verb = app.add_subcommand("replay", "Simulate a recording again, compare it and film it");
+  auto o = std::make_shared<ReplayVerbOptions>();
+  verb->add_option("FILE", o->file, "What --record wrote")->required();
+  verb->add_option("--out", o->out, "Folder for the film, the plot and the tables; without it only compares");
+  verb->add_option("--seconds", o->seconds, "Simulated seconds from its start (all)")
+      ->check(CLI::Range(0.001, 1e6));
+  verb->add_option("--backend", o->backend,
+                   "What to simulate on; auto: where it was recorded, if that is here")
+      ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
+      ->capture_default_str();
+  verb->add_option("--threads", o->threads, "Cores for the simulation (all); the result is the same")
+      ->check(CLI::Range(1, 1024));
+  verb->add_option("--size", o->size, "Picture in pixels, WxH (640x480)");
+  verb->add_option("--fps", o->frames_per_second, "Pictures a simulated second")
+      ->check(CLI::Range(1.0, 240.0))
+      ->capture_default_str();
+  verb->add_option("--bilateral", o->bilateral, "Iterations of the fluid surface's filter")
+      ->check(CLI::Range(0, 64))
+      ->capture_default_str();
+  verb->add_flag("!--no-render", o->render, "No picture at all");
+  verb->footer(kFooter);
+  verb->callback([&chosen, o] { chosen = [o] { return replay(*o); }; });
+}
+
+}  // namespace slosh

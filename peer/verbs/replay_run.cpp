@@ -1,0 +1,164 @@
+#include "peer/verbs/replay_run.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+
+#include "net/clock.h"
+#include "peer/output/recorder.h"
+
+namespace slosh {
+namespace {
+
+constexpr std::size_t kPictureBytes = std::size_t{256} << 20;
+constexpr std::size_t kPicturesAhead = 30;  // then the simulation waits for who draws
+constexpr double kSampleInterval = 0.002;   // simulated s, as a live run's
+
+}  // namespace
+
+ReplayRun::ReplayRun(keep::Replayer& replayer, const Stage& stage, double picture_rate)
+    : replayer_(replayer), stage_(stage), picture_rate_(picture_rate), pictures_(kPictureBytes) {
+  for (const Grip& grip : stage.scene.grips) peaks_.push_back({grip.name, "recorded", 0.0, 0.0});
+  start_mass_ = replayer.world().diagnostics().mass;
+}
+
+Result<std::unique_ptr<ReplayRun>> ReplayRun::create(keep::Replayer& replayer, const Stage& stage,
+                                                     double picture_rate) {
+  std::unique_ptr<ReplayRun> run(new ReplayRun(replayer, stage, picture_rate));
+  if (stage.folder.empty()) return run;
+  const std::filesystem::path file = stage.folder / "wrenches.csv";
+  run->wrenches_.reset(std::fopen(file.c_str(), "we"));
+  if (!run->wrenches_)
+    return Error{file.string(), "cannot be written: " + std::string(std::strerror(errno)),
+                 "Choose another folder with --out"};
+  std::fprintf(run->wrenches_.get(), "%s\n", kWrenchesHeader);
+  return run;
+}
+
+ReplayRun::~ReplayRun() {
+  stop();
+}
+
+void ReplayRun::start() {
+  running_.store(true, std::memory_order_release);
+  thread_ = std::thread([this] { run(); });
+}
+
+void ReplayRun::stop() {
+  request_stop();
+  if (thread_.joinable()) thread_.join();
+  pictures_.close();
+}
+
+void ReplayRun::show() {
+  const double half_step = 0.5 * replayer_.world().plan().time_step;
+  if (picture_rate_ <= 0.0 || replayer_.elapsed() + half_step < next_picture_) return;
+  while (pictures_.waiting() >= kPicturesAhead && !stop_.load(std::memory_order_relaxed)) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  auto snapshot = std::make_shared<Snapshot>();
+  replayer_.world().fill(*snapshot);
+  pictures_.push(std::move(snapshot));
+  next_picture_ += 1.0 / picture_rate_;
+}
+
+void ReplayRun::write_samples() {
+  const double half_step = 0.5 * replayer_.world().plan().time_step;
+  if (replayer_.elapsed() + half_step < next_sample_) return;
+  while (next_sample_ <= replayer_.elapsed() + half_step) next_sample_ += kSampleInterval;
+  replayer_.world().fill(bodies_);
+  for (std::size_t i = 0; i < bodies_.grips.size(); ++i) {
+    const Wrench& w = bodies_.grips[i].on_hand;
+    peaks_[i].peak_force = std::max(peaks_[i].peak_force, glm::length(w.force));
+    peaks_[i].peak_torque = std::max(peaks_[i].peak_torque, glm::length(w.torque));
+    if (!wrenches_) continue;
+    std::fprintf(wrenches_.get(), "%.6f,%zu,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g\n", replayer_.elapsed(), i,
+                 w.force.x, w.force.y, w.force.z, w.torque.x, w.torque.y, w.torque.z);
+  }
+}
+
+void ReplayRun::run() {
+  const std::int64_t begin_ns = steady_now_ns();
+  const double time_step = replayer_.world().plan().time_step;
+  show();
+  while (!stop_.load(std::memory_order_relaxed) && replayer_.elapsed() + 0.5 * time_step < stage_.seconds) {
+    const std::int64_t step_ns = steady_now_ns();
+    const Result<bool> stepped = replayer_.step();
+    if (!stepped) {
+      problem_ = stepped.error().text();
+      break;
+    }
+    if (!stepped.value()) break;
+    const std::int64_t now_ns = steady_now_ns();
+    step_time_.add(to_seconds(now_ns - step_ns));
+    const StepTimes& parts = replayer_.world().times();
+    total_.sort += parts.sort;
+    total_.density += parts.density;
+    total_.force += parts.force;
+    total_.body += parts.body;
+    total_.total += parts.total;
+    write_samples();
+    show();
+    wall_ = to_seconds(now_ns - begin_ns);
+    shown_time_.store(replayer_.elapsed(), std::memory_order_relaxed);
+    shown_rate_.store(replayer_.elapsed() / std::max(wall_, 1e-9), std::memory_order_relaxed);
+  }
+  if (wrenches_) std::fflush(wrenches_.get());
+  pictures_.close();
+  running_.store(false, std::memory_order_release);
+}
+
+HudFacts ReplayRun::facts(double picture_rate) const {
+  HudFacts facts;
+  facts.title = stage_.scene.name;
+  facts.spacing = replayer_.head().spacing;
+  facts.fluid_particles = replayer_.world().fluid_count();
+  facts.boundary_particles = replayer_.world().boundary_count();
+  facts.picture_rate = picture_rate;
+  return facts;
+}
+
+Rates ReplayRun::note_rates() {
+  Rates rates;
+  rates.time = shown_time_.load(std::memory_order_relaxed);
+  rates.real_time = shown_rate_.load(std::memory_order_relaxed);
+  rates_.add(rates);
+  return rates;
+}
+
+void ReplayRun::report(RunSummary& s) const {
+  const World& world = replayer_.world();
+  const Diagnostics end = world.diagnostics();
+  const keep::ReplayVerdict& verdict = replayer_.verdict();
+  s.scene = stage_.scene.name;
+  s.scene_file = stage_.scene.source_file;
+  s.spacing = replayer_.head().spacing;
+  s.spacing_reason = "as it was recorded";
+  s.fluid_particles = world.fluid_count();
+  s.boundary_particles = world.boundary_count();
+  s.retired_particles = end.retired;
+  s.steps = verdict.steps;
+  s.time_step = world.plan().time_step;
+  s.simulated = replayer_.elapsed();
+  s.wall = wall_;
+  s.real_time_factor = wall_ > 0.0 ? s.simulated / wall_ : 0.0;
+  s.step_ms = {1e3 * step_time_.percentile(0.5), 1e3 * step_time_.percentile(0.99), 1e3 * step_time_.max()};
+  const double total = total_.total > 0.0 ? total_.total : 1.0;
+  s.share_sort = total_.sort / total;
+  s.share_density = total_.density / total;
+  s.share_force = total_.force / total;
+  s.share_body = total_.body / total;
+  s.status = replayer_.status();
+  s.fluid_mass_start = start_mass_;
+  s.fluid_mass_end = end.mass;
+  s.devices = peaks_;
+  s.backend = backend_name(replayer_.backend());
+  s.machine = stage_.machine;
+  s.version = SLOSH_VERSION;
+  s.folder = stage_.folder.string();
+  s.verdict = verdict.text(replayer_.head().spacing);
+  if (wrenches_) s.files.emplace_back("wrenches.csv");
+}
+
+}  // namespace slosh

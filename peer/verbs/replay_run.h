@@ -1,0 +1,73 @@
+// A recording as a run to look at: simulated again from its inputs, as fast as it goes.
+#pragma once
+
+#include <atomic>
+#include <cstdio>
+#include <memory>
+#include <thread>
+
+#include "host/keep/replay.h"
+#include "net/histogram.h"
+#include "peer/verbs/live_run.h"
+#include "peer/verbs/prepare.h"
+
+namespace slosh {
+
+class ReplayRun final : public LiveRun {
+ public:
+  /// `replayer` and `stage` must outlive it. `picture_rate` in pictures a simulated second, 0 = none. Errors:
+  /// a file cannot be written.
+  static Result<std::unique_ptr<ReplayRun>> create(keep::Replayer& replayer, const Stage& stage,
+                                                   double picture_rate);
+  ~ReplayRun() override;
+
+  void start() override;
+  void request_stop() override { stop_.store(true, std::memory_order_relaxed); }
+  bool running() override { return running_.load(std::memory_order_acquire); }
+  void stop() override;
+  SnapshotQueue& pictures() override { return pictures_; }
+  SnapshotPointer newest_picture() override { return pictures_.pop_newest(); }
+  HudFacts facts(double picture_rate) const override;
+  Rates note_rates() override;
+  RateLog& rates() override { return rates_; }
+  void pause(bool) override {}
+  bool paused() const override { return false; }
+  MouseTarget* mouse_target(std::size_t) override { return nullptr; }
+  void report(RunSummary& summary) const override;
+
+  /// Why the replay ended before its end; after stop(). Empty = it did not.
+  const std::string& problem() const { return problem_; }
+
+ private:
+  ReplayRun(keep::Replayer& replayer, const Stage& stage, double picture_rate);
+  void run();
+  void show();
+  void write_samples();
+
+  struct CloseFile {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+
+  keep::Replayer& replayer_;
+  const Stage& stage_;
+  double picture_rate_;
+  SnapshotQueue pictures_;
+  RateLog rates_;
+  std::unique_ptr<std::FILE, CloseFile> wrenches_;
+  double next_picture_ = 0.0;  // s since the recording's start
+  double next_sample_ = 0.0;
+  BodySnapshot bodies_;
+  std::vector<DeviceSummary> peaks_;
+  Histogram step_time_;
+  StepTimes total_;
+  double wall_ = 0.0;
+  double start_mass_ = 0.0;
+  std::string problem_;
+  std::thread thread_;
+  std::atomic<bool> stop_{false};
+  std::atomic<bool> running_{false};
+  std::atomic<double> shown_time_{0.0};
+  std::atomic<double> shown_rate_{0.0};
+};
+
+}  // namespace slosh
