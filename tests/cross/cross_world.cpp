@@ -64,16 +64,7 @@ Tank shaken(Tank tank) {
   return tank;
 }
 
-// After one step from the same start the two differ by rounding alone; velocities show in momentum and
-// energy.
-void compare_steps(const char* name, const Tank& tank, const Plan& plan, int steps, double tolerance) {
-  std::printf("%s, %d step(s)\n", name, steps);
-  World cpu = world_on(Backend::kCpu, tank, plan);
-  World gpu = world_on(Backend::kCuda, tank, plan);
-  for (int i = 0; i < steps; ++i) {
-    step(cpu, 0.09);
-    step(gpu, 0.09);
-  }
+void compare_worlds(const World& cpu, const World& gpu, double tolerance) {
   const View a(cpu), b(gpu);
   double apart = 0.0;
   bool same_kinds = true;
@@ -83,7 +74,8 @@ void compare_steps(const char* name, const Tank& tank, const Plan& plan, int ste
     apart = std::max<double>(apart, glm::distance(a.snapshot.positions[p], b.snapshot.positions[p]));
   }
   expect_true("the same particles in the world", same_kinds && a.sums.particles == b.sums.particles);
-  expect_at_most("largest distance of a particle from itself / spacing", apart / plan.spacing, tolerance);
+  expect_at_most("largest distance of a particle from itself / spacing", apart / cpu.plan().spacing,
+                 tolerance);
   const double speed = std::sqrt(2.0 * a.sums.kinetic_energy / a.sums.mass);
   expect_at_most("momentum / (mass rms speed)",
                  glm::length(a.sums.momentum - b.sums.momentum) / (a.sums.mass * speed), tolerance);
@@ -99,6 +91,76 @@ void compare_steps(const char* name, const Tank& tank, const Plan& plan, int ste
     expect_at_most("torque on a body / (weight 0.1 m)", glm::length(wa.torque - wb.torque) / (0.1 * scale),
                    tolerance);
   }
+}
+
+// After one step from the same start the two differ by rounding alone; velocities show in momentum and
+// energy.
+void compare_steps(const char* name, const Tank& tank, const Plan& plan, int steps, double tolerance) {
+  std::printf("%s, %d step(s)\n", name, steps);
+  World cpu = world_on(Backend::kCpu, tank, plan);
+  World gpu = world_on(Backend::kCuda, tank, plan);
+  for (int i = 0; i < steps; ++i) {
+    step(cpu, 0.09);
+    step(gpu, 0.09);
+  }
+  compare_worlds(cpu, gpu, tolerance);
+}
+
+void restore_into(World& world, const World& from) {
+  std::vector<std::uint8_t> bytes;
+  expect_true("the state can be saved", static_cast<bool>(from.save(bytes)));
+  const Result<bool> restored = world.restore(bytes);
+  if (!restored) std::printf("  %s\n", restored.error().text().c_str());
+  expect_true("and restored", static_cast<bool>(restored));
+}
+
+void compare_restored(const char* name, const Tank& tank, double hand_height) {
+  std::printf("%s, saved after 100 steps and restored\n", name);
+  World whole = world_on(Backend::kCuda, tank);
+  for (int i = 0; i < 100; ++i) step(whole, hand_height);
+  World again = world_on(Backend::kCuda, tank);
+  for (int i = 0; i < 7; ++i) step(again, hand_height);
+  restore_into(again, whole);
+  expect_true("the same hash at once", again.hash() == whole.hash());
+  for (int i = 0; i < 100; ++i) {
+    step(whole, hand_height);
+    step(again, hand_height);
+  }
+  expect_true("the same hash 100 steps later", again.hash() == whole.hash());
+  // From one backend to the other, both ways, then one step each.
+  World cpu = world_on(Backend::kCpu, tank);
+  restore_into(cpu, whole);
+  step(cpu, hand_height);
+  step(whole, hand_height);
+  compare_worlds(cpu, whole, 1e-5);
+  World gpu = world_on(Backend::kCuda, tank);
+  restore_into(gpu, cpu);
+  step(cpu, hand_height);
+  step(gpu, hand_height);
+  compare_worlds(cpu, gpu, 1e-5);
+}
+
+void compare_changed() {
+  std::printf("viscosities and gravity changed while it runs\n");
+  const Tank tank = shaken(stirred_tank(ParticleModel::kConsistent));
+  World cpu = world_on(Backend::kCpu, tank);
+  World gpu = world_on(Backend::kCuda, tank);
+  step(cpu, 0.09);
+  step(gpu, 0.09);
+  for (World* world : {&cpu, &gpu}) {
+    expect_true("a viscosity for each fluid", world->set_viscosity(0, 0.02) && world->set_viscosity(1, 0.03));
+    expect_true("half the gravity", static_cast<bool>(world->set_gravity_scale(0.5)));
+  }
+  for (int i = 0; i < 3; ++i) {
+    step(cpu, 0.09);
+    step(gpu, 0.09);
+  }
+  compare_worlds(cpu, gpu, 1e-4);
+  for (World* world : {&cpu, &gpu})
+    expect_true("one viscosity for both", world->set_viscosity(0, 0.03) && world->plan().one_viscosity);
+  step(cpu, 0.09);
+  step(gpu, 0.09);
+  compare_worlds(cpu, gpu, 1e-4);
 }
 
 struct Mean {
@@ -284,6 +346,9 @@ int main() {
   repeat("paper model", stirred_tank(ParticleModel::kPaper), 0.09);
   repeat("probe", probed_tank(), 0.05);
   compare_probe();
+  compare_restored("two fluids, paddle", stirred_tank(ParticleModel::kConsistent), 0.09);
+  compare_restored("probe", probed_tank(), 0.05);
+  compare_changed();
   compare_retired();
   compare_squeezed();
   std::printf(failures ? "%d comparison(s) FAILED\n" : "all agree (%d failures)\n", failures);

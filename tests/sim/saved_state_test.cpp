@@ -17,8 +17,10 @@ using testing::stirred_tank;
 using testing::Tank;
 using Bytes = std::vector<std::uint8_t>;
 
+// To the bit on the CPU; tests/cross has the GPU.
 World make_world(const Tank& tank, int threads = 1) {
-  return World(tank.scene, tank.sampled, make_plan(tank.scene, tank.sampled.spacing), {threads});
+  return World(tank.scene, tank.sampled, make_plan(tank.scene, tank.sampled.spacing),
+               {threads, Backend::kCpu});
 }
 
 // Takes hold, is rejected for a while (so that the last input counts), lets go.
@@ -238,8 +240,8 @@ TEST(LiveViscosity, IsAsIfTheSceneHadIt) {
   const Plan plan = make_plan(thin.scene, thin.sampled.spacing);
   Plan plan_thick = make_plan(thick.scene, thick.sampled.spacing);
   ASSERT_EQ(plan.time_step, plan_thick.time_step) << "sound decides both";
-  World changed(thin.scene, thin.sampled, plan, {1});
-  World made(thick.scene, thick.sampled, plan_thick, {1});
+  World changed(thin.scene, thin.sampled, plan, {1, Backend::kCpu});
+  World made(thick.scene, thick.sampled, plan_thick, {1, Backend::kCpu});
   ASSERT_TRUE(changed.set_viscosity(0, 0.3));
   for (int i = 0; i < 100; ++i) {
     changed.step({});
