@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <stdexcept>
 
 #include "net/clock.h"
 
@@ -177,9 +178,13 @@ Result<std::unique_ptr<Endpoint>> connect_quic_oddly(const std::vector<std::stri
     }
   }
   if (found.empty()) return last;
-  auto client = quic::Client::connect(found, host, identity, oddity, events, options);
-  if (!client) return client.error();
-  return std::unique_ptr<Endpoint>(std::move(client.value()));
+  try {
+    auto client = quic::Client::connect(found, host, identity, oddity, events, options);
+    if (!client) return client.error();
+    return std::unique_ptr<Endpoint>(std::move(client.value()));
+  } catch (const std::runtime_error& fault) {
+    return Error{"encryption", fault.what(), quic::kTlsMend};
+  }
 }
 
 Result<std::unique_ptr<Endpoint>> connect_quic(const std::vector<std::string>& addresses,

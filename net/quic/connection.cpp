@@ -40,6 +40,7 @@ Connection::Connection(ConnectionOwner& owner, const TlsContext& tls, const Endp
       options_(options),
       socket_(&socket),
       remote_(remote),
+      began_(now),
       last_heard_(now),
       queues_(options.queue_datagrams) {
   peer_.reference.user_data = this;

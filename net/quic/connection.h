@@ -91,7 +91,7 @@ class Connection {
   const Address& remote() const { return remote_; }
   UdpSocket& socket() const { return *socket_; }
   std::int64_t last_heard() const { return last_heard_; }
-  bool first_packet_read() const { return bytes_received_ > 0; }
+  std::int64_t began() const { return began_; }
   /// Our CONNECTION_CLOSE, to repeat to whoever has not heard it.
   const std::vector<std::uint8_t>& close_packet() const { return close_packet_; }
   const std::vector<ngtcp2_cid>& ids() const { return ids_; }
@@ -108,7 +108,6 @@ class Connection {
   bool start_session(bool server);
   ngtcp2_settings settings(std::int64_t now) const;
   ngtcp2_transport_params parameters(bool server) const;
-  void started(std::int64_t now);
   ngtcp2_ssize write_packet(std::span<std::uint8_t> out, ngtcp2_path* path, std::int64_t now);
   ngtcp2_ssize write_datagram(std::span<std::uint8_t> out, ngtcp2_path* path, int priority, bool& accepted,
                               std::size_t packed, std::int64_t now);
@@ -136,7 +135,8 @@ class Connection {
   CloseReason reason_;
   CloseReason parting_;  // what close() asked for
   std::int64_t linger_until_ = INT64_MAX;
-  std::int64_t last_heard_ = 0;
+  const std::int64_t began_;
+  std::int64_t last_heard_;
   DatagramQueues queues_;
   StreamOutbox streams_;
   std::size_t snapshots_in_a_row_ = 0;

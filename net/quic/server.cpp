@@ -1,6 +1,7 @@
 #include "net/quic/server.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "net/clock.h"
 #include "net/quic/random.h"
@@ -115,6 +116,24 @@ void Server::id_retired(Connection&, const ngtcp2_cid& id) {
   routes_.erase(text_of(id));
 }
 
+bool Server::has_room(std::int64_t now) {
+  std::size_t alive = 0;
+  Connection* slowest = nullptr;
+  for (const auto& connection : connections_) {
+    if (connection->state() == Connection::State::kClosed) continue;
+    ++alive;
+    const bool slow = connection->state() == Connection::State::kHandshake &&
+                      now - connection->began() > kNanosecondsPerSecond;
+    if (slow && (!slowest || connection->began() < slowest->began())) slowest = connection.get();
+  }
+  if (alive < options_.max_connections) return true;
+  // Those who dawdle must not keep others out: a handshake takes three round trips.
+  if (!slowest) return false;
+  slowest->abort(0, "the handshake took too long for a full host", now);
+  touch(*slowest);
+  return true;
+}
+
 void Server::accept(UdpSocket& socket, const Arrival& packet, const FirstPacket& first, std::int64_t now) {
   auto made = Connection::from_client(*this, tls_, options_, socket, packet.to, packet.from, first, now);
   if (!made) {
@@ -146,8 +165,12 @@ Result<std::unique_ptr<Endpoint>> listen_quic(const std::string& address, const 
   if (!found) return found.error();
   auto socket = quic::UdpSocket::listen(found.value().front());
   if (!socket) return socket.error();
-  return std::unique_ptr<Endpoint>(
-      std::make_unique<quic::Server>(std::move(socket.value()), identity, events, options));
+  try {
+    return std::unique_ptr<Endpoint>(
+        std::make_unique<quic::Server>(std::move(socket.value()), identity, events, options));
+  } catch (const std::runtime_error& fault) {
+    return Error{"encryption", fault.what(), quic::kTlsMend};
+  }
 }
 
 }  // namespace slosh

@@ -45,6 +45,8 @@ class Server final : public EndpointBase {
   void answer_reset(UdpSocket& socket, const Arrival& packet, const ngtcp2_version_cid& ids,
                     std::int64_t now);
   void answer_full(UdpSocket& socket, const Arrival& packet, const FirstPacket& first);
+  /// Whether one more connection may be kept; may end an unfinished one for it.
+  bool has_room(std::int64_t now);
   /// Whether one more answer to an unknown sender is within what we spend on those.
   bool may_answer(std::int64_t now);
 

@@ -41,7 +41,8 @@ void Server::first_packet(UdpSocket& socket, const Arrival& packet, std::int64_t
     ++counts_.packets_ignored;
     return;
   }
-  if (connections_.size() >= options_.max_connections) return answer_full(socket, packet, first);
+  if (connections_.size() >= options_.max_connections && !has_room(now))
+    return answer_full(socket, packet, first);
   accept(socket, packet, first, now);
 }
 

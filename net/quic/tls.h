@@ -29,6 +29,7 @@ struct TlsOddity {
 /// Credentials and settings, shared by all sessions of an endpoint.
 class TlsContext {
  public:
+  /// Throws std::runtime_error when the system's settings forbid what we need.
   explicit TlsContext(const Identity& identity, TlsOddity oddity = {});
   ~TlsContext();
   TlsContext(const TlsContext&) = delete;
@@ -45,6 +46,9 @@ class TlsContext {
   gnutls_priority_t priority_ = nullptr;
   Identity identity_;
 };
+
+inline constexpr char kTlsMend[] =
+    "Allow TLS 1.3 with Ed25519 and X25519 in the system's settings of GnuTLS (FIPS mode forbids them)";
 
 /// A TLS alert in words that a person can act on.
 std::string alert_words(std::uint8_t alert);

@@ -16,6 +16,7 @@ namespace {
 Error socket_error(const Address& address) {
   const int code = errno;
   std::string mend = "Choose another address";
+  if (code == EAFNOSUPPORT) mend = "This machine has no IPv6: take 0.0.0.0 in place of [::]";
   if (code == EADDRINUSE) mend = "Choose another port, or end the program that uses it";
   if (code == EACCES) mend = "Choose a port from 1024 upwards";
   if (code == EADDRNOTAVAIL) mend = "Choose an address of this machine, or 0.0.0.0 or [::] for all of them";
