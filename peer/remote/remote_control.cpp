@@ -1,6 +1,5 @@
 // What a peer and its host say to each other on streams: RemoteLink's second half.
 #include <algorithm>
-#include <charconv>
 
 #include "net/clock.h"
 #include "net/wire/scene_package.h"
@@ -215,108 +214,6 @@ void RemoteLink::go_live_if_ready(std::int64_t now_ns) {
   if (status_.live_ns == 0) status_.live_ns = now_ns;
   pose_due_ns_ = now_ns;
   publish(now_ns);
-}
-
-std::string RemoteLink::grip_name(std::uint32_t grip) const {
-  return grip < world_.scene.grips.size() ? world_.scene.grips[grip].name : std::to_string(grip);
-}
-
-void RemoteLink::ask_for_grips() {
-  grips_asked_ = true;
-  if (!options_.wants_grip || status_.welcome.role != wire::Role::kParticipant) return;
-  if (status_.live_ns != 0) {
-    // Back again: what is not ours any more is asked for once more.
-    for (const std::uint32_t grip : grips_had_) {
-      if (!status_.held[grip]) request_grip(grip, true, false);
-    }
-    return;
-  }
-  if (std::find(status_.held.begin(), status_.held.end(), true) != status_.held.end()) {
-    return;  // a seat that was kept
-  }
-  if (options_.grips.empty()) {
-    if (!world_.scene.grips.empty() && !take_a_free_grip(false)) {
-      notice("no grip is free: you look on until one is");
-    }
-    return;
-  }
-  for (const std::string& wish : options_.grips) {
-    std::uint32_t number = 0;
-    const auto& grips = world_.scene.grips;
-    const auto named =
-        std::find_if(grips.begin(), grips.end(), [&](const Grip& grip) { return grip.name == wish; });
-    const auto [at, code] = std::from_chars(wish.data(), wish.data() + wish.size(), number);
-    const bool is_number = code == std::errc() && at == wish.data() + wish.size() && number < grips.size();
-    if (named != grips.end()) {
-      request_grip(static_cast<std::uint32_t>(named - grips.begin()), true, false);
-    } else if (is_number) {
-      request_grip(number, true, false);
-    } else {
-      std::string names;
-      for (const Grip& grip : grips) names += (names.empty() ? "" : ", ") + grip.name;
-      end(Error{"--grip", "the scene has no grip '" + wish + "'",
-                names.empty() ? "It has none at all" : "It has " + names});
-      return;
-    }
-  }
-}
-
-void RemoteLink::request_grip(std::uint32_t grip, bool take, bool any) {
-  if (requests_.size() > 64) return;  // a host that never answers
-  requests_.push_back({next_request_, wire::ControlType::kGripRequest, grip, take, any});
-  wire::GripRequest request;
-  request.request = next_request_++;
-  request.grip = grip;
-  request.take = take;
-  say(request);
-}
-
-/// Asks for the first grip that nobody holds and that was not refused before.
-bool RemoteLink::take_a_free_grip(bool quietly) {
-  if (!quietly) grips_tried_.clear();
-  for (std::uint32_t grip = 0; grip < world_.scene.grips.size(); ++grip) {
-    const bool tried = std::find(grips_tried_.begin(), grips_tried_.end(), grip) != grips_tried_.end();
-    const bool taken =
-        std::any_of(status_.peers.begin(), status_.peers.end(), [&](const wire::RosterEntry& entry) {
-          return std::find(entry.grips.begin(), entry.grips.end(), grip) != entry.grips.end();
-        });
-    if (tried || taken) continue;
-    grips_tried_.push_back(grip);
-    request_grip(grip, true, true);
-    return true;
-  }
-  return false;
-}
-
-void RemoteLink::obey(const RemoteCommand& command) {
-  if (phase_ != Phase::kLive) {
-    notice("not now: there is no contact with the host");
-    return;
-  }
-  switch (command.kind) {
-    case RemoteCommand::Kind::kGrip:
-      request_grip(command.grip, command.take, false);
-      return;
-    case RemoteCommand::Kind::kNextGrip: {
-      // One key for both: let go of what is held, else take what is free.
-      bool let_go = false;
-      for (std::uint32_t i = 0; i < status_.held.size(); ++i) {
-        if (!status_.held[i]) continue;
-        request_grip(i, false, false);
-        let_go = true;
-      }
-      if (!let_go && !take_a_free_grip(false)) notice("no grip is free");
-      return;
-    }
-    case RemoteCommand::Kind::kWorld: {
-      requests_.push_back({next_request_, wire::ControlType::kWorldRequest, 0, false, false});
-      wire::WorldRequest request;
-      request.request = next_request_++;
-      request.action = command.action;
-      say(request);
-      return;
-    }
-  }
 }
 
 void RemoteLink::bad_host(const wire::Fault& fault, const std::string& what) {

@@ -9,20 +9,9 @@ namespace slosh {
 namespace {
 
 constexpr double kWelcomeWithin = 10.0;  // s from the handshake to a live session
-constexpr double kRetryAnswer = 1.5;     // s that a try to come back waits for an answer
-constexpr double kSilence = 1.0;         // s without a word after which a person is told
 constexpr std::int64_t kPublishGap_ns = 50'000'000;
 constexpr std::int64_t kLongestTurn_ns = 20'000'000;
 constexpr std::int64_t kTrafficWindow_ns = 1'000'000'000;
-
-EndpointOptions endpoint_options(double answer_within) {
-  EndpointOptions options;
-  options.idle_timeout = 4.0;
-  options.keep_alive = 0.5;
-  options.handshake_timeout = answer_within;
-  options.max_connections = 1;
-  return options;
-}
 
 }  // namespace
 
@@ -30,9 +19,7 @@ RemoteLink::RemoteLink(RemoteOptions options, Connect connect, RemoteShared& sha
     : options_(std::move(options)),
       connect_(std::move(connect)),
       shared_(shared),
-      backoff_(options_.patience) {
-  started_ns_ = now();
-}
+      backoff_(options_.patience) {}
 
 RemoteLink::~RemoteLink() {
   drop_endpoint();
@@ -46,21 +33,6 @@ std::int64_t RemoteLink::now() const {
 void RemoteLink::wake() {
   const std::lock_guard lock(endpoint_mutex_);
   if (endpoint_) endpoint_->wake();
-}
-
-void RemoteLink::drop_endpoint() {
-  if (endpoint_ && connection_ != 0) {
-    const ConnectionStats stats = endpoint_->stats(connection_);
-    earlier_received_ += stats.bytes_received;
-    earlier_sent_ += stats.bytes_sent;
-  }
-  std::unique_ptr<Endpoint> gone;
-  {
-    const std::lock_guard lock(endpoint_mutex_);
-    gone = std::move(endpoint_);
-  }
-  connection_ = 0;
-  control_ = -1;
 }
 
 bool RemoteLink::turn() {
@@ -167,44 +139,9 @@ void RemoteLink::ping(std::int64_t now_ns) {
   pings_.sent(now_ns);
 }
 
-void RemoteLink::try_to_connect(std::int64_t now_ns) {
-  const bool first = status_.state == LinkState::kConnecting;
-  Result<std::unique_ptr<Endpoint>> made =
-      connect_(*this, endpoint_options(first ? options_.answer_within : kRetryAnswer));
-  if (!made) {
-    // No way to send at all: no such address, no socket. While trying again that may be a cable.
-    if (first) return end(made.error());
-    return backoff_.failed(now_ns);
-  }
-  {
-    const std::lock_guard lock(endpoint_mutex_);
-    endpoint_ = std::move(made.value());
-  }
-  phase_ = Phase::kConnecting;
-  phase_ns_ = now_ns;
-}
-
-void RemoteLink::on_connected(ConnectionId connection, const KeyFingerprint&, const std::string&) {
-  connection_ = connection;
-  phase_ = Phase::kGreeting;
-  phase_ns_ = heard_ns_ = now();
-  splitter_ = {};
-  scene_bytes_.clear();
-  welcomed_ = roster_came_ = grips_asked_ = refused_ = false;
-  requests_.clear();
-  grips_tried_.clear();
-  if (status_.state == LinkState::kConnecting) status_.state = LinkState::kJoining;
-  clock_.restart();
-  pings_.restart(phase_ns_);
-  if (inbox_) inbox_->restart();
-  if (world_.maker) world_.maker->restart();
-  say_hello();
-}
-
 void RemoteLink::on_stream(ConnectionId, std::int64_t stream, std::span<const std::uint8_t> bytes,
                            bool end_of_stream) {
   if (status_.state == LinkState::kEnded || refused_) return;
-  heard_ns_ = now();
   if (stream != control_) return take_scene(bytes, end_of_stream);
   const wire::Fault fault = splitter_.feed(
       bytes, [this](std::uint64_t type, wire::ByteView payload) { return heard(type, payload); });
@@ -214,7 +151,6 @@ void RemoteLink::on_stream(ConnectionId, std::int64_t stream, std::span<const st
 void RemoteLink::on_datagram(ConnectionId, std::span<const std::uint8_t> bytes) {
   if (bytes.empty() || status_.state == LinkState::kEnded) return;
   const std::int64_t now_ns = now();
-  heard_ns_ = now_ns;
   const wire::ByteView payload = bytes.subspan(1);
   switch (static_cast<wire::DatagramType>(bytes[0])) {
     case wire::DatagramType::kClockPong: {
@@ -248,85 +184,17 @@ void RemoteLink::on_datagram(ConnectionId, std::span<const std::uint8_t> bytes) 
   status_.numbers.bad_datagrams += 1;
 }
 
-void RemoteLink::on_closed(ConnectionId, const CloseReason& reason) {
-  closed_ = true;
-  close_text_ = reason.text;
-  // A refusal whose message was lost with the connection is in the code all the same.
-  if (!reason.by_peer || reason.code == 0 || reason.code > wire::kRefusalCodes || refused_) return;
-  if (status_.state != LinkState::kEnded) {
-    refused(static_cast<wire::RefusalCode>(reason.code - 1), reason.text);
-  }
-}
-
-/// Contact is gone (or never was): ends the session when it had not begun, else tries again.
-void RemoteLink::lost(const std::string& why) {
-  const std::int64_t now_ns = now();
-  phase_ = Phase::kIdle;
-  if (leaving_) return end(std::nullopt);
-  switch (status_.state) {
-    case LinkState::kConnecting: {
-      const std::string what = why.empty() ? "no answer" : why;
-      const bool silent = what.find("no answer") != std::string::npos;
-      const bool named = what.find(options_.address) != std::string::npos;
-      return end(Error{named ? "" : options_.address, what,
-                       silent ? "See that the host runs, and that UDP reaches that address and port"
-                              : "Ask the host for a new link"});
-    }
-    case LinkState::kJoining:
-      return end(Error{options_.address, why.empty() ? "the connection ended while joining" : why,
-                       "Join again with the same link"});
-    case LinkState::kLive:
-      status_.state = LinkState::kReconnecting;
-      status_.lost_ns = now_ns;
-      grips_had_.clear();
-      for (std::size_t i = 0; i < status_.held.size(); ++i) {
-        if (status_.held[i]) grips_had_.push_back(static_cast<std::uint32_t>(i));
-      }
-      backoff_.lost(now_ns);
-      notice("contact with the host was lost (" + (why.empty() ? std::string("no reason given") : why) +
-             "); trying to come back");
-      break;
-    case LinkState::kReconnecting:
-      backoff_.failed(now_ns);
-      break;
-    case LinkState::kEnded:
-      return;
-  }
-  publish(now_ns);
-}
-
-void RemoteLink::leave(const std::string& words) {
-  if (status_.state == LinkState::kEnded || leaving_) return;
-  leaving_ = true;
-  if (!endpoint_ || connection_ == 0) return end(std::nullopt);
-  wire::Bye bye;
-  bye.reason = words;
-  say(bye);
-  endpoint_->close(connection_, 0, words);
-  const std::int64_t until_ns = now() + to_nanoseconds(0.3);
-  while (!options_.now && !closed_ && now() < until_ns) endpoint_->run_once(until_ns);
-  end(std::nullopt);
-}
-
-void RemoteLink::end(std::optional<Error> error, const std::string& farewell) {
-  status_.state = LinkState::kEnded;
-  status_.error = std::move(error);
-  status_.farewell = farewell;
-  phase_ = Phase::kIdle;
-  publish(now());
-}
-
 void RemoteLink::note_traffic(std::int64_t now_ns) {
   LinkNumbers& numbers = status_.numbers;
   if (endpoint_ && connection_ != 0) {
     const ConnectionStats stats = endpoint_->stats(connection_);
     numbers.round_trip = stats.smoothed_rtt > 0.0 ? stats.smoothed_rtt : clock_.round_trip();
-    numbers.bytes_received = earlier_received_ + stats.bytes_received;
-    numbers.bytes_sent = earlier_sent_ + stats.bytes_sent;
+    // A connection that is closing has no numbers any more: what was known stays.
+    numbers.bytes_received = std::max(numbers.bytes_received, earlier_received_ + stats.bytes_received);
+    numbers.bytes_sent = std::max(numbers.bytes_sent, earlier_sent_ + stats.bytes_sent);
     std::uint64_t sent = 0;
     for (const std::uint64_t each : stats.datagrams_sent) sent += each;
-    numbers.send_loss =
-        sent == 0 ? 0.0 : static_cast<double>(stats.datagrams_lost) / static_cast<double>(sent);
+    if (sent > 0) numbers.send_loss = static_cast<double>(stats.datagrams_lost) / static_cast<double>(sent);
   }
   if (now_ns - traffic_ns_ > kTrafficWindow_ns) {
     numbers.receive_rate =

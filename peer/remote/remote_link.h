@@ -81,7 +81,7 @@ class RemoteLink final : public EndpointEvents {
     bool any = false;  // any grip would do
   };
 
-  // remote_link.cpp: the connection.
+  // remote_link.cpp: turns and datagrams; remote_connect.cpp: the connection.
   std::int64_t now() const;
   void try_to_connect(std::int64_t now_ns);
   void lost(const std::string& why);
@@ -94,7 +94,9 @@ class RemoteLink final : public EndpointEvents {
   void publish(std::int64_t now_ns);
   void note_traffic(std::int64_t now_ns);
 
-  // remote_control.cpp: what is said.
+  static constexpr double kRetryAnswer = 1.5;  // s that a try to come back waits for an answer
+
+  // remote_control.cpp: what is said; remote_grips.cpp: about grips.
   void say_hello();
   wire::Fault heard(std::uint64_t type, wire::ByteView payload);
   wire::Fault on_welcome(wire::ByteView payload);
@@ -146,9 +148,7 @@ class RemoteLink final : public EndpointEvents {
   bool refused_ = false;
   bool leaving_ = false;
   std::string close_text_;
-  std::int64_t started_ns_ = 0;
   std::int64_t phase_ns_ = 0;  // when the phase began
-  std::int64_t heard_ns_ = 0;
   std::int64_t pose_due_ns_ = 0;
   std::int64_t publish_due_ns_ = 0;
   std::int64_t traffic_ns_ = 0;

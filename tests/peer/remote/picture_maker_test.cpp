@@ -1,0 +1,215 @@
+// Pieces to pictures with the real codec: films, windows, gaps, two streams.
+#include "peer/remote/picture_maker.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "net/clock.h"
+
+namespace slosh {
+namespace {
+
+constexpr double kFrame = 1.0 / 60.0;  // s between snapshots
+
+/// A block of fluid that drifts evenly; its body too.
+struct Drift {
+  std::size_t side = 12;
+  glm::vec3 place(std::size_t i, double time) const {
+    const std::size_t x = i % side;
+    const std::size_t y = i / side % side;
+    const std::size_t z = i / (side * side);
+    return glm::vec3(0.01 * static_cast<double>(x) + 0.2 * time, 0.01 * static_cast<double>(y),
+                     0.01 * static_cast<double>(z) - 0.1 * time);
+  }
+  Snapshot at(double time) const {
+    Snapshot s;
+    s.rigid.time = time;
+    for (std::size_t i = 0; i < side * side * side; ++i) {
+      s.positions.push_back(place(i, time));
+      s.fluid_index.push_back(0);
+    }
+    return s;
+  }
+};
+
+BodyMessage bodies(double time, std::uint32_t run = 0) {
+  BodyMessage m;
+  m.run = run;
+  m.bodies.time = time;
+  m.bodies.bodies.resize(1);
+  m.bodies.bodies[0].pose.position.x = 3.0 * time;
+  return m;
+}
+
+/// Offers frame k at time k / 60, but for those that `lost` names.
+template <class Lost>
+void play(PictureMaker& maker, SnapshotEncoder& encoder, const Drift& drift, int first, int last, Lost lost,
+          std::uint32_t run = 0) {
+  for (int k = first; k <= last; ++k) {
+    const double time = kFrame * (k - first) + kFrame * first * (run == 0 ? 1.0 : 0.0);
+    const EncodedFrame& frame = encoder.encode(drift.at(time), run, k == first);
+    maker.note_bodies(bodies(time, run));
+    if (lost(k)) continue;
+    for (const Piece& piece : frame.pieces) maker.offer(*piece.bytes);
+  }
+}
+
+void expect_drift(const Snapshot& picture, const Drift& drift, float tolerance) {
+  const double time = picture.rigid.time;
+  ASSERT_EQ(picture.positions.size(), drift.side * drift.side * drift.side);
+  EXPECT_NEAR(picture.rigid.bodies[0].pose.position.x, 3.0 * time, 1e-9);
+  glm::dvec3 mean(0.0);
+  glm::dvec3 truth(0.0);
+  for (std::size_t i = 0; i < picture.positions.size(); ++i) {
+    mean += glm::dvec3(picture.positions[i]);
+    truth += glm::dvec3(drift.place(i, time));
+    // The drift takes every particle from its own place on the lattice: none is far from one.
+    const glm::vec3 start = picture.positions[i] - drift.place(0, time);
+    for (int axis = 0; axis < 3; ++axis) {
+      const float cell = start[axis] / 0.01f;
+      EXPECT_NEAR(cell, std::round(cell), tolerance / 0.01f) << time;
+    }
+  }
+  const double count = static_cast<double>(picture.positions.size());
+  EXPECT_LT(glm::length(mean - truth) / count, tolerance);
+}
+
+std::vector<SnapshotPointer> all(SnapshotQueue& queue) {
+  std::vector<SnapshotPointer> pictures;
+  while (SnapshotPointer picture = queue.pop(std::chrono::milliseconds(0))) pictures.push_back(picture);
+  return pictures;
+}
+
+TEST(PictureMaker, AFilmHasEachMomentOnceAndExactly) {
+  const Drift drift;
+  SnapshotQueue queue(std::size_t{1} << 30);
+  PictureMakerOptions options;
+  options.film = true;
+  options.frames_per_second = 25.0;  // no multiple of the snapshots' rate
+  PictureMaker maker(options, queue);
+  CodecOptions codec;
+  codec.epoch_seconds = 0.5;  // several epochs
+  SnapshotEncoder encoder(codec);
+  play(maker, encoder, drift, 3, 123, [](int) { return false; });
+  maker.finish();
+  const std::vector<SnapshotPointer> pictures = all(queue);
+  ASSERT_EQ(pictures.size(), 50u) << "2.05 s at 25 a second, from the first multiple at or after 0.05 s";
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    EXPECT_NEAR(pictures[i]->rigid.time, (static_cast<double>(i) + 2.0) / 25.0, 1e-9);
+    expect_drift(*pictures[i], drift, 0.0021f);
+  }
+  EXPECT_TRUE(queue.finished());
+  const PictureReport report = maker.report();
+  EXPECT_EQ(report.refused, 0u);
+  EXPECT_EQ(report.pictures, 50u);
+  EXPECT_EQ(report.frames, report.whole);
+}
+
+TEST(PictureMaker, LostSnapshotsLeaveNoGapInTheFilm) {
+  const Drift drift;
+  SnapshotQueue queue(std::size_t{1} << 30);
+  PictureMakerOptions options;
+  options.film = true;
+  options.frames_per_second = 30.0;
+  PictureMaker maker(options, queue);
+  CodecOptions codec;
+  codec.epoch_seconds = 0.5;
+  SnapshotEncoder encoder(codec);
+  play(maker, encoder, drift, 0, 120, [](int k) { return k % 7 == 3; });
+  maker.finish();
+  const std::vector<SnapshotPointer> pictures = all(queue);
+  ASSERT_GE(pictures.size(), 59u);
+  for (std::size_t i = 1; i < pictures.size(); ++i) {
+    EXPECT_NEAR(pictures[i]->rigid.time - pictures[i - 1]->rigid.time, 1.0 / 30.0, 1e-9);
+    EXPECT_FALSE(pictures[i]->positions.empty());
+  }
+}
+
+TEST(PictureMaker, AnotherStreamTakesOverWhenItHasAFrame) {
+  const Drift drift;
+  Drift fewer;
+  fewer.side = 8;
+  SnapshotQueue queue(std::size_t{1} << 30);
+  PictureMakerOptions options;
+  options.film = true;
+  options.frames_per_second = 30.0;
+  PictureMaker maker(options, queue);
+  CodecOptions fine;
+  fine.stream = 1;
+  CodecOptions coarse;
+  coarse.stream = 3;
+  SnapshotEncoder first(fine);
+  SnapshotEncoder second(coarse);
+  play(maker, first, drift, 0, 30, [](int) { return false; });
+  play(maker, second, fewer, 31, 60, [](int) { return false; });
+  maker.finish();
+  const std::vector<SnapshotPointer> pictures = all(queue);
+  ASSERT_EQ(pictures.size(), 31u);
+  EXPECT_EQ(pictures.front()->positions.size(), 12u * 12 * 12);
+  EXPECT_EQ(pictures.back()->positions.size(), 8u * 8 * 8);
+  for (std::size_t i = 18; i < pictures.size(); ++i) expect_drift(*pictures[i], fewer, 0.0021f);
+}
+
+TEST(PictureMaker, AResetStartsTheFilmsTimeAnew) {
+  const Drift drift;
+  SnapshotQueue queue(std::size_t{1} << 30);
+  PictureMakerOptions options;
+  options.film = true;
+  options.frames_per_second = 30.0;
+  PictureMaker maker(options, queue);
+  SnapshotEncoder encoder(CodecOptions{});
+  play(maker, encoder, drift, 0, 60, [](int) { return false; });
+  while (queue.waiting() < 20) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  play(maker, encoder, drift, 0, 60, [](int) { return false; }, 1);
+  maker.finish();
+  const std::vector<SnapshotPointer> pictures = all(queue);
+  EXPECT_GT(pictures.size(), 50u);
+  EXPECT_NEAR(pictures.back()->rigid.time, 1.0, 1.0 / 30.0);
+  int backs = 0;
+  for (std::size_t i = 1; i < pictures.size(); ++i) {
+    backs += pictures[i]->rigid.time < pictures[i - 1]->rigid.time ? 1 : 0;
+  }
+  EXPECT_EQ(backs, 1);
+}
+
+TEST(PictureMaker, AWindowIsGivenTheMomentThatIsDue) {
+  const Drift drift;
+  SnapshotQueue queue(std::size_t{1} << 30);
+  PictureMaker maker({}, queue);
+  SnapshotEncoder encoder(CodecOptions{});
+  EXPECT_EQ(maker.newest(steady_now_ns()), nullptr) << "nothing came yet";
+  play(maker, encoder, drift, 0, 60, [](int) { return false; });
+  WorldMoment moment;
+  moment.time = 0.5;
+  moment.stamp_ns = steady_now_ns();
+  moment.known = true;  // it stands still at half a second
+  maker.note_moment(moment);
+  SnapshotPointer picture;
+  for (int i = 0; i < 10000 && !picture; ++i) {
+    picture = maker.newest(steady_now_ns());
+    if (!picture) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  ASSERT_NE(picture, nullptr);
+  while (maker.report().frames < 61) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  if (SnapshotPointer later = maker.newest(steady_now_ns())) picture = later;
+  EXPECT_NEAR(picture->rigid.time, 0.5, 1e-9);
+  expect_drift(*picture, drift, 0.0021f);
+  EXPECT_EQ(maker.newest(steady_now_ns()), nullptr) << "the same again";
+}
+
+TEST(PictureMaker, NoiseIsRefusedAndCounted) {
+  SnapshotQueue queue(std::size_t{1} << 20);
+  PictureMaker maker({}, queue);
+  for (int i = 0; i < 500; ++i) {
+    std::vector<std::uint8_t> noise(static_cast<std::size_t>(i));
+    for (std::size_t k = 0; k < noise.size(); ++k) noise[k] = static_cast<std::uint8_t>(i * 31 + k * k);
+    maker.offer(noise);
+  }
+  maker.finish();
+  EXPECT_GT(maker.report().refused, 400u);
+}
+
+}  // namespace
+}  // namespace slosh
