@@ -1,5 +1,6 @@
 #include "host/server/console.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <vector>
@@ -16,14 +17,14 @@ std::vector<std::string> words_of(std::string_view line) {
   std::size_t at = 0;
   while (at < line.size()) {
     const char c = line[at];
-    if (c == ' ' || c == '\t') {
+    if (c == ' ') {
       at += 1;
       continue;
     }
     // Quotes keep a name of several words together.
     const bool quoted = c == '"' || c == '\'';
     const std::size_t begin = quoted ? at + 1 : at;
-    std::size_t end = line.find_first_of(quoted ? std::string_view(&line[at], 1) : " \t", begin);
+    std::size_t end = line.find_first_of(quoted ? std::string_view(&line[at], 1) : " ", begin);
     if (end == std::string_view::npos) end = line.size();
     words.emplace_back(line.substr(begin, end - begin));
     at = quoted ? end + 1 : end;
@@ -90,8 +91,8 @@ Result<ConsoleCommand> parse_set(const std::vector<std::string>& words) {
 }  // namespace
 
 Result<std::int64_t> parse_duration(std::string_view text) {
-  const Error error =
-      usage("'" + wire::clean_text(text, 40) + "' is no time", "For example 90s, 10m, 2h, 1d or 1h30m");
+  const Error error = usage(std::string("'").append(wire::clean_text(text, 40)).append("' is no time"),
+                            "For example 90s, 10m, 2h, 1d or 1h30m");
   std::int64_t seconds = 0;
   std::size_t at = 0;
   while (at < text.size()) {
@@ -116,16 +117,22 @@ Result<std::int64_t> parse_duration(std::string_view text) {
 
 std::string duration_text(std::int64_t ns) {
   const std::int64_t seconds = std::max<std::int64_t>(0, ns / kNanosecondsPerSecond);
-  const auto text = [](std::int64_t n, const char* unit) { return std::to_string(n) + " " + unit; };
+  const auto text = [](std::int64_t n, const char* unit) {
+    return std::to_string(n).append(" ").append(unit);
+  };
   if (seconds < 60) return text(seconds, "s");
   if (seconds < 3600) return text(seconds / 60, "min");
   if (seconds < 86400)
-    return text(seconds / 3600, "h") + (seconds / 60 % 60 ? " " + text(seconds / 60 % 60, "min") : "");
+    return text(seconds / 3600, "h")
+        .append(seconds / 60 % 60 ? " " : "")
+        .append(seconds / 60 % 60 ? text(seconds / 60 % 60, "min") : "");
   return text(seconds / 86400, seconds < 2 * 86400 ? "day" : "days");
 }
 
-Result<ConsoleCommand> parse_console(std::string_view line) {
-  while (!line.empty() && (line.back() == '\n' || line.back() == '\r')) line.remove_suffix(1);
+Result<ConsoleCommand> parse_console(std::string_view typed) {
+  while (!typed.empty() && (typed.back() == '\n' || typed.back() == '\r')) typed.remove_suffix(1);
+  std::string line(typed.substr(0, kMaxConsoleLine + 1));
+  std::replace(line.begin(), line.end(), '\t', ' ');
   if (line.size() > kMaxConsoleLine) return usage("the line is too long", "Type help for what may be said");
   const std::string problem = wire::text_problem(line);
   if (!problem.empty()) return usage("the line " + problem, "Type help for what may be said");

@@ -115,6 +115,7 @@ void Server::welcome(Peer& peer, Seat& seat, bool restored) {
                                                                 : " is here"),
              seat.role == wire::Role::kSpectator, &peer);
   roster_changed();
+  start_if_held();
 }
 
 void Server::send_scene(Peer& peer) {

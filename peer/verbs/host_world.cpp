@@ -30,7 +30,7 @@ Result<HostedWorld> start_anew(const HostVerbOptions& options, Progress& progres
   hosted.world->settle(kSettle, hands);
   const Result<bool> saved = hosted.world->save(hosted.start);
   if (!saved) return saved.error();
-  hosted.state.paused = options.wait > 0 && !p.scene.grips.empty();
+  hosted.state.paused = hosted.waits = options.wait > 0 && !p.scene.grips.empty();
   return hosted;
 }
 
@@ -62,6 +62,7 @@ Result<HostedWorld> carry_on(const HostVerbOptions& options, Progress& progress)
   p.plan = rebuilt.value().world.plan();
   hosted.world = std::move(rebuilt.value().world);
   hosted.state = kept.state;
+  hosted.waits = kept.state.paused && kept.tick == 0 && kept.state.run == 0 && options.wait > 0;
   hosted.start = std::move(kept.start);
   return hosted;
 }

@@ -15,6 +15,7 @@ struct HostedWorld {
   std::optional<World> world;  ///< moved into the host
   std::size_t particles = 0;
   HostState state;
+  bool waits = false;                   ///< it has not begun: it waits for hands
   std::vector<std::uint8_t> start;      ///< World::save of what a reset goes back to
   std::optional<SessionState> session;  ///< of a checkpoint
 };

@@ -173,7 +173,7 @@ TEST_F(Abuse, AnothersGripCannotBeMoved) {
   go(0.05);
   EXPECT_EQ(pose(0).pose.position, before);
   ASSERT_FALSE(bad.notices.empty());
-  EXPECT_TRUE(bad.noticed("grip 'left' is held by Ana"));
+  EXPECT_TRUE(bad.noticed("poses for grip 'left' are not used: it is held by Ana"));
   std::uint64_t n = 1'000'000;
   go(5.0, 0.002, [&] {
     if (!bad.closed) bad.pose(0, ++n, 0.4);

@@ -25,7 +25,7 @@ class Churn : public ServedTest {
     std::memcpy(key.data(), &i, sizeof i);
     ScriptedPeer peer(network, 0);
     peer.end = network.connect(peer, key, "192.0.2.1:" + std::to_string(i % 60000));
-    peer.hello(i % 3 ? watch : hold, "P" + std::to_string(i % 50));
+    peer.hello(i % 2 ? watch : hold, std::to_string(i % 50));
     const auto turn = [&](double seconds) {
       network.advance(seconds);
       if (peer.end) peer.end->run_once(0);
@@ -51,16 +51,16 @@ class Churn : public ServedTest {
 
 TEST_F(Churn, TwoThousandPeersLeaveNothingBehind) {
   const auto in_use = [] { return static_cast<std::int64_t>(mallinfo2().uordblks); };
-  // The first thousand fill what is kept on purpose: seats of a minute, the keys that a link remembers.
-  for (std::uint32_t i = 0; i < 1500; ++i) come_and_go(i);
+  // The first fill what is kept on purpose: seats of a minute, the keys that a link remembers.
+  for (std::uint32_t i = 0; i < 2200; ++i) come_and_go(i);
   const std::int64_t before = in_use();
-  for (std::uint32_t i = 1500; i < 3500; ++i) come_and_go(i);
+  for (std::uint32_t i = 2200; i < 4200; ++i) come_and_go(i);
   const std::int64_t after = in_use();
   go(70.0, 0.5);
   EXPECT_TRUE(server->empty());
   EXPECT_TRUE(server->seats().seats().empty());
   EXPECT_EQ(endpoint->endpoint_stats().connections, 0u);
-  EXPECT_EQ(server->figures().joins, 3500u);
+  EXPECT_EQ(server->figures().joins, 4200u);
   EXPECT_LT(after - before, 64 * 1024) << "bytes that 2 000 joins left";
 }
 

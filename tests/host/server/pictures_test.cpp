@@ -1,6 +1,7 @@
 // Pictures from the queue through the codec to peers, each at the quality of its link.
 #include "host/server/pictures.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -78,12 +79,12 @@ class Watcher final : public EndpointEvents {
   void on_datagram(ConnectionId, std::span<const std::uint8_t> bytes) override {
     if (bytes[0] != static_cast<std::uint8_t>(wire::DatagramType::kSnapshotPiece)) return;
     received += bytes.size();
-    if (decoder.take(bytes)) faults += 1;
+    if (const wire::Fault found = decoder.take(bytes)) fault = found.text();
   }
   std::unique_ptr<Endpoint> end;
   SnapshotDecoder decoder;
   std::uint64_t frames = 0;
-  std::uint64_t faults = 0;
+  std::string fault;  // of a piece that the decoder refused
   std::size_t received = 0;
   std::size_t particles = 0;
   double complete = 0.0;
@@ -110,7 +111,7 @@ TEST_F(Pictures, ALateWatcherHasTheWholePictureSoon) {
   EXPECT_GT(late.frames, 2u);
   EXPECT_EQ(late.complete, 1.0) << "without waiting for the next epoch";
   EXPECT_EQ(late.particles, first.particles);
-  EXPECT_EQ(first.faults + late.faults, 0u);
+  EXPECT_EQ(first.fault + late.fault, "");
 }
 
 TEST_F(Pictures, LossIsMended) {
@@ -128,7 +129,7 @@ TEST_F(Pictures, LossIsMended) {
     looks += 1;
   });
   EXPECT_GT(complete / looks, 0.85);
-  EXPECT_EQ(watcher.faults, 0u);
+  EXPECT_EQ(watcher.fault, "");
 }
 
 TEST_F(Pictures, ASlowLinkLowersOnlyItsOwnQuality) {
@@ -146,8 +147,18 @@ TEST_F(Pictures, ASlowLinkLowersOnlyItsOwnQuality) {
   thin.bytes_per_second = 0.35 * rate + 1e4;
   network.set_link(*slow.end, thin);
   const std::uint64_t frames = fast.frames;
-  show(8.0, both);
-  EXPECT_GT(server->tier_of(1), kShell) << "the slow one";
+  int worst = 0;
+  int looks = 0;
+  int low = 0;
+  show(8.0, [&] {
+    both();
+    worst = std::max(worst, server->tier_of(1));
+    low += server->tier_of(1) > kShell ? 1 : 0;
+    looks += 1;
+    if (looks % 30 == 0) std::printf("tier %d\n", server->tier_of(1));
+  });
+  EXPECT_GT(worst, kShell) << "the slow one";
+  EXPECT_GT(low * 10, looks * 6);
   EXPECT_EQ(server->tier_of(0), kShell) << "the fast one";
   EXPECT_NEAR(static_cast<double>(fast.frames - frames), 240.0, 12.0);
   EXPECT_GT(slow.frames, 60u) << "it still sees something";

@@ -80,7 +80,7 @@ TEST_F(ServerTest, PosesReachTheWorldAndTheOtherHands) {
     number += 1;
     ana.pose(0, number, 0.7, 5000 + static_cast<std::int64_t>(number));
   });
-  EXPECT_EQ(pose(0).pose.position.x, 0.7);
+  EXPECT_NEAR(pose(0).pose.position.x, 0.7, 1e-6);
   EXPECT_TRUE(pose(0).engaged);
   ASSERT_GT(ben.hands.size(), 400u);
   EXPECT_LE(ben.hands.size(), 530u);
