@@ -139,7 +139,7 @@ void Host::publish_bodies(double rate, std::int64_t stamp_ns) {
 void Host::publish_picture() {
   if (options_.picture_rate <= 0.0) return;
   auto snapshot = std::make_shared<Snapshot>();
-  world_.fill(*snapshot);
+  world_.fill(*snapshot, options_.shell);
   snapshot->rigid.status = recent_status();
   if (channel_.pictures().push(std::move(snapshot))) report_.pictures += 1;
 }
