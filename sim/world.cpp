@@ -12,6 +12,7 @@
 #include "sim/hash.h"
 #include "sim/particle_engine.h"
 #include "sim/saved_state.h"
+#include "sim/shell.h"
 #include "sim/step_limits.h"
 #include "sim/stopwatch.h"
 
@@ -308,11 +309,13 @@ void World::fill(BodySnapshot& out) const {
   }
 }
 
-void World::fill(Snapshot& out) const {
+void World::fill(Snapshot& out, bool with_shell) const {
   fill(out.rigid);
   out.positions.resize(impl_->fluid_count);
   out.fluid_index.resize(impl_->fluid_count);
   impl_->engine->fill(out.positions, out.fluid_index);
+  out.shell.clear();
+  if (with_shell) find_shell(out.positions, out.fluid_index, impl_->constants.plan.spacing, out.shell);
 }
 
 Result<bool> World::save(std::vector<std::uint8_t>& out) const {

@@ -81,7 +81,8 @@ class World {
 
   /// Fills without allocating once the vectors have grown.
   void fill(BodySnapshot& out) const;
-  void fill(Snapshot& out) const;
+  /// `with_shell` marks what is seen from outside (sim/shell.h); else Snapshot::shell is emptied.
+  void fill(Snapshot& out, bool with_shell = false) const;
 
   /// Appends everything that moves or can be changed, so that a world of the same scene, spacing and plan
   /// goes on from it: on the CPU to the bit. About 33 bytes a particle; 0.2 ms for 32 768. Error: the GPU

@@ -31,11 +31,45 @@ std::uint32_t scatter(const std::int32_t* displaced, const std::int32_t* predict
   return sum;
 }
 
-int class_of(std::uint32_t mean) {
+struct Narrow {
+  std::uint8_t fraction, symbol;
+};
+/// Of a class whose low bits are not raw. Half of the fractions are the other half seen in a mirror.
+Narrow narrow(std::int32_t displaced, std::int32_t predicted, std::int32_t& residual) {
+  residual = displaced - (predicted >> kFine);
+  std::int32_t fraction = (predicted >> (kFine - 3)) & 7;
+  const std::int32_t mirror = -(fraction >> 2);  // all ones or none
+  fraction ^= mirror & 7;
+  residual = (residual ^ mirror) - 2 * mirror;  // 1 − residual
+  return {static_cast<std::uint8_t>(fraction), static_cast<std::uint8_t>(std::clamp(residual + 7, 0, 15))};
+}
+
+/// The narrow class that costs least, or a wide one by the mean scatter.
+int choose_class(const std::int32_t* displaced, const std::int32_t* predicted, int count, std::uint32_t sum) {
   const Models& models = Models::get();
-  int klass = 1;
-  while (mean > models.reach[static_cast<std::size_t>(klass)]) ++klass;
-  return klass;
+  const std::uint32_t mean = sum / static_cast<std::uint32_t>(count);
+  int wide = 1;
+  while (mean > models.reach[static_cast<std::size_t>(wide)]) ++wide;
+  if (wide >= kFirstWide) return wide;
+  std::uint32_t seen[kFractions * kSymbols] = {};
+  for (int i = 0; i < count; ++i) {
+    std::int32_t residual;
+    const Narrow n = narrow(displaced[i], predicted[i], residual);
+    ++seen[n.fraction * kSymbols + n.symbol];
+  }
+  int best = 1;
+  std::uint32_t least = ~0u;
+  for (int klass = 1; klass < kFirstWide; ++klass) {
+    const auto& tables = models.residual[static_cast<std::size_t>(klass)];
+    std::uint32_t cost = 0;
+    for (std::size_t f = 0; f < kFractions; ++f) {
+      for (std::size_t s = 0; s < kSymbols; ++s) cost += seen[f * kSymbols + s] * tables[f].cost[s];
+    }
+    if (cost >= least) continue;
+    least = cost;
+    best = klass;
+  }
+  return best;
 }
 
 }  // namespace
@@ -149,7 +183,7 @@ void BlockWriter::moved(const Block& block, const BlockPoints& last, const Block
   const Models& models = Models::get();
   for (int a = 0; a < 3; ++a) {
     const bool still = std::all_of(displaced[a], displaced[a] + n, [](std::int32_t d) { return d == 0; });
-    const int klass = still ? 0 : class_of(sums[a] / static_cast<std::uint32_t>(n));
+    const int klass = still ? 0 : choose_class(displaced[a], motion.smooth[a], n, sums[a]);
     const int change = std::clamp(klass - class_before_[a] + 8, 0, 15);
     out_.symbol(models.class_change, change);
     if (change == 0 || change == 15) out_.bits(static_cast<std::uint64_t>(klass), 4);
@@ -162,20 +196,20 @@ void BlockWriter::axis(const std::int32_t* displaced, const std::int32_t* predic
   const auto& tables = Models::get().residual[static_cast<std::size_t>(klass)];
   const int low = Models::low_bits(klass);
   for (int i = 0; i < count; ++i) {
-    std::int32_t residual = displaced[i] - (predicted[i] >> kFine);
-    int fraction = (predicted[i] >> (kFine - 3)) & 7;
+    std::int32_t residual;
     std::uint32_t raw = 0;
+    int symbol;
     if (low > 0) {
-      residual += 1 << (low - 1);
+      residual = displaced[i] - (predicted[i] >> kFine) + (1 << (low - 1));
       raw = static_cast<std::uint32_t>(residual) & ((1u << low) - 1);
       residual >>= low;
-      fraction = 0;
-    } else if (fraction >= 4) {
-      fraction = 7 - fraction;
-      residual = 1 - residual;
+      symbol = std::clamp(residual + 7, 0, 15);
+      out_.symbol(tables[0], symbol);
+    } else {
+      const Narrow n = narrow(displaced[i], predicted[i], residual);
+      symbol = n.symbol;
+      out_.symbol(tables[n.fraction], symbol);
     }
-    const int symbol = std::clamp(residual + 7, 0, 15);
-    out_.symbol(tables[static_cast<std::size_t>(fraction)], symbol);
     if (symbol == 0 || symbol == 15) {
       const auto beyond = static_cast<std::uint32_t>(symbol == 0 ? -7 - residual : residual - 8);
       const int length = bit_count(beyond);

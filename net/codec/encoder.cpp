@@ -173,8 +173,10 @@ void SnapshotEncoder::Impl::temporal_pieces() {
                     packed);
   });
   hand_out(PieceKind::kTemporal);
-  if (!second && !keep) cuts_age = 0;
-  if (!second) ++cuts_age;
+  // Pieces that have become small are cut anew in the next frame.
+  const std::size_t full = room(PieceKind::kTemporal) * payload_count;
+  const bool wasteful = payload_count > 1 && out.bytes * 20 < full * 17;
+  cuts_age = second || wasteful ? 0 : keep ? cuts_age + 1 : 1;
   cuts.clear();
   for (std::size_t i = 0; i < payload_count; ++i) cuts.push_back(payloads[i].first);
   // Where a particle has gone, the frame before loses it too: the next frame compares those that are left.

@@ -29,8 +29,8 @@ std::int64_t logistic(std::int64_t x, std::int64_t scale) {
 
 // Scale of each class in 1/1024 lattice steps: of what is left when the point's own place between lattice
 // points, anywhere within `kSmear`, is known.
-constexpr std::array<std::int64_t, kClasses> kScale = {8,   20,  50,  90,   140,  200,  270,  360,
-                                                       490, 680, 960, 1000, 1000, 1000, 1000, 1000};
+constexpr std::array<std::int64_t, kClasses> kScale = {8,   15,  80,  150,  210,  270,  330,  400,
+                                                       520, 700, 960, 1000, 1000, 1000, 1000, 1000};
 
 std::array<std::uint32_t, kSymbols> residual_weights(int klass, int fraction) {
   const std::int64_t scale = kScale[static_cast<std::size_t>(klass)];
@@ -64,8 +64,8 @@ std::array<std::array<Table, kFractions>, kClasses> all_classes(std::index_seque
 
 Models::Models()
     : residual(all_classes(std::make_index_sequence<kClasses>{})),
-      class_change({2, 2, 3, 5, 12, 40, 200, 800, 1600, 800, 200, 40, 12, 5, 3, 2}),
-      code_distance({4, 4, 6, 12, 25, 50, 100, 195, 390, 737, 1300, 2030, 2500, 1940, 700, 150}) {
+      class_change({4, 10, 35, 70, 200, 200, 500, 1700, 4100, 1950, 750, 240, 140, 60, 15, 4}),
+      code_distance({2, 8, 30, 80, 150, 200, 260, 430, 920, 2120, 3130, 2180, 450, 60, 20, 12}) {
   std::array<std::uint32_t, kClasses> mean{};
   for (std::size_t c = 1; c < kClasses; ++c) {
     std::uint64_t sum = 0;
