@@ -64,7 +64,8 @@ Result<std::unique_ptr<CheckpointWriter>> CheckpointWriter::start(const Scene& s
   first.tick = world.tick();
   first.time = world.time();
   first.stamp_ns = writer->last_copy_ns_ = steady_now_ns();
-  const Result<bool> written = writer->write(first, {});
+  writer->session_ = options.session;
+  const Result<bool> written = writer->write(first, options.session);
   if (!written) return written.error();
   writer->report_.written = 1;
   writer->last_ = std::move(first);
@@ -165,6 +166,10 @@ void CheckpointWriter::run() {
     report_.write_ms = std::max(report_.write_ms, took_ms);
     report_.longest_gap = std::max(report_.longest_gap, to_seconds(last_.stamp_ns - last_stamp_ns));
     changed_.notify_all();
+    if (written || stop_) continue;
+    // A disk that was full may not be in a while, and the world may stand still by then.
+    changed_.wait_for(lock, std::chrono::seconds(1), [this] { return has_waiting_ || stop_; });
+    session_changed_ = !stop_;
   }
 }
 

@@ -33,6 +33,7 @@ struct CheckpointOptions {
   std::filesystem::path file;
   double interval = 0.5;  ///< s of wall time between two copies of the world
   std::string version;
+  Bytes session;  ///< what the first file has, up to set_session(): that of the host that is resumed
 };
 
 struct CheckpointReport {
