@@ -29,8 +29,10 @@ struct PictureSink {
   TierControl control{kShell, kShell};
   bool watching = false;
   LinkEvidence seen;
-  std::uint64_t offered = 0;  ///< snapshot datagrams given to the endpoint
-  std::uint64_t dropped = 0;  ///< of those, by the endpoint, when last looked
+  std::uint64_t offered = 0;        ///< snapshot datagrams given to the endpoint
+  std::uint64_t dropped = 0;        ///< of those, by the endpoint, when last looked
+  std::uint32_t pieces_now = 0;     ///< of frames, sent since the last feedback
+  std::uint32_t pieces_before = 0;  ///< and between the two before
   std::int64_t judged_ns = 0;
   std::int64_t feedback_ns = 0;
   std::int64_t sent_ns = 0;  ///< last frame that went

@@ -1,5 +1,6 @@
 // Datagrams: poses in, hands, bodies and pictures out.
 #include <algorithm>
+#include <utility>
 
 #include "host/server/server.h"
 #include "host/server/server_send.h"
@@ -13,7 +14,7 @@ constexpr std::int64_t kHandsEvery = 1'900'000;  // ns: a hand is passed on at m
 constexpr std::int64_t kStandingEvery = 100'000'000;  // ns between two sendings of bodies that stand still
 constexpr std::int64_t kJudgeEvery = 100'000'000;     // ns between two looks at a link
 constexpr double kFeedbackPatience = 1.5;  // s without feedback after which a watcher counts as silent
-constexpr std::size_t kLeastRoom = 24;     // pieces that may wait in a queue, however small a frame is
+constexpr std::size_t kLeastRoom = 8;      // pieces that may wait in a queue, however small a frame is
 
 SharedBytes shared(wire::Bytes bytes) {
   return std::make_shared<const wire::Bytes>(std::move(bytes));
@@ -173,6 +174,7 @@ void Server::send_pictures() {
         continue;
       }
       past_.frames_sent += 1;
+      sink.pieces_now += static_cast<std::uint32_t>(picture.frame.pieces.size());
       for (const Piece& piece : picture.frame.pieces) send_piece(*peer, piece);
     }
     for (const auto& [id, pieces] : picture.mended) {
@@ -190,8 +192,13 @@ void Server::handle(Peer& peer, const wire::SnapshotFeedback& feedback) {
   PictureSink& sink = peer.pictures;
   if (!sink.watching || static_cast<int>(feedback.stream) != sink.control.tier()) return;
   sink.feedback_ns = now();
-  sink.seen.pieces_came += std::min(feedback.pieces, 1'000'000u);
-  sink.seen.pieces_sent += std::min(feedback.pieces_sent, 1'000'000u);
+  // A peer reckons what was sent from what came, and around a key frame it may reckon far too much.
+  const std::uint32_t most = sink.pieces_now + sink.pieces_before;
+  if (feedback.pieces_sent <= most) {
+    sink.seen.pieces_came += std::min(feedback.pieces, feedback.pieces_sent);
+    sink.seen.pieces_sent += feedback.pieces_sent;
+  }
+  sink.pieces_before = std::exchange(sink.pieces_now, 0);
   if (feedback.missing.empty() || !peer.limits.mends.take(now())) return;
   MendOrder mend;
   mend.peer = peer.id;
