@@ -8,8 +8,9 @@ namespace slosh {
 
 namespace {
 
-constexpr double kCellWidth = 1.2;  // spacings
+constexpr double kCellWidth = 1.4;  // spacings
 constexpr std::int64_t kMostCells = std::int64_t{1} << 24;
+constexpr std::uint8_t kEmpty = 0, kFluid = 1, kOutside = 2;
 constexpr std::uint32_t kNowhere = ~0u;
 
 bool counts(const glm::vec3& p, std::uint8_t fluid) {
@@ -50,18 +51,33 @@ void find_shell(std::span<const glm::vec3> positions, std::span<const std::uint8
     const glm::dvec3 at = glm::dvec3(positions[i] - lower) * per_cell;
     cell_of[i] = static_cast<std::uint32_t>(at.x) + 1 + row * (static_cast<std::uint32_t>(at.y) + 1) +
                  plane * (static_cast<std::uint32_t>(at.z) + 1);
-    filled[cell_of[i]] = 1;
+    filled[cell_of[i]] = kFluid;
   }
-  // Six faces and twelve edges; a corner's hole shows too little.
-  const std::int64_t x = 1, y = row, z = plane;
-  const std::int64_t around[18] = {-x,    x,      -y,    y,     -z,    z,      -x - y, x - y, -x + y,
-                                   x + y, -x - z, x - z, z - x, x + z, -y - z, y - z,  z - y, y + z};
+  // What is reached from outside through faces. Gaps within the fluid, of which every splash has many, are
+  // not seen and stay out.
+  const std::int64_t around[6] = {
+      -1, 1, -static_cast<std::int64_t>(row), row, -static_cast<std::int64_t>(plane), plane};
+  const auto total = static_cast<std::int64_t>(filled.size());
+  thread_local std::vector<std::uint32_t> reached;
+  reached.assign(1, 0);
+  filled[0] = kOutside;
+  while (!reached.empty()) {
+    const std::int64_t from = reached.back();
+    reached.pop_back();
+    for (const std::int64_t step : around) {
+      // A step over a side's end leads to the rim on the other side, which is outside as well.
+      const std::int64_t to = from + step;
+      if (to < 0 || to >= total || filled[static_cast<std::size_t>(to)] != kEmpty) continue;
+      filled[static_cast<std::size_t>(to)] = kOutside;
+      reached.push_back(static_cast<std::uint32_t>(to));
+    }
+  }
   for (std::size_t i = 0; i < count; ++i) {
     if (cell_of[i] == kNowhere) continue;
-    const std::uint8_t* cell = filled.data() + cell_of[i];
-    std::uint8_t inside = 1;
-    for (const std::int64_t to : around) inside &= cell[to];
-    shell[i] = inside ^ 1;
+    bool seen = false;
+    for (const std::int64_t step : around)
+      seen |= filled[static_cast<std::size_t>(cell_of[i] + step)] == kOutside;
+    shell[i] = seen;
   }
 }
 

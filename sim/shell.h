@@ -8,7 +8,7 @@
 
 namespace slosh {
 
-/// Marks with 1 each particle whose cell of a grid, 1.2 spacings wide, has a side or an edge with no fluid
+/// Marks with 1 each particle whose cell of a grid, 1.4 spacings wide, has a side or an edge with no fluid
 /// behind it; with 0 the others and those that are retired (fluid_index 255) or not finite. A lone drop is
 /// all shell. `positions` in m, `fluid_index` one a particle, `spacing` in m, > 0. One pass over the
 /// particles and one over the cells that they fill; the same input gives the same result. Where the fluid is

@@ -15,6 +15,7 @@ namespace {
 constexpr std::size_t kSmallestPiece = 1100;  // a block of any content fits
 constexpr int kKeepCuts = 30;                 // frames
 constexpr double kFirstFill = 0.93;           // of a piece, so that it holds for some frames
+constexpr double kShellEpoch = 0.5;           // s: what is seen from outside changes sooner than the order
 constexpr std::size_t kSlack = 12;            // bytes that the size's estimate may be off
 constexpr std::uint32_t kMendGroup = 4;       // blocks, aligned
 
@@ -27,7 +28,9 @@ struct Payload {
 
 struct SnapshotEncoder::Impl {
   explicit Impl(const CodecOptions& o)
-      : options(o), step(2.0 * o.tolerance), max_piece(std::max(o.max_piece, kSmallestPiece)) {}
+      : options(o), step(2.0 * o.tolerance), max_piece(std::max(o.max_piece, kSmallestPiece)) {
+    if (o.shell_only) options.epoch_seconds = std::min(o.epoch_seconds, kShellEpoch);
+  }
 
   CodecOptions options;
   double step;

@@ -26,7 +26,7 @@ struct CodecOptions {
   double spacing = 0.01;         ///< m between particles, fits the cells
   std::size_t max_piece = 1100;  ///< bytes of a piece, type byte included
   double epoch_seconds = 1.0;    ///< simulated s between key frames
-  bool shell_only = false;       ///< only what is seen from outside (Snapshot::shell)
+  bool shell_only = false;       ///< only what is seen from outside (Snapshot::shell), epochs at most 0.5 s
 };
 
 struct Piece {
