@@ -149,6 +149,7 @@ void Server::let_go_all(const Seat& seat) {
 void Server::lose(Peer& peer, Parting parting) {
   if (peer.gone) return;
   peer.gone = true;
+  past_.bytes_sent += endpoint_->stats(peer.id).bytes_sent;
   if (parting == Parting::kLeft) endpoint_->close(peer.id, 0, "goodbye");
   if (!peer.in) return;
   by_seat_.erase(peer.seat);
@@ -246,6 +247,7 @@ void Server::end(const std::string& why) {
   for (auto& [id, peer] : peers_) {
     if (peer->gone) continue;
     peer->gone = true;
+    past_.bytes_sent += endpoint_->stats(id).bytes_sent;
     if (peer->control_stream >= 0)
       send_bytes(*endpoint_, *peer, wire::control(wire::Refused{wire::RefusalCode::kEnding, why}));
     endpoint_->close(id, close_code(wire::RefusalCode::kEnding), why);
