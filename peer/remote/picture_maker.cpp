@@ -161,7 +161,7 @@ void PictureMaker::run() {
 void PictureMaker::take_pieces(const std::vector<std::vector<std::uint8_t>>& pieces, bool anew,
                                bool to_the_end) {
   if (anew) decoders_ = StreamDecoders();
-  const std::uint32_t patience = to_the_end ? 0 : options_.film ? kFilmPatience : kWindowPatience;
+  const std::uint32_t patience = options_.film ? kFilmPatience : kWindowPatience;
   for (const std::vector<std::uint8_t>& piece : pieces) {
     const wire::Fault fault = decoders_.take(piece);
     {

@@ -9,7 +9,7 @@ namespace {
 
 EndpointOptions endpoint_options(double answer_within) {
   EndpointOptions options;
-  options.idle_timeout = 4.0;
+  options.idle_timeout = std::max(4.0, answer_within);
   options.keep_alive = 0.5;
   options.handshake_timeout = answer_within;
   options.max_connections = 1;
@@ -82,8 +82,11 @@ void RemoteLink::lost(const std::string& why) {
   if (leaving_) return end(std::nullopt);
   switch (status_.state) {
     case LinkState::kConnecting: {
-      const std::string what = why.empty() ? "no answer" : why;
-      const bool silent = what.find("no answer") != std::string::npos;
+      // The transport's own patience may end first.
+      const bool silent = why.empty() || why.find("no answer") != std::string::npos ||
+                          why.find("timed out") != std::string::npos;
+      const std::string what =
+          silent && why.find("no answer from") == std::string::npos ? "no answer within 5 s" : why;
       const bool named = what.find(options_.address) != std::string::npos;
       return end(Error{named ? "" : options_.address, what,
                        silent ? "See that the host runs, and that UDP reaches that address and port"

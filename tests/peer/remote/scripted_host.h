@@ -80,6 +80,7 @@ class ScriptedHost final : public EndpointEvents {
   std::int64_t now_ns() const { return network_.now_ns() + to_nanoseconds(clock_ahead); }
   Endpoint& endpoint() { return *endpoint_; }
   void turn() {
+    if (!endpoint_) return;  // it has crashed
     endpoint_->run_once(network_.now_ns());
     if (connection == 0 || !sends_bodies || hellos.empty()) return;
     wire::Bodies m;
