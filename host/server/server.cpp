@@ -185,6 +185,7 @@ void Server::turn() {
 }
 
 std::int64_t Server::next_turn_ns() const {
+  if (!leaving_.empty()) return now();
   std::int64_t next = now() + kLongestNap;
   if (roster_dirty_) next = std::min(next, roster_sent_ns_ + kRosterEvery);
   return next;

@@ -4,6 +4,7 @@
 // nobody: the world answers through the mailbox, pictures come coded from the desk.
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -161,6 +162,8 @@ class Server final : public EndpointEvents, public HostTap {
   void forward(Peer& from, const wire::PoseSample& sample);
   void send_bodies();
   void send_pictures();
+  std::size_t send_picture(Peer& peer, const CodedPicture& picture);
+  void send_mended(const CodedPicture& picture);
   void judge_links();
   void watch(Peer& peer, int tier);
   bool has_room(Peer& peer, std::size_t pieces);
@@ -194,6 +197,11 @@ class Server final : public EndpointEvents, public HostTap {
   std::map<std::uint32_t, ConnectionId> by_seat_;
   std::vector<std::int64_t> next_hands_ns_;  // one a grip: when it may be passed on again
   PictureOrder order_;
+  struct LeavingPicture {
+    CodedPicture picture;
+    ConnectionId last = 0;  // the last one that got it
+  };
+  std::deque<LeavingPicture> leaving_;
   bool roster_dirty_ = false;
   std::int64_t roster_sent_ns_ = 0;
   std::int64_t bodies_sent_ns_ = 0;

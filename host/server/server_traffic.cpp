@@ -14,6 +14,8 @@ constexpr std::int64_t kHandsEvery = 1'900'000;  // ns: a hand is passed on at m
 constexpr std::int64_t kStandingEvery = 100'000'000;  // ns between two sendings of bodies that stand still
 constexpr std::int64_t kJudgeEvery = 100'000'000;     // ns between two looks at a link
 constexpr double kFeedbackPatience = 1.5;  // s without feedback after which a watcher counts as silent
+constexpr std::size_t kPiecesATurn = 32;   // of pictures, before the network is looked at again
+constexpr std::size_t kMostLeaving = 12;   // pictures on their way; the oldest go when we cannot keep up
 constexpr std::size_t kLeastRoom = 8;      // pieces that may wait in a queue, however small a frame is
 
 SharedBytes shared(wire::Bytes bytes) {
@@ -162,29 +164,49 @@ void Server::send_piece(Peer& peer, const Piece& piece) {
   if (endpoint_->send_datagram(peer.id, Priority::kSnapshot, piece.bytes)) peer.pictures.offered += 1;
 }
 
+// A hundred watchers' pieces take milliseconds to encrypt: a few at a time, so that poses that come meanwhile
+// do not wait for all of them.
 void Server::send_pictures() {
-  for (const CodedPicture& picture : world_.desk->collect()) {
-    for (auto& [id, peer] : peers_) {
-      PictureSink& sink = peer->pictures;
-      if (peer->gone || !sink.watching || sink.control.tier() != picture.tier) continue;
-      sink.seen.frames += 1;
-      if (!has_room(*peer, picture.frame.pieces.size())) {
-        sink.seen.frames_withheld += 1;
-        past_.frames_withheld += 1;
-        continue;
-      }
-      past_.frames_sent += 1;
-      sink.pieces_now += static_cast<std::uint32_t>(picture.frame.pieces.size());
-      for (const Piece& piece : picture.frame.pieces) send_piece(*peer, piece);
+  for (CodedPicture& picture : world_.desk->collect()) leaving_.push_back({std::move(picture), 0});
+  while (leaving_.size() > kMostLeaving) leaving_.pop_front();
+  std::size_t room = kPiecesATurn;
+  while (!leaving_.empty() && room > 0) {
+    LeavingPicture& leaving = leaving_.front();
+    const auto next = peers_.upper_bound(leaving.last);
+    if (next == peers_.end()) {
+      send_mended(leaving.picture);
+      leaving_.pop_front();
+      continue;
     }
-    for (const auto& [id, pieces] : picture.mended) {
-      Peer* peer = find(id);
-      if (!peer || !peer->pictures.watching || peer->pictures.control.tier() != picture.tier) continue;
-      std::size_t bytes = 0;
-      for (const Piece& piece : pieces) bytes += piece.bytes->size();
-      if (!peer->limits.mend_bytes.take(now(), static_cast<double>(bytes))) continue;
-      for (const Piece& piece : pieces) send_piece(*peer, piece);
-    }
+    leaving.last = next->first;
+    const std::size_t sent = send_picture(*next->second, leaving.picture);
+    room -= std::min(room, sent);
+  }
+}
+
+std::size_t Server::send_picture(Peer& peer, const CodedPicture& picture) {
+  PictureSink& sink = peer.pictures;
+  if (peer.gone || !sink.watching || sink.control.tier() != picture.tier) return 0;
+  sink.seen.frames += 1;
+  if (!has_room(peer, picture.frame.pieces.size())) {
+    sink.seen.frames_withheld += 1;
+    past_.frames_withheld += 1;
+    return 0;
+  }
+  past_.frames_sent += 1;
+  sink.pieces_now += static_cast<std::uint32_t>(picture.frame.pieces.size());
+  for (const Piece& piece : picture.frame.pieces) send_piece(peer, piece);
+  return picture.frame.pieces.size();
+}
+
+void Server::send_mended(const CodedPicture& picture) {
+  for (const auto& [id, pieces] : picture.mended) {
+    Peer* peer = find(id);
+    if (!peer || !peer->pictures.watching || peer->pictures.control.tier() != picture.tier) continue;
+    std::size_t bytes = 0;
+    for (const Piece& piece : pieces) bytes += piece.bytes->size();
+    if (!peer->limits.mend_bytes.take(now(), static_cast<double>(bytes))) continue;
+    for (const Piece& piece : pieces) send_piece(*peer, piece);
   }
 }
 
