@@ -42,6 +42,10 @@ void add_host(CLI::App& app, VerbRun& chosen) {
   verb->add_option("SCENE", o->scene, "A shipped scene's name, or a .gltf or .glb file")
       ->capture_default_str();
   verb->add_option("--listen", o->listen, "ADDR:PORT, e.g. 0.0.0.0:4433 or [::1]:0 ([::]:4433: everywhere)");
+  verb->add_option(
+          "--address", o->addresses,
+          "ADDR:PORT to put into links, again for more: a router's that passes it on (this machine's)")
+      ->allow_extra_args(false);
   verb->add_option("--for", o->names, "A link of their own for these people; it works for one machine each")
       ->check(CLI::Validator(
           [](std::string& name) {

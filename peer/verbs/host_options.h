@@ -9,9 +9,10 @@
 namespace slosh {
 
 struct HostVerbOptions : PlayOptions {
-  std::string listen;              ///< ADDR:PORT; empty = every address, port 4433 (or the resumed session's)
-  std::vector<std::string> names;  ///< a personal link each
-  std::string expires;             ///< of all links made at the start; empty = never
+  std::string listen;  ///< ADDR:PORT; empty = every address, port 4433 (or the resumed session's)
+  std::vector<std::string> addresses;  ///< ADDR:PORT that links carry in place of this machine's own
+  std::vector<std::string> names;      ///< a personal link each
+  std::string expires;                 ///< of all links made at the start; empty = never
   std::string links_file;
   std::string record;
   std::string checkpoint;  ///< file, "none", or empty = chosen

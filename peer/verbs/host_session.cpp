@@ -114,7 +114,11 @@ Result<bool> HostSession::open_network() {
   }
   endpoint_ = std::move(listening.value());
   address_ = endpoint_->local_address();
-  reachable_ = reachable_addresses(address_);
+  reachable_ = options_.addresses.empty() ? reachable_addresses(address_) : options_.addresses;
+  if (const Result<std::string> text = format_link({reachable_, identity_.fingerprint(), {}}); !text) {
+    return Error{"--address", text.error().what,
+                 "Give addresses that peers can reach, e.g. 203.0.113.7:4433"};
+  }
   server_->use(*endpoint_);
   server_->set_identity(identity_.private_key(), port_of(address_));
   server_->link_text = [this](const LinkRecord& link_record) { return text_of(link_record); };

@@ -1,0 +1,198 @@
+// Two people at two sites carry one bucket, a third looks on: programs as users start them, a bad wire
+// between.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "peer/output/plot.h"
+#include "process.h"
+#include "render/image.h"
+#include "sites.h"
+
+namespace slosh {
+namespace {
+
+using nlohmann::json;
+using std::filesystem::path;
+using test::Outcome;
+using test::Process;
+using test::read_text;
+
+constexpr double kSeconds = 9.0;  // simulated; the bucket is tilted left, right, left in it
+
+/// Waits for something that other programs bring about; a minute is only reached on failure.
+bool comes(const std::function<bool()>& there) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  while (std::chrono::steady_clock::now() < end) {
+    if (there()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  return false;
+}
+
+/// Simulated time of the last whole row of a run's wrenches so far, -1 without any.
+double last_time(const path& folder) {
+  const std::string text = read_text(folder / "wrenches.csv");
+  const std::size_t end = text.rfind('\n');
+  if (end == std::string::npos || end == 0) return -1.0;
+  const std::size_t begin = text.rfind('\n', end - 1);
+  if (begin == std::string::npos) return -1.0;
+  return std::atof(text.c_str() + begin + 1);
+}
+
+class NetworkTest : public ::testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::remove_all(test::test_folder()); }
+  path folder(const std::string& name) const { return test::test_folder() / name; }
+
+  /// The program, with its own idea of where a user's files are.
+  std::unique_ptr<Process> start(const test::Sites& sites, const std::string& site, const std::string& name,
+                                 std::vector<std::string> arguments) const {
+    const std::string home = (test::test_folder() / "home").string();
+    std::vector<std::string> command{"env", "XDG_STATE_HOME=" + home, "XDG_DATA_HOME=" + home,
+                                     "XDG_RUNTIME_DIR=" + home, test::program()};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    std::filesystem::create_directories(home);
+    return std::make_unique<Process>(sites.at(site, command), folder(name));
+  }
+  /// One of the links that a host wrote: "hold" or "watch".
+  std::string link(const std::string& kind) const {
+    std::istringstream lines(read_text(folder("host") / "links.txt"));
+    std::string word, text, rest;
+    while (lines >> word >> text && std::getline(lines, rest)) {
+      if (word == kind) return text;
+    }
+    return {};
+  }
+  json summary(const std::string& name) const {
+    return json::parse(read_text(folder(name) / "out" / "summary.json"));
+  }
+};
+
+std::vector<std::string> peer(const std::string& verb, const std::string& link, const std::string& name) {
+  return {verb,      link,    "--name", name,    "--headless",         "--out", "out", "--size",
+          "320x240", "--fps", "10",     "--key", "../" + name + ".key"};
+}
+
+/// Share of the picture's pixels whose colours differ by more than `least` (of 255). The charts and words at
+/// the left are each person's own and are left out.
+double differing(const Image& a, const Image& b, int least) {
+  EXPECT_EQ(a.width, b.width);
+  EXPECT_EQ(a.height, b.height);
+  const int from = a.width * 2 / 5;
+  int count = 0;
+  for (int y = 0; y < a.height; ++y) {
+    for (int x = from; x < a.width; ++x) {
+      const std::size_t at = 4 * (static_cast<std::size_t>(y) * a.width + x);
+      int most = 0;
+      for (int c = 0; c < 3; ++c) most = std::max(most, std::abs(a.rgba[at + c] - b.rgba[at + c]));
+      count += most > least ? 1 : 0;
+    }
+  }
+  return static_cast<double>(count) / (static_cast<double>(a.height) * (a.width - from));
+}
+
+TEST_F(NetworkTest, TwoPeopleCarryTheBucketOverABadWire) {
+  const test::Sites sites({"host", "ana", "ben", "eve"});
+  const std::string at = sites.separate() ? sites.address("host") + ":4433" : "127.0.0.1:0";
+  std::vector<std::string> arguments{"host",         "bucket",
+                                     "--spacing",    "0.014",
+                                     "--threads",    "1",
+                                     "--wait",       "2",
+                                     "--listen",     at,
+                                     "--links",      "links.txt",
+                                     "--seconds",    std::to_string(kSeconds),
+                                     "--checkpoint", "none"};
+  if (sites.separate()) {
+    for (const char* site : {"ana", "ben", "eve"}) {
+      arguments.insert(arguments.end(), {"--address", sites.wire_address(site) + ":5000"});
+    }
+  }
+  const auto host = start(sites, "host", "host", arguments);
+  ASSERT_TRUE(comes([&] { return !link("watch").empty() || !host->running(); }));
+  ASSERT_FALSE(link("hold").empty()) << host->wait().err;
+
+  std::unique_ptr<Process> wire;
+  if (sites.separate()) {
+    // 60 ms there and back, 2 % lost each way.
+    wire = std::make_unique<Process>(
+        sites.at("wire", {(path(test::program()).parent_path() / "slosh-impair").string(), "--listen",
+                          "0.0.0.0:5000", "--to", at, "--delay-ms", "30", "--loss", "0.02", "--seed", "7"}),
+        folder("wire"));
+  }
+  const auto ana = start(sites, "ana", "ana", peer("join", link("hold"), "Ana"));
+  auto ben = start(sites, "ben", "ben", peer("join", link("hold"), "Ben"));
+  ASSERT_TRUE(comes([&] { return last_time(folder("ana") / "out") > 2.0; }))
+      << read_text(folder("ana") / "stderr.txt");
+
+  // Late, to look on.
+  const auto eve = start(sites, "eve", "eve", peer("watch", link("watch"), "Eve"));
+  ASSERT_TRUE(comes([&] { return last_time(folder("ben") / "out") > 3.0; }));
+  ben->signal(SIGKILL);
+  EXPECT_EQ(ben->wait().code, 128 + SIGKILL);
+  const double killed_at = last_time(folder("ben") / "out");
+  ASSERT_TRUE(comes([&] { return last_time(folder("ana") / "out") > killed_at + 0.5; }));
+  // The same person again.
+  ben = start(sites, "ben", "ben_again", peer("join", link("hold"), "Ben"));
+
+  const Outcome hosted = host->wait();
+  EXPECT_EQ(hosted.code, 0) << hosted.err;
+  for (const auto& [name, process] :
+       {std::pair{"ana", ana.get()}, {"ben_again", ben.get()}, {"eve", eve.get()}}) {
+    const Outcome outcome = process->wait();
+    EXPECT_EQ(outcome.code, 0) << name << ": " << outcome.err;
+    for (const char* file : {"view.mp4", "final.png", "summary.json"}) {
+      EXPECT_TRUE(std::filesystem::is_regular_file(folder(name) / "out" / file)) << name << " " << file;
+    }
+  }
+  for (const char* name : {"ana", "ben_again"}) {
+    for (const char* file : {"wrenches.csv", "poses.csv", "wrenches.png"}) {
+      EXPECT_TRUE(std::filesystem::is_regular_file(folder(name) / "out" / file)) << name << " " << file;
+    }
+    const json s = summary(name);
+    EXPECT_EQ(s["network"]["role"], "participant");
+    EXPECT_EQ(s["devices"].size(), 1u) << "one grip each";
+    if (sites.separate()) {
+      EXPECT_GT(s["network"]["rtt_ms"], 55.0);
+    }
+    EXPECT_GT(s["network"]["snapshots"]["complete"], 10);
+    const Result<std::vector<WrenchSeries>> series = read_wrenches(folder(name) / "out" / "wrenches.csv");
+    ASSERT_TRUE(series) << series.error().text();
+    double most = 0.0;
+    for (const WrenchSeries& one : series.value()) {
+      for (const Wrench& wrench : one.on_hand) most = std::max(most, -wrench.force.y);
+    }
+    EXPECT_GT(most, 5.0) << name << " carries: the bucket weighs 31 N in all";
+  }
+  EXPECT_NE(summary("ana")["devices"][0]["grip"], summary("ben_again")["devices"][0]["grip"]);
+  EXPECT_EQ(summary("eve")["network"]["role"], "spectator");
+  EXPECT_TRUE(read_wrenches(folder("ben") / "out" / "wrenches.csv")) << "what was killed left whole rows";
+  // Ana was told.
+  const std::string told = read_text(folder("ana") / "stderr.txt");
+  EXPECT_NE(told.find("Ben"), std::string::npos) << told;
+  const std::string kept = read_text(folder("ben_again") / "stderr.txt");
+  EXPECT_NE(kept.find("your place was kept"), std::string::npos) << kept;
+
+  // All look at the same world at its end.
+  const json last_a = summary("ana")["network"]["picture_time_s"]["last"];
+  Result<Image> a = read_png(folder("ana") / "out" / "final.png");
+  ASSERT_TRUE(a);
+  for (const char* name : {"ben_again", "eve"}) {
+    EXPECT_NEAR(summary(name)["network"]["picture_time_s"]["last"], last_a, 0.11) << name;
+    Result<Image> b = read_png(folder(name) / "out" / "final.png");
+    ASSERT_TRUE(b);
+    const double share = differing(a.value(), b.value(), 40);
+    std::printf("pictures of ana and %s: %.2f %% of the pixels differ\n", name, 100.0 * share);
+    EXPECT_LT(share, 0.03) << name;
+  }
+}
+
+}  // namespace
+}  // namespace slosh
