@@ -56,14 +56,13 @@ SeatTable::Arrival SeatTable::arrive(const KeyFingerprint& key, wire::Role role,
                                      const std::string& link) {
   if (Seat* seat = by_key(key)) {
     seat->link = link;
-    const bool restored = !seat->connected;
     seat->connected = true;
     seat->left = false;
     if (seat->role != role) {
       seat->role = role;
       seat->grips.clear();
     }
-    return {seat, restored, {}};
+    return {seat, true, {}};
   }
   if (!make_room(role)) {
     return {nullptr, false,
