@@ -55,7 +55,8 @@ class BlockWriter {
 
  private:
   void moved(const Block& block, const BlockPoints& last, const BlockPoints* before);
-  void axis(const std::int32_t* displaced, const std::int32_t* predicted, int count, int klass);
+  void wide_axis(const std::int32_t* displaced, const std::int32_t* predicted, int count, int klass);
+  void beyond(std::int32_t residual);
   void points(const Block& block);
   void fluids(const Block& block);
   void retired(const std::uint8_t* gone, int many);

@@ -21,42 +21,54 @@ bool at_rest(const BlockPoints& now, const BlockPoints& last, int count) {
   return true;
 }
 
-/// Σ|displaced − predicted|, lattice steps / 64; a displacement counts as at most 2^15.
-std::uint32_t scatter(const std::int32_t* displaced, const std::int32_t* predicted, int count) {
-  std::uint32_t sum = 0;
-  for (int i = 0; i < count; ++i) {
-    const std::int32_t moved = std::clamp(displaced[i], -(1 << 15), 1 << 15) * (1 << kFine);
-    sum += static_cast<std::uint32_t>(std::abs(moved - predicted[i])) >> (kFine - 6);
-  }
-  return sum;
+std::int32_t fine(std::int32_t displaced) {
+  return std::clamp(displaced, -(1 << 15), 1 << 15) * (1 << kFine);
 }
 
+/// Σ|displaced − predicted|, lattice steps / 64, for every blend; a displacement counts as at most 2^15
+/// steps.
+void scatter(const std::int32_t* displaced, const std::int32_t* smooth, const std::int32_t* own, int count,
+             std::uint32_t sums[kBlends]) {
+  std::int32_t off[kBlock], more[kBlock];
+  for (int i = 0; i < count; ++i) {
+    off[i] = fine(displaced[i]) - smooth[i];
+    more[i] = own[i] - smooth[i];
+  }
+  for (int b = 0; b < kBlends; ++b) {
+    std::uint32_t sum = 0;
+    for (int i = 0; i < count; ++i)
+      sum += static_cast<std::uint32_t>(std::abs(off[i] - ((more[i] * b) >> 2))) >> (kFine - 6);
+    sums[b] = sum;
+  }
+}
+
+/// What is coded of an axis in a class whose low bits are not raw.
 struct Narrow {
-  std::uint8_t fraction, symbol;
+  std::int32_t residual[kBlock];
+  std::int32_t symbol[kBlock];
+  std::int32_t fraction[kBlock];
 };
-/// Of a class whose low bits are not raw. Half of the fractions are the other half seen in a mirror.
-Narrow narrow(std::int32_t displaced, std::int32_t predicted, std::int32_t& residual) {
-  residual = displaced - (predicted >> kFine);
-  std::int32_t fraction = (predicted >> (kFine - 3)) & 7;
-  const std::int32_t mirror = -(fraction >> 2);  // all ones or none
-  fraction ^= mirror & 7;
-  residual = (residual ^ mirror) - 2 * mirror;  // 1 − residual
-  return {static_cast<std::uint8_t>(fraction), static_cast<std::uint8_t>(std::clamp(residual + 7, 0, 15))};
+/// Half of the fractions are the other half seen in a mirror.
+void make_narrow(const std::int32_t* displaced, const std::int32_t* predicted, int count, Narrow& out) {
+  for (int i = 0; i < count; ++i) {
+    const std::int32_t residual = displaced[i] - (predicted[i] >> kFine);
+    const std::int32_t fraction = (predicted[i] >> (kFine - 3)) & 7;
+    const std::int32_t mirror = -(fraction >> 2);  // all ones or none
+    out.fraction[i] = fraction ^ (mirror & 7);
+    out.residual[i] = (residual ^ mirror) - 2 * mirror;  // 1 − residual
+    out.symbol[i] = std::clamp(out.residual[i] + 7, 0, 15);
+  }
 }
 
 /// The narrow class that costs least, or a wide one by the mean scatter.
-int choose_class(const std::int32_t* displaced, const std::int32_t* predicted, int count, std::uint32_t sum) {
+int choose_class(const Narrow& narrow, int count, std::uint32_t sum) {
   const Models& models = Models::get();
   const std::uint32_t mean = sum / static_cast<std::uint32_t>(count);
   int wide = 1;
   while (mean > models.reach[static_cast<std::size_t>(wide)]) ++wide;
   if (wide >= kFirstWide) return wide;
   std::uint32_t seen[kFractions * kSymbols] = {};
-  for (int i = 0; i < count; ++i) {
-    std::int32_t residual;
-    const Narrow n = narrow(displaced[i], predicted[i], residual);
-    ++seen[n.fraction * kSymbols + n.symbol];
-  }
+  for (int i = 0; i < count; ++i) ++seen[narrow.fraction[i] * kSymbols + narrow.symbol[i]];
   int best = 1;
   std::uint32_t least = ~0u;
   for (int klass = 1; klass < kFirstWide; ++klass) {
@@ -149,20 +161,16 @@ void BlockWriter::moved(const Block& block, const BlockPoints& last, const Block
   if (before) {
     fit_motion(last, *before, n, motion);
     std::uint64_t least = ~std::uint64_t{0};
-    std::int32_t mixed[3][kBlock];
+    std::uint32_t tried[3][kBlends];
+    for (int a = 0; a < 3; ++a) scatter(displaced[a], motion.smooth[a], motion.own[a], n, tried[a]);
     for (int b = 0; b < kBlends; ++b) {
-      std::uint32_t tried[3];
-      for (int a = 0; a < 3; ++a) {
-        for (int i = 0; i < n; ++i) mixed[a][i] = blend_motion(motion.smooth[a][i], motion.own[a][i], b);
-        tried[a] = scatter(displaced[a], mixed[a], n);
-      }
       // Bits go with the logarithm of the scatter: the product over the axes compares.
-      const std::uint64_t product = (std::uint64_t{tried[0]} + n) * (std::uint64_t{tried[1]} + n) / 64 *
-                                    (std::uint64_t{tried[2]} + n) / 64;
+      std::uint64_t product = 1;
+      for (int a = 0; a < 3; ++a) product *= std::min<std::uint64_t>(tried[a][b] / 16 + 1, 1u << 21);
       if (product >= least) continue;
       least = product;
       blend = b;
-      std::copy(tried, tried + 3, sums);
+      for (int a = 0; a < 3; ++a) sums[a] = tried[a][b];
     }
     out_.bits(static_cast<std::uint64_t>(blend), 2);
     for (int a = 0; a < 3; ++a) {
@@ -178,45 +186,61 @@ void BlockWriter::moved(const Block& block, const BlockPoints& last, const Block
       out_.bits(static_cast<std::uint64_t>(drift[a] + 32768), 16);
     }
     uniform_motion(drift, n, motion);
-    for (int a = 0; a < 3; ++a) sums[a] = scatter(displaced[a], motion.smooth[a], n);
+    for (int a = 0; a < 3; ++a) {
+      std::uint32_t all[kBlends];
+      scatter(displaced[a], motion.smooth[a], motion.own[a], n, all);
+      sums[a] = all[0];
+    }
   }
   const Models& models = Models::get();
   for (int a = 0; a < 3; ++a) {
     const bool still = std::all_of(displaced[a], displaced[a] + n, [](std::int32_t d) { return d == 0; });
-    const int klass = still ? 0 : choose_class(displaced[a], motion.smooth[a], n, sums[a]);
+    Narrow narrow;
+    make_narrow(displaced[a], motion.smooth[a], n, narrow);
+    const int klass = still ? 0 : choose_class(narrow, n, sums[a]);
     const int change = std::clamp(klass - class_before_[a] + 8, 0, 15);
     out_.symbol(models.class_change, change);
     if (change == 0 || change == 15) out_.bits(static_cast<std::uint64_t>(klass), 4);
-    if (klass > 0) axis(displaced[a], motion.smooth[a], n, klass);
-    if (klass > 0) class_before_[a] = klass;
+    if (klass == 0) continue;
+    class_before_[a] = klass;
+    const auto& tables = models.residual[static_cast<std::size_t>(klass)];
+    if (klass >= kFirstWide) {
+      wide_axis(displaced[a], motion.smooth[a], n, klass);
+      continue;
+    }
+    const bool plain =
+        std::all_of(narrow.symbol, narrow.symbol + n, [](std::int32_t x) { return x > 0 && x < 15; });
+    if (plain) {
+      out_.symbols(tables, narrow.fraction, narrow.symbol, n);
+      continue;
+    }
+    for (int i = 0; i < n; ++i) {
+      out_.symbol(tables[static_cast<std::size_t>(narrow.fraction[i])], narrow.symbol[i]);
+      if (narrow.symbol[i] == 0 || narrow.symbol[i] == 15) [[unlikely]]
+        beyond(narrow.residual[i]);
+    }
   }
 }
 
-void BlockWriter::axis(const std::int32_t* displaced, const std::int32_t* predicted, int count, int klass) {
-  const auto& tables = Models::get().residual[static_cast<std::size_t>(klass)];
+/// Of a residual that its symbol, 0 or 15, does not tell.
+void BlockWriter::beyond(std::int32_t residual) {
+  const auto more = static_cast<std::uint32_t>(residual < 0 ? -7 - residual : residual - 8);
+  const int length = bit_count(more);
+  out_.bits(static_cast<std::uint64_t>(length), 5);
+  out_.bits(more, length);
+}
+
+void BlockWriter::wide_axis(const std::int32_t* displaced, const std::int32_t* predicted, int count,
+                            int klass) {
+  const Table& table = Models::get().residual[static_cast<std::size_t>(klass)][0];
   const int low = Models::low_bits(klass);
   for (int i = 0; i < count; ++i) {
-    std::int32_t residual;
-    std::uint32_t raw = 0;
-    int symbol;
-    if (low > 0) {
-      residual = displaced[i] - (predicted[i] >> kFine) + (1 << (low - 1));
-      raw = static_cast<std::uint32_t>(residual) & ((1u << low) - 1);
-      residual >>= low;
-      symbol = std::clamp(residual + 7, 0, 15);
-      out_.symbol(tables[0], symbol);
-    } else {
-      const Narrow n = narrow(displaced[i], predicted[i], residual);
-      symbol = n.symbol;
-      out_.symbol(tables[n.fraction], symbol);
-    }
-    if (symbol == 0 || symbol == 15) {
-      const auto beyond = static_cast<std::uint32_t>(symbol == 0 ? -7 - residual : residual - 8);
-      const int length = bit_count(beyond);
-      out_.bits(static_cast<std::uint64_t>(length), 5);
-      out_.bits(beyond, length);
-    }
-    if (low > 0) out_.bits(raw, low);
+    const std::int32_t residual = displaced[i] - (predicted[i] >> kFine) + (1 << (low - 1));
+    const std::int32_t high = residual >> low;
+    const int symbol = std::clamp(high + 7, 0, 15);
+    out_.symbol(table, symbol);
+    if (symbol == 0 || symbol == 15) beyond(high);
+    out_.bits(static_cast<std::uint32_t>(residual) & ((1u << low) - 1), low);
   }
 }
 

@@ -4,13 +4,7 @@
 #include <array>
 #include <utility>
 
-#include "net/wire/messages.h"
-
 namespace slosh::codec {
-
-bool is_drawn(const Snapshot& snapshot, std::size_t id) {
-  return id >= snapshot.fluid_index.size() || snapshot.fluid_index[id] < wire::kMaxFluids;
-}
 
 void CellOrder::sort(const Snapshot& snapshot, double per_step, bool shell_only) {
   const std::size_t count = snapshot.positions.size();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "net/codec/lattice.h"
+#include "net/wire/messages.h"
 #include "sim/snapshot.h"
 
 namespace slosh::codec {
@@ -30,6 +31,8 @@ struct CellOrder {
 };
 
 /// False for a particle that must not be sent.
-bool is_drawn(const Snapshot& snapshot, std::size_t id);
+inline bool is_drawn(const Snapshot& snapshot, std::size_t id) {
+  return id >= snapshot.fluid_index.size() || snapshot.fluid_index[id] < wire::kMaxFluids;
+}
 
 }  // namespace slosh::codec

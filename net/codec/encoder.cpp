@@ -154,6 +154,9 @@ void SnapshotEncoder::Impl::take_positions(const Snapshot& snapshot) {
     std::uint8_t* list = gone.data() + b * kBlock;
     int lost = 0;
     for (int i = 0; i < block.count; ++i) {
+      // Neighbours in the order lie far apart in the snapshot: the memory has to be told ahead.
+      const std::size_t ahead = b * kBlock + static_cast<std::size_t>(i) + 24;
+      if (ahead < order.ids.size()) __builtin_prefetch(&snapshot.positions[order.ids[ahead]]);
       const std::uint32_t id = order.ids[b * kBlock + block.slot[i]];
       std::int32_t point[3];
       if (!is_drawn(snapshot, id) || !to_lattice(snapshot.positions[id], per_step, point)) {

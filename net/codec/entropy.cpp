@@ -45,39 +45,42 @@ Table::Table(const std::array<std::uint32_t, kSymbols>& weights) {
     // Exact for every x below 2^31 (Alverson 1991): shift rounds log2(share) up, the factor is rounded up.
     int shift = 0;
     while (share[s] > (1u << shift)) ++shift;
-    if (share[s] == (1u << shift)) {
-      reciprocal[s] = {0, static_cast<std::uint16_t>(shift)};
-    } else {
-      reciprocal[s] = {
-          static_cast<std::uint32_t>(((std::uint64_t{1} << (shift + 31)) + share[s] - 1) / share[s]),
-          static_cast<std::uint16_t>(shift - 1)};
+    said[s] = {0, share[s], below[s], static_cast<std::uint16_t>(shift)};
+    if (share[s] != 1u << shift) {
+      said[s].factor =
+          static_cast<std::uint32_t>(((std::uint64_t{1} << (shift + 31)) + share[s] - 1) / share[s]);
+      said[s].shift = static_cast<std::uint16_t>(shift - 1);
     }
   }
   below[kSymbols] = static_cast<std::uint16_t>(at);
 }
 
 void EntropyEncoder::finish(std::vector<std::uint8_t>& out) {
-  words_.clear();
-  std::uint32_t state[2] = {kStateStart, kStateStart};
-  for (std::size_t i = said_.size(); i-- > 0;) {
-    const Said& say = said_[i];
-    std::uint32_t x = state[i & 1];
-    if (x >= std::uint32_t{say.share} << 19) {
-      words_.push_back(static_cast<std::uint16_t>(x));
-      x >>= 16;
-    }
+  if (words_.size() < count_) words_.resize(count_);
+  std::size_t words = 0;
+  // The states take turns; two variables, as memory would hold each up for the one before.
+  std::uint32_t now = kStateStart, next = kStateStart;
+  for (std::size_t i = count_; i-- > 0;) {
+    const Table::Said say = said_[i];
+    const bool full = now >= std::uint32_t{say.share} << 19;
+    words_[words] = static_cast<std::uint16_t>(now);
+    words += full;
+    const std::uint32_t x = full ? now >> 16 : now;
     const std::uint32_t quotient =
         say.factor == 0 ? x >> say.shift
                         : static_cast<std::uint32_t>((std::uint64_t{x} * say.factor) >> 32) >> say.shift;
-    state[i & 1] = (quotient << kProbabilityBits) + (x - quotient * say.share) + say.below;
+    now = next;
+    next = (quotient << kProbabilityBits) + (x - quotient * say.share) + say.below;
   }
+  // The last symbol coded is the first to be read: its state comes first.
+  const std::uint32_t state[2] = {count_ > 0 ? next : now, count_ > 0 ? now : next};
   const std::size_t start = out.size();
-  out.resize(start + 8 + 2 * words_.size());
+  out.resize(start + 8 + 2 * words);
   std::uint8_t* at = out.data() + start;
   std::memcpy(at, &state[0], 4);
   std::memcpy(at + 4, &state[1], 4);
   at += 8;
-  for (std::size_t i = words_.size(); i-- > 0; at += 2) std::memcpy(at, &words_[i], 2);
+  for (std::size_t i = words; i-- > 0; at += 2) std::memcpy(at, &words_[i], 2);
 }
 
 EntropyDecoder::EntropyDecoder(std::span<const std::uint8_t> in)

@@ -23,11 +23,13 @@ struct Table {
   std::array<std::uint16_t, kSymbols> share{};
   std::array<std::uint16_t, kSymbols + 1> below{};  ///< sum of the shares before
   std::array<std::uint32_t, kSymbols> cost{};       ///< bits / 256
-  struct Reciprocal {
+  /// A symbol as the encoder needs it: x / share = (x · factor) >> (32 + shift), or x >> shift without
+  /// factor.
+  struct Said {
     std::uint32_t factor = 0;
-    std::uint16_t shift = 0;
+    std::uint16_t share = 0, below = 0, shift = 0;
   };
-  std::array<Reciprocal, kSymbols> reciprocal{};  ///< x / share = (x · factor) >> (32 + shift)
+  std::array<Said, kSymbols> said{};
   std::array<std::uint8_t, kProbabilityOne> symbol_at{};
 
   /// `weights` need not have any particular sum.
@@ -43,9 +45,9 @@ class EntropyEncoder {
   };
 
   void clear() { back_to({}); }
-  Mark mark() const { return {said_.size(), cost_}; }
+  Mark mark() const { return {count_, cost_}; }
   void back_to(const Mark& mark) {
-    said_.resize(mark.said);
+    count_ = mark.said;
     cost_ = mark.cost;
   }
   /// Bytes that finish() will append, to within a few.
@@ -53,7 +55,24 @@ class EntropyEncoder {
   void symbol(const Table& table, int symbol) {
     const auto s = static_cast<std::size_t>(symbol);
     cost_ += table.cost[s];
-    said_.push_back({table.reciprocal[s].factor, table.share[s], table.below[s], table.reciprocal[s].shift});
+    say(table.said[s]);
+  }
+  /// Symbol i by table which[i].
+  template <std::size_t N>
+  void symbols(const std::array<Table, N>& tables, const std::int32_t* which, const std::int32_t* symbol,
+               int count) {
+    const auto n = static_cast<std::size_t>(count);
+    if (said_.size() < count_ + n) said_.resize(2 * (count_ + n) + 4096);
+    Table::Said* to = said_.data() + count_;
+    std::uint64_t cost = 0;  // here, not in memory: every symbol adds to it
+    for (std::size_t i = 0; i < n; ++i) {
+      const Table& table = tables[static_cast<std::size_t>(which[i])];
+      const auto s = static_cast<std::size_t>(symbol[i]);
+      to[i] = table.said[s];
+      cost += table.cost[s];
+    }
+    count_ += n;
+    cost_ += cost;
   }
   /// `count` low bits of `value`, most significant first; 0–63 bits.
   void bits(std::uint64_t value, int count) {
@@ -63,19 +82,21 @@ class EntropyEncoder {
       count -= part;
       const auto piece = static_cast<std::uint32_t>(value >> count) & ((1u << part) - 1);
       const int left = kProbabilityBits - part;
-      said_.push_back({0, static_cast<std::uint16_t>(1u << left), static_cast<std::uint16_t>(piece << left),
-                       static_cast<std::uint16_t>(left)});
+      say({0, static_cast<std::uint16_t>(1u << left), static_cast<std::uint16_t>(piece << left),
+           static_cast<std::uint16_t>(left)});
     }
   }
   /// Appends everything that was said.
   void finish(std::vector<std::uint8_t>& out);
 
  private:
-  struct Said {
-    std::uint32_t factor;  // 0: the share is 2^shift
-    std::uint16_t share, below, shift;
-  };
-  std::vector<Said> said_;
+  void say(const Table::Said& said) {
+    if (count_ == said_.size()) [[unlikely]]
+      said_.resize(2 * count_ + 4096);
+    said_[count_++] = said;
+  }
+  std::vector<Table::Said> said_;  // the first count_ of them
+  std::size_t count_ = 0;
   std::uint64_t cost_ = 0;  // bits / 256
   std::vector<std::uint16_t> words_;
 };

@@ -17,9 +17,9 @@ constexpr std::uint8_t kRetired = 255;  ///< Snapshot::fluid_index of what is no
 /// False: not finite, or beyond the lattice.
 inline bool to_lattice(const glm::vec3& position, double per_step, std::int32_t out[3]) {
   for (int axis = 0; axis < 3; ++axis) {
-    const double scaled = std::nearbyint(static_cast<double>(position[axis]) * per_step);
-    if (!(std::abs(scaled) < kCoordinateLimit)) return false;
-    out[axis] = static_cast<std::int32_t>(scaled);
+    const double scaled = static_cast<double>(position[axis]) * per_step;
+    if (!(std::abs(scaled) < kCoordinateLimit - 1)) return false;
+    out[axis] = static_cast<std::int32_t>(std::lrint(scaled));
   }
   return true;
 }
