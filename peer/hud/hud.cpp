@@ -14,6 +14,7 @@ constexpr double kChartSeconds = 5.0;
 constexpr float kPanelWidth = 186.0f;  // px: leaves 640 × 480 mostly to the picture
 constexpr float kChartHeight = 34.0f;
 constexpr float kMargin = 8.0f;
+constexpr float kLeastHeight = 400.0f;  // px: a smaller picture gets the time and what is wrong, no more
 
 constexpr ImGuiWindowFlags kPanel = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
@@ -65,10 +66,22 @@ void Hud::record(const Snapshot& snapshot) {
   next_ += 1;
 }
 
-void Hud::draw_run(const Rates& rates) const {
+void Hud::draw_run(const Rates& rates, bool brief) const {
   ImGui::TextUnformatted(facts_.title.c_str());
   ImGui::Separator();
   labelled("time", "%.2f s%s", time_, paused ? "  paused" : "");
+  if (!brief) draw_numbers(rates);
+  const std::string status = status_text(status_ | rates.device_status);
+  if (!status.empty()) {
+    ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 0.78f, 0.35f, 1.0f));
+    ImGui::PushTextWrapPos(kPanelWidth);
+    ImGui::TextUnformatted(status.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::PopStyleColor();
+  }
+}
+
+void Hud::draw_numbers(const Rates& rates) const {
   if (rates.real_time > 0.0) labelled("real time", "\xC3\x97 %.2f", rates.real_time);
   if (rates.step_rate > 0.0) labelled("steps", "%.0f Hz  %.2f ms", rates.step_rate, rates.step_ms);
   if (rates.device_rate > 0.0) labelled("devices", "%.0f Hz", rates.device_rate);
@@ -81,14 +94,6 @@ void Hud::draw_run(const Rates& rates) const {
     ImGui::PushTextWrapPos(kPanelWidth);
     ImGui::TextUnformatted(lines->c_str());
     ImGui::PopTextWrapPos();
-  }
-  const std::string status = status_text(status_ | rates.device_status);
-  if (!status.empty()) {
-    ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 0.78f, 0.35f, 1.0f));
-    ImGui::PushTextWrapPos(kPanelWidth);
-    ImGui::TextUnformatted(status.c_str());
-    ImGui::PopTextWrapPos();
-    ImGui::PopStyleColor();
   }
 }
 
@@ -140,14 +145,22 @@ void Hud::draw(const Rates& rates) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 4.0f);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0f);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(6.0f, 2.0f));
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const bool brief = size.y < kLeastHeight;
+  float run_bottom = kMargin;
   if (ImGui::Begin("run", nullptr, kPanel)) {
-    draw_run(rates);
+    draw_run(rates, brief);
     ImGui::Dummy(ImVec2(kPanelWidth, 1.0f));
+    run_bottom += ImGui::GetWindowHeight();
   }
   ImGui::End();
-  if (!charts_.empty()) {
-    const float bottom = ImGui::GetIO().DisplaySize.y - kMargin;
-    ImGui::SetNextWindowPos(ImVec2(kMargin, bottom), ImGuiCond_Always, ImVec2(0.0f, 1.0f));
+  if (!charts_.empty() && !brief) {
+    // Below the other panel where there is room, else in the corner across.
+    const float chart_height = kChartHeight + 2.0f * ImGui::GetTextLineHeightWithSpacing() + 8.0f;
+    const bool below =
+        run_bottom + static_cast<float>(charts_.size()) * chart_height + 3.0f * kMargin < size.y;
+    ImGui::SetNextWindowPos(ImVec2(below ? kMargin : size.x - kMargin, size.y - kMargin), ImGuiCond_Always,
+                            ImVec2(below ? 0.0f : 1.0f, 1.0f));
     ImGui::SetNextWindowBgAlpha(0.55f);
     if (ImGui::Begin("forces", nullptr, kPanel)) {
       for (std::size_t i = 0; i < charts_.size(); ++i) draw_chart(i);

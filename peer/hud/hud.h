@@ -41,7 +41,8 @@ class Hud {
     float top_force = 1.0f;  // N, the largest so far
     Wrench now;
   };
-  void draw_run(const Rates& rates) const;
+  void draw_run(const Rates& rates, bool brief) const;
+  void draw_numbers(const Rates& rates) const;
   void draw_chart(std::size_t device) const;
   void draw_help() const;
 

@@ -194,5 +194,93 @@ TEST_F(NetworkTest, TwoPeopleCarryTheBucketOverABadWire) {
   }
 }
 
+/// One machine: everything on loopback.
+class LoopbackTest : public NetworkTest {
+ protected:
+  std::unique_ptr<Process> run(const std::string& name, std::vector<std::string> arguments) const {
+    return start(alone_, "", name, std::move(arguments));
+  }
+  /// Waits for the host's links.
+  bool hosting(Process& host) const {
+    return comes([&] { return !link("watch").empty() || !host.running(); }) && host.running();
+  }
+  test::Sites alone_{{}};
+};
+
+TEST_F(LoopbackTest, AHostThatDiedIsResumedAndItsPeerComesBackByItself) {
+  const std::vector<std::string> common{"--threads", "1", "--checkpoint", "kept"};
+  std::vector<std::string> first{"host",     "probe",       "--spacing", "0.01",
+                                 "--listen", "127.0.0.1:0", "--links",   "links.txt"};
+  first.insert(first.end(), common.begin(), common.end());
+  auto host = run("host", first);
+  ASSERT_TRUE(hosting(*host)) << host->wait().err;
+  std::vector<std::string> join = peer("join", link("hold"), "Ana");
+  join.insert(join.end(), {"--no-render", "--seconds", "4"});
+  const auto ana = run("ana", join);
+  ASSERT_TRUE(comes([&] { return last_time(folder("ana") / "out") > 1.5; }));
+  host->signal(SIGKILL);
+  host->wait();
+  const double died = last_time(folder("ana") / "out");
+
+  // In the folder that it died in, by its file; port, key, links and seats are in there.
+  host = run("host", {"host", "--resume", "kept", "--threads", "1"});
+  const Outcome outcome = ana->wait();
+  EXPECT_EQ(outcome.code, 0) << outcome.err << host->running();
+  const json s = summary("ana");
+  EXPECT_GE(s["network"]["reconnects"], 1) << outcome.err;
+  EXPECT_EQ(s["devices"].size(), 1u) << "the same grip again";
+  EXPECT_NEAR(s["simulated_s"].get<double>(), 4.0, 0.3);
+  host->signal(SIGINT);
+  const Outcome hosted = host->wait();
+  EXPECT_EQ(hosted.code, 128 + SIGINT);
+  // "carries on at 1.53 s": at most a second before it died.
+  const std::string words = hosted.err + hosted.out;
+  const std::size_t at = words.find(" s ");
+  EXPECT_NE(at, std::string::npos) << words;
+  std::printf("died at %.2f s of Ana's time; %s\n", died, words.substr(0, 400).c_str());
+}
+
+TEST_F(LoopbackTest, LinksAreMadeAndRevokedWhileTheHostRuns) {
+  const auto host = run("host", {"host", "probe", "--spacing", "0.01", "--threads", "1", "--listen",
+                                 "[::1]:0", "--links", "links.txt", "--wait", "0", "--checkpoint", "none"});
+  if (!hosting(*host)) {
+    const Outcome failed = host->wait();
+    ASSERT_NE(failed.err.find("::1"), std::string::npos) << failed.err;
+    std::printf("no IPv6 here: %s\n", failed.err.c_str());
+    return;
+  }
+  const auto links = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), "links");
+    return run("links", words)->wait();
+  };
+  const Outcome made = links({"new", "Zoe", "--watch"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  const std::string id = made.out.substr(0, made.out.find(' '));
+  const std::size_t begin = made.out.find("slosh://");
+  ASSERT_NE(begin, std::string::npos) << made.out;
+  const std::string text = made.out.substr(begin, made.out.find_first_of(" \n", begin) - begin);
+  EXPECT_NE(links({}).out.find("Zoe"), std::string::npos);
+
+  const auto watch = [&](const std::string& name, const std::string& with) {
+    std::vector<std::string> arguments = peer("watch", with, name);
+    arguments.insert(arguments.end(), {"--no-render", "--seconds", "0.3"});
+    return run(name, arguments)->wait();
+  };
+  EXPECT_EQ(watch("zoe", text).code, 0);
+  EXPECT_EQ(links({"revoke", id}).code, 0);
+  const Outcome refused = watch("zoe", text);
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_NE(refused.err.find("revoked"), std::string::npos) << refused.err;
+  // A wrong character is found before anybody is asked.
+  std::string wrong = text;
+  wrong[wrong.size() - 3] = wrong[wrong.size() - 3] == 'a' ? 'b' : 'a';
+  const Outcome damaged = watch("zoe", wrong);
+  EXPECT_EQ(damaged.code, 1);
+  EXPECT_NE(damaged.err.find("link"), std::string::npos) << damaged.err;
+  EXPECT_NE(links({"revoke", "nobody"}).code, 0);
+  host->signal(SIGINT);
+  EXPECT_EQ(host->wait().code, 128 + SIGINT);
+}
+
 }  // namespace
 }  // namespace slosh

@@ -17,8 +17,8 @@ bool run(const std::string& command) {
 
 Sites::Sites(std::vector<std::string> names)
     : names_(std::move(names)), prefix_("slosh" + std::to_string(getpid())) {
-  separate_ = build();
-  if (!separate_) remove();
+  separate_ = !names_.empty() && build();
+  if (!separate_ && !names_.empty()) remove();
   std::printf("sites: %s\n", separate_ ? "a network namespace each" : "no namespaces here: all on loopback");
 }
 
