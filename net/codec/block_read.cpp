@@ -80,33 +80,33 @@ const char* BlockReader::moved(Block& block, const BlockPoints* before) {
 bool BlockReader::axis(const std::int32_t* predicted, int count, int klass, std::int32_t* at) {
   const auto& tables = Models::get().residual[static_cast<std::size_t>(klass)];
   const int low = Models::low_bits(klass);
-  std::int32_t residual[kBlock];
+  // What does not hang on the stream is done before and after it, where the compiler can do many at once.
+  std::int32_t fraction[kBlock], mirror[kBlock], residual[kBlock];
+  for (int i = 0; i < count; ++i) {
+    const std::int32_t eighth = (predicted[i] >> (kFine - 3)) & 7;
+    mirror[i] = low > 0 ? 0 : -(eighth >> 2);  // all ones or none
+    fraction[i] = low > 0 ? 0 : eighth ^ (mirror[i] & 7);
+  }
   EntropyDecoder in = in_;  // a local one stays in registers
   for (int i = 0; i < count; ++i) {
-    const int eighth = (predicted[i] >> (kFine - 3)) & 7;
-    const bool mirrored = low == 0 && eighth >= 4;
-    const int fraction = low > 0 ? 0 : mirrored ? 7 - eighth : eighth;
-    const int symbol = in.symbol(tables[static_cast<std::size_t>(fraction)]);
+    const int symbol = in.symbol(tables[static_cast<std::size_t>(fraction[i])]);
     std::int32_t r = symbol - 7;
     if (symbol == 0 || symbol == 15) [[unlikely]] {
       const int length = static_cast<int>(in.bits(5));
       const auto beyond = static_cast<std::int32_t>(in.bits(std::min(length, 22)));
       r = symbol == 0 ? -7 - beyond : 8 + beyond;
     }
-    if (low > 0) {
-      r = r * (1 << low) + static_cast<std::int32_t>(in.bits(low)) - (1 << (low - 1));
-    } else if (mirrored) {
-      r = 1 - r;
-    }
+    if (low > 0) r = r * (1 << low) + static_cast<std::int32_t>(in.bits(low)) - (1 << (low - 1));
     residual[i] = r;
   }
   in_ = in;
-  bool good = true;
+  std::uint32_t outside = 0;
   for (int i = 0; i < count; ++i) {
-    at[i] += (predicted[i] >> kFine) + residual[i];
-    good &= inside(at[i]);
+    at[i] +=
+        (predicted[i] >> kFine) + (residual[i] ^ mirror[i]) - 2 * mirror[i];  // 1 − residual in the mirror
+    outside |= static_cast<std::uint32_t>(at[i] + kCoordinateLimit - 1) > 2u * kCoordinateLimit - 2;
   }
-  return good;
+  return outside == 0;
 }
 
 const char* BlockReader::points(Block& block) {
