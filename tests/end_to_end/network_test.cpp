@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -49,17 +50,24 @@ double last_time(const path& folder) {
 
 class NetworkTest : public ::testing::Test {
  protected:
-  void SetUp() override { std::filesystem::remove_all(test::test_folder()); }
+  path home_;
+  void SetUp() override {
+    std::filesystem::remove_all(test::test_folder());
+    // Short, for a socket's name has to fit into 108 bytes.
+    std::string pattern = (std::filesystem::temp_directory_path() / "slosh-XXXXXX").string();
+    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+    home_ = pattern;
+  }
+  void TearDown() override { std::filesystem::remove_all(home_); }
   path folder(const std::string& name) const { return test::test_folder() / name; }
 
   /// The program, with its own idea of where a user's files are.
   std::unique_ptr<Process> start(const test::Sites& sites, const std::string& site, const std::string& name,
                                  std::vector<std::string> arguments) const {
-    const std::string home = (test::test_folder() / "home").string();
+    const std::string home = home_.string();
     std::vector<std::string> command{"env", "XDG_STATE_HOME=" + home, "XDG_DATA_HOME=" + home,
                                      "XDG_RUNTIME_DIR=" + home, test::program()};
     command.insert(command.end(), arguments.begin(), arguments.end());
-    std::filesystem::create_directories(home);
     return std::make_unique<Process>(sites.at(site, command), folder(name));
   }
   /// One of the links that a host wrote: "hold" or "watch".

@@ -223,7 +223,8 @@ TEST(Hands, long_stir_loses_little) {
   const double lost = static_cast<double>(fluid.retired) / static_cast<double>(e.world().fluid_count());
   report_value("stirred at 0.4 m/s for 10 s, share lost", 100.0 * lost, "%");
   EXPECT_LT(lost, 0.05);
-  EXPECT_LT(fluid.max_speed, 3.0);
+  // Who hopped over falls half a metre to the end of the domain, which makes 3.1 m/s.
+  EXPECT_LT(fluid.max_speed, 4.0);
 }
 
 }  // namespace
