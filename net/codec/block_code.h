@@ -19,6 +19,7 @@ struct Block {
   std::uint8_t slot[kBlock];   ///< their places in the block at the epoch's start, ascending
   std::uint8_t fluid[kBlock];  ///< Snapshot::fluid_index
   int count = 0;
+  bool born = false;  ///< its first frame: the next one's coding has no velocities
 };
 
 enum class BlockMode : std::uint8_t { kRest, kMoved, kMovedSomeRetired, kPacked };
@@ -43,14 +44,15 @@ class BlockWriter {
     std::copy(mark.class_before, mark.class_before + 3, class_before_);
   }
 
-  /// `block` has the new points without the `gone`; `last` and `before` (null in an epoch's second frame)
+  /// `block` has the new points without the `gone`; `last` and `before` (null in a block's second frame)
   /// still have them.
   void temporal(const Block& block, BlockPoints last, const BlockPoints* before, const std::uint8_t* gone,
                 int many, bool packed);
   /// Points in rising Morton order from `origin`.
   void key(const Block& block, const std::int32_t origin[3]);
-  /// Any points; `size` is the block's at the epoch's start.
-  void mend(const Block& block, int size);
+  /// Any points; `size` is the block's in its first frame. A `later` block came after the epoch's start and
+  /// tells its size and whether it is born in this frame.
+  void mend(const Block& block, int size, bool later);
   void finish(std::vector<std::uint8_t>& out) { out_.finish(out); }
 
  private:
@@ -72,10 +74,10 @@ class BlockReader {
   bool started() const { return in_.started(); }
   bool ended() const { return in_.ended(); }
 
-  /// `block` is as in the frame before; `before` is null in an epoch's second frame, else loses the retired.
+  /// `block` is as in the frame before; `before` is null in a block's second frame, else loses the retired.
   const char* temporal(Block& block, BlockPoints* before);
   const char* key(Block& block, int size, const std::int32_t origin[3]);
-  const char* mend(Block& block, int size);
+  const char* mend(Block& block, int size, bool later);
 
  private:
   const char* moved(Block& block, const BlockPoints* before);

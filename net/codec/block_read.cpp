@@ -168,7 +168,11 @@ const char* BlockReader::key(Block& block, int size, const std::int32_t origin[3
   return fluids(block);
 }
 
-const char* BlockReader::mend(Block& block, int size) {
+const char* BlockReader::mend(Block& block, int size, bool later) {
+  if (later) {
+    size = static_cast<int>(in_.bits(7)) + 1;
+    block.born = in_.bits(1) == 1;
+  }
   block.count = 0;
   const bool whole = in_.bits(1) == 0;
   for (int slot = 0; slot < size; ++slot) {

@@ -3,14 +3,14 @@
 namespace slosh::codec {
 
 const Block* BlockStore::find(std::uint32_t block, std::uint64_t frame) const {
-  if (!histories_[block]) return nullptr;
+  if (block >= blocks() || !histories_[block]) return nullptr;
   const Entry& entry = (*histories_[block])[frame % kKeptFrames];
   return entry.block && entry.frame == frame ? entry.block.get() : nullptr;
 }
 
 const Block* BlockStore::nearest(std::uint32_t block, std::uint64_t frame, std::uint64_t& found) const {
   const Entry* best = nullptr;
-  if (!histories_[block]) return nullptr;
+  if (block >= blocks() || !histories_[block]) return nullptr;
   for (const Entry& entry : *histories_[block]) {
     if (!entry.block) continue;
     const bool before = entry.frame <= frame;
@@ -37,6 +37,15 @@ bool BlockStore::put(std::uint32_t block, std::uint64_t frame, const Block& cont
   else
     entry.block = std::make_unique<Block>(content);
   return true;
+}
+
+void BlockStore::grow(std::uint32_t blocks, std::uint64_t frame) {
+  if (blocks > histories_.size()) {
+    histories_.resize(blocks);
+    known_since_.resize(blocks, frame);
+  }
+  // Pieces come in any order: an earlier frame may tell of it later.
+  for (std::uint32_t b = blocks; b-- > 0 && known_since_[b] > frame;) known_since_[b] = frame;
 }
 
 void match_points(const Block& to, const Block& from, BlockPoints& out) {

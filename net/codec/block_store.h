@@ -16,7 +16,11 @@ constexpr std::uint64_t kKeptFrames = 4;  ///< also how late a piece may come an
 class BlockStore {
  public:
   BlockStore(std::uint32_t epoch, std::uint32_t run, const EpochHead& head)
-      : epoch_(epoch), run_(run), head_(head), histories_(block_count(head.particles)) {}
+      : epoch_(epoch),
+        run_(run),
+        head_(head),
+        histories_(block_count(head.particles)),
+        known_since_(histories_.size(), head.first_frame) {}
 
   std::uint32_t epoch() const { return epoch_; }
   std::uint32_t run() const { return run_; }
@@ -31,10 +35,15 @@ class BlockStore {
   bool newest(std::uint32_t block, std::uint64_t& frame) const;
   /// False: it was there, or is too old to be kept.
   bool put(std::uint32_t block, std::uint64_t frame, const Block& content);
+  /// The epoch has `blocks` in `frame`, as a piece tells.
+  void grow(std::uint32_t blocks, std::uint64_t frame);
+  /// Whether the block is known to be there in `frame`.
+  bool is_there(std::uint32_t block, std::uint64_t frame) const { return known_since_[block] <= frame; }
   /// True when the temporal coding of `frame` can be read.
   bool can_follow(std::uint32_t block, std::uint64_t frame) const {
-    if (frame <= head_.first_frame || !find(block, frame - 1)) return false;
-    return frame == head_.first_frame + 1 || find(block, frame - 2);
+    if (frame <= head_.first_frame) return false;
+    const Block* last = find(block, frame - 1);
+    return last && (last->born || find(block, frame - 2));
   }
 
  private:
@@ -47,6 +56,7 @@ class BlockStore {
   std::uint32_t epoch_, run_;
   EpochHead head_;
   std::vector<std::unique_ptr<History>> histories_;  // of a block, from its first piece on
+  std::vector<std::uint64_t> known_since_;           // frame, of each block
 };
 
 /// Points of `from` for the particles of `to` alone, both of one block.

@@ -309,7 +309,11 @@ void BlockWriter::key(const Block& block, const std::int32_t origin[3]) {
   fluids(block);
 }
 
-void BlockWriter::mend(const Block& block, int size) {
+void BlockWriter::mend(const Block& block, int size, bool later) {
+  if (later) {
+    out_.bits(static_cast<std::uint64_t>(size - 1), 7);
+    out_.bits(block.born, 1);
+  }
   const bool whole = block.count == size;
   out_.bits(!whole, 1);
   for (int slot = 0, i = 0; !whole && slot < size; ++slot) {

@@ -6,7 +6,8 @@
 
 namespace slosh::codec {
 
-void CellOrder::sort(const Snapshot& snapshot, double per_step, bool shell_only) {
+void CellOrder::sort(const Snapshot& snapshot, double per_step, bool shell_only,
+                     const std::vector<std::uint8_t>& without) {
   const std::size_t count = snapshot.positions.size();
   const bool choosy = shell_only && snapshot.shell.size() == count;
   ids.clear();
@@ -14,7 +15,7 @@ void CellOrder::sort(const Snapshot& snapshot, double per_step, bool shell_only)
   for (std::size_t id = 0; id < count && ids.size() < kMaxParticles; ++id) {
     std::int32_t point[3];
     if (!is_drawn(snapshot, id) || (choosy && snapshot.shell[id] == 0) ||
-        !to_lattice(snapshot.positions[id], per_step, point))
+        (id < without.size() && without[id] != 0) || !to_lattice(snapshot.positions[id], per_step, point))
       continue;
     ids.push_back(static_cast<std::uint32_t>(id));
     for (int a = 0; a < 3; ++a) raw_[a].push_back(point[a]);

@@ -18,7 +18,9 @@ struct CellOrder {
 
   /// Takes what is to be sent: not retired, finite, on the lattice, and of the shell if so asked and known.
   /// At most kMaxParticles.
-  void sort(const Snapshot& snapshot, double per_step, bool shell_only);
+  /// Of `without` (empty, or one a particle) those that are 1 stay out.
+  void sort(const Snapshot& snapshot, double per_step, bool shell_only,
+            const std::vector<std::uint8_t>& without = {});
 
  private:
   struct Entry {

@@ -20,7 +20,8 @@ struct Instant {
   std::uint64_t frame = 0;
   std::uint32_t epoch = 0;
   double time = 0.0;
-  std::uint32_t came = 0;  // blocks
+  std::uint32_t came = 0;    // blocks
+  std::uint32_t blocks = 0;  // of the epoch in this frame
   auto key() const { return std::pair(frame, epoch); }
 };
 
@@ -113,6 +114,7 @@ void SnapshotDecoder::Impl::count(const PieceHead& head) {
 
 void SnapshotDecoder::Impl::commit(const PieceView& piece, BlockStore& store) {
   const PieceHead& head = piece.head;
+  store.grow(head.all_blocks, head.frame);
   std::uint32_t fresh = 0;
   for (std::size_t i = 0; i < blocks.size(); ++i)
     fresh += store.put(head.first_block + static_cast<std::uint32_t>(i), head.frame, blocks[i]);
@@ -123,8 +125,9 @@ void SnapshotDecoder::Impl::commit(const PieceView& piece, BlockStore& store) {
     auto at = std::lower_bound(instants.begin(), instants.end(), key,
                                [](const Instant& i, const auto& k) { return i.key() < k; });
     if (at == instants.end() || at->key() != key)
-      at = instants.insert(at, {head.frame, head.epoch, 1e-6 * static_cast<double>(head.time_us), 0});
+      at = instants.insert(at, {head.frame, head.epoch, 1e-6 * static_cast<double>(head.time_us), 0, 0});
     at->came += fresh;
+    at->blocks = std::max(at->blocks, head.all_blocks);
     if (instants.size() > kMaxFrames) instants.pop_front();
   }
   follow_up(head.epoch, head.frame);
@@ -188,17 +191,22 @@ void SnapshotDecoder::Impl::fill(const Instant& instant, const BlockStore& store
   out.epoch = instant.epoch;
   out.run = store.run();
   out.time = instant.time;
-  out.positions.assign(head.particles, glm::vec3(0.0f));
-  out.fluid_index.assign(head.particles, kRetired);
-  std::uint64_t exact = 0;
-  for (std::uint32_t b = 0; b < store.blocks(); ++b) {
+  const std::uint32_t at_start = block_count(head.particles);
+  const std::size_t places =
+      instant.blocks > at_start ? std::size_t{instant.blocks} * kBlock : std::size_t{head.particles};
+  out.positions.assign(places, glm::vec3(0.0f));
+  out.fluid_index.assign(places, kRetired);
+  std::uint64_t exact = 0, all = 0;
+  for (std::uint32_t b = 0; b < instant.blocks; ++b) {
+    const auto size = static_cast<std::uint64_t>(b < at_start ? block_size(head.particles, b) : kBlock);
+    all += size;
     std::uint64_t found = 0;
     const Block* block = store.nearest(b, instant.frame, found);
     if (!block) continue;
     BlockPoints earlier;
     double ahead = 0.0;  // frames
     if (found == instant.frame) {
-      exact += static_cast<std::uint64_t>(block_size(head.particles, b));
+      exact += size;
     } else if (found < instant.frame) {
       if (const Block* previous = found > 0 ? store.find(b, found - 1) : nullptr) {
         match_points(*block, *previous, earlier);
@@ -216,7 +224,7 @@ void SnapshotDecoder::Impl::fill(const Instant& instant, const BlockStore& store
       }
     }
   }
-  out.complete = static_cast<double>(exact) / head.particles;
+  out.complete = static_cast<double>(exact) / static_cast<double>(all);
 }
 
 std::optional<DecodedFrame> SnapshotDecoder::next(std::uint32_t patience) {
@@ -224,7 +232,7 @@ std::optional<DecodedFrame> SnapshotDecoder::next(std::uint32_t patience) {
   if (i.instants.empty()) return std::nullopt;
   const Instant instant = i.instants.front();
   const BlockStore* store = i.store_of(instant.epoch);
-  if (instant.came < store->blocks() && i.newest_frame < instant.frame + patience) return std::nullopt;
+  if (instant.came < instant.blocks && i.newest_frame < instant.frame + patience) return std::nullopt;
   i.instants.pop_front();
   if (i.any_given && instant.frame > i.given.first && instant.time > i.given_time)
     i.frame_seconds =
@@ -255,8 +263,9 @@ wire::SnapshotFeedback SnapshotDecoder::feedback() {
     return out;
   for (std::uint32_t b = 0; b < store.blocks(); ++b) {
     std::uint64_t newest = 0;
+    if (!store.is_there(b, closed)) continue;
     const bool follows = store.newest(b, newest) && newest >= closed &&
-                         (newest == first || store.find(b, newest - 1) != nullptr);
+                         (store.find(b, newest)->born || store.find(b, newest - 1) != nullptr);
     if (follows) continue;
     if (!out.missing.empty() && out.missing.back().first + out.missing.back().count == b) {
       ++out.missing.back().count;

@@ -26,6 +26,7 @@ struct PieceHead {
   std::uint32_t piece = 0;    ///< which of them
   std::uint32_t first_block = 0;
   std::uint32_t blocks = 1;
+  std::uint32_t all_blocks = 1;  ///< of the epoch in this frame; it may grow from frame to frame
 };
 template <class V>
 void visit(V& v, PieceHead& m) {
@@ -39,11 +40,12 @@ void visit(V& v, PieceHead& m) {
   v.natural("piece", m.piece, 0, kMaxBlocks - 1);
   v.natural("first_block", m.first_block, 0, kMaxBlocks - 1);
   v.natural("blocks", m.blocks, 1, kMaxBlocks);
+  v.natural("all_blocks", m.all_blocks, 1, kMaxBlocks);
 }
 
 /// Follows the head of key and mending pieces: all that a peer needs to begin with this piece.
 struct EpochHead {
-  std::uint32_t particles = 1;    ///< of the epoch
+  std::uint32_t particles = 1;    ///< at the epoch's start
   std::uint64_t first_frame = 0;  ///< of the epoch
   double tolerance = 0.001;       ///< m
   std::uint32_t origin[3] = {};   ///< corner of the cell order, lattice coordinate + 2^18
@@ -58,10 +60,16 @@ void visit(V& v, EpochHead& m) {
   v.natural("origin_z", m.origin[2], 0, (1u << kCoordinateBits) - 1);
 }
 
-/// Of an epoch of so many particles.
+/// Of an epoch of so many particles, at its start.
 constexpr std::uint32_t block_count(std::uint32_t particles) {
   return (particles + kBlock - 1) / kBlock;
 }
+/// An epoch grows no further than this: what a peer keeps is bounded by how the epoch began.
+constexpr std::uint32_t most_blocks(std::uint32_t particles) {
+  const std::uint32_t grown = 2 * block_count(particles) + 64;
+  return grown < kMaxBlocks ? grown : kMaxBlocks;
+}
+/// Of the epoch's first blocks; later ones carry their size.
 constexpr int block_size(std::uint32_t particles, std::uint32_t block) {
   const std::uint32_t left = particles - block * kBlock;
   return left < kBlock ? static_cast<int>(left) : kBlock;

@@ -27,9 +27,14 @@ wire::Fault read_heads(std::span<const std::uint8_t> datagram, PieceView& out) {
 wire::Fault check_fits(const PieceView& piece, const BlockStore& store) {
   const PieceHead& head = piece.head;
   const EpochHead& known = store.head();
-  if (std::uint64_t{head.first_block} + head.blocks > store.blocks())
+  const std::uint32_t at_start = block_count(known.particles);
+  const std::uint32_t most = head.kind == PieceKind::kKey ? at_start : most_blocks(known.particles);
+  if (head.all_blocks < at_start || head.all_blocks > most)
+    return {"all_blocks",
+            std::to_string(head.all_blocks) + " do not go with the epoch's " + std::to_string(at_start)};
+  if (std::uint64_t{head.first_block} + head.blocks > head.all_blocks)
     return {"blocks", std::to_string(head.first_block + head.blocks) + " are more than the epoch's " +
-                          std::to_string(store.blocks())};
+                          std::to_string(head.all_blocks)};
   if (head.run != store.run()) return {"run", "is another than the epoch's"};
   if (head.kind == PieceKind::kTemporal) {
     if (head.frame <= known.first_frame) return {"frame", "is before the epoch's second"};
@@ -51,18 +56,22 @@ wire::Fault read_blocks(const PieceView& piece, const BlockStore& store, std::ve
   for (int a = 0; a < 3; ++a)
     origin[a] = static_cast<std::int32_t>(store.head().origin[a]) - kCoordinateLimit;
   for (std::uint32_t b = head.first_block; b < head.first_block + head.blocks; ++b) {
-    const int size = block_size(store.head().particles, b);
+    const bool later = b >= block_count(store.head().particles);
+    const int size = later ? 0 : block_size(store.head().particles, b);
     const char* problem = nullptr;
     if (head.kind == PieceKind::kTemporal) {
       if (!store.can_follow(b, head.frame)) return {};
       Block& block = out.emplace_back(*store.find(b, head.frame - 1));
       BlockPoints before;
-      const bool second = head.frame == store.head().first_frame + 1;
+      const bool second = block.born;
+      block.born = false;
       if (!second) match_points(block, *store.find(b, head.frame - 2), before);
       problem = reader.temporal(block, second ? nullptr : &before);
     } else {
       Block& block = out.emplace_back();
-      problem = head.kind == PieceKind::kKey ? reader.key(block, size, origin) : reader.mend(block, size);
+      block.born = head.frame == store.head().first_frame;
+      problem =
+          head.kind == PieceKind::kKey ? reader.key(block, size, origin) : reader.mend(block, size, later);
     }
     if (problem) {
       out.clear();

@@ -4,8 +4,10 @@
 // A stream is one encoder's output at one rate, tolerance and content. It runs through epochs: at the start
 // of each the particles are ordered anew by cell, cut into blocks and sent intra, all of them (a key frame);
 // up to the next, a block is the same particles, so that frame k is coded as what differs from k−1 and k−2.
-// Both codings give the same lattice points to the bit, so that a block that a peer missed is mended for that
-// peer alone by its intra coding, and goes on temporal.
+// Where only the shell is sent, particles that come to the surface within an epoch come in as new blocks
+// behind its last one, and those that have gone inside retire. Both codings give the same lattice points to
+// the bit, so that a block that a peer missed is mended for that peer alone by its intra coding, and goes on
+// temporal.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +28,7 @@ struct CodecOptions {
   double spacing = 0.01;         ///< m between particles, fits the cells
   std::size_t max_piece = 1100;  ///< bytes of a piece, type byte included
   double epoch_seconds = 1.0;    ///< simulated s between key frames
-  bool shell_only = false;       ///< only what is seen from outside (Snapshot::shell), epochs at most 0.5 s
+  bool shell_only = false;       ///< only what is seen from outside (Snapshot::shell)
 };
 
 struct Piece {
@@ -40,7 +42,7 @@ struct EncodedFrame {
   std::uint64_t frame = 0;  ///< rises by one with every encode()
   std::uint32_t epoch = 0;
   bool key = false;           ///< starts an epoch
-  std::uint32_t blocks = 0;   ///< of the epoch
+  std::uint32_t blocks = 0;   ///< of the epoch so far
   std::size_t particles = 0;  ///< sent
   std::size_t bytes = 0;      ///< of all pieces
   std::vector<Piece> pieces;
@@ -77,7 +79,7 @@ struct DecodedFrame {
   std::uint32_t run = 0;
   double time = 0.0;                 ///< simulated s
   double complete = 0.0;             ///< share of the particles that are of this frame; the rest carried on
-  std::vector<glm::vec3> positions;  ///< the epoch's order
+  std::vector<glm::vec3> positions;  ///< the epoch's order; later frames of it may have more, behind
   std::vector<std::uint8_t> fluid_index;  ///< 255 = retired
 };
 

@@ -15,8 +15,9 @@ std::size_t size_of(const DecodedFrame& frame) {
   return sizeof(DecodedFrame) + frame.positions.size() * sizeof(glm::vec3) + frame.fluid_index.size();
 }
 
+/// The shorter list is then the longer one's beginning: an epoch may grow.
 bool same_particles(const DecodedFrame& a, const DecodedFrame& b) {
-  return a.epoch == b.epoch && a.positions.size() == b.positions.size();
+  return a.epoch == b.epoch;
 }
 
 glm::dvec3 mixed(const glm::dvec3& a, const glm::dvec3& b, double share) {
@@ -68,7 +69,7 @@ SnapshotPointer blend(const Between& between) {
   const DecodedFrame& a = *between.before;
   const DecodedFrame& b = *between.after;
   const auto share = static_cast<float>(between.share);
-  const std::size_t count = a.positions.size();
+  const std::size_t count = std::min(a.positions.size(), b.positions.size());
   snapshot->positions.resize(count);
   snapshot->fluid_index.resize(count);
   for (std::size_t i = 0; i < count; ++i) {

@@ -28,18 +28,22 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 std::vector<std::vector<std::uint8_t>> slosh_fuzz_seeds() {
   std::vector<std::vector<std::uint8_t>> seeds;
   for (const bool with_mending : {false, true}) {
-    slosh::SnapshotEncoder encoder({});
+    slosh::CodecOptions options;
+    options.shell_only = with_mending;
+    slosh::SnapshotEncoder encoder(options);
     std::vector<std::uint8_t> seed;
     const auto add = [&](const slosh::Piece& piece) {
       seed.push_back(static_cast<std::uint8_t>(piece.bytes->size()));
       seed.push_back(static_cast<std::uint8_t>(piece.bytes->size() >> 8));
       seed.insert(seed.end(), piece.bytes->begin(), piece.bytes->end());
     };
-    for (int frame = 0; frame < 4; ++frame) {
-      for (const slosh::Piece& piece : encoder.encode(slosh::codec_kit::swirl(140, frame), 0).pieces)
-        add(piece);
+    for (int frame = 0; frame < 8; ++frame) {
+      slosh::Snapshot world = slosh::codec_kit::swirl(140, frame);
+      world.shell.assign(140, 1);
+      for (std::size_t i = 0; frame < 2 && i < 70; ++i) world.shell[i] = 0;  // the rest comes later
+      for (const slosh::Piece& piece : encoder.encode(world, 0).pieces) add(piece);
       std::vector<slosh::Piece> mended;
-      const slosh::wire::BlockRange all{0, 2};
+      const slosh::wire::BlockRange all{0, 4};
       if (with_mending) encoder.mend({&all, 1}, mended);
       for (const slosh::Piece& piece : mended) add(piece);
     }

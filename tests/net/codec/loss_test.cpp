@@ -18,6 +18,14 @@ Datagrams datagrams(const EncodedFrame& frame) {
   return out;
 }
 
+/// A world whose shell is another tenth of it every six frames, and what a shell stream has then.
+Snapshot changing_shell(std::size_t count, int frame) {
+  Snapshot s = swirl(count, frame);
+  s.shell.resize(count);
+  for (std::size_t i = 0; i < count; ++i) s.shell[i] = (i + static_cast<std::size_t>(frame / 6)) % 10 < 3;
+  return s;
+}
+
 /// A host that mends what feedback of `delay` frames ago asked for, twice, over a link that loses a share.
 void carry_over_loss(double loss, int frames, unsigned seed) {
   SnapshotEncoder encoder({});
@@ -56,6 +64,62 @@ void carry_over_loss(double loss, int frames, unsigned seed) {
 TEST(Loss, mending_always_leads_back_to_the_exact_picture) {
   for (const double loss : {0.02, 0.2, 0.6}) {
     for (const unsigned seed : {1u, 2u}) carry_over_loss(loss, 50, seed);
+  }
+}
+
+/// An epoch that grows, over a link that loses a share: whatever is whole is what a peer without loss has,
+/// new blocks that were missed are asked for, and all comes back to the exact picture.
+TEST(Loss, an_epoch_that_grows_is_mended_too) {
+  for (const double loss : {0.0, 0.05, 0.4}) {
+    CodecOptions options;
+    options.shell_only = true;
+    SnapshotEncoder encoder(options);
+    SnapshotDecoder decoder, spared;
+    std::mt19937 random(9);
+    std::uniform_real_distribution<double> chance;
+    std::vector<std::vector<codec_kit::Row>> truth;
+    std::vector<std::vector<wire::BlockRange>> asked;
+    std::uint32_t most_blocks = 0, first_blocks = 0;
+    int exact_at_the_end = 0;
+    bool missed_new = false;
+    for (int f = 0; f < 55; ++f) {  // one epoch
+      const Snapshot world = changing_shell(4000, f);
+      const EncodedFrame& encoded = encoder.encode(world, 0);
+      ASSERT_EQ(encoded.epoch, 0u);
+      if (f == 0) first_blocks = encoded.blocks;
+      most_blocks = std::max(most_blocks, encoded.blocks);
+      Datagrams sent = datagrams(encoded);
+      for (const auto& d : sent) ASSERT_FALSE(spared.take(d));
+      const auto whole = spared.next(0);
+      ASSERT_TRUE(whole);
+      ASSERT_EQ(whole->complete, 1.0);
+      ASSERT_TRUE(spared.feedback().missing.empty());
+      truth.push_back(rows(*whole, kTolerance));
+      const auto all = rows(world, kTolerance);
+      ASSERT_TRUE(std::includes(all.begin(), all.end(), truth.back().begin(), truth.back().end()));
+      for (const std::size_t ago : {3u, 4u}) {
+        if (asked.size() < ago) continue;
+        std::vector<Piece> mended;
+        encoder.mend(asked[asked.size() - ago], mended);
+        for (const Piece& piece : mended) sent.push_back(*piece.bytes);
+      }
+      if (f % 4 == 1) std::shuffle(sent.begin(), sent.end(), random);
+      for (const auto& d : sent) {
+        if (f < 35 && chance(random) < loss) continue;
+        const wire::Fault fault = decoder.take(d);
+        ASSERT_FALSE(fault) << fault.text();
+      }
+      while (const auto got = decoder.next(1)) {
+        if (got->complete < 1.0) continue;
+        ASSERT_EQ(rows(*got, kTolerance), truth[got->frame]) << "frame " << got->frame;
+        exact_at_the_end += f >= 50;
+      }
+      asked.push_back(decoder.feedback().missing);
+      for (const wire::BlockRange& range : asked.back()) missed_new |= range.first >= first_blocks;
+    }
+    EXPECT_GT(most_blocks, first_blocks + 3);
+    EXPECT_GE(exact_at_the_end, 4) << "loss " << loss;
+    EXPECT_EQ(missed_new, loss > 0.0) << "loss " << loss;
   }
 }
 
