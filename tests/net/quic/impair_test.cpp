@@ -1,8 +1,13 @@
 // The bad network does what it is told, and QUIC lives with it.
 #include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <atomic>
 
 #include "net/impair/fate.h"
 #include "net/impair/relay.h"
+#include "net/quic/address.h"
 #include "tests/net/quic/ends.h"
 
 namespace slosh::testing {
@@ -187,12 +192,12 @@ TEST(Migration, FollowsAPeerToANewSocket) {
 TEST(Migration, HappensByItselfWhenTheOldAddressFallsSilent) {
   EndpointOptions options;
   options.keep_alive = 0.2;
+  std::atomic<bool> cut = true;  // before the relay, whose thread looks at it to its end
+  std::atomic<int> held = 0;
   Relayed pair({}, options);
   ASSERT_TRUE(pair.establish());
   // A NAT that loses what it knew of the peer: nothing passes from the old port any more, either way.
   const std::string old = pair.peer->local_address();
-  std::atomic<bool> cut = true;
-  std::atomic<int> held = 0;
   pair.relay->tamper([&](Relay::Way, Relay::Packet& packet) {
     if (cut) {
       packet.clear();
@@ -206,13 +211,34 @@ TEST(Migration, HappensByItselfWhenTheOldAddressFallsSilent) {
   EXPECT_TRUE(pair.peer_events.closed.empty());
 }
 
+/// One packet of a socket of its own at `from`, which must be free.
+bool send_once(const std::string& from, const std::string& to, const Bytes& packet) {
+  const auto here = quic::resolve(from), there = quic::resolve(to);
+  if (!here || !there) return false;
+  const quic::Address &local = here.value().front(), &remote = there.value().front();
+  const int descriptor = socket(local.any.sa_family, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  const bool sent = bind(descriptor, &local.any, local.length) == 0 &&
+                    sendto(descriptor, packet.data(), packet.size(), 0, &remote.any, remote.length) ==
+                        static_cast<ssize_t>(packet.size());
+  close(descriptor);
+  return sent;
+}
+
 TEST(Restart, OfAHostWithTheSameKeyIsNoticedAndJoinedAgain) {
+  const Bytes after{'a', 'f', 't', 'e', 'r'};
+  std::atomic<bool> came_by = false;  // before the relay, whose thread looks at it to its end
   Relayed pair({});
   ASSERT_TRUE(pair.establish());
   const std::string address = pair.host->local_address();
-  // Killed: the words of its end do not arrive.
+  // Killed: the words of its end do not arrive. The relay may read them late, so the cable stays pulled until
+  // a packet that was sent after them has come by.
+  pair.relay->tamper([&](Relay::Way way, const Relay::Packet& packet) {
+    if (way == Relay::Way::kDown && packet == after) came_by = true;
+  });
   pair.relay->dark(true);
   pair.host.reset();
+  ASSERT_TRUE(send_once(address, pair.host_events.addresses[0], after));
+  ASSERT_TRUE(run_until({pair.peer.get()}, [&] { return came_by.load(); }));
   auto again = listen_quic(address, pair.host_identity, pair.host_events);
   ASSERT_TRUE(again) << again.error().text();
   pair.host = std::move(again.value());
