@@ -54,13 +54,16 @@ class Context {
 
 struct HeadlessOptions {
   /// Threads that llvmpipe draws with; 0 leaves the choice to it. It reads this (environment LP_NUM_THREADS)
-  /// once per process, so only the first headless context's wish counts. No effect on a GPU. Setting it is
-  /// not safe while another thread reads the environment: make the first context before threads that do are
-  /// started.
+  /// once per process, so only the first headless context's wish counts. No effect on a GPU. Where other
+  /// threads may read the environment, call set_software_threads() with the same number before they start.
   int software_threads = 0;
   /// Ask the driver for its debug output; slower on some GPUs.
   bool debug = false;
 };
+
+/// Writes the wish of HeadlessOptions::software_threads (1–64) into the environment, which is not safe once
+/// there are threads that read it. A context that wishes the same then writes nothing.
+void set_software_threads(int threads);
 
 /// A context without display or window, through EGL: surfaceless, else the first EGL device that gives
 /// OpenGL 4.5, else the default display. Errors: no EGL driver, or none with 4.5 core.

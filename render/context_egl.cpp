@@ -127,17 +127,23 @@ std::vector<Candidate> candidate_displays() {
 
 }  // namespace
 
+void set_software_threads(int threads) {
+  constexpr const char* kName = "LP_NUM_THREADS";
+  const std::string wish = std::to_string(threads);
+  // There is no other way to tell it; context.h says when this is safe.
+  // NOLINTBEGIN(concurrency-mt-unsafe)
+  const char* set = std::getenv(kName);
+  if (set == nullptr || wish != set) setenv(kName, wish.c_str(), 1);
+  // NOLINTEND(concurrency-mt-unsafe)
+}
+
 Result<std::unique_ptr<Context>> make_headless_context(const HeadlessOptions& options) {
   if (options.software_threads < 0 || options.software_threads > 64) {
     return Error{"software_threads", std::to_string(options.software_threads) + " is not within 0–64",
                  "Use 0"};
   }
   // llvmpipe reads it when its first screen is made, which the first eglInitialize does.
-  if (options.software_threads > 0) {
-    // There is no other way to tell it; context.h says when this is safe.
-    // NOLINTNEXTLINE(concurrency-mt-unsafe)
-    setenv("LP_NUM_THREADS", std::to_string(options.software_threads).c_str(), 1);
-  }
+  if (options.software_threads > 0) set_software_threads(options.software_threads);
   std::string reasons;
   for (const Candidate& candidate : candidate_displays()) {
     const EGLContext context = try_display(candidate.display, candidate.name, options.debug, reasons);

@@ -11,6 +11,7 @@
 #include "peer/verbs/play_modes.h"
 #include "peer/verbs/remote_run.h"
 #include "peer/verbs/verbs.h"
+#include "peer/view/headless_view.h"
 #include "render/context.h"
 
 namespace slosh {
@@ -108,6 +109,8 @@ int join(JoinOptions options) {
     progress.note("slosh: no display here, so the run becomes a film (--headless)");
     headless = true;
   }
+  // Before the network's threads: name lookups and TLS read the environment.
+  if (headless && options.render) set_software_threads(kViewSoftwareThreads);
 
   RemoteOptions remote;
   remote.token = link.value().token;

@@ -53,7 +53,7 @@ void HeadlessView::run(const Setup& setup) {
   const ViewOptions& options = setup.options;
 
   HeadlessOptions headless;
-  headless.software_threads = 1;
+  headless.software_threads = kViewSoftwareThreads;
   Result<std::unique_ptr<Context>> context = make_headless_context(headless);
   if (!context) {
     done();

@@ -30,6 +30,8 @@ struct ViewReport {
   std::string problem;  ///< an error's text, empty when all went well
 };
 
+constexpr int kViewSoftwareThreads = 1;  ///< that a software renderer may take from the simulation
+
 /// Draws on a thread of its own, at low priority: the simulation comes first.
 class HeadlessView {
  public:
