@@ -85,7 +85,7 @@ class World {
   void fill(Snapshot& out, bool with_shell = false) const;
 
   /// Appends everything that moves or can be changed, so that a world of the same scene, spacing and plan
-  /// goes on from it: on the CPU to the bit. About 33 bytes a particle; 0.2 ms for 32 768. Error: the GPU
+  /// goes on from it: on the CPU to the bit. About 33 bytes a particle; 0.5 ms for 32 768. Error: the GPU
   /// failed.
   Result<bool> save(std::vector<std::uint8_t>& out) const;
   /// Takes over what save() wrote, on either backend. Errors, with the world as it was: other bytes, cut off,
