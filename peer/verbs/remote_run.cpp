@@ -92,11 +92,17 @@ Rates RemoteRun::note_rates() {
   return rates;
 }
 
-/// Simulated time that has passed for this person, whatever the world's own did in between.
+/// Simulated time that has passed for this person, whatever the world's own did in between. The world's time
+/// is carried on from the newest word of it and falls back when that was too far: only what is beyond the
+/// furthest counts, else a host that is slow and uneven would seem to run many times as long as it did.
 void RemoteRun::follow_time() {
   if (!status_.moment.known) return;
-  if (status_.moment.run == last_run_) elapsed_ += std::max(status_.world_time - last_time_, 0.0);
-  last_run_ = status_.moment.run;
+  if (status_.moment.run != last_run_) {
+    last_run_ = status_.moment.run;
+    last_time_ = status_.world_time;
+  }
+  if (status_.world_time <= last_time_) return;
+  elapsed_ += status_.world_time - last_time_;
   last_time_ = status_.world_time;
 }
 

@@ -67,7 +67,7 @@ class RemoteRun final : public LiveRun {
   SnapshotPointer last_picture_;
   std::vector<std::string> grip_names_;
   double elapsed_ = 0.0;    // simulated s since the start
-  double last_time_ = 0.0;  // simulated s
+  double last_time_ = 0.0;  // simulated s, the furthest of this run
   std::uint32_t last_run_ = 0;
   std::int64_t start_ns_ = 0;
   std::int64_t stop_ns_ = 0;
