@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <limits>
 
+#include "sim/format.h"
 #include "sim/step_limits.h"
 
 namespace slosh {
@@ -18,15 +17,6 @@ constexpr double kCompressionAtDepth = 0.04;
 // Body particles stand for fluid denser than rest by this much: enough pressure to hold a column back before
 // the fluid itself is compressed, little enough not to push it far off the wall.
 constexpr double kBodyCompression = 0.3;
-
-[[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...) {
-  char text[512];
-  va_list arguments;
-  va_start(arguments, pattern);
-  std::vsnprintf(text, sizeof text, pattern, arguments);
-  va_end(arguments);
-  return text;
-}
 
 bool any_free(const Scene& scene) {
   return std::any_of(scene.bodies.begin(), scene.bodies.end(),

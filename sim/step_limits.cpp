@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <limits>
 
+#include "sim/format.h"
 #include "sim/math/sph.h"
 
 namespace slosh {
@@ -26,15 +25,6 @@ constexpr double kLightBody = 0.05;
 constexpr double kViscousFactor = 0.8;
 // What a wall adds to that sum for the fluid's first layer, as a share of the whole lattice.
 constexpr double kWallPart = 0.35;
-
-[[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...) {
-  char text[512];
-  va_list arguments;
-  va_start(arguments, pattern);
-  std::vsnprintf(text, sizeof text, pattern, arguments);
-  va_end(arguments);
-  return text;
-}
 
 // Σ V ∇²W over the neighbours of a rest lattice, times spacing²: the damping rate of one particle among still
 // neighbours is μ/ρ · this / spacing².
