@@ -29,6 +29,11 @@ struct Callbacks {
     if (!c.peer_.found || !other || other->max_datagram_frame_size < wire::kMaxDatagram + 3)
       return NGTCP2_ERR_CALLBACK_FAILURE;
     ngtcp2_conn_set_keep_alive_timeout(conn, static_cast<ngtcp2_duration>(c.options_.keep_alive * 1e9));
+    std::int64_t probes = kProbeStream;
+    if (!ngtcp2_conn_is_server(conn) &&
+        (ngtcp2_conn_open_bidi_stream(conn, &probes, nullptr) != 0 || probes != kProbeStream))
+      return NGTCP2_ERR_CALLBACK_FAILURE;
+    c.probe_stream_due_ = !ngtcp2_conn_is_server(conn);
     c.state_ = Connection::State::kOpen;
     c.announced_ = true;
     c.owner_.confirmed(c);
@@ -38,7 +43,8 @@ struct Callbacks {
   static int stream_data(ngtcp2_conn* conn, std::uint32_t flags, std::int64_t stream, std::uint64_t,
                          const std::uint8_t* data, std::size_t size, void* user, void*) {
     Connection& c = at(user);
-    if (listening(c)) c.owner_.stream_arrived(c, stream, {data, size}, flags & NGTCP2_STREAM_DATA_FLAG_FIN);
+    if (listening(c) && stream != kProbeStream)
+      c.owner_.stream_arrived(c, stream, {data, size}, flags & NGTCP2_STREAM_DATA_FLAG_FIN);
     // Taken in: the other side may send as much again.
     ngtcp2_conn_extend_max_stream_offset(conn, stream, size);
     ngtcp2_conn_extend_max_offset(conn, size);
@@ -50,7 +56,7 @@ struct Callbacks {
 
   static int stream_acknowledged(ngtcp2_conn*, std::int64_t stream, std::uint64_t, std::uint64_t size,
                                  void* user, void*) {
-    at(user).streams_.acknowledged(stream, size);
+    if (stream != kProbeStream) at(user).streams_.acknowledged(stream, size);
     return 0;
   }
 

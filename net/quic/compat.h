@@ -28,6 +28,14 @@ struct PathFigures {
   double pacing_rate = 0.0;
 };
 
+/// Before 0.14 ngtcp2 arms no probe timeout for packets that hold nothing but datagrams (its issue 697): when the
+/// acknowledgements of a full window are lost, nothing moves again.
+#if NGTCP2_VERSION_NUM >= 0x000e00
+constexpr bool kDatagramsAreProbed = true;
+#else
+constexpr bool kDatagramsAreProbed = false;
+#endif
+
 #if NGTCP2_VERSION_NUM >= 0x010000
 
 using CloseError = ngtcp2_ccerr;

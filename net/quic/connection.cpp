@@ -77,7 +77,7 @@ ngtcp2_transport_params Connection::parameters(bool server) const {
   params.initial_max_stream_data_bidi_remote = kControlWindow;
   params.initial_max_stream_data_uni = window;
   params.initial_max_data = server ? kControlWindow : 2 * kSceneWindow;
-  params.initial_max_streams_bidi = 4;
+  params.initial_max_streams_bidi = 5;  // the probes' and four more
   // A host takes no one-way streams: ngtcp2 0.12 keeps a little of each until the connection ends.
   params.initial_max_streams_uni = server ? 0 : 16;
   params.max_idle_timeout = nanoseconds(options_.idle_timeout);

@@ -21,6 +21,10 @@ class Connection;
 
 constexpr std::size_t kCidSize = 10;  ///< bytes of the connection ids that we give out
 
+/// The client's first stream, opened by the connection itself. Its bytes mean nothing: one in every packet of
+/// datagrams makes the library ask again when no acknowledgement comes (kDatagramsAreProbed).
+constexpr std::int64_t kProbeStream = 0;
+
 /// What a connection tells the endpoint that it belongs to, from inside receive() and expire().
 class ConnectionOwner {
  public:
@@ -112,6 +116,7 @@ class Connection {
   ngtcp2_ssize write_datagram(std::span<std::uint8_t> out, ngtcp2_path* path, int priority, bool& accepted,
                               std::size_t packed, std::int64_t now);
   ngtcp2_ssize write_stream(std::span<std::uint8_t> out, ngtcp2_path* path, std::int64_t now);
+  ngtcp2_ssize write_probe_byte(std::span<std::uint8_t> out, ngtcp2_path* path, bool more, std::int64_t now);
   std::size_t burst() const;
   void fail(int code, std::int64_t now);
   void write_close(const CloseError& error, std::int64_t now);
@@ -140,6 +145,7 @@ class Connection {
   DatagramQueues queues_;
   StreamOutbox streams_;
   std::size_t snapshots_in_a_row_ = 0;
+  bool probe_stream_due_ = false;  // a client's: the host knows it by its first byte
   std::uint64_t bytes_sent_ = 0;
   std::uint64_t bytes_received_ = 0;
   ConnectionStats counts_;  // what is counted here and not in the library

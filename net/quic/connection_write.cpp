@@ -7,8 +7,9 @@ namespace slosh::quic {
 namespace {
 
 constexpr std::size_t kDatagramOverhead = 3;  // frame type and length
+constexpr std::size_t kProbeByteSize = 8;     // the frame: type, stream, offset, length, a byte
 // Room for frames in a packet of ours: less header, packet number and tag.
-constexpr std::size_t kRoom = kMaxPacket - 1 - 20 - 4 - 16;
+constexpr std::size_t kRoom = kMaxPacket - 1 - 20 - 4 - 16 - (kDatagramsAreProbed ? 0 : kProbeByteSize);
 // Streams come last, but a full link must not silence them: one packet of theirs after so many snapshots.
 constexpr std::size_t kSnapshotsAStream = 15;
 constexpr double kBurst = 2e-3;  // s of the link's rate that may leave at once
@@ -55,6 +56,11 @@ std::size_t Connection::burst() const {
 /// One packet into `out`: its size, 0 when nothing may or need be sent, or an error of the library.
 ngtcp2_ssize Connection::write_packet(std::span<std::uint8_t> out, ngtcp2_path* path, std::int64_t now) {
   std::size_t packed = 0;
+  bool probed = false;
+  if (probe_stream_due_) {
+    const ngtcp2_ssize size = write_probe_byte(out, path, false, now);
+    if (size != NGTCP2_ERR_STREAM_DATA_BLOCKED) return size;
+  }
   while (state_ == State::kOpen || state_ == State::kLingering) {
     const int priority = queues_.next();
     const bool snapshot = priority == static_cast<int>(Priority::kSnapshot);
@@ -68,6 +74,14 @@ ngtcp2_ssize Connection::write_packet(std::span<std::uint8_t> out, ngtcp2_path* 
       return size;
     }
     if (priority < 0) break;
+    if (!kDatagramsAreProbed && packed == 0 && !probed) {
+      probed = true;
+      const ngtcp2_ssize size = write_probe_byte(out, path, true, now);
+      if (size >= 0) return size;  // the window or the pace is in the way
+      if (size != NGTCP2_ERR_WRITE_MORE && size != NGTCP2_ERR_STREAM_DATA_BLOCKED &&
+          size != NGTCP2_ERR_STREAM_NOT_FOUND)
+        return size;
+    }
     bool accepted = false;
     const ngtcp2_ssize size = write_datagram(out, path, priority, accepted, packed, now);
     if (accepted) {
@@ -98,6 +112,19 @@ ngtcp2_ssize Connection::write_datagram(std::span<std::uint8_t> out, ngtcp2_path
                                   more ? NGTCP2_WRITE_DATAGRAM_FLAG_MORE : NGTCP2_WRITE_DATAGRAM_FLAG_NONE, 0,
                                   &vector, 1, static_cast<ngtcp2_tstamp>(now));
   accepted = taken != 0;
+  return size;
+}
+
+ngtcp2_ssize Connection::write_probe_byte(std::span<std::uint8_t> out, ngtcp2_path* path, bool more,
+                                          std::int64_t now) {
+  static std::uint8_t byte = 0;  // the library looks at it until it is acknowledged
+  const ngtcp2_vec vector{&byte, 1};
+  ngtcp2_ssize taken = -1;
+  const ngtcp2_ssize size =
+      ngtcp2_conn_writev_stream(conn_, path, nullptr, out.data(), out.size(), &taken,
+                                more ? NGTCP2_WRITE_STREAM_FLAG_MORE : NGTCP2_WRITE_STREAM_FLAG_NONE,
+                                kProbeStream, &vector, 1, static_cast<ngtcp2_tstamp>(now));
+  if (taken == 1) probe_stream_due_ = false;
   return size;
 }
 

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <map>
 #include <set>
 #include <string>
 #include <thread>
@@ -21,6 +22,8 @@ using namespace slosh;
 using Bytes = std::vector<std::uint8_t>;
 
 std::ofstream csv;
+bool trace = false;
+std::string only_link;
 void row(const std::string& bench, const std::string& setting, const std::string& what, double value,
          const char* unit) {
   std::printf("  %-34s %-28s %10.4g %s\n", setting.c_str(), what.c_str(), value, unit);
@@ -106,7 +109,20 @@ void poses(double rate, int repeats, double loss, double burst, double seconds) 
   std::thread host_thread([&] {
     const SharedBytes piece = filled(1100);
     std::int64_t due = steady_now_ns();
+    const std::int64_t start = due;
+    double told = 0.2;
     while (!stop) {
+      if (trace && to_seconds(steady_now_ns() - start) > told) {
+        const ConnectionStats stats = host.value()->stats(at_host.connections[0]);
+        std::printf("    %2.1f s  window %7.1f kB  in flight %7.1f kB  rate %7.1f kB/s  rtt %5.1f ms (min %.1f)  sent %llu dropped %llu lost %llu received %llu\n", told,
+                    1e-3 * static_cast<double>(stats.window), 1e-3 * static_cast<double>(stats.in_flight),
+                    1e-3 * stats.delivery_rate, 1e3 * stats.smoothed_rtt, 1e3 * stats.min_rtt,
+                    static_cast<unsigned long long>(stats.datagrams_sent[2]),
+                    static_cast<unsigned long long>(stats.datagrams_dropped[2]),
+                    static_cast<unsigned long long>(stats.datagrams_lost),static_cast<unsigned long long>(stats.bytes_received));
+        std::fflush(stdout);
+        told += 0.2;
+      }
       if (steady_now_ns() >= due) {
         for (int i = 0; i < 25; ++i)
           snapshots += host.value()->send_datagram(at_host.connections[0], Priority::kSnapshot, piece);
@@ -144,6 +160,101 @@ void poses(double rate, int repeats, double loss, double burst, double seconds) 
   row("poses", setting, "dropped before sending", static_cast<double>(up.datagrams_dropped[0]), "");
   row("poses", setting, "snapshot pieces that arrived",
       100.0 * static_cast<double>(at_peer.received) / static_cast<double>(snapshots), "%");
+}
+
+struct Viewer : Quiet {
+  void on_datagram(ConnectionId, std::span<const std::uint8_t> bytes) override {
+    std::int64_t sent = 0;
+    std::memcpy(&sent, bytes.data(), sizeof(sent));
+    const std::int64_t now = steady_now_ns();
+    if (bytes.size() < 500)
+      state_ages.push_back(1e-6 * static_cast<double>(now - sent));
+    else
+      ++pieces_in_second[static_cast<std::size_t>((now - start) / kNanosecondsPerSecond)];
+  }
+  std::int64_t start = steady_now_ns();
+  std::vector<double> state_ages;  // ms
+  std::map<std::size_t, std::uint64_t> pieces_in_second;
+};
+
+/// Snapshots of 25 datagrams at 60 Hz and states at 250 Hz come down, with no snapshots for half a second first
+/// and three in the middle: what a link's measure of itself must outlive.
+void snapshots(const std::string& name, const Impairment& down, int runs, double seconds) {
+  if (name.find(only_link) == std::string::npos) return;
+  std::vector<double> mean, worst, age;
+  for (int run = 0; run < runs; ++run) {
+    const Identity key = Identity::generate();
+    Quiet at_host;
+    Viewer at_peer;
+    auto host = listen_quic("127.0.0.1:0", key, at_host);
+    Impairment up;
+    up.delay = down.delay;
+    auto relay = Relay::start(
+        {"127.0.0.1:0", host.value()->local_address(), up, down, static_cast<std::uint64_t>(run + 1)});
+    auto peer = connect_quic({relay.value()->address()}, key.fingerprint(), Identity::generate(), at_peer);
+    if (!meet(*host.value(), at_host, *peer.value(), at_peer)) return;
+    at_peer.start = steady_now_ns();
+    std::atomic<bool> stop = false;
+    std::thread peer_thread([&] {
+      while (!stop) peer.value()->run_once(steady_now_ns() + 20'000'000);
+    });
+    const std::int64_t start = at_peer.start;
+    const auto elapsed = [&] { return to_seconds(steady_now_ns() - start); };
+    const auto quiet = [&](double t) { return t < 0.5 || (t > seconds / 2 && t < seconds / 2 + 3.0); };
+    std::int64_t state_due = start, picture_due = start;
+    std::uint64_t offered = 0;
+    const auto send = [&](Priority priority, std::size_t size) {
+      Bytes bytes(size);
+      const std::int64_t now = steady_now_ns();
+      std::memcpy(bytes.data(), &now, sizeof(now));
+      host.value()->send_datagram(at_host.connections[0], priority, std::make_shared<const Bytes>(std::move(bytes)));
+    };
+    double told = 1.0;
+    while (elapsed() < seconds) {
+      const std::int64_t now = steady_now_ns();
+      if (trace && elapsed() > told) {
+        const ConnectionStats stats = host.value()->stats(at_host.connections[0]);
+        std::printf("    %2.0f s  window %7.0f kB  in flight %7.1f kB  rate %7.1f kB/s  rtt %5.1f ms (min %.1f)  sent %llu lost %llu\n", told,
+                    1e-3 * static_cast<double>(stats.window), 1e-3 * static_cast<double>(stats.in_flight),
+                    1e-3 * stats.delivery_rate, 1e3 * stats.smoothed_rtt, 1e3 * stats.min_rtt,
+                    static_cast<unsigned long long>(stats.datagrams_sent[2]),
+                    static_cast<unsigned long long>(stats.datagrams_lost));
+        std::fflush(stdout);
+        told += 1.0;
+      }
+      if (now >= picture_due) {
+        // As the host does: what has no room yet is not piled up.
+        const ConnectionStats stats = host.value()->stats(at_host.connections[0]);
+        if (!quiet(elapsed()) && offered <= stats.datagrams_sent[2] + stats.datagrams_dropped[2] + 25)
+          for (int i = 0; i < 25; ++i, ++offered) send(Priority::kSnapshot, 1100);
+        picture_due += kNanosecondsPerSecond / 60;
+      }
+      if (now >= state_due) {
+        send(Priority::kState, 150);
+        state_due += kNanosecondsPerSecond / 250;
+      }
+      host.value()->run_once(std::min(state_due, picture_due));
+    }
+    stop = true;
+    peer_thread.join();
+    double sum = 0.0, least = 1.0;
+    int count = 0;
+    for (std::size_t second = 1; second + 1 < static_cast<std::size_t>(seconds); ++second) {
+      const auto begin = static_cast<double>(second);
+      if (quiet(begin - 0.2) || quiet(begin) || quiet(begin + 1.0)) continue;
+      const double share = static_cast<double>(at_peer.pieces_in_second[second]) / (25.0 * 60.0);
+      sum += share;
+      least = std::min(least, share);
+      ++count;
+    }
+    mean.push_back(100.0 * sum / std::max(count, 1));
+    worst.push_back(100.0 * least);
+    age.push_back(percentile(at_peer.state_ages, 0.99));
+  }
+  row("snapshots", name, "arrived, median run", percentile(mean, 0.5), "%");
+  row("snapshots", name, "arrived, worst run", percentile(mean, 0.0), "%");
+  row("snapshots", name, "worst second of all runs", percentile(worst, 0.0), "%");
+  row("snapshots", name, "age of states, p99, median run", percentile(age, 0.5), "ms");
 }
 
 struct Echo : Quiet {
@@ -269,8 +380,12 @@ int main(int argc, char** argv) {
   std::string only;
   app.add_option("--seconds", seconds, "each measurement's length")->check(CLI::Range(0.5, 600.0));
   app.add_option("--csv", file, "also writes the figures here");
-  app.add_option("--only", only, "poses, loopback or fanout")
-      ->check(CLI::IsMember({"poses", "loopback", "fanout"}));
+  int runs = 5;
+  app.add_option("--only", only, "poses, snapshots, loopback or fanout")
+      ->check(CLI::IsMember({"poses", "snapshots", "loopback", "fanout"}));
+  app.add_option("--runs", runs, "how often each link of `snapshots` is tried")->check(CLI::Range(1, 1000));
+  app.add_option("--link", only_link, "of `snapshots`, only links with this in their name");
+  app.add_flag("--trace", trace, "in `snapshots`, also says every second how the link fares");
   CLI11_PARSE(app, argc, argv);
   if (!file.empty()) {
     csv.open(file);
@@ -281,6 +396,24 @@ int main(int argc, char** argv) {
     poses(250, 4, 0.05, 1.0, seconds);
     poses(500, 4, 0.05, 1.0, seconds);
     poses(250, 6, 0.05, 2.0, seconds);
+  }
+  if (only.empty() || only == "snapshots") {
+    std::printf("snapshots of 25 datagrams at 60 Hz (1.65 MB/s) and states at 250 Hz come down, 40 ms RTT\n");
+    Impairment link;
+    link.delay = 0.02;
+    snapshots("no loss", link, runs, seconds);
+    link.loss = 0.02;
+    snapshots("2 % loss", link, runs, seconds);
+    link.loss = 0.05;
+    snapshots("5 % loss", link, runs, seconds);
+    link.loss = 0.1;
+    snapshots("10 % loss", link, runs, seconds);
+    link.loss = 0.0;
+    link.rate = 1e6;
+    link.queue = 200e3;
+    snapshots("1 MB/s, deep queue", link, runs, seconds);
+    link.queue = 20e3;
+    snapshots("1 MB/s, short queue", link, runs, seconds);
   }
   if (only.empty() || only == "loopback") {
     std::printf("loopback\n");
