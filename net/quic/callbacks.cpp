@@ -43,8 +43,16 @@ struct Callbacks {
   static int stream_data(ngtcp2_conn* conn, std::uint32_t flags, std::int64_t stream, std::uint64_t,
                          const std::uint8_t* data, std::size_t size, void* user, void*) {
     Connection& c = at(user);
-    if (listening(c) && stream != kProbeStream)
+    if (stream == kProbeStream) {
+      // One byte a packet, and those of lost packets again: who sends more wants to keep us busy.
+      c.probe_bytes_ += size;
+      if (c.probe_bytes_ > 4 * c.packets_received_ + 4096) {
+        c.breach_ = "the other side sends more probes than packets";
+        return NGTCP2_ERR_CALLBACK_FAILURE;
+      }
+    } else if (listening(c)) {
       c.owner_.stream_arrived(c, stream, {data, size}, flags & NGTCP2_STREAM_DATA_FLAG_FIN);
+    }
     // Taken in: the other side may send as much again.
     ngtcp2_conn_extend_max_stream_offset(conn, stream, size);
     ngtcp2_conn_extend_max_offset(conn, size);
@@ -70,7 +78,7 @@ struct Callbacks {
 
   /// Nothing of ours breaks a stream off: whoever does is not to be trusted with the rest.
   static int stream_reset(ngtcp2_conn*, std::int64_t, std::uint64_t, std::uint64_t, void* user, void*) {
-    at(user).broken_off_ = true;
+    at(user).breach_ = "the other side broke a stream off";
     return NGTCP2_ERR_CALLBACK_FAILURE;
   }
 

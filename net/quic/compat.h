@@ -22,14 +22,15 @@ struct PathFigures {
   double smoothed_rtt = 0.0;
   double rtt_variance = 0.0;
   double min_rtt = 0.0;
+  double latest_rtt = 0.0;
   std::uint64_t window = 0;
   std::uint64_t in_flight = 0;
   double delivery_rate = 0.0;
   double pacing_rate = 0.0;
 };
 
-/// Before 0.14 ngtcp2 arms no probe timeout for packets that hold nothing but datagrams (its issue 697): when the
-/// acknowledgements of a full window are lost, nothing moves again.
+/// Before 0.14 ngtcp2 arms no probe timeout for packets that hold nothing but datagrams (its issue 697): when
+/// the acknowledgements of a full window are lost, nothing moves again.
 #if NGTCP2_VERSION_NUM >= 0x000e00
 constexpr bool kDatagramsAreProbed = true;
 #else
@@ -79,6 +80,7 @@ inline PathFigures path_figures(ngtcp2_conn* conn) {
   figures.smoothed_rtt = 1e-9 * static_cast<double>(info.smoothed_rtt);
   figures.rtt_variance = 1e-9 * static_cast<double>(info.rttvar);
   figures.min_rtt = info.min_rtt == UINT64_MAX ? 0.0 : 1e-9 * static_cast<double>(info.min_rtt);
+  figures.latest_rtt = 1e-9 * static_cast<double>(info.latest_rtt);
   figures.window = info.cwnd;
   figures.in_flight = info.bytes_in_flight;
   // 1.x keeps its delivery rate to itself: what the window lets through is the nearest thing.
@@ -134,6 +136,7 @@ inline PathFigures path_figures(ngtcp2_conn* conn) {
   figures.smoothed_rtt = 1e-9 * static_cast<double>(stat.smoothed_rtt);
   figures.rtt_variance = 1e-9 * static_cast<double>(stat.rttvar);
   figures.min_rtt = stat.min_rtt == UINT64_MAX ? 0.0 : 1e-9 * static_cast<double>(stat.min_rtt);
+  figures.latest_rtt = 1e-9 * static_cast<double>(stat.latest_rtt);
   figures.window = stat.cwnd;
   figures.in_flight = stat.bytes_in_flight;
   figures.delivery_rate = static_cast<double>(stat.delivery_rate_sec);

@@ -146,6 +146,7 @@ void Connection::receive(const Address& local, const Address& remote, std::span<
                          std::int64_t now) {
   if (state_ == State::kClosed) return;
   bytes_received_ += packet.size();
+  packets_received_ += 1;
   Address here = local;
   Address there = remote;
   const ngtcp2_path path = path_between(here, there);
@@ -280,7 +281,7 @@ void Connection::fail(int code, std::int64_t now) {
     text = alert_words(kNoApplicationProtocol);
     refused_for_good_ = true;
   }
-  if (broken_off_) text = "the other side broke a stream off";
+  if (breach_) text = breach_;
   write_close(error, now);
   end({false, 0, text});
 }

@@ -11,6 +11,8 @@
 #include "net/quic/compat.h"
 #include "net/quic/datagram_queues.h"
 #include "net/quic/endpoint.h"
+#include "net/quic/pace.h"
+#include "net/quic/snapshot_room.h"
 #include "net/quic/stream_outbox.h"
 #include "net/quic/tls.h"
 #include "net/quic/udp_socket.h"
@@ -118,6 +120,7 @@ class Connection {
   ngtcp2_ssize write_stream(std::span<std::uint8_t> out, ngtcp2_path* path, std::int64_t now);
   ngtcp2_ssize write_probe_byte(std::span<std::uint8_t> out, ngtcp2_path* path, bool more, std::int64_t now);
   std::size_t burst() const;
+  void pace(std::size_t sent, std::int64_t now);
   void fail(int code, std::int64_t now);
   void write_close(const CloseError& error, std::int64_t now);
   void peer_closed();
@@ -135,7 +138,7 @@ class Connection {
   bool announced_ = false;
   bool was_reset_ = false;
   bool refused_for_good_ = false;
-  bool broken_off_ = false;  // the other side reset a stream
+  const char* breach_ = nullptr;  // what the other side did that nothing of ours does
   bool wrong_protocol_ = false;
   CloseReason reason_;
   CloseReason parting_;  // what close() asked for
@@ -145,10 +148,15 @@ class Connection {
   DatagramQueues queues_;
   StreamOutbox streams_;
   std::size_t snapshots_in_a_row_ = 0;
+  PaceGain pace_;
+  SnapshotRoom snapshot_room_;
+  std::size_t room_ = 0;           // bytes of snapshots that this flush may still send
   bool probe_stream_due_ = false;  // a client's: the host knows it by its first byte
   std::uint64_t bytes_sent_ = 0;
   std::uint64_t bytes_received_ = 0;
-  ConnectionStats counts_;  // what is counted here and not in the library
+  std::uint64_t packets_received_ = 0;
+  std::uint64_t probe_bytes_ = 0;  // received
+  ConnectionStats counts_;         // what is counted here and not in the library
   std::vector<std::uint8_t> close_packet_;
   std::vector<ngtcp2_cid> ids_;
 };

@@ -24,6 +24,9 @@ void Connection::flush(std::int64_t now) {
   }
   streams_.unblock_all();
   const std::size_t limit = burst();
+  const PathFigures figures = path_figures(conn_);
+  const std::size_t most = snapshot_room_.limit(figures, now);
+  room_ = most > figures.in_flight ? most - figures.in_flight : 0;
   std::size_t sent = 0;
   ngtcp2_path_storage path;
   while (sent < limit) {
@@ -39,9 +42,25 @@ void Connection::flush(std::int64_t now) {
     socket_->add(Address(path.path.local.addr, path.path.local.addrlen),
                  Address(path.path.remote.addr, path.path.remote.addrlen), static_cast<std::size_t>(size));
     sent += static_cast<std::size_t>(size);
+    room_ -= std::min(room_, static_cast<std::size_t>(size));
   }
   bytes_sent_ += sent;
-  ngtcp2_conn_update_pkt_tx_time(conn_, static_cast<ngtcp2_tstamp>(now));
+  pace(sent, now);
+}
+
+/// Says when the next packets may leave: the library's pace, times the gain.
+void Connection::pace(std::size_t sent, std::int64_t now) {
+  const PathFigures figures = path_figures(conn_);
+  const bool waiting = queues_.next() >= 0 && room_ > 0 && figures.in_flight + kMaxPacket <= figures.window;
+  std::uint64_t datagrams = 0;
+  for (const std::uint64_t count : counts_.datagrams_sent) datagrams += count;
+  pace_.note(figures, waiting, datagrams, counts_.datagrams_lost, now);
+  // The library adds `sent` / pace to the time that it is told: an earlier one makes the pause shorter.
+  std::int64_t told = now;
+  if (figures.pacing_rate > 0.0)
+    told -= static_cast<std::int64_t>(1e9 * static_cast<double>(sent) / figures.pacing_rate *
+                                      (1.0 - 1.0 / pace_.factor()));
+  ngtcp2_conn_update_pkt_tx_time(conn_, static_cast<ngtcp2_tstamp>(told));
 }
 
 /// A pose that comes right after a burst waits for the pace to allow the next one: so bursts are short.
@@ -49,7 +68,7 @@ std::size_t Connection::burst() const {
   const std::size_t quantum = ngtcp2_conn_get_send_quantum(conn_);
   const double rate = path_figures(conn_).pacing_rate;
   if (rate <= 0.0) return quantum;
-  const double bytes = std::min(rate * kBurst, 65536.0);
+  const double bytes = std::min(pace_.factor() * rate * kBurst, 65536.0);
   return std::max<std::size_t>(static_cast<std::size_t>(bytes), 2 * kMaxPacket);
 }
 
@@ -62,7 +81,8 @@ ngtcp2_ssize Connection::write_packet(std::span<std::uint8_t> out, ngtcp2_path* 
     if (size != NGTCP2_ERR_STREAM_DATA_BLOCKED) return size;
   }
   while (state_ == State::kOpen || state_ == State::kLingering) {
-    const int priority = queues_.next();
+    int priority = queues_.next();
+    if (priority == static_cast<int>(Priority::kSnapshot) && room_ == 0) priority = -1;
     const bool snapshot = priority == static_cast<int>(Priority::kSnapshot);
     const bool stream_turn = priority < 0 || (snapshot && snapshots_in_a_row_ >= kSnapshotsAStream);
     if (stream_turn && streams_.pending()) {
@@ -77,8 +97,9 @@ ngtcp2_ssize Connection::write_packet(std::span<std::uint8_t> out, ngtcp2_path* 
     if (!kDatagramsAreProbed && packed == 0 && !probed) {
       probed = true;
       const ngtcp2_ssize size = write_probe_byte(out, path, true, now);
-      if (size >= 0) return size;  // the window or the pace is in the way
-      if (size != NGTCP2_ERR_WRITE_MORE && size != NGTCP2_ERR_STREAM_DATA_BLOCKED &&
+      if (size > 0) return size;
+      // 0 may be the streams' flow control, which datagrams know nothing of.
+      if (size != 0 && size != NGTCP2_ERR_WRITE_MORE && size != NGTCP2_ERR_STREAM_DATA_BLOCKED &&
           size != NGTCP2_ERR_STREAM_NOT_FOUND)
         return size;
     }

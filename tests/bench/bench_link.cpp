@@ -30,6 +30,19 @@ void row(const std::string& bench, const std::string& setting, const std::string
   if (csv) csv << bench << ',' << setting << ',' << what << ',' << value << ',' << unit << '\n';
 }
 
+/// How a link fares, in a line; `t` in s.
+void tell(double t, const ConnectionStats& stats) {
+  std::printf(
+      "    %5.1f s  window %7.1f kB, in flight %7.1f kB, %7.1f kB/s, RTT %5.1f ms (at least %.1f);"
+      " snapshot pieces: %llu sent, %llu dropped; %llu lost\n",
+      t, 1e-3 * static_cast<double>(stats.window), 1e-3 * static_cast<double>(stats.in_flight),
+      1e-3 * stats.delivery_rate, 1e3 * stats.smoothed_rtt, 1e3 * stats.min_rtt,
+      static_cast<unsigned long long>(stats.datagrams_sent[2]),
+      static_cast<unsigned long long>(stats.datagrams_dropped[2]),
+      static_cast<unsigned long long>(stats.datagrams_lost));
+  std::fflush(stdout);
+}
+
 double thread_cpu() {
   timespec used{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);
@@ -113,14 +126,7 @@ void poses(double rate, int repeats, double loss, double burst, double seconds) 
     double told = 0.2;
     while (!stop) {
       if (trace && to_seconds(steady_now_ns() - start) > told) {
-        const ConnectionStats stats = host.value()->stats(at_host.connections[0]);
-        std::printf("    %2.1f s  window %7.1f kB  in flight %7.1f kB  rate %7.1f kB/s  rtt %5.1f ms (min %.1f)  sent %llu dropped %llu lost %llu received %llu\n", told,
-                    1e-3 * static_cast<double>(stats.window), 1e-3 * static_cast<double>(stats.in_flight),
-                    1e-3 * stats.delivery_rate, 1e3 * stats.smoothed_rtt, 1e3 * stats.min_rtt,
-                    static_cast<unsigned long long>(stats.datagrams_sent[2]),
-                    static_cast<unsigned long long>(stats.datagrams_dropped[2]),
-                    static_cast<unsigned long long>(stats.datagrams_lost),static_cast<unsigned long long>(stats.bytes_received));
-        std::fflush(stdout);
+        tell(told, host.value()->stats(at_host.connections[0]));
         told += 0.2;
       }
       if (steady_now_ns() >= due) {
@@ -177,8 +183,8 @@ struct Viewer : Quiet {
   std::map<std::size_t, std::uint64_t> pieces_in_second;
 };
 
-/// Snapshots of 25 datagrams at 60 Hz and states at 250 Hz come down, with no snapshots for half a second first
-/// and three in the middle: what a link's measure of itself must outlive.
+/// Snapshots of 25 datagrams at 60 Hz and states at 250 Hz come down, with no snapshots for half a second
+/// first and three in the middle: what a link's measure of itself must outlive.
 void snapshots(const std::string& name, const Impairment& down, int runs, double seconds) {
   if (name.find(only_link) == std::string::npos) return;
   std::vector<double> mean, worst, age;
@@ -207,19 +213,14 @@ void snapshots(const std::string& name, const Impairment& down, int runs, double
       Bytes bytes(size);
       const std::int64_t now = steady_now_ns();
       std::memcpy(bytes.data(), &now, sizeof(now));
-      host.value()->send_datagram(at_host.connections[0], priority, std::make_shared<const Bytes>(std::move(bytes)));
+      host.value()->send_datagram(at_host.connections[0], priority,
+                                  std::make_shared<const Bytes>(std::move(bytes)));
     };
     double told = 1.0;
     while (elapsed() < seconds) {
       const std::int64_t now = steady_now_ns();
       if (trace && elapsed() > told) {
-        const ConnectionStats stats = host.value()->stats(at_host.connections[0]);
-        std::printf("    %2.0f s  window %7.0f kB  in flight %7.1f kB  rate %7.1f kB/s  rtt %5.1f ms (min %.1f)  sent %llu lost %llu\n", told,
-                    1e-3 * static_cast<double>(stats.window), 1e-3 * static_cast<double>(stats.in_flight),
-                    1e-3 * stats.delivery_rate, 1e3 * stats.smoothed_rtt, 1e3 * stats.min_rtt,
-                    static_cast<unsigned long long>(stats.datagrams_sent[2]),
-                    static_cast<unsigned long long>(stats.datagrams_lost));
-        std::fflush(stdout);
+        tell(told, host.value()->stats(at_host.connections[0]));
         told += 1.0;
       }
       if (now >= picture_due) {
@@ -385,7 +386,7 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"poses", "snapshots", "loopback", "fanout"}));
   app.add_option("--runs", runs, "how often each link of `snapshots` is tried")->check(CLI::Range(1, 1000));
   app.add_option("--link", only_link, "of `snapshots`, only links with this in their name");
-  app.add_flag("--trace", trace, "in `snapshots`, also says every second how the link fares");
+  app.add_flag("--trace", trace, "also says how each link fares as it goes (`poses`, `snapshots`)");
   CLI11_PARSE(app, argc, argv);
   if (!file.empty()) {
     csv.open(file);

@@ -245,5 +245,14 @@ TEST(Limits, HoldForConnectionsAndForOneSite) {
   ASSERT_TRUE(run_until(ends, [&] { return !late.connected.empty(); }));
 }
 
+TEST(ProbeStream, IsNoWayToKeepAHostBusy) {
+  Pair pair;
+  ASSERT_TRUE(pair.establish());
+  ASSERT_TRUE(pair.peer->send_stream(pair.at_peer(), quic::kProbeStream, Bytes(200 << 10, 0), false));
+  ASSERT_TRUE(pair.run([&] { return !pair.host_events.closed.empty(); }));
+  EXPECT_EQ(pair.host_events.reasons[0].text, "the other side sends more probes than packets");
+  EXPECT_TRUE(pair.host_events.streams.empty()) << "nobody reads them";
+}
+
 }  // namespace
 }  // namespace slosh::testing

@@ -1,0 +1,144 @@
+// How datagrams keep flowing: over lost acknowledgements, on full links, at a pace that follows the link.
+#include <gtest/gtest.h>
+
+#include "net/impair/relay.h"
+#include "net/quic/pace.h"
+#include "net/quic/snapshot_room.h"
+#include "tests/net/quic/ends.h"
+
+namespace slosh::testing {
+namespace {
+
+using quic::PaceGain;
+using quic::PathFigures;
+using quic::SnapshotRoom;
+
+/// Sends `priority` from one end until its window is full while nothing comes back, and then lets everything
+/// through again. The acknowledgements that were lost are not repeated by themselves: the sender must ask.
+void blackout(bool from_host) {
+  Pair pair;
+  auto relay = Relay::start({"127.0.0.1:0", pair.host->local_address(), {}, {}, 1});
+  ASSERT_TRUE(relay);
+  pair.connect({relay.value()->address()});
+  ASSERT_TRUE(pair.run([&] { return pair.connected(); }));
+  run_for({pair.host.get(), pair.peer.get()}, 0.1);
+  Endpoint& sender = from_host ? *pair.host : *pair.peer;
+  const ConnectionId connection = from_host ? pair.at_host() : pair.at_peer();
+  const auto& received = from_host ? pair.peer_events.datagrams : pair.host_events.datagrams;
+  Impairment silent;
+  silent.loss = 1.0;
+  if (from_host)
+    relay.value()->set(silent, {});
+  else
+    relay.value()->set({}, silent);
+  const auto full = [&] {
+    const ConnectionStats stats = sender.stats(connection);
+    return stats.in_flight + 1200 > stats.window;
+  };
+  ASSERT_TRUE(pair.run([&] {
+    for (int i = 0; i < 8; ++i) sender.send_datagram(connection, Priority::kState, shared(Bytes(1100, 2)));
+    return full();
+  })) << "the window never filled";
+  run_for({pair.host.get(), pair.peer.get()}, 0.3);
+  relay.value()->set({}, {});
+  const std::size_t before = received.size();
+  EXPECT_TRUE(pair.run(
+      [&] {
+        sender.send_datagram(connection, Priority::kState, shared(Bytes(1100, 2)));
+        return received.size() > before + 300;
+      },
+      8.0))
+      << "stood still: " << received.size() - before << " came";
+}
+
+TEST(Blackout, OfAcknowledgementsDoesNotStopAHostForGood) {
+  blackout(true);
+}
+
+TEST(Blackout, OfAcknowledgementsDoesNotStopAPeerForGood) {
+  blackout(false);
+}
+
+TEST(PosesPastAStream, DoNotWaitForItsFlowControl) {
+  Pair pair;
+  ASSERT_TRUE(pair.establish());
+  // The host takes 256 kB at a time; more than that waits on the stream, whatever the window says.
+  const std::int64_t stream = pair.peer->open_stream(pair.at_peer(), true);
+  ASSERT_TRUE(pair.peer->send_stream(pair.at_peer(), stream, Bytes(900 << 10, 7), false));
+  pair.peer->run_once(0);
+  for (int i = 0; i < 200; ++i) {
+    pair.peer->send_datagram(pair.at_peer(), Priority::kPose, shared(Bytes(100, 1)));
+    pair.peer->run_once(steady_now_ns() + 200'000);
+    pair.host->run_once(0);
+  }
+  EXPECT_TRUE(pair.run([&] { return pair.host_events.datagrams.size() >= 200; }));
+  EXPECT_EQ(pair.peer->stats(pair.at_peer()).datagrams_dropped[0], 0u);
+}
+
+PathFigures path(double rtt, double shortest, double rate = 1e6) {
+  PathFigures figures;
+  figures.smoothed_rtt = figures.latest_rtt = rtt;
+  figures.min_rtt = shortest;
+  figures.delivery_rate = rate;
+  return figures;
+}
+
+TEST(PaceGain, RisesWhileSomethingWaitsAndTheLinkHasRoom) {
+  PaceGain gain;
+  std::int64_t now = 1;
+  for (int round = 0; round < 3; ++round) gain.note(path(0.04, 0.04), true, 0, 0, now += 41'000'000);
+  EXPECT_NEAR(gain.factor(), 1.25 * 1.25 * 1.25, 1e-9);
+  for (int round = 0; round < 50; ++round) gain.note(path(0.041, 0.04), true, 0, 0, now += 41'000'000);
+  EXPECT_EQ(gain.factor(), PaceGain::kMost);
+  gain.note(path(0.041, 0.04), false, 0, 0, now += 41'000'000);
+  EXPECT_EQ(gain.factor(), PaceGain::kMost) << "nothing waited: nothing was learnt";
+}
+
+TEST(PaceGain, FallsBackWhenQueuesGrowOrMuchIsLost) {
+  for (const bool lossy : {false, true}) {
+    PaceGain gain;
+    std::int64_t now = 1;
+    std::uint64_t sent = 0, lost = 0;
+    for (int round = 0; round < 9; ++round)
+      gain.note(path(0.04, 0.04), true, sent += 50, lost, now += 41'000'000);
+    ASSERT_EQ(gain.factor(), PaceGain::kMost);
+    for (int round = 0; round < 9; ++round)
+      gain.note(path(lossy ? 0.04 : 0.08, 0.04), true, sent += 50, lost += lossy ? 10 : 0, now += 81'000'000);
+    EXPECT_EQ(gain.factor(), 1.0);
+  }
+}
+
+TEST(PaceGain, TakesLittleLossForNoise) {
+  PaceGain gain;
+  std::int64_t now = 1;
+  std::uint64_t sent = 0, lost = 0;
+  for (int round = 0; round < 9; ++round)
+    gain.note(path(0.04, 0.04), true, sent += 50, lost += 5, now += 41'000'000);
+  EXPECT_EQ(gain.factor(), PaceGain::kMost);
+}
+
+TEST(PaceGain, ActsOnceARoundTrip) {
+  PaceGain gain;
+  for (std::int64_t now = 1; now < 39'000'000; now += 100'000) gain.note(path(0.04, 0.04), true, 0, 0, now);
+  EXPECT_LE(gain.factor(), 1.25);
+}
+
+TEST(SnapshotRoom, IsALittleMoreThanWhatFillsTheWay) {
+  SnapshotRoom room;
+  EXPECT_EQ(room.limit(PathFigures{}, 1), SIZE_MAX) << "nothing is known yet";
+  const std::size_t limit = room.limit(path(0.04, 0.04), 2);
+  EXPECT_GT(limit, 40'000u);  // 1 MB/s × 40 ms
+  EXPECT_LT(limit, 2 * 40'000u);
+  EXPECT_EQ(room.limit(path(0.2, 0.04), 3), limit) << "a queue is no longer way";
+}
+
+TEST(SnapshotRoom, FindsOutThatTheWayGotLonger) {
+  SnapshotRoom room;
+  const std::size_t before = room.limit(path(0.02, 0.02), 1);
+  std::int64_t now = 1;
+  for (int i = 0; i < 140; ++i) room.limit(path(0.1, 0.02), now += 100'000'000);
+  EXPECT_GT(room.limit(path(0.1, 0.02), now), 3 * before);
+}
+
+}  // namespace
+}  // namespace slosh::testing
