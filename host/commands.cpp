@@ -113,6 +113,7 @@ void Host::stand_still() {
     run_commands();
     tell_published();
   }
+  gate_.stood_still();
 }
 
 }  // namespace slosh

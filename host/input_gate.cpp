@@ -44,7 +44,8 @@ PoseFault InputGate::check(const PoseMessage& message, const Hand& hand) const {
       glm::length(message.twist.angular) > kHandleAngularSpeed) {
     return PoseFault::kTooFast;
   }
-  if (hand.has_good && !hand.anew && hand.good.engaged && message.engaged) {
+  const bool same_hand = hand.has_good && !hand.anew && hand.good.hold == message.hold;
+  if (same_hand && hand.good.engaged && message.engaged) {
     // The longer the last good pose is ago, the farther the hand may honestly be: a jump is not refused for
     // ever.
     const double elapsed = std::max(to_seconds(message.stamp_ns - hand.good.stamp_ns), 0.001);
@@ -77,9 +78,10 @@ bool InputGate::accept(const PoseMessage& message, std::int64_t clock_ns) {
   } else {
     hand.lost_scale = 0.0;
   }
-  // Where the hand is after a reset is where it was before; the body is elsewhere.
-  if (hand.anew) hand.engagement = Engagement{};
-  hand.anew = false;
+  // Where the hand is after a reset is where it was before; the body is elsewhere. After a silence, or when
+  // it is another hand, it is the other way round.
+  if (hand.anew || hand.silent || hand.good.hold != message.hold) hand.engagement = Engagement{};
+  hand.anew = hand.silent = false;
   hand.good = message;
   hand.good.pose.orientation = glm::normalize(message.pose.orientation);
   hand.has_good = true;
@@ -105,6 +107,10 @@ void InputGate::reset(const BodySnapshot& now, std::int64_t clock_ns) {
   }
 }
 
+void InputGate::stood_still() {
+  for (Hand& hand : hands_) hand.engagement = Engagement{};
+}
+
 // The coupling weakens where the hand was last, at rest.
 void InputGate::fade(Hand& hand, HandleInput& input, double time) {
   const double left = 1.0 - (time - hand.lost_at) / kLostFade;
@@ -124,17 +130,14 @@ void InputGate::fill_input(Hand& hand, std::size_t grip, const BodySnapshot& now
     hand.good.pose = input.pose;
     hand.good.twist = Twist{};
   }
-  input.twist = hand.good.twist;
   input.engaged = hand.has_good && hand.good.engaged;
-  double force = 0.0;
-  double torque = 0.0;
-  if (input.engaged && !hand.engagement.engaged() && grip < now.grips.size()) {
-    const GripState& held = now.grips[grip];
-    const Wrench full = coupling_wrench_on_hand(hand.gains, input.pose, input.twist, held.pose, held.twist);
-    force = glm::length(full.force - held.on_hand.force);
-    torque = glm::length(full.torque - held.on_hand.torque);
-  }
-  input.scale = hand.engagement.update(input.engaged, now.time, force, torque);
+  const GripState nowhere{input.pose, hand.good.twist, input.pose, {}};
+  const Engagement::Held held =
+      hand.engagement.update(input.engaged, now.time, input.pose, hand.good.twist, hand.gains,
+                             grip < now.grips.size() ? now.grips[grip] : nowhere);
+  input.pose = held.pose;
+  input.twist = held.twist;
+  input.scale = input.engaged ? 1.0 : 0.0;
   if (input.engaged) hand.last_held = input.pose;
   if (!input.engaged && hand.lost_scale > 0.0) fade(hand, input, now.time);
   hand.scale = input.scale;
@@ -144,7 +147,10 @@ std::span<const HandleInput> InputGate::take(Channel& channel, const BodySnapsho
                                              std::int64_t clock_ns) {
   time_ = now.time;
   for (std::size_t i = 0; i < hands_.size(); ++i) {
-    if (i < channel.devices() && channel.pose(i).update()) accept(channel.pose(i).front(), clock_ns);
+    if (i < channel.devices() && channel.pose(i).update())
+      accept(channel.pose(i).front(), clock_ns);
+    else if (clock_ns - hands_[i].received_ns > to_nanoseconds(kHoldAnew))
+      hands_[i].silent = true;
     fill_input(hands_[i], i, now, clock_ns);
   }
   return inputs_;

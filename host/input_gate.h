@@ -32,6 +32,9 @@ constexpr double kLostFade = 0.4;
 /// s of wall time without a message after which a hand counts as standing still: a twist as old as that would
 /// drag the body along.
 constexpr double kStaleTwist = 0.05;
+/// A hand that was not heard for kHoldAnew s of wall time (net/engagement.h) takes hold anew when it is heard
+/// again, and so does every hand after a pause.
+
 /// s of wall time after a reset in which messages of the run before may still come.
 constexpr double kOldRun = 1.0;
 
@@ -52,6 +55,9 @@ class InputGate {
   /// The world went back to its start, as `now` has it: hands that hold on hold there until they report anew.
   void reset(const BodySnapshot& now, std::int64_t clock_ns);
 
+  /// The world stood still for a while, and hands may have moved: who holds on takes hold anew.
+  void stood_still();
+
   /// The newest message of each grip that was used; valid until the next call of anything here.
   std::span<const PoseMessage> poses() const { return used_; }
 
@@ -66,6 +72,7 @@ class InputGate {
     bool has_good = false;
     std::int64_t received_ns = 0;  // when `good` came
     bool anew = false;             // the next message is the first since a reset
+    bool silent = false;           // none came for long
     double scale = 0.0;            // of the last step
     double lost_at = 0.0;          // simulated s
     double lost_scale = 0.0;       // what is left to fade; 0 = nothing

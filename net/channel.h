@@ -20,7 +20,8 @@ struct PoseMessage {
   Pose pose;                   ///< handle, world
   Twist twist;                 ///< handle, world
   bool engaged = false;
-  bool lost = false;  ///< not engaged because contact was lost: the host lets go gently
+  bool lost = false;         ///< not engaged because contact was lost: the host lets go gently
+  std::uint32_t hold = 0;    ///< another one than in the message before: another hand, which may be anywhere
   std::uint64_t number = 0;  ///< of the sender's samples, rising; comes back in BodyMessage::pose_numbers
 };
 

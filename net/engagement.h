@@ -1,42 +1,130 @@
-// How a grip's coupling is let in when a hand takes hold. Both ends of a channel run the same rule on the
-// same times, so the force a hand feels and the force the body gets ramp together.
+// How a hand takes hold of a grip, wherever the hand is: for the first time, back from a lost connection,
+// after a pause, a reset or a host's crash. Both ends of a channel run the same rule, so the force that a
+// hand feels and the force that the body gets go together.
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+
+#include "sim/math/coupling.h"
+#include "sim/snapshot.h"
 
 namespace slosh {
 
-/// Time over which a coupling that would start with a jolt is let in, s of simulated time.
-constexpr double kEngageRamp = 0.5;
-/// A coupling that changes the force on the body by less than this when the hand takes hold starts at full
-/// strength: there is nothing to ramp, and a body that was settled into a hand before the run does not sag.
+/// A coupling whose force differs from the one that acts already by less than this when the hand takes hold
+/// is held as it is: there is nothing to let go of, and a body that was settled into a hand before the run
+/// neither sags nor creeps.
 constexpr double kQuietForce = 2.0;    ///< N
 constexpr double kQuietTorque = 0.05;  ///< N·m
+/// The distance between a hand and where it holds is given up at no more than this speed.
+constexpr double kLetInSpeed = 0.15;  ///< m/s
+constexpr double kLetInTurn = 1.0;    ///< rad/s
+/// s over which that speed rises from 0 ...
+constexpr double kLetInRise = 0.5;
+/// ... and the time constant, s, with which the last of the distance goes.
+constexpr double kLetInEnd = 0.25;
+/// s of silence (of a hand, or of body states) after which holding on counts as taking hold anew: the hand
+/// may be anywhere by then.
+constexpr double kHoldAnew = 0.1;
 
-/// The state of one grip's ramp. Pure; owned by one thread.
+/// The state of one grip's hold. The hand takes hold where the force goes on as it is: with the pose that it
+/// has, less an offset. Then the offset is given up slowly, until the hand holds where it is. So taking hold
+/// never pulls harder than what moving the body at kLetInSpeed takes, however far away the hand is. Pure;
+/// owned by one thread; no allocation.
 class Engagement {
  public:
-  /// Call once a tick. `time` in simulated s; `force` (N) and `torque` (N·m) are the jolt: by how much
-  /// the coupling at full strength differs from the one that acts already (GripState::on_hand, 0 when none).
-  /// Returns the coupling's scale, 0–1; 0 while not engaged.
-  double update(bool engaged, double time, double force, double torque) {
+  /// What the coupling uses in place of the hand.
+  struct Held {
+    Pose pose;
+    Twist twist;
+  };
+
+  /// Call once a tick. `time` in simulated s, never falling; `hand`, `twist`: the hand as it is; `grip` as it
+  /// is, with the force that acts on the hand already (0 when none does). While not engaged the hand itself
+  /// comes back.
+  Held update(bool engaged, double time, const Pose& hand, const Twist& twist, const CouplingGains& gains,
+              const GripState& grip) {
     if (!engaged) {
-      engaged_ = false;
-      return 0.0;
+      *this = Engagement{};
+      return {hand, twist};
     }
     if (!engaged_) {
-      engaged_ = true;
-      const bool quiet = force <= kQuietForce && torque <= kQuietTorque;
-      start_ = quiet ? time - kEngageRamp : time;
+      take_hold(time, hand, twist, gains, grip);
+    } else {
+      let_in(time);
     }
-    return std::clamp((time - start_) / kEngageRamp, 0.0, 1.0);
+    if (offset_ == glm::dvec3(0.0) && turn_ == glm::dvec3(0.0)) return {hand, twist};
+    return {{hand.position - offset_, rotate_by(hand.orientation, -turn_)},
+            {twist.linear + speed_, twist.angular + turning_}};
   }
 
   bool engaged() const { return engaged_; }
+  /// Share of the force that the hand is given, 0–1, rising over kLetInRise where the hold was not a quiet
+  /// one: the body goes on being carried as it was, but a hand that takes over a weight must not be struck by
+  /// it.
+  double felt() const {
+    return !engaged_ ? 0.0 : quiet_ ? 1.0 : std::clamp((last_ - since_) / kLetInRise, 0.0, 1.0);
+  }
+  /// m and rad by which the hand is ahead of where it holds.
+  double distance() const { return glm::length(offset_); }
+  double angle() const { return glm::length(turn_); }
 
  private:
+  void take_hold(double time, const Pose& hand, const Twist& twist, const CouplingGains& gains,
+                 const GripState& grip) {
+    engaged_ = quiet_ = true;
+    since_ = last_ = time;
+    offset_ = turn_ = speed_ = turning_ = glm::dvec3(0.0);
+    const Wrench full = coupling_wrench_on_hand(gains, hand, twist, grip.pose, grip.twist);
+    const glm::dvec3 jolt = full.force - grip.on_hand.force;
+    const glm::dvec3 jerk = full.torque - grip.on_hand.torque;
+    if (!std::isfinite(glm::length(jolt) + glm::length(jerk))) {
+      engaged_ = false;  // a body that is out of this world: tried again with its next state
+      return;
+    }
+    if (glm::length(jolt) <= kQuietForce && glm::length(jerk) <= kQuietTorque) return;
+    quiet_ = false;
+    if (gains.stiffness > 0.0) offset_ = -jolt / gains.stiffness;
+    if (gains.rotational_stiffness <= 0.0) return;
+    // Where the spring of turns gives the torque that acts already. Beyond half a turn it would turn round.
+    const glm::dvec3 damped = gains.rotational_damping * (grip.twist.angular - twist.angular);
+    glm::dvec3 strain = (grip.on_hand.torque - damped) / gains.rotational_stiffness;
+    const double angle = glm::length(strain);
+    if (angle > kMostStrain) strain *= kMostStrain / angle;
+    turn_ = rotation_between(rotate_by(grip.pose.orientation, -strain), hand.orientation);
+  }
+
+  void let_in(double time) {
+    const double elapsed = std::clamp(time - last_, 0.0, kMostElapsed);
+    last_ = std::max(last_, time);
+    if (elapsed <= 0.0) return;
+    const double pace = std::clamp((last_ - since_) / kLetInRise, 0.0, 1.0);
+    speed_ = give_up(offset_, pace * kLetInSpeed, elapsed);
+    turning_ = give_up(turn_, pace * kLetInTurn, elapsed);
+  }
+
+  /// Shortens `left`; returns the velocity of that.
+  static glm::dvec3 give_up(glm::dvec3& left, double most, double elapsed) {
+    const double length = glm::length(left);
+    if (length == 0.0) return glm::dvec3(0.0);
+    const double step = std::min(most * elapsed, length * (1.0 - std::exp(-elapsed / kLetInEnd)));
+    const glm::dvec3 direction = left / length;
+    left = length - step < kNothing ? glm::dvec3(0.0) : left * (1.0 - step / length);
+    return direction * (step / elapsed);
+  }
+
+  static constexpr double kMostStrain = 2.5;   // rad
+  static constexpr double kMostElapsed = 0.1;  // s: a world that took a leap does not drag the body after it
+  static constexpr double kNothing = 1e-6;     // m, rad
+
   bool engaged_ = false;
-  double start_ = 0.0;
+  bool quiet_ = true;
+  double since_ = 0.0;
+  double last_ = 0.0;
+  glm::dvec3 offset_{0.0};   // hand less what it holds with, m
+  glm::dvec3 turn_{0.0};     // the same as a rotation vector, rad
+  glm::dvec3 speed_{0.0};    // of what it holds with, towards the hand, m/s
+  glm::dvec3 turning_{0.0};  // rad/s
 };
 
 }  // namespace slosh

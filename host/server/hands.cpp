@@ -30,14 +30,16 @@ HandTable::HandTable(const Scene& scene, Channel& channel) : channel_(channel) {
 
 void HandTable::publish(std::size_t grip, const PoseMessage& message) {
   grips_[grip].last = message.pose;
-  channel_.pose(grip).back() = message;
+  PoseMessage& up = channel_.pose(grip).back();
+  up = message;
+  up.hold = grips_[grip].hold;
   channel_.pose(grip).publish();
 }
 
 void HandTable::put_on_stand(std::size_t grip, const Pose& pose, std::int64_t now_ns) {
   GripHand& hand = grips_[grip];
   hand.stand = true;
-  hand.stand_at = pose;
+  hand.hold += 1;
   PoseMessage message;
   message.device = static_cast<std::uint32_t>(grip);
   message.stamp_ns = now_ns;
@@ -71,7 +73,7 @@ void HandTable::taken(std::size_t grip, std::int64_t now_ns) {
   hand.newest = hand.first = hand.seen = 0;
   hand.delivery = {};
   hand.heard_ns = now_ns;
-  hand.glide_since_ns = 0;
+  if (!hand.stand) hand.hold += 1;
 }
 
 void HandTable::let_go(std::size_t grip, std::int64_t now_ns, bool also_stand) {
@@ -138,18 +140,7 @@ bool HandTable::sample(const wire::PoseSample& sample, std::int64_t now_ns) {
   if (hand.stand) {
     if (!sample.engaged) return true;
     hand.stand = false;
-    hand.glide_since_ns = now_ns;
-  }
-  if (hand.glide_since_ns != 0) {
-    const double share = to_seconds(now_ns - hand.glide_since_ns) / kHandOver;
-    if (share >= 1.0 || !sample.engaged) {
-      hand.glide_since_ns = 0;
-    } else {
-      message.pose.position = glm::mix(hand.stand_at.position, sample.pose.position, share);
-      message.pose.orientation = glm::slerp(hand.stand_at.orientation, sample.pose.orientation, share);
-      message.twist.linear *= share;
-      message.twist.angular *= share;
-    }
+    hand.hold += 1;
   }
   publish(sample.grip, message);
   return true;

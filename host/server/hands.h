@@ -11,9 +11,6 @@
 
 namespace slosh {
 
-/// s in which a grip glides from the stand into the hand that took it.
-constexpr double kHandOver = 0.5;
-
 /// How a grip's samples arrived. Numbers, not repeats, are counted.
 struct Delivery {
   std::uint64_t received = 0;  ///< distinct samples that came
@@ -32,7 +29,8 @@ class HandTable {
 
   /// Puts every grip without a holder on its stand: at the start and after a reset.
   void stand_all(std::int64_t now_ns);
-  /// A new holder, whose samples number anew. The stand holds on until its first engaged sample.
+  /// A new holder, whose samples number anew. The stand holds on until its first engaged sample; then the
+  /// world is told that it is another hand (PoseMessage::hold), and lets it in as net/engagement.h has it.
   void taken(std::size_t grip, std::int64_t now_ns);
   /// Not held any more, or contact with the holder is lost: the host lets go gently. A stand stays, unless
   /// `also_stand`.
@@ -57,12 +55,11 @@ class HandTable {
   static constexpr std::size_t kRemembered = 2048;  // stamps: 4 s at 500 a second
   struct GripHand {
     Pose start;  // as the scene has it
-    Pose stand_at;
     bool stand = false;
     bool held = false;
-    std::int64_t glide_since_ns = 0;  // 0 = no longer gliding
-    std::uint64_t base = 0;           // added to the holder's numbers, so that they rise over all holders
-    std::uint64_t newest = 0;         // holder's number; 0 = none yet
+    std::uint32_t hold = 0;    // PoseMessage::hold
+    std::uint64_t base = 0;    // added to the holder's numbers, so that they rise over all holders
+    std::uint64_t newest = 0;  // holder's number; 0 = none yet
     std::uint64_t first = 0;
     std::uint64_t seen = 0;            // bit i: newest − i came
     std::int64_t clock_offset_ns = 0;  // host's clock − holder's, by the quickest sample

@@ -90,7 +90,11 @@ double Servo::freshness_now(const BodyMessage& message, double age) noexcept {
   // stopped.
   const bool stopped = message.rate <= 0.0 && message.bodies.tick > 0;
   const double believed = stopped ? 0.0 : message.bodies.tick == 0 ? 1.0 : freshness(age, interval);
-  // What comes back after a gap comes back as gently as it went.
+  // What comes back after a gap comes back as gently as it went, and where it is then.
+  if (believed >= 1.0 && hold_anew_) {
+    for (Hand& hand : hands_) hand.engagement = Engagement{};
+  }
+  hold_anew_ = believed < 1.0;
   fresh_ = std::min(believed, fresh_ + options_.period / kFadeStale);
   return fresh_;
 }
@@ -127,12 +131,12 @@ void Servo::tick(std::int64_t now_ns) noexcept {
 
     Wrench wanted;
     if (i < bodies.grips.size()) {
-      const GripState& grip = bodies.grips[i];
-      const Pose proxy = extrapolate(grip.pose, grip.twist, ahead);
-      const Wrench full = coupling_wrench_on_hand(hand.gains, good.pose, good.twist, proxy, grip.twist);
-      const double jolt = glm::length(full.force - grip.on_hand.force);
-      const double twist = glm::length(full.torque - grip.on_hand.torque);
-      const double scale = hand.engagement.update(good.engaged, time_, jolt, twist) * fresh;
+      GripState proxy = bodies.grips[i];
+      proxy.pose = extrapolate(proxy.pose, proxy.twist, ahead);
+      const Engagement::Held held =
+          hand.engagement.update(good.engaged, time_, good.pose, good.twist, hand.gains, proxy);
+      const Wrench full = coupling_wrench_on_hand(hand.gains, held.pose, held.twist, proxy.pose, proxy.twist);
+      const double scale = hand.engagement.felt() * fresh;
       wanted = {scale * full.force, scale * full.torque};
     }
     const ForceLimiter::Outcome outcome = hand.limiter.limit(wanted, options_.period);

@@ -31,8 +31,9 @@ struct ServoOptions {
   std::size_t sample_capacity = 1 << 15;
 };
 
-/// How long a body state that no longer comes is believed, s: then the force fades out over kFade.
-constexpr double kHoldStale = 0.1;
+/// How long a body state that no longer comes is believed, s: then the force fades out over kFadeStale. Who
+/// was not believed for a moment takes hold anew with the next state (net/engagement.h).
+constexpr double kHoldStale = kHoldAnew;
 constexpr double kFadeStale = 0.3;
 
 /// Share of the coupling that is felt when the newest body state is `age` s old and one comes every
@@ -103,6 +104,7 @@ class Servo {
   double time_ = 0.0;
   double sample_offset_ = 0.0;  // s that samples' time is ahead of the world's, after resets
   double fresh_ = 1.0;
+  bool hold_anew_ = false;  // states had stopped
   double next_sample_ = 0.0;
   Ring<ServoSample> samples_;
   std::atomic<std::uint64_t> lost_{0};

@@ -67,6 +67,8 @@ TEST(InputGate, KeepsTheLastGoodPoseStandingStill) {
   Channel channel(1, BodyMessage{}, 1 << 20);
   BodySnapshot now;
   now.grips.resize(1);
+  now.grips[0].pose.position.x = 0.25;  // the grip moves with the hand
+  now.grips[0].twist.linear.x = 1.0;
 
   PoseMessage m = message(0, 0.25);
   m.twist.linear.x = 1.0;
@@ -111,6 +113,7 @@ TEST(InputGate, EachDeviceKeepsItsPlace) {
   Channel channel(3, BodyMessage{}, 1 << 20);
   BodySnapshot now;
   now.grips.resize(3);
+  now.grips[2].pose.position.x = 0.5;
   channel.pose(2).back() = message(2, 0.5);
   channel.pose(2).publish();
   const std::span<const HandleInput> input = gate.take(channel, now);
@@ -122,22 +125,86 @@ TEST(InputGate, EachDeviceKeepsItsPlace) {
   EXPECT_EQ(input[2].pose.position.x, 0.5);
 }
 
-TEST(InputGate, RampsAGripThatIsTakenFarFromTheBody) {
+/// What the coupling of a step pulls at the hand with.
+double pull(const HandleInput& input, const GripState& grip, const Grip& of) {
+  const CouplingGains gains{of.stiffness, of.damping, of.rotational_stiffness, of.rotational_damping};
+  return input.scale *
+         glm::length(coupling_wrench_on_hand(gains, input.pose, input.twist, grip.pose, grip.twist).force);
+}
+
+TEST(InputGate, AGripThatIsTakenFarFromTheBodyIsLetInSlowly) {
   const Scene scene = scene_with_grips(2);
   InputGate gate(scene);
   Channel channel(2, BodyMessage{}, 1 << 20);
-  BodySnapshot now;
-  now.grips.resize(2);
-  channel.pose(0).back() = message(0, 0.0);  // on the grip
+  BodySnapshot now = snapshot_with_grips(2);
+  channel.pose(0).back() = message(0, 0.001);  // on the grip
   channel.pose(0).publish();
-  channel.pose(1).back() = message(1, 0.10);  // 100 N away from it
+  channel.pose(1).back() = message(1, 0.30);  // 300 N away from it
   channel.pose(1).publish();
   std::span<const HandleInput> input = gate.take(channel, now);
-  EXPECT_EQ(input[0].scale, 1.0);
-  EXPECT_EQ(input[1].scale, 0.0);
-  now.time = 0.25;
-  input = gate.take(channel, now);
-  EXPECT_NEAR(input[1].scale, 0.5, 1e-12);
+  EXPECT_EQ(input[0].pose.position.x, 0.001);
+  EXPECT_NEAR(pull(input[1], now.grips[1], scene.grips[1]), 0.0, 1e-9);
+  double before = input[1].pose.position.x;
+  for (int i = 1; i < 10000; ++i) {
+    now.time = 0.001 * i;
+    input = gate.take(channel, now);
+    EXPECT_LE(input[1].pose.position.x - before, 0.001 * kLetInSpeed + 1e-9);
+    before = input[1].pose.position.x;
+  }
+  EXPECT_EQ(before, 0.30);
+}
+
+/// A hand that holds quietly, then is elsewhere: 0.2 m and 200 N away.
+struct MovedHand {
+  Scene scene = scene_with_grips(1);
+  Channel channel{1, BodyMessage{}, 1000};
+  InputGate gate{scene};
+  BodySnapshot now = snapshot_with_grips(1);
+  std::int64_t clock = 1'000'000'000;
+
+  MovedHand() {
+    say(0.0);
+    EXPECT_EQ(step(), 0.0);
+  }
+  void say(double x, std::uint32_t hold = 0) {
+    PoseMessage m = message(0, x, clock);
+    m.hold = hold;
+    channel.pose(0).back() = m;
+    channel.pose(0).publish();
+  }
+  double step() {
+    now.time += 0.001;
+    clock += 1'000'000;
+    return pull(gate.take(channel, now, clock)[0], now.grips[0], scene.grips[0]);
+  }
+};
+
+TEST(InputGate, AHandThatWasNotHeardForLongTakesHoldAnew) {
+  MovedHand hand;
+  for (int i = 0; i < 150; ++i) hand.step();
+  hand.say(0.2);
+  EXPECT_LT(hand.step(), 1.0);
+  EXPECT_TRUE(hand.gate.rejected() == 0);
+
+  MovedHand heard;
+  for (int i = 0; i < 30; ++i) heard.step();
+  heard.say(0.2);
+  EXPECT_NEAR(heard.step(), 200.0, 1.0) << "30 ms are a late datagram, and the hand has pulled";
+}
+
+TEST(InputGate, AfterAPauseAHandTakesHoldWhereItIs) {
+  MovedHand hand;
+  hand.clock += 5'000'000'000;
+  hand.say(0.2);
+  hand.gate.stood_still();
+  EXPECT_LT(hand.step(), 1.0);
+}
+
+TEST(InputGate, AnotherHandMayBeAnywhere) {
+  MovedHand hand;
+  hand.say(0.2, 1);
+  EXPECT_LT(hand.step(), 1.0);
+  EXPECT_EQ(hand.gate.rejected(), 0u);
 }
 
 TEST(InputGate, ABodyThatAlreadyHangsInTheHandIsNotLetDrop) {
@@ -150,7 +217,9 @@ TEST(InputGate, ABodyThatAlreadyHangsInTheHandIsNotLetDrop) {
   now.grips[0].on_hand.force.y = -13.0;   // and the coupling carries it already
   channel.pose(0).back() = message(0);
   channel.pose(0).publish();
-  EXPECT_EQ(gate.take(channel, now)[0].scale, 1.0);
+  const HandleInput input = gate.take(channel, now)[0];
+  EXPECT_EQ(input.scale, 1.0);
+  EXPECT_EQ(input.pose.position, glm::dvec3(0.0));
 }
 
 // A hand whose contact was lost lets go gently: where it was, at rest, ever weaker.
@@ -214,6 +283,8 @@ TEST(InputGate, AHandThatFallsSilentStandsStill) {
   m.twist.linear.x = 1.0;
   ASSERT_TRUE(gate.accept(m, 1'000'000'000));
   now.time = 0.005;
+  now.grips[0].pose.position.x = 0.105;  // the grip moves with the hand
+  now.grips[0].twist.linear.x = 1.0;
   HandleInput input = gate.take(channel, now, 1'049'000'000)[0];
   EXPECT_EQ(input.twist.linear.x, 1.0);
   EXPECT_NEAR(input.pose.position.x, 0.105, 1e-12);
@@ -240,7 +311,7 @@ TEST(InputGate, AfterAResetHandsHoldAtTheStartUntilTheyReportAnew) {
   gate.take(channel, now, 0);
   BodySnapshot start = snapshot_with_grips(1);
   start.grips[0].handle.position = {0.01, 0.0, 0.0};
-  start.grips[0].on_hand.force = {0.0, -10.0, 0.0};
+  start.grips[0].on_hand.force = {-10.0, 0.0, 0.0};
   gate.reset(start, 0);
   m.time = 5.01;
   EXPECT_FALSE(gate.accept(m, 1'000'000)) << "still of the run before";
@@ -253,7 +324,7 @@ TEST(InputGate, AfterAResetHandsHoldAtTheStartUntilTheyReportAnew) {
   EXPECT_TRUE(gate.accept(m, 2'000'000)) << "wherever the hand is";
   start.time = 0.002;
   input = gate.take(channel, start, 2'000'000)[0];
-  EXPECT_EQ(input.scale, 0.0) << "far from the body: it is let in anew";
+  EXPECT_LT(std::abs(input.pose.position.x), 0.02) << "far from the body: it is let in anew";
 }
 
 }  // namespace

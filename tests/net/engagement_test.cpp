@@ -2,34 +2,150 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace slosh {
 namespace {
 
-TEST(Engagement, AStretchedCouplingRampsInOverHalfASecond) {
-  Engagement e;
-  EXPECT_EQ(e.update(true, 10.0, 50.0, 0.0), 0.0);
-  EXPECT_NEAR(e.update(true, 10.25, 50.0, 0.0), 0.5, 1e-12);
-  EXPECT_EQ(e.update(true, 10.5, 50.0, 0.0), 1.0);
-  EXPECT_EQ(e.update(true, 99.0, 50.0, 0.0), 1.0);
+constexpr CouplingGains kGains{1000.0, 20.0, 10.0, 0.2};
+constexpr double kTick = 0.001;
+
+Pose at(double x) {
+  Pose pose;
+  pose.position.x = x;
+  return pose;
 }
 
-TEST(Engagement, ASlackCouplingStartsAtFullStrength) {
-  Engagement e;
-  EXPECT_EQ(e.update(true, 0.0, 0.0, 0.0), 1.0);
-  EXPECT_EQ(e.update(true, 0.001, 30.0, 0.0), 1.0) << "a load that comes later is no new engagement";
+/// The force on the hand at full strength.
+Wrench wrench_of(const Engagement::Held& held, const GripState& grip) {
+  return coupling_wrench_on_hand(kGains, held.pose, held.twist, grip.pose, grip.twist);
 }
 
-TEST(Engagement, ATwistedCouplingIsNotSlack) {
+TEST(Engagement, AHandFarFromTheGripTakesHoldWithoutAForce) {
   Engagement e;
-  EXPECT_EQ(e.update(true, 0.0, 0.0, 1.0), 0.0);
+  const GripState grip;
+  Pose hand = at(0.5);
+  hand.orientation = rotate_by(hand.orientation, {0.3, -1.2, 0.4});
+  const Wrench wrench = wrench_of(e.update(true, 10.0, hand, {}, kGains, grip), grip);
+  EXPECT_LT(glm::length(wrench.force), 1e-9);
+  EXPECT_LT(glm::length(wrench.torque), 1e-9);
+  EXPECT_NEAR(e.distance(), 0.5, 1e-12);
+  EXPECT_NEAR(e.angle(), glm::length(glm::dvec3(0.3, -1.2, 0.4)), 1e-9);
+  EXPECT_EQ(e.felt(), 0.0);
 }
 
-TEST(Engagement, LettingGoDropsTheForceAndTheNextHoldRampsAgain) {
+TEST(Engagement, TheForceGoesOnAsItWas) {
   Engagement e;
-  e.update(true, 0.0, 0.0, 0.0);
-  EXPECT_EQ(e.update(false, 1.0, 20.0, 0.0), 0.0);
-  EXPECT_EQ(e.update(true, 2.0, 20.0, 0.0), 0.0);
-  EXPECT_NEAR(e.update(true, 2.1, 20.0, 0.0), 0.2, 1e-12);
+  GripState grip;
+  grip.pose = at(-0.02);
+  grip.twist.linear = {0.0, -0.8, 0.0};
+  grip.twist.angular = {0.5, 0.0, 0.0};
+  grip.on_hand = {{3.0, -12.0, 1.0}, {0.2, 0.1, -0.3}};
+  Twist moving;
+  moving.linear = {0.4, 0.0, 0.0};
+  const Wrench wrench = wrench_of(e.update(true, 10.0, at(0.3), moving, kGains, grip), grip);
+  EXPECT_LT(glm::length(wrench.force - grip.on_hand.force), 1e-9);
+  EXPECT_LT(glm::length(wrench.torque - grip.on_hand.torque), 1e-9);
+}
+
+TEST(Engagement, TheDistanceIsGivenUpAtABoundedSpeedAndWholly) {
+  Engagement e;
+  const GripState grip;
+  const Pose hand = at(0.3);
+  double x = e.update(true, 0.0, hand, {}, kGains, grip).pose.position.x;
+  EXPECT_NEAR(x, 0.0, 1e-12);
+  double fastest = 0.0;
+  double told = 0.0;
+  double there = 0.0;
+  for (double t = kTick; t < 20.0; t += kTick) {
+    const Engagement::Held held = e.update(true, t, hand, {}, kGains, grip);
+    EXPECT_GE(held.pose.position.x, x);
+    const double speed = (held.pose.position.x - x) / kTick;
+    EXPECT_LE(speed, kLetInSpeed * std::min(1.0, t / kLetInRise) + 1e-3);
+    if (e.distance() > 0.0) {
+      EXPECT_NEAR(held.twist.linear.x, speed, 1e-6) << "the damper is told of it";
+    }
+    fastest = std::max(fastest, speed);
+    told = held.twist.linear.x;
+    x = held.pose.position.x;
+    if (there == 0.0 && e.distance() == 0.0) there = t;
+  }
+  EXPECT_NEAR(fastest, kLetInSpeed, 1e-3);
+  EXPECT_EQ(x, 0.3) << "in the end the hand holds where it is, to the bit";
+  EXPECT_EQ(told, 0.0);
+  EXPECT_GT(there, 0.3 / kLetInSpeed);
+  EXPECT_LT(there, 0.3 / kLetInSpeed + 5.0);
+  EXPECT_EQ(e.felt(), 1.0);
+}
+
+TEST(Engagement, ATurnIsGivenUpTheSameWay) {
+  Engagement e;
+  const GripState grip;
+  Pose hand;
+  hand.orientation = rotate_by(hand.orientation, {0.0, 3.0, 0.0});
+  double last = 3.0;
+  for (double t = 0.0; t < 12.0; t += kTick) {
+    e.update(true, t, hand, {}, kGains, grip);
+    EXPECT_LE((last - e.angle()) / kTick, kLetInTurn + 1e-3);
+    last = e.angle();
+  }
+  EXPECT_EQ(last, 0.0);
+}
+
+TEST(Engagement, WhereTheHandGoesMeanwhileTheHoldGoesToo) {
+  Engagement e;
+  const GripState grip;
+  e.update(true, 0.0, at(0.3), {}, kGains, grip);
+  Twist moving;
+  moving.linear.y = 1.0;
+  Pose hand = at(0.3);
+  hand.position.y = 0.001;
+  const Engagement::Held held = e.update(true, 0.001, hand, moving, kGains, grip);
+  EXPECT_NEAR(held.pose.position.y, 0.001, 1e-12);
+  EXPECT_NEAR(held.twist.linear.y, 1.0, 1e-12);
+}
+
+TEST(Engagement, AQuietHoldIsTheHandItself) {
+  Engagement e;
+  GripState grip;
+  grip.pose.position.y = -0.013;
+  grip.on_hand.force.y = -13.0;  // the coupling carries it already
+  const Engagement::Held held = e.update(true, 0.0, at(0.001), {}, kGains, grip);
+  EXPECT_EQ(held.pose.position, at(0.001).position);
+  EXPECT_EQ(e.felt(), 1.0);
+  EXPECT_EQ(e.update(true, 0.1, at(0.2), {}, kGains, grip).pose.position.x, 0.2)
+      << "what comes later is no new hold";
+}
+
+TEST(Engagement, LettingGoForgetsAndTheNextHoldBeginsAnew) {
+  Engagement e;
+  const GripState grip;
+  e.update(true, 0.0, at(0.2), {}, kGains, grip);
+  const Engagement::Held free = e.update(false, 1.0, at(0.7), {}, kGains, grip);
+  EXPECT_EQ(free.pose.position.x, 0.7);
+  EXPECT_EQ(e.felt(), 0.0);
+  EXPECT_EQ(wrench_of(e.update(true, 2.0, at(0.7), {}, kGains, grip), grip).force.x, 0.0);
+}
+
+TEST(Engagement, ABodyOutOfThisWorldIsHeldOnceItIsBack) {
+  Engagement e;
+  GripState grip;
+  grip.pose.position.x = std::numeric_limits<double>::quiet_NaN();
+  e.update(true, 0.0, at(0.2), {}, kGains, grip);
+  EXPECT_FALSE(e.engaged());
+  grip.pose.position.x = 0.0;
+  EXPECT_LT(glm::length(wrench_of(e.update(true, 0.1, at(0.2), {}, kGains, grip), grip).force), 1e-9);
+}
+
+TEST(Engagement, AGripWithoutASpringForTurnsHasNone) {
+  Engagement e;
+  CouplingGains gains = kGains;
+  gains.rotational_stiffness = gains.rotational_damping = 0.0;
+  Pose hand = at(0.1);
+  hand.orientation = rotate_by(hand.orientation, {0.0, 2.0, 0.0});
+  const Engagement::Held held = e.update(true, 0.0, hand, {}, gains, {});
+  EXPECT_EQ(held.pose.orientation, rotate_by(hand.orientation, glm::dvec3(0.0)));
+  EXPECT_EQ(e.angle(), 0.0);
 }
 
 }  // namespace

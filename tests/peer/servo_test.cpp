@@ -105,18 +105,44 @@ TEST(Servo, ABodyStateThatIsNotFiniteGivesNoForce) {
   EXPECT_NE(kit.servo->status() & kStatusNonFinite, 0u);
 }
 
-TEST(Servo, TakingHoldFarFromTheGripRampsIn) {
+TEST(Servo, TakingHoldFarFromTheGripPullsAtABoundedPace) {
   ServoKit kit;
   kit.device->next.pose = at(0.1);
   kit.publish(0.0);
   kit.tick(0.0);
   EXPECT_EQ(kit.device->last.force.x, 0.0);
-  kit.publish(0.25);
-  kit.tick(0.25);
-  EXPECT_NEAR(kit.device->last.force.x, -50.0, 1e-6);
-  kit.publish(0.6);
-  kit.tick(0.6);
-  EXPECT_NEAR(kit.device->last.force.x, -100.0, 1e-6);
+  double last = 0.0;
+  for (int i = 1; i <= 6000; ++i) {
+    kit.publish(0.001 * i);
+    kit.tick(0.001 * i);
+    // The spring's end goes at no more than kLetInSpeed; over the first half second the share that is felt
+    // rises too, by which time the spring is 37 N at most; and the damper adds its own.
+    EXPECT_GE(kit.device->last.force.x - last, -(1000.0 * kLetInSpeed + 37.0 / 0.5) * 0.001 - 0.05) << i;
+    last = kit.device->last.force.x;
+    if (i == 100) {
+      EXPECT_GT(last, -1.0) << "gently at first";
+    }
+  }
+  EXPECT_NEAR(last, -100.0, 1e-6);
+}
+
+TEST(Servo, AWeightThatIsTakenOverIsFeltOverHalfASecond) {
+  ServoKit kit;
+  const auto hang = [&](double time) {
+    BodyMessage& message = kit.channel.bodies().back();
+    message = ServoKit::first();
+    message.rate = 1.0;
+    message.bodies.time = time;
+    message.stamp_ns = to_nanoseconds(time);
+    message.bodies.grips[0].pose = at(0.0);
+    message.bodies.grips[0].on_hand.force.y = -15.0;  // the host's stand carries it
+    kit.channel.bodies().publish();
+    kit.tick(time);
+  };
+  hang(0.0);
+  EXPECT_EQ(kit.device->last.force.y, 0.0);
+  hang(0.05);
+  EXPECT_GT(kit.device->last.force.y, -2.0);
 }
 
 TEST(Servo, AWeightThatHangsInTheHandIsFeltFromTheFirstTick) {
@@ -181,12 +207,15 @@ TEST(Servo, TheForceComesBackAsGentlyAsItWent) {
   kit.tick(1.0);
   EXPECT_EQ(kit.device->last.force.x, 0.0) << "the link was gone for a second";
   double last = 0.0;
-  for (int ms = 0; ms <= 300; ++ms) {
+  for (int ms = 0; ms <= 4000; ++ms) {
     const double now = 1.0 + 0.001 * ms;
     kit.publish(now);
     kit.tick(now);
-    EXPECT_LT(last - kit.device->last.force.x, 0.05) << "no jump at " << ms << " ms";
+    EXPECT_LT(last - kit.device->last.force.x, 0.16) << "no jump at " << ms << " ms";
     last = kit.device->last.force.x;
+    if (ms == 100) {
+      EXPECT_GT(last, -1.0) << "not even over the time in which a still hand's force comes back";
+    }
   }
   EXPECT_NEAR(last, -10.0, 1e-6);
 }
@@ -198,7 +227,7 @@ TEST(Servo, AResetWorldStartsTimeAnewAndTheRecordGoesOn) {
     kit.tick(0.002 * i);
   }
   EXPECT_NEAR(kit.device->last_time, 1.0, 1e-9);
-  for (int i = 0; i <= 500; ++i) {
+  for (int i = 0; i <= 2000; ++i) {
     BodyMessage& message = kit.channel.bodies().back();
     message = ServoKit::first();
     message.run = 1;
@@ -223,8 +252,8 @@ TEST(Servo, AResetWorldStartsTimeAnewAndTheRecordGoesOn) {
     last = sample.time;
     count += 1;
   }
-  EXPECT_NEAR(count, 1002, 2);
-  EXPECT_NEAR(last, 2.002, 0.005);
+  EXPECT_NEAR(count, 2502, 2);
+  EXPECT_NEAR(last, 5.002, 0.005);
 }
 
 TEST(Servo, JoiningALongRunningWorldTakesNoTimeToCatchUp) {

@@ -42,22 +42,24 @@ TEST_F(Hands, TheHostHoldsWhatNobodyHasTaken) {
   EXPECT_TRUE(newest(0).lost);
 }
 
-TEST_F(Hands, AStandGlidesIntoTheHandThatTakesIt) {
+TEST_F(Hands, AStandHoldsOnUntilTheHandDoesAndTheWorldIsToldThatItIsAnother) {
   hands.stand_all(now);
   const double start = stand_pose(scene, 0).position.x;
+  const std::uint32_t stand = newest(0).hold;
   hands.taken(0, now);
   ASSERT_TRUE(sample(1, start + 1.0, 0, false));
   EXPECT_EQ(newest(0).pose.position.x, start) << "not engaged yet: the stand holds on";
-  double last = start;
-  for (std::uint64_t i = 2; i < 302; ++i) {
-    now += 2'000'000;
-    ASSERT_TRUE(sample(i, start + 1.0));
-    const double x = newest(0).pose.position.x;
-    EXPECT_LE(x - last, 0.01) << "no jump";
-    EXPECT_GE(x, last);
-    last = x;
-  }
-  EXPECT_EQ(last, start + 1.0);
+  EXPECT_EQ(newest(0).hold, stand);
+  ASSERT_TRUE(sample(2, start + 1.0));
+  EXPECT_EQ(newest(0).pose.position.x, start + 1.0);
+  const std::uint32_t first = newest(0).hold;
+  EXPECT_NE(first, stand);
+  ASSERT_TRUE(sample(3, start + 1.1));
+  EXPECT_EQ(newest(0).hold, first) << "the same hand";
+  hands.let_go(0, now);
+  hands.taken(0, now);
+  ASSERT_TRUE(sample(1, start));
+  EXPECT_NE(newest(0).hold, first) << "and somebody else's";
 }
 
 TEST_F(Hands, OnlyNewerSamplesCountAndRepeatsAreCountedOnce) {

@@ -1,0 +1,258 @@
+// A body between a host and hands that come back elsewhere than they went: how hard it pulls. The host's own
+// hands, gate and world, and a device loop a person, on a clock that the test moves; messages are handed over
+// where the wire would.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "host/input_gate.h"
+#include "host/server/hands.h"
+#include "tests/peer/servo_kit.h"
+#include "tests/physics/lab.h"
+
+namespace slosh {
+namespace {
+
+constexpr double kMass = 3.0;                           // kg
+constexpr double kShare = 0.5 * kMass * lab::kGravity;  // N, what each of two hands carries at rest
+constexpr double kSpacing = 0.02;                       // m
+// The springs' ends go at kLetInSpeed at most, gained over kLetInRise and lost with the time constant
+// kLetInEnd: at most kLetInSpeed / kLetInEnd = 0.6 m/s² of the body, twice that when the springs swing with
+// it. Half the body's mass hangs at each hand: 1.8 N. As much again for the hands' not being let in evenly.
+constexpr double kLetIn = 2.0 * 0.5 * kMass * 2.0 * kLetInSpeed / kLetInEnd;
+
+/// A beam held high over a little fluid by two grips as stiff as the bucket's.
+Scene held_beam() {
+  lab::SceneBuilder b;
+  b.add_fluid(1000.0, 0.05);
+  b.add_fixed("tank", lab::tank_at_floor({0.16, 0.16, 0.16}, 0.03));
+  const int beam = b.add_free("beam", make::box({-0.15, -0.02, -0.02}, {0.15, 0.02, 0.02}), kMass,
+                              {{0.0, 1.0, 0.0}, {1, 0, 0, 0}});
+  b.add_volume(make::box({-0.08, 0.0, -0.08}, {0.08, 0.04, 0.08}));
+  for (const double x : {-0.15, 0.15}) b.add_grip(beam, 2000.0, 60.0, 20.0, 0.6, {{x, 0, 0}, {1, 0, 0, 0}});
+  b.set_domain({-1.0, -0.5, -1.0}, {1.0, 2.0, 1.0});
+  return b.scene;
+}
+
+/// What dies in a crash.
+struct HostEnd {
+  World world;
+  Channel channel;
+  InputGate gate;
+  HandTable hands;
+  BodySnapshot now;
+  HostEnd(World made, const Scene& scene)
+      : world(std::move(made)),
+        channel(scene.grips.size(), BodyMessage{}, 1000),
+        gate(scene),
+        hands(scene, channel) {
+    world.fill(now);
+  }
+};
+
+/// One person at a grip of their own, with what reaches them.
+struct Person {
+  std::uint32_t grip;
+  Channel channel;
+  test::FakeDevice* device = nullptr;
+  std::unique_ptr<Servo> servo;
+  std::uint64_t number = 0;
+  bool in_contact = true;
+
+  Person(const Scene& scene, std::uint32_t at, const BodyMessage& first)
+      : grip(at), channel(scene.grips.size(), first, 1000) {
+    std::vector<std::unique_ptr<Device>> devices(scene.grips.size());
+    auto made = std::make_unique<test::FakeDevice>();
+    device = made.get();
+    device->next.pose = stand_pose(scene, at);
+    devices[at] = std::move(made);
+    servo = std::make_unique<Servo>(scene, std::move(devices), channel, ServoOptions{});
+  }
+};
+
+class HoldAnew : public ::testing::Test {
+ protected:
+  Scene scene = held_beam();
+  SampledScene sampled = sample_scene(scene, kSpacing).value();
+  std::unique_ptr<HostEnd> host;
+  std::vector<std::unique_ptr<Person>> people;
+  std::int64_t clock = to_nanoseconds(1000.0);
+  double dt = 0.0;
+  double felt = 0.0;     // N, the most that anybody felt
+  double carried = 0.0;  // N, the most between the body and a hand
+
+  World new_world() const {
+    return World(scene, sampled, make_plan(scene, kSpacing), WorldOptions{1, Backend::kCpu});
+  }
+  void SetUp() override {
+    World world = new_world();
+    std::vector<HandleInput> stands;
+    for (std::size_t i = 0; i < scene.grips.size(); ++i)
+      stands.push_back({stand_pose(scene, i), Twist{}, true, 1.0});
+    world.settle(1.0, stands);
+    host = std::make_unique<HostEnd>(std::move(world), scene);
+    dt = host->world.plan().time_step;
+    host->hands.stand_all(clock);
+    for (std::uint32_t i = 0; i < 2; ++i) {
+      people.push_back(std::make_unique<Person>(scene, i, message()));
+      host->hands.taken(i, clock);
+    }
+    run(2.0);
+    EXPECT_NEAR(carried, kShare, 0.02 * kShare) << "settled: nothing happens when people take over";
+    forget();
+  }
+  BodyMessage message() const {
+    BodyMessage m;
+    m.stamp_ns = clock;
+    m.rate = 1.0;
+    m.time_step = host->world.plan().time_step;
+    m.bodies = host->now;
+    return m;
+  }
+  void forget() { felt = carried = 0.0; }
+  /// Wall time goes on, and the world with it while there is a host.
+  void run(double seconds) {
+    for (double left = seconds; left > 0.0; left -= dt) {
+      clock += to_nanoseconds(dt);
+      for (const auto& person : people) {
+        person->servo->tick(clock - to_nanoseconds(0.5 * dt));
+        person->servo->tick(clock);
+        felt = std::max(felt, glm::length(person->device->last.force));
+        if (host && person->in_contact) send(*person);
+      }
+      if (!host) continue;
+      host->world.step(host->gate.take(host->channel, host->now, clock));
+      host->world.fill(host->now);
+      for (const GripState& grip : host->now.grips)
+        carried = std::max(carried, glm::length(grip.on_hand.force));
+      for (const auto& person : people) {
+        if (!person->in_contact) continue;
+        person->channel.bodies().back() = message();
+        person->channel.bodies().publish();
+      }
+    }
+  }
+  void send(Person& person) {
+    person.channel.pose(person.grip).update();
+    const PoseMessage& m = person.channel.pose(person.grip).front();
+    wire::PoseSample sample;
+    sample.grip = person.grip;
+    sample.number = ++person.number;
+    sample.stamp_ns = m.stamp_ns;
+    sample.time = m.time;
+    sample.pose = m.pose;
+    sample.twist = m.twist;
+    sample.engaged = m.engaged;
+    host->hands.sample(sample, clock);
+  }
+  void move_hands(const glm::dvec3& by) {
+    for (const auto& person : people) person->device->next.pose.position += by;
+  }
+  double farthest() const {
+    double most = 0.0;
+    for (const auto& person : people)
+      most = std::max(most, glm::distance(person->device->next.pose.position,
+                                          host->now.grips[person->grip].pose.position));
+    return most;
+  }
+  void print(const char* what) const {
+    std::printf("%s: at most %.1f N on the body, %.1f N felt; at rest %.1f N; the springs alone %.0f N\n",
+                what, carried, felt, kShare, 2000.0 * 0.3);
+  }
+};
+
+TEST_F(HoldAnew, AfterACrashAndAResumeHandsThatMovedArePulledNoHarderThanTheyCarry) {
+  std::vector<std::uint8_t> saved;
+  ASSERT_TRUE(host->world.save(saved));
+  run(0.4);  // lost in the crash
+  host.reset();
+  run(0.2);
+  move_hands({0.0, 0.3, 0.0});
+  run(2.0);
+
+  World world = new_world();
+  ASSERT_TRUE(world.restore(saved));
+  host = std::make_unique<HostEnd>(std::move(world), scene);
+  host->hands.carry_on(host->now, clock);
+  forget();
+  for (const auto& person : people) person->in_contact = false;
+  run(1.0);  // the host stands in until they are back
+  EXPECT_LT(carried, 1.02 * kShare);
+  for (const auto& person : people) {
+    host->hands.taken(person->grip, clock);
+    person->number = 0;
+    person->in_contact = true;
+  }
+  run(6.0);
+  print("crash and resume, hands 0.3 m higher");
+  EXPECT_LT(carried, kShare + kLetIn);
+  EXPECT_LT(felt, kShare + kLetIn);
+  EXPECT_LT(farthest(), 0.02) << "in the end they hold it where they are";
+}
+
+TEST_F(HoldAnew, AHandThatComesBackWithinAMinuteIsPulledNoHarderThanItCarries) {
+  Person& back = *people[0];
+  back.in_contact = false;
+  run(0.5);
+  host->hands.let_go(back.grip, clock);
+  back.device->next.pose.position.y += 0.3;
+  for (int i = 0; i < 300; ++i) {  // the other one carries the beam up alone
+    people[1]->device->next.pose.position.y += 0.001;
+    run(0.01);
+  }
+  run(40.0);
+  const double away = farthest();
+  EXPECT_GT(away, 0.03) << "its end hangs down";
+  forget();
+  host->hands.taken(back.grip, clock);
+  back.number = 0;
+  back.in_contact = true;
+  run(8.0);
+  print("one hand back after 40 s");
+  std::printf("it was %.0f mm away, %.0f N for the spring\n", 1e3 * away, 2000.0 * away);
+  EXPECT_LT(carried, 2.0 * kShare + kLetIn) << "what the other one carried alone";
+  EXPECT_LT(felt, 2.0 * kShare + kLetIn);
+  EXPECT_LT(farthest(), 0.02);
+}
+
+TEST_F(HoldAnew, ASilenceOfAFewTenthsOfASecondIsNoBlow) {
+  for (const auto& person : people) person->in_contact = false;
+  run(0.3);
+  move_hands({0.0, 0.3, 0.0});
+  for (const auto& person : people) person->in_contact = true;
+  run(0.01);
+  forget();  // up to here a hand felt what was fading
+  run(6.0);
+  print("0.3 s of silence, hands 0.3 m higher");
+  EXPECT_LT(carried, kShare + kLetIn);
+  EXPECT_LT(felt, kShare + kLetIn);
+  EXPECT_LT(farthest(), 0.02);
+}
+
+TEST_F(HoldAnew, APauseIsNoBlowEither) {
+  BodyMessage m = message();
+  m.rate = 0.0;
+  for (const auto& person : people) {
+    person->channel.bodies().back() = m;
+    person->channel.bodies().publish();
+  }
+  for (int i = 0; i < 1000; ++i) {
+    clock += to_nanoseconds(0.001);
+    if (i == 500) move_hands({0.0, 0.3, 0.0});
+    for (const auto& person : people) {
+      person->servo->tick(clock);
+      send(*person);
+    }
+  }
+  host->gate.stood_still();
+  forget();
+  run(6.0);
+  print("a pause, hands 0.3 m higher");
+  EXPECT_LT(carried, kShare + kLetIn);
+  EXPECT_LT(felt, kShare + kLetIn);
+  EXPECT_LT(farthest(), 0.02);
+}
+
+}  // namespace
+}  // namespace slosh
