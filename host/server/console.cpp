@@ -175,7 +175,7 @@ const char* console_help() {
          "links                          every link: id, for whom, until when, used by\n"
          "link [NAME] [watch] [for 30m]  a new link: for anybody or one person, to hold or to watch\n"
          "revoke ID                      end a link and whoever came in by it\n"
-         "expire ID 10m|never            let a link end later; who is in stays in\n"
+         "expire ID 10m|never            from then on it admits nobody new; who is in stays in\n"
          "release GRIP                   take a grip away from its holder\n"
          "kick NAME                      close somebody's connection; the seat is given up\n"
          "pause, continue, reset         the world\n"

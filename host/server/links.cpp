@@ -47,9 +47,11 @@ void fill_random(std::span<std::uint8_t> out) {
 }
 
 const LinkRecord* LinkRegistry::create(wire::Role role, const std::string& name, std::int64_t unix_ns,
-                                       std::int64_t lifetime_ns) {
+                                       std::int64_t lifetime_ns,
+                                       const std::function<bool(const std::string&)>& in_use) {
   if (links_.size() >= kMaxLinks) {
     const auto dead = [&](const LinkRecord& link) {
+      if (in_use && in_use(link.id)) return false;
       return link.revoked || (link.expires_ns != 0 && link.expires_ns <= unix_ns);
     };
     links_.erase(std::remove_if(links_.begin(), links_.end(), dead), links_.end());

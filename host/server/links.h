@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,7 +16,9 @@ namespace slosh {
 constexpr std::size_t kMaxLinks = 256;
 constexpr std::size_t kMaxLinkUsers = 1024;  ///< keys that a link remembers
 
-/// Times are ns of Unix time, so that they mean the same after a restart of the host; 0 = never.
+/// A link that has expired admits nobody new; who came by it stays, and may come back while the seat is kept.
+/// One that was revoked ends for everybody. Times are ns of Unix time, so that they mean the same after a
+/// restart of the host; 0 = never.
 struct LinkRecord {
   std::string id;  ///< short, to be spoken: "bako"
   wire::Token token{};
@@ -57,9 +60,11 @@ struct LinkVerdict {
 class LinkRegistry {
  public:
   /// A new link with a token from the kernel's random source. `lifetime_ns` 0 = for ever. Null when there are
-  /// kMaxLinks; revoked and expired ones make room.
+  /// kMaxLinks; revoked and expired ones make room, but for those that somebody here came by (`in_use`, by
+  /// id).
   const LinkRecord* create(wire::Role role, const std::string& name, std::int64_t unix_ns,
-                           std::int64_t lifetime_ns = 0);
+                           std::int64_t lifetime_ns = 0,
+                           const std::function<bool(const std::string&)>& in_use = {});
 
   /// Is `key` let in by `token`? A personal link belongs to the first key that comes by it. That a link was
   /// revoked or has expired is told only to a key that came in by it. Takes the same time whichever

@@ -1,5 +1,5 @@
 // What the console's commands do.
-#include <charconv>
+#include <algorithm>
 
 #include "host/server/server.h"
 #include "host/server/server_send.h"
@@ -70,7 +70,11 @@ std::string Server::run(const ConsoleCommand& command) {
       return "the session ends";
     case ConsoleVerb::kLink: {
       const wire::Role role = command.watch ? wire::Role::kSpectator : wire::Role::kParticipant;
-      const LinkRecord* link = links_.create(role, command.text, unix_now(), command.lifetime_ns);
+      const auto in_use = [this](const std::string& id) {
+        return std::any_of(seats_.seats().begin(), seats_.seats().end(),
+                           [&](const auto& entry) { return entry.second.link == id; });
+      };
+      const LinkRecord* link = links_.create(role, command.text, unix_now(), command.lifetime_ns, in_use);
       if (!link) return "there are " + std::to_string(kMaxLinks) + " links already. Revoke some first";
       session_dirty_ = true;
       return line_of(*link);
@@ -86,8 +90,9 @@ std::string Server::run(const ConsoleCommand& command) {
       if (!links_.set_expiry(command.text, at))
         return "there is no link '" + command.text + "'. `links` lists them";
       session_dirty_ = true;
-      return command.text +
-             (at == 0 ? " never expires" : " expires in " + duration_text(command.lifetime_ns));
+      return command.text + (at == 0 ? " never expires"
+                                     : " admits nobody new in " + duration_text(command.lifetime_ns) +
+                                           "; who is in stays. Revoke it to end that too");
     }
     case ConsoleVerb::kRelease: {
       const int grip = index_named(world_.scene->grips, command.text);

@@ -360,6 +360,46 @@ TEST_F(ServerTest, TheConsoleRulesTheSession) {
   EXPECT_TRUE(server->quit_asked());
 }
 
+TEST_F(ServerTest, AnExpiredLinkLetsItsPeopleBackForAMinuteAndRevokingEndsThatToo) {
+  ScriptedPeer& ana = join(1, "Ana");
+  ScriptedPeer& ben = join(2, "Ben");
+  ana.take(0);
+  std::uint64_t number = 0;
+  const auto alive = [&] {
+    ana.pose(0, ++number, 0.15);
+    if (!ben.closed) ben.datagram(wire::ClockPing{1, 1});
+  };
+  EXPECT_NE(server->command("expire " + hold_id + " 10s").find("nobody new"), std::string::npos);
+  go(11.0, 0.05, alive);
+  EXPECT_TRUE(ana.in() && ben.in()) << "who is in stays";
+  EXPECT_EQ(join(3, "Cem").refusals.at(0).code, wire::RefusalCode::kBadToken) << "nobody new";
+  ben.close();
+  go(50.0, 0.05, alive);
+  ScriptedPeer& again = join(2, "Ben");
+  ASSERT_TRUE(again.in()) << "within the seat's minute";
+  EXPECT_TRUE(again.welcomes[0].restored);
+  again.close();
+  go(61.0, 0.05, alive);
+  EXPECT_EQ(join(2, "Ben").refusals.at(0).code, wire::RefusalCode::kExpired) << "and not later";
+  EXPECT_TRUE(ana.in());
+  server->command("revoke " + hold_id);
+  go(0.1);
+  EXPECT_TRUE(ana.closed);
+  EXPECT_EQ(join(1, "Ana").refusals.at(0).code, wire::RefusalCode::kRevoked) << "no minute after that";
+}
+
+TEST_F(ServerTest, AnExpiredLinkIsKeptWhileItsPeopleAreHere) {
+  join(1, "Ana");
+  server->command("expire " + hold_id + " 1s");
+  go(2.0, 0.1);
+  for (std::size_t i = 0; i < kMaxLinks; ++i) server->command("link");
+  ASSERT_NE(server->links().find(hold_id), nullptr) << "who came by it may have to be put out";
+  server->command("revoke " + hold_id);
+  go(0.1);
+  EXPECT_TRUE(peers[0]->closed);
+  EXPECT_NE(server->command("link").find("for anybody"), std::string::npos) << "that made room";
+}
+
 TEST_F(ServerTest, RevokingALinkPutsItsPeopleOut) {
   const ScriptedPeer& ana = join(1, "Ana");
   const ScriptedPeer& eve = join(2, watch, "Eve");
