@@ -8,6 +8,9 @@ namespace {
 constexpr std::size_t kMostBytes = std::size_t{256} << 20;
 constexpr std::size_t kFewestFrames = 4;  // whatever their size
 constexpr std::size_t kMostBodies = 2048;
+constexpr std::size_t kMostHands = 1024;   // samples of one hand
+constexpr std::size_t kMostGrips = 64;     // as the wire has it
+constexpr double kHandBelieved = 0.2;      // s for which a hand that says no more is where it was
 constexpr double kSameTime = 1e-9;         // s
 constexpr double kBetweenBodies = 0.0035;  // s: denser states tell a picture nothing
 
@@ -86,6 +89,7 @@ void PictureHistory::follow_run(std::uint32_t run) {
   any_run_ = false;
   frames_.clear();
   bodies_.clear();
+  hands_.clear();
   bytes_ = 0;
 }
 
@@ -113,8 +117,35 @@ void PictureHistory::add(std::uint32_t run, const BodySnapshot& bodies) {
   if (bodies_.size() > kMostBodies) bodies_.pop_front();
 }
 
+void PictureHistory::add_hand(std::uint32_t run, std::size_t grip, double time, const Pose& pose,
+                              bool engaged) {
+  if (any_run_ || run != run_ || grip >= kMostGrips) return;
+  if (grip >= hands_.size()) hands_.resize(grip + 1);
+  std::deque<HandSample>& samples = hands_[grip];
+  // While the world stands still its time does too, and the newest counts.
+  while (!samples.empty() && samples.back().time >= time - kSameTime) samples.pop_back();
+  samples.push_back({time, pose, engaged});
+  if (samples.size() > kMostHands) samples.pop_front();
+}
+
+void PictureHistory::place_hands(BodySnapshot& rigid) const {
+  for (std::size_t i = 0; i < hands_.size() && i < rigid.grips.size(); ++i) {
+    const std::deque<HandSample>& samples = hands_[i];
+    const auto after = std::lower_bound(samples.begin(), samples.end(), rigid.time,
+                                        [](const HandSample& s, double t) { return s.time < t; });
+    if (after == samples.begin()) continue;
+    const HandSample& before = *std::prev(after);
+    if (!before.engaged || rigid.time - before.time > kHandBelieved) continue;
+    const bool between = after != samples.end() && after->engaged;
+    rigid.grips[i].handle =
+        between ? mixed(before.pose, after->pose, share_between(before.time, after->time, rigid.time))
+                : before.pose;
+  }
+}
+
 void PictureHistory::restart() {
   any_run_ = true;
+  hands_.clear();
 }
 
 void PictureHistory::bound() {
@@ -165,6 +196,7 @@ std::optional<Between> PictureHistory::at(double time) const {
     out.rigid = blend(*std::prev(after), *after, time);
   }
   out.rigid.time = time;
+  place_hands(out.rigid);
   return out;
 }
 
@@ -179,6 +211,9 @@ void PictureHistory::forget_before(double time) {
     frames_.pop_front();
   }
   while (bodies_.size() > 1 && bodies_[1].time < time - kSameTime) bodies_.pop_front();
+  for (std::deque<HandSample>& samples : hands_) {
+    while (samples.size() > 1 && samples[1].time < time - kSameTime) samples.pop_front();
+  }
 }
 
 }  // namespace slosh

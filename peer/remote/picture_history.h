@@ -5,6 +5,7 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "net/channel.h"
 #include "net/codec/snapshot_codec.h"
@@ -37,12 +38,15 @@ class PictureHistory {
   void add(DecodedFrame frame);
   /// States come in order of time.
   void add(std::uint32_t run, const BodySnapshot& bodies);
+  /// Where another person's hand was at `time`, simulated s. In order of time; one that is not engaged is
+  /// nowhere to be seen. Told of a run that is not the present one, it is left out.
+  void add_hand(std::uint32_t run, std::size_t grip, double time, const Pose& pose, bool engaged);
   /// A new connection: any run may follow.
   void restart();
 
   /// The world at `time` (simulated s): between the two frames around it when both are of one epoch, else as
-  /// the last frame before it has the particles, or the first after; the same for bodies. Null when there
-  /// is nothing at all.
+  /// the last frame before it has the particles, or the first after; the same for bodies. A hand that was
+  /// told of is where it is itself, not where its grip's coupling has it. Null when there is nothing at all.
   std::optional<Between> at(double time) const;
   /// Nothing before `time` will be asked for.
   void forget_before(double time);
@@ -58,9 +62,16 @@ class PictureHistory {
  private:
   void follow_run(std::uint32_t run);
   void bound();
+  void place_hands(BodySnapshot& rigid) const;
+  struct HandSample {
+    double time = 0.0;
+    Pose pose;
+    bool engaged = false;
+  };
 
   std::deque<std::shared_ptr<const DecodedFrame>> frames_;  // by time
   std::deque<BodySnapshot> bodies_;                         // by time
+  std::vector<std::deque<HandSample>> hands_;               // one a grip, by time
   std::uint32_t run_ = 0;
   bool any_run_ = true;
   std::size_t bytes_ = 0;  // of frames_

@@ -50,6 +50,12 @@ void PictureMaker::note_bodies(const BodyMessage& bodies) {
   history_.add(bodies.run, bodies.bodies);
 }
 
+void PictureMaker::note_hand(std::uint32_t run, std::size_t grip, double time, const Pose& pose,
+                             bool engaged) {
+  const std::lock_guard lock(mutex_);
+  history_.add_hand(run, grip, time, pose, engaged);
+}
+
 void PictureMaker::note_moment(const WorldMoment& moment) {
   const std::lock_guard lock(mutex_);
   if (moment.run != moment_.run) shown_.restart();

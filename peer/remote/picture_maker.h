@@ -57,6 +57,8 @@ class PictureMaker {
   /// A datagram of the snapshot stream.
   void offer(std::span<const std::uint8_t> datagram);
   void note_bodies(const BodyMessage& bodies);
+  /// Another person's hand, as PictureHistory::add_hand.
+  void note_hand(std::uint32_t run, std::size_t grip, double time, const Pose& pose, bool engaged);
   /// Where the host's world stands, by its clock.
   void note_moment(const WorldMoment& moment);
   void note_clock(const ClockSync& clock);

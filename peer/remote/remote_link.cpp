@@ -176,8 +176,17 @@ void RemoteLink::on_datagram(ConnectionId, std::span<const std::uint8_t> bytes) 
     case wire::DatagramType::kSnapshotPiece:
       if (world_.maker) world_.maker->offer(bytes);
       return;
-    case wire::DatagramType::kHands:
-      return;  // the device loop couples to the bodies alone
+    case wire::DatagramType::kHands: {
+      // To be drawn: the device loop couples to the bodies alone.
+      wire::Hands hands;
+      if (wire::decode(payload, hands)) break;
+      if (!inbox_ || !world_.maker || !clock_.known() || !inbox_->moment().known) return;
+      const WorldMoment& moment = inbox_->moment();
+      for (const wire::HandEntry& hand : hands.hands)
+        world_.maker->note_hand(moment.run, hand.grip, moment.time_at(hand.received_ns), hand.pose,
+                                hand.engaged);
+      return;
+    }
     default:
       break;
   }

@@ -146,5 +146,34 @@ TEST(PictureHistory, IsEmptyAtFirstAndShowsBodiesAlone) {
   EXPECT_NEAR(picture->rigid.bodies[0].pose.position.x, 0.2, 1e-12);
 }
 
+Pose at(double x) {
+  Pose pose;
+  pose.position.x = x;
+  return pose;
+}
+
+TEST(PictureHistory, OtherHandsAreWhereTheyAreThemselves) {
+  PictureHistory history;
+  history.add_hand(0, 0, 0.5, at(9.0), true);  // of no run yet
+  for (int i = 0; i <= 20; ++i) history.add(0, bodies(0.05 * i));
+  const auto hand_at = [&](double time) { return history.at(time)->rigid.grips[0].handle.position.x; };
+  EXPECT_EQ(hand_at(0.5), 0.0) << "as the bodies have it";
+  for (int i = 0; i <= 10; ++i) history.add_hand(0, 0, 0.1 * i, at(3.0 * 0.1 * i), true);
+  EXPECT_NEAR(hand_at(0.55), 1.65, 1e-9) << "between two, evenly";
+  EXPECT_NEAR(hand_at(1.1), 3.0, 1e-9) << "the last one for a moment";
+  EXPECT_EQ(hand_at(1.5), 0.0) << "and not for ever";
+  history.add_hand(0, 0, 1.1, at(7.0), false);
+  EXPECT_NEAR(hand_at(1.05), 3.0, 1e-9);
+  EXPECT_EQ(hand_at(1.15), 0.0) << "it has let go";
+  history.add_hand(0, 0, 1.2, at(4.0), true);
+  history.add_hand(0, 0, 1.2, at(5.0), true);
+  EXPECT_NEAR(hand_at(1.25), 5.0, 1e-9) << "the world stands still, the hand does not";
+  history.add_hand(0, 70, 1.2, at(5.0), true);
+  history.add_hand(3, 0, 1.3, at(8.0), true);
+  EXPECT_NEAR(hand_at(1.35), 5.0, 1e-9) << "of another run";
+  history.forget_before(1.25);
+  EXPECT_NEAR(hand_at(1.25), 5.0, 1e-9);
+}
+
 }  // namespace
 }  // namespace slosh
