@@ -5,6 +5,7 @@
 #include <GLFW/glfw3.h>
 #include <imgui.h>
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <utility>
@@ -58,6 +59,10 @@ class GlfwContext final : public Context {
     glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int) {
       static_cast<GlfwContext*>(glfwGetWindowUserPointer(w))->take_key(key, action);
     });
+    // A window that is moved under a pointer that stands still is no movement of the mouse.
+    glfwSetWindowPosCallback(window_, [](GLFWwindow* w, int, int) {
+      static_cast<GlfwContext*>(glfwGetWindowUserPointer(w))->mouse_known_ = false;
+    });
     describe_current();
   }
   ~GlfwContext() override { glfwDestroyWindow(window_); }
@@ -96,9 +101,13 @@ class GlfwContext final : public Context {
     glfwGetWindowSize(window_, &window_size.x, &window_size.y);
     const glm::vec2 scale = glm::vec2(framebuffer_size()) / glm::vec2(glm::max(window_size, glm::ivec2(1)));
     const glm::vec2 mouse = glm::vec2(x, y) * scale;
-    input_.mouse_delta = mouse_known_ ? mouse - input_.mouse : glm::vec2(0.0f);
+    // Where the pointer goes outside (to another window, and back in elsewhere) is no business of ours,
+    // unless it was dragged there.
+    const bool dragging = std::any_of(input_.buttons.begin(), input_.buttons.end(), [](bool b) { return b; });
+    const bool here = dragging || glfwGetWindowAttrib(window_, GLFW_HOVERED) == GLFW_TRUE;
+    input_.mouse_delta = mouse_known_ && here ? mouse - input_.mouse : glm::vec2(0.0f);
     input_.mouse = mouse;
-    mouse_known_ = true;
+    mouse_known_ = here;
     constexpr std::array kButtons{GLFW_MOUSE_BUTTON_LEFT, GLFW_MOUSE_BUTTON_RIGHT, GLFW_MOUSE_BUTTON_MIDDLE};
     for (std::size_t i = 0; i < kButtons.size(); ++i) {
       input_.buttons[i] = glfwGetMouseButton(window_, kButtons[i]) == GLFW_PRESS;

@@ -81,9 +81,11 @@ enum class MouseButton : std::uint8_t { kLeft, kRight, kMiddle, kCount };
 
 /// State at the last poll. A headless context always reports the default state.
 struct InputState {
-  glm::vec2 mouse{0.0f};        ///< framebuffer pixels from the top left corner
-  glm::vec2 mouse_delta{0.0f};  ///< pixels since the poll before; zero on the first
-  glm::vec2 scroll{0.0f};       ///< wheel notches since the poll before, +y away from the user
+  glm::vec2 mouse{0.0f};  ///< framebuffer pixels from the top left corner
+  /// Pixels since the poll before; zero on the first, and while the pointer is outside the window without a
+  /// drag
+  glm::vec2 mouse_delta{0.0f};
+  glm::vec2 scroll{0.0f};  ///< wheel notches since the poll before, +y away from the user
   std::array<bool, static_cast<std::size_t>(MouseButton::kCount)> buttons{};  ///< held
   std::array<bool, static_cast<std::size_t>(Key::kCount)> keys{};             ///< held
   std::array<bool, static_cast<std::size_t>(Key::kCount)>
