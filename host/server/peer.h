@@ -27,6 +27,7 @@ struct PeerLimits {
 /// The pictures of one peer.
 struct PictureSink {
   TierControl control{kShell, kShell};
+  bool wanted = true;  ///< false: the peer draws nothing and is sent none
   bool watching = false;
   LinkEvidence seen;
   std::uint64_t offered = 0;        ///< snapshot datagrams given to the endpoint

@@ -97,7 +97,7 @@ class Server final : public EndpointEvents, public HostTap {
   const SeatTable& seats() const { return seats_; }
   ServerFigures figures() const;
   std::uint64_t session() const { return session_; }
-  int tier_of(std::uint32_t seat) const;  ///< −1: not here
+  int tier_of(std::uint32_t seat) const;  ///< −1: not here, or gets no pictures
 
   Mailbox& mailbox() { return mailbox_; }  ///< any thread posts
   /// Any thread: what a checkpoint keeps, as of the last change, coded.

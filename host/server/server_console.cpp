@@ -184,8 +184,10 @@ std::string Server::who_text() const {
     if (found != by_seat_.end() && endpoint_) {
       const ConnectionStats stats = endpoint_->stats(found->second);
       const auto& peer = peers_.at(found->second);
+      const PictureSink& sink = peer->pictures;
       line += ", " + peer->address + ", " + std::to_string(static_cast<int>(1e3 * stats.smoothed_rtt + 0.5)) +
-              " ms, gets " + kTiers[static_cast<std::size_t>(peer->pictures.control.tier())].words;
+              " ms, gets " +
+              (sink.wanted ? kTiers[static_cast<std::size_t>(sink.control.tier())].words : "no particles");
     }
     text.append(text.empty() ? "" : "\n").append(line);
   }

@@ -70,9 +70,11 @@ wire::Fault Server::handle(Peer& peer, const wire::Hello& hello) {
   }
   links_.note_use(id, peer.key);
   session_dirty_ = true;
+  const bool film = hello.pictures == wire::PictureWish::kFilm;
+  peer.pictures.wanted = hello.pictures != wire::PictureWish::kNone;
   peer.pictures.control = link->role == wire::Role::kParticipant
-                              ? TierControl(kAllParticles, hello.film ? kAllParticles : kAllParticles + 1)
-                              : TierControl(hello.film ? kAllParticles : kShell, kShell);
+                              ? TierControl(kAllParticles, film ? kAllParticles : kAllParticles + 1)
+                              : TierControl(film ? kAllParticles : kShell, kShell);
   welcome(peer, *arrival.seat, arrival.restored);
   return {};
 }
@@ -109,7 +111,7 @@ void Server::welcome(Peer& peer, Seat& seat, bool restored) {
   }
   send_scene(peer);
   if (peer.gone) return;
-  watch(peer, peer.pictures.control.tier());
+  if (peer.pictures.wanted) watch(peer, peer.pictures.control.tier());
   notice_all(seat.name + (restored                              ? " is back"
                           : seat.role == wire::Role::kSpectator ? " is watching"
                                                                 : " is here"),

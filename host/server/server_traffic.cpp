@@ -256,7 +256,8 @@ int Server::tier_of(std::uint32_t seat) const {
   const auto found = by_seat_.find(seat);
   if (found == by_seat_.end()) return -1;
   const auto peer = peers_.find(found->second);
-  return peer == peers_.end() ? -1 : peer->second->pictures.control.tier();
+  if (peer == peers_.end() || !peer->second->pictures.watching) return -1;
+  return peer->second->pictures.control.tier();
 }
 
 }  // namespace slosh

@@ -82,20 +82,29 @@ enum class Role : std::uint8_t { kParticipant, kSpectator };
 constexpr std::array kRoleNames{"participant", "spectator"};
 constexpr std::uint64_t kRoles = kRoleNames.size();
 
+/// What a peer wants of the particles.
+enum class PictureWish : std::uint8_t {
+  kNewest,  ///< for a window
+  kFilm,    ///< every picture
+  kNone,    ///< it draws nothing: bodies alone
+};
+constexpr std::array kPictureWishNames{"the newest", "all, for a film", "none"};
+constexpr std::uint64_t kPictureWishes = kPictureWishNames.size();
+
 /// The peer's first message. Its key is the one of its TLS certificate.
 struct Hello {
   static constexpr ControlType kType = ControlType::kHello;
   std::uint32_t version = kProtocolVersion;
   Token token{};
-  std::string name;   ///< how others see this person; empty = the host chooses
-  bool film = false;  ///< wants every picture (a film) rather than the newest
+  std::string name;  ///< how others see this person; empty = the host chooses
+  PictureWish pictures = PictureWish::kNewest;
 };
 template <class V>
 void visit(V& v, Hello& m) {
   v.natural("version", m.version, 0, 0xffff);
   v.array("token", m.token);
   v.text("name", m.name, kMaxName);
-  v.flag("film", m.film);
+  v.choice("pictures", m.pictures, kPictureWishNames);
 }
 
 /// Take or release one grip. Answered by Answer with the same `request`.

@@ -159,7 +159,7 @@ void PictureMaker::run() {
     take_pieces(pieces, anew, finish);
     if (options_.film) make_film(finish);
     if (finish) break;
-    make_feedback();
+    if (options_.wanted) make_feedback();
   }
   film_.close();
 }

@@ -24,6 +24,7 @@
 namespace slosh {
 
 struct PictureMakerOptions {
+  bool wanted = true;               ///< false: nothing is drawn, and no particles come
   bool film = false;                ///< every picture of a film into the queue; else newest() on demand
   double frames_per_second = 30.0;  ///< of the film
   bool has_fluid = true;            ///< the world has particles: a film waits for them

@@ -45,7 +45,9 @@ void RemoteLink::say_hello() {
   wire::Hello hello;
   hello.token = options_.token;
   hello.name = options_.name;
-  hello.film = options_.pictures.film;
+  hello.pictures = !options_.pictures.wanted ? wire::PictureWish::kNone
+                   : options_.pictures.film  ? wire::PictureWish::kFilm
+                                             : wire::PictureWish::kNewest;
   say(hello);
 }
 
@@ -185,7 +187,7 @@ void RemoteLink::build_world() {
   world_.channel =
       std::make_unique<Channel>(world_.scene.grips.size(), inbox_->state(), options_.picture_bytes);
   PictureMakerOptions pictures = options_.pictures;
-  pictures.has_fluid = status_.welcome.particles > 0;
+  pictures.has_fluid = status_.welcome.particles > 0 && pictures.wanted;
   world_.maker = std::make_unique<PictureMaker>(pictures, world_.channel->pictures());
   world_.maker->note_clock(clock_);
   uplink_ = std::make_unique<PoseUplink>(*world_.channel);

@@ -120,6 +120,7 @@ int join(JoinOptions options) {
   }
   remote.wants_grip = !options.watch;
   remote.grips = options.grips;
+  remote.pictures.wanted = options.render;
   remote.pictures.film = headless && options.render;
   remote.pictures.frames_per_second = options.frames_per_second;
   progress.phase("joining", remote.address);

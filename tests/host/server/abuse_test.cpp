@@ -68,7 +68,7 @@ TEST_F(Abuse, AnExpiredLinkAdmitsNobodyNew) {
 
 TEST_F(Abuse, AnotherVersionIsToldSo) {
   peers.push_back(std::make_unique<ScriptedPeer>(network, 9));
-  peers.back()->say(wire::Hello{2, hold, "Eve", false});
+  peers.back()->say(wire::Hello{2, hold, "Eve", {}});
   go(0.1);
   expect_refused(*peers.back(), wire::RefusalCode::kVersion, "version 2");
 }

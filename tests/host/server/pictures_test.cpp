@@ -60,7 +60,7 @@ class Watcher final : public EndpointEvents {
     fingerprint.fill(key);
     end = network.connect(*this, fingerprint, "192.0.2.9:" + std::to_string(key));
     const std::int64_t stream = end->open_stream(1, true);
-    end->send_stream(1, stream, wire::control(wire::Hello{wire::kProtocolVersion, token, "w", false}), false);
+    end->send_stream(1, stream, wire::control(wire::Hello{wire::kProtocolVersion, token, "w", {}}), false);
   }
   void turn(std::int64_t now_ns) {
     end->run_once(0);
@@ -176,6 +176,35 @@ TEST_F(Pictures, AResetStartsAnotherRun) {
   show(0.5, [&] { watcher.turn(network.now_ns()); });
   EXPECT_GT(watcher.frames, before + 5);
   EXPECT_EQ(watcher.complete, 1.0);
+}
+
+TEST_F(Pictures, WhoDrawsNothingIsSentNone) {
+  peers.push_back(std::make_unique<ScriptedPeer>(network, 1));
+  peers.push_back(std::make_unique<ScriptedPeer>(network, 2));
+  ScriptedPeer& draws = *peers[0];
+  ScriptedPeer& blind = *peers[1];
+  draws.hello(hold, "Ana");
+  blind.hello(hold, "Ben", wire::PictureWish::kNone);
+  show(2.0, [&] {
+    publish_bodies(tick);
+    // What a link of its own would ask for, which must not make the host send it anything.
+    blind.datagram(wire::SnapshotFeedback{0, 0, 0, 0, 0, {{0, 10}}});
+  });
+  ASSERT_TRUE(draws.in() && blind.in());
+  EXPECT_EQ(blind.snapshot_pieces, 0u);
+  EXPECT_GT(draws.snapshot_pieces, 50u);
+  EXPECT_EQ(blind.bodies.size(), draws.bodies.size()) << "bodies come as to everybody";
+  EXPECT_EQ(server->tier_of(blind.welcomes[0].peer), -1);
+  EXPECT_NE(server->command("who").find("gets no particles"), std::string::npos);
+  std::printf("2 s of 4000 particles: %zu bytes of snapshots to who draws, %zu to who does not\n",
+              draws.snapshot_bytes, blind.snapshot_bytes);
+  EXPECT_GT(draws.snapshot_bytes, 20000u);
+
+  // With nobody who draws nothing is coded either.
+  draws.close();
+  show(0.3);
+  const PictureOrder order = desk.take_order();
+  EXPECT_EQ(std::count(order.watched.begin(), order.watched.end(), true), 0);
 }
 
 }  // namespace

@@ -58,8 +58,8 @@ void ScriptedPeer::raw_datagram(const wire::Bytes& bytes) {
   end->send_datagram(1, Priority::kPose, std::make_shared<const wire::Bytes>(bytes));
 }
 
-void ScriptedPeer::hello(const wire::Token& token, const std::string& name, bool film) {
-  say(wire::Hello{wire::kProtocolVersion, token, name, film});
+void ScriptedPeer::hello(const wire::Token& token, const std::string& name, wire::PictureWish pictures) {
+  say(wire::Hello{wire::kProtocolVersion, token, name, pictures});
 }
 
 void ScriptedPeer::pose(std::uint32_t grip, std::uint64_t number, double x, std::int64_t stamp_ns) {
@@ -110,6 +110,7 @@ void ScriptedPeer::on_stream(ConnectionId, std::int64_t stream, std::span<const 
 void ScriptedPeer::on_datagram(ConnectionId, std::span<const std::uint8_t> bytes) {
   if (!bytes.empty() && bytes[0] == static_cast<std::uint8_t>(wire::DatagramType::kSnapshotPiece)) {
     snapshot_pieces += 1;
+    snapshot_bytes += bytes.size();
     return;
   }
   const wire::Fault found =

@@ -22,7 +22,8 @@ class ScriptedPeer final : public EndpointEvents {
  public:
   ScriptedPeer(MemoryNetwork& network, std::uint8_t key, const std::string& address = "192.0.2.1:50000");
 
-  void hello(const wire::Token& token, const std::string& name = {}, bool film = false);
+  void hello(const wire::Token& token, const std::string& name = {},
+             wire::PictureWish pictures = wire::PictureWish::kNewest);
   template <class M>
   void say(const M& message) {
     raw(wire::control(message));
@@ -59,6 +60,7 @@ class ScriptedPeer final : public EndpointEvents {
   std::vector<wire::Bodies> bodies;
   std::vector<wire::HandEntry> hands;
   std::size_t snapshot_pieces = 0;
+  std::size_t snapshot_bytes = 0;
   std::size_t scene_bytes = 0;
   bool scene_ended = false;
   std::string fault;  ///< of anything that did not decode
