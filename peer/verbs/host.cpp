@@ -4,6 +4,7 @@
 
 #include "host/server/console.h"
 #include "net/wire/messages.h"
+#include "peer/verbs/common_options.h"
 #include "peer/verbs/host_run.h"
 #include "peer/verbs/verbs.h"
 
@@ -69,15 +70,7 @@ void add_host(CLI::App& app, VerbRun& chosen) {
       ->capture_default_str();
   verb->add_option("--seconds", o->seconds, "Simulated seconds (until it is ended)")
       ->check(CLI::Range(0.01, 1e6));
-  verb->add_option("--backend", o->backend, "What the simulation runs on")
-      ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
-      ->capture_default_str();
-  verb->add_option("--spacing", o->spacing, "Metres between particles, or auto: the finest in real time");
-  verb->add_option("--particles", o->particles, "Fluid particles to aim at, in place of a spacing")
-      ->check(CLI::Range(1, 100000000))
-      ->excludes("--spacing");
-  verb->add_option("--threads", o->threads, "Cores for the simulation (all but one)")
-      ->check(CLI::Range(1, 1024));
+  add_world_options(*verb, *o, "all but one");
   verb->add_option("--record", o->record, "File to record the run in; slosh replay plays it again");
   verb->add_option("--checkpoint", o->checkpoint,
                    "File to save the world in, or none (~/.local/state/slosh/SCENE.checkpoint)");

@@ -7,6 +7,7 @@
 #include "net/clock.h"
 #include "net/link.h"
 #include "peer/remote/peer_key.h"
+#include "peer/verbs/common_options.h"
 #include "peer/verbs/interrupt.h"
 #include "peer/verbs/play_modes.h"
 #include "peer/verbs/remote_run.h"
@@ -185,15 +186,7 @@ void add(CLI::App& app, VerbRun& chosen, bool watch) {
   verb->add_option("--seconds", o->seconds, "Simulated seconds to stay (until the host ends)")
       ->check(CLI::Range(0.01, 1e6));
   verb->add_option("--out", o->out, "Folder for the results (headless: out/<scene>-<name>; a window: none)");
-  verb->add_flag("--headless", o->headless, "No window, even with a display");
-  verb->add_option("--size", o->size, "Picture in pixels, WxH (640x480 headless, 1280x720 in a window)");
-  verb->add_option("--fps", o->frames_per_second, "Pictures a second of the film")
-      ->check(CLI::Range(1.0, 240.0))
-      ->capture_default_str();
-  verb->add_option("--bilateral", o->bilateral, "Iterations of the fluid surface's filter")
-      ->check(CLI::Range(0, 64))
-      ->capture_default_str();
-  verb->add_flag("!--no-render", o->render, "No picture at all");
+  add_show_options(*verb, *o, true);
   verb->add_option("--key", o->key, "File with your key, made on first use (one for each person)");
   verb->footer(std::string(kFiles) + (watch ? kWatchFooter : kJoinFooter));
   verb->callback([&chosen, o] { chosen = [o] { return join(*o); }; });

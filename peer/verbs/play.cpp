@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "peer/verbs/common_options.h"
 #include "peer/verbs/interrupt.h"
 #include "peer/verbs/play_modes.h"
 #include "peer/verbs/verbs.h"
@@ -62,27 +63,11 @@ void add_play(CLI::App& app, VerbRun& chosen) {
                    "Simulated seconds (the scene's duration; a window: until closed)")
       ->check(CLI::Range(0.01, 1e6));
   verb->add_option("--out", o->out, "Folder for the results (headless: out/<scene>; a window: none)");
-  verb->add_flag("--headless", o->headless, "No window, even with a display");
-  verb->add_option("--backend", o->backend, "What the simulation runs on")
-      ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
-      ->capture_default_str();
+  add_show_options(*verb, *o, true);
+  add_world_options(*verb, *o, "all but one; all with --no-render");
   verb->add_option("--device", o->devices, "script, mouse or replay:FILE; one for all handles, or one each")
       ->allow_extra_args(false);
-  verb->add_option("--spacing", o->spacing, "Metres between particles, or auto: the finest in real time");
-  verb->add_option("--particles", o->particles, "Fluid particles to aim at, in place of a spacing")
-      ->check(CLI::Range(1, 100000000))
-      ->excludes("--spacing");
-  verb->add_option("--threads", o->threads, "Cores for the simulation (all but one; all with --no-render)")
-      ->check(CLI::Range(1, 1024));
-  verb->add_option("--size", o->size, "Picture in pixels, WxH (640x480 headless, 1280x720 in a window)");
-  verb->add_option("--fps", o->frames_per_second, "Pictures a second of the film")
-      ->check(CLI::Range(1.0, 240.0))
-      ->capture_default_str();
-  verb->add_option("--bilateral", o->bilateral, "Iterations of the fluid surface's filter")
-      ->check(CLI::Range(0, 64))
-      ->capture_default_str();
   verb->add_option("--record", o->record, "Keep the run's inputs and states in a file, for `slosh replay`");
-  verb->add_flag("!--no-render", o->render, "No picture at all");
   verb->footer(kFooter);
   verb->callback([&chosen, o] { chosen = [o] { return play(*o); }; });
 }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 
+#include "peer/verbs/common_options.h"
 #include "peer/verbs/interrupt.h"
 #include "peer/verbs/play_modes.h"
 #include "peer/verbs/replay_run.h"
@@ -83,20 +84,10 @@ void add_replay(CLI::App& app, VerbRun& chosen) {
   verb->add_option("--out", o->out, "Folder for the film, the plot and the tables; without it only compares");
   verb->add_option("--seconds", o->seconds, "Simulated seconds from its start (all)")
       ->check(CLI::Range(0.001, 1e6));
-  verb->add_option("--backend", o->backend,
-                   "What to simulate on; auto: where it was recorded, if that is here")
-      ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
-      ->capture_default_str();
+  add_backend_option(*verb, o->backend, "What to simulate on; auto: where it was recorded, if that is here");
   verb->add_option("--threads", o->threads, "Cores for the simulation (all); the result is the same")
       ->check(CLI::Range(1, 1024));
-  verb->add_option("--size", o->size, "Picture in pixels, WxH (640x480)");
-  verb->add_option("--fps", o->frames_per_second, "Pictures a simulated second")
-      ->check(CLI::Range(1.0, 240.0))
-      ->capture_default_str();
-  verb->add_option("--bilateral", o->bilateral, "Iterations of the fluid surface's filter")
-      ->check(CLI::Range(0, 64))
-      ->capture_default_str();
-  verb->add_flag("!--no-render", o->render, "No picture at all");
+  add_show_options(*verb, *o, false);
   verb->footer(kFooter);
   verb->callback([&chosen, o] { chosen = [o] { return replay(*o); }; });
 }
