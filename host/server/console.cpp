@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <vector>
 
 #include "net/clock.h"
@@ -11,26 +10,6 @@
 
 namespace slosh {
 namespace {
-
-std::vector<std::string> words_of(std::string_view line) {
-  std::vector<std::string> words;
-  std::size_t at = 0;
-  while (at < line.size()) {
-    const char c = line[at];
-    if (c == ' ') {
-      at += 1;
-      continue;
-    }
-    // Quotes keep a name of several words together.
-    const bool quoted = c == '"' || c == '\'';
-    const std::size_t begin = quoted ? at + 1 : at;
-    std::size_t end = line.find_first_of(quoted ? std::string_view(&line[at], 1) : " ", begin);
-    if (end == std::string_view::npos) end = line.size();
-    words.emplace_back(line.substr(begin, end - begin));
-    at = quoted ? end + 1 : end;
-  }
-  return words;
-}
 
 Error usage(const std::string& what, const std::string& mend) {
   return {"", what, mend};
@@ -70,21 +49,14 @@ Result<ConsoleCommand> parse_expire(const std::vector<std::string>& words) {
   return command;
 }
 
-Result<ConsoleCommand> parse_set(const std::vector<std::string>& words) {
-  const Error error =
-      usage("set needs what and a number", "As in: set viscosity [FLUID] 0.5, or: set gravity 0.5");
-  if (words.size() < 3 || words.size() > 4) return error;
+Result<ConsoleCommand> parse_set_command(const std::vector<std::string>& words) {
+  const Result<SetWish> wish = parse_set(words);
+  if (!wish) return wish.error();
   ConsoleCommand command;
   command.verb = ConsoleVerb::kSet;
-  command.gravity = words[1] == "gravity";
-  if (!command.gravity && words[1] != "viscosity") return error;
-  if (command.gravity && words.size() != 3) return error;
-  if (words.size() == 4) command.text = words[2];
-  const std::string& number = words.back();
-  const char* end = number.data() + number.size();
-  const auto [at, code] = std::from_chars(number.data(), end, command.value);
-  if (code != std::errc() || at != end || !std::isfinite(command.value) || command.value < 0.0)
-    return usage("'" + number + "' is no number of 0 or more", error.mend);
+  command.gravity = wish.value().gravity;
+  command.text = wish.value().fluid;
+  command.value = wish.value().value;
   return command;
 }
 
@@ -130,13 +102,9 @@ std::string duration_text(std::int64_t ns) {
 }
 
 Result<ConsoleCommand> parse_console(std::string_view typed) {
-  while (!typed.empty() && (typed.back() == '\n' || typed.back() == '\r')) typed.remove_suffix(1);
-  std::string line(typed.substr(0, kMaxConsoleLine + 1));
-  std::replace(line.begin(), line.end(), '\t', ' ');
-  if (line.size() > kMaxConsoleLine) return usage("the line is too long", "Type help for what may be said");
-  const std::string problem = wire::text_problem(line);
-  if (!problem.empty()) return usage("the line " + problem, "Type help for what may be said");
-  const std::vector<std::string> words = words_of(line);
+  const Result<std::vector<std::string>> split = console_words(typed);
+  if (!split) return split.error();
+  const std::vector<std::string>& words = split.value();
   if (words.empty()) return ConsoleCommand{};
   const std::string& verb = words[0];
 
@@ -164,7 +132,7 @@ Result<ConsoleCommand> parse_console(std::string_view typed) {
   if (verb == "pause") return alone(ConsoleVerb::kPause);
   if (verb == "continue") return alone(ConsoleVerb::kContinue);
   if (verb == "reset") return alone(ConsoleVerb::kReset);
-  if (verb == "set") return parse_set(words);
+  if (verb == "set") return parse_set_command(words);
   if (verb == "status") return alone(ConsoleVerb::kStatus);
   if (verb == "quit") return alone(ConsoleVerb::kQuit);
   return usage("'" + wire::clean_text(verb, 40) + "' means nothing here", "Type help for what may be said");

@@ -6,11 +6,10 @@
 #include <string>
 #include <string_view>
 
+#include "net/console_words.h"
 #include "sim/math/result.h"
 
 namespace slosh {
-
-constexpr std::size_t kMaxConsoleLine = 1000;  ///< bytes
 
 enum class ConsoleVerb : std::uint8_t {
   kNothing,  ///< an empty line

@@ -6,32 +6,6 @@
 #include "net/clock.h"
 
 namespace slosh {
-namespace {
-
-/// A whole number of at most `most`, or −1.
-int number_in(const std::string& text, int most) {
-  int number = -1;
-  const char* end = text.data() + text.size();
-  const auto [at, code] = std::from_chars(text.data(), end, number);
-  return code == std::errc() && at == end && number >= 0 && number <= most ? number : -1;
-}
-
-template <class T>
-int index_named(const std::vector<T>& things, const std::string& text) {
-  for (std::size_t i = 0; i < things.size(); ++i) {
-    if (things[i].name == text) return static_cast<int>(i);
-  }
-  return number_in(text, static_cast<int>(things.size()) - 1);
-}
-
-template <class T>
-std::string names_of(const std::vector<T>& things) {
-  std::string names;
-  for (const T& thing : things) names.append(names.empty() ? "" : ", ").append(thing.name);
-  return names.empty() ? "none" : names;
-}
-
-}  // namespace
 
 std::string Server::command(const std::string& line) {
   const Result<ConsoleCommand> parsed = parse_console(line);
@@ -95,10 +69,10 @@ std::string Server::run(const ConsoleCommand& command) {
                                            "; who is in stays. Revoke it to end that too");
     }
     case ConsoleVerb::kRelease: {
-      const int grip = index_named(world_.scene->grips, command.text);
-      if (grip < 0)
+      const std::optional<std::size_t> grip = index_named(world_.scene->grips, command.text);
+      if (!grip)
         return "there is no grip '" + command.text + "'. There are: " + names_of(world_.scene->grips);
-      const auto index = static_cast<std::uint32_t>(grip);
+      const auto index = static_cast<std::uint32_t>(*grip);
       const Seat* holder = seats_.holder(index);
       if (!holder) return seats_.grip_name(index) + " is free already";
       seats_.release(*seats_.by_number(holder->number), index);
@@ -122,10 +96,9 @@ std::string Server::run(const ConsoleCommand& command) {
     case ConsoleVerb::kSet: {
       if (command.gravity) return world({HostAction::kGravityScale, 0, command.value});
       const auto& fluids = world_.scene->fluids;
-      const int fluid =
-          command.text.empty() ? (fluids.size() == 1 ? 0 : -1) : index_named(fluids, command.text);
-      if (fluid < 0) return "say which fluid: " + names_of(fluids);
-      return world({HostAction::kViscosity, static_cast<std::uint32_t>(fluid), command.value});
+      const std::optional<std::size_t> fluid = fluid_meant(fluids, command.text);
+      if (!fluid) return "say which fluid: " + names_of(fluids);
+      return world({HostAction::kViscosity, static_cast<std::uint32_t>(*fluid), command.value});
     }
   }
   return {};

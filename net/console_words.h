@@ -1,0 +1,57 @@
+// What is typed at a host and what is typed at a peer have in common: words, quotes, names, `set`.
+#pragma once
+
+#include <charconv>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/math/result.h"
+
+namespace slosh {
+
+constexpr std::size_t kMaxConsoleLine = 1000;  ///< bytes
+
+/// The words of a line; quotes, single or double, keep a name of several words together. Any bytes may come.
+/// Errors: too long, or text that cannot be shown.
+Result<std::vector<std::string>> console_words(std::string_view typed);
+
+/// `set viscosity [FLUID] X` or `set gravity X`.
+struct SetWish {
+  bool gravity = false;  ///< rather than viscosity
+  std::string fluid;     ///< name or number; empty = not said
+  double value = 0.0;    ///< Pa·s, or times the scene's gravity; finite, ≥ 0
+};
+/// `words` begin with "set". Errors say what was expected.
+Result<SetWish> parse_set(const std::vector<std::string>& words);
+
+/// The index of what is called `text`, or of the number that `text` is; nothing when there is no such thing.
+template <class T>
+std::optional<std::size_t> index_named(const std::vector<T>& things, const std::string& text) {
+  for (std::size_t i = 0; i < things.size(); ++i) {
+    if (things[i].name == text) return i;
+  }
+  std::size_t number = 0;
+  const char* end = text.data() + text.size();
+  const auto [at, code] = std::from_chars(text.data(), end, number);
+  if (code != std::errc() || at != end || number >= things.size()) return std::nullopt;
+  return number;
+}
+
+/// "left, right", or "none".
+template <class T>
+std::string names_of(const std::vector<T>& things) {
+  std::string names;
+  for (const T& thing : things) names.append(names.empty() ? "" : ", ").append(thing.name);
+  return names.empty() ? "none" : names;
+}
+
+/// Which fluid a SetWish means: the one it names, or the only one there is.
+template <class T>
+std::optional<std::size_t> fluid_meant(const std::vector<T>& fluids, const std::string& text) {
+  if (!text.empty()) return index_named(fluids, text);
+  return fluids.size() == 1 ? std::optional<std::size_t>(0) : std::nullopt;
+}
+
+}  // namespace slosh
