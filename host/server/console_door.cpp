@@ -147,43 +147,23 @@ bool ConsoleDoor::hear(Caller& caller, const Answer& answer) {
   return false;
 }
 
-void ConsoleDoor::hear_stdin(const Answer& answer) {
-  char buffer[512];
-  const ssize_t got = read(STDIN_FILENO, buffer, sizeof buffer);
-  if (got <= 0) {
-    stdin_over_ = got == 0 || (errno != EAGAIN && errno != EINTR);
-    return;
-  }
-  typed_.append(buffer, static_cast<std::size_t>(got));
-  for (std::size_t end = typed_.find('\n'); end != std::string::npos; end = typed_.find('\n')) {
-    const std::string said = answer(typed_.substr(0, end));
-    typed_.erase(0, end + 1);
-    if (!said.empty()) std::printf("%s\n", said.c_str());
-  }
-  std::fflush(stdout);
-  if (typed_.size() > kMaxConsoleLine) typed_.clear();
-}
-
-void ConsoleDoor::serve(int wait_ms, bool with_stdin, const Answer& answer) {
-  const bool hears_stdin = with_stdin && !stdin_over_;
+void ConsoleDoor::serve(int wait_ms, int also, const Answer& answer) {
   std::vector<pollfd> waiting;
   waiting.push_back({listening_, POLLIN, 0});
   for (const Caller& caller : callers_) waiting.push_back({caller.fd, POLLIN, 0});
-  if (hears_stdin) waiting.push_back({STDIN_FILENO, POLLIN, 0});
+  waiting.push_back({also, POLLIN, 0});
   if (poll(waiting.data(), waiting.size(), wait_ms) <= 0) return;
   for (std::size_t i = callers_.size(); i-- > 0;) {
     if (waiting[i + 1].revents == 0 || hear(callers_[i], answer)) continue;
     ::close(callers_[i].fd);
     callers_.erase(callers_.begin() + static_cast<std::ptrdiff_t>(i));
   }
-  if (waiting[0].revents != 0) {
-    const int fd = accept4(listening_, nullptr, nullptr, SOCK_CLOEXEC);
-    if (fd >= 0 && callers_.size() < kMostCallers)
-      callers_.push_back({fd, {}});
-    else if (fd >= 0)
-      ::close(fd);
-  }
-  if (hears_stdin && waiting.back().revents != 0) hear_stdin(answer);
+  if (waiting[0].revents == 0) return;
+  const int fd = accept4(listening_, nullptr, nullptr, SOCK_CLOEXEC);
+  if (fd >= 0 && callers_.size() < kMostCallers)
+    callers_.push_back({fd, {}});
+  else if (fd >= 0)
+    ::close(fd);
 }
 
 }  // namespace slosh

@@ -1,4 +1,4 @@
-// Where console lines come in: the terminal, and a Unix socket that only its owner may open.
+// Where console lines of other programs come in: a Unix socket that only its owner may open.
 #pragma once
 
 #include <cstdint>
@@ -32,8 +32,9 @@ class ConsoleDoor {
   ConsoleDoor(const ConsoleDoor&) = delete;
   ConsoleDoor& operator=(const ConsoleDoor&) = delete;
 
-  /// Waits for lines at most so long and answers them: those of the socket there, those of stdin on stdout.
-  void serve(int wait_ms, bool with_stdin, const Answer& answer);
+  /// Waits for lines at most so long, or until `also` (a file descriptor, −1 for none) has something to read,
+  /// and answers those that came.
+  void serve(int wait_ms, int also, const Answer& answer);
 
  private:
   ConsoleDoor() = default;
@@ -42,13 +43,10 @@ class ConsoleDoor {
     std::string line;
   };
   bool hear(Caller& caller, const Answer& answer);
-  void hear_stdin(const Answer& answer);
 
   std::filesystem::path path_;
   int listening_ = -1;
   std::vector<Caller> callers_;
-  std::string typed_;
-  bool stdin_over_ = false;
 };
 
 }  // namespace slosh

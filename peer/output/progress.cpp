@@ -24,6 +24,18 @@ std::size_t terminal_width() {
   return 80;
 }
 
+/// The last `most` columns of UTF-8 text.
+std::string tail(const std::string& text, std::size_t most) {
+  const std::size_t all = columns(text);
+  if (all <= most) return text;
+  std::size_t at = 0;
+  for (std::size_t seen = 0; at < text.size(); ++at) {
+    const bool begins = (static_cast<unsigned char>(text[at]) & 0xC0) != 0x80;
+    if (begins && seen++ == all - most) break;
+  }
+  return text.substr(at);
+}
+
 /// The first `most` columns of UTF-8 text.
 std::string cut(const std::string& text, std::size_t most) {
   std::size_t seen = 0;
@@ -52,12 +64,43 @@ Progress::~Progress() {
 
 void Progress::end_line() {
   if (line_open_) std::fputc('\n', stderr);
-  line_open_ = false;
+  line_open_ = line_moves_ = false;
+}
+
+void Progress::clear_line() {
+  if (line_open_) std::fputs("\r\033[K", stderr);
+  line_open_ = line_moves_ = false;
+}
+
+/// What stands on the last line of the terminal.
+void Progress::show() {
+  constexpr char kPrompt[] = "> ";
+  const std::string line = typed_.empty() ? cut(status_, terminal_width() - 1)
+                                          : kPrompt + tail(typed_, terminal_width() - sizeof kPrompt);
+  std::fprintf(stderr, "\r\033[K%s", line.c_str());
+  std::fflush(stderr);
+  line_open_ = line_moves_ = true;
+}
+
+void Progress::typed(const std::string& text) {
+  if (!terminal_ || text == typed_) return;
+  typed_ = text;
+  show();
+}
+
+void Progress::answer(const std::string& line, const std::string& text) {
+  clear_line();
+  typed_.clear();
+  if (!line.empty()) std::fprintf(stderr, "> %s\n", line.c_str());
+  std::fflush(stderr);
+  if (!text.empty()) std::printf("%s\n", text.c_str());
+  std::fflush(stdout);
 }
 
 void Progress::phase(const std::string& name, const std::string& detail) {
   end_line();
   phase_ = name;
+  status_ = name;
   const std::string line = detail.empty() ? name : name + " " + detail;
   if (terminal_) {
     std::fprintf(stderr, "%s …", line.c_str());
@@ -77,18 +120,23 @@ void Progress::update(double fraction, const std::string& text) {
   if (fraction >= 0.0) std::snprintf(percent, sizeof percent, " %3.0f %%", 100.0 * std::min(fraction, 1.0));
   const std::string line = phase_ + percent + "  " + text;
   if (terminal_) {
-    std::fprintf(stderr, "\r\033[K%s", cut(line, terminal_width() - 1).c_str());
-    line_open_ = true;
-  } else {
-    std::fprintf(stderr, "%s\n", line.c_str());
+    status_ = line;
+    if (typed_.empty()) show();
+    return;
   }
+  std::fprintf(stderr, "%s\n", line.c_str());
   std::fflush(stderr);
 }
 
 void Progress::note(const std::string& text) {
-  end_line();
+  // What is kept up to date is shown again below; the name of a phase stays.
+  if (line_moves_)
+    clear_line();
+  else
+    end_line();
   std::fprintf(stderr, "%s\n", text.c_str());
   std::fflush(stderr);
+  if (!typed_.empty()) show();
 }
 
 }  // namespace slosh

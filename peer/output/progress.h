@@ -21,14 +21,28 @@ class Progress {
   /// A line of its own that stays, e.g. a choice that was made.
   void note(const std::string& text);
 
+  /// Whether there is a status line on a terminal.
+  bool terminal() const { return terminal_; }
+  /// What a person has typed so far of a line (LineInput::typed): while that is something it stands where the
+  /// status line was.
+  void typed(const std::string& text);
+  /// The answer to a line that was typed: `line` (when nobody has echoed it) and `text` on stdout, either may
+  /// be empty.
+  void answer(const std::string& line, const std::string& text);
+
  private:
   void end_line();
+  void clear_line();
+  void show();
 
   bool terminal_;
   std::int64_t between_ns_;
   std::int64_t last_line_ns_ = 0;
   std::string phase_;
+  std::string status_;  // the newest, for when nothing is typed any more
+  std::string typed_;
   bool line_open_ = false;
+  bool line_moves_ = false;  // it is kept up to date
 };
 
 /// Columns that UTF-8 text takes on a terminal, counting every code point as one.

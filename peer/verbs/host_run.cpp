@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "net/clock.h"
+#include "peer/output/line_input.h"
 #include "peer/output/summary.h"
 #include "peer/verbs/host_links.h"
 #include "peer/verbs/host_session.h"
@@ -103,8 +104,12 @@ void print_summary(const HostSession& session, const HostReport& report, const S
 std::string run_session(HostSession& session, Progress& progress) {
   RateOf rate;
   std::int64_t next_line_ns = 0;
+  LineInput input(progress.terminal());
+  const auto ask = [&](const std::string& line) { return session.net().ask(line); };
   while (session.host().running()) {
-    session.door().serve(kTurn_ms, true, [&](const std::string& line) { return session.net().ask(line); });
+    session.door().serve(kTurn_ms, input.fd(), ask);
+    for (const std::string& line : input.read()) progress.answer(input.edits() ? line : "", ask(line));
+    progress.typed(input.typed());
     for (const std::string& line : session.news()) progress.note(line);
     session.save_session();
     if (interrupted_by() != 0) return "the host was stopped";
@@ -148,6 +153,7 @@ int host_world(const HostVerbOptions& options) {
   progress.phase("hosting");
   session.start();
   const std::string why = run_session(session, progress);
+  progress.typed("");
   const ServerFigures figures = session.net().figures();
   const double net_seconds = session.net().cpu_seconds();
   session.stop(why);
