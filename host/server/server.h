@@ -35,6 +35,7 @@ struct ServerOptions {
   double silence = 0.5;                 ///< s without a datagram after which a holder counts as lost
   double participant_bodies = 500.0;    ///< Hz at most
   double spectator_bodies = 60.0;       ///< Hz at most
+  bool lock_parameters = false;         ///< only the console sets viscosity and gravity
   std::size_t hands_to_start = 1;       ///< grips that must be taken before the world starts; 0 = it runs
   std::int64_t unix_offset_ns = 0;      ///< Unix time − clock
   std::function<std::int64_t()> clock;  ///< ns; empty = the steady clock
@@ -152,6 +153,7 @@ class Server final : public EndpointEvents, public HostTap {
   void answer(Peer& peer, std::uint32_t request, bool granted, const std::string& text);
   void world_changed(const HostCommand& change, const HostState& state);
   void start_if_held();
+  void note_wish(const HostCommand& command);
   wire::WorldInfo world_info() const;
 
   // server_traffic.cpp

@@ -14,7 +14,7 @@ std::string Server::command(const std::string& line) {
 
 std::string Server::run(const ConsoleCommand& command) {
   const auto world = [&](HostCommand what) {
-    waits_for_hands_ = false;
+    note_wish(what);
     world_.command(what, [this](const Result<bool>& done) {
       if (done) return;
       const std::string problem = done.error().text();

@@ -10,7 +10,9 @@ namespace slosh {
 namespace {
 
 template <class M>
-constexpr bool kIsRequest = requires(const M& m) { m.request; };
+constexpr bool kIsRequest = requires(const M& m) {
+  m.request;
+};
 
 }  // namespace
 
@@ -162,12 +164,18 @@ void Server::start_if_held() {
   notice_all("the world starts");
 }
 
+// Who pauses or starts the world by hand does not want it to start by itself any more.
+void Server::note_wish(const HostCommand& command) {
+  if (command.action == HostAction::kPause || command.action == HostAction::kContinue)
+    waits_for_hands_ = false;
+}
+
 void Server::ask_world(Peer& peer, std::uint32_t request, const HostCommand& command,
                        const std::string& did) {
   if (!peer.participant)
     return answer(peer, request, false,
                   "this link is for watching; only those with hands may change the world");
-  waits_for_hands_ = false;
+  note_wish(command);
   const ConnectionId connection = peer.id;
   const std::string name = name_of(peer);
   world_.command(command, [this, connection, request, name, did](const Result<bool>& done) {
@@ -189,6 +197,10 @@ wire::Fault Server::handle(Peer& peer, const wire::WorldRequest& request) {
 }
 
 wire::Fault Server::handle(Peer& peer, const wire::ParameterRequest& request) {
+  if (options_.lock_parameters && peer.participant) {
+    answer(peer, request.request, false, "here only the host sets viscosity and gravity");
+    return {};
+  }
   char did[120];
   if (request.parameter == wire::Parameter::kGravityScale) {
     std::snprintf(did, sizeof did, "set gravity to %.3g times the scene's", request.value);

@@ -38,6 +38,7 @@ constexpr double kMaxForce = 1e7;               ///< N, N·m
 constexpr std::size_t kMaxPoseRepeats = 13;     ///< as many as fit into a datagram
 constexpr std::size_t kMaxMissingRanges = 128;  ///< likewise
 constexpr double kMaxViscosity = 1e7;           ///< Pa·s, as scenes have it
+constexpr double kMaxGravityScale = 2.0;        ///< times the scene's
 constexpr std::size_t kTokenBytes = 16;
 
 using Token = std::array<std::uint8_t, kTokenBytes>;
@@ -278,7 +279,7 @@ template <class V>
 void visit(V& v, WorldInfo& m) {
   v.flag("paused", m.paused);
   v.natural("run", m.run, 0, 0xffffffff);
-  v.real64("gravity_scale", m.gravity_scale, 0.0, 2.0);
+  v.real64("gravity_scale", m.gravity_scale, 0.0, kMaxGravityScale);
   v.list("viscosities", m.viscosities, kMaxFluids,
          [](auto& each, double& value) { each.real64("viscosity", value, 0.0, kMaxViscosity); });
 }

@@ -136,11 +136,8 @@ wire::Fault RemoteLink::on_answer(wire::ByteView payload) {
   if (found == requests_.end()) return {};
   const Request request = *found;
   requests_.erase(found);
-  const bool about_grip = request.type == wire::ControlType::kGripRequest;
   if (answer.granted) {
-    if (about_grip) {
-      notice((request.take ? "you hold grip '" : "you let go of grip '") + grip_name(request.grip) + "'");
-    }
+    if (!request.done.empty()) notice(request.done);
     return {};
   }
   const std::string why = answer.text.empty() ? "the host refused" : answer.text;

@@ -1,10 +1,17 @@
-// Which grips a peer asks for, and what its keys do: a part of RemoteLink.
+// What a peer asks for: grips, the world, its parameters. A part of RemoteLink.
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <cstdio>
 
 #include "peer/remote/remote_link.h"
 
 namespace slosh {
+namespace {
+
+constexpr std::size_t kMostRequests = 64;  // that a host left without an answer
+
+}  // namespace
 
 std::string RemoteLink::grip_name(std::uint32_t grip) const {
   return grip < world_.scene.grips.size() ? world_.scene.grips[grip].name : std::to_string(grip);
@@ -51,13 +58,51 @@ void RemoteLink::ask_for_grips() {
 }
 
 void RemoteLink::request_grip(std::uint32_t grip, bool take, bool any) {
-  if (requests_.size() > 64) return;  // a host that never answers
-  requests_.push_back({next_request_, wire::ControlType::kGripRequest, grip, take, any});
+  if (requests_.size() > kMostRequests) return;
+  const std::string what =
+      std::string(take ? "you hold grip '" : "you let go of grip '") + grip_name(grip) + "'";
   wire::GripRequest request;
-  request.request = next_request_++;
+  request.request = remember({0, wire::ControlType::kGripRequest, grip, take, any, what});
   request.grip = grip;
   request.take = take;
   say(request);
+}
+
+void RemoteLink::request_world(wire::WorldAction action) {
+  constexpr std::array kDone{"you paused the world", "the world goes on", "the world is back at its start"};
+  if (requests_.size() > kMostRequests) return;
+  wire::WorldRequest request;
+  request.request = remember(
+      {0, wire::ControlType::kWorldRequest, 0, false, false, kDone[static_cast<std::size_t>(action)]});
+  request.action = action;
+  say(request);
+}
+
+void RemoteLink::request_parameter(const RemoteCommand& command) {
+  if (requests_.size() > kMostRequests) return;
+  char done[160];
+  if (command.parameter == wire::Parameter::kGravityScale) {
+    std::snprintf(done, sizeof done, "gravity is %.3g times the scene's now", command.value);
+  } else {
+    const auto& fluids = world_.scene.fluids;
+    const std::string name =
+        command.index < fluids.size() ? fluids[command.index].name : std::to_string(command.index);
+    std::snprintf(done, sizeof done, "the viscosity of '%.60s' is %.4g Pa·s now", name.c_str(),
+                  command.value);
+  }
+  wire::ParameterRequest request;
+  request.request = remember({0, wire::ControlType::kParameterRequest, 0, false, false, done});
+  request.parameter = command.parameter;
+  request.index = command.index;
+  request.value = command.value;
+  say(request);
+}
+
+/// Until its answer comes; returns its number.
+std::uint32_t RemoteLink::remember(Request request) {
+  request.number = next_request_++;
+  requests_.push_back(std::move(request));
+  return requests_.back().number;
 }
 
 /// Asks for the first grip that nobody holds and that was not refused before.
@@ -97,14 +142,15 @@ void RemoteLink::obey(const RemoteCommand& command) {
       if (!let_go && !take_a_free_grip(false)) notice("no grip is free");
       return;
     }
-    case RemoteCommand::Kind::kWorld: {
-      requests_.push_back({next_request_, wire::ControlType::kWorldRequest, 0, false, false});
-      wire::WorldRequest request;
-      request.request = next_request_++;
-      request.action = command.action;
-      say(request);
+    case RemoteCommand::Kind::kFreeGrip:
+      if (!take_a_free_grip(false)) notice("no grip is free");
       return;
-    }
+    case RemoteCommand::Kind::kWorld:
+      request_world(command.action);
+      return;
+    case RemoteCommand::Kind::kParameter:
+      request_parameter(command);
+      return;
   }
 }
 

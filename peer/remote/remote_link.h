@@ -79,6 +79,7 @@ class RemoteLink final : public EndpointEvents {
     std::uint32_t grip = 0;
     bool take = false;
     bool any = false;  // any grip would do
+    std::string done;  // what to tell the person when it is granted
   };
 
   // remote_link.cpp: turns and datagrams; remote_connect.cpp: the connection.
@@ -111,6 +112,9 @@ class RemoteLink final : public EndpointEvents {
   void go_live_if_ready(std::int64_t now_ns);
   void ask_for_grips();
   void request_grip(std::uint32_t grip, bool take, bool any);
+  void request_world(wire::WorldAction action);
+  void request_parameter(const RemoteCommand& command);
+  std::uint32_t remember(Request request);
   bool take_a_free_grip(bool quietly);
   void obey(const RemoteCommand& command);
   void bad_host(const wire::Fault& fault, const std::string& what);

@@ -5,12 +5,6 @@
 #include "net/clock.h"
 
 namespace slosh {
-namespace {
-
-constexpr std::size_t kMostPeople = 8;  // in a HUD
-
-}  // namespace
-
 std::string connection_text(const RemoteStatus& status, double picture_delay, std::int64_t now_ns) {
   char text[160] = "";
   switch (status.state) {
@@ -33,11 +27,12 @@ std::string connection_text(const RemoteStatus& status, double picture_delay, st
   return text;
 }
 
-std::string people_text(const RemoteStatus& status, const std::vector<std::string>& grip_names) {
+std::string people_text(const RemoteStatus& status, const std::vector<std::string>& grip_names,
+                        std::size_t most) {
   std::string text;
   std::size_t shown = 0;
   for (const wire::RosterEntry& entry : status.peers) {
-    if (shown == kMostPeople) {
+    if (shown == most) {
       text += "and " + std::to_string(status.peers.size() - shown) + " more\n";
       break;
     }

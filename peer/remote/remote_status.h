@@ -54,10 +54,19 @@ struct RemoteStatus {
 };
 
 struct RemoteCommand {
-  enum class Kind { kGrip, kNextGrip, kWorld } kind = Kind::kGrip;
+  enum class Kind {
+    kGrip,       ///< take or release `grip`
+    kFreeGrip,   ///< take the first free one
+    kNextGrip,   ///< let go of all that is held, else take the first free one
+    kWorld,      ///< do `action`
+    kParameter,  ///< set `parameter`
+  } kind = Kind::kGrip;
   std::uint32_t grip = 0;
   bool take = true;
   wire::WorldAction action = wire::WorldAction::kPause;
+  wire::Parameter parameter = wire::Parameter::kGravityScale;
+  std::uint32_t index = 0;  ///< fluid
+  double value = 0.0;       ///< Pa·s, or times the scene's gravity
 };
 
 /// Between the network's thread and the others. Everything under the mutex.
@@ -71,7 +80,9 @@ struct RemoteShared {
 
 /// "reconnecting for 3 s", "rtt 61 ms, delay 12 ms".
 std::string connection_text(const RemoteStatus& status, double picture_delay, std::int64_t now_ns);
-/// A line a person: "Ana: left_hand", "Ben (away)", "Cyd looks on".
-std::string people_text(const RemoteStatus& status, const std::vector<std::string>& grip_names);
+/// A line a person: "Ana: left_hand", "Ben (away)", "Cyd looks on"; at most `most` of them, and how many
+/// more.
+std::string people_text(const RemoteStatus& status, const std::vector<std::string>& grip_names,
+                        std::size_t most = 8);
 
 }  // namespace slosh

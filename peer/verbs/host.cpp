@@ -54,7 +54,8 @@ void add_host(CLI::App& app, VerbRun& chosen) {
                                                                 : "";
           },
           "NAME"));
-  verb->add_option("--expires", o->expires, "When the links end, e.g. 90m or 2h (never); who is in stays in")
+  verb->add_option("--expires", o->expires,
+                   "When the links admit nobody new any more, e.g. 90m or 2h (never); who is in stays in")
       ->check(CLI::Validator(
           [](std::string& text) {
             const Result<std::int64_t> time = parse_duration(text);
@@ -68,6 +69,8 @@ void add_host(CLI::App& app, VerbRun& chosen) {
   verb->add_option("--wait", o->wait, "Grips that must be held before the world starts")
       ->check(CLI::Range(0, 64))
       ->capture_default_str();
+  verb->add_flag("--lock-parameters", o->lock_parameters,
+                 "Only the host sets viscosity and gravity (else everybody who may take hold, too)");
   verb->add_option("--seconds", o->seconds, "Simulated seconds (until it is ended)")
       ->check(CLI::Range(0.01, 1e6));
   add_world_options(*verb, *o, "all but one");

@@ -18,6 +18,7 @@ struct HostVerbOptions : PlayOptions {
   std::string checkpoint;  ///< file, "none", or empty = chosen
   std::string resume;
   std::size_t watchers = 150;
+  bool lock_parameters = false;
   int wait = 1;  ///< grips that must be held before the world starts
 };
 

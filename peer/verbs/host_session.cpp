@@ -84,6 +84,7 @@ Result<bool> HostSession::open_network() {
   ServerOptions server;
   server.limits.participants = p.scene.grips.size() + kSpareHands;
   server.limits.spectators = options_.watchers;
+  server.lock_parameters = options_.lock_parameters;
   server.hands_to_start = hosted_.waits ? static_cast<std::size_t>(options_.wait) : 0;
   server.unix_offset_ns = unix_offset_ns();
   server.tell = [this](const std::string& line) {

@@ -6,6 +6,7 @@
 
 #include "net/clock.h"
 #include "net/link.h"
+#include "peer/remote/peer_console.h"
 #include "peer/remote/peer_key.h"
 #include "peer/verbs/common_options.h"
 #include "peer/verbs/interrupt.h"
@@ -30,7 +31,7 @@ constexpr const char* kFiles =
     "Without a display, or with --headless, the run becomes a film. DIR gets what `play` writes: view.mp4,\n"
     "final.png, summary.json (with what the network was like)";
 
-constexpr const char* kJoinFooter =
+constexpr const char* kJoinFiles =
     "; and of the hands that were yours wrenches.csv,\n"
     "poses.csv and wrenches.png.\n"
     "\n"
@@ -41,6 +42,10 @@ constexpr const char* kJoinFooter =
     "place\n"
     "and your grips back, also after this program was ended and started again, within a minute.\n"
     "\n"
+    "While it runs, type in the terminal (who looks on is refused what changes the world):\n";
+
+constexpr const char* kJoinEnd =
+    "\n\n"
     "In the window: G takes a free grip or lets go, Space pauses the world for everybody, R starts it again\n"
     "for everybody, left drag turns the camera, the wheel zooms, H helps, Esc ends. Ctrl-C ends in order.\n"
     "\n"
@@ -49,11 +54,15 @@ constexpr const char* kJoinFooter =
     "  slosh join LINK --name Ana --grip left_hand --device mouse\n"
     "  slosh join LINK --headless --seconds 10 --out out/ana";
 
-constexpr const char* kWatchFooter =
+constexpr const char* kWatchFiles =
     ".\n"
     "\n"
     "LINK is all that is needed: the host prints one for those who only look on.\n"
     "\n"
+    "While it runs, type in the terminal (who looks on is refused what changes the world):\n";
+
+constexpr const char* kWatchEnd =
+    "\n\n"
     "Examples:\n"
     "  slosh watch LINK\n"
     "  slosh watch LINK --headless --seconds 10 --out out/film";
@@ -188,7 +197,8 @@ void add(CLI::App& app, VerbRun& chosen, bool watch) {
   verb->add_option("--out", o->out, "Folder for the results (headless: out/<scene>-<name>; a window: none)");
   add_show_options(*verb, *o, true);
   verb->add_option("--key", o->key, "File with your key, made on first use (one for each person)");
-  verb->footer(std::string(kFiles) + (watch ? kWatchFooter : kJoinFooter));
+  verb->footer(std::string(kFiles) + (watch ? kWatchFiles : kJoinFiles) + peer_console_help() +
+               (watch ? kWatchEnd : kJoinEnd));
   verb->callback([&chosen, o] { chosen = [o] { return join(*o); }; });
 }
 

@@ -1,6 +1,8 @@
 // A world that runs while somebody looks on: in this process, or on a host elsewhere.
 #pragma once
 
+#include <string>
+
 #include "net/snapshot_queue.h"
 #include "peer/haptics/mouse_device.h"
 #include "peer/hud/hud.h"
@@ -38,6 +40,10 @@ class LiveRun {
   virtual bool start_again() { return false; }
   /// The key for grips was pressed: take the next free one, or let go of what is held.
   virtual void change_grip() {}
+  /// Whether lines may be typed at this run (hear()).
+  virtual bool hears() const { return false; }
+  /// One line that was typed, to its answer; may be empty.
+  virtual std::string hear(const std::string& line) { return line; }
   /// Where the mouse moves the handle of grip `i`; null when that hand is no mouse.
   virtual MouseTarget* mouse_target(std::size_t i) = 0;
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <thread>
 
 #include "peer/verbs/interrupt.h"
@@ -12,6 +13,8 @@
 
 namespace slosh {
 namespace {
+
+constexpr std::chrono::milliseconds kTurn{50};
 
 void fill_view(RunSummary& summary, const HeadlessView& view, const ViewOptions& options,
                std::uint64_t dropped) {
@@ -46,6 +49,13 @@ std::string running_text(const Rates& rates, double seconds) {
   return text;
 }
 
+void hear_lines(LiveRun& run, LineInput* input, Progress& progress) {
+  if (!input) return;
+  for (const std::string& line : input->read())
+    progress.answer(input->edits() ? line : std::string(), run.hear(line));
+  progress.typed(input->typed());
+}
+
 Result<bool> show_headless(const Stage& stage, LiveRun& run, const ShowOptions& options, Progress& progress,
                            RunSummary& summary) {
   std::unique_ptr<HeadlessView> view;
@@ -70,13 +80,21 @@ Result<bool> show_headless(const Stage& stage, LiveRun& run, const ShowOptions& 
 
   progress.phase("running");
   run.start();
+  std::optional<LineInput> input;
+  if (run.hears()) input.emplace(progress.terminal());
   while (run.running()) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    if (input)
+      input->wait(kTurn);
+    else
+      std::this_thread::sleep_for(kTurn);
+    hear_lines(run, input ? &*input : nullptr, progress);
     const Rates rates = run.note_rates();
     progress.update(std::isfinite(stage.seconds) ? (rates.time - rates.start) / stage.seconds : -1.0,
                     running_text(rates, stage.seconds));
     if (interrupted_by() != 0) run.request_stop();
   }
+  progress.typed("");
+  input.reset();
   run.stop();
 
   if (view) {

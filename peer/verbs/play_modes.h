@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 
+#include "peer/output/line_input.h"
 #include "peer/output/progress.h"
 #include "peer/verbs/live_run.h"
 #include "peer/verbs/play_options.h"
@@ -29,6 +30,9 @@ Result<bool> play_headless(const Prepared& prepared, const PlayOptions& options,
                            RunSummary& summary);
 Result<bool> play_in_window(const Prepared& prepared, const PlayOptions& options, Progress& progress,
                             RunSummary& summary);
+
+/// Lines typed at a run go to it, their answers to stdout; nothing where the run hears none. Does not wait.
+void hear_lines(LiveRun& run, LineInput* input, Progress& progress);
 
 /// "3.20 s of 10.00 s, real time × 0.98, devices 1000 Hz".
 std::string running_text(const Rates& rates, double seconds);

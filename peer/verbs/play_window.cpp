@@ -82,12 +82,15 @@ class WindowRun {
 
   Outcome show(Progress& progress, Histogram& frame_time, std::uint64_t& frames) {
     SnapshotPointer snapshot;
+    std::optional<LineInput> typed;
+    if (run_.hears()) typed.emplace(progress.terminal());
     while (true) {
       const InputState& input = context_.poll();
       if (context_.should_close() || interrupted_by() != 0) return Outcome::kEnd;
       if (input.pressed(Key::kEscape) || input.pressed(Key::kQ)) return Outcome::kEnd;
       if (input.pressed(Key::kR) && !run_.start_again()) return Outcome::kAgain;
       handle(input);
+      hear_lines(run_, typed ? &*typed : nullptr, progress);
       if (SnapshotPointer newest = run_.newest_picture()) {
         snapshot = std::move(newest);
         painter_.record(*snapshot);
@@ -184,6 +187,7 @@ Result<bool> show_in_window(const Stage& stage, const MakeRun& make_run, const S
     WindowRun window(stage, run, *context.value(), *renderer.value(), film);
     run.start();
     outcome = window.show(progress, frame_time, summary.frames);
+    progress.typed("");
     run.stop();
     if (outcome != Outcome::kEnd) continue;
     run.report(summary);

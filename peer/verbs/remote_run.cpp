@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "net/clock.h"
+#include "peer/remote/peer_console.h"
 
 namespace slosh {
 
@@ -164,6 +165,14 @@ void RemoteRun::change_grip() {
   RemoteCommand command;
   command.kind = RemoteCommand::Kind::kNextGrip;
   session_.ask(command);
+}
+
+std::string RemoteRun::hear(const std::string& line) {
+  const PeerLine heard =
+      peer_line(line, session_.status(), stage_.scene, session_.world().maker->delay(), steady_now_ns());
+  for (const RemoteCommand& command : heard.commands) session_.ask(command);
+  if (heard.quit) request_stop();
+  return heard.text;
 }
 
 void RemoteRun::report(RunSummary& s) const {

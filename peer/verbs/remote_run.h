@@ -44,6 +44,8 @@ class RemoteRun final : public LiveRun {
   bool paused() const override { return status_.world.paused; }
   bool start_again() override;
   void change_grip() override;
+  bool hears() const override { return true; }
+  std::string hear(const std::string& line) override;
   MouseTarget* mouse_target(std::size_t i) override { return mice_[i].get(); }
   void report(RunSummary& summary) const override;
 

@@ -148,6 +148,42 @@ TEST_F(ServerTest, TheWorldObeysThoseWithHands) {
   EXPECT_NE(ana.answers.back().text.find("too much"), std::string::npos);
 }
 
+TEST_F(WaitingServerTest, ParametersSetBeforehandDoNotKeepTheWorldFromStarting) {
+  ScriptedPeer& ana = join(1, "Ana");
+  ana.say(wire::ParameterRequest{1, wire::Parameter::kGravityScale, 0, 0.5});
+  go(0.1);
+  server->command("set gravity 1");
+  ana.take(0);
+  go(0.1);
+  ASSERT_EQ(commands.size(), 3u);
+  EXPECT_EQ(commands[2].action, HostAction::kContinue);
+}
+
+class LockedServerTest : public ServedTest {
+ protected:
+  static ServerOptions locked() {
+    ServerOptions options = running();
+    options.lock_parameters = true;
+    return options;
+  }
+  LockedServerTest() : ServedTest(locked()) {}
+};
+
+TEST_F(LockedServerTest, OnlyTheHostSetsParameters) {
+  ScriptedPeer& ana = join(1, "Ana");
+  ana.say(wire::ParameterRequest{1, wire::Parameter::kFluidViscosity, 0, 0.5});
+  ana.say(wire::ParameterRequest{2, wire::Parameter::kGravityScale, 0, 0.5});
+  ana.say(wire::WorldRequest{3, wire::WorldAction::kPause});
+  go(0.1);
+  ASSERT_EQ(ana.answers.size(), 3u);
+  EXPECT_EQ(ana.answers[0].text, "here only the host sets viscosity and gravity");
+  EXPECT_FALSE(ana.answers[1].granted);
+  EXPECT_TRUE(ana.answers[2].granted) << "a pause is no parameter";
+  server->command("set gravity 0.5");
+  ASSERT_EQ(commands.size(), 2u);
+  EXPECT_EQ(commands[1].action, HostAction::kGravityScale);
+}
+
 TEST_F(WaitingServerTest, TheWorldWaitsForTheFirstHand) {
   ScriptedPeer& ana = join(1, "Ana");
   EXPECT_TRUE(ana.noticed("waits for the first hand"));

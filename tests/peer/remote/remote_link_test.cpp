@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <set>
+#include <tuple>
 
 #include "scripted_host.h"
 
@@ -223,6 +224,40 @@ TEST(RemoteLink, CommandsReachTheHost) {
   EXPECT_EQ(both.host.world_requests[0].action, wire::WorldAction::kPause);
   both.ask(next);
   ASSERT_TRUE(both.run(1.0, [&] { return both.status().held == std::vector<bool>{true, false}; }));
+}
+
+TEST(RemoteLink, ParametersAreAskedForAndTheAnswerIsTold) {
+  Together both;
+  ASSERT_TRUE(both.run_until(LinkState::kLive));
+  RemoteCommand set;
+  set.kind = RemoteCommand::Kind::kParameter;
+  set.parameter = wire::Parameter::kGravityScale;
+  set.value = 0.5;
+  both.ask(set);
+  ASSERT_TRUE(both.run(1.0, [&] { return both.notices().find("gravity is 0.5") != std::string::npos; }));
+  ASSERT_EQ(both.host.parameter_requests.size(), 1u);
+  EXPECT_EQ(both.host.parameter_requests[0].parameter, wire::Parameter::kGravityScale);
+  EXPECT_EQ(both.host.parameter_requests[0].value, 0.5);
+  both.host.refuse_parameters = "here only the host sets viscosity and gravity";
+  set.parameter = wire::Parameter::kFluidViscosity;
+  set.index = 3;
+  both.ask(set);
+  ASSERT_TRUE(both.run(1.0, [&] { return both.notices().find("only the host sets") != std::string::npos; }));
+  EXPECT_EQ(both.host.parameter_requests[1].index, 3u);
+  EXPECT_EQ(both.notices().find("the viscosity of"), std::string::npos) << "it was not changed";
+}
+
+TEST(RemoteLink, WhoDrawsNothingAsksForNoPictures) {
+  for (const auto& [wanted, film, wish] : {std::tuple{true, false, wire::PictureWish::kNewest},
+                                           {true, true, wire::PictureWish::kFilm},
+                                           {false, false, wire::PictureWish::kNone}}) {
+    RemoteOptions options;
+    options.pictures.wanted = wanted;
+    options.pictures.film = film;
+    Together both({}, options);
+    ASSERT_TRUE(both.run_until(LinkState::kLive));
+    EXPECT_EQ(both.host.hellos[0].pictures, wish);
+  }
 }
 
 TEST(RemoteLink, AStalledHostLetsTheForceGoAndIsToldOf) {

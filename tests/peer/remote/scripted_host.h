@@ -60,6 +60,7 @@ class ScriptedHost final : public EndpointEvents {
   wire::Bytes package;
   std::function<void(const wire::Hello&)> on_hello;  // in place of the welcome
   std::function<std::optional<std::string>(const wire::GripRequest&)> refuse_grip;
+  std::string refuse_parameters;  // in these words, when not empty
   std::uint64_t session = 42;
   std::uint32_t run = 0;
   double clock_ahead = 500.0;  // s, of the peer's clock
@@ -71,6 +72,7 @@ class ScriptedHost final : public EndpointEvents {
   std::vector<wire::Hello> hellos;
   std::vector<wire::GripRequest> grip_requests;
   std::vector<wire::WorldRequest> world_requests;
+  std::vector<wire::ParameterRequest> parameter_requests;
   std::vector<wire::PoseSample> poses;
   int datagrams = 0;
   bool said_bye = false;
@@ -206,6 +208,13 @@ class ScriptedHost final : public EndpointEvents {
         world_requests.push_back(request);
         return {};
       }
+      case wire::ControlType::kParameterRequest: {
+        wire::ParameterRequest request;
+        if (wire::Fault fault = wire::decode(payload, request)) return fault;
+        parameter_requests.push_back(request);
+        say(wire::Answer{request.request, refuse_parameters.empty(), refuse_parameters});
+        return {};
+      }
       case wire::ControlType::kBye:
         said_bye = true;
         return {};
@@ -245,7 +254,8 @@ struct Together {
   }
 
   /// Goes on for `seconds`, or until `done`; true when that came.
-  bool run(double seconds, const std::function<bool()>& done = [] { return false; }) {
+  bool run(
+      double seconds, const std::function<bool()>& done = [] { return false; }) {
     for (double passed = 0.0; passed < seconds; passed += 0.001) {
       network.advance(0.001);
       host.time += 0.001;

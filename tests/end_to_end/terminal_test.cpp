@@ -1,0 +1,125 @@
+// What a person types while the program keeps a line up to date, at the host and at a peer.
+#include "terminal.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <memory>
+#include <sstream>
+#include <thread>
+
+#include "process.h"
+
+namespace slosh {
+namespace {
+
+using std::filesystem::path;
+using test::read_text;
+using test::Terminal;
+
+class TerminalTest : public ::testing::Test {
+ protected:
+  path home_;
+  void SetUp() override {
+    std::filesystem::remove_all(test::test_folder());
+    std::string pattern = (std::filesystem::temp_directory_path() / "slosh-XXXXXX").string();
+    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+    home_ = pattern;
+  }
+  void TearDown() override { std::filesystem::remove_all(home_); }
+  path folder(const std::string& name) const { return test::test_folder() / name; }
+  std::unique_ptr<Terminal> at_terminal(const std::string& name, std::vector<std::string> arguments) const {
+    const std::string home = home_.string();
+    std::vector<std::string> command{"env", "XDG_STATE_HOME=" + home, "XDG_DATA_HOME=" + home,
+                                     "XDG_RUNTIME_DIR=" + home, test::program()};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    return std::make_unique<Terminal>(command, folder(name));
+  }
+  std::unique_ptr<Terminal> host(std::vector<std::string> more = {}) const {
+    std::vector<std::string> arguments{"host",         "probe", "--spacing", "0.01",
+                                       "--threads",    "1",     "--listen",  "127.0.0.1:0",
+                                       "--checkpoint", "none",  "--links",   "links.txt"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return at_terminal("host", arguments);
+  }
+  std::unique_ptr<Terminal> join(const std::string& verb, const std::string& name) const {
+    std::istringstream lines(read_text(folder("host") / "links.txt"));
+    std::string word, link, rest, found;
+    while (lines >> word >> link && std::getline(lines, rest)) {
+      if (word == (verb == "join" ? "hold" : "watch")) found = link;
+    }
+    return at_terminal(name, {verb, found, "--name", name, "--headless", "--no-render", "--out", "out",
+                              "--key", "../" + name + ".key"});
+  }
+};
+
+TEST_F(TerminalTest, WhatIsTypedIsNotPaintedOver) {
+  const auto host = this->host();
+  ASSERT_TRUE(host->shows("nobody here yet")) << host->screen();
+  EXPECT_FALSE(host->echoes()) << "the program does it";
+  const std::size_t before = host->screen().size();
+  host->type("statusX");
+  ASSERT_TRUE(host->shows("> statusX", before)) << host->screen();
+  const std::string typed = host->screen();
+  // The line is kept up to date twice a second; now it must not be.
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  EXPECT_EQ(host->screen(), typed);
+  host->type("\x7f\r");
+  EXPECT_TRUE(host->shows("waiting for hands", typed.size())) << host->screen();
+  EXPECT_NE(host->screen().find("> status\r\n"), std::string::npos)
+      << "what was asked stays above its answer";
+  const std::size_t answered = host->screen().size();
+  EXPECT_TRUE(host->shows("nobody here yet", answered)) << "and the line is back";
+  host->type("quit\n");
+  EXPECT_TRUE(host->shows("the host has ended the session")) << host->screen();
+  EXPECT_TRUE(host->shows("hosted")) << host->screen();
+  EXPECT_EQ(host->wait(), 0);
+  EXPECT_TRUE(host->echoes()) << "as it was found";
+}
+
+TEST_F(TerminalTest, APeerSetsParametersAndPausesFromItsTerminal) {
+  const auto host = this->host();
+  ASSERT_TRUE(host->shows("nobody here yet")) << host->screen();
+  const auto ana = join("join", "Ana");
+  ASSERT_TRUE(ana->shows("you hold grip")) << ana->screen();
+  const auto eve = join("watch", "Eve");
+  ASSERT_TRUE(eve->shows("looking on")) << eve->screen();
+
+  ana->type("set gravity 0.5\r");
+  EXPECT_TRUE(ana->shows("gravity is 0.5 times the scene's now")) << ana->screen();
+  EXPECT_TRUE(host->shows("Ana set gravity to 0.5 times the scene's")) << host->screen();
+  EXPECT_TRUE(eve->shows("Ana set gravity to 0.5 times the scene's")) << eve->screen();
+  ana->type("set viscosity 1e6\r");
+  EXPECT_TRUE(ana->shows("too much for the time step")) << ana->screen();
+  ana->type("pause\r");
+  EXPECT_TRUE(host->shows("Ana paused the world")) << host->screen();
+  ana->type("status\r");
+  EXPECT_TRUE(ana->shows("paused, gravity × 0.5")) << ana->screen();
+  ana->type("continue\rrelease\r");
+  EXPECT_TRUE(ana->shows("you let go of grip")) << ana->screen();
+  const std::size_t before = ana->screen().size();
+  ana->type("take\r");
+  EXPECT_TRUE(ana->shows("you hold grip", before)) << ana->screen();
+  eve->type("set gravity 1\r");
+  EXPECT_TRUE(eve->shows("this link is for watching")) << eve->screen();
+  eve->type("who\r");
+  EXPECT_TRUE(eve->shows("Eve (you) looks on")) << eve->screen();
+  for (const auto* one : {&ana, &eve}) {
+    (*one)->type("quit\r");
+    EXPECT_EQ((*one)->wait(), 0) << (*one)->screen();
+    EXPECT_TRUE((*one)->echoes());
+  }
+}
+
+TEST_F(TerminalTest, AHostMayKeepTheParametersToItself) {
+  const auto host = this->host({"--lock-parameters"});
+  ASSERT_TRUE(host->shows("nobody here yet")) << host->screen();
+  const auto ana = join("join", "Ana");
+  ASSERT_TRUE(ana->shows("you hold grip")) << ana->screen();
+  ana->type("set gravity 0.5\r");
+  EXPECT_TRUE(ana->shows("here only the host sets viscosity and gravity")) << ana->screen();
+}
+
+}  // namespace
+}  // namespace slosh
