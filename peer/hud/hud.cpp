@@ -129,9 +129,12 @@ void Hud::draw_help() const {
           "wheel       nearer and farther");
     }
     if (facts_.shared) ImGui::TextUnformatted("\nG           take a free grip, let go");
+    if (facts_.may_change) {
+      ImGui::TextUnformatted(
+          "\nSpace       pause, go on\n"
+          "R           start again");
+    }
     ImGui::TextUnformatted(
-        "\nSpace       pause, go on\n"
-        "R           start again\n"
         "C           the camera back to where it was\n"
         "H           this help\n"
         "Esc, Q      end");

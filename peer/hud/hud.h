@@ -18,6 +18,7 @@ struct HudFacts {
   std::size_t fluid_particles = 0;
   std::size_t boundary_particles = 0;
   bool shared = false;         ///< others may hold grips too: the help says how to take one
+  bool may_change = true;      ///< pausing and starting again are this person's to do: the help says how
   double picture_rate = 30.0;  ///< snapshots a simulated second, spaces the strip charts
 };
 

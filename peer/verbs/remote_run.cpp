@@ -70,7 +70,7 @@ HudFacts RemoteRun::facts(double picture_rate) const {
   facts.title = stage_.scene.name;
   facts.spacing = session_.world().spacing;
   facts.fluid_particles = status_.welcome.particles;
-  facts.shared = status_.welcome.role == wire::Role::kParticipant;
+  facts.shared = facts.may_change = status_.welcome.role == wire::Role::kParticipant;
   facts.picture_rate = picture_rate;
   return facts;
 }
