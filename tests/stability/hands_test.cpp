@@ -155,6 +155,9 @@ struct BadHandle {
   Pose pose;
   Twist twist;
 };
+void PrintTo(const BadHandle& bad, std::ostream* out) {
+  *out << bad.name;
+}
 
 class Broken : public ::testing::TestWithParam<BadHandle> {};
 
