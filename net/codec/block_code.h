@@ -13,24 +13,29 @@
 
 namespace slosh::codec {
 
-/// What is known of a block before its bits are read, and what they change.
-struct Block {
-  BlockPoints points;          ///< of the particles that are still there, in the epoch's order
+/// Who is in a block.
+struct BlockMembers {
   std::uint8_t slot[kBlock];   ///< their places in the block at the epoch's start, ascending
   std::uint8_t fluid[kBlock];  ///< Snapshot::fluid_index
   int count = 0;
   bool born = false;  ///< its first frame: the next one's coding has no velocities
 };
 
+/// What is known of a block before its bits are read, and what they change.
+struct Block : BlockMembers {
+  BlockPoints points;  ///< of the particles that are still there, in the epoch's order
+};
+
 enum class BlockMode : std::uint8_t { kRest, kMoved, kMovedSomeRetired, kPacked };
 
 /// Removes the `gone` (indices into the block's present particles, ascending, `many` of them).
-void remove_particles(const std::uint8_t* gone, int many, Block& block);
+void remove_members(const std::uint8_t* gone, int many, BlockMembers& block);
 void remove_points(const std::uint8_t* gone, int many, int count, BlockPoints& points);
 
 /// Blocks of one piece in turn.
 class BlockWriter {
  public:
+  BlockWriter();
   void start();
   /// Bytes so far, to within a few.
   std::size_t size() const { return out_.size(); }
@@ -44,23 +49,27 @@ class BlockWriter {
     std::copy(mark.class_before, mark.class_before + 3, class_before_);
   }
 
-  /// `block` has the new points without the `gone`; `last` and `before` (null in a block's second frame)
-  /// still have them.
-  void temporal(const Block& block, BlockPoints last, const BlockPoints* before, const std::uint8_t* gone,
-                int many, bool packed);
+  /// `block` and its points `now` are without the `gone`; `last` and `before` (null in a block's second
+  /// frame) still have them.
+  void temporal(const BlockMembers& block, const BlockPoints& now, const BlockPoints& last,
+                const BlockPoints* before, const std::uint8_t* gone, int many, bool packed);
   /// Points in rising Morton order from `origin`.
-  void key(const Block& block, const std::int32_t origin[3]);
+  void key(const BlockMembers& block, const BlockPoints& now, const std::int32_t origin[3]);
   /// Any points; `size` is the block's in its first frame. A `later` block came after the epoch's start and
   /// tells its size and whether it is born in this frame.
-  void mend(const Block& block, int size, bool later);
+  void mend(const BlockMembers& block, const BlockPoints& now, int size, bool later);
   void finish(std::vector<std::uint8_t>& out) { out_.finish(out); }
 
  private:
-  void moved(const Block& block, const BlockPoints& last, const BlockPoints* before);
+  void moved(int count, const BlockPoints& now, const BlockPoints& last, const BlockPoints* before);
+  void choose_blend(int count, const BlockPoints& displaced, BlockMotion& motion, std::uint32_t scatter[3]);
+  void choose_drift(int count, const BlockPoints& displaced, BlockMotion& motion, std::uint32_t scatter[3]);
+  void axis(int a, int count, const std::int32_t* displaced, const std::int32_t* predicted,
+            std::uint32_t scatter);
   void wide_axis(const std::int32_t* displaced, const std::int32_t* predicted, int count, int klass);
   void beyond(std::int32_t residual);
-  void points(const Block& block);
-  void fluids(const Block& block);
+  void points(int count, const BlockPoints& now);
+  void fluids(const BlockMembers& block);
   void retired(const std::uint8_t* gone, int many);
 
   EntropyEncoder out_;
@@ -74,17 +83,18 @@ class BlockReader {
   bool started() const { return in_.started(); }
   bool ended() const { return in_.ended(); }
 
-  /// `block` is as in the frame before; `before` is null in a block's second frame, else loses the retired.
-  const char* temporal(Block& block, BlockPoints* before);
+  /// `block` is as in the frame before; `before`, with the same particles, is null in a block's second frame.
+  const char* temporal(Block& block, const BlockPoints* before);
   const char* key(Block& block, int size, const std::int32_t origin[3]);
   const char* mend(Block& block, int size, bool later);
 
  private:
   const char* moved(Block& block, const BlockPoints* before);
   bool axis(const std::int32_t* predicted, int count, int klass, std::int32_t* at);
+  std::int32_t residual_of(int symbol);
   const char* points(Block& block);
   const char* fluids(Block& block);
-  const char* retired(Block& block, BlockPoints* before);
+  const char* retired(Block& block, const BlockPoints*& before, BlockPoints& space);
 
   EntropyDecoder in_;
   int class_before_[3] = {};

@@ -10,6 +10,10 @@ constexpr int kFirstClass = 5;
 constexpr char kOutside[] = "a particle is outside the lattice";
 constexpr char kTooShort[] = "ends too early";
 
+bool at_end(int symbol) {
+  return symbol == 0 || symbol == kSymbols - 1;
+}
+
 bool inside(std::int64_t coordinate) {
   return coordinate > -kCoordinateLimit && coordinate < kCoordinateLimit;
 }
@@ -20,7 +24,7 @@ BlockReader::BlockReader(std::span<const std::uint8_t> in) : in_(in) {
   std::fill(class_before_, class_before_ + 3, kFirstClass);
 }
 
-const char* BlockReader::retired(Block& block, BlockPoints* before) {
+const char* BlockReader::retired(Block& block, const BlockPoints*& before, BlockPoints& space) {
   const int many = static_cast<int>(in_.bits(7)) + 1;
   if (many > block.count) return "more particles retire than there are";
   std::uint8_t gone[kBlock];
@@ -29,18 +33,24 @@ const char* BlockReader::retired(Block& block, BlockPoints* before) {
     if (gone[i] >= block.count || (i > 0 && gone[i] <= gone[i - 1]))
       return "retired particles are out of order";
   }
-  if (before) remove_points(gone, many, block.count, *before);
-  remove_particles(gone, many, block);
+  if (before) {
+    space = *before;
+    remove_points(gone, many, block.count, space);
+    before = &space;
+  }
+  remove_points(gone, many, block.count, block.points);
+  remove_members(gone, many, block);
   return nullptr;
 }
 
-const char* BlockReader::temporal(Block& block, BlockPoints* before) {
+const char* BlockReader::temporal(Block& block, const BlockPoints* before) {
   const auto mode = static_cast<BlockMode>(in_.bits(2));
   if (mode == BlockMode::kRest) return in_.overran() ? kTooShort : nullptr;
   const bool some_retired =
       mode == BlockMode::kMovedSomeRetired || (mode == BlockMode::kPacked && in_.bits(1) == 1);
+  BlockPoints space;
   if (some_retired) {
-    if (const char* fault = retired(block, before)) return fault;
+    if (const char* fault = retired(block, before, space)) return fault;
   }
   if (mode == BlockMode::kPacked) return points(block);
   if (block.count > 0) {
@@ -79,34 +89,57 @@ const char* BlockReader::moved(Block& block, const BlockPoints* before) {
 
 bool BlockReader::axis(const std::int32_t* predicted, int count, int klass, std::int32_t* at) {
   const auto& tables = Models::get().residual[static_cast<std::size_t>(klass)];
+  const Table* const table[kFractions] = {&tables[0], &tables[1], &tables[2], &tables[3]};
   const int low = Models::low_bits(klass);
   // What does not hang on the stream is done before and after it, where the compiler can do many at once.
-  std::int32_t fraction[kBlock], mirror[kBlock], residual[kBlock];
+  std::uint8_t fraction[kBlock], symbol[kBlock];
+  std::int32_t residual[kBlock];
   for (int i = 0; i < count; ++i) {
     const std::int32_t eighth = (predicted[i] >> (kFine - 3)) & 7;
-    mirror[i] = low > 0 ? 0 : -(eighth >> 2);  // all ones or none
-    fraction[i] = low > 0 ? 0 : eighth ^ (mirror[i] & 7);
+    fraction[i] = static_cast<std::uint8_t>(low > 0 ? 0 : eighth ^ (-(eighth >> 2) & 7));
   }
-  EntropyDecoder in = in_;  // a local one stays in registers
-  for (int i = 0; i < count; ++i) {
-    const int symbol = in.symbol(tables[static_cast<std::size_t>(fraction[i])]);
-    std::int32_t r = symbol - 7;
-    if (symbol == 0 || symbol == 15) [[unlikely]] {
-      const int length = static_cast<int>(in.bits(5));
-      const auto beyond = static_cast<std::int32_t>(in.bits(std::min(length, 22)));
-      r = symbol == 0 ? -7 - beyond : 8 + beyond;
+  if (low > 0) {
+    for (int i = 0; i < count; ++i) {
+      const int high = residual_of(in_.symbol(*table[0]));
+      residual[i] = high * (1 << low) + static_cast<std::int32_t>(in_.bits(low)) - (1 << (low - 1));
     }
-    if (low > 0) r = r * (1 << low) + static_cast<std::int32_t>(in.bits(low)) - (1 << (low - 1));
-    residual[i] = r;
+  } else {
+    struct Beyond {
+      std::uint8_t at;
+      std::int32_t residual;
+    };
+    Beyond beyond[kBlock];
+    int many = 0;
+    for (int i = 0; i < count; ++i) {
+      const int came = in_.symbols(table, fraction + i, count - i, symbol + i);
+      i += came;
+      // Where the last one is not of the table's ends, nothing follows, and the next is read by itself.
+      if (came == 0 || !at_end(symbol[i - 1])) {
+        if (i == count) break;
+        symbol[i] = static_cast<std::uint8_t>(in_.symbol(*table[fraction[i]]));
+      } else {
+        --i;
+      }
+      if (at_end(symbol[i])) beyond[many++] = {static_cast<std::uint8_t>(i), residual_of(symbol[i])};
+    }
+    for (int i = 0; i < count; ++i) residual[i] = symbol[i] - 7;
+    for (int m = 0; m < many; ++m) residual[beyond[m].at] = beyond[m].residual;
   }
-  in_ = in;
   std::uint32_t outside = 0;
   for (int i = 0; i < count; ++i) {
-    at[i] +=
-        (predicted[i] >> kFine) + (residual[i] ^ mirror[i]) - 2 * mirror[i];  // 1 − residual in the mirror
+    const std::int32_t mirror = low > 0 ? 0 : -((predicted[i] >> (kFine - 1)) & 1);  // all ones or none
+    at[i] += (predicted[i] >> kFine) + (residual[i] ^ mirror) - 2 * mirror;  // 1 − residual in the mirror
     outside |= static_cast<std::uint32_t>(at[i] + kCoordinateLimit - 1) > 2u * kCoordinateLimit - 2;
   }
   return outside == 0;
+}
+
+/// Of a symbol that was read; what is beyond the table's ends follows in the stream.
+std::int32_t BlockReader::residual_of(int symbol) {
+  if (!at_end(symbol)) return symbol - 7;
+  const int length = static_cast<int>(in_.bits(5));
+  const auto beyond = static_cast<std::int32_t>(in_.bits(std::min(length, 22)));
+  return symbol == 0 ? -7 - beyond : 8 + beyond;
 }
 
 const char* BlockReader::points(Block& block) {

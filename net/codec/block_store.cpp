@@ -27,15 +27,12 @@ bool BlockStore::newest(std::uint32_t block, std::uint64_t& frame) const {
   return nearest(block, ~std::uint64_t{0}, frame) != nullptr;
 }
 
-bool BlockStore::put(std::uint32_t block, std::uint64_t frame, const Block& content) {
+bool BlockStore::put(std::uint32_t block, std::uint64_t frame, std::unique_ptr<Block>& content) {
   if (!histories_[block]) histories_[block] = std::make_unique<History>();
   Entry& entry = (*histories_[block])[frame % kKeptFrames];
   if (entry.block && entry.frame >= frame) return false;
   entry.frame = frame;
-  if (entry.block)
-    *entry.block = content;
-  else
-    entry.block = std::make_unique<Block>(content);
+  entry.block.swap(content);
   return true;
 }
 
@@ -48,17 +45,15 @@ void BlockStore::grow(std::uint32_t blocks, std::uint64_t frame) {
   for (std::uint32_t b = blocks; b-- > 0 && known_since_[b] > frame;) known_since_[b] = frame;
 }
 
-void match_points(const Block& to, const Block& from, BlockPoints& out) {
-  if (to.count == from.count) {
-    out = from.points;
-    return;
-  }
+const BlockPoints* match_points(const Block& to, const Block& from, BlockPoints& space) {
+  if (to.count == from.count) return &from.points;
   // A particle that is there now was there before: retired ones do not come back within an epoch.
   int at = 0;
   for (int i = 0; i < to.count; ++i) {
     while (at + 1 < from.count && from.slot[at] < to.slot[i]) ++at;
-    for (int a = 0; a < 3; ++a) out.at[a][i] = from.count > 0 ? from.points.at[a][at] : to.points.at[a][i];
+    for (int a = 0; a < 3; ++a) space.at[a][i] = from.count > 0 ? from.points.at[a][at] : to.points.at[a][i];
   }
+  return &space;
 }
 
 }  // namespace slosh::codec

@@ -33,8 +33,9 @@ class BlockStore {
   const Block* nearest(std::uint32_t block, std::uint64_t frame, std::uint64_t& found) const;
   /// Newest frame that came of the block; false when none did.
   bool newest(std::uint32_t block, std::uint64_t& frame) const;
-  /// False: it was there, or is too old to be kept.
-  bool put(std::uint32_t block, std::uint64_t frame, const Block& content);
+  /// Takes `content` and gives an old block's memory, or none, in its place. False, and nothing taken: it was
+  /// there, or is too old to be kept.
+  bool put(std::uint32_t block, std::uint64_t frame, std::unique_ptr<Block>& content);
   /// The epoch has `blocks` in `frame`, as a piece tells.
   void grow(std::uint32_t blocks, std::uint64_t frame);
   /// Whether the block is known to be there in `frame`.
@@ -59,7 +60,7 @@ class BlockStore {
   std::vector<std::uint64_t> known_since_;           // frame, of each block
 };
 
-/// Points of `from` for the particles of `to` alone, both of one block.
-void match_points(const Block& to, const Block& from, BlockPoints& out);
+/// Points of `from` for the particles of `to` alone, both of one block; in `space` where some have retired.
+const BlockPoints* match_points(const Block& to, const Block& from, BlockPoints& space);
 
 }  // namespace slosh::codec

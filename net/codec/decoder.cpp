@@ -40,7 +40,7 @@ struct SnapshotDecoder::Impl {
     PieceHead head;
   };
   std::vector<Waiting> waiting;
-  std::vector<Block> blocks;   // of the piece being read
+  BlockList blocks;            // of the piece being read
   std::uint64_t progress = 0;  // blocks that came, ever
 
   // For feedback.
@@ -203,13 +203,14 @@ void SnapshotDecoder::Impl::fill(const Instant& instant, const BlockStore& store
     std::uint64_t found = 0;
     const Block* block = store.nearest(b, instant.frame, found);
     if (!block) continue;
-    BlockPoints earlier;
+    BlockPoints space;
+    const BlockPoints* earlier = nullptr;
     double ahead = 0.0;  // frames
     if (found == instant.frame) {
       exact += size;
     } else if (found < instant.frame) {
       if (const Block* previous = found > 0 ? store.find(b, found - 1) : nullptr) {
-        match_points(*block, *previous, earlier);
+        earlier = match_points(*block, *previous, space);
         ahead = std::min(static_cast<double>(instant.frame - found), kCarrySeconds / frame_seconds);
       }
     }
@@ -219,7 +220,7 @@ void SnapshotDecoder::Impl::fill(const Instant& instant, const BlockStore& store
       out.fluid_index[to] = block->fluid[i];
       for (int a = 0; a < 3; ++a) {
         double at = block->points.at[a][i];
-        if (ahead > 0.0) at += ahead * (at - earlier.at[a][i]);
+        if (ahead > 0.0) at += ahead * (at - earlier->at[a][i]);
         out.positions[to][a] = static_cast<float>(step * at);
       }
     }

@@ -1,5 +1,7 @@
 #include "net/codec/models.h"
 
+#include <algorithm>
+
 namespace slosh::codec {
 
 namespace {
@@ -73,7 +75,7 @@ Models::Models()
       const Table& table = residual[c][f];
       for (int s = 0; s < kSymbols; ++s) {
         const int off = 64 * (s - 7) - (c < kFirstWide ? static_cast<int>(8 * f + 4) : 0);
-        sum += static_cast<std::uint64_t>(table.share[static_cast<std::size_t>(s)]) *
+        sum += static_cast<std::uint64_t>(table.interval[static_cast<std::size_t>(s)].share) *
                static_cast<std::uint64_t>(off < 0 ? -off : off);
       }
     }
@@ -82,6 +84,16 @@ Models::Models()
   }
   for (std::size_t c = 1; c + 1 < kClasses; ++c) reach[c] = (mean[c] + mean[c + 1]) / 2;
   reach[kClasses - 1] = ~0u;
+  // The fractions of a class follow each other: the code within a class is fraction · 16 + symbol.
+  for (auto& klass : residual) {
+    for (Table& table : klass) append_steps(table, steps);
+  }
+  append_steps(class_change, steps);
+  append_steps(code_distance, steps);
+  for (std::size_t c = 0; c < kFirstWide; ++c) {
+    for (std::size_t f = 0; f < kFractions; ++f)
+      std::copy_n(residual[c][f].cost.begin(), kSymbols, cost[c].begin() + static_cast<long>(f * kSymbols));
+  }
 }
 
 const Models& Models::get() {

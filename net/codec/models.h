@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "net/codec/entropy.h"
 
@@ -19,8 +20,11 @@ struct Models {
   std::array<std::array<Table, kFractions>, kClasses> residual;
   /// Largest mean |residual| of a class, lattice steps / 64.
   std::array<std::uint32_t, kClasses> reach{};
-  Table class_change;   ///< of a block's class against the block before, + 8
-  Table code_distance;  ///< bit length of a Morton distance against the block's own, + 10
+  Table class_change;       ///< of a block's class against the block before, + 8
+  Table code_distance;      ///< bit length of a Morton distance against the block's own, + 10
+  std::vector<Step> steps;  ///< of all the tables, for the encoder
+  /// What a symbol costs, bits / 256: by class below kFirstWide, then fraction · 16 + symbol.
+  std::array<std::array<std::int16_t, kFractions * kSymbols>, kFirstWide> cost{};
 
   static const Models& get();
   static constexpr int low_bits(int klass) { return klass < kFirstWide ? 0 : klass - kFirstWide + 1; }

@@ -47,7 +47,7 @@ wire::Fault check_fits(const PieceView& piece, const BlockStore& store) {
   return {};
 }
 
-wire::Fault read_blocks(const PieceView& piece, const BlockStore& store, std::vector<Block>& out) {
+wire::Fault read_blocks(const PieceView& piece, const BlockStore& store, BlockList& out) {
   const PieceHead& head = piece.head;
   out.clear();
   BlockReader reader(piece.payload);
@@ -61,14 +61,15 @@ wire::Fault read_blocks(const PieceView& piece, const BlockStore& store, std::ve
     const char* problem = nullptr;
     if (head.kind == PieceKind::kTemporal) {
       if (!store.can_follow(b, head.frame)) return {};
-      Block& block = out.emplace_back(*store.find(b, head.frame - 1));
-      BlockPoints before;
-      const bool second = block.born;
+      Block& block = out.add();
+      block = *store.find(b, head.frame - 1);
+      BlockPoints space;
+      const BlockPoints* before = nullptr;
+      if (!block.born) before = match_points(block, *store.find(b, head.frame - 2), space);
       block.born = false;
-      if (!second) match_points(block, *store.find(b, head.frame - 2), before);
-      problem = reader.temporal(block, second ? nullptr : &before);
+      problem = reader.temporal(block, before);
     } else {
-      Block& block = out.emplace_back();
+      Block& block = out.add();
       block.born = head.frame == store.head().first_frame;
       problem =
           head.kind == PieceKind::kKey ? reader.key(block, size, origin) : reader.mend(block, size, later);
