@@ -16,6 +16,7 @@ namespace {
 constexpr std::size_t kSmallestPiece = 1100;  // a block of any content fits
 constexpr double kFirstFill = 0.93;           // of a piece, so that it holds for some frames
 constexpr std::uint32_t kMendGroup = 4;       // blocks, aligned
+constexpr std::uint64_t kAskedAgo = 30;       // frames that what is asked for may be on its way
 
 }  // namespace
 
@@ -23,7 +24,7 @@ struct SnapshotEncoder::Impl {
   explicit Impl(const CodecOptions& o)
       : options(o),
         max_piece(std::max(o.max_piece, kSmallestPiece)),
-        epoch(2.0 * o.tolerance),
+        epoch(2.0 * o.tolerance, o.spacing),
         cutter(writer) {}
 
   CodecOptions options;
@@ -42,11 +43,12 @@ struct SnapshotEncoder::Impl {
   PieceCutter cutter;
   std::vector<std::vector<Piece>> mended;  // by group
 
-  void temporal_pieces(const Snapshot& snapshot, bool looks);
+  void temporal_pieces(const Snapshot& snapshot, bool grows, bool looks);
   void key_pieces(const Snapshot& snapshot);
   void hand_out(PieceKind kind);
   void hand_out_new(std::uint32_t first);
   void mend_group(std::uint32_t first, std::uint32_t end, std::vector<Piece>& to);
+  std::uint32_t end_of_piece(std::uint32_t block) const;
   wire::Bytes head(PieceKind kind, std::uint32_t first, std::uint32_t count, std::uint32_t piece,
                    std::uint32_t of) const;
   std::size_t room(PieceKind kind) const {
@@ -94,14 +96,14 @@ void SnapshotEncoder::Impl::hand_out(PieceKind kind) {
   }
 }
 
-void SnapshotEncoder::Impl::temporal_pieces(const Snapshot& snapshot, bool looks) {
+void SnapshotEncoder::Impl::temporal_pieces(const Snapshot& snapshot, bool grows, bool looks) {
   const bool second = out.frame == epoch.first_frame() + 1;
   const bool at_kept = !second && cutter.keeps();
   const std::uint32_t known = epoch.count();
   cutter.cut(known, room(PieceKind::kTemporal), at_kept, second || at_kept ? 1.0 : kFirstFill,
              [&](std::uint32_t b, bool packed) { epoch.write_temporal(b, out.frame, packed, writer); });
   // Before the heads are written: they tell how many blocks there are.
-  if (looks) full = !epoch.grow(snapshot, out.frame);
+  if (grows) full = !epoch.grow(snapshot, out.frame, looks);
   hand_out(PieceKind::kTemporal);
   // Pieces that have become small are cut anew in the next frame.
   const std::size_t pieces = cutter.payloads().size();
@@ -147,6 +149,14 @@ void SnapshotEncoder::Impl::mend_group(std::uint32_t first, std::uint32_t end, s
   if (block < end) mend_group(block, end, to);
 }
 
+/// Behind the last block that shares the temporal piece of this one in the next frame, as far as known.
+std::uint32_t SnapshotEncoder::Impl::end_of_piece(std::uint32_t block) const {
+  for (const Payload& payload : cutter.payloads()) {
+    if (payload.first > block) return payload.first;
+  }
+  return epoch.count();
+}
+
 SnapshotEncoder::SnapshotEncoder(const CodecOptions& options) : impl_(std::make_unique<Impl>(options)) {}
 SnapshotEncoder::~SnapshotEncoder() = default;
 SnapshotEncoder::SnapshotEncoder(SnapshotEncoder&&) noexcept = default;
@@ -166,7 +176,7 @@ const EncodedFrame& SnapshotEncoder::encode(const Snapshot& snapshot, std::uint3
   if (!other_world) {
     const bool looks = i.epoch.shell().looks(snapshot, i.out.frame - i.epoch.first_frame());
     i.epoch.follow(snapshot, looks);
-    i.temporal_pieces(snapshot, looks && !i.out.key);
+    i.temporal_pieces(snapshot, !i.out.key && i.epoch.shell().follows(snapshot), looks);
   }
   if (i.out.key) {
     if (i.started) ++i.out.epoch;
@@ -185,6 +195,14 @@ void SnapshotEncoder::mend(std::span<const wire::BlockRange> ranges, std::vector
   for (const wire::BlockRange& range : ranges) {
     const std::uint64_t end = std::min<std::uint64_t>(std::uint64_t{range.first} + range.count, count);
     for (std::uint64_t b = range.first; b < end; ++b) asked[b / kMendGroup] = true;
+    if (range.first >= end) continue;
+    // A piece is read up to the first block whose past is missing. Blocks that came behind it meanwhile have
+    // been stuck since, and by the time that they are asked for, others are.
+    const std::uint32_t piece_end = i.end_of_piece(static_cast<std::uint32_t>(end - 1));
+    for (auto b = static_cast<std::uint32_t>(end); b < piece_end; ++b) {
+      if (i.epoch.born(b) > i.epoch.first_frame() && i.epoch.born(b) + kAskedAgo >= i.out.frame)
+        asked[b / kMendGroup] = true;
+    }
   }
   for (std::uint32_t g = 0; g < asked.size(); ++g) {
     if (!asked[g]) continue;

@@ -99,7 +99,7 @@ void Epoch::retire(const Snapshot& snapshot, std::size_t block, bool looks) {
     const std::uint32_t id = ids_[at(block) + members.slot[i]];
     std::int32_t point[3];
     if (is_drawn(snapshot, id) && to_lattice(snapshot.positions[id], per_step_, point) &&
-        !(looks && shell_.leaves(id, snapshot.shell[id] != 0)))
+        !(looks && snapshot.shell[id] == 0))
       continue;
     list[many++] = static_cast<std::uint8_t>(i);
     shell_.remove(id);
@@ -117,9 +117,9 @@ void Epoch::forget_retired() {
   }
 }
 
-bool Epoch::grow(const Snapshot& snapshot, std::uint64_t frame) {
+bool Epoch::grow(const Snapshot& snapshot, std::uint64_t frame, bool looks) {
   if (particles_ == 0) return true;
-  more_.sort(snapshot, per_step_, true, shell_.choose(snapshot));
+  more_.sort(snapshot, per_step_, true, shell_.choose(snapshot, looks));
   if (more_.ids.empty()) return true;
   const auto many = static_cast<std::uint32_t>(more_.ids.size());
   if (count() + block_count(many) > most_blocks(particles_)) return false;

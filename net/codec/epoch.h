@@ -16,7 +16,7 @@ namespace slosh::codec {
 class Epoch {
  public:
   /// `step`: the lattice's, m.
-  explicit Epoch(double step) : per_step_(1.0 / step) {}
+  Epoch(double step, double spacing) : per_step_(1.0 / step), shell_(spacing) {}
 
   /// Starts anew with what the snapshot shows, or its shell alone, in cell order.
   void begin(const Snapshot& snapshot, std::uint64_t frame, bool shell_only);
@@ -25,12 +25,14 @@ class Epoch {
   void follow(const Snapshot& snapshot, bool looks);
   /// After the frame is coded: the frame before loses who retired, so that the next compares those left.
   void forget_retired();
-  /// New blocks behind the last one with what has come to the surface; false when no more fit in.
-  bool grow(const Snapshot& snapshot, std::uint64_t frame);
+  /// New blocks behind the last one with what has come to the surface, in a frame that `looks` also where
+  /// that hardly shows; false when no more fit in.
+  bool grow(const Snapshot& snapshot, std::uint64_t frame, bool looks);
 
   std::uint32_t count() const { return static_cast<std::uint32_t>(members_.size()); }
   std::uint32_t particles() const { return particles_; }  ///< at the start
   std::size_t sent() const { return particles_ + later_; }
+  std::uint64_t born(std::uint32_t block) const { return born_[block]; }  ///< its first frame
   std::uint64_t first_frame() const { return first_frame_; }
   const std::int32_t* origin() const { return order_.origin; }
   const ShellMembers& shell() const { return shell_; }
