@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t kSmallestPiece = 1100;  // a block of any content fits
 constexpr double kFirstFill = 0.93;           // of a piece, so that it holds for some frames
+constexpr double kWastefulFill = 0.85;        // of all pieces
 constexpr std::uint32_t kMendGroup = 4;       // blocks, aligned
 constexpr std::uint64_t kAskedAgo = 30;       // frames that what is asked for may be on its way
 
@@ -105,9 +106,10 @@ void SnapshotEncoder::Impl::temporal_pieces(const Snapshot& snapshot, bool grows
   // Before the heads are written: they tell how many blocks there are.
   if (grows) full = !epoch.grow(snapshot, out.frame, looks);
   hand_out(PieceKind::kTemporal);
-  // Pieces that have become small are cut anew in the next frame.
-  const std::size_t pieces = cutter.payloads().size();
-  const bool wasteful = pieces > 1 && out.bytes * 20 < room(PieceKind::kTemporal) * pieces * 17;
+  // Pieces that have become small are cut anew in the next frame, where that makes them fewer.
+  const auto pieces = static_cast<double>(cutter.payloads().size());
+  const auto filled = static_cast<double>(out.bytes) / static_cast<double>(room(PieceKind::kTemporal));
+  const bool wasteful = filled < kWastefulFill * pieces && filled < kFirstFill * (pieces - 1.0);
   cutter.keep(second || wasteful);
   if (known < epoch.count()) hand_out_new(known);
   epoch.forget_retired();

@@ -9,7 +9,7 @@ namespace slosh::codec {
 namespace {
 
 constexpr std::uint64_t kLookEvery = 6;  // frames
-constexpr double kCellWidth = 1.9;       // spacings: a member hides what is missing so far around it
+constexpr double kCellWidth = 1.96;      // spacings: a member hides what is missing so far around it
 constexpr int kHashBits = 16;
 
 }  // namespace
