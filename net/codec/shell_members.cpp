@@ -1,8 +1,7 @@
 #include "net/codec/shell_members.h"
 
-#include <cmath>
-
 #include "net/codec/cell_order.h"
+#include "net/codec/lattice.h"
 
 namespace slosh::codec {
 
@@ -32,28 +31,30 @@ void ShellMembers::add(std::span<const std::uint32_t> ids) {
   for (const std::uint32_t id : ids) member_[id] = 1;
 }
 
-/// Two cells may share a place: then one waits that need not.
-std::uint8_t& ShellMembers::covered(const glm::vec3& position) {
-  std::uint32_t hash = 0;
-  for (int a = 0; a < 3; ++a) {
-    // Whatever the position is, the cell is a number; far ones are not sent anyway.
-    const double cell = std::floor(static_cast<double>(position[a]) * per_cell_);
-    const double limited = cell > -1e9 && cell < 1e9 ? cell : 0.0;
-    hash = hash * 73856093u + static_cast<std::uint32_t>(static_cast<std::int32_t>(limited));
+/// Two cells may share a place: then one waits that need not. Whatever a position is, it has some place.
+void ShellMembers::find_places(const Snapshot& snapshot) {
+  place_.resize(snapshot.positions.size());
+  for (std::size_t id = 0; id < place_.size(); ++id) {
+    const glm::vec3& at = snapshot.positions[id];
+    const auto cell = [&](float x) {
+      return static_cast<std::uint32_t>(nearest(static_cast<double>(x) * per_cell_ - 0.5));
+    };
+    const std::uint32_t hash = (cell(at.x) * 73856093u + cell(at.y)) * 73856093u + cell(at.z);
+    place_[id] = static_cast<std::uint16_t>(hash * 2654435769u >> (32 - kHashBits));
   }
-  return covered_[hash * 2654435769u >> (32 - kHashBits)];
 }
 
 const std::vector<std::uint8_t>& ShellMembers::choose(const Snapshot& snapshot, bool looks) {
+  find_places(snapshot);
   covered_.assign(std::size_t{1} << kHashBits, 0);
   for (std::size_t id = 0; id < member_.size(); ++id) {
-    if (member_[id] != 0) covered(snapshot.positions[id]) = 1;
+    covered_[place_[id]] |= member_[id];
   }
   if (seen_before_.size() != member_.size()) seen_before_.assign(member_.size(), 0);
   stay_out_.assign(member_.size(), 1);
   for (std::size_t id = 0; id < member_.size(); ++id) {
     if (member_[id] != 0 || snapshot.shell[id] == 0 || !is_drawn(snapshot, id)) continue;
-    std::uint8_t& near = covered(snapshot.positions[id]);
+    std::uint8_t& near = covered_[place_[id]];
     if (near != 0 && !(looks && seen_before_[id] != 0)) continue;
     near = 1;
     stay_out_[id] = 0;

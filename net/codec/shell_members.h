@@ -34,13 +34,14 @@ class ShellMembers {
   const std::vector<std::uint8_t>& choose(const Snapshot& snapshot, bool looks);
 
  private:
-  std::uint8_t& covered(const glm::vec3& position);
+  void find_places(const Snapshot& snapshot);
 
   double per_cell_;
   std::vector<std::uint8_t> member_;       // 1 or 0, one a particle of the snapshot
   std::vector<std::uint8_t> seen_before_;  // the shell of the look before
   std::vector<std::uint8_t> stay_out_;
-  std::vector<std::uint8_t> covered_;  // by a hash of the cell: a member is there
+  std::vector<std::uint16_t> place_;   // one a particle: a hash of its cell
+  std::vector<std::uint8_t> covered_;  // by place: a member is there
 };
 
 }  // namespace slosh::codec

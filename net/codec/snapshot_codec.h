@@ -23,9 +23,9 @@
 namespace slosh {
 
 struct CodecOptions {
-  std::uint8_t stream = 0;       ///< number that pieces carry
-  double tolerance = 0.001;      ///< m: a decoded coordinate is off by at most this
-  double spacing = 0.01;         ///< m between particles, fits the cells
+  std::uint8_t stream = 0;   ///< number that pieces carry
+  double tolerance = 0.001;  ///< m: a decoded coordinate is off by at most this
+  double spacing = 0.01;     ///< m between particles; how far a shell's member hides that others are missing
   std::size_t max_piece = 1100;  ///< bytes of a piece, type byte included
   double epoch_seconds = 1.0;    ///< simulated s between key frames
   bool shell_only = false;       ///< only what is seen from outside (Snapshot::shell)
@@ -48,8 +48,8 @@ struct EncodedFrame {
   std::vector<Piece> pieces;
 };
 
-/// One thread. encode() takes about 1 ms for 32 768 particles and does not allocate in the steady state but
-/// for the pieces that it hands out.
+/// One thread. encode() takes about half a millisecond for 32 768 particles and does not allocate in the
+/// steady state but for the pieces that it hands out.
 class SnapshotEncoder {
  public:
   explicit SnapshotEncoder(const CodecOptions& options);

@@ -23,8 +23,8 @@ FloatImage draw(Renderer& renderer, const DecodedFrame& picture, double spacing)
 
 }  // namespace
 
-Result<MaskDifference> compare_masks(const std::vector<DecodedFrame>& all,
-                                     const std::vector<DecodedFrame>& shell, double spacing) {
+Result<std::vector<double>> compare_masks(const std::vector<DecodedFrame>& all,
+                                          const std::vector<DecodedFrame>& shell, double spacing) {
   auto context = make_headless_context({});
   if (!context) return context.error();
   RenderOptions options;
@@ -32,9 +32,8 @@ Result<MaskDifference> compare_masks(const std::vector<DecodedFrame>& all,
   options.height = 480;
   auto renderer = Renderer::create(*context.value(), options);
   if (!renderer) return renderer.error();
-  MaskDifference result;
-  int compared = 0;
-  for (std::size_t f = 9; f < std::min(all.size(), shell.size()); f += 10, ++compared) {
+  std::vector<double> percent;
+  for (std::size_t f = 0; f < std::min(all.size(), shell.size()); ++f) {
     const FloatImage full = draw(*renderer.value(), all[f], spacing);
     const FloatImage part = draw(*renderer.value(), shell[f], spacing);
     double fluid = 0.0, differing = 0.0;
@@ -42,12 +41,9 @@ Result<MaskDifference> compare_masks(const std::vector<DecodedFrame>& all,
       fluid += full.values[i] >= 0.0f;
       differing += (full.values[i] >= 0.0f) != (part.values[i] >= 0.0f);
     }
-    const double percent = 100.0 * differing / std::max(fluid, 1.0);
-    result.mean += percent;
-    result.worst = std::max(result.worst, percent);
+    percent.push_back(100.0 * differing / std::max(fluid, 1.0));
   }
-  if (compared > 0) result.mean /= compared;
-  return result;
+  return percent;
 }
 
 }  // namespace slosh::bench
