@@ -1,8 +1,8 @@
 // Who is in an epoch of which only the shell is sent, as the shell changes: who comes in, who leaves.
 //
-// Much flickers at the surface, and whoever comes in costs five times what a member does. So most wait until
-// two looks on end have seen them, and are missing meanwhile where other members hide that. Where no member
-// is near, a hole would show, such as a drop that is not there: the first one there comes in at once.
+// Much flickers at the surface, and whoever comes in costs several times what a member does. So most wait
+// until two looks on end have seen them, and are missing meanwhile where other members hide that. Where no
+// member is near, a hole would show, such as a drop that is not there: the first one there comes in at once.
 #pragma once
 
 #include <cstdint>
