@@ -1,0 +1,173 @@
+// Checkpoints: what is on the disk is the world, to the bit, or an error in words.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <cstring>
+#include <random>
+
+#include "host/keep/rebuild.h"
+#include "tests/host/keep_kit.h"
+
+namespace slosh::keep {
+namespace {
+
+CheckpointOptions checkpoint_options(const path& folder, double interval = 0.0) {
+  CheckpointOptions options;
+  options.file = folder / "world.checkpoint";
+  options.interval = interval;
+  options.version = "0.0.test";
+  return options;
+}
+
+std::unique_ptr<CheckpointWriter> checkpoint(Rig& rig, const CheckpointOptions& options) {
+  auto writer = CheckpointWriter::start(small_world().scene, small_world().sampled.spacing,
+                                        rig.host.start_state(), rig.host.world(), rig.host.state(), options);
+  EXPECT_TRUE(writer) << writer.error().text();
+  rig.host.add_tap(*writer.value());
+  return std::move(writer.value());
+}
+
+TEST(Checkpoint, ResumedIsTheRunThatWasNeverStopped) {
+  const CheckpointOptions options = checkpoint_options(fresh_folder());
+  Rig rig(until(0.3));
+  std::vector<std::vector<HandleInput>> inputs;
+  struct Inputs : HostTap {
+    explicit Inputs(std::vector<std::vector<HandleInput>>& to) : all(to) {}
+    void before_step(const World&, const StepInput& in) override {
+      all.emplace_back(in.hands.begin(), in.hands.end());
+    }
+    std::vector<std::vector<HandleInput>>& all;
+  } tap(inputs);
+  rig.host.add_tap(tap);
+  auto writer = checkpoint(rig, options);
+  writer->set_session({1, 2, 3});
+  // The copy in mid-run is kept aside, as a crash at that moment would leave it.
+  const path kept = options.file.parent_path() / "kept";
+  AtTick crash(25, [&] {
+    writer->flush();
+    std::filesystem::copy_file(options.file, kept);
+  });
+  rig.host.add_tap(crash);
+  rig.run();
+  writer->flush();
+  EXPECT_GT(writer->report().written, 2u);
+  EXPECT_EQ(writer->report().problem, "");
+  writer.reset();
+
+  Result<Checkpoint> read = read_checkpoint(kept);
+  ASSERT_TRUE(read) << read.error().text();
+  const Checkpoint& c = read.value();
+  EXPECT_EQ(c.note, "");
+  EXPECT_EQ(c.version, "0.0.test");
+  EXPECT_EQ(c.session, (Bytes{1, 2, 3}));
+  EXPECT_EQ(c.start, rig.host.start_state());
+  EXPECT_GE(c.tick, 20u);
+  Result<RebuiltWorld> rebuilt = rebuild_world(c.scene, c.spacing, c.world, WorldOptions{1, Backend::kCpu});
+  ASSERT_TRUE(rebuilt) << rebuilt.error().text();
+  World& world = rebuilt.value().world;
+  EXPECT_EQ(world.tick(), c.tick);
+  while (world.tick() < inputs.size()) world.step(inputs[world.tick()]);
+  EXPECT_EQ(world.hash(), rig.host.world().hash());
+
+  const Result<Checkpoint> last = read_checkpoint(options.file);
+  ASSERT_TRUE(last);
+  EXPECT_EQ(last.value().tick, inputs.size()) << "the end is written too";
+  struct stat facts {};
+  ASSERT_EQ(::stat(options.file.c_str(), &facts), 0);
+  EXPECT_EQ(facts.st_mode & 0777, 0600u);
+}
+
+TEST(Checkpoint, OfAStandingWorldFollowsTheSessionAndTheSwitches) {
+  const CheckpointOptions options = checkpoint_options(fresh_folder(), 1e9);
+  HostOptions host = until(1e9);
+  host.paused = true;
+  Rig rig(host);
+  auto writer = checkpoint(rig, options);
+  rig.host.start();
+  ASSERT_TRUE(rig.host.ask({HostAction::kGravityScale, 0, 0.25}).get());
+  writer->set_session({9});
+  writer->flush();
+  const Result<Checkpoint> read = read_checkpoint(options.file);
+  ASSERT_TRUE(read) << read.error().text();
+  EXPECT_EQ(read.value().session, Bytes{9});
+  EXPECT_TRUE(read.value().state.paused);
+  World world = small_world().world();
+  ASSERT_TRUE(world.restore(read.value().world));
+  EXPECT_EQ(world.gravity_scale(), 0.25);
+  rig.host.request_stop();
+  rig.host.wait();
+}
+
+TEST(Checkpoint, DamagedFallsBackToTheOneBeforeItAndSaysSo) {
+  const CheckpointOptions options = checkpoint_options(fresh_folder(), 1e9);
+  {
+    Rig rig(until(0.05));
+    auto writer = checkpoint(rig, options);
+    rig.run();
+    writer->flush();
+  }
+  const Result<Checkpoint> whole = read_checkpoint(options.file);
+  ASSERT_TRUE(whole);
+  EXPECT_GT(whole.value().tick, 0u);
+  std::filesystem::resize_file(options.file, std::filesystem::file_size(options.file) - 5);
+  const Result<Checkpoint> before = read_checkpoint(options.file);
+  ASSERT_TRUE(before) << before.error().text();
+  EXPECT_EQ(before.value().tick, 0u) << "that of the start";
+  EXPECT_NE(before.value().note.find("cut off"), std::string::npos) << before.value().note;
+  std::filesystem::remove(options.file);
+  ASSERT_TRUE(read_checkpoint(options.file)) << "a crash between two renames";
+  std::filesystem::remove(previous_of(options.file));
+  const Result<Checkpoint> none = read_checkpoint(options.file);
+  ASSERT_FALSE(none);
+  EXPECT_NE(none.error().text().find("world.checkpoint"), std::string::npos);
+}
+
+TEST(Checkpoint, DamagedAnywhereIsAnErrorThatNamesTheFile) {
+  const CheckpointOptions options = checkpoint_options(fresh_folder(), 1e9);
+  Rig rig(until(0.0));
+  auto writer = checkpoint(rig, options);
+  const Bytes bytes = read_all(options.file);
+  ASSERT_GT(bytes.size(), 1000u);
+  const auto read = [](ByteView content) {
+    const MemoryFile file(content);
+    return read_checkpoint_file(file.get(), "some file");
+  };
+  ASSERT_TRUE(read(bytes));
+  std::mt19937 random(3);
+  const auto places = [&](std::size_t count) {
+    std::vector<std::size_t> all;
+    for (std::size_t i = 0; i < std::min<std::size_t>(200, bytes.size()); ++i) {
+      all.push_back(i);
+      all.push_back(bytes.size() - 1 - i);
+    }
+    while (all.size() < count) all.push_back(random() % bytes.size());
+    return all;
+  };
+  for (const std::size_t length : places(700)) {
+    const auto result = read(ByteView(bytes).first(length));
+    ASSERT_FALSE(result) << length;
+    EXPECT_EQ(result.error().where, "some file");
+  }
+  for (const std::size_t at : places(700)) {
+    Bytes damaged = bytes;
+    damaged[at] ^= static_cast<std::uint8_t>(1u << random() % 8);
+    EXPECT_FALSE(read(damaged)) << "byte " << at;
+  }
+  Bytes longer = bytes;
+  longer.push_back(0);
+  EXPECT_FALSE(read(longer));
+}
+
+TEST(Checkpoint, ThatCannotBeWrittenSaysWhy) {
+  CheckpointOptions options;
+  options.file = "/proc/nowhere/world";
+  Rig rig(until(0.0));
+  const auto writer =
+      CheckpointWriter::start(small_world().scene, small_world().sampled.spacing, rig.host.start_state(),
+                              rig.host.world(), rig.host.state(), options);
+  ASSERT_FALSE(writer);
+  EXPECT_NE(writer.error().text().find("/proc/nowhere/world"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace slosh::keep
