@@ -30,7 +30,7 @@ Servo::Servo(const Scene& scene, std::vector<std::unique_ptr<Device>> devices, C
         CouplingGains{grip.stiffness, grip.damping, grip.rotational_stiffness, grip.rotational_damping},
         grip_start(scene, i));
     if (devices[i]) set_device(i, std::move(devices[i]));
-    if (Device* const device = hand.wanted.load()) change_device(hand, device);
+    if (Device* const device = claim_device(hand)) change_device(hand, device);
   }
 }
 
@@ -39,7 +39,7 @@ void Servo::set_device(std::size_t i, std::unique_ptr<Device> device) {
   free_unused(hand);
   Device* const wanted = device.get();
   if (device) hand.owned.push_back(std::move(device));
-  hand.wanted.store(wanted, std::memory_order_release);
+  hand.wanted.store(wanted);
 }
 
 bool Servo::holds_any() const {
@@ -54,13 +54,28 @@ void Servo::close_devices() {
 }
 
 void Servo::free_unused(Hand& hand) {
-  const Device* const in_use = hand.in_use.load(std::memory_order_acquire);
-  const Device* const wanted = hand.wanted.load(std::memory_order_relaxed);
+  // In this order: what the loop claims now becomes what it uses.
+  const Device* const wanted = hand.wanted.load();
+  const Device* const claimed = hand.claimed.load();
+  const Device* const in_use = hand.in_use.load();
   std::erase_if(hand.owned, [&](const std::unique_ptr<Device>& device) {
-    if (device.get() == in_use || device.get() == wanted) return false;
+    if (device.get() == in_use || device.get() == claimed || device.get() == wanted) return false;
     device->close();
     return true;
   });
+}
+
+Device* Servo::claim_device(Hand& hand) noexcept {
+  Device* device = hand.wanted.load(std::memory_order_acquire);
+  if (device == hand.device) return device;
+  // Announced and still wanted: from here on free_unused() sees it. All sequentially consistent: one of the
+  // two sides must see the other.
+  for (;;) {
+    hand.claimed.store(device);
+    Device* const now = hand.wanted.load();
+    if (now == device) return device;
+    device = now;
+  }
 }
 
 void Servo::change_device(Hand& hand, Device* device) noexcept {
@@ -71,7 +86,7 @@ void Servo::change_device(Hand& hand, Device* device) noexcept {
   hand.good = DeviceReport{};
   hand.good.pose = hand.start;
   hand.good.engaged = false;
-  hand.in_use.store(device, std::memory_order_release);
+  hand.in_use.store(device);
 }
 
 void Servo::follow_run(const BodyMessage& message) noexcept {
@@ -116,7 +131,7 @@ void Servo::tick(std::int64_t now_ns) noexcept {
   const bool sample_due = !stopped && time_ + kRounding >= next_sample_;
   for (std::size_t i = 0; i < hands_.size(); ++i) {
     Hand& hand = hands_[i];
-    Device* const device = hand.wanted.load(std::memory_order_acquire);
+    Device* const device = claim_device(hand);
     if (device != hand.device) change_device(hand, device);
     if (device == nullptr) continue;
     const DeviceReport report = device->read({time_, options_.period});

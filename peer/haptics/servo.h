@@ -78,8 +78,9 @@ class Servo {
  private:
   struct Hand {
     Hand(const CouplingGains& g, const Pose& s) : gains(g), start(s) {}
-    // Between the threads: what the loop shall use, and what it uses.
+    // Between the threads: what the loop shall use, is about to use, and uses.
     std::atomic<Device*> wanted{nullptr};
+    std::atomic<Device*> claimed{nullptr};
     std::atomic<Device*> in_use{nullptr};
     std::vector<std::unique_ptr<Device>> owned;  // the newest last; the control thread's
 
@@ -91,6 +92,8 @@ class Servo {
     Engagement engagement;
     DeviceReport good;
   };
+  /// The device that is wanted, safe from being freed.
+  Device* claim_device(Hand& hand) noexcept;
   void change_device(Hand& hand, Device* device) noexcept;
   void free_unused(Hand& hand);
   void follow_run(const BodyMessage& message) noexcept;
