@@ -12,6 +12,15 @@ namespace {
 using bench::Flow;
 using bench::FlowOptions;
 
+// Under sanitizers the flow alone would take a quarter of an hour: a small one then, which shows that every
+// frame comes out whole and says nothing of the targets.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr int kSide = 12;
+#else
+constexpr int kSide = 32;
+#endif
+constexpr bool kJudged = kSide == 32;
+
 constexpr double kKeyFrameBytes = 45000.0;
 constexpr double kShellShare = 0.40;
 
@@ -51,15 +60,20 @@ void expect_at_most(Flow flow, double bytes_per_particle) {
   FlowOptions options;
   options.flow = flow;
   options.seconds = 0.75;
+  options.side = kSide;
   std::vector<Snapshot> frames = bench::run_flow(options).frames;
   ASSERT_EQ(frames.size(), 45u);
   const double particles = static_cast<double>(frames.front().positions.size());
-  ASSERT_EQ(particles, 32768.0);
+  ASSERT_EQ(particles, kSide * kSide * kSide);
   for (Snapshot& frame : frames) find_shell(frame.positions, frame.fluid_index, options.spacing, frame.shell);
   const Cost all = stream(frames, false);
+  const Cost shell = stream(frames, true);
+  if (!kJudged) {
+    std::printf("a sanitizer's build: only %.0f particles, targets not judged\n", particles);
+    return;
+  }
   EXPECT_LE(all.bytes / (particles * static_cast<double>(frames.size())), bytes_per_particle);
   EXPECT_LE(all.key_bytes, kKeyFrameBytes);
-  const Cost shell = stream(frames, true);
   EXPECT_LE(shell.bytes, kShellShare * all.bytes);
 }
 
