@@ -198,12 +198,12 @@ void bench_others(Table& table, const std::string& flow, const std::vector<Snaps
 
 int main(int argc, char** argv) {
   CLI::App app{"Size and speed of the snapshot codec"};
-  std::string csv, cache = ".";
+  std::string csv, cache;
   double tolerance = 0.001;
   int side = 32;
   bool mask = false;
   app.add_option("--csv", csv, "also write the results here");
-  app.add_option("--cache", cache, "folder that keeps the simulated frames");
+  app.add_option("--cache", cache, "folder that keeps the simulated frames for the next time (none)");
   app.add_option("--tolerance", tolerance, "m")->check(CLI::Range(1e-5, 0.01));
   app.add_option("--side", side, "particles along an edge of the fluid")->check(CLI::Range(8, 64));
   app.add_flag("--mask", mask, "draw full and shell-only pictures and compare where fluid is seen");
@@ -217,7 +217,9 @@ int main(int argc, char** argv) {
     options.seconds = flow == bench::Flow::kStirred ? 4.0 : 3.0;
     const std::string name = flow == bench::Flow::kStirred ? "stirred" : "dam break";
     auto recorded = bench::record_flow(
-        options, std::filesystem::path(cache) / (name.substr(0, 3) + std::to_string(side) + ".flow"));
+        options, cache.empty()
+                     ? std::filesystem::path()
+                     : std::filesystem::path(cache) / (name.substr(0, 3) + std::to_string(side) + ".flow"));
     if (!recorded) return std::fprintf(stderr, "%s\n", recorded.error().text().c_str()), 1;
     std::vector<Snapshot>& frames = recorded.value().frames;
     std::printf("%s: %s, spacing %.3g m, %zu particles, %zu frames at %.0f Hz, within %.3g m\n", name.c_str(),

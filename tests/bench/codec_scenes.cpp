@@ -195,9 +195,9 @@ Recorded run_flow(const FlowOptions& o) {
 
 Result<Recorded> record_flow(const FlowOptions& o, const std::filesystem::path& cache) {
   Recorded recorded{describe(o), o.spacing, {}};
-  if (read_cache(o, cache, recorded)) return recorded;
+  if (!cache.empty() && read_cache(o, cache, recorded)) return recorded;
   recorded = run_flow(o);
-  if (!write_cache(o, cache, recorded))
+  if (!cache.empty() && !write_cache(o, cache, recorded))
     return Error{cache.string(), "cannot be written", "give another folder"};
   return recorded;
 }
