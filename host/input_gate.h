@@ -32,9 +32,6 @@ constexpr double kLostFade = 0.4;
 /// s of wall time without a message after which a hand counts as standing still: a twist as old as that would
 /// drag the body along.
 constexpr double kStaleTwist = 0.05;
-/// A hand that was not heard for kHoldAnew s of wall time (net/engagement.h) takes hold anew when it is heard
-/// again, and so does every hand after a pause.
-
 /// s of wall time after a reset in which messages of the run before may still come.
 constexpr double kOldRun = 1.0;
 
@@ -55,7 +52,8 @@ class InputGate {
   /// The world went back to its start, as `now` has it: hands that hold on hold there until they report anew.
   void reset(const BodySnapshot& now, std::int64_t clock_ns);
 
-  /// The world stood still for a while, and hands may have moved: who holds on takes hold anew.
+  /// The world stood still for a while, and hands may have moved: who holds on takes hold anew. So does a
+  /// hand that was not heard for kHoldAnew s of wall time (net/engagement.h), when it is heard again.
   void stood_still();
 
   /// The newest message of each grip that was used; valid until the next call of anything here.

@@ -119,7 +119,7 @@ class Connection {
                               std::size_t packed, std::int64_t now);
   ngtcp2_ssize write_stream(std::span<std::uint8_t> out, ngtcp2_path* path, std::int64_t now);
   ngtcp2_ssize write_probe_byte(std::span<std::uint8_t> out, ngtcp2_path* path, bool more, std::int64_t now);
-  std::size_t burst() const;
+  std::size_t burst(const PathFigures& figures) const;
   void pace(std::size_t sent, std::int64_t now);
   void fail(int code, std::int64_t now);
   void write_close(const CloseError& error, std::int64_t now);

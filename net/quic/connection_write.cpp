@@ -23,8 +23,8 @@ void Connection::flush(std::int64_t now) {
     return;
   }
   streams_.unblock_all();
-  const std::size_t limit = burst();
   const PathFigures figures = path_figures(conn_);
+  const std::size_t limit = burst(figures);
   const std::size_t most = snapshot_room_.limit(figures, now);
   room_ = most > figures.in_flight ? most - figures.in_flight : 0;
   std::size_t sent = 0;
@@ -64,9 +64,9 @@ void Connection::pace(std::size_t sent, std::int64_t now) {
 }
 
 /// A pose that comes right after a burst waits for the pace to allow the next one: so bursts are short.
-std::size_t Connection::burst() const {
+std::size_t Connection::burst(const PathFigures& figures) const {
   const std::size_t quantum = ngtcp2_conn_get_send_quantum(conn_);
-  const double rate = path_figures(conn_).pacing_rate;
+  const double rate = figures.pacing_rate;
   if (rate <= 0.0) return quantum;
   const double bytes = std::min(pace_.factor() * rate * kBurst, 65536.0);
   return std::max<std::size_t>(static_cast<std::size_t>(bytes), 2 * kMaxPacket);

@@ -7,12 +7,10 @@
 #include <thread>
 #include <utility>
 
+#include "peer/output/progress.h"
+
 namespace slosh {
 namespace {
-
-bool continues_a_character(char c) {
-  return (static_cast<unsigned char>(c) & 0xC0) == 0x80;
-}
 
 bool in_foreground() {
   return tcgetpgrp(STDIN_FILENO) == getpgrp();
@@ -40,14 +38,14 @@ void LineEditor::key(char c) {
   } else if (c == '\n' || c == '\r') {
     lines_.push_back(std::exchange(text_, {}));
   } else if (c == kBackspace || c == kDelete) {
-    while (!text_.empty() && continues_a_character(text_.back())) text_.pop_back();
+    while (!text_.empty() && !begins_character(text_.back())) text_.pop_back();
     if (!text_.empty()) text_.pop_back();
   } else if (c == kCtrlU) {
     text_.clear();
   } else if (c == kCtrlW) {
     while (!text_.empty() && text_.back() == ' ') text_.pop_back();
     while (!text_.empty() && text_.back() != ' ') text_.pop_back();
-  } else if (text_.size() < kMaxTypedLine && (static_cast<unsigned char>(c) >= ' ' || c == '\t')) {
+  } else if (text_.size() < kMaxConsoleLine && (static_cast<unsigned char>(c) >= ' ' || c == '\t')) {
     text_ += c == '\t' ? ' ' : c;
   }
 }
@@ -113,7 +111,7 @@ std::vector<std::string> LineInput::read() {
     lines.push_back(partial_.substr(0, end));
     partial_.erase(0, end + 1);
   }
-  if (partial_.size() > kMaxTypedLine) partial_.clear();
+  if (partial_.size() > kMaxConsoleLine) partial_.clear();
   return lines;
 }
 

@@ -8,11 +8,12 @@
 #include <string_view>
 #include <vector>
 
+#include "net/console_words.h"
+
 namespace slosh {
 
-constexpr std::size_t kMaxTypedLine = 1000;  ///< bytes; what is typed beyond is left out
-
-/// Keys to lines: what a terminal's own line editing does, for who switched that off. Pure.
+/// Keys to lines: what a terminal's own line editing does, for who switched that off. What is typed beyond
+/// kMaxConsoleLine bytes is left out. Pure.
 class LineEditor {
  public:
   /// Bytes as they come from the keyboard. Backspace takes away a character, Ctrl-U the line, Ctrl-W a word;

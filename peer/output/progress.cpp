@@ -30,8 +30,7 @@ std::string tail(const std::string& text, std::size_t most) {
   if (all <= most) return text;
   std::size_t at = 0;
   for (std::size_t seen = 0; at < text.size(); ++at) {
-    const bool begins = (static_cast<unsigned char>(text[at]) & 0xC0) != 0x80;
-    if (begins && seen++ == all - most) break;
+    if (begins_character(text[at]) && seen++ == all - most) break;
   }
   return text.substr(at);
 }
@@ -40,8 +39,7 @@ std::string tail(const std::string& text, std::size_t most) {
 std::string cut(const std::string& text, std::size_t most) {
   std::size_t seen = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
-    const bool begins = (static_cast<unsigned char>(text[i]) & 0xC0) != 0x80;
-    if (begins && ++seen > most) return text.substr(0, i);
+    if (begins_character(text[i]) && ++seen > most) return text.substr(0, i);
   }
   return text;
 }
@@ -49,8 +47,8 @@ std::string cut(const std::string& text, std::size_t most) {
 }  // namespace
 
 std::size_t columns(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(
-      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return begins_character(c); }));
 }
 
 Progress::Progress() : Progress(good_terminal(), 2.0) {}

@@ -45,6 +45,10 @@ class Progress {
   bool line_moves_ = false;  // it is kept up to date
 };
 
+/// Whether a byte of UTF-8 text is the first of its character.
+inline bool begins_character(char c) {
+  return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
+}
 /// Columns that UTF-8 text takes on a terminal, counting every code point as one.
 std::size_t columns(const std::string& text);
 

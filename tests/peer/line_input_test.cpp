@@ -39,8 +39,8 @@ TEST(LineEditor, ArrowsAndOtherKeysDoNothing) {
 
 TEST(LineEditor, ALineIsBounded) {
   LineEditor editor;
-  editor.feed(std::string(10 * kMaxTypedLine, 'x'));
-  EXPECT_EQ(editor.text().size(), kMaxTypedLine);
+  editor.feed(std::string(10 * kMaxConsoleLine, 'x'));
+  EXPECT_EQ(editor.text().size(), kMaxConsoleLine);
 }
 
 }  // namespace
