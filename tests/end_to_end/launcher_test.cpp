@@ -2,13 +2,14 @@
 #include <gtest/gtest.h>
 
 #include "process.h"
+#include "tests/support/places.h"
 
 namespace slosh {
 namespace {
 
 using test::Outcome;
 
-const std::filesystem::path kRoot = SLOSH_SOURCE_DIR;
+const std::filesystem::path kRoot = test::source_dir();
 
 Outcome launcher(const std::vector<std::string>& arguments) {
   std::vector<std::string> all{"env", "SLOSH_SKIP_PACKAGES=1", (kRoot / "slosh").string()};

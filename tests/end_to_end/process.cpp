@@ -11,6 +11,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "tests/support/places.h"
+
 namespace slosh::test {
 
 Process::Process(const std::vector<std::string>& arguments, const std::filesystem::path& folder)
@@ -70,7 +72,7 @@ std::string program() {
 
 std::filesystem::path test_folder() {
   const ::testing::TestInfo* info = ::testing::UnitTest::GetInstance()->current_test_info();
-  return std::filesystem::path(SLOSH_BINARY_DIR) / "end_to_end" /
+  return build_dir() / "end_to_end" /
          (std::string(info->test_suite_name()) + "." + info->name());
 }
 

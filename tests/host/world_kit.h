@@ -10,6 +10,7 @@
 #include "host/host.h"
 #include "scenes/load.h"
 #include "scenes/sample.h"
+#include "tests/support/places.h"
 
 namespace slosh::testing {
 
@@ -105,7 +106,7 @@ class AtTick : public HostTap {
 /// An empty folder named after the current test.
 inline std::filesystem::path fresh_folder() {
   const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-  const std::filesystem::path folder = std::filesystem::path(SLOSH_BINARY_DIR) / "test_files" / "keep" /
+  const std::filesystem::path folder = test::build_dir() / "test_files" / "keep" /
                                        (std::string(test->test_suite_name()) + "." + test->name());
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);

@@ -13,6 +13,7 @@
 #include "render/passes/splats.h"
 #include "render/shader_math.h"
 #include "tests/render/scene_kit.h"
+#include "tests/support/places.h"
 
 namespace slosh {
 namespace {
@@ -154,7 +155,7 @@ TEST(DisplayTransform, TheTableComesCloseToTheTransform) {
 TEST(Png, ComesBackAsItWasWritten) {
   Image image{3, 2, {}};
   for (int i = 0; i < 24; ++i) image.rgba.push_back(static_cast<std::uint8_t>(10 * i + 3));
-  const std::filesystem::path path = std::filesystem::path(SLOSH_BINARY_DIR) / "png_comes_back.png";
+  const std::filesystem::path path = test::build_dir() / "png_comes_back.png";
   const auto written = write_png(path, image);
   ASSERT_TRUE(written) << written.error().text();
   const auto read = read_png(path);
@@ -167,10 +168,10 @@ TEST(Png, ComesBackAsItWasWritten) {
 
 TEST(Png, SaysWhatIsWrong) {
   Image image{2, 2, std::vector<std::uint8_t>(16)};
-  EXPECT_FALSE(write_png(std::filesystem::path(SLOSH_BINARY_DIR) / "no such folder" / "a.png", image));
+  EXPECT_FALSE(write_png(test::build_dir() / "no such folder" / "a.png", image));
   image.rgba.pop_back();
-  EXPECT_FALSE(write_png(std::filesystem::path(SLOSH_BINARY_DIR) / "short.png", image));
-  const std::filesystem::path text = std::filesystem::path(SLOSH_BINARY_DIR) / "not_a_picture.png";
+  EXPECT_FALSE(write_png(test::build_dir() / "short.png", image));
+  const std::filesystem::path text = test::build_dir() / "not_a_picture.png";
   std::ofstream(text) << "hello";
   EXPECT_FALSE(read_png(text));
   EXPECT_FALSE(read_png(text.string() + ".gone"));

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "scenes/load.h"
+#include "tests/support/places.h"
 #include "tests/support/tank.h"
 
 namespace slosh {
@@ -30,7 +31,7 @@ TEST_P(GoldenPlan, IsAsCommitted) {
   const auto scene = load_scene(file.value());
   ASSERT_TRUE(scene) << scene.error().text();
   const std::string seen = describe(make_plan(scene.value(), scene.value().spacing_max));
-  const std::string golden = std::string(SLOSH_SOURCE_DIR) + "/tests/sim/golden/" + GetParam() + ".plan";
+  const std::filesystem::path golden = test::source_dir() / "tests/sim/golden" / (GetParam() + std::string(".plan"));
   if (std::getenv("SLOSH_UPDATE_GOLDEN")) std::ofstream(golden) << seen;
   std::ifstream stream(golden);
   ASSERT_TRUE(stream) << golden;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <set>
@@ -10,11 +11,12 @@
 #include "net/wire/all_messages.h"
 #include "net/wire/describe.h"
 #include "net/wire/scene_fields.h"
+#include "tests/support/places.h"
 
 namespace slosh::wire {
 namespace {
 
-constexpr char kPage[] = SLOSH_SOURCE_DIR "/net/WIRE_FORMAT.md";
+const std::filesystem::path kPage = test::source_dir() / "net/WIRE_FORMAT.md";
 
 std::string read_page() {
   std::ifstream in(kPage, std::ios::binary);
