@@ -1,48 +1,106 @@
 #!/usr/bin/env bash
-# Who may include whom: the rules of the house, checked on every #include of the tree.
+# Who may include whom: the rules of the house, checked on every #include of every source in ROOT.
 # Usage: include_rules.sh ROOT. Prints each breach as file:line and exits 1 if there is one.
+#
+# Nothing is left out by not being named: a source in a folder without a rule is a breach too, and so is a toolkit
+# anywhere but where it is named. include_rules_test.sh plants breaches and sees that each is found.
 set -euo pipefail
 root=${1:?usage: include_rules.sh ROOT}
 cd "$root"
 
-breaches=0
-# room, what its includes of other rooms may look like (extended regular expression)
-check_room() {
-  local room=$1 allowed=$2
-  while IFS= read -r hit; do
-    echo "$hit"
-    breaches=$((breaches + 1))
-  done < <(grep -rnE --include='*.h' --include='*.cpp' --include='*.cu' \
-             '^#include "(scenes|sim|net|host|peer|render|tests)/' "$room" |
-           grep -vE "#include \"($room/|$allowed)" || true)
-}
+# folder | what of other folders its sources may include, as prefixes. A folder follows the longest rule above it, and
+# may always include what lies in its own room (the first part of its path). The rooms' READMEs say the same.
+rules='
+scenes     | sim/math/
+sim        | sim/math/ scenes/scene.h
+net        | sim/snapshot.h sim/math/ scenes/scene.h
+host       | scenes/ sim/ net/
+peer       | scenes/ sim/snapshot.h sim/math/ net/ render/
+peer/verbs | scenes/ sim/ net/ render/ host/
+render     | sim/math/
+tests      | scenes/ sim/ net/ host/ peer/ render/
+'
+# pattern of what is included | folders or files where it may stand | why
+toolkits='
+^<(cuda|cub/|thrust/)         | sim/cuda tests/cross | CUDA only in sim/cuda, and where the backends are compared
+^"sim/cuda/                   | sim/cuda sim/particle_engine.cpp tests/cross | only the factory in sim/particle_engine.cpp knows the CUDA engine
+^<(epoxy|GL|EGL|GLFW)/        | render | GL only in render
+^<(ngtcp2|gnutls)/            | net/quic | QUIC and TLS only behind net/quic/endpoint.h
+^"net/impair/                 | net/impair tests | a bad network is for tests and for the program slosh-impair
+^"peer/verbs/                 | peer/verbs peer/main.cpp tests | only the program joins host and peer
+^"tests/                      | tests | nothing that ships needs a test'"'"'s kit
+'
 
-check_room scenes 'sim/math/'
-check_room sim 'scenes/scene\.h"'
-check_room net 'sim/snapshot\.h"|sim/math/|scenes/scene\.h"'
-check_room host 'scenes/|sim/|net/'
-check_room peer 'scenes/|sim/|net/|render/|host/'
-check_room render 'sim/math/'
+find . \( -path './.*' -o -path ./build -o -path ./out \) -prune -o -type f \
+  \( -name '*.h' -o -name '*.hpp' -o -name '*.inl' -o -name '*.c' -o -name '*.cc' -o -name '*.cpp' -o -name '*.cu' \
+  -o -name '*.cuh' \) -print0 | sort -z |
+  xargs -0 -r grep -HnE '^[[:space:]]*#[[:space:]]*include' |
+  awk -v rules="$rules" -v toolkits="$toolkits" '
+    function trim(text) { gsub(/^[ \t]+|[ \t]+$/, "", text); return text }
+    function breach(why) { print file ":" line ": " text "  (" why ")"; ++breaches }
+    function starts(text, prefix) { return substr(text, 1, length(prefix)) == prefix }
+    function within(path, place) { return path == place || starts(path, place "/") }
+    BEGIN {
+      count = split(rules, lines, "\n")
+      for (i = 1; i <= count; ++i) if (split(lines[i], part, "|") == 2) may[trim(part[1])] = trim(part[2])
+      count = split(toolkits, lines, "\n")
+      for (i = 1; i <= count; ++i) {
+        n = split(lines[i], part, " [|] ")
+        if (n != 3) continue
+        ++tools
+        pattern[tools] = trim(part[1])
+        places[tools] = trim(part[2])
+        reason[tools] = trim(part[3])
+      }
+    }
+    {
+      match($0, /:[0-9]+:/)
+      file = substr($0, 3, RSTART - 3)  # without "./"
+      line = substr($0, RSTART + 1, RLENGTH - 2)
+      text = substr($0, RSTART + RLENGTH)
+      what = text
+      sub(/^[ \t]*#[ \t]*include[ \t]*/, "", what)
+      room = file
+      sub(/\/.*/, "", room)
+      ++includes
 
-# Toolkits that belong in one place.
-check_toolkit() {
-  local pattern=$1 why=$2
-  shift 2
-  while IFS= read -r hit; do
-    echo "$hit  ($why)"
-    breaches=$((breaches + 1))
-  done < <(grep -rnE --include='*.h' --include='*.cpp' --include='*.cu' "$pattern" "$@" || true)
-}
+      rule = ""
+      for (folder in may) if (within(file, folder) && length(folder) > length(rule)) rule = folder
+      if (rule == "") {
+        breach("no rule says what " room " may include: give it one in tests/house/include_rules.sh")
+      } else if (what ~ /^"/) {
+        name = what
+        sub(/^"/, "", name)
+        sub(/".*/, "", name)
+        if (name ~ /(^|\/)\.\.?\//) breach("from the root, not by . or ..")
+        # A name without a folder lies beside its includer; what is in no room of ours is a library.
+        top = name
+        sub(/\/.*/, "", top)
+        allowed = name !~ /\// || top == room || !(top in may)
+        n = split(may[rule], prefix, " ")
+        for (i = 1; i <= n && !allowed; ++i) allowed = starts(name, prefix[i])
+        if (!allowed) breach(rule " may include only " may[rule])
+      } else if (what !~ /^</) {
+        breach("neither \"...\" nor <...>")
+      }
 
-# tests/cross compares the two backends, and so may see both.
-mapfile -t tests_but_cross < <(find tests -mindepth 1 -maxdepth 1 -type d ! -name cross)
-check_toolkit '#include <(cuda|cub/|thrust/)' 'CUDA only in sim/cuda' scenes net host peer render sim/cpu sim/math sim/*.h sim/*.cpp "${tests_but_cross[@]}"
-check_toolkit '#include "sim/cuda/' 'only the factory in sim/particle_engine.cpp knows the CUDA engine' scenes net host peer render sim/cpu sim/math sim/*.h "${tests_but_cross[@]}"
-check_toolkit '#include <(epoxy|GL|EGL|GLFW)/' 'GL only in render' scenes sim net host peer
-check_toolkit '#include "host/' 'only the program that joins host and peer includes host' peer/haptics peer/hud peer/view peer/output
-
-if [ "$breaches" -gt 0 ]; then
-  echo "$breaches include(s) break the rules of the house. Each room's README says what it may include." >&2
-  exit 1
-fi
-echo "Every include keeps to the rules."
+      for (t = 1; t <= tools; ++t) {
+        if (what !~ pattern[t]) continue
+        allowed = 0
+        n = split(places[t], place, " ")
+        for (i = 1; i <= n && !allowed; ++i) allowed = within(file, place[i])
+        if (!allowed) breach(reason[t])
+      }
+    }
+    END {
+      if (includes == 0) {
+        print "include_rules.sh: no source here" > "/dev/stderr"
+        exit 2
+      }
+      if (breaches) {
+        print breaches " include(s) break the rules of the house. Each room'"'"'s README says what it may include." \
+          > "/dev/stderr"
+        exit 1
+      }
+      print "Every include keeps to the rules (" includes " of them)."
+    }'
