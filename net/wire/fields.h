@@ -8,7 +8,7 @@
 //   }
 //
 // The visitors are Writer and Reader, Describer (WIRE_FORMAT.md) in describe.h, and, for tests and fuzzers,
-// Randomizer and Mutator in randomize.h and mutate.h. All numbers are little-endian; counts and naturals
+// Randomizer and Mutator in tests/support. All numbers are little-endian; counts and naturals
 // are LEB128 varints in their shortest form. What a list may name:
 //
 //   natural(name, value, least, most)            varint

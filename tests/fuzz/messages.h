@@ -2,8 +2,8 @@
 #pragma once
 
 #include "net/wire/all_messages.h"
-#include "net/wire/randomize.h"
 #include "tests/fuzz/must.h"
+#include "tests/support/randomize.h"
 
 namespace slosh::test {
 

@@ -5,8 +5,8 @@
 
 #include <string>
 
-#include "net/wire/mutate.h"
-#include "net/wire/randomize.h"
+#include "tests/support/mutate.h"
+#include "tests/support/randomize.h"
 
 namespace slosh::test {
 

@@ -3,8 +3,8 @@
 #include <random>
 
 #include "net/wire/all_messages.h"
-#include "net/wire/randomize.h"
 #include "net/wire/stream_splitter.h"
+#include "tests/support/randomize.h"
 
 namespace slosh::wire {
 namespace {
