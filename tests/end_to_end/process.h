@@ -1,45 +1,18 @@
-// Running a program as a user would, and looking at what it said.
+// The built program, run from a test as a user would run it.
 #pragma once
-
-#include <sys/types.h>
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "tests/support/process.h"
+
 namespace slosh::test {
-
-struct Outcome {
-  int code = -1;  ///< exit code; 128 + signal when a signal ended it
-  std::string out;
-  std::string err;
-};
-
-/// A program with its output going to files in a folder of its own, without a terminal or a display.
-class Process {
- public:
-  /// `folder` is the working directory, made when it is not there.
-  Process(const std::vector<std::string>& arguments, const std::filesystem::path& folder);
-  ~Process();
-  Process(const Process&) = delete;
-  Process& operator=(const Process&) = delete;
-
-  void signal(int number) const;
-  bool running();
-  Outcome wait();
-
- private:
-  std::filesystem::path folder_;
-  pid_t pid_ = -1;
-  int status_ = 0;
-  bool ended_ = false;
-};
 
 /// The built program with these arguments, run to its end in a fresh folder named after the current test.
 Outcome slosh(const std::vector<std::string>& arguments);
 /// That folder.
 std::filesystem::path test_folder();
-std::string read_text(const std::filesystem::path& file);
 /// A copy of this process's build of the program.
 std::string program();
 

@@ -1,6 +1,7 @@
-// Several machines in one: network namespaces joined by a wire of our own, or loopback where they are not
-// permitted.
+// Several machines in one: network namespaces joined by a wire of our own.
 #pragma once
+
+#include <sys/types.h>
 
 #include <string>
 #include <vector>
@@ -8,7 +9,8 @@
 namespace slosh::test {
 
 /// One site a name. All are joined through one more namespace, "wire", in which the impairment relay runs.
-/// Without the right to make namespaces every site is this machine itself.
+/// Root is not needed where the kernel lets a user make a namespace of users. The namespaces are held by
+/// processes that end with this one, however it ends, and nothing of them stays.
 class Sites {
  public:
   explicit Sites(std::vector<std::string> names);
@@ -16,7 +18,8 @@ class Sites {
   Sites(const Sites&) = delete;
   Sites& operator=(const Sites&) = delete;
 
-  bool separate() const { return separate_; }
+  /// Why there are no sites here, in words; empty when all is well.
+  const std::string& problem() const { return problem_; }
   /// `command` as it runs at `site` (or at "wire").
   std::vector<std::string> at(const std::string& site, std::vector<std::string> command) const;
   /// The site's own address.
@@ -25,14 +28,21 @@ class Sites {
   std::string wire_address(const std::string& site) const;
 
  private:
-  int number(const std::string& site) const;
-  std::string space(const std::string& site) const;
+  struct Holder {
+    std::string site;
+    pid_t pid = -1;
+    int keep = -1;  // it lives until this is closed
+  };
   bool build();
-  void remove();
+  bool hold(const std::string& site, const std::vector<std::string>& unshare);
+  bool run(const std::string& site, const std::string& command);
+  void release();
+  int number(const std::string& site) const;
 
   std::vector<std::string> names_;
-  std::string prefix_;
-  bool separate_ = false;
+  std::vector<Holder> holders_;
+  bool own_users_ = false;  // a namespace of users was needed
+  std::string problem_;
 };
 
 }  // namespace slosh::test

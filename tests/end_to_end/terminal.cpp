@@ -24,7 +24,6 @@ Terminal::Terminal(const std::vector<std::string>& arguments, const std::filesys
   pid_ = forkpty(&fd_, nullptr, nullptr, &size);
   if (pid_ != 0) return;
   setenv("TERM", "xterm", 1);
-  setenv("ASAN_OPTIONS", "detect_leaks=0", 1);
   unsetenv("DISPLAY");
   unsetenv("WAYLAND_DISPLAY");
   if (chdir(folder.c_str()) != 0) _exit(125);
@@ -71,7 +70,7 @@ const std::string& Terminal::screen() {
 }
 
 bool Terminal::shows(const std::string& text, std::size_t from) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(4);
   while (screen_.find(text, from) == std::string::npos) {
     if (over_ || std::chrono::steady_clock::now() > end) return false;
     read_some(50);

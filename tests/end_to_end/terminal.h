@@ -20,7 +20,7 @@ class Terminal {
   void type(const std::string& keys) const;
   /// Everything that was written there so far.
   const std::string& screen();
-  /// Waits until `text` is written after the first `from` bytes; false when that takes a minute or the
+  /// Waits until `text` is written after the first `from` bytes; false when that takes four minutes or the
   /// program ends first.
   bool shows(const std::string& text, std::size_t from = 0);
   /// Whether the terminal itself echoes and edits lines, as a shell finds it.

@@ -2,39 +2,22 @@
 #include "terminal.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <memory>
-#include <sstream>
 #include <thread>
 
-#include "process.h"
+#include "hosted_test.h"
 
 namespace slosh {
 namespace {
 
-using std::filesystem::path;
-using test::read_text;
 using test::Terminal;
 
-class TerminalTest : public ::testing::Test {
+class TerminalTest : public test::HostedTest {
  protected:
-  path home_;
-  void SetUp() override {
-    std::filesystem::remove_all(test::test_folder());
-    std::string pattern = (std::filesystem::temp_directory_path() / "slosh-XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    home_ = pattern;
-  }
-  void TearDown() override { std::filesystem::remove_all(home_); }
-  path folder(const std::string& name) const { return test::test_folder() / name; }
-  std::unique_ptr<Terminal> at_terminal(const std::string& name, std::vector<std::string> arguments) const {
-    const std::string home = home_.string();
-    std::vector<std::string> command{"env", "XDG_STATE_HOME=" + home, "XDG_DATA_HOME=" + home,
-                                     "XDG_RUNTIME_DIR=" + home, test::program()};
-    command.insert(command.end(), arguments.begin(), arguments.end());
-    return std::make_unique<Terminal>(command, folder(name));
+  std::unique_ptr<Terminal> at_terminal(const std::string& name, const std::vector<std::string>& with) const {
+    return std::make_unique<Terminal>(command(with), folder(name));
   }
   std::unique_ptr<Terminal> host(std::vector<std::string> more = {}) const {
     std::vector<std::string> arguments{"host",         "probe", "--spacing", "0.01",
@@ -44,13 +27,8 @@ class TerminalTest : public ::testing::Test {
     return at_terminal("host", arguments);
   }
   std::unique_ptr<Terminal> join(const std::string& verb, const std::string& name) const {
-    std::istringstream lines(read_text(folder("host") / "links.txt"));
-    std::string word, link, rest, found;
-    while (lines >> word >> link && std::getline(lines, rest)) {
-      if (word == (verb == "join" ? "hold" : "watch")) found = link;
-    }
-    return at_terminal(name, {verb, found, "--name", name, "--headless", "--no-render", "--out", "out",
-                              "--key", "../" + name + ".key"});
+    return at_terminal(name, {verb, link(verb == "join" ? "hold" : "watch"), "--name", name, "--headless",
+                              "--no-render", "--out", "out", "--key", "../" + name + ".key"});
   }
 };
 

@@ -28,7 +28,7 @@ TEST(FormatPage, ItsTablesAreTheListsOfTheCode) {
   const std::string filled = fill_tables(page);
   if (std::getenv("SLOSH_UPDATE_GOLDEN")) {
     std::ofstream(kPage, std::ios::binary) << filled;
-    return;
+    GTEST_SKIP() << "the page was written anew (SLOSH_UPDATE_GOLDEN)";
   }
   EXPECT_TRUE(page == filled)
       << "a list of fields has changed: run slosh-wire-format net/WIRE_FORMAT.md, or this "

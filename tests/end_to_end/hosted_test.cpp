@@ -1,0 +1,39 @@
+#include "hosted_test.h"
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <sstream>
+
+namespace slosh::test {
+
+void HostedTest::SetUp() {
+  std::filesystem::remove_all(test_folder());
+  // Short, for a socket's name has to fit into 108 bytes.
+  std::string pattern = (std::filesystem::temp_directory_path() / "slosh-XXXXXX").string();
+  ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+  home_ = pattern;
+}
+
+void HostedTest::TearDown() {
+  if (!home_.empty()) std::filesystem::remove_all(home_);
+}
+
+std::vector<std::string> HostedTest::command(const std::vector<std::string>& arguments) const {
+  const std::string home = home_.string();
+  std::vector<std::string> all{"env", "XDG_STATE_HOME=" + home, "XDG_DATA_HOME=" + home,
+                               "XDG_RUNTIME_DIR=" + home, program()};
+  all.insert(all.end(), arguments.begin(), arguments.end());
+  return all;
+}
+
+std::string HostedTest::link(const std::string& kind) const {
+  std::istringstream lines(read_text(folder("host") / "links.txt"));
+  std::string word, text, rest;
+  while (lines >> word >> text && std::getline(lines, rest)) {
+    if (word == kind) return text;
+  }
+  return {};
+}
+
+}  // namespace slosh::test

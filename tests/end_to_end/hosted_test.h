@@ -1,0 +1,31 @@
+// The fixture of what a host and its peers do as programs: a folder for each, a home for all, the host's
+// links.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "process.h"
+
+namespace slosh::test {
+
+class HostedTest : public ::testing::Test {
+ protected:
+  void SetUp() override;
+  void TearDown() override;
+  /// Where the program with this name runs, below the test's own folder.
+  std::filesystem::path folder(const std::string& name) const { return test_folder() / name; }
+  /// The built program with these arguments, and with its own idea of where a user's files are.
+  std::vector<std::string> command(const std::vector<std::string>& arguments) const;
+  /// One of the links that the program "host" wrote to links.txt: "hold" or "watch"; empty while there is
+  /// none.
+  std::string link(const std::string& kind) const;
+
+ private:
+  std::filesystem::path home_;
+};
+
+}  // namespace slosh::test
