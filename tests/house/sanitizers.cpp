@@ -1,0 +1,45 @@
+// What the sanitizers do in every program of a sanitizer's build, however it is started: by ctest, by hand, or by
+// another program. CMakeLists.txt puts this file into each of them. The environment (ASAN_OPTIONS, …) still wins.
+//
+// The graphics driver (Mesa: llvmpipe, its EGL and the LLVM in it) is not built with sanitizers, keeps its compiler
+// for the life of a process, and hands pictures between its own threads in ways that ThreadSanitizer cannot see.
+// That is all that is suppressed.
+
+// NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming): the sanitizers' names for them
+extern "C" {
+
+const char* __asan_default_options();
+const char* __asan_default_options() {
+  return "detect_stack_use_after_return=1:strict_string_checks=1:detect_leaks=1";
+}
+
+const char* __lsan_default_suppressions();
+const char* __lsan_default_suppressions() {
+  return "leak:libLLVM\n"
+         "leak:swrast_dri\n"
+         "leak:libgallium\n"
+         "leak:libEGL_mesa\n"
+         "leak:libglapi\n";
+}
+
+const char* __ubsan_default_options();
+const char* __ubsan_default_options() {
+  return "halt_on_error=1:print_stacktrace=1";
+}
+
+const char* __tsan_default_options();
+const char* __tsan_default_options() {
+  return "second_deadlock_stack=1";
+}
+
+const char* __tsan_default_suppressions();
+const char* __tsan_default_suppressions() {
+  return "race:libLLVM\n"
+         "race:swrast_dri\n"
+         "race:libgallium\n"
+         "race:libEGL_mesa\n"
+         "race:libglapi\n";
+}
+
+}  // extern "C"
+// NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)
