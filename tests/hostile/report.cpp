@@ -1,0 +1,94 @@
+#include "tests/hostile/report.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <random>
+
+namespace slosh::hostile {
+namespace {
+
+/// Under AddressSanitizer what was freed stays for a while, and every byte has its shadow.
+#if defined(__SANITIZE_ADDRESS__)
+constexpr long kMostMemory = 3'000'000;  // kB
+#else
+constexpr long kMostMemory = 1'000'000;  // kB
+#endif
+
+}  // namespace
+
+RunOptions run_options(int count, char** arguments, const char* what) {
+  RunOptions options;
+  options.seed = std::random_device{}();
+  CLI::App app(what);
+  std::string folder = "hostile";
+  app.add_option("--seconds", options.seconds, "How long to attack")->check(CLI::Range(1.0, 86400.0));
+  app.add_option("--seed", options.seed, "Of all that is chosen (a new one)");
+  app.add_option("--first", options.first, "Number of the first attack, to go on or to do one again");
+  app.add_option("--most", options.most, "Attacks at most");
+  app.add_option("--folder", folder, "Where what happened is kept")->capture_default_str();
+  try {
+    app.parse(count, arguments);
+  } catch (const CLI::ParseError& error) {
+    std::exit(app.exit(error));
+  }
+  options.folder = std::filesystem::absolute(folder);
+  std::filesystem::remove_all(options.folder);
+  std::filesystem::create_directories(options.folder);
+  return options;
+}
+
+std::string unfit_for_a_terminal(const std::string& text) {
+  char found[80];
+  for (std::size_t i = 0; i < text.size();) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const std::size_t length = byte < 0x80 ? 1 : byte >= 0xf0 ? 4 : byte >= 0xe0 ? 3 : byte >= 0xc2 ? 2 : 0;
+    bool sound = length > 0 && i + length <= text.size();
+    for (std::size_t k = 1; sound && k < length; ++k)
+      sound = (static_cast<unsigned char>(text[i + k]) & 0xc0) == 0x80;
+    const bool c0 = byte < 0x20 && byte != '\n' && byte != '\t' && byte != '\r';
+    const bool c1 = sound && byte == 0xc2 && static_cast<unsigned char>(text[i + 1]) < 0xa0;
+    if (!sound || c0 || byte == 0x7f || c1) {
+      std::snprintf(found, sizeof found, "byte 0x%02x at %zu",
+                    c1 ? static_cast<unsigned char>(text[i + 1]) : byte, i);
+      return found;
+    }
+    i += length;
+  }
+  return {};
+}
+
+std::string sanitizer_words(const std::string& text) {
+  for (const char* words : {"AddressSanitizer", "LeakSanitizer", "ThreadSanitizer", "runtime error:"}) {
+    const std::size_t at = text.find(words);
+    if (at == std::string::npos) continue;
+    const std::size_t begin = text.rfind('\n', at) + 1;  // npos + 1 is 0
+    return text.substr(begin, text.find('\n', at) - begin);
+  }
+  return {};
+}
+
+std::vector<std::string> faults_of(const test::Outcome& outcome, const std::vector<int>& codes) {
+  std::vector<std::string> faults;
+  for (const std::string* text : {&outcome.out, &outcome.err}) {
+    if (const std::string words = sanitizer_words(*text); !words.empty()) faults.push_back(words);
+    if (const std::string where = unfit_for_a_terminal(*text); !where.empty())
+      faults.push_back("writes to the terminal what somebody sent: " + where);
+  }
+  if (std::find(codes.begin(), codes.end(), outcome.code) == codes.end())
+    faults.push_back("ended with " + std::to_string(outcome.code));
+  if (outcome.peak_kb > kMostMemory)
+    faults.push_back("held " + std::to_string(outcome.peak_kb / 1000) + " MB at its most");
+  return faults;
+}
+
+std::string slosh_program() {
+  return SLOSH_PROGRAM;
+}
+
+std::string seconds_text(double seconds) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.0f s", seconds);
+  return text;
+}
+
+}  // namespace slosh::hostile
