@@ -64,8 +64,8 @@ TEST(Launcher, WorksThroughASymbolicLinkFromAnotherFolder) {
   EXPECT_NE(outcome.out.find(verb == "scenes" ? "bucket" : "./slosh play"), std::string::npos) << outcome.out;
 }
 
-#ifdef SLOSH_LAUNCHER_BUILD
 TEST(Launcher, PlaysAndPassesTheExitCodeOn) {
+  if (!kIsTheLaunchersBuild) GTEST_SKIP() << "the launcher builds and runs build/release, which this is not";
   std::filesystem::remove_all(test::test_folder());
   const Outcome played = launcher({"play", "bucket", "--headless", "--seconds", "1", "--spacing", "0.012",
                                    "--size", "160x120", "--fps", "5", "--out", "out"});
@@ -76,7 +76,6 @@ TEST(Launcher, PlaysAndPassesTheExitCodeOn) {
   EXPECT_EQ(launcher({"check", "nowhere.gltf"}).code, 1);
   EXPECT_EQ(launcher({"play", "--frobnicate"}).code, 2);
 }
-#endif
 
 }  // namespace
 }  // namespace slosh
