@@ -92,9 +92,9 @@ class Run {
     for (const std::string& fault : faults_of(honest.wait(), {128 + SIGINT}))
       finding("the honest host " + fault, 0);
     std::printf(
-        "hostile host: %llu visits by real peers in %.0f s (%llu said Hello), %llu messages; peers at most "
-        "%ld MB; "
-        "joined an honest host %llu times; %zu findings; seed %llu\n",
+        "hostile host: %llu visits by real peers in %.0f s (%llu said Hello), %llu messages; peers held at "
+        "most "
+        "%ld MB and felt at most %.0f N; joined an honest host %llu times; %zu findings; seed %llu\n",
         number(visits_), attacked, number(evil_.guests()), number(evil_.messages()), peak_kb_ / 1000,
         most_force_, number(honest_), findings_, number(options_.seed));
     return findings_ == 0 ? 0 : 1;
