@@ -1,6 +1,7 @@
 #include "tests/hostile/report.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <random>
 
@@ -13,6 +14,16 @@ constexpr long kMostMemory = 3'000'000;  // kB
 #else
 constexpr long kMostMemory = 1'000'000;  // kB
 #endif
+
+bool is_unfit(std::uint32_t character) {
+  const auto within = [character](std::uint32_t least, std::uint32_t most) {
+    return character >= least && character <= most;
+  };
+  if (character == '\n' || character == '\t' || character == '\r') return false;
+  return character < 0x20 || within(0x7f, 0x9f)  // controls, C1 too
+         || within(0x200b, 0x200f)               // no width; turns the way of writing
+         || within(0x2028, 0x202e) || within(0x2060, 0x206f) || character == 0xfeff;
+}
 
 }  // namespace
 
@@ -38,18 +49,26 @@ RunOptions run_options(int count, char** arguments, const char* what) {
 }
 
 std::string unfit_for_a_terminal(const std::string& text) {
-  char found[80];
   for (std::size_t i = 0; i < text.size();) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    const std::size_t length = byte < 0x80 ? 1 : byte >= 0xf0 ? 4 : byte >= 0xe0 ? 3 : byte >= 0xc2 ? 2 : 0;
+    const auto byte = [&](std::size_t k) {
+      return static_cast<std::uint32_t>(static_cast<unsigned char>(text[k]));
+    };
+    const std::uint32_t first = byte(i);
+    const std::size_t length = first < 0x80    ? 1
+                               : first >= 0xf0 ? 4
+                               : first >= 0xe0 ? 3
+                               : first >= 0xc2 ? 2
+                                               : 0;
     bool sound = length > 0 && i + length <= text.size();
-    for (std::size_t k = 1; sound && k < length; ++k)
-      sound = (static_cast<unsigned char>(text[i + k]) & 0xc0) == 0x80;
-    const bool c0 = byte < 0x20 && byte != '\n' && byte != '\t' && byte != '\r';
-    const bool c1 = sound && byte == 0xc2 && static_cast<unsigned char>(text[i + 1]) < 0xa0;
-    if (!sound || c0 || byte == 0x7f || c1) {
-      std::snprintf(found, sizeof found, "byte 0x%02x at %zu",
-                    c1 ? static_cast<unsigned char>(text[i + 1]) : byte, i);
+    std::uint32_t character = length == 1 ? first : first & (0x7fu >> length);
+    for (std::size_t k = 1; sound && k < length; ++k) {
+      sound = (byte(i + k) & 0xc0) == 0x80;
+      character = character << 6 | (byte(i + k) & 0x3f);
+    }
+    if (!sound || is_unfit(character)) {
+      char found[80];
+      std::snprintf(found, sizeof found, sound ? "U+%04X at byte %zu" : "byte 0x%02x, no UTF-8, at byte %zu",
+                    sound ? character : first, i);
       return found;
     }
     i += length;

@@ -20,8 +20,9 @@ struct RunOptions {
 /// Reads --seconds, --seed, --first, --most and --folder; ends the program on anything else.
 RunOptions run_options(int count, char** arguments, const char* what);
 
-/// Text that must not reach a terminal: a control character other than a line's end, tab or carriage return,
-/// C1 included, or bytes that are no UTF-8. Empty when there is none; else where, and which.
+/// What in `text` must not reach a terminal: a control other than a line's end, tab or carriage return (C1
+/// included), what has no width or turns the way of writing, bytes that are no UTF-8. Empty when there is
+/// none; else the first, and where.
 std::string unfit_for_a_terminal(const std::string& text);
 
 /// What a sanitizer said in there; empty when nothing.
