@@ -1,5 +1,7 @@
 #include "net/link.h"
 
+#include <zlib.h>
+
 #include <algorithm>
 #include <charconv>
 #include <optional>
@@ -25,16 +27,7 @@ std::size_t base32_length(std::size_t bytes) {
   return (8 * bytes + 4) / 5;
 }
 
-/// CRC-32 (IEEE 802.3): finds every change within 32 bits on end, so every changed character.
-std::uint32_t crc32(ByteView bytes) {
-  std::uint32_t crc = 0xffffffff;
-  for (const std::uint8_t byte : bytes) {
-    crc ^= byte;
-    for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ (crc & 1 ? 0xedb88320 : 0);
-  }
-  return ~crc;
-}
-
+/// CRC-32 finds every change within 32 bits on end, so every changed character.
 std::uint32_t check_of(const std::vector<std::string>& addresses, ByteView key, ByteView token) {
   Bytes all;
   for (const std::string& address : addresses) {
@@ -43,7 +36,7 @@ std::uint32_t check_of(const std::vector<std::string>& addresses, ByteView key, 
   }
   all.insert(all.end(), key.begin(), key.end());
   all.insert(all.end(), token.begin(), token.end());
-  return crc32(all);
+  return static_cast<std::uint32_t>(::crc32_z(0, all.data(), all.size()));
 }
 
 bool all_of(std::string_view text, std::string_view extra) {

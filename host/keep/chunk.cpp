@@ -1,8 +1,8 @@
 #include "host/keep/chunk.h"
 
+#include <zlib.h>
 #include <zstd.h>
 
-#include <array>
 #include <cstring>
 
 namespace slosh::keep {
@@ -12,16 +12,6 @@ enum Coding : std::uint8_t { kStored, kZstd };
 
 // Fast: what is kept is mostly noise of the last digits.
 constexpr int kZstdLevel = 1;
-
-constexpr std::array<std::uint32_t, 256> kCrcTable = [] {
-  std::array<std::uint32_t, 256> table{};
-  for (std::uint32_t i = 0; i < 256; ++i) {
-    std::uint32_t value = i;
-    for (int bit = 0; bit < 8; ++bit) value = value & 1 ? 0xedb88320u ^ (value >> 1) : value >> 1;
-    table[i] = value;
-  }
-  return table;
-}();
 
 struct Head {
   std::uint8_t type = 0;
@@ -36,16 +26,13 @@ static_assert(sizeof(Head) == kChunkHead);
 std::uint32_t crc_of(const Head& head, ByteView content) {
   std::uint8_t raw[kChunkHead];
   std::memcpy(raw, &head, sizeof head);
-  return crc32(content, crc32({raw, kChunkHead - sizeof head.crc}));
+  const uLong before = ::crc32_z(0, raw, kChunkHead - sizeof head.crc);
+  // To zlib a null pointer is the wish to begin anew.
+  if (content.empty()) return static_cast<std::uint32_t>(before);
+  return static_cast<std::uint32_t>(::crc32_z(before, content.data(), content.size()));
 }
 
 }  // namespace
-
-std::uint32_t crc32(ByteView bytes, std::uint32_t before) {
-  std::uint32_t crc = ~before;
-  for (const std::uint8_t byte : bytes) crc = kCrcTable[(crc ^ byte) & 0xff] ^ (crc >> 8);
-  return ~crc;
-}
 
 void append_chunk(std::uint8_t type, ByteView content, Bytes& out) {
   const std::size_t begin = out.size();

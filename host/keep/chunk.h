@@ -1,8 +1,8 @@
 // What checkpoints and recordings are made of: chunks that each say what they are and prove that they are
 // whole.
 //
-// Sixteen bytes of head (type, coding, two zero bytes, bytes that follow, bytes unpacked, CRC-32 of the head
-// before it and of what follows), then the content, zstd where that is smaller. Little-endian.
+// Sixteen bytes of head (type, coding, two zero bytes, bytes that follow, bytes unpacked, CRC-32 (zlib's) of
+// the head before it and of what follows), then the content, zstd where that is smaller. Little-endian.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +23,6 @@ constexpr std::size_t kChunkHead = 16;
 constexpr std::size_t kLargestChunk = std::size_t{1} << 28;
 /// A chunk that unpacks to more times its size is not written packed and not believed.
 constexpr std::size_t kMostExpansion = 64;
-
-/// CRC-32 as zip and PNG have it.
-std::uint32_t crc32(ByteView bytes, std::uint32_t before = 0);
 
 /// Appends one chunk. `content` is at most kLargestChunk.
 void append_chunk(std::uint8_t type, ByteView content, Bytes& out);
