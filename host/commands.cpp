@@ -93,10 +93,14 @@ Result<bool> Host::reset() {
   return true;
 }
 
-HostState Host::state() const {
-  HostState state{paused_, run_, world_.gravity_scale(), {}};
-  for (std::size_t i = 0; i < fluids_; ++i) state.viscosities.push_back(world_.viscosity(i));
+HostState state_of(const World& world, std::size_t fluids, bool paused, std::uint32_t run) {
+  HostState state{paused, run, world.gravity_scale(), {}};
+  for (std::size_t i = 0; i < fluids; ++i) state.viscosities.push_back(world.viscosity(i));
   return state;
+}
+
+HostState Host::state() const {
+  return state_of(world_, fluids_, paused_, run_);
 }
 
 void Host::stand_still() {

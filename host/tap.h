@@ -33,6 +33,9 @@ struct HostState {
   std::vector<double> viscosities;  ///< Pa·s, one a fluid
 };
 
+/// The switches of a world of so many fluids; who runs it knows whether it stands and how often it was reset.
+HostState state_of(const World& world, std::size_t fluids, bool paused, std::uint32_t run);
+
 /// What a step starts from, one entry a grip each.
 struct StepInput {
   std::span<const HandleInput> hands;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "host/keep/file.h"
+#include "host/keep/secrets.h"
 #include "net/clock.h"
 #include "net/wire/scene_package.h"
 
@@ -13,31 +14,60 @@ namespace slosh::keep {
 namespace {
 
 constexpr char kMagic[8] = {'S', 'L', 'O', 'S', 'H', 'C', 'P', '\n'};
-constexpr std::uint32_t kVersion = 1;
+// 1 had the secrets in it.
+constexpr std::uint32_t kVersion = 2;
+constexpr std::size_t kMostAddresses = 64;
+constexpr std::size_t kLongestAddress = 256;
 
 // In this order, each once.
-enum Part : std::uint8_t { kScene = 1, kStart, kHead, kWorld, kSession, kEnd };
+enum Part : std::uint8_t { kScene = 1, kStart, kHead, kWorld, kEnd };
+
+/// What every version of the head begins with.
+struct HeadVersion {
+  std::uint32_t version = kVersion;
+};
+template <class V>
+void visit(V& v, HeadVersion& m) {
+  v.natural("version", m.version, 0, 0xffffffff);
+}
 
 struct FileHead {
-  std::uint32_t version = kVersion;
+  HeadVersion version;
   HostState state;
   std::uint64_t tick = 0;
   double time = 0.0;
   std::string program;
+  std::uint64_t run = 0;
+  HostPlace place;
 };
 template <class V>
 void visit(V& v, FileHead& m) {
-  v.natural("version", m.version, kVersion, kVersion);
+  visit(v, m.version);
   v.flag("paused", m.state.paused);
   v.natural("run", m.state.run, 0, 0xffffffff);
   v.natural("tick", m.tick, 0, wire::kMaxTick);
   v.real64("time", m.time, 0.0, 1e12);
   v.text("program", m.program, 64);
+  v.bits64("host_run", m.run);
+  v.text("listen", m.place.listen, kLongestAddress);
+  v.list("addresses", m.place.addresses, kMostAddresses,
+         [](auto& each, std::string& address) { each.text("address", address, kLongestAddress); });
 }
 
-Bytes head_bytes(const Checkpoint& c) {
-  FileHead head{kVersion, c.state, c.tick, c.time, c.version.substr(0, 64)};
-  return wire::encoded(head);
+std::uint32_t version_of(ByteView head) {
+  HeadVersion version{0};
+  wire::Reader reader(head);
+  visit(reader, version);
+  return reader.fault() ? 0 : version.version;
+}
+
+// What a checkpoint and what belongs to it are called after its own name.
+const std::string kEndings[] = {"", previous_of({}).string(), secrets_of({}).string(),
+                                previous_of(secrets_of({})).string()};
+
+bool is_whole(const std::filesystem::path& path) {
+  const Result<File> opened = open_to_read(path);
+  return opened && read_checkpoint_file(opened.value().get(), path.string());
 }
 
 Error damaged(const std::string& name, const std::string& what) {
@@ -64,8 +94,13 @@ Result<std::unique_ptr<CheckpointWriter>> CheckpointWriter::start(const Scene& s
   first.tick = world.tick();
   first.time = world.time();
   first.stamp_ns = writer->last_copy_ns_ = steady_now_ns();
-  writer->session_ = options.session;
-  const Result<bool> written = writer->write(first, options.session);
+  // The secrets first: a checkpoint without them could not be carried on with the same links.
+  if (!options.session.empty()) {
+    const Result<bool> kept = write_secrets(options.file, options.run, options.session);
+    if (!kept) return kept.error();
+  }
+  const Result<bool> written =
+      writer->write(first, is_whole(options.file) ? Replaced::kKept : Replaced::kDropped);
   if (!written) return written.error();
   writer->report_.written = 1;
   writer->last_ = std::move(first);
@@ -143,48 +178,56 @@ void CheckpointWriter::on_end(const World& world) {
 }
 
 void CheckpointWriter::run() {
+  bool failed = false;  // what is on the disk is not last_ and the session
   std::unique_lock lock(mutex_);
   while (true) {
-    changed_.wait(lock, [this] { return has_waiting_ || session_changed_ || stop_; });
-    if (!has_waiting_ && !session_changed_) return;
+    const auto wanted = [this] { return has_waiting_ || session_changed_ || stop_; };
+    // A disk that was full may not be in a while, and the world may stand still by then.
+    if (failed && !stop_)
+      changed_.wait_for(lock, std::chrono::seconds(1), [this] { return has_waiting_ || stop_; });
+    else
+      changed_.wait(lock, wanted);
+    if (!has_waiting_ && !session_changed_ && (stop_ || !failed)) return;
     const std::int64_t last_stamp_ns = last_.stamp_ns;
     if (has_waiting_) {
       spare_ = std::move(last_.world);
       last_ = std::move(waiting_);
     }
+    const bool world = has_waiting_ || failed;
+    const bool secrets = session_changed_ || (failed && !session_.empty());
     has_waiting_ = session_changed_ = false;
     writing_ = true;
     const Bytes session = session_;
     lock.unlock();
     const std::int64_t begin_ns = steady_now_ns();
-    const Result<bool> written = write(last_, session);
+    Result<bool> written = true;
+    if (secrets) written = write_secrets(options_.file, options_.run, session);
+    if (world && written) written = write(last_, Replaced::kKept);
     const double took_ms = 1e3 * to_seconds(steady_now_ns() - begin_ns);
     lock.lock();
     writing_ = false;
+    failed = !written;
     report_.problem = written ? "" : written.error().text();
-    if (written) report_.written += 1;
+    if (written && world) report_.written += 1;
     report_.write_ms = std::max(report_.write_ms, took_ms);
     report_.longest_gap = std::max(report_.longest_gap, to_seconds(last_.stamp_ns - last_stamp_ns));
     changed_.notify_all();
-    if (written || stop_) continue;
-    // A disk that was full may not be in a while, and the world may stand still by then.
-    changed_.wait_for(lock, std::chrono::seconds(1), [this] { return has_waiting_ || stop_; });
-    session_changed_ = !stop_;
   }
 }
 
-Result<bool> CheckpointWriter::write(const Copy& copy, const Bytes& session) {
-  Checkpoint facts;
-  facts.state = copy.state;
-  facts.tick = copy.tick;
-  facts.time = copy.time;
-  facts.version = options_.version;
+Result<bool> CheckpointWriter::write(const Copy& copy, Replaced old) {
+  FileHead head;
+  head.state = copy.state;
+  head.tick = copy.tick;
+  head.time = copy.time;
+  head.program = options_.version.substr(0, 64);
+  head.run = options_.run;
+  head.place = options_.place;
   Bytes out = beginning_;
-  append_chunk(kHead, head_bytes(facts), out);
+  append_chunk(kHead, wire::encoded(head), out);
   append_chunk(kWorld, copy.world, out);
-  append_chunk(kSession, session, out);
   append_chunk(kEnd, {}, out);
-  const Result<bool> replaced = replace_file(options_.file, out);
+  const Result<bool> replaced = replace_file(options_.file, out, old);
   if (replaced) {
     const std::lock_guard lock(mutex_);
     report_.bytes = out.size();
@@ -214,6 +257,11 @@ Result<Checkpoint> read_checkpoint_file(std::FILE* file, const std::string& name
     if (chunk.type != part)
       return damaged(name, "part " + std::to_string(chunk.type) + " stands where part " +
                                std::to_string(part) + " should");
+    if (part == kHead && version_of(chunk.content) != kVersion)
+      return Error{name,
+                   "is a checkpoint of format " + std::to_string(version_of(chunk.content)) +
+                       ", and this program reads format " + std::to_string(kVersion),
+                   "Resume it with the version of slosh that wrote it; it is left as it is"};
     if (part == kScene) {
       Result<UnpackedScene> scene = unpack_scene(chunk.content);
       if (!scene) return damaged(name, scene.error().text());
@@ -221,21 +269,17 @@ Result<Checkpoint> read_checkpoint_file(std::FILE* file, const std::string& name
       checkpoint.spacing = scene.value().spacing;
     } else if (part == kHead) {
       FileHead head;
-      if (const wire::Fault fault = wire::decode(chunk.content, head)) {
-        if (fault.field == "version")
-          return Error{name, "was written by another version of slosh", "Use that version to carry on"};
-        return damaged(name, fault.text());
-      }
+      if (const wire::Fault fault = wire::decode(chunk.content, head)) return damaged(name, fault.text());
       checkpoint.state = head.state;
       checkpoint.tick = head.tick;
       checkpoint.time = head.time;
       checkpoint.version = head.program;
+      checkpoint.run = head.run;
+      checkpoint.place = std::move(head.place);
     } else if (part == kStart) {
       checkpoint.start = std::move(chunk.content);
     } else if (part == kWorld) {
       checkpoint.world = std::move(chunk.content);
-    } else if (part == kSession) {
-      checkpoint.session = std::move(chunk.content);
     }
   }
   if (reader.next(chunk) != ChunkOutcome::kEnd) return damaged(name, "something follows its end");
@@ -250,10 +294,45 @@ Result<Checkpoint> read_checkpoint(const std::filesystem::path& file) {
   };
   Result<Checkpoint> newest = read(file);
   if (newest) return newest;
-  Result<Checkpoint> previous = read(previous_of(file));
-  if (!previous) return newest;
-  previous.value().note = newest.error().text() + ". The one before it is used";
+  const std::filesystem::path before = previous_of(file);
+  Result<Checkpoint> previous = read(before);
+  if (!previous) {
+    std::error_code code;
+    if (!std::filesystem::exists(before, code)) return newest;
+    Error error = newest.error();
+    error.what += "; and so is the one before it";
+    error.mend = "Host the scene anew: both are then moved aside, not overwritten";
+    return error;
+  }
+  char lost[120];
+  std::snprintf(lost, sizeof lost, ". The one before it is used, of %.2f s: what came after is lost",
+                previous.value().time);
+  previous.value().note = newest.error().text() + lost;
+  std::error_code code, none;
+  const auto newest_time = std::filesystem::last_write_time(file, none);
+  const auto previous_time = std::filesystem::last_write_time(before, code);
+  if (!code && !none) {
+    const double apart = std::chrono::duration<double>(newest_time - previous_time).count();
+    std::snprintf(lost, sizeof lost, " (written %.1f s before it)", apart);
+    previous.value().note += lost;
+  }
   return previous;
+}
+
+Result<std::filesystem::path> set_checkpoint_aside(const std::filesystem::path& file) {
+  std::error_code code;
+  const auto any = [&code](const std::filesystem::path& begin) {
+    return std::any_of(std::begin(kEndings), std::end(kEndings), [&](const std::string& ending) {
+      return std::filesystem::exists(begin.string() + ending, code);
+    });
+  };
+  if (!any(file)) return std::filesystem::path();
+  std::filesystem::path aside;
+  for (int number = 1; aside.empty() || any(aside); ++number)
+    aside = file.string() + "." + std::to_string(number);
+  const Result<bool> moved = move_files(file, aside, kEndings);
+  if (!moved) return moved.error();
+  return aside;
 }
 
 }  // namespace slosh::keep

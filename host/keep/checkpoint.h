@@ -1,4 +1,7 @@
 // A host's world on the disk, so that at most a second of it is lost when the host dies.
+//
+// Eight bytes that name the format, then chunks (chunk.h): scene, the state that a reset goes back to, head,
+// the world's state, end mark. No secret is in it: the host's key and its links are beside it (secrets.h).
 #pragma once
 
 #include <condition_variable>
@@ -8,12 +11,20 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "host/keep/chunk.h"
+#include "host/keep/file.h"
 #include "host/tap.h"
 #include "scenes/scene.h"
 
 namespace slosh::keep {
+
+/// Where a host is reached, so that it is there again when it carries on.
+struct HostPlace {
+  std::string listen;                  ///< ADDR:PORT as it was bound; empty = not known
+  std::vector<std::string> addresses;  ///< what its links were told to carry; empty = what the machine has
+};
 
 /// Everything that a host needs to carry on.
 struct Checkpoint {
@@ -21,19 +32,22 @@ struct Checkpoint {
   double spacing = 0.0;  ///< m
   HostState state;       ///< `run` and `paused`; the parameters are in the world's state too
   std::uint64_t tick = 0;
-  double time = 0.0;    ///< simulated s
-  Bytes start;          ///< World::save of what a reset goes back to
-  Bytes world;          ///< World::save
-  Bytes session;        ///< the server's own: its key, links, seats
-  std::string version;  ///< of the program that wrote it
-  std::string note;     ///< when not empty: the file was damaged, and this is the one before it
+  double time = 0.0;  ///< simulated s
+  Bytes start;        ///< World::save of what a reset goes back to
+  Bytes world;        ///< World::save
+  HostPlace place;
+  std::uint64_t run = 0;  ///< the same as in the secrets that belong to it
+  std::string version;    ///< of the program that wrote it
+  std::string note;  ///< when not empty: the file was damaged, this is the one before it, and what that loses
 };
 
 struct CheckpointOptions {
   std::filesystem::path file;
   double interval = 0.5;  ///< s of wall time between two copies of the world
   std::string version;
-  Bytes session;  ///< what the first file has, up to set_session(): that of the host that is resumed
+  HostPlace place;
+  std::uint64_t run = 0;
+  Bytes session;  ///< the secrets beside the first file, up to set_session(); empty: none are written
 };
 
 struct CheckpointReport {
@@ -49,14 +63,16 @@ struct CheckpointReport {
 /// starts.
 class CheckpointWriter : public HostTap {
  public:
-  /// Writes a first file at once. `start` is what a reset goes back to. Errors: the scene cannot be packed,
-  /// the file cannot be written.
+  /// Writes the secrets and a first file at once. `start` is what a reset goes back to. A file that is there
+  /// stays as the one before it, unless it is damaged. Errors: the scene cannot be packed, a file cannot be
+  /// written.
   static Result<std::unique_ptr<CheckpointWriter>> start(const Scene& scene, double spacing, Bytes start,
                                                          const World& world, const HostState& state,
                                                          const CheckpointOptions& options);
   ~CheckpointWriter() override;
 
-  /// What the session is from now on; written soon, also while the world stands still. Any thread.
+  /// What the session is from now on; its secrets are written soon, also while the world stands still. Any
+  /// thread.
   void set_session(Bytes session);
   /// Waits until everything up to now is on the disk. Any thread but the host's.
   void flush();
@@ -77,7 +93,7 @@ class CheckpointWriter : public HostTap {
   explicit CheckpointWriter(const CheckpointOptions& options) : options_(options) {}
   void take_copy(const World& world);
   void run();
-  Result<bool> write(const Copy& copy, const Bytes& session);
+  Result<bool> write(const Copy& copy, Replaced old);
 
   CheckpointOptions options_;
   Bytes beginning_;  // of every file: scene and start, in chunks
@@ -100,10 +116,15 @@ class CheckpointWriter : public HostTap {
   std::thread thread_;
 };
 
-/// Reads a checkpoint, or the one before it where `file` is damaged (then with a note). Errors: neither can
-/// be read, with what is wrong with `file`.
+/// Reads a checkpoint, or the one before it where `file` is damaged or missing (then with a note). Errors:
+/// neither can be read, with what is wrong with `file`.
 Result<Checkpoint> read_checkpoint(const std::filesystem::path& file);
 /// The same for one file alone.
 Result<Checkpoint> read_checkpoint_file(std::FILE* file, const std::string& name);
+
+/// Makes room for another host's checkpoint: `file`, the one before it and their secrets are from now on
+/// "FILE.1" (or the next number that is free), from where they can be resumed. Gives that name, or an empty
+/// one when nothing was there. Errors: they cannot be moved.
+Result<std::filesystem::path> set_checkpoint_aside(const std::filesystem::path& file);
 
 }  // namespace slosh::keep

@@ -27,7 +27,7 @@ bool sync_folder(const std::filesystem::path& path) {
 }  // namespace
 
 Result<File> open_to_read(const std::filesystem::path& path) {
-  struct stat facts{};
+  struct stat facts {};
   File file(std::fopen(path.c_str(), "rbe"));
   if (!file) return Error{path.string(), std::string("cannot be read: ") + std::strerror(errno), ""};
   if (::fstat(::fileno(file.get()), &facts) != 0 || !S_ISREG(facts.st_mode))
@@ -48,27 +48,58 @@ Result<File> open_to_write(const std::filesystem::path& path) {
   return file;
 }
 
+bool bring_to_disk(std::FILE* file) {
+  if (std::fflush(file) != 0) return false;
+  return ::fsync(::fileno(file)) == 0 || errno == EINVAL;  // a pipe, a device
+}
+
 std::filesystem::path previous_of(const std::filesystem::path& path) {
   return path.string() + ".previous";
 }
 
-Result<bool> replace_file(const std::filesystem::path& path, ByteView content) {
+Result<bool> replace_file(const std::filesystem::path& path, ByteView content, Replaced old) {
   const std::filesystem::path fresh = path.string() + ".new";
   Result<File> opened = open_to_write(fresh);
   if (!opened) return opened.error();
   std::FILE* file = opened.value().get();
-  const bool written = std::fwrite(content.data(), 1, content.size(), file) == content.size() &&
-                       std::fflush(file) == 0 && ::fsync(::fileno(file)) == 0;
+  const bool written =
+      std::fwrite(content.data(), 1, content.size(), file) == content.size() && bring_to_disk(file);
   if (!written) return failed(fresh, "cannot be written");
   opened.value().reset();
-  // A second name for the old file: the first is never missing.
-  const std::filesystem::path previous = previous_of(path);
-  ::unlink(previous.c_str());
-  if (::link(path.c_str(), previous.c_str()) != 0 && errno != ENOENT) {
-    // A file system without links: the old one is then gone for a moment, and found under its other name.
-    if (::rename(path.c_str(), previous.c_str()) != 0) return failed(path, "cannot be kept");
+  if (old == Replaced::kKept) {
+    // A second name for the old file, put in place of the one before it at once: neither is ever missing.
+    const std::filesystem::path previous = previous_of(path);
+    const std::filesystem::path second = previous.string() + ".new";
+    ::unlink(second.c_str());
+    if (::link(path.c_str(), second.c_str()) == 0) {
+      if (::rename(second.c_str(), previous.c_str()) != 0) return failed(path, "cannot be kept");
+    } else if (errno != ENOENT && ::rename(path.c_str(), previous.c_str()) != 0) {
+      return failed(path, "cannot be kept");
+    }
   }
   if (::rename(fresh.c_str(), path.c_str()) != 0) return failed(path, "cannot be put in place");
+  if (!sync_folder(path)) return failed(path, "its folder cannot be brought to the disk");
+  return true;
+}
+
+Result<bool> move_files(const std::filesystem::path& path, const std::filesystem::path& to,
+                        std::span<const std::string> endings) {
+  const auto named = [](const std::filesystem::path& begin, const std::string& ending) {
+    return begin.string() + ending;
+  };
+  bool linked = true;
+  for (const std::string& ending : endings) {
+    if (::link(named(path, ending).c_str(), named(to, ending).c_str()) == 0 || errno == ENOENT) continue;
+    if (errno == EEXIST) return failed(named(to, ending), "is in the way");
+    linked = false;  // no hard links here
+    break;
+  }
+  if (!sync_folder(to)) return failed(to, "its folder cannot be brought to the disk");
+  for (const std::string& ending : endings) {
+    const std::string from = named(path, ending);
+    const int moved = linked ? ::unlink(from.c_str()) : ::rename(from.c_str(), named(to, ending).c_str());
+    if (moved != 0 && errno != ENOENT) return failed(from, "cannot be moved aside");
+  }
   if (!sync_folder(path)) return failed(path, "its folder cannot be brought to the disk");
   return true;
 }

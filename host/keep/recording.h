@@ -7,7 +7,6 @@
 // a second.
 #pragma once
 
-#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
@@ -26,13 +25,16 @@ namespace slosh::keep {
 
 struct RecordingOptions {
   std::filesystem::path file;
-  std::string version;                 ///< of the program
-  std::string backend;                 ///< "cpu", "cuda"
-  double body_rate = 60.0;             ///< body states a simulated second
-  std::uint64_t hash_ticks = 100;      ///< between two hashes, >= 1
-  double state_seconds = 10.0;         ///< simulated s between two full states
-  double chunk_seconds = 0.25;         ///< wall s that a cut-off recording loses at most
-  std::size_t queue_bytes = 64 << 20;  ///< that may wait for the disk; more ends the recording
+  std::string version;             ///< of the program
+  std::string backend;             ///< "cpu", "cuda"
+  double body_rate = 60.0;         ///< body states a simulated second
+  std::uint64_t hash_ticks = 100;  ///< between two hashes, >= 1
+  double state_seconds = 10.0;     ///< simulated s between two full states
+  double chunk_seconds = 0.25;     ///< wall s that a cut-off recording loses at most
+  double sync_seconds = 1.0;       ///< wall s between two times that all is brought to the disk
+  /// Of events that may wait for the disk; more ends the recording. A full state waits beside them, and one
+  /// that is due while another still waits is left out.
+  std::size_t queue_bytes = 64 << 20;
 };
 
 /// What a recording came to.
@@ -55,8 +57,9 @@ struct RecordingReport {
 /// the disk.
 class RecordingWriter : public HostTap {
  public:
-  /// Before the host starts. `start` is what a reset goes back to. Errors: the scene cannot be packed, the
-  /// file cannot be written.
+  /// Before the host starts. `start` is what a reset goes back to; of `state` the pause and the run count,
+  /// the parameters are the world's own. Errors: the scene cannot be packed, the state is larger than a
+  /// chunk, the file cannot be written.
   static Result<std::unique_ptr<RecordingWriter>> start(const Scene& scene, double spacing,
                                                         const Bytes& start, const World& world,
                                                         const HostState& state,
@@ -64,8 +67,8 @@ class RecordingWriter : public HostTap {
   ~RecordingWriter() override;
   /// After the host's end: waits until all is written.
   RecordingReport finish();
-  /// Any thread.
-  bool ended_early() const { return over_.load(std::memory_order_relaxed); }
+  /// Why the recording has ended before the run; empty = it goes on. As soon as it is known; any thread.
+  std::string trouble() const;
 
   void before_step(const World& world, const StepInput& input) override;
   void after_step(const World& world) override;
@@ -82,8 +85,12 @@ class RecordingWriter : public HostTap {
   void flush_events();
   void add_bodies(const World& world);
   void add_hash(const World& world);
-  void queue(std::uint8_t type, Bytes content);
+  void queue_events(Bytes content);
+  /// False when one still waits.
+  bool queue_state(const World& world);
+  void end_early(const std::string& why);
   void queue_end();
+  bool write(const Waiting& next, Bytes& packed, bool sync);
   void run();
 
   RecordingOptions options_;
@@ -102,11 +109,12 @@ class RecordingWriter : public HostTap {
   RecordingTotals totals_;
   std::uint64_t input_bytes_ = 0;
 
-  std::atomic<bool> over_{false};
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Waiting> waiting_;
-  std::size_t waiting_bytes_ = 0;
+  std::size_t waiting_bytes_ = 0;  // of events, with those that are being written
+  bool state_waits_ = false;       // or is being written
+  std::string trouble_;
   bool stop_ = false;
   std::uint64_t bytes_ = 0;
   std::string problem_;
@@ -120,9 +128,9 @@ struct RecordingHead {
   double time_step = 0.0;  ///< s
   std::string version;     ///< of the program that wrote it
   std::string backend;
-  HostState state;
-  Bytes start;  ///< World::save of what a reset goes back to
-  Bytes world;  ///< World::save of where the recording starts
+  HostState state;  ///< the viscosities may be missing: hosts wrote none once, and the world has them
+  Bytes start;      ///< World::save of what a reset goes back to
+  Bytes world;      ///< World::save of where the recording starts
 };
 
 struct BodyRecord {
@@ -178,6 +186,7 @@ class RecordingReader {
   RecordingHead head_;
   RecordingEvent event_;
   std::uint64_t tick_ = 0;
+  std::uint64_t steps_ = 0;
   std::uint32_t run_ = 0;
   bool complete_ = false;
   bool over_ = false;

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 
 #include "host/keep/recording_format.h"
@@ -46,9 +47,17 @@ Result<std::unique_ptr<RecordingReader>> RecordingReader::open(std::FILE* file, 
 }
 
 Error RecordingReader::damaged(const std::string& what) const {
+  std::string mend = "Nothing of it can be replayed";
+  if (steps_ > 0) {
+    // A quarter of a step less than what is there: no rounding then leads to what follows.
+    char text[120];
+    std::snprintf(text, sizeof text, "What comes before is whole: replay it with --seconds %.9g",
+                  head_.time_step * (static_cast<double>(steps_) - 0.25));
+    mend = text;
+  }
   return {name_,
           "this recording is damaged in the chunk at byte " + std::to_string(chunks_.at()) + ": " + what,
-          "What comes before can still be replayed with --seconds"};
+          mend};
 }
 
 Result<bool> RecordingReader::read_head() {
@@ -82,7 +91,8 @@ Result<bool> RecordingReader::read_head() {
       run_ = place.run;
     }
   }
-  if (head_.state.viscosities.size() != head_.scene.fluids.size())
+  const std::size_t viscosities = head_.state.viscosities.size();
+  if (viscosities != 0 && viscosities != head_.scene.fluids.size())
     return damaged("it has another number of viscosities than of fluids");
   hands_ = HandCoder(head_.scene.grips.size());
   for (std::size_t b = 0; b < head_.scene.bodies.size(); ++b) {
@@ -161,6 +171,7 @@ Result<bool> RecordingReader::read_event() {
       }
       event_.kind = RecordingEvent::Kind::kStep;
       tick_ += 1;
+      steps_ += 1;
       break;
     case kBodiesTag:
       event_.kind = RecordingEvent::Kind::kBodies;

@@ -11,6 +11,7 @@ namespace {
 
 // Bytes of events that make a chunk whatever the time.
 constexpr std::size_t kFullChunk = 64 << 10;
+constexpr std::size_t kLongestReason = 200;  // bytes, as visit() of the totals has it
 
 template <class M>
 void append(const M& message, Bytes& out) {
@@ -44,8 +45,10 @@ Result<std::unique_ptr<RecordingWriter>> RecordingWriter::start(const Scene& sce
 
   Bytes out(std::begin(kRecordingMagic), std::end(kRecordingMagic));
   for (int i = 0; i < 4; ++i) out.push_back(static_cast<std::uint8_t>(kRecordingVersion >> (8 * i)));
+  // The world itself says what its parameters are, whatever the caller believes.
+  const HostState now_state = state_of(world, scene.fluids.size(), state.paused, state.run);
   append_chunk(kHeadChunk,
-               wire::encoded(HeadRecord{world.plan().time_step, options.version, options.backend, state}),
+               wire::encoded(HeadRecord{world.plan().time_step, options.version, options.backend, now_state}),
                out);
   append_chunk(kSceneChunk, package.value(), out);
   Bytes now;
@@ -54,9 +57,15 @@ Result<std::unique_ptr<RecordingWriter>> RecordingWriter::start(const Scene& sce
   append_chunk(kStartChunk, start == now ? Bytes{} : start, out);
   Bytes first;
   append_state(world, state.run, first);
+  if (first.size() > kLargestChunk) {
+    return Error{options.file.string(),
+                 "the world's state has " + std::to_string(first.size() >> 20) +
+                     " MB, and a recording takes " + std::to_string(kLargestChunk >> 20) + " MB at a time",
+                 "Record it with a larger --spacing"};
+  }
   append_chunk(kStateChunk, first, out);
   std::FILE* raw = writer->file_.get();
-  if (std::fwrite(out.data(), 1, out.size(), raw) != out.size() || std::fflush(raw) != 0)
+  if (std::fwrite(out.data(), 1, out.size(), raw) != out.size() || !bring_to_disk(raw))
     return Error{options.file.string(), std::string("cannot be written: ") + std::strerror(errno), ""};
   writer->bytes_ = out.size();
   writer->run_ = state.run;
@@ -94,38 +103,68 @@ void RecordingWriter::begin_events(const World& world) {
 
 void RecordingWriter::flush_events() {
   if (events_.empty()) return;
-  queue(kEventsChunk, std::move(events_));
+  queue_events(std::move(events_));
   events_ = {};
 }
 
-void RecordingWriter::queue(std::uint8_t type, Bytes content) {
+void RecordingWriter::queue_events(Bytes content) {
   if (ended_) return;
-  bool full = false;
+  std::string why;
   {
     const std::lock_guard lock(mutex_);
-    full = waiting_bytes_ + content.size() > options_.queue_bytes || !problem_.empty();
-    if (!full) {
+    why = problem_;
+    if (why.empty() && waiting_bytes_ + content.size() > options_.queue_bytes) {
+      why = "the disk did not keep up: more than " +
+            std::to_string(std::max<std::size_t>(1, options_.queue_bytes >> 20)) + " MB waited for it";
+    }
+    if (why.empty()) {
       waiting_bytes_ += content.size();
-      waiting_.push_back({type, std::move(content)});
+      waiting_.push_back({kEventsChunk, std::move(content)});
     }
   }
-  if (full) {
-    // What does not fit is missing: nothing after it could be run again.
-    totals_.ended_early = "the disk did not keep up with the recording";
-    queue_end();
+  // What does not fit is missing: nothing after it could be run again.
+  if (!why.empty()) return end_early(why);
+  changed_.notify_one();
+}
+
+bool RecordingWriter::queue_state(const World& world) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (state_waits_) return false;
+    state_waits_ = true;
+  }
+  Waiting state{kStateChunk, {}};
+  append_state(world, run_, state.content);
+  {
+    const std::lock_guard lock(mutex_);
+    waiting_.push_back(std::move(state));
   }
   changed_.notify_one();
+  return true;
+}
+
+void RecordingWriter::end_early(const std::string& why) {
+  totals_.ended_early = why.substr(0, kLongestReason);
+  {
+    const std::lock_guard lock(mutex_);
+    if (trouble_.empty()) trouble_ = why;
+  }
+  queue_end();
 }
 
 void RecordingWriter::queue_end() {
   if (ended_) return;
   ended_ = true;
-  over_.store(!totals_.ended_early.empty(), std::memory_order_relaxed);
   {
     const std::lock_guard lock(mutex_);
     waiting_.push_back({kEndChunk, wire::encoded(totals_)});
   }
   changed_.notify_one();
+}
+
+std::string RecordingWriter::trouble() const {
+  const std::lock_guard lock(mutex_);
+  return trouble_;
 }
 
 void RecordingWriter::before_step(const World& world, const StepInput& input) {
@@ -173,11 +212,10 @@ void RecordingWriter::after_step(const World& world) {
   if (world.tick() % options_.hash_ticks == 0) add_hash(world);
   if (world.time() + half_step >= next_state_) {
     flush_events();
-    Bytes state;
-    append_state(world, run_, state);
-    queue(kStateChunk, std::move(state));
-    if (!ended_) totals_.states += 1;
-    hands_.restart();
+    if (!ended_ && queue_state(world)) {
+      totals_.states += 1;
+      hands_.restart();
+    }
     next_state_ += options_.state_seconds;
   }
   const bool due = to_seconds(steady_now_ns() - events_since_ns_) >= options_.chunk_seconds;
@@ -207,8 +245,18 @@ void RecordingWriter::on_end(const World& world) {
   queue_end();
 }
 
+// On the writer's thread, without the lock. False with errno when it could not be written.
+bool RecordingWriter::write(const Waiting& next, Bytes& packed, bool sync) {
+  packed.clear();
+  append_chunk(next.type, next.content, packed);
+  std::FILE* file = file_.get();
+  return std::fwrite(packed.data(), 1, packed.size(), file) == packed.size() &&
+         (sync ? bring_to_disk(file) : std::fflush(file) == 0);
+}
+
 void RecordingWriter::run() {
   Bytes packed;
+  std::int64_t synced_ns = steady_now_ns();
   std::unique_lock lock(mutex_);
   while (true) {
     changed_.wait(lock, [this] { return !waiting_.empty() || stop_; });
@@ -217,22 +265,18 @@ void RecordingWriter::run() {
     waiting_.pop_front();
     const bool broken = !problem_.empty();
     lock.unlock();
-    bool written = false;
-    if (!broken) {
-      packed.clear();
-      append_chunk(next.type, next.content, packed);
-      written = std::fwrite(packed.data(), 1, packed.size(), file_.get()) == packed.size() &&
-                std::fflush(file_.get()) == 0;
-    }
+    const bool sync =
+        next.type == kEndChunk || to_seconds(steady_now_ns() - synced_ns) >= options_.sync_seconds;
+    const bool written = !broken && write(next, packed, sync);
     const int code = errno;
+    if (sync) synced_ns = steady_now_ns();
     lock.lock();
-    waiting_bytes_ -= std::min(waiting_bytes_, next.content.size());
+    if (next.type == kEventsChunk) waiting_bytes_ -= next.content.size();
+    if (next.type == kStateChunk) state_waits_ = false;
     if (written) {
       bytes_ += packed.size();
     } else if (!broken) {
-      problem_ = options_.file.string() + ": cannot be written: " + std::strerror(code);
-      waiting_.clear();
-      over_.store(true, std::memory_order_relaxed);
+      problem_ = trouble_ = options_.file.string() + ": cannot be written: " + std::strerror(code);
     }
   }
 }

@@ -103,6 +103,8 @@ class Server final : public EndpointEvents, public HostTap {
   Mailbox& mailbox() { return mailbox_; }  ///< any thread posts
   /// Any thread: what a checkpoint keeps, as of the last change, coded.
   wire::Bytes session_blob() const;
+  /// Makes session_blob() that of this moment. The server's thread, or before the first turn().
+  void save_session();
   void set_identity(wire::Bytes private_key, std::uint16_t port);
   /// Text of a link for people, from its token; set by who knows the addresses.
   std::function<std::string(const LinkRecord&)> link_text;
@@ -181,7 +183,6 @@ class Server final : public EndpointEvents, public HostTap {
 
   void check_patience();
   void sweep();
-  void save_session();
 
   ServedWorld world_;
   ServerOptions options_;

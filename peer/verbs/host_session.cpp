@@ -99,23 +99,25 @@ Result<bool> HostSession::open_network() {
   // A key frame takes about 1.4 bytes a particle; two of them must find room.
   link.queue_datagrams[static_cast<std::size_t>(Priority::kSnapshot)] =
       std::max<std::size_t>(512, hosted_.particles / 300);
-  const std::string kept_port = hosted_.session && hosted_.session->port != 0
-                                    ? std::to_string(hosted_.session->port)
-                                    : std::to_string(kPort);
+  const std::string asked = options_.listen.empty() ? hosted_.place.listen : options_.listen;
+  const std::string port = ":" + std::to_string(kPort);
   Result<std::unique_ptr<Endpoint>> listening =
-      listen_quic(options_.listen.empty() ? "[::]:" + kept_port : options_.listen, identity_, *server_, link);
-  if (!listening && options_.listen.empty()) {
+      listen_quic(asked.empty() ? "[::]" + port : asked, identity_, *server_, link);
+  if (!listening && asked.empty()) {
     // A machine without IPv6, or a port in use: the second answer tells which.
-    listening = listen_quic("0.0.0.0:" + kept_port, identity_, *server_, link);
+    listening = listen_quic("0.0.0.0" + port, identity_, *server_, link);
   }
   if (!listening) {
     Error error = listening.error();
-    error.mend = "Choose another port with --listen, e.g. --listen '[::]:0' for any that is free";
+    error.mend = options_.listen.empty() && !asked.empty()
+                     ? "It listened there before, and its links say so. Choose another place with --listen"
+                     : "Choose another port with --listen, e.g. --listen '[::]:0' for any that is free";
     return error;
   }
   endpoint_ = std::move(listening.value());
   address_ = endpoint_->local_address();
-  reachable_ = options_.addresses.empty() ? reachable_addresses(address_) : options_.addresses;
+  place_ = {address_, options_.addresses.empty() ? hosted_.place.addresses : options_.addresses};
+  reachable_ = place_.addresses.empty() ? reachable_addresses(address_) : place_.addresses;
   if (const Result<std::string> text = format_link({reachable_, identity_.fingerprint(), {}}); !text) {
     return Error{"--address", text.error().what,
                  "Give addresses that peers can reach, e.g. 203.0.113.7:4433"};
@@ -154,25 +156,40 @@ void HostSession::make_links() {
   first_links_ = server_->links().links();
 }
 
+std::string HostSession::choose_checkpoint() const {
+  if (options_.checkpoint == "none") return {};
+  if (!options_.checkpoint.empty()) return options_.checkpoint;
+  if (!options_.resume.empty()) return options_.resume;
+  if (state_folder().empty()) return {};
+  // Two hosts of one scene must not write over each other.
+  const std::uint16_t port = port_of(address_);
+  const std::string name = hosted_.prepared.scene.name + (port == kPort ? "" : "-" + std::to_string(port));
+  std::error_code code;
+  std::filesystem::create_directories(state_folder(), code);
+  return state_folder() + "/" + name + ".checkpoint";
+}
+
 Result<bool> HostSession::open_files() {
   const Prepared& p = hosted_.prepared;
-  const std::uint16_t port = port_of(address_);
-  const bool any_port = !options_.listen.empty() && port_of(options_.listen) == 0;
-  if (!options_.checkpoint.empty()) {
-    checkpoint_file_ = options_.checkpoint == "none" ? std::string() : options_.checkpoint;
-  } else if (!options_.resume.empty()) {
-    checkpoint_file_ = options_.resume;
-  } else if (!any_port && !state_folder().empty()) {
-    // Two hosts of one scene must not write over each other.
-    const std::string name = p.scene.name + (port == kPort ? "" : "-" + std::to_string(port));
-    std::error_code code;
-    std::filesystem::create_directories(state_folder(), code);
-    checkpoint_file_ = state_folder() + "/" + name + ".checkpoint";
-  }
+  checkpoint_file_ = choose_checkpoint();
   if (!checkpoint_file_.empty()) {
+    std::error_code code;
+    const bool goes_on =
+        !options_.resume.empty() && (checkpoint_file_ == options_.resume ||
+                                     std::filesystem::equivalent(checkpoint_file_, options_.resume, code));
+    if (!goes_on) {
+      Result<std::filesystem::path> aside = keep::set_checkpoint_aside(checkpoint_file_);
+      if (!aside) return aside.error();
+      set_aside_ = aside.value().string();
+    }
     keep::CheckpointOptions options;
     options.file = checkpoint_file_;
     options.version = SLOSH_VERSION;
+    options.place = place_;
+    options.run = server_->session();
+    // The first file already has everything that a newcomer needs: this may be all that there ever is.
+    server_->save_session();
+    options.session = saved_session_ = server_->session_blob();
     auto writer = keep::CheckpointWriter::start(p.scene, p.sampled.spacing, hosted_.start, *hosted_.world,
                                                 hosted_.state, options);
     if (!writer) return writer.error();
@@ -221,6 +238,19 @@ void HostSession::stop(const std::string& why) {
 std::vector<std::string> HostSession::news() {
   const std::lock_guard lock(news_mutex_);
   return std::exchange(news_, {});
+}
+
+std::string HostSession::trouble() const {
+  std::string all;
+  if (recording_) {
+    const std::string why = recording_->trouble();
+    if (!why.empty()) all = "the recording has ended: " + why;
+  }
+  if (checkpoint_) {
+    const std::string why = checkpoint_->report().problem;
+    if (!why.empty()) all += (all.empty() ? "" : "; ") + ("the world is not saved: " + why);
+  }
+  return all;
 }
 
 void HostSession::save_session() {

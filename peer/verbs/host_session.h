@@ -35,10 +35,14 @@ class HostSession {
   ConsoleDoor& door() { return *door_; }
   const std::string& address() const { return address_; }
   const std::string& checkpoint_file() const { return checkpoint_file_; }
+  /// Where the checkpoint of an earlier host went that was in its place; empty = there was none.
+  const std::string& set_aside() const { return set_aside_; }
   const std::vector<LinkRecord>& first_links() const { return first_links_; }
   std::string text_of(const LinkRecord& link) const;
   /// What the session has to say since the last call, line by line.
   std::vector<std::string> news();
+  /// What does not reach the disk, and why; empty = all is well.
+  std::string trouble() const;
   /// Hands what changed in links and seats to the checkpoint; now and then.
   void save_session();
   const keep::CheckpointWriter* checkpoint() const { return checkpoint_.get(); }
@@ -48,6 +52,7 @@ class HostSession {
  private:
   HostSession(HostedWorld& hosted, const HostVerbOptions& options) : hosted_(hosted), options_(options) {}
   Result<bool> open_network();
+  std::string choose_checkpoint() const;
   Result<bool> open_files();
   void make_links();
 
@@ -55,7 +60,9 @@ class HostSession {
   const HostVerbOptions& options_;
   Identity identity_ = Identity::generate();
   std::string address_;
+  keep::HostPlace place_;
   std::string checkpoint_file_;
+  std::string set_aside_;
   std::vector<std::string> reachable_;
   std::vector<LinkRecord> first_links_;
   std::mutex news_mutex_;

@@ -1,10 +1,11 @@
 #include "peer/verbs/host_world.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <limits>
 
-#include "host/keep/checkpoint.h"
 #include "host/keep/rebuild.h"
+#include "host/keep/secrets.h"
 #include "host/server/hands.h"
 #include "peer/output/summary.h"
 
@@ -30,8 +31,34 @@ Result<HostedWorld> start_anew(const HostVerbOptions& options, Progress& progres
   hosted.world->settle(kSettle, hands);
   const Result<bool> saved = hosted.world->save(hosted.start);
   if (!saved) return saved.error();
-  hosted.state.paused = hosted.waits = options.wait > 0 && !p.scene.grips.empty();
+  hosted.waits = options.wait > 0 && !p.scene.grips.empty();
+  hosted.state = state_of(*hosted.world, p.scene.fluids.size(), hosted.waits, 0);
   return hosted;
+}
+
+/// The session that belongs to a checkpoint; none, with a note, where it was not brought along.
+Result<std::optional<SessionState>> read_session(const std::string& file, const keep::Checkpoint& kept,
+                                                 Progress& progress) {
+  Result<std::optional<keep::Secrets>> read = keep::read_secrets(file);
+  if (!read) return read.error();
+  const std::string name = keep::secrets_of(file).string();
+  if (!read.value()) {
+    progress.note(
+        "slosh: " + name +
+        " is not there: the world carries on with a new key and new links, and nobody's seat is kept");
+    return std::optional<SessionState>{};
+  }
+  const keep::Secrets& secrets = *read.value();
+  if (!secrets.note.empty()) progress.note("slosh: " + secrets.note);
+  const Error other{name, "these are the secrets of another host than " + file + " is of",
+                    "Bring the ones that belong to it, or move these away to carry on with new links"};
+  if (secrets.run != kept.run) return other;
+  SessionState session;
+  if (const wire::Fault fault = wire::decode(secrets.session, session)) {
+    return Error{name, "cannot be read by this version of slosh: " + fault.text(),
+                 "Resume with the version that wrote it, or move it away to carry on with new links"};
+  }
+  return std::optional<SessionState>(std::move(session));
 }
 
 Result<HostedWorld> carry_on(const HostVerbOptions& options, Progress& progress) {
@@ -41,10 +68,10 @@ Result<HostedWorld> carry_on(const HostVerbOptions& options, Progress& progress)
   if (!read) return read.error();
   keep::Checkpoint& kept = read.value();
   if (!kept.note.empty()) progress.note("slosh: " + kept.note);
-  SessionState session;
-  const wire::Fault fault = wire::decode(kept.session, session);
-  if (fault) return Error{options.resume, "its session is damaged: " + fault.text(), "Host the scene anew"};
-  hosted.session = std::move(session);
+  Result<std::optional<SessionState>> session = read_session(options.resume, kept, progress);
+  if (!session) return session.error();
+  hosted.session = std::move(session.value());
+  hosted.place = std::move(kept.place);
 
   Prepared& p = hosted.prepared;
   const Result<Backend> backend = choose_backend(options.backend);
@@ -61,7 +88,10 @@ Result<HostedWorld> carry_on(const HostVerbOptions& options, Progress& progress)
   p.sampled = std::move(rebuilt.value().sampled);
   p.plan = rebuilt.value().world.plan();
   hosted.world = std::move(rebuilt.value().world);
-  hosted.state = kept.state;
+  hosted.state = state_of(*hosted.world, p.scene.fluids.size(), kept.state.paused, kept.state.run);
+  char text[80];
+  std::snprintf(text, sizeof text, "carries on at %.3f s", kept.time);
+  progress.note(text);
   hosted.waits = kept.state.paused && kept.tick == 0 && kept.state.run == 0 && options.wait > 0;
   hosted.start = std::move(kept.start);
   return hosted;

@@ -189,39 +189,6 @@ class LoopbackTest : public NetworkTest {
   }
 };
 
-TEST_F(LoopbackTest, AHostThatDiedIsResumedAndItsPeerComesBackByItself) {
-  const std::vector<std::string> common{"--threads", "1", "--checkpoint", "kept"};
-  std::vector<std::string> first{"host",     "probe",       "--spacing", "0.01",
-                                 "--listen", "127.0.0.1:0", "--links",   "links.txt"};
-  first.insert(first.end(), common.begin(), common.end());
-  auto host = run("host", first);
-  ASSERT_TRUE(hosting(*host)) << host->wait().err;
-  std::vector<std::string> join = peer("join", link("hold"), "Ana");
-  join.insert(join.end(), {"--no-render", "--seconds", "4"});
-  const auto ana = run("ana", join);
-  ASSERT_TRUE(comes([&] { return last_time(folder("ana") / "out") > 1.5; }));
-  host->signal(SIGKILL);
-  host->wait();
-  const double died = last_time(folder("ana") / "out");
-
-  // In the folder that it died in, by its file; port, key, links and seats are in there.
-  host = run("host", {"host", "--resume", "kept", "--threads", "1"});
-  const Outcome outcome = ana->wait();
-  EXPECT_EQ(outcome.code, 0) << outcome.err << host->running();
-  const json s = summary("ana");
-  EXPECT_GE(s["network"]["reconnects"], 1) << outcome.err;
-  EXPECT_EQ(s["devices"].size(), 1u) << "the same grip again";
-  EXPECT_NEAR(s["simulated_s"].get<double>(), 4.0, 0.3);
-  host->signal(SIGINT);
-  const Outcome hosted = host->wait();
-  EXPECT_EQ(hosted.code, 128 + SIGINT);
-  // "carries on at 1.53 s": at most a second before it died.
-  const std::string words = hosted.err + hosted.out;
-  const std::size_t at = words.find(" s ");
-  EXPECT_NE(at, std::string::npos) << words;
-  std::printf("died at %.2f s of Ana's time; %s\n", died, words.substr(0, 400).c_str());
-}
-
 TEST_F(LoopbackTest, LinksAreMadeAndRevokedWhileTheHostRuns) {
   if (const std::string why = test::no_ipv6(); !why.empty()) GTEST_SKIP() << why;
   const auto host = run("host", {"host", "probe", "--spacing", "0.01", "--threads", "1", "--listen",

@@ -2,10 +2,12 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cstring>
 #include <random>
 
 #include "host/keep/rebuild.h"
+#include "host/keep/secrets.h"
 #include "tests/host/keep_kit.h"
 
 namespace slosh::keep {
@@ -25,6 +27,23 @@ std::unique_ptr<CheckpointWriter> checkpoint(Rig& rig, const CheckpointOptions& 
   EXPECT_TRUE(writer) << writer.error().text();
   rig.host.add_tap(*writer.value());
   return std::move(writer.value());
+}
+
+Bytes session_of(const path& file) {
+  const Result<std::optional<Secrets>> secrets = read_secrets(file);
+  EXPECT_TRUE(secrets && secrets.value()) << file;
+  return secrets && secrets.value() ? secrets.value()->session : Bytes{};
+}
+
+std::vector<Chunk> chunks_of(const path& file) {
+  const Bytes bytes = read_all(file);
+  const MemoryFile memory(bytes);
+  std::fseek(memory.get(), 8, SEEK_SET);
+  ChunkReader reader(memory.get());
+  std::vector<Chunk> all;
+  Chunk chunk;
+  while (reader.next(chunk) == ChunkOutcome::kChunk) all.push_back(chunk);
+  return all;
 }
 
 TEST(Checkpoint, ResumedIsTheRunThatWasNeverStopped) {
@@ -59,7 +78,7 @@ TEST(Checkpoint, ResumedIsTheRunThatWasNeverStopped) {
   const Checkpoint& c = read.value();
   EXPECT_EQ(c.note, "");
   EXPECT_EQ(c.version, "0.0.test");
-  EXPECT_EQ(c.session, (Bytes{1, 2, 3}));
+  EXPECT_EQ(session_of(options.file), (Bytes{1, 2, 3}));
   EXPECT_EQ(c.start, rig.host.start_state());
   EXPECT_GE(c.tick, 20u);
   Result<RebuiltWorld> rebuilt = rebuild_world(c.scene, c.spacing, c.world, WorldOptions{1, Backend::kCpu});
@@ -89,7 +108,7 @@ TEST(Checkpoint, OfAStandingWorldFollowsTheSessionAndTheSwitches) {
   writer->flush();
   const Result<Checkpoint> read = read_checkpoint(options.file);
   ASSERT_TRUE(read) << read.error().text();
-  EXPECT_EQ(read.value().session, Bytes{9});
+  EXPECT_EQ(session_of(options.file), Bytes{9});
   EXPECT_TRUE(read.value().state.paused);
   World world = small_world().world();
   ASSERT_TRUE(world.restore(read.value().world));
@@ -113,7 +132,8 @@ TEST(Checkpoint, DamagedFallsBackToTheOneBeforeItAndSaysSo) {
   const Result<Checkpoint> before = read_checkpoint(options.file);
   ASSERT_TRUE(before) << before.error().text();
   EXPECT_EQ(before.value().tick, 0u) << "that of the start";
-  EXPECT_NE(before.value().note.find("cut off"), std::string::npos) << before.value().note;
+  for (const char* part : {"cut off", "of 0.00 s", "what came after is lost"})
+    EXPECT_NE(before.value().note.find(part), std::string::npos) << before.value().note;
   std::filesystem::remove(options.file);
   ASSERT_TRUE(read_checkpoint(options.file)) << "a crash between two renames";
   std::filesystem::remove(previous_of(options.file));
@@ -156,6 +176,71 @@ TEST(Checkpoint, DamagedAnywhereIsAnErrorThatNamesTheFile) {
   Bytes longer = bytes;
   longer.push_back(0);
   EXPECT_FALSE(read(longer));
+}
+
+TEST(Checkpoint, HoldsNoSecretAndTheSecretsBesideItAreTheOwnersAlone) {
+  CheckpointOptions options = checkpoint_options(fresh_folder(), 1e9);
+  std::mt19937 random(5);
+  for (int i = 0; i < 64; ++i) options.session.push_back(static_cast<std::uint8_t>(random()));
+  options.run = 77;
+  options.place = {"127.0.0.1:5000", {"203.0.113.7:5000"}};
+  Rig rig(until(0.0));
+  auto writer = checkpoint(rig, options);
+  // Right after the start, as a crash then would find them.
+  const Result<Checkpoint> read = read_checkpoint(options.file);
+  ASSERT_TRUE(read) << read.error().text();
+  EXPECT_EQ(read.value().run, 77u);
+  EXPECT_EQ(read.value().place.listen, options.place.listen);
+  EXPECT_EQ(read.value().place.addresses, options.place.addresses);
+  EXPECT_EQ(session_of(options.file), options.session);
+  EXPECT_EQ(session_of(previous_of(options.file)), options.session) << "of the one before it too";
+  const std::vector<Chunk> chunks = chunks_of(options.file);
+  ASSERT_GE(chunks.size(), 5u);
+  for (const Chunk& chunk : chunks) {
+    const auto found = std::search(chunk.content.begin(), chunk.content.end(), options.session.begin(),
+                                   options.session.begin() + 16);
+    EXPECT_EQ(found, chunk.content.end()) << "in part " << int{chunk.type};
+  }
+  struct stat facts {};
+  ASSERT_EQ(::stat(secrets_of(options.file).c_str(), &facts), 0);
+  EXPECT_EQ(facts.st_mode & 0777, 0600u);
+}
+
+TEST(Checkpoint, OfAnEarlierFormatIsNamedAndSecretsThatAreDamagedFallBack) {
+  CheckpointOptions options = checkpoint_options(fresh_folder(), 1e9);
+  options.session = {1};
+  Rig rig(until(0.0));
+  auto writer = checkpoint(rig, options);
+  writer->set_session({2});
+  writer->flush();
+  const path secrets = secrets_of(options.file);
+  std::filesystem::resize_file(secrets, std::filesystem::file_size(secrets) - 1);
+  const Result<std::optional<Secrets>> before = read_secrets(options.file);
+  ASSERT_TRUE(before && before.value());
+  EXPECT_EQ(before.value()->session, Bytes{1});
+  EXPECT_NE(before.value()->note.find("cut off"), std::string::npos) << before.value()->note;
+  std::filesystem::resize_file(previous_of(secrets), 3);
+  const Result<std::optional<Secrets>> none = read_secrets(options.file);
+  ASSERT_FALSE(none);
+  EXPECT_NE(none.error().text().find("new links"), std::string::npos) << none.error().text();
+  std::filesystem::remove(secrets);
+  std::filesystem::remove(previous_of(secrets));
+  const Result<std::optional<Secrets>> missing = read_secrets(options.file);
+  ASSERT_TRUE(missing);
+  EXPECT_FALSE(missing.value().has_value());
+
+  Bytes old;
+  for (Chunk chunk : chunks_of(options.file)) {
+    if (chunk.type == 3) chunk.content.front() = 1;  // the head begins with the format
+    append_chunk(chunk.type, chunk.content, old);
+  }
+  const Bytes now = read_all(options.file);
+  old.insert(old.begin(), now.begin(), now.begin() + 8);
+  const MemoryFile file(old);
+  const Result<Checkpoint> read = read_checkpoint_file(file.get(), "old");
+  ASSERT_FALSE(read);
+  EXPECT_NE(read.error().text().find("format 1, and this program reads format 2"), std::string::npos)
+      << read.error().text();
 }
 
 TEST(Checkpoint, ThatCannotBeWrittenSaysWhy) {

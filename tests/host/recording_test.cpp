@@ -264,11 +264,125 @@ TEST(Recording, DamagedSaysWhere) {
   }
 }
 
+TEST(Recording, HasTheWorldsParametersWhateverItsCallerKnows) {
+  const path file = fresh_folder() / "run";
+  Rig rig(until(0.05));
+  auto writer =
+      RecordingWriter::start(small_world().scene, small_world().sampled.spacing, rig.host.start_state(),
+                             rig.host.world(), HostState{}, recording_options(file));
+  ASSERT_TRUE(writer) << writer.error().text();
+  rig.host.add_tap(*writer.value());
+  rig.run();
+  writer.value()->finish();
+  auto reader = RecordingReader::open(file);
+  ASSERT_TRUE(reader) << reader.error().text();
+  EXPECT_EQ(reader.value()->head().state.viscosities, rig.host.state().viscosities);
+  EXPECT_GT(play(*reader.value(), nullptr).steps, 10u);
+}
+
+TEST(Recording, OfAHostThatWroteNoParametersIsReadToo) {
+  const Recorded recorded = record(recording_options(fresh_folder() / "run"), 0.05, false);
+  const Bytes bytes = read_all(recorded.file);
+  Bytes old(bytes.begin(), bytes.begin() + 12);
+  {
+    const MemoryFile file(bytes);
+    std::fseek(file.get(), 12, SEEK_SET);
+    ChunkReader chunks(file.get());
+    Chunk chunk;
+    while (chunks.next(chunk) == ChunkOutcome::kChunk) {
+      if (chunk.type == 1) {  // the head ends with how many there are, and them
+        ASSERT_EQ(small_world().scene.fluids.size(), 1u);
+        chunk.content.resize(chunk.content.size() - 8);
+        ASSERT_EQ(chunk.content.back(), 1u);
+        chunk.content.back() = 0;
+      }
+      append_chunk(chunk.type, chunk.content, old);
+    }
+  }
+  const MemoryFile file(old);
+  auto reader = RecordingReader::open(file.get(), "old");
+  ASSERT_TRUE(reader) << reader.error().text();
+  EXPECT_EQ(play(*reader.value(), nullptr).steps, recorded.report.totals.steps);
+}
+
+/// The number after --seconds in an error's advice; negative when it gives none.
+double advised_seconds(const std::string& error) {
+  const std::string word = "--seconds ";
+  const std::size_t at = error.find(word);
+  return at == std::string::npos ? -1.0 : std::atof(error.c_str() + at + word.size());
+}
+
+TEST(Replay, OfADamagedRecordingGoesAsFarAsTheAdviceSays) {
+  const Recorded recorded = record(recording_options(fresh_folder() / "run"), 0.4, true);
+  const Bytes bytes = read_all(recorded.file);
+  int advised = 0, hopeless = 0;
+  for (std::size_t at = 700; at < bytes.size(); at += bytes.size() / 14) {
+    Bytes damaged = bytes;
+    damaged[at] ^= 0x10;
+    const path file = recorded.file.parent_path() / "damaged";
+    std::ofstream(file, std::ios::binary)
+        .write(reinterpret_cast<const char*>(damaged.data()), static_cast<std::streamsize>(damaged.size()));
+    std::string problem;
+    {
+      auto opened = Replayer::open(file, {1, Backend::kAuto});
+      if (!opened) {
+        problem = opened.error().text();
+        EXPECT_LT(advised_seconds(problem), 0.0) << "byte " << at << ": " << problem;
+        hopeless += 1;
+        continue;
+      }
+      while (true) {
+        const Result<bool> stepped = opened.value()->step();
+        if (!stepped) problem = stepped.error().text();
+        if (!stepped || !stepped.value()) break;
+      }
+    }
+    if (problem.empty()) continue;  // it looks cut off
+    const double seconds = advised_seconds(problem);
+    if (seconds < 0.0) {
+      EXPECT_NE(problem.find("Nothing of it can be replayed"), std::string::npos) << problem;
+      continue;
+    }
+    // As `slosh replay --seconds` does it.
+    advised += 1;
+    auto again = Replayer::open(file, {1, Backend::kAuto});
+    ASSERT_TRUE(again);
+    const double half_step = 0.5 * again.value()->world().plan().time_step;
+    while (again.value()->elapsed() + half_step < seconds) {
+      const Result<bool> stepped = again.value()->step();
+      ASSERT_TRUE(stepped && stepped.value()) << "byte " << at << ": --seconds " << seconds;
+    }
+    EXPECT_GT(again.value()->verdict().steps, 0u);
+    EXPECT_TRUE(again.value()->verdict().same(0.01)) << again.value()->verdict().text(0.01);
+  }
+  EXPECT_GT(advised, 1);
+  EXPECT_GT(hopeless, 0);
+}
+
+TEST(Recording, OfALargeStateNeedsNoLargerQueue) {
+  RecordingOptions options = recording_options(fresh_folder() / "run");
+  Rig rig(until(0.0));
+  Bytes state;
+  ASSERT_TRUE(rig.host.world().save(state));
+  options.queue_bytes = state.size() - 1;
+  const Recorded recorded = record(options, 0.3, false);
+  EXPECT_EQ(recorded.report.totals.ended_early, "");
+  EXPECT_GT(recorded.report.totals.states, 0u);
+  auto reader = RecordingReader::open(recorded.file);
+  ASSERT_TRUE(reader);
+  World world = small_world().world();
+  const Played played = play(*reader.value(), &world);
+  EXPECT_TRUE(played.complete);
+  EXPECT_EQ(played.differ, 0u);
+  EXPECT_EQ(played.steps, recorded.report.totals.steps);
+}
+
 TEST(Recording, ThatTheDiskCannotFollowEndsCleanly) {
   RecordingOptions options = recording_options(fresh_folder() / "run");
-  options.queue_bytes = 100;  // less than any state
+  options.queue_bytes = 100;  // less than a chunk of events
   const Recorded recorded = record(options, 0.3, false);
-  EXPECT_NE(recorded.report.totals.ended_early, "");
+  EXPECT_NE(recorded.report.totals.ended_early.find("did not keep up"), std::string::npos)
+      << recorded.report.totals.ended_early;
   auto reader = RecordingReader::open(recorded.file);
   ASSERT_TRUE(reader);
   const Played played = play(*reader.value(), nullptr);
