@@ -25,8 +25,11 @@ std::string footer() {
          "While it runs, type (or use `slosh links` from elsewhere):\n" +
          std::string(console_help()) +
          "\n\n"
-         "The world is saved to a file twice a second. Should the host die, --resume FILE carries on from\n"
-         "there, and peers come back by themselves.\n"
+         "The world is saved to a file twice a second. Should a fault end it, it is started again from "
+         "there\n"
+         "at once, and peers come back by themselves (not with --checkpoint none). After the machine went\n"
+         "down, --resume FILE does the same. Key and links are in FILE.secrets: FILE alone can be given "
+         "away.\n"
          "\n"
          "Examples:\n"
          "  slosh host bucket\n"
@@ -78,6 +81,8 @@ void add_host(CLI::App& app, VerbRun& chosen) {
   verb->add_option("--checkpoint", o->checkpoint,
                    "File to save the world in, or none (~/.local/state/slosh/SCENE.checkpoint)");
   verb->add_option("--resume", o->resume, "Checkpoint to carry on from, with its links and its people");
+  verb->add_flag("!--no-supervisor", o->supervised,
+                 "Run the world in this very process, for a debugger; a fault then ends the host");
   verb->footer(footer());
   verb->callback([&chosen, o] { chosen = [o] { return host_world(*o); }; });
 }

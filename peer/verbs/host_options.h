@@ -20,6 +20,8 @@ struct HostVerbOptions : PlayOptions {
   std::size_t watchers = 150;
   bool lock_parameters = false;
   int wait = 1;  ///< grips that must be held before the world starts
+  bool supervised = true;
+  int restarts = 0;  ///< times that its supervisor has started it again
 };
 
 }  // namespace slosh

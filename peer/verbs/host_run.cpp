@@ -1,5 +1,6 @@
 #include "peer/verbs/host_run.h"
 
+#include <signal.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include "peer/output/summary.h"
 #include "peer/verbs/host_links.h"
 #include "peer/verbs/host_session.h"
+#include "peer/verbs/host_supervisor.h"
 #include "peer/verbs/interrupt.h"
 #include "peer/verbs/verbs.h"
 
@@ -94,40 +96,54 @@ void print_summary(const HostSession& session, const HostReport& report, const S
   }
   const keep::RecordingReport& recorded = session.recording();
   if (recorded.bytes > 0) {
+    const std::string& why = recorded.problem.empty() ? recorded.totals.ended_early : recorded.problem;
     std::printf("recorded   %s steps, %.1f MB%s%s\n", grouped(recorded.totals.steps).c_str(),
-                1e-6 * static_cast<double>(recorded.bytes), recorded.problem.empty() ? "" : "; ",
-                recorded.problem.c_str());
+                1e-6 * static_cast<double>(recorded.bytes),
+                why.empty() ? "" : "; it ended early: ", why.c_str());
   }
 }
 
 // Until somebody or something ends it; tells why.
-std::string run_session(HostSession& session, Progress& progress) {
+std::string run_session(HostSession& session, Progress& progress, HostReins* reins) {
   RateOf rate;
   std::int64_t next_line_ns = 0;
   LineInput input(progress.terminal());
-  const auto ask = [&](const std::string& line) { return session.net().ask(line); };
+  std::string trouble;
+  // Who asks from elsewhere sees no status line.
+  const auto ask = [&](const std::string& line) {
+    const std::string answer = session.net().ask(line);
+    return trouble.empty() ? answer : answer + "\n" + trouble;
+  };
   while (session.host().running()) {
     session.door().serve(kTurn_ms, input.fd(), ask);
     for (const std::string& line : input.read()) progress.answer(input.edits() ? line : "", ask(line));
     progress.typed(input.typed());
     for (const std::string& line : session.news()) progress.note(line);
     session.save_session();
-    if (interrupted_by() != 0) return "the host was stopped";
+    if (std::string now = session.trouble(); now != trouble) {
+      trouble = std::move(now);
+      progress.note("slosh: " + (trouble.empty() ? "the world is saved again" : trouble));
+    }
+    if (interrupted_by() != 0) {
+      if (reins) reins->ends();
+      return "the host was stopped";
+    }
     if (session.net().quit_asked()) return "the host has ended the session";
     const std::int64_t now = steady_now_ns();
     if (now < next_line_ns) continue;
     next_line_ns = now + kLineEvery;
     const ServerFigures figures = session.net().figures();
+    // First, for the end of a long line is cut off.
     progress.update(-1.0,
-                    live_line(session.host().progress(), figures, rate.update(figures.bytes_sent, now)));
+                    (trouble.empty() ? "" : "DISK: " + trouble + "; ") +
+                        live_line(session.host().progress(), figures, rate.update(figures.bytes_sent, now)));
   }
   return "the world has come to its end";
 }
 
-}  // namespace
-
-int host_world(const HostVerbOptions& options) {
+int run_host(const HostVerbOptions& options, HostReins* reins) {
   catch_interrupts();
+  signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error like a full disk, and no reason to die
   Progress progress;
   Result<HostedWorld> hosted = make_hosted_world(options, progress);
   if (!hosted) {
@@ -141,9 +157,13 @@ int host_world(const HostVerbOptions& options) {
   }
   HostSession& session = *created.value();
   progress.note("listening at " + session.address());
+  if (!session.set_aside().empty())
+    progress.note("an earlier host's world was there: carry it on with ./slosh host --resume " +
+                  session.set_aside());
   if (!session.checkpoint_file().empty())
     progress.note("saved twice a second in " + session.checkpoint_file());
-  print_links(session);
+  if (reins) reins->can_carry_on_from(session.checkpoint_file());
+  if (options.restarts == 0) print_links(session);
   if (!options.links_file.empty()) {
     const Result<bool> written = write_private(
         options.links_file, links_for_scripts(session.first_links(),
@@ -152,14 +172,23 @@ int host_world(const HostVerbOptions& options) {
   }
   progress.phase("hosting");
   session.start();
-  const std::string why = run_session(session, progress);
+  const std::string why = run_session(session, progress, reins);
   progress.typed("");
   const ServerFigures figures = session.net().figures();
   const double net_seconds = session.net().cpu_seconds();
   session.stop(why);
   progress.note(why);
   print_summary(session, session.host().report(), figures, net_seconds);
-  return interrupted_by() != 0 ? 128 + interrupted_by() : kExitOk;
+  if (interrupted_by() != 0) return 128 + interrupted_by();
+  return session.trouble().empty() ? kExitOk : kExitFailed;
+}
+
+}  // namespace
+
+int host_world(const HostVerbOptions& options) {
+  // Without a checkpoint another process would have nothing to carry on from.
+  if (!options.supervised || options.checkpoint == "none") return run_host(options, nullptr);
+  return supervise_host(options, run_host);
 }
 
 }  // namespace slosh

@@ -1,0 +1,191 @@
+#include "peer/verbs/host_supervisor.h"
+
+#include <signal.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <new>
+
+#include "net/clock.h"
+#include "peer/verbs/verbs.h"
+
+namespace slosh {
+namespace {
+
+constexpr std::int64_t kOneWish = 500'000'000;  // ns within which a second signal is the first's echo
+constexpr std::int64_t kHeardWithin =
+    300'000'000;  // ns in which a child that was signalled says that it ends
+
+/// The terminal as it was found: a child that dies leaves it as it needed it.
+class TerminalKeeper {
+ public:
+  TerminalKeeper() : is_terminal_(tcgetattr(STDIN_FILENO, &before_) == 0) {}
+  void restore() const {
+    if (is_terminal_ && tcgetpgrp(STDIN_FILENO) == getpgrp()) tcsetattr(STDIN_FILENO, TCSANOW, &before_);
+  }
+
+ private:
+  termios before_{};
+  bool is_terminal_;
+};
+
+/// Signals that wait until they are asked for, so that none comes between a look and a sleep.
+class HeldSignals {
+ public:
+  HeldSignals() {
+    sigemptyset(&held_);
+    signal(SIGCHLD, SIG_DFL);  // who started us may have passed it over, and that is inherited
+    for (const int each : {SIGINT, SIGTERM, SIGHUP, SIGCHLD}) sigaddset(&held_, each);
+    sigprocmask(SIG_BLOCK, &held_, &before_);
+  }
+  ~HeldSignals() { release(); }
+  HeldSignals(const HeldSignals&) = delete;
+  HeldSignals& operator=(const HeldSignals&) = delete;
+  void release() const { sigprocmask(SIG_SETMASK, &before_, nullptr); }
+  siginfo_t wait() const {
+    siginfo_t info{};
+    while (sigwaitinfo(&held_, &info) < 0 && errno == EINTR) {
+    }
+    return info;
+  }
+
+ private:
+  sigset_t held_{}, before_{};
+};
+
+/// Passes on what somebody sent to this process; who signalled all of them has reached the child already.
+void pass_on(const siginfo_t& info, pid_t child, const HostReins& reins) {
+  if (info.si_code == SI_KERNEL) return;  // the terminal's, which goes to both
+  const std::int64_t until = steady_now_ns() + kHeardWithin;
+  const bool again = reins.ending();
+  while (!again && steady_now_ns() < until) {
+    if (reins.ending()) return;
+    sleep_until_ns(steady_now_ns() + 10'000'000);
+  }
+  kill(child, info.si_signo);
+}
+
+int outlive(pid_t child, const HeldSignals& signals, const HostReins& reins) {
+  int status = 0;
+  std::int64_t heard_ns = 0;
+  while (true) {
+    const siginfo_t info = signals.wait();
+    const bool asked = info.si_signo != SIGCHLD;
+    // timeout(1) and its like signal a program and then its group: that is one wish, not two.
+    if (asked && (heard_ns == 0 || steady_now_ns() - heard_ns > kOneWish)) pass_on(info, child, reins);
+    if (asked) heard_ns = steady_now_ns();
+    if (waitpid(child, &status, WNOHANG) == child) return status;
+  }
+}
+
+bool asks_for_the_end(int signal_number) {
+  return signal_number == SIGINT || signal_number == SIGTERM || signal_number == SIGHUP ||
+         signal_number == SIGQUIT;
+}
+
+void say(const std::string& line) {
+  // The status line of the one that died may stand there.
+  std::fprintf(stderr, "%sslosh: %s\n", isatty(STDERR_FILENO) ? "\r\033[K" : "", line.c_str());
+}
+
+}  // namespace
+
+void HostReins::can_carry_on_from(const std::string& checkpoint) {
+  if (checkpoint.empty() || checkpoint.size() > kLongestPath) return;
+  std::memcpy(checkpoint_, checkpoint.c_str(), checkpoint.size() + 1);
+  ready_.store(true, std::memory_order_release);
+}
+
+std::string HostReins::checkpoint() const {
+  return ready_.load(std::memory_order_acquire) ? checkpoint_ : std::string();
+}
+
+void HostReins::restart() {
+  ready_.store(false, std::memory_order_relaxed);
+  ending_.store(false, std::memory_order_relaxed);
+}
+
+bool RestartBudget::take(std::int64_t now_ns) {
+  while (!taken_.empty() && now_ns - taken_.front() >= kWithin_ns) taken_.pop_front();
+  if (taken() >= kMost) return false;
+  taken_.push_back(now_ns);
+  return true;
+}
+
+HostVerbOptions restarted(const HostVerbOptions& options, const std::string& checkpoint, int restarts) {
+  HostVerbOptions next = options;
+  next.resume = next.checkpoint = checkpoint;
+  next.listen.clear();
+  next.restarts = restarts;
+  if (!options.record.empty()) {
+    const std::filesystem::path first = options.record;
+    std::error_code code;
+    int number = restarts;
+    do {
+      const std::string name = first.stem().string() + "-" + std::to_string(++number);
+      next.record = (first.parent_path() / (name + first.extension().string())).string();
+    } while (std::filesystem::exists(next.record, code));
+  }
+  return next;
+}
+
+int supervise_host(const HostVerbOptions& options, const HostBody& body) {
+  void* page = mmap(nullptr, sizeof(HostReins), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  if (page == MAP_FAILED) return body(options, nullptr);
+  HostReins& reins = *new (page) HostReins;
+  const TerminalKeeper terminal;
+  const pid_t parent = getpid();
+  RestartBudget budget;
+  HostVerbOptions now = options;
+  while (true) {
+    reins.restart();
+    std::fflush(nullptr);  // else the child would say it once more
+    const HeldSignals signals;
+    const pid_t child = fork();
+    if (child == 0) {
+      signals.release();
+      // Nobody can stop a child whose supervisor was killed, and its port would stay taken.
+      prctl(PR_SET_PDEATHSIG, SIGKILL);
+      return getppid() == parent ? body(now, &reins) : kExitFailed;
+    }
+    if (child < 0) {
+      signals.release();
+      say(std::string("the host's own process cannot be started: ") + std::strerror(errno) +
+          ". Run it in this one with --no-supervisor");
+      return kExitFailed;
+    }
+    const int status = outlive(child, signals, reins);
+    terminal.restore();
+    if (WIFEXITED(status)) return WEXITSTATUS(status);
+    const int ended_by = WTERMSIG(status);
+    if (asks_for_the_end(ended_by)) return 128 + ended_by;
+    const std::string fault = strsignal(ended_by);
+    const std::string checkpoint = reins.checkpoint();
+    if (checkpoint.empty()) {
+      say("the host died (" + fault + ") before its world was saved");
+      return 128 + ended_by;
+    }
+    if (reins.ending()) {
+      say("the host died (" + fault + ") while it ended. Carry on with ./slosh host --resume " + checkpoint);
+      return 128 + ended_by;
+    }
+    if (!budget.take(steady_now_ns())) {
+      say("the host died (" + fault + ") once more after " + std::to_string(RestartBudget::kMost) +
+          " restarts within a minute, and is not started again. Its world is in " + checkpoint +
+          ": ./slosh host --resume " + checkpoint);
+      return 128 + ended_by;
+    }
+    now = restarted(options, checkpoint, now.restarts + 1);
+    say("the host died (" + fault + "); it is started again from " + checkpoint +
+        (now.record.empty() ? "" : ", and records to " + now.record + " from here on"));
+  }
+}
+
+}  // namespace slosh
