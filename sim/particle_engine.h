@@ -1,4 +1,4 @@
-// What the world needs of whoever steps its particles. sim/cpu and sim/cuda each have one.
+// What the world needs of whoever moves its particles. sim/cpu and sim/cuda each have one.
 #pragma once
 
 #include <cstdint>
@@ -11,18 +11,26 @@
 #include "sim/hash.h"
 #include "sim/math/result.h"
 #include "sim/run_constants.h"
-#include "sim/saved_state.h"
 #include "sim/world.h"
 
 namespace slosh {
 
+/// A sub-step is prepare(), forces(), advance(), in this order; wrenches() may be asked for after forces().
+/// Each runs those of the plan's passes that are its own, by the backend's table. A GPU is only told what to
+/// do: it is waited for in wrenches() alone.
 class ParticleEngine {
  public:
   virtual ~ParticleEngine() = default;
 
-  /// One step of all particles under the bodies as they are now. `wrenches` (one a body) receives what the
-  /// fluid puts on each body that the plan measures, about its centre of mass; the others get zero.
-  virtual void step(std::span<const RigidBody> bodies, std::span<Wrench> wrenches) = 0;
+  /// Fluid and body particles in the order of their cells, under the bodies as they are now.
+  virtual void prepare(std::span<const RigidBody> bodies) = 0;
+  /// Pressure, and the forces on fluid and on bodies. `dt`: how long they will act, s.
+  virtual void forces(double dt) = 0;
+  /// The fluid moves on under those forces for `dt` s.
+  virtual void advance(double dt) = 0;
+  /// What the last forces() put on each body that the plan measures, about its centre of mass as it was in
+  /// prepare(); the others get zero. One entry a body.
+  virtual void wrenches(std::span<Wrench> out) = 0;
   /// Multiplies every fluid velocity by `keep` (0–1).
   virtual void damp(float keep) = 0;
 
@@ -41,11 +49,12 @@ class ParticleEngine {
   /// By id; a retired one gets index 255 and a position that means nothing. Both have the fluid's count of
   /// entries.
   virtual void fill(std::span<glm::vec3> positions, std::span<std::uint8_t> fluid_index) const = 0;
-  /// Ids, positions and velocities in the order of the cells at the last sort, which the state itself fixes.
+  /// The columns that the table says, in the order of the cells at the last sort, which the state itself
+  /// fixes.
   virtual void add_to(Fingerprint& print) const = 0;
   virtual Diagnostics diagnostics() const = 0;
-  /// Of the last step (a GPU's passes: of the last one that is known to be over). `body` and `total` are not
-  /// set.
+  /// Of the last sub-step (a GPU's passes: of the last one that is known to be over). `body` and `total` are
+  /// not set.
   virtual StepTimes times() const = 0;
   /// Why kStatusDeviceLost was set, empty while all is well.
   virtual std::string failure() const { return {}; }

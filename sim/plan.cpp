@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/fluid_extremes.h"
 #include "sim/format.h"
 #include "sim/step_limits.h"
 
@@ -31,69 +32,84 @@ void decide_bodies(const Scene& scene, const FluidExtremes& fluids, Plan& plan) 
     const bool is_free = body.motion == BodyMotion::kFree;
     solid += !body.point_probe;
     free_solid += is_free && !body.point_probe;
-    const double reference = plan.has_fluid ? fluids.heaviest : 1000.0;
+    const double reference = plan.has_fluid() ? fluids.heaviest : 1000.0;
     const double density =
         body.particle_density > 0.0 ? body.particle_density : reference * (1.0 + kBodyCompression);
     plan.body_density.push_back(density);
     plan.body_pressure.push_back(plan.stiffness * (density - reference));
-    if (plan.has_fluid && (is_free || body.measured)) plan.wrench_bodies.push_back(static_cast<int>(i));
+    if (plan.has_fluid() && (is_free || body.measured)) plan.wrench_bodies.push_back(static_cast<int>(i));
   }
-  plan.boundary = plan.has_fluid && solid > 0;
-  plan.rigid_dynamics = any_free(scene);
-  plan.contacts = free_solid > 0 && solid > 1;
-  plan.couplings = !scene.grips.empty();
-  plan.body_wrench = !plan.wrench_bodies.empty();
+  plan.runs.set(PassId::kWalls, plan.has_fluid() && solid > 0);
+  plan.runs.set(PassId::kPlaceBodies, plan.has(PassId::kWalls) && free_solid > 0);
+  plan.runs.set(PassId::kWrenches, !plan.wrench_bodies.empty());
+  plan.runs.set(PassId::kCouplings, !scene.grips.empty());
+  plan.runs.set(PassId::kContacts, free_solid > 0 && solid > 1);
+  plan.runs.set(PassId::kMoveBodies, any_free(scene));
 }
 
-void add_pass(Plan& plan, bool wanted, const char* name, const std::string& reason,
-              const std::string& reason_not) {
-  if (wanted) {
-    plan.passes.push_back({name, reason});
-  } else {
-    plan.left_out.push_back({name, reason_not});
+struct Reasons {
+  std::string there, not_there;
+};
+
+// Why each pass is there, or why it is not.
+Reasons reasons_for(PassId id, const Scene& scene, const FluidExtremes& fluids, const Plan& plan) {
+  const auto count_free = [&](bool solid_only) {
+    return static_cast<std::size_t>(std::count_if(
+        scene.bodies.begin(), scene.bodies.end(),
+        [&](const Body& b) { return b.motion == BodyMotion::kFree && !(solid_only && b.point_probe); }));
+  };
+  const bool paper = plan.model == ParticleModel::kPaper;
+  switch (id) {
+    case PassId::kSortFluid:
+      return {"cells of the support radius, so that neighbour rows are contiguous", "no fluid"};
+    case PassId::kPlaceBodies:
+      return {"free bodies carry their particles (Eq 14)", "no free body with a surface meets fluid"};
+    case PassId::kDensity:
+      return {paper ? "Eq 2 and 7, fluid particles only (section 4.1)" : "Eq 2 and 7, body particles counted",
+              "no fluid"};
+    case PassId::kPressureForce:
+      return {paper ? "Eq 5" : "Eq 5 as the gradient of an energy", "no fluid"};
+    case PassId::kOneViscosity:
+      return {
+          format("Eq 6: every fluid has %.3g Pa·s", fluids.most_viscous),
+          plan.has(PassId::kPairViscosity) ? "fluids differ: Eq 9 takes its place" : "nothing is viscous"};
+    case PassId::kPairViscosity:
+      return {format("Eq 9 between fluids of %.3g to %.3g Pa·s", fluids.least_viscous, fluids.most_viscous),
+              plan.viscous() ? "one viscosity: Eq 6 is enough" : "nothing is viscous"};
+    case PassId::kWalls:
+      return {format("Eq 5%s against the particles of %zu bodies", plan.viscous() ? " and 9" : "",
+                     scene.bodies.size()),
+              plan.has_fluid() ? "no body with a surface" : "no fluid"};
+    case PassId::kWrenches:
+      return {format("Eq 10–12 for %zu bodies that are free or measured", plan.wrench_bodies.size()),
+              plan.has_fluid() ? "every body is fixed and none is measured" : "no fluid"};
+    case PassId::kIntegrateFluid:
+      return {"leap-frog", "no fluid"};
+    case PassId::kCouplings:
+      return {format("%zu grips, implicit, all of a body in one 6×6 solve (section 4.4)", scene.grips.size()),
+              "no grip"};
+    case PassId::kContacts:
+      return {"a free body can touch another body",
+              count_free(true) > 0 ? "one body alone" : "no free body with a surface"};
+    case PassId::kMoveBodies:
+      return {format("Eq 13 and leap-frog for %zu free bodies", count_free(false)), "every body is fixed"};
   }
+  return {};
 }
 
-void list_passes(const Scene& scene, const FluidExtremes& fluids, Plan& plan) {
-  const std::size_t free_count = static_cast<std::size_t>(std::count_if(
-      scene.bodies.begin(), scene.bodies.end(), [](const Body& b) { return b.motion == BodyMotion::kFree; }));
-  const bool free_solid = std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& b) {
-    return b.motion == BodyMotion::kFree && !b.point_probe;
-  });
-  const bool pairs = plan.viscosity && !plan.one_viscosity;
+void list_passes(const Scene& scene, Plan& plan) {
+  const FluidExtremes fluids = fluid_extremes(scene);
   plan.passes.clear();
   plan.left_out.clear();
-  add_pass(plan, plan.has_fluid, "sort fluid",
-           "cells of the support radius, so that neighbour rows are contiguous", "no fluid");
-  add_pass(plan, plan.boundary && free_solid, "place body particles",
-           "free bodies carry their particles (Eq 14)", "no free body with a surface meets fluid");
-  const bool paper = plan.model == ParticleModel::kPaper;
-  add_pass(plan, plan.has_fluid, "density",
-           paper ? "Eq 2 and 7, fluid particles only (section 4.1)" : "Eq 2 and 7, body particles counted",
-           "no fluid");
-  add_pass(plan, plan.has_fluid, "pressure force", paper ? "Eq 5" : "Eq 5 as the gradient of an energy",
-           "no fluid");
-  add_pass(plan, plan.viscosity && plan.one_viscosity, "viscous force, one viscosity",
-           format("Eq 6: every fluid has %.3g Pa·s", fluids.most_viscous),
-           pairs ? "fluids differ: Eq 9 takes its place" : "nothing is viscous");
-  add_pass(plan, pairs, "viscous force, a viscosity a particle",
-           format("Eq 9 between fluids of %.3g to %.3g Pa·s", fluids.least_viscous, fluids.most_viscous),
-           plan.viscosity ? "one viscosity: Eq 6 is enough" : "nothing is viscous");
-  add_pass(plan, plan.boundary, "body particles on fluid",
-           format("Eq 5%s against the particles of %zu bodies", plan.viscosity ? " and 9" : "",
-                  scene.bodies.size()),
-           plan.has_fluid ? "no body with a surface" : "no fluid");
-  add_pass(plan, plan.body_wrench, "wrench on bodies",
-           format("Eq 10–12 for %zu bodies that are free or measured", plan.wrench_bodies.size()),
-           plan.has_fluid ? "every body is fixed and none is measured" : "no fluid");
-  add_pass(plan, plan.has_fluid, "integrate fluid", "leap-frog", "no fluid");
-  add_pass(plan, plan.couplings, "virtual couplings",
-           format("%zu grips, implicit, all of a body in one 6×6 solve (section 4.4)", scene.grips.size()),
-           "no grip");
-  add_pass(plan, plan.contacts, "contacts", "a free body can touch another body",
-           free_solid ? "one body alone" : "no free body with a surface");
-  add_pass(plan, plan.rigid_dynamics, "move bodies",
-           format("Eq 13 and leap-frog for %zu free bodies", free_count), "every body is fixed");
+  for (std::size_t i = 0; i < kPassCount; ++i) {
+    const PassId id = static_cast<PassId>(i);
+    Reasons reasons = reasons_for(id, scene, fluids, plan);
+    if (plan.has(id)) {
+      plan.passes.push_back({id, std::move(reasons.there)});
+    } else {
+      plan.left_out.push_back({id, std::move(reasons.not_there)});
+    }
+  }
 }
 
 void decide_viscosity(const Scene& scene, Plan& plan) {
@@ -105,8 +121,10 @@ void decide_viscosity(const Scene& scene, Plan& plan) {
     probe_differs |=
         body.point_probe && body.dynamic_viscosity > 0.0 && body.dynamic_viscosity != fluids.most_viscous;
   }
-  plan.viscosity = plan.has_fluid && (fluids.most_viscous > 0.0 || viscous_body);
-  plan.one_viscosity = plan.viscosity && fluids.least_viscous == fluids.most_viscous && !probe_differs;
+  const bool viscous = plan.has_fluid() && (fluids.most_viscous > 0.0 || viscous_body);
+  const bool one = fluids.least_viscous == fluids.most_viscous && !probe_differs;
+  plan.runs.set(PassId::kOneViscosity, viscous && one);
+  plan.runs.set(PassId::kPairViscosity, viscous && !one);
 }
 
 }  // namespace
@@ -117,8 +135,11 @@ Plan make_plan(const Scene& scene, double spacing) {
   plan.support_radius = scene.support_ratio * spacing;
   plan.model = scene.model;
   plan.tension = scene.tension;
-  plan.has_fluid = !scene.fluid_volumes.empty() || std::any_of(scene.bodies.begin(), scene.bodies.end(),
-                                                               [](const Body& b) { return b.point_probe; });
+  const bool fluid = !scene.fluid_volumes.empty() || std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                                                                 [](const Body& b) { return b.point_probe; });
+  for (const PassId id :
+       {PassId::kSortFluid, PassId::kDensity, PassId::kPressureForce, PassId::kIntegrateFluid})
+    plan.runs.set(id, fluid);
   plan.stiffness =
       scene.stiffness > 0.0
           ? scene.stiffness
@@ -128,32 +149,14 @@ Plan make_plan(const Scene& scene, double spacing) {
   const StepLimit limit = step_limit(scene, plan);
   plan.time_step = limit.step;
   plan.time_step_reason = limit.reason;
-  plan.max_speed = 0.5 * plan.support_radius / plan.time_step;
-  list_passes(scene, fluid_extremes(scene), plan);
+  plan.max_speed = speed_limit(plan, plan.time_step);
+  list_passes(scene, plan);
   return plan;
 }
 
 void plan_viscosity(const Scene& scene, Plan& plan) {
   decide_viscosity(scene, plan);
-  list_passes(scene, fluid_extremes(scene), plan);
-}
-
-std::string describe(const Plan& plan) {
-  std::string text;
-  text += format("model           %s\n", plan.model == ParticleModel::kPaper ? "paper" : "consistent");
-  text += format("spacing         %.4g mm\n", plan.spacing * 1e3);
-  text += format("support radius  %.4g mm\n", plan.support_radius * 1e3);
-  text +=
-      format("stiffness       %.4g m²/s² (sound at %.3g m/s)\n", plan.stiffness, std::sqrt(plan.stiffness));
-  text +=
-      format("time step       %.4g ms, limited by %s\n", plan.time_step * 1e3, plan.time_step_reason.c_str());
-  text += format("speed limit     %.3g m/s\n", plan.max_speed);
-  text += "\nEach step\n";
-  for (const Pass& pass : plan.passes) text += format("  %-38s %s\n", pass.name.c_str(), pass.reason.c_str());
-  if (!plan.left_out.empty()) text += "Left out\n";
-  for (const Pass& pass : plan.left_out)
-    text += format("  %-38s %s\n", pass.name.c_str(), pass.reason.c_str());
-  return text;
+  list_passes(scene, plan);
 }
 
 }  // namespace slosh

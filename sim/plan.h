@@ -1,6 +1,8 @@
 // Which passes a scene needs, decided once and printed with reasons.
 #pragma once
 
+#include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -8,9 +10,45 @@
 
 namespace slosh {
 
+/// The passes that the method has, in the order in which they run. The backends' tables and the world's carry
+/// out those that a plan has (sim/README.md).
+enum class PassId : std::uint8_t {
+  kSortFluid,
+  kPlaceBodies,    ///< Eq 14
+  kDensity,        ///< Eq 2 and 7
+  kPressureForce,  ///< Eq 5
+  kOneViscosity,   ///< Eq 6: every fluid has the same μ, and no particle its own
+  kPairViscosity,  ///< Eq 9: a μ a particle
+  kWalls,          ///< Eq 5 and 9 on fluid by body particles
+  kWrenches,       ///< Eq 10–12 for the bodies in Plan::wrench_bodies
+  kIntegrateFluid,
+  kCouplings,
+  kContacts,
+  kMoveBodies,  ///< Eq 13
+};
+inline constexpr std::size_t kPassCount = static_cast<std::size_t>(PassId::kMoveBodies) + 1;
+
+/// The id as golden files have it, "sort_fluid".
+const char* name(PassId id);
+
+class PassSet {
+ public:
+  constexpr PassSet() = default;
+  constexpr PassSet(std::initializer_list<PassId> ids) {
+    for (const PassId id : ids) set(id, true);
+  }
+  constexpr void set(PassId id, bool there) { bits_ = there ? bits_ | bit(id) : bits_ & ~bit(id); }
+  constexpr bool has(PassId id) const { return bits_ & bit(id); }
+  constexpr bool has_any_of(PassSet others) const { return bits_ & others.bits_; }
+
+ private:
+  static constexpr std::uint32_t bit(PassId id) { return 1u << static_cast<unsigned>(id); }
+  std::uint32_t bits_ = 0;
+};
+
 struct Pass {
-  std::string name;
-  std::string reason;  ///< why it is there, with the numbers that decided it
+  PassId id;
+  std::string reason;  ///< why it is there or not, with the numbers that decided it
 };
 
 /// What the step does for one scene at one spacing. See sim/README.md for each pass's reads and writes.
@@ -26,22 +64,26 @@ struct Plan {
   double sound_share =
       1.0;                 ///< of sound's own limit on the step, what density contrast and light bodies leave
   double tension = 0.0;    ///< share of Eq 7's negative pressure that is kept
-  double max_speed = 0.0;  ///< m/s, above which a particle is slowed (half a support radius a step)
+  double max_speed = 0.0;  ///< m/s, above which a particle is slowed: speed_limit() of a sub-step
   std::vector<double> body_density;   ///< kg/m³, the constant density of each body's particles (section 4.1)
   std::vector<double> body_pressure;  ///< Pa, Eq 7 at that density
 
-  bool has_fluid = false;
-  bool viscosity = false;          ///< Eq 6 or 9: something in the scene has μ > 0
-  bool one_viscosity = false;      ///< every pair has the same μ: Eq 6, no per-particle μ
-  bool boundary = false;           ///< body particles near fluid: Eq 5 and 9 against them
-  bool body_wrench = false;        ///< Eq 10–12 for the bodies in `wrench_bodies`
-  bool rigid_dynamics = false;     ///< Eq 13–14
-  bool contacts = false;           ///< two bodies can touch, one of them free
-  bool couplings = false;          ///< at least one grip
+  int sub_steps = 1;  ///< that a step is made of, each time_step / sub_steps long
+
+  PassSet runs;
   std::vector<int> wrench_bodies;  ///< bodies whose wrench is summed: free or measured
-  std::vector<Pass> passes;        ///< in the order they run
-  std::vector<Pass> left_out;      ///< passes that the method has and this scene does not need
+  std::vector<Pass> passes;        ///< those that run
+  std::vector<Pass> left_out;      ///< those that this scene does not need
+
+  bool has(PassId id) const { return runs.has(id); }
+  bool has_fluid() const { return runs.has(PassId::kSortFluid); }
+  bool viscous() const { return runs.has_any_of({PassId::kOneViscosity, PassId::kPairViscosity}); }
 };
+
+/// m/s: half a support radius in a sub-step of `time_step` s.
+inline double speed_limit(const Plan& plan, double time_step) {
+  return 0.5 * plan.support_radius / time_step;
+}
 
 /// Works out the plan for particles at `spacing` (m, > 0).
 Plan make_plan(const Scene& scene, double spacing);

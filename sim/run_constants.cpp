@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/model.h"
 #include "sim/snapshot.h"
 
 namespace slosh {
@@ -10,16 +11,15 @@ namespace slosh {
 namespace {
 
 // Σ of the density kernel's shape over a cubic lattice, the particle itself included.
-double rest_number_density(ParticleModel model, double spacing, double support_radius) {
+template <class Kernel>
+double rest_number_density(double spacing, double support_radius) {
   const int reach = static_cast<int>(std::ceil(support_radius / spacing));
+  const Support<double> support{support_radius, support_radius * support_radius};
   double sum = 0.0;
   for (int x = -reach; x <= reach; ++x) {
     for (int y = -reach; y <= reach; ++y) {
       for (int z = -reach; z <= reach; ++z) {
-        const double r_squared = spacing * spacing * (x * x + y * y + z * z);
-        sum += model == ParticleModel::kPaper
-                   ? poly6_shape<double>(r_squared, support_radius * support_radius)
-                   : spiky_shape<double>(r_squared, support_radius);
+        sum += Kernel::shape(spacing * spacing * (x * x + y * y + z * z), support);
       }
     }
   }
@@ -85,8 +85,12 @@ RunConstants make_run_constants(const Scene& scene, const SampledScene& sampled,
   const double spacing = c.plan.spacing;
   const Box box = domain_of(scene, sampled, h);
   c.grid = CellGrid(box.lower, box.upper, h);
-  c.kernels = make_kernel_constants(h);
-  c.rest_number_density = static_cast<float>(rest_number_density(c.plan.model, spacing, h));
+  c.support_radius = static_cast<float>(h);
+  with_model(c.plan.model, [&]<class Parts>() {
+    c.force_scale = static_cast<float>(Parts::ForceKernel::scale(h));
+    c.rest_number_density =
+        static_cast<float>(rest_number_density<typename Parts::DensityKernel>(spacing, h));
+  });
   c.rest_volume = static_cast<float>(std::pow(spacing, 3));
   c.gravity = glm::vec3(scene.gravity);
   c.kinds = particle_kinds(scene, spacing);
@@ -96,33 +100,39 @@ RunConstants make_run_constants(const Scene& scene, const SampledScene& sampled,
 ParticleStart make_particle_start(const Scene& scene, const SampledScene& sampled,
                                   const RunConstants& constants, std::span<const RigidBody> bodies) {
   ParticleStart start;
-  start.positions = sampled.fluid_positions;
-  start.velocities = sampled.fluid_velocities;
-  start.velocities.resize(start.positions.size(), glm::vec3(0.0f));
-  start.kinds = sampled.fluid_index;
-  start.fluid_count = start.positions.size();
+  start.fluid_count = sampled.fluid_positions.size();
+  std::vector<glm::vec3> positions = sampled.fluid_positions;
+  std::vector<glm::vec3> velocities = sampled.fluid_velocities;
+  velocities.resize(positions.size(), glm::vec3(0.0f));
+  ParticleState& p = start.particles;
+  p.kind = sampled.fluid_index;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     if (!bodies[b].point) continue;
-    start.kinds.push_back(static_cast<std::uint8_t>(scene.fluids.size() + start.probes.size()));
-    start.probes.push_back({static_cast<std::uint32_t>(start.positions.size()), static_cast<int>(b)});
-    start.positions.emplace_back(bodies[b].position);
-    start.velocities.emplace_back(bodies[b].velocity);
+    p.kind.push_back(static_cast<std::uint8_t>(scene.fluids.size() + start.probes.size()));
+    start.probes.push_back({static_cast<std::uint32_t>(positions.size()), static_cast<int>(b)});
+    positions.emplace_back(bodies[b].position);
+    velocities.emplace_back(bodies[b].velocity);
   }
-  for (std::size_t i = 0; i < start.positions.size(); ++i) {
-    const glm::vec3& x = start.positions[i];
-    const bool whole = finite(x) && finite(start.velocities[i]);
+  p.resize(positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const glm::vec3& x = positions[i];
+    const glm::vec3& v = velocities[i];
+    p.x[i] = x.x;
+    p.y[i] = x.y;
+    p.z[i] = x.z;
+    p.vx[i] = v.x;
+    p.vy[i] = v.y;
+    p.vz[i] = v.z;
+    p.volume[i] = constants.rest_volume;
+    p.id[i] = static_cast<std::uint32_t>(i);
+    const bool whole = finite(x) && finite(v);
     const bool inside = whole && constants.grid.contains(x.x, x.y, x.z);
-    start.keys.push_back(inside ? constants.grid.cell_of(x.x, x.y, x.z) : constants.grid.retired_key());
+    p.key[i] = inside ? constants.grid.cell_of(x.x, x.y, x.z) : constants.grid.retired_key();
     if (!inside) start.status |= whole ? kStatusEscaped : kStatusNonFinite;
   }
   start.fixed = surface_particles(scene, sampled, constants.plan, BodyMotion::kFixed);
   start.moving = surface_particles(scene, sampled, constants.plan, BodyMotion::kFree);
   return start;
-}
-
-SurfaceMotion surface_motion(const RigidBody& body) {
-  return {glm::mat3(glm::mat3_cast(body.orientation)), glm::vec3(body.mesh_pose().position),
-          glm::vec3(body.position), glm::vec3(body.velocity), glm::vec3(body.angular_velocity)};
 }
 
 }  // namespace slosh

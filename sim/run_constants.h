@@ -6,12 +6,11 @@
 #include <vector>
 
 #include "scenes/scene.h"
-#include "sim/bodies.h"
-#include "sim/math/cell_grid.h"
-#include "sim/math/kernels.h"
-#include "sim/math/particle_step.h"
+#include "sim/bodies/rigid_body.h"
+#include "sim/columns.h"
+#include "sim/neighbours/cell_grid.h"
 #include "sim/plan.h"
-#include "sim/surface.h"
+#include "sim/walls/wall_particles.h"
 
 namespace slosh {
 
@@ -26,7 +25,8 @@ struct ParticleKind {
 struct RunConstants {
   Plan plan;
   CellGrid grid;
-  KernelConstants kernels;
+  float support_radius = 0.0f;  ///< m
+  float force_scale = 0.0f;     ///< the force kernel's constant, m⁻⁶
   float rest_number_density =
       0.0f;  ///< Σ of the kernel's shape over the rest lattice: density is measured against it
   float rest_volume = 0.0f;  ///< m³ of a particle at rest density
@@ -46,11 +46,9 @@ struct Probe {
 
 /// The particles at the start, by id: the scene's fluid first, the probes behind it.
 struct ParticleStart {
-  std::vector<glm::vec3> positions;   ///< m
-  std::vector<glm::vec3> velocities;  ///< m/s
-  std::vector<std::uint8_t> kinds;    ///< into RunConstants::kinds
-  std::vector<std::uint32_t> keys;    ///< cell; retired where it is outside the domain or not finite
-  std::uint32_t status = 0;           ///< StatusBits of those
+  ParticleState
+      particles;  ///< with their kinds; at rest volume; retired those outside the domain or not finite
+  std::uint32_t status = 0;  ///< StatusBits of those
   std::vector<Probe> probes;
   std::size_t fluid_count = 0;  ///< without the probes
   std::vector<SurfaceParticle> fixed, moving;
@@ -64,7 +62,5 @@ RunConstants make_run_constants(const Scene& scene, const SampledScene& sampled,
 
 ParticleStart make_particle_start(const Scene& scene, const SampledScene& sampled,
                                   const RunConstants& constants, std::span<const RigidBody> bodies);
-
-SurfaceMotion surface_motion(const RigidBody& body);
 
 }  // namespace slosh

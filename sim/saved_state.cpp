@@ -117,11 +117,23 @@ void hand_state(S& s, I& input) {
   s.real(input.scale);
 }
 
+// Every saved column but the key, which follows from the position: of it one byte tells who is retired.
 template <class S, class P>
 void columns(S& s, P& p) {
-  for (auto* column : {&p.x, &p.y, &p.z, &p.vx, &p.vy, &p.vz, &p.volume})
-    s.column(std::span(column->data(), column->size()));
-  s.column(std::span(p.id.data(), p.id.size()));
+  for_each_column(
+      [&](auto column, auto& values) {
+        if constexpr (info(column).saved && column != FluidColumn::key)
+          s.column(std::span(values.data(), values.size()));
+      },
+      p);
+}
+
+constexpr std::size_t bytes_a_particle() {
+  std::size_t bytes = 1;
+  for (const ColumnInfo& column : kFluidColumns) {
+    if (column.saved && column.life != ColumnLife::kKey) bytes += column.bytes;
+  }
+  return bytes;
 }
 
 void write_frame(Sink& s, const StateFrame& f) {
@@ -198,12 +210,6 @@ void check_particles(Source& s, const StateFrame& frame, const RunConstants& con
 
 }  // namespace
 
-void ParticleState::resize(std::size_t count) {
-  for (auto* column : {&x, &y, &z, &vx, &vy, &vz, &volume}) column->resize(count);
-  id.resize(count);
-  key.resize(count);
-}
-
 StateFrame state_frame(const Scene& scene, const Plan& plan, const ParticleStart& start) {
   Fingerprint print;
   // Rounded, so that the last bit of a sum does not tell one machine's build from another's.
@@ -243,7 +249,7 @@ StateFrame state_frame(const Scene& scene, const Plan& plan, const ParticleStart
       real(part);
     }
   }
-  for (const std::uint8_t kind : start.kinds) print.add(kind);
+  for (const std::uint8_t kind : start.particles.kind) print.add(kind);
   return {start.fluid_count,   start.probes.size(), start.fixed.size() + start.moving.size(),
           scene.bodies.size(), scene.grips.size(),  scene.fluids.size(),
           plan.spacing,        plan.time_step,      plan.stiffness,
@@ -253,7 +259,8 @@ StateFrame state_frame(const Scene& scene, const Plan& plan, const ParticleStart
 void write_state(const StateFrame& frame, const RunConstants& constants, const SavedState& state,
                  std::vector<std::uint8_t>& out) {
   const ParticleState& p = state.particles;
-  out.reserve(out.size() + 33 * p.size() + 400 * (state.bodies.size() + state.grips.size()) + 1024);
+  out.reserve(out.size() + bytes_a_particle() * p.size() + 400 * (state.bodies.size() + state.grips.size()) +
+              1024);
   Sink s(out);
   s.raw(kMagic);
   s.raw(kVersion);
@@ -322,8 +329,8 @@ Result<bool> read_state(std::span<const std::uint8_t> bytes, const StateFrame& f
   std::uint32_t count = 0;
   s.raw(count);
   ParticleState& p = state.particles;
-  // Eight columns of four bytes and one of one: what is there decides how much is allocated.
-  if (s.ok() && s.left() != std::uint64_t{33} * count)
+  // What is there decides how much is allocated.
+  if (s.ok() && s.left() != std::uint64_t{bytes_a_particle()} * count)
     s.fail("its length does not fit its number of particles");
   if (s.ok()) {
     p.resize(count);

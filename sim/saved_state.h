@@ -5,24 +5,13 @@
 #include <span>
 #include <vector>
 
-#include "sim/bodies.h"
+#include "sim/bodies/rigid_body.h"
+#include "sim/columns.h"
 #include "sim/math/result.h"
 #include "sim/run_constants.h"
 #include "sim/world.h"
 
 namespace slosh {
-
-/// The particles in the order that the engine has them: sums over neighbours depend on it.
-struct ParticleState {
-  std::vector<float> x, y, z;     ///< m
-  std::vector<float> vx, vy, vz;  ///< m/s
-  std::vector<float> volume;      ///< m³, of the last density pass
-  std::vector<std::uint32_t> id;
-  std::vector<std::uint32_t> key;  ///< cell, or retired: follows from the position but for probes
-
-  void resize(std::size_t count);
-  std::size_t size() const { return id.size(); }
-};
 
 /// What stays the same for a run and must match for a state to fit.
 struct StateFrame {
@@ -49,7 +38,7 @@ struct SavedState {
   std::vector<Wrench> wrenches;         ///< by the fluid, one a body
   std::vector<GripState> grips;         ///< handle and on_hand
   std::vector<HandleInput> last_input;  ///< one a grip
-  ParticleState particles;
+  ParticleState particles;  ///< in the order that the engine has them: sums over neighbours depend on it
 };
 
 constexpr std::uint64_t kMostTicks = std::uint64_t{1} << 48;

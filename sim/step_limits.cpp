@@ -4,14 +4,14 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/fluid_extremes.h"
 #include "sim/format.h"
-#include "sim/math/sph.h"
+#include "sim/viscosity/stability.h"
 
 namespace slosh {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 // dt ≤ factor · support radius / (sound speed + speed). A tank at rest stays at rest up to 1.2 with the
 // consistent model (tests/stability); Eq 5 as printed has half the pressure gradient and so more room, but
 // loses it at walls.
@@ -21,26 +21,6 @@ constexpr double kLiveCourant = 1.0;
 // Free bodies above this share of the fluid layer around them need no shorter step; a bucket held by two
 // hands was stable down to 0.01 (tests/stability).
 constexpr double kLightBody = 0.05;
-// Explicit viscosity is stable below 2/λ; λ of the roughest mode is about twice the lattice sum.
-constexpr double kViscousFactor = 0.8;
-// What a wall adds to that sum for the fluid's first layer, as a share of the whole lattice.
-constexpr double kWallPart = 0.35;
-
-// Σ V ∇²W over the neighbours of a rest lattice, times spacing²: the damping rate of one particle among still
-// neighbours is μ/ρ · this / spacing².
-double lattice_viscosity_sum(double ratio) {
-  const int reach = static_cast<int>(std::ceil(ratio));
-  double sum = 0.0;
-  for (int x = -reach; x <= reach; ++x) {
-    for (int y = -reach; y <= reach; ++y) {
-      for (int z = -reach; z <= reach; ++z) {
-        const double r = std::sqrt(static_cast<double>(x * x + y * y + z * z));
-        if (r > 0.0 && r < ratio) sum += ratio - r;
-      }
-    }
-  }
-  return 45.0 / (kPi * std::pow(ratio, 6)) * sum;
-}
 
 // m² of a mesh.
 double surface_area(const TriangleMesh& mesh) {
@@ -61,19 +41,6 @@ double lightest_body_share(const Scene& scene, double spacing, double density) {
     if (layer > 0.0) share = std::min(share, body.mass.mass / layer);
   }
   return share;
-}
-
-double most_viscous_body(const Scene& scene) {
-  double most = 0.0;
-  for (const Body& body : scene.bodies) most = std::max(most, body.dynamic_viscosity);
-  return most;
-}
-
-// 1/(Pa·s · s): the explicit viscosity's damping rate for each Pa·s.
-double viscous_rate(const Scene& scene, const Plan& plan, const FluidExtremes& fluids) {
-  const double central = plan.model == ParticleModel::kPaper ? 1.0 : kCentralDrag / 3.0;
-  return central / fluids.lightest * lattice_viscosity_sum(scene.support_ratio) /
-         (plan.spacing * plan.spacing);
 }
 
 // m/s: a collapse over its own depth while a hand moves it, or a fall to the floor.
@@ -105,23 +72,10 @@ FluidHeights fluid_heights(const Scene& scene) {
   return heights;
 }
 
-FluidExtremes fluid_extremes(const Scene& scene) {
-  if (scene.fluid_volumes.empty()) return {1000.0, 1000.0, 0.0, 0.0};
-  FluidExtremes e;
-  for (const FluidVolume& volume : scene.fluid_volumes) {
-    const Fluid& fluid = scene.fluids[volume.fluid];
-    e.lightest = std::min(e.lightest, fluid.rest_density);
-    e.heaviest = std::max(e.heaviest, fluid.rest_density);
-    e.least_viscous = std::min(e.least_viscous, fluid.dynamic_viscosity);
-    e.most_viscous = std::max(e.most_viscous, fluid.dynamic_viscosity);
-  }
-  return e;
-}
-
 StepLimit step_limit(const Scene& scene, Plan& plan) {
   StepLimit limit;
   limit.lower_to(1.0 / 250.0, "bodies and couplings alone: 250 Hz");
-  if (!plan.has_fluid) return limit;
+  if (!plan.has_fluid()) return limit;
   const FluidExtremes fluids = fluid_extremes(scene);
   const FluidHeights heights = fluid_heights(scene);
   plan.fluid_depth = heights.depth;
@@ -143,25 +97,18 @@ StepLimit step_limit(const Scene& scene, Plan& plan) {
                    format("sound, at a body of %.3g times the mass of the fluid layer around it", share));
   }
   plan.sound_share = std::sqrt(std::min(1.0, share / kLightBody) / contrast);
-  if (plan.viscosity) {
+  if (plan.viscous()) {
     const double of_bodies = most_viscous_body(scene);
-    const double viscosity = fluids.most_viscous + kWallPart * 0.5 * (fluids.most_viscous + of_bodies);
-    const double rate = viscosity * viscous_rate(scene, plan, fluids);
-    limit.lower_to(kViscousFactor / rate,
+    limit.lower_to(viscous_step(scene, plan, fluids),
                    format("explicit viscosity of %.3g Pa·s in the fluid, %.3g Pa·s at walls",
                           fluids.most_viscous, 0.5 * (fluids.most_viscous + of_bodies)));
   }
   return limit;
 }
 
-double most_viscous_allowed(const Scene& scene, const Plan& plan) {
-  const double whole = kViscousFactor / (plan.time_step * viscous_rate(scene, plan, fluid_extremes(scene)));
-  return std::max(0.0, (whole - 0.5 * kWallPart * most_viscous_body(scene)) / (1.0 + 0.5 * kWallPart));
-}
-
 double most_gravity_allowed(const Scene& scene, const Plan& plan) {
   const double g = glm::length(scene.gravity);
-  if (!plan.has_fluid || g <= 0.0) return std::numeric_limits<double>::infinity();
+  if (!plan.has_fluid() || g <= 0.0) return std::numeric_limits<double>::infinity();
   const double speed =
       kLiveCourant * plan.sound_share * plan.support_radius / plan.time_step - std::sqrt(plan.stiffness);
   // The speed at which expected_speed() comes out, solved for the gravity.

@@ -15,14 +15,6 @@ struct FluidHeights {
 };
 FluidHeights fluid_heights(const Scene& scene);
 
-/// Over the fluids that a volume of the scene has.
-struct FluidExtremes {
-  double lightest = std::numeric_limits<double>::infinity(), heaviest = 0.0;           ///< kg/m³
-  double least_viscous = std::numeric_limits<double>::infinity(), most_viscous = 0.0;  ///< Pa·s
-};
-/// Of water without viscosity where the scene has no fluid.
-FluidExtremes fluid_extremes(const Scene& scene);
-
 /// The largest step that each limit allows; the plan takes the smallest and says which it was.
 struct StepLimit {
   double step = std::numeric_limits<double>::infinity();  ///< s
@@ -38,9 +30,6 @@ struct StepLimit {
 
 /// Fills the plan's depth, drop and sound_share on the way. Needs the scene's meshes.
 StepLimit step_limit(const Scene& scene, Plan& plan);
-
-/// The largest viscosity of a fluid, Pa·s, at which the plan's step stays stable. Needs no mesh.
-double most_viscous_allowed(const Scene& scene, const Plan& plan);
 
 /// The largest multiple of the scene's gravity at which the plan's step stays stable. Needs no mesh.
 double most_gravity_allowed(const Scene& scene, const Plan& plan);

@@ -1,6 +1,6 @@
 // Body particles placed with their bodies (Eq 14) and sorted.
 #include "sim/cpu/passes.h"
-#include "sim/math/particle_step.h"
+#include "sim/walls/surface_motion.h"
 
 namespace slosh {
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim/math/cell_grid.h"
+#include "sim/neighbours/cell_grid.h"
 
 namespace slosh {
 

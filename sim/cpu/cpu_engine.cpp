@@ -4,7 +4,7 @@
 
 #include "sim/cpu/passes.h"
 #include "sim/fluid_sums.h"
-#include "sim/stopwatch.h"
+#include "sim/pass_table.h"
 
 namespace slosh {
 
@@ -18,39 +18,33 @@ class CpuEngine final : public ParticleEngine {
         fixed_(start.fixed),
         moving_(start.moving),
         probes_(start.probes),
-        kinds_(start.kinds),
-        fluid_count_(start.fluid_count) {
+        kinds_(start.particles.kind),
+        fluid_count_(start.fluid_count),
+        bodies_(bodies.begin(), bodies.end()),
+        found_(bodies.size()) {
     static_cast<RunConstants&>(context_) = constants;
     wanted_.assign(bodies.size(), 0);
     for (const int b : constants.plan.wrench_bodies) wanted_[b] = 1;
     fixed_measured_ = std::any_of(constants.plan.wrench_bodies.begin(), constants.plan.wrench_bodies.end(),
                                   [&](int b) { return !bodies[b].free; });
-    load(start);
+    fluid_.provide(context_.plan, kinds_.size());
+    scratch_.provide(kinds_.size());
+    restore(start.particles);
+    context_.status = start.status;
     fixed_.place(context_, bodies);
   }
 
-  void step(std::span<const RigidBody> bodies, std::span<Wrench> wrenches) override {
-    Stopwatch watch;
-    carry_probes_in(bodies);
-    sort_fluid(context_, team_, fluid_, sorter_, scratch_);
-    if (moving_.size() > 0) moving_.place(context_, bodies);
-    times_.sort = watch.lap();
-    compute_density(context_, team_, fluid_, fixed_.sorted(), moving_.sorted());
-    times_.density = watch.lap();
-    compute_fluid_forces(context_, team_, fluid_, fixed_.sorted(), moving_.sorted());
-    std::fill(wrenches.begin(), wrenches.end(), Wrench{});
-    if (context_.plan.body_wrench) {
-      const auto sum = [&](const BodySurface& surface) {
-        sum_body_wrenches(context_, team_, fluid_, surface.sorted(), bodies, wanted_, body_scratch_,
-                          wrenches);
-      };
-      sum(moving_);
-      if (fixed_measured_) sum(fixed_);
-      carry_probe_forces_out(wrenches);
-    }
-    integrate_fluid(context_, team_, fluid_);
-    times_.force = watch.lap();
+  void prepare(std::span<const RigidBody> bodies) override {
+    bodies_.assign(bodies.begin(), bodies.end());
+    times_ = StepTimes{};
+    run(SubStepPart::kPrepare, 0.0);
   }
+  void forces(double dt) override {
+    std::fill(found_.begin(), found_.end(), Wrench{});
+    run(SubStepPart::kForces, dt);
+  }
+  void advance(double dt) override { run(SubStepPart::kAdvance, dt); }
+  void wrenches(std::span<Wrench> out) override { std::copy(found_.begin(), found_.end(), out.begin()); }
 
   void damp(float keep) override {
     for (Column<float>* column : {&fluid_.vx, &fluid_.vy, &fluid_.vz}) {
@@ -60,37 +54,25 @@ class CpuEngine final : public ParticleEngine {
 
   void set_constants(const RunConstants& constants) override {
     static_cast<RunConstants&>(context_) = constants;
+    fluid_.provide(context_.plan, kinds_.size());
   }
 
   bool save(ParticleState& out) const override {
     out.resize(fluid_.active);
-    const auto copy = [&](const auto& from, auto& to) {
-      std::copy_n(from.begin(), fluid_.active, to.begin());
-    };
-    copy(fluid_.x, out.x);
-    copy(fluid_.y, out.y);
-    copy(fluid_.z, out.z);
-    copy(fluid_.vx, out.vx);
-    copy(fluid_.vy, out.vy);
-    copy(fluid_.vz, out.vz);
-    copy(fluid_.volume, out.volume);
-    copy(fluid_.id, out.id);
-    copy(fluid_.key, out.key);
+    for_each_column(
+        [&](auto column, const auto& from, auto& to) {
+          if constexpr (info(column).saved) std::copy_n(from.begin(), fluid_.active, to.begin());
+        },
+        fluid_, out);
     return true;
   }
 
   void restore(const ParticleState& state) override {
-    fluid_.resize(kinds_.size());
-    const auto copy = [&](const auto& from, auto& to) { std::copy(from.begin(), from.end(), to.begin()); };
-    copy(state.x, fluid_.x);
-    copy(state.y, fluid_.y);
-    copy(state.z, fluid_.z);
-    copy(state.vx, fluid_.vx);
-    copy(state.vy, fluid_.vy);
-    copy(state.vz, fluid_.vz);
-    copy(state.volume, fluid_.volume);
-    copy(state.id, fluid_.id);
-    copy(state.key, fluid_.key);
+    for_each_column(
+        [](auto column, const auto& from, auto& to) {
+          if constexpr (info(column).saved) std::copy(from.begin(), from.end(), to.begin());
+        },
+        state, fluid_);
     for (std::size_t p = 0; p < state.size(); ++p) fluid_.kind[p] = kinds_[state.id[p]];
     fluid_.active = state.size();
     context_.status = 0;
@@ -112,10 +94,11 @@ class CpuEngine final : public ParticleEngine {
   void add_to(Fingerprint& print) const override {
     for (std::size_t p = 0; p < fluid_.active; ++p) {
       print.add(fluid_.id[p]);
-      for (const Column<float>* column :
-           {&fluid_.x, &fluid_.y, &fluid_.z, &fluid_.vx, &fluid_.vy, &fluid_.vz}) {
-        print.add((*column)[p]);
-      }
+      for_each_column(
+          [&](auto column, const auto& values) {
+            if constexpr (info(column).hashed && column != FluidColumn::id) print.add(values[p]);
+          },
+          fluid_);
     }
   }
 
@@ -136,34 +119,52 @@ class CpuEngine final : public ParticleEngine {
   }
 
  private:
-  void load(const ParticleStart& start) {
-    fluid_.resize(start.positions.size());
-    std::fill(fluid_.volume.begin(), fluid_.volume.end(), context_.rest_volume);
-    scratch_.resize(start.positions.size());
-    for (std::size_t i = 0; i < start.positions.size(); ++i) {
-      const glm::vec3& x = start.positions[i];
-      const glm::vec3& v = start.velocities[i];
-      fluid_.x[i] = x.x;
-      fluid_.y[i] = x.y;
-      fluid_.z[i] = x.z;
-      fluid_.vx[i] = v.x;
-      fluid_.vy[i] = v.y;
-      fluid_.vz[i] = v.z;
-      fluid_.id[i] = static_cast<std::uint32_t>(i);
-      fluid_.kind[i] = start.kinds[i];
-      fluid_.key[i] = start.keys[i];
-    }
-    context_.status = start.status;
-    fluid_.active = start.positions.size();
+  static std::span<const PassRow<CpuEngine>> table() {
+    using enum PassId;
+    static constexpr PassRow<CpuEngine> kTable[] = {
+        {SubStepPart::kPrepare, {kSortFluid}, &CpuEngine::sort, &StepTimes::sort},
+        {SubStepPart::kPrepare, {kPlaceBodies}, &CpuEngine::place_bodies, &StepTimes::sort},
+        {SubStepPart::kForces, {kDensity}, &CpuEngine::find_density, &StepTimes::density},
+        {SubStepPart::kForces,
+         {kPressureForce, kOneViscosity, kPairViscosity, kWalls},
+         &CpuEngine::find_forces,
+         &StepTimes::force},
+        {SubStepPart::kForces, {kWrenches}, &CpuEngine::sum_wrenches, &StepTimes::force},
+        {SubStepPart::kAdvance, {kIntegrateFluid}, &CpuEngine::integrate, &StepTimes::force},
+    };
+    static_assert(covers_all_particle_passes(kTable));
+    return kTable;
   }
+  void run(SubStepPart part, double dt) { run_passes(*this, table(), part, context_.plan, dt, &times_); }
+
+  void sort(double) {
+    carry_probes_in();
+    sort_fluid(context_, team_, fluid_, sorter_, scratch_);
+  }
+  void place_bodies(double) { moving_.place(context_, bodies_); }
+  void find_density(double) { compute_density(context_, team_, fluid_, fixed_.sorted(), moving_.sorted()); }
+  void find_forces(double) {
+    compute_fluid_forces(context_, team_, fluid_, fixed_.sorted(), moving_.sorted());
+  }
+  void sum_wrenches(double) {
+    centers_.clear();
+    for (const RigidBody& body : bodies_) centers_.push_back(body.position);
+    const auto sum = [&](const BodySurface& surface) {
+      sum_body_wrenches(context_, team_, fluid_, surface.sorted(), centers_, wanted_, body_scratch_, found_);
+    };
+    sum(moving_);
+    if (fixed_measured_) sum(fixed_);
+    carry_probe_forces_out();
+  }
+  void integrate(double dt) { integrate_fluid(context_, team_, fluid_, dt); }
 
   // Probes are particles that their body carries: their state goes in before the passes, the force comes out
   // after.
-  void carry_probes_in(std::span<const RigidBody> bodies) {
+  void carry_probes_in() {
     if (probes_.empty()) return;
     for (std::size_t p = 0; p < fluid_.active; ++p) {
       if (fluid_.id[p] < fluid_count_) continue;
-      const RigidBody& body = bodies[probes_[fluid_.id[p] - fluid_count_].body];
+      const RigidBody& body = bodies_[probes_[fluid_.id[p] - fluid_count_].body];
       fluid_.x[p] = static_cast<float>(body.position.x);
       fluid_.y[p] = static_cast<float>(body.position.y);
       fluid_.z[p] = static_cast<float>(body.position.z);
@@ -175,18 +176,19 @@ class CpuEngine final : public ParticleEngine {
     }
   }
 
-  void carry_probe_forces_out(std::span<Wrench> wrenches) const {
+  void carry_probe_forces_out() {
     if (probes_.empty()) return;
     for (std::size_t p = 0; p < fluid_.active; ++p) {
       if (fluid_.id[p] < fluid_count_) continue;
-      wrenches[probes_[fluid_.id[p] - fluid_count_].body].force +=
+      found_[probes_[fluid_.id[p] - fluid_count_].body].force +=
           glm::dvec3(fluid_.fx[p], fluid_.fy[p], fluid_.fz[p]);
     }
   }
 
   PassContext context_;
   ThreadTeam team_;
-  FluidParticles fluid_, scratch_;
+  FluidParticles fluid_;
+  GatheredColumns scratch_;
   KeySorter sorter_;
   BodySurface fixed_, moving_;
   std::vector<Probe> probes_;
@@ -194,6 +196,9 @@ class CpuEngine final : public ParticleEngine {
   std::size_t fluid_count_;          // without probes
   std::vector<char> wanted_;         // one a body: its wrench is summed
   bool fixed_measured_ = false;
+  std::vector<RigidBody> bodies_;  // as they were in prepare()
+  std::vector<glm::dvec3> centers_;
+  std::vector<Wrench> found_;  // one a body, by the last forces()
   std::vector<glm::vec3> body_scratch_;
   StepTimes times_;
 };

@@ -3,7 +3,8 @@
 // not taken for dense because its neighbours are heavy. It is measured against the rest lattice, so that a
 // fluid at rest has its rest density whatever the support ratio.
 #include "sim/cpu/passes.h"
-#include "sim/math/particle_step.h"
+#include "sim/model.h"
+#include "sim/pressure/equation_of_state.h"
 #include "sim/snapshot.h"
 
 namespace slosh {
@@ -12,23 +13,17 @@ namespace {
 
 constexpr std::size_t kRunsPerChunk = 32;
 
-template <bool consistent>
-FloatBatch kernel_shape(FloatBatch r_squared, FloatBatch h, FloatBatch h_squared) {
-  if constexpr (consistent) return spiky_shape(r_squared, h);
-  return poly6_shape(r_squared, h_squared);
-}
-
 // Σ shape over rows; with a share, each neighbour counts by it (wall particles).
-template <bool consistent, bool shared>
+template <class Kernel, bool shared>
 FloatBatch sum_rows(const float* xs, const float* ys, const float* zs, const float* shares,
                     const RowList& rows, const FluidParticles& fluid, std::uint32_t p, float support_radius) {
   const FloatBatch x(fluid.x[p]), y(fluid.y[p]), z(fluid.z[p]);
-  const FloatBatch h(support_radius), h_squared(support_radius * support_radius);
+  const Support<FloatBatch> support{FloatBatch(support_radius), FloatBatch(support_radius * support_radius)};
   const auto shape = [&](std::uint32_t j) {
     const FloatBatch dx = x - FloatBatch::load_unaligned(xs + j);
     const FloatBatch dy = y - FloatBatch::load_unaligned(ys + j);
     const FloatBatch dz = z - FloatBatch::load_unaligned(zs + j);
-    const FloatBatch w = kernel_shape<consistent>(dx * dx + dy * dy + dz * dz, h, h_squared);
+    const FloatBatch w = Kernel::shape(dx * dx + dy * dy + dz * dz, support);
     if constexpr (shared) return w * FloatBatch::load_unaligned(shares + j);
     return w;
   };
@@ -42,47 +37,46 @@ FloatBatch sum_rows(const float* xs, const float* ys, const float* zs, const flo
   return sum;
 }
 
-template <bool consistent>
+template <class Kernel>
 FloatBatch sum_fluid(const RowList& rows, const FluidParticles& fluid, std::uint32_t p, float h) {
-  return sum_rows<consistent, false>(fluid.x.data(), fluid.y.data(), fluid.z.data(), nullptr, rows, fluid, p,
-                                     h);
+  return sum_rows<Kernel, false>(fluid.x.data(), fluid.y.data(), fluid.z.data(), nullptr, rows, fluid, p, h);
 }
 
+template <class Kernel>
 FloatBatch sum_walls(const BoundaryParticles& walls, const RowList& rows, const FluidParticles& fluid,
                      std::uint32_t p, float h) {
-  return sum_rows<true, true>(walls.x.data(), walls.y.data(), walls.z.data(), walls.pressure.data(), rows,
-                              fluid, p, h);
+  return sum_rows<Kernel, true>(walls.x.data(), walls.y.data(), walls.z.data(), walls.pressure.data(), rows,
+                                fluid, p, h);
 }
 
-}  // namespace
-
-void compute_density(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
-                     const BoundaryParticles& fixed, const BoundaryParticles& moving) {
+template <class Parts>
+void compute_density_of(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
+                        const BoundaryParticles& fixed, const BoundaryParticles& moving) {
+  using Kernel = typename Parts::DensityKernel;
   const std::vector<CellRun>& runs = fluid.index.runs();
-  const Plan& plan = context.plan;
-  const bool consistent = plan.model == ParticleModel::kConsistent;
-  const float h = context.kernels.support_radius;
-  const float stiffness = static_cast<float>(plan.stiffness);
-  const float tension = static_cast<float>(plan.tension);
-  const bool viscosities = plan.viscosity && !plan.one_viscosity;
+  const float h = context.support_radius;
+  const float stiffness = static_cast<float>(context.plan.stiffness);
+  const float tension = static_cast<float>(context.plan.tension);
+  const bool viscosities = context.plan.has(PassId::kPairViscosity);
   team.run(runs.size(), kRunsPerChunk, [&](std::size_t begin, std::size_t end) {
     float densest = 0.0f;
     for (std::size_t r = begin; r < end; ++r) {
       const RowList rows = fluid.index.rows(context.grid, runs[r].cell);
       RowList fixed_rows, moving_rows;
-      if (consistent) {
+      if constexpr (Parts::kWallsCount) {
         fixed_rows = fixed.index.rows(context.grid, runs[r].cell);
         moving_rows = moving.index.rows(context.grid, runs[r].cell);
       }
       for (std::uint32_t p = runs[r].particles.begin; p < runs[r].particles.end; ++p) {
-        FloatBatch sum =
-            consistent ? sum_fluid<true>(rows, fluid, p, h) : sum_fluid<false>(rows, fluid, p, h);
-        if (fixed_rows.count) sum += sum_walls(fixed, fixed_rows, fluid, p, h);
-        if (moving_rows.count) sum += sum_walls(moving, moving_rows, fluid, p, h);
+        FloatBatch sum = sum_fluid<Kernel>(rows, fluid, p, h);
+        if constexpr (Parts::kWallsCount) {
+          if (fixed_rows.count) sum += sum_walls<Kernel>(fixed, fixed_rows, fluid, p, h);
+          if (moving_rows.count) sum += sum_walls<Kernel>(moving, moving_rows, fluid, p, h);
+        }
         const ParticleKind& kind = context.kinds[fluid.kind[p]];
         const PressureState state =
             pressure_state(lane_sum(sum), context.rest_number_density, context.rest_volume, kind.rest_density,
-                           stiffness, tension, fluid.volume[p], consistent);
+                           stiffness, tension, fluid.volume[p], Parts::kPressureEnergy);
         densest = std::max(densest, state.compression);
         fluid.pressure[p] = state.pressure;
         fluid.volume[p] = state.volume;
@@ -91,6 +85,14 @@ void compute_density(PassContext& context, ThreadTeam& team, FluidParticles& flu
     }
     if (densest > kTooCompressed) context.status.fetch_or(kStatusCompressed, std::memory_order_relaxed);
   });
+}
+
+}  // namespace
+
+void compute_density(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
+                     const BoundaryParticles& fixed, const BoundaryParticles& moving) {
+  with_model(context.plan.model,
+             [&]<class Parts>() { compute_density_of<Parts>(context, team, fluid, fixed, moving); });
 }
 
 }  // namespace slosh

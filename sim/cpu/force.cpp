@@ -26,11 +26,8 @@ void compute_fluid_forces(PassContext& context, ThreadTeam& team, FluidParticles
   const NeighborColumns fluid_columns = columns(fluid);
   const NeighborColumns fixed_columns = columns(fixed);
   const NeighborColumns moving_columns = columns(moving);
-  const FloatBatch h(context.kernels.support_radius);
-  const Plan& plan = context.plan;
-  with_physics(plan, plan.one_viscosity, [&]<bool consistent, Viscosity viscosity>() {
-    constexpr PairRule kFluids = consistent ? PairRule::kConsistent : PairRule::kPaper;
-    constexpr PairRule kWalls = consistent ? PairRule::kWall : PairRule::kPaper;
+  const FloatBatch h(context.support_radius);
+  with_physics(context.plan, [&]<class Parts, Viscosity viscosity>() {
     // Body particles have viscosities of their own, so against them Eq 9 holds even where one fluid has Eq 6.
     constexpr Viscosity kAgainstBodies = viscosity == Viscosity::kNone ? Viscosity::kNone : Viscosity::kPair;
     team.run(runs.size(), kRunsPerChunk, [&](std::size_t begin, std::size_t end) {
@@ -42,12 +39,12 @@ void compute_fluid_forces(PassContext& context, ThreadTeam& team, FluidParticles
           const ParticleView<FloatBatch> self =
               broadcast(fluid_columns, p, context.kinds[fluid.kind[p]].viscosity);
           ForceSum<FloatBatch> sum{FloatBatch(0.0f), FloatBatch(0.0f), FloatBatch(0.0f)};
-          add_row_forces<kFluids, viscosity>(self, fluid_columns, fluid_rows, h, sum);
+          add_row_forces<Parts, Parts::kFluids, viscosity>(self, fluid_columns, fluid_rows, h, sum);
           if (fixed_rows.count)
-            add_row_forces<kWalls, kAgainstBodies>(self, fixed_columns, fixed_rows, h, sum);
+            add_row_forces<Parts, Parts::kWalls, kAgainstBodies>(self, fixed_columns, fixed_rows, h, sum);
           if (moving_rows.count)
-            add_row_forces<kWalls, kAgainstBodies>(self, moving_columns, moving_rows, h, sum);
-          const float scale = context.kernels.spiky;
+            add_row_forces<Parts, Parts::kWalls, kAgainstBodies>(self, moving_columns, moving_rows, h, sum);
+          const float scale = context.force_scale;
           fluid.fx[p] = scale * lane_sum(sum.x);
           fluid.fy[p] = scale * lane_sum(sum.y);
           fluid.fz[p] = scale * lane_sum(sum.z);
@@ -58,7 +55,7 @@ void compute_fluid_forces(PassContext& context, ThreadTeam& team, FluidParticles
 }
 
 void sum_body_wrenches(PassContext& context, ThreadTeam& team, const FluidParticles& fluid,
-                       const BoundaryParticles& boundary, std::span<const RigidBody> bodies,
+                       const BoundaryParticles& boundary, std::span<const glm::dvec3> centers,
                        const std::vector<char>& wanted, std::vector<glm::vec3>& scratch,
                        std::span<Wrench> wrenches) {
   const std::vector<CellRun>& runs = boundary.index.runs();
@@ -67,10 +64,8 @@ void sum_body_wrenches(PassContext& context, ThreadTeam& team, const FluidPartic
   scratch.resize(count);
   const NeighborColumns fluid_columns = columns(fluid);
   const NeighborColumns own = columns(boundary);
-  const FloatBatch h(context.kernels.support_radius);
-  const Plan& plan = context.plan;
-  with_physics(plan, plan.one_viscosity, [&]<bool consistent, Viscosity viscosity>() {
-    constexpr PairRule kWalls = consistent ? PairRule::kWall : PairRule::kPaper;
+  const FloatBatch h(context.support_radius);
+  with_physics(context.plan, [&]<class Parts, Viscosity viscosity>() {
     team.run(runs.size(), kRunsPerChunk, [&](std::size_t begin, std::size_t end) {
       for (std::size_t r = begin; r < end; ++r) {
         const RowList rows = fluid.index.rows(context.grid, runs[r].cell);
@@ -82,8 +77,8 @@ void sum_body_wrenches(PassContext& context, ThreadTeam& team, const FluidPartic
           const float mean = 0.5f * (boundary.viscosity[i] + context.kinds.front().viscosity);
           const ParticleView<FloatBatch> self =
               broadcast(own, i, viscosity == Viscosity::kOne ? mean : boundary.viscosity[i]);
-          add_row_forces<kWalls, viscosity>(self, fluid_columns, rows, h, sum);
-          const float scale = context.kernels.spiky;
+          add_row_forces<Parts, Parts::kWalls, viscosity>(self, fluid_columns, rows, h, sum);
+          const float scale = context.force_scale;
           scratch[i] = scale * glm::vec3(lane_sum(sum.x), lane_sum(sum.y), lane_sum(sum.z));
         }
       }
@@ -94,7 +89,7 @@ void sum_body_wrenches(PassContext& context, ThreadTeam& team, const FluidPartic
     const int body = boundary.body[i];
     if (!wanted[body]) continue;
     const glm::dvec3 force(scratch[i]);
-    const glm::dvec3 arm = glm::dvec3(boundary.x[i], boundary.y[i], boundary.z[i]) - bodies[body].position;
+    const glm::dvec3 arm = glm::dvec3(boundary.x[i], boundary.y[i], boundary.z[i]) - centers[body];
     wrenches[body].force += force;
     wrenches[body].torque += glm::cross(arm, force);
   }

@@ -2,14 +2,33 @@
 
 namespace slosh {
 
-void FluidParticles::resize(std::size_t count) {
-  const std::size_t padded = count + kLanes;
-  for (Column<float>* column : {&x, &y, &z, &vx, &vy, &vz, &pressure, &volume, &viscosity, &fx, &fy, &fz}) {
-    column->assign(padded, 0.0f);
-  }
-  id.assign(padded, 0);
-  kind.assign(padded, 0);
-  key.assign(padded, 0);
+namespace {
+
+template <class C>
+void make(C& column, std::size_t count) {
+  if (column.empty()) column.assign(count + kLanes, {});
+}
+
+bool needs(const Plan& plan, ColumnNeed need) {
+  return need == ColumnNeed::kAlways || plan.has(PassId::kPairViscosity);
+}
+
+}  // namespace
+
+void FluidParticles::provide(const Plan& plan, std::size_t count) {
+  for_each_column(
+      [&](auto column, auto& values) {
+        if (needs(plan, info(column).need)) make(values, count);
+      },
+      *this);
+}
+
+void GatheredColumns::provide(std::size_t count) {
+  for_each_column(
+      [&](auto column, auto& values) {
+        if constexpr (info(column).life == ColumnLife::kCarried) make(values, count);
+      },
+      *this);
 }
 
 void BoundaryParticles::resize(std::size_t count) {
@@ -18,7 +37,6 @@ void BoundaryParticles::resize(std::size_t count) {
     column->assign(padded, 0.0f);
   }
   body.assign(padded, 0);
-  key.assign(padded, 0);
 }
 
 }  // namespace slosh

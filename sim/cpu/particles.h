@@ -4,26 +4,25 @@
 #include <cstdint>
 #include <vector>
 
+#include "sim/columns.h"
 #include "sim/cpu/cell_grid.h"
 #include "sim/cpu/simd.h"
+#include "sim/plan.h"
 
 namespace slosh {
 
 /// Fluid particles, and point probes behind Scene's fluids. Sorted by cell; [0, active) are in the world.
-struct FluidParticles {
-  Column<float> x, y, z;           ///< m
-  Column<float> vx, vy, vz;        ///< m/s, half a step behind x (leap-frog)
-  Column<std::uint32_t> id;        ///< fixed for the run
-  Column<std::uint8_t> kind;       ///< index into the kinds table: a fluid, or a probe
-  Column<std::uint32_t> key;       ///< cell, or retired
-  Column<float> pressure, volume;  ///< Pa (kConsistent: V²P, N·m⁴), m³: written by the density pass
-  Column<float> viscosity;         ///< Pa·s; filled only when pairs differ
-  Column<float> fx, fy, fz;        ///< N: written by the force pass
+struct FluidParticles : FluidColumns<Column> {
   std::size_t active = 0;
   CellIndex index;
 
-  void resize(std::size_t count);
-  std::size_t size() const { return id.size() - kLanes; }
+  /// Makes those columns that the plan needs and that are not there yet, zeroed.
+  void provide(const Plan& plan, std::size_t count);
+};
+
+/// Where a sort gathers to: only the columns that it carries are there.
+struct GatheredColumns : FluidColumns<Column> {
+  void provide(std::size_t count);
 };
 
 /// Particles of rigid bodies with constant density (section 4.1). One set for the fixed bodies, sorted once,
@@ -36,11 +35,9 @@ struct BoundaryParticles {
   Column<float> volume;    ///< m³
   Column<float> viscosity;     ///< Pa·s
   Column<std::uint16_t> body;  ///< index into Scene::bodies
-  Column<std::uint32_t> key;
   CellIndex index;
 
   void resize(std::size_t count);
-  std::size_t size() const { return body.empty() ? 0 : body.size() - kLanes; }
 };
 
 }  // namespace slosh

@@ -19,7 +19,7 @@ struct PassContext : RunConstants {
 
 /// Sorts fluid particles by cell and reorders every column that lives on; forgets the retired ones.
 void sort_fluid(PassContext& context, ThreadTeam& team, FluidParticles& fluid, KeySorter& sorter,
-                FluidParticles& scratch);
+                GatheredColumns& scratch);
 
 /// The surface particles of all fixed or of all free bodies: placed with their bodies (Eq 14) and sorted by
 /// cell, once for the fixed ones, every step for the free.
@@ -30,7 +30,6 @@ class BodySurface {
   void place(const PassContext& context, std::span<const RigidBody> bodies);
 
   const BoundaryParticles& sorted() const { return sorted_; }
-  std::size_t size() const { return local_.size(); }
 
  private:
   std::vector<SurfaceParticle> local_;
@@ -49,14 +48,15 @@ void compute_fluid_forces(PassContext& context, ThreadTeam& team, FluidParticles
                           const BoundaryParticles& fixed, const BoundaryParticles& moving);
 
 /// Eq 5, 6, 9 on body particles by fluid ones, summed by Eq 10–12 over those bodies of `boundary` that are
-/// marked in `wanted` (one flag a body). Adds to wrenches, about each body's centre of mass, in a fixed
+/// marked in `wanted` (one flag a body). Adds to wrenches, about `centers` (m, world, one a body), in a fixed
 /// order.
 void sum_body_wrenches(PassContext& context, ThreadTeam& team, const FluidParticles& fluid,
-                       const BoundaryParticles& boundary, std::span<const RigidBody> bodies,
+                       const BoundaryParticles& boundary, std::span<const glm::dvec3> centers,
                        const std::vector<char>& wanted, std::vector<glm::vec3>& scratch,
                        std::span<Wrench> wrenches);
 
-/// Leap-frog (section 3.1): v(t+½) from forces and gravity, x(t+1), then the new cell or retirement.
-void integrate_fluid(PassContext& context, ThreadTeam& team, FluidParticles& fluid);
+/// Leap-frog (section 3.1) over `dt` s: v(t+½) from forces and gravity, x(t+1), then the new cell or
+/// retirement.
+void integrate_fluid(PassContext& context, ThreadTeam& team, FluidParticles& fluid, double dt);
 
 }  // namespace slosh

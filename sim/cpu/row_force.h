@@ -3,8 +3,7 @@
 
 #include "sim/cpu/cell_grid.h"
 #include "sim/cpu/simd.h"
-#include "sim/math/sph.h"
-#include "sim/physics.h"
+#include "sim/model.h"
 
 namespace slosh {
 
@@ -15,7 +14,7 @@ struct NeighborColumns {
   const float *pressure, *volume, *viscosity;
 };
 
-template <PairRule rule, Viscosity viscosity>
+template <class Parts, PairRule rule, Viscosity viscosity>
 void add_row_forces(const ParticleView<FloatBatch>& p, const NeighborColumns& n, const RowList& rows,
                     FloatBatch h, ForceSum<FloatBatch>& sum) {
   constexpr bool kViscous = viscosity != Viscosity::kNone;
@@ -32,7 +31,7 @@ void add_row_forces(const ParticleView<FloatBatch>& p, const NeighborColumns& n,
       i.vz = FloatBatch::load_unaligned(n.vz + j);
       i.viscosity = viscosity == Viscosity::kPair ? FloatBatch::load_unaligned(n.viscosity + j) : p.viscosity;
     }
-    add_pair_force<rule, kViscous>(p, i, h, weight, sum);
+    add_pair_force<typename Parts::ForceKernel, rule, Parts::kDrag, kViscous>(p, i, h, weight, sum);
   };
   for (int row = 0; row < rows.count; ++row) {
     const ParticleRange range = rows.rows[row];

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <type_traits>
 
 #include "sim/cuda/device_particles.h"
 #include "sim/cuda/pass_clock.h"
 #include "sim/fluid_sums.h"
+#include "sim/pass_table.h"
 
 namespace slosh {
 
@@ -17,14 +19,12 @@ constexpr std::uint32_t kChunk = 1024;  // body particles that one block sums
 
 StepConstants step_constants(const RunConstants& c) {
   return {c.grid,
-          c.kernels.support_radius,
-          c.kernels.spiky,
+          c.support_radius,
+          c.force_scale,
           c.rest_number_density,
           c.rest_volume,
           static_cast<float>(c.plan.stiffness),
           static_cast<float>(c.plan.tension),
-          static_cast<float>(c.plan.time_step),
-          static_cast<float>(c.plan.max_speed),
           c.gravity};
 }
 
@@ -32,6 +32,31 @@ StepConstants step_constants(const RunConstants& c) {
 struct alignas(16) ReportHead {
   std::uint32_t status = 0;
 };
+
+// One column's part of a pack.
+template <class T>
+auto& lane(T& pack, int index) {
+  if constexpr (std::is_same_v<std::remove_const_t<T>, float4>) {
+    return (&pack.x)[index];
+  } else {
+    return pack;
+  }
+}
+
+using HostState = MovingPacks<PlainColumn>;
+
+// Calls f(column, value) for each column of one particle that outlives a step.
+template <class Packs, class F>
+void for_each_value(Packs& packs, std::size_t p, F&& f) {
+  for_each_column([&](auto column) {
+    constexpr ColumnInfo kInfo = info(decltype(column)::value);
+    for_each_pack(
+        [&](auto pack, auto& values) {
+          if constexpr (decltype(pack)::value == kInfo.pack) f(column, lane(values[p], kInfo.lane));
+        },
+        packs);
+  });
+}
 
 class CudaEngine final : public ParticleEngine {
  public:
@@ -41,22 +66,23 @@ class CudaEngine final : public ParticleEngine {
         step_(step_constants(constants)),
         device_(std::move(device)),
         probes_(start.probes),
-        kinds_by_id_(start.kinds),
-        fluid_count_(start.fluid_count),
-        status_(start.status) {
+        kinds_by_id_(start.particles.kind),
+        fluid_count_(start.fluid_count) {
     check_.ok(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "cudaStreamCreate");
     check_.ok(cudaEventCreateWithFlags(&ready_, cudaEventDisableTiming), "cudaEventCreate");
     clock_.start(check_);
-    fluid_.allocate(start, constants_, check_);
+    fluid_.allocate(kinds_by_id_.size(), constants_, check_);
     fixed_.allocate(start.fixed, constants_, check_);
     moving_.allocate(start.moving, constants_, check_);
-    const std::size_t largest = std::max({start.positions.size(), start.fixed.size(), start.moving.size()});
+    const std::size_t largest = std::max({start.particles.size(), start.fixed.size(), start.moving.size()});
     space_.allocate(static_cast<std::uint32_t>(largest), std::bit_width(constants_.grid.retired_key()),
                     check_);
     kinds_.upload(constants_.kinds, check_);
     plan_wrenches(start, bodies);
     allocate_exchange(bodies.size());
     check_.ok(cudaDeviceSynchronize(), "setting up");  // the stream does not wait for what filled the buffers
+    restore(start.particles);
+    status_ = start.status;
     if (fixed_.count() > 0) {
       send_bodies(bodies);
       fixed_.place(step_, bodies_.data(), space_, check_, stream_);
@@ -70,40 +96,42 @@ class CudaEngine final : public ParticleEngine {
     if (stream_) cudaStreamDestroy(stream_);
   }
 
-  void step(std::span<const RigidBody> bodies, std::span<Wrench> wrenches) override {
-    std::fill(wrenches.begin(), wrenches.end(), Wrench{});
-    if (check_.failed()) return;
-    if (fluid_.count() > 0) {
-      clock_.mark(PassClock::kBegin, check_, stream_);
-      send_bodies(bodies);
-      carry_probes_in(bodies);
-      if (!sorted_ahead_) fluid_.sort(step_, space_, check_, stream_);
-      moving_.place(step_, bodies_.data(), space_, check_, stream_);
-      clock_.mark(PassClock::kSorted, check_, stream_);
-      launch_density(step_, constants_.plan, kinds_.data(), fluid_.sorted(), fixed_.sorted(),
-                     moving_.sorted(), status_word(), stream_);
-      check_.launched("density");
-      clock_.mark(PassClock::kDensity, check_, stream_);
-      sum_wrenches();
-      // The bodies' solve on the CPU needs the wrenches alone: it runs while the GPU goes on. A probe's force
-      // comes out of the force pass.
-      if (probes_.empty()) fetch_report();
-      clock_.mark(PassClock::kWrench, check_, stream_);
-      move_fluid();
-      clock_.mark(PassClock::kForce, check_, stream_);
-      if (!probes_.empty()) fetch_report();
-      sorted_ahead_ = probes_.empty();
-      if (sorted_ahead_) fluid_.sort(step_, space_, check_, stream_);
-      clock_.mark(PassClock::kEnd, check_, stream_);
-      check_.ok(cudaEventSynchronize(ready_), "waiting for the step");
-      clock_.read(check_);
+  void prepare(std::span<const RigidBody> bodies) override {
+    if (idle()) return;
+    clock_.mark(PassClock::kBegin, check_, stream_);
+    send_bodies(bodies);
+    carry_probes_in(bodies);
+    run(SubStepPart::kPrepare, 0.0);
+    clock_.mark(PassClock::kSorted, check_, stream_);
+  }
+  void forces(double dt) override {
+    if (!idle()) run(SubStepPart::kForces, dt);
+  }
+  void advance(double dt) override {
+    if (idle()) return;
+    run(SubStepPart::kAdvance, dt);
+    clock_.mark(PassClock::kForce, check_, stream_);
+    // A probe's force comes out of the last pass, and its place changes before the next sort.
+    sorted_ahead_ = probes_.empty();
+    if (sorted_ahead_) {
+      fluid_.sort(step_, space_, check_, stream_);
+    } else {
+      fetch_report();
     }
-    if (!check_.failed()) read_report(wrenches);
+    clock_.mark(PassClock::kEnd, check_, stream_);
+  }
+
+  void wrenches(std::span<Wrench> out) override {
+    std::fill(out.begin(), out.end(), Wrench{});
+    if (idle()) return;
+    check_.ok(cudaEventSynchronize(ready_), "waiting for the step");
+    clock_.read(check_);
+    if (!check_.failed()) read_report(out);
   }
 
   void damp(float keep) override {
-    if (check_.failed() || fluid_.count() == 0) return;
-    launch_damp(state().v, fluid_.count(), keep, stream_);
+    if (idle()) return;
+    launch_damp(fluid_.state().v, fluid_.count(), keep, stream_);
     check_.launched("damping");
   }
 
@@ -118,20 +146,13 @@ class CudaEngine final : public ParticleEngine {
   bool save(ParticleState& out) const override {
     const HostState s = fetch_state();
     if (check_.failed()) return false;
-    out.resize(0);
-    std::size_t count = 0;
     out.resize(s.id.size());
+    std::size_t count = 0;
     for (std::size_t p = 0; p < s.id.size(); ++p) {
       if (s.key[p] >= constants_.grid.retired_key()) continue;  // what it leaves behind means nothing
-      out.x[count] = s.x[p].x;
-      out.y[count] = s.x[p].y;
-      out.z[count] = s.x[p].z;
-      out.vx[count] = s.v[p].x;
-      out.vy[count] = s.v[p].y;
-      out.vz[count] = s.v[p].z;
-      out.volume[count] = s.v[p].w;
-      out.id[count] = s.id[p];
-      out.key[count] = s.key[p];
+      for_each_value(s, p, [&](auto column, const auto& value) {
+        if constexpr (info(column).saved) column_of<column>(out)[count] = value;
+      });
       ++count;
     }
     out.resize(count);
@@ -142,26 +163,27 @@ class CudaEngine final : public ParticleEngine {
     if (check_.failed()) return;
     const std::size_t total = kinds_by_id_.size();
     HostState s;
+    for_each_pack([total](auto, auto& values) { values.resize(total); }, s);
     std::vector<bool> seen(total, false);
     std::vector<std::uint32_t> slots(probes_.size());
-    const auto add = [&](const float4& x, const float4& v, std::uint32_t id, std::uint32_t key) {
-      if (id >= fluid_count_) slots[id - fluid_count_] = static_cast<std::uint32_t>(s.id.size());
-      seen[id] = true;
-      s.x.push_back(x);
-      s.v.push_back(v);
-      s.id.push_back(id);
-      s.key.push_back(key);
-      s.kind.push_back(kinds_by_id_[id]);
-    };
     for (std::size_t p = 0; p < state.size(); ++p) {
-      add({state.x[p], state.y[p], state.z[p], 0.0f},
-          {state.vx[p], state.vy[p], state.vz[p], state.volume[p]}, state.id[p], state.key[p]);
+      for_each_value(s, p, [&](auto column, auto& value) {
+        if constexpr (info(column).saved) value = column_of<column>(state)[p];
+      });
+      const std::uint32_t id = state.id[p];
+      if (id >= fluid_count_) slots[id - fluid_count_] = static_cast<std::uint32_t>(p);
+      seen[id] = true;
     }
+    std::size_t behind = state.size();
     for (std::uint32_t id = 0; id < total; ++id) {
-      if (!seen[id]) add({}, {0.0f, 0.0f, 0.0f, constants_.rest_volume}, id, constants_.grid.retired_key());
+      if (seen[id]) continue;
+      s.id[behind] = id;
+      s.key[behind] = constants_.grid.retired_key();
+      s.v[behind++].w = constants_.rest_volume;
     }
+    for (std::size_t p = 0; p < total; ++p) s.kind[p] = kinds_by_id_[s.id[p]];
     check_.ok(cudaStreamSynchronize(stream_), "waiting for the step");
-    fluid_.write_moved(s.x, s.v, s.id, s.key, s.kind, check_, stream_);
+    fluid_.write(s, check_, stream_);
     probe_slots_.write(slots, check_, stream_);
     check_.ok(cudaMemsetAsync(report_.data(), 0, sizeof(ReportHead), stream_), "clearing the status");
     sorted_ahead_ = false;
@@ -178,8 +200,8 @@ class CudaEngine final : public ParticleEngine {
   void fill(std::span<glm::vec3> positions, std::span<std::uint8_t> fluid_index) const override {
     std::fill(fluid_index.begin(), fluid_index.end(), std::uint8_t{255});
     if (check_.failed() || positions.empty()) return;
-    launch_scatter(step_, state(), fluid_.count(), static_cast<std::uint32_t>(fluid_count_), by_id_.data(),
-                   kind_by_id_.data(), stream_);
+    launch_scatter(step_, fluid_.state(), fluid_.count(), static_cast<std::uint32_t>(fluid_count_),
+                   by_id_.data(), kind_by_id_.data(), stream_);
     check_.launched("scattering");
     fetch(by_id_.data(), reinterpret_cast<float*>(positions.data()), 3 * positions.size());
     fetch(kind_by_id_.data(), fluid_index.data(), fluid_index.size());
@@ -190,7 +212,9 @@ class CudaEngine final : public ParticleEngine {
     for (std::size_t p = 0; p < s.id.size(); ++p) {
       if (s.key[p] >= constants_.grid.retired_key()) continue;
       print.add(s.id[p]);
-      for (const float value : {s.x[p].x, s.x[p].y, s.x[p].z, s.v[p].x, s.v[p].y, s.v[p].z}) print.add(value);
+      for_each_value(s, p, [&](auto column, const auto& value) {
+        if constexpr (info(column).hashed && column != FluidColumn::id) print.add(value);
+      });
     }
   }
 
@@ -209,14 +233,58 @@ class CudaEngine final : public ParticleEngine {
   std::string name() const override { return "CUDA, " + device_; }
 
  private:
-  struct HostState {
-    std::vector<float4> x, v;
-    std::vector<std::uint32_t> id, key;
-    std::vector<std::uint8_t> kind;
-  };
+  static std::span<const PassRow<CudaEngine>> table() {
+    using enum PassId;
+    // The wrenches come before the forces on the fluid: the bodies' solve on the CPU needs them alone, and
+    // runs while the GPU goes on.
+    static constexpr PassRow<CudaEngine> kTable[] = {
+        {SubStepPart::kPrepare, {kSortFluid}, &CudaEngine::sort, nullptr},
+        {SubStepPart::kPrepare, {kPlaceBodies}, &CudaEngine::place_bodies, nullptr},
+        {SubStepPart::kForces, {kDensity}, &CudaEngine::find_density, nullptr},
+        {SubStepPart::kForces, {kWrenches}, &CudaEngine::sum_wrenches, nullptr},
+        {SubStepPart::kForces,
+         {kPressureForce, kOneViscosity, kPairViscosity, kWalls},
+         &CudaEngine::find_forces,
+         nullptr},
+        {SubStepPart::kAdvance, {kIntegrateFluid}, &CudaEngine::integrate, nullptr},
+    };
+    static_assert(covers_all_particle_passes(kTable));
+    return kTable;
+  }
+  void run(SubStepPart part, double dt) { run_passes(*this, table(), part, constants_.plan, dt, nullptr); }
 
-  // What the last step left, in whichever of the two orders it is.
-  const FluidView& state() const { return sorted_ahead_ ? fluid_.sorted().state : fluid_.moved(); }
+  bool idle() const { return check_.failed() || fluid_.count() == 0; }
+
+  void sort(double) {
+    if (!sorted_ahead_) fluid_.sort(step_, space_, check_, stream_);
+  }
+  void place_bodies(double) { moving_.place(step_, bodies_.data(), space_, check_, stream_); }
+
+  void find_density(double) {
+    if (check_.failed()) return;
+    launch_density(step_, constants_.plan, kinds_.data(), fluid_.sorted(), fixed_.sorted(), moving_.sorted(),
+                   status_word(), stream_);
+    check_.launched("density");
+    clock_.mark(PassClock::kDensity, check_, stream_);
+  }
+
+  void find_forces(double) {
+    if (probes_.empty()) fetch_report();
+    clock_.mark(PassClock::kWrench, check_, stream_);
+    if (check_.failed()) return;
+    launch_force(step_, constants_.plan, kinds_.data(), fluid_.sorted(), fixed_.sorted(), moving_.sorted(),
+                 stream_);
+    check_.launched("forces");
+  }
+
+  void integrate(double dt) {
+    if (check_.failed()) return;
+    const ProbeOutput probes{static_cast<std::uint32_t>(fluid_count_),
+                             reinterpret_cast<float4*>(report_.data() + probes_at_), probe_slots_.data()};
+    launch_integrate(step_, kinds_.data(), fluid_.sorted(), static_cast<float>(dt),
+                     static_cast<float>(speed_limit(constants_.plan, dt)), probes, status_word(), stream_);
+    check_.launched("integration");
+  }
 
   template <class T>
   void fetch(const T* from, T* to, std::size_t count) const {
@@ -228,17 +296,12 @@ class CudaEngine final : public ParticleEngine {
   HostState fetch_state() const {
     HostState s;
     if (check_.failed()) return s;
-    const std::size_t count = fluid_.count();
-    s.x.resize(count);
-    s.v.resize(count);
-    s.id.resize(count);
-    s.key.resize(count);
-    s.kind.resize(count);
-    fetch(state().x, s.x.data(), count);
-    fetch(state().v, s.v.data(), count);
-    fetch(state().id, s.id.data(), count);
-    fetch(state().key, s.key.data(), count);
-    fetch(state().kind, s.kind.data(), count);
+    for_each_pack(
+        [&](auto, auto& values, const auto* from) {
+          values.resize(fluid_.count());
+          fetch(from, values.data(), values.size());
+        },
+        s, fluid_.state());
     if (check_.failed()) return {};
     return s;
   }
@@ -266,7 +329,7 @@ class CudaEngine final : public ParticleEngine {
         begin = end;
       }
     };
-    if (constants_.plan.body_wrench) {
+    if (constants_.plan.has(PassId::kWrenches)) {
       cut(start.moving, true);
       cut(start.fixed, false);
     }
@@ -315,11 +378,11 @@ class CudaEngine final : public ParticleEngine {
                               cudaMemcpyHostToDevice, stream_),
               "sending probes");
     launch_carry_probes(step_, device_probes_.data(), probe_slots_.data(),
-                        static_cast<std::uint32_t>(probes_.size()), fluid_.moved(), stream_);
+                        static_cast<std::uint32_t>(probes_.size()), fluid_.state(), stream_);
     check_.launched("placing probes");
   }
 
-  void sum_wrenches() {
+  void sum_wrenches(double) {
     if (wrench_bodies_.empty() || check_.failed()) return;
     const float first_viscosity = constants_.kinds.front().viscosity;
     const auto forces = [&](const SurfaceBuffers& surface) {
@@ -334,19 +397,6 @@ class CudaEngine final : public ParticleEngine {
                     static_cast<std::uint32_t>(ranges_.size()),
                     reinterpret_cast<DeviceWrench*>(report_.data() + wrenches_at_), stream_);
     check_.launched("wrenches");
-  }
-
-  void move_fluid() {
-    if (check_.failed()) return;
-    ForceOutput output;
-    output.next = fluid_.moved();
-    output.first_probe = static_cast<std::uint32_t>(fluid_count_);
-    output.probe_forces = reinterpret_cast<float4*>(report_.data() + probes_at_);
-    output.probe_slots = probe_slots_.data();
-    output.status = status_word();
-    launch_force(step_, constants_.plan, kinds_.data(), fluid_.sorted(), fixed_.sorted(), moving_.sorted(),
-                 output, stream_);
-    check_.launched("forces");
   }
 
   void fetch_report() {
@@ -368,7 +418,7 @@ class CudaEngine final : public ParticleEngine {
       wrenches[wrench_bodies_[i]].force += glm::dvec3(w.force[0], w.force[1], w.force[2]);
       wrenches[wrench_bodies_[i]].torque += glm::dvec3(w.torque[0], w.torque[1], w.torque[2]);
     }
-    if (!constants_.plan.body_wrench) return;
+    if (!constants_.plan.has(PassId::kWrenches)) return;
     for (std::size_t i = 0; i < probes_.size(); ++i) {
       float4 f;
       std::memcpy(&f, got_report_.data() + probes_at_ + i * sizeof f, sizeof f);
@@ -382,12 +432,12 @@ class CudaEngine final : public ParticleEngine {
   std::vector<Probe> probes_;
   std::vector<std::uint8_t> kinds_by_id_;
   std::size_t fluid_count_;  // without probes
-  std::uint32_t status_;
+  std::uint32_t status_ = 0;
   mutable CallCheck check_;
   cudaStream_t stream_ = nullptr;
   cudaEvent_t ready_ = nullptr;
   PassClock clock_;
-  bool sorted_ahead_ = false;  // the state is in the sorted columns, ready for the next step's density
+  bool sorted_ahead_ = false;  // the particles are in order for the next step's density
 
   FluidBuffers fluid_;
   SurfaceBuffers fixed_, moving_;

@@ -1,12 +1,14 @@
 // Eq 2 and 7 on the GPU; what is counted, and why, is in sim/cpu/density.cpp.
 #include "sim/cuda/rows.cuh"
+#include "sim/model.h"
+#include "sim/pressure/equation_of_state.h"
 #include "sim/snapshot.h"
 
 namespace slosh::cuda {
 
 namespace {
 
-template <bool consistent>
+template <class Parts>
 __global__ __launch_bounds__(kThreads) void density_kernel(StepConstants c, const ParticleKind* kinds,
                                                            SortedFluid fluid, SortedSurface fixed,
                                                            SortedSurface moving, bool viscosities,
@@ -16,7 +18,8 @@ __global__ __launch_bounds__(kThreads) void density_kernel(StepConstants c, cons
   const std::uint32_t cell = fluid.state.key[p];
   if (cell >= c.grid.retired_key()) return;
   const float4 x = fluid.state.x[p];
-  const float h = c.support_radius;
+  using Kernel = typename Parts::DensityKernel;
+  const Support<float> support{c.support_radius, c.support_radius * c.support_radius};
   const auto r_squared = [&](const float4& other) {
     const float dx = x.x - other.x;
     const float dy = x.y - other.y;
@@ -24,28 +27,23 @@ __global__ __launch_bounds__(kThreads) void density_kernel(StepConstants c, cons
     return dx * dx + dy * dy + dz * dz;
   };
   float sum = 0.0f;
-  for_neighbors(c.grid, fluid.cells, cell, [&](std::uint32_t j) {
-    const float r2 = r_squared(__ldg(fluid.state.x + j));
-    if constexpr (consistent) {
-      sum += spiky_shape(r2, h);
-    } else {
-      sum += poly6_shape(r2, h * h);
-    }
-  });
-  if constexpr (consistent) {
+  for_neighbors(c.grid, fluid.cells, cell,
+                [&](std::uint32_t j) { sum += Kernel::shape(r_squared(__ldg(fluid.state.x + j)), support); });
+  if constexpr (Parts::kWallsCount) {
     const auto add_walls = [&](const SortedSurface& walls) {
       if (walls.count == 0) return;
       for_neighbors(c.grid, walls.cells, cell, [&](std::uint32_t j) {
         const float4 wall = __ldg(walls.x + j);
-        sum += spiky_shape(r_squared(wall), h) * wall.w;
+        sum += Kernel::shape(r_squared(wall), support) * wall.w;
       });
     };
     add_walls(fixed);
     add_walls(moving);
   }
   const ParticleKind kind = kinds[fluid.state.kind[p]];
-  const PressureState state = pressure_state(sum, c.rest_number_density, c.rest_volume, kind.rest_density,
-                                             c.stiffness, c.tension, fluid.state.v[p].w, consistent);
+  const PressureState state =
+      pressure_state(sum, c.rest_number_density, c.rest_volume, kind.rest_density, c.stiffness, c.tension,
+                     fluid.state.v[p].w, Parts::kPressureEnergy);
   fluid.pressed[p] = make_float4(x.x, x.y, x.z, state.pressure);
   fluid.state.v[p].w = state.volume;
   if (viscosities) fluid.viscosity[p] = kind.viscosity;
@@ -57,10 +55,10 @@ __global__ __launch_bounds__(kThreads) void density_kernel(StepConstants c, cons
 void launch_density(const StepConstants& constants, const Plan& plan, const ParticleKind* kinds,
                     const SortedFluid& fluid, const SortedSurface& fixed, const SortedSurface& moving,
                     std::uint32_t* status, cudaStream_t stream) {
-  const bool viscosities = plan.viscosity && !plan.one_viscosity;
-  const auto kernel = plan.model == ParticleModel::kPaper ? density_kernel<false> : density_kernel<true>;
-  kernel<<<blocks_for(fluid.count), kThreads, 0, stream>>>(constants, kinds, fluid, fixed, moving,
-                                                           viscosities, status);
+  with_model(plan.model, [&]<class Parts>() {
+    density_kernel<Parts><<<blocks_for(fluid.count), kThreads, 0, stream>>>(
+        constants, kinds, fluid, fixed, moving, plan.has(PassId::kPairViscosity), status);
+  });
 }
 
 }  // namespace slosh::cuda

@@ -36,56 +36,51 @@ void CellTableBuffers::clear(CallCheck& check, cudaStream_t stream) {
   check.ok(cudaMemsetAsync(end_.data(), 0, end_.bytes(), stream), "clearing the cells");
 }
 
-void FluidBuffers::allocate(const ParticleStart& start, const RunConstants& constants, CallCheck& check) {
-  count_ = static_cast<std::uint32_t>(start.positions.size());
-  std::vector<float4> x(count_), v(count_);
-  std::vector<std::uint32_t> id(count_);
-  for (std::uint32_t i = 0; i < count_; ++i) {
-    const glm::vec3& at = start.positions[i];
-    const glm::vec3& velocity = start.velocities[i];
-    x[i] = {at.x, at.y, at.z, 0.0f};
-    v[i] = {velocity.x, velocity.y, velocity.z, constants.rest_volume};
-    id[i] = i;
-  }
-  moved_.x.upload(x, check);
-  moved_.v.upload(v, check);
-  moved_.id.upload(id, check);
-  moved_.key.upload(start.keys, check);
-  moved_.kind.upload(start.kinds, check);
-  sorted_.x.allocate(count_, check);
-  sorted_.v.allocate(count_, check);
-  sorted_.id.allocate(count_, check);
-  sorted_.key.allocate(count_, check);
-  sorted_.kind.allocate(count_, check);
-  pressed_.allocate(count_, check);
+namespace {
+
+FluidView view_of(const MovingPacks<DeviceBuffer>& packs) {
+  FluidView view;
+  for_each_pack([](auto, const auto& buffer, auto& pointer) { pointer = buffer.data(); }, packs, view);
+  return view;
+}
+
+}  // namespace
+
+void FluidBuffers::allocate(std::size_t count, const RunConstants& constants, CallCheck& check) {
+  for (MovingPacks<DeviceBuffer>& packs : packs_)
+    for_each_pack([&](auto, auto& buffer) { buffer.allocate(count, check); }, packs);
+  pressed_.allocate(count, check);
+  force_.allocate(count, check);
   cells_.allocate(constants.grid.cell_count(), check);
-  moved_view_ = moved_.view();
-  sorted_view_ = {count_, sorted_.view(), pressed_.data(), nullptr, cells_.view()};
+  view_ = {static_cast<std::uint32_t>(count),
+           view_of(packs_[current_]),
+           pressed_.data(),
+           nullptr,
+           force_.data(),
+           cells_.view()};
   allow_viscosities(constants, check);
 }
 
 void FluidBuffers::allow_viscosities(const RunConstants& constants, CallCheck& check) {
-  if (!constants.plan.viscosity || constants.plan.one_viscosity || viscosity_.size() > 0) return;
-  viscosity_.allocate(count_, check);
-  sorted_view_.viscosity = viscosity_.data();
+  if (!constants.plan.has(PassId::kPairViscosity) || viscosity_.size() > 0) return;
+  viscosity_.allocate(count(), check);
+  view_.viscosity = viscosity_.data();
 }
 
-void FluidBuffers::write_moved(std::span<const float4> x, std::span<const float4> v,
-                               std::span<const std::uint32_t> id, std::span<const std::uint32_t> key,
-                               std::span<const std::uint8_t> kind, CallCheck& check, cudaStream_t stream) {
-  moved_.x.write(x, check, stream);
-  moved_.v.write(v, check, stream);
-  moved_.id.write(id, check, stream);
-  moved_.key.write(key, check, stream);
-  moved_.kind.write(kind, check, stream);
+void FluidBuffers::write(const MovingPacks<PlainColumn>& packs, CallCheck& check, cudaStream_t stream) {
+  for_each_pack([&](auto, const auto& from, auto& buffer) { buffer.write(from, check, stream); }, packs,
+                packs_[current_]);
 }
 
 void FluidBuffers::sort(const StepConstants& constants, SortSpace& space, CallCheck& check,
                         cudaStream_t stream) {
-  space.sort(moved_.key.data(), sorted_.key.data(), space.order(), count_, check, stream);
+  const FluidView from = view_.state;
+  current_ = 1 - current_;
+  view_.state = view_of(packs_[current_]);
+  space.sort(from.key, view_.state.key, space.order(), count(), check, stream);
   cells_.clear(check, stream);
   if (check.failed()) return;
-  launch_gather_fluid(constants, moved_view_, space.order(), sorted_view_, stream);
+  launch_gather_fluid(constants, from, space.order(), view_, stream);
   check.launched("gathering fluid");
 }
 

@@ -30,38 +30,30 @@ class CellTableBuffers {
   DeviceBuffer<std::uint32_t> begin_, end_;
 };
 
-/// Fluid particles twice: sorted, and as the last step left them.
+/// Fluid particles, and a second set of packs that a sort gathers to.
 class FluidBuffers {
  public:
-  void allocate(const ParticleStart& start, const RunConstants& constants, CallCheck& check);
-  /// Brings the moved particles into the order of their cells.
+  void allocate(std::size_t count, const RunConstants& constants, CallCheck& check);
+  /// Brings the particles into the order of their cells.
   void sort(const StepConstants& constants, SortSpace& space, CallCheck& check, cudaStream_t stream);
 
-  /// Replaces the moved particles; all spans have count() entries.
-  void write_moved(std::span<const float4> x, std::span<const float4> v, std::span<const std::uint32_t> id,
-                   std::span<const std::uint32_t> key, std::span<const std::uint8_t> kind, CallCheck& check,
-                   cudaStream_t stream);
+  /// Replaces the particles; all packs have count() entries.
+  void write(const MovingPacks<PlainColumn>& packs, CallCheck& check, cudaStream_t stream);
   /// Makes room for a viscosity a particle where the plan has come to need it.
   void allow_viscosities(const RunConstants& constants, CallCheck& check);
 
-  std::uint32_t count() const { return count_; }
-  const FluidView& moved() const { return moved_view_; }
-  const SortedFluid& sorted() const { return sorted_view_; }
+  std::uint32_t count() const { return view_.count; }
+  /// The particles in whichever order they are.
+  const FluidView& state() const { return view_.state; }
+  const SortedFluid& sorted() const { return view_; }
 
  private:
-  struct Columns {
-    DeviceBuffer<float4> x, v;
-    DeviceBuffer<std::uint32_t> id, key;
-    DeviceBuffer<std::uint8_t> kind;
-    FluidView view() const { return {x.data(), v.data(), id.data(), kind.data(), key.data()}; }
-  };
-  std::uint32_t count_ = 0;
-  Columns moved_, sorted_;
-  DeviceBuffer<float4> pressed_;
+  MovingPacks<DeviceBuffer> packs_[2];
+  int current_ = 0;
+  DeviceBuffer<float4> pressed_, force_;
   DeviceBuffer<float> viscosity_;
   CellTableBuffers cells_;
-  FluidView moved_view_;
-  SortedFluid sorted_view_;
+  SortedFluid view_;
 };
 
 /// The surface particles of all fixed or of all free bodies.

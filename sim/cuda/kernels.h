@@ -10,7 +10,9 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "sim/columns.h"
 #include "sim/run_constants.h"
+#include "sim/walls/surface_motion.h"
 
 namespace slosh::cuda {
 
@@ -18,13 +20,11 @@ namespace slosh::cuda {
 struct StepConstants {
   CellGrid grid;
   float support_radius = 0.0f;
-  float spiky = 0.0f;
+  float force_scale = 0.0f;
   float rest_number_density = 0.0f;
   float rest_volume = 0.0f;
   float stiffness = 0.0f;
   float tension = 0.0f;
-  float time_step = 0.0f;
-  float max_speed = 0.0f;
   glm::vec3 gravity{0.0f};
 };
 
@@ -35,21 +35,55 @@ struct CellTable {
   std::uint32_t* end = nullptr;
 };
 
-/// Fluid particles (and probes) in some order.
-struct FluidView {
-  float4* x = nullptr;          ///< position, m; w is not used
-  float4* v = nullptr;          ///< velocity, m/s, half a step behind x; w: volume, m³, from the density pass
-  std::uint32_t* id = nullptr;  ///< fixed for the run
-  std::uint8_t* kind = nullptr;  ///< into the table of kinds
-  std::uint32_t* key = nullptr;  ///< cell, or retired
+/// The packs of sim/columns.h that outlive a step: `Store` is a buffer, a pointer or a vector.
+template <template <class> class Store>
+struct MovingPacks {
+  Store<float4> x{};          ///< position, m; w is not used
+  Store<float4> v{};          ///< velocity, m/s, half a step behind x; w: volume, m³, from the density pass
+  Store<std::uint32_t> id{};  ///< fixed for the run
+  Store<std::uint8_t> kind{};  ///< into the table of kinds
+  Store<std::uint32_t> key{};  ///< cell, or retired
 };
 
-/// Sorted fluid with what the density pass adds.
+/// Calls f(pack, set.pack…) for each of them; the pack is a constant.
+template <class F, class... Sets>
+SLOSH_HD void for_each_pack(F&& f, Sets&&... sets) {
+  f(std::integral_constant<Pack, Pack::kPosition>{}, sets.x...);
+  f(std::integral_constant<Pack, Pack::kMotion>{}, sets.v...);
+  f(std::integral_constant<Pack, Pack::kId>{}, sets.id...);
+  f(std::integral_constant<Pack, Pack::kKind>{}, sets.kind...);
+  f(std::integral_constant<Pack, Pack::kKey>{}, sets.key...);
+}
+
+/// Whether a sort gathers a pack: when it carries one of its columns.
+constexpr bool carried(Pack pack) {
+  for (const ColumnInfo& column : kFluidColumns) {
+    if (column.pack == pack && column.life == ColumnLife::kCarried) return true;
+  }
+  return false;
+}
+/// Every column that outlives a step is in one of the packs above.
+constexpr bool packs_hold_every_column() {
+  for (const ColumnInfo& column : kFluidColumns) {
+    if (column.life != ColumnLife::kStep && column.pack > Pack::kKey) return false;
+  }
+  return true;
+}
+static_assert(packs_hold_every_column());
+
+template <class T>
+using DevicePointer = T*;
+
+/// Fluid particles (and probes) in some order.
+using FluidView = MovingPacks<DevicePointer>;
+
+/// Sorted fluid with what the passes of a step add.
 struct SortedFluid {
   std::uint32_t count = 0;  ///< retired ones, at the end, included
   FluidView state;
   float4* pressed = nullptr;   ///< position, and in w the pressure (kConsistent: V²P)
-  float* viscosity = nullptr;  ///< Pa·s; written only where pairs differ
+  float* viscosity = nullptr;  ///< Pa·s; there and written only where pairs differ
+  float4* force = nullptr;     ///< N
   CellTable cells;
 };
 
@@ -132,19 +166,21 @@ void launch_density(const StepConstants& constants, const Plan& plan, const Part
                     const SortedFluid& fluid, const SortedSurface& fixed, const SortedSurface& moving,
                     std::uint32_t* status, cudaStream_t stream);
 
-/// force.cu: Eq 5, 6 and 9 on fluid particles, then the leap-frog into `next` (in the same order) with its
-/// keys. Probes stay where they are; their force goes to probe_forces, their index to probe_slots, both by id
-/// less `first_probe`.
-struct ForceOutput {
-  FluidView next;
-  std::uint32_t first_probe = 0;
-  float4* probe_forces = nullptr;
-  std::uint32_t* probe_slots = nullptr;
-  std::uint32_t* status = nullptr;
-};
+/// force.cu: Eq 5, 6 and 9 on fluid particles, to fluid.force.
 void launch_force(const StepConstants& constants, const Plan& plan, const ParticleKind* kinds,
                   const SortedFluid& fluid, const SortedSurface& fixed, const SortedSurface& moving,
-                  const ForceOutput& output, cudaStream_t stream);
+                  cudaStream_t stream);
+
+/// Where a probe's force goes, and where in the order it is; both by id less `first`.
+struct ProbeOutput {
+  std::uint32_t first = 0;
+  float4* forces = nullptr;
+  std::uint32_t* slots = nullptr;
+};
+/// integrate.cu: the leap-frog over `dt` s, in place, with the new keys. Probes stay where they are.
+void launch_integrate(const StepConstants& constants, const ParticleKind* kinds, const SortedFluid& fluid,
+                      float dt, float max_speed, const ProbeOutput& probes, std::uint32_t* status,
+                      cudaStream_t stream);
 
 /// wrench.cu: Eq 5, 6 and 9 on the particles of `surface` whose body is wanted, to `force` in local order.
 void launch_surface_forces(const StepConstants& constants, const Plan& plan, float first_viscosity,

@@ -24,10 +24,11 @@ __global__ void gather_fluid_kernel(StepConstants c, FluidView from, const std::
   const std::uint32_t p = thread_index();
   if (p >= to.count) return;
   const std::uint32_t source = order[p];
-  to.state.x[p] = from.x[source];
-  to.state.v[p] = from.v[source];
-  to.state.id[p] = from.id[source];
-  to.state.kind[p] = from.kind[source];
+  for_each_pack(
+      [&](auto pack, const auto* values, auto* gathered) {
+        if constexpr (carried(pack)) gathered[p] = values[source];
+      },
+      from, to.state);
   mark_cell(to.state.key, p, to.count, c.grid.retired_key(), to.cells);
 }
 

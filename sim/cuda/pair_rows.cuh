@@ -3,7 +3,7 @@
 #pragma once
 
 #include "sim/cuda/rows.cuh"
-#include "sim/physics.h"
+#include "sim/model.h"
 
 namespace slosh::cuda {
 
@@ -14,7 +14,7 @@ struct NeighborColumns {
   const float* viscosity;
 };
 
-template <PairRule rule, Viscosity viscosity>
+template <class Parts, PairRule rule, Viscosity viscosity>
 __device__ inline void add_forces(const StepConstants& c, const ParticleView<float>& p,
                                   const NeighborColumns& n, const CellTable& cells, std::uint32_t cell,
                                   ForceSum<float>& sum) {
@@ -35,7 +35,8 @@ __device__ inline void add_forces(const StepConstants& c, const ParticleView<flo
     }
     if constexpr (kViscous)
       i.viscosity = viscosity == Viscosity::kPair ? __ldg(n.viscosity + j) : p.viscosity;
-    add_pair_force<rule, kViscous>(p, i, c.support_radius, 1.0f, sum);
+    add_pair_force<typename Parts::ForceKernel, rule, Parts::kDrag, kViscous>(p, i, c.support_radius, 1.0f,
+                                                                              sum);
   });
 }
 

@@ -7,7 +7,7 @@ namespace {
 
 constexpr int kSumThreads = 256;
 
-template <bool consistent, Viscosity viscosity>
+template <class Parts, Viscosity viscosity>
 __global__ __launch_bounds__(kThreads) void surface_force_kernel(StepConstants c, float first_viscosity,
                                                                  SortedFluid fluid, SortedSurface surface,
                                                                  const std::uint8_t* wanted, float4* force) {
@@ -16,15 +16,15 @@ __global__ __launch_bounds__(kThreads) void surface_force_kernel(StepConstants c
   const std::uint32_t cell = surface.key[i];
   ForceSum<float> sum{0.0f, 0.0f, 0.0f};
   if (cell < c.grid.retired_key()) {
-    constexpr PairRule kWalls = consistent ? PairRule::kWall : PairRule::kPaper;
     // Where the fluid has one viscosity its column is not filled: Eq 9's mean is known up front.
     const float own = surface.viscosity[i];
     const float used = viscosity == Viscosity::kOne ? 0.5f * (own + first_viscosity) : own;
     const ParticleView<float> self = view(surface.x[i], surface.v[i], used);
-    add_forces<kWalls, viscosity>(c, self, {fluid.pressed, fluid.state.v, fluid.viscosity}, fluid.cells, cell,
-                                  sum);
+    add_forces<Parts, Parts::kWalls, viscosity>(c, self, {fluid.pressed, fluid.state.v, fluid.viscosity},
+                                                fluid.cells, cell, sum);
   }
-  force[surface.order[i]] = make_float4(c.spiky * sum.x, c.spiky * sum.y, c.spiky * sum.z, 0.0f);
+  force[surface.order[i]] =
+      make_float4(c.force_scale * sum.x, c.force_scale * sum.y, c.force_scale * sum.z, 0.0f);
 }
 
 // Sums six doubles a thread over the block; thread 0 returns the whole. The tree's shape depends on nothing.
@@ -83,8 +83,8 @@ __global__ __launch_bounds__(kSumThreads) void body_kernel(const DeviceWrench* p
 void launch_surface_forces(const StepConstants& constants, const Plan& plan, float first_viscosity,
                            const SortedFluid& fluid, const SortedSurface& surface, const std::uint8_t* wanted,
                            float4* force, cudaStream_t stream) {
-  with_physics(plan, plan.one_viscosity, [&]<bool consistent, Viscosity viscosity>() {
-    surface_force_kernel<consistent, viscosity><<<blocks_for(surface.count), kThreads, 0, stream>>>(
+  with_physics(plan, [&]<class Parts, Viscosity viscosity>() {
+    surface_force_kernel<Parts, viscosity><<<blocks_for(surface.count), kThreads, 0, stream>>>(
         constants, first_viscosity, fluid, surface, wanted, force);
   });
 }

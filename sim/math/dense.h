@@ -13,7 +13,7 @@ using Matrix6 = std::array<Vector6, 6>;
 
 /// Lower Cholesky factor of a symmetric positive definite matrix. False when a pivot is not positive and
 /// finite.
-inline bool cholesky(const Matrix6& a, Matrix6& lower) {
+SLOSH_HD inline bool cholesky(const Matrix6& a, Matrix6& lower) {
   lower = {};
   for (int i = 0; i < 6; ++i) {
     for (int j = 0; j <= i; ++j) {
@@ -31,7 +31,7 @@ inline bool cholesky(const Matrix6& a, Matrix6& lower) {
 }
 
 /// Solves L·Lᵀ·x = b.
-inline Vector6 cholesky_solve(const Matrix6& lower, Vector6 b) {
+SLOSH_HD inline Vector6 cholesky_solve(const Matrix6& lower, Vector6 b) {
   for (int i = 0; i < 6; ++i) {
     for (int k = 0; k < i; ++k) b[i] -= lower[i][k] * b[k];
     b[i] /= lower[i][i];

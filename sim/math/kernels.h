@@ -24,23 +24,6 @@ struct RealOps {
   }
 };
 
-/// What the kernels need to know about one support radius.
-struct KernelConstants {
-  float support_radius = 0.0f;          ///< h, m
-  float support_radius_squared = 0.0f;  ///< m²
-  float poly6 = 0.0f;                   ///< 315/(64πh⁹), m⁻⁹
-  float spiky =
-      0.0f;  ///< 45/(πh⁶), m⁻⁶: of the spiky gradient and of the viscosity Laplacian alike (W: a third)
-};
-
-inline KernelConstants make_kernel_constants(double support_radius) {
-  const double h = support_radius;
-  const double pi = 3.14159265358979323846;
-  return {static_cast<float>(h), static_cast<float>(h * h),
-          static_cast<float>(315.0 / (64.0 * pi * std::pow(h, 9))),
-          static_cast<float>(45.0 / (pi * std::pow(h, 6)))};
-}
-
 /// W_poly6(r) without its constant: (h² − r²)³, m⁶; 0 from h on. Takes r² so that density needs no root.
 template <class Real>
 SLOSH_HD Real poly6_shape(Real r_squared, Real h_squared) {
@@ -58,12 +41,59 @@ SLOSH_HD Real spiky_shape(Real r_squared, Real h) {
 }
 
 /// h − r, 0 from h on: the building block of both force kernels.
-///   W_spiky = spiky/3 · reach³
-///   ∇W_spiky = −spiky · reach² · d/r      (d = x_p − x_i)
-///   ∇²W_viscosity = spiky · reach
 template <class Real>
 SLOSH_HD Real kernel_reach(Real r, Real h) {
   return RealOps<Real>::positive_part(h - r);
 }
+
+/// A support radius h, m, and its square.
+template <class Real>
+struct Support {
+  Real radius, radius_squared;
+};
+
+/// What a pair's forces take from their kernel at one distance, all without its constant, Kernel::scale(h):
+///   ∇W = −scale · slope_over_r · d      (d = x_p − x_i)
+///   ∇²W = scale · laplacian
+template <class Real>
+struct PairKernel {
+  Real inverse_r;
+  Real slope_over_r;
+  Real laplacian;
+};
+
+/// For densities alone.
+struct Poly6 {
+  template <class Real>
+  SLOSH_HD static Real shape(Real r_squared, const Support<Real>& support) {
+    return poly6_shape(r_squared, support.radius_squared);
+  }
+  /// m⁻⁹: W = scale · shape.
+  static double shape_scale(double h) { return 315.0 / (64.0 * 3.14159265358979323846 * std::pow(h, 9)); }
+};
+
+/// The spiky kernel, and with it the viscosity kernel's Laplacian: their constants are the same.
+struct Spiky {
+  template <class Real>
+  SLOSH_HD static Real shape(Real r_squared, const Support<Real>& support) {
+    return spiky_shape(r_squared, support.radius);
+  }
+  /// m⁻⁶: W = scale · shape.
+  static double shape_scale(double h) { return scale(h) / 3.0; }
+
+  /// `weight` is 1 where the neighbour counts, else 0.
+  template <class Real>
+  SLOSH_HD static PairKernel<Real> pair(Real r_squared, Real h, Real weight) {
+    // The floor keeps 1/r finite at r = 0; it is 10⁻⁶ h, where d/r is already nothing but rounding.
+    const Real floored = r_squared + h * h * Real(1e-12f);
+    const Real inverse_r = RealOps<Real>::inverse_sqrt(floored);
+    const Real reach = kernel_reach(floored * inverse_r, h) * weight;
+    return {inverse_r, reach * reach * inverse_r, reach};
+  }
+  /// The same at a distance r >= 0.
+  static double laplacian(double r, double h) { return kernel_reach(r, h); }
+  /// m⁻⁶.
+  static double scale(double h) { return 45.0 / (3.14159265358979323846 * std::pow(h, 6)); }
+};
 
 }  // namespace slosh

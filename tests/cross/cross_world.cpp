@@ -157,7 +157,8 @@ void compare_changed() {
   }
   compare_worlds(cpu, gpu, 1e-4);
   for (World* world : {&cpu, &gpu})
-    expect_true("one viscosity for both", world->set_viscosity(0, 0.03) && world->plan().one_viscosity);
+    expect_true("one viscosity for both",
+                world->set_viscosity(0, 0.03) && world->plan().has(PassId::kOneViscosity));
   step(cpu, 0.09);
   step(gpu, 0.09);
   compare_worlds(cpu, gpu, 1e-4);
@@ -328,7 +329,7 @@ int main() {
     one.scene.tension = 1.0;
     Plan variant = make_plan(one.scene, one.sampled.spacing);
     compare_steps("one viscosity, tension", one, variant, 1, 1e-5);
-    variant.viscosity = false;
+    variant.runs.set(PassId::kOneViscosity, false);
     compare_steps("no viscosity", one, variant, 1, 1e-5);
   }
   // Large enough to fill the GPU: blocks come and go in another order each time.

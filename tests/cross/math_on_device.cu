@@ -8,7 +8,7 @@
 #include "sim/math/distance_field.h"
 #include "sim/math/kernels.h"
 #include "sim/math/pose.h"
-#include "sim/math/sph.h"
+#include "sim/model.h"
 
 namespace {
 
@@ -32,9 +32,9 @@ __host__ __device__ PairOutput evaluate(const PairInput& in, float h) {
   const float r_squared = dx * dx + dy * dy + dz * dz;
   out.poly6 = poly6_shape(r_squared, h * h);
   out.spiky = spiky_shape(r_squared, h);
-  add_pair_force<PairRule::kPaper, true>(in.p, in.i, h, 1.0f, out.paper);
-  add_pair_force<PairRule::kConsistent, true>(in.p, in.i, h, 1.0f, out.consistent);
-  add_pair_force<PairRule::kWall, true>(in.p, in.i, h, 1.0f, out.wall);
+  add_pair_force<Spiky, PairRule::kPaper, DragRule::kAlongVelocity, true>(in.p, in.i, h, 1.0f, out.paper);
+  add_pair_force<Spiky, PairRule::kConsistent, DragRule::kCentral, true>(in.p, in.i, h, 1.0f, out.consistent);
+  add_pair_force<Spiky, PairRule::kWall, DragRule::kCentral, true>(in.p, in.i, h, 1.0f, out.wall);
   Pose handle, grip;
   handle.position = {in.p.x, in.p.y, in.p.z};
   grip.position = {in.i.x, in.i.y, in.i.z};

@@ -1,8 +1,8 @@
-#include "sim/bodies.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "sim/bodies/body_solve.h"
 
 namespace slosh {
 namespace {

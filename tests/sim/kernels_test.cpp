@@ -6,7 +6,7 @@
 #include <random>
 
 #include "sim/cpu/simd.h"
-#include "sim/math/sph.h"
+#include "sim/pressure/equation_of_state.h"
 
 namespace slosh {
 namespace {
@@ -15,10 +15,10 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kSupport = 0.02;  // m
 
 double poly6(double r) {
-  return make_kernel_constants(kSupport).poly6 * poly6_shape<double>(r * r, kSupport * kSupport);
+  return Poly6::shape_scale(kSupport) * poly6_shape<double>(r * r, kSupport * kSupport);
 }
 double spiky(double r) {
-  return make_kernel_constants(kSupport).spiky / 3.0 * spiky_shape<double>(r * r, kSupport);
+  return Spiky::shape_scale(kSupport) * spiky_shape<double>(r * r, kSupport);
 }
 
 // ∫ W dV over the support, by shells.
@@ -34,7 +34,7 @@ double integral(Kernel kernel) {
 }
 
 TEST(Kernels, IntegrateToOne) {
-  EXPECT_NEAR(integral(poly6), 1.0, 1e-5);  // the constants are floats
+  EXPECT_NEAR(integral(poly6), 1.0, 1e-5);
   EXPECT_NEAR(integral(spiky), 1.0, 1e-5);
 }
 
@@ -54,12 +54,11 @@ TEST(Kernels, MatchTheirClosedForms) {
 }
 
 TEST(Kernels, SpikyGradientIsTheSpikyKernelsDerivative) {
-  const KernelConstants c = make_kernel_constants(kSupport);
   for (const double r : {0.004, 0.01, 0.016}) {
     const double step = 1e-6;
     const double numeric = (spiky(r + step) - spiky(r - step)) / (2.0 * step);
-    const double reach = kernel_reach<double>(r, kSupport);
-    EXPECT_NEAR(numeric, -c.spiky * reach * reach, 1e-4 * std::abs(numeric));
+    const double slope = Spiky::scale(kSupport) * Spiky::pair(r * r, kSupport, 1.0).slope_over_r * r;
+    EXPECT_NEAR(numeric, -slope, 1e-4 * std::abs(numeric));
   }
 }
 
@@ -70,11 +69,10 @@ TEST(Kernels, ViscosityLaplacianBelongsToTheViscosityKernel) {
     return 15.0 / (2.0 * kPi * h * h * h) *
            (-r * r * r / (2.0 * h * h * h) + r * r / (h * h) + h / (2.0 * r) - 1.0);
   };
-  const KernelConstants c = make_kernel_constants(kSupport);
   for (const double r : {0.005, 0.01, 0.015}) {
     const double s = 1e-5;
     const double radial = (w(r + s) - 2.0 * w(r) + w(r - s)) / (s * s) + (w(r + s) - w(r - s)) / (s * r);
-    EXPECT_NEAR(radial, c.spiky * kernel_reach<double>(r, h), 1e-3 * std::abs(radial));
+    EXPECT_NEAR(radial, Spiky::scale(h) * Spiky::pair(r * r, h, 1.0).laplacian, 1e-3 * std::abs(radial));
   }
 }
 

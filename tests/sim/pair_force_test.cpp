@@ -1,10 +1,10 @@
+#include "sim/pair_force.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <glm/glm.hpp>
 #include <random>
-
-#include "sim/math/sph.h"
 
 namespace slosh {
 namespace {
@@ -22,7 +22,8 @@ View random_particle(std::mt19937& random) {
 template <PairRule rule>
 glm::dvec3 force(const View& p, const View& i) {
   ForceSum<double> sum{0.0, 0.0, 0.0};
-  add_pair_force<rule, true>(p, i, kSupport, 1.0, sum);
+  constexpr DragRule kDrag = rule == PairRule::kPaper ? DragRule::kAlongVelocity : DragRule::kCentral;
+  add_pair_force<Spiky, rule, kDrag, true>(p, i, kSupport, 1.0, sum);
   return {sum.x, sum.y, sum.z};
 }
 

@@ -15,11 +15,24 @@ namespace {
 
 using testing::make_tank;
 
-bool has(const std::vector<Pass>& passes, const std::string& name) {
+bool has(const std::vector<Pass>& passes, PassId id) {
   for (const Pass& pass : passes) {
-    if (pass.name == name) return true;
+    if (pass.id == id) return true;
   }
   return false;
+}
+
+// What a plan decides, without its prose.
+std::string decisions(const Plan& plan) {
+  std::ostringstream text;
+  text << "model " << (plan.model == ParticleModel::kPaper ? "paper" : "consistent") << '\n'
+       << "support_radius_mm " << plan.support_radius * 1e3 << '\n'
+       << "stiffness_m2_s2 " << plan.stiffness << '\n'
+       << "time_step_ms " << plan.time_step * 1e3 << '\n'
+       << "sub_steps " << plan.sub_steps << '\n';
+  for (const Pass& pass : plan.passes) text << "runs " << name(pass.id) << '\n';
+  for (const Pass& pass : plan.left_out) text << "left_out " << name(pass.id) << '\n';
+  return text.str();
 }
 
 class GoldenPlan : public ::testing::TestWithParam<const char*> {};
@@ -30,7 +43,7 @@ TEST_P(GoldenPlan, IsAsCommitted) {
   ASSERT_TRUE(file) << file.error().text();
   const auto scene = load_scene(file.value());
   ASSERT_TRUE(scene) << scene.error().text();
-  const std::string seen = describe(make_plan(scene.value(), scene.value().spacing_max));
+  const std::string seen = decisions(make_plan(scene.value(), scene.value().spacing_max));
   const std::filesystem::path golden = test::source_dir() / "tests/sim/golden" / (GetParam() + std::string(".plan"));
   if (std::getenv("SLOSH_UPDATE_GOLDEN")) std::ofstream(golden) << seen;
   std::ifstream stream(golden);
@@ -43,25 +56,39 @@ TEST_P(GoldenPlan, IsAsCommitted) {
 INSTANTIATE_TEST_SUITE_P(Shipped, GoldenPlan,
                          ::testing::Values("bucket", "spoon", "pour", "spin", "pool", "probe"));
 
+// A pass is either run or left out, and the prose has a line for each.
+TEST(Plan, DescribesEveryPassOnce) {
+  for (const double viscosity : {0.0, 0.05}) {
+    const Plan plan = make_plan(make_tank({.viscosity = viscosity}).scene, 0.01);
+    ASSERT_EQ(plan.passes.size() + plan.left_out.size(), kPassCount);
+    for (const Pass& pass : plan.passes) EXPECT_TRUE(plan.has(pass.id)) << name(pass.id);
+    for (const Pass& pass : plan.left_out) EXPECT_FALSE(plan.has(pass.id)) << name(pass.id);
+    const std::string text = describe(plan);
+    for (const auto& list : {plan.passes, plan.left_out}) {
+      for (const Pass& pass : list) EXPECT_NE(text.find(pass.reason), std::string::npos) << name(pass.id);
+    }
+  }
+}
+
 TEST(Plan, LeavesOutWhatAFixedTankDoesNotNeed) {
   auto tank = make_tank({});
   tank.scene.bodies[0].measured = false;
   const Plan plan = make_plan(tank.scene, 0.01);
-  EXPECT_FALSE(plan.body_wrench);
-  EXPECT_FALSE(plan.rigid_dynamics);
-  EXPECT_FALSE(plan.couplings);
-  EXPECT_FALSE(plan.contacts);
-  EXPECT_TRUE(has(plan.left_out, "wrench on bodies"));
-  EXPECT_TRUE(has(plan.left_out, "move bodies"));
+  EXPECT_FALSE(plan.has(PassId::kWrenches));
+  EXPECT_FALSE(plan.has(PassId::kMoveBodies));
+  EXPECT_FALSE(plan.has(PassId::kCouplings));
+  EXPECT_FALSE(plan.has(PassId::kContacts));
+  EXPECT_TRUE(has(plan.left_out, PassId::kWrenches));
+  EXPECT_TRUE(has(plan.left_out, PassId::kMoveBodies));
 }
 
 TEST(Plan, TakesOneViscosityWhereThereIsOne) {
   auto tank = make_tank({});
-  EXPECT_TRUE(make_plan(tank.scene, 0.01).one_viscosity);
+  EXPECT_TRUE(make_plan(tank.scene, 0.01).has(PassId::kOneViscosity));
   tank.scene.fluids[0].dynamic_viscosity = 0.0;
-  EXPECT_FALSE(make_plan(tank.scene, 0.01).viscosity);
+  EXPECT_FALSE(make_plan(tank.scene, 0.01).viscous());
   tank.scene.bodies[0].dynamic_viscosity = 5.0;
-  EXPECT_TRUE(make_plan(tank.scene, 0.01).viscosity);
+  EXPECT_TRUE(make_plan(tank.scene, 0.01).viscous());
 }
 
 TEST(Plan, ShortensTheStepWithSpacingViscosityAndStiffness) {
@@ -87,9 +114,9 @@ TEST(Plan, WithoutFluidThereAreNoParticlePasses) {
   scene.meshes.push_back(testing::box_mesh(glm::dvec3(-0.05), glm::dvec3(0.05)));
   scene.bodies.push_back(body);
   const Plan plan = make_plan(scene, 0.01);
-  EXPECT_FALSE(plan.has_fluid);
-  EXPECT_TRUE(plan.rigid_dynamics);
-  EXPECT_FALSE(has(plan.passes, "density"));
+  EXPECT_FALSE(plan.has_fluid());
+  EXPECT_TRUE(plan.has(PassId::kMoveBodies));
+  EXPECT_FALSE(has(plan.passes, PassId::kDensity));
 }
 
 }  // namespace

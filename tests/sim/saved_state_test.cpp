@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "sim/step_limits.h"
+#include "sim/viscosity/stability.h"
 #include "sim/world.h"
 #include "tests/support/stirred_tank.h"
 
@@ -215,7 +216,7 @@ TEST(SavedWorld, RefusesParticlesThatCannotBe) {
 TEST(LiveViscosity, ThickensUpToWhatTheStepHolds) {
   const Tank tank = make_tank({.viscosity = 0.0});
   World world = make_world(tank);
-  ASSERT_FALSE(world.plan().viscosity);
+  ASSERT_FALSE(world.plan().viscous());
   const Result<bool> refused = world.set_viscosity(0, 1e4);
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().mend.find("Pa·s will do"), std::string::npos) << refused.error().text();
@@ -226,7 +227,7 @@ TEST(LiveViscosity, ThickensUpToWhatTheStepHolds) {
   EXPECT_FALSE(world.set_viscosity(0, std::numeric_limits<double>::quiet_NaN()));
   EXPECT_FALSE(world.set_viscosity(1, 0.1)) << "no such fluid";
   ASSERT_TRUE(world.set_viscosity(0, most));
-  EXPECT_TRUE(world.plan().viscosity) << "the pass that was left out is there now";
+  EXPECT_TRUE(world.plan().viscous()) << "the pass that was left out is there now";
   EXPECT_EQ(world.viscosity(0), most);
   for (int i = 0; i < 400; ++i) world.step({});
   EXPECT_EQ(world.diagnostics().retired, 0u);

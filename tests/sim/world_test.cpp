@@ -85,9 +85,10 @@ TEST(World, EveryStepBalancesMomentum) {
 TEST(World, OneViscosityGivesWhatPairsGive) {
   const Tank tank = make_tank({});
   Plan one = make_plan(tank.scene, 0.01);
-  ASSERT_TRUE(one.one_viscosity);
+  ASSERT_TRUE(one.has(PassId::kOneViscosity));
   Plan pairs = one;
-  pairs.one_viscosity = false;
+  pairs.runs.set(PassId::kOneViscosity, false);
+  pairs.runs.set(PassId::kPairViscosity, true);
   World a(tank.scene, tank.sampled, one, {1});
   World b(tank.scene, tank.sampled, pairs, {1});
   Snapshot sa, sb;
@@ -102,12 +103,63 @@ TEST(World, OneViscosityGivesWhatPairsGive) {
   }
 }
 
+// A step of two sub-steps is two steps: what the fluid and gravity do to a free body in them, too.
+TEST(World, SubStepsAreSteps) {
+  const Tank tank = stirred_tank();
+  Plan whole = make_plan(tank.scene, tank.sampled.spacing);
+  Plan halved = whole;
+  halved.time_step *= 2.0;
+  halved.sub_steps = 2;
+  World steps(tank.scene, tank.sampled, whole, {1, Backend::kCpu});
+  World sub_steps(tank.scene, tank.sampled, halved, {1, Backend::kCpu});
+  BodySnapshot last, mean;
+  for (int i = 0; i < 40; ++i) {
+    Wrench sum;
+    for (int half = 0; half < 2; ++half) {
+      steps.step({});
+      steps.fill(last);
+      sum = sum + last.bodies[1].fluid;
+    }
+    sub_steps.step({});
+    sub_steps.fill(mean);
+    ASSERT_EQ(steps.hash(), sub_steps.hash()) << "step " << i;
+    ASSERT_EQ(0.5 * sum.force, mean.bodies[1].fluid.force) << "the mean over the step";
+    ASSERT_EQ(0.5 * sum.torque, mean.bodies[1].fluid.torque);
+  }
+  EXPECT_NEAR(steps.time(), sub_steps.time(), 1e-12);
+}
+
+// A hand between two inputs goes on as fast as it said: sub-steps see it where it is.
+TEST(World, SubStepsMoveTheHandOn) {
+  const Tank tank = stirred_tank();
+  Plan whole = make_plan(tank.scene, tank.sampled.spacing);
+  whole.time_step *= 0.5;
+  Plan halved = make_plan(tank.scene, tank.sampled.spacing);
+  halved.sub_steps = 2;
+  World steps(tank.scene, tank.sampled, whole, {1, Backend::kCpu});
+  World sub_steps(tank.scene, tank.sampled, halved, {1, Backend::kCpu});
+  BodySnapshot a, b;
+  HandleInput hand;
+  hand.engaged = true;
+  hand.twist.linear = {0.2, 0.0, 0.0};
+  for (int i = 0; i < 60; ++i) {
+    for (int half = 0; half < 2; ++half) {
+      hand.pose.position = {-0.05 + 0.2 * steps.time(), 0.09, 0.0};
+      if (half == 0) sub_steps.step({&hand, 1});
+      steps.step({&hand, 1});
+    }
+    steps.fill(a);
+    sub_steps.fill(b);
+    ASSERT_LT(glm::distance(a.bodies[1].center_of_mass, b.bodies[1].center_of_mass), 1e-7) << "step " << i;
+  }
+}
+
 TEST(World, LeavingAWrenchOutChangesNoMotion) {
   Tank tank = make_tank({});
   World measured = make_world(tank);
   tank.scene.bodies[0].measured = false;
   World blind = make_world(tank);
-  ASSERT_FALSE(blind.plan().body_wrench);
+  ASSERT_FALSE(blind.plan().has(PassId::kWrenches));
   for (int i = 0; i < 30; ++i) {
     measured.step({});
     blind.step({});

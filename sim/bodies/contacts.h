@@ -5,17 +5,9 @@
 #include <vector>
 
 #include "scenes/scene.h"
-#include "sim/bodies.h"
+#include "sim/bodies/contact_rows.h"
 
 namespace slosh {
-
-/// One touching point. The normal points from `b` to `a`, world.
-struct Contact {
-  int a = 0, b = 0;
-  glm::dvec3 point{0.0};   ///< world
-  glm::dvec3 normal{0.0};  ///< unit
-  double distance = 0.0;   ///< m, negative when the bodies overlap
-};
 
 /// Finds contacts between bodies of which at least one is free. A pair gets at most kMaxContactsPerPair,
 /// spread over the touching patch. Deterministic.
@@ -47,9 +39,9 @@ class ContactFinder {
 };
 
 /// Changes the solved velocities so that no contact closes faster than its gap allows, with Coulomb friction
-/// and restitution. `solves` has one entry a body; fixed bodies' are not used. Overlap is undone at a bounded
-/// rate.
-void solve_contacts(const std::vector<Contact>& contacts, const Scene& scene,
+/// and restitution. `materials` and `solves` have one entry a body; fixed bodies' are not used. Overlap is
+/// undone at a bounded rate.
+void solve_contacts(const std::vector<Contact>& contacts, const std::vector<ContactMaterial>& materials,
                     const std::vector<RigidBody>& bodies, double time_step, std::vector<BodySolve>& solves);
 
 }  // namespace slosh

@@ -1,4 +1,4 @@
-#include "sim/surface.h"
+#include "sim/walls/wall_particles.h"
 
 #include <cmath>
 #include <limits>
@@ -137,7 +137,7 @@ std::vector<SurfaceParticle> surface_particles(const Scene& scene, const Sampled
   std::vector<SurfaceParticle> particles;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
-    if (!plan.boundary || body.motion != motion || body.point_probe) continue;
+    if (!plan.has(PassId::kWalls) || body.motion != motion || body.point_probe) continue;
     const std::vector<glm::vec3> positions =
         sheet_positions(sampled.surfaces[b], sampled.distance_fields[b].view(), plan);
     std::vector<float> pressures(positions.size(), static_cast<float>(plan.body_pressure[b]));

@@ -1,11 +1,18 @@
-// What happens to one particle once its sums are known: pressure from density, and the leap-frog.
+// Eq 7: pressure from density.
 #pragma once
 
-#include <glm/glm.hpp>
-
-#include "sim/math/sph.h"
+#include "sim/math/kernels.h"
 
 namespace slosh {
+
+/// Eq 7 with a share of the negative pressures. `compression` is ρ/ρ⁰ − 1; the result is ρ/ρ⁰ − 1 as Eq 5–7
+/// are to see it: positive values pass, negative ones are scaled by `tension` (1 = the paper's Eq 7 as it
+/// stands, 0 = a deficit of neighbours at a free surface is taken for what it is, not for low density).
+template <class Real>
+SLOSH_HD Real effective_compression(Real compression, Real tension) {
+  const Real stretched = RealOps<Real>::positive_part(-compression);
+  return RealOps<Real>::positive_part(compression) - tension * stretched;
+}
 
 /// What a particle has after the density pass.
 struct PressureState {
@@ -35,35 +42,6 @@ SLOSH_HD inline PressureState pressure_state(float sum, float rest_sum, float re
   const float pressure = stiffness * rest_density * felt;
   const float volume = rest_volume / (1.0f + effective);
   return {consistent ? volume * volume * pressure : pressure, volume, compression};
-}
-
-/// A rigid body's motion as its particles need it (Eq 14).
-struct SurfaceMotion {
-  glm::mat3 turn{1.0f};              ///< mesh axes to world
-  glm::vec3 shift{0.0f};             ///< origin of the mesh frame, m, world
-  glm::vec3 center{0.0f};            ///< centre of mass, m, world
-  glm::vec3 velocity{0.0f};          ///< m/s
-  glm::vec3 angular_velocity{0.0f};  ///< rad/s
-
-  SLOSH_HD glm::vec3 place(const glm::vec3& local) const { return turn * local + shift; }
-  SLOSH_HD glm::vec3 velocity_at(const glm::vec3& placed) const {
-    return velocity + glm::cross(angular_velocity, placed - center);
-  }
-};
-
-/// Leap-frog (section 3.1): v(t+½) from the force and gravity, at most max_speed, then x(t+1). True when the
-/// speed was limited. `per_mass` is the time step over the mass.
-SLOSH_HD inline bool advance_particle(const glm::vec3& force, float per_mass, const glm::vec3& gravity,
-                                      float time_step, float max_speed, glm::vec3& x, glm::vec3& v) {
-  v = glm::vec3(v.x + per_mass * force.x, v.y + per_mass * force.y, v.z + per_mass * force.z);
-  v += time_step * gravity;
-  const float speed = glm::length(v);
-  const bool limited = speed > max_speed;
-  if (limited) v *= max_speed / speed;
-  x.x += time_step * v.x;
-  x.y += time_step * v.y;
-  x.z += time_step * v.z;
-  return limited;
 }
 
 }  // namespace slosh

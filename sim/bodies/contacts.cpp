@@ -1,4 +1,4 @@
-#include "sim/contacts.h"
+#include "sim/bodies/contacts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,11 +7,6 @@
 namespace slosh {
 
 namespace {
-
-constexpr int kIterations = 30;
-constexpr double kOverlapRate = 0.2;   // share of the overlap undone a step
-constexpr double kOverlapSpeed = 0.5;  // m/s at most while undoing it
-constexpr double kBounceSpeed = 0.3;   // m/s below which nothing bounces: resting contacts stay at rest
 
 struct Bounds {
   glm::dvec3 lower, upper;
@@ -28,88 +23,6 @@ Bounds world_bounds(const Pose& pose, const glm::vec3& lower, const glm::vec3& u
 bool apart(const Bounds& a, const Bounds& b, double margin) {
   return glm::any(glm::greaterThan(a.lower - margin, b.upper)) ||
          glm::any(glm::greaterThan(b.lower - margin, a.upper));
-}
-
-// A unit impulse along `direction` at `arm` as a generalised force, and what it does to the body's velocity.
-struct Row {
-  Vector6 force{};
-  Vector6 response{};
-};
-
-Row make_row(const RigidBody& body, const BodySolve& solve, const glm::dvec3& arm,
-             const glm::dvec3& direction) {
-  Row row;
-  if (!solve.moves) return row;
-  const glm::dvec3 moment = body.point ? glm::dvec3(0.0) : glm::cross(arm, direction);
-  row.force = {direction.x, direction.y, direction.z, moment.x, moment.y, moment.z};
-  row.response = cholesky_solve(solve.factor, row.force);
-  return row;
-}
-
-double dot(const Vector6& a, const Vector6& b) {
-  double sum = 0.0;
-  for (int i = 0; i < 6; ++i) sum += a[i] * b[i];
-  return sum;
-}
-
-// One direction of one contact: relative velocity is a's minus b's.
-struct Constraint {
-  Row on_a, on_b;
-  double effective_mass = 0.0;
-  double impulse = 0.0;
-};
-
-Constraint make_constraint(const Contact& c, const glm::dvec3& direction,
-                           const std::vector<RigidBody>& bodies, const std::vector<BodySolve>& solves) {
-  Constraint k;
-  k.on_a = make_row(bodies[c.a], solves[c.a], c.point - bodies[c.a].position, direction);
-  k.on_b = make_row(bodies[c.b], solves[c.b], c.point - bodies[c.b].position, -direction);
-  const double give = dot(k.on_a.force, k.on_a.response) + dot(k.on_b.force, k.on_b.response);
-  k.effective_mass = give > 0.0 ? 1.0 / give : 0.0;
-  return k;
-}
-
-double speed_along(const Constraint& k, const Vector6& a, const Vector6& b) {
-  return dot(k.on_a.force, a) + dot(k.on_b.force, b);
-}
-
-void apply(Constraint& k, double impulse, Vector6& a, Vector6& b) {
-  k.impulse += impulse;
-  for (int i = 0; i < 6; ++i) {
-    a[i] += impulse * k.on_a.response[i];
-    b[i] += impulse * k.on_b.response[i];
-  }
-}
-
-struct ContactRows {
-  Constraint normal, tangent_u, tangent_v;
-  double target = 0.0;  // least speed along the normal, m/s
-  double friction = 0.0;
-};
-
-ContactRows make_rows(const Contact& c, const Scene& scene, const std::vector<RigidBody>& bodies, double dt,
-                      const std::vector<BodySolve>& solves) {
-  ContactRows rows;
-  const glm::dvec3 u = glm::normalize(std::abs(c.normal.y) < 0.9 ? glm::cross(c.normal, glm::dvec3(0, 1, 0))
-                                                                 : glm::cross(c.normal, glm::dvec3(1, 0, 0)));
-  rows.normal = make_constraint(c, c.normal, bodies, solves);
-  rows.tangent_u = make_constraint(c, u, bodies, solves);
-  rows.tangent_v = make_constraint(c, glm::cross(c.normal, u), bodies, solves);
-  // A gap may close within the step; an overlap opens at a bounded rate.
-  rows.target =
-      c.distance > 0.0 ? -c.distance / dt : std::min(-c.distance * kOverlapRate / dt, kOverlapSpeed);
-  const double approach =
-      -glm::dot(c.normal, bodies[c.a].velocity_at(c.point) - bodies[c.b].velocity_at(c.point));
-  const double restitution = std::max(scene.bodies[c.a].restitution, scene.bodies[c.b].restitution);
-  if (c.distance <= 0.0 && approach > kBounceSpeed)
-    rows.target = std::max(rows.target, restitution * approach);
-  rows.friction = std::min(scene.bodies[c.a].friction, scene.bodies[c.b].friction);
-  return rows;
-}
-
-void solve_tangent(Constraint& k, double limit, Vector6& a, Vector6& b) {
-  const double wanted = k.impulse - k.effective_mass * speed_along(k, a, b);
-  apply(k, std::clamp(wanted, -limit, limit) - k.impulse, a, b);
 }
 
 }  // namespace
@@ -216,25 +129,6 @@ void ContactFinder::find(const std::vector<RigidBody>& bodies, double margin,
       points_against_field(bodies, j, i, margin);
       drop_misleading();
       keep_spread(contacts);
-    }
-  }
-}
-
-void solve_contacts(const std::vector<Contact>& contacts, const Scene& scene,
-                    const std::vector<RigidBody>& bodies, double dt, std::vector<BodySolve>& solves) {
-  std::vector<ContactRows> rows;
-  rows.reserve(contacts.size());
-  for (const Contact& c : contacts) rows.push_back(make_rows(c, scene, bodies, dt, solves));
-  for (int iteration = 0; iteration < kIterations; ++iteration) {
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
-      Vector6& a = solves[contacts[i].a].velocity;
-      Vector6& b = solves[contacts[i].b].velocity;
-      Constraint& n = rows[i].normal;
-      const double wanted = n.impulse + n.effective_mass * (rows[i].target - speed_along(n, a, b));
-      apply(n, std::max(wanted, 0.0) - n.impulse, a, b);
-      const double limit = rows[i].friction * n.impulse;
-      solve_tangent(rows[i].tangent_u, limit, a, b);
-      solve_tangent(rows[i].tangent_v, limit, a, b);
     }
   }
 }

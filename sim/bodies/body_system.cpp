@@ -1,0 +1,91 @@
+#include "sim/bodies/body_system.h"
+
+#include <algorithm>
+
+namespace slosh {
+
+BodySystem::BodySystem(const Scene& scene, const SampledScene& sampled)
+    : finder_(scene, sampled), hands_(scene), solves_(scene.bodies.size()), grips_(scene.grips.size()) {
+  for (const Body& body : scene.bodies) {
+    materials_.push_back({body.friction, body.restitution});
+    bodies_.push_back(make_rigid_body(body));
+  }
+}
+
+std::uint32_t BodySystem::begin_step(std::span<const HandleInput> handles) {
+  for (GripState& state : grips_) state.on_hand = Wrench{};
+  return hands_.take(handles);
+}
+
+std::uint32_t BodySystem::advance(const Plan& plan, const BodyForces& forces, const SubStep& step,
+                                  bool held_only) {
+  couplings_ = {};
+  if (plan.has(PassId::kCouplings)) couplings_ = hands_.couple(bodies_, step.elapsed);
+  const std::uint32_t status = solve(forces, step.dt, held_only);
+  if (plan.has(PassId::kContacts)) {
+    finder_.find(bodies_, 0.25 * plan.spacing, contacts_);
+    if (!contacts_.empty()) solve_contacts(contacts_, materials_, bodies_, step.dt, solves_);
+  }
+  report(step);
+  if (plan.has(PassId::kMoveBodies)) {
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      if (solves_[b].moves) advance_body(bodies_[b], solves_[b], step.dt);
+    }
+  }
+  return status;
+}
+
+std::span<const ActiveCoupling> BodySystem::couplings_of(int body) const {
+  const auto first =
+      std::find_if(couplings_.begin(), couplings_.end(), [&](const auto& c) { return c.body == body; });
+  const auto last = std::find_if(first, couplings_.end(), [&](const auto& c) { return c.body != body; });
+  return {first, last};
+}
+
+// A body that went non-finite is put back to rest where it last was, and the step goes on.
+std::uint32_t BodySystem::solve(const BodyForces& forces, double dt, bool held_only) {
+  std::uint32_t status = 0;
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    RigidBody& body = bodies_[b];
+    const auto held = couplings_of(static_cast<int>(b));
+    if (!body.free || (held_only && held.empty())) {
+      solves_[b] = BodySolve{};
+      continue;
+    }
+    Wrench external = forces.fluid[b];
+    external.force += body.mass * forces.gravity;
+    if (solve_body(body, external, held, dt, solves_[b])) continue;
+    status |= kStatusNonFinite;
+    body.velocity = body.angular_momentum = body.angular_velocity = glm::dvec3(0.0);
+    if (!solve_body(body, {}, {}, dt, solves_[b])) solves_[b] = BodySolve{};
+  }
+  return status;
+}
+
+// What the couplings did in a sub-step adds to the step's mean by the sub-step's share of its time.
+void BodySystem::report(const SubStep& step) {
+  for (const ActiveCoupling& c : couplings_) {
+    const Wrench on_body = coupling_wrench(c, solves_[c.body], step.dt);
+    grips_[c.grip].on_hand.force -= step.share * on_body.force;
+    grips_[c.grip].on_hand.torque -= step.share * on_body.torque;
+    grips_[c.grip].handle = c.handle;
+  }
+}
+
+void BodySystem::damp_held(double keep) {
+  for (const ActiveCoupling& c : couplings_) {
+    RigidBody& body = bodies_[c.body];
+    body.velocity *= keep;
+    body.angular_momentum *= keep;
+    body.angular_velocity *= keep;
+  }
+}
+
+void BodySystem::restore(std::vector<RigidBody> bodies, std::vector<GripState> grips,
+                         std::vector<HandleInput> inputs) {
+  bodies_ = std::move(bodies);
+  grips_ = std::move(grips);
+  hands_.restore(std::move(inputs));
+}
+
+}  // namespace slosh

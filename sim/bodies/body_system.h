@@ -1,0 +1,62 @@
+// All rigid bodies of a world: couplings, contacts and motion, sub-step by sub-step.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sim/bodies/contacts.h"
+#include "sim/bodies/hands.h"
+#include "sim/plan.h"
+#include "sim/snapshot.h"
+
+namespace slosh {
+
+/// What acts on the bodies in one sub-step.
+struct BodyForces {
+  std::span<const Wrench> fluid;  ///< one a body, about its centre of mass
+  glm::dvec3 gravity{0.0};        ///< m/s²
+};
+
+/// A sub-step of a step.
+struct SubStep {
+  double dt = 0.0;       ///< s
+  double elapsed = 0.0;  ///< s since the step began
+  double share = 1.0;    ///< dt over the step's length
+};
+
+class BodySystem {
+ public:
+  BodySystem(const Scene& scene, const SampledScene& sampled);
+
+  /// Takes the handles' inputs of a step and forgets what the step before put on the hands. Returns
+  /// StatusBits.
+  std::uint32_t begin_step(std::span<const HandleInput> handles);
+  /// Couplings, contacts and motion as far as the plan has them. With `held_only` the other bodies stand
+  /// still. Returns StatusBits.
+  std::uint32_t advance(const Plan& plan, const BodyForces& forces, const SubStep& step, bool held_only);
+
+  /// Multiplies the velocities of the bodies that a hand holds by `keep`.
+  void damp_held(double keep);
+
+  const std::vector<RigidBody>& bodies() const { return bodies_; }
+  /// Handles and what was put on the hands, as means over the last step; poses and twists are not set.
+  const std::vector<GripState>& grips() const { return grips_; }
+  const std::vector<HandleInput>& last_inputs() const { return hands_.last(); }
+  void restore(std::vector<RigidBody> bodies, std::vector<GripState> grips, std::vector<HandleInput> inputs);
+
+ private:
+  std::span<const ActiveCoupling> couplings_of(int body) const;
+  std::uint32_t solve(const BodyForces& forces, double dt, bool held_only);
+  void report(const SubStep& step);
+
+  std::vector<ContactMaterial> materials_;
+  std::vector<RigidBody> bodies_;
+  ContactFinder finder_;
+  Hands hands_;
+  std::span<const ActiveCoupling> couplings_;  // of this sub-step
+  std::vector<BodySolve> solves_;
+  std::vector<Contact> contacts_;
+  std::vector<GripState> grips_;
+};
+
+}  // namespace slosh

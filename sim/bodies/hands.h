@@ -1,0 +1,37 @@
+// What the handles ask of the bodies in one step.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sim/bodies/body_solve.h"
+#include "sim/world.h"
+
+namespace slosh {
+
+/// True unless the input is a broken device's: not finite, out of all bounds.
+bool usable(const HandleInput& input);
+
+/// Checks the inputs and turns them into couplings.
+class Hands {
+ public:
+  explicit Hands(const Scene& scene);
+
+  /// The inputs of a step, one a grip; missing ones count as not engaged. In place of an unusable one the
+  /// grip's last input stays where it is, and kStatusInputRejected is returned.
+  std::uint32_t take(std::span<const HandleInput> handles);
+
+  /// The couplings `elapsed` s into the step, the handles moved on with their twists, sorted by body.
+  const std::vector<ActiveCoupling>& couple(const std::vector<RigidBody>& bodies, double elapsed);
+
+  /// The inputs that count, one a grip.
+  const std::vector<HandleInput>& last() const { return last_; }
+  void restore(std::vector<HandleInput> last) { last_ = std::move(last); }
+
+ private:
+  std::vector<Grip> grips_;
+  std::vector<HandleInput> last_;
+  std::vector<ActiveCoupling> couplings_;
+};
+
+}  // namespace slosh

@@ -1,0 +1,23 @@
+#include "sim/bodies/rigid_body.h"
+
+namespace slosh {
+
+RigidBody make_rigid_body(const Body& source) {
+  RigidBody body;
+  body.free = source.motion == BodyMotion::kFree;
+  body.point = source.point_probe;
+  body.local_center = body.free ? source.mass.center_of_mass : glm::dvec3(0.0);
+  body.orientation = source.pose.orientation;
+  body.position = transform_point(source.pose, body.local_center);
+  if (body.free) {
+    body.mass = source.mass.mass;
+    body.inertia = body.point ? glm::dmat3(1.0) : source.mass.inertia;
+    body.inverse_inertia = glm::inverse(body.inertia);
+    body.velocity = source.twist.linear;
+    body.angular_velocity = body.point ? glm::dvec3(0.0) : source.twist.angular;
+    body.angular_momentum = body.world_inertia() * body.angular_velocity;
+  }
+  return body;
+}
+
+}  // namespace slosh

@@ -1,0 +1,38 @@
+// A rigid body's state.
+#pragma once
+
+#include "scenes/scene.h"
+#include "sim/math/pose.h"
+
+namespace slosh {
+
+/// A body's state. Angular momentum, not angular velocity, is what is integrated: a free body keeps it
+/// exactly.
+struct RigidBody {
+  bool free = false;
+  bool point = false;       ///< translation only (a probe)
+  double mass = 0.0;        ///< kg
+  glm::dmat3 inertia{1.0};  ///< kg·m², about the centre of mass, body axes
+  glm::dmat3 inverse_inertia{1.0};
+  glm::dvec3 local_center{0.0};  ///< centre of mass in the mesh frame, m
+
+  glm::dvec3 position{0.0};                    ///< of the centre of mass, world
+  glm::dquat orientation{1.0, 0.0, 0.0, 0.0};  ///< mesh axes to world
+  glm::dvec3 velocity{0.0};                    ///< m/s, half a step behind position (leap-frog)
+  glm::dvec3 angular_momentum{0.0};            ///< kg·m²/s, world
+  glm::dvec3 angular_velocity{0.0};            ///< rad/s, world, from the momentum
+
+  SLOSH_HD Pose mesh_pose() const { return {position - orientation * local_center, orientation}; }
+  // Out of line: what the compiler fuses in it must not depend on its callers, or a run's hash would.
+  SLOSH_HD __attribute__((noinline)) glm::dmat3 world_inertia() const {
+    const glm::dmat3 r = glm::mat3_cast(orientation);
+    return r * inertia * glm::transpose(r);
+  }
+  SLOSH_HD glm::dvec3 velocity_at(const glm::dvec3& where) const {
+    return velocity + glm::cross(angular_velocity, where - position);
+  }
+};
+
+RigidBody make_rigid_body(const Body& body);
+
+}  // namespace slosh

@@ -1,0 +1,48 @@
+#include "sim/live_changes.h"
+
+#include <algorithm>
+
+#include "sim/format.h"
+#include "sim/step_limits.h"
+#include "sim/viscosity/stability.h"
+#include "sim/world.h"
+
+namespace slosh {
+
+namespace {
+
+Error too_much(const std::string& where, double value, double most, const char* unit) {
+  return {where, format("%.4g %s is too much for the time step of this run", value, unit),
+          format("Up to %.4g %s will do", most, unit)};
+}
+
+}  // namespace
+
+LiveChanges::LiveChanges(const Scene& scene) {
+  for (const Fluid& fluid : scene.fluids) first_viscosities_.push_back(fluid.dynamic_viscosity);
+}
+
+Result<bool> LiveChanges::allow_viscosity(const Scene& scene, const Plan& plan, std::size_t fluid,
+                                          double value) const {
+  const bool there = std::any_of(scene.fluid_volumes.begin(), scene.fluid_volumes.end(), [&](const auto& v) {
+    return v.fluid >= 0 && static_cast<std::size_t>(v.fluid) == fluid;
+  });
+  if (!there || fluid >= scene.fluids.size())
+    return Error{"viscosity", "there is no fluid " + std::to_string(fluid) + " in this world", ""};
+  const std::string where = "viscosity of " + scene.fluids[fluid].name;
+  if (!(value >= 0.0)) return Error{where, "it cannot be below 0", ""};
+  // The scene's own value is what the step was chosen for, whatever rounding says.
+  const double most = std::max(most_viscous_allowed(scene, plan), first_viscosities_[fluid]);
+  if (value <= most) return true;
+  return too_much(where, value, most, "Pa·s");
+}
+
+Result<bool> LiveChanges::allow_gravity(const Scene& scene, const Plan& plan, double scale) const {
+  if (!(scale >= 0.0 && scale <= kMostGravityScale))
+    return Error{"gravity", "it can be 0 to 2 times the scene's", ""};
+  const double most = std::max(most_gravity_allowed(scene, plan), 1.0);
+  if (scale <= most) return true;
+  return too_much("gravity", scale, most, "times the scene's");
+}
+
+}  // namespace slosh

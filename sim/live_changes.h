@@ -1,0 +1,28 @@
+// What may be changed while a world runs, and what its time step allows.
+#pragma once
+
+#include <vector>
+
+#include "sim/math/result.h"
+#include "sim/plan.h"
+
+namespace slosh {
+
+class LiveChanges {
+ public:
+  explicit LiveChanges(const Scene& scene);
+
+  /// Whether a fluid's viscosity may become `pascal_seconds`. `scene` as it is now. Errors as
+  /// World::set_viscosity.
+  Result<bool> allow_viscosity(const Scene& scene, const Plan& plan, std::size_t fluid,
+                               double pascal_seconds) const;
+  Result<bool> allow_gravity(const Scene& scene, const Plan& plan, double scale) const;
+
+  /// Pa·s, as the scene had it at the start.
+  double first_viscosity(std::size_t fluid) const { return first_viscosities_[fluid]; }
+
+ private:
+  std::vector<double> first_viscosities_;
+};
+
+}  // namespace slosh

@@ -1,0 +1,57 @@
+// What a particle model is made of: the one place where smoothing kernels and pair rules are chosen.
+#pragma once
+
+#include "scenes/scene.h"
+#include "sim/pair_force.h"
+#include "sim/plan.h"
+
+namespace slosh {
+
+template <ParticleModel model>
+struct ModelParts;
+
+template <>
+struct ModelParts<ParticleModel::kPaper> {
+  using DensityKernel = Poly6;
+  using ForceKernel = Spiky;
+  static constexpr PairRule kFluids = PairRule::kPaper;
+  static constexpr PairRule kWalls = PairRule::kPaper;
+  static constexpr DragRule kDrag = DragRule::kAlongVelocity;
+  static constexpr bool kWallsCount = false;      ///< in the density
+  static constexpr bool kPressureEnergy = false;  ///< `pressure` is V²P, and feels bulk damping
+};
+
+template <>
+struct ModelParts<ParticleModel::kConsistent> {
+  using DensityKernel = Spiky;
+  using ForceKernel = Spiky;
+  static constexpr PairRule kFluids = PairRule::kConsistent;
+  static constexpr PairRule kWalls = PairRule::kWall;
+  static constexpr DragRule kDrag = DragRule::kCentral;
+  static constexpr bool kWallsCount = true;
+  static constexpr bool kPressureEnergy = true;
+};
+
+/// Calls f.template operator()<Parts>() for a model, and returns what it returns.
+template <class F>
+auto with_model(ParticleModel model, F&& f) {
+  if (model == ParticleModel::kPaper) return f.template operator()<ModelParts<ParticleModel::kPaper>>();
+  return f.template operator()<ModelParts<ParticleModel::kConsistent>>();
+}
+
+/// Calls f.template operator()<Parts, Viscosity>() for what the plan has: what it does not need is not
+/// compiled in.
+template <class F>
+void with_physics(const Plan& plan, F&& f) {
+  with_model(plan.model, [&]<class Parts>() {
+    if (plan.has(PassId::kPairViscosity)) {
+      f.template operator()<Parts, Viscosity::kPair>();
+    } else if (plan.has(PassId::kOneViscosity)) {
+      f.template operator()<Parts, Viscosity::kOne>();
+    } else {
+      f.template operator()<Parts, Viscosity::kNone>();
+    }
+  });
+}
+
+}  // namespace slosh

@@ -1,0 +1,42 @@
+// The force of one particle on another: Eq 5, 6 and 9 as a pure function. A CUDA kernel calls it with float,
+// the CPU with a SIMD batch of neighbours.
+#pragma once
+
+#include "sim/pressure/pair_pressure.h"
+#include "sim/viscosity/pair_drag.h"
+
+namespace slosh {
+
+/// Adds one neighbour's (or one batch of neighbours') part of the pressure force and, with `viscous`, of Eq 9
+/// to `sum`. The force on p is Kernel::scale(h) times the sum. The pair (p, i) and the pair (i, p) give
+/// opposite forces to rounding: every factor is symmetric but d and dv. Coincident particles (and p itself)
+/// add nothing. `weight` is 1 where the neighbour counts, else 0.
+template <class Kernel, PairRule rule, DragRule drag_rule, bool viscous, class Real>
+SLOSH_HD void add_pair_force(const ParticleView<Real>& p, const ParticleView<Real>& i, Real h, Real weight,
+                             ForceSum<Real>& sum) {
+  const Real dx = p.x - i.x;
+  const Real dy = p.y - i.y;
+  const Real dz = p.z - i.z;
+  const Real r_squared = dx * dx + dy * dy + dz * dz;
+  const PairKernel<Real> kernel = Kernel::pair(r_squared, h, weight);
+  Real along = pressure_coefficient<rule>(p, i) * kernel.slope_over_r;  // of d
+  if constexpr (viscous) {
+    const Real dvx = i.vx - p.vx;
+    const Real dvy = i.vy - p.vy;
+    const Real dvz = i.vz - p.vz;
+    const Real drag = drag_coefficient(p, i, kernel.laplacian);
+    if constexpr (drag_rule == DragRule::kAlongVelocity) {
+      sum.x += drag * dvx;
+      sum.y += drag * dvy;
+      sum.z += drag * dvz;
+    } else {
+      along += (Real(kCentralDrag) * drag) *
+               ((dvx * dx + dvy * dy + dvz * dz) * (kernel.inverse_r * kernel.inverse_r));
+    }
+  }
+  sum.x += along * dx;
+  sum.y += along * dy;
+  sum.z += along * dz;
+}
+
+}  // namespace slosh

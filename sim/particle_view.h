@@ -1,0 +1,23 @@
+// A particle as pairs see it.
+#pragma once
+
+#include "sim/math/kernels.h"
+
+namespace slosh {
+
+/// SI. `Real` is a number, or a SIMD batch of neighbours.
+template <class Real>
+struct ParticleView {
+  Real x, y, z;     ///< m
+  Real vx, vy, vz;  ///< m/s
+  Real pressure;    ///< Pa, or what PairRule says
+  Real volume;      ///< m³
+  Real viscosity;   ///< Pa·s (its side of Eq 9)
+};
+
+template <class Real>
+struct ForceSum {
+  Real x, y, z;
+};
+
+}  // namespace slosh

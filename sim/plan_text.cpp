@@ -1,0 +1,61 @@
+// The plan in words.
+#include <array>
+#include <cmath>
+
+#include "sim/format.h"
+#include "sim/plan.h"
+
+namespace slosh {
+
+namespace {
+
+struct PassNames {
+  const char* id;
+  const char* words;
+};
+
+const PassNames& names(PassId id) {
+  static constexpr std::array<PassNames, kPassCount> kNames{{
+      {"sort_fluid", "sort fluid"},
+      {"place_bodies", "place body particles"},
+      {"density", "density"},
+      {"pressure_force", "pressure force"},
+      {"one_viscosity", "viscous force, one viscosity"},
+      {"pair_viscosity", "viscous force, a viscosity a particle"},
+      {"walls", "body particles on fluid"},
+      {"wrenches", "wrench on bodies"},
+      {"integrate_fluid", "integrate fluid"},
+      {"couplings", "virtual couplings"},
+      {"contacts", "contacts"},
+      {"move_bodies", "move bodies"},
+  }};
+  return kNames[static_cast<std::size_t>(id)];
+}
+
+}  // namespace
+
+const char* name(PassId id) {
+  return names(id).id;
+}
+
+std::string describe(const Plan& plan) {
+  std::string text;
+  text += format("model           %s\n", plan.model == ParticleModel::kPaper ? "paper" : "consistent");
+  text += format("spacing         %.4g mm\n", plan.spacing * 1e3);
+  text += format("support radius  %.4g mm\n", plan.support_radius * 1e3);
+  text +=
+      format("stiffness       %.4g m²/s² (sound at %.3g m/s)\n", plan.stiffness, std::sqrt(plan.stiffness));
+  text +=
+      format("time step       %.4g ms, limited by %s\n", plan.time_step * 1e3, plan.time_step_reason.c_str());
+  text += format("speed limit     %.3g m/s\n", plan.max_speed);
+  text += "\nEach step\n";
+  const auto list = [&](const std::vector<Pass>& passes) {
+    for (const Pass& pass : passes) text += format("  %-38s %s\n", names(pass.id).words, pass.reason.c_str());
+  };
+  list(plan.passes);
+  if (!plan.left_out.empty()) text += "Left out\n";
+  list(plan.left_out);
+  return text;
+}
+
+}  // namespace slosh

@@ -1,0 +1,27 @@
+// Eq 5 between two particles.
+#pragma once
+
+#include "sim/particle_view.h"
+
+namespace slosh {
+
+/// How two particles press on each other. The force on p is −(coefficient) · ∇W:
+enum class PairRule {
+  kPaper,       ///< Eq 5: V_p V_i (P_p + P_i)/2. `pressure` is P.
+  kConsistent,  ///< V_p² P_p + V_i² P_i, the gradient of an energy of the densities. `pressure` is V²P.
+  kWall,  ///< fluid against a wall particle that counts in its density: V² P of the fluid, times the wall's
+          ///< share (how many lattice particles it stands for), which is the wall's `pressure`.
+};
+
+template <PairRule rule, class Real>
+SLOSH_HD Real pressure_coefficient(const ParticleView<Real>& p, const ParticleView<Real>& i) {
+  if constexpr (rule == PairRule::kPaper) {
+    return Real(0.5f) * (p.volume * i.volume) * (p.pressure + i.pressure);
+  } else if constexpr (rule == PairRule::kConsistent) {
+    return p.pressure + i.pressure;
+  } else {
+    return p.pressure * i.pressure;
+  }
+}
+
+}  // namespace slosh

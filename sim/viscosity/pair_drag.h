@@ -1,0 +1,25 @@
+// Eq 6 and 9 between two particles.
+#pragma once
+
+#include "sim/particle_view.h"
+
+namespace slosh {
+
+/// kPair: both sides have their own viscosity (Eq 9). kOne: all share p's (Eq 6). kNone: no drag.
+enum class Viscosity { kNone, kOne, kPair };
+
+/// Eq 9 drags along the velocity difference: such pairs exert a torque on each other, and a glass of fluid
+/// that turns like a rigid body still brakes its glass. The consistent model keeps only the part along d
+/// (Monaghan 2005), which conserves angular momentum and is nothing in rigid rotation; five times that has
+/// the same viscosity in 3-D (the mean of d̂ d̂ᵀ against a linear velocity field is a fifth of Eq 9's).
+enum class DragRule { kAlongVelocity, kCentral };
+inline constexpr float kCentralDrag = 5.0f;
+
+/// Eq 9's factor of the velocity difference, without the kernel's constant. What p alone decides comes first,
+/// so that it leaves the loop where all share one viscosity.
+template <class Real>
+SLOSH_HD Real drag_coefficient(const ParticleView<Real>& p, const ParticleView<Real>& i, Real laplacian) {
+  return (Real(0.5f) * (p.viscosity + i.viscosity) * p.volume) * (i.volume * laplacian);
+}
+
+}  // namespace slosh

@@ -1,0 +1,18 @@
+// How long a step may be with the drag of Eq 6 and 9 explicit.
+#pragma once
+
+#include "sim/fluid_extremes.h"
+#include "sim/plan.h"
+
+namespace slosh {
+
+/// Pa·s, the most of any body.
+double most_viscous_body(const Scene& scene);
+
+/// s, the longest step at which the drag stays stable.
+double viscous_step(const Scene& scene, const Plan& plan, const FluidExtremes& fluids);
+
+/// The largest viscosity of a fluid, Pa·s, at which the plan's step stays stable. Needs no mesh.
+double most_viscous_allowed(const Scene& scene, const Plan& plan);
+
+}  // namespace slosh
