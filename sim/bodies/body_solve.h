@@ -27,6 +27,8 @@ struct BodySolve {
   bool moves = false;  ///< false: the body stands still this step, whatever touches it
   Matrix6 factor{};    ///< Cholesky of M (linear first, angular after)
   Vector6 velocity{};  ///< v⁺, ω⁺
+  Vector6
+      travel{};  ///< by which the pose moves on: v⁺ unless a contact has to put it elsewhere than v⁺ would
 };
 
 namespace body_solve {
@@ -102,15 +104,16 @@ SLOSH_HD inline bool solve_body(const RigidBody& body, const Wrench& external,
   solve.moves = false;
   if (!cholesky(matrix, solve.factor)) return false;
   solve.velocity = cholesky_solve(solve.factor, rhs);
+  solve.travel = solve.velocity;
   solve.moves = true;
   for (const double v : solve.velocity) solve.moves = solve.moves && std::isfinite(v);
   return solve.moves;
 }
 
-/// Takes over the solved velocity and moves the body on by one step.
+/// Takes over the solved velocity and moves the body on by one step of its travel.
 SLOSH_HD inline void advance_body(RigidBody& body, const BodySolve& solve, double dt) {
   body.velocity = body_solve::linear_part(solve.velocity);
-  body.position += dt * body.velocity;
+  body.position += dt * body_solve::linear_part(solve.travel);
   if (body.point) return;
   body.angular_momentum = body.world_inertia() * body_solve::angular_part(solve.velocity);
   // The momentum stays where it is while the body turns under it: ω at the half step, by two fixed-point
@@ -122,6 +125,7 @@ SLOSH_HD inline void advance_body(RigidBody& body, const BodySolve& solve, doubl
     const glm::dmat3 r = glm::mat3_cast(half.orientation);
     omega = r * body.inverse_inertia * glm::transpose(r) * body.angular_momentum;
   }
+  omega += body_solve::angular_part(solve.travel) - body_solve::angular_part(solve.velocity);
   body.orientation = rotate_by(body.orientation, dt * omega);
   const glm::dmat3 r = glm::mat3_cast(body.orientation);
   body.angular_velocity = r * body.inverse_inertia * glm::transpose(r) * body.angular_momentum;

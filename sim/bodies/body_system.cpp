@@ -23,7 +23,7 @@ std::uint32_t BodySystem::advance(const Plan& plan, const BodyForces& forces, co
   if (plan.has(PassId::kCouplings)) couplings_ = hands_.couple(bodies_, step.elapsed);
   const std::uint32_t status = solve(forces, step.dt, held_only);
   if (plan.has(PassId::kContacts)) {
-    finder_.find(bodies_, 0.25 * plan.spacing, contacts_);
+    finder_.find(bodies_, solves_, 0.25 * plan.spacing, step.dt, contacts_);
     if (!contacts_.empty()) solve_contacts(contacts_, materials_, bodies_, step.dt, solves_);
   }
   report(step);

@@ -21,7 +21,7 @@ struct ContactMaterial {
 inline constexpr double kOverlapRate = 0.2;   ///< share of the overlap undone a step
 inline constexpr double kOverlapSpeed = 0.5;  ///< m/s at most while undoing it
 inline constexpr double kBounceSpeed =
-    0.3;  ///< m/s below which nothing bounces: resting contacts stay at rest
+    0.1;  ///< m/s below which nothing bounces: resting contacts stay at rest
 
 namespace rows {
 
@@ -76,9 +76,39 @@ SLOSH_HD inline void apply(Constraint& k, double impulse, Vector6& a, Vector6& b
   }
 }
 
+// Least speeds along the normal, m/s.
+struct Targets {
+  double velocity = 0.0;  // of the velocities that leave the step
+  double travel = 0.0;    // of the mean over the step, which moves the poses
+};
+
+// How the gap goes on through the step, from the speeds along the normal before and after what else acts:
+// with constant acceleration between the middles of two steps, as the leap-frog has it.
+SLOSH_HD inline Targets targets(double gap, double speed_before, double speed_after, double restitution,
+                                double dt) {
+  const double acceleration = (speed_after - speed_before) / dt;
+  const double speed = speed_after - 0.5 * acceleration * dt;  // at the step's beginning
+  if (gap > 0.0 && gap + speed_after * dt >= 0.0)
+    return {-gap / dt, -gap / dt};  // does not close in this step
+  // When and how fast the two meet; at once where they already overlap.
+  double impact_time = 0.0;
+  double impact_speed = glm::max(-speed, 0.0);
+  if (gap > 0.0) {
+    impact_speed = std::sqrt(glm::max(speed * speed - 2.0 * acceleration * gap, 0.0));
+    impact_time = glm::clamp(2.0 * gap / glm::max(impact_speed - speed, 1e-12), 0.0, dt);
+  }
+  const double rest = dt - impact_time;
+  const double undo = glm::min(glm::max(-gap, 0.0) * kOverlapRate / dt, kOverlapSpeed);
+  if (impact_speed < kBounceSpeed || restitution <= 0.0) return {0.0, gap > 0.0 ? -gap / dt : undo};
+  const double back = restitution * impact_speed;
+  const double height = glm::max(back * rest + 0.5 * acceleration * rest * rest, 0.0);
+  return {glm::max(back + acceleration * (0.5 * dt - impact_time), 0.0),
+          (height - glm::max(gap, 0.0)) / dt + undo};
+}
+
 struct ContactRows {
   Constraint normal, tangent_u, tangent_v;
-  double target = 0.0;  // least speed along the normal, m/s
+  Targets target;
   double friction = 0.0;
 };
 
@@ -90,30 +120,35 @@ SLOSH_HD inline ContactRows make_rows(const Contact& c, const ContactMaterial& m
   rows.normal = make_constraint(c, c.normal, bodies, solves);
   rows.tangent_u = make_constraint(c, u, bodies, solves);
   rows.tangent_v = make_constraint(c, glm::cross(c.normal, u), bodies, solves);
-  // A gap may close within the step; an overlap opens at a bounded rate.
-  rows.target =
-      c.distance > 0.0 ? -c.distance / dt : glm::min(-c.distance * kOverlapRate / dt, kOverlapSpeed);
-  const double approach =
-      -glm::dot(c.normal, bodies[c.a].velocity_at(c.point) - bodies[c.b].velocity_at(c.point));
-  if (c.distance <= 0.0 && approach > kBounceSpeed)
-    rows.target = glm::max(rows.target, material.restitution * approach);
+  const double before =
+      glm::dot(c.normal, bodies[c.a].velocity_at(c.point) - bodies[c.b].velocity_at(c.point));
+  const double after = speed_along(rows.normal, solves[c.a].velocity, solves[c.b].velocity);
+  rows.target = targets(c.distance, before, after, material.restitution, dt);
   rows.friction = material.friction;
   return rows;
 }
 
-SLOSH_HD inline void solve_tangent(Constraint& k, double limit, Vector6& a, Vector6& b) {
-  const double wanted = k.impulse - k.effective_mass * speed_along(k, a, b);
-  apply(k, glm::clamp(wanted, -limit, limit) - k.impulse, a, b);
-}
-
-/// One turn of Gauss–Seidel on one contact.
-SLOSH_HD inline void solve_once(ContactRows& rows, Vector6& a, Vector6& b) {
+/// One turn of Gauss–Seidel on one contact: the normal, then friction in the circle that it allows. Returns
+/// the largest change of an impulse, N·s.
+SLOSH_HD inline double solve_once(ContactRows& rows, double target, Vector6& a, Vector6& b) {
   Constraint& n = rows.normal;
-  const double wanted = n.impulse + n.effective_mass * (rows.target - speed_along(n, a, b));
-  apply(n, glm::max(wanted, 0.0) - n.impulse, a, b);
+  const double wanted = n.impulse + n.effective_mass * (target - speed_along(n, a, b));
+  const double normal_change = glm::max(wanted, 0.0) - n.impulse;
+  apply(n, normal_change, a, b);
+  Constraint& u = rows.tangent_u;
+  Constraint& v = rows.tangent_v;
+  double along_u = u.impulse - u.effective_mass * speed_along(u, a, b);
+  double along_v = v.impulse - v.effective_mass * speed_along(v, a, b);
   const double limit = rows.friction * n.impulse;
-  solve_tangent(rows.tangent_u, limit, a, b);
-  solve_tangent(rows.tangent_v, limit, a, b);
+  const double length = std::sqrt(along_u * along_u + along_v * along_v);
+  if (length > limit) {
+    along_u *= limit / length;
+    along_v *= limit / length;
+  }
+  const glm::dvec2 slip_change(along_u - u.impulse, along_v - v.impulse);
+  apply(u, slip_change.x, a, b);
+  apply(v, slip_change.y, a, b);
+  return glm::max(std::abs(normal_change), glm::length(slip_change));
 }
 
 }  // namespace rows

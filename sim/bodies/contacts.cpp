@@ -1,12 +1,17 @@
 #include "sim/bodies/contacts.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <numeric>
 
 namespace slosh {
 
 namespace {
+
+constexpr float kBentField = 0.02f;  // by which a gradient's length may be off 1
 
 struct Bounds {
   glm::dvec3 lower, upper;
@@ -27,6 +32,59 @@ bool apart(const Bounds& a, const Bounds& b, double margin) {
 
 }  // namespace
 
+namespace {
+
+// Points whose neighbours within `reach` all have their normal, but for those that are round an edge.
+std::vector<char> flat_points(const std::vector<glm::vec3>& points, const std::vector<glm::vec3>& normals,
+                              float reach) {
+  constexpr float kSame = 0.9999f, kRoundAnEdge = 0.8f;
+  std::vector<std::uint32_t> along(points.size());  // by x, so that near ones are near
+  std::iota(along.begin(), along.end(), 0u);
+  std::sort(along.begin(), along.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return points[a].x < points[b].x; });
+  std::vector<char> flat(points.size(), 1);
+  for (std::size_t n = 0; n < along.size(); ++n) {
+    const std::uint32_t i = along[n];
+    for (std::size_t m = n + 1; m < along.size(); ++m) {
+      const std::uint32_t j = along[m];
+      if (points[j].x - points[i].x > reach) break;
+      if (glm::distance(points[i], points[j]) > reach) continue;
+      const float together = glm::dot(normals[i], normals[j]);
+      if (together > kSame || together < kRoundAnEdge) continue;
+      flat[i] = flat[j] = 0;
+    }
+  }
+  return flat;
+}
+
+// The corners of a mesh, once for each face that meets there: what a flat body stands on, which a sample of
+// its surface misses.
+void add_corners(const TriangleMesh& mesh, std::vector<glm::vec3>& points, std::vector<glm::vec3>& normals) {
+  constexpr float kOtherFace = 0.8f;  // cosine
+  std::map<std::array<float, 3>, std::vector<glm::vec3>> faces_at;
+  for (const glm::uvec3& t : mesh.triangles) {
+    const glm::vec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
+    const glm::vec3 area = glm::cross(b - a, c - a);
+    if (!(glm::length(area) > 0.0f)) continue;
+    const glm::vec3 normal = glm::normalize(area);
+    for (const glm::vec3& p : {a, b, c}) {
+      std::vector<glm::vec3>& faces = faces_at[{p.x, p.y, p.z}];
+      const bool known = std::any_of(faces.begin(), faces.end(),
+                                     [&](const glm::vec3& n) { return glm::dot(n, normal) > kOtherFace; });
+      if (!known) faces.push_back(normal);
+    }
+  }
+  for (const auto& [at, faces] : faces_at) {
+    if (faces.size() < 3) continue;
+    for (const glm::vec3& normal : faces) {
+      points.emplace_back(at[0], at[1], at[2]);
+      normals.push_back(normal);
+    }
+  }
+}
+
+}  // namespace
+
 ContactFinder::ContactFinder(const Scene& scene, const SampledScene& sampled) : spacing_(sampled.spacing) {
   shapes_.resize(scene.bodies.size());
   for (std::size_t i = 0; i < shapes_.size(); ++i) {
@@ -35,37 +93,112 @@ ContactFinder::ContactFinder(const Scene& scene, const SampledScene& sampled) : 
     shape.points = sampled.surfaces[i].positions;
     shape.normals = sampled.surfaces[i].normals;
     shape.field = sampled.distance_fields[i];
+    if (scene.bodies[i].mesh >= 0) {
+      add_corners(scene.meshes[static_cast<std::size_t>(scene.bodies[i].mesh)], shape.points, shape.normals);
+    }
+    shape.flat = flat_points(shape.points, shape.normals, static_cast<float>(1.5 * spacing_));
     if (shape.points.empty()) continue;
     shape.lower = shape.upper = shape.points.front();
     for (const glm::vec3& p : shape.points) {
       shape.lower = glm::min(shape.lower, p);
       shape.upper = glm::max(shape.upper, p);
+      shape.radius = std::max(shape.radius, static_cast<double>(glm::length(p)));
     }
   }
 }
 
-void ContactFinder::points_against_field(const std::vector<RigidBody>& bodies, int points_of, int field_of,
-                                         double margin) {
+glm::dvec3 ContactFinder::Motion::velocity_at(int body, const glm::dvec3& where) const {
+  if (!solves[body].moves) return glm::dvec3(0.0);
+  const glm::dvec3 turning =
+      bodies[body].point ? glm::dvec3(0.0) : body_solve::angular_part(solves[body].velocity);
+  return body_solve::linear_part(solves[body].velocity) + glm::cross(turning, where - bodies[body].position);
+}
+
+double ContactFinder::Motion::fastest(int body, double radius) const {
+  if (!solves[body].moves) return 0.0;
+  const double arm = radius + glm::length(bodies[body].local_center);
+  return glm::length(body_solve::linear_part(solves[body].velocity)) +
+         arm * glm::length(body_solve::angular_part(solves[body].velocity));
+}
+
+namespace {
+
+// Where a point that moves by `path` meets the surface, `margin` off it; its start where it is there already.
+// By steps of the distance itself, so that no wall is jumped over. Infinity: not on this path.
+struct Meeting {
+  glm::vec3 at{0.0f};
+  DistanceSample sample;
+  bool found = false;
+};
+
+Meeting meet(const DistanceFieldView& field, const glm::vec3& start, const glm::vec3& path, float margin) {
+  constexpr int kMostSteps = 32;
+  const float length = glm::length(path);
+  float gone = 0.0f;
+  Meeting meeting;
+  for (int i = 0; i < kMostSteps; ++i) {
+    meeting.at = length > 0.0f ? start + path * (gone / length) : start;
+    meeting.sample = sample_distance(field, meeting.at);
+    meeting.found = meeting.sample.distance < margin;
+    if (meeting.found) return meeting;
+    if (!(gone < length)) return meeting;
+    gone = std::min(length, gone + std::max(meeting.sample.distance - 0.5f * margin, 0.1f * margin));
+  }
+  return meeting;
+}
+
+// Within a cell of an edge the interpolated distance is bent: too small inside, where its gradient dwindles,
+// and round the edge outside. Where the flat face that the point is of lies on one of the solid's, the face
+// knows the direction, and a cell further out the distance is straight. `out` is the face's normal turned
+// round.
+bool face_to_face(const DistanceFieldView& field, const glm::vec3& at, const glm::vec3& out,
+                  glm::vec3& normal, float& distance) {
+  constexpr float kFacing = 0.8f;  // cosine: round a corner the other way is 0.86 at most
+  const DistanceSample further = sample_distance(field, at + out * field.cell);
+  const float length = glm::length(further.gradient);
+  if (!(glm::dot(further.gradient, out) > kFacing * length) || !(length > 0.5f)) return false;
+  normal = out;
+  distance = further.distance - field.cell;
+  return true;
+}
+
+}  // namespace
+
+void ContactFinder::points_against_field(const Motion& motion, int points_of, int field_of, double reach) {
   const Shape& points = shapes_[points_of];
   const Shape& solid = shapes_[field_of];
   if (solid.field.distance.empty()) return;
-  const Pose solid_pose = bodies[field_of].mesh_pose();
-  const Pose to_solid = compose(inverse(solid_pose), bodies[points_of].mesh_pose());
+  const Pose solid_pose = motion.bodies[field_of].mesh_pose();
+  const Pose to_solid = compose(inverse(solid_pose), motion.bodies[points_of].mesh_pose());
   const glm::mat3 turn(glm::mat3_cast(to_solid.orientation));
   const glm::vec3 shift(to_solid.position);
-  const glm::vec3 lower = solid.lower - static_cast<float>(margin);
-  const glm::vec3 upper = solid.upper + static_cast<float>(margin);
+  const glm::dquat into_solid = glm::conjugate(solid_pose.orientation);
+  const glm::vec3 lower = solid.lower - static_cast<float>(reach);
+  const glm::vec3 upper = solid.upper + static_cast<float>(reach);
+  const float margin = static_cast<float>(motion.margin);
+  const bool sweeps = reach > motion.margin;
   const DistanceFieldView field = solid.field.view();
   for (std::size_t i = 0; i < points.points.size(); ++i) {
     const glm::vec3 p = turn * points.points[i] + shift;
     if (glm::any(glm::lessThan(p, lower)) || glm::any(glm::greaterThan(p, upper))) continue;
-    const DistanceSample s = sample_distance(field, p);
-    if (!(s.distance < margin)) continue;
-    const float length = glm::length(s.gradient);
-    if (!(length > 1e-3f)) continue;  // the middle of a solid: other points have the direction
-    const glm::dvec3 outward = solid_pose.orientation * glm::dvec3(s.gradient / length);
-    found_.push_back({points_of, field_of, transform_point(solid_pose, glm::dvec3(p)), outward, s.distance});
-    facing_.push_back(-glm::dot(turn * points.normals[i], s.gradient / length));
+    const glm::dvec3 where = transform_point(solid_pose, glm::dvec3(p));
+    glm::vec3 path(0.0f);
+    if (sweeps) {
+      path = glm::vec3(into_solid * (motion.dt * (motion.velocity_at(points_of, where) -
+                                                  motion.velocity_at(field_of, where))));
+    }
+    const Meeting met = meet(field, p, path, margin);
+    if (!met.found) continue;
+    const float length = glm::length(met.sample.gradient);
+    glm::vec3 normal = length > 0.0f ? met.sample.gradient / length : glm::vec3(0.0f);
+    float distance = met.sample.distance;
+    const bool faces = points.flat[i] && std::abs(length - 1.0f) > kBentField &&
+                       face_to_face(field, met.at, -(turn * points.normals[i]), normal, distance);
+    if (!faces && !(length > 1e-3f)) continue;  // the middle of a solid: other points have the direction
+    // From where the point is now to the plane that it meets.
+    const double gap = distance + glm::dot(p - met.at, normal);
+    found_.push_back({points_of, field_of, where, solid_pose.orientation * glm::dvec3(normal), gap});
+    facing_.push_back(-glm::dot(turn * points.normals[i], normal));
   }
 }
 
@@ -93,7 +226,9 @@ void ContactFinder::drop_misleading() {
 }
 
 // The deepest point, then again and again the point furthest from those kept: few points that span the patch,
-// so that a flat bottom rests on its rim and not on a corner of it.
+// so that a flat bottom rests on its rim and not on a corner of it. Of points that lie together the deepest
+// stands for all: where two corners meet, one of them is just beside the other's face, and its gap is the way
+// round the edge.
 void ContactFinder::keep_spread(std::vector<Contact>& contacts) {
   if (found_.empty()) return;
   std::vector<double> gap(found_.size(), std::numeric_limits<double>::infinity());
@@ -101,7 +236,13 @@ void ContactFinder::keep_spread(std::vector<Contact>& contacts) {
                                [](const Contact& a, const Contact& b) { return a.distance < b.distance; }) -
               found_.begin();
   for (int kept = 0; kept < kMaxContactsPerPair; ++kept) {
-    const Contact chosen = found_[next];
+    const glm::dvec3 around = found_[next].point;
+    for (std::size_t i = 0; i < found_.size(); ++i) {
+      const bool deeper = found_[i].distance < found_[static_cast<std::size_t>(next)].distance;
+      if (deeper && glm::distance(found_[i].point, around) < 0.25 * spacing_)
+        next = static_cast<std::ptrdiff_t>(i);
+    }
+    const Contact chosen = found_[static_cast<std::size_t>(next)];
     contacts.push_back(chosen);
     for (std::size_t i = 0; i < found_.size(); ++i) {
       gap[i] = std::min(gap[i], glm::distance(found_[i].point, chosen.point));
@@ -111,22 +252,25 @@ void ContactFinder::keep_spread(std::vector<Contact>& contacts) {
   }
 }
 
-void ContactFinder::find(const std::vector<RigidBody>& bodies, double margin,
-                         std::vector<Contact>& contacts) {
+void ContactFinder::find(const std::vector<RigidBody>& bodies, const std::vector<BodySolve>& solves,
+                         double margin, double dt, std::vector<Contact>& contacts) {
   contacts.clear();
+  const Motion motion{bodies, solves, margin, dt};
   const int count = static_cast<int>(bodies.size());
   for (int i = 0; i < count; ++i) {
     for (int j = i + 1; j < count; ++j) {
       if (!bodies[i].free && !bodies[j].free) continue;
       if (shapes_[i].points.empty() || shapes_[j].points.empty()) continue;
+      const double reach =
+          margin + dt * (motion.fastest(i, shapes_[i].radius) + motion.fastest(j, shapes_[j].radius));
       if (apart(world_bounds(bodies[i].mesh_pose(), shapes_[i].lower, shapes_[i].upper),
-                world_bounds(bodies[j].mesh_pose(), shapes_[j].lower, shapes_[j].upper), margin)) {
+                world_bounds(bodies[j].mesh_pose(), shapes_[j].lower, shapes_[j].upper), reach)) {
         continue;
       }
       found_.clear();
       facing_.clear();
-      points_against_field(bodies, i, j, margin);
-      points_against_field(bodies, j, i, margin);
+      points_against_field(motion, i, j, reach);
+      points_against_field(motion, j, i, reach);
       drop_misleading();
       keep_spread(contacts);
     }

@@ -17,19 +17,31 @@ class ContactFinder {
 
   ContactFinder(const Scene& scene, const SampledScene& sampled);
 
-  /// Points closer than `margin` (m) to the other body's surface. `contacts` is cleared first.
-  void find(const std::vector<RigidBody>& bodies, double margin, std::vector<Contact>& contacts);
+  /// Points closer than `margin` (m) to the other body's surface, and those that come as close within `dt` s
+  /// at the speeds that `solves` has found so far, however fast. `contacts` is cleared first.
+  void find(const std::vector<RigidBody>& bodies, const std::vector<BodySolve>& solves, double margin,
+            double dt, std::vector<Contact>& contacts);
 
  private:
   struct Shape {
     std::vector<glm::vec3> points;   // surface particles, mesh frame
     std::vector<glm::vec3> normals;  // theirs, outward
+    std::vector<char> flat;          // 1: all of its neighbours on the same face have its normal
     DistanceField field;
     glm::vec3 lower{0.0f}, upper{0.0f};  // bounds of the points, mesh frame
+    double radius = 0.0;                 // of the points about the mesh frame's origin, m
+  };
+  // What a search works on.
+  struct Motion {
+    const std::vector<RigidBody>& bodies;
+    const std::vector<BodySolve>& solves;
+    double margin, dt;
+    glm::dvec3 velocity_at(int body, const glm::dvec3& where) const;
+    double fastest(int body, double radius) const;  // of any point, m/s
   };
   void drop_misleading();
   void keep_spread(std::vector<Contact>& contacts);
-  void points_against_field(const std::vector<RigidBody>& bodies, int points_of, int field_of, double margin);
+  void points_against_field(const Motion& motion, int points_of, int field_of, double reach);
 
   std::vector<Shape> shapes_;
   double spacing_;
