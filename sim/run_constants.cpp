@@ -1,5 +1,6 @@
 #include "sim/run_constants.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -64,11 +65,19 @@ ParticleKind make_kind(double rest_density, double viscosity, double spacing, bo
 
 std::vector<ParticleKind> particle_kinds(const Scene& scene, double spacing) {
   std::vector<ParticleKind> kinds;
-  for (const Fluid& f : scene.fluids) {
+  // A fluid that no volume has is nowhere. Its kind is that of the first that is there, so that where one
+  // viscosity serves all it is every kind's.
+  const Fluid reference = scene.fluid_volumes.empty()
+                              ? (scene.fluids.empty() ? Fluid{} : scene.fluids.front())
+                              : scene.fluids[static_cast<std::size_t>(scene.fluid_volumes.front().fluid)];
+  for (std::size_t i = 0; i < scene.fluids.size(); ++i) {
+    const bool there =
+        std::any_of(scene.fluid_volumes.begin(), scene.fluid_volumes.end(),
+                    [&](const FluidVolume& v) { return static_cast<std::size_t>(v.fluid) == i; });
+    const Fluid& f = there ? scene.fluids[i] : reference;
     kinds.push_back(make_kind(f.rest_density, f.dynamic_viscosity, spacing, false));
   }
-  // A probe is one more particle of the first fluid's kind (Eq 8), moved by its body.
-  const Fluid reference = scene.fluids.empty() ? Fluid{} : scene.fluids.front();
+  // A probe is one more particle of the reference's kind (Eq 8), moved by its body.
   for (const Body& body : scene.bodies) {
     if (!body.point_probe) continue;
     kinds.push_back(make_kind(

@@ -81,6 +81,40 @@ TEST(World, EveryStepBalancesMomentum) {
   }
 }
 
+// A fluid that no volume of the scene has is nowhere, and changes nothing: neither a wrench nor a probe's kind.
+TEST(World, AnUnusedFluidChangesNothing) {
+  Tank plain = stirred_tank(0.05);
+  for (FluidVolume& volume : plain.scene.fluid_volumes) volume.fluid = 0;
+  std::fill(plain.sampled.fluid_index.begin(), plain.sampled.fluid_index.end(), std::uint8_t{0});
+  plain.scene.fluids.resize(1);
+  Body probe;
+  probe.name = "probe";
+  probe.motion = BodyMotion::kFree;
+  probe.point_probe = true;
+  probe.mass.mass = 0.02;
+  probe.pose.position = {0.03, 0.05, 0.03};
+  plain.scene.bodies.push_back(probe);
+  plain.sampled.surfaces.emplace_back();
+  plain.sampled.distance_fields.emplace_back();
+  Tank with = plain;
+  with.scene.fluids.insert(with.scene.fluids.begin(), Fluid{"honey", 1400.0, 20.0});
+  for (FluidVolume& volume : with.scene.fluid_volumes) ++volume.fluid;
+  for (std::uint8_t& index : with.sampled.fluid_index) ++index;
+  World a = make_world(plain), b = make_world(with);
+  ASSERT_TRUE(b.plan().has(PassId::kOneViscosity));
+  BodySnapshot sa, sb;
+  for (int i = 0; i < 50; ++i) {
+    const HandleInput hand = hand_at(a.time());
+    a.step({&hand, 1});
+    b.step({&hand, 1});
+    a.fill(sa);
+    b.fill(sb);
+    for (std::size_t body = 0; body < sa.bodies.size(); ++body)
+      ASSERT_EQ(sa.bodies[body].fluid.force, sb.bodies[body].fluid.force) << "body " << body << ", step " << i;
+  }
+  EXPECT_EQ(a.hash(), b.hash());
+}
+
 // Leaving the per-particle viscosity out where there is one viscosity must change nothing but rounding.
 TEST(World, OneViscosityGivesWhatPairsGive) {
   const Tank tank = make_tank({});
