@@ -90,6 +90,12 @@ Result<std::unique_ptr<CheckpointWriter>> CheckpointWriter::start(const Scene& s
   Copy first;
   const Result<bool> saved = world.save(first.world);
   if (!saved) return saved.error();
+  if (first.world.size() > kLargestChunk) {
+    return Error{options.file.string(),
+                 "the world's state has " + std::to_string(first.world.size() >> 20) +
+                     " MB, and a checkpoint takes " + std::to_string(kLargestChunk >> 20) + " MB of it",
+                 "Host it with a larger --spacing, or with --checkpoint none"};
+  }
   first.state = state;
   first.tick = world.tick();
   first.time = world.time();

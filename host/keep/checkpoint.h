@@ -64,8 +64,8 @@ struct CheckpointReport {
 class CheckpointWriter : public HostTap {
  public:
   /// Writes the secrets and a first file at once. `start` is what a reset goes back to. A file that is there
-  /// stays as the one before it, unless it is damaged. Errors: the scene cannot be packed, a file cannot be
-  /// written.
+  /// stays as the one before it, unless it is damaged. Errors: the scene cannot be packed, the state is
+  /// larger than a chunk, a file cannot be written.
   static Result<std::unique_ptr<CheckpointWriter>> start(const Scene& scene, double spacing, Bytes start,
                                                          const World& world, const HostState& state,
                                                          const CheckpointOptions& options);

@@ -46,6 +46,12 @@ double number_after(const std::string& text, const std::string& words) {
   return at == std::string::npos ? -1.0 : std::atof(text.c_str() + at + words.size());
 }
 
+int times(const std::string& text, const std::string& words) {
+  int count = 0;
+  for (std::size_t at = text.find(words); at != std::string::npos; at = text.find(words, at + 1)) count += 1;
+  return count;
+}
+
 /// The processes that `parent` started.
 std::vector<pid_t> children_of(pid_t parent) {
   std::vector<pid_t> all;
@@ -277,16 +283,8 @@ TEST_F(KeptHost, IsStartedAgainWhenAFaultEndsItAndWhoHeldHoldsAgain) {
     ASSERT_EQ(worlds.size(), 1u);
     const auto begin = std::chrono::steady_clock::now();
     ASSERT_EQ(::kill(worlds.front(), fault), 0);
-    const auto returned = [&] {
-      std::size_t count = 0;
-      const std::string all = told("Ana");
-      for (std::size_t at = all.find("back with the host"); at != std::string::npos;
-           at = all.find("back with the host", at + 1))
-        count += 1;
-      return count;
-    };
-    EXPECT_TRUE(comes([&] { return returned() >= static_cast<std::size_t>(round) || !ana->running(); }))
-        << told("Ana") << told("host");
+    const auto back = [&] { return times(told("Ana"), "back with the host"); };
+    EXPECT_TRUE(comes([&] { return back() >= round || !ana->running(); })) << told("Ana") << told("host");
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
     const double now = number_after(told("host"), "carries on at ");
     std::printf("after signal %d Ana was back within %.2f s; the world carried on at %.2f s\n", fault,
@@ -296,7 +294,7 @@ TEST_F(KeptHost, IsStartedAgainWhenAFaultEndsItAndWhoHeldHoldsAgain) {
   }
   EXPECT_EQ(ana->wait().code, 0) << told("Ana");
   const json s = json::parse(read_text(folder("Ana") / "out" / "summary.json"));
-  EXPECT_EQ(s["network"]["reconnects"], 2);
+  EXPECT_GE(s["network"]["reconnects"], 2);
   EXPECT_EQ(s["devices"].size(), 1u) << "the same grip again";
   EXPECT_EQ(links(), first_links);
   const std::string words = told("host");
@@ -318,13 +316,8 @@ TEST_F(KeptHost, ThatDiesAgainAndAgainEndsWithWords) {
   const auto host = this->host({"--checkpoint", "kept"});
   ASSERT_TRUE(hosting(*host)) << host->wait().err;
   for (int deaths = 1; deaths <= 6; ++deaths) {
-    ASSERT_TRUE(comes([&] {
-      std::size_t count = 0;
-      const std::string all = told("host");
-      for (std::size_t at = all.find("hosting"); at != std::string::npos; at = all.find("hosting", at + 1))
-        count += 1;
-      return count >= static_cast<std::size_t>(deaths) || !host->running();
-    })) << told("host");
+    ASSERT_TRUE(comes([&] { return times(told("host"), "hosting\n") >= deaths || !host->running(); }))
+        << told("host");
     for (const pid_t world : children_of(host->pid())) ::kill(world, SIGABRT);
   }
   const Outcome ended = host->wait();

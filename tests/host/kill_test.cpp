@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <fstream>
 #include <functional>
 
@@ -13,6 +14,7 @@
 
 namespace {
 
+std::atomic<int> syncs{0};
 int calls_left = -1;  // until this process dies; −1: it does not
 
 bool dies_now() {
@@ -33,6 +35,7 @@ std::size_t __real_fwrite(const void*, std::size_t, std::size_t, std::FILE*);
 
 int __wrap_fsync(int file) {
   if (dies_now()) _exit(kDied);
+  syncs += 1;
   return __real_fsync(file);
 }
 int __wrap_link(const char* from, const char* to) {
@@ -166,6 +169,25 @@ TEST_F(Killed, BetweenAnyTwoStepsOfSettingAsideOneOfTheTwoPlacesHasItAll) {
         EXPECT_GE(complete, 1) << "step " << step;
       });
   EXPECT_GE(steps, 10) << "four links, four unlinks, two folders";
+}
+
+TEST(Recording, IsBroughtToTheDiskAtItsInterval) {
+  const auto syncs_at = [](double seconds) {
+    RecordingOptions options;
+    options.file = fresh_folder() / "run";
+    options.chunk_seconds = 0.0;
+    options.sync_seconds = seconds;
+    Rig rig(until(0.05));
+    const int before = syncs;
+    auto writer = RecordingWriter::start(small_world().scene, small_world().sampled.spacing,
+                                         rig.host.start_state(), rig.host.world(), rig.host.state(), options);
+    rig.host.add_tap(*writer.value());
+    rig.run();
+    EXPECT_EQ(writer.value()->finish().problem, "");
+    return syncs - before;
+  };
+  EXPECT_EQ(syncs_at(1e9), 2) << "what it begins with, and its end";
+  EXPECT_GT(syncs_at(0.0), 10) << "each chunk";
 }
 
 TEST_F(Killed, WhatIsSetAsideIsNeverOverwritten) {
