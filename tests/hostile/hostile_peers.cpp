@@ -34,28 +34,7 @@ class Run {
         log_(options.folder / "attacks.log"),
         mischief_(options.seed),
         home_(short_folder()),
-        host_({"env",
-               "XDG_STATE_HOME=" + home_,
-               "XDG_DATA_HOME=" + home_,
-               "XDG_RUNTIME_DIR=" + home_,
-               slosh_program(),
-               "host",
-               "probe",
-               "--spacing",
-               "0.01",
-               "--threads",
-               "1",
-               "--listen",
-               "127.0.0.1:0",
-               "--links",
-               "links.txt",
-               "--wait",
-               "0",
-               "--checkpoint",
-               "kept",
-               "--record",
-               "run.rec"},
-              options.folder / "host") {
+        host_(host_command(), options.folder / "host") {
     for (std::size_t i = 0; i < kKeys; ++i) keys_.push_back(Identity::generate());
   }
 
@@ -101,6 +80,17 @@ class Run {
 
  private:
   static unsigned long long number(std::uint64_t value) { return value; }
+  /// One process, so that a fault ends it: a supervisor would start it again from its checkpoint.
+  std::vector<std::string> host_command() const {
+    std::vector<std::string> words{"env", "XDG_STATE_HOME=" + home_, "XDG_DATA_HOME=" + home_,
+                                   "XDG_RUNTIME_DIR=" + home_, slosh_program()};
+    std::istringstream rest(
+        "host probe --spacing 0.01 --threads 1 --listen 127.0.0.1:0 --links links.txt --wait 0 --checkpoint "
+        "kept "
+        "--no-supervisor --record run.rec");
+    for (std::string word; rest >> word;) words.push_back(word);
+    return words;
+  }
   /// Short, for a socket's name has to fit into 108 bytes.
   static std::string short_folder() {
     std::string pattern = (std::filesystem::temp_directory_path() / "slosh-XXXXXX").string();
