@@ -7,13 +7,13 @@
 
 namespace slosh::wire {
 
-/// What is wrong with a text, empty when nothing is. Refused are bytes that are not UTF-8 (overlong forms and
-/// surrogates among them), control characters (C0, DEL, C1), line and paragraph separators, and the marks
-/// that turn the direction of writing, with which one name could be made to look like another.
+/// What is wrong with a text, empty when nothing is: it is not UTF-8, has control characters, characters that
+/// show nothing, turn the direction of writing or are private, or more marks on a character than scripts put
+/// there. net/text/clean.h has the rules; net/text/name.h has what a person's name may be besides.
 std::string text_problem(std::string_view text);
 
-/// The text with every byte or character that would be refused replaced by "?", cut at a character to at most
-/// `most` bytes. What is fine comes back as it is.
+/// The text with what would be refused replaced by "?" or, where it shows nothing, left out; cut at a character
+/// to at most `most` bytes. What is fine comes back as it is.
 std::string clean_text(std::string_view text, std::size_t most);
 
 }  // namespace slosh::wire

@@ -9,15 +9,16 @@ root=${1:?usage: include_rules.sh ROOT}
 cd "$root"
 
 # folder | what of other folders its sources may include, as prefixes. A folder follows the longest rule above it, and
-# may always include what lies in its own room (the first part of its path). The rooms' READMEs say the same.
+# may always include what lies in its own room (the first part of its path). net/text/ stands alone, below all rooms:
+# text from elsewhere comes in at each. The rooms' READMEs say the same.
 rules='
-scenes     | sim/math/
+scenes     | sim/math/ net/text/
 sim        | sim/math/ scenes/scene.h
 net        | sim/snapshot.h sim/math/ scenes/scene.h
 host       | scenes/ sim/ net/
 peer       | scenes/ sim/snapshot.h sim/math/ net/ render/
 peer/verbs | scenes/ sim/ net/ render/ host/
-render     | sim/math/
+render     | sim/math/ net/text/
 tests      | scenes/ sim/ net/ host/ peer/ render/
 '
 # pattern of what is included | folders or files where it may stand | why
@@ -26,6 +27,7 @@ toolkits='
 ^"sim/cuda/                   | sim/cuda sim/particle_engine.cpp tests/cross | only the factory in sim/particle_engine.cpp knows the CUDA engine
 ^<(epoxy|GL|EGL|GLFW)/        | render | GL only in render
 ^<(ngtcp2|gnutls)/            | net/quic | QUIC and TLS only behind net/quic/endpoint.h
+^<unicode/                    | net/text | ICU only behind net/text
 ^"net/impair/                 | net/impair tests | a bad network is for tests and for the program slosh-impair
 ^"peer/verbs/                 | peer/verbs peer/main.cpp tests | only the program joins host and peer
 ^"tests/                      | tests | nothing that ships needs a test'"'"'s kit
