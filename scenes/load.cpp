@@ -2,6 +2,7 @@
 
 #include <exception>
 
+#include "net/text/clean.h"
 #include "scenes/gltf/document.h"
 #include "scenes/reading/reading.h"
 
@@ -13,6 +14,12 @@ using reading::Problem;
 using reading::Reading;
 
 using ReadNode = Problem (*)(Reading&, int);
+
+/// Files have names by which a terminal could be told to do something, too.
+Error shown(const Error& error) {
+  constexpr std::size_t kMost = 2000;
+  return {clean_text(error.where, kMost), clean_text(error.what, kMost), clean_text(error.mend, kMost)};
+}
 
 Problem read_all(Reading& reading, NodeKind kind, ReadNode read) {
   for (const int node : reading.document.nodes) {
@@ -34,7 +41,7 @@ Result<Scene> read_scene(const std::filesystem::path& file) {
   const Result<gltf::Document> document = gltf::read_document(file);
   if (!document) return document.error();
   Reading reading{document.value(), {}, {}, {}, {}, {}, {}, 0, {}};
-  reading.scene.name = file.stem().string();
+  reading.scene.name = clean_text(file.stem().string(), kMostTextBytes);
   reading.scene.source_file = file.string();
   const auto stages = {
       +[](Reading& r) { return reading::read_kinds(r); },
@@ -60,10 +67,12 @@ Result<Scene> read_scene(const std::filesystem::path& file) {
 
 Result<Scene> load_scene(const std::filesystem::path& file) {
   try {
-    return read_scene(file);
+    Result<Scene> scene = read_scene(file);
+    if (!scene) return shown(scene.error());
+    return scene;
   } catch (
       const std::exception& problem) {  // out of memory, a library's own; never the way of an expected error
-    return Error{file.string(), std::string("cannot be read: ") + problem.what(), "Export the file again"};
+    return shown({file.string(), std::string("cannot be read: ") + problem.what(), "Export the file again"});
   }
 }
 

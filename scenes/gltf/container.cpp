@@ -4,6 +4,9 @@
 #include <cstring>
 #include <fstream>
 #include <system_error>
+#include <vector>
+
+#include "net/text/clean.h"
 
 namespace slosh::gltf {
 namespace {
@@ -75,6 +78,40 @@ std::string split_glb(const std::string& bytes, std::string& text, std::string& 
   return "";
 }
 
+/// Names, titles and keys are shown, sent and compared later: this is the door where they become fit for it.
+void clean_texts(nlohmann::json& value) {
+  if (value.is_string()) {
+    auto& text = value.get_ref<std::string&>();
+    text = clean_text(text, kMostTextBytes);
+  } else if (value.is_array()) {
+    for (nlohmann::json& item : value) clean_texts(item);
+  } else if (value.is_object()) {
+    nlohmann::json cleaned = nlohmann::json::object();
+    for (auto& [key, item] : value.items()) {
+      clean_texts(item);
+      cleaned[clean_text(key, kMostTextBytes)] = std::move(item);
+    }
+    value = std::move(cleaned);
+  }
+}
+
+/// All but the uris of buffers, which hold the data themselves or are looked at by BufferFiles.
+void clean_all_texts(nlohmann::json& root) {
+  std::vector<nlohmann::json> uris;
+  const bool has_buffers = root.contains("buffers") && root["buffers"].is_array();
+  if (has_buffers) {
+    for (nlohmann::json& buffer : root["buffers"]) {
+      uris.emplace_back();
+      if (buffer.is_object() && buffer.contains("uri")) uris.back().swap(buffer["uri"]);
+    }
+  }
+  root.erase("images");  // nobody looks at them, and they may be large
+  clean_texts(root);
+  for (std::size_t i = 0; i < uris.size(); ++i) {
+    if (!uris[i].is_null()) root["buffers"][i]["uri"].swap(uris[i]);
+  }
+}
+
 }  // namespace
 
 Result<Container> read_container(const std::filesystem::path& file) {
@@ -98,7 +135,7 @@ Result<Container> read_container(const std::filesystem::path& file) {
   try {
     out.json = nlohmann::json::parse(text, watch_depth);
   } catch (const std::exception& problem) {
-    return Error{file.string(), std::string("unreadable JSON: ") + problem.what(),
+    return Error{file.string(), "unreadable JSON: " + clean_text(problem.what(), kMostTextBytes),
                  "Export the file again; glTF has no NaN, no comments and no trailing commas"};
   }
   if (deepest > kDeepestJson) {
@@ -107,6 +144,7 @@ Result<Container> read_container(const std::filesystem::path& file) {
   }
   if (!out.json.is_object())
     return Error{file.string(), "the JSON is not an object", "Export the file again"};
+  clean_all_texts(out.json);
   return out;
 }
 

@@ -10,7 +10,7 @@
 namespace slosh::gltf {
 
 struct Container {
-  nlohmann::json json;  ///< an object
+  nlohmann::json json;  ///< an object; every text in it cleaned (clean_text), but for the uris of buffers
   std::string binary;   ///< a .glb's second chunk; empty for .gltf
   bool is_binary = false;
 };

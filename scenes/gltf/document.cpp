@@ -4,6 +4,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <optional>
 
+#include "scenes/gltf/buffers.h"
 #include "scenes/gltf/container.h"
 #include "scenes/gltf/references.h"
 
@@ -15,11 +16,13 @@ bool keep_no_image(tinygltf::Image*, const int, std::string*, std::string*, int,
   return true;
 }
 
-Result<tinygltf::Model> to_model(const std::filesystem::path& file, const Container& container) {
+Result<tinygltf::Model> to_model(const std::filesystem::path& file, Container& container) {
+  Result<BufferFiles> buffers = BufferFiles::find(file, container.json);
+  if (!buffers) return buffers.error();
   const std::string bytes = to_bytes(container);
-  const std::string folder = file.parent_path().string();
   tinygltf::TinyGLTF loader;
   loader.SetImageLoader(keep_no_image, nullptr);
+  buffers.value().serve(loader);
   tinygltf::Model model;
   std::string problem;
   std::string warning;
@@ -27,8 +30,8 @@ Result<tinygltf::Model> to_model(const std::filesystem::path& file, const Contai
   const bool ok =
       container.is_binary
           ? loader.LoadBinaryFromMemory(&model, &problem, &warning,
-                                        reinterpret_cast<const unsigned char*>(bytes.data()), length, folder)
-          : loader.LoadASCIIFromString(&model, &problem, &warning, bytes.data(), length, folder);
+                                        reinterpret_cast<const unsigned char*>(bytes.data()), length, "")
+          : loader.LoadASCIIFromString(&model, &problem, &warning, bytes.data(), length, "");
   if (!ok) {
     while (!problem.empty() && std::isspace(static_cast<unsigned char>(problem.back()))) problem.pop_back();
     return Error{file.string(), "not a valid glTF 2.0 file: " + problem, "Export the file again"};

@@ -17,10 +17,9 @@ std::string shown(const nlohmann::json& value) {
 }
 
 std::string range_text(const Range& range) {
-  if (range.low == 0.0 && range.high >= 1e9)
-    return range.above_low ? "a number above 0" : "a number of at least 0";
-  if (range.high >= 1e9) return "a number";
-  return "a number from " + short_number(range.low) + " to " + short_number(range.high) +
+  const std::string high = short_number(range.high);
+  if (range.low == 0.0 && range.above_low) return "a number above 0, at most " + high;
+  return "a number from " + short_number(range.low) + " to " + high +
          (range.above_low ? " (not " + short_number(range.low) + " itself)" : "");
 }
 

@@ -37,7 +37,8 @@ TEST(FieldErrors, UneditedCupLoads) {
 TEST(FieldErrors, NumbersOutOfRange) {
   expect_field_error("cup", "mass_kg", -1.0, {"-1", "above 0"});
   expect_field_error("cup", "mass_kg", 0, {"0", "above 0"});
-  expect_field_error("cup", "viscosity_pa_s", -0.5, {"-0.5"});
+  expect_field_error("cup", "mass_kg", 1e300, {"1e+300", "above 0, at most 1e+09"});
+  expect_field_error("cup", "viscosity_pa_s", -0.5, {"-0.5", "from 0 to 1e+07"});
   expect_field_error("cup", "friction", -1, {"-1"});
   expect_field_error("cup", "restitution", 1.5, {"1.5", "0 to 1"});
   expect_field_error("cup", "particle_density_kg_m3", -3, {"-3"});
