@@ -1,6 +1,7 @@
 #include "peer/output/child_process.h"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <spawn.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
@@ -8,17 +9,38 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstring>
 #include <system_error>
+
+#include "net/text/clean.h"
 
 namespace slosh {
 namespace {
 
-std::string last_line(int file) {
-  const off_t size = lseek(file, 0, SEEK_END);
-  const off_t from = std::max<off_t>(0, size - 400);
-  std::string text(static_cast<std::size_t>(size - from), '\0');
-  const ssize_t got = pread(file, text.data(), text.size(), from);
-  text.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
+constexpr std::size_t kMostSaid = 400;  // bytes of what a child said that an error repeats
+
+/// A file in memory rather than a pipe: nobody has to read along for the child not to stop.
+int memory_file(const char* name) {
+  return memfd_create(name, MFD_CLOEXEC);
+}
+
+/// Everything that a file holds; closes it.
+std::string take_all(int& file) {
+  if (file < 0) return {};
+  std::string text(static_cast<std::size_t>(std::max<off_t>(0, lseek(file, 0, SEEK_END))), '\0');
+  std::size_t at = 0;
+  while (at < text.size()) {
+    const ssize_t got = pread(file, text.data() + at, text.size() - at, static_cast<off_t>(at));
+    if (got <= 0 && errno != EINTR) break;
+    at += got > 0 ? static_cast<std::size_t>(got) : 0;
+  }
+  text.resize(at);
+  close(file);
+  file = -1;
+  return text;
+}
+
+std::string last_line(std::string text) {
   while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
   const std::size_t line = text.rfind('\n');
   return line == std::string::npos ? text : text.substr(line + 1);
@@ -26,8 +48,8 @@ std::string last_line(int file) {
 
 }  // namespace
 
-ChildProcess::ChildProcess(std::string name, pid_t pid, int input, int log)
-    : name_(std::move(name)), pid_(pid), input_(input), log_(log) {}
+ChildProcess::ChildProcess(std::string name, pid_t pid, int input, int written, int said)
+    : name_(std::move(name)), pid_(pid), input_(input), written_(written), said_(said) {}
 
 ChildProcess::~ChildProcess() {
   (void)finish();
@@ -37,21 +59,21 @@ Result<std::unique_ptr<ChildProcess>> ChildProcess::start(const std::vector<std:
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0)
     return Error{arguments[0], std::generic_category().message(errno), "Close other programs"};
-  // A file in memory rather than a pipe: nobody has to read along for the child not to stop.
-  const int log = memfd_create("child-log", MFD_CLOEXEC);
+  int written = memory_file("child-stdout");
+  int said = memory_file("child-stderr");
 
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
   posix_spawn_file_actions_adddup2(&files, ends[0], STDIN_FILENO);
-  posix_spawn_file_actions_adddup2(&files, log, STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&files, log, STDERR_FILENO);
+  posix_spawn_file_actions_adddup2(&files, written, STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&files, said, STDERR_FILENO);
   posix_spawnattr_t how;
   posix_spawnattr_init(&how);
   posix_spawnattr_setflags(&how, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF);
   posix_spawnattr_setpgroup(&how, 0);
   sigset_t defaults;
   sigemptyset(&defaults);
-  sigaddset(&defaults, SIGPIPE);
+  for (const int ignored_here : {SIGPIPE, SIGXFSZ}) sigaddset(&defaults, ignored_here);
   posix_spawnattr_setsigdefault(&how, &defaults);
 
   std::vector<char*> argv;
@@ -64,11 +86,13 @@ Result<std::unique_ptr<ChildProcess>> ChildProcess::start(const std::vector<std:
   close(ends[0]);
   if (failed != 0) {
     close(ends[1]);
-    if (log >= 0) close(log);
+    for (const int file : {written, said}) {
+      if (file >= 0) close(file);
+    }
     return Error{arguments[0], std::string("cannot be started: ") + std::generic_category().message(failed),
                  "Install it (the launcher ./slosh does)"};
   }
-  return std::unique_ptr<ChildProcess>(new ChildProcess(arguments[0], pid, ends[1], log));
+  return std::unique_ptr<ChildProcess>(new ChildProcess(arguments[0], pid, ends[1], written, said));
 }
 
 bool ChildProcess::write(const void* data, std::size_t bytes) {
@@ -91,12 +115,13 @@ Result<bool> ChildProcess::finish() {
   while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
   }
   pid_ = -1;
-  const std::string said = log_ >= 0 ? last_line(log_) : std::string();
-  if (log_ >= 0) close(log_);
-  log_ = -1;
+  output_ = take_all(written_);
+  const std::string said = last_line(take_all(said_));
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return true;
-  return Error{name_, said.empty() ? "failed" : "failed: " + said,
-               "Check the disk's free space and the folder"};
+  std::string what = "failed";
+  if (WIFSIGNALED(status)) what = std::string("was ended by a signal (") + strsignal(WTERMSIG(status)) + ")";
+  if (!said.empty()) what += ": " + clean_text(said, kMostSaid);
+  return Error{name_, what, "Check the disk's free space and the folder"};
 }
 
 }  // namespace slosh

@@ -13,7 +13,8 @@
 namespace slosh {
 
 /// Started in a process group of its own, so that Ctrl-C reaches this program alone and the child can finish
-/// its file. Its output is kept and shown when it fails. SIGPIPE must be ignored by the process.
+/// its file. What it says on stderr is kept and shown when it fails, what it writes to stdout is kept for
+/// output(). No shell is between. SIGPIPE must be ignored by the process.
 class ChildProcess {
  public:
   /// `arguments[0]` is looked up in PATH. Errors: it is not installed or cannot start.
@@ -26,13 +27,17 @@ class ChildProcess {
   bool write(const void* data, std::size_t bytes);
   /// Closes its input, waits for its end. Errors: it failed; the end of what it said is in `what`.
   Result<bool> finish();
+  /// After finish(): every byte of its standard output.
+  const std::string& output() const { return output_; }
 
  private:
-  ChildProcess(std::string name, pid_t pid, int input, int log);
+  ChildProcess(std::string name, pid_t pid, int input, int written, int said);
   std::string name_;
+  std::string output_;
   pid_t pid_;
   int input_;
-  int log_;
+  int written_;  // its stdout, a file in memory
+  int said_;     // its stderr, likewise
 };
 
 }  // namespace slosh

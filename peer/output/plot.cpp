@@ -7,8 +7,10 @@
 #include <fstream>
 #include <iterator>
 
+#include "net/text/clean.h"
 #include "peer/output/child_process.h"
 #include "peer/output/recorder.h"
+#include "peer/output/whole_file.h"
 #include "peer/palette.h"
 
 namespace slosh {
@@ -16,12 +18,26 @@ namespace {
 
 constexpr std::size_t kPlotRows = 1500;
 
-/// Gnuplot's double-quoted strings interpret backslashes and quotes; its enhanced text is switched off.
-std::string quoted(const std::string& text) {
+// What there is room for.
+constexpr std::size_t kMostHandBytes = 24;    // of a hand's name in the legend
+constexpr std::size_t kMostTitleBytes = 120;  // of the picture's title
+
+/// A text from elsewhere, cut to its place.
+std::string shortened(const std::string& text, std::size_t most_bytes) {
+  std::string shown = clean_text(text, most_bytes);
+  if (clean_text(text, most_bytes + 4).size() > shown.size()) shown += "…";
+  return shown;
+}
+
+/// A text as a string of gnuplot's. Gnuplot runs what stands in backquotes in a string, and its single-quoted
+/// strings end at a doubled quote that comes first: so no character of a name may reach its parser. Every
+/// byte is written as a number, `\ooo`, which gnuplot turns into text after it has parsed.
+std::string as_data(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c == '\n' ? ' ' : c;
+    char octal[8];
+    std::snprintf(octal, sizeof octal, "\\%03o", static_cast<unsigned>(static_cast<unsigned char>(c)));
+    out += octal;
   }
   return out + "\"";
 }
@@ -71,12 +87,13 @@ void add_curves(std::string& script, const std::vector<WrenchSeries>& series,
     const double later = static_cast<double>(i) / static_cast<double>(std::max<std::size_t>(shown.back(), 1));
     const std::string width = last ? "1.8" : later < 0.5 ? "3.4" : "2.6";
     const std::string color = std::string("lc rgb \"") + device_color(i).hex;
-    const std::string name = i < names.size() ? names[i] : "device " + std::to_string(i);
+    const std::string name =
+        i < names.size() ? shortened(names[i], kMostHandBytes) : "device " + std::to_string(i);
     script += "  " + data + " using 1:" + std::to_string(magnitude_column + 1 + axis) + " with lines lw 1 " +
               std::string("lc rgb \"#90") + (device_color(i).hex + 1) + "\" title " +
-              quoted(name + ": " + quantity + " " + kAxes[axis]) + ", \\\n";
+              as_data(name + ": " + quantity + " " + kAxes[axis]) + ", \\\n";
     script += "  " + data + " using 1:" + std::to_string(magnitude_column) + " with lines lw " + width + " " +
-              color + "\" title " + quoted(name + ": magnitude") + (last ? "\n" : ", \\\n");
+              color + "\" title " + as_data(name + ": magnitude") + (last ? "\n" : ", \\\n");
   }
 }
 
@@ -136,7 +153,7 @@ WrenchSeries thinned(const WrenchSeries& series, std::size_t rows) {
 }
 
 std::string plot_script(const std::vector<WrenchSeries>& series, const std::vector<std::string>& names,
-                        const std::string& title, const std::filesystem::path& png) {
+                        const std::string& title) {
   std::string script;
   for (std::size_t i = 0; i < series.size(); ++i) {
     script += "$device" + std::to_string(i) + " << END_OF_DATA\n";
@@ -150,7 +167,6 @@ std::string plot_script(const std::vector<WrenchSeries>& series, const std::vect
   script += "set encoding utf8\n";
   script +=
       "set terminal pngcairo size 1200,900 noenhanced font \"DejaVu Sans,12\" background rgb \"white\"\n";
-  script += "set output " + quoted(png.string()) + "\n";
   script +=
       "set multiplot layout 2,1 margins 0.075,0.79,0.075,0.925 spacing 0,0.06\n"
       "set border 3 lc rgb \"#606060\"\n"
@@ -160,7 +176,7 @@ std::string plot_script(const std::vector<WrenchSeries>& series, const std::vect
       "set xzeroaxis lt 1 lc rgb \"#a0a0a0\"\n"
       "set autoscale xfix\n"
       "set offsets 0,0,graph 0.04,graph 0.04\n";
-  script += "set title " + quoted(title) + " font \"DejaVu Sans,14\"\n";
+  script += "set title " + as_data(shortened(title, kMostTitleBytes)) + " font \"DejaVu Sans,14\"\n";
   script += "set ylabel \"force on the hand, N\"\nset format x \"\"\n";
   add_curves(script, series, names, "along", 2, force_axis);
   script += "unset title\nset format x \"%g\"\nset xlabel \"simulated time, s\"\n";
@@ -176,12 +192,14 @@ Result<bool> plot_wrenches(const std::filesystem::path& csv, const std::vector<s
   if (!series) return series.error();
   const bool nothing = std::all_of(series.value().begin(), series.value().end(),
                                    [](const WrenchSeries& s) { return s.time.size() < 2; });
-  if (nothing) return Error{csv.string(), "holds nothing to plot", "Run longer"};
-  Result<std::unique_ptr<ChildProcess>> gnuplot = ChildProcess::start({"gnuplot", "-"});
+  if (nothing) return false;
+  Result<std::unique_ptr<ChildProcess>> gnuplot = ChildProcess::start({"gnuplot", "--default-settings", "-"});
   if (!gnuplot) return gnuplot.error();
-  const std::string script = plot_script(series.value(), names, title, png);
+  const std::string script = plot_script(series.value(), names, title);
   gnuplot.value()->write(script.data(), script.size());
-  return gnuplot.value()->finish();
+  const Result<bool> drawn = gnuplot.value()->finish();
+  if (!drawn) return drawn.error();
+  return write_whole(png, gnuplot.value()->output());
 }
 
 }  // namespace slosh

@@ -4,8 +4,11 @@
 
 #include <cmath>
 #include <csignal>
+#include <cstdio>
 #include <fstream>
 
+#include "net/text/clean.h"
+#include "peer/output/child_process.h"
 #include "peer/output/recorder.h"
 #include "peer/palette.h"
 #include "render/image.h"
@@ -15,6 +18,38 @@ namespace {
 
 std::filesystem::path temporary(const std::string& name) {
   return std::filesystem::path(::testing::TempDir()) / ("plot_test_" + name);
+}
+
+/// As a script of gnuplot's has text.
+std::string in_octal(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    char octal[8];
+    std::snprintf(octal, sizeof octal, "\\%03o", static_cast<unsigned char>(c));
+    out += octal;
+  }
+  return out;
+}
+
+std::string in_xml(const std::string& text) {
+  std::string out;
+  for (const char c : text)
+    out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c);
+  return out;
+}
+
+/// What gnuplot draws by a script of ours, as text in place of pixels.
+std::string drawn_as_svg(std::string script) {
+  std::signal(SIGPIPE, SIG_IGN);
+  const std::size_t at = script.find("pngcairo");
+  EXPECT_NE(at, std::string::npos);
+  script.replace(at, script.find(" size", at) - at, "svg");
+  Result<std::unique_ptr<ChildProcess>> gnuplot = ChildProcess::start({"gnuplot", "--default-settings", "-"});
+  EXPECT_TRUE(gnuplot);
+  gnuplot.value()->write(script.data(), script.size());
+  const Result<bool> drawn = gnuplot.value()->finish();
+  EXPECT_TRUE(drawn) << drawn.error().text();
+  return gnuplot.value()->output();
 }
 
 void write_rows(const std::filesystem::path& file, int rows) {
@@ -62,14 +97,57 @@ TEST(Thinned, KeepsMeansAndTheNumberOfRows) {
 TEST(PlotScript, ForceAboveTorqueBelowOneColourADevice) {
   const std::filesystem::path file = temporary("script.csv");
   write_rows(file, 100);
-  const std::string script =
-      plot_script(read_wrenches(file).value(), {"left \"hand\"", "right"}, "a title", "out.png");
+  const std::string script = plot_script(read_wrenches(file).value(), {"left", "right"}, "a title");
   EXPECT_LT(script.find("force on the hand, N"), script.find("torque on the hand, N·m"));
   EXPECT_NE(script.find(device_color(0).hex), std::string::npos);
   EXPECT_NE(script.find(device_color(1).hex), std::string::npos);
-  EXPECT_NE(script.find("left \\\"hand\\\": magnitude"), std::string::npos) << "quotes are escaped";
-  EXPECT_NE(script.find("right: along y"), std::string::npos) << "the force varies most along y";
-  EXPECT_NE(script.find("set output \"out.png\""), std::string::npos);
+  EXPECT_NE(script.find(in_octal("left: magnitude")), std::string::npos);
+  EXPECT_NE(script.find(in_octal("right: along y")), std::string::npos) << "the force varies most along y";
+  EXPECT_EQ(script.find("set output"), std::string::npos) << "a path may begin with | and be run";
+}
+
+/// What a stranger may call a grip or a scene, each of which would make `marker` if any of it were obeyed.
+std::vector<std::string> hostile_names(const std::string& marker) {
+  const std::string touch = "touch " + marker;
+  return {"`" + touch + "`",
+          "\"`" + touch + "`\"",
+          "$(" + touch + ")",
+          "\"; system(\"" + touch + "\"); x=\"",
+          "'; system(\"" + touch + "\"); x='",
+          "''; system(\"" + touch + "\"); x=''",
+          "\\\"; system(\"" + touch + "\") #",
+          "a\nsystem(\"" + touch + "\")\nb",
+          "a\r!" + touch,
+          "!" + touch,
+          "|" + touch,
+          "< " + touch,
+          "@`" + touch + "`",
+          "@GPVAL_TERM",
+          "{/:Bold x}^2_3",
+          "END_OF_DATA\nsystem(\"" + touch + "\")",
+          "%s%n%d",
+          "\xff\xfe" + touch,
+          "\u009b31m",
+          std::string(4096, '`') + touch + std::string(100, '`')};
+}
+
+TEST(PlotScript, WhatNamesAreMadeOfIsNeverParsed) {
+  const std::filesystem::path marker = temporary("obeyed");
+  std::filesystem::remove(marker);
+  const std::filesystem::path file = temporary("hostile.csv");
+  write_rows(file, 10);
+  const std::vector<WrenchSeries> series = read_wrenches(file).value();
+  for (const std::string& name : hostile_names(marker.string())) {
+    const std::string script = plot_script(series, {name, "other"}, name);
+    EXPECT_EQ(script.find('`'), std::string::npos) << name;
+    EXPECT_EQ(script.find("touch"), std::string::npos) << name;
+    // The same script, but drawn as text that can be read.
+    const std::string drawn = drawn_as_svg(script);
+    EXPECT_FALSE(std::filesystem::exists(marker)) << name;
+    const std::string first = clean_text(name, 12);
+    EXPECT_NE(drawn.find(in_xml(first)), std::string::npos) << "the name is shown as it is: " << name;
+    EXPECT_EQ(drawn.find(std::string(200, '`')), std::string::npos) << "and not longer than its place";
+  }
 }
 
 TEST(PlotWrenches, GnuplotDrawsBothColours) {
@@ -93,10 +171,13 @@ TEST(PlotWrenches, GnuplotDrawsBothColours) {
   EXPECT_GT(blue, 1000);
 }
 
-TEST(PlotWrenches, NothingRecordedIsAnError) {
+TEST(PlotWrenches, NothingRecordedIsNothingToPlot) {
   const std::filesystem::path file = temporary("nothing.csv");
   std::ofstream(file) << kWrenchesHeader << '\n';
-  EXPECT_FALSE(plot_wrenches(file, {}, "test", temporary("nothing.png")));
+  const Result<bool> drawn = plot_wrenches(file, {}, "test", temporary("nothing.png"));
+  ASSERT_TRUE(drawn) << drawn.error().text();
+  EXPECT_FALSE(drawn.value());
+  EXPECT_FALSE(std::filesystem::exists(temporary("nothing.png")));
 }
 
 }  // namespace
