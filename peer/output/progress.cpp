@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "net/clock.h"
+#include "net/text/clean.h"
 
 namespace slosh {
 namespace {
@@ -44,6 +45,12 @@ std::string cut(const std::string& text, std::size_t most) {
   return text;
 }
 
+/// What is shown may have come from anywhere, a host's words or something pasted: a terminal obeys none of it.
+std::string fit(const std::string& text) {
+  constexpr std::size_t kMost = 100'000;
+  return clean_lines(text, kMost);
+}
+
 }  // namespace
 
 std::size_t columns(const std::string& text) {
@@ -74,7 +81,7 @@ void Progress::clear_line() {
 void Progress::show() {
   constexpr char kPrompt[] = "> ";
   const std::string line = typed_.empty() ? cut(status_, terminal_width() - 1)
-                                          : kPrompt + tail(typed_, terminal_width() - sizeof kPrompt);
+                                          : kPrompt + tail(fit(typed_), terminal_width() - sizeof kPrompt);
   std::fprintf(stderr, "\r\033[K%s", line.c_str());
   std::fflush(stderr);
   line_open_ = line_moves_ = true;
@@ -89,9 +96,9 @@ void Progress::typed(const std::string& text) {
 void Progress::answer(const std::string& line, const std::string& text) {
   clear_line();
   typed_.clear();
-  if (!line.empty()) std::fprintf(stderr, "> %s\n", line.c_str());
+  if (!line.empty()) std::fprintf(stderr, "> %s\n", fit(line).c_str());
   std::fflush(stderr);
-  if (!text.empty()) std::printf("%s\n", text.c_str());
+  if (!text.empty()) std::printf("%s\n", fit(text).c_str());
   std::fflush(stdout);
 }
 
@@ -99,7 +106,7 @@ void Progress::phase(const std::string& name, const std::string& detail) {
   end_line();
   phase_ = name;
   status_ = name;
-  const std::string line = detail.empty() ? name : name + " " + detail;
+  const std::string line = fit(detail.empty() ? name : name + " " + detail);
   if (terminal_) {
     std::fprintf(stderr, "%s …", line.c_str());
     line_open_ = true;
@@ -116,7 +123,7 @@ void Progress::update(double fraction, const std::string& text) {
   last_line_ns_ = now_ns;
   char percent[16] = "";
   if (fraction >= 0.0) std::snprintf(percent, sizeof percent, " %3.0f %%", 100.0 * std::min(fraction, 1.0));
-  const std::string line = phase_ + percent + "  " + text;
+  const std::string line = phase_ + percent + "  " + fit(text);
   if (terminal_) {
     status_ = line;
     if (typed_.empty()) show();
@@ -132,7 +139,7 @@ void Progress::note(const std::string& text) {
     clear_line();
   else
     end_line();
-  std::fprintf(stderr, "%s\n", text.c_str());
+  std::fprintf(stderr, "%s\n", fit(text).c_str());
   std::fflush(stderr);
   if (!typed_.empty()) show();
 }

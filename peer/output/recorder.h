@@ -2,13 +2,15 @@
 #pragma once
 
 #include <atomic>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
 
 #include "peer/haptics/servo.h"
+#include "peer/output/table.h"
 #include "sim/math/result.h"
 
 namespace slosh {
@@ -35,23 +37,20 @@ class Recorder {
   void stop();
   const std::vector<Peak>& peaks() const { return peaks_; }  ///< after stop(), one a device
   std::uint64_t rows() const { return rows_; }               ///< after stop()
-  bool write_failed() const { return failed_; }              ///< after stop(): the disk was full, say
+  /// Which table has ended early and why; empty while none has. At any time, from any thread.
+  std::string problem() const;
 
  private:
-  struct CloseFile {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-  using File = std::unique_ptr<std::FILE, CloseFile>;
-
-  Recorder(Servo& servo, File wrenches, File poses);
+  Recorder(Servo& servo, std::unique_ptr<Table> wrenches, std::unique_ptr<Table> poses);
   void drain();
 
   Servo& servo_;
-  File wrenches_;
-  File poses_;
+  std::unique_ptr<Table> wrenches_;  // null without a folder, as the other
+  std::unique_ptr<Table> poses_;
   std::vector<Peak> peaks_;
   std::uint64_t rows_ = 0;
-  bool failed_ = false;
+  mutable std::mutex problem_mutex_;
+  std::string problem_;
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

@@ -1,11 +1,10 @@
 #include "peer/output/summary.h"
 
-#include <cerrno>
 #include <cstdio>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <system_error>
 
+#include "net/text/clean.h"
+#include "peer/output/whole_file.h"
 #include "sim/snapshot.h"
 
 namespace slosh {
@@ -19,7 +18,7 @@ Json spread(const Spread& s) {
 
 template <class... Numbers>
 std::string format(const char* pattern, Numbers... numbers) {
-  char text[400];
+  char text[2000];
   std::snprintf(text, sizeof text, pattern, numbers...);
   return text;
 }
@@ -145,10 +144,12 @@ Json to_json(const RunSummary& s) {
   if (!s.recording.empty()) json["recording"] = {{"file", s.recording}, {"problem", s.recording_problem}};
   if (s.network) json["network"] = network_json(*s.network);
   json["files"] = s.files;
+  json["problems"] = s.problems;
   return json;
 }
 
 std::string in_words(const RunSummary& s) {
+  constexpr std::size_t kMost = 20'000;
   std::string text = s.network ? network_words(s, *s.network) : world_words(s);
   if (!s.devices.empty() && s.device_ticks > 0) {
     text += format("The device loop ran every %.0f µs (p99 %.0f, longest %.0f, %s missed, %s).\n",
@@ -181,24 +182,12 @@ std::string in_words(const RunSummary& s) {
     for (std::size_t i = 0; i < s.files.size(); ++i) text += (i == 0 ? " " : ", ") + s.files[i];
     text += ".\n";
   }
-  return text;
+  return clean_lines(text, kMost);
 }
 
 Result<bool> write_summary(const std::filesystem::path& file, const RunSummary& summary) {
-  const std::filesystem::path part = file.string() + ".part";
-  {
-    std::ofstream out(part);
-    out << to_json(summary).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
-    if (!out.flush()) {
-      return Error{file.string(), std::string("cannot be written: ") + std::generic_category().message(errno),
-                   "Choose another folder with --out"};
-    }
-  }
-  std::error_code code;
-  std::filesystem::rename(part, file, code);
-  if (code)
-    return Error{file.string(), "cannot be written: " + code.message(), "Choose another folder with --out"};
-  return true;
+  return write_whole(
+      file, to_json(summary).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace slosh

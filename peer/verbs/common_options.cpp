@@ -1,8 +1,37 @@
 #include "peer/verbs/common_options.h"
 
 #include <CLI/CLI.hpp>
+#include <charconv>
+#include <cstdio>
 
 namespace slosh {
+
+CLI::Validator in_range(double least, double most) {
+  const auto shown = [](double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%g", value);
+    return std::string(text);
+  };
+  const std::string range = shown(least) + " to " + shown(most);
+  return CLI::Validator(
+      [=](std::string& text) {
+        double value = 0.0;
+        const char* end = text.data() + text.size();
+        const auto [at, code] = std::from_chars(text.data(), end, value);
+        const bool fine = code == std::errc() && at == end && value >= least && value <= most;
+        return fine ? std::string() : "'" + text + "' is not a number from " + range;
+      },
+      "from " + range);
+}
+
+void add_seconds_option(CLI::App& verb, double& seconds, double least, const std::string& text) {
+  verb.add_option("--seconds", seconds, text)->check(in_range(least, 1e6));
+}
+
+void add_out_options(CLI::App& verb, ShowOptions& options, const std::string& text) {
+  CLI::Option* out = verb.add_option("--out", options.out, text);
+  verb.add_flag("--overwrite", options.overwrite, "What an earlier run left in --out may be lost")->needs(out);
+}
 
 void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window) {
   if (has_window) verb.add_flag("--headless", options.headless, "No window, even with a display");
@@ -10,7 +39,7 @@ void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window) {
                   has_window ? "Picture in pixels, WxH (640x480 headless, 1280x720 in a window)"
                              : "Picture in pixels, WxH (640x480)");
   verb.add_option("--fps", options.frames_per_second, "Pictures a second of the film")
-      ->check(CLI::Range(1.0, 240.0))
+      ->check(in_range(1.0, 240.0))
       ->capture_default_str();
   verb.add_option("--bilateral", options.bilateral, "Iterations of the fluid surface's filter")
       ->check(CLI::Range(0, 64))

@@ -2,11 +2,21 @@
 #pragma once
 
 #include <CLI/App.hpp>
+#include <CLI/Validators.hpp>
 #include <string>
 
 #include "peer/verbs/play_options.h"
 
 namespace slosh {
+
+/// A number from `least` to `most`: "nan" and "inf", which CLI::Range lets through, are none.
+CLI::Validator in_range(double least, double most);
+
+/// --seconds with `text`, from `least` up.
+void add_seconds_option(CLI::App& verb, double& seconds, double least, const std::string& text);
+
+/// Where the files of a run go: --out with `text`, --overwrite.
+void add_out_options(CLI::App& verb, ShowOptions& options, const std::string& text);
 
 /// How a run is drawn: --size, --fps, --bilateral, --no-render. `has_window`: the verb can also open one.
 /// `verb` and `options` must outlive the parsing.

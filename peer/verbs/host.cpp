@@ -74,8 +74,7 @@ void add_host(CLI::App& app, VerbRun& chosen) {
       ->capture_default_str();
   verb->add_flag("--lock-parameters", o->lock_parameters,
                  "Only the host sets viscosity and gravity (else everybody who may take hold, too)");
-  verb->add_option("--seconds", o->seconds, "Simulated seconds (until it is ended)")
-      ->check(CLI::Range(0.01, 1e6));
+  add_seconds_option(*verb, o->seconds, 0.01, "Simulated seconds (until it is ended)");
   add_world_options(*verb, *o, "all but one");
   verb->add_option("--record", o->record, "File to record the run in; slosh replay plays it again");
   verb->add_option("--checkpoint", o->checkpoint,

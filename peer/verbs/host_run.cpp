@@ -142,7 +142,7 @@ std::string run_session(HostSession& session, Progress& progress, HostReins* rei
 }
 
 int run_host(const HostVerbOptions& options, HostReins* reins) {
-  catch_interrupts();
+  end_at_interrupts();
   signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error like a full disk, and no reason to die
   Progress progress;
   Result<HostedWorld> hosted = make_hosted_world(options, progress);
@@ -150,6 +150,7 @@ int run_host(const HostVerbOptions& options, HostReins* reins) {
     progress.note("");
     return fail(hosted.error());
   }
+  catch_interrupts();
   Result<std::unique_ptr<HostSession>> created = HostSession::create(hosted.value(), options);
   if (!created) {
     progress.note("");

@@ -2,7 +2,9 @@
 #include <cstdio>
 #include <memory>
 
+#include "net/text/clean.h"
 #include "peer/output/summary.h"
+#include "peer/verbs/common_options.h"
 #include "peer/verbs/prepare.h"
 #include "peer/verbs/verbs.h"
 #include "scenes/load.h"
@@ -103,14 +105,15 @@ void add_plan(CLI::App& app, VerbRun& chosen) {
   auto spacing = std::make_shared<double>(0.0);
   verb->add_option("SCENE", *name, "A shipped scene's name, or a .gltf or .glb file")->required();
   verb->add_option("--spacing", *spacing, "Metres between particles (the scene's own, else its coarsest)")
-      ->check(CLI::Range(1e-4, 1.0));
+      ->check(in_range(1e-4, 1.0));
   verb->footer("Examples:\n  slosh plan bucket\n  slosh plan pour --spacing 0.008");
   verb->callback(
       [&chosen, name, spacing] { chosen = [name, spacing] { return print_plan(*name, *spacing); }; });
 }
 
 int fail(const Error& error) {
-  std::string text = error.text();
+  constexpr std::size_t kMost = 4000;
+  std::string text = clean_lines(error.text(), kMost);
   if (!text.empty() && text.back() != '.') text += '.';
   std::fprintf(stderr, "slosh: %s\n", text.c_str());
   return kExitFailed;

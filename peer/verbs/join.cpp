@@ -67,16 +67,6 @@ constexpr const char* kWatchEnd =
     "  slosh watch LINK\n"
     "  slosh watch LINK --headless --seconds 10 --out out/film";
 
-/// Letters and digits only: names come from elsewhere and become a folder.
-std::string safe(const std::string& name, const char* otherwise) {
-  std::string out;
-  for (const char c : name) {
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-    if (out.size() < 40) out += plain || c == '_' ? c : '-';
-  }
-  return out.empty() ? otherwise : out;
-}
-
 /// Waits for the scene and the first state. Errors: no answer, refused, a bad host, Ctrl-C.
 Result<bool> wait_for_world(RemoteSession& session, Progress& progress) {
   for (;;) {
@@ -149,9 +139,8 @@ int join(JoinOptions options) {
   Stage stage;
   stage.scene = session.world().scene;
   stage.machine = this_machine();
-  if (options.out.empty() && headless) {
-    options.out = "out/" + safe(stage.scene.name, "scene") + "-" + safe(status.welcome.name, "peer");
-  }
+  options.default_out =
+      "out/" + folder_name(stage.scene.name, "scene") + "-" + folder_name(status.welcome.name, "peer");
   const Result<bool> set = set_stage(options, headless, stage);
   if (!set) return fail(set.error());
   // Somebody else's world runs for as long as they like.
@@ -192,9 +181,8 @@ void add(CLI::App& app, VerbRun& chosen, bool watch) {
                      "script, mouse or replay:FILE; one for all your hands, or one each, in order")
         ->allow_extra_args(false);
   }
-  verb->add_option("--seconds", o->seconds, "Simulated seconds to stay (until the host ends)")
-      ->check(CLI::Range(0.01, 1e6));
-  verb->add_option("--out", o->out, "Folder for the results (headless: out/<scene>-<name>; a window: none)");
+  add_seconds_option(*verb, o->seconds, 0.01, "Simulated seconds to stay (until the host ends)");
+  add_out_options(*verb, *o, "Folder for the results (headless: out/<scene>-<name>, numbered; a window: none)");
   add_show_options(*verb, *o, true);
   verb->add_option("--key", o->key, "File with your key, made on first use (one for each person)");
   verb->footer(std::string(kFiles) + (watch ? kWatchFiles : kJoinFiles) + peer_console_help() +

@@ -33,7 +33,7 @@ constexpr const char* kFooter =
     "  slosh play bucket --headless --device replay:out/bucket/poses.csv";
 
 int play(const PlayOptions& options) {
-  catch_interrupts();
+  end_at_interrupts();
   Progress progress;
   bool headless = options.headless || !options.render;
   if (!headless && !display_available()) {
@@ -59,10 +59,10 @@ void add_play(CLI::App& app, VerbRun& chosen) {
   auto o = std::make_shared<PlayOptions>();
   verb->add_option("SCENE", o->scene, "A shipped scene's name, or a .gltf or .glb file")
       ->capture_default_str();
-  verb->add_option("--seconds", o->seconds,
-                   "Simulated seconds (the scene's duration; a window: until closed)")
-      ->check(CLI::Range(0.01, 1e6));
-  verb->add_option("--out", o->out, "Folder for the results (headless: out/<scene>; a window: none)");
+  add_seconds_option(*verb, o->seconds, 0.01,
+                     "Simulated seconds (the scene's duration; a window: until closed)");
+  add_out_options(*verb, *o,
+                  "Folder for the results (headless: out/<scene>, or out/<scene>-2 and so on; a window: none)");
   add_show_options(*verb, *o, true);
   add_world_options(*verb, *o, "all but one; all with --no-render");
   verb->add_option("--device", o->devices, "script, mouse or replay:FILE; one for all handles, or one each")

@@ -30,6 +30,7 @@ void fill_view(RunSummary& summary, const HeadlessView& view, const ViewOptions&
   if (report.frames > 0) {
     if (report.problem.empty()) summary.files.insert(summary.files.end(), {"view.mp4", "final.png"});
   }
+  if (!report.problem.empty()) summary.problems.push_back("the film: " + report.problem);
 }
 
 }  // namespace
@@ -54,6 +55,13 @@ void hear_lines(LiveRun& run, LineInput* input, Progress& progress) {
   for (const std::string& line : input->read())
     progress.answer(input->edits() ? line : std::string(), run.hear(line));
   progress.typed(input->typed());
+}
+
+void TroubleTeller::tell(const LiveRun& run, Progress& progress) {
+  const std::string trouble = run.trouble();
+  if (trouble == told_) return;
+  told_ = trouble;
+  progress.note("slosh: " + trouble + "; the run goes on");
 }
 
 Result<bool> show_headless(const Stage& stage, LiveRun& run, const ShowOptions& options, Progress& progress,
@@ -82,12 +90,14 @@ Result<bool> show_headless(const Stage& stage, LiveRun& run, const ShowOptions& 
   run.start();
   std::optional<LineInput> input;
   if (run.hears()) input.emplace(progress.terminal());
+  TroubleTeller trouble;
   while (run.running()) {
     if (input)
       input->wait(kTurn);
     else
       std::this_thread::sleep_for(kTurn);
     hear_lines(run, input ? &*input : nullptr, progress);
+    trouble.tell(run, progress);
     const Rates rates = run.note_rates();
     progress.update(std::isfinite(stage.seconds) ? (rates.time - rates.start) / stage.seconds : -1.0,
                     running_text(rates, stage.seconds));
@@ -110,7 +120,6 @@ Result<bool> show_headless(const Stage& stage, LiveRun& run, const ShowOptions& 
   run.report(summary);
   if (view) {
     fill_view(summary, *view, view_options, run.pictures().dropped());
-    if (!view->report().problem.empty()) progress.note("slosh: the film: " + view->report().problem);
   }
   return true;
 }
@@ -124,6 +133,7 @@ Result<bool> play_headless(const Prepared& prepared, const PlayOptions& options,
   Result<std::unique_ptr<Session>> created =
       Session::create(prepared, std::move(devices.value()), picture_rate);
   if (!created) return created.error();
+  catch_interrupts();
   return show_headless(prepared, *created.value(), options, progress, summary);
 }
 

@@ -34,6 +34,15 @@ Result<bool> play_in_window(const Prepared& prepared, const PlayOptions& options
 /// Lines typed at a run go to it, their answers to stdout; nothing where the run hears none. Does not wait.
 void hear_lines(LiveRun& run, LineInput* input, Progress& progress);
 
+/// Tells once, when it begins, that the run's files are in trouble.
+class TroubleTeller {
+ public:
+  void tell(const LiveRun& run, Progress& progress);
+
+ private:
+  std::string told_;
+};
+
 /// "3.20 s of 10.00 s, real time × 0.98, devices 1000 Hz".
 std::string running_text(const Rates& rates, double seconds);
 

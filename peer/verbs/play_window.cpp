@@ -44,7 +44,7 @@ class WindowFilm {
     frames_ += 1;
   }
 
-  void finish(RunSummary& summary, Progress& progress) {
+  void finish(RunSummary& summary) {
     if (video_) {
       const Result<bool> finished = video_->finish();
       if (!finished) problem_ = finished.error().text();
@@ -52,7 +52,7 @@ class WindowFilm {
       if (!written) problem_ = written.error().text();
       if (problem_.empty()) summary.files.insert(summary.files.end(), {"view.mp4", "final.png"});
     }
-    if (!problem_.empty()) progress.note("slosh: the film: " + problem_);
+    if (!problem_.empty()) summary.problems.push_back("the film: " + problem_);
   }
 
  private:
@@ -83,6 +83,7 @@ class WindowRun {
   Outcome show(Progress& progress, Histogram& frame_time, std::uint64_t& frames) {
     SnapshotPointer snapshot;
     std::optional<LineInput> typed;
+    TroubleTeller trouble;
     if (run_.hears()) typed.emplace(progress.terminal());
     while (true) {
       const InputState& input = context_.poll();
@@ -91,6 +92,7 @@ class WindowRun {
       if (input.pressed(Key::kR) && !run_.start_again()) return Outcome::kAgain;
       handle(input);
       hear_lines(run_, typed ? &*typed : nullptr, progress);
+      trouble.tell(run_, progress);
       if (SnapshotPointer newest = run_.newest_picture()) {
         snapshot = std::move(newest);
         painter_.record(*snapshot);
@@ -198,7 +200,7 @@ Result<bool> show_in_window(const Stage& stage, const MakeRun& make_run, const S
     summary.frame_ms = {1e3 * frame_time.percentile(0.5), 1e3 * frame_time.percentile(0.99),
                         1e3 * frame_time.max()};
   }
-  film.finish(summary, progress);
+  film.finish(summary);
   return true;
 }
 
@@ -210,6 +212,7 @@ Result<bool> play_in_window(const Prepared& prepared, const PlayOptions& options
     Result<std::unique_ptr<Session>> session =
         Session::create(prepared, std::move(devices.value()), kWindowPictureRate);
     if (!session) return session.error();
+    catch_interrupts();
     return std::unique_ptr<LiveRun>(std::move(session.value()));
   };
   return show_in_window(prepared, make_run, options, progress, summary);

@@ -1,13 +1,19 @@
 #include "peer/verbs/prepare.h"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <optional>
+#include <system_error>
 #include <tuple>
 
 #include "host/auto_spacing.h"
+#include "peer/haptics/make_device.h"
 #include "peer/output/summary.h"
 #include "scenes/load.h"
 
@@ -26,19 +32,23 @@ Result<Spacing> spacing_for_particles(const Scene& scene, std::size_t particles)
   return Spacing{spacing, "asked for " + grouped(particles) + " fluid particles"};
 }
 
-Result<Spacing> choose(const Scene& scene, const PlayOptions& options, int threads, Backend backend,
-                       Progress& progress) {
-  if (options.particles > 0) return spacing_for_particles(scene, options.particles);
-  if (!options.spacing.empty() && options.spacing != "auto") {
-    double metres = 0.0;
-    const char* end = options.spacing.data() + options.spacing.size();
-    const auto [at, code] = std::from_chars(options.spacing.data(), end, metres);
-    if (code != std::errc() || at != end || !(metres >= 1e-4 && metres <= 1.0)) {
-      return Error{"--spacing", "'" + options.spacing + "' is neither auto nor 0.0001 to 1 metres",
-                   "For 10 mm give 0.01"};
-    }
-    return Spacing{metres, "asked for"};
+/// The number after --spacing; nothing where it is to be chosen.
+Result<std::optional<double>> asked_spacing(const PlayOptions& options) {
+  if (options.spacing.empty() || options.spacing == "auto") return std::optional<double>();
+  double metres = 0.0;
+  const char* end = options.spacing.data() + options.spacing.size();
+  const auto [at, code] = std::from_chars(options.spacing.data(), end, metres);
+  if (code != std::errc() || at != end || !(metres >= 1e-4 && metres <= 1.0)) {
+    return Error{"--spacing", "'" + options.spacing + "' is neither auto nor 0.0001 to 1 metres",
+                 "For 10 mm give 0.01"};
   }
+  return std::optional(metres);
+}
+
+Result<Spacing> choose(const Scene& scene, const PlayOptions& options, std::optional<double> asked,
+                       int threads, Backend backend, Progress& progress) {
+  if (options.particles > 0) return spacing_for_particles(scene, options.particles);
+  if (asked) return Spacing{*asked, "asked for"};
   if (options.spacing.empty() && scene.spacing > 0.0) return Spacing{scene.spacing, "the scene asks for it"};
 
   progress.phase("measuring");
@@ -51,17 +61,27 @@ Result<Spacing> choose(const Scene& scene, const PlayOptions& options, int threa
   return Spacing{choice.value().spacing, choice.value().reason};
 }
 
-Result<std::filesystem::path> make_folder(const ShowOptions& options, const Scene& scene, bool headless) {
-  if (options.out.empty() && !headless) return std::filesystem::path();
-  const std::filesystem::path folder =
-      options.out.empty() ? std::filesystem::path("out") / scene.name : std::filesystem::path(options.out);
+Result<RunFolder> take_folder(const ShowOptions& options, const Scene& scene, bool headless) {
+  if (!options.out.empty()) return RunFolder::take(options.out, options.overwrite);
+  if (!headless) return RunFolder();
+  if (!options.default_out.empty()) return RunFolder::take_free(options.default_out);
+  return RunFolder::take_free(std::filesystem::path("out") / folder_name(scene.name, "scene"));
+}
+
+/// Whether a recording can be begun there later. Errors: no such folder, not writable.
+Result<bool> check_record(const std::string& record) {
+  if (record.empty()) return true;
+  const std::filesystem::path file(record);
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
   std::error_code code;
-  std::filesystem::create_directories(folder, code);
-  if (code || !std::filesystem::is_directory(folder)) {
-    return Error{folder.string(), "cannot be made: " + (code ? code.message() : "it is a file"),
-                 "Choose another folder with --out"};
-  }
-  return folder;
+  const char* const mend = "Choose another file with --record";
+  if (!std::filesystem::is_directory(folder, code))
+    return Error{record, "there is no folder " + folder.string(), mend};
+  if (std::filesystem::is_directory(file, code)) return Error{record, "is a folder", mend};
+  const bool there = std::filesystem::exists(file, code);
+  if (access(there ? file.c_str() : folder.c_str(), there ? W_OK : W_OK | X_OK) != 0)
+    return Error{record, "cannot be written: " + std::generic_category().message(errno), mend};
+  return true;
 }
 
 }  // namespace
@@ -108,9 +128,10 @@ Result<bool> set_stage(const ShowOptions& options, bool headless, Stage& stage) 
   stage.seconds = options.seconds > 0.0 ? options.seconds
                   : headless            ? stage.scene.duration
                                         : std::numeric_limits<double>::infinity();
-  Result<std::filesystem::path> folder = make_folder(options, stage.scene, headless);
+  Result<RunFolder> folder = take_folder(options, stage.scene, headless);
   if (!folder) return folder.error();
-  stage.folder = folder.value();
+  stage.claim = folder.value();
+  stage.folder = stage.claim.path();
   return true;
 }
 
@@ -118,6 +139,12 @@ Result<Prepared> prepare(const PlayOptions& options, bool headless, Progress& pr
   Prepared p;
   const Result<Backend> backend = choose_backend(options.backend);
   if (!backend) return backend.error();
+  const Result<std::optional<double>> asked = asked_spacing(options);
+  if (!asked) return asked.error();
+  if (!options.size.empty()) {
+    if (const Result<std::pair<int, int>> size = parse_size(options.size); !size) return size.error();
+  }
+  if (const Result<bool> recordable = check_record(options.record); !recordable) return recordable.error();
   p.backend = backend.value();
   p.record = options.record;
   p.machine = this_machine();
@@ -129,10 +156,14 @@ Result<Prepared> prepare(const PlayOptions& options, bool headless, Progress& pr
   Result<Scene> scene = load_named_scene(options.scene);
   if (!scene) return scene.error();
   p.scene = std::move(scene.value());
+  if (!options.devices.empty()) {
+    const Result<DeviceSet> devices = make_devices(p.scene, options.devices, !headless);
+    if (!devices) return devices.error();
+  }
   const Result<bool> set = set_stage(options, headless, p);
   if (!set) return set.error();
 
-  const Result<Spacing> spacing = choose(p.scene, options, p.threads, p.backend, progress);
+  const Result<Spacing> spacing = choose(p.scene, options, asked.value(), p.threads, p.backend, progress);
   if (!spacing) return spacing.error();
   p.spacing_reason = spacing.value().reason;
   char text[32];

@@ -6,6 +6,7 @@
 
 #include "peer/output/machine.h"
 #include "peer/output/progress.h"
+#include "peer/output/run_folder.h"
 #include "peer/verbs/play_options.h"
 #include "scenes/sample.h"
 #include "scenes/scene.h"
@@ -20,6 +21,7 @@ struct Stage {
   Machine machine;
   double seconds = 0.0;          ///< simulated; infinity = until the window closes
   std::filesystem::path folder;  ///< exists, or empty
+  RunFolder claim;               ///< on `folder`, while the run lasts
   int width = 0;
   int height = 0;
 };
@@ -43,11 +45,12 @@ Result<Backend> choose_backend(const std::string& text);
 /// "640x480" to two numbers of pixels, 16–8192 each. Errors: anything else.
 Result<std::pair<int, int>> parse_size(const std::string& text);
 
-/// Fills `stage` but for its scene, which must be there: size, seconds, folder (made). Errors: a size that is
-/// none, a folder that cannot be made.
+/// Fills `stage` but for its scene, which must be there: size, seconds, folder (made, and this run's own).
+/// Errors: a size that is none, a folder that cannot be made or that holds another run.
 Result<bool> set_stage(const ShowOptions& options, bool headless, Stage& stage);
 
-/// Loads, measures, samples, plans, makes the folder. Errors: anything of these.
+/// Loads, makes the folder, measures, samples, plans; whatever was asked for is looked at before the measuring,
+/// which takes long. Errors: anything of these.
 Result<Prepared> prepare(const PlayOptions& options, bool headless, Progress& progress);
 
 }  // namespace slosh

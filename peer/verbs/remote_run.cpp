@@ -206,6 +206,7 @@ void RemoteRun::report(RunSummary& s) const {
   s.version = SLOSH_VERSION;
   s.folder = stage_.folder.string();
   if (!stage_.folder.empty() && !s.devices.empty()) s.files = {"wrenches.csv", "poses.csv"};
+  if (const std::string problem = recorder_->problem(); !problem.empty()) s.problems.push_back(problem);
 
   NetworkSummary n;
   n.host = options_.host;

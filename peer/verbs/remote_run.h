@@ -47,6 +47,7 @@ class RemoteRun final : public LiveRun {
   bool hears() const override { return true; }
   std::string hear(const std::string& line) override;
   MouseTarget* mouse_target(std::size_t i) override { return mice_[i].get(); }
+  std::string trouble() const override { return recorder_->problem(); }
   void report(RunSummary& summary) const override;
 
  private:

@@ -35,7 +35,7 @@ constexpr const char* kFooter =
     "  slosh replay bucket.rec --out out/again --size 1280x720";
 
 int replay(ReplayVerbOptions options) {
-  catch_interrupts();
+  end_at_interrupts();
   Progress progress;
   const std::optional<Backend> backend = backend_named(options.backend);
   if (!backend)
@@ -62,6 +62,7 @@ int replay(ReplayVerbOptions options) {
   Result<std::unique_ptr<ReplayRun>> run =
       ReplayRun::create(replayer, stage, options.render ? options.frames_per_second : 0.0);
   if (!run) return fail(run.error());
+  catch_interrupts();
   RunSummary summary;
   const Result<bool> shown = show_headless(stage, *run.value(), options, progress, summary);
   if (!shown) return fail(shown.error());
@@ -81,9 +82,8 @@ void add_replay(CLI::App& app, VerbRun& chosen) {
   CLI::App* verb = app.add_subcommand("replay", "Simulate a recording again, compare it and film it");
   auto o = std::make_shared<ReplayVerbOptions>();
   verb->add_option("FILE", o->file, "What --record wrote")->required();
-  verb->add_option("--out", o->out, "Folder for the film, the plot and the tables; without it only compares");
-  verb->add_option("--seconds", o->seconds, "Simulated seconds from its start (all)")
-      ->check(CLI::Range(0.001, 1e6));
+  add_out_options(*verb, *o, "Folder for the film, the plot and the tables; without it only compares");
+  add_seconds_option(*verb, o->seconds, 0.001, "Simulated seconds from its start (all)");
   add_backend_option(*verb, o->backend, "What to simulate on; auto: where it was recorded, if that is here");
   verb->add_option("--threads", o->threads, "Cores for the simulation (all); the result is the same")
       ->check(CLI::Range(1, 1024));

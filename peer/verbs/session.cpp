@@ -157,6 +157,7 @@ void Session::report(RunSummary& s) const {
     s.recording_problem = !recorded_.problem.empty() ? recorded_.problem : recorded_.totals.ended_early;
   }
   if (!prepared_.folder.empty()) s.files = {"wrenches.csv", "poses.csv"};
+  if (const std::string problem = recorder_->problem(); !problem.empty()) s.problems.push_back(problem);
 }
 
 }  // namespace slosh

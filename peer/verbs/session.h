@@ -41,6 +41,7 @@ class Session final : public LiveRun {
   MouseTarget* mouse_target(std::size_t i) override { return mouse_targets_[i].get(); }
   /// In place where the run is recorded, so that the recording goes on.
   bool start_again() override;
+  std::string trouble() const override { return recorder_->problem(); }
   void report(RunSummary& summary) const override;
 
   Host& host() { return *host_; }

@@ -1,0 +1,113 @@
+#include "peer/output/run_folder.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <optional>
+#include <system_error>
+#include <vector>
+
+namespace slosh {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kRunFiles[] = {"summary.json", "wrenches.csv", "poses.csv",
+                                     "wrenches.png", "view.mp4",     "final.png"};
+constexpr int kMostFolders = 10'000;
+constexpr const char* kAnother = "Choose another folder with --out";
+
+/// A file of an earlier run's in a folder; empty when there is none.
+std::string earlier_file(const fs::path& folder) {
+  std::error_code code;
+  for (const char* name : kRunFiles) {
+    if (fs::exists(fs::symlink_status(folder / name, code))) return name;
+  }
+  return {};
+}
+
+struct Locked {
+  std::shared_ptr<const int> lock;
+  bool taken = false;  ///< by another run
+};
+
+/// Where a file system knows no locks, runs are not kept apart: that is no reason not to run.
+Locked lock_folder(const fs::path& folder) {
+  const int file = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (file < 0) return {};
+  if (flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    close(file);
+    return {nullptr, true};
+  }
+  return {std::shared_ptr<const int>(new int(file),
+                                     [](const int* held) {
+                                       close(*held);
+                                       delete held;
+                                     }),
+          false};
+}
+
+std::optional<Error> make(const fs::path& folder) {
+  std::error_code code;
+  fs::create_directories(folder, code);
+  if (code || !fs::is_directory(folder))
+    return Error{folder.string(), "cannot be made: " + (code ? code.message() : "it is a file"), kAnother};
+  if (access(folder.c_str(), W_OK | X_OK) != 0)
+    return Error{folder.string(), "cannot be written to: " + std::generic_category().message(errno), kAnother};
+  return std::nullopt;
+}
+
+}  // namespace
+
+Result<RunFolder> RunFolder::take(const fs::path& wanted, bool overwrite) {
+  if (const std::optional<Error> problem = make(wanted)) return *problem;
+  RunFolder folder;
+  const Locked locked = lock_folder(wanted);
+  if (locked.taken) return Error{wanted.string(), "another run writes there now", kAnother};
+  folder.path_ = wanted;
+  folder.lock_ = locked.lock;
+  if (!overwrite) {
+    const std::string found = earlier_file(wanted);
+    if (found.empty()) return folder;
+    return Error{wanted.string(), "holds an earlier run's " + found,
+                 "Choose another folder with --out, or give --overwrite to lose that run"};
+  }
+  for (const char* name : kRunFiles) {
+    std::error_code code;
+    fs::remove(wanted / name, code);
+    if (code) return Error{(wanted / name).string(), "cannot be overwritten: " + code.message(), kAnother};
+  }
+  return folder;
+}
+
+Result<RunFolder> RunFolder::take_free(const fs::path& wanted) {
+  for (int i = 1; i <= kMostFolders; ++i) {
+    const fs::path one = i == 1 ? wanted : fs::path(wanted.string() + "-" + std::to_string(i));
+    if (const std::optional<Error> problem = make(one)) return *problem;
+    const Locked locked = lock_folder(one);
+    if (locked.taken || !earlier_file(one).empty()) continue;
+    RunFolder folder;
+    folder.path_ = one;
+    folder.lock_ = locked.lock;
+    return folder;
+  }
+  return Error{wanted.string(), "has " + std::to_string(kMostFolders) + " runs beside it",
+               "Remove some, or choose another folder with --out"};
+}
+
+std::string folder_name(std::string_view name, const char* otherwise) {
+  constexpr std::size_t kMost = 40;
+  std::string out;
+  bool any = false;
+  for (const char c : name.substr(0, kMost)) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    any = any || plain;
+    out += plain || c == '_' ? c : '-';
+  }
+  return any ? out : otherwise;
+}
+
+}  // namespace slosh

@@ -1,0 +1,123 @@
+// A stranger's scene, through the whole program: what it is called and what it contains runs nothing, writes
+// nowhere else and tells a terminal nothing.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "net/text/clean.h"
+#include "peer/output/plot.h"
+#include "process.h"
+#include "render/image.h"
+#include "scenes/make/solid.h"
+#include "scenes/make/writer.h"
+
+namespace slosh {
+namespace {
+
+namespace fs = std::filesystem;
+using test::Outcome;
+
+/// Each would make a file "obeyed…" in the working folder if anything obeyed it.
+const std::vector<std::string>& hostile_names() {
+  static const std::vector<std::string> names{
+      "`touch obeyed1`",
+      "$(touch obeyed2)",
+      "\"; system(\"touch obeyed3\"); x=\"",
+      "'; system(\"touch obeyed4\"); x='",
+      "''; system(\"touch obeyed5\"); x=''",
+      "a\nsystem(\"touch obeyed6\")\n!touch obeyed6\n",
+      "|touch obeyed7",
+      "<touch obeyed8",
+      "@`touch obeyed9`",
+      "END_OF_DATA\n`touch obeyed10`",
+      "\x1b[31m\u009b2J\u202e`touch obeyed11`",
+      std::string(4000, '`') + "touch obeyed12" + std::string(82, '`'),
+  };
+  return names;
+}
+
+/// A cup in many hands.
+void write_scene(const fs::path& file) {
+  const nlohmann::json about{{"title", "`touch obeyed-title` \x1b]0;t\x07 \u009b31m"}};
+  make::SceneWriter writer(about);
+  const int paint = writer.add_material("paint", {});
+  const int cup =
+      writer.add_node("cup", writer.add_mesh("cup_mesh", make::tank({0.1, 0.1, 0.1}, 0.02), paint), {},
+                      {{"slosh", "body"}, {"motion", "free"}, {"mass_kg", 0.5}});
+  writer.add_node("water",
+                  writer.add_mesh("water_mesh", make::box({-0.05, 0.02, -0.05}, {0.05, 0.09, 0.05}), paint),
+                  {}, {{"slosh", "fluid"}});
+  const Pose top{{0.0, 0.1, 0.0}, {1.0, 0.0, 0.0, 0.0}};
+  for (const std::string& name : hostile_names()) writer.add_node(name, -1, top, {{"slosh", "grip"}}, cup);
+  fs::create_directories(file.parent_path());
+  ASSERT_TRUE(writer.write(file));
+}
+
+void expect_fit_for_a_terminal(const std::string& text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    EXPECT_EQ(text_problem(text.substr(at, end - at)), "") << clean_text(text.substr(at, end - at), 300);
+    at = end + 1;
+  }
+}
+
+void expect_nothing_obeyed() {
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(test::test_folder()))
+    EXPECT_EQ(entry.path().filename().string().rfind("obeyed", 0), std::string::npos) << entry.path();
+}
+
+TEST(ForeignNames, RunNothing) {
+  fs::remove_all(test::test_folder());
+  write_scene(test::test_folder() / "`touch obeyed-file`;\x1b[31m.glb");
+  const Outcome outcome =
+      test::slosh({"play", "`touch obeyed-file`;\x1b[31m.glb", "--headless", "--size", "64x48", "--fps", "5",
+                   "--threads", "1", "--seconds", "0.2", "--spacing", "0.02"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  expect_nothing_obeyed();
+  expect_fit_for_a_terminal(outcome.out);
+  expect_fit_for_a_terminal(outcome.err);
+
+  const fs::path out = test::test_folder() / "out" / "-touch-obeyed-file----31m";
+  for (const char* file : {"wrenches.csv", "wrenches.png", "view.mp4", "final.png", "summary.json"})
+    EXPECT_TRUE(fs::is_regular_file(out / file)) << file;
+  const Result<Image> plot = read_png(out / "wrenches.png");
+  ASSERT_TRUE(plot) << plot.error().text();
+  EXPECT_EQ(plot.value().width, 1200);
+  const nlohmann::json summary = nlohmann::json::parse(test::read_text(out / "summary.json"));
+  ASSERT_EQ(summary["devices"].size(), hostile_names().size());
+  EXPECT_EQ(summary["devices"][0]["grip"], "`touch obeyed1`") << "shown as it is";
+  EXPECT_LE(summary["devices"][11]["grip"].get<std::string>().size(), 400u);
+  EXPECT_TRUE(summary["problems"].empty()) << summary["problems"];
+}
+
+TEST(ForeignNames, ARecordingsNamesRunNothingEither) {
+  fs::remove_all(test::test_folder());
+  write_scene(test::test_folder() / "cup.glb");
+  Outcome outcome =
+      test::slosh({"play", "cup.glb", "--headless", "--no-render", "--threads", "1", "--seconds", "0.1",
+                   "--spacing", "0.02", "--backend", "cpu", "--record", "cup.rec"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  outcome = test::slosh({"replay", "cup.rec", "--no-render", "--out", "again"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_TRUE(fs::is_regular_file(test::test_folder() / "again/wrenches.png"));
+  expect_nothing_obeyed();
+  expect_fit_for_a_terminal(outcome.out);
+  expect_fit_for_a_terminal(outcome.err);
+}
+
+TEST(ForeignNames, CheckAndPlanPrintThemClean) {
+  fs::remove_all(test::test_folder());
+  write_scene(test::test_folder() / "cup.glb");
+  for (const char* verb : {"check", "plan"}) {
+    const Outcome outcome = test::slosh({verb, "cup.glb"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    expect_fit_for_a_terminal(outcome.out);
+    expect_nothing_obeyed();
+  }
+  EXPECT_EQ(test::slosh({"check", "cup.glb"}).out.rfind("ok: `touch obeyed-title` ?]0;t? ?31m\n", 0), 0u);
+  expect_fit_for_a_terminal(test::slosh({"check", "no\x1b[2Jwhere.glb"}).err);
+  expect_fit_for_a_terminal(test::slosh({"play", "no\u009b2Jwhere"}).err);
+}
+
+}  // namespace
+}  // namespace slosh
