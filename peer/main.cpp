@@ -3,7 +3,9 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <initializer_list>
 
+#include "net/text/clean.h"
 #include "peer/verbs/verbs.h"
 
 namespace slosh {
@@ -27,7 +29,8 @@ int run(int argc, char** argv) {
   add_plan(app, chosen);
   if (names_a_verb &&
       app.get_subcommands([&](const CLI::App* sub) { return sub->check_name(argv[1]); }).empty()) {
-    std::fprintf(stderr, "slosh: there is no verb '%s'. See `slosh --help`.\n", argv[1]);
+    const std::string verb = clean_text(argv[1], kMostTextBytes);
+    std::fprintf(stderr, "slosh: there is no verb '%s'. See `slosh --help`.\n", verb.c_str());
     return kExitUsage;
   }
   try {
@@ -36,7 +39,8 @@ int run(int argc, char** argv) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     std::string verb;
     for (const CLI::App* sub : app.get_subcommands()) verb = sub->get_name() + " ";
-    std::fprintf(stderr, "slosh: %s. See `slosh %s--help`.\n", error.what(), verb.c_str());
+    const std::string what = clean_lines(error.what(), kMostTextBytes);
+    std::fprintf(stderr, "slosh: %s. See `slosh %s--help`.\n", what.c_str(), verb.c_str());
     return kExitUsage;
   }
   return chosen();
@@ -46,8 +50,9 @@ int run(int argc, char** argv) {
 }  // namespace slosh
 
 int main(int argc, char** argv) {
-  // A child (ffmpeg) that dies must be an error to report, not the end of this program.
-  std::signal(SIGPIPE, SIG_IGN);
+  // A child (ffmpeg) that dies must be an error to report, not the end of this program; so must a file that
+  // may grow no further (ulimit -f).
+  for (const int signal_number : {SIGPIPE, SIGXFSZ}) std::signal(signal_number, SIG_IGN);
   try {
     return slosh::run(argc, argv);
   } catch (const std::exception& error) {

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "net/quic/tls.h"
+#include "net/text/clean.h"
 
 namespace slosh::quic {
 namespace {
@@ -53,10 +54,7 @@ std::string transport_words(const CloseFrame& frame, bool to_server) {
 }
 
 std::string printable(const std::string& text) {
-  std::string out = text.substr(0, 1000);
-  for (char& c : out)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-  return out;
+  return clean_text(text, kMostTextBytes);
 }
 
 }  // namespace slosh::quic

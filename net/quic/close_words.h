@@ -15,7 +15,7 @@ std::string no_answer_words(const Address& address, double seconds, int send_err
 std::string library_words(int code);
 /// The other side's transport error. `to_server`: it is a client that closed.
 std::string transport_words(const CloseFrame& frame, bool to_server);
-/// Without control characters, at most 1000 bytes: the other side wrote it.
+/// What the other side wrote, fit to be shown (net/text/clean.h).
 std::string printable(const std::string& text);
 
 }  // namespace slosh::quic

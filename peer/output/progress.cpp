@@ -45,7 +45,8 @@ std::string cut(const std::string& text, std::size_t most) {
   return text;
 }
 
-/// What is shown may have come from anywhere, a host's words or something pasted: a terminal obeys none of it.
+/// What is shown may have come from anywhere, a host's words or something pasted: a terminal obeys none of
+/// it.
 std::string fit(const std::string& text) {
   constexpr std::size_t kMost = 100'000;
   return clean_lines(text, kMost);

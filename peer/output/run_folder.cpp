@@ -56,7 +56,8 @@ std::optional<Error> make(const fs::path& folder) {
   if (code || !fs::is_directory(folder))
     return Error{folder.string(), "cannot be made: " + (code ? code.message() : "it is a file"), kAnother};
   if (access(folder.c_str(), W_OK | X_OK) != 0)
-    return Error{folder.string(), "cannot be written to: " + std::generic_category().message(errno), kAnother};
+    return Error{folder.string(), "cannot be written to: " + std::generic_category().message(errno),
+                 kAnother};
   return std::nullopt;
 }
 

@@ -16,9 +16,9 @@ class RunFolder {
   /// Nowhere: path() is empty.
   RunFolder() = default;
 
-  /// The folder that somebody asked for. `overwrite`: what an earlier run left there is removed first. Errors:
-  /// it cannot be made; an earlier run's files are there and are not to be overwritten; another run writes
-  /// there now.
+  /// The folder that somebody asked for. `overwrite`: what an earlier run left there is removed first.
+  /// Errors: it cannot be made; an earlier run's files are there and are not to be overwritten; another run
+  /// writes there now.
   static Result<RunFolder> take(const std::filesystem::path& wanted, bool overwrite);
 
   /// `wanted` where no run left files and none writes, else `wanted`-2, -3 and so on. Errors: none of these

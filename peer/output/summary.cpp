@@ -186,8 +186,8 @@ std::string in_words(const RunSummary& s) {
 }
 
 Result<bool> write_summary(const std::filesystem::path& file, const RunSummary& summary) {
-  return write_whole(
-      file, to_json(summary).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  return write_whole(file,
+                     to_json(summary).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace slosh

@@ -94,9 +94,9 @@ struct RunSummary {
   Machine machine;
   std::string version;
   bool interrupted = false;
-  std::string recording;           ///< file that the run was recorded to; empty = none
-  std::string recording_problem;   ///< why it is not whole; empty = it is
-  std::string verdict;             ///< of a replay: whether it came out as it was recorded; empty = none
+  std::string recording;              ///< file that the run was recorded to; empty = none
+  std::string recording_problem;      ///< why it is not whole; empty = it is
+  std::string verdict;                ///< of a replay: whether it came out as it was recorded; empty = none
   std::vector<std::string> files;     ///< written, summary.json included
   std::vector<std::string> problems;  ///< what could not be written, or not to its end; empty = all is whole
   std::string folder;

@@ -7,6 +7,11 @@
 #include <system_error>
 
 namespace slosh {
+namespace {
+
+constexpr std::size_t kMostWaiting = 64 * 1024;  // bytes
+
+}  // namespace
 
 Result<std::unique_ptr<Table>> Table::create(const std::filesystem::path& file, std::string_view header) {
   const int opened = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
@@ -25,6 +30,7 @@ Table::~Table() {
 
 void Table::add(std::string_view row) {
   if (problem_.empty()) waiting_ += row;
+  if (waiting_.size() >= kMostWaiting) flush();
 }
 
 bool Table::flush() {

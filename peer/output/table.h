@@ -20,7 +20,7 @@ class Table {
   Table(const Table&) = delete;
   Table& operator=(const Table&) = delete;
 
-  /// A row with its line end; kept until flush().
+  /// A row with its line end; kept until flush(), or until there are some 64 kB.
   void add(std::string_view row);
   /// Hands what was added to the system. False when the table has ended early; problem() says why.
   bool flush();

@@ -30,7 +30,8 @@ void add_seconds_option(CLI::App& verb, double& seconds, double least, const std
 
 void add_out_options(CLI::App& verb, ShowOptions& options, const std::string& text) {
   CLI::Option* out = verb.add_option("--out", options.out, text);
-  verb.add_flag("--overwrite", options.overwrite, "What an earlier run left in --out may be lost")->needs(out);
+  verb.add_flag("--overwrite", options.overwrite, "What an earlier run left in --out may be lost")
+      ->needs(out);
 }
 
 void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window) {

@@ -19,7 +19,10 @@ int list_scenes() {
   if (entries.empty()) {
     return fail({"scenes", "none were found", "Set SLOSH_SCENES to the folder that holds them"});
   }
-  for (const SceneEntry& entry : entries) std::printf("%-10s %s\n", entry.name.c_str(), entry.title.c_str());
+  for (const SceneEntry& entry : entries) {
+    const std::string name = clean_text(entry.name, kMostTextBytes);
+    std::printf("%-10s %s\n", name.c_str(), entry.title.c_str());
+  }
   return kExitOk;
 }
 

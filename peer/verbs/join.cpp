@@ -182,7 +182,8 @@ void add(CLI::App& app, VerbRun& chosen, bool watch) {
         ->allow_extra_args(false);
   }
   add_seconds_option(*verb, o->seconds, 0.01, "Simulated seconds to stay (until the host ends)");
-  add_out_options(*verb, *o, "Folder for the results (headless: out/<scene>-<name>, numbered; a window: none)");
+  add_out_options(*verb, *o,
+                  "Folder for the results (headless: out/<scene>-<name>, numbered; a window: none)");
   add_show_options(*verb, *o, true);
   verb->add_option("--key", o->key, "File with your key, made on first use (one for each person)");
   verb->footer(std::string(kFiles) + (watch ? kWatchFiles : kJoinFiles) + peer_console_help() +

@@ -61,8 +61,9 @@ void add_play(CLI::App& app, VerbRun& chosen) {
       ->capture_default_str();
   add_seconds_option(*verb, o->seconds, 0.01,
                      "Simulated seconds (the scene's duration; a window: until closed)");
-  add_out_options(*verb, *o,
-                  "Folder for the results (headless: out/<scene>, or out/<scene>-2 and so on; a window: none)");
+  add_out_options(
+      *verb, *o,
+      "Folder for the results (headless: out/<scene>, or out/<scene>-2 and so on; a window: none)");
   add_show_options(*verb, *o, true);
   add_world_options(*verb, *o, "all but one; all with --no-render");
   verb->add_option("--device", o->devices, "script, mouse or replay:FILE; one for all handles, or one each")

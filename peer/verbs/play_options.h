@@ -8,8 +8,8 @@ namespace slosh {
 
 /// How a run is shown and written, wherever its world is.
 struct ShowOptions {
-  double seconds = 0.0;  ///< simulated; 0 = chosen
-  std::string out;       ///< folder; empty = default_out when headless, nothing with a window
+  double seconds = 0.0;     ///< simulated; 0 = chosen
+  std::string out;          ///< folder; empty = default_out when headless, nothing with a window
   std::string default_out;  ///< folder, numbered where it is taken; empty = out/<scene>
   bool overwrite = false;   ///< an earlier run in `out` may be lost
   bool headless = false;

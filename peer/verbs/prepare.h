@@ -49,8 +49,8 @@ Result<std::pair<int, int>> parse_size(const std::string& text);
 /// Errors: a size that is none, a folder that cannot be made or that holds another run.
 Result<bool> set_stage(const ShowOptions& options, bool headless, Stage& stage);
 
-/// Loads, makes the folder, measures, samples, plans; whatever was asked for is looked at before the measuring,
-/// which takes long. Errors: anything of these.
+/// Loads, makes the folder, measures, samples, plans; whatever was asked for is looked at before the
+/// measuring, which takes long. Errors: anything of these.
 Result<Prepared> prepare(const PlayOptions& options, bool headless, Progress& progress);
 
 }  // namespace slosh

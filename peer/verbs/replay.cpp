@@ -69,8 +69,7 @@ int replay(ReplayVerbOptions options) {
   summary.threads = options.threads;
   int code = finish_run(stage, progress, summary);
   if (!run.value()->problem().empty()) {
-    std::fprintf(stderr, "slosh: %s.\n", run.value()->problem().c_str());
-    return kExitFailed;
+    return fail({"", run.value()->problem(), ""});
   }
   if (code == kExitOk && !replayer.verdict().same(replayer.head().spacing)) code = kExitFailed;
   return code;

@@ -1,9 +1,8 @@
 #include "peer/verbs/replay_run.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
-#include <cstring>
+#include <cstdio>
 
 #include "net/clock.h"
 #include "peer/output/recorder.h"
@@ -27,12 +26,9 @@ Result<std::unique_ptr<ReplayRun>> ReplayRun::create(keep::Replayer& replayer, c
                                                      double picture_rate) {
   std::unique_ptr<ReplayRun> run(new ReplayRun(replayer, stage, picture_rate));
   if (stage.folder.empty()) return run;
-  const std::filesystem::path file = stage.folder / "wrenches.csv";
-  run->wrenches_.reset(std::fopen(file.c_str(), "we"));
-  if (!run->wrenches_)
-    return Error{file.string(), "cannot be written: " + std::string(std::strerror(errno)),
-                 "Choose another folder with --out"};
-  std::fprintf(run->wrenches_.get(), "%s\n", kWrenchesHeader);
+  Result<std::unique_ptr<Table>> wrenches = Table::create(stage.folder / "wrenches.csv", kWrenchesHeader);
+  if (!wrenches) return wrenches.error();
+  run->wrenches_ = std::move(wrenches.value());
   return run;
 }
 
@@ -73,8 +69,10 @@ void ReplayRun::write_samples() {
     peaks_[i].peak_force = std::max(peaks_[i].peak_force, glm::length(w.force));
     peaks_[i].peak_torque = std::max(peaks_[i].peak_torque, glm::length(w.torque));
     if (!wrenches_) continue;
-    std::fprintf(wrenches_.get(), "%.6f,%zu,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g\n", replayer_.elapsed(), i,
-                 w.force.x, w.force.y, w.force.z, w.torque.x, w.torque.y, w.torque.z);
+    char row[400];
+    std::snprintf(row, sizeof row, "%.6f,%zu,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g\n", replayer_.elapsed(), i,
+                  w.force.x, w.force.y, w.force.z, w.torque.x, w.torque.y, w.torque.z);
+    wrenches_->add(row);
   }
 }
 
@@ -104,7 +102,7 @@ void ReplayRun::run() {
     shown_time_.store(replayer_.elapsed(), std::memory_order_relaxed);
     shown_rate_.store(replayer_.elapsed() / std::max(wall_, 1e-9), std::memory_order_relaxed);
   }
-  if (wrenches_) std::fflush(wrenches_.get());
+  if (wrenches_) wrenches_->flush();
   pictures_.close();
   running_.store(false, std::memory_order_release);
 }
@@ -159,6 +157,7 @@ void ReplayRun::report(RunSummary& s) const {
   s.folder = stage_.folder.string();
   s.verdict = verdict.text(replayer_.head().spacing);
   if (wrenches_) s.files.emplace_back("wrenches.csv");
+  if (wrenches_ && !wrenches_->problem().empty()) s.problems.push_back(wrenches_->problem());
 }
 
 }  // namespace slosh

@@ -2,12 +2,12 @@
 #pragma once
 
 #include <atomic>
-#include <cstdio>
 #include <memory>
 #include <thread>
 
 #include "host/keep/replay.h"
 #include "net/histogram.h"
+#include "peer/output/table.h"
 #include "peer/verbs/live_run.h"
 #include "peer/verbs/prepare.h"
 
@@ -44,16 +44,12 @@ class ReplayRun final : public LiveRun {
   void show();
   void write_samples();
 
-  struct CloseFile {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-
   keep::Replayer& replayer_;
   const Stage& stage_;
   double picture_rate_;
   SnapshotQueue pictures_;
   RateLog rates_;
-  std::unique_ptr<std::FILE, CloseFile> wrenches_;
+  std::unique_ptr<Table> wrenches_;
   double next_picture_ = 0.0;  // s since the recording's start
   double next_sample_ = 0.0;
   BodySnapshot bodies_;

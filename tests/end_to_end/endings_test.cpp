@@ -69,9 +69,9 @@ INSTANTIATE_TEST_SUITE_P(Phases, StoppedEarly,
                                            Stop{"sampling", SIGTERM, kLarge},
                                            Stop{"settling", SIGINT, kLarge}, Stop{"settling", SIGTERM, kHost},
                                            Stop{"settling", SIGHUP, kHost}),
-                         [](const auto& info) {
-                           return std::string(info.param.phase) + "_" + info.param.arguments[0] + "_" +
-                                  std::to_string(info.param.signal_number);
+                         [](const auto& tried) {
+                           return std::string(tried.param.phase) + "_" + tried.param.arguments[0] + "_" +
+                                  std::to_string(tried.param.signal_number);
                          });
 
 TEST_F(EndingsTest, AFullDiskIsSaidAndLeavesWholeRows) {
@@ -94,8 +94,7 @@ TEST_F(EndingsTest, AFullDiskIsSaidAndLeavesWholeRows) {
   const Result<std::vector<WrenchSeries>> felt = read_wrenches(at("out/wrenches.csv"));
   ASSERT_TRUE(felt) << felt.error().text();
   EXPECT_GT(felt.value()[0].time.size(), 50u);
-  EXPECT_NE(outcome.err.find("wrenches.png: cannot be written: File too large"), std::string::npos)
-      << outcome.err;
+  EXPECT_NE(outcome.err.find("the plot: "), std::string::npos) << outcome.err;
   EXPECT_FALSE(fs::exists(at("out/wrenches.png"))) << "whole or not at all";
   const nlohmann::json summary = nlohmann::json::parse(read_text(at("out/summary.json")));
   EXPECT_EQ(summary["problems"].size(), 2u) << summary["problems"];
@@ -106,9 +105,7 @@ TEST_F(EndingsTest, WithoutAnyRoomNoSummaryIsPromised) {
   // Less than a table's rows and a summary need, more than the tables' headers.
   std::string command = "trap '' XFSZ; ulimit -f 1; exec '" + test::program() + "'";
   for (const std::string& word : quick({"--out", "out"})) command += " " + word;
-  const Outcome outcome =
-      test::Process({"bash", "-c", command + " 2>&1 | cat >&2; exit ${PIPESTATUS[0]}"}, test::test_folder())
-          .wait();
+  const Outcome outcome = test::Process({"bash", "-c", command}, test::test_folder()).wait();
   EXPECT_NE(outcome.code, 0);
   EXPECT_EQ(outcome.out.find("summary.json"), std::string::npos) << outcome.out;
   EXPECT_FALSE(fs::exists(at("out/summary.json")));

@@ -71,6 +71,18 @@ TEST(Summary, FileIsWholeOrAnError) {
   EXPECT_FALSE(write_summary("/nowhere/summary.json", example()));
 }
 
+TEST(Summary, WordsFromElsewhereAreFitToBeShown) {
+  RunSummary summary;
+  summary.scene = "\x1b[2Jscene";
+  summary.devices.push_back({"grip\u009b31m", "script", 1.0, 2.0});
+  summary.network.emplace();
+  summary.network->ended = "bye\x1b]0;owned\x07\x9b";
+  const std::string words = in_words(summary);
+  for (const char* obeyed : {"\x1b", "\x07", "\u009b", "\x9b"})
+    EXPECT_EQ(words.find(obeyed), std::string::npos) << words;
+  EXPECT_NE(words.find("grip?31m"), std::string::npos) << words;
+}
+
 TEST(Summary, StatusWordsAreOnePerBit) {
   EXPECT_TRUE(status_words(0).empty());
   EXPECT_EQ(status_words(kStatusNonFinite | kStatusEscaped | kStatusInputRejected).size(), 3u);
@@ -81,6 +93,32 @@ TEST(Grouped, ThousandsApart) {
   EXPECT_EQ(grouped(999), "999");
   EXPECT_EQ(grouped(1000), "1 000");
   EXPECT_EQ(grouped(1234567), "1 234 567");
+}
+
+TEST(Progress, ATerminalGetsOnlyWhatItCanShow) {
+  const std::string hostile = "a\x1b[2Jb\u009bc\u202ed\x9b\r";
+  testing::internal::CaptureStderr();
+  testing::internal::CaptureStdout();
+  {
+    Progress progress(false, 0.0);
+    progress.phase("loading", hostile);
+    progress.update(0.5, hostile);
+    progress.note(hostile + "\n" + hostile);
+    progress.answer(hostile, hostile);
+  }
+  const std::string shown = testing::internal::GetCapturedStderr() + testing::internal::GetCapturedStdout();
+  for (const char* obeyed : {"\x1b", "\u009b", "\u202e", "\x9b", "\r"})
+    EXPECT_EQ(shown.find(obeyed), std::string::npos) << obeyed;
+  EXPECT_NE(shown.find("a?[2Jb?cd??\na?[2Jb?cd??\n"), std::string::npos) << "lines stay lines: " << shown;
+}
+
+TEST(Progress, NorDoesWhatIsPastedMoveIt) {
+  testing::internal::CaptureStderr();
+  {
+    Progress progress(true, 0.0);
+    progress.typed("x\x9b[2Jy");
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "\r\x1b[K> x?[2Jy\n") << "the only escape is its own";
 }
 
 TEST(Columns, CountsCodePoints) {
