@@ -2,9 +2,11 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "scenes/scene.h"
+#include "sim/math/result.h"
 #include "sim/plan.h"
 
 namespace slosh {
@@ -30,6 +32,12 @@ struct StepLimit {
 
 /// Fills the plan's depth, drop and sound_share on the way. Needs the scene's meshes.
 StepLimit step_limit(const Scene& scene, Plan& plan);
+
+/// s: a plan with a shorter sub-step is refused by make_world. At 1 cm it is some 5000 Pa·s.
+inline constexpr double kShortestStep = 2.0e-6;
+
+/// Why a plan would not come to an end, with what would do; nothing where it does. Needs no mesh.
+std::optional<Error> refuse_endless(const Scene& scene, const Plan& plan);
 
 /// The largest multiple of the scene's gravity at which the plan's step stays stable. Needs no mesh.
 double most_gravity_allowed(const Scene& scene, const Plan& plan);

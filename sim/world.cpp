@@ -12,6 +12,7 @@
 #include "sim/particle_engine.h"
 #include "sim/saved_state.h"
 #include "sim/shell.h"
+#include "sim/step_limits.h"
 #include "sim/stopwatch.h"
 
 namespace slosh {
@@ -111,8 +112,9 @@ World::World(const Scene& scene, const SampledScene& sampled, Plan plan, WorldOp
   impl_->start(sampled);
 }
 Result<World> make_world(const Scene& scene, const SampledScene& sampled, Plan plan, WorldOptions options) {
+  if (const std::optional<Error> error = refuse_endless(scene, plan)) return *error;
   auto impl = std::make_unique<World::Impl>(scene, sampled, std::move(plan), options);
-  if (std::optional<Error> error = impl->start(sampled)) return *error;
+  if (const std::optional<Error> error = impl->start(sampled)) return *error;
   return World(std::move(impl));
 }
 World::~World() = default;
@@ -287,11 +289,9 @@ std::uint64_t World::hash() const {
 Diagnostics World::diagnostics() const {
   return impl_->engine->diagnostics();
 }
-
 std::string World::failure() const {
   return impl_->engine->failure();
 }
-
 std::string World::backend() const {
   return impl_->engine->name();
 }

@@ -114,7 +114,7 @@ class World {
   std::unique_ptr<Impl> impl_;
 };
 
-/// A world on the backend that `options` names. Errors: kCuda where no GPU answers or its memory does not do.
+/// A world on the backend that `options` names. Errors: no GPU, or too little memory, for kCuda; an endless plan.
 Result<World> make_world(const Scene& scene, const SampledScene& sampled, Plan plan,
                          WorldOptions options = {});
 

@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
 
 #include "scenes/load.h"
+#include "sim/world.h"
 #include "tests/support/places.h"
 #include "tests/support/tank.h"
 
@@ -102,6 +104,25 @@ TEST(Plan, ShortensTheStepWithSpacingViscosityAndStiffness) {
   const Plan thick = make_plan(tank.scene, 0.01);
   EXPECT_LT(thick.time_step, 0.2 * normal);
   EXPECT_NE(thick.time_step_reason.find("viscosity"), std::string::npos);
+}
+
+// 10⁶ Pa·s at 1 cm is a step of some 10 ns: refused with what would do; 1000 Pa·s runs.
+TEST(Plan, ThatWouldNotComeToAnEndIsRefused) {
+  auto tank = make_tank({});
+  tank.scene.fluids[0].dynamic_viscosity = 1e6;
+  const Plan endless = make_plan(tank.scene, 0.01);
+  ASSERT_LT(endless.time_step, 1e-7);
+  const auto world = make_world(tank.scene, tank.sampled, endless, {1, Backend::kCpu});
+  ASSERT_FALSE(world);
+  EXPECT_NE(world.error().what.find("explicit viscosity of 1e+06 Pa·s"), std::string::npos) << world.error().text();
+  double most = 0.0;
+  ASSERT_EQ(std::sscanf(world.error().mend.c_str(), "Up to %lf Pa·s", &most), 1) << world.error().text();
+  EXPECT_GT(most, 2000.0);
+  // What it says will do does.
+  tank.scene.fluids[0].dynamic_viscosity = 0.99 * most;
+  EXPECT_TRUE(make_world(tank.scene, tank.sampled, make_plan(tank.scene, 0.01), {1, Backend::kCpu}));
+  tank.scene.fluids[0].dynamic_viscosity = 1000.0;
+  EXPECT_TRUE(make_world(tank.scene, tank.sampled, make_plan(tank.scene, 0.01), {1, Backend::kCpu}));
 }
 
 TEST(Plan, WithoutFluidThereAreNoParticlePasses) {
