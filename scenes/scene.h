@@ -126,7 +126,7 @@ struct Scene {
   double spacing = 0.0;       ///< m between particles; 0 = auto within [spacing_min, spacing_max]
   double spacing_min = 0.004;  ///< m
   double spacing_max = 0.02;   ///< m; below the thinnest wall
-  double support_ratio = 2.0;  ///< support radius (W = 0, the paper's h) over spacing, 1.5–4
+  double support_ratio = 2.0;  ///< support radius (W = 0, the paper's h) over spacing, 1.5–2.6
   ParticleModel model = ParticleModel::kConsistent;
   double stiffness = 0.0;      ///< Eq 7's k = c², m²/s²; 0 = chosen by the plan from depth and gravity
   double tension = 0.0;        ///< share of Eq 7's negative pressure that is kept, 0–1 (sim/README.md)

@@ -25,7 +25,7 @@ Problem read_scene_fields(Reading& reading) {
   scene.spacing_min = extras.number("spacing_min_m", scene.spacing_min, gltf::Range{1e-4, 1.0});
   scene.spacing_max =
       extras.number("spacing_max_m", std::max(scene.spacing_max, scene.spacing_min), gltf::Range{1e-4, 1.0});
-  scene.support_ratio = extras.number("support_ratio", scene.support_ratio, gltf::Range{1.5, 4.0});
+  scene.support_ratio = extras.number("support_ratio", scene.support_ratio, gltf::Range{1.5, 2.6});
   scene.stiffness = extras.number("stiffness_m2_s2", 0.0, gltf::kNotNegative);
   scene.tension = extras.number("tension", 0.0, gltf::Range{0.0, 1.0});
   const std::string model = extras.text("model", "consistent");

@@ -163,7 +163,8 @@ TEST(FieldErrors, Scene) {
         j["scenes"][0]["extras"]["spacing_max_m"] = 0.01;
       },
       {"cup.gltf", "spacing_min_m", "0.02", "spacing_max_m"});
-  expect_scene_error("support_ratio", 1.0, {"1.5 to 4"});
+  expect_scene_error("support_ratio", 1.0, {"1.5 to 2.6"});
+  expect_scene_error("support_ratio", 3.0, {"1.5 to 2.6"});
   expect_scene_error("tension", 2, {"0 to 1"});
   expect_scene_error("stiffness_m2_s2", -1, {"-1"});
   expect_scene_error("gravity_m_s2", -9.81, {"3 numbers"});
