@@ -43,6 +43,7 @@ struct Peer {
   ConnectionId id = 0;
   KeyFingerprint key{};
   std::string address;
+  std::string site;  ///< site_of(address)
   std::int64_t connected_ns = 0;
   std::int64_t heard_ns = 0;  ///< last datagram
   std::int64_t control_stream = -1;

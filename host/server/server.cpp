@@ -1,6 +1,7 @@
 #include "host/server/server.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "host/server/server_send.h"
 #include "net/clock.h"
@@ -11,6 +12,7 @@ namespace {
 constexpr std::int64_t kRosterEvery = 50'000'000;  // ns between two rosters: comings may come in crowds
 constexpr std::int64_t kCheckEvery = 50'000'000;   // ns between two looks at who is late
 constexpr std::int64_t kLongestNap = 50'000'000;   // ns
+constexpr std::int64_t kStrangerLineEvery = 10'000'000'000;  // ns between two lines about strangers
 
 std::vector<std::string> grip_names(const Scene& scene) {
   std::vector<std::string> names;
@@ -48,6 +50,7 @@ Server::~Server() {
 void Server::use(Endpoint& endpoint) {
   endpoint_ = &endpoint;
   mailbox_.set_wake([&endpoint] { endpoint.wake(); });
+  endpoint.set_known_keys([this](const KeyFingerprint& key) { return seats_.by_key(key) != nullptr; });
 }
 
 void Server::set_identity(wire::Bytes private_key, std::uint16_t port) {
@@ -80,10 +83,9 @@ void Server::notice_all(const std::string& text, bool participants_only, const P
 }
 
 void Server::on_connected(ConnectionId connection, const KeyFingerprint& key, const std::string& address) {
-  const auto host_of = [](const std::string& with_port) { return with_port.substr(0, with_port.rfind(':')); };
-  const std::string from = host_of(address);
+  const std::string site = site_of(address);
   std::size_t same = 0;
-  for (const auto& [id, peer] : peers_) same += !peer->gone && host_of(peer->address) == from ? 1 : 0;
+  for (const auto& [id, peer] : peers_) same += !peer->gone && peer->site == site ? 1 : 0;
   if (ending_ || same >= options_.connections_an_address) {
     past_.refused += 1;
     const auto code = ending_ ? wire::RefusalCode::kEnding : wire::RefusalCode::kFull;
@@ -95,6 +97,7 @@ void Server::on_connected(ConnectionId connection, const KeyFingerprint& key, co
   peer->id = connection;
   peer->key = key;
   peer->address = address;
+  peer->site = site;
   peer->connected_ns = peer->heard_ns = now();
   peers_[connection] = std::move(peer);
 }
@@ -127,9 +130,22 @@ void Server::refuse(Peer& peer, wire::RefusalCode code, const std::string& text)
   const std::string words = wire::clean_text(text, wire::kMaxText);
   send(peer, wire::Refused{code, words});
   past_.refused += 1;
-  say((peer.in ? name_of(peer) : peer.address) + " is refused: " + words);
+  if (peer.in)
+    say(name_of(peer) + " is refused: " + words);
+  else
+    say_of_stranger(peer.address + " is refused: " + words);
   lose(peer, Parting::kPutOut);
   endpoint_->close(peer.id, close_code(code), words);
+}
+
+// Anybody can knock, as often as they like: the crowd gets one line now and then.
+void Server::say_of_stranger(const std::string& line) {
+  if (now() < stranger_line_due_ns_) {
+    strangers_unsaid_ += 1;
+    return;
+  }
+  say(line);
+  stranger_line_due_ns_ = now() + kStrangerLineEvery;
 }
 
 void Server::let_go_all(const Seat& seat) {
@@ -193,6 +209,8 @@ std::int64_t Server::next_turn_ns() const {
 
 void Server::check_patience() {
   checked_ns_ = now();
+  if (strangers_unsaid_ > 0 && now() >= stranger_line_due_ns_)
+    say_of_stranger(std::to_string(std::exchange(strangers_unsaid_, 0)) + " more strangers were refused");
   for (auto& [id, peer] : peers_) {
     if (peer->gone) continue;
     if (!peer->in) {

@@ -136,6 +136,7 @@ class Server final : public EndpointEvents, public HostTap {
   void send_all(const M& message, bool participants_only = false, const Peer* but = nullptr);
   void notice_all(const std::string& text, bool participants_only = false, const Peer* but = nullptr);
   void refuse(Peer& peer, wire::RefusalCode code, const std::string& text);
+  void say_of_stranger(const std::string& line);
   /// How somebody went.
   enum class Parting { kLostContact, kLeft, kPutOut };
   void lose(Peer& peer, Parting parting);
@@ -214,6 +215,8 @@ class Server final : public EndpointEvents, public HostTap {
   bool waits_for_hands_ = false;
   bool quit_asked_ = false;
   bool ending_ = false;
+  std::int64_t stranger_line_due_ns_ = 0;
+  std::size_t strangers_unsaid_ = 0;
 
   ServerFigures past_;  // of connections that are gone
   mutable std::mutex session_mutex_;

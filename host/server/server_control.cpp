@@ -88,6 +88,7 @@ void Server::welcome(Peer& peer, Seat& seat, bool restored) {
   peer.heard_ns = now();
   by_seat_[seat.number] = peer.id;
   past_.joins += 1;
+  endpoint_->admit(peer.id);
   // A program that was started anew numbers its samples anew.
   for (const std::uint32_t grip : seat.grips) hands_.taken(grip, now());
 

@@ -60,6 +60,20 @@ std::string Address::site() const {
   return IN6_IS_ADDR_V4MAPPED(&v6.sin6_addr) ? std::string(bytes + 12, 4) : std::string(bytes, 8);
 }
 
+Address numeric_address(const std::string& text) {
+  const std::size_t colon = text.rfind(':');
+  std::string host = text.substr(0, colon);
+  if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
+  addrinfo wanted{};
+  wanted.ai_socktype = SOCK_DGRAM;
+  wanted.ai_flags = AI_NUMERICHOST;
+  addrinfo* list = nullptr;
+  if (host.empty() || getaddrinfo(host.c_str(), nullptr, &wanted, &list) != 0) return {};
+  const Address address(list->ai_addr, list->ai_addrlen);
+  freeaddrinfo(list);
+  return address;
+}
+
 Result<std::vector<Address>> resolve(const std::string& text) {
   const auto error = [&](const std::string& what) {
     return Error{"address '" + text + "'", what, "Write HOST:PORT, or [IPv6]:PORT, e.g. 192.168.1.5:4433"};
@@ -102,3 +116,22 @@ Result<std::vector<Address>> resolve(const std::string& text) {
 }
 
 }  // namespace slosh::quic
+
+namespace slosh {
+
+std::string site_of(const std::string& address) {
+  const quic::Address found = quic::numeric_address(address);
+  const std::string site = found.length == 0 ? std::string() : found.site();
+  char text[INET6_ADDRSTRLEN] = "";
+  if (site.size() == 4) {
+    inet_ntop(AF_INET, site.data(), text, sizeof(text));
+    return text;
+  }
+  if (site.size() != 8) return address.substr(0, address.rfind(':'));
+  in6_addr network{};
+  std::memcpy(network.s6_addr, site.data(), site.size());
+  inet_ntop(AF_INET6, &network, text, sizeof(text));
+  return std::string(text).append("/64");
+}
+
+}  // namespace slosh

@@ -33,6 +33,9 @@ struct Address {
   std::string site() const;
 };
 
+/// The address that a number stands for, without asking anybody; length 0 when it is none.
+Address numeric_address(const std::string& text);
+
 /// What "HOST:PORT" or "[IPv6]:PORT" stands for, at most 8. Asks the name service only when HOST is no
 /// number. Errors: no port, not an address, unknown name.
 Result<std::vector<Address>> resolve(const std::string& text);

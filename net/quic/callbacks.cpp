@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "net/quic/connection.h"
+#include "net/quic/frame_guard.h"
 #include "net/quic/random.h"
 #include "net/wire/messages.h"
 
@@ -10,6 +11,25 @@ namespace slosh::quic {
 
 struct Callbacks {
   static Connection& at(void* user) { return *static_cast<Connection*>(user); }
+
+  /// The one place where we see what came before the library does. It is not told whose packet it is: see
+  /// Connection::reading.
+  static int decrypt(std::uint8_t* out, const ngtcp2_crypto_aead* aead, const ngtcp2_crypto_aead_ctx* context,
+                     const std::uint8_t* cipher, std::size_t size, const std::uint8_t* nonce,
+                     std::size_t nonce_size, const std::uint8_t* header, std::size_t header_size) {
+    const int code =
+        ngtcp2_crypto_decrypt_cb(out, aead, context, cipher, size, nonce, nonce_size, header, header_size);
+    const bool handshake =
+        header_size == 0 || (header[0] & 0x80) != 0;  // long header: few frames are allowed
+    if (code != 0 || handshake || size < aead->max_overhead) return code;
+    const FrameVerdict verdict = guard_frames({out, size - aead->max_overhead});
+    if (verdict == FrameVerdict::kPass) return 0;
+    if (Connection::reading)
+      Connection::reading->breach_ = verdict == FrameVerdict::kMalformed
+                                         ? "the other side sent what is no frame of QUIC"
+                                         : "the other side takes its connection ids back";
+    return NGTCP2_ERR_CALLBACK_FAILURE;
+  }
   static bool listening(const Connection& c) { return c.state_ == Connection::State::kOpen; }
 
   /// Server: the client's certificate is in. Client: not yet certain that the server took ours.
@@ -136,7 +156,7 @@ ngtcp2_callbacks connection_callbacks() {
   all.recv_client_initial = ngtcp2_crypto_recv_client_initial_cb;
   all.recv_crypto_data = ngtcp2_crypto_recv_crypto_data_cb;
   all.encrypt = ngtcp2_crypto_encrypt_cb;
-  all.decrypt = ngtcp2_crypto_decrypt_cb;
+  all.decrypt = Callbacks::decrypt;
   all.hp_mask = ngtcp2_crypto_hp_mask_cb;
   all.recv_retry = ngtcp2_crypto_recv_retry_cb;
   all.update_key = ngtcp2_crypto_update_key_cb;

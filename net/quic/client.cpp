@@ -82,7 +82,8 @@ void Client::connection_over(Connection& connection, std::int64_t) {
   const bool was_chosen = &connection == chosen_;
   if (!was_chosen) {
     if (!chosen_ && !over_ &&
-        (failure_.text.empty() || (connection.refused_for_good() && !failure_definite_))) {
+        (failure_.text.empty() || (connection.refused_for_good() && !failure_definite_) ||
+         (connection.reason().cause == CloseCause::kBusy && failure_.cause == CloseCause::kNoAnswer))) {
       failure_ = connection.reason();
       failure_definite_ = connection.refused_for_good();
     }

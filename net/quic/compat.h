@@ -51,6 +51,11 @@ inline void set_library_error(CloseError& error, int code) {
   ngtcp2_ccerr_default(&error);
   ngtcp2_ccerr_set_liberr(&error, code, nullptr, 0);
 }
+inline void set_transport_error(CloseError& error, std::uint64_t code, const std::string& text) {
+  ngtcp2_ccerr_default(&error);
+  ngtcp2_ccerr_set_transport_error(&error, code, reinterpret_cast<const std::uint8_t*>(text.data()),
+                                   text.size());
+}
 inline void set_tls_alert(CloseError& error, std::uint8_t alert) {
   ngtcp2_ccerr_default(&error);
   ngtcp2_ccerr_set_tls_alert(&error, alert, nullptr, 0);
@@ -107,6 +112,11 @@ inline void set_application_error(CloseError& error, std::uint64_t code, const s
 inline void set_library_error(CloseError& error, int code) {
   ngtcp2_connection_close_error_default(&error);
   ngtcp2_connection_close_error_set_transport_error_liberr(&error, code, nullptr, 0);
+}
+inline void set_transport_error(CloseError& error, std::uint64_t code, const std::string& text) {
+  ngtcp2_connection_close_error_default(&error);
+  ngtcp2_connection_close_error_set_transport_error(
+      &error, code, reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
 }
 inline void set_tls_alert(CloseError& error, std::uint8_t alert) {
   ngtcp2_connection_close_error_default(&error);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "net/quic/callbacks.h"
 #include "net/quic/close_words.h"
@@ -33,6 +34,8 @@ constexpr std::uint64_t kWidestWindow = 24u << 20;   // what a fast, far link ma
 
 }  // namespace
 
+thread_local Connection* Connection::reading = nullptr;
+
 Connection::Connection(ConnectionOwner& owner, const TlsContext& tls, const EndpointOptions& options,
                        UdpSocket& socket, const Address& remote, std::int64_t now)
     : owner_(owner),
@@ -62,7 +65,9 @@ ngtcp2_settings Connection::settings(std::int64_t now) const {
   settings.initial_rtt = 100 * NGTCP2_MILLISECONDS;
   settings.handshake_timeout = nanoseconds(options_.handshake_timeout);
   settings.max_tx_udp_payload_size = kMaxPacket;
-  settings.no_pmtud = 1;
+  // Nothing is probed, since no packet may be longer. Switched off (no_pmtud), ngtcp2 to 1.11 asserts when a
+  // peer's packets come from a new port and then from the old one again.
+  settings.no_pmtud = 0;
   // A snapshot comes in tens of packets: an acknowledgement for every second would cost the host more
   // than it tells. Losses are still reported at once.
   settings.ack_thresh = 10;
@@ -82,7 +87,7 @@ ngtcp2_transport_params Connection::parameters(bool server) const {
   params.initial_max_streams_uni = server ? 0 : 16;
   params.max_idle_timeout = nanoseconds(options_.idle_timeout);
   params.max_udp_payload_size = kMaxPacket;
-  params.active_connection_id_limit = 7;
+  params.active_connection_id_limit = 2;  // the least there is: none but the first is used (frame_guard.h)
   params.max_ack_delay = 5 * NGTCP2_MILLISECONDS;
   params.max_datagram_frame_size = kLongestDatagramFrame;
   return params;
@@ -151,8 +156,10 @@ void Connection::receive(const Address& local, const Address& remote, std::span<
   Address there = remote;
   const ngtcp2_path path = path_between(here, there);
   ngtcp2_pkt_info info{};
+  Connection* const outer = std::exchange(reading, this);
   const int code = ngtcp2_conn_read_pkt(conn_, &path, &info, packet.data(), packet.size(),
                                         static_cast<ngtcp2_tstamp>(now));
+  reading = outer;
   last_heard_ = now;
   if (code != 0) fail(code, now);
 }
@@ -217,6 +224,15 @@ void Connection::abort(std::uint64_t code, const std::string& text, std::int64_t
   end({false, code, text});
 }
 
+void Connection::put_off(const std::string& text, std::int64_t now) {
+  if (state_ == State::kClosed) return;
+  CloseError error;
+  const std::string words = text.substr(0, 1000);  // the error points there
+  set_transport_error(error, NGTCP2_CONNECTION_REFUSED, words);
+  write_close(error, now);
+  end({false, 0, text, CloseCause::kBusy});
+}
+
 void Connection::move_to(UdpSocket& socket, std::int64_t now) {
   socket_ = &socket;
   Address local = socket.local();
@@ -255,13 +271,15 @@ void Connection::fail(int code, std::int64_t now) {
       return peer_closed();
     case NGTCP2_ERR_RETRY:
     case NGTCP2_ERR_DROP_CONN:
-      return end({false, 0, "the first packet was damaged"});
+      return end({false, 0, "the first packet was damaged", CloseCause::kBroken});
     case NGTCP2_ERR_IDLE_CLOSE:
-      return end({false, 0, timed_out_words(options_.idle_timeout)});
+      return end({false, 0, timed_out_words(options_.idle_timeout), CloseCause::kTimedOut});
     case NGTCP2_ERR_HANDSHAKE_TIMEOUT:
+      // A host that is busy answers the first packet, and puts off the second.
       return end(
           {false, 0,
-           no_answer_words(remote_, options_.handshake_timeout, socket_->send_error(), bytes_received_ > 0)});
+           no_answer_words(remote_, options_.handshake_timeout, socket_->send_error(), bytes_received_ > 0),
+           bytes_received_ > 0 ? CloseCause::kBusy : CloseCause::kNoAnswer});
     default:
       break;
   }
@@ -281,19 +299,29 @@ void Connection::fail(int code, std::int64_t now) {
     text = alert_words(kNoApplicationProtocol);
     refused_for_good_ = true;
   }
-  if (breach_) text = breach_;
+  if (breach_) {
+    text = breach_;
+    set_transport_error(error, NGTCP2_PROTOCOL_VIOLATION, text);
+  }
   write_close(error, now);
-  end({false, 0, text});
+  end({false, 0, text, refused_for_good_ ? CloseCause::kRefused : CloseCause::kBroken});
 }
 
 void Connection::peer_closed() {
   if (state_ == State::kLingering) return end({false, parting_.code, parting_.text});
-  if (was_reset_) return end({true, 0, "the other side has lost this connection: it started anew"});
+  if (was_reset_)
+    return end({true, 0, "the other side has lost this connection: it started anew", CloseCause::kLost});
   const CloseFrame frame = received_close(conn_);
   const bool server = ngtcp2_conn_is_server(conn_) != 0;
-  refused_for_good_ = !frame.application;
+  const bool busy = !frame.application && frame.code == NGTCP2_CONNECTION_REFUSED;
+  const bool alert = !frame.application && frame.code >= NGTCP2_CRYPTO_ERROR;
+  refused_for_good_ = !frame.application && !busy;
+  CloseCause cause = CloseCause::kBroken;
+  if (busy) cause = CloseCause::kBusy;
+  if (alert) cause = CloseCause::kRefused;
+  if (frame.application || frame.code == NGTCP2_NO_ERROR) cause = CloseCause::kClosed;
   end({true, frame.application ? frame.code : 0,
-       frame.application ? printable(frame.text) : transport_words(frame, server)});
+       frame.application ? printable(frame.text) : transport_words(frame, server), cause});
 }
 
 void Connection::end(CloseReason reason) {

@@ -85,6 +85,8 @@ class Connection {
   void close(std::uint64_t code, const std::string& text, std::int64_t now);
   /// Closes without waiting for anything.
   void abort(std::uint64_t code, const std::string& text, std::int64_t now);
+  /// The same, and the other side understands that it may try again (CloseCause::kBusy).
+  void put_off(const std::string& text, std::int64_t now);
   /// Goes on over another socket, from now.
   void move_to(UdpSocket& socket, std::int64_t now);
 
@@ -106,9 +108,12 @@ class Connection {
   ConnectionId id = 0;
   std::int64_t timer = INT64_MAX;
   bool dirty = false;
+  bool admitted = false;  ///< the layer above let its owner in
+  std::string site;       ///< where it began, as Address::site()
 
  private:
   friend struct Callbacks;
+  static thread_local Connection* reading;  // whose packet the library is reading
   Connection(ConnectionOwner& owner, const TlsContext& tls, const EndpointOptions& options, UdpSocket& socket,
              const Address& remote, std::int64_t now);
   bool start_session(bool server);

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -57,11 +58,23 @@ struct ConnectionStats {
   std::uint64_t migrations = 0;
 };
 
+/// What a connection's end means to who wants it.
+enum class CloseCause : std::uint8_t {
+  kClosed,    ///< one side closed it, and said why
+  kNoAnswer,  ///< there never was one: nothing came from there
+  kBusy,      ///< the host has no room or no time now: trying again helps, with the same link
+  kTimedOut,  ///< nothing was heard for too long
+  kLost,      ///< the other side has started anew and knows it no more
+  kRefused,   ///< key, protocol or encryption do not agree: trying again is no use
+  kBroken,    ///< somebody broke the rules of QUIC
+};
+
 /// Who ended a connection, in words.
 struct CloseReason {
   bool by_peer = false;
   std::uint64_t code = 0;  ///< application error code, or 0
   std::string text;        ///< "timed out", "the host's key is not the one in the link", …
+  CloseCause cause = CloseCause::kClosed;
 };
 
 /// What an endpoint tells its owner. Called from run_once(); may call back into the endpoint.
@@ -83,11 +96,13 @@ class EndpointEvents {
 };
 
 struct EndpointOptions {
-  double idle_timeout = 5.0;       ///< s without a packet after which a connection is gone
-  double keep_alive = 1.0;         ///< s between packets at the longest
-  double handshake_timeout = 5.0;  ///< s
-  std::size_t max_connections = 512;
-  double handshakes_per_second = 50.0;  ///< begun by one IPv4 address or IPv6 /64; twice that at once
+  double idle_timeout = 5.0;            ///< s without a packet after which a connection is gone
+  double keep_alive = 1.0;              ///< s between packets at the longest
+  double handshake_timeout = 5.0;       ///< s
+  std::size_t max_connections = 512;    ///< of a host
+  std::size_t max_strangers = 512;      ///< of those, not admitted: a newcomer takes the place of one of them
+  double handshakes_per_second = 25.0;  ///< begun by one site (IPv4 address, IPv6 /64); twice that at once
+  double handshakes_in_all = 100.0;     ///< a s, begun by all sites that nobody was admitted from lately
   std::size_t queue_datagrams[kPriorities] = {64, 64, 512};  ///< a connection's; the oldest go first
   std::size_t stream_buffer = 80u << 20;  ///< bytes of unacknowledged stream data a connection may hold
 };
@@ -97,7 +112,10 @@ struct EndpointStats {
   std::uint64_t retries_sent = 0;
   std::uint64_t packets_ignored = 0;  ///< not QUIC, unknown connection, bad Retry token, too many at once
   std::uint64_t handshakes_failed = 0;
+  std::uint64_t handshakes_put_off = 0;  ///< too many at once; the other side asks again by itself
+  std::uint64_t strangers_put_out = 0;   ///< for a newcomer, with CloseCause::kBusy at the other side
   std::size_t connections = 0;
+  std::size_t strangers = 0;  ///< of those, not admitted
 };
 
 class Endpoint {
@@ -122,6 +140,16 @@ class Endpoint {
   /// other side. Nothing but on_closed() comes of the connection after this.
   virtual void close(ConnectionId connection, std::uint64_t code, const std::string& text) = 0;
 
+  // Who is a stranger, for a host. Every connection is one until the layer above has let its owner in.
+  // Strangers never take the place of those who are in, nor of each other's sites: when all their places are
+  // taken, a newcomer gets that of the oldest of the site that has the most.
+  /// `connection` belongs to somebody who was let in. Their site is trusted for an hour: its next handshakes
+  /// are not held back by what others begin.
+  virtual void admit(ConnectionId connection) { (void)connection; }
+  /// From now on who has a key for which `known` says so counts as let in from the end of the handshake.
+  /// Called from run_once().
+  virtual void set_known_keys(std::function<bool(const KeyFingerprint&)> known) { (void)known; }
+
   virtual ConnectionStats stats(ConnectionId connection) const = 0;
   virtual EndpointStats endpoint_stats() const = 0;
   virtual std::string local_address() const = 0;  ///< "127.0.0.1:4433", "[::]:4433"
@@ -130,6 +158,10 @@ class Endpoint {
   /// network fails it. False when there is nothing to move.
   virtual bool rebind() { return false; }
 };
+
+/// What a site is counted by, from "HOST:PORT" as on_connected() tells it: the IPv4 address, or the /64 of
+/// the IPv6 one, as text; what is neither is its own site.
+std::string site_of(const std::string& address);
 
 /// Listens at "HOST:PORT" or "[IPv6]:PORT" ("0.0.0.0:0" takes any port; "[::]:PORT" takes IPv4 too). Every
 /// first packet is answered with a Retry token and no state. Errors: not an address, in use, not allowed.

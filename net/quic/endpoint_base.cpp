@@ -211,6 +211,7 @@ ConnectionStats EndpointBase::stats(ConnectionId id) const {
 EndpointStats EndpointBase::endpoint_stats() const {
   EndpointStats stats = counts_;
   stats.connections = connections_.size();
+  for (const auto& connection : connections_) stats.strangers += connection->admitted ? 0 : 1;
   return stats;
 }
 

@@ -22,7 +22,7 @@ std::string text_of(const ngtcp2_cid& id) {
 Server::Server(std::unique_ptr<UdpSocket> socket, const Identity& identity, EndpointEvents& events,
                const EndpointOptions& options)
     : EndpointBase(identity, {}, events, options),
-      limiter_(options.handshakes_per_second),
+      budget_(options.handshakes_per_second, options.handshakes_in_all),
       answers_left_(0.0) {
   fill_random(token_secret_);
   sockets_.push_back(std::move(socket));
@@ -69,6 +69,13 @@ void Server::unknown_packet(UdpSocket& socket, const Arrival& packet, const ngtc
 
 void Server::confirmed(Connection& connection) {
   announce(connection, next_id_++);
+  // Their key is known before they say anything. Once beside the connection that they may have lost: not as
+  // often as they like.
+  const auto same = std::count_if(connections_.begin(), connections_.end(), [&](const auto& other) {
+    return other->admitted && other->state() != Connection::State::kClosed &&
+           other->key() == connection.key();
+  });
+  connection.admitted = same < 2 && known_ && known_(connection.key());
   events_.on_connected(connection.id, connection.key(), connection.remote().text());
 }
 
@@ -116,21 +123,36 @@ void Server::id_retired(Connection&, const ngtcp2_cid& id) {
   routes_.erase(text_of(id));
 }
 
-bool Server::has_room(std::int64_t now) {
+void Server::admit(ConnectionId id) {
+  Connection* connection = find(id);
+  if (!connection) return;
+  connection->admitted = true;
+  budget_.admitted(connection->site, steady_now_ns());
+}
+
+bool Server::make_room(std::int64_t now) {
   std::size_t alive = 0;
-  Connection* slowest = nullptr;
+  std::unordered_map<std::string_view, std::size_t> strangers;  // by site
+  std::size_t all = 0;
   for (const auto& connection : connections_) {
     if (connection->state() == Connection::State::kClosed) continue;
     ++alive;
-    const bool slow = connection->state() == Connection::State::kHandshake &&
-                      now - connection->began() > kNanosecondsPerSecond;
-    if (slow && (!slowest || connection->began() < slowest->began())) slowest = connection.get();
+    if (connection->admitted) continue;
+    ++strangers[connection->site];
+    ++all;
   }
-  if (alive < options_.max_connections) return true;
-  // Those who dawdle must not keep others out: a handshake takes three round trips.
-  if (!slowest) return false;
-  slowest->abort(0, "the handshake took too long for a full host", now);
-  touch(*slowest);
+  if (alive < options_.max_connections && all < options_.max_strangers) return true;
+  if (all == 0) return false;
+  // Who knocks often only displaces himself; where all have knocked as often, who has waited longest goes.
+  Connection* out = nullptr;
+  for (const auto& connection : connections_) {
+    if (connection->state() == Connection::State::kClosed || connection->admitted) continue;
+    const std::size_t mine = strangers[connection->site], his = out ? strangers[out->site] : 0;
+    if (mine > his || (mine == his && connection->began() < out->began())) out = connection.get();
+  }
+  out->put_off("the host is busy: too many are knocking", now);
+  touch(*out);
+  ++counts_.strangers_put_out;
   return true;
 }
 
@@ -141,6 +163,7 @@ void Server::accept(UdpSocket& socket, const Arrival& packet, const FirstPacket&
     return;
   }
   Connection& connection = *made;
+  connection.site = packet.from.site();
   connection.receive(packet.to, packet.from, packet.bytes, now);
   if (connection.state() == Connection::State::kClosed && connection.close_packet().empty()) {
     // Damaged on its way: the true one may still come with this token.

@@ -7,7 +7,7 @@
 #include <unordered_set>
 
 #include "net/quic/endpoint_base.h"
-#include "net/quic/site_limiter.h"
+#include "net/quic/handshake_budget.h"
 
 namespace slosh::quic {
 
@@ -16,6 +16,10 @@ class Server final : public EndpointBase {
   Server(std::unique_ptr<UdpSocket> socket, const Identity& identity, EndpointEvents& events,
          const EndpointOptions& options);
   ~Server() override;
+  void admit(ConnectionId connection) override;
+  void set_known_keys(std::function<bool(const KeyFingerprint&)> known) override {
+    known_ = std::move(known);
+  }
 
  private:
   /// A connection that is over: what to answer to those who have not heard.
@@ -45,8 +49,8 @@ class Server final : public EndpointBase {
   void answer_reset(UdpSocket& socket, const Arrival& packet, const ngtcp2_version_cid& ids,
                     std::int64_t now);
   void answer_full(UdpSocket& socket, const Arrival& packet, const FirstPacket& first);
-  /// Whether one more connection may be kept; may end an unfinished one for it.
-  bool has_room(std::int64_t now);
+  /// Whether one more stranger may be kept; may end another's connection for it.
+  bool make_room(std::int64_t now);
   /// Whether one more answer to an unknown sender is within what we spend on those.
   bool may_answer(std::int64_t now);
 
@@ -56,7 +60,8 @@ class Server final : public EndpointBase {
   std::deque<std::shared_ptr<Grave>> graves_by_age_;
   std::unordered_set<std::string> used_tokens_;  // by the id that came with each
   std::deque<std::pair<std::int64_t, std::string>> used_by_age_;
-  SiteLimiter limiter_;
+  HandshakeBudget budget_;
+  std::function<bool(const KeyFingerprint&)> known_;
   ConnectionId next_id_ = 1;
   double answers_left_;
   std::int64_t answers_at_ = 0;

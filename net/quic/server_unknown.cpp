@@ -37,12 +37,11 @@ void Server::first_packet(UdpSocket& socket, const Arrival& packet, std::int64_t
     ++counts_.packets_ignored;
     return;
   }
-  if (!limiter_.admit(packet.from.site(), now)) {
-    ++counts_.packets_ignored;
+  if (!budget_.take(packet.from.site(), now)) {
+    ++counts_.handshakes_put_off;
     return;
   }
-  if (connections_.size() >= options_.max_connections && !has_room(now))
-    return answer_full(socket, packet, first);
+  if (!make_room(now)) return answer_full(socket, packet, first);
   accept(socket, packet, first, now);
 }
 

@@ -41,6 +41,14 @@ int verify(gnutls_session_t session) {
   return 0;
 }
 
+/// ngtcp2 asserts when a ClientHello without QUIC's transport parameters is answered: it goes no further.
+int check_client_hello(gnutls_session_t session, unsigned, unsigned, unsigned, const gnutls_datum_t*) {
+  TlsPeer& peer = peer_of(session);
+  if (ngtcp2_conn_get_remote_transport_params(peer.reference.get_conn(&peer.reference))) return 0;
+  peer.refusal = "the other side sent no QUIC transport parameters";
+  return GNUTLS_E_MISSING_EXTENSION;
+}
+
 void check(int code, const char* what) {
   if (code < 0) throw std::runtime_error(std::string("TLS ") + what + ": " + gnutls_strerror(code));
 }
@@ -85,7 +93,11 @@ gnutls_session_t TlsContext::open(bool server, TlsPeer& peer) const {
     gnutls_deinit(session);
     return nullptr;
   }
-  if (server) gnutls_certificate_server_set_request(session, GNUTLS_CERT_REQUIRE);
+  if (server) {
+    gnutls_certificate_server_set_request(session, GNUTLS_CERT_REQUIRE);
+    gnutls_handshake_set_hook_function(session, GNUTLS_HANDSHAKE_CLIENT_HELLO, GNUTLS_HOOK_POST,
+                                       check_client_hello);
+  }
   gnutls_session_set_ptr(session, &peer.reference);
   return session;
 }
@@ -102,6 +114,8 @@ std::string alert_words(std::uint8_t alert) {
       return "it wants a certificate and got none";
     case 120:
       return "it speaks another version of slosh";
+    case 109:
+      return "it was not told the parameters of QUIC";
     case 42:
     case 43:
     case 46:

@@ -33,6 +33,7 @@ void RemoteLink::drop_endpoint() {
 
 void RemoteLink::try_to_connect(std::int64_t now_ns) {
   const bool first = status_.state == LinkState::kConnecting;
+  if (began_ns_ == 0) began_ns_ = now_ns;
   Result<std::unique_ptr<Endpoint>> made =
       connect_(*this, endpoint_options(first ? options_.answer_within : kRetryAnswer));
   if (!made) {
@@ -68,6 +69,7 @@ void RemoteLink::on_connected(ConnectionId connection, const KeyFingerprint&, co
 void RemoteLink::on_closed(ConnectionId, const CloseReason& reason) {
   closed_ = true;
   close_text_ = reason.text;
+  close_cause_ = reason.cause;
   // A refusal whose message was lost with the connection is in the code all the same.
   if (!reason.by_peer || reason.code == 0 || reason.code > wire::kRefusalCodes || refused_) return;
   if (status_.state != LinkState::kEnded) {
@@ -76,25 +78,30 @@ void RemoteLink::on_closed(ConnectionId, const CloseReason& reason) {
 }
 
 /// Contact is gone (or never was): ends the session when it had not begun, else tries again.
-void RemoteLink::lost(const std::string& why) {
+void RemoteLink::lost(const std::string& why, CloseCause cause) {
   const std::int64_t now_ns = now();
   phase_ = Phase::kIdle;
   if (leaving_) return end(std::nullopt);
   switch (status_.state) {
-    case LinkState::kConnecting: {
-      // The transport's own patience may end first.
-      const bool silent = why.empty() || why.find("no answer") != std::string::npos ||
-                          why.find("timed out") != std::string::npos;
-      const std::string what =
-          silent && why.find("no answer from") == std::string::npos ? "no answer within 5 s" : why;
-      const bool named = what.find(options_.address) != std::string::npos;
-      return end(Error{named ? "" : options_.address, what,
-                       silent ? "See that the host runs, and that UDP reaches that address and port"
-                              : "Ask the host for a new link"});
-    }
     case LinkState::kJoining:
-      return end(Error{options_.address, why.empty() ? "the connection ended while joining" : why,
-                       "Join again with the same link"});
+      if (cause != CloseCause::kBusy)
+        return end(Error{options_.address, why.empty() ? "the connection ended while joining" : why,
+                         "Join again with the same link"});
+      status_.state = LinkState::kConnecting;
+      [[fallthrough]];
+    case LinkState::kConnecting: {
+      const bool silent = cause == CloseCause::kNoAnswer || cause == CloseCause::kTimedOut;
+      if (cause == CloseCause::kBusy && to_seconds(now_ns - began_ns_) < kBusyPatience) {
+        if (busy_tries_++ == 0) notice("the host is busy (" + why + "); trying again");
+        backoff_.failed(now_ns);
+        break;
+      }
+      std::string mend = "Ask the host for a new link";
+      if (silent) mend = "See that the host runs, and that UDP reaches that address and port";
+      if (cause == CloseCause::kBusy) mend = "Join again in a while, with the same link";
+      const bool named = why.find(options_.address) != std::string::npos;
+      return end(Error{named ? "" : options_.address, why, mend});
+    }
     case LinkState::kLive:
       status_.state = LinkState::kReconnecting;
       status_.lost_ns = now_ns;

@@ -53,7 +53,7 @@ bool RemoteLink::turn() {
   if (closed_) {
     closed_ = false;
     drop_endpoint();
-    if (status_.state != LinkState::kEnded) lost(close_text_);
+    if (status_.state != LinkState::kEnded) lost(close_text_, close_cause_);
   }
   if (inbox_) pump_bodies(now());
   return status_.state != LinkState::kEnded;
@@ -73,15 +73,17 @@ std::int64_t RemoteLink::work(std::int64_t now_ns) {
         if (now_ns >= backoff_.due_ns()) try_to_connect(now_ns);
         next_ns = std::min(next_ns, backoff_.due_ns());
       } else {
-        try_to_connect(now_ns);
+        if (now_ns >= backoff_.due_ns()) try_to_connect(now_ns);
+        next_ns = std::min(next_ns, backoff_.due_ns());
       }
       break;
     case Phase::kConnecting: {
       const bool first = status_.state == LinkState::kConnecting;
       const double within = first ? options_.answer_within : kRetryAnswer;
-      if (to_seconds(now_ns - phase_ns_) > within) {
+      // The transport has the same patience, and better words: it is heard first.
+      if (to_seconds(now_ns - phase_ns_) > within + 0.25) {
         drop_endpoint();
-        lost("no answer");
+        lost("no answer within " + std::to_string(static_cast<int>(within)) + " s", CloseCause::kNoAnswer);
       }
       break;
     }
@@ -89,7 +91,7 @@ std::int64_t RemoteLink::work(std::int64_t now_ns) {
       go_live_if_ready(now_ns);
       if (phase_ == Phase::kGreeting && to_seconds(now_ns - phase_ns_) > kWelcomeWithin) {
         drop_endpoint();
-        lost("the host answered and then said nothing");
+        lost("the host answered and then said nothing", CloseCause::kTimedOut);
       }
       break;
     case Phase::kLive:

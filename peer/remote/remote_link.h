@@ -85,7 +85,7 @@ class RemoteLink final : public EndpointEvents {
   // remote_link.cpp: turns and datagrams; remote_connect.cpp: the connection.
   std::int64_t now() const;
   void try_to_connect(std::int64_t now_ns);
-  void lost(const std::string& why);
+  void lost(const std::string& why, CloseCause cause);
   void drop_endpoint();
   std::int64_t work(std::int64_t now_ns);
   void pump_bodies(std::int64_t now_ns);
@@ -95,7 +95,8 @@ class RemoteLink final : public EndpointEvents {
   void publish(std::int64_t now_ns);
   void note_traffic(std::int64_t now_ns);
 
-  static constexpr double kRetryAnswer = 1.5;  // s that a try to come back waits for an answer
+  static constexpr double kRetryAnswer = 1.5;    // s that a try to come back waits for an answer
+  static constexpr double kBusyPatience = 30.0;  // s of asking a busy host again before the first welcome
 
   // remote_control.cpp: what is said; remote_grips.cpp: about grips.
   void say_hello();
@@ -152,6 +153,9 @@ class RemoteLink final : public EndpointEvents {
   bool refused_ = false;
   bool leaving_ = false;
   std::string close_text_;
+  CloseCause close_cause_ = CloseCause::kClosed;
+  std::int64_t began_ns_ = 0;  // the first try
+  int busy_tries_ = 0;
   std::int64_t phase_ns_ = 0;  // when the phase began
   std::int64_t pose_due_ns_ = 0;
   std::int64_t publish_due_ns_ = 0;

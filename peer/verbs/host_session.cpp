@@ -15,7 +15,8 @@ namespace {
 
 constexpr std::size_t kPictureBytes = std::size_t{256} << 20;
 constexpr std::uint16_t kPort = 4433;
-constexpr std::size_t kSpareHands = 4;  // participants beyond one a grip
+constexpr std::size_t kSpareHands = 4;   // participants beyond one a grip
+constexpr std::size_t kStrangers = 128;  // connections that nobody was let in by
 
 std::int64_t unix_offset_ns() {
   const auto unix = std::chrono::system_clock::now().time_since_epoch();
@@ -94,7 +95,8 @@ Result<bool> HostSession::open_network() {
   server_ = std::make_unique<Server>(std::move(world), server);
 
   EndpointOptions link;
-  link.max_connections = server.limits.participants + server.limits.spectators + 32;
+  link.max_strangers = kStrangers;
+  link.max_connections = server.limits.participants + server.limits.spectators + kStrangers;
   link.stream_buffer = package_bytes + (2u << 20);
   // A key frame takes about 1.4 bytes a particle; two of them must find room.
   link.queue_datagrams[static_cast<std::size_t>(Priority::kSnapshot)] =

@@ -317,7 +317,7 @@ void round_trip(double seconds) {
 void fan_out(int count, double seconds) {
   const Identity key = Identity::generate();
   EndpointOptions options;
-  options.handshakes_per_second = 1e6;
+  options.handshakes_per_second = options.handshakes_in_all = 1e6;
   options.idle_timeout = 20.0;
   Quiet at_host;
   auto host = listen_quic("127.0.0.1:0", key, at_host, options);

@@ -209,8 +209,9 @@ class MemoryEndpoint final : public Endpoint {
         for (Way& each : c.ways) {
           if (!each.from) continue;
           const ConnectionId gone = each.id;
-          each.from->add(now,
-                         [gone](EndpointEvents& events) { events.on_closed(gone, {false, 0, "timed out"}); });
+          each.from->add(now, [gone](EndpointEvents& events) {
+            events.on_closed(gone, {false, 0, "timed out", CloseCause::kTimedOut});
+          });
           if (each.from != this) each.from->detach(gone);
         }
         mine_.erase(id);
@@ -320,7 +321,9 @@ std::unique_ptr<Endpoint> MemoryNetwork::connect(EndpointEvents& events, const K
   const std::int64_t due = impl_->now() + to_nanoseconds(2.0 * connection->link.delay);
   if (!impl_->listener) {
     connection->open = false;
-    end->add(due, [here](EndpointEvents& told) { told.on_closed(here, {false, 0, "nobody answers"}); });
+    end->add(due, [here](EndpointEvents& told) {
+      told.on_closed(here, {false, 0, "nobody answers", CloseCause::kNoAnswer});
+    });
     return end;
   }
   const KeyFingerprint host = impl_->listener->key();

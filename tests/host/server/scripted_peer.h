@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -21,6 +22,9 @@ Scene served_scene();
 class ScriptedPeer final : public EndpointEvents {
  public:
   ScriptedPeer(MemoryNetwork& network, std::uint8_t key, const std::string& address = "192.0.2.1:50000");
+  /// Over whatever network `connect` opens, whose one connection is number 1.
+  explicit ScriptedPeer(const std::function<std::unique_ptr<Endpoint>(EndpointEvents&)>& connect)
+      : end(connect(*this)) {}
 
   void hello(const wire::Token& token, const std::string& name = {},
              wire::PictureWish pictures = wire::PictureWish::kNewest);

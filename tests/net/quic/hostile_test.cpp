@@ -231,11 +231,16 @@ TEST(Limits, HoldForConnectionsAndForOneSite) {
     ends.push_back(peers.back().get());
     ASSERT_TRUE(
         run_until(ends, [&] { return !events.back()->connected.empty() || !events.back()->closed.empty(); }));
+    if (i == 3) break;
+    const auto count = static_cast<std::size_t>(i) + 1;
+    ASSERT_TRUE(run_until(ends, [&] { return pair.host_events.connected.size() == count; }));
+    pair.host->admit(pair.host_events.connected.back());
   }
   EXPECT_EQ(pair.host->endpoint_stats().connections, 3u);
   ASSERT_FALSE(events[3]->closed.empty());
   EXPECT_EQ(events[3]->reasons[0].text, "the host has as many connections as it may");
-  // The site has begun its four: the next waits, is not refused, and gets in as time allows.
+  EXPECT_EQ(events[3]->reasons[0].cause, CloseCause::kBusy);
+  // The next waits, is not refused, and gets in as time allows.
   peers[0].reset();
   ends = {pair.host.get(), peers[1].get(), peers[2].get()};
   ASSERT_TRUE(run_until(ends, [&] { return pair.host->endpoint_stats().connections == 2; }));

@@ -188,7 +188,7 @@ TEST(Waking, EndsAWait) {
 
 TEST(Churn, LeavesNothingBehind) {
   EndpointOptions options;
-  options.handshakes_per_second = 1e6;
+  options.handshakes_per_second = options.handshakes_in_all = 1e6;
   Pair pair(options);
   for (int i = 0; i < 200; ++i) {
     ASSERT_TRUE(pair.establish()) << i << ": " << pair.problem;

@@ -165,6 +165,23 @@ TEST(RemoteLink, NobodyThereIsSaidWithinFiveSeconds) {
   EXPECT_FALSE(both.status().error->mend.empty());
 }
 
+TEST(RemoteLink, ABusyHostIsAskedAgain) {
+  Together both;
+  both.busy_answers = 4;
+  ASSERT_TRUE(both.run_until(LinkState::kLive));
+  EXPECT_EQ(both.connects, 5);
+  EXPECT_NE(both.notices().find("the host is busy (too many are knocking); trying again"), std::string::npos)
+      << both.notices();
+}
+
+TEST(RemoteLink, AHostThatStaysBusyIsNoReasonForANewLink) {
+  Together both;
+  both.busy_answers = 1000;
+  ASSERT_TRUE(both.run_until(LinkState::kEnded, 40.0));
+  EXPECT_EQ(both.status().error->text(),
+            "192.0.2.9:4433: too many are knocking. Join again in a while, with the same link");
+}
+
 TEST(RemoteLink, ARefusalEndsWithTheHostsWordsAndWhatToDo) {
   Together both;
   both.host.on_hello = [&](const wire::Hello&) {

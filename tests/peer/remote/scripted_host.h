@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "net/clock.h"
@@ -230,6 +231,28 @@ class ScriptedHost final : public EndpointEvents {
 };
 
 /// A peer's link and the host that it joins, turned together.
+/// What a host answers that is too busy for another connection.
+class BusyHost final : public Endpoint {
+ public:
+  explicit BusyHost(EndpointEvents& events) : events_(events) {}
+  void run_once(std::int64_t) override {
+    if (!std::exchange(told_, true))
+      events_.on_closed(1, {true, 0, "too many are knocking", CloseCause::kBusy});
+  }
+  void wake() override {}
+  bool send_datagram(ConnectionId, Priority, SharedBytes) override { return false; }
+  std::int64_t open_stream(ConnectionId, bool) override { return -1; }
+  bool send_stream(ConnectionId, std::int64_t, std::span<const std::uint8_t>, bool) override { return false; }
+  void close(ConnectionId, std::uint64_t, const std::string&) override {}
+  ConnectionStats stats(ConnectionId) const override { return {}; }
+  EndpointStats endpoint_stats() const override { return {}; }
+  std::string local_address() const override { return "192.0.2.1:50000"; }
+
+ private:
+  EndpointEvents& events_;
+  bool told_ = false;
+};
+
 struct Together {
   MemoryNetwork network;
   ScriptedHost host{network};
@@ -237,6 +260,7 @@ struct Together {
   std::unique_ptr<RemoteLink> link;
   Endpoint* peer_end = nullptr;  // the newest
   int connects = 0;
+  int busy_answers = 0;  // so many tries find the host busy
 
   explicit Together(const MemoryLink& wire = {0.010, 0.0, 0.0, 0.0}, RemoteOptions options = {}) {
     network.set_link(wire);
@@ -245,6 +269,7 @@ struct Together {
     const Connect connect = [this](EndpointEvents& events,
                                    const EndpointOptions& endpoint) -> Result<std::unique_ptr<Endpoint>> {
       connects += 1;
+      if (busy_answers > 0 && busy_answers-- > 0) return std::unique_ptr<Endpoint>(new BusyHost(events));
       std::unique_ptr<Endpoint> made =
           network.connect(events, KeyFingerprint{1}, "192.0.2.1:50000", endpoint);
       peer_end = made.get();
