@@ -5,6 +5,7 @@
 
 #include "host/server/server_send.h"
 #include "net/clock.h"
+#include "net/site.h"
 
 namespace slosh {
 namespace {

@@ -22,7 +22,8 @@ struct Callbacks {
     const bool handshake =
         header_size == 0 || (header[0] & 0x80) != 0;  // long header: few frames are allowed
     if (code != 0 || handshake || size < aead->max_overhead) return code;
-    const FrameVerdict verdict = guard_frames({out, size - aead->max_overhead});
+    LossLedger* const ledger = Connection::reading ? &Connection::reading->ledger_ : nullptr;
+    const FrameVerdict verdict = guard_frames({out, size - aead->max_overhead}, ledger);
     if (verdict == FrameVerdict::kPass) return 0;
     if (Connection::reading)
       Connection::reading->breach_ = verdict == FrameVerdict::kMalformed
@@ -31,6 +32,22 @@ struct Callbacks {
     return NGTCP2_ERR_CALLBACK_FAILURE;
   }
   static bool listening(const Connection& c) { return c.state_ == Connection::State::kOpen; }
+
+  /// Tells the connection that writes the number of its packet: the header's last bytes are the number's.
+  static int encrypt(std::uint8_t* out, const ngtcp2_crypto_aead* aead, const ngtcp2_crypto_aead_ctx* context,
+                     const std::uint8_t* plain, std::size_t size, const std::uint8_t* nonce,
+                     std::size_t nonce_size, const std::uint8_t* header, std::size_t header_size) {
+    const std::size_t bytes = header_size > 0 ? (header[0] & 3u) + 1u : 0u;
+    if (Connection::writing && header_size > bytes && (header[0] & 0x80) == 0) {
+      std::int64_t low = 0;
+      for (std::size_t i = header_size - bytes; i < header_size; ++i) low = low << 8 | header[i];
+      const std::int64_t span = std::int64_t{1} << (8 * bytes);
+      std::int64_t& number = Connection::writing->packet_number_;
+      number += ((low - number) % span + span) % span;  // the next one that ends so
+      Connection::writing->short_packet_ = true;
+    }
+    return ngtcp2_crypto_encrypt_cb(out, aead, context, plain, size, nonce, nonce_size, header, header_size);
+  }
 
   /// Server: the client's certificate is in. Client: not yet certain that the server took ours.
   static int completed(ngtcp2_conn* conn, void* user) {
@@ -155,7 +172,7 @@ ngtcp2_callbacks connection_callbacks() {
   all.client_initial = ngtcp2_crypto_client_initial_cb;
   all.recv_client_initial = ngtcp2_crypto_recv_client_initial_cb;
   all.recv_crypto_data = ngtcp2_crypto_recv_crypto_data_cb;
-  all.encrypt = ngtcp2_crypto_encrypt_cb;
+  all.encrypt = Callbacks::encrypt;
   all.decrypt = Callbacks::decrypt;
   all.hp_mask = ngtcp2_crypto_hp_mask_cb;
   all.recv_retry = ngtcp2_crypto_recv_retry_cb;

@@ -34,7 +34,7 @@ Result<std::unique_ptr<Client>> Client::connect(const std::vector<Address>& addr
                                                 TlsOddity oddity, EndpointEvents& events,
                                                 const EndpointOptions& options) {
   std::unique_ptr<Client> client(new Client(identity, std::move(oddity), events, options));
-  const std::int64_t now = steady_now_ns();
+  const std::int64_t now = client->now();
   Error last{"link", "it names no address", "Ask the host for a new link"};
   for (const Address& address : addresses) {
     if (client->connections_.size() >= kAttempts) break;
@@ -65,14 +65,14 @@ void Client::packet_arrived(UdpSocket& socket, const Arrival& packet, std::int64
 
 void Client::confirmed(Connection& connection) {
   if (chosen_ || over_) {
-    connection.close(0, "another address was faster", steady_now_ns());
+    connection.close(0, "another address was faster", now());
     return;
   }
   chosen_ = &connection;
   announce(connection, kOnly);
   for (const auto& other : connections_) {
     if (other.get() == chosen_) continue;
-    other->close(0, "another address was faster", steady_now_ns());
+    other->close(0, "another address was faster", now());
     touch(*other);
   }
   events_.on_connected(kOnly, connection.key(), connection.remote().text());
@@ -110,7 +110,7 @@ void Client::close(ConnectionId id, std::uint64_t code, const std::string& text)
   failure_ = {false, code, text};
   failure_definite_ = true;
   for (const auto& connection : connections_) {
-    connection->close(code, text, steady_now_ns());
+    connection->close(code, text, now());
     touch(*connection);
   }
 }

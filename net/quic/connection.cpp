@@ -28,6 +28,7 @@ ngtcp2_path path_between(Address& local, Address& remote) {
 }
 
 constexpr std::size_t kLongestDatagramFrame = wire::kMaxDatagram + 16;
+constexpr std::size_t kPeerPacket = 32 << 10;        // bytes; a quarter of a peer's narrowest window
 constexpr std::uint64_t kControlWindow = 256 << 10;  // bytes a client may have on its way to a host
 constexpr std::uint64_t kSceneWindow = 8u << 20;     // bytes a host may have on its way to a peer
 constexpr std::uint64_t kWidestWindow = 24u << 20;   // what a fast, far link may let it grow to
@@ -35,6 +36,7 @@ constexpr std::uint64_t kWidestWindow = 24u << 20;   // what a fast, far link ma
 }  // namespace
 
 thread_local Connection* Connection::reading = nullptr;
+thread_local Connection* Connection::writing = nullptr;
 
 Connection::Connection(ConnectionOwner& owner, const TlsContext& tls, const EndpointOptions& options,
                        UdpSocket& socket, const Address& remote, std::int64_t now)
@@ -57,14 +59,18 @@ Connection::~Connection() {
   if (session_) gnutls_deinit(session_);
 }
 
-ngtcp2_settings Connection::settings(std::int64_t now) const {
+ngtcp2_settings Connection::settings(bool server, std::int64_t now) const {
   ngtcp2_settings settings;
   ngtcp2_settings_default(&settings);
   settings.cc_algo = kCongestionControl;
   settings.initial_ts = static_cast<ngtcp2_tstamp>(now);
   settings.initial_rtt = 100 * NGTCP2_MILLISECONDS;
   settings.handshake_timeout = nanoseconds(options_.handshake_timeout);
-  settings.max_tx_udp_payload_size = kMaxPacket;
+  // ngtcp2 counts windows in such packets: its least is four of them. A peer's is to hold whatever poses are
+  // under way (pose_room.h); no packet gets longer, since there is never room for more than kMaxPacket. A
+  // host's may not be wider: it would look for a longer MTU with a peer that allows one, and that is where it
+  // asserts (see below).
+  settings.max_tx_udp_payload_size = server ? kMaxPacket : kPeerPacket;
   // Nothing is probed, since no packet may be longer. Switched off (no_pmtud), ngtcp2 to 1.11 asserts when a
   // peer's packets come from a new port and then from the old one again.
   settings.no_pmtud = 0;
@@ -106,7 +112,7 @@ std::unique_ptr<Connection> Connection::to_host(ConnectionOwner& owner, const Tl
                                                 std::int64_t now) {
   std::unique_ptr<Connection> made(new Connection(owner, tls, options, socket, remote, now));
   made->peer_.expected = host;
-  ngtcp2_settings settings = made->settings(now);
+  ngtcp2_settings settings = made->settings(false, now);
   settings.max_window = 2 * kWidestWindow;
   settings.max_stream_window = kWidestWindow;
   const ngtcp2_transport_params params = made->parameters(false);
@@ -128,7 +134,7 @@ std::unique_ptr<Connection> Connection::from_client(ConnectionOwner& owner, cons
                                                     const Address& local, const Address& remote,
                                                     const FirstPacket& first, std::int64_t now) {
   std::unique_ptr<Connection> made(new Connection(owner, tls, options, socket, remote, now));
-  ngtcp2_settings settings = made->settings(now);
+  ngtcp2_settings settings = made->settings(true, now);
   set_token(settings, first.token.data(), first.token.size());
   ngtcp2_transport_params params = made->parameters(true);
   const ngtcp2_cid own_id = random_id(kCidSize);
@@ -255,6 +261,7 @@ ConnectionStats Connection::stats() const {
   stats.window = figures.window;
   stats.in_flight = figures.in_flight;
   stats.delivery_rate = figures.delivery_rate;
+  stats.datagrams_lost = ledger_.lost();
   stats.bytes_sent = bytes_sent_;
   stats.bytes_received = bytes_received_;
   return stats;

@@ -11,7 +11,9 @@
 #include "net/quic/compat.h"
 #include "net/quic/datagram_queues.h"
 #include "net/quic/endpoint.h"
+#include "net/quic/loss_ledger.h"
 #include "net/quic/pace.h"
+#include "net/quic/pose_room.h"
 #include "net/quic/snapshot_room.h"
 #include "net/quic/stream_outbox.h"
 #include "net/quic/tls.h"
@@ -114,10 +116,11 @@ class Connection {
  private:
   friend struct Callbacks;
   static thread_local Connection* reading;  // whose packet the library is reading
+  static thread_local Connection* writing;  // or writing
   Connection(ConnectionOwner& owner, const TlsContext& tls, const EndpointOptions& options, UdpSocket& socket,
              const Address& remote, std::int64_t now);
   bool start_session(bool server);
-  ngtcp2_settings settings(std::int64_t now) const;
+  ngtcp2_settings settings(bool server, std::int64_t now) const;
   ngtcp2_transport_params parameters(bool server) const;
   ngtcp2_ssize write_packet(std::span<std::uint8_t> out, ngtcp2_path* path, std::int64_t now);
   ngtcp2_ssize write_datagram(std::span<std::uint8_t> out, ngtcp2_path* path, int priority, bool& accepted,
@@ -155,8 +158,14 @@ class Connection {
   std::size_t snapshots_in_a_row_ = 0;
   PaceGain pace_;
   SnapshotRoom snapshot_room_;
-  std::size_t room_ = 0;           // bytes of snapshots that this flush may still send
-  bool probe_stream_due_ = false;  // a client's: the host knows it by its first byte
+  PoseRoom pose_room_;
+  LossLedger ledger_;
+  std::int64_t packet_number_ = 0;  // of the last packet with a short header
+  bool short_packet_ = false;       // one was written
+  unsigned packed_datagrams_ = 0;   // in it
+  bool held_back_ = false;          // a peer's link shows a queue
+  std::size_t room_ = 0;            // bytes of snapshots that this flush may still send
+  bool probe_stream_due_ = false;   // a client's: the host knows it by its first byte
   std::uint64_t bytes_sent_ = 0;
   std::uint64_t bytes_received_ = 0;
   std::uint64_t packets_received_ = 0;

@@ -1,5 +1,6 @@
 // What a Connection sends, and in which order.
 #include <algorithm>
+#include <utility>
 
 #include "net/quic/connection.h"
 
@@ -13,6 +14,7 @@ constexpr std::size_t kRoom = kMaxPacket - 1 - 20 - 4 - 16 - (kDatagramsAreProbe
 // Streams come last, but a full link must not silence them: one packet of theirs after so many snapshots.
 constexpr std::size_t kSnapshotsAStream = 15;
 constexpr double kBurst = 2e-3;  // s of the link's rate that may leave at once
+constexpr double kLate = 0.3;    // s after which what others overtook counts as lost, at least
 
 }  // namespace
 
@@ -27,23 +29,37 @@ void Connection::flush(std::int64_t now) {
   const std::size_t limit = burst(figures);
   const std::size_t most = snapshot_room_.limit(figures, now);
   room_ = most > figures.in_flight ? most - figures.in_flight : 0;
+  std::size_t wide = SIZE_MAX;
+  if (!ngtcp2_conn_is_server(conn_)) wide = pose_room_.limit(figures, now);
+  held_back_ = wide != SIZE_MAX;
+  const auto patience = static_cast<std::int64_t>(1e9 * std::max(kLate, 2.0 * figures.smoothed_rtt));
+  ledger_.settle(now, patience);
   std::size_t sent = 0;
   ngtcp2_path_storage path;
+  Connection* const outer = std::exchange(writing, this);
   while (sent < limit) {
     const std::span<std::uint8_t> out = socket_->space();
     if (out.empty()) break;
     ngtcp2_path_storage_zero(&path);
-    const ngtcp2_ssize size = write_packet(out, &path.path, now);
+    short_packet_ = false;
+    packed_datagrams_ = 0;
+    const bool full = ledger_.under_way() >= wide;
+    const ngtcp2_ssize size = full ? ngtcp2_conn_write_pkt(conn_, &path.path, nullptr, out.data(), out.size(),
+                                                           static_cast<ngtcp2_tstamp>(now))
+                                   : write_packet(out, &path.path, now);
     if (size < 0) {
+      writing = outer;
       fail(static_cast<int>(size), now);
       return;
     }
     if (size == 0) break;
+    if (short_packet_) ledger_.sent(packet_number_, packed_datagrams_, static_cast<std::size_t>(size), now);
     socket_->add(Address(path.path.local.addr, path.path.local.addrlen),
                  Address(path.path.remote.addr, path.path.remote.addrlen), static_cast<std::size_t>(size));
     sent += static_cast<std::size_t>(size);
     room_ -= std::min(room_, static_cast<std::size_t>(size));
   }
+  writing = outer;
   bytes_sent_ += sent;
   pace(sent, now);
 }
@@ -56,10 +72,12 @@ void Connection::pace(std::size_t sent, std::int64_t now) {
   for (const std::uint64_t count : counts_.datagrams_sent) datagrams += count;
   pace_.note(figures, waiting, datagrams, counts_.datagrams_lost, now);
   // The library adds `sent` / pace to the time that it is told: an earlier one makes the pause shorter.
+  // A peer's poses keep their own pace while the link shows no queue.
+  const bool own_pace = !ngtcp2_conn_is_server(conn_) && !held_back_;
+  const double shorter = own_pace ? 1.0 : 1.0 - 1.0 / pace_.factor();
   std::int64_t told = now;
   if (figures.pacing_rate > 0.0)
-    told -= static_cast<std::int64_t>(1e9 * static_cast<double>(sent) / figures.pacing_rate *
-                                      (1.0 - 1.0 / pace_.factor()));
+    told -= static_cast<std::int64_t>(1e9 * static_cast<double>(sent) / figures.pacing_rate * shorter);
   ngtcp2_conn_update_pkt_tx_time(conn_, static_cast<ngtcp2_tstamp>(told));
 }
 
@@ -108,6 +126,7 @@ ngtcp2_ssize Connection::write_packet(std::span<std::uint8_t> out, ngtcp2_path* 
     if (accepted) {
       packed += queues_.front(priority)->size() + kDatagramOverhead;
       ++counts_.datagrams_sent[priority];
+      ++packed_datagrams_;
       snapshots_in_a_row_ = snapshot ? snapshots_in_a_row_ + 1 : snapshots_in_a_row_;
       queues_.pop(priority);
     }

@@ -105,6 +105,7 @@ struct EndpointOptions {
   double handshakes_in_all = 100.0;     ///< a s, begun by all sites that nobody was admitted from lately
   std::size_t queue_datagrams[kPriorities] = {64, 64, 512};  ///< a connection's; the oldest go first
   std::size_t stream_buffer = 80u << 20;  ///< bytes of unacknowledged stream data a connection may hold
+  std::function<std::int64_t()> clock;    ///< ns; empty = the steady one. With one, run_once() never waits
 };
 
 /// In-memory counters of what an endpoint refused before it kept any state.
@@ -158,10 +159,6 @@ class Endpoint {
   /// network fails it. False when there is nothing to move.
   virtual bool rebind() { return false; }
 };
-
-/// What a site is counted by, from "HOST:PORT" as on_connected() tells it: the IPv4 address, or the /64 of
-/// the IPv6 one, as text; what is neither is its own site.
-std::string site_of(const std::string& address);
 
 /// Listens at "HOST:PORT" or "[IPv6]:PORT" ("0.0.0.0:0" takes any port; "[::]:PORT" takes IPv4 too). Every
 /// first packet is answered with a Retry token and no state. Errors: not an address, in use, not allowed.

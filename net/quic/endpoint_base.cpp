@@ -41,21 +41,25 @@ EndpointBase::~EndpointBase() {
   ::close(wake_descriptor_);
 }
 
+std::int64_t EndpointBase::now() const {
+  return options_.clock ? options_.clock() : steady_now_ns();
+}
+
 void EndpointBase::finish_all(const std::string& text) {
-  const std::int64_t now = steady_now_ns();
+  const std::int64_t now = this->now();
   for (const auto& connection : connections_) connection->abort(0, text, now);
   for (const auto& socket : sockets_) socket->flush();
 }
 
 void EndpointBase::run_once(std::int64_t deadline_ns) {
-  std::int64_t now = steady_now_ns();
+  std::int64_t now = this->now();
   flush_dirty(now);
   reap(now);
   std::int64_t until = std::min(deadline_ns, next_housekeeping_);
   if (!timers_.empty()) until = std::min(until, timers_.begin()->first);
   wait(until);
   receive();
-  now = steady_now_ns();
+  now = this->now();
   run_timers(now);
   if (now >= next_housekeeping_) next_housekeeping_ = housekeeping(now);
   flush_dirty(now);
@@ -71,10 +75,10 @@ void EndpointBase::wait(std::int64_t until) {
     blocked = blocked || full;
     descriptors.push_back({socket->descriptor(), static_cast<short>(full ? POLLIN | POLLOUT : POLLIN), 0});
   }
-  const std::int64_t now = steady_now_ns();
+  const std::int64_t now = this->now();
   // While the kernel takes nothing, timers that want to send cannot do anything about it.
   if (blocked) until = std::max(until, now + 1'000'000);
-  const std::int64_t left = std::max<std::int64_t>(until - now, 0);
+  const std::int64_t left = options_.clock ? 0 : std::max<std::int64_t>(until - now, 0);
   timespec timeout{};
   timeout.tv_sec = static_cast<time_t>(std::min<std::int64_t>(left / kNanosecondsPerSecond, 3600));
   timeout.tv_nsec = static_cast<long>(left % kNanosecondsPerSecond);
@@ -96,7 +100,7 @@ void EndpointBase::receive() {
   for (std::size_t i = 0; i < sockets_.size(); ++i) {
     for (int batch = 0; batch < kBatchesAtOnce; ++batch) {
       const auto packets = sockets_[i]->receive();
-      const std::int64_t now = steady_now_ns();
+      const std::int64_t now = this->now();
       for (const Arrival& packet : packets) packet_arrived(*sockets_[i], packet, now);
       if (packets.empty()) break;
     }
@@ -199,7 +203,7 @@ bool EndpointBase::send_stream(ConnectionId id, std::int64_t stream, std::span<c
 void EndpointBase::close(ConnectionId id, std::uint64_t code, const std::string& text) {
   Connection* connection = find(id);
   if (!connection) return;
-  connection->close(code, text, steady_now_ns());
+  connection->close(code, text, now());
   touch(*connection);
 }
 

@@ -36,6 +36,7 @@ class EndpointBase : public Endpoint, protected ConnectionOwner {
   /// Something that is due now and then; when next, steady clock ns.
   virtual std::int64_t housekeeping(std::int64_t now) = 0;
 
+  std::int64_t now() const;
   Connection& adopt(std::unique_ptr<Connection> connection);
   void touch(Connection& connection);
   Connection* find(ConnectionId id) const;

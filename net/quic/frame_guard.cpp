@@ -80,16 +80,22 @@ class Reader {
   bool good_ = true;
 };
 
-void skip_acknowledgement(Reader& in, bool ecn) {
-  in.integers(2);  // largest, delay
+void read_acknowledgement(Reader& in, bool ecn, LossLedger* ledger) {
+  auto newest = static_cast<std::int64_t>(in.integer());
+  in.integer();  // delay
   const std::uint64_t ranges = in.integer();
-  in.integer();  // first range
-  for (std::uint64_t i = 0; i < ranges && in.good(); ++i) in.integers(2);
+  for (std::uint64_t i = 0; i <= ranges && in.good(); ++i) {
+    if (i > 0) newest -= static_cast<std::int64_t>(in.integer()) + 2;  // the gap
+    const auto length = static_cast<std::int64_t>(in.integer());
+    if (!in.good() || length > newest) break;  // the library says what is wrong
+    if (ledger) ledger->acknowledged(newest - length, newest);
+    newest -= length;
+  }
   if (ecn) in.integers(3);
 }
 
 /// The body of a frame other than NEW_CONNECTION_ID; false when there is none such.
-bool skip_frame(Reader& in, std::uint8_t type) {
+bool skip_frame(Reader& in, std::uint8_t type, LossLedger* ledger) {
   if (type >= kStreamFirst && type <= kStreamLast) {
     in.integer();
     if (type & 0x04) in.integer();
@@ -106,7 +112,7 @@ bool skip_frame(Reader& in, std::uint8_t type) {
       break;
     case kAck:
     case kAckEcn:
-      skip_acknowledgement(in, type == kAckEcn);
+      read_acknowledgement(in, type == kAckEcn, ledger);
       break;
     case kResetStream:
       in.integers(3);
@@ -156,13 +162,13 @@ bool skip_frame(Reader& in, std::uint8_t type) {
 
 }  // namespace
 
-FrameVerdict guard_frames(std::span<std::uint8_t> payload) {
+FrameVerdict guard_frames(std::span<std::uint8_t> payload, LossLedger* ledger) {
   Reader in(payload);
   while (in.at() < payload.size()) {
     const std::size_t start = in.at();
     const std::uint8_t type = in.byte();
     if (type != kNewConnectionId) {
-      if (!skip_frame(in, type)) return FrameVerdict::kMalformed;
+      if (!skip_frame(in, type, ledger)) return FrameVerdict::kMalformed;
       continue;
     }
     const std::uint64_t sequence = in.integer();

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <span>
 
+#include "net/quic/loss_ledger.h"
+
 namespace slosh::quic {
 
 /// Takes NEW_CONNECTION_ID out of a decrypted packet.
@@ -24,6 +26,7 @@ enum class FrameVerdict : std::uint8_t {
 
 /// `payload` is the plaintext of a 1-RTT packet. Nothing that does not decode here reaches the library, which
 /// takes more for frames than there are: it would see a frame behind one that is none.
-FrameVerdict guard_frames(std::span<std::uint8_t> payload);
+/// What is acknowledged is written into `ledger`, if there is one.
+FrameVerdict guard_frames(std::span<std::uint8_t> payload, LossLedger* ledger = nullptr);
 
 }  // namespace slosh::quic

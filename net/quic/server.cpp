@@ -127,7 +127,7 @@ void Server::admit(ConnectionId id) {
   Connection* connection = find(id);
   if (!connection) return;
   connection->admitted = true;
-  budget_.admitted(connection->site, steady_now_ns());
+  budget_.admitted(connection->site, now());
 }
 
 bool Server::make_room(std::int64_t now) {

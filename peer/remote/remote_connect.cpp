@@ -13,6 +13,8 @@ EndpointOptions endpoint_options(double answer_within) {
   options.keep_alive = 0.5;
   options.handshake_timeout = answer_within;
   options.max_connections = 1;
+  // A pose that waited is followed by newer ones, which repeat it: no more than a few are worth their time.
+  options.queue_datagrams[static_cast<std::size_t>(Priority::kPose)] = 8;
   return options;
 }
 

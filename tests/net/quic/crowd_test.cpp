@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "net/quic/handshake_budget.h"
+#include "net/site.h"
 #include "tests/net/quic/crafted_end.h"
 #include "tests/net/quic/ends.h"
 

@@ -2,15 +2,19 @@
 #include <gtest/gtest.h>
 
 #include "net/impair/relay.h"
+#include "net/quic/loss_ledger.h"
 #include "net/quic/pace.h"
+#include "net/quic/pose_room.h"
 #include "net/quic/snapshot_room.h"
 #include "tests/net/quic/ends.h"
 
 namespace slosh::testing {
 namespace {
 
+using quic::LossLedger;
 using quic::PaceGain;
 using quic::PathFigures;
+using quic::PoseRoom;
 using quic::SnapshotRoom;
 
 /// Sends `priority` from one end until its window is full while nothing comes back, and then lets everything
@@ -138,6 +142,56 @@ TEST(SnapshotRoom, FindsOutThatTheWayGotLonger) {
   std::int64_t now = 1;
   for (int i = 0; i < 140; ++i) room.limit(path(0.1, 0.02), now += 100'000'000);
   EXPECT_GT(room.limit(path(0.1, 0.02), now), 3 * before);
+}
+
+TEST(PoseRoom, IsEverythingUntilRoundTripsGrow) {
+  PoseRoom room;
+  EXPECT_EQ(room.limit(PathFigures{}, 1), SIZE_MAX);
+  EXPECT_EQ(room.limit(path(0.04, 0.04, 250e3), 2), SIZE_MAX);
+  EXPECT_EQ(room.limit(path(0.09, 0.04, 250e3), 3), SIZE_MAX) << "a radio that dithers is no queue";
+  const std::size_t limit = room.limit(path(0.2, 0.04, 100e3), 4);
+  EXPECT_GT(limit, 4'000u) << "what fills the way";
+  EXPECT_LT(limit, 20'000u);
+}
+
+TEST(LossLedger, TakesWhatComesLateForArrived) {
+  LossLedger ledger;
+  std::int64_t now = 0;
+  for (std::int64_t number = 0; number < 100; ++number) ledger.sent(number, 2, 500, now += 2'000'000);
+  ledger.acknowledged(41, 99);  // 40 were overtaken
+  ledger.settle(now, 300'000'000);
+  EXPECT_EQ(ledger.lost(), 0u);
+  ledger.acknowledged(0, 29);
+  ledger.acknowledged(31, 40);
+  ledger.settle(now + 400'000'000, 300'000'000);
+  EXPECT_EQ(ledger.lost(), 2u) << "the two datagrams of packet 30";
+  EXPECT_EQ(ledger.under_way(), 0u);
+  EXPECT_EQ(ledger.size(), 0u);
+}
+
+TEST(LossLedger, WaitsForAnAcknowledgementOfSomethingLater) {
+  LossLedger ledger;
+  for (std::int64_t number = 0; number < 10; ++number) ledger.sent(number, 1, 500, 1);
+  ledger.settle(10'000'000'000, 300'000'000);
+  EXPECT_EQ(ledger.lost(), 0u) << "a link that is dark says nothing of its losses";
+  EXPECT_EQ(ledger.under_way(), 5000u);
+  ledger.acknowledged(3, 3);
+  EXPECT_EQ(ledger.under_way(), 3000u) << "what came before is not under way any more";
+  ledger.acknowledged(9, 9);
+  ledger.settle(10'000'000'000, 300'000'000);
+  EXPECT_EQ(ledger.lost(), 8u);
+}
+
+TEST(LossLedger, IsNotMovedByAcknowledgementsOfNothing) {
+  LossLedger ledger;
+  ledger.acknowledged(0, 1'000'000'000);
+  ledger.sent(5, 1, 500, 1);
+  ledger.acknowledged(-10, std::int64_t{1} << 60);
+  ledger.settle(2, 1);
+  EXPECT_EQ(ledger.lost(), 0u);
+  EXPECT_EQ(ledger.size(), 0u);
+  for (std::int64_t number = 6; number < 100'000; ++number) ledger.sent(number, 1, 1, number);
+  EXPECT_LE(ledger.size(), 16384u);
 }
 
 }  // namespace

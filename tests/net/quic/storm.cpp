@@ -122,11 +122,43 @@ Bytes odd_frame(Random& random) {
   return out;
 }
 
-/// What closes a connection at once makes for short stories: mostly left out.
+/// A frame that any peer may send at any time, in an order and number that none does.
+Bytes fair_frame(Random& random) {
+  Bytes out;
+  switch (below(random, 8)) {
+    case 0:
+      return {0x01};
+    case 1:
+      out = {static_cast<std::uint8_t>(0x10 + 2 * below(random, 2))};  // MAX_DATA, MAX_STREAMS
+      put_integer(out, below(random, 1000));
+      return out;
+    case 2:
+      return new_connection_id(1 + below(random, 8), 0);
+    case 3:
+      out = {static_cast<std::uint8_t>(0x1a + below(random, 2))};
+      put_bytes(out, random, 8);
+      return out;
+    case 4:
+      out = {0x19};
+      put_integer(out, below(random, 4));
+      return out;
+    case 5:
+      out = {0x31, 3, 1, 2, 3};
+      return out;
+    case 6:
+      out = {0x0a, 0x04, 2, 7, 7};  // STREAM
+      return out;
+    default:
+      return {0x00, 0x00, 0x00};
+  }
+}
+
+/// What closes a connection at once makes for short stories: most of the time it is left out.
 Bytes odd_frames(Random& random) {
   Bytes all;
+  const bool fair = chance(random, 0.8);
   for (std::uint64_t i = 1 + below(random, 6); i > 0; --i) {
-    Bytes frame = odd_frame(random);
+    Bytes frame = fair ? fair_frame(random) : odd_frame(random);
     if ((frame[0] == 0x1c || frame[0] == 0x1d) && !chance(random, 0.05)) continue;
     all.insert(all.end(), frame.begin(), frame.end());
   }
