@@ -84,10 +84,14 @@ void read_acknowledgement(Reader& in, bool ecn, LossLedger* ledger) {
   auto newest = static_cast<std::int64_t>(in.integer());
   in.integer();  // delay
   const std::uint64_t ranges = in.integer();
+  bool sound = true;
+  // What is not sound is read on to its end all the same: the library looks at the first ranges only.
   for (std::uint64_t i = 0; i <= ranges && in.good(); ++i) {
-    if (i > 0) newest -= static_cast<std::int64_t>(in.integer()) + 2;  // the gap
+    const auto gap = static_cast<std::int64_t>(i > 0 ? in.integer() + 2 : 0);
     const auto length = static_cast<std::int64_t>(in.integer());
-    if (!in.good() || length > newest) break;  // the library says what is wrong
+    sound = sound && in.good() && gap <= newest && length <= newest - gap;
+    if (!sound) continue;
+    newest -= gap;
     if (ledger) ledger->acknowledged(newest - length, newest);
     newest -= length;
   }

@@ -268,6 +268,11 @@ TEST(FrameGuard, ReadsEveryFrameToItsEnd) {
       EXPECT_EQ(guard_frames(cut), FrameVerdict::kMalformed) << int(frame[0]) << " of " << size;
     }
   }
+  // Ranges below zero, behind more than the library looks at.
+  Bytes many{0x02, 0x3f, 1, 40, 0};
+  for (int i = 0; i < 80; ++i) many.push_back(i < 70 ? 0 : 0x3f);
+  Bytes payload = joined({many, new_connection_id(5, 4)});
+  EXPECT_EQ(guard_frames(payload), FrameVerdict::kRetiresAnId);
   Bytes open_ended{0x08, 4, 0x18, 0x18};  // STREAM to the end of the packet
   EXPECT_EQ(guard_frames(open_ended), FrameVerdict::kPass);
   Bytes last{0x30, 0x18, 0x18};
