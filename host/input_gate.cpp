@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "net/leap.h"
+
 namespace slosh {
 namespace {
 
 // s of simulated time over which a pose is carried on by its own twist to the start of a step.
-constexpr double kMostCarried = 0.01;
+constexpr double kMostCarried = kYieldAfter;
+// s of wall time for which what a hand carries is what it carried in its last step: poses come each 2 ms.
+constexpr double kCarriedAfter = 0.005;
 
 bool finite(const glm::dvec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
@@ -25,6 +29,7 @@ InputGate::InputGate(const Scene& scene)
     : reach_min_(scene.domain_min - kHandleReach), reach_max_(scene.domain_max + kHandleReach) {
   for (const Grip& grip : scene.grips) {
     Hand hand;
+    hand.body = grip.body;
     hand.gains = {grip.stiffness, grip.damping, grip.rotational_stiffness, grip.rotational_damping};
     hands_.push_back(hand);
   }
@@ -80,7 +85,13 @@ bool InputGate::accept(const PoseMessage& message, std::int64_t clock_ns) {
   }
   // Where the hand is after a reset is where it was before; the body is elsewhere. After a silence, or when
   // it is another hand, it is the other way round.
-  if (hand.anew || hand.silent || hand.good.hold != message.hold) hand.engagement = Engagement{};
+  // One that is suddenly elsewhere is no better. Samples that a link kept back come at once: what counts is
+  // the shorter of the times between their readings and between their coming.
+  const double elapsed =
+      to_seconds(std::min(message.stamp_ns - hand.good.stamp_ns, clock_ns - hand.received_ns));
+  const double speed = std::max(glm::length(message.twist.linear), glm::length(hand.good.twist.linear));
+  const bool leap = hand.has_good && leapt(hand.good.pose.position, message.pose.position, speed, elapsed);
+  if (hand.anew || hand.silent || leap || hand.good.hold != message.hold) hand.engagement = Engagement{};
   hand.anew = hand.silent = false;
   hand.good = message;
   hand.good.pose.orientation = glm::normalize(message.pose.orientation);
@@ -121,6 +132,41 @@ void InputGate::fade(Hand& hand, HandleInput& input, double time) {
   if (!input.engaged) hand.lost_scale = 0.0;
 }
 
+/// Whether somebody who is heard holds the same body.
+bool InputGate::another_holds(const Hand& hand, std::int64_t clock_ns) const {
+  return std::any_of(hands_.begin(), hands_.end(), [&](const Hand& other) {
+    return &other != &hand && other.body == hand.body && other.has_good && other.good.engaged &&
+           clock_ns - other.received_ns <= to_nanoseconds(kYieldAfter);
+  });
+}
+
+/// Moves the place where a silent hand holds, with the grip and so far that the springs give no more than
+/// kYield… besides what the hand carried.
+void InputGate::give_way(Hand& hand, HandleInput& input, const GripState& grip) const {
+  const CouplingGains& gains = hand.gains;
+  input.twist = grip.twist;  // the dampers drag at nobody
+  if (gains.stiffness > 0.0) {
+    const glm::dvec3 more = gains.stiffness * (grip.pose.position - input.pose.position) - hand.carried.force;
+    const double length = glm::length(more);
+    if (length > kYieldForce) {
+      const glm::dvec3 way = more * ((length - kYieldForce) / (length * gains.stiffness));
+      input.pose.position += way;
+      hand.good.pose.position += way;
+    }
+  }
+  if (gains.rotational_stiffness > 0.0) {
+    const glm::dvec3 more =
+        gains.rotational_stiffness * rotation_between(input.pose.orientation, grip.pose.orientation) -
+        hand.carried.torque;
+    const double length = glm::length(more);
+    if (length > kYieldTorque) {
+      const glm::dvec3 way = more * ((length - kYieldTorque) / (length * gains.rotational_stiffness));
+      input.pose.orientation = rotate_by(input.pose.orientation, way);
+      hand.good.pose.orientation = rotate_by(hand.good.pose.orientation, way);
+    }
+  }
+}
+
 void InputGate::fill_input(Hand& hand, std::size_t grip, const BodySnapshot& now, std::int64_t clock_ns) {
   HandleInput& input = inputs_[grip];
   // The pose was read a little before or after the moment that this step starts from.
@@ -138,6 +184,13 @@ void InputGate::fill_input(Hand& hand, std::size_t grip, const BodySnapshot& now
   input.pose = held.pose;
   input.twist = held.twist;
   input.scale = input.engaged ? 1.0 : 0.0;
+  if (grip < now.grips.size() && input.engaged) {
+    const double since = to_seconds(clock_ns - hand.received_ns);
+    if (since <= kCarriedAfter) hand.carried = now.grips[grip].on_hand;
+    if (since > kYieldAfter && another_holds(hand, clock_ns)) {
+      give_way(hand, input, now.grips[grip]);
+    }
+  }
   if (input.engaged) hand.last_held = input.pose;
   if (!input.engaged && hand.lost_scale > 0.0) fade(hand, input, now.time);
   hand.scale = input.scale;

@@ -32,6 +32,12 @@ constexpr double kLostFade = 0.4;
 /// s of wall time without a message after which a hand counts as standing still: a twist as old as that would
 /// drag the body along.
 constexpr double kStaleTwist = 0.05;
+/// A hand that was not heard for this long, s of wall time, gives way where another hand of the body is not
+/// silent: its coupling goes on giving what it gave when the hand was last heard, and so much more at most.
+/// So whoever is left carries their own share, and does not pull against a hand that hangs in the air.
+constexpr double kYieldAfter = 0.02;
+constexpr double kYieldForce = 2.0;   ///< N
+constexpr double kYieldTorque = 0.1;  ///< N·m
 /// s of wall time after a reset in which messages of the run before may still come.
 constexpr double kOldRun = 1.0;
 
@@ -64,8 +70,10 @@ class InputGate {
 
  private:
   struct Hand {
+    int body = 0;
     CouplingGains gains;
     Engagement engagement;
+    Wrench carried;  // on the hand, in the last step that it was heard for
     PoseMessage good;
     bool has_good = false;
     std::int64_t received_ns = 0;  // when `good` came
@@ -78,6 +86,8 @@ class InputGate {
   };
   void fill_input(Hand& hand, std::size_t grip, const BodySnapshot& now, std::int64_t clock_ns);
   void fade(Hand& hand, HandleInput& input, double time);
+  bool another_holds(const Hand& hand, std::int64_t clock_ns) const;
+  void give_way(Hand& hand, HandleInput& input, const GripState& grip) const;
   PoseFault check(const PoseMessage& message, const Hand& hand) const;
 
   glm::dvec3 reach_min_;

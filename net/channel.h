@@ -25,6 +25,9 @@ struct PoseMessage {
   std::uint64_t number = 0;  ///< of the sender's samples, rising; comes back in BodyMessage::pose_numbers
 };
 
+/// BodyMessage::heard_pose_ns in one process, where no pose is lost.
+constexpr std::int64_t kPoseNotTold = -1;
+
 /// Down, every tick: where the bodies are.
 struct BodyMessage {
   /// The host's steady clock at the moment that the state belongs to: when the step was scheduled to end, not
@@ -35,6 +38,12 @@ struct BodyMessage {
   std::uint32_t run = 0;   ///< rises by one with every reset, when simulated time starts anew
   double rate = 0.0;       ///< simulated seconds a wall second right now, 0 while standing still
   double time_step = 0.0;  ///< s, a tick's length
+  /// Simulated s by which a device loop carries the world's time on for its devices until the next state
+  /// comes, two ticks at least: over a network a state may be late while the world goes on.
+  double carry_on = 0.0;
+  /// When the newest of the reader's own poses that this state follows was read, on the reader's clock; 0 =
+  /// it follows none yet.
+  std::int64_t heard_pose_ns = kPoseNotTold;
   std::vector<std::uint64_t> pose_numbers;  ///< one a grip: PoseMessage::number of what the step used
   BodySnapshot bodies;
 };

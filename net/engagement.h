@@ -27,10 +27,12 @@ constexpr double kLetInEnd = 0.25;
 /// may be anywhere by then.
 constexpr double kHoldAnew = 0.1;
 
-/// The state of one grip's hold. The hand takes hold where the force goes on as it is: with the pose that it
-/// has, less an offset. Then the offset is given up slowly, until the hand holds where it is. So taking hold
-/// never pulls harder than what moving the body at kLetInSpeed takes, however far away the hand is. Pure;
-/// owned by one thread; no allocation.
+/// The state of one grip's hold. The hand takes hold where the force goes on as it is, and as fast as the
+/// grip goes: with the pose that it has, less an offset, and with its velocity, less its slip against the
+/// grip. The slip is given up over kLetInRise (the offset grows by it meanwhile), the offset slowly after
+/// that, until the hand holds where it is. So taking hold never pulls harder than what moving the body at
+/// kLetInSpeed takes, however far away the hand is, and a hand that passes by does not snatch the body away.
+/// Pure; owned by one thread; no allocation.
 class Engagement {
  public:
   /// What the coupling uses in place of the hand.
@@ -53,18 +55,17 @@ class Engagement {
     } else {
       let_in(time);
     }
-    if (offset_ == glm::dvec3(0.0) && turn_ == glm::dvec3(0.0)) return {hand, twist};
+    const double slipping = quiet_ ? 0.0 : 1.0 - pace();
+    if (offset_ == glm::dvec3(0.0) && turn_ == glm::dvec3(0.0) && slipping == 0.0) return {hand, twist};
     return {{hand.position - offset_, rotate_by(hand.orientation, -turn_)},
-            {twist.linear + speed_, twist.angular + turning_}};
+            {twist.linear - slipping * slip_ + speed_, twist.angular - slipping * slip_turn_ + turning_}};
   }
 
   bool engaged() const { return engaged_; }
   /// Share of the force that the hand is given, 0–1, rising over kLetInRise where the hold was not a quiet
   /// one: the body goes on being carried as it was, but a hand that takes over a weight must not be struck by
   /// it.
-  double felt() const {
-    return !engaged_ ? 0.0 : quiet_ ? 1.0 : std::clamp((last_ - since_) / kLetInRise, 0.0, 1.0);
-  }
+  double felt() const { return !engaged_ ? 0.0 : quiet_ ? 1.0 : pace(); }
   /// m and rad by which the hand is ahead of where it holds.
   double distance() const { return glm::length(offset_); }
   double angle() const { return glm::length(turn_); }
@@ -74,7 +75,7 @@ class Engagement {
                  const GripState& grip) {
     engaged_ = quiet_ = true;
     since_ = last_ = time;
-    offset_ = turn_ = speed_ = turning_ = glm::dvec3(0.0);
+    offset_ = turn_ = speed_ = turning_ = slip_ = slip_turn_ = glm::dvec3(0.0);
     const Wrench full = coupling_wrench_on_hand(gains, hand, twist, grip.pose, grip.twist);
     const glm::dvec3 jolt = full.force - grip.on_hand.force;
     const glm::dvec3 jerk = full.torque - grip.on_hand.torque;
@@ -84,11 +85,15 @@ class Engagement {
     }
     if (glm::length(jolt) <= kQuietForce && glm::length(jerk) <= kQuietTorque) return;
     quiet_ = false;
-    if (gains.stiffness > 0.0) offset_ = -jolt / gains.stiffness;
+    // From here on the dampers see the grip's own velocity, and the springs alone give what acts already.
+    if (gains.stiffness > 0.0) {
+      offset_ = hand.position - grip.pose.position + grip.on_hand.force / gains.stiffness;
+      slip_ = twist.linear - grip.twist.linear;
+    }
     if (gains.rotational_stiffness <= 0.0) return;
-    // Where the spring of turns gives the torque that acts already. Beyond half a turn it would turn round.
-    const glm::dvec3 damped = gains.rotational_damping * (grip.twist.angular - twist.angular);
-    glm::dvec3 strain = (grip.on_hand.torque - damped) / gains.rotational_stiffness;
+    slip_turn_ = twist.angular - grip.twist.angular;
+    // Beyond half a turn the spring of turns would turn round.
+    glm::dvec3 strain = grip.on_hand.torque / gains.rotational_stiffness;
     const double angle = glm::length(strain);
     if (angle > kMostStrain) strain *= kMostStrain / angle;
     turn_ = rotation_between(rotate_by(grip.pose.orientation, -strain), hand.orientation);
@@ -96,12 +101,20 @@ class Engagement {
 
   void let_in(double time) {
     const double elapsed = std::clamp(time - last_, 0.0, kMostElapsed);
+    const double before = pace();
     last_ = std::max(last_, time);
     if (elapsed <= 0.0) return;
-    const double pace = std::clamp((last_ - since_) / kLetInRise, 0.0, 1.0);
-    speed_ = give_up(offset_, pace * kLetInSpeed, elapsed);
-    turning_ = give_up(turn_, pace * kLetInTurn, elapsed);
+    if (!quiet_) {
+      const double slipped = (1.0 - 0.5 * (before + pace())) * elapsed;
+      offset_ += slipped * slip_;
+      turn_ += slipped * slip_turn_;
+    }
+    speed_ = give_up(offset_, pace() * kLetInSpeed, elapsed);
+    turning_ = give_up(turn_, pace() * kLetInTurn, elapsed);
   }
+
+  /// 0–1 over kLetInRise.
+  double pace() const { return std::clamp((last_ - since_) / kLetInRise, 0.0, 1.0); }
 
   /// Shortens `left`; returns the velocity of that.
   static glm::dvec3 give_up(glm::dvec3& left, double most, double elapsed) {
@@ -121,10 +134,12 @@ class Engagement {
   bool quiet_ = true;
   double since_ = 0.0;
   double last_ = 0.0;
-  glm::dvec3 offset_{0.0};   // hand less what it holds with, m
-  glm::dvec3 turn_{0.0};     // the same as a rotation vector, rad
-  glm::dvec3 speed_{0.0};    // of what it holds with, towards the hand, m/s
-  glm::dvec3 turning_{0.0};  // rad/s
+  glm::dvec3 offset_{0.0};     // hand less what it holds with, m
+  glm::dvec3 turn_{0.0};       // the same as a rotation vector, rad
+  glm::dvec3 slip_{0.0};       // of the hand against the grip when it took hold, m/s
+  glm::dvec3 slip_turn_{0.0};  // rad/s
+  glm::dvec3 speed_{0.0};      // of what it holds with, towards the hand, m/s
+  glm::dvec3 turning_{0.0};    // rad/s
 };
 
 }  // namespace slosh

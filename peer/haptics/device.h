@@ -5,18 +5,11 @@
 #include <cstdint>
 #include <string>
 
+#include "peer/haptics/device_limits.h"
 #include "sim/math/pose.h"
 #include "sim/math/result.h"
 
 namespace slosh {
-
-/// What may be sent to a device. The rates limit how fast the wrench may change.
-struct DeviceLimits {
-  double max_force = 1000.0;       ///< N
-  double max_torque = 100.0;       ///< N·m
-  double max_force_rate = 2.0e5;   ///< N/s
-  double max_torque_rate = 2.0e4;  ///< N·m/s
-};
 
 /// One reading.
 struct DeviceReport {
@@ -32,21 +25,34 @@ struct DeviceMoment {
   double period = 0.001;  ///< wall s since the reading before, nominal
 };
 
-/// open() and close() on any thread; read() and write() on the device loop only: they must not allocate,
-/// lock, log or wait.
+/// open() and limits() on any thread before the device is handed over; read() and write() by one thread after
+/// that, read() first, in turn; close() when both are over. What a device throws from read() or write() ends
+/// its part: it is sent a wrench of zero and not asked again.
 class Device {
  public:
   virtual ~Device() = default;
   /// Errors: the device is not there, its file cannot be used.
   virtual Result<bool> open() { return true; }
-  virtual DeviceReport read(const DeviceMoment& moment) noexcept = 0;
+  virtual DeviceReport read(const DeviceMoment& moment) = 0;
   /// The wrench on the hand, within limits().
-  virtual void write(const Wrench& on_hand) noexcept { (void)on_hand; }
-  virtual DeviceLimits limits() const { return {}; }
+  virtual void write(const Wrench& on_hand) { (void)on_hand; }
+  /// Constant while the device is open. Checked by check_limits before anything is written.
+  virtual DeviceLimits limits() const = 0;
+  /// True when read() and write() only look at memory: they neither wait, allocate, lock nor log, and are
+  /// called from the device loop itself. All others get a thread of their own (DevicePort), so that hardware
+  /// that does not answer stops no other hand.
+  virtual bool immediate() const { return false; }
   /// May be called more than once.
   virtual void close() {}
   virtual std::string kind() const = 0;
 };
+
+/// Opens a device and checks what it says of itself. Errors: those of open() and of check_limits().
+inline Result<bool> open_device(Device& device) {
+  Result<bool> opened = device.open();
+  if (opened) opened = check_limits(device.limits(), device.kind());
+  return opened;
+}
 
 /// Every number finite and the quaternion within 1 % of unit length.
 inline bool is_sound(const DeviceReport& report) {

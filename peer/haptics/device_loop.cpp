@@ -1,33 +1,10 @@
 #include "peer/haptics/device_loop.h"
 
-#include <pthread.h>
-#include <sched.h>
-#include <sys/prctl.h>
-
-#include <algorithm>
-
 #include "net/clock.h"
+#include "peer/haptics/let_go.h"
+#include "peer/haptics/real_time.h"
 
 namespace slosh {
-namespace {
-
-constexpr int kPriority = 20;
-constexpr std::size_t kStackBytes = 128 * 1024;
-
-/// Touches the stack that the loop may come to use, so that no tick pays for a page.
-void prefault_stack() {
-  unsigned char stack[kStackBytes];
-  volatile unsigned char* touch = stack;
-  for (std::size_t i = 0; i < kStackBytes; i += 4096) touch[i] = 0;
-}
-
-bool ask_for_real_time() {
-  sched_param parameters{};
-  parameters.sched_priority = kPriority;
-  return pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) == 0;
-}
-
-}  // namespace
 
 DeviceLoop::DeviceLoop(Servo& servo, double period) : servo_(servo), period_ns_(to_nanoseconds(period)) {}
 
@@ -37,6 +14,8 @@ DeviceLoop::~DeviceLoop() {
 
 void DeviceLoop::start() {
   if (thread_.joinable()) return;
+  let_go_before_terminate();
+  report_.memory_locked = lock_memory();
   thread_ = std::thread([this] { run(); });
   primed_.wait(false);
 }
@@ -47,10 +26,8 @@ void DeviceLoop::stop() {
 }
 
 void DeviceLoop::run() {
-  pthread_setname_np(pthread_self(), "slosh-device");
-  prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);  // the default lets a wake-up be 50 µs late
-  report_.real_time = ask_for_real_time();
-  prefault_stack();
+  report_.real_time = become_device_thread("slosh-device");
+  const WrenchWriter writer([](void* servo) noexcept { static_cast<Servo*>(servo)->let_go(); }, &servo_);
 
   servo_.tick(steady_now_ns());
   primed_.store(true);
@@ -60,7 +37,7 @@ void DeviceLoop::run() {
   std::int64_t last_wake = 0;
   std::int64_t window_begin = steady_now_ns();
   std::uint64_t window_ticks = 0;
-  while (!stop_.load(std::memory_order_relaxed)) {
+  while (!stop_.load(std::memory_order_relaxed) && !asked_to_let_go()) {
     sleep_until_ns(deadline);
     const std::int64_t wake = steady_now_ns();
     servo_.tick(wake);
@@ -85,6 +62,7 @@ void DeviceLoop::run() {
       window_ticks = 0;
     }
   }
+  servo_.let_go();
 }
 
 }  // namespace slosh

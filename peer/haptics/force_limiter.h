@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "peer/haptics/device.h"
+#include "peer/haptics/device_limits.h"
 #include "sim/math/pose.h"
 
 namespace slosh {

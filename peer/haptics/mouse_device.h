@@ -33,6 +33,8 @@ class MouseDevice final : public Device {
     report.twist = twist_;
     return report;
   }
+  DeviceLimits limits() const override { return limits_without_a_hand(); }
+  bool immediate() const override { return true; }
   std::string kind() const override { return "mouse"; }
 
  private:

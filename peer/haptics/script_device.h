@@ -22,6 +22,8 @@ class TrackDevice final : public Device {
     report.twist = sample.twist;
     return report;
   }
+  DeviceLimits limits() const override { return limits_without_a_hand(); }
+  bool immediate() const override { return true; }
   std::string kind() const override { return kind_; }
   double end() const { return track_.end(); }
 

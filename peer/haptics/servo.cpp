@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "net/clock.h"
+#include "net/leap.h"
 #include "peer/haptics/make_device.h"
 
 namespace slosh {
@@ -13,14 +14,9 @@ constexpr double kRounding = 1e-9;  // s: sums of time steps miss a multiple by 
 
 }  // namespace
 
-double freshness(double age, double interval) {
-  const double hold = std::max(kHoldStale, 4.0 * interval);
-  return std::clamp(1.0 - (age - hold) / kFadeStale, 0.0, 1.0);
-}
-
 Servo::Servo(const Scene& scene, std::vector<std::unique_ptr<Device>> devices, Channel& channel,
              ServoOptions options)
-    : channel_(channel), options_(options), samples_(options.sample_capacity) {
+    : channel_(channel), options_(options), hearing_(options.period), samples_(options.sample_capacity) {
   channel_.bodies().update();
   run_ = channel_.bodies().front().run;
   devices.resize(scene.grips.size());
@@ -29,17 +25,28 @@ Servo::Servo(const Scene& scene, std::vector<std::unique_ptr<Device>> devices, C
     Hand& hand = hands_.emplace_back(
         CouplingGains{grip.stiffness, grip.damping, grip.rotational_stiffness, grip.rotational_damping},
         grip_start(scene, i));
-    if (devices[i]) set_device(i, std::move(devices[i]));
-    if (Device* const device = claim_device(hand)) change_device(hand, device);
+    if (devices[i]) (void)set_device(i, std::move(devices[i]));
+    if (DevicePort* const port = claim_device(hand)) change_device(hand, port);
   }
 }
 
-void Servo::set_device(std::size_t i, std::unique_ptr<Device> device) {
+Servo::~Servo() {
+  close_devices();
+}
+
+Result<bool> Servo::set_device(std::size_t i, std::unique_ptr<Device> device) {
   Hand& hand = hands_[i];
+  if (device) {
+    if (Result<bool> sound = check_limits(device->limits(), device->kind()); !sound) return sound;
+  }
   free_unused(hand);
-  Device* const wanted = device.get();
-  if (device) hand.owned.push_back(std::move(device));
+  DevicePort* wanted = nullptr;
+  if (device) {
+    hand.owned.push_back(std::make_unique<DevicePort>(std::move(device)));
+    wanted = hand.owned.back().get();
+  }
   hand.wanted.store(wanted);
+  return true;
 }
 
 bool Servo::holds_any() const {
@@ -48,45 +55,54 @@ bool Servo::holds_any() const {
 }
 
 void Servo::close_devices() {
+  let_go();
   for (Hand& hand : hands_) {
-    for (const std::unique_ptr<Device>& device : hand.owned) device->close();
+    for (const std::unique_ptr<DevicePort>& port : hand.owned) port->stop();
+  }
+}
+
+void Servo::let_go() noexcept {
+  let_go_ = true;
+  for (Hand& hand : hands_) {
+    if (hand.port != nullptr) hand.port->write_zero();
   }
 }
 
 void Servo::free_unused(Hand& hand) {
   // In this order: what the loop claims now becomes what it uses.
-  const Device* const wanted = hand.wanted.load();
-  const Device* const claimed = hand.claimed.load();
-  const Device* const in_use = hand.in_use.load();
-  std::erase_if(hand.owned, [&](const std::unique_ptr<Device>& device) {
-    if (device.get() == in_use || device.get() == claimed || device.get() == wanted) return false;
-    device->close();
-    return true;
+  const DevicePort* const wanted = hand.wanted.load();
+  const DevicePort* const claimed = hand.claimed.load();
+  const DevicePort* const in_use = hand.in_use.load();
+  std::erase_if(hand.owned, [&](const std::unique_ptr<DevicePort>& port) {
+    return port.get() != in_use && port.get() != claimed && port.get() != wanted;
   });
 }
 
-Device* Servo::claim_device(Hand& hand) noexcept {
-  Device* device = hand.wanted.load(std::memory_order_acquire);
-  if (device == hand.device) return device;
+DevicePort* Servo::claim_device(Hand& hand) noexcept {
+  DevicePort* port = hand.wanted.load(std::memory_order_acquire);
+  if (port == hand.port) return port;
   // Announced and still wanted: from here on free_unused() sees it. All sequentially consistent: one of the
   // two sides must see the other.
   for (;;) {
-    hand.claimed.store(device);
-    Device* const now = hand.wanted.load();
-    if (now == device) return device;
-    device = now;
+    hand.claimed.store(port);
+    DevicePort* const now = hand.wanted.load();
+    if (now == port) return port;
+    port = now;
   }
 }
 
-void Servo::change_device(Hand& hand, Device* device) noexcept {
-  if (hand.device != nullptr) hand.device->write(Wrench{});
-  hand.device = device;
-  hand.engagement = Engagement{};
-  if (device != nullptr) hand.limiter = ForceLimiter(device->limits());
+void Servo::change_device(Hand& hand, DevicePort* port) noexcept {
+  if (hand.port != nullptr) hand.port->write_zero();
+  hand.port = port;
+  if (port != nullptr) {
+    hand.limits = port->limits();
+    hand.felt.restart(within(hand.gains, hand.limits), hand.limits);
+  }
   hand.good = DeviceReport{};
   hand.good.pose = hand.start;
   hand.good.engaged = false;
-  hand.in_use.store(device);
+  hand.readings = 0;
+  hand.in_use.store(port);
 }
 
 void Servo::follow_run(const BodyMessage& message) noexcept {
@@ -96,81 +112,85 @@ void Servo::follow_run(const BodyMessage& message) noexcept {
   sample_offset_ += time_ - message.bodies.time + options_.sample_interval;
   time_ = message.bodies.time;
   next_sample_ = time_;
-  for (Hand& hand : hands_) hand.engagement = Engagement{};
 }
 
-double Servo::freshness_now(const BodyMessage& message, double age) noexcept {
-  const double interval = message.rate > 0.0 ? message.time_step / message.rate : 0.0;
-  // Before the first step the world waits, and its state holds; after that, a pace of 0 means that it
-  // stopped.
-  const bool stopped = message.rate <= 0.0 && message.bodies.tick > 0;
-  const double believed = stopped ? 0.0 : message.bodies.tick == 0 ? 1.0 : freshness(age, interval);
-  // What comes back after a gap comes back as gently as it went, and where it is then.
-  if (believed >= 1.0 && hold_anew_) {
-    for (Hand& hand : hands_) hand.engagement = Engagement{};
+bool Servo::read_device(Hand& hand, std::int64_t now_ns) noexcept {
+  const DeviceReading& reading = hand.port->read({time_, options_.period}, now_ns);
+  if (reading.number == hand.readings) {
+    // Nothing new: the hand is where it was, and not known to move.
+    if (to_seconds(now_ns - hand.read_ns) > kHoldStale) hand.good.twist = Twist{};
+    return false;
   }
-  hold_anew_ = believed < 1.0;
-  fresh_ = std::min(believed, fresh_ + options_.period / kFadeStale);
-  return fresh_;
+  const bool first = hand.readings == 0;
+  const double elapsed = std::max(to_seconds(reading.stamp_ns - hand.read_ns), options_.period);
+  hand.readings = reading.number;
+  hand.read_ns = reading.stamp_ns;
+  hand.read_time = reading.time;
+  if (!is_sound(reading.report)) {
+    rejected_.fetch_add(1, std::memory_order_relaxed);
+    note(kStatusInputRejected);
+    hand.good.twist = Twist{};
+    return false;
+  }
+  const DeviceReport before = hand.good;
+  hand.good = reading.report;
+  if (keep_in_workspace(hand.good.pose, hand.good.twist, hand.limits)) note(kStatusForceLimited);
+  const double speed = std::max(glm::length(before.twist.linear), glm::length(hand.good.twist.linear));
+  return !first && leapt(before.pose.position, hand.good.pose.position, speed, elapsed);
+}
+
+void Servo::post_pose(std::size_t i, const Hand& hand, std::uint64_t tick) noexcept {
+  PoseMessage& up = channel_.pose(i).back();
+  up.stamp_ns = hand.read_ns;
+  up.tick_ack = tick;
+  up.time = hand.read_time;
+  up.device = static_cast<std::uint32_t>(i);
+  up.pose = hand.good.pose;
+  up.twist = hand.good.twist;
+  up.engaged = hand.good.engaged;
+  channel_.pose(i).publish();
 }
 
 void Servo::tick(std::int64_t now_ns) noexcept {
-  channel_.bodies().update();
+  const bool fresh = channel_.bodies().update();
   const BodyMessage& message = channel_.bodies().front();
   const BodySnapshot& bodies = message.bodies;
   const double age = to_seconds(now_ns - message.stamp_ns);  // negative while the state is still to come
 
+  const WorldBelief belief = hearing_.hear(message, fresh, now_ns);
   follow_run(message);
-  // Simulated time now: the newest state's, carried on at the pace the world runs, at most two ticks.
+  // Simulated time now: the newest state's, carried on at the pace the world runs; grips by two ticks at
+  // most.
   const double longest = 2.0 * message.time_step;
-  time_ = std::max(time_, bodies.time + std::clamp(age * message.rate, -longest, longest));
+  const double farthest = std::max(longest, message.carry_on);
+  time_ = std::max(time_, bodies.time + std::clamp(age * message.rate, -longest, farthest));
   const double ahead = std::clamp(time_ - bodies.time, -longest, longest);
-  const double fresh = freshness_now(message, age);
 
   const bool stopped = message.rate <= 0.0 && bodies.tick > 0;
   const bool sample_due = !stopped && time_ + kRounding >= next_sample_;
   for (std::size_t i = 0; i < hands_.size(); ++i) {
     Hand& hand = hands_[i];
-    Device* const device = claim_device(hand);
-    if (device != hand.device) change_device(hand, device);
-    if (device == nullptr) continue;
-    const DeviceReport report = device->read({time_, options_.period});
-    if (is_sound(report)) {
-      hand.good = report;
-    } else {
-      rejected_.fetch_add(1, std::memory_order_relaxed);
-      note(kStatusInputRejected);
-      hand.good.twist = Twist{};
-    }
-    const DeviceReport& good = hand.good;
+    DevicePort* const port = claim_device(hand);
+    if (port != hand.port) change_device(hand, port);
+    if (port == nullptr) continue;
+    const bool leap = read_device(hand, now_ns);
+    const double device_share =
+        hand.readings == 0 ? 0.0 : freshness(to_seconds(now_ns - hand.read_ns), options_.period);
 
-    Wrench wanted;
+    ForceLimiter::Outcome felt;
     if (i < bodies.grips.size()) {
-      GripState proxy = bodies.grips[i];
-      proxy.pose = extrapolate(proxy.pose, proxy.twist, ahead);
-      const Engagement::Held held =
-          hand.engagement.update(good.engaged, time_, good.pose, good.twist, hand.gains, proxy);
-      const Wrench full = coupling_wrench_on_hand(hand.gains, held.pose, held.twist, proxy.pose, proxy.twist);
-      const double scale = hand.engagement.felt() * fresh;
-      wanted = {scale * full.force, scale * full.torque};
+      GripState grip = bodies.grips[i];
+      grip.pose = extrapolate(grip.pose, grip.twist, ahead);
+      felt = hand.felt.feel(belief, hand.good, grip, {time_, options_.period, device_share, leap});
     }
-    const ForceLimiter::Outcome outcome = hand.limiter.limit(wanted, options_.period);
-    if (outcome.limited) note(kStatusForceLimited);
-    if (outcome.non_finite) note(kStatusNonFinite);
-    device->write(outcome.wrench);
+    if (felt.limited) note(kStatusForceLimited);
+    if (felt.non_finite) note(kStatusNonFinite);
+    if (!let_go_) port->write(felt.wrench);
+    // A device that does not answer is not spoken for: the host takes its hand for silent, as it is.
+    if (device_share >= 1.0 && hearing_.speaks()) post_pose(i, hand, bodies.tick);
 
-    PoseMessage& up = channel_.pose(i).back();
-    up.stamp_ns = now_ns;
-    up.tick_ack = bodies.tick;
-    up.time = time_;
-    up.device = static_cast<std::uint32_t>(i);
-    up.pose = good.pose;
-    up.twist = good.twist;
-    up.engaged = good.engaged;
-    channel_.pose(i).publish();
-
-    if (sample_due &&
-        !samples_.push({sample_offset_ + time_, static_cast<std::uint32_t>(i), outcome.wrench, good.pose})) {
+    if (sample_due && !samples_.push({sample_offset_ + time_, static_cast<std::uint32_t>(i), felt.wrench,
+                                      hand.good.pose})) {
       lost_.fetch_add(1, std::memory_order_relaxed);
     }
   }

@@ -5,15 +5,14 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "net/channel.h"
-#include "net/engagement.h"
 #include "net/ring.h"
-#include "peer/haptics/device.h"
-#include "peer/haptics/force_limiter.h"
+#include "peer/haptics/device_port.h"
+#include "peer/haptics/felt_hand.h"
 #include "scenes/scene.h"
-#include "sim/math/coupling.h"
 
 namespace slosh {
 
@@ -31,17 +30,8 @@ struct ServoOptions {
   std::size_t sample_capacity = 1 << 15;
 };
 
-/// How long a body state that no longer comes is believed, s: then the force fades out over kFadeStale. Who
-/// was not believed for a moment takes hold anew with the next state (net/engagement.h).
-constexpr double kHoldStale = kHoldAnew;
-constexpr double kFadeStale = 0.3;
-
-/// Share of the coupling that is felt when the newest body state is `age` s old and one comes every
-/// `interval` s.
-double freshness(double age, double interval);
-
-/// tick() belongs to the device loop's thread and neither allocates, locks nor logs. samples() has one
-/// reader. set_device() and what asks about devices belong to one other thread.
+/// tick() and let_go() belong to the device loop's thread and neither allocate, lock nor log. samples() has
+/// one reader. set_device() and what asks about devices belong to one other thread.
 ///
 /// A rising BodyMessage::run means that the world was reset: simulated time starts anew for the devices, and
 /// couplings are let in as if every hand had just taken hold. The time of samples goes on instead, so that
@@ -49,24 +39,36 @@ double freshness(double age, double interval);
 class Servo {
  public:
   /// The channel must outlive the servo. One device a grip; null where the hand is not ours: then its pose in
-  /// the channel is left alone.
+  /// the channel is left alone. A device that set_device() would refuse is left out.
   Servo(const Scene& scene, std::vector<std::unique_ptr<Device>> devices, Channel& channel,
         ServoOptions options);
+  /// Lets go. After the device loop has stopped.
+  ~Servo();
+  Servo(const Servo&) = delete;
+  Servo& operator=(const Servo&) = delete;
 
   void tick(std::int64_t now_ns) noexcept;
+  /// A wrench of zero to every device, for good: what ticks come after this write nothing. By the device loop
+  /// at its end, or by anybody once it is over.
+  void let_go() noexcept;
 
   /// Hands `device`, already open, to grip `i` from the next tick on; null takes away what is there. What was
-  /// there is closed and freed as soon as the loop has let go of it: at a later call, or at the end.
-  void set_device(std::size_t i, std::unique_ptr<Device> device);
+  /// there is sent zero, closed and freed as soon as the loop has let go of it: at a later call, or at the
+  /// end. Errors: limits that are not sound (check_limits); then nothing changes.
+  Result<bool> set_device(std::size_t i, std::unique_ptr<Device> device);
 
   std::size_t devices() const { return hands_.size(); }  ///< grips, whoever holds them
   /// The grip's device, or the last one that it had; null when there never was one.
   const Device* device(std::size_t i) const {
-    return hands_[i].owned.empty() ? nullptr : hands_[i].owned.back().get();
+    return hands_[i].owned.empty() ? nullptr : &hands_[i].owned.back()->device();
+  }
+  /// Why the grip's device is out of use (DevicePort::failure); empty while it works.
+  std::string failure(std::size_t i) const {
+    return hands_[i].owned.empty() ? std::string() : hands_[i].owned.back()->failure();
   }
   bool holds(std::size_t i) const { return hands_[i].wanted.load(std::memory_order_relaxed) != nullptr; }
   bool holds_any() const;
-  /// After the device loop has stopped; may be called again.
+  /// Sends every device zero and closes it. After the device loop has stopped; may be called again.
   void close_devices();
   Ring<ServoSample>& samples() { return samples_; }  ///< device loop → recorder
   std::uint64_t samples_lost() const { return lost_.load(std::memory_order_relaxed); }
@@ -77,27 +79,32 @@ class Servo {
 
  private:
   struct Hand {
-    Hand(const CouplingGains& g, const Pose& s) : gains(g), start(s) {}
+    Hand(const CouplingGains& of_scene, const Pose& s) : gains(of_scene), start(s), felt(of_scene) {}
     // Between the threads: what the loop shall use, is about to use, and uses.
-    std::atomic<Device*> wanted{nullptr};
-    std::atomic<Device*> claimed{nullptr};
-    std::atomic<Device*> in_use{nullptr};
-    std::vector<std::unique_ptr<Device>> owned;  // the newest last; the control thread's
+    std::atomic<DevicePort*> wanted{nullptr};
+    std::atomic<DevicePort*> claimed{nullptr};
+    std::atomic<DevicePort*> in_use{nullptr};
+    std::vector<std::unique_ptr<DevicePort>> owned;  // the newest last; the control thread's
 
     // The loop's.
-    Device* device = nullptr;
-    CouplingGains gains;
+    DevicePort* port = nullptr;
+    DeviceLimits limits;
+    CouplingGains gains;  // the scene's
     Pose start;
-    ForceLimiter limiter{DeviceLimits{}};
-    Engagement engagement;
+    FeltHand felt;
     DeviceReport good;
+    std::uint64_t readings = 0;  // of the device so far
+    std::int64_t read_ns = 0;    // when it last said something
+    double read_time = 0.0;      // simulated s that it belongs to
   };
   /// The device that is wanted, safe from being freed.
-  Device* claim_device(Hand& hand) noexcept;
-  void change_device(Hand& hand, Device* device) noexcept;
+  DevicePort* claim_device(Hand& hand) noexcept;
+  void change_device(Hand& hand, DevicePort* port) noexcept;
   void free_unused(Hand& hand);
   void follow_run(const BodyMessage& message) noexcept;
-  double freshness_now(const BodyMessage& message, double age) noexcept;
+  /// Takes in what the device says; true when the hand leapt.
+  bool read_device(Hand& hand, std::int64_t now_ns) noexcept;
+  void post_pose(std::size_t i, const Hand& hand, std::uint64_t tick) noexcept;
   void note(std::uint32_t bits) { status_.fetch_or(bits, std::memory_order_relaxed); }
 
   Channel& channel_;
@@ -106,8 +113,8 @@ class Servo {
   std::uint32_t run_ = 0;
   double time_ = 0.0;
   double sample_offset_ = 0.0;  // s that samples' time is ahead of the world's, after resets
-  double fresh_ = 1.0;
-  bool hold_anew_ = false;  // states had stopped
+  Hearing hearing_;
+  bool let_go_ = false;
   double next_sample_ = 0.0;
   Ring<ServoSample> samples_;
   std::atomic<std::uint64_t> lost_{0};

@@ -126,6 +126,7 @@ Json to_json(const RunSummary& s) {
   json["device_loop_us"]["ticks"] = s.device_ticks;
   json["device_loop_us"]["missed"] = s.device_missed;
   json["device_loop_us"]["scheduler"] = s.device_scheduler;
+  json["device_loop_us"]["memory_locked"] = s.device_memory_locked;
   json["render"] = {{"on", s.rendered},        {"renderer", s.renderer}, {"width", s.width},
                     {"height", s.height},      {"frames", s.frames},     {"dropped", s.frames_dropped},
                     {"ms", spread(s.frame_ms)}};

@@ -75,6 +75,7 @@ struct RunSummary {
   std::uint64_t device_ticks = 0;
   std::uint64_t device_missed = 0;
   std::string device_scheduler;
+  bool device_memory_locked = false;
   bool rendered = false;
   std::string renderer;
   int width = 0, height = 0;

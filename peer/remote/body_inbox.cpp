@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "net/clock.h"
+#include "net/engagement.h"
 
 namespace slosh {
 namespace {
@@ -12,12 +13,35 @@ constexpr std::size_t kMostPending = 256;
 constexpr double kCarryOn = 0.5;          // s
 constexpr double kIntervalShare = 0.05;   // of a new interval in the smoothed one
 constexpr double kLongestInterval = 0.1;  // s
+// Kept back is what loses this much lateness a s: a host's clock and a changing route lose far less.
+constexpr double kDraining = 0.25;
+constexpr double kDrainLook = 0.02;  // s over which that is looked at
+constexpr double kAsUsual = 0.005;   // s above the delay at which a state is in time again
 constexpr std::int64_t kNever_ns = std::numeric_limits<std::int64_t>::max();
 
 }  // namespace
 
 double WorldMoment::time_at(std::int64_t host_ns) const {
   return time + rate * std::clamp(to_seconds(host_ns - stamp_ns), -kCarryOn, kCarryOn);
+}
+
+bool Backlog::holds(double lateness, double usual, std::int64_t now_ns) {
+  const bool stood = last_ns_ != 0 && now_ns - last_ns_ > to_nanoseconds(kHoldAnew);
+  last_ns_ = now_ns;
+  if (stood) {
+    draining_ = true;
+    mark_ns_ = now_ns;
+    mark_ = lateness;
+  }
+  if (!draining_) return false;
+  if (lateness <= usual + kAsUsual) return draining_ = false;
+  const double since = to_seconds(now_ns - mark_ns_);
+  if (since >= kDrainLook) {
+    draining_ = mark_ - lateness > kDraining * since;
+    mark_ns_ = now_ns;
+    mark_ = lateness;
+  }
+  return draining_;
 }
 
 BodyInbox::BodyInbox(const Scene& scene, double time_step)
@@ -40,6 +64,7 @@ void BodyInbox::restart() {
   given_ = false;
   moment_.known = false;
   delay_.restart();
+  backlog_.restart();
 }
 
 bool BodyInbox::sound(const wire::Bodies& part) const {
@@ -67,7 +92,12 @@ void BodyInbox::take(const wire::Bodies& part, std::int64_t now_ns, const ClockS
   }
   // What came too late says most about how late things come. A world at rest is told of again and again.
   if (part.rate > 0.0 && !(given_ && part.tick == given_tick_)) {
-    delay_.add(to_seconds(now_ns - clock.to_peer(part.stamp_ns)));
+    const double lateness = to_seconds(now_ns - clock.to_peer(part.stamp_ns));
+    if (!backlog_.holds(lateness, delay_.value(), now_ns)) delay_.add(lateness);
+  }
+  if (given_ && part.tick == given_tick_ && part.rate <= 0.0) {
+    stands_on_ = true;
+    return;
   }
   if (given_ && part.tick <= given_tick_) {
     counts_.late += 1;
@@ -88,6 +118,7 @@ void BodyInbox::take(const wire::Bodies& part, std::int64_t now_ns, const ClockS
     pending.stamp_ns = part.stamp_ns;
     pending.rate = part.rate;
     pending.status = part.status;
+    pending.heard_pose_ns = part.pose_number == 0 ? 0 : part.pose_stamp_ns;
     pending.parts = part.parts;
   }
   if (pending.received.test(part.part)) {
@@ -119,9 +150,12 @@ const BodyMessage* BodyInbox::next(std::int64_t now_ns, const ClockSync& clock) 
     for (std::size_t i = 0; i < due; ++i) apply(pending_[i], clock);
     pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(due));
     pause_told_ = false;
+  } else if (stands_on_) {
+    state_.rate = 0.0;
   } else if (!paused_ || pause_told_) {
     return nullptr;
   }
+  stands_on_ = false;
   if (paused_) {
     state_.rate = 0.0;
     pause_told_ = true;
@@ -144,6 +178,8 @@ void BodyInbox::apply(const Pending& pending, const ClockSync& clock) {
   state_.rate = pending.rate;
   // What a device loop takes for a tick is how often states come.
   state_.time_step = std::max(time_step_, interval_);
+  state_.carry_on = kHoldAnew;
+  state_.heard_pose_ns = pending.heard_pose_ns;
   state_.stamp_ns = due_ns(pending, clock);
   bodies.tick = pending.tick;
   bodies.time = pending.time;

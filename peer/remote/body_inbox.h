@@ -35,6 +35,22 @@ struct WorldMoment {
   double time_at(std::int64_t host_ns) const;
 };
 
+/// Tells what waited somewhere from what is slow. When a link stands still for more than kHoldAnew and then
+/// delivers all that it kept, each of it is less late than the one before, faster than time goes: that says
+/// how long it stood, not how late things come. One thread.
+class Backlog {
+ public:
+  /// One arrival, s late; true when it was kept back.
+  bool holds(double lateness, double usual, std::int64_t now_ns);
+  void restart() { *this = Backlog{}; }
+
+ private:
+  std::int64_t last_ns_ = 0;  // the arrival before
+  bool draining_ = false;
+  std::int64_t mark_ns_ = 0;
+  double mark_ = 0.0;  // lateness then, s
+};
+
 /// A state is handed on when it is due: at its stamp, mapped to the peer's clock, plus a delay that follows
 /// how late states come (AdaptiveDelay). So a device loop, which carries states on by at most two ticks,
 /// lives a constant small time behind the host, whatever the distance and the jitter. Reads no clock; one
@@ -53,7 +69,9 @@ class BodyInbox {
   /// The world stands still, by word of the host: the last state is handed out once more with a pace of 0.
   void set_paused(bool paused) { paused_ = paused; }
 
-  /// The newest state that is due, made whole, or null when there is nothing new. Valid until the next call.
+  /// The newest state that is due, made whole, or null when there is nothing new. The state of a world that
+  /// stands still is given out again whenever the host says it again: a device loop must know that somebody
+  /// does. Valid until the next call.
   const BodyMessage* next(std::int64_t now_ns, const ClockSync& clock);
   /// When to call next() again; far away when nothing waits.
   std::int64_t next_due_ns(const ClockSync& clock) const;
@@ -73,6 +91,7 @@ class BodyInbox {
     std::int64_t stamp_ns = 0;
     double rate = 0.0;
     std::uint32_t status = 0;
+    std::int64_t heard_pose_ns = 0;
     std::uint32_t parts = 1;
     std::bitset<256> received;
     std::vector<wire::BodyEntry> bodies;
@@ -89,6 +108,7 @@ class BodyInbox {
   BodyMessage state_;
   std::vector<Pending> pending_;  // by tick, of one run
   AdaptiveDelay delay_;
+  Backlog backlog_;
   WorldMoment moment_;
   BodyInboxCounts counts_;
   std::int64_t advanced_ns_ = 0;
@@ -98,6 +118,7 @@ class BodyInbox {
   bool started_ = false;
   bool paused_ = false;
   bool pause_told_ = false;
+  bool stands_on_ = false;  // the state given out last was said again, standing still
 };
 
 }  // namespace slosh

@@ -5,13 +5,23 @@
 
 #include <initializer_list>
 
+#include "peer/haptics/let_go.h"
+
 namespace slosh {
 namespace {
 
 volatile sig_atomic_t caught = 0;
 
 extern "C" void note_signal(int signal_number) {
-  caught = signal_number;
+  if (caught == 0) {
+    caught = signal_number;
+    return;
+  }
+  // The second ends the program even if writing hangs, but no hand is left with a force. All that is called
+  // here may be called in a handler; what was raised comes with the return.
+  let_go_of_all_hands(kLetGoWithin);
+  signal(signal_number, SIG_DFL);
+  raise(signal_number);
 }
 
 extern "C" void end_now(int signal_number) {
@@ -24,8 +34,7 @@ extern "C" void end_now(int signal_number) {
 void handle_by(void (*handler)(int), int flags) {
   struct sigaction action = {};
   action.sa_handler = handler;
-  // The default comes back after the first, so that a second one is obeyed even if writing hangs.
-  action.sa_flags = flags | SA_RESETHAND;
+  action.sa_flags = flags;
   sigemptyset(&action.sa_mask);
   for (const int signal_number : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction before = {};
@@ -39,7 +48,7 @@ void handle_by(void (*handler)(int), int flags) {
 }  // namespace
 
 void end_at_interrupts() {
-  handle_by(end_now, SA_NODEFER);
+  handle_by(end_now, SA_NODEFER | SA_RESETHAND);
 }
 
 void catch_interrupts() {

@@ -1,5 +1,6 @@
 // Ctrl-C, SIGTERM and a terminal that closes (SIGHUP) end a run in order: everything is written first. A
-// second one ends it at once. Before there is anything to write, the first one does.
+// second one ends it at once, when every device has been sent a wrench of zero. Before there is anything to
+// write, the first one does.
 #pragma once
 
 namespace slosh {

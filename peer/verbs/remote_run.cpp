@@ -116,7 +116,7 @@ Result<bool> RemoteRun::follow_grips() {
     device_on_[i] = held;
     mice_[i].reset();
     if (!held) {
-      servo_->set_device(i, nullptr);
+      (void)servo_->set_device(i, nullptr);
       continue;
     }
     const std::string spec = specs.empty() ? "script" : specs[std::min(grips_taken_, specs.size() - 1)];
@@ -125,7 +125,7 @@ Result<bool> RemoteRun::follow_grips() {
     if (last_picture_ && i < last_picture_->rigid.grips.size()) start = last_picture_->rigid.grips[i].pose;
     Result<HandDevice> made = make_device(stage_.scene, i, spec, start, options_.has_window);
     if (made) {
-      const Result<bool> opened = made.value().device->open();
+      const Result<bool> opened = open_device(*made.value().device);
       if (!opened) made = opened.error();
     }
     if (!made) {
@@ -133,7 +133,7 @@ Result<bool> RemoteRun::follow_grips() {
       return made.error();
     }
     mice_[i] = std::move(made.value().mouse);
-    servo_->set_device(i, std::move(made.value().device));
+    (void)servo_->set_device(i, std::move(made.value().device));  // open_device saw its limits
   }
   return true;
 }
@@ -193,6 +193,7 @@ void RemoteRun::report(RunSummary& s) const {
   s.device_ticks = loop.ticks;
   s.device_missed = loop.missed;
   s.device_scheduler = loop.scheduler();
+  s.device_memory_locked = loop.memory_locked;
   s.status = servo_->status();
   s.rejected_poses = servo_->reports_rejected();
   s.samples_lost = servo_->samples_lost();

@@ -18,7 +18,7 @@ Result<std::unique_ptr<Session>> Session::create(const Prepared& prepared, Devic
                                                  double picture_rate) {
   std::unique_ptr<Session> session(new Session(prepared));
   for (const std::unique_ptr<Device>& device : devices.devices) {
-    const Result<bool> opened = device->open();
+    const Result<bool> opened = open_device(*device);
     if (!opened) return opened.error();
   }
   const Scene& scene = prepared.scene;
@@ -136,6 +136,7 @@ void Session::report(RunSummary& s) const {
   s.device_ticks = loop.ticks;
   s.device_missed = loop.missed;
   s.device_scheduler = loop.scheduler();
+  s.device_memory_locked = loop.memory_locked;
   s.status = host.status | servo_->status();
   s.slips = host.slips;
   s.slipped = host.slipped;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <span>
 
 namespace slosh {
 namespace {
@@ -188,8 +189,28 @@ TEST(InputGate, AHandThatWasNotHeardForLongTakesHoldAnew) {
 
   MovedHand heard;
   for (int i = 0; i < 30; ++i) heard.step();
-  heard.say(0.2);
-  EXPECT_NEAR(heard.step(), 200.0, 1.0) << "30 ms are a late datagram, and the hand has pulled";
+  heard.say(0.02);
+  EXPECT_NEAR(heard.step(), 20.0, 1.0) << "30 ms are a late datagram, and the hand has pulled";
+}
+
+TEST(InputGate, AHandThatIsSuddenlyElsewhereTakesHoldAnew) {
+  for (const int late : {5, 30, 90}) {  // ms
+    MovedHand hand;
+    for (int i = 0; i < late; ++i) hand.step();
+    hand.say(0.2);
+    for (int i = 0; i < 20; ++i) EXPECT_LT(hand.step(), 2.0) << "200 N by the spring";
+  }
+  // Kept back by a link: read long apart, and coming at once.
+  MovedHand hand;
+  hand.clock += 80'000'000;
+  hand.say(0.001);
+  hand.step();
+  hand.clock += 1'000'000;
+  PoseMessage m = message(0, 0.2, hand.clock + 800'000'000);
+  hand.channel.pose(0).back() = m;
+  hand.channel.pose(0).publish();
+  EXPECT_LT(hand.step(), 2.0);
+  EXPECT_EQ(hand.gate.rejected(), 0u);
 }
 
 TEST(InputGate, AfterAPauseAHandTakesHoldWhereItIs) {
@@ -297,6 +318,63 @@ TEST(InputGate, AHandThatFallsSilentStandsStill) {
     EXPECT_NEAR(input.pose.position.x, 0.105, 1e-12);
     EXPECT_TRUE(input.engaged);
   }
+}
+
+/// Two hands hold one body; the first falls silent, then the body is moved.
+struct TwoHands {
+  Scene scene = scene_with_grips(2);
+  Channel channel{2, BodyMessage{}, 1000};
+  InputGate gate{scene};
+  BodySnapshot now = snapshot_with_grips(2);
+  std::int64_t clock = 1'000'000'000;
+  HandleInput silent;
+
+  void step(bool first_speaks, bool second_speaks) {
+    now.time += 0.001;
+    clock += 1'000'000;
+    for (const std::uint32_t i : {0u, 1u}) {
+      if (!(i == 0 ? first_speaks : second_speaks)) continue;
+      channel.pose(i).back() = message(i, 0.0, clock);
+      channel.pose(i).publish();
+    }
+    silent = gate.take(channel, now, clock)[0];
+  }
+  glm::dvec3 force() const {
+    const Grip& g = scene.grips[0];
+    return g.stiffness * (now.grips[0].pose.position - silent.pose.position);
+  }
+};
+
+TEST(InputGate, ASilentHandGivesWayToOneThatIsHeard) {
+  TwoHands hands;
+  hands.now.grips[0].pose.position.y = -0.01;
+  hands.now.grips[0].on_hand.force.y = -0.01 * hands.scene.grips[0].stiffness;  // its share of a weight
+  for (int i = 0; i < 20; ++i) hands.step(true, true);
+  const double share = hands.force().y;
+  for (int i = 0; i < 200; ++i) hands.step(false, true);
+  EXPECT_NEAR(hands.force().y, share, 1e-9) << "nothing moves: it carries on";
+  for (int i = 0; i < 500; ++i) {
+    hands.now.grips[0].pose.position +=
+        glm::dvec3(0.0005, 0.0002, 0.0);  // the other one carries the body away
+    hands.now.grips[0].pose.orientation =
+        rotate_by(hands.now.grips[0].pose.orientation, glm::dvec3(0.0, 0.0, 0.001));
+    hands.step(false, true);
+    EXPECT_LT(glm::length(hands.force() - glm::dvec3(0.0, share, 0.0)), kYieldForce + 1e-9);
+    const double turned =
+        glm::length(rotation_between(hands.silent.pose.orientation, hands.now.grips[0].pose.orientation));
+    EXPECT_LT(turned * hands.scene.grips[0].rotational_stiffness, kYieldTorque + 1e-9);
+  }
+}
+
+TEST(InputGate, HandsThatAreAllSilentHoldTheBodyWhereItIs) {
+  TwoHands hands;
+  for (int i = 0; i < 20; ++i) hands.step(true, true);
+  const Pose before = hands.silent.pose;
+  for (int i = 0; i < 500; ++i) {
+    hands.now.grips[0].pose.position.y -= 0.0005;
+    hands.step(false, false);
+  }
+  EXPECT_EQ(hands.silent.pose.position, before.position) << "nobody else is there to carry it";
 }
 
 TEST(InputGate, AfterAResetHandsHoldAtTheStartUntilTheyReportAnew) {

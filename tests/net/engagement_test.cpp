@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 namespace slosh {
@@ -103,6 +104,34 @@ TEST(Engagement, WhereTheHandGoesMeanwhileTheHoldGoesToo) {
   const Engagement::Held held = e.update(true, 0.001, hand, moving, kGains, grip);
   EXPECT_NEAR(held.pose.position.y, 0.001, 1e-12);
   EXPECT_NEAR(held.twist.linear.y, 1.0, 1e-12);
+}
+
+TEST(Engagement, AHandThatPassesByDoesNotSnatchTheGripAway) {
+  Engagement e;
+  const GripState grip;  // at rest
+  Twist passing;
+  passing.linear.x = 0.6;
+  passing.angular.z = 1.5;
+  const auto hand_at = [&](double t) {
+    Pose hand = at(0.2 + 0.6 * t);
+    hand.orientation = rotate_by(hand.orientation, {0.0, 0.0, 0.3 + 1.5 * t});
+    return hand;
+  };
+  Engagement::Held held = e.update(true, 0.0, hand_at(0.0), passing, kGains, grip);
+  EXPECT_LT(glm::length(held.twist.linear) + glm::length(held.twist.angular), 1e-12);
+  EXPECT_LT(glm::length(wrench_of(held, grip).force), 1e-9);
+  double x = held.pose.position.x;
+  double speed = 0.0;
+  for (double t = kTick; t < 10.0; t += kTick) {
+    held = e.update(true, t, hand_at(t), passing, kGains, grip);
+    const double now = (held.pose.position.x - x) / kTick;
+    EXPECT_LT(std::abs(now - speed), kTick * (0.6 + kLetInSpeed) / kLetInRise * 1.05 + 1e-9) << t;
+    EXPECT_NEAR(held.twist.linear.x, now, 2e-3) << "the damper is told";
+    speed = now;
+    x = held.pose.position.x;
+  }
+  EXPECT_EQ(e.distance(), 0.0) << "in the end it holds where it is";
+  EXPECT_LT(e.angle(), 1e-12);
 }
 
 TEST(Engagement, AQuietHoldIsTheHandItself) {

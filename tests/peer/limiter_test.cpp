@@ -8,7 +8,7 @@ namespace slosh {
 namespace {
 
 DeviceLimits limits() {
-  DeviceLimits l;
+  DeviceLimits l = limits_without_a_hand();
   l.max_force = 10.0;
   l.max_torque = 0.5;
   l.max_force_rate = 1000.0;  // 1 N a millisecond

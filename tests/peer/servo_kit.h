@@ -16,7 +16,7 @@ constexpr double kTick = 0.002;  // the made-up world's time step
 class FakeDevice final : public Device {
  public:
   DeviceReport next;
-  DeviceLimits limit;
+  DeviceLimits limit = limits_without_a_hand();
   Wrench last;
   double last_time = -1.0;
 
@@ -26,6 +26,7 @@ class FakeDevice final : public Device {
   }
   void write(const Wrench& on_hand) noexcept override { last = on_hand; }
   DeviceLimits limits() const override { return limit; }
+  bool immediate() const override { return true; }
   std::string kind() const override { return "fake"; }
 };
 
@@ -49,7 +50,7 @@ struct ServoKit {
   FakeDevice* device = nullptr;
   std::unique_ptr<Servo> servo;
 
-  explicit ServoKit(DeviceLimits limits = {}, ServoOptions options = {}) {
+  explicit ServoKit(DeviceLimits limits = limits_without_a_hand(), ServoOptions options = {}) {
     auto made = std::make_unique<FakeDevice>();
     made->limit = limits;
     device = made.get();

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "net/clock.h"
+#include "net/engagement.h"
 
 namespace slosh {
 namespace {
@@ -253,6 +254,92 @@ TEST(BodyInbox, APauseIsTold) {
   kit.inbox.set_paused(false);
   kit.take(state(13));
   EXPECT_EQ(kit.next(13)->rate, 1.0);
+}
+
+TEST(BodyInbox, AStallsBacklogSaysNothingOfHowLateStatesCome) {
+  for (const double stall : {0.15, 0.5, 1.0, 10.0}) {
+    // At once, or over a while through a narrow place, which is still faster than states are made.
+    for (const double drained : {0.0, 0.4 * std::min(stall, 0.5)}) {
+      Inbox kit;
+      const auto ticks = [](double seconds) { return static_cast<std::uint64_t>(seconds / kStep + 0.5); };
+      std::uint64_t tick = 1;
+      for (; tick <= 1000; ++tick) {
+        kit.take(state(tick));
+        (void)kit.next(tick);
+      }
+      const double usual = kit.inbox.delay();
+      const std::uint64_t first = tick;
+      const std::uint64_t kept = std::min<std::uint64_t>(ticks(stall), 250);  // a queue is only so long
+      const std::int64_t begin_ns = state(first + ticks(stall)).stamp_ns + to_nanoseconds(kit.late);
+      const auto drain = static_cast<double>(to_nanoseconds(drained)) / static_cast<double>(kept);
+      for (std::uint64_t i = 0; i < kept; ++i) {
+        const std::int64_t now_ns = begin_ns + static_cast<std::int64_t>(drain * static_cast<double>(i));
+        kit.inbox.take(state(first + i), now_ns, kit.clock);
+        (void)kit.inbox.next(now_ns, kit.clock);
+        EXPECT_NEAR(kit.inbox.delay(), usual, 0.005) << stall << " s stood, state " << i;
+      }
+      double most = 0.0;
+      for (tick = first + ticks(stall) + ticks(drained) + 1; tick < first + ticks(stall) + 3000; ++tick) {
+        kit.take(state(tick));
+        (void)kit.next(tick);
+        most = std::max(most, kit.inbox.delay());
+      }
+      EXPECT_LT(most, usual + 0.005) << stall;
+      EXPECT_EQ(kit.inbox.state().bodies.tick, tick - 1);
+    }
+  }
+}
+
+TEST(BodyInbox, ALinkThatBecameLongerIsFollowed) {
+  Inbox kit;
+  std::uint64_t tick = 1;
+  for (; tick <= 1000; ++tick) {
+    kit.take(state(tick));
+    (void)kit.next(tick);
+  }
+  kit.late = 0.330;  // another route: nothing comes for 0.3 s, then all of it so late
+  for (; tick <= 2000; ++tick) {
+    kit.take(state(tick));
+    (void)kit.next(tick);
+  }
+  EXPECT_NEAR(kit.inbox.delay(), 0.330, 0.005);
+}
+
+TEST(BodyInbox, AWorldThatStandsIsGivenOutAsOftenAsItIsToldOf) {
+  Inbox kit;
+  wire::Bodies waiting = state(0);
+  waiting.rate = 0.0;
+  kit.take(waiting);
+  ASSERT_NE(kit.next(0), nullptr);
+  EXPECT_EQ(kit.next(1), nullptr);
+  kit.take(waiting);
+  const BodyMessage* const again = kit.next(50);
+  ASSERT_NE(again, nullptr) << "so that a device loop knows that somebody still says so";
+  EXPECT_EQ(again->rate, 0.0);
+  EXPECT_EQ(kit.next(51), nullptr);
+  EXPECT_EQ(kit.inbox.counts().late, 0u);
+
+  kit.take(state(60));
+  ASSERT_NE(kit.next(60), nullptr);
+  wire::Bodies stopped = state(60);
+  stopped.rate = 0.0;
+  kit.take(stopped);
+  ASSERT_NE(kit.next(61), nullptr);
+  EXPECT_EQ(kit.inbox.state().rate, 0.0);
+}
+
+TEST(BodyInbox, AStateTellsWhichOfOurPosesItFollows) {
+  Inbox kit;
+  kit.take(state(1));
+  ASSERT_NE(kit.next(1), nullptr);
+  EXPECT_EQ(kit.inbox.state().heard_pose_ns, 0) << "none yet";
+  wire::Bodies m = state(2);
+  m.pose_number = 7;
+  m.pose_stamp_ns = 123'456;
+  kit.take(m);
+  ASSERT_NE(kit.next(2), nullptr);
+  EXPECT_EQ(kit.inbox.state().heard_pose_ns, 123'456);
+  EXPECT_EQ(kit.inbox.state().carry_on, kHoldAnew);
 }
 
 TEST(BodyInbox, SparseStatesCountAsLongTicks) {

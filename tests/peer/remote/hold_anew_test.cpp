@@ -6,50 +6,22 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "host/input_gate.h"
-#include "host/server/hands.h"
+#include "held_beam.h"
 #include "tests/peer/servo_kit.h"
-#include "tests/physics/lab.h"
 
 namespace slosh {
 namespace {
 
-constexpr double kMass = 3.0;                           // kg
-constexpr double kShare = 0.5 * kMass * lab::kGravity;  // N, what each of two hands carries at rest
-constexpr double kSpacing = 0.02;                       // m
+using test::held_beam;
+using test::HostEnd;
+using test::kMass;
+using test::kShare;
+using test::kSpacing;
+
 // The springs' ends go at kLetInSpeed at most, gained over kLetInRise and lost with the time constant
 // kLetInEnd: at most kLetInSpeed / kLetInEnd = 0.6 m/s² of the body, twice that when the springs swing with
 // it. Half the body's mass hangs at each hand: 1.8 N. As much again for the hands' not being let in evenly.
 constexpr double kLetIn = 2.0 * 0.5 * kMass * 2.0 * kLetInSpeed / kLetInEnd;
-
-/// A beam held high over a little fluid by two grips as stiff as the bucket's.
-Scene held_beam() {
-  lab::SceneBuilder b;
-  b.add_fluid(1000.0, 0.05);
-  b.add_fixed("tank", lab::tank_at_floor({0.16, 0.16, 0.16}, 0.03));
-  const int beam = b.add_free("beam", make::box({-0.15, -0.02, -0.02}, {0.15, 0.02, 0.02}), kMass,
-                              {{0.0, 1.0, 0.0}, {1, 0, 0, 0}});
-  b.add_volume(make::box({-0.08, 0.0, -0.08}, {0.08, 0.04, 0.08}));
-  for (const double x : {-0.15, 0.15}) b.add_grip(beam, 2000.0, 60.0, 20.0, 0.6, {{x, 0, 0}, {1, 0, 0, 0}});
-  b.set_domain({-1.0, -0.5, -1.0}, {1.0, 2.0, 1.0});
-  return b.scene;
-}
-
-/// What dies in a crash.
-struct HostEnd {
-  World world;
-  Channel channel;
-  InputGate gate;
-  HandTable hands;
-  BodySnapshot now;
-  HostEnd(World made, const Scene& scene)
-      : world(std::move(made)),
-        channel(scene.grips.size(), BodyMessage{}, 1000),
-        gate(scene),
-        hands(scene, channel) {
-    world.fill(now);
-  }
-};
 
 /// One person at a grip of their own, with what reaches them.
 struct Person {
@@ -128,13 +100,15 @@ class HoldAnew : public ::testing::Test {
         carried = std::max(carried, glm::length(grip.on_hand.force));
       for (const auto& person : people) {
         if (!person->in_contact) continue;
-        person->channel.bodies().back() = message();
+        BodyMessage m = message();
+        m.heard_pose_ns = host->hands.used(person->grip, host->gate.poses()[person->grip].number).stamp_ns;
+        person->channel.bodies().back() = m;
         person->channel.bodies().publish();
       }
     }
   }
   void send(Person& person) {
-    person.channel.pose(person.grip).update();
+    if (!person.channel.pose(person.grip).update()) return;  // PoseUplink sends what is new
     const PoseMessage& m = person.channel.pose(person.grip).front();
     wire::PoseSample sample;
     sample.grip = person.grip;

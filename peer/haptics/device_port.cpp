@@ -1,0 +1,200 @@
+#include "peer/haptics/device_port.h"
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+
+#include "net/clock.h"
+#include "net/triple_buffer.h"
+#include "peer/haptics/freshness.h"
+#include "peer/haptics/let_go.h"
+#include "peer/haptics/real_time.h"
+
+namespace slosh {
+namespace {
+
+constexpr double kPeriod = 0.001;  // s
+
+/// What the loop wants written.
+struct Order {
+  Wrench on_hand;
+  std::int64_t stamp_ns = 0;  // 0 = none yet
+  double time = 0.0;          // simulated s
+};
+
+Wrench scaled(double scale, const Wrench& w) {
+  return {scale * w.force, scale * w.torque};
+}
+
+/// The words of the exception that is being handled.
+std::string words_of_exception() {
+  try {
+    throw;
+  } catch (const std::exception& error) {
+    return error.what();
+  } catch (...) {
+    return "an exception without words";
+  }
+}
+
+void write_zero_to(void* device) noexcept {
+  try {
+    static_cast<Device*>(device)->write(Wrench{});
+  } catch (...) {
+    // It was told; there is nobody left to tell that it would not listen.
+  }
+}
+
+}  // namespace
+
+struct DevicePort::Own {
+  std::shared_ptr<Device> device;
+  TripleBuffer<DeviceReading> readings;  // device's thread → loop
+  TripleBuffer<Order> orders;            // loop → device's thread
+  std::atomic<bool> stop{false};
+  std::string failure;  // written once, before failed
+  std::atomic<bool> failed{false};
+
+  std::mutex end;
+  std::condition_variable ended;
+  bool over = false;       // the thread has written its last
+  bool abandoned = false;  // nobody waits for it any more
+};
+
+DevicePort::DevicePort(std::unique_ptr<Device> device)
+    : device_(std::move(device)), limits_(device_->limits()) {
+  if (device_->immediate()) return;
+  own_ = std::make_shared<Own>();
+  own_->device = device_;
+  let_go_before_terminate();
+  thread_ = std::thread([own = own_] { run(own); });
+}
+
+DevicePort::~DevicePort() {
+  stop();
+}
+
+void DevicePort::run(const std::shared_ptr<Own>& own) {
+  become_device_thread("slosh-hand");
+  Device& device = *own->device;
+  {
+    const WrenchWriter writer(write_zero_to, &device);
+    try {
+      std::int64_t deadline_ns = steady_now_ns();
+      std::uint64_t number = 0;
+      const auto over = [&] { return own->stop.load(std::memory_order_relaxed) || asked_to_let_go(); };
+      while (!over()) {
+        own->orders.update();
+        const double time = own->orders.front().time;
+        DeviceReading& reading = own->readings.back();
+        reading.report = device.read({time, kPeriod});
+        reading.number = ++number;
+        reading.stamp_ns = steady_now_ns();
+        reading.time = time;
+        own->readings.publish();
+        if (over()) break;
+        // What the loop wants by now: the reading may have taken its time.
+        own->orders.update();
+        const Order& order = own->orders.front();
+        const std::int64_t now_ns = steady_now_ns();
+        const double believed =
+            order.stamp_ns == 0 ? 0.0 : freshness(to_seconds(now_ns - order.stamp_ns), kPeriod);
+        device.write(scaled(believed, order.on_hand));
+        deadline_ns = std::max(deadline_ns + to_nanoseconds(kPeriod), now_ns - to_nanoseconds(kPeriod));
+        sleep_until_ns(deadline_ns);
+      }
+    } catch (...) {
+      own->failure = words_of_exception();
+      own->failed.store(true, std::memory_order_release);
+    }
+    write_zero_to(&device);
+  }
+  bool abandoned = false;
+  {
+    const std::lock_guard lock(own->end);
+    own->over = true;
+    abandoned = own->abandoned;
+  }
+  own->ended.notify_all();
+  if (abandoned) device.close();
+}
+
+template <class Do>
+void DevicePort::guarded(Do&& act) noexcept {
+  if (failed_.load(std::memory_order_relaxed)) return;
+  try {
+    act();
+  } catch (...) {
+    failure_ = words_of_exception();
+    failed_.store(true, std::memory_order_release);
+    write_zero_to(device_.get());
+  }
+}
+
+const DeviceReading& DevicePort::read(const DeviceMoment& moment, std::int64_t now_ns) noexcept {
+  if (own_) {
+    own_->readings.update();
+    own_->orders.back().time = moment.time;
+    return own_->readings.front();
+  }
+  guarded([&] {
+    reading_.report = device_->read(moment);
+    reading_.number += 1;
+    reading_.stamp_ns = now_ns;
+    reading_.time = moment.time;
+  });
+  return reading_;
+}
+
+void DevicePort::write(const Wrench& on_hand) noexcept {
+  if (own_) {
+    Order& order = own_->orders.back();
+    order.on_hand = on_hand;
+    order.stamp_ns = steady_now_ns();  // its thread compares it with the same clock
+    own_->orders.publish();
+    return;
+  }
+  guarded([&] { device_->write(on_hand); });
+}
+
+void DevicePort::write_zero() noexcept {
+  if (stopped_) return;
+  if (own_) {
+    own_->stop.store(true);
+  } else {
+    write_zero_to(device_.get());
+  }
+}
+
+void DevicePort::stop() noexcept {
+  if (stopped_) return;
+  stopped_ = true;
+  if (!own_) {
+    write_zero_to(device_.get());
+    device_->close();
+    return;
+  }
+  own_->stop.store(true);
+  bool over = false;
+  {
+    std::unique_lock lock(own_->end);
+    over =
+        own_->ended.wait_for(lock, std::chrono::duration<double>(kStopWait), [this] { return own_->over; });
+    own_->abandoned = !over;
+  }
+  if (over) {
+    thread_.join();
+    device_->close();
+  } else {
+    thread_.detach();
+  }
+}
+
+std::string DevicePort::failure() const {
+  if (own_) return own_->failed.load(std::memory_order_acquire) ? own_->failure : std::string();
+  return failed_.load(std::memory_order_acquire) ? failure_ : std::string();
+}
+
+}  // namespace slosh

@@ -1,0 +1,65 @@
+#include "peer/haptics/felt_hand.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace slosh {
+namespace {
+
+// A fall of what is believed in one tick that is no fading: the world stopped, or this process was.
+constexpr double kSudden = 0.05;
+
+bool is_finite(const Wrench& w) {
+  return std::isfinite(w.force.x + w.force.y + w.force.z + w.torque.x + w.torque.y + w.torque.z);
+}
+
+}  // namespace
+
+/// While states are late a hand goes on moving and its grip does not: a spring that only silence stretches is
+/// not felt.
+Wrench FeltHand::capped(const Wrench& full, bool current) noexcept {
+  if (current) {
+    most_force_ = glm::length(full.force);
+    most_torque_ = glm::length(full.torque);
+    return full;
+  }
+  bool limited = false;
+  return {limit_length(full.force, most_force_, limited), limit_length(full.torque, most_torque_, limited)};
+}
+
+ForceLimiter::Outcome FeltHand::feel(const WorldBelief& world, const DeviceReport& hand,
+                                     const GripState& grip, const Moment& now) noexcept {
+  const double believed = std::min(world.share, now.device_share);
+  const bool current = world.current && now.device_share >= 1.0;
+  bool jumps = world.anew || believed < believed_ - kSudden || (current && !current_);
+  current_ = current;
+  if (world.anew || now.leapt || (believed >= 1.0 && hold_anew_)) {
+    engagement_ = Engagement{};
+    jumps = true;
+  }
+  hold_anew_ = believed < 1.0;
+  believed_ = believed;
+  // What comes back after a gap comes back as gently as it went.
+  share_ = std::min(believed, share_ + now.period / kFadeStale);
+
+  const Engagement::Held held =
+      engagement_.update(hand.engaged, now.time, hand.pose, hand.twist, gains_, grip);
+  const Wrench full = coupling_wrench_on_hand(gains_, held.pose, held.twist, grip.pose, grip.twist);
+  const double felt = engagement_.felt();
+  Wrench wanted{felt * full.force, felt * full.torque};
+  if (is_finite(wanted)) {
+    wanted = capped(wanted, current);
+    wanted = {share_ * wanted.force, share_ * wanted.torque};
+    if (jumps) {
+      bridge_ = {last_.force - wanted.force, last_.torque - wanted.torque};
+      left_ = 1.0;
+    }
+    wanted = {wanted.force + left_ * bridge_.force, wanted.torque + left_ * bridge_.torque};
+    left_ = std::max(left_ - now.period / kBridge, 0.0);
+  }
+  const ForceLimiter::Outcome outcome = limiter_.limit(wanted, now.period);
+  last_ = outcome.wrench;
+  return outcome;
+}
+
+}  // namespace slosh

@@ -1,0 +1,64 @@
+// What one hand feels: the coupling to its grip, and nothing that only the link or a pause would add.
+#pragma once
+
+#include "net/engagement.h"
+#include "peer/haptics/device.h"
+#include "peer/haptics/force_limiter.h"
+#include "peer/haptics/freshness.h"
+#include "peer/haptics/hearing.h"
+#include "sim/math/coupling.h"
+#include "sim/snapshot.h"
+
+namespace slosh {
+
+/// One rule for silence, pauses and resets, of the world and of the device: the force never jumps, and never
+/// grows by them.
+///  - While words are late the force is at most what it was with the last that was in time, and it fades as
+///    freshness() has it.
+///  - Whoever was not heard for a moment takes hold anew (net/engagement.h), and the force comes back over
+///    kFadeStale.
+///  - Where the force would jump all the same, because the world stopped or the hand's hold is another one,
+///  the
+///    difference is worked off over kBridge.
+/// Pure; one thread; no allocation.
+class FeltHand {
+ public:
+  explicit FeltHand(const CouplingGains& gains) : gains_(gains) {}
+
+  /// Another device: gains and limits, and no hold yet.
+  void restart(const CouplingGains& gains, const DeviceLimits& limits) {
+    *this = FeltHand(gains);
+    limiter_ = ForceLimiter(limits);
+  }
+
+  struct Moment {
+    double time = 0.0;          ///< simulated s, never falling but when the world was reset
+    double period = 0.001;      ///< s since the call before
+    double device_share = 1.0;  ///< freshness of the device's own word
+    bool leapt = false;         ///< the hand is suddenly elsewhere (net/leap.h)
+  };
+  /// The wrench for the device. `grip` carried on to `now.time`.
+  ForceLimiter::Outcome feel(const WorldBelief& world, const DeviceReport& hand, const GripState& grip,
+                             const Moment& now) noexcept;
+
+  /// s over which a jump is worked off: a hand of 15 N is let go of at 150 N/s.
+  static constexpr double kBridge = 0.1;
+
+ private:
+  Wrench capped(const Wrench& full, bool current) noexcept;
+
+  CouplingGains gains_;
+  ForceLimiter limiter_{DeviceLimits{}};  // lets nothing through before restart()
+  Engagement engagement_;
+  double share_ = 1.0;
+  double believed_ = 1.0;    // at the call before
+  bool hold_anew_ = false;   // words had stopped
+  bool current_ = true;      // the world was, at the call before
+  double most_force_ = 0.0;  // N, with the last state that was in time
+  double most_torque_ = 0.0;
+  Wrench last_;        // of the call before
+  Wrench bridge_;      // what is left of a jump,
+  double left_ = 0.0;  // and the share of it, 0–1
+};
+
+}  // namespace slosh

@@ -1,0 +1,26 @@
+// How long what no longer comes is believed: body states by a hand, readings by the loop, wrenches by a
+// device.
+#pragma once
+
+#include <algorithm>
+
+#include "net/engagement.h"
+
+namespace slosh {
+
+/// s of silence for which the newest word is believed wholly. Who was not believed for a moment takes hold
+/// anew with the next (net/engagement.h).
+constexpr double kHoldStale = kHoldAnew;
+/// s over which the force then fades.
+constexpr double kFadeStale = 0.3;
+/// s of silence after which no hand has a force, whatever the world does and however slow it is.
+constexpr double kSilent = kHoldStale + kFadeStale;
+
+/// Share of the force, 0–1, when the newest word is `age` s old and one comes every `interval` s. A slow
+/// sender is waited for twice as long and no longer.
+inline double freshness(double age, double interval) {
+  const double hold = std::clamp(4.0 * interval, kHoldStale, 2.0 * kHoldStale);
+  return std::clamp((kSilent - age) / (kSilent - hold), 0.0, 1.0);
+}
+
+}  // namespace slosh

@@ -1,0 +1,91 @@
+#include "peer/haptics/hearing.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "net/clock.h"
+#include "peer/haptics/freshness.h"
+
+namespace slosh {
+namespace {
+
+/// s between two words of a world that waits: a host repeats them ten times a second, and one may be lost.
+constexpr double kStandingInterval = 0.05;
+/// s by which poses may be later than usual before what they stretch counts as the link's, besides three
+/// times what the lag usually varies by.
+constexpr double kLatePose = 0.01;
+constexpr double kSpread = 3.0;
+/// s over which the usual lag and its spread are averaged.
+constexpr double kLagMemory = 1.0;
+/// s more than kHoldAnew that a silence lasts at least, so that a host cannot have missed it.
+constexpr double kSureSilence = 0.03;
+
+}  // namespace
+
+double Hearing::follow_poses(const BodyMessage& message, bool& current) noexcept {
+  if (message.heard_pose_ns == kPoseNotTold) return 1.0;
+  if (resuming_) {
+    if (message.heard_pose_ns < since_ns_) {
+      current = false;
+      return 0.0;
+    }
+    resuming_ = usual_known_ = false;
+  }
+  // Before its first step a world follows nobody.
+  const double lag = to_seconds(message.stamp_ns - std::max(message.heard_pose_ns, moving_ns_));
+  if (message.heard_pose_ns < moving_ns_) return freshness(lag, period_);
+  if (!usual_known_) {
+    usual_lag_ = lag;
+    lag_spread_ = 0.0;
+    usual_known_ = true;
+  }
+  const double late = lag - usual_lag_ - kSpread * lag_spread_;
+  if (late > kLatePose) current = false;
+  if (late < kHoldStale) {  // beyond, it is a silence and says nothing of what is usual
+    const double share = period_ / kLagMemory;
+    lag_spread_ += share * (std::abs(lag - usual_lag_) - lag_spread_);
+    usual_lag_ += share * (lag - usual_lag_);
+  }
+  return freshness(late, period_);
+}
+
+/// What we said before the silence may have been kept back with it: ours counts from when the link is back.
+void Hearing::turn_to_speak(bool heard, std::int64_t now_ns) noexcept {
+  if (!heard) {
+    speaks_ = false;
+    again_ns_ = 0;
+  } else if (!speaks_) {
+    if (again_ns_ == 0) again_ns_ = now_ns;
+    if (to_seconds(now_ns - again_ns_) < kHoldAnew + kSureSilence) return;
+    speaks_ = resuming_ = true;
+    since_ns_ = now_ns;
+  }
+}
+
+WorldBelief Hearing::hear(const BodyMessage& message, bool fresh, std::int64_t now_ns) noexcept {
+  if (fresh || !ticked_) heard_ns_ = now_ns;
+  WorldBelief belief;
+  belief.anew = ticked_ && message.run != run_;
+  run_ = message.run;
+  ticked_ = true;
+  const double since_heard = to_seconds(now_ns - heard_ns_);
+  if (message.rate <= 0.0) {
+    moving_ns_ = 0;
+    const double share = freshness(since_heard, kStandingInterval);
+    // After the first step a pace of 0 means that the world stopped: it holds nothing up any more.
+    if (message.bodies.tick == 0) belief.share = share;
+    belief.current = belief.share >= 1.0;
+    turn_to_speak(share >= 1.0, now_ns);
+    return belief;
+  }
+  if (moving_ns_ == 0) moving_ns_ = message.stamp_ns;
+  const double age = to_seconds(now_ns - message.stamp_ns);  // negative while the state is still to come
+  const double interval = message.time_step / message.rate;
+  const double states = std::min(freshness(age, interval), freshness(since_heard, interval));
+  turn_to_speak(states >= 1.0, now_ns);
+  belief.current = age <= 2.0 * interval + period_;
+  belief.share = std::min(states, follow_poses(message, belief.current));
+  return belief;
+}
+
+}  // namespace slosh

@@ -1,0 +1,56 @@
+// Whether the world and its hands hear one another: what a device loop may believe, and when it speaks.
+#pragma once
+
+#include <cstdint>
+
+#include "net/channel.h"
+
+namespace slosh {
+
+/// What the loop makes of the newest body state.
+struct WorldBelief {
+  double share = 0.0;    ///< 0–1, by how long ago it came; 0 while the world has stopped
+  bool current = false;  ///< no later than a world at its pace would have it
+  bool anew = false;     ///< the world was reset: whoever holds on takes hold anew
+};
+
+/// Body states come one way and poses go the other, and each may fail alone.
+///  - States that are late are believed as freshness() has it; a world that waits for its first step, as long
+///  as
+///    it says so; a world that stopped, not at all.
+///  - States that no longer follow our poses come from a host that does not hear us: the body stands where
+///  our
+///    hand was, and a spring to it would be the link's. Late poses count as late states do.
+///  - Who hears nothing says nothing. So the host takes the hand for silent too, and when contact is back
+///  both
+///    ends take hold anew (net/engagement.h), the loop when the host has.
+/// Reads no clock; one thread; no allocation.
+class Hearing {
+ public:
+  explicit Hearing(double period) : period_(period) {}
+
+  /// Once a tick, with the newest state and whether it came since the tick before.
+  WorldBelief hear(const BodyMessage& message, bool fresh, std::int64_t now_ns) noexcept;
+
+  /// Whether poses are to be sent in this tick. After hear().
+  bool speaks() const { return speaks_; }
+
+ private:
+  double follow_poses(const BodyMessage& message, bool& current) noexcept;
+  void turn_to_speak(bool heard, std::int64_t now_ns) noexcept;
+
+  double period_;
+  bool ticked_ = false;
+  std::uint32_t run_ = 0;
+  std::int64_t heard_ns_ = 0;   // when the newest state came
+  std::int64_t moving_ns_ = 0;  // since when the world moves; 0 = it does not
+  bool speaks_ = true;
+  bool resuming_ = false;      // speaks again, and the host has not answered to it yet
+  std::int64_t again_ns_ = 0;  // when it was heard again after a silence; 0 = it is not
+  std::int64_t since_ns_ = 0;  // when it spoke first after it
+  double usual_lag_ = 0.0;     // s from our pose to a state that follows it, with the state's own delay
+  double lag_spread_ = 0.0;    // s, its mean deviation
+  bool usual_known_ = false;
+};
+
+}  // namespace slosh

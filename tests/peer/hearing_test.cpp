@@ -1,0 +1,122 @@
+// What a device loop believes when states come late and poses are not followed, and when it speaks.
+#include "peer/haptics/hearing.h"
+
+#include <gtest/gtest.h>
+
+#include "net/clock.h"
+#include "peer/haptics/freshness.h"
+
+namespace slosh {
+namespace {
+
+constexpr double kPeriod = 0.001;
+constexpr double kLag = 0.02;  // s from a pose to a state that follows it
+
+/// A world at its pace over a link, ticked each millisecond.
+struct Link {
+  Hearing hearing{kPeriod};
+  BodyMessage message;
+  WorldBelief belief;
+  int ms = 1000;
+  bool down = true;
+  bool up = true;
+  std::int64_t arrived_ns = 0;  // stamp of the newest pose that the host has
+  std::int64_t said_ns = 0;
+
+  Link() {
+    message.time_step = 0.002;
+    message.rate = 1.0;
+    message.heard_pose_ns = 0;
+  }
+  std::int64_t now() const { return std::int64_t{ms} * 1'000'000; }
+  void run(int count) {
+    for (int i = 0; i < count; ++i) {
+      ms += 1;
+      if (up && hearing.speaks()) said_ns = now() - to_nanoseconds(kLag);
+      if (up) arrived_ns = std::max(arrived_ns, said_ns);
+      if (down) {
+        message.stamp_ns = now();
+        message.heard_pose_ns = arrived_ns;
+        message.bodies.tick += 1;
+      }
+      belief = hearing.hear(message, down, now());
+    }
+  }
+};
+
+TEST(Hearing, BelievesAWorldAtItsPace) {
+  Link link;
+  link.run(500);
+  EXPECT_EQ(link.belief.share, 1.0);
+  EXPECT_TRUE(link.belief.current);
+  EXPECT_TRUE(link.hearing.speaks());
+}
+
+TEST(Hearing, AStateThatDoesNotFollowOurPosesFadesAsALateOneDoes) {
+  Link link;
+  link.run(500);
+  link.up = false;
+  link.run(50);
+  EXPECT_FALSE(link.belief.current) << "the body no longer follows: what stretches now is the link's";
+  EXPECT_EQ(link.belief.share, 1.0);
+  EXPECT_TRUE(link.hearing.speaks()) << "how else would the host hear it again";
+  link.run(400);
+  EXPECT_EQ(link.belief.share, 0.0);
+  link.up = true;
+  link.run(3);
+  EXPECT_EQ(link.belief.share, 1.0);
+  EXPECT_TRUE(link.belief.current);
+}
+
+TEST(Hearing, WhoHearsNothingSaysNothingAndIsBelievedWhenTheHostHasAnswered) {
+  Link link;
+  link.run(500);
+  link.down = false;
+  link.run(90);
+  EXPECT_TRUE(link.hearing.speaks());
+  link.run(30);
+  EXPECT_FALSE(link.hearing.speaks());
+  link.down = true;
+  link.run(100);
+  EXPECT_FALSE(link.hearing.speaks()) << "a host may have missed so short a silence";
+  link.run(40);
+  EXPECT_TRUE(link.hearing.speaks());
+  link.run(100);
+  EXPECT_EQ(link.belief.share, 1.0);
+  // The other way round: back, but not answered yet.
+  link.down = false;
+  link.run(500);
+  link.down = true;
+  link.up = false;
+  link.run(300);
+  EXPECT_TRUE(link.hearing.speaks());
+  EXPECT_EQ(link.belief.share, 0.0) << "the host has not taken hold, so nobody feels anything";
+  link.up = true;
+  link.run(50);
+  EXPECT_EQ(link.belief.share, 1.0);
+}
+
+TEST(Hearing, InOneProcessNoPoseIsLost) {
+  Link link;
+  link.up = false;
+  link.message.heard_pose_ns = kPoseNotTold;
+  for (int i = 0; i < 1000; ++i) {
+    link.ms += 1;
+    link.message.stamp_ns = link.now();
+    link.belief = link.hearing.hear(link.message, true, link.now());
+  }
+  EXPECT_EQ(link.belief.share, 1.0);
+}
+
+TEST(Hearing, AStampFromTheFutureKeepsNoForceAlive) {
+  Link link;
+  link.message.heard_pose_ns = kPoseNotTold;
+  link.message.stamp_ns = link.now() + to_nanoseconds(3600.0);
+  link.belief = link.hearing.hear(link.message, true, link.now());
+  EXPECT_EQ(link.belief.share, 1.0);
+  link.ms += 400;
+  EXPECT_EQ(link.hearing.hear(link.message, false, link.now()).share, 0.0);
+}
+
+}  // namespace
+}  // namespace slosh
