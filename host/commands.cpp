@@ -113,6 +113,12 @@ void Host::stand_still() {
       std::unique_lock lock(orders_mutex_);
       ordered_.wait_for(lock, std::chrono::milliseconds(5), [this] { return !orders_.empty(); });
     }
+    // Somebody began to look while the world stands: show it as it is.
+    if (options_.demand && options_.demand->take_ask()) {
+      publish_picture();
+      tell_published();
+    }
+    for (HostTap* tap : taps_) tap->while_standing(world_);
     if (!has_orders_.load(std::memory_order_acquire)) continue;
     run_commands();
     tell_published();

@@ -138,6 +138,7 @@ void Host::publish_bodies(double rate, std::int64_t stamp_ns) {
 
 void Host::publish_picture() {
   if (options_.picture_rate <= 0.0) return;
+  if (options_.demand) options_.demand->note_made();
   auto snapshot = std::make_shared<Snapshot>();
   world_.fill(*snapshot, options_.shell);
   snapshot->rigid.status = recent_status();
@@ -147,12 +148,20 @@ void Host::publish_picture() {
 void Host::publish_picture_if_due() {
   const double half_step = 0.5 * world_.plan().time_step;
   if (options_.picture_rate <= 0.0 || world_.time() + half_step < next_picture_) return;
-  publish_picture();
+  if (!options_.demand || options_.demand->wanted()) publish_picture();
   next_picture_ += 1.0 / options_.picture_rate;
 }
 
 void Host::tell_published() {
   for (HostTap* tap : taps_) tap->after_publish();
+}
+
+void Host::tell_refused() {
+  const std::span<const PoseFault> refused = gate_.refused();
+  for (std::uint32_t grip = 0; grip < refused.size(); ++grip) {
+    if (refused[grip] == PoseFault::kNone) continue;
+    for (HostTap* tap : taps_) tap->on_refused_pose(grip, refused[grip]);
+  }
 }
 
 void Host::show_state() {
@@ -172,7 +181,9 @@ void Host::run() {
   meter.seed(time_step);
   next_picture_ = world_.time();
   for (HostTap* tap : taps_) tap->on_start(world_, state());
-  publish_picture_if_due();
+  // The first picture of a run comes whether somebody looks or not: those who count runs need it.
+  publish_picture();
+  next_picture_ += options_.picture_rate > 0.0 ? 1.0 / options_.picture_rate : 0.0;
   tell_published();
 
   while (!stop_.load(std::memory_order_relaxed) && world_.time() + 0.5 * time_step < options_.until) {
@@ -197,7 +208,10 @@ void Host::run() {
     }
     const std::uint64_t rejected_before = gate_.rejected();
     const std::span<const HandleInput> input = gate_.take(channel_, latest_, steady_now_ns());
-    if (gate_.rejected() != rejected_before) note_status(kStatusInputRejected);
+    if (gate_.rejected() != rejected_before) {
+      note_status(kStatusInputRejected);
+      tell_refused();
+    }
 
     for (HostTap* tap : taps_) tap->before_step(world_, {input, gate_.poses()});
     const std::int64_t step_begin_ns = steady_now_ns();

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "host/input_gate.h"
+#include "host/picture_demand.h"
 #include "host/tap.h"
 #include "net/channel.h"
 #include "net/histogram.h"
@@ -21,7 +22,10 @@
 namespace slosh {
 
 struct HostOptions {
-  double picture_rate = 30.0;  ///< pictures a simulated second, > 0; 0 = none (no viewer, nothing to publish)
+  /// Pictures a simulated second while `demand` wants any; 0 = none at all.
+  /// The first of each run comes in any case.
+  double picture_rate = 30.0;
+  PictureDemand* demand = nullptr;  ///< must outlive the host; null = pictures are wanted always
   double until = std::numeric_limits<double>::infinity();  ///< simulated s at which the run ends
   bool paced = true;      ///< false: as fast as it goes, for tests that must not depend on the wall clock
   bool shell = false;     ///< pictures say which particles are seen from outside (Snapshot::shell)
@@ -114,6 +118,7 @@ class Host {
   void publish_picture();
   void publish_picture_if_due();
   void tell_published();
+  void tell_refused();
   void note_status(std::uint32_t status);
   std::uint32_t recent_status() const;
 

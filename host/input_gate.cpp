@@ -35,6 +35,7 @@ InputGate::InputGate(const Scene& scene)
   }
   inputs_.resize(hands_.size());
   used_.resize(hands_.size());
+  refused_.resize(hands_.size());
   for (std::size_t i = 0; i < used_.size(); ++i) used_[i].device = static_cast<std::uint32_t>(i);
 }
 
@@ -67,7 +68,7 @@ bool InputGate::accept(const PoseMessage& message, std::int64_t clock_ns) {
   Hand& hand = hands_[message.device];
   const PoseFault fault = check(message, hand);
   if (fault != PoseFault::kNone) {
-    last_fault_ = fault;
+    last_fault_ = refused_[message.device] = fault;
     rejected_ += 1;
     hand.good.twist = Twist{};  // a pose that is no longer known to move must not be carried on
     return false;
@@ -199,6 +200,7 @@ void InputGate::fill_input(Hand& hand, std::size_t grip, const BodySnapshot& now
 std::span<const HandleInput> InputGate::take(Channel& channel, const BodySnapshot& now,
                                              std::int64_t clock_ns) {
   time_ = now.time;
+  std::fill(refused_.begin(), refused_.end(), PoseFault::kNone);
   for (std::size_t i = 0; i < hands_.size(); ++i) {
     if (i < channel.devices() && channel.pose(i).update())
       accept(channel.pose(i).front(), clock_ns);

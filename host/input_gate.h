@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "host/pose_fault.h"
 #include "net/channel.h"
 #include "net/clock.h"
 #include "net/engagement.h"
@@ -13,19 +14,6 @@
 #include "sim/world.h"
 
 namespace slosh {
-
-/// Why a pose was not used.
-enum class PoseFault : std::uint8_t {
-  kNone,
-  kNonFinite,     ///< a NaN or an infinity
-  kNotARotation,  ///< the quaternion's length is off 1 by more than 1 %
-  kOutOfRange,    ///< farther outside the domain than kHandleReach
-  kTooFast,       ///< a twist, or a jump since the last good pose, above the limits below
-};
-
-constexpr double kHandleReach = 5.0;           ///< m beyond the scene's domain
-constexpr double kHandleSpeed = 20.0;          ///< m/s
-constexpr double kHandleAngularSpeed = 100.0;  ///< rad/s
 
 /// s of simulated time over which a coupling fades whose hand was lost (PoseMessage::lost).
 constexpr double kLostFade = 0.4;
@@ -66,6 +54,8 @@ class InputGate {
   std::span<const PoseMessage> poses() const { return used_; }
 
   std::uint64_t rejected() const { return rejected_; }
+  /// What take() just refused, kNone or a fault for each grip.
+  std::span<const PoseFault> refused() const { return refused_; }
   PoseFault last_fault() const { return last_fault_; }
 
  private:
@@ -95,6 +85,7 @@ class InputGate {
   std::vector<Hand> hands_;
   std::vector<HandleInput> inputs_;
   std::vector<PoseMessage> used_;
+  std::vector<PoseFault> refused_;     // by the last take()
   double time_ = 0.0;                  // simulated s of the last step
   std::int64_t old_run_until_ns_ = 0;  // messages of the run before may come until then
   std::uint64_t rejected_ = 0;

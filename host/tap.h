@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "host/pose_fault.h"
 #include "net/channel.h"
 #include "sim/world.h"
 
@@ -53,6 +54,10 @@ class HostTap {
   /// world.tick() is the step's number.
   virtual void before_step(const World& world, const StepInput& input) { (void)world, (void)input; }
   virtual void after_step(const World& world) { (void)world; }
+  /// Again and again, every few ms, while the world stands.
+  virtual void while_standing(const World& world) { (void)world; }
+  /// A pose of this grip was not used. As often as poses come: whoever tells people, tells them once.
+  virtual void on_refused_pose(std::uint32_t grip, PoseFault fault) { (void)grip, (void)fault; }
   /// Body states, and a picture where one was due, are in the channel: wake whoever sends them.
   virtual void after_publish() {}
   /// After a command that was granted; the channel has the world as it is now.

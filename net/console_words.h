@@ -47,6 +47,12 @@ std::string names_of(const std::vector<T>& things) {
   return names.empty() ? "none" : names;
 }
 
+/// What to say where index_named() found no grip. Every console says it so.
+template <class T>
+std::string no_grip_text(const std::string& text, const std::vector<T>& grips) {
+  return "there is no grip '" + text + "'. There are: " + names_of(grips);
+}
+
 /// Which fluid a SetWish means: the one it names, or the only one there is.
 template <class T>
 std::optional<std::size_t> fluid_meant(const std::vector<T>& fluids, const std::string& text) {

@@ -19,6 +19,10 @@ constexpr std::size_t kCheckBytes = 4;
 constexpr char kAskAgain[] = "Copy the whole link anew, or ask for it again";
 constexpr char kDamaged[] = "the link is cut off or mistyped";
 
+std::string version_text() {
+  return "v" + std::to_string(kLinkVersion);
+}
+
 char lower(char c) {
   return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c;
 }
@@ -29,7 +33,8 @@ std::size_t base32_length(std::size_t bytes) {
 
 /// CRC-32 finds every change within 32 bits on end, so every changed character.
 std::uint32_t check_of(const std::vector<std::string>& addresses, ByteView key, ByteView token) {
-  Bytes all;
+  const std::string version = version_text() + ',';
+  Bytes all(version.begin(), version.end());
   for (const std::string& address : addresses) {
     for (const char c : address) all.push_back(static_cast<std::uint8_t>(lower(c)));
     all.push_back(',');
@@ -127,6 +132,31 @@ std::string bare(std::string_view text) {
   return {begin, out.end()};
 }
 
+std::optional<int> version_of(std::string_view part) {
+  if (part.size() < 2 || part.size() > 5 || lower(part[0]) != 'v' || part[1] == '0') return std::nullopt;
+  int version = 0;
+  const auto [end, code] = std::from_chars(part.data() + 1, part.data() + part.size(), version);
+  if (code != std::errc{} || end != part.data() + part.size()) return std::nullopt;
+  return version;
+}
+
+std::optional<Error> check_version(const std::vector<std::string>& parts) {
+  const std::optional<int> version = version_of(parts[0]);
+  if (version == kLinkVersion) return std::nullopt;
+  // The first form began with addresses and had three parts.
+  const bool first_form =
+      !version && parts.size() == 3 && address_problem(parts[0].substr(0, parts[0].find(','))).empty();
+  if (first_form || (version && *version < kLinkVersion))
+    return bad_link("it is of an older slosh",
+                    "Ask the host for a new one; host and peers need the same slosh");
+  if (version)
+    return bad_link("it is of a newer slosh: version " + std::to_string(*version) +
+                        " of the links, and this one reads " + std::to_string(kLinkVersion),
+                    "Use the slosh that the host uses");
+  return bad_link(std::string("it does not say which version it is (v") + std::to_string(kLinkVersion) +
+                  "): " + kDamaged);
+}
+
 std::vector<std::string> split(std::string_view text, char by) {
   std::vector<std::string> parts(1);
   for (const char c : text) {
@@ -156,7 +186,7 @@ std::string to_base32(ByteView bytes) {
 Result<std::string> format_link(const JoinLink& link) {
   if (link.addresses.empty()) return bad_link("it has no address", "Name one with --listen");
   if (std::optional<Error> error = check_addresses(link.addresses)) return *error;
-  std::string out(kScheme);
+  std::string out = std::string(kScheme) + version_text() + "/";
   for (std::size_t i = 0; i < link.addresses.size(); ++i) out += (i == 0 ? "" : ",") + link.addresses[i];
   Bytes token(link.token.begin(), link.token.end());
   const std::uint32_t check = check_of(link.addresses, link.host, token);
@@ -171,11 +201,13 @@ Result<JoinLink> parse_link(std::string_view text) {
   std::string start = link.substr(0, kScheme.size());
   std::transform(start.begin(), start.end(), start.begin(), lower);
   if (start != kScheme) return bad_link("it does not begin with slosh://");
-  const std::vector<std::string> parts = split(std::string_view(link).substr(kScheme.size()), '/');
+  std::vector<std::string> parts = split(std::string_view(link).substr(kScheme.size()), '/');
+  if (std::optional<Error> error = check_version(parts)) return *error;
+  parts.erase(parts.begin());
   if (parts.size() < 3)
     return bad_link(parts.size() < 2 ? std::string("the host's key and the token are missing: ") + kDamaged
                                      : std::string("the token is missing: ") + kDamaged);
-  if (parts.size() > 3) return bad_link(std::string("it has more than three parts: ") + kDamaged);
+  if (parts.size() > 3) return bad_link(std::string("it has more than four parts: ") + kDamaged);
 
   JoinLink out;
   out.addresses = split(parts[0], ',');

@@ -151,6 +151,7 @@ void CheckpointWriter::take_copy(const World& world) {
   }
   copy.world.clear();
   last_copy_ns_ = begin_ns;
+  changed_since_copy_ = false;
   const Result<bool> saved = world.save(copy.world);
   copy.state = state_;
   copy.tick = world.tick();
@@ -160,6 +161,7 @@ void CheckpointWriter::take_copy(const World& world) {
   {
     const std::lock_guard lock(mutex_);
     report_.copy_ms = std::max(report_.copy_ms, took_ms);
+    report_.copies += 1;
     if (!saved) {
       report_.problem = saved.error().text();
       return;
@@ -171,12 +173,23 @@ void CheckpointWriter::take_copy(const World& world) {
 }
 
 void CheckpointWriter::after_step(const World& world) {
-  if (to_seconds(steady_now_ns() - last_copy_ns_) >= options_.interval) take_copy(world);
+  if (due()) take_copy(world);
+}
+
+// What was changed while the world stands is kept as soon as what is changed while it runs.
+void CheckpointWriter::while_standing(const World& world) {
+  if (changed_since_copy_ && due()) take_copy(world);
+}
+
+bool CheckpointWriter::due() const {
+  return to_seconds(steady_now_ns() - last_copy_ns_) >= options_.interval;
 }
 
 void CheckpointWriter::after_change(const World& world, const HostCommand&, const HostState& state) {
+  // Commands may come by the hundred: they are kept at the interval like everything else.
   state_ = state;
-  take_copy(world);
+  changed_since_copy_ = true;
+  if (due()) take_copy(world);
 }
 
 void CheckpointWriter::on_end(const World& world) {

@@ -52,6 +52,7 @@ struct CheckpointOptions {
 
 struct CheckpointReport {
   std::uint64_t written = 0;
+  std::uint64_t copies = 0;  ///< of the whole world
   std::uint64_t bytes = 0;   ///< of the last file
   double copy_ms = 0.0;      ///< longest copy, on the host's thread
   double write_ms = 0.0;     ///< longest writing, beside it
@@ -79,6 +80,7 @@ class CheckpointWriter : public HostTap {
   CheckpointReport report() const;
 
   void after_step(const World& world) override;
+  void while_standing(const World& world) override;
   void after_change(const World& world, const HostCommand& change, const HostState& state) override;
   void on_end(const World& world) override;
 
@@ -92,6 +94,7 @@ class CheckpointWriter : public HostTap {
   };
   explicit CheckpointWriter(const CheckpointOptions& options) : options_(options) {}
   void take_copy(const World& world);
+  bool due() const;
   void run();
   Result<bool> write(const Copy& copy, Replaced old);
 
@@ -100,6 +103,7 @@ class CheckpointWriter : public HostTap {
   double spacing_ = 0.0;
   // The host's thread alone.
   HostState state_;
+  bool changed_since_copy_ = false;
   std::int64_t last_copy_ns_ = 0;
 
   mutable std::mutex mutex_;

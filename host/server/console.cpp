@@ -49,6 +49,21 @@ Result<ConsoleCommand> parse_expire(const std::vector<std::string>& words) {
   return command;
 }
 
+Result<ConsoleCommand> parse_kick(const std::vector<std::string>& words) {
+  const bool for_a_time = words.size() == 4 && words[2] == "for";
+  if (words.size() != 2 && !for_a_time)
+    return usage("kick needs a person's name, as `who` shows it",
+                 "As in: kick Ana, or: kick 'Ana 2' for 10m");
+  ConsoleCommand command;
+  command.verb = ConsoleVerb::kKick;
+  command.text = words[1];
+  if (!for_a_time) return command;
+  const Result<std::int64_t> time = parse_duration(words[3]);
+  if (!time) return time.error();
+  command.lifetime_ns = time.value();
+  return command;
+}
+
 Result<ConsoleCommand> parse_set_command(const std::vector<std::string>& words) {
   const Result<SetWish> wish = parse_set(words);
   if (!wish) return wish.error();
@@ -128,7 +143,8 @@ Result<ConsoleCommand> parse_console(std::string_view typed) {
   if (verb == "revoke") return with_one(ConsoleVerb::kRevoke, "the id of a link, as `links` shows it");
   if (verb == "expire") return parse_expire(words);
   if (verb == "release") return with_one(ConsoleVerb::kRelease, "a grip's name or number");
-  if (verb == "kick") return with_one(ConsoleVerb::kKick, "a person's name, as `who` shows it");
+  if (verb == "kick") return parse_kick(words);
+  if (verb == "unban") return with_one(ConsoleVerb::kUnban, "a person's name, as `who` shows it");
   if (verb == "pause") return alone(ConsoleVerb::kPause);
   if (verb == "continue") return alone(ConsoleVerb::kContinue);
   if (verb == "reset") return alone(ConsoleVerb::kReset);
@@ -145,7 +161,8 @@ const char* console_help() {
          "revoke ID                      end a link and whoever came in by it\n"
          "expire ID 10m|never            from then on it admits nobody new; who is in stays in\n"
          "release GRIP                   take a grip away from its holder\n"
-         "kick NAME                      close somebody's connection; the seat is given up\n"
+         "kick NAME [for 10m]            close somebody's connection, and keep their key out for a time\n"
+         "unban NAME                     let somebody in again before that time is over\n"
          "pause, continue, reset         the world\n"
          "set viscosity [FLUID] X        Pa·s, while the world runs\n"
          "set gravity X                  times the scene's, 0 to 2\n"

@@ -21,6 +21,7 @@ enum class ConsoleVerb : std::uint8_t {
   kExpire,
   kRelease,
   kKick,
+  kUnban,
   kPause,
   kContinue,
   kReset,
@@ -33,7 +34,7 @@ struct ConsoleCommand {
   ConsoleVerb verb = ConsoleVerb::kNothing;
   std::string text;              ///< a person's name, a link's id, a grip's or fluid's name or number
   bool watch = false;            ///< kLink
-  std::int64_t lifetime_ns = 0;  ///< kLink, kExpire; 0 = for ever
+  std::int64_t lifetime_ns = 0;  ///< kLink, kExpire: 0 = for ever; kKick: 0 = may come again at once
   bool gravity = false;          ///< kSet: gravity rather than viscosity
   double value = 0.0;            ///< kSet: Pa·s, or times the scene's gravity
 };

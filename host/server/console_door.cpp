@@ -19,6 +19,10 @@
 namespace slosh {
 namespace {
 
+// An answer's first line: programs go by it, people by what follows.
+constexpr std::string_view kGranted = "done\n";
+constexpr std::string_view kNotGranted = "not done\n";
+
 constexpr std::size_t kMostCallers = 8;
 constexpr int kPatience_ms = 8000;
 
@@ -68,7 +72,7 @@ std::vector<std::uint16_t> console_ports() {
   return ports;
 }
 
-Result<std::string> ask_console(std::uint16_t port, const std::string& line) {
+Result<Outcome> ask_console(std::uint16_t port, const std::string& line) {
   const std::filesystem::path path = console_socket(port);
   const Error nobody{"", "no host answers on port " + std::to_string(port),
                      "Is it running, and as this user?"};
@@ -94,8 +98,14 @@ Result<std::string> ask_console(std::uint16_t port, const std::string& line) {
       answer.append(buffer, static_cast<std::size_t>(got));
   }
   ::close(fd);
-  if (!complete) return Error{path.string(), "the host did not answer", "Try again"};
-  return answer;
+  Outcome outcome;
+  outcome.granted = answer.starts_with(kGranted);
+  const std::size_t mark = outcome.granted ? kGranted.size() : kNotGranted.size();
+  if (!complete || (!outcome.granted && !answer.starts_with(kNotGranted)))
+    return Error{path.string(), "the host did not answer", "Try again"};
+  outcome.text = answer.substr(mark);
+  if (outcome.text.ends_with('\n')) outcome.text.pop_back();
+  return outcome;
 }
 
 Result<std::unique_ptr<ConsoleDoor>> ConsoleDoor::open(std::uint16_t port) {
@@ -135,7 +145,8 @@ bool ConsoleDoor::hear(Caller& caller, const Answer& answer) {
   caller.line.append(buffer, static_cast<std::size_t>(got));
   const std::size_t end = caller.line.find('\n');
   if (end == std::string::npos) return caller.line.size() <= kMaxConsoleLine;
-  const std::string said = answer(caller.line.substr(0, end)) + "\n";
+  const Outcome outcome = answer(caller.line.substr(0, end));
+  const std::string said = std::string(outcome.granted ? kGranted : kNotGranted) + outcome.text + "\n";
   std::size_t sent = 0;
   while (sent < said.size()) {
     pollfd waiting{caller.fd, POLLOUT, 0};

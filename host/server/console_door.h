@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "host/server/outcome.h"
 #include "sim/math/result.h"
 
 namespace slosh {
@@ -18,13 +19,13 @@ std::filesystem::path console_socket(std::uint16_t port);
 /// Ports of the hosts that have a socket there (a host that crashed leaves one).
 std::vector<std::uint16_t> console_ports();
 
-/// Sends one line to the host of that port and returns its answer. Errors: no such host, no answer.
-Result<std::string> ask_console(std::uint16_t port, const std::string& line);
+/// Sends one line to the host of that port and returns what came of it. Errors: no such host, no answer.
+Result<Outcome> ask_console(std::uint16_t port, const std::string& line);
 
 /// The host's end. One thread.
 class ConsoleDoor {
  public:
-  using Answer = std::function<std::string(const std::string& line)>;
+  using Answer = std::function<Outcome(const std::string& line)>;
 
   /// Errors: the folder is somebody else's, the socket cannot be made.
   static Result<std::unique_ptr<ConsoleDoor>> open(std::uint16_t port);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "net/text/name.h"
+
 namespace slosh {
 namespace {
 
@@ -99,6 +101,20 @@ void LinkRegistry::note_use(const std::string& id, const KeyFingerprint& key) {
   if (!link || knows(*link, key)) return;
   if (link->users.size() >= kMaxLinkUsers) link->users.erase(link->users.begin());
   link->users.push_back(key);
+}
+
+std::vector<std::string> LinkRegistry::reserved_names(const std::string& id, std::int64_t unix_ns) {
+  if (looks_.size() > 4 * kMaxLinks) looks_.clear();
+  std::vector<std::string> names;
+  for (const LinkRecord& link : links_) {
+    const bool over =
+        link.revoked || (link.expires_ns != 0 && link.expires_ns <= unix_ns && link.users.empty());
+    if (link.name.empty() || link.id == id || over) continue;
+    const auto [found, fresh] = looks_.try_emplace(link.name);
+    if (fresh) found->second = name_skeleton(link.name);
+    names.push_back(found->second);
+  }
+  return names;
 }
 
 bool LinkRegistry::revoke(std::string_view id) {

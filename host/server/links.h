@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -77,6 +78,10 @@ class LinkRegistry {
   bool revoke(std::string_view id);
   bool set_expiry(std::string_view id, std::int64_t expires_ns);
 
+  /// What the names look like (name_skeleton) that other links than `id`, which still work, were made for:
+  /// nobody who comes by another may have one of them.
+  std::vector<std::string> reserved_names(const std::string& id, std::int64_t unix_ns);
+
   const LinkRecord* find(std::string_view id) const;
   const std::vector<LinkRecord>& links() const { return links_; }
   void restore(std::vector<LinkRecord> links) { links_ = std::move(links); }
@@ -84,6 +89,7 @@ class LinkRegistry {
  private:
   LinkRecord* find_mutable(std::string_view id);
   std::vector<LinkRecord> links_;
+  std::map<std::string, std::string> looks_;  // of names of links; skeletons take long
 };
 
 /// Fills with bytes from the kernel's random source.

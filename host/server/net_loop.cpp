@@ -56,8 +56,8 @@ T NetLoop::on_thread(Work work) {
   return answer.get();
 }
 
-std::string NetLoop::ask(const std::string& line) {
-  return on_thread<std::string>([this, line] { return server_.command(line); });
+Outcome NetLoop::ask(const std::string& line) {
+  return on_thread<Outcome>([this, line] { return server_.command(line); });
 }
 
 ServerFigures NetLoop::figures() {

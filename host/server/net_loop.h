@@ -23,7 +23,7 @@ class NetLoop {
   void stop(const std::string& why);
 
   /// One console line to its answer; waits for it. Any thread but this one.
-  std::string ask(const std::string& line);
+  Outcome ask(const std::string& line);
   ServerFigures figures();
   bool quit_asked() const { return quit_.load(std::memory_order_relaxed); }
   /// s of processor time that the thread has taken.

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <string>
 
-#include "host/server/tiers.h"
 #include "host/server/token_bucket.h"
 #include "net/quic/endpoint.h"
 #include "net/wire/stream_splitter.h"
@@ -20,31 +19,12 @@ struct PeerLimits {
   TokenBucket flood{1000.0, 20000.0};     ///< datagrams beyond those, before it is dropped
   TokenBucket faults{1.0, 30.0};          ///< datagrams that do not decode, before it is dropped
   TokenBucket claims{50.0, 1000.0};       ///< poses for a grip of another's, before it is dropped
-  TokenBucket mends{20.0, 20.0};          ///< requests for blocks that are answered
-  TokenBucket mend_bytes{1e6, 8e6};       ///< of intra pieces for this peer alone
-};
-
-/// The pictures of one peer.
-struct PictureSink {
-  TierControl control{kShell, kShell};
-  bool wanted = true;  ///< false: the peer draws nothing and is sent none
-  bool watching = false;
-  LinkEvidence seen;
-  std::uint64_t offered = 0;        ///< snapshot datagrams given to the endpoint
-  std::uint64_t dropped = 0;        ///< of those, by the endpoint, when last looked
-  std::uint32_t pieces_now = 0;     ///< of frames, sent since the last feedback
-  std::uint32_t pieces_before = 0;  ///< and between the two before
-  std::int64_t judged_ns = 0;
-  std::int64_t feedback_ns = 0;
-  std::int64_t sent_ns = 0;  ///< last frame that went
 };
 
 struct Peer {
   ConnectionId id = 0;
   KeyFingerprint key{};
   std::string address;
-  std::string site;  ///< site_of(address)
-  std::int64_t connected_ns = 0;
   std::int64_t heard_ns = 0;  ///< last datagram
   std::int64_t control_stream = -1;
   wire::StreamSplitter splitter;
@@ -53,13 +33,13 @@ struct Peer {
   bool in = false;    ///< said Hello and was let in
   bool gone = false;  ///< closed or closing: nothing more is sent or taken
   std::uint32_t seat = 0;
+  wire::Capabilities agreed = 0;
   bool participant = false;
   bool scene_sent = false;
   bool silent = false;  ///< holds a grip and sends nothing: let go for now
   bool warned_claim = false;
   bool warned_requests = false;
   std::int64_t next_bodies_ns = 0;
-  PictureSink pictures;
 };
 
 }  // namespace slosh

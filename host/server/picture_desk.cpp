@@ -1,5 +1,6 @@
 #include "host/server/picture_desk.h"
 
+#include <algorithm>
 #include <iterator>
 
 namespace slosh {
@@ -27,6 +28,11 @@ PictureOrder PictureDesk::take_order() {
   order_.fresh.fill(false);
   order_.mends.clear();
   return order;
+}
+
+bool PictureDesk::watched() const {
+  const std::lock_guard lock(mutex_);
+  return std::any_of(order_.watched.begin(), order_.watched.end(), [](bool tier) { return tier; });
 }
 
 void PictureDesk::deliver(std::vector<CodedPicture> pictures) {

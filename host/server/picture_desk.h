@@ -45,10 +45,12 @@ class PictureDesk {
 
   /// Coder's side.
   PictureOrder take_order();
+  /// Does anybody watch?
+  bool watched() const;
   void deliver(std::vector<CodedPicture> pictures);
 
  private:
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   PictureOrder order_;
   std::vector<CodedPicture> coded_;
 };

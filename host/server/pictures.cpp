@@ -93,9 +93,9 @@ void PictureCoder::mend(int tier, const EncodedFrame& frame, CodedPicture& out) 
   }
 }
 
-PictureThread::PictureThread(SnapshotQueue& pictures, PictureDesk& desk, double spacing, std::uint32_t run,
-                             std::function<void()> wake)
-    : pictures_(pictures), desk_(desk), coder_(spacing, run), wake_(std::move(wake)) {
+PictureThread::PictureThread(SnapshotQueue& pictures, PictureDesk& desk, PictureDemand& demand,
+                             double spacing, std::uint32_t run, std::function<void()> wake)
+    : pictures_(pictures), desk_(desk), demand_(demand), coder_(spacing, run), wake_(std::move(wake)) {
   thread_ = std::thread([this] { this->run(); });
 }
 
@@ -109,7 +109,10 @@ void PictureThread::run() {
   std::int64_t coded_ns = 0;
   std::vector<CodedPicture> coded;
   while (!pictures_.finished()) {
-    SnapshotPointer picture = pictures_.pop(std::chrono::milliseconds(50));
+    const bool watched = desk_.watched();
+    demand_.want(watched);
+    if (!watched) newest.reset();  // it would be an old one by the time that somebody looks
+    SnapshotPointer picture = pictures_.pop(std::chrono::milliseconds(watched ? 50 : 10));
     const std::int64_t now = steady_now_ns();
     const bool again = !picture;
     if (again) {

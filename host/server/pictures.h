@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "host/picture_demand.h"
 #include "host/server/picture_desk.h"
 #include "net/snapshot_queue.h"
 
@@ -54,8 +55,8 @@ class PictureCoder {
 /// late.
 class PictureThread {
  public:
-  PictureThread(SnapshotQueue& pictures, PictureDesk& desk, double spacing, std::uint32_t run,
-                std::function<void()> wake);
+  PictureThread(SnapshotQueue& pictures, PictureDesk& desk, PictureDemand& demand, double spacing,
+                std::uint32_t run, std::function<void()> wake);
   ~PictureThread();  ///< waits; the queue must be closed
   PictureThread(const PictureThread&) = delete;
   PictureThread& operator=(const PictureThread&) = delete;
@@ -66,6 +67,7 @@ class PictureThread {
   void run();
   SnapshotQueue& pictures_;
   PictureDesk& desk_;
+  PictureDemand& demand_;
   PictureCoder coder_;
   std::function<void()> wake_;
   std::atomic<double> seconds_{0.0};

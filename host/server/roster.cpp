@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "net/clock.h"
+#include "net/text/name.h"
 #include "net/wire/text.h"
 
 namespace slosh {
@@ -18,33 +19,52 @@ bool has(const std::vector<std::uint32_t>& grips, std::uint32_t grip) {
 
 }  // namespace
 
-std::string SeatTable::free_name(const std::string& wish) const {
+std::string SeatTable::free_name(const std::string& wish, const std::vector<std::string>& reserved) const {
   const auto taken = [&](const std::string& name) {
-    return std::any_of(seats_.begin(), seats_.end(),
-                       [&](const auto& entry) { return entry.second.name == name; });
+    const std::string looks = name_skeleton(name);
+    return std::find(reserved.begin(), reserved.end(), looks) != reserved.end() ||
+           std::any_of(seats_.begin(), seats_.end(),
+                       [&](const auto& entry) { return entry.second.looks == looks; });
   };
-  if (!wish.empty() && !taken(wish)) return wish;
-  const std::string base = wish.empty() ? "guest" : wire::clean_text(wish, wire::kMaxName - 5);
-  for (int i = wish.empty() ? 1 : 2;; ++i) {
+  const std::string clean = clean_name(wish);
+  if (!clean.empty() && !taken(clean)) return clean;
+  const std::string base = clean.empty() ? "guest" : clean_name(wire::clean_text(clean, wire::kMaxName - 5));
+  for (int i = clean.empty() ? 1 : 2;; ++i) {
     const std::string name = base + " " + std::to_string(i);
     if (!taken(name)) return name;
   }
 }
 
+std::size_t SeatTable::limit_of(wire::Role role) const {
+  return role == wire::Role::kParticipant ? limits_.participants : limits_.spectators;
+}
+
+std::size_t SeatTable::taken(wire::Role role, const Seat* but) const {
+  std::size_t taken = 0;
+  for (const auto& [number, seat] : seats_) {
+    const bool kept = role == wire::Role::kParticipant && !seat.left;
+    taken += &seat != but && seat.role == role && (seat.connected || kept) ? 1 : 0;
+  }
+  return taken;
+}
+
+std::string SeatTable::full(const KeyFingerprint& key, wire::Role role) {
+  if (taken(role, by_key(key)) < limit_of(role)) return {};
+  return role == wire::Role::kParticipant
+             ? "this world is full: no more hands find room. Try the link for watching"
+             : "this world is full: too many are watching. Try again later";
+}
+
+// Seats of people who are away must not keep others out: the one away longest goes, of hands only who left.
 bool SeatTable::make_room(wire::Role role) {
-  const std::size_t limit = role == wire::Role::kParticipant ? limits_.participants : limits_.spectators;
-  std::size_t connected = 0;
-  for (const auto& [number, seat] : seats_) connected += seat.connected && seat.role == role ? 1 : 0;
-  if (connected >= limit) return false;
-  // Seats of people who are away must not keep others out: the one away longest goes, one with grips last.
   std::size_t of_role = 0;
   const Seat* oldest = nullptr;
   for (const auto& [number, seat] : seats_) {
     of_role += seat.role == role ? 1 : 0;
-    if (seat.connected || (seat.role == role && !seat.grips.empty() && !seat.left)) continue;
+    if (seat.connected || (seat.role == wire::Role::kParticipant && !seat.left)) continue;
     if (!oldest || seat.away_since_ns < oldest->away_since_ns) oldest = &seat;
   }
-  const std::size_t away_limit = limit + 32;
+  const std::size_t away_limit = limit_of(role) + 32;
   if ((of_role >= away_limit || seats_.size() >= wire::kMaxPeers) && oldest) {
     seats_.erase(oldest->number);
     return true;
@@ -53,7 +73,8 @@ bool SeatTable::make_room(wire::Role role) {
 }
 
 SeatTable::Arrival SeatTable::arrive(const KeyFingerprint& key, wire::Role role, const std::string& wish,
-                                     const std::string& link) {
+                                     const std::string& link, const std::vector<std::string>& reserved) {
+  if (std::string problem = full(key, role); !problem.empty()) return {nullptr, false, std::move(problem)};
   if (Seat* seat = by_key(key)) {
     seat->link = link;
     seat->connected = true;
@@ -64,16 +85,12 @@ SeatTable::Arrival SeatTable::arrive(const KeyFingerprint& key, wire::Role role,
     }
     return {seat, true, {}};
   }
-  if (!make_room(role)) {
-    return {nullptr, false,
-            role == wire::Role::kParticipant
-                ? "this world is full: no more hands find room. Try the link for watching"
-                : "this world is full: too many are watching. Try again later"};
-  }
+  if (!make_room(role)) return {nullptr, false, "this world is full: too many come and go. Try again later"};
   Seat seat;
   while (seats_.contains(seat.number)) seat.number += 1;
   seat.key = key;
-  seat.name = free_name(wish);
+  seat.name = free_name(wish, reserved);
+  seat.looks = name_skeleton(seat.name);
   seat.role = role;
   seat.link = link;
   const std::uint32_t number = seat.number;
@@ -154,8 +171,9 @@ Seat* SeatTable::by_number(std::uint32_t number) {
 }
 
 Seat* SeatTable::by_name(const std::string& name) {
+  const std::string looks = name_skeleton(name);
   for (auto& [number, seat] : seats_) {
-    if (seat.name == name) return &seat;
+    if (seat.name == name || (!looks.empty() && seat.looks == looks)) return &seat;
   }
   return nullptr;
 }
@@ -169,9 +187,8 @@ wire::Roster SeatTable::message() const {
   wire::Roster roster;
   roster.peers.reserve(seats_.size());
   for (const auto& [number, seat] : seats_) {
-    wire::RosterEntry entry{number, seat.name, seat.role, seat.connected, {}};
-    if (!seat.left) entry.grips = seat.grips;
-    roster.peers.push_back(std::move(entry));
+    if (seat.left) continue;
+    roster.peers.push_back({number, seat.name, seat.role, seat.connected, seat.grips});
   }
   return roster;
 }
@@ -193,6 +210,7 @@ void SeatTable::restore(const std::vector<SeatRecord>& records, std::int64_t now
     seat.number = record.number;
     seat.key = record.key;
     seat.name = record.name;
+    seat.looks = name_skeleton(record.name);
     seat.role = record.role;
     seat.link = record.link;
     seat.connected = false;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "host/server/outcome.h"
 #include "net/quic/endpoint.h"
 #include "net/wire/messages.h"
 
@@ -18,7 +19,8 @@ constexpr double kSeatKept = 60.0;
 struct Seat {
   std::uint32_t number = 0;  ///< Roster's `peer`
   KeyFingerprint key{};
-  std::string name;  ///< no two are the same
+  std::string name;   ///< no two look alike
+  std::string looks;  ///< name_skeleton(name)
   wire::Role role = wire::Role::kSpectator;
   std::vector<std::uint32_t> grips;  ///< held, or waiting for the person to come back
   std::string link;                  ///< id of the link that it came by
@@ -52,12 +54,6 @@ struct RosterLimits {
   std::size_t spectators = 150;
 };
 
-/// What came of a wish. `text` is for the person who wished.
-struct Outcome {
-  bool granted = false;
-  std::string text;
-};
-
 /// One thread; knows no clock.
 class SeatTable {
  public:
@@ -69,10 +65,15 @@ class SeatTable {
     bool restored = false;  ///< the seat was kept, with its grips
     std::string text;
   };
-  /// Somebody comes in. `wish` is the name they would like, empty = one is found. A key that has a seat gets
-  /// it back, its grips too unless its role no longer allows any or, after a Bye, another took them.
-  Arrival arrive(const KeyFingerprint& key, wire::Role role, const std::string& wish,
-                 const std::string& link);
+  /// Would arrive() let this key in? Empty, or why not, in words. The limits hold for a key that has a seat
+  /// too: it finds room while its seat in that role is taken or kept, and else when there is room for
+  /// anybody.
+  std::string full(const KeyFingerprint& key, wire::Role role);
+  /// Somebody comes in. `wish` is the name they would like, empty = one is found; it is cleaned, and numbered
+  /// where it looks like another's or like one of `reserved` (skeletons). A key that has a seat gets it back,
+  /// its grips too unless its role no longer allows any or, after a Bye, another took them.
+  Arrival arrive(const KeyFingerprint& key, wire::Role role, const std::string& wish, const std::string& link,
+                 const std::vector<std::string>& reserved = {});
   void lose(Seat& seat, std::int64_t now_ns);   ///< contact is lost: all is kept for kSeatKept
   void leave(Seat& seat, std::int64_t now_ns);  ///< said Bye
   /// Removes who stayed away longer than kSeatKept; returns them.
@@ -86,7 +87,7 @@ class SeatTable {
   const Seat* holder(std::uint32_t grip) const;
   Seat* by_key(const KeyFingerprint& key);
   Seat* by_number(std::uint32_t number);
-  Seat* by_name(const std::string& name);
+  Seat* by_name(const std::string& name);  ///< also typed in letters that look the same
   const std::map<std::uint32_t, Seat>& seats() const { return seats_; }
   const std::vector<std::string>& grip_names() const { return grip_names_; }
   std::string grip_name(std::uint32_t grip) const;
@@ -97,7 +98,10 @@ class SeatTable {
   void restore(const std::vector<SeatRecord>& records, std::int64_t now_ns);
 
  private:
-  std::string free_name(const std::string& wish) const;
+  std::string free_name(const std::string& wish, const std::vector<std::string>& reserved) const;
+  std::size_t limit_of(wire::Role role) const;
+  /// Seats of this role that are taken, or kept for who lost contact with hands.
+  std::size_t taken(wire::Role role, const Seat* but) const;
   bool make_room(wire::Role role);
 
   std::vector<std::string> grip_names_;

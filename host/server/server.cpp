@@ -21,6 +21,14 @@ std::vector<std::string> grip_names(const Scene& scene) {
   return names;
 }
 
+LastingClock make_unix_clock(const ServerOptions& options) {
+  // A test's clock moves everything.
+  const auto or_own = [&](const LastingClock::Source& given, const LastingClock::Source& own) {
+    return given ? given : options.clock ? options.clock : own;
+  };
+  return LastingClock(or_own(options.unix_clock, unix_now_ns), or_own(options.elapsed_clock, boot_now_ns));
+}
+
 std::uint64_t random_number() {
   std::array<std::uint8_t, 8> raw{};
   fill_random(raw);
@@ -34,14 +42,18 @@ std::uint64_t random_number() {
 Server::Server(ServedWorld world, ServerOptions options)
     : world_(std::move(world)),
       options_(std::move(options)),
+      package_(std::make_shared<const wire::Bytes>(std::move(world_.package))),
+      unix_(make_unix_clock(options_)),
       seats_(grip_names(*world_.scene), options_.limits),
+      admission_(options_.admission),
       hands_(*world_.scene, *world_.channel),
-      bodies_(*world_.scene),
+      faults_told_(world_.scene->grips.size()),
+      states_(*world_.scene, *world_.channel, hands_, peers_, options_.bodies),
+      snapshots_(world_.desk),
+      switches_(world_.state, options_.hands_to_start),
       session_(random_number()) {
   if (!options_.clock) options_.clock = [] { return steady_now_ns(); };
-  next_hands_ns_.resize(world_.scene->grips.size());
   hands_.stand_all(now());
-  waits_for_hands_ = world_.state.paused && options_.hands_to_start > 0;
 }
 
 Server::~Server() {
@@ -50,8 +62,10 @@ Server::~Server() {
 
 void Server::use(Endpoint& endpoint) {
   endpoint_ = &endpoint;
-  mailbox_.set_wake([&endpoint] { endpoint.wake(); });
   endpoint.set_known_keys([this](const KeyFingerprint& key) { return seats_.by_key(key) != nullptr; });
+  states_.use(endpoint);
+  snapshots_.use(endpoint);
+  mailbox_.set_wake([&endpoint] { endpoint.wake(); });
 }
 
 void Server::set_identity(wire::Bytes private_key, std::uint16_t port) {
@@ -62,20 +76,12 @@ void Server::set_identity(wire::Bytes private_key, std::uint16_t port) {
 
 void Server::restore(const SessionState& state) {
   session_ = state.session;
+  unix_.not_before(state.seen_ns);
   links_.restore(state.links);
+  bans_.restore(state.bans);
   seats_.restore(state.seats, now());
   hands_.carry_on(world_.channel->bodies().front().bodies, now());
   session_dirty_ = true;
-}
-
-Peer* Server::find(ConnectionId connection) {
-  const auto found = peers_.find(connection);
-  return found == peers_.end() || found->second->gone ? nullptr : found->second.get();
-}
-
-Peer* Server::peer_of(std::uint32_t seat) {
-  const auto found = by_seat_.find(seat);
-  return found == by_seat_.end() ? nullptr : find(found->second);
 }
 
 void Server::notice_all(const std::string& text, bool participants_only, const Peer* but) {
@@ -84,28 +90,32 @@ void Server::notice_all(const std::string& text, bool participants_only, const P
 }
 
 void Server::on_connected(ConnectionId connection, const KeyFingerprint& key, const std::string& address) {
-  const std::string site = site_of(address);
-  std::size_t same = 0;
-  for (const auto& [id, peer] : peers_) same += !peer->gone && peer->site == site ? 1 : 0;
-  if (ending_ || same >= options_.connections_an_address) {
+  const auto turn_away = [&](ConnectionId whom, wire::RefusalCode code, const char* text) {
     past_.refused += 1;
-    const auto code = ending_ ? wire::RefusalCode::kEnding : wire::RefusalCode::kFull;
-    endpoint_->close(connection, close_code(code),
-                     ending_ ? "the host is ending" : "too many connections come from your address");
-    return;
+    endpoint_->close(whom, close_code(code), text);
+  };
+  if (ending_) return turn_away(connection, wire::RefusalCode::kEnding, "the host is ending");
+  const Admission::Verdict verdict =
+      admission_.arrive(connection, key, address, seats_.by_key(key) != nullptr, now());
+  if (!verdict.enters)
+    return turn_away(connection, wire::RefusalCode::kFull, "too many connections come from your address");
+  if (verdict.goes) {
+    if (Peer* idle = peers_.find(*verdict.goes)) {
+      part(*idle);
+      turn_away(idle->id, wire::RefusalCode::kBusy, "others came while nothing was said yet");
+    }
   }
   auto peer = std::make_unique<Peer>();
   peer->id = connection;
   peer->key = key;
   peer->address = address;
-  peer->site = site;
-  peer->connected_ns = peer->heard_ns = now();
-  peers_[connection] = std::move(peer);
+  peer->heard_ns = now();
+  peers_.add(std::move(peer));
 }
 
 void Server::on_stream(ConnectionId connection, std::int64_t stream, std::span<const std::uint8_t> bytes,
                        bool end) {
-  Peer* peer = find(connection);
+  Peer* peer = peers_.find(connection);
   if (!peer) return;
   if (peer->control_stream < 0 && stream % 4 == 0) peer->control_stream = stream;
   if (stream != peer->control_stream)
@@ -120,7 +130,7 @@ void Server::on_stream(ConnectionId connection, std::int64_t stream, std::span<c
 }
 
 void Server::on_closed(ConnectionId connection, const CloseReason& reason) {
-  Peer* peer = find(connection);
+  Peer* peer = peers_.find(connection);
   if (!peer) return;
   if (peer->in) say(name_of(*peer) + ": connection closed: " + reason.text);
   lose(*peer, Parting::kLostContact);
@@ -150,26 +160,28 @@ void Server::say_of_stranger(const std::string& line) {
 }
 
 void Server::let_go_all(const Seat& seat) {
-  for (const std::uint32_t grip : seat.grips) hands_.let_go(grip, now());
-  if (seat.grips.empty()) return;
   wire::Hands hands;
-  for (const std::uint32_t grip : seat.grips)
+  for (const std::uint32_t grip : seat.grips) {
+    hands_.let_go(grip, now());
     hands.hands.push_back({grip, now(), stand_pose(*world_.scene, grip), Twist{}, false});
-  const auto bytes = std::make_shared<const wire::Bytes>(wire::datagram(hands));
-  for (auto& [id, other] : peers_) {
-    if (other->in && !other->gone && other->participant && other->seat != seat.number)
-      endpoint_->send_datagram(id, Priority::kPose, bytes);
   }
+  states_.let_go(seat.number, hands);
+}
+
+void Server::part(Peer& peer) {
+  peer.gone = true;
+  past_.bytes_sent += endpoint_->stats(peer.id).bytes_sent;
+  admission_.forget(peer.id);
+  snapshots_.forget(peer.id);
 }
 
 // The connection is over for us. The seat stays for a while; its grips wait only for who lost contact.
 void Server::lose(Peer& peer, Parting parting) {
   if (peer.gone) return;
-  peer.gone = true;
-  past_.bytes_sent += endpoint_->stats(peer.id).bytes_sent;
+  part(peer);
   if (parting == Parting::kLeft) endpoint_->close(peer.id, 0, "goodbye");
   if (!peer.in) return;
-  by_seat_.erase(peer.seat);
+  peers_.stand_up(peer.seat);
   Seat* seat = seats_.by_number(peer.seat);
   if (!seat) return;
   let_go_all(*seat);
@@ -189,20 +201,35 @@ void Server::lose(Peer& peer, Parting parting) {
 void Server::turn() {
   mailbox_.run_all();
   if (now() - checked_ns_ >= kCheckEvery) check_patience();
-  send_bodies();
-  send_pictures();
-  judge_links();
+  states_.send_bodies(seats_, now());
+  snapshots_.send(now());
+  snapshots_.judge(now());
   if (roster_dirty_ && now() - roster_sent_ns_ >= kRosterEvery) {
     roster_dirty_ = false;
     roster_sent_ns_ = now();
-    send_all(seats_.message());
+    send_roster();
   }
   if (session_dirty_) save_session();
-  sweep();
+  peers_.sweep();
+}
+
+void Server::send_roster() {
+  const wire::Roster roster = seats_.message();
+  const wire::RosterChange change = roster_told_.change(roster);
+  std::vector<Peer*> whole;
+  std::vector<Peer*> changes;
+  peers_.each_in(
+      [&](Peer& peer) { (peer.agreed & wire::kRosterChanges ? changes : whole).push_back(&peer); });
+  // Who reads too slowly goes, which others are told by the next change.
+  const bool nothing = change.changed.empty() && change.gone.empty();
+  for (Peer* peer : whole) send(*peer, roster);
+  for (Peer* peer : changes) {
+    if (!nothing) send(*peer, change);
+  }
 }
 
 std::int64_t Server::next_turn_ns() const {
-  if (!leaving_.empty()) return now();
+  if (snapshots_.sending()) return now();
   std::int64_t next = now() + kLongestNap;
   if (roster_dirty_) next = std::min(next, roster_sent_ns_ + kRosterEvery);
   return next;
@@ -212,13 +239,12 @@ void Server::check_patience() {
   checked_ns_ = now();
   if (strangers_unsaid_ > 0 && now() >= stranger_line_due_ns_)
     say_of_stranger(std::to_string(std::exchange(strangers_unsaid_, 0)) + " more strangers were refused");
-  for (auto& [id, peer] : peers_) {
-    if (peer->gone) continue;
-    if (!peer->in) {
-      if (now() - peer->connected_ns > to_nanoseconds(options_.hello_patience))
-        refuse(*peer, wire::RefusalCode::kTimedOut, "nothing was said for too long after connecting");
-      continue;
-    }
+  for (const ConnectionId id : admission_.late(now())) {
+    if (Peer* peer = peers_.find(id))
+      refuse(*peer, wire::RefusalCode::kTimedOut, "nothing was said for too long after connecting");
+  }
+  for (const auto& [id, peer] : peers_.all()) {
+    if (peer->gone || !peer->in) continue;
     if (!peer->scene_sent) send_scene(*peer);
     const Seat& seat = *seats_.by_number(peer->seat);
     const bool quiet = now() - peer->heard_ns > to_nanoseconds(options_.silence);
@@ -231,6 +257,7 @@ void Server::check_patience() {
       notice_all(seat.name + " is heard again", false, peer.get());
     }
   }
+  if (bans_.expire(unix_now())) session_dirty_ = true;
   for (const Seat& seat : seats_.expire(now())) {
     for (const std::uint32_t grip : seat.grips) {
       if (!seats_.holder(grip)) hands_.let_go(grip, now(), true);
@@ -242,16 +269,10 @@ void Server::check_patience() {
   }
 }
 
-// Only here connections are forgotten, so that nobody's ground goes while he stands on it.
-void Server::sweep() {
-  for (auto at = peers_.begin(); at != peers_.end();) {
-    at = at->second->gone ? peers_.erase(at) : std::next(at);
-  }
-}
-
 void Server::save_session() {
   session_dirty_ = false;
-  SessionState state{private_key_, session_, port_, links_.links(), seats_.records()};
+  SessionState state{private_key_,     session_,     port_,     links_.links(),
+                     seats_.records(), bans_.bans(), unix_now()};
   wire::Bytes blob = wire::encoded(state);
   const std::lock_guard lock(session_mutex_);
   session_blob_ = std::move(blob);
@@ -264,25 +285,41 @@ wire::Bytes Server::session_blob() const {
 
 void Server::end(const std::string& why) {
   ending_ = true;
-  for (auto& [id, peer] : peers_) {
+  for (const auto& [id, peer] : peers_.all()) {
     if (peer->gone) continue;
-    peer->gone = true;
-    past_.bytes_sent += endpoint_->stats(id).bytes_sent;
+    part(*peer);
     if (peer->control_stream >= 0)
       send_bytes(*endpoint_, *peer, wire::control(wire::Refused{wire::RefusalCode::kEnding, why}));
     endpoint_->close(id, close_code(wire::RefusalCode::kEnding), why);
   }
-  by_seat_.clear();
+  peers_.all_stand_up();
   for (std::uint32_t grip = 0; grip < hands_.size(); ++grip) hands_.let_go(grip, now());
-  sweep();
+  peers_.sweep();
 }
 
 void Server::on_start(const World&, const HostState& state) {
-  mailbox_.post([this, state] { world_.state = state; });
+  mailbox_.post([this, state] { switches_.told(state); });
 }
 
 void Server::after_change(const World&, const HostCommand& change, const HostState& state) {
   mailbox_.post([this, change, state] { world_changed(change, state); });
+}
+
+void Server::on_refused_pose(std::uint32_t grip, PoseFault fault) {
+  const std::uint32_t bit = 1u << static_cast<unsigned>(fault);
+  if (grip >= faults_told_.size() || (faults_told_[grip].fetch_or(bit) & bit) != 0) return;
+  mailbox_.post([this, grip, fault] {
+    const Seat* holder = seats_.holder(grip);
+    Peer* peer = holder ? peers_.of_seat(holder->number) : nullptr;
+    if (peer)
+      send(*peer,
+           wire::Notice{"your poses for " + seats_.grip_name(grip) + " are not used: " + words_of(fault)});
+  });
+}
+
+int Server::tier_of(std::uint32_t seat) const {
+  const Peer* peer = peers_.of_seat(seat);
+  return peer ? snapshots_.tier_of(peer->id) : -1;
 }
 
 ServerFigures Server::figures() const {
@@ -308,7 +345,9 @@ ServerFigures Server::figures() const {
     if (!figures.who.empty()) figures.who += ", ";
     figures.who += std::to_string(figures.spectators) + " watching";
   }
-  for (const auto& [id, peer] : peers_) {
+  figures.frames_sent = snapshots_.frames_sent();
+  figures.frames_withheld = snapshots_.frames_withheld();
+  for (const auto& [id, peer] : peers_.all()) {
     if (!peer->gone && endpoint_) figures.bytes_sent += endpoint_->stats(id).bytes_sent;
   }
   return figures;

@@ -1,43 +1,48 @@
 // The host's side of the network: who may join, who holds what, what is sent to whom.
 //
 // One thread owns it, the network's: it calls everything here that does not say "any thread". It waits for
-// nobody: the world answers through the mailbox, pictures come coded from the desk.
+// nobody: the world answers through the mailbox, snapshots come coded from the desk. Each part has a class
+// with its own state: the door (Admission), who sits where (SeatTable), what moves the grips (HandTable),
+// what goes out in datagrams (StateSender, SnapshotSender), the world's switches (WorldSwitches). Here is
+// what joins them.
 #pragma once
 
-#include <deque>
+#include <atomic>
 #include <functional>
-#include <map>
 #include <memory>
 #include <mutex>
-#include <random>
-#include <set>
 #include <string>
 #include <vector>
 
 #include "host/host.h"
-#include "host/server/body_parts.h"
+#include "host/server/admission.h"
+#include "host/server/bans.h"
 #include "host/server/console.h"
 #include "host/server/hands.h"
+#include "host/server/lasting_clock.h"
 #include "host/server/links.h"
 #include "host/server/mailbox.h"
-#include "host/server/peer.h"
+#include "host/server/peer_table.h"
 #include "host/server/picture_desk.h"
 #include "host/server/roster.h"
 #include "host/server/session_state.h"
+#include "host/server/snapshot_sender.h"
+#include "host/server/state_sender.h"
+#include "host/server/world_switches.h"
 #include "net/quic/endpoint.h"
+#include "net/wire/roster_change.h"
 
 namespace slosh {
 
 struct ServerOptions {
   RosterLimits limits;
-  std::size_t connections_an_address = 256;
-  double hello_patience = 3.0;          ///< s until a connection must have said Hello
-  double silence = 0.5;                 ///< s without a datagram after which a holder counts as lost
-  double participant_bodies = 500.0;    ///< Hz at most
-  double spectator_bodies = 60.0;       ///< Hz at most
+  AdmissionLimits admission;
+  double silence = 0.5;  ///< s without a datagram after which a holder counts as lost
+  BodyRates bodies;
   bool lock_parameters = false;         ///< only the console sets viscosity and gravity
   std::size_t hands_to_start = 1;       ///< grips that must be taken before the world starts; 0 = it runs
-  std::int64_t unix_offset_ns = 0;      ///< Unix time − clock
+  LastingClock::Source unix_clock;      ///< Unix time; empty = `clock` where that is given, else the system's
+  LastingClock::Source elapsed_clock;   ///< goes on while suspended; empty = likewise
   std::function<std::int64_t()> clock;  ///< ns; empty = the steady clock
   std::function<void(const std::string&)> tell;  ///< lines for whoever runs the host; may be empty
 };
@@ -45,7 +50,7 @@ struct ServerOptions {
 /// The world as the server sees it.
 struct ServedWorld {
   const Scene* scene = nullptr;  ///< must outlive the server
-  wire::Bytes package;           ///< pack_scene(…, kSeen)
+  wire::Bytes package;           ///< pack_scene(…, kSeen); the server keeps one copy for all connections
   Channel* channel = nullptr;    ///< the server writes poses and reads bodies
   PictureDesk* desk = nullptr;
   std::function<void(const HostCommand&, HostAnswer)> command;  ///< Host::post; answers on any thread
@@ -90,11 +95,13 @@ class Server final : public EndpointEvents, public HostTap {
   void end(const std::string& why);
   bool empty() const { return peers_.empty(); }
 
-  /// One line of the console to its answer, which may have several lines and ends without a line feed.
-  std::string command(const std::string& line);
+  /// One line of the console to what came of it: `granted` is false where nothing was done or found.
+  Outcome command(const std::string& line);
   bool quit_asked() const { return quit_asked_; }
 
   LinkRegistry& links() { return links_; }
+  /// Unix time as links and bans go by it, ns.
+  std::int64_t unix_now() const { return unix_.now(); }
   const SeatTable& seats() const { return seats_; }
   ServerFigures figures() const;
   std::uint64_t session() const { return session_; }
@@ -120,12 +127,10 @@ class Server final : public EndpointEvents, public HostTap {
   void on_start(const World& world, const HostState& state) override;
   void after_publish() override { mailbox_.wake(); }
   void after_change(const World& world, const HostCommand& change, const HostState& state) override;
+  void on_refused_pose(std::uint32_t grip, PoseFault fault) override;
 
  private:
   std::int64_t now() const { return options_.clock(); }
-  std::int64_t unix_now() const { return now() + options_.unix_offset_ns; }
-  Peer* find(ConnectionId connection);
-  Peer* peer_of(std::uint32_t seat);
   const std::string& name_of(const Peer& peer) { return seats_.by_number(peer.seat)->name; }
   void say(const std::string& line) {
     if (options_.tell) options_.tell(line);
@@ -140,7 +145,12 @@ class Server final : public EndpointEvents, public HostTap {
   /// How somebody went.
   enum class Parting { kLostContact, kLeft, kPutOut };
   void lose(Peer& peer, Parting parting);
+  /// Nothing more is sent or taken.
+  void part(Peer& peer);
+  /// The connection that a person had before this one goes without a word to the others.
+  void replace(const Seat& seat);
   void let_go_all(const Seat& seat);
+  void send_roster();
   void roster_changed() { roster_dirty_ = session_dirty_ = true; }
 
   // server_control.cpp
@@ -156,26 +166,21 @@ class Server final : public EndpointEvents, public HostTap {
   void answer(Peer& peer, std::uint32_t request, bool granted, const std::string& text);
   void world_changed(const HostCommand& change, const HostState& state);
   void start_if_held();
-  void note_wish(const HostCommand& command);
-  wire::WorldInfo world_info() const;
 
   // server_traffic.cpp
   void handle(Peer& peer, const wire::Poses& poses);
   void handle(Peer& peer, const wire::ClockPing& ping);
   void handle(Peer& peer, const wire::SnapshotFeedback& feedback);
   void claimed(Peer& peer, std::uint32_t grip);
-  void forward(Peer& from, const wire::PoseSample& sample);
-  void send_bodies();
-  void send_pictures();
-  std::size_t send_picture(Peer& peer, const CodedPicture& picture);
-  void send_mended(const CodedPicture& picture);
-  void judge_links();
-  void watch(Peer& peer, int tier);
-  bool has_room(Peer& peer, std::size_t pieces);
-  void send_piece(Peer& peer, const Piece& piece);
 
   // server_console.cpp
-  std::string run(const ConsoleCommand& command);
+  Outcome run(const ConsoleCommand& command);
+  Outcome make_link(const ConsoleCommand& command);
+  Outcome release(const std::string& grip_text);
+  Outcome kick(const ConsoleCommand& command);
+  std::string bans_text() const;
+  /// The seat is given up, its grips are let go, its connection is closed.
+  void put_out(std::uint32_t number, wire::RefusalCode code, const std::string& text);
   std::string who_text() const;
   std::string links_text() const;
   std::string status_text() const;
@@ -183,36 +188,32 @@ class Server final : public EndpointEvents, public HostTap {
   void close_link(const std::string& id);
 
   void check_patience();
-  void sweep();
 
   ServedWorld world_;
   ServerOptions options_;
   Endpoint* endpoint_ = nullptr;
+  SharedBytes package_;
+  mutable LastingClock unix_;
   LinkRegistry links_;
+  BanList bans_;
   SeatTable seats_;
+  PeerTable peers_;
+  Admission admission_;
   HandTable hands_;
-  BodyParts bodies_;
+  StateSender states_;
+  SnapshotSender snapshots_;
+  WorldSwitches switches_;
   Mailbox mailbox_;
+  /// One a grip, bits by PoseFault: kinds that its holder was told of. The host's thread sets them, ours
+  /// clears.
+  std::vector<std::atomic<std::uint32_t>> faults_told_;
   std::uint64_t session_ = 0;
   std::uint16_t port_ = 0;
   wire::Bytes private_key_;
-
-  std::map<ConnectionId, std::unique_ptr<Peer>> peers_;
-  std::map<std::uint32_t, ConnectionId> by_seat_;
-  std::vector<std::int64_t> next_hands_ns_;  // one a grip: when it may be passed on again
-  PictureOrder order_;
-  struct LeavingPicture {
-    CodedPicture picture;
-    ConnectionId last = 0;  // the last one that got it
-  };
-  std::deque<LeavingPicture> leaving_;
+  wire::RosterTold roster_told_;
   bool roster_dirty_ = false;
   std::int64_t roster_sent_ns_ = 0;
-  std::int64_t bodies_sent_ns_ = 0;
-  bool bodies_stale_ = true;
-  std::int64_t judged_ns_ = 0;
   std::int64_t checked_ns_ = 0;
-  bool waits_for_hands_ = false;
   bool quit_asked_ = false;
   bool ending_ = false;
   std::int64_t stranger_line_due_ns_ = 0;

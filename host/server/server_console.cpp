@@ -4,35 +4,37 @@
 #include "host/server/server.h"
 #include "host/server/server_send.h"
 #include "net/clock.h"
+#include "net/text/name.h"
 
 namespace slosh {
 
-std::string Server::command(const std::string& line) {
+Outcome Server::command(const std::string& line) {
   const Result<ConsoleCommand> parsed = parse_console(line);
-  return parsed ? run(parsed.value()) : parsed.error().text();
+  return parsed ? run(parsed.value()) : Outcome{false, parsed.error().text()};
 }
 
-std::string Server::run(const ConsoleCommand& command) {
+Outcome Server::run(const ConsoleCommand& command) {
   const auto world = [&](HostCommand what) {
-    note_wish(what);
+    switches_.note_wish(what);
     world_.command(what, [this](const Result<bool>& done) {
       if (done) return;
       const std::string problem = done.error().text();
       mailbox_.post([this, problem] { say(problem); });
     });
-    return std::string("asked for");
+    return Outcome{true, "asked for"};
   };
+  const Outcome no_link{false, "there is no link '" + command.text + "'. `links` lists them"};
   switch (command.verb) {
     case ConsoleVerb::kNothing:
-      return {};
+      return {true, {}};
     case ConsoleVerb::kHelp:
-      return console_help();
+      return {true, console_help()};
     case ConsoleVerb::kWho:
-      return who_text();
+      return {true, who_text()};
     case ConsoleVerb::kLinks:
-      return links_text();
+      return {true, links_text()};
     case ConsoleVerb::kStatus:
-      return status_text();
+      return {true, status_text()};
     case ConsoleVerb::kPause:
       return world({HostAction::kPause});
     case ConsoleVerb::kContinue:
@@ -41,67 +43,94 @@ std::string Server::run(const ConsoleCommand& command) {
       return world({HostAction::kReset});
     case ConsoleVerb::kQuit:
       quit_asked_ = true;
-      return "the session ends";
-    case ConsoleVerb::kLink: {
-      const wire::Role role = command.watch ? wire::Role::kSpectator : wire::Role::kParticipant;
-      const auto in_use = [this](const std::string& id) {
-        return std::any_of(seats_.seats().begin(), seats_.seats().end(),
-                           [&](const auto& entry) { return entry.second.link == id; });
-      };
-      const LinkRecord* link = links_.create(role, command.text, unix_now(), command.lifetime_ns, in_use);
-      if (!link) return "there are " + std::to_string(kMaxLinks) + " links already. Revoke some first";
-      session_dirty_ = true;
-      return line_of(*link);
-    }
-    case ConsoleVerb::kRevoke: {
-      if (!links_.revoke(command.text)) return "there is no link '" + command.text + "'. `links` lists them";
+      return {true, "the session ends"};
+    case ConsoleVerb::kLink:
+      return make_link(command);
+    case ConsoleVerb::kRevoke:
+      if (!links_.revoke(command.text)) return no_link;
       close_link(command.text);
       session_dirty_ = true;
-      return command.text + " is revoked, and whoever came in by it is out";
-    }
+      return {true, command.text + " is revoked, and whoever came in by it is out"};
     case ConsoleVerb::kExpire: {
       const std::int64_t at = command.lifetime_ns > 0 ? unix_now() + command.lifetime_ns : 0;
-      if (!links_.set_expiry(command.text, at))
-        return "there is no link '" + command.text + "'. `links` lists them";
+      if (!links_.set_expiry(command.text, at)) return no_link;
       session_dirty_ = true;
-      return command.text + (at == 0 ? " never expires"
-                                     : " admits nobody new in " + duration_text(command.lifetime_ns) +
-                                           "; who is in stays. Revoke it to end that too");
+      return {true, command.text + (at == 0 ? " never expires"
+                                            : " admits nobody new in " + duration_text(command.lifetime_ns) +
+                                                  "; who is in stays. Revoke it to end that too")};
     }
-    case ConsoleVerb::kRelease: {
-      const std::optional<std::size_t> grip = index_named(world_.scene->grips, command.text);
-      if (!grip)
-        return "there is no grip '" + command.text + "'. There are: " + names_of(world_.scene->grips);
-      const auto index = static_cast<std::uint32_t>(*grip);
-      const Seat* holder = seats_.holder(index);
-      if (!holder) return seats_.grip_name(index) + " is free already";
-      seats_.release(*seats_.by_number(holder->number), index);
-      hands_.let_go(index, now(), true);
-      roster_changed();
-      const std::string text = "the host took " + seats_.grip_name(index) + " from " + holder->name;
-      notice_all(text);
-      return text;
-    }
-    case ConsoleVerb::kKick: {
-      Seat* seat = seats_.by_name(command.text);
-      if (!seat) return "nobody here is called '" + command.text + "'. `who` lists them";
-      const std::uint32_t number = seat->number;
-      for (const std::uint32_t grip : seat->grips) hands_.let_go(grip, now(), true);
-      if (Peer* peer = peer_of(number))
-        refuse(*peer, wire::RefusalCode::kEnding, "the host closed your connection");
-      seats_.remove(number);
-      roster_changed();
-      return command.text + " is out. Revoke their link too if they are not to come back";
-    }
+    case ConsoleVerb::kRelease:
+      return release(command.text);
+    case ConsoleVerb::kKick:
+      return kick(command);
+    case ConsoleVerb::kUnban:
+      if (!bans_.lift(name_skeleton(command.text)))
+        return {false, "nobody called '" + command.text + "' is kept out. `who` lists them"};
+      session_dirty_ = true;
+      return {true, command.text + " may come in again"};
     case ConsoleVerb::kSet: {
       if (command.gravity) return world({HostAction::kGravityScale, 0, command.value});
       const auto& fluids = world_.scene->fluids;
       const std::optional<std::size_t> fluid = fluid_meant(fluids, command.text);
-      if (!fluid) return "say which fluid: " + names_of(fluids);
+      if (!fluid) return {false, "say which fluid: " + names_of(fluids)};
       return world({HostAction::kViscosity, static_cast<std::uint32_t>(*fluid), command.value});
     }
   }
   return {};
+}
+
+Outcome Server::make_link(const ConsoleCommand& command) {
+  const wire::Role role = command.watch ? wire::Role::kSpectator : wire::Role::kParticipant;
+  const auto in_use = [this](const std::string& id) {
+    return std::any_of(seats_.seats().begin(), seats_.seats().end(),
+                       [&](const auto& entry) { return entry.second.link == id; });
+  };
+  const std::string name = clean_name(command.text);
+  if (name.empty() && !command.text.empty())
+    return {false,
+            "'" + command.text + "' is no name that can be told from others. Letters and digits make one"};
+  const LinkRecord* link = links_.create(role, name, unix_now(), command.lifetime_ns, in_use);
+  if (!link) return {false, "there are " + std::to_string(kMaxLinks) + " links already. Revoke some first"};
+  session_dirty_ = true;
+  return {true, line_of(*link)};
+}
+
+Outcome Server::release(const std::string& grip_text) {
+  const std::optional<std::size_t> grip = index_named(world_.scene->grips, grip_text);
+  if (!grip) return {false, no_grip_text(grip_text, world_.scene->grips)};
+  const auto index = static_cast<std::uint32_t>(*grip);
+  const Seat* holder = seats_.holder(index);
+  if (!holder) return {false, seats_.grip_name(index) + " is free already"};
+  seats_.release(*seats_.by_number(holder->number), index);
+  hands_.let_go(index, now(), true);
+  roster_changed();
+  const std::string text = "the host took " + seats_.grip_name(index) + " from " + holder->name;
+  notice_all(text);
+  return {true, text};
+}
+
+Outcome Server::kick(const ConsoleCommand& command) {
+  const Seat* seat = seats_.by_name(command.text);
+  if (!seat) return {false, "nobody here is called '" + command.text + "'. `who` lists them"};
+  const std::string name = seat->name;
+  const bool banned = command.lifetime_ns > 0;
+  const std::string time = duration_text(command.lifetime_ns);
+  if (banned) bans_.add(seat->key, name, unix_now() + command.lifetime_ns);
+  session_dirty_ = true;
+  put_out(seat->number, banned ? wire::RefusalCode::kBanned : wire::RefusalCode::kEnding,
+          banned ? "the host has put you out for " + time : "the host closed your connection");
+  return {true, banned ? name + " is out, and their key is kept out for " + time
+                       : name +
+                             " is out. `kick NAME for 10m` also keeps their key out, and revoking their link "
+                             "everybody who comes by it"};
+}
+
+void Server::put_out(std::uint32_t number, wire::RefusalCode code, const std::string& text) {
+  const Seat* seat = seats_.by_number(number);
+  for (const std::uint32_t grip : seat->grips) hands_.let_go(grip, now(), true);
+  if (Peer* peer = peers_.of_seat(number)) refuse(*peer, code, text);
+  seats_.remove(number);
+  roster_changed();
 }
 
 void Server::close_link(const std::string& id) {
@@ -109,14 +138,8 @@ void Server::close_link(const std::string& id) {
   for (const auto& [number, seat] : seats_.seats()) {
     if (seat.link == id) out.push_back(number);
   }
-  for (const std::uint32_t number : out) {
-    const Seat* seat = seats_.by_number(number);
-    for (const std::uint32_t grip : seat->grips) hands_.let_go(grip, now(), true);
-    if (Peer* peer = peer_of(number))
-      refuse(*peer, wire::RefusalCode::kRevoked, "the host has revoked the link that you came by");
-    seats_.remove(number);
-  }
-  roster_changed();
+  for (const std::uint32_t number : out)
+    put_out(number, wire::RefusalCode::kRevoked, "the host has revoked the link that you came by");
 }
 
 std::string Server::line_of(const LinkRecord& link) const {
@@ -143,7 +166,8 @@ std::string Server::line_of(const LinkRecord& link) const {
 std::string Server::links_text() const {
   std::string text;
   for (const LinkRecord& link : links_.links()) text.append(text.empty() ? "" : "\n").append(line_of(link));
-  return text.empty() ? "there are no links. `link` makes one" : text;
+  if (text.empty()) text = "there are no links. `link` makes one";
+  return text + bans_text();
 }
 
 std::string Server::who_text() const {
@@ -153,30 +177,36 @@ std::string Server::who_text() const {
     std::string line = seat.name + ", " + wire::kRoleNames[static_cast<std::size_t>(seat.role)];
     for (const std::uint32_t grip : seat.grips) line += ", " + seats_.grip_name(grip);
     if (!seat.connected) line += ", away for " + duration_text(now() - seat.away_since_ns);
-    const auto found = by_seat_.find(number);
-    if (found != by_seat_.end() && endpoint_) {
-      const ConnectionStats stats = endpoint_->stats(found->second);
-      const auto& peer = peers_.at(found->second);
-      const PictureSink& sink = peer->pictures;
+    const Peer* peer = peers_.of_seat(number);
+    if (peer && endpoint_) {
+      const ConnectionStats stats = endpoint_->stats(peer->id);
       line += ", " + peer->address + ", " + std::to_string(static_cast<int>(1e3 * stats.smoothed_rtt + 0.5)) +
-              " ms, gets " +
-              (sink.wanted ? kTiers[static_cast<std::size_t>(sink.control.tier())].words : "no particles");
+              " ms, gets " + snapshots_.words_of(peer->id);
     }
     text.append(text.empty() ? "" : "\n").append(line);
   }
-  return text.empty() ? "nobody is here" : text;
+  return (text.empty() ? "nobody is here" : text) + bans_text();
+}
+
+std::string Server::bans_text() const {
+  std::string text;
+  for (const BanRecord& ban : bans_.bans()) {
+    if (ban.until_ns > unix_now())
+      text += "\n" + ban.name + ", kept out for another " + duration_text(ban.until_ns - unix_now());
+  }
+  return text;
 }
 
 std::string Server::status_text() const {
   const ServerFigures f = figures();
-  const HostState& state = world_.state;
+  const HostState& state = switches_.state();
   char text[400];
   std::snprintf(text, sizeof text,
                 "%s, run %u, gravity × %.3g; %zu with hands, %zu watching; %.1f MB sent, %llu refused, %llu "
                 "damaged datagrams, %llu beyond limits",
-                waits_for_hands_ ? "waiting for hands"
-                : state.paused   ? "paused"
-                                 : "running",
+                switches_.waits_for_hands() ? "waiting for hands"
+                : state.paused              ? "paused"
+                                            : "running",
                 state.run, state.gravity_scale, f.participants, f.spectators,
                 1e-6 * static_cast<double>(f.bytes_sent), static_cast<unsigned long long>(f.refused),
                 static_cast<unsigned long long>(f.datagram_faults),

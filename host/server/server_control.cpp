@@ -24,15 +24,18 @@ wire::Fault Server::control_message(Peer& peer, std::uint64_t type, wire::ByteVi
     refuse(peer, wire::RefusalCode::kTooMuch, "you asked for more than anybody could want");
     return {};
   }
-  return wire::dispatch(wire::PeerControl{}, type, payload, [&]<class M>(const M& message) -> wire::Fault {
-    if constexpr (kIsRequest<M>) {
-      if (too_many) {
-        answer(peer, message.request, false, "too many requests at once; wait a moment");
-        return {};
-      }
-    }
-    return handle(peer, message);
-  });
+  return wire::dispatch(
+      wire::PeerControl{}, type, payload,
+      [&]<class M>(const M& message) -> wire::Fault {
+        if constexpr (kIsRequest<M>) {
+          if (too_many) {
+            answer(peer, message.request, false, "too many requests at once; wait a moment");
+            return {};
+          }
+        }
+        return handle(peer, message);
+      },
+      peer.agreed);
 }
 
 wire::Fault Server::handle(Peer& peer, const wire::Hello& hello) {
@@ -40,6 +43,11 @@ wire::Fault Server::handle(Peer& peer, const wire::Hello& hello) {
     refuse(peer, wire::RefusalCode::kVersion,
            "the host speaks version " + std::to_string(wire::kProtocolVersion) + " and you speak version " +
                std::to_string(hello.version) + ". Both need the same slosh");
+    return {};
+  }
+  if (const std::int64_t until = bans_.until(peer.key, unix_now()); until != 0) {
+    refuse(peer, wire::RefusalCode::kBanned,
+           "the host has put you out for another " + duration_text(until - unix_now()));
     return {};
   }
   const LinkVerdict verdict = links_.check(hello.token, peer.key, unix_now());
@@ -51,70 +59,74 @@ wire::Fault Server::handle(Peer& peer, const wire::Hello& hello) {
     refuse(peer, verdict.code, verdict.text);
     return {};
   }
-  if (kept) {
-    if (Peer* before = peer_of(kept->number)) {
-      before->gone = true;  // without a word to the others: the person is still here
-      let_go_all(*kept);
-      by_seat_.erase(kept->number);
-      const std::string text = "you came again from elsewhere, and this connection is closed";
-      if (before->control_stream >= 0) {
-        send_bytes(*endpoint_, *before, wire::control(wire::Refused{wire::RefusalCode::kReplaced, text}));
-      }
-      endpoint_->close(before->id, close_code(wire::RefusalCode::kReplaced), text);
-    }
+  if (const std::string problem = seats_.full(peer.key, link->role); !problem.empty()) {
+    refuse(peer, wire::RefusalCode::kFull, problem);
+    return {};
   }
+  if (kept) replace(*kept);
   const std::string id = link->id;
   const std::string& wish = link->name.empty() ? hello.name : link->name;
-  const SeatTable::Arrival arrival = seats_.arrive(peer.key, link->role, wish, id);
+  const SeatTable::Arrival arrival =
+      seats_.arrive(peer.key, link->role, wish, id, links_.reserved_names(id, unix_now()));
   if (!arrival.seat) {
     refuse(peer, wire::RefusalCode::kFull, arrival.text);
     return {};
   }
   links_.note_use(id, peer.key);
   session_dirty_ = true;
-  const bool film = hello.pictures == wire::PictureWish::kFilm;
-  peer.pictures.wanted = hello.pictures != wire::PictureWish::kNone;
-  peer.pictures.control = link->role == wire::Role::kParticipant
-                              ? TierControl(kAllParticles, film ? kAllParticles : kAllParticles + 1)
-                              : TierControl(film ? kAllParticles : kShell, kShell);
+  snapshots_.add(peer.id, link->role, hello.pictures);
+  peer.agreed = hello.capabilities & wire::kOurCapabilities;
   welcome(peer, *arrival.seat, arrival.restored);
   return {};
 }
 
+void Server::replace(const Seat& seat) {
+  Peer* before = peers_.of_seat(seat.number);
+  if (!before) return;
+  part(*before);
+  let_go_all(seat);
+  peers_.stand_up(seat.number);
+  const std::string text = "you came again from elsewhere, and this connection is closed";
+  if (before->control_stream >= 0)
+    send_bytes(*endpoint_, *before, wire::control(wire::Refused{wire::RefusalCode::kReplaced, text}));
+  endpoint_->close(before->id, close_code(wire::RefusalCode::kReplaced), text);
+}
+
 void Server::welcome(Peer& peer, Seat& seat, bool restored) {
+  admission_.admit(peer.id);
+  endpoint_->admit(peer.id);
   peer.in = true;
-  peer.seat = seat.number;
+  peers_.sit(peer, seat.number);
   peer.participant = seat.role == wire::Role::kParticipant;
   peer.heard_ns = now();
-  by_seat_[seat.number] = peer.id;
   past_.joins += 1;
-  endpoint_->admit(peer.id);
   // A program that was started anew numbers its samples anew.
-  for (const std::uint32_t grip : seat.grips) hands_.taken(grip, now());
+  for (const std::uint32_t grip : seat.grips) {
+    hands_.taken(grip, now());
+    faults_told_[grip] = 0;
+  }
 
   wire::Welcome message;
   message.peer = seat.number;
   message.role = seat.role;
   message.name = seat.name;
   message.session = session_;
-  message.scene_bytes = world_.package.size();
+  message.scene_bytes = package_->size();
   message.particles = world_.particles;
   message.spacing = world_.spacing;
   message.time_step = world_.time_step;
   message.picture_rate = kTierPictureRate;
   message.restored = restored;
+  message.capabilities = peer.agreed;
   send(peer, message);
-  send(peer, world_info());
-  send(peer, seats_.message());
-  if (waits_for_hands_ && !peer.gone) {
-    send(peer, wire::Notice{options_.hands_to_start == 1
-                                ? "the world waits for the first hand to take hold"
-                                : "the world waits until " + std::to_string(options_.hands_to_start) +
-                                      " grips are held"});
-  }
+  const wire::Roster roster = seats_.message();
+  roster_told_.whole(roster);
+  send(peer, roster);
+  send(peer, switches_.message());
+  if (switches_.waits_for_hands() && !peer.gone) send(peer, wire::Notice{switches_.waiting_text()});
   send_scene(peer);
   if (peer.gone) return;
-  if (peer.pictures.wanted) watch(peer, peer.pictures.control.tier());
+  snapshots_.watch(peer.id, now());
   notice_all(seat.name + (restored                              ? " is back"
                           : seat.role == wire::Role::kSpectator ? " is watching"
                                                                 : " is here"),
@@ -128,7 +140,7 @@ void Server::send_scene(Peer& peer) {
   const std::int64_t stream = endpoint_->open_stream(peer.id, false);
   if (stream < 0) return;  // tried again soon
   peer.scene_sent = true;
-  if (endpoint_->send_stream(peer.id, stream, world_.package, true)) return;
+  if (endpoint_->send_shared(peer.id, stream, package_, true)) return;
   lose(peer, Parting::kPutOut);
   endpoint_->close(peer.id, close_code(wire::RefusalCode::kTooMuch),
                    "the scene does not fit into the buffer");
@@ -147,6 +159,7 @@ wire::Fault Server::handle(Peer& peer, const wire::GripRequest& request) {
   if (request.take) {
     peer.heard_ns = now();
     hands_.taken(request.grip, now());
+    faults_told_[request.grip] = 0;
     start_if_held();
   } else {
     hands_.let_go(request.grip, now());
@@ -156,19 +169,11 @@ wire::Fault Server::handle(Peer& peer, const wire::GripRequest& request) {
 }
 
 void Server::start_if_held() {
-  if (!waits_for_hands_) return;
-  std::size_t taken = 0;
-  for (std::uint32_t grip = 0; grip < hands_.size(); ++grip) taken += seats_.holder(grip) ? 1 : 0;
-  if (taken < std::min(options_.hands_to_start, hands_.size())) return;
-  waits_for_hands_ = false;
+  std::size_t held = 0;
+  for (std::uint32_t grip = 0; grip < hands_.size(); ++grip) held += seats_.holder(grip) ? 1 : 0;
+  if (!switches_.starts_with(held, hands_.size())) return;
   world_.command({HostAction::kContinue}, {});
   notice_all("the world starts");
-}
-
-// Who pauses or starts the world by hand does not want it to start by itself any more.
-void Server::note_wish(const HostCommand& command) {
-  if (command.action == HostAction::kPause || command.action == HostAction::kContinue)
-    waits_for_hands_ = false;
 }
 
 void Server::ask_world(Peer& peer, std::uint32_t request, const HostCommand& command,
@@ -176,13 +181,13 @@ void Server::ask_world(Peer& peer, std::uint32_t request, const HostCommand& com
   if (!peer.participant)
     return answer(peer, request, false,
                   "this link is for watching; only those with hands may change the world");
-  note_wish(command);
+  switches_.note_wish(command);
   const ConnectionId connection = peer.id;
   const std::string name = name_of(peer);
   world_.command(command, [this, connection, request, name, did](const Result<bool>& done) {
     const std::string problem = done ? std::string() : done.error().text();
     mailbox_.post([this, connection, request, name, did, problem] {
-      Peer* asker = find(connection);
+      Peer* asker = peers_.find(connection);
       if (asker) answer(*asker, request, problem.empty(), problem);
       if (problem.empty()) notice_all(name + " " + did, false, asker);
     });
@@ -226,17 +231,10 @@ wire::Fault Server::handle(Peer& peer, const wire::Bye& bye) {
   return {};
 }
 
-wire::WorldInfo Server::world_info() const {
-  const HostState& state = world_.state;
-  wire::WorldInfo info{state.paused, state.run, state.gravity_scale, state.viscosities};
-  if (info.viscosities.size() > wire::kMaxFluids) info.viscosities.resize(wire::kMaxFluids);
-  return info;
-}
-
 void Server::world_changed(const HostCommand& change, const HostState& state) {
-  world_.state = state;
+  switches_.told(state);
   if (change.action == HostAction::kReset) hands_.stand_all(now());
-  send_all(world_info());
+  send_all(switches_.message());
 }
 
 }  // namespace slosh

@@ -1,6 +1,9 @@
 // Sending control messages, for the server's own sources.
 #pragma once
 
+#include <map>
+#include <vector>
+
 #include "host/server/server.h"
 
 namespace slosh {
@@ -17,7 +20,7 @@ inline bool send_bytes(Endpoint& endpoint, Peer& peer, const wire::Bytes& bytes)
 template <class M>
 void Server::send(Peer& peer, const M& message) {
   if (peer.gone || peer.control_stream < 0) return;
-  if (send_bytes(*endpoint_, peer, wire::control(message))) return;
+  if (send_bytes(*endpoint_, peer, wire::control(message, nullptr, peer.agreed))) return;
   // It reads nothing: what we would keep for it has an end.
   lose(peer, Parting::kPutOut);
   endpoint_->close(peer.id, close_code(wire::RefusalCode::kTooMuch), "you read too slowly");
@@ -25,12 +28,14 @@ void Server::send(Peer& peer, const M& message) {
 
 template <class M>
 void Server::send_all(const M& message, bool participants_only, const Peer* but) {
-  const wire::Bytes bytes = wire::control(message);
+  std::map<wire::Capabilities, wire::Bytes> coded;  // once for all that have agreed to the same
   std::vector<Peer*> deaf;
-  for (auto& [id, peer] : peers_) {
-    if (!peer->in || peer->gone || peer.get() == but || (participants_only && !peer->participant)) continue;
-    if (!send_bytes(*endpoint_, *peer, bytes)) deaf.push_back(peer.get());
-  }
+  peers_.each_in([&](Peer& peer) {
+    if (&peer == but || (participants_only && !peer.participant)) return;
+    auto [bytes, fresh] = coded.try_emplace(peer.agreed);
+    if (fresh) bytes->second = wire::control(message, nullptr, peer.agreed);
+    if (!send_bytes(*endpoint_, peer, bytes->second)) deaf.push_back(&peer);
+  });
   for (Peer* peer : deaf) {
     lose(*peer, Parting::kPutOut);
     endpoint_->close(peer->id, close_code(wire::RefusalCode::kTooMuch), "you read too slowly");

@@ -209,6 +209,12 @@ bool Connection::send_stream(std::int64_t stream, std::span<const std::uint8_t> 
   return streams_.push(stream, bytes, end, options_.stream_buffer);
 }
 
+bool Connection::send_shared(std::int64_t stream, SharedBytes bytes, bool end) {
+  if (state_ != State::kOpen || stream < 0) return false;
+  if (bytes->empty() && !end) return true;
+  return streams_.push(stream, std::move(bytes), end, options_.stream_buffer);
+}
+
 void Connection::close(std::uint64_t code, const std::string& text, std::int64_t now) {
   if (state_ == State::kClosed || state_ == State::kLingering) return;
   parting_ = {false, code, text.substr(0, 1000)};

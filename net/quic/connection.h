@@ -83,6 +83,7 @@ class Connection {
   bool send_datagram(Priority priority, SharedBytes bytes);
   std::int64_t open_stream(bool both_ways);
   bool send_stream(std::int64_t stream, std::span<const std::uint8_t> bytes, bool end);
+  bool send_shared(std::int64_t stream, SharedBytes bytes, bool end);
   /// Lets streams finish for a little while, then closes.
   void close(std::uint64_t code, const std::string& text, std::int64_t now);
   /// Closes without waiting for anything.

@@ -137,6 +137,11 @@ class Endpoint {
   /// Queues stream bytes; false when the connection is gone or its buffer is full.
   virtual bool send_stream(ConnectionId connection, std::int64_t stream, std::span<const std::uint8_t> bytes,
                            bool end) = 0;
+  /// The same without a copy, where the endpoint can: it holds on to the bytes, which many connections may
+  /// share, until they are acknowledged.
+  virtual bool send_shared(ConnectionId connection, std::int64_t stream, SharedBytes bytes, bool end) {
+    return send_stream(connection, stream, *bytes, end);
+  }
   /// Sends what is queued on streams first, as far as the window lets it, then closes. `text` reaches the
   /// other side. Nothing but on_closed() comes of the connection after this.
   virtual void close(ConnectionId connection, std::uint64_t code, const std::string& text) = 0;
@@ -159,6 +164,10 @@ class Endpoint {
   /// network fails it. False when there is nothing to move.
   virtual bool rebind() { return false; }
 };
+
+/// What a site is counted by, from "HOST:PORT" as on_connected() tells it: the IPv4 address, or the /64 of
+/// the IPv6 one, as text; what is neither is its own site.
+std::string site_of(const std::string& address);
 
 /// Listens at "HOST:PORT" or "[IPv6]:PORT" ("0.0.0.0:0" takes any port; "[::]:PORT" takes IPv4 too). Every
 /// first packet is answered with a Retry token and no state. Errors: not an address, in use, not allowed.

@@ -200,6 +200,13 @@ bool EndpointBase::send_stream(ConnectionId id, std::int64_t stream, std::span<c
   return true;
 }
 
+bool EndpointBase::send_shared(ConnectionId id, std::int64_t stream, SharedBytes bytes, bool end) {
+  Connection* connection = find(id);
+  if (!connection || !connection->send_shared(stream, std::move(bytes), end)) return false;
+  touch(*connection);
+  return true;
+}
+
 void EndpointBase::close(ConnectionId id, std::uint64_t code, const std::string& text) {
   Connection* connection = find(id);
   if (!connection) return;

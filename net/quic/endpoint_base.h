@@ -21,6 +21,7 @@ class EndpointBase : public Endpoint, protected ConnectionOwner {
   std::int64_t open_stream(ConnectionId connection, bool both_ways) override;
   bool send_stream(ConnectionId connection, std::int64_t stream, std::span<const std::uint8_t> bytes,
                    bool end) override;
+  bool send_shared(ConnectionId id, std::int64_t stream, SharedBytes bytes, bool end) override;
   void close(ConnectionId connection, std::uint64_t code, const std::string& text) override;
   ConnectionStats stats(ConnectionId connection) const override;
   EndpointStats endpoint_stats() const override;

@@ -16,15 +16,34 @@ bool StreamOutbox::push(std::int64_t id, std::span<const std::uint8_t> bytes, bo
     if (stream.chunks.empty() || stream.chunks.back().size == stream.chunks.back().capacity) {
       Chunk chunk;
       chunk.capacity = std::max(kChunk, bytes.size());
-      chunk.bytes = std::make_unique_for_overwrite<std::uint8_t[]>(chunk.capacity);
+      chunk.own = std::make_unique_for_overwrite<std::uint8_t[]>(chunk.capacity);
       stream.chunks.push_back(std::move(chunk));
     }
     Chunk& chunk = stream.chunks.back();
     const std::size_t count = std::min(bytes.size(), chunk.capacity - chunk.size);
-    std::memcpy(chunk.bytes.get() + chunk.size, bytes.data(), count);
+    std::memcpy(chunk.own.get() + chunk.size, bytes.data(), count);
     chunk.size += count;
     bytes = bytes.subspan(count);
   }
+  return true;
+}
+
+bool StreamOutbox::push(std::int64_t id, std::shared_ptr<const std::vector<std::uint8_t>> bytes, bool end,
+                        std::size_t limit) {
+  const std::size_t size = bytes->size();
+  if (size > limit || held_ > limit - size) return false;
+  Stream& stream = streams_[id];
+  if (stream.end) return false;
+  stream.end = end;
+  if (size == 0) return true;
+  stream.unsent += size;
+  held_ += size;
+  // A chunk with room behind it would be taken for small writes, out of order.
+  if (!stream.chunks.empty()) stream.chunks.back().capacity = stream.chunks.back().size;
+  Chunk chunk;
+  chunk.size = chunk.capacity = size;
+  chunk.shared = std::move(bytes);
+  stream.chunks.push_back(std::move(chunk));
   return true;
 }
 
@@ -53,7 +72,8 @@ std::size_t StreamOutbox::gather(std::int64_t id, std::span<ngtcp2_vec> out, boo
       continue;
     }
     if (used == out.size()) break;
-    out[used].base = chunk.bytes.get() + skip;
+    // The library takes it without const and only reads.
+    out[used].base = const_cast<std::uint8_t*>(chunk.data()) + skip;
     out[used].len = chunk.size - skip;
     covered += out[used].len;
     skip = 0;

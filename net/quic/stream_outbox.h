@@ -18,6 +18,10 @@ class StreamOutbox {
   /// Copies `bytes` in. False when `limit` bytes a connection would be passed, or after an end.
   bool push(std::int64_t stream, std::span<const std::uint8_t> bytes, bool end, std::size_t limit);
 
+  /// The same without a copy: holds on to `bytes` until they are acknowledged.
+  bool push(std::int64_t stream, std::shared_ptr<const std::vector<std::uint8_t>> bytes, bool end,
+            std::size_t limit);
+
   /// A stream that has something to send and is not blocked, taking turns; -1 = none.
   std::int64_t next() const;
   bool pending() const { return next() >= 0; }
@@ -39,7 +43,9 @@ class StreamOutbox {
  private:
   static constexpr std::size_t kChunk = 16 << 10;  // bytes; small writes share one
   struct Chunk {
-    std::unique_ptr<std::uint8_t[]> bytes;
+    std::unique_ptr<std::uint8_t[]> own;
+    std::shared_ptr<const std::vector<std::uint8_t>> shared;  // in place of `own`; always full
+    const std::uint8_t* data() const { return shared ? shared->data() : own.get(); }
     std::size_t size = 0;
     std::size_t capacity = 0;
   };

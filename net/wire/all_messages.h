@@ -14,7 +14,7 @@ template <class... M>
 struct MessageList {};
 
 using PeerControl = MessageList<Hello, GripRequest, WorldRequest, ParameterRequest, Bye>;
-using HostControl = MessageList<Welcome, Refused, Roster, Answer, WorldInfo, Notice, Bye>;
+using HostControl = MessageList<Welcome, Refused, Roster, RosterChange, Answer, WorldInfo, Notice, Bye>;
 using PeerDatagrams = MessageList<Poses, ClockPing, SnapshotFeedback>;
 /// Without kSnapshotPiece, which net/codec reads.
 using HostDatagrams = MessageList<ClockPong, Bodies, Hands>;
@@ -29,11 +29,12 @@ void for_each_message(MessageList<M...>, Call&& call) {
 /// overload for each type, which returns nothing or a Fault. Returns the first fault: an unknown number, what
 /// the payload lacks, or the handler's.
 template <class... M, class Handle>
-[[nodiscard]] Fault dispatch(MessageList<M...>, std::uint64_t type, ByteView payload, Handle&& handle) {
+[[nodiscard]] Fault dispatch(MessageList<M...>, std::uint64_t type, ByteView payload, Handle&& handle,
+                             Capabilities agreed = kAllCapabilities) {
   Fault fault{"type", std::to_string(type) + " is no message that may come here"};
   const auto attempt = [&]<class T>(T message) {
     if (type != static_cast<std::uint64_t>(T::kType)) return false;
-    fault = decode(payload, message);
+    fault = decode(payload, message, agreed);
     if (fault) return true;
     if constexpr (std::is_void_v<decltype(handle(message))>)
       handle(message);
@@ -47,9 +48,10 @@ template <class... M, class Handle>
 
 /// The same for a whole datagram, whose first byte is the type.
 template <class... M, class Handle>
-[[nodiscard]] Fault dispatch_datagram(MessageList<M...> list, ByteView datagram, Handle&& handle) {
+[[nodiscard]] Fault dispatch_datagram(MessageList<M...> list, ByteView datagram, Handle&& handle,
+                                      Capabilities agreed = kAllCapabilities) {
   if (datagram.empty()) return {"type", "ends too early"};
-  return dispatch(list, datagram[0], datagram.subspan(1), handle);
+  return dispatch(list, datagram[0], datagram.subspan(1), handle, agreed);
 }
 
 }  // namespace slosh::wire

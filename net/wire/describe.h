@@ -24,6 +24,7 @@ struct FieldRow {
 class Describer {
  public:
   static constexpr bool kReads = false;
+  bool agreed(Capabilities) const { return true; }
   static constexpr std::uint64_t kUnbounded = std::numeric_limits<std::uint64_t>::max();
 
   const std::vector<FieldRow>& rows() const { return rows_; }

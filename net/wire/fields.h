@@ -31,7 +31,8 @@
 //   list_as_long(name, vector, of, count, each)  as many elements as another list has
 //   rule(name, holds, problem)                   nothing on the wire: what must hold between fields
 //
-// A field that is written only in some cases follows a flag or choice: `if (m.flag) v.natural(...)`.
+// A field that is written only in some cases follows a flag or choice: `if (m.flag) v.natural(...)`, or asks
+// for a capability (capabilities.h): `if (v.agreed(kX)) v.natural(...)`.
 #pragma once
 
 #include "net/wire/reader.h"
@@ -42,8 +43,8 @@ namespace slosh::wire {
 
 /// Appends a message to `out`. Tells of the first value that had to be brought into range (Writer).
 template <class M>
-Fault encode(const M& message, Bytes& out) {
-  Writer writer(out);
+Fault encode(const M& message, Bytes& out, Capabilities agreed = kAllCapabilities) {
+  Writer writer(out, agreed);
   visit(writer, const_cast<M&>(message));  // a Writer reads only
   return writer.fault();
 }
@@ -56,8 +57,8 @@ Bytes encoded(const M& message) {
 
 /// Reads a whole message; on a fault `message` is half read and must not be used.
 template <class M>
-[[nodiscard]] Fault decode(ByteView in, M& message) {
-  Reader reader(in);
+[[nodiscard]] Fault decode(ByteView in, M& message, Capabilities agreed = kAllCapabilities) {
+  Reader reader(in, agreed);
   visit(reader, message);
   reader.finish();
   return reader.fault();

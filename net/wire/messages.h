@@ -11,18 +11,19 @@
 #include <vector>
 
 #include "net/channel.h"
+#include "net/wire/capabilities.h"
 #include "net/wire/fields.h"
 
 namespace slosh::wire {
 
 // ---------------------------------------------------------------- limits
 
-constexpr std::uint32_t kProtocolVersion = 1;
+constexpr std::uint32_t kProtocolVersion = 2;
 inline constexpr char kAlpn[] =
-    "slosh/1";  ///< the TLS application protocol; a peer of another version fails here
+    "slosh/2";  ///< the TLS application protocol; a peer of another version fails here
 
 constexpr std::size_t kMaxDatagram = 1150;           ///< bytes of payload, before path MTU discovery
-constexpr std::size_t kMaxControlMessage = 1 << 17;  ///< bytes of payload; a full Roster is the largest
+constexpr std::size_t kMaxControlMessage = 1 << 17;  ///< bytes of payload; a full RosterChange is the largest
 constexpr std::size_t kMaxSceneBytes = 64u << 20;    ///< compressed and decompressed alike
 constexpr std::size_t kMaxName = 32;                 ///< bytes of a person's name
 constexpr std::size_t kMaxText = 400;                ///< bytes of a sentence
@@ -77,6 +78,7 @@ enum class ControlType : std::uint8_t {
   kAnswer = 19,
   kWorldInfo = 20,
   kNotice = 21,
+  kRosterChange = 22,
 };
 
 enum class Role : std::uint8_t { kParticipant, kSpectator };
@@ -92,6 +94,8 @@ enum class PictureWish : std::uint8_t {
 constexpr std::array kPictureWishNames{"the newest", "all, for a film", "none"};
 constexpr std::uint64_t kPictureWishes = kPictureWishNames.size();
 
+constexpr std::size_t kMaxLater = 1024;  ///< bytes of what a newer peer adds to its Hello
+
 /// The peer's first message. Its key is the one of its TLS certificate.
 struct Hello {
   static constexpr ControlType kType = ControlType::kHello;
@@ -99,6 +103,8 @@ struct Hello {
   Token token{};
   std::string name;  ///< how others see this person; empty = the host chooses
   PictureWish pictures = PictureWish::kNewest;
+  Capabilities capabilities = kOurCapabilities;  ///< bits that are not known are left out of account
+  Bytes later;  ///< fields of capabilities that this version does not know; skipped
 };
 template <class V>
 void visit(V& v, Hello& m) {
@@ -106,6 +112,8 @@ void visit(V& v, Hello& m) {
   v.array("token", m.token);
   v.text("name", m.name, kMaxName);
   v.choice("pictures", m.pictures, kPictureWishNames);
+  v.bits64("capabilities", m.capabilities);
+  v.bytes("later", m.later, 0, kMaxLater);
 }
 
 /// Take or release one grip. Answered by Answer with the same `request`.
@@ -175,14 +183,15 @@ struct Welcome {
   static constexpr ControlType kType = ControlType::kWelcome;
   std::uint32_t peer = 0;  ///< this peer's number in Roster
   Role role = Role::kSpectator;
-  std::string name;               ///< as the others see it
-  std::uint64_t session = 0;      ///< the host's run; the same after a resume
-  std::uint64_t scene_bytes = 0;  ///< compressed, on the scene's stream
-  std::uint64_t particles = 0;    ///< fluid particles at the start
-  double spacing = 0.01;          ///< m between particles
-  double time_step = 0.001;       ///< s, a tick's length
-  double picture_rate = 0.0;      ///< snapshots a second that the host can send at most
-  bool restored = false;          ///< a seat of the last minute was given back with its grips
+  std::string name;                              ///< as the others see it
+  std::uint64_t session = 0;                     ///< the host's run; the same after a resume
+  std::uint64_t scene_bytes = 0;                 ///< compressed, on the scene's stream
+  std::uint64_t particles = 0;                   ///< fluid particles at the start
+  double spacing = 0.01;                         ///< m between particles
+  double time_step = 0.001;                      ///< s, a tick's length
+  double picture_rate = 0.0;                     ///< snapshots a second that the host can send at most
+  bool restored = false;                         ///< a seat of the last minute was given back with its grips
+  Capabilities capabilities = kOurCapabilities;  ///< agreed: the host's, of those that Hello named
 };
 template <class V>
 void visit(V& v, Welcome& m) {
@@ -196,6 +205,7 @@ void visit(V& v, Welcome& m) {
   v.real64("time_step", m.time_step, 1e-7, 1.0);
   v.real64("picture_rate", m.picture_rate, 0.0, 1000.0);
   v.flag("restored", m.restored);
+  v.bits64("capabilities", m.capabilities);
 }
 
 enum class RefusalCode : std::uint8_t {
@@ -209,9 +219,11 @@ enum class RefusalCode : std::uint8_t {
   kReplaced,    ///< the same person came again from elsewhere
   kEnding,      ///< the host ends
   kTimedOut,
+  kBanned,  ///< the host keeps this key out for a time
+  kBusy,    ///< too many at the door now: trying again soon helps
 };
-constexpr std::array kRefusalNames{"bad token",   "revoked",  "expired",  "full",   "version",
-                                   "bad message", "too much", "replaced", "ending", "timed out"};
+constexpr std::array kRefusalNames{"bad token", "revoked",  "expired", "full",      "version", "bad message",
+                                   "too much",  "replaced", "ending",  "timed out", "banned",  "busy"};
 constexpr std::uint64_t kRefusalCodes = kRefusalNames.size();
 
 /// The host's last message before it closes.
@@ -232,6 +244,8 @@ struct RosterEntry {
   Role role = Role::kSpectator;
   bool connected = true;  ///< false: away, its seat is kept for a while
   std::vector<std::uint32_t> grips;
+
+  bool operator==(const RosterEntry&) const = default;
 };
 template <class V>
 void visit(V& v, RosterEntry& m) {
@@ -243,7 +257,8 @@ void visit(V& v, RosterEntry& m) {
          [](auto& each, std::uint32_t& grip) { each.natural("grip", grip, 0, kMaxGrips - 1); });
 }
 
-/// Who is here and who holds what, whole, after every change.
+/// Who is here and who holds what, whole: once after Welcome, and where kRosterChanges is not agreed after
+/// every change.
 struct Roster {
   static constexpr ControlType kType = ControlType::kRoster;
   std::vector<RosterEntry> peers;
@@ -251,6 +266,19 @@ struct Roster {
 template <class V>
 void visit(V& v, Roster& m) {
   v.list("peers", m.peers, kMaxPeers, [](auto& each, RosterEntry& entry) { visit(each, entry); });
+}
+
+/// What is new since the last Roster or RosterChange. Behind kRosterChanges.
+struct RosterChange {
+  static constexpr ControlType kType = ControlType::kRosterChange;
+  std::vector<RosterEntry> changed;  ///< as they are now
+  std::vector<std::uint32_t> gone;   ///< numbers; one may be given to somebody else, who is in `changed` then
+};
+template <class V>
+void visit(V& v, RosterChange& m) {
+  v.list("changed", m.changed, kMaxPeers, [](auto& each, RosterEntry& entry) { visit(each, entry); });
+  v.list("gone", m.gone, kMaxPeers,
+         [](auto& each, std::uint32_t& peer) { each.natural("peer", peer, 0, kMaxPeers - 1); });
 }
 
 /// To one request.
@@ -491,18 +519,18 @@ void visit(V& v, SnapshotFeedback& m) {
 
 /// Type and payload of a datagram in one array. Tells through `fault` what a Writer had to bring into range.
 template <class M>
-Bytes datagram(const M& message, Fault* fault = nullptr) {
+Bytes datagram(const M& message, Fault* fault = nullptr, Capabilities agreed = kAllCapabilities) {
   Bytes out{static_cast<std::uint8_t>(M::kType)};
-  const Fault found = encode(message, out);
+  const Fault found = encode(message, out, agreed);
   if (fault) *fault = found;
   return out;
 }
 
 /// Type, length and payload of a control message; likewise.
 template <class M>
-Bytes control(const M& message, Fault* fault = nullptr) {
+Bytes control(const M& message, Fault* fault = nullptr, Capabilities agreed = kAllCapabilities) {
   Bytes payload;
-  const Fault found = encode(message, payload);
+  const Fault found = encode(message, payload, agreed);
   if (fault) *fault = found;
   Bytes out;
   Writer writer(out);

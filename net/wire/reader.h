@@ -17,7 +17,8 @@ namespace slosh::wire {
 class Reader {
  public:
   static constexpr bool kReads = true;
-  explicit Reader(ByteView in) : in_(in) {}
+  explicit Reader(ByteView in, Capabilities agreed = kAllCapabilities) : in_(in), agreed_(agreed) {}
+  bool agreed(Capabilities bits) const { return (agreed_ & bits) == bits; }
 
   bool ok() const { return !fault_; }
   const Fault& fault() const { return fault_; }
@@ -188,6 +189,7 @@ class Reader {
   static std::string not_below(std::uint64_t raw, std::string_view of, std::uint64_t bound);
 
   ByteView in_;
+  Capabilities agreed_;
   std::size_t at_ = 0;
   std::string path_;
   Fault fault_;

@@ -40,6 +40,7 @@ std::vector<Table> tables() {
           message<Welcome>("Welcome"),
           message<Refused>("Refused"),
           message<Roster>("Roster"),
+          message<RosterChange>("RosterChange"),
           message<Answer>("Answer"),
           message<WorldInfo>("WorldInfo"),
           message<Notice>("Notice"),

@@ -10,6 +10,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <string_view>
 
+#include "net/wire/capabilities.h"
 #include "net/wire/fault.h"
 #include "net/wire/text.h"
 
@@ -30,7 +31,8 @@ constexpr double kExactUnitTolerance = 1e-6;
 class Writer {
  public:
   static constexpr bool kReads = false;
-  explicit Writer(Bytes& out) : out_(out) {}
+  explicit Writer(Bytes& out, Capabilities agreed = kAllCapabilities) : out_(out), agreed_(agreed) {}
+  bool agreed(Capabilities bits) const { return (agreed_ & bits) == bits; }
 
   const Fault& fault() const { return fault_; }
 
@@ -180,6 +182,7 @@ class Writer {
   }
 
   Bytes& out_;
+  Capabilities agreed_;
   std::string path_;
   Fault fault_;
 };

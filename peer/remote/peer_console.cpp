@@ -49,7 +49,7 @@ PeerLine take(const std::vector<std::string>& words, const Scene& scene) {
   command.kind = RemoteCommand::Kind::kFreeGrip;
   if (words.size() == 1) return ask(command);
   const std::optional<std::size_t> grip = index_named(scene.grips, words[1]);
-  if (!grip) return say("there is no grip '" + words[1] + "'. There are: " + names_of(scene.grips));
+  if (!grip) return say(no_grip_text(words[1], scene.grips));
   command.kind = RemoteCommand::Kind::kGrip;
   command.grip = static_cast<std::uint32_t>(*grip);
   return ask(command);
@@ -60,7 +60,7 @@ PeerLine release(const std::vector<std::string>& words, const RemoteStatus& stat
   command.take = false;
   if (words.size() == 2) {
     const std::optional<std::size_t> grip = index_named(scene.grips, words[1]);
-    if (!grip) return say("there is no grip '" + words[1] + "'. There are: " + names_of(scene.grips));
+    if (!grip) return say(no_grip_text(words[1], scene.grips));
     command.grip = static_cast<std::uint32_t>(*grip);
     return ask(command);
   }

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "net/clock.h"
+#include "net/wire/roster_change.h"
 #include "net/wire/scene_package.h"
 #include "peer/remote/remote_link.h"
 
@@ -29,6 +30,8 @@ std::string mend_of(wire::RefusalCode code) {
       return "Report it: a peer should never do that";
     case wire::RefusalCode::kEnding:
     case wire::RefusalCode::kTimedOut:
+    case wire::RefusalCode::kBanned:
+    case wire::RefusalCode::kBusy:
       break;
   }
   return {};
@@ -52,6 +55,7 @@ void RemoteLink::say_hello() {
 }
 
 wire::Fault RemoteLink::heard(std::uint64_t type, wire::ByteView payload) {
+  if (step_ == LinkStep::kEnded) return {};
   switch (static_cast<wire::ControlType>(type)) {
     case wire::ControlType::kWelcome:
       return on_welcome(payload);
@@ -59,6 +63,8 @@ wire::Fault RemoteLink::heard(std::uint64_t type, wire::ByteView payload) {
       return on_refused(payload);
     case wire::ControlType::kRoster:
       return on_roster(payload);
+    case wire::ControlType::kRosterChange:
+      return on_roster_change(payload);
     case wire::ControlType::kAnswer:
       return on_answer(payload);
     case wire::ControlType::kWorldInfo:
@@ -79,13 +85,13 @@ wire::Fault RemoteLink::heard(std::uint64_t type, wire::ByteView payload) {
 wire::Fault RemoteLink::on_welcome(wire::ByteView payload) {
   wire::Welcome welcome;
   if (wire::Fault fault = wire::decode(payload, welcome)) return fault;
-  if (welcomed_) return {"welcome", "came twice"};
-  if (scene_came_ && welcome.session != status_.welcome.session) {
+  if (greeting_.welcome) return {"welcome", "came twice"};
+  if (world_stage_ != WorldStage::kNone && welcome.session != status_.welcome.session) {
     end(Error{options_.address, "the host has begun another world since contact was lost",
               "Join again with the same link, or ask for a new one"});
     return {};
   }
-  welcomed_ = true;
+  greeting_.welcome = true;
   status_.welcome = welcome;
   publish(now());
   return {};
@@ -99,10 +105,9 @@ wire::Fault RemoteLink::on_refused(wire::ByteView payload) {
 }
 
 void RemoteLink::refused(wire::RefusalCode code, const std::string& words) {
-  if (code == wire::RefusalCode::kTimedOut && status_.live_ns != 0) {
-    return;  // contact was bad; what follows is the end of the connection, and we come back
-  }
-  refused_ = true;
+  // What follows is the end of the connection, and we come back: contact was bad, or too many came at once.
+  if (code == wire::RefusalCode::kBusy) return;
+  if (code == wire::RefusalCode::kTimedOut && status_.live_ns != 0) return;
   if (code == wire::RefusalCode::kEnding && status_.live_ns != 0) {
     end(std::nullopt, words);
   } else {
@@ -116,16 +121,32 @@ wire::Fault RemoteLink::on_roster(wire::ByteView payload) {
   wire::Roster roster;
   if (wire::Fault fault = wire::decode(payload, roster)) return fault;
   status_.peers = std::move(roster.peers);
-  roster_came_ = true;
+  greeting_.roster = true;
+  note_held();
+  publish(now());
+  return {};
+}
+
+wire::Fault RemoteLink::on_roster_change(wire::ByteView payload) {
+  wire::RosterChange change;
+  if (wire::Fault fault = wire::decode(payload, change)) return fault;
+  if (!greeting_.roster) return {"roster change", "came before the roster"};
+  wire::apply(change, status_.peers);
+  note_held();
+  publish(now());
+  return {};
+}
+
+/// Which grips are ours, by the roster.
+void RemoteLink::note_held() {
   std::fill(status_.held.begin(), status_.held.end(), false);
+  if (!greeting_.welcome) return;
   for (const wire::RosterEntry& entry : status_.peers) {
-    if (entry.peer != status_.welcome.peer || !welcomed_) continue;
+    if (entry.peer != status_.welcome.peer) continue;
     for (const std::uint32_t grip : entry.grips) {
       if (grip < status_.held.size()) status_.held[grip] = true;
     }
   }
-  publish(now());
-  return {};
 }
 
 wire::Fault RemoteLink::on_answer(wire::ByteView payload) {
@@ -162,7 +183,7 @@ wire::Fault RemoteLink::on_notice(wire::ByteView payload) {
 }
 
 void RemoteLink::take_scene(std::span<const std::uint8_t> bytes, bool end_of_stream) {
-  if (scene_came_) return;  // the same world again: a peer that came back has it
+  if (world_stage_ != WorldStage::kNone) return;  // the same world again: a peer that came back has it
   if (scene_bytes_.size() + bytes.size() > wire::kMaxSceneBytes) {
     return bad_host({"scene", "is larger than allowed"}, "the scene");
   }
@@ -173,7 +194,7 @@ void RemoteLink::take_scene(std::span<const std::uint8_t> bytes, bool end_of_str
   if (!unpacked) return bad_host({unpacked.error().where, unpacked.error().what}, "the scene");
   world_.scene = std::move(unpacked.value().scene);
   world_.spacing = unpacked.value().spacing;
-  scene_came_ = true;
+  world_stage_ = WorldStage::kScene;
 }
 
 /// Once the scene and the welcome are there: what the rest of the peer works with.
@@ -189,34 +210,28 @@ void RemoteLink::build_world() {
   world_.maker->note_clock(clock_);
   uplink_ = std::make_unique<PoseUplink>(*world_.channel);
   status_.held.assign(world_.scene.grips.size(), false);
-  for (const wire::RosterEntry& entry : status_.peers) {
-    if (entry.peer != status_.welcome.peer) continue;
-    for (const std::uint32_t grip : entry.grips) {
-      if (grip < status_.held.size()) status_.held[grip] = true;
-    }
-  }
+  note_held();
+  world_stage_ = WorldStage::kBuilt;
 }
 
 void RemoteLink::go_live_if_ready(std::int64_t now_ns) {
-  if (!welcomed_ || !roster_came_ || !scene_came_) return;
-  if (!inbox_) build_world();
-  if (!grips_asked_) ask_for_grips();
-  const bool waited = to_seconds(now_ns - phase_ns_) > kFirstStateWithin;
+  if (!greeting_.welcome || !greeting_.roster || world_stage_ == WorldStage::kNone) return;
+  if (world_stage_ == WorldStage::kScene) build_world();
+  if (!greeting_.grips_asked) ask_for_grips();
+  const bool waited = to_seconds(now_ns - step_ns_) > kFirstStateWithin;
   if (!clock_.known() || (!inbox_->started() && !waited)) return;
-  if (status_.state == LinkState::kReconnecting) {
+  if (step_ == LinkStep::kRejoining) {
     status_.numbers.reconnects += 1;
     notice("back with the host after " +
            std::to_string(static_cast<int>(to_seconds(now_ns - status_.lost_ns) + 0.5)) + " s");
   }
-  phase_ = Phase::kLive;
-  status_.state = LinkState::kLive;
+  if (!advance(LinkEvent::kReady)) return;
   if (status_.live_ns == 0) status_.live_ns = now_ns;
   pose_due_ns_ = now_ns;
   publish(now_ns);
 }
 
 void RemoteLink::bad_host(const wire::Fault& fault, const std::string& what) {
-  refused_ = true;
   if (endpoint_ && connection_ != 0) endpoint_->close(connection_, 1, "not understood: " + fault.text());
   end(Error{options_.address, what + " of the host's is not understood (" + fault.text() + ")",
             "Use the same version of slosh as the host"});

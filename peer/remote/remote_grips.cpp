@@ -18,7 +18,7 @@ std::string RemoteLink::grip_name(std::uint32_t grip) const {
 }
 
 void RemoteLink::ask_for_grips() {
-  grips_asked_ = true;
+  greeting_.grips_asked = true;
   if (!options_.wants_grip || status_.welcome.role != wire::Role::kParticipant) return;
   if (status_.live_ns != 0) {
     // Back again: what is not ours any more is asked for once more.
@@ -123,7 +123,7 @@ bool RemoteLink::take_a_free_grip(bool quietly) {
 }
 
 void RemoteLink::obey(const RemoteCommand& command) {
-  if (phase_ != Phase::kLive) {
+  if (step_ != LinkStep::kLive) {
     notice("not now: there is no contact with the host");
     return;
   }

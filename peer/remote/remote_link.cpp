@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "net/clock.h"
 
@@ -44,60 +45,60 @@ bool RemoteLink::turn() {
   }
   for (const RemoteCommand& command : commands) obey(command);
   const std::int64_t deadline_ns = work(now_ns);
-  if (status_.state == LinkState::kEnded) return false;
+  if (step_ == LinkStep::kEnded) return false;
   if (endpoint_) {
     endpoint_->run_once(deadline_ns);
   } else if (!options_.now) {
     sleep_until_ns(std::min(deadline_ns, now_ns + kLongestTurn_ns));
   }
-  if (closed_) {
-    closed_ = false;
+  if (const std::optional<CloseReason> reason = std::exchange(close_due_, std::nullopt)) {
     drop_endpoint();
-    if (status_.state != LinkState::kEnded) lost(close_text_, close_cause_);
+    lost(*reason);
   }
   if (inbox_) pump_bodies(now());
-  return status_.state != LinkState::kEnded;
+  return step_ != LinkStep::kEnded;
 }
 
 /// Everything that is due; tells when to come back.
 std::int64_t RemoteLink::work(std::int64_t now_ns) {
   std::int64_t next_ns = now_ns + kLongestTurn_ns;
-  switch (phase_) {
-    case Phase::kIdle:
-      if (status_.state == LinkState::kReconnecting) {
-        if (backoff_.gave_up(now_ns)) {
-          end(Error{options_.address, "contact was lost and did not come back",
-                    "Join again with the same link"});
-          return now_ns;
-        }
-        if (now_ns >= backoff_.due_ns()) try_to_connect(now_ns);
-        next_ns = std::min(next_ns, backoff_.due_ns());
-      } else {
-        if (now_ns >= backoff_.due_ns()) try_to_connect(now_ns);
-        next_ns = std::min(next_ns, backoff_.due_ns());
-      }
+  const double in_step = to_seconds(now_ns - step_ns_);
+  const auto give_up = [&](const char* why) {
+    drop_endpoint();
+    lost({false, 0, why, CloseCause::kTimedOut});
+  };
+  switch (step_) {
+    case LinkStep::kIdle:
+      if (now_ns >= backoff_.due_ns()) try_to_connect(now_ns);
+      next_ns = std::min(next_ns, backoff_.due_ns());
       break;
-    case Phase::kConnecting: {
-      const bool first = status_.state == LinkState::kConnecting;
-      const double within = first ? options_.answer_within : kRetryAnswer;
+    case LinkStep::kWaiting:
+      if (backoff_.gave_up(now_ns)) {
+        end(Error{options_.address, "contact was lost and did not come back",
+                  "Join again with the same link"});
+        return now_ns;
+      }
+      if (now_ns >= backoff_.due_ns()) try_to_connect(now_ns);
+      next_ns = std::min(next_ns, backoff_.due_ns());
+      break;
+    case LinkStep::kDialling:
       // The transport has the same patience, and better words: it is heard first.
-      if (to_seconds(now_ns - phase_ns_) > within + 0.25) {
-        drop_endpoint();
-        lost("no answer within " + std::to_string(static_cast<int>(within)) + " s", CloseCause::kNoAnswer);
-      }
+      if (in_step > options_.answer_within + 0.25) give_up("");
       break;
-    }
-    case Phase::kGreeting:
+    case LinkStep::kRedialling:
+      if (in_step > kRetryAnswer) give_up("");
+      break;
+    case LinkStep::kJoining:
+    case LinkStep::kRejoining:
       go_live_if_ready(now_ns);
-      if (phase_ == Phase::kGreeting && to_seconds(now_ns - phase_ns_) > kWelcomeWithin) {
-        drop_endpoint();
-        lost("the host answered and then said nothing", CloseCause::kTimedOut);
-      }
+      if (in_contact(step_) && step_ != LinkStep::kLive && in_step > kWelcomeWithin)
+        give_up("the host answered and then said nothing");
       break;
-    case Phase::kLive:
+    case LinkStep::kLive:
+    case LinkStep::kEnded:
       break;
   }
-  if ((phase_ == Phase::kGreeting || phase_ == Phase::kLive) && endpoint_) {
+  if (in_contact(step_) && endpoint_) {
     if (now_ns >= pings_.due_ns()) ping(now_ns);
     next_ns = std::min(next_ns, pings_.due_ns());
     if (inbox_) {
@@ -143,15 +144,15 @@ void RemoteLink::ping(std::int64_t now_ns) {
 
 void RemoteLink::on_stream(ConnectionId, std::int64_t stream, std::span<const std::uint8_t> bytes,
                            bool end_of_stream) {
-  if (status_.state == LinkState::kEnded || refused_) return;
+  if (step_ == LinkStep::kEnded) return;
   if (stream != control_) return take_scene(bytes, end_of_stream);
   const wire::Fault fault = splitter_.feed(
       bytes, [this](std::uint64_t type, wire::ByteView payload) { return heard(type, payload); });
-  if (fault && !refused_) bad_host(fault, "a message");
+  if (fault && step_ != LinkStep::kEnded) bad_host(fault, "a message");
 }
 
 void RemoteLink::on_datagram(ConnectionId, std::span<const std::uint8_t> bytes) {
-  if (bytes.empty() || status_.state == LinkState::kEnded) return;
+  if (bytes.empty() || step_ == LinkStep::kEnded) return;
   const std::int64_t now_ns = now();
   const wire::ByteView payload = bytes.subspan(1);
   switch (static_cast<wire::DatagramType>(bytes[0])) {

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@
 #include "peer/remote/backoff.h"
 #include "peer/remote/body_inbox.h"
 #include "peer/remote/clock_sync.h"
+#include "peer/remote/link_steps.h"
 #include "peer/remote/picture_maker.h"
 #include "peer/remote/pose_uplink.h"
 #include "peer/remote/remote_status.h"
@@ -72,7 +74,14 @@ class RemoteLink final : public EndpointEvents {
   void on_closed(ConnectionId connection, const CloseReason& reason) override;
 
  private:
-  enum class Phase { kIdle, kConnecting, kGreeting, kLive };  // of the present connection
+  /// What the present connection has brought of what a live link needs.
+  struct Greeting {
+    bool welcome = false;
+    bool roster = false;
+    bool grips_asked = false;
+  };
+  /// What is known of the host's world, once in this link's life.
+  enum class WorldStage { kNone, kScene, kBuilt };
   struct Request {
     std::uint32_t number = 0;
     wire::ControlType type{};
@@ -85,7 +94,9 @@ class RemoteLink final : public EndpointEvents {
   // remote_link.cpp: turns and datagrams; remote_connect.cpp: the connection.
   std::int64_t now() const;
   void try_to_connect(std::int64_t now_ns);
-  void lost(const std::string& why, CloseCause cause);
+  /// False, and nothing happens, when the event cannot come in this step.
+  bool advance(LinkEvent event);
+  void lost(const CloseReason& why);
   void drop_endpoint();
   std::int64_t work(std::int64_t now_ns);
   void pump_bodies(std::int64_t now_ns);
@@ -105,11 +116,13 @@ class RemoteLink final : public EndpointEvents {
   wire::Fault on_refused(wire::ByteView payload);
   void refused(wire::RefusalCode code, const std::string& words);
   wire::Fault on_roster(wire::ByteView payload);
+  wire::Fault on_roster_change(wire::ByteView payload);
   wire::Fault on_answer(wire::ByteView payload);
   wire::Fault on_world_info(wire::ByteView payload);
   wire::Fault on_notice(wire::ByteView payload);
   void take_scene(std::span<const std::uint8_t> bytes, bool end);
   void build_world();
+  void note_held();
   void go_live_if_ready(std::int64_t now_ns);
   void ask_for_grips();
   void request_grip(std::uint32_t grip, bool take, bool any);
@@ -144,19 +157,13 @@ class RemoteLink final : public EndpointEvents {
   std::int64_t control_ = -1;
   wire::StreamSplitter splitter_;
   wire::Bytes scene_bytes_;
-  Phase phase_ = Phase::kIdle;
-  bool welcomed_ = false;
-  bool roster_came_ = false;
-  bool scene_came_ = false;   // in this life, once
-  bool grips_asked_ = false;  // on this connection
-  bool closed_ = false;       // by the network: the endpoint goes at the end of the turn
-  bool refused_ = false;
-  bool leaving_ = false;
-  std::string close_text_;
-  CloseCause close_cause_ = CloseCause::kClosed;
+  LinkStep step_ = LinkStep::kIdle;
+  std::int64_t step_ns_ = 0;   // when it began
   std::int64_t began_ns_ = 0;  // the first try
   int busy_tries_ = 0;
-  std::int64_t phase_ns_ = 0;  // when the phase began
+  Greeting greeting_;
+  WorldStage world_stage_ = WorldStage::kNone;
+  std::optional<CloseReason> close_due_;  // the connection is over: its endpoint goes at the end of the turn
   std::int64_t pose_due_ns_ = 0;
   std::int64_t publish_due_ns_ = 0;
   std::int64_t traffic_ns_ = 0;

@@ -1,5 +1,6 @@
 #include "peer/remote/remote_status.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "net/clock.h"
@@ -25,6 +26,12 @@ std::string connection_text(const RemoteStatus& status, double picture_delay, st
                 1e3 * status.numbers.round_trip, 1e3 * status.numbers.body_delay, 1e3 * picture_delay,
                 1e-3 * status.numbers.receive_rate);
   return text;
+}
+
+std::size_t others_here(const RemoteStatus& status) {
+  return static_cast<std::size_t>(std::count_if(
+      status.peers.begin(), status.peers.end(),
+      [&](const wire::RosterEntry& entry) { return entry.connected && entry.peer != status.welcome.peer; }));
 }
 
 std::string people_text(const RemoteStatus& status, const std::vector<std::string>& grip_names,

@@ -80,6 +80,8 @@ struct RemoteShared {
 
 /// "reconnecting for 3 s", "rtt 61 ms, delay 12 ms".
 std::string connection_text(const RemoteStatus& status, double picture_delay, std::int64_t now_ns);
+/// People but oneself who are connected: not those who left, nor whose contact is lost.
+std::size_t others_here(const RemoteStatus& status);
 /// A line a person: "Ana: left_hand", "Ben (away)", "Cyd looks on"; at most `most` of them, and how many
 /// more.
 std::string people_text(const RemoteStatus& status, const std::vector<std::string>& grip_names,

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "host/server/console.h"
+#include "net/text/name.h"
 #include "net/wire/messages.h"
 #include "peer/verbs/common_options.h"
 #include "peer/verbs/host_run.h"
@@ -53,8 +54,8 @@ void add_host(CLI::App& app, VerbRun& chosen) {
   verb->add_option("--for", o->names, "A link of their own for these people; it works for one machine each")
       ->check(CLI::Validator(
           [](std::string& name) {
-            return name.empty() || name.size() > wire::kMaxName ? std::string("a name has 1 to 32 bytes")
-                                                                : "";
+            if (name.empty() || name.size() > wire::kMaxName) return std::string("a name has 1 to 32 bytes");
+            return std::string(clean_name(name).empty() ? "letters and digits make a name" : "");
           },
           "NAME"));
   verb->add_option("--expires", o->expires,

@@ -111,12 +111,13 @@ std::string run_session(HostSession& session, Progress& progress, HostReins* rei
   std::string trouble;
   // Who asks from elsewhere sees no status line.
   const auto ask = [&](const std::string& line) {
-    const std::string answer = session.net().ask(line);
-    return trouble.empty() ? answer : answer + "\n" + trouble;
+    Outcome answer = session.net().ask(line);
+    if (!trouble.empty()) answer.text += "\n" + trouble;
+    return answer;
   };
   while (session.host().running()) {
     session.door().serve(kTurn_ms, input.fd(), ask);
-    for (const std::string& line : input.read()) progress.answer(input.edits() ? line : "", ask(line));
+    for (const std::string& line : input.read()) progress.answer(input.edits() ? line : "", ask(line).text);
     progress.typed(input.typed());
     for (const std::string& line : session.news()) progress.note(line);
     session.save_session();

@@ -7,6 +7,7 @@
 
 #include "host/server/console.h"
 #include "net/link.h"
+#include "net/text/name.h"
 #include "net/wire/scene_package.h"
 #include "peer/verbs/host_links.h"
 
@@ -17,11 +18,6 @@ constexpr std::size_t kPictureBytes = std::size_t{256} << 20;
 constexpr std::uint16_t kPort = 4433;
 constexpr std::size_t kSpareHands = 4;   // participants beyond one a grip
 constexpr std::size_t kStrangers = 128;  // connections that nobody was let in by
-
-std::int64_t unix_offset_ns() {
-  const auto unix = std::chrono::system_clock::now().time_since_epoch();
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(unix).count() - steady_now_ns();
-}
 
 std::string state_folder() {
   const char* state = std::getenv("XDG_STATE_HOME");
@@ -52,6 +48,7 @@ Result<std::unique_ptr<HostSession>> HostSession::create(HostedWorld& hosted,
 
   HostOptions host;
   host.picture_rate = kTierPictureRate;
+  host.demand = &s.demand_;
   host.until = hosted.prepared.seconds;
   host.shell = true;
   host.paused = hosted.state.paused;
@@ -87,7 +84,6 @@ Result<bool> HostSession::open_network() {
   server.limits.spectators = options_.watchers;
   server.lock_parameters = options_.lock_parameters;
   server.hands_to_start = hosted_.waits ? static_cast<std::size_t>(options_.wait) : 0;
-  server.unix_offset_ns = unix_offset_ns();
   server.tell = [this](const std::string& line) {
     const std::lock_guard lock(news_mutex_);
     news_.push_back(line);
@@ -143,7 +139,7 @@ void HostSession::make_links() {
   if (hosted_.session) {
     server_->restore(*hosted_.session);
   } else {
-    const std::int64_t now = steady_now_ns() + unix_offset_ns();
+    const std::int64_t now = server_->unix_now();
     std::int64_t lifetime = 0;
     if (!options_.expires.empty()) {
       const Result<std::int64_t> parsed = parse_duration(options_.expires);
@@ -151,7 +147,7 @@ void HostSession::make_links() {
     }
     LinkRegistry& links = server_->links();
     for (const std::string& name : options_.names)
-      links.create(wire::Role::kParticipant, wire::clean_text(name, wire::kMaxName), now, lifetime);
+      links.create(wire::Role::kParticipant, clean_name(name), now, lifetime);
     links.create(wire::Role::kParticipant, {}, now, lifetime);
     links.create(wire::Role::kSpectator, {}, now, lifetime);
   }
@@ -215,8 +211,9 @@ HostSession::~HostSession() {
 }
 
 void HostSession::start() {
-  pictures_ = std::make_unique<PictureThread>(channel_->pictures(), desk_, hosted_.prepared.sampled.spacing,
-                                              hosted_.state.run, [this] { server_->mailbox().wake(); });
+  pictures_ =
+      std::make_unique<PictureThread>(channel_->pictures(), desk_, demand_, hosted_.prepared.sampled.spacing,
+                                      hosted_.state.run, [this] { server_->mailbox().wake(); });
   net_->start();
   host_->start();
 }

@@ -71,6 +71,7 @@ class HostSession {
 
   // In the order in which they are needed; ended in the opposite one.
   std::unique_ptr<Channel> channel_;
+  PictureDemand demand_;
   PictureDesk desk_;
   std::unique_ptr<Server> server_;
   std::unique_ptr<Endpoint> endpoint_;

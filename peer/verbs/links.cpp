@@ -48,12 +48,10 @@ Result<std::uint16_t> chosen_port(const LinksOptions& options) {
 int ask(const LinksOptions& options, const std::string& line) {
   const Result<std::uint16_t> port = chosen_port(options);
   if (!port) return fail(port.error());
-  const Result<std::string> answer = ask_console(port.value(), line);
+  const Result<Outcome> answer = ask_console(port.value(), line);
   if (!answer) return fail(answer.error());
-  std::printf("%s", answer.value().c_str());
-  // The console answers in words; what it could not do starts with these.
-  const std::string& text = answer.value();
-  return text.starts_with("there is no link") || text.starts_with("there are 256") ? kExitFailed : kExitOk;
+  std::printf("%s\n", answer.value().text.c_str());
+  return answer.value().granted ? kExitOk : kExitFailed;
 }
 
 std::string in_quotes(const std::string& text) {

@@ -59,7 +59,7 @@ struct Client final : EndpointEvents {
 
   void on_connected(ConnectionId id, const KeyFingerprint&, const std::string&) override {
     connection = id;
-    say(wire::Hello{wire::kProtocolVersion, token_, "bench", {}});
+    say(wire::Hello{wire::kProtocolVersion, token_, "bench", {}, 0, {}});
   }
   void on_stream(ConnectionId, std::int64_t stream, std::span<const std::uint8_t> bytes, bool) override {
     if (stream != control_) return;

@@ -121,7 +121,7 @@ class BenchHost {
     ServerOptions options;
     options.hands_to_start = 0;
     options.limits = {8, spectators};
-    options.connections_an_address = 10'000;
+    options.admission.a_site = 10'000;
     server_ = std::make_unique<Server>(std::move(world), options);
     EndpointOptions link;
     link.max_connections = spectators + 64;
@@ -132,7 +132,7 @@ class BenchHost {
     hold = server_->links().create(wire::Role::kParticipant, {}, 1)->token;
     watch = server_->links().create(wire::Role::kSpectator, {}, 1)->token;
     loop_ = std::make_unique<NetLoop>(*server_, *endpoint_);
-    pictures_ = std::make_unique<PictureThread>(channel_.pictures(), desk_, 0.01, 0,
+    pictures_ = std::make_unique<PictureThread>(channel_.pictures(), desk_, demand_, 0.01, 0,
                                                 [this] { server_->mailbox().wake(); });
     loop_->start();
     world_ = std::make_unique<ServedWorldThread>(channel_, server_->mailbox(), particles);
@@ -152,6 +152,7 @@ class BenchHost {
  private:
   Scene scene_ = small_scene();
   Channel channel_;
+  PictureDemand demand_;
   PictureDesk desk_;
   Identity identity_ = Identity::generate();
   std::unique_ptr<Server> server_;

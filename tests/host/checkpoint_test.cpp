@@ -3,8 +3,10 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstring>
 #include <random>
+#include <thread>
 
 #include "host/keep/rebuild.h"
 #include "host/keep/secrets.h"
@@ -96,14 +98,48 @@ TEST(Checkpoint, ResumedIsTheRunThatWasNeverStopped) {
   EXPECT_EQ(facts.st_mode & 0777, 0600u);
 }
 
+/// Waits until the writer has copied the world so many times.
+bool wait_for_copies(const CheckpointWriter& writer, std::uint64_t copies) {
+  for (int i = 0; i < 2000 && writer.report().copies < copies; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  return writer.report().copies >= copies;
+}
+
+TEST(Checkpoint, AHundredCommandsCopyTheWorldAtTheInterval) {
+  const CheckpointOptions options = checkpoint_options(fresh_folder(), 1.0);
+  HostOptions host = until(1e9);
+  host.paused = true;
+  Rig rig(host);
+  auto writer = checkpoint(rig, options);
+  rig.host.start();
+  const auto begin = std::chrono::steady_clock::now();
+  for (int i = 0; i < 500; ++i)
+    ASSERT_TRUE(rig.host.ask({HostAction::kGravityScale, 0, 0.001 * (i + 1)}).get());
+  const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const std::uint64_t copies = writer->report().copies;
+  std::printf("500 commands in %.2f s: %llu copies of the world\n", took,
+              static_cast<unsigned long long>(copies));
+  EXPECT_LE(static_cast<double>(copies), took / options.interval + 1.0);
+  ASSERT_TRUE(wait_for_copies(*writer, copies + 1)) << "the last one is kept too, while the world stands";
+  writer->flush();
+  const Result<Checkpoint> read = read_checkpoint(options.file);
+  ASSERT_TRUE(read) << read.error().text();
+  World world = small_world().world();
+  ASSERT_TRUE(world.restore(read.value().world));
+  EXPECT_EQ(world.gravity_scale(), 0.5);
+  rig.host.request_stop();
+  rig.host.wait();
+}
+
 TEST(Checkpoint, OfAStandingWorldFollowsTheSessionAndTheSwitches) {
-  const CheckpointOptions options = checkpoint_options(fresh_folder(), 1e9);
+  const CheckpointOptions options = checkpoint_options(fresh_folder(), 0.02);
   HostOptions host = until(1e9);
   host.paused = true;
   Rig rig(host);
   auto writer = checkpoint(rig, options);
   rig.host.start();
   ASSERT_TRUE(rig.host.ask({HostAction::kGravityScale, 0, 0.25}).get());
+  ASSERT_TRUE(wait_for_copies(*writer, 1));
   writer->set_session({9});
   writer->flush();
   const Result<Checkpoint> read = read_checkpoint(options.file);

@@ -70,6 +70,7 @@ class HonestPeer::Line final : public EndpointEvents {
   void on_connected(ConnectionId id, const KeyFingerprint&, const std::string&) override {
     connection_ = id;
     wire::Hello hello;
+    hello.capabilities = 0;  // it reads whole rosters
     hello.token = token_;
     hello.name = kName;
     say(hello);

@@ -132,19 +132,22 @@ class MemoryEndpoint final : public Endpoint {
 
   bool send_stream(ConnectionId id, std::int64_t stream, std::span<const std::uint8_t> bytes,
                    bool end) override {
+    return send_shared(id, stream,
+                       std::make_shared<const std::vector<std::uint8_t>>(bytes.begin(), bytes.end()), end);
+  }
+  bool send_shared(ConnectionId id, std::int64_t stream, SharedBytes bytes, bool end) override {
     const std::lock_guard lock(network_->mutex);
     const auto found = mine_.find(id);
     if (found == mine_.end() || !found->second.connection->open) return false;
     Connection& c = *found->second.connection;
     Way& way = c.ways[found->second.direction];
     Way& back = c.ways[1 - found->second.direction];
-    way.stats.bytes_sent += bytes.size();
+    way.stats.bytes_sent += bytes->size();
     if (c.dark || !back.from) return true;
     const ConnectionId there = back.id;
-    std::vector<std::uint8_t> copy(bytes.begin(), bytes.end());
     back.from->add(network_->now() + to_nanoseconds(c.link.delay),
-                   [there, stream, end, copy = std::move(copy)](EndpointEvents& events) {
-                     events.on_stream(there, stream, copy, end);
+                   [there, stream, end, bytes = std::move(bytes)](EndpointEvents& events) {
+                     events.on_stream(there, stream, *bytes, end);
                    });
     network_->changed.notify_all();
     return true;

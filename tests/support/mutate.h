@@ -17,6 +17,7 @@ namespace slosh::wire {
 class Mutator {
  public:
   static constexpr bool kReads = false;
+  bool agreed(Capabilities) const { return true; }
   Mutator(Bytes& out, std::size_t which) : out_(out), which_(which) {}
 
   bool done() const { return !field_.empty(); }

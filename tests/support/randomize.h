@@ -17,6 +17,7 @@ namespace slosh::wire {
 class Randomizer {
  public:
   static constexpr bool kReads = false;
+  bool agreed(Capabilities) const { return true; }
   /// Lists get `least_list` to `most_list` elements, as far as their limits allow.
   explicit Randomizer(std::uint64_t seed, std::size_t least_list = 0, std::size_t most_list = 4)
       : random_(seed), least_list_(least_list), most_list_(most_list) {}

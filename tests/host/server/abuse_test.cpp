@@ -13,7 +13,8 @@ namespace {
 ServerOptions running() {
   ServerOptions options;
   options.hands_to_start = 0;
-  options.connections_an_address = 40;
+  options.admission.a_site = 40;
+  options.admission.strangers = 48;
   return options;
 }
 
@@ -68,9 +69,9 @@ TEST_F(Abuse, AnExpiredLinkAdmitsNobodyNew) {
 
 TEST_F(Abuse, AnotherVersionIsToldSo) {
   peers.push_back(std::make_unique<ScriptedPeer>(network, 9));
-  peers.back()->say(wire::Hello{2, hold, "Eve", {}});
+  peers.back()->say(wire::Hello{9, hold, "Eve", {}, 0, {}});
   go(0.1);
-  expect_refused(*peers.back(), wire::RefusalCode::kVersion, "version 2");
+  expect_refused(*peers.back(), wire::RefusalCode::kVersion, "version 9");
 }
 
 TEST_F(Abuse, WhoSaysNothingIsClosed) {
@@ -221,6 +222,96 @@ TEST_F(Abuse, OneAddressGetsOnlySoManyConnections) {
   EXPECT_NE(peers.back()->reason.text.find("your address"), std::string::npos);
   EXPECT_TRUE(join(99, watch, {}, "198.51.100.2:9").in());
   expect_unharmed();
+}
+
+TEST_F(Abuse, OneIpv6NetworkCountsAsOneAddress) {
+  std::size_t in = 0;
+  for (std::uint8_t i = 10; i < 70; ++i) {
+    const std::string address = "[2001:db8:0:7::" + std::to_string(i) + "]:9";
+    in += join(i, watch, {}, address).in() ? 1 : 0;
+  }
+  EXPECT_EQ(in, 40u);
+  EXPECT_TRUE(join(98, watch, {}, "[2001:db8:0:8::1]:9").in()) << "the /64 beside it";
+  EXPECT_TRUE(join(99, watch, {}, "[::ffff:198.51.100.1]:9").in());
+  expect_unharmed();
+}
+
+class DoorTest : public Abuse {
+ protected:
+  /// Handshakes that are never followed by a Hello.
+  void idle(int count, const std::function<std::string(int)>& address_of) {
+    for (int i = 0; i < count; ++i)
+      peers.push_back(
+          std::make_unique<ScriptedPeer>(network, static_cast<std::uint8_t>(100 + i % 100), address_of(i)));
+    go(0.005);
+  }
+  std::size_t open() const {
+    std::size_t open = 0;
+    for (const auto& peer : peers) open += peer->connection != 0 && !peer->closed ? 1 : 0;
+    return open;
+  }
+};
+
+TEST_F(DoorTest, FiveHundredWhoSayNothingKeepNobodyOut) {
+  for (const bool one_site : {true, false}) {
+    idle(500, [&](int i) {
+      return one_site ? std::string("198.51.100.1:9") : "10.0." + std::to_string(i) + ".1:9";
+    });
+    EXPECT_LE(open(), 48u + 3u);
+    ScriptedPeer& ben = join(2, "Ben");
+    EXPECT_TRUE(ben.in()) << "somebody new";
+    idle(500, [&](int i) { return "10.1." + std::to_string(i) + ".1:9"; });
+    // A hand loses contact in the middle of it and comes back.
+    good.close("gone");
+    idle(200, [&](int i) { return "10.2." + std::to_string(i) + ".1:9"; });
+    peers.push_back(std::make_unique<ScriptedPeer>(network, 1, "203.0.113.9:1"));
+    ScriptedPeer& back = *peers.back();
+    go(0.005);
+    idle(500, [&](int i) { return "10.3." + std::to_string(i) + ".1:9"; });
+    EXPECT_FALSE(back.closed) << "a key that has a seat waits at the door whoever else comes";
+    back.hello(hold, "Ana");
+    go(0.1);
+    ASSERT_TRUE(back.in());
+    EXPECT_TRUE(back.welcomes[0].restored);
+    EXPECT_EQ(back.entry("Ana")->grips, (std::vector<std::uint32_t>{0}));
+    EXPECT_TRUE(ben.in());
+    back.close();
+    ben.say(wire::Bye{});
+    go(3.2, 0.1);
+    EXPECT_EQ(open(), 0u) << "nobody stays who says nothing";
+  }
+}
+
+TEST_F(DoorTest, WhoComesFromElsewhereIsNotTurnedOutByACrowd) {
+  idle(47, [](int) { return "198.51.100.1:9"; });
+  peers.push_back(std::make_unique<ScriptedPeer>(network, 2, "203.0.113.2:1"));
+  ScriptedPeer& ben = *peers.back();
+  go(0.005);
+  idle(300, [](int) { return "198.51.100.1:9"; });
+  EXPECT_FALSE(ben.closed) << "the crowd's own oldest go";
+  ben.hello(hold, "Ben");
+  go(0.05);
+  EXPECT_TRUE(ben.in());
+}
+
+TEST(Admission, TheSameKnownKeyWaitsOnce) {
+  Admission door({});
+  const KeyFingerprint key{7};
+  EXPECT_FALSE(door.arrive(1, key, "192.0.2.1:1", true, 0).goes);
+  EXPECT_EQ(door.arrive(2, key, "192.0.2.1:2", true, 0).goes, 1u);
+  door.admit(2);
+  EXPECT_FALSE(door.arrive(3, key, "192.0.2.1:3", true, 0).goes) << "who is in is not turned out here";
+  EXPECT_EQ(door.strangers(), 0u);
+  EXPECT_TRUE(door.late(to_nanoseconds(2.9)).empty());
+  EXPECT_EQ(door.late(to_nanoseconds(3.1)), (std::vector<ConnectionId>{3}));
+}
+
+TEST(Admission, SitesAreIpv4AddressesAndIpv6Networks) {
+  EXPECT_EQ(site_of("192.0.2.7:4433"), "192.0.2.7");
+  EXPECT_EQ(site_of("[2001:db8:1:2:3:4:5:6]:1"), "2001:db8:1:2::/64");
+  EXPECT_EQ(site_of("[2001:db8:1:2:ffff::9]:2"), "2001:db8:1:2::/64");
+  EXPECT_EQ(site_of("[::ffff:192.0.2.7]:4433"), "192.0.2.7");
+  EXPECT_EQ(site_of("[fe80::1%eth0]:4433"), "fe80::/64");
 }
 
 TEST_F(Abuse, AnotherStreamIsRefused) {

@@ -64,5 +64,65 @@ TEST_F(Churn, TwoThousandPeersLeaveNothingBehind) {
   EXPECT_LT(after - before, 64 * 1024) << "bytes that 2 000 joins left";
 }
 
+TEST_F(Churn, ComingsAndGoingsAreToldAsDifferences) {
+  const auto observer = [&](std::uint8_t key, wire::Capabilities capabilities) -> ScriptedPeer& {
+    peers.push_back(std::make_unique<ScriptedPeer>(network, key));
+    peers.back()->capabilities = capabilities;
+    peers.back()->hello(hold, "observer " + std::to_string(key));
+    return *peers.back();
+  };
+  ScriptedPeer& changes = observer(201, wire::kOurCapabilities);
+  ScriptedPeer& whole = observer(202, 0);
+  go(0.2);
+  for (std::uint8_t key = 1; key <= 50; ++key) join(key, watch, "person number " + std::to_string(key));
+  go(0.5);
+  const std::size_t changes_before = changes.control_bytes;
+  const std::size_t whole_before = whole.control_bytes;
+  for (int round = 0; round < 4; ++round) {
+    for (std::size_t i = 2; i < 52; ++i) {
+      const auto key = static_cast<std::uint8_t>(i - 1);
+      peers[i]->say(wire::Bye{});
+      go(0.06);
+      peers[i] = std::make_unique<ScriptedPeer>(network, key);
+      peers[i]->hello(watch, "person number " + std::to_string(key));
+      go(0.06);
+      ASSERT_TRUE(peers[i]->in());
+    }
+  }
+  go(0.2);
+  const std::size_t by_changes = changes.control_bytes - changes_before;
+  const std::size_t by_whole = whole.control_bytes - whole_before;
+  std::printf("200 goings and comings among 50: %zu bytes as differences, %zu as whole rosters\n", by_changes,
+              by_whole);
+  EXPECT_LT(by_changes * 10, by_whole);
+  EXPECT_LT(by_changes, 400u * 60u);
+  // Whichever way, all know the same, and it is right.
+  const std::vector<wire::RosterEntry> truth = server->seats().message().peers;
+  for (const auto& peer : peers) EXPECT_EQ(peer->rosters.back().peers, truth);
+}
+
+TEST(RosterTold, WhoCameBetweenTwoChangesKnowsTheSame) {
+  const auto entry = [](std::uint32_t number, const std::string& name) {
+    return wire::RosterEntry{number, name, wire::Role::kSpectator, true, {}};
+  };
+  wire::RosterTold told;
+  std::vector<wire::RosterEntry> early;
+  wire::apply(told.change({{entry(0, "Ana"), entry(1, "Ben")}}), early);
+  // Between two changes Cem comes; Dan is given the whole roster; Cem goes, and Eve takes his number or not.
+  for (const bool reused : {false, true}) {
+    const wire::Roster with_cem{{entry(0, "Ana"), entry(1, "Ben"), entry(2, "Cem")}};
+    told.whole(with_cem);
+    std::vector<wire::RosterEntry> late = with_cem.peers;
+    wire::Roster now{{entry(0, "Ana"), entry(1, "Ben")}};
+    if (reused) now.peers.push_back(entry(2, "Eve"));
+    const wire::RosterChange change = told.change(now);
+    wire::apply(change, early);
+    wire::apply(change, late);
+    EXPECT_EQ(early, now.peers);
+    EXPECT_EQ(late, now.peers);
+  }
+  EXPECT_TRUE(told.change({early}).changed.empty());
+}
+
 }  // namespace
 }  // namespace slosh

@@ -30,6 +30,9 @@ TEST(Console, EveryCommandOfTheHelpIsUnderstood) {
   EXPECT_EQ(good("release left").verb, ConsoleVerb::kRelease);
   EXPECT_EQ(good("kick 'Ana 2'").text, "Ana 2");
   EXPECT_EQ(good("kick \"Ana's\"").text, "Ana's");
+  EXPECT_EQ(good("kick Ana").lifetime_ns, 0);
+  EXPECT_EQ(good("kick 'Ana 2' for 1h").lifetime_ns, 3600 * kSecond);
+  EXPECT_EQ(good("unban Ana").verb, ConsoleVerb::kUnban);
 }
 
 TEST(Console, LinksTakeANameARoleAndATime) {
@@ -71,6 +74,10 @@ TEST(Console, WhatIsWrongIsSaidInWords) {
                            "set viscosity 1x",
                            "set gravity moon 1",
                            "kick",
+                           "kick Ana for",
+                           "kick Ana for ever",
+                           "kick Ana 10m",
+                           "unban",
                            "release",
                            "quit now",
                            "link aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa",

@@ -39,7 +39,7 @@ class RealServer {
     };
     ServerOptions options;
     options.hands_to_start = 0;
-    options.hello_patience = 60.0;  // whoever is put out is put out for want of room
+    options.admission.hello_patience = 60.0;  // whoever is put out is put out for want of room
     options.silence = 5.0;          // of a loaded machine
     options.tell = [this](const std::string& line) { told.push_back(line); };
     options.limits.participants = 6;

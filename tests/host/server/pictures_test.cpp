@@ -60,7 +60,8 @@ class Watcher final : public EndpointEvents {
     fingerprint.fill(key);
     end = network.connect(*this, fingerprint, "192.0.2.9:" + std::to_string(key));
     const std::int64_t stream = end->open_stream(1, true);
-    end->send_stream(1, stream, wire::control(wire::Hello{wire::kProtocolVersion, token, "w", {}}), false);
+    end->send_stream(1, stream, wire::control(wire::Hello{wire::kProtocolVersion, token, "w", {}, 0, {}}),
+                     false);
   }
   void turn(std::int64_t now_ns) {
     end->run_once(0);
@@ -195,7 +196,7 @@ TEST_F(Pictures, WhoDrawsNothingIsSentNone) {
   EXPECT_GT(draws.snapshot_pieces, 50u);
   EXPECT_EQ(blind.bodies.size(), draws.bodies.size()) << "bodies come as to everybody";
   EXPECT_EQ(server->tier_of(blind.welcomes[0].peer), -1);
-  EXPECT_NE(server->command("who").find("gets no particles"), std::string::npos);
+  EXPECT_NE(server->command("who").text.find("gets no particles"), std::string::npos);
   std::printf("2 s of 4000 particles: %zu bytes of snapshots to who draws, %zu to who does not\n",
               draws.snapshot_bytes, blind.snapshot_bytes);
   EXPECT_GT(draws.snapshot_bytes, 20000u);

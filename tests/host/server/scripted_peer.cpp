@@ -59,7 +59,7 @@ void ScriptedPeer::raw_datagram(const wire::Bytes& bytes) {
 }
 
 void ScriptedPeer::hello(const wire::Token& token, const std::string& name, wire::PictureWish pictures) {
-  say(wire::Hello{wire::kProtocolVersion, token, name, pictures});
+  say(wire::Hello{wire::kProtocolVersion, token, name, pictures, capabilities, later});
 }
 
 void ScriptedPeer::pose(std::uint32_t grip, std::uint64_t number, double x, std::int64_t stamp_ns) {
@@ -91,14 +91,22 @@ void ScriptedPeer::on_stream(ConnectionId, std::int64_t stream, std::span<const 
                              bool ended) {
   if (stream != control_) {
     scene_bytes += bytes.size();
+    scene_data = bytes.data();
     scene_ended = scene_ended || ended;
     return;
   }
   const wire::Fault found = splitter_.feed(bytes, [&](std::uint64_t type, wire::ByteView payload) {
+    control_bytes += payload.size();
+    order.push_back(static_cast<wire::ControlType>(type));
     return wire::dispatch(wire::HostControl{}, type, payload, [&]<class M>(const M& message) {
       if constexpr (std::is_same_v<M, wire::Welcome>) keep(welcomes, message);
       if constexpr (std::is_same_v<M, wire::Refused>) keep(refusals, message);
       if constexpr (std::is_same_v<M, wire::Roster>) keep(rosters, message);
+      if constexpr (std::is_same_v<M, wire::RosterChange>) {
+        keep(roster_changes, message);
+        rosters.push_back(rosters.back());
+        wire::apply(message, rosters.back().peers);
+      }
       if constexpr (std::is_same_v<M, wire::Answer>) keep(answers, message);
       if constexpr (std::is_same_v<M, wire::WorldInfo>) keep(worlds, message);
       if constexpr (std::is_same_v<M, wire::Notice>) keep(notices, message.text);

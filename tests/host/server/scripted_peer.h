@@ -10,6 +10,7 @@
 
 #include "host/server/server.h"
 #include "net/wire/all_messages.h"
+#include "net/wire/roster_change.h"
 #include "net/wire/stream_splitter.h"
 #include "tests/support/memory_endpoint.h"
 
@@ -57,6 +58,7 @@ class ScriptedPeer final : public EndpointEvents {
   std::vector<wire::Welcome> welcomes;
   std::vector<wire::Refused> refusals;
   std::vector<wire::Roster> rosters;
+  std::vector<wire::RosterChange> roster_changes;  ///< which `rosters` has applied
   std::vector<wire::Answer> answers;
   std::vector<wire::WorldInfo> worlds;
   std::vector<std::string> notices;
@@ -67,8 +69,13 @@ class ScriptedPeer final : public EndpointEvents {
   std::size_t snapshot_bytes = 0;
   std::size_t scene_bytes = 0;
   bool scene_ended = false;
-  std::string fault;  ///< of anything that did not decode
+  const std::uint8_t* scene_data = nullptr;  ///< where the scene's bytes lay
+  std::size_t control_bytes = 0;             ///< of payload, control messages
+  std::vector<wire::ControlType> order;      ///< types of all control messages
+  std::string fault;                         ///< of anything that did not decode
   std::uint32_t next_request = 1;
+  wire::Capabilities capabilities = wire::kOurCapabilities;  ///< that hello() names
+  wire::Bytes later;                                         ///< likewise
 
   void on_connected(ConnectionId id, const KeyFingerprint&, const std::string&) override { connection = id; }
   void on_stream(ConnectionId, std::int64_t stream, std::span<const std::uint8_t> bytes, bool ended) override;

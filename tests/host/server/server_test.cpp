@@ -1,6 +1,9 @@
 // The server against peers that say what they like, over a network in memory.
 #include "host/server/server.h"
 
+#include <algorithm>
+#include <set>
+
 #include "net/clock.h"
 #include "tests/host/server/scripted_peer.h"
 
@@ -39,6 +42,231 @@ TEST_F(ServerTest, ANewcomerGetsWelcomeSceneWorldAndRoster) {
   EXPECT_NE(ana.entry("Eve"), nullptr);
   EXPECT_TRUE(ana.noticed("Eve is watching"));
   EXPECT_EQ(ana.fault + eve.fault, "");
+}
+
+TEST_F(ServerTest, TheFirstMessagesComeInTheOrderOfThePage) {
+  const ScriptedPeer& ana = join(1, "Ana");
+  ASSERT_GE(ana.order.size(), 3u);
+  EXPECT_EQ(ana.order[0], wire::ControlType::kWelcome);
+  EXPECT_EQ(ana.order[1], wire::ControlType::kRoster);
+  EXPECT_EQ(ana.order[2], wire::ControlType::kWorldInfo);
+}
+
+TEST_F(ServerTest, OldAndNewPeersAgreeOnWhatBothKnow) {
+  ScriptedPeer& newest = join(1, "Ana");
+  const auto with = [&](std::uint8_t key, wire::Capabilities capabilities,
+                        const wire::Bytes& later) -> ScriptedPeer& {
+    peers.push_back(std::make_unique<ScriptedPeer>(network, key));
+    peers.back()->capabilities = capabilities;
+    peers.back()->later = later;
+    peers.back()->hello(hold, "P" + std::to_string(key));
+    ScriptedPeer& peer = *peers.back();
+    go(0.1);
+    return peer;
+  };
+  ScriptedPeer& plain = with(2, 0, {});
+  // One from the future: bits that nobody knows, and fields for them.
+  ScriptedPeer& future =
+      with(3, wire::kOurCapabilities | wire::Capabilities{1} << 40, wire::Bytes(300, 0xee));
+  ASSERT_TRUE(newest.in() && plain.in() && future.in());
+  EXPECT_EQ(newest.welcomes[0].capabilities, wire::kOurCapabilities);
+  EXPECT_EQ(plain.welcomes[0].capabilities, 0u);
+  EXPECT_EQ(future.welcomes[0].capabilities, wire::kOurCapabilities) << "no bit that the host does not know";
+  newest.take(0);
+  go(0.2);
+  for (const ScriptedPeer* peer : {&newest, &plain, &future}) {
+    ASSERT_NE(peer->entry("Ana"), nullptr);
+    EXPECT_EQ(peer->entry("Ana")->grips, (std::vector<std::uint32_t>{0}));
+    EXPECT_EQ(peer->rosters.back().peers.size(), 3u);
+    EXPECT_EQ(peer->fault, "");
+  }
+  EXPECT_TRUE(plain.roster_changes.empty());
+  EXPECT_FALSE(future.roster_changes.empty());
+}
+
+TEST_F(ServerTest, OneCopyOfTheSceneServesEverybody) {
+  std::set<const std::uint8_t*> seen;
+  for (std::uint8_t key = 1; key <= 40; ++key) {
+    ScriptedPeer& peer = join(key, watch);
+    ASSERT_TRUE(peer.scene_ended);
+    seen.insert(peer.scene_data);
+  }
+  EXPECT_EQ(seen.size(), 1u);
+}
+
+TEST_F(ServerTest, ARefusedPoseIsToldToItsHolderOnceAKind) {
+  ScriptedPeer& ana = join(1, "Ana");
+  ScriptedPeer& ben = join(2, "Ben");
+  ana.take(0);
+  go(0.1);
+  for (int i = 0; i < 500; ++i) server->on_refused_pose(0, PoseFault::kTooFast);
+  server->on_refused_pose(0, PoseFault::kOutOfRange);
+  server->on_refused_pose(1, PoseFault::kTooFast);  // nobody's
+  go(0.1);
+  const auto told = [](const ScriptedPeer& peer) {
+    return std::count_if(peer.notices.begin(), peer.notices.end(), [](const std::string& text) {
+      return text.find("your poses for grip 'left' are not used: ") != std::string::npos;
+    });
+  };
+  EXPECT_EQ(told(ana), 2);
+  EXPECT_TRUE(ana.noticed("moves or jumps faster than 20 m/s"));
+  EXPECT_TRUE(ana.noticed("more than 5 m outside the scene"));
+  EXPECT_EQ(told(ben), 0);
+  ana.release(0);
+  ana.take(0);
+  go(0.1);
+  server->on_refused_pose(0, PoseFault::kTooFast);
+  go(0.1);
+  EXPECT_EQ(told(ana), 3) << "a new hold is told anew";
+}
+
+TEST_F(ServerTest, WhoIsKickedForATimeStaysOutByTheirKeyAlsoOverARestart) {
+  ScriptedPeer& ana = join(1, "Ana");
+  join(2, "Ben");
+  EXPECT_FALSE(server->command("kick Nobody for 10m").granted);
+  EXPECT_TRUE(server->command("kick Ana for 10m").granted);
+  go(0.2);
+  ASSERT_EQ(ana.refusals.size(), 1u);
+  EXPECT_EQ(ana.refusals[0].code, wire::RefusalCode::kBanned);
+  ASSERT_EQ(join(1, "Ana").refusals.size(), 1u);
+  EXPECT_EQ(peers.back()->refusals[0].code, wire::RefusalCode::kBanned);
+  EXPECT_NE(peers.back()->refusals[0].text.find("for another 9 min"), std::string::npos)
+      << peers.back()->refusals[0].text;
+  EXPECT_NE(server->command("who").text.find("Ana, kept out for another 9 min"), std::string::npos);
+  EXPECT_NE(server->command("links").text.find("Ana, kept out for another 9 min"), std::string::npos);
+  EXPECT_TRUE(join(3, "Cem").in()) << "the link still works for others";
+
+  SessionState state;
+  ASSERT_FALSE(wire::decode(server->session_blob(), state));
+  ASSERT_EQ(state.bans.size(), 1u);
+  EXPECT_EQ(state.bans[0].name, "Ana");
+  BanList again;
+  again.restore(state.bans);
+  KeyFingerprint key{};
+  key.fill(1);
+  EXPECT_GT(again.until(key, server->unix_now()), 0);
+
+  go(600.0, 1.0);
+  EXPECT_TRUE(join(1, "Ana").in()) << "the time is over";
+  server->command("kick Ana for 10m");
+  go(0.1);
+  EXPECT_FALSE(server->command("unban Nobody").granted);
+  EXPECT_TRUE(server->command("unban Ana").granted);
+  EXPECT_TRUE(join(1, "Ana").in());
+  EXPECT_TRUE(server->command("kick Ana").granted);
+  go(0.1);
+  EXPECT_TRUE(join(1, "Ana").in()) << "without a time they may come again";
+}
+
+class CappedServerTest : public ServedTest {
+ protected:
+  static ServerOptions two() {
+    ServerOptions options = running();
+    options.limits = {2, 2};
+    return options;
+  }
+  CappedServerTest() : ServedTest(two()) {}
+};
+
+TEST_F(CappedServerTest, TheLimitHoldsForKnownKeysAndAnotherRoleToo) {
+  ScriptedPeer& ana = join(1, "Ana");
+  ScriptedPeer& ben = join(2, "Ben");
+  ScriptedPeer& eve = join(3, watch, "Eve");
+  EXPECT_FALSE(join(4, "Cem").in());
+  ASSERT_EQ(join(3, hold, "Eve").refusals.size(), 1u) << "who watches may not become a third with hands";
+  EXPECT_EQ(peers.back()->refusals[0].code, wire::RefusalCode::kFull);
+  EXPECT_TRUE(eve.in()) << "and stays where they are";
+  EXPECT_FALSE(eve.closed);
+
+  ana.close();  // contact is lost: the place waits for her
+  go(0.1);
+  EXPECT_FALSE(join(4, "Cem").in());
+  EXPECT_TRUE(join(1, "Ana").in());
+  ben.say(wire::Bye{});
+  go(0.1);
+  EXPECT_TRUE(join(4, "Cem").in()) << "who leaves frees the place";
+  EXPECT_FALSE(join(2, "Ben").in()) << "and has it no more";
+  EXPECT_EQ(server->figures().participants, 2u);
+}
+
+class ClockServerTest : public ServedTest {
+ protected:
+  explicit ClockServerTest(std::shared_ptr<std::int64_t> system =
+                               std::make_shared<std::int64_t>(1'800'000'000 * kNanosecondsPerSecond),
+                           std::shared_ptr<std::int64_t> elapsed = std::make_shared<std::int64_t>(5))
+      : ServedTest(with(system, elapsed)), system_ns(*system), elapsed_ns(*elapsed), held_(system, elapsed) {}
+  static ServerOptions with(const std::shared_ptr<std::int64_t>& system,
+                            const std::shared_ptr<std::int64_t>& elapsed) {
+    ServerOptions options = running();
+    options.unix_clock = [system] { return *system; };
+    options.elapsed_clock = [elapsed] { return *elapsed; };
+    return options;
+  }
+  std::int64_t& system_ns;
+  std::int64_t& elapsed_ns;
+
+ private:
+  std::pair<std::shared_ptr<std::int64_t>, std::shared_ptr<std::int64_t>> held_;
+};
+
+TEST_F(ClockServerTest, AnExpiredLinkStaysExpiredWhateverTheClocksDo) {
+  constexpr std::int64_t kMinute = 60 * kNanosecondsPerSecond;
+  ASSERT_TRUE(join(1, "Ana").in());
+  server->command("expire " + hold_id + " 10m");
+  EXPECT_TRUE(join(2, "Ben").in());
+  // The machine sleeps for an hour: the steady clock stands meanwhile.
+  system_ns += 60 * kMinute;
+  elapsed_ns += 60 * kMinute;
+  EXPECT_FALSE(join(3, "Cem").in());
+  // Somebody sets the clock back to before.
+  system_ns -= 90 * kMinute;
+  EXPECT_FALSE(join(4, "Dan").in());
+  // And the host is started anew with that clock.
+  server->command("link");
+  go(0.1);
+  SessionState state;
+  ASSERT_FALSE(wire::decode(server->session_blob(), state));
+  EXPECT_GE(state.seen_ns, system_ns + 90 * kMinute);
+  LastingClock again([&] { return system_ns; }, [&] { return elapsed_ns; });
+  again.not_before(state.seen_ns);
+  EXPECT_GE(again.now(), state.seen_ns);
+  // Set back while a link has time left, it does not get more of it.
+  const LinkRecord* link =
+      server->links().create(wire::Role::kParticipant, {}, server->unix_now(), 10 * kMinute);
+  const wire::Token token = link->token;
+  system_ns -= 600 * kMinute;
+  elapsed_ns += 11 * kMinute;
+  EXPECT_FALSE(join(5, token, "Eli").in());
+}
+
+TEST_F(ServerTest, NobodyBearsANameThatLooksLikeAnothersOrLikeANotice) {
+  const auto name_of = [&](std::uint8_t key, const std::string& wish) {
+    return join(key, wish).welcomes.at(0).name;
+  };
+  EXPECT_EQ(name_of(1, "Ana"), "Ana");
+  EXPECT_EQ(name_of(2, "Ana"), "Ana 2");
+  EXPECT_EQ(name_of(3, "\u0410na"), "\u0410na 3") << "a Cyrillic A";
+  EXPECT_EQ(name_of(4, "A\u200bna"), "Ana 4") << "a space of no width";
+  EXPECT_EQ(name_of(5, " "), "guest 1");
+  EXPECT_EQ(name_of(6, "Ben has left"), "Ben");
+  EXPECT_EQ(name_of(7, "ana"), "ana 5");
+}
+
+TEST_F(ServerTest, ANameThatALinkWasMadeForIsNobodyElses) {
+  EXPECT_TRUE(server->command("link Zoe").granted);
+  const wire::Token token = server->links().links().back().token;
+  EXPECT_EQ(join(1, "Zoe").welcomes.at(0).name, "Zoe 2") << "by the link for anybody";
+  EXPECT_EQ(join(2, "zo\u0435").welcomes.at(0).name, "zo\u0435 3");
+  EXPECT_EQ(join(3, token, "whoever").welcomes.at(0).name, "Zoe");
+  EXPECT_FALSE(server->command("link '\u00a0'").granted);
+}
+
+TEST_F(ServerTest, NamesThatCanBeShownCanBeTyped) {
+  ScriptedPeer& bad = join(1, "Z\u00eb\u00e9");
+  EXPECT_TRUE(server->command("kick Zee for 10m").granted);
+  go(0.1);
+  EXPECT_TRUE(bad.closed);
+  EXPECT_TRUE(server->command("unban zee").granted);
 }
 
 TEST_F(ServerTest, GripsAreTakenReleasedAndRefusedInWords) {
@@ -368,30 +596,30 @@ TEST_F(ServerTest, TheConsoleRulesTheSession) {
   ScriptedPeer& ana = join(1, "Ana");
   ana.take(0);
   go(0.1);
-  EXPECT_NE(server->command("who").find("Ana, participant, grip 'left'"), std::string::npos);
-  EXPECT_NE(server->command("links").find(hold_id), std::string::npos);
-  EXPECT_NE(server->command("links").find("used by Ana"), std::string::npos);
-  EXPECT_NE(server->command("status").find("1 with hands"), std::string::npos);
-  EXPECT_NE(server->command("nonsense").find("help"), std::string::npos);
-  EXPECT_NE(server->command("link Ben for 10m").find("for Ben"), std::string::npos);
+  EXPECT_NE(server->command("who").text.find("Ana, participant, grip 'left'"), std::string::npos);
+  EXPECT_NE(server->command("links").text.find(hold_id), std::string::npos);
+  EXPECT_NE(server->command("links").text.find("used by Ana"), std::string::npos);
+  EXPECT_NE(server->command("status").text.find("1 with hands"), std::string::npos);
+  EXPECT_NE(server->command("nonsense").text.find("help"), std::string::npos);
+  EXPECT_NE(server->command("link Ben for 10m").text.find("for Ben"), std::string::npos);
   EXPECT_EQ(server->links().links().back().name, "Ben");
   EXPECT_NE(server->links().links().back().expires_ns, 0);
-  EXPECT_NE(server->command("release left").find("from Ana"), std::string::npos);
+  EXPECT_NE(server->command("release left").text.find("from Ana"), std::string::npos);
   go(0.1);
   EXPECT_TRUE(ana.noticed("the host took grip 'left' from Ana"));
   EXPECT_TRUE(ana.entry("Ana")->grips.empty());
-  EXPECT_NE(server->command("release 9").find("no grip"), std::string::npos);
+  EXPECT_NE(server->command("release 9").text.find("no grip"), std::string::npos);
   server->command("set viscosity water 0.2");
   server->command("set gravity 0.5");
   server->command("reset");
   ASSERT_EQ(commands.size(), 3u);
   EXPECT_EQ(commands[0].value, 0.2);
-  EXPECT_NE(server->command("set viscosity honey 1").find("water"), std::string::npos);
-  EXPECT_NE(server->command("kick Nobody").find("nobody"), std::string::npos);
+  EXPECT_NE(server->command("set viscosity honey 1").text.find("water"), std::string::npos);
+  EXPECT_NE(server->command("kick Nobody").text.find("nobody"), std::string::npos);
   server->command("kick Ana");
   go(0.1);
   EXPECT_TRUE(ana.closed);
-  EXPECT_EQ(server->command("who"), "nobody is here");
+  EXPECT_EQ(server->command("who").text, "nobody is here");
   server->command("quit");
   EXPECT_TRUE(server->quit_asked());
 }
@@ -405,7 +633,7 @@ TEST_F(ServerTest, AnExpiredLinkLetsItsPeopleBackForAMinuteAndRevokingEndsThatTo
     ana.pose(0, ++number, 0.15);
     if (!ben.closed) ben.datagram(wire::ClockPing{1, 1});
   };
-  EXPECT_NE(server->command("expire " + hold_id + " 10s").find("nobody new"), std::string::npos);
+  EXPECT_NE(server->command("expire " + hold_id + " 10s").text.find("nobody new"), std::string::npos);
   go(11.0, 0.05, alive);
   EXPECT_TRUE(ana.in() && ben.in()) << "who is in stays";
   EXPECT_EQ(join(3, "Cem").refusals.at(0).code, wire::RefusalCode::kBadToken) << "nobody new";
@@ -433,7 +661,7 @@ TEST_F(ServerTest, AnExpiredLinkIsKeptWhileItsPeopleAreHere) {
   server->command("revoke " + hold_id);
   go(0.1);
   EXPECT_TRUE(peers[0]->closed);
-  EXPECT_NE(server->command("link").find("for anybody"), std::string::npos) << "that made room";
+  EXPECT_NE(server->command("link").text.find("for anybody"), std::string::npos) << "that made room";
 }
 
 TEST_F(ServerTest, RevokingALinkPutsItsPeopleOut) {

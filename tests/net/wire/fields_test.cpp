@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <tuple>
 
 #include "net/wire/all_messages.h"
 #include "tests/net/wire/damage.h"
@@ -140,6 +141,47 @@ TEST(Fields, RareKindsRoundTripAndRefuse) {
   test::expect_cuts_refused(Rare{});
   EXPECT_EQ(test::expect_damages_refused(Rare{}), 5u + 4u + 6u);
   for (std::uint64_t seed = 0; seed < 200; ++seed) test::expect_round_trip(random_message<Rare>(seed));
+}
+
+struct Growing {
+  std::uint32_t old_field = 1;
+  std::uint32_t new_field = 2;
+};
+constexpr Capabilities kNewField = 1u << 5;
+template <class V>
+void visit(V& v, Growing& m) {
+  v.natural("old_field", m.old_field, 0, 100);
+  if (v.agreed(kNewField)) v.natural("new_field", m.new_field, 0, 100);
+}
+
+TEST(Capabilities, AFieldBehindOneIsThereOnlyWhenBothSidesSaidSo) {
+  const Growing sent{7, 9};
+  const Capabilities both = kNewField | 1;
+  for (const auto& [writer, reader, whole] : {std::tuple{both, both, true},
+                                              {0ul, 0ul, true},
+                                              {1ul, 1ul, true},
+                                              {both, 0ul, false},
+                                              {0ul, both, false}}) {
+    Bytes bytes;
+    ASSERT_FALSE(encode(sent, bytes, writer));
+    Growing back{0, 0};
+    const Fault fault = decode(bytes, back, reader);
+    EXPECT_EQ(!fault, whole) << fault.text();
+    if (!whole) continue;
+    EXPECT_EQ(back.old_field, 7u);
+    EXPECT_EQ(back.new_field, writer & kNewField ? 9u : 0u);
+  }
+}
+
+TEST(Capabilities, WhatANewerPeerAddsToItsHelloIsSkipped) {
+  Hello hello;
+  hello.name = "Ana";
+  hello.capabilities = ~Capabilities{0};
+  hello.later = Bytes(kMaxLater, 0xff);
+  Hello back;
+  ASSERT_FALSE(decode(encoded(hello), back));
+  EXPECT_EQ(back.name, "Ana");
+  EXPECT_EQ(back.capabilities & kOurCapabilities, kOurCapabilities);
 }
 
 }  // namespace

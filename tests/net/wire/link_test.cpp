@@ -38,9 +38,9 @@ TEST(Link, HasTheFormThatIsWrittenDown) {
   JoinLink link;
   link.addresses = {"127.0.0.1:4433"};
   EXPECT_EQ(text_of(link),
-            "slosh://127.0.0.1:4433/" + std::string(52, 'a') + "/" + std::string(25, 'a') + "d7jrdyj");
+            "slosh://v2/127.0.0.1:4433/" + std::string(52, 'a') + "/" + std::string(25, 'a') + "dd3u473");
   const std::string text = text_of(example());
-  EXPECT_TRUE(text.starts_with("slosh://192.0.2.7:4433,[2001:db8::7]:4433,bucket.example.org:443/"));
+  EXPECT_TRUE(text.starts_with("slosh://v2/192.0.2.7:4433,[2001:db8::7]:4433,bucket.example.org:443/"));
   EXPECT_EQ(text.size() - text.rfind('/'), 1 + 32u);
 }
 
@@ -117,28 +117,50 @@ TEST(Link, SaysWhichPartIsDamaged) {
       {std::string(kMaxLinkText + 1, 'a'), "it is too long"},
       {text.substr(0, key - 1), "the host's key and the token are missing"},
       {text.substr(0, token - 1), "the token is missing: the link is cut off or mistyped"},
-      {text + "/more", "more than three parts"},
+      {text + "/more", "more than four parts"},
       {text.substr(0, text.size() - 3), "the token is 29 characters long and not 32: the link is cut off"},
       {text.substr(0, key) + text.substr(key + 1), "the host's key is 51 characters long and not 52"},
       {with(key + 4, "1"), "the host's key has a character that is neither"},
       {with(token + 4, "0"), "the token has a character that is neither"},
       {with(token, text[token] == 'a' ? "b" : "a"),
        "its parts do not fit together: the link is cut off or mistyped"},
-      {"slosh:///" + text.substr(key), "address 1 '' has no port"},
-      {"slosh://host:0/" + text.substr(key), "address 1 'host:0' has no port from 1 to 65535"},
-      {"slosh://host:99999999999999999999/" + text.substr(key), "has no port from 1 to 65535"},
-      {"slosh://host:;;;;;;;;;;;;;;;;;;;;/" + text.substr(key), "has no port from 1 to 65535"},
-      {"slosh://host:-1/" + text.substr(key), "has no port from 1 to 65535"},
-      {"slosh://host:65536/" + text.substr(key), "has no port from 1 to 65535"},
-      {"slosh://ok:1,h!st:1/" + text.substr(key), "address 2 'h!st:1' is not a name or an IP address"},
-      {"slosh://::1:80/" + text.substr(key), "is not a name or an IP address (IPv6 in brackets)"},
-      {"slosh://[1.2.3.4]:80/" + text.substr(key), "is not an IPv6 address in brackets"},
-      {"slosh://a:1,a:1,a:1,a:1,a:1,a:1,a:1,a:1,a:1/" + text.substr(key), "it has 9 addresses, more than 8"},
+      {"slosh://v2//" + text.substr(key), "address 1 '' has no port"},
+      {"slosh://v2/host:0/" + text.substr(key), "address 1 'host:0' has no port from 1 to 65535"},
+      {"slosh://v2/host:99999999999999999999/" + text.substr(key), "has no port from 1 to 65535"},
+      {"slosh://v2/host:;;;;;;;;;;;;;;;;;;;;/" + text.substr(key), "has no port from 1 to 65535"},
+      {"slosh://v2/host:-1/" + text.substr(key), "has no port from 1 to 65535"},
+      {"slosh://v2/host:65536/" + text.substr(key), "has no port from 1 to 65535"},
+      {"slosh://v2/ok:1,h!st:1/" + text.substr(key), "address 2 'h!st:1' is not a name or an IP address"},
+      {"slosh://v2/::1:80/" + text.substr(key), "is not a name or an IP address (IPv6 in brackets)"},
+      {"slosh://v2/[1.2.3.4]:80/" + text.substr(key), "is not an IPv6 address in brackets"},
+      {"slosh://v2/a:1,a:1,a:1,a:1,a:1,a:1,a:1,a:1,a:1/" + text.substr(key),
+       "it has 9 addresses, more than 8"},
   };
   for (const auto& each : cases) {
     const std::string error = error_of(each.text);
     EXPECT_NE(error.find(each.words), std::string::npos) << each.text << "\n  " << error;
     EXPECT_NE(error.find("Copy the whole link anew"), std::string::npos) << error;
+  }
+}
+
+TEST(Link, OneOfAnotherVersionIsToldSo) {
+  // As the first version had it, with a check that was right then.
+  const std::string old =
+      "slosh://127.0.0.1:4433/" + std::string(52, 'a') + "/" + std::string(25, 'a') + "d7jrdyj";
+  EXPECT_EQ(error_of(old),
+            "link: it is of an older slosh. Ask the host for a new one; host and peers need the same slosh");
+  std::string text = text_of(example());
+  text.replace(text.find("v2"), 2, "v3");
+  EXPECT_EQ(
+      error_of(text),
+      "link: it is of a newer slosh: version 3 of the links, and this one reads 2. Use the slosh that the "
+      "host uses");
+  text.replace(text.find("v3"), 2, "v1");
+  EXPECT_NE(error_of(text).find("older slosh"), std::string::npos);
+  for (const char* version : {"v", "v02", "w2", "v2x", "v99999", "2"}) {
+    std::string other = text;
+    other.replace(other.find("v1"), 2, version);
+    EXPECT_NE(error_of(other).find("does not say which version"), std::string::npos) << other;
   }
 }
 

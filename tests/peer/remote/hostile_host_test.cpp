@@ -105,8 +105,10 @@ TEST(HostileHost, ValidMessagesOfAnyContentAreSurvived) {
     EXPECT_EQ(both.status().state, LinkState::kLive) << "no datagram ends a link";
     EXPECT_EQ(both.status().numbers.bad_datagrams, 0u) << "every one of them decodes";
     wire::for_each_message(wire::HostControl{}, [&]<class M>(const M&) {
+      // A second Welcome always ends it: half of the hosts say one.
+      const bool ends = std::is_same_v<M, wire::Welcome> && seed % 2 == 0;
       if constexpr (!std::is_same_v<M, wire::Refused> && !std::is_same_v<M, wire::Bye>) {
-        both.host.say(valid_message<M>(at));
+        if (!ends) both.host.say(valid_message<M>(at));
       }
       both.run(0.004);
       expect_sound(both);

@@ -196,6 +196,72 @@ TEST(RemoteLink, ARefusalEndsWithTheHostsWordsAndWhatToDo) {
             "192.0.2.9:4433: the host says: this link ended at noon. Ask the host for a new link");
 }
 
+TEST(RemoteLink, ABusyRefusalIsTriedAgain) {
+  Together both;
+  int hellos = 0;
+  both.host.on_hello = [&](const wire::Hello&) {
+    if (++hellos > 2) {
+      both.host.welcome();
+      both.host.send_scene();
+      return;
+    }
+    both.host.endpoint().close(both.host.connection, 1 + static_cast<int>(wire::RefusalCode::kBusy), "crowd");
+  };
+  ASSERT_TRUE(both.run_until(LinkState::kLive)) << "the third time";
+  EXPECT_EQ(both.connects, 3);
+  EXPECT_NE(both.notices().find("the host is busy (crowd); trying again"), std::string::npos);
+
+  Together always;
+  always.host.on_hello = [&](const wire::Hello&) {
+    always.host.endpoint().close(always.host.connection, 1 + static_cast<int>(wire::RefusalCode::kBusy),
+                                 "crowd");
+  };
+  ASSERT_TRUE(always.run_until(LinkState::kEnded, 40.0));
+  EXPECT_EQ(always.status().error->mend, "Join again in a while, with the same link");
+}
+
+TEST(RemoteLink, RosterChangesAreApplied) {
+  Together both;
+  ASSERT_TRUE(both.run(2.0, [&] { return both.status().held == std::vector<bool>{true, false}; }));
+  EXPECT_EQ(both.host.hellos[0].capabilities, wire::kOurCapabilities);
+  wire::RosterChange change;
+  change.changed.push_back({7, "Ben", wire::Role::kParticipant, true, {1}});
+  change.changed.push_back({3, "Ana", wire::Role::kParticipant, true, {}});
+  both.host.say(change);
+  ASSERT_TRUE(both.run(1.0, [&] { return both.status().held == std::vector<bool>{false, false}; }));
+  ASSERT_EQ(both.status().peers.size(), 2u);
+  EXPECT_EQ(both.status().peers[1].name, "Ben");
+  change = {};
+  change.gone = {7, 9};
+  both.host.say(change);
+  ASSERT_TRUE(both.run(1.0, [&] { return both.status().peers.size() == 1; }));
+  EXPECT_EQ(both.status().peers[0].name, "Ana");
+}
+
+TEST(LinkSteps, EveryStepEndsAndOnlyWhatMayComeLeadsOn) {
+  int ways = 0;
+  for (std::size_t s = 0; s < kLinkStepCount; ++s) {
+    const auto step = static_cast<LinkStep>(s);
+    const bool ended = step == LinkStep::kEnded;
+    EXPECT_EQ(next_step(step, LinkEvent::kEnd).has_value(), !ended);
+    if (!ended) EXPECT_EQ(next_step(step, LinkEvent::kEnd), LinkStep::kEnded);
+    for (std::size_t e = 0; e < kLinkEventCount; ++e) {
+      const std::optional<LinkStep> next = next_step(step, static_cast<LinkEvent>(e));
+      if (!next) continue;
+      ways += 1;
+      EXPECT_FALSE(ended) << "nothing comes after the end";
+      // Who was live once is never told again that nobody answered.
+      if (!before_live(step)) EXPECT_FALSE(before_live(*next));
+      // Only a handshake makes contact.
+      if (in_contact(*next) && !in_contact(step)) EXPECT_EQ(static_cast<LinkEvent>(e), LinkEvent::kAnswered);
+    }
+  }
+  EXPECT_EQ(ways, 22);
+  EXPECT_EQ(next_step(LinkStep::kLive, LinkEvent::kLost), LinkStep::kWaiting);
+  EXPECT_FALSE(next_step(LinkStep::kLive, LinkEvent::kReady));
+  EXPECT_FALSE(next_step(LinkStep::kIdle, LinkEvent::kAnswered));
+}
+
 TEST(RemoteLink, ARefusalThatOnlyTheClosingTellsIsOneToo) {
   Together both;
   ASSERT_TRUE(both.run_until(LinkState::kLive));

@@ -14,6 +14,7 @@ TEST(RemoteStatus, SaysWhoIsHere) {
                   {2, "Cyd", wire::Role::kSpectator, false, {}}};
   EXPECT_EQ(people_text(status, {"left", "right"}), "Ana: left\nBen (you)\nCyd (away) looks on")
       << "a grip that the scene has not is left out";
+  EXPECT_EQ(others_here(status), 1u) << "Ana: neither oneself nor who is away";
 }
 
 TEST(RemoteStatus, ALongListIsCut) {

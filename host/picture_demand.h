@@ -1,0 +1,27 @@
+// Whether anybody looks at the world's pictures: where the viewer's side says so and the host's loop reads
+// it.
+#pragma once
+
+#include <atomic>
+
+namespace slosh {
+
+/// Any thread; nobody waits. At first pictures are wanted.
+class PictureDemand {
+ public:
+  void want(bool wanted) {
+    if (!wanted_.exchange(wanted, std::memory_order_relaxed) && wanted)
+      asked_.store(true, std::memory_order_relaxed);
+  }
+  bool wanted() const { return wanted_.load(std::memory_order_relaxed); }
+
+  /// The host's side: somebody began to look, and no picture was made since. True once.
+  bool take_ask() { return asked_.exchange(false, std::memory_order_relaxed); }
+  void note_made() { asked_.store(false, std::memory_order_relaxed); }
+
+ private:
+  std::atomic<bool> wanted_{true};
+  std::atomic<bool> asked_{false};
+};
+
+}  // namespace slosh

@@ -1,0 +1,66 @@
+#include "host/server/state_sender.h"
+
+#include <algorithm>
+
+#include "net/clock.h"
+
+namespace slosh {
+namespace {
+
+constexpr std::int64_t kHandsEvery = 1'900'000;       // ns
+constexpr std::int64_t kStandingEvery = 100'000'000;  // ns between two sendings of bodies that stand still
+
+}  // namespace
+
+void StateSender::send_bodies(SeatTable& seats, std::int64_t now_ns) {
+  const bool fresh = channel_.bodies().update();
+  stale_ = stale_ || fresh;
+  if (peers_.nobody_sits()) return;
+  const BodyMessage& message = channel_.bodies().front();
+  const bool standing = !fresh && now_ns - bodies_sent_ns_ >= kStandingEvery;
+  if (!fresh && !standing) return;
+  if (stale_) parts_.set(message);
+  stale_ = false;
+  bodies_sent_ns_ = now_ns;
+  peers_.each_in([&](Peer& peer) {
+    const std::int64_t every =
+        to_nanoseconds(1.0 / (peer.participant ? rates_.participant : rates_.spectator));
+    if (!standing && message.rate > 0.0 && now_ns < peer.next_bodies_ns) return;
+    peer.next_bodies_ns = std::max(peer.next_bodies_ns, now_ns - every) + every;
+    std::uint64_t number = 0;
+    std::int64_t stamp = 0;
+    for (const std::uint32_t grip : seats.by_number(peer.seat)->grips) {
+      if (grip >= message.pose_numbers.size()) continue;
+      const HandTable::Used used = hands_.used(grip, message.pose_numbers[grip]);
+      if (used.number == 0 || (number != 0 && used.stamp_ns <= stamp)) continue;
+      number = used.number;
+      stamp = used.stamp_ns;
+    }
+    for (const SharedBytes& bytes : parts_.to(number, stamp))
+      endpoint_->send_datagram(peer.id, Priority::kState, bytes);
+  });
+}
+
+void StateSender::forward(const Peer& from, const wire::PoseSample& sample, std::int64_t now_ns) {
+  std::int64_t& next = next_hands_ns_[sample.grip];
+  if (now_ns < next) return;
+  next = std::max(next, now_ns - kHandsEvery) + kHandsEvery;
+  wire::Hands hands;
+  hands.hands.push_back({sample.grip, now_ns, sample.pose, sample.twist, sample.engaged});
+  to_other_hands(from.seat, hands);
+}
+
+void StateSender::let_go(std::uint32_t seat, const wire::Hands& hands) {
+  if (!hands.hands.empty()) to_other_hands(seat, hands);
+}
+
+void StateSender::to_other_hands(std::uint32_t but_seat, const wire::Hands& hands) {
+  SharedBytes bytes;
+  peers_.each_in([&](const Peer& other) {
+    if (!other.participant || other.seat == but_seat) return;
+    if (!bytes) bytes = std::make_shared<const wire::Bytes>(wire::datagram(hands));
+    endpoint_->send_datagram(other.id, Priority::kPose, bytes);
+  });
+}
+
+}  // namespace slosh

@@ -1,0 +1,51 @@
+// Bodies to everybody, hands to everybody else who has hands: as datagrams, at each peer's own pace.
+#pragma once
+
+#include <vector>
+
+#include "host/server/body_parts.h"
+#include "host/server/hands.h"
+#include "host/server/peer_table.h"
+#include "host/server/roster.h"
+
+namespace slosh {
+
+/// Hz at most that bodies are sent at.
+struct BodyRates {
+  double participant = 500.0;
+  double spectator = 60.0;
+};
+
+/// One thread, the network's.
+class StateSender {
+ public:
+  /// All but `scene` must outlive it.
+  StateSender(const Scene& scene, Channel& channel, const HandTable& hands, const PeerTable& peers,
+              BodyRates rates)
+      : channel_(channel), hands_(hands), peers_(peers), rates_(rates), parts_(scene) {
+    next_hands_ns_.resize(scene.grips.size());
+  }
+  void use(Endpoint& endpoint) { endpoint_ = &endpoint; }
+
+  /// The newest state of the channel to whoever is due for it, with the ack of their own samples.
+  void send_bodies(SeatTable& seats, std::int64_t now_ns);
+  /// A sample that went to the world, to the others who have hands; at most about 500 times a second a grip.
+  void forward(const Peer& from, const wire::PoseSample& sample, std::int64_t now_ns);
+  /// The others see these hands let go.
+  void let_go(std::uint32_t seat, const wire::Hands& hands);
+
+ private:
+  void to_other_hands(std::uint32_t but_seat, const wire::Hands& hands);
+
+  Channel& channel_;
+  const HandTable& hands_;
+  const PeerTable& peers_;
+  BodyRates rates_;
+  BodyParts parts_;
+  Endpoint* endpoint_ = nullptr;
+  std::vector<std::int64_t> next_hands_ns_;  // one a grip: when it may be passed on again
+  std::int64_t bodies_sent_ns_ = 0;
+  bool stale_ = true;  // the parts are of an older state than the channel's
+};
+
+}  // namespace slosh

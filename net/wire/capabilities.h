@@ -1,0 +1,23 @@
+// What a side understands beyond the messages that every peer of this version has.
+//
+// Hello has the peer's bits, Welcome those that both sides have: these are agreed. A bit that is not known is
+// left out of account. A field behind a capability is written only when that is agreed
+// (`if (v.agreed(kX)) v.natural(…)`), and a message type behind one is sent only then: so neither makes
+// another version. Fields of a capability that Hello itself needs go into Hello's `later`, which who does not
+// know them skips.
+#pragma once
+
+#include <cstdint>
+
+namespace slosh::wire {
+
+using Capabilities = std::uint64_t;  ///< bits
+
+constexpr Capabilities kRosterChanges = 1u
+                                        << 0;  ///< RosterChange follows the first Roster in place of others
+
+constexpr Capabilities kOurCapabilities = kRosterChanges;
+/// For what has no other side: pages, tests of single messages, files.
+constexpr Capabilities kAllCapabilities = ~Capabilities{0};
+
+}  // namespace slosh::wire
