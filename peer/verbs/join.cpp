@@ -10,6 +10,7 @@
 #include "peer/remote/peer_key.h"
 #include "peer/verbs/common_options.h"
 #include "peer/verbs/interrupt.h"
+#include "peer/verbs/link_source.h"
 #include "peer/verbs/play_modes.h"
 #include "peer/verbs/remote_run.h"
 #include "peer/verbs/verbs.h"
@@ -21,6 +22,7 @@ namespace {
 
 struct JoinOptions : ShowOptions {
   std::string link;
+  std::string link_file;
   std::string name;
   std::vector<std::string> grips;
   std::string key;
@@ -36,7 +38,9 @@ constexpr const char* kJoinFiles =
     "poses.csv and wrenches.png.\n"
     "\n"
     "LINK is all that is needed: the host prints it, and the scene comes over the network. Put it in quotes\n"
-    "or not; breaks that a mail program put in do no harm.\n"
+    "or not; breaks that a mail program put in do no harm. What stands in a command line everybody on this\n"
+    "machine can read: give it as - (then it is the first line of standard input) or @FILE where that "
+    "matters.\n"
     "\n"
     "You are one person by the key in $XDG_DATA_HOME/slosh/peer_key: when contact is lost, you get your "
     "place\n"
@@ -51,6 +55,7 @@ constexpr const char* kJoinEnd =
     "\n"
     "Examples:\n"
     "  slosh join LINK\n"
+    "  slosh join - < link.txt\n"
     "  slosh join LINK --name Ana --grip left_hand --device mouse\n"
     "  slosh join LINK --headless --seconds 10 --out out/ana";
 
@@ -86,7 +91,7 @@ std::string welcome_text(const RemoteStatus& status) {
   const bool guest = status.welcome.role == wire::Role::kParticipant;
   std::string text = "you are " + status.welcome.name + (guest ? "" : ", looking on");
   if (status.welcome.restored) text += "; your place was kept";
-  const std::size_t others = status.peers.empty() ? 0 : status.peers.size() - 1;
+  const std::size_t others = others_here(status);
   if (others > 0)
     text += "; " + std::to_string(others) + (others == 1 ? " other is here" : " others are here");
   return text;
@@ -96,7 +101,10 @@ int join(JoinOptions options) {
   const std::int64_t begin_ns = steady_now_ns();
   catch_interrupts();
   Progress progress;
-  const Result<JoinLink> link = parse_link(options.link);
+  const Result<std::string> link_text = read_link_text(
+      options.link, options.link_file, options.watch ? wire::Role::kSpectator : wire::Role::kParticipant);
+  if (!link_text) return fail(link_text.error());
+  const Result<JoinLink> link = parse_link(link_text.value());
   if (!link) return fail(link.error());
   if (const Result<std::pair<int, int>> size = parse_size(options.size); !options.size.empty() && !size) {
     return fail(size.error());
@@ -172,7 +180,9 @@ void add(CLI::App& app, VerbRun& chosen, bool watch) {
                          : app.add_subcommand("join", "Take hold of something in somebody's world");
   auto o = std::make_shared<JoinOptions>();
   o->watch = watch;
-  verb->add_option("LINK", o->link, "What the host printed: slosh://…")->required();
+  verb->add_option("LINK", o->link,
+                   "What the host printed: slosh://…; - reads it from standard input, @FILE from a file");
+  verb->add_option("--link-file", o->link_file, "A file that holds the link, or what `host --links` wrote");
   verb->add_option("--name", o->name, "How the others see you (the host chooses)");
   if (!watch) {
     verb->add_option("--grip", o->grips, "A grip by name or number, again for more (the first free one)")
