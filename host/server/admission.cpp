@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "net/clock.h"
+#include "net/site.h"
 
 namespace slosh {
 

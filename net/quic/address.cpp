@@ -116,22 +116,3 @@ Result<std::vector<Address>> resolve(const std::string& text) {
 }
 
 }  // namespace slosh::quic
-
-namespace slosh {
-
-std::string site_of(const std::string& address) {
-  const quic::Address found = quic::numeric_address(address);
-  const std::string site = found.length == 0 ? std::string() : found.site();
-  char text[INET6_ADDRSTRLEN] = "";
-  if (site.size() == 4) {
-    inet_ntop(AF_INET, site.data(), text, sizeof(text));
-    return text;
-  }
-  if (site.size() != 8) return address.substr(0, address.rfind(':'));
-  in6_addr network{};
-  std::memcpy(network.s6_addr, site.data(), site.size());
-  inet_ntop(AF_INET6, &network, text, sizeof(text));
-  return std::string(text).append("/64");
-}
-
-}  // namespace slosh

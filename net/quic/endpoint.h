@@ -165,10 +165,6 @@ class Endpoint {
   virtual bool rebind() { return false; }
 };
 
-/// What a site is counted by, from "HOST:PORT" as on_connected() tells it: the IPv4 address, or the /64 of
-/// the IPv6 one, as text; what is neither is its own site.
-std::string site_of(const std::string& address);
-
 /// Listens at "HOST:PORT" or "[IPv6]:PORT" ("0.0.0.0:0" takes any port; "[::]:PORT" takes IPv4 too). Every
 /// first packet is answered with a Retry token and no state. Errors: not an address, in use, not allowed.
 Result<std::unique_ptr<Endpoint>> listen_quic(const std::string& address, const Identity& identity,

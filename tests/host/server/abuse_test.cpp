@@ -5,6 +5,7 @@
 #include <random>
 
 #include "net/clock.h"
+#include "net/site.h"
 #include "tests/host/server/scripted_peer.h"
 
 namespace slosh {
