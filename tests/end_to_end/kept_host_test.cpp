@@ -84,7 +84,7 @@ class KeptHost : public test::HostedTest {
   }
   std::unique_ptr<Process> join(const std::string& name, const std::string& seconds) const {
     return run(name, {"join", link("hold"), "--name", name, "--headless", "--no-render", "--out", "out",
-                      "--key", "../" + name + ".key", "--seconds", seconds});
+                      "--overwrite", "--key", "../" + name + ".key", "--seconds", seconds});
   }
   std::string links() const { return read_text(folder("host") / "links.txt"); }
   bool hosting(Process& host) const {
