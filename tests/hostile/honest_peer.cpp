@@ -1,6 +1,8 @@
 #include "tests/hostile/honest_peer.h"
 
 #include <algorithm>
+#include <chrono>
+#include <vector>
 
 #include "net/clock.h"
 #include "net/wire/all_messages.h"
@@ -121,6 +123,11 @@ class HonestPeer::Line final : public EndpointEvents {
     if (control_ < 0) control_ = end->open_stream(connection_, true);
     if (control_ >= 0) end->send_stream(connection_, control_, wire::control(message), false);
   }
+  void note(const std::vector<wire::RosterEntry>& entries) {
+    for (const wire::RosterEntry& each : entries) {
+      if (each.peer == me_) holds = std::find(each.grips.begin(), each.grips.end(), 0u) != each.grips.end();
+    }
+  }
   template <class M>
   void heard(const M& m) {
     if constexpr (std::is_same_v<M, wire::Welcome>) {
@@ -129,13 +136,17 @@ class HonestPeer::Line final : public EndpointEvents {
       state_ns = steady_now_ns();
     } else if constexpr (std::is_same_v<M, wire::Roster>) {
       holds = false;
-      for (const wire::RosterEntry& each : m.peers) {
-        if (each.peer == me_) holds = std::find(each.grips.begin(), each.grips.end(), 0u) != each.grips.end();
-      }
+      note(m.peers);
+    } else if constexpr (requires {
+                           m.changed;
+                           m.gone;
+                         }) {  // what is new in the roster
+      note(m.changed);
     } else if constexpr (std::is_same_v<M, wire::WorldInfo>) {
       peer_paused = m.paused;
     } else if constexpr (std::is_same_v<M, wire::Refused>) {
-      fault = "refused: " + m.text;
+      // Who comes back may find the door busy, and tries again; who is in is not turned out.
+      if (in) fault = "refused: " + m.text;
     }
   }
 
@@ -184,11 +195,12 @@ void HonestPeer::run() {
     if (!line->fault.empty() && fault.empty()) fault = line->fault;
     if (!line->ended.empty()) {
       // A machine that stood still for longer than the timeout is no fault of the host's.
-      if (fault.empty() && line->by_host && line->ended.find("timed out") == std::string::npos)
+      if (fault.empty() && line->in && line->by_host && line->ended.find("timed out") == std::string::npos)
         fault = "closed by the host: " + line->ended;
       if (lost_ns == 0) lost_ns = now;
       sums.states += line->states;
       sums.poses_sent += line->poses_sent;
+      if (!line->in) std::this_thread::sleep_for(std::chrono::milliseconds(200));
       line = std::make_unique<Line>(link_, identity_);
     }
     const std::lock_guard lock(mutex_);
