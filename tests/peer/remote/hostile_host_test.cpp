@@ -119,7 +119,7 @@ TEST(HostileHost, ValidMessagesOfAnyContentAreSurvived) {
 
     // The host falls and comes back in its right mind: so does the peer, and the world is the host's again.
     both.host.crash();
-    both.run(1.0);
+    ASSERT_TRUE(both.run_until(LinkState::kReconnecting, 20.0));
     both.host.come_back();
     ASSERT_TRUE(both.run_until(LinkState::kLive, 20.0));
     both.run(1.0);
