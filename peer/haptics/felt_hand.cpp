@@ -31,7 +31,7 @@ ForceLimiter::Outcome FeltHand::feel(const WorldBelief& world, const DeviceRepor
                                      const GripState& grip, const Moment& now) noexcept {
   const double believed = std::min(world.share, now.device_share);
   const bool current = world.current && now.device_share >= 1.0;
-  bool jumps = world.anew || believed < believed_ - kSudden || (current && !current_);
+  bool jumps = world.anew || world.resumed || believed < believed_ - kSudden || (current && !current_);
   current_ = current;
   if (world.anew || now.leapt || (believed >= 1.0 && hold_anew_)) {
     engagement_ = Engagement{};

@@ -84,6 +84,8 @@ WorldBelief Hearing::hear(const BodyMessage& message, bool fresh, std::int64_t n
   const double states = std::min(freshness(age, interval), freshness(since_heard, interval));
   turn_to_speak(states >= 1.0, now_ns);
   belief.current = age <= 2.0 * interval + period_;
+  belief.resumed = fresh && late_;
+  late_ = !belief.current;
   belief.share = std::min(states, follow_poses(message, belief.current));
   return belief;
 }

@@ -11,6 +11,7 @@ namespace slosh {
 struct WorldBelief {
   double share = 0.0;    ///< 0–1, by how long ago it came; 0 while the world has stopped
   bool current = false;  ///< no later than a world at its pace would have it
+  bool resumed = false;  ///< the state came after the one before had been late
   bool anew = false;     ///< the world was reset: whoever holds on takes hold anew
 };
 
@@ -41,6 +42,7 @@ class Hearing {
 
   double period_;
   bool ticked_ = false;
+  bool late_ = false;  // the newest state was, at the call before
   std::uint32_t run_ = 0;
   std::int64_t heard_ns_ = 0;   // when the newest state came
   std::int64_t moving_ns_ = 0;  // since when the world moves; 0 = it does not

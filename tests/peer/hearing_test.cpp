@@ -96,6 +96,20 @@ TEST(Hearing, WhoHearsNothingSaysNothingAndIsBelievedWhenTheHostHasAnswered) {
   EXPECT_EQ(link.belief.share, 1.0);
 }
 
+TEST(Hearing, TellsOfTheStateThatEndsAGap) {
+  Link link;
+  link.run(500);
+  EXPECT_FALSE(link.belief.resumed);
+  link.down = false;
+  link.run(50);
+  EXPECT_FALSE(link.belief.resumed);
+  link.down = true;
+  link.run(1);
+  EXPECT_TRUE(link.belief.resumed) << "the body is elsewhere by now, whether our poses are followed or not";
+  link.run(1);
+  EXPECT_FALSE(link.belief.resumed);
+}
+
 TEST(Hearing, InOneProcessNoPoseIsLost) {
   Link link;
   link.up = false;

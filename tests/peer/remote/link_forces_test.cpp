@@ -243,16 +243,13 @@ class LinkForces : public ::testing::TestWithParam<bool> {
     sample.engaged = m.engaged;
     person.up.send(sample, clock, random);
   }
-  /// N from row to row besides the steady ones. Where a short gap ends the force keeps its size and may turn
-  /// at once (peer/README.md, known limits): far below the slew limit, 400 N a row here.
-  static double leap_after(double gap) { return gap < 0.3 ? 20.0 : 2.0; }
   /// The rule: no force above the steady one, and no jump, because of the link.
-  void expect_no_blow(const char* what, double leap = 2.0) {
+  void expect_no_blow(const char* what) {
     const Numbers n = numbers();
     std::printf("%-44s %6.1f N felt (%.1f by the other), %5.1f N from row to row, %5.1f N on the body\n",
                 what, n.peak, people[1]->peak, n.leap, n.carried);
     EXPECT_LT(n.peak, 1.2 * steady.peak + 2.0) << what;
-    EXPECT_LT(n.leap, steady.leap + leap) << what;
+    EXPECT_LT(n.leap, steady.leap + 2.0) << what;
     EXPECT_LT(n.carried, 1.2 * steady.carried + 2.0) << what;
     forget();
   }
@@ -267,8 +264,7 @@ TEST_P(LinkForces, AStallAndItsBacklogAreNoBlow) {
     run(0.2);
     EXPECT_LT(one.inbox.delay(), 0.02) << "what was kept back says nothing of how late states come";
     run(6.8);
-    expect_no_blow(("both directions stand for " + std::to_string(seconds) + " s").c_str(),
-                   leap_after(seconds));
+    expect_no_blow(("both directions stand for " + std::to_string(seconds) + " s").c_str());
   }
 }
 
@@ -279,8 +275,7 @@ TEST_P(LinkForces, AnOutageIsNoBlow) {
     run(seconds);
     one.down.flow = one.up.flow = Flow::kOpen;
     run(7.0);
-    expect_no_blow(("both directions drop for " + std::to_string(seconds) + " s").c_str(),
-                   leap_after(seconds));
+    expect_no_blow(("both directions drop for " + std::to_string(seconds) + " s").c_str());
   }
 }
 
@@ -295,8 +290,7 @@ TEST_P(LinkForces, OneDirectionAloneIsNoBlowEither) {
         run(7.0);
         expect_no_blow((std::string(up ? "poses " : "bodies ") + (flow == Flow::kDrops ? "drop " : "stand ") +
                         std::to_string(seconds) + " s")
-                           .c_str(),
-                       leap_after(seconds));
+                           .c_str());
       }
     }
   }
