@@ -138,7 +138,7 @@ void Host::publish_bodies(double rate, std::int64_t stamp_ns) {
 
 void Host::publish_picture() {
   if (options_.picture_rate <= 0.0) return;
-  if (options_.demand) options_.demand->note_made();
+  if (options_.demand) options_.demand->note_made(run_);
   auto snapshot = std::make_shared<Snapshot>();
   world_.fill(*snapshot, options_.shell);
   snapshot->rigid.status = recent_status();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 
 namespace slosh {
 
@@ -17,11 +18,18 @@ class PictureDemand {
 
   /// The host's side: somebody began to look, and no picture was made since. True once.
   bool take_ask() { return asked_.exchange(false, std::memory_order_relaxed); }
-  void note_made() { asked_.store(false, std::memory_order_relaxed); }
+  /// Before a picture of `run` (BodyMessage::run) is handed on.
+  void note_made(std::uint32_t run) {
+    asked_.store(false, std::memory_order_relaxed);
+    run_.store(run, std::memory_order_release);
+  }
+  /// The run of the newest picture; the coder's may be behind.
+  std::uint32_t run() const { return run_.load(std::memory_order_acquire); }
 
  private:
   std::atomic<bool> wanted_{true};
   std::atomic<bool> asked_{false};
+  std::atomic<std::uint32_t> run_{0};
 };
 
 }  // namespace slosh

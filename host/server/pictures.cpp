@@ -21,9 +21,9 @@ constexpr double kShownAgain = 0.1;   // s between two showings then
 
 PictureCoder::PictureCoder(double spacing, std::uint32_t run) : spacing_(spacing), run_(run) {}
 
-void PictureCoder::see(const Snapshot& snapshot) {
-  if (last_tick_ && snapshot.rigid.tick <= *last_tick_) {
-    run_ += 1;
+void PictureCoder::see(const Snapshot& snapshot, std::uint32_t newest_run) {
+  if (last_tick_ && snapshot.rigid.tick <= *last_tick_ && newest_run > run_) {
+    run_ = newest_run;
     last_key_.fill(-1e9);
   }
   last_tick_ = snapshot.rigid.tick;
@@ -121,7 +121,7 @@ void PictureThread::run() {
     } else {
       newest = std::move(picture);
       new_ns = now;
-      coder_.see(*newest);
+      coder_.see(*newest, demand_.run());
       if (pictures_.waiting() > kBehind) continue;
     }
     coded_ns = now;

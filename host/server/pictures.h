@@ -22,9 +22,10 @@ class PictureCoder {
   /// `spacing` in m; `run` is BodyMessage::run of the first picture.
   explicit PictureCoder(double spacing, std::uint32_t run = 0);
 
-  /// Every picture of the world in order, also one that is not coded: one whose tick is not above the last
-  /// one's is of the next run.
-  void see(const Snapshot& snapshot);
+  /// Every picture of the world in order, also one that is not coded. `newest_run` (BodyMessage::run) is that
+  /// of the newest picture made; this one is of it when its tick is not above the last one's, else of the run
+  /// before: a world that stands shows the same tick again, and a reset may come while older pictures wait.
+  void see(const Snapshot& snapshot, std::uint32_t newest_run);
   /// Codes one picture for the tiers whose turn it is; for all that are watched when it is shown `again`.
   void code(const Snapshot& snapshot, PictureOrder order, std::vector<CodedPicture>& out, bool again = false);
 

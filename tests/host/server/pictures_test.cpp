@@ -42,7 +42,7 @@ class Pictures : public ServedTest {
     go(seconds, 1.0 / kTierPictureRate, [&] {
       std::vector<CodedPicture> coded;
       const Snapshot snapshot = picture(++tick);
-      coder.see(snapshot);
+      coder.see(snapshot, 0);
       coder.code(snapshot, desk.take_order(), coded);
       desk.deliver(std::move(coded));
       if (each) each();
@@ -99,6 +99,32 @@ TEST_F(Pictures, NobodyWatchesAndNothingIsCoded) {
   std::vector<CodedPicture> coded;
   coder.code(picture(1), desk.take_order(), coded);
   EXPECT_TRUE(coded.empty());
+}
+
+TEST_F(Pictures, AreOfTheRunThatTheirBodiesAreOf) {
+  SnapshotDecoder decoder;
+  // As a peer reads it.
+  const auto seen = [&](std::uint64_t at, std::uint32_t newest_run) -> std::optional<std::uint32_t> {
+    const Snapshot snapshot = picture(at);
+    coder.see(snapshot, newest_run);
+    PictureOrder order;
+    order.watched[kAllParticles] = true;
+    std::vector<CodedPicture> coded;
+    coder.code(snapshot, order, coded, true);
+    for (const CodedPicture& one : coded) {
+      for (const Piece& piece : one.frame.pieces) EXPECT_FALSE(decoder.take(*piece.bytes));
+    }
+    std::optional<std::uint32_t> run;
+    while (const std::optional<DecodedFrame> frame = decoder.next(0)) run = frame->run;
+    return run;
+  };
+  EXPECT_EQ(seen(1, 0), 0u);
+  EXPECT_EQ(seen(1, 0), 0u) << "a world that stands shows its picture again to who begins to look";
+  EXPECT_EQ(seen(5, 0), 0u);
+  EXPECT_EQ(seen(6, 1), 0u) << "it waited while the world was reset";
+  EXPECT_EQ(seen(1, 1), 1u);
+  EXPECT_EQ(seen(1, 2), 2u) << "reset where it stood";
+  EXPECT_EQ(seen(2, 2), 2u);
 }
 
 TEST_F(Pictures, ALateWatcherHasTheWholePictureSoon) {
