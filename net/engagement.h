@@ -27,9 +27,14 @@ constexpr double kLetInEnd = 0.25;
 /// may be anywhere by then.
 constexpr double kHoldAnew = 0.1;
 
+/// s over which a hand that takes hold of something that moves gives up that motion. Over 0.5 s the hold went
+/// on straight where a bucket that hung in one hand swung back: 77 to 158 N on who came back, in place of 25
+/// to 27.
+constexpr double kSlipRise = 0.15;
+
 /// The state of one grip's hold. The hand takes hold where the force goes on as it is, and as fast as the
 /// grip goes: with the pose that it has, less an offset, and with its velocity, less its slip against the
-/// grip. The slip is given up over kLetInRise (the offset grows by it meanwhile), the offset slowly after
+/// grip. The slip is given up over kSlipRise (the offset grows by it meanwhile), the offset slowly after
 /// that, until the hand holds where it is. So taking hold never pulls harder than what moving the body at
 /// kLetInSpeed takes, however far away the hand is, and a hand that passes by does not snatch the body away.
 /// Pure; owned by one thread; no allocation.
@@ -55,7 +60,7 @@ class Engagement {
     } else {
       let_in(time);
     }
-    const double slipping = quiet_ ? 0.0 : 1.0 - pace();
+    const double slipping = quiet_ ? 0.0 : 1.0 - slip_pace();
     if (offset_ == glm::dvec3(0.0) && turn_ == glm::dvec3(0.0) && slipping == 0.0) return {hand, twist};
     return {{hand.position - offset_, rotate_by(hand.orientation, -turn_)},
             {twist.linear - slipping * slip_ + speed_, twist.angular - slipping * slip_turn_ + turning_}};
@@ -101,11 +106,11 @@ class Engagement {
 
   void let_in(double time) {
     const double elapsed = std::clamp(time - last_, 0.0, kMostElapsed);
-    const double before = pace();
+    const double before = slip_pace();
     last_ = std::max(last_, time);
     if (elapsed <= 0.0) return;
     if (!quiet_) {
-      const double slipped = (1.0 - 0.5 * (before + pace())) * elapsed;
+      const double slipped = (1.0 - 0.5 * (before + slip_pace())) * elapsed;
       offset_ += slipped * slip_;
       turn_ += slipped * slip_turn_;
     }
@@ -113,6 +118,8 @@ class Engagement {
     turning_ = give_up(turn_, pace() * kLetInTurn, elapsed);
   }
 
+  /// 0–1 over kSlipRise.
+  double slip_pace() const { return std::clamp((last_ - since_) / kSlipRise, 0.0, 1.0); }
   /// 0–1 over kLetInRise.
   double pace() const { return std::clamp((last_ - since_) / kLetInRise, 0.0, 1.0); }
 
