@@ -47,10 +47,10 @@ Server::Server(ServedWorld world, ServerOptions options)
       seats_(grip_names(*world_.scene), options_.limits),
       admission_(options_.admission),
       hands_(*world_.scene, *world_.channel),
-      faults_told_(world_.scene->grips.size()),
       states_(*world_.scene, *world_.channel, hands_, peers_, options_.bodies),
       snapshots_(world_.desk),
       switches_(world_.state, options_.hands_to_start),
+      faults_told_(world_.scene->grips.size()),
       session_(random_number()) {
   if (!options_.clock) options_.clock = [] { return steady_now_ns(); };
   hands_.stand_all(now());
