@@ -1,10 +1,11 @@
 // How many bytes a peer may have under way.
 #pragma once
 
-#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 
 #include "net/quic/compat.h"
+#include "net/quic/shortest_round_trip.h"
 #include "net/quic/udp_socket.h"
 
 namespace slosh::quic {
@@ -18,9 +19,9 @@ class PoseRoom {
  public:
   /// Bytes in flight up to which a peer may send; SIZE_MAX = the link shows no queue.
   std::size_t limit(const PathFigures& path, std::int64_t now) {
-    if (path.latest_rtt > 0.0) note(path.latest_rtt, now);
-    const double shortest = std::min(this_, last_);
-    if (shortest >= kNever || path.smoothed_rtt <= kQueueing * shortest + kSlack) return SIZE_MAX;
+    const double shortest = shortest_.note(path.latest_rtt, now);
+    if (shortest >= ShortestRoundTrip::kNever || path.smoothed_rtt <= kQueueing * shortest + kSlack)
+      return SIZE_MAX;
     return static_cast<std::size_t>(kGain * path.delivery_rate * shortest) + kFew * kMaxPacket;
   }
 
@@ -28,23 +29,9 @@ class PoseRoom {
   static constexpr double kQueueing = 2.0;  // of the shortest round trip
   static constexpr double kSlack = 0.02;    // s beyond that: a radio's dithering
   static constexpr double kGain = 1.5;
-  static constexpr std::size_t kFew = 8;                // packets
-  static constexpr std::int64_t kSpan = 6'000'000'000;  // ns
-  static constexpr double kNever = 1e9;
+  static constexpr std::size_t kFew = 8;  // packets
 
-  /// The shortest round trip of the last one to two spans: ways may grow longer.
-  void note(double rtt, std::int64_t now) {
-    if (now - began_ > kSpan) {
-      last_ = this_;
-      this_ = kNever;
-      began_ = now;
-    }
-    this_ = std::min(this_, rtt);
-  }
-
-  double this_ = kNever;  // s
-  double last_ = kNever;
-  std::int64_t began_ = 0;
+  ShortestRoundTrip shortest_;
 };
 
 }  // namespace slosh::quic
