@@ -3,13 +3,14 @@
 // glTF fields each of these comes from.
 #pragma once
 
-#include "sim/math/distance_field.h"
-#include "sim/math/pose.h"
-
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <string>
 #include <vector>
+
+#include "sim/math/distance_field.h"
+#include "sim/math/pose.h"
 
 namespace slosh {
 
@@ -31,45 +32,54 @@ struct Material {
 
 struct Fluid {
   std::string name;
-  double rest_density = 1000.0;      ///< kg/m³, > 0 (Eq 7's ρ⁰)
-  double dynamic_viscosity = 0.001;  ///< Pa·s, >= 0 (Eq 6's μ)
-  glm::vec3 color{0.10f, 0.35f, 0.55f};    ///< F_c of Eq 15
+  double rest_density = 1000.0;             ///< kg/m³, > 0 (Eq 7's ρ⁰)
+  double dynamic_viscosity = 0.001;         ///< Pa·s, >= 0 (Eq 6's μ)
+  glm::vec3 color{0.10f, 0.35f, 0.55f};     ///< F_c of Eq 15
   glm::vec3 extinction{12.0f, 4.0f, 2.5f};  ///< F_e of Eq 15, 1/m
 };
 
 /// A closed mesh that starts full of fluid.
 struct FluidVolume {
   std::string name;
-  int mesh = -1;   ///< index into Scene::meshes
-  int fluid = 0;   ///< index into Scene::fluids
+  int mesh = -1;  ///< index into Scene::meshes
+  int fluid = 0;  ///< index into Scene::fluids
   Pose pose;
   glm::dvec3 velocity{0.0};  ///< initial, m/s
 };
 
 struct MassProperties {
-  double mass = 0.0;                 ///< kg, > 0
-  glm::dvec3 center_of_mass{0.0};    ///< m, in the body's mesh frame
-  glm::dmat3 inertia{0.0};           ///< kg·m², about the centre of mass, mesh axes
+  double mass = 0.0;               ///< kg, > 0
+  glm::dvec3 center_of_mass{0.0};  ///< m, in the body's mesh frame
+  glm::dmat3 inertia{0.0};         ///< kg·m², about the centre of mass, mesh axes
 };
 
-/// Which particle model a scene runs. sim/README.md compares the two in numbers.
+/// Which particle model a scene runs. sim/README.md compares them in numbers.
 enum class ParticleModel : std::uint8_t {
   kConsistent,  ///< density and pressure from one kernel, walls counted in both: the default
   kPaper,       ///< Eq 2 with poly6 and without body particles, Eq 5 as printed, constant body pressure
+  kCorrected,   ///< the consistent one with gradients corrected for uneven neighbours (Bonet & Lok 1999)
 };
+
+/// Their names in scene files and on the wire, in the order of the values.
+inline constexpr std::array kParticleModelNames{"consistent", "paper", "corrected"};
+inline const char* name(ParticleModel model) {
+  return kParticleModelNames[static_cast<std::size_t>(model)];
+}
 
 enum class BodyMotion : std::uint8_t { kFixed, kFree };
 
 /// A rigid body made of particles on its surface (paper, section 4.1), or one particle (section 3).
 struct Body {
   std::string name;
-  int mesh = -1;  ///< index into Scene::meshes, closed and outward-facing; of a point probe only its look, or −1
+  int mesh =
+      -1;  ///< index into Scene::meshes, closed and outward-facing; of a point probe only its look, or −1
   BodyMotion motion = BodyMotion::kFixed;
   bool point_probe = false;  ///< one particle that behaves as fluid (Eq 8), without rotation
   Pose pose;                 ///< initial pose of the mesh frame
   Twist twist;               ///< initial twist of the centre of mass
   MassProperties mass;       ///< meaningful when free
-  double particle_density = 0.0;   ///< kg/m³: the constant density of its particles (section 4.1); 0 = chosen by the plan
+  double particle_density =
+      0.0;  ///< kg/m³: the constant density of its particles (section 4.1); 0 = chosen by the plan
   double dynamic_viscosity = 0.0;  ///< Pa·s: its side of Eq 9's (μᵢ + μⱼ)/2
   double friction = 0.4;           ///< Coulomb, with the smaller of two touching bodies' values used
   double restitution = 0.0;        ///< 0–1
@@ -94,8 +104,8 @@ struct PoseKey {
 /// Scene::grips is the order of the devices. Ranges are those at which the step was tested.
 struct Grip {
   std::string name;
-  int body = -1;  ///< index into Scene::bodies, free
-  Pose pose;      ///< in the body's mesh frame
+  int body = -1;                       ///< index into Scene::bodies, free
+  Pose pose;                           ///< in the body's mesh frame
   double stiffness = 1000.0;           ///< N/m, 0–10⁶
   double damping = 20.0;               ///< N·s/m, 0–10⁴
   double rotational_stiffness = 10.0;  ///< N·m/rad, 0–10⁴; 0 for a 3-DoF device
@@ -123,11 +133,11 @@ struct Scene {
   glm::vec3 light_direction{-0.4f, -1.0f, -0.35f};  ///< the way the light travels
 
   glm::dvec3 gravity{0.0, -9.81, 0.0};  ///< m/s²
-  double spacing = 0.0;       ///< m between particles; 0 = auto within [spacing_min, spacing_max]
-  double spacing_min = 0.004;  ///< m
-  double spacing_max = 0.02;   ///< m; below the thinnest wall
-  double support_ratio = 2.0;  ///< support radius (W = 0, the paper's h) over spacing, 1.5–2.6
-  ParticleModel model = ParticleModel::kConsistent;
+  double spacing = 0.0;                 ///< m between particles; 0 = auto within [spacing_min, spacing_max]
+  double spacing_min = 0.004;           ///< m
+  double spacing_max = 0.02;            ///< m; below the thinnest wall
+  double support_ratio = 2.0;           ///< support radius (W = 0, the paper's h) over spacing, 1.5–2.6
+  ParticleModel model = ParticleModel::kCorrected;
   double stiffness = 0.0;      ///< Eq 7's k = c², m²/s²; 0 = chosen by the plan from depth and gravity
   double tension = 0.0;        ///< share of Eq 7's negative pressure that is kept, 0–1 (sim/README.md)
   double duration = 10.0;      ///< s, of the scripted motion
@@ -153,12 +163,12 @@ struct DistanceField {
 
 /// A scene at one particle spacing.
 struct SampledScene {
-  double spacing = 0.0;                          ///< m
-  std::vector<SurfaceSamples> surfaces;          ///< one a body
-  std::vector<DistanceField> distance_fields;    ///< one a body; empty (size 0) for a point probe
-  std::vector<glm::vec3> fluid_positions;        ///< m, world
-  std::vector<glm::vec3> fluid_velocities;       ///< m/s
-  std::vector<std::uint8_t> fluid_index;         ///< into Scene::fluids, one a particle
+  double spacing = 0.0;                        ///< m
+  std::vector<SurfaceSamples> surfaces;        ///< one a body
+  std::vector<DistanceField> distance_fields;  ///< one a body; empty (size 0) for a point probe
+  std::vector<glm::vec3> fluid_positions;      ///< m, world
+  std::vector<glm::vec3> fluid_velocities;     ///< m/s
+  std::vector<std::uint8_t> fluid_index;       ///< into Scene::fluids, one a particle
 };
 
 }  // namespace slosh

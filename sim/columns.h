@@ -21,11 +21,24 @@ enum class ColumnLife : std::uint8_t {
 enum class ColumnNeed : std::uint8_t {
   kAlways,
   kPairViscosity,  ///< those with PassId::kPairViscosity
+  kCorrected,      ///< those of ParticleModel::kCorrected
 };
 
 /// Where the GPU keeps a column: four to sixteen bytes, so that a neighbour is one load in the density pass
 /// and two or three in the force pass.
-enum class Pack : std::uint8_t { kPosition, kMotion, kId, kKind, kKey, kPressed, kViscosity, kForce };
+enum class Pack : std::uint8_t {
+  kPosition,
+  kMotion,
+  kId,
+  kKind,
+  kKey,
+  kPressed,
+  kViscosity,
+  kPushA,
+  kPushB,
+  kDrag,
+  kForce
+};
 
 // clang-format off
 #define SLOSH_FLUID_COLUMNS(ROW)                                                                               \
@@ -42,6 +55,15 @@ enum class Pack : std::uint8_t { kPosition, kMotion, kId, kKind, kKey, kPressed,
   ROW(key,       std::uint32_t, kKey,     true,  false,  kAlways,        kKey,           0)    /* cell, or retired */ \
   ROW(pressure,  float,         kStep,    false, false,  kAlways,        kPressed,       3)    /* Pa; kConsistent: V²P, N·m⁴ */ \
   ROW(viscosity, float,         kStep,    false, false,  kPairViscosity, kViscosity,     0)    /* Pa·s */       \
+  ROW(pxx,       float,         kStep,    false, false,  kCorrected,     kPushA,         0)    /* N·m⁴, the corrected */ \
+  ROW(pxy,       float,         kStep,    false, false,  kCorrected,     kPushA,         1)    /* model's pressure */ \
+  ROW(pxz,       float,         kStep,    false, false,  kCorrected,     kPushA,         2)                     \
+  ROW(pyy,       float,         kStep,    false, false,  kCorrected,     kPushA,         3)                     \
+  ROW(pyz,       float,         kStep,    false, false,  kCorrected,     kPushB,         0)                     \
+  ROW(pzz,       float,         kStep,    false, false,  kCorrected,     kPushB,         1)                     \
+  ROW(ux,        float,         kStep,    false, false,  kCorrected,     kPushB,         2)    /* Pa·m, what pairs */ \
+  ROW(uy,        float,         kStep,    false, false,  kCorrected,     kPushB,         3)    /* drag by */    \
+  ROW(uz,        float,         kStep,    false, false,  kCorrected,     kDrag,          0)                     \
   ROW(fx,        float,         kStep,    false, false,  kAlways,        kForce,         0)    /* N, from the force pass */ \
   ROW(fy,        float,         kStep,    false, false,  kAlways,        kForce,         1)                     \
   ROW(fz,        float,         kStep,    false, false,  kAlways,        kForce,         2)

@@ -16,9 +16,11 @@ struct ModelParts<ParticleModel::kPaper> {
   using ForceKernel = Spiky;
   static constexpr PairRule kFluids = PairRule::kPaper;
   static constexpr PairRule kWalls = PairRule::kPaper;
+  static constexpr PairRule kOnBodies = PairRule::kPaper;  ///< kWalls seen from the body's particle
   static constexpr DragRule kDrag = DragRule::kAlongVelocity;
   static constexpr bool kWallsCount = false;      ///< in the density
   static constexpr bool kPressureEnergy = false;  ///< `pressure` is V²P, and feels bulk damping
+  static constexpr bool kCorrected = false;       ///< pressure is a tensor, and jostling is damped
 };
 
 template <>
@@ -27,15 +29,32 @@ struct ModelParts<ParticleModel::kConsistent> {
   using ForceKernel = Spiky;
   static constexpr PairRule kFluids = PairRule::kConsistent;
   static constexpr PairRule kWalls = PairRule::kWall;
+  static constexpr PairRule kOnBodies = PairRule::kWall;
   static constexpr DragRule kDrag = DragRule::kCentral;
   static constexpr bool kWallsCount = true;
   static constexpr bool kPressureEnergy = true;
+  static constexpr bool kCorrected = false;
+};
+
+template <>
+struct ModelParts<ParticleModel::kCorrected> {
+  using DensityKernel = Spiky;
+  using ForceKernel = Spiky;
+  static constexpr PairRule kFluids = PairRule::kCorrected;
+  static constexpr PairRule kWalls = PairRule::kCorrectedWall;
+  static constexpr PairRule kOnBodies = PairRule::kCorrectedBody;
+  static constexpr DragRule kDrag = DragRule::kCentral;
+  static constexpr bool kWallsCount = true;
+  static constexpr bool kPressureEnergy = true;
+  static constexpr bool kCorrected = true;
 };
 
 /// Calls f.template operator()<Parts>() for a model, and returns what it returns.
 template <class F>
 auto with_model(ParticleModel model, F&& f) {
   if (model == ParticleModel::kPaper) return f.template operator()<ModelParts<ParticleModel::kPaper>>();
+  if (model == ParticleModel::kCorrected)
+    return f.template operator()<ModelParts<ParticleModel::kCorrected>>();
   return f.template operator()<ModelParts<ParticleModel::kConsistent>>();
 }
 

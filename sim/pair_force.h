@@ -19,7 +19,20 @@ SLOSH_HD void add_pair_force(const ParticleView<Real>& p, const ParticleView<Rea
   const Real dz = p.z - i.z;
   const Real r_squared = dx * dx + dy * dy + dz * dz;
   const PairKernel<Real> kernel = Kernel::pair(r_squared, h, weight);
-  Real along = pressure_coefficient<rule>(p, i) * kernel.slope_over_r;  // of d
+  Real along(0.0f);  // of d
+  if constexpr (presses_by_tensor(rule)) {
+    const Symmetric<Real> t = pressure_tensor<rule>(p, i);
+    sum.x += kernel.slope_over_r * (t.xx * dx + t.xy * dy + t.xz * dz);
+    sum.y += kernel.slope_over_r * (t.xy * dx + t.yy * dy + t.yz * dz);
+    sum.z += kernel.slope_over_r * (t.xz * dx + t.yz * dy + t.zz * dz);
+  } else {
+    along = pressure_coefficient<rule>(p, i) * kernel.slope_over_r;
+  }
+  if constexpr (rule == PairRule::kCorrected) {
+    const Real dragged = (i.ux - p.ux) * dx + (i.uy - p.uy) * dy + (i.uz - p.uz) * dz;
+    along += (Real(kCentralDrag) * (p.volume * i.volume) * kernel.laplacian) *
+             (dragged * (kernel.inverse_r * kernel.inverse_r));
+  }
   if constexpr (viscous) {
     const Real dvx = i.vx - p.vx;
     const Real dvy = i.vy - p.vy;

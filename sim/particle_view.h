@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sim/math/kernels.h"
+#include "sim/math/symmetric.h"
 
 namespace slosh {
 
@@ -13,6 +14,9 @@ struct ParticleView {
   Real pressure;    ///< Pa, or what PairRule says
   Real volume;      ///< m³
   Real viscosity;   ///< Pa·s (its side of Eq 9)
+  // The corrected model's:
+  Symmetric<Real> push;  ///< what it presses with, N·m⁴ (pressure/gradient_correction.h)
+  Real ux, uy, uz;       ///< what it drags by, Pa·m: viscosity times velocity, and noise (viscosity/noise.h)
 };
 
 template <class Real>

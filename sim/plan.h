@@ -58,7 +58,7 @@ struct Plan {
   double time_step = 0.0;        ///< s, fixed for the run
   std::string time_step_reason;  ///< which limit decided it
   double stiffness = 0.0;        ///< Eq 7's k, m²/s² (= sound speed²)
-  ParticleModel model = ParticleModel::kConsistent;
+  ParticleModel model = ParticleModel::kCorrected;
   double fluid_depth = 0.0;  ///< m, the deepest column that a fluid could stand in at the start
   double fluid_drop = 0.0;   ///< m, from the highest fluid to the floor of the domain
   double sound_share =

@@ -40,7 +40,7 @@ const char* name(PassId id) {
 
 std::string describe(const Plan& plan) {
   std::string text;
-  text += format("model           %s\n", plan.model == ParticleModel::kPaper ? "paper" : "consistent");
+  text += format("model           %s\n", name(plan.model));
   text += format("spacing         %.4g mm\n", plan.spacing * 1e3);
   text += format("support radius  %.4g mm\n", plan.support_radius * 1e3);
   text +=

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/fluid_extremes.h"
 #include "sim/model.h"
 #include "sim/snapshot.h"
+#include "sim/viscosity/noise.h"
 
 namespace slosh {
 
@@ -25,6 +27,22 @@ double rest_number_density(double spacing, double support_radius) {
     }
   }
   return sum;
+}
+
+// Σ x² (−W'/r) over it, without the kernel's constant.
+template <class Kernel>
+double rest_moment(double spacing, double support_radius) {
+  const int reach = static_cast<int>(std::ceil(support_radius / spacing));
+  Symmetric<double> sum{};
+  for (int x = -reach; x <= reach; ++x) {
+    for (int y = -reach; y <= reach; ++y) {
+      for (int z = -reach; z <= reach; ++z) {
+        const double dx = spacing * x, dy = spacing * y, dz = spacing * z;
+        add_moment(dx, dy, dz, Kernel::pair(dx * dx + dy * dy + dz * dz, support_radius, 1.0), sum);
+      }
+    }
+  }
+  return trace(sum) / 3.0;
 }
 
 struct Box {
@@ -100,7 +118,19 @@ RunConstants make_run_constants(const Scene& scene, const SampledScene& sampled,
     c.rest_number_density =
         static_cast<float>(rest_number_density<typename Parts::DensityKernel>(spacing, h));
   });
-  c.rest_volume = static_cast<float>(std::pow(spacing, 3));
+  const double volume = std::pow(spacing, 3);
+  c.rest_volume = static_cast<float>(volume);
+  if (c.plan.model == ParticleModel::kCorrected) {
+    const double moment = rest_moment<Spiky>(spacing, h);
+    c.correction = {c.rest_number_density,
+                    static_cast<float>(moment),
+                    static_cast<float>(1.0 / (volume * moment * Spiky::scale(h))),
+                    static_cast<float>(std::pow(h, 3)),
+                    static_cast<float>(noise_viscosity(c.plan, fluid_extremes(scene).lightest)),
+                    c.rest_volume,
+                    static_cast<float>(c.plan.stiffness),
+                    static_cast<float>(c.plan.tension)};
+  }
   c.gravity = glm::vec3(scene.gravity);
   c.kinds = particle_kinds(scene, spacing);
   return c;

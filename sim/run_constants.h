@@ -10,6 +10,7 @@
 #include "sim/columns.h"
 #include "sim/neighbours/cell_grid.h"
 #include "sim/plan.h"
+#include "sim/pressure/corrected_state.h"
 #include "sim/walls/wall_particles.h"
 
 namespace slosh {
@@ -29,7 +30,8 @@ struct RunConstants {
   float force_scale = 0.0f;     ///< the force kernel's constant, m⁻⁶
   float rest_number_density =
       0.0f;  ///< Σ of the kernel's shape over the rest lattice: density is measured against it
-  float rest_volume = 0.0f;  ///< m³ of a particle at rest density
+  float rest_volume = 0.0f;        ///< m³ of a particle at rest density
+  CorrectionConstants correction;  ///< ParticleModel::kCorrected's
   glm::vec3 gravity{0.0f};
   std::vector<ParticleKind> kinds;
 };

@@ -97,7 +97,7 @@ StepLimit step_limit(const Scene& scene, Plan& plan) {
                    format("sound, at a body of %.3g times the mass of the fluid layer around it", share));
   }
   plan.sound_share = std::sqrt(std::min(1.0, share / kLightBody) / contrast);
-  if (plan.viscous()) {
+  if (plan.viscous() || plan.model == ParticleModel::kCorrected) {
     const double of_bodies = most_viscous_body(scene);
     limit.lower_to(viscous_step(scene, plan, fluids),
                    format("explicit viscosity of %.3g Pa·s in the fluid, %.3g Pa·s at walls",

@@ -18,7 +18,6 @@ constexpr double kMaxInertia = 1e18;  ///< kg·m²
 constexpr double kMaxMass = 1e9;      ///< kg
 
 constexpr std::array kBodyMotionNames{"fixed", "free"};
-constexpr std::array kParticleModelNames{"consistent", "paper"};
 
 /// What travels: a scene and the spacing of its particles.
 struct PackedScene {

@@ -28,12 +28,13 @@ Problem read_scene_fields(Reading& reading) {
   scene.support_ratio = extras.number("support_ratio", scene.support_ratio, gltf::Range{1.5, 2.6});
   scene.stiffness = extras.number("stiffness_m2_s2", 0.0, gltf::kNotNegative);
   scene.tension = extras.number("tension", 0.0, gltf::Range{0.0, 1.0});
-  const std::string model = extras.text("model", "consistent");
-  if (model == "paper") {
-    scene.model = ParticleModel::kPaper;
-  } else if (model != "consistent") {
+  const std::string model = extras.text("model", name(scene.model));
+  const auto known = std::find(kParticleModelNames.begin(), kParticleModelNames.end(), model);
+  if (known == kParticleModelNames.end()) {
     extras.fail("model", "is '" + model + "'",
-                "Give \"consistent\" or \"paper\" (sim/README.md compares them)");
+                "Give \"corrected\", \"consistent\" or \"paper\" (sim/README.md compares them)");
+  } else {
+    scene.model = static_cast<ParticleModel>(known - kParticleModelNames.begin());
   }
   scene.duration = extras.number("duration_s", scene.duration, gltf::Range{0.0, 86400.0, true});
   scene.light_direction =

@@ -91,8 +91,13 @@ void compute_density_of(PassContext& context, ThreadTeam& team, FluidParticles& 
 
 void compute_density(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
                      const BoundaryParticles& fixed, const BoundaryParticles& moving) {
-  with_model(context.plan.model,
-             [&]<class Parts>() { compute_density_of<Parts>(context, team, fluid, fixed, moving); });
+  with_model(context.plan.model, [&]<class Parts>() {
+    if constexpr (Parts::kCorrected) {
+      compute_corrected_density(context, team, fluid, fixed, moving);
+    } else {
+      compute_density_of<Parts>(context, team, fluid, fixed, moving);
+    }
+  });
 }
 
 }  // namespace slosh

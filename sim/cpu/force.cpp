@@ -9,13 +9,18 @@ namespace {
 constexpr std::size_t kRunsPerChunk = 16;
 
 NeighborColumns columns(const FluidParticles& f) {
-  return {f.x.data(),  f.y.data(),        f.z.data(),      f.vx.data(),       f.vy.data(),
-          f.vz.data(), f.pressure.data(), f.volume.data(), f.viscosity.data()};
+  return {f.x.data(),        f.y.data(),      f.z.data(),         f.vx.data(),  f.vy.data(),  f.vz.data(),
+          f.pressure.data(), f.volume.data(), f.viscosity.data(), f.pxx.data(), f.pxy.data(), f.pxz.data(),
+          f.pyy.data(),      f.pyz.data(),    f.pzz.data(),       f.ux.data(),  f.uy.data(),  f.uz.data()};
 }
 
 NeighborColumns columns(const BoundaryParticles& b) {
-  return {b.x.data(),  b.y.data(),        b.z.data(),      b.vx.data(),       b.vy.data(),
-          b.vz.data(), b.pressure.data(), b.volume.data(), b.viscosity.data()};
+  return {b.x.data(),        b.y.data(),      b.z.data(),
+          b.vx.data(),       b.vy.data(),     b.vz.data(),
+          b.pressure.data(), b.volume.data(), b.viscosity.data(),
+          nullptr,           nullptr,         nullptr,
+          nullptr,           nullptr,         nullptr,
+          nullptr,           nullptr,         nullptr};
 }
 
 }  // namespace
@@ -77,7 +82,7 @@ void sum_body_wrenches(PassContext& context, ThreadTeam& team, const FluidPartic
           const float mean = 0.5f * (boundary.viscosity[i] + context.kinds.front().viscosity);
           const ParticleView<FloatBatch> self =
               broadcast(own, i, viscosity == Viscosity::kOne ? mean : boundary.viscosity[i]);
-          add_row_forces<Parts, Parts::kWalls, viscosity>(self, fluid_columns, rows, h, sum);
+          add_row_forces<Parts, Parts::kOnBodies, viscosity>(self, fluid_columns, rows, h, sum);
           const float scale = context.force_scale;
           scratch[i] = scale * glm::vec3(lane_sum(sum.x), lane_sum(sum.y), lane_sum(sum.z));
         }

@@ -10,7 +10,15 @@ void make(C& column, std::size_t count) {
 }
 
 bool needs(const Plan& plan, ColumnNeed need) {
-  return need == ColumnNeed::kAlways || plan.has(PassId::kPairViscosity);
+  switch (need) {
+    case ColumnNeed::kAlways:
+      return true;
+    case ColumnNeed::kPairViscosity:
+      return plan.has(PassId::kPairViscosity);
+    case ColumnNeed::kCorrected:
+      return plan.model == ParticleModel::kCorrected;
+  }
+  return true;
 }
 
 }  // namespace

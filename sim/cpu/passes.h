@@ -43,6 +43,10 @@ class BodySurface {
 void compute_density(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
                      const BoundaryParticles& fixed, const BoundaryParticles& moving);
 
+/// The same for the corrected model (density.cpp calls it), and with it what each presses and drags by.
+void compute_corrected_density(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
+                               const BoundaryParticles& fixed, const BoundaryParticles& moving);
+
 /// Eq 5, 6 and 9 on fluid particles, by fluid and by body particles.
 void compute_fluid_forces(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
                           const BoundaryParticles& fixed, const BoundaryParticles& moving);

@@ -1,8 +1,7 @@
 // The force of rows of sorted neighbours on one particle: the inner loop of both force passes.
 #pragma once
 
-#include "sim/cpu/cell_grid.h"
-#include "sim/cpu/simd.h"
+#include "sim/cpu/row_batches.h"
 #include "sim/model.h"
 
 namespace slosh {
@@ -12,19 +11,36 @@ struct NeighborColumns {
   const float *x, *y, *z;
   const float *vx, *vy, *vz;
   const float *pressure, *volume, *viscosity;
+  // The corrected model's, of fluid:
+  const float *pxx, *pxy, *pxz, *pyy, *pyz, *pzz;
+  const float *ux, *uy, *uz;
 };
 
 template <class Parts, PairRule rule, Viscosity viscosity>
 void add_row_forces(const ParticleView<FloatBatch>& p, const NeighborColumns& n, const RowList& rows,
                     FloatBatch h, ForceSum<FloatBatch>& sum) {
-  constexpr bool kViscous = viscosity != Viscosity::kNone;
+  // What pairs of one viscosity drag by is in u already.
+  constexpr bool kViscous =
+      rule == PairRule::kCorrected ? viscosity == Viscosity::kPair : viscosity != Viscosity::kNone;
+  constexpr bool kVolume = kViscous || rule == PairRule::kPaper || rule == PairRule::kCorrected;
   const auto add = [&](std::uint32_t j, FloatBatch weight) {
     ParticleView<FloatBatch> i;
     i.x = FloatBatch::load_unaligned(n.x + j);
     i.y = FloatBatch::load_unaligned(n.y + j);
     i.z = FloatBatch::load_unaligned(n.z + j);
-    i.pressure = FloatBatch::load_unaligned(n.pressure + j);
-    if constexpr (kViscous || rule == PairRule::kPaper) i.volume = FloatBatch::load_unaligned(n.volume + j);
+    if constexpr (rule == PairRule::kCorrected || rule == PairRule::kCorrectedBody) {
+      i.push = {FloatBatch::load_unaligned(n.pxx + j), FloatBatch::load_unaligned(n.pxy + j),
+                FloatBatch::load_unaligned(n.pxz + j), FloatBatch::load_unaligned(n.pyy + j),
+                FloatBatch::load_unaligned(n.pyz + j), FloatBatch::load_unaligned(n.pzz + j)};
+    } else {
+      i.pressure = FloatBatch::load_unaligned(n.pressure + j);
+    }
+    if constexpr (rule == PairRule::kCorrected) {
+      i.ux = FloatBatch::load_unaligned(n.ux + j);
+      i.uy = FloatBatch::load_unaligned(n.uy + j);
+      i.uz = FloatBatch::load_unaligned(n.uz + j);
+    }
+    if constexpr (kVolume) i.volume = FloatBatch::load_unaligned(n.volume + j);
     if constexpr (kViscous) {
       i.vx = FloatBatch::load_unaligned(n.vx + j);
       i.vy = FloatBatch::load_unaligned(n.vy + j);
@@ -33,18 +49,27 @@ void add_row_forces(const ParticleView<FloatBatch>& p, const NeighborColumns& n,
     }
     add_pair_force<typename Parts::ForceKernel, rule, Parts::kDrag, kViscous>(p, i, h, weight, sum);
   };
-  for (int row = 0; row < rows.count; ++row) {
-    const ParticleRange range = rows.rows[row];
-    std::uint32_t j = range.begin;
-    for (; j + kLanes <= range.end; j += kLanes) add(j, FloatBatch(1.0f));
-    if (j < range.end) add(j, first_lanes(range.end - j));
-  }
+  for_each_batch(rows, add);
 }
 
 inline ParticleView<FloatBatch> broadcast(const NeighborColumns& n, std::uint32_t j, float viscosity) {
-  return {FloatBatch(n.x[j]),        FloatBatch(n.y[j]),      FloatBatch(n.z[j]),
-          FloatBatch(n.vx[j]),       FloatBatch(n.vy[j]),     FloatBatch(n.vz[j]),
-          FloatBatch(n.pressure[j]), FloatBatch(n.volume[j]), FloatBatch(viscosity)};
+  ParticleView<FloatBatch> p;
+  p.x = FloatBatch(n.x[j]);
+  p.y = FloatBatch(n.y[j]);
+  p.z = FloatBatch(n.z[j]);
+  p.vx = FloatBatch(n.vx[j]);
+  p.vy = FloatBatch(n.vy[j]);
+  p.vz = FloatBatch(n.vz[j]);
+  p.pressure = FloatBatch(n.pressure[j]);
+  p.volume = FloatBatch(n.volume[j]);
+  p.viscosity = FloatBatch(viscosity);
+  if (!n.pxx) return p;
+  p.push = {FloatBatch(n.pxx[j]), FloatBatch(n.pxy[j]), FloatBatch(n.pxz[j]),
+            FloatBatch(n.pyy[j]), FloatBatch(n.pyz[j]), FloatBatch(n.pzz[j])};
+  p.ux = FloatBatch(n.ux[j]);
+  p.uy = FloatBatch(n.uy[j]);
+  p.uz = FloatBatch(n.uz[j]);
+  return p;
 }
 
 }  // namespace slosh

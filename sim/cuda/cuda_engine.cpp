@@ -25,7 +25,8 @@ StepConstants step_constants(const RunConstants& c) {
           c.rest_volume,
           static_cast<float>(c.plan.stiffness),
           static_cast<float>(c.plan.tension),
-          c.gravity};
+          c.gravity,
+          c.correction};
 }
 
 // The head of what comes back each step; the wrenches and the probes' forces follow it.

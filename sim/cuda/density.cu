@@ -1,8 +1,9 @@
 // Eq 2 and 7 on the GPU; what is counted, and why, is in sim/cpu/density.cpp.
 #include "sim/cuda/rows.cuh"
 #include "sim/model.h"
-#include "sim/pressure/equation_of_state.h"
+#include "sim/pressure/corrected_state.h"
 #include "sim/snapshot.h"
+#include "sim/walls/wall_particles.h"
 
 namespace slosh::cuda {
 
@@ -50,11 +51,63 @@ __global__ __launch_bounds__(kThreads) void density_kernel(StepConstants c, cons
   if (state.compression > kTooCompressed) atomicOr(status, kStatusCompressed);
 }
 
+// The corrected model's: sim/cpu/corrected_density.cpp.
+__global__ __launch_bounds__(kThreads) void corrected_density_kernel(
+    StepConstants c, const ParticleKind* kinds, SortedFluid fluid, SortedSurface fixed, SortedSurface moving,
+    bool one_viscosity, bool viscosities, std::uint32_t* status) {
+  using Kernel = ModelParts<ParticleModel::kCorrected>::DensityKernel;
+  const std::uint32_t p = thread_index();
+  if (p >= fluid.count) return;
+  const std::uint32_t cell = fluid.state.key[p];
+  if (cell >= c.grid.retired_key()) return;
+  const float4 x = fluid.state.x[p];
+  const float h = c.support_radius;
+  Neighborhood<float> sum{};
+  for_neighbors(c.grid, fluid.cells, cell, [&](std::uint32_t j) {
+    const float4 y = __ldg(fluid.state.x + j);
+    const float dx = x.x - y.x;
+    const float dy = x.y - y.y;
+    const float dz = x.z - y.z;
+    // Of 216 candidates 34 are in reach: the others' velocities are not fetched.
+    if (dx * dx + dy * dy + dz * dz >= h * h) return;
+    const float* v = reinterpret_cast<const float*>(fluid.state.v + j);
+    add_fluid_neighbor<Kernel>(dx, dy, dz, v[0], v[1], v[2], h, 1.0f, sum);
+  });
+  const auto add_walls = [&](const SortedSurface& walls) {
+    if (walls.count == 0) return;
+    for_neighbors(c.grid, walls.cells, cell, [&](std::uint32_t j) {
+      const float4 wall = __ldg(walls.x + j);
+      add_wall_neighbor<Kernel>(x.x - wall.x, x.y - wall.y, x.z - wall.z, wall.w, wall.w / kWallShare, h,
+                                1.0f, sum);
+    });
+  };
+  add_walls(fixed);
+  add_walls(moving);
+  const ParticleKind kind = kinds[fluid.state.kind[p]];
+  const float4 motion = fluid.state.v[p];
+  const CorrectedState state =
+      corrected_state(sum, c.correction, kind.rest_density, one_viscosity ? kind.viscosity : 0.0f, motion.w,
+                      {motion.x, motion.y, motion.z});
+  fluid.pressed[p] = make_float4(x.x, x.y, x.z, state.volume);
+  fluid.push_a[p] = make_float4(state.push.xx, state.push.xy, state.push.xz, state.push.yy);
+  fluid.push_b[p] = make_float4(state.push.yz, state.push.zz, state.u[0], state.u[1]);
+  fluid.drag_z[p] = state.u[2];
+  fluid.state.v[p].w = state.volume;  // nobody reads the w of others here
+  if (viscosities) fluid.viscosity[p] = kind.viscosity;
+  if (state.compression > kTooCompressed) atomicOr(status, kStatusCompressed);
+}
+
 }  // namespace
 
 void launch_density(const StepConstants& constants, const Plan& plan, const ParticleKind* kinds,
                     const SortedFluid& fluid, const SortedSurface& fixed, const SortedSurface& moving,
                     std::uint32_t* status, cudaStream_t stream) {
+  if (plan.model == ParticleModel::kCorrected) {
+    corrected_density_kernel<<<blocks_for(fluid.count), kThreads, 0, stream>>>(
+        constants, kinds, fluid, fixed, moving, plan.has(PassId::kOneViscosity),
+        plan.has(PassId::kPairViscosity), status);
+    return;
+  }
   with_model(plan.model, [&]<class Parts>() {
     density_kernel<Parts><<<blocks_for(fluid.count), kThreads, 0, stream>>>(
         constants, kinds, fluid, fixed, moving, plan.has(PassId::kPairViscosity), status);

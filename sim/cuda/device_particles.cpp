@@ -52,12 +52,19 @@ void FluidBuffers::allocate(std::size_t count, const RunConstants& constants, Ca
   pressed_.allocate(count, check);
   force_.allocate(count, check);
   cells_.allocate(constants.grid.cell_count(), check);
-  view_ = {static_cast<std::uint32_t>(count),
-           view_of(packs_[current_]),
-           pressed_.data(),
-           nullptr,
-           force_.data(),
-           cells_.view()};
+  if (constants.plan.model == ParticleModel::kCorrected) {
+    push_a_.allocate(count, check);
+    push_b_.allocate(count, check);
+    drag_z_.allocate(count, check);
+  }
+  view_.count = static_cast<std::uint32_t>(count);
+  view_.state = view_of(packs_[current_]);
+  view_.pressed = pressed_.data();
+  view_.push_a = push_a_.data();
+  view_.push_b = push_b_.data();
+  view_.drag_z = drag_z_.data();
+  view_.force = force_.data();
+  view_.cells = cells_.view();
   allow_viscosities(constants, check);
 }
 

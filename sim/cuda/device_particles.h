@@ -52,6 +52,8 @@ class FluidBuffers {
   int current_ = 0;
   DeviceBuffer<float4> pressed_, force_;
   DeviceBuffer<float> viscosity_;
+  DeviceBuffer<float4> push_a_, push_b_;
+  DeviceBuffer<float> drag_z_;
   CellTableBuffers cells_;
   SortedFluid view_;
 };

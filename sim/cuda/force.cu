@@ -15,18 +15,15 @@ __global__ __launch_bounds__(kThreads) void force_kernel(StepConstants c, const 
   if (cell >= c.grid.retired_key()) return;
   // Body particles have viscosities of their own, so against them Eq 9 holds even where one fluid has Eq 6.
   constexpr Viscosity kAgainstBodies = viscosity == Viscosity::kNone ? Viscosity::kNone : Viscosity::kPair;
-  const ParticleView<float> self =
-      view(fluid.pressed[p], fluid.state.v[p], kinds[fluid.state.kind[p]].viscosity);
+  ParticleView<float> self = view(fluid.pressed[p], fluid.state.v[p], kinds[fluid.state.kind[p]].viscosity);
+  if constexpr (Parts::kCorrected) read_corrected(columns(fluid), p, self);
   ForceSum<float> sum{0.0f, 0.0f, 0.0f};
-  add_forces<Parts, Parts::kFluids, viscosity>(c, self, {fluid.pressed, fluid.state.v, fluid.viscosity},
-                                               fluid.cells, cell, sum);
+  add_forces<Parts, Parts::kFluids, viscosity>(c, self, columns(fluid), fluid.cells, cell, sum);
   if (fixed.count) {
-    add_forces<Parts, Parts::kWalls, kAgainstBodies>(c, self, {fixed.x, fixed.v, fixed.viscosity},
-                                                     fixed.cells, cell, sum);
+    add_forces<Parts, Parts::kWalls, kAgainstBodies>(c, self, columns(fixed), fixed.cells, cell, sum);
   }
   if (moving.count) {
-    add_forces<Parts, Parts::kWalls, kAgainstBodies>(c, self, {moving.x, moving.v, moving.viscosity},
-                                                     moving.cells, cell, sum);
+    add_forces<Parts, Parts::kWalls, kAgainstBodies>(c, self, columns(moving), moving.cells, cell, sum);
   }
   fluid.force[p] = make_float4(c.force_scale * sum.x, c.force_scale * sum.y, c.force_scale * sum.z, 0.0f);
 }

@@ -26,6 +26,7 @@ struct StepConstants {
   float stiffness = 0.0f;
   float tension = 0.0f;
   glm::vec3 gravity{0.0f};
+  CorrectionConstants correction;
 };
 
 /// Where each cell's particles are: [begin, end), or {max, 0} where a cell is empty, so that a row of three
@@ -38,9 +39,9 @@ struct CellTable {
 /// The packs of sim/columns.h that outlive a step: `Store` is a buffer, a pointer or a vector.
 template <template <class> class Store>
 struct MovingPacks {
-  Store<float4> x{};          ///< position, m; w is not used
-  Store<float4> v{};          ///< velocity, m/s, half a step behind x; w: volume, m³, from the density pass
-  Store<std::uint32_t> id{};  ///< fixed for the run
+  Store<float4> x{};           ///< position, m; w is not used
+  Store<float4> v{};           ///< velocity, m/s, half a step behind x; w: volume, m³, from the density pass
+  Store<std::uint32_t> id{};   ///< fixed for the run
   Store<std::uint8_t> kind{};  ///< into the table of kinds
   Store<std::uint32_t> key{};  ///< cell, or retired
 };
@@ -81,7 +82,10 @@ using FluidView = MovingPacks<DevicePointer>;
 struct SortedFluid {
   std::uint32_t count = 0;  ///< retired ones, at the end, included
   FluidView state;
-  float4* pressed = nullptr;   ///< position, and in w the pressure (kConsistent: V²P)
+  float4* pressed = nullptr;  ///< position, and in w the pressure (kConsistent: V²P; kCorrected: the volume)
+  float4* push_a = nullptr;   ///< kCorrected: xx, xy, xz, yy of the pressure tensor, N·m⁴
+  float4* push_b = nullptr;   ///< kCorrected: yz, zz of it; x, y of what pairs drag by, Pa·m
+  float* drag_z = nullptr;    ///< kCorrected: z of that
   float* viscosity = nullptr;  ///< Pa·s; there and written only where pairs differ
   float4* force = nullptr;     ///< N
   CellTable cells;

@@ -12,20 +12,54 @@ struct NeighborColumns {
   const float4* x;  ///< w: pressure
   const float4* v;  ///< w: volume
   const float* viscosity;
+  // The corrected model's, of fluid:
+  const float4* push_a = nullptr;
+  const float4* push_b = nullptr;
+  const float* drag_z = nullptr;
 };
+
+__device__ inline NeighborColumns columns(const SortedFluid& fluid) {
+  return {fluid.pressed, fluid.state.v, fluid.viscosity, fluid.push_a, fluid.push_b, fluid.drag_z};
+}
+__device__ inline NeighborColumns columns(const SortedSurface& surface) {
+  return {surface.x, surface.v, surface.viscosity};
+}
+
+/// What the corrected model's fluid presses and drags by.
+__device__ inline void read_corrected(const NeighborColumns& n, std::uint32_t j, ParticleView<float>& p) {
+  const float4 a = __ldg(n.push_a + j);
+  const float4 b = __ldg(n.push_b + j);
+  p.push = {a.x, a.y, a.z, a.w, b.x, b.y};
+  p.ux = b.z;
+  p.uy = b.w;
+  p.uz = __ldg(n.drag_z + j);
+}
 
 template <class Parts, PairRule rule, Viscosity viscosity>
 __device__ inline void add_forces(const StepConstants& c, const ParticleView<float>& p,
                                   const NeighborColumns& n, const CellTable& cells, std::uint32_t cell,
                                   ForceSum<float>& sum) {
-  constexpr bool kViscous = viscosity != Viscosity::kNone;
+  constexpr bool kOfFluid = rule == PairRule::kCorrected || rule == PairRule::kCorrectedBody;
+  // What pairs of one viscosity drag by is in u already.
+  constexpr bool kViscous =
+      rule == PairRule::kCorrected ? viscosity == Viscosity::kPair : viscosity != Viscosity::kNone;
   for_neighbors(c.grid, cells, cell, [&](std::uint32_t j) {
     ParticleView<float> i;
     const float4 x = __ldg(n.x + j);
     i.x = x.x;
     i.y = x.y;
     i.z = x.z;
-    i.pressure = x.w;
+    if constexpr (kOfFluid) {
+      // Of 216 candidates 34 are in reach: of the others nothing more is fetched.
+      const float dx = p.x - x.x;
+      const float dy = p.y - x.y;
+      const float dz = p.z - x.z;
+      if (dx * dx + dy * dy + dz * dz >= c.support_radius * c.support_radius) return;
+      i.volume = x.w;
+      read_corrected(n, j, i);
+    } else {
+      i.pressure = x.w;
+    }
     if constexpr (kViscous || rule == PairRule::kPaper) {
       const float4 v = __ldg(n.v + j);
       i.vx = v.x;
@@ -41,7 +75,7 @@ __device__ inline void add_forces(const StepConstants& c, const ParticleView<flo
 }
 
 __device__ inline ParticleView<float> view(const float4& x, const float4& v, float viscosity) {
-  return {x.x, x.y, x.z, v.x, v.y, v.z, x.w, v.w, viscosity};
+  return {x.x, x.y, x.z, v.x, v.y, v.z, x.w, v.w, viscosity, {}, 0.0f, 0.0f, 0.0f};
 }
 
 }  // namespace slosh::cuda

@@ -20,8 +20,7 @@ __global__ __launch_bounds__(kThreads) void surface_force_kernel(StepConstants c
     const float own = surface.viscosity[i];
     const float used = viscosity == Viscosity::kOne ? 0.5f * (own + first_viscosity) : own;
     const ParticleView<float> self = view(surface.x[i], surface.v[i], used);
-    add_forces<Parts, Parts::kWalls, viscosity>(c, self, {fluid.pressed, fluid.state.v, fluid.viscosity},
-                                                fluid.cells, cell, sum);
+    add_forces<Parts, Parts::kOnBodies, viscosity>(c, self, columns(fluid), fluid.cells, cell, sum);
   }
   force[surface.order[i]] =
       make_float4(c.force_scale * sum.x, c.force_scale * sum.y, c.force_scale * sum.z, 0.0f);

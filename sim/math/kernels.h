@@ -90,6 +90,11 @@ struct Spiky {
     const Real reach = kernel_reach(floored * inverse_r, h) * weight;
     return {inverse_r, reach * reach * inverse_r, reach};
   }
+  /// shape() of the same pair.
+  template <class Real>
+  SLOSH_HD static Real shape_of(const PairKernel<Real>& pair) {
+    return pair.laplacian * pair.laplacian * pair.laplacian;
+  }
   /// The same at a distance r >= 0.
   static double laplacian(double r, double h) { return kernel_reach(r, h); }
   /// m⁻⁶.

@@ -11,7 +11,27 @@ enum class PairRule {
   kConsistent,  ///< V_p² P_p + V_i² P_i, the gradient of an energy of the densities. `pressure` is V²P.
   kWall,  ///< fluid against a wall particle that counts in its density: V² P of the fluid, times the wall's
           ///< share (how many lattice particles it stands for), which is the wall's `pressure`.
+  kCorrected,      ///< (T_p + T_i) ∇W of two tensors `push`.
+  kCorrectedWall,  ///< fluid p against wall particle i: T_p times the wall's share.
+  kCorrectedBody,  ///< the other side of it: wall particle p against fluid i.
 };
+
+constexpr bool presses_by_tensor(PairRule rule) {
+  return rule == PairRule::kCorrected || rule == PairRule::kCorrectedWall || rule == PairRule::kCorrectedBody;
+}
+
+/// What a pair presses with, where that is a tensor.
+template <PairRule rule, class Real>
+SLOSH_HD Symmetric<Real> pressure_tensor(const ParticleView<Real>& p, const ParticleView<Real>& i) {
+  if constexpr (rule == PairRule::kCorrected) {
+    return {p.push.xx + i.push.xx, p.push.xy + i.push.xy, p.push.xz + i.push.xz,
+            p.push.yy + i.push.yy, p.push.yz + i.push.yz, p.push.zz + i.push.zz};
+  } else if constexpr (rule == PairRule::kCorrectedWall) {
+    return scaled_and_shifted(p.push, i.pressure, Real(0.0f));
+  } else {
+    return scaled_and_shifted(i.push, p.pressure, Real(0.0f));
+  }
+}
 
 template <PairRule rule, class Real>
 SLOSH_HD Real pressure_coefficient(const ParticleView<Real>& p, const ParticleView<Real>& i) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sim/model.h"
+#include "sim/viscosity/noise.h"
 
 namespace slosh {
 
@@ -40,6 +41,11 @@ double viscous_rate(const Scene& scene, const Plan& plan, const FluidExtremes& f
   return central / fluids.lightest * lattice / (plan.spacing * plan.spacing);
 }
 
+// Pa·s that the roughest mode feels besides the fluid's own.
+double jostling(const Plan& plan, const FluidExtremes& fluids) {
+  return plan.model == ParticleModel::kCorrected ? noise_viscosity(plan, fluids.lightest) : 0.0;
+}
+
 }  // namespace
 
 double most_viscous_body(const Scene& scene) {
@@ -49,13 +55,15 @@ double most_viscous_body(const Scene& scene) {
 }
 
 double viscous_step(const Scene& scene, const Plan& plan, const FluidExtremes& fluids) {
-  const double viscosity =
-      fluids.most_viscous + kWallPart * 0.5 * (fluids.most_viscous + most_viscous_body(scene));
+  const double viscosity = jostling(plan, fluids) + fluids.most_viscous +
+                           kWallPart * 0.5 * (fluids.most_viscous + most_viscous_body(scene));
   return kViscousFactor / (viscosity * viscous_rate(scene, plan, fluids));
 }
 
 double most_viscous_allowed(const Scene& scene, const Plan& plan) {
-  const double whole = kViscousFactor / (plan.time_step * viscous_rate(scene, plan, fluid_extremes(scene)));
+  const FluidExtremes fluids = fluid_extremes(scene);
+  const double whole =
+      kViscousFactor / (plan.time_step * viscous_rate(scene, plan, fluids)) - jostling(plan, fluids);
   return std::max(0.0, (whole - 0.5 * kWallPart * most_viscous_body(scene)) / (1.0 + 0.5 * kWallPart));
 }
 

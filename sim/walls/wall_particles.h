@@ -9,6 +9,9 @@
 
 namespace slosh {
 
+/// How many lattice particles one on a flat sheet at the spacing stands for.
+inline constexpr float kWallShare = 2.0f;
+
 /// One particle of a body, as it stays for the run.
 struct SurfaceParticle {
   glm::vec3 position;  ///< m, mesh frame

@@ -131,7 +131,7 @@ void add_timing(Table& table, const char* part, const std::string& what, const W
 }
 
 const char* model_name(ParticleModel model) {
-  return model == ParticleModel::kPaper ? "paper" : "consistent";
+  return name(model);
 }
 
 /// (a) A whole step of `pool`, its ball held and at rest, after the fluid has moved for a while.
@@ -143,11 +143,13 @@ bool bench_speed(Table& table, const std::vector<std::size_t>& counts, int steps
     // The scene's finest spacing is a wish for real time, not a limit of the sampler.
     const Result<SampledScene> sampled = sample_count(pool.value(), count);
     if (!sampled) return std::fprintf(stderr, "%s\n", sampled.error().text().c_str()), false;
-    for (const ParticleModel model : {ParticleModel::kConsistent, ParticleModel::kPaper}) {
+    for (const ParticleModel model :
+         {ParticleModel::kCorrected, ParticleModel::kConsistent, ParticleModel::kPaper}) {
       Scene scene = pool.value();
       scene.model = model;
       for (const int threads : {1, cores}) {
-        World world(scene, sampled.value(), make_plan(scene, sampled.value().spacing), {threads, Backend::kCpu});
+        World world(scene, sampled.value(), make_plan(scene, sampled.value().spacing),
+                    {threads, Backend::kCpu});
         const std::vector<HandleInput> hands = first_hands(scene);
         time_steps(world, hands, 20);
         const Timing t = time_steps(world, hands, steps);
@@ -165,7 +167,8 @@ bool bench_speed(Table& table, const std::vector<std::size_t>& counts, int steps
 /// (b) Still tank: weight error and noise against what a simulated second costs.
 void bench_still_tank(Table& table) {
   for (const double spacing : {0.02, 0.0125, 0.01, 0.008, 0.00625}) {
-    for (const ParticleModel model : {ParticleModel::kConsistent, ParticleModel::kPaper}) {
+    for (const ParticleModel model :
+         {ParticleModel::kCorrected, ParticleModel::kConsistent, ParticleModel::kPaper}) {
       lab::SceneBuilder b;
       b.add_fluid(1000.0, 0.05);
       b.add_fixed("tank", lab::tank_at_floor({0.2, 0.16, 0.2}, 0.05));
@@ -248,7 +251,8 @@ bool bench_passes(Table& table, std::size_t count, int steps) {
       scene.fluid_volumes.back().fluid = 1;
       for (std::size_t p = 0; p < particles.fluid_index.size(); p += 2) particles.fluid_index[p] = 1;
     }
-    worlds.emplace_back(scene, particles, make_plan(scene, particles.spacing), WorldOptions{1, Backend::kCpu});
+    worlds.emplace_back(scene, particles, make_plan(scene, particles.spacing),
+                        WorldOptions{1, Backend::kCpu});
   }
   const std::vector<HandleInput> hands = first_hands(pool.value());
   // In turns, so that what else the machine does falls on all three alike.

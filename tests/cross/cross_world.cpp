@@ -142,7 +142,7 @@ void compare_restored(const char* name, const Tank& tank, double hand_height) {
 
 void compare_changed() {
   std::printf("viscosities and gravity changed while it runs\n");
-  const Tank tank = shaken(stirred_tank(ParticleModel::kConsistent));
+  const Tank tank = shaken(stirred_tank(ParticleModel::kCorrected));
   World cpu = world_on(Backend::kCpu, tank);
   World gpu = world_on(Backend::kCuda, tank);
   step(cpu, 0.09);
@@ -307,6 +307,9 @@ void compare_squeezed() {
   }
 }
 
+constexpr ParticleModel kModels[] = {ParticleModel::kCorrected, ParticleModel::kConsistent,
+                                     ParticleModel::kPaper};
+
 }  // namespace
 
 int main() {
@@ -317,13 +320,12 @@ int main() {
     return 77;
   }
   std::printf("%s\n", device.name.c_str());
-  for (const ParticleModel model : {ParticleModel::kConsistent, ParticleModel::kPaper}) {
+  for (const ParticleModel model : kModels) {
     const Tank tank = shaken(stirred_tank(model));
-    const char* name =
-        model == ParticleModel::kPaper ? "paper model, two fluids, paddle" : "two fluids, paddle";
+    const std::string name = std::string(slosh::name(model)) + " model, two fluids, paddle";
     const Plan plan = make_plan(tank.scene, tank.sampled.spacing);
-    compare_steps(name, tank, plan, 1, 1e-5);
-    compare_steps(name, tank, plan, 10, 1e-3);
+    compare_steps(name.c_str(), tank, plan, 1, 1e-5);
+    compare_steps(name.c_str(), tank, plan, 10, 1e-3);
     Tank one = shaken(make_tank({}));
     one.scene.model = model;
     one.scene.tension = 1.0;
@@ -333,21 +335,21 @@ int main() {
     compare_steps("no viscosity", one, variant, 1, 1e-5);
   }
   // Large enough to fill the GPU: blocks come and go in another order each time.
-  for (const ParticleModel model : {ParticleModel::kConsistent, ParticleModel::kPaper}) {
+  for (const ParticleModel model : kModels) {
     Tank large = shaken(pool(300000));
     large.scene.model = model;
     const Plan plan = make_plan(large.scene, large.sampled.spacing);
-    compare_steps(model == ParticleModel::kPaper ? "large pool, paper model" : "large pool", large, plan, 1,
-                  1e-5);
+    compare_steps((std::string("large pool, ") + name(model)).c_str(), large, plan, 1, 1e-5);
     repeat("large pool", large, 0.09, 20);
   }
   compare_second("tank at rest", make_tank({}), 0.5, 2e-3, 1e-4);
-  compare_second("two fluids stirred by a paddle", stirred_tank(ParticleModel::kConsistent), 0.0, 2e-2, 1e-2);
-  repeat("two fluids, paddle", stirred_tank(ParticleModel::kConsistent), 0.09);
+  compare_second("two fluids stirred by a paddle", stirred_tank(ParticleModel::kCorrected), 0.0, 2e-2, 1e-2);
+  repeat("two fluids, paddle", stirred_tank(ParticleModel::kCorrected), 0.09);
+  repeat("consistent model", stirred_tank(ParticleModel::kConsistent), 0.09);
   repeat("paper model", stirred_tank(ParticleModel::kPaper), 0.09);
   repeat("probe", probed_tank(), 0.05);
   compare_probe();
-  compare_restored("two fluids, paddle", stirred_tank(ParticleModel::kConsistent), 0.09);
+  compare_restored("two fluids, paddle", stirred_tank(ParticleModel::kCorrected), 0.09);
   compare_restored("probe", probed_tank(), 0.05);
   compare_changed();
   compare_retired();

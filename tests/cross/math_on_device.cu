@@ -9,6 +9,7 @@
 #include "sim/math/kernels.h"
 #include "sim/math/pose.h"
 #include "sim/model.h"
+#include "sim/pressure/corrected_state.h"
 
 namespace {
 
@@ -20,7 +21,8 @@ struct PairInput {
 
 struct PairOutput {
   float poly6, spiky;
-  ForceSum<float> paper, consistent, wall;
+  ForceSum<float> paper, consistent, wall, corrected, corrected_wall, corrected_body;
+  Symmetric<float> directions;
   Wrench hand;
 };
 
@@ -35,6 +37,12 @@ __host__ __device__ PairOutput evaluate(const PairInput& in, float h) {
   add_pair_force<Spiky, PairRule::kPaper, DragRule::kAlongVelocity, true>(in.p, in.i, h, 1.0f, out.paper);
   add_pair_force<Spiky, PairRule::kConsistent, DragRule::kCentral, true>(in.p, in.i, h, 1.0f, out.consistent);
   add_pair_force<Spiky, PairRule::kWall, DragRule::kCentral, true>(in.p, in.i, h, 1.0f, out.wall);
+  add_pair_force<Spiky, PairRule::kCorrected, DragRule::kCentral, true>(in.p, in.i, h, 1.0f, out.corrected);
+  add_pair_force<Spiky, PairRule::kCorrectedWall, DragRule::kCentral, true>(in.p, in.i, h, 1.0f,
+                                                                            out.corrected_wall);
+  add_pair_force<Spiky, PairRule::kCorrectedBody, DragRule::kCentral, true>(in.p, in.i, h, 1.0f,
+                                                                            out.corrected_body);
+  out.directions = pressure_directions(scaled_and_shifted(in.p.push, 0.3f, 0.8f), corrected_share(dx), 1.3f);
   Pose handle, grip;
   handle.position = {in.p.x, in.p.y, in.p.z};
   grip.position = {in.i.x, in.i.y, in.i.z};
@@ -68,6 +76,13 @@ double worst_difference(const std::vector<PairInput>& in, const std::vector<Pair
     const double push =
         std::abs(host.consistent.x) + std::abs(host.consistent.y) + std::abs(host.consistent.z);
     compare(host.consistent.x, device[n].consistent.x, push + near);
+    const double tensor = 0.01 * h * h * 10.0;
+    const auto all = [](const ForceSum<float>& f) { return std::abs(f.x) + std::abs(f.y) + std::abs(f.z); };
+    compare(host.corrected.y, device[n].corrected.y, all(host.corrected) + tensor);
+    compare(host.corrected_wall.y, device[n].corrected_wall.y, all(host.corrected_wall) + tensor);
+    compare(host.corrected_body.z, device[n].corrected_body.z, all(host.corrected_body) + tensor);
+    compare(host.directions.xy, device[n].directions.xy, 1.0);
+    compare(host.directions.zz, device[n].directions.zz, 1.0);
     compare(host.hand.torque.y, device[n].hand.torque.y, 10.0);
   }
   return worst;
@@ -86,10 +101,20 @@ int main() {
   std::vector<PairInput> in(1 << 16);
   for (PairInput& pair : in) {
     const auto particle = [&] {
-      return ParticleView<float>{
-          0.012f * next_random(state), 0.012f * next_random(state), 0.012f * next_random(state),
-          next_random(state),          next_random(state),          next_random(state),
-          next_random(state),          next_random(state),          next_random(state)};
+      return ParticleView<float>{0.012f * next_random(state),
+                                 0.012f * next_random(state),
+                                 0.012f * next_random(state),
+                                 next_random(state),
+                                 next_random(state),
+                                 next_random(state),
+                                 next_random(state),
+                                 next_random(state),
+                                 next_random(state),
+                                 {next_random(state), next_random(state), next_random(state),
+                                  next_random(state), next_random(state), next_random(state)},
+                                 next_random(state),
+                                 next_random(state),
+                                 next_random(state)};
     };
     pair = {particle(), particle()};
   }

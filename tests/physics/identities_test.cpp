@@ -41,22 +41,19 @@ TEST_P(EachModel, fluid_gains_what_gravity_and_walls_give) {
   }
   EXPECT_EQ(e.world().take_status() & kStatusSpeedLimited, 0u)
       << "a slowed particle's momentum is not given to anyone";
-  report_value(std::string("momentum identity, ") +
-                   (GetParam() == ParticleModel::kPaper ? "paper's" : "consistent") +
-                   " model, worst step, share of M g dt",
+  report_value(std::string("momentum identity, ") + name(GetParam()) + " model, worst step, share of M g dt",
                worst, "");
   EXPECT_LT(worst, 1e-4);
 }
 
 INSTANTIATE_TEST_SUITE_P(models, EachModel,
-                         ::testing::Values(ParticleModel::kConsistent, ParticleModel::kPaper),
-                         [](const auto& p) {
-                           return p.param == ParticleModel::kPaper ? "paper" : "consistent";
-                         });
+                         ::testing::Values(ParticleModel::kCorrected, ParticleModel::kConsistent,
+                                           ParticleModel::kPaper),
+                         [](const auto& p) { return name(p.param); });
 
 // The same with a free box that falls into the fluid: box and fluid together.
 TEST(Momentum, fluid_and_free_body_together) {
-  testing::Tank tank = sloshing_tank(ParticleModel::kConsistent);
+  testing::Tank tank = sloshing_tank(ParticleModel::kCorrected);
   SceneBuilder b;
   b.scene = tank.scene;
   const int box = b.add_free("box", make::box({-0.03, -0.03, -0.03}, {0.03, 0.03, 0.03}), 0.15,
@@ -144,9 +141,12 @@ double angular_momentum_drift(ParticleModel model) {
 TEST(AngularMomentum, consistent_model_keeps_it_and_eq_9_does_not) {
   const double consistent = angular_momentum_drift(ParticleModel::kConsistent);
   const double paper = angular_momentum_drift(ParticleModel::kPaper);
+  const double corrected = angular_momentum_drift(ParticleModel::kCorrected);
   report_value("angular momentum lost in 100 steps, consistent", 100.0 * consistent, "%");
+  report_value("angular momentum lost in 100 steps, corrected", 100.0 * corrected, "%");
   report_value("angular momentum lost in 100 steps, paper's Eq 9", 100.0 * paper, "%");
   EXPECT_LT(consistent, 1e-3);
+  EXPECT_LT(corrected, 1e-3);
   EXPECT_GT(paper, 0.02);
 }
 

@@ -25,8 +25,9 @@ double period_of(const std::vector<glm::dvec2>& track) {
 class Sloshing : public ::testing::TestWithParam<double> {};
 
 // 0.32 m long, 0.16 m deep, the surface lifted by a cosine of 2 cm. Linear theory holds to (amplitude/L)²,
-// the depth is that of the mass there is; the bound is for walls whose position is good to half a spacing and
-// for an unsteady surface: 5 %.
+// the depth is that of the mass there is. Reached: 0.5 % at 16 mm, 1.2 % at 10 mm (an effective length that
+// walls make a little too long), and 67 and 78 % of the swing left; the consistent model had -3 % and -1.7 %,
+// and 14 and 28 % left.
 TEST_P(Sloshing, first_mode_period) {
   const double spacing = GetParam();
   constexpr double kLength = 0.32, kDepth = 0.16, kAmplitude = 0.02;
@@ -50,7 +51,7 @@ TEST_P(Sloshing, first_mode_period) {
   const double k = kPi / kLength;
   const double expected = 2.0 * kPi / std::sqrt(k * kGravity * std::tanh(k * depth));
   const std::string name = "sloshing period, spacing " + std::to_string(std::lround(1e3 * spacing)) + " mm";
-  EXPECT_LT(std::abs(report(name, period_of(track), expected, "s")), 0.05);
+  EXPECT_LT(std::abs(report(name, period_of(track), expected, "s")), 0.015);
   // How much of the swing is left after about four periods: the model's own damping, for the record.
   double first = 0.0, last = 0.0;
   for (const glm::dvec2& p : track) {
@@ -58,7 +59,8 @@ TEST_P(Sloshing, first_mode_period) {
     if (p.x > 2.1) last = std::max(last, std::abs(p.y));
   }
   report_value(name + ", swing left after 3 periods", 100.0 * last / first, "%");
-  EXPECT_GT(last, 0.1 * first) << "the wave is damped away by the method";
+  EXPECT_GT(last, (spacing > 0.012 ? 0.6 : 0.72) * first) << "the wave is damped away by the method";
+  EXPECT_LT(last, 0.95 * first) << "a wave that is not damped gains";
 }
 
 INSTANTIATE_TEST_SUITE_P(spacings, Sloshing, ::testing::Values(0.016, 0.01));

@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
 #include <random>
+
+#include "sim/pressure/corrected_state.h"
 
 namespace slosh {
 namespace {
@@ -15,8 +18,19 @@ using View = ParticleView<double>;
 
 View random_particle(std::mt19937& random) {
   std::uniform_real_distribution<double> place(0.0, 0.012), speed(-1.0, 1.0), positive(0.5, 2.0);
-  return {place(random), place(random),    place(random),           speed(random),   speed(random),
-          speed(random), positive(random), 1e-6 * positive(random), positive(random)};
+  return {place(random),
+          place(random),
+          place(random),
+          speed(random),
+          speed(random),
+          speed(random),
+          positive(random),
+          1e-6 * positive(random),
+          positive(random),
+          {positive(random), speed(random), speed(random), positive(random), speed(random), positive(random)},
+          speed(random),
+          speed(random),
+          speed(random)};
 }
 
 template <PairRule rule>
@@ -47,6 +61,98 @@ TEST(PairForce, ConservesMomentum) {
   expect_antisymmetric<PairRule::kPaper>();
   expect_antisymmetric<PairRule::kConsistent>();
   expect_antisymmetric<PairRule::kWall>();
+  expect_antisymmetric<PairRule::kCorrected>();
+}
+
+// Of a fluid and a wall particle each pass sees its own side; both must see the same force.
+TEST(PairForce, FluidAndBodyOfTheCorrectedModelPressAlike) {
+  std::mt19937 random(14);
+  for (int repeat = 0; repeat < 1000; ++repeat) {
+    const View fluid = random_particle(random);
+    const View wall = random_particle(random);
+    const glm::dvec3 on_fluid = force<PairRule::kCorrectedWall>(fluid, wall);
+    const glm::dvec3 on_wall = force<PairRule::kCorrectedBody>(wall, fluid);
+    EXPECT_LE(glm::length(on_fluid + on_wall), 1e-14 * glm::length(on_fluid));
+  }
+}
+
+// What the correction is for: a particle among uneven neighbours at its own pressure pushes alike in all
+// directions. With the energy's gradient the same neighbours give a shear of some tenths of the pressure.
+TEST(PairForce, TheCorrectedVirialIsThePressureWhateverTheNeighbours) {
+  std::mt19937 random(15);
+  std::uniform_real_distribution<double> jitter(-0.25, 0.25);
+  constexpr double kSpacing = 0.5 * kSupport;
+  Symmetric<double> rest{};
+  for (int x = -2; x <= 2; ++x)
+    for (int y = -2; y <= 2; ++y)
+      for (int z = -2; z <= 2; ++z) {
+        const double r2 = kSpacing * kSpacing * (x * x + y * y + z * z);
+        add_moment(kSpacing * x, kSpacing * y, kSpacing * z, Spiky::pair(r2, kSupport, 1.0), rest);
+      }
+  double worst_corrected = 0.0, worst_plain = 0.0;
+  for (int repeat = 0; repeat < 200; ++repeat) {
+    // A sheared and jostled lattice: 20 % longer one way, shorter the others.
+    Symmetric<double> moment{};
+    for (int x = -3; x <= 3; ++x)
+      for (int y = -3; y <= 3; ++y)
+        for (int z = -3; z <= 3; ++z) {
+          if (x == 0 && y == 0 && z == 0) continue;
+          const glm::dvec3 d = kSpacing * glm::dvec3((x + jitter(random)) * 1.2, (y + jitter(random)) / 1.2,
+                                                     z + jitter(random));
+          add_moment(d.x, d.y, d.z, Spiky::pair(glm::dot(d, d), kSupport, 1.0), moment);
+        }
+    const double scale = 3.0 / trace(rest);
+    const Symmetric<float> of_rest{
+        static_cast<float>(scale * moment.xx), static_cast<float>(scale * moment.xy),
+        static_cast<float>(scale * moment.xz), static_cast<float>(scale * moment.yy),
+        static_cast<float>(scale * moment.yz), static_cast<float>(scale * moment.zz)};
+    if (trace(of_rest) < 3.0f) continue;  // as at a surface: not all of it is corrected
+    const Symmetric<float> t = pressure_directions(of_rest, 1.0f, 1.0f);
+    // The virial of T over the neighbours, T · M, and of the pressure alone, M; both in units of the
+    // pressure.
+    const double xy = t.xx * of_rest.xy + t.xy * of_rest.yy + t.xz * of_rest.yz;
+    const double xx = t.xx * of_rest.xx + t.xy * of_rest.xy + t.xz * of_rest.xz;
+    const double yy = t.xy * of_rest.xy + t.yy * of_rest.yy + t.yz * of_rest.yz;
+    worst_corrected = std::max({worst_corrected, std::abs(xy), std::abs(xx - yy), std::abs(xx - 1.0)});
+    worst_plain = std::max({worst_plain, static_cast<double>(std::abs(of_rest.xy)),
+                            static_cast<double>(std::abs(of_rest.xx - of_rest.yy))});
+  }
+  EXPECT_LT(worst_corrected, 1e-5);
+  EXPECT_GT(worst_plain, 0.2);
+}
+
+TEST(PairForce, NothingIsCorrectedInAnImpactOrInSpray) {
+  const Symmetric<float> uneven{1.4f, 0.2f, 0.0f, 0.9f, 0.1f, 0.8f};
+  const Symmetric<float> struck = pressure_directions(uneven, corrected_share(kImpact), 1.3f);
+  EXPECT_EQ(struck.xx, 1.0f);
+  EXPECT_EQ(struck.xy, 0.0f);
+  const Symmetric<float> alone = pressure_directions({0, 0, 0, 0, 0, 0}, corrected_share(0.0f), 1.3f);
+  EXPECT_EQ(alone.xx, 1.0f);
+  EXPECT_EQ(alone.yz, 0.0f);
+  // A neighbourhood without depth has no inverse.
+  const Symmetric<float> flat = pressure_directions({1.5f, 0, 0, 1.5f, 0, 0}, corrected_share(0.0f), 1.3f);
+  EXPECT_TRUE(std::isfinite(flat.zz));
+  EXPECT_LT(flat.zz, 20.0f);
+}
+
+// The drag of noise sees no flow that neighbours share, and nothing where there is no neighbour.
+TEST(Noise, IsWhatAParticleDoesNotShareWithItsNeighbours) {
+  Neighborhood<float> n{};
+  n.fluid_number = 4.0f;  // itself 1, others 3
+  n.vx = 4.0f * 0.5f;
+  float u[3] = {0.0f, 0.0f, 0.0f};
+  const float shared[3] = {0.5f, 0.0f, 0.0f};
+  add_noise(n, 1.0f, 2.0f, shared, u);
+  EXPECT_FLOAT_EQ(u[0], 0.0f);
+  // At 2 m/s among three that stand still: the whole of it, times the factor.
+  n.vx = 2.0f;
+  const float own[3] = {2.0f, 0.0f, 0.0f};
+  add_noise(n, 1.0f, 2.0f, own, u);
+  EXPECT_FLOAT_EQ(u[0], 4.0f);
+  n.fluid_number = 1.0f;
+  float alone[3] = {0.0f, 0.0f, 0.0f};
+  add_noise(n, 1.0f, 2.0f, own, alone);
+  EXPECT_EQ(alone[0], 0.0f);
 }
 
 TEST(PairForce, ConsistentPairsConserveAngularMomentum) {
@@ -61,8 +167,8 @@ TEST(PairForce, ConsistentPairsConserveAngularMomentum) {
 }
 
 TEST(PairForce, EquationNineMatchesTheFormula) {
-  View p{0, 0, 0, 0.1, 0.2, 0.3, 100.0, 1e-6, 2.0};
-  View i{0.01, 0, 0, -0.1, 0.5, 0.3, 300.0, 2e-6, 40.0};
+  View p{0, 0, 0, 0.1, 0.2, 0.3, 100.0, 1e-6, 2.0, {}, 0, 0, 0};
+  View i{0.01, 0, 0, -0.1, 0.5, 0.3, 300.0, 2e-6, 40.0, {}, 0, 0, 0};
   const double constant = 45.0 / (3.14159265358979323846 * std::pow(kSupport, 6));
   const glm::dvec3 f = constant * force<PairRule::kPaper>(p, i);
   // Eq 5: −V_p V_i (P_p + P_i)/2 ∇W; Eq 9: V_p V_i (μ_p + μ_i)/2 (v_i − v_p) ∇²W.
@@ -81,8 +187,8 @@ TEST(PairForce, CentralDragHasTheViscosityOfEquationNine) {
   // u_x = y² has Laplacian (2, 0, 0): both sums over a shell must give the same force.
   for (int repeat = 0; repeat < 200000; ++repeat) {
     const glm::dvec3 d = 0.01 * glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
-    const View p{0, 0, 0, 0, 0, 0, 0.0, 1e-6, 1.0};
-    const View i{d.x, d.y, d.z, d.y * d.y, 0, 0, 0.0, 1e-6, 1.0};
+    const View p{0, 0, 0, 0, 0, 0, 0.0, 1e-6, 1.0, {}, 0, 0, 0};
+    const View i{d.x, d.y, d.z, d.y * d.y, 0, 0, 0.0, 1e-6, 1.0, {}, 0, 0, 0};
     paper += force<PairRule::kPaper>(p, i);
     central += force<PairRule::kConsistent>(p, i);
   }
@@ -90,9 +196,10 @@ TEST(PairForce, CentralDragHasTheViscosityOfEquationNine) {
 }
 
 TEST(PairForce, CoincidentParticlesAndSelfAddNothing) {
-  const View p{0.1, 0.2, 0.3, 0.5, 0.5, 0.5, 1000.0, 1e-6, 1.0};
+  const View p{0.1, 0.2, 0.3, 0.5, 0.5, 0.5, 1000.0, 1e-6, 1.0, {1, 0, 0, 1, 0, 1}, 1, 1, 1};
   EXPECT_EQ(glm::length(force<PairRule::kConsistent>(p, p)), 0.0);
   EXPECT_EQ(glm::length(force<PairRule::kPaper>(p, p)), 0.0);
+  EXPECT_EQ(glm::length(force<PairRule::kCorrected>(p, p)), 0.0);
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ bool has(const std::vector<Pass>& passes, PassId id) {
 // What a plan decides, without its prose.
 std::string decisions(const Plan& plan) {
   std::ostringstream text;
-  text << "model " << (plan.model == ParticleModel::kPaper ? "paper" : "consistent") << '\n'
+  text << "model " << name(plan.model) << '\n'
        << "support_radius_mm " << plan.support_radius * 1e3 << '\n'
        << "stiffness_m2_s2 " << plan.stiffness << '\n'
        << "time_step_ms " << plan.time_step * 1e3 << '\n'
@@ -46,7 +46,8 @@ TEST_P(GoldenPlan, IsAsCommitted) {
   const auto scene = load_scene(file.value());
   ASSERT_TRUE(scene) << scene.error().text();
   const std::string seen = decisions(make_plan(scene.value(), scene.value().spacing_max));
-  const std::filesystem::path golden = test::source_dir() / "tests/sim/golden" / (GetParam() + std::string(".plan"));
+  const std::filesystem::path golden =
+      test::source_dir() / "tests/sim/golden" / (GetParam() + std::string(".plan"));
   if (std::getenv("SLOSH_UPDATE_GOLDEN")) std::ofstream(golden) << seen;
   std::ifstream stream(golden);
   ASSERT_TRUE(stream) << golden;
@@ -114,7 +115,8 @@ TEST(Plan, ThatWouldNotComeToAnEndIsRefused) {
   ASSERT_LT(endless.time_step, 1e-7);
   const auto world = make_world(tank.scene, tank.sampled, endless, {1, Backend::kCpu});
   ASSERT_FALSE(world);
-  EXPECT_NE(world.error().what.find("explicit viscosity of 1e+06 Pa·s"), std::string::npos) << world.error().text();
+  EXPECT_NE(world.error().what.find("explicit viscosity of 1e+06 Pa·s"), std::string::npos)
+      << world.error().text();
   double most = 0.0;
   ASSERT_EQ(std::sscanf(world.error().mend.c_str(), "Up to %lf Pa·s", &most), 1) << world.error().text();
   EXPECT_GT(most, 2000.0);

@@ -71,18 +71,19 @@ bool print_shipped(const std::string& name, int steps) {
   const auto sampled = sample_scene(scene, scene.spacing_max);
   if (!sampled) throw std::runtime_error(sampled.error().text());
   bool same = true;
-  for (const ParticleModel model : {ParticleModel::kConsistent, ParticleModel::kPaper}) {
+  for (const ParticleModel model :
+       {ParticleModel::kCorrected, ParticleModel::kConsistent, ParticleModel::kPaper}) {
     scene.model = model;
-    same &= print(name + (model == ParticleModel::kPaper ? " paper" : " consistent"), scene, sampled.value(),
-                  steps);
+    same &= print(name + " " + slosh::name(model), scene, sampled.value(), steps);
   }
   return same;
 }
 
 bool print_small(int steps) {
   bool same = true;
-  for (const ParticleModel model : {ParticleModel::kConsistent, ParticleModel::kPaper}) {
-    const std::string word = model == ParticleModel::kPaper ? " paper" : " consistent";
+  for (const ParticleModel model :
+       {ParticleModel::kCorrected, ParticleModel::kConsistent, ParticleModel::kPaper}) {
+    const std::string word = std::string(" ") + slosh::name(model);
     testing::Tank tank = testing::stirred_tank(0.1);
     tank.scene.model = model;
     same &= print("two fluids, paddle" + word, tank.scene, tank.sampled, steps);

@@ -53,7 +53,8 @@ TEST(World, PaperModelIsTheSameWhateverTheThreads) {
 
 // What the walls and the paddle do to the fluid, the fluid does to them: all momentum is accounted for.
 TEST(World, EveryStepBalancesMomentum) {
-  for (const ParticleModel model : {ParticleModel::kConsistent, ParticleModel::kPaper}) {
+  for (const ParticleModel model :
+       {ParticleModel::kCorrected, ParticleModel::kConsistent, ParticleModel::kPaper}) {
     Tank tank = stirred_tank();
     tank.scene.model = model;
     World world = make_world(tank);
@@ -81,7 +82,8 @@ TEST(World, EveryStepBalancesMomentum) {
   }
 }
 
-// A fluid that no volume of the scene has is nowhere, and changes nothing: neither a wrench nor a probe's kind.
+// A fluid that no volume of the scene has is nowhere, and changes nothing: neither a wrench nor a probe's
+// kind.
 TEST(World, AnUnusedFluidChangesNothing) {
   Tank plain = stirred_tank(0.05);
   for (FluidVolume& volume : plain.scene.fluid_volumes) volume.fluid = 0;
@@ -110,7 +112,8 @@ TEST(World, AnUnusedFluidChangesNothing) {
     a.fill(sa);
     b.fill(sb);
     for (std::size_t body = 0; body < sa.bodies.size(); ++body)
-      ASSERT_EQ(sa.bodies[body].fluid.force, sb.bodies[body].fluid.force) << "body " << body << ", step " << i;
+      ASSERT_EQ(sa.bodies[body].fluid.force, sb.bodies[body].fluid.force)
+          << "body " << body << ", step " << i;
   }
   EXPECT_EQ(a.hash(), b.hash());
 }

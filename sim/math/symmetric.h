@@ -1,0 +1,38 @@
+// Symmetric 3×3 tensors as six numbers, or six batches of them.
+#pragma once
+
+#include "sim/math/host_device.h"
+
+namespace slosh {
+
+template <class Real>
+struct Symmetric {
+  Real xx, xy, xz, yy, yz, zz;
+};
+
+template <class Real>
+SLOSH_HD Real trace(const Symmetric<Real>& t) {
+  return t.xx + t.yy + t.zz;
+}
+
+template <class Real>
+SLOSH_HD Real determinant(const Symmetric<Real>& t) {
+  return t.xx * (t.yy * t.zz - t.yz * t.yz) - t.xy * (t.xy * t.zz - t.yz * t.xz) +
+         t.xz * (t.xy * t.yz - t.yy * t.xz);
+}
+
+/// a · t + b · 1.
+template <class Real>
+SLOSH_HD Symmetric<Real> scaled_and_shifted(const Symmetric<Real>& t, Real a, Real b) {
+  return {a * t.xx + b, a * t.xy, a * t.xz, a * t.yy + b, a * t.yz, a * t.zz + b};
+}
+
+/// The inverse of a tensor whose determinant is not zero.
+template <class Real>
+SLOSH_HD Symmetric<Real> inverse(const Symmetric<Real>& t) {
+  const Real f = Real(1) / determinant(t);
+  return {f * (t.yy * t.zz - t.yz * t.yz), f * (t.xz * t.yz - t.xy * t.zz), f * (t.xy * t.yz - t.xz * t.yy),
+          f * (t.xx * t.zz - t.xz * t.xz), f * (t.xy * t.xz - t.xx * t.yz), f * (t.xx * t.yy - t.xy * t.xy)};
+}
+
+}  // namespace slosh

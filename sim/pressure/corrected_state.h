@@ -1,0 +1,51 @@
+// From a particle's neighbourhood to what it presses and drags by: the corrected model's end of the density
+// pass.
+#pragma once
+
+#include "sim/pressure/equation_of_state.h"
+#include "sim/pressure/gradient_correction.h"
+#include "sim/viscosity/noise.h"
+
+namespace slosh {
+
+/// What the particles of a run share, for the corrected model.
+struct CorrectionConstants {
+  float rest_number = 0.0f;      ///< Σ of the kernel's shape over the rest lattice
+  float rest_moment = 0.0f;      ///< Σ x² (−W'/r) over it, without the kernel's constant
+  float push_scale = 0.0f;       ///< 1/(V⁰ · rest_moment · the kernel's constant), near 1.3
+  float own_number = 0.0f;       ///< the kernel's shape at no distance
+  float noise_viscosity = 0.0f;  ///< Pa·s (viscosity/noise.h)
+  float rest_volume = 0.0f;      ///< m³
+  float stiffness = 0.0f;        ///< m²/s²
+  float tension = 0.0f;
+};
+
+struct CorrectedState {
+  float pressure;         ///< V² P, N·m⁴
+  float volume;           ///< m³
+  float compression;      ///< ρ/ρ⁰ − 1
+  Symmetric<float> push;  ///< N·m⁴
+  float u[3];             ///< Pa·m
+};
+
+/// `shared_viscosity`: of all fluids, Pa·s, where there is one (Eq 6), else 0. `v`: m/s.
+SLOSH_HD inline CorrectedState corrected_state(const Neighborhood<float>& n, const CorrectionConstants& c,
+                                               float rest_density, float shared_viscosity, float last_volume,
+                                               const float (&v)[3]) {
+  const PressureState eos = pressure_state(n.number, c.rest_number, c.rest_volume, rest_density, c.stiffness,
+                                           c.tension, last_volume, true);
+  CorrectedState state;
+  state.volume = eos.volume;
+  state.compression = eos.compression;
+  state.pressure = eos.pressure;
+  const Symmetric<float> moment = scaled_and_shifted(n.moment, 1.0f / c.rest_moment, 0.0f);
+  // The energy's gradient has V², a virial of V P has V V⁰.
+  const float virial = c.push_scale * (c.rest_volume / eos.volume);
+  state.push = scaled_and_shifted(pressure_directions(moment, corrected_share(eos.compression), virial),
+                                  eos.pressure, 0.0f);
+  for (int k = 0; k < 3; ++k) state.u[k] = shared_viscosity * v[k];
+  add_noise(n, c.own_number, c.noise_viscosity, v, state.u);
+  return state;
+}
+
+}  // namespace slosh
