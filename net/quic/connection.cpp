@@ -122,7 +122,7 @@ std::unique_ptr<Connection> Connection::to_host(ConnectionOwner& owner, const Tl
   Address local = socket.local();
   const ngtcp2_path path = path_between(local, made->remote_);
   if (ngtcp2_conn_client_new(&made->conn_, &host_id, &own_id, &path, NGTCP2_PROTO_VER_V1, &callbacks,
-                             &settings, &params, nullptr, made.get()) != 0 ||
+                             &settings, &params, made->memory_.functions(), made.get()) != 0 ||
       !made->start_session(false))
     return nullptr;
   made->ids_.push_back(own_id);
@@ -146,7 +146,7 @@ std::unique_ptr<Connection> Connection::from_client(ConnectionOwner& owner, cons
   Address from = local;
   const ngtcp2_path path = path_between(from, made->remote_);
   if (ngtcp2_conn_server_new(&made->conn_, &first.client_id, &own_id, &path, first.version, &callbacks,
-                             &settings, &params, nullptr, made.get()) != 0 ||
+                             &settings, &params, made->memory_.functions(), made.get()) != 0 ||
       !made->start_session(true))
     return nullptr;
   made->ids_ = {own_id, first.retry_id};

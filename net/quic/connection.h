@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "net/quic/compat.h"
+#include "net/quic/connection_memory.h"
 #include "net/quic/datagram_queues.h"
 #include "net/quic/endpoint.h"
 #include "net/quic/loss_ledger.h"
@@ -141,6 +142,7 @@ class Connection {
   UdpSocket* socket_;
   Address remote_;
   TlsPeer peer_;
+  ConnectionMemory memory_;  // outlives conn_, which the destructor deletes
   ngtcp2_conn* conn_ = nullptr;
   gnutls_session_t session_ = nullptr;
   State state_ = State::kHandshake;
