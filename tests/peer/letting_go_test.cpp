@@ -111,7 +111,11 @@ class LettingGo : public ::testing::TestWithParam<bool> {
 
   /// Runs `life` in a process of its own; sends it `signals`, the first when its hand is pulled at full
   /// force, each next one when it has noted the one before. Returns what waitpid says.
-  int process(const std::function<void()>& life, const std::vector<int>& signals) {
+  ///
+  /// A hand that is not pulled within 10 s is begun again, three times: seen once in some 1700 runs, and guessed
+  /// to be a busy machine that keeps the device's thread waiting for longer than its watchdog does, after which
+  /// the hand rightly holds on where it is, without a force.
+  int process(const std::function<void()>& life, const std::vector<int>& signals, int times_left = 3) {
     const pid_t child = fork();
     if (child == 0) {
       life();
@@ -119,9 +123,17 @@ class LettingGo : public ::testing::TestWithParam<bool> {
     }
     int status = 0;
     for (std::size_t i = 0; i < signals.size(); ++i) {
-      while (i == 0 ? felt->last != -10.0 : !felt->caught) {
+      for (int waited_ms = 0; i == 0 ? felt->last != -10.0 : !felt->caught; ++waited_ms) {
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
         if (waitpid(child, &status, WNOHANG) == child) return status;  // it ended too early
+        if (waited_ms < 10000) continue;
+        kill(child, SIGKILL);
+        waitpid(child, &status, 0);
+        EXPECT_GT(times_left, 0) << (i == 0 ? "the hand is never pulled" : "a signal is never noted");
+        if (times_left == 0) return status;
+        felt->last = 0.0;
+        felt->caught = false;
+        return process(life, signals, times_left - 1);
       }
       kill(child, signals[i]);
     }
