@@ -55,9 +55,9 @@ struct MassProperties {
 
 /// Which particle model a scene runs. sim/README.md compares them in numbers.
 enum class ParticleModel : std::uint8_t {
-  kConsistent,  ///< density and pressure from one kernel, walls counted in both: the default
+  kConsistent,  ///< density and pressure from one kernel, walls counted in both
   kPaper,       ///< Eq 2 with poly6 and without body particles, Eq 5 as printed, constant body pressure
-  kCorrected,   ///< the consistent one with gradients corrected for uneven neighbours (Bonet & Lok 1999)
+  kCorrected,   ///< consistent, gradients corrected for uneven neighbours (Bonet & Lok 1999): the default
 };
 
 /// Their names in scene files and on the wire, in the order of the values.
