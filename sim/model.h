@@ -37,15 +37,10 @@ struct ModelParts<ParticleModel::kConsistent> {
 };
 
 template <>
-struct ModelParts<ParticleModel::kCorrected> {
-  using DensityKernel = Spiky;
-  using ForceKernel = Spiky;
+struct ModelParts<ParticleModel::kCorrected> : ModelParts<ParticleModel::kConsistent> {
   static constexpr PairRule kFluids = PairRule::kCorrected;
   static constexpr PairRule kWalls = PairRule::kCorrectedWall;
   static constexpr PairRule kOnBodies = PairRule::kCorrectedBody;
-  static constexpr DragRule kDrag = DragRule::kCentral;
-  static constexpr bool kWallsCount = true;
-  static constexpr bool kPressureEnergy = true;
   static constexpr bool kCorrected = true;
 };
 

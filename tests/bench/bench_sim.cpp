@@ -130,10 +130,6 @@ void add_timing(Table& table, const char* part, const std::string& what, const W
               {"real_time_factor", world.plan().time_step / total}}});
 }
 
-const char* model_name(ParticleModel model) {
-  return name(model);
-}
-
 /// (a) A whole step of `pool`, its ball held and at rest, after the fluid has moved for a while.
 bool bench_speed(Table& table, const std::vector<std::size_t>& counts, int steps) {
   Result<Scene> pool = shipped("pool");
@@ -155,7 +151,7 @@ bool bench_speed(Table& table, const std::vector<std::size_t>& counts, int steps
         const Timing t = time_steps(world, hands, steps);
         add_timing(
             table, "speed",
-            "pool " + std::to_string(count) + " " + model_name(model) + " threads " + std::to_string(threads),
+            "pool " + std::to_string(count) + " " + name(model) + " threads " + std::to_string(threads),
             world, t);
         if (cores == 1) break;
       }
@@ -183,7 +179,7 @@ void bench_still_tank(Table& table) {
       const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       const double weight = e.fluid_mass() * lab::kGravity;
       char what[80];
-      std::snprintf(what, sizeof what, "still tank %.4g mm %s", 1e3 * spacing, model_name(model));
+      std::snprintf(what, sizeof what, "still tank %.4g mm %s", 1e3 * spacing, name(model));
       table.add({"error",
                  what,
                  {{"particles", static_cast<double>(e.world().fluid_count())},

@@ -37,11 +37,10 @@ Felt push_a_ball(ParticleModel model) {
   hand.engaged = true;
   e.world().settle(1.0, {&hand, 1});
   const glm::dvec3 start = hand.pose.position;
-  double begin = e.world().time();
   std::vector<double> still, moving, left;
   const auto along = [&] { return -e.bodies().bodies[ball].fluid.force.x; };
   e.run(0.3, [&] { still.push_back(along()); });
-  begin = e.world().time();
+  const double begin = e.world().time();
   e.run(kWay / kSpeed, [&] {
     const double way = std::min(kWay, kSpeed * (e.world().time() - begin));
     hand.pose.position = start + glm::dvec3(way, 0.0, 0.0);
