@@ -65,7 +65,7 @@ Result<bool> Host::carry_out(const HostCommand& command) {
   switch (command.action) {
     case HostAction::kPause:
       paused_ = true;
-      publish_bodies(0.0, steady_now_ns());
+      publish_bodies(0.0, clock_ns());
       return true;
     case HostAction::kContinue:
       paused_ = false;
@@ -86,8 +86,8 @@ Result<bool> Host::reset() {
   run_ += 1;
   for (double& until : status_until_) until = 0.0;
   world_.fill(latest_);
-  gate_.reset(latest_, steady_now_ns());
-  publish_bodies(0.0, steady_now_ns());
+  gate_.reset(latest_, clock_ns());
+  publish_bodies(0.0, clock_ns());
   publish_picture();
   next_picture_ = world_.time() + (options_.picture_rate > 0.0 ? 1.0 / options_.picture_rate : 0.0);
   return true;
@@ -104,7 +104,7 @@ HostState Host::state() const {
 }
 
 void Host::stand_still() {
-  publish_bodies(0.0, steady_now_ns());
+  publish_bodies(0.0, clock_ns());
   tell_published();
   shown_rate_ = 0.0;
   while (paused_ && !stop_.load(std::memory_order_relaxed)) {

@@ -107,10 +107,16 @@ HostProgress Host::progress() const {
   return progress;
 }
 
+std::int64_t Host::clock_ns() const {
+  return options_.paced ? steady_now_ns() : simulated_ns_;
+}
+
 void Host::note_status(std::uint32_t status) {
   report_.status |= status;
   for (int bit = 0; bit < 32; ++bit) {
-    if (status & (1u << bit)) status_until_[bit] = world_.time() + kStatusMemory;
+    if (!(status & (1u << bit))) continue;
+    status_until_[bit] = world_.time() + kStatusMemory;
+    report_.status_steps[static_cast<std::size_t>(bit)] += 1;
   }
 }
 
@@ -179,6 +185,7 @@ void Host::run() {
   pacer.restart(begin_ns);
   meter.restart(begin_ns);
   meter.seed(time_step);
+  simulated_ns_ = begin_ns;
   next_picture_ = world_.time();
   for (HostTap* tap : taps_) tap->on_start(world_, state());
   // The first picture of a run comes whether somebody looks or not: those who count runs need it.
@@ -187,6 +194,7 @@ void Host::run() {
   tell_published();
 
   while (!stop_.load(std::memory_order_relaxed) && world_.time() + 0.5 * time_step < options_.until) {
+    if (options_.pulse != nullptr) options_.pulse->fetch_add(1, std::memory_order_relaxed);
     if (has_orders_.load(std::memory_order_acquire)) run_commands();
     if (paused_) {
       report_.wall += to_seconds(steady_now_ns() - begin_ns);
@@ -207,7 +215,7 @@ void Host::run() {
       sleep_until_ns(turn.deadline_ns);
     }
     const std::uint64_t rejected_before = gate_.rejected();
-    const std::span<const HandleInput> input = gate_.take(channel_, latest_, steady_now_ns());
+    const std::span<const HandleInput> input = gate_.take(channel_, latest_, clock_ns());
     if (gate_.rejected() != rejected_before) {
       note_status(kStatusInputRejected);
       tell_refused();
@@ -217,13 +225,14 @@ void Host::run() {
     const std::int64_t step_begin_ns = steady_now_ns();
     world_.step(input);
     const std::int64_t step_end_ns = steady_now_ns();
+    simulated_ns_ += to_nanoseconds(time_step);
 
     note_status(world_.take_status());
     world_.fill(latest_);
     for (HostTap* tap : taps_) tap->after_step(world_);
     const double measured_rate = meter.quick(time_step, step_end_ns);
-    const double rate = on_schedule ? 1.0 : measured_rate;
-    publish_bodies(rate, options_.paced ? scheduled_end_ns : step_end_ns);
+    const double rate = on_schedule || !options_.paced ? 1.0 : measured_rate;
+    publish_bodies(rate, options_.paced ? scheduled_end_ns : simulated_ns_);
     publish_picture_if_due();
     tell_published();
 
@@ -245,13 +254,14 @@ void Host::run() {
     }
   }
 
+  if (options_.pulse != nullptr) options_.pulse->store(0, std::memory_order_relaxed);
   report_.wall += to_seconds(steady_now_ns() - begin_ns);
   report_.simulated = static_cast<double>(report_.steps) * time_step;
   report_.slips = pacer.slips();
   report_.slipped = pacer.slipped_seconds();
   report_.rejected_poses = gate_.rejected();
   report_.diagnostics = world_.diagnostics();
-  publish_bodies(0.0, steady_now_ns());
+  publish_bodies(0.0, clock_ns());
   channel_.pictures().close();
   for (HostTap* tap : taps_) tap->on_end(world_);
   tell_published();

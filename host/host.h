@@ -1,6 +1,7 @@
 // The authoritative loop: inputs in order, step, publish, at the pace of the steady clock.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
@@ -27,13 +28,18 @@ struct HostOptions {
   double picture_rate = 30.0;
   PictureDemand* demand = nullptr;  ///< must outlive the host; null = pictures are wanted always
   double until = std::numeric_limits<double>::infinity();  ///< simulated s at which the run ends
-  bool paced = true;      ///< false: as fast as it goes, for tests that must not depend on the wall clock
+  /// false: as fast as it goes, with a clock that goes on by a time step a step, so that a run is the same
+  /// again whatever the machine does.
+  bool paced = true;
   bool shell = false;     ///< pictures say which particles are seen from outside (Snapshot::shell)
   bool paused = false;    ///< starts standing still
   std::uint32_t run = 0;  ///< what BodyMessage::run starts with: that of a world that was restored
   /// World::save of what a reset goes back to; empty = the world as it is handed over. For a world that was
   /// restored in mid-run.
   std::vector<std::uint8_t> start_state;
+  /// Raised at each turn of the loop, a world's that stands still too, and 0 before and after the run: who
+  /// looks on knows that it has not got stuck. Must outlive the host; null = nobody does.
+  std::atomic<std::uint64_t>* pulse = nullptr;
 };
 
 /// What may be asked at any time, from any thread.
@@ -59,9 +65,10 @@ struct HostReport {
   double slipped = 0.0;     ///< s
   std::uint64_t rejected_poses = 0;
   std::uint64_t pictures = 0;
-  std::uint32_t status = 0;  ///< every StatusBit that was ever set
-  Diagnostics diagnostics;   ///< of the last state
-  double start_mass = 0.0;   ///< kg of fluid at the start
+  std::uint32_t status = 0;                      ///< every StatusBit that was ever set
+  std::array<std::uint64_t, 32> status_steps{};  ///< in how many steps, one a bit
+  Diagnostics diagnostics;                       ///< of the last state
+  double start_mass = 0.0;                       ///< kg of fluid at the start
 };
 
 /// Called on the host's thread with what came of a command.
@@ -108,6 +115,7 @@ class Host {
   };
 
   void run();
+  std::int64_t clock_ns() const;
   void run_commands();
   void end_commands();
   void stand_still();
@@ -136,6 +144,7 @@ class Host {
   std::size_t fluids_ = 0;  // of the scene
   bool paused_ = false;
   std::uint32_t run_ = 0;
+  std::int64_t simulated_ns_ = 0;  // the clock of a run that is not paced
 
   std::mutex orders_mutex_;
   std::condition_variable ordered_;

@@ -141,6 +141,13 @@ bool InputGate::another_holds(const Hand& hand, std::int64_t clock_ns) const {
   });
 }
 
+/// Whether somebody else holds the same body, heard or not.
+bool InputGate::shared(const Hand& hand) const {
+  return std::any_of(hands_.begin(), hands_.end(), [&](const Hand& other) {
+    return &other != &hand && other.body == hand.body && other.has_good && other.good.engaged;
+  });
+}
+
 /// Moves the place where a silent hand holds, with the grip and so far that the springs give no more than
 /// kYield… besides what the hand carried.
 void InputGate::give_way(Hand& hand, HandleInput& input, const GripState& grip) const {
@@ -174,14 +181,18 @@ void InputGate::fill_input(Hand& hand, std::size_t grip, const BodySnapshot& now
   const double late = std::clamp(now.time - hand.good.time, -kMostCarried, kMostCarried);
   input.pose = extrapolate(hand.good.pose, hand.good.twist, late);
   if (clock_ns - hand.received_ns > to_nanoseconds(kStaleTwist)) {
+    // From here on it goes with the world's time. At once at rest, it would stop a body that swings with a
+    // blow.
     hand.good.pose = input.pose;
-    hand.good.twist = Twist{};
+    hand.good.time = now.time;
+    const double left = std::exp(-step_ / kRunOut);
+    hand.good.twist = {left * hand.good.twist.linear, left * hand.good.twist.angular};
   }
   input.engaged = hand.has_good && hand.good.engaged;
   const GripState nowhere{input.pose, hand.good.twist, input.pose, {}};
   const Engagement::Held held =
       hand.engagement.update(input.engaged, now.time, input.pose, hand.good.twist, hand.gains,
-                             grip < now.grips.size() ? now.grips[grip] : nowhere);
+                             grip < now.grips.size() ? now.grips[grip] : nowhere, shared(hand));
   input.pose = held.pose;
   input.twist = held.twist;
   input.scale = input.engaged ? 1.0 : 0.0;
@@ -199,6 +210,7 @@ void InputGate::fill_input(Hand& hand, std::size_t grip, const BodySnapshot& now
 
 std::span<const HandleInput> InputGate::take(Channel& channel, const BodySnapshot& now,
                                              std::int64_t clock_ns) {
+  step_ = std::clamp(now.time - time_, 0.0, kMostCarried);
   time_ = now.time;
   std::fill(refused_.begin(), refused_.end(), PoseFault::kNone);
   for (std::size_t i = 0; i < hands_.size(); ++i) {

@@ -17,9 +17,11 @@ namespace slosh {
 
 /// s of simulated time over which a coupling fades whose hand was lost (PoseMessage::lost).
 constexpr double kLostFade = 0.4;
-/// s of wall time without a message after which a hand counts as standing still: a twist as old as that would
-/// drag the body along.
-constexpr double kStaleTwist = 0.05;
+/// s of wall time without a message after which a hand is taken to come to rest: a twist as old as that would
+/// drag the body along ...
+constexpr double kStaleTwist = 0.015;
+/// ... and the time constant of that, s of simulated time.
+constexpr double kRunOut = 0.1;
 /// A hand that was not heard for this long, s of wall time, gives way where another hand of the body is not
 /// silent: its coupling goes on giving what it gave when the hand was last heard, and so much more at most.
 /// So whoever is left carries their own share, and does not pull against a hand that hangs in the air.
@@ -77,6 +79,7 @@ class InputGate {
   void fill_input(Hand& hand, std::size_t grip, const BodySnapshot& now, std::int64_t clock_ns);
   void fade(Hand& hand, HandleInput& input, double time);
   bool another_holds(const Hand& hand, std::int64_t clock_ns) const;
+  bool shared(const Hand& hand) const;
   void give_way(Hand& hand, HandleInput& input, const GripState& grip) const;
   PoseFault check(const PoseMessage& message, const Hand& hand) const;
 
@@ -87,6 +90,7 @@ class InputGate {
   std::vector<PoseMessage> used_;
   std::vector<PoseFault> refused_;     // by the last take()
   double time_ = 0.0;                  // simulated s of the last step
+  double step_ = 0.0;                  // s from the one before to that
   std::int64_t old_run_until_ns_ = 0;  // messages of the run before may come until then
   std::uint64_t rejected_ = 0;
   PoseFault last_fault_ = PoseFault::kNone;

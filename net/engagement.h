@@ -32,12 +32,20 @@ constexpr double kHoldAnew = 0.1;
 /// to 27.
 constexpr double kSlipRise = 0.15;
 
+/// Where another hand holds the same body, a hold that was taken anew changes the force that acted when it
+/// began by no more than this, and by twice that each kHoldDoubles s later; beyond, it slips. Two hands that
+/// come back where the body was turned away from both give up their distances each on its own way, and would
+/// pull against one another: 100 N of a bucket that weighs 25. A weight that shifts is carried in the end.
+constexpr double kHoldForce = 2.0;    ///< N
+constexpr double kHoldTorque = 0.1;   ///< N·m
+constexpr double kHoldDoubles = 1.0;  ///< s, simulated
+
 /// The state of one grip's hold. The hand takes hold where the force goes on as it is, and as fast as the
 /// grip goes: with the pose that it has, less an offset, and with its velocity, less its slip against the
 /// grip. The slip is given up over kSlipRise (the offset grows by it meanwhile), the offset slowly after
-/// that, until the hand holds where it is. So taking hold never pulls harder than what moving the body at
-/// kLetInSpeed takes, however far away the hand is, and a hand that passes by does not snatch the body away.
-/// Pure; owned by one thread; no allocation.
+/// that, until the hand holds where it is; where the hold slips it grows again (kHoldForce). So taking hold
+/// never pulls harder than what moving the body at kLetInSpeed takes, however far away the hand is, and a
+/// hand that passes by does not snatch the body away. Pure; owned by one thread; no allocation.
 class Engagement {
  public:
   /// What the coupling uses in place of the hand.
@@ -47,10 +55,10 @@ class Engagement {
   };
 
   /// Call once a tick. `time` in simulated s, never falling; `hand`, `twist`: the hand as it is; `grip` as it
-  /// is, with the force that acts on the hand already (0 when none does). While not engaged the hand itself
-  /// comes back.
+  /// is, with the force that acts on the hand already (0 when none does); `shared`: another hand holds the
+  /// same body. While not engaged the hand itself comes back.
   Held update(bool engaged, double time, const Pose& hand, const Twist& twist, const CouplingGains& gains,
-              const GripState& grip) {
+              const GripState& grip, bool shared = false) {
     if (!engaged) {
       *this = Engagement{};
       return {hand, twist};
@@ -62,8 +70,10 @@ class Engagement {
     }
     const double slipping = quiet_ ? 0.0 : 1.0 - slip_pace();
     if (offset_ == glm::dvec3(0.0) && turn_ == glm::dvec3(0.0) && slipping == 0.0) return {hand, twist};
-    return {{hand.position - offset_, rotate_by(hand.orientation, -turn_)},
-            {twist.linear - slipping * slip_ + speed_, twist.angular - slipping * slip_turn_ + turning_}};
+    Held held{{hand.position - offset_, rotate_by(hand.orientation, -turn_)},
+              {twist.linear - slipping * slip_ + speed_, twist.angular - slipping * slip_turn_ + turning_}};
+    if (shared && !quiet_) bound_pull(held, hand, gains, grip);
+    return held;
   }
 
   bool engaged() const { return engaged_; }
@@ -79,6 +89,7 @@ class Engagement {
   void take_hold(double time, const Pose& hand, const Twist& twist, const CouplingGains& gains,
                  const GripState& grip) {
     engaged_ = quiet_ = true;
+    began_ = grip.on_hand;
     since_ = last_ = time;
     offset_ = turn_ = speed_ = turning_ = slip_ = slip_turn_ = glm::dvec3(0.0);
     const Wrench full = coupling_wrench_on_hand(gains, hand, twist, grip.pose, grip.twist);
@@ -102,6 +113,31 @@ class Engagement {
     const double angle = glm::length(strain);
     if (angle > kMostStrain) strain *= kMostStrain / angle;
     turn_ = rotation_between(rotate_by(grip.pose.orientation, -strain), hand.orientation);
+  }
+
+  /// Slips until what the hold changes of the force that it began with is in bounds.
+  void bound_pull(Held& held, const Pose& hand, const CouplingGains& gains, const GripState& grip) {
+    const Wrench full = coupling_wrench_on_hand(gains, held.pose, held.twist, grip.pose, grip.twist);
+    const double firmness = std::exp2((last_ - since_) / kHoldDoubles);
+    const glm::dvec3 pull = full.force - began_.force;
+    const double most = firmness * kHoldForce;
+    if (glm::length(pull) > most && gains.stiffness > 0.0) {
+      const double share = most / glm::length(pull);
+      held.twist.linear = grip.twist.linear + share * (held.twist.linear - grip.twist.linear);
+      const glm::dvec3 damper = gains.damping * (grip.twist.linear - held.twist.linear);
+      held.pose.position = grip.pose.position - (began_.force + share * pull - damper) / gains.stiffness;
+      offset_ = hand.position - held.pose.position;
+    }
+    const glm::dvec3 twisting = full.torque - began_.torque;
+    const double most_twisting = firmness * kHoldTorque;
+    if (glm::length(twisting) > most_twisting && gains.rotational_stiffness > 0.0) {
+      const double share = most_twisting / glm::length(twisting);
+      held.twist.angular = grip.twist.angular + share * (held.twist.angular - grip.twist.angular);
+      const glm::dvec3 damper = gains.rotational_damping * (grip.twist.angular - held.twist.angular);
+      const glm::dvec3 spring = began_.torque + share * twisting - damper;
+      held.pose.orientation = rotate_by(grip.pose.orientation, -spring / gains.rotational_stiffness);
+      turn_ = rotation_between(held.pose.orientation, hand.orientation);
+    }
   }
 
   void let_in(double time) {
@@ -139,6 +175,7 @@ class Engagement {
 
   bool engaged_ = false;
   bool quiet_ = true;
+  Wrench began_;  // what acted on the hand when it took hold
   double since_ = 0.0;
   double last_ = 0.0;
   glm::dvec3 offset_{0.0};     // hand less what it holds with, m

@@ -54,6 +54,8 @@ Result<Scene> read_scene(const std::filesystem::path& file) {
       +[](Reading& r) { return read_all(r, NodeKind::kGrip, reading::read_grip); },
       +[](Reading& r) { return reading::order_grips(r); },
       +[](Reading& r) { return read_all(r, NodeKind::kHand, reading::read_hand); },
+      +[](Reading& r) { return read_all(r, NodeKind::kGauge, reading::read_gauge); },
+      +[](Reading& r) { return read_all(r, NodeKind::kRegion, reading::read_region); },
       +[](Reading& r) { return reading::read_camera(r); },
       +[](Reading& r) { return reading::read_domain(r); },
   };

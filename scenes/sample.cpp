@@ -67,7 +67,7 @@ SurfaceSamples sample_probe(double spacing) {
   return {{glm::vec3(0.0f)}, {glm::vec3(0.0f, 1.0f, 0.0f)}, volume};
 }
 
-Result<SampledScene> sample(const Scene& scene, double spacing) {
+Result<SampledScene> sample(const Scene& scene, double spacing, SampleReport* report) {
   if (!(spacing >= 1e-5 && spacing <= 10.0)) {
     return Error{scene.source_file + ": spacing", "is " + short_number(spacing) + " m",
                  "Give 0.00001 to 10 m"};
@@ -94,15 +94,20 @@ Result<SampledScene> sample(const Scene& scene, double spacing) {
       out.distance_fields.push_back(DistanceField(out.distance_fields[known->second]));
     }
   }
-  if (const auto problem = sampling::fill_fluids(scene, out)) return *problem;
+  for (const Region& region : scene.regions) {
+    const TriangleMesh& triangles = scene.meshes[static_cast<std::size_t>(region.mesh)];
+    out.region_fields.push_back(
+        sampling::make_distance_field(triangles, mesh::MeshTree(triangles), spacing));
+  }
+  if (const auto problem = sampling::fill_fluids(scene, out, report)) return *problem;
   return out;
 }
 
 }  // namespace
 
-Result<SampledScene> sample_scene(const Scene& scene, double spacing) {
+Result<SampledScene> sample_scene(const Scene& scene, double spacing, SampleReport* report) {
   try {
-    return sample(scene, spacing);
+    return sample(scene, spacing, report);
   } catch (const std::exception& problem) {  // out of memory
     return Error{scene.source_file, std::string("cannot be sampled: ") + problem.what(),
                  "Choose a larger spacing"};

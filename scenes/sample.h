@@ -1,17 +1,33 @@
 // From meshes to particles and distance fields at one spacing.
 #pragma once
 
+#include <cstddef>
+#include <vector>
+
 #include "scenes/scene.h"
 #include "sim/math/result.h"
 
-#include <cstddef>
-
 namespace slosh {
+
+/// What became of one fluid volume, m³. `sampled` is `mesh` less the rest, to a particle.
+struct FilledVolume {
+  double mesh = 0.0;       ///< what its mesh encloses
+  double sampled = 0.0;    ///< what its particles stand for
+  double in_bodies = 0.0;  ///< of the mesh, inside bodies
+  double in_others = 0.0;  ///< of the mesh, taken by volumes before it
+  double no_place = 0.0;   ///< what found no free place at this spacing
+};
+
+/// One entry a fluid volume of the scene.
+struct SampleReport {
+  std::vector<FilledVolume> volumes;
+};
 
 /// Samples every body's surface evenly (blue noise, about one particle a spacing²), fills every fluid volume
 /// with a lattice that keeps half a spacing clear of solids, and builds one distance field a body.
 /// Deterministic. Errors: spacing above a wall's thickness, fluid overlapping a solid, no particle fits.
-Result<SampledScene> sample_scene(const Scene& scene, double spacing);
+/// `report` receives what became of the fluid volumes, unless null.
+Result<SampledScene> sample_scene(const Scene& scene, double spacing, SampleReport* report = nullptr);
 
 /// A quick estimate for choosing a spacing, without sampling: fluid volume / spacing³ and area / spacing².
 struct ParticleEstimate {

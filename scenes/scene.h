@@ -66,6 +66,10 @@ inline const char* name(ParticleModel model) {
   return kParticleModelNames[static_cast<std::size_t>(model)];
 }
 
+/// A body's viscosity where it is that of whatever fluid touches it, so that Eq 9's mean is the fluid's own and the
+/// fluid sticks to the body.
+inline constexpr double kFluidsViscosity = -1.0;
+
 enum class BodyMotion : std::uint8_t { kFixed, kFree };
 
 /// A rigid body made of particles on its surface (paper, section 4.1), or one particle (section 3).
@@ -80,7 +84,7 @@ struct Body {
   MassProperties mass;       ///< meaningful when free
   double particle_density =
       0.0;  ///< kg/m³: the constant density of its particles (section 4.1); 0 = chosen by the plan
-  double dynamic_viscosity = 0.0;  ///< Pa·s: its side of Eq 9's (μᵢ + μⱼ)/2
+  double dynamic_viscosity = 0.0;  ///< Pa·s: its side of Eq 9's (μᵢ + μⱼ)/2; 0 slips, or kFluidsViscosity
   double friction = 0.4;           ///< Coulomb, with the smaller of two touching bodies' values used
   double restitution = 0.0;        ///< 0–1
   bool measured = false;           ///< report the fluid's wrench on it even though it is fixed
@@ -93,6 +97,21 @@ struct Picture {
   int mesh = -1;
   Pose pose;
   Material material;
+};
+
+/// A point at which the fluid's level is read.
+struct Gauge {
+  std::string name;
+  int body = -1;              ///< index into Scene::bodies: it moves with that; −1 = it stands still
+  glm::dvec3 position{0.0};  ///< m, in the body's mesh frame, else world
+};
+
+/// A closed mesh in which the fluid is weighed.
+struct Region {
+  std::string name;
+  int mesh = -1;  ///< index into Scene::meshes
+  int body = -1;  ///< as a Gauge's
+  Pose pose;      ///< in the body's mesh frame, else world
 };
 
 struct PoseKey {
@@ -129,6 +148,8 @@ struct Scene {
   std::vector<Body> bodies;
   std::vector<Picture> pictures;
   std::vector<Grip> grips;
+  std::vector<Gauge> gauges;    ///< these two change nothing that moves
+  std::vector<Region> regions;
   Camera camera;
   glm::vec3 light_direction{-0.4f, -1.0f, -0.35f};  ///< the way the light travels
 
@@ -166,6 +187,7 @@ struct SampledScene {
   double spacing = 0.0;                        ///< m
   std::vector<SurfaceSamples> surfaces;        ///< one a body
   std::vector<DistanceField> distance_fields;  ///< one a body; empty (size 0) for a point probe
+  std::vector<DistanceField> region_fields;    ///< one a region
   std::vector<glm::vec3> fluid_positions;      ///< m, world
   std::vector<glm::vec3> fluid_velocities;     ///< m/s
   std::vector<std::uint8_t> fluid_index;       ///< into Scene::fluids, one a particle

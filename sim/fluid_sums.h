@@ -27,6 +27,16 @@ class FluidSums {
     sums_.max_compression = std::max<double>(sums_.max_compression, constants_.rest_volume / volume - 1.0);
   }
 
+  /// What bodies have still to be given, and how often particles were put back.
+  void add(const ImpulseSums& impulses) {
+    for (std::size_t b = 0; b + 1 < impulses.size(); b += kImpulseWords) {
+      for (int i = 0; i < 3; ++i)
+        sums_.guarded_impulse[i] +=
+            static_cast<double>(impulses[b + static_cast<std::size_t>(i)]) * constants_.impulse_units.linear;
+    }
+    if (!impulses.empty()) sums_.guarded = static_cast<std::uint64_t>(impulses.back());
+  }
+
   /// `started`: fluid particles at the start.
   Diagnostics finish(std::size_t started) const {
     Diagnostics d = sums_;

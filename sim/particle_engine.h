@@ -11,11 +11,14 @@
 #include "sim/hash.h"
 #include "sim/math/result.h"
 #include "sim/run_constants.h"
+#include "sim/viscosity/body_drag.h"
+#include "sim/walls/guard_impulse.h"
 #include "sim/world.h"
 
 namespace slosh {
 
-/// A sub-step is prepare(), forces(), advance(), in this order; wrenches() may be asked for after forces().
+/// A sub-step is prepare(), forces(), advance(), in this order; wrenches() may be asked for after forces(). A
+/// plan with kBodyDrag has drag() between forces() and advance(), after wrenches().
 /// Each runs those of the plan's passes that are its own, by the backend's table. A GPU is only told what to
 /// do: it is waited for in wrenches() alone.
 class ParticleEngine {
@@ -26,21 +29,28 @@ class ParticleEngine {
   virtual void prepare(std::span<const RigidBody> bodies) = 0;
   /// Pressure, and the forces on fluid and on bodies. `dt`: how long they will act, s.
   virtual void forces(double dt) = 0;
-  /// The fluid moves on under those forces for `dt` s.
-  virtual void advance(double dt) = 0;
+  /// The fluid moves on under those forces for `dt` s, while the bodies go from where they were in prepare()
+  /// to `after`, and no further than to their walls.
+  virtual void advance(double dt, std::span<const RigidBody> after) = 0;
   /// What the last forces() put on each body that the plan measures, about its centre of mass as it was in
-  /// prepare(); the others get zero. One entry a body.
+  /// prepare(), with what its walls took from particles in the advance() before; the others get zero. One entry
+  /// a body.
   virtual void wrenches(std::span<Wrench> out) = 0;
+  /// With kBodyDrag, after wrenches(): the drag on each free body by the same forces(); the others get none.
+  virtual void body_drags(std::span<BodyDrag> out) const = 0;
+  /// Adds to the forces on the fluid what they lack when bodies drag by a twist that differs by `changes`
+  /// (one a body, about its centre of mass) from the one that they had in prepare().
+  virtual void drag(std::span<const Twist> changes) = 0;
   /// Multiplies every fluid velocity by `keep` (0–1).
   virtual void damp(float keep) = 0;
 
   /// Takes over changed viscosities, passes and gravity; the rest is as it was.
   virtual void set_constants(const RunConstants& constants) = 0;
 
-  /// All particles, in the engine's order. False when the GPU failed.
-  virtual bool save(ParticleState& out) const = 0;
+  /// All particles, in the engine's order, and what bodies have still to be given. False when the GPU failed.
+  virtual bool save(ParticleState& out, ImpulseSums& impulses) const = 0;
   /// Takes a checked state over; particles that it lacks are out of the world. Clears status().
-  virtual void restore(const ParticleState& state) = 0;
+  virtual void restore(const ParticleState& state, const ImpulseSums& impulses) = 0;
 
   /// StatusBits so far. A GPU's may be those of the step before: the step does not wait for its last pass.
   virtual std::uint32_t status() const = 0;

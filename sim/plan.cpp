@@ -12,9 +12,16 @@ namespace slosh {
 
 namespace {
 
-// Eq 7 is linear: under its own depth the fluid is denser by g·depth/k. This much is not seen and hardly
-// felt.
-constexpr double kCompressionAtDepth = 0.04;
+// Eq 7 is linear: under its own depth the fluid is denser by g·depth/k, and where it is met at a speed by
+// half the square of that over k (Bernoulli). This much is not seen and hardly felt.
+constexpr double kCompression = 0.04;
+
+double stiffness_for(const Scene& scene) {
+  const double speed = driven_speed(scene);
+  const double head = glm::length(scene.gravity) * fluid_heights(scene).load + 0.5 * speed * speed;  // J/kg
+  return std::max(head / kCompression, 1.0);
+}
+
 // Body particles stand for fluid denser than rest by this much: enough pressure to hold a column back before
 // the fluid itself is compressed, little enough not to push it far off the wall.
 constexpr double kBodyCompression = 0.3;
@@ -45,6 +52,16 @@ void decide_bodies(const Scene& scene, const FluidExtremes& fluids, Plan& plan) 
   plan.runs.set(PassId::kCouplings, !scene.grips.empty());
   plan.runs.set(PassId::kContacts, free_solid > 0 && solid > 1);
   plan.runs.set(PassId::kMoveBodies, any_free(scene));
+}
+
+bool any_probe(const Scene& scene) {
+  return std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& b) { return b.point_probe; });
+}
+
+// A probe's force is known when the fluid has moved only, and the body's solve would wait for it in vain.
+void decide_body_drag(const Scene& scene, Plan& plan) {
+  plan.waits_for_bodies = plan.has(PassId::kPlaceBodies) && !any_probe(scene);
+  plan.runs.set(PassId::kBodyDrag, plan.viscous() && plan.waits_for_bodies);
 }
 
 struct Reasons {
@@ -83,6 +100,12 @@ Reasons reasons_for(PassId id, const Scene& scene, const FluidExtremes& fluids, 
     case PassId::kWrenches:
       return {format("Eq 10–12 for %zu bodies that are free or measured", plan.wrench_bodies.size()),
               plan.has_fluid() ? "every body is fixed and none is measured" : "no fluid"};
+    case PassId::kBodyDrag:
+      return {
+          "free bodies in viscous fluid: drag by the velocity at the step's end, in the bodies' own solve",
+          !plan.viscous()                   ? "nothing is viscous"
+          : !plan.has(PassId::kPlaceBodies) ? "no free body with a surface meets fluid"
+                                            : "beside a probe drag stays explicit"};
     case PassId::kIntegrateFluid:
       return {"leap-frog", "no fluid"};
     case PassId::kCouplings:
@@ -135,17 +158,14 @@ Plan make_plan(const Scene& scene, double spacing) {
   plan.support_radius = scene.support_ratio * spacing;
   plan.model = scene.model;
   plan.tension = scene.tension;
-  const bool fluid = !scene.fluid_volumes.empty() || std::any_of(scene.bodies.begin(), scene.bodies.end(),
-                                                                 [](const Body& b) { return b.point_probe; });
+  const bool fluid = !scene.fluid_volumes.empty() || any_probe(scene);
   for (const PassId id :
        {PassId::kSortFluid, PassId::kDensity, PassId::kPressureForce, PassId::kIntegrateFluid})
     plan.runs.set(id, fluid);
-  plan.stiffness =
-      scene.stiffness > 0.0
-          ? scene.stiffness
-          : std::max(glm::length(scene.gravity) * fluid_heights(scene).depth / kCompressionAtDepth, 1.0);
+  plan.stiffness = scene.stiffness > 0.0 ? scene.stiffness : stiffness_for(scene);
   decide_viscosity(scene, plan);
   decide_bodies(scene, fluid_extremes(scene), plan);
+  decide_body_drag(scene, plan);
   const StepLimit limit = step_limit(scene, plan);
   plan.time_step = limit.step;
   plan.time_step_reason = limit.reason;
@@ -156,6 +176,7 @@ Plan make_plan(const Scene& scene, double spacing) {
 
 void plan_viscosity(const Scene& scene, Plan& plan) {
   decide_viscosity(scene, plan);
+  decide_body_drag(scene, plan);
   list_passes(scene, plan);
 }
 

@@ -21,6 +21,7 @@ enum class PassId : std::uint8_t {
   kPairViscosity,  ///< Eq 9: a μ a particle
   kWalls,          ///< Eq 5 and 9 on fluid by body particles
   kWrenches,       ///< Eq 10–12 for the bodies in Plan::wrench_bodies
+  kBodyDrag,       ///< Eq 9 between fluid and free bodies by the velocities that bodies end a step with
   kIntegrateFluid,
   kCouplings,
   kContacts,
@@ -57,10 +58,11 @@ struct Plan {
   double support_radius = 0.0;   ///< m, the paper's h
   double time_step = 0.0;        ///< s, fixed for the run
   std::string time_step_reason;  ///< which limit decided it
-  double stiffness = 0.0;        ///< Eq 7's k, m²/s² (= sound speed²)
+  double stiffness = 0.0;        ///< Eq 7's k of the heaviest fluid, m²/s² (= its sound speed²)
   ParticleModel model = ParticleModel::kCorrected;
-  double fluid_depth = 0.0;  ///< m, the deepest column that a fluid could stand in at the start
+  double fluid_depth = 0.0;  ///< m, the deepest column that volumes of fluid make, one on the other
   double fluid_drop = 0.0;   ///< m, from the highest fluid to the floor of the domain
+  double driven_speed = 0.0;  ///< m/s, the fastest that a start velocity or a scripted hand makes anything
   double sound_share =
       1.0;                 ///< of sound's own limit on the step, what density contrast and light bodies leave
   double tension = 0.0;    ///< share of Eq 7's negative pressure that is kept
@@ -68,6 +70,7 @@ struct Plan {
   std::vector<double> body_density;   ///< kg/m³, the constant density of each body's particles (section 4.1)
   std::vector<double> body_pressure;  ///< Pa, Eq 7 at that density
 
+  bool waits_for_bodies = false;  ///< walls move, and nothing keeps the fluid from waiting for them
   int sub_steps = 1;  ///< that a step is made of, each time_step / sub_steps long
 
   PassSet runs;
@@ -77,6 +80,10 @@ struct Plan {
 
   bool has(PassId id) const { return runs.has(id); }
   bool has_fluid() const { return runs.has(PassId::kSortFluid); }
+  /// Particles are kept from passing walls (walls/wall_guard.h). The paper has no such thing.
+  bool guards_walls() const { return has(PassId::kWalls) && model != ParticleModel::kPaper; }
+  /// The fluid moves on after the bodies only.
+  bool fluid_waits() const { return has(PassId::kBodyDrag) || (guards_walls() && waits_for_bodies); }
   bool viscous() const { return runs.has_any_of({PassId::kOneViscosity, PassId::kPairViscosity}); }
 };
 

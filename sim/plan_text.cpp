@@ -24,6 +24,7 @@ const PassNames& names(PassId id) {
       {"pair_viscosity", "viscous force, a viscosity a particle"},
       {"walls", "body particles on fluid"},
       {"wrenches", "wrench on bodies"},
+      {"body_drag", "implicit drag on free bodies"},
       {"integrate_fluid", "integrate fluid"},
       {"couplings", "virtual couplings"},
       {"contacts", "contacts"},
@@ -45,6 +46,9 @@ std::string describe(const Plan& plan) {
   text += format("support radius  %.4g mm\n", plan.support_radius * 1e3);
   text +=
       format("stiffness       %.4g m²/s² (sound at %.3g m/s)\n", plan.stiffness, std::sqrt(plan.stiffness));
+  if (plan.driven_speed > 0.0)
+    text += format("driven          at up to %.3g m/s, by start velocities and scripted hands\n",
+                   plan.driven_speed);
   text +=
       format("time step       %.4g ms, limited by %s\n", plan.time_step * 1e3, plan.time_step_reason.c_str());
   text += format("speed limit     %.3g m/s\n", plan.max_speed);

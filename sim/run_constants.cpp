@@ -7,6 +7,7 @@
 #include "sim/fluid_extremes.h"
 #include "sim/model.h"
 #include "sim/snapshot.h"
+#include "sim/step_limits.h"
 #include "sim/viscosity/noise.h"
 
 namespace slosh {
@@ -74,9 +75,11 @@ bool finite(const glm::vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-ParticleKind make_kind(double rest_density, double viscosity, double spacing, bool probe) {
+ParticleKind make_kind(const Scene& scene, double rest_density, double viscosity, double spacing,
+                       bool probe) {
   return {static_cast<float>(rest_density), static_cast<float>(viscosity),
-          static_cast<float>(rest_density * std::pow(spacing, 3)), probe};
+          static_cast<float>(rest_density * std::pow(spacing, 3)),
+          static_cast<float>(pressing_density(scene, rest_density)), probe};
 }
 
 }  // namespace
@@ -93,13 +96,13 @@ std::vector<ParticleKind> particle_kinds(const Scene& scene, double spacing) {
         std::any_of(scene.fluid_volumes.begin(), scene.fluid_volumes.end(),
                     [&](const FluidVolume& v) { return static_cast<std::size_t>(v.fluid) == i; });
     const Fluid& f = there ? scene.fluids[i] : reference;
-    kinds.push_back(make_kind(f.rest_density, f.dynamic_viscosity, spacing, false));
+    kinds.push_back(make_kind(scene, f.rest_density, f.dynamic_viscosity, spacing, false));
   }
   // A probe is one more particle of the reference's kind (Eq 8), moved by its body.
   for (const Body& body : scene.bodies) {
     if (!body.point_probe) continue;
     kinds.push_back(make_kind(
-        body.particle_density > 0.0 ? body.particle_density : reference.rest_density,
+        scene, body.particle_density > 0.0 ? body.particle_density : reference.rest_density,
         body.dynamic_viscosity > 0.0 ? body.dynamic_viscosity : reference.dynamic_viscosity, spacing, true));
   }
   return kinds;
@@ -133,6 +136,9 @@ RunConstants make_run_constants(const Scene& scene, const SampledScene& sampled,
   }
   c.gravity = glm::vec3(scene.gravity);
   c.kinds = particle_kinds(scene, spacing);
+  double heaviest = 0.0;
+  for (const ParticleKind& kind : c.kinds) heaviest = std::max<double>(heaviest, kind.mass);
+  c.impulse_units = impulse_units(heaviest > 0.0 ? heaviest : 1.0, c.plan.max_speed, spacing);
   return c;
 }
 
@@ -171,6 +177,7 @@ ParticleStart make_particle_start(const Scene& scene, const SampledScene& sample
   }
   start.fixed = surface_particles(scene, sampled, constants.plan, BodyMotion::kFixed);
   start.moving = surface_particles(scene, sampled, constants.plan, BodyMotion::kFree);
+  start.guarded = guarded_fields(sampled, constants.plan);
   return start;
 }
 

@@ -11,6 +11,8 @@
 #include "sim/neighbours/cell_grid.h"
 #include "sim/plan.h"
 #include "sim/pressure/corrected_state.h"
+#include "sim/walls/guard_impulse.h"
+#include "sim/walls/guarded_bodies.h"
 #include "sim/walls/wall_particles.h"
 
 namespace slosh {
@@ -20,6 +22,7 @@ struct ParticleKind {
   float rest_density = 1000.0f;  ///< kg/m³
   float viscosity = 0.0f;        ///< Pa·s
   float mass = 0.0f;             ///< kg
+  float pressing_density = 1000.0f;  ///< kg/m³ that Eq 7 takes for it (step_limits.h, pressing_density)
   bool probe = false;            ///< moved by its body, not by the fluid integrator
 };
 
@@ -34,6 +37,7 @@ struct RunConstants {
   CorrectionConstants correction;  ///< ParticleModel::kCorrected's
   glm::vec3 gravity{0.0f};
   std::vector<ParticleKind> kinds;
+  ImpulseUnits impulse_units;  ///< of what walls take from particles
 };
 
 /// Fluid denser than this over rest (ρ/ρ⁰ − 1) sets kStatusCompressed: a drop that hits a table at half the
@@ -54,6 +58,7 @@ struct ParticleStart {
   std::vector<Probe> probes;
   std::size_t fluid_count = 0;  ///< without the probes
   std::vector<SurfaceParticle> fixed, moving;
+  std::vector<DistanceField> guarded;  ///< one a body (guarded_fields)
 };
 
 /// One entry a fluid of the scene, and one a probe behind those.

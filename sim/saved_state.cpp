@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstring>
 #include <string>
+#include <utility>
 
 #include "sim/hash.h"
 
@@ -15,8 +16,9 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::uint32_t kMagic = 0x54535753;  // "SWST"
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 3;
 constexpr double kLargest = 1.0e9;  // beyond this no position, speed or force of a body is one
+constexpr std::int64_t kMostOfImpulse = std::int64_t{1} << 62;
 const char kWhere[] = "saved world";
 
 class Sink {
@@ -115,6 +117,33 @@ void hand_state(S& s, I& input) {
   three(s, input.twist.linear);
   three(s, input.twist.angular);
   s.real(input.scale);
+}
+
+template <class S, class K>
+void kept_impulse(S& s, K& k) {
+  s.raw(k.first);
+  s.raw(k.second);
+  three(s, k.point);
+  three(s, k.impulse);
+}
+
+// Pairs of bodies that there are, in order: the solve looks them up.
+void read_impulses(Source& s, std::uint64_t bodies, std::vector<KeptImpulse>& impulses) {
+  std::uint32_t count = 0;
+  s.raw(count);
+  // What is there decides how much is allocated.
+  if (s.ok() && s.left() / sizeof(KeptImpulse) < count) s.fail("it ends too early");
+  if (!s.ok()) return;
+  impulses.resize(count);
+  std::pair<int, int> last{0, 0};
+  for (KeptImpulse& k : impulses) {
+    kept_impulse(s, k);
+    const std::pair<int, int> now{k.first, k.second};
+    if (!s.ok()) return;
+    if (k.first < 0 || k.second <= k.first || static_cast<std::uint64_t>(k.second) >= bodies || now < last)
+      return s.fail("a contact in it is not between two bodies of this world");
+    last = now;
+  }
 }
 
 // Every saved column but the key, which follows from the position: of it one byte tells who is retired.
@@ -278,6 +307,9 @@ void write_state(const StateFrame& frame, const RunConstants& constants, const S
     const HandleInput nothing;
     hand_state(s, input.engaged ? input : nothing);
   }
+  s.raw(static_cast<std::uint32_t>(state.impulses.size()));
+  for (const KeptImpulse& k : state.impulses) kept_impulse(s, k);
+  s.column(std::span<const std::int64_t>(state.walls));
   s.raw(static_cast<std::uint32_t>(p.size()));
   columns(s, p);
   std::vector<std::uint8_t> gone(p.size());
@@ -325,6 +357,12 @@ Result<bool> read_state(std::span<const std::uint8_t> bytes, const StateFrame& f
     hand_state(s, input);
     input.engaged = engaged == 1;
     if (engaged > 1) s.fail("a hand in it neither holds nor lets go");
+  }
+  read_impulses(s, frame.bodies, state.impulses);
+  state.walls = no_impulses(frame.bodies);
+  s.column(std::span(state.walls));
+  for (const std::int64_t word : state.walls) {
+    if (word > kMostOfImpulse || word < -kMostOfImpulse) s.fail("an impulse in it is beyond all bounds");
   }
   std::uint32_t count = 0;
   s.raw(count);

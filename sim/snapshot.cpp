@@ -6,15 +6,17 @@
 namespace slosh {
 
 std::string status_text(std::uint32_t status) {
-  static constexpr std::array<std::pair<StatusBit, const char*>, 8> kWords{{
+  static constexpr std::array<std::pair<StatusBit, const char*>, 9> kWords{{
       {kStatusNonFinite, "a particle or body became non-finite and was put out of the world"},
       {kStatusEscaped, "particles left the domain and were retired"},
       {kStatusSpeedLimited, "particles were too fast and were slowed"},
       {kStatusInputRejected, "a handle's pose was not usable and the last good one was kept"},
       {kStatusForceLimited, "a device's force met its limit"},
       {kStatusTimeSlipped, "the simulation did not keep real time"},
-      {kStatusCompressed, "fluid is squeezed to twice its density: raise stiffness_m2_s2"},
+      {kStatusCompressed,
+       "fluid is squeezed to twice its density: stiffness_m2_s2 100 to 400 held in trials"},
       {kStatusDeviceLost, "the GPU failed and the fluid stands still: run again with the CPU backend"},
+      {kStatusGuarded, "fluid was pressed at a wall so hard that particles had to be held back"},
   }};
   std::string text;
   for (const auto& [bit, words] : kWords) {

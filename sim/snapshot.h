@@ -22,6 +22,7 @@ enum StatusBit : std::uint32_t {
       1u << 6,  ///< fluid denser than twice rest: crushed, or too soft for its speed; raise stiffness
   kStatusDeviceLost =
       1u << 7,  ///< a GPU call failed: the fluid stands still from here on (World::failure says why)
+  kStatusGuarded = 1u << 8,  ///< particles would have passed a wall and were put back
 };
 
 /// The status in words, "; " between, empty when nothing is set.

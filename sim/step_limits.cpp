@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "sim/fluid_extremes.h"
 #include "sim/format.h"
@@ -21,6 +22,13 @@ constexpr double kLiveCourant = 1.0;
 // Free bodies above this share of the fluid layer around them need no shorter step; a bucket held by two
 // hands was stable down to 0.01 (tests/stability).
 constexpr double kLightBody = 0.05;
+
+// m/s in the lightest fluid.
+double fastest_sound(const Scene& scene, const Plan& plan) {
+  const FluidExtremes fluids = fluid_extremes(scene);
+  const double stiffer = pressing_density(scene, fluids.lightest) / fluids.lightest;
+  return std::sqrt(plan.stiffness * stiffer);
+}
 
 // m² of a mesh.
 double surface_area(const TriangleMesh& mesh) {
@@ -43,28 +51,105 @@ double lightest_body_share(const Scene& scene, double spacing, double density) {
   return share;
 }
 
+// A hand may be as fast as this though no script says so.
+constexpr double kHandSpeed = 1.0;       // m/s
+constexpr double kFastestDriven = 20.0;  // m/s: a script that jumps is a spring's pull, not a speed
+
 // m/s: a collapse over its own depth while a hand moves it, or a fall to the floor.
-double expected_speed(double gravity, double depth, double drop) {
-  return std::max(std::sqrt(2.0 * gravity * depth) + 1.0, std::sqrt(2.0 * gravity * drop));
+double expected_speed(double gravity, double depth, double drop, double driven) {
+  return std::max(std::sqrt(2.0 * gravity * depth) + std::max(driven, kHandSpeed),
+                  std::sqrt(2.0 * gravity * drop + driven * driven));
+}
+
+// The box of a volume, with y along up.
+struct Block {
+  glm::dvec3 low{std::numeric_limits<double>::infinity()};
+  glm::dvec3 high{-std::numeric_limits<double>::infinity()};
+  double density = 0.0;  // kg/m³
+
+  bool over(double x, double z) const { return low.x <= x && x < high.x && low.z <= z && z < high.z; }
+};
+
+std::vector<Block> blocks(const Scene& scene, const glm::dvec3& up) {
+  const glm::dvec3 across = std::abs(up.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
+  const glm::dvec3 x = glm::normalize(glm::cross(up, across));
+  const glm::dvec3 z = glm::cross(x, up);
+  std::vector<Block> all;
+  for (const FluidVolume& volume : scene.fluid_volumes) {
+    Block block;
+    block.density = scene.fluids[volume.fluid].rest_density;
+    for (const glm::vec3& local : scene.meshes[volume.mesh].positions) {
+      const glm::dvec3 p = transform_point(volume.pose, glm::dvec3(local));
+      const glm::dvec3 turned(glm::dot(x, p), glm::dot(up, p), glm::dot(z, p));
+      block.low = glm::min(block.low, turned);
+      block.high = glm::max(block.high, turned);
+    }
+    all.push_back(block);
+  }
+  std::sort(all.begin(), all.end(), [](const Block& a, const Block& b) { return a.low.y < b.low.y; });
+  return all;
+}
+
+// What stands over (x, z), from below: where blocks overlap the lower one counts.
+void add_column(const std::vector<Block>& all, double x, double z, double heaviest, FluidHeights& heights) {
+  double depth = 0.0, load = 0.0, top = -std::numeric_limits<double>::infinity();
+  for (const Block& block : all) {
+    if (!block.over(x, z) || block.high.y <= top) continue;
+    const double own = block.high.y - std::max(block.low.y, top);
+    depth += own;
+    load += block.density / heaviest * own;
+    top = block.high.y;
+  }
+  heights.depth = std::max(heights.depth, depth);
+  heights.load = std::max(heights.load, load);
+}
+
+// m, from a grip to the furthest point of its body.
+double reach_of(const Scene& scene, const Grip& grip) {
+  const int mesh = scene.bodies[static_cast<std::size_t>(grip.body)].mesh;
+  double reach = 0.0;
+  if (mesh < 0) return reach;
+  for (const glm::vec3& p : scene.meshes[static_cast<std::size_t>(mesh)].positions)
+    reach = std::max(reach, glm::distance(glm::dvec3(p), grip.pose.position));
+  return reach;
 }
 
 }  // namespace
 
+double driven_speed(const Scene& scene) {
+  double speed = 0.0;
+  for (const FluidVolume& volume : scene.fluid_volumes) speed = std::max(speed, glm::length(volume.velocity));
+  for (const Body& body : scene.bodies) {
+    if (body.motion == BodyMotion::kFree) speed = std::max(speed, glm::length(body.twist.linear));
+  }
+  for (const Grip& grip : scene.grips) {
+    const double reach = reach_of(scene, grip);
+    for (std::size_t k = 0; k + 1 < grip.hand_motion.size(); ++k) {
+      const PoseKey& from = grip.hand_motion[k];
+      const PoseKey& to = grip.hand_motion[k + 1];
+      const double way = glm::distance(from.pose.position, to.pose.position) +
+                         reach * glm::length(rotation_between(from.pose.orientation, to.pose.orientation));
+      if (to.time > from.time) speed = std::max(speed, way / (to.time - from.time));
+    }
+  }
+  return std::min(speed, kFastestDriven);
+}
+
+double pressing_density(const Scene& scene, double density) {
+  return scene.model == ParticleModel::kPaper ? density : fluid_extremes(scene).heaviest;
+}
+
 FluidHeights fluid_heights(const Scene& scene) {
   const double g = glm::length(scene.gravity);
   const glm::dvec3 up = g > 0.0 ? -scene.gravity / g : glm::dvec3(0.0, 1.0, 0.0);
+  const std::vector<Block> all = blocks(scene, up);
+  const double heaviest = fluid_extremes(scene).heaviest;
   FluidHeights heights;
   double top = -std::numeric_limits<double>::infinity();
-  for (const FluidVolume& volume : scene.fluid_volumes) {
-    double low = std::numeric_limits<double>::infinity();
-    double high = -low;
-    for (const glm::vec3& p : scene.meshes[volume.mesh].positions) {
-      const double height = glm::dot(up, transform_point(volume.pose, glm::dvec3(p)));
-      low = std::min(low, height);
-      high = std::max(high, height);
-    }
-    heights.depth = std::max(heights.depth, high - low);
-    top = std::max(top, high);
+  // What all blocks over some place have in common begins at the low x of one and the low z of one of them.
+  for (const Block& a : all) {
+    top = std::max(top, a.high.y);
+    for (const Block& b : all) add_column(all, a.low.x, b.low.z, heaviest, heights);
   }
   const glm::dvec3 lowest_corner =
       glm::mix(scene.domain_max, scene.domain_min, glm::greaterThanEqual(up, glm::dvec3(0.0)));
@@ -80,11 +165,15 @@ StepLimit step_limit(const Scene& scene, Plan& plan) {
   const FluidHeights heights = fluid_heights(scene);
   plan.fluid_depth = heights.depth;
   plan.fluid_drop = heights.drop;
-  const double sound = std::sqrt(plan.stiffness);
-  const double speed = expected_speed(glm::length(scene.gravity), heights.depth, heights.drop);
+  plan.driven_speed = driven_speed(scene);
+  const double sound = fastest_sound(scene, plan);
+  const double speed =
+      expected_speed(glm::length(scene.gravity), heights.depth, heights.drop, plan.driven_speed);
   const double courant = kCourant * plan.support_radius / (sound + speed);
   limit.lower_to(courant, format("sound: %.2f · support radius / (%.1f + %.1f m/s)", kCourant, sound, speed));
-  const double contrast = 0.5 * (1.0 + fluids.heaviest / fluids.lightest);
+  // With one k for all (the paper's) a light particle is pushed about by its heavy neighbours.
+  const double contrast =
+      plan.model == ParticleModel::kPaper ? 0.5 * (1.0 + fluids.heaviest / fluids.lightest) : 1.0;
   if (contrast > 1.0) {
     limit.lower_to(courant / std::sqrt(contrast), format("sound, at a density ratio of %.3g between fluids",
                                                          fluids.heaviest / fluids.lightest));
@@ -98,7 +187,7 @@ StepLimit step_limit(const Scene& scene, Plan& plan) {
   }
   plan.sound_share = std::sqrt(std::min(1.0, share / kLightBody) / contrast);
   if (plan.viscous() || plan.model == ParticleModel::kCorrected) {
-    const double of_bodies = most_viscous_body(scene);
+    const double of_bodies = most_viscous_body(scene, fluids.most_viscous);
     limit.lower_to(viscous_step(scene, plan, fluids),
                    format("explicit viscosity of %.3g Pa·s in the fluid, %.3g Pa·s at walls",
                           fluids.most_viscous, 0.5 * (fluids.most_viscous + of_bodies)));
@@ -126,13 +215,14 @@ double most_gravity_allowed(const Scene& scene, const Plan& plan) {
   const double g = glm::length(scene.gravity);
   if (!plan.has_fluid() || g <= 0.0) return std::numeric_limits<double>::infinity();
   const double speed =
-      kLiveCourant * plan.sound_share * plan.support_radius / plan.time_step - std::sqrt(plan.stiffness);
+      kLiveCourant * plan.sound_share * plan.support_radius / plan.time_step - fastest_sound(scene, plan);
   // The speed at which expected_speed() comes out, solved for the gravity.
-  const auto reached = [&](double fall, double start) {
-    return fall > 0.0 ? std::pow(std::max(speed - start, 0.0), 2) / (2.0 * g * fall)
-                      : std::numeric_limits<double>::infinity();
+  const auto reached = [&](double fall, double squared) {
+    return fall > 0.0 ? std::max(squared, 0.0) / (2.0 * g * fall) : std::numeric_limits<double>::infinity();
   };
-  return std::min(reached(plan.fluid_depth, 1.0), reached(plan.fluid_drop, 0.0));
+  const double collapse = std::max(speed - std::max(plan.driven_speed, kHandSpeed), 0.0);
+  return std::min(reached(plan.fluid_depth, collapse * collapse),
+                  reached(plan.fluid_drop, speed * std::abs(speed) - plan.driven_speed * plan.driven_speed));
 }
 
 }  // namespace slosh

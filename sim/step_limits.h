@@ -12,10 +12,19 @@
 namespace slosh {
 
 struct FluidHeights {
-  double depth = 0.0;  ///< m, the deepest column that a fluid could stand in as it is placed
+  double depth = 0.0;  ///< m, the deepest column that the volumes make, one on the other as they are placed
+  double load = 0.0;   ///< m of the heaviest fluid that would weigh as much as the heaviest of those columns
   double drop = 0.0;   ///< m, from the highest fluid to the floor of the domain
 };
 FluidHeights fluid_heights(const Scene& scene);
+
+/// m/s, the fastest that a start velocity or a scripted hand moves fluid, or any point of a body, up to 20.
+double driven_speed(const Scene& scene);
+
+/// kg/m³ that Eq 7 takes for a fluid of `density`. The paper's: its own, one k for all. Else the heaviest
+/// fluid's, so that k goes with the inverse of the density and the same pressure compresses all fluids alike:
+/// with one k a light fluid under a heavy one would be squeezed by the ratio of their densities.
+double pressing_density(const Scene& scene, double density);
 
 /// The largest step that each limit allows; the plan takes the smallest and says which it was.
 struct StepLimit {
@@ -30,7 +39,7 @@ struct StepLimit {
   }
 };
 
-/// Fills the plan's depth, drop and sound_share on the way. Needs the scene's meshes.
+/// Fills the plan's depth, drop, driven speed and sound_share on the way. Needs the scene's meshes.
 StepLimit step_limit(const Scene& scene, Plan& plan);
 
 /// s: a plan with a shorter sub-step is refused by make_world. At 1 cm it is some 5000 Pa·s.

@@ -17,6 +17,13 @@
 
 namespace slosh {
 
+namespace {
+
+// Who moves in a sub-step.
+enum class TakePart { kFluid, kHeld, kAll };
+
+}  // namespace
+
 struct World::Impl {
   Impl(const Scene& scene_in, const SampledScene& sampled, Plan plan_in, WorldOptions options_in)
       : scene(scene_in),
@@ -25,6 +32,8 @@ struct World::Impl {
         bodies(scene, sampled),
         live(scene),
         found(scene.bodies.size()),
+        drags(scene.bodies.size()),
+        drag_matrices(scene.bodies.size()),
         wrenches(scene.bodies.size()) {
     fluid_starts_moving = std::any_of(sampled.fluid_velocities.begin(), sampled.fluid_velocities.end(),
                                       [](const glm::vec3& v) { return v != glm::vec3(0.0f); });
@@ -65,12 +74,60 @@ struct World::Impl {
     times = StepTimes{};
   }
 
-  void move_particles(const SubStep& step) {
-    if (!plan().has_fluid()) return;
-    engine->prepare(bodies.bodies());
-    engine->forces(step.dt);
-    engine->advance(step.dt);
-    engine->wrenches(found);
+  // The fluid, and the bodies as far as they take part. Where the fluid is dragged by what the bodies' solve
+  // finds, or must not pass walls that move, it waits for it; else it goes on while they are solved (on a
+  // GPU).
+  void run(const SubStep& step, TakePart part) {
+    const bool fluid = plan().has_fluid();
+    const bool moving = part != TakePart::kFluid;
+    const bool fluid_waits = moving && plan().fluid_waits();
+    if (fluid) {
+      engine->prepare(bodies.bodies());
+      engine->forces(step.dt);
+      if (!fluid_waits) engine->advance(step.dt, expected(step, moving));
+      engine->wrenches(found);
+    }
+    const bool with_drag = moving && plan().has(PassId::kBodyDrag);
+    if (moving) solve_bodies(step, part == TakePart::kHeld, with_drag);
+    if (with_drag) engine->drag(bodies.changes());
+    if (moving) {
+      Stopwatch watch;
+      bodies.move(plan(), step);
+      times.body += watch.lap();
+    }
+    if (fluid_waits) engine->advance(step.dt, bodies.bodies());
+    if (fluid) report(step);
+  }
+
+  // Where the bodies will be, as far as that is known before their solve.
+  std::span<const RigidBody> expected(const SubStep& step, bool moving) {
+    if (!moving || !plan().guards_walls() || !plan().has(PassId::kPlaceBodies)) return bodies.bodies();
+    ahead = bodies.bodies();
+    for (RigidBody& body : ahead) {
+      if (!body.free) continue;
+      body.position += step.dt * body.velocity;
+      body.orientation = rotate_by(body.orientation, step.dt * body.angular_velocity);
+    }
+    return ahead;
+  }
+
+  void solve_bodies(const SubStep& step, bool held_only, bool with_drag) {
+    Stopwatch watch;
+    if (with_drag) {
+      engine->body_drags(drags);
+      for (std::size_t b = 0; b < drags.size(); ++b) drag_matrices[b] = drags[b].matrix();
+    }
+    const std::span<const Matrix6> drag =
+        with_drag ? std::span<const Matrix6>(drag_matrices) : std::span<const Matrix6>();
+    status |= bodies.solve(plan(), {found, drag, gravity_scale * scene.gravity}, step, held_only);
+    if (with_drag) {
+      for (std::size_t b = 0; b < found.size(); ++b)
+        found[b] = found[b] + drag_of(drag_matrices[b], bodies.changes()[b]);
+    }
+    times.body += watch.lap();
+  }
+
+  void report(const SubStep& step) {
     for (std::size_t b = 0; b < found.size(); ++b) {
       wrenches[b].force += step.share * found[b].force;
       wrenches[b].torque += step.share * found[b].torque;
@@ -81,19 +138,16 @@ struct World::Impl {
     times.force += passes.force;
   }
 
-  void move_bodies(const SubStep& step, bool held_only) {
-    Stopwatch watch;
-    status |= bodies.advance(plan(), {found, gravity_scale * scene.gravity}, step, held_only);
-    times.body += watch.lap();
-  }
-
   Scene scene;
   WorldOptions options;
   RunConstants constants;
   BodySystem bodies;
   LiveChanges live;
   std::unique_ptr<ParticleEngine> engine;
+  std::vector<RigidBody> ahead;  // expected()
   std::vector<Wrench> found;     // by the fluid in the last sub-step, one a body
+  std::vector<BodyDrag> drags;   // with kBodyDrag, one a body
+  std::vector<Matrix6> drag_matrices;
   std::vector<Wrench> wrenches;  // their means over the last step
   bool fluid_starts_moving = false;
   std::size_t fluid_count = 0;  // without probes
@@ -127,9 +181,7 @@ void World::step(std::span<const HandleInput> handles) {
   w.begin_step();
   w.status |= w.bodies.begin_step(handles);
   for (int i = 0; i < w.plan().sub_steps; ++i) {
-    const SubStep step = w.sub_step(i);
-    w.move_particles(step);
-    w.move_bodies(step, false);
+    w.run(w.sub_step(i), TakePart::kAll);
   }
   w.times.total = whole.lap();
   ++w.tick;
@@ -146,11 +198,11 @@ void World::settle(double seconds, std::span<const HandleInput> handles) {
     w.begin_step();
     if (with_bodies) w.status |= w.bodies.begin_step(handles);
     for (int i = 0; i < w.plan().sub_steps; ++i) {
-      w.move_particles(w.sub_step(i));
+      SubStep step = w.sub_step(i);
+      step.elapsed = 0.0;  // the hands stand still
+      w.run(step, with_bodies ? TakePart::kHeld : TakePart::kFluid);
       w.engine->damp(static_cast<float>(keep));
-      if (!with_bodies) continue;
-      w.move_bodies({w.sub_step(i).dt, 0.0, w.sub_step(i).share}, true);  // the hands stand still
-      w.bodies.damp_held(keep);
+      if (with_bodies) w.bodies.damp_held(keep);
     }
   }
 }
@@ -214,7 +266,8 @@ Result<bool> World::save(std::vector<std::uint8_t>& out) const {
   state.wrenches = w.wrenches;
   state.grips = w.bodies.grips();
   state.last_input = w.bodies.last_inputs();
-  if (!w.engine->save(state.particles))
+  state.impulses = w.bodies.kept_impulses();
+  if (!w.engine->save(state.particles, state.walls))
     return Error{"the world", "cannot be saved: " + w.engine->failure(), "Run again with the CPU backend"};
   write_state(w.frame, w.constants, state, out);
   return true;
@@ -239,8 +292,9 @@ Result<bool> World::restore(std::span<const std::uint8_t> saved) {
   w.gravity_scale = state.gravity_scale;
   w.take_parameters();
   w.wrenches = std::move(state.wrenches);
-  w.bodies.restore(std::move(state.bodies), std::move(state.grips), std::move(state.last_input));
-  w.engine->restore(state.particles);
+  w.bodies.restore(std::move(state.bodies), std::move(state.grips), std::move(state.last_input),
+                   std::move(state.impulses));
+  w.engine->restore(state.particles, state.walls);
   w.status = state.status & ~kStatusDeviceLost;
   w.tick = state.tick;
   return true;

@@ -37,6 +37,9 @@ struct RecordingOptions {
   std::size_t queue_bytes = 64 << 20;
 };
 
+/// Whether a recording can be begun there without anything being lost. Errors: the file has something in it.
+Result<bool> check_unrecorded(const std::filesystem::path& file);
+
 /// What a recording came to.
 struct RecordingTotals {
   std::uint64_t steps = 0;

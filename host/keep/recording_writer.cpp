@@ -25,6 +25,14 @@ void append_state(const World& world, std::uint32_t run, Bytes& out) {
 
 }  // namespace
 
+Result<bool> check_unrecorded(const std::filesystem::path& file) {
+  std::error_code code;
+  if (!std::filesystem::is_regular_file(file, code) || std::filesystem::file_size(file, code) == 0)
+    return true;
+  return Error{file.string(), "is there already, and a recording overwrites nothing",
+               "Choose another file with --record, or move this one away"};
+}
+
 RecordingWriter::RecordingWriter(const Scene& scene, const RecordingOptions& options)
     : options_(options), hands_(scene.grips.size()) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
@@ -39,6 +47,7 @@ Result<std::unique_ptr<RecordingWriter>> RecordingWriter::start(const Scene& sce
   std::unique_ptr<RecordingWriter> writer(new RecordingWriter(scene, options));
   const Result<wire::Bytes> package = pack_scene(scene, spacing, SceneParts::kAll);
   if (!package) return package.error();
+  if (const Result<bool> free = check_unrecorded(options.file); !free) return free.error();
   Result<File> file = open_to_write(options.file);
   if (!file) return file.error();
   writer->file_ = std::move(file.value());

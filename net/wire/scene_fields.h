@@ -12,6 +12,7 @@ constexpr std::size_t kMaxMeshVertices = 6'000'000;
 constexpr std::size_t kMaxMeshTriangles = 2'000'000;
 constexpr std::size_t kMaxPictures = 4096;
 constexpr std::size_t kMaxFluidVolumes = 1024;
+constexpr std::size_t kMaxInstruments = 1000;  // of each kind
 constexpr std::size_t kMaxPoseKeys = 1'000'000;
 constexpr double kMaxDomain = 1e9;    ///< m
 constexpr double kMaxInertia = 1e18;  ///< kg·m²
@@ -23,6 +24,11 @@ constexpr std::array kBodyMotionNames{"fixed", "free"};
 struct PackedScene {
   Scene scene;
   double spacing = 0.01;  ///< m
+};
+
+/// The same of a scene that has gauges or regions.
+struct MeasuredScene {
+  PackedScene packed;
 };
 
 /// Positive definite, as a solid's is.
@@ -99,7 +105,9 @@ void visit(V& v, Body& m, std::size_t meshes) {
   v.rule("inertia_x", m.motion == BodyMotion::kFixed || can_turn(m.mass.inertia),
          "is not the inertia of a solid");
   v.real64("particle_density", m.particle_density, 0.0, 1e6);
-  v.real64("dynamic_viscosity", m.dynamic_viscosity, 0.0, kMaxViscosity);
+  v.real64("dynamic_viscosity", m.dynamic_viscosity, kFluidsViscosity, kMaxViscosity);
+  v.rule("dynamic_viscosity", m.dynamic_viscosity >= 0.0 || m.dynamic_viscosity == kFluidsViscosity,
+         "is below 0 and not -1");
   v.real64("friction", m.friction, 0.0, 10.0);
   v.real64("restitution", m.restitution, 0.0, 1.0);
   v.flag("measured", m.measured);
@@ -181,6 +189,25 @@ template <class V>
 void visit(V& v, PackedScene& m) {
   v.real64("particle_spacing", m.spacing, 1e-5, 10.0);
   visit(v, m.scene);
+}
+
+template <class V>
+void visit(V& v, MeasuredScene& m) {
+  visit(v, m.packed);
+  Scene& scene = m.packed.scene;
+  const std::size_t bodies = scene.bodies.size();
+  const std::size_t meshes = scene.meshes.size();
+  v.list("gauges", scene.gauges, kMaxInstruments, [bodies](auto& each, Gauge& gauge) {
+    each.text("name", gauge.name, kMaxText);
+    each.index("body", gauge.body, "bodies", bodies, true);
+    each.vec3_exact("position", gauge.position, kMaxPosition);
+  });
+  v.list("regions", scene.regions, kMaxInstruments, [bodies, meshes](auto& each, Region& region) {
+    each.text("name", region.name, kMaxText);
+    each.index("mesh", region.mesh, "meshes", meshes, false);
+    each.index("body", region.body, "bodies", bodies, true);
+    visit_exact(each, region.pose);
+  });
 }
 
 }  // namespace slosh::wire

@@ -14,8 +14,10 @@ namespace {
 using wire::Bytes;
 using wire::ByteView;
 
-// A package: its version, how the rest is coded, the rest.
+// A package: its version, how the rest is coded, the rest. A scene with gauges or regions has the second
+// version; any other the first, which programs from before these can read.
 constexpr std::uint8_t kVersion = 1;
+constexpr std::uint8_t kMeasured = 2;
 enum Coding : std::uint8_t { kStored, kZstd };
 constexpr std::size_t kHead = 2;
 
@@ -28,6 +30,8 @@ constexpr std::size_t kMostExpansion = 32;
 void keep_seen(Scene& scene) {
   scene.source_file.clear();
   scene.fluid_volumes.clear();
+  scene.gauges.clear();
+  scene.regions.clear();
   std::vector<int> moved(scene.meshes.size(), -1);
   std::vector<TriangleMesh> kept;
   const auto keep = [&](int& mesh) {
@@ -66,10 +70,13 @@ Result<Bytes> decompressed(ByteView packed) {
 }  // namespace
 
 Result<Bytes> pack_scene(const Scene& scene, double spacing, SceneParts parts) {
-  wire::PackedScene packed{scene, spacing};
+  wire::MeasuredScene measured{{scene, spacing}};
+  wire::PackedScene& packed = measured.packed;
   if (parts == SceneParts::kSeen) keep_seen(packed.scene);
+  const bool instruments = !packed.scene.gauges.empty() || !packed.scene.regions.empty();
   Bytes content;
-  if (const wire::Fault fault = wire::encode(packed, content)) {
+  if (const wire::Fault fault =
+          instruments ? wire::encode(measured, content) : wire::encode(packed, content)) {
     return Error{"scene '" + scene.name + "'", "cannot be sent or recorded: " + fault.text(),
                  "net/WIRE_FORMAT.md has the limits"};
   }
@@ -80,7 +87,7 @@ Result<Bytes> pack_scene(const Scene& scene, double spacing, SceneParts parts) {
                  "Reduce its meshes, in Blender with the Decimate modifier"};
   }
   Bytes out(kHead + ZSTD_compressBound(content.size()));
-  out[0] = kVersion;
+  out[0] = instruments ? kMeasured : kVersion;
   out[1] = kZstd;
   const std::size_t size =
       ZSTD_compress(out.data() + kHead, out.size() - kHead, content.data(), content.size(), kZstdLevel);
@@ -97,7 +104,8 @@ Result<Bytes> pack_scene(const Scene& scene, double spacing, SceneParts parts) {
 Result<UnpackedScene> unpack_scene(ByteView package) {
   if (package.size() < kHead) return damaged("it is empty");
   if (package.size() > wire::kMaxSceneBytes + kHead) return damaged("it is too large");
-  if (package[0] != kVersion) return damaged("its version is " + std::to_string(package[0]));
+  if (package[0] != kVersion && package[0] != kMeasured)
+    return damaged("its version is " + std::to_string(package[0]));
   if (package[1] > kZstd) return damaged("its coding is " + std::to_string(package[1]));
   ByteView content = package.subspan(kHead);
   Bytes unpacked;
@@ -107,8 +115,12 @@ Result<UnpackedScene> unpack_scene(ByteView package) {
     unpacked = std::move(result.value());
     content = unpacked;
   }
-  wire::PackedScene packed;
-  if (const wire::Fault fault = wire::decode(content, packed)) return damaged(fault.text());
+  wire::MeasuredScene measured;
+  wire::PackedScene& packed = measured.packed;
+  if (const wire::Fault fault =
+          package[0] == kMeasured ? wire::decode(content, measured) : wire::decode(content, packed)) {
+    return damaged(fault.text());
+  }
   return UnpackedScene{std::move(packed.scene), packed.spacing};
 }
 

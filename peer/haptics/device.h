@@ -42,6 +42,10 @@ class Device {
   /// called from the device loop itself. All others get a thread of their own (DevicePort), so that hardware
   /// that does not answer stops no other hand.
   virtual bool immediate() const { return false; }
+  /// Whether the force moves the hand. Where it does not (a script, a recording, a mouse), what counts as
+  /// felt is the wrench that the world itself put on the hand: nothing is to be kept stable by a spring of
+  /// this end.
+  virtual bool gives_way() const { return true; }
   /// May be called more than once.
   virtual void close() {}
   virtual std::string kind() const = 0;

@@ -43,9 +43,11 @@ ForceLimiter::Outcome FeltHand::feel(const WorldBelief& world, const DeviceRepor
   share_ = std::min(believed, share_ + now.period / kFadeStale);
 
   const Engagement::Held held =
-      engagement_.update(hand.engaged, now.time, hand.pose, hand.twist, gains_, grip);
-  const Wrench full = coupling_wrench_on_hand(gains_, held.pose, held.twist, grip.pose, grip.twist);
-  const double felt = engagement_.felt();
+      engagement_.update(hand.engaged, now.time, hand.pose, hand.twist, gains_, grip, now.shared);
+  const Wrench full = gives_way_
+                          ? coupling_wrench_on_hand(gains_, held.pose, held.twist, grip.pose, grip.twist)
+                          : grip.on_hand;
+  const double felt = gives_way_ || !engagement_.engaged() ? engagement_.felt() : 1.0;
   Wrench wanted{felt * full.force, felt * full.torque};
   if (is_finite(wanted)) {
     wanted = capped(wanted, current);
@@ -58,6 +60,8 @@ ForceLimiter::Outcome FeltHand::feel(const WorldBelief& world, const DeviceRepor
     left_ = std::max(left_ - now.period / kBridge, 0.0);
   }
   const ForceLimiter::Outcome outcome = limiter_.limit(wanted, now.period);
+  const bool plain = !gives_way_ && engagement_.engaged() && !outcome.limited && !outcome.non_finite;
+  follows_world_ = plain;
   last_ = outcome.wrench;
   return outcome;
 }

@@ -20,15 +20,20 @@ namespace slosh {
 ///  - Where the force would jump all the same, because the world stopped or the hand's hold is another one,
 ///  the
 ///    difference is worked off over kBridge.
+/// A hand that gives way to the force (Device::gives_way) feels the coupling as this end has it, so that its
+/// own newest motion acts at once. Any other feels what the world put on it (GripState::on_hand): there hand
+/// and grip are compared at one time. Here they are not, as the grip's newest velocity answers a handle of
+/// one or two steps ago: a stiff coupling would add its damping times what the hand gained in speed since.
 /// Pure; one thread; no allocation.
 class FeltHand {
  public:
   explicit FeltHand(const CouplingGains& gains) : gains_(gains) {}
 
   /// Another device: gains and limits, and no hold yet.
-  void restart(const CouplingGains& gains, const DeviceLimits& limits) {
+  void restart(const CouplingGains& gains, const DeviceLimits& limits, bool gives_way) {
     *this = FeltHand(gains);
     limiter_ = ForceLimiter(limits);
+    gives_way_ = gives_way;
   }
 
   struct Moment {
@@ -36,10 +41,15 @@ class FeltHand {
     double period = 0.001;      ///< s since the call before
     double device_share = 1.0;  ///< freshness of the device's own word
     bool leapt = false;         ///< the hand is suddenly elsewhere (net/leap.h)
+    bool shared = false;        ///< another hand holds the same body
   };
   /// The wrench for the device. `grip` carried on to `now.time`.
   ForceLimiter::Outcome feel(const WorldBelief& world, const DeviceReport& hand, const GripState& grip,
                              const Moment& now) noexcept;
+
+  /// Whether this hand felt, or would have felt but for a silence, just what the world put on it. As of the
+  /// last feel(); false for a hand that gives way, one that does not hold on, and where a limit acted.
+  bool follows_world() const { return follows_world_; }
 
   /// s over which a jump is worked off: a hand of 15 N is let go of at 150 N/s.
   static constexpr double kBridge = 0.1;
@@ -50,6 +60,8 @@ class FeltHand {
   CouplingGains gains_;
   ForceLimiter limiter_{DeviceLimits{}};  // lets nothing through before restart()
   Engagement engagement_;
+  bool gives_way_ = true;
+  bool follows_world_ = false;
   double share_ = 1.0;
   double believed_ = 1.0;    // at the call before
   bool hold_anew_ = false;   // words had stopped

@@ -35,6 +35,7 @@ class MouseDevice final : public Device {
   }
   DeviceLimits limits() const override { return limits_without_a_hand(); }
   bool immediate() const override { return true; }
+  bool gives_way() const override { return false; }
   std::string kind() const override { return "mouse"; }
 
  private:

@@ -24,6 +24,7 @@ class TrackDevice final : public Device {
   }
   DeviceLimits limits() const override { return limits_without_a_hand(); }
   bool immediate() const override { return true; }
+  bool gives_way() const override { return false; }
   std::string kind() const override { return kind_; }
   double end() const { return track_.end(); }
 

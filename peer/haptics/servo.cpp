@@ -11,20 +11,29 @@ namespace slosh {
 namespace {
 
 constexpr double kRounding = 1e-9;  // s: sums of time steps miss a multiple by less than this
+constexpr double kStatesApart =
+    4.0;  // ticks: a loop that missed states knows what was between two that it has
 
 }  // namespace
 
 Servo::Servo(const Scene& scene, std::vector<std::unique_ptr<Device>> devices, Channel& channel,
              ServoOptions options)
-    : channel_(channel), options_(options), hearing_(options.period), samples_(options.sample_capacity) {
+    : channel_(channel),
+      options_(options),
+      hearing_(options.period),
+      line_(scene.grips.size()),
+      samples_(options.sample_capacity) {
   channel_.bodies().update();
-  run_ = channel_.bodies().front().run;
+  const BodyMessage& first = channel_.bodies().front();
+  run_ = first.run;
+  note_steps(first);
   devices.resize(scene.grips.size());
   for (std::size_t i = 0; i < devices.size(); ++i) {
     const Grip& grip = scene.grips[i];
     Hand& hand = hands_.emplace_back(
         CouplingGains{grip.stiffness, grip.damping, grip.rotational_stiffness, grip.rotational_damping},
         grip_start(scene, i));
+    hand.body = grip.body;
     if (devices[i]) (void)set_device(i, std::move(devices[i]));
     if (DevicePort* const port = claim_device(hand)) change_device(hand, port);
   }
@@ -66,6 +75,9 @@ void Servo::let_go() noexcept {
   for (Hand& hand : hands_) {
     if (hand.port != nullptr) hand.port->write_zero();
   }
+  channel_.bodies().update();
+  note_steps(channel_.bodies().front());
+  pass_on(true);
 }
 
 void Servo::free_unused(Hand& hand) {
@@ -96,7 +108,7 @@ void Servo::change_device(Hand& hand, DevicePort* port) noexcept {
   hand.port = port;
   if (port != nullptr) {
     hand.limits = port->limits();
-    hand.felt.restart(within(hand.gains, hand.limits), hand.limits);
+    hand.felt.restart(within(hand.gains, hand.limits), hand.limits, port->device().gives_way());
   }
   hand.good = DeviceReport{};
   hand.good.pose = hand.start;
@@ -108,6 +120,8 @@ void Servo::change_device(Hand& hand, DevicePort* port) noexcept {
 void Servo::follow_run(const BodyMessage& message) noexcept {
   if (message.run == run_) return;
   run_ = message.run;
+  pass_on(true);
+  line_.forget();
   // One interval further, so that the times of a file's rows rise.
   sample_offset_ += time_ - message.bodies.time + options_.sample_interval;
   time_ = message.bodies.time;
@@ -151,14 +165,66 @@ void Servo::post_pose(std::size_t i, const Hand& hand, std::uint64_t tick) noexc
   channel_.pose(i).publish();
 }
 
+/// No row shows more than the device could have given: what a host says of the world may be anything.
+Wrench Servo::within_limits(std::size_t grip, const Wrench& wrench) const noexcept {
+  const double size = glm::dot(wrench.force, wrench.force) + glm::dot(wrench.torque, wrench.torque);
+  if (grip >= hands_.size() || !std::isfinite(size)) return {};
+  const DeviceLimits& limits = hands_[grip].limits;
+  bool limited = false;
+  return {limit_length(wrench.force, limits.max_force, limited),
+          limit_length(wrench.torque, limits.max_torque, limited)};
+}
+
+/// What the world put on the hands up to this message.
+void Servo::note_steps(const BodyMessage& message) noexcept {
+  const double longest = kStatesApart * message.time_step;
+  StepWrench step;
+  while (options_.steps != nullptr && options_.steps->pop(step)) {
+    if (step.run == run_) line_.note(step.grip, step.time, step.on_hand, longest);
+  }
+  if (message.run != run_) return;
+  for (std::size_t i = 0; i < message.bodies.grips.size(); ++i) {
+    line_.note(static_cast<std::uint32_t>(i), message.bodies.time, message.bodies.grips[i].on_hand, longest);
+  }
+}
+
+/// Samples that are as they stay, or all.
+void Servo::pass_on(bool all) noexcept {
+  while (!line_.empty() && (all || line_.ready())) {
+    ServoSample sample = line_.take();
+    sample.on_hand = within_limits(sample.device, sample.on_hand);
+    if (!samples_.push(sample)) lost_.fetch_add(1, std::memory_order_relaxed);
+  }
+}
+
+/// Whether a hand but that of grip `i` holds the body, as far as the world says.
+bool Servo::another_holds(const BodySnapshot& bodies, std::size_t i) const noexcept {
+  for (std::size_t j = 0; j < bodies.grips.size() && j < hands_.size(); ++j) {
+    const Wrench& felt = bodies.grips[j].on_hand;
+    if (j != i && hands_[j].body == hands_[i].body &&
+        (felt.force != glm::dvec3(0.0) || felt.torque != glm::dvec3(0.0)))
+      return true;
+  }
+  return false;
+}
+
 void Servo::tick(std::int64_t now_ns) noexcept {
+  tick(now_ns, channel_.bodies().update());
+}
+
+void Servo::tick_with_world() noexcept {
   const bool fresh = channel_.bodies().update();
+  tick(channel_.bodies().front().stamp_ns, fresh);
+}
+
+void Servo::tick(std::int64_t now_ns, bool fresh) noexcept {
   const BodyMessage& message = channel_.bodies().front();
   const BodySnapshot& bodies = message.bodies;
   const double age = to_seconds(now_ns - message.stamp_ns);  // negative while the state is still to come
 
   const WorldBelief belief = hearing_.hear(message, fresh, now_ns);
   follow_run(message);
+  note_steps(message);
   // Simulated time now: the newest state's, carried on at the pace the world runs; grips by two ticks at
   // most.
   const double longest = 2.0 * message.time_step;
@@ -181,19 +247,23 @@ void Servo::tick(std::int64_t now_ns) noexcept {
     if (i < bodies.grips.size()) {
       GripState grip = bodies.grips[i];
       grip.pose = extrapolate(grip.pose, grip.twist, ahead);
-      felt = hand.felt.feel(belief, hand.good, grip, {time_, options_.period, device_share, leap});
+      felt = hand.felt.feel(belief, hand.good, grip,
+                            {time_, options_.period, device_share, leap, another_holds(bodies, i)});
     }
     if (felt.limited) note(kStatusForceLimited);
     if (felt.non_finite) note(kStatusNonFinite);
     if (!let_go_) port->write(felt.wrench);
     // A device that does not answer is not spoken for: the host takes its hand for silent, as it is.
-    if (device_share >= 1.0 && hearing_.speaks()) post_pose(i, hand, bodies.tick);
+    // In one process only a slow world is silent: a hand that does not give way goes on as its script has it.
+    const bool waits_for_a_step = message.heard_pose_ns == kPoseNotTold && !port->device().gives_way();
+    if (device_share >= 1.0 && (hearing_.speaks() || waits_for_a_step)) post_pose(i, hand, bodies.tick);
 
-    if (sample_due && !samples_.push({sample_offset_ + time_, static_cast<std::uint32_t>(i), felt.wrench,
-                                      hand.good.pose})) {
-      lost_.fetch_add(1, std::memory_order_relaxed);
-    }
+    if (!sample_due) continue;
+    if (line_.full()) pass_on(true);
+    line_.add({sample_offset_ + time_, static_cast<std::uint32_t>(i), felt.wrench, hand.good.pose}, time_,
+              hand.felt.follows_world());
   }
+  pass_on(false);
   if (sample_due) {
     // On the grid of intervals, whatever the tick that met it: rows stay evenly spread over the run.
     const double interval = options_.sample_interval;

@@ -12,22 +12,18 @@
 #include "net/ring.h"
 #include "peer/haptics/device_port.h"
 #include "peer/haptics/felt_hand.h"
+#include "peer/haptics/sample_line.h"
 #include "scenes/scene.h"
 
 namespace slosh {
-
-/// What was felt at one moment.
-struct ServoSample {
-  double time = 0.0;  ///< simulated s; goes on across a reset of the world, see Servo
-  std::uint32_t device = 0;
-  Wrench on_hand;  ///< as sent to the device; torque about the handle, world axes
-  Pose handle;     ///< world
-};
 
 struct ServoOptions {
   double period = 0.001;           ///< s between ticks, nominal
   double sample_interval = 0.002;  ///< simulated s between recorded samples, > 0
   std::size_t sample_capacity = 1 << 15;
+  /// What every step put on the hands, in order, where the world is in this process; must outlive the servo.
+  /// Null: what body states say, of which a busy loop misses some.
+  Ring<StepWrench>* steps = nullptr;
 };
 
 /// tick() and let_go() belong to the device loop's thread and neither allocate, lock nor log. samples() has
@@ -48,6 +44,8 @@ class Servo {
   Servo& operator=(const Servo&) = delete;
 
   void tick(std::int64_t now_ns) noexcept;
+  /// A tick at the moment that the newest body state belongs to, for a world that is not paced.
+  void tick_with_world() noexcept;
   /// A wrench of zero to every device, for good: what ticks come after this write nothing. By the device loop
   /// at its end, or by anybody once it is over.
   void let_go() noexcept;
@@ -91,6 +89,7 @@ class Servo {
     DeviceLimits limits;
     CouplingGains gains;  // the scene's
     Pose start;
+    int body = 0;
     FeltHand felt;
     DeviceReport good;
     std::uint64_t readings = 0;  // of the device so far
@@ -102,9 +101,14 @@ class Servo {
   void change_device(Hand& hand, DevicePort* port) noexcept;
   void free_unused(Hand& hand);
   void follow_run(const BodyMessage& message) noexcept;
+  void tick(std::int64_t now_ns, bool fresh) noexcept;
   /// Takes in what the device says; true when the hand leapt.
   bool read_device(Hand& hand, std::int64_t now_ns) noexcept;
+  bool another_holds(const BodySnapshot& bodies, std::size_t i) const noexcept;
   void post_pose(std::size_t i, const Hand& hand, std::uint64_t tick) noexcept;
+  Wrench within_limits(std::size_t grip, const Wrench& wrench) const noexcept;
+  void note_steps(const BodyMessage& message) noexcept;
+  void pass_on(bool all) noexcept;
   void note(std::uint32_t bits) { status_.fetch_or(bits, std::memory_order_relaxed); }
 
   Channel& channel_;
@@ -116,6 +120,7 @@ class Servo {
   Hearing hearing_;
   bool let_go_ = false;
   double next_sample_ = 0.0;
+  SampleLine line_;
   Ring<ServoSample> samples_;
   std::atomic<std::uint64_t> lost_{0};
   std::atomic<std::uint64_t> rejected_{0};

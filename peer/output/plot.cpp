@@ -8,9 +8,8 @@
 #include <iterator>
 
 #include "net/text/clean.h"
-#include "peer/output/child_process.h"
+#include "peer/output/gnuplot.h"
 #include "peer/output/recorder.h"
-#include "peer/output/whole_file.h"
 #include "peer/palette.h"
 
 namespace slosh {
@@ -27,19 +26,6 @@ std::string shortened(const std::string& text, std::size_t most_bytes) {
   std::string shown = clean_text(text, most_bytes);
   if (clean_text(text, most_bytes + 4).size() > shown.size()) shown += "…";
   return shown;
-}
-
-/// A text as a string of gnuplot's. Gnuplot runs what stands in backquotes in a string, and its single-quoted
-/// strings end at a doubled quote that comes first: so no character of a name may reach its parser. Every
-/// byte is written as a number, `\ooo`, which gnuplot turns into text after it has parsed.
-std::string as_data(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    char octal[8];
-    std::snprintf(octal, sizeof octal, "\\%03o", static_cast<unsigned>(static_cast<unsigned char>(c)));
-    out += octal;
-  }
-  return out + "\"";
 }
 
 std::string row_text(double time, const Wrench& w) {
@@ -91,9 +77,9 @@ void add_curves(std::string& script, const std::vector<WrenchSeries>& series,
         i < names.size() ? shortened(names[i], kMostHandBytes) : "device " + std::to_string(i);
     script += "  " + data + " using 1:" + std::to_string(magnitude_column + 1 + axis) + " with lines lw 1 " +
               std::string("lc rgb \"#90") + (device_color(i).hex + 1) + "\" title " +
-              as_data(name + ": " + quantity + " " + kAxes[axis]) + ", \\\n";
+              gnuplot_text(name + ": " + quantity + " " + kAxes[axis]) + ", \\\n";
     script += "  " + data + " using 1:" + std::to_string(magnitude_column) + " with lines lw " + width + " " +
-              color + "\" title " + as_data(name + ": magnitude") + (last ? "\n" : ", \\\n");
+              color + "\" title " + gnuplot_text(name + ": magnitude") + (last ? "\n" : ", \\\n");
   }
 }
 
@@ -176,7 +162,7 @@ std::string plot_script(const std::vector<WrenchSeries>& series, const std::vect
       "set xzeroaxis lt 1 lc rgb \"#a0a0a0\"\n"
       "set autoscale xfix\n"
       "set offsets 0,0,graph 0.04,graph 0.04\n";
-  script += "set title " + as_data(shortened(title, kMostTitleBytes)) + " font \"DejaVu Sans,14\"\n";
+  script += "set title " + gnuplot_text(shortened(title, kMostTitleBytes)) + " font \"DejaVu Sans,14\"\n";
   script += "set ylabel \"force on the hand, N\"\nset format x \"\"\n";
   add_curves(script, series, names, "along", 2, force_axis);
   script += "unset title\nset format x \"%g\"\nset xlabel \"simulated time, s\"\n";
@@ -193,13 +179,7 @@ Result<bool> plot_wrenches(const std::filesystem::path& csv, const std::vector<s
   const bool nothing = std::all_of(series.value().begin(), series.value().end(),
                                    [](const WrenchSeries& s) { return s.time.size() < 2; });
   if (nothing) return false;
-  Result<std::unique_ptr<ChildProcess>> gnuplot = ChildProcess::start({"gnuplot", "--default-settings", "-"});
-  if (!gnuplot) return gnuplot.error();
-  const std::string script = plot_script(series.value(), names, title);
-  gnuplot.value()->write(script.data(), script.size());
-  const Result<bool> drawn = gnuplot.value()->finish();
-  if (!drawn) return drawn.error();
-  return write_whole(png, gnuplot.value()->output());
+  return draw(plot_script(series.value(), names, title), png);
 }
 
 }  // namespace slosh

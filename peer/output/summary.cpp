@@ -90,6 +90,25 @@ std::vector<std::string> status_words(std::uint32_t status) {
   return words;
 }
 
+std::vector<std::string> status_words(const RunSummary& s) {
+  std::vector<std::string> words;
+  for (std::size_t bit = 0; bit < s.status_steps.size(); ++bit) {
+    const std::uint32_t one = s.status & (1u << bit);
+    std::string text = one != 0 ? status_text(one) : std::string();
+    if (text.empty()) continue;
+    std::string numbers;
+    if ((one & (kStatusEscaped | kStatusNonFinite)) != 0)
+      numbers = grouped(s.retired_particles) + " of " + grouped(s.fluid_particles);
+    if (one == kStatusInputRejected && s.rejected_poses > 0) numbers = grouped(s.rejected_poses) + " poses";
+    if (s.status_steps[bit] > 0) {
+      numbers += (numbers.empty() ? "in " : ", in ") + grouped(s.status_steps[bit]) + " of " +
+                 grouped(s.steps) + (s.steps == 1 ? " step" : " steps");
+    }
+    words.push_back(numbers.empty() ? text : text + " (" + numbers + ")");
+  }
+  return words;
+}
+
 std::string grouped(std::uint64_t number) {
   std::string text = std::to_string(number);
   for (std::size_t at = text.size(); at > 3;) {
@@ -112,8 +131,10 @@ Json to_json(const RunSummary& s) {
   json["scene_file"] = s.scene_file;
   json["spacing_m"] = s.spacing;
   json["spacing_reason"] = s.spacing_reason;
-  json["particles"] = {
-      {"fluid", s.fluid_particles}, {"boundary", s.boundary_particles}, {"retired", s.retired_particles}};
+  json["particles"] = {{"fluid", s.fluid_particles},
+                       {"boundary", s.boundary_particles},
+                       {"retired", s.retired_particles},
+                       {"in_solids", s.particles_in_solids}};
   json["steps"] = s.steps;
   json["time_step_s"] = s.time_step;
   json["simulated_s"] = s.simulated;
@@ -130,11 +151,12 @@ Json to_json(const RunSummary& s) {
   json["render"] = {{"on", s.rendered},        {"renderer", s.renderer}, {"width", s.width},
                     {"height", s.height},      {"frames", s.frames},     {"dropped", s.frames_dropped},
                     {"ms", spread(s.frame_ms)}};
-  json["status"] = status_words(s.status);
+  json["status"] = status_words(s);
   json["slips"] = {{"count", s.slips}, {"seconds", s.slipped}};
   json["rejected_poses"] = s.rejected_poses;
   json["samples_lost"] = s.samples_lost;
   json["fluid_mass_kg"] = {{"start", s.fluid_mass_start}, {"end", s.fluid_mass_end}};
+  if (s.measured.interval > 0.0) json["measured"] = to_json(s.measured);
   json["devices"] = devices;
   json["backend"] = s.backend;
   json["threads"] = s.threads;
@@ -170,13 +192,18 @@ std::string in_words(const RunSummary& s) {
         s.frames_dropped == 0 ? "" : (std::string(", ") + grouped(s.frames_dropped) + " dropped").c_str());
   }
   if (s.fluid_mass_start > 0.0 && s.retired_particles > 0) {
-    text += format("%.2f of %.2f kg of fluid left the domain.\n", s.fluid_mass_start - s.fluid_mass_end,
-                   s.fluid_mass_start);
+    text +=
+        format("%s of %s fluid particles were lost, %.3g of %.3g kg.\n", grouped(s.retired_particles).c_str(),
+               grouped(s.fluid_particles).c_str(), s.fluid_mass_start - s.fluid_mass_end, s.fluid_mass_start);
   }
+  if (s.particles_in_solids > 0)
+    text += format("%s fluid particles are inside solids.\n", grouped(s.particles_in_solids).c_str());
+  text += in_words(s.measured);
   if (!s.recording.empty()) text += "Recorded to " + s.recording + ".\n";
   if (!s.recording_problem.empty()) text += "The recording is not whole: " + s.recording_problem + ".\n";
   if (!s.verdict.empty()) text += "Compared with the recording: " + s.verdict + ".\n";
-  const std::string status = status_text(s.status);
+  std::string status;
+  for (const std::string& words : status_words(s)) status += (status.empty() ? "" : "; ") + words;
   if (!status.empty()) text += "Status: " + status + ".\n";
   if (!s.files.empty()) {
     text += "Written to " + s.folder + ":";

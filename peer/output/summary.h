@@ -1,6 +1,7 @@
 // What a run amounted to: summary.json, and the same in words.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "peer/output/machine.h"
+#include "peer/output/measured.h"
 #include "sim/math/result.h"
 
 namespace slosh {
@@ -63,7 +65,8 @@ struct RunSummary {
   std::string spacing_reason;
   std::size_t fluid_particles = 0;
   std::size_t boundary_particles = 0;
-  std::uint64_t retired_particles = 0;
+  std::uint64_t retired_particles = 0;    ///< lost: outside the domain, or not finite
+  std::uint64_t particles_in_solids = 0;  ///< at the end
   std::uint64_t steps = 0;
   double time_step = 0.0;         ///< s
   double simulated = 0.0;         ///< s
@@ -83,12 +86,15 @@ struct RunSummary {
   std::uint64_t frames_dropped = 0;
   Spread frame_ms;
   std::uint32_t status = 0;  ///< StatusBits
+  std::array<std::uint64_t, 32>
+      status_steps{};  ///< in how many steps each was set; 0 where that is not known
   std::uint64_t slips = 0;
   double slipped = 0.0;  ///< s
   std::uint64_t rejected_poses = 0;
   std::uint64_t samples_lost = 0;
   double fluid_mass_start = 0.0;  ///< kg
   double fluid_mass_end = 0.0;    ///< kg still in the world
+  MeasuredRun measured;
   std::vector<DeviceSummary> devices;
   std::string backend;
   int threads = 1;
@@ -112,6 +118,9 @@ Result<bool> write_summary(const std::filesystem::path& file, const RunSummary& 
 
 /// The status as a list of words, e.g. {"time slipped"}.
 std::vector<std::string> status_words(std::uint32_t status);
+/// The same with the numbers that the run has of each, e.g. {"particles left the domain and were retired (264
+/// of 344, in 12 of 1 714 steps)"}.
+std::vector<std::string> status_words(const RunSummary& summary);
 /// 12345 → "12 345".
 std::string grouped(std::uint64_t number);
 

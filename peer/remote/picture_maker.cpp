@@ -149,6 +149,11 @@ void PictureMaker::run() {
     bool finish = false;
     pieces.clear();
     {
+      // Before the pieces: what was offered before these states is decoded when they are compared with it.
+      const std::lock_guard lock(mutex_);
+      if (history_.has_bodies()) bodies_heard_to_ = history_.last_body_time();
+    }
+    {
       std::unique_lock lock(inbox_mutex_);
       changed_.wait_for(lock, kTurn, [this] { return !inbox_.empty() || finish_; });
       pieces.swap(inbox_);
@@ -209,8 +214,10 @@ std::optional<Between> PictureMaker::next_of_film(bool to_the_end) {
   const double time = times_.next();
   const double reached = std::max(particles_to, bodies_to);
   const bool both = time <= particles_to + 1e-9 && time <= bodies_to + 1e-9;
+  // Particles that wait to be decoded are not late: a busy machine's film is made later, not worse.
+  const double heard_to = std::min(bodies_to, bodies_heard_to_);
   const bool one_is_late = (time <= particles_to && time + kWithoutBodies < particles_to) ||
-                           (time <= bodies_to && time + kWithoutParticles < bodies_to);
+                           (time <= heard_to && time + kWithoutParticles < heard_to);
   if (!both && !one_is_late && !(to_the_end && time <= reached)) return std::nullopt;
   std::optional<Between> between = history_.at(time);
   if (!between) return std::nullopt;

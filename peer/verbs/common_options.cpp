@@ -48,6 +48,14 @@ void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window) {
   verb.add_flag("!--no-render", options.render, "No picture at all");
 }
 
+void add_measure_option(CLI::App& verb, ShowOptions& options) {
+  verb.add_option(
+          "--measure", options.measure,
+          "Simulated seconds between rows of bodies.csv and probes.csv, 0 for none (0.01 where the scene has "
+          "gauges, regions or measured bodies)")
+      ->check(in_range(0.0, 1e3));
+}
+
 void add_backend_option(CLI::App& verb, std::string& backend, const std::string& text) {
   verb.add_option("--backend", backend, text)
       ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
@@ -62,6 +70,7 @@ void add_world_options(CLI::App& verb, PlayOptions& options, const std::string& 
       ->excludes("--spacing");
   verb.add_option("--threads", options.threads, "Cores for the simulation (" + all_cores + ")")
       ->check(CLI::Range(1, 1024));
+  verb.add_flag("--yes", options.agreed, "Do not ask, and do not refuse, when it is going to take long");
 }
 
 }  // namespace slosh

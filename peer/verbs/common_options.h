@@ -22,8 +22,11 @@ void add_out_options(CLI::App& verb, ShowOptions& options, const std::string& te
 /// `verb` and `options` must outlive the parsing.
 void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window);
 
-/// What a world is made of and runs on: --backend, --spacing, --particles, --threads. `all_cores` says what
-/// --threads is by default.
+/// --measure, for a run that writes files.
+void add_measure_option(CLI::App& verb, ShowOptions& options);
+
+/// What a world is made of and runs on: --backend, --spacing, --particles, --threads, --yes. `all_cores` says
+/// what --threads is by default.
 void add_world_options(CLI::App& verb, PlayOptions& options, const std::string& all_cores);
 
 /// --backend alone, with what `auto` means.

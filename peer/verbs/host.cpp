@@ -26,9 +26,10 @@ std::string footer() {
          "While it runs, type (or use `slosh links` from elsewhere):\n" +
          std::string(console_help()) +
          "\n\n"
-         "The world is saved to a file twice a second. Should a fault end it, it is started again from "
-         "there\n"
-         "at once, and peers come back by themselves (not with --checkpoint none). After the machine went\n"
+         "The world is saved to a file twice a second. Should a fault end it, or should it hang for a "
+         "minute,\n"
+         "it is started again from there, and peers come back by themselves (not with --checkpoint none).\n"
+         "A large world is saved less often with --checkpoint-every. After the machine went\n"
          "down, --resume FILE does the same. Key and links are in FILE.secrets: FILE alone can be given "
          "away.\n"
          "\n"
@@ -80,6 +81,9 @@ void add_host(CLI::App& app, VerbRun& chosen) {
   verb->add_option("--record", o->record, "File to record the run in; slosh replay plays it again");
   verb->add_option("--checkpoint", o->checkpoint,
                    "File to save the world in, or none (~/.local/state/slosh/SCENE.checkpoint)");
+  verb->add_option("--checkpoint-every", o->checkpoint_seconds, "Seconds between two checkpoints")
+      ->check(in_range(0.1, 3600.0))
+      ->capture_default_str();
   verb->add_option("--resume", o->resume, "Checkpoint to carry on from, with its links and its people");
   verb->add_flag("!--no-supervisor", o->supervised,
                  "Run the world in this very process, for a debugger; a fault then ends the host");

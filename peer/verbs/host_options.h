@@ -15,7 +15,8 @@ struct HostVerbOptions : PlayOptions {
   std::string expires;                 ///< of all links made at the start; empty = never
   std::string links_file;
   std::string record;
-  std::string checkpoint;  ///< file, "none", or empty = chosen
+  std::string checkpoint;           ///< file, "none", or empty = chosen
+  double checkpoint_seconds = 0.5;  ///< wall s between two checkpoints
   std::string resume;
   std::size_t watchers = 150;
   bool lock_parameters = false;

@@ -49,6 +49,12 @@ class RateOf {
   double rate_ = 0.0;
 };
 
+std::string every(double seconds) {
+  char text[40];
+  std::snprintf(text, sizeof text, "every %g s", seconds);
+  return text;
+}
+
 std::string live_line(const HostProgress& progress, const ServerFigures& figures, double rate) {
   char text[120];
   if (progress.paused)
@@ -152,7 +158,8 @@ int run_host(const HostVerbOptions& options, HostReins* reins) {
     return fail(hosted.error());
   }
   catch_interrupts();
-  Result<std::unique_ptr<HostSession>> created = HostSession::create(hosted.value(), options);
+  Result<std::unique_ptr<HostSession>> created =
+      HostSession::create(hosted.value(), options, reins ? &reins->pulse() : nullptr);
   if (!created) {
     progress.note("");
     return fail(created.error());
@@ -163,7 +170,7 @@ int run_host(const HostVerbOptions& options, HostReins* reins) {
     progress.note("an earlier host's world was there: carry it on with ./slosh host --resume " +
                   session.set_aside());
   if (!session.checkpoint_file().empty())
-    progress.note("saved twice a second in " + session.checkpoint_file());
+    progress.note("saved " + every(options.checkpoint_seconds) + " in " + session.checkpoint_file());
   if (reins) reins->can_carry_on_from(session.checkpoint_file());
   if (options.restarts == 0) print_links(session);
   if (!options.links_file.empty()) {

@@ -28,8 +28,8 @@ std::string state_folder() {
 
 }  // namespace
 
-Result<std::unique_ptr<HostSession>> HostSession::create(HostedWorld& hosted,
-                                                         const HostVerbOptions& options) {
+Result<std::unique_ptr<HostSession>> HostSession::create(HostedWorld& hosted, const HostVerbOptions& options,
+                                                         std::atomic<std::uint64_t>* pulse) {
   std::unique_ptr<HostSession> session(new HostSession(hosted, options));
   HostSession& s = *session;
   const Scene& scene = hosted.prepared.scene;
@@ -54,6 +54,7 @@ Result<std::unique_ptr<HostSession>> HostSession::create(HostedWorld& hosted,
   host.paused = hosted.state.paused;
   host.run = hosted.state.run;
   host.start_state = hosted.start;
+  host.pulse = pulse;
   s.host_ = std::make_unique<Host>(std::move(*hosted.world), scene, *s.channel_, host);
   s.host_->add_tap(*s.server_);
   if (s.checkpoint_) s.host_->add_tap(*s.checkpoint_);
@@ -184,6 +185,7 @@ Result<bool> HostSession::open_files() {
     options.file = checkpoint_file_;
     options.version = SLOSH_VERSION;
     options.place = place_;
+    options.interval = options_.checkpoint_seconds;
     options.run = server_->session();
     // The first file already has everything that a newcomer needs: this may be all that there ever is.
     server_->save_session();

@@ -1,6 +1,8 @@
 // One session of `slosh host`: the world, the network and the files, joined.
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -20,8 +22,9 @@ namespace slosh {
 class HostSession {
  public:
   /// `hosted` must outlive it; its world is taken. Errors: the address cannot be listened at, a file cannot
-  /// be written, the scene does not fit into a message.
-  static Result<std::unique_ptr<HostSession>> create(HostedWorld& hosted, const HostVerbOptions& options);
+  /// be written, the scene does not fit into a message. `pulse`: as HostOptions::pulse.
+  static Result<std::unique_ptr<HostSession>> create(HostedWorld& hosted, const HostVerbOptions& options,
+                                                     std::atomic<std::uint64_t>* pulse = nullptr);
   ~HostSession();
   HostSession(const HostSession&) = delete;
   HostSession& operator=(const HostSession&) = delete;

@@ -49,9 +49,12 @@ class HeldSignals {
   HeldSignals(const HeldSignals&) = delete;
   HeldSignals& operator=(const HeldSignals&) = delete;
   void release() const { sigprocmask(SIG_SETMASK, &before_, nullptr); }
+  /// The next one; si_signo is 0 when none came for a second.
   siginfo_t wait() const {
     siginfo_t info{};
-    while (sigwaitinfo(&held_, &info) < 0 && errno == EINTR) {
+    const timespec second{1, 0};
+    while (sigtimedwait(&held_, &info, &second) < 0) {
+      if (errno != EINTR) return siginfo_t{};
     }
     return info;
   }
@@ -72,16 +75,35 @@ void pass_on(const siginfo_t& info, pid_t child, const HostReins& reins) {
   kill(child, info.si_signo);
 }
 
-int outlive(pid_t child, const HeldSignals& signals, const HostReins& reins) {
-  int status = 0;
+struct End {
+  int status = 0;     // as waitpid says
+  bool hung = false;  // and was ended for it
+};
+
+End outlive(pid_t child, const HeldSignals& signals, const HostReins& reins, int hang_seconds) {
+  End end;
+  HangWatch watch(hang_seconds);
+  bool stopped = false;
   std::int64_t heard_ns = 0;
   while (true) {
     const siginfo_t info = signals.wait();
-    const bool asked = info.si_signo != SIGCHLD;
+    const bool asked = info.si_signo != SIGCHLD && info.si_signo != 0;
     // timeout(1) and its like signal a program and then its group: that is one wish, not two.
     if (asked && (heard_ns == 0 || steady_now_ns() - heard_ns > kOneWish)) pass_on(info, child, reins);
     if (asked) heard_ns = steady_now_ns();
-    if (waitpid(child, &status, WNOHANG) == child) return status;
+    int status = 0;
+    while (waitpid(child, &status, WNOHANG | WUNTRACED | WCONTINUED) == child) {
+      if (WIFEXITED(status) || WIFSIGNALED(status)) {
+        end.status = status;
+        return end;
+      }
+      stopped = WIFSTOPPED(status);
+    }
+    if (stopped) watch.pass_over();
+    if (info.si_signo == 0 && !stopped && !end.hung && watch.look(reins.pulse())) {
+      end.hung = true;
+      kill(child, SIGKILL);
+    }
   }
 }
 
@@ -109,6 +131,7 @@ std::string HostReins::checkpoint() const {
 
 void HostReins::restart() {
   ready_.store(false, std::memory_order_relaxed);
+  pulse_.store(0, std::memory_order_relaxed);
   ending_.store(false, std::memory_order_relaxed);
 }
 
@@ -136,7 +159,7 @@ HostVerbOptions restarted(const HostVerbOptions& options, const std::string& che
   return next;
 }
 
-int supervise_host(const HostVerbOptions& options, const HostBody& body) {
+int supervise_host(const HostVerbOptions& options, const HostBody& body, int hang_seconds) {
   void* page = mmap(nullptr, sizeof(HostReins), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (page == MAP_FAILED) return body(options, nullptr);
   HostReins& reins = *new (page) HostReins;
@@ -161,12 +184,14 @@ int supervise_host(const HostVerbOptions& options, const HostBody& body) {
           ". Run it in this one with --no-supervisor");
       return kExitFailed;
     }
-    const int status = outlive(child, signals, reins);
+    const End end = outlive(child, signals, reins, hang_seconds);
+    const int status = end.status;
     terminal.restore();
     if (WIFEXITED(status)) return WEXITSTATUS(status);
     const int ended_by = WTERMSIG(status);
     if (asks_for_the_end(ended_by)) return 128 + ended_by;
-    const std::string fault = strsignal(ended_by);
+    const std::string fault = end.hung ? "its world hung for " + std::to_string(hang_seconds) + " s"
+                                       : std::string(strsignal(ended_by));
     const std::string checkpoint = reins.checkpoint();
     if (checkpoint.empty()) {
       say("the host died (" + fault + ") before its world was saved");

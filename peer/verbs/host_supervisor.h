@@ -19,7 +19,10 @@ class HostReins {
   void can_carry_on_from(const std::string& checkpoint);
   /// The child was asked to end, and does.
   void ends() { ending_.store(true, std::memory_order_release); }
+  /// For HostOptions::pulse.
+  std::atomic<std::uint64_t>& pulse() { return pulse_; }
 
+  std::uint64_t pulse() const { return pulse_.load(std::memory_order_relaxed); }
   std::string checkpoint() const;  ///< empty: it cannot be carried on yet
   bool ending() const { return ending_.load(std::memory_order_acquire); }
   void restart();
@@ -28,7 +31,31 @@ class HostReins {
   static constexpr std::size_t kLongestPath = 4095;
   std::atomic<bool> ready_{false};
   std::atomic<bool> ending_{false};
+  std::atomic<std::uint64_t> pulse_{0};
   char checkpoint_[kLongestPath + 1] = {};
+};
+
+/// A world that lives and does nothing: its pulse stood for so many looks, one a second. Looks are counted in
+/// place of a clock, so that whoever was stopped together with it, or slept with the machine, blames nobody.
+/// Pure.
+class HangWatch {
+ public:
+  /// A reset settles the world again, within one turn of its loop.
+  static constexpr int kMost = 60;
+  explicit HangWatch(int most = kMost) : most_(most) {}
+  /// True when it hangs. A pulse of 0 is of a world that does not run: that is loading, or at its end.
+  bool look(std::uint64_t pulse) {
+    looks_ = pulse == last_ && pulse != 0 ? looks_ + 1 : 0;
+    last_ = pulse;
+    return looks_ >= most_;
+  }
+  /// It is held up from outside: by a debugger, or SIGSTOP.
+  void pass_over() { looks_ = 0; }
+
+ private:
+  int most_;
+  int looks_ = 0;
+  std::uint64_t last_ = 0;
 };
 
 /// How often a host may die before it stays dead: what dies again and again is not saved by another start.
@@ -51,9 +78,10 @@ HostVerbOptions restarted(const HostVerbOptions& options, const std::string& che
 
 using HostBody = std::function<int(const HostVerbOptions&, HostReins*)>;
 
-/// Runs `body` in a child process, again and again where a fault ends it. Returns in the parent what the last
+/// Runs `body` in a child process, again and again where a fault ends it or where its world hangs for
+/// `hang_seconds`. Returns in the parent what the last
 /// child came to (128 + signal where one ended it), and in each child what `body` did. Signals that ask for
 /// the end are passed on. Before any thread starts.
-int supervise_host(const HostVerbOptions& options, const HostBody& body);
+int supervise_host(const HostVerbOptions& options, const HostBody& body, int hang_seconds = HangWatch::kMost);
 
 }  // namespace slosh

@@ -8,6 +8,7 @@
 #include "host/keep/secrets.h"
 #include "host/server/hands.h"
 #include "peer/output/summary.h"
+#include "peer/verbs/time_estimate.h"
 
 namespace slosh {
 namespace {
@@ -28,6 +29,10 @@ Result<HostedWorld> start_anew(const HostVerbOptions& options, Progress& progres
   std::vector<HandleInput> hands;
   for (std::size_t i = 0; i < p.scene.grips.size(); ++i)
     hands.push_back({stand_pose(p.scene, i), Twist{}, true, 1.0});
+  const Result<bool> agreed =
+      agree_on_time(*hosted.world, hands,
+                    {kSettle, std::numeric_limits<double>::infinity(), true, options.agreed}, progress);
+  if (!agreed) return agreed.error();
   hosted.world->settle(kSettle, hands);
   const Result<bool> saved = hosted.world->save(hosted.start);
   if (!saved) return saved.error();

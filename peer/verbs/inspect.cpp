@@ -1,4 +1,6 @@
 // The verbs that look at a scene without playing it: scenes, check, plan.
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -37,12 +39,13 @@ double fluid_mass(const Scene& scene, const SampledScene& sampled) {
   return mass;
 }
 
-int check(const std::string& name) {
+int check(const std::string& name, double asked) {
   Result<Scene> loaded = load_named_scene(name);
   if (!loaded) return fail(loaded.error());
   const Scene& scene = loaded.value();
-  const double spacing = scene.spacing > 0.0 ? scene.spacing : scene.spacing_max;
-  Result<SampledScene> sampled = sample_scene(scene, spacing);
+  const double spacing = asked > 0.0 ? asked : scene.spacing > 0.0 ? scene.spacing : scene.spacing_max;
+  SampleReport filling;
+  Result<SampledScene> sampled = sample_scene(scene, spacing, &filling);
   if (!sampled) return fail(sampled.error());
 
   std::size_t surface = 0;
@@ -63,6 +66,21 @@ int check(const std::string& name) {
   }
   std::printf("  fluids      %zu, %.2f litres, %.2f kg as sampled\n", scene.fluids.size(), litres(scene),
               fluid_mass(scene, sampled.value()));
+  for (std::size_t v = 0; v < filling.volumes.size(); ++v) {
+    const FilledVolume& f = filling.volumes[v];
+    if (std::abs(f.sampled - f.mesh) <= 0.005 * f.mesh) continue;
+    std::printf(
+        "    %-10s %.3f of %.3f litres: %.3f lie inside bodies, %.3f in volumes before it, %.3f find no "
+        "place\n",
+        clean_text(scene.fluid_volumes[v].name, kMostTextBytes).c_str(), 1e3 * f.sampled, 1e3 * f.mesh,
+        1e3 * f.in_bodies, 1e3 * f.in_others, 1e3 * f.no_place);
+  }
+  const auto measured =
+      std::count_if(scene.bodies.begin(), scene.bodies.end(), [](const Body& body) { return body.measured; });
+  if (measured > 0 || !scene.gauges.empty() || !scene.regions.empty()) {
+    std::printf("  measured    %td bodies, %zu gauges, %zu regions\n", measured, scene.gauges.size(),
+                scene.regions.size());
+  }
   std::size_t thinnest_body = 0;
   const double wall = thinnest_wall(scene, &thinnest_body);
   if (thinnest_body < scene.bodies.size() && wall < 1e6) {
@@ -94,12 +112,15 @@ void add_scenes(CLI::App& app, VerbRun& chosen) {
 void add_check(CLI::App& app, VerbRun& chosen) {
   CLI::App* verb = app.add_subcommand("check", "Validate a scene and count what is in it");
   auto name = std::make_shared<std::string>();
+  auto spacing = std::make_shared<double>(0.0);
   verb->add_option("FILE", *name, "A .gltf or .glb file, or a shipped scene's name")->required();
+  verb->add_option("--spacing", *spacing, "Metres between particles (the scene's own, else its coarsest)")
+      ->check(in_range(1e-4, 1.0));
   verb->footer(
-      "Loads the scene, checks every value and mesh, and samples it at its coarsest spacing.\n"
+      "Loads the scene, checks every value and mesh, and samples it.\n"
       "Exit code 1 and the reason when something is wrong.\n\n"
-      "Examples:\n  slosh check bucket\n  slosh check my_scene.glb");
-  verb->callback([&chosen, name] { chosen = [name] { return check(*name); }; });
+      "Examples:\n  slosh check bucket\n  slosh check my_scene.glb --spacing 0.005");
+  verb->callback([&chosen, name, spacing] { chosen = [name, spacing] { return check(*name, *spacing); }; });
 }
 
 void add_plan(CLI::App& app, VerbRun& chosen) {

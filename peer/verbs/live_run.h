@@ -47,7 +47,8 @@ class LiveRun {
   /// Where the mouse moves the handle of grip `i`; null when that hand is no mouse.
   virtual MouseTarget* mouse_target(std::size_t i) = 0;
 
-  /// What has gone wrong with the run's files so far, e.g. that the disk is full; empty while nothing has.
+  /// What has gone wrong with the run's files and devices so far, e.g. that the disk is full; empty while
+  /// nothing has.
   virtual std::string trouble() const { return {}; }
 
   /// Fills what the run knows; after stop().

@@ -19,6 +19,7 @@ constexpr const char* kFooter =
     "                 wrench on the hand (what is felt: a held weight is negative fy), torque about the\n"
     "                 handle, world axes, y up\n"
     "  poses.csv      where the handles were; --device replay:FILE plays it again\n"
+    "  bodies.csv, probes.csv   what the scene's instruments read, see --measure\n"
     "  wrenches.png   force above, torque below, one colour a device\n"
     "  view.mp4, final.png, summary.json\n"
     "\n"
@@ -69,6 +70,9 @@ void add_play(CLI::App& app, VerbRun& chosen) {
   verb->add_option("--device", o->devices, "script, mouse or replay:FILE; one for all handles, or one each")
       ->allow_extra_args(false);
   verb->add_option("--record", o->record, "Keep the run's inputs and states in a file, for `slosh replay`");
+  verb->add_flag("--unpaced", o->unpaced,
+                 "As fast as the machine goes, the same again to the bit; headless, for measuring");
+  add_measure_option(*verb, *o);
   verb->footer(kFooter);
   verb->callback([&chosen, o] { chosen = [o] { return play(*o); }; });
 }

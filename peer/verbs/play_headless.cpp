@@ -131,7 +131,7 @@ Result<bool> play_headless(const Prepared& prepared, const PlayOptions& options,
   progress.phase("settling");
   const double picture_rate = options.render ? options.frames_per_second : 0.0;
   Result<std::unique_ptr<Session>> created =
-      Session::create(prepared, std::move(devices.value()), picture_rate);
+      Session::create(prepared, std::move(devices.value()), picture_rate, &progress);
   if (!created) return created.error();
   catch_interrupts();
   return show_headless(prepared, *created.value(), options, progress, summary);

@@ -18,6 +18,7 @@ struct ShowOptions {
   double frames_per_second = 30.0;
   int bilateral = 4;
   bool render = true;
+  double measure = -1.0;  ///< simulated s between rows of the instruments; 0 = none, below 0 = as the scene asks
 };
 
 struct PlayOptions : ShowOptions {
@@ -27,6 +28,8 @@ struct PlayOptions : ShowOptions {
   std::size_t particles = 0;     ///< 0 = not asked for
   int threads = 0;               ///< 0 = chosen
   std::string record;            ///< file for a recording; empty = none
+  bool agreed = false;           ///< --yes: a run may take as long as it takes
+  bool unpaced = false;          ///< as fast as it goes, the same again to the bit
 };
 
 }  // namespace slosh

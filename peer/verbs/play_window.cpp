@@ -206,12 +206,14 @@ Result<bool> show_in_window(const Stage& stage, const MakeRun& make_run, const S
 
 Result<bool> play_in_window(const Prepared& prepared, const PlayOptions& options, Progress& progress,
                             RunSummary& summary) {
+  bool told = false;
   const MakeRun make_run = [&]() -> Result<std::unique_ptr<LiveRun>> {
     Result<DeviceSet> devices = make_devices(prepared.scene, options.devices, true);
     if (!devices) return devices.error();
     Result<std::unique_ptr<Session>> session =
-        Session::create(prepared, std::move(devices.value()), kWindowPictureRate);
+        Session::create(prepared, std::move(devices.value()), kWindowPictureRate, told ? nullptr : &progress);
     if (!session) return session.error();
+    told = true;
     catch_interrupts();
     return std::unique_ptr<LiveRun>(std::move(session.value()));
   };

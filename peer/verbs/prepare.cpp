@@ -13,8 +13,10 @@
 #include <tuple>
 
 #include "host/auto_spacing.h"
+#include "host/keep/recording.h"
 #include "peer/haptics/make_device.h"
 #include "peer/output/summary.h"
+#include "peer/verbs/measurer.h"
 #include "scenes/load.h"
 
 namespace slosh {
@@ -68,7 +70,7 @@ Result<RunFolder> take_folder(const ShowOptions& options, const Scene& scene, bo
   return RunFolder::take_free(std::filesystem::path("out") / folder_name(scene.name, "scene"));
 }
 
-/// Whether a recording can be begun there later. Errors: no such folder, not writable.
+/// Whether a recording can be begun there later. Errors: no such folder, not writable, something is there.
 Result<bool> check_record(const std::string& record) {
   if (record.empty()) return true;
   const std::filesystem::path file(record);
@@ -78,6 +80,7 @@ Result<bool> check_record(const std::string& record) {
   if (!std::filesystem::is_directory(folder, code))
     return Error{record, "there is no folder " + folder.string(), mend};
   if (std::filesystem::is_directory(file, code)) return Error{record, "is a folder", mend};
+  if (const Result<bool> free = keep::check_unrecorded(file); !free) return free.error();
   const bool there = std::filesystem::exists(file, code);
   if (access(there ? file.c_str() : folder.c_str(), there ? W_OK : W_OK | X_OK) != 0)
     return Error{record, "cannot be written: " + std::generic_category().message(errno), mend};
@@ -132,6 +135,9 @@ Result<bool> set_stage(const ShowOptions& options, bool headless, Stage& stage) 
   if (!folder) return folder.error();
   stage.claim = folder.value();
   stage.folder = stage.claim.path();
+  const bool asks = options.measure > 0.0 || (options.measure < 0.0 && asks_to_be_measured(stage.scene));
+  if (asks && !stage.folder.empty())
+    stage.measure = options.measure > 0.0 ? options.measure : kMeasureInterval;
   return true;
 }
 
@@ -144,9 +150,14 @@ Result<Prepared> prepare(const PlayOptions& options, bool headless, Progress& pr
   if (!options.size.empty()) {
     if (const Result<std::pair<int, int>> size = parse_size(options.size); !size) return size.error();
   }
+  if (options.unpaced && !headless) {
+    return Error{"--unpaced", "is for a run that nobody looks at", "Give --headless or --no-render too"};
+  }
   if (const Result<bool> recordable = check_record(options.record); !recordable) return recordable.error();
   p.backend = backend.value();
   p.record = options.record;
+  p.agreed = options.agreed;
+  p.unpaced = options.unpaced;
   p.machine = this_machine();
   // Drawing takes a core of its own; the device loop and the encoder take little.
   p.threads = options.threads > 0 ? options.threads

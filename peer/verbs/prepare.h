@@ -24,6 +24,7 @@ struct Stage {
   RunFolder claim;               ///< on `folder`, while the run lasts
   int width = 0;
   int height = 0;
+  double measure = 0.0;  ///< simulated s between rows of the instruments; 0 = none
 };
 
 struct Prepared : Stage {
@@ -32,6 +33,8 @@ struct Prepared : Stage {
   std::string spacing_reason;
   Backend backend = Backend::kCpu;  ///< what was chosen; never kAuto
   int threads = 1;                  ///< the simulation's
+  bool agreed = false;              ///< it may take as long as it takes
+  bool unpaced = false;             ///< the world goes as fast as it can
   std::filesystem::path record;     ///< where the run is recorded; empty = it is not
 };
 

@@ -207,7 +207,8 @@ void RemoteRun::report(RunSummary& s) const {
   s.version = SLOSH_VERSION;
   s.folder = stage_.folder.string();
   if (!stage_.folder.empty() && !s.devices.empty()) s.files = {"wrenches.csv", "poses.csv"};
-  if (const std::string problem = recorder_->problem(); !problem.empty()) s.problems.push_back(problem);
+  for (const std::string& each : run_troubles(recorder_->problem(), *servo_, stage_.scene))
+    s.problems.push_back(each);
 
   NetworkSummary n;
   n.host = options_.host;

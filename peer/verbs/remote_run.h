@@ -10,6 +10,7 @@
 #include "peer/haptics/make_device.h"
 #include "peer/output/recorder.h"
 #include "peer/remote/remote_session.h"
+#include "peer/verbs/hand_trouble.h"
 #include "peer/verbs/live_run.h"
 #include "peer/verbs/prepare.h"
 
@@ -47,7 +48,7 @@ class RemoteRun final : public LiveRun {
   bool hears() const override { return true; }
   std::string hear(const std::string& line) override;
   MouseTarget* mouse_target(std::size_t i) override { return mice_[i].get(); }
-  std::string trouble() const override { return recorder_->problem(); }
+  std::string trouble() const override { return run_trouble(recorder_->problem(), *servo_, stage_.scene); }
   void report(RunSummary& summary) const override;
 
  private:

@@ -87,6 +87,7 @@ void add_replay(CLI::App& app, VerbRun& chosen) {
   verb->add_option("--threads", o->threads, "Cores for the simulation (all); the result is the same")
       ->check(CLI::Range(1, 1024));
   add_show_options(*verb, *o, false);
+  add_measure_option(*verb, *o);
   verb->footer(kFooter);
   verb->callback([&chosen, o] { chosen = [o] { return replay(*o); }; });
 }

@@ -29,6 +29,12 @@ Result<std::unique_ptr<ReplayRun>> ReplayRun::create(keep::Replayer& replayer, c
   Result<std::unique_ptr<Table>> wrenches = Table::create(stage.folder / "wrenches.csv", kWrenchesHeader);
   if (!wrenches) return wrenches.error();
   run->wrenches_ = std::move(wrenches.value());
+  if (stage.measure > 0.0) {
+    Result<std::unique_ptr<Measurer>> measurer =
+        Measurer::create(stage.scene, replayer.sampled(), stage.folder, stage.measure);
+    if (!measurer) return measurer.error();
+    run->measurer_ = std::move(measurer.value());
+  }
   return run;
 }
 
@@ -80,6 +86,7 @@ void ReplayRun::run() {
   const std::int64_t begin_ns = steady_now_ns();
   const double time_step = replayer_.world().plan().time_step;
   show();
+  if (measurer_) measurer_->begin(replayer_.world(), replayer_.elapsed());
   while (!stop_.load(std::memory_order_relaxed) && replayer_.elapsed() + 0.5 * time_step < stage_.seconds) {
     const std::int64_t step_ns = steady_now_ns();
     const Result<bool> stepped = replayer_.step();
@@ -97,12 +104,14 @@ void ReplayRun::run() {
     total_.body += parts.body;
     total_.total += parts.total;
     write_samples();
+    if (measurer_) measurer_->step(replayer_.world(), replayer_.elapsed());
     show();
     wall_ = to_seconds(now_ns - begin_ns);
     shown_time_.store(replayer_.elapsed(), std::memory_order_relaxed);
     shown_rate_.store(replayer_.elapsed() / std::max(wall_, 1e-9), std::memory_order_relaxed);
   }
   if (wrenches_) wrenches_->flush();
+  if (measurer_) measurer_->stop();
   pictures_.close();
   running_.store(false, std::memory_order_release);
 }
@@ -158,6 +167,7 @@ void ReplayRun::report(RunSummary& s) const {
   s.verdict = verdict.text(replayer_.head().spacing);
   if (wrenches_) s.files.emplace_back("wrenches.csv");
   if (wrenches_ && !wrenches_->problem().empty()) s.problems.push_back(wrenches_->problem());
+  report_instruments(measurer_.get(), stage_.scene, replayer_.sampled(), world, s);
 }
 
 }  // namespace slosh

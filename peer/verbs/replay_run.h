@@ -9,6 +9,7 @@
 #include "net/histogram.h"
 #include "peer/output/table.h"
 #include "peer/verbs/live_run.h"
+#include "peer/verbs/measurer.h"
 #include "peer/verbs/prepare.h"
 
 namespace slosh {
@@ -50,7 +51,8 @@ class ReplayRun final : public LiveRun {
   SnapshotQueue pictures_;
   RateLog rates_;
   std::unique_ptr<Table> wrenches_;
-  double next_picture_ = 0.0;  // s since the recording's start
+  std::unique_ptr<Measurer> measurer_;  // null where nothing is measured
+  double next_picture_ = 0.0;           // s since the recording's start
   double next_sample_ = 0.0;
   BodySnapshot bodies_;
   std::vector<DeviceSummary> peaks_;

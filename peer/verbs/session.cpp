@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "peer/verbs/hand_trouble.h"
+#include "peer/verbs/time_estimate.h"
+
 namespace slosh {
 namespace {
 
@@ -15,7 +18,7 @@ Spread spread_of(const Histogram& histogram, double unit) {
 }  // namespace
 
 Result<std::unique_ptr<Session>> Session::create(const Prepared& prepared, DeviceSet devices,
-                                                 double picture_rate) {
+                                                 double picture_rate, Progress* progress) {
   std::unique_ptr<Session> session(new Session(prepared));
   for (const std::unique_ptr<Device>& device : devices.devices) {
     const Result<bool> opened = open_device(*device);
@@ -32,11 +35,17 @@ Result<std::unique_ptr<Session>> Session::create(const Prepared& prepared, Devic
     const DeviceReport report = device->read({0.0, 0.0});
     hands.push_back({report.pose, Twist{}, is_sound(report) && report.engaged, 1.0});
   }
+  if (progress != nullptr) {
+    const Result<bool> agreed = agree_on_time(
+        world, hands, {kSettle, prepared.seconds, !prepared.unpaced, prepared.agreed}, *progress);
+    if (!agreed) return agreed.error();
+  }
   world.settle(kSettle, hands);
   session->channel_ = std::make_unique<Channel>(scene.grips.size(), initial_message(world), kPictureBytes);
   HostOptions options;
   options.picture_rate = picture_rate;
   options.until = prepared.seconds;
+  options.paced = !prepared.unpaced;
   session->host_ = std::make_unique<Host>(std::move(world), scene, *session->channel_, options);
   if (!prepared.record.empty()) {
     keep::RecordingOptions recording;
@@ -50,10 +59,25 @@ Result<std::unique_ptr<Session>> Session::create(const Prepared& prepared, Devic
     session->recording_ = std::move(writer.value());
     session->host_->add_tap(*session->recording_);
   }
+  session->wrenches_ = std::make_unique<WrenchTap>(scene.grips.size());
+  session->host_->add_tap(*session->wrenches_);
   session->mouse_targets_ = std::move(devices.mouse_targets);
-  session->servo_ =
-      std::make_unique<Servo>(scene, std::move(devices.devices), *session->channel_, ServoOptions{});
+  ServoOptions servo;
+  servo.steps = &session->wrenches_->steps();
+  session->servo_ = std::make_unique<Servo>(scene, std::move(devices.devices), *session->channel_, servo);
   session->loop_ = std::make_unique<DeviceLoop>(*session->servo_);
+  if (prepared.measure > 0.0) {
+    Result<std::unique_ptr<Measurer>> measurer =
+        Measurer::create(scene, prepared.sampled, prepared.folder, prepared.measure);
+    if (!measurer) return measurer.error();
+    session->measurer_ = std::move(measurer.value());
+    session->measure_tap_ = std::make_unique<MeasureTap>(*session->measurer_);
+    session->host_->add_tap(*session->measure_tap_);
+  }
+  if (prepared.unpaced) {
+    session->lockstep_ = std::make_unique<Lockstep>(*session->servo_, *session->channel_);
+    session->host_->add_tap(*session->lockstep_);
+  }
   Result<std::unique_ptr<Recorder>> recorder = Recorder::start(*session->servo_, prepared.folder);
   if (!recorder) return recorder.error();
   session->recorder_ = std::move(recorder.value());
@@ -65,19 +89,25 @@ Session::~Session() {
 }
 
 void Session::start() {
-  loop_->start();  // first, so that the hands hold on when the first step is taken
+  if (!lockstep_) loop_->start();  // first, so that the hands hold on when the first step is taken
   host_->start();
 }
 
 void Session::stop() {
   if (host_) {
-    host_->request_stop();
+    request_stop();
     host_->wait();
   }
+  if (measurer_) measurer_->stop();
   if (loop_) loop_->stop();
   if (servo_) servo_->close_devices();
   if (recorder_) recorder_->stop();
   if (recording_) recorded_ = recording_->finish();
+}
+
+std::string Session::trouble() const {
+  const std::string problem = recorder_->problem();
+  return run_trouble(problem.empty() && measurer_ ? measurer_->problem() : problem, *servo_, prepared_.scene);
 }
 
 bool Session::start_again() {
@@ -138,6 +168,7 @@ void Session::report(RunSummary& s) const {
   s.device_scheduler = loop.scheduler();
   s.device_memory_locked = loop.memory_locked;
   s.status = host.status | servo_->status();
+  s.status_steps = host.status_steps;
   s.slips = host.slips;
   s.slipped = host.slipped;
   s.rejected_poses = host.rejected_poses + servo_->reports_rejected();
@@ -158,7 +189,9 @@ void Session::report(RunSummary& s) const {
     s.recording_problem = !recorded_.problem.empty() ? recorded_.problem : recorded_.totals.ended_early;
   }
   if (!prepared_.folder.empty()) s.files = {"wrenches.csv", "poses.csv"};
-  if (const std::string problem = recorder_->problem(); !problem.empty()) s.problems.push_back(problem);
+  for (const std::string& each : run_troubles(recorder_->problem(), *servo_, prepared_.scene))
+    s.problems.push_back(each);
+  report_instruments(measurer_.get(), prepared_.scene, prepared_.sampled, host_->world(), s);
 }
 
 }  // namespace slosh

@@ -10,22 +10,30 @@
 #include "peer/haptics/make_device.h"
 #include "peer/output/recorder.h"
 #include "peer/verbs/live_run.h"
+#include "peer/verbs/lockstep.h"
+#include "peer/verbs/measure_tap.h"
 #include "peer/verbs/prepare.h"
+#include "peer/verbs/wrench_tap.h"
 
 namespace slosh {
 
 /// Made, started and ended by one thread. `prepared` must outlive it.
 class Session final : public LiveRun {
  public:
-  /// `picture_rate` as in HostOptions. Errors: a device cannot be opened, a file cannot be written.
+  /// `picture_rate` as in HostOptions. `progress` is told where it is going to take long (agree_on_time);
+  /// null where that was told already. Errors: a device cannot be opened, a file cannot be written, it takes
+  /// too long.
   static Result<std::unique_ptr<Session>> create(const Prepared& prepared, DeviceSet devices,
-                                                 double picture_rate);
+                                                 double picture_rate, Progress* progress);
   ~Session() override;
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
   void start() override;
-  void request_stop() override { host_->request_stop(); }
+  void request_stop() override {
+    if (lockstep_) lockstep_->request_stop();
+    host_->request_stop();
+  }
   bool running() override { return host_->running(); }
   void stop() override;
   SnapshotQueue& pictures() override { return channel_->pictures(); }
@@ -41,7 +49,7 @@ class Session final : public LiveRun {
   MouseTarget* mouse_target(std::size_t i) override { return mouse_targets_[i].get(); }
   /// In place where the run is recorded, so that the recording goes on.
   bool start_again() override;
-  std::string trouble() const override { return recorder_->problem(); }
+  std::string trouble() const override;
   void report(RunSummary& summary) const override;
 
   Host& host() { return *host_; }
@@ -53,6 +61,10 @@ class Session final : public LiveRun {
   const Prepared& prepared_;
   std::unique_ptr<Channel> channel_;
   std::unique_ptr<keep::RecordingWriter> recording_;  // null where none was asked for; the host tells it
+  std::unique_ptr<WrenchTap> wrenches_;
+  std::unique_ptr<Measurer> measurer_;  // null where nothing is measured, as its tap
+  std::unique_ptr<MeasureTap> measure_tap_;
+  std::unique_ptr<Lockstep> lockstep_;  // null where the run is paced
   std::unique_ptr<Host> host_;
   std::unique_ptr<Servo> servo_;
   std::unique_ptr<DeviceLoop> loop_;

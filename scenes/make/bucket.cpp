@@ -91,9 +91,9 @@ SceneWriter make_bucket() {
   const int red = writer.add_material("red enamel", {{0.55, 0.06, 0.05, 1.0}, 0.0, 0.35});
   const int look = writer.add_material("water", {{0.10, 0.35, 0.55, 0.5}, 0.0, 0.1});
   const Pose start = bucket_pose(0.0);
-  const int node =
-      writer.add_node("bucket", writer.add_mesh("bucket", bucket(), red), start,
-                      {{"slosh", "body"}, {"motion", "free"}, {"mass_kg", 0.8}, {"friction", 0.4}});
+  const int node = writer.add_node(
+      "bucket", writer.add_mesh("bucket", bucket(), red), start,
+      {{"slosh", "body"}, {"motion", "free"}, {"mass_kg", 0.8}, {"viscosity_pa_s", 0.0}, {"friction", 0.4}});
   writer.add_node("water", writer.add_mesh("water", fluid(), look), start,
                   {{"slosh", "fluid"},
                    {"density_kg_m3", 1000.0},

@@ -35,13 +35,14 @@ SceneWriter make_pool() {
   const int rubber = writer.add_material("yellow rubber", {{0.85, 0.55, 0.05, 1.0}, 0.0, 0.45});
   const int look = writer.add_material("water", {{0.10, 0.35, 0.55, 0.5}, 0.0, 0.1});
   writer.add_node("pool", writer.add_mesh("pool", tank(kInner, kPoolWall), tiles), {},
-                  {{"slosh", "body"}, {"motion", "fixed"}});
+                  {{"slosh", "body"}, {"motion", "fixed"}, {"viscosity_pa_s", 0.0}});
   const Solid fluid = box({-0.5 * kInner.x, kPoolWall, -0.5 * kInner.z},
                           {0.5 * kInner.x, kPoolWall + kFluidDepth, 0.5 * kInner.z});
   writer.add_node("water", writer.add_mesh("water", fluid, look), {},
                   {{"slosh", "fluid"}, {"density_kg_m3", 1000.0}, {"viscosity_pa_s", 0.05}});
-  const int node = writer.add_node("ball", writer.add_mesh("ball", sphere(kBallRadius, 24, 48), rubber),
-                                   ball_pose(0.0), {{"slosh", "body"}, {"motion", "free"}, {"mass_kg", 2.5}});
+  const int node =
+      writer.add_node("ball", writer.add_mesh("ball", sphere(kBallRadius, 24, 48), rubber), ball_pose(0.0),
+                      {{"slosh", "body"}, {"motion", "free"}, {"mass_kg", 2.5}, {"viscosity_pa_s", 0.0}});
   writer.add_node("ball_hand", -1, {},
                   {{"slosh", "grip"},
                    {"stiffness_n_m", 2000.0},

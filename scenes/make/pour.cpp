@@ -74,7 +74,8 @@ void add_held(SceneWriter& writer, const std::string& name, int node, const Pose
                    {"rotational_damping_nm_s_rad", 1.5},
                    {"device", device}},
                   node);
-  writer.add_hand(name + "_motion", name, [=](double t) { return compose(body_pose(t), grip); }, kDuration);
+  writer.add_hand(
+      name + "_motion", name, [=](double t) { return compose(body_pose(t), grip); }, kDuration);
 }
 
 }  // namespace
@@ -91,10 +92,12 @@ SceneWriter make_pour() {
   const int iron = writer.add_material("cast iron", {{0.06, 0.06, 0.07, 1.0}, 0.7, 0.50});
   const int look = writer.add_material("batter", {{0.90, 0.78, 0.42, 1.0}, 0.0, 0.6});
   const auto pan_pose = [](double) { return Pose{{0.0, kPanHeld, 0.0}, {1.0, 0.0, 0.0, 0.0}}; };
-  const int bowl_node = writer.add_node("bowl_body", writer.add_mesh("bowl", bowl(), blue), bowl_pose(0.0),
-                                        {{"slosh", "body"}, {"motion", "free"}, {"mass_kg", 0.5}});
-  const int pan_node = writer.add_node("pan_body", writer.add_mesh("pan", pan(), iron), pan_pose(0.0),
-                                       {{"slosh", "body"}, {"motion", "free"}, {"mass_kg", 0.7}});
+  const int bowl_node =
+      writer.add_node("bowl_body", writer.add_mesh("bowl", bowl(), blue), bowl_pose(0.0),
+                      {{"slosh", "body"}, {"motion", "free"}, {"mass_kg", 0.5}, {"viscosity_pa_s", 0.0}});
+  const int pan_node =
+      writer.add_node("pan_body", writer.add_mesh("pan", pan(), iron), pan_pose(0.0),
+                      {{"slosh", "body"}, {"motion", "free"}, {"mass_kg", 0.7}, {"viscosity_pa_s", 0.0}});
   writer.add_node("batter", writer.add_mesh("batter", batter(), look), bowl_pose(0.0),
                   {{"slosh", "fluid"},
                    {"density_kg_m3", 1100.0},

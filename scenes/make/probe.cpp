@@ -35,7 +35,7 @@ SceneWriter make_probe() {
   const int red = writer.add_material("red", {{0.80, 0.08, 0.05, 1.0}, 0.0, 0.4});
   const int look = writer.add_material("water", {{0.10, 0.35, 0.55, 0.5}, 0.0, 0.1});
   writer.add_node("tank", writer.add_mesh("tank", tank(kInner, kWall), clear), {},
-                  {{"slosh", "body"}, {"motion", "fixed"}});
+                  {{"slosh", "body"}, {"motion", "fixed"}, {"viscosity_pa_s", 0.0}});
   const Solid fluid =
       box({-0.5 * kInner.x, kWall, -0.5 * kInner.z}, {0.5 * kInner.x, kWall + kFluidDepth, 0.5 * kInner.z});
   writer.add_node("water", writer.add_mesh("water", fluid, look), {},

@@ -75,7 +75,7 @@ SceneWriter make_spoon() {
   const int steel = writer.add_material("steel", {{0.62, 0.63, 0.65, 1.0}, 1.0, 0.30});
   const int look = writer.add_material("juice", {{0.80, 0.30, 0.05, 0.6}, 0.0, 0.1});
   writer.add_node("tank", writer.add_mesh("tank", tank(kInner, kWall), clear), {},
-                  {{"slosh", "body"}, {"motion", "fixed"}});
+                  {{"slosh", "body"}, {"motion", "fixed"}, {"viscosity_pa_s", 0.0}});
   const Solid fluid =
       box({-0.5 * kInner.x, kWall, -0.5 * kInner.z}, {0.5 * kInner.x, kWall + kFluidDepth, 0.5 * kInner.z});
   writer.add_node("juice", writer.add_mesh("juice", fluid, look), {},
@@ -84,9 +84,9 @@ SceneWriter make_spoon() {
                    {"viscosity_pa_s", 0.1},
                    {"color", list({0.85, 0.35, 0.06})},
                    {"extinction_per_m", list({3.0, 9.0, 25.0})}});
-  const int node =
-      writer.add_node("spoon", writer.add_mesh("spoon", spoon(), steel), spoon_pose(0.0),
-                      {{"slosh", "body"}, {"motion", "free"}, {"mass_kg", 0.12}, {"friction", 0.3}});
+  const int node = writer.add_node(
+      "spoon", writer.add_mesh("spoon", spoon(), steel), spoon_pose(0.0),
+      {{"slosh", "body"}, {"motion", "free"}, {"mass_kg", 0.12}, {"viscosity_pa_s", 0.0}, {"friction", 0.3}});
   const Pose grip{{0.0, kGripHeight, 0.0}, {1.0, 0.0, 0.0, 0.0}};
   writer.add_node("spoon_hand", -1, grip,
                   {{"slosh", "grip"},

@@ -28,9 +28,19 @@ bool is_inertia(const glm::dmat3& m) {
 
 void read_common(Extras& extras, Body& body) {
   body.particle_density = extras.number("particle_density_kg_m3", 0.0, Range{0.0, 1e6});
-  body.dynamic_viscosity = extras.number("viscosity_pa_s", 0.0, Range{0.0, 1e7});
   body.friction = extras.number("friction", body.friction, Range{0.0, 10.0});
   body.restitution = extras.number("restitution", body.restitution, Range{0.0, 1.0});
+  body.measured = extras.flag("measured", false);
+}
+
+/// A wall sticks unless it says that it slips.
+void read_wall_viscosity(Extras& extras, Body& body) {
+  const bool slips = extras.flag("slip", false);
+  body.dynamic_viscosity = extras.number("viscosity_pa_s", slips ? 0.0 : kFluidsViscosity, Range{0.0, 1e7});
+  if (slips && body.dynamic_viscosity > 0.0) {
+    extras.fail("slip", "is true, and viscosity_pa_s is not 0",
+                "Keep slip for a wall that the fluid slides along, viscosity_pa_s for one that drags");
+  }
 }
 
 void read_mass(Extras& extras, const mesh::VolumeIntegrals& volume, Body& body) {
@@ -78,7 +88,7 @@ Problem read_body(Reading& reading, int node) {
   mesh::find_defects(welded, &parts);
   read_mass(extras, mesh::integrate_volume(welded, parts), body);
   read_common(extras, body);
-  body.measured = extras.flag("measured", false);
+  read_wall_viscosity(extras, body);
   body.twist.linear = extras.vector("velocity_m_s", glm::dvec3(0.0), Range{-1e3, 1e3});
   body.twist.angular = extras.vector("angular_velocity_rad_s", glm::dvec3(0.0), Range{-1e3, 1e3});
   body.material = gltf::read_material(reading.document, reading.document.model.nodes[node].mesh);
@@ -104,6 +114,7 @@ Problem read_probe(Reading& reading, int node) {
   body.mass.mass = extras.number("mass_kg", kProbeMass, gltf::kPositive);
   body.mass.inertia = glm::dmat3(0.4 * body.mass.mass * kProbeRadius * kProbeRadius);
   read_common(extras, body);
+  body.dynamic_viscosity = extras.number("viscosity_pa_s", 0.0, Range{0.0, 1e7});
   if (Problem problem = extras.error()) return problem;
   const int look = reading.document.model.nodes[node].mesh;
   if (look >= 0) {

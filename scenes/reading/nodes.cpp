@@ -10,7 +10,7 @@
 namespace slosh::reading {
 namespace {
 
-constexpr const char* kKinds[] = {"picture", "body", "fluid", "grip", "hand", "probe"};
+constexpr const char* kKinds[] = {"picture", "body", "fluid", "grip", "hand", "probe", "gauge", "region"};
 
 std::string point_text(const glm::dvec3& p) {
   char text[96];
@@ -86,15 +86,16 @@ Problem read_kinds(Reading& reading) {
       if (has_mesh) reading.kinds[node] = NodeKind::kPicture;
       continue;
     }
-    const std::string kind =
-        extras.choice("slosh", "", {kKinds[0], kKinds[1], kKinds[2], kKinds[3], kKinds[4], kKinds[5]});
-    constexpr NodeKind kOrder[] = {NodeKind::kPicture, NodeKind::kBody, NodeKind::kFluid,
-                                   NodeKind::kGrip,    NodeKind::kHand, NodeKind::kProbe};
-    for (int i = 0; i < 6; ++i) {
+    const std::string kind = extras.choice(
+        "slosh", "",
+        {kKinds[0], kKinds[1], kKinds[2], kKinds[3], kKinds[4], kKinds[5], kKinds[6], kKinds[7]});
+    constexpr NodeKind kOrder[] = {NodeKind::kPicture, NodeKind::kBody,  NodeKind::kFluid, NodeKind::kGrip,
+                                   NodeKind::kHand,    NodeKind::kProbe, NodeKind::kGauge, NodeKind::kRegion};
+    for (std::size_t i = 0; i < std::size(kKinds); ++i) {
       if (kind == kKinds[i]) reading.kinds[node] = kOrder[i];
     }
     if (reading.kinds[node] == NodeKind::kNone) return extras.error();
-    const bool needs_mesh = kind == "body" || kind == "fluid" || kind == "picture";
+    const bool needs_mesh = kind == "body" || kind == "fluid" || kind == "picture" || kind == "region";
     if (needs_mesh && !has_mesh) {
       extras.fail("slosh", "is \"" + kind + "\", but the node has no mesh",
                   "Put the property on the mesh object");
@@ -107,14 +108,16 @@ Problem read_kinds(Reading& reading) {
   }
   for (const int node : document.nodes) {
     const bool still = reading.kinds[node] == NodeKind::kBody || reading.kinds[node] == NodeKind::kFluid ||
-                       reading.kinds[node] == NodeKind::kGrip || reading.kinds[node] == NodeKind::kProbe;
+                       reading.kinds[node] == NodeKind::kGrip || reading.kinds[node] == NodeKind::kProbe ||
+                       reading.kinds[node] == NodeKind::kGauge || reading.kinds[node] == NodeKind::kRegion;
     if (!still) continue;
     for (const tinygltf::Animation& animation : document.model.animations) {
       for (const tinygltf::AnimationChannel& channel : animation.channels) {
         if (channel.target_node != node) continue;
-        return Error{document.owner(node) + ": animation '" + animation.name + "'",
-                     "only a hand can be animated; bodies and fluids move by physics",
-                     "Animate an empty with slosh = \"hand\" and grip = \"<grip's name>\" instead"};
+        return Error{
+            document.owner(node) + ": animation '" + animation.name + "'",
+            "only a hand can be animated; bodies and fluids move by physics, gauges and regions with a body",
+            "Animate an empty with slosh = \"hand\" and grip = \"<grip's name>\" instead"};
       }
     }
   }

@@ -16,7 +16,7 @@ namespace slosh::reading {
 using Problem = std::optional<Error>;
 
 /// What a node is, by its `slosh` property.
-enum class NodeKind { kNone, kPicture, kBody, kFluid, kGrip, kHand, kProbe };
+enum class NodeKind { kNone, kPicture, kBody, kFluid, kGrip, kHand, kProbe, kGauge, kRegion };
 
 /// A scene under way.
 struct Reading {
@@ -49,6 +49,8 @@ Problem read_picture(Reading& reading, int node);
 Problem read_grip(Reading& reading, int node);  ///< after all bodies
 Problem order_grips(Reading& reading);          ///< after all grips: by `device`, the others behind
 Problem read_hand(Reading& reading, int node);  ///< after all grips
+Problem read_gauge(Reading& reading, int node);   ///< after all bodies
+Problem read_region(Reading& reading, int node);  ///< after all bodies
 Problem read_camera(Reading& reading);          ///< after everything with a size
 Problem read_domain(Reading& reading);          ///< likewise
 

@@ -1,9 +1,12 @@
 #include "scenes/sampling/fill.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <memory>
+#include <set>
+#include <utility>
 
 #include "scenes/gltf/extras.h"
 #include "scenes/mesh/closed.h"
@@ -57,7 +60,31 @@ std::vector<Obstacle> find_obstacles(const Scene& scene, const SampledScene& sam
   return out;
 }
 
-mesh::Grid lattice(const TriangleMesh& mesh, double spacing) {
+/// Which way of a mesh's axes goes up, as nearly as one does.
+struct Up {
+  int axis = 1;
+  bool along = true;  ///< false: against the axis
+
+  int height(const glm::ivec3& node) const { return along ? node[axis] : -node[axis]; }
+  glm::ivec3 raised(glm::ivec3 node, int to_height) const {
+    node[axis] = along ? to_height : -to_height;
+    return node;
+  }
+};
+
+Up up_of(const glm::dvec3& gravity, const Pose& pose) {
+  Up up;
+  const double g = glm::length(gravity);
+  if (!(g > 0.0)) return up;
+  const glm::dvec3 local = glm::conjugate(pose.orientation) * (-gravity / g);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::abs(local[axis]) > std::abs(local[up.axis]) + 1e-9) up.axis = axis;
+  }
+  up.along = local[up.axis] > 0.0;
+  return up;
+}
+
+mesh::Grid lattice(const TriangleMesh& mesh, double spacing, const Up& up) {
   glm::dvec3 low(INFINITY);
   glm::dvec3 high(-INFINITY);
   for (const glm::vec3& p : mesh.positions) {
@@ -70,8 +97,10 @@ mesh::Grid lattice(const TriangleMesh& mesh, double spacing) {
     const double extent = high[axis] - low[axis];
     const double count = std::min(std::max(1.0, std::floor(extent / spacing + 1e-3)), 1e6);
     grid.size[axis] = static_cast<int>(count);
-    const double slack = axis == 1 ? 0.0 : std::max(0.0, extent - count * spacing);
-    grid.origin[axis] = low[axis] + 0.5 * slack + 0.5 * std::min(spacing, extent);
+    // Centred sideways; what is left over lies at the top.
+    const double below = axis != up.axis ? 0.5 : up.along ? 0.0 : 1.0;
+    const double slack = std::max(0.0, extent - count * spacing);
+    grid.origin[axis] = low[axis] + below * slack + 0.5 * std::min(spacing, extent);
   }
   return grid;
 }
@@ -101,13 +130,16 @@ bool clear_of(std::vector<Obstacle>& obstacles, const glm::dvec3& point, double 
 struct Filling {
   mesh::Grid grid;
   Pose pose;
+  Up up;
   std::vector<glm::ivec3> nodes;     ///< kept
   std::vector<glm::vec3> positions;  ///< of the kept ones, world
   std::size_t inside = 0;            ///< points inside the mesh
-  std::size_t given_up = 0;  ///< of these, to an earlier fluid or inside a body: not to be made up for
 
-  glm::dvec3 at(const glm::ivec3& node) const {
-    return transform_point(pose, grid.origin + grid.cell * glm::dvec3(node));
+  glm::dvec3 local(const glm::ivec3& node) const { return grid.origin + grid.cell * glm::dvec3(node); }
+  glm::dvec3 at(const glm::ivec3& node) const { return transform_point(pose, local(node)); }
+  void add(const glm::ivec3& node) {
+    nodes.push_back(node);
+    positions.emplace_back(at(node));
   }
 };
 
@@ -118,47 +150,145 @@ double closed_volume(const TriangleMesh& mesh) {
   return mesh::integrate_volume(welded, parts).volume;
 }
 
+/// How much of the cells inside a mesh is inside bodies, in cells. Points of the lattice alone would say it
+/// to a plane of them: a partition of a cell and a half would count as one cell or two.
+double buried_cells(const Filling& filling, const mesh::MeshTree& volume, std::vector<Obstacle>& obstacles,
+                    const std::vector<std::int8_t>& winding) {
+  constexpr int kParts = 4;
+  const double cell = filling.grid.cell;
+  const auto inside_a_body = [&](const glm::dvec3& point) {
+    return std::any_of(obstacles.begin(), obstacles.end(), [&](const Obstacle& o) {
+      if (glm::any(glm::lessThan(point, o.low)) || glm::any(glm::greaterThan(point, o.high))) return false;
+      return distance_to(o, glm::vec3(transform_point(o.to_body, point)), 0.0) < 0.0;
+    });
+  };
+  const auto near_a_body = [&](const glm::dvec3& point) {
+    return std::any_of(obstacles.begin(), obstacles.end(), [&](const Obstacle& o) {
+      if (glm::any(glm::lessThan(point, o.low - cell)) || glm::any(glm::greaterThan(point, o.high + cell)))
+        return false;
+      return sample_distance(o.field, glm::vec3(transform_point(o.to_body, point))).distance < cell;
+    });
+  };
+  std::size_t buried = 0;
+  std::size_t index = 0;
+  for (int k = 0; k < filling.grid.size.z; ++k) {
+    for (int j = 0; j < filling.grid.size.y; ++j) {
+      for (int i = 0; i < filling.grid.size.x; ++i, ++index) {
+        const glm::ivec3 node(i, j, k);
+        if (winding[index] <= 0 || !near_a_body(filling.at(node))) continue;
+        for (int part = 0; part < kParts * kParts * kParts; ++part) {
+          const glm::ivec3 step(part % kParts, part / kParts % kParts, part / (kParts * kParts));
+          const glm::dvec3 local =
+              filling.local(node) + cell * ((glm::dvec3(step) + 0.5) / double{kParts} - 0.5);
+          buried += inside_a_body(transform_point(filling.pose, local)) && volume.inside(glm::vec3(local));
+        }
+      }
+    }
+  }
+  return static_cast<double>(buried) / (kParts * kParts * kParts);
+}
+
+/// The kept nodes of the highest layer; none where the shape tapers to a tip (a drop, a cone): on that no
+/// layer can be put without growing a tower.
+std::vector<glm::ivec3> broad_top(const Filling& filling) {
+  std::map<int, std::size_t> layers;
+  for (const glm::ivec3& node : filling.nodes) ++layers[filling.up.height(node)];
+  std::size_t widest = 0;
+  for (const auto& [height, size] : layers) widest = std::max(widest, size);
+  std::vector<glm::ivec3> top;
+  if (layers.empty() || 4 * layers.rbegin()->second < widest) return top;
+  for (const glm::ivec3& node : filling.nodes) {
+    if (filling.up.height(node) == layers.rbegin()->first) top.push_back(node);
+  }
+  return top;
+}
+
 /// A wall keeps the lattice off itself by half a spacing, though the fluid will lie against it, and a lattice
 /// has whole layers only: what is missing goes on top, in layers over the highest, and finds its level when
-/// the world settles. Without this a round vessel of ten spacings would start a sixth too light.
+/// the world moves. Without this a round vessel of ten spacings would start a sixth too light. Returns what
+/// found no place.
 template <class Free>
-void top_up(Filling& filling, double wanted, Free&& is_free) {
-  const double have = static_cast<double>(filling.positions.size() + filling.given_up);
-  if (filling.nodes.empty() || wanted - have < 0.01 * wanted) return;
-  auto missing = static_cast<std::size_t>(wanted - have);
-  std::vector<std::size_t> layer_sizes(static_cast<std::size_t>(filling.grid.size.y), 0);
-  int top = 0;
-  for (const glm::ivec3& node : filling.nodes) {
-    top = std::max(top, node.y);
-    ++layer_sizes[static_cast<std::size_t>(node.y)];
-  }
-  // A shape that tapers to a tip (a drop, a cone) would grow a tower; it keeps its shape instead.
-  const std::size_t widest = *std::max_element(layer_sizes.begin(), layer_sizes.end());
-  if (4 * layer_sizes[static_cast<std::size_t>(top)] < widest) return;
-  std::vector<glm::ivec3> columns;
-  for (const glm::ivec3& node : filling.nodes) {
-    if (node.y == top) columns.push_back(node);
-  }
-  while (missing > 0) {
-    ++top;
+std::size_t pile_up(Filling& filling, std::size_t missing, Free&& is_free) {
+  const std::vector<glm::ivec3> columns = broad_top(filling);
+  if (columns.empty()) return missing;
+  for (int height = filling.up.height(columns.front()) + 1; missing > 0; ++height) {
     std::vector<glm::ivec3> layer;
-    for (glm::ivec3 node : columns) {
-      node.y = top;
+    for (const glm::ivec3& column : columns) {
+      const glm::ivec3 node = filling.up.raised(column, height);
       if (is_free(filling.at(node))) layer.push_back(node);
     }
-    if (layer.empty()) return;
+    if (layer.empty()) break;
     // A last layer that is not full is spread over the whole of it.
     const std::size_t count = std::min(missing, layer.size());
-    for (std::size_t i = 0; i < count; ++i) {
-      filling.positions.emplace_back(filling.at(layer[i * layer.size() / count]));
-    }
+    for (std::size_t i = 0; i < count; ++i) filling.add(layer[i * layer.size() / count]);
     missing -= count;
+  }
+  return missing;
+}
+
+/// The nodes in the order of their distance to the mesh.
+std::vector<glm::ivec3> by_distance(const Filling& filling, const mesh::MeshTree& volume,
+                                    const std::vector<glm::ivec3>& nodes) {
+  std::vector<std::pair<float, std::size_t>> order;
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    order.emplace_back(volume.nearest(glm::vec3(filling.local(nodes[i]))).distance, i);
+  std::sort(order.begin(), order.end());
+  std::vector<glm::ivec3> sorted;
+  for (const auto& [distance, i] : order) sorted.push_back(nodes[i]);
+  return sorted;
+}
+
+using NodeSet = std::set<std::array<int, 3>>;
+
+NodeSet set_of(const std::vector<glm::ivec3>& nodes) {
+  NodeSet set;
+  for (const glm::ivec3& node : nodes) set.insert({node.x, node.y, node.z});
+  return set;
+}
+
+/// Lays what is missing on a shape that tapers, like a skin, where the mesh is nearest. Returns what found no
+/// place.
+template <class Free>
+std::size_t grow(Filling& filling, const mesh::MeshTree& volume, std::size_t missing, Free&& is_free) {
+  NodeSet known = set_of(filling.nodes);
+  std::vector<glm::ivec3> skin;
+  for (const glm::ivec3& node : filling.nodes) {
+    for (int side = 0; side < 6; ++side) {
+      glm::ivec3 next = node;
+      next[side / 2] += side % 2 == 0 ? 1 : -1;
+      if (known.insert({next.x, next.y, next.z}).second && is_free(filling.at(next))) skin.push_back(next);
+    }
+  }
+  for (const glm::ivec3& node : by_distance(filling, volume, skin)) {
+    if (missing == 0) break;
+    filling.add(node);
+    --missing;
+  }
+  return missing;
+}
+
+/// Takes what is too much from the top layer, or from all over a shape that tapers.
+void trim(Filling& filling, const mesh::MeshTree& volume, std::size_t excess) {
+  const std::vector<glm::ivec3> top = broad_top(filling);
+  NodeSet gone;
+  if (top.size() > excess) {
+    for (std::size_t i = 0; i < excess; ++i) gone.merge(set_of({top[i * top.size() / excess]}));
+  } else {
+    std::vector<glm::ivec3> outermost = by_distance(filling, volume, filling.nodes);
+    outermost.resize(std::min(excess, outermost.size() - 1));
+    gone = set_of(outermost);
+  }
+  const std::vector<glm::ivec3> all = std::move(filling.nodes);
+  filling.nodes.clear();
+  filling.positions.clear();
+  for (const glm::ivec3& node : all) {
+    if (!gone.count({node.x, node.y, node.z})) filling.add(node);
   }
 }
 
 }  // namespace
 
-std::optional<Error> fill_fluids(const Scene& scene, SampledScene& sampled) {
+std::optional<Error> fill_fluids(const Scene& scene, SampledScene& sampled, SampleReport* report) {
   using gltf::short_number;
   const double spacing = sampled.spacing;
   const double clear = kClear * spacing;
@@ -166,7 +296,8 @@ std::optional<Error> fill_fluids(const Scene& scene, SampledScene& sampled) {
   for (const FluidVolume& volume : scene.fluid_volumes) {
     const std::string where = scene.source_file + ": node '" + volume.name + "'";
     const TriangleMesh& mesh = scene.meshes[volume.mesh];
-    const mesh::Grid grid = lattice(mesh, spacing);
+    const Up up = up_of(scene.gravity, volume.pose);
+    const mesh::Grid grid = lattice(mesh, spacing, up);
     if (static_cast<double>(grid.size.x) * grid.size.y * grid.size.z > kMostPoints) {
       return Error{where,
                    "would take more than 30 million lattice points at a spacing of " +
@@ -186,7 +317,7 @@ std::optional<Error> fill_fluids(const Scene& scene, SampledScene& sampled) {
       shared += taken;
       return !taken;
     };
-    Filling filling{grid, volume.pose, {}, {}, 0, 0};
+    Filling filling{grid, volume.pose, up, {}, {}, 0};
     std::size_t index = 0;
     for (int k = 0; k < grid.size.z; ++k) {
       for (int j = 0; j < grid.size.y; ++j) {
@@ -195,10 +326,7 @@ std::optional<Error> fill_fluids(const Scene& scene, SampledScene& sampled) {
           ++filling.inside;
           const glm::ivec3 node(i, j, k);
           const glm::dvec3 point = filling.at(node);
-          if (is_free(point)) {
-            filling.nodes.push_back(node);
-            filling.positions.emplace_back(point);
-          }
+          if (is_free(point)) filling.add(node);
         }
       }
     }
@@ -213,8 +341,23 @@ std::optional<Error> fill_fluids(const Scene& scene, SampledScene& sampled) {
               " % of the fluid starts inside it",
           "Make the fluid's mesh smaller, so that it ends at the wall's surface"};
     }
-    filling.given_up = overlapping + shared;
-    top_up(filling, closed_volume(mesh) / (spacing * spacing * spacing), is_free);
+    const double cell = spacing * spacing * spacing;
+    const mesh::MeshTree tree(mesh);
+    FilledVolume filled;
+    filled.mesh = closed_volume(mesh);
+    filled.in_bodies = overlapping > 0 ? cell * buried_cells(filling, tree, obstacles, winding) : 0.0;
+    filled.in_others = cell * static_cast<double>(shared);
+    // What the mesh holds, whatever the lattice made of it.
+    const double wanted = std::max(0.0, (filled.mesh - filled.in_bodies - filled.in_others) / cell);
+    const auto count = static_cast<std::size_t>(std::llround(wanted));
+    if (!filling.nodes.empty() && filling.nodes.size() < count) {
+      const std::size_t left = pile_up(filling, count - filling.nodes.size(), is_free);
+      filled.no_place = cell * static_cast<double>(grow(filling, tree, left, is_free));
+    } else if (filling.nodes.size() > count) {
+      trim(filling, tree, filling.nodes.size() - count);
+    }
+    filled.sampled = cell * static_cast<double>(filling.nodes.size());
+    if (report) report->volumes.push_back(filled);
     const std::vector<glm::vec3>& kept = filling.positions;
     if (kept.empty()) {
       return Error{where, "holds no particle at a spacing of " + short_number(1000.0 * spacing) + " mm",

@@ -67,6 +67,12 @@ SLOSH_HD inline Linearised linearise(const ActiveCoupling& c, double dt) {
   return result;
 }
 
+SLOSH_HD inline Vector6 twist_of(const RigidBody& body) {
+  const glm::dvec3& v = body.velocity;
+  const glm::dvec3& w = body.angular_velocity;
+  return {v.x, v.y, v.z, w.x, w.y, w.z};
+}
+
 SLOSH_HD inline glm::dvec3 linear_part(const Vector6& v) {
   return {v[0], v[1], v[2]};
 }
@@ -77,15 +83,26 @@ SLOSH_HD inline glm::dvec3 angular_part(const Vector6& v) {
 }  // namespace body_solve
 
 /// Sets up and solves the implicit step of a free body under `external` (fluid + gravity, about the centre of
-/// mass) and its couplings, all solved together. False when the system is not finite.
+/// mass, at the velocity that the body has now) and its couplings, all solved together. `drag`: what
+/// `external` loses for each unit of twist, implicit too; null: nothing. False when the system is not finite.
 SLOSH_HD inline bool solve_body(const RigidBody& body, const Wrench& external,
-                                std::span<const ActiveCoupling> couplings, double dt, BodySolve& solve) {
+                                std::span<const ActiveCoupling> couplings, double dt, BodySolve& solve,
+                                const Matrix6* drag = nullptr) {
   Matrix6 matrix{};
   Vector6 rhs{};
   body_solve::add_block(matrix, 0, 0, glm::dmat3(body.mass));
   body_solve::add_block(matrix, 3, 3, body.world_inertia());
   body_solve::add_vector(rhs, 0, body.mass * body.velocity + dt * external.force);
   if (!body.point) body_solve::add_vector(rhs, 3, body.angular_momentum + dt * external.torque);
+  if (drag) {
+    const Vector6 twist = body_solve::twist_of(body);
+    for (int i = 0; i < 6; ++i) {
+      for (int j = 0; j < 6; ++j) {
+        matrix[i][j] += dt * (*drag)[i][j];
+        rhs[i] += dt * (*drag)[i][j] * twist[j];
+      }
+    }
+  }
   for (const ActiveCoupling& c : couplings) {
     const body_solve::Linearised f = body_solve::linearise(c, dt);
     const glm::dvec3 arm = body.point ? glm::dvec3(0.0) : c.arm;
@@ -108,6 +125,24 @@ SLOSH_HD inline bool solve_body(const RigidBody& body, const Wrench& external,
   solve.moves = true;
   for (const double v : solve.velocity) solve.moves = solve.moves && std::isfinite(v);
   return solve.moves;
+}
+
+/// By how much the twist about the centre of mass changes in the step; nothing for one that stands still.
+SLOSH_HD inline Twist twist_change(const RigidBody& body, const BodySolve& solve) {
+  if (!solve.moves) return {};
+  return {body_solve::linear_part(solve.velocity) - body.velocity,
+          body_solve::angular_part(solve.velocity) - body.angular_velocity};
+}
+
+/// The wrench that `drag` gives for that change.
+SLOSH_HD inline Wrench drag_of(const Matrix6& drag, const Twist& change) {
+  const Vector6 twist{change.linear.x,  change.linear.y,  change.linear.z,
+                      change.angular.x, change.angular.y, change.angular.z};
+  Vector6 lost{};
+  for (int i = 0; i < 6; ++i) {
+    for (int j = 0; j < 6; ++j) lost[i] -= drag[i][j] * twist[j];
+  }
+  return {body_solve::linear_part(lost), body_solve::angular_part(lost)};
 }
 
 /// Takes over the solved velocity and moves the body on by one step of its travel.

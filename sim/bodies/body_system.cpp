@@ -5,7 +5,12 @@
 namespace slosh {
 
 BodySystem::BodySystem(const Scene& scene, const SampledScene& sampled)
-    : finder_(scene, sampled), hands_(scene), solves_(scene.bodies.size()), grips_(scene.grips.size()) {
+    : finder_(scene, sampled),
+      hands_(scene),
+      solves_(scene.bodies.size()),
+      changes_(scene.bodies.size()),
+      memory_(sampled.spacing),
+      grips_(scene.grips.size()) {
   for (const Body& body : scene.bodies) {
     materials_.push_back({body.friction, body.restitution});
     bodies_.push_back(make_rigid_body(body));
@@ -17,22 +22,25 @@ std::uint32_t BodySystem::begin_step(std::span<const HandleInput> handles) {
   return hands_.take(handles);
 }
 
-std::uint32_t BodySystem::advance(const Plan& plan, const BodyForces& forces, const SubStep& step,
-                                  bool held_only) {
+std::uint32_t BodySystem::solve(const Plan& plan, const BodyForces& forces, const SubStep& step,
+                                bool held_only) {
   couplings_ = {};
   if (plan.has(PassId::kCouplings)) couplings_ = hands_.couple(bodies_, step.elapsed);
-  const std::uint32_t status = solve(forces, step.dt, held_only);
+  const std::uint32_t status = solve_alone(forces, step.dt, held_only);
   if (plan.has(PassId::kContacts)) {
-    finder_.find(bodies_, solves_, 0.25 * plan.spacing, step.dt, contacts_);
-    if (!contacts_.empty()) solve_contacts(contacts_, materials_, bodies_, step.dt, solves_);
+    finder_.find(bodies_, solves_, 0.25 * plan.spacing, step.dt, memory_, contacts_);
+    solve_contacts(contacts_, materials_, bodies_, step.dt, memory_, solves_);
   }
   report(step);
-  if (plan.has(PassId::kMoveBodies)) {
-    for (std::size_t b = 0; b < bodies_.size(); ++b) {
-      if (solves_[b].moves) advance_body(bodies_[b], solves_[b], step.dt);
-    }
-  }
+  for (std::size_t b = 0; b < bodies_.size(); ++b) changes_[b] = twist_change(bodies_[b], solves_[b]);
   return status;
+}
+
+void BodySystem::move(const Plan& plan, const SubStep& step) {
+  if (!plan.has(PassId::kMoveBodies)) return;
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    if (solves_[b].moves) advance_body(bodies_[b], solves_[b], step.dt);
+  }
 }
 
 std::span<const ActiveCoupling> BodySystem::couplings_of(int body) const {
@@ -43,7 +51,7 @@ std::span<const ActiveCoupling> BodySystem::couplings_of(int body) const {
 }
 
 // A body that went non-finite is put back to rest where it last was, and the step goes on.
-std::uint32_t BodySystem::solve(const BodyForces& forces, double dt, bool held_only) {
+std::uint32_t BodySystem::solve_alone(const BodyForces& forces, double dt, bool held_only) {
   std::uint32_t status = 0;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     RigidBody& body = bodies_[b];
@@ -54,7 +62,8 @@ std::uint32_t BodySystem::solve(const BodyForces& forces, double dt, bool held_o
     }
     Wrench external = forces.fluid[b];
     external.force += body.mass * forces.gravity;
-    if (solve_body(body, external, held, dt, solves_[b])) continue;
+    const Matrix6* drag = forces.drags.empty() ? nullptr : &forces.drags[b];
+    if (solve_body(body, external, held, dt, solves_[b], drag)) continue;
     status |= kStatusNonFinite;
     body.velocity = body.angular_momentum = body.angular_velocity = glm::dvec3(0.0);
     if (!solve_body(body, {}, {}, dt, solves_[b])) solves_[b] = BodySolve{};
@@ -82,10 +91,11 @@ void BodySystem::damp_held(double keep) {
 }
 
 void BodySystem::restore(std::vector<RigidBody> bodies, std::vector<GripState> grips,
-                         std::vector<HandleInput> inputs) {
+                         std::vector<HandleInput> inputs, std::vector<KeptImpulse> impulses) {
   bodies_ = std::move(bodies);
   grips_ = std::move(grips);
   hands_.restore(std::move(inputs));
+  memory_.restore(std::move(impulses));
 }
 
 }  // namespace slosh

@@ -13,7 +13,8 @@ namespace slosh {
 
 /// What acts on the bodies in one sub-step.
 struct BodyForces {
-  std::span<const Wrench> fluid;  ///< one a body, about its centre of mass
+  std::span<const Wrench> fluid;   ///< one a body, about its centre of mass
+  std::span<const Matrix6> drags;  ///< one a body: what `fluid` loses for each unit of twist; or none at all
   glm::dvec3 gravity{0.0};        ///< m/s²
 };
 
@@ -31,9 +32,13 @@ class BodySystem {
   /// Takes the handles' inputs of a step and forgets what the step before put on the hands. Returns
   /// StatusBits.
   std::uint32_t begin_step(std::span<const HandleInput> handles);
-  /// Couplings, contacts and motion as far as the plan has them. With `held_only` the other bodies stand
-  /// still. Returns StatusBits.
-  std::uint32_t advance(const Plan& plan, const BodyForces& forces, const SubStep& step, bool held_only);
+  /// The velocities that the bodies end the sub-step with, by couplings and contacts as far as the plan has
+  /// them. With `held_only` the other bodies stand still. Returns StatusBits.
+  std::uint32_t solve(const Plan& plan, const BodyForces& forces, const SubStep& step, bool held_only);
+  /// By how much they differ from those that it began with, one a body.
+  std::span<const Twist> changes() const { return changes_; }
+  /// Moves the bodies on by the sub-step that was solved.
+  void move(const Plan& plan, const SubStep& step);
 
   /// Multiplies the velocities of the bodies that a hand holds by `keep`.
   void damp_held(double keep);
@@ -42,11 +47,13 @@ class BodySystem {
   /// Handles and what was put on the hands, as means over the last step; poses and twists are not set.
   const std::vector<GripState>& grips() const { return grips_; }
   const std::vector<HandleInput>& last_inputs() const { return hands_.last(); }
-  void restore(std::vector<RigidBody> bodies, std::vector<GripState> grips, std::vector<HandleInput> inputs);
+  const std::vector<KeptImpulse>& kept_impulses() const { return memory_.kept(); }
+  void restore(std::vector<RigidBody> bodies, std::vector<GripState> grips, std::vector<HandleInput> inputs,
+               std::vector<KeptImpulse> impulses);
 
  private:
   std::span<const ActiveCoupling> couplings_of(int body) const;
-  std::uint32_t solve(const BodyForces& forces, double dt, bool held_only);
+  std::uint32_t solve_alone(const BodyForces& forces, double dt, bool held_only);
   void report(const SubStep& step);
 
   std::vector<ContactMaterial> materials_;
@@ -55,7 +62,9 @@ class BodySystem {
   Hands hands_;
   std::span<const ActiveCoupling> couplings_;  // of this sub-step
   std::vector<BodySolve> solves_;
+  std::vector<Twist> changes_;
   std::vector<Contact> contacts_;
+  ContactMemory memory_;
   std::vector<GripState> grips_;
 };
 

@@ -108,6 +108,7 @@ SLOSH_HD inline Targets targets(double gap, double speed_before, double speed_af
 
 struct ContactRows {
   Constraint normal, tangent_u, tangent_v;
+  glm::dvec3 n{0.0}, u{0.0}, v{0.0};  // their directions
   Targets target;
   double friction = 0.0;
 };
@@ -117,15 +118,35 @@ SLOSH_HD inline ContactRows make_rows(const Contact& c, const ContactMaterial& m
   ContactRows rows;
   const glm::dvec3 u = glm::normalize(std::abs(c.normal.y) < 0.9 ? glm::cross(c.normal, glm::dvec3(0, 1, 0))
                                                                  : glm::cross(c.normal, glm::dvec3(1, 0, 0)));
-  rows.normal = make_constraint(c, c.normal, bodies, solves);
-  rows.tangent_u = make_constraint(c, u, bodies, solves);
-  rows.tangent_v = make_constraint(c, glm::cross(c.normal, u), bodies, solves);
+  rows.n = c.normal;
+  rows.u = u;
+  rows.v = glm::cross(c.normal, u);
+  rows.normal = make_constraint(c, rows.n, bodies, solves);
+  rows.tangent_u = make_constraint(c, rows.u, bodies, solves);
+  rows.tangent_v = make_constraint(c, rows.v, bodies, solves);
   const double before =
       glm::dot(c.normal, bodies[c.a].velocity_at(c.point) - bodies[c.b].velocity_at(c.point));
   const double after = speed_along(rows.normal, solves[c.a].velocity, solves[c.b].velocity);
   rows.target = targets(c.distance, before, after, material.restitution, dt);
   rows.friction = material.friction;
   return rows;
+}
+
+/// Begins with an impulse (N·s on a) in place of none, as far as the contact can give it.
+SLOSH_HD inline void begin_with(ContactRows& rows, const glm::dvec3& impulse, Vector6& a, Vector6& b) {
+  const double normal = glm::max(glm::dot(impulse, rows.n), 0.0);
+  glm::dvec2 along(glm::dot(impulse, rows.u), glm::dot(impulse, rows.v));
+  const double limit = rows.friction * normal;
+  const double length = glm::length(along);
+  if (length > limit) along *= limit / length;
+  apply(rows.normal, normal, a, b);
+  apply(rows.tangent_u, along.x, a, b);
+  apply(rows.tangent_v, along.y, a, b);
+}
+
+/// N·s on a, so far.
+SLOSH_HD inline glm::dvec3 impulse_on_a(const ContactRows& rows) {
+  return rows.normal.impulse * rows.n + rows.tangent_u.impulse * rows.u + rows.tangent_v.impulse * rows.v;
 }
 
 /// One turn of Gauss–Seidel on one contact: the normal, then friction in the circle that it allows. Returns

@@ -164,6 +164,18 @@ bool face_to_face(const DistanceFieldView& field, const glm::vec3& at, const glm
 
 }  // namespace
 
+namespace {
+
+// Gaps are differences of floats. Within this share of a spacing two surfaces touch; left as it is, the
+// rounding would make bodies at rest tremble, and stacks wander.
+constexpr double kTouching = 1e-4;
+
+double beyond(double gap, double slack) {
+  return gap > slack ? gap - slack : gap < -slack ? gap + slack : 0.0;
+}
+
+}  // namespace
+
 void ContactFinder::points_against_field(const Motion& motion, int points_of, int field_of, double reach) {
   const Shape& points = shapes_[points_of];
   const Shape& solid = shapes_[field_of];
@@ -197,7 +209,8 @@ void ContactFinder::points_against_field(const Motion& motion, int points_of, in
     if (!faces && !(length > 1e-3f)) continue;  // the middle of a solid: other points have the direction
     // From where the point is now to the plane that it meets.
     const double gap = distance + glm::dot(p - met.at, normal);
-    found_.push_back({points_of, field_of, where, solid_pose.orientation * glm::dvec3(normal), gap});
+    found_.push_back({points_of, field_of, where, solid_pose.orientation * glm::dvec3(normal),
+                      beyond(gap, kTouching * spacing_)});
     facing_.push_back(-glm::dot(turn * points.normals[i], normal));
   }
 }
@@ -225,35 +238,48 @@ void ContactFinder::drop_misleading() {
   found_.resize(kept);
 }
 
-// The deepest point, then again and again the point furthest from those kept: few points that span the patch,
-// so that a flat bottom rests on its rim and not on a corner of it. Of points that lie together the deepest
-// stands for all: where two corners meet, one of them is just beside the other's face, and its gap is the way
-// round the edge.
-void ContactFinder::keep_spread(std::vector<Contact>& contacts) {
+// Where the bodies touched before, as long as they do; the deepest point, where none of those is as deep;
+// then again and again the point furthest from those kept: few points that span the patch, so that a flat
+// bottom rests on its rim and not on a corner of it. Were the deepest always the first, rounding would choose
+// the points anew in every step, and no impulse would find its contact again. Of points that lie together the
+// deepest stands for all: where two corners meet, one of them is just beside the other's face, and its gap is
+// the way round the edge.
+void ContactFinder::keep_spread(const std::vector<RigidBody>& bodies, std::span<const KeptImpulse> known,
+                                std::vector<Contact>& contacts) {
   if (found_.empty()) return;
+  const std::size_t before = contacts.size();
   std::vector<double> gap(found_.size(), std::numeric_limits<double>::infinity());
-  auto next = std::min_element(found_.begin(), found_.end(),
-                               [](const Contact& a, const Contact& b) { return a.distance < b.distance; }) -
-              found_.begin();
-  for (int kept = 0; kept < kMaxContactsPerPair; ++kept) {
-    const glm::dvec3 around = found_[next].point;
-    for (std::size_t i = 0; i < found_.size(); ++i) {
-      const bool deeper = found_[i].distance < found_[static_cast<std::size_t>(next)].distance;
-      if (deeper && glm::distance(found_[i].point, around) < 0.25 * spacing_)
-        next = static_cast<std::ptrdiff_t>(i);
+  // The deepest of those within a quarter of a spacing of a point, and from there on no other near it.
+  const auto choose = [&](const glm::dvec3& around) {
+    const Contact* deepest = nullptr;
+    for (const Contact& c : found_) {
+      if (glm::distance(c.point, around) >= 0.25 * spacing_) continue;
+      if (!deepest || c.distance < deepest->distance) deepest = &c;
     }
-    const Contact chosen = found_[static_cast<std::size_t>(next)];
-    contacts.push_back(chosen);
-    for (std::size_t i = 0; i < found_.size(); ++i) {
-      gap[i] = std::min(gap[i], glm::distance(found_[i].point, chosen.point));
-    }
-    next = std::max_element(gap.begin(), gap.end()) - gap.begin();
+    if (!deepest) return;
+    contacts.push_back(*deepest);
+    for (std::size_t i = 0; i < found_.size(); ++i)
+      gap[i] = std::min(gap[i], glm::distance(found_[i].point, deepest->point));
+  };
+  const auto full = [&] { return contacts.size() - before >= kMaxContactsPerPair; };
+  for (const KeptImpulse& k : known) {
+    if (k.impulse != glm::dvec3(0.0) && !full()) choose(k.place(bodies));
+  }
+  const auto shallower = [](const Contact& a, const Contact& b) { return a.distance < b.distance; };
+  const auto deepest = std::min_element(found_.begin(), found_.end(), shallower);
+  const bool deeper = std::all_of(contacts.begin() + static_cast<std::ptrdiff_t>(before), contacts.end(),
+                                  [&](const Contact& c) { return shallower(*deepest, c); });
+  if (deeper && !full()) choose(deepest->point);
+  while (!full()) {
+    const auto next = std::max_element(gap.begin(), gap.end()) - gap.begin();
     if (gap[next] < spacing_) return;
+    choose(found_[static_cast<std::size_t>(next)].point);
   }
 }
 
 void ContactFinder::find(const std::vector<RigidBody>& bodies, const std::vector<BodySolve>& solves,
-                         double margin, double dt, std::vector<Contact>& contacts) {
+                         double margin, double dt, const ContactMemory& memory,
+                         std::vector<Contact>& contacts) {
   contacts.clear();
   const Motion motion{bodies, solves, margin, dt};
   const int count = static_cast<int>(bodies.size());
@@ -272,7 +298,7 @@ void ContactFinder::find(const std::vector<RigidBody>& bodies, const std::vector
       points_against_field(motion, i, j, reach);
       points_against_field(motion, j, i, reach);
       drop_misleading();
-      keep_spread(contacts);
+      keep_spread(bodies, memory.between(i, j), contacts);
     }
   }
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "scenes/scene.h"
+#include "sim/bodies/contact_memory.h"
 #include "sim/bodies/contact_rows.h"
 
 namespace slosh {
@@ -18,9 +19,10 @@ class ContactFinder {
   ContactFinder(const Scene& scene, const SampledScene& sampled);
 
   /// Points closer than `margin` (m) to the other body's surface, and those that come as close within `dt` s
-  /// at the speeds that `solves` has found so far, however fast. `contacts` is cleared first.
+  /// at the speeds that `solves` has found so far, however fast. Of a patch's points those that `memory` has
+  /// come first. `contacts` is cleared first.
   void find(const std::vector<RigidBody>& bodies, const std::vector<BodySolve>& solves, double margin,
-            double dt, std::vector<Contact>& contacts);
+            double dt, const ContactMemory& memory, std::vector<Contact>& contacts);
 
  private:
   struct Shape {
@@ -40,7 +42,8 @@ class ContactFinder {
     double fastest(int body, double radius) const;  // of any point, m/s
   };
   void drop_misleading();
-  void keep_spread(std::vector<Contact>& contacts);
+  void keep_spread(const std::vector<RigidBody>& bodies, std::span<const KeptImpulse> known,
+                   std::vector<Contact>& contacts);
   void points_against_field(const Motion& motion, int points_of, int field_of, double reach);
 
   std::vector<Shape> shapes_;
@@ -52,8 +55,9 @@ class ContactFinder {
 
 /// Changes the solved velocities so that no contact closes faster than its gap allows, with Coulomb friction
 /// and restitution. `materials` and `solves` have one entry a body; fixed bodies' are not used. Overlap is
-/// undone at a bounded rate.
+/// undone at a bounded rate. Begins with what `memory` has of the last step, and leaves what this one gave.
 void solve_contacts(const std::vector<Contact>& contacts, const std::vector<ContactMaterial>& materials,
-                    const std::vector<RigidBody>& bodies, double time_step, std::vector<BodySolve>& solves);
+                    const std::vector<RigidBody>& bodies, double time_step, ContactMemory& memory,
+                    std::vector<BodySolve>& solves);
 
 }  // namespace slosh

@@ -44,4 +44,16 @@ void BodySurface::place(const PassContext& context, std::span<const RigidBody> b
   sorted_.index.rebuild(context.grid, keys_.data(), keys_.size());
 }
 
+void BodySurface::set_velocities(std::span<const RigidBody> bodies, std::span<const Twist> twists) {
+  std::vector<SurfaceMotion> motions;
+  motions.reserve(bodies.size());
+  for (std::size_t b = 0; b < bodies.size(); ++b) motions.push_back(surface_motion(bodies[b], twists[b]));
+  for (std::size_t i = 0; i < sorted_.index.particles(); ++i) {
+    const glm::vec3 v = motions[sorted_.body[i]].velocity_at({sorted_.x[i], sorted_.y[i], sorted_.z[i]});
+    sorted_.vx[i] = v.x;
+    sorted_.vy[i] = v.y;
+    sorted_.vz[i] = v.z;
+  }
+}
+
 }  // namespace slosh

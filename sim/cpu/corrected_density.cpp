@@ -76,7 +76,7 @@ class CorrectedDensity {
         lane_sum(batch.vz)};
     const ParticleKind& kind = context_.kinds[fluid_.kind[p]];
     const CorrectedState state =
-        corrected_state(n, context_.correction, kind.rest_density,
+        corrected_state(n, context_.correction, kind.pressing_density,
                         context_.plan.has(PassId::kOneViscosity) ? kind.viscosity : 0.0f, fluid_.volume[p],
                         {fluid_.vx[p], fluid_.vy[p], fluid_.vz[p]});
     fluid_.pressure[p] = state.pressure;

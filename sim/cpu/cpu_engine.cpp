@@ -21,7 +21,10 @@ class CpuEngine final : public ParticleEngine {
         kinds_(start.particles.kind),
         fluid_count_(start.fluid_count),
         bodies_(bodies.begin(), bodies.end()),
-        found_(bodies.size()) {
+        fields_(start.guarded),
+        impulses_(no_impulses(bodies.size())),
+        found_(bodies.size()),
+        drags_(bodies.size()) {
     static_cast<RunConstants&>(context_) = constants;
     wanted_.assign(bodies.size(), 0);
     for (const int b : constants.plan.wrench_bodies) wanted_[b] = 1;
@@ -29,7 +32,8 @@ class CpuEngine final : public ParticleEngine {
                                   [&](int b) { return !bodies[b].free; });
     fluid_.provide(context_.plan, kinds_.size());
     scratch_.provide(kinds_.size());
-    restore(start.particles);
+    for (const DistanceField& field : fields_) views_.push_back(field.distance.empty() ? DistanceFieldView{} : field.view());
+    restore(start.particles, impulses_);
     context_.status = start.status;
     fixed_.place(context_, bodies);
   }
@@ -41,10 +45,24 @@ class CpuEngine final : public ParticleEngine {
   }
   void forces(double dt) override {
     std::fill(found_.begin(), found_.end(), Wrench{});
+    std::fill(drags_.begin(), drags_.end(), BodyDrag{});
     run(SubStepPart::kForces, dt);
+    give_impulses(dt);
   }
-  void advance(double dt) override { run(SubStepPart::kAdvance, dt); }
+  void advance(double dt, std::span<const RigidBody> after) override {
+    centers_.clear();
+    for (const RigidBody& body : after) centers_.push_back(body.position);
+    if (context_.plan.guards_walls()) guard_bodies(views_, context_.plan, bodies_, after, guarded_);
+    run(SubStepPart::kAdvance, dt);
+  }
   void wrenches(std::span<Wrench> out) override { std::copy(found_.begin(), found_.end(), out.begin()); }
+  void body_drags(std::span<BodyDrag> out) const override {
+    std::copy(drags_.begin(), drags_.end(), out.begin());
+  }
+  void drag(std::span<const Twist> changes) override {
+    moving_.set_velocities(bodies_, changes);
+    run(SubStepPart::kDrag, 0.0);
+  }
 
   void damp(float keep) override {
     for (Column<float>* column : {&fluid_.vx, &fluid_.vy, &fluid_.vz}) {
@@ -57,7 +75,8 @@ class CpuEngine final : public ParticleEngine {
     fluid_.provide(context_.plan, kinds_.size());
   }
 
-  bool save(ParticleState& out) const override {
+  bool save(ParticleState& out, ImpulseSums& impulses) const override {
+    impulses = impulses_;
     out.resize(fluid_.active);
     for_each_column(
         [&](auto column, const auto& from, auto& to) {
@@ -67,7 +86,8 @@ class CpuEngine final : public ParticleEngine {
     return true;
   }
 
-  void restore(const ParticleState& state) override {
+  void restore(const ParticleState& state, const ImpulseSums& impulses) override {
+    impulses_ = impulses;
     for_each_column(
         [](auto column, const auto& from, auto& to) {
           if constexpr (info(column).saved) std::copy(from.begin(), from.end(), to.begin());
@@ -109,6 +129,7 @@ class CpuEngine final : public ParticleEngine {
       sums.add(fluid_.kind[p], {fluid_.x[p], fluid_.y[p], fluid_.z[p]},
                {fluid_.vx[p], fluid_.vy[p], fluid_.vz[p]}, fluid_.volume[p]);
     }
+    sums.add(impulses_);
     return sums.finish(fluid_count_);
   }
 
@@ -130,6 +151,7 @@ class CpuEngine final : public ParticleEngine {
          &CpuEngine::find_forces,
          &StepTimes::force},
         {SubStepPart::kForces, {kWrenches}, &CpuEngine::sum_wrenches, &StepTimes::force},
+        {SubStepPart::kDrag, {kBodyDrag}, &CpuEngine::drag_on_fluid, &StepTimes::force},
         {SubStepPart::kAdvance, {kIntegrateFluid}, &CpuEngine::integrate, &StepTimes::force},
     };
     static_assert(covers_all_particle_passes(kTable));
@@ -149,14 +171,26 @@ class CpuEngine final : public ParticleEngine {
   void sum_wrenches(double) {
     centers_.clear();
     for (const RigidBody& body : bodies_) centers_.push_back(body.position);
-    const auto sum = [&](const BodySurface& surface) {
-      sum_body_wrenches(context_, team_, fluid_, surface.sorted(), centers_, wanted_, body_scratch_, found_);
+    const auto sum = [&](const BodySurface& surface, std::span<BodyDrag> drags) {
+      sum_body_wrenches(context_, team_, fluid_, surface.sorted(), centers_, wanted_, body_scratch_, found_,
+                        drags);
     };
-    sum(moving_);
-    if (fixed_measured_) sum(fixed_);
+    sum(moving_, context_.plan.has(PassId::kBodyDrag) ? std::span(drags_) : std::span<BodyDrag>());
+    if (fixed_measured_) sum(fixed_, {});
     carry_probe_forces_out();
   }
-  void integrate(double dt) { integrate_fluid(context_, team_, fluid_, dt); }
+  void drag_on_fluid(double) { drag_fluid(context_, team_, fluid_, moving_.sorted()); }
+  void integrate(double dt) { integrate_fluid(context_, team_, fluid_, {guarded_, centers_, impulses_}, dt); }
+
+  // What walls took from particles when they moved last acts on the bodies now.
+  void give_impulses(double dt) {
+    if (!context_.plan.guards_walls()) return;
+    for (std::size_t b = 0; b < found_.size(); ++b) {
+      const std::span<std::int64_t> words(impulses_.data() + kImpulseWords * b, kImpulseWords);
+      if (wanted_[b]) found_[b] = found_[b] + impulse_wrench(words, context_.impulse_units, dt);
+      std::fill(words.begin(), words.end(), 0);
+    }
+  }
 
   // Probes are particles that their body carries: their state goes in before the passes, the force comes out
   // after.
@@ -196,10 +230,15 @@ class CpuEngine final : public ParticleEngine {
   std::size_t fluid_count_;          // without probes
   std::vector<char> wanted_;         // one a body: its wrench is summed
   bool fixed_measured_ = false;
+  std::vector<DistanceField> fields_;  // of the bodies that particles are guarded against
+  std::vector<DistanceFieldView> views_;
+  std::vector<GuardedBody> guarded_;
+  ImpulseSums impulses_;
   std::vector<RigidBody> bodies_;  // as they were in prepare()
   std::vector<glm::dvec3> centers_;
   std::vector<Wrench> found_;  // one a body, by the last forces()
-  std::vector<glm::vec3> body_scratch_;
+  std::vector<BodyDrag> drags_;  // one a body, by the same
+  SurfaceSums body_scratch_;
   StepTimes times_;
 };
 

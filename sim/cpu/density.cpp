@@ -74,9 +74,9 @@ void compute_density_of(PassContext& context, ThreadTeam& team, FluidParticles& 
           if (moving_rows.count) sum += sum_walls<Kernel>(moving, moving_rows, fluid, p, h);
         }
         const ParticleKind& kind = context.kinds[fluid.kind[p]];
-        const PressureState state =
-            pressure_state(lane_sum(sum), context.rest_number_density, context.rest_volume, kind.rest_density,
-                           stiffness, tension, fluid.volume[p], Parts::kPressureEnergy);
+        const PressureState state = pressure_state(lane_sum(sum), context.rest_number_density,
+                                                   context.rest_volume, kind.pressing_density, stiffness,
+                                                   tension, fluid.volume[p], Parts::kPressureEnergy);
         densest = std::max(densest, state.compression);
         fluid.pressure[p] = state.pressure;
         fluid.volume[p] = state.volume;

@@ -23,6 +23,20 @@ NeighborColumns columns(const BoundaryParticles& b) {
           nullptr,           nullptr,         nullptr};
 }
 
+// Of one body particle, N·s/m.
+template <class Parts, Viscosity viscosity>
+Symmetric<float> drag_rate(const ParticleView<FloatBatch>& self, const NeighborColumns& fluid,
+                           const RowList& rows, FloatBatch h, float scale, float of_fluid) {
+  const FloatBatch none(0.0f);
+  Symmetric<FloatBatch> sum{none, none, none, none, none, none};
+  for_each_dragged<viscosity, Neighbours::kFluid>(
+      self, fluid, rows, FloatBatch(of_fluid), [&](const ParticleView<FloatBatch>& i, FloatBatch weight) {
+        add_pair_drag_rate<typename Parts::ForceKernel, Parts::kDrag>(self, i, h, weight, sum);
+      });
+  return {scale * lane_sum(sum.xx), scale * lane_sum(sum.xy), scale * lane_sum(sum.xz),
+          scale * lane_sum(sum.yy), scale * lane_sum(sum.yz), scale * lane_sum(sum.zz)};
+}
+
 }  // namespace
 
 void compute_fluid_forces(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
@@ -46,13 +60,16 @@ void compute_fluid_forces(PassContext& context, ThreadTeam& team, FluidParticles
           ForceSum<FloatBatch> sum{FloatBatch(0.0f), FloatBatch(0.0f), FloatBatch(0.0f)};
           add_row_forces<Parts, Parts::kFluids, viscosity>(self, fluid_columns, fluid_rows, h, sum);
           if (fixed_rows.count)
-            add_row_forces<Parts, Parts::kWalls, kAgainstBodies>(self, fixed_columns, fixed_rows, h, sum);
+            add_row_forces<Parts, Parts::kWalls, kAgainstBodies, Neighbours::kWalls>(self, fixed_columns,
+                                                                                     fixed_rows, h, sum);
           if (moving_rows.count)
-            add_row_forces<Parts, Parts::kWalls, kAgainstBodies>(self, moving_columns, moving_rows, h, sum);
+            add_row_forces<Parts, Parts::kWalls, kAgainstBodies, Neighbours::kWalls>(self, moving_columns,
+                                                                                     moving_rows, h, sum);
           const float scale = context.force_scale;
           fluid.fx[p] = scale * lane_sum(sum.x);
           fluid.fy[p] = scale * lane_sum(sum.y);
           fluid.fz[p] = scale * lane_sum(sum.z);
+          fluid.near_wall[p] = fixed_rows.count + moving_rows.count > 0;
         }
       }
     });
@@ -61,12 +78,13 @@ void compute_fluid_forces(PassContext& context, ThreadTeam& team, FluidParticles
 
 void sum_body_wrenches(PassContext& context, ThreadTeam& team, const FluidParticles& fluid,
                        const BoundaryParticles& boundary, std::span<const glm::dvec3> centers,
-                       const std::vector<char>& wanted, std::vector<glm::vec3>& scratch,
-                       std::span<Wrench> wrenches) {
+                       const std::vector<char>& wanted, SurfaceSums& scratch, std::span<Wrench> wrenches,
+                       std::span<BodyDrag> drags) {
   const std::vector<CellRun>& runs = boundary.index.runs();
   const std::size_t count = boundary.index.particles();
   if (count == 0) return;
-  scratch.resize(count);
+  scratch.force.resize(count);
+  if (!drags.empty()) scratch.drag_rate.resize(count);
   const NeighborColumns fluid_columns = columns(fluid);
   const NeighborColumns own = columns(boundary);
   const FloatBatch h(context.support_radius);
@@ -75,16 +93,24 @@ void sum_body_wrenches(PassContext& context, ThreadTeam& team, const FluidPartic
       for (std::size_t r = begin; r < end; ++r) {
         const RowList rows = fluid.index.rows(context.grid, runs[r].cell);
         for (std::uint32_t i = runs[r].particles.begin; i < runs[r].particles.end; ++i) {
-          scratch[i] = glm::vec3(0.0f);
+          scratch.force[i] = glm::vec3(0.0f);
+          if (!drags.empty()) scratch.drag_rate[i] = {};
           if (rows.count == 0 || !wanted[boundary.body[i]]) continue;
           ForceSum<FloatBatch> sum{FloatBatch(0.0f), FloatBatch(0.0f), FloatBatch(0.0f)};
           // Where the fluid has one viscosity its column is not filled: Eq 9's mean is known up front.
-          const float mean = 0.5f * (boundary.viscosity[i] + context.kinds.front().viscosity);
+          const WallViscosity wall = wall_viscosity(boundary.viscosity[i]);
+          const float mean = 0.5f * (wall.own + wall.of_fluid * context.kinds.front().viscosity);
           const ParticleView<FloatBatch> self =
-              broadcast(own, i, viscosity == Viscosity::kOne ? mean : boundary.viscosity[i]);
-          add_row_forces<Parts, Parts::kOnBodies, viscosity>(self, fluid_columns, rows, h, sum);
+              broadcast(own, i, viscosity == Viscosity::kOne ? mean : wall.own);
+          add_row_forces<Parts, Parts::kOnBodies, viscosity>(self, fluid_columns, rows, h, sum,
+                                                             FloatBatch(wall.of_fluid));
           const float scale = context.force_scale;
-          scratch[i] = scale * glm::vec3(lane_sum(sum.x), lane_sum(sum.y), lane_sum(sum.z));
+          scratch.force[i] = scale * glm::vec3(lane_sum(sum.x), lane_sum(sum.y), lane_sum(sum.z));
+          if constexpr (viscosity != Viscosity::kNone) {
+            if (!drags.empty())
+              scratch.drag_rate[i] =
+                  drag_rate<Parts, viscosity>(self, fluid_columns, rows, h, scale, wall.of_fluid);
+          }
         }
       }
     });
@@ -93,11 +119,44 @@ void sum_body_wrenches(PassContext& context, ThreadTeam& team, const FluidPartic
   for (std::size_t i = 0; i < count; ++i) {
     const int body = boundary.body[i];
     if (!wanted[body]) continue;
-    const glm::dvec3 force(scratch[i]);
+    const glm::dvec3 force(scratch.force[i]);
     const glm::dvec3 arm = glm::dvec3(boundary.x[i], boundary.y[i], boundary.z[i]) - centers[body];
     wrenches[body].force += force;
     wrenches[body].torque += glm::cross(arm, force);
+    if (drags.empty()) continue;
+    const Symmetric<float>& rate = scratch.drag_rate[i];
+    drags[body].add({rate.xx, rate.xy, rate.xz, rate.yy, rate.yz, rate.zz}, arm);
   }
+}
+
+void drag_fluid(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
+                const BoundaryParticles& moving) {
+  const std::vector<CellRun>& runs = fluid.index.runs();
+  const NeighborColumns fluid_columns = columns(fluid);
+  const NeighborColumns moving_columns = columns(moving);
+  const FloatBatch h(context.support_radius);
+  with_model(context.plan.model, [&]<class Parts>() {
+    team.run(runs.size(), kRunsPerChunk, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t r = begin; r < end; ++r) {
+        const RowList rows = moving.index.rows(context.grid, runs[r].cell);
+        if (!rows.count) continue;
+        for (std::uint32_t p = runs[r].particles.begin; p < runs[r].particles.end; ++p) {
+          const ParticleView<FloatBatch> self =
+              broadcast(fluid_columns, p, context.kinds[fluid.kind[p]].viscosity);
+          ForceSum<FloatBatch> sum{FloatBatch(0.0f), FloatBatch(0.0f), FloatBatch(0.0f)};
+          for_each_dragged<Viscosity::kPair, Neighbours::kWalls>(
+              self, moving_columns, rows, FloatBatch(1.0f),
+              [&](const ParticleView<FloatBatch>& i, FloatBatch weight) {
+                add_pair_drag<typename Parts::ForceKernel, Parts::kDrag>(self, i, h, weight, sum);
+              });
+          const float scale = context.force_scale;
+          fluid.fx[p] += scale * lane_sum(sum.x);
+          fluid.fy[p] += scale * lane_sum(sum.y);
+          fluid.fz[p] += scale * lane_sum(sum.z);
+        }
+      }
+    });
+  });
 }
 
 }  // namespace slosh

@@ -29,6 +29,7 @@ void FluidParticles::provide(const Plan& plan, std::size_t count) {
         if (needs(plan, info(column).need)) make(values, count);
       },
       *this);
+  near_wall.resize(count);
 }
 
 void GatheredColumns::provide(std::size_t count) {

@@ -15,6 +15,7 @@ namespace slosh {
 struct FluidParticles : FluidColumns<Column> {
   std::size_t active = 0;
   CellIndex index;
+  std::vector<std::uint8_t> near_wall;  ///< one a particle, by the last force pass: bodies are around it
 
   /// Makes those columns that the plan needs and that are not there yet, zeroed.
   void provide(const Plan& plan, std::size_t count);

@@ -9,6 +9,7 @@
 #include "sim/cpu/parallel.h"
 #include "sim/cpu/particles.h"
 #include "sim/run_constants.h"
+#include "sim/viscosity/body_drag.h"
 
 namespace slosh {
 
@@ -28,6 +29,9 @@ class BodySurface {
   explicit BodySurface(std::vector<SurfaceParticle> particles);
   /// World positions and velocities from the bodies' states, sorted.
   void place(const PassContext& context, std::span<const RigidBody> bodies);
+  /// Gives each particle the velocity of its body's twist in `twists` (one a body) about where the body was
+  /// placed.
+  void set_velocities(std::span<const RigidBody> bodies, std::span<const Twist> twists);
 
   const BoundaryParticles& sorted() const { return sorted_; }
 
@@ -51,16 +55,34 @@ void compute_corrected_density(PassContext& context, ThreadTeam& team, FluidPart
 void compute_fluid_forces(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
                           const BoundaryParticles& fixed, const BoundaryParticles& moving);
 
+/// What each body particle feels, in the order of the cells.
+struct SurfaceSums {
+  std::vector<glm::vec3> force;             // N
+  std::vector<Symmetric<float>> drag_rate;  // N·s/m
+};
+
 /// Eq 5, 6, 9 on body particles by fluid ones, summed by Eq 10–12 over those bodies of `boundary` that are
 /// marked in `wanted` (one flag a body). Adds to wrenches, about `centers` (m, world, one a body), in a fixed
-/// order.
+/// order; and to `drags` (one a body) unless it is empty.
 void sum_body_wrenches(PassContext& context, ThreadTeam& team, const FluidParticles& fluid,
                        const BoundaryParticles& boundary, std::span<const glm::dvec3> centers,
-                       const std::vector<char>& wanted, std::vector<glm::vec3>& scratch,
-                       std::span<Wrench> wrenches);
+                       const std::vector<char>& wanted, SurfaceSums& scratch, std::span<Wrench> wrenches,
+                       std::span<BodyDrag> drags);
 
-/// Leap-frog (section 3.1) over `dt` s: v(t+½) from forces and gravity, x(t+1), then the new cell or
-/// retirement.
-void integrate_fluid(PassContext& context, ThreadTeam& team, FluidParticles& fluid, double dt);
+/// Adds to the forces on the fluid the drag of moving body particles by the velocities that they have now.
+void drag_fluid(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
+                const BoundaryParticles& moving);
+
+/// Whom particles are guarded against in a sub-step, and what that takes from them.
+struct WallGuards {
+  std::span<const GuardedBody> bodies;
+  std::span<const glm::dvec3> centers;  ///< m, world, of mass as the sub-step ends, one a body
+  std::span<std::int64_t> impulses;     ///< as ImpulseSums; added to
+};
+
+/// Leap-frog (section 3.1) over `dt` s: v(t+½) from forces and gravity, x(t+1), no further than to the walls,
+/// then the new cell or retirement.
+void integrate_fluid(PassContext& context, ThreadTeam& team, FluidParticles& fluid, const WallGuards& guards,
+                     double dt);
 
 }  // namespace slosh

@@ -16,9 +16,25 @@ struct NeighborColumns {
   const float *ux, *uy, *uz;
 };
 
-template <class Parts, PairRule rule, Viscosity viscosity>
+enum class Neighbours { kFluid, kWalls };
+
+/// A neighbour's side of Eq 9. `of_fluid`: WallViscosity's where p is a wall's particle, else 1.
+template <Viscosity viscosity, Neighbours neighbours>
+FloatBatch viscosity_of(const ParticleView<FloatBatch>& p, const NeighborColumns& n, std::uint32_t j,
+                        FloatBatch of_fluid) {
+  if constexpr (viscosity != Viscosity::kPair) {
+    return p.viscosity;
+  } else if constexpr (neighbours == Neighbours::kWalls) {
+    const FloatBatch own = FloatBatch::load_unaligned(n.viscosity + j);
+    return xsimd::select(own < FloatBatch(0.0f), p.viscosity, own);
+  } else {
+    return of_fluid * FloatBatch::load_unaligned(n.viscosity + j);
+  }
+}
+
+template <class Parts, PairRule rule, Viscosity viscosity, Neighbours neighbours = Neighbours::kFluid>
 void add_row_forces(const ParticleView<FloatBatch>& p, const NeighborColumns& n, const RowList& rows,
-                    FloatBatch h, ForceSum<FloatBatch>& sum) {
+                    FloatBatch h, ForceSum<FloatBatch>& sum, FloatBatch of_fluid = FloatBatch(1.0f)) {
   // What pairs of one viscosity drag by is in u already.
   constexpr bool kViscous =
       rule == PairRule::kCorrected ? viscosity == Viscosity::kPair : viscosity != Viscosity::kNone;
@@ -45,11 +61,29 @@ void add_row_forces(const ParticleView<FloatBatch>& p, const NeighborColumns& n,
       i.vx = FloatBatch::load_unaligned(n.vx + j);
       i.vy = FloatBatch::load_unaligned(n.vy + j);
       i.vz = FloatBatch::load_unaligned(n.vz + j);
-      i.viscosity = viscosity == Viscosity::kPair ? FloatBatch::load_unaligned(n.viscosity + j) : p.viscosity;
+      i.viscosity = viscosity_of<viscosity, neighbours>(p, n, j, of_fluid);
     }
     add_pair_force<typename Parts::ForceKernel, rule, Parts::kDrag, kViscous>(p, i, h, weight, sum);
   };
   for_each_batch(rows, add);
+}
+
+/// Calls f(i, weight) for the batches of neighbours of p as drag between them sees them.
+template <Viscosity viscosity, Neighbours neighbours, class F>
+void for_each_dragged(const ParticleView<FloatBatch>& p, const NeighborColumns& n, const RowList& rows,
+                      FloatBatch of_fluid, F&& f) {
+  for_each_batch(rows, [&](std::uint32_t j, FloatBatch weight) {
+    ParticleView<FloatBatch> i;
+    i.x = FloatBatch::load_unaligned(n.x + j);
+    i.y = FloatBatch::load_unaligned(n.y + j);
+    i.z = FloatBatch::load_unaligned(n.z + j);
+    i.vx = FloatBatch::load_unaligned(n.vx + j);
+    i.vy = FloatBatch::load_unaligned(n.vy + j);
+    i.vz = FloatBatch::load_unaligned(n.vz + j);
+    i.volume = FloatBatch::load_unaligned(n.volume + j);
+    i.viscosity = viscosity_of<viscosity, neighbours>(p, n, j, of_fluid);
+    f(i, weight);
+  });
 }
 
 inline ParticleView<FloatBatch> broadcast(const NeighborColumns& n, std::uint32_t j, float viscosity) {

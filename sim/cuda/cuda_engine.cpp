@@ -80,9 +80,10 @@ class CudaEngine final : public ParticleEngine {
                     check_);
     kinds_.upload(constants_.kinds, check_);
     plan_wrenches(start, bodies);
+    plan_guards(start);
     allocate_exchange(bodies.size());
     check_.ok(cudaDeviceSynchronize(), "setting up");  // the stream does not wait for what filled the buffers
-    restore(start.particles);
+    restore(start.particles, no_impulses(bodies.size()));
     status_ = start.status;
     if (fixed_.count() > 0) {
       send_bodies(bodies);
@@ -99,17 +100,22 @@ class CudaEngine final : public ParticleEngine {
 
   void prepare(std::span<const RigidBody> bodies) override {
     if (idle()) return;
-    clock_.mark(PassClock::kBegin, check_, stream_);
+    clock_.begin(check_, stream_);
     send_bodies(bodies);
     carry_probes_in(bodies);
+    prepared_.assign(bodies.begin(), bodies.end());
     run(SubStepPart::kPrepare, 0.0);
     clock_.mark(PassClock::kSorted, check_, stream_);
   }
   void forces(double dt) override {
-    if (!idle()) run(SubStepPart::kForces, dt);
-  }
-  void advance(double dt) override {
     if (idle()) return;
+    forces_dt_ = dt;
+    take_impulses();
+    run(SubStepPart::kForces, dt);
+  }
+  void advance(double dt, std::span<const RigidBody> after) override {
+    if (idle()) return;
+    send_guards(after);
     run(SubStepPart::kAdvance, dt);
     clock_.mark(PassClock::kForce, check_, stream_);
     // A probe's force comes out of the last pass, and its place changes before the next sort.
@@ -130,6 +136,27 @@ class CudaEngine final : public ParticleEngine {
     if (!check_.failed()) read_report(out);
   }
 
+  void body_drags(std::span<BodyDrag> out) const override {
+    std::fill(out.begin(), out.end(), BodyDrag{});
+    if (idle()) return;
+    for (std::size_t i = 0; i < wrench_bodies_.size(); ++i)
+      std::memcpy(&out[wrench_bodies_[i]], got_report_.data() + drags_at_ + i * sizeof(BodyDrag),
+                  sizeof(BodyDrag));
+  }
+
+  void drag(std::span<const Twist> changes) override {
+    if (idle()) return;
+    for (std::size_t b = 0; b < changes.size(); ++b) {
+      sent_twists_[b] = sent_bodies_[b];
+      sent_twists_[b].motion.velocity = glm::vec3(changes[b].linear);
+      sent_twists_[b].motion.angular_velocity = glm::vec3(changes[b].angular);
+    }
+    check_.ok(cudaMemcpyAsync(twists_.data(), sent_twists_.data(), twists_.bytes(), cudaMemcpyHostToDevice,
+                              stream_),
+              "sending twists");
+    run(SubStepPart::kDrag, 0.0);
+  }
+
   void damp(float keep) override {
     if (idle()) return;
     launch_damp(fluid_.state().v, fluid_.count(), keep, stream_);
@@ -144,8 +171,9 @@ class CudaEngine final : public ParticleEngine {
     fluid_.allow_viscosities(constants_, check_);
   }
 
-  bool save(ParticleState& out) const override {
+  bool save(ParticleState& out, ImpulseSums& impulses) const override {
     const HostState s = fetch_state();
+    impulses = fetch_impulses();
     if (check_.failed()) return false;
     out.resize(s.id.size());
     std::size_t count = 0;
@@ -160,7 +188,7 @@ class CudaEngine final : public ParticleEngine {
     return true;
   }
 
-  void restore(const ParticleState& state) override {
+  void restore(const ParticleState& state, const ImpulseSums& impulses) override {
     if (check_.failed()) return;
     const std::size_t total = kinds_by_id_.size();
     HostState s;
@@ -186,6 +214,7 @@ class CudaEngine final : public ParticleEngine {
     check_.ok(cudaStreamSynchronize(stream_), "waiting for the step");
     fluid_.write(s, check_, stream_);
     probe_slots_.write(slots, check_, stream_);
+    impulses_.write(impulses, check_, stream_);
     check_.ok(cudaMemsetAsync(report_.data(), 0, sizeof(ReportHead), stream_), "clearing the status");
     sorted_ahead_ = false;
     status_ = 0;
@@ -226,6 +255,7 @@ class CudaEngine final : public ParticleEngine {
       if (s.key[p] >= constants_.grid.retired_key()) continue;
       sums.add(s.kind[p], {s.x[p].x, s.x[p].y, s.x[p].z}, {s.v[p].x, s.v[p].y, s.v[p].z}, s.v[p].w);
     }
+    sums.add(fetch_impulses());
     return sums.finish(fluid_count_);
   }
 
@@ -247,6 +277,7 @@ class CudaEngine final : public ParticleEngine {
          {kPressureForce, kOneViscosity, kPairViscosity, kWalls},
          &CudaEngine::find_forces,
          nullptr},
+        {SubStepPart::kDrag, {kBodyDrag}, &CudaEngine::drag_on_fluid, nullptr},
         {SubStepPart::kAdvance, {kIntegrateFluid}, &CudaEngine::integrate, nullptr},
     };
     static_assert(covers_all_particle_passes(kTable));
@@ -278,12 +309,20 @@ class CudaEngine final : public ParticleEngine {
     check_.launched("forces");
   }
 
+  void drag_on_fluid(double) {
+    if (check_.failed()) return;
+    launch_drag(step_, constants_.plan, kinds_.data(), fluid_.sorted(), moving_.sorted(), twists_.data(),
+                stream_);
+    check_.launched("drag");
+  }
+
   void integrate(double dt) {
     if (check_.failed()) return;
     const ProbeOutput probes{static_cast<std::uint32_t>(fluid_count_),
                              reinterpret_cast<float4*>(report_.data() + probes_at_), probe_slots_.data()};
     launch_integrate(step_, kinds_.data(), fluid_.sorted(), static_cast<float>(dt),
-                     static_cast<float>(speed_limit(constants_.plan, dt)), probes, status_word(), stream_);
+                     static_cast<float>(speed_limit(constants_.plan, dt)), guard_view(), probes, status_word(),
+                     stream_);
     check_.launched("integration");
   }
 
@@ -305,6 +344,56 @@ class CudaEngine final : public ParticleEngine {
         s, fluid_.state());
     if (check_.failed()) return {};
     return s;
+  }
+
+  ImpulseSums fetch_impulses() const {
+    ImpulseSums sums(impulses_.size());
+    fetch(impulses_.data(), sums.data(), sums.size());
+    return sums;
+  }
+
+  void plan_guards(const ParticleStart& start) {
+    if (!constants_.plan.guards_walls()) return;
+    std::vector<float> values;
+    for (const DistanceField& field : start.guarded)
+      values.insert(values.end(), field.distance.begin(), field.distance.end());
+    fields_.upload(values, check_);
+    const float* at = fields_.data();
+    for (const DistanceField& field : start.guarded) {
+      views_.push_back({field.origin, field.cell, field.size, field.distance.empty() ? nullptr : at});
+      at += field.distance.size();
+    }
+    guards_.allocate(views_.size(), check_);
+    sent_guards_.allocate(views_.size(), check_);
+  }
+
+  // The copy before has been made: wrenches() was waited for since, or the bodies stood still.
+  void send_guards(std::span<const RigidBody> after) {
+    if (guards_.size() == 0 || check_.failed()) return;
+    guard_bodies(views_, constants_.plan, prepared_, after, guarded_);
+    any_fast_ = false;
+    for (std::size_t b = 0; b < guarded_.size(); ++b) {
+      sent_guards_[b] = {guarded_[b], after[b].position};
+      any_fast_ |= guarded_[b].fast;
+    }
+    check_.ok(cudaMemcpyAsync(guards_.data(), sent_guards_.data(), guards_.bytes(), cudaMemcpyHostToDevice,
+                              stream_),
+              "sending walls");
+  }
+
+  GuardView guard_view() const {
+    return {static_cast<std::uint32_t>(guards_.size()), any_fast_ ? 1u : 0u, guards_.data(),
+            reinterpret_cast<unsigned long long*>(impulses_.data()), constants_.impulse_units};
+  }
+
+  // What walls took from particles when they moved last goes into this sub-step's report.
+  void take_impulses() {
+    if (guards_.size() == 0 || check_.failed()) return;
+    const std::size_t bytes = guards_.size() * kImpulseWords * sizeof(std::int64_t);
+    check_.ok(cudaMemcpyAsync(report_.data() + impulses_at_, impulses_.data(), bytes,
+                              cudaMemcpyDeviceToDevice, stream_),
+              "handing impulses over");
+    check_.ok(cudaMemsetAsync(impulses_.data(), 0, bytes, stream_), "clearing impulses");
   }
 
   // Cuts each measured body's particles into chunks; local order is body by body.
@@ -339,18 +428,26 @@ class CudaEngine final : public ParticleEngine {
     chunks_.upload(chunks, check_);
     ranges_.upload(ranges, check_);
     partial_.allocate(chunks.size(), check_);
+    partial_drags_.allocate(chunks.size(), check_);
   }
 
   void allocate_exchange(std::size_t body_count) {
     bodies_.allocate(body_count, check_);
     sent_bodies_.allocate(body_count, check_);
+    twists_.allocate(body_count, check_);
+    sent_twists_.allocate(body_count, check_);
     device_probes_.allocate(probes_.size(), check_);
     sent_probes_.allocate(probes_.size(), check_);
     std::vector<std::uint32_t> slots;
     for (const Probe& probe : probes_) slots.push_back(probe.id);
     probe_slots_.upload(slots, check_);
     wrenches_at_ = sizeof(ReportHead);
-    probes_at_ = wrenches_at_ + wrench_bodies_.size() * sizeof(DeviceWrench);
+    drags_at_ = wrenches_at_ + wrench_bodies_.size() * sizeof(DeviceWrench);
+    impulses_at_ = drags_at_ + wrench_bodies_.size() * sizeof(BodyDrag);
+    impulses_.allocate(no_impulses(body_count).size(), check_);
+    const std::size_t impulses = guards_.size() * kImpulseWords * sizeof(std::int64_t);
+    // Whole packs of 16 bytes, as the probes' forces are.
+    probes_at_ = (impulses_at_ + impulses + 15) / 16 * 16;
     report_.allocate(probes_at_ + probes_.size() * sizeof(float4), check_);
     got_report_.allocate(report_.size(), check_);
     by_id_.allocate(3 * fluid_count_, check_);
@@ -386,18 +483,25 @@ class CudaEngine final : public ParticleEngine {
   void sum_wrenches(double) {
     if (wrench_bodies_.empty() || check_.failed()) return;
     const float first_viscosity = constants_.kinds.front().viscosity;
-    const auto forces = [&](const SurfaceBuffers& surface) {
+    const bool with_drag = constants_.plan.has(PassId::kBodyDrag);
+    const auto forces = [&](const SurfaceBuffers& surface, bool drag) {
       launch_surface_forces(step_, constants_.plan, first_viscosity, fluid_.sorted(), surface.sorted(),
-                            wanted_.data(), surface.local().force, stream_);
+                            wanted_.data(), surface.local(), drag, stream_);
       check_.launched("forces on bodies");
     };
-    if (moving_measured_) forces(moving_);
-    if (fixed_measured_) forces(fixed_);
+    if (moving_measured_) forces(moving_, with_drag);
+    if (fixed_measured_) forces(fixed_, false);
     launch_wrenches(fixed_.local(), moving_.local(), bodies_.data(), chunks_.data(),
                     static_cast<std::uint32_t>(chunks_.size()), partial_.data(), ranges_.data(),
                     static_cast<std::uint32_t>(ranges_.size()),
                     reinterpret_cast<DeviceWrench*>(report_.data() + wrenches_at_), stream_);
     check_.launched("wrenches");
+    if (!with_drag) return;
+    launch_body_drags(moving_.local(), bodies_.data(), chunks_.data(),
+                      static_cast<std::uint32_t>(chunks_.size()), partial_drags_.data(), ranges_.data(),
+                      static_cast<std::uint32_t>(ranges_.size()),
+                      reinterpret_cast<BodyDrag*>(report_.data() + drags_at_), stream_);
+    check_.launched("drag on bodies");
   }
 
   void fetch_report() {
@@ -418,6 +522,13 @@ class CudaEngine final : public ParticleEngine {
       std::memcpy(&w, got_report_.data() + wrenches_at_ + i * sizeof w, sizeof w);
       wrenches[wrench_bodies_[i]].force += glm::dvec3(w.force[0], w.force[1], w.force[2]);
       wrenches[wrench_bodies_[i]].torque += glm::dvec3(w.torque[0], w.torque[1], w.torque[2]);
+    }
+    if (guards_.size() > 0) {
+      for (const std::uint32_t b : wrench_bodies_) {
+        std::int64_t words[kImpulseWords];
+        std::memcpy(words, got_report_.data() + impulses_at_ + b * sizeof words, sizeof words);
+        wrenches[b] = wrenches[b] + impulse_wrench(words, constants_.impulse_units, forces_dt_);
+      }
     }
     if (!constants_.plan.has(PassId::kWrenches)) return;
     for (std::size_t i = 0; i < probes_.size(); ++i) {
@@ -448,17 +559,30 @@ class CudaEngine final : public ParticleEngine {
   DeviceBuffer<WrenchChunk> chunks_;
   DeviceBuffer<WrenchRange> ranges_;
   DeviceBuffer<DeviceWrench> partial_;
+  DeviceBuffer<BodyDrag> partial_drags_;
   bool fixed_measured_ = false, moving_measured_ = false;
   std::vector<std::uint32_t> wrench_bodies_;  // body of each range
 
   DeviceBuffer<DeviceBody> bodies_;
   PinnedBuffer<DeviceBody> sent_bodies_;
+  DeviceBuffer<DeviceBody> twists_;  // by which bodies end a step with another velocity
+  PinnedBuffer<DeviceBody> sent_twists_;
   DeviceBuffer<DeviceProbe> device_probes_;
   PinnedBuffer<DeviceProbe> sent_probes_;
   DeviceBuffer<std::uint32_t> probe_slots_;
   DeviceBuffer<unsigned char> report_;
   PinnedBuffer<unsigned char> got_report_;
-  std::size_t wrenches_at_ = 0, probes_at_ = 0;  // in the report
+  std::size_t wrenches_at_ = 0, drags_at_ = 0, impulses_at_ = 0, probes_at_ = 0;  // in the report
+
+  std::vector<RigidBody> prepared_;  // as they were in prepare()
+  DeviceBuffer<float> fields_;       // of the bodies that particles are guarded against, one after the other
+  std::vector<DistanceFieldView> views_;
+  std::vector<GuardedBody> guarded_;
+  DeviceBuffer<DeviceGuard> guards_;
+  PinnedBuffer<DeviceGuard> sent_guards_;
+  bool any_fast_ = false;
+  DeviceBuffer<std::int64_t> impulses_;  // as ImpulseSums
+  double forces_dt_ = 0.0;               // s, of the last forces()
   DeviceBuffer<float> by_id_;
   DeviceBuffer<std::uint8_t> kind_by_id_;
 };

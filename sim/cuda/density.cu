@@ -43,7 +43,7 @@ __global__ __launch_bounds__(kThreads) void density_kernel(StepConstants c, cons
   }
   const ParticleKind kind = kinds[fluid.state.kind[p]];
   const PressureState state =
-      pressure_state(sum, c.rest_number_density, c.rest_volume, kind.rest_density, c.stiffness, c.tension,
+      pressure_state(sum, c.rest_number_density, c.rest_volume, kind.pressing_density, c.stiffness, c.tension,
                      fluid.state.v[p].w, Parts::kPressureEnergy);
   fluid.pressed[p] = make_float4(x.x, x.y, x.z, state.pressure);
   fluid.state.v[p].w = state.volume;
@@ -86,7 +86,7 @@ __global__ __launch_bounds__(kThreads) void corrected_density_kernel(
   const ParticleKind kind = kinds[fluid.state.kind[p]];
   const float4 motion = fluid.state.v[p];
   const CorrectedState state =
-      corrected_state(sum, c.correction, kind.rest_density, one_viscosity ? kind.viscosity : 0.0f, motion.w,
+      corrected_state(sum, c.correction, kind.pressing_density, one_viscosity ? kind.viscosity : 0.0f, motion.w,
                       {motion.x, motion.y, motion.z});
   fluid.pressed[p] = make_float4(x.x, x.y, x.z, state.volume);
   fluid.push_a[p] = make_float4(state.push.xx, state.push.xy, state.push.xz, state.push.yy);

@@ -16,8 +16,10 @@ class CallCheck {
  public:
   /// True when this call and all before it succeeded.
   bool ok(cudaError_t code, const char* what) {
-    if (code != cudaSuccess && failure_.empty())
+    if (code != cudaSuccess && failure_.empty()) {
       failure_ = std::string(what) + ": " + cudaGetErrorString(code);
+      static_cast<void>(cudaGetLastError());  // or the next world's first call would be blamed for it
+    }
     return failure_.empty();
   }
   /// The same for a kernel launch.

@@ -110,11 +110,14 @@ void SurfaceBuffers::allocate(const std::vector<SurfaceParticle>& particles, con
     buffer->allocate(count, check);
   }
   for (DeviceBuffer<std::uint32_t>* buffer : {&key_, &sorted_key_, &order_}) buffer->allocate(count, check);
+  drag_a_.allocate(count, check);
+  drag_b_.allocate(count, check);
   viscosity_.allocate(count, check);
   sorted_body_.allocate(count, check);
   cells_.allocate(constants.grid.cell_count(), check);
   local_view_ = {count,          position_.data(), material_.data(), body_.data(),
-                 placed_.data(), velocity_.data(), key_.data(),      force_.data()};
+                 placed_.data(), velocity_.data(), key_.data(),      force_.data(),
+                 drag_a_.data(), drag_b_.data()};
   sorted_view_ = {count,
                   sorted_x_.data(),
                   sorted_v_.data(),

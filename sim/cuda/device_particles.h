@@ -73,6 +73,8 @@ class SurfaceBuffers {
  private:
   DeviceBuffer<float4> position_, placed_, velocity_, force_, sorted_x_, sorted_v_;
   DeviceBuffer<float2> material_;
+  DeviceBuffer<float4> drag_a_;  // kBodyDrag
+  DeviceBuffer<float2> drag_b_;
   DeviceBuffer<float> viscosity_;
   DeviceBuffer<std::uint16_t> body_, sorted_body_;
   DeviceBuffer<std::uint32_t> key_, sorted_key_, order_;

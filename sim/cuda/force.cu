@@ -20,12 +20,17 @@ __global__ __launch_bounds__(kThreads) void force_kernel(StepConstants c, const 
   ForceSum<float> sum{0.0f, 0.0f, 0.0f};
   add_forces<Parts, Parts::kFluids, viscosity>(c, self, columns(fluid), fluid.cells, cell, sum);
   if (fixed.count) {
-    add_forces<Parts, Parts::kWalls, kAgainstBodies>(c, self, columns(fixed), fixed.cells, cell, sum);
+    add_forces<Parts, Parts::kWalls, kAgainstBodies, Neighbours::kWalls>(c, self, columns(fixed), fixed.cells,
+                                                                         cell, sum);
   }
   if (moving.count) {
-    add_forces<Parts, Parts::kWalls, kAgainstBodies>(c, self, columns(moving), moving.cells, cell, sum);
+    add_forces<Parts, Parts::kWalls, kAgainstBodies, Neighbours::kWalls>(c, self, columns(moving),
+                                                                         moving.cells, cell, sum);
   }
-  fluid.force[p] = make_float4(c.force_scale * sum.x, c.force_scale * sum.y, c.force_scale * sum.z, 0.0f);
+  const bool near_wall = (fixed.count && any_near(c.grid, fixed.cells, cell)) ||
+                         (moving.count && any_near(c.grid, moving.cells, cell));
+  fluid.force[p] = make_float4(c.force_scale * sum.x, c.force_scale * sum.y, c.force_scale * sum.z,
+                               near_wall ? 1.0f : 0.0f);
 }
 
 }  // namespace

@@ -7,9 +7,29 @@ namespace slosh::cuda {
 
 namespace {
 
+// Integers, so that the sums do not depend on who comes first. True as on the CPU: when it would have been past
+// the wall's own particles.
+__device__ bool keep_from_walls(const GuardView& guard, float mass, bool near, const glm::vec3& from,
+                                glm::vec3& x, glm::vec3& v) {
+  const auto body = [&](std::uint32_t b) -> const GuardedBody& { return guard.bodies[b].body; };
+  bool past = false;
+  const bool bent = guard_against_all(body, guard.count, near, from, x, v,
+                                      [&](std::uint32_t b, const glm::vec3& to, const glm::vec3& before) {
+                                        past |= glm::distance(to, x) > body(b).depth;
+                                        impulse_on_body({mass, to, x, before, v}, guard.bodies[b].center,
+                                                        guard.units, [&](int word, std::int64_t value) {
+                                                          atomicAdd(guard.impulses + kImpulseWords * b + word,
+                                                                    static_cast<unsigned long long>(value));
+                                                        });
+                                      });
+  if (bent) atomicAdd(guard.impulses + kImpulseWords * guard.count, 1ull);
+  return past;
+}
+
 __global__ __launch_bounds__(kThreads) void integrate_kernel(StepConstants c, const ParticleKind* kinds,
                                                              SortedFluid fluid, float dt, float max_speed,
-                                                             ProbeOutput probes, std::uint32_t* out_status) {
+                                                             GuardView guard, ProbeOutput probes,
+                                                             std::uint32_t* out_status) {
   const std::uint32_t p = thread_index();
   if (p >= fluid.count) return;
   const std::uint32_t retired = c.grid.retired_key();
@@ -30,6 +50,11 @@ __global__ __launch_bounds__(kThreads) void integrate_kernel(StepConstants c, co
   if (advance_particle({force.x, force.y, force.z}, dt / kind.mass, c.gravity, dt, max_speed, x, v)) {
     status |= kStatusSpeedLimited;
   }
+  const bool near = force.w != 0.0f;
+  if (guard.count && (near || guard.any_fast) && c.grid.contains(x.x, x.y, x.z) &&
+      keep_from_walls(guard, kind.mass, near, {x4.x, x4.y, x4.z}, x, v)) {
+    status |= kStatusGuarded;
+  }
   std::uint32_t key = retired;
   if (c.grid.contains(x.x, x.y, x.z)) {
     key = c.grid.cell_of(x.x, x.y, x.z);
@@ -45,10 +70,10 @@ __global__ __launch_bounds__(kThreads) void integrate_kernel(StepConstants c, co
 }  // namespace
 
 void launch_integrate(const StepConstants& constants, const ParticleKind* kinds, const SortedFluid& fluid,
-                      float dt, float max_speed, const ProbeOutput& probes, std::uint32_t* status,
-                      cudaStream_t stream) {
+                      float dt, float max_speed, const GuardView& guard, const ProbeOutput& probes,
+                      std::uint32_t* status, cudaStream_t stream) {
   integrate_kernel<<<blocks_for(fluid.count), kThreads, 0, stream>>>(constants, kinds, fluid, dt, max_speed,
-                                                                     probes, status);
+                                                                     guard, probes, status);
 }
 
 }  // namespace slosh::cuda

@@ -12,7 +12,9 @@
 
 #include "sim/columns.h"
 #include "sim/run_constants.h"
+#include "sim/viscosity/body_drag.h"
 #include "sim/walls/surface_motion.h"
+#include "sim/walls/wall_guard.h"
 
 namespace slosh::cuda {
 
@@ -87,7 +89,7 @@ struct SortedFluid {
   float4* push_b = nullptr;   ///< kCorrected: yz, zz of it; x, y of what pairs drag by, Pa·m
   float* drag_z = nullptr;    ///< kCorrected: z of that
   float* viscosity = nullptr;  ///< Pa·s; there and written only where pairs differ
-  float4* force = nullptr;     ///< N
+  float4* force = nullptr;     ///< N; w: 1 where bodies are in the cells around, else 0
   CellTable cells;
 };
 
@@ -101,6 +103,8 @@ struct LocalSurface {
   float4* velocity = nullptr;    ///< world, m/s, local order; w: volume
   std::uint32_t* key = nullptr;  ///< local order
   float4* force = nullptr;       ///< by the fluid, N, local order
+  float4* drag_a = nullptr;      ///< kBodyDrag: xx, xy, xz, yy of what the force loses for each m/s, N·s/m
+  float2* drag_b = nullptr;      ///< yz, zz of it
 };
 
 /// Body particles sorted by cell.
@@ -119,6 +123,12 @@ struct SortedSurface {
 struct DeviceBody {
   SurfaceMotion motion;
   glm::dvec3 position{0.0};  ///< of the centre of mass, m, world
+};
+
+/// A body that particles are guarded against in a sub-step.
+struct DeviceGuard {
+  GuardedBody body;
+  glm::dvec3 center{0.0};  ///< of mass as the sub-step ends, m, world
 };
 
 /// A probe's state for a step.
@@ -181,19 +191,39 @@ struct ProbeOutput {
   float4* forces = nullptr;
   std::uint32_t* slots = nullptr;
 };
-/// integrate.cu: the leap-frog over `dt` s, in place, with the new keys. Probes stay where they are.
+/// Whom particles are guarded against in a sub-step, and what that takes from them.
+struct GuardView {
+  std::uint32_t count = 0;  ///< of bodies; 0: nothing is guarded
+  std::uint32_t any_fast = 0;
+  const DeviceGuard* bodies = nullptr;
+  unsigned long long* impulses = nullptr;  ///< as ImpulseSums; added to
+  ImpulseUnits units;
+};
+/// integrate.cu: the leap-frog over `dt` s, in place, no further than to the walls, with the new keys. Probes
+/// stay where they are.
 void launch_integrate(const StepConstants& constants, const ParticleKind* kinds, const SortedFluid& fluid,
-                      float dt, float max_speed, const ProbeOutput& probes, std::uint32_t* status,
-                      cudaStream_t stream);
+                      float dt, float max_speed, const GuardView& guard, const ProbeOutput& probes,
+                      std::uint32_t* status, cudaStream_t stream);
 
-/// wrench.cu: Eq 5, 6 and 9 on the particles of `surface` whose body is wanted, to `force` in local order.
+/// wrench.cu: Eq 5, 6 and 9 on the particles of `surface` whose body is wanted, to `local`'s force and,
+/// `with_drag`, to its drag.
 void launch_surface_forces(const StepConstants& constants, const Plan& plan, float first_viscosity,
                            const SortedFluid& fluid, const SortedSurface& surface, const std::uint8_t* wanted,
-                           float4* force, cudaStream_t stream);
+                           const LocalSurface& local, bool with_drag, cudaStream_t stream);
 /// Eq 10–12, summed in double in a fixed shape: chunk by chunk, then body by body.
 void launch_wrenches(const LocalSurface& fixed, const LocalSurface& moving, const DeviceBody* bodies,
                      const WrenchChunk* chunks, std::uint32_t chunk_count, DeviceWrench* partial,
                      const WrenchRange* ranges, std::uint32_t range_count, DeviceWrench* wrenches,
                      cudaStream_t stream);
+/// The drag of the free bodies among them, in the same shape; the others' is zero.
+void launch_body_drags(const LocalSurface& moving, const DeviceBody* bodies, const WrenchChunk* chunks,
+                       std::uint32_t chunk_count, BodyDrag* partial, const WrenchRange* ranges,
+                       std::uint32_t range_count, BodyDrag* drags, cudaStream_t stream);
+
+/// drag.cu: adds to fluid.force the drag of `moving` by the velocities of `twists` (one a body); its own are
+/// lost.
+void launch_drag(const StepConstants& constants, const Plan& plan, const ParticleKind* kinds,
+                 const SortedFluid& fluid, const SortedSurface& moving, const DeviceBody* twists,
+                 cudaStream_t stream);
 
 }  // namespace slosh::cuda

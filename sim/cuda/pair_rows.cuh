@@ -35,10 +35,26 @@ __device__ inline void read_corrected(const NeighborColumns& n, std::uint32_t j,
   p.uz = __ldg(n.drag_z + j);
 }
 
-template <class Parts, PairRule rule, Viscosity viscosity>
+enum class Neighbours { kFluid, kWalls };
+
+/// A neighbour's side of Eq 9. `of_fluid`: WallViscosity's where p is a wall's particle, else 1.
+template <Viscosity viscosity, Neighbours neighbours>
+__device__ inline float viscosity_of(const ParticleView<float>& p, const NeighborColumns& n, std::uint32_t j,
+                                     float of_fluid) {
+  if constexpr (viscosity != Viscosity::kPair) {
+    return p.viscosity;
+  } else if constexpr (neighbours == Neighbours::kWalls) {
+    const float own = __ldg(n.viscosity + j);
+    return own < 0.0f ? p.viscosity : own;
+  } else {
+    return of_fluid * __ldg(n.viscosity + j);
+  }
+}
+
+template <class Parts, PairRule rule, Viscosity viscosity, Neighbours neighbours = Neighbours::kFluid>
 __device__ inline void add_forces(const StepConstants& c, const ParticleView<float>& p,
                                   const NeighborColumns& n, const CellTable& cells, std::uint32_t cell,
-                                  ForceSum<float>& sum) {
+                                  ForceSum<float>& sum, float of_fluid = 1.0f) {
   constexpr bool kOfFluid = rule == PairRule::kCorrected || rule == PairRule::kCorrectedBody;
   // What pairs of one viscosity drag by is in u already.
   constexpr bool kViscous =
@@ -67,8 +83,7 @@ __device__ inline void add_forces(const StepConstants& c, const ParticleView<flo
       i.vz = v.z;
       i.volume = v.w;
     }
-    if constexpr (kViscous)
-      i.viscosity = viscosity == Viscosity::kPair ? __ldg(n.viscosity + j) : p.viscosity;
+    if constexpr (kViscous) i.viscosity = viscosity_of<viscosity, neighbours>(p, n, j, of_fluid);
     add_pair_force<typename Parts::ForceKernel, rule, Parts::kDrag, kViscous>(p, i, c.support_radius, 1.0f,
                                                                               sum);
   });
@@ -76,6 +91,16 @@ __device__ inline void add_forces(const StepConstants& c, const ParticleView<flo
 
 __device__ inline ParticleView<float> view(const float4& x, const float4& v, float viscosity) {
   return {x.x, x.y, x.z, v.x, v.y, v.z, x.w, v.w, viscosity, {}, 0.0f, 0.0f, 0.0f};
+}
+
+/// Calls f(i) for the neighbours of p as drag between them sees them.
+template <Viscosity viscosity, Neighbours neighbours, class F>
+__device__ inline void for_each_dragged(const StepConstants& c, const ParticleView<float>& p,
+                                        const NeighborColumns& n, const CellTable& cells, std::uint32_t cell,
+                                        float of_fluid, F&& f) {
+  for_neighbors(c.grid, cells, cell, [&](std::uint32_t j) {
+    f(view(__ldg(n.x + j), __ldg(n.v + j), viscosity_of<viscosity, neighbours>(p, n, j, of_fluid)));
+  });
 }
 
 }  // namespace slosh::cuda

@@ -29,14 +29,19 @@ class PassClock {
       for (cudaEvent_t& event : set) check.ok(cudaEventCreate(&event), "cudaEventCreate");
     }
   }
+  /// A step begins.
+  void begin(CallCheck& check, cudaStream_t stream) {
+    current_ = 1 - current_;
+    ++steps_;
+    mark(kBegin, check, stream);
+  }
   void mark(Mark mark, CallCheck& check, cudaStream_t stream) {
     if (!check.failed()) check.ok(cudaEventRecord(events_[current_][mark], stream), "cudaEventRecord");
   }
-  /// Call once a step, when all of the step before is over.
+  /// When all of the step before the one that begin() told of is over; this one may still be under way.
   void read(CallCheck& check) {
-    current_ = 1 - current_;
-    if (steps_++ == 0 || check.failed()) return;
-    const auto& set = events_[current_];
+    if (steps_ < 2 || check.failed()) return;
+    const auto& set = events_[1 - current_];
     const auto seconds = [&](Mark from, Mark to) {
       float ms = 0.0f;
       check.ok(cudaEventElapsedTime(&ms, set[from], set[to]), "cudaEventElapsedTime");

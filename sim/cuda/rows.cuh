@@ -29,4 +29,14 @@ __device__ inline void for_neighbors(const CellGrid& grid, const CellTable& cell
   }
 }
 
+/// Whether there is any particle in the 27 cells around `cell`.
+__device__ inline bool any_near(const CellGrid& grid, const CellTable& cells, std::uint32_t cell) {
+  std::uint32_t end = 0;
+  for (std::uint32_t n = 0; n < 9; ++n) {
+    const std::uint32_t first = grid.row_around(cell, n);
+    end |= __ldg(cells.end + first) | __ldg(cells.end + first + 1) | __ldg(cells.end + first + 2);
+  }
+  return end != 0;
+}
+
 }  // namespace slosh::cuda

@@ -30,10 +30,10 @@ struct CorrectedState {
 
 /// `shared_viscosity`: of all fluids, Pa·s, where there is one (Eq 6), else 0. `v`: m/s.
 SLOSH_HD inline CorrectedState corrected_state(const Neighborhood<float>& n, const CorrectionConstants& c,
-                                               float rest_density, float shared_viscosity, float last_volume,
-                                               const float (&v)[3]) {
-  const PressureState eos = pressure_state(n.number, c.rest_number, c.rest_volume, rest_density, c.stiffness,
-                                           c.tension, last_volume, true);
+                                               float pressing_density, float shared_viscosity,
+                                               float last_volume, const float (&v)[3]) {
+  const PressureState eos = pressure_state(n.number, c.rest_number, c.rest_volume, pressing_density,
+                                           c.stiffness, c.tension, last_volume, true);
   CorrectedState state;
   state.volume = eos.volume;
   state.compression = eos.compression;

@@ -28,8 +28,9 @@ struct PressureState {
 inline constexpr float kBulkDamping = 0.25f;
 
 /// Eq 7 from the density kernel's sum over neighbours (itself included), measured against the rest lattice's
-/// sum. `last_volume` (> 0) is the particle's volume one step ago, the rest volume at the start.
-SLOSH_HD inline PressureState pressure_state(float sum, float rest_sum, float rest_volume, float rest_density,
+/// sum. `density`: kg/m³ that Eq 7 takes for the particle's fluid. `last_volume` (> 0) is the particle's
+/// volume one step ago, the rest volume at the start.
+SLOSH_HD inline PressureState pressure_state(float sum, float rest_sum, float rest_volume, float density,
                                              float stiffness, float tension, float last_volume,
                                              bool consistent) {
   const float compression = sum / rest_sum - 1.0f;
@@ -39,7 +40,7 @@ SLOSH_HD inline PressureState pressure_state(float sum, float rest_sum, float re
     const float gained = effective - (rest_volume / last_volume - 1.0f);
     felt = RealOps<float>::positive_part(effective + kBulkDamping * gained);
   }
-  const float pressure = stiffness * rest_density * felt;
+  const float pressure = stiffness * density * felt;
   const float volume = rest_volume / (1.0f + effective);
   return {consistent ? volume * volume * pressure : pressure, volume, compression};
 }

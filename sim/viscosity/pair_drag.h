@@ -15,6 +15,15 @@ enum class Viscosity { kNone, kOne, kPair };
 enum class DragRule { kAlongVelocity, kCentral };
 inline constexpr float kCentralDrag = 5.0f;
 
+/// Both sides of Eq 9's mean (own + of_fluid · the fluid's)/2 for a wall's particle. Below 0
+/// (kFluidsViscosity) it has the fluid's viscosity, whichever fluid it is.
+struct WallViscosity {
+  float own, of_fluid;
+};
+SLOSH_HD inline WallViscosity wall_viscosity(float viscosity) {
+  return viscosity < 0.0f ? WallViscosity{0.0f, 2.0f} : WallViscosity{viscosity, 1.0f};
+}
+
 /// Eq 9's factor of the velocity difference, without the kernel's constant. What p alone decides comes first,
 /// so that it leaves the loop where all share one viscosity.
 template <class Real>

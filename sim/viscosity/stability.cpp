@@ -5,6 +5,7 @@
 
 #include "sim/model.h"
 #include "sim/viscosity/noise.h"
+#include "sim/viscosity/wall_drag.h"
 
 namespace slosh {
 
@@ -12,8 +13,10 @@ namespace {
 
 // Explicit viscosity is stable below 2/λ; λ of the roughest mode is about twice the lattice sum.
 constexpr double kViscousFactor = 0.8;
-// What a wall adds to that sum for the fluid's first layer, as a share of the whole lattice.
-constexpr double kWallPart = 0.35;
+// What is left of that sum for the fluid's first layer, and what a wall adds to it in the models whose sheet
+// drags as one lattice layer.
+constexpr double kHalfLattice = 0.5;
+constexpr double kOneLayer = 0.85;
 
 // Σ V ∇²W over the neighbours of a rest lattice, times spacing²: the damping rate of one particle among still
 // neighbours is μ/ρ · this / spacing².
@@ -41,6 +44,13 @@ double viscous_rate(const Scene& scene, const Plan& plan, const FluidExtremes& f
   return central / fluids.lightest * lattice / (plan.spacing * plan.spacing);
 }
 
+// What a wall adds to the sum of the first layer: half of its rate, since it does not swing against the fluid
+// as the fluid's own layers do.
+double wall_part(const Scene& scene, const Plan& plan) {
+  return plan.model == ParticleModel::kCorrected ? 0.5 * wall_drag(plan.model, scene.support_ratio).rate
+                                                 : kOneLayer;
+}
+
 // Pa·s that the roughest mode feels besides the fluid's own.
 double jostling(const Plan& plan, const FluidExtremes& fluids) {
   return plan.model == ParticleModel::kCorrected ? noise_viscosity(plan, fluids.lightest) : 0.0;
@@ -48,15 +58,19 @@ double jostling(const Plan& plan, const FluidExtremes& fluids) {
 
 }  // namespace
 
-double most_viscous_body(const Scene& scene) {
+double most_viscous_body(const Scene& scene, double most_viscous_fluid) {
   double most = 0.0;
-  for (const Body& body : scene.bodies) most = std::max(most, body.dynamic_viscosity);
+  for (const Body& body : scene.bodies) {
+    const bool of_the_fluid = body.dynamic_viscosity == kFluidsViscosity;
+    most = std::max(most, of_the_fluid ? most_viscous_fluid : body.dynamic_viscosity);
+  }
   return most;
 }
 
 double viscous_step(const Scene& scene, const Plan& plan, const FluidExtremes& fluids) {
-  const double viscosity = jostling(plan, fluids) + fluids.most_viscous +
-                           kWallPart * 0.5 * (fluids.most_viscous + most_viscous_body(scene));
+  const double mean = 0.5 * (fluids.most_viscous + most_viscous_body(scene, fluids.most_viscous));
+  const double at_walls = kHalfLattice * fluids.most_viscous + wall_part(scene, plan) * mean;
+  const double viscosity = jostling(plan, fluids) + std::max(fluids.most_viscous, at_walls);
   return kViscousFactor / (viscosity * viscous_rate(scene, plan, fluids));
 }
 
@@ -64,7 +78,14 @@ double most_viscous_allowed(const Scene& scene, const Plan& plan) {
   const FluidExtremes fluids = fluid_extremes(scene);
   const double whole =
       kViscousFactor / (plan.time_step * viscous_rate(scene, plan, fluids)) - jostling(plan, fluids);
-  return std::max(0.0, (whole - 0.5 * kWallPart * most_viscous_body(scene)) / (1.0 + 0.5 * kWallPart));
+  const double part = wall_part(scene, plan);
+  const double at_walls = (whole - 0.5 * part * most_viscous_body(scene, 0.0)) / (kHalfLattice + 0.5 * part);
+  const double most = std::min(whole, at_walls);
+  const bool of_the_fluid = std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& body) {
+    return body.dynamic_viscosity == kFluidsViscosity;
+  });
+  // Where walls go with the fluid both parts of Eq 9's mean rise.
+  return std::max(0.0, of_the_fluid ? std::min(most, whole / (kHalfLattice + part)) : most);
 }
 
 }  // namespace slosh

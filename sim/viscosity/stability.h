@@ -6,8 +6,8 @@
 
 namespace slosh {
 
-/// Pa·s, the most of any body.
-double most_viscous_body(const Scene& scene);
+/// Pa·s, the most of any body, where the most viscous fluid has so much.
+double most_viscous_body(const Scene& scene, double most_viscous_fluid);
 
 /// s, the longest step at which the drag stays stable.
 double viscous_step(const Scene& scene, const Plan& plan, const FluidExtremes& fluids);

@@ -22,5 +22,7 @@ struct SurfaceMotion {
 };
 
 SurfaceMotion surface_motion(const RigidBody& body);
+/// The same with another twist about its centre of mass.
+SurfaceMotion surface_motion(const RigidBody& body, const Twist& twist);
 
 }  // namespace slosh

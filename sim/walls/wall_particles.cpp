@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "sim/math/kernels.h"
+#include "sim/viscosity/wall_drag.h"
 
 namespace slosh {
 
@@ -14,8 +15,7 @@ namespace {
 // particle acts once (V_p² P_p). One lattice layer then yields under the pressure of a fluid, which acts
 // twice (P_p and P_i), so a wall particle stands for two, and sits so far behind the surface that the fluid's
 // first layer rests half a spacing off the mesh. Measured on a tank: share 1 leaks, 1.5 to 3 hold;
-// tests/physics checks level and weight.
-constexpr float kWallInset = 0.7f;  // of a spacing
+// tests/physics checks level and weight. It sits kWallInset behind the surface (viscosity/wall_drag.h).
 
 float solid_depth(const DistanceFieldView& field, const glm::vec3& p) {
   return field.distance ? -sample_distance(field, p).distance : std::numeric_limits<float>::infinity();
@@ -117,9 +117,9 @@ std::vector<glm::vec3> sheet_positions(const SurfaceSamples& surface, const Dist
   const float spacing = static_cast<float>(plan.spacing);
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const auto move = plan.model == ParticleModel::kCorrected && field.distance ? on_level_set : inset;
-    positions[i] = move(positions[i], surface.normals[i], kWallInset * spacing, field);
+    positions[i] = move(positions[i], surface.normals[i], static_cast<float>(kWallInset) * spacing, field);
   }
-  if (field.distance) close_gaps(field, kWallInset * spacing, spacing, positions);
+  if (field.distance) close_gaps(field, static_cast<float>(kWallInset) * spacing, spacing, positions);
   return positions;
 }
 
@@ -152,6 +152,7 @@ std::vector<float> crowding_shares(const std::vector<glm::vec3>& positions, cons
 std::vector<SurfaceParticle> surface_particles(const Scene& scene, const SampledScene& sampled,
                                                const Plan& plan, BodyMotion motion) {
   std::vector<SurfaceParticle> particles;
+  const float drag = static_cast<float>(wall_drag(plan.model, scene.support_ratio).factor);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
     if (!plan.has(PassId::kWalls) || body.motion != motion || body.point_probe) continue;
@@ -162,7 +163,7 @@ std::vector<SurfaceParticle> surface_particles(const Scene& scene, const Sampled
     const float lattice_volume = static_cast<float>(std::pow(plan.spacing, 3));
     for (std::size_t i = 0; i < positions.size(); ++i) {
       const float volume = plan.model == ParticleModel::kPaper ? sampled.surfaces[b].particle_volume
-                                                               : pressures[i] / kWallShare * lattice_volume;
+                                                               : pressures[i] / kWallShare * lattice_volume * drag;
       particles.push_back({positions[i], static_cast<std::uint16_t>(b), pressures[i], volume,
                            static_cast<float>(body.dynamic_viscosity)});
     }

@@ -18,7 +18,7 @@ struct SurfaceParticle {
   std::uint16_t body;  ///< index into Scene::bodies
   float pressure;      ///< kPaper: Pa, Eq 7 at the body's constant density; kConsistent: how many lattice
                        ///< particles it stands for, about two
-  float volume;        ///< m³
+  float volume;        ///< m³, what it drags with (WallDrag::factor is in it)
   float viscosity;     ///< Pa·s
 };
 

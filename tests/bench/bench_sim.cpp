@@ -1,5 +1,5 @@
-// What the simulation costs and how far off it is: speed of a whole step of `pool` at several sizes, error
-// against run time, and what leaving a pass out saves. tests/bench/README.md says how to read it.
+// What the simulation costs: a whole step of `pool` at several sizes, and the shipped bucket in two hands, with
+// what they feel against its weight. Known answers and passes: `slosh report`.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -160,39 +160,6 @@ bool bench_speed(Table& table, const std::vector<std::size_t>& counts, int steps
   return true;
 }
 
-/// (b) Still tank: weight error and noise against what a simulated second costs.
-void bench_still_tank(Table& table) {
-  for (const double spacing : {0.02, 0.0125, 0.01, 0.008, 0.00625}) {
-    for (const ParticleModel model :
-         {ParticleModel::kCorrected, ParticleModel::kConsistent, ParticleModel::kPaper}) {
-      lab::SceneBuilder b;
-      b.add_fluid(1000.0, 0.05);
-      b.add_fixed("tank", lab::tank_at_floor({0.2, 0.16, 0.2}, 0.05));
-      b.add_volume(make::box({-0.1, 0.0, -0.1}, {0.1, 0.1, 0.1}));
-      b.set_domain({-0.3, -0.2, -0.3}, {0.3, 0.4, 0.3});
-      b.scene.model = model;
-      lab::Experiment e(b.scene, spacing);
-      e.world().settle(0.6);
-      lab::Average down;
-      const auto start = std::chrono::steady_clock::now();
-      e.run(0.5, [&] { down.add(-e.bodies().bodies[0].fluid.force.y); });
-      const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-      const double weight = e.fluid_mass() * lab::kGravity;
-      char what[80];
-      std::snprintf(what, sizeof what, "still tank %.4g mm %s", 1e3 * spacing, name(model));
-      table.add({"error",
-                 what,
-                 {{"particles", static_cast<double>(e.world().fluid_count())},
-                  {"wall_s_per_simulated_s", wall / 0.5},
-                  {"weight_error_percent", 100.0 * (down.mean() / weight - 1.0)},
-                  {"noise_rms_percent", 100.0 * down.noise_share()},
-                  {"noise_peak_percent", 100.0 * down.peak_share()},
-                  {"lost_percent", 100.0 * static_cast<double>(e.world().diagnostics().retired) /
-                                       static_cast<double>(e.world().fluid_count())}}});
-    }
-  }
-}
-
 /// (b) The shipped bucket in two hands.
 bool bench_bucket(Table& table) {
   const Result<Scene> bucket = shipped("bucket");
@@ -225,49 +192,6 @@ bool bench_bucket(Table& table) {
   return true;
 }
 
-/// (c) The same pool without viscosity, with one for all, and with one a particle (a second fluid that
-/// differs a little).
-bool bench_passes(Table& table, std::size_t count, int steps) {
-  const Result<Scene> pool = shipped("pool");
-  if (!pool) return std::fprintf(stderr, "%s\n", pool.error().text().c_str()), false;
-  const Result<SampledScene> sampled = sample_count(pool.value(), count);
-  if (!sampled) return std::fprintf(stderr, "%s\n", sampled.error().text().c_str()), false;
-  const char* names[] = {"no viscosity", "one viscosity", "a viscosity a particle"};
-  std::vector<World> worlds;
-  std::array<Timing, 3> timings;
-  for (int i = 0; i < 3; ++i) {
-    Scene scene = pool.value();
-    SampledScene particles = sampled.value();
-    if (i == 0) scene.fluids[0].dynamic_viscosity = 0.0;
-    if (i == 2) {
-      Fluid other = scene.fluids[0];
-      other.dynamic_viscosity *= 0.5;
-      scene.fluids.push_back(other);
-      scene.fluid_volumes.push_back(scene.fluid_volumes[0]);
-      scene.fluid_volumes.back().fluid = 1;
-      for (std::size_t p = 0; p < particles.fluid_index.size(); p += 2) particles.fluid_index[p] = 1;
-    }
-    worlds.emplace_back(scene, particles, make_plan(scene, particles.spacing),
-                        WorldOptions{1, Backend::kCpu});
-  }
-  const std::vector<HandleInput> hands = first_hands(pool.value());
-  // In turns, so that what else the machine does falls on all three alike.
-  for (int round = 0; round < steps; ++round) {
-    for (std::size_t i = 0; i < worlds.size(); ++i) {
-      const Timing one = time_steps(worlds[i], hands, 1);
-      if (round < 10) continue;
-      timings[i].total.push_back(one.total[0]);
-      timings[i].sort.push_back(one.sort[0]);
-      timings[i].density.push_back(one.density[0]);
-      timings[i].force.push_back(one.force[0]);
-      timings[i].body.push_back(one.body[0]);
-    }
-  }
-  for (std::size_t i = 0; i < worlds.size(); ++i)
-    add_timing(table, "passes", "pool " + std::to_string(count) + " " + names[i], worlds[i], timings[i]);
-  return true;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -277,18 +201,14 @@ int main(int argc, char** argv) {
   int steps = 100;
   std::vector<std::size_t> counts{4096, 8192, 16384, 32768, 65536, 131072};
   app.add_option("--csv", csv, "also write the results here");
-  app.add_option("--only", only, "one part")->check(CLI::IsMember({"speed", "error", "passes"}));
+  app.add_option("--only", only, "one part")->check(CLI::IsMember({"speed", "error"}));
   app.add_option("--steps", steps, "steps that are timed for each row")->check(CLI::Range(1, 100000));
   app.add_option("--counts", counts, "particle counts of the speed part");
   CLI11_PARSE(app, argc, argv);
   Table table;
   bool good = true;
   if (only.empty() || only == "speed") good = bench_speed(table, counts, steps) && good;
-  if (only.empty() || only == "error") {
-    bench_still_tank(table);
-    good = bench_bucket(table) && good;
-  }
-  if (only.empty() || only == "passes") good = bench_passes(table, 32768, steps) && good;
+  if (only.empty() || only == "error") good = bench_bucket(table) && good;
   if (!csv.empty() && !table.write(csv)) {
     std::fprintf(stderr, "%s: cannot be written\n", csv.c_str());
     good = false;

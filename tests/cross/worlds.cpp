@@ -1,5 +1,6 @@
 #include "tests/cross/worlds.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/support/stirred_tank.h"
@@ -9,6 +10,13 @@ namespace slosh::testing {
 Tank stirred_tank(ParticleModel model) {
   Tank tank = stirred_tank(0.1);
   tank.scene.model = model;
+  return tank;
+}
+
+Tank paddle_in_honey(ParticleModel model) {
+  Tank tank = stirred_tank(model);
+  for (Fluid& fluid : tank.scene.fluids) fluid.dynamic_viscosity = 20.0;
+  tank.scene.bodies[1].mass = {0.005, glm::dvec3(0.0), glm::dmat3(5e-6)};
   return tank;
 }
 
@@ -34,6 +42,39 @@ Tank probed_tank() {
   tank.sampled.distance_fields.emplace_back();
   add_grip(tank, 1);
   tank.scene.grips[0].rotational_stiffness = tank.scene.grips[0].rotational_damping = 0.0;
+  return tank;
+}
+
+Tank thrown_tank() {
+  TankOptions options;
+  options.viscosity = 0.001;
+  Tank tank = make_tank(options);
+  for (glm::vec3& v : tank.sampled.fluid_velocities) v = {3.0f, 0.2f, 0.1f};
+  Body& walls = tank.scene.bodies[0];
+  walls.motion = BodyMotion::kFree;
+  walls.mass = {3.0, glm::dvec3(0.0), glm::dmat3(0.03)};
+  // The sheets sit half a spacing behind the inner faces already; walls 5 cm thick, no lid.
+  const glm::vec3 low(-0.1f, 0.0f, -0.1f), high(0.1f, 1.0f, 0.1f), wall(0.05f);
+  const auto distance_to_box = [](const glm::vec3& p, const glm::vec3& lower, const glm::vec3& upper) {
+    const glm::vec3 q = glm::max(lower - p, p - upper);
+    return glm::length(glm::max(q, 0.0f)) + std::min(std::max({q.x, q.y, q.z}), 0.0f);
+  };
+  DistanceField& field = tank.sampled.distance_fields[0];
+  field.cell = 0.005f;
+  field.origin = low - wall - 0.0317f;
+  field.size = glm::ivec3(74, 64, 74);
+  for (int k = 0; k < field.size.z; ++k) {
+    for (int j = 0; j < field.size.y; ++j) {
+      for (int i = 0; i < field.size.x; ++i) {
+        const glm::vec3 p = field.origin + field.cell * glm::vec3(i, j, k);
+        field.distance.push_back(std::max(distance_to_box(p, low - wall, glm::vec3(0.15f, 0.2f, 0.15f)),
+                                          -distance_to_box(p, low, high)));
+      }
+    }
+  }
+  add_grip(tank, 0);
+  tank.scene.grips[0].stiffness = 1e4;
+  tank.scene.grips[0].rotational_stiffness = 100.0;
   return tank;
 }
 

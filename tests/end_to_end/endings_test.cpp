@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -161,6 +162,8 @@ TEST_F(EndingsTest, NumbersThatAreNoneAreRefused) {
 }
 
 TEST_F(EndingsTest, WhatCannotBeMetIsSaidBeforeTheMeasuring) {
+  fs::create_directories(test::test_folder());
+  std::ofstream(at("earlier.rec")) << "an afternoon's work";
   for (const std::vector<std::string>& bad :
        std::vector<std::vector<std::string>>{{"--device", "joystick"},
                                              {"--device", "mouse"},
@@ -168,6 +171,7 @@ TEST_F(EndingsTest, WhatCannotBeMetIsSaidBeforeTheMeasuring) {
                                              {"--size", "640"},
                                              {"--record", "nowhere/x.rec"},
                                              {"--record", "."},
+                                             {"--record", "earlier.rec"},
                                              {"--out", "/proc/nowhere"}}) {
     std::vector<std::string> arguments{"play", "probe", "--headless", "--no-render", "--spacing", "auto"};
     arguments.insert(arguments.end(), bad.begin(), bad.end());

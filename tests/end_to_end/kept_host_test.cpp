@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <fstream>
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -324,6 +325,38 @@ TEST_F(KeptHost, ThatDiesAgainAndAgainEndsWithWords) {
   EXPECT_EQ(ended.code, 128 + SIGABRT);
   EXPECT_NE(ended.err.find("is not started again"), std::string::npos) << ended.err;
   EXPECT_NE(ended.err.find("--resume kept"), std::string::npos) << ended.err;
+}
+
+TEST_F(KeptHost, LinksEndsByWhatTheHostAnswered) {
+  const auto links = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), "links");
+    return run("links", words)->wait();
+  };
+  EXPECT_EQ(links({}).code, 1) << "there is nobody to ask";
+  const auto host = this->host({"--checkpoint", "none", "--wait", "0"});
+  ASSERT_TRUE(hosting(*host)) << host->wait().err;
+  EXPECT_EQ(links({}).code, 0);
+  const Outcome made = links({"new", "Refused", "--watch"});
+  EXPECT_EQ(made.code, 0) << "a name is no verdict: " << made.out << made.err;
+  const std::string id = made.out.substr(0, made.out.find(' '));
+  EXPECT_EQ(links({"expire", id, "10m"}).code, 0);
+  EXPECT_EQ(links({"revoke", id}).code, 0);
+  EXPECT_EQ(links({"revoke", "nobody"}).code, 1);
+  EXPECT_EQ(links({"expire", "nobody", "10m"}).code, 1);
+  EXPECT_EQ(links({"expire", id, "soon"}).code, 2) << "not asked at all";
+  EXPECT_EQ(links({"--port", "9"}).code, 1) << "no host there";
+  host->signal(SIGTERM);
+  host->wait();
+  EXPECT_EQ(links({}).code, 1);
+}
+
+TEST_F(KeptHost, ARecordingThatIsThereIsNotOverwritten) {
+  std::filesystem::create_directories(folder("host"));
+  std::ofstream(folder("host") / "run.rec") << "an afternoon's work";
+  const Outcome refused = this->host({"--checkpoint", "none", "--record", "run.rec"})->wait();
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_NE(refused.err.find("is there already"), std::string::npos) << refused.err;
+  EXPECT_EQ(read_text(folder("host") / "run.rec"), "an afternoon's work");
 }
 
 TEST_F(KeptHost, WithoutASupervisorItIsOneProcess) {

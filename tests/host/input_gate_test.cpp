@@ -134,7 +134,8 @@ double pull(const HandleInput& input, const GripState& grip, const Grip& of) {
 }
 
 TEST(InputGate, AGripThatIsTakenFarFromTheBodyIsLetInSlowly) {
-  const Scene scene = scene_with_grips(2);
+  Scene scene = scene_with_grips(2);
+  scene.grips[1].body = 1;  // nobody else holds what it takes
   InputGate gate(scene);
   Channel channel(2, BodyMessage{}, 1 << 20);
   BodySnapshot now = snapshot_with_grips(2);
@@ -294,7 +295,7 @@ TEST(InputGate, AHandThatLetsGoByItselfIsGoneAtOnce) {
   EXPECT_FALSE(gate.take(channel, snapshot_with_grips(1), 0)[0].engaged);
 }
 
-TEST(InputGate, AHandThatFallsSilentStandsStill) {
+TEST(InputGate, AHandThatFallsSilentComesToRestWithoutABlow) {
   const Scene scene = scene_with_grips(1);
   Channel channel(1, BodyMessage{}, 1000);
   InputGate gate(scene);
@@ -302,22 +303,29 @@ TEST(InputGate, AHandThatFallsSilentStandsStill) {
   PoseMessage m = message(0, 0.1);
   m.engaged = true;
   m.twist.linear.x = 1.0;
-  ASSERT_TRUE(gate.accept(m, 1'000'000'000));
-  now.time = 0.005;
-  now.grips[0].pose.position.x = 0.105;  // the grip moves with the hand
-  now.grips[0].twist.linear.x = 1.0;
-  HandleInput input = gate.take(channel, now, 1'049'000'000)[0];
-  EXPECT_EQ(input.twist.linear.x, 1.0);
-  EXPECT_NEAR(input.pose.position.x, 0.105, 1e-12);
-  input = gate.take(channel, now, 1'051'000'000)[0];
-  EXPECT_EQ(input.twist.linear.x, 0.0);
-  for (int i = 1; i < 4; ++i) {
-    now.time = 0.1 * i;
-    input = gate.take(channel, now, 1'060'000'000)[0];
-    EXPECT_EQ(input.twist.linear.x, 0.0);
-    EXPECT_NEAR(input.pose.position.x, 0.105, 1e-12);
+  constexpr std::int64_t kStart = 1'000'000'000;
+  ASSERT_TRUE(gate.accept(m, kStart));
+  constexpr double kStep = 0.002;
+  double x = 0.1;
+  double speed = 1.0;
+  for (int i = 1; i <= 1000; ++i) {
+    now.time = kStep * i;
+    // The grip moves with the hand.
+    now.grips[0].pose.position.x = x + kStep * speed;
+    now.grips[0].twist.linear.x = speed;
+    const HandleInput input = gate.take(channel, now, kStart + to_nanoseconds(now.time))[0];
     EXPECT_TRUE(input.engaged);
+    EXPECT_NEAR(input.pose.position.x, x + kStep * speed, 1e-9) << "it goes on as it says";
+    EXPECT_LE(input.twist.linear.x, speed);
+    EXPECT_GE(input.twist.linear.x, speed - 1.02 * kStep / kRunOut);
+    if (now.time < kStaleTwist) {
+      EXPECT_EQ(input.twist.linear.x, 1.0);
+    }
+    x = input.pose.position.x;
+    speed = input.twist.linear.x;
   }
+  EXPECT_LT(speed, 1e-6);
+  EXPECT_NEAR(x, 0.1 + kStaleTwist + kRunOut, 0.005);
 }
 
 /// Two hands hold one body; the first falls silent, then the body is moved.

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <fstream>
 #include <random>
 
 #include "host/keep/rebuild.h"
@@ -375,6 +376,24 @@ TEST(Recording, OfALargeStateNeedsNoLargerQueue) {
   EXPECT_TRUE(played.complete);
   EXPECT_EQ(played.differ, 0u);
   EXPECT_EQ(played.steps, recorded.report.totals.steps);
+}
+
+TEST(Recording, OverwritesNothing) {
+  const path file = fresh_folder() / "run";
+  std::ofstream(file) << "an afternoon's work";
+  Rig rig(until(0.01));
+  const auto start = [&] {
+    return RecordingWriter::start(small_world().scene, small_world().sampled.spacing, rig.host.start_state(),
+                                  rig.host.world(), rig.host.state(), recording_options(file));
+  };
+  const auto refused = start();
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().text().find("is there already"), std::string::npos) << refused.error().text();
+  std::string kept;
+  std::getline(std::ifstream(file) >> std::ws, kept);
+  EXPECT_EQ(kept, "an afternoon's work");
+  std::ofstream(file, std::ios::trunc).flush();
+  EXPECT_TRUE(start()) << "an empty file holds nothing";
 }
 
 TEST(Recording, ThatTheDiskCannotFollowEndsCleanly) {

@@ -136,6 +136,42 @@ TEST(Engagement, AHandThatPassesByDoesNotSnatchTheGripAway) {
   EXPECT_LT(e.angle(), 1e-12);
 }
 
+/// The other hand keeps the grip where it is, whatever this one does.
+TEST(Engagement, WhereAnotherHandHoldsTooItSlipsAndBearsMoreEachSecond) {
+  GripState grip;
+  grip.on_hand = {{3.0, -12.0, 0.0}, {0.0, 0.2, 0.0}};
+  Pose hand = at(0.3);
+  hand.orientation = rotate_by(hand.orientation, {0.0, 0.0, 1.2});
+  for (const bool shared : {true, false}) {
+    Engagement e;
+    double most = 0.0;
+    Wrench before = grip.on_hand;
+    double t = 0.0;
+    for (; t < 12.0; t += kTick) {
+      // To and fro at 0.3 m/s at most: what it drags at the body by is bounded too.
+      Twist twist;
+      twist.linear.x = 0.3 * std::cos(3.0 * t);
+      hand.position.x = 0.3 + 0.1 * std::sin(3.0 * t);
+      const Wrench wrench = wrench_of(e.update(true, t, hand, twist, kGains, grip, shared), grip);
+      const double more = glm::length(wrench.force - grip.on_hand.force);
+      const double twisting = glm::length(wrench.torque - grip.on_hand.torque);
+      const double firmness = std::exp2(t / kHoldDoubles);
+      if (t < 2.0) most = std::max(most, more);
+      if (!shared) continue;
+      EXPECT_LE(more, firmness * kHoldForce + 1e-9) << t;
+      EXPECT_LE(twisting, firmness * kHoldTorque + 1e-9) << t;
+      EXPECT_LT(glm::length(wrench.force - before.force), 2.0 + kTick * 1000.0) << t;
+      before = wrench;
+    }
+    EXPECT_EQ(e.distance(), 0.0) << "in the end the hand holds where it is";
+    if (shared) {
+      EXPECT_NEAR(most, 4.0 * kHoldForce, 0.1) << "it bears what it may";
+    } else {
+      EXPECT_GT(most, 150.0);
+    }
+  }
+}
+
 TEST(Engagement, AQuietHoldIsTheHandItself) {
   Engagement e;
   GripState grip;

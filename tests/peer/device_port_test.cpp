@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "peer/haptics/device_loop.h"
+#include "peer/verbs/hand_trouble.h"
 #include "servo_kit.h"
 
 namespace slosh {
@@ -265,6 +266,8 @@ TEST(DevicePort, ADeviceThatThrowsIsSentZeroAndNamedAndTheLoopGoesOn) {
         std::this_thread::sleep_for(std::chrono::microseconds(100));
       }
       EXPECT_EQ(kit.servo->failure(0), "the cable is out");
+      EXPECT_EQ(run_trouble("", *kit.servo, kit.scene), "the device in grip is out of use: the cable is out");
+      EXPECT_EQ(run_troubles("the disk is full", *kit.servo, kit.scene).size(), 2u);
       ASSERT_TRUE(gate->wait([&] { return !gate->written.empty() && gate->written.back() == 0.0; }));
       const std::size_t written = gate->written.size();
       for (int i = 0; i < 5; ++i) kit.servo->tick(steady_now_ns());

@@ -88,6 +88,22 @@ TEST(Summary, StatusWordsAreOnePerBit) {
   EXPECT_EQ(status_words(kStatusNonFinite | kStatusEscaped | kStatusInputRejected).size(), 3u);
 }
 
+TEST(Summary, StatusesHaveTheirNumbers) {
+  RunSummary s;
+  s.fluid_particles = 344;
+  s.retired_particles = 264;
+  s.steps = 1714;
+  s.status = kStatusEscaped | kStatusSpeedLimited | kStatusForceLimited;
+  s.status_steps[1] = 12;
+  s.status_steps[2] = 37;
+  const std::vector<std::string> words = status_words(s);
+  ASSERT_EQ(words.size(), 3u);
+  EXPECT_NE(words[0].find("(264 of 344, in 12 of 1 714 steps)"), std::string::npos) << words[0];
+  EXPECT_NE(words[1].find("(in 37 of 1 714 steps)"), std::string::npos) << words[1];
+  EXPECT_EQ(words[2].find("("), std::string::npos) << "the device loop does not count: " << words[2];
+  EXPECT_NE(in_words(s).find("264 of 344"), std::string::npos);
+}
+
 TEST(Grouped, ThousandsApart) {
   EXPECT_EQ(grouped(0), "0");
   EXPECT_EQ(grouped(999), "999");

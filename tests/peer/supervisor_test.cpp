@@ -88,6 +88,46 @@ TEST(Supervisor, StartsAgainWhatCanCarryOnAndNothingElse) {
   munmap(page, sizeof(int));
 }
 
+TEST(Supervisor, AWorldHangsWhosePulseStands) {
+  HangWatch watch(3);
+  for (int i = 0; i < 10; ++i) EXPECT_FALSE(watch.look(0)) << "it loads";
+  for (std::uint64_t i = 1; i < 10; ++i) EXPECT_FALSE(watch.look(i));
+  EXPECT_FALSE(watch.look(9));
+  EXPECT_FALSE(watch.look(9));
+  watch.pass_over();
+  EXPECT_FALSE(watch.look(9));
+  EXPECT_FALSE(watch.look(9));
+  EXPECT_TRUE(watch.look(9));
+}
+
+TEST(Supervisor, StartsAgainAWorldThatHangsAndNoneThatIsStoppedOrEnds) {
+  // Beats twice, then lives on without a pulse.
+  const auto hangs = [](const HostVerbOptions& options, HostReins* reins) -> int {
+    if (options.restarts == 1) _exit(options.resume == "kept" ? 3 : 4);
+    reins->can_carry_on_from("kept");
+    reins->pulse() = 2;
+    while (true) pause();
+  };
+  EXPECT_EQ(supervise_host({}, hangs, 2), 3);
+  // One that somebody stopped is let be, and so is one whose run is over.
+  const auto stopped = [](const HostVerbOptions& options, HostReins* reins) -> int {
+    if (options.restarts == 1) _exit(4);
+    reins->can_carry_on_from("kept");
+    reins->pulse() = 2;
+    const pid_t self = getpid();
+    if (fork() == 0) {
+      usleep(3'500'000);
+      ::kill(self, SIGCONT);
+      _exit(0);
+    }
+    raise(SIGSTOP);
+    reins->pulse() = 0;
+    usleep(3'500'000);
+    _exit(7);
+  };
+  EXPECT_EQ(supervise_host({}, stopped, 2), 7);
+}
+
 TEST(Supervisor, PassesOnWhoAsksForTheEndOnce) {
   // The child was not signalled itself: it gets what its supervisor got.
   EXPECT_EQ(supervise_host({},

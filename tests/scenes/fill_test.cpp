@@ -1,6 +1,9 @@
 // Filling volumes: counts, clearance, several fluids.
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 
+#include "scenes/mesh/closed.h"
 #include "scenes/sample.h"
 #include "support.h"
 
@@ -77,6 +80,118 @@ TEST(Filling, OilOnWaterKeepsBothAndTheirIndices) {
   ASSERT_EQ(both.value().fluid_index.size(), 1000u);
   EXPECT_EQ(two.fluids[both.value().fluid_index.front()].name, "water");
   EXPECT_EQ(two.fluids[both.value().fluid_index.back()].name, "oil");
+}
+
+// A vessel, or none, and one volume of water.
+Scene filled(const make::Solid* vessel, const make::Solid& water, const Pose& pose = {}) {
+  Scene scene;
+  scene.source_file = "scene.gltf";
+  scene.fluids.push_back(Fluid{});
+  FluidVolume volume;
+  volume.name = "water";
+  volume.mesh = 0;
+  volume.pose = pose;
+  scene.meshes.push_back(make::with_normals(water));
+  scene.fluid_volumes.push_back(volume);
+  if (!vessel) return scene;
+  Body body;
+  body.name = "vessel";
+  body.mesh = 1;
+  body.pose = pose;
+  scene.meshes.push_back(make::with_normals(*vessel));
+  scene.bodies.push_back(body);
+  return scene;
+}
+
+double volume_of(const make::Solid& solid) {
+  const mesh::WeldedMesh welded = mesh::weld(make::with_normals(solid));
+  mesh::Components parts;
+  mesh::find_defects(welded, &parts);
+  return mesh::integrate_volume(welded, parts).volume;
+}
+
+// The sampled mass is the mesh's at any spacing: in a round vessel, in a box, for a ball, for a drop's tip.
+TEST(Filling, SampledMassIsTheMeshs) {
+  const make::Solid glass =
+      make::lathe({{0.0, -0.02}, {0.07, -0.02}, {0.07, 0.12}, {0.05, 0.12}, {0.05, 0.0}, {0.0, 0.0}}, 64);
+  const make::Solid in_glass = make::lathe({{0.0, 0.0}, {0.05, 0.0}, {0.05, 0.08}, {0.0, 0.08}}, 64);
+  const make::Solid tank = make::tank({0.1, 0.1, 0.1}, 0.02);
+  const make::Solid in_tank = make::box({-0.05, 0.02, -0.05}, {0.05, 0.09, 0.05});
+  const make::Solid cone = make::lathe({{0.0, 0.0}, {0.05, 0.0}, {0.0, 0.12}}, 64);
+  const make::Solid ball = make::sphere(0.05, 48, 96);
+  struct Case {
+    const char* name;
+    const make::Solid* vessel;
+    const make::Solid* water;
+  };
+  for (const Case& c :
+       {Case{"glass", &glass, &in_glass}, Case{"tank", &tank, &in_tank}, Case{"free box", nullptr, &in_tank},
+        Case{"cone", nullptr, &cone}, Case{"ball", nullptr, &ball}}) {
+    const double wanted = volume_of(*c.water);
+    const Scene scene = filled(c.vessel, *c.water);
+    double worst = 0.0;
+    for (double spacing = 0.005; spacing < 0.0101; spacing += 0.0012) {
+      const auto sampled = sample_scene(scene, spacing);
+      ASSERT_TRUE(sampled) << sampled.error().text();
+      const double volume =
+          static_cast<double>(sampled.value().fluid_positions.size()) * std::pow(spacing, 3);
+      worst = std::max(worst, std::abs(volume / wanted - 1.0));
+    }
+    std::printf("  %s: sampled mass off by up to %.2f %%\n", c.name, 100.0 * worst);
+    EXPECT_LT(worst, 0.005) << c.name;
+  }
+}
+
+// What walls keep out goes on top, and top is where gravity says: the same glass lying in its file.
+TEST(Filling, WhatIsMissingGoesUp) {
+  const make::Solid glass =
+      make::lathe({{0.0, -0.02}, {0.07, -0.02}, {0.07, 0.12}, {0.05, 0.12}, {0.05, 0.0}, {0.0, 0.0}}, 64);
+  const make::Solid in_glass = make::lathe({{0.0, 0.0}, {0.05, 0.0}, {0.05, 0.08}, {0.0, 0.08}}, 64);
+  glm::dmat4 laid(1.0);  // the mesh's z is up
+  laid[1] = {0.0, 0.0, 1.0, 0.0};
+  laid[2] = {0.0, -1.0, 0.0, 0.0};
+  const make::Solid lying_glass = make::transformed(glass, laid), lying = make::transformed(in_glass, laid);
+  const Pose raised{{0.0, 0.0, 0.0}, glm::angleAxis(-0.5 * 3.14159265358979323846, glm::dvec3(1, 0, 0))};
+  const auto upright = sample_scene(filled(&glass, in_glass), 0.008);
+  const auto stood_up = sample_scene(filled(&lying_glass, lying, raised), 0.008);
+  ASSERT_TRUE(upright && stood_up);
+  const auto top = [](const SampledScene& sampled) {
+    float highest = 0.0f;
+    for (const glm::vec3& p : sampled.fluid_positions) highest = std::max(highest, p.y);
+    return highest;
+  };
+  EXPECT_EQ(stood_up.value().fluid_positions.size(), upright.value().fluid_positions.size());
+  EXPECT_NEAR(top(stood_up.value()), top(upright.value()), 1e-4);
+  EXPECT_GT(top(upright.value()), 0.08f) << "nothing was missing: the test tests nothing";
+}
+
+// A partition that is part of the tank's mesh, across the water, let into the walls or flush with them, thick
+// or as thin as the spacing: no particle starts inside it, and the water is what is left of its mesh.
+TEST(Filling, StaysOutOfAMergedPartition) {
+  const make::Solid water = make::box({-0.2, 0.02, -0.05}, {0.2, 0.08, 0.05});
+  for (const double half : {0.008, 0.005}) {
+    for (const double let_in : {0.02, 0.0}) {
+      const make::Solid partition =
+          make::box({-half, 0.02 - let_in, -0.05 - let_in}, {half, 0.09, 0.05 + let_in});
+      const make::Solid tank = make::merged(make::tank({0.4, 0.1, 0.1}, 0.02), partition);
+      for (const double spacing : {0.005, 0.008, 0.01}) {
+        const auto sampled = sample_scene(filled(&tank, water), spacing);
+        ASSERT_TRUE(sampled) << sampled.error().text();
+        const auto near = static_cast<float>(half + 0.4 * spacing);
+        const std::size_t inside = static_cast<std::size_t>(
+            std::count_if(sampled.value().fluid_positions.begin(), sampled.value().fluid_positions.end(),
+                          [&](const glm::vec3& p) { return std::abs(p.x) < near && p.y < 0.09f; }));
+        const double wanted = (0.4 - 2.0 * half) * 0.06 * 0.1;
+        const double have =
+            static_cast<double>(sampled.value().fluid_positions.size()) * std::pow(spacing, 3);
+        std::printf("  partition of %.0f mm let in by %.0f at %.0f mm: volume off by %+.2f %%\n", 2e3 * half,
+                    1e3 * let_in, 1e3 * spacing, 100.0 * (have / wanted - 1.0));
+        EXPECT_EQ(inside, 0u) << half << " let in by " << let_in << " at " << spacing;
+        EXPECT_LT(std::abs(have / wanted - 1.0), 0.005)
+            << half << " let in by " << let_in << " at " << spacing;
+      }
+    }
+  }
 }
 
 TEST(Filling, RepeatsToTheBit) {

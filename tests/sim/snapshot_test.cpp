@@ -7,10 +7,11 @@ namespace {
 
 TEST(StatusText, SaysEveryBitInWords) {
   EXPECT_EQ(status_text(0), "");
-  for (std::uint32_t bit = 1; bit <= kStatusDeviceLost; bit <<= 1)
+  for (std::uint32_t bit = 1; bit <= kStatusGuarded; bit <<= 1)
     EXPECT_FALSE(status_text(bit).empty()) << bit;
   const std::string both = status_text(kStatusEscaped | kStatusTimeSlipped);
   EXPECT_NE(both.find("left the domain"), std::string::npos);
+  EXPECT_NE(status_text(kStatusCompressed).find("100 to 400"), std::string::npos) << "what sim/README.md measured";
   EXPECT_NE(both.find("; "), std::string::npos);
 }
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <vector>
 
 #include "tests/physics/lab.h"
 
@@ -53,6 +55,71 @@ TEST_P(Floating, box_of_any_density) {
 }
 
 INSTANTIATE_TEST_SUITE_P(shares, Floating, ::testing::Values(0.01, 0.1, 0.5, 20.0));
+
+struct Honey {
+  double share = 1.0;      // of the fluid's density
+  double viscosity = 1.0;  // Pa·s
+};
+
+class Drifting : public ::testing::TestWithParam<Honey> {};
+
+// A free box of three spacings, tilted, half in a fluid that holds on to it. However light it is, it goes
+// where its weight says, has no more energy than a fall or rise through its own height gives, and soon lies
+// still. With drag from the velocities that a step begins with, the lightest spun at 1200 and 30000 rad/s.
+TEST_P(Drifting, box_in_a_viscous_fluid) {
+  const Honey honey = GetParam();
+  constexpr double kCoarse = 0.02, kEdge = 0.06, kSurface = 0.12;
+  SceneBuilder b;
+  b.add_fluid(1000.0, honey.viscosity);
+  b.add_fixed("tank", tank_at_floor({0.2, 0.3, 0.2}, 0.06));
+  const Pose tilted{{0.0, kSurface, 0.0}, glm::angleAxis(0.3, glm::normalize(glm::dvec3(1.0, 0.3, 0.2)))};
+  const int box = b.add_free("box", make::box(glm::dvec3(-0.5 * kEdge), glm::dvec3(0.5 * kEdge)),
+                             honey.share * 1000.0 * std::pow(kEdge, 3), tilted);
+  b.add_volume(make::box({-0.1, 0.0, -0.1}, {0.1, kSurface, 0.1}));
+  b.set_domain({-0.4, -0.3, -0.4}, {0.4, 1.0, 0.4});
+  Experiment e(b.scene, kCoarse);
+  const MassProperties mass = b.scene.bodies[box].mass;
+  double spin = 0.0, late_spin = 0.0, energy = 0.0;
+  const double half = honey.viscosity > 100.0 ? 0.1 : 0.5;  // s
+  const auto look = [&] {
+    const BodyState& now = e.bodies().bodies[box];
+    const double rate = glm::length(now.twist.angular);
+    double& fastest = e.world().time() > half ? late_spin : spin;
+    fastest = std::max(fastest, rate);
+    energy = std::max(energy, 0.5 * mass.mass * glm::dot(now.twist.linear, now.twist.linear) +
+                                  0.5 * mass.inertia[0][0] * rate * rate);
+  };
+  e.run(2.0 * half, look);
+  ASSERT_TRUE(all_finite(e.world()));
+  const std::uint32_t status = e.world().take_status();
+  EXPECT_EQ(status & (kStatusNonFinite | kStatusEscaped), 0u) << status_text(status);
+  char name[80];
+  std::snprintf(name, sizeof name, "box of %g times the density in %g Pa·s, ", honey.share, honey.viscosity);
+  const double fall = std::max(1.0, honey.share) * 1000.0 * std::pow(kEdge, 3) * kGravity * kEdge;
+  report_value(std::string(name) + "fastest turn", spin, "rad/s");
+  report_value(std::string(name) + "fastest turn, later", late_spin, "rad/s");
+  report_value(std::string(name) + "kinetic energy, share of a fall's", energy / fall, "");
+  const double rise = e.bodies().bodies[box].center_of_mass.y - kSurface;
+  report_value(std::string(name) + "rise", 1e3 * rise, "mm");
+  EXPECT_LT(energy, (honey.share > 1.0 ? 1.2 : 0.15) * fall);
+  EXPECT_LT(spin, honey.viscosity > 100.0 ? 1.5 : honey.viscosity > 10.0 ? 20.0 : 120.0);
+  EXPECT_LT(late_spin, honey.viscosity > 10.0 ? 1.0 : 10.0);
+  if (honey.share > 1.0) {
+    EXPECT_LT(rise, -0.2 * kEdge) << "it should sink";
+  } else if (honey.viscosity < 100.0 && honey.share < 0.5) {
+    EXPECT_GT(rise, 0.2 * kEdge) << "it should rise";
+  }
+}
+
+std::vector<Honey> honeys() {
+  std::vector<Honey> all;
+  for (const double viscosity : {1.0, 30.0, 1000.0}) {
+    for (const double share : {0.01, 0.1, 0.9, 20.0}) all.push_back({share, viscosity});
+  }
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(densities, Drifting, ::testing::ValuesIn(honeys()));
 
 // The thinnest wall the sampler takes: as thick as the spacing. Fluid stays inside for 2 s, upright and
 // shaken.
@@ -123,15 +190,18 @@ TEST(Walls, press_crushes_fluid) {
   report_value("press, largest compression", e.world().diagnostics().max_compression, "");
   const std::uint32_t status = e.world().take_status();
   EXPECT_EQ(status & kStatusNonFinite, 0u);
-  EXPECT_NE(status & (kStatusCompressed | kStatusEscaped), 0u) << status_text(status);
   lid_to(0.15, 0.5);
   e.run(1.5);
+  // Fluid that was pressed through a wall takes its time to fall out of the domain.
+  const std::uint32_t whole = status | e.world().take_status();
+  EXPECT_NE(whole & (kStatusCompressed | kStatusEscaped), 0u) << status_text(whole);
   ASSERT_TRUE(all_finite(e.world()));
   const Diagnostics fluid = e.world().diagnostics();
   EXPECT_EQ(fluid.particles + fluid.retired, count);
   report_value("press, share of the fluid lost",
                static_cast<double>(fluid.retired) / static_cast<double>(count), "");
-  EXPECT_LT(fluid.max_speed, 3.0);
+  // The lid lifts what came past it over the rim, from where it falls half a metre; the gap spits drops.
+  EXPECT_LT(fluid.max_speed, 5.0);
 }
 
 // Five boxes dropped on each other in a heap: no explosion, none through the table.

@@ -91,6 +91,19 @@ void expect_same_scene(const Scene& a, const Scene& b) {
       SAME(grips[i].hand_motion[k].pose);
     }
   }
+  ASSERT_EQ(a.gauges.size(), b.gauges.size());
+  for (std::size_t i = 0; i < a.gauges.size(); ++i) {
+    SAME(gauges[i].name);
+    SAME(gauges[i].body);
+    SAME(gauges[i].position);
+  }
+  ASSERT_EQ(a.regions.size(), b.regions.size());
+  for (std::size_t i = 0; i < a.regions.size(); ++i) {
+    SAME(regions[i].name);
+    SAME(regions[i].mesh);
+    SAME(regions[i].body);
+    SAME(regions[i].pose);
+  }
   SAME(camera.eye);
   SAME(camera.target);
   SAME(camera.vertical_fov_deg);

@@ -204,6 +204,27 @@ TEST_F(HoldAnew, ASilenceOfAFewTenthsOfASecondIsNoBlow) {
   EXPECT_LT(farthest(), 0.02);
 }
 
+TEST_F(HoldAnew, WhoIsLeftAloneBeforeTheirHoldIsFirmCarriesItAll) {
+  for (const auto& person : people) person->in_contact = false;
+  run(0.3);
+  move_hands({0.0, 0.1, 0.0});
+  for (const auto& person : people) person->in_contact = true;
+  run(0.3);
+  Person& gone = *people[0];
+  gone.device->next.engaged = false;  // lets go, of its own accord
+  const double height = host->now.grips[1].pose.position.y;
+  double lowest = height;
+  for (int i = 0; i < 400; ++i) {
+    run(0.01);
+    lowest = std::min(lowest, host->now.grips[1].pose.position.y);
+  }
+  print("left alone 0.3 s after both took hold anew");
+  std::printf("the grip sank by %.0f mm\n", 1e3 * (height - lowest));
+  EXPECT_LT(height - lowest, 0.02);
+  EXPECT_LT(glm::distance(people[1]->device->next.pose.position, host->now.grips[1].pose.position), 0.03)
+      << "in the end it is held where the hand is";
+}
+
 TEST_F(HoldAnew, APauseIsNoBlowEither) {
   BodyMessage m = message();
   m.rate = 0.0;

@@ -23,19 +23,35 @@ using test::kSpacing;
 
 constexpr double kSwing = 0.25;                // m from end to end,
 constexpr double kSwingTime = 3.0;             // s to and fro: 0.26 m/s and 0.55 m/s² at most
+constexpr double kTilt = 1.6;                  // rad from one side to the other,
+constexpr double kTiltTime = 7.0;              // s to and fro: as the hands that spill the bucket
 constexpr std::size_t kSocketDatagrams = 800;  // what a kernel keeps for a process that was stopped
 constexpr double kRow = 0.002;                 // s between two rows of wrenches.csv
 
-/// A hand that goes to and fro: by the world's time as a script does, or by the clock on the wall as a
-/// person.
-class SwingingDevice final : public Device {
+enum class Motion { kToAndFro, kTurning };
+
+/// A hand that goes to and fro with the beam or turns it about its middle: by the world's time as a script
+/// does, or by the clock on the wall as a person.
+class MovingDevice final : public Device {
  public:
-  SwingingDevice(const Pose& start, const std::int64_t* clock) : start_(start), clock_(clock) {}
+  MovingDevice(const Pose& start, const std::int64_t* clock, Motion motion)
+      : start_(start), clock_(clock), motion_(motion) {}
   DeviceReport read(const DeviceMoment& moment) override {
     const double t = (clock_ != nullptr ? to_seconds(*clock_) - 1000.0 : moment.time) - 2.0;
     DeviceReport report;
     report.pose = start_;
     if (t <= 0.0) return report;
+    if (motion_ == Motion::kTurning) {
+      const double w = 2.0 * std::numbers::pi / kTiltTime;
+      const glm::dvec3 axis(0.0, 0.0, 1.0);
+      const glm::dvec3 middle(0.0, start_.position.y, 0.0);
+      report.twist.angular = 0.5 * kTilt * w * std::cos(w * t) * axis;
+      const glm::dvec3 turned = 0.5 * kTilt * std::sin(w * t) * axis;
+      report.pose.orientation = rotate_by(start_.orientation, turned);
+      report.pose.position = middle + rotate_by(glm::dquat(1, 0, 0, 0), turned) * (start_.position - middle);
+      report.twist.linear = glm::cross(report.twist.angular, report.pose.position - middle);
+      return report;
+    }
     const double w = 2.0 * std::numbers::pi / kSwingTime;
     const glm::dvec3 way = glm::normalize(glm::dvec3(1.0, 0.5, 0.3));
     report.pose.position += 0.5 * kSwing * (1.0 - std::cos(w * t)) * way;
@@ -51,6 +67,7 @@ class SwingingDevice final : public Device {
  private:
   Pose start_;
   const std::int64_t* clock_;
+  Motion motion_;
 };
 
 enum class Flow { kOpen, kStands, kDrops };
@@ -89,7 +106,7 @@ class Wire {
 struct Person {
   std::uint32_t grip;
   Channel channel;
-  SwingingDevice* device = nullptr;
+  MovingDevice* device = nullptr;
   std::unique_ptr<Servo> servo;
   BodyInbox inbox;
   ClockSync clock;
@@ -102,10 +119,11 @@ struct Person {
   double leap = 0.0;  // N, from row to row
   glm::dvec3 row{0.0};
 
-  Person(const Scene& scene, std::uint32_t at, const BodyMessage& first, double dt, const std::int64_t* wall)
+  Person(const Scene& scene, std::uint32_t at, const BodyMessage& first, double dt, const std::int64_t* wall,
+         Motion motion)
       : grip(at), channel(scene.grips.size(), first, 1000), inbox(scene, dt) {
     std::vector<std::unique_ptr<Device>> devices(scene.grips.size());
-    auto made = std::make_unique<SwingingDevice>(stand_pose(scene, at), wall);
+    auto made = std::make_unique<MovingDevice>(stand_pose(scene, at), wall, motion);
     device = made.get();
     devices[at] = std::move(made);
     servo = std::make_unique<Servo>(scene, std::move(devices), channel, ServoOptions{});
@@ -113,8 +131,12 @@ struct Person {
   }
 };
 
-/// Whether hands move by the world's time (scripts) or by the wall's.
-class LinkForces : public ::testing::TestWithParam<bool> {
+struct Hands {
+  bool scripted;  // by the world's time, else by the wall's
+  Motion motion;
+};
+
+class LinkForces : public ::testing::TestWithParam<Hands> {
  protected:
   Scene scene = held_beam();
   std::unique_ptr<HostEnd> host;
@@ -144,15 +166,15 @@ class LinkForces : public ::testing::TestWithParam<bool> {
     first.stamp_ns = clock;
     first.time_step = dt;
     first.bodies = host->now;
-    const std::int64_t* const wall = GetParam() ? nullptr : &clock;
+    const std::int64_t* const wall = GetParam().scripted ? nullptr : &clock;
     for (std::uint32_t i = 0; i < 2; ++i) {
-      people.push_back(std::make_unique<Person>(scene, i, first, dt, wall));
+      people.push_back(std::make_unique<Person>(scene, i, first, dt, wall, GetParam().motion));
       host->hands.taken(i, clock);
     }
     step_ns = clock;
     run(3.5);
     forget();
-    run(2.0 * kSwingTime);
+    run(GetParam().motion == Motion::kToAndFro ? 2.0 * kSwingTime : kTiltTime);
     steady = numbers();
     std::printf("steady: %.1f N felt, %.1f N from row to row, %.1f N on the body\n", steady.peak, steady.leap,
                 steady.carried);
@@ -334,8 +356,37 @@ TEST_P(LinkForces, APersonWhoIsStoppedComesBackWithoutABlow) {
   EXPECT_LT(back.leap, steady.leap + 2.0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Hands, LinkForces, ::testing::Bool(),
-                         [](const auto& test) { return test.param ? "Scripted" : "OfPeople"; });
+/// What a link does that stood for a second: silence for several, and a trickle before it flows again.
+TEST_P(LinkForces, ASilenceOfBothHandsIsNoBlow) {
+  for (const Flow flow : {Flow::kStands, Flow::kDrops}) {
+    for (const double seconds : {0.5, 1.0, 2.0, 3.5}) {
+      const auto both = [&](Flow to) {
+        for (const auto& person : people) person->down.flow = person->up.flow = to;
+      };
+      both(flow);
+      run(seconds);
+      for (int i = 0; i < 10; ++i) {
+        both(Flow::kOpen);
+        run(0.01);
+        both(Flow::kDrops);
+        run(0.05);
+      }
+      both(Flow::kOpen);
+      run(9.0);
+      expect_no_blow(((flow == Flow::kDrops ? "both hands drop for " : "both hands stand for ") +
+                      std::to_string(seconds) + " s")
+                         .c_str());
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Hands, LinkForces,
+                         ::testing::Values(Hands{true, Motion::kToAndFro}, Hands{false, Motion::kToAndFro},
+                                           Hands{true, Motion::kTurning}),
+                         [](const auto& test) {
+                           return std::string(test.param.scripted ? "Scripted" : "OfPeople") +
+                                  (test.param.motion == Motion::kToAndFro ? "" : "Tilting");
+                         });
 
 }  // namespace
 }  // namespace slosh

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -62,6 +63,7 @@ void expect_drift(const Snapshot& picture, const Drift& drift, float tolerance) 
   EXPECT_NEAR(picture.rigid.bodies[0].pose.position.x, 3.0 * time, 1e-9);
   glm::dvec3 mean(0.0);
   glm::dvec3 truth(0.0);
+  float off = 0.0f;  // m, at most
   for (std::size_t i = 0; i < picture.positions.size(); ++i) {
     mean += glm::dvec3(picture.positions[i]);
     truth += glm::dvec3(drift.place(i, time));
@@ -69,9 +71,10 @@ void expect_drift(const Snapshot& picture, const Drift& drift, float tolerance) 
     const glm::vec3 start = picture.positions[i] - drift.place(0, time);
     for (int axis = 0; axis < 3; ++axis) {
       const float cell = start[axis] / 0.01f;
-      EXPECT_NEAR(cell, std::round(cell), tolerance / 0.01f) << time;
+      off = std::max(off, 0.01f * std::abs(cell - std::round(cell)));
     }
   }
+  EXPECT_LT(off, tolerance) << time;
   const double count = static_cast<double>(picture.positions.size());
   EXPECT_LT(glm::length(mean - truth) / count, tolerance);
 }
@@ -125,6 +128,54 @@ TEST(PictureMaker, LostSnapshotsLeaveNoGapInTheFilm) {
     EXPECT_NEAR(pictures[i]->rigid.time - pictures[i - 1]->rigid.time, 1.0 / 30.0, 1e-9);
     EXPECT_FALSE(pictures[i]->positions.empty());
   }
+}
+
+/// A peer whose machine is busy: everything came in time, and the thread that decodes has hardly begun.
+TEST(PictureMaker, WhatWaitsToBeDecodedIsNotMissingInTheFilm) {
+  Drift drift;
+  drift.side = 30;  // a frame takes much longer to decode than to come
+  constexpr int kFrames = 150;
+  SnapshotEncoder encoder(CodecOptions{});
+  std::vector<std::vector<SharedBytes>> pieces(kFrames);
+  for (int k = 0; k < kFrames; ++k) {
+    for (const Piece& piece : encoder.encode(drift.at(kFrame * k), 0, k == 0).pieces) {
+      pieces[static_cast<std::size_t>(k)].push_back(piece.bytes);
+    }
+  }
+  SnapshotQueue queue(std::size_t{1} << 30);
+  PictureMakerOptions options;
+  options.film = true;
+  options.frames_per_second = 30.0;
+  PictureMaker maker(options, queue);
+  const auto come = [&](int first, int end) {
+    for (int k = first; k < end; ++k) {
+      maker.note_bodies(bodies(kFrame * k));
+      for (const SharedBytes& piece : pieces[static_cast<std::size_t>(k)]) maker.offer(*piece);
+    }
+  };
+  come(0, 30);
+  while (maker.report().frames < 10) std::this_thread::sleep_for(std::chrono::microseconds(100));
+  come(30, kFrames);
+  maker.finish();
+  const std::vector<SnapshotPointer> pictures = all(queue);
+  ASSERT_EQ(pictures.size(), 75u) << "2.48 s at 30 a second";
+  for (const SnapshotPointer& picture : pictures) expect_drift(*picture, drift, 0.0021f);
+}
+
+TEST(PictureMaker, ParticlesThatDoNotComeAreNotWaitedForLongerThanASecond) {
+  const Drift drift;
+  SnapshotQueue queue(std::size_t{1} << 30);
+  PictureMakerOptions options;
+  options.film = true;
+  options.frames_per_second = 30.0;
+  PictureMaker maker(options, queue);
+  SnapshotEncoder encoder(CodecOptions{});
+  play(maker, encoder, drift, 0, 60, [](int) { return false; });
+  for (int k = 61; k <= 180; ++k) maker.note_bodies(bodies(kFrame * k));
+  while (queue.waiting() < 60) std::this_thread::sleep_for(std::chrono::milliseconds(1));  // 1.97 s of it
+  EXPECT_LE(queue.waiting(), 61u) << "of 3 s of body states";
+  maker.finish();
+  EXPECT_EQ(all(queue).size(), 91u);
 }
 
 TEST(PictureMaker, AnotherStreamTakesOverWhenItHasAFrame) {

@@ -1,0 +1,174 @@
+// Tanks that stand, are accelerated or turn: the closed forms of hydrostatics.
+#include <algorithm>
+#include <cmath>
+
+#include "host/report/error_case.h"
+#include "host/report/scene_builder.h"
+#include "host/report/surface.h"
+
+namespace slosh::report {
+namespace {
+
+const glm::dvec3 kInner(0.2, 0.16, 0.2);
+constexpr double kFill = 0.1;
+constexpr double kWall = 0.05;
+
+// The weight is momentum conservation and right for any kernel; where the surface stands is not.
+std::vector<Reading> still_tank(const Setting& setting, Cost& cost) {
+  SceneBuilder b;
+  b.add_fluid(1000.0, 0.05);
+  const int tank = b.add_fixed("tank", tank_at_floor(kInner, kWall));
+  b.add_volume(make::box({-0.5 * kInner.x, 0.0, -0.5 * kInner.z}, {0.5 * kInner.x, kFill, 0.5 * kInner.z}));
+  b.set_domain({-0.3, -0.2, -0.3}, {0.3, 0.4, 0.3});
+  Trial t(b.scene, setting, cost);
+  t.settle(0.6);
+  t.run(0.1);
+  Average down;
+  t.run(0.5, [&] { down.add(-t.bodies().bodies[static_cast<std::size_t>(tank)].fluid.force.y); });
+  // The sampler fills whole layers only: the level to expect is that of the mass there is.
+  const double expected = t.fluid_mass() / (1000.0 * kInner.x * kInner.z);
+  const double level = surface_level(t.picture(), {-0.5 * kInner.x, -0.5 * kInner.z},
+                                     {0.5 * kInner.x, 0.5 * kInner.z}, setting.spacing);
+  return {{"level", "m", level, expected, 0.0, true},
+          {"weight on the walls", "N", down.mean(), t.fluid_mass() * kGravity, 0.0, false},
+          {"noise of the weight, rms", "", down.noise_share(), 0.0, 1.0, false}};
+}
+
+// A tank of five bodies: each side carries ½ρgh²w, at a third of the depth above the floor.
+std::vector<Reading> tank_faces(const Setting& setting, Cost& cost) {
+  const double x = 0.5 * kInner.x, z = 0.5 * kInner.z, t = kWall;
+  SceneBuilder b;
+  b.add_fluid(1000.0, 0.05);
+  b.add_fixed("floor", make::box({-x - t, -t, -z - t}, {x + t, 0.0, z + t}));
+  b.add_fixed("left", make::box({-x - t, 0.0, -z - t}, {-x, kInner.y, z + t}));
+  b.add_fixed("right", make::box({0.0, 0.0, -z - t}, {t, kInner.y, z + t}), {{x, 0.0, 0.0}, {1, 0, 0, 0}});
+  b.add_fixed("back", make::box({-x, 0.0, -z - t}, {x, kInner.y, -z}));
+  b.add_fixed("front", make::box({-x, 0.0, z}, {x, kInner.y, z + t}));
+  b.add_volume(make::box({-x, 0.0, -z}, {x, kFill, z}));
+  b.set_domain({-0.3, -0.2, -0.3}, {0.3, 0.4, 0.3});
+  Trial e(b.scene, setting, cost);
+  e.settle(0.6);
+  Average down, left, right, moment;
+  e.run(0.5, [&] {
+    const auto& bodies = e.bodies().bodies;
+    down.add(-bodies[0].fluid.force.y);
+    left.add(-bodies[1].fluid.force.x);
+    right.add(bodies[2].fluid.force.x);
+    moment.add(-bodies[2].fluid.torque.z);  // about the wall's lower edge
+  });
+  const double depth = e.fluid_mass() / (1000.0 * kInner.x * kInner.z);
+  const double side = 0.5 * 1000.0 * kGravity * depth * depth * kInner.z;
+  return {{"floor", "N", down.mean(), e.fluid_mass() * kGravity, 0.0, true},
+          {"side walls, mean", "N", 0.5 * (left.mean() + right.mean()), side, 0.0, false},
+          {"centre of pressure above the floor", "m", moment.mean() / right.mean(), depth / 3.0, 0.0, false}};
+}
+
+// Gravity leans by 4 m/s² along the tank: the surface leans by a/g.
+std::vector<Reading> slope(const Setting& setting, Cost& cost) {
+  constexpr double kLength = 0.3, kWidth = 0.1, kDepth = 0.1, kAcross = 4.0;
+  SceneBuilder b;
+  b.add_fluid(1000.0, 0.05);
+  const int tank = b.add_fixed("tank", tank_at_floor({kLength, 0.24, kWidth}, 0.04));
+  b.add_volume(make::box({-0.5 * kLength, 0.0, -0.5 * kWidth}, {0.5 * kLength, kDepth, 0.5 * kWidth}));
+  b.scene.gravity = {kAcross, -kGravity, 0.0};
+  b.set_domain({-0.3, -0.2, -0.2}, {0.3, 0.5, 0.2});
+  Trial e(b.scene, setting, cost);
+  e.settle(2.0);
+  // The height over each part of the length is counted in particles and freed of the compression under its
+  // own weight, ρ/ρ⁰ = 1 + g·depth/k; the parts at the end walls are left out.
+  constexpr int kParts = 12;
+  Profile profile(kParts);
+  Average side;
+  e.run(0.5, [&] {
+    side.add(e.bodies().bodies[static_cast<std::size_t>(tank)].fluid.force.x);
+    if (e.bodies().tick % 10 == 0)
+      profile.add(e.picture(), [&](const glm::vec3& p) { return p.x / kLength + 0.5; });
+  });
+  std::vector<glm::dvec2> heights;
+  for (int i = 2; i < kParts - 2; ++i) {
+    const double counted = profile.mean(i) * std::pow(setting.spacing, 3) / (kWidth * kLength / kParts);
+    heights.emplace_back(((i + 0.5) / kParts - 0.5) * kLength,
+                         counted / (1.0 + 0.5 * kGravity * counted / e.world().plan().stiffness));
+  }
+  return {{"slope", "", slope_of(heights), kAcross / kGravity, 0.0, true},
+          {"force along the tank", "N", side.mean(), e.fluid_mass() * kAcross, 0.0, false}};
+}
+
+// A glass of fluid that turns as one from the start: the surface rises as ω²r²/(2g).
+std::vector<Reading> paraboloid(const Setting& setting, Cost& cost) {
+  constexpr double kRadius = 0.06, kDepth = 0.08, kTurning = 16.0, kThick = 0.02;
+  SceneBuilder b;
+  b.add_fluid(1000.0, 0.5);
+  const double outer = kRadius + kThick, top = kDepth + 0.06;
+  const int glass = b.add_free(
+      "glass",
+      make::lathe(
+          {{0.0, -kThick}, {outer, -kThick}, {outer, top}, {kRadius, top}, {kRadius, 0.0}, {0.0, 0.0}}, 96),
+      0.5);
+  b.scene.bodies[static_cast<std::size_t>(glass)].dynamic_viscosity = 0.5;
+  b.scene.bodies[static_cast<std::size_t>(glass)].twist.angular = {0.0, kTurning, 0.0};
+  b.add_volume(make::lathe({{0.0, 0.0}, {kRadius, 0.0}, {kRadius, kDepth}, {0.0, kDepth}}, 96));
+  b.add_grip(glass, 1e5, 1e3, 1e4, 1e3);
+  b.set_domain({-0.2, -0.1, -0.2}, {0.2, 0.3, 0.2});
+  Result<SampledScene> sampled = sample_scene(b.scene, setting.spacing);
+  if (!sampled) throw Refused(sampled.error());
+  for (std::size_t i = 0; i < sampled.value().fluid_positions.size(); ++i) {
+    sampled.value().fluid_velocities[i] =
+        glm::cross(glm::vec3(0.0f, static_cast<float>(kTurning), 0.0f), sampled.value().fluid_positions[i]);
+  }
+  Trial e(b.scene, sampled.value(), setting, cost);
+  e.handle(0).engaged = true;
+  e.handle(0).twist.angular.y = kTurning;
+  const auto turn = [&] {
+    e.handle(0).pose.orientation = glm::angleAxis(kTurning * e.world().time(), glm::dvec3(0.0, 1.0, 0.0));
+  };
+  e.run(1.5, turn);
+  // The surface over circles around the axis; the outermost stands one and a half spacings off the wall.
+  constexpr int kCircles = 5, kAngles = 8;
+  std::vector<Average> level(kCircles);
+  const double widest = kRadius - 1.5 * setting.spacing;
+  e.run(0.5, [&] {
+    turn();
+    if (e.bodies().tick % 10) return;
+    const Snapshot picture = e.picture();
+    for (int i = 0; i < kCircles * kAngles; ++i) {
+      const double r = widest * (i / kAngles) / (kCircles - 1), angle = 2.0 * kPi * (i % kAngles) / kAngles;
+      level[static_cast<std::size_t>(i / kAngles)].add(
+          top_at(picture, {r * std::cos(angle), r * std::sin(angle)}, setting.spacing));
+    }
+  });
+  std::vector<glm::dvec2> heights;
+  for (int i = 0; i < kCircles; ++i) {
+    const double r = widest * i / (kCircles - 1);
+    heights.emplace_back(r * r, level[static_cast<std::size_t>(i)].mean());
+  }
+  return {{"rise over r²", "1/m", slope_of(heights), kTurning * kTurning / (2.0 * kGravity), 0.0, true}};
+}
+
+}  // namespace
+
+std::vector<ErrorCase> resting_cases() {
+  return {
+      {"still_tank",
+       "A tank at rest",
+       "level of its mass, weight on its walls",
+       {0.02, 0.0125, 0.01, 0.008, 0.00625},
+       2,
+       still_tank},
+      {"tank_faces",
+       "Each wall of a tank of five slabs",
+       "ρgh on the floor, ½ρgh²w on a side",
+       {0.02, 0.0125, 0.01, 0.008},
+       2,
+       tank_faces},
+      {"slope", "A tank accelerated at 4 m/s²", "surface slope a/g", {0.0125, 0.01, 0.0075}, 1, slope},
+      {"paraboloid",
+       "A glass that turns at 16 rad/s",
+       "surface ω²r²/(2g)",
+       {0.01, 0.0075, 0.006},
+       1,
+       paraboloid},
+  };
+}
+
+}  // namespace slosh::report

@@ -1,0 +1,229 @@
+// Torques and drags: what viscosity feels like.
+#include <array>
+#include <cmath>
+
+#include "host/report/error_case.h"
+#include "host/report/scene_builder.h"
+
+namespace slosh::report {
+namespace {
+
+const glm::dvec3 kUp(0.0, 1.0, 0.0);
+
+make::Solid glass_of(double radius, double height, double wall) {
+  const double outer = radius + wall;
+  return make::lathe(
+      {{0.0, -wall}, {outer, -wall}, {outer, height}, {radius, height}, {radius, 0.0}, {0.0, 0.0}}, 96);
+}
+
+struct Spin {
+  static constexpr double kRadius = 0.05, kViscosity = 2.0,
+                          kTurning = 0.5;  // slow: nothing is thrown outwards
+  static constexpr std::array<glm::dvec2, 3> kShape{{{0.02, 1.2790}, {0.05, 0.5711}, {0.1, 0.2377}}};
+  std::array<double, kShape.size()> torque{};
+  double impulse = 0.0;
+
+  // A glass filled to `height` that suddenly turns, held by a coupling so stiff that its inertia does not
+  // count.
+  Spin(double height, const Setting& setting, Cost& cost) {
+    SceneBuilder b;
+    b.add_fluid(1000.0, kViscosity);
+    const int glass = b.add_free("glass", glass_of(kRadius, height + 0.02, 0.02), 0.5);
+    const auto at = static_cast<std::size_t>(glass);
+    b.scene.bodies[at].dynamic_viscosity = kViscosity;  // so that Eq 9's mean is the fluid's own
+    b.add_volume(make::lathe({{0.0, 0.0}, {kRadius, 0.0}, {kRadius, height}, {0.0, height}}, 96));
+    b.add_grip(glass, 1e5, 1e3, 1e4, 1e3);
+    b.set_domain({-0.2, -0.1, -0.2}, {0.2, 0.3, 0.2});
+    Trial e(b.scene, setting, cost);
+    e.handle(0).engaged = true;
+    e.settle(0.3);
+    e.run(0.1);
+    const double start = e.world().time(), scale = kRadius * kRadius * 1000.0 / kViscosity;
+    const double dt = e.world().plan().time_step;
+    e.handle(0).twist.angular.y = kTurning;
+    std::size_t next = 0;
+    double last = 0.0, last_tau = 0.0;
+    e.run(0.6 * scale, [&] {
+      const double time = e.world().time() - start;
+      e.handle(0).pose.orientation = glm::angleAxis(kTurning * time, kUp);
+      const double now = -e.bodies().bodies[at].fluid.torque.y;
+      // The force of a step is that at its start: the glass has turned for one step less.
+      const double tau = (time - dt) / scale;
+      impulse += dt * now;
+      while (next < kShape.size() && tau >= kShape[next].x) {
+        torque[next] = glm::mix(last, now, (kShape[next].x - last_tau) / (tau - last_tau));
+        ++next;
+      }
+      last = now;
+      last_tau = tau;
+    });
+  }
+};
+
+// Two fillings of the same glass: the floor's part is in both, so the difference is what the wall between the
+// two heights does to an infinitely long cylinder.
+std::vector<Reading> spin_up(const Setting& setting, Cost& cost) {
+  constexpr double kShort = 0.06, kTall = 0.12, kLength = kTall - kShort, kR = Spin::kRadius;
+  const Spin low(kShort, setting, cost), high(kTall, setting, cost);
+  std::vector<Reading> readings;
+  for (std::size_t i = 0; i < Spin::kShape.size(); ++i) {
+    const double expected =
+        4.0 * kPi * Spin::kViscosity * Spin::kTurning * kR * kR * Spin::kShape[i].y * kLength;
+    readings.push_back({"torque at tau " + std::to_string(Spin::kShape[i].x).substr(0, 4), "N·m",
+                        high.torque[i] - low.torque[i], expected, 0.0, i == 0});
+  }
+  readings.push_back({"impulse", "N·m·s", high.impulse - low.impulse,
+                      0.5 * kPi * 1000.0 * Spin::kTurning * std::pow(kR, 4) * kLength, 0.0, false});
+  return readings;
+}
+
+// N·m on the rod of radius kInner that turns in a glass of radius kOuter, filled to `height`.
+struct Couette {
+  static constexpr double kInner = 0.03, kOuter = 0.05, kViscosity = 1.0, kTurning = 1.0;
+  Average torque;
+
+  Couette(double height, const Setting& setting, Cost& cost) {
+    SceneBuilder b;
+    b.add_fluid(1000.0, kViscosity);
+    const int glass = b.add_fixed("glass", glass_of(kOuter, height + 0.03, 0.02));
+    constexpr double kGap = 0.012;  // under the rod, the same for every height
+    const double top = height + 0.03;
+    const int rod =
+        b.add_free("rod", make::lathe({{0.0, kGap}, {kInner, kGap}, {kInner, top}, {0.0, top}}, 96), 0.5);
+    for (const int i : {glass, rod})
+      b.scene.bodies[static_cast<std::size_t>(i)].dynamic_viscosity = kViscosity;
+    b.add_volume(make::lathe({{0.0, 0.0}, {kOuter, 0.0}, {kOuter, kGap}, {0.0, kGap}}, 96));
+    b.add_volume(make::lathe({{kInner, kGap}, {kOuter, kGap}, {kOuter, height}, {kInner, height}}, 96));
+    b.scene.stiffness =
+        kGravity * height / 0.04;  // the plan's rule for the whole depth, not for one volume's
+    b.add_grip(rod, 1e5, 1e3, 1e4, 1e3);
+    b.set_domain({-0.2, -0.1, -0.2}, {0.2, 0.3, 0.2});
+    Trial e(b.scene, setting, cost);
+    e.handle(0).engaged = true;
+    e.settle(0.5, true);
+    e.handle(0).twist.angular.y = kTurning;
+    const double start = e.world().time();
+    const auto turn = [&] {
+      e.handle(0).pose.orientation = glm::angleAxis(kTurning * (e.world().time() - start), kUp);
+    };
+    e.run(0.4, turn);  // the gap's own time, (R₂ − R₁)²/(π²ν), is 40 ms
+    e.run(0.3, [&] {
+      turn();
+      torque.add(-e.bodies().bodies[static_cast<std::size_t>(rod)].fluid.torque.y);
+    });
+  }
+};
+
+std::vector<Reading> couette(const Setting& setting, Cost& cost) {
+  constexpr double kShort = 0.06, kTall = 0.1, kR1 = Couette::kInner * Couette::kInner,
+                   kR2 = Couette::kOuter * Couette::kOuter;
+  const Couette low(kShort, setting, cost), high(kTall, setting, cost);
+  const double expected =
+      4.0 * kPi * Couette::kViscosity * Couette::kTurning * kR1 * kR2 / (kR2 - kR1) * (kTall - kShort);
+  return {{"torque", "N·m", high.torque.mean() - low.torque.mean(), expected, 0.0, true}};
+}
+
+// A ball on the axis of a closed tube, moved up and down by a stiff hand: 6πμaU times the wall's factor.
+std::vector<Reading> stokes(const Setting& setting, Cost& cost) {
+  constexpr double kBall = 0.012, kTube = 0.04, kViscosity = 5.0, kSpeed = 0.02, kWay = 0.024, kFill = 0.12;
+  constexpr double kWallFactor = 2.3697;  // at a radius ratio of 0.3
+  SceneBuilder b;
+  b.add_fluid(1000.0, kViscosity);
+  const int tube = b.add_fixed("tube", glass_of(kTube, kFill + 0.03, 0.02));
+  const int ball = b.add_free("ball", make::sphere(kBall, 24, 48), 0.05, {{0.0, 0.048, 0.0}, {1, 0, 0, 0}});
+  for (const int i : {tube, ball}) b.scene.bodies[static_cast<std::size_t>(i)].dynamic_viscosity = kViscosity;
+  b.add_volume(make::lathe({{0.0, 0.0}, {kTube, 0.0}, {kTube, kFill}, {0.0, kFill}}, 96));
+  b.add_grip(ball, 2e4, 100.0);
+  b.set_domain({-0.2, -0.1, -0.2}, {0.2, 0.3, 0.2});
+  Trial e(b.scene, setting, cost);
+  HandleInput& hand = e.handle(0);
+  hand.engaged = true;
+  e.settle(0.5, true);
+  // Each stroke in halves: the first has the start in it.
+  const auto stroke = [&](double speed) {
+    std::array<Average, 2> halves;
+    const double from = hand.pose.position.y, begin = e.world().time();
+    hand.twist.linear.y = speed;
+    for (Average& half : halves) {
+      e.run(0.5 * kWay / kSpeed, [&] {
+        hand.pose.position.y = from + speed * (e.world().time() - begin);
+        half.add(e.bodies().bodies[static_cast<std::size_t>(ball)].fluid.force.y);
+      });
+    }
+    return std::array{halves[0].mean(), halves[1].mean()};
+  };
+  const auto up = stroke(kSpeed), down = stroke(-kSpeed);
+  const double expected = 6.0 * kPi * kViscosity * kBall * kSpeed * kWallFactor;
+  const double second = 0.5 * (down[1] - up[1]), first = 0.5 * (down[0] - up[0]);
+  // Up is resisted downwards; half the difference has no buoyancy in it.
+  return {{"drag", "N", second, expected, 0.0, true},
+          {"drift over a stroke", "", (second - first) / expected, 0.0, 1.0, false}};
+}
+
+// A ball of 24 mm goes 8 mm at 2 cm/s across a tank of water and stops. Its drag is 0.05 mN (Re 480); what is
+// measured beyond that is a fluid that yields like sand. Errors are shares of the ball's buoyancy.
+std::vector<Reading> slow_ball(const Setting& setting, Cost& cost) {
+  constexpr double kSide = 0.096, kHalf = 0.5 * kSide, kSpeed = 0.02, kWay = 0.008, kDrag = 0.05e-3;
+  SceneBuilder b;
+  b.add_fluid(1000.0, 0.001);
+  b.add_fixed("tank", tank_at_floor({kSide, 0.12, kSide}, 0.02));
+  const make::Solid solid = make::sphere(0.012, 24, 48);
+  const int ball = b.add_free("ball", solid, 0.05, {{-0.004, 0.048, 0.0}, {1, 0, 0, 0}});
+  b.add_volume(make::box({-kHalf, 0.0, -kHalf}, {kHalf, kSide, kHalf}));
+  b.add_grip(ball, 2000.0, 10.0);
+  b.set_domain({-0.15, -0.1, -0.15}, {0.15, 0.25, 0.15});
+  Trial e(b.scene, setting, cost);
+  HandleInput& hand = e.handle(0);
+  hand.engaged = true;
+  e.settle(1.0, true);
+  const glm::dvec3 start = hand.pose.position;
+  Average still, moving, left;
+  const auto along = [&] { return -e.bodies().bodies[static_cast<std::size_t>(ball)].fluid.force.x; };
+  e.run(0.3, [&] { still.add(along()); });
+  const double begin = e.world().time();
+  e.run(kWay / kSpeed, [&] {
+    const double way = std::min(kWay, kSpeed * (e.world().time() - begin));
+    hand.pose.position = start + glm::dvec3(way, 0.0, 0.0);
+    hand.twist.linear = {kSpeed, 0.0, 0.0};
+    if (way > 0.5 * kWay) moving.add(along());
+  });
+  hand.twist.linear = glm::dvec3(0.0);
+  e.run(0.8);
+  e.run(0.2, [&] { left.add(along()); });
+  const double buoyancy = 1000.0 * kGravity * volume_of(solid);
+  return {{"force, moving", "N", moving.median() - still.median(), kDrag, buoyancy, true},
+          {"force left 0.9 s after", "N", left.median() - still.median(), 0.0, buoyancy, true}};
+}
+
+}  // namespace
+
+std::vector<ErrorCase> viscous_cases() {
+  return {
+      {"spin_up",
+       "A cylinder of 2 Pa·s that suddenly turns",
+       "S(τ) of the long cylinder",
+       {0.01, 0.00714, 0.005},
+       1,
+       spin_up},
+      {"couette",
+       "Torque between cylinders of 30 and 50 mm, 1 Pa·s",
+       "4πμΩR₁²R₂²/(R₂²−R₁²)",
+       {0.00667, 0.005, 0.004},
+       1,
+       couette},
+      {"stokes",
+       "A ball moved slowly on a tube's axis, 5 Pa·s",
+       "6πμaU, times 2.37 for the tube",
+       {0.008, 0.006, 0.005},
+       1,
+       stokes},
+      {"slow_ball",
+       "A ball moved at 2 cm/s through water",
+       "drag at Re 480",
+       {0.008, 0.006, 0.0048, 0.004},
+       2,
+       slow_ball},
+  };
+}
+
+}  // namespace slosh::report

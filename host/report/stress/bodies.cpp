@@ -1,0 +1,179 @@
+// Bodies of all weights, in fluids of all kinds, on each other.
+#include <algorithm>
+#include <cmath>
+
+#include "host/report/scene_builder.h"
+#include "host/report/watch.h"
+#include "sim/format.h"
+
+namespace slosh::report {
+namespace {
+
+// A box of 4 cm and so much of the fluid's density falls a little way onto a tank of it. What it can gain is
+// its fall; a rotation of more than one turn a second it cannot keep up in a fluid like that.
+Stress floating(double share, double viscosity, const Setting& setting, Cost& cost) {
+  constexpr double kEdge = 0.04;
+  const double mass = share * 1000.0 * kEdge * kEdge * kEdge;
+  SceneBuilder b;
+  b.add_fluid(1000.0, viscosity);
+  const int tank = b.add_fixed("tank", tank_at_floor({0.16, 0.2, 0.16}, 0.03));
+  const int box = b.add_free("box", make::box(glm::dvec3(-0.5 * kEdge), glm::dvec3(0.5 * kEdge)), mass,
+                             {{0.0, 0.115, 0.0}, {1, 0, 0, 0}});
+  for (const int i : {tank, box}) b.scene.bodies[static_cast<std::size_t>(i)].dynamic_viscosity = viscosity;
+  b.add_volume(make::box({-0.08, 0.0, -0.08}, {0.08, 0.08, 0.08}));
+  b.set_domain({-0.4, -0.3, -0.4}, {0.4, 1.0, 0.4});
+  Trial t(b.scene, setting, cost);
+  Watch watch(t, b.scene);
+  double fastest = 0.0, spinning = 0.0;
+  const auto look = [&] {
+    const Twist& twist = t.bodies().bodies[static_cast<std::size_t>(box)].twist;
+    fastest = std::max(fastest, glm::length(twist.linear));
+    spinning = std::max(spinning, glm::length(twist.angular));
+  };
+  watch.run(1.0, look);
+  fastest = spinning = 0.0;
+  watch.run(0.5, look);
+  Stress found = watch.found(share > 1.0 ? 0.02 : 0.0);
+  if (!(fastest < 0.3)) found.broken = format("the box still goes at %.2g m/s", fastest);
+  if (!(spinning < 2.0 * kPi)) found.broken = format("the box spins at %.2g rad/s", spinning);
+  return found;
+}
+
+template <int kPerMille>
+Stress in_water(const Setting& s, Cost& c) {
+  return floating(1e-3 * kPerMille, 0.001, s, c);
+}
+template <int kPerMille>
+Stress in_honey(const Setting& s, Cost& c) {
+  return floating(1e-3 * kPerMille, 10.0, s, c);
+}
+Stress in_tar(const Setting& s, Cost& c) {
+  return floating(0.5, 1000.0, s, c);
+}
+
+// Cubes of 2 cm in a column: after the time they stand where they stood.
+Stress stack(int count, double seconds, const Setting& setting, Cost& cost) {
+  constexpr double kEdge = 0.02;
+  SceneBuilder b;
+  b.add_fixed("table", make::box({-0.2, -0.04, -0.2}, {0.2, 0.0, 0.2}));
+  for (int i = 0; i < count; ++i) {
+    b.add_free("cube", make::box(glm::dvec3(-0.5 * kEdge), glm::dvec3(0.5 * kEdge)), 0.02,
+               {{0.0, (i + 0.5) * kEdge, 0.0}, {1, 0, 0, 0}});
+  }
+  b.set_domain(glm::dvec3(-1.0), glm::dvec3(1.0));
+  Trial t(b.scene, setting, cost);
+  t.run(seconds);
+  Stress found;
+  found.finite = all_finite(t.world());
+  double drift = 0.0;
+  for (int i = 0; i < count; ++i) {
+    const glm::dvec3 now = t.bodies().bodies[static_cast<std::size_t>(i + 1)].center_of_mass;
+    drift = std::max(drift, glm::distance(now, {0.0, (i + 0.5) * kEdge, 0.0}));
+  }
+  if (!(drift <= 1e-4)) found.broken = format("a cube moved by %.2g mm", 1e3 * drift);
+  return found;
+}
+
+Stress stack_3(const Setting& s, Cost& c) {
+  return stack(3, 3.0, s, c);
+}
+Stress stack_10(const Setting& s, Cost& c) {
+  return stack(10, 5.0, s, c);
+}
+
+// Boxes dropped in a heap: none goes through the table, and they come to rest.
+Stress heap(const Setting& setting, Cost& cost) {
+  constexpr int kBoxes = 30;
+  SceneBuilder b;
+  b.add_fixed("table", make::box({-0.4, -0.06, -0.4}, {0.4, 0.0, 0.4}));
+  for (int i = 0; i < kBoxes; ++i) {
+    b.add_free(
+        "box", make::box(glm::dvec3(-0.02), glm::dvec3(0.02)), 0.06,
+        {{0.045 * (i % 3) + 0.003 * (i % 5), 0.03 + 0.05 * (i / 9), 0.045 * (i / 3 % 3)}, {1, 0, 0, 0}});
+  }
+  b.set_domain(glm::dvec3(-1.0), glm::dvec3(1.0));
+  Trial t(b.scene, setting, cost);
+  t.run(2.5);
+  double fastest = 0.0, lowest = 1.0;
+  t.run(0.5, [&] {
+    for (int i = 1; i <= kBoxes; ++i) {
+      const BodyState& body = t.bodies().bodies[static_cast<std::size_t>(i)];
+      fastest = std::max(fastest, glm::length(body.twist.linear));
+      lowest = std::min(lowest, body.center_of_mass.y);
+    }
+  });
+  Stress found;
+  found.finite = all_finite(t.world());
+  if (!(fastest < 0.01)) found.broken = format("a box still goes at %.2g m/s", fastest);
+  if (!(lowest > 0.018)) found.broken = "a box is in the table";
+  return found;
+}
+
+// A shot of 60 m/s at a wall of 1 cm: a quarter of a metre a step.
+Stress bullet(const Setting& setting, Cost& cost) {
+  SceneBuilder b;
+  b.add_fixed("wall", make::box({0.5, -0.5, -0.5}, {0.51, 0.5, 0.5}));
+  const int shot = b.add_free("shot", make::sphere(0.01, 12, 24), 0.03);
+  b.scene.bodies[static_cast<std::size_t>(shot)].twist.linear = {60.0, 0.0, 0.0};
+  b.scene.gravity = glm::dvec3(0.0);
+  b.set_domain(glm::dvec3(-2.0), glm::dvec3(2.0));
+  Trial t(b.scene, setting, cost);
+  t.run(0.05);
+  Stress found;
+  found.finite = all_finite(t.world());
+  if (t.bodies().bodies[static_cast<std::size_t>(shot)].center_of_mass.x > 0.5)
+    found.broken = "it went through";
+  return found;
+}
+
+// A lid that fits is pressed into a full vessel: nowhere to go.
+Stress press(const Setting& setting, Cost& cost) {
+  SceneBuilder b;
+  b.add_fluid(1000.0, 0.05);
+  b.add_fixed("tank", tank_at_floor({0.12, 0.2, 0.12}, 0.03));
+  const int lid = b.add_free("lid", make::box({-0.058, 0.0, -0.058}, {0.058, 0.03, 0.058}), 1.0,
+                             {{0.0, 0.08, 0.0}, {1, 0, 0, 0}});
+  b.add_volume(make::box({-0.06, 0.0, -0.06}, {0.06, 0.07, 0.06}));
+  b.add_grip(lid, 1e5, 1e3, 1e3, 10.0);
+  b.set_domain({-0.4, -0.3, -0.4}, {0.4, 0.8, 0.4});
+  Trial t(b.scene, setting, cost);
+  t.handle(0).engaged = true;
+  t.handle(0).twist.linear.y = -0.12;
+  Watch watch(t, b.scene);
+  watch.run(0.5, [&] { t.handle(0).pose.position.y -= 0.12 * t.world().plan().time_step; });
+  t.handle(0).twist = {};
+  watch.run(0.5);
+  Stress found = watch.found();
+  // What is under the floor or beside a wall has passed it, whether it has left the domain by now or not.
+  const Snapshot picture = t.picture();
+  double outside = 0.0;
+  for (std::size_t i = 0; i < picture.positions.size(); ++i) {
+    const glm::dvec3 p(picture.positions[i]);
+    const double beside = std::max(std::abs(p.x), std::abs(p.z)) - 0.06, off = 0.8 * setting.spacing;
+    outside += picture.fluid_index[i] == 255 || p.y < -off || (beside > off && p.y < 0.2);
+  }
+  found.lost_share = outside / static_cast<double>(picture.positions.size());
+  return found;
+}
+
+}  // namespace
+
+std::vector<StressCase> body_stress() {
+  return {
+      {"light_001", "A box of 0.01 times water's density", 0.01, true, true, in_water<10>},
+      {"light_1", "A box of 0.1 times", 0.01, true, true, in_water<100>},
+      {"light_5", "A box of 0.5 times", 0.01, true, true, in_water<500>},
+      {"heavy_20", "A box of 20 times", 0.01, true, true, in_water<20000>},
+      {"honey_1", "A box of 0.1 times in 10 Pa·s", 0.01, true, true, in_honey<100>},
+      {"honey_5", "A box of 0.5 times in 10 Pa·s", 0.01, true, true, in_honey<500>},
+      {"honey_20", "A box of 20 times in 10 Pa·s", 0.01, true, true, in_honey<20000>},
+      {"tar", "A box of 0.5 times in 1000 Pa·s", 0.01, false, true, in_tar},
+      {"stack_3", "Three cubes on each other", 0.01, true, false, stack_3},
+      {"stack_10", "Ten cubes on each other", 0.01, true, false, stack_10},
+      {"heap", "Thirty boxes in a heap", 0.01, false, false, heap},
+      {"bullet", "A shot at a thin wall", 0.01, true, false, bullet},
+      {"press", "A lid pressed into a full vessel", 0.01, true, true, press},
+  };
+}
+
+}  // namespace slosh::report

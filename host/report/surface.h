@@ -1,0 +1,42 @@
+// Where the fluid's surface is, read from a picture of the world.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "sim/snapshot.h"
+
+namespace slosh::report {
+
+/// m: half a spacing over the topmost particle within 1.5 spacings of a place (x, z).
+double top_at(const Snapshot& picture, const glm::dvec2& place, double spacing);
+
+/// m: mean of top_at over a grid of places between `low` and `high` (x, z).
+double surface_level(const Snapshot& picture, const glm::dvec2& low, const glm::dvec2& high, double spacing);
+
+/// How many particles stand in each part of a range, mean over the pictures that were added.
+class Profile {
+ public:
+  explicit Profile(int parts) : counts_(static_cast<std::size_t>(parts), 0.0) {}
+  /// `place(position)` is 0–1 within the range; what lies outside is not counted.
+  template <class Place>
+  void add(const Snapshot& picture, Place&& place) {
+    pictures_ += 1.0;
+    for (std::size_t i = 0; i < picture.positions.size(); ++i) {
+      if (picture.fluid_index[i] == kRetired) continue;
+      const double at = place(picture.positions[i]) * static_cast<double>(counts_.size());
+      if (at >= 0.0 && at < static_cast<double>(counts_.size())) counts_[static_cast<std::size_t>(at)] += 1.0;
+    }
+  }
+  double mean(int part) const { return counts_[static_cast<std::size_t>(part)] / pictures_; }
+
+ private:
+  static constexpr std::uint8_t kRetired = 255;
+  std::vector<double> counts_;
+  double pictures_ = 0.0;
+};
+
+/// The slope of the straight line nearest to points (x, y).
+double slope_of(const std::vector<glm::dvec2>& points);
+
+}  // namespace slosh::report

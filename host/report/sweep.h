@@ -1,0 +1,56 @@
+// Which settings a case is run at, and what came of each.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "host/report/error_case.h"
+
+namespace slosh::report {
+
+struct SweepOptions {
+  bool quick = false;               ///< each case's coarsest spacings, no variants
+  std::vector<std::string> cases;   ///< ids; empty: all
+  std::vector<std::string> models;  ///< names; empty: all
+  std::vector<Backend> backends{Backend::kCpu};
+  int threads = 0;
+  bool (*stopped)() = nullptr;  ///< Setting::stopped
+};
+
+/// One reading at one setting, or why there is none: a row of errors.csv.
+struct ErrorRow {
+  std::string case_id, quantity, unit, model, backend;
+  bool plotted = false;
+  int threads = 0;
+  double spacing = 0.0, support_ratio = 0.0, step_share = 0.0;
+  double particles = 0.0, steps = 0.0, time_step = 0.0, simulated_s = 0.0, wall_s = 0.0;
+  double measured = 0.0, expected = 0.0, scale = 0.0;
+  double retired = 0.0;
+  std::uint32_t status = 0;
+  std::string refused;  ///< empty when it ran
+
+  double error() const { return (measured - expected) / scale; }
+  double wall_per_simulated() const { return simulated_s > 0.0 ? wall_s / simulated_s : 0.0; }
+  /// The setting that a scene has unless its author says otherwise, but for the spacing.
+  bool is_default() const { return model == name(ParticleModel::kCorrected) && is_base(); }
+  bool is_paper() const { return model == name(ParticleModel::kPaper) && is_base(); }
+  bool is_base() const { return support_ratio == 2.0 && step_share == 1.0; }
+};
+
+/// The settings of one case: every spacing with each model; in a full report also at a support ratio of 2.5
+/// and at half the time step.
+std::vector<Setting> settings_of(const ErrorCase& which, const SweepOptions& options);
+
+/// Runs one case at one setting; a refusal is a row of its own. Throws Stopped.
+std::vector<ErrorRow> run_case(const ErrorCase& which, const Setting& setting);
+
+constexpr const char* kErrorHeader =
+    "case,quantity,unit,plotted,model,backend,threads,spacing_m,support_ratio,step_share,particles,steps,"
+    "time_step_s,simulated_s,wall_s,measured,expected,scale,error,lost,status,refused";
+std::string csv_line(const ErrorRow& row);
+/// Errors: it cannot be read, another header, a row that is none.
+Result<std::vector<ErrorRow>> read_errors(const std::filesystem::path& file);
+
+}  // namespace slosh::report

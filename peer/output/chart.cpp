@@ -1,0 +1,135 @@
+#include "peer/output/chart.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+
+#include "peer/output/gnuplot.h"
+
+namespace slosh {
+namespace {
+
+__attribute__((format(printf, 1, 2))) std::string format(const char* pattern, ...) {
+  char text[300];
+  va_list arguments;
+  va_start(arguments, pattern);
+  std::vsnprintf(text, sizeof text, pattern, arguments);
+  va_end(arguments);
+  return text;
+}
+
+constexpr int kPanelWidth = 620, kPanelHeight = 420, kTitleHeight = 46;  // pixels
+
+const char* const kStyle =
+    "set encoding utf8\n"
+    "set border 3 lc rgb \"#606060\"\n"
+    "set grid lc rgb \"#dcdcdc\" lt 1 lw 1\n"
+    "set tics nomirror textcolor rgb \"#303030\"\n";
+
+std::string terminal(int width, int height) {
+  return format(
+      "set terminal pngcairo size %d,%d noenhanced font \"DejaVu Sans,11\" background rgb \"white\"\n", width,
+      height);
+}
+
+bool shown(const ChartPanel& panel, const glm::dvec2& p) {
+  return std::isfinite(p.x) && std::isfinite(p.y) && (!panel.log_x || p.x > 0.0) &&
+         (!panel.log_y || p.y > 0.0);
+}
+
+std::string panel_script(const ChartPanel& panel, std::size_t number) {
+  std::string data, plot;
+  for (std::size_t i = 0; i < panel.series.size(); ++i) {
+    const ChartSeries& series = panel.series[i];
+    std::string rows;
+    for (const glm::dvec2& p : series.points) {
+      if (shown(panel, p)) rows += format("%.8g %.8g\n", p.x, p.y);
+    }
+    if (rows.empty()) continue;
+    const std::string block = format("$p%zus%zu", number, i);
+    data += block + " << END_OF_DATA\n" + rows + "END_OF_DATA\n";
+    plot += (plot.empty() ? "plot " : ", \\\n  ") + block + " using 1:2 with ";
+    plot += series.width > 0.0 ? (series.mark > 0 ? "linespoints" : "lines") : "points";
+    if (series.width > 0.0) plot += format(" lw %.2g dt %s", series.width, series.dashed ? "2" : "1");
+    if (series.mark > 0) plot += format(" pt %d ps %.2g", series.mark, series.size);
+    plot += " lc rgb \"" + series.color + "\" ";
+    plot += series.name.empty() ? "notitle" : "title " + gnuplot_text(series.name);
+  }
+  std::string script = data + "unset logscale\n";
+  script += panel.legend ? "set key outside right top reverse Left samplen 2 font \"DejaVu Sans,9\"\n"
+                         : "unset key\n";
+  if (panel.log_x) script += "set logscale x\n";
+  if (panel.log_y) script += "set logscale y\n";
+  script += "set title " + gnuplot_text(panel.title) + " font \"DejaVu Sans,12\"\n";
+  script +=
+      "set xlabel " + gnuplot_text(panel.x_label) + "\nset ylabel " + gnuplot_text(panel.y_label) + "\n";
+  // Where nothing is to be drawn the panel says so, or gnuplot would fail over an empty range.
+  if (plot.empty())
+    return script +
+           "unset logscale\nset xrange [0:1]\nset yrange [0:1]\nplot NaN title \"no data\"\nset autoscale\n";
+  return script + plot + "\n";
+}
+
+}  // namespace
+
+std::string chart_script(const std::vector<ChartPanel>& panels, int columns, const std::string& title) {
+  const int rows = (static_cast<int>(panels.size()) + columns - 1) / columns;
+  std::string script = kStyle + terminal(columns * kPanelWidth, rows * kPanelHeight + kTitleHeight);
+  script +=
+      "set format x \"%g\"\nset format y \"%g\"\nset offsets graph 0.05, graph 0.05, graph 0.08, graph "
+      "0.08\n";
+  script += format("set multiplot layout %d,%d title ", rows, columns) + gnuplot_text(title) +
+            " font \"DejaVu Sans,14\"\n";
+  for (std::size_t i = 0; i < panels.size(); ++i) script += panel_script(panels[i], i);
+  return script + "unset multiplot\n";
+}
+
+std::string tile_script(const TileMap& map) {
+  constexpr int kRow = 24, kColumn = 120, kLeft = 420, kTop = 146;
+  const int rows = static_cast<int>(map.rows.size()), columns = static_cast<int>(map.columns.size());
+  const double width = kLeft + kColumn * columns + 40, height = kTop + kRow * rows + 30;
+  std::string script =
+      "set encoding utf8\n" + terminal(static_cast<int>(width), static_cast<int>(height)) +
+      format("set lmargin at screen %.5f\nset rmargin at screen %.5f\n", kLeft / width,
+             (kLeft + kColumn * columns) / width) +
+      format("set tmargin at screen %.5f\nset bmargin at screen %.5f\n", 1.0 - kTop / height, 20.0 / height) +
+      "unset border\nunset tics\nunset key\n" +
+      format("set xrange [0:%d]\nset yrange [%d:0]\n", columns, rows);
+  script += "set label " + gnuplot_text(map.title) +
+            format(" at screen 0.5,%.5f center font \"DejaVu Sans,14\"\n", 1.0 - 24.0 / height);
+  script += "set label " + gnuplot_text(map.subtitle) +
+            format(" at screen 0.5,%.5f center font \"DejaVu Sans,9\"\n", 1.0 - 44.0 / height);
+  for (int r = 0; r < rows; ++r) {
+    script += "set label " + gnuplot_text(map.rows[static_cast<std::size_t>(r)]) +
+              format(" at -0.08,%.1f right\n", r + 0.5);
+    for (int c = 0; c < columns; ++c) {
+      const int kind = map.kind[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)];
+      if (kind < 0) continue;
+      script += format("set object rectangle from %.2f,%.2f to %.2f,%.2f fc rgb \"%s\" fs solid noborder\n",
+                       c + 0.02, r + 0.06, c + 0.98, r + 0.94,
+                       map.kinds[static_cast<std::size_t>(kind)].color.c_str());
+      const std::string& text = map.text[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)];
+      if (!text.empty()) {
+        script +=
+            "set label " + gnuplot_text(text) +
+            format(" at %.2f,%.2f center front tc rgb \"white\" font \"DejaVu Sans,9\"\n", c + 0.5, r + 0.5);
+      }
+    }
+  }
+  for (int c = 0; c < columns; ++c) {
+    script += "set label " + gnuplot_text(map.columns[static_cast<std::size_t>(c)]) +
+              format(" at %.2f,-0.5 center\n", c + 0.5);
+  }
+  for (std::size_t k = 0; k < map.kinds.size(); ++k) {
+    const double x = (20.0 + 150.0 * static_cast<double>(k)) / width, y = 1.0 - 76.0 / height;
+    script += format(
+        "set object rectangle from screen %.5f,%.5f to screen %.5f,%.5f fc rgb \"%s\" fs solid noborder\n", x,
+        y - 8.0 / height, x + 16.0 / width, y + 8.0 / height, map.kinds[k].color.c_str());
+    script += "set label " + gnuplot_text(map.kinds[k].name) +
+              format(" at screen %.5f,%.5f\n", x + 24.0 / width, y);
+  }
+  return script + "plot NaN notitle\n";
+}
+
+}  // namespace slosh

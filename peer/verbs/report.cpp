@@ -1,0 +1,121 @@
+// The verb `report`: error against run time, stability at the extremes, what leaving passes out saves.
+#include "peer/verbs/report.h"
+
+#include <ctime>
+#include <memory>
+
+#include "peer/output/machine.h"
+#include "peer/verbs/common_options.h"
+#include "peer/verbs/verbs.h"
+#include "sim/backend.h"
+
+namespace slosh {
+namespace {
+
+void add_machine_options(CLI::App& verb, ReportOptions& options) {
+  verb.add_option("--backend", options.backend, "cpu, cuda, or both")
+      ->check(CLI::IsMember({"cpu", "cuda", "both"}))
+      ->capture_default_str();
+  verb.add_option("--threads", options.threads, "Cores for the CPU backend (all)")->check(CLI::Range(1, 256));
+  verb.add_flag("--overwrite", options.overwrite, "Lose the report that is in that folder");
+}
+
+void add_case_options(CLI::App& verb, ReportOptions& options, const std::string& kind) {
+  verb.add_flag("--quick", options.quick, "Coarse particles and short runs: minutes instead of hours");
+  verb.add_option("--out", options.out, "Folder for the tables and pictures (slosh-report-" + kind + ")");
+  verb.add_option("--case", options.cases, "Only this case; may be given more than once");
+  verb.add_option("--model", options.models, "Only this particle model; may be given more than once")
+      ->check(CLI::IsMember({"paper", "consistent", "corrected"}));
+  add_machine_options(verb, options);
+}
+
+}  // namespace
+
+void add_report(CLI::App& app, VerbRun& chosen) {
+  CLI::App* verb =
+      app.add_subcommand("report", "Measure: error against run time, stability, what passes cost");
+  verb->require_subcommand(1);
+  auto options = std::make_shared<ReportOptions>();
+  CLI::App* error = verb->add_subcommand("error", "Cases with a known answer: how far off, at what cost");
+  add_case_options(*error, *options, "error");
+  error
+      ->add_option("--from", options->from,
+                   "Draw and tabulate these errors.csv of earlier reports, of any machine, and run nothing")
+      ->check(CLI::ExistingFile);
+  error->footer(
+      "Runs every case with every particle model and spacing; a full report also with a wider support and "
+      "half\n"
+      "the time step. Writes errors.csv, a row as soon as it is there; a picture a case: error against wall\n"
+      "seconds a simulated second, and against the spacing; errors.md, the table. Ctrl-C draws what there "
+      "is.\n\n"
+      "Examples:\n  slosh report error --quick\n  slosh report error --case sloshing --backend both\n"
+      "  slosh report error --from here.csv --from there.csv --out both");
+  error->callback([&chosen, options] { chosen = [options] { return report_error(*options); }; });
+  CLI::App* stability =
+      verb->add_subcommand("stability", "Stiff and extreme cases: what holds, what is refused");
+  add_case_options(*stability, *options, "stability");
+  stability->footer(
+      "Each case ends as one of: ran true; ran limited (finite, and a status said what was limited); refused "
+      "(in\n"
+      "words, before it ran); failed. Writes stability.csv and stability.png, a map. A full report soaks: a "
+      "million\n"
+      "steps at rest, ten minutes of stirring.\n\n"
+      "Examples:\n  slosh report stability --quick\n  slosh report stability --case jerk --model corrected");
+  stability->callback([&chosen, options] { chosen = [options] { return report_stability(*options); }; });
+  CLI::App* passes = verb->add_subcommand("passes", "What a scene's step saves by what it leaves out");
+  auto scene = std::make_shared<std::string>();
+  auto spacing = std::make_shared<double>(0.0);
+  passes->add_option("SCENE", *scene, "A shipped scene's name, or a .gltf or .glb file")->required();
+  passes->add_option("--spacing", *spacing, "Metres between particles (the scene's own, else its coarsest)")
+      ->check(in_range(1e-4, 1.0));
+  passes->add_flag("--quick", options->quick, "20 timed steps instead of 200");
+  passes->add_option("--out", options->out, "Also write passes.csv into this folder");
+  add_machine_options(*passes, *options);
+  passes->footer(
+      "Times the scene as planned, with each pass forced in that its plan left out, and with what only a "
+      "viewer or\n"
+      "a recording needs; step by step in turns, so that the ratios hold on a machine that does other things "
+      "too.\n\n"
+      "Examples:\n  slosh report passes bucket\n  slosh report passes pour --spacing 0.008 --backend both");
+  passes->callback([&chosen, options, scene, spacing] {
+    chosen = [options, scene, spacing] { return report_passes(*options, *scene, *spacing); };
+  });
+}
+
+Result<std::filesystem::path> report_folder(const ReportOptions& options, const std::string& kind,
+                                            const char* main_file) {
+  const std::filesystem::path folder = options.out.empty() ? "slosh-report-" + kind : options.out;
+  std::error_code code;
+  if (!options.overwrite && std::filesystem::exists(folder / main_file, code)) {
+    return Error{folder.string(), std::string("holds an earlier report's ") + main_file,
+                 "Choose another folder with --out, or give --overwrite to lose that report"};
+  }
+  std::filesystem::create_directories(folder, code);
+  if (code)
+    return Error{folder.string(), "cannot be made: " + code.message(), "Choose another folder with --out"};
+  return folder;
+}
+
+std::string machine_line(const ReportOptions& options) {
+  const Machine machine = this_machine();
+  char date[32] = "";
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  if (localtime_r(&now, &local)) std::strftime(date, sizeof date, "%Y-%m-%d", &local);
+  const int threads = options.threads > 0 ? options.threads : machine.cores;
+  return machine.cpu + ", " + std::to_string(threads) + " of " + std::to_string(machine.cores) + " cores, " +
+         machine.system + ", slosh " SLOSH_VERSION ", " + date;
+}
+
+std::optional<Error> no_backend(const ReportOptions& options) {
+  std::string reason;
+  if (options.backend == "cpu" || cuda_available(&reason)) return std::nullopt;
+  return Error{"--backend", reason, "Measure on the CPU: --backend cpu"};
+}
+
+std::vector<Backend> backends_of(const ReportOptions& options) {
+  if (options.backend == "both") return {Backend::kCpu, Backend::kCuda};
+  return {options.backend == "cuda" ? Backend::kCuda : Backend::kCpu};
+}
+
+}  // namespace slosh

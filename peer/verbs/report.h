@@ -1,0 +1,42 @@
+// What the three reports share: where they write, and what they run on.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/report/sweep.h"
+#include "peer/output/run_folder.h"
+
+namespace slosh {
+
+struct ReportOptions {
+  bool quick = false;
+  std::string out;  ///< empty: slosh-report-KIND
+  bool overwrite = false;
+  std::vector<std::string> cases, models;
+  std::string backend = "cpu";
+  int threads = 0;
+  std::vector<std::string> from;  ///< CSVs of earlier reports, drawn instead of running anything
+};
+
+int report_error(const ReportOptions& options);
+int report_stability(const ReportOptions& options);
+/// `spacing` m; 0: the scene's own, else its coarsest.
+int report_passes(const ReportOptions& options, const std::string& scene_name, double spacing);
+
+/// The folder that a report writes to. Errors: another report is there.
+Result<std::filesystem::path> report_folder(const ReportOptions& options, const std::string& kind,
+                                            const char* main_file);
+
+/// "Intel Xeon, 2 of 2 cores, Debian GNU/Linux 12 (bookworm), 2026-11-21"
+std::string machine_line(const ReportOptions& options);
+
+/// Why --backend cannot be had, where it cannot.
+std::optional<Error> no_backend(const ReportOptions& options);
+
+/// The backends that --backend names.
+std::vector<Backend> backends_of(const ReportOptions& options);
+
+}  // namespace slosh

@@ -1,0 +1,277 @@
+// `slosh report error`: every case at every setting, as rows, pictures and a table.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <optional>
+
+#include "host/report/frontier.h"
+#include "net/text/clean.h"
+#include "peer/output/chart.h"
+#include "peer/output/gnuplot.h"
+#include "peer/output/progress.h"
+#include "peer/output/whole_file.h"
+#include "peer/verbs/interrupt.h"
+#include "peer/verbs/report.h"
+#include "peer/verbs/verbs.h"
+#include "sim/format.h"
+
+namespace slosh {
+namespace {
+
+using report::ErrorCase;
+using report::ErrorRow;
+using report::Setting;
+
+constexpr const char* kTable = "errors.csv";
+
+struct Look {
+  const char* model;
+  const char* color;
+};
+constexpr Look kLooks[] = {{"paper", "#8c6d31"}, {"consistent", "#1f5fbf"}, {"corrected", "#c8322b"}};
+
+/// One picture's and one table line's rows: of one case and one quantity of it.
+struct Group {
+  std::string case_id, quantity, title;
+  std::vector<ErrorRow> rows;
+};
+
+std::vector<Group> groups_of(const std::vector<ErrorRow>& rows) {
+  std::vector<Group> groups;
+  for (const ErrorRow& row : rows) {
+    if (!row.plotted || !row.refused.empty()) continue;
+    auto at = std::find_if(groups.begin(), groups.end(), [&](const Group& g) {
+      return g.case_id == row.case_id && g.quantity == row.quantity;
+    });
+    if (at == groups.end()) {
+      const ErrorCase* known = report::find_error_case(row.case_id);
+      groups.push_back(
+          {row.case_id, row.quantity, (known ? known->title : row.case_id) + (": " + row.quantity), {}});
+      at = groups.end() - 1;
+    }
+    at->rows.push_back(row);
+  }
+  return groups;
+}
+
+glm::dvec2 time_and_error(const ErrorRow& row) {
+  return {row.wall_per_simulated(), 100.0 * std::abs(row.error())};
+}
+
+std::vector<glm::dvec2> frontier_of(const std::vector<ErrorRow>& rows) {
+  std::vector<glm::dvec2> all, best;
+  for (const ErrorRow& row : rows) all.push_back(time_and_error(row));
+  const std::vector<bool> on = report::on_frontier(all);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (on[i]) best.push_back(all[i]);
+  }
+  std::sort(best.begin(), best.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
+  return best;
+}
+
+ChartPanel against_time(const Group& group) {
+  ChartPanel panel{group.title, "wall s per simulated s", "|error|, %", true, true, {}};
+  panel.series.push_back({"frontier", "#909090", frontier_of(group.rows), 0, 1.0, 1.5, true});
+  for (const bool cuda : {false, true}) {
+    for (const Look& look : kLooks) {
+      const std::string on = cuda ? " (CUDA)" : "";
+      ChartSeries base{look.model + on, look.color, {}, cuda ? 9 : 7, 0.9, 1.2, false};
+      ChartSeries variants{look.model + on + ", support 2.5", look.color, {}, cuda ? 11 : 5, 0.9, 0.0, false};
+      ChartSeries shorter{look.model + on + ", half the step", look.color, {}, 2, 0.8, 0.0, false};
+      for (const ErrorRow& row : group.rows) {
+        if (row.model != look.model || (row.backend == "cuda") != cuda) continue;
+        auto& to = row.is_base() ? base : row.support_ratio != 2.0 ? variants : shorter;
+        to.points.push_back(time_and_error(row));
+      }
+      for (ChartSeries& series : {std::ref(base), std::ref(variants), std::ref(shorter)})
+        panel.series.push_back(series);
+    }
+  }
+  // The two settings that everybody asks for, ringed.
+  ChartSeries paper{"the paper's setting", "#000000", {}, 4, 1.9, 0.0, false};
+  ChartSeries usual{"the default", "#000000", {}, 6, 1.9, 0.0, false};
+  for (const ErrorRow& row : group.rows) {
+    if (row.is_paper()) paper.points.push_back(time_and_error(row));
+    if (row.is_default()) usual.points.push_back(time_and_error(row));
+  }
+  panel.series.push_back(paper);
+  panel.series.push_back(usual);
+  return panel;
+}
+
+std::vector<glm::dvec2> by_spacing(const Group& group, const std::string& model, const std::string& backend) {
+  std::vector<glm::dvec2> points;
+  for (const ErrorRow& row : group.rows) {
+    if (row.model == model && row.backend == backend && row.is_base())
+      points.emplace_back(1e3 * row.spacing, 100.0 * std::abs(row.error()));
+  }
+  return points;
+}
+
+ChartPanel against_spacing(const Group& group) {
+  ChartPanel panel{"convergence", "spacing, mm", "|error|, %", true, true, {}};
+  for (const Look& look : kLooks) {
+    std::vector<glm::dvec2> points = by_spacing(group, look.model, "cpu");
+    if (points.empty()) points = by_spacing(group, look.model, "cuda");
+    const std::optional<double> order = report::order_of(points);
+    panel.series.push_back({look.model + (order ? format(", order %.1f", *order) : std::string()), look.color,
+                            points, 7, 0.9, 1.2, false});
+  }
+  return panel;
+}
+
+std::string file_name(const Group& group) {
+  return folder_name(group.case_id + "-" + group.quantity, "case") + ".png";
+}
+
+// The default's and each other model's error at each spacing, and where the default stands.
+std::string markdown(const std::vector<Group>& groups, const std::string& machine) {
+  std::string text =
+      "# Error against run time\n\n" + machine +
+      "\n\nError in % and, after the slash, wall seconds a simulated second; support ratio 2, the "
+      "plan's time step. Bold: nothing in the report has less error for as little time.\n\n"
+      "| case | reads | spacing, mm | paper | consistent | corrected | CUDA, corrected |\n"
+      "|---|---|---|---|---|---|---|\n";
+  for (const Group& group : groups) {
+    const std::vector<glm::dvec2> best = frontier_of(group.rows);
+    std::vector<double> spacings;
+    for (const ErrorRow& row : group.rows) spacings.push_back(row.spacing);
+    std::sort(spacings.rbegin(), spacings.rend());
+    spacings.erase(std::unique(spacings.begin(), spacings.end()), spacings.end());
+    const std::string title = group.title.substr(0, group.title.rfind(": "));
+    for (const double spacing : spacings) {
+      text += format("| %s | %s | %.3g |", title.c_str(), group.quantity.c_str(), 1e3 * spacing);
+      for (const auto& [model, backend] :
+           {std::pair{"paper", "cpu"}, {"consistent", "cpu"}, {"corrected", "cpu"}, {"corrected", "cuda"}}) {
+        const auto row = std::find_if(group.rows.begin(), group.rows.end(), [&](const ErrorRow& r) {
+          return r.model == model && r.backend == backend && r.spacing == spacing && r.is_base();
+        });
+        if (row == group.rows.end()) {
+          text += " |";
+          continue;
+        }
+        const bool front = std::find(best.begin(), best.end(), time_and_error(*row)) != best.end();
+        std::string cell = format("%+.3g / %.2g", 100.0 * row->error(), row->wall_per_simulated());
+        if (row->retired > 0.0)
+          cell += format(" (%.0f %% lost)", 100.0 * row->retired / std::max(row->particles, 1.0));
+        text += (front ? " **" + cell + "** |" : " " + cell + " |");
+      }
+      text += "\n";
+    }
+  }
+  return text;
+}
+
+int write_up(const std::vector<ErrorRow>& rows, const std::filesystem::path& folder,
+             const std::string& machine) {
+  const std::vector<Group> groups = groups_of(rows);
+  const Result<bool> table = write_whole(folder / "errors.md", markdown(groups, machine));
+  if (!table) return fail(table.error());
+  std::vector<ChartPanel> all;
+  for (const Group& group : groups) {
+    const ChartPanel panel = against_time(group);
+    const Result<bool> drawn =
+        draw(chart_script({panel, against_spacing(group)}, 2, machine), folder / file_name(group));
+    if (!drawn) return fail(drawn.error());
+    all.push_back(panel);
+    all.back().legend = all.size() == 1;
+  }
+  if (all.empty()) return kExitOk;
+  const Result<bool> drawn =
+      draw(chart_script(all, 3, "Error against run time: " + machine), folder / "errors.png");
+  if (!drawn) return fail(drawn.error());
+  std::printf("Written: %s/errors.csv, errors.md, errors.png and a picture for each of %zu readings\n",
+              clean_text(folder.string(), kMostTextBytes).c_str(), groups.size());
+  return kExitOk;
+}
+
+struct Job {
+  const ErrorCase* which;
+  Setting setting;
+};
+
+std::string job_name(const Job& job) {
+  std::string text =
+      format("%s, %s, %.3g mm", job.which->id, name(job.setting.model), 1e3 * job.setting.spacing);
+  if (job.setting.support_ratio != 2.0) text += format(", support %.2g", job.setting.support_ratio);
+  if (job.setting.step_share != 1.0) text += format(", %.2g of the step", job.setting.step_share);
+  if (job.setting.backend == Backend::kCuda) text += ", CUDA";
+  return text;
+}
+
+// Work in particles and steps, for the bar alone: a spacing half as long is eight times the particles and
+// twice the steps.
+double weight_of(const Job& job) {
+  const double ratio = job.which->spacings.front() / job.setting.spacing;
+  return std::pow(ratio, 4.0) * std::pow(job.setting.support_ratio / 2.0, 2.0) / job.setting.step_share;
+}
+
+int run_all(const std::vector<Job>& jobs, std::ofstream& out, std::vector<ErrorRow>& rows) {
+  Progress progress;
+  progress.phase("measuring", format("%zu runs", jobs.size()));
+  double whole = 0.0, done = 0.0;
+  for (const Job& job : jobs) whole += weight_of(job);
+  for (const Job& job : jobs) {
+    progress.update(done / whole, job_name(job));
+    try {
+      for (const ErrorRow& row : report::run_case(*job.which, job.setting)) {
+        out << report::csv_line(row) << '\n';
+        rows.push_back(row);
+        if (!row.refused.empty()) progress.note(job_name(job) + ": " + row.refused);
+      }
+    } catch (const report::Stopped&) {
+      progress.note("interrupted: drawing what there is");
+      return kExitOk;
+    }
+    if (!out.flush()) return kExitFailed;
+    done += weight_of(job);
+  }
+  return kExitOk;
+}
+
+}  // namespace
+
+int report_error(const ReportOptions& options) {
+  for (const std::string& id : options.cases) {
+    if (report::find_error_case(id)) continue;
+    std::string known;
+    for (const ErrorCase& each : report::error_cases())
+      known += (known.empty() ? "" : ", ") + std::string(each.id);
+    return fail({"--case", "there is no case '" + id + "'", "Cases: " + known});
+  }
+  const std::vector<Backend> backends = backends_of(options);
+  if (options.from.empty()) {
+    if (const std::optional<Error> missing = no_backend(options)) return fail(*missing);
+  }
+  const Result<std::filesystem::path> folder = report_folder(options, "error", kTable);
+  if (!folder) return fail(folder.error());
+  std::vector<ErrorRow> rows;
+  for (const std::string& file : options.from) {
+    const Result<std::vector<ErrorRow>> read = report::read_errors(file);
+    if (!read) return fail(read.error());
+    rows.insert(rows.end(), read.value().begin(), read.value().end());
+  }
+  std::vector<Job> jobs;
+  if (options.from.empty()) {
+    const report::SweepOptions sweep{options.quick, options.cases,   options.models,
+                                     backends,      options.threads, [] { return interrupted_by() != 0; }};
+    for (const ErrorCase& each : report::error_cases()) {
+      if (!options.cases.empty() && std::count(options.cases.begin(), options.cases.end(), each.id) == 0)
+        continue;
+      for (const Setting& setting : report::settings_of(each, sweep)) jobs.push_back({&each, setting});
+    }
+  }
+  catch_interrupts();
+  std::ofstream out(folder.value() / kTable);
+  out << report::kErrorHeader << '\n';
+  for (const ErrorRow& row : rows) out << report::csv_line(row) << '\n';
+  const int ran = run_all(jobs, out, rows);
+  if (ran != kExitOk || !out.flush())
+    return fail(
+        {(folder.value() / kTable).string(), "cannot be written", "Is the disk full? Rows so far are kept"});
+  return write_up(rows, folder.value(), options.from.empty() ? machine_line(options) : "several reports");
+}
+
+}  // namespace slosh

@@ -1,0 +1,51 @@
+#include "sim/bodies/contact_memory.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace slosh {
+
+namespace {
+
+std::pair<int, int> pair_of(const KeptImpulse& k) {
+  return {k.first, k.second};
+}
+
+// Where a contact is on the body that carries it.
+KeptImpulse place(const Contact& c, const std::vector<RigidBody>& bodies) {
+  KeptImpulse k{std::min(c.a, c.b), std::max(c.a, c.b), {}, {}};
+  const RigidBody& body = bodies[k.carrier(bodies)];
+  k.point = glm::conjugate(body.orientation) * (c.point - body.position);
+  return k;
+}
+
+}  // namespace
+
+glm::dvec3 ContactMemory::recall(const Contact& contact, const std::vector<RigidBody>& bodies) const {
+  const KeptImpulse here = place(contact, bodies);
+  const std::span<const KeptImpulse> known = between(contact.a, contact.b);
+  const auto distance = [&](const KeptImpulse& k) { return glm::distance(k.point, here.point); };
+  const auto nearest =
+      std::min_element(known.begin(), known.end(),
+                       [&](const KeptImpulse& x, const KeptImpulse& y) { return distance(x) < distance(y); });
+  if (nearest == known.end() || distance(*nearest) > reach_) return glm::dvec3(0.0);
+  return contact.a == here.first ? nearest->impulse : -nearest->impulse;
+}
+
+std::span<const KeptImpulse> ContactMemory::between(int body, int other) const {
+  KeptImpulse wanted;
+  wanted.first = std::min(body, other);
+  wanted.second = std::max(body, other);
+  const auto before = [](const KeptImpulse& x, const KeptImpulse& y) { return pair_of(x) < pair_of(y); };
+  const auto [first, last] = std::equal_range(kept_.begin(), kept_.end(), wanted, before);
+  return {first, last};
+}
+
+void ContactMemory::add(const Contact& contact, const glm::dvec3& impulse_on_a,
+                        const std::vector<RigidBody>& bodies) {
+  KeptImpulse k = place(contact, bodies);
+  k.impulse = contact.a == k.first ? impulse_on_a : -impulse_on_a;
+  kept_.push_back(k);
+}
+
+}  // namespace slosh

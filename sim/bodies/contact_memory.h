@@ -1,0 +1,49 @@
+// What contacts gave in the last sub-step: where the next solve begins. A weight passes through a stack of n
+// bodies in some n² turns of the solve; begun anew each step, a stack of ten never gets there and topples.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sim/bodies/contact_rows.h"
+
+namespace slosh {
+
+/// One contact's part.
+struct KeptImpulse {
+  int first = 0, second = 0;  ///< bodies, the lower index first
+  glm::dvec3 point{0.0};      ///< m, where it was, about the centre and along the axes of carrier()
+  glm::dvec3 impulse{0.0};    ///< N·s on the first, world axes
+
+  /// The body that its point goes along with: the first that is free.
+  int carrier(const std::vector<RigidBody>& bodies) const { return bodies[first].free ? first : second; }
+  /// Where it is now, world.
+  glm::dvec3 place(const std::vector<RigidBody>& bodies) const {
+    const RigidBody& body = bodies[carrier(bodies)];
+    return body.position + body.orientation * point;
+  }
+};
+
+class ContactMemory {
+ public:
+  /// `spacing`: the least distance between contacts of a pair, m.
+  explicit ContactMemory(double spacing) : reach_(0.5 * spacing) {}
+
+  /// N·s on contact.a, by the one that was within half a spacing of it; zero where there was none.
+  glm::dvec3 recall(const Contact& contact, const std::vector<RigidBody>& bodies) const;
+  /// Those of two bodies, in the order in which they were chosen.
+  std::span<const KeptImpulse> between(int body, int other) const;
+
+  /// Forgets all; the contacts of a pair must then be added together, pairs in the order of their indices.
+  void clear() { kept_.clear(); }
+  void add(const Contact& contact, const glm::dvec3& impulse_on_a, const std::vector<RigidBody>& bodies);
+
+  const std::vector<KeptImpulse>& kept() const { return kept_; }
+  void restore(std::vector<KeptImpulse> kept) { kept_ = std::move(kept); }
+
+ private:
+  double reach_;
+  std::vector<KeptImpulse> kept_;  // pair by pair
+};
+
+}  // namespace slosh

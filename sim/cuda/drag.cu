@@ -1,0 +1,49 @@
+// What the fluid is dragged by when bodies end a step with another velocity than they began it with.
+#include "sim/cuda/pair_rows.cuh"
+
+namespace slosh::cuda {
+
+namespace {
+
+__global__ void set_velocities_kernel(SortedSurface surface, const DeviceBody* twists) {
+  const std::uint32_t i = thread_index();
+  if (i >= surface.count) return;
+  const float4 x = surface.x[i];
+  const glm::vec3 v = twists[surface.body[i]].motion.velocity_at({x.x, x.y, x.z});
+  surface.v[i] = make_float4(v.x, v.y, v.z, surface.v[i].w);
+}
+
+template <class Parts>
+__global__ __launch_bounds__(kThreads) void drag_kernel(StepConstants c, const ParticleKind* kinds,
+                                                        SortedFluid fluid, SortedSurface moving) {
+  const std::uint32_t p = thread_index();
+  if (p >= fluid.count) return;
+  const std::uint32_t cell = fluid.state.key[p];
+  if (cell >= c.grid.retired_key()) return;
+  const ParticleView<float> self =
+      view(fluid.state.x[p], fluid.state.v[p], kinds[fluid.state.kind[p]].viscosity);
+  ForceSum<float> sum{0.0f, 0.0f, 0.0f};
+  for_each_dragged<Viscosity::kPair, Neighbours::kWalls>(
+      c, self, columns(moving), moving.cells, cell, 1.0f, [&](const ParticleView<float>& i) {
+        add_pair_drag<typename Parts::ForceKernel, Parts::kDrag>(self, i, c.support_radius, 1.0f, sum);
+      });
+  float4 force = fluid.force[p];
+  force.x += c.force_scale * sum.x;
+  force.y += c.force_scale * sum.y;
+  force.z += c.force_scale * sum.z;
+  fluid.force[p] = force;
+}
+
+}  // namespace
+
+void launch_drag(const StepConstants& constants, const Plan& plan, const ParticleKind* kinds,
+                 const SortedFluid& fluid, const SortedSurface& moving, const DeviceBody* twists,
+                 cudaStream_t stream) {
+  if (moving.count == 0) return;
+  set_velocities_kernel<<<blocks_for(moving.count), kThreads, 0, stream>>>(moving, twists);
+  with_model(plan.model, [&]<class Parts>() {
+    drag_kernel<Parts><<<blocks_for(fluid.count), kThreads, 0, stream>>>(constants, kinds, fluid, moving);
+  });
+}
+
+}  // namespace slosh::cuda

@@ -1,0 +1,44 @@
+#include "sim/walls/guarded_bodies.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace slosh {
+
+std::vector<DistanceField> guarded_fields(const SampledScene& sampled, const Plan& plan) {
+  std::vector<DistanceField> fields(sampled.distance_fields.size());
+  if (plan.guards_walls()) fields = sampled.distance_fields;
+  return fields;
+}
+
+void guard_bodies(std::span<const DistanceFieldView> fields, const Plan& plan,
+                  std::span<const RigidBody> before, std::span<const RigidBody> after,
+                  std::vector<GuardedBody>& out) {
+  out.resize(before.size());
+  // Whoever has no particle of a body within the cells around it is this far from its surface at least, less
+  // what it goes itself at the speed limit.
+  const double near = std::max(0.0, 0.5 * plan.support_radius - (1.0 - kGuardDepth) * plan.spacing);
+  for (std::size_t b = 0; b < out.size(); ++b) {
+    GuardedBody& g = out[b];
+    g = GuardedBody{};
+    if (b >= fields.size() || fields[b].distance == nullptr) continue;
+    g.field = fields[b];
+    g.before = surface_motion(before[b]);
+    g.after = surface_motion(after[b]);
+    const glm::vec3 half = 0.5f * g.field.cell * glm::vec3(g.field.size - 1);
+    const float radius = glm::length(half);
+    g.middle = g.after.place(g.field.origin + half);
+    const glm::vec3 came = g.before.place(g.field.origin + half);
+    const glm::dquat turned = after[b].orientation * glm::conjugate(before[b].orientation);
+    const double angle = 2.0 * glm::length(glm::dvec3(turned.x, turned.y, turned.z));
+    const float travel = glm::distance(g.middle, came) + static_cast<float>(angle) * radius;
+    // The field's box has its own margin around the solid.
+    g.reach = radius + travel;
+    // Where a large body's field is coarse, so is the wall that it knows.
+    g.depth =
+        static_cast<float>(kGuardDepth) * std::max(static_cast<float>(plan.spacing), 2.0f * g.field.cell);
+    g.fast = travel > static_cast<float>(near);
+  }
+}
+
+}  // namespace slosh

@@ -1,0 +1,28 @@
+// The bodies that particles are guarded against, sub-step by sub-step.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "scenes/scene.h"
+#include "sim/bodies/rigid_body.h"
+#include "sim/plan.h"
+#include "sim/walls/wall_guard.h"
+
+namespace slosh {
+
+/// How far into a wall a particle may get, in spacings: the wall's own particles sit twice as deep, and fluid
+/// at rest stays half a spacing outside.
+inline constexpr double kGuardDepth = 0.35;
+
+/// The fields of the bodies that particles are guarded against, one a body; empty for those that have none,
+/// and for all where the plan guards nothing.
+std::vector<DistanceField> guarded_fields(const SampledScene& sampled, const Plan& plan);
+
+/// The bodies on their way from `before` to `after` (one a body each), with the views of `fields`. One entry
+/// a body; those without a field have a reach of 0.
+void guard_bodies(std::span<const DistanceFieldView> fields, const Plan& plan,
+                  std::span<const RigidBody> before, std::span<const RigidBody> after,
+                  std::vector<GuardedBody>& out);
+
+}  // namespace slosh

@@ -1,0 +1,104 @@
+// `slosh report`: what is asked for is written, what cannot be asked for says why.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <sstream>
+
+#include "process.h"
+
+namespace slosh {
+namespace {
+
+using test::Outcome;
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// What an earlier run of the same test left there would be refused, as it should be.
+void empty_folder() {
+  std::filesystem::remove_all(test::test_folder());
+}
+
+TEST(Report, OfErrorsWritesRowsATableAndPictures) {
+  empty_folder();
+  const Outcome ran = test::slosh({"report", "error", "--quick", "--case", "bounce", "--case", "slope",
+                                   "--model", "corrected", "--out", "first"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const std::filesystem::path first = test::test_folder() / "first";
+  const std::string rows = text_of(first / "errors.csv");
+  EXPECT_NE(rows.find("\nbounce,rebound,m,1,corrected,cpu"), std::string::npos) << rows;
+  EXPECT_NE(rows.find("\nslope,slope,"), std::string::npos) << rows;
+  for (const char* file : {"errors.md", "errors.png", "bounce-rebound.png", "slope-slope.png"})
+    EXPECT_GT(text_of(first / file).size(), 100u) << file;
+  // A report that is there is not lost, and an earlier one's rows can be drawn again.
+  const Outcome again =
+      test::slosh({"report", "error", "--quick", "--case", "bounce", "--out", first.string()});
+  EXPECT_EQ(again.code, 1);
+  EXPECT_NE(again.err.find("--overwrite"), std::string::npos) << again.err;
+  EXPECT_EQ(text_of(first / "errors.csv"), rows);
+}
+
+TEST(Report, OfErrorsDrawsEarlierRowsAgain) {
+  empty_folder();
+  ASSERT_EQ(test::slosh({"report", "error", "--quick", "--case", "bounce", "--out", "one"}).code, 0);
+  const std::filesystem::path folder = test::test_folder();
+  const std::string one = text_of(folder / "one" / "errors.csv");
+  std::filesystem::copy_file(folder / "one" / "errors.csv", folder.parent_path() / "one-errors.csv",
+                             std::filesystem::copy_options::overwrite_existing);
+  const std::string from = (folder.parent_path() / "one-errors.csv").string();
+  const Outcome both = test::slosh({"report", "error", "--from", from, "--from", from, "--out", "both"});
+  ASSERT_EQ(both.code, 0) << both.err;
+  // Every row twice, up to what is worked out anew from rounded numbers.
+  const auto rows_of = [](const std::string& text) {
+    std::multiset<std::string> rows;
+    std::istringstream lines(text.substr(text.find('\n') + 1));
+    for (std::string line; std::getline(lines, line);) rows.insert(line.substr(0, line.find(",0.")));
+    return rows;
+  };
+  const auto before = rows_of(one), after = rows_of(text_of(test::test_folder() / "both" / "errors.csv"));
+  ASSERT_FALSE(before.empty());
+  EXPECT_EQ(after.size(), 2 * before.size());
+  for (const std::string& row : before) EXPECT_EQ(after.count(row), 2 * before.count(row)) << row;
+}
+
+TEST(Report, OfStabilityWritesVerdictsAndAMap) {
+  empty_folder();
+  const Outcome ran =
+      test::slosh({"report", "stability", "--case", "viscosity_1e6", "--case", "bullet", "--out", "s"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const std::filesystem::path folder = test::test_folder() / "s";
+  const std::string rows = text_of(folder / "stability.csv");
+  EXPECT_NE(rows.find("viscosity_1e6,corrected,cpu,refused"), std::string::npos) << rows;
+  EXPECT_NE(rows.find("bullet,corrected,cpu,ran true"), std::string::npos) << rows;
+  EXPECT_GT(text_of(folder / "stability.png").size(), 1000u);
+}
+
+TEST(Report, OfPassesNamesWhatWasLeftOut) {
+  empty_folder();
+  const Outcome ran = test::slosh({"report", "passes", "pool", "--quick", "--out", "p"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_NE(ran.out.find("as planned"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("with pair_viscosity"), std::string::npos) << ran.out;
+  EXPECT_NE(text_of(test::test_folder() / "p" / "passes.csv").find("\ncpu,as planned,"), std::string::npos);
+}
+
+TEST(Report, BadRequestsSayWhatThereIs) {
+  const auto expect = [](const std::vector<std::string>& arguments, int code, const char* part) {
+    const Outcome outcome = test::slosh(arguments);
+    EXPECT_EQ(outcome.code, code) << outcome.err;
+    EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
+  };
+  expect({"report"}, 2, "slosh report --help");
+  expect({"report", "error", "--case", "sloshin"}, 1, "sloshing");
+  expect({"report", "stability", "--case", "nothing"}, 1, "jerk");
+  expect({"report", "error", "--model", "wcsph"}, 2, "corrected");
+  expect({"report", "error", "--from", "nowhere.csv"}, 2, "nowhere.csv");
+  expect({"report", "error", "--quick", "--backend", "cuda"}, 1, "--backend cpu");
+}
+
+}  // namespace
+}  // namespace slosh

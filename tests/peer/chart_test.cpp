@@ -1,0 +1,65 @@
+// Charts and maps: gnuplot takes what is written, whatever the texts are.
+#include "peer/output/chart.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "peer/output/gnuplot.h"
+
+namespace slosh {
+namespace {
+
+constexpr const char* kHostile = "`touch owned` $(touch owned) \"x\" 'y' @m \\n |cat";
+
+std::filesystem::path fresh(const char* name) {
+  const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / name;
+  std::filesystem::remove(file);
+  return file;
+}
+
+void expect_picture(const std::string& script, const char* name) {
+  const std::filesystem::path file = fresh(name);
+  const Result<bool> drawn = draw(script, file);
+  ASSERT_TRUE(drawn) << drawn.error().text();
+  std::ifstream in(file, std::ios::binary);
+  char head[4] = {};
+  in.read(head, 4);
+  EXPECT_EQ(std::string(head + 1, 3), "PNG");
+  EXPECT_FALSE(std::filesystem::exists("owned"));
+}
+
+TEST(Chart, DrawsWhateverItIsGiven) {
+  ChartPanel panel{kHostile, kHostile, kHostile, true, true, {}};
+  panel.series.push_back(
+      {kHostile, "#c8322b", {{1.0, 1.0}, {2.0, 0.5}, {0.0, 1.0}, {3.0, std::nan("")}}, 7, 1.0, 1.0, true});
+  panel.series.push_back({"one point", "#1f5fbf", {{1.5, 2.0}}, 4, 2.0, 0.0, false});
+  panel.series.push_back({"none that a logarithm has", "#1f5fbf", {{-1.0, 2.0}}, 4, 2.0, 0.0, false});
+  const ChartPanel empty{"empty", "x", "y", true, true, {}};
+  expect_picture(chart_script({panel, empty, panel}, 2, kHostile), "chart_test.png");
+}
+
+TEST(Chart, LeavesOutWhatHasNoLogarithm) {
+  ChartPanel panel{"t", "x", "y", true, true, {}};
+  panel.series.push_back({"s", "#000000", {{-5.0, 1.0}, {4.25, 1.0}}, 7, 1.0, 0.0, false});
+  const std::string script = chart_script({panel}, 1, "t");
+  EXPECT_EQ(script.find("-5 1"), std::string::npos);
+  EXPECT_NE(script.find("4.25 1"), std::string::npos);
+}
+
+TEST(TileMap, DrawsWhateverItIsGiven) {
+  TileMap map;
+  map.title = kHostile;
+  map.subtitle = std::string(400, 'x') + kHostile;
+  map.rows = {kHostile, "second"};
+  map.columns = {"a", kHostile};
+  map.kinds = {{"good", "#00ff00"}, {kHostile, "#ff0000"}};
+  map.kind = {{0, 1}, {-1, 0}};
+  map.text = {{kHostile, ""}, {"", "2 % lost"}};
+  expect_picture(tile_script(map), "tile_test.png");
+}
+
+}  // namespace
+}  // namespace slosh

@@ -1,0 +1,211 @@
+// A particle's way against walls, one by one: thin ones, moving ones, corners, joints.
+#include "sim/walls/wall_guard.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "scenes/sample.h"
+#include "sim/bodies/rigid_body.h"
+#include "sim/walls/guard_impulse.h"
+#include "sim/walls/guarded_bodies.h"
+
+namespace slosh {
+namespace {
+
+constexpr float kSpacing = 0.01f;
+constexpr float kDepth = 0.35f * kSpacing;
+constexpr float kRounding = 1e-6f;  // m
+
+/// A solid given by its exact distance on a grid as the sampler's, moving from `before` to `after`.
+struct Solid {
+  std::vector<float> values;
+  GuardedBody body;
+
+  template <class Distance>
+  Solid(const glm::vec3& low, const glm::vec3& high, Distance distance) {
+    DistanceFieldView& f = body.field;
+    f.cell = 0.5f * kSpacing;
+    // Off the solid's own planes, as any mesh is.
+    f.origin = low - 3.0f * kSpacing - 0.17f * f.cell;
+    f.size = glm::ivec3(glm::ceil((high - low + 6.0f * kSpacing) / f.cell)) + 2;
+    for (int k = 0; k < f.size.z; ++k) {
+      for (int j = 0; j < f.size.y; ++j) {
+        for (int i = 0; i < f.size.x; ++i) values.push_back(distance(f.origin + f.cell * glm::vec3(i, j, k)));
+      }
+    }
+    body.reach = 10.0f;
+    body.depth = kDepth;
+    view();
+  }
+  Solid(const Solid& other) : values(other.values), body(other.body) { view(); }
+  void view() { body.field.distance = values.data(); }
+  float distance(const glm::vec3& world) const {
+    return sample_distance(body.field, glm::transpose(body.after.turn) * (world - body.after.shift)).distance;
+  }
+};
+
+float box_distance(const glm::vec3& p, const glm::vec3& low, const glm::vec3& high) {
+  const glm::vec3 q = glm::max(low - p, p - high);
+  return glm::length(glm::max(q, 0.0f)) + std::min(std::max({q.x, q.y, q.z}), 0.0f);
+}
+
+Solid box(const glm::vec3& low, const glm::vec3& high) {
+  return Solid(low, high, [&](const glm::vec3& p) { return box_distance(p, low, high); });
+}
+/// A plate with x from 0 to `thickness` spacings.
+Solid plate(float thickness) {
+  return box({0.0f, -0.06f, -0.06f}, {thickness * kSpacing, 0.06f, 0.06f});
+}
+
+TEST(WallGuard, leaves_alone_what_stays_outside) {
+  const Solid wall = plate(1.5f);
+  const glm::vec3 from(-0.5f * kSpacing, 0.0f, 0.0f);
+  glm::vec3 x(-0.1f * kSpacing, 0.3f * kSpacing, 0.0f), v(1.0f, 2.0f, 3.0f);
+  const glm::vec3 x_before = x, v_before = v;
+  EXPECT_FALSE(guard_particle(wall.body, from, x, v));
+  x.x = 0.3f * kSpacing;
+  EXPECT_FALSE(guard_particle(wall.body, from, x, v)) << "shallower than the depth";
+  EXPECT_EQ(x.y, x_before.y);
+  EXPECT_EQ(v, v_before);
+}
+
+class Thickness : public ::testing::TestWithParam<float> {};
+
+// From fast to slow, over the whole plate and half of it, at every place in the field's cells.
+TEST_P(Thickness, no_way_leads_through) {
+  const Solid wall = plate(GetParam());
+  const float back = GetParam() * kSpacing;
+  for (int place = 0; place < 40; ++place) {
+    const float y = -0.04f + 0.002f * static_cast<float>(place);
+    for (const float length : {0.02f, 0.1f, 0.5f, 1.0f, 2.5f, 8.0f}) {
+      glm::vec3 x(-0.4f * kSpacing, y, 0.003f), v;
+      for (int step = 0; step < 200; ++step) {
+        const glm::vec3 from = x;
+        v = {1.0f, 0.2f, 0.0f};
+        x += length * kSpacing * glm::vec3(1.0f, 0.0f, 0.0f);
+        guard_particle(wall.body, from, x, v);
+        ASSERT_LT(x.x, 0.5f * back) << "length " << length << ", step " << step << ", y " << y;
+      }
+      EXPECT_LE(v.x, 1e-6f);
+      EXPECT_NEAR(v.y, 0.2f, 1e-3f) << "it slides";
+      EXPECT_GE(wall.distance(x), -kDepth - kRounding);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(spacings, Thickness, ::testing::Values(1.0f, 1.2f, 1.5f, 3.0f));
+
+// A particle at rest, and a wall that comes over it: up to eight spacings a step.
+TEST(WallGuard, wall_that_overtakes_takes_the_particle_along) {
+  for (const float way : {0.2f, 1.0f, 4.0f, 8.0f}) {
+    Solid wall = plate(1.0f);
+    const float dt = 0.002f;
+    wall.body.after.velocity = glm::vec3(-way * kSpacing / dt, 0.0f, 0.0f);
+    glm::vec3 x(-0.5f * kSpacing, 0.0f, 0.0f), v(0.0f);
+    for (int step = 0; step < 50; ++step) {
+      wall.body.before.shift = wall.body.after.shift;
+      wall.body.after.shift += dt * wall.body.after.velocity;
+      const glm::vec3 from = x;
+      x += dt * v;
+      guard_particle(wall.body, from, x, v);
+      ASSERT_LT(x.x - wall.body.after.shift.x, 0.5f * kSpacing) << way << " spacings a step, step " << step;
+    }
+    EXPECT_NEAR(v.x / wall.body.after.velocity.x, 1.0f, 1e-4f) << way;
+  }
+}
+
+// Turned by 20° in a step about a far axis: what it pushes goes as fast as the wall does there.
+TEST(WallGuard, wall_that_turns) {
+  Solid wall = plate(1.0f);
+  const float angle = 0.35f, dt = 0.01f, c = std::cos(angle), s = std::sin(angle);
+  wall.body.after.turn = glm::mat3(c, s, 0.0f, -s, c, 0.0f, 0.0f, 0.0f, 1.0f);
+  wall.body.after.angular_velocity = {0.0f, 0.0f, angle / dt};
+  const glm::vec3 from(-0.5f * kSpacing, 0.05f, 0.0f);
+  glm::vec3 x = from, v(0.0f);
+  EXPECT_TRUE(guard_particle(wall.body, from, x, v));
+  EXPECT_GE(wall.distance(x), -kDepth - kRounding);
+  const glm::vec3 normal = wall.body.after.turn * glm::vec3(-1.0f, 0.0f, 0.0f);
+  EXPECT_LT(glm::dot(x, normal), kDepth);
+  EXPECT_NEAR(glm::dot(v, normal), glm::dot(wall.body.after.velocity_at(x), normal), 1e-3f);
+}
+
+// Into the corner of a vessel, along no wall in particular.
+TEST(WallGuard, corner_of_a_vessel_holds) {
+  const glm::vec3 half(0.04f), wall(1.5f * kSpacing);
+  const Solid vessel(-half - wall, half + wall, [&](const glm::vec3& p) {
+    return std::max(box_distance(p, -half - wall, half + wall), -box_distance(p, -half, half));
+  });
+  unsigned state = 3;
+  const auto noise = [&] {
+    state = state * 1664525u + 1013904223u;
+    return static_cast<float>(state >> 8) / 8388608.0f - 1.0f;
+  };
+  for (int particle = 0; particle < 200; ++particle) {
+    glm::vec3 x = 0.035f * glm::vec3(noise(), noise(), noise()), v(0.0f);
+    glm::vec3 way = glm::normalize(glm::vec3(noise(), noise(), noise())) * kSpacing;
+    for (int step = 0; step < 60; ++step) {
+      if (step % 20 == 0) way = glm::normalize(glm::vec3(noise(), noise(), noise())) * 1.5f * kSpacing;
+      const glm::vec3 from = x;
+      x += way;
+      guard_particle(vessel.body, from, x, v);
+      const glm::vec3 out = glm::abs(x) - half;
+      ASSERT_LT(std::max({out.x, out.y, out.z}), 0.5f * kSpacing) << "particle " << particle;
+    }
+  }
+}
+
+// Floor and wall are two bodies that touch: one sends the particle to the other and back.
+TEST(WallGuard, joint_of_two_bodies_holds) {
+  const Solid bodies[] = {box({-0.06f, -0.015f, -0.06f}, {0.06f, 0.0f, 0.06f}),
+                          box({0.0f, -0.015f, -0.06f}, {0.015f, 0.06f, 0.06f})};
+  const auto at = [&](std::uint32_t b) -> const GuardedBody& { return bodies[b].body; };
+  glm::vec3 x(-0.5f * kSpacing, 0.5f * kSpacing, 0.0f), v(1.0f, -1.0f, 0.5f);
+  int taken[2] = {0, 0};
+  for (int step = 0; step < 50; ++step) {
+    const glm::vec3 from = x;
+    x += glm::vec3(0.8f, -0.8f, 0.1f) * kSpacing;
+    guard_against_all(at, 2, true, from, x, v, [&](std::uint32_t b, auto&&...) { ++taken[b]; });
+    ASSERT_LT(x.x, 0.5f * kSpacing);
+    ASSERT_GT(x.y, -0.5f * kSpacing);
+    x.z = 0.0f;
+  }
+  EXPECT_GT(taken[0], 0);
+  EXPECT_GT(taken[1], 0);
+  EXPECT_LE(v.x, 1e-5f);
+  EXPECT_GE(v.y, -1e-5f);
+  EXPECT_NEAR(v.z, 0.5f, 1e-4f);
+}
+
+TEST(WallGuard, far_particles_meet_fast_bodies_only) {
+  Solid wall = plate(1.5f);
+  const auto at = [&](std::uint32_t) -> const GuardedBody& { return wall.body; };
+  for (const bool fast : {false, true}) {
+    wall.body.fast = fast;
+    glm::vec3 x(kSpacing, 0.0f, 0.0f), v(1.0f, 0.0f, 0.0f);
+    EXPECT_EQ(guard_against_all(at, 1, false, {-kSpacing, 0.0f, 0.0f}, x, v, [](auto&&...) {}), fast);
+  }
+}
+
+// What a particle loses, in momentum and in angular momentum about any point, is what is written down, in
+// whatever order it is added.
+TEST(GuardImpulse, is_what_the_particle_lost) {
+  const ImpulseUnits units = impulse_units(1e-3, 10.0, 0.01);
+  const PutBack p{1e-3f, {0.1f, 0.2f, 0.3f}, {0.09f, 0.2f, 0.31f}, {3.0f, -2.0f, 1.0f}, {0.0f, -2.0f, 1.5f}};
+  const glm::dvec3 center(0.5, -0.1, 0.2);
+  ImpulseSums sums = no_impulses(1);
+  impulse_on_body(p, center, units,
+                  [&](int word, std::int64_t value) { sums[static_cast<std::size_t>(word)] += value; });
+  const Wrench w = impulse_wrench(sums, units, 0.5);
+  const double mass = p.mass;
+  const glm::dvec3 before = mass * glm::dvec3(p.before), after = mass * glm::dvec3(p.after);
+  const glm::dvec3 lost = glm::cross(glm::dvec3(p.from), before) - glm::cross(glm::dvec3(p.to), after);
+  EXPECT_LT(glm::distance(0.5 * w.force, before - after), 1e-12);
+  EXPECT_LT(glm::distance(0.5 * w.torque + glm::cross(center, 0.5 * w.force), lost), 1e-11);
+  EXPECT_EQ(in_units(1e300, units.linear), -in_units(-1e300, units.linear)) << "bounded";
+}
+
+}  // namespace
+}  // namespace slosh

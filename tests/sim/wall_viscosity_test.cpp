@@ -1,0 +1,87 @@
+// A wall that has the fluid's viscosity, against walls that are given one.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scenes/make/solid.h"
+#include "tests/physics/lab.h"
+
+namespace slosh {
+namespace {
+
+constexpr double kSpacing = 0.01;   // m
+constexpr double kViscosity = 2.0;  // Pa·s
+
+/// Water that slides through a box at 0.1 m/s, without gravity; `upper` Pa·s is that of its upper half.
+Scene sliding(double wall, double upper = kViscosity) {
+  lab::SceneBuilder b;
+  b.add_fluid(1000.0, kViscosity);
+  b.add_fluid(1000.0, upper);
+  b.add_fixed("tank", lab::tank_at_floor({0.12, 0.12, 0.12}, 0.03));
+  b.add_volume(make::box({-0.06, 0.0, -0.06}, {0.06, 0.06, 0.06}), 0);
+  b.add_volume(make::box({-0.06, 0.06, -0.06}, {0.06, 0.11, 0.06}), upper == kViscosity ? 0 : 1);
+  b.set_domain({-1.0, -0.5, -1.0}, {1.0, 1.0, 1.0});
+  b.scene.gravity = glm::dvec3(0.0);
+  b.scene.bodies[0].dynamic_viscosity = wall;
+  for (FluidVolume& volume : b.scene.fluid_volumes) volume.velocity = {0.1, 0.0, 0.0};
+  return b.scene;
+}
+
+struct Pulled {
+  double shear = 0.0;     // N, along the flow on the floor and side walls in the first step
+  double identity = 0.0;  // N: what the fluid lost less what the walls got
+  std::uint64_t hash = 0;
+};
+
+Pulled pull(const Scene& scene) {
+  const SampledScene sampled = sample_scene(scene, kSpacing).value();
+  World world(scene, sampled, make_plan(scene, kSpacing), WorldOptions{1, Backend::kCpu});
+  const double before = world.diagnostics().momentum.x;
+  BodySnapshot now;
+  world.step({});
+  world.fill(now);
+  Pulled pulled;
+  pulled.shear = now.bodies[0].fluid.force.x;
+  pulled.identity = (world.diagnostics().momentum.x - before) / world.plan().time_step + pulled.shear;
+  for (int i = 0; i < 20; ++i) world.step({});
+  pulled.hash = world.hash();
+  return pulled;
+}
+
+TEST(WallViscosity, OfTheFluidIsAsIfTheFluidsWereGiven) {
+  const Pulled given = pull(sliding(kViscosity));
+  const Pulled own = pull(sliding(kFluidsViscosity));
+  EXPECT_EQ(own.shear, given.shear);
+  EXPECT_EQ(own.hash, given.hash);
+  EXPECT_EQ(make_plan(sliding(kFluidsViscosity), kSpacing).time_step,
+            make_plan(sliding(kViscosity), kSpacing).time_step);
+}
+
+TEST(WallViscosity, AWallThatSlipsHasHalfTheShear) {
+  const double sticks = pull(sliding(kFluidsViscosity)).shear;
+  const double slips = pull(sliding(0.0)).shear;
+  EXPECT_GT(sticks, 0.1);
+  std::printf("shear %.3f N where it sticks, %.3f N where it slips\n", sticks, slips);
+  EXPECT_NEAR(slips / sticks, 0.5, 0.05) << "Eq 9's mean of the fluid's viscosity and 0";
+}
+
+TEST(WallViscosity, EachFluidSticksByItsOwn) {
+  const Pulled thin = pull(sliding(kFluidsViscosity, 0.02));
+  const Pulled alike = pull(sliding(kFluidsViscosity));
+  const Pulled thick = pull(sliding(kFluidsViscosity, 20.0));
+  EXPECT_LT(thin.shear, 0.9 * alike.shear);
+  EXPECT_GT(thick.shear, 1.5 * alike.shear);
+  for (const Pulled& each : {thin, alike, thick})
+    EXPECT_LT(std::abs(each.identity), 1e-4 * each.shear) << "what the fluid loses the walls get";
+}
+
+TEST(WallViscosity, TheMostThatIsAllowedGoesWithTheWalls) {
+  const Scene scene = sliding(kFluidsViscosity);
+  World world(scene, sample_scene(scene, kSpacing).value(), make_plan(scene, kSpacing),
+              WorldOptions{1, Backend::kCpu});
+  EXPECT_TRUE(world.set_viscosity(0, kViscosity));
+  EXPECT_FALSE(world.set_viscosity(0, 1e4));
+}
+
+}  // namespace
+}  // namespace slosh

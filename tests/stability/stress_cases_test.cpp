@@ -1,0 +1,70 @@
+// The quick cases of `slosh report stability`: none fails with the default model, and what is only limited is
+// so by as much as is written here.
+#include <gtest/gtest.h>
+
+#include <ostream>
+#include <string>
+
+#include "host/report/stress_case.h"
+
+namespace slosh::report {
+
+void PrintTo(const StressCase& which, std::ostream* out) {
+  *out << which.id;
+}
+
+namespace {
+
+struct Expected {
+  const char* case_id;
+  Verdict verdict;
+  double most_lost;  // share of the particles
+};
+// All others run true.
+constexpr Expected kExpected[] = {
+    {"viscosity_100000", Verdict::kRefused, 0.0},
+    {"viscosity_1e6", Verdict::kRefused, 0.0},
+    {"thrown_10", Verdict::kLimited, 0.55},
+    {"doubled", Verdict::kLimited, 0.60},
+    {"far_away", Verdict::kLimited, 0.001},
+    {"not_a_number", Verdict::kLimited, 0.002},
+    {"step_10", Verdict::kLimited, 0.02},
+    {"light_5", Verdict::kLimited, 0.0},
+    {"heavy_20", Verdict::kLimited, 0.0},
+    {"fast", Verdict::kLimited, 0.05},
+    {"shaken_60", Verdict::kLimited, 0.0},
+    {"shaken_125", Verdict::kLimited, 0.0},
+    {"shaken_250", Verdict::kLimited, 0.0},
+    {"jerk", Verdict::kLimited, 0.0},
+};
+
+std::vector<StressCase> quick_cases() {
+  std::vector<StressCase> quick;
+  for (const StressCase& each : stress_cases()) {
+    if (each.quick) quick.push_back(each);
+  }
+  return quick;
+}
+
+class Stressed : public ::testing::TestWithParam<StressCase> {};
+
+TEST_P(Stressed, ends_as_written) {
+  Setting setting;
+  setting.spacing = GetParam().spacing;
+  setting.threads = 1;
+  const StressRow row = run_stress(GetParam(), setting);
+  Expected expected{GetParam().id, Verdict::kTrue, row.found.most_lost};
+  for (const Expected& each : kExpected) {
+    if (row.case_id == each.case_id) expected = each;
+  }
+  EXPECT_EQ(row.verdict, expected.verdict)
+      << kVerdictNames[static_cast<std::size_t>(row.verdict)] << ": " << row.why;
+  EXPECT_LE(row.found.lost_share, expected.most_lost) << row.why;
+  RecordProperty("verdict", kVerdictNames[static_cast<std::size_t>(row.verdict)]);
+}
+
+INSTANTIATE_TEST_SUITE_P(quick, Stressed, ::testing::ValuesIn(quick_cases()),
+                         [](const auto& p) { return std::string(p.param.id); });
+
+}  // namespace
+}  // namespace slosh::report
