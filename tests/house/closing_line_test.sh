@@ -44,6 +44,37 @@ skipped 2 of stability: the same
 0 passed, 0 failed, 44 skipped" left_out -R Script
 expect "" /dev/null -R NothingOfThatName
 
+# A few that failed are run once more, alone; what passes then is named, what fails again or crashes still fails.
+cat >CTestTestfile.cmake <<'END'
+add_test(Good.One true)
+add_test(No.Word printf "/a/file.cpp:7: Skipped\nnot here\n[  SKIPPED ] No.Word (0 ms)\n")
+set_tests_properties(No.Word PROPERTIES SKIP_REGULAR_EXPRESSION "\\[  SKIPPED \\]")
+add_test(Busy/Flaky.One/0 sh -c "test -e once || { touch once; exit 1; }")
+END
+# again WORDS STATUS
+again() {
+  local found status=0
+  "$ctest" >said 2>&1 || true
+  PATH="$(dirname "$ctest"):$PATH" "$here/run_again.sh" . said again >/dev/null || status=$?
+  found=$("$here/closing_line.sh" said Testing/Temporary/LastTest.log /dev/null again)
+  [[ "$found" == "$1" && $((status == 0)) == "$2" ]] || {
+    printf 'expected:\n%s\nfound, with status %d:\n%s\n' "$1" "$status" "$found" >&2
+    exit 1
+  }
+}
+again "passed only when it was run again, alone: Busy/Flaky.One/0
+skipped No.Word: not here
+2 passed, 0 failed, 1 skipped" 1
+echo 'add_test(Bad.One false)' >>CTestTestfile.cmake
+rm once
+again "passed only when it was run again, alone: Busy/Flaky.One/0
+skipped No.Word: not here
+2 passed, 1 failed, 1 skipped" 0
+echo 'add_test(Bad.Crash sh -c "kill -SEGV $$")' >>CTestTestfile.cmake
+rm once
+again "skipped No.Word: not here
+1 passed, 3 failed, 1 skipped" 0
+
 # What a list leaves out for a preset is excluded, and counted once among those that were chosen.
 cat >list <<'END'
 # a comment
