@@ -2,10 +2,11 @@
 
 #include <cmath>
 #include <limits>
-#include <unordered_map>
 
 #include "sim/math/kernels.h"
 #include "sim/viscosity/wall_drag.h"
+#include "sim/walls/joined_walls.h"
+#include "sim/walls/point_buckets.h"
 
 namespace slosh {
 
@@ -20,35 +21,6 @@ namespace {
 float solid_depth(const DistanceFieldView& field, const glm::vec3& p) {
   return field.distance ? -sample_distance(field, p).distance : std::numeric_limits<float>::infinity();
 }
-
-// Buckets of points, for asking who is near.
-class PointBuckets {
- public:
-  explicit PointBuckets(float cell) : cell_(cell) {}
-
-  void add(const glm::vec3& p) { buckets_[key(cell_of(p))].push_back(p); }
-
-  /// Calls f(point) for all points in the 27 buckets around p: those within one cell, and some more.
-  template <class F>
-  void around(const glm::vec3& p, F&& f) const {
-    const glm::ivec3 center = cell_of(p);
-    for (int n = 0; n < 27; ++n) {
-      const auto found = buckets_.find(key(center + glm::ivec3(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1)));
-      if (found == buckets_.end()) continue;
-      for (const glm::vec3& q : found->second) f(q);
-    }
-  }
-
- private:
-  glm::ivec3 cell_of(const glm::vec3& p) const { return glm::ivec3(glm::floor(p / cell_)); }
-  static std::int64_t key(const glm::ivec3& c) {
-    constexpr std::int64_t kOffset = 1 << 20;  // 21 bits an axis: a million cells to either side
-    return (c.x + kOffset) | ((c.y + kOffset) << 21) | ((c.z + kOffset) << 42);
-  }
-
-  float cell_;
-  std::unordered_map<std::int64_t, std::vector<glm::vec3>> buckets_;
-};
 
 // Moves a surface particle into the solid by kWallInset, or to the middle of a wall that is thinner than that
 // twice.
@@ -100,7 +72,7 @@ void close_gaps(const DistanceFieldView& field, float depth, float spacing, std:
         }
         if (std::abs(sample_distance(field, p).distance + depth) > 0.1f * spacing) continue;
         bool covered = false;
-        near.around(p, [&](const glm::vec3& q) { covered |= glm::distance(p, q) < kLargestHole * spacing; });
+        near.around(p, [&](const glm::vec3& q, std::uint32_t) { covered |= glm::distance(p, q) < kLargestHole * spacing; });
         if (covered) continue;
         sheet.push_back(p);
         near.add(p);
@@ -141,10 +113,48 @@ std::vector<float> crowding_shares(const std::vector<glm::vec3>& positions, cons
   shares.reserve(positions.size());
   for (const glm::vec3& p : positions) {
     double sum = 0.0;
-    near.around(p, [&](const glm::vec3& q) { sum += spiky_shape<double>(glm::dot(p - q, p - q), h); });
+    near.around(p, [&](const glm::vec3& q, std::uint32_t) { sum += spiky_shape<double>(glm::dot(p - q, p - q), h); });
     shares.push_back(static_cast<float>(kWallShare * sheet / sum));
   }
   return shares;
+}
+
+// The particles of the fixed bodies that touch others, and what each stands for, body by body; empty for all
+// other bodies.
+struct JoinedWalls {
+  std::vector<std::vector<glm::vec3>> positions;  // mesh frame
+  std::vector<std::vector<float>> shares;
+};
+
+JoinedWalls joined_walls(const Scene& scene, const SampledScene& sampled, const Plan& plan) {
+  JoinedWalls walls{std::vector<std::vector<glm::vec3>>(scene.bodies.size()),
+                    std::vector<std::vector<float>>(scene.bodies.size())};
+  if (plan.model != ParticleModel::kCorrected) return walls;
+  std::vector<FixedSolid> solids;
+  std::vector<std::size_t> body_of;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const Body& body = scene.bodies[b];
+    const DistanceFieldView field = sampled.distance_fields[b].view();
+    if (body.motion != BodyMotion::kFixed || body.point_probe || sampled.distance_fields[b].distance.empty())
+      continue;
+    solids.push_back({&sampled.surfaces[b], field, body.pose});
+    body_of.push_back(b);
+  }
+  const float spacing = static_cast<float>(plan.spacing);
+  std::vector<std::vector<glm::vec3>> sheets =
+      joined_sheets(solids, static_cast<float>(kWallInset) * spacing, spacing);
+  std::vector<glm::vec3> all;
+  for (std::size_t n = 0; n < sheets.size(); ++n)
+    for (const glm::vec3& p : sheets[n]) all.push_back(glm::vec3(transform_point(solids[n].pose, glm::dvec3(p))));
+  const std::vector<float> shares = crowding_shares(all, plan);
+  auto next = shares.begin();
+  for (std::size_t n = 0; n < sheets.size(); ++n) {
+    const auto end = next + static_cast<std::ptrdiff_t>(sheets[n].size());
+    walls.shares[body_of[n]].assign(next, end);
+    walls.positions[body_of[n]] = std::move(sheets[n]);
+    next = end;
+  }
+  return walls;
 }
 
 }  // namespace
@@ -153,13 +163,22 @@ std::vector<SurfaceParticle> surface_particles(const Scene& scene, const Sampled
                                                const Plan& plan, BodyMotion motion) {
   std::vector<SurfaceParticle> particles;
   const float drag = static_cast<float>(wall_drag(plan.model, scene.support_ratio).factor);
+  const bool walls = plan.has(PassId::kWalls);
+  JoinedWalls joined;
+  if (walls && motion == BodyMotion::kFixed) joined = joined_walls(scene, sampled, plan);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
-    if (!plan.has(PassId::kWalls) || body.motion != motion || body.point_probe) continue;
-    const std::vector<glm::vec3> positions =
-        sheet_positions(sampled.surfaces[b], sampled.distance_fields[b].view(), plan);
-    std::vector<float> pressures(positions.size(), static_cast<float>(plan.body_pressure[b]));
-    if (plan.model != ParticleModel::kPaper) pressures = crowding_shares(positions, plan);
+    if (!walls || body.motion != motion || body.point_probe) continue;
+    std::vector<glm::vec3> positions;
+    std::vector<float> pressures;
+    if (motion == BodyMotion::kFixed && !joined.positions[b].empty()) {
+      positions = std::move(joined.positions[b]);
+      pressures = std::move(joined.shares[b]);
+    } else {
+      positions = sheet_positions(sampled.surfaces[b], sampled.distance_fields[b].view(), plan);
+      pressures.assign(positions.size(), static_cast<float>(plan.body_pressure[b]));
+      if (plan.model != ParticleModel::kPaper) pressures = crowding_shares(positions, plan);
+    }
     const float lattice_volume = static_cast<float>(std::pow(plan.spacing, 3));
     for (std::size_t i = 0; i < positions.size(); ++i) {
       const float volume = plan.model == ParticleModel::kPaper ? sampled.surfaces[b].particle_volume

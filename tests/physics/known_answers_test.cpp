@@ -68,6 +68,11 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         std::vector<Known>{{"still_tank", 0.0125, "level", 0.06},
                            {"still_tank", 0.0125, "weight on the walls", 1e-3}},
+        // Five slabs: as one solid they lose nothing; each for itself 46 particles, its floor +30 %.
+        std::vector<Known>{{"tank_faces", 0.02, "floor", 0.15}},
+        std::vector<Known>{{"tank_faces", 0.01, "floor", 0.06},
+                           {"tank_faces", 0.01, "side walls, mean", 0.06},
+                           {"tank_faces", 0.01, "centre of pressure above the floor", 0.055}},
         std::vector<Known>{{"slope", 0.0125, "slope", 0.03}, {"slope", 0.0125, "force along the tank", 1e-3}},
         std::vector<Known>{{"buoyancy_box", 0.016, "buoyancy", 0.04}},
         std::vector<Known>{{"buoyancy_sphere", 0.00714, "buoyancy", 0.03}},

@@ -1,0 +1,186 @@
+#include "sim/walls/joined_walls.h"
+
+#include <cmath>
+#include <limits>
+
+#include "sim/walls/point_buckets.h"
+
+namespace slosh {
+namespace {
+
+constexpr float kTouching = 0.25f;  // of a spacing: no fluid gets into a gap of that
+constexpr float kDisc = 0.5f;       // of a spacing: the radius of the surface around one sample
+// As wide a hole as the sheet of one body may have (wall_particles.cpp).
+constexpr float kLargestHole = 0.7f;  // of a spacing
+
+glm::vec3 to_world(const Pose& pose, const glm::vec3& p) {
+  return glm::vec3(transform_point(pose, glm::dvec3(p)));
+}
+
+struct Depth {
+  float depth;       // m below the surface, negative outside
+  glm::vec3 inward;  // unit
+};
+
+// The surface that is left of all bodies together, as discs around their samples. World frame.
+class ExposedSurface {
+ public:
+  explicit ExposedSurface(float spacing) : radius_(kDisc * spacing), near_(2.0f * spacing) {}
+
+  void add(const glm::vec3& p, const glm::vec3& normal) {
+    near_.add(p);
+    normals_.push_back(normal);
+  }
+
+  /// Of a point within two spacings of the surface; farther inside, infinity.
+  Depth depth_at(const glm::vec3& p) const {
+    Depth best{std::numeric_limits<float>::infinity(), {0.0f, 0.0f, 0.0f}};
+    float least = best.depth;
+    near_.around(p, [&](const glm::vec3& q, std::uint32_t n) {
+      const glm::vec3& normal = normals_[n];
+      const float above = glm::dot(p - q, normal);
+      const glm::vec3 beside = p - q - above * normal;
+      const float off = glm::length(beside);
+      const glm::vec3 away = p - q - (off > radius_ ? beside * (radius_ / off) : beside);
+      const float distance = glm::length(away);
+      if (distance >= least) return;
+      least = distance;
+      const bool outside = above > 0.0f && off <= radius_;
+      best.depth = outside ? -distance : distance;
+      best.inward = outside || distance < 1e-6f * radius_ ? -normal : away / distance;
+    });
+    return best;
+  }
+
+ private:
+  float radius_;
+  PointBuckets near_;
+  std::vector<glm::vec3> normals_;
+};
+
+// Whether p, in front of a face of `own`, is inside another body; both are then joined.
+bool covered(std::span<const FixedSolid> solids, std::size_t own, const glm::vec3& p,
+             std::vector<bool>& joined) {
+  bool found = false;
+  for (std::size_t b = 0; b < solids.size(); ++b) {
+    if (b == own || sample_distance(solids[b].field, to_world(inverse(solids[b].pose), p)).distance >= 0.0f)
+      continue;
+    found = joined[b] = joined[own] = true;
+  }
+  return found;
+}
+
+// Moves p to where it is `depth` below the surface. False where the solid is too thin for that.
+bool settle(const ExposedSurface& surface, float depth, glm::vec3& p) {
+  for (int turn = 0; turn < 8; ++turn) {
+    const Depth there = surface.depth_at(p);
+    if (std::abs(there.depth - depth) < 0.02f * depth) return true;
+    if (!std::isfinite(there.depth)) return false;
+    p += there.inward * (depth - there.depth);
+  }
+  return std::abs(surface.depth_at(p).depth - depth) < 0.1f * depth;
+}
+
+struct Sample {
+  glm::vec3 position, normal;  // world frame
+  bool hidden;
+};
+
+std::vector<Sample> samples_of(std::span<const FixedSolid> solids, std::size_t b, float spacing,
+                               std::vector<bool>& joined) {
+  std::vector<Sample> samples;
+  const SurfaceSamples& surface = *solids[b].surface;
+  for (std::size_t i = 0; i < surface.positions.size(); ++i) {
+    const glm::vec3 p = to_world(solids[b].pose, surface.positions[i]);
+    const glm::vec3 normal(solids[b].pose.orientation * glm::dvec3(surface.normals[i]));
+    samples.push_back({p, normal, covered(solids, b, p + kTouching * spacing * normal, joined)});
+  }
+  return samples;
+}
+
+// The particles of all joined bodies, one by one, none in another's place.
+class Sheets {
+ public:
+  Sheets(std::size_t bodies, float spacing) : spacing_(spacing), near_(spacing), of_body_(bodies) {}
+
+  void add(std::size_t body, const glm::vec3& p) {
+    near_.add(p);
+    of_body_[body].push_back(p);
+  }
+  /// Adds p unless it would be crowded.
+  void fill(std::size_t body, const glm::vec3& p) {
+    bool taken = false;
+    near_.around(p, [&](const glm::vec3& q, std::uint32_t) {
+      taken |= glm::distance(p, q) < kLargestHole * spacing_;
+    });
+    if (!taken) add(body, p);
+  }
+  std::vector<std::vector<glm::vec3>>& of_body() { return of_body_; }
+
+ private:
+  float spacing_;
+  PointBuckets near_;
+  std::vector<std::vector<glm::vec3>> of_body_;
+};
+
+// Walks the nodes of a body's distance field that may lie at `depth`.
+template <class F>
+void near_level_set(const FixedSolid& solid, float depth, F&& visit) {
+  const DistanceFieldView& field = solid.field;
+  for (int z = 0; z < field.size.z; ++z) {
+    for (int y = 0; y < field.size.y; ++y) {
+      for (int x = 0; x < field.size.x; ++x) {
+        const float d = field.distance[x + field.size.x * (y + field.size.y * z)];
+        // The surface of all is nowhere nearer than the body's own.
+        if (d > 0.0f || -d > depth + field.cell) continue;
+        visit(to_world(solid.pose, field.origin + field.cell * glm::vec3(x, y, z)));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::vector<glm::vec3>> joined_sheets(std::span<const FixedSolid> solids, float depth,
+                                                  float spacing) {
+  std::vector<std::vector<Sample>> samples;
+  std::vector<bool> joined(solids.size(), false);
+  ExposedSurface surface(spacing);
+  for (std::size_t b = 0; b < solids.size(); ++b) {
+    samples.push_back(samples_of(solids, b, spacing, joined));
+    for (const Sample& s : samples[b])
+      if (!s.hidden) surface.add(s.position, s.normal);
+  }
+
+  Sheets sheets(solids.size(), spacing);
+  const auto inside = [&](std::size_t b, const glm::vec3& p) {
+    return sample_distance(solids[b].field, to_world(inverse(solids[b].pose), p)).distance < 0.0f;
+  };
+  for (std::size_t b = 0; b < solids.size(); ++b) {
+    if (!joined[b]) continue;
+    for (const Sample& s : samples[b]) {
+      if (s.hidden) continue;
+      glm::vec3 p = s.position - depth * s.normal;
+      // A wall that is too thin has its particles in its middle.
+      for (float less = depth; !settle(surface, less, p) && less > 0.3f * depth; less *= 0.8f)
+        p = s.position - 0.8f * less * s.normal;
+      sheets.add(b, p);
+    }
+  }
+  // What is left open: where faces of two bodies meet in a concave edge, and their sheets part as they move
+  // back.
+  for (std::size_t b = 0; b < solids.size(); ++b) {
+    if (!joined[b]) continue;
+    const auto fill = [&](glm::vec3 p) {
+      if (settle(surface, depth, p) && inside(b, p)) sheets.fill(b, p);
+    };
+    for (const Sample& s : samples[b])
+      if (s.hidden) fill(s.position);
+    near_level_set(solids[b], depth, fill);
+  }
+  for (std::size_t b = 0; b < solids.size(); ++b)
+    for (glm::vec3& p : sheets.of_body()[b]) p = to_world(inverse(solids[b].pose), p);
+  return std::move(sheets.of_body());
+}
+
+}  // namespace slosh

@@ -1,0 +1,33 @@
+// Fixed bodies that touch are one solid: a tank made of a floor and four slabs holds fluid like a tank made
+// of one piece.
+//
+// Each for itself, a slab on a floor ends 0.7 spacings above it (its particles sit that far inside its own
+// lower face too): the lowest of them pushes the first layer of fluid down, the floor gets 15 % more than the
+// weight above it, and fluid leaves through the edge at coarse spacings (`slosh report error --case
+// tank_faces`).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "scenes/scene.h"
+#include "sim/math/distance_field.h"
+#include "sim/math/pose.h"
+
+namespace slosh {
+
+/// A fixed body that has a distance field.
+struct FixedSolid {
+  const SurfaceSamples* surface;
+  DistanceFieldView field;
+  Pose pose;  ///< mesh to world
+};
+
+/// Particle positions, m, in each body's mesh frame: `depth` (m) behind the surface of all that touch
+/// together, at about `spacing` (m). Empty for a body that touches none, which has its own
+/// (wall_particles.cpp). A face is hidden where there is another body within a quarter of a spacing in front
+/// of it.
+std::vector<std::vector<glm::vec3>> joined_sheets(std::span<const FixedSolid> solids, float depth,
+                                                  float spacing);
+
+}  // namespace slosh

@@ -1,0 +1,161 @@
+// Fixed bodies that touch: their particles lie as far behind the common surface as one body's do, without a
+// hole.
+#include "sim/walls/joined_walls.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace slosh {
+namespace {
+
+constexpr float kSpacing = 0.01f;
+constexpr float kDepth = 0.7f * kSpacing;
+
+/// A box with its exact distance and a particle a square of its surface.
+struct Box {
+  SurfaceSamples surface;
+  std::vector<float> values;
+  DistanceFieldView field;
+
+  Box(const glm::vec3& low, const glm::vec3& high) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+      const glm::ivec3 many = glm::max(glm::ivec3(glm::round((high - low) / kSpacing)), 1);
+      const glm::vec3 pitch = (high - low) / glm::vec3(many);
+      for (int i = 0; i < many[u] * many[v]; ++i) {
+        for (const float side : {-1.0f, 1.0f}) {
+          glm::vec3 p, normal(0.0f);
+          p[axis] = side < 0.0f ? low[axis] : high[axis];
+          p[u] = low[u] + (static_cast<float>(i % many[u]) + 0.5f) * pitch[u];
+          p[v] = low[v] + (static_cast<float>(i / many[u]) + 0.5f) * pitch[v];
+          normal[axis] = side;
+          surface.positions.push_back(p);
+          surface.normals.push_back(normal);
+        }
+      }
+    }
+    field.cell = 0.5f * kSpacing;
+    field.origin = low - 3.0f * kSpacing - 0.17f * field.cell;
+    field.size = glm::ivec3(glm::ceil((high - low + 6.0f * kSpacing) / field.cell)) + 2;
+    for (int k = 0; k < field.size.z; ++k) {
+      for (int j = 0; j < field.size.y; ++j) {
+        for (int i = 0; i < field.size.x; ++i) {
+          const glm::vec3 p = field.origin + field.cell * glm::vec3(i, j, k);
+          const glm::vec3 q = glm::max(low - p, p - high);
+          values.push_back(glm::length(glm::max(q, 0.0f)) + std::min(std::max({q.x, q.y, q.z}), 0.0f));
+        }
+      }
+    }
+  }
+  FixedSolid solid(const Pose& pose = {}) {
+    field.distance = values.data();
+    return {&surface, field, pose};
+  }
+};
+
+// An L in x and y, long in z: a floor 12 by 5 cm, a wall of 5 by 8 cm on its left end.
+constexpr glm::vec3 kFloorLow(-0.06f, -0.05f, -0.06f), kFloorHigh(0.06f, 0.0f, 0.06f);
+constexpr glm::vec3 kWallLow(-0.06f, 0.0f, -0.06f), kWallHigh(-0.01f, 0.08f, 0.06f);
+const std::vector<glm::vec2> kOutline = {{-0.06f, -0.05f}, {0.06f, -0.05f}, {0.06f, 0.0f},
+                                         {-0.01f, 0.0f},   {-0.01f, 0.08f}, {-0.06f, 0.08f}};
+
+float distance_to_outline(const glm::vec2& p) {
+  float least = 1.0f;
+  for (std::size_t i = 0; i < kOutline.size(); ++i) {
+    const glm::vec2 a = kOutline[i], along = kOutline[(i + 1) % kOutline.size()] - a;
+    const float at = std::clamp(glm::dot(p - a, along) / glm::dot(along, along), 0.0f, 1.0f);
+    least = std::min(least, glm::distance(p, a + at * along));
+  }
+  return least;
+}
+
+// Both bodies' particles in the world, those near the ends in z left out.
+std::vector<glm::vec3> in_the_middle(const std::vector<std::vector<glm::vec3>>& sheets,
+                                     const std::vector<Pose>& poses) {
+  std::vector<glm::vec3> all;
+  for (std::size_t b = 0; b < sheets.size(); ++b) {
+    for (const glm::vec3& p : sheets[b]) {
+      const glm::vec3 world(transform_point(poses[b], glm::dvec3(p)));
+      if (std::abs(world.z) < 0.04f) all.push_back(world);
+    }
+  }
+  return all;
+}
+
+void expect_one_sheet(const std::vector<glm::vec3>& particles) {
+  ASSERT_FALSE(particles.empty());
+  for (const glm::vec3& p : particles) {
+    const float depth = distance_to_outline({p.x, p.y}) / kSpacing;
+    EXPECT_NEAR(depth, 0.7f, 0.06f) << "at " << p.x << ", " << p.y;
+  }
+  // The line at that depth, walked along: a particle is near everywhere.
+  for (float x = -0.07f; x < 0.07f; x += 0.1f * kSpacing) {
+    for (float y = -0.06f; y < 0.09f; y += 0.1f * kSpacing) {
+      const bool inside = (x > kFloorLow.x && x < kFloorHigh.x && y > kFloorLow.y && y < kFloorHigh.y) ||
+                          (x > kWallLow.x && x < kWallHigh.x && y >= kWallLow.y && y < kWallHigh.y);
+      if (!inside || std::abs(distance_to_outline({x, y}) - kDepth) > 0.05f * kSpacing) continue;
+      float nearest = 1.0f;
+      for (const glm::vec3& p : particles)
+        nearest = std::min(nearest, glm::distance(p, glm::vec3(x, y, 0.0f)));
+      EXPECT_LT(nearest / kSpacing, 0.9f) << "hole at " << x << ", " << y;
+    }
+  }
+}
+
+TEST(JoinedWalls, AWallOnAFloorIsOneSolid) {
+  Box floor(kFloorLow, kFloorHigh), wall(kWallLow, kWallHigh);
+  const std::vector<FixedSolid> solids = {floor.solid(), wall.solid()};
+  expect_one_sheet(in_the_middle(joined_sheets(solids, kDepth, kSpacing), {Pose{}, Pose{}}));
+}
+
+TEST(JoinedWalls, EachHasItsOwnFrame) {
+  const Pose turned{{0.3, -0.2, 0.1}, glm::angleAxis(0.5 * 3.14159265358979, glm::dvec3(0.0, 0.0, 1.0))};
+  const auto local = [&](const glm::vec3& p) {
+    return glm::vec3(transform_point(inverse(turned), glm::dvec3(p)));
+  };
+  const glm::vec3 a = local(kWallLow), b = local(kWallHigh);
+  Box floor(kFloorLow, kFloorHigh), wall(glm::min(a, b), glm::max(a, b));
+  const std::vector<FixedSolid> solids = {floor.solid(), wall.solid(turned)};
+  expect_one_sheet(in_the_middle(joined_sheets(solids, kDepth, kSpacing), {Pose{}, turned}));
+}
+
+TEST(JoinedWalls, OverlappingOnesToo) {
+  Box floor(kFloorLow, kFloorHigh), wall({kWallLow.x, -0.021f, kWallLow.z}, kWallHigh);
+  const std::vector<FixedSolid> solids = {floor.solid(), wall.solid()};
+  expect_one_sheet(in_the_middle(joined_sheets(solids, kDepth, kSpacing), {Pose{}, Pose{}}));
+}
+
+TEST(JoinedWalls, ThoseThatStandApartAreLeftAlone) {
+  for (const float gap : {0.2f, 0.4f}) {
+    Box floor(kFloorLow, kFloorHigh), table({0.1f, -0.05f, -0.06f}, {0.2f, 0.0f, 0.06f});
+    const glm::vec3 up(0.0f, gap * kSpacing, 0.0f);
+    Box wall(kWallLow + up, kWallHigh + up);
+    const std::vector<FixedSolid> solids = {floor.solid(), table.solid(), wall.solid()};
+    const std::vector<std::vector<glm::vec3>> sheets = joined_sheets(solids, kDepth, kSpacing);
+    EXPECT_TRUE(sheets[1].empty());
+    for (const std::size_t b : {0u, 2u}) EXPECT_EQ(sheets[b].empty(), gap > 0.25f) << gap << ", body " << b;
+  }
+}
+
+// A plate of a spacing on a block: nothing of it is inside the block, all of what it covers is
+// hidden.
+TEST(JoinedWalls, AThinPlateHasItsOuterFace) {
+  Box block(kFloorLow, kFloorHigh), plate({-0.06f, 0.0f, -0.06f}, {0.06f, kSpacing, 0.06f});
+  const std::vector<FixedSolid> solids = {block.solid(), plate.solid()};
+  const std::vector<std::vector<glm::vec3>> sheets = joined_sheets(solids, kDepth, kSpacing);
+  int top = 0;
+  for (const std::vector<glm::vec3>& sheet : sheets) {
+    for (const glm::vec3& p : sheet) {
+      if (glm::max(std::abs(p.x), std::abs(p.z)) > 0.04f || p.y < -0.02f) continue;
+      EXPECT_NEAR(p.y / kSpacing, 1.0f - 0.7f, 0.06f);
+      ++top;
+    }
+  }
+  EXPECT_NEAR(top, 64, 12);  // 8 by 8 spacings
+}
+
+}  // namespace
+}  // namespace slosh
