@@ -1,4 +1,4 @@
-#include "net/quic/server.h"
+#include "net/quic/listener.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -19,7 +19,7 @@ std::string text_of(const ngtcp2_cid& id) {
 
 }  // namespace
 
-Server::Server(std::unique_ptr<UdpSocket> socket, const Identity& identity, EndpointEvents& events,
+Listener::Listener(std::unique_ptr<UdpSocket> socket, const Identity& identity, EndpointEvents& events,
                const EndpointOptions& options)
     : EndpointBase(identity, {}, events, options),
       budget_(options.handshakes_per_second, options.handshakes_in_all),
@@ -28,12 +28,12 @@ Server::Server(std::unique_ptr<UdpSocket> socket, const Identity& identity, Endp
   sockets_.push_back(std::move(socket));
 }
 
-Server::~Server() {
+Listener::~Listener() {
   finish_all("the host ended");
   connections_.clear();
 }
 
-void Server::packet_arrived(UdpSocket& socket, const Arrival& packet, std::int64_t now) {
+void Listener::packet_arrived(UdpSocket& socket, const Arrival& packet, std::int64_t now) {
   ngtcp2_version_cid ids{};
   const int code = ngtcp2_pkt_decode_version_cid(&ids, packet.bytes.data(), packet.bytes.size(), kCidSize);
   if (code == NGTCP2_ERR_VERSION_NEGOTIATION) return answer_version(socket, packet, ids, now);
@@ -49,7 +49,7 @@ void Server::packet_arrived(UdpSocket& socket, const Arrival& packet, std::int64
   touch(connection);
 }
 
-void Server::unknown_packet(UdpSocket& socket, const Arrival& packet, const ngtcp2_version_cid& ids,
+void Listener::unknown_packet(UdpSocket& socket, const Arrival& packet, const ngtcp2_version_cid& ids,
                             std::int64_t now) {
   const auto grave = graves_.find(std::string(reinterpret_cast<const char*>(ids.dcid), ids.dcidlen));
   if (grave != graves_.end()) {
@@ -67,7 +67,7 @@ void Server::unknown_packet(UdpSocket& socket, const Arrival& packet, const ngtc
   first_packet(socket, packet, now);
 }
 
-void Server::confirmed(Connection& connection) {
+void Listener::confirmed(Connection& connection) {
   announce(connection, next_id_++);
   // Their key is known before they say anything. Once beside the connection that they may have lost: not as
   // often as they like.
@@ -79,7 +79,7 @@ void Server::confirmed(Connection& connection) {
   events_.on_connected(connection.id, connection.key(), connection.remote().text());
 }
 
-void Server::connection_over(Connection& connection, std::int64_t now) {
+void Listener::connection_over(Connection& connection, std::int64_t now) {
   auto grave = std::make_shared<Grave>();
   for (const ngtcp2_cid& id : connection.ids()) {
     const std::string text = text_of(id);
@@ -101,7 +101,7 @@ void Server::connection_over(Connection& connection, std::int64_t now) {
     ++counts_.handshakes_failed;
 }
 
-std::int64_t Server::housekeeping(std::int64_t now) {
+std::int64_t Listener::housekeeping(std::int64_t now) {
   while (!graves_by_age_.empty() &&
          (graves_by_age_.front()->until <= now || graves_by_age_.size() > kGraves)) {
     for (const std::string& id : graves_by_age_.front()->ids) graves_.erase(id);
@@ -115,22 +115,22 @@ std::int64_t Server::housekeeping(std::int64_t now) {
   return idle ? now + 4 * kHousekeeping : now + kHousekeeping;
 }
 
-void Server::id_issued(Connection& connection, const ngtcp2_cid& id) {
+void Listener::id_issued(Connection& connection, const ngtcp2_cid& id) {
   routes_[text_of(id)] = &connection;
 }
 
-void Server::id_retired(Connection&, const ngtcp2_cid& id) {
+void Listener::id_retired(Connection&, const ngtcp2_cid& id) {
   routes_.erase(text_of(id));
 }
 
-void Server::admit(ConnectionId id) {
+void Listener::admit(ConnectionId id) {
   Connection* connection = find(id);
   if (!connection) return;
   connection->admitted = true;
   budget_.admitted(connection->site, now());
 }
 
-bool Server::make_room(std::int64_t now) {
+bool Listener::make_room(std::int64_t now) {
   std::size_t alive = 0;
   std::unordered_map<std::string_view, std::size_t> strangers;  // by site
   std::size_t all = 0;
@@ -156,7 +156,7 @@ bool Server::make_room(std::int64_t now) {
   return true;
 }
 
-void Server::accept(UdpSocket& socket, const Arrival& packet, const FirstPacket& first, std::int64_t now) {
+void Listener::accept(UdpSocket& socket, const Arrival& packet, const FirstPacket& first, std::int64_t now) {
   auto made = Connection::from_client(*this, tls_, options_, socket, packet.to, packet.from, first, now);
   if (!made) {
     ++counts_.packets_ignored;
@@ -190,7 +190,7 @@ Result<std::unique_ptr<Endpoint>> listen_quic(const std::string& address, const 
   if (!socket) return socket.error();
   try {
     return std::unique_ptr<Endpoint>(
-        std::make_unique<quic::Server>(std::move(socket.value()), identity, events, options));
+        std::make_unique<quic::Listener>(std::move(socket.value()), identity, events, options));
   } catch (const std::runtime_error& fault) {
     return Error{"encryption", fault.what(), quic::kTlsMend};
   }

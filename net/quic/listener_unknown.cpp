@@ -3,7 +3,7 @@
 
 #include "net/clock.h"
 #include "net/quic/random.h"
-#include "net/quic/server.h"
+#include "net/quic/listener.h"
 
 namespace slosh::quic {
 namespace {
@@ -13,7 +13,7 @@ constexpr ngtcp2_duration kTokenLife = 10 * NGTCP2_SECONDS;
 
 }  // namespace
 
-bool Server::may_answer(std::int64_t now) {
+bool Listener::may_answer(std::int64_t now) {
   answers_left_ = std::min(kAnswersPerSecond / 2.0,
                            answers_left_ + kAnswersPerSecond * 1e-9 * static_cast<double>(now - answers_at_));
   answers_at_ = now;
@@ -22,7 +22,7 @@ bool Server::may_answer(std::int64_t now) {
   return true;
 }
 
-void Server::first_packet(UdpSocket& socket, const Arrival& packet, std::int64_t now) {
+void Listener::first_packet(UdpSocket& socket, const Arrival& packet, std::int64_t now) {
   ngtcp2_pkt_hd header{};
   if (ngtcp2_accept(&header, packet.bytes.data(), packet.bytes.size()) != 0) {
     ++counts_.packets_ignored;
@@ -46,7 +46,7 @@ void Server::first_packet(UdpSocket& socket, const Arrival& packet, std::int64_t
 }
 
 /// A token is good for one connection, from the address and in the time that it was made for.
-bool Server::token_valid(const ngtcp2_pkt_hd& header, const Arrival& packet, std::int64_t now,
+bool Listener::token_valid(const ngtcp2_pkt_hd& header, const Arrival& packet, std::int64_t now,
                          FirstPacket& first) {
   const std::uint8_t* token = nullptr;
   std::size_t size = 0;
@@ -67,7 +67,7 @@ bool Server::token_valid(const ngtcp2_pkt_hd& header, const Arrival& packet, std
   return true;
 }
 
-void Server::answer_retry(UdpSocket& socket, const Arrival& packet, const ngtcp2_pkt_hd& header,
+void Listener::answer_retry(UdpSocket& socket, const Arrival& packet, const ngtcp2_pkt_hd& header,
                           std::int64_t now) {
   if (!may_answer(now)) {
     ++counts_.packets_ignored;
@@ -90,7 +90,7 @@ void Server::answer_retry(UdpSocket& socket, const Arrival& packet, const ngtcp2
   ++counts_.retries_sent;
 }
 
-void Server::answer_version(UdpSocket& socket, const Arrival& packet, const ngtcp2_version_cid& ids,
+void Listener::answer_version(UdpSocket& socket, const Arrival& packet, const ngtcp2_version_cid& ids,
                             std::int64_t now) {
   ++counts_.packets_ignored;
   const auto out = socket.space();
@@ -106,7 +106,7 @@ void Server::answer_version(UdpSocket& socket, const Arrival& packet, const ngtc
 
 /// Tells a peer of an earlier life of this host that its connection is gone. Always shorter than what came,
 /// so that two hosts cannot keep answering each other.
-void Server::answer_reset(UdpSocket& socket, const Arrival& packet, const ngtcp2_version_cid& ids,
+void Listener::answer_reset(UdpSocket& socket, const Arrival& packet, const ngtcp2_version_cid& ids,
                           std::int64_t now) {
   ++counts_.packets_ignored;
   constexpr std::size_t kSmallest = NGTCP2_STATELESS_RESET_TOKENLEN + NGTCP2_MIN_STATELESS_RESET_RANDLEN;
@@ -125,7 +125,7 @@ void Server::answer_reset(UdpSocket& socket, const Arrival& packet, const ngtcp2
   if (written > 0) socket.add(packet.to, packet.from, static_cast<std::size_t>(written));
 }
 
-void Server::answer_full(UdpSocket& socket, const Arrival& packet, const FirstPacket& first) {
+void Listener::answer_full(UdpSocket& socket, const Arrival& packet, const FirstPacket& first) {
   ++counts_.packets_ignored;
   const auto out = socket.space();
   if (out.empty()) return;

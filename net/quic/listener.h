@@ -11,11 +11,11 @@
 
 namespace slosh::quic {
 
-class Server final : public EndpointBase {
+class Listener final : public EndpointBase {
  public:
-  Server(std::unique_ptr<UdpSocket> socket, const Identity& identity, EndpointEvents& events,
+  Listener(std::unique_ptr<UdpSocket> socket, const Identity& identity, EndpointEvents& events,
          const EndpointOptions& options);
-  ~Server() override;
+  ~Listener() override;
   void admit(ConnectionId connection) override;
   void set_known_keys(std::function<bool(const KeyFingerprint&)> known) override {
     known_ = std::move(known);
