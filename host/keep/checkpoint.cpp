@@ -101,8 +101,8 @@ Result<std::unique_ptr<CheckpointWriter>> CheckpointWriter::start(const Scene& s
   first.time = world.time();
   first.stamp_ns = writer->last_copy_ns_ = steady_now_ns();
   // The secrets first: a checkpoint without them could not be carried on with the same links.
-  if (!options.session.empty()) {
-    const Result<bool> kept = write_secrets(options.file, options.run, options.session);
+  if (!options.server_state.empty()) {
+    const Result<bool> kept = write_secrets(options.file, options.run, options.server_state);
     if (!kept) return kept.error();
   }
   const Result<bool> written =
@@ -123,18 +123,18 @@ CheckpointWriter::~CheckpointWriter() {
   if (thread_.joinable()) thread_.join();
 }
 
-void CheckpointWriter::set_session(Bytes session) {
+void CheckpointWriter::set_server_state(Bytes server_state) {
   {
     const std::lock_guard lock(mutex_);
-    session_ = std::move(session);
-    session_changed_ = true;
+    server_state_ = std::move(server_state);
+    server_state_changed_ = true;
   }
   changed_.notify_all();
 }
 
 void CheckpointWriter::flush() {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [this] { return !has_waiting_ && !session_changed_ && !writing_; });
+  changed_.wait(lock, [this] { return !has_waiting_ && !server_state_changed_ && !writing_; });
 }
 
 CheckpointReport CheckpointWriter::report() const {
@@ -197,30 +197,30 @@ void CheckpointWriter::on_end(const World& world) {
 }
 
 void CheckpointWriter::run() {
-  bool failed = false;  // what is on the disk is not last_ and the session
+  bool failed = false;  // what is on the disk is not last_ and the server's state
   std::unique_lock lock(mutex_);
   while (true) {
-    const auto wanted = [this] { return has_waiting_ || session_changed_ || stop_; };
+    const auto wanted = [this] { return has_waiting_ || server_state_changed_ || stop_; };
     // A disk that was full may not be in a while, and the world may stand still by then.
     if (failed && !stop_)
       changed_.wait_for(lock, std::chrono::seconds(1), [this] { return has_waiting_ || stop_; });
     else
       changed_.wait(lock, wanted);
-    if (!has_waiting_ && !session_changed_ && (stop_ || !failed)) return;
+    if (!has_waiting_ && !server_state_changed_ && (stop_ || !failed)) return;
     const std::int64_t last_stamp_ns = last_.stamp_ns;
     if (has_waiting_) {
       spare_ = std::move(last_.world);
       last_ = std::move(waiting_);
     }
     const bool world = has_waiting_ || failed;
-    const bool secrets = session_changed_ || (failed && !session_.empty());
-    has_waiting_ = session_changed_ = false;
+    const bool secrets = server_state_changed_ || (failed && !server_state_.empty());
+    has_waiting_ = server_state_changed_ = false;
     writing_ = true;
-    const Bytes session = session_;
+    const Bytes server_state = server_state_;
     lock.unlock();
     const std::int64_t begin_ns = steady_now_ns();
     Result<bool> written = true;
-    if (secrets) written = write_secrets(options_.file, options_.run, session);
+    if (secrets) written = write_secrets(options_.file, options_.run, server_state);
     if (world && written) written = write(last_, Replaced::kKept);
     const double took_ms = 1e3 * to_seconds(steady_now_ns() - begin_ns);
     lock.lock();

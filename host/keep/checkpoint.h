@@ -47,7 +47,7 @@ struct CheckpointOptions {
   std::string version;
   HostPlace place;
   std::uint64_t run = 0;
-  Bytes session;  ///< the secrets beside the first file, up to set_session(); empty: none are written
+  Bytes server_state;  ///< the secrets beside the first file, up to set_server_state(); empty: none are written
 };
 
 struct CheckpointReport {
@@ -72,9 +72,9 @@ class CheckpointWriter : public HostTap {
                                                          const CheckpointOptions& options);
   ~CheckpointWriter() override;
 
-  /// What the session is from now on; its secrets are written soon, also while the world stands still. Any
+  /// The server's state from now on; its secrets are written soon, also while the world stands still. Any
   /// thread.
-  void set_session(Bytes session);
+  void set_server_state(Bytes server_state);
   /// Waits until everything up to now is on the disk. Any thread but the host's.
   void flush();
   CheckpointReport report() const;
@@ -111,8 +111,8 @@ class CheckpointWriter : public HostTap {
   Copy waiting_;  // the newest, when there is one to write
   Bytes spare_;   // so that a copy need not allocate
   bool has_waiting_ = false;
-  Bytes session_;
-  bool session_changed_ = false;
+  Bytes server_state_;
+  bool server_state_changed_ = false;
   bool writing_ = false;
   bool stop_ = false;
   CheckpointReport report_;

@@ -12,7 +12,7 @@ constexpr char kMagic[8] = {'S', 'L', 'O', 'S', 'H', 'K', 'E', 'Y'};
 constexpr std::uint32_t kVersion = 1;
 
 // In this order, each once.
-enum Part : std::uint8_t { kHead = 1, kSession, kEnd };
+enum Part : std::uint8_t { kHead = 1, kServerState, kEnd };
 
 struct FileHead {
   std::uint32_t version = kVersion;
@@ -47,8 +47,8 @@ Result<Secrets> read_one(const std::filesystem::path& path) {
       FileHead head;
       if (const wire::Fault fault = wire::decode(chunk.content, head)) return damaged(fault.text());
       secrets.run = head.run;
-    } else if (part == kSession) {
-      secrets.session = std::move(chunk.content);
+    } else if (part == kServerState) {
+      secrets.server_state = std::move(chunk.content);
     }
   }
   return secrets;
@@ -63,10 +63,10 @@ std::filesystem::path secrets_of(const std::filesystem::path& checkpoint) {
   return name + ".secrets";
 }
 
-Result<bool> write_secrets(const std::filesystem::path& checkpoint, std::uint64_t run, ByteView session) {
+Result<bool> write_secrets(const std::filesystem::path& checkpoint, std::uint64_t run, ByteView server_state) {
   Bytes out(std::begin(kMagic), std::end(kMagic));
   append_chunk(kHead, wire::encoded(FileHead{kVersion, run}), out);
-  append_chunk(kSession, session, out);
+  append_chunk(kServerState, server_state, out);
   append_chunk(kEnd, {}, out);
   const std::filesystem::path file = secrets_of(checkpoint);
   // What is damaged must not push out the one before it, which is whole.

@@ -1,7 +1,7 @@
 // What a host must not lose and nobody else may have: its key, the tokens of its links, who sat where. A file
 // of its own beside the checkpoint, so that a checkpoint can be given to others.
 //
-// Eight bytes that name the format, then chunks (chunk.h): head, session, end mark. Mode 0600, replaced as
+// Eight bytes that name the format, then chunks (chunk.h): head, server_state, end mark. Mode 0600, replaced as
 // the checkpoint is, the one before it stays as previous_of().
 #pragma once
 
@@ -15,7 +15,7 @@ namespace slosh::keep {
 
 struct Secrets {
   std::uint64_t run = 0;  ///< Checkpoint::run of the checkpoint that they belong to
-  Bytes session;          ///< the server's own
+  Bytes server_state;          ///< the server's own
   std::string note;       ///< when not empty: the file was damaged, and these are from the one before it
 };
 
@@ -23,7 +23,7 @@ struct Secrets {
 std::filesystem::path secrets_of(const std::filesystem::path& checkpoint);
 
 /// Errors: the system's.
-Result<bool> write_secrets(const std::filesystem::path& checkpoint, std::uint64_t run, ByteView session);
+Result<bool> write_secrets(const std::filesystem::path& checkpoint, std::uint64_t run, ByteView server_state);
 
 /// Nothing when there is no such file. Errors: it and the one before it are damaged.
 Result<std::optional<Secrets>> read_secrets(const std::filesystem::path& checkpoint);

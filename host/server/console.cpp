@@ -167,7 +167,7 @@ const char* console_help() {
          "set viscosity [FLUID] X        Pa·s, while the world runs\n"
          "set gravity X                  times the scene's, 0 to 2\n"
          "status                         how the world and the links do\n"
-         "quit                           end the session for everybody";
+         "quit                           end the run for everybody";
 }
 
 }  // namespace slosh

@@ -1,4 +1,4 @@
-// The links of a session: who may come in, as what, until when.
+// The links of a host: who may come in, as what, until when.
 #pragma once
 
 #include <cstdint>

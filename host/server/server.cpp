@@ -51,7 +51,7 @@ Server::Server(ServedWorld world, ServerOptions options)
       snapshots_(world_.desk),
       switches_(world_.state, options_.hands_to_start),
       faults_told_(world_.scene->grips.size()),
-      session_(random_number()) {
+      world_number_(random_number()) {
   if (!options_.clock) options_.clock = [] { return steady_now_ns(); };
   hands_.stand_all(now());
 }
@@ -71,17 +71,17 @@ void Server::use(Endpoint& endpoint) {
 void Server::set_identity(wire::Bytes private_key, std::uint16_t port) {
   private_key_ = std::move(private_key);
   port_ = port;
-  session_dirty_ = true;
+  state_dirty_ = true;
 }
 
-void Server::restore(const SessionState& state) {
-  session_ = state.session;
+void Server::restore(const ServerState& state) {
+  world_number_ = state.world;
   unix_.not_before(state.seen_ns);
   links_.restore(state.links);
   bans_.restore(state.bans);
   seats_.restore(state.seats, now());
   hands_.carry_on(world_.channel->bodies().front().bodies, now());
-  session_dirty_ = true;
+  state_dirty_ = true;
 }
 
 void Server::notice_all(const std::string& text, bool participants_only, const Peer* but) {
@@ -209,7 +209,7 @@ void Server::turn() {
     roster_sent_ns_ = now();
     send_roster();
   }
-  if (session_dirty_) save_session();
+  if (state_dirty_) save_state();
   peers_.sweep();
 }
 
@@ -257,7 +257,7 @@ void Server::check_patience() {
       notice_all(seat.name + " is heard again", false, peer.get());
     }
   }
-  if (bans_.expire(unix_now())) session_dirty_ = true;
+  if (bans_.expire(unix_now())) state_dirty_ = true;
   for (const Seat& seat : seats_.expire(now())) {
     for (const std::uint32_t grip : seat.grips) {
       if (!seats_.holder(grip)) hands_.let_go(grip, now(), true);
@@ -269,18 +269,18 @@ void Server::check_patience() {
   }
 }
 
-void Server::save_session() {
-  session_dirty_ = false;
-  SessionState state{private_key_,     session_,     port_,     links_.links(),
+void Server::save_state() {
+  state_dirty_ = false;
+  ServerState state{private_key_,     world_number_,     port_,     links_.links(),
                      seats_.records(), bans_.bans(), unix_now()};
   wire::Bytes blob = wire::encoded(state);
-  const std::lock_guard lock(session_mutex_);
-  session_blob_ = std::move(blob);
+  const std::lock_guard lock(state_mutex_);
+  state_blob_ = std::move(blob);
 }
 
-wire::Bytes Server::session_blob() const {
-  const std::lock_guard lock(session_mutex_);
-  return session_blob_;
+wire::Bytes Server::state_blob() const {
+  const std::lock_guard lock(state_mutex_);
+  return state_blob_;
 }
 
 void Server::end(const std::string& why) {

@@ -25,7 +25,7 @@
 #include "host/server/peer_table.h"
 #include "host/server/picture_desk.h"
 #include "host/server/roster.h"
-#include "host/server/session_state.h"
+#include "host/server/server_state.h"
 #include "host/server/snapshot_sender.h"
 #include "host/server/state_sender.h"
 #include "host/server/world_switches.h"
@@ -83,9 +83,9 @@ class Server final : public EndpointEvents, public HostTap {
 
   /// Before anything else; must outlive the server's use.
   void use(Endpoint& endpoint);
-  /// Carries on an earlier session: links, seats (all away since now), the session's number. Before the first
+  /// Carries on an earlier run: links, seats (all away since now), the world's number. Before the first
   /// turn().
-  void restore(const SessionState& state);
+  void restore(const ServerState& state);
 
   /// After every run_once: what came from the world goes out, and what is due is done.
   void turn();
@@ -104,14 +104,14 @@ class Server final : public EndpointEvents, public HostTap {
   std::int64_t unix_now() const { return unix_.now(); }
   const SeatTable& seats() const { return seats_; }
   ServerFigures figures() const;
-  std::uint64_t session() const { return session_; }
+  std::uint64_t world_number() const { return world_number_; }
   int tier_of(std::uint32_t seat) const;  ///< −1: not here, or gets no pictures
 
   Mailbox& mailbox() { return mailbox_; }  ///< any thread posts
   /// Any thread: what a checkpoint keeps, as of the last change, coded.
-  wire::Bytes session_blob() const;
-  /// Makes session_blob() that of this moment. The server's thread, or before the first turn().
-  void save_session();
+  wire::Bytes state_blob() const;
+  /// Makes state_blob() that of this moment. The server's thread, or before the first turn().
+  void save_state();
   void set_identity(wire::Bytes private_key, std::uint16_t port);
   /// Text of a link for people, from its token; set by who knows the addresses.
   std::function<std::string(const LinkRecord&)> link_text;
@@ -151,7 +151,7 @@ class Server final : public EndpointEvents, public HostTap {
   void replace(const Seat& seat);
   void let_go_all(const Seat& seat);
   void send_roster();
-  void roster_changed() { roster_dirty_ = session_dirty_ = true; }
+  void roster_changed() { roster_dirty_ = state_dirty_ = true; }
 
   // server_control.cpp
   wire::Fault control_message(Peer& peer, std::uint64_t type, wire::ByteView payload);
@@ -207,7 +207,7 @@ class Server final : public EndpointEvents, public HostTap {
   /// One a grip, bits by PoseFault: kinds that its holder was told of. The host's thread sets them, ours
   /// clears.
   std::vector<std::atomic<std::uint32_t>> faults_told_;
-  std::uint64_t session_ = 0;
+  std::uint64_t world_number_ = 0;
   std::uint16_t port_ = 0;
   wire::Bytes private_key_;
   wire::RosterTold roster_told_;
@@ -220,9 +220,9 @@ class Server final : public EndpointEvents, public HostTap {
   std::size_t strangers_unsaid_ = 0;
 
   ServerFigures past_;  // of connections that are gone
-  mutable std::mutex session_mutex_;
-  wire::Bytes session_blob_;  // under the mutex
-  bool session_dirty_ = true;
+  mutable std::mutex state_mutex_;
+  wire::Bytes state_blob_;  // under the mutex
+  bool state_dirty_ = true;
 };
 
 }  // namespace slosh

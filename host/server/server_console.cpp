@@ -43,18 +43,18 @@ Outcome Server::run(const ConsoleCommand& command) {
       return world({HostAction::kReset});
     case ConsoleVerb::kQuit:
       quit_asked_ = true;
-      return {true, "the session ends"};
+      return {true, "the run ends"};
     case ConsoleVerb::kLink:
       return make_link(command);
     case ConsoleVerb::kRevoke:
       if (!links_.revoke(command.text)) return no_link;
       close_link(command.text);
-      session_dirty_ = true;
+      state_dirty_ = true;
       return {true, command.text + " is revoked, and whoever came in by it is out"};
     case ConsoleVerb::kExpire: {
       const std::int64_t at = command.lifetime_ns > 0 ? unix_now() + command.lifetime_ns : 0;
       if (!links_.set_expiry(command.text, at)) return no_link;
-      session_dirty_ = true;
+      state_dirty_ = true;
       return {true, command.text + (at == 0 ? " never expires"
                                             : " admits nobody new in " + duration_text(command.lifetime_ns) +
                                                   "; who is in stays. Revoke it to end that too")};
@@ -66,7 +66,7 @@ Outcome Server::run(const ConsoleCommand& command) {
     case ConsoleVerb::kUnban:
       if (!bans_.lift(name_skeleton(command.text)))
         return {false, "nobody called '" + command.text + "' is kept out. `who` lists them"};
-      session_dirty_ = true;
+      state_dirty_ = true;
       return {true, command.text + " may come in again"};
     case ConsoleVerb::kSet: {
       if (command.gravity) return world({HostAction::kGravityScale, 0, command.value});
@@ -91,7 +91,7 @@ Outcome Server::make_link(const ConsoleCommand& command) {
             "'" + command.text + "' is no name that can be told from others. Letters and digits make one"};
   const LinkRecord* link = links_.create(role, name, unix_now(), command.lifetime_ns, in_use);
   if (!link) return {false, "there are " + std::to_string(kMaxLinks) + " links already. Revoke some first"};
-  session_dirty_ = true;
+  state_dirty_ = true;
   return {true, line_of(*link)};
 }
 
@@ -116,7 +116,7 @@ Outcome Server::kick(const ConsoleCommand& command) {
   const bool banned = command.lifetime_ns > 0;
   const std::string time = duration_text(command.lifetime_ns);
   if (banned) bans_.add(seat->key, name, unix_now() + command.lifetime_ns);
-  session_dirty_ = true;
+  state_dirty_ = true;
   put_out(seat->number, banned ? wire::RefusalCode::kBanned : wire::RefusalCode::kEnding,
           banned ? "the host has put you out for " + time : "the host closed your connection");
   return {true, banned ? name + " is out, and their key is kept out for " + time

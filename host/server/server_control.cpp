@@ -73,7 +73,7 @@ wire::Fault Server::handle(Peer& peer, const wire::Hello& hello) {
     return {};
   }
   links_.note_use(id, peer.key);
-  session_dirty_ = true;
+  state_dirty_ = true;
   snapshots_.add(peer.id, link->role, hello.pictures);
   peer.agreed = hello.capabilities & wire::kOurCapabilities;
   welcome(peer, *arrival.seat, arrival.restored);
@@ -110,7 +110,7 @@ void Server::welcome(Peer& peer, Seat& seat, bool restored) {
   message.peer = seat.number;
   message.role = seat.role;
   message.name = seat.name;
-  message.session = session_;
+  message.world = world_number_;
   message.scene_bytes = package_->size();
   message.particles = world_.particles;
   message.spacing = world_.spacing;

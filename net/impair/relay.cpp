@@ -22,7 +22,7 @@ namespace {
 
 using quic::Address;
 
-constexpr std::size_t kSessions = 512;
+constexpr std::size_t kMappings = 512;
 constexpr std::size_t kWaiting = 200'000;  // packets under way at most
 
 int open_socket(int family) {
@@ -35,7 +35,7 @@ int open_socket(int family) {
 }
 
 /// A peer, and the socket by which we speak to the host for it.
-struct Session {
+struct Mapping {
   Address peer;
   int descriptor = -1;
 };
@@ -44,7 +44,7 @@ struct Waiting {
   std::int64_t due_ns;
   std::uint64_t order;
   Relay::Way way;
-  std::size_t session;
+  std::size_t mapping;
   Relay::Packet packet;
   bool operator>(const Waiting& other) const {
     return due_ns != other.due_ns ? due_ns > other.due_ns : order > other.order;
@@ -65,7 +65,7 @@ class UdpRelay final : public Relay {
     stop_ = true;
     poke();
     thread_.join();
-    for (const Session& session : sessions_) close(session.descriptor);
+    for (const Mapping& mapping : mappings_) close(mapping.descriptor);
     close(listener_);
     close(wake_);
   }
@@ -119,7 +119,7 @@ class UdpRelay final : public Relay {
       descriptors.clear();
       descriptors.push_back({wake_, POLLIN, 0});
       descriptors.push_back({listener_, POLLIN, 0});
-      for (const Session& session : sessions_) descriptors.push_back({session.descriptor, POLLIN, 0});
+      for (const Mapping& mapping : mappings_) descriptors.push_back({mapping.descriptor, POLLIN, 0});
       timespec timeout{1, 0};
       if (!waiting_.empty()) {
         const std::int64_t left = std::max<std::int64_t>(waiting_.top().due_ns - steady_now_ns(), 0);
@@ -130,8 +130,8 @@ class UdpRelay final : public Relay {
       while (read(wake_, &count, sizeof(count)) > 0) {
       }
       if (rebind_.exchange(false)) renew_sockets();
-      const std::size_t sessions = sessions_.size();
-      for (std::size_t i = 0; i < sessions; ++i) from_host(i);
+      const std::size_t mappings = mappings_.size();
+      for (std::size_t i = 0; i < mappings; ++i) from_host(i);
       from_peers();
       send_injected();
       send_due();
@@ -145,28 +145,28 @@ class UdpRelay final : public Relay {
       const ssize_t bytes =
           recvfrom(listener_, buffer_.data(), buffer_.size(), 0, reinterpret_cast<sockaddr*>(&name), &size);
       if (bytes < 0) return;
-      const std::size_t session = session_of(Address(reinterpret_cast<sockaddr*>(&name), size));
-      if (session < sessions_.size()) take(Way::kUp, session, static_cast<std::size_t>(bytes));
+      const std::size_t mapping = mapping_of(Address(reinterpret_cast<sockaddr*>(&name), size));
+      if (mapping < mappings_.size()) take(Way::kUp, mapping, static_cast<std::size_t>(bytes));
     }
   }
 
-  void from_host(std::size_t session) {
+  void from_host(std::size_t mapping) {
     for (int i = 0; i < 256; ++i) {
-      const ssize_t bytes = recv(sessions_[session].descriptor, buffer_.data(), buffer_.size(), 0);
+      const ssize_t bytes = recv(mappings_[mapping].descriptor, buffer_.data(), buffer_.size(), 0);
       if (bytes < 0 && errno == ECONNREFUSED) continue;
       if (bytes < 0) return;
-      take(Way::kDown, session, static_cast<std::size_t>(bytes));
+      take(Way::kDown, mapping, static_cast<std::size_t>(bytes));
     }
   }
 
-  std::size_t session_of(const Address& peer) {
-    for (std::size_t i = 0; i < sessions_.size(); ++i)
-      if (sessions_[i].peer == peer) return last_session_ = i;
-    if (sessions_.size() >= kSessions) return kSessions;
+  std::size_t mapping_of(const Address& peer) {
+    for (std::size_t i = 0; i < mappings_.size(); ++i)
+      if (mappings_[i].peer == peer) return last_mapping_ = i;
+    if (mappings_.size() >= kMappings) return kMappings;
     const int descriptor = to_host();
-    if (descriptor < 0) return kSessions;
-    sessions_.push_back({peer, descriptor});
-    return last_session_ = sessions_.size() - 1;
+    if (descriptor < 0) return kMappings;
+    mappings_.push_back({peer, descriptor});
+    return last_mapping_ = mappings_.size() - 1;
   }
 
   int to_host() const {
@@ -179,15 +179,15 @@ class UdpRelay final : public Relay {
   }
 
   void renew_sockets() {
-    for (Session& session : sessions_) {
+    for (Mapping& mapping : mappings_) {
       const int descriptor = to_host();
       if (descriptor < 0) continue;
-      close(session.descriptor);
-      session.descriptor = descriptor;
+      close(mapping.descriptor);
+      mapping.descriptor = descriptor;
     }
   }
 
-  void take(Way way, std::size_t session, std::size_t bytes) {
+  void take(Way way, std::size_t mapping, std::size_t bytes) {
     const int index = static_cast<int>(way);
     Packet packet(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(bytes));
     const std::lock_guard lock(mutex_);
@@ -200,13 +200,13 @@ class UdpRelay final : public Relay {
     }
     stats_.passed[index] += static_cast<std::uint64_t>(verdict.copies);
     for (int copy = 0; copy < verdict.copies; ++copy)
-      waiting_.push({verdict.due_ns, order_++, way, session, packet});
+      waiting_.push({verdict.due_ns, order_++, way, mapping, packet});
   }
 
   void send_due() {
     const std::int64_t now = steady_now_ns();
     while (!waiting_.empty() && waiting_.top().due_ns <= now) {
-      if (!dark_) send(waiting_.top().way, waiting_.top().session, waiting_.top().packet);
+      if (!dark_) send(waiting_.top().way, waiting_.top().mapping, waiting_.top().packet);
       waiting_.pop();
     }
   }
@@ -218,12 +218,12 @@ class UdpRelay final : public Relay {
       packets.swap(injected_);
     }
     for (const auto& [way, packet] : packets)
-      if (last_session_ < sessions_.size()) send(way, last_session_, packet);
+      if (last_mapping_ < mappings_.size()) send(way, last_mapping_, packet);
   }
 
   /// What the kernel does not take is lost, as on any link.
-  void send(Way way, std::size_t session, const Packet& packet) {
-    const Session& to = sessions_[session];
+  void send(Way way, std::size_t mapping, const Packet& packet) {
+    const Mapping& to = mappings_[mapping];
     if (way == Way::kUp) {
       if (::send(to.descriptor, packet.data(), packet.size(), 0) < 0 && errno == ECONNREFUSED)
         ::send(to.descriptor, packet.data(), packet.size(), 0);
@@ -249,8 +249,8 @@ class UdpRelay final : public Relay {
   std::function<void(Way, Packet&)> tamper_;
 
   // The thread's own.
-  std::vector<Session> sessions_;
-  std::size_t last_session_ = kSessions;
+  std::vector<Mapping> mappings_;
+  std::size_t last_mapping_ = kMappings;
   std::priority_queue<Waiting, std::vector<Waiting>, std::greater<>> waiting_;
   std::uint64_t order_ = 0;
   std::array<std::uint8_t, 65536> buffer_;

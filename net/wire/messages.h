@@ -184,7 +184,7 @@ struct Welcome {
   std::uint32_t peer = 0;  ///< this peer's number in Roster
   Role role = Role::kSpectator;
   std::string name;                              ///< as the others see it
-  std::uint64_t session = 0;                     ///< the host's run; the same after a resume
+  std::uint64_t world = 0;                       ///< names the host's world; the same after a resume
   std::uint64_t scene_bytes = 0;                 ///< compressed, on the scene's stream
   std::uint64_t particles = 0;                   ///< fluid particles at the start
   double spacing = 0.01;                         ///< m between particles
@@ -198,7 +198,7 @@ void visit(V& v, Welcome& m) {
   v.natural("peer", m.peer, 0, kMaxPeers - 1);
   v.choice("role", m.role, kRoleNames);
   v.text("name", m.name, kMaxName);
-  v.bits64("session", m.session);
+  v.bits64("world", m.world);
   v.natural("scene_bytes", m.scene_bytes, 0, kMaxSceneBytes);
   v.natural("particles", m.particles, 0, 100'000'000);
   v.real64("spacing", m.spacing, 1e-5, 10.0);

@@ -13,7 +13,7 @@ namespace slosh {
 /// What a line comes to.
 struct PeerLine {
   std::string text;  ///< the answer at once, several lines or none; no line feed at the end
-  std::vector<RemoteCommand> commands;  ///< for RemoteSession::ask; their answers come as notices
+  std::vector<RemoteCommand> commands;  ///< for RemoteVisit::ask; their answers come as notices
   bool quit = false;
 };
 

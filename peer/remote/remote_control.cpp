@@ -86,7 +86,7 @@ wire::Fault RemoteLink::on_welcome(wire::ByteView payload) {
   wire::Welcome welcome;
   if (wire::Fault fault = wire::decode(payload, welcome)) return fault;
   if (greeting_.welcome) return {"welcome", "came twice"};
-  if (world_stage_ != WorldStage::kNone && welcome.session != status_.welcome.session) {
+  if (world_stage_ != WorldStage::kNone && welcome.world != status_.welcome.world) {
     end(Error{options_.address, "the host has begun another world since contact was lost",
               "Join again with the same link, or ask for a new one"});
     return {};

@@ -9,7 +9,7 @@
 namespace slosh {
 namespace {
 
-constexpr double kWelcomeWithin = 10.0;  // s from the handshake to a live session
+constexpr double kWelcomeWithin = 10.0;  // s from the handshake to a live link
 constexpr std::int64_t kPublishGap_ns = 50'000'000;
 constexpr std::int64_t kLongestTurn_ns = 20'000'000;
 constexpr std::int64_t kTrafficWindow_ns = 1'000'000'000;

@@ -51,7 +51,7 @@ struct RemoteWorld {
   std::unique_ptr<PictureMaker> maker;
 };
 
-/// One thread calls turn() again and again; RemoteSession is that thread. Writes channel.bodies(), reads
+/// One thread calls turn() again and again; RemoteVisit is that thread. Writes channel.bodies(), reads
 /// channel.pose(i).
 class RemoteLink final : public EndpointEvents {
  public:

@@ -1,4 +1,4 @@
-// What a remote session tells the threads that show it, and what they ask of it.
+// What a visit to a remote world tells the threads that show it, and what they ask of it.
 #pragma once
 
 #include <condition_variable>
@@ -48,7 +48,7 @@ struct RemoteStatus {
   double world_time = 0.0;  ///< simulated s of the host's world now
   LinkNumbers numbers;
   std::int64_t lost_ns = 0;    ///< when contact was lost, while reconnecting
-  std::int64_t live_ns = 0;    ///< when the session first was live; 0 = not yet
+  std::int64_t live_ns = 0;    ///< when the link first was live; 0 = not yet
   std::optional<Error> error;  ///< kEnded: set when that was not as wished
   std::string farewell;        ///< kEnded: the host's words
 };

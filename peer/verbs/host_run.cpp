@@ -10,7 +10,7 @@
 #include "peer/output/line_input.h"
 #include "peer/output/summary.h"
 #include "peer/verbs/host_links.h"
-#include "peer/verbs/host_session.h"
+#include "peer/verbs/hosted_run.h"
 #include "peer/verbs/host_supervisor.h"
 #include "peer/verbs/interrupt.h"
 #include "peer/verbs/verbs.h"
@@ -21,13 +21,13 @@ namespace {
 constexpr int kTurn_ms = 100;
 constexpr std::int64_t kLineEvery = 500'000'000;  // ns
 
-void print_links(const HostSession& session) {
-  for (const LinkRecord& link : session.first_links()) {
+void print_links(const HostedRun& run) {
+  for (const LinkRecord& link : run.first_links()) {
     if (link.revoked) continue;
     const bool hold = link.role == wire::Role::kParticipant;
     const std::string whom = link.name.empty() ? std::string("Whoever has this link") : link.name;
     std::printf("%s may %s (link %s):\n  ./slosh %s %s\n\n", whom.c_str(), hold ? "take hold" : "watch",
-                link.id.c_str(), hold ? "join" : "watch", session.text_of(link).c_str());
+                link.id.c_str(), hold ? "join" : "watch", run.text_of(link).c_str());
   }
   std::fflush(stdout);
 }
@@ -71,7 +71,7 @@ std::string live_line(const HostProgress& progress, const ServerFigures& figures
   return line;
 }
 
-void print_summary(const HostSession& session, const HostReport& report, const ServerFigures& figures,
+void print_summary(const HostedRun& run, const HostReport& report, const ServerFigures& figures,
                    double net_seconds) {
   const double wall = std::max(report.wall, 1e-9);
   std::printf("hosted     %.2f s in %.2f s, real time × %.2f, %llu steps of %.2f ms (p99 %.2f)\n",
@@ -88,19 +88,19 @@ void print_summary(const HostSession& session, const HostReport& report, const S
   }
   std::printf("pictures   %s sent, %s withheld from links that were full; %.1f s of coding\n",
               grouped(figures.frames_sent).c_str(), grouped(figures.frames_withheld).c_str(),
-              session.coding_seconds());
+              run.coding_seconds());
   std::printf("network    %.1f MB sent, %.1f s of processor time\n",
               1e-6 * static_cast<double>(figures.bytes_sent), net_seconds);
   if (report.status != 0) std::printf("status     %s\n", status_text(report.status).c_str());
-  if (session.checkpoint()) {
-    const keep::CheckpointReport saved = session.checkpoint()->report();
+  if (run.checkpoint()) {
+    const keep::CheckpointReport saved = run.checkpoint()->report();
     if (saved.problem.empty())
       std::printf("saved      %s\n           carry on with: ./slosh host --resume %s\n",
-                  session.checkpoint_file().c_str(), session.checkpoint_file().c_str());
+                  run.checkpoint_file().c_str(), run.checkpoint_file().c_str());
     else
       std::printf("saved      not: %s\n", saved.problem.c_str());
   }
-  const keep::RecordingReport& recorded = session.recording();
+  const keep::RecordingReport& recorded = run.recording();
   if (recorded.bytes > 0) {
     const std::string& why = recorded.problem.empty() ? recorded.totals.ended_early : recorded.problem;
     std::printf("recorded   %s steps, %.1f MB%s%s\n", grouped(recorded.totals.steps).c_str(),
@@ -110,24 +110,24 @@ void print_summary(const HostSession& session, const HostReport& report, const S
 }
 
 // Until somebody or something ends it; tells why.
-std::string run_session(HostSession& session, Progress& progress, HostReins* reins) {
+std::string run_until_ended(HostedRun& run, Progress& progress, HostReins* reins) {
   RateOf rate;
   std::int64_t next_line_ns = 0;
   LineInput input(progress.terminal());
   std::string trouble;
   // Who asks from elsewhere sees no status line.
   const auto ask = [&](const std::string& line) {
-    Outcome answer = session.net().ask(line);
+    Outcome answer = run.net().ask(line);
     if (!trouble.empty()) answer.text += "\n" + trouble;
     return answer;
   };
-  while (session.host().running()) {
-    session.door().serve(kTurn_ms, input.fd(), ask);
+  while (run.host().running()) {
+    run.door().serve(kTurn_ms, input.fd(), ask);
     for (const std::string& line : input.read()) progress.answer(input.edits() ? line : "", ask(line).text);
     progress.typed(input.typed());
-    for (const std::string& line : session.news()) progress.note(line);
-    session.save_session();
-    if (std::string now = session.trouble(); now != trouble) {
+    for (const std::string& line : run.news()) progress.note(line);
+    run.save_server_state();
+    if (std::string now = run.trouble(); now != trouble) {
       trouble = std::move(now);
       progress.note("slosh: " + (trouble.empty() ? "the world is saved again" : trouble));
     }
@@ -135,15 +135,15 @@ std::string run_session(HostSession& session, Progress& progress, HostReins* rei
       if (reins) reins->ends();
       return "the host was stopped";
     }
-    if (session.net().quit_asked()) return "the host has ended the session";
+    if (run.net().quit_asked()) return "the host has ended the run";
     const std::int64_t now = steady_now_ns();
     if (now < next_line_ns) continue;
     next_line_ns = now + kLineEvery;
-    const ServerFigures figures = session.net().figures();
+    const ServerFigures figures = run.net().figures();
     // First, for the end of a long line is cut off.
     progress.update(-1.0,
                     (trouble.empty() ? "" : "DISK: " + trouble + "; ") +
-                        live_line(session.host().progress(), figures, rate.update(figures.bytes_sent, now)));
+                        live_line(run.host().progress(), figures, rate.update(figures.bytes_sent, now)));
   }
   return "the world has come to its end";
 }
@@ -158,38 +158,38 @@ int run_host(const HostVerbOptions& options, HostReins* reins) {
     return fail(hosted.error());
   }
   catch_interrupts();
-  Result<std::unique_ptr<HostSession>> created =
-      HostSession::create(hosted.value(), options, reins ? &reins->pulse() : nullptr);
+  Result<std::unique_ptr<HostedRun>> created =
+      HostedRun::create(hosted.value(), options, reins ? &reins->pulse() : nullptr);
   if (!created) {
     progress.note("");
     return fail(created.error());
   }
-  HostSession& session = *created.value();
-  progress.note("listening at " + session.address());
-  if (!session.set_aside().empty())
+  HostedRun& run = *created.value();
+  progress.note("listening at " + run.address());
+  if (!run.set_aside().empty())
     progress.note("an earlier host's world was there: carry it on with ./slosh host --resume " +
-                  session.set_aside());
-  if (!session.checkpoint_file().empty())
-    progress.note("saved " + every(options.checkpoint_seconds) + " in " + session.checkpoint_file());
-  if (reins) reins->can_carry_on_from(session.checkpoint_file());
-  if (options.restarts == 0) print_links(session);
+                  run.set_aside());
+  if (!run.checkpoint_file().empty())
+    progress.note("saved " + every(options.checkpoint_seconds) + " in " + run.checkpoint_file());
+  if (reins) reins->can_carry_on_from(run.checkpoint_file());
+  if (options.restarts == 0) print_links(run);
   if (!options.links_file.empty()) {
     const Result<bool> written = write_private(
-        options.links_file, links_for_scripts(session.first_links(),
-                                              [&](const LinkRecord& link) { return session.text_of(link); }));
+        options.links_file, links_for_scripts(run.first_links(),
+                                              [&](const LinkRecord& link) { return run.text_of(link); }));
     if (!written) return fail(written.error());
   }
   progress.phase("hosting");
-  session.start();
-  const std::string why = run_session(session, progress, reins);
+  run.start();
+  const std::string why = run_until_ended(run, progress, reins);
   progress.typed("");
-  const ServerFigures figures = session.net().figures();
-  const double net_seconds = session.net().cpu_seconds();
-  session.stop(why);
+  const ServerFigures figures = run.net().figures();
+  const double net_seconds = run.net().cpu_seconds();
+  run.stop(why);
   progress.note(why);
-  print_summary(session, session.host().report(), figures, net_seconds);
+  print_summary(run, run.host().report(), figures, net_seconds);
   if (interrupted_by() != 0) return 128 + interrupted_by();
-  return session.trouble().empty() ? kExitOk : kExitFailed;
+  return run.trouble().empty() ? kExitOk : kExitFailed;
 }
 
 }  // namespace

@@ -41,8 +41,8 @@ Result<HostedWorld> start_anew(const HostVerbOptions& options, Progress& progres
   return hosted;
 }
 
-/// The session that belongs to a checkpoint; none, with a note, where it was not brought along.
-Result<std::optional<SessionState>> read_session(const std::string& file, const keep::Checkpoint& kept,
+/// The server's state that belongs to a checkpoint; none, with a note, where it was not brought along.
+Result<std::optional<ServerState>> read_server_state(const std::string& file, const keep::Checkpoint& kept,
                                                  Progress& progress) {
   Result<std::optional<keep::Secrets>> read = keep::read_secrets(file);
   if (!read) return read.error();
@@ -51,19 +51,19 @@ Result<std::optional<SessionState>> read_session(const std::string& file, const 
     progress.note(
         "slosh: " + name +
         " is not there: the world carries on with a new key and new links, and nobody's seat is kept");
-    return std::optional<SessionState>{};
+    return std::optional<ServerState>{};
   }
   const keep::Secrets& secrets = *read.value();
   if (!secrets.note.empty()) progress.note("slosh: " + secrets.note);
   const Error other{name, "these are the secrets of another host than " + file + " is of",
                     "Bring the ones that belong to it, or move these away to carry on with new links"};
   if (secrets.run != kept.run) return other;
-  SessionState session;
-  if (const wire::Fault fault = wire::decode(secrets.session, session)) {
+  ServerState state;
+  if (const wire::Fault fault = wire::decode(secrets.server_state, state)) {
     return Error{name, "cannot be read by this version of slosh: " + fault.text(),
                  "Resume with the version that wrote it, or move it away to carry on with new links"};
   }
-  return std::optional<SessionState>(std::move(session));
+  return std::optional<ServerState>(std::move(state));
 }
 
 Result<HostedWorld> carry_on(const HostVerbOptions& options, Progress& progress) {
@@ -73,9 +73,9 @@ Result<HostedWorld> carry_on(const HostVerbOptions& options, Progress& progress)
   if (!read) return read.error();
   keep::Checkpoint& kept = read.value();
   if (!kept.note.empty()) progress.note("slosh: " + kept.note);
-  Result<std::optional<SessionState>> session = read_session(options.resume, kept, progress);
-  if (!session) return session.error();
-  hosted.session = std::move(session.value());
+  Result<std::optional<ServerState>> state = read_server_state(options.resume, kept, progress);
+  if (!state) return state.error();
+  hosted.server_state = std::move(state.value());
   hosted.place = std::move(kept.place);
 
   Prepared& p = hosted.prepared;

@@ -5,7 +5,7 @@
 
 #include "host/host.h"
 #include "host/keep/checkpoint.h"
-#include "host/server/session_state.h"
+#include "host/server/server_state.h"
 #include "peer/verbs/host_options.h"
 #include "peer/verbs/prepare.h"
 
@@ -18,7 +18,7 @@ struct HostedWorld {
   HostState state;
   bool waits = false;                   ///< it has not begun: it waits for hands
   std::vector<std::uint8_t> start;      ///< World::save of what a reset goes back to
-  std::optional<SessionState> session;  ///< of a checkpoint that has its secrets
+  std::optional<ServerState> server_state;  ///< of a checkpoint that has its secrets
   keep::HostPlace place;                ///< of a checkpoint: where its host was reached
 };
 

@@ -73,13 +73,13 @@ constexpr const char* kWatchEnd =
     "  slosh watch LINK --headless --seconds 10 --out out/film";
 
 /// Waits for the scene and the first state. Errors: no answer, refused, a bad host, Ctrl-C.
-Result<bool> wait_for_world(RemoteSession& session, Progress& progress) {
+Result<bool> wait_for_world(RemoteVisit& visit, Progress& progress) {
   for (;;) {
-    const LinkState state = session.wait_until_live(std::chrono::milliseconds(50));
-    for (const std::string& notice : session.take_notices()) progress.note(notice);
+    const LinkState state = visit.wait_until_live(std::chrono::milliseconds(50));
+    for (const std::string& notice : visit.take_notices()) progress.note(notice);
     if (state == LinkState::kLive) return true;
     if (state == LinkState::kEnded) {
-      const RemoteStatus status = session.status();
+      const RemoteStatus status = visit.status();
       if (status.error) return *status.error;
       return Error{"", "the host ended before the world came: " + status.farewell, ""};
     }
@@ -132,8 +132,8 @@ int join(JoinOptions options) {
   remote.pictures.film = headless && options.render;
   remote.pictures.frames_per_second = options.frames_per_second;
   progress.phase("joining", remote.address);
-  RemoteSession session(remote, connect_by(link.value(), key.value().identity));
-  const Result<bool> came = wait_for_world(session, progress);
+  RemoteVisit visit(remote, connect_by(link.value(), key.value().identity));
+  const Result<bool> came = wait_for_world(visit, progress);
   if (!came) {
     progress.note("");
     const int signal_number = interrupted_by();
@@ -141,11 +141,11 @@ int join(JoinOptions options) {
     fail(came.error());
     return 128 + signal_number;
   }
-  const RemoteStatus status = session.status();
+  const RemoteStatus status = visit.status();
   progress.note(welcome_text(status));
 
   Stage stage;
-  stage.scene = session.world().scene;
+  stage.scene = visit.world().scene;
   stage.machine = this_machine();
   options.default_out =
       "out/" + folder_name(stage.scene.name, "scene") + "-" + folder_name(status.welcome.name, "peer");
@@ -160,7 +160,7 @@ int join(JoinOptions options) {
   run_options.host = remote.address;
   run_options.begin_ns = begin_ns;
   run_options.tell = [&progress](const std::string& text) { progress.note(text); };
-  Result<std::unique_ptr<RemoteRun>> run = RemoteRun::create(stage, session, run_options);
+  Result<std::unique_ptr<RemoteRun>> run = RemoteRun::create(stage, visit, run_options);
   if (!run) return fail(run.error());
 
   RunSummary summary;
@@ -171,7 +171,7 @@ int join(JoinOptions options) {
                                       : show_in_window(stage, make_run, options, progress, summary);
   if (!shown) return fail(shown.error());
   const int code = finish_run(stage, progress, summary);
-  const RemoteStatus last = session.status();
+  const RemoteStatus last = visit.status();
   return last.error && code == kExitOk ? fail(*last.error) : code;
 }
 

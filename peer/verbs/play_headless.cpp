@@ -8,7 +8,7 @@
 
 #include "peer/verbs/interrupt.h"
 #include "peer/verbs/play_modes.h"
-#include "peer/verbs/session.h"
+#include "peer/verbs/local_run.h"
 #include "peer/view/headless_view.h"
 
 namespace slosh {
@@ -130,8 +130,8 @@ Result<bool> play_headless(const Prepared& prepared, const PlayOptions& options,
   if (!devices) return devices.error();
   progress.phase("settling");
   const double picture_rate = options.render ? options.frames_per_second : 0.0;
-  Result<std::unique_ptr<Session>> created =
-      Session::create(prepared, std::move(devices.value()), picture_rate, &progress);
+  Result<std::unique_ptr<LocalRun>> created =
+      LocalRun::create(prepared, std::move(devices.value()), picture_rate, &progress);
   if (!created) return created.error();
   catch_interrupts();
   return show_headless(prepared, *created.value(), options, progress, summary);

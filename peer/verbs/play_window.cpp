@@ -7,7 +7,7 @@
 #include "peer/output/video.h"
 #include "peer/verbs/interrupt.h"
 #include "peer/verbs/play_modes.h"
-#include "peer/verbs/session.h"
+#include "peer/verbs/local_run.h"
 #include "peer/view/mouse_hand.h"
 #include "peer/view/painter.h"
 #include "render/context.h"
@@ -67,7 +67,7 @@ class WindowFilm {
 
 enum class Outcome { kEnd, kAgain };
 
-/// Shows one session until it ends or the user wants another.
+/// Shows one run until it ends or the user wants another.
 class WindowRun {
  public:
   WindowRun(const Stage& stage, LiveRun& run, Context& context, Renderer& renderer, WindowFilm& film)
@@ -210,12 +210,12 @@ Result<bool> play_in_window(const Prepared& prepared, const PlayOptions& options
   const MakeRun make_run = [&]() -> Result<std::unique_ptr<LiveRun>> {
     Result<DeviceSet> devices = make_devices(prepared.scene, options.devices, true);
     if (!devices) return devices.error();
-    Result<std::unique_ptr<Session>> session =
-        Session::create(prepared, std::move(devices.value()), kWindowPictureRate, told ? nullptr : &progress);
-    if (!session) return session.error();
+    Result<std::unique_ptr<LocalRun>> run =
+        LocalRun::create(prepared, std::move(devices.value()), kWindowPictureRate, told ? nullptr : &progress);
+    if (!run) return run.error();
     told = true;
     catch_interrupts();
-    return std::unique_ptr<LiveRun>(std::move(session.value()));
+    return std::unique_ptr<LiveRun>(std::move(run.value()));
   };
   return show_in_window(prepared, make_run, options, progress, summary);
 }

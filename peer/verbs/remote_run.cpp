@@ -7,23 +7,23 @@
 
 namespace slosh {
 
-RemoteRun::RemoteRun(const Stage& stage, RemoteSession& session, RemoteRunOptions options)
+RemoteRun::RemoteRun(const Stage& stage, RemoteVisit& visit, RemoteRunOptions options)
     : stage_(stage),
-      session_(session),
+      visit_(visit),
       options_(std::move(options)),
       mice_(stage.scene.grips.size()),
       device_on_(stage.scene.grips.size(), false) {
   for (const Grip& grip : stage.scene.grips) grip_names_.push_back(grip.name);
 }
 
-Result<std::unique_ptr<RemoteRun>> RemoteRun::create(const Stage& stage, RemoteSession& session,
+Result<std::unique_ptr<RemoteRun>> RemoteRun::create(const Stage& stage, RemoteVisit& visit,
                                                      RemoteRunOptions options) {
-  std::unique_ptr<RemoteRun> run(new RemoteRun(stage, session, std::move(options)));
-  run->status_ = session.status();
+  std::unique_ptr<RemoteRun> run(new RemoteRun(stage, visit, std::move(options)));
+  run->status_ = visit.status();
   run->last_time_ = run->status_.world_time;
   run->last_run_ = run->status_.moment.run;
   run->servo_ = std::make_unique<Servo>(stage.scene, std::vector<std::unique_ptr<Device>>{},
-                                        *session.world().channel, ServoOptions{});
+                                        *visit.world().channel, ServoOptions{});
   run->loop_ = std::make_unique<DeviceLoop>(*run->servo_);
   const bool records = run->status_.welcome.role == wire::Role::kParticipant && !stage.scene.grips.empty();
   Result<std::unique_ptr<Recorder>> recorder =
@@ -41,7 +41,7 @@ RemoteRun::~RemoteRun() {
 
 void RemoteRun::start() {
   start_ns_ = steady_now_ns();
-  status_ = session_.status();
+  status_ = visit_.status();
   last_time_ = status_.world_time;
   last_run_ = status_.moment.run;
   loop_->start();
@@ -49,7 +49,7 @@ void RemoteRun::start() {
 
 void RemoteRun::stop() {
   if (stop_ns_ == 0) stop_ns_ = steady_now_ns();
-  session_.stop();
+  visit_.stop();
   if (loop_) loop_->stop();
   if (servo_) servo_->close_devices();
   if (recorder_) recorder_->stop();
@@ -60,7 +60,7 @@ bool RemoteRun::running() {
 }
 
 SnapshotPointer RemoteRun::newest_picture() {
-  SnapshotPointer picture = session_.world().maker->newest(steady_now_ns());
+  SnapshotPointer picture = visit_.world().maker->newest(steady_now_ns());
   if (picture) last_picture_ = picture;
   return picture;
 }
@@ -68,7 +68,7 @@ SnapshotPointer RemoteRun::newest_picture() {
 HudFacts RemoteRun::facts(double picture_rate) const {
   HudFacts facts;
   facts.title = stage_.scene.name;
-  facts.spacing = session_.world().spacing;
+  facts.spacing = visit_.world().spacing;
   facts.fluid_particles = status_.welcome.particles;
   facts.shared = facts.may_change = status_.welcome.role == wire::Role::kParticipant;
   facts.picture_rate = picture_rate;
@@ -76,18 +76,18 @@ HudFacts RemoteRun::facts(double picture_rate) const {
 }
 
 Rates RemoteRun::note_rates() {
-  status_ = session_.status();
+  status_ = visit_.status();
   follow_time();
   const Result<bool> followed = follow_grips();
   (void)followed;  // each trouble was told, and the grip let go
-  for (const std::string& notice : session_.take_notices()) options_.tell(notice);
+  for (const std::string& notice : visit_.take_notices()) options_.tell(notice);
   Rates rates;
   rates.time = status_.world_time;
   rates.start = rates.time - elapsed_;
   rates.real_time = status_.state == LinkState::kLive ? status_.moment.rate : 0.0;
   rates.device_rate = servo_->holds_any() ? loop_->rate() : 0.0;
   rates.device_status = servo_->status();
-  rates.connection = connection_text(status_, session_.world().maker->delay(), steady_now_ns());
+  rates.connection = connection_text(status_, visit_.world().maker->delay(), steady_now_ns());
   rates.people = people_text(status_, grip_names_);
   rates_.add(rates);
   return rates;
@@ -143,44 +143,44 @@ void RemoteRun::let_go(std::size_t grip, const Error& why) {
   RemoteCommand command;
   command.grip = static_cast<std::uint32_t>(grip);
   command.take = false;
-  session_.ask(command);
+  visit_.ask(command);
 }
 
 void RemoteRun::pause(bool paused) {
   RemoteCommand command;
   command.kind = RemoteCommand::Kind::kWorld;
   command.action = paused ? wire::WorldAction::kPause : wire::WorldAction::kContinue;
-  session_.ask(command);
+  visit_.ask(command);
 }
 
 bool RemoteRun::start_again() {
   RemoteCommand command;
   command.kind = RemoteCommand::Kind::kWorld;
   command.action = wire::WorldAction::kReset;
-  session_.ask(command);
+  visit_.ask(command);
   return true;
 }
 
 void RemoteRun::change_grip() {
   RemoteCommand command;
   command.kind = RemoteCommand::Kind::kNextGrip;
-  session_.ask(command);
+  visit_.ask(command);
 }
 
 std::string RemoteRun::hear(const std::string& line) {
   const PeerLine heard =
-      peer_line(line, session_.status(), stage_.scene, session_.world().maker->delay(), steady_now_ns());
-  for (const RemoteCommand& command : heard.commands) session_.ask(command);
+      peer_line(line, visit_.status(), stage_.scene, visit_.world().maker->delay(), steady_now_ns());
+  for (const RemoteCommand& command : heard.commands) visit_.ask(command);
   if (heard.quit) request_stop();
   return heard.text;
 }
 
 void RemoteRun::report(RunSummary& s) const {
-  const RemoteStatus status = session_.status();
+  const RemoteStatus status = visit_.status();
   const LinkNumbers& numbers = status.numbers;
-  const PictureReport pictures = session_.world().maker->report();
+  const PictureReport pictures = visit_.world().maker->report();
   s.scene = stage_.scene.name;
-  s.spacing = session_.world().spacing;
+  s.spacing = visit_.world().spacing;
   s.spacing_reason = "the host's";
   s.fluid_particles = status.welcome.particles;
   s.time_step = status.welcome.time_step;

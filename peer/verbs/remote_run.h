@@ -1,4 +1,4 @@
-// A run of somebody else's world: the peer's own parts around a RemoteSession.
+// A run of somebody else's world: the peer's own parts around a RemoteVisit.
 #pragma once
 
 #include <functional>
@@ -9,7 +9,7 @@
 #include "peer/haptics/device_loop.h"
 #include "peer/haptics/make_device.h"
 #include "peer/output/recorder.h"
-#include "peer/remote/remote_session.h"
+#include "peer/remote/remote_visit.h"
 #include "peer/verbs/hand_trouble.h"
 #include "peer/verbs/live_run.h"
 #include "peer/verbs/prepare.h"
@@ -26,9 +26,9 @@ struct RemoteRunOptions {
 
 class RemoteRun final : public LiveRun {
  public:
-  /// `stage` and `session`, which is live, must outlive it. Errors: a file cannot be written, a device of a
+  /// `stage` and `visit`, which is live, must outlive it. Errors: a file cannot be written, a device of a
   /// grip that is held already cannot be used.
-  static Result<std::unique_ptr<RemoteRun>> create(const Stage& stage, RemoteSession& session,
+  static Result<std::unique_ptr<RemoteRun>> create(const Stage& stage, RemoteVisit& visit,
                                                    RemoteRunOptions options);
   ~RemoteRun() override;
 
@@ -36,7 +36,7 @@ class RemoteRun final : public LiveRun {
   void request_stop() override { stopping_ = true; }
   bool running() override;
   void stop() override;
-  SnapshotQueue& pictures() override { return session_.world().channel->pictures(); }
+  SnapshotQueue& pictures() override { return visit_.world().channel->pictures(); }
   SnapshotPointer newest_picture() override;
   HudFacts facts(double picture_rate) const override;
   Rates note_rates() override;
@@ -52,13 +52,13 @@ class RemoteRun final : public LiveRun {
   void report(RunSummary& summary) const override;
 
  private:
-  RemoteRun(const Stage& stage, RemoteSession& session, RemoteRunOptions options);
+  RemoteRun(const Stage& stage, RemoteVisit& visit, RemoteRunOptions options);
   Result<bool> follow_grips();
   void let_go(std::size_t grip, const Error& why);
   void follow_time();
 
   const Stage& stage_;
-  RemoteSession& session_;
+  RemoteVisit& visit_;
   RemoteRunOptions options_;
   RemoteStatus status_;
   std::unique_ptr<Servo> servo_;

@@ -50,7 +50,7 @@ TEST_F(TerminalTest, WhatIsTypedIsNotPaintedOver) {
   const std::size_t answered = host->screen().size();
   EXPECT_TRUE(host->shows("nobody here yet", answered)) << "and the line is back";
   host->type("quit\n");
-  EXPECT_TRUE(host->shows("the host has ended the session")) << host->screen();
+  EXPECT_TRUE(host->shows("the host has ended the run")) << host->screen();
   EXPECT_TRUE(host->shows("hosted")) << host->screen();
   EXPECT_EQ(host->wait(), 0);
   EXPECT_TRUE(host->echoes()) << "as it was found";

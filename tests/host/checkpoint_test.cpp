@@ -31,10 +31,10 @@ std::unique_ptr<CheckpointWriter> checkpoint(Rig& rig, const CheckpointOptions& 
   return std::move(writer.value());
 }
 
-Bytes session_of(const path& file) {
+Bytes server_state_of(const path& file) {
   const Result<std::optional<Secrets>> secrets = read_secrets(file);
   EXPECT_TRUE(secrets && secrets.value()) << file;
-  return secrets && secrets.value() ? secrets.value()->session : Bytes{};
+  return secrets && secrets.value() ? secrets.value()->server_state : Bytes{};
 }
 
 std::vector<Chunk> chunks_of(const path& file) {
@@ -61,7 +61,7 @@ TEST(Checkpoint, ResumedIsTheRunThatWasNeverStopped) {
   } tap(inputs);
   rig.host.add_tap(tap);
   auto writer = checkpoint(rig, options);
-  writer->set_session({1, 2, 3});
+  writer->set_server_state({1, 2, 3});
   // The copy in mid-run is kept aside, as a crash at that moment would leave it.
   const path kept = options.file.parent_path() / "kept";
   AtTick crash(25, [&] {
@@ -80,7 +80,7 @@ TEST(Checkpoint, ResumedIsTheRunThatWasNeverStopped) {
   const Checkpoint& c = read.value();
   EXPECT_EQ(c.note, "");
   EXPECT_EQ(c.version, "0.0.test");
-  EXPECT_EQ(session_of(options.file), (Bytes{1, 2, 3}));
+  EXPECT_EQ(server_state_of(options.file), (Bytes{1, 2, 3}));
   EXPECT_EQ(c.start, rig.host.start_state());
   EXPECT_GE(c.tick, 20u);
   Result<RebuiltWorld> rebuilt = rebuild_world(c.scene, c.spacing, c.world, WorldOptions{1, Backend::kCpu});
@@ -131,7 +131,7 @@ TEST(Checkpoint, AHundredCommandsCopyTheWorldAtTheInterval) {
   rig.host.wait();
 }
 
-TEST(Checkpoint, OfAStandingWorldFollowsTheSessionAndTheSwitches) {
+TEST(Checkpoint, OfAStandingWorldFollowsTheServerAndTheSwitches) {
   const CheckpointOptions options = checkpoint_options(fresh_folder(), 0.02);
   HostOptions host = until(1e9);
   host.paused = true;
@@ -140,11 +140,11 @@ TEST(Checkpoint, OfAStandingWorldFollowsTheSessionAndTheSwitches) {
   rig.host.start();
   ASSERT_TRUE(rig.host.ask({HostAction::kGravityScale, 0, 0.25}).get());
   ASSERT_TRUE(wait_for_copies(*writer, 1));
-  writer->set_session({9});
+  writer->set_server_state({9});
   writer->flush();
   const Result<Checkpoint> read = read_checkpoint(options.file);
   ASSERT_TRUE(read) << read.error().text();
-  EXPECT_EQ(session_of(options.file), Bytes{9});
+  EXPECT_EQ(server_state_of(options.file), Bytes{9});
   EXPECT_TRUE(read.value().state.paused);
   World world = small_world().world();
   ASSERT_TRUE(world.restore(read.value().world));
@@ -217,7 +217,7 @@ TEST(Checkpoint, DamagedAnywhereIsAnErrorThatNamesTheFile) {
 TEST(Checkpoint, HoldsNoSecretAndTheSecretsBesideItAreTheOwnersAlone) {
   CheckpointOptions options = checkpoint_options(fresh_folder(), 1e9);
   std::mt19937 random(5);
-  for (int i = 0; i < 64; ++i) options.session.push_back(static_cast<std::uint8_t>(random()));
+  for (int i = 0; i < 64; ++i) options.server_state.push_back(static_cast<std::uint8_t>(random()));
   options.run = 77;
   options.place = {"127.0.0.1:5000", {"203.0.113.7:5000"}};
   Rig rig(until(0.0));
@@ -228,13 +228,13 @@ TEST(Checkpoint, HoldsNoSecretAndTheSecretsBesideItAreTheOwnersAlone) {
   EXPECT_EQ(read.value().run, 77u);
   EXPECT_EQ(read.value().place.listen, options.place.listen);
   EXPECT_EQ(read.value().place.addresses, options.place.addresses);
-  EXPECT_EQ(session_of(options.file), options.session);
-  EXPECT_EQ(session_of(previous_of(options.file)), options.session) << "of the one before it too";
+  EXPECT_EQ(server_state_of(options.file), options.server_state);
+  EXPECT_EQ(server_state_of(previous_of(options.file)), options.server_state) << "of the one before it too";
   const std::vector<Chunk> chunks = chunks_of(options.file);
   ASSERT_GE(chunks.size(), 5u);
   for (const Chunk& chunk : chunks) {
-    const auto found = std::search(chunk.content.begin(), chunk.content.end(), options.session.begin(),
-                                   options.session.begin() + 16);
+    const auto found = std::search(chunk.content.begin(), chunk.content.end(), options.server_state.begin(),
+                                   options.server_state.begin() + 16);
     EXPECT_EQ(found, chunk.content.end()) << "in part " << int{chunk.type};
   }
   struct stat facts {};
@@ -244,16 +244,16 @@ TEST(Checkpoint, HoldsNoSecretAndTheSecretsBesideItAreTheOwnersAlone) {
 
 TEST(Checkpoint, OfAnEarlierFormatIsNamedAndSecretsThatAreDamagedFallBack) {
   CheckpointOptions options = checkpoint_options(fresh_folder(), 1e9);
-  options.session = {1};
+  options.server_state = {1};
   Rig rig(until(0.0));
   auto writer = checkpoint(rig, options);
-  writer->set_session({2});
+  writer->set_server_state({2});
   writer->flush();
   const path secrets = secrets_of(options.file);
   std::filesystem::resize_file(secrets, std::filesystem::file_size(secrets) - 1);
   const Result<std::optional<Secrets>> before = read_secrets(options.file);
   ASSERT_TRUE(before && before.value());
-  EXPECT_EQ(before.value()->session, Bytes{1});
+  EXPECT_EQ(before.value()->server_state, Bytes{1});
   EXPECT_NE(before.value()->note.find("cut off"), std::string::npos) << before.value()->note;
   std::filesystem::resize_file(previous_of(secrets), 3);
   const Result<std::optional<Secrets>> none = read_secrets(options.file);

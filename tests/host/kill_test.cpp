@@ -90,11 +90,11 @@ int kill_at_each_step(const path& folder, const std::function<void(const path&)>
   return -1;
 }
 
-CheckpointOptions options_in(const path& folder, Bytes session) {
+CheckpointOptions options_in(const path& folder, Bytes server_state) {
   CheckpointOptions options;
   options.file = folder / "world";
   options.interval = 0.0;
-  options.session = std::move(session);
+  options.server_state = std::move(server_state);
   options.run = 5;
   return options;
 }
@@ -104,10 +104,10 @@ void write_one(Rig& rig, const CheckpointOptions& options) {
                                 rig.host.world(), rig.host.state(), options);
 }
 
-Bytes session_of(const path& file) {
+Bytes server_state_of(const path& file) {
   const Result<std::optional<Secrets>> read = read_secrets(file);
   EXPECT_TRUE(read && read.value()) << file;
-  return read && read.value() ? read.value()->session : Bytes{};
+  return read && read.value() ? read.value()->server_state : Bytes{};
 }
 
 class Killed : public ::testing::Test {
@@ -134,7 +134,7 @@ TEST_F(Killed, BetweenAnyTwoStepsOfACheckpointItCanBeCarriedOn) {
         ASSERT_TRUE(read) << "step " << step << ": " << read.error().text();
         EXPECT_EQ(read.value().note, "") << "step " << step;
         EXPECT_EQ(read.value().tick, rig_.host.world().tick()) << "step " << step;
-        EXPECT_GE(session_of(here / "world"), Bytes{2}) << "step " << step;
+        EXPECT_GE(server_state_of(here / "world"), Bytes{2}) << "step " << step;
       });
   EXPECT_GE(steps, 12) << "two files, each written, synced, linked and renamed";
 }
@@ -149,7 +149,7 @@ TEST_F(Killed, WhileTheNewestIsDamagedTheOneBeforeItStaysUntilThereIsABetterOne)
         const Result<Checkpoint> read = read_checkpoint(here / "world");
         ASSERT_TRUE(read) << "step " << step << ": " << read.error().text();
         (read.value().note.empty() ? new_one : old_one) = true;
-        EXPECT_NE(session_of(here / "world"), Bytes{2}) << "step " << step;
+        EXPECT_NE(server_state_of(here / "world"), Bytes{2}) << "step " << step;
       });
   EXPECT_TRUE(old_one);
   EXPECT_TRUE(new_one);
@@ -164,7 +164,7 @@ TEST_F(Killed, BetweenAnyTwoStepsOfSettingAsideOneOfTheTwoPlacesHasItAll) {
           const Result<Checkpoint> read = read_checkpoint(file);
           const Result<std::optional<Secrets>> secrets = read_secrets(file);
           complete += read && read.value().note.empty() && secrets && secrets.value() &&
-                      secrets.value()->note.empty() && secrets.value()->session == Bytes{2};
+                      secrets.value()->note.empty() && secrets.value()->server_state == Bytes{2};
         }
         EXPECT_GE(complete, 1) << "step " << step;
       });

@@ -198,7 +198,7 @@ void EvilHost::enter(Guest& guest, const Scene& scene) {
   wire::Welcome welcome;
   welcome.role = m.one_in(6) ? wire::Role::kSpectator : wire::Role::kParticipant;
   welcome.name = "Ana";
-  welcome.session = m.any();
+  welcome.world = m.any();
   welcome.scene_bytes = package.size();
   welcome.particles = m.one_in(4) ? m.below(100'000'000) : 500;
   welcome.spacing = kSpacing;

@@ -34,7 +34,7 @@ done
 # What each rule is for.
 plant peer/remote/knows_the_host.h '#include "host/server/server.h"'
 plant peer/haptics/knows_the_world.cu '#include "sim/world.h"'
-plant peer/output/knows_the_program.cpp '#include "peer/verbs/session.h"'
+plant peer/output/knows_the_program.cpp '#include "peer/verbs/local_run.h"'
 plant sim/cpu/knows_the_net.h '  #  include "net/channel.h"'
 plant sim/knows_the_scene_files.cuh '#include "scenes/load.h"'
 plant scenes/knows_the_world.cpp '#include "sim/world.h"'

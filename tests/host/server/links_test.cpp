@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "host/server/session_state.h"
+#include "host/server/server_state.h"
 
 namespace slosh {
 namespace {
@@ -86,10 +86,10 @@ TEST(Links, IdsAndTokensDifferAndRoomIsBounded) {
   EXPECT_NE(links.create(wire::Role::kSpectator, {}, kNow), nullptr) << "a revoked one makes room";
 }
 
-TEST(Links, ASessionComesBackAsItWas) {
-  SessionState state;
+TEST(Links, TheServersStateComesBackAsItWas) {
+  ServerState state;
   state.private_key = {1, 2, 3};
-  state.session = 0x1234567890abcdef;
+  state.world = 0x1234567890abcdef;
   state.port = 4433;
   LinkRegistry links;
   const LinkRecord made = *links.create(wire::Role::kParticipant, "Ana", kNow, kMinute);
@@ -98,7 +98,7 @@ TEST(Links, ASessionComesBackAsItWas) {
   state.seats.push_back({3, key(9), "Ana", wire::Role::kParticipant, {0, 2}, made.id});
 
   const wire::Bytes bytes = wire::encoded(state);
-  SessionState back;
+  ServerState back;
   const wire::Fault fault = wire::decode(bytes, back);
   ASSERT_FALSE(fault) << fault.text();
   EXPECT_EQ(wire::encoded(back), bytes);

@@ -29,7 +29,7 @@ TEST_F(ServerTest, ANewcomerGetsWelcomeSceneWorldAndRoster) {
   EXPECT_EQ(ana.welcomes[0].name, "Ana");
   EXPECT_EQ(ana.welcomes[0].role, wire::Role::kParticipant);
   EXPECT_EQ(ana.welcomes[0].scene_bytes, 5000u);
-  EXPECT_EQ(ana.welcomes[0].session, server->session());
+  EXPECT_EQ(ana.welcomes[0].world, server->world_number());
   EXPECT_FALSE(ana.welcomes[0].restored);
   EXPECT_EQ(ana.scene_bytes, 5000u);
   EXPECT_TRUE(ana.scene_ended);
@@ -136,8 +136,8 @@ TEST_F(ServerTest, WhoIsKickedForATimeStaysOutByTheirKeyAlsoOverARestart) {
   EXPECT_NE(server->command("links").text.find("Ana, kept out for another 9 min"), std::string::npos);
   EXPECT_TRUE(join(3, "Cem").in()) << "the link still works for others";
 
-  SessionState state;
-  ASSERT_FALSE(wire::decode(server->session_blob(), state));
+  ServerState state;
+  ASSERT_FALSE(wire::decode(server->state_blob(), state));
   ASSERT_EQ(state.bans.size(), 1u);
   EXPECT_EQ(state.bans[0].name, "Ana");
   BanList again;
@@ -224,8 +224,8 @@ TEST_F(ClockServerTest, AnExpiredLinkStaysExpiredWhateverTheClocksDo) {
   // And the host is started anew with that clock.
   server->command("link");
   go(0.1);
-  SessionState state;
-  ASSERT_FALSE(wire::decode(server->session_blob(), state));
+  ServerState state;
+  ASSERT_FALSE(wire::decode(server->state_blob(), state));
   EXPECT_GE(state.seen_ns, system_ns + 90 * kMinute);
   LastingClock again([&] { return system_ns; }, [&] { return elapsed_ns; });
   again.not_before(state.seen_ns);
@@ -540,26 +540,26 @@ TEST_F(ServerTest, TheSamePersonFromElsewhereTakesOver) {
 TEST_F(ServerTest, EndingTellsEverybody) {
   const ScriptedPeer& ana = join(1, "Ana");
   const ScriptedPeer& eve = join(2, watch, "Eve");
-  server->end("the host has ended the session");
+  server->end("the host has ended the run");
   go(0.1);
   for (const ScriptedPeer* peer : {&ana, &eve}) {
     EXPECT_TRUE(peer->closed);
     ASSERT_EQ(peer->refusals.size(), 1u);
     EXPECT_EQ(peer->refusals[0].code, wire::RefusalCode::kEnding);
-    EXPECT_EQ(peer->refusals[0].text, "the host has ended the session");
+    EXPECT_EQ(peer->refusals[0].text, "the host has ended the run");
   }
   EXPECT_TRUE(server->empty());
 }
 
-TEST_F(ServerTest, ASessionGoesOnAfterARestart) {
+TEST_F(ServerTest, ARunGoesOnAfterARestart) {
   ScriptedPeer& ana = join(1, "Ana");
   ana.take(0);
   go(0.2);
-  SessionState state;
-  ASSERT_FALSE(wire::decode(server->session_blob(), state));
+  ServerState state;
+  ASSERT_FALSE(wire::decode(server->state_blob(), state));
   ASSERT_EQ(state.seats.size(), 1u);
 
-  const std::uint64_t session = server->session();
+  const std::uint64_t world = server->world_number();
   peers.clear();
   endpoint.reset();
   MemoryNetwork other;
@@ -587,12 +587,12 @@ TEST_F(ServerTest, ASessionGoesOnAfterARestart) {
   }
   ASSERT_TRUE(back.in());
   EXPECT_TRUE(back.welcomes[0].restored);
-  EXPECT_EQ(back.welcomes[0].session, session);
+  EXPECT_EQ(back.welcomes[0].world, world);
   EXPECT_EQ(back.entry("Ana")->grips, (std::vector<std::uint32_t>{0}));
   back.vanish();
 }
 
-TEST_F(ServerTest, TheConsoleRulesTheSession) {
+TEST_F(ServerTest, TheConsoleRulesTheRun) {
   ScriptedPeer& ana = join(1, "Ana");
   ana.take(0);
   go(0.1);

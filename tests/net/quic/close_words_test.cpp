@@ -21,7 +21,7 @@ TEST(CloseWords, TellATerminalNothing) {
         EXPECT_EQ(text_problem(transport_words(frame, to_server)), "") << transport_words(frame, to_server);
     }
   }
-  EXPECT_EQ(printable("the host has ended the session"), "the host has ended the session");
+  EXPECT_EQ(printable("the host has ended the run"), "the host has ended the run");
   EXPECT_LE(printable(std::string(100'000, 'x')).size(), kMostTextBytes);
 }
 

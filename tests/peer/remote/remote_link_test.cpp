@@ -142,7 +142,7 @@ TEST(RemoteLink, AnotherWorldAtTheSameAddressEnds) {
   ASSERT_TRUE(both.run_until(LinkState::kLive));
   both.host.crash();
   ASSERT_TRUE(both.run_until(LinkState::kReconnecting));
-  both.host.session = 43;
+  both.host.world = 43;
   both.host.come_back();
   ASSERT_TRUE(both.run_until(LinkState::kEnded));
   EXPECT_NE(both.status().error->what.find("another world"), std::string::npos);
@@ -276,11 +276,11 @@ TEST(RemoteLink, AHostThatEndsIsNoError) {
   ASSERT_TRUE(both.run_until(LinkState::kLive));
   wire::Refused refused;
   refused.code = wire::RefusalCode::kEnding;
-  refused.text = "the session is over";
+  refused.text = "the run is over";
   both.host.say(refused);
   ASSERT_TRUE(both.run_until(LinkState::kEnded));
   EXPECT_FALSE(both.status().error);
-  EXPECT_EQ(both.status().farewell, "the session is over");
+  EXPECT_EQ(both.status().farewell, "the run is over");
 }
 
 TEST(RemoteLink, LeavingSaysGoodBye) {

@@ -62,7 +62,7 @@ class ScriptedHost final : public EndpointEvents {
   std::function<void(const wire::Hello&)> on_hello;  // in place of the welcome
   std::function<std::optional<std::string>(const wire::GripRequest&)> refuse_grip;
   std::string refuse_parameters;  // in these words, when not empty
-  std::uint64_t session = 42;
+  std::uint64_t world = 42;
   std::uint32_t run = 0;
   double clock_ahead = 500.0;  // s, of the peer's clock
   double time = 3.0;           // simulated s
@@ -114,7 +114,7 @@ class ScriptedHost final : public EndpointEvents {
     m.peer = 3;
     m.role = wire::Role::kParticipant;
     m.name = "Ana";
-    m.session = session;
+    m.world = world;
     m.scene_bytes = package.size();
     m.particles = 0;
     m.spacing = 0.01;

@@ -18,16 +18,16 @@
 namespace slosh {
 
 /// Made, started and ended by one thread. `prepared` must outlive it.
-class Session final : public LiveRun {
+class LocalRun final : public LiveRun {
  public:
   /// `picture_rate` as in HostOptions. `progress` is told where it is going to take long (agree_on_time);
   /// null where that was told already. Errors: a device cannot be opened, a file cannot be written, it takes
   /// too long.
-  static Result<std::unique_ptr<Session>> create(const Prepared& prepared, DeviceSet devices,
+  static Result<std::unique_ptr<LocalRun>> create(const Prepared& prepared, DeviceSet devices,
                                                  double picture_rate, Progress* progress);
-  ~Session() override;
-  Session(const Session&) = delete;
-  Session& operator=(const Session&) = delete;
+  ~LocalRun() override;
+  LocalRun(const LocalRun&) = delete;
+  LocalRun& operator=(const LocalRun&) = delete;
 
   void start() override;
   void request_stop() override {
@@ -56,7 +56,7 @@ class Session final : public LiveRun {
   Channel& channel() { return *channel_; }
 
  private:
-  explicit Session(const Prepared& prepared) : prepared_(prepared) {}
+  explicit LocalRun(const Prepared& prepared) : prepared_(prepared) {}
 
   const Prepared& prepared_;
   std::unique_ptr<Channel> channel_;

@@ -1,4 +1,4 @@
-#include "peer/verbs/host_session.h"
+#include "peer/verbs/hosted_run.h"
 
 #include <algorithm>
 #include <chrono>
@@ -28,13 +28,13 @@ std::string state_folder() {
 
 }  // namespace
 
-Result<std::unique_ptr<HostSession>> HostSession::create(HostedWorld& hosted, const HostVerbOptions& options,
+Result<std::unique_ptr<HostedRun>> HostedRun::create(HostedWorld& hosted, const HostVerbOptions& options,
                                                          std::atomic<std::uint64_t>* pulse) {
-  std::unique_ptr<HostSession> session(new HostSession(hosted, options));
-  HostSession& s = *session;
+  std::unique_ptr<HostedRun> run(new HostedRun(hosted, options));
+  HostedRun& s = *run;
   const Scene& scene = hosted.prepared.scene;
-  if (hosted.session) {
-    Result<Identity> kept = Identity::from_private_key(hosted.session->private_key);
+  if (hosted.server_state) {
+    Result<Identity> kept = Identity::from_private_key(hosted.server_state->private_key);
     if (!kept) return kept.error();
     s.identity_ = std::move(kept.value());
   }
@@ -59,10 +59,10 @@ Result<std::unique_ptr<HostSession>> HostSession::create(HostedWorld& hosted, co
   s.host_->add_tap(*s.server_);
   if (s.checkpoint_) s.host_->add_tap(*s.checkpoint_);
   if (s.recording_) s.host_->add_tap(*s.recording_);
-  return session;
+  return run;
 }
 
-Result<bool> HostSession::open_network() {
+Result<bool> HostedRun::open_network() {
   const Prepared& p = hosted_.prepared;
   ServedWorld world;
   world.scene = &p.scene;
@@ -131,14 +131,14 @@ Result<bool> HostSession::open_network() {
   return true;
 }
 
-std::string HostSession::text_of(const LinkRecord& link) const {
+std::string HostedRun::text_of(const LinkRecord& link) const {
   const Result<std::string> text = format_link({reachable_, identity_.fingerprint(), link.token});
   return text ? text.value() : text.error().text();
 }
 
-void HostSession::make_links() {
-  if (hosted_.session) {
-    server_->restore(*hosted_.session);
+void HostedRun::make_links() {
+  if (hosted_.server_state) {
+    server_->restore(*hosted_.server_state);
   } else {
     const std::int64_t now = server_->unix_now();
     std::int64_t lifetime = 0;
@@ -155,7 +155,7 @@ void HostSession::make_links() {
   first_links_ = server_->links().links();
 }
 
-std::string HostSession::choose_checkpoint() const {
+std::string HostedRun::choose_checkpoint() const {
   if (options_.checkpoint == "none") return {};
   if (!options_.checkpoint.empty()) return options_.checkpoint;
   if (!options_.resume.empty()) return options_.resume;
@@ -168,7 +168,7 @@ std::string HostSession::choose_checkpoint() const {
   return state_folder() + "/" + name + ".checkpoint";
 }
 
-Result<bool> HostSession::open_files() {
+Result<bool> HostedRun::open_files() {
   const Prepared& p = hosted_.prepared;
   checkpoint_file_ = choose_checkpoint();
   if (!checkpoint_file_.empty()) {
@@ -186,10 +186,10 @@ Result<bool> HostSession::open_files() {
     options.version = SLOSH_VERSION;
     options.place = place_;
     options.interval = options_.checkpoint_seconds;
-    options.run = server_->session();
+    options.run = server_->world_number();
     // The first file already has everything that a newcomer needs: this may be all that there ever is.
-    server_->save_session();
-    options.session = saved_session_ = server_->session_blob();
+    server_->save_state();
+    options.server_state = saved_state_ = server_->state_blob();
     auto writer = keep::CheckpointWriter::start(p.scene, p.sampled.spacing, hosted_.start, *hosted_.world,
                                                 hosted_.state, options);
     if (!writer) return writer.error();
@@ -208,11 +208,11 @@ Result<bool> HostSession::open_files() {
   return true;
 }
 
-HostSession::~HostSession() {
+HostedRun::~HostedRun() {
   stop("the host ends");
 }
 
-void HostSession::start() {
+void HostedRun::start() {
   pictures_ =
       std::make_unique<PictureThread>(channel_->pictures(), desk_, demand_, hosted_.prepared.sampled.spacing,
                                       hosted_.state.run, [this] { server_->mailbox().wake(); });
@@ -220,7 +220,7 @@ void HostSession::start() {
   host_->start();
 }
 
-void HostSession::stop(const std::string& why) {
+void HostedRun::stop(const std::string& why) {
   if (stopped_) return;
   stopped_ = true;
   if (net_) net_->stop(why);
@@ -231,17 +231,17 @@ void HostSession::stop(const std::string& why) {
   if (channel_) channel_->pictures().close();  // also when the host never started
   if (pictures_) coding_seconds_ = pictures_->seconds();
   pictures_.reset();
-  save_session();
+  save_server_state();
   if (checkpoint_) checkpoint_->flush();
   if (recording_) recording_report_ = recording_->finish();
 }
 
-std::vector<std::string> HostSession::news() {
+std::vector<std::string> HostedRun::news() {
   const std::lock_guard lock(news_mutex_);
   return std::exchange(news_, {});
 }
 
-std::string HostSession::trouble() const {
+std::string HostedRun::trouble() const {
   std::string all;
   if (recording_) {
     const std::string why = recording_->trouble();
@@ -254,12 +254,12 @@ std::string HostSession::trouble() const {
   return all;
 }
 
-void HostSession::save_session() {
+void HostedRun::save_server_state() {
   if (!checkpoint_) return;
-  wire::Bytes blob = server_->session_blob();
-  if (blob.empty() || blob == saved_session_) return;
-  saved_session_ = blob;
-  checkpoint_->set_session(std::move(blob));
+  wire::Bytes blob = server_->state_blob();
+  if (blob.empty() || blob == saved_state_) return;
+  saved_state_ = blob;
+  checkpoint_->set_server_state(std::move(blob));
 }
 
 }  // namespace slosh

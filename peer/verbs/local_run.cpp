@@ -1,4 +1,4 @@
-#include "peer/verbs/session.h"
+#include "peer/verbs/local_run.h"
 
 #include <algorithm>
 
@@ -17,9 +17,9 @@ Spread spread_of(const Histogram& histogram, double unit) {
 
 }  // namespace
 
-Result<std::unique_ptr<Session>> Session::create(const Prepared& prepared, DeviceSet devices,
+Result<std::unique_ptr<LocalRun>> LocalRun::create(const Prepared& prepared, DeviceSet devices,
                                                  double picture_rate, Progress* progress) {
-  std::unique_ptr<Session> session(new Session(prepared));
+  std::unique_ptr<LocalRun> run(new LocalRun(prepared));
   for (const std::unique_ptr<Device>& device : devices.devices) {
     const Result<bool> opened = open_device(*device);
     if (!opened) return opened.error();
@@ -41,59 +41,59 @@ Result<std::unique_ptr<Session>> Session::create(const Prepared& prepared, Devic
     if (!agreed) return agreed.error();
   }
   world.settle(kSettle, hands);
-  session->channel_ = std::make_unique<Channel>(scene.grips.size(), initial_message(world), kPictureBytes);
+  run->channel_ = std::make_unique<Channel>(scene.grips.size(), initial_message(world), kPictureBytes);
   HostOptions options;
   options.picture_rate = picture_rate;
   options.until = prepared.seconds;
   options.paced = !prepared.unpaced;
-  session->host_ = std::make_unique<Host>(std::move(world), scene, *session->channel_, options);
+  run->host_ = std::make_unique<Host>(std::move(world), scene, *run->channel_, options);
   if (!prepared.record.empty()) {
     keep::RecordingOptions recording;
     recording.file = prepared.record;
     recording.version = SLOSH_VERSION;
     recording.backend = backend_name(prepared.backend);
-    const Host& host = *session->host_;
+    const Host& host = *run->host_;
     Result<std::unique_ptr<keep::RecordingWriter>> writer = keep::RecordingWriter::start(
         scene, prepared.sampled.spacing, host.start_state(), host.world(), host.state(), recording);
     if (!writer) return writer.error();
-    session->recording_ = std::move(writer.value());
-    session->host_->add_tap(*session->recording_);
+    run->recording_ = std::move(writer.value());
+    run->host_->add_tap(*run->recording_);
   }
-  session->wrenches_ = std::make_unique<WrenchTap>(scene.grips.size());
-  session->host_->add_tap(*session->wrenches_);
-  session->mouse_targets_ = std::move(devices.mouse_targets);
+  run->wrenches_ = std::make_unique<WrenchTap>(scene.grips.size());
+  run->host_->add_tap(*run->wrenches_);
+  run->mouse_targets_ = std::move(devices.mouse_targets);
   ServoOptions servo;
-  servo.steps = &session->wrenches_->steps();
-  session->servo_ = std::make_unique<Servo>(scene, std::move(devices.devices), *session->channel_, servo);
-  session->loop_ = std::make_unique<DeviceLoop>(*session->servo_);
+  servo.steps = &run->wrenches_->steps();
+  run->servo_ = std::make_unique<Servo>(scene, std::move(devices.devices), *run->channel_, servo);
+  run->loop_ = std::make_unique<DeviceLoop>(*run->servo_);
   if (prepared.measure > 0.0) {
     Result<std::unique_ptr<Measurer>> measurer =
         Measurer::create(scene, prepared.sampled, prepared.folder, prepared.measure);
     if (!measurer) return measurer.error();
-    session->measurer_ = std::move(measurer.value());
-    session->measure_tap_ = std::make_unique<MeasureTap>(*session->measurer_);
-    session->host_->add_tap(*session->measure_tap_);
+    run->measurer_ = std::move(measurer.value());
+    run->measure_tap_ = std::make_unique<MeasureTap>(*run->measurer_);
+    run->host_->add_tap(*run->measure_tap_);
   }
   if (prepared.unpaced) {
-    session->lockstep_ = std::make_unique<Lockstep>(*session->servo_, *session->channel_);
-    session->host_->add_tap(*session->lockstep_);
+    run->lockstep_ = std::make_unique<Lockstep>(*run->servo_, *run->channel_);
+    run->host_->add_tap(*run->lockstep_);
   }
-  Result<std::unique_ptr<Recorder>> recorder = Recorder::start(*session->servo_, prepared.folder);
+  Result<std::unique_ptr<Recorder>> recorder = Recorder::start(*run->servo_, prepared.folder);
   if (!recorder) return recorder.error();
-  session->recorder_ = std::move(recorder.value());
-  return session;
+  run->recorder_ = std::move(recorder.value());
+  return run;
 }
 
-Session::~Session() {
+LocalRun::~LocalRun() {
   stop();
 }
 
-void Session::start() {
+void LocalRun::start() {
   if (!lockstep_) loop_->start();  // first, so that the hands hold on when the first step is taken
   host_->start();
 }
 
-void Session::stop() {
+void LocalRun::stop() {
   if (host_) {
     request_stop();
     host_->wait();
@@ -105,18 +105,18 @@ void Session::stop() {
   if (recording_) recorded_ = recording_->finish();
 }
 
-std::string Session::trouble() const {
+std::string LocalRun::trouble() const {
   const std::string problem = recorder_->problem();
   return run_trouble(problem.empty() && measurer_ ? measurer_->problem() : problem, *servo_, prepared_.scene);
 }
 
-bool Session::start_again() {
+bool LocalRun::start_again() {
   if (!recording_) return false;
   host_->post({HostAction::kReset});
   return true;
 }
 
-HudFacts Session::facts(double picture_rate) const {
+HudFacts LocalRun::facts(double picture_rate) const {
   HudFacts facts;
   facts.title = prepared_.scene.name;
   facts.spacing = prepared_.sampled.spacing;
@@ -128,7 +128,7 @@ HudFacts Session::facts(double picture_rate) const {
   return facts;
 }
 
-Rates Session::note_rates() {
+Rates LocalRun::note_rates() {
   const HostProgress progress = host_->progress();
   Rates rates;
   rates.time = progress.time;
@@ -141,7 +141,7 @@ Rates Session::note_rates() {
   return rates;
 }
 
-void Session::report(RunSummary& s) const {
+void LocalRun::report(RunSummary& s) const {
   const HostReport& host = host_->report();
   s.scene = prepared_.scene.name;
   s.scene_file = prepared_.scene.source_file;

@@ -1,4 +1,4 @@
-// One session of `slosh host`: the world, the network and the files, joined.
+// One run of `slosh host`: the world, the network and the files, joined.
 #pragma once
 
 #include <atomic>
@@ -19,15 +19,15 @@
 namespace slosh {
 
 /// Made, started and ended by one thread.
-class HostSession {
+class HostedRun {
  public:
   /// `hosted` must outlive it; its world is taken. Errors: the address cannot be listened at, a file cannot
   /// be written, the scene does not fit into a message. `pulse`: as HostOptions::pulse.
-  static Result<std::unique_ptr<HostSession>> create(HostedWorld& hosted, const HostVerbOptions& options,
+  static Result<std::unique_ptr<HostedRun>> create(HostedWorld& hosted, const HostVerbOptions& options,
                                                      std::atomic<std::uint64_t>* pulse = nullptr);
-  ~HostSession();
-  HostSession(const HostSession&) = delete;
-  HostSession& operator=(const HostSession&) = delete;
+  ~HostedRun();
+  HostedRun(const HostedRun&) = delete;
+  HostedRun& operator=(const HostedRun&) = delete;
 
   void start();
   /// Says goodbye to everybody, ends the world, completes the files.
@@ -42,18 +42,18 @@ class HostSession {
   const std::string& set_aside() const { return set_aside_; }
   const std::vector<LinkRecord>& first_links() const { return first_links_; }
   std::string text_of(const LinkRecord& link) const;
-  /// What the session has to say since the last call, line by line.
+  /// What the run has to say since the last call, line by line.
   std::vector<std::string> news();
   /// What does not reach the disk, and why; empty = all is well.
   std::string trouble() const;
   /// Hands what changed in links and seats to the checkpoint; now and then.
-  void save_session();
+  void save_server_state();
   const keep::CheckpointWriter* checkpoint() const { return checkpoint_.get(); }
   const keep::RecordingReport& recording() const { return recording_report_; }
   double coding_seconds() const { return coding_seconds_; }
 
  private:
-  HostSession(HostedWorld& hosted, const HostVerbOptions& options) : hosted_(hosted), options_(options) {}
+  HostedRun(HostedWorld& hosted, const HostVerbOptions& options) : hosted_(hosted), options_(options) {}
   Result<bool> open_network();
   std::string choose_checkpoint() const;
   Result<bool> open_files();
@@ -70,7 +70,7 @@ class HostSession {
   std::vector<LinkRecord> first_links_;
   std::mutex news_mutex_;
   std::vector<std::string> news_;
-  wire::Bytes saved_session_;
+  wire::Bytes saved_state_;
 
   // In the order in which they are needed; ended in the opposite one.
   std::unique_ptr<Channel> channel_;

@@ -13,16 +13,16 @@
 namespace slosh {
 
 /// Runs a RemoteLink on a thread of its own. Any one thread may use the rest.
-class RemoteSession {
+class RemoteVisit {
  public:
   /// Starts to join at once.
-  RemoteSession(RemoteOptions options, Connect connect);
-  ~RemoteSession();
-  RemoteSession(const RemoteSession&) = delete;
-  RemoteSession& operator=(const RemoteSession&) = delete;
+  RemoteVisit(RemoteOptions options, Connect connect);
+  ~RemoteVisit();
+  RemoteVisit(const RemoteVisit&) = delete;
+  RemoteVisit& operator=(const RemoteVisit&) = delete;
 
   RemoteStatus status() const;
-  /// Waits until the session is live or ended, at most `patience`; tells which it is now.
+  /// Waits until the visit is live or ended, at most `patience`; tells which it is now.
   LinkState wait_until_live(std::chrono::milliseconds patience);
   /// What a person should read, oldest first; each once.
   std::vector<std::string> take_notices();

@@ -1,10 +1,10 @@
-#include "peer/remote/remote_session.h"
+#include "peer/remote/remote_visit.h"
 
 #include <pthread.h>
 
 namespace slosh {
 
-RemoteSession::RemoteSession(RemoteOptions options, Connect connect)
+RemoteVisit::RemoteVisit(RemoteOptions options, Connect connect)
     : link_(std::move(options), std::move(connect), shared_) {
   thread_ = std::thread([this] {
     pthread_setname_np(pthread_self(), "slosh-network");
@@ -15,23 +15,23 @@ RemoteSession::RemoteSession(RemoteOptions options, Connect connect)
   });
 }
 
-RemoteSession::~RemoteSession() {
+RemoteVisit::~RemoteVisit() {
   stop();
 }
 
-void RemoteSession::stop() {
+void RemoteVisit::stop() {
   stop_.store(true, std::memory_order_relaxed);
   link_.wake();
   if (thread_.joinable()) thread_.join();
   if (link_.world().maker) link_.world().maker->finish();
 }
 
-RemoteStatus RemoteSession::status() const {
+RemoteStatus RemoteVisit::status() const {
   const std::lock_guard lock(shared_.mutex);
   return shared_.status;
 }
 
-LinkState RemoteSession::wait_until_live(std::chrono::milliseconds patience) {
+LinkState RemoteVisit::wait_until_live(std::chrono::milliseconds patience) {
   std::unique_lock lock(shared_.mutex);
   shared_.changed.wait_for(lock, patience, [this] {
     return shared_.status.state == LinkState::kLive || shared_.status.state == LinkState::kEnded;
@@ -39,12 +39,12 @@ LinkState RemoteSession::wait_until_live(std::chrono::milliseconds patience) {
   return shared_.status.state;
 }
 
-std::vector<std::string> RemoteSession::take_notices() {
+std::vector<std::string> RemoteVisit::take_notices() {
   const std::lock_guard lock(shared_.mutex);
   return std::exchange(shared_.notices, {});
 }
 
-void RemoteSession::ask(const RemoteCommand& command) {
+void RemoteVisit::ask(const RemoteCommand& command) {
   {
     const std::lock_guard lock(shared_.mutex);
     shared_.commands.push_back(command);
