@@ -88,8 +88,8 @@ Result<bool> Host::reset() {
   world_.fill(latest_);
   gate_.reset(latest_, clock_ns());
   publish_bodies(0.0, clock_ns());
-  publish_picture();
-  next_picture_ = world_.time() + (options_.picture_rate > 0.0 ? 1.0 / options_.picture_rate : 0.0);
+  publish_snapshot();
+  next_snapshot_ = world_.time() + (options_.snapshot_rate > 0.0 ? 1.0 / options_.snapshot_rate : 0.0);
   return true;
 }
 
@@ -115,7 +115,7 @@ void Host::stand_still() {
     }
     // Somebody began to look while the world stands: show it as it is.
     if (options_.demand && options_.demand->take_ask()) {
-      publish_picture();
+      publish_snapshot();
       tell_published();
     }
     for (HostTap* tap : taps_) tap->while_standing(world_);

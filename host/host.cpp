@@ -142,20 +142,20 @@ void Host::publish_bodies(double rate, std::int64_t stamp_ns) {
   channel_.bodies().publish();
 }
 
-void Host::publish_picture() {
-  if (options_.picture_rate <= 0.0) return;
+void Host::publish_snapshot() {
+  if (options_.snapshot_rate <= 0.0) return;
   if (options_.demand) options_.demand->note_made(run_);
   auto snapshot = std::make_shared<Snapshot>();
   world_.fill(*snapshot, options_.shell);
   snapshot->rigid.status = recent_status();
-  if (channel_.pictures().push(std::move(snapshot))) report_.pictures += 1;
+  if (channel_.snapshots().push(std::move(snapshot))) report_.snapshots += 1;
 }
 
-void Host::publish_picture_if_due() {
+void Host::publish_snapshot_if_due() {
   const double half_step = 0.5 * world_.plan().time_step;
-  if (options_.picture_rate <= 0.0 || world_.time() + half_step < next_picture_) return;
-  if (!options_.demand || options_.demand->wanted()) publish_picture();
-  next_picture_ += 1.0 / options_.picture_rate;
+  if (options_.snapshot_rate <= 0.0 || world_.time() + half_step < next_snapshot_) return;
+  if (!options_.demand || options_.demand->wanted()) publish_snapshot();
+  next_snapshot_ += 1.0 / options_.snapshot_rate;
 }
 
 void Host::tell_published() {
@@ -186,11 +186,11 @@ void Host::run() {
   meter.restart(begin_ns);
   meter.seed(time_step);
   simulated_ns_ = begin_ns;
-  next_picture_ = world_.time();
+  next_snapshot_ = world_.time();
   for (HostTap* tap : taps_) tap->on_start(world_, state());
-  // The first picture of a run comes whether somebody looks or not: those who count runs need it.
-  publish_picture();
-  next_picture_ += options_.picture_rate > 0.0 ? 1.0 / options_.picture_rate : 0.0;
+  // The first snapshot of a run comes whether somebody looks or not: those who count runs need it.
+  publish_snapshot();
+  next_snapshot_ += options_.snapshot_rate > 0.0 ? 1.0 / options_.snapshot_rate : 0.0;
   tell_published();
 
   while (!stop_.load(std::memory_order_relaxed) && world_.time() + 0.5 * time_step < options_.until) {
@@ -233,7 +233,7 @@ void Host::run() {
     const double measured_rate = meter.quick(time_step, step_end_ns);
     const double rate = on_schedule || !options_.paced ? 1.0 : measured_rate;
     publish_bodies(rate, options_.paced ? scheduled_end_ns : simulated_ns_);
-    publish_picture_if_due();
+    publish_snapshot_if_due();
     tell_published();
 
     const double step_time = to_seconds(step_end_ns - step_begin_ns);
@@ -262,7 +262,7 @@ void Host::run() {
   report_.rejected_poses = gate_.rejected();
   report_.diagnostics = world_.diagnostics();
   publish_bodies(0.0, clock_ns());
-  channel_.pictures().close();
+  channel_.snapshots().close();
   for (HostTap* tap : taps_) tap->on_end(world_);
   tell_published();
   end_commands();

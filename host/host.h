@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "host/input_gate.h"
-#include "host/picture_demand.h"
+#include "host/snapshot_demand.h"
 #include "host/tap.h"
 #include "net/channel.h"
 #include "net/histogram.h"
@@ -23,15 +23,15 @@
 namespace slosh {
 
 struct HostOptions {
-  /// Pictures a simulated second while `demand` wants any; 0 = none at all.
+  /// Snapshots a simulated second while `demand` wants any; 0 = none at all.
   /// The first of each run comes in any case.
-  double picture_rate = 30.0;
-  PictureDemand* demand = nullptr;  ///< must outlive the host; null = pictures are wanted always
+  double snapshot_rate = 30.0;
+  SnapshotDemand* demand = nullptr;  ///< must outlive the host; null = snapshots are wanted always
   double until = std::numeric_limits<double>::infinity();  ///< simulated s at which the run ends
   /// false: as fast as it goes, with a clock that goes on by a time step a step, so that a run is the same
   /// again whatever the machine does.
   bool paced = true;
-  bool shell = false;     ///< pictures say which particles are seen from outside (Snapshot::shell)
+  bool shell = false;     ///< snapshots say which particles are seen from outside (Snapshot::shell)
   bool paused = false;    ///< starts standing still
   std::uint32_t run = 0;  ///< what BodyMessage::run starts with: that of a world that was restored
   /// World::save of what a reset goes back to; empty = the world as it is handed over. For a world that was
@@ -64,7 +64,7 @@ struct HostReport {
   std::uint64_t slips = 0;  ///< times the schedule was given up
   double slipped = 0.0;     ///< s
   std::uint64_t rejected_poses = 0;
-  std::uint64_t pictures = 0;
+  std::uint64_t snapshots = 0;
   std::uint32_t status = 0;                      ///< every StatusBit that was ever set
   std::array<std::uint64_t, 32> status_steps{};  ///< in how many steps, one a bit
   Diagnostics diagnostics;                       ///< of the last state
@@ -123,8 +123,8 @@ class Host {
   Result<bool> reset();
   void show_state();
   void publish_bodies(double rate, std::int64_t stamp_ns);
-  void publish_picture();
-  void publish_picture_if_due();
+  void publish_snapshot();
+  void publish_snapshot_if_due();
   void tell_published();
   void tell_refused();
   void note_status(std::uint32_t status);
@@ -136,7 +136,7 @@ class Host {
   InputGate gate_;
   HostReport report_;
   BodySnapshot latest_;           // what the gate compares new hands with
-  double next_picture_ = 0.0;     // simulated s
+  double next_snapshot_ = 0.0;     // simulated s
   double status_until_[32] = {};  // simulated s up to which each bit counts as recent
 
   std::vector<HostTap*> taps_;

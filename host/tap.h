@@ -58,7 +58,7 @@ class HostTap {
   virtual void while_standing(const World& world) { (void)world; }
   /// A pose of this grip was not used. As often as poses come: whoever tells people, tells them once.
   virtual void on_refused_pose(std::uint32_t grip, PoseFault fault) { (void)grip, (void)fault; }
-  /// Body states, and a picture where one was due, are in the channel: wake whoever sends them.
+  /// Body states, and a snapshot where one was due, are in the channel: wake whoever sends them.
   virtual void after_publish() {}
   /// After a command that was granted; the channel has the world as it is now.
   virtual void after_change(const World& world, const HostCommand& change, const HostState& state) {

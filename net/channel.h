@@ -49,12 +49,12 @@ struct BodyMessage {
 };
 
 /// Joins one host and one peer in one process. Poses and body states are newest-value exchanges without a
-/// lock; pictures queue. Each member names the one thread that writes and the one that reads.
+/// lock; snapshots queue. Each member names the one thread that writes and the one that reads.
 class Channel {
  public:
-  /// `initial` is what the peer sees before the first step. `picture_bytes` bounds the queue of pictures.
-  Channel(std::size_t devices, const BodyMessage& initial, std::size_t picture_bytes)
-      : bodies_(initial), pictures_(picture_bytes) {
+  /// `initial` is what the peer sees before the first step. `snapshot_bytes` bounds the queue of snapshots.
+  Channel(std::size_t devices, const BodyMessage& initial, std::size_t snapshot_bytes)
+      : bodies_(initial), snapshots_(snapshot_bytes) {
     poses_.reserve(devices);
     for (std::size_t i = 0; i < devices; ++i) {
       PoseMessage nothing;
@@ -66,12 +66,12 @@ class Channel {
   std::size_t devices() const { return poses_.size(); }
   TripleBuffer<PoseMessage>& pose(std::size_t device) { return *poses_[device]; }  ///< device loop → host
   TripleBuffer<BodyMessage>& bodies() { return bodies_; }                          ///< host → device loop
-  SnapshotQueue& pictures() { return pictures_; }                                  ///< host → viewer
+  SnapshotQueue& snapshots() { return snapshots_; }                                  ///< host → viewer
 
  private:
   std::vector<std::unique_ptr<TripleBuffer<PoseMessage>>> poses_;
   TripleBuffer<BodyMessage> bodies_;
-  SnapshotQueue pictures_;
+  SnapshotQueue snapshots_;
 };
 
 }  // namespace slosh

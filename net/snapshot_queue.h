@@ -1,4 +1,4 @@
-// Pictures of the world on their way from the host to one viewer.
+// Snapshots of the world on their way from the host to one viewer.
 #pragma once
 
 #include <chrono>
@@ -22,13 +22,13 @@ inline std::size_t size_in_bytes(const Snapshot& snapshot) {
          snapshot.rigid.grips.capacity() * sizeof(GripState);
 }
 
-/// First in, first out, bounded by bytes. Neither end is a device loop, so it may lock. A picture that does
+/// First in, first out, bounded by bytes. Neither end is a device loop, so it may lock. A snapshot that does
 /// not fit is dropped and counted: those already waiting are older and keep the film without a gap there.
 class SnapshotQueue {
  public:
   explicit SnapshotQueue(std::size_t max_bytes) : max_bytes_(max_bytes) {}
 
-  /// False when the picture was dropped. A picture always fits in an empty queue.
+  /// False when the snapshot was dropped. A snapshot always fits in an empty queue.
   bool push(SnapshotPointer snapshot) {
     const std::size_t bytes = size_in_bytes(*snapshot);
     {
@@ -44,7 +44,7 @@ class SnapshotQueue {
     return true;
   }
 
-  /// No more pictures will come; a waiting pop() returns.
+  /// No more snapshots will come; a waiting pop() returns.
   void close() {
     {
       const std::lock_guard lock(mutex_);
@@ -53,7 +53,7 @@ class SnapshotQueue {
     changed_.notify_all();
   }
 
-  /// The oldest picture; waits up to `patience`. Null when none came, or when closed and empty.
+  /// The oldest snapshot; waits up to `patience`. Null when none came, or when closed and empty.
   SnapshotPointer pop(std::chrono::milliseconds patience) {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, patience, [this] { return !waiting_.empty() || closed_; });
@@ -64,7 +64,7 @@ class SnapshotQueue {
     return oldest;
   }
 
-  /// The newest picture, the others thrown away (a window wants what is now); null when none waits.
+  /// The newest snapshot, the others thrown away (a window wants what is now); null when none waits.
   SnapshotPointer pop_newest() {
     const std::lock_guard lock(mutex_);
     if (waiting_.empty()) return nullptr;
@@ -74,7 +74,7 @@ class SnapshotQueue {
     return newest;
   }
 
-  /// Closed, and every picture taken.
+  /// Closed, and every snapshot taken.
   bool finished() const {
     const std::lock_guard lock(mutex_);
     return closed_ && waiting_.empty();

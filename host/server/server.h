@@ -23,7 +23,7 @@
 #include "host/server/links.h"
 #include "host/server/mailbox.h"
 #include "host/server/peer_table.h"
-#include "host/server/picture_desk.h"
+#include "host/server/snapshot_desk.h"
 #include "host/server/roster.h"
 #include "host/server/server_state.h"
 #include "host/server/snapshot_sender.h"
@@ -52,7 +52,7 @@ struct ServedWorld {
   const Scene* scene = nullptr;  ///< must outlive the server
   wire::Bytes package;           ///< pack_scene(…, kSeen); the server keeps one copy for all connections
   Channel* channel = nullptr;    ///< the server writes poses and reads bodies
-  PictureDesk* desk = nullptr;
+  SnapshotDesk* desk = nullptr;
   std::function<void(const HostCommand&, HostAnswer)> command;  ///< Host::post; answers on any thread
   HostState state;
   std::uint64_t particles = 0;
@@ -105,7 +105,7 @@ class Server final : public EndpointEvents, public HostTap {
   const SeatTable& seats() const { return seats_; }
   ServerFigures figures() const;
   std::uint64_t world_number() const { return world_number_; }
-  int tier_of(std::uint32_t seat) const;  ///< −1: not here, or gets no pictures
+  int tier_of(std::uint32_t seat) const;  ///< −1: not here, or gets no snapshots
 
   Mailbox& mailbox() { return mailbox_; }  ///< any thread posts
   /// Any thread: what a checkpoint keeps, as of the last change, coded.

@@ -74,7 +74,7 @@ wire::Fault Server::handle(Peer& peer, const wire::Hello& hello) {
   }
   links_.note_use(id, peer.key);
   state_dirty_ = true;
-  snapshots_.add(peer.id, link->role, hello.pictures);
+  snapshots_.add(peer.id, link->role, hello.snapshots);
   peer.agreed = hello.capabilities & wire::kOurCapabilities;
   welcome(peer, *arrival.seat, arrival.restored);
   return {};
@@ -115,7 +115,7 @@ void Server::welcome(Peer& peer, Seat& seat, bool restored) {
   message.particles = world_.particles;
   message.spacing = world_.spacing;
   message.time_step = world_.time_step;
-  message.picture_rate = kTierPictureRate;
+  message.snapshot_rate = kTierSnapshotRate;
   message.restored = restored;
   message.capabilities = peer.agreed;
   send(peer, message);

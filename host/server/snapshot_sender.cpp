@@ -16,10 +16,10 @@ constexpr std::size_t kLeastRoom = 8;      // pieces that may wait in a queue, h
 
 }  // namespace
 
-void SnapshotSender::add(ConnectionId connection, wire::Role role, wire::PictureWish wish) {
-  const bool film = wish == wire::PictureWish::kFilm;
+void SnapshotSender::add(ConnectionId connection, wire::Role role, wire::SnapshotWish wish) {
+  const bool film = wish == wire::SnapshotWish::kFilm;
   Sink sink;
-  sink.wanted = wish != wire::PictureWish::kNone;
+  sink.wanted = wish != wire::SnapshotWish::kNone;
   sink.control = role == wire::Role::kParticipant
                      ? TierControl(kAllParticles, film ? kAllParticles : kAllParticles + 1)
                      : TierControl(film ? kAllParticles : kShell, kShell);
@@ -68,43 +68,43 @@ void SnapshotSender::send_piece(ConnectionId connection, Sink& sink, const Piece
 // A hundred watchers' pieces take milliseconds to encrypt: a few at a time, so that poses that come meanwhile
 // do not wait for all of them.
 void SnapshotSender::send(std::int64_t now_ns) {
-  for (CodedPicture& picture : desk_->collect()) leaving_.push_back({std::move(picture), 0});
+  for (CodedSnapshot& snapshot : desk_->collect()) leaving_.push_back({std::move(snapshot), 0});
   while (leaving_.size() > kMostLeaving) leaving_.pop_front();
   std::size_t room = kPiecesATurn;
   while (!leaving_.empty() && room > 0) {
     Leaving& leaving = leaving_.front();
     const auto next = sinks_.upper_bound(leaving.last);
     if (next == sinks_.end()) {
-      send_mended(leaving.picture, now_ns);
+      send_mended(leaving.snapshot, now_ns);
       leaving_.pop_front();
       continue;
     }
     leaving.last = next->first;
-    const std::size_t sent = send_frame(next->first, next->second, leaving.picture);
+    const std::size_t sent = send_frame(next->first, next->second, leaving.snapshot);
     room -= std::min(room, sent);
   }
 }
 
-std::size_t SnapshotSender::send_frame(ConnectionId connection, Sink& sink, const CodedPicture& picture) {
-  if (!sink.watching || sink.control.tier() != picture.tier) return 0;
+std::size_t SnapshotSender::send_frame(ConnectionId connection, Sink& sink, const CodedSnapshot& snapshot) {
+  if (!sink.watching || sink.control.tier() != snapshot.tier) return 0;
   sink.seen.frames += 1;
-  if (!has_room(connection, sink, picture.frame.pieces.size())) {
+  if (!has_room(connection, sink, snapshot.frame.pieces.size())) {
     sink.seen.frames_withheld += 1;
     frames_withheld_ += 1;
     return 0;
   }
   frames_sent_ += 1;
-  sink.pieces_now += static_cast<std::uint32_t>(picture.frame.pieces.size());
-  for (const Piece& piece : picture.frame.pieces) send_piece(connection, sink, piece);
-  return picture.frame.pieces.size();
+  sink.pieces_now += static_cast<std::uint32_t>(snapshot.frame.pieces.size());
+  for (const Piece& piece : snapshot.frame.pieces) send_piece(connection, sink, piece);
+  return snapshot.frame.pieces.size();
 }
 
-void SnapshotSender::send_mended(const CodedPicture& picture, std::int64_t now_ns) {
-  for (const auto& [connection, pieces] : picture.mended) {
+void SnapshotSender::send_mended(const CodedSnapshot& snapshot, std::int64_t now_ns) {
+  for (const auto& [connection, pieces] : snapshot.mended) {
     const auto found = sinks_.find(connection);
     if (found == sinks_.end()) continue;
     Sink& sink = found->second;
-    if (!sink.watching || sink.control.tier() != picture.tier) continue;
+    if (!sink.watching || sink.control.tier() != snapshot.tier) continue;
     std::size_t bytes = 0;
     for (const Piece& piece : pieces) bytes += piece.bytes->size();
     if (!sink.mend_bytes.take(now_ns, static_cast<double>(bytes))) continue;

@@ -4,7 +4,7 @@
 #include <deque>
 #include <map>
 
-#include "host/server/picture_desk.h"
+#include "host/server/snapshot_desk.h"
 #include "host/server/tiers.h"
 #include "host/server/token_bucket.h"
 #include "net/quic/endpoint.h"
@@ -15,11 +15,11 @@ namespace slosh {
 /// One thread, the network's. Knows connections by their number alone: who somebody is, is not its business.
 class SnapshotSender {
  public:
-  explicit SnapshotSender(PictureDesk* desk) : desk_(desk) {}
+  explicit SnapshotSender(SnapshotDesk* desk) : desk_(desk) {}
   void use(Endpoint& endpoint) { endpoint_ = &endpoint; }
 
   /// Somebody who may have snapshots; none are sent before watch().
-  void add(ConnectionId connection, wire::Role role, wire::PictureWish wish);
+  void add(ConnectionId connection, wire::Role role, wire::SnapshotWish wish);
   /// Begins to send, when they are wanted at all.
   void watch(ConnectionId connection, std::int64_t now_ns);
   void forget(ConnectionId connection) { sinks_.erase(connection); }
@@ -57,15 +57,15 @@ class SnapshotSender {
   void watch(Sinks::value_type& entry, std::int64_t now_ns);
   bool has_room(ConnectionId connection, Sink& sink, std::size_t pieces);
   void send_piece(ConnectionId connection, Sink& sink, const Piece& piece);
-  std::size_t send_frame(ConnectionId connection, Sink& sink, const CodedPicture& picture);
-  void send_mended(const CodedPicture& picture, std::int64_t now_ns);
+  std::size_t send_frame(ConnectionId connection, Sink& sink, const CodedSnapshot& snapshot);
+  void send_mended(const CodedSnapshot& snapshot, std::int64_t now_ns);
 
-  PictureDesk* desk_;
+  SnapshotDesk* desk_;
   Endpoint* endpoint_ = nullptr;
   Sinks sinks_;
-  PictureOrder order_;
+  SnapshotOrder order_;
   struct Leaving {
-    CodedPicture picture;
+    CodedSnapshot snapshot;
     ConnectionId last = 0;  // the last one that got it
   };
   std::deque<Leaving> leaving_;

@@ -1,4 +1,4 @@
-// The qualities that pictures are sent in, and which one suits a peer's link.
+// The qualities that snapshots are sent in, and which one suits a peer's link.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@ namespace slosh {
 struct Tier {
   double tolerance = 0.001;  ///< m
   bool shell_only = false;
-  unsigned every = 1;  ///< takes every n-th picture of the host's 60 a second
+  unsigned every = 1;  ///< takes every n-th snapshot of the host's 60 a second
   const char* words = "";
 };
 constexpr std::array kTiers{
@@ -19,7 +19,7 @@ constexpr std::array kTiers{
     Tier{0.002, true, 4, "what is seen, 2 mm, 15 Hz"},   Tier{0.004, true, 8, "what is seen, 4 mm, 7.5 Hz"},
 };
 constexpr int kTierCount = static_cast<int>(kTiers.size());
-constexpr double kTierPictureRate = 60.0;  ///< Hz of simulated time
+constexpr double kTierSnapshotRate = 60.0;  ///< Hz of simulated time
 constexpr int kAllParticles = 0;
 constexpr int kShell = 2;
 

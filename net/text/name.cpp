@@ -105,8 +105,8 @@ bool is_mark(UChar32 code) {
   return (U_GET_GC_MASK(code) & U_GC_M_MASK) != 0;
 }
 
-/// Emoji and the like; frames, blanks and blocks, of which pictures of a screen can be made, are not.
-bool is_picture(UChar32 code) {
+/// Emoji and the like; frames, blanks and blocks, of which images of a screen can be made, are not.
+bool is_pictograph(UChar32 code) {
   if ((U_GET_GC_MASK(code) & (U_GC_SO_MASK | U_GC_SK_MASK)) == 0) return false;
   return code >= 0x1F000 || (code >= 0x2600 && code < 0x2800);
 }
@@ -114,7 +114,7 @@ bool is_picture(UChar32 code) {
 /// What stands in a name for a character: the character, one like it, or a space.
 UChar32 in_name(UChar32 code) {
   const std::uint32_t category = U_GET_GC_MASK(code);
-  if ((category & (U_GC_L_MASK | U_GC_M_MASK | U_GC_N_MASK)) != 0 || is_picture(code)) return code;
+  if ((category & (U_GC_L_MASK | U_GC_M_MASK | U_GC_N_MASK)) != 0 || is_pictograph(code)) return code;
   if ((category & U_GC_PD_MASK) != 0) return '-';
   if (code == '\'' || code == 0x2019 || code == 0x2018) return '\'';
   if (code == '.' || code == '_') return code;
@@ -165,7 +165,7 @@ bool is_notice_word(const std::string& word) {
 bool is_letter_or_digit(const std::string& word) {
   bool any = false;
   each_code_point(to_utf16(word), [&](UChar32 code, std::u16string_view) {
-    any = any || (U_GET_GC_MASK(code) & (U_GC_L_MASK | U_GC_N_MASK)) != 0 || is_picture(code);
+    any = any || (U_GET_GC_MASK(code) & (U_GC_L_MASK | U_GC_N_MASK)) != 0 || is_pictograph(code);
   });
   return any;
 }

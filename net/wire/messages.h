@@ -86,13 +86,13 @@ constexpr std::array kRoleNames{"participant", "spectator"};
 constexpr std::uint64_t kRoles = kRoleNames.size();
 
 /// What a peer wants of the particles.
-enum class PictureWish : std::uint8_t {
+enum class SnapshotWish : std::uint8_t {
   kNewest,  ///< for a window
-  kFilm,    ///< every picture
+  kFilm,    ///< every snapshot
   kNone,    ///< it draws nothing: bodies alone
 };
-constexpr std::array kPictureWishNames{"the newest", "all, for a film", "none"};
-constexpr std::uint64_t kPictureWishes = kPictureWishNames.size();
+constexpr std::array kSnapshotWishNames{"the newest", "all, for a film", "none"};
+constexpr std::uint64_t kSnapshotWishes = kSnapshotWishNames.size();
 
 constexpr std::size_t kMaxLater = 1024;  ///< bytes of what a newer peer adds to its Hello
 
@@ -102,7 +102,7 @@ struct Hello {
   std::uint32_t version = kProtocolVersion;
   Token token{};
   std::string name;  ///< how others see this person; empty = the host chooses
-  PictureWish pictures = PictureWish::kNewest;
+  SnapshotWish snapshots = SnapshotWish::kNewest;
   Capabilities capabilities = kOurCapabilities;  ///< bits that are not known are left out of account
   Bytes later;  ///< fields of capabilities that this version does not know; skipped
 };
@@ -111,7 +111,7 @@ void visit(V& v, Hello& m) {
   v.natural("version", m.version, 0, 0xffff);
   v.array("token", m.token);
   v.text("name", m.name, kMaxName);
-  v.choice("pictures", m.pictures, kPictureWishNames);
+  v.choice("snapshots", m.snapshots, kSnapshotWishNames);
   v.bits64("capabilities", m.capabilities);
   v.bytes("later", m.later, 0, kMaxLater);
 }
@@ -189,7 +189,7 @@ struct Welcome {
   std::uint64_t particles = 0;                   ///< fluid particles at the start
   double spacing = 0.01;                         ///< m between particles
   double time_step = 0.001;                      ///< s, a tick's length
-  double picture_rate = 0.0;                     ///< snapshots a second that the host can send at most
+  double snapshot_rate = 0.0;                     ///< snapshots a second that the host can send at most
   bool restored = false;                         ///< a seat of the last minute was given back with its grips
   Capabilities capabilities = kOurCapabilities;  ///< agreed: the host's, of those that Hello named
 };
@@ -203,7 +203,7 @@ void visit(V& v, Welcome& m) {
   v.natural("particles", m.particles, 0, 100'000'000);
   v.real64("spacing", m.spacing, 1e-5, 10.0);
   v.real64("time_step", m.time_step, 1e-7, 1.0);
-  v.real64("picture_rate", m.picture_rate, 0.0, 1000.0);
+  v.real64("snapshot_rate", m.snapshot_rate, 0.0, 1000.0);
   v.flag("restored", m.restored);
   v.bits64("capabilities", m.capabilities);
 }

@@ -48,9 +48,9 @@ void RemoteLink::say_hello() {
   wire::Hello hello;
   hello.token = options_.token;
   hello.name = options_.name;
-  hello.pictures = !options_.pictures.wanted ? wire::PictureWish::kNone
-                   : options_.pictures.film  ? wire::PictureWish::kFilm
-                                             : wire::PictureWish::kNewest;
+  hello.snapshots = !options_.snapshots.wanted ? wire::SnapshotWish::kNone
+                   : options_.snapshots.film  ? wire::SnapshotWish::kFilm
+                                             : wire::SnapshotWish::kNewest;
   say(hello);
 }
 
@@ -203,10 +203,10 @@ void RemoteLink::build_world() {
   inbox_ = std::make_unique<BodyInbox>(world_.scene, time_step);
   inbox_->set_paused(status_.world.paused);
   world_.channel =
-      std::make_unique<Channel>(world_.scene.grips.size(), inbox_->state(), options_.picture_bytes);
-  PictureMakerOptions pictures = options_.pictures;
-  pictures.has_fluid = status_.welcome.particles > 0 && pictures.wanted;
-  world_.maker = std::make_unique<PictureMaker>(pictures, world_.channel->pictures());
+      std::make_unique<Channel>(world_.scene.grips.size(), inbox_->state(), options_.snapshot_bytes);
+  SnapshotMakerOptions snapshots = options_.snapshots;
+  snapshots.has_fluid = status_.welcome.particles > 0 && snapshots.wanted;
+  world_.maker = std::make_unique<SnapshotMaker>(snapshots, world_.channel->snapshots());
   world_.maker->note_clock(clock_);
   uplink_ = std::make_unique<PoseUplink>(*world_.channel);
   status_.held.assign(world_.scene.grips.size(), false);

@@ -19,7 +19,7 @@
 #include "peer/remote/body_inbox.h"
 #include "peer/remote/clock_sync.h"
 #include "peer/remote/link_steps.h"
-#include "peer/remote/picture_maker.h"
+#include "peer/remote/snapshot_maker.h"
 #include "peer/remote/pose_uplink.h"
 #include "peer/remote/remote_status.h"
 #include "scenes/scene.h"
@@ -36,8 +36,8 @@ struct RemoteOptions {
   std::string address;             ///< for messages: where the host is
   bool wants_grip = true;          ///< false: only looks on
   std::vector<std::string> grips;  ///< names or numbers; empty = the first free one
-  PictureMakerOptions pictures;
-  std::size_t picture_bytes = std::size_t{512} << 20;
+  SnapshotMakerOptions snapshots;
+  std::size_t snapshot_bytes = std::size_t{512} << 20;
   double answer_within = 5.0;                   ///< s for the first answer
   double patience = 300.0;                      ///< s of trying to come back
   std::function<std::int64_t()> now = nullptr;  ///< a test's clock; null = the steady clock
@@ -48,7 +48,7 @@ struct RemoteWorld {
   Scene scene;
   double spacing = 0.0;  ///< m
   std::unique_ptr<Channel> channel;
-  std::unique_ptr<PictureMaker> maker;
+  std::unique_ptr<SnapshotMaker> maker;
 };
 
 /// One thread calls turn() again and again; RemoteVisit is that thread. Writes channel.bodies(), reads

@@ -18,7 +18,7 @@ namespace slosh {
 enum class LinkState {
   kConnecting,    ///< nobody answered yet
   kJoining,       ///< the host answered; the scene is on its way
-  kLive,          ///< bodies and pictures come
+  kLive,          ///< bodies and snapshots come
   kReconnecting,  ///< contact was lost; tried again and again
   kEnded,
 };

@@ -1,4 +1,4 @@
-// A remote world as the rest of a peer sees it: a scene, a channel, pictures, and who is here.
+// A remote world as the rest of a peer sees it: a scene, a channel, snapshots, and who is here.
 #pragma once
 
 #include <atomic>

@@ -86,7 +86,7 @@ void print_summary(const HostedRun& run, const HostReport& report, const ServerF
                 100.0 * static_cast<double>(figures.samples_received) /
                     static_cast<double>(figures.samples_expected));
   }
-  std::printf("pictures   %s sent, %s withheld from links that were full; %.1f s of coding\n",
+  std::printf("snapshots  %s sent, %s withheld from links that were full; %.1f s of coding\n",
               grouped(figures.frames_sent).c_str(), grouped(figures.frames_withheld).c_str(),
               run.coding_seconds());
   std::printf("network    %.1f MB sent, %.1f s of processor time\n",

@@ -14,7 +14,7 @@
 namespace slosh {
 namespace {
 
-constexpr std::size_t kPictureBytes = std::size_t{256} << 20;
+constexpr std::size_t kSnapshotBytes = std::size_t{256} << 20;
 constexpr std::uint16_t kPort = 4433;
 constexpr std::size_t kSpareHands = 4;   // participants beyond one a grip
 constexpr std::size_t kStrangers = 128;  // connections that nobody was let in by
@@ -39,7 +39,7 @@ Result<std::unique_ptr<HostedRun>> HostedRun::create(HostedWorld& hosted, const 
     s.identity_ = std::move(kept.value());
   }
   s.channel_ = std::make_unique<Channel>(scene.grips.size(), initial_message(*hosted.world, hosted.state.run),
-                                         kPictureBytes);
+                                         kSnapshotBytes);
   const Result<bool> network = s.open_network();
   if (!network) return network.error();
   s.make_links();
@@ -47,7 +47,7 @@ Result<std::unique_ptr<HostedRun>> HostedRun::create(HostedWorld& hosted, const 
   if (!files) return files.error();
 
   HostOptions host;
-  host.picture_rate = kTierPictureRate;
+  host.snapshot_rate = kTierSnapshotRate;
   host.demand = &s.demand_;
   host.until = hosted.prepared.seconds;
   host.shell = true;
@@ -213,8 +213,8 @@ HostedRun::~HostedRun() {
 }
 
 void HostedRun::start() {
-  pictures_ =
-      std::make_unique<PictureThread>(channel_->pictures(), desk_, demand_, hosted_.prepared.sampled.spacing,
+  snapshots_ =
+      std::make_unique<SnapshotThread>(channel_->snapshots(), desk_, demand_, hosted_.prepared.sampled.spacing,
                                       hosted_.state.run, [this] { server_->mailbox().wake(); });
   net_->start();
   host_->start();
@@ -228,9 +228,9 @@ void HostedRun::stop(const std::string& why) {
     host_->request_stop();
     host_->wait();
   }
-  if (channel_) channel_->pictures().close();  // also when the host never started
-  if (pictures_) coding_seconds_ = pictures_->seconds();
-  pictures_.reset();
+  if (channel_) channel_->snapshots().close();  // also when the host never started
+  if (snapshots_) coding_seconds_ = snapshots_->seconds();
+  snapshots_.reset();
   save_server_state();
   if (checkpoint_) checkpoint_->flush();
   if (recording_) recording_report_ = recording_->finish();

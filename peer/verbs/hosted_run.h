@@ -13,7 +13,7 @@
 #include "host/keep/recording.h"
 #include "host/server/console_door.h"
 #include "host/server/net_loop.h"
-#include "host/server/pictures.h"
+#include "host/server/snapshot_coder.h"
 #include "peer/verbs/host_world.h"
 
 namespace slosh {
@@ -74,14 +74,14 @@ class HostedRun {
 
   // In the order in which they are needed; ended in the opposite one.
   std::unique_ptr<Channel> channel_;
-  PictureDemand demand_;
-  PictureDesk desk_;
+  SnapshotDemand demand_;
+  SnapshotDesk desk_;
   std::unique_ptr<Server> server_;
   std::unique_ptr<Endpoint> endpoint_;
   std::unique_ptr<keep::CheckpointWriter> checkpoint_;
   std::unique_ptr<keep::RecordingWriter> recording_;
   std::unique_ptr<Host> host_;
-  std::unique_ptr<PictureThread> pictures_;
+  std::unique_ptr<SnapshotThread> snapshots_;
   std::unique_ptr<NetLoop> net_;
   std::unique_ptr<ConsoleDoor> door_;
   keep::RecordingReport recording_report_;

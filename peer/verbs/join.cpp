@@ -128,9 +128,9 @@ int join(JoinOptions options) {
   }
   remote.wants_grip = !options.watch;
   remote.grips = options.grips;
-  remote.pictures.wanted = options.render;
-  remote.pictures.film = headless && options.render;
-  remote.pictures.frames_per_second = options.frames_per_second;
+  remote.snapshots.wanted = options.render;
+  remote.snapshots.film = headless && options.render;
+  remote.snapshots.frames_per_second = options.frames_per_second;
   progress.phase("joining", remote.address);
   RemoteVisit visit(remote, connect_by(link.value(), key.value().identity));
   const Result<bool> came = wait_for_world(visit, progress);

@@ -12,7 +12,7 @@
 namespace slosh {
 
 /// What the film and the window need of a run. Made, started and ended by one thread, which is also the one
-/// that calls everything here; pictures() and rates() may be read by a viewer's thread as well.
+/// that calls everything here; snapshots() and rates() may be read by a viewer's thread as well.
 class LiveRun {
  public:
   virtual ~LiveRun() = default;
@@ -24,10 +24,10 @@ class LiveRun {
   /// Ends the world's side, then the device loop, then the recording. May be called again.
   virtual void stop() = 0;
 
-  /// Every picture in order, for a film; closed when there are no more.
-  virtual SnapshotQueue& pictures() = 0;
+  /// Every snapshot in order, for a film; closed when there are no more.
+  virtual SnapshotQueue& snapshots() = 0;
   /// What to show now, for a window; null = what is on show already.
-  virtual SnapshotPointer newest_picture() = 0;
+  virtual SnapshotPointer newest_snapshot() = 0;
 
   virtual HudFacts facts(double picture_rate) const = 0;
   /// What is known right now; also written to the rate log.

@@ -9,7 +9,7 @@ namespace slosh {
 namespace {
 
 constexpr double kSettle = 1.0;  // simulated s
-constexpr std::size_t kPictureBytes = std::size_t{512} << 20;
+constexpr std::size_t kSnapshotBytes = std::size_t{512} << 20;
 
 Spread spread_of(const Histogram& histogram, double unit) {
   return {histogram.percentile(0.5) * unit, histogram.percentile(0.99) * unit, histogram.max() * unit};
@@ -18,7 +18,7 @@ Spread spread_of(const Histogram& histogram, double unit) {
 }  // namespace
 
 Result<std::unique_ptr<LocalRun>> LocalRun::create(const Prepared& prepared, DeviceSet devices,
-                                                 double picture_rate, Progress* progress) {
+                                                 double snapshot_rate, Progress* progress) {
   std::unique_ptr<LocalRun> run(new LocalRun(prepared));
   for (const std::unique_ptr<Device>& device : devices.devices) {
     const Result<bool> opened = open_device(*device);
@@ -41,9 +41,9 @@ Result<std::unique_ptr<LocalRun>> LocalRun::create(const Prepared& prepared, Dev
     if (!agreed) return agreed.error();
   }
   world.settle(kSettle, hands);
-  run->channel_ = std::make_unique<Channel>(scene.grips.size(), initial_message(world), kPictureBytes);
+  run->channel_ = std::make_unique<Channel>(scene.grips.size(), initial_message(world), kSnapshotBytes);
   HostOptions options;
-  options.picture_rate = picture_rate;
+  options.snapshot_rate = snapshot_rate;
   options.until = prepared.seconds;
   options.paced = !prepared.unpaced;
   run->host_ = std::make_unique<Host>(std::move(world), scene, *run->channel_, options);

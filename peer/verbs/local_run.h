@@ -20,11 +20,11 @@ namespace slosh {
 /// Made, started and ended by one thread. `prepared` must outlive it.
 class LocalRun final : public LiveRun {
  public:
-  /// `picture_rate` as in HostOptions. `progress` is told where it is going to take long (agree_on_time);
+  /// `snapshot_rate` as in HostOptions. `progress` is told where it is going to take long (agree_on_time);
   /// null where that was told already. Errors: a device cannot be opened, a file cannot be written, it takes
   /// too long.
   static Result<std::unique_ptr<LocalRun>> create(const Prepared& prepared, DeviceSet devices,
-                                                 double picture_rate, Progress* progress);
+                                                 double snapshot_rate, Progress* progress);
   ~LocalRun() override;
   LocalRun(const LocalRun&) = delete;
   LocalRun& operator=(const LocalRun&) = delete;
@@ -36,8 +36,8 @@ class LocalRun final : public LiveRun {
   }
   bool running() override { return host_->running(); }
   void stop() override;
-  SnapshotQueue& pictures() override { return channel_->pictures(); }
-  SnapshotPointer newest_picture() override { return channel_->pictures().pop_newest(); }
+  SnapshotQueue& snapshots() override { return channel_->snapshots(); }
+  SnapshotPointer newest_snapshot() override { return channel_->snapshots().pop_newest(); }
   HudFacts facts(double picture_rate) const override;
   Rates note_rates() override;
   RateLog& rates() override { return rates_; }

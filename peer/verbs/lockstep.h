@@ -12,7 +12,7 @@
 namespace slosh {
 
 /// In place of a DeviceLoop. The host's clock is simulated then (HostOptions::paced), so a run is the same
-/// again to the bit, whatever the machine does. Waits for who draws, so that no picture is lost.
+/// again to the bit, whatever the machine does. Waits for who draws, so that no snapshot is lost.
 class Lockstep final : public HostTap {
  public:
   /// Both must outlive it.
@@ -21,14 +21,14 @@ class Lockstep final : public HostTap {
   /// Bodies are in the channel: the hands answer before the next step.
   void after_publish() override {
     servo_.tick_with_world();
-    while (channel_.pictures().waiting() >= kPicturesAhead && !stop_.load(std::memory_order_relaxed))
+    while (channel_.snapshots().waiting() >= kSnapshotsAhead && !stop_.load(std::memory_order_relaxed))
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   /// Any thread: nobody is waited for any more.
   void request_stop() { stop_.store(true, std::memory_order_relaxed); }
 
  private:
-  static constexpr std::size_t kPicturesAhead = 30;
+  static constexpr std::size_t kSnapshotsAhead = 30;
 
   Servo& servo_;
   Channel& channel_;

@@ -76,10 +76,10 @@ Result<bool> show_headless(const Stage& stage, LiveRun& run, const ShowOptions& 
     view_options.frames_per_second = options.frames_per_second;
     view_options.folder = stage.folder;
     Result<std::unique_ptr<HeadlessView>> started = HeadlessView::start(
-        stage.scene, run.facts(options.frames_per_second), run.pictures(), run.rates(), view_options);
+        stage.scene, run.facts(options.frames_per_second), run.snapshots(), run.rates(), view_options);
     if (!started) {
       Error error = started.error();
-      run.pictures().close();
+      run.snapshots().close();
       error.mend += error.mend.empty() ? "Or run with --no-render" : "; or run with --no-render";
       return error;
     }
@@ -111,15 +111,15 @@ Result<bool> show_headless(const Stage& stage, LiveRun& run, const ShowOptions& 
     progress.phase("encoding");
     while (!view->finished()) {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
-      const double all = static_cast<double>(view->frames_done() + run.pictures().waiting());
-      const std::string left = std::to_string(run.pictures().waiting()) + " pictures left";
+      const double all = static_cast<double>(view->frames_done() + run.snapshots().waiting());
+      const std::string left = std::to_string(run.snapshots().waiting()) + " pictures left";
       progress.update(all > 0.0 ? static_cast<double>(view->frames_done()) / all : 0.0, left);
     }
     view->wait();
   }
   run.report(summary);
   if (view) {
-    fill_view(summary, *view, view_options, run.pictures().dropped());
+    fill_view(summary, *view, view_options, run.snapshots().dropped());
   }
   return true;
 }
@@ -129,9 +129,9 @@ Result<bool> play_headless(const Prepared& prepared, const PlayOptions& options,
   Result<DeviceSet> devices = make_devices(prepared.scene, options.devices, false);
   if (!devices) return devices.error();
   progress.phase("settling");
-  const double picture_rate = options.render ? options.frames_per_second : 0.0;
+  const double snapshot_rate = options.render ? options.frames_per_second : 0.0;
   Result<std::unique_ptr<LocalRun>> created =
-      LocalRun::create(prepared, std::move(devices.value()), picture_rate, &progress);
+      LocalRun::create(prepared, std::move(devices.value()), snapshot_rate, &progress);
   if (!created) return created.error();
   catch_interrupts();
   return show_headless(prepared, *created.value(), options, progress, summary);

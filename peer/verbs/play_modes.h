@@ -13,7 +13,7 @@
 namespace slosh {
 
 /// Snapshots a second that a window asks for, for a smooth picture.
-constexpr double kWindowPictureRate = 60.0;
+constexpr double kWindowSnapshotRate = 60.0;
 
 /// Starts `run`, films it to its end and fills `summary`. Errors: no renderer, no file.
 Result<bool> show_headless(const Stage& stage, LiveRun& run, const ShowOptions& options, Progress& progress,

@@ -76,7 +76,7 @@ class WindowRun {
         context_(context),
         renderer_(renderer),
         film_(film),
-        painter_(stage.scene, run.facts(kWindowPictureRate), renderer) {
+        painter_(stage.scene, run.facts(kWindowSnapshotRate), renderer) {
     hands_.resize(stage.scene.grips.size());
   }
 
@@ -93,7 +93,7 @@ class WindowRun {
       handle(input);
       hear_lines(run_, typed ? &*typed : nullptr, progress);
       trouble.tell(run_, progress);
-      if (SnapshotPointer newest = run_.newest_picture()) {
+      if (SnapshotPointer newest = run_.newest_snapshot()) {
         snapshot = std::move(newest);
         painter_.record(*snapshot);
       }
@@ -211,7 +211,7 @@ Result<bool> play_in_window(const Prepared& prepared, const PlayOptions& options
     Result<DeviceSet> devices = make_devices(prepared.scene, options.devices, true);
     if (!devices) return devices.error();
     Result<std::unique_ptr<LocalRun>> run =
-        LocalRun::create(prepared, std::move(devices.value()), kWindowPictureRate, told ? nullptr : &progress);
+        LocalRun::create(prepared, std::move(devices.value()), kWindowSnapshotRate, told ? nullptr : &progress);
     if (!run) return run.error();
     told = true;
     catch_interrupts();

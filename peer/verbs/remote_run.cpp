@@ -59,10 +59,10 @@ bool RemoteRun::running() {
   return !stopping_ && status_.state != LinkState::kEnded && elapsed_ < stage_.seconds;
 }
 
-SnapshotPointer RemoteRun::newest_picture() {
-  SnapshotPointer picture = visit_.world().maker->newest(steady_now_ns());
-  if (picture) last_picture_ = picture;
-  return picture;
+SnapshotPointer RemoteRun::newest_snapshot() {
+  SnapshotPointer snapshot = visit_.world().maker->newest(steady_now_ns());
+  if (snapshot) last_snapshot_ = snapshot;
+  return snapshot;
 }
 
 HudFacts RemoteRun::facts(double picture_rate) const {
@@ -122,7 +122,7 @@ Result<bool> RemoteRun::follow_grips() {
     const std::string spec = specs.empty() ? "script" : specs[std::min(grips_taken_, specs.size() - 1)];
     grips_taken_ += 1;
     Pose start = grip_start(stage_.scene, i);
-    if (last_picture_ && i < last_picture_->rigid.grips.size()) start = last_picture_->rigid.grips[i].pose;
+    if (last_snapshot_ && i < last_snapshot_->rigid.grips.size()) start = last_snapshot_->rigid.grips[i].pose;
     Result<HandDevice> made = make_device(stage_.scene, i, spec, start, options_.has_window);
     if (made) {
       const Result<bool> opened = open_device(*made.value().device);
@@ -178,7 +178,7 @@ std::string RemoteRun::hear(const std::string& line) {
 void RemoteRun::report(RunSummary& s) const {
   const RemoteStatus status = visit_.status();
   const LinkNumbers& numbers = status.numbers;
-  const PictureReport pictures = visit_.world().maker->report();
+  const SnapshotReport shown = visit_.world().maker->report();
   s.scene = stage_.scene.name;
   s.spacing = visit_.world().spacing;
   s.spacing_reason = "the host's";
@@ -218,25 +218,25 @@ void RemoteRun::report(RunSummary& s) const {
   n.send_loss = numbers.send_loss;
   n.clock_error = numbers.clock_error;
   n.hand_delay = numbers.body_delay;
-  n.picture_delay = pictures.delay;
-  n.age_ms = {1e3 * pictures.age.percentile(0.5), 1e3 * pictures.age.percentile(0.99),
-              1e3 * pictures.age.max()};
+  n.picture_delay = shown.delay;
+  n.age_ms = {1e3 * shown.age.percentile(0.5), 1e3 * shown.age.percentile(0.99),
+              1e3 * shown.age.max()};
   n.bytes_received = numbers.bytes_received;
   n.bytes_sent = numbers.bytes_sent;
   n.seconds = to_seconds(stop_ns_ - options_.begin_ns);
   n.poses_sent = numbers.poses;
   n.states = numbers.bodies.states;
   n.states_incomplete = numbers.bodies.incomplete;
-  n.snapshots = pictures.frames;
-  n.snapshots_partial = pictures.frames - pictures.whole;
-  n.pieces_refused = pictures.refused;
+  n.snapshots = shown.frames;
+  n.snapshots_partial = shown.frames - shown.whole;
+  n.pieces_refused = shown.refused;
   n.datagrams_refused = numbers.bad_datagrams;
   n.reconnects = numbers.reconnects;
   n.to_live = to_seconds(status.live_ns - options_.begin_ns);
   n.to_first_picture =
-      pictures.first_picture_ns == 0 ? 0.0 : to_seconds(pictures.first_picture_ns - options_.begin_ns);
-  n.first_picture_time = pictures.first_picture_time;
-  n.last_picture_time = pictures.last_picture_time;
+      shown.first_shown_ns == 0 ? 0.0 : to_seconds(shown.first_shown_ns - options_.begin_ns);
+  n.first_picture_time = shown.first_shown_time;
+  n.last_picture_time = shown.last_shown_time;
   n.ended = status.error ? status.error->text() : status.farewell;
   s.network = n;
 }

@@ -36,8 +36,8 @@ class RemoteRun final : public LiveRun {
   void request_stop() override { stopping_ = true; }
   bool running() override;
   void stop() override;
-  SnapshotQueue& pictures() override { return visit_.world().channel->pictures(); }
-  SnapshotPointer newest_picture() override;
+  SnapshotQueue& snapshots() override { return visit_.world().channel->snapshots(); }
+  SnapshotPointer newest_snapshot() override;
   HudFacts facts(double picture_rate) const override;
   Rates note_rates() override;
   RateLog& rates() override { return rates_; }
@@ -68,7 +68,7 @@ class RemoteRun final : public LiveRun {
   std::vector<std::shared_ptr<MouseTarget>> mice_;
   std::vector<bool> device_on_;  // grips that have a device now
   std::size_t grips_taken_ = 0;  // ever
-  SnapshotPointer last_picture_;
+  SnapshotPointer last_snapshot_;
   std::vector<std::string> grip_names_;
   double elapsed_ = 0.0;    // simulated s since the start
   double last_time_ = 0.0;  // simulated s, the furthest of this run

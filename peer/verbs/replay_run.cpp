@@ -10,21 +10,21 @@
 namespace slosh {
 namespace {
 
-constexpr std::size_t kPictureBytes = std::size_t{256} << 20;
-constexpr std::size_t kPicturesAhead = 30;  // then the simulation waits for who draws
+constexpr std::size_t kSnapshotBytes = std::size_t{256} << 20;
+constexpr std::size_t kSnapshotsAhead = 30;  // then the simulation waits for who draws
 constexpr double kSampleInterval = 0.002;   // simulated s, as a live run's
 
 }  // namespace
 
-ReplayRun::ReplayRun(keep::Replayer& replayer, const Stage& stage, double picture_rate)
-    : replayer_(replayer), stage_(stage), picture_rate_(picture_rate), pictures_(kPictureBytes) {
+ReplayRun::ReplayRun(keep::Replayer& replayer, const Stage& stage, double snapshot_rate)
+    : replayer_(replayer), stage_(stage), snapshot_rate_(snapshot_rate), snapshots_(kSnapshotBytes) {
   for (const Grip& grip : stage.scene.grips) peaks_.push_back({grip.name, "recorded", 0.0, 0.0});
   start_mass_ = replayer.world().diagnostics().mass;
 }
 
 Result<std::unique_ptr<ReplayRun>> ReplayRun::create(keep::Replayer& replayer, const Stage& stage,
-                                                     double picture_rate) {
-  std::unique_ptr<ReplayRun> run(new ReplayRun(replayer, stage, picture_rate));
+                                                     double snapshot_rate) {
+  std::unique_ptr<ReplayRun> run(new ReplayRun(replayer, stage, snapshot_rate));
   if (stage.folder.empty()) return run;
   Result<std::unique_ptr<Table>> wrenches = Table::create(stage.folder / "wrenches.csv", kWrenchesHeader);
   if (!wrenches) return wrenches.error();
@@ -50,19 +50,19 @@ void ReplayRun::start() {
 void ReplayRun::stop() {
   request_stop();
   if (thread_.joinable()) thread_.join();
-  pictures_.close();
+  snapshots_.close();
 }
 
 void ReplayRun::show() {
   const double half_step = 0.5 * replayer_.world().plan().time_step;
-  if (picture_rate_ <= 0.0 || replayer_.elapsed() + half_step < next_picture_) return;
-  while (pictures_.waiting() >= kPicturesAhead && !stop_.load(std::memory_order_relaxed)) {
+  if (snapshot_rate_ <= 0.0 || replayer_.elapsed() + half_step < next_snapshot_) return;
+  while (snapshots_.waiting() >= kSnapshotsAhead && !stop_.load(std::memory_order_relaxed)) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   auto snapshot = std::make_shared<Snapshot>();
   replayer_.world().fill(*snapshot);
-  pictures_.push(std::move(snapshot));
-  next_picture_ += 1.0 / picture_rate_;
+  snapshots_.push(std::move(snapshot));
+  next_snapshot_ += 1.0 / snapshot_rate_;
 }
 
 void ReplayRun::write_samples() {
@@ -112,7 +112,7 @@ void ReplayRun::run() {
   }
   if (wrenches_) wrenches_->flush();
   if (measurer_) measurer_->stop();
-  pictures_.close();
+  snapshots_.close();
   running_.store(false, std::memory_order_release);
 }
 

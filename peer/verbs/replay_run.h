@@ -16,18 +16,18 @@ namespace slosh {
 
 class ReplayRun final : public LiveRun {
  public:
-  /// `replayer` and `stage` must outlive it. `picture_rate` in pictures a simulated second, 0 = none. Errors:
+  /// `replayer` and `stage` must outlive it. `snapshot_rate` in snapshots a simulated second, 0 = none. Errors:
   /// a file cannot be written.
   static Result<std::unique_ptr<ReplayRun>> create(keep::Replayer& replayer, const Stage& stage,
-                                                   double picture_rate);
+                                                   double snapshot_rate);
   ~ReplayRun() override;
 
   void start() override;
   void request_stop() override { stop_.store(true, std::memory_order_relaxed); }
   bool running() override { return running_.load(std::memory_order_acquire); }
   void stop() override;
-  SnapshotQueue& pictures() override { return pictures_; }
-  SnapshotPointer newest_picture() override { return pictures_.pop_newest(); }
+  SnapshotQueue& snapshots() override { return snapshots_; }
+  SnapshotPointer newest_snapshot() override { return snapshots_.pop_newest(); }
   HudFacts facts(double picture_rate) const override;
   Rates note_rates() override;
   RateLog& rates() override { return rates_; }
@@ -40,19 +40,19 @@ class ReplayRun final : public LiveRun {
   const std::string& problem() const { return problem_; }
 
  private:
-  ReplayRun(keep::Replayer& replayer, const Stage& stage, double picture_rate);
+  ReplayRun(keep::Replayer& replayer, const Stage& stage, double snapshot_rate);
   void run();
   void show();
   void write_samples();
 
   keep::Replayer& replayer_;
   const Stage& stage_;
-  double picture_rate_;
-  SnapshotQueue pictures_;
+  double snapshot_rate_;
+  SnapshotQueue snapshots_;
   RateLog rates_;
   std::unique_ptr<Table> wrenches_;
   std::unique_ptr<Measurer> measurer_;  // null where nothing is measured
-  double next_picture_ = 0.0;           // s since the recording's start
+  double next_snapshot_ = 0.0;           // s since the recording's start
   double next_sample_ = 0.0;
   BodySnapshot bodies_;
   std::vector<DeviceSummary> peaks_;

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "host/server/net_loop.h"
-#include "host/server/pictures.h"
+#include "host/server/snapshot_coder.h"
 #include "net/clock.h"
 
 namespace slosh::bench {
@@ -29,25 +29,25 @@ inline Scene small_scene() {
   return scene;
 }
 
-/// Publishes bodies 540 times and pictures 60 times a second, as a host's thread does.
+/// Publishes bodies 540 times and snapshots 60 times a second, as a host's thread does.
 class ServedWorldThread {
  public:
   ServedWorldThread(Channel& channel, Mailbox& mailbox, std::size_t particles)
       : channel_(channel), mailbox_(mailbox), particles_(particles) {
-    for (int k = 0; k < kPhases; ++k) pictures_.push_back(picture(k));
+    for (int k = 0; k < kPhases; ++k) snapshots_.push_back(snapshot_of(k));
     thread_ = std::thread([this] { run(); });
   }
   ~ServedWorldThread() {
     stop_ = true;
     thread_.join();
-    channel_.pictures().close();
+    channel_.snapshots().close();
   }
 
  private:
   static constexpr int kPhases = 240;
 
   // A tank of particles, 10 mm apart, whose columns rise and fall in waves.
-  std::shared_ptr<Snapshot> picture(int phase) const {
+  std::shared_ptr<Snapshot> snapshot_of(int phase) const {
     auto snapshot = std::make_shared<Snapshot>();
     const int side = static_cast<int>(std::ceil(std::cbrt(static_cast<double>(particles_))));
     for (std::size_t i = 0; i < particles_; ++i) {
@@ -85,10 +85,10 @@ class ServedWorldThread {
       }
       channel_.bodies().publish();
       if (tick % 9 == 0) {
-        auto shown = std::make_shared<Snapshot>(*pictures_[tick / 9 % kPhases]);
+        auto shown = std::make_shared<Snapshot>(*snapshots_[tick / 9 % kPhases]);
         shown->rigid.tick = tick;
         shown->rigid.time = message.bodies.time;
-        channel_.pictures().push(std::move(shown));
+        channel_.snapshots().push(std::move(shown));
       }
       mailbox_.wake();
     }
@@ -97,7 +97,7 @@ class ServedWorldThread {
   Channel& channel_;
   Mailbox& mailbox_;
   std::size_t particles_;
-  std::vector<std::shared_ptr<Snapshot>> pictures_;
+  std::vector<std::shared_ptr<Snapshot>> snapshots_;
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };
@@ -132,7 +132,7 @@ class BenchHost {
     hold = server_->links().create(wire::Role::kParticipant, {}, 1)->token;
     watch = server_->links().create(wire::Role::kSpectator, {}, 1)->token;
     loop_ = std::make_unique<NetLoop>(*server_, *endpoint_);
-    pictures_ = std::make_unique<PictureThread>(channel_.pictures(), desk_, demand_, 0.01, 0,
+    snapshots_ = std::make_unique<SnapshotThread>(channel_.snapshots(), desk_, demand_, 0.01, 0,
                                                 [this] { server_->mailbox().wake(); });
     loop_->start();
     world_ = std::make_unique<ServedWorldThread>(channel_, server_->mailbox(), particles);
@@ -140,7 +140,7 @@ class BenchHost {
   ~BenchHost() {
     world_.reset();
     loop_->stop("the bench ends");
-    pictures_.reset();
+    snapshots_.reset();
   }
 
   NetLoop& loop() { return *loop_; }
@@ -152,13 +152,13 @@ class BenchHost {
  private:
   Scene scene_ = small_scene();
   Channel channel_;
-  PictureDemand demand_;
-  PictureDesk desk_;
+  SnapshotDemand demand_;
+  SnapshotDesk desk_;
   Identity identity_ = Identity::generate();
   std::unique_ptr<Server> server_;
   std::unique_ptr<Endpoint> endpoint_;
   std::unique_ptr<NetLoop> loop_;
-  std::unique_ptr<PictureThread> pictures_;
+  std::unique_ptr<SnapshotThread> snapshots_;
   std::unique_ptr<ServedWorldThread> world_;
 };
 

@@ -150,29 +150,29 @@ TEST(HostCommands, ARestoredWorldGoesOnAndResetsToItsOwnStart) {
   EXPECT_EQ(back->host.world().hash(), whole.host.world().hash());
 }
 
-/// A host that has pictures to show.
+/// A host that has snapshots to show.
 struct Shown {
-  PictureDemand demand;
+  SnapshotDemand demand;
   Channel channel;
   Host host;
   explicit Shown(HostOptions options)
       : channel(small_world().scene.grips.size(), initial_message(small_world().world(), 0), 64 << 20),
-        host(small_world().world(), small_world().scene, channel, with_pictures(std::move(options))) {}
-  HostOptions with_pictures(HostOptions options) {
+        host(small_world().world(), small_world().scene, channel, with_snapshots(std::move(options))) {}
+  HostOptions with_snapshots(HostOptions options) {
     options.demand = &demand;
     options.paced = false;
-    options.picture_rate = 60.0;
+    options.snapshot_rate = 60.0;
     options.shell = true;
     return options;
   }
   std::size_t drain() {
     std::size_t count = 0;
-    while (channel.pictures().pop(std::chrono::milliseconds(0))) count += 1;
+    while (channel.snapshots().pop(std::chrono::milliseconds(0))) count += 1;
     return count;
   }
 };
 
-TEST(HostPictures, AreMadeOnlyWhileSomebodyLooks) {
+TEST(HostSnapshots, AreMadeOnlyWhileSomebodyLooks) {
   Shown watched(until(1.0));
   watched.host.start();
   watched.host.wait();
@@ -182,14 +182,14 @@ TEST(HostPictures, AreMadeOnlyWhileSomebodyLooks) {
   alone.demand.want(false);
   alone.host.start();
   alone.host.wait();
-  EXPECT_EQ(alone.host.report().pictures, 1u) << "the first of the run";
+  EXPECT_EQ(alone.host.report().snapshots, 1u) << "the first of the run";
   EXPECT_EQ(alone.drain(), 1u);
-  std::printf("1 s: %llu pictures watched, %llu alone\n",
-              static_cast<unsigned long long>(watched.host.report().pictures),
-              static_cast<unsigned long long>(alone.host.report().pictures));
+  std::printf("1 s: %llu snapshots watched, %llu alone\n",
+              static_cast<unsigned long long>(watched.host.report().snapshots),
+              static_cast<unsigned long long>(alone.host.report().snapshots));
 }
 
-TEST(HostPictures, WhoBeginsToLookAtAStandingWorldSeesIt) {
+TEST(HostSnapshots, WhoBeginsToLookAtAStandingWorldSeesIt) {
   Shown rig(until(1e9));
   rig.demand.want(false);
   rig.host.start();
@@ -197,14 +197,14 @@ TEST(HostPictures, WhoBeginsToLookAtAStandingWorldSeesIt) {
   ASSERT_EQ(rig.drain(), 1u);
   const std::uint64_t tick = rig.host.progress().tick;
   rig.demand.want(true);
-  const SnapshotPointer seen = rig.channel.pictures().pop(std::chrono::seconds(20));
+  const SnapshotPointer seen = rig.channel.snapshots().pop(std::chrono::seconds(20));
   ASSERT_TRUE(seen);
   EXPECT_EQ(seen->rigid.tick, tick);
   rig.demand.want(true);
-  EXPECT_FALSE(rig.channel.pictures().pop(std::chrono::milliseconds(100))) << "once";
+  EXPECT_FALSE(rig.channel.snapshots().pop(std::chrono::milliseconds(100))) << "once";
   rig.demand.want(false);
   ASSERT_TRUE(rig.host.ask({HostAction::kReset}).get());
-  EXPECT_TRUE(rig.channel.pictures().pop(std::chrono::seconds(20))) << "each run begins with one";
+  EXPECT_TRUE(rig.channel.snapshots().pop(std::chrono::seconds(20))) << "each run begins with one";
   rig.host.request_stop();
   rig.host.wait();
 }

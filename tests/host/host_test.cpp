@@ -74,35 +74,35 @@ TEST_F(HostTest, RunsForTheTimeAskedAndReportsIt) {
   EXPECT_NEAR(report.diagnostics.mass, report.start_mass, 1e-6 * report.start_mass);
 }
 
-TEST_F(HostTest, PublishesPicturesAtTheRateOfSimulatedTime) {
+TEST_F(HostTest, PublishesSnapshotsAtTheRateOfSimulatedTime) {
   HostOptions options;
   options.until = 0.2;
-  options.picture_rate = 50.0;
+  options.snapshot_rate = 50.0;
   const auto r = rig(options);
   r->host.start();
   r->host.wait();
-  SnapshotQueue& pictures = r->channel.pictures();
+  SnapshotQueue& snapshots = r->channel.snapshots();
   double expected = 0.0;
   int count = 0;
-  while (SnapshotPointer picture = pictures.pop(std::chrono::milliseconds(0))) {
-    EXPECT_NEAR(picture->rigid.time, expected, plan.time_step);
-    EXPECT_EQ(picture->positions.size(), sampled.fluid_positions.size());
+  while (SnapshotPointer snapshot = snapshots.pop(std::chrono::milliseconds(0))) {
+    EXPECT_NEAR(snapshot->rigid.time, expected, plan.time_step);
+    EXPECT_EQ(snapshot->positions.size(), sampled.fluid_positions.size());
     expected += 0.02;
     count += 1;
   }
   EXPECT_EQ(count, 11);
-  EXPECT_TRUE(pictures.finished());
+  EXPECT_TRUE(snapshots.finished());
 }
 
-TEST_F(HostTest, PublishesNoPictureWithoutAViewer) {
+TEST_F(HostTest, PublishesNoSnapshotWithoutAViewer) {
   HostOptions options;
   options.until = 0.05;
-  options.picture_rate = 0.0;
+  options.snapshot_rate = 0.0;
   const auto r = rig(options);
   r->host.start();
   r->host.wait();
-  EXPECT_EQ(r->host.report().pictures, 0u);
-  EXPECT_TRUE(r->channel.pictures().finished());
+  EXPECT_EQ(r->host.report().snapshots, 0u);
+  EXPECT_TRUE(r->channel.snapshots().finished());
 }
 
 TEST_F(HostTest, PublishesTheBodiesAfterEveryTick) {

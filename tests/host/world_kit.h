@@ -81,7 +81,7 @@ struct Rig {
   }
   static HostOptions unpaced(HostOptions options) {
     options.paced = false;
-    options.picture_rate = 0.0;
+    options.snapshot_rate = 0.0;
     return options;
   }
 };

@@ -32,7 +32,7 @@ enum class Harm {
   kMoving,           ///< changes its address all the time
   kLongLength,       ///< a control message that never ends
   kStalled,          ///< comes in, then reads nothing
-  kFeedback,         ///< feedback about pictures that never were
+  kFeedback,         ///< feedback about snapshots that never were
   kLooksOnAndTakes,  ///< a watcher who asks for what only participants may do
   kWrongToken,
 };

@@ -11,7 +11,7 @@ namespace slosh::hostile {
 namespace {
 
 constexpr std::array<const char*, kTricks> kNames{
-    "states",        "everything", "pictures", "texts",   "stiff",   "bad welcome", "bad scene",
+    "states",        "everything", "snapshots", "texts",   "stiff",   "bad welcome", "bad scene",
     "endless scene", "noise",      "streams",  "silence", "refusal", "close"};
 constexpr double kSpacing = 0.01;
 
@@ -122,7 +122,7 @@ void EvilHost::greet(Guest& guest) {
   switch (guest.trick) {
     case Trick::kStates:
     case Trick::kEverything:
-    case Trick::kPictures:
+    case Trick::kSnapshots:
     case Trick::kTexts:
     case Trick::kStreams:
       return enter(guest, scene_);
@@ -203,7 +203,7 @@ void EvilHost::enter(Guest& guest, const Scene& scene) {
   welcome.particles = m.one_in(4) ? m.below(100'000'000) : 500;
   welcome.spacing = kSpacing;
   welcome.time_step = m.one_in(4) ? 1e-7 : kEvilStep;
-  welcome.picture_rate = 60.0;
+  welcome.snapshot_rate = 60.0;
   wire::RosterEntry entry;
   entry.name = "Ana";
   entry.role = welcome.role;

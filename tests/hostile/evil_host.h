@@ -17,7 +17,7 @@ namespace slosh::hostile {
 enum class Trick {
   kStates,        ///< comes in as with any host, then states of the world of any content, at any rate
   kEverything,    ///< the same, then everything a host may say, valid and damaged
-  kPictures,      ///< the same, then pieces of pictures, damaged
+  kSnapshots,      ///< the same, then pieces of snapshots, damaged
   kTexts,         ///< the same, then notices, names and a farewell with escapes
   kStiff,         ///< a scene whose grips are as stiff as they may be, and bodies that jump
   kBadWelcome,    ///< a Welcome, Roster or WorldInfo that is damaged
@@ -61,7 +61,7 @@ class EvilHost final : public EndpointEvents {
   void enter(Guest& guest, const Scene& scene);
   void harm(Guest& guest);
   void states(Guest& guest);
-  void pictures(Guest& guest);
+  void snapshots(Guest& guest);
   void leave(Guest& guest);
   void raw(Guest& guest, const wire::Bytes& bytes);
   void raw_datagram(Guest& guest, const wire::Bytes& bytes, Priority priority = Priority::kState);

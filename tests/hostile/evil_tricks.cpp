@@ -66,8 +66,8 @@ void EvilHost::harm(Guest& guest) {
       // One damaged control message ends it, so they are rare; any that is valid goes on.
       if (m.one_in(40)) raw(guest, m.control(wire::HostControl{}));
       return;
-    case Trick::kPictures:
-      return pictures(guest);
+    case Trick::kSnapshots:
+      return snapshots(guest);
     case Trick::kTexts:
       if (guest.turns % 20 != 0) return;
       switch (m.below(4)) {
@@ -93,7 +93,7 @@ void EvilHost::harm(Guest& guest) {
   }
 }
 
-void EvilHost::pictures(Guest& guest) {
+void EvilHost::snapshots(Guest& guest) {
   Mischief& m = *guest.mischief;
   if (guest.turns % 8 != 0) return;
   if (!guest.encoder) {

@@ -7,56 +7,56 @@
 namespace slosh {
 namespace {
 
-SnapshotPointer picture(std::size_t particles, double time = 0.0) {
+SnapshotPointer snapshot_of(std::size_t particles, double time = 0.0) {
   auto snapshot = std::make_shared<Snapshot>();
   snapshot->positions.resize(particles);
   snapshot->rigid.time = time;
   return snapshot;
 }
 
-TEST(SnapshotQueue, HandsPicturesOnInOrder) {
+TEST(SnapshotQueue, HandsSnapshotsOnInOrder) {
   SnapshotQueue queue(1 << 20);
-  for (int i = 0; i < 5; ++i) EXPECT_TRUE(queue.push(picture(10, i)));
+  for (int i = 0; i < 5; ++i) EXPECT_TRUE(queue.push(snapshot_of(10, i)));
   EXPECT_EQ(queue.waiting(), 5u);
   for (int i = 0; i < 5; ++i) EXPECT_EQ(queue.pop(std::chrono::milliseconds(0))->rigid.time, i);
   EXPECT_EQ(queue.pop(std::chrono::milliseconds(0)), nullptr);
 }
 
 TEST(SnapshotQueue, DropsWhatDoesNotFitAndCountsIt) {
-  const std::size_t one = size_in_bytes(*picture(1000));
+  const std::size_t one = size_in_bytes(*snapshot_of(1000));
   SnapshotQueue queue(2 * one);
-  EXPECT_TRUE(queue.push(picture(1000)));
-  EXPECT_TRUE(queue.push(picture(1000)));
-  EXPECT_FALSE(queue.push(picture(1000)));
+  EXPECT_TRUE(queue.push(snapshot_of(1000)));
+  EXPECT_TRUE(queue.push(snapshot_of(1000)));
+  EXPECT_FALSE(queue.push(snapshot_of(1000)));
   EXPECT_EQ(queue.dropped(), 1u);
   EXPECT_NE(queue.pop(std::chrono::milliseconds(0)), nullptr);
-  EXPECT_TRUE(queue.push(picture(1000))) << "room was made";
+  EXPECT_TRUE(queue.push(snapshot_of(1000))) << "room was made";
 }
 
-TEST(SnapshotQueue, APictureLargerThanTheBoundStillGetsThroughAlone) {
+TEST(SnapshotQueue, ASnapshotLargerThanTheBoundStillGetsThroughAlone) {
   SnapshotQueue queue(10);
-  EXPECT_TRUE(queue.push(picture(1000)));
-  EXPECT_FALSE(queue.push(picture(1)));
+  EXPECT_TRUE(queue.push(snapshot_of(1000)));
+  EXPECT_FALSE(queue.push(snapshot_of(1)));
 }
 
 TEST(SnapshotQueue, NewestThrowsTheOthersAway) {
   SnapshotQueue queue(1 << 20);
   EXPECT_EQ(queue.pop_newest(), nullptr);
-  for (int i = 0; i < 4; ++i) queue.push(picture(10, i));
+  for (int i = 0; i < 4; ++i) queue.push(snapshot_of(10, i));
   EXPECT_EQ(queue.pop_newest()->rigid.time, 3.0);
   EXPECT_EQ(queue.waiting(), 0u);
 }
 
-TEST(SnapshotQueue, ClosingWakesAWaitingReaderAfterTheLastPicture) {
+TEST(SnapshotQueue, ClosingWakesAWaitingReaderAfterTheLastSnapshot) {
   SnapshotQueue queue(1 << 20);
   std::thread writer([&] {
-    queue.push(picture(10, 1.0));
+    queue.push(snapshot_of(10, 1.0));
     queue.close();
   });
-  int pictures = 0;
-  while (!queue.finished()) pictures += queue.pop(std::chrono::milliseconds(10000)) != nullptr;
+  int snapshots = 0;
+  while (!queue.finished()) snapshots += queue.pop(std::chrono::milliseconds(10000)) != nullptr;
   writer.join();
-  EXPECT_EQ(pictures, 1);
+  EXPECT_EQ(snapshots, 1);
 }
 
 TEST(Channel, CarriesPosesUpAndBodiesDown) {

@@ -89,7 +89,7 @@ class RealServer {
   Identity identity = Identity::generate();
   Scene scene;
   Channel channel;
-  PictureDesk desk;
+  SnapshotDesk desk;
   std::unique_ptr<Server> server;
   std::unique_ptr<Endpoint> endpoint;
   wire::Token hold{};

@@ -58,8 +58,8 @@ void ScriptedPeer::raw_datagram(const wire::Bytes& bytes) {
   end->send_datagram(1, Priority::kPose, std::make_shared<const wire::Bytes>(bytes));
 }
 
-void ScriptedPeer::hello(const wire::Token& token, const std::string& name, wire::PictureWish pictures) {
-  say(wire::Hello{wire::kProtocolVersion, token, name, pictures, capabilities, later});
+void ScriptedPeer::hello(const wire::Token& token, const std::string& name, wire::SnapshotWish snapshots) {
+  say(wire::Hello{wire::kProtocolVersion, token, name, snapshots, capabilities, later});
 }
 
 void ScriptedPeer::pose(std::uint32_t grip, std::uint64_t number, double x, std::int64_t stamp_ns) {

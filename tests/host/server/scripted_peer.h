@@ -28,7 +28,7 @@ class ScriptedPeer final : public EndpointEvents {
       : end(connect(*this)) {}
 
   void hello(const wire::Token& token, const std::string& name = {},
-             wire::PictureWish pictures = wire::PictureWish::kNewest);
+             wire::SnapshotWish snapshots = wire::SnapshotWish::kNewest);
   template <class M>
   void say(const M& message) {
     raw(wire::control(message));
@@ -108,7 +108,7 @@ class ServedTest : public ::testing::Test {
   MemoryNetwork network;
   Scene scene;
   Channel channel;
-  PictureDesk desk;
+  SnapshotDesk desk;
   std::vector<HostCommand> commands;
   std::unique_ptr<Server> server;
   std::unique_ptr<Endpoint> endpoint;

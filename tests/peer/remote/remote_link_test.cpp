@@ -330,16 +330,16 @@ TEST(RemoteLink, ParametersAreAskedForAndTheAnswerIsTold) {
   EXPECT_EQ(both.notices().find("the viscosity of"), std::string::npos) << "it was not changed";
 }
 
-TEST(RemoteLink, WhoDrawsNothingAsksForNoPictures) {
-  for (const auto& [wanted, film, wish] : {std::tuple{true, false, wire::PictureWish::kNewest},
-                                           {true, true, wire::PictureWish::kFilm},
-                                           {false, false, wire::PictureWish::kNone}}) {
+TEST(RemoteLink, WhoDrawsNothingAsksForNoSnapshots) {
+  for (const auto& [wanted, film, wish] : {std::tuple{true, false, wire::SnapshotWish::kNewest},
+                                           {true, true, wire::SnapshotWish::kFilm},
+                                           {false, false, wire::SnapshotWish::kNone}}) {
     RemoteOptions options;
-    options.pictures.wanted = wanted;
-    options.pictures.film = film;
+    options.snapshots.wanted = wanted;
+    options.snapshots.film = film;
     Together both({}, options);
     ASSERT_TRUE(both.run_until(LinkState::kLive));
-    EXPECT_EQ(both.host.hellos[0].pictures, wish);
+    EXPECT_EQ(both.host.hellos[0].snapshots, wish);
   }
 }
 

@@ -119,7 +119,7 @@ class ScriptedHost final : public EndpointEvents {
     m.particles = 0;
     m.spacing = 0.01;
     m.time_step = kHostStep;
-    m.picture_rate = 60.0;
+    m.snapshot_rate = 60.0;
     say(m);
     say(roster);
     wire::WorldInfo info;

@@ -1,5 +1,5 @@
-// Pieces to pictures with the real codec: films, windows, gaps, two streams.
-#include "peer/remote/picture_maker.h"
+// Pieces to snapshots with the real codec: films, windows, gaps, two streams.
+#include "peer/remote/snapshot_maker.h"
 
 #include <gtest/gtest.h>
 
@@ -46,7 +46,7 @@ BodyMessage bodies(double time, std::uint32_t run = 0) {
 
 /// Offers frame k at time k / 60, but for those that `lost` names.
 template <class Lost>
-void play(PictureMaker& maker, SnapshotEncoder& encoder, const Drift& drift, int first, int last, Lost lost,
+void play(SnapshotMaker& maker, SnapshotEncoder& encoder, const Drift& drift, int first, int last, Lost lost,
           std::uint32_t run = 0) {
   for (int k = first; k <= last; ++k) {
     const double time = kFrame * (k - first) + kFrame * first * (run == 0 ? 1.0 : 0.0);
@@ -57,81 +57,81 @@ void play(PictureMaker& maker, SnapshotEncoder& encoder, const Drift& drift, int
   }
 }
 
-void expect_drift(const Snapshot& picture, const Drift& drift, float tolerance) {
-  const double time = picture.rigid.time;
-  ASSERT_EQ(picture.positions.size(), drift.side * drift.side * drift.side);
-  EXPECT_NEAR(picture.rigid.bodies[0].pose.position.x, 3.0 * time, 1e-9);
+void expect_drift(const Snapshot& snapshot, const Drift& drift, float tolerance) {
+  const double time = snapshot.rigid.time;
+  ASSERT_EQ(snapshot.positions.size(), drift.side * drift.side * drift.side);
+  EXPECT_NEAR(snapshot.rigid.bodies[0].pose.position.x, 3.0 * time, 1e-9);
   glm::dvec3 mean(0.0);
   glm::dvec3 truth(0.0);
   float off = 0.0f;  // m, at most
-  for (std::size_t i = 0; i < picture.positions.size(); ++i) {
-    mean += glm::dvec3(picture.positions[i]);
+  for (std::size_t i = 0; i < snapshot.positions.size(); ++i) {
+    mean += glm::dvec3(snapshot.positions[i]);
     truth += glm::dvec3(drift.place(i, time));
     // The drift takes every particle from its own place on the lattice: none is far from one.
-    const glm::vec3 start = picture.positions[i] - drift.place(0, time);
+    const glm::vec3 start = snapshot.positions[i] - drift.place(0, time);
     for (int axis = 0; axis < 3; ++axis) {
       const float cell = start[axis] / 0.01f;
       off = std::max(off, 0.01f * std::abs(cell - std::round(cell)));
     }
   }
   EXPECT_LT(off, tolerance) << time;
-  const double count = static_cast<double>(picture.positions.size());
+  const double count = static_cast<double>(snapshot.positions.size());
   EXPECT_LT(glm::length(mean - truth) / count, tolerance);
 }
 
 std::vector<SnapshotPointer> all(SnapshotQueue& queue) {
-  std::vector<SnapshotPointer> pictures;
-  while (SnapshotPointer picture = queue.pop(std::chrono::milliseconds(0))) pictures.push_back(picture);
-  return pictures;
+  std::vector<SnapshotPointer> snapshots;
+  while (SnapshotPointer snapshot = queue.pop(std::chrono::milliseconds(0))) snapshots.push_back(snapshot);
+  return snapshots;
 }
 
-TEST(PictureMaker, AFilmHasEachMomentOnceAndExactly) {
+TEST(SnapshotMaker, AFilmHasEachMomentOnceAndExactly) {
   const Drift drift;
   SnapshotQueue queue(std::size_t{1} << 30);
-  PictureMakerOptions options;
+  SnapshotMakerOptions options;
   options.film = true;
   options.frames_per_second = 25.0;  // no multiple of the snapshots' rate
-  PictureMaker maker(options, queue);
+  SnapshotMaker maker(options, queue);
   CodecOptions codec;
   codec.epoch_seconds = 0.5;  // several epochs
   SnapshotEncoder encoder(codec);
   play(maker, encoder, drift, 3, 123, [](int) { return false; });
   maker.finish();
-  const std::vector<SnapshotPointer> pictures = all(queue);
-  ASSERT_EQ(pictures.size(), 50u) << "2.05 s at 25 a second, from the first multiple at or after 0.05 s";
-  for (std::size_t i = 0; i < pictures.size(); ++i) {
-    EXPECT_NEAR(pictures[i]->rigid.time, (static_cast<double>(i) + 2.0) / 25.0, 1e-9);
-    expect_drift(*pictures[i], drift, 0.0021f);
+  const std::vector<SnapshotPointer> snapshots = all(queue);
+  ASSERT_EQ(snapshots.size(), 50u) << "2.05 s at 25 a second, from the first multiple at or after 0.05 s";
+  for (std::size_t i = 0; i < snapshots.size(); ++i) {
+    EXPECT_NEAR(snapshots[i]->rigid.time, (static_cast<double>(i) + 2.0) / 25.0, 1e-9);
+    expect_drift(*snapshots[i], drift, 0.0021f);
   }
   EXPECT_TRUE(queue.finished());
-  const PictureReport report = maker.report();
+  const SnapshotReport report = maker.report();
   EXPECT_EQ(report.refused, 0u);
-  EXPECT_EQ(report.pictures, 50u);
+  EXPECT_EQ(report.shown, 50u);
   EXPECT_EQ(report.frames, report.whole);
 }
 
-TEST(PictureMaker, LostSnapshotsLeaveNoGapInTheFilm) {
+TEST(SnapshotMaker, LostSnapshotsLeaveNoGapInTheFilm) {
   const Drift drift;
   SnapshotQueue queue(std::size_t{1} << 30);
-  PictureMakerOptions options;
+  SnapshotMakerOptions options;
   options.film = true;
   options.frames_per_second = 30.0;
-  PictureMaker maker(options, queue);
+  SnapshotMaker maker(options, queue);
   CodecOptions codec;
   codec.epoch_seconds = 0.5;
   SnapshotEncoder encoder(codec);
   play(maker, encoder, drift, 0, 120, [](int k) { return k % 7 == 3; });
   maker.finish();
-  const std::vector<SnapshotPointer> pictures = all(queue);
-  ASSERT_GE(pictures.size(), 59u);
-  for (std::size_t i = 1; i < pictures.size(); ++i) {
-    EXPECT_NEAR(pictures[i]->rigid.time - pictures[i - 1]->rigid.time, 1.0 / 30.0, 1e-9);
-    EXPECT_FALSE(pictures[i]->positions.empty());
+  const std::vector<SnapshotPointer> snapshots = all(queue);
+  ASSERT_GE(snapshots.size(), 59u);
+  for (std::size_t i = 1; i < snapshots.size(); ++i) {
+    EXPECT_NEAR(snapshots[i]->rigid.time - snapshots[i - 1]->rigid.time, 1.0 / 30.0, 1e-9);
+    EXPECT_FALSE(snapshots[i]->positions.empty());
   }
 }
 
 /// A peer whose machine is busy: everything came in time, and the thread that decodes has hardly begun.
-TEST(PictureMaker, WhatWaitsToBeDecodedIsNotMissingInTheFilm) {
+TEST(SnapshotMaker, WhatWaitsToBeDecodedIsNotMissingInTheFilm) {
   Drift drift;
   drift.side = 30;  // a frame takes much longer to decode than to come
   constexpr int kFrames = 150;
@@ -143,10 +143,10 @@ TEST(PictureMaker, WhatWaitsToBeDecodedIsNotMissingInTheFilm) {
     }
   }
   SnapshotQueue queue(std::size_t{1} << 30);
-  PictureMakerOptions options;
+  SnapshotMakerOptions options;
   options.film = true;
   options.frames_per_second = 30.0;
-  PictureMaker maker(options, queue);
+  SnapshotMaker maker(options, queue);
   const auto come = [&](int first, int end) {
     for (int k = first; k < end; ++k) {
       maker.note_bodies(bodies(kFrame * k));
@@ -157,18 +157,18 @@ TEST(PictureMaker, WhatWaitsToBeDecodedIsNotMissingInTheFilm) {
   while (maker.report().frames < 10) std::this_thread::sleep_for(std::chrono::microseconds(100));
   come(30, kFrames);
   maker.finish();
-  const std::vector<SnapshotPointer> pictures = all(queue);
-  ASSERT_EQ(pictures.size(), 75u) << "2.48 s at 30 a second";
-  for (const SnapshotPointer& picture : pictures) expect_drift(*picture, drift, 0.0021f);
+  const std::vector<SnapshotPointer> snapshots = all(queue);
+  ASSERT_EQ(snapshots.size(), 75u) << "2.48 s at 30 a second";
+  for (const SnapshotPointer& snapshot : snapshots) expect_drift(*snapshot, drift, 0.0021f);
 }
 
-TEST(PictureMaker, ParticlesThatDoNotComeAreNotWaitedForLongerThanASecond) {
+TEST(SnapshotMaker, ParticlesThatDoNotComeAreNotWaitedForLongerThanASecond) {
   const Drift drift;
   SnapshotQueue queue(std::size_t{1} << 30);
-  PictureMakerOptions options;
+  SnapshotMakerOptions options;
   options.film = true;
   options.frames_per_second = 30.0;
-  PictureMaker maker(options, queue);
+  SnapshotMaker maker(options, queue);
   SnapshotEncoder encoder(CodecOptions{});
   play(maker, encoder, drift, 0, 60, [](int) { return false; });
   for (int k = 61; k <= 180; ++k) maker.note_bodies(bodies(kFrame * k));
@@ -178,15 +178,15 @@ TEST(PictureMaker, ParticlesThatDoNotComeAreNotWaitedForLongerThanASecond) {
   EXPECT_EQ(all(queue).size(), 91u);
 }
 
-TEST(PictureMaker, AnotherStreamTakesOverWhenItHasAFrame) {
+TEST(SnapshotMaker, AnotherStreamTakesOverWhenItHasAFrame) {
   const Drift drift;
   Drift fewer;
   fewer.side = 8;
   SnapshotQueue queue(std::size_t{1} << 30);
-  PictureMakerOptions options;
+  SnapshotMakerOptions options;
   options.film = true;
   options.frames_per_second = 30.0;
-  PictureMaker maker(options, queue);
+  SnapshotMaker maker(options, queue);
   CodecOptions fine;
   fine.stream = 1;
   CodecOptions coarse;
@@ -196,39 +196,39 @@ TEST(PictureMaker, AnotherStreamTakesOverWhenItHasAFrame) {
   play(maker, first, drift, 0, 30, [](int) { return false; });
   play(maker, second, fewer, 31, 60, [](int) { return false; });
   maker.finish();
-  const std::vector<SnapshotPointer> pictures = all(queue);
-  ASSERT_EQ(pictures.size(), 31u);
-  EXPECT_EQ(pictures.front()->positions.size(), 12u * 12 * 12);
-  EXPECT_EQ(pictures.back()->positions.size(), 8u * 8 * 8);
-  for (std::size_t i = 18; i < pictures.size(); ++i) expect_drift(*pictures[i], fewer, 0.0021f);
+  const std::vector<SnapshotPointer> snapshots = all(queue);
+  ASSERT_EQ(snapshots.size(), 31u);
+  EXPECT_EQ(snapshots.front()->positions.size(), 12u * 12 * 12);
+  EXPECT_EQ(snapshots.back()->positions.size(), 8u * 8 * 8);
+  for (std::size_t i = 18; i < snapshots.size(); ++i) expect_drift(*snapshots[i], fewer, 0.0021f);
 }
 
-TEST(PictureMaker, AResetStartsTheFilmsTimeAnew) {
+TEST(SnapshotMaker, AResetStartsTheFilmsTimeAnew) {
   const Drift drift;
   SnapshotQueue queue(std::size_t{1} << 30);
-  PictureMakerOptions options;
+  SnapshotMakerOptions options;
   options.film = true;
   options.frames_per_second = 30.0;
-  PictureMaker maker(options, queue);
+  SnapshotMaker maker(options, queue);
   SnapshotEncoder encoder(CodecOptions{});
   play(maker, encoder, drift, 0, 60, [](int) { return false; });
   while (queue.waiting() < 20) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   play(maker, encoder, drift, 0, 60, [](int) { return false; }, 1);
   maker.finish();
-  const std::vector<SnapshotPointer> pictures = all(queue);
-  EXPECT_GT(pictures.size(), 50u);
-  EXPECT_NEAR(pictures.back()->rigid.time, 1.0, 1.0 / 30.0);
+  const std::vector<SnapshotPointer> snapshots = all(queue);
+  EXPECT_GT(snapshots.size(), 50u);
+  EXPECT_NEAR(snapshots.back()->rigid.time, 1.0, 1.0 / 30.0);
   int backs = 0;
-  for (std::size_t i = 1; i < pictures.size(); ++i) {
-    backs += pictures[i]->rigid.time < pictures[i - 1]->rigid.time ? 1 : 0;
+  for (std::size_t i = 1; i < snapshots.size(); ++i) {
+    backs += snapshots[i]->rigid.time < snapshots[i - 1]->rigid.time ? 1 : 0;
   }
   EXPECT_EQ(backs, 1);
 }
 
-TEST(PictureMaker, AWindowIsGivenTheMomentThatIsDue) {
+TEST(SnapshotMaker, AWindowIsGivenTheMomentThatIsDue) {
   const Drift drift;
   SnapshotQueue queue(std::size_t{1} << 30);
-  PictureMaker maker({}, queue);
+  SnapshotMaker maker({}, queue);
   SnapshotEncoder encoder(CodecOptions{});
   EXPECT_EQ(maker.newest(steady_now_ns()), nullptr) << "nothing came yet";
   play(maker, encoder, drift, 0, 60, [](int) { return false; });
@@ -237,19 +237,19 @@ TEST(PictureMaker, AWindowIsGivenTheMomentThatIsDue) {
   moment.stamp_ns = steady_now_ns();
   moment.known = true;  // it stands still at half a second
   maker.note_moment(moment);
-  SnapshotPointer picture;
-  for (int i = 0; i < 10000 && !picture; ++i) {
-    picture = maker.newest(steady_now_ns());
-    if (!picture) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  SnapshotPointer snapshot;
+  for (int i = 0; i < 10000 && !snapshot; ++i) {
+    snapshot = maker.newest(steady_now_ns());
+    if (!snapshot) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
-  ASSERT_NE(picture, nullptr);
+  ASSERT_NE(snapshot, nullptr);
   while (maker.report().frames < 61) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  // What came in between may still change the picture of that moment; then it is the same again and not
+  // What came in between may still change the snapshot of that moment; then it is the same again and not
   // given.
   int unchanged = 0;
   for (int i = 0; i < 1000 && unchanged < 20; ++i) {
     if (SnapshotPointer later = maker.newest(steady_now_ns())) {
-      picture = later;
+      snapshot = later;
       unchanged = 0;
     } else {
       unchanged += 1;
@@ -257,13 +257,13 @@ TEST(PictureMaker, AWindowIsGivenTheMomentThatIsDue) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   EXPECT_EQ(unchanged, 20);
-  EXPECT_NEAR(picture->rigid.time, 0.5, 1e-9);
-  expect_drift(*picture, drift, 0.0021f);
+  EXPECT_NEAR(snapshot->rigid.time, 0.5, 1e-9);
+  expect_drift(*snapshot, drift, 0.0021f);
 }
 
-TEST(PictureMaker, NoiseIsRefusedAndCounted) {
+TEST(SnapshotMaker, NoiseIsRefusedAndCounted) {
   SnapshotQueue queue(std::size_t{1} << 20);
-  PictureMaker maker({}, queue);
+  SnapshotMaker maker({}, queue);
   for (int i = 0; i < 500; ++i) {
     std::vector<std::uint8_t> noise(static_cast<std::size_t>(i));
     for (std::size_t k = 0; k < noise.size(); ++k) noise[k] = static_cast<std::uint8_t>(i * 31 + k * k);

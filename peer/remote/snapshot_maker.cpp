@@ -1,4 +1,4 @@
-#include "peer/remote/picture_maker.h"
+#include "peer/remote/snapshot_maker.h"
 
 #include <pthread.h>
 
@@ -22,17 +22,17 @@ constexpr double kWithoutParticles = 1.0;  // s that it waits for particles once
 
 }  // namespace
 
-PictureMaker::PictureMaker(const PictureMakerOptions& options, SnapshotQueue& film)
+SnapshotMaker::SnapshotMaker(const SnapshotMakerOptions& options, SnapshotQueue& film)
     : options_(options), film_(film), times_(options.frames_per_second) {
   shown_.restart();
   thread_ = std::thread([this] { run(); });
 }
 
-PictureMaker::~PictureMaker() {
+SnapshotMaker::~SnapshotMaker() {
   finish();
 }
 
-void PictureMaker::offer(std::span<const std::uint8_t> datagram) {
+void SnapshotMaker::offer(std::span<const std::uint8_t> datagram) {
   {
     const std::lock_guard lock(inbox_mutex_);
     if (inbox_bytes_ + datagram.size() > kMostInbox) {
@@ -45,29 +45,29 @@ void PictureMaker::offer(std::span<const std::uint8_t> datagram) {
   changed_.notify_one();
 }
 
-void PictureMaker::note_bodies(const BodyMessage& bodies) {
+void SnapshotMaker::note_bodies(const BodyMessage& bodies) {
   const std::lock_guard lock(mutex_);
   history_.add(bodies.run, bodies.bodies);
 }
 
-void PictureMaker::note_hand(std::uint32_t run, std::size_t grip, double time, const Pose& pose,
+void SnapshotMaker::note_hand(std::uint32_t run, std::size_t grip, double time, const Pose& pose,
                              bool engaged) {
   const std::lock_guard lock(mutex_);
   history_.add_hand(run, grip, time, pose, engaged);
 }
 
-void PictureMaker::note_moment(const WorldMoment& moment) {
+void SnapshotMaker::note_moment(const WorldMoment& moment) {
   const std::lock_guard lock(mutex_);
   if (moment.run != moment_.run) shown_.restart();
   moment_ = moment;
 }
 
-void PictureMaker::note_clock(const ClockSync& clock) {
+void SnapshotMaker::note_clock(const ClockSync& clock) {
   const std::lock_guard lock(mutex_);
   clock_ = clock;
 }
 
-void PictureMaker::restart() {
+void SnapshotMaker::restart() {
   {
     const std::lock_guard lock(inbox_mutex_);
     inbox_.clear();
@@ -81,12 +81,12 @@ void PictureMaker::restart() {
   moment_.known = false;
 }
 
-std::vector<SharedBytes> PictureMaker::take_feedback() {
+std::vector<SharedBytes> SnapshotMaker::take_feedback() {
   const std::lock_guard lock(inbox_mutex_);
   return std::exchange(feedback_, {});
 }
 
-void PictureMaker::finish() {
+void SnapshotMaker::finish() {
   {
     const std::lock_guard lock(inbox_mutex_);
     finish_ = true;
@@ -95,11 +95,11 @@ void PictureMaker::finish() {
   if (thread_.joinable()) thread_.join();
 }
 
-double PictureMaker::world_time(std::int64_t now_ns) const {
+double SnapshotMaker::world_time(std::int64_t now_ns) const {
   return moment_.time_at(clock_.to_host(now_ns));
 }
 
-SnapshotPointer PictureMaker::newest(std::int64_t now_ns) {
+SnapshotPointer SnapshotMaker::newest(std::int64_t now_ns) {
   std::optional<Between> between;
   {
     const std::lock_guard lock(mutex_);
@@ -114,19 +114,19 @@ SnapshotPointer PictureMaker::newest(std::int64_t now_ns) {
     history_.forget_before(time);
     const double newest = options_.has_fluid ? std::min(time, history_.last_frame_time()) : time;
     report_.age.add(std::max(world - newest, 0.0));
-    report_.pictures += 1;
-    if (report_.first_picture_ns == 0) {
-      report_.first_picture_ns = now_ns;
-      report_.first_picture_time = time;
+    report_.shown += 1;
+    if (report_.first_shown_ns == 0) {
+      report_.first_shown_ns = now_ns;
+      report_.first_shown_time = time;
     }
-    report_.last_picture_time = time;
+    report_.last_shown_time = time;
     report_.delay = shown_.delay();
   }
   return blend(*between);
 }
 
-PictureReport PictureMaker::report() const {
-  PictureReport report;
+SnapshotReport SnapshotMaker::report() const {
+  SnapshotReport report;
   {
     const std::lock_guard lock(mutex_);
     report = report_;
@@ -136,13 +136,13 @@ PictureReport PictureMaker::report() const {
   return report;
 }
 
-double PictureMaker::delay() const {
+double SnapshotMaker::delay() const {
   const std::lock_guard lock(mutex_);
   return report_.delay;
 }
 
-void PictureMaker::run() {
-  pthread_setname_np(pthread_self(), "slosh-pictures");
+void SnapshotMaker::run() {
+  pthread_setname_np(pthread_self(), "slosh-snapshots");
   std::vector<std::vector<std::uint8_t>> pieces;
   for (;;) {
     bool anew = false;
@@ -169,7 +169,7 @@ void PictureMaker::run() {
   film_.close();
 }
 
-void PictureMaker::take_pieces(const std::vector<std::vector<std::uint8_t>>& pieces, bool anew,
+void SnapshotMaker::take_pieces(const std::vector<std::vector<std::uint8_t>>& pieces, bool anew,
                                bool to_the_end) {
   if (anew) decoders_ = StreamDecoders();
   const std::uint32_t patience = options_.film ? kFilmPatience : kWindowPatience;
@@ -190,7 +190,7 @@ void PictureMaker::take_pieces(const std::vector<std::vector<std::uint8_t>>& pie
   }
 }
 
-void PictureMaker::take_frame(DecodedFrame frame) {
+void SnapshotMaker::take_frame(DecodedFrame frame) {
   const std::lock_guard lock(mutex_);
   report_.frames += 1;
   if (frame.complete >= 1.0) report_.whole += 1;
@@ -200,7 +200,7 @@ void PictureMaker::take_frame(DecodedFrame frame) {
   history_.add(std::move(frame));
 }
 
-std::optional<Between> PictureMaker::next_of_film(bool to_the_end) {
+std::optional<Between> SnapshotMaker::next_of_film(bool to_the_end) {
   const std::lock_guard lock(mutex_);
   const bool particles = history_.has_frames();
   if (!history_.has_bodies() || (options_.has_fluid && !particles)) return std::nullopt;
@@ -225,21 +225,21 @@ std::optional<Between> PictureMaker::next_of_film(bool to_the_end) {
   history_.forget_before(time);
   const std::int64_t now_ns = steady_now_ns();
   if (moment_.known) report_.age.add(std::max(world_time(now_ns) - time, 0.0));
-  report_.pictures += 1;
-  if (report_.first_picture_ns == 0) {
-    report_.first_picture_ns = now_ns;
-    report_.first_picture_time = time;
+  report_.shown += 1;
+  if (report_.first_shown_ns == 0) {
+    report_.first_shown_ns = now_ns;
+    report_.first_shown_time = time;
   }
-  report_.last_picture_time = time;
+  report_.last_shown_time = time;
   report_.delay = moment_.known ? std::max(world_time(now_ns) - time, 0.0) : 0.0;
   return between;
 }
 
-void PictureMaker::make_film(bool to_the_end) {
+void SnapshotMaker::make_film(bool to_the_end) {
   while (const std::optional<Between> between = next_of_film(to_the_end)) film_.push(blend(*between));
 }
 
-void PictureMaker::make_feedback() {
+void SnapshotMaker::make_feedback() {
   const std::int64_t now_ns = steady_now_ns();
   if (now_ns < feedback_due_ns_) return;
   feedback_due_ns_ = now_ns + kFeedbackGap_ns;

@@ -1,5 +1,5 @@
-// Pictures from the queue through the codec to peers, each at the quality of its link.
-#include "host/server/pictures.h"
+// Snapshots from the queue through the codec to peers, each at the quality of its link.
+#include "host/server/snapshot_coder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,10 +19,10 @@ ServerOptions running() {
 }
 
 /// A block of fluid that sways.
-Snapshot picture(std::uint64_t tick) {
+Snapshot snapshot_at(std::uint64_t tick) {
   Snapshot snapshot;
   snapshot.rigid.tick = tick;
-  snapshot.rigid.time = static_cast<double>(tick) / kTierPictureRate;
+  snapshot.rigid.time = static_cast<double>(tick) / kTierSnapshotRate;
   for (int i = 0; i < 4000; ++i) {
     const auto cell = [&](int n) { return 0.01f * static_cast<float>(n); };
     const auto sway = static_cast<float>(0.02 * std::sin(snapshot.rigid.time * 3.0 + 0.1 * (i % 20)));
@@ -33,22 +33,22 @@ Snapshot picture(std::uint64_t tick) {
   return snapshot;
 }
 
-class Pictures : public ServedTest {
+class Snapshots : public ServedTest {
  protected:
-  Pictures() : ServedTest(running()) {}
+  Snapshots() : ServedTest(running()) {}
 
-  /// The world runs for so long, 60 pictures a second.
+  /// The world runs for so long, 60 snapshots a second.
   void show(double seconds, const std::function<void()>& each = {}) {
-    go(seconds, 1.0 / kTierPictureRate, [&] {
-      std::vector<CodedPicture> coded;
-      const Snapshot snapshot = picture(++tick);
+    go(seconds, 1.0 / kTierSnapshotRate, [&] {
+      std::vector<CodedSnapshot> coded;
+      const Snapshot snapshot = snapshot_at(++tick);
       coder.see(snapshot, 0);
       coder.code(snapshot, desk.take_order(), coded);
       desk.deliver(std::move(coded));
       if (each) each();
     });
   }
-  PictureCoder coder{0.01};
+  SnapshotCoder coder{0.01};
   std::uint64_t tick = 0;
 };
 
@@ -95,23 +95,23 @@ class Watcher final : public EndpointEvents {
   std::int64_t next_feedback_ns = 0;
 };
 
-TEST_F(Pictures, NobodyWatchesAndNothingIsCoded) {
-  std::vector<CodedPicture> coded;
-  coder.code(picture(1), desk.take_order(), coded);
+TEST_F(Snapshots, NobodyWatchesAndNothingIsCoded) {
+  std::vector<CodedSnapshot> coded;
+  coder.code(snapshot_at(1), desk.take_order(), coded);
   EXPECT_TRUE(coded.empty());
 }
 
-TEST_F(Pictures, AreOfTheRunThatTheirBodiesAreOf) {
+TEST_F(Snapshots, AreOfTheRunThatTheirBodiesAreOf) {
   SnapshotDecoder decoder;
   // As a peer reads it.
   const auto seen = [&](std::uint64_t at, std::uint32_t newest_run) -> std::optional<std::uint32_t> {
-    const Snapshot snapshot = picture(at);
+    const Snapshot snapshot = snapshot_at(at);
     coder.see(snapshot, newest_run);
-    PictureOrder order;
+    SnapshotOrder order;
     order.watched[kAllParticles] = true;
-    std::vector<CodedPicture> coded;
+    std::vector<CodedSnapshot> coded;
     coder.code(snapshot, order, coded, true);
-    for (const CodedPicture& one : coded) {
+    for (const CodedSnapshot& one : coded) {
       for (const Piece& piece : one.frame.pieces) EXPECT_FALSE(decoder.take(*piece.bytes));
     }
     std::optional<std::uint32_t> run;
@@ -119,7 +119,7 @@ TEST_F(Pictures, AreOfTheRunThatTheirBodiesAreOf) {
     return run;
   };
   EXPECT_EQ(seen(1, 0), 0u);
-  EXPECT_EQ(seen(1, 0), 0u) << "a world that stands shows its picture again to who begins to look";
+  EXPECT_EQ(seen(1, 0), 0u) << "a world that stands shows its snapshot again to who begins to look";
   EXPECT_EQ(seen(5, 0), 0u);
   EXPECT_EQ(seen(6, 1), 0u) << "it waited while the world was reset";
   EXPECT_EQ(seen(1, 1), 1u);
@@ -127,7 +127,7 @@ TEST_F(Pictures, AreOfTheRunThatTheirBodiesAreOf) {
   EXPECT_EQ(seen(2, 2), 2u);
 }
 
-TEST_F(Pictures, ALateWatcherHasTheWholePictureSoon) {
+TEST_F(Snapshots, ALateWatcherHasTheWholeSnapshotSoon) {
   Watcher first(network, 1, watch);
   const auto both = [&] { first.turn(network.now_ns()); };
   show(1.0, both);
@@ -144,7 +144,7 @@ TEST_F(Pictures, ALateWatcherHasTheWholePictureSoon) {
   EXPECT_EQ(first.fault + late.fault, "");
 }
 
-TEST_F(Pictures, LossIsMended) {
+TEST_F(Snapshots, LossIsMended) {
   Watcher watcher(network, 1, watch);
   MemoryLink lossy;
   lossy.delay = 0.02;
@@ -163,7 +163,7 @@ TEST_F(Pictures, LossIsMended) {
   EXPECT_EQ(watcher.decoders.size(), 1u) << "plain loss is no reason for another tier";
 }
 
-TEST_F(Pictures, ASlowLinkLowersOnlyItsOwnQuality) {
+TEST_F(Snapshots, ASlowLinkLowersOnlyItsOwnQuality) {
   Watcher fast(network, 1, watch);
   Watcher slow(network, 2, watch);
   const auto both = [&] {
@@ -195,7 +195,7 @@ TEST_F(Pictures, ASlowLinkLowersOnlyItsOwnQuality) {
   EXPECT_GT(slow.frames, 60u) << "it still sees something";
 }
 
-TEST_F(Pictures, AResetStartsAnotherRun) {
+TEST_F(Snapshots, AResetStartsAnotherRun) {
   Watcher watcher(network, 1, watch);
   show(0.5, [&] { watcher.turn(network.now_ns()); });
   tick = 0;
@@ -205,13 +205,13 @@ TEST_F(Pictures, AResetStartsAnotherRun) {
   EXPECT_EQ(watcher.complete, 1.0);
 }
 
-TEST_F(Pictures, WhoDrawsNothingIsSentNone) {
+TEST_F(Snapshots, WhoDrawsNothingIsSentNone) {
   peers.push_back(std::make_unique<ScriptedPeer>(network, 1));
   peers.push_back(std::make_unique<ScriptedPeer>(network, 2));
   ScriptedPeer& draws = *peers[0];
   ScriptedPeer& blind = *peers[1];
   draws.hello(hold, "Ana");
-  blind.hello(hold, "Ben", wire::PictureWish::kNone);
+  blind.hello(hold, "Ben", wire::SnapshotWish::kNone);
   show(2.0, [&] {
     publish_bodies(tick);
     // What a link of its own would ask for, which must not make the host send it anything.
@@ -230,7 +230,7 @@ TEST_F(Pictures, WhoDrawsNothingIsSentNone) {
   // With nobody who draws nothing is coded either.
   draws.close();
   show(0.3);
-  const PictureOrder order = desk.take_order();
+  const SnapshotOrder order = desk.take_order();
   EXPECT_EQ(std::count(order.watched.begin(), order.watched.end(), true), 0);
 }
 

@@ -1,5 +1,5 @@
-// Pictures between two frames, on motions whose every moment is known.
-#include "peer/remote/picture_history.h"
+// Snapshots between two frames, on motions whose every moment is known.
+#include "peer/remote/snapshot_history.h"
 
 #include <gtest/gtest.h>
 
@@ -40,27 +40,27 @@ BodySnapshot bodies(double time) {
   return s;
 }
 
-void expect_truth(const SnapshotPointer& picture, double time) {
-  ASSERT_NE(picture, nullptr);
-  ASSERT_EQ(picture->positions.size(), kCount);
-  EXPECT_NEAR(picture->rigid.time, time, 1e-12);
+void expect_truth(const SnapshotPointer& snapshot, double time) {
+  ASSERT_NE(snapshot, nullptr);
+  ASSERT_EQ(snapshot->positions.size(), kCount);
+  EXPECT_NEAR(snapshot->rigid.time, time, 1e-12);
   // Whatever the order, each particle of the world is there once.
   std::vector<bool> seen(kCount, false);
-  for (const glm::vec3& p : picture->positions) {
+  for (const glm::vec3& p : snapshot->positions) {
     const auto i = static_cast<std::size_t>(p.y / 0.02f + 0.5f);
     ASSERT_LT(i, kCount);
     EXPECT_FALSE(seen[i]);
     seen[i] = true;
     EXPECT_LT(glm::distance(p, truth(i, time)), 1e-6f) << time;
   }
-  EXPECT_NEAR(picture->rigid.bodies[0].pose.position.x, 2.0 * time, 1e-9);
+  EXPECT_NEAR(snapshot->rigid.bodies[0].pose.position.x, 2.0 * time, 1e-9);
   const glm::dquat turned = glm::angleAxis(0.8 * time, glm::normalize(glm::dvec3(1, 2, 3)));
-  EXPECT_NEAR(glm::length(rotation_between(picture->rigid.bodies[0].pose.orientation, turned)), 0.0, 1e-9);
-  EXPECT_NEAR(picture->rigid.grips[0].on_hand.force.y, -4.0 * time, 1e-9);
+  EXPECT_NEAR(glm::length(rotation_between(snapshot->rigid.bodies[0].pose.orientation, turned)), 0.0, 1e-9);
+  EXPECT_NEAR(snapshot->rigid.grips[0].on_hand.force.y, -4.0 * time, 1e-9);
 }
 
 struct World {
-  PictureHistory history;
+  SnapshotHistory history;
   World() {
     // Two epochs: frame 3 begins the second, and comes in both orders.
     history.add(frame(1, 0.10, 1));
@@ -72,7 +72,7 @@ struct World {
   }
 };
 
-TEST(PictureHistory, IsExactAtAndBetweenFramesAndAcrossEpochs) {
+TEST(SnapshotHistory, IsExactAtAndBetweenFramesAndAcrossEpochs) {
   const World world;
   for (double time = 0.10; time <= 0.2501; time += 0.01) {
     const std::optional<Between> between = world.history.at(time);
@@ -81,8 +81,8 @@ TEST(PictureHistory, IsExactAtAndBetweenFramesAndAcrossEpochs) {
   }
 }
 
-TEST(PictureHistory, TheOrderInWhichAnEpochsFirstFrameComesDoesNotMatter) {
-  PictureHistory history;
+TEST(SnapshotHistory, TheOrderInWhichAnEpochsFirstFrameComesDoesNotMatter) {
+  SnapshotHistory history;
   history.add(frame(1, 0.10, 1));
   history.add(frame(2, 0.20, 2));
   history.add(frame(2, 0.20, 1));
@@ -93,21 +93,21 @@ TEST(PictureHistory, TheOrderInWhichAnEpochsFirstFrameComesDoesNotMatter) {
   for (const double time : {0.22, 0.25, 0.30}) expect_truth(blend(*history.at(time)), time);
 }
 
-TEST(PictureHistory, HoldsTheLastFrameWhereNothingJoins) {
-  PictureHistory history;
+TEST(SnapshotHistory, HoldsTheLastFrameWhereNothingJoins) {
+  SnapshotHistory history;
   history.add(frame(1, 0.10, 1));
   history.add(frame(9, 0.50, 2));  // the frames between were lost
   for (int i = 0; i < 60; ++i) history.add(0, bodies(0.01 * i));
-  const SnapshotPointer picture = blend(*history.at(0.30));
-  EXPECT_LT(glm::distance(picture->positions[0], truth(7, 0.10)), 1e-6f);
-  EXPECT_NEAR(picture->rigid.bodies[0].pose.position.x, 0.6, 1e-9) << "bodies go on";
+  const SnapshotPointer snapshot = blend(*history.at(0.30));
+  EXPECT_LT(glm::distance(snapshot->positions[0], truth(7, 0.10)), 1e-6f);
+  EXPECT_NEAR(snapshot->rigid.bodies[0].pose.position.x, 0.6, 1e-9) << "bodies go on";
   expect_truth(blend(*history.at(0.50)), 0.50);
   EXPECT_LT(glm::distance(blend(*history.at(9.0))->positions[0], truth(14, 0.50)), 1e-6f);
   EXPECT_LT(glm::distance(blend(*history.at(0.0))->positions[0], truth(7, 0.10)), 1e-6f);
 }
 
-TEST(PictureHistory, WhatHasLeftTheWorldIsNotDrawn) {
-  PictureHistory history;
+TEST(SnapshotHistory, WhatHasLeftTheWorldIsNotDrawn) {
+  SnapshotHistory history;
   DecodedFrame gone = frame(2, 0.20, 1);
   gone.fluid_index[4] = 255;
   history.add(frame(1, 0.10, 1));
@@ -116,7 +116,7 @@ TEST(PictureHistory, WhatHasLeftTheWorldIsNotDrawn) {
   EXPECT_EQ(blend(*history.at(0.15))->fluid_index[5], 0);
 }
 
-TEST(PictureHistory, AResetForgetsWhatWas) {
+TEST(SnapshotHistory, AResetForgetsWhatWas) {
   World world;
   world.history.add(frame(50, 0.0, 5, 1));
   EXPECT_EQ(world.history.run(), 1u);
@@ -130,20 +130,20 @@ TEST(PictureHistory, AResetForgetsWhatWas) {
   EXPECT_DOUBLE_EQ(world.history.first_frame_time(), 7.0) << "a new connection may bring any run";
 }
 
-TEST(PictureHistory, ForgetsNoMoreThanItMay) {
+TEST(SnapshotHistory, ForgetsNoMoreThanItMay) {
   World world;
   world.history.forget_before(0.17);
   for (const double time : {0.17, 0.20, 0.24}) expect_truth(blend(*world.history.at(time)), time);
   EXPECT_DOUBLE_EQ(world.history.first_frame_time(), 0.15);
 }
 
-TEST(PictureHistory, IsEmptyAtFirstAndShowsBodiesAlone) {
-  PictureHistory history;
+TEST(SnapshotHistory, IsEmptyAtFirstAndShowsBodiesAlone) {
+  SnapshotHistory history;
   EXPECT_FALSE(history.at(0.0));
   history.add(0, bodies(0.1));
-  const SnapshotPointer picture = blend(*history.at(0.1));
-  EXPECT_TRUE(picture->positions.empty());
-  EXPECT_NEAR(picture->rigid.bodies[0].pose.position.x, 0.2, 1e-12);
+  const SnapshotPointer snapshot = blend(*history.at(0.1));
+  EXPECT_TRUE(snapshot->positions.empty());
+  EXPECT_NEAR(snapshot->rigid.bodies[0].pose.position.x, 0.2, 1e-12);
 }
 
 Pose at(double x) {
@@ -152,8 +152,8 @@ Pose at(double x) {
   return pose;
 }
 
-TEST(PictureHistory, OtherHandsAreWhereTheyAreThemselves) {
-  PictureHistory history;
+TEST(SnapshotHistory, OtherHandsAreWhereTheyAreThemselves) {
+  SnapshotHistory history;
   history.add_hand(0, 0, 0.5, at(9.0), true);  // of no run yet
   for (int i = 0; i <= 20; ++i) history.add(0, bodies(0.05 * i));
   const auto hand_at = [&](double time) { return history.at(time)->rigid.grips[0].handle.position.x; };

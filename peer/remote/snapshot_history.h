@@ -31,7 +31,7 @@ SnapshotPointer blend(const Between& between);
 BodySnapshot blend(const BodySnapshot& a, const BodySnapshot& b, double time);
 
 /// The last frames and body states of one run of the world. One thread, or one lock.
-class PictureHistory {
+class SnapshotHistory {
  public:
   /// Frames come as SnapshotDecoder gives them: in order, the one that begins an epoch twice, in the old
   /// order and in the new. A higher run forgets what was; of a lower one nothing is taken.

@@ -1,4 +1,4 @@
-#include "peer/remote/picture_history.h"
+#include "peer/remote/snapshot_history.h"
 
 #include <algorithm>
 
@@ -12,7 +12,7 @@ constexpr std::size_t kMostHands = 1024;   // samples of one hand
 constexpr std::size_t kMostGrips = 64;     // as the wire has it
 constexpr double kHandBelieved = 0.2;      // s for which a hand that says no more is where it was
 constexpr double kSameTime = 1e-9;         // s
-constexpr double kBetweenBodies = 0.0035;  // s: denser states tell a picture nothing
+constexpr double kBetweenBodies = 0.0035;  // s: denser states tell a snapshot nothing
 
 std::size_t size_of(const DecodedFrame& frame) {
   return sizeof(DecodedFrame) + frame.positions.size() * sizeof(glm::vec3) + frame.fluid_index.size();
@@ -83,7 +83,7 @@ SnapshotPointer blend(const Between& between) {
   return snapshot;
 }
 
-void PictureHistory::follow_run(std::uint32_t run) {
+void SnapshotHistory::follow_run(std::uint32_t run) {
   if (!any_run_ && run == run_) return;
   run_ = run;
   any_run_ = false;
@@ -93,7 +93,7 @@ void PictureHistory::follow_run(std::uint32_t run) {
   bytes_ = 0;
 }
 
-void PictureHistory::add(DecodedFrame frame) {
+void SnapshotHistory::add(DecodedFrame frame) {
   if (!any_run_ && frame.run < run_) return;
   if (frame.fluid_index.size() != frame.positions.size()) return;
   follow_run(frame.run);
@@ -103,7 +103,7 @@ void PictureHistory::add(DecodedFrame frame) {
   bound();
 }
 
-void PictureHistory::add(std::uint32_t run, const BodySnapshot& bodies) {
+void SnapshotHistory::add(std::uint32_t run, const BodySnapshot& bodies) {
   if (!any_run_ && run < run_) return;
   follow_run(run);
   if (!bodies_.empty() && bodies.time < bodies_.back().time + kSameTime) {
@@ -117,7 +117,7 @@ void PictureHistory::add(std::uint32_t run, const BodySnapshot& bodies) {
   if (bodies_.size() > kMostBodies) bodies_.pop_front();
 }
 
-void PictureHistory::add_hand(std::uint32_t run, std::size_t grip, double time, const Pose& pose,
+void SnapshotHistory::add_hand(std::uint32_t run, std::size_t grip, double time, const Pose& pose,
                               bool engaged) {
   if (any_run_ || run != run_ || grip >= kMostGrips) return;
   if (grip >= hands_.size()) hands_.resize(grip + 1);
@@ -128,7 +128,7 @@ void PictureHistory::add_hand(std::uint32_t run, std::size_t grip, double time, 
   if (samples.size() > kMostHands) samples.pop_front();
 }
 
-void PictureHistory::place_hands(BodySnapshot& rigid) const {
+void SnapshotHistory::place_hands(BodySnapshot& rigid) const {
   for (std::size_t i = 0; i < hands_.size() && i < rigid.grips.size(); ++i) {
     const std::deque<HandSample>& samples = hands_[i];
     const auto after = std::lower_bound(samples.begin(), samples.end(), rigid.time,
@@ -143,19 +143,19 @@ void PictureHistory::place_hands(BodySnapshot& rigid) const {
   }
 }
 
-void PictureHistory::restart() {
+void SnapshotHistory::restart() {
   any_run_ = true;
   hands_.clear();
 }
 
-void PictureHistory::bound() {
+void SnapshotHistory::bound() {
   while (bytes_ > kMostBytes && frames_.size() > kFewestFrames) {
     bytes_ -= size_of(*frames_.front());
     frames_.pop_front();
   }
 }
 
-std::optional<Between> PictureHistory::at(double time) const {
+std::optional<Between> SnapshotHistory::at(double time) const {
   if (frames_.empty() && bodies_.empty()) return std::nullopt;
   Between out;
   if (!frames_.empty()) {
@@ -200,7 +200,7 @@ std::optional<Between> PictureHistory::at(double time) const {
   return out;
 }
 
-void PictureHistory::forget_before(double time) {
+void SnapshotHistory::forget_before(double time) {
   // The last instant at or before the time stays, in every order that it has.
   double keep = -1e300;
   for (const auto& frame : frames_) {

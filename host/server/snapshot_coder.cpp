@@ -1,4 +1,4 @@
-#include "host/server/pictures.h"
+#include "host/server/snapshot_coder.h"
 
 #include <algorithm>
 #include <chrono>
@@ -13,15 +13,15 @@ namespace {
 constexpr std::uint32_t kMostMended = 4096;
 constexpr std::size_t kMostMendingPeers = 256;
 constexpr double kFreshEnough = 0.3;  // simulated s: an epoch as young as this need not be followed
-constexpr std::size_t kBehind = 2;    // pictures that may wait before one is left out
-constexpr double kStanding = 0.25;    // s without a new picture after which the world stands
+constexpr std::size_t kBehind = 2;    // snapshots that may wait before one is left out
+constexpr double kStanding = 0.25;    // s without a new snapshot after which the world stands
 constexpr double kShownAgain = 0.1;   // s between two showings then
 
 }  // namespace
 
-PictureCoder::PictureCoder(double spacing, std::uint32_t run) : spacing_(spacing), run_(run) {}
+SnapshotCoder::SnapshotCoder(double spacing, std::uint32_t run) : spacing_(spacing), run_(run) {}
 
-void PictureCoder::see(const Snapshot& snapshot, std::uint32_t newest_run) {
+void SnapshotCoder::see(const Snapshot& snapshot, std::uint32_t newest_run) {
   if (last_tick_ && snapshot.rigid.tick <= *last_tick_ && newest_run > run_) {
     run_ = newest_run;
     last_key_.fill(-1e9);
@@ -29,7 +29,7 @@ void PictureCoder::see(const Snapshot& snapshot, std::uint32_t newest_run) {
   last_tick_ = snapshot.rigid.tick;
 }
 
-void PictureCoder::code(const Snapshot& snapshot, PictureOrder order, std::vector<CodedPicture>& out,
+void SnapshotCoder::code(const Snapshot& snapshot, SnapshotOrder order, std::vector<CodedSnapshot>& out,
                         bool again) {
   const std::int64_t begin = steady_now_ns();
   for (MendOrder& wish : order.mends) {
@@ -52,12 +52,12 @@ void PictureCoder::code(const Snapshot& snapshot, PictureOrder order, std::vecto
       encoders_[i].emplace(options);
     }
     const bool young = snapshot.rigid.time - last_key_[i] < kFreshEnough;
-    CodedPicture picture;
-    picture.tier = tier;
-    picture.frame = encoders_[i]->encode(snapshot, run_, first || (order.fresh[i] && !young));
-    if (picture.frame.key) last_key_[i] = snapshot.rigid.time;
-    mend(tier, picture.frame, picture);
-    out.push_back(std::move(picture));
+    CodedSnapshot coded;
+    coded.tier = tier;
+    coded.frame = encoders_[i]->encode(snapshot, run_, first || (order.fresh[i] && !young));
+    if (coded.frame.key) last_key_[i] = snapshot.rigid.time;
+    mend(tier, coded.frame, coded);
+    out.push_back(std::move(coded));
   }
   if (!again) count_ += 1;
   std::erase_if(mending_, [&](const auto& entry) {
@@ -66,7 +66,7 @@ void PictureCoder::code(const Snapshot& snapshot, PictureOrder order, std::vecto
   seconds_ += to_seconds(steady_now_ns() - begin);
 }
 
-void PictureCoder::mend(int tier, const EncodedFrame& frame, CodedPicture& out) {
+void SnapshotCoder::mend(int tier, const EncodedFrame& frame, CodedSnapshot& out) {
   for (auto& [key, mending] : mending_) {
     if (key.second != tier) continue;
     const MendOrder& wish = mending.order;
@@ -93,36 +93,36 @@ void PictureCoder::mend(int tier, const EncodedFrame& frame, CodedPicture& out) 
   }
 }
 
-PictureThread::PictureThread(SnapshotQueue& pictures, PictureDesk& desk, PictureDemand& demand,
+SnapshotThread::SnapshotThread(SnapshotQueue& snapshots, SnapshotDesk& desk, SnapshotDemand& demand,
                              double spacing, std::uint32_t run, std::function<void()> wake)
-    : pictures_(pictures), desk_(desk), demand_(demand), coder_(spacing, run), wake_(std::move(wake)) {
+    : snapshots_(snapshots), desk_(desk), demand_(demand), coder_(spacing, run), wake_(std::move(wake)) {
   thread_ = std::thread([this] { this->run(); });
 }
 
-PictureThread::~PictureThread() {
+SnapshotThread::~SnapshotThread() {
   if (thread_.joinable()) thread_.join();
 }
 
-void PictureThread::run() {
+void SnapshotThread::run() {
   SnapshotPointer newest;
   std::int64_t new_ns = 0;
   std::int64_t coded_ns = 0;
-  std::vector<CodedPicture> coded;
-  while (!pictures_.finished()) {
+  std::vector<CodedSnapshot> coded;
+  while (!snapshots_.finished()) {
     const bool watched = desk_.watched();
     demand_.want(watched);
     if (!watched) newest.reset();  // it would be an old one by the time that somebody looks
-    SnapshotPointer picture = pictures_.pop(std::chrono::milliseconds(watched ? 50 : 10));
+    SnapshotPointer snapshot = snapshots_.pop(std::chrono::milliseconds(watched ? 50 : 10));
     const std::int64_t now = steady_now_ns();
-    const bool again = !picture;
+    const bool again = !snapshot;
     if (again) {
       if (!newest || now - new_ns < to_nanoseconds(kStanding) || now - coded_ns < to_nanoseconds(kShownAgain))
         continue;
     } else {
-      newest = std::move(picture);
+      newest = std::move(snapshot);
       new_ns = now;
       coder_.see(*newest, demand_.run());
-      if (pictures_.waiting() > kBehind) continue;
+      if (snapshots_.waiting() > kBehind) continue;
     }
     coded_ns = now;
     coded.clear();

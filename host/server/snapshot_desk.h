@@ -1,4 +1,4 @@
-// Where the thread that sends and the thread that codes pictures meet.
+// Where the thread that sends and the thread that codes snapshots meet.
 #pragma once
 
 #include <array>
@@ -21,38 +21,38 @@ struct MendOrder {
   std::vector<wire::BlockRange> blocks;
 };
 
-/// What the senders want of the next pictures.
-struct PictureOrder {
+/// What the senders want of the next snapshots.
+struct SnapshotOrder {
   std::array<bool, kTierCount> watched{};
   std::array<bool, kTierCount> fresh{};  ///< a key frame, please
   std::vector<MendOrder> mends;
 };
 
-struct CodedPicture {
+struct CodedSnapshot {
   int tier = 0;
   EncodedFrame frame;
   std::vector<std::pair<ConnectionId, std::vector<Piece>>> mended;  ///< for one peer each
 };
 
 /// Neither side waits for the other.
-class PictureDesk {
+class SnapshotDesk {
  public:
   /// Sender: what is wanted from now on. `fresh` and `mends` add up until they are taken.
-  void order(PictureOrder order);
+  void order(SnapshotOrder order);
   /// Sender: all that was coded since the last call, oldest first. Old ones are lost when more than a few
   /// wait.
-  std::vector<CodedPicture> collect();
+  std::vector<CodedSnapshot> collect();
 
   /// Coder's side.
-  PictureOrder take_order();
+  SnapshotOrder take_order();
   /// Does anybody watch?
   bool watched() const;
-  void deliver(std::vector<CodedPicture> pictures);
+  void deliver(std::vector<CodedSnapshot> snapshots);
 
  private:
   mutable std::mutex mutex_;
-  PictureOrder order_;
-  std::vector<CodedPicture> coded_;
+  SnapshotOrder order_;
+  std::vector<CodedSnapshot> coded_;
 };
 
 }  // namespace slosh
