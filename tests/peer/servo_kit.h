@@ -30,6 +30,12 @@ class FakeDevice final : public Device {
   std::string kind() const override { return "fake"; }
 };
 
+inline Pose at(double x) {
+  Pose pose;
+  pose.position.x = x;
+  return pose;
+}
+
 inline Scene one_grip_scene() {
   Scene scene;
   scene.bodies.resize(1);

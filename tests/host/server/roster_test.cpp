@@ -44,7 +44,7 @@ TEST(Roster, OneGripHasOneHolder) {
   EXPECT_TRUE(seats.take(ben, 1).granted);
   EXPECT_FALSE(seats.take(eve, 0).granted);
   EXPECT_NE(seats.take(eve, 0).text.find("watching"), std::string::npos);
-  EXPECT_NE(seats.take(ben, 7).text.find("no grip 7"), std::string::npos);
+  EXPECT_NE(seats.take(ben, 7).text.find("no grip '7'"), std::string::npos);
   EXPECT_NE(seats.release(ben, 0).text.find("do not hold"), std::string::npos);
   EXPECT_TRUE(seats.release(ana, 0).granted);
   EXPECT_TRUE(seats.take(ben, 0).granted);
