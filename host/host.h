@@ -136,7 +136,7 @@ class Host {
   InputGate gate_;
   HostReport report_;
   BodySnapshot latest_;           // what the gate compares new hands with
-  double next_snapshot_ = 0.0;     // simulated s
+  double next_snapshot_ = 0.0;    // simulated s
   double status_until_[32] = {};  // simulated s up to which each bit counts as recent
 
   std::vector<HostTap*> taps_;

@@ -66,7 +66,7 @@ class Channel {
   std::size_t devices() const { return poses_.size(); }
   TripleBuffer<PoseMessage>& pose(std::size_t device) { return *poses_[device]; }  ///< device loop → host
   TripleBuffer<BodyMessage>& bodies() { return bodies_; }                          ///< host → device loop
-  SnapshotQueue& snapshots() { return snapshots_; }                                  ///< host → viewer
+  SnapshotQueue& snapshots() { return snapshots_; }                                ///< host → viewer
 
  private:
   std::vector<std::unique_ptr<TripleBuffer<PoseMessage>>> poses_;

@@ -39,15 +39,23 @@ std::optional<std::size_t> index_named(const std::vector<T>& things, const std::
   return number;
 }
 
-/// "left, right", or "none".
+inline const std::string& name_of(const std::string& name) {
+  return name;
+}
+template <class T>
+const std::string& name_of(const T& thing) {
+  return thing.name;
+}
+
+/// "left, right", or "none". Of names, or of what has a `name`.
 template <class T>
 std::string names_of(const std::vector<T>& things) {
   std::string names;
-  for (const T& thing : things) names.append(names.empty() ? "" : ", ").append(thing.name);
+  for (const T& thing : things) names.append(names.empty() ? "" : ", ").append(name_of(thing));
   return names.empty() ? "none" : names;
 }
 
-/// What to say where index_named() found no grip. Every console says it so.
+/// What to say of a grip that does not exist, wherever somebody asks for one.
 template <class T>
 std::string no_grip_text(const std::string& text, const std::vector<T>& grips) {
   return "there is no grip '" + text + "'. There are: " + names_of(grips);

@@ -47,7 +47,8 @@ struct CheckpointOptions {
   std::string version;
   HostPlace place;
   std::uint64_t run = 0;
-  Bytes server_state;  ///< the secrets beside the first file, up to set_server_state(); empty: none are written
+  Bytes
+      server_state;  ///< the secrets beside the first file, up to set_server_state(); empty: none are written
 };
 
 struct CheckpointReport {

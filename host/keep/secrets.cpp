@@ -63,7 +63,8 @@ std::filesystem::path secrets_of(const std::filesystem::path& checkpoint) {
   return name + ".secrets";
 }
 
-Result<bool> write_secrets(const std::filesystem::path& checkpoint, std::uint64_t run, ByteView server_state) {
+Result<bool> write_secrets(const std::filesystem::path& checkpoint, std::uint64_t run,
+                           ByteView server_state) {
   Bytes out(std::begin(kMagic), std::end(kMagic));
   append_chunk(kHead, wire::encoded(FileHead{kVersion, run}), out);
   append_chunk(kServerState, server_state, out);

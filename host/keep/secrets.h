@@ -1,8 +1,8 @@
 // What a host must not lose and nobody else may have: its key, the tokens of its links, who sat where. A file
 // of its own beside the checkpoint, so that a checkpoint can be given to others.
 //
-// Eight bytes that name the format, then chunks (chunk.h): head, server_state, end mark. Mode 0600, replaced as
-// the checkpoint is, the one before it stays as previous_of().
+// Eight bytes that name the format, then chunks (chunk.h): head, server_state, end mark. Mode 0600, replaced
+// as the checkpoint is, the one before it stays as previous_of().
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@ namespace slosh::keep {
 
 struct Secrets {
   std::uint64_t run = 0;  ///< Checkpoint::run of the checkpoint that they belong to
-  Bytes server_state;          ///< the server's own
+  Bytes server_state;     ///< the server's own
   std::string note;       ///< when not empty: the file was damaged, and these are from the one before it
 };
 

@@ -120,54 +120,24 @@ Result<ConsoleCommand> parse_console(std::string_view typed) {
   const Result<std::vector<std::string>> split = console_words(typed);
   if (!split) return split.error();
   const std::vector<std::string>& words = split.value();
-  if (words.empty()) return ConsoleCommand{};
-  const std::string& verb = words[0];
-
-  const auto alone = [&](ConsoleVerb of) -> Result<ConsoleCommand> {
-    if (words.size() > 1) return usage(verb + " stands alone", "Type help for what may be said");
-    ConsoleCommand command;
-    command.verb = of;
-    return command;
-  };
-  const auto with_one = [&](ConsoleVerb of, const char* what) -> Result<ConsoleCommand> {
-    if (words.size() != 2) return usage(verb + " needs " + what, "Put a name of several words in quotes");
-    ConsoleCommand command;
-    command.verb = of;
-    command.text = words[1];
-    return command;
-  };
-  if (verb == "help") return alone(ConsoleVerb::kHelp);
-  if (verb == "who") return alone(ConsoleVerb::kWho);
-  if (verb == "links") return alone(ConsoleVerb::kLinks);
-  if (verb == "link") return parse_link_command(words);
-  if (verb == "revoke") return with_one(ConsoleVerb::kRevoke, "the id of a link, as `links` shows it");
-  if (verb == "expire") return parse_expire(words);
-  if (verb == "release") return with_one(ConsoleVerb::kRelease, "a grip's name or number");
-  if (verb == "kick") return parse_kick(words);
-  if (verb == "unban") return with_one(ConsoleVerb::kUnban, "a person's name, as `who` shows it");
-  if (verb == "pause") return alone(ConsoleVerb::kPause);
-  if (verb == "continue") return alone(ConsoleVerb::kContinue);
-  if (verb == "reset") return alone(ConsoleVerb::kReset);
-  if (verb == "set") return parse_set_command(words);
-  if (verb == "status") return alone(ConsoleVerb::kStatus);
-  if (verb == "quit") return alone(ConsoleVerb::kQuit);
-  return usage("'" + wire::clean_text(verb, 40) + "' means nothing here", "Type help for what may be said");
-}
-
-const char* console_help() {
-  return "who                            who is here and holds what\n"
-         "links                          every link: id, for whom, until when, used by\n"
-         "link [NAME] [watch] [for 30m]  a new link: for anybody or one person, to hold or to watch\n"
-         "revoke ID                      end a link and whoever came in by it\n"
-         "expire ID 10m|never            from then on it admits nobody new; who is in stays in\n"
-         "release GRIP                   take a grip away from its holder\n"
-         "kick NAME [for 10m]            close somebody's connection, and keep their key out for a time\n"
-         "unban NAME                     let somebody in again before that time is over\n"
-         "pause, continue, reset         the world\n"
-         "set viscosity [FLUID] X        Pa·s, while the world runs\n"
-         "set gravity X                  times the scene's, 0 to 2\n"
-         "status                         how the world and the links do\n"
-         "quit                           end the run for everybody";
+  const Result<ConsoleVerb> verb = console_verb(Console::kHost, words);
+  if (!verb) return verb.error();
+  switch (verb.value()) {
+    case ConsoleVerb::kLink:
+      return parse_link_command(words);
+    case ConsoleVerb::kExpire:
+      return parse_expire(words);
+    case ConsoleVerb::kKick:
+      return parse_kick(words);
+    case ConsoleVerb::kSet:
+      return parse_set_command(words);
+    default:
+      break;
+  }
+  ConsoleCommand command;
+  command.verb = verb.value();
+  if (words.size() > 1) command.text = words[1];
+  return command;
 }
 
 }  // namespace slosh

@@ -6,29 +6,11 @@
 #include <string>
 #include <string_view>
 
+#include "net/console_verbs.h"
 #include "net/console_words.h"
 #include "sim/math/result.h"
 
 namespace slosh {
-
-enum class ConsoleVerb : std::uint8_t {
-  kNothing,  ///< an empty line
-  kHelp,
-  kWho,
-  kLinks,
-  kLink,
-  kRevoke,
-  kExpire,
-  kRelease,
-  kKick,
-  kUnban,
-  kPause,
-  kContinue,
-  kReset,
-  kSet,
-  kStatus,
-  kQuit,
-};
 
 struct ConsoleCommand {
   ConsoleVerb verb = ConsoleVerb::kNothing;
@@ -47,8 +29,5 @@ Result<std::int64_t> parse_duration(std::string_view text);
 
 /// ns in words, coarsely: "2 h 10 min".
 std::string duration_text(std::int64_t ns);
-
-/// What `help` prints.
-const char* console_help();
 
 }  // namespace slosh

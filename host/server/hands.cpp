@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "net/clock.h"
+#include "net/grip_start.h"
 
 namespace slosh {
 namespace {
@@ -14,15 +15,10 @@ constexpr std::int64_t kOldest = 5'000'000'000;
 
 }  // namespace
 
-Pose stand_pose(const Scene& scene, std::size_t grip) {
-  const Grip& g = scene.grips[grip];
-  return compose(scene.bodies[static_cast<std::size_t>(g.body)].pose, g.pose);
-}
-
 HandTable::HandTable(const Scene& scene, Channel& channel) : channel_(channel) {
   for (std::size_t i = 0; i < scene.grips.size(); ++i) {
     GripHand hand;
-    hand.start = stand_pose(scene, i);
+    hand.start = grip_start(scene, i);
     hand.known.resize(kRemembered);
     grips_.push_back(std::move(hand));
   }

@@ -17,9 +17,6 @@ struct Delivery {
   std::uint64_t expected = 0;  ///< numbers from the first to the newest
 };
 
-/// Where each grip starts: on its body as the scene has it.
-Pose stand_pose(const Scene& scene, std::size_t grip);
-
 /// The writer of every channel.pose(i). A grip that nobody has held since the start (or a reset) is held by
 /// the host where it starts, so that nothing falls before people come. One thread; `now_ns` is the steady
 /// clock.

@@ -1,10 +1,8 @@
 #include "host/server/links.h"
 
-#include <sys/random.h>
-
 #include <algorithm>
-#include <cstdlib>
 
+#include "net/random.h"
 #include "net/text/name.h"
 
 namespace slosh {
@@ -37,16 +35,6 @@ std::string random_id() {
 }
 
 }  // namespace
-
-void fill_random(std::span<std::uint8_t> out) {
-  std::size_t done = 0;
-  while (done < out.size()) {
-    const ssize_t got = getrandom(out.data() + done, out.size() - done, 0);
-    // Without randomness every token could be guessed: better no host at all.
-    if (got < 0 && errno != EINTR) std::abort();
-    if (got > 0) done += static_cast<std::size_t>(got);
-  }
-}
 
 const LinkRecord* LinkRegistry::create(wire::Role role, const std::string& name, std::int64_t unix_ns,
                                        std::int64_t lifetime_ns,

@@ -92,7 +92,4 @@ class LinkRegistry {
   std::map<std::string, std::string> looks_;  // of names of links; skeletons take long
 };
 
-/// Fills with bytes from the kernel's random source.
-void fill_random(std::span<std::uint8_t> out);
-
 }  // namespace slosh

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "net/clock.h"
+#include "net/console_words.h"
 #include "net/text/name.h"
 #include "net/wire/text.h"
 
@@ -128,10 +129,7 @@ void SeatTable::remove(std::uint32_t number) {
 Outcome SeatTable::take(Seat& seat, std::uint32_t grip) {
   if (seat.role != wire::Role::kParticipant)
     return {false, "this link is for watching; taking hold needs the other one"};
-  if (grip >= grip_names_.size()) {
-    return {false, "there is no grip " + std::to_string(grip) + "; this scene has " +
-                       std::to_string(grip_names_.size())};
-  }
+  if (grip >= grip_names_.size()) return {false, no_grip_text(std::to_string(grip), grip_names_)};
   if (has(seat.grips, grip)) return {true, {}};
   if (const Seat* other = holder(grip)) {
     const std::string held = grip_name(grip) + " is held by " + other->name;

@@ -5,6 +5,8 @@
 
 #include "host/server/server_send.h"
 #include "net/clock.h"
+#include "net/grip_start.h"
+#include "net/random.h"
 #include "net/site.h"
 
 namespace slosh {
@@ -163,7 +165,7 @@ void Server::let_go_all(const Seat& seat) {
   wire::Hands hands;
   for (const std::uint32_t grip : seat.grips) {
     hands_.let_go(grip, now());
-    hands.hands.push_back({grip, now(), stand_pose(*world_.scene, grip), Twist{}, false});
+    hands.hands.push_back({grip, now(), grip_start(*world_.scene, grip), Twist{}, false});
   }
   states_.let_go(seat.number, hands);
 }
@@ -271,8 +273,8 @@ void Server::check_patience() {
 
 void Server::save_state() {
   state_dirty_ = false;
-  ServerState state{private_key_,     world_number_,     port_,     links_.links(),
-                     seats_.records(), bans_.bans(), unix_now()};
+  ServerState state{private_key_,     world_number_, port_,     links_.links(),
+                    seats_.records(), bans_.bans(),  unix_now()};
   wire::Bytes blob = wire::encoded(state);
   const std::lock_guard lock(state_mutex_);
   state_blob_ = std::move(blob);

@@ -26,9 +26,10 @@ Outcome Server::run(const ConsoleCommand& command) {
   const Outcome no_link{false, "there is no link '" + command.text + "'. `links` lists them"};
   switch (command.verb) {
     case ConsoleVerb::kNothing:
+    case ConsoleVerb::kTake:  // a peer's
       return {true, {}};
     case ConsoleVerb::kHelp:
-      return {true, console_help()};
+      return {true, console_help(Console::kHost)};
     case ConsoleVerb::kWho:
       return {true, who_text()};
     case ConsoleVerb::kLinks:

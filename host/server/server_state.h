@@ -11,9 +11,9 @@
 namespace slosh {
 
 struct ServerState {
-  wire::Bytes private_key;    ///< Identity::private_key(): keep what holds it to its owner (mode 0600)
+  wire::Bytes private_key;  ///< Identity::private_key(): keep what holds it to its owner (mode 0600)
   std::uint64_t world = 0;  ///< Welcome::world
-  std::uint16_t port = 0;     ///< where the host listened, so that the links stay right; 0 = not known
+  std::uint16_t port = 0;   ///< where the host listened, so that the links stay right; 0 = not known
   std::vector<LinkRecord> links;
   std::vector<SeatRecord> seats;
   std::vector<BanRecord> bans;

@@ -30,7 +30,7 @@ void SnapshotCoder::see(const Snapshot& snapshot, std::uint32_t newest_run) {
 }
 
 void SnapshotCoder::code(const Snapshot& snapshot, SnapshotOrder order, std::vector<CodedSnapshot>& out,
-                        bool again) {
+                         bool again) {
   const std::int64_t begin = steady_now_ns();
   for (MendOrder& wish : order.mends) {
     const std::pair key{wish.peer, wish.tier};
@@ -94,7 +94,7 @@ void SnapshotCoder::mend(int tier, const EncodedFrame& frame, CodedSnapshot& out
 }
 
 SnapshotThread::SnapshotThread(SnapshotQueue& snapshots, SnapshotDesk& desk, SnapshotDemand& demand,
-                             double spacing, std::uint32_t run, std::function<void()> wake)
+                               double spacing, std::uint32_t run, std::function<void()> wake)
     : snapshots_(snapshots), desk_(desk), demand_(demand), coder_(spacing, run), wake_(std::move(wake)) {
   thread_ = std::thread([this] { this->run(); });
 }

@@ -10,8 +10,8 @@
 #include <thread>
 #include <vector>
 
-#include "host/snapshot_demand.h"
 #include "host/server/snapshot_desk.h"
+#include "host/snapshot_demand.h"
 #include "net/snapshot_queue.h"
 
 namespace slosh {
@@ -22,12 +22,14 @@ class SnapshotCoder {
   /// `spacing` in m; `run` is BodyMessage::run of the first snapshot.
   explicit SnapshotCoder(double spacing, std::uint32_t run = 0);
 
-  /// Every snapshot of the world in order, also one that is not coded. `newest_run` (BodyMessage::run) is that
-  /// of the newest snapshot made; this one is of it when its tick is not above the last one's, else of the run
-  /// before: a world that stands shows the same tick again, and a reset may come while older snapshots wait.
+  /// Every snapshot of the world in order, also one that is not coded. `newest_run` (BodyMessage::run) is
+  /// that of the newest snapshot made; this one is of it when its tick is not above the last one's, else of
+  /// the run before: a world that stands shows the same tick again, and a reset may come while older
+  /// snapshots wait.
   void see(const Snapshot& snapshot, std::uint32_t newest_run);
   /// Codes one snapshot for the tiers whose turn it is; for all that are watched when it is shown `again`.
-  void code(const Snapshot& snapshot, SnapshotOrder order, std::vector<CodedSnapshot>& out, bool again = false);
+  void code(const Snapshot& snapshot, SnapshotOrder order, std::vector<CodedSnapshot>& out,
+            bool again = false);
 
   double seconds() const { return seconds_; }  ///< spent coding
 
@@ -51,13 +53,13 @@ class SnapshotCoder {
   double seconds_ = 0.0;
 };
 
-/// Takes every snapshot from a queue, codes it, lays it on the desk and calls `wake`. Leaves snapshots out when
-/// it falls behind. While the world stands it shows the last one again ten times a second, for who comes
+/// Takes every snapshot from a queue, codes it, lays it on the desk and calls `wake`. Leaves snapshots out
+/// when it falls behind. While the world stands it shows the last one again ten times a second, for who comes
 /// late.
 class SnapshotThread {
  public:
   SnapshotThread(SnapshotQueue& snapshots, SnapshotDesk& desk, SnapshotDemand& demand, double spacing,
-                std::uint32_t run, std::function<void()> wake);
+                 std::uint32_t run, std::function<void()> wake);
   ~SnapshotThread();  ///< waits; the queue must be closed
   SnapshotThread(const SnapshotThread&) = delete;
   SnapshotThread& operator=(const SnapshotThread&) = delete;

@@ -4,7 +4,7 @@
 
 #include "net/quic/connection.h"
 #include "net/quic/frame_guard.h"
-#include "net/quic/random.h"
+#include "net/random.h"
 #include "net/wire/messages.h"
 
 namespace slosh::quic {

@@ -6,7 +6,7 @@
 
 #include "net/quic/callbacks.h"
 #include "net/quic/close_words.h"
-#include "net/quic/random.h"
+#include "net/random.h"
 #include "net/wire/messages.h"
 
 namespace slosh::quic {

@@ -1,7 +1,7 @@
 #include <stdexcept>
 
 #include "net/quic/identity_impl.h"
-#include "net/quic/random.h"
+#include "net/random.h"
 
 namespace slosh {
 namespace {
@@ -15,7 +15,7 @@ void certify(Identity::Impl& impl) {
   check(gnutls_x509_crt_init(&impl.certificate), "certificate");
   gnutls_x509_crt_t certificate = impl.certificate;
   std::uint8_t serial[16];
-  quic::fill_random(serial);
+  fill_random(serial);
   serial[0] &= 0x7f;  // a serial number is positive
   serial[0] |= 0x01;
   check(gnutls_x509_crt_set_version(certificate, 3), "certificate version");

@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "net/clock.h"
-#include "net/quic/random.h"
+#include "net/random.h"
 
 namespace slosh::quic {
 namespace {
@@ -20,7 +20,7 @@ std::string text_of(const ngtcp2_cid& id) {
 }  // namespace
 
 Listener::Listener(std::unique_ptr<UdpSocket> socket, const Identity& identity, EndpointEvents& events,
-               const EndpointOptions& options)
+                   const EndpointOptions& options)
     : EndpointBase(identity, {}, events, options),
       budget_(options.handshakes_per_second, options.handshakes_in_all),
       answers_left_(0.0) {
@@ -50,7 +50,7 @@ void Listener::packet_arrived(UdpSocket& socket, const Arrival& packet, std::int
 }
 
 void Listener::unknown_packet(UdpSocket& socket, const Arrival& packet, const ngtcp2_version_cid& ids,
-                            std::int64_t now) {
+                              std::int64_t now) {
   const auto grave = graves_.find(std::string(reinterpret_cast<const char*>(ids.dcid), ids.dcidlen));
   if (grave != graves_.end()) {
     Grave& found = *grave->second;

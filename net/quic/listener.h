@@ -14,7 +14,7 @@ namespace slosh::quic {
 class Listener final : public EndpointBase {
  public:
   Listener(std::unique_ptr<UdpSocket> socket, const Identity& identity, EndpointEvents& events,
-         const EndpointOptions& options);
+           const EndpointOptions& options);
   ~Listener() override;
   void admit(ConnectionId connection) override;
   void set_known_keys(std::function<bool(const KeyFingerprint&)> known) override {

@@ -2,8 +2,8 @@
 #include <algorithm>
 
 #include "net/clock.h"
-#include "net/quic/random.h"
 #include "net/quic/listener.h"
+#include "net/random.h"
 
 namespace slosh::quic {
 namespace {
@@ -47,7 +47,7 @@ void Listener::first_packet(UdpSocket& socket, const Arrival& packet, std::int64
 
 /// A token is good for one connection, from the address and in the time that it was made for.
 bool Listener::token_valid(const ngtcp2_pkt_hd& header, const Arrival& packet, std::int64_t now,
-                         FirstPacket& first) {
+                           FirstPacket& first) {
   const std::uint8_t* token = nullptr;
   std::size_t size = 0;
   token_of(header, token, size);
@@ -68,7 +68,7 @@ bool Listener::token_valid(const ngtcp2_pkt_hd& header, const Arrival& packet, s
 }
 
 void Listener::answer_retry(UdpSocket& socket, const Arrival& packet, const ngtcp2_pkt_hd& header,
-                          std::int64_t now) {
+                            std::int64_t now) {
   if (!may_answer(now)) {
     ++counts_.packets_ignored;
     return;
@@ -91,7 +91,7 @@ void Listener::answer_retry(UdpSocket& socket, const Arrival& packet, const ngtc
 }
 
 void Listener::answer_version(UdpSocket& socket, const Arrival& packet, const ngtcp2_version_cid& ids,
-                            std::int64_t now) {
+                              std::int64_t now) {
   ++counts_.packets_ignored;
   const auto out = socket.space();
   if (packet.bytes.size() < kMaxPacket || out.empty() || !may_answer(now)) return;
@@ -107,7 +107,7 @@ void Listener::answer_version(UdpSocket& socket, const Arrival& packet, const ng
 /// Tells a peer of an earlier life of this host that its connection is gone. Always shorter than what came,
 /// so that two hosts cannot keep answering each other.
 void Listener::answer_reset(UdpSocket& socket, const Arrival& packet, const ngtcp2_version_cid& ids,
-                          std::int64_t now) {
+                            std::int64_t now) {
   ++counts_.packets_ignored;
   constexpr std::size_t kSmallest = NGTCP2_STATELESS_RESET_TOKENLEN + NGTCP2_MIN_STATELESS_RESET_RANDLEN;
   const auto out = socket.space();

@@ -137,7 +137,7 @@ struct Welcome {
   std::uint64_t particles = 0;                   ///< fluid particles at the start
   double spacing = 0.01;                         ///< m between particles
   double time_step = 0.001;                      ///< s, a tick's length
-  double snapshot_rate = 0.0;                     ///< snapshots a second that the host can send at most
+  double snapshot_rate = 0.0;                    ///< snapshots a second that the host can send at most
   bool restored = false;                         ///< a seat of the last minute was given back with its grips
   Capabilities capabilities = kOurCapabilities;  ///< agreed: the host's, of those that Hello named
 };

@@ -1,5 +1,6 @@
 #include "peer/haptics/make_device.h"
 
+#include "net/grip_start.h"
 #include "peer/haptics/script_device.h"
 
 namespace slosh {
@@ -8,11 +9,6 @@ namespace {
 constexpr const char* kReplay = "replay:";
 
 }  // namespace
-
-Pose grip_start(const Scene& scene, std::size_t grip) {
-  const Grip& g = scene.grips[grip];
-  return compose(scene.bodies[static_cast<std::size_t>(g.body)].pose, g.pose);
-}
 
 Result<HandDevice> make_device(const Scene& scene, std::size_t grip, const std::string& spec,
                                const Pose& start, bool has_window) {

@@ -16,9 +16,6 @@ struct DeviceSet {
   std::vector<std::shared_ptr<MouseTarget>> mouse_targets;  ///< one a grip, null where it is not a mouse
 };
 
-/// World pose of a grip at the start of the scene.
-Pose grip_start(const Scene& scene, std::size_t grip);
-
 /// One hand's device; `mouse` where it is one.
 struct HandDevice {
   std::unique_ptr<Device> device;

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "net/clock.h"
+#include "net/grip_start.h"
 #include "net/leap.h"
-#include "peer/haptics/make_device.h"
 
 namespace slosh {
 namespace {

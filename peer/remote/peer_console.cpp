@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <limits>
 
+#include "net/console_verbs.h"
 #include "net/console_words.h"
-#include "net/wire/text.h"
 
 namespace slosh {
 namespace {
@@ -42,6 +42,12 @@ std::string status_lines(const RemoteStatus& status, const Scene& scene, double 
     all += text;
   }
   return all;
+}
+
+std::string everybody(const RemoteStatus& status, const Scene& scene) {
+  std::vector<std::string> grips;
+  for (const Grip& grip : scene.grips) grips.push_back(grip.name);
+  return people_text(status, grips, kEverybody);
 }
 
 PeerLine take(const std::vector<std::string>& words, const Scene& scene) {
@@ -105,42 +111,35 @@ PeerLine peer_line(std::string_view typed, const RemoteStatus& status, const Sce
   const Result<std::vector<std::string>> split = console_words(typed);
   if (!split) return say(split.error().text());
   const std::vector<std::string>& words = split.value();
-  if (words.empty()) return {};
-  const std::string& verb = words[0];
-  if (verb == "set") return set(words, scene);
-  const bool with_grip = verb == "take" || verb == "release";
-  if (words.size() > (with_grip ? 2u : 1u))
-    return say(verb + (with_grip ? " needs one grip or none. Put a name of several words in quotes"
-                                 : " stands alone. Type help for what may be said"));
-  if (verb == "take") return take(words, scene);
-  if (verb == "release") return release(words, status, scene);
-  if (verb == "help") return say(peer_console_help());
-  if (verb == "who") {
-    std::vector<std::string> grips;
-    for (const Grip& grip : scene.grips) grips.push_back(grip.name);
-    return say(people_text(status, grips, kEverybody));
+  const Result<ConsoleVerb> verb = console_verb(Console::kPeer, words);
+  if (!verb) return say(verb.error().text());
+  switch (verb.value()) {
+    case ConsoleVerb::kHelp:
+      return say(console_help(Console::kPeer));
+    case ConsoleVerb::kWho:
+      return say(everybody(status, scene));
+    case ConsoleVerb::kTake:
+      return take(words, scene);
+    case ConsoleVerb::kRelease:
+      return release(words, status, scene);
+    case ConsoleVerb::kPause:
+      return world(wire::WorldAction::kPause);
+    case ConsoleVerb::kContinue:
+      return world(wire::WorldAction::kContinue);
+    case ConsoleVerb::kReset:
+      return world(wire::WorldAction::kReset);
+    case ConsoleVerb::kSet:
+      return set(words, scene);
+    case ConsoleVerb::kStatus:
+      return say(status_lines(status, scene, picture_delay, now_ns));
+    case ConsoleVerb::kQuit: {
+      PeerLine line;
+      line.quit = true;
+      return line;
+    }
+    default:
+      return {};
   }
-  if (verb == "status") return say(status_lines(status, scene, picture_delay, now_ns));
-  if (verb == "pause") return world(wire::WorldAction::kPause);
-  if (verb == "continue") return world(wire::WorldAction::kContinue);
-  if (verb == "reset") return world(wire::WorldAction::kReset);
-  if (verb == "quit") {
-    PeerLine line;
-    line.quit = true;
-    return line;
-  }
-  return say("'" + wire::clean_text(verb, 40) + "' means nothing here. Type help for what may be said");
-}
-
-const char* peer_console_help() {
-  return "who                            who is here and holds what\n"
-         "take [GRIP]                    take hold of a grip, or of the first free one\n"
-         "release [GRIP]                 let go of a grip, or of all that you hold\n"
-         "pause, continue, reset         the world, for everybody\n"
-         "set viscosity [FLUID] X        Pa·s, while the world runs\n"
-         "set gravity X                  times the scene's, 0 to 2\n"
-         "status                         how the network and the world do\n"
-         "quit                           leave";
 }
 
 }  // namespace slosh

@@ -23,7 +23,4 @@ struct PeerLine {
 PeerLine peer_line(std::string_view typed, const RemoteStatus& status, const Scene& scene,
                    double picture_delay, std::int64_t now_ns);
 
-/// What `help` prints.
-const char* peer_console_help();
-
 }  // namespace slosh

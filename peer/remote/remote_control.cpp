@@ -49,8 +49,8 @@ void RemoteLink::say_hello() {
   hello.token = options_.token;
   hello.name = options_.name;
   hello.snapshots = !options_.snapshots.wanted ? wire::SnapshotWish::kNone
-                   : options_.snapshots.film  ? wire::SnapshotWish::kFilm
-                                             : wire::SnapshotWish::kNewest;
+                    : options_.snapshots.film  ? wire::SnapshotWish::kFilm
+                                               : wire::SnapshotWish::kNewest;
   say(hello);
 }
 

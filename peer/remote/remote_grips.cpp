@@ -1,9 +1,9 @@
 // What a peer asks for: grips, the world, its parameters. A part of RemoteLink.
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstdio>
 
+#include "net/console_words.h"
 #include "peer/remote/remote_link.h"
 
 namespace slosh {
@@ -37,23 +37,9 @@ void RemoteLink::ask_for_grips() {
     return;
   }
   for (const std::string& wish : options_.grips) {
-    std::uint32_t number = 0;
-    const auto& grips = world_.scene.grips;
-    const auto named =
-        std::find_if(grips.begin(), grips.end(), [&](const Grip& grip) { return grip.name == wish; });
-    const auto [at, code] = std::from_chars(wish.data(), wish.data() + wish.size(), number);
-    const bool is_number = code == std::errc() && at == wish.data() + wish.size() && number < grips.size();
-    if (named != grips.end()) {
-      request_grip(static_cast<std::uint32_t>(named - grips.begin()), true, false);
-    } else if (is_number) {
-      request_grip(number, true, false);
-    } else {
-      std::string names;
-      for (const Grip& grip : grips) names += (names.empty() ? "" : ", ") + grip.name;
-      end(Error{"--grip", "the scene has no grip '" + wish + "'",
-                names.empty() ? "It has none at all" : "It has " + names});
-      return;
-    }
+    const std::optional<std::size_t> grip = index_named(world_.scene.grips, wish);
+    if (!grip) return end(Error{"--grip", no_grip_text(wish, world_.scene.grips), {}});
+    request_grip(static_cast<std::uint32_t>(*grip), true, false);
   }
 }
 

@@ -19,9 +19,9 @@
 #include "peer/remote/body_inbox.h"
 #include "peer/remote/clock_sync.h"
 #include "peer/remote/link_steps.h"
-#include "peer/remote/snapshot_maker.h"
 #include "peer/remote/pose_uplink.h"
 #include "peer/remote/remote_status.h"
+#include "peer/remote/snapshot_maker.h"
 #include "scenes/scene.h"
 
 namespace slosh {

@@ -118,7 +118,7 @@ void SnapshotHistory::add(std::uint32_t run, const BodySnapshot& bodies) {
 }
 
 void SnapshotHistory::add_hand(std::uint32_t run, std::size_t grip, double time, const Pose& pose,
-                              bool engaged) {
+                               bool engaged) {
   if (any_run_ || run != run_ || grip >= kMostGrips) return;
   if (grip >= hands_.size()) hands_.resize(grip + 1);
   std::deque<HandSample>& samples = hands_[grip];

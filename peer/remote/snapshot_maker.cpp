@@ -51,7 +51,7 @@ void SnapshotMaker::note_bodies(const BodyMessage& bodies) {
 }
 
 void SnapshotMaker::note_hand(std::uint32_t run, std::size_t grip, double time, const Pose& pose,
-                             bool engaged) {
+                              bool engaged) {
   const std::lock_guard lock(mutex_);
   history_.add_hand(run, grip, time, pose, engaged);
 }
@@ -170,7 +170,7 @@ void SnapshotMaker::run() {
 }
 
 void SnapshotMaker::take_pieces(const std::vector<std::vector<std::uint8_t>>& pieces, bool anew,
-                               bool to_the_end) {
+                                bool to_the_end) {
   if (anew) decoders_ = StreamDecoders();
   const std::uint32_t patience = options_.film ? kFilmPatience : kWindowPatience;
   for (const std::vector<std::uint8_t>& piece : pieces) {

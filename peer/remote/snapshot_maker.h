@@ -17,8 +17,8 @@
 #include "net/snapshot_queue.h"
 #include "peer/remote/body_inbox.h"
 #include "peer/remote/film_times.h"
-#include "peer/remote/snapshot_history.h"
 #include "peer/remote/shown_time.h"
+#include "peer/remote/snapshot_history.h"
 #include "peer/remote/stream_decoders.h"
 
 namespace slosh {
@@ -31,14 +31,14 @@ struct SnapshotMakerOptions {
 };
 
 struct SnapshotReport {
-  Histogram age;                      ///< of what was shown, behind the host's world, s
-  std::uint64_t frames = 0;           ///< snapshots decoded
-  std::uint64_t whole = 0;            ///< of these, with every particle of their own moment
-  std::uint64_t bytes = 0;            ///< of pieces
-  std::uint64_t refused = 0;          ///< pieces that were damaged
-  std::uint64_t overrun = 0;          ///< pieces that came faster than they could be decoded
-  std::uint64_t shown = 0;            ///< made
-  double delay = 0.0;                 ///< s behind the host, now
+  Histogram age;                    ///< of what was shown, behind the host's world, s
+  std::uint64_t frames = 0;         ///< snapshots decoded
+  std::uint64_t whole = 0;          ///< of these, with every particle of their own moment
+  std::uint64_t bytes = 0;          ///< of pieces
+  std::uint64_t refused = 0;        ///< pieces that were damaged
+  std::uint64_t overrun = 0;        ///< pieces that came faster than they could be decoded
+  std::uint64_t shown = 0;          ///< made
+  double delay = 0.0;               ///< s behind the host, now
   double first_shown_time = -1.0;   ///< simulated s; −1 = none yet
   double last_shown_time = -1.0;    ///< simulated s
   std::int64_t first_shown_ns = 0;  ///< steady clock; 0 = none yet

@@ -24,7 +24,7 @@ std::string footer() {
          "until the first hand takes hold (--wait 2: the second; --wait 0: it starts at once).\n"
          "\n"
          "While it runs, type (or use `slosh links` from elsewhere):\n" +
-         std::string(console_help()) +
+         console_help(Console::kHost) +
          "\n\n"
          "The world is saved to a file twice a second. Should a fault end it, or should it hang for a "
          "minute,\n"

@@ -10,8 +10,8 @@
 #include "peer/output/line_input.h"
 #include "peer/output/summary.h"
 #include "peer/verbs/host_links.h"
-#include "peer/verbs/hosted_run.h"
 #include "peer/verbs/host_supervisor.h"
+#include "peer/verbs/hosted_run.h"
 #include "peer/verbs/interrupt.h"
 #include "peer/verbs/verbs.h"
 
@@ -175,8 +175,8 @@ int run_host(const HostVerbOptions& options, HostReins* reins) {
   if (options.restarts == 0) print_links(run);
   if (!options.links_file.empty()) {
     const Result<bool> written = write_private(
-        options.links_file, links_for_scripts(run.first_links(),
-                                              [&](const LinkRecord& link) { return run.text_of(link); }));
+        options.links_file,
+        links_for_scripts(run.first_links(), [&](const LinkRecord& link) { return run.text_of(link); }));
     if (!written) return fail(written.error());
   }
   progress.phase("hosting");

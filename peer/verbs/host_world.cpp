@@ -6,7 +6,7 @@
 
 #include "host/keep/rebuild.h"
 #include "host/keep/secrets.h"
-#include "host/server/hands.h"
+#include "net/grip_start.h"
 #include "peer/output/summary.h"
 #include "peer/verbs/time_estimate.h"
 
@@ -28,7 +28,7 @@ Result<HostedWorld> start_anew(const HostVerbOptions& options, Progress& progres
   // The host itself holds every grip where it starts until somebody takes it.
   std::vector<HandleInput> hands;
   for (std::size_t i = 0; i < p.scene.grips.size(); ++i)
-    hands.push_back({stand_pose(p.scene, i), Twist{}, true, 1.0});
+    hands.push_back({grip_start(p.scene, i), Twist{}, true, 1.0});
   const Result<bool> agreed =
       agree_on_time(*hosted.world, hands,
                     {kSettle, std::numeric_limits<double>::infinity(), true, options.agreed}, progress);
@@ -43,7 +43,7 @@ Result<HostedWorld> start_anew(const HostVerbOptions& options, Progress& progres
 
 /// The server's state that belongs to a checkpoint; none, with a note, where it was not brought along.
 Result<std::optional<ServerState>> read_server_state(const std::string& file, const keep::Checkpoint& kept,
-                                                 Progress& progress) {
+                                                     Progress& progress) {
   Result<std::optional<keep::Secrets>> read = keep::read_secrets(file);
   if (!read) return read.error();
   const std::string name = keep::secrets_of(file).string();

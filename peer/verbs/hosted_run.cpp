@@ -29,7 +29,7 @@ std::string state_folder() {
 }  // namespace
 
 Result<std::unique_ptr<HostedRun>> HostedRun::create(HostedWorld& hosted, const HostVerbOptions& options,
-                                                         std::atomic<std::uint64_t>* pulse) {
+                                                     std::atomic<std::uint64_t>* pulse) {
   std::unique_ptr<HostedRun> run(new HostedRun(hosted, options));
   HostedRun& s = *run;
   const Scene& scene = hosted.prepared.scene;
@@ -213,9 +213,9 @@ HostedRun::~HostedRun() {
 }
 
 void HostedRun::start() {
-  snapshots_ =
-      std::make_unique<SnapshotThread>(channel_->snapshots(), desk_, demand_, hosted_.prepared.sampled.spacing,
-                                      hosted_.state.run, [this] { server_->mailbox().wake(); });
+  snapshots_ = std::make_unique<SnapshotThread>(channel_->snapshots(), desk_, demand_,
+                                                hosted_.prepared.sampled.spacing, hosted_.state.run,
+                                                [this] { server_->mailbox().wake(); });
   net_->start();
   host_->start();
 }

@@ -24,7 +24,7 @@ class HostedRun {
   /// `hosted` must outlive it; its world is taken. Errors: the address cannot be listened at, a file cannot
   /// be written, the scene does not fit into a message. `pulse`: as HostOptions::pulse.
   static Result<std::unique_ptr<HostedRun>> create(HostedWorld& hosted, const HostVerbOptions& options,
-                                                     std::atomic<std::uint64_t>* pulse = nullptr);
+                                                   std::atomic<std::uint64_t>* pulse = nullptr);
   ~HostedRun();
   HostedRun(const HostedRun&) = delete;
   HostedRun& operator=(const HostedRun&) = delete;

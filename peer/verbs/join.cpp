@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "net/clock.h"
+#include "net/console_verbs.h"
 #include "net/link.h"
-#include "peer/remote/peer_console.h"
 #include "peer/remote/peer_key.h"
 #include "peer/verbs/common_options.h"
 #include "peer/verbs/interrupt.h"
@@ -196,7 +196,7 @@ void add(CLI::App& app, VerbRun& chosen, bool watch) {
                   "Folder for the results (headless: out/<scene>-<name>, numbered; a window: none)");
   add_show_options(*verb, *o, true);
   verb->add_option("--key", o->key, "File with your key, made on first use (one for each person)");
-  verb->footer(std::string(kFiles) + (watch ? kWatchFiles : kJoinFiles) + peer_console_help() +
+  verb->footer(std::string(kFiles) + (watch ? kWatchFiles : kJoinFiles) + console_help(Console::kPeer) +
                (watch ? kWatchEnd : kJoinEnd));
   verb->callback([&chosen, o] { chosen = [o] { return join(*o); }; });
 }

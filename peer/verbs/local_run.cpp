@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "peer/verbs/hand_trouble.h"
+#include "peer/verbs/run_report.h"
 #include "peer/verbs/time_estimate.h"
 
 namespace slosh {
@@ -11,14 +12,10 @@ namespace {
 constexpr double kSettle = 1.0;  // simulated s
 constexpr std::size_t kSnapshotBytes = std::size_t{512} << 20;
 
-Spread spread_of(const Histogram& histogram, double unit) {
-  return {histogram.percentile(0.5) * unit, histogram.percentile(0.99) * unit, histogram.max() * unit};
-}
-
 }  // namespace
 
 Result<std::unique_ptr<LocalRun>> LocalRun::create(const Prepared& prepared, DeviceSet devices,
-                                                 double snapshot_rate, Progress* progress) {
+                                                   double snapshot_rate, Progress* progress) {
   std::unique_ptr<LocalRun> run(new LocalRun(prepared));
   for (const std::unique_ptr<Device>& device : devices.devices) {
     const Result<bool> opened = open_device(*device);
@@ -143,8 +140,10 @@ Rates LocalRun::note_rates() {
 
 void LocalRun::report(RunSummary& s) const {
   const HostReport& host = host_->report();
-  s.scene = prepared_.scene.name;
-  s.scene_file = prepared_.scene.source_file;
+  report_stage(prepared_, s);
+  report_time(host.simulated, host.wall, s);
+  report_steps(host.total, host.step_time, s);
+  report_hands(*loop_, *servo_, *recorder_, prepared_.scene, s);
   s.spacing = prepared_.sampled.spacing;
   s.spacing_reason = prepared_.spacing_reason;
   s.fluid_particles = host_->world().fluid_count();
@@ -152,45 +151,20 @@ void LocalRun::report(RunSummary& s) const {
   s.retired_particles = host.diagnostics.retired;
   s.steps = host.steps;
   s.time_step = prepared_.plan.time_step;
-  s.simulated = host.simulated;
-  s.wall = host.wall;
-  s.real_time_factor = host.wall > 0.0 ? host.simulated / host.wall : 0.0;
-  s.step_ms = spread_of(host.step_time, 1e3);
-  const double total = host.total.total > 0.0 ? host.total.total : 1.0;
-  s.share_sort = host.total.sort / total;
-  s.share_density = host.total.density / total;
-  s.share_force = host.total.force / total;
-  s.share_body = host.total.body / total;
-  const DeviceLoopReport& loop = loop_->report();
-  s.device_loop_us = spread_of(loop.period, 1e6);
-  s.device_ticks = loop.ticks;
-  s.device_missed = loop.missed;
-  s.device_scheduler = loop.scheduler();
-  s.device_memory_locked = loop.memory_locked;
-  s.status = host.status | servo_->status();
+  s.status |= host.status;
   s.status_steps = host.status_steps;
   s.slips = host.slips;
   s.slipped = host.slipped;
-  s.rejected_poses = host.rejected_poses + servo_->reports_rejected();
-  s.samples_lost = servo_->samples_lost();
+  s.rejected_poses += host.rejected_poses;
   s.fluid_mass_start = host.start_mass;
   s.fluid_mass_end = host.diagnostics.mass;
-  for (std::size_t i = 0; i < servo_->devices(); ++i) {
-    const Peak& peak = recorder_->peaks()[i];
-    s.devices.push_back({prepared_.scene.grips[i].name, servo_->device(i)->kind(), peak.force, peak.torque});
-  }
   s.backend = backend_name(prepared_.backend);
   s.threads = prepared_.threads;
-  s.machine = prepared_.machine;
-  s.version = SLOSH_VERSION;
-  s.folder = prepared_.folder.string();
   if (recording_) {
     s.recording = prepared_.record.string();
     s.recording_problem = !recorded_.problem.empty() ? recorded_.problem : recorded_.totals.ended_early;
   }
   if (!prepared_.folder.empty()) s.files = {"wrenches.csv", "poses.csv"};
-  for (const std::string& each : run_troubles(recorder_->problem(), *servo_, prepared_.scene))
-    s.problems.push_back(each);
   report_instruments(measurer_.get(), prepared_.scene, prepared_.sampled, host_->world(), s);
 }
 

@@ -24,7 +24,7 @@ class LocalRun final : public LiveRun {
   /// null where that was told already. Errors: a device cannot be opened, a file cannot be written, it takes
   /// too long.
   static Result<std::unique_ptr<LocalRun>> create(const Prepared& prepared, DeviceSet devices,
-                                                 double snapshot_rate, Progress* progress);
+                                                  double snapshot_rate, Progress* progress);
   ~LocalRun() override;
   LocalRun(const LocalRun&) = delete;
   LocalRun& operator=(const LocalRun&) = delete;

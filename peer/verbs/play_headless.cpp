@@ -7,8 +7,8 @@
 #include <thread>
 
 #include "peer/verbs/interrupt.h"
-#include "peer/verbs/play_modes.h"
 #include "peer/verbs/local_run.h"
+#include "peer/verbs/play_modes.h"
 #include "peer/view/headless_view.h"
 
 namespace slosh {

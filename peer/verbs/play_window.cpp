@@ -6,8 +6,8 @@
 #include "net/clock.h"
 #include "peer/output/video.h"
 #include "peer/verbs/interrupt.h"
-#include "peer/verbs/play_modes.h"
 #include "peer/verbs/local_run.h"
+#include "peer/verbs/play_modes.h"
 #include "peer/view/mouse_hand.h"
 #include "peer/view/painter.h"
 #include "render/context.h"
@@ -210,8 +210,8 @@ Result<bool> play_in_window(const Prepared& prepared, const PlayOptions& options
   const MakeRun make_run = [&]() -> Result<std::unique_ptr<LiveRun>> {
     Result<DeviceSet> devices = make_devices(prepared.scene, options.devices, true);
     if (!devices) return devices.error();
-    Result<std::unique_ptr<LocalRun>> run =
-        LocalRun::create(prepared, std::move(devices.value()), kWindowSnapshotRate, told ? nullptr : &progress);
+    Result<std::unique_ptr<LocalRun>> run = LocalRun::create(prepared, std::move(devices.value()),
+                                                             kWindowSnapshotRate, told ? nullptr : &progress);
     if (!run) return run.error();
     told = true;
     catch_interrupts();

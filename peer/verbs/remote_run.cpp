@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "net/clock.h"
+#include "net/grip_start.h"
 #include "peer/remote/peer_console.h"
+#include "peer/verbs/run_report.h"
 
 namespace slosh {
 
@@ -179,36 +181,15 @@ void RemoteRun::report(RunSummary& s) const {
   const RemoteStatus status = visit_.status();
   const LinkNumbers& numbers = status.numbers;
   const SnapshotReport shown = visit_.world().maker->report();
-  s.scene = stage_.scene.name;
+  report_stage(stage_, s);
+  report_time(elapsed_, to_seconds(stop_ns_ - start_ns_), s);
+  report_hands(*loop_, *servo_, *recorder_, stage_.scene, s);
   s.spacing = visit_.world().spacing;
   s.spacing_reason = "the host's";
   s.fluid_particles = status.welcome.particles;
   s.time_step = status.welcome.time_step;
-  s.simulated = elapsed_;
-  s.wall = to_seconds(stop_ns_ - start_ns_);
-  s.real_time_factor = s.wall > 0.0 ? elapsed_ / s.wall : 0.0;
-  const DeviceLoopReport& loop = loop_->report();
-  s.device_loop_us = {1e6 * loop.period.percentile(0.5), 1e6 * loop.period.percentile(0.99),
-                      1e6 * loop.period.max()};
-  s.device_ticks = loop.ticks;
-  s.device_missed = loop.missed;
-  s.device_scheduler = loop.scheduler();
-  s.device_memory_locked = loop.memory_locked;
-  s.status = servo_->status();
-  s.rejected_poses = servo_->reports_rejected();
-  s.samples_lost = servo_->samples_lost();
-  for (std::size_t i = 0; i < servo_->devices(); ++i) {
-    if (servo_->device(i) == nullptr) continue;
-    const Peak& peak = recorder_->peaks()[i];
-    s.devices.push_back({grip_names_[i], servo_->device(i)->kind(), peak.force, peak.torque});
-  }
   s.backend = "the host's";
-  s.machine = stage_.machine;
-  s.version = SLOSH_VERSION;
-  s.folder = stage_.folder.string();
   if (!stage_.folder.empty() && !s.devices.empty()) s.files = {"wrenches.csv", "poses.csv"};
-  for (const std::string& each : run_troubles(recorder_->problem(), *servo_, stage_.scene))
-    s.problems.push_back(each);
 
   NetworkSummary n;
   n.host = options_.host;
@@ -219,8 +200,7 @@ void RemoteRun::report(RunSummary& s) const {
   n.clock_error = numbers.clock_error;
   n.hand_delay = numbers.body_delay;
   n.picture_delay = shown.delay;
-  n.age_ms = {1e3 * shown.age.percentile(0.5), 1e3 * shown.age.percentile(0.99),
-              1e3 * shown.age.max()};
+  n.age_ms = {1e3 * shown.age.percentile(0.5), 1e3 * shown.age.percentile(0.99), 1e3 * shown.age.max()};
   n.bytes_received = numbers.bytes_received;
   n.bytes_sent = numbers.bytes_sent;
   n.seconds = to_seconds(stop_ns_ - options_.begin_ns);
@@ -233,8 +213,7 @@ void RemoteRun::report(RunSummary& s) const {
   n.datagrams_refused = numbers.bad_datagrams;
   n.reconnects = numbers.reconnects;
   n.to_live = to_seconds(status.live_ns - options_.begin_ns);
-  n.to_first_picture =
-      shown.first_shown_ns == 0 ? 0.0 : to_seconds(shown.first_shown_ns - options_.begin_ns);
+  n.to_first_picture = shown.first_shown_ns == 0 ? 0.0 : to_seconds(shown.first_shown_ns - options_.begin_ns);
   n.first_picture_time = shown.first_shown_time;
   n.last_picture_time = shown.last_shown_time;
   n.ended = status.error ? status.error->text() : status.farewell;

@@ -6,6 +6,7 @@
 
 #include "net/clock.h"
 #include "peer/output/recorder.h"
+#include "peer/verbs/run_report.h"
 
 namespace slosh {
 namespace {
@@ -138,8 +139,9 @@ void ReplayRun::report(RunSummary& s) const {
   const World& world = replayer_.world();
   const Diagnostics end = world.diagnostics();
   const keep::ReplayVerdict& verdict = replayer_.verdict();
-  s.scene = stage_.scene.name;
-  s.scene_file = stage_.scene.source_file;
+  report_stage(stage_, s);
+  report_time(replayer_.elapsed(), wall_, s);
+  report_steps(total_, step_time_, s);
   s.spacing = replayer_.head().spacing;
   s.spacing_reason = "as it was recorded";
   s.fluid_particles = world.fluid_count();
@@ -147,23 +149,11 @@ void ReplayRun::report(RunSummary& s) const {
   s.retired_particles = end.retired;
   s.steps = verdict.steps;
   s.time_step = world.plan().time_step;
-  s.simulated = replayer_.elapsed();
-  s.wall = wall_;
-  s.real_time_factor = wall_ > 0.0 ? s.simulated / wall_ : 0.0;
-  s.step_ms = {1e3 * step_time_.percentile(0.5), 1e3 * step_time_.percentile(0.99), 1e3 * step_time_.max()};
-  const double total = total_.total > 0.0 ? total_.total : 1.0;
-  s.share_sort = total_.sort / total;
-  s.share_density = total_.density / total;
-  s.share_force = total_.force / total;
-  s.share_body = total_.body / total;
   s.status = replayer_.status();
   s.fluid_mass_start = start_mass_;
   s.fluid_mass_end = end.mass;
   s.devices = peaks_;
   s.backend = backend_name(replayer_.backend());
-  s.machine = stage_.machine;
-  s.version = SLOSH_VERSION;
-  s.folder = stage_.folder.string();
   s.verdict = verdict.text(replayer_.head().spacing);
   if (wrenches_) s.files.emplace_back("wrenches.csv");
   if (wrenches_ && !wrenches_->problem().empty()) s.problems.push_back(wrenches_->problem());

@@ -16,8 +16,8 @@ namespace slosh {
 
 class ReplayRun final : public LiveRun {
  public:
-  /// `replayer` and `stage` must outlive it. `snapshot_rate` in snapshots a simulated second, 0 = none. Errors:
-  /// a file cannot be written.
+  /// `replayer` and `stage` must outlive it. `snapshot_rate` in snapshots a simulated second, 0 = none.
+  /// Errors: a file cannot be written.
   static Result<std::unique_ptr<ReplayRun>> create(keep::Replayer& replayer, const Stage& stage,
                                                    double snapshot_rate);
   ~ReplayRun() override;
@@ -52,7 +52,7 @@ class ReplayRun final : public LiveRun {
   RateLog rates_;
   std::unique_ptr<Table> wrenches_;
   std::unique_ptr<Measurer> measurer_;  // null where nothing is measured
-  double next_snapshot_ = 0.0;           // s since the recording's start
+  double next_snapshot_ = 0.0;          // s since the recording's start
   double next_sample_ = 0.0;
   BodySnapshot bodies_;
   std::vector<DeviceSummary> peaks_;

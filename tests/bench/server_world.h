@@ -133,7 +133,7 @@ class BenchHost {
     watch = server_->links().create(wire::Role::kSpectator, {}, 1)->token;
     loop_ = std::make_unique<NetLoop>(*server_, *endpoint_);
     snapshots_ = std::make_unique<SnapshotThread>(channel_.snapshots(), desk_, demand_, 0.01, 0,
-                                                [this] { server_->mailbox().wake(); });
+                                                  [this] { server_->mailbox().wake(); });
     loop_->start();
     world_ = std::make_unique<ServedWorldThread>(channel_, server_->mailbox(), particles);
   }

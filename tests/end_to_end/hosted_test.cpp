@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <sstream>
 
+#include "tests/support/comes.h"
+
 namespace slosh::test {
 
 void HostedTest::SetUp() {
@@ -34,6 +36,15 @@ std::string HostedTest::link(const std::string& kind) const {
     if (word == kind) return text;
   }
   return {};
+}
+
+std::unique_ptr<Process> HostedTest::run(const std::string& name,
+                                         const std::vector<std::string>& arguments) const {
+  return std::make_unique<Process>(command(arguments), folder(name));
+}
+
+bool HostedTest::hosting(Process& host) const {
+  return comes([&] { return !link("watch").empty() || !host.running(); }) && host.running();
 }
 
 }  // namespace slosh::test

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,10 @@ class HostedTest : public ::testing::Test {
   /// One of the links that the program "host" wrote to links.txt: "hold" or "watch"; empty while there is
   /// none.
   std::string link(const std::string& kind) const;
+  /// Starts the built program with these arguments in the folder of that name.
+  std::unique_ptr<Process> run(const std::string& name, const std::vector<std::string>& arguments) const;
+  /// Waits until the program "host" has written its links; false when it ended before.
+  bool hosting(Process& host) const;
 
  private:
   std::filesystem::path home_;

@@ -16,30 +16,17 @@
 
 #include "hosted_test.h"
 #include "process.h"
+#include "tests/support/comes.h"
 
 namespace slosh {
 namespace {
 
 using nlohmann::json;
 using std::filesystem::path;
+using test::comes;
 using test::Outcome;
 using test::Process;
 using test::read_text;
-
-/// Waits for something that other programs bring about; its patience is only reached on failure.
-bool comes(const std::function<bool()>& there) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  constexpr std::chrono::minutes kPatience(15);
-#else
-  constexpr std::chrono::minutes kPatience(2);
-#endif
-  const auto end = std::chrono::steady_clock::now() + kPatience;
-  while (std::chrono::steady_clock::now() < end) {
-    if (there()) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
-  return false;
-}
 
 /// The number that follows `words` in a text; negative when they are not there.
 double number_after(const std::string& text, const std::string& words) {
@@ -68,9 +55,6 @@ std::vector<pid_t> children_of(pid_t parent) {
 
 class KeptHost : public test::HostedTest {
  protected:
-  std::unique_ptr<Process> run(const std::string& name, const std::vector<std::string>& arguments) const {
-    return std::make_unique<Process>(command(arguments), folder(name));
-  }
   /// A small world on a port of its own, its files in the folder "host".
   std::unique_ptr<Process> host(std::vector<std::string> more) const {
     std::vector<std::string> all{"host", "probe",    "--spacing",   "0.01",    "--threads",
@@ -88,9 +72,6 @@ class KeptHost : public test::HostedTest {
                       "--overwrite", "--key", "../" + name + ".key", "--seconds", seconds});
   }
   std::string links() const { return read_text(folder("host") / "links.txt"); }
-  bool hosting(Process& host) const {
-    return comes([&] { return !link("watch").empty() || !host.running(); }) && host.running();
-  }
   std::string told(const std::string& name) const { return read_text(folder(name) / "stderr.txt"); }
   /// Rows that a peer's hand has felt so far.
   std::uintmax_t felt(const std::string& name) const {

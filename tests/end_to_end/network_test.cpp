@@ -15,6 +15,7 @@
 #include "peer/output/plot.h"
 #include "render/image.h"
 #include "sites.h"
+#include "tests/support/comes.h"
 #include "tests/support/network_here.h"
 
 namespace slosh {
@@ -22,27 +23,12 @@ namespace {
 
 using nlohmann::json;
 using std::filesystem::path;
+using test::comes;
 using test::Outcome;
 using test::Process;
 using test::read_text;
 
 constexpr double kSeconds = 9.0;  // simulated; the bucket is tilted left, right, left in it
-
-/// Waits for something that other programs bring about; its patience is only reached on failure. Under
-/// sanitizers a second of a world may take a minute.
-bool comes(const std::function<bool()>& there) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  constexpr std::chrono::minutes kPatience(15);
-#else
-  constexpr std::chrono::minutes kPatience(4);
-#endif
-  const auto end = std::chrono::steady_clock::now() + kPatience;
-  while (std::chrono::steady_clock::now() < end) {
-    if (there()) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  }
-  return false;
-}
 
 /// Simulated time of the last whole row of a run's wrenches so far, -1 without any.
 double last_time(const path& folder) {
@@ -56,9 +42,6 @@ double last_time(const path& folder) {
 
 class NetworkTest : public test::HostedTest {
  protected:
-  std::unique_ptr<Process> run(const std::string& name, const std::vector<std::string>& arguments) const {
-    return std::make_unique<Process>(command(arguments), folder(name));
-  }
   json summary(const std::string& name) const {
     return json::parse(read_text(folder(name) / "out" / "summary.json"));
   }
@@ -181,13 +164,7 @@ TEST_F(NetworkTest, TwoPeopleCarryTheBucketOverABadWire) {
 }
 
 /// One machine: everything on loopback.
-class LoopbackTest : public NetworkTest {
- protected:
-  /// Waits for the host's links.
-  bool hosting(Process& host) const {
-    return comes([&] { return !link("watch").empty() || !host.running(); }) && host.running();
-  }
-};
+class LoopbackTest : public NetworkTest {};
 
 TEST_F(LoopbackTest, LinksAreMadeAndRevokedWhileTheHostRuns) {
   if (const std::string why = test::no_ipv6(); !why.empty()) GTEST_SKIP() << why;

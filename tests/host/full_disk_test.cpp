@@ -4,14 +4,14 @@
 #include <signal.h>
 #include <sys/resource.h>
 
-#include <chrono>
-#include <thread>
-
 #include "host/keep/replay.h"
 #include "tests/host/keep_kit.h"
+#include "tests/support/comes.h"
 
 namespace slosh::keep {
 namespace {
+
+using test::comes;
 
 /// No file of this process may grow beyond so many bytes while this lives: as a full disk, wherever tests
 /// run.
@@ -34,13 +34,6 @@ class FileLimit {
   rlimit before_{};
   sighandler_t handler_;
 };
-
-bool comes(const std::function<bool()>& there) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
-  while (!there() && std::chrono::steady_clock::now() < end)
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  return there();
-}
 
 TEST(FullDisk, ARecordingSaysSoWhileTheWorldGoesOnAndReplaysUpToThere) {
   RecordingOptions options;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::array<const char*, kTricks> kNames{
     "states",        "everything", "snapshots", "texts",   "stiff",   "bad welcome", "bad scene",
-    "endless scene", "noise",      "streams",  "silence", "refusal", "close"};
+    "endless scene", "noise",      "streams",   "silence", "refusal", "close"};
 constexpr double kSpacing = 0.01;
 
 std::uint64_t guest_seed(std::uint64_t seed, std::uint64_t guest) {

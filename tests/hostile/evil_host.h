@@ -17,7 +17,7 @@ namespace slosh::hostile {
 enum class Trick {
   kStates,        ///< comes in as with any host, then states of the world of any content, at any rate
   kEverything,    ///< the same, then everything a host may say, valid and damaged
-  kSnapshots,      ///< the same, then pieces of snapshots, damaged
+  kSnapshots,     ///< the same, then pieces of snapshots, damaged
   kTexts,         ///< the same, then notices, names and a farewell with escapes
   kStiff,         ///< a scene whose grips are as stiff as they may be, and bodies that jump
   kBadWelcome,    ///< a Welcome, Roster or WorldInfo that is damaged

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "host/input_gate.h"
+#include "net/grip_start.h"
 #include "peer/haptics/make_device.h"
 #include "peer/haptics/script_device.h"
 #include "peer/haptics/servo.h"

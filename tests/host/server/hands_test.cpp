@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "net/clock.h"
+#include "net/grip_start.h"
 #include "tests/host/server/scripted_peer.h"
 
 namespace slosh {
@@ -32,7 +33,7 @@ TEST_F(Hands, TheHostHoldsWhatNobodyHasTaken) {
   hands.stand_all(now);
   for (std::size_t i = 0; i < scene.grips.size(); ++i) {
     EXPECT_TRUE(newest(i).engaged);
-    EXPECT_EQ(newest(i).pose.position, stand_pose(scene, i).position);
+    EXPECT_EQ(newest(i).pose.position, grip_start(scene, i).position);
     EXPECT_EQ(newest(i).twist.linear, glm::dvec3(0.0));
   }
   hands.let_go(0, now);
@@ -44,7 +45,7 @@ TEST_F(Hands, TheHostHoldsWhatNobodyHasTaken) {
 
 TEST_F(Hands, AStandHoldsOnUntilTheHandDoesAndTheWorldIsToldThatItIsAnother) {
   hands.stand_all(now);
-  const double start = stand_pose(scene, 0).position.x;
+  const double start = grip_start(scene, 0).position.x;
   const std::uint32_t stand = newest(0).hold;
   hands.taken(0, now);
   ASSERT_TRUE(sample(1, start + 1.0, 0, false));

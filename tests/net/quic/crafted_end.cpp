@@ -9,7 +9,7 @@
 #include <cstring>
 
 #include "net/clock.h"
-#include "net/quic/random.h"
+#include "net/random.h"
 
 namespace slosh::testing {
 namespace {
@@ -33,7 +33,7 @@ class Writing {
 ngtcp2_cid random_id(std::size_t size) {
   ngtcp2_cid id{};
   id.datalen = size;
-  quic::fill_random({id.data, size});
+  fill_random({id.data, size});
   return id;
 }
 
@@ -99,11 +99,11 @@ struct CraftedCallbacks {
   }
   static int new_id(ngtcp2_conn*, ngtcp2_cid* id, std::uint8_t* token, std::size_t size, void*) {
     *id = random_id(size);
-    quic::fill_random({token, NGTCP2_STATELESS_RESET_TOKENLEN});
+    fill_random({token, NGTCP2_STATELESS_RESET_TOKENLEN});
     return 0;
   }
   static void random(std::uint8_t* out, std::size_t size, const ngtcp2_rand_ctx*) {
-    quic::fill_random({out, size});
+    fill_random({out, size});
   }
 
   static ngtcp2_callbacks all() {

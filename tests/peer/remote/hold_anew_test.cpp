@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "held_beam.h"
+#include "net/grip_start.h"
 #include "tests/peer/servo_kit.h"
 
 namespace slosh {
@@ -37,7 +38,7 @@ struct Person {
     std::vector<std::unique_ptr<Device>> devices(scene.grips.size());
     auto made = std::make_unique<test::FakeDevice>();
     device = made.get();
-    device->next.pose = stand_pose(scene, at);
+    device->next.pose = grip_start(scene, at);
     devices[at] = std::move(made);
     servo = std::make_unique<Servo>(scene, std::move(devices), channel, ServoOptions{});
   }
@@ -61,7 +62,7 @@ class HoldAnew : public ::testing::Test {
     World world = new_world();
     std::vector<HandleInput> stands;
     for (std::size_t i = 0; i < scene.grips.size(); ++i)
-      stands.push_back({stand_pose(scene, i), Twist{}, true, 1.0});
+      stands.push_back({grip_start(scene, i), Twist{}, true, 1.0});
     world.settle(1.0, stands);
     host = std::make_unique<HostEnd>(std::move(world), scene);
     dt = host->world.plan().time_step;

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "held_beam.h"
+#include "net/grip_start.h"
 #include "peer/remote/body_inbox.h"
 #include "tests/peer/servo_kit.h"
 
@@ -123,7 +124,7 @@ struct Person {
          Motion motion)
       : grip(at), channel(scene.grips.size(), first, 1000), inbox(scene, dt) {
     std::vector<std::unique_ptr<Device>> devices(scene.grips.size());
-    auto made = std::make_unique<MovingDevice>(stand_pose(scene, at), wall, motion);
+    auto made = std::make_unique<MovingDevice>(grip_start(scene, at), wall, motion);
     device = made.get();
     devices[at] = std::move(made);
     servo = std::make_unique<Servo>(scene, std::move(devices), channel, ServoOptions{});
@@ -157,7 +158,7 @@ class LinkForces : public ::testing::TestWithParam<Hands> {
                 WorldOptions{1, Backend::kCpu});
     std::vector<HandleInput> stands;
     for (std::size_t i = 0; i < scene.grips.size(); ++i)
-      stands.push_back({stand_pose(scene, i), Twist{}, true, 1.0});
+      stands.push_back({grip_start(scene, i), Twist{}, true, 1.0});
     world.settle(1.0, stands);
     host = std::make_unique<HostEnd>(std::move(world), scene);
     dt = host->world.plan().time_step;

@@ -53,7 +53,7 @@ TEST(RemoteLink, AGripThatTheSceneHasNotEndsInWords) {
   options.grips = {"middle"};
   Together both({}, options);
   ASSERT_TRUE(both.run_until(LinkState::kEnded));
-  EXPECT_EQ(both.status().error->text(), "--grip: the scene has no grip 'middle'. It has left, right");
+  EXPECT_EQ(both.status().error->text(), "--grip: there is no grip 'middle'. There are: left, right");
 }
 
 TEST(RemoteLink, ARefusedGripIsToldAndTheNextFreeOneTaken) {

@@ -213,7 +213,8 @@ TEST(SnapshotMaker, AResetStartsTheFilmsTimeAnew) {
   SnapshotEncoder encoder(CodecOptions{});
   play(maker, encoder, drift, 0, 60, [](int) { return false; });
   while (queue.waiting() < 20) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  play(maker, encoder, drift, 0, 60, [](int) { return false; }, 1);
+  play(
+      maker, encoder, drift, 0, 60, [](int) { return false; }, 1);
   maker.finish();
   const std::vector<SnapshotPointer> snapshots = all(queue);
   EXPECT_GT(snapshots.size(), 50u);

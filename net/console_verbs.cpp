@@ -1,0 +1,89 @@
+#include "net/console_verbs.h"
+
+#include <algorithm>
+
+#include "net/wire/text.h"
+
+namespace slosh {
+namespace {
+
+constexpr unsigned kAtHost = 1, kAtPeer = 2, kAtBoth = kAtHost | kAtPeer;
+constexpr std::size_t kAny = 1000;  // words: the command's own rules say more
+constexpr std::size_t kHelpColumn = 31;
+
+struct Command {
+  ConsoleVerb verb;
+  const char* word;
+  unsigned where;
+  std::size_t least, most;  // words after the first
+  const char* needs;        // what to say where there are fewer or more; null = it stands alone
+  const char* form;         // in the help; null = it stands in another command's line
+  const char* does;
+};
+
+constexpr Command kCommands[] = {
+    {ConsoleVerb::kHelp, "help", kAtBoth, 0, 0, nullptr, nullptr, nullptr},
+    {ConsoleVerb::kWho, "who", kAtBoth, 0, 0, nullptr, "who", "who is here and holds what"},
+    {ConsoleVerb::kLinks, "links", kAtHost, 0, 0, nullptr, "links",
+     "every link: id, for whom, until when, used by"},
+    {ConsoleVerb::kLink, "link", kAtHost, 0, kAny, nullptr, "link [NAME] [watch] [for 30m]",
+     "a new link: for anybody or one person, to hold or to watch"},
+    {ConsoleVerb::kRevoke, "revoke", kAtHost, 1, 1, "needs the id of a link, as `links` shows it",
+     "revoke ID", "end a link and whoever came in by it"},
+    {ConsoleVerb::kExpire, "expire", kAtHost, 0, kAny, nullptr, "expire ID 10m|never",
+     "from then on it admits nobody new; who is in stays in"},
+    {ConsoleVerb::kTake, "take", kAtPeer, 0, 1, "needs one grip or none", "take [GRIP]",
+     "take hold of a grip, or of the first free one"},
+    {ConsoleVerb::kRelease, "release", kAtHost, 1, 1, "needs a grip's name or number", "release GRIP",
+     "take a grip away from its holder"},
+    {ConsoleVerb::kRelease, "release", kAtPeer, 0, 1, "needs one grip or none", "release [GRIP]",
+     "let go of a grip, or of all that you hold"},
+    {ConsoleVerb::kKick, "kick", kAtHost, 0, kAny, nullptr, "kick NAME [for 10m]",
+     "close somebody's connection, and keep their key out for a time"},
+    {ConsoleVerb::kUnban, "unban", kAtHost, 1, 1, "needs a person's name, as `who` shows it", "unban NAME",
+     "let somebody in again before that time is over"},
+    {ConsoleVerb::kPause, "pause", kAtHost, 0, 0, nullptr, "pause, continue, reset", "the world"},
+    {ConsoleVerb::kPause, "pause", kAtPeer, 0, 0, nullptr, "pause, continue, reset",
+     "the world, for everybody"},
+    {ConsoleVerb::kContinue, "continue", kAtBoth, 0, 0, nullptr, nullptr, nullptr},
+    {ConsoleVerb::kReset, "reset", kAtBoth, 0, 0, nullptr, nullptr, nullptr},
+    {ConsoleVerb::kSet, "set", kAtBoth, 0, kAny, nullptr, "set viscosity [FLUID] X",
+     "Pa·s, while the world runs"},
+    {ConsoleVerb::kSet, "set", kAtBoth, 0, kAny, nullptr, "set gravity X", "times the scene's, 0 to 2"},
+    {ConsoleVerb::kStatus, "status", kAtHost, 0, 0, nullptr, "status", "how the world and the links do"},
+    {ConsoleVerb::kStatus, "status", kAtPeer, 0, 0, nullptr, "status", "how the network and the world do"},
+    {ConsoleVerb::kQuit, "quit", kAtHost, 0, 0, nullptr, "quit", "end the run for everybody"},
+    {ConsoleVerb::kQuit, "quit", kAtPeer, 0, 0, nullptr, "quit", "leave"},
+};
+
+bool is_at(const Command& command, Console console) {
+  return (command.where & (console == Console::kHost ? kAtHost : kAtPeer)) != 0;
+}
+
+}  // namespace
+
+Result<ConsoleVerb> console_verb(Console console, const std::vector<std::string>& words) {
+  constexpr char kHelp[] = "Type help for what may be said";
+  if (words.empty()) return ConsoleVerb::kNothing;
+  for (const Command& command : kCommands) {
+    if (!is_at(command, console) || words[0] != command.word) continue;
+    const std::size_t more = words.size() - 1;
+    if (more >= command.least && more <= command.most) return command.verb;
+    if (command.needs == nullptr) return Error{"", words[0] + " stands alone", kHelp};
+    return Error{"", words[0] + " " + command.needs, "Put a name of several words in quotes"};
+  }
+  return Error{"", "'" + wire::clean_text(words[0], 40) + "' means nothing here", kHelp};
+}
+
+std::string console_help(Console console) {
+  std::string help;
+  for (const Command& command : kCommands) {
+    if (!is_at(command, console) || command.form == nullptr) continue;
+    std::string line = command.form;
+    line.append(std::max(line.size() + 1, kHelpColumn) - line.size(), ' ');
+    help += (help.empty() ? "" : "\n") + line + command.does;
+  }
+  return help;
+}
+
+}  // namespace slosh

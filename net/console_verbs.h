@@ -1,0 +1,41 @@
+// Every command that may be typed at a host or at a peer: one table, for both consoles and their help.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sim/math/result.h"
+
+namespace slosh {
+
+enum class ConsoleVerb : std::uint8_t {
+  kNothing,  ///< an empty line
+  kHelp,
+  kWho,
+  kLinks,
+  kLink,
+  kRevoke,
+  kExpire,
+  kTake,
+  kRelease,
+  kKick,
+  kUnban,
+  kPause,
+  kContinue,
+  kReset,
+  kSet,
+  kStatus,
+  kQuit,
+};
+
+enum class Console : std::uint8_t { kHost, kPeer };
+
+/// Which command the words are: the first one's, once there are as many words after it as it takes. What
+/// these say is the console's to find out. Errors: no command of this console, or too few or many words.
+Result<ConsoleVerb> console_verb(Console console, const std::vector<std::string>& words);
+
+/// What `help` prints: a line a command, without a line feed at the end.
+std::string console_help(Console console);
+
+}  // namespace slosh

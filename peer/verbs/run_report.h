@@ -1,0 +1,24 @@
+// What runs of every kind say of themselves in a summary: LocalRun, RemoteRun and ReplayRun add what is
+// theirs.
+#pragma once
+
+#include "peer/haptics/device_loop.h"
+#include "peer/output/recorder.h"
+#include "peer/output/summary.h"
+#include "peer/verbs/prepare.h"
+#include "sim/world.h"
+
+namespace slosh {
+
+/// Scene, machine, program and folder.
+void report_stage(const Stage& stage, RunSummary& summary);
+/// Simulated and wall s, and their ratio.
+void report_time(double simulated, double wall, RunSummary& summary);
+/// How long steps took and what they spent it on. `total` in any unit, `step_time` in s.
+void report_steps(const StepTimes& total, const Histogram& step_time, RunSummary& summary);
+/// The device loop, the devices and their files. All stopped; the recorder's and the servo's grips are
+/// `scene`'s.
+void report_hands(const DeviceLoop& loop, const Servo& servo, const Recorder& recorder, const Scene& scene,
+                  RunSummary& summary);
+
+}  // namespace slosh
