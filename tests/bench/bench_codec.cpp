@@ -224,7 +224,7 @@ int main(int argc, char** argv) {
     std::vector<Snapshot>& frames = recorded.value().frames;
     std::printf("%s: %s, spacing %.3g m, %zu particles, %zu frames at %.0f Hz, within %.3g m\n", name.c_str(),
                 recorded.value().geometry.c_str(), options.spacing, frames.front().positions.size(),
-                frames.size(), options.picture_rate, tolerance);
+                frames.size(), options.snapshot_rate, tolerance);
     std::vector<double> find;
     for (Snapshot& frame : frames) {
       const double start = seconds_now();

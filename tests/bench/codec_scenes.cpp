@@ -82,7 +82,7 @@ CacheHeader header_for(const FlowOptions& o) {
   CacheHeader header;
   header.spacing = o.spacing;
   header.seconds = o.seconds;
-  header.rate = o.picture_rate;
+  header.rate = o.snapshot_rate;
   header.flow = static_cast<std::int64_t>(o.flow);
   header.side = o.side;
   return header;
@@ -182,9 +182,9 @@ Recorded run_flow(const FlowOptions& o) {
   }
   if (o.flow == Flow::kStirred) world.settle(0.5, hands);
   Recorded recorded{describe(o), o.spacing, {}};
-  const int frames = static_cast<int>(std::lround(o.seconds * o.picture_rate));
+  const int frames = static_cast<int>(std::lround(o.seconds * o.snapshot_rate));
   for (int f = 0; f < frames; ++f) {
-    while (world.time() < (f + 1) / o.picture_rate) {
+    while (world.time() < (f + 1) / o.snapshot_rate) {
       for (HandleInput& hand : hands) hand.pose = stirring_hand(o, world.time());
       world.step(hands);
     }

@@ -18,7 +18,7 @@ struct FlowOptions {
   int side = 32;          ///< particles along an edge of the fluid's cube: side³ of them
   double spacing = 0.01;  ///< m
   double seconds = 4.0;   ///< simulated
-  double picture_rate = 60.0;
+  double snapshot_rate = 60.0;
 };
 
 struct Recorded {
