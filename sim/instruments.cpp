@@ -64,20 +64,19 @@ void Instruments::find_inside(const Solid& solid, Found&& found) const {
   }
 }
 
-/// From above down to where the smoothed volume of what is around the vertical line passes a half.
-double Instruments::level(const glm::dvec3& at) const {
+double fluid_level(const Snapshot& snapshot, const glm::dvec3& at, const glm::dvec3& up, double spacing) {
   struct Near {
     double height, aside;  // m along the line; squared m from it
   };
-  const double h = kReach * spacing_;
+  const double h = kReach * spacing;
   std::vector<Near> near;
   double top = -std::numeric_limits<double>::infinity();
   double bottom = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < snapshot_.positions.size(); ++i) {
-    if (snapshot_.fluid_index[i] == kRetired) continue;
-    const glm::dvec3 p(snapshot_.positions[i]);
-    const double height = glm::dot(p, up_);
-    const glm::dvec3 aside = (p - at) - glm::dot(p - at, up_) * up_;
+  for (std::size_t i = 0; i < snapshot.positions.size(); ++i) {
+    if (snapshot.fluid_index[i] == kRetired) continue;
+    const glm::dvec3 p(snapshot.positions[i]);
+    const double height = glm::dot(p, up);
+    const glm::dvec3 aside = (p - at) - glm::dot(p - at, up) * up;
     const double squared = glm::dot(aside, aside);
     if (squared >= h * h) continue;
     near.push_back({height, squared});
@@ -85,8 +84,8 @@ double Instruments::level(const glm::dvec3& at) const {
     bottom = std::min(bottom, height);
   }
   std::sort(near.begin(), near.end(), [](const Near& a, const Near& b) { return a.height > b.height; });
-  const double volume = spacing_ * spacing_ * spacing_;
-  const double step = spacing_ / kLevelSteps;
+  const double volume = spacing * spacing * spacing;
+  const double step = spacing / kLevelSteps;
   double above = 0.0;
   std::size_t first = 0;
   for (double s = top + h; s >= bottom - h; s -= step) {
@@ -126,7 +125,7 @@ const Measurement& Instruments::measure(const World& world) {
         gauge.body < 0 ? gauge.position
                        : transform_point(snapshot_.rigid.bodies[static_cast<std::size_t>(gauge.body)].pose,
                                          gauge.position);
-    result_.levels.push_back(level(at));
+    result_.levels.push_back(fluid_level(snapshot_, at, up_, spacing_));
   }
   return result_;
 }

@@ -19,6 +19,11 @@ struct Measurement {
   std::vector<double> masses;          ///< kg, one a region
 };
 
+/// Where the fluid's surface is on the line through `at` along `up` (unit), m along up: from above down to
+/// where the smoothed volume of the particles (reach of two spacings) passes a half. NaN where there is no
+/// fluid. A plane surface is read right whatever way it leans.
+double fluid_level(const Snapshot& snapshot, const glm::dvec3& at, const glm::dvec3& up, double spacing);
+
 /// Reads a world and changes nothing. Keeps copies of what it needs of the scene. One thread.
 class Instruments {
  public:
@@ -38,7 +43,6 @@ class Instruments {
   /// Marks particles inside; returns how many.
   template <class Found>
   void find_inside(const Solid& solid, Found&& found) const;
-  double level(const glm::dvec3& at) const;
 
   glm::dvec3 up_{0.0, 1.0, 0.0};
   double spacing_;

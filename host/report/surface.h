@@ -8,10 +8,7 @@
 
 namespace slosh::report {
 
-/// m: half a spacing over the topmost particle within 1.5 spacings of a place (x, z).
-double top_at(const Snapshot& picture, const glm::dvec2& place, double spacing);
-
-/// m: mean of top_at over a grid of places between `low` and `high` (x, z).
+/// m: mean of fluid_level (sim/instruments.h) over a grid of places between `low` and `high` (x, z).
 double surface_level(const Snapshot& picture, const glm::dvec2& low, const glm::dvec2& high, double spacing);
 
 /// How many particles stand in each part of a range, mean over the pictures that were added.

@@ -66,8 +66,14 @@ TEST_P(KnownAnswer, is_met) {
 INSTANTIATE_TEST_SUITE_P(
     error, KnownAnswer,
     ::testing::Values(
-        std::vector<Known>{{"still_tank", 0.0125, "level", 0.06},
+        // Of the level, 2 % are the compression under its own weight (the plan's 4 % at the floor), the rest what
+        // particles pack closer than the lattice they start from, at the surface most.
+        std::vector<Known>{{"still_tank", 0.02, "level", 0.095}},
+        std::vector<Known>{{"still_tank", 0.0125, "level", 0.053},
                            {"still_tank", 0.0125, "weight on the walls", 1e-3}},
+        std::vector<Known>{{"still_tank", 0.008, "level", 0.046},
+                           {"still_tank", 0.008, "weight on the walls", 1e-3}},
+        std::vector<Known>{{"paraboloid", 0.0075, "rise over r²", 0.055}},
         // Five slabs: as one solid they lose nothing; each for itself 46 particles, its floor +30 %.
         std::vector<Known>{{"tank_faces", 0.02, "floor", 0.15}},
         std::vector<Known>{{"tank_faces", 0.01, "floor", 0.06},

@@ -22,34 +22,11 @@ Scene still_tank() {
   return b.scene;
 }
 
-// Height of the surface over the middle of the tank: the middle of the topmost layer and half a spacing.
-double surface_level(Experiment& e, double spacing) {
-  const Snapshot picture = e.picture();
-  std::vector<double> tops;
-  constexpr int kColumns = 4;
-  for (int i = 0; i < kColumns; ++i) {
-    for (int j = 0; j < kColumns; ++j) {
-      const double x = kInner.x * ((i + 0.5) / kColumns - 0.5), z = kInner.z * ((j + 0.5) / kColumns - 0.5);
-      double top = -1.0;
-      for (const glm::vec3& p : picture.positions) {
-        if (std::abs(p.x - x) < 1.5 * spacing && std::abs(p.z - z) < 1.5 * spacing)
-          top = std::max<double>(top, p.y);
-      }
-      tops.push_back(top + 0.5 * spacing);
-    }
-  }
-  double sum = 0.0;
-  for (const double t : tops) sum += t;
-  return sum / static_cast<double>(tops.size());
-}
-
 class StillTank : public ::testing::TestWithParam<double> {};
 
 // Momentum is conserved to rounding, so over a time in which nothing is left over in motion the walls carry
-// the weight; 1 % is the slosh that 0.5 s cannot average out. The surface is where a lattice at rest density
-// would put it, less the compression under its own weight (4 % at the floor by the plan, 2 % on average) and
-// less what the top layers move together for want of neighbours above: some 0.4 of a spacing.
-TEST_P(StillTank, wall_force_and_level) {
+// the weight. Where the surface stands: known_answers_test.cpp.
+TEST_P(StillTank, carries_its_weight) {
   const double spacing = GetParam();
   Experiment e(still_tank(), spacing);
   e.world().settle(0.6);
@@ -59,15 +36,10 @@ TEST_P(StillTank, wall_force_and_level) {
   const std::string name =
       "still tank, spacing " + std::to_string(std::lround(spacing * 1e4) / 10.0).substr(0, 4) + " mm, ";
   const double weight = e.fluid_mass() * kGravity;
-  EXPECT_LT(std::abs(report(name + "wall force", down.mean(), weight, "N")), 0.01);
+  EXPECT_LT(std::abs(report(name + "wall force", down.mean(), weight, "N")), 5e-4);
   report_value(name + "peak noise", 100.0 * down.peak_share(), "%");
   // The peers' noise at rest is 4 to 17 %.
-  EXPECT_LT(down.peak_share(), 0.04);
-  // The sampler fills whole layers only: the level to expect is that of the mass there is.
-  const double expected = e.fluid_mass() / (1000.0 * kInner.x * kInner.z);
-  const double level = surface_level(e, spacing);
-  report(name + "level", level, expected, "m");
-  EXPECT_LT(std::abs(level - expected), 0.75 * spacing);
+  EXPECT_LT(down.peak_share(), 0.004);
   EXPECT_EQ(e.world().diagnostics().retired, 0u);
   EXPECT_EQ(e.world().take_status(), 0u);
 }

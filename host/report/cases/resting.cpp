@@ -5,6 +5,7 @@
 #include "host/report/error_case.h"
 #include "host/report/scene_builder.h"
 #include "host/report/surface.h"
+#include "sim/instruments.h"
 
 namespace slosh::report {
 namespace {
@@ -134,7 +135,7 @@ std::vector<Reading> paraboloid(const Setting& setting, Cost& cost) {
     for (int i = 0; i < kCircles * kAngles; ++i) {
       const double r = widest * (i / kAngles) / (kCircles - 1), angle = 2.0 * kPi * (i % kAngles) / kAngles;
       level[static_cast<std::size_t>(i / kAngles)].add(
-          top_at(picture, {r * std::cos(angle), r * std::sin(angle)}, setting.spacing));
+          fluid_level(picture, {r * std::cos(angle), 0.0, r * std::sin(angle)}, {0.0, 1.0, 0.0}, setting.spacing));
     }
   });
   std::vector<glm::dvec2> heights;
