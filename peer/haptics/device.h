@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "peer/haptics/device_limits.h"
 #include "sim/math/pose.h"
@@ -17,6 +18,9 @@ struct DeviceReport {
   Twist twist;  ///< handle, world
   std::uint32_t buttons = 0;
   bool engaged = true;  ///< the hand holds on
+  /// False: the device said nothing (its cable is out). The rest counts for nothing then, and the hand is taken
+  /// for silent: its force fades, and it takes hold anew when it is back.
+  bool heard = true;
 };
 
 /// The moment a device is read at.
@@ -49,6 +53,14 @@ class Device {
   /// May be called more than once.
   virtual void close() {}
   virtual std::string kind() const = 0;
+  /// What keeps it from working for now, in words for who holds it; empty while it works. Any thread; not from
+  /// the device loop.
+  virtual std::string trouble() const { return {}; }
+  /// What its user should know before holding it: gains beyond what it holds safely. Once it is open.
+  virtual std::vector<std::string> warnings() const { return {}; }
+  /// A line for people about what it says lately: raw values, battery. Empty where there is nothing to say. As
+  /// trouble().
+  virtual std::string status() const { return {}; }
 };
 
 /// Opens a device and checks what it says of itself. Errors: those of open() and of check_limits().

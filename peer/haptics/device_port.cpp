@@ -90,10 +90,12 @@ void DevicePort::run(const std::shared_ptr<Own>& own) {
         const double time = own->orders.front().time;
         DeviceReading& reading = own->readings.back();
         reading.report = device.read({time, kPeriod});
-        reading.number = ++number;
-        reading.stamp_ns = steady_now_ns();
-        reading.time = time;
-        own->readings.publish();
+        if (reading.report.heard) {
+          reading.number = ++number;
+          reading.stamp_ns = steady_now_ns();
+          reading.time = time;
+          own->readings.publish();
+        }
         if (over()) break;
         // What the loop wants by now: the reading may have taken its time.
         own->orders.update();
@@ -140,7 +142,9 @@ const DeviceReading& DevicePort::read(const DeviceMoment& moment, std::int64_t n
     return own_->readings.front();
   }
   guarded([&] {
-    reading_.report = device_->read(moment);
+    const DeviceReport report = device_->read(moment);
+    if (!report.heard) return;
+    reading_.report = report;
     reading_.number += 1;
     reading_.stamp_ns = now_ns;
     reading_.time = moment.time;
@@ -193,8 +197,9 @@ void DevicePort::stop() noexcept {
 }
 
 std::string DevicePort::failure() const {
-  if (own_) return own_->failed.load(std::memory_order_acquire) ? own_->failure : std::string();
-  return failed_.load(std::memory_order_acquire) ? failure_ : std::string();
+  if (own_ && own_->failed.load(std::memory_order_acquire)) return own_->failure;
+  if (!own_ && failed_.load(std::memory_order_acquire)) return failure_;
+  return device_->trouble();
 }
 
 }  // namespace slosh

@@ -48,7 +48,8 @@ class DevicePort {
 
   const Device& device() const { return *device_; }
   const DeviceLimits& limits() const { return limits_; }
-  /// What the device threw: it is out of use. Empty while it works. Any thread.
+  /// What the device threw: it is out of use. Else what it says itself that keeps it from working
+  /// (Device::trouble). Empty while it works. Any thread.
   std::string failure() const;
 
   static constexpr double kStopWait = 0.5;  // s

@@ -1,6 +1,7 @@
 #include "peer/haptics/make_device.h"
 
 #include "net/grip_start.h"
+#include "peer/haptics/devices/hardware.h"
 #include "peer/haptics/script_device.h"
 
 namespace slosh {
@@ -28,7 +29,15 @@ Result<HandDevice> make_device(const Scene& scene, std::size_t grip, const std::
     if (!keys) return keys.error();
     hand.device = std::make_unique<TrackDevice>(PoseTrack(keys.value(), start), "replay");
   } else {
-    return Error{"--device", "'" + spec + "' is no device", "Use script, mouse or replay:FILE"};
+    const HandPlace place{start, camera_axes(scene.camera.eye, scene.camera.target),
+                          scene.grips[grip].hand_motion};
+    std::optional<Result<std::unique_ptr<Device>>> made = make_hardware(spec, place);
+    if (!made) {
+      return Error{"--device", "'" + spec + "' is no device",
+                   std::string("Use script, mouse, replay:FILE, ") + kHardwareSpecs};
+    }
+    if (!*made) return made->error();
+    hand.device = std::move(made->value());
   }
   return hand;
 }

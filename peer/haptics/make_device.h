@@ -1,4 +1,4 @@
-// From `--device script|mouse|replay:FILE` to devices, one a grip.
+// From `--device SPEC` to devices, one a grip.
 #pragma once
 
 #include <memory>

@@ -27,6 +27,7 @@ toolkits='
 ^"sim/cuda/                   | sim/cuda sim/particle_engine.cpp tests/cross | only the factory in sim/particle_engine.cpp knows the CUDA engine
 ^<(epoxy|GL|EGL|GLFW)/        | render | GL only in render
 ^<(ngtcp2|gnutls)/            | net/quic | QUIC and TLS only behind net/quic/endpoint.h
+^<(hidapi|libusb)             | peer/haptics/devices | HID and USB only in the drivers
 ^<unicode/                    | net/text | ICU only behind net/text
 ^"net/impair/                 | net/impair tests | a bad network is for tests and for the program slosh-impair
 ^"peer/verbs/                 | peer/verbs peer/main.cpp tests | only the program joins host and peer

@@ -1,0 +1,58 @@
+// From a device's own frame and reach to the world's, and what the user may set about it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "peer/haptics/device.h"
+#include "peer/haptics/devices/device_file.h"
+#include "peer/haptics/devices/hardware.h"
+
+namespace slosh {
+
+struct HandMapSettings {
+  double scale = 1.0;        ///< m of the world a m of the device
+  double force_scale = 1.0;  ///< N at the device a N of the world
+  bool by_camera = true;     ///< the device's axes are the camera's, else the world's
+  int clutch_button = 0;     ///< while it is held the hand stays and the device moves freely; 0 = none
+  int deadman_button = 0;    ///< the hand holds on only while it is held; 0 = it always does
+  /// In place of what the device's damping allows; absent: that.
+  std::optional<double> stiffness, damping, rotational_stiffness, rotational_damping;
+  std::optional<double> own_damping, own_rotational_damping;
+};
+
+/// Takes the keys of every device that gives a force; check() is the caller's.
+HandMapSettings read_hand_map(DeviceFile& file, HandMapSettings defaults);
+
+/// A device's gains: its sheet's, within what its own damping holds (passive_gains.h) unless the file asks
+/// for more, which is warned of in words.
+struct ChosenGains {
+  DeviceLimits limits;  ///< at the device
+  std::vector<std::string> warnings;
+};
+ChosenGains choose_gains(const DeviceLimits& sheet, double own_damping, double own_rotational_damping,
+                         double period, const HandMapSettings& settings, const std::string& device);
+
+/// The reference is where the device is at its first reading: the hand begins at its start wherever the
+/// handle is. Pure; one thread; no allocation.
+class HandMap {
+ public:
+  HandMap(const HandMapSettings& settings, const HandPlace& place);
+
+  DeviceReport to_world(const DeviceReport& at_device) noexcept;
+  Wrench to_device(const Wrench& in_world) const noexcept;
+  /// What the servo may ask of the hand in the world's measure.
+  DeviceLimits to_world(const DeviceLimits& at_device) const;
+
+ private:
+  HandMapSettings settings_;
+  glm::dquat axes_;  // device's to the world's
+  Pose start_;
+  Pose origin_;  // of the device, where the hand is at its start
+  Pose held_;    // in the world, while clutched
+  bool begun_ = false;
+  bool clutched_ = false;
+};
+
+}  // namespace slosh

@@ -1,0 +1,85 @@
+#include "peer/haptics/devices/hardware.h"
+
+#include <cstdio>
+
+#include "peer/haptics/devices/operator_device.h"
+#include "peer/haptics/devices/plugin_device.h"
+#include "peer/haptics/devices/spacemouse_device.h"
+
+namespace slosh {
+namespace {
+
+using Made = Result<std::unique_ptr<Device>>;
+
+Made make_operator(const std::string& options, const HandPlace& place) {
+  const Result<OperatorSettings> settings = parse_operator(options);
+  if (!settings) return settings.error();
+  return Made(std::make_unique<OperatorDevice>(PoseTrack(place.motion, place.start), settings.value()));
+}
+
+Made make_plugin(const std::string& rest, const HandPlace& place) {
+  const std::size_t colon = rest.find(':');
+  const std::string file = rest.substr(0, colon);
+  if (file.empty())
+    return Error{"--device plugin", "no library is named", "Give --device plugin:FILE[:OPTIONS]"};
+  const std::string options = colon == std::string::npos ? "" : rest.substr(colon + 1);
+  return Made(std::make_unique<PluginDevice>(file, options, place));
+}
+
+std::string hex(std::uint16_t number) {
+  char text[8];
+  std::snprintf(text, sizeof text, "%04x", number);
+  return text;
+}
+
+}  // namespace
+
+glm::dquat camera_axes(const glm::dvec3& eye, const glm::dvec3& target) {
+  const glm::dvec3 back = eye - target;
+  const glm::dvec3 right = glm::cross(glm::dvec3(0.0, 1.0, 0.0), back);
+  if (glm::length(right) < 1e-9) return {1.0, 0.0, 0.0, 0.0};  // straight up or down
+  const glm::dvec3 x = glm::normalize(right);
+  const glm::dvec3 z = glm::normalize(back);
+  return glm::normalize(glm::quat_cast(glm::dmat3(x, glm::cross(z, x), z)));
+}
+
+std::optional<Made> make_hardware(const std::string& spec, const HandPlace& place) {
+  const std::size_t colon = spec.find(':');
+  const std::string kind = spec.substr(0, colon);
+  const std::string rest = colon == std::string::npos ? "" : spec.substr(colon + 1);
+  if (kind == "spacemouse") return Made(std::make_unique<SpaceMouseDevice>(rest, place.start, place.camera));
+  if (kind == "plugin") return make_plugin(rest, place);
+  if (kind == "operator") return make_operator(rest, place);
+  return std::nullopt;
+}
+
+std::vector<FoundDevice> find_hardware() {
+  std::vector<FoundDevice> all;
+  for (const SpaceMouseFound& found : find_spacemice()) {
+    FoundDevice device;
+    device.name = found.model->name;
+    device.where = found.hid.path;
+    if (!found.hid.serial.empty()) device.where += ", serial " + found.hid.serial;
+    device.spec = "spacemouse:" + (found.hid.serial.empty() ? found.hid.path : found.hid.serial);
+    if (const Result<bool> may = check_hid_access(found.hid.path); !may) {
+      device.problem = may.error().what;
+      device.mend = may.error().mend;
+    }
+    all.push_back(std::move(device));
+  }
+  return all;
+}
+
+std::string udev_rule() {
+  std::string rule = "# Haptic and six-axis devices for slosh: whoever sits at this machine may open them.\n";
+  for (const std::uint16_t vendor : {kLogitechVendor, k3DconnexionVendor}) {
+    // Logitech makes keyboards too: only its models with six axes, all of 3Dconnexion's.
+    const std::string product = vendor == kLogitechVendor ? "c6*" : "*";
+    rule += "KERNEL==\"hidraw*\", ATTRS{idVendor}==\"" + hex(vendor) + "\", ATTRS{idProduct}==\"" + product +
+            "\", TAG+=\"uaccess\"\n";
+  }
+  rule += "SUBSYSTEM==\"usb\", ATTR{idVendor}==\"0403\", ATTR{idProduct}==\"cb48\", TAG+=\"uaccess\"\n";
+  return rule;
+}
+
+}  // namespace slosh

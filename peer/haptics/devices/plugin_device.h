@@ -1,0 +1,60 @@
+// A device behind a vendor's library: plugin:FILE[:OPTIONS].
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "peer/haptics/devices/hand_map.h"
+#include "peer/haptics/devices/plugin_library.h"
+#include "peer/haptics/devices/velocity_window.h"
+
+namespace slosh {
+
+/// What the plug-in does wrong stays its own: what it throws or blocks ends or silences this hand
+/// (DevicePort); numbers that are not finite silence it; opening and closing are given kPatience. open()
+/// reads once, so that a plug-in that never answers is known before a world waits for it.
+class PluginDevice final : public Device {
+ public:
+  PluginDevice(std::string file, std::string options, HandPlace place);
+  ~PluginDevice() override;
+
+  /// Errors: those of load_plugin; it refuses, throws, takes too long or has no sound capabilities or first
+  /// reading; its file has a mistake.
+  Result<bool> open() override;
+  DeviceReport read(const DeviceMoment& moment) override;
+  void write(const Wrench& on_hand) override;
+  DeviceLimits limits() const override { return limits_; }
+  void close() override;
+  std::string kind() const override { return "plugin"; }
+  std::string trouble() const override;
+  std::vector<std::string> warnings() const override { return warnings_; }
+
+  static constexpr double kPatience = 5.0;   ///< s for open
+  static constexpr double kCloseWait = 1.0;  ///< s
+
+ private:
+  struct Handle;  // what a call that never returns goes on using
+  Error failed(const std::string& what) const;
+  Result<bool> settle(const slosh_device_capabilities& said);
+  DeviceReport taken(const slosh_device_reading& reading);
+  void set_trouble(const std::string& words);
+
+  const std::string file_;
+  const std::string options_;
+  const HandPlace place_;
+  std::shared_ptr<Handle> handle_;
+  std::optional<HandMap> map_;
+  DeviceLimits limits_;
+  std::vector<std::string> warnings_;
+  VelocityWindow velocity_;
+  std::optional<DeviceReport> first_;
+  bool unsound_ = false;
+
+  mutable std::mutex mutex_;
+  std::string trouble_;
+};
+
+}  // namespace slosh

@@ -1,0 +1,89 @@
+// A plug-in with one fault, by what it is compiled with.
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <stdexcept>
+
+#include "peer/haptics/devices/plugin/slosh_device.h"
+
+namespace {
+[[maybe_unused]] int reads = 0;
+[[maybe_unused]] int writes = 0;
+[[maybe_unused]] void never_return() {
+  for (;;) pause();
+}
+}  // namespace
+
+extern "C" {
+
+uint32_t slosh_device_version(void) {
+#ifdef OTHER_VERSION
+  return SLOSH_DEVICE_VERSION + 1;
+#else
+  return SLOSH_DEVICE_VERSION;
+#endif
+}
+
+int slosh_device_open(const char*, void** device, char* error, size_t size) {
+#ifdef THROWS_IN_OPEN
+  throw std::runtime_error("no licence");
+#endif
+#ifdef BLOCKS_IN_OPEN
+  never_return();
+#endif
+  std::snprintf(error, size, "%s", "");
+  static int one = 0;
+  *device = &one;
+  return 0;
+}
+
+int slosh_device_get_capabilities(void*, slosh_device_capabilities* c) {
+  std::memset(c, 0, sizeof *c);
+  std::snprintf(c->name, sizeof c->name, "faulty");
+  c->period_s = 0.001;
+  c->max_force_n = c->max_torque_nm = c->max_force_rate_n_s = c->max_torque_rate_nm_s = 100.0;
+  c->max_stiffness_n_m = c->max_damping_n_s_m = 1000.0;
+  c->max_rotational_stiffness_nm_rad = c->max_rotational_damping_nm_s_rad = 1.0;
+  c->own_damping_n_s_m = c->own_rotational_damping_nm_s_rad = 1.0;
+  c->workspace_radius_m = 0.1;
+#ifdef NAN_CAPABILITY
+  c->max_force_n = std::nan("");
+#endif
+  return 0;
+}
+
+int slosh_device_read(void*, slosh_device_reading* reading) {
+  std::memset(reading, 0, sizeof *reading);
+  reading->orientation_wxyz[0] = 1.0;
+  ++reads;
+  // In place at first, so that the hand takes hold, then off by 10 mm, so that it feels a force.
+  reading->position_m[0] = reads > 20 ? 0.01 : 0.0;
+  [[maybe_unused]] const bool late = reads > 400;
+#ifdef THROWS_IN_READ
+  if (late) throw std::runtime_error("the cable is out");
+#endif
+#ifdef BLOCKS_IN_READ
+  if (late) never_return();
+#endif
+#ifdef NAN_READING
+  if (late) reading->position_m[1] = std::nan("");
+#endif
+#ifdef GONE
+  if (late) return -1;
+#endif
+  return 0;
+}
+
+#ifndef LACKS_WRITE
+int slosh_device_write(void*, const double[3], const double[3]) {
+#ifdef THROWS_IN_WRITE
+  if (++writes > 400) throw 7;
+#endif
+  return 0;
+}
+#endif
+
+void slosh_device_close(void*) {}
+}
