@@ -104,6 +104,8 @@ HostProgress Host::progress() const {
   progress.paused = shown_paused_.load(std::memory_order_relaxed);
   progress.tick = shown_tick_.load(std::memory_order_relaxed);
   progress.status = shown_status_.load(std::memory_order_relaxed);
+  for (std::size_t bit = 0; bit < progress.status_steps.size(); ++bit)
+    progress.status_steps[bit] = shown_status_steps_[bit].load(std::memory_order_relaxed);
   return progress;
 }
 
@@ -116,7 +118,9 @@ void Host::note_status(std::uint32_t status) {
   for (int bit = 0; bit < 32; ++bit) {
     if (!(status & (1u << bit))) continue;
     status_until_[bit] = world_.time() + kStatusMemory;
-    report_.status_steps[static_cast<std::size_t>(bit)] += 1;
+    const auto at = static_cast<std::size_t>(bit);
+    report_.status_steps[at] += 1;
+    shown_status_steps_[at].store(report_.status_steps[at], std::memory_order_relaxed);
   }
 }
 

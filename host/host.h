@@ -52,6 +52,7 @@ struct HostProgress {
   std::uint32_t run = 0;  ///< rises by one with every reset
   bool paused = false;
   std::uint32_t status = 0;  ///< StatusBits of about the last half second
+  std::array<std::uint64_t, 32> status_steps{};  ///< in how many steps so far, one a bit
 };
 
 /// What a run amounted to; complete after it has ended.
@@ -163,6 +164,7 @@ class Host {
   std::atomic<std::uint32_t> shown_run_{0};
   std::atomic<bool> shown_paused_{false};
   std::atomic<std::uint32_t> shown_status_{0};
+  std::array<std::atomic<std::uint64_t>, 32> shown_status_steps_{};
 };
 
 /// The message a channel starts with: the world before its first step, standing still.

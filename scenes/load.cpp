@@ -37,6 +37,17 @@ Problem something_to_simulate(Reading& reading) {
       "properties on"};
 }
 
+Problem nothing_that_settling_would_undo(Reading& reading) {
+  if (reading.scene.settle == 0.0) return std::nullopt;
+  for (const FluidVolume& volume : reading.scene.fluid_volumes) {
+    if (volume.velocity == glm::dvec3(0.0)) continue;
+    return Error{reading.document.file + ": node '" + volume.name + "': extras.velocity_m_s",
+                 "would be lost: the scene's settle_s brings the fluid to rest before the run",
+                 "Remove one of the two"};
+  }
+  return std::nullopt;
+}
+
 Result<Scene> read_scene(const std::filesystem::path& file) {
   const Result<gltf::Document> document = gltf::read_document(file);
   if (!document) return document.error();
@@ -51,6 +62,7 @@ Result<Scene> read_scene(const std::filesystem::path& file) {
       +[](Reading& r) { return read_all(r, NodeKind::kProbe, reading::read_probe); },
       +[](Reading& r) { return read_all(r, NodeKind::kPicture, reading::read_picture); },
       +[](Reading& r) { return something_to_simulate(r); },
+      +[](Reading& r) { return nothing_that_settling_would_undo(r); },
       +[](Reading& r) { return read_all(r, NodeKind::kGrip, reading::read_grip); },
       +[](Reading& r) { return reading::order_grips(r); },
       +[](Reading& r) { return read_all(r, NodeKind::kHand, reading::read_hand); },

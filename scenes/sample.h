@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "scenes/scene.h"
@@ -26,8 +27,10 @@ struct SampleReport {
 /// Samples every body's surface evenly (blue noise, about one particle a spacing²), fills every fluid volume
 /// with a lattice that keeps half a spacing clear of solids, and builds one distance field a body.
 /// Deterministic. Errors: spacing above a wall's thickness, fluid overlapping a solid, no particle fits.
-/// `report` receives what became of the fluid volumes, unless null.
-Result<SampledScene> sample_scene(const Scene& scene, double spacing, SampleReport* report = nullptr);
+/// `report` receives what became of the fluid volumes, unless null. `tell`, where there is one, is told the
+/// share of the work that is done, 0–1, mesh by mesh and between the stages of each.
+Result<SampledScene> sample_scene(const Scene& scene, double spacing, SampleReport* report = nullptr,
+                                  const std::function<void(double)>& tell = {});
 
 /// A quick estimate for choosing a spacing, without sampling: fluid volume / spacing³ and area / spacing².
 struct ParticleEstimate {
@@ -35,6 +38,9 @@ struct ParticleEstimate {
   double surface = 0.0;
 };
 ParticleEstimate estimate_particles(const Scene& scene, double spacing);
+
+/// s of one ordinary core that sample_scene takes for so many, to within a factor of about two.
+double estimate_sampling(const ParticleEstimate& particles);
 
 /// The thinnest solid wall of any body, m (infinity when there is none); `body` receives whose it is.
 double thinnest_wall(const Scene& scene, std::size_t* body = nullptr);

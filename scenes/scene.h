@@ -162,6 +162,8 @@ struct Scene {
   double stiffness = 0.0;      ///< Eq 7's k = c², m²/s²; 0 = chosen by the plan from depth and gravity
   double tension = 0.0;        ///< share of Eq 7's negative pressure that is kept, 0–1 (sim/README.md)
   double duration = 10.0;      ///< s, of the scripted motion
+  double settle =
+      0.0;  ///< s of damped rest before the run (World::settle), 0–60; 0 = it starts as it is here
   glm::dvec3 domain_min{0.0};  ///< m; particles that leave the domain are retired
   glm::dvec3 domain_max{0.0};
 };

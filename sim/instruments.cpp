@@ -13,6 +13,8 @@ constexpr std::uint8_t kRetired = 255;
 /// The fluid ends where its smoothed volume falls below a half.
 constexpr double kSurface = 0.5;
 constexpr double kReach = 2.0;        // spacings, of that smoothing
+/// A place at a wall has a half of what lies in the open; beyond that it is outside.
+constexpr double kInFluid = 0.3;
 constexpr double kLevelSteps = 10.0;  // a spacing
 
 /// Wendland's C2 kernel in 3-D of reach h, times volume.
@@ -101,6 +103,22 @@ double fluid_level(const Snapshot& snapshot, const glm::dvec3& at, const glm::dv
   return std::numeric_limits<double>::quiet_NaN();
 }
 
+/// The smoothed mean of what the particles around have: right to second order within fluid, that of the
+/// nearest layers at its edge.
+double Instruments::pressure(const glm::dvec3& at) const {
+  const double h = kReach * spacing_;
+  const double volume = spacing_ * spacing_ * spacing_;
+  double sum = 0.0, weights = 0.0;
+  for (std::size_t i = 0; i < snapshot_.positions.size(); ++i) {
+    const double r = glm::distance(glm::dvec3(snapshot_.positions[i]), at);
+    if (snapshot_.fluid_index[i] == kRetired || !(r < h)) continue;
+    const double weight = smoothed(r, h, volume);
+    sum += weight * static_cast<double>(pressures_[i]);
+    weights += weight;
+  }
+  return weights >= kInFluid ? sum / weights : std::numeric_limits<double>::quiet_NaN();
+}
+
 const Measurement& Instruments::measure(const World& world) {
   world.fill(snapshot_);
   result_.time = snapshot_.rigid.time;
@@ -120,12 +138,15 @@ const Measurement& Instruments::measure(const World& world) {
                 [&](std::size_t i) { result_.masses[r] += particle_mass_[snapshot_.fluid_index[i]]; });
   }
   result_.levels.clear();
+  result_.pressures.clear();
+  if (!gauges_.empty()) world.fill_pressures(pressures_);
   for (const Gauge& gauge : gauges_) {
     const glm::dvec3 at =
         gauge.body < 0 ? gauge.position
                        : transform_point(snapshot_.rigid.bodies[static_cast<std::size_t>(gauge.body)].pose,
                                          gauge.position);
     result_.levels.push_back(fluid_level(snapshot_, at, up_, spacing_));
+    result_.pressures.push_back(pressure(at));
   }
   return result_;
 }

@@ -16,6 +16,7 @@ struct Measurement {
   std::uint64_t in_solids = 0;         ///< particles whose centre is inside a body, each counted once
   std::vector<std::uint64_t> in_body;  ///< the same, one a body
   std::vector<double> levels;          ///< m along up, one a gauge; NaN where no fluid is over or under it
+  std::vector<double> pressures;       ///< Pa at the place of each gauge; NaN where it is not in fluid
   std::vector<double> masses;          ///< kg, one a region
 };
 
@@ -43,6 +44,7 @@ class Instruments {
   /// Marks particles inside; returns how many.
   template <class Found>
   void find_inside(const Solid& solid, Found&& found) const;
+  double pressure(const glm::dvec3& at) const;
 
   glm::dvec3 up_{0.0, 1.0, 0.0};
   double spacing_;
@@ -53,6 +55,7 @@ class Instruments {
   std::vector<Solid> regions_;
   std::vector<Gauge> gauges_;
   Snapshot snapshot_;
+  std::vector<float> pressures_;  // one a particle
   std::vector<char> inside_;  // one a particle
   Measurement result_;
 };

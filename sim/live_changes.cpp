@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "sim/format.h"
+#include "sim/math/format.h"
 #include "sim/step_limits.h"
 #include "sim/viscosity/stability.h"
 #include "sim/world.h"

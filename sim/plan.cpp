@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "sim/fluid_extremes.h"
-#include "sim/format.h"
+#include "sim/math/format.h"
 #include "sim/step_limits.h"
 
 namespace slosh {

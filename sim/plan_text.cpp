@@ -2,7 +2,7 @@
 #include <array>
 #include <cmath>
 
-#include "sim/format.h"
+#include "sim/math/format.h"
 #include "sim/plan.h"
 
 namespace slosh {

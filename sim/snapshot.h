@@ -18,8 +18,7 @@ enum StatusBit : std::uint32_t {
   kStatusInputRejected = 1u << 3,  ///< a handle's pose was non-finite or out of range and was not used
   kStatusForceLimited = 1u << 4,   ///< a device's force met its limit
   kStatusTimeSlipped = 1u << 5,    ///< the step did not keep real time and the world slowed down
-  kStatusCompressed =
-      1u << 6,  ///< fluid denser than twice rest: crushed, or too soft for its speed; raise stiffness
+  kStatusCompressed = 1u << 6,     ///< fluid denser than twice rest: crushed, or too soft for its speed
   kStatusDeviceLost =
       1u << 7,  ///< a GPU call failed: the fluid stands still from here on (World::failure says why)
   kStatusGuarded = 1u << 8,  ///< particles would have passed a wall and were put back

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sim/fluid_extremes.h"
-#include "sim/format.h"
+#include "sim/math/format.h"
 #include "sim/viscosity/stability.h"
 
 namespace slosh {

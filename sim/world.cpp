@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -35,8 +36,6 @@ struct World::Impl {
         drags(scene.bodies.size()),
         drag_matrices(scene.bodies.size()),
         wrenches(scene.bodies.size()) {
-    fluid_starts_moving = std::any_of(sampled.fluid_velocities.begin(), sampled.fluid_velocities.end(),
-                                      [](const glm::vec3& v) { return v != glm::vec3(0.0f); });
     scene.meshes.clear();  // the surface particles stand for them from here on
   }
 
@@ -45,6 +44,7 @@ struct World::Impl {
     const ParticleStart particles = make_particle_start(scene, sampled, constants, bodies.bodies());
     frame = state_frame(scene, constants.plan, particles);
     fluid_count = particles.fluid_count;
+    fluid_of = sampled.fluid_index;
     boundary_count = particles.fixed.size() + particles.moving.size();
     Result<std::unique_ptr<ParticleEngine>> made =
         make_particle_engine(constants, particles, bodies.bodies(), options);
@@ -149,8 +149,8 @@ struct World::Impl {
   std::vector<BodyDrag> drags;   // with kBodyDrag, one a body
   std::vector<Matrix6> drag_matrices;
   std::vector<Wrench> wrenches;  // their means over the last step
-  bool fluid_starts_moving = false;
-  std::size_t fluid_count = 0;  // without probes
+  std::size_t fluid_count = 0;   // without probes
+  std::vector<std::uint8_t> fluid_of;  // index into scene.fluids, by id
   std::size_t boundary_count = 0;
   std::uint32_t status = 0;  // of bodies and inputs; the engine has its own
   std::uint64_t tick = 0;
@@ -187,13 +187,13 @@ void World::step(std::span<const HandleInput> handles) {
   ++w.tick;
 }
 
-void World::settle(double seconds, std::span<const HandleInput> handles) {
+void World::settle(double seconds, std::span<const HandleInput> handles, bool (*stopped)()) {
   Impl& w = *impl_;
-  if (w.fluid_starts_moving) return;
   constexpr double kDampingTime =
       0.05;  // s: past critical for a hand-sized vessel's slosh, so it creeps to its level
   const double keep = std::exp(-w.sub_step(0).dt / kDampingTime);
   for (double done = 0.0; done < seconds; done += w.plan().time_step) {
+    if (stopped && stopped()) return;
     const bool with_bodies = !handles.empty() && done >= 0.5 * seconds;
     w.begin_step();
     if (with_bodies) w.status |= w.bodies.begin_step(handles);
@@ -253,6 +253,22 @@ void World::fill(Snapshot& out, bool with_shell) const {
   impl_->engine->fill(out.positions, out.fluid_index);
   out.shell.clear();
   if (with_shell) find_shell(out.positions, out.fluid_index, impl_->constants.plan.spacing, out.shell);
+}
+
+void World::fill_pressures(std::vector<float>& out) const {
+  const Impl& w = *impl_;
+  out.assign(w.fluid_count, std::numeric_limits<float>::quiet_NaN());
+  ParticleState particles;
+  ImpulseSums walls;
+  if (!w.engine->save(particles, walls)) return;
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    const std::size_t id = particles.id[i];
+    if (id >= out.size() || particles.key[i] == w.constants.grid.retired_key()) continue;
+    // The volume is what the density pass left; a bulk-damped pressure is not kept.
+    const ParticleKind& kind = w.constants.kinds[w.fluid_of[id]];
+    const float compression = w.constants.rest_volume / particles.volume[i] - 1.0f;
+    out[id] = static_cast<float>(w.plan().stiffness) * kind.pressing_density * compression;
+  }
 }
 
 Result<bool> World::save(std::vector<std::uint8_t>& out) const {

@@ -5,6 +5,8 @@
 namespace slosh::report {
 namespace {
 
+constexpr int kAround = 96;  // faces of a round vessel
+
 mesh::VolumeIntegrals integrals(const TriangleMesh& triangles) {
   const mesh::WeldedMesh welded = mesh::weld(triangles);
   mesh::Components parts;
@@ -73,6 +75,10 @@ int SceneBuilder::add_grip(int body, double stiffness, double damping, double ro
   return static_cast<int>(scene.grips.size()) - 1;
 }
 
+void SceneBuilder::set_viscosity(std::initializer_list<int> bodies, double viscosity) {
+  for (const int body : bodies) scene.bodies[static_cast<std::size_t>(body)].dynamic_viscosity = viscosity;
+}
+
 void SceneBuilder::set_domain(const glm::dvec3& lower, const glm::dvec3& upper) {
   scene.domain_min = lower;
   scene.domain_max = upper;
@@ -86,6 +92,17 @@ make::Solid tank_at_floor(const glm::dvec3& inner, double wall) {
   make::Solid solid = make::tank(inner, wall);
   for (glm::dvec3& p : solid.points) p.y -= wall;
   return solid;
+}
+
+make::Solid glass_of(double radius, double height, double wall, double hole) {
+  const double outer = radius + wall;
+  return make::lathe(
+      {{hole, -wall}, {outer, -wall}, {outer, height}, {radius, height}, {radius, 0.0}, {hole, 0.0}},
+      kAround);
+}
+
+make::Solid filling_of(double radius, double height) {
+  return make::lathe({{0.0, 0.0}, {radius, 0.0}, {radius, height}, {0.0, height}}, kAround);
 }
 
 }  // namespace slosh::report

@@ -1,6 +1,7 @@
 // Scenes made in code: what a case of a report, or an experiment of the tests, is built from.
 #pragma once
 
+#include <initializer_list>
 #include <string>
 
 #include "scenes/make/solid.h"
@@ -21,6 +22,8 @@ struct SceneBuilder {
   /// A grip at the origin of the body's mesh frame unless a pose is given.
   int add_grip(int body, double stiffness, double damping, double rotational_stiffness = 0.0,
                double rotational_damping = 0.0, const Pose& pose = {});
+  /// Pa·s of these bodies' walls: the fluid's own, where Eq 9's mean is to be the fluid's and they stick.
+  void set_viscosity(std::initializer_list<int> bodies, double viscosity);
   void set_domain(const glm::dvec3& lower, const glm::dvec3& upper);
 
  private:
@@ -32,5 +35,12 @@ double volume_of(const make::Solid& solid);
 
 /// An open box tank whose inner floor lies at y = 0, walls `wall` m thick.
 make::Solid tank_at_floor(const glm::dvec3& inner, double wall);
+
+/// A round vessel, open at its top, its inner floor at y = 0: inner `radius` and `height`, walls and floor
+/// `wall` thick, in the floor's middle a hole of radius `hole`. m.
+make::Solid glass_of(double radius, double height, double wall, double hole = 0.0);
+
+/// What fills it to `height`.
+make::Solid filling_of(double radius, double height);
 
 }  // namespace slosh::report

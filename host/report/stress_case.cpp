@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <string_view>
 
 #include "host/report/csv.h"
 #include "sim/backend.h"
-#include "sim/format.h"
+#include "sim/math/format.h"
 
 namespace slosh::report {
 namespace {
@@ -72,6 +74,41 @@ std::string csv_line(const StressRow& r) {
                 r.found.lost_share, static_cast<double>(r.cost.particles), static_cast<double>(r.cost.steps),
                 r.cost.time_step, r.cost.simulated_s, r.cost.wall_s, r.cost.status) +
          csv_field(r.why);
+}
+
+std::vector<Setting> settings_of(const StressCase& which, const SweepOptions& options) {
+  std::vector<Setting> settings = base_settings(options);
+  // Without a fluid the world is the same for all models.
+  if (!which.fluid)
+    std::erase_if(settings, [](const Setting& s) { return s.model != ParticleModel::kCorrected; });
+  for (Setting& each : settings) each.spacing = which.spacing;
+  return settings;
+}
+
+Result<std::vector<StressRow>> read_stresses(const std::filesystem::path& file) {
+  std::vector<StressRow> rows;
+  const Result<bool> read = read_rows(file, kStressHeader, "stability", [&](const Fields& f) {
+    StressRow r;
+    r.case_id = f[0];
+    r.model = f[1];
+    r.backend = f[2];
+    const auto verdict = std::find(kVerdictNames.begin(), kVerdictNames.end(), std::string_view(f[3]));
+    if (verdict == kVerdictNames.end()) throw std::invalid_argument("verdict");
+    r.verdict = static_cast<Verdict>(verdict - kVerdictNames.begin());
+    r.found.energy_ratio = std::stod(f[4]);
+    r.found.momentum_error = std::stod(f[5]);
+    r.found.lost_share = std::stod(f[6]);
+    r.cost.particles = std::stoull(f[7]);
+    r.cost.steps = std::stoull(f[8]);
+    r.cost.time_step = std::stod(f[9]);
+    r.cost.simulated_s = std::stod(f[10]);
+    r.cost.wall_s = std::stod(f[11]);
+    r.cost.status = static_cast<std::uint32_t>(std::stoul(f[12]));
+    r.why = f[13];
+    rows.push_back(r);
+  });
+  if (!read) return read.error();
+  return rows;
 }
 
 }  // namespace slosh::report

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "host/report/sweep.h"
 #include "host/report/trial.h"
 
 namespace slosh::report {
@@ -41,6 +42,9 @@ struct StressCase {
 /// Every one, in the order of the report.
 const std::vector<StressCase>& stress_cases();
 
+/// The settings of one case: every backend with each model, or with one where there is no fluid.
+std::vector<Setting> settings_of(const StressCase& which, const SweepOptions& options);
+
 struct StressRow {
   std::string case_id, model, backend;
   Verdict verdict = Verdict::kTrue;
@@ -55,6 +59,8 @@ constexpr const char* kStressHeader =
     "case,model,backend,verdict,energy_ratio,momentum_error,lost_share,particles,steps,time_step_s,"
     "simulated_s,wall_s,status,why";
 std::string csv_line(const StressRow& row);
+/// Errors: it cannot be read, another header, a row that is none.
+Result<std::vector<StressRow>> read_stresses(const std::filesystem::path& file);
 
 /// The bounds that every case has.
 inline constexpr double kMostEnergy = 1.05;         ///< of Stress::energy_ratio

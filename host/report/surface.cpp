@@ -29,4 +29,24 @@ double slope_of(const std::vector<glm::dvec2>& points) {
   return xy / xx;
 }
 
+std::size_t count_outside(const Snapshot& picture, const Pose& vessel, const Room& room) {
+  const Pose to_vessel = inverse(vessel);
+  std::size_t outside = 0;
+  for (std::size_t i = 0; i < picture.positions.size(); ++i) {
+    if (picture.fluid_index[i] == 255) {
+      ++outside;
+      continue;
+    }
+    const glm::dvec3 p = transform_point(to_vessel, glm::dvec3(picture.positions[i]));
+    const bool beyond = glm::any(glm::lessThan(p, room.low)) || glm::any(glm::greaterThan(p, room.high));
+    outside += beyond && !(room.open && p.y > room.high.y);
+  }
+  return outside;
+}
+
+double share_outside(const Snapshot& picture, const Pose& vessel, const Room& room) {
+  return static_cast<double>(count_outside(picture, vessel, room)) /
+         static_cast<double>(std::max<std::size_t>(picture.positions.size(), 1));
+}
+
 }  // namespace slosh::report

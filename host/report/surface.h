@@ -11,6 +11,17 @@ namespace slosh::report {
 /// m: mean of fluid_level (sim/instruments.h) over a grid of places between `low` and `high` (x, z).
 double surface_level(const Snapshot& picture, const glm::dvec2& low, const glm::dvec2& high, double spacing);
 
+/// The room in a vessel: a box in its frame, m. What is over an open one's rim (`high.y`) has not passed a
+/// wall.
+struct Room {
+  glm::dvec3 low, high;
+  bool open = false;
+};
+/// How many particles are outside of it, where the vessel stands now. Those that have left the world are.
+std::size_t count_outside(const Snapshot& picture, const Pose& vessel, const Room& room);
+/// The same as a share of all.
+double share_outside(const Snapshot& picture, const Pose& vessel, const Room& room);
+
 /// How many particles stand in each part of a range, mean over the pictures that were added.
 class Profile {
  public:

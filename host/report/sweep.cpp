@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <sstream>
+#include <iterator>
 
 #include "host/report/csv.h"
 #include "sim/backend.h"
-#include "sim/format.h"
+#include "sim/math/format.h"
 
 namespace slosh::report {
 namespace {
@@ -40,28 +39,37 @@ ErrorRow row_of(const ErrorCase& which, const Setting& setting, const Cost& cost
 
 }  // namespace
 
-std::vector<Setting> settings_of(const ErrorCase& which, const SweepOptions& options) {
+std::vector<Setting> base_settings(const SweepOptions& options) {
   std::vector<Setting> settings;
   for (const Backend backend : options.backends) {
     for (const ParticleModel model :
          {ParticleModel::kPaper, ParticleModel::kConsistent, ParticleModel::kCorrected}) {
       if (!wanted(options.models, name(model))) continue;
-      const std::size_t spacings = options.quick ? which.quick : which.spacings.size();
-      for (std::size_t i = 0; i < spacings; ++i) {
-        Setting setting;
-        setting.model = model;
-        setting.spacing = which.spacings[i];
-        setting.backend = backend;
-        setting.threads = options.threads;
-        setting.stopped = options.stopped;
-        settings.push_back(setting);
-        if (options.quick) continue;
-        setting.support_ratio = kWideSupport;
-        settings.push_back(setting);
-        setting.support_ratio = settings.front().support_ratio;
-        setting.step_share = kShortStep;
-        settings.push_back(setting);
-      }
+      Setting setting;
+      setting.model = model;
+      setting.backend = backend;
+      setting.threads = options.threads;
+      setting.stopped = options.stopped;
+      settings.push_back(setting);
+    }
+  }
+  return settings;
+}
+
+std::vector<Setting> settings_of(const ErrorCase& which, const SweepOptions& options) {
+  std::vector<Setting> settings;
+  for (const Setting& base : base_settings(options)) {
+    const std::size_t spacings = options.quick ? which.quick : which.spacings.size();
+    for (std::size_t i = 0; i < spacings; ++i) {
+      Setting setting = base;
+      setting.spacing = which.spacings[i];
+      settings.push_back(setting);
+      if (options.quick) continue;
+      setting.support_ratio = kWideSupport;
+      settings.push_back(setting);
+      setting.support_ratio = base.support_ratio;
+      setting.step_share = kShortStep;
+      settings.push_back(setting);
     }
   }
   return settings;
@@ -106,40 +114,26 @@ std::string csv_line(const ErrorRow& r) {
 }
 
 Result<std::vector<ErrorRow>> read_errors(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  std::string line;
-  if (!in || !std::getline(in, line) || line != kErrorHeader) {
-    return Error{file.string(), "cannot be read as a report's errors",
-                 "Give an errors.csv that `slosh report error` wrote"};
-  }
   std::vector<ErrorRow> rows;
-  for (std::size_t number = 2; std::getline(in, line); ++number) {
-    std::vector<std::string> f;
-    std::istringstream cells(line + ',');
-    for (std::string cell; std::getline(cells, cell, ',');) f.push_back(cell);
+  const Result<bool> read = read_rows(file, kErrorHeader, "error", [&](const Fields& f) {
     ErrorRow r;
-    try {
-      if (f.size() != 22) throw std::invalid_argument("fields");
-      r.case_id = f[0];
-      r.quantity = f[1];
-      r.unit = f[2];
-      r.plotted = f[3] == "1";
-      r.model = f[4];
-      r.backend = f[5];
-      r.threads = std::stoi(f[6]);
-      double* const numbers[] = {&r.spacing,  &r.support_ratio, &r.step_share,  &r.particles,
-                                 &r.steps,    &r.time_step,     &r.simulated_s, &r.wall_s,
-                                 &r.measured, &r.expected,      &r.scale};
-      for (std::size_t i = 0; i < std::size(numbers); ++i) *numbers[i] = std::stod(f[7 + i]);
-      r.retired = std::stod(f[19]);
-      r.status = static_cast<std::uint32_t>(std::stoul(f[20]));
-      r.refused = f[21];
-    } catch (const std::exception&) {
-      return Error{file.string() + ": line " + std::to_string(number), "is not a row of a report",
-                   "Remove the line; a run that was ended may have cut the last one short"};
-    }
+    r.case_id = f[0];
+    r.quantity = f[1];
+    r.unit = f[2];
+    r.plotted = f[3] == "1";
+    r.model = f[4];
+    r.backend = f[5];
+    r.threads = std::stoi(f[6]);
+    double* const numbers[] = {&r.spacing,  &r.support_ratio, &r.step_share,  &r.particles,
+                               &r.steps,    &r.time_step,     &r.simulated_s, &r.wall_s,
+                               &r.measured, &r.expected,      &r.scale};
+    for (std::size_t i = 0; i < std::size(numbers); ++i) *numbers[i] = std::stod(f[7 + i]);
+    r.retired = std::stod(f[19]);
+    r.status = static_cast<std::uint32_t>(std::stoul(f[20]));
+    r.refused = f[21];
     rows.push_back(r);
-  }
+  });
+  if (!read) return read.error();
   return rows;
 }
 

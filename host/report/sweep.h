@@ -1,6 +1,7 @@
 // Which settings a case is run at, and what came of each.
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -18,6 +19,22 @@ struct SweepOptions {
   int threads = 0;
   bool (*stopped)() = nullptr;  ///< Setting::stopped
 };
+
+/// Those that `ids` names, in their own order; all where it names none. Errors: there is no such case.
+template <class Case>
+Result<std::vector<const Case*>> chosen(const std::vector<Case>& all, const std::vector<std::string>& ids) {
+  std::string known;
+  std::vector<const Case*> some;
+  for (const Case& each : all) {
+    known += (known.empty() ? "" : ", ") + std::string(each.id);
+    if (ids.empty() || std::count(ids.begin(), ids.end(), each.id) > 0) some.push_back(&each);
+  }
+  for (const std::string& id : ids) {
+    if (std::none_of(all.begin(), all.end(), [&](const Case& each) { return id == each.id; }))
+      return Error{"--case", "there is no case '" + id + "'", "Cases: " + known};
+  }
+  return some;
+}
 
 /// One reading at one setting, or why there is none: a row of errors.csv.
 struct ErrorRow {
@@ -38,6 +55,9 @@ struct ErrorRow {
   bool is_paper() const { return model == name(ParticleModel::kPaper) && is_base(); }
   bool is_base() const { return support_ratio == 2.0 && step_share == 1.0; }
 };
+
+/// Every backend with each model.
+std::vector<Setting> base_settings(const SweepOptions& options);
 
 /// The settings of one case: every spacing with each model; in a full report also at a support ratio of 2.5
 /// and at half the time step.

@@ -79,7 +79,9 @@ void Trial::run(double seconds, const std::function<void()>& each) {
 
 void Trial::settle(double seconds, bool held) {
   end_if_stopped();
-  world_->settle(seconds, held ? std::span<const HandleInput>(handles_) : std::span<const HandleInput>());
+  world_->settle(seconds, held ? std::span<const HandleInput>(handles_) : std::span<const HandleInput>(),
+                 stopped_);
+  end_if_stopped();
   world_->fill(now_);
 }
 

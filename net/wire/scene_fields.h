@@ -17,6 +17,7 @@ constexpr std::size_t kMaxPoseKeys = 1'000'000;
 constexpr double kMaxDomain = 1e9;    ///< m
 constexpr double kMaxInertia = 1e18;  ///< kg·m²
 constexpr double kMaxMass = 1e9;      ///< kg
+constexpr double kMaxSettle = 60.0;   ///< s
 
 constexpr std::array kBodyMotionNames{"fixed", "free"};
 
@@ -29,6 +30,11 @@ struct PackedScene {
 /// The same of a scene that has gauges or regions.
 struct MeasuredScene {
   PackedScene packed;
+};
+
+/// The same of a scene that settles before its run.
+struct SettledScene {
+  MeasuredScene measured;
 };
 
 /// Positive definite, as a solid's is.
@@ -208,6 +214,12 @@ void visit(V& v, MeasuredScene& m) {
     each.index("body", region.body, "bodies", bodies, true);
     visit_exact(each, region.pose);
   });
+}
+
+template <class V>
+void visit(V& v, SettledScene& m) {
+  visit(v, m.measured);
+  v.real64("settle", m.measured.packed.scene.settle, 0.0, kMaxSettle);
 }
 
 }  // namespace slosh::wire

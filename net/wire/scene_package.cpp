@@ -14,10 +14,25 @@ namespace {
 using wire::Bytes;
 using wire::ByteView;
 
-// A package: its version, how the rest is coded, the rest. A scene with gauges or regions has the second
-// version; any other the first, which programs from before these can read.
+// A package: its version, how the rest is coded, the rest. A scene that settles before its run has the third
+// version, else one with gauges or regions the second; any other the first, which programs from before these
+// can read. A peer needs none of it and gets the first.
 constexpr std::uint8_t kVersion = 1;
 constexpr std::uint8_t kMeasured = 2;
+constexpr std::uint8_t kSettled = 3;
+
+std::uint8_t version_of(const Scene& scene) {
+  if (scene.settle > 0.0) return kSettled;
+  return scene.gauges.empty() && scene.regions.empty() ? kVersion : kMeasured;
+}
+
+// What a version has, of a scene of the last one.
+template <class F>
+wire::Fault with_version(std::uint8_t version, wire::SettledScene& whole, F&& f) {
+  if (version == kSettled) return f(whole);
+  if (version == kMeasured) return f(whole.measured);
+  return f(whole.measured.packed);
+}
 enum Coding : std::uint8_t { kStored, kZstd };
 constexpr std::size_t kHead = 2;
 
@@ -30,6 +45,7 @@ constexpr std::size_t kMostExpansion = 32;
 void keep_seen(Scene& scene) {
   scene.source_file.clear();
   scene.fluid_volumes.clear();
+  scene.settle = 0.0;
   scene.gauges.clear();
   scene.regions.clear();
   std::vector<int> moved(scene.meshes.size(), -1);
@@ -70,13 +86,13 @@ Result<Bytes> decompressed(ByteView packed) {
 }  // namespace
 
 Result<Bytes> pack_scene(const Scene& scene, double spacing, SceneParts parts) {
-  wire::MeasuredScene measured{{scene, spacing}};
-  wire::PackedScene& packed = measured.packed;
-  if (parts == SceneParts::kSeen) keep_seen(packed.scene);
-  const bool instruments = !packed.scene.gauges.empty() || !packed.scene.regions.empty();
+  wire::SettledScene whole{{{scene, spacing}}};
+  Scene& sent = whole.measured.packed.scene;
+  if (parts == SceneParts::kSeen) keep_seen(sent);
+  const std::uint8_t version = version_of(sent);
   Bytes content;
   if (const wire::Fault fault =
-          instruments ? wire::encode(measured, content) : wire::encode(packed, content)) {
+          with_version(version, whole, [&](auto& fields) { return wire::encode(fields, content); })) {
     return Error{"scene '" + scene.name + "'", "cannot be sent or recorded: " + fault.text(),
                  "net/WIRE_FORMAT.md has the limits"};
   }
@@ -87,7 +103,7 @@ Result<Bytes> pack_scene(const Scene& scene, double spacing, SceneParts parts) {
                  "Reduce its meshes, in Blender with the Decimate modifier"};
   }
   Bytes out(kHead + ZSTD_compressBound(content.size()));
-  out[0] = instruments ? kMeasured : kVersion;
+  out[0] = version;
   out[1] = kZstd;
   const std::size_t size =
       ZSTD_compress(out.data() + kHead, out.size() - kHead, content.data(), content.size(), kZstdLevel);
@@ -104,7 +120,7 @@ Result<Bytes> pack_scene(const Scene& scene, double spacing, SceneParts parts) {
 Result<UnpackedScene> unpack_scene(ByteView package) {
   if (package.size() < kHead) return damaged("it is empty");
   if (package.size() > wire::kMaxSceneBytes + kHead) return damaged("it is too large");
-  if (package[0] != kVersion && package[0] != kMeasured)
+  if (package[0] < kVersion || package[0] > kSettled)
     return damaged("its version is " + std::to_string(package[0]));
   if (package[1] > kZstd) return damaged("its coding is " + std::to_string(package[1]));
   ByteView content = package.subspan(kHead);
@@ -115,12 +131,12 @@ Result<UnpackedScene> unpack_scene(ByteView package) {
     unpacked = std::move(result.value());
     content = unpacked;
   }
-  wire::MeasuredScene measured;
-  wire::PackedScene& packed = measured.packed;
+  wire::SettledScene whole;
   if (const wire::Fault fault =
-          package[0] == kMeasured ? wire::decode(content, measured) : wire::decode(content, packed)) {
+          with_version(package[0], whole, [&](auto& fields) { return wire::decode(content, fields); })) {
     return damaged(fault.text());
   }
+  wire::PackedScene& packed = whole.measured.packed;
   return UnpackedScene{std::move(packed.scene), packed.spacing};
 }
 

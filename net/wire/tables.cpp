@@ -50,7 +50,7 @@ std::vector<Table> tables() {
           message<ClockPong>("ClockPong"),
           message<Bodies>("Bodies"),
           message<Hands>("Hands"),
-          part<MeasuredScene>("Scene")};
+          part<SettledScene>("Scene")};
 }
 
 constexpr const char kBegin[] = "<!-- table: ";

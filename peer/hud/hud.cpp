@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "peer/output/summary.h"
 #include "peer/palette.h"
 
 namespace slosh {
@@ -41,6 +42,18 @@ void labelled(const char* label, const char* pattern, Numbers... numbers) {
 
 }  // namespace
 
+std::string status_lines(std::uint32_t status, const std::array<std::uint64_t, 32>& steps) {
+  std::string lines;
+  for (std::size_t bit = 0; bit < steps.size(); ++bit) {
+    const std::string text = status_text(status & (1u << bit));
+    if (text.empty()) continue;
+    if (!lines.empty()) lines += '\n';
+    lines += text;
+    if (steps[bit] > 0) lines += " (in " + grouped(steps[bit]) + (steps[bit] == 1 ? " step)" : " steps)");
+  }
+  return lines;
+}
+
 Hud::Hud(const Scene& scene, HudFacts facts) : facts_(std::move(facts)) {
   const auto samples = static_cast<std::size_t>(std::max(2.0, kChartSeconds * facts_.picture_rate));
   for (const Grip& grip : scene.grips) {
@@ -71,7 +84,7 @@ void Hud::draw_run(const Rates& rates, bool brief) const {
   ImGui::Separator();
   labelled("time", "%.2f s%s", time_, paused ? "  paused" : "");
   if (!brief) draw_numbers(rates);
-  const std::string status = status_text(status_ | rates.device_status);
+  const std::string status = status_lines(status_ | rates.device_status, rates.status_steps);
   if (!status.empty()) {
     ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 0.78f, 0.35f, 1.0f));
     ImGui::PushTextWrapPos(kPanelWidth);

@@ -1,7 +1,9 @@
 // The numbers over the picture (Dear ImGui): rates, forces as strip charts, status in words.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -21,6 +23,10 @@ struct HudFacts {
   bool may_change = true;      ///< pausing and starting again are this person's to do: the help says how
   double picture_rate = 30.0;  ///< snapshots a simulated second, spaces the strip charts
 };
+
+/// A line for each StatusBit of `status`, with in how many steps it was set where that is known; empty when
+/// none is.
+std::string status_lines(std::uint32_t status, const std::array<std::uint64_t, 32>& steps);
 
 /// On the drawing thread. record() once a snapshot, draw() inside Frame::hud.
 class Hud {

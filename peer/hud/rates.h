@@ -1,6 +1,7 @@
 // How fast things ran when the world stood at a given time: pictures are drawn later than they were taken.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <mutex>
@@ -15,6 +16,8 @@ struct Rates {
   double step_ms = 0.0;
   double device_rate = 0.0;         ///< Hz
   std::uint32_t device_status = 0;  ///< StatusBits that the device loop ever set
+  std::array<std::uint64_t, 32>
+      status_steps{};               ///< in how many steps each was set; 0 where that is not known
   double start = 0.0;               ///< simulated s when this person's run began
   std::string connection;           ///< the network in a few words; empty without one
   std::string people;               ///< who is here, a line each; empty when alone

@@ -2,22 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 
 #include "peer/output/gnuplot.h"
+#include "sim/math/format.h"
 
 namespace slosh {
 namespace {
-
-__attribute__((format(printf, 1, 2))) std::string format(const char* pattern, ...) {
-  char text[300];
-  va_list arguments;
-  va_start(arguments, pattern);
-  std::vsnprintf(text, sizeof text, pattern, arguments);
-  va_end(arguments);
-  return text;
-}
 
 constexpr int kPanelWidth = 620, kPanelHeight = 420, kTitleHeight = 46;  // pixels
 
@@ -86,7 +76,7 @@ std::string chart_script(const std::vector<ChartPanel>& panels, int columns, con
 }
 
 std::string tile_script(const TileMap& map) {
-  constexpr int kRow = 24, kColumn = 120, kLeft = 420, kTop = 146;
+  constexpr int kRow = 24, kColumn = 140, kLeft = 420, kTop = 146;
   const int rows = static_cast<int>(map.rows.size()), columns = static_cast<int>(map.columns.size());
   const double width = kLeft + kColumn * columns + 40, height = kTop + kRow * rows + 30;
   std::string script =

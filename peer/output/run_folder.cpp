@@ -15,8 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kRunFiles[] = {"summary.json", "wrenches.csv", "poses.csv",
-                                     "wrenches.png", "view.mp4",     "final.png"};
+constexpr const char* kRunFiles[] = {"summary.json", "wrenches.csv", "poses.csv", "bodies.csv",
+                                     "probes.csv",   "wrenches.png", "view.mp4",  "final.png"};
 constexpr int kMostFolders = 10'000;
 constexpr const char* kAnother = "Choose another folder with --out";
 

@@ -48,8 +48,9 @@ void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window) {
   verb.add_flag("!--no-render", options.render, "No picture at all");
 }
 
-void add_measure_option(CLI::App& verb, ShowOptions& options) {
-  verb.add_option(
+CLI::Option* add_measure_option(CLI::App& verb, ShowOptions& options) {
+  return verb
+      .add_option(
           "--measure", options.measure,
           "Simulated seconds between rows of bodies.csv and probes.csv, 0 for none (0.01 where the scene has "
           "gauges, regions or measured bodies)")

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "net/clock.h"
+#include "net/text/clean.h"
 #include "peer/output/line_input.h"
 #include "peer/output/summary.h"
 #include "peer/verbs/host_links.h"
@@ -100,6 +101,9 @@ void print_summary(const HostedRun& run, const HostReport& report, const ServerF
     else
       std::printf("saved      not: %s\n", saved.problem.c_str());
   }
+  if (!run.measured().empty())
+    std::printf("measured   %s: probes.csv, and bodies.csv where there are bodies to follow\n",
+                clean_text(run.measured().string(), kMostTextBytes).c_str());
   const keep::RecordingReport& recorded = run.recording();
   if (recorded.bytes > 0) {
     const std::string& why = recorded.problem.empty() ? recorded.totals.ended_early : recorded.problem;

@@ -13,15 +13,13 @@
 namespace slosh {
 namespace {
 
-constexpr double kSettle = 1.0;  // simulated s
-
 Result<HostedWorld> start_anew(const HostVerbOptions& options, Progress& progress) {
   HostedWorld hosted;
   Result<Prepared> prepared = prepare(options, false, progress);
   if (!prepared) return prepared.error();
   hosted.prepared = std::move(prepared.value());
   const Prepared& p = hosted.prepared;
-  progress.phase("settling");
+  progress.phase(p.scene.settle > 0.0 ? "settling" : "starting");
   Result<World> made = make_world(p.scene, p.sampled, p.plan, WorldOptions{p.threads, p.backend});
   if (!made) return made.error();
   hosted.world = std::move(made.value());
@@ -29,11 +27,11 @@ Result<HostedWorld> start_anew(const HostVerbOptions& options, Progress& progres
   std::vector<HandleInput> hands;
   for (std::size_t i = 0; i < p.scene.grips.size(); ++i)
     hands.push_back({grip_start(p.scene, i), Twist{}, true, 1.0});
-  const Result<bool> agreed =
-      agree_on_time(*hosted.world, hands,
-                    {kSettle, std::numeric_limits<double>::infinity(), true, options.agreed}, progress);
+  const Result<bool> agreed = agree_on_time(
+      *hosted.world, hands, {p.scene.settle, std::numeric_limits<double>::infinity(), true, options.agreed},
+      progress);
   if (!agreed) return agreed.error();
-  hosted.world->settle(kSettle, hands);
+  hosted.world->settle(p.scene.settle, hands);
   const Result<bool> saved = hosted.world->save(hosted.start);
   if (!saved) return saved.error();
   hosted.waits = options.wait > 0 && !p.scene.grips.empty();
@@ -86,6 +84,14 @@ Result<HostedWorld> carry_on(const HostVerbOptions& options, Progress& progress)
   p.threads = options.threads > 0 ? options.threads : std::max(1, p.machine.cores - 1);
   p.seconds = options.seconds > 0.0 ? options.seconds : std::numeric_limits<double>::infinity();
   p.scene = std::move(kept.scene);
+  if (!options.out.empty()) {
+    // What an earlier host measured stays: this one's tables begin where it carries on.
+    Result<RunFolder> folder = RunFolder::take_free(options.out);
+    if (!folder) return folder.error();
+    p.claim = folder.value();
+    p.folder = p.claim.path();
+    set_measure(options, p);
+  }
   progress.phase("sampling");
   Result<keep::RebuiltWorld> rebuilt =
       keep::rebuild_world(p.scene, kept.spacing, kept.world, WorldOptions{p.threads, p.backend});

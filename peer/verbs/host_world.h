@@ -22,7 +22,7 @@ struct HostedWorld {
   keep::HostPlace place;                ///< of a checkpoint: where its host was reached
 };
 
-/// Loads and settles a scene, or reads a checkpoint. Errors: anything of these.
+/// Loads a scene, settles it where it asks for that, or reads a checkpoint. Errors: anything of these.
 Result<HostedWorld> make_hosted_world(const HostVerbOptions& options, Progress& progress);
 
 }  // namespace slosh

@@ -59,6 +59,7 @@ Result<std::unique_ptr<HostedRun>> HostedRun::create(HostedWorld& hosted, const 
   s.host_->add_tap(*s.server_);
   if (s.checkpoint_) s.host_->add_tap(*s.checkpoint_);
   if (s.recording_) s.host_->add_tap(*s.recording_);
+  if (s.measure_tap_) s.host_->add_tap(*s.measure_tap_);
   return run;
 }
 
@@ -205,6 +206,12 @@ Result<bool> HostedRun::open_files() {
     if (!writer) return writer.error();
     recording_ = std::move(writer.value());
   }
+  if (p.measure > 0.0) {
+    Result<std::unique_ptr<Measurer>> measurer = Measurer::create(p.scene, p.sampled, p.folder, p.measure);
+    if (!measurer) return measurer.error();
+    measurer_ = std::move(measurer.value());
+    measure_tap_ = std::make_unique<MeasureTap>(*measurer_);
+  }
   return true;
 }
 
@@ -234,6 +241,7 @@ void HostedRun::stop(const std::string& why) {
   save_server_state();
   if (checkpoint_) checkpoint_->flush();
   if (recording_) recording_report_ = recording_->finish();
+  if (measurer_) measurer_->stop();
 }
 
 std::vector<std::string> HostedRun::news() {
@@ -243,14 +251,12 @@ std::vector<std::string> HostedRun::news() {
 
 std::string HostedRun::trouble() const {
   std::string all;
-  if (recording_) {
-    const std::string why = recording_->trouble();
-    if (!why.empty()) all = "the recording has ended: " + why;
-  }
-  if (checkpoint_) {
-    const std::string why = checkpoint_->report().problem;
-    if (!why.empty()) all += (all.empty() ? "" : "; ") + ("the world is not saved: " + why);
-  }
+  const auto say = [&all](const char* what, const std::string& why) {
+    if (!why.empty()) all += (all.empty() ? "" : "; ") + (what + why);
+  };
+  if (recording_) say("the recording has ended: ", recording_->trouble());
+  if (checkpoint_) say("the world is not saved: ", checkpoint_->report().problem);
+  if (measurer_) say("the instruments are not written: ", measurer_->problem());
   return all;
 }
 

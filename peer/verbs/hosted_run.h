@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -15,6 +16,7 @@
 #include "host/server/net_loop.h"
 #include "host/server/snapshot_coder.h"
 #include "peer/verbs/host_world.h"
+#include "peer/verbs/measure_tap.h"
 
 namespace slosh {
 
@@ -50,6 +52,10 @@ class HostedRun {
   void save_server_state();
   const keep::CheckpointWriter* checkpoint() const { return checkpoint_.get(); }
   const keep::RecordingReport& recording() const { return recording_report_; }
+  /// The folder with bodies.csv and probes.csv; empty = nothing is measured.
+  std::filesystem::path measured() const {
+    return measurer_ ? hosted_.prepared.folder : std::filesystem::path();
+  }
   double coding_seconds() const { return coding_seconds_; }
 
  private:
@@ -80,6 +86,8 @@ class HostedRun {
   std::unique_ptr<Endpoint> endpoint_;
   std::unique_ptr<keep::CheckpointWriter> checkpoint_;
   std::unique_ptr<keep::RecordingWriter> recording_;
+  std::unique_ptr<Measurer> measurer_;  // null where nothing is measured, as its tap
+  std::unique_ptr<MeasureTap> measure_tap_;
   std::unique_ptr<Host> host_;
   std::unique_ptr<SnapshotThread> snapshots_;
   std::unique_ptr<NetLoop> net_;

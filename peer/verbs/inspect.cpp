@@ -7,6 +7,7 @@
 #include "net/text/clean.h"
 #include "peer/output/summary.h"
 #include "peer/verbs/common_options.h"
+#include "peer/verbs/plan_numbers.h"
 #include "peer/verbs/prepare.h"
 #include "peer/verbs/verbs.h"
 #include "scenes/load.h"
@@ -45,7 +46,8 @@ int check(const std::string& name, double asked) {
   const Scene& scene = loaded.value();
   const double spacing = asked > 0.0 ? asked : scene.spacing > 0.0 ? scene.spacing : scene.spacing_max;
   SampleReport filling;
-  Result<SampledScene> sampled = sample_scene(scene, spacing, &filling);
+  Progress progress;
+  Result<SampledScene> sampled = sample_told(scene, spacing, progress, &filling);
   if (!sampled) return fail(sampled.error());
 
   std::size_t surface = 0;
@@ -75,6 +77,7 @@ int check(const std::string& name, double asked) {
         clean_text(scene.fluid_volumes[v].name, kMostTextBytes).c_str(), 1e3 * f.sampled, 1e3 * f.mesh,
         1e3 * f.in_bodies, 1e3 * f.in_others, 1e3 * f.no_place);
   }
+  std::printf("  start       %s\n", start_in_words(scene).c_str());
   const auto measured =
       std::count_if(scene.bodies.begin(), scene.bodies.end(), [](const Body& body) { return body.measured; });
   if (measured > 0 || !scene.gauges.empty() || !scene.regions.empty()) {
@@ -97,7 +100,12 @@ int print_plan(const std::string& name, double spacing) {
   if (!loaded) return fail(loaded.error());
   const Scene& scene = loaded.value();
   if (spacing <= 0.0) spacing = scene.spacing > 0.0 ? scene.spacing : scene.spacing_max;
-  std::printf("%s", describe(make_plan(scene, spacing)).c_str());
+  const Plan plan = make_plan(scene, spacing);
+  const ParticleEstimate count = estimate_particles(scene, spacing);
+  std::printf("%s\nThe numbers behind it\n%s", describe(plan).c_str(),
+              plan_numbers(scene, plan, count.fluid, count.surface).c_str());
+  std::fflush(stdout);
+  std::printf("%s", step_cost_in_words(scene, plan, count.fluid + count.surface).c_str());
   return kExitOk;
 }
 

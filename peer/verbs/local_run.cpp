@@ -3,13 +3,13 @@
 #include <algorithm>
 
 #include "peer/verbs/hand_trouble.h"
+#include "peer/verbs/interrupt.h"
 #include "peer/verbs/run_report.h"
 #include "peer/verbs/time_estimate.h"
 
 namespace slosh {
 namespace {
 
-constexpr double kSettle = 1.0;  // simulated s
 constexpr std::size_t kSnapshotBytes = std::size_t{512} << 20;
 
 }  // namespace
@@ -26,7 +26,8 @@ Result<std::unique_ptr<LocalRun>> LocalRun::create(const Prepared& prepared, Dev
       make_world(scene, prepared.sampled, prepared.plan, WorldOptions{prepared.threads, prepared.backend});
   if (!made) return made.error();
   World world = std::move(made.value());
-  // The world comes to rest in the hands as they are before the run. Nobody else reads the devices yet.
+  // Where the scene asks for it the world comes to rest in the hands as they are. Nobody else reads the
+  // devices yet.
   std::vector<HandleInput> hands;
   for (const std::unique_ptr<Device>& device : devices.devices) {
     const DeviceReport report = device->read({0.0, 0.0});
@@ -34,10 +35,12 @@ Result<std::unique_ptr<LocalRun>> LocalRun::create(const Prepared& prepared, Dev
   }
   if (progress != nullptr) {
     const Result<bool> agreed = agree_on_time(
-        world, hands, {kSettle, prepared.seconds, !prepared.unpaced, prepared.agreed}, *progress);
+        world, hands, {scene.settle, prepared.seconds, !prepared.unpaced, prepared.agreed}, *progress);
     if (!agreed) return agreed.error();
   }
-  world.settle(kSettle, hands);
+  // Where a run begins again the first signal is not to wait for this.
+  const auto stopped = [] { return interrupted_by() != 0; };
+  world.settle(scene.settle, hands, stopped);
   run->channel_ = std::make_unique<Channel>(scene.grips.size(), initial_message(world), kSnapshotBytes);
   HostOptions options;
   options.snapshot_rate = snapshot_rate;
@@ -132,6 +135,7 @@ Rates LocalRun::note_rates() {
   rates.real_time = progress.rate;
   rates.step_rate = progress.step_rate;
   rates.step_ms = progress.step_ms;
+  rates.status_steps = progress.status_steps;
   rates.device_rate = servo_->devices() == 0 ? 0.0 : loop_->rate();
   rates.device_status = servo_->status();
   rates_.add(rates);

@@ -69,7 +69,10 @@ Result<std::unique_ptr<Measurer>> Measurer::create(const Scene& scene, const Sam
     header += ',';
     header += csv_cell(name);
   };
-  for (const Gauge& gauge : scene.gauges) add_column(gauge.name + "_level_m");
+  for (const Gauge& gauge : scene.gauges) {
+    add_column(gauge.name + "_level_m");
+    add_column(gauge.name + "_pressure_pa");
+  }
   for (const Region& region : scene.regions) add_column(region.name + "_mass_kg");
   Result<std::unique_ptr<LaterTable>> probes = LaterTable::create(folder / "probes.csv", header);
   if (!probes) return probes.error();
@@ -137,6 +140,7 @@ void Measurer::write_rows(const World& world, double elapsed) {
   row.number(m.fluid.kinetic_energy);
   for (std::size_t i = 0; i < levels_.size(); ++i) {
     row.number(m.levels[i]);
+    row.number(m.pressures[i]);
     note(levels_[i], m.levels[i], rows_ == 0);
   }
   for (std::size_t i = 0; i < masses_.size(); ++i) {

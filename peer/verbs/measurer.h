@@ -18,7 +18,8 @@ constexpr double kMeasureInterval = 0.01;
 constexpr const char* kBodiesHeader =
     "time_s,body,x_m,y_m,z_m,qw,qx,qy,qz,cx_m,cy_m,cz_m,vx_m_s,vy_m_s,vz_m_s,wx_rad_s,wy_rad_s,wz_rad_s,"
     "fx_n,fy_n,fz_n,tx_nm,ty_nm,tz_nm,fluid_inside";
-/// What probes.csv begins with, before a column a gauge (NAME_level_m) and a region (NAME_mass_kg).
+/// What probes.csv begins with, before the columns of each gauge (NAME_level_m, NAME_pressure_pa) and
+/// region (NAME_mass_kg).
 constexpr const char* kProbesHeader =
     "time_s,particles,lost,in_solids,mass_kg,cx_m,cy_m,cz_m,px_kg_m_s,py_kg_m_s,pz_kg_m_s,kinetic_j";
 

@@ -128,7 +128,7 @@ Result<bool> play_headless(const Prepared& prepared, const PlayOptions& options,
                            RunSummary& summary) {
   Result<DeviceSet> devices = make_devices(prepared.scene, options.devices, false);
   if (!devices) return devices.error();
-  progress.phase("settling");
+  progress.phase(prepared.scene.settle > 0.0 ? "settling" : "starting");
   const double snapshot_rate = options.render ? options.frames_per_second : 0.0;
   Result<std::unique_ptr<LocalRun>> created =
       LocalRun::create(prepared, std::move(devices.value()), snapshot_rate, &progress);

@@ -17,6 +17,7 @@
 #include "peer/haptics/make_device.h"
 #include "peer/output/summary.h"
 #include "peer/verbs/measurer.h"
+#include "peer/verbs/time_estimate.h"
 #include "scenes/load.h"
 
 namespace slosh {
@@ -135,10 +136,26 @@ Result<bool> set_stage(const ShowOptions& options, bool headless, Stage& stage) 
   if (!folder) return folder.error();
   stage.claim = folder.value();
   stage.folder = stage.claim.path();
+  set_measure(options, stage);
+  return true;
+}
+
+Result<SampledScene> sample_told(const Scene& scene, double spacing, Progress& progress,
+                                 SampleReport* report) {
+  const ParticleEstimate particles = estimate_particles(scene, spacing);
+  const double seconds = estimate_sampling(particles);
+  if (seconds < kLongSampling) return sample_scene(scene, spacing, report);
+  progress.note("sampling takes about " + duration(seconds) + ": some " +
+                grouped(static_cast<std::uint64_t>(particles.surface)) + " particles of bodies and " +
+                grouped(static_cast<std::uint64_t>(particles.fluid)) +
+                " of fluid. Is the scene in metres? Larger --spacing is quicker");
+  return sample_scene(scene, spacing, report, [&](double share) { progress.update(share, "sampling"); });
+}
+
+void set_measure(const ShowOptions& options, Stage& stage) {
   const bool asks = options.measure > 0.0 || (options.measure < 0.0 && asks_to_be_measured(stage.scene));
   if (asks && !stage.folder.empty())
     stage.measure = options.measure > 0.0 ? options.measure : kMeasureInterval;
-  return true;
 }
 
 Result<Prepared> prepare(const PlayOptions& options, bool headless, Progress& progress) {
@@ -182,7 +199,7 @@ Result<Prepared> prepare(const PlayOptions& options, bool headless, Progress& pr
   progress.note(std::string("spacing ") + text + ": " + p.spacing_reason);
 
   progress.phase("sampling");
-  Result<SampledScene> sampled = sample_scene(p.scene, spacing.value().metres);
+  Result<SampledScene> sampled = sample_told(p.scene, spacing.value().metres, progress);
   if (!sampled) return sampled.error();
   p.sampled = std::move(sampled.value());
   p.plan = make_plan(p.scene, spacing.value().metres);

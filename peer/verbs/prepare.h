@@ -48,6 +48,14 @@ Result<Backend> choose_backend(const std::string& text);
 /// "640x480" to two numbers of pixels, 16–8192 each. Errors: anything else.
 Result<std::pair<int, int>> parse_size(const std::string& text);
 
+/// As sample_scene. What takes more than kLongSampling s is told before it begins, and then how far it is.
+Result<SampledScene> sample_told(const Scene& scene, double spacing, Progress& progress,
+                                 SampleReport* report = nullptr);
+constexpr double kLongSampling = 5.0;
+
+/// How often the instruments of `stage` are read: never without a folder to write to.
+void set_measure(const ShowOptions& options, Stage& stage);
+
 /// Fills `stage` but for its scene, which must be there: size, seconds, folder (made, and this run's own).
 /// Errors: a size that is none, a folder that cannot be made or that holds another run.
 Result<bool> set_stage(const ShowOptions& options, bool headless, Stage& stage);

@@ -6,8 +6,10 @@
 
 #include "peer/output/machine.h"
 #include "peer/verbs/common_options.h"
+#include "peer/verbs/interrupt.h"
 #include "peer/verbs/verbs.h"
 #include "sim/backend.h"
+#include "sim/math/format.h"
 
 namespace slosh {
 namespace {
@@ -20,12 +22,17 @@ void add_machine_options(CLI::App& verb, ReportOptions& options) {
   verb.add_flag("--overwrite", options.overwrite, "Lose the report that is in that folder");
 }
 
-void add_case_options(CLI::App& verb, ReportOptions& options, const std::string& kind) {
+void add_case_options(CLI::App& verb, ReportOptions& options, const std::string& kind,
+                      const std::string& table) {
   verb.add_flag("--quick", options.quick, "Coarse particles and short runs: minutes instead of hours");
   verb.add_option("--out", options.out, "Folder for the tables and pictures (slosh-report-" + kind + ")");
   verb.add_option("--case", options.cases, "Only this case; may be given more than once");
   verb.add_option("--model", options.models, "Only this particle model; may be given more than once")
       ->check(CLI::IsMember({"paper", "consistent", "corrected"}));
+  verb.add_option(
+          "--from", options.from,
+          "Draw these " + table + " of earlier reports, of any machine, and run nothing; again for more")
+      ->check(CLI::ExistingFile);
   add_machine_options(verb, options);
 }
 
@@ -37,11 +44,7 @@ void add_report(CLI::App& app, VerbRun& chosen) {
   verb->require_subcommand(1);
   auto options = std::make_shared<ReportOptions>();
   CLI::App* error = verb->add_subcommand("error", "Cases with a known answer: how far off, at what cost");
-  add_case_options(*error, *options, "error");
-  error
-      ->add_option("--from", options->from,
-                   "Draw and tabulate these errors.csv of earlier reports, of any machine, and run nothing")
-      ->check(CLI::ExistingFile);
+  add_case_options(*error, *options, "error", "errors.csv");
   error->footer(
       "Runs every case with every particle model and spacing; a full report also with a wider support and "
       "half\n"
@@ -53,14 +56,15 @@ void add_report(CLI::App& app, VerbRun& chosen) {
   error->callback([&chosen, options] { chosen = [options] { return report_error(*options); }; });
   CLI::App* stability =
       verb->add_subcommand("stability", "Stiff and extreme cases: what holds, what is refused");
-  add_case_options(*stability, *options, "stability");
+  add_case_options(*stability, *options, "stability", "stability.csv");
   stability->footer(
       "Each case ends as one of: ran true; ran limited (finite, and a status said what was limited); refused "
       "(in\n"
       "words, before it ran); failed. Writes stability.csv and stability.png, a map. A full report soaks: a "
       "million\n"
       "steps at rest, ten minutes of stirring.\n\n"
-      "Examples:\n  slosh report stability --quick\n  slosh report stability --case jerk --model corrected");
+      "Examples:\n  slosh report stability --quick\n  slosh report stability --case jerk --model corrected\n"
+      "  slosh report stability --from here.csv --from there.csv --out both");
   stability->callback([&chosen, options] { chosen = [options] { return report_stability(*options); }; });
   CLI::App* passes = verb->add_subcommand("passes", "What a scene's step saves by what it leaves out");
   auto scene = std::make_shared<std::string>();
@@ -116,6 +120,38 @@ std::optional<Error> no_backend(const ReportOptions& options) {
 std::vector<Backend> backends_of(const ReportOptions& options) {
   if (options.backend == "both") return {Backend::kCpu, Backend::kCuda};
   return {options.backend == "cuda" ? Backend::kCuda : Backend::kCpu};
+}
+
+report::SweepOptions sweep_of(const ReportOptions& options) {
+  return {options.quick,        options.cases,   options.models,
+          backends_of(options), options.threads, [] { return interrupted_by() != 0; }};
+}
+
+std::string origin_line(const ReportOptions& options) {
+  std::string names;
+  for (const std::string& file : options.from)
+    names += (names.empty() ? "" : ", ") + std::filesystem::path(file).filename().string();
+  return names.empty() ? machine_line(options) : names;
+}
+
+Result<bool> run_jobs(const std::vector<ReportJob>& jobs, std::ofstream& out,
+                      const std::filesystem::path& file, Progress& progress) {
+  if (!jobs.empty()) progress.phase("measuring", format("%zu runs", jobs.size()));
+  double whole = 0.0, done = 0.0;
+  for (const ReportJob& job : jobs) whole += job.weight;
+  for (const ReportJob& job : jobs) {
+    progress.update(done / whole, job.name);
+    try {
+      job.run();
+    } catch (const report::Stopped&) {
+      progress.note("interrupted: drawing what there is");
+      break;
+    }
+    if (!out.flush()) break;
+    done += job.weight;
+  }
+  if (out.flush()) return true;
+  return Error{file.string(), "cannot be written", "Is the disk full? Rows so far are kept"};
 }
 
 }  // namespace slosh

@@ -2,11 +2,14 @@
 #pragma once
 
 #include <filesystem>
+#include <fstream>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "host/report/sweep.h"
+#include "peer/output/progress.h"
 #include "peer/output/run_folder.h"
 
 namespace slosh {
@@ -29,6 +32,24 @@ int report_passes(const ReportOptions& options, const std::string& scene_name, d
 /// The folder that a report writes to. Errors: another report is there.
 Result<std::filesystem::path> report_folder(const ReportOptions& options, const std::string& kind,
                                             const char* main_file);
+
+/// One run of a report.
+struct ReportJob {
+  std::string name;           ///< for the bar
+  double weight = 1.0;        ///< of all the work, for the bar alone
+  std::function<void()> run;  ///< writes its rows; throws report::Stopped
+};
+
+/// Runs them in turn, each's rows in `file` before the next begins; an interrupt ends them early and keeps
+/// what there is. Errors: `out` cannot be written.
+Result<bool> run_jobs(const std::vector<ReportJob>& jobs, std::ofstream& out,
+                      const std::filesystem::path& file, Progress& progress);
+
+/// The settings' part of a report that the options choose.
+report::SweepOptions sweep_of(const ReportOptions& options);
+
+/// What the pictures say of where the numbers are from: the machine, or the tables that were given.
+std::string origin_line(const ReportOptions& options);
 
 /// "Intel Xeon, 2 of 2 cores, Debian GNU/Linux 12 (bookworm), 2026-11-21"
 std::string machine_line(const ReportOptions& options);

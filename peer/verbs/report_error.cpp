@@ -15,7 +15,7 @@
 #include "peer/verbs/interrupt.h"
 #include "peer/verbs/report.h"
 #include "peer/verbs/verbs.h"
-#include "sim/format.h"
+#include "sim/math/format.h"
 
 namespace slosh {
 namespace {
@@ -187,61 +187,25 @@ int write_up(const std::vector<ErrorRow>& rows, const std::filesystem::path& fol
   return kExitOk;
 }
 
-struct Job {
-  const ErrorCase* which;
-  Setting setting;
-};
-
-std::string job_name(const Job& job) {
-  std::string text =
-      format("%s, %s, %.3g mm", job.which->id, name(job.setting.model), 1e3 * job.setting.spacing);
-  if (job.setting.support_ratio != 2.0) text += format(", support %.2g", job.setting.support_ratio);
-  if (job.setting.step_share != 1.0) text += format(", %.2g of the step", job.setting.step_share);
-  if (job.setting.backend == Backend::kCuda) text += ", CUDA";
+std::string job_name(const ErrorCase& which, const Setting& setting) {
+  std::string text = format("%s, %s, %.3g mm", which.id, name(setting.model), 1e3 * setting.spacing);
+  if (setting.support_ratio != 2.0) text += format(", support %.2g", setting.support_ratio);
+  if (setting.step_share != 1.0) text += format(", %.2g of the step", setting.step_share);
+  if (setting.backend == Backend::kCuda) text += ", CUDA";
   return text;
 }
 
-// Work in particles and steps, for the bar alone: a spacing half as long is eight times the particles and
-// twice the steps.
-double weight_of(const Job& job) {
-  const double ratio = job.which->spacings.front() / job.setting.spacing;
-  return std::pow(ratio, 4.0) * std::pow(job.setting.support_ratio / 2.0, 2.0) / job.setting.step_share;
-}
-
-int run_all(const std::vector<Job>& jobs, std::ofstream& out, std::vector<ErrorRow>& rows) {
-  Progress progress;
-  progress.phase("measuring", format("%zu runs", jobs.size()));
-  double whole = 0.0, done = 0.0;
-  for (const Job& job : jobs) whole += weight_of(job);
-  for (const Job& job : jobs) {
-    progress.update(done / whole, job_name(job));
-    try {
-      for (const ErrorRow& row : report::run_case(*job.which, job.setting)) {
-        out << report::csv_line(row) << '\n';
-        rows.push_back(row);
-        if (!row.refused.empty()) progress.note(job_name(job) + ": " + row.refused);
-      }
-    } catch (const report::Stopped&) {
-      progress.note("interrupted: drawing what there is");
-      return kExitOk;
-    }
-    if (!out.flush()) return kExitFailed;
-    done += weight_of(job);
-  }
-  return kExitOk;
+// Work in particles and steps: a spacing half as long is eight times the particles and twice the steps.
+double weight_of(const ErrorCase& which, const Setting& setting) {
+  const double ratio = which.spacings.front() / setting.spacing;
+  return std::pow(ratio, 4.0) * std::pow(setting.support_ratio / 2.0, 2.0) / setting.step_share;
 }
 
 }  // namespace
 
 int report_error(const ReportOptions& options) {
-  for (const std::string& id : options.cases) {
-    if (report::find_error_case(id)) continue;
-    std::string known;
-    for (const ErrorCase& each : report::error_cases())
-      known += (known.empty() ? "" : ", ") + std::string(each.id);
-    return fail({"--case", "there is no case '" + id + "'", "Cases: " + known});
-  }
-  const std::vector<Backend> backends = backends_of(options);
+  const Result<std::vector<const ErrorCase*>> cases = report::chosen(report::error_cases(), options.cases);
+  if (!cases) return fail(cases.error());
   if (options.from.empty()) {
     if (const std::optional<Error> missing = no_backend(options)) return fail(*missing);
   }
@@ -253,25 +217,27 @@ int report_error(const ReportOptions& options) {
     if (!read) return fail(read.error());
     rows.insert(rows.end(), read.value().begin(), read.value().end());
   }
-  std::vector<Job> jobs;
-  if (options.from.empty()) {
-    const report::SweepOptions sweep{options.quick, options.cases,   options.models,
-                                     backends,      options.threads, [] { return interrupted_by() != 0; }};
-    for (const ErrorCase& each : report::error_cases()) {
-      if (!options.cases.empty() && std::count(options.cases.begin(), options.cases.end(), each.id) == 0)
-        continue;
-      for (const Setting& setting : report::settings_of(each, sweep)) jobs.push_back({&each, setting});
-    }
-  }
   catch_interrupts();
-  std::ofstream out(folder.value() / kTable);
+  const std::filesystem::path table = folder.value() / kTable;
+  std::ofstream out(table);
   out << report::kErrorHeader << '\n';
   for (const ErrorRow& row : rows) out << report::csv_line(row) << '\n';
-  const int ran = run_all(jobs, out, rows);
-  if (ran != kExitOk || !out.flush())
-    return fail(
-        {(folder.value() / kTable).string(), "cannot be written", "Is the disk full? Rows so far are kept"});
-  return write_up(rows, folder.value(), options.from.empty() ? machine_line(options) : "several reports");
+  Progress progress;
+  std::vector<ReportJob> jobs;
+  for (const ErrorCase* which : options.from.empty() ? cases.value() : std::vector<const ErrorCase*>()) {
+    for (const Setting& setting : report::settings_of(*which, sweep_of(options))) {
+      const std::string named = job_name(*which, setting);
+      jobs.push_back({named, weight_of(*which, setting), [&, which, setting, named] {
+                        for (const ErrorRow& row : report::run_case(*which, setting)) {
+                          out << report::csv_line(row) << '\n';
+                          rows.push_back(row);
+                          if (!row.refused.empty()) progress.note(named + ": " + row.refused);
+                        }
+                      }});
+    }
+  }
+  if (const Result<bool> ran = run_jobs(jobs, out, table, progress); !ran) return fail(ran.error());
+  return write_up(rows, folder.value(), origin_line(options));
 }
 
 }  // namespace slosh

@@ -9,7 +9,7 @@
 #include "peer/verbs/report.h"
 #include "peer/verbs/verbs.h"
 #include "scenes/load.h"
-#include "sim/format.h"
+#include "sim/math/format.h"
 
 namespace slosh {
 namespace {

@@ -11,7 +11,7 @@
 #include "peer/verbs/interrupt.h"
 #include "peer/verbs/report.h"
 #include "peer/verbs/verbs.h"
-#include "sim/format.h"
+#include "sim/math/format.h"
 
 namespace slosh {
 namespace {
@@ -55,7 +55,8 @@ TileMap map_of(const std::vector<StressRow>& rows, const std::string& machine) {
   for (const StressRow& row : rows) {
     const std::size_t r = index(map.rows, title(row)), c = index(map.columns, column_of(row));
     map.kind[r][c] = static_cast<int>(row.verdict);
-    if (row.found.lost_share > 0.0) map.text[r][c] = format("%.2g %% lost", 100.0 * row.found.lost_share);
+    const double lost = 100.0 * row.found.lost_share;
+    if (lost > 0.0) map.text[r][c] = format(lost < 10.0 ? "%.2g %% lost" : "%.0f %% lost", lost);
   }
   return map;
 }
@@ -78,70 +79,48 @@ void print_summary(const std::vector<StressRow>& rows) {
   }
 }
 
-bool wanted(const std::vector<std::string>& names, const std::string& name) {
-  return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
-}
-
 }  // namespace
 
 int report_stability(const ReportOptions& options) {
-  std::string known;
-  for (const StressCase& each : report::stress_cases())
-    known += (known.empty() ? "" : ", ") + std::string(each.id);
-  for (const std::string& id : options.cases) {
-    const auto& all = report::stress_cases();
-    if (std::none_of(all.begin(), all.end(), [&](const StressCase& each) { return id == each.id; }))
-      return fail({"--case", "there is no case '" + id + "'", "Cases: " + known});
+  const Result<std::vector<const StressCase*>> cases = report::chosen(report::stress_cases(), options.cases);
+  if (!cases) return fail(cases.error());
+  if (options.from.empty()) {
+    if (const std::optional<Error> missing = no_backend(options)) return fail(*missing);
   }
-  if (const std::optional<Error> missing = no_backend(options)) return fail(*missing);
   const Result<std::filesystem::path> folder = report_folder(options, "stability", kTable);
   if (!folder) return fail(folder.error());
-  catch_interrupts();
-  std::ofstream out(folder.value() / kTable);
-  out << report::kStressHeader << '\n';
   std::vector<StressRow> rows;
+  for (const std::string& file : options.from) {
+    const Result<std::vector<StressRow>> read = report::read_stresses(file);
+    if (!read) return fail(read.error());
+    rows.insert(rows.end(), read.value().begin(), read.value().end());
+  }
+  catch_interrupts();
+  const std::filesystem::path table = folder.value() / kTable;
+  std::ofstream out(table);
+  out << report::kStressHeader << '\n';
+  for (const StressRow& row : rows) out << report::csv_line(row) << '\n';
   Progress progress;
-  progress.phase("measuring");
-  const auto& cases = report::stress_cases();
-  bool stopped = false;
-  for (std::size_t i = 0; i < cases.size() && !stopped; ++i) {
+  std::vector<ReportJob> jobs;
+  for (const StressCase* which : options.from.empty() ? cases.value() : std::vector<const StressCase*>()) {
     // A case that is asked for by name is run, quick or not.
-    if (!wanted(options.cases, cases[i].id) || (options.cases.empty() && options.quick && !cases[i].quick))
-      continue;
-    for (const Backend backend : backends_of(options)) {
-      for (const ParticleModel model :
-           {ParticleModel::kPaper, ParticleModel::kConsistent, ParticleModel::kCorrected}) {
-        if (stopped || !wanted(options.models, name(model))) continue;
-        if (!cases[i].fluid && model != ParticleModel::kCorrected) continue;  // the same world for all
-        progress.update(static_cast<double>(i) / static_cast<double>(cases.size()),
-                        std::string(cases[i].title) + ", " + name(model));
-        Setting setting;
-        setting.model = model;
-        setting.spacing = cases[i].spacing;
-        setting.backend = backend;
-        setting.threads = options.threads;
-        setting.stopped = [] { return interrupted_by() != 0; };
-        try {
-          rows.push_back(report::run_stress(cases[i], setting));
-        } catch (const report::Stopped&) {
-          progress.note("interrupted: drawing what there is");
-          stopped = true;
-          continue;
-        }
-        out << report::csv_line(rows.back()) << '\n' << std::flush;
-        if (rows.back().verdict == Verdict::kFailed)
-          progress.note(format("failed: %s, %s: ", cases[i].id, column_of(rows.back()).c_str()) +
-                        rows.back().why);
-      }
+    if (options.cases.empty() && options.quick && !which->quick) continue;
+    for (const Setting& setting : report::settings_of(*which, sweep_of(options))) {
+      jobs.push_back({std::string(which->title) + ", " + name(setting.model), 1.0, [&, which, setting] {
+                        rows.push_back(report::run_stress(*which, setting));
+                        out << report::csv_line(rows.back()) << '\n';
+                        if (rows.back().verdict == Verdict::kFailed)
+                          progress.note(
+                              format("failed: %s, %s: ", which->id, column_of(rows.back()).c_str()) +
+                              rows.back().why);
+                      }});
     }
   }
-  if (!out.flush())
-    return fail(
-        {(folder.value() / kTable).string(), "cannot be written", "Is the disk full? Rows so far are kept"});
+  if (const Result<bool> ran = run_jobs(jobs, out, table, progress); !ran) return fail(ran.error());
   print_summary(rows);
   if (rows.empty()) return kExitOk;
   const Result<bool> drawn =
-      draw(tile_script(map_of(rows, machine_line(options))), folder.value() / "stability.png");
+      draw(tile_script(map_of(rows, origin_line(options))), folder.value() / "stability.png");
   if (!drawn) return fail(drawn.error());
   std::printf("Written: %s/stability.csv and stability.png\n",
               clean_text(folder.value().string(), kMostTextBytes).c_str());

@@ -15,11 +15,23 @@
 namespace slosh {
 namespace {
 
-/// s a particle and step, on one core: what the slowest machine tried takes twice of. Only says whether to
-/// measure.
-constexpr double kStatedCost = 5e-7;
 constexpr std::size_t kMostSteps = 5;
 constexpr double kLongest = 3.0;  // s of measuring, and a step
+
+std::string format_step(double seconds) {
+  char text[64];
+  std::snprintf(text, sizeof text, seconds < 1e-3 ? "%.3g µs" : "%.3g ms",
+                seconds * (seconds < 1e-3 ? 1e6 : 1e3));
+  return text;
+}
+
+bool someone_says_yes(Progress& progress, const std::string& question) {
+  progress.note(question + " [y/N]");
+  std::string answer;
+  return std::getline(std::cin, answer) && !answer.empty() && (answer[0] == 'y' || answer[0] == 'Y');
+}
+
+}  // namespace
 
 std::string duration(double seconds) {
   char text[64];
@@ -31,13 +43,6 @@ std::string duration(double seconds) {
     std::snprintf(text, sizeof text, "%.1f h", seconds / 3600.0);
   else
     std::snprintf(text, sizeof text, "%.0f days", seconds / 86400.0);
-  return text;
-}
-
-std::string format_step(double seconds) {
-  char text[64];
-  std::snprintf(text, sizeof text, seconds < 1e-3 ? "%.3g µs" : "%.3g ms",
-                seconds * (seconds < 1e-3 ? 1e6 : 1e3));
   return text;
 }
 
@@ -59,14 +64,6 @@ double measure_step(World& world, std::span<const HandleInput> hands) {
   return cost;
 }
 
-bool someone_says_yes(Progress& progress, const std::string& question) {
-  progress.note(question + " [y/N]");
-  std::string answer;
-  return std::getline(std::cin, answer) && !answer.empty() && (answer[0] == 'y' || answer[0] == 'Y');
-}
-
-}  // namespace
-
 TimeEstimate estimate_time(const PlannedTime& planned, double time_step, double step_cost) {
   TimeEstimate estimate;
   estimate.step = step_cost;
@@ -82,11 +79,16 @@ std::string in_words(const TimeEstimate& estimate, const PlannedTime& planned, c
   const double simulated = planned.settle + (std::isfinite(planned.seconds) ? planned.seconds : 0.0);
   const auto steps = static_cast<std::uint64_t>(std::llround(simulated / plan.time_step));
   char text[600];
-  std::snprintf(text, sizeof text, "%s steps of %s (by %s), each %s of work here: about %s to settle",
-                grouped(steps).c_str(), format_step(plan.time_step).c_str(), plan.time_step_reason.c_str(),
-                format_step(estimate.step).c_str(), duration(estimate.settle).c_str());
+  std::snprintf(text, sizeof text, "%s steps of %s (by %s), each %s of work here", grouped(steps).c_str(),
+                format_step(plan.time_step).c_str(), plan.time_step_reason.c_str(),
+                format_step(estimate.step).c_str());
   std::string words = text;
-  if (std::isfinite(planned.seconds)) words += " and " + duration(estimate.run) + " for the run";
+  const char* joint = ": about ";
+  if (planned.settle > 0.0) {
+    words += joint + duration(estimate.settle) + " to settle";
+    joint = " and ";
+  }
+  if (std::isfinite(planned.seconds)) words += joint + duration(estimate.run) + " for the run";
   char pace[64];
   std::snprintf(pace, sizeof pace, ", real time × %.2g", estimate.pace);
   return words + pace;
@@ -99,7 +101,7 @@ Result<bool> agree_on_time(World& world, std::span<const HandleInput> hands, con
   const auto slow = [&](const TimeEstimate& e) {
     return e.whole() > kSlow + (std::isfinite(planned.seconds) ? planned.seconds : 0.0);
   };
-  if (!slow(estimate_time(planned, time_step, particles * kStatedCost))) return true;
+  if (!slow(estimate_time(planned, time_step, particles * kStatedStepCost))) return true;
   const TimeEstimate estimate = estimate_time(planned, time_step, measure_step(world, hands));
   if (!slow(estimate)) return true;
   const std::string words = in_words(estimate, planned, world.plan());

@@ -27,6 +27,15 @@ struct TimeEstimate {
 };
 TimeEstimate estimate_time(const PlannedTime& planned, double time_step, double step_cost);
 
+/// "12 s", "25 min", "1.5 h", "3 days".
+std::string duration(double seconds);
+
+/// s a particle and step, on one core: what the slowest machine tried takes twice of.
+constexpr double kStatedStepCost = 5e-7;
+
+/// s, the median of some steps; the world is put back to the bit. 0 where it cannot be saved.
+double measure_step(World& world, std::span<const HandleInput> hands);
+
 /// From this on a run is told to be slow, s more than its simulated time ...
 constexpr double kSlow = 30.0;
 /// ... on a terminal asked for, s in all ...

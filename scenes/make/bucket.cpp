@@ -85,6 +85,7 @@ SceneWriter make_bucket() {
                       {"spacing_min_m", 0.006},
                       {"spacing_max_m", 0.012},
                       {"duration_s", kDuration},
+                      {"settle_s", kSettle},
                       {"domain_min_m", list({-0.65, -0.20, -0.45})},
                       {"domain_max_m", list({0.65, 0.85, 0.45})}});
   add_table(writer, 1.0, 0.6);

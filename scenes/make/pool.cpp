@@ -29,6 +29,7 @@ SceneWriter make_pool() {
                       {"spacing_min_m", 0.012},
                       {"spacing_max_m", 0.05},
                       {"duration_s", kDuration},
+                      {"settle_s", kSettle},
                       {"domain_min_m", list({-0.85, -0.15, -0.85})},
                       {"domain_max_m", list({0.85, 1.0, 0.85})}});
   const int tiles = writer.add_material("tiles", {{0.55, 0.72, 0.75, 1.0}, 0.0, 0.35});

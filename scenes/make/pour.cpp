@@ -85,6 +85,7 @@ SceneWriter make_pour() {
                       {"spacing_min_m", 0.006},
                       {"spacing_max_m", 0.012},
                       {"duration_s", kDuration},
+                      {"settle_s", kSettle},
                       {"domain_min_m", list({-0.45, -0.15, -0.35})},
                       {"domain_max_m", list({0.50, 0.75, 0.35})}});
   add_table(writer, 0.7, 0.5);

@@ -26,6 +26,7 @@ SceneWriter make_probe() {
                       {"spacing_min_m", 0.005},
                       {"spacing_max_m", 0.012},
                       {"duration_s", kDuration},
+                      {"settle_s", kSettle},
                       {"domain_min_m", list({-0.25, -0.15, -0.22})},
                       {"domain_max_m", list({0.25, 0.35, 0.22})}});
   const int wood = writer.add_material("wood", {{0.32, 0.18, 0.09, 1.0}, 0.0, 0.55});

@@ -8,6 +8,9 @@ namespace slosh::make {
 /// Walls of vessels. m
 inline constexpr double kWall = 0.014;
 
+/// The shipped scenes come to rest in their hands before they begin. s
+inline constexpr double kSettle = 1.0;
+
 SceneWriter make_bucket();  ///< paper, section 6.4.4
 SceneWriter make_spoon();   ///< paper, section 6.4.1
 SceneWriter make_pour();    ///< paper, section 6.4.2

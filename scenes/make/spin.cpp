@@ -42,6 +42,7 @@ SceneWriter make_spin() {
                       {"spacing_min_m", 0.006},
                       {"spacing_max_m", 0.012},
                       {"duration_s", kDuration},
+                      {"settle_s", kSettle},
                       {"fluids", fluids},
                       {"domain_min_m", list({-0.65, -0.15, -0.25})},
                       {"domain_max_m", list({0.65, 0.40, 0.25})}});

@@ -68,6 +68,7 @@ SceneWriter make_spoon() {
                       {"spacing_min_m", 0.006},
                       {"spacing_max_m", 0.012},
                       {"duration_s", kDuration},
+                      {"settle_s", kSettle},
                       {"domain_min_m", list({-0.40, -0.15, -0.30})},
                       {"domain_max_m", list({0.40, 0.55, 0.30})}});
   add_table(writer, 0.6, 0.4);

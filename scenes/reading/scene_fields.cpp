@@ -37,6 +37,7 @@ Problem read_scene_fields(Reading& reading) {
     scene.model = static_cast<ParticleModel>(known - kParticleModelNames.begin());
   }
   scene.duration = extras.number("duration_s", scene.duration, gltf::Range{0.0, 86400.0, true});
+  scene.settle = extras.number("settle_s", 0.0, gltf::Range{0.0, 60.0});
   scene.light_direction =
       glm::vec3(extras.vector("light_direction", glm::dvec3(scene.light_direction), gltf::Range{-1e3, 1e3}));
   if (glm::length(scene.light_direction) < 1e-3f) {

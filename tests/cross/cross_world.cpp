@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "host/report/surface.h"
 #include "tests/cross/worlds.h"
 
 namespace {
@@ -336,13 +337,9 @@ void compare_guarded() {
   for (const World* world : {&cpu, &gpu}) {
     Snapshot s;
     world->fill(s);
-    const Pose to_tank = inverse(s.rigid.bodies[0].pose);
-    int through = 0;
-    for (std::size_t p = 0; p < s.positions.size(); ++p) {
-      if (s.fluid_index[p] == 255) continue;  // a retired one's position means nothing
-      const glm::dvec3 x = transform_point(to_tank, glm::dvec3(s.positions[p]));
-      through += x.y < 0.19 && (x.y < -0.005 || std::max(std::abs(x.x), std::abs(x.z)) > 0.105);
-    }
+    const std::size_t outside = report::count_outside(s, s.rigid.bodies[0].pose,
+                                                      {{-0.105, -0.005, -0.105}, {0.105, 0.19, 0.105}, true});
+    const auto through = static_cast<double>(outside - world->diagnostics().retired);
     // The tank is open: what splashes over its rim comes to lie beside it. Closed vessels, in which nothing
     // may be lost, are `slosh report stability`'s.
     std::printf("  %llu retired, over the rim and out\n",

@@ -75,6 +75,24 @@ INSTANTIATE_TEST_SUITE_P(Phases, StoppedEarly,
                                   std::to_string(tried.param.signal_number);
                          });
 
+TEST_F(EndingsTest, ALongSamplingIsToldBeforeAndTheFirstSignalEndsIt) {
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"check", "pool", "--spacing", "0.003"},
+        {"play", "pool", "--headless", "--no-render", "--spacing", "0.003", "--out", "out"}}) {
+    std::vector<std::string> command{test::program()};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    test::Process run(command, test::test_folder());
+    while (run.running() && read_text(at("stderr.txt")).find("sampling takes about") == std::string::npos)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    ASSERT_TRUE(run.running()) << read_text(at("stderr.txt"));
+    run.signal(SIGINT);
+    const Outcome outcome = run.wait();
+    EXPECT_EQ(outcome.code, 128 + SIGINT) << outcome.err;
+    EXPECT_NE(outcome.err.find(" s: some "), std::string::npos) << "how long: " << outcome.err;
+    EXPECT_NE(outcome.err.find("particles of bodies"), std::string::npos) << outcome.err;
+  }
+}
+
 TEST_F(EndingsTest, AFullDiskIsSaidAndLeavesWholeRows) {
   // Files of at most 8 kB stand for a disk that fills: what is beyond is not written.
   const std::string blocks = "8";

@@ -96,6 +96,10 @@ TEST(Verbs, EveryShippedSceneChecksAndPlans) {
     const Outcome plan = test::slosh({"plan", name});
     EXPECT_EQ(plan.code, 0) << plan.err;
     EXPECT_TRUE(contains(plan.out, "density")) << plan.out;
+    for (const char* number :
+         {"settles 1 s before the run", "m of fluid", "compresses the fluid by", "sound number",
+          "viscous number", "of fluid and", "MB", "a step          about", "on this machine"})
+      EXPECT_TRUE(contains(plan.out, number)) << number << " in " << plan.out;
   }
 }
 

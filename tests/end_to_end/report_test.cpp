@@ -62,6 +62,7 @@ TEST(Report, OfErrorsDrawsEarlierRowsAgain) {
   const auto before = rows_of(one), after = rows_of(text_of(test::test_folder() / "both" / "errors.csv"));
   ASSERT_FALSE(before.empty());
   EXPECT_EQ(after.size(), 2 * before.size());
+  EXPECT_EQ(both.err.find("measuring"), std::string::npos) << both.err;
   for (const std::string& row : before) EXPECT_EQ(after.count(row), 2 * before.count(row)) << row;
 }
 
@@ -75,6 +76,20 @@ TEST(Report, OfStabilityWritesVerdictsAndAMap) {
   EXPECT_NE(rows.find("viscosity_1e6,corrected,cpu,refused"), std::string::npos) << rows;
   EXPECT_NE(rows.find("bullet,corrected,cpu,ran true"), std::string::npos) << rows;
   EXPECT_GT(text_of(folder / "stability.png").size(), 1000u);
+  // An earlier one's rows are drawn again, and nothing runs.
+  const std::string from = (folder.parent_path() / "s-rows.csv").string();
+  std::filesystem::copy_file(folder / "stability.csv", from,
+                             std::filesystem::copy_options::overwrite_existing);
+  const Outcome again =
+      test::slosh({"report", "stability", "--from", from, "--from", from, "--out", "again"});
+  ASSERT_EQ(again.code, 0) << again.err;
+  EXPECT_EQ(again.err.find("measuring"), std::string::npos) << again.err;
+  EXPECT_EQ(text_of(test::test_folder() / "again" / "stability.csv"),
+            rows + rows.substr(rows.find('\n') + 1));
+  EXPECT_GT(text_of(test::test_folder() / "again" / "stability.png").size(), 1000u);
+  const Outcome wrong = test::slosh({"report", "error", "--from", from, "--out", "wrong"});
+  EXPECT_EQ(wrong.code, 1);
+  EXPECT_NE(wrong.err.find("slosh report error"), std::string::npos) << wrong.err;
 }
 
 TEST(Report, OfPassesNamesWhatWasLeftOut) {

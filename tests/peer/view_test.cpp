@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "peer/hud/hud.h"
 #include "peer/hud/rates.h"
 #include "peer/view/frame_builder.h"
 #include "peer/view/mouse_hand.h"
@@ -53,6 +54,18 @@ TEST(OrbitCamera, DraggingMovesTheWorldWithTheMouse) {
   const glm::dvec3 eye = orbit.eye();
   orbit.follow(input, 500);
   EXPECT_EQ(orbit.eye(), eye) << "the HUD has the mouse";
+}
+
+TEST(Hud, SaysInHowManyStepsEachStatusWasSet) {
+  std::array<std::uint64_t, 32> steps{};
+  steps[2] = 12345;
+  EXPECT_EQ(status_lines(0, steps), "") << "what is over is not shown";
+  const std::string lines = status_lines(kStatusSpeedLimited | kStatusForceLimited, steps);
+  EXPECT_EQ(lines,
+            status_text(kStatusSpeedLimited) + " (in 12 345 steps)\n" + status_text(kStatusForceLimited))
+      << "a device's own are not counted";
+  steps[2] = 1;
+  EXPECT_EQ(status_lines(kStatusSpeedLimited, steps), status_text(kStatusSpeedLimited) + " (in 1 step)");
 }
 
 TEST(MouseHand, StaysUnderThePointer) {

@@ -224,6 +224,23 @@ TEST(FieldValues, ModelIsOneOfTwo) {
   EXPECT_NE(unknown.error().text().find("model"), std::string::npos);
 }
 
+TEST(FieldValues, SettlesOnlyWhatIsAskedForAndNothingThatMoves) {
+  const auto plain = test::load_edited([](json&) {});
+  ASSERT_TRUE(plain) << plain.error().text();
+  EXPECT_EQ(plain.value().settle, 0.0);
+  const auto asked = test::load_edited([](json& j) { j["scenes"][0]["extras"]["settle_s"] = 0.75; });
+  ASSERT_TRUE(asked) << asked.error().text();
+  EXPECT_EQ(asked.value().settle, 0.75);
+  expect_scene_error("settle_s", -1.0, {"-1", "0 to 60"});
+  expect_scene_error("settle_s", 61.0, {"61", "0 to 60"});
+  test::expect_edit_error(
+      [](json& j) {
+        j["scenes"][0]["extras"]["settle_s"] = 0.75;
+        node_named(j, "water")["extras"]["velocity_m_s"] = {0.5, 0.0, 0.0};
+      },
+      {"cup.gltf", "water", "velocity_m_s", "settle_s"});
+}
+
 TEST(FieldValues, MirroredBodyStaysClosedAndOutward) {
   const auto scene = test::load_edited([](json& j) { node_named(j, "cup")["scale"] = {-1, 1, 1}; });
   EXPECT_TRUE(scene) << scene.error().text();

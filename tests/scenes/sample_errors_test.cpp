@@ -1,5 +1,7 @@
 // What only shows when a scene is sampled.
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "scenes/sample.h"
 #include "support.h"
@@ -45,6 +47,20 @@ TEST(SampleErrors, Spacing) {
 TEST(SampleErrors, TooFine) {
   test::expect_error(sample_scene(load_cup(nullptr, nullptr), 0.0002),
                      {"cup.gltf", "spacing", "0.2 mm", "fluid particles"});
+}
+
+TEST(Sampling, TellsHowFarItIsAndHowLongItTakes) {
+  const Scene scene = load_cup(nullptr, nullptr);
+  std::vector<double> told;
+  const auto sampled = sample_scene(scene, 0.008, nullptr, [&](double share) { told.push_back(share); });
+  ASSERT_TRUE(sampled) << sampled.error().text();
+  ASSERT_GE(told.size(), 3u);
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+  EXPECT_GT(told.front(), 0.0);
+  EXPECT_LE(told.back(), 1.0);
+  EXPECT_GT(told.back(), 0.5) << "bodies are most of the work";
+  const auto seconds = [&](double spacing) { return estimate_sampling(estimate_particles(scene, spacing)); };
+  EXPECT_GT(seconds(0.002), 4.0 * seconds(0.004));
 }
 
 TEST(SampleErrors, ThinnestWallWithoutWallsIsInfinite) {

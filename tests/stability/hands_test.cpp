@@ -5,28 +5,15 @@
 #include <cmath>
 #include <limits>
 
+#include "host/report/stress/scenes.h"
 #include "tests/physics/lab.h"
 
 namespace slosh::lab {
 namespace {
 
-const Pose kHeld{{0.0, 0.06, 0.0}, {1, 0, 0, 0}};
+using report::held_box;
 
-// A small box held half in the fluid of a small tank, by `grips` equal couplings.
-Scene held_box(double mass, double stiffness, double damping, int grips = 1) {
-  SceneBuilder b;
-  b.add_fluid(1000.0, 0.05);
-  b.add_fixed("tank", tank_at_floor({0.16, 0.16, 0.16}, 0.03));
-  const int box = b.add_free("box", make::box({-0.02, -0.02, -0.02}, {0.02, 0.02, 0.02}), mass, kHeld);
-  b.add_volume(make::box({-0.08, 0.0, -0.08}, {0.08, 0.04, 0.08}));
-  for (int g = 0; g < grips; ++g) {
-    const double angle = 2.0 * kPi * g / grips;
-    b.add_grip(box, stiffness, damping, 10.0, 0.2,
-               {{0.03 * std::cos(angle), 0.0, 0.03 * std::sin(angle)}, {1, 0, 0, 0}});
-  }
-  b.set_domain({-0.5, -0.3, -0.5}, {0.5, 0.8, 0.5});
-  return b.scene;
-}
+const Pose kHeld{report::kHeldBox, {1, 0, 0, 0}};
 
 void engage_all(Experiment& e, std::size_t grips) {
   for (std::size_t g = 0; g < grips; ++g) e.handle(g).engaged = true;
@@ -35,7 +22,7 @@ void engage_all(Experiment& e, std::size_t grips) {
 // K = 10⁶ N/m on 20 g at a step of 2 ms: explicit coupling would need 2 µs. Implicit: the body stays at the
 // hand.
 TEST(Hands, stiffness_of_a_million_on_a_light_body) {
-  const Scene scene = held_box(0.02, 1e6, 100.0);
+  const Scene scene = held_box(0.02, 1e6, 100.0, 1);
   Experiment e(scene, 0.01);
   engage_all(e, 1);
   double farthest = 0.0;
@@ -98,7 +85,7 @@ TEST(Hands, absurdly_opposing_hands_stay_bounded) {
 // Let go in the middle of a fast move: from then on only gravity and the fluid act, and the hands feel
 // nothing.
 TEST(Hands, sudden_release_leaves_a_free_body) {
-  const Scene scene = held_box(0.3, 1e5, 100.0);
+  const Scene scene = held_box(0.3, 1e5, 100.0, 1);
   Experiment e(scene, 0.01);
   engage_all(e, 1);
   e.run(0.1, [&] {
@@ -120,7 +107,7 @@ TEST(Hands, sudden_release_leaves_a_free_body) {
 // there: no method resolves that. What must hold: finite, no hang, the status says so, and nothing is lost
 // but what flew out.
 TEST(Hands, at_20_metres_a_second) {
-  const Scene scene = held_box(0.1, 1e5, 200.0);
+  const Scene scene = held_box(0.1, 1e5, 200.0, 1);
   Experiment e(scene, 0.01);
   engage_all(e, 1);
   const double dt = e.world().plan().time_step;
@@ -163,7 +150,7 @@ class Broken : public ::testing::TestWithParam<BadHandle> {};
 
 // A device that reports nonsense: its last good pose is held, the status bit is set, nothing else happens.
 TEST_P(Broken, handle_is_not_used) {
-  const Scene scene = held_box(0.2, 2000.0, 20.0);
+  const Scene scene = held_box(0.2, 2000.0, 20.0, 1);
   Experiment e(scene, 0.01);
   engage_all(e, 1);
   e.run(0.3);
@@ -197,7 +184,7 @@ INSTANTIATE_TEST_SUITE_P(handles, Broken,
 
 // Finite, but no hand: 10²⁰ m/s. The body may not go where nothing can follow.
 TEST(Hands, huge_but_finite_twist_does_not_break_the_world) {
-  const Scene scene = held_box(0.2, 2000.0, 20.0);
+  const Scene scene = held_box(0.2, 2000.0, 20.0, 1);
   Experiment e(scene, 0.01);
   engage_all(e, 1);
   e.run(0.1);
@@ -211,7 +198,7 @@ TEST(Hands, huge_but_finite_twist_does_not_break_the_world) {
 
 // Twenty turns of a box that fills a third of the tank.
 TEST(Hands, long_stir_loses_little) {
-  const Scene scene = held_box(0.2, 5000.0, 50.0);
+  const Scene scene = held_box(0.2, 5000.0, 50.0, 1);
   Experiment e(scene, 0.01);
   engage_all(e, 1);
   e.run(10.0, [&] {

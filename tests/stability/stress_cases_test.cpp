@@ -6,6 +6,7 @@
 #include <string>
 
 #include "host/report/stress_case.h"
+#include "sim/snapshot.h"
 
 namespace slosh::report {
 
@@ -60,6 +61,10 @@ TEST_P(Stressed, ends_as_written) {
   EXPECT_EQ(row.verdict, expected.verdict)
       << kVerdictNames[static_cast<std::size_t>(row.verdict)] << ": " << row.why;
   EXPECT_LE(row.found.lost_share, expected.most_lost) << row.why;
+  // A slowed particle's momentum is given to nobody.
+  if ((row.cost.status & kStatusSpeedLimited) == 0) {
+    EXPECT_LT(row.found.momentum_error, kMostMomentumError) << row.why;
+  }
   RecordProperty("verdict", kVerdictNames[static_cast<std::size_t>(row.verdict)]);
 }
 

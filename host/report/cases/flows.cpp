@@ -97,13 +97,8 @@ std::vector<Reading> torricelli(const Setting& setting, Cost& cost) {
   constexpr double kRadius = 0.06, kHole = 0.015, kFloor = 0.02, kFill = 0.12, kBelow = 0.03;
   SceneBuilder b;
   b.add_fluid(1000.0, 0.001);
-  const double outer = kRadius + 0.02, top = kFill + 0.04;
-  b.add_fixed(
-      "vessel",
-      make::lathe(
-          {{kHole, -kFloor}, {outer, -kFloor}, {outer, top}, {kRadius, top}, {kRadius, 0.0}, {kHole, 0.0}},
-          96));
-  b.add_volume(make::lathe({{0.0, 0.0}, {kRadius, 0.0}, {kRadius, kFill}, {0.0, kFill}}, 96));
+  b.add_fixed("vessel", glass_of(kRadius, kFill + 0.04, kFloor, kHole));
+  b.add_volume(filling_of(kRadius, kFill));
   b.set_domain({-0.2, -0.25, -0.2}, {0.2, 0.4, 0.2});
   Trial e(b.scene, setting, cost);
   e.run(0.12);

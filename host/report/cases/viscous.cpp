@@ -10,12 +10,6 @@ namespace {
 
 const glm::dvec3 kUp(0.0, 1.0, 0.0);
 
-make::Solid glass_of(double radius, double height, double wall) {
-  const double outer = radius + wall;
-  return make::lathe(
-      {{0.0, -wall}, {outer, -wall}, {outer, height}, {radius, height}, {radius, 0.0}, {0.0, 0.0}}, 96);
-}
-
 struct Spin {
   static constexpr double kRadius = 0.05, kViscosity = 2.0,
                           kTurning = 0.5;  // slow: nothing is thrown outwards
@@ -30,8 +24,8 @@ struct Spin {
     b.add_fluid(1000.0, kViscosity);
     const int glass = b.add_free("glass", glass_of(kRadius, height + 0.02, 0.02), 0.5);
     const auto at = static_cast<std::size_t>(glass);
-    b.scene.bodies[at].dynamic_viscosity = kViscosity;  // so that Eq 9's mean is the fluid's own
-    b.add_volume(make::lathe({{0.0, 0.0}, {kRadius, 0.0}, {kRadius, height}, {0.0, height}}, 96));
+    b.set_viscosity({glass}, kViscosity);
+    b.add_volume(filling_of(kRadius, height));
     b.add_grip(glass, 1e5, 1e3, 1e4, 1e3);
     b.set_domain({-0.2, -0.1, -0.2}, {0.2, 0.3, 0.2});
     Trial e(b.scene, setting, cost);
@@ -90,9 +84,8 @@ struct Couette {
     const double top = height + 0.03;
     const int rod =
         b.add_free("rod", make::lathe({{0.0, kGap}, {kInner, kGap}, {kInner, top}, {0.0, top}}, 96), 0.5);
-    for (const int i : {glass, rod})
-      b.scene.bodies[static_cast<std::size_t>(i)].dynamic_viscosity = kViscosity;
-    b.add_volume(make::lathe({{0.0, 0.0}, {kOuter, 0.0}, {kOuter, kGap}, {0.0, kGap}}, 96));
+    b.set_viscosity({glass, rod}, kViscosity);
+    b.add_volume(filling_of(kOuter, kGap));
     b.add_volume(make::lathe({{kInner, kGap}, {kOuter, kGap}, {kOuter, height}, {kInner, height}}, 96));
     b.scene.stiffness =
         kGravity * height / 0.04;  // the plan's rule for the whole depth, not for one volume's
@@ -131,8 +124,8 @@ std::vector<Reading> stokes(const Setting& setting, Cost& cost) {
   b.add_fluid(1000.0, kViscosity);
   const int tube = b.add_fixed("tube", glass_of(kTube, kFill + 0.03, 0.02));
   const int ball = b.add_free("ball", make::sphere(kBall, 24, 48), 0.05, {{0.0, 0.048, 0.0}, {1, 0, 0, 0}});
-  for (const int i : {tube, ball}) b.scene.bodies[static_cast<std::size_t>(i)].dynamic_viscosity = kViscosity;
-  b.add_volume(make::lathe({{0.0, 0.0}, {kTube, 0.0}, {kTube, kFill}, {0.0, kFill}}, 96));
+  b.set_viscosity({tube, ball}, kViscosity);
+  b.add_volume(filling_of(kTube, kFill));
   b.add_grip(ball, 2e4, 100.0);
   b.set_domain({-0.2, -0.1, -0.2}, {0.2, 0.3, 0.2});
   Trial e(b.scene, setting, cost);

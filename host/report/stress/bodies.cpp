@@ -3,8 +3,10 @@
 #include <cmath>
 
 #include "host/report/scene_builder.h"
+#include "host/report/stress/scenes.h"
+#include "host/report/surface.h"
 #include "host/report/watch.h"
-#include "sim/format.h"
+#include "sim/math/format.h"
 
 namespace slosh::report {
 namespace {
@@ -19,7 +21,7 @@ Stress floating(double share, double viscosity, const Setting& setting, Cost& co
   const int tank = b.add_fixed("tank", tank_at_floor({0.16, 0.2, 0.16}, 0.03));
   const int box = b.add_free("box", make::box(glm::dvec3(-0.5 * kEdge), glm::dvec3(0.5 * kEdge)), mass,
                              {{0.0, 0.115, 0.0}, {1, 0, 0, 0}});
-  for (const int i : {tank, box}) b.scene.bodies[static_cast<std::size_t>(i)].dynamic_viscosity = viscosity;
+  b.set_viscosity({tank, box}, viscosity);
   b.add_volume(make::box({-0.08, 0.0, -0.08}, {0.08, 0.08, 0.08}));
   b.set_domain({-0.4, -0.3, -0.4}, {0.4, 1.0, 0.4});
   Trial t(b.scene, setting, cost);
@@ -128,31 +130,18 @@ Stress bullet(const Setting& setting, Cost& cost) {
 
 // A lid that fits is pressed into a full vessel: nowhere to go.
 Stress press(const Setting& setting, Cost& cost) {
-  SceneBuilder b;
-  b.add_fluid(1000.0, 0.05);
-  b.add_fixed("tank", tank_at_floor({0.12, 0.2, 0.12}, 0.03));
-  const int lid = b.add_free("lid", make::box({-0.058, 0.0, -0.058}, {0.058, 0.03, 0.058}), 1.0,
-                             {{0.0, 0.08, 0.0}, {1, 0, 0, 0}});
-  b.add_volume(make::box({-0.06, 0.0, -0.06}, {0.06, 0.07, 0.06}));
-  b.add_grip(lid, 1e5, 1e3, 1e3, 10.0);
-  b.set_domain({-0.4, -0.3, -0.4}, {0.4, 0.8, 0.4});
-  Trial t(b.scene, setting, cost);
+  const Scene scene = press_scene();
+  Trial t(scene, setting, cost);
   t.handle(0).engaged = true;
   t.handle(0).twist.linear.y = -0.12;
-  Watch watch(t, b.scene);
+  Watch watch(t, scene);
   watch.run(0.5, [&] { t.handle(0).pose.position.y -= 0.12 * t.world().plan().time_step; });
   t.handle(0).twist = {};
   watch.run(0.5);
   Stress found = watch.found();
-  // What is under the floor or beside a wall has passed it, whether it has left the domain by now or not.
-  const Snapshot picture = t.picture();
-  double outside = 0.0;
-  for (std::size_t i = 0; i < picture.positions.size(); ++i) {
-    const glm::dvec3 p(picture.positions[i]);
-    const double beside = std::max(std::abs(p.x), std::abs(p.z)) - 0.06, off = 0.8 * setting.spacing;
-    outside += picture.fluid_index[i] == 255 || p.y < -off || (beside > off && p.y < 0.2);
-  }
-  found.lost_share = outside / static_cast<double>(picture.positions.size());
+  const double off = 0.8 * setting.spacing;
+  found.lost_share = share_outside(t.picture(), Pose{},
+                                   {{-0.06 - off, -off, -0.06 - off}, {0.06 + off, 0.2, 0.06 + off}, true});
   return found;
 }
 

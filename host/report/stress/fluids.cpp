@@ -5,7 +5,7 @@
 
 #include "host/report/scene_builder.h"
 #include "host/report/watch.h"
-#include "sim/format.h"
+#include "sim/math/format.h"
 
 namespace slosh::report {
 namespace {
@@ -14,7 +14,7 @@ Scene dam(double viscosity, double speed = 0.0) {
   SceneBuilder b;
   b.add_fluid(1000.0, viscosity);
   const int tank = b.add_fixed("tank", tank_at_floor({0.2, 0.4, 0.1}, 0.03));
-  b.scene.bodies[static_cast<std::size_t>(tank)].dynamic_viscosity = viscosity;
+  b.set_viscosity({tank}, viscosity);
   const int volume = b.add_volume(make::box({-0.1, 0.0, -0.05}, {0.0, 0.1, 0.05}));
   b.scene.fluid_volumes[static_cast<std::size_t>(volume)].velocity = {speed, 0.0, 0.0};
   b.set_domain({-0.4, -0.4, -0.4}, {0.4, 2.0, 0.4});

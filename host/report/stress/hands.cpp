@@ -4,30 +4,13 @@
 #include <functional>
 
 #include "host/report/scene_builder.h"
+#include "host/report/stress/scenes.h"
+#include "host/report/surface.h"
 #include "host/report/watch.h"
-#include "sim/format.h"
+#include "sim/math/format.h"
 
 namespace slosh::report {
 namespace {
-
-const glm::dvec3 kHeld(0.0, 0.06, 0.0);
-
-// A small box held half in a tank's fluid, by `grips` equal couplings.
-Scene held_box(double mass, double stiffness, double damping, int grips) {
-  SceneBuilder b;
-  b.add_fluid(1000.0, 0.05);
-  b.add_fixed("tank", tank_at_floor({0.16, 0.16, 0.16}, 0.03));
-  const int box =
-      b.add_free("box", make::box(glm::dvec3(-0.02), glm::dvec3(0.02)), mass, {kHeld, {1, 0, 0, 0}});
-  b.add_volume(make::box({-0.08, 0.0, -0.08}, {0.08, 0.04, 0.08}));
-  for (int g = 0; g < grips; ++g) {
-    const double angle = 2.0 * kPi * g / grips;
-    b.add_grip(box, stiffness, damping, 10.0, 0.2,
-               {{0.03 * std::cos(angle), 0.0, 0.03 * std::sin(angle)}, {1, 0, 0, 0}});
-  }
-  b.set_domain({-0.5, -0.3, -0.5}, {0.5, 0.8, 0.5});
-  return b.scene;
-}
 
 Stress moved(const Scene& scene, double seconds, const std::function<void(Trial&)>& hand, double farthest,
              double most_lost, const Setting& setting, Cost& cost) {
@@ -47,7 +30,7 @@ Stress moved(const Scene& scene, double seconds, const std::function<void(Trial&
 Stress stiff(const Setting& setting, Cost& cost) {
   const auto hand = [](Trial& t) {
     const double rate = 6.0 * kPi, angle = rate * t.world().time();
-    t.handle(0).pose.position.y = kHeld.y + 0.02 * std::sin(angle);
+    t.handle(0).pose.position.y = kHeldBox.y + 0.02 * std::sin(angle);
     t.handle(0).twist.linear.y = 0.02 * rate * std::cos(angle);
   };
   return moved(held_box(0.02, 1e6, 100.0, 1), 1.0, hand, 2e-3, 0.0, setting, cost);
@@ -77,7 +60,7 @@ Stress fast(const Setting& setting, Cost& cost) {
 // A hand that is suddenly 0.3 m away, with nothing between (the host's gate would let it in slowly).
 Stress jump(const Setting& setting, Cost& cost) {
   const auto hand = [](Trial& t) {
-    if (t.world().time() > 0.3) t.handle(0).pose.position.y = kHeld.y + 0.3;
+    if (t.world().time() > 0.3) t.handle(0).pose.position.y = kHeldBox.y + 0.3;
   };
   return moved(held_box(0.2, 2000.0, 20.0, 1), 1.0, hand, 0.31, 0.0, setting, cost);
 }
@@ -108,14 +91,9 @@ Stress vessel(double seconds, const std::function<glm::dvec2(double)>& way_and_s
     t.handle(0).twist.linear.x = now.y;
   });
   Stress found = watch.found();
-  const Pose to_box = inverse(t.bodies().bodies[static_cast<std::size_t>(box)].pose);
-  const Snapshot picture = t.picture();
-  double outside = 0.0;
-  for (std::size_t i = 0; i < picture.positions.size(); ++i) {
-    const glm::dvec3 p = glm::abs(transform_point(to_box, glm::dvec3(picture.positions[i])));
-    outside += picture.fluid_index[i] == 255 || std::max({p.x, p.y, p.z}) > kHalf + 0.8 * setting.spacing;
-  }
-  found.lost_share = outside / static_cast<double>(std::max<std::size_t>(picture.positions.size(), 1));
+  const glm::dvec3 within(kHalf + 0.8 * setting.spacing);
+  found.lost_share =
+      share_outside(t.picture(), t.bodies().bodies[static_cast<std::size_t>(box)].pose, {-within, within});
   return found;
 }
 

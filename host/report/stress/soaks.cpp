@@ -3,7 +3,7 @@
 
 #include "host/report/scene_builder.h"
 #include "host/report/watch.h"
-#include "sim/format.h"
+#include "sim/math/format.h"
 
 namespace slosh::report {
 namespace {

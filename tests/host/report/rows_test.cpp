@@ -62,6 +62,41 @@ TEST(ErrorRows, OfOtherFilesAndCutLinesAreRefusedWithTheirLine) {
   EXPECT_NE(cut.error().text().find("line 3"), std::string::npos) << cut.error().text();
 }
 
+TEST(StressRows, AreReadAsTheyWereWritten) {
+  StressRow row;
+  row.case_id = "jerk";
+  row.model = "paper";
+  row.backend = "cuda";
+  row.verdict = Verdict::kLimited;
+  row.why = "12 % lost, and so on";
+  row.found.energy_ratio = 0.25;
+  row.found.momentum_error = 2e-7;
+  row.found.lost_share = 0.12;
+  row.cost.particles = 1000;
+  row.cost.steps = 152;
+  row.cost.time_step = 0.002;
+  row.cost.wall_s = 0.5;
+  row.cost.status = 2;
+  const std::string head = std::string(kStressHeader) + '\n';
+  const auto read = read_stresses(file_with(head + csv_line(row) + '\n'));
+  ASSERT_TRUE(read) << read.error().text();
+  ASSERT_EQ(read.value().size(), 1u);
+  EXPECT_EQ(csv_line(read.value()[0]), csv_line(row));
+  EXPECT_FALSE(read_stresses(file_with(head + "jerk,paper,cuda,ran away,0,0,0,0,0,0,0,0,0,\n")));
+  EXPECT_FALSE(read_stresses(file_with(std::string(kErrorHeader) + '\n')));
+}
+
+TEST(Sweep, NamesTheCasesThereAreWhereOneIsUnknown) {
+  EXPECT_EQ(chosen(stress_cases(), {}).value().size(), stress_cases().size());
+  const auto two = chosen(stress_cases(), {"press", "jerk"});
+  ASSERT_TRUE(two) << two.error().text();
+  ASSERT_EQ(two.value().size(), 2u);
+  const auto none = chosen(error_cases(), {"sloshing", "sloshin"});
+  ASSERT_FALSE(none);
+  EXPECT_NE(none.error().text().find("'sloshin'"), std::string::npos);
+  EXPECT_NE(none.error().text().find("still_tank, "), std::string::npos);
+}
+
 TEST(Sweep, AQuickOneIsTheCoarseSpacingsAndAFullOneHasVariants) {
   ErrorCase some{"x", "X", "known", {0.02, 0.01, 0.005}, 1, nullptr};
   SweepOptions options;

@@ -117,6 +117,7 @@ void expect_same_scene(const Scene& a, const Scene& b) {
   SAME(stiffness);
   SAME(tension);
   SAME(duration);
+  SAME(settle);
   SAME(domain_min);
   SAME(domain_max);
 }

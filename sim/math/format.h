@@ -1,4 +1,4 @@
-// Numbers into the sentences of a plan and its refusals.
+// Numbers into sentences: of a plan and its refusals, of reports, of what gnuplot is told.
 #pragma once
 
 #include <cstdarg>

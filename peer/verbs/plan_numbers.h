@@ -1,0 +1,26 @@
+// The numbers behind a plan's choices: `slosh plan`.
+#pragma once
+
+#include <string>
+
+#include "scenes/scene.h"
+#include "sim/plan.h"
+
+namespace slosh {
+
+/// What the run does before its clock starts, in words: Scene::settle.
+std::string start_in_words(const Scene& scene);
+
+/// A line for each number that a choice of the plan was made by: depth and head, what the stiffness comes
+/// from and what compression it lets happen, the sub-step's share of what each limit allows, particles and
+/// memory. `surface`, `fluid`: particles.
+std::string plan_numbers(const Scene& scene, const Plan& plan, double fluid, double surface);
+
+/// Above so many particles (estimate_particles) `plan` does not sample the scene to take its steps.
+constexpr double kMostToStep = 150000.0;
+
+/// What a step costs on this machine: of the scene as it starts, its hands where they are, all cores, no GPU.
+/// Above kMostToStep a stated rate. One line.
+std::string step_cost_in_words(const Scene& scene, const Plan& plan, double particles);
+
+}  // namespace slosh
