@@ -27,7 +27,11 @@ void add_case_options(CLI::App& verb, ReportOptions& options, const std::string&
   verb.add_flag("--quick", options.quick, "Coarse particles and short runs: minutes instead of hours");
   verb.add_option("--out", options.out, "Folder for the tables and pictures (slosh-report-" + kind + ")");
   verb.add_option("--case", options.cases, "Only this case; may be given more than once");
-  verb.add_option("--model", options.models, "Only this particle model; may be given more than once")
+  verb.add_option(
+          "--model", options.models,
+          "Only this particle model; may be given more than once (paper: the published one but for what\n"
+          "sim/README.md lists: neighbours counted, no negative pressure, body particles' volumes from "
+          "areas)")
       ->check(CLI::IsMember({"paper", "consistent", "corrected"}));
   verb.add_option(
           "--from", options.from,
