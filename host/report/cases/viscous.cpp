@@ -4,6 +4,7 @@
 
 #include "host/report/error_case.h"
 #include "host/report/scene_builder.h"
+#include "host/report/surface.h"
 
 namespace slosh::report {
 namespace {
@@ -188,6 +189,45 @@ std::vector<Reading> slow_ball(const Setting& setting, Cost& cost) {
           {"force left 0.9 s after", "N", left.median() - still.median(), 0.0, buoyancy, true}};
 }
 
+// A free slab without weight, kHeight thick, moves along itself as cos(ky), k = π/kHeight: its faces bear no
+// stress and neither does the wave at them, so it dies as exp(−νk²t) and nothing but the viscosity has a part
+// in it. Its ends bear none either and the wave does there; the middle third does not feel them.
+std::vector<Reading> shear_wave(const Setting& setting, Cost& cost) {
+  constexpr double kHeight = 0.08, kLength = 0.32, kWidth = 0.08, kViscosity = 5.0, kSpeed = 0.02;
+  constexpr double kWave = kPi / kHeight, kRate = kViscosity / 1000.0 * kWave * kWave;
+  SceneBuilder b;
+  b.add_fluid(1000.0, kViscosity);
+  b.add_volume(make::box({-0.5 * kLength, 0.0, -0.5 * kWidth}, {0.5 * kLength, kHeight, 0.5 * kWidth}));
+  b.scene.gravity = glm::dvec3(0.0);
+  b.set_domain({-0.4, -0.2, -0.3}, {0.4, 0.3, 0.3});
+  Result<SampledScene> sampled = sample_scene(b.scene, setting.spacing);
+  if (!sampled) throw Refused(sampled.error());
+  std::vector<double> shape;  // cos(ky) of each particle
+  for (std::size_t i = 0; i < sampled.value().fluid_positions.size(); ++i) {
+    shape.push_back(std::cos(kWave * static_cast<double>(sampled.value().fluid_positions[i].y)));
+    sampled.value().fluid_velocities[i] = {static_cast<float>(kSpeed * shape.back()), 0.0f, 0.0f};
+  }
+  Trial e(b.scene, sampled.value(), setting, cost);
+  Snapshot before = e.picture();
+  std::vector<glm::dvec2> logs;
+  const double dt = e.world().plan().time_step;
+  e.run(1.5 / kRate, [&] {
+    const Snapshot now = e.picture();
+    double along = 0.0, square = 0.0;
+    for (std::size_t i = 0; i < shape.size(); ++i) {
+      if (std::abs(now.positions[i].x) > kLength / 6.0) continue;
+      along +=
+          shape[i] * (static_cast<double>(now.positions[i].x) - static_cast<double>(before.positions[i].x));
+      square += shape[i] * shape[i];
+    }
+    before = now;
+    // What the sudden start makes of the lattice's own modes is gone by then.
+    if (e.world().time() > 0.3 / kRate)
+      logs.emplace_back(e.world().time(), std::log(std::max(along / (square * dt), 1e-12)));
+  });
+  return {{"rate of decay", "1/s", -slope_of(logs), kRate, 0.0, true}};
+}
+
 }  // namespace
 
 std::vector<ErrorCase> viscous_cases() {
@@ -216,6 +256,12 @@ std::vector<ErrorCase> viscous_cases() {
        {0.008, 0.006, 0.0048, 0.004},
        2,
        slow_ball},
+      {"shear_wave",
+       "A shear wave dies in a free slab, 5 Pa·s",
+       "exp(−νk²t)",
+       {0.01, 0.008, 0.00571},
+       1,
+       shear_wave},
   };
 }
 
