@@ -103,7 +103,12 @@ TEST(MouseHand, TheWheelMovesAwayAndTheRightButtonTurns) {
 TEST(RateLog, AnswersForTheTimeOfAPicture) {
   RateLog log;
   EXPECT_EQ(log.at(1.0).real_time, 0.0);
-  for (int i = 0; i < 5; ++i) log.add({0.1 * i, 1.0 + i, 0, 0, 0, 0});
+  for (int i = 0; i < 5; ++i) {
+    Rates rates;
+    rates.time = 0.1 * i;
+    rates.real_time = 1.0 + i;
+    log.add(rates);
+  }
   EXPECT_EQ(log.at(0.0).real_time, 1.0);
   EXPECT_EQ(log.at(0.25).real_time, 3.0);
   EXPECT_EQ(log.at(9.0).real_time, 5.0);

@@ -240,6 +240,8 @@ TEST(World, SettlesAsLongAsItIsToldAndAsksNotWhatMoves) {
   const std::uint64_t before = world.hash();
   world.settle(0.0);
   EXPECT_EQ(world.hash(), before);
+  world.settle(0.5, {}, [] { return true; });
+  EXPECT_EQ(world.hash(), before) << "whoever ends does not wait";
   const double moving = world.diagnostics().kinetic_energy;
   world.settle(0.5);
   EXPECT_LT(world.diagnostics().kinetic_energy, 1e-2 * moving);
