@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "scenes/make/solid.h"
 #include "scenes/sample.h"
@@ -51,6 +53,54 @@ TEST(Instruments, ReadLevelAndMassOfStillWater) {
   EXPECT_EQ(m.fluid.particles, sampled.fluid_positions.size());
   EXPECT_EQ(m.in_solids, 0u);
   EXPECT_EQ(m.fluid.retired, 0u);
+}
+
+class PressureOf : public ::testing::TestWithParam<ParticleModel> {};
+
+// Eq 7 of the particles' own densities, whichever way a model presses with it. Eq 5's mean of two pressures
+// is half of the gradient that it stands for, so the published model's fluid has twice the pressure that it
+// should, and some more.
+TEST_P(PressureOf, still_water_grows_with_depth) {
+  Scene scene = tank_of_water();
+  scene.bodies[0].motion = BodyMotion::kFixed;
+  scene.model = GetParam();
+  scene.gauges = {
+      {"deep", -1, {0.0, 0.025, 0.0}}, {"shallow", -1, {0.0, 0.055, 0.0}}, {"above", -1, {0.0, 0.14, 0.0}}};
+  const SampledScene sampled = sample_scene(scene, kSpacing).value();
+  World world(scene, sampled, make_plan(scene, kSpacing), WorldOptions{1, Backend::kCpu});
+  Instruments instruments(scene, sampled);
+  const Measurement& at_start = instruments.measure(world);
+  EXPECT_EQ(at_start.pressures[0], 0.0) << "nothing has been stepped";
+  EXPECT_TRUE(std::isnan(at_start.pressures[2])) << "no fluid there";
+  world.settle(0.6);
+  double gained = 0.0;
+  constexpr int kReadings = 20;
+  for (int i = 0; i < kReadings; ++i) {
+    for (int n = 0; n < 5; ++n) world.step({});
+    const Measurement& now = instruments.measure(world);
+    gained += (now.pressures[0] - now.pressures[1]) / kReadings;
+    EXPECT_TRUE(std::isnan(now.pressures[2]));
+  }
+  const double expected = 1000.0 * 9.81 * 0.03;
+  const double right = GetParam() == ParticleModel::kPaper ? 2.4 : 1.0;
+  EXPECT_NEAR(gained / expected, right, 0.1 * right) << "Pa gained from 25 to 55 mm, over ρgh";
+}
+
+INSTANTIATE_TEST_SUITE_P(models, PressureOf,
+                         ::testing::Values(ParticleModel::kPaper, ParticleModel::kConsistent,
+                                           ParticleModel::kCorrected),
+                         [](const auto& p) { return std::string(name(p.param)); });
+
+TEST(Pressures, OfWhatHasLeftTheWorldAreNone) {
+  const Scene scene = tank_of_water();
+  SampledScene sampled = sample_scene(scene, kSpacing).value();
+  sampled.fluid_positions[3] = {1e6f, 0.0f, 0.0f};
+  World world(scene, sampled, make_plan(scene, kSpacing), WorldOptions{1, Backend::kCpu});
+  world.step({});
+  std::vector<float> pressures;
+  world.fill_pressures(pressures);
+  ASSERT_EQ(pressures.size(), sampled.fluid_positions.size());
+  for (std::size_t i = 0; i < pressures.size(); ++i) EXPECT_EQ(std::isnan(pressures[i]), i == 3) << i;
 }
 
 TEST(Instruments, MoveWithTheirBody) {
