@@ -24,6 +24,7 @@ int run(int argc, char** argv) {
   add_watch(app, chosen);
   add_replay(app, chosen);
   add_links(app, chosen);
+  add_devices(app, chosen);
   add_scenes(app, chosen);
   add_check(app, chosen);
   add_plan(app, chosen);

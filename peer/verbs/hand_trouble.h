@@ -1,6 +1,7 @@
 // What the person at the hands must hear of their devices.
 #pragma once
 
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,22 @@ inline std::string run_trouble(const std::string& files, const Servo& servo, con
   std::string all;
   for (const std::string& each : run_troubles(files, servo, scene)) all += (all.empty() ? "" : "; ") + each;
   return all;
+}
+
+/// What the person should know before holding grip `i` with an open device: gains that the device does not
+/// hold though scene or file ask for them.
+inline std::vector<std::string> hand_notes(const Scene& scene, std::size_t i, const Device& device) {
+  std::vector<std::string> notes = device.warnings();
+  const Grip& grip = scene.grips[i];
+  const DeviceLimits limits = device.limits();
+  if (!device.gives_way() || (grip.stiffness <= limits.max_stiffness && grip.damping <= limits.max_damping))
+    return notes;
+  char text[160];
+  std::snprintf(text, sizeof text, " asks for %.4g N/m and %.4g N·s/m, and the %s holds at most %.4g and %.3g",
+                grip.stiffness, grip.damping, device.kind().c_str(), limits.max_stiffness, limits.max_damping);
+  notes.push_back(grip.name + text +
+                  ": it feels softer than the body is held. `slosh devices --help` says what decides that");
+  return notes;
 }
 
 }  // namespace slosh

@@ -188,7 +188,8 @@ void add(CLI::App& app, VerbRun& chosen, bool watch) {
     verb->add_option("--grip", o->grips, "A grip by name or number, again for more (the first free one)")
         ->allow_extra_args(false);
     verb->add_option("--device", o->devices,
-                     "script, mouse or replay:FILE; one for all your hands, or one each, in order")
+                     "script, mouse, replay:FILE, spacemouse, falcon, plugin:FILE or operator; one for all your hands, "
+                     "or one each, in order")
         ->allow_extra_args(false);
   }
   add_seconds_option(*verb, o->seconds, 0.01, "Simulated seconds to stay (until the host ends)");

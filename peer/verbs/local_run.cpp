@@ -17,11 +17,13 @@ constexpr std::size_t kSnapshotBytes = std::size_t{512} << 20;
 Result<std::unique_ptr<LocalRun>> LocalRun::create(const Prepared& prepared, DeviceSet devices,
                                                    double snapshot_rate, Progress* progress) {
   std::unique_ptr<LocalRun> run(new LocalRun(prepared));
-  for (const std::unique_ptr<Device>& device : devices.devices) {
-    const Result<bool> opened = open_device(*device);
-    if (!opened) return opened.error();
-  }
   const Scene& scene = prepared.scene;
+  for (std::size_t i = 0; i < devices.devices.size(); ++i) {
+    const Result<bool> opened = open_device(*devices.devices[i]);
+    if (!opened) return opened.error();
+    if (progress == nullptr) continue;
+    for (const std::string& note : hand_notes(scene, i, *devices.devices[i])) progress->note("slosh: " + note);
+  }
   Result<World> made =
       make_world(scene, prepared.sampled, prepared.plan, WorldOptions{prepared.threads, prepared.backend});
   if (!made) return made.error();

@@ -67,7 +67,8 @@ void add_play(CLI::App& app, VerbRun& chosen) {
       "Folder for the results (headless: out/<scene>, or out/<scene>-2 and so on; a window: none)");
   add_show_options(*verb, *o, true);
   add_world_options(*verb, *o, "all but one; all with --no-render");
-  verb->add_option("--device", o->devices, "script, mouse or replay:FILE; one for all handles, or one each")
+  verb->add_option("--device", o->devices, "script, mouse, replay:FILE, spacemouse, falcon, plugin:FILE or operator; one for all handles, or one "
+                   "each; `slosh devices` lists what is there")
       ->allow_extra_args(false);
   verb->add_option("--record", o->record, "Keep the run's inputs and states in a file, for `slosh replay`");
   verb->add_flag("--unpaced", o->unpaced,

@@ -187,6 +187,11 @@ Result<Prepared> prepare(const PlayOptions& options, bool headless, Progress& pr
   if (!options.devices.empty()) {
     const Result<DeviceSet> devices = make_devices(p.scene, options.devices, !headless);
     if (!devices) return devices.error();
+    for (const std::unique_ptr<Device>& device : devices.value().devices) {
+      if (!options.unpaced || device->immediate()) continue;
+      return Error{"--unpaced", std::string("a ") + device->kind() + " goes by the clock on the wall",
+                   "Leave --unpaced out, or use script, replay:FILE or operator"};
+    }
   }
   const Result<bool> set = set_stage(options, headless, p);
   if (!set) return set.error();

@@ -134,6 +134,8 @@ Result<bool> RemoteRun::follow_grips() {
       let_go(i, made.error());
       return made.error();
     }
+    for (const std::string& note : hand_notes(stage_.scene, i, *made.value().device))
+      options_.tell("slosh: " + note);
     mice_[i] = std::move(made.value().mouse);
     (void)servo_->set_device(i, std::move(made.value().device));  // open_device saw its limits
   }

@@ -22,6 +22,7 @@ void add_join(CLI::App& app, VerbRun& chosen);
 void add_watch(CLI::App& app, VerbRun& chosen);
 void add_replay(CLI::App& app, VerbRun& chosen);
 void add_links(CLI::App& app, VerbRun& chosen);
+void add_devices(CLI::App& app, VerbRun& chosen);
 void add_scenes(CLI::App& app, VerbRun& chosen);
 void add_check(CLI::App& app, VerbRun& chosen);
 void add_plan(CLI::App& app, VerbRun& chosen);

@@ -2,6 +2,8 @@
 
 #include <cstdio>
 
+#include "peer/haptics/devices/falcon_device.h"
+#include "peer/haptics/devices/falcon_usb.h"
 #include "peer/haptics/devices/operator_device.h"
 #include "peer/haptics/devices/plugin_device.h"
 #include "peer/haptics/devices/spacemouse_device.h"
@@ -48,6 +50,9 @@ std::optional<Made> make_hardware(const std::string& spec, const HandPlace& plac
   const std::string kind = spec.substr(0, colon);
   const std::string rest = colon == std::string::npos ? "" : spec.substr(colon + 1);
   if (kind == "spacemouse") return Made(std::make_unique<SpaceMouseDevice>(rest, place.start, place.camera));
+  if (kind == "falcon") {
+    return Made(std::make_unique<FalconDevice>([rest] { return open_falcon(rest); }, place));
+  }
   if (kind == "plugin") return make_plugin(rest, place);
   if (kind == "operator") return make_operator(rest, place);
   return std::nullopt;
@@ -67,6 +72,17 @@ std::vector<FoundDevice> find_hardware() {
     }
     all.push_back(std::move(device));
   }
+  for (const FalconFound& found : find_falcons()) {
+    FoundDevice device;
+    device.name = "Novint Falcon";
+    device.where = found.path + ", " + found.node;
+    device.spec = "falcon:" + (found.serial.empty() ? found.path : found.serial);
+    if (const Result<bool> may = check_hid_access(found.node); !may) {
+      device.problem = may.error().what;
+      device.mend = may.error().mend;
+    }
+    all.push_back(std::move(device));
+  }
   return all;
 }
 
@@ -78,7 +94,8 @@ std::string udev_rule() {
     rule += "KERNEL==\"hidraw*\", ATTRS{idVendor}==\"" + hex(vendor) + "\", ATTRS{idProduct}==\"" + product +
             "\", TAG+=\"uaccess\"\n";
   }
-  rule += "SUBSYSTEM==\"usb\", ATTR{idVendor}==\"0403\", ATTR{idProduct}==\"cb48\", TAG+=\"uaccess\"\n";
+  rule += "SUBSYSTEM==\"usb\", ATTR{idVendor}==\"" + hex(kFalconVendor) + "\", ATTR{idProduct}==\"" +
+          hex(kFalconProduct) + "\", TAG+=\"uaccess\"\n";
   return rule;
 }
 

@@ -142,12 +142,17 @@ DeviceReport PluginDevice::taken(const slosh_device_reading& r) {
   }
   if (!sound) {
     velocity_.forget();
-    report = DeviceReport{};
-    report.heard = false;
-    return report;
+    return silent();
   }
   if ((r.flags & SLOSH_READING_HAS_TWIST) == 0) report.twist = velocity_.add(report.pose, steady_now_ns());
   return map_->to_world(report);
+}
+
+DeviceReport PluginDevice::silent() const {
+  DeviceReport report;
+  report.pose = place_.start;
+  report.engaged = report.heard = false;
+  return report;
 }
 
 DeviceReport PluginDevice::read(const DeviceMoment&) {
@@ -167,9 +172,7 @@ DeviceReport PluginDevice::read(const DeviceMoment&) {
   }
   if (code < 0) throw std::runtime_error("the plug-in " + file_ + " says that its device is gone");
   if (code == 0) return taken(reading);
-  DeviceReport silent;
-  silent.heard = false;
-  return silent;
+  return silent();
 }
 
 void PluginDevice::write(const Wrench& on_hand) {

@@ -40,6 +40,7 @@ class PluginDevice final : public Device {
   Error failed(const std::string& what) const;
   Result<bool> settle(const slosh_device_capabilities& said);
   DeviceReport taken(const slosh_device_reading& reading);
+  DeviceReport silent() const;
   void set_trouble(const std::string& words);
 
   const std::string file_;

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdio>
 
-#include "net/clock.h"
 #include "peer/haptics/devices/device_file.h"
 
 namespace slosh {
@@ -29,8 +28,9 @@ std::vector<SpaceMouseFound> find_spacemice() {
   return found;
 }
 
-SpaceMouseDevice::SpaceMouseDevice(std::string which, const Pose& start, const glm::dquat& camera)
-    : which_(std::move(which)), start_(start), camera_(camera) {}
+SpaceMouseDevice::SpaceMouseDevice(std::string which, const Pose& start, const glm::dquat& camera,
+                                   std::function<std::int64_t()> now_ns)
+    : which_(std::move(which)), start_(start), camera_(camera), now_ns_(std::move(now_ns)) {}
 
 SpaceMouseDevice::~SpaceMouseDevice() {
   SpaceMouseDevice::close();
@@ -45,7 +45,7 @@ Result<bool> SpaceMouseDevice::open_path(const SpaceMouseFound& found) {
   now_.name = found.model->name;
   now_.there = true;
   now_.state = {};
-  heard_ns_ = advanced_ns_ = steady_now_ns();
+  heard_ns_ = advanced_ns_ = now_ns_();
   light(true);
   show();
   return true;
@@ -114,7 +114,7 @@ bool SpaceMouseDevice::take_reports(std::int64_t now_ns) {
 
 DeviceReport SpaceMouseDevice::read(const DeviceMoment&) {
   DeviceReport report;
-  const std::int64_t now_ns = steady_now_ns();
+  const std::int64_t now_ns = now_ns_();
   if (port_ && !take_reports(now_ns)) {
     port_.reset();
     now_.there = false;
@@ -123,7 +123,8 @@ DeviceReport SpaceMouseDevice::read(const DeviceMoment&) {
   }
   if (!port_) look_again(now_ns);
   if (!port_) {
-    report.heard = false;
+    report.pose = motion_->pose();
+    report.engaged = report.heard = false;
     return report;
   }
   motion_->advance(now_.state, to_seconds(now_ns - advanced_ns_));

@@ -1,11 +1,13 @@
 // A 3Dconnexion SpaceMouse as a hand: six axes in, no force.
 #pragma once
 
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "net/clock.h"
 #include "peer/haptics/device.h"
 #include "peer/haptics/devices/hid_port.h"
 #include "peer/haptics/devices/spacemouse_models.h"
@@ -37,7 +39,9 @@ class SpaceMouseDevice final : public Device {
  public:
   /// `which`: a serial number, a path ("/dev/hidraw3"), or empty for the first that no other hand has.
   /// `camera` as SpaceMouseMotion has it.
-  SpaceMouseDevice(std::string which, const Pose& start, const glm::dquat& camera);
+  /// `now_ns`: steady_now_ns, or a test's.
+  SpaceMouseDevice(std::string which, const Pose& start, const glm::dquat& camera,
+                   std::function<std::int64_t()> now_ns = steady_now_ns);
   ~SpaceMouseDevice() override;
 
   /// Errors: none is there, it may not be opened, its file has a mistake.
@@ -67,6 +71,7 @@ class SpaceMouseDevice final : public Device {
   const std::string which_;
   const Pose start_;
   const glm::dquat camera_;
+  std::function<std::int64_t()> now_ns_;
   std::optional<HidPort> port_;
   std::optional<SpaceMouseMotion> motion_;
   std::string serial_;

@@ -1,6 +1,13 @@
 // The parts of the SpaceMouse that need no device: models, reports, motion.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "peer/haptics/devices/hid_port.h"
 #include "peer/haptics/devices/spacemouse_models.h"
 #include "peer/haptics/devices/spacemouse_motion.h"
 
@@ -30,6 +37,20 @@ TEST(SpaceMouseModels, AreAllThatHaveSixAxes) {
     EXPECT_EQ(spacemouse_model(0x256f, other), nullptr) << other;
   EXPECT_EQ(spacemouse_model(0x046d, 0xc52b), nullptr) << "a keyboard's receiver";
   EXPECT_EQ(spacemouse_model(0x1234, 0xc626), nullptr);
+}
+
+TEST(HidAccess, NamesTheRuleWhereAUserMayNotOpenADevice) {
+  const std::filesystem::path node = std::filesystem::path(::testing::TempDir()) / "node_without_rights";
+  std::ofstream(node) << "";
+  chmod(node.c_str(), 0);
+  EXPECT_EXIT(
+      {
+        if (geteuid() == 0 && setuid(65534) != 0) _exit(3);
+        const Result<bool> may = check_hid_access(node.string());
+        std::fprintf(stderr, "%s\n", may ? "it may" : may.error().text().c_str());
+        _exit(may ? 1 : 0);
+      },
+      ::testing::ExitedWithCode(0), "this user may not open it.*--install-udev-rule");
 }
 
 TEST(SpaceMouseReports, AreToldApartByTheirLength) {

@@ -1,0 +1,101 @@
+// `slosh devices` on a machine that umockdev makes: what it lists, and what it says of what it may not open.
+#include <gtest/gtest.h>
+#include <umockdev.h>
+
+#include <csignal>
+#include <filesystem>
+
+#include "peer/haptics/devices/falcon_usb.h"
+#include "peer/haptics/devices/hardware.h"
+#include "peer/haptics/devices/spacemouse_models.h"
+#include "tests/peer/devices/mocked_spacemouse.h"
+#include "tests/support/comes.h"
+#include "tests/support/process.h"
+
+namespace slosh {
+namespace {
+
+using test::MockedMachine;
+using test::MockedSpaceMouse;
+
+std::filesystem::path folder() {
+  return std::filesystem::path(::testing::TempDir()) /
+         ("devices_verb_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+}
+
+/// The program inherits the made-up machine.
+test::Outcome slosh(const std::vector<std::string>& arguments) {
+  std::vector<std::string> all{SLOSH_PROGRAM};
+  all.insert(all.end(), arguments.begin(), arguments.end());
+  return test::Process(all, folder()).wait();
+}
+
+TEST(DevicesVerb, ListsWhatIsPluggedInAndWhatToSay) {
+  MockedMachine machine;
+  MockedSpaceMouse one(machine, 0, k3DconnexionVendor, 0xc635, "ABC");
+  MockedSpaceMouse two(machine, 1, kLogitechVendor, 0xc626, "");
+  const test::Outcome outcome = slosh({"devices"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  for (const char* words : {"SpaceMouse Compact (/dev/hidraw0, serial ABC)", "--device spacemouse:ABC",
+                            "SpaceNavigator (/dev/hidraw1)", "--device spacemouse:/dev/hidraw1"})
+    EXPECT_NE(outcome.out.find(words), std::string::npos) << outcome.out;
+}
+
+TEST(DevicesVerb, ShowsLiveValues) {
+  MockedMachine machine;
+  MockedSpaceMouse mouse(machine, 0, k3DconnexionVendor, 0xc635, "ABC");
+  std::filesystem::create_directories(folder());
+  test::Process process({SLOSH_PROGRAM, "devices", "--live"}, folder());
+  EXPECT_EQ(mouse.hear(2), (std::vector<std::uint8_t>{4, 1}));  // it is open
+  mouse.say({1, 0x64, 0, 0, 0, 0, 0});
+  EXPECT_TRUE(test::comes([&] {
+    return test::read_text(folder() / "stdout.txt").find("1 reports") != std::string::npos ||
+           !process.running();
+  }));
+  process.signal(SIGINT);
+  const test::Outcome outcome = process.wait();
+  EXPECT_EQ(outcome.code, 130) << outcome.err;
+  EXPECT_NE(outcome.out.find("spacemouse:ABC: at"), std::string::npos) << outcome.out;
+  EXPECT_EQ(mouse.hear(2), (std::vector<std::uint8_t>{4, 0})) << "and it is let go of in order";
+}
+
+TEST(DevicesVerb, TheRuleHasEveryVendorAndGoesWhereItIsTold) {
+  std::filesystem::remove_all(folder());
+  const std::filesystem::path file = folder() / "70-slosh.rules";
+  std::filesystem::create_directories(folder());
+  const test::Outcome outcome = slosh({"devices", "--install-udev-rule", "--rule-file", file.string()});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(test::read_text(file), udev_rule());
+  for (const char* words : {"046d", "256f", "0403", "cb48", "uaccess", "hidraw"})
+    EXPECT_NE(udev_rule().find(words), std::string::npos) << words;
+  const test::Outcome refused =
+      slosh({"devices", "--install-udev-rule", "--rule-file", "/nowhere/at/all.rules"});
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_NE(refused.out.find("uaccess"), std::string::npos) << "the rule is shown to be put there by hand";
+  EXPECT_NE(refused.err.find("udevadm"), std::string::npos) << refused.err;
+}
+
+TEST(DevicesVerb, FindsAFalconByItsUsbNumbers) {
+  MockedMachine machine;
+  // Device descriptor, then one configuration with one interface and two bulk ends.
+  const std::string descriptors =
+      "1201000200000040030448cb0006010203010902200001010080320904000002ffffff0007050202400000070581024000000"
+      "0";
+  const std::string made =
+      "P: /devices/pci0000:00/usb1/1-4\nN: bus/usb/001/004\nE: SUBSYSTEM=usb\nE: DEVTYPE=usb_device\n"
+      "E: DEVNAME=/dev/bus/usb/001/004\nE: BUSNUM=001\nE: DEVNUM=004\nA: busnum=1\\n\nA: devnum=4\\n\nA: "
+      "speed=12\\n\n"
+      "A: bConfigurationValue=1\\n\nA: idVendor=0403\\n\nA: idProduct=cb48\\n\nH: descriptors=" +
+      descriptors + "\n\n";
+  GError* error = nullptr;
+  ASSERT_TRUE(umockdev_testbed_add_from_string(machine.testbed(), made.c_str(), &error));
+  const std::vector<FalconFound> found = find_falcons();
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].node, "/dev/bus/usb/001/004");
+  EXPECT_EQ(found[0].path, "usb 1-4");
+  const Result<std::unique_ptr<FalconLink>> other = open_falcon("another");
+  ASSERT_FALSE(other);
+}
+
+}  // namespace
+}  // namespace slosh
