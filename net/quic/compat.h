@@ -5,6 +5,7 @@
 #include <ngtcp2/ngtcp2_crypto.h>
 #include <ngtcp2/ngtcp2_crypto_gnutls.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 
@@ -94,6 +95,19 @@ inline PathFigures path_figures(ngtcp2_conn* conn) {
   return figures;
 }
 
+/// Tells the library what a client says of itself, before the library's own glue does, which then changes
+/// nothing: but for packets, of which none longer than `longest` is wanted. Not 0 on a failure.
+inline int take_client_parameters(ngtcp2_conn* conn, const std::uint8_t* data, std::size_t size,
+                                  std::uint64_t longest) {
+  ngtcp2_transport_params params;
+  if (const int code = ngtcp2_transport_params_decode(&params, data, size); code != 0) return code;
+  params.max_udp_payload_size = std::min<std::uint64_t>(params.max_udp_payload_size, longest);
+  std::uint8_t out[1024];
+  const ngtcp2_ssize written = ngtcp2_transport_params_encode(out, sizeof(out), &params);
+  if (written < 0) return static_cast<int>(written);
+  return ngtcp2_conn_decode_and_set_remote_transport_params(conn, out, static_cast<std::size_t>(written));
+}
+
 // Callbacks whose arguments changed: SLOSH_PATH_VALIDATION(name) opens one with `path` and `result`.
 #define SLOSH_PATH_VALIDATION(name)                                                  \
   int name(ngtcp2_conn*, std::uint32_t, const ngtcp2_path* path, const ngtcp2_path*, \
@@ -152,6 +166,18 @@ inline PathFigures path_figures(ngtcp2_conn* conn) {
   figures.delivery_rate = static_cast<double>(stat.delivery_rate_sec);
   figures.pacing_rate = stat.pacing_rate * 1e9;  // the library counts in bytes a ns
   return figures;
+}
+
+inline int take_client_parameters(ngtcp2_conn* conn, const std::uint8_t* data, std::size_t size,
+                                  std::uint64_t longest) {
+  constexpr ngtcp2_transport_params_type kHello = NGTCP2_TRANSPORT_PARAMS_TYPE_CLIENT_HELLO;
+  ngtcp2_transport_params params;
+  if (const int code = ngtcp2_decode_transport_params(&params, kHello, data, size); code != 0) return code;
+  params.max_udp_payload_size = std::min<std::uint64_t>(params.max_udp_payload_size, longest);
+  std::uint8_t out[1024];
+  const ngtcp2_ssize written = ngtcp2_encode_transport_params(out, sizeof(out), kHello, &params);
+  if (written < 0) return static_cast<int>(written);
+  return ngtcp2_conn_decode_remote_transport_params(conn, out, static_cast<std::size_t>(written));
 }
 
 #define SLOSH_PATH_VALIDATION(name)                                                                    \

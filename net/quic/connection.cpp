@@ -28,7 +28,7 @@ ngtcp2_path path_between(Address& local, Address& remote) {
 }
 
 constexpr std::size_t kLongestDatagramFrame = wire::kMaxDatagram + 16;
-constexpr std::size_t kPeerPacket = 32 << 10;        // bytes; a quarter of a peer's narrowest window
+constexpr std::size_t kWindowPacket = 64 << 10;      // bytes; a quarter of the narrowest window
 constexpr std::uint64_t kControlWindow = 256 << 10;  // bytes a client may have on its way to a host
 constexpr std::uint64_t kSceneWindow = 8u << 20;     // bytes a host may have on its way to a peer
 constexpr std::uint64_t kWidestWindow = 24u << 20;   // what a fast, far link may let it grow to
@@ -39,7 +39,7 @@ thread_local Connection* Connection::reading = nullptr;
 thread_local Connection* Connection::writing = nullptr;
 
 Connection::Connection(ConnectionOwner& owner, const TlsContext& tls, const EndpointOptions& options,
-                       UdpSocket& socket, const Address& remote, std::int64_t now)
+                       UdpSocket& socket, const Address& remote, bool server, std::int64_t now)
     : owner_(owner),
       tls_(tls),
       options_(options),
@@ -47,7 +47,8 @@ Connection::Connection(ConnectionOwner& owner, const TlsContext& tls, const Endp
       remote_(remote),
       began_(now),
       last_heard_(now),
-      queues_(options.queue_datagrams) {
+      queues_(options.queue_datagrams),
+      pose_room_(server ? PoseRoom::kOfHost : PoseRoom::kOfPeer) {
   peer_.reference.user_data = this;
   peer_.reference.get_conn = [](ngtcp2_crypto_conn_ref* reference) {
     return static_cast<Connection*>(reference->user_data)->conn_;
@@ -59,18 +60,17 @@ Connection::~Connection() {
   if (session_) gnutls_deinit(session_);
 }
 
-ngtcp2_settings Connection::settings(bool server, std::int64_t now) const {
+ngtcp2_settings Connection::settings(std::int64_t now) const {
   ngtcp2_settings settings;
   ngtcp2_settings_default(&settings);
   settings.cc_algo = kCongestionControl;
   settings.initial_ts = static_cast<ngtcp2_tstamp>(now);
   settings.initial_rtt = 100 * NGTCP2_MILLISECONDS;
   settings.handshake_timeout = nanoseconds(options_.handshake_timeout);
-  // ngtcp2 counts windows in such packets: its least is four of them. A peer's is to hold whatever poses are
-  // under way (pose_room.h); no packet gets longer, since there is never room for more than kMaxPacket. A
-  // host's may not be wider: it would look for a longer MTU with a peer that allows one, and that is where it
-  // asserts (see below).
-  settings.max_tx_udp_payload_size = server ? kMaxPacket : kPeerPacket;
+  // ngtcp2 counts windows in such packets: its least is four of them. It is to hold whatever poses and states
+  // are under way (pose_room.h); no packet gets longer, since there is never room for more than kMaxPacket,
+  // and the library looks for no longer MTU, since neither side allows one (tls.cpp sees to that).
+  settings.max_tx_udp_payload_size = kWindowPacket;
   // Nothing is probed, since no packet may be longer. Switched off (no_pmtud), ngtcp2 to 1.11 asserts when a
   // peer's packets come from a new port and then from the old one again.
   settings.no_pmtud = 0;
@@ -110,9 +110,9 @@ std::unique_ptr<Connection> Connection::to_host(ConnectionOwner& owner, const Tl
                                                 const EndpointOptions& options, UdpSocket& socket,
                                                 const Address& remote, const KeyFingerprint& host,
                                                 std::int64_t now) {
-  std::unique_ptr<Connection> made(new Connection(owner, tls, options, socket, remote, now));
+  std::unique_ptr<Connection> made(new Connection(owner, tls, options, socket, remote, false, now));
   made->peer_.expected = host;
-  ngtcp2_settings settings = made->settings(false, now);
+  ngtcp2_settings settings = made->settings(now);
   settings.max_window = 2 * kWidestWindow;
   settings.max_stream_window = kWidestWindow;
   const ngtcp2_transport_params params = made->parameters(false);
@@ -133,8 +133,8 @@ std::unique_ptr<Connection> Connection::from_client(ConnectionOwner& owner, cons
                                                     const EndpointOptions& options, UdpSocket& socket,
                                                     const Address& local, const Address& remote,
                                                     const FirstPacket& first, std::int64_t now) {
-  std::unique_ptr<Connection> made(new Connection(owner, tls, options, socket, remote, now));
-  ngtcp2_settings settings = made->settings(true, now);
+  std::unique_ptr<Connection> made(new Connection(owner, tls, options, socket, remote, true, now));
+  ngtcp2_settings settings = made->settings(now);
   set_token(settings, first.token.data(), first.token.size());
   ngtcp2_transport_params params = made->parameters(true);
   const ngtcp2_cid own_id = random_id(kCidSize);
@@ -185,7 +185,7 @@ std::int64_t Connection::expiry() const {
   const ngtcp2_tstamp due = ngtcp2_conn_get_expiry(conn_);
   const std::int64_t library =
       due > static_cast<ngtcp2_tstamp>(INT64_MAX) ? INT64_MAX : static_cast<std::int64_t>(due);
-  return std::min(library, linger_until_);
+  return std::min({library, linger_until_, bulk_waits_ ? bulk_due_ : INT64_MAX});
 }
 
 bool Connection::send_datagram(Priority priority, SharedBytes bytes) {

@@ -120,9 +120,9 @@ class Connection {
   static thread_local Connection* reading;  // whose packet the library is reading
   static thread_local Connection* writing;  // or writing
   Connection(ConnectionOwner& owner, const TlsContext& tls, const EndpointOptions& options, UdpSocket& socket,
-             const Address& remote, std::int64_t now);
+             const Address& remote, bool server, std::int64_t now);
   bool start_session(bool server);
-  ngtcp2_settings settings(bool server, std::int64_t now) const;
+  ngtcp2_settings settings(std::int64_t now) const;
   ngtcp2_transport_params parameters(bool server) const;
   ngtcp2_ssize write_packet(std::span<std::uint8_t> out, ngtcp2_path* path, std::int64_t now);
   ngtcp2_ssize write_datagram(std::span<std::uint8_t> out, ngtcp2_path* path, int priority, bool& accepted,
@@ -130,7 +130,8 @@ class Connection {
   ngtcp2_ssize write_stream(std::span<std::uint8_t> out, ngtcp2_path* path, std::int64_t now);
   ngtcp2_ssize write_probe_byte(std::span<std::uint8_t> out, ngtcp2_path* path, bool more, std::int64_t now);
   std::size_t burst(const PathFigures& figures) const;
-  void pace(std::size_t sent, std::int64_t now);
+  bool bulk_allowed(std::int64_t now);
+  void pace(std::size_t sent, std::size_t bulk, std::int64_t now);
   void fail(int code, std::int64_t now);
   void write_close(const CloseError& error, std::int64_t now);
   void peer_closed();
@@ -166,7 +167,12 @@ class Connection {
   std::int64_t packet_number_ = 0;  // of the last packet with a short header
   bool short_packet_ = false;       // one was written
   unsigned packed_datagrams_ = 0;   // in it
-  bool held_back_ = false;          // a peer's link shows a queue
+  bool held_back_ = false;          // the link shows a queue
+  bool bulk_packet_ = false;        // the last packet had a snapshot's piece or a stream's bytes in it
+  bool bulk_waits_ = false;         // for bulk_due_, and nothing else
+  std::int64_t bulk_due_ = 0;       // when such a packet may leave again
+  std::int64_t datagrams_left_ = 0;  // when the last packet of datagrams did
+  std::int64_t idle_until_ = 0;      // up to then nothing was under way
   std::size_t room_ = 0;            // bytes of snapshots that this flush may still send
   bool probe_stream_due_ = false;   // a client's: the host knows it by its first byte
   std::uint64_t bytes_sent_ = 0;

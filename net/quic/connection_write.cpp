@@ -13,6 +13,14 @@ constexpr std::size_t kProbeByteSize = 8;     // the frame: type, stream, offset
 constexpr std::size_t kRoom = kMaxPacket - 1 - 20 - 4 - 16 - (kDatagramsAreProbed ? 0 : kProbeByteSize);
 // Streams come last, but a full link must not silence them: one packet of theirs after so many snapshots.
 constexpr std::size_t kSnapshotsAStream = 15;
+// ns: so often a packet of poses or states leaves however full the link looks (30 kB/s at most). The queue
+// may be the other way's.
+constexpr std::int64_t kLeastEvery = 40'000'000;
+// Who hears nothing for two round trips and kDeaf, s, sends a packet each kDeafEvery, ns: what goes into the
+// dark counts as under way until something later is acknowledged, and would fill the window of a path that is
+// new.
+constexpr double kDeaf = 0.1;
+constexpr std::int64_t kDeafEvery = 100'000'000;
 constexpr double kBurst = 2e-3;  // s of the link's rate that may leave at once
 constexpr double kLate = 0.3;    // s after which what others overtook counts as lost, at least
 
@@ -29,21 +37,26 @@ void Connection::flush(std::int64_t now) {
   const std::size_t limit = burst(figures);
   const std::size_t most = snapshot_room_.limit(figures, now);
   room_ = most > figures.in_flight ? most - figures.in_flight : 0;
-  std::size_t wide = SIZE_MAX;
-  if (!ngtcp2_conn_is_server(conn_)) wide = pose_room_.limit(figures, now);
+  const std::size_t wide = pose_room_.limit(figures, now);
   held_back_ = wide != SIZE_MAX;
+  if (ledger_.under_way() == 0) idle_until_ = now;
+  const double unheard = 1e-9 * static_cast<double>(now - std::max(idle_until_, last_heard_));
+  const bool deaf = unheard > kDeaf + 2.0 * figures.smoothed_rtt;
   const auto patience = static_cast<std::int64_t>(1e9 * std::max(kLate, 2.0 * figures.smoothed_rtt));
   ledger_.settle(now, patience);
   std::size_t sent = 0;
+  std::size_t bulk = 0;
+  bulk_waits_ = false;
   ngtcp2_path_storage path;
   Connection* const outer = std::exchange(writing, this);
   while (sent < limit) {
     const std::span<std::uint8_t> out = socket_->space();
     if (out.empty()) break;
     ngtcp2_path_storage_zero(&path);
-    short_packet_ = false;
+    short_packet_ = bulk_packet_ = false;
     packed_datagrams_ = 0;
-    const bool full = ledger_.under_way() >= wide;
+    const bool crowded = deaf || ledger_.under_way() >= wide;
+    const bool full = crowded && now - datagrams_left_ < (deaf ? kDeafEvery : kLeastEvery);
     const ngtcp2_ssize size = full ? ngtcp2_conn_write_pkt(conn_, &path.path, nullptr, out.data(), out.size(),
                                                            static_cast<ngtcp2_tstamp>(now))
                                    : write_packet(out, &path.path, now);
@@ -53,31 +66,42 @@ void Connection::flush(std::int64_t now) {
       return;
     }
     if (size == 0) break;
+    if (packed_datagrams_ > 0) datagrams_left_ = now;
     if (short_packet_) ledger_.sent(packet_number_, packed_datagrams_, static_cast<std::size_t>(size), now);
     socket_->add(Address(path.path.local.addr, path.path.local.addrlen),
                  Address(path.path.remote.addr, path.path.remote.addrlen), static_cast<std::size_t>(size));
     sent += static_cast<std::size_t>(size);
+    if (bulk_packet_) bulk += static_cast<std::size_t>(size);
     room_ -= std::min(room_, static_cast<std::size_t>(size));
   }
   writing = outer;
   bytes_sent_ += sent;
-  pace(sent, now);
+  pace(sent, bulk, now);
+}
+
+/// Snapshots and streams keep the pace; poses and states, which are little and steady, do not wait for it.
+bool Connection::bulk_allowed(std::int64_t now) {
+  if (now >= bulk_due_) return true;
+  bulk_waits_ = true;
+  return false;
 }
 
 /// Says when the next packets may leave: the library's pace, times the gain.
-void Connection::pace(std::size_t sent, std::int64_t now) {
+void Connection::pace(std::size_t sent, std::size_t bulk, std::int64_t now) {
   const PathFigures figures = path_figures(conn_);
   const bool waiting = queues_.next() >= 0 && room_ > 0 && figures.in_flight + kMaxPacket <= figures.window;
   std::uint64_t datagrams = 0;
   for (const std::uint64_t count : counts_.datagrams_sent) datagrams += count;
   pace_.note(figures, waiting, datagrams, counts_.datagrams_lost, now);
   // The library adds `sent` / pace to the time that it is told: an earlier one makes the pause shorter.
-  // A peer's poses keep their own pace while the link shows no queue.
-  const bool own_pace = !ngtcp2_conn_is_server(conn_) && !held_back_;
-  const double shorter = own_pace ? 1.0 : 1.0 - 1.0 / pace_.factor();
+  // While the link shows no queue poses and states keep their own pace, and the pause is for the others.
+  const double shorter = held_back_ ? 1.0 - 1.0 / pace_.factor() : 1.0;
   std::int64_t told = now;
-  if (figures.pacing_rate > 0.0)
+  if (figures.pacing_rate > 0.0) {
     told -= static_cast<std::int64_t>(1e9 * static_cast<double>(sent) / figures.pacing_rate * shorter);
+    const double pause = static_cast<double>(bulk) / (figures.pacing_rate * pace_.factor());
+    if (!held_back_ && bulk > 0) bulk_due_ = now + static_cast<std::int64_t>(1e9 * pause);
+  }
   ngtcp2_conn_update_pkt_tx_time(conn_, static_cast<ngtcp2_tstamp>(told));
 }
 
@@ -100,11 +124,13 @@ ngtcp2_ssize Connection::write_packet(std::span<std::uint8_t> out, ngtcp2_path* 
   }
   while (state_ == State::kOpen || state_ == State::kLingering) {
     int priority = queues_.next();
-    if (priority == static_cast<int>(Priority::kSnapshot) && room_ == 0) priority = -1;
+    if (priority == static_cast<int>(Priority::kSnapshot) && (room_ == 0 || !bulk_allowed(now)))
+      priority = -1;
     const bool snapshot = priority == static_cast<int>(Priority::kSnapshot);
     const bool stream_turn = priority < 0 || (snapshot && snapshots_in_a_row_ >= kSnapshotsAStream);
-    if (stream_turn && streams_.pending()) {
+    if (stream_turn && streams_.pending() && bulk_allowed(now)) {
       snapshots_in_a_row_ = 0;
+      bulk_packet_ = true;
       const ngtcp2_ssize size = write_stream(out, path, now);
       if (size == NGTCP2_ERR_STREAM_DATA_BLOCKED || size == NGTCP2_ERR_STREAM_SHUT_WR ||
           size == NGTCP2_ERR_STREAM_NOT_FOUND)
@@ -128,6 +154,7 @@ ngtcp2_ssize Connection::write_packet(std::span<std::uint8_t> out, ngtcp2_path* 
       ++counts_.datagrams_sent[priority];
       ++packed_datagrams_;
       snapshots_in_a_row_ = snapshot ? snapshots_in_a_row_ + 1 : snapshots_in_a_row_;
+      bulk_packet_ = bulk_packet_ || snapshot;
       queues_.pop(priority);
     }
     if (size == NGTCP2_ERR_WRITE_MORE) continue;

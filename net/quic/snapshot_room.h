@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "net/quic/compat.h"
+#include "net/quic/queue_drain.h"
 #include "net/quic/shortest_round_trip.h"
 #include "net/quic/udp_socket.h"
 
@@ -22,6 +23,7 @@ class SnapshotRoom {
   std::size_t limit(const PathFigures& path, std::int64_t now) {
     const double shortest = shortest_.note(path.latest_rtt, now);
     if (path.delivery_rate <= 0.0 || shortest >= ShortestRoundTrip::kNever) return SIZE_MAX;
+    if (drain_.due(path.smoothed_rtt > kQueueing * shortest + kSlack, path, shortest, now)) return 0;
     return static_cast<std::size_t>(kGain * path.delivery_rate * shortest) + kFew * kMaxPacket;
   }
 
@@ -29,7 +31,11 @@ class SnapshotRoom {
   static constexpr double kGain = 1.5;     // room to find out that the link carries more
   static constexpr std::size_t kFew = 16;  // packets: short ways, and a start from little
 
+  static constexpr double kQueueing = 1.25;  // of the shortest round trip
+  static constexpr double kSlack = 8e-3;     // s beyond that: acknowledgements are late
+
   ShortestRoundTrip shortest_;
+  QueueDrain drain_;
 };
 
 }  // namespace slosh::quic

@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "net/quic/udp_socket.h"
 #include "net/wire/messages.h"
 
 namespace slosh::quic {
@@ -41,8 +42,26 @@ int verify(gnutls_session_t session) {
   return 0;
 }
 
+/// Before the library hears what a client says of itself: it shall look for no longer packets than ours, so
+/// that a host's window may be as wide as a peer's (Connection::settings). What does not decode is left to
+/// the library, which refuses it.
+int shorten_packets(gnutls_session_t session, const gnutls_datum_t* hello) {
+  TlsPeer& peer = peer_of(session);
+  ngtcp2_conn* const conn = peer.reference.get_conn(&peer.reference);
+  const auto take = [](void* conn_pointer, unsigned type, const unsigned char* data, unsigned size) {
+    constexpr unsigned kTransportParameters = 0x39;  // RFC 9001, 8.2
+    if (type == kTransportParameters)
+      (void)take_client_parameters(static_cast<ngtcp2_conn*>(conn_pointer), data, size, kMaxPacket);
+    return 0;
+  };
+  (void)gnutls_ext_raw_parse(conn, take, hello, GNUTLS_EXT_RAW_FLAG_TLS_CLIENT_HELLO);
+  return 0;
+}
+
 /// ngtcp2 asserts when a ClientHello without QUIC's transport parameters is answered: it goes no further.
-int check_client_hello(gnutls_session_t session, unsigned, unsigned, unsigned, const gnutls_datum_t*) {
+int check_client_hello(gnutls_session_t session, unsigned, unsigned when, unsigned,
+                       const gnutls_datum_t* hello) {
+  if (when == GNUTLS_HOOK_PRE) return shorten_packets(session, hello);
   TlsPeer& peer = peer_of(session);
   if (ngtcp2_conn_get_remote_transport_params(peer.reference.get_conn(&peer.reference))) return 0;
   peer.refusal = "the other side sent no QUIC transport parameters";
@@ -95,7 +114,7 @@ gnutls_session_t TlsContext::open(bool server, TlsPeer& peer) const {
   }
   if (server) {
     gnutls_certificate_server_set_request(session, GNUTLS_CERT_REQUIRE);
-    gnutls_handshake_set_hook_function(session, GNUTLS_HANDSHAKE_CLIENT_HELLO, GNUTLS_HOOK_POST,
+    gnutls_handshake_set_hook_function(session, GNUTLS_HANDSHAKE_CLIENT_HELLO, GNUTLS_HOOK_BOTH,
                                        check_client_hello);
   }
   gnutls_session_set_ptr(session, &peer.reference);

@@ -24,14 +24,11 @@ class VirtualLink {
     EndpointOptions options;
     options.clock = [this] { return now_ns; };
     options.queue_datagrams[0] = 8;  // as a peer's
+    options.keep_alive = 0.5;
     const Identity key = Identity::generate();
     host = std::move(listen_quic("127.0.0.1:0", key, host_events, options).value());
     host_address_ = resolved(host->local_address());
-    for (int& descriptor : sockets_) {
-      descriptor = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-      quic::Address any = quic::resolve("127.0.0.1:0").value().front();
-      bind(descriptor, &any.any, any.length);
-    }
+    for (int& descriptor : sockets_) descriptor = open_socket();
     quic::Address near;
     near.length = sizeof(near.v6);
     getsockname(sockets_[0], &near.any, &near.length);
@@ -47,9 +44,9 @@ class VirtualLink {
   void step() {
     now_ns += 500'000;
     peer->run_once(now_ns);
-    carry(0);
+    if (!stands) carry(0);
     host->run_once(now_ns);
-    carry(1);
+    if (!stands) carry(1);
     deliver();
   }
   bool until(const std::function<bool()>& done, double seconds = 30.0) {
@@ -67,6 +64,7 @@ class VirtualLink {
   void set(const Impairment& up, const Impairment& down) { fates_[0].set(up), fates_[1].set(down); }
 
   std::int64_t now_ns = kNanosecondsPerSecond;
+  bool stands = false;  ///< what is sent waits, as far as the sockets' buffers reach
   Recorder host_events;
   Recorder peer_events;
   std::unique_ptr<Endpoint> host;
@@ -75,6 +73,21 @@ class VirtualLink {
   std::uint64_t carried[2] = {};
 
  private:
+  static int open_socket() {
+    const int descriptor = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+    quic::Address any = quic::resolve("127.0.0.1:0").value().front();
+    bind(descriptor, &any.any, any.length);
+    return descriptor;
+  }
+  /// A peer that comes from another port does so at the host too, and what was sent to the old one is lost.
+  void follow(const quic::Address& from) {
+    if (peer_address_.length != 0 && !(from == peer_address_)) {
+      close(sockets_[1]);
+      sockets_[1] = open_socket();
+      std::erase_if(under_way_, [](const auto& entry) { return entry.second.way == 1; });
+    }
+    peer_address_ = from;
+  }
   static quic::Address resolved(const std::string& text) { return quic::resolve(text).value().front(); }
 
   /// What one end has sent gets its fate. 0 is from the peer, 1 from the host.
@@ -85,7 +98,7 @@ class VirtualLink {
       from.length = sizeof(from.v6);
       const ssize_t size = recvfrom(sockets_[way], buffer, sizeof(buffer), 0, &from.any, &from.length);
       if (size < 0) return;
-      if (way == 0) peer_address_ = from;
+      if (way == 0) follow(from);
       const Fate::Verdict verdict = fates_[way].judge(static_cast<std::size_t>(size), now_ns);
       carried[way] += 1;
       dropped[way] += verdict.copies == 0 ? 1 : 0;
