@@ -31,7 +31,9 @@ void NetLoop::run() {
     server_.turn();
     quit_.store(server_.quit_asked(), std::memory_order_relaxed);
     cpu_seconds_.store(thread_seconds(), std::memory_order_relaxed);
+    if (pulse_ != nullptr) pulse_->fetch_add(1, std::memory_order_relaxed);
   }
+  if (pulse_ != nullptr) pulse_->store(0, std::memory_order_relaxed);
 }
 
 void NetLoop::stop(const std::string& why) {

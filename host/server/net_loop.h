@@ -12,8 +12,10 @@ namespace slosh {
 /// Runs a server and its endpoint, from start() to stop(). Made and ended by one thread.
 class NetLoop {
  public:
-  /// Both must outlive it.
-  NetLoop(Server& server, Endpoint& endpoint) : server_(server), endpoint_(endpoint) {}
+  /// Both must outlive it. So must `pulse`, which rises with every turn and is 0 while the thread does not
+  /// run; null = nobody looks.
+  NetLoop(Server& server, Endpoint& endpoint, std::atomic<std::uint64_t>* pulse = nullptr)
+      : server_(server), endpoint_(endpoint), pulse_(pulse) {}
   ~NetLoop() { stop("the host ends"); }
   NetLoop(const NetLoop&) = delete;
   NetLoop& operator=(const NetLoop&) = delete;
@@ -36,6 +38,7 @@ class NetLoop {
 
   Server& server_;
   Endpoint& endpoint_;
+  std::atomic<std::uint64_t>* pulse_;
   std::thread thread_;
   std::atomic<bool> stop_{false};
   std::atomic<bool> quit_{false};

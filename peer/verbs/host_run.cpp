@@ -162,8 +162,7 @@ int run_host(const HostVerbOptions& options, HostReins* reins) {
     return fail(hosted.error());
   }
   catch_interrupts();
-  Result<std::unique_ptr<HostedRun>> created =
-      HostedRun::create(hosted.value(), options, reins ? &reins->pulse() : nullptr);
+  Result<std::unique_ptr<HostedRun>> created = HostedRun::create(hosted.value(), options, reins);
   if (!created) {
     progress.note("");
     return fail(created.error());

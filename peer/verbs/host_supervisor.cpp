@@ -76,13 +76,14 @@ void pass_on(const siginfo_t& info, pid_t child, const HostReins& reins) {
 }
 
 struct End {
-  int status = 0;     // as waitpid says
-  bool hung = false;  // and was ended for it
+  int status = 0;    // as waitpid says
+  std::string hung;  // what hung, when it was ended for that
 };
 
-End outlive(pid_t child, const HeldSignals& signals, const HostReins& reins, int hang_seconds) {
+End outlive(pid_t child, const HeldSignals& signals, const HostReins& reins, const HangLimits& limits) {
   End end;
-  HangWatch watch(hang_seconds);
+  HangWatch world(limits.world);
+  HangWatch network(limits.network);
   bool stopped = false;
   std::int64_t heard_ns = 0;
   while (true) {
@@ -99,11 +100,16 @@ End outlive(pid_t child, const HeldSignals& signals, const HostReins& reins, int
       }
       stopped = WIFSTOPPED(status);
     }
-    if (stopped) watch.pass_over();
-    if (info.si_signo == 0 && !stopped && !end.hung && watch.look(reins.pulse())) {
-      end.hung = true;
-      kill(child, SIGKILL);
+    if (stopped) {
+      world.pass_over();
+      network.pass_over();
     }
+    if (info.si_signo != 0 || stopped || !end.hung.empty()) continue;
+    const bool world_hangs = world.look(reins.pulse());
+    const bool network_hangs = network.look(reins.network_pulse());
+    if (world_hangs) end.hung = "its world hung for " + std::to_string(limits.world) + " s";
+    if (network_hangs) end.hung = "its network hung for " + std::to_string(limits.network) + " s";
+    if (!end.hung.empty()) kill(child, SIGKILL);
   }
 }
 
@@ -132,6 +138,7 @@ std::string HostReins::checkpoint() const {
 void HostReins::restart() {
   ready_.store(false, std::memory_order_relaxed);
   pulse_.store(0, std::memory_order_relaxed);
+  network_pulse_.store(0, std::memory_order_relaxed);
   ending_.store(false, std::memory_order_relaxed);
 }
 
@@ -159,7 +166,7 @@ HostVerbOptions restarted(const HostVerbOptions& options, const std::string& che
   return next;
 }
 
-int supervise_host(const HostVerbOptions& options, const HostBody& body, int hang_seconds) {
+int supervise_host(const HostVerbOptions& options, const HostBody& body, const HangLimits& limits) {
   void* page = mmap(nullptr, sizeof(HostReins), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (page == MAP_FAILED) return body(options, nullptr);
   HostReins& reins = *new (page) HostReins;
@@ -184,14 +191,13 @@ int supervise_host(const HostVerbOptions& options, const HostBody& body, int han
           ". Run it in this one with --no-supervisor");
       return kExitFailed;
     }
-    const End end = outlive(child, signals, reins, hang_seconds);
+    const End end = outlive(child, signals, reins, limits);
     const int status = end.status;
     terminal.restore();
     if (WIFEXITED(status)) return WEXITSTATUS(status);
     const int ended_by = WTERMSIG(status);
     if (asks_for_the_end(ended_by)) return 128 + ended_by;
-    const std::string fault = end.hung ? "its world hung for " + std::to_string(hang_seconds) + " s"
-                                       : std::string(strsignal(ended_by));
+    const std::string fault = !end.hung.empty() ? end.hung : std::string(strsignal(ended_by));
     const std::string checkpoint = reins.checkpoint();
     if (checkpoint.empty()) {
       say("the host died (" + fault + ") before its world was saved");

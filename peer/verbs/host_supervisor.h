@@ -22,7 +22,11 @@ class HostReins {
   /// For HostOptions::pulse.
   std::atomic<std::uint64_t>& pulse() { return pulse_; }
 
+  /// For NetLoop.
+  std::atomic<std::uint64_t>& network_pulse() { return network_pulse_; }
+
   std::uint64_t pulse() const { return pulse_.load(std::memory_order_relaxed); }
+  std::uint64_t network_pulse() const { return network_pulse_.load(std::memory_order_relaxed); }
   std::string checkpoint() const;  ///< empty: it cannot be carried on yet
   bool ending() const { return ending_.load(std::memory_order_acquire); }
   void restart();
@@ -32,18 +36,17 @@ class HostReins {
   std::atomic<bool> ready_{false};
   std::atomic<bool> ending_{false};
   std::atomic<std::uint64_t> pulse_{0};
+  std::atomic<std::uint64_t> network_pulse_{0};
   char checkpoint_[kLongestPath + 1] = {};
 };
 
-/// A world that lives and does nothing: its pulse stood for so many looks, one a second. Looks are counted in
-/// place of a clock, so that whoever was stopped together with it, or slept with the machine, blames nobody.
-/// Pure.
+/// A thread that lives and does nothing: its pulse stood for so many looks, one a second. Looks are counted
+/// in place of a clock, so that whoever was stopped together with it, or slept with the machine, blames
+/// nobody. Pure.
 class HangWatch {
  public:
-  /// A reset settles the world again, within one turn of its loop.
-  static constexpr int kMost = 60;
-  explicit HangWatch(int most = kMost) : most_(most) {}
-  /// True when it hangs. A pulse of 0 is of a world that does not run: that is loading, or at its end.
+  explicit HangWatch(int most) : most_(most) {}
+  /// True when it hangs. A pulse of 0 is of a thread that does not run: the host is loading, or at its end.
   bool look(std::uint64_t pulse) {
     looks_ = pulse == last_ && pulse != 0 ? looks_ + 1 : 0;
     last_ = pulse;
@@ -56,6 +59,12 @@ class HangWatch {
   int most_;
   int looks_ = 0;
   std::uint64_t last_ = 0;
+};
+
+/// Looks, one a second, after which a host's threads count as hung.
+struct HangLimits {
+  int world = 60;    ///< a reset settles the world again, within one turn of its loop
+  int network = 20;  ///< nothing that it does takes a second
 };
 
 /// How often a host may die before it stays dead: what dies again and again is not saved by another start.
@@ -78,10 +87,9 @@ HostVerbOptions restarted(const HostVerbOptions& options, const std::string& che
 
 using HostBody = std::function<int(const HostVerbOptions&, HostReins*)>;
 
-/// Runs `body` in a child process, again and again where a fault ends it or where its world hangs for
-/// `hang_seconds`. Returns in the parent what the last
-/// child came to (128 + signal where one ended it), and in each child what `body` did. Signals that ask for
-/// the end are passed on. Before any thread starts.
-int supervise_host(const HostVerbOptions& options, const HostBody& body, int hang_seconds = HangWatch::kMost);
+/// Runs `body` in a child process, again and again where a fault ends it, or where its world or its network
+/// hangs. Returns in the parent what the last child came to (128 + signal where one ended it), and in each
+/// child what `body` did. Signals that ask for the end are passed on. Before any thread starts.
+int supervise_host(const HostVerbOptions& options, const HostBody& body, const HangLimits& limits = {});
 
 }  // namespace slosh

@@ -10,6 +10,7 @@
 #include "net/text/name.h"
 #include "net/wire/scene_package.h"
 #include "peer/verbs/host_links.h"
+#include "peer/verbs/host_supervisor.h"
 
 namespace slosh {
 namespace {
@@ -29,7 +30,7 @@ std::string state_folder() {
 }  // namespace
 
 Result<std::unique_ptr<HostedRun>> HostedRun::create(HostedWorld& hosted, const HostVerbOptions& options,
-                                                     std::atomic<std::uint64_t>* pulse) {
+                                                     HostReins* reins) {
   std::unique_ptr<HostedRun> run(new HostedRun(hosted, options));
   HostedRun& s = *run;
   const Scene& scene = hosted.prepared.scene;
@@ -40,7 +41,7 @@ Result<std::unique_ptr<HostedRun>> HostedRun::create(HostedWorld& hosted, const 
   }
   s.channel_ = std::make_unique<Channel>(scene.grips.size(), initial_message(*hosted.world, hosted.state.run),
                                          kSnapshotBytes);
-  const Result<bool> network = s.open_network();
+  const Result<bool> network = s.open_network(reins);
   if (!network) return network.error();
   s.make_links();
   const Result<bool> files = s.open_files();
@@ -54,7 +55,7 @@ Result<std::unique_ptr<HostedRun>> HostedRun::create(HostedWorld& hosted, const 
   host.paused = hosted.state.paused;
   host.run = hosted.state.run;
   host.start_state = hosted.start;
-  host.pulse = pulse;
+  if (reins != nullptr) host.pulse = &reins->pulse();
   s.host_ = std::make_unique<Host>(std::move(*hosted.world), scene, *s.channel_, host);
   s.host_->add_tap(*s.server_);
   if (s.checkpoint_) s.host_->add_tap(*s.checkpoint_);
@@ -63,7 +64,7 @@ Result<std::unique_ptr<HostedRun>> HostedRun::create(HostedWorld& hosted, const 
   return run;
 }
 
-Result<bool> HostedRun::open_network() {
+Result<bool> HostedRun::open_network(HostReins* reins) {
   const Prepared& p = hosted_.prepared;
   ServedWorld world;
   world.scene = &p.scene;
@@ -128,7 +129,8 @@ Result<bool> HostedRun::open_network() {
   Result<std::unique_ptr<ConsoleDoor>> door = ConsoleDoor::open(port_of(address_));
   if (!door) return door.error();
   door_ = std::move(door.value());
-  net_ = std::make_unique<NetLoop>(*server_, *endpoint_);
+  net_ =
+      std::make_unique<NetLoop>(*server_, *endpoint_, reins != nullptr ? &reins->network_pulse() : nullptr);
   return true;
 }
 

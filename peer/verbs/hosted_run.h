@@ -20,13 +20,15 @@
 
 namespace slosh {
 
+class HostReins;
+
 /// Made, started and ended by one thread.
 class HostedRun {
  public:
   /// `hosted` must outlive it; its world is taken. Errors: the address cannot be listened at, a file cannot
-  /// be written, the scene does not fit into a message. `pulse`: as HostOptions::pulse.
+  /// be written, the scene does not fit into a message. `reins`: who looks after its pulses.
   static Result<std::unique_ptr<HostedRun>> create(HostedWorld& hosted, const HostVerbOptions& options,
-                                                   std::atomic<std::uint64_t>* pulse = nullptr);
+                                                   HostReins* reins = nullptr);
   ~HostedRun();
   HostedRun(const HostedRun&) = delete;
   HostedRun& operator=(const HostedRun&) = delete;
@@ -60,7 +62,7 @@ class HostedRun {
 
  private:
   HostedRun(HostedWorld& hosted, const HostVerbOptions& options) : hosted_(hosted), options_(options) {}
-  Result<bool> open_network();
+  Result<bool> open_network(HostReins* reins);
   std::string choose_checkpoint() const;
   Result<bool> open_files();
   void make_links();

@@ -108,12 +108,23 @@ TEST(Supervisor, StartsAgainAWorldThatHangsAndNoneThatIsStoppedOrEnds) {
     reins->pulse() = 2;
     while (true) pause();
   };
-  EXPECT_EQ(supervise_host({}, hangs, 2), 3);
+  EXPECT_EQ(supervise_host({}, hangs, {2, 60}), 3);
+  // Its world goes on, and nobody hears of it.
+  const auto mute = [](const HostVerbOptions& options, HostReins* reins) -> int {
+    if (options.restarts == 1) _exit(options.resume == "kept" ? 3 : 4);
+    reins->can_carry_on_from("kept");
+    reins->network_pulse() = 2;
+    while (true) {
+      reins->pulse() += 1;
+      usleep(10'000);
+    }
+  };
+  EXPECT_EQ(supervise_host({}, mute, {60, 2}), 3);
   // One that somebody stopped is let be, and so is one whose run is over.
   const auto stopped = [](const HostVerbOptions& options, HostReins* reins) -> int {
     if (options.restarts == 1) _exit(4);
     reins->can_carry_on_from("kept");
-    reins->pulse() = 2;
+    reins->pulse() = reins->network_pulse() = 2;
     const pid_t self = getpid();
     if (fork() == 0) {
       usleep(3'500'000);
@@ -121,11 +132,11 @@ TEST(Supervisor, StartsAgainAWorldThatHangsAndNoneThatIsStoppedOrEnds) {
       _exit(0);
     }
     raise(SIGSTOP);
-    reins->pulse() = 0;
+    reins->pulse() = reins->network_pulse() = 0;
     usleep(3'500'000);
     _exit(7);
   };
-  EXPECT_EQ(supervise_host({}, stopped, 2), 7);
+  EXPECT_EQ(supervise_host({}, stopped, {2, 2}), 7);
 }
 
 TEST(Supervisor, PassesOnWhoAsksForTheEndOnce) {
