@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "net/clock.h"
+#include "net/engagement.h"
 #include "net/grip_start.h"
 
 namespace slosh {
@@ -19,6 +20,7 @@ HandTable::HandTable(const Scene& scene, Channel& channel) : channel_(channel) {
   for (std::size_t i = 0; i < scene.grips.size(); ++i) {
     GripHand hand;
     hand.start = grip_start(scene, i);
+    hand.body = scene.grips[i].body;
     hand.known.resize(kRemembered);
     grips_.push_back(std::move(hand));
   }
@@ -26,6 +28,7 @@ HandTable::HandTable(const Scene& scene, Channel& channel) : channel_(channel) {
 
 void HandTable::publish(std::size_t grip, const PoseMessage& message) {
   grips_[grip].last = message.pose;
+  grips_[grip].engaged = message.engaged;
   PoseMessage& up = channel_.pose(grip).back();
   up = message;
   up.hold = grips_[grip].hold;
@@ -35,6 +38,7 @@ void HandTable::publish(std::size_t grip, const PoseMessage& message) {
 void HandTable::put_on_stand(std::size_t grip, const Pose& pose, std::int64_t now_ns) {
   GripHand& hand = grips_[grip];
   hand.stand = true;
+  hand.kept = false;
   hand.hold += 1;
   PoseMessage message;
   message.device = static_cast<std::uint32_t>(grip);
@@ -75,7 +79,7 @@ void HandTable::taken(std::size_t grip, std::int64_t now_ns) {
 void HandTable::let_go(std::size_t grip, std::int64_t now_ns, bool also_stand) {
   GripHand& hand = grips_[grip];
   hand.held = false;
-  if (hand.stand && !also_stand) return;
+  if (hand.stand && !hand.kept && !also_stand) return;
   hand.stand = false;
   PoseMessage message;
   message.device = static_cast<std::uint32_t>(grip);
@@ -84,6 +88,26 @@ void HandTable::let_go(std::size_t grip, std::int64_t now_ns, bool also_stand) {
   message.lost = true;
   message.number = hand.base + hand.newest;
   publish(grip, message);
+}
+
+/// Whether somebody else holds the same body whose samples come.
+bool HandTable::another_is_heard(std::size_t grip, std::int64_t now_ns) const {
+  for (std::size_t i = 0; i < grips_.size(); ++i) {
+    const GripHand& other = grips_[i];
+    if (i != grip && other.body == grips_[grip].body && other.held && other.newest > 0 &&
+        now_ns - other.heard_ns <= to_nanoseconds(kHoldAnew))
+      return true;
+  }
+  return false;
+}
+
+void HandTable::lose(std::size_t grip, std::int64_t now_ns) {
+  GripHand& hand = grips_[grip];
+  if (hand.stand) return;
+  if (!hand.engaged || another_is_heard(grip, now_ns)) return let_go(grip, now_ns);
+  hand.held = false;
+  put_on_stand(grip, hand.last, now_ns);
+  hand.kept = true;
 }
 
 bool HandTable::count(GripHand& hand, std::uint64_t number) {

@@ -29,9 +29,11 @@ class HandTable {
   /// A new holder, whose samples number anew. The stand holds on until its first engaged sample; then the
   /// world is told that it is another hand (PoseMessage::hold), and lets it in as net/engagement.h has it.
   void taken(std::size_t grip, std::int64_t now_ns);
-  /// Not held any more, or contact with the holder is lost: the host lets go gently. A stand stays, unless
-  /// `also_stand`.
+  /// Not held any more: the host lets go gently. A stand stays, unless `also_stand`.
   void let_go(std::size_t grip, std::int64_t now_ns, bool also_stand = false);
+  /// Contact with the holder is lost. Where another hand of the same body is heard, it carries on alone: as
+  /// let_go(). Else the host holds the grip where the hand was, since nobody would catch what falls.
+  void lose(std::size_t grip, std::int64_t now_ns);
   /// After a restart of the host: what was held stands where the hand was, until its holder is back.
   void carry_on(const BodySnapshot& bodies, std::int64_t now_ns);
 
@@ -52,7 +54,9 @@ class HandTable {
   static constexpr std::size_t kRemembered = 2048;  // stamps: 4 s at 500 a second
   struct GripHand {
     Pose start;  // as the scene has it
+    int body = 0;
     bool stand = false;
+    bool kept = false;  // the stand is for who lost contact
     bool held = false;
     std::uint32_t hold = 0;    // PoseMessage::hold
     std::uint64_t base = 0;    // added to the holder's numbers, so that they rise over all holders
@@ -62,13 +66,15 @@ class HandTable {
     std::int64_t clock_offset_ns = 0;  // host's clock − holder's, by the quickest sample
     std::int64_t heard_ns = 0;
     Delivery delivery;
-    Pose last;
+    Pose last;                // of what was published last,
+    bool engaged = false;     // and whether it held on
     std::vector<Used> known;  // a ring by number
   };
   bool count(GripHand& hand, std::uint64_t number);
   std::int64_t on_our_clock(GripHand& hand, std::int64_t stamp_ns, std::int64_t now_ns);
   void put_on_stand(std::size_t grip, const Pose& pose, std::int64_t now_ns);
   void publish(std::size_t grip, const PoseMessage& message);
+  bool another_is_heard(std::size_t grip, std::int64_t now_ns) const;
 
   Channel& channel_;
   std::vector<GripHand> grips_;

@@ -162,11 +162,21 @@ void Server::say_of_stranger(const std::string& line) {
 }
 
 void Server::let_go_all(const Seat& seat) {
+  for (const std::uint32_t grip : seat.grips) hands_.let_go(grip, now());
+  hide_hands(seat);
+}
+
+/// Contact is lost.
+void Server::lose_all(const Seat& seat) {
+  for (const std::uint32_t grip : seat.grips) hands_.lose(grip, now());
+  hide_hands(seat);
+}
+
+/// To the others the hands are nowhere.
+void Server::hide_hands(const Seat& seat) {
   wire::Hands hands;
-  for (const std::uint32_t grip : seat.grips) {
-    hands_.let_go(grip, now());
+  for (const std::uint32_t grip : seat.grips)
     hands.hands.push_back({grip, now(), grip_start(*world_.scene, grip), Twist{}, false});
-  }
   states_.let_go(seat.number, hands);
 }
 
@@ -186,13 +196,14 @@ void Server::lose(Peer& peer, Parting parting) {
   peers_.stand_up(peer.seat);
   Seat* seat = seats_.by_number(peer.seat);
   if (!seat) return;
-  let_go_all(*seat);
   std::string text = seat->name;
   if (parting == Parting::kLostContact) {
+    lose_all(*seat);
     seats_.lose(*seat, now());
     text = "contact with " + text + " is lost";
     if (!seat->grips.empty()) text += "; what they hold is kept for them for a minute";
   } else {
+    let_go_all(*seat);
     seats_.leave(*seat, now());
     text += parting == Parting::kLeft ? " has left" : " was put out";
   }
@@ -252,8 +263,9 @@ void Server::check_patience() {
     const bool quiet = now() - peer->heard_ns > to_nanoseconds(options_.silence);
     if (quiet && !peer->silent && !seat.grips.empty()) {
       peer->silent = true;
-      let_go_all(seat);
-      notice_all(seat.name + " is not heard any more; the grip is let go for now", false, peer.get());
+      // The world's gate knows by itself: a silent hand comes to rest, and gives way to those that are heard.
+      hide_hands(seat);
+      notice_all(seat.name + " is not heard any more; what they hold waits for them", false, peer.get());
     } else if (!quiet && peer->silent) {
       peer->silent = false;
       notice_all(seat.name + " is heard again", false, peer.get());

@@ -37,7 +37,7 @@ namespace slosh {
 struct ServerOptions {
   RosterLimits limits;
   AdmissionLimits admission;
-  double silence = 0.5;  ///< s without a datagram after which a holder counts as lost
+  double silence = 0.5;  ///< s without a datagram after which others are told so
   BodyRates bodies;
   bool lock_parameters = false;         ///< only the console sets viscosity and gravity
   std::size_t hands_to_start = 1;       ///< grips that must be taken before the world starts; 0 = it runs
@@ -150,6 +150,8 @@ class Server final : public EndpointEvents, public HostTap {
   /// The connection that a person had before this one goes without a word to the others.
   void replace(const Seat& seat);
   void let_go_all(const Seat& seat);
+  void lose_all(const Seat& seat);
+  void hide_hands(const Seat& seat);
   void send_roster();
   void roster_changed() { roster_dirty_ = state_dirty_ = true; }
 

@@ -84,7 +84,7 @@ void Server::replace(const Seat& seat) {
   Peer* before = peers_.of_seat(seat.number);
   if (!before) return;
   part(*before);
-  let_go_all(seat);
+  lose_all(seat);
   peers_.stand_up(seat.number);
   const std::string text = "you came again from elsewhere, and this connection is closed";
   if (before->control_stream >= 0)

@@ -15,8 +15,10 @@ class Hands : public ::testing::Test {
     channel.pose(grip).update();
     return channel.pose(grip).front();
   }
-  bool sample(std::uint64_t number, double x, std::int64_t stamp_ns = 0, bool engaged = true) {
+  bool sample(std::uint64_t number, double x, std::int64_t stamp_ns = 0, bool engaged = true,
+              std::uint32_t grip = 0) {
     wire::PoseSample s;
+    s.grip = grip;
     s.number = number;
     s.stamp_ns = stamp_ns;
     s.pose.position = {x, 0.0, 0.0};
@@ -61,6 +63,47 @@ TEST_F(Hands, AStandHoldsOnUntilTheHandDoesAndTheWorldIsToldThatItIsAnother) {
   hands.taken(0, now);
   ASSERT_TRUE(sample(1, start));
   EXPECT_NE(newest(0).hold, first) << "and somebody else's";
+}
+
+TEST_F(Hands, ALostHandLetsGoToOneThatIsHeardAndElseStays) {
+  ASSERT_EQ(scene.grips[0].body, scene.grips[1].body);
+  for (std::uint32_t grip : {0u, 1u}) {
+    hands.let_go(grip, now, true);
+    hands.taken(grip, now);
+    ASSERT_TRUE(sample(1, 0.3, 0, true, grip));
+  }
+  hands.lose(0, now);
+  EXPECT_TRUE(newest(0).lost) << "the other one carries on";
+
+  // A link of both goes dark: neither is heard when the first of them is missed.
+  ASSERT_TRUE(sample(2, 0.4));
+  ASSERT_TRUE(sample(2, 0.6, 0, true, 1));
+  const std::uint32_t hold = newest(0).hold;
+  now += to_nanoseconds(0.5);
+  hands.lose(0, now);
+  hands.lose(1, now);
+  EXPECT_TRUE(newest(0).engaged);
+  EXPECT_EQ(newest(0).pose.position.x, 0.4);
+  EXPECT_NE(newest(0).hold, hold) << "the stand is another hand";
+  EXPECT_TRUE(newest(1).engaged);
+  hands.lose(0, now);
+  EXPECT_TRUE(newest(0).engaged) << "missed twice: nothing changes";
+
+  ASSERT_TRUE(sample(3, 0.5)) << "it is back";
+  EXPECT_EQ(newest(0).pose.position.x, 0.5);
+  now += to_nanoseconds(0.5);
+  hands.lose(0, now);
+  EXPECT_TRUE(newest(0).engaged);
+  hands.let_go(0, now);
+  EXPECT_FALSE(newest(0).engaged) << "who leaves is not waited for";
+}
+
+TEST_F(Hands, AHandThatHeldNothingLeavesNothingBehind) {
+  hands.let_go(0, now, true);
+  hands.taken(0, now);
+  ASSERT_TRUE(sample(1, 0.3, 0, false));
+  hands.lose(0, now);
+  EXPECT_FALSE(newest(0).engaged);
 }
 
 TEST_F(Hands, OnlyNewerSamplesCountAndRepeatsAreCountedOnce) {

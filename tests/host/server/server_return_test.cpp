@@ -8,7 +8,7 @@
 namespace slosh {
 namespace {
 
-TEST_F(ServerTest, ALostHandIsLetGoAndComesBack) {
+TEST_F(ServerTest, ALostHandIsKeptAndComesBack) {
   ScriptedPeer& ana = join(1, "Ana");
   ScriptedPeer& ben = join(2, "Ben");
   ana.take(0);
@@ -18,8 +18,9 @@ TEST_F(ServerTest, ALostHandIsLetGoAndComesBack) {
   const std::uint32_t seat = ana.welcomes[0].peer;
   ana.close("gone");
   go(0.1);
-  EXPECT_FALSE(pose(0).engaged);
-  EXPECT_TRUE(pose(0).lost);
+  EXPECT_TRUE(pose(0).engaged) << "nobody else carries it: it stays where it was";
+  EXPECT_EQ(pose(0).twist.linear, glm::dvec3(0.0));
+  EXPECT_FALSE(pose(0).lost);
   EXPECT_TRUE(ben.noticed("contact with Ana is lost"));
   ASSERT_NE(ben.entry("Ana"), nullptr);
   EXPECT_FALSE(ben.entry("Ana")->connected);
@@ -66,8 +67,8 @@ TEST_F(ServerTest, ACrashOrAPulledCableIsNoticed) {
   go(1.0, 0.005, [&] { ana.pose(0, ++number, 0.15); });
   network.set_dark(*ana.end, true);
   go(0.7);
-  EXPECT_FALSE(pose(0).engaged) << "half a second without a word";
-  EXPECT_TRUE(ben.noticed("Ana is not heard any more"));
+  EXPECT_TRUE(ben.noticed("Ana is not heard any more; what they hold waits for them"));
+  EXPECT_TRUE(pose(0).engaged) << "half a second without a word, and nobody to catch what falls";
   EXPECT_TRUE(ben.entry("Ana")->connected);
   network.set_dark(*ana.end, false);
   go(0.3, 0.005, [&] { ana.pose(0, ++number, 0.15); });

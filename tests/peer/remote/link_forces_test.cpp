@@ -5,11 +5,10 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <deque>
-#include <numbers>
 #include <random>
 
 #include "held_beam.h"
+#include "link_kit.h"
 #include "net/grip_start.h"
 #include "peer/remote/body_inbox.h"
 #include "tests/peer/servo_kit.h"
@@ -17,92 +16,19 @@
 namespace slosh {
 namespace {
 
+using test::Flow;
 using test::held_beam;
 using test::HostEnd;
 using test::kShare;
 using test::kSpacing;
+using test::kSwingTime;
+using test::kTiltTime;
+using test::Motion;
+using test::MovingDevice;
+using test::Wire;
 
-constexpr double kSwing = 0.25;                // m from end to end,
-constexpr double kSwingTime = 3.0;             // s to and fro: 0.26 m/s and 0.55 m/s² at most
-constexpr double kTilt = 1.6;                  // rad from one side to the other,
-constexpr double kTiltTime = 7.0;              // s to and fro: as the hands that spill the bucket
 constexpr std::size_t kSocketDatagrams = 800;  // what a kernel keeps for a process that was stopped
 constexpr double kRow = 0.002;                 // s between two rows of wrenches.csv
-
-enum class Motion { kToAndFro, kTurning };
-
-/// A hand that goes to and fro with the beam or turns it about its middle: by the world's time as a script
-/// does, or by the clock on the wall as a person.
-class MovingDevice final : public Device {
- public:
-  MovingDevice(const Pose& start, const std::int64_t* clock, Motion motion)
-      : start_(start), clock_(clock), motion_(motion) {}
-  DeviceReport read(const DeviceMoment& moment) override {
-    const double t = (clock_ != nullptr ? to_seconds(*clock_) - 1000.0 : moment.time) - 2.0;
-    DeviceReport report;
-    report.pose = start_;
-    if (t <= 0.0) return report;
-    if (motion_ == Motion::kTurning) {
-      const double w = 2.0 * std::numbers::pi / kTiltTime;
-      const glm::dvec3 axis(0.0, 0.0, 1.0);
-      const glm::dvec3 middle(0.0, start_.position.y, 0.0);
-      report.twist.angular = 0.5 * kTilt * w * std::cos(w * t) * axis;
-      const glm::dvec3 turned = 0.5 * kTilt * std::sin(w * t) * axis;
-      report.pose.orientation = rotate_by(start_.orientation, turned);
-      report.pose.position = middle + rotate_by(glm::dquat(1, 0, 0, 0), turned) * (start_.position - middle);
-      report.twist.linear = glm::cross(report.twist.angular, report.pose.position - middle);
-      return report;
-    }
-    const double w = 2.0 * std::numbers::pi / kSwingTime;
-    const glm::dvec3 way = glm::normalize(glm::dvec3(1.0, 0.5, 0.3));
-    report.pose.position += 0.5 * kSwing * (1.0 - std::cos(w * t)) * way;
-    report.twist.linear = 0.5 * kSwing * w * std::sin(w * t) * way;
-    return report;
-  }
-  void write(const Wrench& on_hand) override { last = on_hand; }
-  DeviceLimits limits() const override { return limits_without_a_hand(); }
-  bool immediate() const override { return true; }
-  std::string kind() const override { return "swinging"; }
-  Wrench last;
-
- private:
-  Pose start_;
-  const std::int64_t* clock_;
-  Motion motion_;
-};
-
-enum class Flow { kOpen, kStands, kDrops };
-
-/// One direction of one person's link.
-template <class M>
-class Wire {
- public:
-  Flow flow = Flow::kOpen;
-  void send(const M& message, std::int64_t now_ns, std::mt19937_64& random) {
-    if (flow == Flow::kDrops) return;
-    std::uniform_real_distribution<> jitter(0.005, 0.007);
-    on_way_.push_back({now_ns + to_nanoseconds(jitter(random)), message});
-  }
-  /// What has arrived, in order; a link that stood gives out at once what it kept.
-  template <class Take>
-  void deliver(std::int64_t now_ns, Take&& take) {
-    if (flow == Flow::kStands) return;
-    while (!on_way_.empty() && on_way_.front().due_ns <= now_ns) {
-      take(on_way_.front().message);
-      on_way_.pop_front();
-    }
-  }
-  void keep_at_most(std::size_t count) {
-    if (on_way_.size() > count) on_way_.resize(count);
-  }
-
- private:
-  struct OnWay {
-    std::int64_t due_ns;
-    M message;
-  };
-  std::deque<OnWay> on_way_;
-};
 
 struct Person {
   std::uint32_t grip;
@@ -332,7 +258,7 @@ TEST_P(LinkForces, APersonWhoIsStoppedComesBackWithoutABlow) {
   one.stopped = true;
   run(4.0);
   one.connected = false;
-  host->hands.let_go(one.grip, clock);
+  host->hands.lose(one.grip, clock);
   expect_no_blow("and until the host lets go");
   run(6.0);
   const Numbers alone = numbers();
@@ -379,6 +305,28 @@ TEST_P(LinkForces, ASilenceOfBothHandsIsNoBlow) {
                          .c_str());
     }
   }
+}
+
+/// A link of both that is dark for so long that the host gives up their connections: nothing falls meanwhile.
+TEST_P(LinkForces, BothHandsThatTheHostGaveUpFindWhatTheyHeldWhereItWas) {
+  for (const auto& person : people) person->down.flow = person->up.flow = Flow::kDrops;
+  run(4.0);
+  for (const auto& person : people) {
+    person->connected = false;
+    host->hands.lose(person->grip, clock);
+    run(0.02);  // one connection ends a little before the other
+  }
+  run(3.0);
+  for (const auto& person : people) {
+    person->down.flow = person->up.flow = Flow::kOpen;
+    person->inbox.restart();
+    person->connected = true;
+    person->number = 0;
+    host->hands.taken(person->grip, clock);
+    run(0.1);
+  }
+  run(9.0);
+  expect_no_blow("both hands given up after 4 s, back after 7 s");
 }
 
 INSTANTIATE_TEST_SUITE_P(Hands, LinkForces,
