@@ -42,6 +42,9 @@ class Device {
   virtual void write(const Wrench& on_hand) { (void)on_hand; }
   /// Constant while the device is open. Checked by check_limits before anything is written.
   virtual DeviceLimits limits() const = 0;
+  /// The viewer's camera turned: `axes` takes its right, up and towards-the-eye to the world's. For devices whose
+  /// motion goes by the picture; one thread, any but the device's, and without waiting for it.
+  virtual void look_from(const glm::dquat& axes) { (void)axes; }
   /// True when read() and write() only look at memory: they neither wait, allocate, lock nor log, and are
   /// called from the device loop itself. All others get a thread of their own (DevicePort), so that hardware
   /// that does not answer stops no other hand.

@@ -47,6 +47,8 @@ class DevicePort {
   void stop() noexcept;
 
   const Device& device() const { return *device_; }
+  /// As Device::look_from; by the thread that owns the port.
+  void look_from(const glm::dquat& axes) { device_->look_from(axes); }
   const DeviceLimits& limits() const { return limits_; }
   /// What the device threw: it is out of use. Else what it says itself that keeps it from working
   /// (Device::trouble). Empty while it works. Any thread.

@@ -64,6 +64,11 @@ class Servo {
   std::string failure(std::size_t i) const {
     return hands_[i].owned.empty() ? std::string() : hands_[i].owned.back()->failure();
   }
+  /// Tells every device where the viewer looks from (Device::look_from).
+  void look_from(const glm::dquat& axes) {
+    for (Hand& hand : hands_)
+      if (!hand.owned.empty()) hand.owned.back()->look_from(axes);
+  }
   bool holds(std::size_t i) const { return hands_[i].wanted.load(std::memory_order_relaxed) != nullptr; }
   bool holds_any() const;
   /// Sends every device zero and closes it. After the device loop has stopped; may be called again.

@@ -47,6 +47,9 @@ class LiveRun {
   /// Where the mouse moves the handle of grip `i`; null when that hand is no mouse.
   virtual MouseTarget* mouse_target(std::size_t i) = 0;
 
+  /// The camera turned (Device::look_from).
+  virtual void look_from(const glm::dquat& axes) { (void)axes; }
+
   /// What has gone wrong with the run's files and devices so far, e.g. that the disk is full; empty while
   /// nothing has.
   virtual std::string trouble() const { return {}; }

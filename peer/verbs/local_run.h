@@ -47,6 +47,7 @@ class LocalRun final : public LiveRun {
   }
   bool paused() const override { return paused_; }
   MouseTarget* mouse_target(std::size_t i) override { return mouse_targets_[i].get(); }
+  void look_from(const glm::dquat& axes) override { servo_->look_from(axes); }
   /// In place where the run is recorded, so that the recording goes on.
   bool start_again() override;
   std::string trouble() const override;

@@ -5,6 +5,7 @@
 
 #include "net/clock.h"
 #include "peer/output/video.h"
+#include "peer/haptics/devices/hardware.h"
 #include "peer/verbs/interrupt.h"
 #include "peer/verbs/local_run.h"
 #include "peer/verbs/play_modes.h"
@@ -91,6 +92,8 @@ class WindowRun {
       if (input.pressed(Key::kEscape) || input.pressed(Key::kQ)) return Outcome::kEnd;
       if (input.pressed(Key::kR) && !run_.start_again()) return Outcome::kAgain;
       handle(input);
+      const OrbitCamera& camera = painter_.camera();
+      run_.look_from(camera_axes(camera.eye(), camera.target()));
       hear_lines(run_, typed ? &*typed : nullptr, progress);
       trouble.tell(run_, progress);
       if (SnapshotPointer newest = run_.newest_snapshot()) {

@@ -48,6 +48,7 @@ class RemoteRun final : public LiveRun {
   bool hears() const override { return true; }
   std::string hear(const std::string& line) override;
   MouseTarget* mouse_target(std::size_t i) override { return mice_[i].get(); }
+  void look_from(const glm::dquat& axes) override { servo_->look_from(axes); }
   std::string trouble() const override { return run_trouble(recorder_->problem(), *servo_, stage_.scene); }
   void report(RunSummary& summary) const override;
 

@@ -147,6 +147,7 @@ DeviceReport FalconDevice::read(const DeviceMoment&) {
     set_trouble(homed_ ? "" : "the Falcon lost its place: pull its grip out and push it in once");
   }
   if (!homed_) return silent();
+  if (const glm::dquat* axes = camera_now_.news()) map_->look_from(*axes);
   for (std::size_t i = 0; i < 3; ++i) angles_[i] = falcon_angle_of(state->counts[i]);
   const std::optional<glm::dvec3> grip = falcon_grip(angles_, grip_);
   if (!grip) return silent();

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "net/clock.h"
+#include "peer/haptics/devices/camera_view.h"
 #include "peer/haptics/devices/falcon_kinematics.h"
 #include "peer/haptics/devices/falcon_protocol.h"
 #include "peer/haptics/devices/hand_map.h"
@@ -35,6 +36,7 @@ class FalconDevice final : public Device {
   DeviceReport read(const DeviceMoment& moment) override;
   void write(const Wrench& on_hand) override;
   DeviceLimits limits() const override { return limits_; }
+  void look_from(const glm::dquat& axes) override { camera_now_.publish(axes); }
   void close() override;
   std::string kind() const override { return "falcon"; }
   std::string trouble() const override;
@@ -53,6 +55,7 @@ class FalconDevice final : public Device {
   const HandPlace place_;
   Clock now_ns_;
   std::unique_ptr<FalconLink> link_;
+  CameraView camera_now_;
   std::optional<HandMap> map_;
   DeviceLimits limits_;
   std::vector<std::string> warnings_;

@@ -80,16 +80,27 @@ HandMap::HandMap(const HandMapSettings& settings, const HandPlace& place)
       axes_(settings.by_camera ? place.camera : glm::dquat(1.0, 0.0, 0.0, 0.0)),
       start_(place.start) {}
 
+Pose HandMap::mapped(const Pose& pose) const noexcept {
+  const glm::dquat turned = pose.orientation * glm::conjugate(origin_.orientation);
+  return {start_.position + axes_ * (settings_.scale * (pose.position - origin_.position)),
+          glm::normalize(axes_ * turned * glm::conjugate(axes_) * start_.orientation)};
+}
+
+void HandMap::look_from(const glm::dquat& axes) noexcept {
+  if (!settings_.by_camera) return;
+  if (begun_ && !clutched_) {
+    start_ = mapped(device_);
+    origin_ = device_;
+  }
+  axes_ = axes;
+}
+
 DeviceReport HandMap::to_world(const DeviceReport& at_device) noexcept {
   if (!begun_) {
     begun_ = true;
     origin_ = at_device.pose;
   }
-  const auto mapped = [this](const Pose& pose) {
-    const glm::dquat turned = pose.orientation * glm::conjugate(origin_.orientation);
-    return Pose{start_.position + axes_ * (settings_.scale * (pose.position - origin_.position)),
-                glm::normalize(axes_ * turned * glm::conjugate(axes_) * start_.orientation)};
-  };
+  device_ = at_device.pose;
   DeviceReport report = at_device;
   report.engaged = at_device.engaged &&
                    (settings_.deadman_button == 0 || held(at_device.buttons, settings_.deadman_button));

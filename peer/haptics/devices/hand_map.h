@@ -41,14 +41,19 @@ class HandMap {
   HandMap(const HandMapSettings& settings, const HandPlace& place);
 
   DeviceReport to_world(const DeviceReport& at_device) noexcept;
+  /// The camera turned: from here on the device moves the hand that way, and the hand stays where it is.
+  void look_from(const glm::dquat& axes) noexcept;
   Wrench to_device(const Wrench& in_world) const noexcept;
   /// What the servo may ask of the hand in the world's measure.
   DeviceLimits to_world(const DeviceLimits& at_device) const;
 
  private:
+  Pose mapped(const Pose& at_device) const noexcept;
+
   HandMapSettings settings_;
   glm::dquat axes_;  // device's to the world's
   Pose start_;
+  Pose device_;  // as it last was
   Pose origin_;  // of the device, where the hand is at its start
   Pose held_;    // in the world, while clutched
   bool begun_ = false;

@@ -135,6 +135,7 @@ DeviceReport PluginDevice::taken(const slosh_device_reading& r) {
   report.buttons = r.buttons;
   report.engaged = (r.flags & SLOSH_READING_LET_GO) == 0;
   const bool sound = is_sound(report);
+  if (const glm::dquat* axes = camera_now_.news()) map_->look_from(*axes);
   if (sound == unsound_) {
     unsound_ = !sound;
     set_trouble(sound ? ""

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "peer/haptics/devices/camera_view.h"
 #include "peer/haptics/devices/hand_map.h"
 #include "peer/haptics/devices/plugin_library.h"
 #include "peer/haptics/devices/velocity_window.h"
@@ -27,6 +28,7 @@ class PluginDevice final : public Device {
   DeviceReport read(const DeviceMoment& moment) override;
   void write(const Wrench& on_hand) override;
   DeviceLimits limits() const override { return limits_; }
+  void look_from(const glm::dquat& axes) override { camera_now_.publish(axes); }
   void close() override;
   std::string kind() const override { return "plugin"; }
   std::string trouble() const override;
@@ -47,6 +49,7 @@ class PluginDevice final : public Device {
   const std::string options_;
   const HandPlace place_;
   std::shared_ptr<Handle> handle_;
+  CameraView camera_now_;
   std::optional<HandMap> map_;
   DeviceLimits limits_;
   std::vector<std::string> warnings_;

@@ -127,6 +127,7 @@ DeviceReport SpaceMouseDevice::read(const DeviceMoment&) {
     report.engaged = report.heard = false;
     return report;
   }
+  if (const glm::dquat* axes = camera_now_.news()) motion_->look_from(*axes);
   motion_->advance(now_.state, to_seconds(now_ns - advanced_ns_));
   advanced_ns_ = now_ns;
   report.pose = motion_->pose();

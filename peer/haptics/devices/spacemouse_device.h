@@ -9,6 +9,7 @@
 
 #include "net/clock.h"
 #include "peer/haptics/device.h"
+#include "peer/haptics/devices/camera_view.h"
 #include "peer/haptics/devices/hid_port.h"
 #include "peer/haptics/devices/spacemouse_models.h"
 #include "peer/haptics/devices/spacemouse_motion.h"
@@ -49,6 +50,7 @@ class SpaceMouseDevice final : public Device {
   DeviceReport read(const DeviceMoment& moment) override;
   DeviceLimits limits() const override { return limits_without_a_hand(); }
   bool gives_way() const override { return false; }
+  void look_from(const glm::dquat& axes) override { camera_now_.publish(axes); }
   void close() override;
   std::string kind() const override { return "spacemouse"; }
   std::string trouble() const override;
@@ -72,6 +74,7 @@ class SpaceMouseDevice final : public Device {
   const Pose start_;
   const glm::dquat camera_;
   std::function<std::int64_t()> now_ns_;
+  CameraView camera_now_;
   std::optional<HidPort> port_;
   std::optional<SpaceMouseMotion> motion_;
   std::string serial_;

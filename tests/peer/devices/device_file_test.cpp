@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "peer/haptics/devices/spacemouse_settings.h"
+#include "tests/peer/devices/own_folder.h"
 
 namespace slosh {
 namespace {
@@ -52,8 +53,8 @@ TEST(DeviceFile, NamesTheLineAndTheMend) {
 }
 
 TEST(DeviceFile, AFolderOrAHugeFileIsRefusedAndNoneIsNoMistake) {
-  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "device_file";
-  std::filesystem::create_directories(folder);
+  const test::OwnFolder own;
+  const std::filesystem::path& folder = own.path();
   EXPECT_FALSE(DeviceFile::read(folder));
   std::ofstream(folder / "huge.conf") << std::string(70000, '#');
   EXPECT_FALSE(DeviceFile::read(folder / "huge.conf"));
@@ -62,8 +63,8 @@ TEST(DeviceFile, AFolderOrAHugeFileIsRefusedAndNoneIsNoMistake) {
 }
 
 TEST(DeviceFile, ASerialNumberMakesNoPath) {
-  const std::filesystem::path config = std::filesystem::path(::testing::TempDir()) / "config";
-  std::filesystem::remove_all(config);
+  const test::OwnFolder own;
+  const std::filesystem::path& config = own.path();
   std::filesystem::create_directories(config / "slosh" / "devices");
   setenv("XDG_CONFIG_HOME", config.c_str(), 1);
   EXPECT_EQ(device_settings_file("falcon", "../x").filename(), "falcon.conf");

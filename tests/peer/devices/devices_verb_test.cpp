@@ -9,6 +9,7 @@
 #include "peer/haptics/devices/hardware.h"
 #include "peer/haptics/devices/spacemouse_models.h"
 #include "tests/peer/devices/mocked_spacemouse.h"
+#include "tests/peer/devices/own_folder.h"
 #include "tests/support/comes.h"
 #include "tests/support/process.h"
 
@@ -18,23 +19,19 @@ namespace {
 using test::MockedMachine;
 using test::MockedSpaceMouse;
 
-std::filesystem::path folder() {
-  return std::filesystem::path(::testing::TempDir()) /
-         ("devices_verb_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
-}
-
 /// The program inherits the made-up machine.
-test::Outcome slosh(const std::vector<std::string>& arguments) {
+test::Outcome slosh(const std::vector<std::string>& arguments, const std::filesystem::path& folder) {
   std::vector<std::string> all{SLOSH_PROGRAM};
   all.insert(all.end(), arguments.begin(), arguments.end());
-  return test::Process(all, folder()).wait();
+  return test::Process(all, folder).wait();
 }
 
 TEST(DevicesVerb, ListsWhatIsPluggedInAndWhatToSay) {
+  const test::OwnFolder folder;
   MockedMachine machine;
   MockedSpaceMouse one(machine, 0, k3DconnexionVendor, 0xc635, "ABC");
   MockedSpaceMouse two(machine, 1, kLogitechVendor, 0xc626, "");
-  const test::Outcome outcome = slosh({"devices"});
+  const test::Outcome outcome = slosh({"devices"}, folder.path());
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   for (const char* words : {"SpaceMouse Compact (/dev/hidraw0, serial ABC)", "--device spacemouse:ABC",
                             "SpaceNavigator (/dev/hidraw1)", "--device spacemouse:/dev/hidraw1"})
@@ -42,14 +39,14 @@ TEST(DevicesVerb, ListsWhatIsPluggedInAndWhatToSay) {
 }
 
 TEST(DevicesVerb, ShowsLiveValues) {
+  const test::OwnFolder folder;
   MockedMachine machine;
   MockedSpaceMouse mouse(machine, 0, k3DconnexionVendor, 0xc635, "ABC");
-  std::filesystem::create_directories(folder());
-  test::Process process({SLOSH_PROGRAM, "devices", "--live"}, folder());
+  test::Process process({SLOSH_PROGRAM, "devices", "--live"}, folder.path());
   EXPECT_EQ(mouse.hear(2), (std::vector<std::uint8_t>{4, 1}));  // it is open
   mouse.say({1, 0x64, 0, 0, 0, 0, 0});
   EXPECT_TRUE(test::comes([&] {
-    return test::read_text(folder() / "stdout.txt").find("1 reports") != std::string::npos ||
+    return test::read_text(folder.path() / "stdout.txt").find("1 reports") != std::string::npos ||
            !process.running();
   }));
   process.signal(SIGINT);
@@ -60,16 +57,16 @@ TEST(DevicesVerb, ShowsLiveValues) {
 }
 
 TEST(DevicesVerb, TheRuleHasEveryVendorAndGoesWhereItIsTold) {
-  std::filesystem::remove_all(folder());
-  const std::filesystem::path file = folder() / "70-slosh.rules";
-  std::filesystem::create_directories(folder());
-  const test::Outcome outcome = slosh({"devices", "--install-udev-rule", "--rule-file", file.string()});
+  const test::OwnFolder folder;
+  const std::filesystem::path file = folder.path() / "70-slosh.rules";
+  const test::Outcome outcome =
+      slosh({"devices", "--install-udev-rule", "--rule-file", file.string()}, folder.path());
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(test::read_text(file), udev_rule());
   for (const char* words : {"046d", "256f", "0403", "cb48", "uaccess", "hidraw"})
     EXPECT_NE(udev_rule().find(words), std::string::npos) << words;
   const test::Outcome refused =
-      slosh({"devices", "--install-udev-rule", "--rule-file", "/nowhere/at/all.rules"});
+      slosh({"devices", "--install-udev-rule", "--rule-file", "/nowhere/at/all.rules"}, folder.path());
   EXPECT_EQ(refused.code, 1);
   EXPECT_NE(refused.out.find("uaccess"), std::string::npos) << "the rule is shown to be put there by hand";
   EXPECT_NE(refused.err.find("udevadm"), std::string::npos) << refused.err;

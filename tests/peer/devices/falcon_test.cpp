@@ -8,6 +8,7 @@
 
 #include "peer/haptics/devices/falcon_device.h"
 #include "tests/peer/devices/fake_falcon.h"
+#include "tests/peer/devices/own_folder.h"
 
 namespace slosh {
 namespace {
@@ -125,9 +126,6 @@ TEST(FalconProtocol, AStreamFindsItsPacketsWhereverTheyBegin) {
 class Falcon : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = std::filesystem::path(::testing::TempDir()) /
-              ("falcon_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
-    std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_ / "slosh" / "devices");
     setenv("XDG_CONFIG_HOME", folder_.c_str(), 1);
     for (std::size_t i = 0; i < 7357; ++i)
@@ -148,7 +146,8 @@ class Falcon : public ::testing::Test {
   }
 
   FakeFalcon falcon_;
-  std::filesystem::path folder_;
+  test::OwnFolder own_;
+  const std::filesystem::path folder_ = own_.path();
 };
 
 TEST_F(Falcon, IsGreetedAndGetsItsFirmwareCheckedByItsEcho) {

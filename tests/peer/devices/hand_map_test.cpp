@@ -91,6 +91,28 @@ TEST(HandMap, TheClutchLetsTheDeviceGoBackWithoutTheHand) {
   EXPECT_NEAR(map.to_world(at({0.04, 0, 0})).pose.position.x, 0.12, 1e-12);
 }
 
+TEST(HandMap, ACameraThatTurnsLeavesTheHandWhereItIs) {
+  HandMap map(HandMapSettings{}, HandPlace{});
+  map.to_world(at({0, 0, 0}));
+  DeviceReport device = at({0.03, 0, 0});
+  device.pose.orientation = glm::angleAxis(0.4, glm::dvec3(0, 0, 1));
+  const Pose before = map.to_world(device).pose;
+  map.look_from(glm::angleAxis(glm::radians(90.0), glm::dvec3(0, 1, 0)));
+  const Pose after = map.to_world(device).pose;
+  EXPECT_NEAR(glm::distance(before.position, after.position), 0.0, 1e-12);
+  EXPECT_NEAR(glm::length(rotation_between(before.orientation, after.orientation)), 0.0, 1e-12);
+  device.pose.position.x += 0.01;
+  EXPECT_NEAR(glm::distance(map.to_world(device).pose.position, before.position + glm::dvec3(0, 0, -0.01)),
+              0.0, 1e-12)
+      << "to the right of the picture, wherever that is now";
+  HandMapSettings fixed;
+  fixed.by_camera = false;
+  HandMap world(fixed, HandPlace{});
+  world.to_world(at({0, 0, 0}));
+  world.look_from(glm::angleAxis(1.0, glm::dvec3(0, 1, 0)));
+  EXPECT_NEAR(world.to_world(at({0.03, 0, 0})).pose.position.x, 0.03, 1e-12);
+}
+
 TEST(HandMap, ADeadmanButtonHoldsOnOnlyWhileItIsHeld) {
   HandMapSettings settings;
   settings.deadman_button = 1;

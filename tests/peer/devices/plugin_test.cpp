@@ -7,6 +7,7 @@
 
 #include "peer/haptics/device_loop.h"
 #include "peer/haptics/devices/plugin_device.h"
+#include "tests/peer/devices/own_folder.h"
 #include "tests/peer/servo_kit.h"
 #include "tests/support/places.h"
 
@@ -26,7 +27,8 @@ std::unique_ptr<PluginDevice> plugin(const std::string& name, const std::string&
 class Plugins : public ::testing::Test {
  protected:
   // No settings of who runs the tests.
-  void SetUp() override { setenv("XDG_CONFIG_HOME", ::testing::TempDir().c_str(), 1); }
+  void SetUp() override { setenv("XDG_CONFIG_HOME", folder_.path().c_str(), 1); }
+  test::OwnFolder folder_;
 };
 
 TEST_F(Plugins, TheExampleGivesWayToAForceAndComesBack) {

@@ -11,6 +11,7 @@
 #include "peer/haptics/devices/hardware.h"
 #include "peer/haptics/devices/spacemouse_device.h"
 #include "tests/peer/devices/mocked_spacemouse.h"
+#include "tests/peer/devices/own_folder.h"
 #include "tests/peer/servo_kit.h"
 
 namespace slosh {
@@ -35,10 +36,6 @@ std::vector<std::uint8_t> axes(std::uint8_t number, const std::vector<int>& coun
 class SpaceMouseHid : public ::testing::Test {
  protected:
   void SetUp() override {
-    settings_ =
-        std::filesystem::path(::testing::TempDir()) /
-        ("spacemouse_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
-    std::filesystem::remove_all(settings_);
     std::filesystem::create_directories(settings_ / "slosh" / "devices");
     setenv("XDG_CONFIG_HOME", settings_.c_str(), 1);
   }
@@ -63,7 +60,8 @@ class SpaceMouseHid : public ::testing::Test {
   }
 
   MockedMachine machine_;
-  std::filesystem::path settings_;
+  test::OwnFolder own_;
+  const std::filesystem::path settings_ = own_.path();
   std::int64_t now_ns_ = 1'000'000'000;
 };
 
@@ -248,6 +246,25 @@ TEST_F(SpaceMouseHid, EachHasItsOwnFileAndItsMistakesAreNamedByLine) {
   EXPECT_NE(refused.error().where.find("spacemouse-A_1.conf:3"), std::string::npos) << refused.error().text();
   EXPECT_NE(refused.error().text().find("'fast'"), std::string::npos);
   EXPECT_NE(refused.error().mend.find("0 to 5"), std::string::npos) << refused.error().mend;
+}
+
+TEST_F(SpaceMouseHid, GoesByTheCameraAsItIsTurned) {
+  MockedSpaceMouse mouse(machine_, 0, k3DconnexionVendor, kCompact, "C");
+  test::ServoKit kit;
+  auto made = std::make_unique<SpaceMouseDevice>("", Pose{}, glm::dquat(1, 0, 0, 0));
+  ASSERT_TRUE(open_device(*made));
+  ASSERT_TRUE(kit.servo->set_device(0, std::move(made)));
+  kit.servo->look_from(glm::angleAxis(glm::radians(90.0), glm::dvec3(0, 1, 0)));
+  glm::dvec3 speed(0.0);
+  while (glm::length(speed) < 0.01) {
+    mouse.say(axes(1, {350, 0, 0}));
+    kit.servo->tick(steady_now_ns());
+    if (kit.channel.pose(0).update()) speed = kit.channel.pose(0).front().twist.linear;
+    std::this_thread::sleep_for(std::chrono::milliseconds(8));
+  }
+  EXPECT_LT(speed.z, -0.009) << "to the right of a picture that is seen from the right";
+  EXPECT_NEAR(speed.x, 0.0, 1e-9);
+  kit.servo->close_devices();
 }
 
 TEST_F(SpaceMouseHid, ADeflectionThatIsNotSaidAgainEnds) {

@@ -10,6 +10,7 @@
 #include "peer/haptics/devices/hid_port.h"
 #include "peer/haptics/devices/spacemouse_models.h"
 #include "peer/haptics/devices/spacemouse_motion.h"
+#include "tests/peer/devices/own_folder.h"
 
 namespace slosh {
 namespace {
@@ -40,7 +41,9 @@ TEST(SpaceMouseModels, AreAllThatHaveSixAxes) {
 }
 
 TEST(HidAccess, NamesTheRuleWhereAUserMayNotOpenADevice) {
-  const std::filesystem::path node = std::filesystem::path(::testing::TempDir()) / "node_without_rights";
+  const test::OwnFolder folder;
+  chmod(folder.path().c_str(), 0755);
+  const std::filesystem::path node = folder.path() / "node";
   std::ofstream(node) << "";
   chmod(node.c_str(), 0);
   EXPECT_EXIT(
