@@ -19,10 +19,10 @@ namespace slosh::quic {
 /// window.
 class SnapshotRoom {
  public:
-  /// Bytes in flight up to which snapshots may be sent; SIZE_MAX = nothing is known of the link yet.
+  /// Bytes in flight up to which snapshots may be sent.
   std::size_t limit(const PathFigures& path, std::int64_t now) {
     const double shortest = shortest_.note(path.latest_rtt, now);
-    if (path.delivery_rate <= 0.0 || shortest >= ShortestRoundTrip::kNever) return SIZE_MAX;
+    if (path.delivery_rate <= 0.0 || shortest >= ShortestRoundTrip::kNever) return kFew * kMaxPacket;
     if (drain_.due(path.smoothed_rtt > kQueueing * shortest + kSlack, path, shortest, now)) return 0;
     return static_cast<std::size_t>(kGain * path.delivery_rate * shortest) + kFew * kMaxPacket;
   }
