@@ -135,6 +135,7 @@ RunConstants make_run_constants(const Scene& scene, const SampledScene& sampled,
                     static_cast<float>(c.plan.tension)};
   }
   c.gravity = glm::vec3(scene.gravity);
+  c.load_compression = 0.5 * glm::length(scene.gravity) * fluid_heights(scene).load / c.plan.stiffness;
   c.kinds = particle_kinds(scene, spacing);
   double heaviest = 0.0;
   for (const ParticleKind& kind : c.kinds) heaviest = std::max<double>(heaviest, kind.mass);

@@ -297,6 +297,7 @@ void write_state(const StateFrame& frame, const RunConstants& constants, const S
   s.raw(state.tick);
   s.raw(state.status);
   s.real(state.gravity_scale);
+  s.real(state.age);
   for (const double viscosity : state.viscosities) s.real(viscosity);
   for (const RigidBody& body : state.bodies) body_state(s, body);
   for (const Wrench& w : state.wrenches) wrench(s, w);
@@ -336,6 +337,8 @@ Result<bool> read_state(std::span<const std::uint8_t> bytes, const StateFrame& f
   s.real(state.gravity_scale);
   if (!(state.gravity_scale >= 0.0 && state.gravity_scale <= kMostGravityScale))
     s.fail("its gravity is beyond all bounds");
+  s.real(state.age);
+  if (!(state.age >= 0.0)) s.fail("its age is negative");
   state.viscosities.resize(frame.fluids);
   for (double& viscosity : state.viscosities) {
     s.real(viscosity);

@@ -11,6 +11,7 @@
 #include "sim/hash.h"
 #include "sim/live_changes.h"
 #include "sim/particle_engine.h"
+#include "sim/pressure/settled_packing.h"
 #include "sim/saved_state.h"
 #include "sim/shell.h"
 #include "sim/step_limits.h"
@@ -61,6 +62,16 @@ struct World::Impl {
     constants.kinds = particle_kinds(scene, constants.plan.spacing);
     constants.gravity = glm::vec3(gravity_scale * scene.gravity);
     engine->set_constants(constants);
+    packed = false;
+  }
+
+  // The fluid's age, and what it presses by at it.
+  void grow_older(double dt) {
+    if (packed) return;
+    if (plan().model == ParticleModel::kCorrected)
+      engine->set_correction(settled(constants.correction, constants.load_compression, age));
+    packed = age >= kSettlingTime;
+    if (!packed) age += dt;
   }
 
   SubStep sub_step(int index) const {
@@ -82,6 +93,7 @@ struct World::Impl {
     const bool moving = part != TakePart::kFluid;
     const bool fluid_waits = moving && plan().fluid_waits();
     if (fluid) {
+      grow_older(step.dt);
       engine->prepare(bodies.bodies());
       engine->forces(step.dt);
       if (!fluid_waits) engine->advance(step.dt, expected(step, moving));
@@ -156,6 +168,8 @@ struct World::Impl {
   std::uint64_t tick = 0;
   StepTimes times;
   double gravity_scale = 1.0;
+  double age = 0.0;     // s, as pressure/settled_packing.h counts it; no further than kSettlingTime
+  bool packed = false;  // the engine has what that age needs, and it needs nothing else any more
   StateFrame frame;
 };
 
@@ -277,6 +291,7 @@ Result<bool> World::save(std::vector<std::uint8_t>& out) const {
   state.tick = w.tick;
   state.status = w.status | w.engine->status();
   state.gravity_scale = w.gravity_scale;
+  state.age = w.age;
   for (const Fluid& fluid : w.scene.fluids) state.viscosities.push_back(fluid.dynamic_viscosity);
   state.bodies = w.bodies.bodies();
   state.wrenches = w.wrenches;
@@ -313,6 +328,8 @@ Result<bool> World::restore(std::span<const std::uint8_t> saved) {
   w.engine->restore(state.particles, state.walls);
   w.status = state.status & ~kStatusDeviceLost;
   w.tick = state.tick;
+  w.age = state.age;
+  w.packed = false;
   return true;
 }
 

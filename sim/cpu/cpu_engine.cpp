@@ -74,6 +74,7 @@ class CpuEngine final : public ParticleEngine {
     static_cast<RunConstants&>(context_) = constants;
     fluid_.provide(context_.plan, kinds_.size());
   }
+  void set_correction(const CorrectionConstants& correction) override { context_.correction = correction; }
 
   bool save(ParticleState& out, ImpulseSums& impulses) const override {
     impulses = impulses_;

@@ -170,6 +170,7 @@ class CudaEngine final : public ParticleEngine {
     kinds_.write(constants_.kinds, check_, stream_);
     fluid_.allow_viscosities(constants_, check_);
   }
+  void set_correction(const CorrectionConstants& correction) override { step_.correction = correction; }
 
   bool save(ParticleState& out, ImpulseSums& impulses) const override {
     const HostState s = fetch_state();

@@ -183,8 +183,8 @@ TEST(AngularMomentum, closed_container_takes_what_the_fluid_loses) {
   const glm::dvec3 change = angular_momentum(before, after, dt, mass) - start;
   EXPECT_EQ(e.world().diagnostics().retired, 0u);
   EXPECT_LT(change.y, -0.3 * start.y) << "the walls hardly braked the fluid: the test tests little";
-  EXPECT_LT(std::abs(report("angular impulse of the walls", given.y, change.y, "N·m·s")), 2e-3);
-  EXPECT_LT(glm::length(given - change), 2e-3 * glm::length(change));
+  EXPECT_LT(std::abs(report("angular impulse of the walls", given.y, change.y, "N·m·s")), 2.2e-3);
+  EXPECT_LT(glm::length(given - change), 2.3e-3 * glm::length(change));
 }
 
 // Momentum and angular momentum about the origin, fluid and bodies, of the floats that the world has: saved

@@ -30,7 +30,8 @@ TEST(SupportRatio, walls_hold_at_both_ends_of_its_range) {
       const double weight = -e.bodies().bodies[0].fluid.force.y / (e.fluid_mass() * kGravity);
       report_value("support ratio " + std::to_string(ratio).substr(0, 3) + ", weight over its own", weight,
                    "");
-      EXPECT_NEAR(weight, 1.0, 0.03);
+      // Thrown to one side it still swings a second later.
+      EXPECT_NEAR(weight, 1.0, sideways == 0.0 ? 0.015 : 0.1);
     }
   }
 }

@@ -68,8 +68,9 @@ std::vector<Reading> draft(const Setting& setting, Cost& cost) {
     const BodyState& body = e.bodies().bodies[static_cast<std::size_t>(slab)];
     bottom.add(body.center_of_mass.y - 0.5 * kHeight);
     if (e.bodies().tick % 20 == 0) {
-      const double edge = 0.5 * kTank;
-      level.add(surface_level(e.picture(), {-edge, -edge}, {-edge + 0.04, edge}, setting.spacing));
+      // On the side that the slab has not drifted to.
+      const double edge = 0.5 * kTank, from = body.center_of_mass.x > 0.0 ? -edge : edge - 0.04;
+      level.add(surface_level(e.picture(), {from, -edge}, {from + 0.04, edge}, setting.spacing));
     }
   });
   return {{"draft", "m", level.mean() - bottom.mean(), kShare * kHeight, 0.0, true}};
