@@ -12,6 +12,7 @@ constexpr double kPeriod = 0.001;    // s
 constexpr double kOwnDamping = 1.0;  // N·s/m, taken as such: nobody states it (README)
 constexpr std::size_t kLeastFirmware = 4096, kMostFirmware = 65536;  // bytes; those known have 7.3 to 8.5 kB
 constexpr int kReadPatience = 5;                                     // ms
+constexpr int kWritePatience = 50;                                   // ms
 constexpr double kAskAgain = 0.02;            // s without an answer after which it is asked again
 constexpr double kGone = 2.0;                 // s without one after which it is given up
 constexpr double kMotorPerTorque = -10000.0;  // of its units, a N·m
@@ -69,7 +70,10 @@ Result<bool> FalconDevice::open() {
   map_.emplace(settings, place_);
   limits_ = map_->to_world(gains.limits);
   heard_ns_ = now_ns_();
-  answered_ = runs_ = true;
+  runs_ = true;
+  answered_ = false;
+  if (!send({0, 0, 0}))  // the first reading is its answer
+    return Error{"Falcon", "it takes no packets", "Unplug it, plug it in and try again"};
   set_trouble("the Falcon does not know where it is yet: pull its grip out and push it in once");
   return true;
 }
@@ -107,7 +111,7 @@ bool FalconDevice::send(const std::array<int, 3>& motors) {
   sent_ns_ = now_ns_();
   const std::uint8_t lights = homed_ ? kFalconGreen : kFalconRed;
   const FalconPacket packet = falcon_command(motors, static_cast<std::uint8_t>(lights | kFalconHoming));
-  return link_->write(packet.data(), packet.size(), kReadPatience);
+  return link_->write(packet.data(), packet.size(), kWritePatience);
 }
 
 DeviceReport FalconDevice::silent() const {

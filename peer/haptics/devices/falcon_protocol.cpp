@@ -12,7 +12,7 @@ constexpr std::uint8_t kReset = 0, kModem = 1, kFlow = 2, kBaud = 3, kData = 4, 
 constexpr std::uint16_t kPurgeIn = 1, kPurgeOut = 2;
 constexpr std::uint16_t kRtsLow = 0x0200, kDtrLow = 0x0100, kDtrHigh = 0x0101;
 constexpr std::uint16_t kBaud9600 = 0x4138, kBaud140000 = 0x0015, kBaudOfPackets = 2;
-constexpr int kPatience = 1000;     // ms for an answer
+constexpr int kPatience = 3000;     // ms for an answer
 constexpr std::size_t kPiece = 62;  // bytes of firmware at once: what one IN packet can bring back
 
 constexpr std::uint8_t kFirst = '<', kLast = '>', kNibble = 0x41;

@@ -8,6 +8,7 @@
 #include "peer/haptics/devices/falcon_usb.h"
 #include "peer/haptics/devices/hardware.h"
 #include "peer/haptics/devices/spacemouse_models.h"
+#include "tests/peer/devices/falcon_node.h"
 #include "tests/peer/devices/mocked_spacemouse.h"
 #include "tests/peer/devices/own_folder.h"
 #include "tests/support/comes.h"
@@ -74,18 +75,8 @@ TEST(DevicesVerb, TheRuleHasEveryVendorAndGoesWhereItIsTold) {
 
 TEST(DevicesVerb, FindsAFalconByItsUsbNumbers) {
   MockedMachine machine;
-  // Device descriptor, then one configuration with one interface and two bulk ends.
-  const std::string descriptors =
-      "1201000200000040030448cb0006010203010902200001010080320904000002ffffff0007050202400000070581024000000"
-      "0";
-  const std::string made =
-      "P: /devices/pci0000:00/usb1/1-4\nN: bus/usb/001/004\nE: SUBSYSTEM=usb\nE: DEVTYPE=usb_device\n"
-      "E: DEVNAME=/dev/bus/usb/001/004\nE: BUSNUM=001\nE: DEVNUM=004\nA: busnum=1\\n\nA: devnum=4\\n\nA: "
-      "speed=12\\n\n"
-      "A: bConfigurationValue=1\\n\nA: idVendor=0403\\n\nA: idProduct=cb48\\n\nH: descriptors=" +
-      descriptors + "\n\n";
   GError* error = nullptr;
-  ASSERT_TRUE(umockdev_testbed_add_from_string(machine.testbed(), made.c_str(), &error));
+  ASSERT_TRUE(umockdev_testbed_add_from_string(machine.testbed(), test::kFalconNode, &error));
   const std::vector<FalconFound> found = find_falcons();
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].node, "/dev/bus/usb/001/004");
