@@ -138,14 +138,15 @@ bool Servo::read_device(Hand& hand, std::int64_t now_ns) noexcept {
   const bool first = hand.readings == 0;
   const double elapsed = std::max(to_seconds(reading.stamp_ns - hand.read_ns), options_.period);
   hand.readings = reading.number;
-  hand.read_ns = reading.stamp_ns;
-  hand.read_time = reading.time;
+  // What is no pose tells nothing of the hand: one that comes for ever is silence, and its force fades.
   if (!is_sound(reading.report)) {
     rejected_.fetch_add(1, std::memory_order_relaxed);
     note(kStatusInputRejected);
     hand.good.twist = Twist{};
     return false;
   }
+  hand.read_ns = reading.stamp_ns;
+  hand.read_time = reading.time;
   const DeviceReport before = hand.good;
   hand.good = reading.report;
   if (keep_in_workspace(hand.good.pose, hand.good.twist, hand.limits)) note(kStatusForceLimited);

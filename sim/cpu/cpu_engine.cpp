@@ -20,9 +20,9 @@ class CpuEngine final : public ParticleEngine {
         probes_(start.probes),
         kinds_(start.particles.kind),
         fluid_count_(start.fluid_count),
-        bodies_(bodies.begin(), bodies.end()),
         fields_(start.guarded),
         impulses_(no_impulses(bodies.size())),
+        bodies_(bodies.begin(), bodies.end()),
         found_(bodies.size()),
         drags_(bodies.size()) {
     static_cast<RunConstants&>(context_) = constants;

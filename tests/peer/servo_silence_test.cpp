@@ -51,6 +51,27 @@ TEST(Servo, SilenceStretchesNoSpring) {
   EXPECT_EQ(kit.device->last.force.x, 0.0);
 }
 
+// A device that talks and says nothing is silent: no hand is left with the force of its last good report.
+TEST(Servo, ReportsThatAreNoPosesAreSilence) {
+  ServoKit kit;
+  kit.publish(0.0);
+  kit.tick(0.0);
+  kit.publish(kTick);
+  kit.device->next.pose = at(0.01);
+  kit.tick(kTick);
+  kit.device->next.pose.position.x = std::numeric_limits<double>::quiet_NaN();
+  double before = 10.0;
+  for (int ms = 1; ms <= 400; ++ms) {
+    const double now = kTick + 0.001 * ms;
+    kit.publish(now);  // the world goes on
+    kit.tick(now);
+    const double felt = std::abs(kit.device->last.force.x);
+    ASSERT_LT(felt, before + 1e-9) << ms << " ms";
+    before = felt;
+  }
+  EXPECT_EQ(kit.device->last.force, glm::dvec3(0.0));
+}
+
 /// In every state that a world can be in, silence ends the force.
 struct Standing {
   const char* what;
