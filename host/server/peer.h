@@ -36,7 +36,7 @@ struct Peer {
   wire::Capabilities agreed = 0;
   bool participant = false;
   bool scene_sent = false;
-  bool silent = false;  ///< holds a grip and sends nothing: let go for now
+  bool silent = false;  ///< holds a grip and has sent nothing for a while: the others were told
   bool warned_claim = false;
   bool warned_requests = false;
   std::int64_t next_bodies_ns = 0;
