@@ -88,21 +88,21 @@ TEST_F(ServerTest, ARefusedPoseIsToldToItsHolderOnceAKind) {
   server->on_refused_pose(0, PoseFault::kOutOfRange);
   server->on_refused_pose(1, PoseFault::kTooFast);  // nobody's
   go(0.1);
-  const auto told = [](const ScriptedPeer& peer) {
+  const auto refusals = [](const ScriptedPeer& peer) {
     return std::count_if(peer.notices.begin(), peer.notices.end(), [](const std::string& text) {
       return text.find("your poses for grip 'left' are not used: ") != std::string::npos;
     });
   };
-  EXPECT_EQ(told(ana), 2);
+  EXPECT_EQ(refusals(ana), 2);
   EXPECT_TRUE(ana.noticed("moves or jumps faster than 20 m/s"));
   EXPECT_TRUE(ana.noticed("more than 5 m outside the scene"));
-  EXPECT_EQ(told(ben), 0);
+  EXPECT_EQ(refusals(ben), 0);
   ana.release(0);
   ana.take(0);
   go(0.1);
   server->on_refused_pose(0, PoseFault::kTooFast);
   go(0.1);
-  EXPECT_EQ(told(ana), 3) << "a new hold is told anew";
+  EXPECT_EQ(refusals(ana), 3) << "a new hold is told anew";
 }
 
 TEST_F(ServerTest, GripsAreTakenReleasedAndRefusedInWords) {

@@ -59,8 +59,8 @@ class Watcher final : public EndpointEvents {
     KeyFingerprint fingerprint{};
     fingerprint.fill(key);
     end = network.connect(*this, fingerprint, "192.0.2.9:" + std::to_string(key));
-    const std::int64_t stream = end->open_stream(1, true);
-    end->send_stream(1, stream, wire::control(wire::Hello{wire::kProtocolVersion, token, "w", {}, 0, {}}),
+    const std::int64_t control = end->open_stream(1, true);
+    end->send_stream(1, control, wire::control(wire::Hello{wire::kProtocolVersion, token, "w", {}, 0, {}}),
                      false);
   }
   void turn(std::int64_t now_ns) {
