@@ -10,8 +10,6 @@ namespace {
 
 constexpr float kTouching = 0.25f;  // of a spacing: no fluid gets into a gap of that
 constexpr float kDisc = 0.5f;       // of a spacing: the radius of the surface around one sample
-// As wide a hole as the sheet of one body may have (wall_particles.cpp).
-constexpr float kLargestHole = 0.7f;  // of a spacing
 
 glm::vec3 to_world(const Pose& pose, const glm::vec3& p) {
   return glm::vec3(transform_point(pose, glm::dvec3(p)));
@@ -109,11 +107,7 @@ class Sheets {
   }
   /// Adds p unless it would be crowded.
   void fill(std::size_t body, const glm::vec3& p) {
-    bool taken = false;
-    near_.around(p, [&](const glm::vec3& q, std::uint32_t) {
-      taken |= glm::distance(p, q) < kLargestHole * spacing_;
-    });
-    if (!taken) add(body, p);
+    if (!near_.any_within(p, kLargestHole * spacing_)) add(body, p);
   }
   std::vector<std::vector<glm::vec3>>& of_body() { return of_body_; }
 

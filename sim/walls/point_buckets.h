@@ -8,6 +8,10 @@
 
 namespace slosh {
 
+/// Of a spacing. Wider holes in a sheet of wall particles leak. The sampler's own are up to 0.8; at 0.9 a tank
+/// of walls five spacings thick lost an eighth of its fluid through its edges in 3 s.
+inline constexpr float kLargestHole = 0.7f;
+
 class PointBuckets {
  public:
   explicit PointBuckets(float cell) : cell_(cell) {}
@@ -24,6 +28,13 @@ class PointBuckets {
       if (found == buckets_.end()) continue;
       for (const Entry& entry : found->second) f(entry.point, entry.number);
     }
+  }
+
+  /// Whether a point is nearer to p than `distance`, which is at most a cell.
+  bool any_within(const glm::vec3& p, float distance) const {
+    bool found = false;
+    around(p, [&](const glm::vec3& q, std::uint32_t) { found |= glm::distance(p, q) < distance; });
+    return found;
   }
 
  private:

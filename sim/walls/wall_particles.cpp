@@ -50,10 +50,6 @@ glm::vec3 on_level_set(const glm::vec3& surface, const glm::vec3& normal, float 
   return solid_depth(field, p) > 0.8f * depth ? p : inset(surface, normal, depth, field);
 }
 
-// Holes wider than this leak. The sampler's own are up to 0.8; at 0.9 a tank of walls five spacings thick
-// lost an eighth of its fluid through its edges in 3 s (tests/physics, still tank).
-constexpr float kLargestHole = 0.7f;  // of a spacing
-
 // In a concave edge the sheets of the two faces part as they move back. Adds particles where the level set at
 // that depth has none within kLargestHole, walking the nodes of the distance field.
 void close_gaps(const DistanceFieldView& field, float depth, float spacing, std::vector<glm::vec3>& sheet) {
@@ -71,9 +67,7 @@ void close_gaps(const DistanceFieldView& field, float depth, float spacing, std:
           if (slope > 0.25f) p -= s.gradient * ((s.distance + depth) / slope);
         }
         if (std::abs(sample_distance(field, p).distance + depth) > 0.1f * spacing) continue;
-        bool covered = false;
-        near.around(p, [&](const glm::vec3& q, std::uint32_t) { covered |= glm::distance(p, q) < kLargestHole * spacing; });
-        if (covered) continue;
+        if (near.any_within(p, kLargestHole * spacing)) continue;
         sheet.push_back(p);
         near.add(p);
       }
