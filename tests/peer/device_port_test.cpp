@@ -90,15 +90,7 @@ class OtherDevice final : public Device {
       : seen_(std::move(seen)), channel_(channel) {}
   DeviceReport read(const DeviceMoment&) override {
     reads_ += 1;
-    // The world: a state a period, however late the machine is. Stamped ahead, so that none is ever old.
-    BodyMessage& message = channel_.bodies().back();
-    message = ServoKit::first();
-    message.bodies.grips.resize(2);
-    message.rate = 1.0;
-    message.bodies.tick = static_cast<std::uint64_t>(reads_);
-    message.bodies.time = 0.001 * reads_;
-    message.stamp_ns = steady_now_ns() + to_nanoseconds(10.0);
-    channel_.bodies().publish();
+    test::publish_ahead(channel_, reads_);
     DeviceReport report;
     report.pose.position.x = reads_ > kOnTheGrip ? kOff : 0.0;
     return report;

@@ -88,4 +88,17 @@ struct ServoKit {
   void tick(double wall) { servo->tick(to_nanoseconds(wall)); }
 };
 
+/// The world of two grips that stands still, as its `tick`-th state, a state a millisecond: stamped ahead, so
+/// that none is ever old however late the machine is.
+inline void publish_ahead(Channel& channel, int tick) {
+  BodyMessage& message = channel.bodies().back();
+  message = ServoKit::first();
+  message.bodies.grips.resize(2);
+  message.rate = 1.0;
+  message.bodies.tick = static_cast<std::uint64_t>(tick);
+  message.bodies.time = 0.001 * tick;
+  message.stamp_ns = steady_now_ns() + to_nanoseconds(10.0);
+  channel.bodies().publish();
+}
+
 }  // namespace slosh::test
