@@ -7,6 +7,7 @@
 
 #include "net/snapshot_queue.h"
 #include "net/triple_buffer.h"
+#include "sim/math/fluid_wrench.h"
 #include "sim/snapshot.h"
 
 namespace slosh {
@@ -46,6 +47,10 @@ struct BodyMessage {
   std::int64_t heard_pose_ns = kPoseNotTold;
   std::vector<std::uint64_t> pose_numbers;  ///< one a grip: PoseMessage::number of what the step used
   BodySnapshot bodies;
+  /// Of held bodies that somebody asked for, each body once at most, the newest there are of this run: of
+  /// this state in one process; over a network of this one, an older one or one that is not due yet
+  /// (FluidWrenchModel::tick).
+  std::vector<FluidWrenchModel> fluid_models;
 };
 
 /// Joins one host and one peer in one process. Poses and body states are newest-value exchanges without a

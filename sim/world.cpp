@@ -326,6 +326,8 @@ Result<bool> World::restore(std::span<const std::uint8_t> saved) {
   w.bodies.restore(std::move(state.bodies), std::move(state.grips), std::move(state.last_input),
                    std::move(state.impulses));
   w.engine->restore(state.particles, state.walls);
+  std::fill(w.found.begin(), w.found.end(), Wrench{});
+  std::fill(w.drag_matrices.begin(), w.drag_matrices.end(), Matrix6{});
   w.status = state.status & ~kStatusDeviceLost;
   w.tick = state.tick;
   w.age = state.age;
@@ -355,6 +357,14 @@ double World::viscosity(std::size_t fluid) const {
 }
 double World::gravity_scale() const {
   return impl_->gravity_scale;
+}
+
+std::span<const Wrench> World::fluid_wrenches() const {
+  return impl_->found;
+}
+std::span<const Matrix6> World::drags() const {
+  if (!impl_->plan().has(PassId::kBodyDrag)) return {};
+  return impl_->drag_matrices;
 }
 
 std::uint32_t World::take_status() {

@@ -9,6 +9,7 @@
 
 #include "scenes/scene.h"
 #include "sim/backend.h"
+#include "sim/math/dense.h"
 #include "sim/math/result.h"
 #include "sim/plan.h"
 #include "sim/snapshot.h"
@@ -108,6 +109,14 @@ class World {
   Result<bool> set_gravity_scale(double scale);
   double viscosity(std::size_t fluid) const;  ///< Pa·s; 0 for a fluid that is not there
   double gravity_scale() const;
+
+  /// The fluid's wrench on each body in the last sub-step alone, about its centre of mass (BodyState::fluid
+  /// is the mean over the step); nothing before a step and after restore().
+  std::span<const Wrench> fluid_wrenches() const;
+  /// What that loses for each unit of the body's twist with the fluid held as it is, linear first, angular
+  /// after, about the centre of mass: N·s/m, N·s, N·m·s. Symmetric, positive semidefinite, one a body; empty
+  /// where the plan has no kBodyDrag.
+  std::span<const Matrix6> drags() const;
 
   std::uint32_t take_status();  ///< StatusBits since the last call, then cleared
   std::uint64_t hash() const;   ///< of positions, velocities and body states, by particle id

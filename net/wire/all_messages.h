@@ -6,6 +6,7 @@
 #include <string>
 #include <type_traits>
 
+#include "net/wire/fluid_wrench.h"
 #include "net/wire/messages.h"
 
 namespace slosh::wire {
@@ -17,7 +18,7 @@ using PeerControl = MessageList<Hello, GripRequest, WorldRequest, ParameterReque
 using HostControl = MessageList<Welcome, Refused, Roster, RosterChange, Answer, WorldInfo, Notice, Bye>;
 using PeerDatagrams = MessageList<Poses, ClockPing, SnapshotFeedback>;
 /// Without kSnapshotPiece, which net/codec reads.
-using HostDatagrams = MessageList<ClockPong, Bodies, Hands>;
+using HostDatagrams = MessageList<ClockPong, Bodies, Hands, FluidWrench>;
 
 /// Calls `call(message)` with an empty message of every type of the list.
 template <class... M, class Call>

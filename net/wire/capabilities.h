@@ -16,7 +16,10 @@ using Capabilities = std::uint64_t;  ///< bits
 constexpr Capabilities kRosterChanges = 1u
                                         << 0;  ///< RosterChange follows the first Roster in place of others
 
-constexpr Capabilities kOurCapabilities = kRosterChanges;
+constexpr Capabilities kFluidWrenches = 1u << 1;  ///< FluidWrench comes for each body that the peer holds
+
+/// What this program understands; a peer's Hello asks for all of it.
+constexpr Capabilities kOurCapabilities = kRosterChanges | kFluidWrenches;
 /// For what has no other side: pages, tests of single messages, files.
 constexpr Capabilities kAllCapabilities = ~Capabilities{0};
 

@@ -36,6 +36,7 @@ enum class DatagramType : std::uint8_t {
   kBodies = 17,
   kHands = 18,
   kSnapshotPiece = 19,  ///< net/codec has its layout
+  kFluidWrench = 20,    ///< fluid_wrench.h; behind kFluidWrenches
 };
 
 /// One reading of one device.

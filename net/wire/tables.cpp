@@ -50,6 +50,7 @@ std::vector<Table> tables() {
           message<ClockPong>("ClockPong"),
           message<Bodies>("Bodies"),
           message<Hands>("Hands"),
+          message<FluidWrench>("FluidWrench"),
           part<SettledScene>("Scene")};
 }
 

@@ -60,6 +60,8 @@ BodyInbox::BodyInbox(const Scene& scene, double time_step)
 }
 
 void BodyInbox::restart() {
+  state_.fluid_models.clear();
+  models_run_ = 0;
   pending_.clear();
   given_ = false;
   moment_.known = false;
@@ -134,6 +136,25 @@ void BodyInbox::take(const wire::Bodies& part, std::int64_t now_ns, const ClockS
   if (newest) moment_ = {part.run, part.time, part.stamp_ns, part.rate, true};
 }
 
+void BodyInbox::take(const wire::FluidWrench& message) {
+  if (message.body >= scene_.bodies.size()) {
+    counts_.wrong += 1;
+    return;
+  }
+  std::vector<FluidWrenchModel>& models = state_.fluid_models;
+  if (message.run < models_run_) return;
+  if (message.run > models_run_) models.clear();
+  models_run_ = message.run;
+  const auto same = std::find_if(models.begin(), models.end(),
+                                 [&](const FluidWrenchModel& known) { return known.body == message.body; });
+  if (same != models.end() && same->tick >= message.tick) return;
+  counts_.models += 1;
+  if (same == models.end())
+    models.push_back(wire::to_model(message));
+  else
+    *same = wire::to_model(message);
+}
+
 std::int64_t BodyInbox::due_ns(const Pending& pending, const ClockSync& clock) const {
   return clock.to_peer(pending.stamp_ns) + to_nanoseconds(delay_.value());
 }
@@ -173,6 +194,10 @@ void BodyInbox::apply(const Pending& pending, const ClockSync& clock) {
   const double interval = pending.time - bodies.time;
   if (given_ && interval > 0.0 && interval < kLongestInterval) {
     interval_ += kIntervalShare * (interval - interval_);
+  }
+  if (pending.run > models_run_) {
+    state_.fluid_models.clear();
+    models_run_ = pending.run;
   }
   state_.run = pending.run;
   state_.rate = pending.rate;

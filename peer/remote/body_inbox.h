@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "net/channel.h"
+#include "net/wire/fluid_wrench.h"
 #include "net/wire/messages.h"
 #include "peer/remote/adaptive_delay.h"
 #include "peer/remote/clock_sync.h"
@@ -20,7 +21,8 @@ struct BodyInboxCounts {
   std::uint64_t states = 0;      ///< given out
   std::uint64_t incomplete = 0;  ///< given out with a part missing
   std::uint64_t late = 0;        ///< parts of a state older than what was given out, or twice the same
-  std::uint64_t wrong = 0;       ///< parts that name a body or grip that the scene has not
+  std::uint64_t wrong = 0;       ///< parts that name a body or grip that the scene has not, models likewise
+  std::uint64_t models = 0;      ///< of fluid wrenches, taken
 };
 
 /// Where the host's simulated time stands: the straight line through its newest state.
@@ -66,6 +68,9 @@ class BodyInbox {
   /// `now_ns`: the peer's clock when it came.
   void take(const wire::Bodies& part, std::int64_t now_ns, const ClockSync& clock);
 
+  /// Joins the next state that is given out.
+  void take(const wire::FluidWrench& model);
+
   /// The world stands still, by word of the host: the last state is handed out once more with a pace of 0.
   void set_paused(bool paused) { paused_ = paused; }
 
@@ -107,6 +112,7 @@ class BodyInbox {
   double time_step_;
   BodyMessage state_;
   std::vector<Pending> pending_;  // by tick, of one run
+  std::uint32_t models_run_ = 0;  // that state_.fluid_models are of
   AdaptiveDelay delay_;
   Backlog backlog_;
   WorldMoment moment_;

@@ -176,6 +176,12 @@ void RemoteLink::on_datagram(ConnectionId, std::span<const std::uint8_t> bytes) 
       if (world_.maker) world_.maker->note_moment(inbox_->moment());
       return;
     }
+    case wire::DatagramType::kFluidWrench: {
+      wire::FluidWrench model;
+      if (wire::decode(payload, model)) break;
+      if (inbox_) inbox_->take(model);
+      return;
+    }
     case wire::DatagramType::kSnapshotPiece:
       if (world_.maker) world_.maker->offer(bytes);
       return;

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "net/wire/fields.h"
+#include "net/wire/fluid_wrench.h"
 
 namespace slosh::wire {
 
@@ -155,12 +156,33 @@ class Randomizer {
   std::size_t most_list_;
 };
 
-/// A random message, valid but for rules between its fields.
+/// A random semidefinite matrix of any size and rank.
+inline SemidefiniteCode random_semidefinite(std::mt19937_64& random) {
+  std::normal_distribution<double> normal;
+  const std::uint64_t rank = random() % 7;
+  const double size = std::pow(10.0, std::uniform_real_distribution<double>(-6.0, 4.0)(random));
+  Matrix6 matrix{};
+  for (std::uint64_t r = 0; r < rank; ++r) {
+    Vector6 v;
+    for (double& each : v) each = size * normal(random);
+    for (std::size_t i = 0; i < 6; ++i) {
+      for (std::size_t j = 0; j < 6; ++j) matrix[i][j] += v[i] * v[j];
+    }
+  }
+  return to_code(matrix);
+}
+
+/// A random message, valid but for rules between its fields; those of a matrix hold.
 template <class M>
 M random_message(std::uint64_t seed, std::size_t least_list = 0, std::size_t most_list = 4) {
   Randomizer random(seed, least_list, most_list);
   M message{};
   visit(random, message);
+  if constexpr (std::is_same_v<M, FluidWrench>) {
+    std::mt19937_64 engine(seed);
+    for (SemidefiniteCode* code : {&message.stiffness, &message.damping, &message.added_mass})
+      *code = random_semidefinite(engine);
+  }
   return message;
 }
 

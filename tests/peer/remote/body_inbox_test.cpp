@@ -351,5 +351,49 @@ TEST(BodyInbox, SparseStatesCountAsLongTicks) {
   EXPECT_NEAR(kit.inbox.state().time_step, 0.016, 0.001) << "a device loop carries on by two of them";
 }
 
+wire::FluidWrench wrench_on(std::uint32_t body, std::uint64_t tick, double force, std::uint32_t run = 0) {
+  wire::FluidWrench m;
+  m.run = run;
+  m.body = body;
+  m.tick = tick;
+  m.wrench.force.x = force;
+  return m;
+}
+
+TEST(BodyInbox, TheNewestModelOfEachBodyGoesWithTheState) {
+  Inbox box;
+  const auto given = [&](std::uint64_t tick, std::uint32_t run = 0) {
+    wire::Bodies m = state(tick);
+    m.run = run;
+    box.take(m);
+    const BodyMessage* message = box.inbox.next(m.stamp_ns + to_nanoseconds(1.0), box.clock);
+    EXPECT_NE(message, nullptr);
+    return box.inbox.state().fluid_models;
+  };
+  EXPECT_TRUE(given(1).empty());
+  box.inbox.take(wrench_on(1, 2, 20.0));
+  box.inbox.take(wrench_on(0, 2, 10.0));
+  box.inbox.take(wrench_on(1, 3, 30.0));
+  box.inbox.take(wrench_on(1, 1, 40.0));  // overtaken
+  box.inbox.take(wrench_on(7, 9, 50.0));  // a body that the scene has not
+  std::vector<FluidWrenchModel> models = given(3);
+  ASSERT_EQ(models.size(), 2u);
+  EXPECT_EQ(models[0].body, 1u);
+  EXPECT_EQ(models[0].wrench.force.x, 30.0);
+  EXPECT_EQ(models[1].wrench.force.x, 10.0);
+  EXPECT_EQ(box.inbox.counts().models, 3u);
+  EXPECT_EQ(box.inbox.counts().wrong, 1u);
+
+  // The world was reset: models of the run before mean nothing, whichever comes first.
+  EXPECT_TRUE(given(1, 1).empty());
+  box.inbox.take(wrench_on(1, 500, 60.0, 0));
+  box.inbox.take(wrench_on(1, 2, 70.0, 2));
+  models = given(2, 2);
+  ASSERT_EQ(models.size(), 1u);
+  EXPECT_EQ(models[0].wrench.force.x, 70.0);
+  box.inbox.restart();
+  EXPECT_TRUE(box.inbox.state().fluid_models.empty());
+}
+
 }  // namespace
 }  // namespace slosh
