@@ -103,11 +103,19 @@ HostState Host::state() const {
   return state_of(world_, fluids_, paused_, run_);
 }
 
+bool Host::take_asked_step() {
+  int asked = steps_asked_.load(std::memory_order_relaxed);
+  while (asked > 0 && !steps_asked_.compare_exchange_weak(asked, asked - 1)) {
+  }
+  return asked > 0;
+}
+
 void Host::stand_still() {
   publish_bodies(0.0, clock_ns());
   tell_published();
   shown_rate_ = 0.0;
-  while (paused_ && !stop_.load(std::memory_order_relaxed)) {
+  while (paused_ && !stop_.load(std::memory_order_relaxed) &&
+         steps_asked_.load(std::memory_order_relaxed) == 0) {
     {
       // A stop may come from a signal and wakes nobody.
       std::unique_lock lock(orders_mutex_);

@@ -200,7 +200,9 @@ void Host::run() {
   while (!stop_.load(std::memory_order_relaxed) && world_.time() + 0.5 * time_step < options_.until) {
     if (options_.pulse != nullptr) options_.pulse->fetch_add(1, std::memory_order_relaxed);
     if (has_orders_.load(std::memory_order_acquire)) run_commands();
-    if (paused_) {
+    // One step of a world that stands, or it stands on.
+    const bool single = paused_ && take_asked_step();
+    if (paused_ && !single) {
       report_.wall += to_seconds(steady_now_ns() - begin_ns);
       stand_still();
       begin_ns = steady_now_ns();
@@ -209,11 +211,14 @@ void Host::run() {
       meter.seed(time_step);
       continue;
     }
+    if (!single) steps_asked_.store(0, std::memory_order_relaxed);
     std::int64_t scheduled_end_ns = 0;
     bool on_schedule = false;
-    if (options_.paced) {
+    const double pace = options_.paced ? pace_.load(std::memory_order_relaxed) : 1.0;
+    if (options_.paced && !single) {
+      pacer.set_period(time_step / pace, steady_now_ns());
       const Pacer::Turn turn = pacer.next(steady_now_ns());
-      scheduled_end_ns = turn.deadline_ns + to_nanoseconds(time_step);
+      scheduled_end_ns = turn.deadline_ns + to_nanoseconds(time_step / pace);
       on_schedule = !turn.slipped;
       if (turn.slipped) note_status(kStatusTimeSlipped);
       sleep_until_ns(turn.deadline_ns);
@@ -235,9 +240,15 @@ void Host::run() {
     world_.fill(latest_);
     for (HostTap* tap : taps_) tap->after_step(world_);
     const double measured_rate = meter.quick(time_step, step_end_ns);
-    const double rate = on_schedule || !options_.paced ? 1.0 : measured_rate;
-    publish_bodies(rate, options_.paced ? scheduled_end_ns : simulated_ns_);
-    publish_snapshot_if_due();
+    const double rate = on_schedule || !options_.paced ? pace : measured_rate;
+    if (single) {
+      publish_bodies(0.0, clock_ns());
+      publish_snapshot();
+      next_snapshot_ = std::max(next_snapshot_, world_.time());
+    } else {
+      publish_bodies(rate, options_.paced ? scheduled_end_ns : simulated_ns_);
+      publish_snapshot_if_due();
+    }
     tell_published();
 
     const double step_time = to_seconds(step_end_ns - step_begin_ns);

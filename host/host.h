@@ -1,6 +1,7 @@
 // The authoritative loop: inputs in order, step, publish, at the pace of the steady clock.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <condition_variable>
@@ -51,7 +52,7 @@ struct HostProgress {
   std::uint64_t tick = 0;
   std::uint32_t run = 0;  ///< rises by one with every reset
   bool paused = false;
-  std::uint32_t status = 0;  ///< StatusBits of about the last half second
+  std::uint32_t status = 0;                      ///< StatusBits of about the last half second
   std::array<std::uint64_t, 32> status_steps{};  ///< in how many steps so far, one a bit
 };
 
@@ -75,6 +76,9 @@ struct HostReport {
 /// Called on the host's thread with what came of a command.
 using HostAnswer = std::function<void(const Result<bool>&)>;
 
+/// Slower, steps would come so rarely that hands took the world for silent (peer/haptics/hearing.h).
+constexpr double kSlowestPace = 0.05;
+
 /// Owns the world and steps it on a thread of its own. Made, started and ended by one thread.
 class Host {
  public:
@@ -91,6 +95,12 @@ class Host {
   /// Asks the loop to end after its current step; any thread, also from a signal's flag.
   void request_stop() { stop_.store(true, std::memory_order_relaxed); }
   void pause(bool paused) { post({paused ? HostAction::kPause : HostAction::kContinue}); }
+  /// Simulated s a wall s at most, kSlowestPace–1 (brought into that range): slow motion. Acts from the next
+  /// step on; any thread. Changes nothing that the world does, so nothing of it is recorded.
+  void set_pace(double pace) { pace_.store(std::clamp(pace, kSlowestPace, 1.0), std::memory_order_relaxed); }
+  double pace() const { return pace_.load(std::memory_order_relaxed); }
+  /// So many steps of a world that stands, each shown; nothing while it runs. Any thread.
+  void step_standing(int steps) { steps_asked_.fetch_add(std::max(steps, 0), std::memory_order_relaxed); }
   /// Queues a command for the next step's boundary, also while paused; in order; any thread. `answer` may be
   /// empty; once the run is over it is called at once, with an error.
   void post(const HostCommand& command, HostAnswer answer = {});
@@ -120,6 +130,7 @@ class Host {
   void run_commands();
   void end_commands();
   void stand_still();
+  bool take_asked_step();
   Result<bool> carry_out(const HostCommand& command);
   Result<bool> reset();
   void show_state();
@@ -156,6 +167,8 @@ class Host {
   std::thread thread_;
   std::atomic<bool> stop_{false};
   std::atomic<bool> running_{false};
+  std::atomic<double> pace_{1.0};
+  std::atomic<int> steps_asked_{0};  // of a world that stands
   std::atomic<double> shown_time_{0.0};
   std::atomic<double> shown_rate_{0.0};
   std::atomic<double> shown_step_rate_{0.0};

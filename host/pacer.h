@@ -23,6 +23,13 @@ class Pacer {
     steps_ = 0;
   }
 
+  /// From `now_ns` on steps are due so far apart (s, > 0); what they were before changes nothing.
+  void set_period(double period, std::int64_t now_ns) {
+    if (period * 1e9 == period_ns_) return;
+    period_ns_ = period * 1e9;
+    restart(now_ns);
+  }
+
   struct Turn {
     std::int64_t deadline_ns = 0;  ///< sleep until then, then step
     bool slipped = false;

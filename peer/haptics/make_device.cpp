@@ -16,6 +16,10 @@ Result<HandDevice> make_device(const Scene& scene, std::size_t grip, const std::
   HandDevice hand;
   if (spec == "script") {
     hand.device = std::make_unique<TrackDevice>(PoseTrack(scene.grips[grip].hand_motion, start), spec);
+    if (has_window) {
+      hand.lent = std::make_shared<LentHand>(start);
+      hand.device = std::make_unique<LentDevice>(std::move(hand.device), hand.lent);
+    }
   } else if (spec == "mouse") {
     if (!has_window) {
       return Error{"--device mouse", "there is no window to move the mouse in",
@@ -57,6 +61,7 @@ Result<DeviceSet> make_devices(const Scene& scene, const std::vector<std::string
     if (!hand) return hand.error();
     set.devices.push_back(std::move(hand.value().device));
     set.mouse_targets.push_back(std::move(hand.value().mouse));
+    set.lent.push_back(std::move(hand.value().lent));
   }
   return set;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "peer/haptics/device.h"
+#include "peer/haptics/lent_device.h"
 #include "peer/haptics/mouse_device.h"
 #include "scenes/scene.h"
 
@@ -14,15 +15,17 @@ namespace slosh {
 struct DeviceSet {
   std::vector<std::unique_ptr<Device>> devices;             ///< one a grip
   std::vector<std::shared_ptr<MouseTarget>> mouse_targets;  ///< one a grip, null where it is not a mouse
+  std::vector<std::shared_ptr<LentHand>> lent;              ///< one a grip, null where no window may take it
 };
 
-/// One hand's device; `mouse` where it is one.
+/// One hand's device; `mouse` where it is one, `lent` where it is a script that a window may take over.
 struct HandDevice {
   std::unique_ptr<Device> device;
   std::shared_ptr<MouseTarget> mouse;
+  std::shared_ptr<LentHand> lent;
 };
 /// The device that `spec` asks for, for grip `grip`; a mouse starts at `start`, and so does a script without
-/// a motion. Errors: as make_devices.
+/// a motion. With a window a script is lent. Errors: as make_devices.
 Result<HandDevice> make_device(const Scene& scene, std::size_t grip, const std::string& spec,
                                const Pose& start, bool has_window);
 

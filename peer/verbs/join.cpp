@@ -50,8 +50,9 @@ constexpr const char* kJoinFiles =
 
 constexpr const char* kJoinEnd =
     "\n\n"
-    "In the window: G takes a free grip or lets go, Space pauses the world for everybody, R starts it again\n"
-    "for everybody, left drag turns the camera, the wheel zooms, H helps, Esc ends. Ctrl-C ends in order.\n"
+    "In the window: drag what you hold, or one of its handles, to move it (H has all keys); G takes a free\n"
+    "grip or lets go, Space pauses the world for everybody, R starts it again for everybody, left drag\n"
+    "elsewhere turns the camera, the wheel zooms, Esc ends. Ctrl-C ends in order.\n"
     "\n"
     "Examples:\n"
     "  slosh join LINK\n"

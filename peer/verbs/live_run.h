@@ -2,12 +2,15 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "net/snapshot_queue.h"
+#include "peer/haptics/lent_device.h"
 #include "peer/haptics/mouse_device.h"
 #include "peer/hud/hud.h"
 #include "peer/hud/rates.h"
 #include "peer/output/summary.h"
+#include "peer/view/live_panel.h"
 
 namespace slosh {
 
@@ -46,6 +49,20 @@ class LiveRun {
   virtual std::string hear(const std::string& line) { return line; }
   /// Where the mouse moves the handle of grip `i`; null when that hand is no mouse.
   virtual MouseTarget* mouse_target(std::size_t i) = 0;
+  /// The hand of grip `i` where a script holds it that the window may take over; else null.
+  virtual LentHand* lent_hand(std::size_t i) {
+    (void)i;
+    return nullptr;
+  }
+
+  /// What may be changed while it runs, as it is.
+  virtual LiveValues live_values() const { return {}; }
+  /// Asks for one of these; what is refused is in take_refusals().
+  virtual void change(const LiveWish& wish) { (void)wish; }
+  /// So many steps of a world that stands, where LiveValues::may_pace.
+  virtual void step_standing(int steps) { (void)steps; }
+  /// Lines about what was not granted since the last call.
+  virtual std::vector<std::string> take_refusals() { return {}; }
 
   /// The camera turned (Device::look_from).
   virtual void look_from(const glm::dquat& axes) { (void)axes; }

@@ -22,7 +22,8 @@ Result<std::unique_ptr<LocalRun>> LocalRun::create(const Prepared& prepared, Dev
     const Result<bool> opened = open_device(*devices.devices[i]);
     if (!opened) return opened.error();
     if (progress == nullptr) continue;
-    for (const std::string& note : hand_notes(scene, i, *devices.devices[i])) progress->note("slosh: " + note);
+    for (const std::string& note : hand_notes(scene, i, *devices.devices[i]))
+      progress->note("slosh: " + note);
   }
   Result<World> made =
       make_world(scene, prepared.sampled, prepared.plan, WorldOptions{prepared.threads, prepared.backend});
@@ -63,7 +64,9 @@ Result<std::unique_ptr<LocalRun>> LocalRun::create(const Prepared& prepared, Dev
   }
   run->wrenches_ = std::make_unique<WrenchTap>(scene.grips.size());
   run->host_->add_tap(*run->wrenches_);
+  run->host_->add_tap(run->switches_);
   run->mouse_targets_ = std::move(devices.mouse_targets);
+  run->lent_ = std::move(devices.lent);
   ServoOptions servo;
   servo.steps = &run->wrenches_->steps();
   run->servo_ = std::make_unique<Servo>(scene, std::move(devices.devices), *run->channel_, servo);
@@ -116,6 +119,32 @@ bool LocalRun::start_again() {
   if (!recording_) return false;
   host_->post({HostAction::kReset});
   return true;
+}
+
+LiveValues LocalRun::live_values() const {
+  const HostState state = switches_.state();
+  LiveValues values;
+  values.may_change = true;
+  values.gravity_scale = state.gravity_scale;
+  values.viscosities = state.viscosities;
+  values.may_pace = !prepared_.unpaced;
+  values.pace = host_->pace();
+  return values;
+}
+
+void LocalRun::change(const LiveWish& wish) {
+  if (wish.kind == LiveWish::Kind::kPace) {
+    host_->set_pace(wish.value);
+    return;
+  }
+  HostCommand command;
+  command.action =
+      wish.kind == LiveWish::Kind::kViscosity ? HostAction::kViscosity : HostAction::kGravityScale;
+  command.index = static_cast<std::uint32_t>(wish.fluid);
+  command.value = wish.value;
+  host_->post(command, [this](const Result<bool>& done) {
+    if (!done) switches_.refuse(done.error().text());
+  });
 }
 
 HudFacts LocalRun::facts(double picture_rate) const {

@@ -13,6 +13,7 @@
 #include "peer/verbs/lockstep.h"
 #include "peer/verbs/measure_tap.h"
 #include "peer/verbs/prepare.h"
+#include "peer/verbs/switch_tap.h"
 #include "peer/verbs/wrench_tap.h"
 
 namespace slosh {
@@ -47,6 +48,11 @@ class LocalRun final : public LiveRun {
   }
   bool paused() const override { return paused_; }
   MouseTarget* mouse_target(std::size_t i) override { return mouse_targets_[i].get(); }
+  LentHand* lent_hand(std::size_t i) override { return lent_[i].get(); }
+  LiveValues live_values() const override;
+  void change(const LiveWish& wish) override;
+  void step_standing(int steps) override { host_->step_standing(steps); }
+  std::vector<std::string> take_refusals() override { return switches_.take_refusals(); }
   void look_from(const glm::dquat& axes) override { servo_->look_from(axes); }
   /// In place where the run is recorded, so that the recording goes on.
   bool start_again() override;
@@ -63,6 +69,7 @@ class LocalRun final : public LiveRun {
   std::unique_ptr<Channel> channel_;
   std::unique_ptr<keep::RecordingWriter> recording_;  // null where none was asked for; the host tells it
   std::unique_ptr<WrenchTap> wrenches_;
+  SwitchTap switches_;
   std::unique_ptr<Measurer> measurer_;  // null where nothing is measured, as its tap
   std::unique_ptr<MeasureTap> measure_tap_;
   std::unique_ptr<Lockstep> lockstep_;  // null where the run is paced
@@ -72,6 +79,7 @@ class LocalRun final : public LiveRun {
   std::unique_ptr<Recorder> recorder_;
   RateLog rates_;
   std::vector<std::shared_ptr<MouseTarget>> mouse_targets_;  // one a grip, null where it is not a mouse
+  std::vector<std::shared_ptr<LentHand>> lent_;              // one a grip, null where it is not lent
   bool paused_ = false;
   keep::RecordingReport recorded_;
 };

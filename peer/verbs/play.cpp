@@ -23,8 +23,13 @@ constexpr const char* kFooter =
     "  wrenches.png   force above, torque below, one colour a device\n"
     "  view.mp4, final.png, summary.json\n"
     "\n"
-    "In the window: left drag turns the camera, the wheel zooms, Space pauses, R starts again, H helps,\n"
-    "Esc ends. Ctrl-C ends a run in order, with everything written (exit code 130).\n"
+    "In the window the mouse takes over what scripts hold: drag a thing (with all its hands) or one handle, "
+    "the\n"
+    "wheel tilts and pours, Ctrl tilts any way, Shift goes over the table; B gives the hands back. "
+    "Elsewhere\n"
+    "left drag turns the camera, the wheel zooms. Space pauses, N takes one step, Down and Up slow motion,\n"
+    "Tab sliders, P keeps the picture, R starts again, H shows all keys, Esc ends. Ctrl-C ends a run in\n"
+    "order, with everything written (exit code 130).\n"
     "\n"
     "Examples:\n"
     "  slosh play\n"
@@ -67,7 +72,9 @@ void add_play(CLI::App& app, VerbRun& chosen) {
       "Folder for the results (headless: out/<scene>, or out/<scene>-2 and so on; a window: none)");
   add_show_options(*verb, *o, true);
   add_world_options(*verb, *o, "all but one; all with --no-render");
-  verb->add_option("--device", o->devices, "script, mouse, replay:FILE, spacemouse, falcon, plugin:FILE or operator; one for all handles, or one "
+  verb->add_option("--device", o->devices,
+                   "script, mouse, replay:FILE, spacemouse, falcon, plugin:FILE or operator; one for all "
+                   "handles, or one "
                    "each; `slosh devices` lists what is there")
       ->allow_extra_args(false);
   verb->add_option("--record", o->record, "Keep the run's inputs and states in a file, for `slosh replay`");

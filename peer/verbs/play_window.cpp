@@ -4,12 +4,12 @@
 #include <optional>
 
 #include "net/clock.h"
-#include "peer/output/video.h"
 #include "peer/haptics/devices/hardware.h"
+#include "peer/output/video.h"
 #include "peer/verbs/interrupt.h"
 #include "peer/verbs/local_run.h"
 #include "peer/verbs/play_modes.h"
-#include "peer/view/mouse_hand.h"
+#include "peer/verbs/window_controls.h"
 #include "peer/view/painter.h"
 #include "render/context.h"
 
@@ -68,41 +68,57 @@ class WindowFilm {
 
 enum class Outcome { kEnd, kAgain };
 
+/// Where a picture that somebody wants to keep goes: with the run's files, else here.
+std::filesystem::path free_picture_name(const Stage& stage) {
+  const std::string stem =
+      stage.folder.empty() ? "slosh-" + folder_name(stage.scene.name, "scene") : "picture";
+  for (int n = 1;; ++n) {
+    std::filesystem::path file = stage.folder / (stem + "-" + std::to_string(n) + ".png");
+    std::error_code code;
+    if (!std::filesystem::exists(file, code)) return file;
+  }
+}
+
 /// Shows one run until it ends or the user wants another.
 class WindowRun {
  public:
-  WindowRun(const Stage& stage, LiveRun& run, Context& context, Renderer& renderer, WindowFilm& film)
+  WindowRun(const Stage& stage, LiveRun& run, Context& context, Renderer& renderer, WindowFilm& film,
+            Progress& progress)
       : stage_(stage),
         run_(run),
         context_(context),
         renderer_(renderer),
         film_(film),
-        painter_(stage.scene, run.facts(kWindowSnapshotRate), renderer) {
-    hands_.resize(stage.scene.grips.size());
-  }
+        progress_(progress),
+        painter_(stage.scene, run.facts(kWindowSnapshotRate), renderer),
+        controls_(stage.scene, run, painter_.camera(),
+                  [&progress](const std::string& text) { progress.note(text); }) {}
 
-  Outcome show(Progress& progress, Histogram& frame_time, std::uint64_t& frames) {
+  Outcome show(Histogram& frame_time, std::uint64_t& frames) {
     SnapshotPointer snapshot;
     std::optional<LineInput> typed;
     TroubleTeller trouble;
-    if (run_.hears()) typed.emplace(progress.terminal());
+    if (run_.hears()) typed.emplace(progress_.terminal());
     while (true) {
       const InputState& input = context_.poll();
       if (context_.should_close() || interrupted_by() != 0) return Outcome::kEnd;
-      if (input.pressed(Key::kEscape) || input.pressed(Key::kQ)) return Outcome::kEnd;
-      if (input.pressed(Key::kR) && !run_.start_again()) return Outcome::kAgain;
-      handle(input);
+      const glm::ivec2 picture(renderer_.options().width, renderer_.options().height);
+      const WindowControls::Wish wish =
+          controls_.follow(input, picture, snapshot ? &snapshot->rigid : nullptr);
+      if (wish == WindowControls::Wish::kEnd) return Outcome::kEnd;
+      if (wish == WindowControls::Wish::kAgain) return Outcome::kAgain;
+      painter_.hud().paused = run_.paused();
       const OrbitCamera& camera = painter_.camera();
       run_.look_from(camera_axes(camera.eye(), camera.target()));
-      hear_lines(run_, typed ? &*typed : nullptr, progress);
-      trouble.tell(run_, progress);
+      hear_lines(run_, typed ? &*typed : nullptr, progress_);
+      trouble.tell(run_, progress_);
       if (SnapshotPointer newest = run_.newest_snapshot()) {
         snapshot = std::move(newest);
         painter_.record(*snapshot);
       }
       const Rates rates = run_.note_rates();
-      progress.update(std::isfinite(stage_.seconds) ? (rates.time - rates.start) / stage_.seconds : -1.0,
-                      running_text(rates, stage_.seconds));
+      progress_.update(std::isfinite(stage_.seconds) ? (rates.time - rates.start) / stage_.seconds : -1.0,
+                       running_text(rates, stage_.seconds));
       if (!run_.running()) return Outcome::kEnd;
 
       const glm::ivec2 size = context_.framebuffer_size();
@@ -114,7 +130,8 @@ class WindowRun {
         renderer_.resize(size.x, size.y);
       }
       const std::int64_t begin_ns = steady_now_ns();
-      painter_.draw(*snapshot, rates);
+      painter_.draw(*snapshot, rates, [this] { controls_.draw(); });
+      if (wish == WindowControls::Wish::kPicture) keep_picture();
       film_.offer(renderer_);
       context_.swap();
       frame_time.add(to_seconds(steady_now_ns() - begin_ns));
@@ -123,34 +140,9 @@ class WindowRun {
   }
 
  private:
-  void handle(const InputState& input) {
-    Hud& hud = painter_.hud();
-    if (input.pressed(Key::kH)) hud.show_help = !hud.show_help;
-    if (input.pressed(Key::kC)) painter_.camera().reset();
-    if (input.pressed(Key::kSpace)) run_.pause(!run_.paused());
-    if (input.pressed(Key::kG)) run_.change_grip();
-    hud.paused = run_.paused();
-    hud.mouse_hand = false;
-    for (std::size_t i = 0; i < hands_.size(); ++i) hud.mouse_hand |= run_.mouse_target(i) != nullptr;
-    const int height = renderer_.options().height;
-    if (!hud.mouse_hand) {
-      painter_.camera().follow(input, height);
-      return;
-    }
-    // The mouse is a hand: only the left button turns the camera.
-    if (input.held(MouseButton::kLeft)) {
-      InputState camera_input = input;
-      camera_input.scroll = glm::vec2(0.0f);
-      painter_.camera().follow(camera_input, height);
-    }
-    for (std::size_t i = 0; i < hands_.size(); ++i) {
-      MouseTarget* const target = run_.mouse_target(i);
-      if (target != hands_[i].target) hands_[i] = {target, MouseHand(target ? target->back() : Pose{})};
-      if (target != nullptr && hands_[i].mouse.follow(input, painter_.camera(), height)) {
-        target->back() = hands_[i].mouse.wanted();
-        target->publish();
-      }
-    }
+  void keep_picture() {
+    const Result<std::filesystem::path> written = write_png(free_picture_name(stage_), renderer_.read_back());
+    controls_.say(written ? "the picture is in " + written.value().string() : written.error().text());
   }
 
   const Stage& stage_;
@@ -158,12 +150,9 @@ class WindowRun {
   Context& context_;
   Renderer& renderer_;
   WindowFilm& film_;
+  Progress& progress_;
   Painter painter_;
-  struct Hand {
-    MouseTarget* target = nullptr;
-    MouseHand mouse{Pose{}};
-  };
-  std::vector<Hand> hands_;
+  WindowControls controls_;
 };
 
 }  // namespace
@@ -189,9 +178,9 @@ Result<bool> show_in_window(const Stage& stage, const MakeRun& make_run, const S
     Result<std::unique_ptr<LiveRun>> made = make_run();
     if (!made) return made.error();
     LiveRun& run = *made.value();
-    WindowRun window(stage, run, *context.value(), *renderer.value(), film);
+    WindowRun window(stage, run, *context.value(), *renderer.value(), film, progress);
     run.start();
-    outcome = window.show(progress, frame_time, summary.frames);
+    outcome = window.show(frame_time, summary.frames);
     progress.typed("");
     run.stop();
     if (outcome != Outcome::kEnd) continue;

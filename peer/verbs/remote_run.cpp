@@ -14,6 +14,7 @@ RemoteRun::RemoteRun(const Stage& stage, RemoteVisit& visit, RemoteRunOptions op
       visit_(visit),
       options_(std::move(options)),
       mice_(stage.scene.grips.size()),
+      lent_(stage.scene.grips.size()),
       device_on_(stage.scene.grips.size(), false) {
   for (const Grip& grip : stage.scene.grips) grip_names_.push_back(grip.name);
 }
@@ -117,6 +118,7 @@ Result<bool> RemoteRun::follow_grips() {
     if (held == device_on_[i]) continue;
     device_on_[i] = held;
     mice_[i].reset();
+    lent_[i].reset();
     if (!held) {
       (void)servo_->set_device(i, nullptr);
       continue;
@@ -137,6 +139,7 @@ Result<bool> RemoteRun::follow_grips() {
     for (const std::string& note : hand_notes(stage_.scene, i, *made.value().device))
       options_.tell("slosh: " + note);
     mice_[i] = std::move(made.value().mouse);
+    lent_[i] = std::move(made.value().lent);
     (void)servo_->set_device(i, std::move(made.value().device));  // open_device saw its limits
   }
   return true;
@@ -168,6 +171,24 @@ bool RemoteRun::start_again() {
 void RemoteRun::change_grip() {
   RemoteCommand command;
   command.kind = RemoteCommand::Kind::kNextGrip;
+  visit_.ask(command);
+}
+
+LiveValues RemoteRun::live_values() const {
+  LiveValues values;
+  values.may_change = status_.welcome.role == wire::Role::kParticipant;
+  values.gravity_scale = status_.world.gravity_scale;
+  values.viscosities = status_.world.viscosities;
+  return values;
+}
+
+void RemoteRun::change(const LiveWish& wish) {
+  RemoteCommand command;
+  command.kind = RemoteCommand::Kind::kParameter;
+  command.parameter = wish.kind == LiveWish::Kind::kViscosity ? wire::Parameter::kFluidViscosity
+                                                              : wire::Parameter::kGravityScale;
+  command.index = static_cast<std::uint32_t>(wish.fluid);
+  command.value = wish.value;
   visit_.ask(command);
 }
 

@@ -48,6 +48,9 @@ class RemoteRun final : public LiveRun {
   bool hears() const override { return true; }
   std::string hear(const std::string& line) override;
   MouseTarget* mouse_target(std::size_t i) override { return mice_[i].get(); }
+  LentHand* lent_hand(std::size_t i) override { return lent_[i].get(); }
+  LiveValues live_values() const override;
+  void change(const LiveWish& wish) override;
   void look_from(const glm::dquat& axes) override { servo_->look_from(axes); }
   std::string trouble() const override { return run_trouble(recorder_->problem(), *servo_, stage_.scene); }
   void report(RunSummary& summary) const override;
@@ -67,6 +70,7 @@ class RemoteRun final : public LiveRun {
   std::unique_ptr<Recorder> recorder_;
   RateLog rates_;
   std::vector<std::shared_ptr<MouseTarget>> mice_;
+  std::vector<std::shared_ptr<LentHand>> lent_;
   std::vector<bool> device_on_;  // grips that have a device now
   std::size_t grips_taken_ = 0;  // ever
   SnapshotPointer last_snapshot_;

@@ -67,6 +67,18 @@ double OrbitCamera::height_at_target() const {
   return 2.0 * distance_ * std::tan(0.5 * glm::radians(start_.vertical_fov_deg));
 }
 
+glm::dvec3 OrbitCamera::ray(const glm::dvec2& pixel, const glm::ivec2& size) const {
+  const double metres = metres_per_pixel(1.0, size.y);
+  const glm::dvec2 off = pixel - 0.5 * glm::dvec2(size);
+  return glm::normalize(forward() + metres * (off.x * right() - off.y * up()));
+}
+
+glm::dvec2 OrbitCamera::pixel_of(const glm::dvec3& point, const glm::ivec2& size) const {
+  const double metres = metres_per_pixel(depth_of(point), size.y);
+  const glm::dvec3 off = point - eye();
+  return 0.5 * glm::dvec2(size) + glm::dvec2(glm::dot(off, right()), -glm::dot(off, up())) / metres;
+}
+
 View OrbitCamera::view(double aspect) const {
   View view;
   view.near_plane = static_cast<float>(std::clamp(0.03 * distance_, 0.005, 0.1));

@@ -30,6 +30,16 @@ class OrbitCamera {
   glm::dvec3 forward() const;
   /// World metres that a picture's height spans at the target.
   double height_at_target() const;
+  /// World metres that a pixel of a picture so high spans at `depth` m before the eye.
+  double metres_per_pixel(double depth, int picture_height) const {
+    return height_at_target() / distance_ * depth / (picture_height > 0 ? picture_height : 1);
+  }
+  /// m that `point` lies before the eye, along forward(); below 0: behind it.
+  double depth_of(const glm::dvec3& point) const { return glm::dot(point - eye(), forward()); }
+  /// From the eye through a pixel (from the top left corner of a picture of `size` pixels), of unit length.
+  glm::dvec3 ray(const glm::dvec2& pixel, const glm::ivec2& size) const;
+  /// The pixel at which `point`, which must lie before the eye, is seen.
+  glm::dvec2 pixel_of(const glm::dvec3& point, const glm::ivec2& size) const;
 
  private:
   Camera start_;

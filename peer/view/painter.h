@@ -1,6 +1,7 @@
 // One snapshot to one picture: camera, frame and HUD together.
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "peer/hud/hud.h"
@@ -21,11 +22,15 @@ class Painter {
   /// A new snapshot for the charts.
   void record(const Snapshot& snapshot) { hud_.record(snapshot); }
 
-  void draw(const Snapshot& snapshot, const Rates& rates) {
+  /// `over`: Dear ImGui calls after the HUD's own; may be empty.
+  void draw(const Snapshot& snapshot, const Rates& rates, const std::function<void()>& over = {}) {
     Frame frame = builder_.build(snapshot, camera_.distance());
     const RenderOptions& size = renderer_.options();
     frame.view = camera_.view(static_cast<double>(size.width) / size.height);
-    frame.hud = [this, &rates] { hud_.draw(rates); };
+    frame.hud = [this, &rates, &over] {
+      hud_.draw(rates);
+      if (over) over();
+    };
     renderer_.draw(frame);
   }
 

@@ -168,5 +168,57 @@ TEST_F(HostTest, StopsWhenAskedAndGoesOnAfterAPause) {
   EXPECT_GE(r->host.report().steps, 10u);
 }
 
+TEST_F(HostTest, AWorldThatStandsTakesTheStepsThatAreAskedAndShowsEach) {
+  const auto r = rig(HostOptions{});
+  hold(r->channel);
+  r->host.pause(true);
+  r->host.start();
+  for (const int steps : {1, 3}) {
+    const std::uint64_t before = r->host.progress().tick;
+    r->host.step_standing(steps);
+    while (r->host.progress().tick < before + static_cast<std::uint64_t>(steps)) std::this_thread::yield();
+  }
+  EXPECT_TRUE(r->host.progress().paused) << "and stands again";
+  r->host.request_stop();
+  r->host.wait();
+  EXPECT_EQ(r->host.report().steps, 4u);
+  EXPECT_EQ(r->host.report().snapshots, 5u) << "one of each, and the first of the run";
+  ASSERT_TRUE(r->channel.bodies().update());
+  EXPECT_EQ(r->channel.bodies().front().rate, 0.0) << "hands do not carry on a world that stands";
+}
+
+TEST_F(HostTest, StepsAskedOfAWorldThatRunsAreNotTakenLater) {
+  const auto r = rig(HostOptions{});
+  hold(r->channel);
+  r->host.start();
+  r->host.step_standing(1000000);
+  while (r->host.progress().tick < 10) std::this_thread::yield();
+  std::future<Result<bool>> paused = r->host.ask({HostAction::kPause});
+  ASSERT_TRUE(paused.get());
+  const std::uint64_t tick = r->host.progress().tick;
+  std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  EXPECT_LE(r->host.progress().tick, tick + 1);
+  r->host.request_stop();
+  r->host.wait();
+}
+
+TEST_F(HostTest, AtASlowPaceTheWorldTakesItsTime) {
+  HostOptions options;
+  options.until = 0.05;
+  Rig slow(*this, world(), options);
+  hold(slow.channel);
+  slow.host.set_pace(0.25);
+  slow.host.start();
+  slow.host.wait();
+  EXPECT_NEAR(slow.host.report().simulated, 0.05, plan.time_step);
+  EXPECT_GT(slow.host.report().wall, 0.19)
+      << "s: four times the simulated time at least, whatever the machine does";
+  Rig r(*this, world(), HostOptions{});
+  r.host.set_pace(1e-9);
+  EXPECT_EQ(r.host.pace(), kSlowestPace);
+  r.host.set_pace(7.0);
+  EXPECT_EQ(r.host.pace(), 1.0);
+}
+
 }  // namespace
 }  // namespace slosh

@@ -58,5 +58,17 @@ TEST(Pacer, AWorldAtHalfSpeedSlipsHalfTheTime) {
   EXPECT_NEAR(pacer.slipped_seconds(), 1.0, 0.06);
 }
 
+TEST(Pacer, AnotherPeriodHoldsFromThereOn) {
+  Pacer pacer(0.001);
+  pacer.restart(0);
+  EXPECT_EQ(pacer.next(0).deadline_ns, 1000000);
+  pacer.set_period(0.001, 1500000);
+  EXPECT_EQ(pacer.next(1500000).deadline_ns, 2000000) << "the same period moves nothing";
+  pacer.set_period(0.01, 3000000);
+  EXPECT_EQ(pacer.next(3000000).deadline_ns, 13000000);
+  EXPECT_EQ(pacer.next(14000000).deadline_ns, 23000000);
+  EXPECT_EQ(pacer.slips(), 0u);
+}
+
 }  // namespace
 }  // namespace slosh

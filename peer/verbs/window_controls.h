@@ -1,0 +1,57 @@
+// What a person does in the window, to the run, the camera and the hands; and what the window says of it.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "peer/verbs/live_run.h"
+#include "peer/view/mouse_grab.h"
+#include "peer/view/mouse_hand.h"
+#include "peer/view/orbit_camera.h"
+#include "peer/view/window_guide.h"
+#include "render/input.h"
+
+namespace slosh {
+
+/// On the window's thread; one a run.
+class WindowControls {
+ public:
+  /// All must outlive it. `tell`: a line for the terminal.
+  WindowControls(const Scene& scene, LiveRun& run, OrbitCamera& camera,
+                 std::function<void(const std::string&)> tell);
+
+  enum class Wish { kNothing, kEnd, kAgain, kPicture };
+  /// Once a picture, with the newest state of the bodies (none yet: null). `picture` in pixels.
+  Wish follow(const InputState& input, const glm::ivec2& picture, const BodySnapshot* world);
+  /// Dear ImGui calls, inside Frame::hud.
+  void draw();
+  /// In the window and in the terminal.
+  void say(const std::string& text);
+
+ private:
+  Wish follow_keys(const InputState& input);
+  void follow_pace(const InputState& input, const LiveValues& values);
+  void follow_mouse(const InputState& input, const glm::ivec2& picture, const BodySnapshot& world);
+  void follow_mouse_hands(const InputState& input, const glm::ivec2& picture);
+  void learn(const glm::ivec2& picture);
+  void reset_hands();
+
+  const Scene& scene_;
+  LiveRun& run_;
+  OrbitCamera& camera_;
+  std::function<void(const std::string&)> tell_;
+  MouseGrab grab_;
+  WindowGuide guide_;
+  LivePanel panel_;
+  GuideFacts facts_;
+  std::vector<LentHand*> lent_;  // one a grip, as the run has them now
+  struct Hand {
+    MouseTarget* target = nullptr;
+    MouseHand mouse{Pose{}};
+  };
+  std::vector<Hand> hands_;  // of --device mouse
+};
+
+}  // namespace slosh

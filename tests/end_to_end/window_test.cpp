@@ -1,0 +1,199 @@
+// `slosh play` in a window on a virtual display, with real events of mouse and keys: GLFW, ImGui and all
+// below them.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "peer/haptics/script_device.h"
+#include "peer/view/orbit_camera.h"
+#include "process.h"
+#include "render/image.h"
+#include "scenes/load.h"
+
+namespace slosh {
+namespace {
+
+using test::Outcome;
+using test::Process;
+using test::read_text;
+
+constexpr int kWidth = 640;
+constexpr int kHeight = 480;
+
+bool comes(const std::function<bool()>& there) {
+  for (int i = 0; i < 1200; ++i) {  // two minutes, on a machine that does other things too
+    if (there()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  return false;
+}
+
+/// A virtual display of its own, and what is done there.
+class Display {
+ public:
+  explicit Display(const std::filesystem::path& folder)
+      : folder_(folder),
+        server_({"Xvfb", "-displayfd", "1", "-screen", "0", "1024x768x24", "-nolisten", "tcp"},
+                folder / "xvfb") {
+    comes([&] {
+      return !server_.running() || read_text(folder_ / "xvfb/stdout.txt").find('\n') != std::string::npos;
+    });
+    name_ = std::string(":").append(read_text(folder_ / "xvfb/stdout.txt"));
+    while (!name_.empty() && std::isspace(static_cast<unsigned char>(name_.back()))) name_.pop_back();
+  }
+  ~Display() {
+    server_.signal(SIGTERM);
+    server_.wait();
+  }
+  bool there() { return server_.running() && name_.size() > 1; }
+  /// The program there.
+  std::vector<std::string> on(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), {"env", "DISPLAY=" + name_});
+    return arguments;
+  }
+  /// What a person does, in xdotool's words; what it prints.
+  std::string act(std::vector<std::string> words) const {
+    words.insert(words.begin(), "xdotool");
+    return Process(on(words), folder_ / "xdotool").wait().out;
+  }
+
+ private:
+  std::filesystem::path folder_;
+  Process server_;
+  std::string name_;
+};
+
+bool installed(const std::string& program) {
+  return Process({"which", program}, test::test_folder() / "which").wait().code == 0;
+}
+
+class WindowTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::filesystem::remove_all(test::test_folder());
+    for (const std::string needed : {"Xvfb", "xdotool"}) {
+      if (!installed(needed)) GTEST_SKIP() << needed << " is not installed";
+    }
+    display = std::make_unique<Display>(test::test_folder());
+    ASSERT_TRUE(display->there()) << read_text(test::test_folder() / "xvfb/stderr.txt");
+    Result<Scene> loaded = load_scene(find_scene("bucket").value());
+    ASSERT_TRUE(loaded) << loaded.error().text();
+    scene = std::move(loaded.value());
+  }
+
+  /// Where in the window a place of the world is seen.
+  glm::ivec2 pixel(const glm::dvec3& place) const {
+    return glm::ivec2(OrbitCamera(scene.camera).pixel_of(place, {kWidth, kHeight}));
+  }
+  void point(glm::ivec2 at) const { display->act({"mousemove", std::to_string(at.x), std::to_string(at.y)}); }
+  /// The newest pose that a hand has in poses.csv.
+  Pose newest(int device) const {
+    const Result<std::vector<PoseKey>> keys = read_poses(out / "poses.csv", device);
+    return keys && !keys.value().empty() ? keys.value().back().pose : Pose{};
+  }
+  std::size_t rows() const {
+    const Result<std::vector<PoseKey>> keys = read_poses(out / "poses.csv", 0);
+    return keys ? keys.value().size() : 0;
+  }
+  static glm::dvec3 turn_of(const Pose& pose) {
+    return rotation_between(glm::dquat(1.0, 0.0, 0.0, 0.0), pose.orientation);
+  }
+
+  std::unique_ptr<Display> display;
+  Scene scene;
+  std::filesystem::path out = test::test_folder() / "out";
+};
+
+TEST_F(WindowTest, AMousePoursTheDefaultBucket) {
+  Process slosh(display->on({test::program(), "play", "bucket", "--spacing", "0.012", "--size",
+                             std::to_string(kWidth) + "x" + std::to_string(kHeight), "--measure", "0.05",
+                             "--out", "out"}),
+                test::test_folder());
+  ASSERT_TRUE(comes([&] { return !slosh.running() || rows() > 50; }));
+  ASSERT_TRUE(slosh.running()) << read_text(test::test_folder() / "stderr.txt");
+
+  // On the bucket's front, below its rim: both hands at once.
+  const glm::ivec2 bucket = pixel({0.0, 0.36, 0.09});
+  point(bucket);
+  display->act({"mousedown", "1"});
+  // What moves between two pictures is not of the drag yet when the press comes with it: on until it is
+  // there.
+  int moved = 0;
+  ASSERT_TRUE(comes([&] {
+    if (moved < 160) point(bucket + glm::ivec2(moved += 4, 0));
+    return newest(0).position.x > -0.143 + 0.05;
+  })) << "dragged to the right";
+  display->act({"click", "--repeat", "24", "--delay", "30", "4"});
+  EXPECT_TRUE(comes([&] { return glm::length(turn_of(newest(0))) > 1.6; }))
+      << "24 notches of 4°: well beyond what the script tilts";
+  const Pose left = newest(0);
+  const Pose right = newest(1);
+  EXPECT_NEAR(glm::distance(left.position, right.position), 0.286, 0.02) << "the hands go as one";
+  EXPECT_LT(glm::length(rotation_between(left.orientation, right.orientation)), 0.1);
+  EXPECT_GT(turn_of(left).z, 1.4) << "rad, to the left; the camera looks from beside";
+
+  display->act({"key", "p"});
+  EXPECT_TRUE(comes([&] { return std::filesystem::exists(out / "picture-1.png"); }));
+  display->act({"mouseup", "1"});
+  display->act({"key", "b"});
+  EXPECT_TRUE(comes([&] { return glm::length(turn_of(newest(0))) < 1.0; })) << "the script has them again";
+  display->act({"key", "q"});
+  const Outcome outcome = slosh.wait();
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_TRUE(read_png(out / "picture-1.png"));
+
+  // Four fifths of the water lies on the table or went over its edge: its middle is far below where it was.
+  std::ifstream probes(out / "probes.csv");
+  std::string header, line, last, first;
+  std::getline(probes, header);
+  while (std::getline(probes, line)) {
+    if (first.empty()) first = line;
+    last = line;
+  }
+  const auto height = [](const std::string& row) {
+    std::stringstream in(row);
+    std::string field;
+    for (int i = 0; i < 7; ++i) std::getline(in, field, ',');
+    return std::stod(field);
+  };
+  ASSERT_NE(header.find("time_s,particles,lost,in_solids,mass_kg,cx_m,cy_m"), std::string::npos) << header;
+  EXPECT_GT(height(first), 0.33);
+  EXPECT_LT(height(last), 0.2);
+}
+
+TEST_F(WindowTest, KeysPauseStepAndSlowTheWorld) {
+  Process slosh(display->on({test::program(), "play", "bucket", "--spacing", "0.012", "--size", "320x240",
+                             "--out", "out"}),
+                test::test_folder());
+  ASSERT_TRUE(comes([&] { return !slosh.running() || rows() > 50; }));
+  ASSERT_TRUE(slosh.running()) << read_text(test::test_folder() / "stderr.txt");
+  display->act({"mousemove", "160", "200"});
+  display->act({"key", "space"});
+  std::size_t before = 0;
+  // A world that stands writes no rows: as many a second later as now.
+  EXPECT_TRUE(comes([&] {
+    before = rows();
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    return rows() == before;
+  }));
+  display->act({"key", "n"});
+  display->act({"key", "space"});
+  EXPECT_TRUE(comes([&] { return rows() > before + 50; })) << "it goes on";
+  for (int i = 0; i < 4; ++i) display->act({"key", "Down"});
+  display->act({"key", "h"});
+  display->act({"key", "Tab"});
+  display->act({"key", "p"});
+  EXPECT_TRUE(comes([&] { return std::filesystem::exists(out / "picture-1.png"); }));
+  display->act({"key", "Escape"});
+  EXPECT_EQ(slosh.wait().code, 0);
+}
+
+}  // namespace
+}  // namespace slosh
