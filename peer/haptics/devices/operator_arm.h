@@ -39,4 +39,15 @@ inline ArmState arm_after(const ArmImpedance& arm, const ArmState& now, const gl
           fade * ((even - decay * odd) * now.velocity - (arm.stiffness / arm.mass) * odd * off)};
 }
 
+/// The angular velocity of a rotation vector `turn` (rad) that changes by `rate` (rad/s): the left Jacobian
+/// of SO(3).
+inline glm::dvec3 angular_velocity_of(const glm::dvec3& turn, const glm::dvec3& rate) {
+  const double angle = glm::length(turn);
+  const glm::dvec3 across = glm::cross(turn, rate);
+  if (angle < 1e-6) return rate + 0.5 * across;
+  const double square = angle * angle;
+  return rate + (1.0 - std::cos(angle)) / square * across +
+         (angle - std::sin(angle)) / (square * angle) * glm::cross(turn, across);
+}
+
 }  // namespace slosh

@@ -139,7 +139,9 @@ DeviceReport OperatorDevice::read(const DeviceMoment& moment) noexcept {
   report.pose.position = goal_.pose.position + lift_ + arm_.place + tremor.place;
   report.pose.orientation = rotate_by(goal_.pose.orientation, brace_ + wrist_.place);
   report.twist.linear = goal_.twist.linear + arm_.velocity + tremor.velocity;
-  report.twist.angular = goal_.twist.angular + wrist_.velocity;
+  const glm::dvec3 turn = brace_ + wrist_.place;
+  report.twist.angular = angular_velocity_of(turn, wrist_.velocity) +
+                         rotate_by({1.0, 0.0, 0.0, 0.0}, turn) * goal_.twist.angular;
   return report;
 }
 

@@ -78,6 +78,26 @@ TEST(Operator, TheWristTurnsAsTheArmMoves) {
   EXPECT_NEAR(turn.y, step_response(settings.wrist, 0.4, 1.0), 1e-9);
 }
 
+/// What it says of its turning is how its poses turn, however far the wrist is bent.
+TEST(Operator, SaysHowItTurns) {
+  OperatorDevice device(PoseTrack({}, Pose{}), blind("loose"));
+  device.read({0.0, 0.001});
+  device.write({glm::dvec3(0.0), glm::dvec3(1e-12)});
+  DeviceReport before = device.read({0.001, 0.001});
+  double bent = 0.0;
+  for (int i = 2; i <= 1500; ++i) {
+    const double t = 0.001 * i;
+    device.write({glm::dvec3(0.0), {0.7 * std::sin(2.0 * t), 0.6 * std::cos(3.0 * t), 0.5}});
+    const DeviceReport now = device.read({t, 0.001});
+    const glm::dvec3 turned = rotation_between(before.pose.orientation, now.pose.orientation) / 0.001;
+    const glm::dvec3 said = 0.5 * (before.twist.angular + now.twist.angular);
+    EXPECT_NEAR(glm::length(turned - said), 0.0, 2e-3) << t;
+    bent = std::max(bent, glm::length(rotation_between({1, 0, 0, 0}, now.pose.orientation)));
+    before = now;
+  }
+  EXPECT_GT(bent, 1.0);
+}
+
 TEST(Operator, SeesAndMakesGoodOnlyAfterTheDelay) {
   OperatorDevice blind_hand(PoseTrack({}, Pose{}), blind("tight"));
   OperatorDevice seeing(PoseTrack({}, Pose{}), parse_operator("tight").value());

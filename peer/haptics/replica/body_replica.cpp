@@ -1,0 +1,292 @@
+#include "peer/haptics/replica/body_replica.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace slosh {
+namespace {
+
+constexpr std::size_t kRemembered = 2048;  // ticks: a host's answer may be 2 s late
+constexpr double kRootTwo = 1.4142135623730951;
+
+glm::dvec3 linear(const Vector6& v) {
+  return {v[0], v[1], v[2]};
+}
+glm::dvec3 angular(const Vector6& v) {
+  return {v[3], v[4], v[5]};
+}
+Vector6 six(const glm::dvec3& a, const glm::dvec3& b) {
+  return {a.x, a.y, a.z, b.x, b.y, b.z};
+}
+Vector6 product(const Matrix6& m, const Vector6& v) {
+  Vector6 out{};
+  for (std::size_t i = 0; i < 6; ++i)
+    for (std::size_t j = 0; j < 6; ++j) out[i] += m[i][j] * v[j];
+  return out;
+}
+void add(Vector6& to, const Vector6& v, double factor = 1.0) {
+  for (std::size_t i = 0; i < 6; ++i) to[i] += factor * v[i];
+}
+void add(Matrix6& to, const Matrix6& m, double factor) {
+  for (std::size_t i = 0; i < 6; ++i)
+    for (std::size_t j = 0; j < 6; ++j) to[i][j] += factor * m[i][j];
+}
+/// What a gain k at arm r on a velocity is for the twist of the centre of mass: k·[1, −r×; r×, −r×r×].
+void add_gain(Matrix6& to, double k, const glm::dvec3& r) {
+  const double x[3][3] = {{0.0, -r.z, r.y}, {r.z, 0.0, -r.x}, {-r.y, r.x, 0.0}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    to[i][i] += k;
+    for (std::size_t j = 0; j < 3; ++j) {
+      to[i][3 + j] -= k * x[i][j];
+      to[3 + i][j] += k * x[i][j];
+      for (std::size_t l = 0; l < 3; ++l) to[3 + i][3 + j] -= k * x[i][l] * x[l][j];
+    }
+  }
+}
+glm::dvec3 clipped(const glm::dvec3& v, double most) {
+  const double length = glm::length(v);
+  return length > most ? v * (most / length) : v;
+}
+glm::dmat3 turned(const glm::dmat3& inertia, const glm::dquat& orientation) {
+  const glm::dmat3 r = glm::mat3_cast(orientation);
+  return r * inertia * glm::transpose(r);
+}
+
+}  // namespace
+
+BodyReplica::BodyReplica(const ReplicaBody& body, std::vector<ReplicaGrip> grips, const ReplicaTuning& tuning)
+    : body_(body),
+      grips_(std::move(grips)),
+      tuning_(tuning),
+      history_(kRemembered),
+      ledgers_(grips_.size()) {}
+
+void BodyReplica::restart(const RigidMotion& motion) noexcept {
+  now_ = motion;
+  pending_ = MotionError{};
+  history_.forget();
+  has_word_ = loaded_ = false;
+  load_ = heard_ = FluidLoad{};
+  std::fill(ledgers_.begin(), ledgers_.end(), Ledger{});
+  excess_ = work_ = 0.0;
+  started_ = true;
+}
+
+double BodyReplica::time_constant() const noexcept {
+  return std::max(tuning_.least_time, tuning_.round_trips * delay_.round_trip);
+}
+
+void BodyReplica::hear(const HostMotion& host) noexcept {
+  if (!started_) return restart(host.motion);
+  if (host.ack_ns == 0) return;
+  word_ = host;
+  has_word_ = true;
+}
+
+/// The host's word may be of a moment that is still to come here, where the way to it is short.
+void BodyReplica::compare(std::int64_t now_ns) noexcept {
+  if (!has_word_ || word_.ack_ns > now_ns) return;
+  has_word_ = false;
+  RigidMotion then;
+  if (history_.at(word_.ack_ns, then)) pending_ = difference(word_.motion, then);
+}
+
+void BodyReplica::set_load(const FluidLoad& load) noexcept {
+  heard_ = made_safe(load);
+  if (!loaded_) load_ = heard_;
+  loaded_ = true;
+}
+
+/// What the fluid did a round trip ago answers to what the body did then: fed back at once it would drive a
+/// swing of the fluid that is about as slow.
+void BodyReplica::follow_load(double dt) noexcept {
+  const double time = tuning_.load_round_trips * (delay_.round_trip + delay_.jitter);
+  const double share = time > dt ? 1.0 - std::exp(-dt / time) : 1.0;
+  const auto towards = [share](double& at, double to) { at += share * (to - at); };
+  for (std::size_t i = 0; i < 6; ++i) {
+    towards(load_.wrench[i], heard_.wrench[i]);
+    for (std::size_t j = 0; j < 6; ++j) {
+      towards(load_.d_pose[i][j], heard_.d_pose[i][j]);
+      towards(load_.added_mass[i][j], heard_.added_mass[i][j]);
+      towards(load_.d_velocity[i][j], heard_.d_velocity[i][j]);
+    }
+  }
+  load_.reference.position += share * (heard_.reference.position - load_.reference.position);
+  load_.reference.orientation =
+      rotate_by(load_.reference.orientation,
+                share * rotation_between(load_.reference.orientation, heard_.reference.orientation));
+  load_.twist.linear += share * (heard_.twist.linear - load_.twist.linear);
+  load_.twist.angular += share * (heard_.twist.angular - load_.twist.angular);
+  load_.trust_distance = heard_.trust_distance;
+  load_.trust_angle = heard_.trust_angle;
+}
+
+GripState BodyReplica::grip(std::size_t g) const noexcept {
+  GripState state;
+  const glm::dvec3 arm = now_.orientation * (grips_[g].pose.position - body_.center);
+  state.pose = {now_.position + arm, now_.orientation * grips_[g].pose.orientation};
+  state.twist = {now_.twist.linear + glm::cross(now_.twist.angular, arm), now_.twist.angular};
+  return state;
+}
+
+double BodyReplica::damping(std::size_t g) const noexcept {
+  return 0.5 * grips_[g].gains.stiffness * (0.5 * delay_.round_trip + delay_.jitter) / kRootTwo;
+}
+
+double BodyReplica::rotational_damping(std::size_t g) const noexcept {
+  return 0.5 * grips_[g].gains.rotational_stiffness * (0.5 * delay_.round_trip + delay_.jitter) / kRootTwo;
+}
+
+Matrix6 BodyReplica::mass_matrix() const noexcept {
+  Matrix6 m{};
+  const glm::dmat3 inertia = turned(body_.inertia, now_.orientation);
+  for (int i = 0; i < 3; ++i) {
+    const auto row = static_cast<std::size_t>(i);
+    m[row][row] = body_.mass;
+    for (int j = 0; j < 3; ++j) m[3 + row][3 + static_cast<std::size_t>(j)] = inertia[j][i];
+  }
+  add(m, symmetric_part(load_.added_mass, 1.0), 1.0);
+  return m;
+}
+
+/// The couplings' own pace ω₀ against the delay: at a body that answers faster than others are heard of, they
+/// pull less.
+void BodyReplica::soften(const std::vector<ReplicaHand>& hands) noexcept {
+  double stiffness = 0.0, turning = 0.0, others = 0.0;
+  for (std::size_t g = 0; g < grips_.size() && g < hands.size(); ++g) {
+    if (!hands[g].engaged) continue;
+    const CouplingGains& k = grips_[g].gains;
+    const glm::dvec3 arm = grips_[g].pose.position - body_.center;
+    stiffness += k.stiffness;
+    turning += k.rotational_stiffness + k.stiffness * glm::dot(arm, arm);
+    if (!hands[g].own) others += k.stiffness;
+  }
+  const Matrix6 mass = mass_matrix();
+  const double lightest = std::min({mass[0][0], mass[1][1], mass[2][2]});
+  const double slightest = std::min({mass[3][3], mass[4][4], mass[5][5]});
+  const double late = tuning_.softening * (delay_.round_trip + delay_.jitter);
+  const auto soft = [&](double k, double m) { return 1.0 / (1.0 + late * late * k / m); };
+  soft_ = soft(stiffness, lightest);
+  rotational_soft_ = body_.point ? soft_ : soft(turning, slightest);
+  shared_ = stiffness > 0.0 ? others / stiffness : 0.0;
+}
+
+/// What the hands of other sites gave in this step, against what their persons put in; the excess is taken
+/// out of the motion.
+void BodyReplica::settle(const std::vector<ReplicaHand>& hands, double dt) noexcept {
+  excess_ = 0.0;
+  double worst = 0.0;
+  Ledger* debtor = nullptr;
+  for (std::size_t g = 0; g < grips_.size() && g < hands.size(); ++g) {
+    const ReplicaHand& hand = hands[g];
+    Ledger& ledger = ledgers_[g];
+    if (!hand.engaged || hand.own) {
+      ledger = Ledger{};
+      continue;
+    }
+    if (!ledger.open) ledger = {0.0, hand.energy, true};
+    const GripState at = grip(g);
+    const CouplingGains& k = grips_[g].gains;
+    const Wrench pull = coupling_wrench_on_hand(k, hand.handle, hand.twist, at.pose, at.twist);
+    const double power = -soft_ * glm::dot(pull.force, hand.twist.linear) -
+                         rotational_soft_ * glm::dot(pull.torque, hand.twist.angular);
+    ledger.given += dt * power;
+    const double over = ledger.given - (hand.energy - ledger.base);
+    if (over > worst) {
+      worst = over;
+      debtor = &ledger;
+    }
+  }
+  if (debtor == nullptr) return;
+  const Matrix6 mass = mass_matrix();
+  const Vector6 v = six(now_.twist.linear, now_.twist.angular);
+  const Vector6 p = product(mass, v);
+  double kinetic = 0.0;
+  for (std::size_t i = 0; i < 6; ++i) kinetic += 0.5 * v[i] * p[i];
+  if (kinetic > 0.0) {
+    const double take = std::min(worst, tuning_.most_taken * kinetic);
+    const double keep = std::sqrt(1.0 - take / kinetic);
+    now_.twist.linear *= keep;
+    now_.twist.angular *= keep;
+    debtor->given -= take;
+    worst -= take;
+  }
+  excess_ = worst;
+}
+
+void BodyReplica::advance(const std::vector<ReplicaHand>& hands, double dt, std::int64_t now_ns,
+                          double trust) noexcept {
+  if (!started_ || !(dt > 0.0)) return;
+  follow_load(dt);
+  soften(hands);
+  Matrix6 matrix = mass_matrix();
+  const Vector6 v = six(now_.twist.linear, now_.twist.angular);
+  Vector6 rhs = product(matrix, v);
+  const glm::dmat3 inertia = turned(body_.inertia, now_.orientation);
+  const glm::dvec3 gyroscopic = -glm::cross(now_.twist.angular, inertia * now_.twist.angular);
+  add(rhs, six(glm::dvec3(0.0), gyroscopic), dt);
+
+  // The fluid. Beyond the trusted distance its springs pull as there.
+  const glm::dvec3 off = clipped(now_.position - load_.reference.position, load_.trust_distance);
+  const glm::dvec3 turn =
+      clipped(rotation_between(load_.reference.orientation, now_.orientation), load_.trust_angle);
+  Vector6 fluid = load_.wrench;
+  add(fluid, product(load_.d_pose, six(off, turn)));
+  add(fluid, product(load_.d_velocity, six(load_.twist.linear, load_.twist.angular)), -1.0);
+  add(rhs, fluid, dt * trust);
+  // Its damper: what is symmetric of it implicitly, the rest (which does no work) with the velocity of now.
+  const Matrix6 damper = symmetric_part(load_.d_velocity, -1.0);
+  Matrix6 swirl = load_.d_velocity;
+  add(swirl, damper, 1.0);
+  add(rhs, product(swirl, v), dt * trust);
+  add(matrix, damper, dt * trust);
+
+  for (std::size_t g = 0; g < grips_.size() && g < hands.size(); ++g) {
+    const ReplicaHand& hand = hands[g];
+    if (!hand.engaged) continue;
+    const CouplingGains& k = grips_[g].gains;
+    const double s = hand.own ? 1.0 : soft_;
+    const double r = hand.own ? 1.0 : rotational_soft_;
+    const GripState at = grip(g);
+    const glm::dvec3 arm = body_.point ? glm::dvec3(0.0) : at.pose.position - now_.position;
+    const double gain = s * (k.damping + k.stiffness * dt);
+    const double turning = r * (k.rotational_damping + k.rotational_stiffness * dt);
+    const glm::dvec3 force =
+        s * k.stiffness * (hand.handle.position - at.pose.position) + gain * hand.twist.linear;
+    const glm::dvec3 torque =
+        r * k.rotational_stiffness * rotation_between(at.pose.orientation, hand.handle.orientation) +
+        turning * hand.twist.angular;
+    add(rhs, six(force, glm::cross(arm, force) + torque), dt);
+    add_gain(matrix, dt * gain, arm);
+    for (std::size_t i = 3; i < 6; ++i) matrix[i][i] += dt * turning;
+  }
+  Matrix6 factor;
+  if (!cholesky(matrix, factor)) return;
+  const Vector6 next = cholesky_solve(factor, rhs);
+  double sum = 0.0;
+  for (const double each : next) sum += each;
+  if (!std::isfinite(sum)) return;
+  Vector6 middle = v;
+  add(middle, next);
+  Vector6 acting = fluid;
+  add(acting, product(load_.d_velocity, next));
+  for (std::size_t i = 0; i < 6; ++i) work_ += 0.5 * dt * trust * acting[i] * middle[i];
+  now_.twist = {linear(next), body_.point ? glm::dvec3(0.0) : angular(next)};
+  now_.position += dt * now_.twist.linear;
+  now_.orientation = rotate_by(now_.orientation, dt * now_.twist.angular);
+
+  history_.note(now_ns, now_);
+  compare(now_ns);
+  const double share = 1.0 - std::exp(-dt / time_constant());
+  const MotionError by = scaled(pending_, share);
+  pending_ = scaled(pending_, 1.0 - share);
+  // What the load does over the way that a correction takes counts as well: a weight that the host has lower
+  // is lower.
+  const Vector6 way = six(by.position, by.turn);
+  for (std::size_t i = 0; i < 6; ++i) work_ += trust * acting[i] * way[i];
+  now_ = moved(now_, by);
+  history_.correct(by);
+  settle(hands, dt);
+}
+
+}  // namespace slosh

@@ -1,0 +1,124 @@
+// A held rigid body as this site has it: every coupling of it at the device loop's rate, drawn to the host's.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "peer/haptics/replica/fluid_load.h"
+#include "peer/haptics/replica/loop_delay.h"
+#include "peer/haptics/replica/replica_history.h"
+#include "sim/math/coupling.h"
+#include "sim/snapshot.h"
+
+namespace slosh {
+
+/// What does not change of the body.
+struct ReplicaBody {
+  double mass = 1.0;        ///< kg, > 0
+  glm::dmat3 inertia{1.0};  ///< kg·m², about the centre of mass, body axes, positive definite
+  glm::dvec3 center{0.0};   ///< centre of mass in the mesh frame, m
+  bool point = false;       ///< it does not turn
+};
+
+/// One coupling of the body.
+struct ReplicaGrip {
+  Pose pose;            ///< in the mesh frame
+  CouplingGains gains;  ///< the scene's
+};
+
+/// What moves one grip.
+struct ReplicaHand {
+  bool engaged = false;
+  bool own = false;  ///< of this site: its newest reading; else relayed, and softened by its delay
+  Pose handle;       ///< as the coupling uses it
+  Twist twist;
+  double energy = 0.0;  ///< J that its person put in so far, by their own count
+};
+
+/// The host's word on the body.
+struct HostMotion {
+  RigidMotion motion;
+  std::int64_t ack_ns = 0;  ///< when the newest of our readings that it follows was read; 0 = none
+};
+
+/// Constants of the scheme.
+struct ReplicaTuning {
+  double softening = 0.7;         ///< of ω₀·(RTT + J), for hands of other sites
+  double least_time = 0.05;       ///< s: T_c is this at least …
+  double round_trips = 2.0;       ///< … and so many round trips
+  double load_round_trips = 2.0;  ///< a change of the fluid's model acts over so many round trips
+  double most_taken = 0.05;       ///< share of the kinetic energy that a tick may take for a ledger
+};
+
+class BodyReplica {
+ public:
+  /// Allocates all that it ever needs; `grips`: all couplings of the body.
+  BodyReplica(const ReplicaBody& body, std::vector<ReplicaGrip> grips, const ReplicaTuning& tuning = {});
+
+  /// Takes the host's motion for its own and forgets the rest: at first, after a reset, a pause or a silence.
+  void restart(const RigidMotion& motion) noexcept;
+  bool started() const { return started_; }
+
+  void set_delay(const LoopDelay& delay) noexcept { delay_ = delay; }
+  /// What acts besides couplings, weight and all, with the host's motion as its reference.
+  void set_load(const FluidLoad& load) noexcept;
+
+  /// A state of the host's: what it differs by from what was here when its input was read is taken over bit
+  /// by bit.
+  void hear(const HostMotion& host) noexcept;
+
+  /// One step of `dt` s that ends at `now_ns`. `trust`: of the fluid's model, 0–1, by its age.
+  void advance(const std::vector<ReplicaHand>& hands, double dt, std::int64_t now_ns,
+               double trust = 1.0) noexcept;
+
+  const RigidMotion& motion() const { return now_; }
+  const FluidLoad& load() const noexcept { return load_; }  ///< as it acts
+  GripState grip(std::size_t g) const noexcept;
+  /// N·s/m and N·m·s/rad by which a spring of grip `g` across this delay is damped to half its bound (B ≥
+  /// K·τ/√2).
+  double damping(std::size_t g) const noexcept;
+  double rotational_damping(std::size_t g) const noexcept;
+  /// By how much hands of other sites are softened, 0–1.
+  double softness() const noexcept { return soft_; }
+  double time_constant() const noexcept;
+  /// Of the stiffness of all couplings, the share that hands of other sites have, 0–1.
+  double shared() const noexcept { return shared_; }
+  /// J that the hands of other sites gave here beyond what their persons put in, worst of them.
+  double excess() const noexcept { return excess_; }
+  /// J that the load put into the body since restart().
+  double work() const noexcept { return work_; }
+
+ private:
+  Matrix6 mass_matrix() const noexcept;
+  void compare(std::int64_t now_ns) noexcept;
+  void follow_load(double dt) noexcept;
+  void soften(const std::vector<ReplicaHand>& hands) noexcept;
+  void settle(const std::vector<ReplicaHand>& hands, double dt) noexcept;
+
+  ReplicaBody body_;
+  std::vector<ReplicaGrip> grips_;
+  ReplicaTuning tuning_;
+  LoopDelay delay_;
+  FluidLoad load_;   // as it acts
+  FluidLoad heard_;  // as the host last said it
+  bool loaded_ = false;
+  RigidMotion now_;
+  HostMotion word_;  // of the host, not compared yet
+  bool has_word_ = false;
+  MotionError pending_;  // of the host's newest word, not taken over yet
+  ReplicaHistory history_;
+  struct Ledger {
+    double given = 0.0;  // J that this hand gave here
+    double base = 0.0;   // its person's count when the ledger began
+    bool open = false;
+  };
+  std::vector<Ledger> ledgers_;
+  double soft_ = 1.0;
+  double rotational_soft_ = 1.0;
+  double shared_ = 0.0;  // of all stiffness, what hands of other sites have
+  double excess_ = 0.0;
+  double work_ = 0.0;
+  bool started_ = false;
+};
+
+}  // namespace slosh

@@ -1,0 +1,192 @@
+#include "peer/haptics/replica/held_body.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "net/clock.h"
+
+namespace slosh {
+namespace {
+
+/// s for which another site's hand, and the host's body for a spring to it, are carried on by their twists.
+constexpr double kCarriedOn = 0.02;
+/// s over which the share of ticks with a guard firing is averaged, the share that is too much, and s of calm
+/// after which the replica is tried again.
+constexpr double kFiringMemory = 0.5;
+constexpr double kFiresTooOften = 0.5;
+constexpr double kCalm = 3.0;
+/// s for which the fluid's model holds without a word, and over which it then goes.
+constexpr double kLoadHolds = 0.1;
+constexpr double kLoadFades = 0.3;
+/// s of the body's time between two words beyond which they say nothing of its acceleration.
+constexpr double kLongestStep = 0.1;
+/// N of a change that is not foreseen at which the whole damping acts, and s for which that is remembered.
+constexpr double kUnrest = 15.0;
+constexpr double kUnrestMemory = 5.0;
+/// J: where nobody counts for another hand, nothing that comes out is too much.
+constexpr double kUncounted = 1e9;
+
+}  // namespace
+
+HeldBody::HeldBody(const ReplicaBody& body, std::vector<ReplicaGrip> grips, const ReplicaTuning& tuning)
+    : body_(body),
+      replica_(body, grips, tuning),
+      hands_(grips.size()),
+      speeds_(grips.size()),
+      guards_(grips.size()) {
+  for (const ReplicaGrip& grip : grips) {
+    grips_.push_back(grip.pose);
+    gains_.push_back(grip.gains);
+  }
+}
+
+void HeldBody::restart() noexcept {
+  started_ = false;
+  delay_.restart();
+  fluid_ = FluidLoad{};
+  std::fill(hands_.begin(), hands_.end(), ReplicaHand{});
+  for (VelocityWindow& speed : speeds_) speed.forget();
+  firing_ = calm_ = unrest_ = 0.0;
+  fallen_back_ = false;
+}
+
+Vector6 HeldBody::rest_of(const HostWord& word) const noexcept {
+  const RigidMotion& now = word.motion;
+  const double elapsed = word.time - heard_time_;
+  Vector6 pace{};  // linear and angular acceleration
+  if (started_ && elapsed > 0.0 && elapsed < kLongestStep) {
+    const glm::dvec3 a = (now.twist.linear - heard_.twist.linear) / elapsed;
+    const glm::dvec3 b = (now.twist.angular - heard_.twist.angular) / elapsed;
+    pace = {a.x, a.y, a.z, b.x, b.y, b.z};
+  }
+  const glm::dmat3 r = glm::mat3_cast(now.orientation);
+  const glm::dmat3 inertia = r * body_.inertia * glm::transpose(r);
+  const glm::dvec3 turning{pace[3], pace[4], pace[5]};
+  glm::dvec3 force = body_.mass * glm::dvec3(pace[0], pace[1], pace[2]);
+  glm::dvec3 torque = inertia * turning + glm::cross(now.twist.angular, inertia * now.twist.angular);
+  for (std::size_t g = 0; g < grips_.size() && g < word.hands.size(); ++g) {
+    const Wrench& on_hand = word.hands[g].on_hand;
+    const glm::dvec3 arm = now.orientation * (grips_[g].position - body_.center);
+    force += on_hand.force;
+    torque += glm::cross(arm, on_hand.force) + on_hand.torque;
+  }
+  if (body_.point) torque = glm::dvec3(0.0);
+  Vector6 rest{force.x, force.y, force.z, torque.x, torque.y, torque.z};
+  for (std::size_t i = 0; i < 6; ++i)
+    for (std::size_t j = 0; j < 6; ++j) rest[i] += fluid_.added_mass[i][j] * pace[j];
+  return rest;
+}
+
+void HeldBody::hear(const HostWord& word) noexcept {
+  const double elapsed = started_ ? to_seconds(word.now_ns - heard_ns_) : 0.0;
+  FluidLoad load = fluid_;
+  load.reference = {word.motion.position, word.motion.orientation};
+  load.twist = word.motion.twist;
+  load.wrench = rest_of(word);
+  heard_time_ = word.time;
+  heard_ = word.motion;
+  heard_ns_ = word.now_ns;
+  since_heard_ = 0.0;
+  std::int64_t ack_ns = 0;
+  counted_ = true;
+  for (std::size_t g = 0; g < hands_.size() && g < word.hands.size(); ++g) {
+    const HostHand& said = word.hands[g];
+    ReplicaHand& hand = hands_[g];
+    if (hand.own) {
+      if (said.engaged && said.ack_ns != 0)
+        ack_ns = ack_ns == 0 ? said.ack_ns : std::min(ack_ns, said.ack_ns);
+      continue;
+    }
+    if (!said.engaged) speeds_[g].forget();
+    hand.engaged = said.engaged;
+    hand.handle = said.handle;
+    hand.twist = said.engaged ? speeds_[g].add(said.handle, to_nanoseconds(word.time)) : Twist{};
+    hand.energy = said.energy;
+    counted_ = counted_ && (said.counted || !said.engaged);
+  }
+  if (!started_) {
+    replica_.restart(word.motion);
+    replica_.set_load(load);
+    started_ = true;
+    return;
+  }
+  note_unrest(load, elapsed);
+  replica_.set_load(load);
+  if (ack_ns == 0) return;
+  delay_.note(to_seconds(word.now_ns - ack_ns), elapsed);
+  replica_.set_delay(delay_.delay());
+  replica_.hear({word.motion, ack_ns});
+}
+
+/// What acts changes by more than is told of it: a table that is met, a fluid that nobody models. That
+/// answers to this hand a round trip late, as another hand would.
+void HeldBody::note_unrest(const FluidLoad& load, double elapsed) noexcept {
+  const Vector6& acts = replica_.load().wrench;
+  const glm::dvec3 off(load.wrench[0] - acts[0], load.wrench[1] - acts[1], load.wrench[2] - acts[2]);
+  const double now = std::min(glm::length(off) / kUnrest, 1.0);
+  const double forget = 1.0 - std::exp(-std::clamp(elapsed, 0.0, 1.0) / kUnrestMemory);
+  unrest_ = now > unrest_ ? now : unrest_ + forget * (now - unrest_);
+}
+
+GripState HeldBody::grip(std::size_t g) const noexcept {
+  if (!fallen_back_) return replica_.grip(g);
+  const double on = std::min(since_heard_, kCarriedOn);
+  const Pose body{heard_.position + on * heard_.twist.linear,
+                  rotate_by(heard_.orientation, on * heard_.twist.angular)};
+  const glm::dvec3 arm = body.orientation * (grips_[g].position - body_.center);
+  GripState state;
+  state.pose = {body.position + arm, body.orientation * grips_[g].orientation};
+  state.twist = {heard_.twist.linear + glm::cross(heard_.twist.angular, arm), heard_.twist.angular};
+  return state;
+}
+
+Wrench HeldBody::guard(std::size_t g, const Wrench& wanted, const Pose& hand, const Twist& twist, double dt,
+                       double most_damping) noexcept {
+  double credit = replica_.work() + (counted_ ? 0.0 : kUncounted);
+  for (std::size_t j = 0; j < hands_.size(); ++j) {
+    if (j != g) credit += hands_[j].own ? guards_[j].energy() : hands_[j].energy;
+  }
+  // What others hold is felt across the delay; alone on the body nothing is.
+  const double share = fallen_back_ ? 1.0 : std::max(replica_.shared(), unrest_);
+  const double damping = std::min(share * replica_.damping(g), most_damping);
+  const double turning = share * replica_.rotational_damping(g);
+  const Wrench damped{wanted.force - damping * twist.linear, wanted.torque - turning * twist.angular};
+  const Wrench safe = guards_[g].guard(damped, hand, twist, dt, credit, most_damping);
+  fires_ = fires_ || guards_[g].fires();
+  return safe;
+}
+
+/// A guard that fires all the time says that the replica is wrong about the body.
+void HeldBody::watch(double dt) noexcept {
+  firing_ += (1.0 - std::exp(-dt / kFiringMemory)) * ((fires_ ? 1.0 : 0.0) - firing_);
+  calm_ = fires_ ? 0.0 : calm_ + dt;
+  if (fires_) fired_ += 1;
+  fires_ = false;
+  if (!fallen_back_ && firing_ > kFiresTooOften) fallen_back_ = true;
+  if (fallen_back_ && calm_ > kCalm) fallen_back_ = false;
+}
+
+void HeldBody::advance(std::span<const OwnHand> own, double dt, std::int64_t now_ns) noexcept {
+  if (!started_) return;
+  for (std::size_t g = 0; g < hands_.size(); ++g) {
+    ReplicaHand& hand = hands_[g];
+    if (g < own.size() && own[g].here) {
+      if (!hand.own) guards_[g].restart(own[g].handle);
+      hand.own = true;
+      hand.engaged = own[g].engaged;
+      hand.handle = own[g].handle;
+      hand.twist = own[g].twist;
+    } else if (hand.own) {
+      hand = ReplicaHand{};
+      speeds_[g].forget();
+    } else if (since_heard_ < kCarriedOn) {
+      hand.handle = extrapolate(hand.handle, hand.twist, dt);
+    }
+  }
+  since_heard_ += dt;
+  const double trust = std::clamp(1.0 - (since_heard_ - kLoadHolds) / kLoadFades, 0.0, 1.0);
+  replica_.advance(hands_, dt, now_ns, trust);
+  watch(dt);
+}
+
+}  // namespace slosh

@@ -1,0 +1,104 @@
+// A body that hands of this site hold, wherever the host is: its replica, and a guard for each hand.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "peer/haptics/devices/velocity_window.h"
+#include "peer/haptics/replica/body_replica.h"
+#include "peer/haptics/replica/passivity_controller.h"
+
+namespace slosh {
+
+/// What the host says of one grip of the body.
+struct HostHand {
+  bool engaged = false;
+  Pose handle;              ///< as the step used it
+  Wrench on_hand;           ///< that the step put on it, about the handle
+  std::int64_t ack_ns = 0;  ///< of our own: when the reading that the state follows was read, and so much
+                            ///< later as the step carried it on; 0 = none
+  bool counted = false;  ///< somebody counts for it …
+  double energy = 0.0;   ///< … the J that its person put in
+};
+
+/// The host's word on the body after one step, as soon as it comes.
+struct HostWord {
+  std::int64_t now_ns = 0;  ///< when it came
+  double time = 0.0;        ///< s, the body's time that the state belongs to
+  RigidMotion motion;
+  std::span<const HostHand> hands;  ///< one a grip of the body
+};
+
+/// One own hand in one tick.
+struct OwnHand {
+  bool here = false;  ///< a device of this site moves the grip
+  bool engaged = false;
+  Pose handle;  ///< as the coupling uses it (net/engagement.h)
+  Twist twist;
+};
+
+/// A tick is: hear() what came; for each own hand grip(), the coupling to it, guard(), sent(); then
+/// advance(). Reads no clock, neither allocates nor locks once made; one thread.
+class HeldBody {
+ public:
+  HeldBody(const ReplicaBody& body, std::vector<ReplicaGrip> grips, const ReplicaTuning& tuning = {});
+
+  /// The next word is taken as it is: at first, after a reset, a pause, a silence.
+  void restart() noexcept;
+  bool started() const noexcept { return started_; }
+  void hear(const HostWord& word) noexcept;
+  /// How the fluid answers to the body, before hear() of the same state or a newer one: its derivatives, its
+  /// added mass and the trust in them count. What acts besides them is worked out from how the body moves.
+  void set_fluid(const FluidLoad& model) noexcept { fluid_ = made_safe(model); }
+
+  /// Where an own hand's coupling goes to, at the moment of the last advance().
+  GripState grip(std::size_t g) const noexcept;
+  /// The wrench for own hand `g` in place of its coupling's `wanted`: damped for the delay, and so that no
+  /// more comes out of this site than went in. `hand`: as it is read. `most_damping`: N·s/m that the device
+  /// holds.
+  Wrench guard(std::size_t g, const Wrench& wanted, const Pose& hand, const Twist& twist, double dt,
+               double most_damping) noexcept;
+  void sent(std::size_t g, const Wrench& wrench) noexcept { guards_[g].sent(wrench); }
+  /// On by `dt` s of the body's time, to `now_ns`.
+  void advance(std::span<const OwnHand> own, double dt, std::int64_t now_ns) noexcept;
+
+  /// J that the person at own grip `g` put in.
+  double energy(std::size_t g) const noexcept { return guards_[g].energy(); }
+  LoopDelay delay() const noexcept { return delay_.delay(); }
+  const BodyReplica& replica() const noexcept { return replica_; }
+  /// The guards have fired so often that the replica is not followed: a damped spring to the host's word is.
+  bool fallen_back() const noexcept { return fallen_back_; }
+  std::uint64_t fired() const noexcept { return fired_; }  ///< ticks in which a guard did
+
+ private:
+  void watch(double dt) noexcept;
+  void note_unrest(const FluidLoad& load, double elapsed) noexcept;
+  /// What acts on the body besides couplings and the fluid's answer to its acceleration: fluid, weight,
+  /// contacts.
+  Vector6 rest_of(const HostWord& word) const noexcept;
+
+  ReplicaBody body_;
+  BodyReplica replica_;
+  FluidLoad fluid_;
+  std::vector<Pose> grips_;  // in the mesh frame
+  std::vector<CouplingGains> gains_;
+  std::vector<ReplicaHand> hands_;
+  std::vector<VelocityWindow> speeds_;       // of other sites' hands
+  std::vector<PassivityController> guards_;  // of own ones
+  LoopDelayEstimate delay_;
+  RigidMotion heard_;
+  double heard_time_ = 0.0;
+  bool counted_ = false;  // all who hold the body
+  std::int64_t heard_ns_ = 0;
+  double since_heard_ = 0.0;  // s
+  bool started_ = false;
+  double unrest_ = 0.0;  // 0–1
+  bool fires_ = false;   // in this tick
+  double firing_ = 0.0;  // share of ticks lately
+  double calm_ = 0.0;    // s since a guard fired
+  bool fallen_back_ = false;
+  std::uint64_t fired_ = 0;
+};
+
+}  // namespace slosh

@@ -1,0 +1,76 @@
+// Hands at several sites on one body, in virtual time: how a coupling fares over a delay.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "peer/haptics/replica/body_replica.h"
+#include "sim/math/pose.h"
+
+namespace slosh::coupling {
+
+/// What makes the force at a site.
+enum class Scheme {
+  kZeroDelay,   ///< what the others are measured against: host and hands at one place, at 1 kHz
+  kHostForce,   ///< the host's coupling force, held: the published scheme, whose host has the devices
+  kPeerSpring,  ///< a spring and damper to the host's newest body
+  kReplica,     ///< peer/haptics/replica
+};
+/// How the hands want to go: all alike, the first alone, every other one the other way, or the first alone,
+/// which lets go at its fastest.
+enum class Motion { kTogether, kOneMoves, kOpposing, kRelease };
+/// What acts on the body besides hands: nothing; drag and 1.5 kg of fluid that swings at 1.5 Hz, of which the
+/// host says a model as added mass and drag; the same, and it says none; its weight, and a table that it
+/// starts on.
+enum class Load { kNone, kFluid, kFluidUntold, kTable };
+
+struct Case {
+  std::string name;
+  int hands = 2;              ///< ≥ 1, each at a site of its own
+  double stiffness = 1000.0;  ///< N/m; 30 ms of it damp, and a hundredth m² turns
+  Motion motion = Motion::kTogether;
+  Load load = Load::kNone;
+  std::string grip = "tight";   ///< parse_operator's words
+  double round_trip = 0.1;      ///< s, the network's
+  double jitter = 0.0;          ///< s, 0 to this much on top of each way
+  double loss = 0.0;            ///< chance, each way
+  double pose_rate = 500.0;     ///< Hz
+  double host_rate = 500.0;     ///< Hz, steps and states
+  double replica_mass = 1.0;    ///< times the body's: how wrong the replica is
+  double most_damping = 100.0;  ///< N·s/m that the devices hold
+  double seconds = 12.0;        ///< the hands move for 4 of them, from 0.5 on
+};
+
+enum class Verdict {
+  kStable,      ///< what swings after the hands stopped dies away
+  kLimitCycle,  ///< it does not
+  kDiverged,    ///< beyond 2 kN or 3 m
+};
+
+struct Outcome {
+  Verdict verdict = Verdict::kStable;
+  double generated = 0.0;    ///< J that came out beyond what all persons had put in, the most at any moment
+  double peak = 0.0;         ///< N, largest force on a hand
+  double swing = 0.0;        ///< m/s, rms over all hands in the last second
+  double fired = 0.0;        ///< share of ticks in which a site's guard acted
+  bool fell_back = false;    ///< a site went over to the damped spring
+  std::vector<Wrench> felt;  ///< each tick's, hand by hand
+};
+
+/// Runs `c`: the same numbers on every machine of a kind. About 0.01 s a hand and second of 1 kHz.
+Outcome run(const Case& c, Scheme scheme, const ReplicaTuning& tuning = {});
+
+/// RMS of the forces' difference over the RMS of the reference's, both over all hands; 1 = 100 %.
+double force_error(const Outcome& felt, const Outcome& reference);
+
+/// s of round trip at which theory sees the peer's spring go: Gil & Hulin's K < (b + B)/(T/2 + t_d), b the
+/// hand's damping.
+double spring_bound(const Case& c);
+
+const char* word(Verdict verdict);
+const char* word(Scheme scheme);
+
+/// The cases that broke schemes (the study of the coupling at a distance), at a round trip of 0.
+std::vector<Case> known_breakers();
+
+}  // namespace slosh::coupling

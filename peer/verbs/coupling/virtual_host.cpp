@@ -1,0 +1,96 @@
+#include "peer/verbs/coupling/virtual_host.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace slosh::coupling {
+namespace {
+
+constexpr double kMass = 2.5;            // kg
+constexpr double kRadius = 0.15;         // m
+constexpr double kFluidMass = 1.5;       // kg
+constexpr double kSwing = 1.5;           // Hz
+constexpr double kFluidDamping = 1.0;    // N·s/m, of the swing
+constexpr double kDrag = 4.0;            // N·s/m
+constexpr double kTurningDrag = 0.02;    // N·m·s/rad
+constexpr double kGravity = 9.81;        // m/s²
+constexpr double kTable = 2e4;           // N/m
+constexpr double kTableDamping = 100.0;  // N·s/m
+
+}  // namespace
+
+VirtualHost::VirtualHost(const Case& c, double time_step)
+    : kind_(c.load),
+      dt_(time_step),
+      gains_{c.stiffness, 0.03 * c.stiffness, 0.01 * c.stiffness, 0.0003 * c.stiffness},
+      on_hand_(static_cast<std::size_t>(c.hands)) {
+  body_.free = true;
+  body_.mass = kMass;
+  body_.inertia = glm::dmat3(0.0);
+  body_.inertia[0][0] = body_.inertia[2][2] = 0.03;
+  body_.inertia[1][1] = 0.025;
+  body_.inverse_inertia = glm::inverse(body_.inertia);
+  for (int i = 0; i < c.hands; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / c.hands;
+    Pose& grip = grips_.emplace_back();
+    grip.position = {kRadius * std::cos(angle), 0.05, kRadius * std::sin(angle)};
+  }
+}
+
+RigidMotion VirtualHost::motion() const {
+  return {body_.position, body_.orientation, {body_.velocity, body_.angular_velocity}};
+}
+
+/// The fluid in the body: a mass on a spring, and drag. Or its weight, and the table's spring.
+Wrench VirtualHost::external() {
+  if (kind_ == Load::kNone) return {};
+  if (kind_ == Load::kTable) {
+    const double in = std::max(-body_.position.y, 0.0);
+    const double pushes = in > 0.0 ? kTable * in - kTableDamping * body_.velocity.y : 0.0;
+    return {{0.0, std::max(pushes, 0.0) - kMass * kGravity, 0.0}, {}};
+  }
+  const double pace = 2.0 * std::numbers::pi * kSwing;
+  const glm::dvec3 pull = kFluidMass * pace * pace * (fluid_place_ - body_.position) +
+                          kFluidDamping * (fluid_velocity_ - body_.velocity);
+  fluid_velocity_ -= dt_ / kFluidMass * pull;
+  fluid_place_ += dt_ * fluid_velocity_;
+  return {pull - kDrag * body_.velocity, -kTurningDrag * body_.angular_velocity};
+}
+
+void VirtualHost::step(const std::vector<HandWord>& hands) {
+  std::vector<ActiveCoupling> couplings;
+  for (std::size_t i = 0; i < hands.size(); ++i) {
+    on_hand_[i] = Wrench{};
+    if (!hands[i].engaged) continue;
+    ActiveCoupling& c = couplings.emplace_back();
+    c.grip = static_cast<int>(i);
+    c.gains = gains_;
+    c.handle = hands[i].pose;
+    c.handle_twist = hands[i].twist;
+    c.grip_pose = compose(body_.mesh_pose(), grips_[i]);
+    c.arm = c.grip_pose.position - body_.position;
+  }
+  const Wrench acting = external();
+  const glm::dvec3 before = body_.velocity;
+  BodySolve solve;
+  if (!solve_body(body_, acting, couplings, dt_, solve)) return;
+  advance_body(body_, solve, dt_);
+  for (const ActiveCoupling& c : couplings) {
+    const Wrench on_body = coupling_wrench(c, solve, dt_);
+    on_hand_[static_cast<std::size_t>(c.grip)] = {-on_body.force, -on_body.torque};
+  }
+  if (kind_ != Load::kFluid) return;
+  // As a host says it: what is left of the force without what it gave for being accelerated.
+  const glm::dvec3 left = acting.force + kFluidMass * (body_.velocity - before) / dt_;
+  load_.reference = {body_.position, body_.orientation};
+  load_.twist = {body_.velocity, body_.angular_velocity};
+  load_.wrench = {left.x, left.y, left.z, acting.torque.x, acting.torque.y, acting.torque.z};
+  for (std::size_t i = 0; i < 3; ++i) {
+    load_.added_mass[i][i] = kFluidMass;
+    load_.d_velocity[i][i] = -kDrag;
+    load_.d_velocity[3 + i][3 + i] = -kTurningDrag;
+  }
+}
+
+}  // namespace slosh::coupling

@@ -1,0 +1,168 @@
+// The guard of a hand that holds a body far away: what a host that lies can do to it, and when it gives up
+// the replica.
+#include "peer/haptics/replica/held_body.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "net/clock.h"
+#include "peer/haptics/devices/operator_arm.h"
+
+namespace slosh {
+namespace {
+
+constexpr double kTick = 0.001;
+
+ReplicaBody body() {
+  ReplicaBody b;
+  b.mass = 2.0;
+  b.inertia = glm::dmat3(0.02);
+  return b;
+}
+
+struct Outcome {
+  double out = 0.0;  // J that came out of the device beyond what went in, the most
+  double peak = 0.0;
+  double fired = 0.0;
+  bool fell_back = false;
+};
+
+/// A person who only holds on, 0.1 s away from a host where another hand swings the body at `pace` Hz by 5
+/// cm; that one's site counts no energy for it.
+Outcome held_by(double pace, bool guarded) {
+  const CouplingGains gains{1000.0, 30.0, 10.0, 0.3};
+  HeldBody held(body(), {{Pose{}, gains}, {Pose{}, gains}});
+  const ArmImpedance arm{1.5, 6.0, 120.0};
+  ArmState at;
+  Wrench felt;
+  std::vector<OwnHand> own(2);
+  Outcome outcome;
+  double in = 0.0;
+  for (int i = 0; i < 6000; ++i) {
+    const double now = kTick * i;
+    const ArmState next = arm_after(arm, at, felt.force, i == 0 ? 0.0 : kTick);
+    in -= glm::dot(felt.force, next.place - at.place);
+    at = next;
+    outcome.out = std::max(outcome.out, -in);
+    own[0] = {true, true, {at.place, {1, 0, 0, 0}}, {at.velocity, {}}};
+    if (i % 2 == 0) {
+      const double turn = 2.0 * std::numbers::pi * pace;
+      HostWord word;
+      word.now_ns = to_nanoseconds(now) + 1;
+      word.time = now;
+      word.motion.position.x = 0.05 * std::sin(turn * now);
+      word.motion.twist.linear.x = 0.05 * turn * std::cos(turn * now);
+      // All of the body's acceleration comes from the other hand.
+      const double force = -body().mass * 0.05 * turn * turn * std::sin(turn * now - turn * kTick);
+      std::array<HostHand, 2> said;
+      said[0] = {true, own[0].handle, {}, i < 110 ? 0 : to_nanoseconds(now - 0.1) + 1, true, 0.0};
+      said[1] = {true, {word.motion.position, {1, 0, 0, 0}}, {{-force, 0.0, 0.0}, {}}, 0, true, 0.0};
+      word.hands = said;
+      held.hear(word);
+    }
+    const GripState grip = held.grip(0);
+    const Wrench wanted = coupling_wrench_on_hand(gains, own[0].handle, own[0].twist, grip.pose, grip.twist);
+    felt = held.guard(0, wanted, own[0].handle, own[0].twist, kTick, 500.0);
+    if (!guarded) felt = wanted;
+    held.sent(0, felt);
+    held.advance(own, kTick, to_nanoseconds(now + kTick) + 1);
+    outcome.peak = std::max(outcome.peak, glm::length(felt.force));
+    outcome.fell_back = outcome.fell_back || held.fallen_back();
+  }
+  outcome.fired = static_cast<double>(held.fired()) / 6000.0;
+  return outcome;
+}
+
+TEST(HeldBody, CountsWhatThePersonPutIn) {
+  PassivityController guard;
+  guard.restart({});
+  // Against a spring of 100 N/m for 0.1 m: 0.5 J, less what a tick holds on too long.
+  Pose hand;
+  double x = 0.0;
+  for (int i = 0; i < 1000; ++i) {
+    x += 1e-4;
+    hand.position.x = x;
+    const Wrench wanted{{-100.0 * x, 0.0, 0.0}, {}};
+    guard.sent(guard.guard(wanted, hand, {{0.1, 0.0, 0.0}, {}}, kTick, 0.0, 100.0));
+    EXPECT_FALSE(guard.fires());
+  }
+  EXPECT_NEAR(guard.energy(), 0.5, 1e-3);
+}
+
+TEST(HeldBody, NoMoreComesOutThanThereIs) {
+  // A force that pushes the hand along, with nobody behind it.
+  for (const double credit : {0.0, 0.2}) {
+    PassivityController guard;
+    guard.restart({});
+    const ArmImpedance arm{1.0, 0.5, 1.0};
+    ArmState at;
+    Wrench felt;
+    double out = 0.0;
+    for (int i = 0; i < 3000; ++i) {
+      const ArmState next = arm_after(arm, at, felt.force, kTick);
+      out += glm::dot(felt.force, next.place - at.place);
+      at = next;
+      const Wrench wanted{{2.0 * std::sin(0.01 * i), 0.0, 0.0}, {}};
+      felt = guard.guard(wanted, {at.place, {1, 0, 0, 0}}, {at.velocity, {}}, kTick, credit, 500.0);
+      guard.sent(felt);
+      EXPECT_LE(out, credit + 1e-3) << i;
+    }
+    EXPECT_NEAR(out, -guard.energy(), 0.01);
+  }
+}
+
+TEST(HeldBody, ATurningHandIsGuardedToo) {
+  PassivityController guard;
+  guard.restart({});
+  const ArmImpedance wrist{0.004, 0.002, 0.01};
+  ArmState at;
+  Wrench felt;
+  double out = 0.0;
+  for (int i = 0; i < 2000; ++i) {
+    const ArmState next = arm_after(wrist, at, felt.torque, kTick);
+    out += glm::dot(felt.torque, next.place - at.place);
+    at = next;
+    const Pose hand{glm::dvec3(0.0), rotate_by({1, 0, 0, 0}, at.place)};
+    felt =
+        guard.guard({{}, {0.0, 0.05 * std::sin(0.02 * i), 0.0}}, hand, {{}, at.velocity}, kTick, 0.0, 500.0);
+    guard.sent(felt);
+    EXPECT_LE(out, 1e-3) << i;
+  }
+}
+
+TEST(HeldBody, AnotherHandThatPutNothingInMovesNobody) {
+  for (const double pace : {0.5, 2.0, 5.0}) {
+    const Outcome bare = held_by(pace, false);
+    const Outcome guarded = held_by(pace, true);
+    std::printf(
+        "%.1f Hz: %.1f mJ and %.1f N without the guard, %.2f mJ and %.1f N with it, firing %.0f %% %s\n",
+        pace, 1e3 * bare.out, bare.peak, 1e3 * guarded.out, guarded.peak, 100.0 * guarded.fired,
+        guarded.fell_back ? "fell back" : "");
+    EXPECT_GT(bare.out, 0.01);
+    EXPECT_LT(guarded.out, 0.02);  // 9 to 14 mJ in 6 s: what a tick gives before it is counted
+  }
+}
+
+TEST(HeldBody, BeginsAnewAfterARestart) {
+  HeldBody held(body(), {{Pose{}, {1000.0, 30.0, 10.0, 0.3}}});
+  HostWord word;
+  word.now_ns = 1;
+  word.motion.position = {1.0, 2.0, 3.0};
+  const HostHand said{true, {}, {}, 0, true, 0.0};
+  word.hands = {&said, 1};
+  EXPECT_FALSE(held.started());
+  held.hear(word);
+  EXPECT_EQ(held.grip(0).pose.position, word.motion.position);
+  held.restart();
+  EXPECT_FALSE(held.started());
+  word.motion.position = {-1.0, 0.0, 0.0};
+  held.hear(word);
+  EXPECT_EQ(held.grip(0).pose.position, word.motion.position);
+}
+
+}  // namespace
+}  // namespace slosh
