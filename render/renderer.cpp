@@ -137,6 +137,15 @@ void Renderer::Parts::show_in_window() {
                          window == targets.size ? GL_NEAREST : GL_LINEAR);
 }
 
+RenderOptions section_five(RenderOptions options) {
+  options.surface = Surface::kPaper;
+  options.bilateral_iterations = 4;
+  options.splat_scale = 1.2f;
+  options.half_resolution_back = true;
+  options.fresnel = options.lit_fluid = options.fluid_shadow = false;
+  return options;
+}
+
 Renderer::Renderer(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 Renderer::~Renderer() = default;
 
@@ -244,6 +253,14 @@ FloatImage Renderer::read_buffer(Buffer buffer) {
       const gl::Texture texture = gl::make_texture(t.size, GL_R32F, GL_NEAREST);
       p.fluid_passes->thickness(t, gl::make_framebuffer({&texture}));
       return read_floats(texture, t.size, 1);
+    }
+    case Buffer::kNormal: {
+      const gl::Texture texture = gl::make_texture(t.size, GL_RGBA32F, GL_NEAREST);
+      const gl::Framebuffer target = gl::make_framebuffer({&texture});
+      const glm::vec4 none(0.0f);
+      glClearNamedFramebufferfv(target.name(), GL_COLOR, 0, &none.x);
+      if (p.drew_fluid) p.fluid_passes->normals(t, target);
+      return read_floats(texture, t.size, 3);
     }
     case Buffer::kFluidIndex:
       return p.drew_fluid ? fluid_indices(read_floats(t.front, t.size, 1)) : no_fluid(-1.0f);

@@ -30,12 +30,18 @@ enum class Quality : std::uint8_t {
   kFull,
 };
 
+/// How the splats' depths become the fluid's surface.
+enum class Surface : std::uint8_t {
+  kPaper,  ///< section 5 as it stands: its filter, and Eq 15 with its T
+  kOurs,
+};
+
 struct RenderOptions {
   int width = 960;  ///< pixels of the picture, 1–16384
   int height = 540;
 
+  Surface surface = Surface::kOurs;
   int bilateral_iterations = 4;  ///< of section 5.1's filter, 0–64
-  bool wide_filter = true;       ///< beyond the paper: taps spread with the splat's size on screen (README)
   float bilateral_range =
       6.0f;                  ///< difference in depth at which the filter's weight is 0, particle radii, > 0
   float splat_scale = 1.2f;  ///< splat radius over particle radius (5.1), > 0
@@ -53,6 +59,9 @@ struct RenderOptions {
   float exposure = 1.0f;  ///< factor on scene-linear light before the display transform, > 0
 };
 
+/// `options` with all of section 5 and nothing beyond it: its filter four times, half-size back depth, Eq 15.
+RenderOptions section_five(RenderOptions options);
+
 /// Milliseconds of one pass of the last frame, when timing is on.
 struct PassTime {
   std::string pass;
@@ -69,6 +78,7 @@ enum class Buffer : std::uint8_t {
   kBackDepth,    ///< F_bD, at half size if so asked; 0 where there is no fluid
   kThickness,    ///< T of Eq 15, m; 0 = no fluid seen
   kFluidIndex,   ///< the front-most particle's index into Frame::fluids, −1 = none
+  kNormal,       ///< three channels, unit, eye axes; 0 where no fluid is drawn
 };
 
 inline constexpr float kNoFluidDepth = 1.0e6f;

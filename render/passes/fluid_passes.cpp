@@ -37,7 +37,8 @@ Result<FluidPasses> FluidPasses::create(bool fast) {
                                      load(passes.smooth_program_, "tiles.vert", "smooth.frag"),
                                      load(passes.composite_program_, "tiles.vert", "composite.frag",
                                           std::vector<std::string>(fast ? 1 : 0, "FAST")),
-                                     load(passes.thickness_program_, "tiles.vert", "thickness.frag")}) {
+                                     load(passes.thickness_program_, "tiles.vert", "thickness.frag"),
+                                     load(passes.normal_program_, "tiles.vert", "normal.frag")}) {
     if (!loaded) return loaded.error();
   }
   passes.no_vertices_ = gl::make_vertex_array();
@@ -95,7 +96,7 @@ void FluidPasses::smooth(const Targets& targets, const RenderOptions& options) {
     const int into = i % 2;
     gl::bind_textures({&smoothed(targets)});
     draw_into(targets.smooth_target[static_cast<std::size_t>(into)], targets.size);
-    smooth_program_.set("spread", options.wide_filter ? spread_of(i, count) : 0.0f);
+    smooth_program_.set("spread", options.surface == Surface::kPaper ? 0.0f : spread_of(i, count));
     draw_tiles();
     smoothed_ = into;
   }
@@ -110,10 +111,19 @@ void FluidPasses::composite(const Targets& targets) {
 }
 
 void FluidPasses::thickness(const Targets& targets, const gl::Framebuffer& target) {
+  draw_data(thickness_program_, targets, target);
+}
+
+void FluidPasses::normals(const Targets& targets, const gl::Framebuffer& target) {
+  draw_data(normal_program_, targets, target);
+}
+
+void FluidPasses::draw_data(const gl::Program& program, const Targets& targets,
+                            const gl::Framebuffer& target) {
   gl::bind_textures({&targets.front, &smoothed(targets), &targets.back, &targets.scene_depth});
   clear_to(target, 0.0f);
   draw_into(target, targets.size);
-  thickness_program_.use();
+  program.use();
   draw_tiles();
 }
 

@@ -21,20 +21,23 @@ class FluidPasses {
   void smooth(const Targets& targets, const RenderOptions& options);
   /// 5.2, Eq 15. Reads front, smooth, back, scene_depth, scene_color; writes color where there is fluid.
   void composite(const Targets& targets);
-  /// T for tests, into an R32F target of the picture's size.
+  /// T for tests, into an R32F target of the picture's size; and n, into an RGBA32F one.
   void thickness(const Targets& targets, const gl::Framebuffer& target);
+  void normals(const Targets& targets, const gl::Framebuffer& target);
 
   /// F_fD after the last smooth(), or before it if no iteration was asked for.
   const gl::Texture& smoothed(const Targets& targets) const;
 
  private:
   void draw_tiles();
+  void draw_data(const gl::Program& program, const Targets& targets, const gl::Framebuffer& target);
 
   gl::Program front_program_;
   gl::Program back_program_;
   gl::Program smooth_program_;
   gl::Program composite_program_;
   gl::Program thickness_program_;
+  gl::Program normal_program_;
   gl::StreamBuffer sphere_buffer_;
   gl::StreamBuffer back_buffer_;
   gl::StreamBuffer tile_buffer_;

@@ -4,7 +4,23 @@
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
 namespace slosh {
+namespace {
+
+/// Debian's fonts-dejavu-core; where it is not installed, Dear ImGui's own font is made larger.
+constexpr const char* kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSansMono.ttf";
+constexpr int kLeastPixels = 13;
+constexpr int kMostPixels = 96;
+
+}  // namespace
+
+int hud_font_pixels(float picture_height) {
+  return std::clamp(static_cast<int>(std::lround(0.0195f * picture_height)), kLeastPixels, kMostPixels);
+}
 
 Result<std::unique_ptr<HudPass>> HudPass::create(Context& context) {
   std::unique_ptr<HudPass> pass(new HudPass());
@@ -36,6 +52,23 @@ HudPass::~HudPass() {
   ImGui::SetCurrentContext(before == imgui_ ? nullptr : before);
 }
 
+void HudPass::fit_font() {
+  ImGuiIO& io = ImGui::GetIO();
+  const float scale = io.DisplayFramebufferScale.y > 0.0f ? io.DisplayFramebufferScale.y : 1.0f;
+  const int pixels = hud_font_pixels(io.DisplaySize.y * scale);
+  io.FontGlobalScale = 1.0f / scale;
+  if (pixels == font_pixels_) return;
+  font_pixels_ = pixels;
+  io.Fonts->Clear();
+  if (!std::filesystem::exists(kFont) || !io.Fonts->AddFontFromFileTTF(kFont, static_cast<float>(pixels))) {
+    ImFontConfig own;
+    own.SizePixels = static_cast<float>(pixels);
+    io.Fonts->AddFontDefault(&own);
+  }
+  ImGui_ImplOpenGL3_DestroyFontsTexture();
+  ImGui_ImplOpenGL3_CreateFontsTexture();
+}
+
 void HudPass::draw(const std::function<void()>& hud, const Targets& targets) {
   ImGui::SetCurrentContext(imgui_);
   ImGuiIO& io = ImGui::GetIO();
@@ -51,6 +84,7 @@ void HudPass::draw(const std::function<void()>& hud, const Targets& targets) {
     io.DisplaySize = ImVec2(static_cast<float>(targets.size.x), static_cast<float>(targets.size.y));
     io.DeltaTime = 1.0f / 60.0f;
   }
+  fit_font();
   ImGui::NewFrame();
   if (hud) hud();
   ImGui::Render();

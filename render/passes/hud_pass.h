@@ -11,6 +11,9 @@ struct ImGuiContext;
 
 namespace slosh {
 
+/// Height of the HUD's letters in pixels: a share of the picture's, so that they are read on any display.
+int hud_font_pixels(float picture_height);
+
 /// Owns one Dear ImGui context. It stays the current one after draw, so that code outside may ask it things.
 class HudPass {
  public:
@@ -24,7 +27,9 @@ class HudPass {
 
  private:
   HudPass() = default;
+  void fit_font();
   ImGuiContext* imgui_ = nullptr;
+  int font_pixels_ = 0;  ///< that the font's atlas was made for
   bool has_window_ = false;
   bool gl_ready_ = false;
 };

@@ -1,5 +1,6 @@
 #include "render/passes/meshes.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace slosh {
@@ -12,6 +13,26 @@ struct Vertex {
 
 bool finite(const glm::vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+constexpr std::size_t kMostConvexWork = 4000000;  // triangles times corners
+
+bool is_convex(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles,
+               const Bounds& bounds) {
+  if (triangles.size() * triangles.size() * 3 > kMostConvexWork) return false;
+  const float slack = 1e-4f * glm::length(bounds.high - bounds.low);
+  return std::ranges::all_of(triangles, [&](const glm::uvec3& side) {
+    const glm::vec3& at = positions[side.x];
+    const glm::vec3 across = glm::cross(positions[side.y] - at, positions[side.z] - at);
+    const float size = glm::length(across);
+    if (size < 1e-12f) return true;  // no area, no plane
+    return std::ranges::all_of(triangles, [&](const glm::uvec3& other) {
+      for (int k = 0; k < 3; ++k) {
+        if (glm::dot(positions[other[k]] - at, across) > slack * size) return false;
+      }
+      return true;
+    });
+  });
 }
 
 }  // namespace
@@ -52,6 +73,7 @@ MeshHandle MeshStore::add(std::span<const glm::vec3> positions, std::span<const 
       glVertexArrayAttribBinding(array, attribute, 0);
     }
     mesh.index_count = static_cast<GLsizei>(3 * kept.size());
+    mesh.convex = is_convex(positions, kept, mesh.bounds);
   }
   meshes_.push_back(std::move(mesh));
   return handle;

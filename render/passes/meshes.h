@@ -30,6 +30,8 @@ class MeshStore {
   bool has(MeshHandle handle) const { return handle < meshes_.size() && meshes_[handle].index_count > 0; }
   /// The mesh's box in its own frame.
   const Bounds& bounds(MeshHandle handle) const { return meshes_[handle].bounds; }
+  /// All of it lies behind each of its triangles (of small meshes alone: a large one is taken not to be).
+  bool convex(MeshHandle handle) const { return meshes_[handle].convex; }
   /// Issues the draw call; the program is the caller's.
   void draw(MeshHandle handle) const;
 
@@ -40,6 +42,7 @@ class MeshStore {
     gl::VertexArray array;
     GLsizei index_count = 0;
     Bounds bounds;
+    bool convex = false;
   };
   std::vector<Mesh> meshes_;
 };

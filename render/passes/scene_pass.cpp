@@ -135,7 +135,7 @@ void ScenePass::draw_translucent(const Frame& frame, const MeshStore& meshes, co
   glEnable(GL_DEPTH_TEST);
   glDepthMask(GL_FALSE);
   glEnable(GL_BLEND);
-  glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  glBlendFunc(GL_ONE, GL_SRC1_COLOR);  // translucent.frag: light added, share of what is behind
   glEnable(GL_CULL_FACE);
   for (auto at = sorted.rbegin(); at != sorted.rend(); ++at) {  // far before near
     const MeshInstance* instance = *at;
@@ -148,6 +148,8 @@ void ScenePass::draw_translucent(const Frame& frame, const MeshStore& meshes, co
   }
   glDisable(GL_CULL_FACE);
   glDisable(GL_BLEND);
+  // A factor of the second output forbids targets of several textures, blended or not (GL 4.5, 17.3.6).
+  glBlendFunc(GL_ONE, GL_ZERO);
   glDepthMask(GL_TRUE);
   glDisable(GL_DEPTH_TEST);
 }

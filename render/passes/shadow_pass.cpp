@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
+#include <vector>
+
+#include "render/passes/light_fit.h"
 
 namespace slosh {
 namespace {
@@ -10,59 +13,36 @@ namespace {
 /// Texture unit of shaders/shadow.glsl.
 constexpr GLuint kShadowUnit = 8;
 
-/// World box of the meshes that cast shadows, cut to what lies within the far plane of the eye.
-Bounds caster_bounds(const Frame& frame, const MeshStore& meshes) {
-  const glm::vec3 eye(glm::inverse(frame.view.view)[3]);
-  Bounds box;
+/// The frame's known opaque meshes.
+std::vector<Caster> casters_of(const Frame& frame, const MeshStore& meshes) {
+  std::vector<Caster> casters;
   for (const MeshInstance& instance : frame.meshes) {
     if (!meshes.has(instance.mesh) || instance.look.opacity < 1.0f) continue;
-    const Bounds& own = meshes.bounds(instance.mesh);
-    for (int corner = 0; corner < 8; ++corner) {
-      const glm::vec3 world(instance.model * glm::vec4(box_corner(own, corner), 1.0f));
-      box.add(glm::clamp(world, eye - frame.view.far_plane, eye + frame.view.far_plane));
-    }
+    const glm::vec4 sum = instance.model[0] + instance.model[1] + instance.model[2] + instance.model[3];
+    if (!std::isfinite(glm::dot(sum, glm::vec4(1.0f)))) continue;  // a body that blew up
+    casters.push_back({meshes.bounds(instance.mesh), instance.model, meshes.convex(instance.mesh)});
   }
+  return casters;
+}
+
+/// Of the particles within the far plane's distance of the eye.
+Bounds fluid_box(const Frame& frame) {
+  const glm::vec3 eye(glm::inverse(frame.view.view)[3]);
+  Bounds box;
+  const std::size_t count = std::min(frame.particles.size(), frame.particle_fluid.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const glm::vec3 off = glm::abs(frame.particles[i] - eye);
+    const bool near = std::max({off.x, off.y, off.z}) < frame.view.far_plane;
+    if (near && std::isfinite(off.x + off.y + off.z) && frame.particle_fluid[i] < frame.fluids.size())
+      box.add(frame.particles[i]);
+  }
+  if (box.empty()) return box;
+  box.low -= frame.particle_radius;
+  box.high += frame.particle_radius;
   return box;
 }
 
-/// Of the particles within the far plane's distance of the eye, along to_light, m.
-float highest_fluid(const Frame& frame, const glm::vec3& to_light) {
-  const float eye = glm::dot(glm::vec3(glm::inverse(frame.view.view)[3]), to_light);
-  float highest = -1e30f;
-  for (const glm::vec3& particle : frame.particles) {
-    const float height = glm::dot(particle, to_light);
-    if (height > highest && height < eye + frame.view.far_plane) highest = height;
-  }
-  return highest;
-}
-
 }  // namespace
-
-glm::vec3 box_corner(const Bounds& box, int corner) {
-  return {(corner & 1) ? box.high.x : box.low.x, (corner & 2) ? box.high.y : box.low.y,
-          (corner & 4) ? box.high.z : box.low.z};
-}
-
-glm::mat4 light_clip_from_world(const Bounds& box, const glm::vec3& to_light, float highest, int size) {
-  const glm::vec3 up =
-      std::abs(to_light.y) > 0.99f ? glm::vec3(0.0f, 0.0f, 1.0f) : glm::vec3(0.0f, 1.0f, 0.0f);
-  const glm::mat4 light = glm::lookAt(glm::vec3(0.0f), -to_light, up);
-  Bounds seen;
-  for (int corner = 0; corner < 8; ++corner) {
-    seen.add(glm::vec3(light * glm::vec4(box_corner(box, corner), 1.0f)));
-  }
-  seen.high.z = std::max(seen.high.z, highest);
-  // Round the extent up and the centre to whole texels: a body that moves the box must not make the edges
-  // crawl.
-  const glm::vec3 span = glm::max(seen.high - seen.low, glm::vec3(1e-3f));
-  const float extent = std::exp2(std::ceil(4.0f * std::log2(std::max(span.x, span.y) * 1.02f)) / 4.0f);
-  const float texel = extent / static_cast<float>(size);
-  const glm::vec2 center = glm::floor(0.5f * glm::vec2(seen.low + seen.high) / texel) * texel;
-  const float margin = 0.01f * span.z + 1e-3f;
-  return glm::ortho(center.x - 0.5f * extent, center.x + 0.5f * extent, center.y - 0.5f * extent,
-                    center.y + 0.5f * extent, -seen.high.z - margin, -seen.low.z + margin) *
-         light;
-}
 
 Result<ShadowPass> ShadowPass::create(int size) {
   auto program = gl::Program::create("depth_only.vert", "nothing.frag");
@@ -79,11 +59,10 @@ Result<ShadowPass> ShadowPass::create(int size) {
 
 ShadowView ShadowPass::draw(const Frame& frame, const MeshStore& meshes) {
   glBindTextureUnit(kShadowUnit, map_.name());
-  const Bounds box = caster_bounds(frame, meshes);
-  if (box.empty()) return {};
-  const glm::vec3 to_light = direction_to_light(frame);
-  const glm::mat4 clip_from_world =
-      light_clip_from_world(box, to_light, highest_fluid(frame, to_light), size_);
+  const std::vector<Caster> casters = casters_of(frame, meshes);
+  if (casters.empty()) return {};
+  const LightFit fit = fit_light(casters, fluid_box(frame), frame.view, direction_to_light(frame));
+  const glm::mat4 clip_from_world = light_clip_from_world(fit, size_);
 
   glBindFramebuffer(GL_FRAMEBUFFER, target_.name());
   glViewport(0, 0, size_, size_);

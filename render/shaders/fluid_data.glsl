@@ -19,9 +19,10 @@ float back_depth_at(vec2 pixel) {
   return dot(w, four) / max(dot(w, vec4(1.0)), 1.0e-6);
 }
 
-// T of Eq 15 with the smoothed front depth; 0 where there is no fluid.
-float thickness_at(ivec2 texel, float front) {
-  if (front > kFluidDepthLimit) return 0.0;
+// T of Eq 15; 0 where there is no fluid. raw, front: front depth as splatted, and smoothed.
+float thickness_at(ivec2 texel, float raw, float front) {
+  if (raw > kFluidDepthLimit) return 0.0;
   float scene = texelFetch(scene_depth, texel, 0).r;
-  return fluid_thickness(front, back_depth_at(vec2(texel) + 0.5), scene);
+  float back = back_depth_at(vec2(texel) + 0.5);
+  return switches.w > 0.5 ? fluid_thickness(front, back, scene) : kept_thickness(front, raw, back, scene, splat.x);
 }

@@ -3,5 +3,7 @@ in vec4 optical;
 layout(location = 0) out vec4 depth_of_fluid;
 void main() {
   vec2 disc = gl_PointCoord * 2.0 - 1.0;
-  depth_of_fluid = vec4(optical.rgb * sqrt(max(1.0 - dot(disc, disc), 0.0)), optical.a);
+  float off = dot(disc, disc);
+  if (off >= 1.0) discard;  // the corners of the point's square are no fluid: they must not raise its top
+  depth_of_fluid = vec4(optical.rgb * sqrt(1.0 - off), optical.a);
 }

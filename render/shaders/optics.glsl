@@ -5,6 +5,15 @@ SHARED float fluid_thickness(float front_depth, float back_depth, float scene_de
   return max(min(back_depth, scene_depth) - min(front_depth, scene_depth), 0.0f);
 }
 
+// The same where front was smoothed and the back was not. The splats as they were drawn say whether a pixel is fluid
+// (raw, before the scene), and how thick it is at least, up to a splat's radius: a filter moves the front by less. Never
+// 0 where it is fluid: at half size the back misses the outermost pixels.
+SHARED float kept_thickness(float smoothed, float raw, float back_depth, float scene_depth, float radius) {
+  if (raw >= scene_depth) return 0.0f;
+  float own = fluid_thickness(raw, back_depth, scene_depth);
+  return max(fluid_thickness(min(smoothed, scene_depth), back_depth, scene_depth), clamp(own, 0.05f * radius, radius));
+}
+
 // exp(−T·F_e): the share of the light from behind that comes through, per channel. Extinction in 1/m.
 SHARED vec3 transmittance(vec3 extinction, float thickness) { return exp(-thickness * extinction); }
 
@@ -27,6 +36,9 @@ SHARED float schlick(float f0, float cos_angle) {
   float m2 = m * m;
   return f0 + (1.0f - f0) * m2 * m2 * m;
 }
+
+// Reflectance of a thin pane: both of its faces mirror, and what goes to and fro between them adds up. `once`: one face.
+SHARED float pane_reflectance(float once) { return 2.0f * once / (1.0f + once); }
 
 // Where Eq 15 looks the scene up: the displacement in texture coordinates. refraction (β) is in screen heights
 // a metre of thickness; normal.xy in eye axes.

@@ -25,7 +25,18 @@ float light_past_meshes(vec3 world, vec3 normal) {
   return outside ? 1.0 : reaching;
 }
 
-// The same for fluid, per channel: exp of what the light passes through. The whole of it counts for a point anywhere
+// What fluid above leaves of the light for a point on the fluid's own surface. It fades in from three to nine splat radii
+// below the fluid's top, so that neighbours do not dim each other; never more than the whole way through. Beyond the paper.
+vec3 light_past_fluid_above(vec3 world, vec3 extinction) {
+  vec3 at = in_shadow_map(world);
+  vec4 dimming = texture(fluid_shadow, at.xy);
+  float radii = (at.z - (1.0 - dimming.a)) * splat.w;
+  bool none = to_light_world.w < 0.5 || dimming.a <= 0.0;
+  vec3 left = exp(-min(dimming.rgb, extinction * (max(radii, 0.0) * splat.x)));
+  return none ? vec3(1.0) : mix(vec3(1.0), left, smoothstep(3.0, 9.0, radii));
+}
+
+// The same for what is below the fluid, per channel: exp of what the light passes through. The whole of it counts for a point anywhere
 // below the fluid's top, so a point in the middle of the fluid is a little too dark. Beyond the paper.
 vec3 light_past_fluid(vec3 world) {
   vec3 at = in_shadow_map(world);

@@ -71,7 +71,7 @@ int main(int argc, char** argv) {
   RenderOptions options;
   options.width = wishes.width;
   options.height = wishes.height;
-  if (wishes.paper) options.wide_filter = options.fresnel = options.lit_fluid = false;
+  if (wishes.paper) options = section_five(options);
   if (wishes.full) options.quality = Quality::kFull;
   auto made = Renderer::create(*context.value(), options);
   if (!made) return fail(made.error());

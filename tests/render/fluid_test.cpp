@@ -188,7 +188,7 @@ TEST_F(FluidTest, TheFilterFlattensASheetAndLeavesItWhereItIs) {
   const Roughness raw = roughness_of(renderer->read_buffer(Buffer::kFrontDepth));
   const Roughness paper_filter = roughness_of(renderer->read_buffer(Buffer::kSmoothDepth));
   RenderOptions options = paper();
-  options.wide_filter = true;
+  options.surface = Surface::kOurs;
   ASSERT_TRUE(renderer->set_options(options));
   renderer->draw(frame);
   const Roughness wide = roughness_of(renderer->read_buffer(Buffer::kSmoothDepth));
@@ -257,7 +257,7 @@ TEST_F(FluidTest, SpecularIsBlinnAtTheHalfVector) {
   frame.light_direction = {0.0f, 0.0f, -1.0f};
   RenderOptions options = paper();
   options.bilateral_iterations = 40;
-  options.wide_filter = true;
+  options.surface = Surface::kOurs;
   auto renderer = make(options);
   renderer->draw(frame);
   // Light, eye and normal in one line at the centre: (n·h)^α is one.

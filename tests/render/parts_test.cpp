@@ -3,13 +3,14 @@
 
 #include <algorithm>
 #include <fstream>
+#include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 
 #include "render/color/display_transform.h"
 #include "render/gl/shader_source.h"
 #include "render/image.h"
 #include "render/passes/arrow_pass.h"
-#include "render/passes/shadow_pass.h"
+#include "render/passes/light_fit.h"
 #include "render/passes/splats.h"
 #include "render/shader_math.h"
 #include "tests/render/scene_kit.h"
@@ -202,7 +203,11 @@ TEST(Shadow, TheLightsBoxHoldsTheScene) {
   box.add({-0.7f, -0.1f, -0.4f});
   box.add({0.5f, 0.6f, 0.9f});
   for (const glm::vec3& to_light : {glm::vec3(0, 1, 0), glm::normalize(glm::vec3(0.4f, 1.0f, 0.35f))}) {
-    const glm::mat4 clip = light_clip_from_world(box, to_light, 2.0f, 512);
+    Bounds drop;
+    drop.add(2.0f * to_light);
+    const Caster scene{box, glm::mat4(1.0f), false};
+    const View all = kit::make_view(glm::vec3(0.0f, 0.0f, 6.0f), glm::vec3(0.0f), 100, 100, 90.0f);
+    const glm::mat4 clip = light_clip_from_world(fit_light(std::span(&scene, 1), drop, all, to_light), 512);
     for (int corner = 0; corner < 8; ++corner) {
       const glm::vec3 at(corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
                          corner & 4 ? box.high.z : box.low.z);
@@ -213,6 +218,36 @@ TEST(Shadow, TheLightsBoxHoldsTheScene) {
     // Nearer the light is nearer in the map.
     EXPECT_LT((clip * glm::vec4(to_light * 0.1f, 1.0f)).z, (clip * glm::vec4(-to_light * 0.1f, 1.0f)).z);
   }
+}
+
+TEST(Shadow, TheMapIsFittedToWhatCastsAndIsSeen) {
+  const glm::vec3 to_light = glm::normalize(glm::vec3(0.4f, 1.0f, 0.35f));
+  Caster table;
+  table.box.add({-0.9f, -0.05f, -0.9f});
+  table.box.add({0.9f, 0.0f, 0.9f});
+  table.convex = true;
+  Caster cup;
+  cup.box.add({-0.1f, 0.0f, -0.1f});
+  cup.box.add({0.1f, 0.2f, 0.1f});
+  const View view = kit::make_view({0.0f, 0.8f, 1.2f}, glm::vec3(0.0f), 100, 100, 60.0f);
+  const auto width = [&](std::initializer_list<Caster> meshes, const View& seen_by) {
+    const LightFit fit = fit_light(std::span(meshes.begin(), meshes.size()), {}, seen_by, to_light);
+    return fit.box.high.x - fit.box.low.x;
+  };
+  const float cup_alone = width({cup}, view);
+  EXPECT_FLOAT_EQ(width({table, cup}, view), cup_alone) << "a table only receives";
+  Caster below = cup;
+  below.model = glm::translate(glm::mat4(1.0f), glm::vec3(0.0f, -0.5f, 0.0f));
+  EXPECT_GT(width({table, below}, view), 2.0f * cup_alone) << "it casts on what is under it";
+  table.convex = false;
+  EXPECT_GT(width({table, cup}, view), 2.0f * cup_alone) << "a room casts on itself";
+  const View close = kit::make_view({0.0f, 0.25f, 0.05f}, {0.0f, 0.19f, 0.0f}, 100, 100, 20.0f);
+  EXPECT_LT(width({cup}, close), 0.8f * cup_alone) << "no texels for what the eye does not see";
+  // All that lies below still has its depth in the map: what is outside counts as lit.
+  const LightFit fit = fit_light(std::vector<Caster>{table, cup}, {}, view, to_light);
+  const glm::mat4 clip = light_clip_from_world(fit, 512);
+  for (int corner = 0; corner < 8; ++corner)
+    EXPECT_LE(std::abs((clip * glm::vec4(box_corner(table.box, corner), 1.0f)).z), 1.0f);
 }
 
 TEST(Contexts, RefuseWhatNobodyCanMake) {

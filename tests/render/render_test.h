@@ -33,8 +33,7 @@ class RenderTest : public ::testing::Test {
   }
   /// Eq 15 and nothing else.
   static RenderOptions paper() {
-    RenderOptions options = small();
-    options.fresnel = options.lit_fluid = options.wide_filter = false;
+    RenderOptions options = section_five(small());
     options.display = Display::kSrgb;
     return options;
   }
