@@ -3,6 +3,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 
 #include "peer/output/summary.h"
@@ -12,14 +13,18 @@ namespace slosh {
 namespace {
 
 constexpr double kChartSeconds = 5.0;
-constexpr float kPanelWidth = 186.0f;  // px: leaves 640 × 480 mostly to the picture
-constexpr float kChartHeight = 34.0f;
+constexpr double kStatusSeconds = 1.5;  // simulated: a status of one step is shown long enough to be read
+// In letters "0" wide and lines high: panels grow with the font, and the font with the picture.
+constexpr float kPanelLetters = 27.0f;  // leaves 640 × 480 mostly to the picture
+constexpr float kChartLines = 1.7f;
 constexpr float kMargin = 8.0f;
 constexpr float kLeastHeight = 400.0f;  // px: a smaller picture gets the time and what is wrong, no more
+constexpr float kLeastForce = 1.0f;     // N, that a chart's height is at least
+constexpr float kLeastTorque = 0.05f;   // N·m
 
 constexpr ImGuiWindowFlags kPanel = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
-                                    ImGuiWindowFlags_NoNav | ImGuiWindowFlags_AlwaysAutoResize;
+                                    ImGuiWindowFlags_NoNav;
 
 /// Brighter than on paper: the panel is dark.
 ImVec4 bright(const DeviceColor& color) {
@@ -27,17 +32,44 @@ ImVec4 bright(const DeviceColor& color) {
   return {c.r, c.g, c.b, 1.0f};
 }
 
-void labelled(const char* label, const char* value) {
-  ImGui::TextColored(ImVec4(0.72f, 0.76f, 0.80f, 1.0f), "%s", label);
-  ImGui::SameLine(80.0f);
-  ImGui::TextUnformatted(value);
-}
-
 template <class... Numbers>
-void labelled(const char* label, const char* pattern, Numbers... numbers) {
+PanelRow labelled(const char* label, const char* pattern, Numbers... numbers) {
   char text[96];
   std::snprintf(text, sizeof text, pattern, numbers...);
-  labelled(label, static_cast<const char*>(text));
+  return {PanelRow::Kind::kLabelled, label, text};
+}
+
+glm::vec2 panel_size(float height, float width) {
+  const ImVec2 padding = ImGui::GetStyle().WindowPadding;
+  return {width + 2.0f * padding.x, height + 2.0f * padding.y};
+}
+
+std::vector<Rect> clear_of(std::vector<Rect> shares, const glm::vec2& picture) {
+  for (Rect& rect : shares) rect = {rect.low * picture, rect.high * picture};
+  return shares;
+}
+
+float panel_width() {
+  return kPanelLetters * ImGui::CalcTextSize("0").x;
+}
+
+/// A number's last seconds, beside it the number itself.
+void draw_strip(const StripChart& strip, const ImVec4& color, const char* pattern, double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, pattern, value);
+  const float letter = ImGui::CalcTextSize("0").x;
+  const float height = kChartLines * ImGui::GetTextLineHeight();
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const ImVec2 end(at.x + panel_width() - 11.0f * letter, at.y + height);
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  list->AddRectFilled(at, end, IM_COL32(255, 255, 255, 16));
+  std::vector<ImVec2> points;
+  for (const glm::vec2& p : strip.curve({at.x, at.y}, {end.x, end.y})) points.emplace_back(p.x, p.y);
+  list->AddPolyline(points.data(), static_cast<int>(points.size()), ImGui::GetColorU32(color), 0,
+                    0.1f * ImGui::GetFontSize());
+  list->AddText(ImVec2(end.x + letter, at.y + 0.5f * (height - ImGui::GetTextLineHeight())),
+                ImGui::GetColorU32(ImGuiCol_Text), text);
+  ImGui::Dummy(ImVec2(panel_width(), height));
 }
 
 }  // namespace
@@ -56,79 +88,69 @@ std::string status_lines(std::uint32_t status, const std::array<std::uint64_t, 3
 
 Hud::Hud(const Scene& scene, HudFacts facts) : facts_(std::move(facts)) {
   const auto samples = static_cast<std::size_t>(std::max(2.0, kChartSeconds * facts_.picture_rate));
-  for (const Grip& grip : scene.grips) {
-    Chart chart;
-    chart.grip = grip.name;
-    chart.force.assign(samples, 0.0f);
-    chart.torque.assign(samples, 0.0f);
-    charts_.push_back(std::move(chart));
-  }
+  for (const Grip& grip : scene.grips)
+    hands_.push_back({grip.name, StripChart(samples, kLeastForce), StripChart(samples, kLeastTorque), {}});
 }
 
 void Hud::record(const Snapshot& snapshot) {
+  const double before = time_;
   time_ = snapshot.rigid.time;
-  status_ = snapshot.rigid.status;
-  for (std::size_t i = 0; i < charts_.size() && i < snapshot.rigid.grips.size(); ++i) {
-    Chart& chart = charts_[i];
-    chart.now = snapshot.rigid.grips[i].on_hand;
-    const auto force = static_cast<float>(glm::length(chart.now.force));
-    chart.force[next_ % chart.force.size()] = force;
-    chart.torque[next_ % chart.torque.size()] = static_cast<float>(glm::length(chart.now.torque));
-    chart.top_force = std::max(chart.top_force, force);
+  if (time_ < before) status_until_.fill(-1.0);  // the world started again
+  for (std::size_t bit = 0; bit < status_until_.size(); ++bit) {
+    if (snapshot.rigid.status & (1u << bit)) status_until_[bit] = time_ + kStatusSeconds;
   }
-  next_ += 1;
-}
-
-void Hud::draw_run(const Rates& rates, bool brief) const {
-  ImGui::TextUnformatted(facts_.title.c_str());
-  ImGui::Separator();
-  labelled("time", "%.2f s%s", time_, paused ? "  paused" : "");
-  if (!brief) draw_numbers(rates);
-  const std::string status = status_lines(status_ | rates.device_status, rates.status_steps);
-  if (!status.empty()) {
-    ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 0.78f, 0.35f, 1.0f));
-    ImGui::PushTextWrapPos(kPanelWidth);
-    ImGui::TextUnformatted(status.c_str());
-    ImGui::PopTextWrapPos();
-    ImGui::PopStyleColor();
+  for (std::size_t i = 0; i < hands_.size() && i < snapshot.rigid.grips.size(); ++i) {
+    Hand& hand = hands_[i];
+    hand.now = snapshot.rigid.grips[i].on_hand;
+    hand.force.add(static_cast<float>(glm::length(hand.now.force)));
+    hand.torque.add(static_cast<float>(glm::length(hand.now.torque)));
   }
 }
 
-void Hud::draw_numbers(const Rates& rates) const {
-  if (rates.real_time > 0.0) labelled("real time", "\xC3\x97 %.2f", rates.real_time);
-  if (rates.step_rate > 0.0) labelled("steps", "%.0f Hz  %.2f ms", rates.step_rate, rates.step_ms);
-  if (rates.device_rate > 0.0) labelled("devices", "%.0f Hz", rates.device_rate);
-  labelled("fluid", "%zu", facts_.fluid_particles);
-  if (facts_.boundary_particles > 0) labelled("bodies", "%zu", facts_.boundary_particles);
-  labelled("spacing", "%.1f mm", 1e3 * facts_.spacing);
-  for (const std::string* lines : {&rates.people, &rates.connection}) {
-    if (lines->empty()) continue;
-    ImGui::Separator();
-    ImGui::PushTextWrapPos(kPanelWidth);
-    ImGui::TextUnformatted(lines->c_str());
-    ImGui::PopTextWrapPos();
+std::uint32_t Hud::status() const {
+  std::uint32_t status = 0;
+  for (std::size_t bit = 0; bit < status_until_.size(); ++bit) {
+    if (status_until_[bit] >= time_) status |= 1u << bit;
   }
+  return status;
 }
 
-void Hud::draw_chart(std::size_t device) const {
-  const Chart& chart = charts_[device];
-  ImGui::PushID(static_cast<int>(device));
-  ImGui::PushStyleColor(ImGuiCol_PlotLines, bright(device_color(device)));
-  ImGui::PushStyleColor(ImGuiCol_FrameBg, ImVec4(1.0f, 1.0f, 1.0f, 0.06f));
-  ImGui::TextColored(bright(device_color(device)), "%s", chart.grip.c_str());
-  ImGui::Text("%6.2f N  %6.3f Nm", glm::length(chart.now.force), glm::length(chart.now.torque));
-  ImGui::PlotLines("##force", chart.force.data(), static_cast<int>(chart.force.size()),
-                   static_cast<int>(next_ % chart.force.size()), nullptr, 0.0f, 1.05f * chart.top_force,
-                   ImVec2(kPanelWidth, kChartHeight));
-  ImGui::PopStyleColor(2);
-  ImGui::PopID();
+std::vector<PanelRow> Hud::run_rows(const Rates& rates, bool brief) const {
+  using Kind = PanelRow::Kind;
+  std::vector<PanelRow> rows{{Kind::kTitle, facts_.title, {}}, {Kind::kLine, {}, {}}};
+  rows.push_back(labelled("time", "%.2f s%s", time_, paused ? "  paused" : ""));
+  if (!brief) {
+    if (rates.real_time > 0.0) rows.push_back(labelled("real time", "\xC3\x97 %.2f", rates.real_time));
+    if (rates.step_rate > 0.0)
+      rows.push_back(labelled("steps", "%.0f Hz  %.2f ms", rates.step_rate, rates.step_ms));
+    if (rates.device_rate > 0.0) rows.push_back(labelled("devices", "%.0f Hz", rates.device_rate));
+    rows.push_back(labelled("fluid", "%zu", facts_.fluid_particles));
+    if (facts_.boundary_particles > 0) rows.push_back(labelled("bodies", "%zu", facts_.boundary_particles));
+    rows.push_back(labelled("spacing", "%.1f mm", 1e3 * facts_.spacing));
+    for (const std::string* lines : {&rates.people, &rates.connection}) {
+      if (lines->empty()) continue;
+      rows.push_back({Kind::kLine, {}, {}});
+      rows.push_back({Kind::kText, *lines, {}});
+    }
+  }
+  const std::string warning = status_lines(status() | rates.device_status, rates.status_steps);
+  if (!warning.empty()) rows.push_back({Kind::kWarning, warning, {}});
+  return rows;
+}
+
+void Hud::draw_hand(std::size_t device) const {
+  const Hand& hand = hands_[device];
+  const ImVec4 color = bright(device_color(device));
+  ImGui::TextColored(color, "%s", hand.grip.c_str());
+  draw_strip(hand.force, color, "%7.2f N", glm::length(hand.now.force));
+  draw_strip(hand.torque, color, "%7.3f Nm", glm::length(hand.now.torque));
 }
 
 void Hud::draw_help() const {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos(ImVec2(0.5f * size.x, 0.5f * size.y), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
   ImGui::SetNextWindowBgAlpha(0.8f);
-  if (ImGui::Begin("help", nullptr, kPanel)) {
+  if (ImGui::Begin("help", nullptr, kPanel | ImGuiWindowFlags_AlwaysAutoResize)) {
     if (mouse_hand) {
       ImGui::TextUnformatted(
           "move        the handle in the picture's plane\n"
@@ -155,34 +177,49 @@ void Hud::draw_help() const {
   ImGui::End();
 }
 
-void Hud::draw(const Rates& rates) {
-  ImGui::SetNextWindowPos(ImVec2(kMargin, kMargin));
+void Hud::draw_run(const Rates& rates, const glm::vec2& picture, bool brief) {
+  const std::vector<PanelRow> rows = run_rows(rates, brief);
+  const glm::vec2 size = panel_size(rows_height(rows, panel_width()), panel_width());
+  const std::array<glm::vec2, 2> places{glm::vec2(kMargin), glm::vec2(picture.x - kMargin - size.x, kMargin)};
+  run_panel_.low = place_panel(size, places, clear_of(keep_clear, picture), run_panel_.low);
+  run_panel_.high = run_panel_.low + size;
+  ImGui::SetNextWindowPos(ImVec2(run_panel_.low.x, run_panel_.low.y));
+  ImGui::SetNextWindowSize(ImVec2(size.x, size.y));
   ImGui::SetNextWindowBgAlpha(0.55f);
+  if (ImGui::Begin("run", nullptr, kPanel)) draw_rows(rows, panel_width());
+  ImGui::End();
+}
+
+void Hud::draw_hands(const glm::vec2& picture) {
+  const float spacing = ImGui::GetStyle().ItemSpacing.y;
+  const float line = ImGui::GetTextLineHeight();
+  const float hand = (1.0f + 2.0f * kChartLines) * line + 3.0f * spacing;
+  const glm::vec2 size = panel_size(static_cast<float>(hands_.size()) * hand, panel_width());
+  const glm::vec2 far = picture - size - kMargin;
+  // The run's panel must stay free too, and first of all.
+  std::vector<Rect> clear = clear_of(keep_clear, picture);
+  clear.insert(clear.end(), 4, run_panel_);
+  const std::array<glm::vec2, 4> places{glm::vec2(kMargin, far.y), far, glm::vec2(far.x, kMargin),
+                                        glm::vec2(kMargin)};
+  hands_at_ = place_panel(size, places, clear, hands_at_);
+  ImGui::SetNextWindowPos(ImVec2(hands_at_.x, hands_at_.y));
+  ImGui::SetNextWindowSize(ImVec2(size.x, size.y));
+  ImGui::SetNextWindowBgAlpha(0.55f);
+  if (ImGui::Begin("forces", nullptr, kPanel)) {
+    for (std::size_t i = 0; i < hands_.size(); ++i) draw_hand(i);
+  }
+  ImGui::End();
+}
+
+void Hud::draw(const Rates& rates) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 4.0f);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0f);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(6.0f, 2.0f));
   const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const glm::vec2 picture(size.x, size.y);
   const bool brief = size.y < kLeastHeight;
-  float run_bottom = kMargin;
-  if (ImGui::Begin("run", nullptr, kPanel)) {
-    draw_run(rates, brief);
-    ImGui::Dummy(ImVec2(kPanelWidth, 1.0f));
-    run_bottom += ImGui::GetWindowHeight();
-  }
-  ImGui::End();
-  if (!charts_.empty() && !brief) {
-    // Below the other panel where there is room, else in the corner across.
-    const float chart_height = kChartHeight + 2.0f * ImGui::GetTextLineHeightWithSpacing() + 8.0f;
-    const bool below =
-        run_bottom + static_cast<float>(charts_.size()) * chart_height + 3.0f * kMargin < size.y;
-    ImGui::SetNextWindowPos(ImVec2(below ? kMargin : size.x - kMargin, size.y - kMargin), ImGuiCond_Always,
-                            ImVec2(below ? 0.0f : 1.0f, 1.0f));
-    ImGui::SetNextWindowBgAlpha(0.55f);
-    if (ImGui::Begin("forces", nullptr, kPanel)) {
-      for (std::size_t i = 0; i < charts_.size(); ++i) draw_chart(i);
-    }
-    ImGui::End();
-  }
+  draw_run(rates, picture, brief);
+  if (!hands_.empty() && !brief) draw_hands(picture);
   if (show_help) draw_help();
   ImGui::PopStyleVar(3);
 }

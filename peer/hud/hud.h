@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "peer/hud/panels.h"
 #include "peer/hud/rates.h"
+#include "peer/hud/strip_chart.h"
 #include "scenes/scene.h"
 #include "sim/snapshot.h"
 
@@ -39,25 +41,33 @@ class Hud {
   bool paused = false;
   bool show_help = false;
   bool mouse_hand = false;  ///< the mouse holds a handle: the help says so
+  /// What the panels leave free where they can: what hands hold, in shares of the picture, y down.
+  std::vector<Rect> keep_clear;
 
  private:
-  struct Chart {
+  struct Hand {
     std::string grip;
-    std::vector<float> force;  // N, a ring
-    std::vector<float> torque;
-    float top_force = 1.0f;  // N, the largest so far
+    StripChart force;   // N
+    StripChart torque;  // N·m
     Wrench now;
   };
-  void draw_run(const Rates& rates, bool brief) const;
-  void draw_numbers(const Rates& rates) const;
-  void draw_chart(std::size_t device) const;
+  std::uint32_t status() const;
+  std::vector<PanelRow> run_rows(const Rates& rates, bool brief) const;
+  void draw_run(const Rates& rates, const glm::vec2& picture, bool brief);
+  void draw_hands(const glm::vec2& picture);
+  void draw_hand(std::size_t device) const;
   void draw_help() const;
 
   HudFacts facts_;
-  std::vector<Chart> charts_;
-  std::size_t next_ = 0;
+  std::vector<Hand> hands_;
   double time_ = 0.0;
-  std::uint32_t status_ = 0;
+  std::array<double, 32> status_until_ = [] {
+    std::array<double, 32> never{};
+    never.fill(-1.0);
+    return never;
+  }();  // simulated s, a StatusBit each
+  Rect run_panel_;
+  glm::vec2 hands_at_{-1.0f};
 };
 
 }  // namespace slosh

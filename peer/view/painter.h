@@ -6,6 +6,7 @@
 
 #include "peer/hud/hud.h"
 #include "peer/view/frame_builder.h"
+#include "peer/view/held_rects.h"
 #include "peer/view/orbit_camera.h"
 
 namespace slosh {
@@ -17,7 +18,8 @@ class Painter {
       : renderer_(renderer),
         builder_(scene, facts.spacing, renderer),
         camera_(scene.camera),
-        hud_(scene, facts) {}
+        hud_(scene, facts),
+        held_(scene) {}
 
   /// A new snapshot for the charts.
   void record(const Snapshot& snapshot) { hud_.record(snapshot); }
@@ -27,6 +29,7 @@ class Painter {
     Frame frame = builder_.build(snapshot, camera_.distance());
     const RenderOptions& size = renderer_.options();
     frame.view = camera_.view(static_cast<double>(size.width) / size.height);
+    hud_.keep_clear = held_.of(snapshot, frame.view);
     frame.hud = [this, &rates, &over] {
       hud_.draw(rates);
       if (over) over();
@@ -42,6 +45,7 @@ class Painter {
   FrameBuilder builder_;
   OrbitCamera camera_;
   Hud hud_;
+  HeldRects held_;
 };
 
 }  // namespace slosh

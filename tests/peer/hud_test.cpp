@@ -1,0 +1,162 @@
+// The numbers over the picture, drawn by Dear ImGui without a GPU and looked at as triangles.
+#include "peer/hud/hud.h"
+
+#include <gtest/gtest.h>
+#include <imgui.h>
+
+#include <array>
+#include <string>
+
+#include "render/passes/hud_pass.h"
+
+namespace slosh {
+namespace {
+
+TEST(StripChart, StartsEmptyAndDrawsOnlyWhatWasMeasured) {
+  StripChart chart(150, 1.0f);
+  EXPECT_TRUE(chart.curve({0, 0}, {149, 34}).empty()) << "no force step that never was";
+  for (int i = 0; i < 3; ++i) chart.add(10.0f);
+  const std::vector<glm::vec2> curve = chart.curve({0, 0}, {149, 34});
+  ASSERT_EQ(curve.size(), 3u);
+  EXPECT_FLOAT_EQ(curve.back().x, 149.0f);
+  EXPECT_FLOAT_EQ(curve.front().x, 147.0f);
+  for (const glm::vec2& p : curve) EXPECT_NEAR(p.y, 34.0f - 34.0f / 1.05f, 1e-4f);
+}
+
+TEST(StripChart, KeepsTheNewestAndTheLargest) {
+  StripChart chart(4, 1.0f);
+  for (const float value : {8.0f, 1.0f, 2.0f, 3.0f, 4.0f}) chart.add(value);
+  EXPECT_EQ(chart.size(), 4u);
+  EXPECT_EQ(chart.top(), 8.0f);
+  const std::vector<glm::vec2> curve = chart.curve({0, 0}, {3, 8.4f});
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(curve[i].y, 8.4f - static_cast<float>(i + 1), 1e-4f);
+}
+
+TEST(Panels, GoWhereTheyHideLeast) {
+  const std::array<glm::vec2, 2> places{glm::vec2(0, 0), glm::vec2(500, 0)};
+  const std::array<Rect, 1> left{Rect{{50, 50}, {150, 150}}};
+  const std::array<Rect, 1> right{Rect{{550, 50}, {650, 150}}};
+  EXPECT_EQ(place_panel({200, 200}, places, {}, {-1, -1}), places[0]) << "the first where all are free";
+  EXPECT_EQ(place_panel({200, 200}, places, left, {-1, -1}), places[1]);
+  EXPECT_EQ(place_panel({200, 200}, places, {}, places[1]), places[1]) << "it stays where it is";
+  EXPECT_EQ(place_panel({200, 200}, places, right, places[1]), places[0]);
+}
+
+TEST(HudFont, GrowsWithThePicture) {
+  EXPECT_EQ(hud_font_pixels(480.0f), 13);
+  EXPECT_EQ(hud_font_pixels(1080.0f), 21);
+  EXPECT_EQ(hud_font_pixels(2160.0f), 42);
+  EXPECT_EQ(hud_font_pixels(1e6f), 96);
+}
+
+class HudTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    ImGui::CreateContext();
+    ImGuiIO& io = ImGui::GetIO();
+    io.IniFilename = nullptr;
+    io.DisplaySize = ImVec2(640, 480);
+    unsigned char* pixels = nullptr;
+    int width = 0, height = 0;
+    io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
+  }
+  void TearDown() override { ImGui::DestroyContext(); }
+
+  static void draw(Hud& hud, const Rates& rates = {}) {
+    ImGui::NewFrame();
+    hud.draw(rates);
+    ImGui::Render();
+  }
+  /// How far below (px) what a command may draw on some of its vertices lie, at worst.
+  static float cut_off() {
+    float most = 0.0f;
+    const ImDrawData* data = ImGui::GetDrawData();
+    for (int i = 0; i < data->CmdListsCount; ++i) {
+      const ImDrawList* list = data->CmdLists[i];
+      for (const ImDrawCmd& command : list->CmdBuffer) {
+        for (unsigned k = 0; k < command.ElemCount; ++k) {
+          const ImDrawIdx index = list->IdxBuffer[static_cast<int>(command.IdxOffset + k)];
+          const ImDrawVert& vertex = list->VtxBuffer[static_cast<int>(command.VtxOffset + index)];
+          most = std::max(most, vertex.pos.y - command.ClipRect.w);
+        }
+      }
+    }
+    return most;
+  }
+  static Scene scene() {
+    Scene scene;
+    scene.grips.resize(2);
+    scene.grips[0].name = "left";
+    scene.grips[1].name = "right";
+    return scene;
+  }
+  static HudFacts facts() {
+    HudFacts facts;
+    facts.title = "a run";
+    facts.fluid_particles = 1000;
+    return facts;
+  }
+};
+
+TEST_F(HudTest, AWarningIsWholeFromItsFirstPictureOn) {
+  const Scene bare = scene();
+  Hud hud(bare, facts());
+  Snapshot snapshot;
+  snapshot.rigid.grips.resize(2);
+  for (int i = 0; i < 3; ++i) {
+    hud.record(snapshot);
+    draw(hud);
+  }
+  EXPECT_LE(cut_off(), 1.0f);
+  snapshot.rigid.time = 0.1;
+  snapshot.rigid.status = kStatusSpeedLimited | kStatusForceLimited;
+  hud.record(snapshot);
+  draw(hud);
+  EXPECT_LE(cut_off(), 1.0f) << "px of it hidden";
+}
+
+TEST_F(HudTest, AWarningOfOneStepCanBeRead) {
+  const Scene bare = scene();
+  Hud hud(bare, facts());
+  const auto vertices = [&](double time, std::uint32_t status) {
+    Snapshot snapshot;
+    snapshot.rigid.time = time;
+    snapshot.rigid.status = status;
+    hud.record(snapshot);
+    draw(hud);
+    return ImGui::GetDrawData()->TotalVtxCount;
+  };
+  const int without = vertices(1.0, 0);
+  const int with = vertices(1.1, kStatusSpeedLimited);
+  EXPECT_GT(with, without);
+  EXPECT_GT(vertices(2.0, 0), without) << "it stays";
+  EXPECT_LE(vertices(5.0, 0), without + 8) << "and goes; the time may have another digit";
+}
+
+TEST_F(HudTest, TorqueIsDrawnToo) {
+  const Scene bare = scene();
+  const auto indices = [&](double torque) {
+    Hud hud(bare, facts());
+    Snapshot snapshot;
+    snapshot.rigid.grips.resize(2);
+    snapshot.rigid.grips[0].on_hand.torque = {torque, 0.0, 0.0};
+    std::vector<float> heights;
+    for (int i = 0; i < 40; ++i) hud.record(snapshot);
+    draw(hud);
+    std::vector<ImVec2> places;
+    const ImDrawData* data = ImGui::GetDrawData();
+    for (int i = 0; i < data->CmdListsCount; ++i) {
+      for (const ImDrawVert& vertex : data->CmdLists[i]->VtxBuffer) places.push_back(vertex.pos);
+    }
+    return places;
+  };
+  const std::vector<ImVec2> none = indices(0.0);
+  const std::vector<ImVec2> some = indices(0.04);
+  ASSERT_EQ(none.size(), some.size()) << "numbers of as many digits";
+  int moved = 0;
+  for (std::size_t i = 0; i < none.size(); ++i) moved += std::abs(none[i].y - some[i].y) > 4.0f ? 1 : 0;
+  EXPECT_GT(moved, 40) << "a curve of torque went up";
+}
+
+}  // namespace
+}  // namespace slosh
