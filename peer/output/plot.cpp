@@ -18,8 +18,10 @@ namespace {
 constexpr std::size_t kPlotRows = 1500;
 
 // What there is room for.
-constexpr std::size_t kMostHandBytes = 24;    // of a hand's name in the legend
-constexpr std::size_t kMostTitleBytes = 120;  // of the picture's title
+constexpr std::size_t kMostHandBytes = 24;   // of a hand's name in the legend
+constexpr std::size_t kMostTitleBytes = 90;  // of the sheet's title
+constexpr std::size_t kMostLineBytes = 180;  // of a line under it
+constexpr int kSheetWidth = 1200;
 
 /// A text from elsewhere, cut to its place.
 std::string shortened(const std::string& text, std::size_t most_bytes) {
@@ -36,9 +38,24 @@ std::string row_text(double time, const Wrench& w) {
   return text;
 }
 
+struct Quantity {
+  const char* name;
+  const char* label;
+  int column;  ///< of row_text's rows, from 1
+};
+
+constexpr std::array<Quantity, 8> kQuantities{{{"force", "force on the hand, N", 2},
+                                               {"fx", "force along x, N", 3},
+                                               {"fy", "force along y, N", 4},
+                                               {"fz", "force along z, N", 5},
+                                               {"torque", "torque on the hand, N·m", 6},
+                                               {"tx", "torque about x, N·m", 7},
+                                               {"ty", "torque about y, N·m", 8},
+                                               {"tz", "torque about z, N·m", 9}}};
+
 /// The world axis on which the vectors vary most, 0–2.
 template <class Pick>
-int liveliest_axis(const std::vector<WrenchSeries>& series, Pick pick) {
+std::size_t liveliest_axis(const std::vector<WrenchSeries>& series, Pick pick) {
   glm::dvec3 range{0.0};
   for (const WrenchSeries& s : series) {
     if (s.on_hand.empty()) continue;
@@ -50,37 +67,69 @@ int liveliest_axis(const std::vector<WrenchSeries>& series, Pick pick) {
     }
     range = glm::max(range, high - low);
   }
-  int axis = 0;
+  std::size_t axis = 0;
   for (int i = 1; i < 3; ++i) {
-    if (range[i] > range[axis]) axis = i;
+    if (range[i] > range[static_cast<int>(axis)]) axis = static_cast<std::size_t>(i);
   }
   return axis;
 }
 
-void add_curves(std::string& script, const std::vector<WrenchSeries>& series,
-                const std::vector<std::string>& names, const char* quantity, int magnitude_column, int axis) {
-  constexpr const char* kAxes[] = {"x", "y", "z"};
-  script += "plot \\\n";
-  // A grip that somebody else held has no rows here.
+std::vector<Quantity> chosen(const std::vector<WrenchSeries>& series, const PlotSheet& sheet) {
+  std::vector<Quantity> quantities;
+  for (const std::string& name : sheet.quantities) {
+    for (const Quantity& quantity : kQuantities) {
+      if (name == quantity.name) quantities.push_back(quantity);
+    }
+  }
+  if (!quantities.empty()) return quantities;
+  const std::size_t force = liveliest_axis(series, [](const Wrench& w) { return w.force; });
+  const std::size_t torque = liveliest_axis(series, [](const Wrench& w) { return w.torque; });
+  return {kQuantities[0], kQuantities[1 + force], kQuantities[4], kQuantities[5 + torque]};
+}
+
+/// Devices that have rows: a grip that somebody else held has none here.
+std::vector<std::size_t> devices_shown(const std::vector<WrenchSeries>& series) {
   std::vector<std::size_t> shown;
   for (std::size_t i = 0; i < series.size(); ++i) {
     if (!series[i].time.empty()) shown.push_back(i);
   }
-  for (const std::size_t i : shown) {
-    const bool last = i == shown.back();
-    const std::string data = "$device" + std::to_string(i);
-    // Hands that feel the same lie on top of each other: the later, the thinner, so that all are seen.
-    const double later = static_cast<double>(i) / static_cast<double>(std::max<std::size_t>(shown.back(), 1));
-    const std::string width = last ? "1.8" : later < 0.5 ? "3.4" : "2.6";
-    const std::string color = std::string("lc rgb \"") + device_color(i).hex;
+  return shown;
+}
+
+/// What is drawn over others is thinner and dashed, so that those under it show.
+std::string line_of(std::size_t order, std::size_t device) {
+  constexpr std::array<const char*, 4> kLines{"lw 3 dt 1", "lw 1.8 dt (16,14)", "lw 1.8 dt (4,10)",
+                                              "lw 1.4 dt (16,6,3,6)"};
+  return std::string(kLines[order % kLines.size()]) + " lc rgb \"" + device_color(device).hex + "\"";
+}
+
+std::string curves_of(const std::vector<WrenchSeries>& series, const PlotSheet& sheet, int column,
+                      bool legend) {
+  std::string script;
+  const std::vector<std::size_t> shown = devices_shown(series);
+  for (std::size_t order = 0; order < shown.size(); ++order) {
+    const std::size_t i = shown[order];
     const std::string name =
-        i < names.size() ? shortened(names[i], kMostHandBytes) : "device " + std::to_string(i);
-    script += "  " + data + " using 1:" + std::to_string(magnitude_column + 1 + axis) + " with lines lw 1 " +
-              std::string("lc rgb \"#90") + (device_color(i).hex + 1) + "\" title " +
-              gnuplot_text(name + ": " + quantity + " " + kAxes[axis]) + ", \\\n";
-    script += "  " + data + " using 1:" + std::to_string(magnitude_column) + " with lines lw " + width + " " +
-              color + "\" title " + gnuplot_text(name + ": magnitude") + (last ? "\n" : ", \\\n");
+        i < sheet.names.size() ? shortened(sheet.names[i], kMostHandBytes) : "device " + std::to_string(i);
+    script += (order == 0 ? "plot \\\n  " : ", \\\n  ") + std::string("$device") + std::to_string(i) +
+              " using 1:" + std::to_string(column) + " with lines " + line_of(order, i) +
+              (legend ? " title " + gnuplot_text(name) : std::string(" notitle"));
   }
+  return script + "\n";
+}
+
+/// Pixels; a vector's are points of 1/72 inch.
+std::string terminal_of(const std::string& format, int width, int height) {
+  const std::string size = std::to_string(width) + "," + std::to_string(height);
+  const std::string font = " noenhanced font \"DejaVu Sans,12\" background rgb \"white\"\n";
+  if (format == "svg") return "set terminal svg size " + size + font;
+  if (format == "pdf") {
+    // In inches; letters are then as large on the sheet as in the other formats.
+    char inches[64];
+    std::snprintf(inches, sizeof inches, "%.3f,%.3f", width / 72.0, height / 72.0);
+    return std::string("set terminal pdfcairo size ") + inches + font;
+  }
+  return "set terminal pngcairo size " + size + font;
 }
 
 }  // namespace
@@ -138,8 +187,21 @@ WrenchSeries thinned(const WrenchSeries& series, std::size_t rows) {
   return out;
 }
 
-std::string plot_script(const std::vector<WrenchSeries>& series, const std::vector<std::string>& names,
-                        const std::string& title) {
+const std::vector<std::string>& plot_quantities() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const Quantity& quantity : kQuantities) all.emplace_back(quantity.name);
+    return all;
+  }();
+  return names;
+}
+
+const std::vector<std::string>& plot_formats() {
+  static const std::vector<std::string> formats{"png", "svg", "pdf"};
+  return formats;
+}
+
+std::string plot_script(const std::vector<WrenchSeries>& series, const PlotSheet& sheet) {
   std::string script;
   for (std::size_t i = 0; i < series.size(); ++i) {
     script += "$device" + std::to_string(i) + " << END_OF_DATA\n";
@@ -148,38 +210,56 @@ std::string plot_script(const std::vector<WrenchSeries>& series, const std::vect
       script += row_text(rows.time[row], rows.on_hand[row]);
     script += "END_OF_DATA\n";
   }
-  const int force_axis = liveliest_axis(series, [](const Wrench& w) { return w.force; });
-  const int torque_axis = liveliest_axis(series, [](const Wrench& w) { return w.torque; });
-  script += "set encoding utf8\n";
+  const std::vector<Quantity> quantities = chosen(series, sheet);
+  const int panels = static_cast<int>(quantities.size());
+  const int head = 58 + 18 * static_cast<int>(sheet.parameters.size());
+  const int height = head + 212 * panels + 60;
+  const auto from_top = [&](int pixels) {
+    return std::to_string(1.0 - static_cast<double>(pixels) / height);
+  };
+  script += "set encoding utf8\n" + terminal_of(sheet.format, kSheetWidth, height);
+  script += "set multiplot layout " + std::to_string(panels) + ",1 margins 0.085,0.97," +
+            std::to_string(60.0 / height) + "," + from_top(head) + " spacing 0," +
+            std::to_string(16.0 / height) + "\n";
   script +=
-      "set terminal pngcairo size 1200,900 noenhanced font \"DejaVu Sans,12\" background rgb \"white\"\n";
-  script +=
-      "set multiplot layout 2,1 margins 0.075,0.79,0.075,0.925 spacing 0,0.06\n"
       "set border 3 lc rgb \"#606060\"\n"
       "set grid lc rgb \"#dcdcdc\" lt 1 lw 1\n"
       "set tics nomirror textcolor rgb \"#303030\"\n"
-      "set key outside right top reverse Left samplen 2 spacing 1.25 font \"DejaVu Sans,10\"\n"
-      "set xzeroaxis lt 1 lc rgb \"#a0a0a0\"\n"
       "set autoscale xfix\n"
-      "set offsets 0,0,graph 0.04,graph 0.04\n";
-  script += "set title " + gnuplot_text(shortened(title, kMostTitleBytes)) + " font \"DejaVu Sans,14\"\n";
-  script += "set ylabel \"force on the hand, N\"\nset format x \"\"\n";
-  add_curves(script, series, names, "along", 2, force_axis);
-  script += "unset title\nset format x \"%g\"\nset xlabel \"simulated time, s\"\n";
-  script += "set ylabel \"torque on the hand, N·m\"\n";
-  add_curves(script, series, names, "about", 6, torque_axis);
-  script += "unset multiplot\n";
-  return script;
+      "set offsets 0,0,graph 0.06,graph 0.06\n"
+      "set ylabel offset 0.5,0\n";
+  script += "set label 1 " + gnuplot_text(shortened(sheet.title, kMostTitleBytes)) + " at screen 0.085," +
+            from_top(22) + " font \"DejaVu Sans,14\"\n";
+  for (std::size_t i = 0; i < sheet.parameters.size(); ++i) {
+    script += "set label " + std::to_string(i + 2) + " " +
+              gnuplot_text(shortened(sheet.parameters[i], kMostLineBytes)) + " at screen 0.085," +
+              from_top(44 + 18 * static_cast<int>(i)) +
+              " font \"DejaVu Sans,10\" textcolor rgb \"#505050\"\n";
+  }
+  script += "set key at screen 0.97," + from_top(22) +
+            " right horizontal reverse Left samplen 3 font \"DejaVu Sans,11\"\n";
+  for (int i = 0; i < panels; ++i) {
+    const Quantity& quantity = quantities[static_cast<std::size_t>(i)];
+    script += std::string("set ylabel \"") + quantity.label + "\"\n";
+    if (i + 1 < panels) {
+      script += "set format x \"\"\nunset xlabel\n";
+    } else {
+      script += "set format x \"%g\"\nset xlabel \"simulated time, s\"\n";
+    }
+    script += curves_of(series, sheet, quantity.column, i == 0);
+    if (i == 0) script += "unset label\nunset key\n";
+  }
+  return script + "unset multiplot\n";
 }
 
-Result<bool> plot_wrenches(const std::filesystem::path& csv, const std::vector<std::string>& names,
-                           const std::string& title, const std::filesystem::path& png) {
+Result<bool> plot_wrenches(const std::filesystem::path& csv, const PlotSheet& sheet,
+                           const std::filesystem::path& file) {
   Result<std::vector<WrenchSeries>> series = read_wrenches(csv);
   if (!series) return series.error();
-  const bool nothing = std::all_of(series.value().begin(), series.value().end(),
-                                   [](const WrenchSeries& s) { return s.time.size() < 2; });
-  if (nothing) return false;
-  return draw(plot_script(series.value(), names, title), png);
+  const bool any =
+      std::ranges::any_of(series.value(), [](const WrenchSeries& s) { return s.time.size() > 1; });
+  if (!any) return false;
+  return draw(plot_script(series.value(), sheet), file);
 }
 
 }  // namespace slosh

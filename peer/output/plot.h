@@ -1,4 +1,5 @@
-// wrenches.csv to wrenches.png: force above, torque below, one colour a device (the paper's Figs 8–11).
+// wrenches.csv to a sheet of curves: forces above, torques below, one colour a device (the paper's Figs
+// 8–11).
 #pragma once
 
 #include <filesystem>
@@ -22,15 +23,29 @@ Result<std::vector<WrenchSeries>> read_wrenches(const std::filesystem::path& fil
 /// The same run in at most `rows` points a device, each the mean of the samples it stands for.
 WrenchSeries thinned(const WrenchSeries& series, std::size_t rows);
 
-/// A complete gnuplot script, data included, that writes a PNG to its standard output. Bold: magnitudes;
-/// thin: the component along the world axis on which it varies most. `names` labels the devices; names and
-/// title come from strangers: they are cleaned and cut, and no character of them is in the script.
-std::string plot_script(const std::vector<WrenchSeries>& series, const std::vector<std::string>& names,
-                        const std::string& title);
+/// What a sheet of curves says and shows beside the data.
+struct PlotSheet {
+  std::vector<std::string> names;       ///< a device each; where one is missing, its number
+  std::string title;                    ///< may come from strangers, as the names may: cleaned and cut
+  std::vector<std::string> parameters;  ///< lines under the title: what was simulated, with units
+  /// What is drawn, a panel each, top to bottom: of plot_quantities(). Empty: the magnitudes of force and
+  /// torque, each followed by the component along the world axis on which it varies most.
+  std::vector<std::string> quantities;
+  std::string format = "png";  ///< of plot_formats()
+};
 
-/// All of the above. False when there is nothing to plot. Errors: gnuplot is missing or failed, `png` cannot
+/// "force", "fx", "fy", "fz", "torque", "tx", "ty", "tz"; "png", "svg", "pdf".
+const std::vector<std::string>& plot_quantities();
+const std::vector<std::string>& plot_formats();
+
+/// A complete gnuplot script, data included, that writes the picture to its standard output: a panel a
+/// quantity over one axis of time, each fitted to its data; devices by colour and, where they lie on each
+/// other, by dashes. No character of a name or title is in the script.
+std::string plot_script(const std::vector<WrenchSeries>& series, const PlotSheet& sheet);
+
+/// All of the above. False when there is nothing to plot. Errors: gnuplot is missing or failed, `file` cannot
 /// be written.
-Result<bool> plot_wrenches(const std::filesystem::path& csv, const std::vector<std::string>& names,
-                           const std::string& title, const std::filesystem::path& png);
+Result<bool> plot_wrenches(const std::filesystem::path& csv, const PlotSheet& sheet,
+                           const std::filesystem::path& file);
 
 }  // namespace slosh

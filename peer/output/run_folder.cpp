@@ -15,8 +15,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kRunFiles[] = {"summary.json", "wrenches.csv", "poses.csv", "bodies.csv",
-                                     "probes.csv",   "wrenches.png", "view.mp4",  "final.png"};
+constexpr const char* kRunFiles[] = {"summary.json", "wrenches.csv", "poses.csv",    "bodies.csv",
+                                     "probes.csv",   "wrenches.png", "wrenches.svg", "wrenches.pdf",
+                                     "view.mp4",     "final.png"};
 constexpr int kMostFolders = 10'000;
 constexpr const char* kAnother = "Choose another folder with --out";
 

@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cstdio>
 
+#include "peer/output/plot.h"
+
 namespace slosh {
 
 CLI::Validator in_range(double least, double most) {
@@ -42,9 +44,22 @@ void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window) {
   verb.add_option("--fps", options.frames_per_second, "Pictures a second of the film")
       ->check(in_range(1.0, 240.0))
       ->capture_default_str();
+  verb.add_option("--surface", options.surface,
+                  "How particles become a fluid's surface: ours, or the paper's section 5 as it stands")
+      ->check(CLI::IsMember({"ours", "paper"}))
+      ->capture_default_str();
   verb.add_option("--bilateral", options.bilateral, "Iterations of the fluid surface's filter")
       ->check(CLI::Range(0, 64))
       ->capture_default_str();
+  verb.add_option("--plot", options.plot, "Format of the sheet of forces: png, svg or pdf")
+      ->check(CLI::IsMember(plot_formats()))
+      ->capture_default_str();
+  verb.add_option(
+          "--curves", options.curves,
+          "What the sheet shows, a panel each, with commas between: force, fx, fy, fz, torque, tx, ty, tz\n"
+          "(both magnitudes, and of each the liveliest component)")
+      ->delimiter(',')
+      ->check(CLI::IsMember(plot_quantities()));
   verb.add_flag("!--no-render", options.render, "No picture at all");
 }
 

@@ -171,7 +171,7 @@ int join(JoinOptions options) {
   const Result<bool> shown = headless ? show_headless(stage, *run.value(), options, progress, summary)
                                       : show_in_window(stage, make_run, options, progress, summary);
   if (!shown) return fail(shown.error());
-  const int code = finish_run(stage, progress, summary);
+  const int code = finish_run(stage, options, progress, summary);
   const RemoteStatus last = visit.status();
   return last.error && code == kExitOk ? fail(*last.error) : code;
 }

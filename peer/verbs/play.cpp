@@ -20,7 +20,7 @@ constexpr const char* kFooter =
     "                 handle, world axes, y up\n"
     "  poses.csv      where the handles were; --device replay:FILE plays it again\n"
     "  bodies.csv, probes.csv   what the scene's instruments read, see --measure\n"
-    "  wrenches.png   force above, torque below, one colour a device\n"
+    "  wrenches.png   forces above, torques below, one colour a device; --plot svg or pdf for a paper\n"
     "  view.mp4, final.png, summary.json\n"
     "\n"
     "In the window the mouse takes over what scripts hold: drag a thing (with all its hands) or one handle, "
@@ -55,7 +55,7 @@ int play(const PlayOptions& options) {
   const Result<bool> played = headless ? play_headless(prepared.value(), options, progress, summary)
                                        : play_in_window(prepared.value(), options, progress, summary);
   if (!played) return fail(played.error());
-  return finish_run(prepared.value(), progress, summary);
+  return finish_run(prepared.value(), options, progress, summary);
 }
 
 }  // namespace

@@ -64,15 +64,22 @@ void TroubleTeller::tell(const LiveRun& run, Progress& progress) {
   progress.note("slosh: " + trouble + "; the run goes on");
 }
 
+RenderOptions picture_options(const Stage& stage, const ShowOptions& options) {
+  RenderOptions render;
+  if (options.surface == "paper") render = section_five(render);
+  render.width = stage.width;
+  render.height = stage.height;
+  render.bilateral_iterations = options.bilateral;
+  return render;
+}
+
 Result<bool> show_headless(const Stage& stage, LiveRun& run, const ShowOptions& options, Progress& progress,
                            RunSummary& summary) {
   std::unique_ptr<HeadlessView> view;
   ViewOptions view_options;
   if (options.render) {
     progress.phase("preparing the picture");
-    view_options.render.width = stage.width;
-    view_options.render.height = stage.height;
-    view_options.render.bilateral_iterations = options.bilateral;
+    view_options.render = picture_options(stage, options);
     view_options.frames_per_second = options.frames_per_second;
     view_options.folder = stage.folder;
     Result<std::unique_ptr<HeadlessView>> started = HeadlessView::start(

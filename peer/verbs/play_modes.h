@@ -9,6 +9,7 @@
 #include "peer/verbs/live_run.h"
 #include "peer/verbs/play_options.h"
 #include "peer/verbs/prepare.h"
+#include "render/renderer.h"
 
 namespace slosh {
 
@@ -31,6 +32,9 @@ Result<bool> play_headless(const Prepared& prepared, const PlayOptions& options,
 Result<bool> play_in_window(const Prepared& prepared, const PlayOptions& options, Progress& progress,
                             RunSummary& summary);
 
+/// What the renderer is asked for: the stage's size, the surface that was chosen.
+RenderOptions picture_options(const Stage& stage, const ShowOptions& options);
+
 /// Lines typed at a run go to it, their answers to stdout; nothing where the run hears none. Does not wait.
 void hear_lines(LiveRun& run, LineInput* input, Progress& progress);
 
@@ -47,6 +51,6 @@ class TroubleTeller {
 std::string running_text(const Rates& rates, double seconds);
 
 /// Plot and summary, from what the run left in the folder. Returns the exit code.
-int finish_run(const Stage& stage, Progress& progress, RunSummary& summary);
+int finish_run(const Stage& stage, const ShowOptions& options, Progress& progress, RunSummary& summary);
 
 }  // namespace slosh

@@ -17,8 +17,12 @@ struct ShowOptions {
   std::string size;                  ///< "WxH"; empty = chosen
   double frames_per_second = 30.0;
   int bilateral = 4;
+  std::string surface = "ours";  ///< how particles become a surface: ours, paper
   bool render = true;
-  double measure = -1.0;  ///< simulated s between rows of the instruments; 0 = none, below 0 = as the scene asks
+  std::string plot = "png";         ///< of plot_formats()
+  std::vector<std::string> curves;  ///< of plot_quantities(); empty = chosen
+  double measure =
+      -1.0;  ///< simulated s between rows of the instruments; 0 = none, below 0 = as the scene asks
 };
 
 struct PlayOptions : ShowOptions {

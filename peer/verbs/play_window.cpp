@@ -162,10 +162,7 @@ Result<bool> show_in_window(const Stage& stage, const MakeRun& make_run, const S
   Result<std::unique_ptr<Context>> context =
       make_window_context("slosh: " + stage.scene.name, stage.width, stage.height);
   if (!context) return context.error();
-  RenderOptions render;
-  render.width = stage.width;
-  render.height = stage.height;
-  render.bilateral_iterations = options.bilateral;
+  const RenderOptions render = picture_options(stage, options);
   Histogram frame_time;
   WindowFilm film(stage.folder, options);
   progress.phase("running", "(H in the window for help)");

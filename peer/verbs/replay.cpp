@@ -67,7 +67,7 @@ int replay(ReplayVerbOptions options) {
   const Result<bool> shown = show_headless(stage, *run.value(), options, progress, summary);
   if (!shown) return fail(shown.error());
   summary.threads = options.threads;
-  int code = finish_run(stage, progress, summary);
+  int code = finish_run(stage, options, progress, summary);
   if (!run.value()->problem().empty()) {
     return fail({"", run.value()->problem(), ""});
   }

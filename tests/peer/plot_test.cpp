@@ -52,6 +52,15 @@ std::string drawn_as_svg(std::string script) {
   return gnuplot.value()->output();
 }
 
+PlotSheet sheet_of(std::vector<std::string> names, std::string title,
+                   std::vector<std::string> parameters = {}) {
+  PlotSheet sheet;
+  sheet.names = std::move(names);
+  sheet.title = std::move(title);
+  sheet.parameters = std::move(parameters);
+  return sheet;
+}
+
 void write_rows(const std::filesystem::path& file, int rows) {
   std::ofstream out(file);
   out << kWrenchesHeader << '\n';
@@ -97,12 +106,13 @@ TEST(Thinned, KeepsMeansAndTheNumberOfRows) {
 TEST(PlotScript, ForceAboveTorqueBelowOneColourADevice) {
   const std::filesystem::path file = temporary("script.csv");
   write_rows(file, 100);
-  const std::string script = plot_script(read_wrenches(file).value(), {"left", "right"}, "a title");
+  const std::string script = plot_script(read_wrenches(file).value(), sheet_of({"left", "right"}, "a title"));
   EXPECT_LT(script.find("force on the hand, N"), script.find("torque on the hand, N·m"));
   EXPECT_NE(script.find(device_color(0).hex), std::string::npos);
   EXPECT_NE(script.find(device_color(1).hex), std::string::npos);
-  EXPECT_NE(script.find(in_octal("left: magnitude")), std::string::npos);
-  EXPECT_NE(script.find(in_octal("right: along y")), std::string::npos) << "the force varies most along y";
+  EXPECT_NE(script.find(in_octal("left")), std::string::npos);
+  EXPECT_NE(script.find("force along y, N"), std::string::npos) << "the force varies most along y";
+  EXPECT_EQ(script.find("force along x, N"), std::string::npos);
   EXPECT_EQ(script.find("set output"), std::string::npos) << "a path may begin with | and be run";
 }
 
@@ -138,7 +148,7 @@ TEST(PlotScript, WhatNamesAreMadeOfIsNeverParsed) {
   write_rows(file, 10);
   const std::vector<WrenchSeries> series = read_wrenches(file).value();
   for (const std::string& name : hostile_names(marker.string())) {
-    const std::string script = plot_script(series, {name, "other"}, name);
+    const std::string script = plot_script(series, sheet_of({name, "other"}, name, {name}));
     EXPECT_EQ(script.find('`'), std::string::npos) << name;
     EXPECT_EQ(script.find("touch"), std::string::npos) << name;
     // The same script, but drawn as text that can be read.
@@ -155,7 +165,7 @@ TEST(PlotWrenches, GnuplotDrawsBothColours) {
   const std::filesystem::path file = temporary("draw.csv");
   const std::filesystem::path png = temporary("draw.png");
   write_rows(file, 300);
-  const Result<bool> drawn = plot_wrenches(file, {"left", "right"}, "test", png);
+  const Result<bool> drawn = plot_wrenches(file, sheet_of({"left", "right"}, "test"), png);
   ASSERT_TRUE(drawn) << drawn.error().text();
   const Result<Image> image = read_png(png);
   ASSERT_TRUE(image) << image.error().text();
@@ -171,10 +181,73 @@ TEST(PlotWrenches, GnuplotDrawsBothColours) {
   EXPECT_GT(blue, 1000);
 }
 
+TEST(PlotWrenches, EachPanelIsFittedToItsOwnData) {
+  // Both hands carry −10 N to −13 N along y: an axis with 0 or a magnitude's +10 on it would leave them a
+  // third.
+  const std::filesystem::path file = temporary("fitted.csv");
+  write_rows(file, 300);
+  PlotSheet sheet = sheet_of({"left", "right"}, "test", {"spacing 8 mm"});
+  sheet.quantities = {"fy"};
+  const std::string drawn = drawn_as_svg(plot_script(read_wrenches(file).value(), sheet));
+  EXPECT_NE(drawn.find("-10"), std::string::npos);
+  EXPECT_NE(drawn.find("-13"), std::string::npos);
+  EXPECT_EQ(drawn.find(">0<"), drawn.rfind(">0<")) << "0 is on the axis of time alone";
+  EXPECT_NE(drawn.find("spacing 8 mm"), std::string::npos) << "the sheet says what was simulated";
+}
+
+TEST(PlotWrenches, CurvesThatCoincideAreBothSeen) {
+  const std::filesystem::path file = temporary("coincide.csv");
+  const std::filesystem::path png = temporary("coincide.png");
+  std::ofstream out(file);
+  out << kWrenchesHeader << '\n';
+  for (int i = 0; i < 300; ++i) {
+    for (int device = 0; device < 2; ++device)
+      out << 0.01 * i << ',' << device << ",0," << std::sin(0.02 * i) << ",0,0,0,0\n";
+  }
+  out.close();
+  PlotSheet sheet = sheet_of({"left", "right"}, "test");
+  sheet.quantities = {"fy"};
+  const Result<bool> drawn = plot_wrenches(file, sheet, png);
+  ASSERT_TRUE(drawn) << drawn.error().text();
+  const Result<Image> image = read_png(png);
+  ASSERT_TRUE(image) << image.error().text();
+  // In the panel, below the legend.
+  int red = 0;
+  int blue = 0;
+  for (int y = 70; y < image.value().height; ++y) {
+    for (int x = 0; x < image.value().width; ++x) {
+      const std::uint8_t* p =
+          &image.value().rgba[std::size_t{4} * (static_cast<std::size_t>(y) * image.value().width + x)];
+      red += p[0] > 180 && p[1] < 90 && p[2] < 90;
+      blue += p[0] < 70 && p[1] < 130 && p[2] > 150;
+    }
+  }
+  EXPECT_GT(red, 300);
+  EXPECT_GT(blue, 300);
+}
+
+TEST(PlotWrenches, DrawsWhatAPaperWouldTake) {
+  const std::filesystem::path file = temporary("vector.csv");
+  write_rows(file, 100);
+  const auto begins = [&](const std::string& format, const std::string& magic) {
+    PlotSheet sheet = sheet_of({"left", "right"}, "test");
+    sheet.format = format;
+    const std::filesystem::path picture = temporary("vector." + format);
+    const Result<bool> drawn = plot_wrenches(file, sheet, picture);
+    ASSERT_TRUE(drawn) << drawn.error().text();
+    std::ifstream in(picture, std::ios::binary);
+    std::string head(400, '\0');
+    in.read(head.data(), static_cast<std::streamsize>(head.size()));
+    EXPECT_NE(head.find(magic), std::string::npos) << format;
+  };
+  begins("svg", "<svg");
+  begins("pdf", "%PDF-");
+}
+
 TEST(PlotWrenches, NothingRecordedIsNothingToPlot) {
   const std::filesystem::path file = temporary("nothing.csv");
   std::ofstream(file) << kWrenchesHeader << '\n';
-  const Result<bool> drawn = plot_wrenches(file, {}, "test", temporary("nothing.png"));
+  const Result<bool> drawn = plot_wrenches(file, {}, temporary("nothing.png"));
   ASSERT_TRUE(drawn) << drawn.error().text();
   EXPECT_FALSE(drawn.value());
   EXPECT_FALSE(std::filesystem::exists(temporary("nothing.png")));
