@@ -12,9 +12,11 @@ namespace {
 
 constexpr const char* kKinds[] = {"picture", "body", "fluid", "grip", "hand", "probe", "gauge", "region"};
 
+/// In the words of who modelled it: world, z up (glTF's y is up).
 std::string point_text(const glm::dvec3& p) {
   char text[96];
-  std::snprintf(text, sizeof(text), "(%.4g, %.4g, %.4g) m", p.x, p.y, p.z);
+  std::snprintf(text, sizeof(text), "(%.4g, %.4g, %.4g) m in Blender's world, z up", p.x + 0.0, 0.0 - p.z,
+                p.y + 0.0);
   return text;
 }
 
@@ -29,7 +31,8 @@ std::string defects_text(const mesh::Defects& d) {
   return text;
 }
 
-Problem check_parts(const mesh::WeldedMesh& welded, const mesh::Components& parts, const std::string& where) {
+Problem check_parts(const mesh::WeldedMesh& welded, const mesh::Components& parts, const std::string& where,
+                    const Pose& pose) {
   const char* const mend = "In Blender: Edit Mode, select all, Mesh > Normals > Recalculate Outside";
   const mesh::VolumeIntegrals whole = mesh::integrate_volume(welded, parts);
   if (!(whole.volume > 1e-12)) {
@@ -54,71 +57,75 @@ Problem check_parts(const mesh::WeldedMesh& welded, const mesh::Components& part
         others.triangles.push_back(welded.triangles[t]);
     }
     if (!mesh::MeshTree(others).inside(glm::vec3(point))) {
-      return Error{where, "the faces of the part at " + point_text(point) + " look inward", mend};
+      return Error{where,
+                   "the faces of the part at " + point_text(transform_point(pose, point)) + " look inward",
+                   mend};
     }
   }
   return std::nullopt;
 }
 
-Problem check_closed(const TriangleMesh& triangles, const std::string& where) {
+Problem check_closed(const TriangleMesh& triangles, const std::string& where, const Pose& pose) {
   const mesh::WeldedMesh welded = mesh::weld(triangles);
   mesh::Components parts;
   const mesh::Defects defects = mesh::find_defects(welded, &parts);
   if (defects.any()) {
-    return Error{
-        where, "is not closed: " + defects_text(defects) + ", the first at " + point_text(defects.where),
-        "In Blender: Edit Mode, select all, Mesh > Merge > By Distance, Mesh > Clean Up > Fill Holes, "
-        "Mesh > Normals > Recalculate Outside"};
+    return Error{where,
+                 "is not closed: " + defects_text(defects) + ", the first at " +
+                     point_text(transform_point(pose, defects.where)),
+                 "Where a Solidify modifier gives the wall: export with Data > Mesh > Apply Modifiers. Else "
+                 "in Blender: Edit Mode, "
+                 "select all, Mesh > Merge > By Distance, Mesh > Clean Up > Fill Holes, Mesh > Normals > "
+                 "Recalculate Outside"};
   }
-  return check_parts(welded, parts, where);
+  return check_parts(welded, parts, where, pose);
 }
 
 }  // namespace
 
-Problem read_kinds(Reading& reading) {
+Problem read_kind(Reading& reading, int node) {
   const gltf::Document& document = reading.document;
-  reading.kinds.assign(document.model.nodes.size(), NodeKind::kNone);
-  std::map<std::string, int> names;
-  for (const int node : document.nodes) {
-    const bool has_mesh = document.model.nodes[node].mesh >= 0;
-    gltf::Extras extras(document.extras[node], document.owner(node));
-    if (!extras.has("slosh")) {
-      if (has_mesh) reading.kinds[node] = NodeKind::kPicture;
-      continue;
-    }
-    const std::string kind = extras.choice(
-        "slosh", "",
-        {kKinds[0], kKinds[1], kKinds[2], kKinds[3], kKinds[4], kKinds[5], kKinds[6], kKinds[7]});
-    constexpr NodeKind kOrder[] = {NodeKind::kPicture, NodeKind::kBody,  NodeKind::kFluid, NodeKind::kGrip,
-                                   NodeKind::kHand,    NodeKind::kProbe, NodeKind::kGauge, NodeKind::kRegion};
-    for (std::size_t i = 0; i < std::size(kKinds); ++i) {
-      if (kind == kKinds[i]) reading.kinds[node] = kOrder[i];
-    }
-    if (reading.kinds[node] == NodeKind::kNone) return extras.error();
-    const bool needs_mesh = kind == "body" || kind == "fluid" || kind == "picture" || kind == "region";
-    if (needs_mesh && !has_mesh) {
-      extras.fail("slosh", "is \"" + kind + "\", but the node has no mesh",
-                  "Put the property on the mesh object");
-      return extras.error();
-    }
-    const std::string name = document.name(node);
-    if (!names.emplace(name, node).second) {
-      return Error{document.owner(node), "another node has this name too", "Give every node its own name"};
-    }
+  const bool has_mesh = document.model.nodes[node].mesh >= 0;
+  gltf::Extras extras(document.extras[node], document.owner(node));
+  if (!extras.has("slosh")) {
+    if (has_mesh) reading.kinds[node] = NodeKind::kPicture;
+    return std::nullopt;
   }
-  for (const int node : document.nodes) {
-    const bool still = reading.kinds[node] == NodeKind::kBody || reading.kinds[node] == NodeKind::kFluid ||
-                       reading.kinds[node] == NodeKind::kGrip || reading.kinds[node] == NodeKind::kProbe ||
-                       reading.kinds[node] == NodeKind::kGauge || reading.kinds[node] == NodeKind::kRegion;
-    if (!still) continue;
-    for (const tinygltf::Animation& animation : document.model.animations) {
-      for (const tinygltf::AnimationChannel& channel : animation.channels) {
-        if (channel.target_node != node) continue;
-        return Error{
-            document.owner(node) + ": animation '" + animation.name + "'",
-            "only a hand can be animated; bodies and fluids move by physics, gauges and regions with a body",
-            "Animate an empty with slosh = \"hand\" and grip = \"<grip's name>\" instead"};
-      }
+  const std::string kind = extras.choice(
+      "slosh", "", {kKinds[0], kKinds[1], kKinds[2], kKinds[3], kKinds[4], kKinds[5], kKinds[6], kKinds[7]});
+  constexpr NodeKind kOrder[] = {NodeKind::kPicture, NodeKind::kBody,  NodeKind::kFluid, NodeKind::kGrip,
+                                 NodeKind::kHand,    NodeKind::kProbe, NodeKind::kGauge, NodeKind::kRegion};
+  for (std::size_t i = 0; i < std::size(kKinds); ++i) {
+    if (kind == kKinds[i]) reading.kinds[node] = kOrder[i];
+  }
+  if (reading.kinds[node] == NodeKind::kNone) return extras.error();
+  const bool needs_mesh = kind == "body" || kind == "fluid" || kind == "picture" || kind == "region";
+  if (needs_mesh && !has_mesh) {
+    reading.kinds[node] = NodeKind::kNone;
+    extras.fail("slosh", "is \"" + kind + "\", but the node has no mesh",
+                "Put the property on the mesh object");
+    return extras.error();
+  }
+  if (!reading.names.emplace(document.name(node), node).second) {
+    reading.kinds[node] = NodeKind::kNone;
+    return Error{
+        document.owner(node), "another node has this name too",
+        "Give every node its own name. In Blender a collection instance repeats the names of what it holds: "
+        "Object > Apply > Make Instances Real, then name what came of it"};
+  }
+  return std::nullopt;
+}
+
+Problem check_animated(Reading& reading, int node) {
+  const NodeKind kind = reading.kinds[node];
+  if (kind == NodeKind::kNone || kind == NodeKind::kPicture || kind == NodeKind::kHand) return std::nullopt;
+  for (const tinygltf::Animation& animation : reading.document.model.animations) {
+    for (const tinygltf::AnimationChannel& channel : animation.channels) {
+      if (channel.target_node != node) continue;
+      return Error{
+          reading.document.owner(node) + ": animation '" + animation.name + "'",
+          "only a hand can be animated; bodies and fluids move by physics, gauges and regions with a body",
+          "Animate an empty with slosh = \"hand\" and grip = \"<grip's name>\" instead"};
     }
   }
   return std::nullopt;
@@ -159,7 +166,11 @@ Problem read_node_mesh(Reading& reading, int node, const glm::dmat3& rest, bool 
   mesh = found->second.mesh;
   if (closed && !found->second.checked) {
     const TriangleMesh& triangles = reading.scene.meshes[mesh];
-    if (Problem problem = check_closed(triangles, where + ": mesh '" + triangles.name + "'")) return problem;
+    Pose pose;
+    glm::dmat3 unused;
+    if (Problem problem = read_pose(reading, node, pose, unused)) return problem;
+    if (Problem problem = check_closed(triangles, where + ": mesh '" + triangles.name + "'", pose))
+      return problem;
     found->second.checked = true;
   }
   return std::nullopt;

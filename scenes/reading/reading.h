@@ -3,6 +3,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -34,10 +35,18 @@ struct Reading {
     bool checked;
   };
   std::map<std::tuple<int, std::vector<double>>, SharedMesh> shared;
+  std::map<std::string, int> names;  ///< of nodes with a `slosh` property
+  std::set<int> failed;              ///< nodes that could not be read
 };
 
-/// Sets Reading::kinds. Errors: unknown `slosh`, a name used twice.
-Problem read_kinds(Reading& reading);
+/// All stages in order. The first problem ends the reading; with `all` every one is put there instead, but for those
+/// that only follow from another (a grip on a body that could not be read). A scene only where there was none.
+std::optional<Scene> read_stages(const gltf::Document& document, std::vector<Error>& problems, bool all);
+
+/// Sets a node's kind. Errors: unknown `slosh`, a name used twice, a mesh missing.
+Problem read_kind(Reading& reading, int node);
+/// Errors: something animated that is no hand. After all kinds.
+Problem check_animated(Reading& reading, int node);
 
 /// Scene extras but the domain's defaults: spacing, gravity, fluids declared by name.
 Problem read_scene_fields(Reading& reading);
@@ -53,6 +62,7 @@ Problem read_gauge(Reading& reading, int node);   ///< after all bodies
 Problem read_region(Reading& reading, int node);  ///< after all bodies
 Problem read_camera(Reading& reading);          ///< after everything with a size
 Problem read_domain(Reading& reading);          ///< likewise
+Problem fit_spacing(Reading& reading);          ///< likewise: a coarsest spacing that was not given fits the walls
 
 /// Rigid pose of a node, and what the pose leaves of its transform.
 Problem read_pose(const Reading& reading, int node, Pose& pose, glm::dmat3& rest);

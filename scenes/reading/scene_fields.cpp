@@ -3,6 +3,7 @@
 
 #include "scenes/mesh/closed.h"
 #include "scenes/reading/reading.h"
+#include "scenes/sample.h"
 
 namespace slosh::reading {
 
@@ -113,6 +114,16 @@ Problem read_domain(Reading& reading) {
                    "the fluid starts outside the domain", "Widen the scene's domain_min_m and domain_max_m"};
     }
   }
+  return std::nullopt;
+}
+
+Problem fit_spacing(Reading& reading) {
+  const nlohmann::json& given = reading.document.scene_extras;
+  if (given.contains("spacing_max_m") || given.contains("spacing_m")) return std::nullopt;
+  Scene& scene = reading.scene;
+  // Through a wall thinner than the spacing fluid would feel fluid, so sampling refuses it. A hair of room
+  // for what two samplings of a wall's thickness differ by.
+  scene.spacing_max = std::max(scene.spacing_min, std::min(scene.spacing_max, 0.98 * thinnest_wall(scene)));
   return std::nullopt;
 }
 

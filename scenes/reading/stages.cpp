@@ -1,0 +1,101 @@
+// The stages of reading a scene, in order: to the first problem, or through all of them.
+#include "net/text/clean.h"
+#include "scenes/reading/reading.h"
+
+namespace slosh::reading {
+namespace {
+
+using ReadNode = Problem (*)(Reading&, int);
+
+Problem something_to_simulate(Reading& reading) {
+  if (!reading.scene.bodies.empty() || !reading.scene.fluid_volumes.empty()) return std::nullopt;
+  return Error{
+      reading.document.file, "the scene has neither a body nor a fluid",
+      "Give at least one object the custom property slosh = \"body\" or \"fluid\", and export with custom "
+      "properties on"};
+}
+
+Problem nothing_that_settling_would_undo(Reading& reading) {
+  if (reading.scene.settle == 0.0) return std::nullopt;
+  for (const FluidVolume& volume : reading.scene.fluid_volumes) {
+    if (volume.velocity == glm::dvec3(0.0)) continue;
+    return Error{reading.document.file + ": node '" + volume.name + "': extras.velocity_m_s",
+                 "would be lost: the scene's settle_s brings the fluid to rest before the run",
+                 "Remove one of the two"};
+  }
+  return std::nullopt;
+}
+
+/// Whether what is wrong with a node may come from what is wrong with another: what it hangs on, or the grip
+/// that it names, could not be read.
+bool follows_from_another(const Reading& reading, int node) {
+  const gltf::Document& document = reading.document;
+  for (int up = document.parent[node]; up >= 0; up = document.parent[up])
+    if (reading.failed.contains(up)) return true;
+  const nlohmann::json& extras = document.extras[node];
+  if (!extras.contains("grip") || !extras["grip"].is_string()) return false;
+  for (const int failed : reading.failed)
+    if (document.name(failed) == extras["grip"].get<std::string>()) return true;
+  return false;
+}
+
+class Stages {
+ public:
+  Stages(Reading& reading, std::vector<Error>& problems, bool all)
+      : reading_(reading), problems_(problems), all_(all) {}
+
+  /// Every node, or those of one kind.
+  void nodes(ReadNode read, std::optional<NodeKind> kind = std::nullopt) {
+    for (const int node : reading_.document.nodes) {
+      if (over() || (kind && reading_.kinds[node] != *kind)) continue;
+      const Problem problem = read(reading_, node);
+      if (!problem) continue;
+      if (!follows_from_another(reading_, node)) problems_.push_back(*problem);
+      reading_.failed.insert(node);
+    }
+  }
+  /// `needs_all`: its problem would only say that nodes are missing which could not be read.
+  void whole(Problem (*read)(Reading&), bool needs_all = false) {
+    if (over() || (needs_all && (!reading_.failed.empty() || !problems_.empty()))) return;
+    if (const Problem problem = read(reading_)) problems_.push_back(*problem);
+  }
+
+ private:
+  bool over() const { return !all_ && !problems_.empty(); }
+
+  Reading& reading_;
+  std::vector<Error>& problems_;
+  bool all_;
+};
+
+}  // namespace
+
+std::optional<Scene> read_stages(const gltf::Document& document, std::vector<Error>& problems, bool all) {
+  Reading reading{document, {}, {}, {}, {}, {}, {}, 0, {}, {}, {}};
+  const std::filesystem::path file = document.file;
+  reading.scene.name = clean_text(file.stem().string(), kMostTextBytes);
+  reading.scene.source_file = document.file;
+  reading.kinds.assign(document.model.nodes.size(), NodeKind::kNone);
+  Stages stages(reading, problems, all);
+  stages.nodes(read_kind);
+  stages.nodes(check_animated);
+  stages.whole(read_scene_fields);
+  stages.nodes(read_fluid_volume, NodeKind::kFluid);
+  stages.nodes(read_body, NodeKind::kBody);
+  stages.nodes(read_probe, NodeKind::kProbe);
+  stages.nodes(read_picture, NodeKind::kPicture);
+  stages.whole(something_to_simulate, true);
+  stages.whole(nothing_that_settling_would_undo);
+  stages.nodes(read_grip, NodeKind::kGrip);
+  stages.whole(order_grips);
+  stages.nodes(read_hand, NodeKind::kHand);
+  stages.nodes(read_gauge, NodeKind::kGauge);
+  stages.nodes(read_region, NodeKind::kRegion);
+  stages.whole(read_camera, true);
+  stages.whole(read_domain, true);
+  stages.whole(fit_spacing, true);
+  if (!problems.empty() || !reading.failed.empty()) return std::nullopt;
+  return std::move(reading.scene);
+}
+
+}  // namespace slosh::reading
