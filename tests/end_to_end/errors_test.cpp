@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "process.h"
+#include "scenes/load.h"
 
 namespace slosh {
 namespace {
@@ -77,6 +79,29 @@ TEST(Errors, FilesThatAreNoScenesAreRefused) {
   expect_error({"check", "empty.glb"}, 1, {"empty.glb"});
   expect_error({"check", "bare.gltf"}, 1, {"bare.gltf"});
   expect_error({"play", "text.gltf", "--headless"}, 1, {"text.gltf"});
+}
+
+TEST(Errors, CheckSaysEverythingAtOnceAndErrorsApartFromWarnings) {
+  std::filesystem::create_directories(test::test_folder());
+  nlohmann::json bucket = nlohmann::json::parse(test::read_text(find_scene("bucket").value()));
+  bucket.erase("cameras");
+  for (nlohmann::json& node : bucket["nodes"]) {
+    node.erase("camera");
+    if (node["name"] == "water") node["extras"]["density_kg_m3"] = -1;
+    if (node["name"] == "table") node["extras"]["friction"] = "rough";
+  }
+  std::ofstream(test::test_folder() / "two.gltf") << bucket.dump();
+  expect_error({"check", "two.gltf"}, 1,
+               {"node 'water'", "density_kg_m3", "node 'table'", "friction", "2 errors"});
+  EXPECT_TRUE(contains(test::slosh({"check", "two.gltf"}).out, "1 warning"));
+  const Outcome outcome = test::slosh({"check", "two.gltf", "--json"});
+  EXPECT_EQ(outcome.code, 1);
+  const nlohmann::json said = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(said["ok"], false);
+  ASSERT_EQ(said["errors"].size(), 2u);
+  EXPECT_EQ(said["errors"][0]["object"], "water");
+  ASSERT_EQ(said["warnings"].size(), 1u);
+  EXPECT_EQ(said["warnings"][0]["kind"], "no-camera");
 }
 
 TEST(Verbs, ScenesListsEveryShippedScene) {
