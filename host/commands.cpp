@@ -87,6 +87,8 @@ Result<bool> Host::reset() {
   for (double& until : status_until_) until = 0.0;
   world_.fill(latest_);
   gate_.reset(latest_, clock_ns());
+  models_.clear();
+  fluid_models_.restart();
   publish_bodies(0.0, clock_ns());
   publish_snapshot();
   next_snapshot_ = world_.time() + (options_.snapshot_rate > 0.0 ? 1.0 / options_.snapshot_rate : 0.0);

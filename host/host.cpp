@@ -68,7 +68,13 @@ BodyMessage initial_message(const World& world, std::uint32_t run) {
 }
 
 Host::Host(World world, const Scene& scene, Channel& channel, HostOptions options)
-    : world_(std::move(world)), channel_(channel), options_(std::move(options)), gate_(scene) {
+    : world_(std::move(world)),
+      channel_(channel),
+      options_(std::move(options)),
+      gate_(scene),
+      fluid_models_(scene) {
+  for (const Grip& grip : scene.grips) grip_bodies_.push_back(grip.body);
+  modelled_.resize(scene.bodies.size());
   fluids_ = scene.fluids.size();
   start_state_ = std::move(options_.start_state);
   if (start_state_.empty()) (void)world_.save(start_state_);  // a world that cannot be saved refuses a reset
@@ -132,6 +138,19 @@ std::uint32_t Host::recent_status() const {
   return status;
 }
 
+// Of bodies that a hand holds for whom somebody asks.
+void Host::model_fluid(std::span<const HandleInput> input) {
+  const std::uint64_t wanted = options_.fluid_demand ? options_.fluid_demand->wanted() : 0;
+  models_.clear();
+  if (wanted == 0) return fluid_models_.restart();
+  std::fill(modelled_.begin(), modelled_.end(), char{0});
+  for (std::size_t g = 0; g < input.size() && g < FluidDemand::kMostGrips; ++g) {
+    if ((wanted >> g & 1) != 0 && input[g].engaged) modelled_[static_cast<std::size_t>(grip_bodies_[g])] = 1;
+  }
+  fluid_models_.after_step(world_, latest_, modelled_, models_);
+  report_.fluid_models += models_.size();
+}
+
 void Host::publish_bodies(double rate, std::int64_t stamp_ns) {
   BodyMessage& message = channel_.bodies().back();
   world_.fill(message.bodies);
@@ -140,6 +159,7 @@ void Host::publish_bodies(double rate, std::int64_t stamp_ns) {
   const std::span<const PoseMessage> used = gate_.poses();
   message.pose_numbers.resize(used.size());
   for (std::size_t i = 0; i < used.size(); ++i) message.pose_numbers[i] = used[i].number;
+  message.fluid_models = models_;
   message.rate = rate;
   message.time_step = world_.plan().time_step;
   message.stamp_ns = stamp_ns;
@@ -238,6 +258,7 @@ void Host::run() {
 
     note_status(world_.take_status());
     world_.fill(latest_);
+    model_fluid(input);
     for (HostTap* tap : taps_) tap->after_step(world_);
     const double measured_rate = meter.quick(time_step, step_end_ns);
     const double rate = on_schedule || !options_.paced ? pace : measured_rate;

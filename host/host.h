@@ -13,12 +13,14 @@
 #include <thread>
 #include <vector>
 
+#include "host/fluid_demand.h"
 #include "host/input_gate.h"
 #include "host/snapshot_demand.h"
 #include "host/tap.h"
 #include "net/channel.h"
 #include "net/histogram.h"
 #include "scenes/scene.h"
+#include "sim/fluid_models.h"
 #include "sim/world.h"
 
 namespace slosh {
@@ -28,6 +30,8 @@ struct HostOptions {
   /// The first of each run comes in any case.
   double snapshot_rate = 30.0;
   SnapshotDemand* demand = nullptr;  ///< must outlive the host; null = snapshots are wanted always
+  /// Which grips' bodies BodyMessage::fluid_models are made for; must outlive the host; null = none.
+  const FluidDemand* fluid_demand = nullptr;
   double until = std::numeric_limits<double>::infinity();  ///< simulated s at which the run ends
   /// false: as fast as it goes, with a clock that goes on by a time step a step, so that a run is the same
   /// again whatever the machine does.
@@ -67,6 +71,7 @@ struct HostReport {
   double slipped = 0.0;     ///< s
   std::uint64_t rejected_poses = 0;
   std::uint64_t snapshots = 0;
+  std::uint64_t fluid_models = 0;                ///< made, over all bodies
   std::uint32_t status = 0;                      ///< every StatusBit that was ever set
   std::array<std::uint64_t, 32> status_steps{};  ///< in how many steps, one a bit
   Diagnostics diagnostics;                       ///< of the last state
@@ -134,6 +139,7 @@ class Host {
   Result<bool> carry_out(const HostCommand& command);
   Result<bool> reset();
   void show_state();
+  void model_fluid(std::span<const HandleInput> input);
   void publish_bodies(double rate, std::int64_t stamp_ns);
   void publish_snapshot();
   void publish_snapshot_if_due();
@@ -147,9 +153,13 @@ class Host {
   HostOptions options_;
   InputGate gate_;
   HostReport report_;
-  BodySnapshot latest_;           // what the gate compares new hands with
-  double next_snapshot_ = 0.0;    // simulated s
-  double status_until_[32] = {};  // simulated s up to which each bit counts as recent
+  BodySnapshot latest_;  // what the gate compares new hands with
+  FluidModels fluid_models_;
+  std::vector<int> grip_bodies_;          // one a grip
+  std::vector<char> modelled_;            // one a body
+  std::vector<FluidWrenchModel> models_;  // of the last step
+  double next_snapshot_ = 0.0;            // simulated s
+  double status_until_[32] = {};          // simulated s up to which each bit counts as recent
 
   std::vector<HostTap*> taps_;
   std::vector<std::uint8_t> start_state_;

@@ -49,7 +49,7 @@ Server::Server(ServedWorld world, ServerOptions options)
       seats_(grip_names(*world_.scene), options_.limits),
       admission_(options_.admission),
       hands_(*world_.scene, *world_.channel),
-      states_(*world_.scene, *world_.channel, hands_, peers_, options_.bodies),
+      states_(*world_.scene, *world_.channel, hands_, peers_, options_.bodies, world_.fluid_demand),
       snapshots_(world_.desk),
       switches_(world_.state, options_.hands_to_start),
       faults_told_(world_.scene->grips.size()),
@@ -359,6 +359,7 @@ ServerFigures Server::figures() const {
     if (!figures.who.empty()) figures.who += ", ";
     figures.who += std::to_string(figures.spectators) + " watching";
   }
+  figures.fluid_models_sent = states_.fluid_models_sent();
   figures.frames_sent = snapshots_.frames_sent();
   figures.frames_withheld = snapshots_.frames_withheld();
   for (const auto& [id, peer] : peers_.all()) {

@@ -53,6 +53,7 @@ struct ServedWorld {
   wire::Bytes package;           ///< pack_scene(…, kSeen); the server keeps one copy for all connections
   Channel* channel = nullptr;    ///< the server writes poses and reads bodies
   SnapshotDesk* desk = nullptr;
+  FluidDemand* fluid_demand = nullptr;  ///< the server says whose wrenches are wanted; null = nobody's
   std::function<void(const HostCommand&, HostAnswer)> command;  ///< Host::post; answers on any thread
   HostState state;
   std::uint64_t particles = 0;
@@ -71,6 +72,7 @@ struct ServerFigures {
   std::uint64_t datagrams_ignored = 0;  ///< beyond a peer's limit
   std::uint64_t samples_received = 0;   ///< distinct poses of present holders, and how many they numbered
   std::uint64_t samples_expected = 0;
+  std::uint64_t fluid_models_sent = 0;  ///< FluidWrench datagrams
   std::uint64_t frames_sent = 0;
   std::uint64_t frames_withheld = 0;
   std::string who;  ///< "Ana (left), Ben (right), 3 watching"

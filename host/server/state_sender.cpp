@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "net/clock.h"
+#include "net/wire/fluid_wrench.h"
 
 namespace slosh {
 namespace {
@@ -15,11 +16,15 @@ constexpr std::int64_t kStandingEvery = 100'000'000;  // ns between two sendings
 void StateSender::send_bodies(SeatTable& seats, std::int64_t now_ns) {
   const bool fresh = channel_.bodies().update();
   stale_ = stale_ || fresh;
+  ask_for_fluid(seats);
   if (peers_.nobody_sits()) return;
   const BodyMessage& message = channel_.bodies().front();
   const bool standing = !fresh && now_ns - bodies_sent_ns_ >= kStandingEvery;
   if (!fresh && !standing) return;
-  if (stale_) parts_.set(message);
+  if (stale_) {
+    parts_.set(message);
+    fluid_coded_.assign(message.fluid_models.size(), nullptr);
+  }
   stale_ = false;
   bodies_sent_ns_ = now_ns;
   peers_.each_in([&](Peer& peer) {
@@ -27,9 +32,11 @@ void StateSender::send_bodies(SeatTable& seats, std::int64_t now_ns) {
         to_nanoseconds(1.0 / (peer.participant ? rates_.participant : rates_.spectator));
     if (!standing && message.rate > 0.0 && now_ns < peer.next_bodies_ns) return;
     peer.next_bodies_ns = std::max(peer.next_bodies_ns, now_ns - every) + every;
+    const Seat& seat = *seats.by_number(peer.seat);
+    send_fluid(peer, seat, message);
     std::uint64_t number = 0;
     std::int64_t stamp = 0;
-    for (const std::uint32_t grip : seats.by_number(peer.seat)->grips) {
+    for (const std::uint32_t grip : seat.grips) {
       if (grip >= message.pose_numbers.size()) continue;
       const HandTable::Used used = hands_.used(grip, message.pose_numbers[grip]);
       if (used.number == 0 || (number != 0 && used.stamp_ns <= stamp)) continue;
@@ -39,6 +46,32 @@ void StateSender::send_bodies(SeatTable& seats, std::int64_t now_ns) {
     for (const SharedBytes& bytes : parts_.to(number, stamp))
       endpoint_->send_datagram(peer.id, Priority::kState, bytes);
   });
+}
+
+void StateSender::ask_for_fluid(SeatTable& seats) {
+  if (!fluid_demand_) return;
+  std::uint64_t grips = 0;
+  peers_.each_in([&](const Peer& peer) {
+    if (!(peer.agreed & wire::kFluidWrenches)) return;
+    for (const std::uint32_t grip : seats.by_number(peer.seat)->grips) grips |= std::uint64_t{1} << grip;
+  });
+  fluid_demand_->want(grips);
+}
+
+void StateSender::send_fluid(const Peer& peer, const Seat& seat, const BodyMessage& message) {
+  if (!(peer.agreed & wire::kFluidWrenches)) return;
+  for (std::size_t i = 0; i < message.fluid_models.size(); ++i) {
+    const FluidWrenchModel& model = message.fluid_models[i];
+    const auto on_it = [&](std::uint32_t grip) {
+      return grip < grip_bodies_.size() && grip_bodies_[grip] == static_cast<int>(model.body);
+    };
+    if (std::none_of(seat.grips.begin(), seat.grips.end(), on_it)) continue;
+    SharedBytes& bytes = fluid_coded_[i];
+    if (!bytes)
+      bytes = std::make_shared<const wire::Bytes>(wire::datagram(wire::to_message(model, message.run)));
+    endpoint_->send_datagram(peer.id, Priority::kState, bytes);
+    fluid_models_sent_ += 1;
+  }
 }
 
 void StateSender::forward(const Peer& from, const wire::PoseSample& sample, std::int64_t now_ns) {

@@ -90,6 +90,9 @@ void print_summary(const HostedRun& run, const HostReport& report, const ServerF
   std::printf("snapshots  %s sent, %s withheld from links that were full; %.1f s of coding\n",
               grouped(figures.frames_sent).c_str(), grouped(figures.frames_withheld).c_str(),
               run.coding_seconds());
+  if (figures.fluid_models_sent > 0)
+    std::printf("fluid      %s wrenches modelled, %s sent to hands\n", grouped(report.fluid_models).c_str(),
+                grouped(figures.fluid_models_sent).c_str());
   std::printf("network    %.1f MB sent, %.1f s of processor time\n",
               1e-6 * static_cast<double>(figures.bytes_sent), net_seconds);
   if (report.status != 0) std::printf("status     %s\n", status_text(report.status).c_str());

@@ -50,6 +50,7 @@ Result<std::unique_ptr<HostedRun>> HostedRun::create(HostedWorld& hosted, const 
   HostOptions host;
   host.snapshot_rate = kTierSnapshotRate;
   host.demand = &s.demand_;
+  host.fluid_demand = &s.fluid_demand_;
   host.until = hosted.prepared.seconds;
   host.shell = true;
   host.paused = hosted.state.paused;
@@ -73,6 +74,7 @@ Result<bool> HostedRun::open_network(HostReins* reins) {
   world.package = std::move(package.value());
   world.channel = channel_.get();
   world.desk = &desk_;
+  world.fluid_demand = &fluid_demand_;
   world.command = [this](const HostCommand& command, HostAnswer answer) {
     host_->post(command, std::move(answer));
   };

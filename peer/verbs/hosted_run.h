@@ -83,6 +83,7 @@ class HostedRun {
   // In the order in which they are needed; ended in the opposite one.
   std::unique_ptr<Channel> channel_;
   SnapshotDemand demand_;
+  FluidDemand fluid_demand_;
   SnapshotDesk desk_;
   std::unique_ptr<Server> server_;
   std::unique_ptr<Endpoint> endpoint_;

@@ -24,6 +24,21 @@ inline constexpr int kRatio = 10;       // of a host at 100 Hz to that
 /// Of all hands from where they start, m, by simulated s.
 using Path = std::function<glm::dvec3(double)>;
 
+/// A ball of 40 mm on a rod, held at the rod's top, in 1.5 dm³ of fluid of so many Pa·s.
+inline Scene spoon_in(double viscosity) {
+  SceneBuilder b;
+  b.add_fluid(1000.0, viscosity);
+  b.add_volume(make::box({-0.08, 0.0, -0.06}, {0.08, 0.08, 0.06}));
+  const int tank = b.add_fixed("tank", tank_at_floor({0.16, 0.14, 0.12}, 0.02));
+  const int spoon =
+      b.add_free("spoon", make::merged(make::sphere(0.02, 24, 32), make::capsule(0.006, 0.017, 0.15, 10, 20)),
+                 0.08, {{0.0, 0.04, 0.0}, {1.0, 0.0, 0.0, 0.0}});
+  b.set_viscosity({tank, spoon}, kFluidsViscosity);
+  b.add_grip(spoon, 1000.0, 20.0, 10.0, 0.2, {{0.0, 0.13, 0.0}, {1.0, 0.0, 0.0, 0.0}});
+  b.set_domain({-0.3, -0.1, -0.3}, {0.3, 0.5, 0.3});
+  return b.scene;
+}
+
 /// A world whose hands follow a path, and the models of the bodies that they hold.
 class Host {
  public:

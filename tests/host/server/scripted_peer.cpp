@@ -125,6 +125,7 @@ void ScriptedPeer::on_datagram(ConnectionId, std::span<const std::uint8_t> bytes
       wire::dispatch_datagram(wire::HostDatagrams{}, bytes, [&]<class M>(const M& message) {
         if constexpr (std::is_same_v<M, wire::ClockPong>) keep(pongs, message);
         if constexpr (std::is_same_v<M, wire::Bodies>) keep(bodies, message);
+        if constexpr (std::is_same_v<M, wire::FluidWrench>) keep(fluid, message);
         if constexpr (std::is_same_v<M, wire::Hands>)
           hands.insert(hands.end(), message.hands.begin(), message.hands.end());
       });
@@ -141,6 +142,7 @@ ServedTest::ServedTest(const ServerOptions& given)
   world.package = wire::Bytes(5000, 7);
   world.channel = &channel;
   world.desk = &desk;
+  world.fluid_demand = &fluid_demand;
   world.spacing = 0.01;
   world.time_step = 0.002;
   world.state.viscosities = {0.001};

@@ -65,6 +65,7 @@ class ScriptedPeer final : public EndpointEvents {
   std::vector<wire::ClockPong> pongs;
   std::vector<wire::Bodies> bodies;
   std::vector<wire::HandEntry> hands;
+  std::vector<wire::FluidWrench> fluid;
   std::size_t snapshot_pieces = 0;
   std::size_t snapshot_bytes = 0;
   std::size_t scene_bytes = 0;
@@ -109,6 +110,7 @@ class ServedTest : public ::testing::Test {
   Scene scene;
   Channel channel;
   SnapshotDesk desk;
+  FluidDemand fluid_demand;
   std::vector<HostCommand> commands;
   std::unique_ptr<Server> server;
   std::unique_ptr<Endpoint> endpoint;
