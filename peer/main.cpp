@@ -28,6 +28,7 @@ int run(int argc, char** argv) {
   add_scenes(app, chosen);
   add_check(app, chosen);
   add_plan(app, chosen);
+  add_sweep(app, chosen);
   add_report(app, chosen);
   if (names_a_verb &&
       app.get_subcommands([&](const CLI::App* sub) { return sub->check_name(argv[1]); }).empty()) {

@@ -26,6 +26,7 @@ void add_devices(CLI::App& app, VerbRun& chosen);
 void add_scenes(CLI::App& app, VerbRun& chosen);
 void add_check(CLI::App& app, VerbRun& chosen);
 void add_plan(CLI::App& app, VerbRun& chosen);
+void add_sweep(CLI::App& app, VerbRun& chosen);
 void add_report(CLI::App& app, VerbRun& chosen);
 
 /// "slosh: <where>: <what>. <mend>." on stderr; returns kExitFailed.

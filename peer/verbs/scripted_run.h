@@ -1,0 +1,24 @@
+// A scene played by its own scripts as fast as it goes: what every hand feels, at every step, the same again
+// each time.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "host/report/trial.h"
+#include "peer/output/plot.h"
+
+namespace slosh {
+
+struct ScriptedRun {
+  std::vector<WrenchSeries> hands;       ///< one a grip; a sample a step, nothing averaged
+  std::vector<std::vector<Pose>> poses;  ///< of the handles, at the same times
+  report::Cost cost;
+};
+
+/// The scene's own model and support; settles as the scene asks, in the hands that hold. `share`, 0–1, is
+/// told now and then. Throws report::Refused, report::Stopped.
+ScriptedRun run_scripted(const Scene& scene, report::Setting setting, double seconds,
+                         const std::function<void(double)>& tell);
+
+}  // namespace slosh

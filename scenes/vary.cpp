@@ -1,0 +1,119 @@
+#include "scenes/vary.h"
+
+#include <charconv>
+#include <exception>
+#include <optional>
+
+#include "net/text/clean.h"
+#include "scenes/gltf/document.h"
+#include "scenes/reading/reading.h"
+
+namespace slosh {
+namespace {
+
+using nlohmann::json;
+
+json json_of(const std::string& text) {
+  if (text == "true" || text == "false") return text == "true";
+  double number = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [at, code] = std::from_chars(text.data(), end, number);
+  if (code == std::errc() && at == end) return number;
+  return text;
+}
+
+std::string kind_of(const json& extras) {
+  return extras.contains("slosh") && extras["slosh"].is_string() ? extras["slosh"].get<std::string>()
+                                                                 : std::string();
+}
+
+bool is_kind(const std::string& name) {
+  return name == "body" || name == "fluid" || name == "grip" || name == "hand" || name == "probe";
+}
+
+/// Fields that a scene's `fluids` may have in place of the nodes.
+bool of_fluid(const std::string& field) {
+  return field == "density_kg_m3" || field == "viscosity_pa_s" || field == "color" ||
+         field == "extinction_per_m";
+}
+
+std::string known_objects(const gltf::Document& document) {
+  std::string list = "scene, body, fluid, grip";
+  for (const int node : document.nodes) {
+    if (!kind_of(document.extras[node]).empty()) list += ", " + document.name(node);
+  }
+  return list;
+}
+
+std::optional<Error> make_edit(gltf::Document& document, const FieldEdit& edit) {
+  const json value = json_of(edit.value);
+  if (edit.object == "scene") {
+    document.scene_extras[edit.field] = value;
+    return std::nullopt;
+  }
+  bool found = false;
+  json& scene = document.scene_extras;
+  if (scene.contains("fluids") && scene["fluids"].is_object() && of_fluid(edit.field)) {
+    for (auto& [name, fluid] : scene["fluids"].items()) {
+      if (edit.object != "fluid" && edit.object != name) continue;
+      fluid[edit.field] = value;
+      found = true;
+    }
+  }
+  if (found) return std::nullopt;
+  for (const int node : document.nodes) {
+    json& extras = document.extras[node];
+    const std::string kind = kind_of(extras);
+    if (kind.empty() || (is_kind(edit.object) ? kind != edit.object : document.name(node) != edit.object))
+      continue;
+    extras[edit.field] = value;
+    found = true;
+  }
+  if (found) return std::nullopt;
+  return Error{"--set " + edit.object + "." + edit.field, "the scene has no '" + edit.object + "'",
+               "Name one of: " + known_objects(document)};
+}
+
+Error cleaned(const Error& error) {
+  constexpr std::size_t kMost = 2000;
+  return {clean_text(error.where, kMost), clean_text(error.what, kMost), clean_text(error.mend, kMost)};
+}
+
+}  // namespace
+
+Result<std::vector<FieldEdit>> parse_field_edits(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  const std::size_t dot = equals == std::string::npos ? std::string::npos : text.rfind('.', equals);
+  const Error wrong{"--set", "'" + clean_text(text, kMostTextBytes) + "' is not OBJECT.FIELD=VALUE,VALUE,…",
+                    "For example body.viscosity_pa_s=2,10,20,40"};
+  if (dot == std::string::npos || dot == 0 || dot + 1 == equals) return wrong;
+  std::vector<FieldEdit> edits;
+  for (std::size_t from = equals + 1; from <= text.size();) {
+    const std::size_t to = std::min(text.find(',', from), text.size());
+    if (to == from) return wrong;
+    edits.push_back(
+        {text.substr(0, dot), text.substr(dot + 1, equals - dot - 1), text.substr(from, to - from)});
+    from = to + 1;
+  }
+  if (edits.empty()) return wrong;
+  return edits;
+}
+
+Result<Scene> load_scene_with(const std::filesystem::path& file, const std::vector<FieldEdit>& edits) {
+  try {
+    Result<gltf::Document> document = gltf::read_document(file);
+    if (!document) return cleaned(document.error());
+    for (const FieldEdit& edit : edits) {
+      if (const std::optional<Error> problem = make_edit(document.value(), edit)) return cleaned(*problem);
+    }
+    std::vector<Error> problems;
+    std::optional<Scene> scene = reading::read_stages(document.value(), problems, false);
+    if (!scene) return cleaned(problems.front());
+    return std::move(*scene);
+  } catch (const std::exception& problem) {  // out of memory, a library's own
+    return cleaned(
+        {file.string(), std::string("cannot be read: ") + problem.what(), "Export the file again"});
+  }
+}
+
+}  // namespace slosh
