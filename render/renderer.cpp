@@ -1,7 +1,6 @@
 #include "render/renderer.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -14,8 +13,10 @@
 #include "render/passes/frame_block.h"
 #include "render/passes/hud_pass.h"
 #include "render/passes/meshes.h"
+#include "render/passes/pass_timer.h"
 #include "render/passes/scene_pass.h"
 #include "render/passes/shadow_pass.h"
+#include "render/passes/smooth_centers.h"
 #include "render/passes/splats.h"
 #include "render/passes/targets.h"
 #include "render/read_back.h"
@@ -50,13 +51,15 @@ constexpr float kOcclusionReach = 0.06f;
 }  // namespace
 
 struct Renderer::Parts {
-  Parts(Context& where, const RenderOptions& what) : context(where), options(what) {}
+  Parts(Context& where, const RenderOptions& what)
+      : context(where), options(what), timer(where.is_software()) {}
 
   Context& context;
   RenderOptions options;
   MeshStore meshes;
   FrameUniforms uniforms;
   Splats splats;
+  SmoothCenters centers;
   Targets targets;
   std::optional<ShadowPass> shadow_pass;
   std::optional<FluidShadowPass> fluid_shadow_pass;
@@ -68,6 +71,7 @@ struct Renderer::Parts {
   bool drew_fluid = false;  ///< in the last frame
   bool fast = false;        ///< Quality, resolved
   bool timing = false;
+  PassTimer timer;
   std::vector<PassTime> times;
 
   /// Makes what `options` asks for and is not there yet.
@@ -78,16 +82,9 @@ struct Renderer::Parts {
   /// Runs one pass, timed if asked.
   template <class Pass>
   void run(const char* name, Pass&& pass) {
-    if (!timing) {
-      pass();
-      return;
-    }
-    glFinish();
-    const auto start = std::chrono::steady_clock::now();
+    if (timing) timer.begin(name);
     pass();
-    glFinish();
-    const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
-    times.push_back({name, took.count()});
+    if (timing) timer.end();
   }
 };
 
@@ -107,6 +104,7 @@ Result<bool> Renderer::Parts::fit_to_options() {
     drew_fluid = false;
     fast = want_fast;
   }
+  if (auto chosen = fluid_passes->choose(options.surface); !chosen) return chosen.error();
   const glm::ivec2 size(options.width, options.height);
   const glm::ivec2 back = options.half_resolution_back ? (size + 1) / 2 : size;
   if (targets.size != size || targets.back_size != back) {
@@ -180,13 +178,17 @@ void Renderer::draw(const Frame& frame) {
   p.run("prepare splats", [&] {
     prepare_splats(frame, p.options, p.splats);
     if (p.fast) leave_out_hidden(frame, p.options, p.splats);
+    if (p.options.surface == Surface::kOurs && !p.splats.empty()) {
+      p.centers.sort(frame);
+      p.centers.move(frame, p.splats.spheres);
+    }
     p.drew_fluid = !p.splats.empty();
     if (p.drew_fluid) p.fluid_passes->upload(p.splats);
   });
   if (p.drew_fluid) {
     p.run("front depth", [&] { p.fluid_passes->splat_front(p.targets); });
     p.run("back depth", [&] { p.fluid_passes->splat_back(p.targets); });
-    p.run("bilateral filter", [&] { p.fluid_passes->smooth(p.targets, p.options); });
+    p.run("surface filter", [&] { p.fluid_passes->smooth(p.targets, p.options, frame); });
   }
 
   const bool occlusion = p.options.ambient_occlusion && !p.fast;
@@ -222,6 +224,7 @@ void Renderer::draw(const Frame& frame) {
   if (p.context.has_window()) {
     p.run("window", [&] { p.show_in_window(); });
   }
+  if (p.timing) p.times = p.timer.take();
 }
 
 Image Renderer::read_back() {

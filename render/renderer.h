@@ -32,8 +32,9 @@ enum class Quality : std::uint8_t {
 
 /// How the splats' depths become the fluid's surface.
 enum class Surface : std::uint8_t {
-  kPaper,  ///< section 5 as it stands: its filter, and Eq 15 with its T
-  kOurs,
+  kPaper,          ///< section 5 as it stands: its filter, and Eq 15 with its T
+  kCurvatureFlow,  ///< van der Laan, Green & Sainz 2009, the paper's [21]: 60 steps
+  kOurs,           ///< centres smoothed (Yu & Turk 2013), narrow-range filter (Truong & Yuksel 2018)
 };
 
 struct RenderOptions {
@@ -41,7 +42,7 @@ struct RenderOptions {
   int height = 540;
 
   Surface surface = Surface::kOurs;
-  int bilateral_iterations = 4;  ///< of section 5.1's filter, 0–64
+  int bilateral_iterations = 4;  ///< of section 5.1's filter, 0–64; 0 = no filter, whatever the surface
   float bilateral_range =
       6.0f;                  ///< difference in depth at which the filter's weight is 0, particle radii, > 0
   float splat_scale = 1.2f;  ///< splat radius over particle radius (5.1), > 0
@@ -113,7 +114,8 @@ class Renderer {
   /// Changes the picture's size; out-of-range sizes are clamped.
   void resize(int width, int height);
 
-  /// Time each pass with a glFinish behind it (slows drawing down); pass_times() then holds the last frame.
+  /// Time each pass, by the GPU's own clock or, where a CPU draws, by finishing each pass (slows drawing
+  /// down); pass_times() then holds the last frame.
   void set_timing(bool on);
   const std::vector<PassTime>& pass_times() const;
 

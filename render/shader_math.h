@@ -29,6 +29,7 @@ using glm::sqrt;
 #define SHARED inline
 #include "render/shaders/bilateral.glsl"
 #include "render/shaders/display_shaper.glsl"
+#include "render/shaders/narrow_range.glsl"
 #include "render/shaders/optics.glsl"
 #include "render/shaders/sphere.glsl"
 #undef SHARED

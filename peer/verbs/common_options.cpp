@@ -45,8 +45,10 @@ void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window) {
       ->check(in_range(1.0, 240.0))
       ->capture_default_str();
   verb.add_option("--surface", options.surface,
-                  "How particles become a fluid's surface: ours, or the paper's section 5 as it stands")
-      ->check(CLI::IsMember({"ours", "paper"}))
+                  "How particles become a fluid's surface: ours, the paper's section 5 as it stands, or ours "
+                  "with the\n"
+                  "curvature flow of van der Laan 2009")
+      ->check(CLI::IsMember({"ours", "paper", "flow"}))
       ->capture_default_str();
   verb.add_option("--bilateral", options.bilateral, "Iterations of the fluid surface's filter")
       ->check(CLI::Range(0, 64))

@@ -67,6 +67,7 @@ void TroubleTeller::tell(const LiveRun& run, Progress& progress) {
 RenderOptions picture_options(const Stage& stage, const ShowOptions& options) {
   RenderOptions render;
   if (options.surface == "paper") render = section_five(render);
+  if (options.surface == "flow") render.surface = Surface::kCurvatureFlow;
   render.width = stage.width;
   render.height = stage.height;
   render.bilateral_iterations = options.bilateral;

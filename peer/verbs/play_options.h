@@ -17,7 +17,7 @@ struct ShowOptions {
   std::string size;                  ///< "WxH"; empty = chosen
   double frames_per_second = 30.0;
   int bilateral = 4;
-  std::string surface = "ours";  ///< how particles become a surface: ours, paper
+  std::string surface = "ours";  ///< how particles become a surface: ours, paper, flow
   bool render = true;
   std::string plot = "png";         ///< of plot_formats()
   std::vector<std::string> curves;  ///< of plot_quantities(); empty = chosen

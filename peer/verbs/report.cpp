@@ -1,4 +1,5 @@
-// The verb `report`: error against run time, stability at the extremes, what leaving passes out saves.
+// The verb `report`: error against run time, stability at the extremes, what leaving passes out saves,
+// pictures.
 #include "peer/verbs/report.h"
 
 #include <ctime>
@@ -44,7 +45,7 @@ void add_case_options(CLI::App& verb, ReportOptions& options, const std::string&
 
 void add_report(CLI::App& app, VerbRun& chosen) {
   CLI::App* verb =
-      app.add_subcommand("report", "Measure: error against run time, stability, what passes cost");
+      app.add_subcommand("report", "Measure: error against run time, stability, what passes cost, pictures");
   verb->require_subcommand(1);
   auto options = std::make_shared<ReportOptions>();
   CLI::App* error = verb->add_subcommand("error", "Cases with a known answer: how far off, at what cost");
@@ -70,6 +71,19 @@ void add_report(CLI::App& app, VerbRun& chosen) {
       "Examples:\n  slosh report stability --quick\n  slosh report stability --case jerk --model corrected\n"
       "  slosh report stability --from here.csv --from there.csv --out both");
   stability->callback([&chosen, options] { chosen = [options] { return report_stability(*options); }; });
+  CLI::App* picture = verb->add_subcommand(
+      "picture", "Ways to make a surface of particles: how wrong, how restless, how long");
+  picture->add_flag("--quick", options->quick, "Coarser particles and smaller pools: a minute");
+  picture->add_option("--out", options->out, "Folder for the table and pictures (slosh-report-picture)");
+  picture->add_option("--threads", options->threads, "Cores for a renderer without a GPU (1)")
+      ->check(CLI::Range(1, 256));
+  picture->add_flag("--overwrite", options->overwrite, "Lose the report that is in that folder");
+  picture->footer(
+      "Draws an analytic pool, water at rest and a broken dam with the paper's section 5, with curvature "
+      "flow and\n"
+      "as play does. Writes picture.md, the table, and picture.png, the broken dam side by side.\n\n"
+      "Examples:\n  slosh report picture\n  slosh report picture --quick --out here");
+  picture->callback([&chosen, options] { chosen = [options] { return report_picture(*options); }; });
   CLI::App* passes = verb->add_subcommand("passes", "What a scene's step saves by what it leaves out");
   auto scene = std::make_shared<std::string>();
   auto spacing = std::make_shared<double>(0.0);

@@ -29,6 +29,9 @@ int report_stability(const ReportOptions& options);
 /// `spacing` m; 0: the scene's own, else its coarsest.
 int report_passes(const ReportOptions& options, const std::string& scene_name, double spacing);
 
+/// Threads are the renderer's where a CPU draws.
+int report_picture(const ReportOptions& options);
+
 /// The folder that a report writes to. Errors: another report is there.
 Result<std::filesystem::path> report_folder(const ReportOptions& options, const std::string& kind,
                                             const char* main_file);

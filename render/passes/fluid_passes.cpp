@@ -1,6 +1,7 @@
 #include "render/passes/fluid_passes.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace slosh {
 namespace {
@@ -15,16 +16,11 @@ void draw_into(const gl::Framebuffer& target, glm::ivec2 size) {
   glViewport(0, 0, size.x, size.y);
 }
 
-/// How far the wide filter's iteration `i` of `count` reaches, in splat radii on screen: coarse first and the
-/// paper's own kernel last, which takes away the pattern that far taps leave.
-float spread_of(int i, int count) {
-  return count < 2 ? 0.0f : 0.9f * static_cast<float>(count - 1 - i) / static_cast<float>(count - 1);
-}
-
 }  // namespace
 
 Result<FluidPasses> FluidPasses::create(bool fast) {
   FluidPasses passes;
+  passes.fast_ = fast;
   const auto load = [](gl::Program& into, const char* vertex, const char* fragment,
                        std::vector<std::string> defines = {}) -> Result<bool> {
     auto program = gl::Program::create(vertex, fragment, std::move(defines));
@@ -34,7 +30,6 @@ Result<FluidPasses> FluidPasses::create(bool fast) {
   };
   for (const Result<bool>& loaded : {load(passes.front_program_, "splat.vert", "splat.frag", {"FRONT"}),
                                      load(passes.back_program_, "splat.vert", "splat.frag"),
-                                     load(passes.smooth_program_, "tiles.vert", "smooth.frag"),
                                      load(passes.composite_program_, "tiles.vert", "composite.frag",
                                           std::vector<std::string>(fast ? 1 : 0, "FAST")),
                                      load(passes.thickness_program_, "tiles.vert", "thickness.frag"),
@@ -86,20 +81,20 @@ void FluidPasses::splat_back(const Targets& targets) {
   glDisable(GL_BLEND);
 }
 
-void FluidPasses::smooth(const Targets& targets, const RenderOptions& options) {
-  smoothed_ = -1;
-  const int count = options.bilateral_iterations;
-  for (int i = 0; i < std::min(count, 2); ++i)
-    clear_to(targets.smooth_target[static_cast<std::size_t>(i)], kNoFluidDepth);
-  smooth_program_.use();
-  for (int i = 0; i < count; ++i) {
-    const int into = i % 2;
-    gl::bind_textures({&smoothed(targets)});
-    draw_into(targets.smooth_target[static_cast<std::size_t>(into)], targets.size);
-    smooth_program_.set("spread", options.surface == Surface::kPaper ? 0.0f : spread_of(i, count));
-    draw_tiles();
-    smoothed_ = into;
-  }
+Result<bool> FluidPasses::choose(Surface surface) {
+  if (filter_ && surface == surface_) return true;
+  auto filter = make_surface_filter(surface, fast_);
+  if (!filter) return filter.error();
+  filter_ = std::move(filter.value());
+  surface_ = surface;
+  return true;
+}
+
+void FluidPasses::smooth(const Targets& targets, const RenderOptions& options, const Frame& frame) {
+  for (const gl::Framebuffer& target : targets.smooth_target) clear_to(target, kNoFluidDepth);
+  smoothed_ = options.bilateral_iterations == 0
+                  ? -1
+                  : filter_->run(targets, options, frame, {&tile_vertices_, tile_corners_});
 }
 
 void FluidPasses::composite(const Targets& targets) {
@@ -132,8 +127,7 @@ const gl::Texture& FluidPasses::smoothed(const Targets& targets) const {
 }
 
 void FluidPasses::draw_tiles() {
-  glBindVertexArray(tile_vertices_.name());
-  glDrawArrays(GL_TRIANGLES, 0, tile_corners_);
+  TileDraw{&tile_vertices_, tile_corners_}();
 }
 
 }  // namespace slosh

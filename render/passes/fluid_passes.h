@@ -1,8 +1,11 @@
 // Section 5's fluid: splat, smooth, composite.
 #pragma once
 
+#include <memory>
+
 #include "render/gl/objects.h"
 #include "render/passes/splats.h"
+#include "render/passes/surface_filter.h"
 #include "render/passes/targets.h"
 #include "render/renderer.h"
 
@@ -17,8 +20,10 @@ class FluidPasses {
   /// 5.1. Reads the splats; writes front and back.
   void splat_front(const Targets& targets);
   void splat_back(const Targets& targets);
-  /// 5.1, Fig 5. Reads front; writes smooth by turns.
-  void smooth(const Targets& targets, const RenderOptions& options);
+  /// The filter that smooth() runs. Errors: a shader that the driver refuses.
+  Result<bool> choose(Surface surface);
+  /// Reads front; writes smooth by turns.
+  void smooth(const Targets& targets, const RenderOptions& options, const Frame& frame);
   /// 5.2, Eq 15. Reads front, smooth, back, scene_depth, scene_color; writes color where there is fluid.
   void composite(const Targets& targets);
   /// T for tests, into an R32F target of the picture's size; and n, into an RGBA32F one.
@@ -34,7 +39,6 @@ class FluidPasses {
 
   gl::Program front_program_;
   gl::Program back_program_;
-  gl::Program smooth_program_;
   gl::Program composite_program_;
   gl::Program thickness_program_;
   gl::Program normal_program_;
@@ -46,6 +50,9 @@ class FluidPasses {
   GLsizei front_count_ = 0;
   GLsizei back_count_ = 0;
   GLsizei tile_corners_ = 0;
+  bool fast_ = false;
+  Surface surface_ = Surface::kOurs;
+  std::unique_ptr<SurfaceFilter> filter_;
   int smoothed_ = -1;  ///< index into Targets::smooth, −1 = front
 };
 

@@ -1,5 +1,6 @@
 // The fluid's surface from its smoothed depths: normal, and whether the surface goes on all round.
 #include "frame_block.glsl"
+#include "shared.glsl"
 #include "bilateral.glsl"
 #include "depth_normal.glsl"
 
@@ -31,13 +32,13 @@ FluidSurface fluid_surface(sampler2D depths, vec3 here, ivec2 texel) {
   FluidSurface surface;
   surface.normal = normalize(cross(surface_tangent(depths, here, texel, ivec2(1, 0)),
                                    surface_tangent(depths, here, texel, ivec2(0, 1))));
-  int reach = int(clamp(0.5 * splat.x * splat.y / -here.z, 1.0, 8.0));
+  int reach = int(clamp(0.5 * splat.x * splat.y / -here.z, 2.0, 8.0));
   float found = 0.0;
   for (int k = 0; k < 4; ++k) {
     ivec2 way = k < 2 ? ivec2(k == 0 ? reach : -reach, 0) : ivec2(0, k == 2 ? reach : -reach);
     found += depth_beside(depths, -here.z, texel, way) > 0.0 ? 1.0 : 0.0;
   }
-  surface.whole = max(found - 2.0, 0.0) * 0.5;
+  surface.whole = max(found - 3.0, 0.0);
   return surface;
 }
 

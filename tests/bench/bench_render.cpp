@@ -1,5 +1,5 @@
 // How long each pass of a frame takes: bench_render [--width W] [--height H] [--particles N] [--frames F]
-// [--threads T] [--batter] [--paper] [--full] [--out PICTURE.png]. Times are medians over the frames, with a
+// [--threads T] [--batter] [--paper] [--flow] [--full] [--out PICTURE.png]. Times are medians over the frames, with a
 // glFinish after each pass.
 #include <imgui.h>
 
@@ -26,6 +26,7 @@ struct Wishes {
   bool batter = false;
   bool paper = false;
   bool full = false;
+  bool flow = false;
   bool hud = false;
   std::string out;
 };
@@ -43,6 +44,7 @@ Wishes read_arguments(int count, char** words) {
     if (word == "--batter") wishes.batter = true;
     if (word == "--paper") wishes.paper = true;
     if (word == "--full") wishes.full = true;
+    if (word == "--flow") wishes.flow = true;
     if (word == "--hud") wishes.hud = true;
     if (word == "--out") wishes.out = next;
   }
@@ -72,6 +74,7 @@ int main(int argc, char** argv) {
   options.width = wishes.width;
   options.height = wishes.height;
   if (wishes.paper) options = section_five(options);
+  if (wishes.flow) options.surface = Surface::kCurvatureFlow;
   if (wishes.full) options.quality = Quality::kFull;
   auto made = Renderer::create(*context.value(), options);
   if (!made) return fail(made.error());

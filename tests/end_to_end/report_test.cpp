@@ -1,12 +1,14 @@
 // `slosh report`: what is asked for is written, what cannot be asked for says why.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <set>
 #include <sstream>
 
 #include "process.h"
+#include "render/image.h"
 
 namespace slosh {
 namespace {
@@ -101,12 +103,33 @@ TEST(Report, OfPassesNamesWhatWasLeftOut) {
   EXPECT_NE(text_of(test::test_folder() / "p" / "passes.csv").find("\ncpu,as planned,"), std::string::npos);
 }
 
+TEST(Report, OfPicturesComparesSurfaces) {
+  empty_folder();
+  const Outcome ran = test::slosh({"report", "picture", "--quick", "--out", "p"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const std::string table = text_of(test::test_folder() / "p" / "picture.md");
+  // A row a surface: its name, then the mean error of its normals on the pool, degrees.
+  const auto degrees = [&](const std::string& name) {
+    const std::size_t at = table.find("| " + name + " | ");
+    return at == std::string::npos ? -1.0 : std::atof(table.c_str() + at + name.size() + 5);
+  };
+  EXPECT_GT(degrees("paper, section 5"), 10.0) << table;
+  EXPECT_GT(degrees("ours"), 0.1) << table;
+  EXPECT_LT(degrees("ours"), 0.4 * degrees("curvature flow")) << table;
+  const Result<Image> sheet = read_png(test::test_folder() / "p" / "picture.png");
+  ASSERT_TRUE(sheet) << sheet.error().text();
+  EXPECT_EQ(sheet.value().width, 3 * 640);
+  EXPECT_EQ(test::slosh({"report", "picture", "--quick", "--out", "p"}).code, 1)
+      << "an earlier one is not lost";
+}
+
 TEST(Report, BadRequestsSayWhatThereIs) {
   const auto expect = [](const std::vector<std::string>& arguments, int code, const char* part) {
     const Outcome outcome = test::slosh(arguments);
     EXPECT_EQ(outcome.code, code) << outcome.err;
     EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
   };
+  expect({"report", "picture", "--threads", "0"}, 2, "--threads");
   expect({"report"}, 2, "slosh report --help");
   expect({"report", "error", "--case", "sloshin"}, 1, "sloshing");
   expect({"report", "stability", "--case", "nothing"}, 1, "jerk");

@@ -339,7 +339,8 @@ TEST_F(FluidTest, LeavingOutHiddenParticlesChangesNothing) {
   Frame frame = frame_of(points, fluids, 0.009f);
   frame.fluids = {kit::water(), kit::batter()};
   frame.view = kit::make_view({0.5f, 0.4f, 0.9f}, {0.0f, 0.0f, 0.0f}, kWidth, kHeight);
-  RenderOptions options = small();
+  RenderOptions options =
+      section_five(small());  // ours moves the splats that are left, so the picture may differ
   options.quality = Quality::kFull;
   auto renderer = make(options);
   renderer->draw(frame);

@@ -389,7 +389,7 @@ TEST_F(RendererTest, PassesAreOnlyThoseTheFrameNeeds) {
   }
   kit::DamBreak scene(*renderer, 300, kWidth, kHeight);
   renderer->draw(scene.frame);
-  for (const char* pass : {"front depth", "back depth", "bilateral filter", "composite", "translucent"}) {
+  for (const char* pass : {"front depth", "back depth", "surface filter", "composite", "translucent"}) {
     EXPECT_TRUE(ran(pass)) << pass;
   }
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "render/renderer.h"
+#include "render/score/particles.h"
 
 namespace slosh::kit {
 
@@ -24,24 +25,9 @@ void append(Shape& to, const Shape& from);
 /// Looks from `eye` to `target`.
 View make_view(const glm::vec3& eye, const glm::vec3& target, int width, int height, float fov_deg = 40.0f);
 
-/// Particles at `spacing` in [low, high] below the height `surface(x, z)`, jittered off their lattice and
-/// then pushed apart, as a fluid's are. The same seed gives the same particles.
-template <class Surface>
-std::vector<glm::vec3> make_fluid(const glm::vec3& low, const glm::vec3& high, float spacing,
-                                  Surface surface);
-std::vector<glm::vec3> jitter_lattice(const glm::vec3& low, const glm::vec3& high, float spacing,
-                                      std::uint32_t seed);
-void relax(std::vector<glm::vec3>& points, float spacing, const glm::vec3& low, const glm::vec3& high,
-           int iterations);
-
-template <class Surface>
-std::vector<glm::vec3> make_fluid(const glm::vec3& low, const glm::vec3& high, float spacing,
-                                  Surface surface) {
-  std::vector<glm::vec3> points = jitter_lattice(low, high, spacing, 1);
-  std::erase_if(points, [&](const glm::vec3& p) { return p.y > surface(p.x, p.z); });
-  relax(points, spacing, low, high, 8);
-  return points;
-}
+using score::jitter_lattice;
+using score::make_fluid;
+using score::relax;
 
 /// A dam break's slumped column of about `particles` in a glass tank on a table, a red ball half in it: the
 /// picture to judge looks by, and the benchmark's load.

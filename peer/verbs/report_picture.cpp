@@ -1,0 +1,304 @@
+// `slosh report picture`: ways to make a surface of particles beside each other, in numbers and pictures.
+#include <algorithm>
+#include <cstdio>
+#include <tuple>
+
+#include "host/report/scene_builder.h"
+#include "host/report/trial.h"
+#include "peer/output/whole_file.h"
+#include "peer/verbs/interrupt.h"
+#include "peer/verbs/report.h"
+#include "peer/verbs/verbs.h"
+#include "peer/view/frame_builder.h"
+#include "peer/view/orbit_camera.h"
+#include "render/context.h"
+#include "render/renderer.h"
+#include "render/score/score.h"
+#include "sim/math/format.h"
+
+namespace slosh {
+namespace {
+
+constexpr const char* kTable = "picture.md";
+constexpr const char* kSheet = "picture.png";
+constexpr int kWidth = 640;
+constexpr int kHeight = 480;
+constexpr double kInner[3] = {0.36, 0.26, 0.20};  // m, the tank
+constexpr double kFill = 0.10;                    // m of still water
+
+struct Method {
+  const char* name;
+  Surface surface;
+};
+constexpr Method kMethods[] = {{"paper, section 5", Surface::kPaper},
+                               {"curvature flow", Surface::kCurvatureFlow},
+                               {"ours", Surface::kOurs}};
+
+struct Row {
+  score::SurfaceScore at5;
+  score::SurfaceScore at15;
+  double still_normal = 0.0;  ///< degrees
+  double flicker = 0.0;       ///< of 255
+  double filter_ms = 0.0;
+  double frame_ms = 0.0;
+};
+
+RenderOptions options_of(const Method& method, int width, int height) {
+  RenderOptions options;
+  if (method.surface == Surface::kPaper) options = section_five(options);
+  options.surface = method.surface;
+  options.width = width;
+  options.height = height;
+  return options;
+}
+
+/// Water in a glass tank on a table; the dam: all of it at one end, twice as high.
+Scene tank_scene(bool dam) {
+  report::SceneBuilder b;
+  b.add_fluid(1000.0, 0.01);
+  const double x = 0.5 * kInner[0];
+  const double z = 0.5 * kInner[2];
+  const int tank = b.add_fixed("tank", report::tank_at_floor({kInner[0], kInner[1], kInner[2]}, 0.03));
+  Material& glass = b.scene.bodies[static_cast<std::size_t>(tank)].material;
+  glass.base_color = {0.85f, 0.93f, 0.95f};
+  glass.roughness = 0.05f;
+  glass.opacity = 0.1f;
+  b.add_volume(dam ? make::box({-x, 0.0, -z}, {0.0, 2.0 * kFill, z})
+                   : make::box({-x, 0.0, -z}, {x, kFill, z}));
+  b.set_domain({-0.5, -0.2, -0.4}, {0.5, 0.6, 0.4});
+  Picture table;
+  table.name = "table";
+  table.mesh = static_cast<int>(b.scene.meshes.size());
+  table.material.base_color = {0.32f, 0.18f, 0.09f};
+  b.scene.meshes.push_back(make::with_normals(make::box({-0.6, -0.1, -0.45}, {0.6, -0.031, 0.45})));
+  b.scene.pictures.push_back(table);
+  b.scene.camera.eye = {0.30, 0.42, 0.66};
+  b.scene.camera.target = {0.0, 0.10, 0.0};
+  return b.scene;
+}
+
+/// The still water's upper side as the camera should see it, away from walls by four spacings.
+score::Exact still_surface(const View& view, double spacing) {
+  const auto pixels = static_cast<std::size_t>(kWidth) * kHeight;
+  score::Exact exact{{kWidth, kHeight, 1, std::vector<float>(pixels, kNoFluidDepth)},
+                     {kWidth, kHeight, 3, std::vector<float>(3 * pixels, 0.0f)}};
+  const glm::mat4 world_from_eye = glm::inverse(view.view);
+  const glm::vec3 from(world_from_eye[3]);
+  const glm::vec3 up = glm::mat3(view.view) * glm::vec3(0.0f, 1.0f, 0.0f);
+  for (std::size_t i = 0; i < pixels; ++i) {
+    const glm::vec2 ndc(2.0f * (static_cast<float>(i % kWidth) + 0.5f) / kWidth - 1.0f,
+                        1.0f - 2.0f * (static_cast<float>(i / kWidth) + 0.5f) / kHeight);
+    const glm::vec3 eye_way(ndc.x / view.projection[0][0], ndc.y / view.projection[1][1], -1.0f);
+    const glm::vec3 way = glm::mat3(world_from_eye) * eye_way;
+    const float t = (static_cast<float>(kFill) - from.y) / way.y;
+    const glm::vec3 at = from + t * way;
+    const bool inside =
+        std::abs(at.x) < 0.5 * kInner[0] - 4.0 * spacing && std::abs(at.z) < 0.5 * kInner[2] - 4.0 * spacing;
+    if (!(t > 0.0f) || !inside) continue;
+    exact.depth.values[i] = t;
+    for (int c = 0; c < 3; ++c) exact.normal.values[3 * i + static_cast<std::size_t>(c)] = up[c];
+  }
+  return exact;
+}
+
+struct KnownPool {
+  score::Pool pool;
+  score::Exact exact;
+  KnownPool(float pixels, int width, int height)
+      : pool(score::make_pool(pixels, width, height)), exact(score::exact_pool(pool, width, height)) {}
+};
+
+Result<score::SurfaceScore> score_pool(Context& context, const Method& method, const KnownPool& known) {
+  auto made =
+      Renderer::create(context, options_of(method, known.exact.depth.width, known.exact.depth.height));
+  if (!made) return made.error();
+  const Frame frame = known.pool.frame();
+  made.value()->draw(frame);
+  return score::score_surface(made.value()->read_buffer(Buffer::kSmoothDepth),
+                              made.value()->read_buffer(Buffer::kNormal), known.exact, frame.particle_radius,
+                              3.0f * frame.particle_radius);
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
+  return values[values.size() / 2];
+}
+
+/// A scene's snapshots, drawn by one method.
+class Stand {
+ public:
+  static Result<std::unique_ptr<Stand>> create(Context& context, const Method& method, const Scene& scene,
+                                               double spacing) {
+    auto made = Renderer::create(context, options_of(method, kWidth, kHeight));
+    if (!made) return made.error();
+    return std::unique_ptr<Stand>(new Stand(std::move(made.value()), scene, spacing));
+  }
+  const Image& draw(const Snapshot& snapshot) {
+    frame_ = builder_.build(snapshot, camera_.distance());
+    frame_.view = camera_.view(static_cast<double>(kWidth) / kHeight);
+    renderer_->draw(frame_);
+    return image_ = renderer_->read_back();
+  }
+  /// Of the filter, and of the whole frame, ms: medians over `frames`.
+  std::pair<double, double> times(int frames) {
+    std::vector<double> filter, whole;
+    renderer_->set_timing(true);
+    for (int i = 0; i < frames + 2; ++i) {
+      renderer_->draw(frame_);
+      if (i < 2) continue;  // shaders are compiled at their first use
+      double sum = 0.0;
+      for (const PassTime& pass : renderer_->pass_times()) {
+        sum += pass.milliseconds;
+        if (pass.pass == "surface filter") filter.push_back(pass.milliseconds);
+      }
+      whole.push_back(sum);
+    }
+    renderer_->set_timing(false);
+    return {median(filter), median(whole)};
+  }
+  Renderer& renderer() { return *renderer_; }
+  const View& view() const { return frame_.view; }
+
+ private:
+  Stand(std::unique_ptr<Renderer> renderer, const Scene& scene, double spacing)
+      : renderer_(std::move(renderer)), builder_(scene, spacing, *renderer_), camera_(scene.camera) {}
+  std::unique_ptr<Renderer> renderer_;
+  FrameBuilder builder_;
+  OrbitCamera camera_;
+  Frame frame_;
+  Image image_;
+};
+
+/// Pictures of one height beside each other.
+Image beside(const std::vector<Image>& images) {
+  Image sheet;
+  for (const Image& image : images) {
+    sheet.width += image.width;
+    sheet.height = image.height;
+  }
+  sheet.rgba.resize(std::size_t{4} * static_cast<std::size_t>(sheet.width) * sheet.height);
+  std::size_t left = 0;
+  for (const Image& image : images) {
+    const std::size_t row = std::size_t{4} * static_cast<std::size_t>(image.width);
+    for (int y = 0; y < image.height; ++y) {
+      std::copy_n(
+          image.rgba.begin() + static_cast<std::ptrdiff_t>(row * static_cast<std::size_t>(y)), row,
+          sheet.rgba.begin() +
+              static_cast<std::ptrdiff_t>(std::size_t{4} * static_cast<std::size_t>(sheet.width * y) + left));
+    }
+    left += row;
+  }
+  return sheet;
+}
+
+std::string table_of(const std::vector<Row>& rows) {
+  std::string text =
+      "| surface | normal error at 5 px: mean, p95, edge band | at 15 px | outline off, at 5 px | still "
+      "water: normal "
+      "error | flicker | filter, ms | frame, ms |\n|---|---|---|---|---|---|---|---|\n";
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Row& row = rows[i];
+    text += format(
+        "| %s | %.1f°, %.1f°, %.1f° | %.1f°, %.1f°, %.1f° | %.1f px | %.1f° | %.2f/255 | %.1f | %.1f |\n",
+        kMethods[i].name, row.at5.normal_mean, row.at5.normal_p95, row.at5.edge_mean, row.at15.normal_mean,
+        row.at15.normal_p95, row.at15.edge_mean, row.at5.silhouette, row.still_normal, row.flicker,
+        row.filter_ms, row.frame_ms);
+  }
+  return text;
+}
+
+}  // namespace
+
+int report_picture(const ReportOptions& options) {
+  HeadlessOptions headless;
+  headless.software_threads = options.threads > 0 ? options.threads : 1;
+  auto context = make_headless_context(headless);
+  if (!context) return fail(context.error());
+  const Result<std::filesystem::path> folder = report_folder(options, "picture", kTable);
+  if (!folder) return fail(folder.error());
+  const double spacing = options.quick ? 0.012 : 0.008;
+  report::Setting setting;
+  setting.spacing = spacing;
+  setting.stopped = [] { return interrupted_by() != 0; };
+
+  std::vector<Row> rows(std::size(kMethods));
+  std::vector<Image> pictures;
+  std::size_t particles = 0;
+  try {
+    const Scene dam_scene = tank_scene(true);
+    const Scene still_scene = tank_scene(false);
+    report::Cost cost;
+    report::Trial dam(dam_scene, setting, cost);
+    std::printf("a dam breaks\n");
+    dam.run(0.24);
+    const Snapshot broken = dam.picture();
+    particles = broken.positions.size();
+    std::printf("water comes to rest\n");
+    report::Trial still(still_scene, setting, cost);
+    still.settle(1.0);
+    std::vector<Snapshot> rest;
+    for (int i = 0; i < 10; ++i) {
+      still.run(1.0 / 30.0);
+      rest.push_back(still.picture());
+    }
+    std::printf("pools are filled\n");
+    const int width = options.quick ? 480 : 960;
+    const int height = options.quick ? 270 : 540;
+    const KnownPool fine(5.0f, width, height);
+    const KnownPool coarse(15.0f, width, height);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      std::printf("%s\n", kMethods[i].name);
+      for (const KnownPool* known : {&fine, &coarse}) {
+        const auto scored = score_pool(*context.value(), kMethods[i], *known);
+        if (!scored) return fail(scored.error());
+        (known == &fine ? rows[i].at5 : rows[i].at15) = scored.value();
+      }
+      auto stand = Stand::create(*context.value(), kMethods[i], dam_scene, spacing);
+      if (!stand) return fail(stand.error());
+      pictures.push_back(stand.value()->draw(broken));
+      std::tie(rows[i].filter_ms, rows[i].frame_ms) = stand.value()->times(options.quick ? 3 : 20);
+      auto calm = Stand::create(*context.value(), kMethods[i], still_scene, spacing);
+      if (!calm) return fail(calm.error());
+      Image before;
+      for (const Snapshot& snapshot : rest) {
+        const Image now = calm.value()->draw(snapshot);
+        rows[i].flicker += score::flicker(before, now) / static_cast<double>(rest.size() - 1);
+        before = now;
+      }
+      const float radius = static_cast<float>(0.62 * spacing);
+      rows[i].still_normal =
+          score::score_surface(calm.value()->renderer().read_buffer(Buffer::kSmoothDepth),
+                               calm.value()->renderer().read_buffer(Buffer::kNormal),
+                               still_surface(calm.value()->view(), spacing), radius, 3.0f * radius)
+              .normal_mean;
+    }
+  } catch (const report::Refused& refused) {
+    return fail(refused.error);
+  } catch (const report::Stopped&) {
+    return kExitFailed;
+  }
+  const std::string table = table_of(rows);
+  const std::string about = format(
+      "Normals against an analytic pool (particles of 5 and 15 pixels of radius, %s; within 8 px of a depth "
+      "edge\n"
+      "apart) and against still water that was simulated; flicker: mean change of a channel between "
+      "pictures\n"
+      "1/30 s apart of that water; times of a broken dam of %zu particles at %dx%d, medians.\n\n",
+      options.quick ? "480x270" : "960x540", particles, kWidth, kHeight);
+  const std::string drawn_by =
+      context.value()->description() +
+      format(", %d thread%s; ", headless.software_threads, headless.software_threads == 1 ? "" : "s") +
+      machine_line(options) + "\n";
+  std::printf("\n%s\n%s", table.c_str(), drawn_by.c_str());
+  const Result<bool> written =
+      write_whole(folder.value() / kTable, about + table + "\n" + drawn_by +
+                                               "\nThe pictures, left to right: paper, curvature "
+                                               "flow, ours.\n\n![](picture.png)\n");
+  if (!written) return fail(written.error());
+  const auto sheet = write_png(folder.value() / kSheet, beside(pictures));
+  if (!sheet) return fail(sheet.error());
+  return kExitOk;
+}
+
+}  // namespace slosh

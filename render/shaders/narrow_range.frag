@@ -1,0 +1,56 @@
+// One pass of the narrow-range filter: along an axis, or (CLEAN) over 5 × 5 pixels, which takes the streaks away that two
+// axes leave at edges.
+#include "frame_block.glsl"
+#include "shared.glsl"
+#include "bilateral.glsl"
+#include "narrow_range.glsl"
+layout(binding = 0) uniform sampler2D source;
+uniform ivec2 axis;
+uniform vec3 kernel;  // reach m, range m, taps a side at most
+layout(location = 0) out float depth;
+
+float fetch(ivec2 at) {
+  return texelFetch(source, clamp(at, ivec2(0), ivec2(picture.xy) - 1), 0).r;
+}
+
+void main() {
+  ivec2 texel = ivec2(gl_FragCoord.xy);
+  float here = texelFetch(source, texel, 0).r;
+  depth = here;
+  if (here > kFluidDepthLimit) return;
+  float moved = 0.0;
+  float weights = 1.0;
+#ifdef CLEAN
+  DepthRange range = narrow_range(here, kernel.y);
+  for (int y = 0; y <= 2; ++y) {
+    for (int x = y == 0 ? 1 : -2; x <= 2; ++x) {
+      float a = fetch(texel + ivec2(x, y));
+      float b = fetch(texel - ivec2(x, y));
+      float w = in_range(range, a) && in_range(range, b) ? kernel_weight(length(vec2(x, y)) / 3.4) : 0.0;
+      moved += w * (min(a, 1.0e3) + min(b, 1.0e3) - 2.0 * here);
+      weights += 2.0 * w;
+    }
+  }
+#else
+  float reach = max(kernel.x * splat.y / here, 1.0);
+  int stride = int(ceil(reach / kernel.z));
+  int taps = int(reach) / stride;
+  float share = float(stride) / (reach + 1.0);
+  DepthRange ahead = narrow_range(here, kernel.y);
+  DepthRange behind = ahead;
+  for (int i = 1; i <= taps; ++i) {
+    float a = fetch(texel + axis * (i * stride));
+    float b = fetch(texel - axis * (i * stride));
+    bool a_in = in_range(ahead, a);
+    bool b_in = in_range(behind, b);
+    if (a_in && b_in) {
+      float w = kernel_weight(float(i) * share);
+      moved += w * (a + b - 2.0 * here);
+      weights += 2.0 * w;
+    }
+    if (a_in) ahead = widened(ahead, a, kernel.y);
+    if (b_in) behind = widened(behind, b, kernel.y);
+  }
+#endif
+  depth = here + moved / weights;
+}

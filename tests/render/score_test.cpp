@@ -1,0 +1,147 @@
+// The surface against a pool of which depths and normals are known, and the filters' maths.
+#include "render/score/score.h"
+
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <vector>
+
+#include "render/passes/smooth_centers.h"
+#include "render/shader_math.h"
+#include "tests/render/render_test.h"
+
+namespace slosh {
+namespace {
+
+class ScoreTest : public RenderTest {
+ protected:
+  static constexpr int kPoolWidth = 640;
+  static constexpr int kPoolHeight = 360;
+
+  static score::SurfaceScore score_of(const score::Pool& pool, const score::Exact& exact, Surface surface,
+                                      Quality quality) {
+    RenderOptions options;
+    if (surface == Surface::kPaper) options = section_five(options);
+    options.surface = surface;
+    options.width = kPoolWidth;
+    options.height = kPoolHeight;
+    options.quality = quality;
+    auto renderer = make(options);
+    const Frame frame = pool.frame();
+    renderer->draw(frame);
+    return score::score_surface(renderer->read_buffer(Buffer::kSmoothDepth),
+                                renderer->read_buffer(Buffer::kNormal), exact, frame.particle_radius,
+                                3.0f * frame.particle_radius);
+  }
+};
+
+// As measured (llvmpipe): paper 22°, flow 18°, ours 3.3° at 5 pixels of radius. Ours on a GPU takes more
+// taps: 3.1°.
+TEST_F(ScoreTest, NormalsOfAnAnalyticPool) {
+  const score::Pool pool = score::make_pool(5.0f, kPoolWidth, kPoolHeight);
+  const score::Exact exact = score::exact_pool(pool, kPoolWidth, kPoolHeight);
+  const score::SurfaceScore paper = score_of(pool, exact, Surface::kPaper, Quality::kFast);
+  const score::SurfaceScore flow = score_of(pool, exact, Surface::kCurvatureFlow, Quality::kFast);
+  EXPECT_GT(paper.pixels, 100000u);
+  EXPECT_GT(paper.normal_mean, 15.0) << "spheres are seen: the pool can tell filters apart";
+  EXPECT_LT(flow.normal_mean, 0.9 * paper.normal_mean);
+  for (const Quality quality : {Quality::kFast, Quality::kFull}) {
+    const score::SurfaceScore ours = score_of(pool, exact, Surface::kOurs, quality);
+    EXPECT_LT(ours.normal_mean, 4.5);
+    EXPECT_LT(ours.normal_p95, 11.0);
+    EXPECT_LT(ours.edge_mean, 0.7 * paper.edge_mean);
+    EXPECT_LT(std::abs(ours.depth_bias), 0.9) << "particle radii: smoothing must not shrink the fluid";
+    EXPECT_LT(ours.depth_rms, paper.depth_rms);
+    EXPECT_LT(ours.silhouette, 0.8 * 5.0) << "px, of particles of 5 px radius";
+  }
+}
+
+TEST_F(ScoreTest, TheExactPictureScoresNought) {
+  const score::Pool pool = score::make_pool(20.0f, kPoolWidth, kPoolHeight);
+  const score::Exact exact = score::exact_pool(pool, kPoolWidth, kPoolHeight);
+  const score::SurfaceScore same = score::score_surface(exact.depth, exact.normal, exact, 0.01f, 0.03f);
+  EXPECT_GT(same.pixels, 100000u);
+  EXPECT_LT(same.normal_mean, 0.05);
+  EXPECT_EQ(same.depth_bias, 0.0);
+  EXPECT_EQ(same.silhouette, 0.0);
+  // The exact normals are those of the exact depths.
+  FloatImage turned = exact.normal;
+  for (std::size_t i = 0; i < turned.values.size(); i += 3) {
+    const glm::vec3 n(turned.values[i], turned.values[i + 1], turned.values[i + 2]);
+    const glm::vec3 t =
+        glm::vec3(glm::rotate(glm::mat4(1.0f), 0.2f, glm::vec3(0, 0, 1)) * glm::vec4(n, 0.0f));
+    for (int c = 0; c < 3; ++c) turned.values[i + static_cast<std::size_t>(c)] = t[c];
+  }
+  const score::SurfaceScore off = score::score_surface(exact.depth, turned, exact, 0.01f, 0.03f);
+  EXPECT_GT(off.normal_mean, 4.0);
+  EXPECT_LT(off.normal_mean, 11.46) << "0.2 rad about the view, so less for normals that face the eye";
+}
+
+TEST(Flicker, IsTheMeanChangeOfAChannel) {
+  Image a{2, 1, std::vector<std::uint8_t>(8, 100)};
+  Image b = a;
+  EXPECT_EQ(score::flicker(a, b), 0.0);
+  b.rgba = {106, 100, 100, 0, 100, 100, 100, 100};
+  EXPECT_DOUBLE_EQ(score::flicker(a, b), 1.0);
+}
+
+TEST(NarrowRange, ASlopeStaysOneSurfaceAndAStepDoesNot) {
+  using namespace shader;
+  DepthRange range = narrow_range(1.0f, 0.1f);
+  for (int i = 1; i < 20; ++i) {
+    const float depth = 1.0f + 0.05f * static_cast<float>(i);
+    ASSERT_TRUE(in_range(range, depth)) << i;
+    range = widened(range, depth, 0.1f);
+  }
+  EXPECT_FALSE(in_range(range, 0.85f)) << "it widens only where the surface went";
+  EXPECT_FALSE(in_range(narrow_range(1.0f, 0.1f), 1.11f));
+  EXPECT_FLOAT_EQ(kernel_weight(0.0f), 1.0f);
+  EXPECT_FLOAT_EQ(kernel_weight(1.0f), 0.0f);
+}
+
+Frame frame_of_points(const std::vector<glm::vec3>& points, const std::vector<std::uint8_t>& fluids,
+                      float radius) {
+  Frame frame;
+  frame.view = kit::make_view({0.0f, 0.0f, 1.0f}, glm::vec3(0.0f), 100, 100);
+  frame.particles = points;
+  frame.particle_fluid = fluids;
+  frame.fluids = {kit::water()};
+  frame.particle_radius = radius;
+  return frame;
+}
+
+TEST(SmoothCenters, AFlatSurfaceStaysItsNoiseGoesAndADropStays) {
+  const float spacing = 0.02f;
+  auto points = kit::jitter_lattice({-0.2f, -0.2f, -0.12f}, {0.2f, 0.2f, 0.0f}, spacing, 5);
+  kit::relax(points, spacing, {-0.2f, -0.2f, -0.12f}, {0.2f, 0.2f, 0.0f}, 8);
+  points.emplace_back(0.0f, 0.0f, 0.3f);
+  const std::vector<std::uint8_t> fluids(points.size(), 0);
+  const Frame frame = frame_of_points(points, fluids, 0.62f * spacing);
+  std::vector<glm::vec4> spheres;
+  for (const glm::vec3& p : points)
+    spheres.emplace_back(glm::vec3(frame.view.view * glm::vec4(p, 1.0f)), 3.0f);
+  SmoothCenters centers;
+  centers.sort(frame);
+  centers.move(frame, spheres);
+  // Of the particles of the upper layer, away from the sides.
+  double before = 0.0, after = 0.0, before2 = 0.0, after2 = 0.0;
+  int count = 0;
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    EXPECT_EQ(spheres[i].w, 3.0f);
+    const glm::vec3& p = points[i];
+    if (p.z < -0.7f * spacing || std::max(std::abs(p.x), std::abs(p.y)) > 0.14f) continue;
+    const double moved = 1.0 + spheres[i].z;  // the eye is at z = 1
+    before += p.z;
+    before2 += double{p.z} * p.z;
+    after += moved;
+    after2 += moved * moved;
+    ++count;
+  }
+  ASSERT_GT(count, 100);
+  const double mean_before = before / count, mean_after = after / count;
+  EXPECT_NEAR(mean_after, mean_before, 0.35 * spacing) << "the surface stays";
+  EXPECT_LT(after2 / count - mean_after * mean_after, 0.5 * (before2 / count - mean_before * mean_before));
+  EXPECT_NEAR(spheres.back().z, 0.3f - 1.0f, 1e-5f) << "a particle alone stays";
+}
+
+}  // namespace
+}  // namespace slosh
