@@ -25,7 +25,7 @@ enum class Display : std::uint8_t {
 /// How much is spent on looks where the paper leaves it open.
 enum class Quality : std::uint8_t {
   kAuto,  ///< kFast where a CPU draws (llvmpipe), else kFull
-  kFast,  ///< one shadow tap, shadow map of half the size, no occlusion, only the
+  kFast,  ///< two shadow taps, shadow map of 3/4 the size, no occlusion of meshes, only the
           ///< sides of glass that face the eye and are before the fluid
   kFull,
 };

@@ -11,7 +11,9 @@ float light_past_meshes(vec3 world, vec3 normal) {
   vec3 at = in_shadow_map(world + normal * key_light.w);
   float reaching;
 #ifdef FAST
-  reaching = texture(shadow_map, at);
+  // Two bilinear taps across a texel's diagonal: the steps of a map that is turned against the picture melt.
+  vec2 across = to_light_eye.w * vec2(0.75, 0.75);
+  reaching = 0.5 * (texture(shadow_map, vec3(at.xy - across, at.z)) + texture(shadow_map, vec3(at.xy + across, at.z)));
 #else
   // Four bilinear taps, turned so that their footprints do not line up with the texels.
   float texel = to_light_eye.w;
