@@ -45,7 +45,7 @@ void add_case_options(CLI::App& verb, ReportOptions& options, const std::string&
 
 void add_report(CLI::App& app, VerbRun& chosen) {
   CLI::App* verb =
-      app.add_subcommand("report", "Measure: error against run time, stability, what passes cost, pictures");
+      app.add_subcommand("report", "Measure: error against run time, stability, what passes cost, pictures, the paper's figures");
   verb->require_subcommand(1);
   auto options = std::make_shared<ReportOptions>();
   CLI::App* error = verb->add_subcommand("error", "Cases with a known answer: how far off, at what cost");
@@ -102,6 +102,22 @@ void add_report(CLI::App& app, VerbRun& chosen) {
   passes->callback([&chosen, options, scene, spacing] {
     chosen = [options, scene, spacing] { return report_passes(*options, *scene, *spacing); };
   });
+  CLI::App* figure = verb->add_subcommand("figure", "A figure of the paper again, judged against the paper's words");
+  auto which = std::make_shared<FigureOptions>();
+  figure->add_option("N", which->number, "8 spoon, 9 pouring, 10 spinning glasses, 11 bucket in two hands")
+      ->required()
+      ->check(CLI::IsMember({8, 9, 10, 11}));
+  figure->add_option("--spacing", which->spacing, "Metres between particles (the scene's coarsest)")
+      ->check(in_range(1e-4, 1.0));
+  figure->add_flag("--tare", which->tare, "Figure 8 without what the hand carries at rest");
+  figure->add_option("--out", options->out, "Folder for picture, words and table (slosh-report-figure)");
+  add_machine_options(*figure, *options);
+  figure->footer(
+      "Plays the shipped scene's hands, every step kept: no peak is averaged away. Figure 10 runs the paper's model\n"
+      "and the default one. Writes figure-N.png, phases marked, with this command under its title; figure-N.md, each\n"
+      "sentence of the paper with what was measured and whether it holds; figure-N.csv, the wrenches.\n\n"
+      "Examples:\n  slosh report figure 10\n  slosh report figure 8 --tare --spacing 0.008 --out figures");
+  figure->callback([&chosen, options, which] { chosen = [options, which] { return report_figure(*options, *which); }; });
 }
 
 Result<std::filesystem::path> report_folder(const ReportOptions& options, const std::string& kind,

@@ -32,6 +32,13 @@ int report_passes(const ReportOptions& options, const std::string& scene_name, d
 /// Threads are the renderer's where a CPU draws.
 int report_picture(const ReportOptions& options);
 
+struct FigureOptions {
+  int number = 8;        ///< of the paper, 8–11
+  double spacing = 0.0;  ///< m; 0: the scene's coarsest
+  bool tare = false;     ///< Figure 8 less what the hand carries at rest
+};
+int report_figure(const ReportOptions& options, const FigureOptions& figure);
+
 /// The folder that a report writes to. Errors: another report is there.
 Result<std::filesystem::path> report_folder(const ReportOptions& options, const std::string& kind,
                                             const char* main_file);

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 
 #include "net/grip_start.h"
 #include "peer/haptics/pose_track.h"
+#include "peer/output/recorder.h"
+#include "sim/math/format.h"
 
 namespace slosh {
 
@@ -15,6 +18,7 @@ ScriptedRun run_scripted(const Scene& scene, report::Setting setting, double sec
   ScriptedRun run;
   run.hands.resize(scene.grips.size());
   run.poses.resize(scene.grips.size());
+  run.centers.resize(scene.grips.size());
   std::vector<PoseTrack> tracks;
   for (std::size_t i = 0; i < scene.grips.size(); ++i)
     tracks.emplace_back(scene.grips[i].hand_motion, grip_start(scene, i));
@@ -41,11 +45,26 @@ ScriptedRun run_scripted(const Scene& scene, report::Setting setting, double sec
         run.hands[i].time.push_back(now.time);
         run.hands[i].on_hand.push_back(now.grips[i].on_hand);
         run.poses[i].push_back(now.grips[i].handle);
+        run.centers[i].push_back(now.bodies[static_cast<std::size_t>(scene.grips[i].body)].center_of_mass);
       }
       if (tell && step % 64 == 0) tell(static_cast<double>(step) / static_cast<double>(steps));
     }
   }
   return run;
+}
+
+bool write_wrenches(const std::filesystem::path& file, const ScriptedRun& run) {
+  std::ofstream out(file);
+  out << kWrenchesHeader << '\n';
+  const std::size_t rows = run.hands.empty() ? 0 : run.hands[0].time.size();
+  for (std::size_t r = 0; r < rows; ++r) {
+    for (std::size_t i = 0; i < run.hands.size(); ++i) {
+      const Wrench& w = run.hands[i].on_hand[r];
+      out << format("%.6f,%zu,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", run.hands[i].time[r], i, w.force.x, w.force.y,
+                    w.force.z, w.torque.x, w.torque.y, w.torque.z);
+    }
+  }
+  return static_cast<bool>(out.flush());
 }
 
 }  // namespace slosh

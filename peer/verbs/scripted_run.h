@@ -2,6 +2,7 @@
 // each time.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <vector>
 
@@ -11,8 +12,9 @@
 namespace slosh {
 
 struct ScriptedRun {
-  std::vector<WrenchSeries> hands;       ///< one a grip; a sample a step, nothing averaged
-  std::vector<std::vector<Pose>> poses;  ///< of the handles, at the same times
+  std::vector<WrenchSeries> hands;               ///< one a grip; a sample a step, nothing averaged
+  std::vector<std::vector<Pose>> poses;          ///< of the handles, at the same times
+  std::vector<std::vector<glm::dvec3>> centers;  ///< m, world: of mass, of the body that each holds
   report::Cost cost;
 };
 
@@ -20,5 +22,8 @@ struct ScriptedRun {
 /// told now and then. Throws report::Refused, report::Stopped.
 ScriptedRun run_scripted(const Scene& scene, report::Setting setting, double seconds,
                          const std::function<void(double)>& tell);
+
+/// As play's wrenches.csv, a row a step. False when it could not be written.
+bool write_wrenches(const std::filesystem::path& file, const ScriptedRun& run);
 
 }  // namespace slosh

@@ -7,7 +7,6 @@
 
 #include "peer/output/chart.h"
 #include "peer/output/gnuplot.h"
-#include "peer/output/recorder.h"
 #include "peer/palette.h"
 #include "peer/verbs/common_options.h"
 #include "peer/verbs/interrupt.h"
@@ -105,21 +104,6 @@ std::string row_of(std::size_t number, const Member& member, std::size_t grip, c
   return row + format(",%zu,%.6g,%.6g,%.6g,%.6g,%llu,%llu,%.4g\n", grip, f.mean_force, f.peak_force,
                       f.mean_torque, f.peak_torque, static_cast<unsigned long long>(run.cost.particles),
                       static_cast<unsigned long long>(run.cost.retired), run.cost.wall_s);
-}
-
-/// As play's wrenches.csv, a row a step.
-bool write_wrenches(const std::filesystem::path& file, const ScriptedRun& run) {
-  std::ofstream out(file);
-  out << kWrenchesHeader << '\n';
-  const std::size_t rows = run.hands.empty() ? 0 : run.hands[0].time.size();
-  for (std::size_t r = 0; r < rows; ++r) {
-    for (std::size_t i = 0; i < run.hands.size(); ++i) {
-      const Wrench& w = run.hands[i].on_hand[r];
-      out << format("%.6f,%zu,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", run.hands[i].time[r], i, w.force.x, w.force.y,
-                    w.force.z, w.torque.x, w.torque.y, w.torque.z);
-    }
-  }
-  return static_cast<bool>(out.flush());
 }
 
 /// A panel a hand and quantity, a curve a run.

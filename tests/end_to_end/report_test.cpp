@@ -138,5 +138,22 @@ TEST(Report, BadRequestsSayWhatThereIs) {
   expect({"report", "error", "--quick", "--backend", "cuda"}, 1, "--backend cpu");
 }
 
+TEST(Report, AFigureOfThePaperIsDrawnAndJudgedByThePapersWords) {
+  empty_folder();
+  const Outcome ran = test::slosh({"report", "figure", "9", "--out", "nine"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const std::filesystem::path nine = test::test_folder() / "nine";
+  const std::string words = text_of(nine / "figure-9.md");
+  EXPECT_EQ(words, ran.out.substr(0, words.size()));
+  EXPECT_NE(words.find("slosh report figure 9 --spacing 0.012"), std::string::npos) << "to be run again";
+  EXPECT_NE(words.find("**holds**: \u201Cweight shifts from the bowl to the pan"), std::string::npos) << words;
+  EXPECT_NE(words.find("**holds**: \u201Cthe bowl is first tilted (torque peak)"), std::string::npos) << words;
+  EXPECT_EQ(words.find("does not hold"), std::string::npos) << words;
+  EXPECT_GT(text_of(nine / "figure-9.png").size(), 10000u);
+  EXPECT_GT(text_of(nine / "figure-9.csv").size(), 100000u);
+  EXPECT_EQ(test::slosh({"report", "figure", "9", "--out", "nine"}).code, 1) << "a figure that is there is not lost";
+  EXPECT_EQ(test::slosh({"report", "figure", "7"}).code, 2);
+}
+
 }  // namespace
 }  // namespace slosh
