@@ -15,7 +15,8 @@ namespace {
 constexpr double kChartSeconds = 5.0;
 constexpr double kStatusSeconds = 1.5;  // simulated: a status of one step is shown long enough to be read
 // In letters "0" wide and lines high: panels grow with the font, and the font with the picture.
-constexpr float kPanelLetters = 27.0f;  // leaves 640 × 480 mostly to the picture
+constexpr float kPanelLetters = 27.0f;   // leaves 640 × 480 mostly to the picture
+constexpr float kNarrowLetters = 18.5f;  // a hand's, where they stand beside each other
 constexpr float kChartLines = 1.7f;
 constexpr float kMargin = 8.0f;
 constexpr float kLeastHeight = 400.0f;  // px: a smaller picture gets the time and what is wrong, no more
@@ -54,13 +55,14 @@ float panel_width() {
 }
 
 /// A number's last seconds, beside it the number itself.
-void draw_strip(const StripChart& strip, const ImVec4& color, const char* pattern, double value) {
+void draw_strip(const StripChart& strip, float width, const ImVec4& color, const char* pattern,
+                double value) {
   char text[32];
   std::snprintf(text, sizeof text, pattern, value);
   const float letter = ImGui::CalcTextSize("0").x;
   const float height = kChartLines * ImGui::GetTextLineHeight();
   const ImVec2 at = ImGui::GetCursorScreenPos();
-  const ImVec2 end(at.x + panel_width() - 11.0f * letter, at.y + height);
+  const ImVec2 end(at.x + width - 11.0f * letter, at.y + height);
   ImDrawList* list = ImGui::GetWindowDrawList();
   list->AddRectFilled(at, end, IM_COL32(255, 255, 255, 16));
   std::vector<ImVec2> points;
@@ -69,7 +71,7 @@ void draw_strip(const StripChart& strip, const ImVec4& color, const char* patter
                     0.1f * ImGui::GetFontSize());
   list->AddText(ImVec2(end.x + letter, at.y + 0.5f * (height - ImGui::GetTextLineHeight())),
                 ImGui::GetColorU32(ImGuiCol_Text), text);
-  ImGui::Dummy(ImVec2(panel_width(), height));
+  ImGui::Dummy(ImVec2(width, height));
 }
 
 }  // namespace
@@ -138,12 +140,12 @@ std::vector<PanelRow> Hud::run_rows(const Rates& rates, bool brief) const {
   return rows;
 }
 
-void Hud::draw_hand(std::size_t device) const {
+void Hud::draw_hand(std::size_t device, float width) const {
   const Hand& hand = hands_[device];
   const ImVec4 color = bright(device_color(device));
   ImGui::TextColored(color, "%s", hand.grip.c_str());
-  draw_strip(hand.force, color, "%7.2f N", glm::length(hand.now.force));
-  draw_strip(hand.torque, color, "%7.3f Nm", glm::length(hand.now.torque));
+  draw_strip(hand.force, width, color, "%7.2f N", glm::length(hand.now.force));
+  draw_strip(hand.torque, width, color, "%7.3f Nm", glm::length(hand.now.torque));
 }
 
 void Hud::draw_help() const {
@@ -191,22 +193,41 @@ void Hud::draw_run(const Rates& rates, const glm::vec2& picture, bool brief) {
 }
 
 void Hud::draw_hands(const glm::vec2& picture) {
-  const float spacing = ImGui::GetStyle().ItemSpacing.y;
-  const float line = ImGui::GetTextLineHeight();
-  const float hand = (1.0f + 2.0f * kChartLines) * line + 3.0f * spacing;
-  const glm::vec2 size = panel_size(static_cast<float>(hands_.size()) * hand, panel_width());
-  const glm::vec2 far = picture - size - kMargin;
+  const float hand =
+      (1.0f + 2.0f * kChartLines) * ImGui::GetTextLineHeight() + 3.0f * ImGui::GetStyle().ItemSpacing.y;
+  const auto count = static_cast<float>(hands_.size());
+  const float narrow = kNarrowLetters * ImGui::CalcTextSize("0").x;
+  const glm::vec2 column = panel_size(count * hand, panel_width());
+  const glm::vec2 row = panel_size(hand, count * narrow);
   // The run's panel must stay free too, and first of all.
   std::vector<Rect> clear = clear_of(keep_clear, picture);
   clear.insert(clear.end(), 4, run_panel_);
-  const std::array<glm::vec2, 4> places{glm::vec2(kMargin, far.y), far, glm::vec2(far.x, kMargin),
-                                        glm::vec2(kMargin)};
-  hands_at_ = place_panel(size, places, clear, hands_at_);
+  const auto place = [&](const glm::vec2& size) {
+    const glm::vec2 far = picture - size - kMargin;
+    const std::array<glm::vec2, 4> places{glm::vec2(kMargin, far.y), far, glm::vec2(far.x, kMargin),
+                                          glm::vec2(kMargin)};
+    return place_panel(size, places, clear, hands_at_);
+  };
+  // Many hands below each other may hide one: then beside each other, if that hides less.
+  const glm::vec2 column_at = place(column);
+  const glm::vec2 row_at = place(row);
+  const float by_column = covered_area(column_at, column, clear);
+  const float by_row = covered_area(row_at, row, clear);
+  const bool fits = hands_.size() > 1 && row.x + 2.0f * kMargin < picture.x;
+  in_a_row_ = fits && (in_a_row_ ? by_row <= by_column : by_row < 0.5f * by_column);
+  const glm::vec2& size = in_a_row_ ? row : column;
+  hands_at_ = in_a_row_ ? row_at : column_at;
   ImGui::SetNextWindowPos(ImVec2(hands_at_.x, hands_at_.y));
   ImGui::SetNextWindowSize(ImVec2(size.x, size.y));
   ImGui::SetNextWindowBgAlpha(0.55f);
   if (ImGui::Begin("forces", nullptr, kPanel)) {
-    for (std::size_t i = 0; i < hands_.size(); ++i) draw_hand(i);
+    const ImVec2 corner = ImGui::GetCursorPos();
+    for (std::size_t i = 0; i < hands_.size(); ++i) {
+      if (in_a_row_) ImGui::SetCursorPos(ImVec2(corner.x + narrow * static_cast<float>(i), corner.y));
+      ImGui::BeginGroup();
+      draw_hand(i, in_a_row_ ? narrow : panel_width());
+      ImGui::EndGroup();
+    }
   }
   ImGui::End();
 }

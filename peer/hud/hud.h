@@ -55,7 +55,7 @@ class Hud {
   std::vector<PanelRow> run_rows(const Rates& rates, bool brief) const;
   void draw_run(const Rates& rates, const glm::vec2& picture, bool brief);
   void draw_hands(const glm::vec2& picture);
-  void draw_hand(std::size_t device) const;
+  void draw_hand(std::size_t device, float width) const;
   void draw_help() const;
 
   HudFacts facts_;
@@ -68,6 +68,7 @@ class Hud {
   }();  // simulated s, a StatusBit each
   Rect run_panel_;
   glm::vec2 hands_at_{-1.0f};
+  bool in_a_row_ = false;  ///< the hands' panel
 };
 
 }  // namespace slosh

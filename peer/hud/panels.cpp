@@ -28,13 +28,13 @@ void wrapped(const std::string& text, float width) {
   ImGui::PopTextWrapPos();
 }
 
-float covered(const glm::vec2& at, const glm::vec2& size, std::span<const Rect> clear) {
+}  // namespace
+
+float covered_area(const glm::vec2& at, const glm::vec2& size, std::span<const Rect> clear) {
   float area = 0.0f;
   for (const Rect& rect : clear) area += rect.shared_area({at, at + size});
   return area;
 }
-
-}  // namespace
 
 float rows_height(std::span<const PanelRow> rows, float width) {
   float height = 0.0f;
@@ -71,16 +71,16 @@ void draw_rows(std::span<const PanelRow> rows, float width) {
 glm::vec2 place_panel(const glm::vec2& size, std::span<const glm::vec2> places, std::span<const Rect> clear,
                       const glm::vec2& now) {
   glm::vec2 best = places.front();
-  float least = covered(best, size, clear);
+  float least = covered_area(best, size, clear);
   for (const glm::vec2& place : places.subspan(1)) {
-    const float area = covered(place, size, clear);
+    const float area = covered_area(place, size, clear);
     if (area < 0.5f * least) {
       least = area;
       best = place;
     }
   }
   for (const glm::vec2& place : places) {
-    if (place == now && covered(now, size, clear) <= 2.0f * least) return now;
+    if (place == now && covered_area(now, size, clear) <= 2.0f * least) return now;
   }
   return best;
 }

@@ -31,6 +31,9 @@ struct PanelRow {
 float rows_height(std::span<const PanelRow> rows, float width);
 void draw_rows(std::span<const PanelRow> rows, float width);
 
+/// What a panel there covers of `clear`, pixels².
+float covered_area(const glm::vec2& at, const glm::vec2& size, std::span<const Rect> clear);
+
 /// Where a panel of `size` lies in a picture of `picture`: of `places` (its upper left corners, best first)
 /// the one that covers least of `clear`. Stays at `now` unless another covers less than half as much.
 glm::vec2 place_panel(const glm::vec2& size, std::span<const glm::vec2> places, std::span<const Rect> clear,

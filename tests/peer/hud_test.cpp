@@ -133,6 +133,32 @@ TEST_F(HudTest, AWarningOfOneStepCanBeRead) {
   EXPECT_LE(vertices(5.0, 0), without + 8) << "and goes; the time may have another digit";
 }
 
+TEST_F(HudTest, FourHandsHideNoneOfTheirGlasses) {
+  // As the scene spin has them: across the picture, at half its height.
+  Scene many = scene();
+  many.grips.resize(4);
+  Hud hud(many, facts());
+  hud.keep_clear.clear();
+  for (const float x : {0.13f, 0.38f, 0.62f, 0.87f})
+    hud.keep_clear.push_back({{x - 0.06f, 0.37f}, {x + 0.06f, 0.58f}});
+  Snapshot snapshot;
+  snapshot.rigid.grips.resize(4);
+  hud.record(snapshot);
+  draw(hud);
+  const ImDrawData* data = ImGui::GetDrawData();
+  for (int i = 0; i < data->CmdListsCount; ++i) {
+    for (const ImDrawCmd& command : data->CmdLists[i]->CmdBuffer) {
+      const Rect panel{{command.ClipRect.x, command.ClipRect.y}, {command.ClipRect.z, command.ClipRect.w}};
+      if (panel.high.x - panel.low.x > 639.0f) continue;  // the whole picture: no panel's
+      for (const Rect& glass : hud.keep_clear) {
+        const glm::vec2 size(640.0f, 480.0f);
+        EXPECT_EQ(panel.shared_area({glass.low * size, glass.high * size}), 0.0f);
+      }
+    }
+  }
+  EXPECT_LE(cut_off(), 1.0f);
+}
+
 TEST_F(HudTest, TorqueIsDrawnToo) {
   const Scene bare = scene();
   const auto indices = [&](double torque) {
