@@ -82,7 +82,7 @@ void add_backend_option(CLI::App& verb, std::string& backend, const std::string&
 
 void add_world_options(CLI::App& verb, PlayOptions& options, const std::string& all_cores) {
   add_backend_option(verb, options.backend, "What the simulation runs on");
-  verb.add_option("--spacing", options.spacing, "Metres between particles, or auto: the finest in real time");
+  verb.add_option("--spacing", options.spacing, "Metres between particles, or auto: measures the finest in real time (kept once it was)");
   verb.add_option("--particles", options.particles, "Fluid particles to aim at, in place of a spacing")
       ->check(CLI::Range(1, 100000000))
       ->excludes("--spacing");

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 
 #include "host/server/console.h"
@@ -11,6 +10,7 @@
 #include "net/wire/scene_package.h"
 #include "peer/verbs/host_links.h"
 #include "peer/verbs/host_supervisor.h"
+#include "peer/verbs/state_folder.h"
 
 namespace slosh {
 namespace {
@@ -19,13 +19,6 @@ constexpr std::size_t kSnapshotBytes = std::size_t{256} << 20;
 constexpr std::uint16_t kPort = 4433;
 constexpr std::size_t kSpareHands = 4;   // participants beyond one a grip
 constexpr std::size_t kStrangers = 128;  // connections that nobody was let in by
-
-std::string state_folder() {
-  const char* state = std::getenv("XDG_STATE_HOME");
-  if (state && *state == '/') return std::string(state) + "/slosh";
-  const char* home = std::getenv("HOME");
-  return home && *home == '/' ? std::string(home) + "/.local/state/slosh" : std::string();
-}
 
 }  // namespace
 

@@ -16,6 +16,7 @@
 #include "host/keep/recording.h"
 #include "peer/haptics/make_device.h"
 #include "peer/output/summary.h"
+#include "peer/verbs/kept_spacing.h"
 #include "peer/verbs/measurer.h"
 #include "peer/verbs/time_estimate.h"
 #include "scenes/load.h"
@@ -54,6 +55,13 @@ Result<Spacing> choose(const Scene& scene, const PlayOptions& options, std::opti
   if (asked) return Spacing{*asked, "asked for"};
   if (options.spacing.empty() && scene.spacing > 0.0) return Spacing{scene.spacing, "the scene asks for it"};
 
+  // Measured once for this scene here, it is taken again; --spacing auto measures anew.
+  const std::string key = spacing_key(scene.source_file, this_machine().cpu, backend, threads);
+  if (options.spacing.empty()) {
+    const std::optional<double> kept = kept_spacing(key);
+    if (kept && *kept >= scene.spacing_min && *kept <= scene.spacing_max)
+      return Spacing{*kept, "measured for this scene on this machine before (--spacing auto measures again)"};
+  }
   progress.phase("measuring");
   SpacingOptions measure;
   measure.threads = threads;
@@ -61,6 +69,7 @@ Result<Spacing> choose(const Scene& scene, const PlayOptions& options, std::opti
   measure.tell = [&progress](const std::string& text) { progress.update(-1.0, text); };
   const Result<SpacingChoice> choice = measure_spacing(scene, measure);
   if (!choice) return choice.error();
+  keep_spacing(key, choice.value().spacing);
   return Spacing{choice.value().spacing, choice.value().reason};
 }
 

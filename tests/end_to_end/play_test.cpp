@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -123,14 +124,32 @@ TEST_F(PlayTest, WithoutADisplayItSaysThatItBecomesAFilm) {
       << "the default folder";
 }
 
-TEST_F(PlayTest, ChoosesASpacingAndSaysWhy) {
-  const Outcome outcome =
-      test::slosh({"play", "probe", "--no-render", "--threads", "1", "--seconds", "0.1", "--out", "out"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_NE(outcome.err.find("measuring"), std::string::npos);
-  const json summary = json::parse(read_text(out() / "summary.json"));
+TEST_F(PlayTest, ChoosesASpacingSaysWhyAndTakesItAgain) {
+  const auto play = [&](const std::string& folder, const std::vector<std::string>& more, int threads = 1) {
+    std::vector<std::string> all{"env",           "XDG_STATE_HOME=" + out("state").string(),
+                                 test::program(), "play",
+                                 "probe",         "--no-render",
+                                 "--threads",     std::to_string(threads),
+                                 "--seconds",     "0.1",
+                                 "--out",         folder};
+    all.insert(all.end(), more.begin(), more.end());
+    const Outcome outcome = test::Process(all, test::test_folder()).wait();
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return std::pair(outcome.err, json::parse(read_text(out(folder) / "summary.json")));
+  };
+  const auto [said, summary] = play("first", {});
+  EXPECT_NE(said.find("measuring"), std::string::npos);
   EXPECT_GE(summary["spacing_m"], 0.001);
   EXPECT_NE(summary["spacing_reason"].get<std::string>().find("real time"), std::string::npos);
+  const auto [said_again, again] = play("second", {});
+  EXPECT_EQ(said_again.find("measuring"), std::string::npos) << "so that forces compare: " << said_again;
+  EXPECT_EQ(again["spacing_m"], summary["spacing_m"]);
+  EXPECT_NE(again["spacing_reason"].get<std::string>().find("--spacing auto"), std::string::npos);
+  EXPECT_NE(play("third", {"--spacing", "auto"}).first.find("measuring"), std::string::npos);
+  EXPECT_NE(play("fourth", {}, 2).first.find("measuring"), std::string::npos) << "another machine, so to say";
+  // What is kept there and cannot be used is measured again, not believed.
+  std::ofstream(out("state") / "slosh/spacings.json") << "[{\"key\": 7}, \"x\"";
+  EXPECT_NE(play("fifth", {}).first.find("measuring"), std::string::npos);
 }
 
 TEST_F(PlayTest, AimsAtANumberOfParticles) {
