@@ -50,7 +50,7 @@ void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window) {
                   "curvature flow of van der Laan 2009")
       ->check(CLI::IsMember({"ours", "paper", "flow"}))
       ->capture_default_str();
-  verb.add_option("--bilateral", options.bilateral, "Iterations of the fluid surface's filter")
+  verb.add_option("--bilateral", options.bilateral, "Iterations of the paper's filter; 0: particles stay the balls they are, with any surface")
       ->check(CLI::Range(0, 64))
       ->capture_default_str();
   verb.add_option("--plot", options.plot, "Format of the sheet of forces: png, svg or pdf")

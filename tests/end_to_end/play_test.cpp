@@ -98,6 +98,20 @@ TEST_F(PlayTest, WritesEveryFileOfARun) {
   for (const WrenchSeries& hand : felt) EXPECT_LT(hand.on_hand.back().force.y, -2.0);
 }
 
+TEST_F(PlayTest, SurfaceAndSheetAreAsAskedFor) {
+  const Outcome outcome = test::slosh({"play", "probe", "--headless", "--seconds", "0.2", "--spacing",
+                                       "0.012", "--size", "64x48", "--fps", "10", "--surface", "paper",
+                                       "--plot", "svg", "--curves", "fy,torque", "--out", "out"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::string sheet = read_text(out() / "wrenches.svg");
+  EXPECT_NE(sheet.find("force along y, N"), std::string::npos);
+  EXPECT_NE(sheet.find("torque on the hand, N·m"), std::string::npos);
+  EXPECT_EQ(sheet.find("force on the hand"), std::string::npos) << "not asked for";
+  EXPECT_NE(sheet.find("spacing 12 mm"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(out() / "wrenches.png"));
+  EXPECT_EQ(probe(out() / "view.mp4", "color_space"), "bt709");
+}
+
 TEST_F(PlayTest, ARecordedRunCanBeReplayed) {
   const std::vector<std::string> common = {"play",      "probe", "--no-render", "--threads", "1",
                                            "--seconds", "1",     "--spacing",   "0.012",     "--out"};
