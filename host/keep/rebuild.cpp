@@ -9,11 +9,16 @@ Result<RebuiltWorld> rebuild_world(const Scene& scene, double spacing, std::span
                                    const WorldOptions& options) {
   Result<SampledScene> sampled = sample_scene(scene, spacing);
   if (!sampled) return sampled.error();
-  Result<World> world = make_world(scene, sampled.value(), make_plan(scene, spacing), options);
+  return rebuild_world(scene, std::move(sampled.value()), state, options);
+}
+
+Result<RebuiltWorld> rebuild_world(const Scene& scene, SampledScene sampled, std::span<const std::uint8_t> state,
+                                   const WorldOptions& options) {
+  Result<World> world = make_world(scene, sampled, make_plan(scene, sampled.spacing), options);
   if (!world) return world.error();
   const Result<bool> restored = world.value().restore(state);
   if (!restored) return restored.error();
-  return RebuiltWorld{std::move(sampled.value()), std::move(world.value())};
+  return RebuiltWorld{std::move(sampled), std::move(world.value())};
 }
 
 Result<bool> reset_world(World& world, std::size_t fluids, std::span<const std::uint8_t> start) {

@@ -93,8 +93,10 @@ Result<HostedWorld> carry_on(const HostVerbOptions& options, Progress& progress)
     set_measure(options, p);
   }
   progress.phase("sampling");
-  Result<keep::RebuiltWorld> rebuilt =
-      keep::rebuild_world(p.scene, kept.spacing, kept.world, WorldOptions{p.threads, p.backend});
+  Result<SampledScene> sampled = sample_told(p.scene, kept.spacing, progress);
+  if (!sampled) return sampled.error();
+  Result<keep::RebuiltWorld> rebuilt = keep::rebuild_world(p.scene, std::move(sampled.value()), kept.world,
+                                                           WorldOptions{p.threads, p.backend});
   if (!rebuilt) return rebuilt.error();
   p.sampled = std::move(rebuilt.value().sampled);
   p.plan = rebuilt.value().world.plan();
