@@ -158,8 +158,13 @@ void Host::publish_bodies(double rate, std::int64_t stamp_ns) {
   message.run = run_;
   const std::span<const PoseMessage> used = gate_.poses();
   message.pose_numbers.resize(used.size());
-  for (std::size_t i = 0; i < used.size(); ++i) message.pose_numbers[i] = used[i].number;
   message.fluid_models = models_;
+  message.hands.resize(used.size());
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    const PoseMessage& pose = used[i];
+    message.pose_numbers[i] = pose.number;
+    message.hands[i] = {pose.number, pose.stamp_ns, pose.time, pose.counted, pose.energy};
+  }
   message.rate = rate;
   message.time_step = world_.plan().time_step;
   message.stamp_ns = stamp_ns;

@@ -24,6 +24,18 @@ struct PoseMessage {
   bool lost = false;         ///< not engaged because contact was lost: the host lets go gently
   std::uint32_t hold = 0;    ///< another one than in the message before: another hand, which may be anywhere
   std::uint64_t number = 0;  ///< of the sender's samples, rising; comes back in BodyMessage::pose_numbers
+  bool counted = false;      ///< somebody counts …
+  double energy = 0.0;       ///< … the J that the person put in, cumulative
+};
+
+/// What a state says of the hand on one grip, besides GripState.
+struct HandWord {
+  std::uint64_t number = 0;  ///< PoseMessage::number of the reading that the step used; 0 = none
+  std::int64_t read_ns =
+      0;                 ///< of the reader's own: when that was read, on the reader's clock; 0 = not known
+  double time = 0.0;     ///< simulated s that it was said to belong to
+  bool counted = false;  ///< PoseMessage::counted
+  double energy = 0.0;   ///< J, PoseMessage::energy
 };
 
 /// BodyMessage::heard_pose_ns in one process, where no pose is lost.
@@ -51,6 +63,7 @@ struct BodyMessage {
   /// this state in one process; over a network of this one, an older one or one that is not due yet
   /// (FluidWrenchModel::tick).
   std::vector<FluidWrenchModel> fluid_models;
+  std::vector<HandWord> hands;  ///< one a grip, or none
 };
 
 /// Joins one host and one peer in one process. Poses and body states are newest-value exchanges without a
@@ -59,7 +72,7 @@ class Channel {
  public:
   /// `initial` is what the peer sees before the first step. `snapshot_bytes` bounds the queue of snapshots.
   Channel(std::size_t devices, const BodyMessage& initial, std::size_t snapshot_bytes)
-      : bodies_(initial), snapshots_(snapshot_bytes) {
+      : bodies_(initial), newest_(initial), snapshots_(snapshot_bytes) {
     poses_.reserve(devices);
     for (std::size_t i = 0; i < devices; ++i) {
       PoseMessage nothing;
@@ -71,11 +84,15 @@ class Channel {
   std::size_t devices() const { return poses_.size(); }
   TripleBuffer<PoseMessage>& pose(std::size_t device) { return *poses_[device]; }  ///< device loop → host
   TripleBuffer<BodyMessage>& bodies() { return bodies_; }                          ///< host → device loop
-  SnapshotQueue& snapshots() { return snapshots_; }                                ///< host → viewer
+  /// Network → device loop: the newest state as soon as it comes, where bodies() are held back until they are
+  /// due. Nobody writes it in one process, where bodies() are that.
+  TripleBuffer<BodyMessage>& newest() { return newest_; }
+  SnapshotQueue& snapshots() { return snapshots_; }  ///< host → viewer
 
  private:
   std::vector<std::unique_ptr<TripleBuffer<PoseMessage>>> poses_;
   TripleBuffer<BodyMessage> bodies_;
+  TripleBuffer<BodyMessage> newest_;
   SnapshotQueue snapshots_;
 };
 

@@ -9,18 +9,18 @@ namespace {
 constexpr std::size_t kHead = 70;
 constexpr std::size_t kRoom = wire::kMaxDatagram - kHead;
 constexpr std::size_t kBodyEntry = 2 + 28 + 24 + 12 + 24;
-constexpr std::size_t kGripEntry = 1 + 28 + 24;
+constexpr std::size_t kGripEntry = 1 + 28 + 24 + 7 + 1 + 4;
 
 /// A head ends with the counts of two empty lists; the entries take their place.
 constexpr std::size_t kEmptyLists = 2;
 
 }  // namespace
 
-BodyParts::BodyParts(const Scene& scene) {
+BodyParts::BodyParts(const Scene& scene, wire::Capabilities agreed) : agreed_(agreed) {
   for (const Body& body : scene.bodies) sent_.push_back(body.motion == BodyMotion::kFree || body.measured);
 }
 
-void BodyParts::set(const BodyMessage& message) {
+void BodyParts::set(const BodyMessage& message, const std::vector<std::uint64_t>& numbers) {
   const BodySnapshot& bodies = message.bodies;
   header_.run = message.run;
   header_.tick = bodies.tick;
@@ -35,12 +35,12 @@ void BodyParts::set(const BodyMessage& message) {
   std::size_t left = kRoom;
   const auto close_part = [&] {
     wire::Bytes whole;
-    wire::encode(part, whole);
+    wire::encode(part, whole, agreed_);
     wire::Bytes head;
     wire::Bodies empty = part;
     empty.bodies.clear();
     empty.grips.clear();
-    wire::encode(empty, head);
+    wire::encode(empty, head, agreed_);
     tails_.emplace_back(whole.begin() + static_cast<std::ptrdiff_t>(head.size() - kEmptyLists), whole.end());
     part.bodies.clear();
     part.grips.clear();
@@ -59,7 +59,14 @@ void BodyParts::set(const BodyMessage& message) {
   }
   for (std::size_t i = 0; i < bodies.grips.size() && i < wire::kMaxGrips; ++i) {
     need(kGripEntry);
-    part.grips.push_back({static_cast<std::uint32_t>(i), bodies.grips[i].handle, bodies.grips[i].on_hand});
+    wire::GripEntry& entry = part.grips.emplace_back();
+    entry.grip = static_cast<std::uint32_t>(i);
+    entry.handle = bodies.grips[i].handle;
+    entry.on_hand = bodies.grips[i].on_hand;
+    if (i < numbers.size()) entry.pose_number = numbers[i];
+    if (i >= message.hands.size()) continue;
+    entry.counted = message.hands[i].counted;
+    entry.energy = message.hands[i].energy;
   }
   close_part();
 }

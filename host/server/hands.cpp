@@ -45,6 +45,7 @@ void HandTable::put_on_stand(std::size_t grip, const Pose& pose, std::int64_t no
   message.stamp_ns = now_ns;
   message.pose = pose;
   message.engaged = true;
+  message.counted = true;  // what stands still puts nothing in
   message.number = hand.base + hand.newest;
   publish(grip, message);
 }
@@ -140,7 +141,7 @@ std::int64_t HandTable::on_our_clock(GripHand& hand, std::int64_t stamp_ns, std:
   return stamp_ns + hand.clock_offset_ns;
 }
 
-bool HandTable::sample(const wire::PoseSample& sample, std::int64_t now_ns) {
+bool HandTable::sample(const wire::PoseSample& sample, std::int64_t now_ns, bool counted) {
   if (sample.grip >= grips_.size()) return false;
   GripHand& hand = grips_[sample.grip];
   // 0 stands for "none yet" in what comes back to the peer.
@@ -157,6 +158,8 @@ bool HandTable::sample(const wire::PoseSample& sample, std::int64_t now_ns) {
   message.twist = sample.twist;
   message.engaged = sample.engaged;
   message.number = hand.base + sample.number;
+  message.counted = counted;
+  message.energy = sample.energy;
   if (hand.stand) {
     if (!sample.engaged) return true;
     hand.stand = false;

@@ -38,7 +38,8 @@ class HandTable {
   void carry_on(const BodySnapshot& bodies, std::int64_t now_ns);
 
   /// Takes in a sample of the holder's. True when it is the newest and went to the world.
-  bool sample(const wire::PoseSample& sample, std::int64_t now_ns);
+  /// `counted`: its energy is told (wire::kCouplings is agreed with the holder).
+  bool sample(const wire::PoseSample& sample, std::int64_t now_ns, bool counted = false);
 
   struct Used {
     std::uint64_t number = 0;   ///< the holder's; 0 = none of the holder's samples, or it is too long ago

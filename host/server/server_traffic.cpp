@@ -27,8 +27,8 @@ void Server::on_datagram(ConnectionId connection, std::span<const std::uint8_t> 
   // Datagrams may overtake the Hello.
   if (!peer->in) return;
   peer->heard_ns = now();
-  const wire::Fault fault = wire::dispatch_datagram(wire::PeerDatagrams{}, bytes,
-                                                    [&](const auto& message) { handle(*peer, message); });
+  const wire::Fault fault = wire::dispatch_datagram(
+      wire::PeerDatagrams{}, bytes, [&](const auto& message) { handle(*peer, message); }, peer->agreed);
   if (!fault) return;
   past_.datagram_faults += 1;
   if (!peer->limits.faults.take(now()))
@@ -53,7 +53,7 @@ void Server::handle(Peer& peer, const wire::Poses& poses) {
     if (std::find(seat.grips.begin(), seat.grips.end(), sample->grip) == seat.grips.end()) {
       stray = true;
       stray_grip = sample->grip;
-    } else if (hands_.sample(*sample, now())) {
+    } else if (hands_.sample(*sample, now(), (peer.agreed & wire::kCouplings) != 0)) {
       std::erase_if(newest, [&](const wire::PoseSample* other) { return other->grip == sample->grip; });
       newest.push_back(&*sample);
     }

@@ -16,16 +16,13 @@ constexpr std::int64_t kStandingEvery = 100'000'000;  // ns between two sendings
 void StateSender::send_bodies(SeatTable& seats, std::int64_t now_ns) {
   const bool fresh = channel_.bodies().update();
   stale_ = stale_ || fresh;
+  if (fresh) fluid_coded_.assign(channel_.bodies().front().fluid_models.size(), nullptr);
   ask_for_fluid(seats);
+  plain_stale_ = plain_stale_ || fresh;
   if (peers_.nobody_sits()) return;
   const BodyMessage& message = channel_.bodies().front();
   const bool standing = !fresh && now_ns - bodies_sent_ns_ >= kStandingEvery;
   if (!fresh && !standing) return;
-  if (stale_) {
-    parts_.set(message);
-    fluid_coded_.assign(message.fluid_models.size(), nullptr);
-  }
-  stale_ = false;
   bodies_sent_ns_ = now_ns;
   peers_.each_in([&](Peer& peer) {
     const std::int64_t every =
@@ -43,7 +40,7 @@ void StateSender::send_bodies(SeatTable& seats, std::int64_t now_ns) {
       number = used.number;
       stamp = used.stamp_ns;
     }
-    for (const SharedBytes& bytes : parts_.to(number, stamp))
+    for (const SharedBytes& bytes : parts_for(peer).to(number, stamp))
       endpoint_->send_datagram(peer.id, Priority::kState, bytes);
   });
 }
@@ -72,6 +69,24 @@ void StateSender::send_fluid(const Peer& peer, const Seat& seat, const BodyMessa
     endpoint_->send_datagram(peer.id, Priority::kState, bytes);
     fluid_models_sent_ += 1;
   }
+}
+
+/// Coded for a peer's capabilities, when the first such peer is due.
+BodyParts& StateSender::parts_for(const Peer& peer) {
+  const BodyMessage& message = channel_.bodies().front();
+  if (!(peer.agreed & wire::kCouplings)) {
+    if (plain_stale_) plain_parts_.set(message);
+    plain_stale_ = false;
+    return plain_parts_;
+  }
+  if (stale_) {
+    std::vector<std::uint64_t> numbers(message.pose_numbers.size());
+    for (std::size_t g = 0; g < numbers.size() && g < hands_.size(); ++g)
+      numbers[g] = hands_.used(g, message.pose_numbers[g]).number;
+    parts_.set(message, numbers);
+  }
+  stale_ = false;
+  return parts_;
 }
 
 void StateSender::forward(const Peer& from, const wire::PoseSample& sample, std::int64_t now_ns) {

@@ -28,7 +28,8 @@ class StateSender {
         peers_(peers),
         rates_(rates),
         fluid_demand_(fluid_demand),
-        parts_(scene) {
+        parts_(scene),
+        plain_parts_(scene, 0) {
     next_hands_ns_.resize(scene.grips.size());
     for (const Grip& grip : scene.grips) grip_bodies_.push_back(grip.body);
   }
@@ -46,6 +47,7 @@ class StateSender {
  private:
   void ask_for_fluid(SeatTable& seats);
   void send_fluid(const Peer& peer, const Seat& seat, const BodyMessage& message);
+  BodyParts& parts_for(const Peer& peer);
   void to_other_hands(std::uint32_t but_seat, const wire::Hands& hands);
 
   Channel& channel_;
@@ -54,13 +56,15 @@ class StateSender {
   BodyRates rates_;
   FluidDemand* fluid_demand_;
   BodyParts parts_;
+  BodyParts plain_parts_;                 // for peers that have not agreed to kCouplings
   std::vector<int> grip_bodies_;          // one a grip
   std::vector<SharedBytes> fluid_coded_;  // one a model of the channel's state; empty = not coded yet
   std::uint64_t fluid_models_sent_ = 0;
   Endpoint* endpoint_ = nullptr;
   std::vector<std::int64_t> next_hands_ns_;  // one a grip: when it may be passed on again
   std::int64_t bodies_sent_ns_ = 0;
-  bool stale_ = true;  // the parts are of an older state than the channel's
+  bool stale_ = true;        // the parts are of an older state than the channel's,
+  bool plain_stale_ = true;  // and the plain ones
 };
 
 }  // namespace slosh

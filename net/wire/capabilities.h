@@ -18,8 +18,12 @@ constexpr Capabilities kRosterChanges = 1u
 
 constexpr Capabilities kFluidWrenches = 1u << 1;  ///< FluidWrench comes for each body that the peer holds
 
+/// PoseSample has the energy that its person put in, and GripEntry that and the number of the sample that the
+/// step used.
+constexpr Capabilities kCouplings = 1u << 2;
+
 /// What this program understands; a peer's Hello asks for all of it.
-constexpr Capabilities kOurCapabilities = kRosterChanges | kFluidWrenches;
+constexpr Capabilities kOurCapabilities = kRosterChanges | kFluidWrenches | kCouplings;
 /// For what has no other side: pages, tests of single messages, files.
 constexpr Capabilities kAllCapabilities = ~Capabilities{0};
 

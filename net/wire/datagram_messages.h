@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "net/channel.h"
+#include "net/wire/capabilities.h"
 #include "net/wire/fields.h"
 #include "net/wire/limits.h"
 
@@ -49,6 +50,9 @@ struct PoseSample {
   Pose pose;
   Twist twist;
   bool engaged = false;
+  // Behind kCouplings: J that the person put in since this hand began, cumulative, so that a loss spoils
+  // nothing.
+  double energy = 0.0;
 };
 template <class V>
 void visit(V& v, PoseSample& m) {
@@ -60,6 +64,7 @@ void visit(V& v, PoseSample& m) {
   visit(v, m.pose);
   visit(v, m.twist);
   v.flag("engaged", m.engaged);
+  if (v.agreed(kCouplings)) v.real32("energy", m.energy, -kMaxEnergy, kMaxEnergy);
 }
 
 /// Newest samples first, the last few repeated against loss.
@@ -121,12 +126,21 @@ struct GripEntry {
   std::uint32_t grip = 0;
   Pose handle;
   Wrench on_hand;
+  // Behind kCouplings, of the sample that the step used:
+  std::uint64_t pose_number = 0;  ///< its holder's number of it; 0 = none of the holder's
+  bool counted = false;  ///< its holder's site tells it; a hand that the host holds still counts as one
+  double energy = 0.0;   ///< J, PoseSample::energy
 };
 template <class V>
 void visit(V& v, GripEntry& m) {
   v.natural("grip", m.grip, 0, kMaxGrips - 1);
   visit(v, m.handle);
   visit(v, m.on_hand);
+  if (v.agreed(kCouplings)) {
+    v.natural("pose_number", m.pose_number, 0, kMaxTick);
+    v.flag("counted", m.counted);
+    v.real32("energy", m.energy, -kMaxEnergy, kMaxEnergy);
+  }
 }
 
 /// A part (or all) of the bodies at the end of one step. Parts of one tick are joined by the peer; a part

@@ -49,9 +49,9 @@ Fault encode(const M& message, Bytes& out, Capabilities agreed = kAllCapabilitie
   return writer.fault();
 }
 template <class M>
-Bytes encoded(const M& message) {
+Bytes encoded(const M& message, Capabilities agreed = kAllCapabilities) {
   Bytes out;
-  encode(message, out);
+  encode(message, out, agreed);
   return out;
 }
 

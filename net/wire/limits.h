@@ -27,6 +27,7 @@ constexpr double kMaxSpeed = 1e4;               ///< m/s, rad/s
 constexpr double kMaxForce = 1e7;               ///< N, N·m
 constexpr std::size_t kMaxPoseRepeats = 13;     ///< as many as fit into a datagram
 constexpr std::size_t kMaxMissingRanges = 128;  ///< likewise
+constexpr double kMaxEnergy = 1e9;              ///< J
 constexpr double kMaxViscosity = 1e7;           ///< Pa·s, as scenes have it
 constexpr double kMaxGravityScale = 2.0;        ///< times the scene's
 constexpr std::size_t kTokenBytes = 16;

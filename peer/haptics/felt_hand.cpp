@@ -27,32 +27,34 @@ Wrench FeltHand::capped(const Wrench& full, bool current) noexcept {
   return {limit_length(full.force, most_force_, limited), limit_length(full.torque, most_torque_, limited)};
 }
 
-ForceLimiter::Outcome FeltHand::feel(const WorldBelief& world, const DeviceReport& hand,
-                                     const GripState& grip, const Moment& now) noexcept {
+Wrench FeltHand::couple(const WorldBelief& world, const DeviceReport& hand, const GripState& grip,
+                        const Moment& now) noexcept {
   const double believed = std::min(world.share, now.device_share);
   const bool current = world.current && now.device_share >= 1.0;
-  bool jumps = world.anew || world.resumed || believed < believed_ - kSudden || (current && !current_);
+  jumps_ = world.anew || world.resumed || believed < believed_ - kSudden || (current && !current_);
   current_ = current;
   if (world.anew || now.leapt || (believed >= 1.0 && hold_anew_)) {
     engagement_ = Engagement{};
-    jumps = true;
+    jumps_ = true;
   }
   hold_anew_ = believed < 1.0;
   believed_ = believed;
   // What comes back after a gap comes back as gently as it went.
   share_ = std::min(believed, share_ + now.period / kFadeStale);
 
-  const Engagement::Held held =
-      engagement_.update(hand.engaged, now.time, hand.pose, hand.twist, gains_, grip, now.shared);
+  held_ = engagement_.update(hand.engaged, now.time, hand.pose, hand.twist, gains_, grip, now.shared);
   const Wrench full = gives_way_
-                          ? coupling_wrench_on_hand(gains_, held.pose, held.twist, grip.pose, grip.twist)
+                          ? coupling_wrench_on_hand(gains_, held_.pose, held_.twist, grip.pose, grip.twist)
                           : grip.on_hand;
   const double felt = gives_way_ || !engagement_.engaged() ? engagement_.felt() : 1.0;
-  Wrench wanted{felt * full.force, felt * full.torque};
+  return {felt * full.force, felt * full.torque};
+}
+
+ForceLimiter::Outcome FeltHand::finish(Wrench wanted, const Moment& now) noexcept {
   if (is_finite(wanted)) {
-    wanted = capped(wanted, current);
+    wanted = capped(wanted, current_);
     wanted = {share_ * wanted.force, share_ * wanted.torque};
-    if (jumps) {
+    if (jumps_) {
       bridge_ = {last_.force - wanted.force, last_.torque - wanted.torque};
       left_ = 1.0;
     }

@@ -45,7 +45,21 @@ class FeltHand {
   };
   /// The wrench for the device. `grip` carried on to `now.time`.
   ForceLimiter::Outcome feel(const WorldBelief& world, const DeviceReport& hand, const GripState& grip,
-                             const Moment& now) noexcept;
+                             const Moment& now) noexcept {
+    return feel(world, hand, grip, now, [](const Wrench& wanted) { return wanted; });
+  }
+  /// The same, with `guard` called once with the coupling's wrench; what it gives is capped, faded and
+  /// limited in its place.
+  template <class Guard>
+  ForceLimiter::Outcome feel(const WorldBelief& world, const DeviceReport& hand, const GripState& grip,
+                             const Moment& now, Guard&& guard) noexcept {
+    const Wrench wanted = couple(world, hand, grip, now);
+    return finish(guard(wanted), now);
+  }
+
+  /// The hand as its coupling used it in the last feel(), and whether it held on.
+  const Engagement::Held& held() const { return held_; }
+  bool holds() const { return engagement_.engaged(); }
 
   /// Whether this hand felt, or would have felt but for a silence, just what the world put on it. As of the
   /// last feel(); false for a hand that gives way, one that does not hold on, and where a limit acted.
@@ -55,11 +69,16 @@ class FeltHand {
   static constexpr double kBridge = 0.1;
 
  private:
+  Wrench couple(const WorldBelief& world, const DeviceReport& hand, const GripState& grip,
+                const Moment& now) noexcept;
+  ForceLimiter::Outcome finish(Wrench wanted, const Moment& now) noexcept;
   Wrench capped(const Wrench& full, bool current) noexcept;
 
   CouplingGains gains_;
   ForceLimiter limiter_{DeviceLimits{}};  // lets nothing through before restart()
   Engagement engagement_;
+  Engagement::Held held_;
+  bool jumps_ = false;  // in this call
   bool gives_way_ = true;
   bool follows_world_ = false;
   double share_ = 1.0;

@@ -21,6 +21,7 @@ Servo::Servo(const Scene& scene, std::vector<std::unique_ptr<Device>> devices, C
     : channel_(channel),
       options_(options),
       hearing_(options.period),
+      held_(scene, options.coupling),
       line_(scene.grips.size()),
       samples_(options.sample_capacity) {
   channel_.bodies().update();
@@ -163,6 +164,8 @@ void Servo::post_pose(std::size_t i, const Hand& hand, std::uint64_t tick) noexc
   up.pose = hand.good.pose;
   up.twist = hand.good.twist;
   up.engaged = hand.good.engaged;
+  up.counted = held_.counted(i);
+  up.energy = held_.energy(i);
   channel_.pose(i).publish();
 }
 
@@ -224,6 +227,12 @@ void Servo::tick(std::int64_t now_ns, bool fresh) noexcept {
   const double age = to_seconds(now_ns - message.stamp_ns);  // negative while the state is still to come
 
   const WorldBelief belief = hearing_.hear(message, fresh, now_ns);
+  const bool fresh_newest = channel_.newest().update();
+  states_apart_ = states_apart_ || fresh_newest;
+  if (states_apart_)
+    held_.hear(channel_.newest().front(), fresh_newest, now_ns);
+  else
+    held_.hear(message, fresh, now_ns);
   follow_run(message);
   note_steps(message);
   // Simulated time now: the newest state's, carried on at the pace the world runs; grips by two ticks at
@@ -239,8 +248,11 @@ void Servo::tick(std::int64_t now_ns, bool fresh) noexcept {
     Hand& hand = hands_[i];
     DevicePort* const port = claim_device(hand);
     if (port != hand.port) change_device(hand, port);
-    if (port == nullptr) continue;
-    const bool leap = read_device(hand, now_ns);
+    if (port == nullptr) {
+      held_.not_here(i);
+      continue;
+    }
+    const bool leap = read_device(hand, now_ns) || held_.anew(i);
     const double device_share =
         hand.readings == 0 ? 0.0 : freshness(to_seconds(now_ns - hand.read_ns), options_.period);
 
@@ -248,8 +260,15 @@ void Servo::tick(std::int64_t now_ns, bool fresh) noexcept {
     if (i < bodies.grips.size()) {
       GripState grip = bodies.grips[i];
       grip.pose = extrapolate(grip.pose, grip.twist, ahead);
+      if (port->device().gives_way()) grip = held_.grip(i, grip);
       felt = hand.felt.feel(belief, hand.good, grip,
-                            {time_, options_.period, device_share, leap, another_holds(bodies, i)});
+                            {time_, options_.period, device_share, leap, another_holds(bodies, i)},
+                            [&](const Wrench& wanted) {
+                              const Wrench safe = held_.guard(i, wanted, hand.good.pose, hand.good.twist,
+                                                              options_.period, hand.limits.max_damping);
+                              return port->device().gives_way() ? safe : wanted;
+                            });
+      held_.sent(i, felt.wrench, hand.felt.holds(), hand.felt.held().pose, hand.felt.held().twist);
     }
     if (felt.limited) note(kStatusForceLimited);
     if (felt.non_finite) note(kStatusNonFinite);
@@ -264,6 +283,7 @@ void Servo::tick(std::int64_t now_ns, bool fresh) noexcept {
     line_.add({sample_offset_ + time_, static_cast<std::uint32_t>(i), felt.wrench, hand.good.pose}, time_,
               hand.felt.follows_world());
   }
+  held_.advance(now_ns + to_nanoseconds(options_.period));
   pass_on(false);
   if (sample_due) {
     // On the grid of intervals, whatever the tick that met it: rows stay evenly spread over the run.

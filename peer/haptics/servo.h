@@ -12,6 +12,7 @@
 #include "net/ring.h"
 #include "peer/haptics/device_port.h"
 #include "peer/haptics/felt_hand.h"
+#include "peer/haptics/held_bodies.h"
 #include "peer/haptics/sample_line.h"
 #include "scenes/scene.h"
 
@@ -21,6 +22,7 @@ struct ServoOptions {
   double period = 0.001;           ///< s between ticks, nominal
   double sample_interval = 0.002;  ///< simulated s between recorded samples, > 0
   std::size_t sample_capacity = 1 << 15;
+  Coupling coupling = Coupling::kReplica;  ///< of hands that give way to the force
   /// What every step put on the hands, in order, where the world is in this process; must outlive the servo.
   /// Null: what body states say, of which a busy loop misses some.
   Ring<StepWrench>* steps = nullptr;
@@ -123,6 +125,8 @@ class Servo {
   double time_ = 0.0;
   double sample_offset_ = 0.0;  // s that samples' time is ahead of the world's, after resets
   Hearing hearing_;
+  HeldBodies held_;
+  bool states_apart_ = false;  // Channel::newest() is written
   bool let_go_ = false;
   double next_sample_ = 0.0;
   SampleLine line_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "net/clock.h"
 #include "net/engagement.h"
@@ -55,15 +56,18 @@ BodyInbox::BodyInbox(const Scene& scene, double time_step)
     at.center_of_mass = transform_point(body.pose, body.mass.center_of_mass);
   }
   bodies.grips.resize(scene.grips.size());
-  place_grips();
+  place_grips(bodies);
   for (GripState& grip : bodies.grips) grip.handle = grip.pose;
+  state_.hands.resize(scene.grips.size());
+  newest_ = state_;
 }
 
 void BodyInbox::restart() {
   state_.fluid_models.clear();
   models_run_ = 0;
   pending_.clear();
-  given_ = false;
+  given_ = newest_fresh_ = false;
+  newest_tick_ = 0;
   moment_.known = false;
   delay_.restart();
   backlog_.restart();
@@ -134,6 +138,20 @@ void BodyInbox::take(const wire::Bodies& part, std::int64_t now_ns, const ClockS
   const bool newest = !moment_.known || part.run > moment_.run ||
                       (part.run == moment_.run && part.stamp_ns >= moment_.stamp_ns);
   if (newest) moment_ = {part.run, part.time, part.stamp_ns, part.rate, true};
+  if (pending.complete() && (part.run > newest_.run || part.tick > newest_tick_)) {
+    newest_tick_ = part.tick;
+    newest_.time_step = time_step_;
+    newest_.stamp_ns = clock.to_peer(part.stamp_ns);
+    lay_out(pending, newest_);
+    newest_.fluid_models = state_.fluid_models;
+    newest_fresh_ = true;
+  }
+}
+
+const BodyMessage* BodyInbox::newest() {
+  if (!std::exchange(newest_fresh_, false)) return nullptr;
+  if (paused_) newest_.rate = 0.0;
+  return &newest_;
 }
 
 void BodyInbox::take(const wire::FluidWrench& message) {
@@ -190,8 +208,7 @@ std::int64_t BodyInbox::next_due_ns(const ClockSync& clock) const {
 }
 
 void BodyInbox::apply(const Pending& pending, const ClockSync& clock) {
-  BodySnapshot& bodies = state_.bodies;
-  const double interval = pending.time - bodies.time;
+  const double interval = pending.time - state_.bodies.time;
   if (given_ && interval > 0.0 && interval < kLongestInterval) {
     interval_ += kIntervalShare * (interval - interval_);
   }
@@ -199,13 +216,23 @@ void BodyInbox::apply(const Pending& pending, const ClockSync& clock) {
     state_.fluid_models.clear();
     models_run_ = pending.run;
   }
-  state_.run = pending.run;
-  state_.rate = pending.rate;
   // What a device loop takes for a tick is how often states come.
   state_.time_step = std::max(time_step_, interval_);
   state_.carry_on = kHoldAnew;
-  state_.heard_pose_ns = pending.heard_pose_ns;
   state_.stamp_ns = due_ns(pending, clock);
+  lay_out(pending, state_);
+  given_ = true;
+  given_tick_ = pending.tick;
+  started_ = started_ || pending.complete();
+  counts_.states += 1;
+  if (!pending.complete()) counts_.incomplete += 1;
+}
+
+void BodyInbox::lay_out(const Pending& pending, BodyMessage& state) const {
+  BodySnapshot& bodies = state.bodies;
+  state.run = pending.run;
+  state.rate = pending.rate;
+  state.heard_pose_ns = pending.heard_pose_ns;
   bodies.tick = pending.tick;
   bodies.time = pending.time;
   bodies.status = pending.status;
@@ -215,17 +242,12 @@ void BodyInbox::apply(const Pending& pending, const ClockSync& clock) {
   for (const wire::GripEntry& entry : pending.grips) {
     bodies.grips[entry.grip].handle = entry.handle;
     bodies.grips[entry.grip].on_hand = entry.on_hand;
+    state.hands[entry.grip] = {entry.pose_number, 0, 0.0, entry.counted, entry.energy};
   }
-  place_grips();
-  given_ = true;
-  given_tick_ = pending.tick;
-  started_ = started_ || pending.complete();
-  counts_.states += 1;
-  if (!pending.complete()) counts_.incomplete += 1;
+  place_grips(bodies);
 }
 
-void BodyInbox::place_grips() {
-  BodySnapshot& bodies = state_.bodies;
+void BodyInbox::place_grips(BodySnapshot& bodies) const {
   for (std::size_t g = 0; g < bodies.grips.size(); ++g) {
     const Grip& grip = scene_.grips[g];
     const BodyState& body = bodies.bodies[static_cast<std::size_t>(grip.body)];

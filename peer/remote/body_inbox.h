@@ -81,6 +81,11 @@ class BodyInbox {
   /// When to call next() again; far away when nothing waits.
   std::int64_t next_due_ns(const ClockSync& clock) const;
 
+  /// The newest state that is whole, as soon as it came: on the peer's clock and nothing added; null when
+  /// there is nothing newer than what the call before gave. HandWord::read_ns is not filled in. Valid until
+  /// the next take().
+  const BodyMessage* newest();
+
   /// What the scene says before anything came, or the last state given out.
   const BodyMessage& state() const { return state_; }
   bool started() const { return started_; }  ///< a whole state came
@@ -106,11 +111,15 @@ class BodyInbox {
   bool sound(const wire::Bodies& part) const;
   std::int64_t due_ns(const Pending& pending, const ClockSync& clock) const;
   void apply(const Pending& pending, const ClockSync& clock);
-  void place_grips();
+  void lay_out(const Pending& pending, BodyMessage& state) const;
+  void place_grips(BodySnapshot& bodies) const;
 
   const Scene& scene_;
   double time_step_;
   BodyMessage state_;
+  BodyMessage newest_;
+  bool newest_fresh_ = false;
+  std::uint64_t newest_tick_ = 0;
   std::vector<Pending> pending_;  // by tick, of one run
   std::uint32_t models_run_ = 0;  // that state_.fluid_models are of
   AdaptiveDelay delay_;

@@ -15,6 +15,7 @@ wire::PoseSample sample_of(const PoseMessage& message, std::uint32_t grip, std::
   sample.pose = message.pose;
   sample.twist = message.twist;
   sample.engaged = message.engaged;
+  sample.energy = message.energy;
   return sample;
 }
 
@@ -25,12 +26,27 @@ bool can_be_sent(const wire::PoseSample& s) {
   };
   return within(s.pose.position, wire::kMaxPosition) && within(s.twist.linear, wire::kMaxSpeed) &&
          within(s.twist.angular, wire::kMaxSpeed) && s.time >= -1.0 && s.time <= wire::kMaxTime &&
-         s.tick_ack <= wire::kMaxTick;
+         s.tick_ack <= wire::kMaxTick && std::abs(s.energy) <= wire::kMaxEnergy;
 }
 
 }  // namespace
 
-SharedBytes PoseUplink::make(const std::vector<bool>& held) {
+PoseUplink::Reading PoseUplink::reading(std::size_t grip, std::uint64_t number) const {
+  if (grip >= hands_.size() || number == 0) return {};
+  const Reading& known = hands_[grip].known[number % kRemembered];
+  return known.number == number ? known : Reading{};
+}
+
+void PoseUplink::resolve(BodyMessage& state, const std::vector<bool>& held) const {
+  for (std::size_t g = 0; g < state.hands.size() && g < held.size(); ++g) {
+    if (!held[g]) continue;
+    const Reading read = reading(g, state.hands[g].number);
+    state.hands[g].read_ns = read.stamp_ns;
+    state.hands[g].time = read.time;
+  }
+}
+
+SharedBytes PoseUplink::make(const std::vector<bool>& held, wire::Capabilities agreed) {
   bool anything_new = false;
   for (std::size_t i = 0; i < hands_.size(); ++i) {
     Hand& hand = hands_[i];
@@ -44,6 +60,7 @@ SharedBytes PoseUplink::make(const std::vector<bool>& held) {
     hand.last_stamp_ns = message.stamp_ns;
     const wire::PoseSample sample = sample_of(message, static_cast<std::uint32_t>(i), hand.next);
     if (!can_be_sent(sample)) continue;
+    hand.known[hand.next % kRemembered] = {hand.next, sample.stamp_ns, sample.time};
     hand.next += 1;
     hand.last.push_front(sample);
     if (hand.last.size() > kPoseSends) hand.last.pop_back();
@@ -58,13 +75,13 @@ SharedBytes PoseUplink::make(const std::vector<bool>& held) {
   for (std::size_t age = 0; age < kPoseSends; ++age) {
     for (const Hand& hand : hands_) {
       if (age >= hand.last.size() || poses.samples.size() >= wire::kMaxPoseRepeats) continue;
-      const std::size_t size = wire::encoded(hand.last[age]).size();
+      const std::size_t size = wire::encoded(hand.last[age], agreed).size();
       if (bytes + size > wire::kMaxDatagram) continue;
       bytes += size;
       poses.samples.push_back(hand.last[age]);
     }
   }
-  return std::make_shared<const std::vector<std::uint8_t>>(wire::datagram(poses));
+  return std::make_shared<const std::vector<std::uint8_t>>(wire::datagram(poses, nullptr, agreed));
 }
 
 }  // namespace slosh

@@ -93,6 +93,7 @@ wire::Fault RemoteLink::on_welcome(wire::ByteView payload) {
   }
   greeting_.welcome = true;
   status_.welcome = welcome;
+  agreed_ = welcome.capabilities & wire::kOurCapabilities;
   publish(now());
   return {};
 }

@@ -109,7 +109,7 @@ std::int64_t RemoteLink::work(std::int64_t now_ns) {
       if (now_ns >= pose_due_ns_) {
         // On a grid, but what was missed is not made up for.
         pose_due_ns_ = std::max(pose_due_ns_ + kPoseGap_ns, now_ns);
-        if (SharedBytes poses = uplink_->make(status_.held)) send(Priority::kPose, std::move(poses));
+        if (SharedBytes poses = uplink_->make(status_.held, agreed_)) send(Priority::kPose, std::move(poses));
       }
       next_ns = std::min(next_ns, pose_due_ns_);
     }
@@ -127,6 +127,15 @@ void RemoteLink::pump_bodies(std::int64_t now_ns) {
   world_.channel->bodies().back() = *state;
   world_.channel->bodies().publish();
   world_.maker->note_bodies(*state);
+}
+
+/// To the device loop at once, with when the readings were read that the state answers to.
+void RemoteLink::pass_newest(const BodyMessage& state) {
+  if (!world_.channel || !uplink_) return;
+  BodyMessage& out = world_.channel->newest().back();
+  out = state;
+  uplink_->resolve(out, status_.held);
+  world_.channel->newest().publish();
 }
 
 void RemoteLink::send(Priority priority, SharedBytes bytes) {
@@ -169,10 +178,11 @@ void RemoteLink::on_datagram(ConnectionId, std::span<const std::uint8_t> bytes) 
     }
     case wire::DatagramType::kBodies: {
       wire::Bodies bodies;
-      if (wire::decode(payload, bodies)) break;
+      if (wire::decode(payload, bodies, agreed_)) break;
       // Before the clock is known nothing can be said of when a state belongs.
       if (!inbox_ || !clock_.known()) return;
       inbox_->take(bodies, now_ns, clock_);
+      if (const BodyMessage* const newest = inbox_->newest()) pass_newest(*newest);
       if (world_.maker) world_.maker->note_moment(inbox_->moment());
       return;
     }

@@ -100,6 +100,7 @@ class RemoteLink final : public EndpointEvents {
   void drop_endpoint();
   std::int64_t work(std::int64_t now_ns);
   void pump_bodies(std::int64_t now_ns);
+  void pass_newest(const BodyMessage& state);
   void send(Priority priority, SharedBytes bytes);
   void ping(std::int64_t now_ns);
   void end(std::optional<Error> error, const std::string& farewell = {});
@@ -147,6 +148,7 @@ class RemoteLink final : public EndpointEvents {
   RemoteStatus status_;  // this thread's; publish() copies it
   std::unique_ptr<BodyInbox> inbox_;
   std::unique_ptr<PoseUplink> uplink_;
+  wire::Capabilities agreed_ = 0;  // with the host of the present connection
   ClockSync clock_;
   PingSchedule pings_;
   Backoff backoff_;

@@ -26,6 +26,7 @@ struct JoinOptions : ShowOptions {
   std::string name;
   std::vector<std::string> grips;
   std::string key;
+  std::string coupling = "replica";
   bool watch = false;
 };
 
@@ -157,6 +158,7 @@ int join(JoinOptions options) {
 
   RemoteRunOptions run_options;
   run_options.devices = options.devices;
+  run_options.coupling = options.coupling == "spring" ? Coupling::kSpring : Coupling::kReplica;
   run_options.has_window = !headless;
   run_options.host = remote.address;
   run_options.begin_ns = begin_ns;
@@ -189,9 +191,16 @@ void add(CLI::App& app, VerbRun& chosen, bool watch) {
     verb->add_option("--grip", o->grips, "A grip by name or number, again for more (the first free one)")
         ->allow_extra_args(false);
     verb->add_option("--device", o->devices,
-                     "script, mouse, replay:FILE, spacemouse, falcon, plugin:FILE or operator; one for all your hands, "
+                     "script, mouse, replay:FILE, spacemouse, falcon, plugin:FILE or operator; one for all "
+                     "your hands, "
                      "or one each, in order")
         ->allow_extra_args(false);
+    verb->add_option("--coupling", o->coupling,
+                     "What a device that is felt is coupled to: replica, this site's own copy of what it "
+                     "holds, steady over "
+                     "any distance; or spring, the host's as it comes, for links below some 20 ms")
+        ->check(CLI::IsMember({"replica", "spring"}))
+        ->capture_default_str();
   }
   add_seconds_option(*verb, o->seconds, 0.01, "Simulated seconds to stay (until the host ends)");
   add_out_options(*verb, *o,

@@ -25,8 +25,10 @@ Result<std::unique_ptr<RemoteRun>> RemoteRun::create(const Stage& stage, RemoteV
   run->status_ = visit.status();
   run->last_time_ = run->status_.world_time;
   run->last_run_ = run->status_.moment.run;
+  ServoOptions servo;
+  servo.coupling = run->options_.coupling;
   run->servo_ = std::make_unique<Servo>(stage.scene, std::vector<std::unique_ptr<Device>>{},
-                                        *visit.world().channel, ServoOptions{});
+                                        *visit.world().channel, servo);
   run->loop_ = std::make_unique<DeviceLoop>(*run->servo_);
   const bool records = run->status_.welcome.role == wire::Role::kParticipant && !stage.scene.grips.empty();
   Result<std::unique_ptr<Recorder>> recorder =

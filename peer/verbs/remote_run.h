@@ -18,6 +18,7 @@ namespace slosh {
 
 struct RemoteRunOptions {
   std::vector<std::string> devices;  ///< none (script), one for all, or one for each grip in order of taking
+  Coupling coupling = Coupling::kReplica;
   bool has_window = false;
   std::string host;                              ///< address, for the summary
   std::int64_t begin_ns = 0;                     ///< when the program began

@@ -1,5 +1,5 @@
-// The verb `report`: error against run time, stability at the extremes, what leaving passes out saves,
-// pictures.
+// The verb `report`: error against run time, stability at the extremes, hands over a delay, what leaving
+// passes out saves, pictures.
 #include "peer/verbs/report.h"
 
 #include <ctime>
@@ -45,7 +45,7 @@ void add_case_options(CLI::App& verb, ReportOptions& options, const std::string&
 
 void add_report(CLI::App& app, VerbRun& chosen) {
   CLI::App* verb =
-      app.add_subcommand("report", "Measure: error against run time, stability, what passes cost, pictures, the paper's figures");
+      app.add_subcommand("report", "Measure: error against run time, stability, hands over a delay, what passes cost, pictures, the paper's figures");
   verb->require_subcommand(1);
   auto options = std::make_shared<ReportOptions>();
   CLI::App* error = verb->add_subcommand("error", "Cases with a known answer: how far off, at what cost");
@@ -84,6 +84,25 @@ void add_report(CLI::App& app, VerbRun& chosen) {
       "as play does. Writes picture.md, the table, and picture.png, the broken dam side by side.\n\n"
       "Examples:\n  slosh report picture\n  slosh report picture --quick --out here");
   picture->callback([&chosen, options] { chosen = [options] { return report_picture(*options); }; });
+  CLI::App* coupling = verb->add_subcommand("coupling", "Hands at several sites on one body, over a delay");
+  coupling->add_flag("--quick", options->quick, "The cases that broke schemes, to 300 ms: half a minute");
+  coupling->add_option("--out", options->out, "Folder for the table and pictures (slosh-report-coupling)");
+  coupling->add_flag("--overwrite", options->overwrite, "Lose the report that is in that folder");
+  coupling->footer(
+      "In virtual time, so that it is the same again on every machine of a kind: simulated operators hold a "
+      "body of "
+      "2.5 kg,\n"
+      "six axes, over every round trip, jitter, loss, number of hands, stiffness, grip and packet rate; by "
+      "the "
+      "host's force\n"
+      "(the published scheme), a spring at the peer, and the replica that peers use. Writes coupling.csv, a "
+      "row as "
+      "soon as\n"
+      "it is there; a map a scheme of what is stable, with the energy generated; force_error.png, with "
+      "theory's "
+      "bounds.\n\n"
+      "Examples:\n  slosh report coupling --quick\n  slosh report coupling --out here");
+  coupling->callback([&chosen, options] { chosen = [options] { return report_coupling(*options); }; });
   CLI::App* passes = verb->add_subcommand("passes", "What a scene's step saves by what it leaves out");
   auto scene = std::make_shared<std::string>();
   auto spacing = std::make_shared<double>(0.0);

@@ -26,6 +26,7 @@ struct ReportOptions {
 
 int report_error(const ReportOptions& options);
 int report_stability(const ReportOptions& options);
+int report_coupling(const ReportOptions& options);
 /// `spacing` m; 0: the scene's own, else its coarsest.
 int report_passes(const ReportOptions& options, const std::string& scene_name, double spacing);
 

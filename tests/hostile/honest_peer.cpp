@@ -55,7 +55,7 @@ class HonestPeer::Line final : public EndpointEvents {
     wire::Poses poses;
     poses.samples.push_back(sample);
     end->send_datagram(connection_, Priority::kPose,
-                       std::make_shared<const wire::Bytes>(wire::datagram(poses)));
+                       std::make_shared<const wire::Bytes>(wire::datagram(poses, nullptr, 0)));
     if (poses_sent % 25 == 0) {
       wire::SnapshotFeedback feedback;
       end->send_datagram(connection_, Priority::kPose,
@@ -87,7 +87,7 @@ class HonestPeer::Line final : public EndpointEvents {
   void on_datagram(ConnectionId, std::span<const std::uint8_t> bytes) override {
     if (bytes.empty() || bytes[0] != static_cast<std::uint8_t>(wire::DatagramType::kBodies)) return;
     wire::Bodies m;
-    if (const wire::Fault found = wire::decode(bytes.subspan(1), m)) {
+    if (const wire::Fault found = wire::decode(bytes.subspan(1), m, 0)) {
       fault = "a state that does not decode: " + found.text();
       return;
     }

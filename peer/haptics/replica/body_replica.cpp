@@ -7,6 +7,7 @@ namespace slosh {
 namespace {
 
 constexpr std::size_t kRemembered = 2048;  // ticks: a host's answer may be 2 s late
+constexpr double kNoStiffness = 1e-6;      // N/m, N·m/rad
 constexpr double kRootTwo = 1.4142135623730951;
 
 glm::dvec3 linear(const Vector6& v) {
@@ -171,6 +172,34 @@ void BodyReplica::soften(const std::vector<ReplicaHand>& hands) noexcept {
   shared_ = stiffness > 0.0 ? others / stiffness : 0.0;
 }
 
+/// A load rests on all couplings of the body, at the host; here those of other sites are soft, and their part
+/// of it with them: so much of it is left that it bends these couplings as far as the load bends those.
+void BodyReplica::share_out(const std::vector<ReplicaHand>& hands, Vector6& load) const noexcept {
+  Matrix6 full{}, soft{};
+  bool others = false;
+  for (std::size_t g = 0; g < grips_.size() && g < hands.size(); ++g) {
+    if (!hands[g].engaged) continue;
+    others = others || !hands[g].own;
+    const CouplingGains& k = grips_[g].gains;
+    const glm::dvec3 arm =
+        body_.point ? glm::dvec3(0.0) : now_.orientation * (grips_[g].pose.position - body_.center);
+    add_gain(full, k.stiffness, arm);
+    add_gain(soft, (hands[g].own ? 1.0 : soft_) * k.stiffness, arm);
+    for (std::size_t i = 3; i < 6; ++i) {
+      full[i][i] += k.rotational_stiffness;
+      soft[i][i] += (hands[g].own ? 1.0 : rotational_soft_) * k.rotational_stiffness;
+    }
+  }
+  if (!others) return;
+  // What no coupling holds is not shared out.
+  for (std::size_t i = 0; i < 6; ++i) {
+    full[i][i] += kNoStiffness;
+    soft[i][i] += kNoStiffness;
+  }
+  Matrix6 factor;
+  if (cholesky(full, factor)) load = product(soft, cholesky_solve(factor, load));
+}
+
 /// What the hands of other sites gave in this step, against what their persons put in; the excess is taken
 /// out of the motion.
 void BodyReplica::settle(const std::vector<ReplicaHand>& hands, double dt) noexcept {
@@ -233,6 +262,8 @@ void BodyReplica::advance(const std::vector<ReplicaHand>& hands, double dt, std:
   Vector6 fluid = load_.wrench;
   add(fluid, product(load_.d_pose, six(off, turn)));
   add(fluid, product(load_.d_velocity, six(load_.twist.linear, load_.twist.angular)), -1.0);
+  Vector6 acting = fluid;  // whole, as its work is: everybody's energy is counted
+  share_out(hands, fluid);
   add(rhs, fluid, dt * trust);
   // Its damper: what is symmetric of it implicitly, the rest (which does no work) with the velocity of now.
   const Matrix6 damper = symmetric_part(load_.d_velocity, -1.0);
@@ -268,7 +299,6 @@ void BodyReplica::advance(const std::vector<ReplicaHand>& hands, double dt, std:
   if (!std::isfinite(sum)) return;
   Vector6 middle = v;
   add(middle, next);
-  Vector6 acting = fluid;
   add(acting, product(load_.d_velocity, next));
   for (std::size_t i = 0; i < 6; ++i) work_ += 0.5 * dt * trust * acting[i] * middle[i];
   now_.twist = {linear(next), body_.point ? glm::dvec3(0.0) : angular(next)};

@@ -93,6 +93,7 @@ class BodyReplica {
   void compare(std::int64_t now_ns) noexcept;
   void follow_load(double dt) noexcept;
   void soften(const std::vector<ReplicaHand>& hands) noexcept;
+  void share_out(const std::vector<ReplicaHand>& hands, Vector6& load) const noexcept;
   void settle(const std::vector<ReplicaHand>& hands, double dt) noexcept;
 
   ReplicaBody body_;

@@ -15,6 +15,7 @@ constexpr double kCarriedOn = 0.02;
 constexpr double kFiringMemory = 0.5;
 constexpr double kFiresTooOften = 0.5;
 constexpr double kCalm = 3.0;
+constexpr double kChange = 0.5;  // s over which one goes over into the other
 /// s for which the fluid's model holds without a word, and over which it then goes.
 constexpr double kLoadHolds = 0.1;
 constexpr double kLoadFades = 0.3;
@@ -44,10 +45,11 @@ void HeldBody::restart() noexcept {
   started_ = false;
   delay_.restart();
   fluid_ = FluidLoad{};
-  std::fill(hands_.begin(), hands_.end(), ReplicaHand{});
+  for (ReplicaHand& hand : hands_) hand.engaged = false;
   for (VelocityWindow& speed : speeds_) speed.forget();
   firing_ = calm_ = unrest_ = 0.0;
   fallen_back_ = false;
+  spring_ = 0.0;
 }
 
 Vector6 HeldBody::rest_of(const HostWord& word) const noexcept {
@@ -98,16 +100,19 @@ void HeldBody::hear(const HostWord& word) noexcept {
       continue;
     }
     if (!said.engaged) speeds_[g].forget();
+    // Another person's count begins elsewhere.
+    if (said.engaged && !hand.engaged) stored_ += hand.energy - said.energy;
     hand.engaged = said.engaged;
     hand.handle = said.handle;
     hand.twist = said.engaged ? speeds_[g].add(said.handle, to_nanoseconds(word.time)) : Twist{};
-    hand.energy = said.energy;
+    if (said.engaged) hand.energy = said.energy;
     counted_ = counted_ && (said.counted || !said.engaged);
   }
   if (!started_) {
     replica_.restart(word.motion);
     replica_.set_load(load);
     started_ = true;
+    begin_count(word);
     return;
   }
   note_unrest(load, elapsed);
@@ -128,8 +133,23 @@ void HeldBody::note_unrest(const FluidLoad& load, double elapsed) noexcept {
   unrest_ = now > unrest_ ? now : unrest_ + forget * (now - unrest_);
 }
 
+/// Springs that are stretched already when this begins have energy to give.
+void HeldBody::begin_count(const HostWord& word) noexcept {
+  stored_ = 0.0;
+  for (std::size_t g = 0; g < hands_.size(); ++g) {
+    stored_ -= hands_[g].own ? guards_[g].energy() : hands_[g].energy;
+    if (g >= word.hands.size()) continue;
+    const Wrench& on_hand = word.hands[g].on_hand;
+    const CouplingGains& k = gains_[g];
+    if (k.stiffness > 0.0) stored_ += 0.5 * glm::dot(on_hand.force, on_hand.force) / k.stiffness;
+    if (k.rotational_stiffness > 0.0)
+      stored_ += 0.5 * glm::dot(on_hand.torque, on_hand.torque) / k.rotational_stiffness;
+  }
+}
+
 GripState HeldBody::grip(std::size_t g) const noexcept {
-  if (!fallen_back_) return replica_.grip(g);
+  const GripState here = replica_.grip(g);
+  if (spring_ <= 0.0) return here;
   const double on = std::min(since_heard_, kCarriedOn);
   const Pose body{heard_.position + on * heard_.twist.linear,
                   rotate_by(heard_.orientation, on * heard_.twist.angular)};
@@ -137,17 +157,17 @@ GripState HeldBody::grip(std::size_t g) const noexcept {
   GripState state;
   state.pose = {body.position + arm, body.orientation * grips_[g].orientation};
   state.twist = {heard_.twist.linear + glm::cross(heard_.twist.angular, arm), heard_.twist.angular};
-  return state;
+  return between(here, state, spring_);
 }
 
 Wrench HeldBody::guard(std::size_t g, const Wrench& wanted, const Pose& hand, const Twist& twist, double dt,
                        double most_damping) noexcept {
-  double credit = replica_.work() + (counted_ ? 0.0 : kUncounted);
+  double credit = stored_ + replica_.work() + (counted_ ? 0.0 : kUncounted);
   for (std::size_t j = 0; j < hands_.size(); ++j) {
     if (j != g) credit += hands_[j].own ? guards_[j].energy() : hands_[j].energy;
   }
   // What others hold is felt across the delay; alone on the body nothing is.
-  const double share = fallen_back_ ? 1.0 : std::max(replica_.shared(), unrest_);
+  const double share = std::max({replica_.shared(), unrest_, spring_});
   const double damping = std::min(share * replica_.damping(g), most_damping);
   const double turning = share * replica_.rotational_damping(g);
   const Wrench damped{wanted.force - damping * twist.linear, wanted.torque - turning * twist.angular};
@@ -164,6 +184,7 @@ void HeldBody::watch(double dt) noexcept {
   fires_ = false;
   if (!fallen_back_ && firing_ > kFiresTooOften) fallen_back_ = true;
   if (fallen_back_ && calm_ > kCalm) fallen_back_ = false;
+  spring_ = std::clamp(spring_ + (fallen_back_ ? dt : -dt) / kChange, 0.0, 1.0);
 }
 
 void HeldBody::advance(std::span<const OwnHand> own, double dt, std::int64_t now_ns) noexcept {
@@ -171,13 +192,17 @@ void HeldBody::advance(std::span<const OwnHand> own, double dt, std::int64_t now
   for (std::size_t g = 0; g < hands_.size(); ++g) {
     ReplicaHand& hand = hands_[g];
     if (g < own.size() && own[g].here) {
-      if (!hand.own) guards_[g].restart(own[g].handle);
+      if (!hand.own) {
+        guards_[g].restart(own[g].handle);
+        stored_ += hand.energy - guards_[g].energy();
+      }
       hand.own = true;
       hand.engaged = own[g].engaged;
       hand.handle = own[g].handle;
       hand.twist = own[g].twist;
     } else if (hand.own) {
       hand = ReplicaHand{};
+      hand.energy = guards_[g].energy();
       speeds_[g].forget();
     } else if (since_heard_ < kCarriedOn) {
       hand.handle = extrapolate(hand.handle, hand.twist, dt);

@@ -18,8 +18,8 @@ struct HostHand {
   Wrench on_hand;           ///< that the step put on it, about the handle
   std::int64_t ack_ns = 0;  ///< of our own: when the reading that the state follows was read, and so much
                             ///< later as the step carried it on; 0 = none
-  bool counted = false;  ///< somebody counts for it …
-  double energy = 0.0;   ///< … the J that its person put in
+  bool counted = false;     ///< somebody counts for it …
+  double energy = 0.0;      ///< … the J that its person put in
 };
 
 /// The host's word on the body after one step, as soon as it comes.
@@ -37,6 +37,17 @@ struct OwnHand {
   Pose handle;  ///< as the coupling uses it (net/engagement.h)
   Twist twist;
 };
+
+/// From `a` (share 0) to `b` (1), what is not a motion as `a` has it.
+inline GripState between(const GripState& a, const GripState& b, double share) {
+  GripState mixed = a;
+  mixed.pose.position += share * (b.pose.position - a.pose.position);
+  mixed.pose.orientation =
+      rotate_by(a.pose.orientation, share * rotation_between(a.pose.orientation, b.pose.orientation));
+  mixed.twist.linear += share * (b.twist.linear - a.twist.linear);
+  mixed.twist.angular += share * (b.twist.angular - a.twist.angular);
+  return mixed;
+}
 
 /// A tick is: hear() what came; for each own hand grip(), the coupling to it, guard(), sent(); then
 /// advance(). Reads no clock, neither allocates nor locks once made; one thread.
@@ -73,6 +84,7 @@ class HeldBody {
 
  private:
   void watch(double dt) noexcept;
+  void begin_count(const HostWord& word) noexcept;
   void note_unrest(const FluidLoad& load, double elapsed) noexcept;
   /// What acts on the body besides couplings and the fluid's answer to its acceleration: fluid, weight,
   /// contacts.
@@ -98,6 +110,8 @@ class HeldBody {
   double firing_ = 0.0;  // share of ticks lately
   double calm_ = 0.0;    // s since a guard fired
   bool fallen_back_ = false;
+  double spring_ = 0.0;  // share of the damped spring, 0–1
+  double stored_ = 0.0;  // J in the couplings when this began, less what had been counted by then
   std::uint64_t fired_ = 0;
 };
 

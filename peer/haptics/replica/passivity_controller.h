@@ -18,9 +18,9 @@ class PassivityController {
   /// m: a turning hand counts as one that moves on a circle of this radius.
   static constexpr double kArm = 0.1;
 
-  /// Nothing was sent yet; the hand is here.
+  /// Nothing was sent yet; the hand is here. What was counted stays: others have it.
   void restart(const Pose& hand) noexcept {
-    *this = PassivityController{};
+    sent_ = Wrench{};
     before_ = hand;
   }
 
@@ -49,7 +49,7 @@ class PassivityController {
   /// What the device was really sent.
   void sent(const Wrench& wrench) noexcept { sent_ = wrench; }
 
-  double energy() const noexcept { return energy_; }  ///< J that the person put in since restart()
+  double energy() const noexcept { return energy_; }  ///< J that the person put in so far
   bool fires() const noexcept { return fires_; }      ///< in the last guard()
 
  private:

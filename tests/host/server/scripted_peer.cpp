@@ -121,14 +121,16 @@ void ScriptedPeer::on_datagram(ConnectionId, std::span<const std::uint8_t> bytes
     snapshot_bytes += bytes.size();
     return;
   }
-  const wire::Fault found =
-      wire::dispatch_datagram(wire::HostDatagrams{}, bytes, [&]<class M>(const M& message) {
+  const wire::Fault found = wire::dispatch_datagram(
+      wire::HostDatagrams{}, bytes,
+      [&]<class M>(const M& message) {
         if constexpr (std::is_same_v<M, wire::ClockPong>) keep(pongs, message);
         if constexpr (std::is_same_v<M, wire::Bodies>) keep(bodies, message);
         if constexpr (std::is_same_v<M, wire::FluidWrench>) keep(fluid, message);
         if constexpr (std::is_same_v<M, wire::Hands>)
           hands.insert(hands.end(), message.hands.begin(), message.hands.end());
-      });
+      },
+      capabilities & wire::kOurCapabilities);
   if (found) fault = found.text();
 }
 

@@ -36,7 +36,7 @@ class ScriptedPeer final : public EndpointEvents {
   void raw(const wire::Bytes& bytes, bool end = false);
   template <class M>
   void datagram(const M& message) {
-    raw_datagram(wire::datagram(message));
+    raw_datagram(wire::datagram(message, nullptr, capabilities & wire::kOurCapabilities));
   }
   void raw_datagram(const wire::Bytes& bytes);
   /// A pose sample at x metres, engaged, the newest alone.

@@ -1,0 +1,184 @@
+#include "peer/haptics/held_bodies.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "net/clock.h"
+#include "net/engagement.h"
+
+namespace slosh {
+namespace {
+
+constexpr double kShareRise = 0.5;  // s over which the replica comes in, or goes
+/// N·s/m: more would shake a hand of 1 kg that is felt each ms, whatever its device holds.
+constexpr double kMostDamping = 100.0;
+constexpr double kLongestTick = 0.02;  // s: a loop that was stopped goes on from where it was
+/// s of simulated time by which a host carries a pose on at most (host/input_gate.h).
+constexpr double kMostCarried = 0.02;
+
+FluidLoad load_of(const FluidWrenchModel& model) {
+  FluidLoad load;
+  load.d_pose = model.d_pose;
+  load.d_velocity = model.d_velocity;
+  load.added_mass = model.added_mass;
+  load.trust_distance = model.trust_radius;
+  load.trust_angle = model.trust_angle;
+  return load;
+}
+
+}  // namespace
+
+HeldBodies::HeldBodies(const Scene& scene, Coupling coupling)
+    : coupling_(coupling), places_(scene.grips.size()) {
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const Body& source = scene.bodies[b];
+    std::vector<ReplicaGrip> grips;
+    std::vector<std::size_t> places;
+    for (std::size_t g = 0; g < scene.grips.size(); ++g) {
+      const Grip& grip = scene.grips[g];
+      if (grip.body != static_cast<int>(b)) continue;
+      grips.push_back(
+          {grip.pose, {grip.stiffness, grip.damping, grip.rotational_stiffness, grip.rotational_damping}});
+      places.push_back(g);
+    }
+    if (grips.empty() || source.motion != BodyMotion::kFree || !(source.mass.mass > 0.0)) continue;
+    const ReplicaBody body{source.mass.mass, source.point_probe ? glm::dmat3(1.0) : source.mass.inertia,
+                           source.mass.center_of_mass, source.point_probe};
+    for (std::size_t i = 0; i < places.size(); ++i)
+      places_[places[i]] = {static_cast<int>(bodies_.size()), i};
+    const std::size_t count = grips.size();
+    bodies_.push_back({b, std::move(places), HeldBody(body, std::move(grips)), std::vector<OwnHand>(count),
+                       std::vector<HostHand>(count), 0.0, false, 0});
+  }
+}
+
+void HeldBodies::hear(const BodyMessage& newest, bool fresh, std::int64_t now_ns) noexcept {
+  for (Entry& entry : bodies_) entry.anew = false;
+  const bool stands = newest.rate <= 0.0;
+  if (!fresh || stands) {
+    if (stands) rate_ = 0.0;
+    return;
+  }
+  here_ = newest.heard_pose_ns == kPoseNotTold;
+  // After a pause, a silence or a reset the body is where the host says, whatever was here.
+  const bool begin = rate_ <= 0.0 || newest.run != run_ || to_seconds(now_ns - heard_ns_) > kHoldAnew;
+  rate_ = newest.rate;
+  run_ = newest.run;
+  heard_ns_ = now_ns;
+  for (Entry& entry : bodies_) {
+    if (begin) {
+      // Whoever holds the host's body as it is goes on with that.
+      entry.anew = entry.share > 0.0 && entry.held.started();
+      entry.held.restart();
+      entry.model_tick = 0;
+    }
+    tell(entry, newest, now_ns);
+  }
+}
+
+void HeldBodies::tell(Entry& entry, const BodyMessage& newest, std::int64_t now_ns) noexcept {
+  const BodySnapshot& bodies = newest.bodies;
+  if (entry.body >= bodies.bodies.size()) return;
+  for (const FluidWrenchModel& model : newest.fluid_models) {
+    if (model.body == entry.body && model.tick > entry.model_tick) {
+      entry.held.set_fluid(load_of(model));
+      entry.model_tick = model.tick;
+    }
+  }
+  for (std::size_t i = 0; i < entry.grips.size(); ++i) {
+    const std::size_t g = entry.grips[i];
+    HostHand& said = entry.said[i];
+    said = HostHand{};
+    if (g >= bodies.grips.size()) continue;
+    const GripState& grip = bodies.grips[g];
+    said.handle = grip.handle;
+    said.on_hand = grip.on_hand;
+    said.engaged = grip.on_hand.force != glm::dvec3(0.0) || grip.on_hand.torque != glm::dvec3(0.0);
+    if (g >= newest.hands.size()) continue;
+    const HandWord& word = newest.hands[g];
+    said.counted = word.counted;
+    said.energy = word.energy;
+    if (word.read_ns == 0) continue;
+    // The step began with the reading carried on to its beginning, and goes on to its end.
+    const double late = std::clamp(bodies.time - newest.time_step - word.time, -kMostCarried, kMostCarried);
+    said.ack_ns = word.read_ns + to_nanoseconds((newest.time_step + late) / std::max(newest.rate, 0.1));
+  }
+  const BodyState& body = bodies.bodies[entry.body];
+  HostWord word;
+  word.now_ns = now_ns;
+  word.time = bodies.time;
+  word.motion = {body.center_of_mass, body.pose.orientation, body.twist};
+  word.hands = entry.said;
+  entry.held.hear(word);
+}
+
+bool HeldBodies::anew(std::size_t i) const noexcept {
+  const int body = places_[i].body;
+  return body >= 0 && bodies_[static_cast<std::size_t>(body)].anew;
+}
+
+double HeldBodies::share(std::size_t i) const noexcept {
+  const int body = places_[i].body;
+  return body < 0 ? 0.0 : bodies_[static_cast<std::size_t>(body)].share;
+}
+
+LoopDelay HeldBodies::delay(std::size_t i) const noexcept {
+  const int body = places_[i].body;
+  return body < 0 ? LoopDelay{} : bodies_[static_cast<std::size_t>(body)].held.delay();
+}
+
+double HeldBodies::energy(std::size_t i) const noexcept {
+  const Place& place = places_[i];
+  return place.body < 0 ? 0.0 : bodies_[static_cast<std::size_t>(place.body)].held.energy(place.grip);
+}
+
+GripState HeldBodies::grip(std::size_t i, const GripState& at_host) const noexcept {
+  const Place& place = places_[i];
+  if (place.body < 0) return at_host;
+  const Entry& entry = bodies_[static_cast<std::size_t>(place.body)];
+  if (entry.share <= 0.0 || !entry.held.started()) return at_host;
+  return between(at_host, entry.held.grip(place.grip), entry.share);
+}
+
+Wrench HeldBodies::guard(std::size_t i, const Wrench& wanted, const Pose& hand, const Twist& twist, double dt,
+                         double most_damping) noexcept {
+  const Place& place = places_[i];
+  if (place.body < 0) return wanted;
+  Entry& entry = bodies_[static_cast<std::size_t>(place.body)];
+  const Wrench guarded =
+      entry.held.guard(place.grip, wanted, hand, twist, dt, std::min(most_damping, kMostDamping));
+  if (entry.share <= 0.0) return wanted;
+  return {wanted.force + entry.share * (guarded.force - wanted.force),
+          wanted.torque + entry.share * (guarded.torque - wanted.torque)};
+}
+
+void HeldBodies::sent(std::size_t i, const Wrench& wrench, bool engaged, const Pose& held,
+                      const Twist& twist) noexcept {
+  const Place& place = places_[i];
+  if (place.body < 0) return;
+  Entry& entry = bodies_[static_cast<std::size_t>(place.body)];
+  entry.held.sent(place.grip, wrench);
+  entry.own[place.grip] = {true, engaged, held, twist};
+}
+
+void HeldBodies::not_here(std::size_t i) noexcept {
+  const Place& place = places_[i];
+  if (place.body >= 0) bodies_[static_cast<std::size_t>(place.body)].own[place.grip] = OwnHand{};
+}
+
+void HeldBodies::advance(std::int64_t now_ns) noexcept {
+  const double elapsed = advanced_ns_ == 0 ? 0.0 : to_seconds(now_ns - advanced_ns_);
+  advanced_ns_ = now_ns;
+  const double tick = std::clamp(elapsed, 0.0, kLongestTick);
+  for (Entry& entry : bodies_) {
+    const LoopDelay delay = entry.held.delay();
+    const double far = (delay.round_trip + delay.jitter - kNear) / (kFar - kNear);
+    const bool at_hand = here_ || coupling_ == Coupling::kSpring;
+    const double goal = at_hand ? 0.0 : std::clamp(far, 0.0, 1.0);
+    entry.share =
+        here_ ? 0.0 : entry.share + std::clamp(goal - entry.share, -tick / kShareRise, tick / kShareRise);
+    entry.held.advance(entry.own, tick * rate_, now_ns);
+  }
+}
+
+}  // namespace slosh

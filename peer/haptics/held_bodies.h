@@ -1,0 +1,82 @@
+// The bodies that hands of this site hold: between body states as they come and the device loop.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include "net/channel.h"
+#include "peer/haptics/replica/held_body.h"
+#include "scenes/scene.h"
+
+namespace slosh {
+
+/// What a hand that gives way to the force is coupled to.
+enum class Coupling {
+  kReplica,  ///< this site's replica of the body (peer/haptics/replica)
+  kSpring,   ///< the host's body as it comes: steady over short links only
+};
+
+/// A HeldBody for each free body with grips. How far its replica counts goes by the delay of this site's
+/// loop: where host and hand are in one process, or a few milliseconds apart, the host's own body is as new
+/// and is used as it is. One thread, the device loop's; neither allocates nor locks once made.
+class HeldBodies {
+ public:
+  HeldBodies(const Scene& scene, Coupling coupling);
+
+  /// s of round trip and jitter up to which the host's body is used, and from which the replica is.
+  static constexpr double kNear = 0.005;
+  static constexpr double kFar = 0.02;
+
+  /// Once a tick: the newest state and whether it came since the tick before.
+  void hear(const BodyMessage& newest, bool fresh, std::int64_t now_ns) noexcept;
+
+  /// Whether the body of grip `i` was begun anew in the last hear(): its hands take hold anew.
+  bool anew(std::size_t i) const noexcept;
+  /// Where the coupling of grip `i` goes to, of what it is at the host, carried on to now.
+  GripState grip(std::size_t i, const GripState& at_host) const noexcept;
+  /// In place of the coupling's `wanted` (HeldBody::guard).
+  Wrench guard(std::size_t i, const Wrench& wanted, const Pose& hand, const Twist& twist, double dt,
+               double most_damping) noexcept;
+  /// What the device of grip `i` was sent, and what its coupling used of the hand.
+  void sent(std::size_t i, const Wrench& wrench, bool engaged, const Pose& held, const Twist& twist) noexcept;
+  /// Nobody here moves grip `i`.
+  void not_here(std::size_t i) noexcept;
+  /// The end of a tick: on to `now_ns`.
+  void advance(std::int64_t now_ns) noexcept;
+
+  /// J that the person at grip `i` put in; false where that is not counted: a fixed body.
+  bool counted(std::size_t i) const noexcept { return places_[i].body >= 0; }
+  double energy(std::size_t i) const noexcept;
+  /// 0 = the host's body is used, 1 = the replica.
+  double share(std::size_t i) const noexcept;
+  LoopDelay delay(std::size_t i) const noexcept;
+
+ private:
+  struct Place {
+    int body = -1;         // in bodies_
+    std::size_t grip = 0;  // of that body's
+  };
+  struct Entry {
+    std::size_t body = 0;            // in the scene
+    std::vector<std::size_t> grips;  // in the scene
+    HeldBody held;
+    std::vector<OwnHand> own;
+    std::vector<HostHand> said;
+    double share = 0.0;
+    bool anew = false;
+    std::uint64_t model_tick = 0;
+  };
+  void tell(Entry& entry, const BodyMessage& newest, std::int64_t now_ns) noexcept;
+
+  Coupling coupling_;
+  std::vector<Place> places_;  // one a grip of the scene
+  std::deque<Entry> bodies_;
+  std::uint32_t run_ = 0;
+  double rate_ = 0.0;
+  bool here_ = true;  // the host is in this process
+  std::int64_t heard_ns_ = 0;
+  std::int64_t advanced_ns_ = 0;
+};
+
+}  // namespace slosh
