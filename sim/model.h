@@ -58,12 +58,12 @@ auto with_model(ParticleModel model, F&& f) {
 template <class F>
 void with_physics(const Plan& plan, F&& f) {
   with_model(plan.model, [&]<class Parts>() {
-    if (plan.has(PassId::kPairViscosity)) {
-      f.template operator()<Parts, Viscosity::kPair>();
-    } else if (plan.has(PassId::kOneViscosity)) {
-      f.template operator()<Parts, Viscosity::kOne>();
-    } else {
+    if (!plan.drags_explicitly()) {
       f.template operator()<Parts, Viscosity::kNone>();
+    } else if (plan.has(PassId::kPairViscosity)) {
+      f.template operator()<Parts, Viscosity::kPair>();
+    } else {
+      f.template operator()<Parts, Viscosity::kOne>();
     }
   });
 }

@@ -12,13 +12,15 @@
 #include "sim/math/result.h"
 #include "sim/run_constants.h"
 #include "sim/viscosity/body_drag.h"
+#include "sim/viscosity/implicit.h"
 #include "sim/walls/guard_impulse.h"
 #include "sim/world.h"
 
 namespace slosh {
 
 /// A sub-step is prepare(), forces(), advance(), in this order; wrenches() may be asked for after forces(). A
-/// plan with kBodyDrag has drag() between forces() and advance(), after wrenches().
+/// plan with kBodyDrag has drag() between forces() and advance(), after wrenches(); one with kImplicitDrag has
+/// solve_drag() there.
 /// Each runs those of the plan's passes that are its own, by the backend's table. A GPU is only told what to
 /// do: it is waited for in wrenches() alone.
 class ParticleEngine {
@@ -41,6 +43,10 @@ class ParticleEngine {
   /// Adds to the forces on the fluid what they lack when bodies drag by a twist that differs by `changes`
   /// (one a body, about its centre of mass) from the one that they had in prepare().
   virtual void drag(std::span<const Twist> changes) = 0;
+  /// With kImplicitDrag, after wrenches(), one entry a body: adds to the forces on the fluid the drag over `dt`
+  /// s by the velocities that this ends with (viscosity/implicit.h), and to `wrenches` that on the bodies that
+  /// move or are measured.
+  virtual void solve_drag(double dt, std::span<const ViscousBody> bodies, std::span<Wrench> wrenches) = 0;
   /// Multiplies every fluid velocity by `keep` (0–1).
   virtual void damp(float keep) = 0;
 

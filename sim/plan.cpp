@@ -7,6 +7,7 @@
 #include "sim/fluid_extremes.h"
 #include "sim/math/format.h"
 #include "sim/step_limits.h"
+#include "sim/viscosity/stability.h"
 
 namespace slosh {
 
@@ -64,6 +65,20 @@ void decide_body_drag(const Scene& scene, Plan& plan) {
   plan.runs.set(PassId::kBodyDrag, plan.viscous() && plan.waits_for_bodies);
 }
 
+// What a step with the solve takes is two to three times a step without (sim/README.md): below this many times
+// the explicit step it is not worth it.
+constexpr double kWorthSolving = 4.0;
+
+// A probe's velocity is its body's, which is solved for later. The other models stay as they are, to compare with.
+bool suits_drag_solve(const Scene& scene, const Plan& plan) {
+  return plan.viscous() && plan.model == ParticleModel::kCorrected && !any_probe(scene);
+}
+
+void decide_drag_solve(Plan& plan) {
+  plan.runs.set(PassId::kImplicitDrag, plan.solves_drag && plan.viscous());
+  if (plan.has(PassId::kImplicitDrag)) plan.runs.set(PassId::kBodyDrag, false);
+}
+
 struct Reasons {
   std::string there, not_there;
 };
@@ -104,8 +119,17 @@ Reasons reasons_for(PassId id, const Scene& scene, const FluidExtremes& fluids, 
       return {
           "free bodies in viscous fluid: drag by the velocity at the step's end, in the bodies' own solve",
           !plan.viscous()                   ? "nothing is viscous"
+          : plan.has(PassId::kImplicitDrag) ? "bodies are in the solve of the whole drag"
           : !plan.has(PassId::kPlaceBodies) ? "no free body with a surface meets fluid"
                                             : "beside a probe drag stays explicit"};
+    case PassId::kImplicitDrag:
+      return {format("drag by the velocities at the step's end, all solved together: explicit it would need "
+                     "steps of %.3g ms",
+                     1e3 * viscous_step(scene, plan, fluids)),
+              !plan.viscous()                             ? "nothing is viscous"
+              : plan.model != ParticleModel::kCorrected   ? "the corrected model's"
+              : any_probe(scene)                          ? "beside a probe drag stays explicit"
+                                                          : "explicit drag costs less here"};
     case PassId::kIntegrateFluid:
       return {"leap-frog", "no fluid"};
     case PassId::kCouplings:
@@ -152,7 +176,7 @@ void decide_viscosity(const Scene& scene, Plan& plan) {
 
 }  // namespace
 
-Plan make_plan(const Scene& scene, double spacing) {
+Plan make_plan(const Scene& scene, double spacing, bool may_solve_drag) {
   Plan plan;
   plan.spacing = spacing;
   plan.support_radius = scene.support_ratio * spacing;
@@ -166,7 +190,17 @@ Plan make_plan(const Scene& scene, double spacing) {
   decide_viscosity(scene, plan);
   decide_bodies(scene, fluid_extremes(scene), plan);
   decide_body_drag(scene, plan);
-  const StepLimit limit = step_limit(scene, plan);
+  StepLimit limit = step_limit(scene, plan);
+  if (may_solve_drag && suits_drag_solve(scene, plan)) {
+    Plan implicit = plan;
+    implicit.solves_drag = true;
+    decide_drag_solve(implicit);
+    const StepLimit longer = step_limit(scene, implicit);
+    if (longer.step > kWorthSolving * limit.step) {
+      plan = implicit;
+      limit = longer;
+    }
+  }
   plan.time_step = limit.step;
   plan.time_step_reason = limit.reason;
   plan.max_speed = speed_limit(plan, plan.time_step);
@@ -177,6 +211,7 @@ Plan make_plan(const Scene& scene, double spacing) {
 void plan_viscosity(const Scene& scene, Plan& plan) {
   decide_viscosity(scene, plan);
   decide_body_drag(scene, plan);
+  decide_drag_solve(plan);
   list_passes(scene, plan);
 }
 

@@ -22,6 +22,7 @@ enum class PassId : std::uint8_t {
   kWalls,          ///< Eq 5 and 9 on fluid by body particles
   kWrenches,       ///< Eq 10–12 for the bodies in Plan::wrench_bodies
   kBodyDrag,       ///< Eq 9 between fluid and free bodies by the velocities that bodies end a step with
+  kImplicitDrag,   ///< Eq 6 or 9 by the velocities that fluid and bodies end a sub-step with, in one solve
   kIntegrateFluid,
   kCouplings,
   kContacts,
@@ -70,6 +71,7 @@ struct Plan {
   std::vector<double> body_density;   ///< kg/m³, the constant density of each body's particles (section 4.1)
   std::vector<double> body_pressure;  ///< Pa, Eq 7 at that density
 
+  bool solves_drag = false;  ///< kImplicitDrag runs whenever anything is viscous
   bool waits_for_bodies = false;  ///< walls move, and nothing keeps the fluid from waiting for them
   int sub_steps = 1;  ///< that a step is made of, each time_step / sub_steps long
 
@@ -83,8 +85,12 @@ struct Plan {
   /// Particles are kept from passing walls (walls/wall_guard.h). The paper has no such thing.
   bool guards_walls() const { return has(PassId::kWalls) && model != ParticleModel::kPaper; }
   /// The fluid moves on after the bodies only.
-  bool fluid_waits() const { return has(PassId::kBodyDrag) || (guards_walls() && waits_for_bodies); }
+  bool fluid_waits() const {
+    return has(PassId::kBodyDrag) || has(PassId::kImplicitDrag) || (guards_walls() && waits_for_bodies);
+  }
   bool viscous() const { return runs.has_any_of({PassId::kOneViscosity, PassId::kPairViscosity}); }
+  /// Drag is among the forces that a sub-step begins with.
+  bool drags_explicitly() const { return viscous() && !has(PassId::kImplicitDrag); }
 };
 
 /// m/s: half a support radius in a sub-step of `time_step` s.
@@ -92,8 +98,9 @@ inline double speed_limit(const Plan& plan, double time_step) {
   return 0.5 * plan.support_radius / time_step;
 }
 
-/// Works out the plan for particles at `spacing` (m, > 0).
-Plan make_plan(const Scene& scene, double spacing);
+/// Works out the plan for particles at `spacing` (m, > 0). `may_solve_drag`: whether whoever carries it out has
+/// implicit viscosity (can_solve_drag); without, steps are shorter where a fluid is very viscous.
+Plan make_plan(const Scene& scene, double spacing, bool may_solve_drag = true);
 
 /// Takes over changed viscosities of the scene's fluids: which viscous passes run. The time step stays. Needs
 /// no mesh.

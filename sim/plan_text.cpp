@@ -25,6 +25,7 @@ const PassNames& names(PassId id) {
       {"walls", "body particles on fluid"},
       {"wrenches", "wrench on bodies"},
       {"body_drag", "implicit drag on free bodies"},
+      {"implicit_drag", "implicit viscosity"},
       {"integrate_fluid", "integrate fluid"},
       {"couplings", "virtual couplings"},
       {"contacts", "contacts"},

@@ -6,7 +6,7 @@
 namespace slosh {
 
 std::string status_text(std::uint32_t status) {
-  static constexpr std::array<std::pair<StatusBit, const char*>, 9> kWords{{
+  static constexpr std::array<std::pair<StatusBit, const char*>, 10> kWords{{
       {kStatusNonFinite, "a particle or body became non-finite and was put out of the world"},
       {kStatusEscaped, "particles left the domain and were retired"},
       {kStatusSpeedLimited, "particles were too fast and were slowed"},
@@ -17,6 +17,7 @@ std::string status_text(std::uint32_t status) {
        "fluid is squeezed to twice its density: stiffness_m2_s2 100 to 400 held in trials"},
       {kStatusDeviceLost, "the GPU failed and the fluid stands still: run again with the CPU backend"},
       {kStatusGuarded, "fluid was pressed at a wall so hard that particles had to be held back"},
+      {kStatusViscosityCut, "the fluid is so viscous that its drag was not solved to the end"},
   }};
   std::string text;
   for (const auto& [bit, words] : kWords) {

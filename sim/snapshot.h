@@ -22,6 +22,7 @@ enum StatusBit : std::uint32_t {
   kStatusDeviceLost =
       1u << 7,  ///< a GPU call failed: the fluid stands still from here on (World::failure says why)
   kStatusGuarded = 1u << 8,  ///< particles would have passed a wall and were put back
+  kStatusViscosityCut = 1u << 9,  ///< implicit viscosity ended before it was as exact as it should be
 };
 
 /// The status in words, "; " between, empty when nothing is set.

@@ -7,6 +7,7 @@
 
 #include "sim/fluid_extremes.h"
 #include "sim/math/format.h"
+#include "sim/viscosity/implicit.h"
 #include "sim/viscosity/stability.h"
 
 namespace slosh {
@@ -186,7 +187,13 @@ StepLimit step_limit(const Scene& scene, Plan& plan) {
                    format("sound, at a body of %.3g times the mass of the fluid layer around it", share));
   }
   plan.sound_share = std::sqrt(std::min(1.0, share / kLightBody) / contrast);
-  if (plan.viscous() || plan.model == ParticleModel::kCorrected) {
+  if (plan.has(PassId::kImplicitDrag)) {
+    if (plan.model == ParticleModel::kCorrected)
+      limit.lower_to(jostling_step(scene, plan, fluids), "what drags on jostling particles, explicit");
+    limit.lower_to(kMostImplicit * viscous_step(scene, plan, fluids),
+                   format("implicit viscosity of %.3g Pa·s: %g explicit steps in one", fluids.most_viscous,
+                          kMostImplicit));
+  } else if (plan.viscous() || plan.model == ParticleModel::kCorrected) {
     const double of_bodies = most_viscous_body(scene, fluids.most_viscous);
     limit.lower_to(viscous_step(scene, plan, fluids),
                    format("explicit viscosity of %.3g Pa·s in the fluid, %.3g Pa·s at walls",

@@ -36,6 +36,7 @@ struct World::Impl {
         found(scene.bodies.size()),
         drags(scene.bodies.size()),
         drag_matrices(scene.bodies.size()),
+        viscous_bodies(scene.bodies.size()),
         wrenches(scene.bodies.size()) {
     scene.meshes.clear();  // the surface particles stand for them from here on
   }
@@ -91,7 +92,8 @@ struct World::Impl {
   void run(const SubStep& step, TakePart part) {
     const bool fluid = plan().has_fluid();
     const bool moving = part != TakePart::kFluid;
-    const bool fluid_waits = moving && plan().fluid_waits();
+    const bool implicit = fluid && plan().has(PassId::kImplicitDrag);
+    const bool fluid_waits = implicit || (moving && plan().fluid_waits());
     if (fluid) {
       grow_older(step.dt);
       engine->prepare(bodies.bodies());
@@ -99,6 +101,7 @@ struct World::Impl {
       if (!fluid_waits) engine->advance(step.dt, expected(step, moving));
       engine->wrenches(found);
     }
+    if (implicit) drag_implicitly(step, moving, part == TakePart::kHeld);
     const bool with_drag = moving && plan().has(PassId::kBodyDrag);
     if (moving) solve_bodies(step, part == TakePart::kHeld, with_drag);
     if (with_drag) engine->drag(bodies.changes());
@@ -109,6 +112,11 @@ struct World::Impl {
     }
     if (fluid_waits) engine->advance(step.dt, bodies.bodies());
     if (fluid) report(step);
+  }
+
+  void drag_implicitly(const SubStep& step, bool moving, bool held_only) {
+    bodies.predict(plan(), {found, {}, gravity_scale * scene.gravity}, step, moving, held_only, viscous_bodies);
+    engine->solve_drag(step.dt, viscous_bodies, found);
   }
 
   // Where the bodies will be, as far as that is known before their solve.
@@ -160,6 +168,7 @@ struct World::Impl {
   std::vector<Wrench> found;     // by the fluid in the last sub-step, one a body
   std::vector<BodyDrag> drags;   // with kBodyDrag, one a body
   std::vector<Matrix6> drag_matrices;
+  std::vector<ViscousBody> viscous_bodies;  // with kImplicitDrag, one a body
   std::vector<Wrench> wrenches;  // their means over the last step
   std::size_t fluid_count = 0;   // without probes
   std::vector<std::uint8_t> fluid_of;  // index into scene.fluids, by id

@@ -1,5 +1,7 @@
 #include "host/keep/rebuild.h"
 
+#include <optional>
+
 #include "scenes/sample.h"
 #include "sim/plan.h"
 
@@ -14,11 +16,19 @@ Result<RebuiltWorld> rebuild_world(const Scene& scene, double spacing, std::span
 
 Result<RebuiltWorld> rebuild_world(const Scene& scene, SampledScene sampled, std::span<const std::uint8_t> state,
                                    const WorldOptions& options) {
-  Result<World> world = make_world(scene, sampled, make_plan(scene, sampled.spacing), options);
-  if (!world) return world.error();
-  const Result<bool> restored = world.value().restore(state);
-  if (!restored) return restored.error();
-  return RebuiltWorld{std::move(sampled), std::move(world.value())};
+  // Where a GPU's plan and the CPU's differ, what was saved fits the one that it was made by; the CPU can go on
+  // from both.
+  std::optional<Error> refused;
+  for (const bool may_solve_drag : {can_solve_drag(options.backend), false}) {
+    Result<World> world =
+        make_world(scene, sampled, make_plan(scene, sampled.spacing, may_solve_drag), options);
+    if (!world) return world.error();
+    const Result<bool> restored = world.value().restore(state);
+    if (restored) return RebuiltWorld{std::move(sampled), std::move(world.value())};
+    if (!refused) refused = restored.error();
+    if (!world.value().plan().solves_drag) break;
+  }
+  return *refused;
 }
 
 Result<bool> reset_world(World& world, std::size_t fluids, std::span<const std::uint8_t> start) {

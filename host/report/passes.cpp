@@ -74,7 +74,7 @@ double bytes_a_particle(const Plan& plan) {
 
 std::vector<PassRow> measure_passes(const Scene& scene, const SampledScene& sampled,
                                     const PassOptions& options) {
-  const Plan planned = make_plan(scene, sampled.spacing);
+  const Plan planned = make_plan(scene, sampled.spacing, can_solve_drag(options.backend));
   std::vector<Variant> variants;
   const auto add = [&](const std::string& what, const Plan& plan,
                        std::function<void(const World&)> after = {}) {

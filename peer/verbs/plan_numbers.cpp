@@ -36,7 +36,7 @@ std::string share_lines(const Scene& scene, const Plan& plan) {
                             std::sqrt(plan.stiffness) * step / plan.support_radius);
   if (plan.viscous() || plan.model == ParticleModel::kCorrected) {
     const FluidExtremes fluids = fluid_extremes(scene);
-    text += format("viscous number  %.2g (ν · step / spacing²), %.0f %% of the step that viscosity allows\n",
+    text += format("viscous number  %.2g (ν · step / spacing²), %.0f %% of the step that explicit viscosity allows\n",
                    fluids.most_viscous / fluids.lightest * step / (plan.spacing * plan.spacing),
                    100.0 * step / viscous_step(scene, plan, fluids));
   }

@@ -216,7 +216,7 @@ Result<Prepared> prepare(const PlayOptions& options, bool headless, Progress& pr
   Result<SampledScene> sampled = sample_told(p.scene, spacing.value().metres, progress);
   if (!sampled) return sampled.error();
   p.sampled = std::move(sampled.value());
-  p.plan = make_plan(p.scene, spacing.value().metres);
+  p.plan = make_plan(p.scene, spacing.value().metres, can_solve_drag(p.backend));
   return p;
 }
 

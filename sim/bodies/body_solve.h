@@ -82,14 +82,11 @@ SLOSH_HD inline glm::dvec3 angular_part(const Vector6& v) {
 
 }  // namespace body_solve
 
-/// Sets up and solves the implicit step of a free body under `external` (fluid + gravity, about the centre of
-/// mass, at the velocity that the body has now) and its couplings, all solved together. `drag`: what
-/// `external` loses for each unit of twist, implicit too; null: nothing. False when the system is not finite.
-SLOSH_HD inline bool solve_body(const RigidBody& body, const Wrench& external,
-                                std::span<const ActiveCoupling> couplings, double dt, BodySolve& solve,
-                                const Matrix6* drag = nullptr) {
-  Matrix6 matrix{};
-  Vector6 rhs{};
+/// The system of one step, matrix · (v⁺, ω⁺) = rhs, for solve_body().
+// Always inline: what the compiler fuses in it must not depend on how many callers it has, or a run's hash would.
+SLOSH_HD __attribute__((always_inline)) inline void assemble_body(const RigidBody& body, const Wrench& external,
+                                   std::span<const ActiveCoupling> couplings, double dt, Matrix6& matrix,
+                                   Vector6& rhs, const Matrix6* drag = nullptr) {
   body_solve::add_block(matrix, 0, 0, glm::dmat3(body.mass));
   body_solve::add_block(matrix, 3, 3, body.world_inertia());
   body_solve::add_vector(rhs, 0, body.mass * body.velocity + dt * external.force);
@@ -118,6 +115,17 @@ SLOSH_HD inline bool solve_body(const RigidBody& body, const Wrench& external,
       body_solve::add_vector(rhs, 3, dt * (glm::cross(arm, f.at_rest.force) + f.at_rest.torque));
     }
   }
+}
+
+/// Sets up and solves the implicit step of a free body under `external` (fluid + gravity, about the centre of
+/// mass, at the velocity that the body has now) and its couplings, all solved together. `drag`: what
+/// `external` loses for each unit of twist, implicit too; null: nothing. False when the system is not finite.
+SLOSH_HD inline bool solve_body(const RigidBody& body, const Wrench& external,
+                                std::span<const ActiveCoupling> couplings, double dt, BodySolve& solve,
+                                const Matrix6* drag = nullptr) {
+  Matrix6 matrix{};
+  Vector6 rhs{};
+  assemble_body(body, external, couplings, dt, matrix, rhs, drag);
   solve.moves = false;
   if (!cholesky(matrix, solve.factor)) return false;
   solve.velocity = cholesky_solve(solve.factor, rhs);

@@ -36,6 +36,33 @@ std::uint32_t BodySystem::solve(const Plan& plan, const BodyForces& forces, cons
   return status;
 }
 
+void BodySystem::predict(const Plan& plan, const BodyForces& forces, const SubStep& step, bool part,
+                         bool held_only, std::span<ViscousBody> out) {
+  couplings_ = {};
+  if (part && plan.has(PassId::kCouplings)) couplings_ = hands_.couple(bodies_, step.elapsed);
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const RigidBody& body = bodies_[b];
+    const auto held = couplings_of(static_cast<int>(b));
+    out[b] = ViscousBody{};
+    out[b].twist = {body.velocity, body.angular_velocity};
+    out[b].moves = part && body.free && !(held_only && held.empty());
+    if (!out[b].moves) continue;
+    Wrench external = forces.fluid[b];
+    external.force += body.mass * forces.gravity;
+    assemble_body(body, external, held, step.dt, out[b].inertia, out[b].momentum);
+  }
+  if (!plan.has(PassId::kContacts)) return;
+  for (const KeptImpulse& kept : memory_.kept()) {
+    const glm::dvec3 place = kept.place(bodies_);
+    const auto give = [&](int b, const glm::dvec3& impulse) {
+      body_solve::add_vector(out[b].momentum, 0, impulse);
+      body_solve::add_vector(out[b].momentum, 3, glm::cross(place - bodies_[b].position, impulse));
+    };
+    give(kept.first, kept.impulse);
+    give(kept.second, -kept.impulse);
+  }
+}
+
 void BodySystem::move(const Plan& plan, const SubStep& step) {
   if (!plan.has(PassId::kMoveBodies)) return;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {

@@ -77,7 +77,7 @@ class CorrectedDensity {
     const ParticleKind& kind = context_.kinds[fluid_.kind[p]];
     const CorrectedState state =
         corrected_state(n, context_.correction, kind.pressing_density,
-                        context_.plan.has(PassId::kOneViscosity) ? kind.viscosity : 0.0f, fluid_.volume[p],
+                        one_explicit_ ? kind.viscosity : 0.0f, fluid_.volume[p],
                         {fluid_.vx[p], fluid_.vy[p], fluid_.vz[p]});
     fluid_.pressure[p] = state.pressure;
     fluid_.volume[p] = state.volume;
@@ -99,6 +99,7 @@ class CorrectedDensity {
   }
 
   PassContext& context_;
+  const bool one_explicit_ = context_.plan.drags_explicitly() && context_.plan.has(PassId::kOneViscosity);
   FluidParticles& fluid_;
   const BoundaryParticles &fixed_, &moving_;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sim/cpu/passes.h"
+#include "sim/cpu/viscous_solve.h"
 #include "sim/fluid_sums.h"
 #include "sim/pass_table.h"
 
@@ -62,6 +63,11 @@ class CpuEngine final : public ParticleEngine {
   void drag(std::span<const Twist> changes) override {
     moving_.set_velocities(bodies_, changes);
     run(SubStepPart::kDrag, 0.0);
+  }
+
+  void solve_drag(double dt, std::span<const ViscousBody> bodies, std::span<Wrench> wrenches) override {
+    viscous_ = {bodies, wrenches};
+    run(SubStepPart::kSolve, dt);
   }
 
   void damp(float keep) override {
@@ -152,6 +158,7 @@ class CpuEngine final : public ParticleEngine {
          &CpuEngine::find_forces,
          &StepTimes::force},
         {SubStepPart::kForces, {kWrenches}, &CpuEngine::sum_wrenches, &StepTimes::force},
+        {SubStepPart::kSolve, {kImplicitDrag}, &CpuEngine::solve_implicit_drag, &StepTimes::force},
         {SubStepPart::kDrag, {kBodyDrag}, &CpuEngine::drag_on_fluid, &StepTimes::force},
         {SubStepPart::kAdvance, {kIntegrateFluid}, &CpuEngine::integrate, &StepTimes::force},
     };
@@ -181,6 +188,11 @@ class CpuEngine final : public ParticleEngine {
     carry_probe_forces_out();
   }
   void drag_on_fluid(double) { drag_fluid(context_, team_, fluid_, moving_.sorted()); }
+  void solve_implicit_drag(double dt) {
+    const ViscousReport report = solver_.solve(context_, team_, {fluid_, fixed_.sorted(), moving_, bodies_}, dt,
+                                               viscous_.bodies, wanted_, viscous_.wrenches);
+    if (!report.converged) context_.status.fetch_or(kStatusViscosityCut, std::memory_order_relaxed);
+  }
   void integrate(double dt) { integrate_fluid(context_, team_, fluid_, {guarded_, centers_, impulses_}, dt); }
 
   // What walls took from particles when they moved last acts on the bodies now.
@@ -220,6 +232,12 @@ class CpuEngine final : public ParticleEngine {
     }
   }
 
+  // What solve_drag() is called with.
+  struct Viscous {
+    std::span<const ViscousBody> bodies;
+    std::span<Wrench> wrenches;
+  };
+
   PassContext context_;
   ThreadTeam team_;
   FluidParticles fluid_;
@@ -240,6 +258,8 @@ class CpuEngine final : public ParticleEngine {
   std::vector<Wrench> found_;  // one a body, by the last forces()
   std::vector<BodyDrag> drags_;  // one a body, by the same
   SurfaceSums body_scratch_;
+  ViscousSolver solver_;
+  Viscous viscous_;
   StepTimes times_;
 };
 

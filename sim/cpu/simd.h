@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <new>
 #include <vector>
 #include <xsimd/xsimd.hpp>
@@ -48,6 +49,50 @@ inline FloatBatch first_lanes(std::size_t count) {
   }();
   return FloatBatch::load_unaligned(kTable.data() + 64 - count);
 }
+
+/// Which lanes of a batch are above 0, for store_picked().
+#ifdef __AVX512F__
+using PickedLanes = __mmask16;
+inline PickedLanes lanes_above_zero(FloatBatch x) {
+  return _mm512_cmp_ps_mask(x, _mm512_setzero_ps(), _CMP_GT_OQ);
+}
+inline int count_of(PickedLanes picked) { return __builtin_popcount(picked); }
+/// Stores the picked lanes one after another; what lies behind them up to a whole batch is overwritten.
+inline void store_picked(FloatBatch x, PickedLanes picked, float* to) {
+  _mm512_storeu_ps(to, _mm512_maskz_compress_ps(picked, x));
+}
+/// The same of first, first + 1, …
+inline void store_picked_indices(std::uint32_t first, PickedLanes picked, std::int32_t* to) {
+  const __m512i lanes = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+  _mm512_storeu_si512(to, _mm512_add_epi32(_mm512_maskz_compress_epi32(picked, lanes),
+                                           _mm512_set1_epi32(static_cast<int>(first))));
+}
+#else
+struct PickedLanes {
+  std::array<std::uint8_t, kLanes + 1> lanes;  // one more than there can be, for the last that is not picked
+  int count = 0;
+};
+inline PickedLanes lanes_above_zero(FloatBatch x) {
+  alignas(64) float values[kLanes];
+  x.store_aligned(values);
+  PickedLanes picked;
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    picked.lanes[static_cast<std::size_t>(picked.count)] = static_cast<std::uint8_t>(lane);
+    picked.count += values[lane] > 0.0f;
+  }
+  return picked;
+}
+inline int count_of(const PickedLanes& picked) { return picked.count; }
+inline void store_picked(FloatBatch x, const PickedLanes& picked, float* to) {
+  alignas(64) float values[kLanes];
+  x.store_aligned(values);
+  for (int k = 0; k < picked.count; ++k) to[k] = values[picked.lanes[static_cast<std::size_t>(k)]];
+}
+inline void store_picked_indices(std::uint32_t first, const PickedLanes& picked, std::int32_t* to) {
+  for (int k = 0; k < picked.count; ++k)
+    to[k] = static_cast<std::int32_t>(first + picked.lanes[static_cast<std::size_t>(k)]);
+}
+#endif
 
 /// Memory on cache lines, so that a batch does not straddle two at the start of an array.
 template <class T>

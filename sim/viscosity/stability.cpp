@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sim/model.h"
+#include "sim/viscosity/implicit.h"
 #include "sim/viscosity/noise.h"
 #include "sim/viscosity/wall_drag.h"
 
@@ -74,10 +75,15 @@ double viscous_step(const Scene& scene, const Plan& plan, const FluidExtremes& f
   return kViscousFactor / (viscosity * viscous_rate(scene, plan, fluids));
 }
 
+double jostling_step(const Scene& scene, const Plan& plan, const FluidExtremes& fluids) {
+  return kViscousFactor / (jostling(plan, fluids) * viscous_rate(scene, plan, fluids));
+}
+
 double most_viscous_allowed(const Scene& scene, const Plan& plan) {
   const FluidExtremes fluids = fluid_extremes(scene);
   const double whole =
-      kViscousFactor / (plan.time_step * viscous_rate(scene, plan, fluids)) - jostling(plan, fluids);
+      kViscousFactor / (plan.time_step * viscous_rate(scene, plan, fluids)) * (plan.solves_drag ? kMostImplicit : 1.0) -
+      jostling(plan, fluids);
   const double part = wall_part(scene, plan);
   const double at_walls = (whole - 0.5 * part * most_viscous_body(scene, 0.0)) / (kHalfLattice + 0.5 * part);
   const double most = std::min(whole, at_walls);

@@ -12,6 +12,9 @@ double most_viscous_body(const Scene& scene, double most_viscous_fluid);
 /// s, the longest step at which the drag stays stable.
 double viscous_step(const Scene& scene, const Plan& plan, const FluidExtremes& fluids);
 
+/// s, the longest step at which what drags on jostling stays stable where nothing else drags explicitly.
+double jostling_step(const Scene& scene, const Plan& plan, const FluidExtremes& fluids);
+
 /// The largest viscosity of a fluid, Pa·s, at which the plan's step stays stable. Needs no mesh.
 double most_viscous_allowed(const Scene& scene, const Plan& plan);
 

@@ -38,7 +38,7 @@ World world_on(Backend backend, const Tank& tank, Plan plan) {
 }
 
 World world_on(Backend backend, const Tank& tank) {
-  return world_on(backend, tank, make_plan(tank.scene, tank.sampled.spacing));
+  return world_on(backend, tank, make_plan(tank.scene, tank.sampled.spacing, can_solve_drag(Backend::kCuda)));
 }
 
 void step(World& world, double hand_height) {
@@ -365,17 +365,17 @@ int main() {
   for (const ParticleModel model : kModels) {
     const Tank tank = shaken(stirred_tank(model));
     const std::string name = std::string(slosh::name(model)) + " model, two fluids, paddle";
-    const Plan plan = make_plan(tank.scene, tank.sampled.spacing);
+    const Plan plan = make_plan(tank.scene, tank.sampled.spacing, false);
     compare_steps(name.c_str(), tank, plan, 1, 1e-5);
     compare_steps(name.c_str(), tank, plan, 10, 1e-3);
     const Tank honey = shaken(paddle_in_honey(model));
-    const Plan thick = make_plan(honey.scene, honey.sampled.spacing);
+    const Plan thick = make_plan(honey.scene, honey.sampled.spacing, false);
     compare_steps("light paddle in honey, one viscosity", honey, thick, 1, 1e-5);
     compare_steps("light paddle in honey, one viscosity", honey, thick, 10, 1e-3);
     Tank one = shaken(make_tank({}));
     one.scene.model = model;
     one.scene.tension = 1.0;
-    Plan variant = make_plan(one.scene, one.sampled.spacing);
+    Plan variant = make_plan(one.scene, one.sampled.spacing, false);
     compare_steps("one viscosity, tension", one, variant, 1, 1e-5);
     variant.runs.set(PassId::kOneViscosity, false);
     compare_steps("no viscosity", one, variant, 1, 1e-5);
@@ -384,7 +384,7 @@ int main() {
   for (const ParticleModel model : kModels) {
     Tank large = shaken(pool(300000));
     large.scene.model = model;
-    const Plan plan = make_plan(large.scene, large.sampled.spacing);
+    const Plan plan = make_plan(large.scene, large.sampled.spacing, false);
     compare_steps((std::string("large pool, ") + name(model)).c_str(), large, plan, 1, 1e-5);
     repeat("large pool", large, 0.09, 20);
   }

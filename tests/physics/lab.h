@@ -24,6 +24,10 @@ class Experiment : private report::Cost, public report::Trial {
   Experiment(const Scene& scene, double spacing) : Trial(scene, setting_of(scene, spacing), cost()) {}
   Experiment(const Scene& scene, const SampledScene& sampled)
       : Trial(scene, sampled, setting_of(scene, sampled.spacing), cost()) {}
+  /// The same with drag explicit whatever the plan would find worth it.
+  struct Explicit {};
+  Experiment(const Scene& scene, double spacing, Explicit)
+      : Trial(scene, explicit_setting_of(scene, spacing), cost()) {}
 
  private:
   report::Cost& cost() { return *this; }
@@ -33,6 +37,11 @@ class Experiment : private report::Cost, public report::Trial {
     setting.spacing = spacing;
     setting.support_ratio = scene.support_ratio;
     setting.threads = 1;
+    return setting;
+  }
+  static report::Setting explicit_setting_of(const Scene& scene, double spacing) {
+    report::Setting setting = setting_of(scene, spacing);
+    setting.solve_drag = false;
     return setting;
   }
 };

@@ -102,16 +102,35 @@ TEST(Plan, ShortensTheStepWithSpacingViscosityAndStiffness) {
   EXPECT_LT(make_plan(tank.scene, 0.01).time_step, normal);
   tank.scene.stiffness = 0.0;
   tank.scene.fluids[0].dynamic_viscosity = 100.0;
-  const Plan thick = make_plan(tank.scene, 0.01);
+  const Plan thick = make_plan(tank.scene, 0.01, false);
   EXPECT_LT(thick.time_step, 0.2 * normal);
   EXPECT_NE(thick.time_step_reason.find("viscosity"), std::string::npos);
 }
 
-// 10⁶ Pa·s at 1 cm is a step of some 10 ns: refused with what would do; 1000 Pa·s runs.
+// Implicit where it is worth it, and nowhere else.
+TEST(Plan, SolvesDragWhereExplicitStepsWouldBeManyTimesShorter) {
+  auto tank = make_tank({});
+  const Plan thin = make_plan(tank.scene, 0.01);
+  EXPECT_FALSE(thin.solves_drag);
+  tank.scene.fluids[0].dynamic_viscosity = 100.0;
+  const Plan solved = make_plan(tank.scene, 0.01), without = make_plan(tank.scene, 0.01, false);
+  EXPECT_TRUE(solved.has(PassId::kImplicitDrag));
+  EXPECT_FALSE(solved.has(PassId::kBodyDrag));
+  EXPECT_FALSE(solved.drags_explicitly());
+  EXPECT_NEAR(solved.time_step, thin.time_step, 1e-9) << solved.time_step_reason;
+  EXPECT_FALSE(without.has(PassId::kImplicitDrag));
+  EXPECT_LT(without.time_step, 0.25 * solved.time_step);
+  tank.scene.model = ParticleModel::kConsistent;
+  EXPECT_FALSE(make_plan(tank.scene, 0.01).solves_drag);
+  EXPECT_FALSE(can_solve_drag(Backend::kCuda));
+  EXPECT_TRUE(can_solve_drag(Backend::kCpu));
+}
+
+// 10⁶ Pa·s at 1 cm is an explicit step of some 10 ns: refused with what would do; 1000 Pa·s runs.
 TEST(Plan, ThatWouldNotComeToAnEndIsRefused) {
   auto tank = make_tank({});
   tank.scene.fluids[0].dynamic_viscosity = 1e6;
-  const Plan endless = make_plan(tank.scene, 0.01);
+  const Plan endless = make_plan(tank.scene, 0.01, false);
   ASSERT_LT(endless.time_step, 1e-7);
   const auto world = make_world(tank.scene, tank.sampled, endless, {1, Backend::kCpu});
   ASSERT_FALSE(world);
@@ -122,9 +141,14 @@ TEST(Plan, ThatWouldNotComeToAnEndIsRefused) {
   EXPECT_GT(most, 2000.0);
   // What it says will do does.
   tank.scene.fluids[0].dynamic_viscosity = 0.99 * most;
-  EXPECT_TRUE(make_world(tank.scene, tank.sampled, make_plan(tank.scene, 0.01), {1, Backend::kCpu}));
+  EXPECT_TRUE(make_world(tank.scene, tank.sampled, make_plan(tank.scene, 0.01, false), {1, Backend::kCpu}));
   tank.scene.fluids[0].dynamic_viscosity = 1000.0;
+  EXPECT_TRUE(make_world(tank.scene, tank.sampled, make_plan(tank.scene, 0.01, false), {1, Backend::kCpu}));
+  // Solved it runs; a thousand times as much does not.
+  tank.scene.fluids[0].dynamic_viscosity = 1e6;
   EXPECT_TRUE(make_world(tank.scene, tank.sampled, make_plan(tank.scene, 0.01), {1, Backend::kCpu}));
+  tank.scene.fluids[0].dynamic_viscosity = 1e9;
+  EXPECT_FALSE(make_world(tank.scene, tank.sampled, make_plan(tank.scene, 0.01), {1, Backend::kCpu}));
 }
 
 TEST(Plan, WithoutFluidThereAreNoParticlePasses) {

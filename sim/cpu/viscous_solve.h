@@ -1,0 +1,78 @@
+// Implicit viscosity on the CPU (viscosity/implicit.h).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sim/cpu/drag_rows.h"
+#include "sim/cpu/passes.h"
+#include "sim/viscosity/implicit.h"
+
+namespace slosh {
+
+/// Whom drag acts between, in the order of their cells.
+struct DragSides {
+  FluidParticles& fluid;
+  const BoundaryParticles& fixed;
+  BodySurface& moving;
+  std::span<const RigidBody> bodies;  ///< as they were when `moving` was placed
+};
+
+/// Conjugate gradients over the fluid and the bodies that move. Keeps its memory from one solve to the next.
+class ViscousSolver {
+ public:
+  /// `fluid.fx…` hold all other forces, N, without gravity, and get what drag adds to them over `dt` s;
+  /// `wrenches`, one a body, get the drag on those that move, about their centres of mass, and on the fixed
+  /// ones that `measured` marks. The same to the bit whatever the threads. For models with
+  /// DragRule::kCentral.
+  ViscousReport solve(const PassContext& context, ThreadTeam& team, const DragSides& sides, double dt,
+                      std::span<const ViscousBody> bodies, const std::vector<char>& measured,
+                      std::span<Wrench> wrenches);
+
+ private:
+  struct Unknown {
+    Matrix6 factor{};  // Cholesky of inertia + dt · drag
+    Vector6 change{}, residual{}, direction{}, product{};
+  };
+  // What one solve works on.
+  struct Work {
+    const PassContext& context;
+    ThreadTeam& team;
+    const DragSides& sides;
+    float dt;
+    std::span<const ViscousBody> bodies;
+    const std::vector<char>& measured;
+    std::size_t fluid = 0, surface = 0;  // particles
+  };
+  struct Squares {
+    double residual = 0.0, change = 0.0;
+  };
+
+  void write_fluid_rows(const Work& work);
+  void write_body_rows(const Work& work);
+  void begin(const Work& work);
+  double precondition(const Work& work);
+  void follow(const Work& work, double keep);
+  double multiply(const Work& work);
+  Squares advance(const Work& work, double length);
+  void finish(const Work& work, std::span<Wrench> wrenches);
+  void add_fixed(const Work& work, std::span<Wrench> wrenches);
+
+  void carry_surface(const Work& work, std::span<const Twist> twists, VectorColumns& velocities);
+  void sum_over_bodies(const Work& work, const VectorColumns& velocities);
+
+  // Of the fluid's particles, and behind them of the moving bodies'.
+  VectorColumns change_, residual_, direction_, product_;
+  DragRows fluid_rows_, body_rows_;
+  std::vector<Symmetric<float>>
+      by_walls_;  // N·s for each m/s of its own that fixed bodies take, one a particle
+  std::vector<Symmetric<float>> block_;     // the inverse of a particle's own block
+  std::vector<Symmetric<float>> rate_;      // of the moving bodies' particles, N·s for each m/s
+  std::vector<Unknown> unknowns_;           // one a body
+  std::vector<glm::vec3> on_surface_;       // N·s, one a particle of the moving bodies
+  std::vector<Wrench> on_bodies_;           // N·s, one a body
+  std::vector<double> parts_, more_parts_;  // of sums, in a fixed order
+  std::vector<Twist> twists_;
+};
+
+}  // namespace slosh

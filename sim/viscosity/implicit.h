@@ -1,0 +1,56 @@
+// Drag by the velocities that a sub-step ends with: one linear system over the fluid and the free bodies.
+//
+// Explicit drag needs a step of some density · spacing² / viscosity: 0.2 ms for honey at 1 cm. Here the end
+// velocities u solve
+//
+//     M u + dt D u = p,    p: the momentum that everything but drag gives
+//
+// where M holds the particles' masses and, for each free body, its inertia with what its couplings take
+// (solve_body), and D is Eq 9 between all of them. Both are symmetric and positive, so conjugate gradients
+// solve it without ever writing D down: one walk over the neighbours a turn (Weiler 2018, with bodies
+// inside).
+//
+// What is left over when the turns end is given to each particle by its own mass, not thrown away: what the
+// fluid gets is then to rounding what bodies and walls lose, however early the turns end.
+#pragma once
+
+#include <cstdint>
+
+#include "sim/math/dense.h"
+#include "sim/math/pose.h"
+#include "sim/math/symmetric.h"
+
+namespace slosh {
+
+/// A body in the system. One that does not move drags with `twist`, as it is.
+struct ViscousBody {
+  bool moves = false;
+  Twist twist;         ///< about the centre of mass, as the sub-step begins
+  Matrix6 inertia{};   ///< what each unit of its twist costs: its mass, and couplings over the sub-step
+  Vector6 momentum{};  ///< inertia · the twist that it would end with if nothing dragged
+};
+
+/// A sub-step is at most so many times as long as the explicit one: beyond, single precision has too little
+/// left.
+inline constexpr double kMostImplicit = 2000.0;
+
+/// How one solve went.
+struct ViscousReport {
+  int turns = 0;
+  bool converged = true;
+};
+
+/// The turns end when what is left would change the velocities by less than this share of what drag changed.
+inline constexpr double kViscousTolerance = 0.01;
+/// Or by less than this share of gravity's own change in a sub-step.
+inline constexpr double kViscousFloor = 1e-3;
+/// And here whatever is left (kStatusViscosityCut).
+inline constexpr int kMostViscousTurns = 100;
+
+/// The inverse of mass · 1 + dt · rate: what a residual of a particle means as a velocity, were its
+/// neighbours to stand still. `rate`: N·s/m.
+SLOSH_HD inline Symmetric<float> inverse_block(float mass, float dt, const Symmetric<float>& rate) {
+  return inverse(scaled_and_shifted(rate, dt, mass));
+}
+
+}  // namespace slosh
