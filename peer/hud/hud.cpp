@@ -148,37 +148,6 @@ void Hud::draw_hand(std::size_t device, float width) const {
   draw_strip(hand.torque, width, color, "%7.3f Nm", glm::length(hand.now.torque));
 }
 
-void Hud::draw_help() const {
-  const ImVec2 size = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos(ImVec2(0.5f * size.x, 0.5f * size.y), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
-  ImGui::SetNextWindowBgAlpha(0.8f);
-  if (ImGui::Begin("help", nullptr, kPanel | ImGuiWindowFlags_AlwaysAutoResize)) {
-    if (mouse_hand) {
-      ImGui::TextUnformatted(
-          "move        the handle in the picture's plane\n"
-          "wheel       the handle nearer and farther\n"
-          "right drag  turn the handle\n"
-          "left drag   turn the camera");
-    } else {
-      ImGui::TextUnformatted(
-          "left drag   turn the camera\n"
-          "right drag  shift the camera\n"
-          "wheel       nearer and farther");
-    }
-    if (facts_.shared) ImGui::TextUnformatted("\nG           take a free grip, let go");
-    if (facts_.may_change) {
-      ImGui::TextUnformatted(
-          "\nSpace       pause, go on\n"
-          "R           start again");
-    }
-    ImGui::TextUnformatted(
-        "C           the camera back to where it was\n"
-        "H           this help\n"
-        "Esc, Q      end");
-  }
-  ImGui::End();
-}
-
 void Hud::draw_run(const Rates& rates, const glm::vec2& picture, bool brief) {
   const std::vector<PanelRow> rows = run_rows(rates, brief);
   const glm::vec2 size = panel_size(rows_height(rows, panel_width()), panel_width());
@@ -241,7 +210,6 @@ void Hud::draw(const Rates& rates) {
   const bool brief = size.y < kLeastHeight;
   draw_run(rates, picture, brief);
   if (!hands_.empty() && !brief) draw_hands(picture);
-  if (show_help) draw_help();
   ImGui::PopStyleVar(3);
 }
 

@@ -21,8 +21,8 @@ struct HudFacts {
   double spacing = 0.0;  ///< m
   std::size_t fluid_particles = 0;
   std::size_t boundary_particles = 0;
-  bool shared = false;         ///< others may hold grips too: the help says how to take one
-  bool may_change = true;      ///< pausing and starting again are this person's to do: the help says how
+  bool shared = false;         ///< others may hold grips too
+  bool may_change = true;      ///< pausing and starting again are this person's to do
   double picture_rate = 30.0;  ///< snapshots a simulated second, spaces the strip charts
 };
 
@@ -39,8 +39,6 @@ class Hud {
   void draw(const Rates& rates);
 
   bool paused = false;
-  bool show_help = false;
-  bool mouse_hand = false;  ///< the mouse holds a handle: the help says so
   /// What the panels leave free where they can: what hands hold, in shares of the picture, y down.
   std::vector<Rect> keep_clear;
 
@@ -56,7 +54,6 @@ class Hud {
   void draw_run(const Rates& rates, const glm::vec2& picture, bool brief);
   void draw_hands(const glm::vec2& picture);
   void draw_hand(std::size_t device, float width) const;
-  void draw_help() const;
 
   HudFacts facts_;
   std::vector<Hand> hands_;
