@@ -205,15 +205,16 @@ StepLimit step_limit(const Scene& scene, Plan& plan) {
 std::optional<Error> refuse_endless(const Scene& scene, const Plan& plan) {
   const double step = plan.time_step / plan.sub_steps;
   if (step >= kShortestStep) return std::nullopt;
-  Error error{"time step",
-              format("%.3g µs, by %s: %.3g steps for each simulated second would not come to an end",
-                     1e6 * step, plan.time_step_reason.c_str(), 1.0 / step),
-              "Take coarser particles, or a softer or a thinner fluid"};
+  Error error{
+      "time step",
+      format("%.3g µs, by %s: %.3g steps for each simulated second would not come to an end", 1e6 * step,
+             plan.time_step_reason.c_str(), 1.0 / step),
+      "Take coarser particles, or a softer or a thinner fluid; where walls are viscous, less of that"};
   if (!plan.viscous()) return error;
   Plan shortest = plan;
   shortest.time_step = kShortestStep;
   const double most = most_viscous_allowed(scene, shortest);
-  if (most < fluid_extremes(scene).most_viscous)
+  if (most > 0.0 && most < fluid_extremes(scene).most_viscous)
     error.mend = format("Up to %.3g Pa·s run at this spacing; coarser particles allow more", most);
   return error;
 }

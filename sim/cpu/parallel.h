@@ -10,6 +10,11 @@
 
 namespace slosh {
 
+/// How many chunks of at most `chunk` ThreadTeam::run parts `count` into.
+constexpr std::size_t chunk_count(std::size_t count, std::size_t chunk) {
+  return (count + chunk - 1) / chunk;
+}
+
 /// Runs a body over [0, count) in chunks on all its threads, the caller's included. Chunks are handed out as
 /// threads come free; a body must write only its own indices, so that the result does not depend on who ran
 /// what.

@@ -71,11 +71,12 @@ TEST(Report, OfErrorsDrawsEarlierRowsAgain) {
 TEST(Report, OfStabilityWritesVerdictsAndAMap) {
   empty_folder();
   const Outcome ran =
-      test::slosh({"report", "stability", "--case", "viscosity_1e6", "--case", "bullet", "--out", "s"});
+      test::slosh({"report", "stability", "--case", "viscosity_100000", "--case", "bullet", "--out", "s"});
   ASSERT_EQ(ran.code, 0) << ran.err;
   const std::filesystem::path folder = test::test_folder() / "s";
   const std::string rows = text_of(folder / "stability.csv");
-  EXPECT_NE(rows.find("viscosity_1e6,corrected,cpu,refused"), std::string::npos) << rows;
+  EXPECT_NE(rows.find("viscosity_100000,corrected,cpu,ran true"), std::string::npos) << rows;
+  EXPECT_NE(rows.find("viscosity_100000,paper,cpu,refused"), std::string::npos) << rows;
   EXPECT_NE(rows.find("bullet,corrected,cpu,ran true"), std::string::npos) << rows;
   EXPECT_GT(text_of(folder / "stability.png").size(), 1000u);
   // An earlier one's rows are drawn again, and nothing runs.

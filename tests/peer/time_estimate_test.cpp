@@ -24,7 +24,7 @@ Scene tank(double viscosity) {
 }
 
 World world_of(const Scene& scene) {
-  return World(scene, sample_scene(scene, kSpacing).value(), make_plan(scene, kSpacing),
+  return World(scene, sample_scene(scene, kSpacing).value(), make_plan(scene, kSpacing, false),
                WorldOptions{1, Backend::kCpu});
 }
 
@@ -46,7 +46,7 @@ TEST(TimeEstimate, IsStepsTimesTheirCost) {
 TEST(TimeEstimate, SaysStepsCauseAndTime) {
   const Scene scene = tank(1000.0);
   const PlannedTime planned{1.0, 10.0, true, false};
-  const Plan plan = make_plan(scene, kSpacing);
+  const Plan plan = make_plan(scene, kSpacing, false);
   const std::string words = in_words(estimate_time(planned, plan.time_step, 0.05), planned, plan);
   for (const char* part :
        {"steps of", "explicit viscosity of 1e+03 Pa·s", "50 ms", "to settle", "for the run"})

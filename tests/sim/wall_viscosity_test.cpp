@@ -35,7 +35,7 @@ struct Pulled {
 
 Pulled pull(const Scene& scene) {
   const SampledScene sampled = sample_scene(scene, kSpacing).value();
-  World world(scene, sampled, make_plan(scene, kSpacing), WorldOptions{1, Backend::kCpu});
+  World world(scene, sampled, make_plan(scene, kSpacing, false), WorldOptions{1, Backend::kCpu});
   const double before = world.diagnostics().momentum.x;
   BodySnapshot now;
   world.step({});
