@@ -8,21 +8,6 @@ namespace {
 
 constexpr std::size_t kRunsPerChunk = 16;
 
-NeighborColumns columns(const FluidParticles& f) {
-  return {f.x.data(),        f.y.data(),      f.z.data(),         f.vx.data(),  f.vy.data(),  f.vz.data(),
-          f.pressure.data(), f.volume.data(), f.viscosity.data(), f.pxx.data(), f.pxy.data(), f.pxz.data(),
-          f.pyy.data(),      f.pyz.data(),    f.pzz.data(),       f.ux.data(),  f.uy.data(),  f.uz.data()};
-}
-
-NeighborColumns columns(const BoundaryParticles& b) {
-  return {b.x.data(),        b.y.data(),      b.z.data(),
-          b.vx.data(),       b.vy.data(),     b.vz.data(),
-          b.pressure.data(), b.volume.data(), b.viscosity.data(),
-          nullptr,           nullptr,         nullptr,
-          nullptr,           nullptr,         nullptr,
-          nullptr,           nullptr,         nullptr};
-}
-
 // Of one body particle, N·s/m.
 template <class Parts, Viscosity viscosity>
 Symmetric<float> drag_rate(const ParticleView<FloatBatch>& self, const NeighborColumns& fluid,
@@ -97,11 +82,9 @@ void sum_body_wrenches(PassContext& context, ThreadTeam& team, const FluidPartic
           if (!drags.empty()) scratch.drag_rate[i] = {};
           if (rows.count == 0 || !wanted[boundary.body[i]]) continue;
           ForceSum<FloatBatch> sum{FloatBatch(0.0f), FloatBatch(0.0f), FloatBatch(0.0f)};
-          // Where the fluid has one viscosity its column is not filled: Eq 9's mean is known up front.
           const WallViscosity wall = wall_viscosity(boundary.viscosity[i]);
-          const float mean = 0.5f * (wall.own + wall.of_fluid * context.kinds.front().viscosity);
           const ParticleView<FloatBatch> self =
-              broadcast(own, i, viscosity == Viscosity::kOne ? mean : wall.own);
+              broadcast(own, i, own_viscosity<viscosity>(wall, context.kinds.front().viscosity));
           add_row_forces<Parts, Parts::kOnBodies, viscosity>(self, fluid_columns, rows, h, sum,
                                                              FloatBatch(wall.of_fluid));
           const float scale = context.force_scale;

@@ -1,6 +1,7 @@
 // The force of rows of sorted neighbours on one particle: the inner loop of both force passes.
 #pragma once
 
+#include "sim/cpu/particles.h"
 #include "sim/cpu/row_batches.h"
 #include "sim/model.h"
 
@@ -16,7 +17,30 @@ struct NeighborColumns {
   const float *ux, *uy, *uz;
 };
 
+// The corrected model's are null where the plan has them not, and for bodies.
+inline NeighborColumns columns(const FluidParticles& f) {
+  return {f.x.data(),        f.y.data(),      f.z.data(),         f.vx.data(),  f.vy.data(),  f.vz.data(),
+          f.pressure.data(), f.volume.data(), f.viscosity.data(), f.pxx.data(), f.pxy.data(), f.pxz.data(),
+          f.pyy.data(),      f.pyz.data(),    f.pzz.data(),       f.ux.data(),  f.uy.data(),  f.uz.data()};
+}
+
+inline NeighborColumns columns(const BoundaryParticles& b) {
+  return {b.x.data(),        b.y.data(),      b.z.data(),
+          b.vx.data(),       b.vy.data(),     b.vz.data(),
+          b.pressure.data(), b.volume.data(), b.viscosity.data(),
+          nullptr,           nullptr,         nullptr,
+          nullptr,           nullptr,         nullptr,
+          nullptr,           nullptr,         nullptr};
+}
+
 enum class Neighbours { kFluid, kWalls };
+
+/// A wall's particle's own side of Eq 9. Where the fluid has one viscosity its column is not filled: the mean of the
+/// two is known up front.
+template <Viscosity viscosity>
+float own_viscosity(const WallViscosity& wall, float of_the_fluid) {
+  return viscosity == Viscosity::kOne ? 0.5f * (wall.own + wall.of_fluid * of_the_fluid) : wall.own;
+}
 
 /// A neighbour's side of Eq 9. `of_fluid`: WallViscosity's where p is a wall's particle, else 1.
 template <Viscosity viscosity, Neighbours neighbours>

@@ -8,30 +8,6 @@ namespace {
 
 constexpr std::size_t kRunsPerChunk = 16;
 
-NeighborColumns columns(const FluidParticles& f) {
-  NeighborColumns n{};
-  n.x = f.x.data(), n.y = f.y.data(), n.z = f.z.data();
-  n.vx = f.vx.data(), n.vy = f.vy.data(), n.vz = f.vz.data();
-  n.volume = f.volume.data(), n.viscosity = f.viscosity.data();
-  return n;
-}
-
-NeighborColumns columns(const BoundaryParticles& b) {
-  NeighborColumns n{};
-  n.x = b.x.data(), n.y = b.y.data(), n.z = b.z.data();
-  n.vx = b.vx.data(), n.vy = b.vy.data(), n.vz = b.vz.data();
-  n.volume = b.volume.data(), n.viscosity = b.viscosity.data();
-  return n;
-}
-
-ParticleView<FloatBatch> dragged(const NeighborColumns& n, std::uint32_t j, float viscosity) {
-  ParticleView<FloatBatch> p;
-  p.x = FloatBatch(n.x[j]), p.y = FloatBatch(n.y[j]), p.z = FloatBatch(n.z[j]);
-  p.volume = FloatBatch(n.volume[j]);
-  p.viscosity = FloatBatch(viscosity);
-  return p;
-}
-
 // Calls f.template operator()<Parts, Viscosity>(): Eq 6 or Eq 9 between fluids.
 template <class F>
 void with_drag(const Plan& plan, F&& f) {
@@ -112,7 +88,7 @@ void ViscousSolver::write_fluid_rows(const Work& work) {
         const RowList moving_rows = moving.index.rows(context.grid, runs[r].cell);
         for (std::uint32_t p = runs[r].particles.begin; p < runs[r].particles.end; ++p) {
           const ParticleKind& kind = context.kinds[fluid.kind[p]];
-          const ParticleView<FloatBatch> self = dragged(fluids, p, kind.viscosity);
+          const ParticleView<FloatBatch> self = broadcast(fluids, p, kind.viscosity);
           Symmetric<FloatBatch> rate = no_rate(), by_walls = no_rate();
           writer.begin(p);
           for_each_pair<Parts, viscosity, Neighbours::kFluid>(
@@ -152,11 +128,9 @@ void ViscousSolver::write_body_rows(const Work& work) {
         if (rows.count == 0) continue;
         for (std::uint32_t i = runs[r].particles.begin; i < runs[r].particles.end; ++i) {
           if (!work.bodies[moving.body[i]].moves) continue;
-          // Where the fluid has one viscosity its column is not filled: Eq 9's mean is known up front.
           const WallViscosity wall = wall_viscosity(moving.viscosity[i]);
-          const float mean = 0.5f * (wall.own + wall.of_fluid * context.kinds.front().viscosity);
           const ParticleView<FloatBatch> self =
-              dragged(own, i, viscosity == Viscosity::kOne ? mean : wall.own);
+              broadcast(own, i, own_viscosity<viscosity>(wall, context.kinds.front().viscosity));
           Symmetric<FloatBatch> rate = no_rate();
           writer.begin(i);
           for_each_pair<Parts, viscosity, Neighbours::kFluid>(
@@ -196,9 +170,8 @@ void ViscousSolver::add_fixed(const Work& work, std::span<Wrench> wrenches) {
         for (std::uint32_t i = runs[r].particles.begin; i < runs[r].particles.end; ++i) {
           if (!asked(fixed.body[i])) continue;
           const WallViscosity wall = wall_viscosity(fixed.viscosity[i]);
-          const float mean = 0.5f * (wall.own + wall.of_fluid * context.kinds.front().viscosity);
           const ParticleView<FloatBatch> self =
-              dragged(own, i, viscosity == Viscosity::kOne ? mean : wall.own);
+              broadcast(own, i, own_viscosity<viscosity>(wall, context.kinds.front().viscosity));
           Symmetric<FloatBatch> rate = no_rate();
           ForceSum<FloatBatch> force{zero, zero, zero};
           for_each_pair<Parts, viscosity, Neighbours::kFluid>(

@@ -57,6 +57,11 @@ double wall_part(const Scene& scene, const Plan& plan) {
                                                  : kOneLayer;
 }
 
+// The others' sheets drag by less, and their steps stay as they are, to compare with.
+double of_an_edge(const Plan& plan) {
+  return plan.model == ParticleModel::kCorrected ? kOfAnEdge : 0.0;
+}
+
 // Pa·s that the roughest mode feels besides the fluid's own.
 double jostling(const Plan& plan, const FluidExtremes& fluids) {
   return plan.model == ParticleModel::kCorrected ? noise_viscosity(plan, fluids.lightest) : 0.0;
@@ -76,8 +81,9 @@ double most_viscous_body(const Scene& scene, double most_viscous_fluid) {
 double viscous_step(const Scene& scene, const Plan& plan, const FluidExtremes& fluids) {
   const double mean = 0.5 * (fluids.most_viscous + most_viscous_body(scene, fluids.most_viscous));
   const double by_wall = wall_part(scene, plan) * mean;
-  const double at_walls = std::max(kHalfLattice * fluids.most_viscous + by_wall,
-                                   kOfAnEdge * (kQuarterLattice * fluids.most_viscous + 2.0 * by_wall));
+  const double at_walls =
+      std::max(kHalfLattice * fluids.most_viscous + by_wall,
+               of_an_edge(plan) * (kQuarterLattice * fluids.most_viscous + 2.0 * by_wall));
   const double viscosity = jostling(plan, fluids) + std::max(fluids.most_viscous, at_walls);
   return kViscousFactor / (viscosity * viscous_rate(scene, plan, fluids));
 }
@@ -92,16 +98,16 @@ double most_viscous_allowed(const Scene& scene, const Plan& plan) {
                            (plan.solves_drag ? kMostImplicit : 1.0) -
                        jostling(plan, fluids);
   const double part = wall_part(scene, plan);
-  const double body = most_viscous_body(scene, 0.0);
-  const double at_walls = (whole - 0.5 * part * body) / (kHalfLattice + 0.5 * part);
-  const double at_edges = (whole / kOfAnEdge - part * body) / (kQuarterLattice + part);
+  const double of_bodies = most_viscous_body(scene, 0.0);
+  const double at_walls = (whole - 0.5 * part * of_bodies) / (kHalfLattice + 0.5 * part);
+  const double at_edges = (whole / of_an_edge(plan) - part * of_bodies) / (kQuarterLattice + part);
   const double most = std::min({whole, at_walls, at_edges});
   const bool of_the_fluid = std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& body) {
     return body.dynamic_viscosity == kFluidsViscosity;
   });
   // Where walls go with the fluid both parts of Eq 9's mean rise.
   return std::max(0.0, of_the_fluid ? std::min({most, whole / (kHalfLattice + part),
-                                                whole / kOfAnEdge / (kQuarterLattice + 2.0 * part)})
+                                                whole / of_an_edge(plan) / (kQuarterLattice + 2.0 * part)})
                                     : most);
 }
 
