@@ -111,6 +111,8 @@ INSTANTIATE_TEST_SUITE_P(
                            {"spin_up", 0.005, "impulse", 0.04}},
         std::vector<Known>{{"couette", 0.00667, "torque", 0.10}},
         std::vector<Known>{{"stokes", 0.008, "drag", 0.34}, {"stokes", 0.008, "drift over a stroke", 0.03}},
+        std::vector<Known>{{"stokes_honey", 0.008, "drag", 0.43},
+                           {"stokes_honey", 0.008, "drift over a stroke", 0.03}},
         std::vector<Known>{{"slow_ball", 0.006, "force, moving", 0.035},
                            {"slow_ball", 0.006, "force left 0.9 s after", 0.02}},
         std::vector<Known>{{"dam_break", 0.146 / 16, "front, worst", 0.17}},

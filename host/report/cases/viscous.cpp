@@ -118,8 +118,10 @@ std::vector<Reading> couette(const Setting& setting, Cost& cost) {
 }
 
 // A ball on the axis of a closed tube, moved up and down by a stiff hand: 6πμaU times the wall's factor.
+template <int kPascalSeconds>
 std::vector<Reading> stokes(const Setting& setting, Cost& cost) {
-  constexpr double kBall = 0.012, kTube = 0.04, kViscosity = 5.0, kSpeed = 0.02, kWay = 0.024, kFill = 0.12;
+  constexpr double kBall = 0.012, kTube = 0.04, kViscosity = kPascalSeconds, kSpeed = 0.02, kWay = 0.024,
+                   kFill = 0.12;
   constexpr double kWallFactor = 2.3697;  // at a radius ratio of 0.3
   SceneBuilder b;
   b.add_fluid(1000.0, kViscosity);
@@ -249,7 +251,13 @@ std::vector<ErrorCase> viscous_cases() {
        "6πμaU, times 2.37 for the tube",
        {0.008, 0.006, 0.005},
        1,
-       stokes},
+       stokes<5>},
+      {"stokes_honey",
+       "The same in 50 Pa·s, where the corrected model solves for the drag",
+       "6πμaU, times 2.37 for the tube",
+       {0.008, 0.006},
+       1,
+       stokes<50>},
       {"slow_ball",
        "A ball moved at 2 cm/s through water",
        "drag at Re 480",
