@@ -38,7 +38,8 @@ class ParticleEngine {
   /// prepare(), with what its walls took from particles in the advance() before; the others get zero. One entry
   /// a body.
   virtual void wrenches(std::span<Wrench> out) = 0;
-  /// With kBodyDrag, after wrenches(): the drag on each free body by the same forces(); the others get none.
+  /// With kBodyDrag after wrenches(), with kImplicitDrag after solve_drag(): the drag on each free body by the same
+  /// forces(); the others get none.
   virtual void body_drags(std::span<BodyDrag> out) const = 0;
   /// Adds to the forces on the fluid what they lack when bodies drag by a twist that differs by `changes`
   /// (one a body, about its centre of mass) from the one that they had in prepare().

@@ -65,7 +65,7 @@ void decide_body_drag(const Scene& scene, Plan& plan) {
   plan.runs.set(PassId::kBodyDrag, plan.viscous() && plan.waits_for_bodies);
 }
 
-// What a step with the solve takes is two to three times a step without (sim/README.md): below this many times
+// What a step with the solve takes is two to four times a step without (sim/README.md): below this many times
 // the explicit step it is not worth it.
 constexpr double kWorthSolving = 4.0;
 

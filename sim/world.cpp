@@ -117,6 +117,12 @@ struct World::Impl {
   void drag_implicitly(const SubStep& step, bool moving, bool held_only) {
     bodies.predict(plan(), {found, {}, gravity_scale * scene.gravity}, step, moving, held_only, viscous_bodies);
     engine->solve_drag(step.dt, viscous_bodies, found);
+    take_drags();
+  }
+
+  void take_drags() {
+    engine->body_drags(drags);
+    for (std::size_t b = 0; b < drags.size(); ++b) drag_matrices[b] = drags[b].matrix();
   }
 
   // Where the bodies will be, as far as that is known before their solve.
@@ -133,10 +139,7 @@ struct World::Impl {
 
   void solve_bodies(const SubStep& step, bool held_only, bool with_drag) {
     Stopwatch watch;
-    if (with_drag) {
-      engine->body_drags(drags);
-      for (std::size_t b = 0; b < drags.size(); ++b) drag_matrices[b] = drags[b].matrix();
-    }
+    if (with_drag) take_drags();
     const std::span<const Matrix6> drag =
         with_drag ? std::span<const Matrix6>(drag_matrices) : std::span<const Matrix6>();
     status |= bodies.solve(plan(), {found, drag, gravity_scale * scene.gravity}, step, held_only);
@@ -372,7 +375,7 @@ std::span<const Wrench> World::fluid_wrenches() const {
   return impl_->found;
 }
 std::span<const Matrix6> World::drags() const {
-  if (!impl_->plan().has(PassId::kBodyDrag)) return {};
+  if (!impl_->plan().runs.has_any_of({PassId::kBodyDrag, PassId::kImplicitDrag})) return {};
   return impl_->drag_matrices;
 }
 

@@ -115,7 +115,7 @@ class World {
   std::span<const Wrench> fluid_wrenches() const;
   /// What that loses for each unit of the body's twist with the fluid held as it is, linear first, angular
   /// after, about the centre of mass: N·s/m, N·s, N·m·s. Symmetric, positive semidefinite, one a body; empty
-  /// where the plan has no kBodyDrag.
+  /// where the plan has neither kBodyDrag nor kImplicitDrag.
   std::span<const Matrix6> drags() const;
 
   std::uint32_t take_status();  ///< StatusBits since the last call, then cleared

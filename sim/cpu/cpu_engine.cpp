@@ -191,6 +191,7 @@ class CpuEngine final : public ParticleEngine {
   void solve_implicit_drag(double dt) {
     const ViscousReport report = solver_.solve(context_, team_, {fluid_, fixed_.sorted(), moving_, bodies_}, dt,
                                                viscous_.bodies, wanted_, viscous_.wrenches);
+    drags_ = solver_.drags();
     if (!report.converged) context_.status.fetch_or(kStatusViscosityCut, std::memory_order_relaxed);
   }
   void integrate(double dt) { integrate_fluid(context_, team_, fluid_, {guarded_, centers_, impulses_}, dt); }

@@ -112,10 +112,10 @@ void ViscousSolver::begin(const Work& work) {
   for (Column<float>* column : {&direction_.x, &direction_.y, &direction_.z})
     std::fill(column->begin(), column->end(), 0.0f);
 
-  std::vector<BodyDrag> blocks(work.bodies.size());
+  drags_.assign(work.bodies.size(), BodyDrag{});
   for (std::size_t i = 0; i < work.surface; ++i) {
     const Symmetric<float>& rate = rate_[i];
-    blocks[moving.body[i]].add(
+    drags_[moving.body[i]].add(
         {rate.xx, rate.xy, rate.xz, rate.yy, rate.yz, rate.zz},
         glm::dvec3(moving.x[i], moving.y[i], moving.z[i]) - work.sides.bodies[moving.body[i]].position);
   }
@@ -125,12 +125,15 @@ void ViscousSolver::begin(const Work& work) {
     if (!body.moves) continue;
     Unknown& u = unknowns_[b];
     const Vector6 kept = times(body.inertia, vector_of(body.twist)), drag = vector_of(on_bodies_[b]);
-    Matrix6 block = blocks[b].matrix();
+    Matrix6 block = drags_[b].matrix();
     for (int i = 0; i < 6; ++i) {
       u.residual[i] = body.momentum[i] - kept[i] + drag[i];
       for (int j = 0; j < 6; ++j) block[i][j] += body.inertia[i][j];
     }
     if (!cholesky(block, u.factor)) cholesky(body.inertia, u.factor);
+  }
+  for (BodyDrag& drag : drags_) {
+    for (double& value : drag.upper) value /= work.dt;
   }
 }
 

@@ -28,6 +28,9 @@ class ViscousSolver {
   ViscousReport solve(const PassContext& context, ThreadTeam& team, const DragSides& sides, double dt,
                       std::span<const ViscousBody> bodies, const std::vector<char>& measured,
                       std::span<Wrench> wrenches);
+  /// By the last solve(), one a body: what the drag on it loses for each unit of its twist while the fluid stays as
+  /// it is; of those that move.
+  const std::vector<BodyDrag>& drags() const { return drags_; }
 
  private:
   struct Unknown {
@@ -70,6 +73,7 @@ class ViscousSolver {
   std::vector<Symmetric<float>> rate_;      // of the moving bodies' particles, N·s for each m/s
   std::vector<Unknown> unknowns_;           // one a body
   std::vector<glm::vec3> on_surface_;       // N·s, one a particle of the moving bodies
+  std::vector<BodyDrag> drags_;             // one a body
   std::vector<Wrench> on_bodies_;           // N·s, one a body
   std::vector<double> parts_, more_parts_;  // of sums, in a fixed order
   std::vector<Twist> twists_;

@@ -57,6 +57,24 @@ TEST(ImplicitViscosity, DragsLikeExplicitStepsAnEighthAsLong) {
   EXPECT_GT(of_walls, 0.5 * -a.x) << "the tank feels what the plate does to the honey";
 }
 
+// What models of the fluid's wrench go by (bodies/wrench_identifier.h) is there however the drag is taken.
+TEST(ImplicitViscosity, GivesTheDragMatrixOfExplicitSteps) {
+  const Stirred s(50.0);
+  Experiment solved(s.b.scene, 0.01), stepped(s.b.scene, 0.01, Experiment::Explicit{});
+  for (Experiment* e : {&solved, &stepped}) {
+    e->handle(0).engaged = true;
+    e->step();
+  }
+  ASSERT_EQ(solved.world().drags().size(), s.b.scene.bodies.size());
+  const Matrix6& a = solved.world().drags()[static_cast<std::size_t>(s.plate)];
+  const Matrix6& b = stepped.world().drags()[static_cast<std::size_t>(s.plate)];
+  ASSERT_GT(b[0][0], 1.0);
+  for (int i = 0; i < 6; ++i) {
+    for (int j = 0; j < 6; ++j)
+      EXPECT_NEAR(a[i][j], b[i][j], 1e-4 * std::sqrt(b[i][i] * b[j][j])) << i << " " << j;
+  }
+}
+
 // Chunks of work are handed out as threads come free; what they sum is not.
 TEST(ImplicitViscosity, IsTheSameToTheBitWhateverTheThreadsAndFromASavedWorldOn) {
   const Stirred s(50.0);
