@@ -297,6 +297,19 @@ void World::fill_pressures(std::vector<float>& out) const {
   }
 }
 
+void World::fill_velocities(std::vector<glm::vec3>& out) const {
+  const Impl& w = *impl_;
+  out.assign(w.fluid_count, glm::vec3(std::numeric_limits<float>::quiet_NaN()));
+  ParticleState particles;
+  ImpulseSums walls;
+  if (!w.engine->save(particles, walls)) return;
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    const std::size_t id = particles.id[i];
+    if (id >= out.size() || particles.key[i] == w.constants.grid.retired_key()) continue;
+    out[id] = {particles.vx[i], particles.vy[i], particles.vz[i]};
+  }
+}
+
 Result<bool> World::save(std::vector<std::uint8_t>& out) const {
   const Impl& w = *impl_;
   SavedState state;

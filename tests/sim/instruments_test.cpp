@@ -103,6 +103,32 @@ TEST(Pressures, OfWhatHasLeftTheWorldAreNone) {
   for (std::size_t i = 0; i < pressures.size(); ++i) EXPECT_EQ(std::isnan(pressures[i]), i == 3) << i;
 }
 
+TEST(Velocities, AreThoseOfTheParticlesById) {
+  const Scene scene = tank_of_water();
+  SampledScene sampled = sample_scene(scene, kSpacing).value();
+  sampled.fluid_positions[3] = {1e6f, 0.0f, 0.0f};
+  World world(scene, sampled, make_plan(scene, kSpacing), WorldOptions{1, Backend::kCpu});
+  Snapshot before;
+  Snapshot after;
+  for (int i = 0; i < 5; ++i) world.step({});
+  world.fill(before);
+  world.step({});
+  world.fill(after);
+  std::vector<glm::vec3> velocities;
+  world.fill_velocities(velocities);
+  ASSERT_EQ(velocities.size(), sampled.fluid_positions.size());
+  const float dt = static_cast<float>(world.plan().time_step);
+  for (std::size_t i = 0; i < velocities.size(); ++i) {
+    if (i == 3) {
+      EXPECT_TRUE(std::isnan(velocities[i].x));
+      continue;
+    }
+    // Leap-frog: the velocity is what took it from the one place to the other, to the rounding of places.
+    const glm::vec3 moved = (after.positions[i] - before.positions[i]) / dt;
+    EXPECT_LT(glm::distance(velocities[i], moved), 1e-3f) << i;
+  }
+}
+
 TEST(Instruments, MoveWithTheirBody) {
   Scene scene = tank_of_water();
   const SampledScene sampled = sample_scene(scene, kSpacing).value();
