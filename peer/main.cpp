@@ -6,6 +6,7 @@
 #include <initializer_list>
 
 #include "net/text/clean.h"
+#include "peer/install/version.h"
 #include "peer/verbs/verbs.h"
 
 namespace slosh {
@@ -13,7 +14,7 @@ namespace {
 
 int run(int argc, char** argv) {
   CLI::App app("Touch simulated fluids together.", "slosh");
-  app.set_version_flag("--version", "slosh " SLOSH_VERSION);
+  app.set_version_flag("--version", version_text);
   app.require_subcommand(1);
   app.get_formatter()->column_width(34);
   VerbRun chosen;

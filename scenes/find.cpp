@@ -1,4 +1,7 @@
 // The shipped scenes, found by name.
+#include <dlfcn.h>
+#include <link.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <system_error>
@@ -13,9 +16,27 @@ namespace fs = std::filesystem;
 
 constexpr const char* kOrder[] = {"bucket", "spoon", "pour", "spin", "pool", "probe"};
 
+/// The folder of the program, or of the library, that this code is in; empty where the system does not say.
+fs::path folder_of_this_code() {
+  Dl_info found{};
+  link_map* map = nullptr;
+  const bool known = dladdr1(reinterpret_cast<const void*>(&shipped_scenes), &found,
+                             reinterpret_cast<void**>(&map), RTLD_DL_LINKMAP) != 0;
+  const bool library = known && map && map->l_name && *map->l_name;
+  std::error_code code;
+  return fs::canonical(library ? fs::path(map->l_name) : fs::path("/proc/self/exe"), code).parent_path();
+}
+
+/// As named; else beside what holds this code (a Python package), or where an installation has them from there;
+/// else where the build made them.
 fs::path scenes_folder() {
   const char* given = std::getenv("SLOSH_SCENES");
-  return given && *given ? fs::path(given) : fs::path(SLOSH_SCENES_FOLDER);
+  if (given && *given) return given;
+  const fs::path here = folder_of_this_code();
+  std::error_code code;
+  for (const fs::path& folder : {here / "scenes", here.parent_path() / "share" / "slosh" / "scenes"})
+    if (!here.empty() && fs::is_directory(folder, code)) return folder;
+  return SLOSH_SCENES_FOLDER;
 }
 
 bool is_gltf(const fs::path& file) {

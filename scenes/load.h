@@ -17,7 +17,7 @@ struct SceneEntry {
 };
 
 /// The shipped scenes, in the order they are listed to the user. Reads only titles, not meshes.
-/// The folder is $SLOSH_SCENES if set, else the one compiled in.
+/// The folder: $SLOSH_SCENES; else scenes or ../share/slosh/scenes beside this program or library; else the build's.
 std::vector<SceneEntry> shipped_scenes();
 
 /// Resolves a shipped name, or a path to a .gltf or .glb, to a file. An unknown name lists the known ones.

@@ -18,6 +18,8 @@ net        | sim/snapshot.h sim/math/ scenes/scene.h
 host       | scenes/ sim/ net/
 peer       | scenes/ sim/snapshot.h sim/math/ net/ render/
 peer/verbs | scenes/ sim/ net/ render/ host/
+peer/python | scenes/ sim/ net/ host/
+peer/install | sim/backend.h
 render     | sim/math/ net/text/
 tests      | scenes/ sim/ net/ host/ peer/ render/
 '
@@ -28,6 +30,8 @@ toolkits='
 ^<(epoxy|GL|EGL|GLFW)/        | render | GL only in render
 ^<(ngtcp2|gnutls)/            | net/quic | QUIC and TLS only behind net/quic/endpoint.h
 ^<(hidapi|libusb)             | peer/haptics/devices | HID and USB only in the drivers
+^<pybind11/                   | peer/python | Python only in its module
+^"peer/python/                | peer/python | nothing that ships knows the Python module
 ^<unicode/                    | net/text | ICU only behind net/text
 ^"net/impair/                 | net/impair tests | a bad network is for tests and for the program slosh-impair
 ^"peer/verbs/                 | peer/verbs peer/main.cpp tests | only the program joins host and peer

@@ -1,0 +1,103 @@
+#!/usr/bin/env bash
+# The installed program, run from elsewhere, and what is in the Debian package.
+# Usage: install_test.sh BUILD VERSION FOLDER
+set -euo pipefail
+build=${1:?usage: install_test.sh BUILD VERSION FOLDER}
+version=${2:?usage: install_test.sh BUILD VERSION FOLDER}
+folder=${3:?usage: install_test.sh BUILD VERSION FOLDER}
+unset SLOSH_SCENES
+rm -rf "$folder"
+mkdir -p "$folder/elsewhere"
+folder="$(readlink -f "$folder")"
+export XDG_STATE_HOME="$folder/state" XDG_DATA_HOME="$folder/data" XDG_CONFIG_HOME="$folder/config"
+cd "$folder/elsewhere"
+
+fail() { echo "$*" >&2; exit 1; }
+has() { grep -qF -- "$2" <<<"$1" || fail "no '$2' in: $1"; }
+# run WORD COMMAND…: the command succeeds and says the word.
+run() {
+  local word=$1 said
+  shift
+  said="$("$@" 2>&1)" || fail "$* failed: $said"
+  has "$said" "$word"
+}
+
+# What an installation in PREFIX does.
+try_program() {
+  local prefix=$1 program="$1/bin/slosh"
+  run "slosh $version" "$program" --version
+  run "commit " "$program" --version
+  run "CPU" "$program" --version
+  run "libngtcp2 " "$program" --version
+  # Its own scenes, not those of the build: one that is only there.
+  cp "$prefix/share/slosh/scenes/pool.gltf" "$prefix/share/slosh/scenes/only_here.gltf"
+  run only_here "$program" scenes
+  run bucket "$program" scenes
+  rm "$prefix/share/slosh/scenes/only_here.gltf"
+  run fluid "$program" check bucket
+  run particles "$program" plan bucket --spacing 0.0135
+  run N "$program" play bucket --headless --no-render --unpaced --seconds 0.1 --spacing 0.0135 --threads 1 --out played
+  [[ -s played/wrenches.csv && -s played/summary.json ]] || fail "play left no wrenches.csv or summary.json"
+  rm -r played
+}
+
+# What lies beside the program.
+try_files() {
+  local prefix=$1 page verb
+  for page in slosh slosh-play slosh-host slosh-join slosh-report; do
+    [[ -s "$prefix/share/man/man1/$page.1.gz" ]] || fail "no man page $page"
+  done
+  page="$(zcat "$prefix/share/man/man1/slosh-host.1.gz")"
+  has "$page" ".SH OPTIONS"
+  has "$page" "max\\-watchers"
+  if command -v groff >/dev/null; then
+    for page in "$prefix"/share/man/man1/*.gz; do
+      local said
+      said="$(zcat "$page" | groff -K utf8 -man -Tutf8 -ww 2>&1 >/dev/null)" || true
+      [[ -z "$said" ]] || fail "$page: $said"
+    done
+  fi
+  grep -q 'SUBSYSTEM' "$prefix/lib/udev/rules.d/70-slosh.rules" || fail "the udev rule is empty"
+  printf '#include <slosh/slosh_device.h>\nint main(void) { return 0; }\n' >header.c
+  cc -fsyntax-only -Wall -Werror -I "$prefix/include" header.c || fail "the header of devices does not compile"
+  # Completion, as bash asks for it.
+  (
+    PATH="$prefix/bin:$PATH"
+    compopt() { :; }
+    source "$prefix/share/bash-completion/completions/slosh"
+    answer() {
+      COMP_WORDS=(slosh "$@") COMP_CWORD=$#
+      _slosh
+      printf '%s ' "${COMPREPLY[@]}"
+    }
+    has "$(answer pl)" "play plan"
+    has "$(answer play bu)" "bucket"
+    has "$(answer play --unp)" "--unpaced"
+    has "$(answer play --backend c)" "cpu cuda"
+    has "$(answer links re)" "revoke"
+  ) || exit 1
+}
+
+cmake --install "$build" --prefix "$folder/prefix" >"$folder/install.log"
+try_program "$folder/prefix"
+try_files "$folder/prefix"
+echo "installed and run from elsewhere"
+
+command -v dpkg-shlibdeps >/dev/null || { echo "skipped: no dpkg-shlibdeps here, so no Debian package"; exit 77; }
+(cd "$build" && cpack -G DEB -B "$folder/package") >"$folder/cpack.log" 2>&1 || fail "cpack: $(tail -n 20 "$folder/cpack.log")"
+packages=("$folder"/package/slosh_"$version"_*.deb)
+[[ -f "${packages[0]}" ]] || fail "no package with the version in its name"
+info="$(dpkg-deb -I "${packages[0]}")"
+has "$info" "Package: slosh"
+has "$info" "Version: $version"
+for library in libc6 libstdc++6 libgnutls30 libngtcp2 libglfw3 libicu libopencolorio libusb-1.0-0 libzstd1; do
+  grep -q "^ Depends:.*$library" <<<"$info" || fail "it does not depend on $library: $info"
+done
+has "$info" "Recommends: gnuplot-nox, ffmpeg"
+dpkg-deb -x "${packages[0]}" "$folder/unpacked"
+try_program "$folder/unpacked/usr"
+try_files "$folder/unpacked/usr"
+# Every library that the program needs is asked for: none is missing, none of its paths leads to the build.
+! ldd "$folder/unpacked/usr/bin/slosh" | grep -E "not found|$build" || fail "a library is missing or the build's own"
+echo "$(basename "${packages[0]}"): $(du -k "${packages[0]}" | cut -f1) kB, $(dpkg-deb -c "${packages[0]}" | grep -vc '/$') files"
+rm -rf "$folder"
