@@ -50,20 +50,18 @@ try_files() {
   page="$(zcat "$prefix/share/man/man1/slosh-host.1.gz")"
   has "$page" ".SH OPTIONS"
   has "$page" "max\\-watchers"
-  if command -v groff >/dev/null; then
-    for page in "$prefix"/share/man/man1/*.gz; do
-      local said
-      said="$(zcat "$page" | groff -K utf8 -man -Tutf8 -ww 2>&1 >/dev/null)" || true
-      [[ -z "$said" ]] || fail "$page: $said"
-    done
-  fi
+  command -v groff >/dev/null || fail "no groff here to read man pages with (groff-base)"
+  local said
+  for page in "$prefix"/share/man/man1/*.gz; do
+    said="$(zcat "$page" | groff -K utf8 -man -Tutf8 -ww 2>&1 >/dev/null)" || true
+    [[ -z "$said" ]] || fail "$page: $said"
+  done
   grep -q 'SUBSYSTEM' "$prefix/lib/udev/rules.d/70-slosh.rules" || fail "the udev rule is empty"
   printf '#include <slosh/slosh_device.h>\nint main(void) { return 0; }\n' >header.c
   cc -fsyntax-only -Wall -Werror -I "$prefix/include" header.c || fail "the header of devices does not compile"
   # Completion, as bash asks for it.
   (
     PATH="$prefix/bin:$PATH"
-    compopt() { :; }
     source "$prefix/share/bash-completion/completions/slosh"
     answer() {
       COMP_WORDS=(slosh "$@") COMP_CWORD=$#
