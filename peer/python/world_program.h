@@ -1,0 +1,101 @@
+// A world that a Python program steps, with a hand for each of its grips.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/keep/recording.h"
+#include "peer/python/hand.h"
+#include "peer/python/interrupts.h"
+#include "peer/python/moment.h"
+#include "peer/python/run_table.h"
+#include "scenes/sample.h"
+#include "sim/instruments.h"
+#include "sim/world.h"
+
+namespace slosh::python {
+
+struct WorldProgramOptions {
+  py::object spacing;  ///< None: the scene's own, else its coarsest; "auto": measured; m
+  std::string backend = "auto";
+  int threads = 0;
+  py::object hands;  ///< None, or a mapping of grips to what hold() takes
+  bool settle = true;
+};
+
+/// Everything with Python's lock, which the long calls let go of while the world moves. Meanwhile every other
+/// call is refused in words: a world is one thread's at a time, and what it calls may read it but not step
+/// it.
+class WorldProgram {
+ public:
+  /// Samples, plans, settles. Raises slosh.Error, ValueError.
+  WorldProgram(std::shared_ptr<const Scene> scene, const WorldProgramOptions& options);
+
+  std::size_t grip(const py::object& name_or_number) const;   ///< raises KeyError with the names
+  std::size_t body(const py::object& name_or_number) const;   ///< likewise
+  std::size_t fluid(const py::object& name_or_number) const;  ///< likewise
+
+  void hold(const py::object& grip, const py::object& source);
+  void step(long steps);
+  Run run(double seconds, bool real_time, long every, const py::object& on_step);
+  void settle(std::optional<double> seconds);
+
+  /// For reading; not while another thread steps.
+  const World& world() const {
+    refuse_while_moving();
+    return *world_;
+  }
+  /// A viscosity or gravity, from the next step on.
+  void change(const HostCommand& command);
+  void restore(const std::string& saved);
+  const Scene& scene() const { return *scene_; }
+  std::shared_ptr<const Scene> shared_scene() const { return scene_; }
+  const SampledScene& sampled() const { return sampled_; }
+  Backend backend() const { return backend_; }
+  const std::string& spacing_reason() const { return spacing_reason_; }
+
+  const std::shared_ptr<Moment>& snapshot() { return moments_.snapshot(world()); }
+  const std::shared_ptr<Moment>& velocities() { return moments_.velocities(world()); }
+  const std::shared_ptr<Moment>& pressures() { return moments_.pressures(world()); }
+  const BodySnapshot& bodies();
+  const Measurement& measure();
+
+  /// Recordings: slosh replay, slosh.Recording and slosh.replay() read them.
+  void record(const std::string& file);
+  void stop_recording();
+
+ private:
+  double choose_spacing_of(const WorldProgramOptions& options);
+  void refuse_while_moving() const;
+  void refuse_while_recorded(const char* what) const;
+  void begin_move();
+  std::span<const HandleInput> inputs();
+  void one_step(std::span<const HandleInput> hands);
+  struct Moving;
+
+  std::shared_ptr<const Scene> scene_;
+  Backend backend_ = Backend::kCpu;
+  std::string spacing_reason_;
+  SampledScene sampled_;
+  std::optional<World> world_;
+  std::vector<Hand> hands_;
+  std::vector<HandleInput> inputs_;
+  std::vector<std::uint8_t> start_;  // World::save of what a reset goes back to
+  std::unique_ptr<Instruments> instruments_;
+  std::unique_ptr<keep::RecordingWriter> recording_;
+  Moments moments_;
+  BodySnapshot bodies_;
+  bool bodies_known_ = false;
+  std::uint32_t status_ = 0;  // of the steps since the run began
+  bool in_call_ = false;      // step, run or settle is under way
+  bool moving_ = false;       // and has let go of Python's lock
+};
+
+/// The index that a name or a number stands for. Raises KeyError that lists the names.
+std::size_t index_of(const py::object& name_or_number, const std::vector<std::string>& names,
+                     const char* what);
+
+}  // namespace slosh::python

@@ -1,0 +1,269 @@
+"""slosh.World: memory, threads, endings, refusals."""
+
+import gc
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+import numpy as np
+import slosh
+from small import world
+
+
+
+def address(array):
+    return array.__array_interface__["data"][0]
+
+
+class Memory(unittest.TestCase):
+    def test_arrays_have_the_shapes_and_types_that_the_docstrings_say(self):
+        w = world()
+        w.step(2)
+        n = w.particles
+        self.assertGreater(n, 200)
+        for name, shape, kind in [
+            ("positions", (n, 3), np.float32),
+            ("velocities", (n, 3), np.float32),
+            ("pressures", (n,), np.float32),
+            ("fluid_index", (n,), np.uint8),
+        ]:
+            array = getattr(w, name)
+            self.assertEqual(array.shape, shape, name)
+            self.assertEqual(array.dtype, kind, name)
+            self.assertFalse(array.flags.writeable, name)
+            self.assertFalse(array.flags.owndata, "a view of the library's memory")
+            with self.assertRaises(ValueError):
+                array[0] = 0
+        self.assertTrue(np.isfinite(w.pressures).all())
+
+    def test_the_same_moment_is_the_same_memory_and_a_kept_array_stays_as_it_is(self):
+        w = world()
+        w.step()
+        first = w.positions
+        self.assertEqual(address(first), address(w.positions), "no copy a call")
+        kept = first.copy()
+        w.step(20)
+        later = w.positions
+        np.testing.assert_array_equal(first, kept, "the moment that was")
+        self.assertGreater(np.abs(later - first).max(), 0.0)
+        self.assertNotEqual(address(first), address(later))
+        # Nobody looks any more: the memory is used again.
+        at = address(later)
+        del later
+        w.step()
+        self.assertEqual(address(w.positions), at)
+
+    def test_arrays_live_longer_than_their_world(self):
+        w = world()
+        w.step()
+        positions, part = w.positions, w.positions[10:20, 1]
+        kept = part.copy()
+        del w, positions
+        gc.collect()
+        np.testing.assert_array_equal(part, kept)
+
+    def test_velocities_are_what_moves_the_particles(self):
+        w = world()
+        w.step(30)
+        before = w.positions
+        w.step()
+        moved = (w.positions - before) / w.time_step
+        np.testing.assert_allclose(w.velocities, moved, atol=2e-3)
+
+
+class Runs(unittest.TestCase):
+    def test_a_run_has_a_row_a_step_and_repeats_to_the_bit(self):
+        a, b = world(), world()
+        run = a.run(0.1)
+        steps = len(run.time)
+        self.assertEqual(steps, round(0.1 / a.time_step))
+        grips, bodies = len(a.scene.grips), len(a.scene.bodies)
+        self.assertEqual(run.wrenches.shape, (steps, grips, 6))
+        self.assertEqual(run.handles.shape, (steps, grips, 7))
+        self.assertEqual(run.body_poses.shape, (steps, bodies, 7))
+        self.assertEqual(run.body_twists.shape, (steps, bodies, 6))
+        self.assertEqual(run.body_centers.shape, (steps, bodies, 3))
+        self.assertEqual(run.fluid_wrenches.shape, (steps, bodies, 6))
+        self.assertAlmostEqual(run.time[-1], a.time)
+        np.testing.assert_array_equal(run.wrenches[-1], a.wrenches)
+        b.step(steps)
+        self.assertEqual(a.hash, b.hash)
+        self.assertEqual(a.tick, b.tick)
+
+    def test_saved_and_restored_it_goes_on_the_same(self):
+        w = world()
+        w.step(10)
+        saved = w.save()
+        w.step(10)
+        there = w.hash
+        w.restore(saved)
+        self.assertEqual(w.tick, 10)
+        w.step(10)
+        self.assertEqual(w.hash, there)
+        with self.assertRaises(slosh.Error) as raised:
+            w.restore(saved[:100])
+        self.assertIn("saved world", str(raised.exception))
+        self.assertEqual(w.hash, there, "the world is as it was")
+
+    def test_every_and_on_step(self):
+        w = world()
+        seen = []
+
+        def look():
+            seen.append(w.positions[:, 1].max())
+            return len(seen) < 7
+
+        run = w.run(1.0, every=3, on_step=look)
+        self.assertEqual(w.tick, 7)
+        self.assertEqual(len(run.time), 2)
+        self.assertEqual(len(seen), 7)
+
+    def test_in_real_time_it_is_no_faster_than_the_clock(self):
+        w = world()
+        began = time.monotonic()
+        run = w.run(0.3, real_time=True)
+        self.assertGreaterEqual(time.monotonic() - began, 0.29)
+        self.assertGreaterEqual(run.slipped, 0.0)
+
+    def test_parameters_change_while_it_lives(self):
+        w = world()
+        fluid = w.scene.fluids[0]
+        self.assertAlmostEqual(w.viscosity(fluid.name), fluid.viscosity)
+        w.set_viscosity(fluid.name, 0.5 * fluid.viscosity)
+        self.assertAlmostEqual(w.viscosity(0), 0.5 * fluid.viscosity)
+        w.gravity_scale = 0.5
+        self.assertEqual(w.gravity_scale, 0.5)
+        with self.assertRaises(slosh.Error):
+            w.gravity_scale = 5.0
+        with self.assertRaises(KeyError) as raised:
+            w.set_viscosity("beer", 1.0)
+        self.assertIn(fluid.name, str(raised.exception))
+
+    def test_what_is_wrong_is_said(self):
+        scene = slosh.load_scene("spoon")
+        for options in [{"spacing": 5.0}, {"spacing": "coarse"}, {"backend": "abacus"}, {"threads": -1}]:
+            with self.assertRaises(ValueError, msg=str(options)):
+                slosh.World(scene, **options)
+        with self.assertRaises(slosh.Error) as raised:
+            slosh.World(scene, 0.5)
+        error = raised.exception
+        self.assertTrue(error.where and error.what, "the parts")
+        self.assertIn(error.what, str(error))
+        self.assertIsInstance(error, RuntimeError)
+        if not slosh.backends()["cuda"]:
+            with self.assertRaises(slosh.Error):
+                slosh.World(scene, 0.0115, settle=False, backend="cuda")
+        for seconds in (0.0, -1.0, float("nan")):
+            with self.assertRaises(ValueError):
+                world().run(seconds)
+        with self.assertRaises(ValueError):
+            world().step(0)
+
+
+class Threads(unittest.TestCase):
+    def test_others_go_on_while_it_steps_and_are_refused_the_world(self):
+        w = world()
+        counted, refused = 0, []
+        done = threading.Event()
+
+        def step():
+            w.run(3.0)
+            done.set()
+
+        stepping = threading.Thread(target=step)
+        stepping.start()
+        while not done.is_set():
+            counted += 1
+            try:
+                w.positions
+            except slosh.Error as error:
+                refused.append(str(error))
+            time.sleep(0.001)
+        stepping.join()
+        self.assertGreater(counted, 3)
+        self.assertTrue(refused)
+        self.assertIn("another thread", refused[0])
+        self.assertEqual(len(w.positions), w.particles)
+
+    def test_what_it_calls_may_read_but_not_step(self):
+        w = world()
+        with self.assertRaises(slosh.Error) as raised:
+            w.run(0.1, on_step=lambda: w.step())
+        self.assertIn("already", str(raised.exception))
+        w.step()
+
+        def fails():
+            raise ZeroDivisionError("mine")
+
+        tick = w.tick
+        with self.assertRaises(ZeroDivisionError):
+            w.run(0.1, on_step=fails)
+        self.assertEqual(w.tick, tick + 1)
+        w.step()
+
+    def interrupted(self, work):
+        """A program that does `work` and is sent SIGINT; what it says."""
+        program = (
+            f"import sys; sys.path.insert(0, {os.path.dirname(os.path.abspath(__file__))!r})\n"
+            "from small import world\n"
+            "w = world()\n"
+            "print('ready', flush=True)\n"
+            f"try:\n    {work}\n    print('through')\n"
+            "except KeyboardInterrupt:\n    print('interrupted at', w.tick)\n"
+            "w.step()\n"
+        )
+        child = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True)
+        self.assertEqual(child.stdout.readline(), "ready\n")
+        time.sleep(0.3)
+        child.send_signal(signal.SIGINT)
+        said, _ = child.communicate(timeout=120)
+        self.assertEqual(child.returncode, 0)
+        return said
+
+    def test_ctrl_c_ends_long_calls_and_the_world_is_sound(self):
+        for work in ("w.run(1e5)", "w.step(10**9)", "w.run(1e5, real_time=True)", "w.settle(60.0)",
+                     "w.hold(0, lambda t: (0, 0.07, 0)) or w.run(1e5)"):
+            self.assertIn("interrupted at", self.interrupted(work), work)
+
+
+class Recordings(unittest.TestCase):
+    def test_what_is_recorded_is_replayed_the_same_and_by_the_program_too(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = os.path.join(folder, "run.rec")
+            w = world()
+            w.record(file)
+            with self.assertRaises(slosh.Error):
+                w.record(file)
+            with self.assertRaises(slosh.Error):
+                w.settle(0.1)
+            run = w.run(0.4)
+            w.stop_recording()
+            w.stop_recording()
+            with self.assertRaises(slosh.Error):
+                w.record(file)
+            again = slosh.replay(file, threads=1)
+            self.assertTrue(again.same, again.verdict)
+            np.testing.assert_array_equal(again.run.wrenches, run.wrenches)
+            self.assertEqual(len(slosh.Recording(file).time), len(run.time))
+            said = subprocess.run([os.environ["SLOSH_PROGRAM"], "replay", file, "--no-render", "--out", "again"],
+                                  cwd=folder, capture_output=True, text=True)
+            self.assertEqual(said.returncode, 0, said.stderr)
+            with open(file, "rb") as whole:
+                damaged = bytearray(whole.read())
+            damaged[len(damaged) // 2] ^= 0xFF
+            with open(file, "wb") as changed:
+                changed.write(damaged)
+            with self.assertRaises(slosh.Error):
+                slosh.Recording(file)
+            with self.assertRaises(slosh.Error) as raised:
+                slosh.Recording(os.path.join(folder, "none.rec"))
+            self.assertIn("none.rec", str(raised.exception))
+
+
+if __name__ == "__main__":
+    unittest.main()
