@@ -105,6 +105,7 @@ find . \( -path './.*' -o -path ./build -o -path ./out \) -prune -o -type f \
         exit 2
       }
       if (breaches) {
+        fflush()  # the breaches first: both go to one place, and a line must not fall into another
         print breaches " include(s) break the rules of the house. Each room'"'"'s README says what it may include." \
           > "/dev/stderr"
         exit 1
