@@ -68,7 +68,13 @@ struct Renderer::Parts {
   std::optional<ArrowPass> arrow_pass;
   std::optional<DisplayPass> display_pass;
   std::unique_ptr<HudPass> hud_pass;
-  bool drew_fluid = false;  ///< in the last frame
+  Frame frame;        ///< what was prepared, and the view being drawn
+  ShadowView shadow;  ///< of this frame
+  bool centers_sorted = false;
+  gl::Texture panel;  ///< RGBA8, made when first asked for
+  gl::Framebuffer panel_target;
+  glm::ivec2 panel_size{0};
+  bool drew_fluid = false;  ///< in the last picture
   bool fast = false;        ///< Quality, resolved
   bool timing = false;
   PassTimer timer;
@@ -77,6 +83,11 @@ struct Renderer::Parts {
   /// Makes what `options` asks for and is not there yet.
   Result<bool> fit_to_options();
   const gl::Texture* fluid_depth() const { return drew_fluid ? &fluid_passes->smoothed(targets) : nullptr; }
+  void draw_scene();
+  static void copy(const gl::Texture& from, glm::ivec2 size, const PictureTarget& target) {
+    glCopyImageSubData(from.name(), GL_TEXTURE_2D, 0, 0, 0, 0, target.texture, GL_TEXTURE_2D, 0, 0, 0, 0,
+                       size.x, size.y, 1);
+  }
   void show_in_window();
 
   /// Runs one pass, timed if asked.
@@ -165,66 +176,110 @@ MeshHandle Renderer::add_mesh(std::span<const glm::vec3> positions, std::span<co
   return parts_->meshes.add(positions, normals, triangles);
 }
 
-void Renderer::draw(const Frame& frame) {
+void Renderer::prepare(const Frame& frame, std::span<const View> views) {
   Parts& p = *parts_;
   p.times.clear();
-  ShadowView shadow;
-  if (p.shadow_pass) {
-    p.run("shadow map", [&] { shadow = p.shadow_pass->draw(frame, p.meshes); });
+  p.frame = frame;
+  p.shadow = {};
+  if (p.shadow_pass && !views.empty()) {
+    p.run("shadow map", [&] { p.shadow = p.shadow_pass->draw(p.frame, p.meshes, views); });
   }
-  p.run("fluid shadow", [&] { p.fluid_shadow_pass->draw(frame, p.options, shadow); });
-  p.uniforms.upload(make_frame_block(frame, p.options, shadow), frame.fluids);
+  p.run("fluid shadow", [&] { p.fluid_shadow_pass->draw(p.frame, p.options, p.shadow); });
+  p.uniforms.upload_looks(p.frame.fluids);
+  p.centers_sorted = false;
+}
 
-  p.run("prepare splats", [&] {
-    prepare_splats(frame, p.options, p.splats);
-    if (p.fast) leave_out_hidden(frame, p.options, p.splats);
-    if (p.options.surface == Surface::kOurs && !p.splats.empty()) {
-      p.centers.sort(frame);
-      p.centers.move(frame, p.splats.spheres);
+void Renderer::draw(const View& view, const PictureTarget& target) {
+  Parts& p = *parts_;
+  p.frame.view = view;
+  p.draw_scene();
+  if (target.texture != 0) {
+    p.run("copy", [&] { p.copy(p.targets.display, p.targets.size, target); });
+  }
+}
+
+void Renderer::Parts::draw_scene() {
+  uniforms.upload(make_frame_block(frame, options, shadow));
+  run("prepare splats", [&] {
+    prepare_splats(frame, options, splats);
+    if (fast) leave_out_hidden(frame, options, splats);
+    if (options.surface == Surface::kOurs && !splats.empty()) {
+      if (!std::exchange(centers_sorted, true)) centers.sort(frame);
+      centers.move(frame, splats.spheres);
     }
-    p.drew_fluid = !p.splats.empty();
-    if (p.drew_fluid) p.fluid_passes->upload(p.splats);
+    drew_fluid = !splats.empty();
+    if (drew_fluid) fluid_passes->upload(splats);
   });
-  if (p.drew_fluid) {
-    p.run("front depth", [&] { p.fluid_passes->splat_front(p.targets); });
-    p.run("back depth", [&] { p.fluid_passes->splat_back(p.targets); });
-    p.run("surface filter", [&] { p.fluid_passes->smooth(p.targets, p.options, frame); });
+  if (drew_fluid) {
+    run("front depth", [&] { fluid_passes->splat_front(targets); });
+    run("back depth", [&] { fluid_passes->splat_back(targets); });
+    run("surface filter", [&] { fluid_passes->smooth(targets, options, frame); });
   }
 
-  const bool occlusion = p.options.ambient_occlusion && !p.fast;
-  p.run("opaque meshes",
-        [&] { p.scene_pass->draw_opaque(frame, p.meshes, p.targets, p.options.draw_background, occlusion); });
+  const bool occlusion = options.ambient_occlusion && !fast;
+  run("opaque meshes",
+      [&] { scene_pass->draw_opaque(frame, meshes, targets, options.draw_background, occlusion); });
   if (occlusion) {
-    p.run("occlusion", [&] { p.scene_pass->draw_occlusion(p.targets, kOcclusionReach); });
-    p.run("resolve", [&] { p.scene_pass->resolve_occlusion(p.targets); });
+    run("occlusion", [&] { scene_pass->draw_occlusion(targets, kOcclusionReach); });
+    run("resolve", [&] { scene_pass->resolve_occlusion(targets); });
   }
   const bool translucent = has_translucent(frame);
-  if (p.drew_fluid) {
-    if (translucent && !p.fast) {
-      p.run("translucent behind",
-            [&] { p.scene_pass->draw_translucent(frame, p.meshes, p.targets, p.fluid_depth(), true); });
+  if (drew_fluid) {
+    if (translucent && !fast) {
+      run("translucent behind",
+          [&] { scene_pass->draw_translucent(frame, meshes, targets, fluid_depth(), true); });
     }
-    p.run("copy scene colour", [&] {
-      glCopyImageSubData(p.targets.color.name(), GL_TEXTURE_2D, 0, 0, 0, 0, p.targets.scene_color.name(),
-                         GL_TEXTURE_2D, 0, 0, 0, 0, p.targets.size.x, p.targets.size.y, 1);
+    run("copy scene colour", [&] {
+      glCopyImageSubData(targets.color.name(), GL_TEXTURE_2D, 0, 0, 0, 0, targets.scene_color.name(),
+                         GL_TEXTURE_2D, 0, 0, 0, 0, targets.size.x, targets.size.y, 1);
     });
-    p.run("composite", [&] { p.fluid_passes->composite(p.targets); });
+    run("composite", [&] { fluid_passes->composite(targets); });
   }
   if (translucent) {
-    p.run("translucent",
-          [&] { p.scene_pass->draw_translucent(frame, p.meshes, p.targets, p.fluid_depth(), false); });
+    run("translucent", [&] { scene_pass->draw_translucent(frame, meshes, targets, fluid_depth(), false); });
   }
   if (!frame.arrows.empty()) {
-    p.run("arrows", [&] { p.arrow_pass->draw(frame, p.targets, p.fluid_depth()); });
+    run("arrows", [&] { arrow_pass->draw(frame, targets, fluid_depth()); });
   }
-  p.run("display", [&] { p.display_pass->draw(p.targets, p.options.exposure); });
-  if (frame.hud) {
-    p.run("hud", [&] { p.hud_pass->draw(frame.hud, p.targets); });
-  }
+  run("display", [&] { display_pass->draw(targets, options.exposure); });
+}
+
+void Renderer::draw_hud() {
+  Parts& p = *parts_;
+  if (!p.frame.hud) return;
+  p.run("hud", [&] { p.hud_pass->draw(p.frame.hud, p.targets.display_target, p.targets.size); });
+}
+
+void Renderer::draw_panel(glm::ivec2 size, const PictureTarget& target) {
+  Parts& p = *parts_;
+  size = glm::clamp(size, glm::ivec2(1), glm::ivec2(kMaxSide));
+  p.run("panel", [&] {
+    if (!p.panel || p.panel_size != size) {
+      p.panel = gl::make_texture(size, GL_RGBA8, GL_LINEAR);
+      p.panel_target = gl::make_framebuffer({&p.panel});
+      p.panel_size = size;
+    }
+    const glm::vec4 transparent(0.0f);
+    glClearNamedFramebufferfv(p.panel_target.name(), GL_COLOR, 0, &transparent.x);
+    if (p.frame.hud) p.hud_pass->draw(p.frame.hud, p.panel_target, size);
+    p.copy(p.panel, size, target);
+  });
+}
+
+void Renderer::present() {
+  Parts& p = *parts_;
   if (p.context.has_window()) {
     p.run("window", [&] { p.show_in_window(); });
   }
   if (p.timing) p.times = p.timer.take();
+}
+
+void Renderer::draw(const Frame& frame) {
+  prepare(frame, {&frame.view, 1});
+  draw(frame.view);
+  draw_hud();
+  present();
+  parts_->frame = {};  // what it points to may go now
 }
 
 Image Renderer::read_back() {

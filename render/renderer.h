@@ -84,6 +84,13 @@ enum class Buffer : std::uint8_t {
 
 inline constexpr float kNoFluidDepth = 1.0e6f;
 
+/// Where a picture goes beside the renderer's own: a 2-D texture of this context, of four 8-bit channels
+/// (GL_RGBA8 or GL_SRGB8_ALPHA8: the bytes are sRGB either way) and of the picture's size; the bottom row is
+/// first.
+struct PictureTarget {
+  std::uint32_t texture = 0;  ///< GL name; 0 = nowhere else
+};
+
 /// Draws frames with one context. All calls on the thread the context is current on. The context must outlive
 /// it.
 class Renderer {
@@ -99,9 +106,24 @@ class Renderer {
   MeshHandle add_mesh(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
                       std::span<const glm::uvec3> triangles);
 
-  /// Draws one frame, and shows it in the window if the context has one (stretched to it, HUD included; call
-  /// Context::swap after). Unknown mesh handles, non-finite particles and arrows, and particles whose fluid
-  /// is not in Frame::fluids are left out.
+  /// What all pictures of a moment share, once: shadows that reach all of `views` (Frame::view is passed
+  /// over; without any nothing is shadowed), the fluids' looks. The frame is kept, so what it points to must
+  /// live until the last draw(). Unknown mesh handles, non-finite particles and arrows, and particles whose
+  /// fluid is not in Frame::fluids are left out.
+  void prepare(const Frame& frame, std::span<const View> views);
+  /// One picture of what was prepared, without a HUD: into the renderer's own, which read_back() reads, and
+  /// from there to `target` as the bytes are.
+  void draw(const View& view, const PictureTarget& target = {});
+  /// Runs Frame::hud once, over the picture drawn last.
+  void draw_hud();
+  /// Runs Frame::hud once, by itself, into `target` of `size` pixels: sRGB, transparent where nothing is,
+  /// colours multiplied by alpha.
+  void draw_panel(glm::ivec2 size, const PictureTarget& target);
+  /// The frame is over: shows the picture drawn last in the window if the context has one (stretched to it;
+  /// call Context::swap after).
+  void present();
+
+  /// All of this for one picture: of Frame::view, with the HUD over it.
   void draw(const Frame& frame);
 
   /// The picture drawn last.

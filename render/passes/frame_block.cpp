@@ -53,9 +53,12 @@ FrameBlock make_frame_block(const Frame& frame, const RenderOptions& options, co
   return block;
 }
 
-void FrameUniforms::upload(const FrameBlock& block, std::span<const FluidLook> fluids) {
+void FrameUniforms::upload(const FrameBlock& block) {
   frame_.upload(std::span(&block, 1));
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, frame_.name());
+}
+
+void FrameUniforms::upload_looks(std::span<const FluidLook> fluids) {
   std::array<LookBlock, kMaxFluidLooks> looks{};
   for (std::size_t i = 0; i < std::min(fluids.size(), looks.size()); ++i) {
     const FluidLook& fluid = fluids[i];

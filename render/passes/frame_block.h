@@ -57,10 +57,11 @@ glm::vec3 direction_to_light(const Frame& frame);
 
 FrameBlock make_frame_block(const Frame& frame, const RenderOptions& options, const ShadowView& shadow);
 
-/// Holds the frame's and the fluids' uniform blocks on bindings 0 and 1.
+/// Holds a picture's and the fluids' uniform blocks on bindings 0 and 1.
 class FrameUniforms {
  public:
-  void upload(const FrameBlock& block, std::span<const FluidLook> fluids);
+  void upload(const FrameBlock& block);
+  void upload_looks(std::span<const FluidLook> fluids);
 
  private:
   gl::StreamBuffer frame_;

@@ -69,7 +69,7 @@ void HudPass::fit_font() {
   ImGui_ImplOpenGL3_CreateFontsTexture();
 }
 
-void HudPass::draw(const std::function<void()>& hud, const Targets& targets) {
+void HudPass::draw(const std::function<void()>& hud, const gl::Framebuffer& target, glm::ivec2 size) {
   ImGui::SetCurrentContext(imgui_);
   ImGuiIO& io = ImGui::GetIO();
   ImGui_ImplOpenGL3_NewFrame();
@@ -77,18 +77,18 @@ void HudPass::draw(const std::function<void()>& hud, const Targets& targets) {
     ImGui_ImplGlfw_NewFrame();
     // The picture is stretched to the window, and the HUD with it.
     if (io.DisplaySize.x > 0.0f && io.DisplaySize.y > 0.0f) {
-      io.DisplayFramebufferScale = ImVec2(static_cast<float>(targets.size.x) / io.DisplaySize.x,
-                                          static_cast<float>(targets.size.y) / io.DisplaySize.y);
+      io.DisplayFramebufferScale = ImVec2(static_cast<float>(size.x) / io.DisplaySize.x,
+                                          static_cast<float>(size.y) / io.DisplaySize.y);
     }
   } else {
-    io.DisplaySize = ImVec2(static_cast<float>(targets.size.x), static_cast<float>(targets.size.y));
+    io.DisplaySize = ImVec2(static_cast<float>(size.x), static_cast<float>(size.y));
     io.DeltaTime = 1.0f / 60.0f;
   }
   fit_font();
   ImGui::NewFrame();
   if (hud) hud();
   ImGui::Render();
-  glBindFramebuffer(GL_FRAMEBUFFER, targets.display_target.name());
+  glBindFramebuffer(GL_FRAMEBUFFER, target.name());
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
 

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "render/context.h"
-#include "render/passes/targets.h"
+#include "render/gl/objects.h"
 
 struct ImGuiContext;
 
@@ -22,8 +22,8 @@ class HudPass {
   HudPass(const HudPass&) = delete;
   HudPass& operator=(const HudPass&) = delete;
 
-  /// Runs `hud` between NewFrame and Render; blends into display.
-  void draw(const std::function<void()>& hud, const Targets& targets);
+  /// Runs `hud` between NewFrame and Render; blends into `target` of `size` pixels.
+  void draw(const std::function<void()>& hud, const gl::Framebuffer& target, glm::ivec2 size);
 
  private:
   HudPass() = default;

@@ -65,13 +65,14 @@ glm::vec3 box_corner(const Bounds& box, int corner) {
           (corner & 4) ? box.high.z : box.low.z};
 }
 
-LightFit fit_light(std::span<const Caster> meshes, const Bounds& fluid, const View& view,
+LightFit fit_light(std::span<const Caster> meshes, const Bounds& fluid, std::span<const View> views,
                    const glm::vec3& to_light) {
   const glm::vec3 up =
       std::abs(to_light.y) > 0.99f ? glm::vec3(0.0f, 0.0f, 1.0f) : glm::vec3(0.0f, 1.0f, 0.0f);
   LightFit fit;
   fit.light_from_world = glm::lookAt(glm::vec3(0.0f), -to_light, up);
   // What flew beyond the far plane of the eye is taken to be there.
+  const View& view = views.front();
   const glm::vec3 eye(glm::inverse(view.view)[3]);
   std::vector<Corners> things;
   for (const Caster& mesh : meshes) things.push_back(corners_of(mesh.box, mesh.model));
@@ -93,7 +94,8 @@ LightFit fit_light(std::span<const Caster> meshes, const Bounds& fluid, const Vi
   }
   fit.box = all;
   if (all.empty()) return fit;
-  const Bounds seen = seen_box(view, everything, fit.light_from_world);
+  Bounds seen;
+  for (const View& each : views) seen.add(seen_box(each, everything, fit.light_from_world));
   const Bounds& wanted = casting.empty() ? all : casting;
   const glm::vec3 low = glm::max(wanted.low, seen.low);
   const glm::vec3 high = glm::min(wanted.high, seen.high);

@@ -18,14 +18,15 @@ struct Caster {
 
 struct LightFit {
   glm::mat4 light_from_world{1.0f};  ///< turned so that the light travels down −z
-  /// In light axes, m. x and y: what casts a shadow on something and lies in the eye's view. z: everything.
+  /// In light axes, m. x and y: what casts a shadow on something and lies in an eye's view. z: everything.
   Bounds box;
 };
 
 /// A mesh is no caster where it is convex and all others, and the fluid, lie before a side of its box that
-/// faces the light: a table under what stands on it. `fluid`: box in the world, may be empty. The fit is
-/// empty only where there is nothing at all.
-LightFit fit_light(std::span<const Caster> meshes, const Bounds& fluid, const View& view,
+/// faces the light: a table under what stands on it. `fluid`: box in the world, may be empty. `views`: one at
+/// least; what lies beyond the first one's far plane is taken to be there. The fit is empty only where there
+/// is nothing at all.
+LightFit fit_light(std::span<const Caster> meshes, const Bounds& fluid, std::span<const View> views,
                    const glm::vec3& to_light);
 
 /// World to the light's clip space. The box's extent is rounded up and its middle moved by whole texels of a

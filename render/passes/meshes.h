@@ -19,6 +19,10 @@ struct Bounds {
     low = glm::min(low, point);
     high = glm::max(high, point);
   }
+  void add(const Bounds& other) {
+    low = glm::min(low, other.low);
+    high = glm::max(high, other.high);
+  }
   bool empty() const { return low.x > high.x; }
 };
 

@@ -26,13 +26,13 @@ std::vector<Caster> casters_of(const Frame& frame, const MeshStore& meshes) {
 }
 
 /// Of the particles within the far plane's distance of the eye.
-Bounds fluid_box(const Frame& frame) {
-  const glm::vec3 eye(glm::inverse(frame.view.view)[3]);
+Bounds fluid_box(const Frame& frame, const View& view) {
+  const glm::vec3 eye(glm::inverse(view.view)[3]);
   Bounds box;
   const std::size_t count = std::min(frame.particles.size(), frame.particle_fluid.size());
   for (std::size_t i = 0; i < count; ++i) {
     const glm::vec3 off = glm::abs(frame.particles[i] - eye);
-    const bool near = std::max({off.x, off.y, off.z}) < frame.view.far_plane;
+    const bool near = std::max({off.x, off.y, off.z}) < view.far_plane;
     if (near && std::isfinite(off.x + off.y + off.z) && frame.particle_fluid[i] < frame.fluids.size())
       box.add(frame.particles[i]);
   }
@@ -57,11 +57,11 @@ Result<ShadowPass> ShadowPass::create(int size) {
   return pass;
 }
 
-ShadowView ShadowPass::draw(const Frame& frame, const MeshStore& meshes) {
+ShadowView ShadowPass::draw(const Frame& frame, const MeshStore& meshes, std::span<const View> views) {
   glBindTextureUnit(kShadowUnit, map_.name());
   const std::vector<Caster> casters = casters_of(frame, meshes);
   if (casters.empty()) return {};
-  const LightFit fit = fit_light(casters, fluid_box(frame), frame.view, direction_to_light(frame));
+  const LightFit fit = fit_light(casters, fluid_box(frame, views.front()), views, direction_to_light(frame));
   const glm::mat4 clip_from_world = light_clip_from_world(fit, size_);
 
   glBindFramebuffer(GL_FRAMEBUFFER, target_.name());

@@ -1,6 +1,8 @@
 // The light's view of the opaque meshes: a depth map that mesh.frag and composite.frag read.
 #pragma once
 
+#include <span>
+
 #include "render/frame.h"
 #include "render/gl/objects.h"
 #include "render/passes/frame_block.h"
@@ -13,9 +15,10 @@ class ShadowPass {
   /// size: texels a side, > 0.
   static Result<ShadowPass> create(int size);
 
-  /// Reads the opaque meshes, and where the fluid is; writes the depth map and binds it. Returns no
+  /// Reads the opaque meshes, and where the fluid is; writes the depth map that serves all `views` (one at
+  /// least) and binds it. Returns no
   /// shadow (size 0) for an empty scene.
-  ShadowView draw(const Frame& frame, const MeshStore& meshes);
+  ShadowView draw(const Frame& frame, const MeshStore& meshes, std::span<const View> views);
 
   int size() const { return size_; }
 

@@ -207,7 +207,8 @@ TEST(Shadow, TheLightsBoxHoldsTheScene) {
     drop.add(2.0f * to_light);
     const Caster scene{box, glm::mat4(1.0f), false};
     const View all = kit::make_view(glm::vec3(0.0f, 0.0f, 6.0f), glm::vec3(0.0f), 100, 100, 90.0f);
-    const glm::mat4 clip = light_clip_from_world(fit_light(std::span(&scene, 1), drop, all, to_light), 512);
+    const glm::mat4 clip =
+        light_clip_from_world(fit_light(std::span(&scene, 1), drop, std::span(&all, 1), to_light), 512);
     for (int corner = 0; corner < 8; ++corner) {
       const glm::vec3 at(corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
                          corner & 4 ? box.high.z : box.low.z);
@@ -231,7 +232,8 @@ TEST(Shadow, TheMapIsFittedToWhatCastsAndIsSeen) {
   cup.box.add({0.1f, 0.2f, 0.1f});
   const View view = kit::make_view({0.0f, 0.8f, 1.2f}, glm::vec3(0.0f), 100, 100, 60.0f);
   const auto width = [&](std::initializer_list<Caster> meshes, const View& seen_by) {
-    const LightFit fit = fit_light(std::span(meshes.begin(), meshes.size()), {}, seen_by, to_light);
+    const LightFit fit =
+        fit_light(std::span(meshes.begin(), meshes.size()), {}, std::span(&seen_by, 1), to_light);
     return fit.box.high.x - fit.box.low.x;
   };
   const float cup_alone = width({cup}, view);
@@ -244,7 +246,7 @@ TEST(Shadow, TheMapIsFittedToWhatCastsAndIsSeen) {
   const View close = kit::make_view({0.0f, 0.25f, 0.05f}, {0.0f, 0.19f, 0.0f}, 100, 100, 20.0f);
   EXPECT_LT(width({cup}, close), 0.8f * cup_alone) << "no texels for what the eye does not see";
   // All that lies below still has its depth in the map: what is outside counts as lit.
-  const LightFit fit = fit_light(std::vector<Caster>{table, cup}, {}, view, to_light);
+  const LightFit fit = fit_light(std::vector<Caster>{table, cup}, {}, std::span(&view, 1), to_light);
   const glm::mat4 clip = light_clip_from_world(fit, 512);
   for (int corner = 0; corner < 8; ++corner)
     EXPECT_LE(std::abs((clip * glm::vec4(box_corner(table.box, corner), 1.0f)).z), 1.0f);
