@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
-#include <type_traits>
 
+#include "sim/cuda/body_exchange.h"
 #include "sim/cuda/device_particles.h"
+#include "sim/cuda/host_particles.h"
 #include "sim/cuda/pass_clock.h"
+#include "sim/cuda/step_report.h"
+#include "sim/cuda/wall_guards.h"
+#include "sim/cuda/wrench_sums.h"
 #include "sim/fluid_sums.h"
 #include "sim/pass_table.h"
 
@@ -14,8 +17,6 @@ namespace slosh {
 
 namespace cuda {
 namespace {
-
-constexpr std::uint32_t kChunk = 1024;  // body particles that one block sums
 
 StepConstants step_constants(const RunConstants& c) {
   return {c.grid,
@@ -29,36 +30,6 @@ StepConstants step_constants(const RunConstants& c) {
           c.correction};
 }
 
-// The head of what comes back each step; the wrenches and the probes' forces follow it.
-struct alignas(16) ReportHead {
-  std::uint32_t status = 0;
-};
-
-// One column's part of a pack.
-template <class T>
-auto& lane(T& pack, int index) {
-  if constexpr (std::is_same_v<std::remove_const_t<T>, float4>) {
-    return (&pack.x)[index];
-  } else {
-    return pack;
-  }
-}
-
-using HostState = MovingPacks<PlainColumn>;
-
-// Calls f(column, value) for each column of one particle that outlives a step.
-template <class Packs, class F>
-void for_each_value(Packs& packs, std::size_t p, F&& f) {
-  for_each_column([&](auto column) {
-    constexpr ColumnInfo kInfo = info(decltype(column)::value);
-    for_each_pack(
-        [&](auto pack, auto& values) {
-          if constexpr (decltype(pack)::value == kInfo.pack) f(column, lane(values[p], kInfo.lane));
-        },
-        packs);
-  });
-}
-
 class CudaEngine final : public ParticleEngine {
  public:
   CudaEngine(const RunConstants& constants, const ParticleStart& start, std::span<const RigidBody> bodies,
@@ -70,7 +41,6 @@ class CudaEngine final : public ParticleEngine {
         kinds_by_id_(start.particles.kind),
         fluid_count_(start.fluid_count) {
     check_.ok(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "cudaStreamCreate");
-    check_.ok(cudaEventCreateWithFlags(&ready_, cudaEventDisableTiming), "cudaEventCreate");
     clock_.start(check_);
     fluid_.allocate(kinds_by_id_.size(), constants_, check_);
     fixed_.allocate(start.fixed, constants_, check_);
@@ -79,30 +49,33 @@ class CudaEngine final : public ParticleEngine {
     space_.allocate(static_cast<std::uint32_t>(largest), std::bit_width(constants_.grid.retired_key()),
                     check_);
     kinds_.upload(constants_.kinds, check_);
-    plan_wrenches(start, bodies);
-    plan_guards(start);
-    allocate_exchange(bodies.size());
+    sums_.plan(constants_.plan, start, bodies.size(), check_);
+    guards_.plan(constants_, start, bodies.size(), check_);
+    report_.plan(sums_.bodies().size(), guards_.handed_bytes(), probes_.size(), check_);
+    sent_.allocate(bodies.size(), check_);
+    sent_probes_.allocate(probes_, check_);
+    by_id_.allocate(3 * fluid_count_, check_);
+    kind_by_id_.allocate(fluid_count_, check_);
     check_.ok(cudaDeviceSynchronize(), "setting up");  // the stream does not wait for what filled the buffers
     restore(start.particles, no_impulses(bodies.size()));
     status_ = start.status;
     if (fixed_.count() > 0) {
-      send_bodies(bodies);
-      fixed_.place(step_, bodies_.data(), space_, check_, stream_);
+      sent_.send(bodies, check_, stream_);
+      fixed_.place(step_, sent_.bodies(), space_, check_, stream_);
     }
     check_.ok(cudaDeviceSynchronize(), "setting up");
   }
 
   ~CudaEngine() override {
     if (stream_) cudaStreamSynchronize(stream_);
-    if (ready_) cudaEventDestroy(ready_);
     if (stream_) cudaStreamDestroy(stream_);
   }
 
   void prepare(std::span<const RigidBody> bodies) override {
     if (idle()) return;
     clock_.begin(check_, stream_);
-    send_bodies(bodies);
-    carry_probes_in(bodies);
+    sent_.send(bodies, check_, stream_);
+    sent_probes_.carry(step_, constants_.rest_volume, probes_, bodies, fluid_.state(), check_, stream_);
     prepared_.assign(bodies.begin(), bodies.end());
     run(SubStepPart::kPrepare, 0.0);
     clock_.mark(PassClock::kSorted, check_, stream_);
@@ -110,12 +83,13 @@ class CudaEngine final : public ParticleEngine {
   void forces(double dt) override {
     if (idle()) return;
     forces_dt_ = dt;
-    take_impulses();
+    // What walls took from particles when they moved last goes into this sub-step's report.
+    guards_.hand_over(report_.impulses(), check_, stream_);
     run(SubStepPart::kForces, dt);
   }
   void advance(double dt, std::span<const RigidBody> after) override {
     if (idle()) return;
-    send_guards(after);
+    guards_.send(constants_.plan, prepared_, after, check_, stream_);
     run(SubStepPart::kAdvance, dt);
     clock_.mark(PassClock::kForce, check_, stream_);
     // A probe's force comes out of the last pass, and its place changes before the next sort.
@@ -123,7 +97,7 @@ class CudaEngine final : public ParticleEngine {
     if (sorted_ahead_) {
       fluid_.sort(step_, space_, check_, stream_);
     } else {
-      fetch_report();
+      report_.fetch(check_, stream_);
     }
     clock_.mark(PassClock::kEnd, check_, stream_);
   }
@@ -131,7 +105,7 @@ class CudaEngine final : public ParticleEngine {
   void wrenches(std::span<Wrench> out) override {
     std::fill(out.begin(), out.end(), Wrench{});
     if (idle()) return;
-    check_.ok(cudaEventSynchronize(ready_), "waiting for the step");
+    report_.wait(check_);
     clock_.read(check_);
     if (!check_.failed()) read_report(out);
   }
@@ -139,21 +113,12 @@ class CudaEngine final : public ParticleEngine {
   void body_drags(std::span<BodyDrag> out) const override {
     std::fill(out.begin(), out.end(), BodyDrag{});
     if (idle()) return;
-    for (std::size_t i = 0; i < wrench_bodies_.size(); ++i)
-      std::memcpy(&out[wrench_bodies_[i]], got_report_.data() + drags_at_ + i * sizeof(BodyDrag),
-                  sizeof(BodyDrag));
+    for (std::size_t i = 0; i < sums_.bodies().size(); ++i) out[sums_.bodies()[i]] = report_.got_drag(i);
   }
 
   void drag(std::span<const Twist> changes) override {
     if (idle()) return;
-    for (std::size_t b = 0; b < changes.size(); ++b) {
-      sent_twists_[b] = sent_bodies_[b];
-      sent_twists_[b].motion.velocity = glm::vec3(changes[b].linear);
-      sent_twists_[b].motion.angular_velocity = glm::vec3(changes[b].angular);
-    }
-    check_.ok(cudaMemcpyAsync(twists_.data(), sent_twists_.data(), twists_.bytes(), cudaMemcpyHostToDevice,
-                              stream_),
-              "sending twists");
+    sent_.send_twists(changes, check_, stream_);
     run(SubStepPart::kDrag, 0.0);
   }
   // No plan for this backend has it (make_plan, make_particle_engine).
@@ -175,50 +140,26 @@ class CudaEngine final : public ParticleEngine {
   void set_correction(const CorrectionConstants& correction) override { step_.correction = correction; }
 
   bool save(ParticleState& out, ImpulseSums& impulses) const override {
-    const HostState s = fetch_state();
+    const HostPacks packs = fetch_packs();
     impulses = fetch_impulses();
     if (check_.failed()) return false;
-    out.resize(s.id.size());
-    std::size_t count = 0;
-    for (std::size_t p = 0; p < s.id.size(); ++p) {
-      if (s.key[p] >= constants_.grid.retired_key()) continue;  // what it leaves behind means nothing
-      for_each_value(s, p, [&](auto column, const auto& value) {
-        if constexpr (info(column).saved) column_of<column>(out)[count] = value;
-      });
-      ++count;
-    }
-    out.resize(count);
+    to_state(packs, constants_.grid, out);
     return true;
   }
 
   void restore(const ParticleState& state, const ImpulseSums& impulses) override {
     if (check_.failed()) return;
-    const std::size_t total = kinds_by_id_.size();
-    HostState s;
-    for_each_pack([total](auto, auto& values) { values.resize(total); }, s);
-    std::vector<bool> seen(total, false);
     std::vector<std::uint32_t> slots(probes_.size());
     for (std::size_t p = 0; p < state.size(); ++p) {
-      for_each_value(s, p, [&](auto column, auto& value) {
-        if constexpr (info(column).saved) value = column_of<column>(state)[p];
-      });
       const std::uint32_t id = state.id[p];
       if (id >= fluid_count_) slots[id - fluid_count_] = static_cast<std::uint32_t>(p);
-      seen[id] = true;
     }
-    std::size_t behind = state.size();
-    for (std::uint32_t id = 0; id < total; ++id) {
-      if (seen[id]) continue;
-      s.id[behind] = id;
-      s.key[behind] = constants_.grid.retired_key();
-      s.v[behind++].w = constants_.rest_volume;
-    }
-    for (std::size_t p = 0; p < total; ++p) s.kind[p] = kinds_by_id_[s.id[p]];
+    const HostPacks packs = from_state(state, constants_.grid, constants_.rest_volume, kinds_by_id_);
     check_.ok(cudaStreamSynchronize(stream_), "waiting for the step");
-    fluid_.write(s, check_, stream_);
-    probe_slots_.write(slots, check_, stream_);
-    impulses_.write(impulses, check_, stream_);
-    check_.ok(cudaMemsetAsync(report_.data(), 0, sizeof(ReportHead), stream_), "clearing the status");
+    fluid_.write(packs, check_, stream_);
+    sent_probes_.write_slots(slots, check_, stream_);
+    guards_.write(impulses, check_, stream_);
+    report_.clear_status(check_, stream_);
     sorted_ahead_ = false;
     status_ = 0;
   }
@@ -241,23 +182,22 @@ class CudaEngine final : public ParticleEngine {
   }
 
   void add_to(Fingerprint& print) const override {
-    const HostState s = fetch_state();
-    for (std::size_t p = 0; p < s.id.size(); ++p) {
-      if (s.key[p] >= constants_.grid.retired_key()) continue;
-      print.add(s.id[p]);
-      for_each_value(s, p, [&](auto column, const auto& value) {
+    const HostPacks packs = fetch_packs();
+    for_each_present(packs, constants_.grid, [&](std::size_t p) {
+      print.add(packs.id[p]);
+      for_each_value(packs, p, [&](auto column, const auto& value) {
         if constexpr (info(column).hashed && column != FluidColumn::id) print.add(value);
       });
-    }
+    });
   }
 
   Diagnostics diagnostics() const override {
     FluidSums sums(constants_);
-    const HostState s = fetch_state();
-    for (std::size_t p = 0; p < s.id.size(); ++p) {
-      if (s.key[p] >= constants_.grid.retired_key()) continue;
-      sums.add(s.kind[p], {s.x[p].x, s.x[p].y, s.x[p].z}, {s.v[p].x, s.v[p].y, s.v[p].z}, s.v[p].w);
-    }
+    const HostPacks packs = fetch_packs();
+    for_each_present(packs, constants_.grid, [&](std::size_t p) {
+      const float4 x = packs.x[p], v = packs.v[p];
+      sums.add(packs.kind[p], {x.x, x.y, x.z}, {v.x, v.y, v.z}, v.w);
+    });
     sums.add(fetch_impulses());
     return sums.finish(fluid_count_);
   }
@@ -293,18 +233,18 @@ class CudaEngine final : public ParticleEngine {
   void sort(double) {
     if (!sorted_ahead_) fluid_.sort(step_, space_, check_, stream_);
   }
-  void place_bodies(double) { moving_.place(step_, bodies_.data(), space_, check_, stream_); }
+  void place_bodies(double) { moving_.place(step_, sent_.bodies(), space_, check_, stream_); }
 
   void find_density(double) {
     if (check_.failed()) return;
     launch_density(step_, constants_.plan, kinds_.data(), fluid_.sorted(), fixed_.sorted(), moving_.sorted(),
-                   status_word(), stream_);
+                   report_.status(), stream_);
     check_.launched("density");
     clock_.mark(PassClock::kDensity, check_, stream_);
   }
 
   void find_forces(double) {
-    if (probes_.empty()) fetch_report();
+    if (probes_.empty()) report_.fetch(check_, stream_);
     clock_.mark(PassClock::kWrench, check_, stream_);
     if (check_.failed()) return;
     launch_force(step_, constants_.plan, kinds_.data(), fluid_.sorted(), fixed_.sorted(), moving_.sorted(),
@@ -314,18 +254,18 @@ class CudaEngine final : public ParticleEngine {
 
   void drag_on_fluid(double) {
     if (check_.failed()) return;
-    launch_drag(step_, constants_.plan, kinds_.data(), fluid_.sorted(), moving_.sorted(), twists_.data(),
+    launch_drag(step_, constants_.plan, kinds_.data(), fluid_.sorted(), moving_.sorted(), sent_.twists(),
                 stream_);
     check_.launched("drag");
   }
 
   void integrate(double dt) {
     if (check_.failed()) return;
-    const ProbeOutput probes{static_cast<std::uint32_t>(fluid_count_),
-                             reinterpret_cast<float4*>(report_.data() + probes_at_), probe_slots_.data()};
+    const ProbeOutput probes{static_cast<std::uint32_t>(fluid_count_), report_.probes(),
+                             sent_probes_.slots().data()};
     launch_integrate(step_, kinds_.data(), fluid_.sorted(), static_cast<float>(dt),
-                     static_cast<float>(speed_limit(constants_.plan, dt)), guard_view(), probes, status_word(),
-                     stream_);
+                     static_cast<float>(speed_limit(constants_.plan, dt)),
+                     guards_.view(constants_.impulse_units), probes, report_.status(), stream_);
     check_.launched("integration");
   }
 
@@ -336,207 +276,51 @@ class CudaEngine final : public ParticleEngine {
     check_.ok(cudaStreamSynchronize(stream_), "download");
   }
 
-  HostState fetch_state() const {
-    HostState s;
-    if (check_.failed()) return s;
+  HostPacks fetch_packs() const {
+    HostPacks packs;
+    if (check_.failed()) return packs;
     for_each_pack(
         [&](auto, auto& values, const auto* from) {
           values.resize(fluid_.count());
           fetch(from, values.data(), values.size());
         },
-        s, fluid_.state());
+        packs, fluid_.state());
     if (check_.failed()) return {};
-    return s;
+    return packs;
   }
 
   ImpulseSums fetch_impulses() const {
-    ImpulseSums sums(impulses_.size());
-    fetch(impulses_.data(), sums.data(), sums.size());
+    ImpulseSums sums(guards_.impulses().size());
+    fetch(guards_.impulses().data(), sums.data(), sums.size());
     return sums;
   }
 
-  void plan_guards(const ParticleStart& start) {
-    if (!constants_.plan.guards_walls()) return;
-    std::vector<float> values;
-    for (const DistanceField& field : start.guarded)
-      values.insert(values.end(), field.distance.begin(), field.distance.end());
-    fields_.upload(values, check_);
-    const float* at = fields_.data();
-    for (const DistanceField& field : start.guarded) {
-      views_.push_back({field.origin, field.cell, field.size, field.distance.empty() ? nullptr : at});
-      at += field.distance.size();
-    }
-    guards_.allocate(views_.size(), check_);
-    sent_guards_.allocate(views_.size(), check_);
-  }
-
-  // The copy before has been made: wrenches() was waited for since, or the bodies stood still.
-  void send_guards(std::span<const RigidBody> after) {
-    if (guards_.size() == 0 || check_.failed()) return;
-    guard_bodies(views_, constants_.plan, prepared_, after, guarded_);
-    any_fast_ = false;
-    for (std::size_t b = 0; b < guarded_.size(); ++b) {
-      sent_guards_[b] = {guarded_[b], after[b].position};
-      any_fast_ |= guarded_[b].fast;
-    }
-    check_.ok(cudaMemcpyAsync(guards_.data(), sent_guards_.data(), guards_.bytes(), cudaMemcpyHostToDevice,
-                              stream_),
-              "sending walls");
-  }
-
-  GuardView guard_view() const {
-    return {static_cast<std::uint32_t>(guards_.size()), any_fast_ ? 1u : 0u, guards_.data(),
-            reinterpret_cast<unsigned long long*>(impulses_.data()), constants_.impulse_units};
-  }
-
-  // What walls took from particles when they moved last goes into this sub-step's report.
-  void take_impulses() {
-    if (guards_.size() == 0 || check_.failed()) return;
-    const std::size_t bytes = guards_.size() * kImpulseWords * sizeof(std::int64_t);
-    check_.ok(cudaMemcpyAsync(report_.data() + impulses_at_, impulses_.data(), bytes,
-                              cudaMemcpyDeviceToDevice, stream_),
-              "handing impulses over");
-    check_.ok(cudaMemsetAsync(impulses_.data(), 0, bytes, stream_), "clearing impulses");
-  }
-
-  // Cuts each measured body's particles into chunks; local order is body by body.
-  void plan_wrenches(const ParticleStart& start, std::span<const RigidBody> bodies) {
-    std::vector<std::uint8_t> wanted(bodies.size(), 0);
-    for (const int b : constants_.plan.wrench_bodies) wanted[b] = 1;
-    std::vector<WrenchChunk> chunks;
-    std::vector<WrenchRange> ranges;
-    const auto cut = [&](const std::vector<SurfaceParticle>& particles, bool moving) {
-      const std::uint32_t count = static_cast<std::uint32_t>(particles.size());
-      for (std::uint32_t begin = 0; begin < count;) {
-        const std::uint16_t body = particles[begin].body;
-        std::uint32_t end = begin;
-        while (end < count && particles[end].body == body) ++end;
-        if (wanted[body]) {
-          const std::uint32_t first = static_cast<std::uint32_t>(chunks.size());
-          for (std::uint32_t i = begin; i < end; i += kChunk) {
-            chunks.push_back({i, std::min(i + kChunk, end), body, moving ? 1u : 0u});
-          }
-          ranges.push_back({first, static_cast<std::uint32_t>(chunks.size()), body});
-          (moving ? moving_measured_ : fixed_measured_) = true;
-        }
-        begin = end;
-      }
-    };
-    if (constants_.plan.has(PassId::kWrenches)) {
-      cut(start.moving, true);
-      cut(start.fixed, false);
-    }
-    for (const WrenchRange& range : ranges) wrench_bodies_.push_back(range.body);
-    wanted_.upload(wanted, check_);
-    chunks_.upload(chunks, check_);
-    ranges_.upload(ranges, check_);
-    partial_.allocate(chunks.size(), check_);
-    partial_drags_.allocate(chunks.size(), check_);
-  }
-
-  void allocate_exchange(std::size_t body_count) {
-    bodies_.allocate(body_count, check_);
-    sent_bodies_.allocate(body_count, check_);
-    twists_.allocate(body_count, check_);
-    sent_twists_.allocate(body_count, check_);
-    device_probes_.allocate(probes_.size(), check_);
-    sent_probes_.allocate(probes_.size(), check_);
-    std::vector<std::uint32_t> slots;
-    for (const Probe& probe : probes_) slots.push_back(probe.id);
-    probe_slots_.upload(slots, check_);
-    wrenches_at_ = sizeof(ReportHead);
-    drags_at_ = wrenches_at_ + wrench_bodies_.size() * sizeof(DeviceWrench);
-    impulses_at_ = drags_at_ + wrench_bodies_.size() * sizeof(BodyDrag);
-    impulses_.allocate(no_impulses(body_count).size(), check_);
-    const std::size_t impulses = guards_.size() * kImpulseWords * sizeof(std::int64_t);
-    // Whole packs of 16 bytes, as the probes' forces are.
-    probes_at_ = (impulses_at_ + impulses + 15) / 16 * 16;
-    report_.allocate(probes_at_ + probes_.size() * sizeof(float4), check_);
-    got_report_.allocate(report_.size(), check_);
-    by_id_.allocate(3 * fluid_count_, check_);
-    kind_by_id_.allocate(fluid_count_, check_);
-  }
-
-  std::uint32_t* status_word() const { return reinterpret_cast<std::uint32_t*>(report_.data()); }
-
-  void send_bodies(std::span<const RigidBody> bodies) {
-    if (bodies.empty() || check_.failed()) return;
-    for (std::size_t b = 0; b < bodies.size(); ++b)
-      sent_bodies_[b] = {surface_motion(bodies[b]), bodies[b].position};
-    check_.ok(cudaMemcpyAsync(bodies_.data(), sent_bodies_.data(), bodies_.bytes(), cudaMemcpyHostToDevice,
-                              stream_),
-              "sending bodies");
-  }
-
-  void carry_probes_in(std::span<const RigidBody> bodies) {
-    if (probes_.empty() || check_.failed()) return;
-    for (std::size_t i = 0; i < probes_.size(); ++i) {
-      const glm::vec3 x(bodies[probes_[i].body].position);
-      const glm::vec3 v(bodies[probes_[i].body].velocity);
-      sent_probes_[i] = {{x.x, x.y, x.z, 0.0f}, {v.x, v.y, v.z, constants_.rest_volume}};
-    }
-    check_.ok(cudaMemcpyAsync(device_probes_.data(), sent_probes_.data(), device_probes_.bytes(),
-                              cudaMemcpyHostToDevice, stream_),
-              "sending probes");
-    launch_carry_probes(step_, device_probes_.data(), probe_slots_.data(),
-                        static_cast<std::uint32_t>(probes_.size()), fluid_.state(), stream_);
-    check_.launched("placing probes");
-  }
-
   void sum_wrenches(double) {
-    if (wrench_bodies_.empty() || check_.failed()) return;
-    const float first_viscosity = constants_.kinds.front().viscosity;
     const bool with_drag = constants_.plan.has(PassId::kBodyDrag);
-    const auto forces = [&](const SurfaceBuffers& surface, bool drag) {
-      launch_surface_forces(step_, constants_.plan, first_viscosity, fluid_.sorted(), surface.sorted(),
-                            wanted_.data(), surface.local(), drag, stream_);
-      check_.launched("forces on bodies");
-    };
-    if (moving_measured_) forces(moving_, with_drag);
-    if (fixed_measured_) forces(fixed_, false);
-    launch_wrenches(fixed_.local(), moving_.local(), bodies_.data(), chunks_.data(),
-                    static_cast<std::uint32_t>(chunks_.size()), partial_.data(), ranges_.data(),
-                    static_cast<std::uint32_t>(ranges_.size()),
-                    reinterpret_cast<DeviceWrench*>(report_.data() + wrenches_at_), stream_);
-    check_.launched("wrenches");
-    if (!with_drag) return;
-    launch_body_drags(moving_.local(), bodies_.data(), chunks_.data(),
-                      static_cast<std::uint32_t>(chunks_.size()), partial_drags_.data(), ranges_.data(),
-                      static_cast<std::uint32_t>(ranges_.size()),
-                      reinterpret_cast<BodyDrag*>(report_.data() + drags_at_), stream_);
-    check_.launched("drag on bodies");
-  }
-
-  void fetch_report() {
-    if (check_.failed()) return;
-    check_.ok(
-        cudaMemcpyAsync(got_report_.data(), report_.data(), report_.bytes(), cudaMemcpyDeviceToHost, stream_),
-        "fetching the report");
-    check_.ok(cudaEventRecord(ready_, stream_), "cudaEventRecord");
-    check_.ok(cudaMemsetAsync(report_.data(), 0, sizeof(ReportHead), stream_), "clearing the status");
+    const SurfaceSides sides{fixed_, moving_};
+    sums_.find_forces(step_, constants_.plan, constants_.kinds.front().viscosity, fluid_.sorted(), sides,
+                      with_drag, check_, stream_);
+    sums_.sum_wrenches(sides, sent_.bodies(), report_.wrenches(), check_, stream_);
+    if (with_drag) sums_.sum_drags(sides, sent_.bodies(), report_.drags(), check_, stream_);
   }
 
   void read_report(std::span<Wrench> wrenches) {
-    ReportHead head;
-    std::memcpy(&head, got_report_.data(), sizeof head);
-    status_ |= head.status;
-    for (std::size_t i = 0; i < wrench_bodies_.size(); ++i) {
-      DeviceWrench w;
-      std::memcpy(&w, got_report_.data() + wrenches_at_ + i * sizeof w, sizeof w);
-      wrenches[wrench_bodies_[i]].force += glm::dvec3(w.force[0], w.force[1], w.force[2]);
-      wrenches[wrench_bodies_[i]].torque += glm::dvec3(w.torque[0], w.torque[1], w.torque[2]);
+    status_ |= report_.got_status();
+    for (std::size_t i = 0; i < sums_.bodies().size(); ++i) {
+      const DeviceWrench w = report_.got_wrench(i);
+      wrenches[sums_.bodies()[i]].force += glm::dvec3(w.force[0], w.force[1], w.force[2]);
+      wrenches[sums_.bodies()[i]].torque += glm::dvec3(w.torque[0], w.torque[1], w.torque[2]);
     }
     if (guards_.size() > 0) {
-      for (const std::uint32_t b : wrench_bodies_) {
+      for (const std::uint32_t b : sums_.bodies()) {
         std::int64_t words[kImpulseWords];
-        std::memcpy(words, got_report_.data() + impulses_at_ + b * sizeof words, sizeof words);
+        report_.got_impulses(b, words);
         wrenches[b] = wrenches[b] + impulse_wrench(words, constants_.impulse_units, forces_dt_);
       }
     }
     if (!constants_.plan.has(PassId::kWrenches)) return;
     for (std::size_t i = 0; i < probes_.size(); ++i) {
-      float4 f;
-      std::memcpy(&f, got_report_.data() + probes_at_ + i * sizeof f, sizeof f);
+      const float4 f = report_.got_probe(i);
       wrenches[probes_[i].body].force += glm::dvec3(f.x, f.y, f.z);
     }
   }
@@ -550,7 +334,6 @@ class CudaEngine final : public ParticleEngine {
   std::uint32_t status_ = 0;
   mutable CallCheck check_;
   cudaStream_t stream_ = nullptr;
-  cudaEvent_t ready_ = nullptr;
   PassClock clock_;
   bool sorted_ahead_ = false;  // the particles are in order for the next step's density
 
@@ -558,61 +341,20 @@ class CudaEngine final : public ParticleEngine {
   SurfaceBuffers fixed_, moving_;
   SortSpace space_;
   DeviceBuffer<ParticleKind> kinds_;
-  DeviceBuffer<std::uint8_t> wanted_;
-  DeviceBuffer<WrenchChunk> chunks_;
-  DeviceBuffer<WrenchRange> ranges_;
-  DeviceBuffer<DeviceWrench> partial_;
-  DeviceBuffer<BodyDrag> partial_drags_;
-  bool fixed_measured_ = false, moving_measured_ = false;
-  std::vector<std::uint32_t> wrench_bodies_;  // body of each range
+  WrenchSums sums_;
+  WallGuards guards_;
+  StepReport report_;
 
-  DeviceBuffer<DeviceBody> bodies_;
-  PinnedBuffer<DeviceBody> sent_bodies_;
-  DeviceBuffer<DeviceBody> twists_;  // by which bodies end a step with another velocity
-  PinnedBuffer<DeviceBody> sent_twists_;
-  DeviceBuffer<DeviceProbe> device_probes_;
-  PinnedBuffer<DeviceProbe> sent_probes_;
-  DeviceBuffer<std::uint32_t> probe_slots_;
-  DeviceBuffer<unsigned char> report_;
-  PinnedBuffer<unsigned char> got_report_;
-  std::size_t wrenches_at_ = 0, drags_at_ = 0, impulses_at_ = 0, probes_at_ = 0;  // in the report
-
+  SentBodies sent_;
+  SentProbes sent_probes_;
   std::vector<RigidBody> prepared_;  // as they were in prepare()
-  DeviceBuffer<float> fields_;       // of the bodies that particles are guarded against, one after the other
-  std::vector<DistanceFieldView> views_;
-  std::vector<GuardedBody> guarded_;
-  DeviceBuffer<DeviceGuard> guards_;
-  PinnedBuffer<DeviceGuard> sent_guards_;
-  bool any_fast_ = false;
-  DeviceBuffer<std::int64_t> impulses_;  // as ImpulseSums
-  double forces_dt_ = 0.0;               // s, of the last forces()
+  double forces_dt_ = 0.0;           // s, of the last forces()
   DeviceBuffer<float> by_id_;
   DeviceBuffer<std::uint8_t> kind_by_id_;
 };
 
 }  // namespace
 }  // namespace cuda
-
-CudaDevice find_cuda_device() {
-  cuda::CallCheck check;
-  int count = 0;
-  cudaDeviceProp properties{};
-  if (check.ok(cudaGetDeviceCount(&count), "no GPU") && count > 0) {
-    check.ok(cudaGetDeviceProperties(&properties, 0), "cudaGetDeviceProperties");
-    // Runs something: a GPU that this program has no code for is found here.
-    cuda::DeviceBuffer<std::uint32_t> probe;
-    probe.allocate(1, check);
-    if (!check.failed()) {
-      cuda::launch_identity(probe.data(), 1, nullptr);
-      check.launched("the GPU cannot run this program's code");
-      check.ok(cudaDeviceSynchronize(), "the GPU does not answer");
-    }
-  }
-  cudaGetLastError();  // what was asked here is no one else's error
-  if (check.failed()) return {false, "", check.failure()};
-  if (count == 0) return {false, "", "no GPU"};
-  return {true, properties.name, ""};
-}
 
 Result<std::unique_ptr<ParticleEngine>> make_cuda_engine(const RunConstants& constants,
                                                          const ParticleStart& start,

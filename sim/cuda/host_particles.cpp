@@ -1,0 +1,42 @@
+#include "sim/cuda/host_particles.h"
+
+#include <vector>
+
+namespace slosh::cuda {
+
+void to_state(const HostPacks& packs, const CellGrid& grid, ParticleState& out) {
+  out.resize(packs.id.size());
+  std::size_t count = 0;
+  for_each_present(packs, grid, [&](std::size_t p) {
+    for_each_value(packs, p, [&](auto column, const auto& value) {
+      if constexpr (info(column).saved) column_of<column>(out)[count] = value;
+    });
+    ++count;
+  });
+  out.resize(count);
+}
+
+HostPacks from_state(const ParticleState& state, const CellGrid& grid, float rest_volume,
+                     const std::vector<std::uint8_t>& kinds_by_id) {
+  const std::size_t total = kinds_by_id.size();
+  HostPacks packs;
+  for_each_pack([total](auto, auto& values) { values.resize(total); }, packs);
+  std::vector<bool> seen(total, false);
+  for (std::size_t p = 0; p < state.size(); ++p) {
+    for_each_value(packs, p, [&](auto column, auto& value) {
+      if constexpr (info(column).saved) value = column_of<column>(state)[p];
+    });
+    seen[state.id[p]] = true;
+  }
+  std::size_t behind = state.size();
+  for (std::uint32_t id = 0; id < total; ++id) {
+    if (seen[id]) continue;
+    packs.id[behind] = id;
+    packs.key[behind] = grid.retired_key();
+    packs.v[behind++].w = rest_volume;
+  }
+  for (std::size_t p = 0; p < total; ++p) packs.kind[p] = kinds_by_id[packs.id[p]];
+  return packs;
+}
+
+}  // namespace slosh::cuda

@@ -1,0 +1,47 @@
+#include "sim/cuda/wall_guards.h"
+
+namespace slosh::cuda {
+
+void WallGuards::plan(const RunConstants& constants, const ParticleStart& start, std::size_t body_count,
+                      CallCheck& check) {
+  impulses_.allocate(no_impulses(body_count).size(), check);
+  if (!constants.plan.guards_walls()) return;
+  std::vector<float> values;
+  for (const DistanceField& field : start.guarded)
+    values.insert(values.end(), field.distance.begin(), field.distance.end());
+  fields_.upload(values, check);
+  const float* at = fields_.data();
+  for (const DistanceField& field : start.guarded) {
+    views_.push_back({field.origin, field.cell, field.size, field.distance.empty() ? nullptr : at});
+    at += field.distance.size();
+  }
+  guards_.allocate(views_.size(), check);
+  sent_.allocate(views_.size(), check);
+}
+
+void WallGuards::send(const Plan& plan, std::span<const RigidBody> before, std::span<const RigidBody> after,
+                      CallCheck& check, cudaStream_t stream) {
+  if (guards_.size() == 0 || check.failed()) return;
+  guard_bodies(views_, plan, before, after, guarded_);
+  any_fast_ = false;
+  for (std::size_t b = 0; b < guarded_.size(); ++b) {
+    sent_[b] = {guarded_[b], after[b].position};
+    any_fast_ |= guarded_[b].fast;
+  }
+  check.ok(cudaMemcpyAsync(guards_.data(), sent_.data(), guards_.bytes(), cudaMemcpyHostToDevice, stream),
+           "sending walls");
+}
+
+GuardView WallGuards::view(const ImpulseUnits& units) const {
+  return {static_cast<std::uint32_t>(guards_.size()), any_fast_ ? 1u : 0u, guards_.data(),
+          reinterpret_cast<unsigned long long*>(impulses_.data()), units};
+}
+
+void WallGuards::hand_over(unsigned char* out, CallCheck& check, cudaStream_t stream) const {
+  if (guards_.size() == 0 || check.failed()) return;
+  check.ok(cudaMemcpyAsync(out, impulses_.data(), handed_bytes(), cudaMemcpyDeviceToDevice, stream),
+           "handing impulses over");
+  check.ok(cudaMemsetAsync(impulses_.data(), 0, handed_bytes(), stream), "clearing impulses");
+}
+
+}  // namespace slosh::cuda

@@ -1,0 +1,45 @@
+// The bodies that particles are kept from passing (walls/wall_guard.h), as the GPU knows them.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sim/cuda/device_buffer.h"
+#include "sim/cuda/kernels.h"
+
+namespace slosh::cuda {
+
+class WallGuards {
+ public:
+  /// Takes the distance fields over, where the plan guards walls.
+  void plan(const RunConstants& constants, const ParticleStart& start, std::size_t body_count,
+            CallCheck& check);
+  /// How many bodies; 0: nothing is guarded.
+  std::size_t size() const { return guards_.size(); }
+
+  /// The bodies' ways in this sub-step, to the GPU. The copy before has been made by now: the engine was
+  /// waited for since, or the bodies stood still.
+  void send(const Plan& plan, std::span<const RigidBody> before, std::span<const RigidBody> after,
+            CallCheck& check, cudaStream_t stream);
+  GuardView view(const ImpulseUnits& units) const;
+
+  /// What walls took from particles, as ImpulseSums.
+  const DeviceBuffer<std::int64_t>& impulses() const { return impulses_; }
+  void write(const ImpulseSums& impulses, CallCheck& check, cudaStream_t stream) {
+    impulses_.write(impulses, check, stream);
+  }
+  /// Hands what the bodies have to be given over to `out`, kImpulseWords a body, and begins anew.
+  void hand_over(unsigned char* out, CallCheck& check, cudaStream_t stream) const;
+  std::size_t handed_bytes() const { return guards_.size() * kImpulseWords * sizeof(std::int64_t); }
+
+ private:
+  DeviceBuffer<float> fields_;  // one after the other
+  std::vector<DistanceFieldView> views_;
+  std::vector<GuardedBody> guarded_;
+  DeviceBuffer<DeviceGuard> guards_;
+  PinnedBuffer<DeviceGuard> sent_;
+  bool any_fast_ = false;
+  DeviceBuffer<std::int64_t> impulses_;
+};
+
+}  // namespace slosh::cuda

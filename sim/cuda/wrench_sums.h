@@ -1,0 +1,53 @@
+// What the fluid does to bodies, summed in a fixed shape: which particles belong to which sum, and where the
+// parts lie.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sim/cuda/device_particles.h"
+
+namespace slosh::cuda {
+
+/// Where a step's particles are.
+struct SurfaceSides {
+  const SurfaceBuffers& fixed;
+  const SurfaceBuffers& moving;
+};
+
+class WrenchSums {
+ public:
+  /// Cuts the particles of the bodies that the plan measures into chunks; local order is body by body.
+  void plan(const Plan& plan, const ParticleStart& start, std::size_t body_count, CallCheck& check);
+
+  /// Of each sum, in the order of the sums.
+  const std::vector<std::uint32_t>& bodies() const { return summed_; }
+  /// Whether fixed bodies are among them, and which bodies, a flag each, on the GPU.
+  bool fixed_measured() const { return fixed_measured_; }
+  const std::uint8_t* wanted() const { return wanted_.data(); }
+
+  /// Forces on the particles, `with_drag` with what those on free ones lose for their velocity.
+  void find_forces(const StepConstants& constants, const Plan& plan, float first_viscosity,
+                   const SortedFluid& fluid, const SurfaceSides& sides, bool with_drag, CallCheck& check,
+                   cudaStream_t stream) const;
+  /// The particles' forces, to bodies().size() wrenches.
+  void sum_wrenches(const SurfaceSides& sides, const DeviceBody* bodies, DeviceWrench* wrenches,
+                    CallCheck& check, cudaStream_t stream) const;
+  /// And the drag of free ones' particles; the other bodies' is zero.
+  void sum_drags(const SurfaceSides& sides, const DeviceBody* bodies, BodyDrag* drags, CallCheck& check,
+                 cudaStream_t stream) const;
+
+ private:
+  DeviceBuffer<std::uint8_t> wanted_;  // one a body
+  DeviceBuffer<WrenchChunk> chunks_;
+  DeviceBuffer<WrenchRange> ranges_;
+  DeviceBuffer<DeviceWrench> partial_;
+  DeviceBuffer<BodyDrag> partial_drags_;
+  bool fixed_measured_ = false, moving_measured_ = false;
+  std::uint32_t chunk_count() const { return static_cast<std::uint32_t>(chunks_.size()); }
+  std::uint32_t range_count() const { return static_cast<std::uint32_t>(ranges_.size()); }
+
+  std::vector<std::uint32_t> summed_;  // body of each range
+};
+
+}  // namespace slosh::cuda
