@@ -30,8 +30,8 @@ bool cuda_available(std::string* reason) {
   return device.available;
 }
 
-bool can_solve_drag(Backend backend) {
-  return backend == Backend::kCpu || (backend == Backend::kAuto && !cuda_available());
+bool can_solve_drag(Backend) {
+  return true;
 }
 
 Result<std::unique_ptr<ParticleEngine>> make_particle_engine(const RunConstants& constants,
@@ -40,11 +40,7 @@ Result<std::unique_ptr<ParticleEngine>> make_particle_engine(const RunConstants&
                                                              const WorldOptions& options) {
   if (options.backend != Backend::kCpu) {
     const CudaDevice device = find_cuda_device();
-    if (constants.plan.solves_drag) {
-      if (options.backend == Backend::kCuda)
-        return Error{"backend cuda", "it has no implicit viscosity, and the plan was made for it",
-                     "Make the plan for this backend, or use the CPU's"};
-    } else if (device.available) {
+    if (device.available) {
       Result<std::unique_ptr<ParticleEngine>> engine = make_cuda_engine(constants, start, bodies);
       if (engine || options.backend == Backend::kCuda) return engine;
     } else if (options.backend == Backend::kCuda) {

@@ -8,6 +8,7 @@
 #include "sim/cuda/host_particles.h"
 #include "sim/cuda/pass_clock.h"
 #include "sim/cuda/step_report.h"
+#include "sim/cuda/viscous_solve.h"
 #include "sim/cuda/wall_guards.h"
 #include "sim/cuda/wrench_sums.h"
 #include "sim/fluid_sums.h"
@@ -51,6 +52,7 @@ class CudaEngine final : public ParticleEngine {
     kinds_.upload(constants_.kinds, check_);
     sums_.plan(constants_.plan, start, bodies.size(), check_);
     guards_.plan(constants_, start, bodies.size(), check_);
+    viscous_.plan(constants_.plan, start, bodies.size(), sums_, check_);
     report_.plan(sums_.bodies().size(), guards_.handed_bytes(), probes_.size(), check_);
     sent_.allocate(bodies.size(), check_);
     sent_probes_.allocate(probes_, check_);
@@ -113,6 +115,7 @@ class CudaEngine final : public ParticleEngine {
   void body_drags(std::span<BodyDrag> out) const override {
     std::fill(out.begin(), out.end(), BodyDrag{});
     if (idle()) return;
+    if (constants_.plan.has(PassId::kImplicitDrag)) return viscous_.drags(out);
     for (std::size_t i = 0; i < sums_.bodies().size(); ++i) out[sums_.bodies()[i]] = report_.got_drag(i);
   }
 
@@ -121,8 +124,11 @@ class CudaEngine final : public ParticleEngine {
     sent_.send_twists(changes, check_, stream_);
     run(SubStepPart::kDrag, 0.0);
   }
-  // No plan for this backend has it (make_plan, make_particle_engine).
-  void solve_drag(double, std::span<const ViscousBody>, std::span<Wrench>) override {}
+  void solve_drag(double dt, std::span<const ViscousBody> bodies, std::span<Wrench> wrenches) override {
+    if (idle()) return;
+    asked_ = {bodies, wrenches};
+    run(SubStepPart::kSolve, dt);
+  }
 
   void damp(float keep) override {
     if (idle()) return;
@@ -220,10 +226,11 @@ class CudaEngine final : public ParticleEngine {
          {kPressureForce, kOneViscosity, kPairViscosity, kWalls},
          &CudaEngine::find_forces,
          nullptr},
+        {SubStepPart::kSolve, {kImplicitDrag}, &CudaEngine::solve_implicit_drag, nullptr},
         {SubStepPart::kDrag, {kBodyDrag}, &CudaEngine::drag_on_fluid, nullptr},
         {SubStepPart::kAdvance, {kIntegrateFluid}, &CudaEngine::integrate, nullptr},
     };
-    static_assert(covers_all_particle_passes(kTable, {kImplicitDrag}));
+    static_assert(covers_all_particle_passes(kTable));
     return kTable;
   }
   void run(SubStepPart part, double dt) { run_passes(*this, table(), part, constants_.plan, dt, nullptr); }
@@ -243,13 +250,25 @@ class CudaEngine final : public ParticleEngine {
     clock_.mark(PassClock::kDensity, check_, stream_);
   }
 
-  void find_forces(double) {
+  void find_forces(double dt) {
     if (probes_.empty()) report_.fetch(check_, stream_);
     clock_.mark(PassClock::kWrench, check_, stream_);
     if (check_.failed()) return;
     launch_force(step_, constants_.plan, kinds_.data(), fluid_.sorted(), fixed_.sorted(), moving_.sorted(),
                  stream_);
     check_.launched("forces");
+    // While the CPU sees where the bodies are going.
+    if (constants_.plan.has(PassId::kImplicitDrag))
+      viscous_.write_rows(viscous_sides(), static_cast<float>(dt), check_, stream_);
+  }
+
+  ViscousSides viscous_sides() const {
+    return {step_,           constants_.plan, kinds_,  constants_.kinds.front().viscosity,
+            fluid_.sorted(), fixed_,          moving_, sent_.bodies()};
+  }
+  void solve_implicit_drag(double dt) {
+    viscous_.solve(viscous_sides(), static_cast<float>(dt), asked_.bodies, prepared_, report_.status(),
+                   asked_.wrenches, check_, stream_);
   }
 
   void drag_on_fluid(double) {
@@ -325,6 +344,12 @@ class CudaEngine final : public ParticleEngine {
     }
   }
 
+  // What solve_drag() is called with.
+  struct Asked {
+    std::span<const ViscousBody> bodies;
+    std::span<Wrench> wrenches;
+  };
+
   RunConstants constants_;
   StepConstants step_;
   std::string device_;
@@ -344,6 +369,8 @@ class CudaEngine final : public ParticleEngine {
   WrenchSums sums_;
   WallGuards guards_;
   StepReport report_;
+  ViscousSolver viscous_;
+  Asked asked_;
 
   SentBodies sent_;
   SentProbes sent_probes_;

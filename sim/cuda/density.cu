@@ -104,7 +104,7 @@ void launch_density(const StepConstants& constants, const Plan& plan, const Part
                     std::uint32_t* status, cudaStream_t stream) {
   if (plan.model == ParticleModel::kCorrected) {
     corrected_density_kernel<<<blocks_for(fluid.count), kThreads, 0, stream>>>(
-        constants, kinds, fluid, fixed, moving, plan.has(PassId::kOneViscosity),
+        constants, kinds, fluid, fixed, moving, plan.has(PassId::kOneViscosity) && plan.drags_explicitly(),
         plan.has(PassId::kPairViscosity), status);
     return;
   }

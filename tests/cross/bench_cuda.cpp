@@ -1,5 +1,6 @@
-// A pool of fluid at rest at growing counts, step after step: CSV on standard output.
-// Usage: bench_cuda [cuda|cpu [particles…]]
+// A pool of fluid at growing counts, step after step: CSV on standard output.
+// Usage: bench_cuda [drag] [cuda|cpu [particles…]]
+// At rest; or with `drag` turning, without viscosity, at 50 Pa·s by explicit steps and at 50 Pa·s solved.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -13,27 +14,53 @@ namespace {
 
 using namespace slosh;
 
+enum class Drag { kResting, kNone, kStepped, kSolved };
+
+const char* name(Drag drag) {
+  return drag == Drag::kResting  ? "at rest"
+         : drag == Drag::kNone   ? "inviscid"
+         : drag == Drag::kSolved ? "50 Pa·s, implicit"
+                                 : "50 Pa·s, explicit";
+}
+
 double median(std::vector<double> values) {
   std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
                    values.end());
   return values[values.size() / 2];
 }
 
-// False when the backend is not there.
-bool measure(Backend backend, double particles, int warm_up, int steps) {
+testing::Tank pool_for(Drag drag, double particles) {
   testing::Tank pool = testing::pool(particles);
   pool.scene.bodies[0].measured = false;
+  if (drag == Drag::kResting) return pool;
+  pool.scene.fluids[0].dynamic_viscosity = drag == Drag::kNone ? 0.0 : 50.0;
+  pool.scene.bodies[0].dynamic_viscosity = drag == Drag::kNone ? 0.0 : kFluidsViscosity;
+  for (std::size_t p = 0; p < pool.sampled.fluid_positions.size(); ++p) {
+    const glm::vec3& x = pool.sampled.fluid_positions[p];
+    pool.sampled.fluid_velocities[p] = {-x.z, 0.0f, x.x};  // 0.7 m/s in the corners
+  }
+  return pool;
+}
+
+struct Length {
+  int warm_up, steps;
+};
+
+// False when the backend is not there.
+bool measure(Backend backend, Drag drag, double particles, const Length& length) {
+  const testing::Tank pool = pool_for(drag, particles);
   Result<World> made =
-      make_world(pool.scene, pool.sampled, make_plan(pool.scene, pool.sampled.spacing), {0, backend});
+      make_world(pool.scene, pool.sampled, make_plan(pool.scene, pool.sampled.spacing, drag == Drag::kSolved),
+                 {0, backend});
   if (!made) {
     std::fprintf(stderr, "%s\n", made.error().text().c_str());
     return false;
   }
   World& world = made.value();
-  for (int i = 0; i < warm_up; ++i) world.step({});
+  for (int i = 0; i < length.warm_up; ++i) world.step({});
   std::vector<double> sort, density, force;
   const auto begin = std::chrono::steady_clock::now();
-  for (int i = 0; i < steps; ++i) {
+  for (int i = 0; i < length.steps; ++i) {
     world.step({});
     sort.push_back(world.times().sort);
     density.push_back(world.times().density);
@@ -41,13 +68,13 @@ bool measure(Backend backend, double particles, int warm_up, int steps) {
   }
   // What the last step has still under way is as much as the warm-up had.
   const double seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() / steps;
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() / length.steps;
   const Diagnostics after = world.diagnostics();
   const double count = static_cast<double>(world.fluid_count());
-  std::printf("\"%s\",%zu,%zu,%.3f,%.4f,%.4f,%.4f,%.4f,%.3f,%.1f,%llu\n", world.backend().c_str(),
-              world.fluid_count(), world.boundary_count(), 1e3 * world.plan().time_step, 1e3 * seconds,
-              1e3 * median(sort), 1e3 * median(density), 1e3 * median(force), 1e9 * seconds / count,
-              1.0 / seconds, static_cast<unsigned long long>(after.retired));
+  std::printf("\"%s\",\"%s\",%zu,%zu,%.3f,%.4f,%.4f,%.4f,%.4f,%.3f,%.1f,%llu\n", world.backend().c_str(),
+              name(drag), world.fluid_count(), world.boundary_count(), 1e3 * world.plan().time_step,
+              1e3 * seconds, 1e3 * median(sort), 1e3 * median(density), 1e3 * median(force),
+              1e9 * seconds / count, 1.0 / seconds, static_cast<unsigned long long>(after.retired));
   std::fflush(stdout);
   return true;
 }
@@ -55,17 +82,24 @@ bool measure(Backend backend, double particles, int warm_up, int steps) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const Backend backend = argc > 1 && std::string(argv[1]) == "cpu" ? Backend::kCpu : Backend::kCuda;
+  const std::vector<std::string> given(argv + 1, argv + argc);
+  std::size_t at = 0;
+  const bool drag = at < given.size() && given[at] == "drag";
+  at += drag;
+  const Backend backend = at < given.size() && given[at] == "cpu" ? Backend::kCpu : Backend::kCuda;
   std::vector<double> sizes;
-  for (int i = 2; i < argc; ++i) sizes.push_back(std::atof(argv[i]));
+  for (++at; at < given.size(); ++at) sizes.push_back(std::atof(given[at].c_str()));
   if (sizes.empty()) sizes = {32768, 131072, 524288, 1048576, 2097152};
   std::puts(
-      "backend,fluid_particles,body_particles,time_step_ms,step_ms,sort_ms,density_ms,force_ms,ns_per_"
-      "particle,"
-      "steps_per_s,retired");
-  const bool gpu = backend == Backend::kCuda;
+      "backend,drag,fluid_particles,body_particles,time_step_ms,step_ms,sort_ms,density_ms,force_ms,ns_per_"
+      "particle,steps_per_s,retired");
+  const Length length = backend == Backend::kCuda ? Length{100, 200} : Length{5, 20};
+  const std::vector<Drag> ways =
+      drag ? std::vector{Drag::kNone, Drag::kStepped, Drag::kSolved} : std::vector{Drag::kResting};
   for (const double size : sizes) {
-    if (!measure(backend, size, gpu ? 100 : 5, gpu ? 200 : 20)) return 1;
+    for (const Drag way : ways) {
+      if (!measure(backend, way, size, length)) return 1;
+    }
   }
   return 0;
 }

@@ -1,111 +1,20 @@
 // The same worlds on the CPU and on the GPU (tests/cross/README.md). Prints every comparison with its
 // tolerance; exits 1 when one fails, 77 where there is no GPU.
+// Usage: cross_world [viscous|others]: implicit viscosity alone, or all but it
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <limits>
 #include <optional>
+#include <string>
 
 #include "host/report/surface.h"
-#include "tests/cross/worlds.h"
+#include "tests/cross/compare.h"
 
 namespace {
 
 using namespace slosh;
 using namespace slosh::testing;
-
-int failures = 0;
-
-void expect_at_most(const char* what, double value, double limit) {
-  const bool fine = value <= limit;  // false for not-a-number
-  failures += !fine;
-  std::printf("  %-58s %-11.3g <= %-8.3g %s\n", what, value, limit, fine ? "ok" : "FAILED");
-}
-
-void expect_true(const char* what, bool fine) {
-  failures += !fine;
-  std::printf("  %-82s %s\n", what, fine ? "ok" : "FAILED");
-}
-
-World world_on(Backend backend, const Tank& tank, Plan plan) {
-  Result<World> world = make_world(tank.scene, tank.sampled, std::move(plan), {1, backend});
-  if (!world) {
-    std::printf("%s\n", world.error().text().c_str());
-    std::exit(1);
-  }
-  return std::move(world.value());
-}
-
-World world_on(Backend backend, const Tank& tank) {
-  return world_on(backend, tank, make_plan(tank.scene, tank.sampled.spacing, can_solve_drag(Backend::kCuda)));
-}
-
-void step(World& world, double hand_height) {
-  const HandleInput hand = hand_at(world.time(), hand_height);
-  world.step({&hand, 1});
-}
-
-struct View {
-  Snapshot snapshot;
-  Diagnostics sums;
-  explicit View(const World& world) : sums(world.diagnostics()) { world.fill(snapshot); }
-};
-
-// Squeezed by 3 % and shaken, so that every term of the first step is at work.
-Tank shaken(Tank tank) {
-  unsigned state = 7;
-  const auto noise = [&] {
-    state = state * 1664525u + 1013904223u;
-    return static_cast<float>(state >> 8) / 8388608.0f - 1.0f;
-  };
-  for (glm::vec3& x : tank.sampled.fluid_positions)
-    x = x * 0.97f + 1e-3f * glm::vec3(noise(), noise(), noise());
-  for (glm::vec3& v : tank.sampled.fluid_velocities) v = 0.3f * glm::vec3(noise(), noise(), noise());
-  return tank;
-}
-
-void compare_worlds(const World& cpu, const World& gpu, double tolerance) {
-  const View a(cpu), b(gpu);
-  double apart = 0.0;
-  bool same_kinds = true;
-  for (std::size_t p = 0; p < a.snapshot.positions.size(); ++p) {
-    same_kinds &= a.snapshot.fluid_index[p] == b.snapshot.fluid_index[p];
-    if (a.snapshot.fluid_index[p] == 255) continue;
-    apart = std::max<double>(apart, glm::distance(a.snapshot.positions[p], b.snapshot.positions[p]));
-  }
-  expect_true("the same particles in the world", same_kinds && a.sums.particles == b.sums.particles);
-  expect_at_most("largest distance of a particle from itself / spacing", apart / cpu.plan().spacing,
-                 tolerance);
-  const double speed = std::sqrt(2.0 * a.sums.kinetic_energy / a.sums.mass);
-  expect_at_most("momentum / (mass rms speed)",
-                 glm::length(a.sums.momentum - b.sums.momentum) / (a.sums.mass * speed), tolerance);
-  expect_at_most("kinetic energy", std::abs(b.sums.kinetic_energy / a.sums.kinetic_energy - 1.0), tolerance);
-  expect_at_most("largest compression", std::abs(b.sums.max_compression - a.sums.max_compression), tolerance);
-  for (std::size_t body = 0; body < a.snapshot.rigid.bodies.size(); ++body) {
-    const Wrench& wa = a.snapshot.rigid.bodies[body].fluid;
-    const Wrench& wb = b.snapshot.rigid.bodies[body].fluid;
-    // Opposite walls cancel: the scale is that of the fluid's weight at least.
-    const double scale = std::max(glm::length(wa.force), 9.81 * a.sums.mass);
-    expect_at_most("force on a body / weight of the fluid", glm::length(wa.force - wb.force) / scale,
-                   tolerance);
-    expect_at_most("torque on a body / (weight 0.1 m)", glm::length(wa.torque - wb.torque) / (0.1 * scale),
-                   tolerance);
-  }
-}
-
-// After one step from the same start the two differ by rounding alone; velocities show in momentum and
-// energy.
-void compare_steps(const char* name, const Tank& tank, const Plan& plan, int steps, double tolerance) {
-  std::printf("%s, %d step(s)\n", name, steps);
-  World cpu = world_on(Backend::kCpu, tank, plan);
-  World gpu = world_on(Backend::kCuda, tank, plan);
-  for (int i = 0; i < steps; ++i) {
-    step(cpu, 0.09);
-    step(gpu, 0.09);
-  }
-  compare_worlds(cpu, gpu, tolerance);
-}
 
 void restore_into(World& world, const World& from) {
   std::vector<std::uint8_t> bytes;
@@ -207,38 +116,6 @@ void compare_second(const char* name, const Tank& tank, double settle, double to
               static_cast<unsigned long long>(gpu.diagnostics().retired));
   expect_true("as many retired", cpu.diagnostics().retired == gpu.diagnostics().retired);
   expect_true("the same status", cpu.take_status() == gpu.take_status());
-}
-
-std::uint64_t hash_after(World& world, int steps, double hand_height, bool look) {
-  Snapshot snapshot;
-  for (int i = 0; i < steps; ++i) {
-    step(world, hand_height);
-    if (!look) continue;
-    world.fill(snapshot);
-    world.diagnostics();
-  }
-  return world.hash();
-}
-
-void repeat(const char* name, const Tank& tank, double hand_height, int steps = 300) {
-  std::printf("%s, %d steps on the GPU, repeated\n", name, steps);
-  World first = world_on(Backend::kCuda, tank);
-  const std::uint64_t once = hash_after(first, steps, hand_height, false);
-  World second = world_on(Backend::kCuda, tank);
-  expect_true("the same hash again", once == hash_after(second, steps, hand_height, false));
-  World watched = world_on(Backend::kCuda, tank);
-  expect_true("the same hash when looked at after every step",
-              once == hash_after(watched, steps, hand_height, true));
-  // Two worlds on one GPU at a time: blocks are scheduled differently.
-  World left = world_on(Backend::kCuda, tank);
-  World right = world_on(Backend::kCuda, tank);
-  for (int i = 0; i < steps; ++i) {
-    step(left, hand_height);
-    step(right, hand_height);
-  }
-  expect_true("the same hash beside another world", left.hash() == once && right.hash() == once);
-  step(left, hand_height);
-  expect_true("another hash one step later", left.hash() != once);
 }
 
 void compare_probe() {
@@ -352,9 +229,14 @@ void compare_guarded() {
 constexpr ParticleModel kModels[] = {ParticleModel::kCorrected, ParticleModel::kConsistent,
                                      ParticleModel::kPaper};
 
+int conclude() {
+  std::printf(failures() ? "%d comparison(s) FAILED\n" : "all agree (%d failures)\n", failures());
+  return failures() ? 1 : 0;
+}
+
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
   const CudaDevice device = find_cuda_device();
   if (!device.available) {
@@ -362,6 +244,9 @@ int main() {
     return 77;
   }
   std::printf("%s\n", device.name.c_str());
+  const std::string part = argc > 1 ? argv[1] : "all";
+  if (part != "others") compare_viscous();
+  if (part == "viscous") return conclude();
   for (const ParticleModel model : kModels) {
     const Tank tank = shaken(stirred_tank(model));
     const std::string name = std::string(slosh::name(model)) + " model, two fluids, paddle";
@@ -403,6 +288,5 @@ int main() {
   compare_guarded();
   repeat("fluid thrown at walls", thrown_tank(), 0.0);
   compare_restored("fluid thrown at walls", thrown_tank(), 0.0);
-  std::printf(failures ? "%d comparison(s) FAILED\n" : "all agree (%d failures)\n", failures);
-  return failures ? 1 : 0;
+  return conclude();
 }

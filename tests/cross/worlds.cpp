@@ -20,6 +20,42 @@ Tank paddle_in_honey(ParticleModel model) {
   return tank;
 }
 
+Tank thick_tank(double viscosity, double above) {
+  Tank tank = stirred_tank(kFluidsViscosity);
+  tank.scene.fluids[0].dynamic_viscosity = viscosity;
+  tank.scene.fluids[1].dynamic_viscosity = above;
+  tank.scene.bodies[1].dynamic_viscosity = kFluidsViscosity;
+  Body box;
+  box.name = "box";
+  box.motion = BodyMotion::kFree;
+  box.dynamic_viscosity = kFluidsViscosity;
+  box.mass = {500.0 * 6.4e-5, glm::dvec3(0.0), glm::dmat3(500.0 * 6.4e-5 * 1.6e-3 / 6.0)};
+  box.mesh = static_cast<int>(tank.scene.meshes.size());
+  box.pose.position = {0.05, 0.05, 0.0};
+  tank.scene.meshes.push_back(box_mesh(glm::dvec3(-0.02), glm::dvec3(0.02)));
+  tank.scene.bodies.push_back(box);
+  SurfaceSamples samples;
+  for (int side = 0; side < 6; ++side) {
+    const int axis = side / 2;
+    for (int i = 0; i < 4; ++i) {
+      for (int j = 0; j < 4; ++j) {
+        glm::vec3 x, normal(0.0f);
+        normal[axis] = side % 2 ? 1.0f : -1.0f;
+        x[axis] = 0.013f * normal[axis];  // an inset of 0.7 spacings
+        x[(axis + 1) % 3] = -0.013f + 0.026f / 3.0f * static_cast<float>(i);
+        x[(axis + 2) % 3] = -0.013f + 0.026f / 3.0f * static_cast<float>(j);
+        samples.positions.push_back(x);
+        samples.normals.push_back(normal);
+      }
+    }
+  }
+  samples.particle_volume = 1e-6f;
+  tank.sampled.surfaces.push_back(samples);
+  tank.sampled.distance_fields.emplace_back();
+  clear_box(tank.sampled, glm::vec3(box.pose.position), glm::vec3(0.021f));
+  return tank;
+}
+
 HandleInput hand_at(double time, double height) {
   constexpr double kSway = 2.0 * 3.14159265358979323846;  // rad/s
   HandleInput hand;

@@ -12,6 +12,10 @@ Tank stirred_tank(ParticleModel model);
 /// The same with 20 Pa·s in both fluids and a paddle of 5 g: drag is most of what moves it.
 Tank paddle_in_honey(ParticleModel model);
 
+/// The tank of stirred_tank with `viscosity` in its lower fluid and `above` in its upper one, Pa·s, walls of
+/// either's; beside the held paddle a box of half their density that nobody holds.
+Tank thick_tank(double viscosity, double above);
+
 /// Where the paddle's or the probe's hand is: to and fro along x, 5 cm to either side in a second, shaking
 /// across.
 HandleInput hand_at(double time, double height);

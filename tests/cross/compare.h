@@ -1,0 +1,42 @@
+// Comparisons of two worlds, printed with their tolerances.
+#pragma once
+
+#include <cstdint>
+
+#include "tests/cross/worlds.h"
+
+namespace slosh::testing {
+
+/// Of comparisons that failed so far.
+int failures();
+/// Prints the value with its limit; not-a-number fails.
+void expect_at_most(const char* what, double value, double limit);
+void expect_true(const char* what, bool fine);
+
+/// One thread where it is the CPU's. Exits where there is no such world.
+World world_on(Backend backend, const Tank& tank, Plan plan);
+World world_on(Backend backend, const Tank& tank);
+/// With the one hand where hand_at() has it.
+void step(World& world, double hand_height);
+
+struct View {
+  Snapshot snapshot;
+  Diagnostics sums;
+  explicit View(const World& world) : sums(world.diagnostics()) { world.fill(snapshot); }
+};
+
+/// Squeezed by 3 % and shaken, so that every term of the first step is at work.
+Tank shaken(Tank tank);
+
+/// Particle by particle, by their sums, and by what bodies feel.
+void compare_worlds(const World& cpu, const World& gpu, double tolerance);
+/// After one step from the same start the two differ by rounding alone; velocities show in momentum and
+/// energy.
+void compare_steps(const char* name, const Tank& tank, const Plan& plan, int steps, double tolerance);
+/// The same hash each time on the GPU, whatever else is going on.
+void repeat(const char* name, const Tank& tank, double hand_height, int steps = 300);
+
+/// viscous_worlds.cpp: implicit viscosity.
+void compare_viscous();
+
+}  // namespace slosh::testing
