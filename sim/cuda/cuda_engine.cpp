@@ -19,18 +19,6 @@ namespace slosh {
 namespace cuda {
 namespace {
 
-StepConstants step_constants(const RunConstants& c) {
-  return {c.grid,
-          c.support_radius,
-          c.force_scale,
-          c.rest_number_density,
-          c.rest_volume,
-          static_cast<float>(c.plan.stiffness),
-          static_cast<float>(c.plan.tension),
-          c.gravity,
-          c.correction};
-}
-
 class CudaEngine final : public ParticleEngine {
  public:
   CudaEngine(const RunConstants& constants, const ParticleStart& start, std::span<const RigidBody> bodies,
@@ -69,8 +57,9 @@ class CudaEngine final : public ParticleEngine {
   }
 
   ~CudaEngine() override {
-    if (stream_) cudaStreamSynchronize(stream_);
-    if (stream_) cudaStreamDestroy(stream_);
+    if (!stream_) return;
+    cudaStreamSynchronize(stream_);
+    cudaStreamDestroy(stream_);
   }
 
   void prepare(std::span<const RigidBody> bodies) override {
@@ -344,8 +333,7 @@ class CudaEngine final : public ParticleEngine {
     }
   }
 
-  // What solve_drag() is called with.
-  struct Asked {
+  struct Asked {  // of solve_drag()
     std::span<const ViscousBody> bodies;
     std::span<Wrench> wrenches;
   };

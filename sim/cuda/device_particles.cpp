@@ -4,6 +4,18 @@
 
 namespace slosh::cuda {
 
+StepConstants step_constants(const RunConstants& c) {
+  return {c.grid,
+          c.support_radius,
+          c.force_scale,
+          c.rest_number_density,
+          c.rest_volume,
+          static_cast<float>(c.plan.stiffness),
+          static_cast<float>(c.plan.tension),
+          c.gravity,
+          c.correction};
+}
+
 void SortSpace::allocate(std::uint32_t largest_count, int bits, CallCheck& check) {
   bits_ = bits;
   identity_.allocate(largest_count, check);

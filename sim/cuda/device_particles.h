@@ -6,6 +6,9 @@
 
 namespace slosh::cuda {
 
+/// What of them the kernels need.
+StepConstants step_constants(const RunConstants& constants);
+
 /// What a sort needs; shared by the sets, one after the other in a stream.
 class SortSpace {
  public:
