@@ -146,6 +146,12 @@ void WorldProgram::begin_move() {
   in_call_ = true;
 }
 
+/// Between two steps, for a function of the program: the world as it is now.
+void WorldProgram::let_read() {
+  moments_.outdated();
+  bodies_known_ = moving_ = false;
+}
+
 std::span<const HandleInput> WorldProgram::inputs() {
   const double time = world_->time();
   for (std::size_t i = 0; i < hands_.size(); ++i) {
@@ -154,7 +160,7 @@ std::span<const HandleInput> WorldProgram::inputs() {
       continue;
     }
     const py::gil_scoped_acquire held;
-    moving_ = false;
+    let_read();
     inputs_[i] = hands_[i].at(time);
     moving_ = true;
   }
@@ -208,8 +214,7 @@ Run WorldProgram::run(double seconds, bool real_time, long every, const py::obje
       }
       if (calls) {
         const py::gil_scoped_acquire held;
-        moments_.outdated();
-        bodies_known_ = moving_ = false;
+        let_read();
         const py::object answer = on_step();
         goes_on = !(py::isinstance<py::bool_>(answer) && !answer.cast<bool>());
         moving_ = true;

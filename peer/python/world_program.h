@@ -72,6 +72,7 @@ class WorldProgram {
   void refuse_while_moving() const;
   void refuse_while_recorded(const char* what) const;
   void begin_move();
+  void let_read();
   std::span<const HandleInput> inputs();
   void one_step(std::span<const HandleInput> hands);
   struct Moving;

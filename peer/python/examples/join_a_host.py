@@ -26,13 +26,15 @@ def start_host(folder: str) -> Tuple["subprocess.Popen[bytes]", str]:
         host = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log)
     for _ in range(1200):
         if os.path.exists(links):
-            for line in open(links).read().splitlines():
-                if line.startswith("hold ") or line.split()[0] == "hold":
-                    return host, line.split()[-1]
+            with open(links) as written:
+                for line in written:
+                    if line.startswith("hold "):
+                        return host, line.split()[-1]
         if host.poll() is not None:
             break
         time.sleep(0.05)
-    sys.exit("the host did not start:\n" + open(os.path.join(folder, "host.log")).read())
+    with open(os.path.join(folder, "host.log")) as said:
+        sys.exit("the host did not start:\n" + said.read())
 
 
 def visit(link: str) -> None:

@@ -97,6 +97,23 @@ class Holding(unittest.TestCase):
         self.assertLess(pull, 1.1 * grip.stiffness * 0.001 + grip.damping * 0.01 + 1.0)
         np.testing.assert_allclose(w.grip(0).handle.position, away.position)
 
+    def test_a_function_sees_the_world_as_it_is_by_then(self):
+        w = world()
+        seen = []
+
+        def looks(t):
+            seen.append((w.time, w.tick, w.grip("finger").force[1], w.body("ball").center_of_mass[0], w.positions[0, 1]))
+            self.assertEqual(t, w.time)
+            return path(t)
+
+        w.hold("finger", looks)
+        run = w.run(0.2)
+        self.assertEqual(len(seen), len(run.time))
+        self.assertEqual([row[1] for row in seen], list(range(len(seen))))
+        np.testing.assert_allclose([row[2] for row in seen[1:]], run.wrenches[:-1, 0, 1])
+        np.testing.assert_allclose([row[3] for row in seen[1:]], run.body_centers[:-1, 1, 0])
+        self.assertGreater(len({row[4] for row in seen}), len(seen) // 2)
+
     def test_what_a_function_raises_comes_out(self):
         def breaks(t):
             if t > 0.05:
