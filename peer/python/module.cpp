@@ -28,6 +28,7 @@ void raise(const Raised& raised) {
 PYBIND11_MODULE(_core, m) {
   using namespace slosh;
   using namespace slosh::python;
+  m.attr("__module__") = "slosh";  // what help() and messages call what is in it
   m.doc() = "Compiled part of the package slosh; import slosh.";
   error_type = PyErr_NewExceptionWithDoc(
       "slosh.Error",
@@ -61,4 +62,5 @@ PYBIND11_MODULE(_core, m) {
   bind_world(m);
   bind_recording(m);
   bind_remote(m);
+  py::delattr(m, "__module__");
 }

@@ -87,10 +87,3 @@ __all__ = [
     "sweep",
     "tank",
 ]
-
-# What help() and messages call them.
-for _name in __all__:
-    _object = globals()[_name]
-    if getattr(_object, "__module__", None) == "slosh._core" and isinstance(_object, type):
-        _object.__module__ = "slosh"
-del _name, _object
