@@ -33,6 +33,9 @@ class Context {
   virtual bool should_close() const = 0;
   /// Shows what was drawn. Does nothing without a window.
   virtual void swap() = 0;
+  /// Whether swap() waits for the screen (as it does at first), or something else sets the pace. Does nothing
+  /// without a window.
+  virtual void follow_screen(bool wait) { (void)wait; }
 
   /// The GL renderer and version, e.g. "llvmpipe (LLVM 15.0.6, 256 bits), 4.5 (Core Profile) Mesa 22.3.6".
   const std::string& description() const { return description_; }

@@ -77,6 +77,7 @@ class GlfwContext final : public Context {
   }
   bool should_close() const override { return glfwWindowShouldClose(window_) == GLFW_TRUE; }
   void swap() override { glfwSwapBuffers(window_); }
+  void follow_screen(bool wait) override { glfwSwapInterval(wait ? 1 : 0); }
   void* native_window() const override { return window_; }
 
   const InputState& poll() override {

@@ -2,6 +2,7 @@
 
 #include <png.h>
 
+#include <algorithm>
 #include <string>
 #include <system_error>
 
@@ -13,6 +14,18 @@ std::string size_text(const Image& image) {
 }
 
 }  // namespace
+
+Image side_by_side(const Image& left, const Image& right) {
+  Image both{left.width + right.width, std::min(left.height, right.height), {}};
+  const auto row = [](const Image& image) { return std::ptrdiff_t{4} * image.width; };
+  for (int y = 0; y < both.height; ++y) {
+    for (const Image* image : {&left, &right}) {
+      const auto begin = image->rgba.begin() + y * row(*image);
+      both.rgba.insert(both.rgba.end(), begin, begin + row(*image));
+    }
+  }
+  return both;
+}
 
 Result<std::filesystem::path> write_png(const std::filesystem::path& path, const Image& image) {
   const std::size_t expected = std::size_t{4} * static_cast<std::size_t>(std::max(image.width, 0)) *

@@ -28,6 +28,9 @@ struct FloatImage {
   }
 };
 
+/// Two pictures of one height, `left` at the left.
+Image side_by_side(const Image& left, const Image& right);
+
 /// Writes `image` as a PNG, alpha included, and returns the path. Errors: an empty or inconsistent image, a
 /// file that cannot be written. A file that could not be written whole is removed.
 Result<std::filesystem::path> write_png(const std::filesystem::path& path, const Image& image);

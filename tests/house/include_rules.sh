@@ -27,7 +27,8 @@ tests      | scenes/ sim/ net/ host/ peer/ render/
 toolkits='
 ^<(cuda|cub/|thrust/)         | sim/cuda tests/cross | CUDA only in sim/cuda, and where the backends are compared
 ^"sim/cuda/                   | sim/cuda sim/particle_engine.cpp tests/cross | only the factory in sim/particle_engine.cpp knows the CUDA engine
-^<(epoxy|GL|EGL|GLFW)/        | render | GL only in render
+^<(epoxy|GL|EGL|GLFW)/        | render tests/xr | GL only in render, and in the runtime that tests show pictures to
+^<(openxr|X11)/               | render/xr tests/xr | OpenXR only behind render/headset.h
 ^<(ngtcp2|gnutls)/            | net/quic | QUIC and TLS only behind net/quic/endpoint.h
 ^<(hidapi|libusb)             | peer/haptics/devices | HID and USB only in the drivers
 ^<pybind11/                   | peer/python | Python only in its module
