@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "peer/haptics/device.h"
+#include "peer/haptics/devices/headset_link.h"
 #include "peer/haptics/lent_device.h"
 #include "peer/haptics/mouse_device.h"
 #include "scenes/scene.h"
@@ -25,12 +26,16 @@ struct HandDevice {
   std::shared_ptr<LentHand> lent;
 };
 /// The device that `spec` asks for, for grip `grip`; a mouse starts at `start`, and so does a script without
-/// a motion. With a window a script is lent. Errors: as make_devices.
+/// a motion. With a window a script is lent. `headset` is what a controller needs, null without one. Errors:
+/// as make_devices.
 Result<HandDevice> make_device(const Scene& scene, std::size_t grip, const std::string& spec,
-                               const Pose& start, bool has_window);
+                               const Pose& start, bool has_window,
+                               const std::shared_ptr<HeadsetLink>& headset = nullptr);
 
 /// `specs`: none (all `script`), one for all, or one a grip. `has_window` is what a mouse needs. Errors: an
-/// unknown kind, more specs than grips, a mouse without a window, a replay file that cannot be used.
-Result<DeviceSet> make_devices(const Scene& scene, const std::vector<std::string>& specs, bool has_window);
+/// unknown kind, more specs than grips, a mouse without a window, a controller without a headset or for two
+/// grips, a replay file that cannot be used.
+Result<DeviceSet> make_devices(const Scene& scene, const std::vector<std::string>& specs, bool has_window,
+                               const std::shared_ptr<HeadsetLink>& headset = nullptr);
 
 }  // namespace slosh

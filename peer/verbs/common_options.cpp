@@ -65,6 +65,26 @@ void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window) {
   verb.add_flag("!--no-render", options.render, "No picture at all");
 }
 
+void add_headset_options(CLI::App& verb, ShowOptions& options) {
+  CLI::Option* vr = verb.add_flag(
+      "--vr", options.vr,
+      "In a headset, by OpenXR; beside it a window, where there is a display, shows the left eye.\n"
+      "Its controllers: --device xr-left --device xr-right");
+  verb.add_option("--vr-scale", options.headset.scale, "How many times as large as it is the world looks")
+      ->check(in_range(0.1, 10.0))
+      ->capture_default_str()
+      ->needs(vr);
+  verb.add_option("--vr-height", options.headset.height,
+                  "Metres above the floor of what hands go to (0.35 m below the eyes)")
+      ->check(in_range(0.0, 3.0))
+      ->needs(vr);
+  verb.add_option("--vr-resolution", options.headset.resolution,
+                  "Of the picture size that the headset asks for, a side: less where drawing is slow")
+      ->check(in_range(0.1, 2.0))
+      ->capture_default_str()
+      ->needs(vr);
+}
+
 CLI::Option* add_measure_option(CLI::App& verb, ShowOptions& options) {
   return verb
       .add_option(

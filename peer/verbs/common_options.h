@@ -23,6 +23,8 @@ void add_out_options(CLI::App& verb, ShowOptions& options, const std::string& te
 void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window);
 
 /// --measure, for a run that writes files.
+/// `--vr` and what goes with it.
+void add_headset_options(CLI::App& verb, ShowOptions& options);
 CLI::Option* add_measure_option(CLI::App& verb, ShowOptions& options);
 
 /// What a world is made of and runs on: --backend, --spacing, --particles, --threads, --yes. `all_cores` says

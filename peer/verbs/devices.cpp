@@ -17,6 +17,7 @@
 #include "peer/verbs/devices_test.h"
 #include "peer/verbs/interrupt.h"
 #include "peer/verbs/verbs.h"
+#include "render/headset.h"
 
 namespace slosh {
 namespace {
@@ -34,6 +35,7 @@ constexpr const char* kFooter =
     "\n"
     "Besides hardware there are always\n"
     "  script, mouse, replay:FILE       see `slosh play --help`\n"
+    "  xr-left, xr-right                the controllers of a headset, with --vr\n"
     "  operator[:tight|loose,...]       a simulated person's arm, closing the loop by the force it feels\n"
     "  plugin:FILE[:OPTIONS]            any vendor's device behind a C interface:\n"
     "                                   peer/haptics/devices/plugin/slosh_device.h\n"
@@ -74,6 +76,14 @@ int list_devices() {
     well = false;
     std::printf("    cannot be used: %s. %s.\n", each.problem.c_str(), each.mend.c_str());
   }
+  // None is no trouble: most who ask here have none.
+  const Result<std::unique_ptr<Headset>> headset = Headset::find({});
+  if (headset)
+    std::printf("%s\n    --vr --device xr-left --device xr-right\n",
+                clean_text(headset.value()->description(), kMostTextBytes).c_str());
+  else
+    std::printf("No headset: %s. %s.\n", clean_text(headset.error().what, kMostTextBytes).c_str(),
+                headset.error().mend.c_str());
   std::printf("Settings: %s\n", device_settings_folder().c_str());
   if (well) return kExitOk;
   std::printf("\nThe rule that lets whoever sits here open them (%s):\n%s", kUdevRuleFile,

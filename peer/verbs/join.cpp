@@ -9,6 +9,7 @@
 #include "net/link.h"
 #include "peer/remote/peer_key.h"
 #include "peer/verbs/common_options.h"
+#include "peer/verbs/find_headset.h"
 #include "peer/verbs/interrupt.h"
 #include "peer/verbs/link_source.h"
 #include "peer/verbs/play_modes.h"
@@ -59,6 +60,7 @@ constexpr const char* kJoinEnd =
     "  slosh join LINK\n"
     "  slosh join - < link.txt\n"
     "  slosh join LINK --name Ana --grip left_hand --device mouse\n"
+    "  slosh join LINK --name Ben --vr --device xr-right\n"
     "  slosh join LINK --headless --seconds 10 --out out/ana";
 
 constexpr const char* kWatchFiles =
@@ -114,12 +116,10 @@ int join(JoinOptions options) {
   const Result<PeerKey> key = open_peer_key(options.key);
   if (!key) return fail(key.error());
   if (!key.value().note.empty()) progress.note("slosh: " + key.value().note);
-  bool headless = options.headless || !options.render;
-  if (!headless && !display_available()) {
-    progress.note("slosh: no display here, so the run becomes a film (--headless)");
-    headless = true;
-  }
-  // Before the network's threads: name lookups and TLS read the environment.
+  // Before the network's threads: name lookups and TLS read the environment, which both of these may write.
+  const std::unique_ptr<HeadsetView> headset = find_headset(options, progress);
+  if (headset) options.controllers = headset->link();
+  const bool headless = is_film(options, headset != nullptr, progress);
   if (headless && options.render) set_software_threads(kViewSoftwareThreads);
 
   RemoteOptions remote;
@@ -160,6 +160,7 @@ int join(JoinOptions options) {
   run_options.devices = options.devices;
   run_options.coupling = options.coupling == "spring" ? Coupling::kSpring : Coupling::kReplica;
   run_options.has_window = !headless;
+  run_options.controllers = options.controllers;
   run_options.host = remote.address;
   run_options.begin_ns = begin_ns;
   run_options.tell = [&progress](const std::string& text) { progress.note(text); };
@@ -170,8 +171,9 @@ int join(JoinOptions options) {
   const MakeRun make_run = [&]() -> Result<std::unique_ptr<LiveRun>> {
     return std::unique_ptr<LiveRun>(std::move(run.value()));
   };
-  const Result<bool> shown = headless ? show_headless(stage, *run.value(), options, progress, summary)
-                                      : show_in_window(stage, make_run, options, progress, summary);
+  const Result<bool> shown = headless
+                                 ? show_headless(stage, *run.value(), options, progress, summary)
+                                 : show_in_window(stage, make_run, options, headset.get(), progress, summary);
   if (!shown) return fail(shown.error());
   const int code = finish_run(stage, options, progress, summary);
   const RemoteStatus last = visit.status();
@@ -190,10 +192,11 @@ void add(CLI::App& app, VerbRun& chosen, bool watch) {
   if (!watch) {
     verb->add_option("--grip", o->grips, "A grip by name or number, again for more (the first free one)")
         ->allow_extra_args(false);
-    verb->add_option("--device", o->devices,
-                     "script, mouse, replay:FILE, spacemouse, falcon, plugin:FILE or operator; one for all "
-                     "your hands, "
-                     "or one each, in order")
+    verb->add_option(
+            "--device", o->devices,
+            "script, mouse, xr-left, xr-right, replay:FILE, spacemouse, falcon, plugin:FILE or operator; "
+            "one for all your hands, "
+            "or one each, in order")
         ->allow_extra_args(false);
     verb->add_option("--coupling", o->coupling,
                      "What a device that is felt is coupled to: replica, this site's own copy of what it "
@@ -206,6 +209,7 @@ void add(CLI::App& app, VerbRun& chosen, bool watch) {
   add_out_options(*verb, *o,
                   "Folder for the results (headless: out/<scene>-<name>, numbered; a window: none)");
   add_show_options(*verb, *o, true);
+  add_headset_options(*verb, *o);
   verb->add_option("--key", o->key, "File with your key, made on first use (one for each person)");
   verb->footer(std::string(kFiles) + (watch ? kWatchFiles : kJoinFiles) + console_help(Console::kPeer) +
                (watch ? kWatchEnd : kJoinEnd));

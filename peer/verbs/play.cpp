@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "peer/verbs/common_options.h"
+#include "peer/verbs/find_headset.h"
 #include "peer/verbs/interrupt.h"
 #include "peer/verbs/play_modes.h"
 #include "peer/verbs/verbs.h"
@@ -35,25 +36,25 @@ constexpr const char* kFooter =
     "  slosh play\n"
     "  slosh play pour --seconds 5 --out out/pour --headless\n"
     "  slosh play bucket --device script --device mouse\n"
+    "  slosh play bucket --vr --device xr-left --device xr-right\n"
     "  slosh play my_scene.glb --spacing 0.008 --threads 4\n"
     "  slosh play bucket --headless --device replay:out/bucket/poses.csv";
 
-int play(const PlayOptions& options) {
+int play(PlayOptions options) {
   end_at_interrupts();
   Progress progress;
-  bool headless = options.headless || !options.render;
-  if (!headless && !display_available()) {
-    progress.note("slosh: no display here, so the run becomes a film (--headless)");
-    headless = true;
-  }
+  const std::unique_ptr<HeadsetView> headset = find_headset(options, progress);
+  if (headset) options.controllers = headset->link();
+  const bool headless = is_film(options, headset != nullptr, progress);
   Result<Prepared> prepared = prepare(options, headless, progress);
   if (!prepared) {
     progress.note("");
     return fail(prepared.error());
   }
   RunSummary summary;
-  const Result<bool> played = headless ? play_headless(prepared.value(), options, progress, summary)
-                                       : play_in_window(prepared.value(), options, progress, summary);
+  const Result<bool> played =
+      headless ? play_headless(prepared.value(), options, progress, summary)
+               : play_in_window(prepared.value(), options, headset.get(), progress, summary);
   if (!played) return fail(played.error());
   return finish_run(prepared.value(), options, progress, summary);
 }
@@ -71,11 +72,13 @@ void add_play(CLI::App& app, VerbRun& chosen) {
       *verb, *o,
       "Folder for the results (headless: out/<scene>, or out/<scene>-2 and so on; a window: none)");
   add_show_options(*verb, *o, true);
+  add_headset_options(*verb, *o);
   add_world_options(*verb, *o, "all but one; all with --no-render");
-  verb->add_option("--device", o->devices,
-                   "script, mouse, replay:FILE, spacemouse, falcon, plugin:FILE or operator; one for all "
-                   "handles, or one "
-                   "each; `slosh devices` lists what is there")
+  verb->add_option(
+          "--device", o->devices,
+          "script, mouse, xr-left, xr-right, replay:FILE, spacemouse, falcon, plugin:FILE or operator; "
+          "one for all handles, or one "
+          "each; `slosh devices` lists what is there")
       ->allow_extra_args(false);
   verb->add_option("--record", o->record, "Keep the run's inputs and states in a file, for `slosh replay`");
   verb->add_flag("--unpaced", o->unpaced,

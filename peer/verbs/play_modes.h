@@ -22,15 +22,16 @@ Result<bool> show_headless(const Stage& stage, LiveRun& run, const ShowOptions& 
 
 /// Makes a run, also each time that the user starts again and the run cannot do that in place.
 using MakeRun = std::function<Result<std::unique_ptr<LiveRun>>()>;
-/// The same in a window, until it is closed or the run ends. Errors: no window, and what `make_run` has.
+/// The same in a window, until it is closed or the run ends, or in a headset, beside which the window is a
+/// mirror and may be missing; `headset` is null without one. Errors: no window, and what `make_run` has.
 Result<bool> show_in_window(const Stage& stage, const MakeRun& make_run, const ShowOptions& options,
-                            Progress& progress, RunSummary& summary);
+                            HeadsetView* headset, Progress& progress, RunSummary& summary);
 
 /// A world in this process, as a film or in a window.
 Result<bool> play_headless(const Prepared& prepared, const PlayOptions& options, Progress& progress,
                            RunSummary& summary);
-Result<bool> play_in_window(const Prepared& prepared, const PlayOptions& options, Progress& progress,
-                            RunSummary& summary);
+Result<bool> play_in_window(const Prepared& prepared, const PlayOptions& options, HeadsetView* headset,
+                            Progress& progress, RunSummary& summary);
 
 /// What the renderer is asked for: the stage's size, the surface that was chosen.
 RenderOptions picture_options(const Stage& stage, const ShowOptions& options);

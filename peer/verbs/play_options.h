@@ -1,8 +1,11 @@
 // What `slosh play` and its kin were asked for.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
+
+#include "peer/view/headset_view.h"
 
 namespace slosh {
 
@@ -19,6 +22,9 @@ struct ShowOptions {
   int bilateral = 4;
   std::string surface = "ours";  ///< how particles become a surface: ours, paper, flow
   bool render = true;
+  bool vr = false;  ///< a headset is asked for
+  HeadsetWish headset;
+  std::shared_ptr<HeadsetLink> controllers;  ///< of the headset that was found; null without one
   std::string plot = "png";         ///< of plot_formats()
   std::vector<std::string> curves;  ///< of plot_quantities(); empty = chosen
   double measure =

@@ -5,66 +5,17 @@
 
 #include "net/clock.h"
 #include "peer/haptics/devices/hardware.h"
-#include "peer/output/video.h"
+#include "peer/verbs/find_headset.h"
 #include "peer/verbs/interrupt.h"
 #include "peer/verbs/local_run.h"
 #include "peer/verbs/play_modes.h"
 #include "peer/verbs/window_controls.h"
+#include "peer/verbs/window_film.h"
 #include "peer/view/painter.h"
 #include "render/context.h"
 
 namespace slosh {
 namespace {
-
-/// The film of a window, when a folder was given: what is on show, at a fixed rate of wall time.
-class WindowFilm {
- public:
-  WindowFilm(const std::filesystem::path& folder, const ShowOptions& options)
-      : folder_(folder), options_(options) {}
-
-  /// Call after each draw.
-  void offer(Renderer& renderer) {
-    if (folder_.empty()) return;
-    const std::int64_t now_ns = steady_now_ns();
-    if (frames_ > 0 && now_ns < next_ns_) return;
-    if (frames_ == 0) next_ns_ = now_ns;
-    next_ns_ += to_nanoseconds(1.0 / options_.frames_per_second);
-    image_ = renderer.read_back();
-    if (!video_) {
-      Result<std::unique_ptr<Video>> started =
-          Video::start(folder_ / "view.mp4", image_.width, image_.height, options_.frames_per_second);
-      if (!started) {
-        problem_ = started.error().text();
-        folder_.clear();
-        return;
-      }
-      video_ = std::move(started.value());
-    }
-    // The window was resized: the film keeps its size and waits until the window has it again.
-    (void)video_->add(image_);
-    frames_ += 1;
-  }
-
-  void finish(RunSummary& summary) {
-    if (video_) {
-      const Result<bool> finished = video_->finish();
-      if (!finished) problem_ = finished.error().text();
-      const Result<std::filesystem::path> written = write_png(folder_ / "final.png", image_);
-      if (!written) problem_ = written.error().text();
-      if (problem_.empty()) summary.files.insert(summary.files.end(), {"view.mp4", "final.png"});
-    }
-    if (!problem_.empty()) summary.problems.push_back("the film: " + problem_);
-  }
-
- private:
-  std::filesystem::path folder_;
-  const ShowOptions& options_;
-  std::unique_ptr<Video> video_;
-  Image image_;
-  std::int64_t next_ns_ = 0;
-  std::uint64_t frames_ = 0;
-  std::string problem_;
-};
 
 enum class Outcome { kEnd, kAgain };
 
@@ -82,17 +33,35 @@ std::filesystem::path free_picture_name(const Stage& stage) {
 /// Shows one run until it ends or the user wants another.
 class WindowRun {
  public:
-  WindowRun(const Stage& stage, LiveRun& run, Context& context, Renderer& renderer, WindowFilm& film,
-            Progress& progress)
+  /// `headset`: null without one.
+  WindowRun(const Stage& stage, LiveRun& run, Context& context, Renderer& renderer, HeadsetView* headset,
+            WindowFilm& film, Progress& progress)
       : stage_(stage),
         run_(run),
         context_(context),
         renderer_(renderer),
+        headset_(headset),
         film_(film),
         progress_(progress),
         painter_(stage.scene, run.facts(kWindowSnapshotRate), renderer),
         controls_(stage.scene, run, painter_.camera(),
                   [&progress](const std::string& text) { progress.note(text); }) {}
+
+  /// Until somebody wears the headset and their hands are followed; they may take longer than this.
+  void wait_for_headset() {
+    if (!headset_) return;
+    progress_.phase("waiting for the headset", "(put it on)");
+    const std::int64_t until_ns = steady_now_ns() + to_nanoseconds(kWaitForHeadset);
+    while (!headset_->ready() && steady_now_ns() < until_ns && interrupted_by() == 0) {
+      context_.poll();
+      if (context_.should_close()) return;
+      if (headset_->turn([this](const HeadsetPictures& p) { painter_.draw_nothing(p); }) ==
+          HeadsetView::Turn::kNotSeen) {
+        sleep_until_ns(steady_now_ns() + to_nanoseconds(0.02));
+      }
+    }
+    progress_.phase("running");
+  }
 
   Outcome show(Histogram& frame_time, std::uint64_t& frames) {
     SnapshotPointer snapshot;
@@ -100,7 +69,11 @@ class WindowRun {
     TroubleTeller trouble;
     if (run_.hears()) typed.emplace(progress_.terminal());
     while (true) {
-      const InputState& input = context_.poll();
+      InputState input = context_.poll();
+      if (worn_) {  // the window shows what an eye sees: not where a pointer would be
+        input.buttons.fill(false);
+        input.scroll = glm::vec2(0.0f);
+      }
       if (context_.should_close() || interrupted_by() != 0) return Outcome::kEnd;
       const glm::ivec2 picture(renderer_.options().width, renderer_.options().height);
       const WindowControls::Wish wish =
@@ -121,6 +94,20 @@ class WindowRun {
                        running_text(rates, stage_.seconds));
       if (!run_.running()) return Outcome::kEnd;
 
+      if (headset_) {
+        const HeadsetView::Turn turn =
+            headset_->turn([&](const HeadsetPictures& p) { draw_eyes(p, snapshot, rates, frame_time); });
+        if (turn == HeadsetView::Turn::kEnded) return Outcome::kEnd;
+        if (worn_ != (turn == HeadsetView::Turn::kDrawn)) context_.follow_screen(worn_);
+        worn_ = turn == HeadsetView::Turn::kDrawn;
+        if (worn_) {
+          if (wish == WindowControls::Wish::kPicture) keep_picture();
+          renderer_.present();
+          context_.swap();
+          frames += 1;
+          continue;
+        }
+      }
       const glm::ivec2 size = context_.framebuffer_size();
       if (!snapshot || size.x < 16 || size.y < 16) {  // minimised
         sleep_until_ns(steady_now_ns() + to_nanoseconds(0.02));
@@ -132,7 +119,7 @@ class WindowRun {
       const std::int64_t begin_ns = steady_now_ns();
       painter_.draw(*snapshot, rates, [this] { controls_.draw(); });
       if (wish == WindowControls::Wish::kPicture) keep_picture();
-      film_.offer(renderer_);
+      if (film_.due()) film_.add(renderer_.read_back());
       context_.swap();
       frame_time.add(to_seconds(steady_now_ns() - begin_ns));
       frames += 1;
@@ -140,6 +127,21 @@ class WindowRun {
   }
 
  private:
+  static constexpr double kWaitForHeadset = 5.0;  // s
+
+  void draw_eyes(const HeadsetPictures& pictures, const SnapshotPointer& snapshot, const Rates& rates,
+                 Histogram& frame_time) {
+    if (!snapshot) return painter_.draw_nothing(pictures);
+    const std::int64_t begin_ns = steady_now_ns();
+    Image both;
+    const bool film = film_.due();
+    const std::optional<RoomInWorld> room = headset_->link()->room();
+    painter_.draw(pictures, *snapshot, rates, headset_->controllers(), room ? room->scale : 1.0,
+                  film ? &both : nullptr);
+    frame_time.add(to_seconds(steady_now_ns() - begin_ns));
+    if (film) film_.add(std::move(both));
+  }
+
   void keep_picture() {
     const Result<std::filesystem::path> written = write_png(free_picture_name(stage_), renderer_.read_back());
     controls_.say(written ? "the picture is in " + written.value().string() : written.error().text());
@@ -149,6 +151,8 @@ class WindowRun {
   LiveRun& run_;
   Context& context_;
   Renderer& renderer_;
+  HeadsetView* headset_;
+  bool worn_ = false;  // in the last turn
   WindowFilm& film_;
   Progress& progress_;
   Painter painter_;
@@ -158,14 +162,26 @@ class WindowRun {
 }  // namespace
 
 Result<bool> show_in_window(const Stage& stage, const MakeRun& make_run, const ShowOptions& options,
-                            Progress& progress, RunSummary& summary) {
+                            HeadsetView* headset, Progress& progress, RunSummary& summary) {
   Result<std::unique_ptr<Context>> context =
-      make_window_context("slosh: " + stage.scene.name, stage.width, stage.height);
+      make_view_context("slosh: " + stage.scene.name, stage.width, stage.height, options, headset);
   if (!context) return context.error();
+  struct GiveBack {
+    HeadsetView* headset;
+    ~GiveBack() {
+      if (headset) headset->stop();
+    }
+  } const give_back{headset};  // before the context goes
+  const auto tell = [&progress](const std::string& text) { progress.note("slosh: " + text); };
+  if (headset) {
+    const Result<bool> started = headset->start(*context.value(), stage.scene, tell);
+    if (!started && !context.value()->has_window()) return started.error();
+    if (!started) tell(started.error().text() + "; it is tried again, and the window is there");
+  }
   const RenderOptions render = picture_options(stage, options);
   Histogram frame_time;
-  WindowFilm film(stage.folder, options);
-  progress.phase("running", "(H in the window for help)");
+  WindowFilm film(stage.folder, options.frames_per_second);
+  progress.phase("running", context.value()->has_window() ? "(H in the window for help)" : "(Ctrl-C ends)");
 
   Outcome outcome = Outcome::kAgain;
   while (outcome == Outcome::kAgain) {
@@ -175,7 +191,8 @@ Result<bool> show_in_window(const Stage& stage, const MakeRun& make_run, const S
     Result<std::unique_ptr<LiveRun>> made = make_run();
     if (!made) return made.error();
     LiveRun& run = *made.value();
-    WindowRun window(stage, run, *context.value(), *renderer.value(), film, progress);
+    WindowRun window(stage, run, *context.value(), *renderer.value(), headset, film, progress);
+    window.wait_for_headset();
     run.start();
     outcome = window.show(frame_time, summary.frames);
     progress.typed("");
@@ -193,11 +210,11 @@ Result<bool> show_in_window(const Stage& stage, const MakeRun& make_run, const S
   return true;
 }
 
-Result<bool> play_in_window(const Prepared& prepared, const PlayOptions& options, Progress& progress,
-                            RunSummary& summary) {
+Result<bool> play_in_window(const Prepared& prepared, const PlayOptions& options, HeadsetView* headset,
+                            Progress& progress, RunSummary& summary) {
   bool told = false;
   const MakeRun make_run = [&]() -> Result<std::unique_ptr<LiveRun>> {
-    Result<DeviceSet> devices = make_devices(prepared.scene, options.devices, true);
+    Result<DeviceSet> devices = make_devices(prepared.scene, options.devices, true, options.controllers);
     if (!devices) return devices.error();
     Result<std::unique_ptr<LocalRun>> run = LocalRun::create(prepared, std::move(devices.value()),
                                                              kWindowSnapshotRate, told ? nullptr : &progress);
@@ -206,7 +223,7 @@ Result<bool> play_in_window(const Prepared& prepared, const PlayOptions& options
     catch_interrupts();
     return std::unique_ptr<LiveRun>(std::move(run.value()));
   };
-  return show_in_window(prepared, make_run, options, progress, summary);
+  return show_in_window(prepared, make_run, options, headset, progress, summary);
 }
 
 }  // namespace slosh

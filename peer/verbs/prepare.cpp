@@ -194,7 +194,7 @@ Result<Prepared> prepare(const PlayOptions& options, bool headless, Progress& pr
   if (!scene) return scene.error();
   p.scene = std::move(scene.value());
   if (!options.devices.empty()) {
-    const Result<DeviceSet> devices = make_devices(p.scene, options.devices, !headless);
+    const Result<DeviceSet> devices = make_devices(p.scene, options.devices, !headless, options.controllers);
     if (!devices) return devices.error();
     for (const std::unique_ptr<Device>& device : devices.value().devices) {
       if (!options.unpaced || device->immediate()) continue;

@@ -129,7 +129,8 @@ Result<bool> RemoteRun::follow_grips() {
     grips_taken_ += 1;
     Pose start = grip_start(stage_.scene, i);
     if (last_snapshot_ && i < last_snapshot_->rigid.grips.size()) start = last_snapshot_->rigid.grips[i].pose;
-    Result<HandDevice> made = make_device(stage_.scene, i, spec, start, options_.has_window);
+    Result<HandDevice> made =
+        make_device(stage_.scene, i, spec, start, options_.has_window, options_.controllers);
     if (made) {
       const Result<bool> opened = open_device(*made.value().device);
       if (!opened) made = opened.error();

@@ -122,4 +122,16 @@ Frame FrameBuilder::build(const Snapshot& snapshot, double view_distance) {
   return frame;
 }
 
+void FrameBuilder::add_controller(const Pose& pose, double scale, Frame& frame) const {
+  // A stick that lies in the fist, thicker where the thumb is.
+  const glm::mat4 grip = model_matrix(pose);
+  const auto ball = [&](const glm::vec3& at, const glm::vec3& radii) {
+    const glm::mat4 placed = glm::translate(grip, static_cast<float>(scale) * at);
+    frame.meshes.push_back(
+        {ball_, glm::scale(placed, static_cast<float>(scale) * radii), {glm::vec3(0.18f), 0.0f, 0.5f, 1.0f}});
+  };
+  ball({0.0f, 0.0f, 0.02f}, {0.013f, 0.013f, 0.06f});
+  ball({0.0f, 0.0f, -0.035f}, {0.02f, 0.02f, 0.02f});
+}
+
 }  // namespace slosh

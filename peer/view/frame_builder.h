@@ -19,6 +19,8 @@ class FrameBuilder {
   /// The returned frame points into `snapshot`, which must live until it is drawn. Without view and HUD.
   /// `view_distance` (m, eye to target) sizes the force arrows.
   Frame build(const Snapshot& snapshot, double view_distance);
+  /// A hand's controller at `pose`, so that one sees one's own hands.
+  void add_controller(const Pose& pose, double scale, Frame& frame) const;
 
  private:
   struct Placed {

@@ -1,13 +1,16 @@
 // One snapshot to one picture: camera, frame and HUD together.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
+#include <span>
 
 #include "peer/hud/hud.h"
 #include "peer/view/frame_builder.h"
 #include "peer/view/held_rects.h"
 #include "peer/view/orbit_camera.h"
+#include "render/headset.h"
 
 namespace slosh {
 
@@ -35,6 +38,37 @@ class Painter {
       if (over) over();
     };
     renderer_.draw(frame);
+  }
+
+  /// Both eyes of a headset, and the HUD on its panel where that is to be drawn. `controllers` in the world,
+  /// which is `scale` m a m of the room. `keep`: null, or gets both pictures side by side.
+  void draw(const HeadsetPictures& pictures, const Snapshot& snapshot, const Rates& rates,
+            std::span<const Pose> controllers, double scale, Image* keep) {
+    Frame frame = builder_.build(snapshot, camera_.distance());
+    for (const Pose& pose : controllers) builder_.add_controller(pose, scale, frame);
+    hud_.keep_clear.clear();  // the panel stands behind the scene
+    frame.hud = [this, &rates] { hud_.draw(rates); };
+    const RenderOptions& size = renderer_.options();
+    if (size.width != pictures.size.x || size.height != pictures.size.y)
+      renderer_.resize(pictures.size.x, pictures.size.y);
+    renderer_.prepare(frame, pictures.views);
+    std::array<Image, 2> read;
+    for (const std::size_t eye :
+         {std::size_t{1}, std::size_t{0}}) {  // a window shows the left one, drawn last
+      renderer_.draw(pictures.views[eye], pictures.targets[eye]);
+      if (keep) read[eye] = renderer_.read_back();
+    }
+    if (pictures.panel.texture != 0) renderer_.draw_panel(pictures.panel_size, pictures.panel);
+    if (keep) *keep = side_by_side(read[0], read[1]);
+  }
+
+  /// The studio without a scene, for a headset that waits.
+  void draw_nothing(const HeadsetPictures& pictures) {
+    if (renderer_.options().width != pictures.size.x || renderer_.options().height != pictures.size.y)
+      renderer_.resize(pictures.size.x, pictures.size.y);
+    renderer_.prepare({}, pictures.views);
+    for (std::size_t eye = 0; eye < 2; ++eye) renderer_.draw(pictures.views[eye], pictures.targets[eye]);
+    if (pictures.panel.texture != 0) renderer_.draw_panel(pictures.panel_size, pictures.panel);
   }
 
   OrbitCamera& camera() { return camera_; }

@@ -1,13 +1,16 @@
 // How long each pass of a frame takes: bench_render [--width W] [--height H] [--particles N] [--frames F]
-// [--threads T] [--batter] [--paper] [--flow] [--full] [--out PICTURE.png]. Times are medians over the frames, with a
-// glFinish after each pass.
+// [--threads T] [--batter] [--paper] [--flow] [--full] [--stereo] [--out PICTURE.png]. Times are medians over
+// the frames, with a glFinish after each pass. --stereo: both eyes of one frame against one, each of that
+// size, with the HUD.
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <glm/gtc/matrix_transform.hpp>
 #include <map>
 #include <string>
 #include <vector>
@@ -28,6 +31,7 @@ struct Wishes {
   bool full = false;
   bool flow = false;
   bool hud = false;
+  bool stereo = false;
   std::string out;
 };
 
@@ -46,6 +50,7 @@ Wishes read_arguments(int count, char** words) {
     if (word == "--full") wishes.full = true;
     if (word == "--flow") wishes.flow = true;
     if (word == "--hud") wishes.hud = true;
+    if (word == "--stereo") wishes.stereo = wishes.hud = true;
     if (word == "--out") wishes.out = next;
   }
   return wishes;
@@ -54,6 +59,45 @@ Wishes read_arguments(int count, char** words) {
 double median(std::vector<double> values) {
   std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
   return values[values.size() / 2];
+}
+
+/// Both eyes of a frame, the HUD on a panel of its own every sixth time, as a headset at 60 Hz has it;
+/// against one eye with the HUD over it. By turns, so that what else the machine does falls on both.
+void time_stereo(slosh::Renderer& renderer, const slosh::Frame& frame, int frames) {
+  using namespace slosh;
+  std::array<View, 2> eyes{frame.view, frame.view};
+  for (std::size_t eye = 0; eye < 2; ++eye) {
+    const float aside = eye == 0 ? 0.032f : -0.032f;
+    eyes[eye].view = glm::translate(glm::mat4(1.0f), glm::vec3(aside, 0.0f, 0.0f)) * frame.view.view;
+  }
+  const auto time = [](auto&& draw) {
+    const auto start = std::chrono::steady_clock::now();
+    draw();
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  };
+  std::vector<double> mono;
+  std::vector<double> stereo;
+  for (int i = 0; i < frames + 2; ++i) {
+    const double one = time([&] {
+      renderer.draw(frame);
+      (void)renderer.read_back();
+    });
+    const double two = time([&] {
+      renderer.prepare(frame, eyes);
+      for (const View& eye : eyes) {
+        renderer.draw(eye);
+        (void)renderer.read_back();
+      }
+      if (i % 6 == 0) renderer.draw_hud();
+      renderer.present();
+    });
+    if (i < 2) continue;
+    mono.push_back(one);
+    stereo.push_back(two);
+  }
+  std::printf("%-20s %10.2f %10.2f\n%-20s %10.2f %10.2f\n%-20s %10.2f %10.2f\n", "one eye", median(mono),
+              std::ranges::min(mono), "both eyes", median(stereo), std::ranges::min(stereo), "both / one",
+              median(stereo) / median(mono), std::ranges::min(stereo) / std::ranges::min(mono));
 }
 
 int fail(const slosh::Error& error) {
@@ -118,6 +162,7 @@ int main(int argc, char** argv) {
     std::printf("%-20s %10.2f %10.2f\n", pass.c_str(), median(times[pass]), std::ranges::min(times[pass]));
   }
   std::printf("%-20s %10.2f %10.2f\n", "frame + read-back", median(whole), std::ranges::min(whole));
+  if (wishes.stereo) time_stereo(renderer, scene.frame, wishes.frames);
   if (!wishes.out.empty()) {
     const auto written = write_png(wishes.out, renderer.read_back());
     if (!written) return fail(written.error());

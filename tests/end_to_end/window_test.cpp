@@ -11,6 +11,7 @@
 #include <sstream>
 #include <thread>
 
+#include "display.h"
 #include "peer/haptics/script_device.h"
 #include "peer/view/orbit_camera.h"
 #include "process.h"
@@ -20,6 +21,8 @@
 namespace slosh {
 namespace {
 
+using test::Display;
+using test::installed;
 using test::Outcome;
 using test::Process;
 using test::read_text;
@@ -33,45 +36,6 @@ bool comes(const std::function<bool()>& there) {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
   return false;
-}
-
-/// A virtual display of its own, and what is done there.
-class Display {
- public:
-  explicit Display(const std::filesystem::path& folder)
-      : folder_(folder),
-        server_({"Xvfb", "-displayfd", "1", "-screen", "0", "1024x768x24", "-nolisten", "tcp"},
-                folder / "xvfb") {
-    comes([&] {
-      return !server_.running() || read_text(folder_ / "xvfb/stdout.txt").find('\n') != std::string::npos;
-    });
-    name_ = std::string(":").append(read_text(folder_ / "xvfb/stdout.txt"));
-    while (!name_.empty() && std::isspace(static_cast<unsigned char>(name_.back()))) name_.pop_back();
-  }
-  ~Display() {
-    server_.signal(SIGTERM);
-    server_.wait();
-  }
-  bool there() { return server_.running() && name_.size() > 1; }
-  /// The program there.
-  std::vector<std::string> on(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), {"env", "DISPLAY=" + name_});
-    return arguments;
-  }
-  /// What a person does, in xdotool's words; what it prints.
-  std::string act(std::vector<std::string> words) const {
-    words.insert(words.begin(), "xdotool");
-    return Process(on(words), folder_ / "xdotool").wait().out;
-  }
-
- private:
-  std::filesystem::path folder_;
-  Process server_;
-  std::string name_;
-};
-
-bool installed(const std::string& program) {
-  return Process({"which", program}, test::test_folder() / "which").wait().code == 0;
 }
 
 class WindowTest : public ::testing::Test {
