@@ -30,12 +30,24 @@ struct Material {
   float opacity = 1.0f;    ///< 1 opaque; below 1 drawn blended (a glass)
 };
 
+/// Fluid::scattering where nothing is said of it: what hides all that is a centimetre down (1/m) was given a
+/// colour to be seen in it.
+inline float usual_scattering(const glm::vec3& extinction) {
+  return extinction.x + extinction.y + extinction.z >= 3.0f * 100.0f ? 1.0f : 0.2f;
+}
+
 struct Fluid {
   std::string name;
   double rest_density = 1000.0;             ///< kg/m³, > 0 (Eq 7's ρ⁰)
   double dynamic_viscosity = 0.001;         ///< Pa·s, >= 0 (Eq 6's μ)
   glm::vec3 color{0.10f, 0.35f, 0.55f};     ///< F_c of Eq 15
   glm::vec3 extinction{12.0f, 4.0f, 2.5f};  ///< F_e of Eq 15, 1/m
+  float gloss = 1.0f;                       ///< 0–1: share of a clean surface's reflection
+  float refraction = 1.33f;                 ///< refractive index, 1–3
+  float scattering = 0.2f;  ///< 0–1: share of the light that F_e takes which comes back as F_c; else absorbed
+  float roughness = 0.05f;  ///< 0–1, of the surface, as glTF has it
+
+  bool operator==(const Fluid&) const = default;
 };
 
 /// A closed mesh that starts full of fluid.

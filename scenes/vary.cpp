@@ -1,5 +1,6 @@
 #include "scenes/vary.h"
 
+#include <algorithm>
 #include <charconv>
 #include <exception>
 #include <optional>
@@ -33,8 +34,8 @@ bool is_kind(const std::string& name) {
 
 /// Fields that a scene's `fluids` may have in place of the nodes.
 bool of_fluid(const std::string& field) {
-  return field == "density_kg_m3" || field == "viscosity_pa_s" || field == "color" ||
-         field == "extinction_per_m";
+  return std::find(reading::kFluidFields.begin(), reading::kFluidFields.end(), field) !=
+         reading::kFluidFields.end();
 }
 
 std::string known_objects(const gltf::Document& document) {

@@ -37,6 +37,12 @@ struct SettledScene {
   MeasuredScene measured;
 };
 
+/// The same of a scene that says how its fluids look beyond their colour.
+struct LookedScene {
+  SettledScene settled;
+  std::vector<Fluid> looks;  ///< one a fluid; the rest of each is in the list above
+};
+
 /// Positive definite, as a solid's is.
 inline bool can_turn(const glm::dmat3& inertia) {
   const double minor = inertia[0][0] * inertia[1][1] - inertia[0][1] * inertia[1][0];
@@ -220,6 +226,18 @@ template <class V>
 void visit(V& v, SettledScene& m) {
   visit(v, m.measured);
   v.real64("settle", m.measured.packed.scene.settle, 0.0, kMaxSettle);
+}
+
+template <class V>
+void visit(V& v, LookedScene& m) {
+  visit(v, m.settled);
+  const std::size_t fluids = m.settled.measured.packed.scene.fluids.size();
+  v.list_as_long("looks", m.looks, "fluids", fluids, [](auto& each, Fluid& fluid) {
+    each.real32("gloss", fluid.gloss, 0.0, 1.0);
+    each.real32("refraction", fluid.refraction, 1.0, 3.0);
+    each.real32("scattering", fluid.scattering, 0.0, 1.0);
+    each.real32("roughness", fluid.roughness, 0.0, 1.0);
+  });
 }
 
 }  // namespace slosh::wire

@@ -14,24 +14,38 @@ namespace {
 using wire::Bytes;
 using wire::ByteView;
 
-// A package: its version, how the rest is coded, the rest. A scene that settles before its run has the third
-// version, else one with gauges or regions the second; any other the first, which programs from before these
-// can read. A peer needs none of it and gets the first.
+// A package: its version, how the rest is coded, the rest. A scene whose fluids say how they look has the
+// fourth version, else one that settles before its run the third, else one with gauges or regions the second;
+// any other the first, which programs from before these can read. A peer needs the first or the fourth.
 constexpr std::uint8_t kVersion = 1;
 constexpr std::uint8_t kMeasured = 2;
 constexpr std::uint8_t kSettled = 3;
+constexpr std::uint8_t kLooked = 4;
+
+/// Without what packages before the fourth version leave out.
+Fluid plain(Fluid fluid) {
+  const Fluid usual;
+  fluid.gloss = usual.gloss;
+  fluid.refraction = usual.refraction;
+  fluid.roughness = usual.roughness;
+  fluid.scattering = usual_scattering(fluid.extinction);
+  return fluid;
+}
 
 std::uint8_t version_of(const Scene& scene) {
+  for (const Fluid& fluid : scene.fluids)
+    if (fluid != plain(fluid)) return kLooked;
   if (scene.settle > 0.0) return kSettled;
   return scene.gauges.empty() && scene.regions.empty() ? kVersion : kMeasured;
 }
 
 // What a version has, of a scene of the last one.
 template <class F>
-wire::Fault with_version(std::uint8_t version, wire::SettledScene& whole, F&& f) {
-  if (version == kSettled) return f(whole);
-  if (version == kMeasured) return f(whole.measured);
-  return f(whole.measured.packed);
+wire::Fault with_version(std::uint8_t version, wire::LookedScene& whole, F&& f) {
+  if (version == kLooked) return f(whole);
+  if (version == kSettled) return f(whole.settled);
+  if (version == kMeasured) return f(whole.settled.measured);
+  return f(whole.settled.measured.packed);
 }
 enum Coding : std::uint8_t { kStored, kZstd };
 constexpr std::size_t kHead = 2;
@@ -86,8 +100,8 @@ Result<Bytes> decompressed(ByteView packed) {
 }  // namespace
 
 Result<Bytes> pack_scene(const Scene& scene, double spacing, SceneParts parts) {
-  wire::SettledScene whole{{{scene, spacing}}};
-  Scene& sent = whole.measured.packed.scene;
+  wire::LookedScene whole{{{{scene, spacing}}}, scene.fluids};
+  Scene& sent = whole.settled.measured.packed.scene;
   if (parts == SceneParts::kSeen) keep_seen(sent);
   const std::uint8_t version = version_of(sent);
   Bytes content;
@@ -120,7 +134,7 @@ Result<Bytes> pack_scene(const Scene& scene, double spacing, SceneParts parts) {
 Result<UnpackedScene> unpack_scene(ByteView package) {
   if (package.size() < kHead) return damaged("it is empty");
   if (package.size() > wire::kMaxSceneBytes + kHead) return damaged("it is too large");
-  if (package[0] < kVersion || package[0] > kSettled)
+  if (package[0] < kVersion || package[0] > kLooked)
     return damaged("its version is " + std::to_string(package[0]));
   if (package[1] > kZstd) return damaged("its coding is " + std::to_string(package[1]));
   ByteView content = package.subspan(kHead);
@@ -131,12 +145,20 @@ Result<UnpackedScene> unpack_scene(ByteView package) {
     unpacked = std::move(result.value());
     content = unpacked;
   }
-  wire::SettledScene whole;
+  wire::LookedScene whole;
   if (const wire::Fault fault =
           with_version(package[0], whole, [&](auto& fields) { return wire::decode(content, fields); })) {
     return damaged(fault.text());
   }
-  wire::PackedScene& packed = whole.measured.packed;
+  wire::PackedScene& packed = whole.settled.measured.packed;
+  for (std::size_t i = 0; i < packed.scene.fluids.size(); ++i) {
+    Fluid& fluid = packed.scene.fluids[i];
+    const Fluid look = package[0] == kLooked ? whole.looks[i] : plain(fluid);
+    fluid.gloss = look.gloss;
+    fluid.refraction = look.refraction;
+    fluid.scattering = look.scattering;
+    fluid.roughness = look.roughness;
+  }
   return UnpackedScene{std::move(packed.scene), packed.spacing};
 }
 

@@ -51,7 +51,7 @@ std::vector<Table> tables() {
           message<Bodies>("Bodies"),
           message<Hands>("Hands"),
           message<FluidWrench>("FluidWrench"),
-          part<SettledScene>("Scene")};
+          part<LookedScene>("Scene")};
 }
 
 constexpr const char kBegin[] = "<!-- table: ";

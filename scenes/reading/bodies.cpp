@@ -141,7 +141,7 @@ Problem read_fluid_volume(Reading& reading, int node) {
   read_fluid_fields(extras, fluid);
   const auto declared = reading.declared_fluids.find(name);
   if (declared != reading.declared_fluids.end()) {
-    for (const char* key : {"density_kg_m3", "viscosity_pa_s", "color", "extinction_per_m"}) {
+    for (const char* key : kFluidFields) {
       if (extras.has(key)) {
         extras.fail(key, "is given here and, for fluid \"" + name + "\", in the scene's fluids",
                     "Keep one of the two");
@@ -155,8 +155,7 @@ Problem read_fluid_volume(Reading& reading, int node) {
       const Fluid& other = scene.fluids[i];
       if (other.name != name) continue;
       volume.fluid = static_cast<int>(i);
-      if (other.rest_density != fluid.rest_density || other.dynamic_viscosity != fluid.dynamic_viscosity ||
-          other.color != fluid.color || other.extinction != fluid.extinction) {
+      if (other != fluid) {
         extras.fail("fluid", "\"" + name + "\" has other properties on another node",
                     "Give both nodes the same, or declare the fluid once in the scene's fluids");
       }

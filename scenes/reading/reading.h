@@ -71,6 +71,10 @@ Problem read_pose(const Reading& reading, int node, Pose& pose, glm::dmat3& rest
 /// With `closed`, an open, non-manifold or inward-facing mesh is an error that says how to mend it.
 Problem read_node_mesh(Reading& reading, int node, const glm::dmat3& rest, bool closed, int& mesh);
 
+/// What read_fluid_fields reads.
+inline constexpr std::array kFluidFields{"density_kg_m3", "viscosity_pa_s", "color",      "extinction_per_m",
+                                         "gloss",         "refraction",     "scattering", "roughness"};
+
 /// Fields of a fluid, from a fluid node or from the scene's `fluids`.
 void read_fluid_fields(gltf::Extras& extras, Fluid& fluid);
 

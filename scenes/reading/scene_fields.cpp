@@ -13,6 +13,13 @@ void read_fluid_fields(gltf::Extras& extras, Fluid& fluid) {
   fluid.color = glm::vec3(extras.vector("color", glm::dvec3(fluid.color), gltf::Range{0.0, 1.0}));
   fluid.extinction =
       glm::vec3(extras.vector("extinction_per_m", glm::dvec3(fluid.extinction), gltf::Range{0.0, 1e5}));
+  const auto number = [&](const char* key, float otherwise, const gltf::Range& range) {
+    return static_cast<float>(extras.number(key, otherwise, range));
+  };
+  fluid.gloss = number("gloss", fluid.gloss, {0.0, 1.0});
+  fluid.refraction = number("refraction", fluid.refraction, {1.0, 3.0});
+  fluid.scattering = number("scattering", usual_scattering(fluid.extinction), {0.0, 1.0});
+  fluid.roughness = number("roughness", fluid.roughness, {0.0, 1.0});
 }
 
 Problem read_scene_fields(Reading& reading) {

@@ -45,6 +45,10 @@ TEST(FieldErrors, NumbersOutOfRange) {
   expect_field_error("water", "density_kg_m3", 0.0, {"0"});
   expect_field_error("water", "density_kg_m3", -1000, {"-1000"});
   expect_field_error("water", "viscosity_pa_s", -1, {"-1"});
+  expect_field_error("water", "gloss", 1.5, {"1.5", "0 to 1"});
+  expect_field_error("water", "refraction", 0.9, {"0.9", "1 to 3"});
+  expect_field_error("water", "scattering", -0.1, {"-0.1", "0 to 1"});
+  expect_field_error("water", "roughness", 2, {"2", "0 to 1"});
   expect_field_error("handle", "stiffness_n_m", 2e6, {"2e+06"});
   expect_field_error("handle", "damping_n_s_m", -1, {"-1"});
   expect_field_error("handle", "rotational_stiffness_nm_rad", 1e5, {"100000"});
@@ -61,6 +65,7 @@ TEST(FieldErrors, WrongTypes) {
   expect_field_error("cup", "inertia_kg_m2", {1, 1, 1, 0, 0, "x"}, {"6 numbers"});
   expect_field_error("cup", "inertia_kg_m2", {1, 1, 5, 0, 0, 0}, {"inertia of a solid"});
   expect_field_error("water", "color", {1, 2, 0}, {"0 to 1"});
+  expect_field_error("water", "gloss", "shiny", {"shiny", "not a number"});
   expect_field_error("water", "velocity_m_s", "fast", {"fast"});
 }
 
@@ -70,6 +75,23 @@ TEST(FieldErrors, UnknownKeysListTheKnown) {
   expect_field_error("handle", "stiffness", 1.0, {"stiffness_n_m"});
   expect_field_error("hand", "grips", "x", {"grip"});
   expect_scene_error("spacing", 0.01, {"spacing_m", "gravity_m_s2"});
+}
+
+TEST(FieldErrors, AFluidsLookIsReadAndOpaqueFluidIsCloudyUnlessSaidOtherwise) {
+  const auto fluid_of = [](const json& fields) {
+    const auto scene = test::load_edited([&](json& j) { node_named(j, "water")["extras"].update(fields); });
+    EXPECT_TRUE(scene) << scene.error().text();
+    return scene ? scene.value().fluids[0] : Fluid{};
+  };
+  const Fluid honey =
+      fluid_of({{"gloss", 0.5}, {"refraction", 1.49}, {"scattering", 0.25}, {"roughness", 0.125}});
+  EXPECT_EQ(honey.gloss, 0.5f);
+  EXPECT_EQ(honey.refraction, 1.49f);
+  EXPECT_EQ(honey.scattering, 0.25f);
+  EXPECT_EQ(honey.roughness, 0.125f);
+  EXPECT_EQ(fluid_of({{"extinction_per_m", {90, 90, 90}}}).scattering, 0.2f);
+  EXPECT_EQ(fluid_of({{"extinction_per_m", {90, 100, 120}}}).scattering, 1.0f);
+  EXPECT_EQ(fluid_of({{"extinction_per_m", {400, 400, 400}}, {"scattering", 0.0}}).scattering, 0.0f);
 }
 
 TEST(FieldErrors, KeysOfOthersAreLeftAlone) {

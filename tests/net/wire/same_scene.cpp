@@ -46,6 +46,10 @@ void expect_same_scene(const Scene& a, const Scene& b) {
     SAME(fluids[i].dynamic_viscosity);
     SAME(fluids[i].color);
     SAME(fluids[i].extinction);
+    SAME(fluids[i].gloss);
+    SAME(fluids[i].refraction);
+    SAME(fluids[i].scattering);
+    SAME(fluids[i].roughness);
   }
   for (std::size_t i = 0; i < a.fluid_volumes.size(); ++i) {
     SAME(fluid_volumes[i].name);
