@@ -20,19 +20,37 @@ struct MeshLook {
 /// A mesh the renderer keeps on the GPU.
 using MeshHandle = std::uint32_t;
 
+/// What draws frames and keeps their meshes.
+class MeshSink {
+ public:
+  virtual ~MeshSink() = default;
+  /// Copies a mesh for good. One normal a position; triangles counter-clockwise seen from outside; a triangle
+  /// with an index out of range is left out.
+  virtual MeshHandle add_mesh(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
+                              std::span<const glm::uvec3> triangles) = 0;
+};
+
 struct MeshInstance {
   MeshHandle mesh = 0;
   glm::mat4 model{1.0f};  ///< mesh frame to world, rigid
   MeshLook look;
 };
 
-/// How a fluid looks: the constants of Eq 15.
+/// How a fluid looks.
 struct FluidLook {
-  glm::vec3 color{0.10f, 0.35f, 0.55f};     ///< F_c
+  glm::vec3 color{0.10f, 0.35f, 0.55f};     ///< F_c of Eq 15
   glm::vec3 extinction{12.0f, 4.0f, 2.5f};  ///< F_e, 1/m
-  float refraction = 0.35f;                 ///< β, displacement in screen heights a metre of thickness
-  glm::vec3 specular{0.6f};                 ///< k_s
-  float specular_exponent = 180.0f;         ///< α
+
+  // Eq 15's own, drawn where RenderOptions::lit_fluid is off.
+  float displacement = 0.35f;        ///< β, in screen heights a metre of thickness
+  glm::vec3 specular{0.6f};          ///< k_s
+  float specular_exponent = 180.0f;  ///< α
+
+  // Beyond the paper, drawn where lit_fluid is on (shaders/fluid_look.glsl).
+  float scattering = 0.2f;  ///< 0–1: share of the light that F_e takes which comes back as F_c; else absorbed
+  float gloss = 1.0f;       ///< 0–1: share of a clean surface's reflection
+  float refraction = 1.33f;  ///< refractive index, >= 1
+  float roughness = 0.05f;   ///< 0–1, of the surface, as glTF has it
 };
 
 struct View {
@@ -56,7 +74,8 @@ struct Frame {
   std::span<const glm::vec3> particles;          ///< m, world
   std::span<const std::uint8_t> particle_fluid;  ///< index into fluids, 255 = not drawn
   std::vector<FluidLook> fluids;
-  float particle_radius = 0.005f;  ///< m; splats are 1.2 times larger (5.1)
+  float particle_radius =
+      0.005f;  ///< m, of the ball with a particle's volume; splats are 1.2 times larger (5.1)
   std::vector<Arrow> arrows;
   std::function<void()>
       hud;  ///< Dear ImGui calls for this frame, run between NewFrame and Render; may be empty

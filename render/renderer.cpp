@@ -19,6 +19,7 @@
 #include "render/passes/smooth_centers.h"
 #include "render/passes/splats.h"
 #include "render/passes/targets.h"
+#include "render/passes/thickness_pass.h"
 #include "render/read_back.h"
 
 namespace slosh {
@@ -65,6 +66,7 @@ struct Renderer::Parts {
   std::optional<FluidShadowPass> fluid_shadow_pass;
   std::optional<ScenePass> scene_pass;
   std::optional<FluidPasses> fluid_passes;
+  std::optional<ThicknessPass> thickness_pass;
   std::optional<ArrowPass> arrow_pass;
   std::optional<DisplayPass> display_pass;
   std::unique_ptr<HudPass> hud_pass;
@@ -109,6 +111,9 @@ Result<bool> Renderer::Parts::fit_to_options() {
     if (!fluid) return fluid.error();
     auto fluid_shadow = FluidShadowPass::create(want_fast);
     if (!fluid_shadow) return fluid_shadow.error();
+    auto thickness = ThicknessPass::create();
+    if (!thickness) return thickness.error();
+    thickness_pass = std::move(thickness.value());
     scene_pass = std::move(scene.value());
     fluid_shadow_pass = std::move(fluid_shadow.value());
     fluid_passes = std::move(fluid.value());
@@ -130,8 +135,8 @@ Result<bool> Renderer::Parts::fit_to_options() {
     if (!pass) return pass.error();
     shadow_pass = std::move(pass.value());
   }
-  if (!display_pass || display_pass->display() != options.display) {
-    auto pass = DisplayPass::create(options.display);
+  if (!display_pass || !display_pass->shows(options.display, options.color)) {
+    auto pass = DisplayPass::create(options.display, options.color);
     if (!pass) return pass.error();
     display_pass = std::move(pass.value());
   }
@@ -151,7 +156,8 @@ RenderOptions section_five(RenderOptions options) {
   options.bilateral_iterations = 4;
   options.splat_scale = 1.2f;
   options.half_resolution_back = true;
-  options.fresnel = options.lit_fluid = options.fluid_shadow = false;
+  options.fresnel = options.lit_fluid = options.layers = options.fluid_shadow = false;
+  options.antialias = false;
   return options;
 }
 
@@ -199,13 +205,15 @@ void Renderer::draw(const View& view, const PictureTarget& target) {
 }
 
 void Renderer::Parts::draw_scene() {
-  uniforms.upload(make_frame_block(frame, options, shadow));
+  const bool chords = options.layers && options.surface != Surface::kPaper && any_fluid_is_clear(frame);
+  uniforms.upload(make_frame_block(frame, options, shadow, chords));
   run("prepare splats", [&] {
     prepare_splats(frame, options, splats);
+    if (chords) splats.all = splats.spheres;
     if (fast) leave_out_hidden(frame, options, splats);
     if (options.surface == Surface::kOurs && !splats.empty()) {
       if (!std::exchange(centers_sorted, true)) centers.sort(frame);
-      centers.move(frame, splats.spheres);
+      centers.move(frame, splats);
     }
     drew_fluid = !splats.empty();
     if (drew_fluid) fluid_passes->upload(splats);
@@ -223,6 +231,9 @@ void Renderer::Parts::draw_scene() {
     run("occlusion", [&] { scene_pass->draw_occlusion(targets, kOcclusionReach); });
     run("resolve", [&] { scene_pass->resolve_occlusion(targets); });
   }
+  if (drew_fluid && chords) {
+    run("thickness", [&] { thickness_pass->draw(frame, targets, splats.all); });
+  }
   const bool translucent = has_translucent(frame);
   if (drew_fluid) {
     if (translucent && !fast) {
@@ -233,7 +244,7 @@ void Renderer::Parts::draw_scene() {
       glCopyImageSubData(targets.color.name(), GL_TEXTURE_2D, 0, 0, 0, 0, targets.scene_color.name(),
                          GL_TEXTURE_2D, 0, 0, 0, 0, targets.size.x, targets.size.y, 1);
     });
-    run("composite", [&] { fluid_passes->composite(targets); });
+    run("composite", [&] { fluid_passes->composite(targets, options.lit_fluid); });
   }
   if (translucent) {
     run("translucent", [&] { scene_pass->draw_translucent(frame, meshes, targets, fluid_depth(), false); });
@@ -241,7 +252,10 @@ void Renderer::Parts::draw_scene() {
   if (!frame.arrows.empty()) {
     run("arrows", [&] { arrow_pass->draw(frame, targets, fluid_depth()); });
   }
-  run("display", [&] { display_pass->draw(targets, options.exposure); });
+  run("display", [&] { display_pass->draw(targets, options.exposure, options.antialias); });
+  if (options.antialias) {
+    run("edges", [&] { display_pass->smooth_edges(targets, context.is_software()); });
+  }
 }
 
 void Renderer::draw_hud() {

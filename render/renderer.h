@@ -22,6 +22,14 @@ enum class Display : std::uint8_t {
   kSrgb,  ///< clip to 0–1 and encode as sRGB: a colour below 1 stays what it is
 };
 
+/// A user's OpenColorIO configuration in place of Display.
+struct ColorConfig {
+  std::string file;     ///< an .ocio file; empty: none
+  std::string display;  ///< by name; empty: the config's own first
+  std::string view;     ///< by name; empty: the display's own first
+  bool operator==(const ColorConfig&) const = default;
+};
+
 /// How much is spent on looks where the paper leaves it open.
 enum class Quality : std::uint8_t {
   kAuto,  ///< kFast where a CPU draws (llvmpipe), else kFull
@@ -49,14 +57,19 @@ struct RenderOptions {
   bool half_resolution_back = true;  ///< back depth at half the picture's size (5.1)
 
   bool fresnel = true;    ///< beyond the paper: Schlick reflection of the surroundings, F0 0.02
-  bool lit_fluid = true;  ///< beyond the paper: F_c of Eq 15 is lit by the light and the sky
+  bool lit_fluid =
+      true;  ///< beyond the paper: light off and out of the fluid as its look says, in place of Eq 15
+  bool layers = true;  ///< beyond the paper: layers of fluid with air between count each by itself; not with
+                       ///< Surface::kPaper
 
   int shadow_size = 1024;         ///< texels a side of the light's shadow map, 0 = no shadows, up to 8192
   bool ambient_occlusion = true;  ///< darken creases of the meshes (kFull)
   bool fluid_shadow = true;  ///< beyond the paper: fluid dims the light that passes it; needs shadow_size > 0
+  bool antialias = true;     ///< beyond the paper: smooth edges in the picture as shown (not in its buffers)
   bool draw_background = true;  ///< false: black behind everything
   Quality quality = Quality::kAuto;
   Display display = Display::kAces;
+  ColorConfig color;      ///< goes before `display` where it names a file
   float exposure = 1.0f;  ///< factor on scene-linear light before the display transform, > 0
 };
 
@@ -93,18 +106,17 @@ struct PictureTarget {
 
 /// Draws frames with one context. All calls on the thread the context is current on. The context must outlive
 /// it.
-class Renderer {
+class Renderer : public MeshSink {
  public:
   /// Errors: sizes or factors out of range, a shader that the driver refuses, no display transform.
   static Result<std::unique_ptr<Renderer>> create(Context& context, const RenderOptions& options = {});
-  ~Renderer();
+  ~Renderer() override;
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// Copies a mesh to the GPU for good. One normal a position; triangles counter-clockwise seen from outside;
-  /// a triangle with an index out of range is left out.
+  /// To the GPU.
   MeshHandle add_mesh(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
-                      std::span<const glm::uvec3> triangles);
+                      std::span<const glm::uvec3> triangles) override;
 
   /// What all pictures of a moment share, once: shadows that reach all of `views` (Frame::view is passed
   /// over; without any nothing is shadowed), the fluids' looks. The frame is kept, so what it points to must

@@ -23,15 +23,23 @@ using glm::min;
 using glm::mix;
 using glm::normalize;
 using glm::pow;
+using glm::refract;
 using glm::smoothstep;
 using glm::sqrt;
 
 #define SHARED inline
+// fluid_look.glsl stands on optics.glsl: the order is not the alphabet's.
+// clang-format off
 #include "render/shaders/bilateral.glsl"
 #include "render/shaders/display_shaper.glsl"
+#include "render/shaders/edges.glsl"
 #include "render/shaders/narrow_range.glsl"
 #include "render/shaders/optics.glsl"
+#include "render/shaders/fluid_look.glsl"
+#include "render/shaders/room.glsl"
 #include "render/shaders/sphere.glsl"
+#include "render/shaders/thickness.glsl"
+// clang-format on
 #undef SHARED
 
 }  // namespace slosh::shader

@@ -53,6 +53,11 @@ void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window) {
   verb.add_option("--bilateral", options.bilateral, "Iterations of the paper's filter; 0: particles stay the balls they are, with any surface")
       ->check(CLI::Range(0, 64))
       ->capture_default_str();
+  verb.add_option(
+      "--ocio", options.ocio,
+      "OpenColorIO configuration that makes the picture of the light ($OCIO; none: the built-in ACES)");
+  verb.add_option("--display", options.display, "Display of that configuration, by name (its first)");
+  verb.add_option("--view", options.view, "View of that display, by name (its first)");
   verb.add_option("--plot", options.plot, "Format of the sheet of forces: png, svg or pdf")
       ->check(CLI::IsMember(plot_formats()))
       ->capture_default_str();

@@ -2,6 +2,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -10,6 +11,7 @@
 #include "peer/verbs/local_run.h"
 #include "peer/verbs/play_modes.h"
 #include "peer/view/headless_view.h"
+#include "render/color/display_transform.h"
 
 namespace slosh {
 namespace {
@@ -64,13 +66,35 @@ void TroubleTeller::tell(const LiveRun& run, Progress& progress) {
   progress.note("slosh: " + trouble + "; the run goes on");
 }
 
-RenderOptions picture_options(const Stage& stage, const ShowOptions& options) {
+namespace {
+
+ColorConfig chosen_colors(const ShowOptions& options, Progress& progress) {
+  ColorConfig asked{options.ocio, options.display, options.view};
+  if (const char* usual = std::getenv("OCIO"); asked.file.empty() && usual) asked.file = usual;
+  if (asked.file == "none") asked.file.clear();
+  if (asked.file.empty()) {
+    if (!asked.display.empty() || !asked.view.empty())
+      progress.note(
+          "slosh: --display and --view name those of a colour configuration, and there is none: give "
+          "--ocio FILE; the built-in transform is used");
+    return {};
+  }
+  const Result<ColorConfig> found = find_display_view(asked);
+  if (found) return found.value();
+  progress.note("slosh: " + found.error().text() + "; the built-in transform is used");
+  return {};
+}
+
+}  // namespace
+
+RenderOptions picture_options(const Stage& stage, const ShowOptions& options, Progress& progress) {
   RenderOptions render;
   if (options.surface == "paper") render = section_five(render);
   if (options.surface == "flow") render.surface = Surface::kCurvatureFlow;
   render.width = stage.width;
   render.height = stage.height;
   render.bilateral_iterations = options.bilateral;
+  render.color = chosen_colors(options, progress);
   return render;
 }
 
@@ -80,7 +104,7 @@ Result<bool> show_headless(const Stage& stage, LiveRun& run, const ShowOptions& 
   ViewOptions view_options;
   if (options.render) {
     progress.phase("preparing the picture");
-    view_options.render = picture_options(stage, options);
+    view_options.render = picture_options(stage, options, progress);
     view_options.frames_per_second = options.frames_per_second;
     view_options.folder = stage.folder;
     Result<std::unique_ptr<HeadlessView>> started = HeadlessView::start(

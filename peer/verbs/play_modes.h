@@ -33,8 +33,9 @@ Result<bool> play_headless(const Prepared& prepared, const PlayOptions& options,
 Result<bool> play_in_window(const Prepared& prepared, const PlayOptions& options, HeadsetView* headset,
                             Progress& progress, RunSummary& summary);
 
-/// What the renderer is asked for: the stage's size, the surface that was chosen.
-RenderOptions picture_options(const Stage& stage, const ShowOptions& options);
+/// What the renderer is asked for: the stage's size, the surface and the colours that were chosen. A colour
+/// configuration that cannot be used is told, and the built-in transform goes on.
+RenderOptions picture_options(const Stage& stage, const ShowOptions& options, Progress& progress);
 
 /// Lines typed at a run go to it, their answers to stdout; nothing where the run hears none. Does not wait.
 void hear_lines(LiveRun& run, LineInput* input, Progress& progress);

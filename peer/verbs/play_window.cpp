@@ -178,7 +178,7 @@ Result<bool> show_in_window(const Stage& stage, const MakeRun& make_run, const S
     if (!started && !context.value()->has_window()) return started.error();
     if (!started) tell(started.error().text() + "; it is tried again, and the window is there");
   }
-  const RenderOptions render = picture_options(stage, options);
+  const RenderOptions render = picture_options(stage, options, progress);
   Histogram frame_time;
   WindowFilm film(stage.folder, options.frames_per_second);
   progress.phase("running", context.value()->has_window() ? "(H in the window for help)" : "(Ctrl-C ends)");

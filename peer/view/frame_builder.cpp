@@ -54,7 +54,7 @@ namespace {
 constexpr double kRadiusOfSpacing = 0.6204;  // (3 / 4π)^(1/3)
 }  // namespace
 
-FrameBuilder::FrameBuilder(const Scene& scene, double spacing, Renderer& renderer)
+FrameBuilder::FrameBuilder(const Scene& scene, double spacing, MeshSink& meshes)
     : scene_(scene), particle_radius_(static_cast<float>(kRadiusOfSpacing * spacing)) {
   std::vector<MeshHandle> handles(scene.meshes.size());
   std::vector<bool> loaded(scene.meshes.size(), false);
@@ -62,13 +62,13 @@ FrameBuilder::FrameBuilder(const Scene& scene, double spacing, Renderer& rendere
     const auto i = static_cast<std::size_t>(index);
     if (!loaded[i]) {
       const TriangleMesh& mesh = scene.meshes[i];
-      handles[i] = renderer.add_mesh(mesh.positions, mesh.normals, mesh.triangles);
+      handles[i] = meshes.add_mesh(mesh.positions, mesh.normals, mesh.triangles);
       loaded[i] = true;
     }
     return handles[i];
   };
   const TriangleMesh ball = unit_ball();
-  ball_ = renderer.add_mesh(ball.positions, ball.normals, ball.triangles);
+  ball_ = meshes.add_mesh(ball.positions, ball.normals, ball.triangles);
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& body = scene.bodies[i];
     if (body.mesh < 0) continue;
@@ -82,6 +82,10 @@ FrameBuilder::FrameBuilder(const Scene& scene, double spacing, Renderer& rendere
     FluidLook look;
     look.color = fluid.color;
     look.extinction = fluid.extinction;
+    look.scattering = fluid.scattering;
+    look.gloss = fluid.gloss;
+    look.refraction = fluid.refraction;
+    look.roughness = fluid.roughness;
     fluids_.push_back(look);
   }
 }

@@ -10,11 +10,11 @@
 
 namespace slosh {
 
-/// Puts the scene's meshes on the GPU once and places them for every snapshot. On the renderer's thread.
+/// Hands the scene's meshes over once and places them for every snapshot. On the thread of what draws them.
 class FrameBuilder {
  public:
   /// `scene` must outlive it. `spacing` in m.
-  FrameBuilder(const Scene& scene, double spacing, Renderer& renderer);
+  FrameBuilder(const Scene& scene, double spacing, MeshSink& meshes);
 
   /// The returned frame points into `snapshot`, which must live until it is drawn. Without view and HUD.
   /// `view_distance` (m, eye to target) sizes the force arrows.

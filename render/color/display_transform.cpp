@@ -3,6 +3,8 @@
 #include <OpenColorIO/OpenColorIO.h>
 
 #include <exception>
+#include <optional>
+#include <string>
 
 #include "render/shader_math.h"
 
@@ -74,11 +76,100 @@ ocio::ConstConfigRcPtr make_config() {
   return config;
 }
 
+constexpr const char* kMend =
+    "Give --ocio, --display and --view what `ociocheck` lists, or none of them for the built-in transform";
+
+template <class Name>
+std::string list_of(int count, Name&& name) {
+  std::string list;
+  for (int i = 0; i < count; ++i) list += (i == 0 ? "" : ", ") + std::string("'") + name(i) + "'";
+  return list.empty() ? "none" : list;
+}
+
+/// The colour space of a user's config that is ACES2065-1 there, by the role that OpenColorIO 2 has for it,
+/// or by the names it goes by; empty without.
+std::string interchange_of(const ocio::ConstConfigRcPtr& config) {
+  if (config->hasRole(ocio::ROLE_INTERCHANGE_SCENE)) return ocio::ROLE_INTERCHANGE_SCENE;
+  for (const char* name : {"ACES2065-1", "ACES - ACES2065-1", "aces2065_1", "lin_ap0"}) {
+    if (config->getColorSpace(name)) return name;
+  }
+  return {};
+}
+
+Result<ocio::ConstConfigRcPtr> read_config(const ColorConfig& color) {
+  try {
+    return ocio::Config::CreateFromFile(color.file.c_str());
+  } catch (const std::exception& failure) {
+    return Error{"colour configuration '" + color.file + "'", failure.what(), kMend};
+  }
+}
+
+/// Our light, first to ACES2065-1 by our config, then by the user's to its display.
+std::optional<Error> put_through(const ColorConfig& color, std::vector<glm::vec3>& colors) {
+  const auto config = read_config(color);
+  if (!config) return config.error();
+  try {
+    ocio::PackedImageDesc pixels(&colors.front().x, static_cast<long>(colors.size()), 1, 3);
+    make_config()->getProcessor("Linear Rec.709", "ACES2065-1")->getDefaultCPUProcessor()->apply(pixels);
+    auto transform = ocio::DisplayViewTransform::Create();
+    transform->setSrc(interchange_of(config.value()).c_str());
+    transform->setDisplay(color.display.c_str());
+    transform->setView(color.view.c_str());
+    config.value()->getProcessor(transform)->getDefaultCPUProcessor()->apply(pixels);
+  } catch (const std::exception& failure) {
+    return Error{"colour configuration '" + color.file + "'", failure.what(), kMend};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
-Result<std::vector<glm::vec3>> display_colors(Display display, std::span<const glm::vec3> linear) {
+Result<ColorConfig> find_display_view(const ColorConfig& asked) {
+  const auto read = read_config(asked);
+  if (!read) return read.error();
+  const ocio::ConstConfigRcPtr& config = read.value();
+  const std::string where = "colour configuration '" + asked.file + "'";
+  ColorConfig found = asked;
+  try {
+    if (found.display.empty()) found.display = config->getDefaultDisplay();
+    if (config->getNumViews(found.display.c_str()) == 0) {
+      return Error{where,
+                   "has no display '" + found.display + "'; it has " +
+                       list_of(config->getNumDisplays(), [&](int i) { return config->getDisplay(i); }),
+                   kMend};
+    }
+    if (found.view.empty()) found.view = config->getDefaultView(found.display.c_str());
+    const int views = config->getNumViews(found.display.c_str());
+    bool has = false;
+    for (int i = 0; i < views; ++i) has = has || found.view == config->getView(found.display.c_str(), i);
+    if (!has) {
+      return Error{where,
+                   "has no view '" + found.view + "' for the display '" + found.display + "'; it has " +
+                       list_of(views, [&](int i) { return config->getView(found.display.c_str(), i); }),
+                   kMend};
+    }
+    if (interchange_of(config).empty()) {
+      return Error{where,
+                   "says nowhere which of its colour spaces is ACES2065-1, by which light is handed over",
+                   "Add the role aces_interchange to it, as OpenColorIO 2 has it"};
+    }
+  } catch (const std::exception& failure) {
+    return Error{where, failure.what(), kMend};
+  }
+  std::vector<glm::vec3> one{glm::vec3(0.18f)};  // its look-up tables are files too
+  if (const auto failed = put_through(found, one)) return *failed;
+  return found;
+}
+
+Result<std::vector<glm::vec3>> display_colors(Display display, std::span<const glm::vec3> linear,
+                                              const ColorConfig& color) {
   std::vector<glm::vec3> colors(linear.begin(), linear.end());
   if (colors.empty()) return colors;
+  if (!color.file.empty()) {
+    if (const auto failed = put_through(color, colors)) return *failed;
+    for (glm::vec3& c : colors) c = glm::clamp(c, 0.0f, 1.0f);
+    return colors;
+  }
   try {
     auto transform = ocio::DisplayViewTransform::Create();
     transform->setSrc("Linear Rec.709");
@@ -90,11 +181,11 @@ Result<std::vector<glm::vec3>> display_colors(Display display, std::span<const g
   } catch (const std::exception& failure) {
     return Error{"display transform", failure.what(), "Install OpenColorIO 2.1 or later"};
   }
-  for (glm::vec3& color : colors) color = glm::clamp(color, 0.0f, 1.0f);
+  for (glm::vec3& shown : colors) shown = glm::clamp(shown, 0.0f, 1.0f);
   return colors;
 }
 
-Result<std::vector<glm::vec3>> make_display_table(Display display) {
+Result<std::vector<glm::vec3>> make_display_table(Display display, const ColorConfig& color) {
   const int n = kDisplayTableSize;
   std::vector<glm::vec3> nodes;
   nodes.reserve(static_cast<std::size_t>(n) * n * n);
@@ -105,7 +196,7 @@ Result<std::vector<glm::vec3>> make_display_table(Display display) {
       }
     }
   }
-  return display_colors(display, nodes);
+  return display_colors(display, nodes, color);
 }
 
 }  // namespace slosh

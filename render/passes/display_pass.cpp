@@ -1,18 +1,23 @@
 #include "render/passes/display_pass.h"
 
 #include "render/color/display_transform.h"
+#include "render/passes/edges_on_cpu.h"
 
 namespace slosh {
 
-Result<DisplayPass> DisplayPass::create(Display display) {
-  auto table = make_display_table(display);
+Result<DisplayPass> DisplayPass::create(Display display, const ColorConfig& color) {
+  auto table = make_display_table(display, color);
   if (!table) return table.error();
   auto program = gl::Program::create("fullscreen.vert", "display.frag");
   if (!program) return program.error();
+  auto edges = gl::Program::create("fullscreen.vert", "edges.frag");
+  if (!edges) return edges.error();
 
   DisplayPass pass;
   pass.display_ = display;
+  pass.color_ = color;
   pass.program_ = std::move(program.value());
+  pass.edges_ = std::move(edges.value());
   pass.no_vertices_ = gl::make_vertex_array();
   const int n = kDisplayTableSize;
   GLuint name = 0;
@@ -29,12 +34,33 @@ Result<DisplayPass> DisplayPass::create(Display display) {
   return pass;
 }
 
-void DisplayPass::draw(const Targets& targets, float exposure) {
-  glBindFramebuffer(GL_FRAMEBUFFER, targets.display_target.name());
+void DisplayPass::draw(const Targets& targets, float exposure, bool edges_follow) {
+  const gl::Framebuffer& target = edges_follow ? targets.sharp_target : targets.display_target;
+  glBindFramebuffer(GL_FRAMEBUFFER, target.name());
   glViewport(0, 0, targets.size.x, targets.size.y);
   gl::bind_textures({&targets.color, &table_});
   program_.use();
   program_.set("exposure", exposure);
+  glBindVertexArray(no_vertices_.name());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void DisplayPass::smooth_edges(const Targets& targets, bool on_cpu) {
+  if (on_cpu) {
+    const glm::ivec2 size = targets.size;
+    sharp_.resize(std::size_t{4} * static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y));
+    glGetTextureImage(targets.sharp.name(), 0, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(sharp_.size()),
+                      sharp_.data());
+    const std::vector<std::uint8_t> smooth = slosh::smooth_edges(sharp_, size, brightness_);
+    glTextureSubImage2D(targets.display.name(), 0, 0, 0, size.x, size.y, GL_RGBA, GL_UNSIGNED_BYTE,
+                        smooth.data());
+    glBindFramebuffer(GL_FRAMEBUFFER, targets.display_target.name());
+    return;
+  }
+  glBindFramebuffer(GL_FRAMEBUFFER, targets.display_target.name());
+  glViewport(0, 0, targets.size.x, targets.size.y);
+  gl::bind_textures({&targets.sharp});
+  edges_.use();
   glBindVertexArray(no_vertices_.name());
   glDrawArrays(GL_TRIANGLES, 0, 3);
 }

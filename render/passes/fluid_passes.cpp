@@ -28,12 +28,15 @@ Result<FluidPasses> FluidPasses::create(bool fast) {
     into = std::move(program.value());
     return true;
   };
-  for (const Result<bool>& loaded : {load(passes.front_program_, "splat.vert", "splat.frag", {"FRONT"}),
-                                     load(passes.back_program_, "splat.vert", "splat.frag"),
-                                     load(passes.composite_program_, "tiles.vert", "composite.frag",
-                                          std::vector<std::string>(fast ? 1 : 0, "FAST")),
-                                     load(passes.thickness_program_, "tiles.vert", "thickness.frag"),
-                                     load(passes.normal_program_, "tiles.vert", "normal.frag")}) {
+  for (const Result<bool>& loaded :
+       {load(passes.front_program_, "splat.vert", "splat.frag", {"FRONT"}),
+        load(passes.shaped_program_, "splat.vert", "splat.frag", {"FRONT", "SHAPED"}),
+        load(passes.back_program_, "splat.vert", "splat.frag"),
+        load(passes.composite_program_, "tiles.vert", "composite.frag"),
+        load(passes.look_program_, "tiles.vert", "fluid_look.frag",
+             std::vector<std::string>(fast ? 1 : 0, "FAST")),
+        load(passes.thickness_program_, "tiles.vert", "thickness.frag"),
+        load(passes.normal_program_, "tiles.vert", "normal.frag")}) {
     if (!loaded) return loaded.error();
   }
   passes.no_vertices_ = gl::make_vertex_array();
@@ -46,6 +49,8 @@ Result<FluidPasses> FluidPasses::create(bool fast) {
 
 void FluidPasses::upload(const Splats& splats) {
   sphere_buffer_.upload(std::span<const glm::vec4>(splats.spheres));
+  shaped_ = splats.shapes.size() == splats.spheres.size();
+  if (shaped_) shape_buffer_.upload(std::span<const SplatShape>(splats.shapes));
   tile_buffer_.upload(std::span<const glm::vec2>(splats.tiles));
   glVertexArrayVertexBuffer(tile_vertices_.name(), 0, tile_buffer_.name(), 0, sizeof(glm::vec2));
   front_count_ = static_cast<GLsizei>(splats.spheres.size());
@@ -59,7 +64,8 @@ void FluidPasses::splat_front(const Targets& targets) {
   draw_into(targets.front_target, targets.size);
   glEnable(GL_BLEND);
   glBlendEquation(GL_MIN);
-  front_program_.use();
+  (shaped_ ? shaped_program_ : front_program_).use();
+  if (shaped_) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, shape_buffer_.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, sphere_buffer_.name());
   glBindVertexArray(no_vertices_.name());
   glDrawArrays(GL_TRIANGLES, 0, 3 * front_count_);
@@ -97,11 +103,11 @@ void FluidPasses::smooth(const Targets& targets, const RenderOptions& options, c
                   : filter_->run(targets, options, frame, {&tile_vertices_, tile_corners_});
 }
 
-void FluidPasses::composite(const Targets& targets) {
-  gl::bind_textures(
-      {&targets.front, &smoothed(targets), &targets.back, &targets.scene_depth, &targets.scene_color});
+void FluidPasses::composite(const Targets& targets, bool lit) {
+  gl::bind_textures({&targets.front, &smoothed(targets), &targets.back, &targets.scene_depth,
+                     &targets.scene_color, &targets.chord});
   draw_into(targets.color_target, targets.size);
-  composite_program_.use();
+  (lit ? look_program_ : composite_program_).use();
   draw_tiles();
 }
 
@@ -115,7 +121,8 @@ void FluidPasses::normals(const Targets& targets, const gl::Framebuffer& target)
 
 void FluidPasses::draw_data(const gl::Program& program, const Targets& targets,
                             const gl::Framebuffer& target) {
-  gl::bind_textures({&targets.front, &smoothed(targets), &targets.back, &targets.scene_depth});
+  gl::bind_textures({&targets.front, &smoothed(targets), &targets.back, &targets.scene_depth,
+                     &targets.scene_color, &targets.chord});
   clear_to(target, 0.0f);
   draw_into(target, targets.size);
   program.use();

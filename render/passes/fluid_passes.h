@@ -24,8 +24,9 @@ class FluidPasses {
   Result<bool> choose(Surface surface);
   /// Reads front; writes smooth by turns.
   void smooth(const Targets& targets, const RenderOptions& options, const Frame& frame);
-  /// 5.2, Eq 15. Reads front, smooth, back, scene_depth, scene_color; writes color where there is fluid.
-  void composite(const Targets& targets);
+  /// 5.2: Eq 15, or with `lit` fluid_look.glsl. Reads front, smooth, back, scene_depth, scene_color; writes
+  /// color where there is fluid.
+  void composite(const Targets& targets, bool lit);
   /// T for tests, into an R32F target of the picture's size; and n, into an RGBA32F one.
   void thickness(const Targets& targets, const gl::Framebuffer& target);
   void normals(const Targets& targets, const gl::Framebuffer& target);
@@ -38,16 +39,20 @@ class FluidPasses {
   void draw_data(const gl::Program& program, const Targets& targets, const gl::Framebuffer& target);
 
   gl::Program front_program_;
+  gl::Program shaped_program_;  ///< front of splats with shapes
   gl::Program back_program_;
   gl::Program composite_program_;
+  gl::Program look_program_;
   gl::Program thickness_program_;
   gl::Program normal_program_;
   gl::StreamBuffer sphere_buffer_;
+  gl::StreamBuffer shape_buffer_;
   gl::StreamBuffer back_buffer_;
   gl::StreamBuffer tile_buffer_;
   gl::VertexArray no_vertices_;
   gl::VertexArray tile_vertices_;
   GLsizei front_count_ = 0;
+  bool shaped_ = false;
   GLsizei back_count_ = 0;
   GLsizei tile_corners_ = 0;
   bool fast_ = false;

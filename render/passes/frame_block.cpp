@@ -7,11 +7,12 @@
 namespace slosh {
 namespace {
 
-/// Mirrors Look in shaders/composite.frag.
+/// Mirrors Look in shaders/look_block.glsl.
 struct LookBlock {
-  glm::vec4 color_refraction;
-  glm::vec4 extinction;
+  glm::vec4 color_displacement;
+  glm::vec4 extinction_scattering;
   glm::vec4 specular_exponent;
+  glm::vec4 surface;
 };
 
 }  // namespace
@@ -22,7 +23,8 @@ glm::vec3 direction_to_light(const Frame& frame) {
   return -frame.light_direction / length;
 }
 
-FrameBlock make_frame_block(const Frame& frame, const RenderOptions& options, const ShadowView& shadow) {
+FrameBlock make_frame_block(const Frame& frame, const RenderOptions& options, const ShadowView& shadow,
+                            bool chords) {
   const Studio studio;
   const glm::mat4& projection = frame.view.projection;
   const glm::vec2 size(options.width, options.height);
@@ -50,6 +52,7 @@ FrameBlock make_frame_block(const Frame& frame, const RenderOptions& options, co
   block.softbox = {studio.softbox, 0.0f};
   block.switches = {options.fresnel ? 1.0f : 0.0f, options.lit_fluid ? 1.0f : 0.0f,
                     options.fluid_shadow ? 1.0f : 0.0f, options.surface == Surface::kPaper ? 1.0f : 0.0f};
+  block.look_switches = {chords ? 1.0f : 0.0f, 0.0f, 0.0f, 0.0f};
   return block;
 }
 
@@ -62,8 +65,10 @@ void FrameUniforms::upload_looks(std::span<const FluidLook> fluids) {
   std::array<LookBlock, kMaxFluidLooks> looks{};
   for (std::size_t i = 0; i < std::min(fluids.size(), looks.size()); ++i) {
     const FluidLook& fluid = fluids[i];
-    looks[i] = {
-        {fluid.color, fluid.refraction}, {fluid.extinction, 0.0f}, {fluid.specular, fluid.specular_exponent}};
+    looks[i] = {{fluid.color, fluid.displacement},
+                {fluid.extinction, fluid.scattering},
+                {fluid.specular, fluid.specular_exponent},
+                {fluid.gloss, fluid.refraction, fluid.roughness, 0.0f}};
   }
   looks_.upload(std::span<const LookBlock>(looks));
   glBindBufferBase(GL_UNIFORM_BUFFER, 1, looks_.name());

@@ -37,8 +37,9 @@ struct FrameBlock {
   glm::vec4 ground;
   glm::vec4 softbox;
   glm::vec4 switches;
+  glm::vec4 look_switches;
 };
-static_assert(sizeof(FrameBlock) == 16 * (4 * 4 + 12));
+static_assert(sizeof(FrameBlock) == 16 * (4 * 4 + 13));
 
 /// Looks a scene can mix: four bits beside the depth carry the index.
 inline constexpr std::size_t kMaxFluidLooks = 16;
@@ -55,7 +56,9 @@ struct ShadowView {
 /// Unit vector towards the light; straight up if the frame's direction is zero or not finite.
 glm::vec3 direction_to_light(const Frame& frame);
 
-FrameBlock make_frame_block(const Frame& frame, const RenderOptions& options, const ShadowView& shadow);
+/// `chords`: thickness is summed particle by particle this frame.
+FrameBlock make_frame_block(const Frame& frame, const RenderOptions& options, const ShadowView& shadow,
+                            bool chords);
 
 /// Holds a picture's and the fluids' uniform blocks on bindings 0 and 1.
 class FrameUniforms {

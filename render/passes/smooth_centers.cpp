@@ -7,9 +7,67 @@
 namespace slosh {
 namespace {
 
-constexpr float kReach = 3.6f;  // particle radii, 2.2 spacings: some 45 neighbours inside the fluid
+constexpr float kReach = 4.0f;  // particle radii, 2.5 spacings: some 60 neighbours inside the fluid
 constexpr float kShare = 0.9f;  // of the way to the mean (their λ)
 constexpr float kFlat = 0.22f;  // of the reach: from a flat surface's particles to their mean
+
+// Of ellipsoids, in particle radii. Along a flat surface, and in what is round: a drop, or a particle inside
+// that shows through a gap; the least that an ellipsoid is thick, which is what a sheet of one layer has.
+constexpr float kAlong = 2.2f;
+constexpr float kRound = 1.2f;
+constexpr float kThin = 0.6f;
+constexpr float kFull = 0.15f;  // of the reach squared: a neighbourhood's variance where it is full
+
+/// Weighted moments of the ways to a particle's neighbours, itself among them. m
+class Neighbourhood {
+ public:
+  void add(const glm::vec3& way, float weight) {
+    weights_ += weight;
+    sum_ += weight * way;
+    const glm::vec3 w = weight * way;
+    square_ += way * w;
+    mixed_ += glm::vec3(w.x * way.y, w.y * way.z, w.z * way.x);
+  }
+
+  /// Where the centre goes.
+  glm::vec3 step(float reach) const {
+    if (weights_ <= 0.0f) return glm::vec3(0.0f);
+    // A particle of a flat surface would go inwards by a length that is known: without it, what sticks out
+    // goes in, what lies deep comes out, and the surface as a whole stays. Inside, and in a thin sheet, means
+    // are near: no correction.
+    const glm::vec3 way = sum_ / weights_;
+    const float length = glm::length(way);
+    const float flat = kFlat * reach;
+    const float kept = glm::smoothstep(0.3f * flat, 0.8f * flat, length) * flat / std::max(length, 1e-9f);
+    return kShare * (1.0f - kept) * way;
+  }
+
+  /// m². Radii go with the variances, as theirs do; so no axes have to be found.
+  glm::mat3 ellipsoid(float reach, float radius) const {
+    const float ball = kRound * kRound * radius * radius;
+    if (weights_ < kFewNeighbours) return glm::mat3(ball);
+    const glm::vec3 mean = sum_ / weights_;
+    const float scale = 1.0f / (kFull * reach * reach);
+    const glm::vec3 d = (square_ / weights_ - mean * mean) * scale;
+    const glm::vec3 m = (mixed_ / weights_ - mean * glm::vec3(mean.y, mean.z, mean.x)) * scale;
+    const glm::mat3 variance(d.x, m.x, m.z, m.x, d.y, m.y, m.z, m.y, d.z);
+    // 1 where it is as wide in every direction.
+    const float third = (d.x + d.y + d.z) / 3.0f;
+    const float round = glm::determinant(variance) / std::max(third * third * third, 1e-9f);
+    const float size = radius * glm::mix(kAlong, kRound, glm::smoothstep(0.7f, 0.95f, round));
+    const glm::mat3 wide = size * size * (variance * variance) + glm::mat3(kThin * kThin * radius * radius);
+    // Few neighbours say little about a shape.
+    const float known = glm::smoothstep(kFewNeighbours, 2.0f * kFewNeighbours, weights_);
+    return glm::mat3(ball) * (1.0f - known) + wide * known;
+  }
+
+ private:
+  static constexpr float kFewNeighbours = 4.0f;  // in sum of weights, itself counting as one
+  float weights_ = 0.0f;
+  glm::vec3 sum_{0.0f};
+  glm::vec3 square_{0.0f};
+  glm::vec3 mixed_{0.0f};  // xy, yz, zx
+};
 
 glm::ivec3 cell_of(const glm::vec3& at, float reach) {
   return glm::ivec3(glm::floor(glm::clamp(at / reach, glm::vec3(-1e8f), glm::vec3(1e8f))));
@@ -49,14 +107,16 @@ void SmoothCenters::sort(const Frame& frame) {
   begin_.back() = static_cast<std::uint32_t>(kept);
 }
 
-void SmoothCenters::move(const Frame& frame, std::span<glm::vec4> spheres) const {
+void SmoothCenters::move(const Frame& frame, Splats& splats) const {
   const glm::mat4 world_from_eye = glm::inverse(frame.view.view);
+  const glm::mat3 turn(frame.view.view);
   const float inverse = 1.0f / reach_;
-  for (glm::vec4& sphere : spheres) {
+  splats.shapes.resize(splats.spheres.size());
+  for (std::size_t i = 0; i < splats.spheres.size(); ++i) {
+    glm::vec4& sphere = splats.spheres[i];
     const glm::vec3 at(world_from_eye * glm::vec4(glm::vec3(sphere), 1.0f));
     const glm::ivec3 middle = cell_of(at, reach_);
-    glm::vec3 sum(0.0f);  // of weighted ways to the neighbours, itself among them
-    float weights = 0.0f;
+    Neighbourhood around;
     for (int n = 0; n < 27; ++n) {
       const glm::ivec3 cell = middle + glm::ivec3(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
       const std::size_t bucket = bucket_of(cell);
@@ -66,21 +126,13 @@ void SmoothCenters::move(const Frame& frame, std::span<glm::vec4> spheres) const
         // Cells may share a bucket: what is not of this cell comes with its own.
         if (squared >= reach_ * reach_ || cell_of(sorted_[k], reach_) != cell) continue;
         const float share = std::sqrt(squared) * inverse;
-        const float weight = 1.0f - share * share * share;
-        sum += weight * way;
-        weights += weight;
+        around.add(way, 1.0f - share * share * share);
       }
     }
-    if (weights <= 0.0f) continue;
-    // A particle of a flat surface would go inwards by a length that is known: without it, what sticks out
-    // goes in, what lies deep comes out, and the surface as a whole stays. Inside, and in a thin sheet, means
-    // are near: no correction.
-    const glm::vec3 way = sum / weights;
-    const float length = glm::length(way);
-    const float flat = kFlat * reach_;
-    const float kept = glm::smoothstep(0.3f * flat, 0.8f * flat, length) * flat / std::max(length, 1e-9f);
-    const glm::vec3 moved = at + kShare * (1.0f - kept) * way;
+    const glm::vec3 moved = at + around.step(reach_);
     sphere = glm::vec4(glm::vec3(frame.view.view * glm::vec4(moved, 1.0f)), sphere.w);
+    const glm::mat3 matrix = turn * around.ellipsoid(reach_, frame.particle_radius) * glm::transpose(turn);
+    splats.shapes[i] = shape_of(matrix, glm::vec3(sphere));
   }
 }
 

@@ -1,12 +1,13 @@
-// Particles' centres drawn towards those of their neighbours (Yu & Turk 2013, Eq 6): the noise of where
-// particles happen to lie goes, the fluid's shape stays. On the CPU; no GL here.
+// Particles' centres drawn towards those of their neighbours, and ellipsoids for spheres, flat where the
+// fluid is (Yu & Turk 2013): the noise of where particles happen to lie goes, the fluid's shape stays. On the
+// CPU; no GL here.
 #pragma once
 
 #include <glm/glm.hpp>
-#include <span>
 #include <vector>
 
 #include "render/frame.h"
+#include "render/passes/splats.h"
 
 namespace slosh {
 
@@ -15,9 +16,9 @@ class SmoothCenters {
   /// Sorts the frame's particles into cells; those that are not finite or of no fluid of the frame are left
   /// out.
   void sort(const Frame& frame);
-  /// Moves eye-space `spheres` (w is kept), whose frame was sorted, each to a mean over its neighbours within
-  /// kReach particle radii. A particle alone stays where it is.
-  void move(const Frame& frame, std::span<glm::vec4> spheres) const;
+  /// Moves eye-space `splats.spheres` (w is kept), whose frame was sorted, each to a mean over its neighbours
+  /// within kReach particle radii, and gives each its shape. A particle alone stays where and what it is.
+  void move(const Frame& frame, Splats& splats) const;
 
  private:
   std::size_t bucket_of(const glm::ivec3& cell) const;

@@ -8,6 +8,9 @@
 namespace slosh {
 namespace {
 
+/// Reach of a splat that smooth_centers shapes, over that of the sphere it was.
+constexpr float kWidest = 1.9f;
+
 /// Which tiles are touched, a flag a tile.
 class TileGrid {
  public:
@@ -53,13 +56,36 @@ class TileGrid {
 
 }  // namespace
 
+SplatShape shape_of(const glm::mat3& matrix, const glm::vec3& center) {
+  // A point's place in the picture moves with its depth where it lies off the middle: that is a shear. Then a
+  // Cholesky factor, whose rows are the two axes of the picture and the depth.
+  const float depth = -center.z;
+  const glm::vec3 x(1.0f, 0.0f, center.x / depth);
+  const glm::vec3 y(0.0f, 1.0f, center.y / depth);
+  const glm::vec3 away(0.0f, 0.0f, -1.0f);
+  const glm::vec3 mx = matrix * x;
+  const glm::vec3 my = matrix * y;
+  SplatShape shape;
+  shape.outline.x = std::sqrt(std::max(glm::dot(x, mx), 1e-12f));
+  shape.outline.y = glm::dot(y, mx) / shape.outline.x;
+  shape.outline.z = std::sqrt(std::max(glm::dot(y, my) - shape.outline.y * shape.outline.y, 1e-12f));
+  shape.tilt.x = glm::dot(away, mx) / shape.outline.x;
+  shape.tilt.y = (glm::dot(away, my) - shape.tilt.x * shape.outline.y) / shape.outline.z;
+  shape.depth_radius =
+      std::sqrt(std::max(glm::dot(away, matrix * away) - glm::dot(shape.tilt, shape.tilt), 1e-12f));
+  return shape;
+}
+
 void prepare_splats(const Frame& frame, const RenderOptions& options, Splats& out) {
   out.spheres.clear();
+  out.shapes.clear();
   out.back.clear();
   out.tiles.clear();
   const std::size_t count = std::min(frame.particles.size(), frame.particle_fluid.size());
   const std::size_t fluids = std::min(frame.fluids.size(), kMaxFluidLooks);
-  const float radius = options.splat_scale * frame.particle_radius;
+  // Ours makes wide ellipsoids of spheres later.
+  const float radius =
+      options.splat_scale * frame.particle_radius * (options.surface == Surface::kOurs ? kWidest : 1.0f);
   if (count == 0 || fluids == 0 || !(radius > 0.0f) || !std::isfinite(radius)) return;
 
   const glm::mat4& projection = frame.view.projection;

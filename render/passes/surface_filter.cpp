@@ -90,7 +90,7 @@ class NarrowRange : public SurfaceFilter {
 
  private:
   // In splat radii; the best of those tried on analytic pools (render/score).
-  static constexpr float kReach = 3.8f;
+  static constexpr float kReach = 3.2f;
   static constexpr float kRange = 5.0f;
   gl::Program along_;
   gl::Program clean_;

@@ -18,7 +18,9 @@ Targets make_targets(glm::ivec2 size, bool half_resolution_back) {
   t.front = make_texture(size, GL_R32F, GL_LINEAR);
   for (gl::Texture& texture : t.smooth) texture = make_texture(size, GL_R32F, GL_LINEAR);
   t.back = make_texture(t.back_size, GL_R32F, GL_LINEAR);
+  t.chord = make_texture(t.half_size, GL_R16F, GL_LINEAR);
   t.occlusion = make_texture(t.half_size, GL_R8, GL_LINEAR);
+  t.sharp = make_texture(size, GL_RGBA8, GL_NEAREST);
   t.display = make_texture(size, GL_RGBA8, GL_LINEAR);
 
   t.mesh_target = make_framebuffer({&t.mesh_color, &t.scene_depth}, &t.depth);
@@ -28,7 +30,9 @@ Targets make_targets(glm::ivec2 size, bool half_resolution_back) {
   t.front_target = make_framebuffer({&t.front});
   for (std::size_t i = 0; i < 2; ++i) t.smooth_target[i] = make_framebuffer({&t.smooth[i]});
   t.back_target = make_framebuffer({&t.back});
+  t.chord_target = make_framebuffer({&t.chord});
   t.occlusion_target = make_framebuffer({&t.occlusion});
+  t.sharp_target = make_framebuffer({&t.sharp});
   t.display_target = make_framebuffer({&t.display});
   return t;
 }

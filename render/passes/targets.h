@@ -21,7 +21,9 @@ struct Targets {
   gl::Texture front;                  ///< R32F: F_fD as splatted, the fluid's index in the low four bits
   std::array<gl::Texture, 2> smooth;  ///< R32F: F_fD through the filter, by turns
   gl::Texture back;                   ///< R32F, back_size: F_bD
+  gl::Texture chord;                  ///< R16F, half_size: fluid along the line of sight, summed, m
   gl::Texture occlusion;              ///< R8, half_size: 1 = open
+  gl::Texture sharp;                  ///< RGBA8: the picture as shown, before its edges are smoothed
   gl::Texture display;                ///< RGBA8: the picture as shown
 
   gl::Framebuffer mesh_target;        ///< mesh_color + scene_depth + depth
@@ -31,7 +33,9 @@ struct Targets {
   gl::Framebuffer front_target;
   std::array<gl::Framebuffer, 2> smooth_target;
   gl::Framebuffer back_target;
+  gl::Framebuffer chord_target;
   gl::Framebuffer occlusion_target;
+  gl::Framebuffer sharp_target;
   gl::Framebuffer display_target;
 };
 

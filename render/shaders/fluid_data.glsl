@@ -3,10 +3,12 @@
 #include "shared.glsl"
 #include "optics.glsl"
 #include "bilateral.glsl"
+#include "thickness.glsl"
 layout(binding = 0) uniform sampler2D front_depth;   // with the fluid's index in its low bits
 layout(binding = 1) uniform sampler2D smooth_depth;
 layout(binding = 2) uniform sampler2D back_depth;    // 0 where there is none
 layout(binding = 3) uniform sampler2D scene_depth;
+layout(binding = 5) uniform sampler2D summed_chord;  // of all particles before the scene, m; where section 5 does not stand as it is
 
 // Bilinear, over those of the four texels that are fluid.
 float back_depth_at(vec2 pixel) {
@@ -24,5 +26,7 @@ float thickness_at(ivec2 texel, float raw, float front) {
   if (raw > kFluidDepthLimit) return 0.0;
   float scene = texelFetch(scene_depth, texel, 0).r;
   float back = back_depth_at(vec2(texel) + 0.5);
-  return switches.w > 0.5 ? fluid_thickness(front, back, scene) : kept_thickness(front, raw, back, scene, splat.x);
+  if (switches.w > 0.5) return fluid_thickness(front, back, scene);
+  float span = kept_thickness(front, raw, back, scene, splat.x);
+  return look_switches.x > 0.5 ? layered_thickness(span, texture(summed_chord, (vec2(texel) + 0.5) * picture.zw).r) : span;
 }

@@ -37,6 +37,17 @@ SHARED float schlick(float f0, float cos_angle) {
   return f0 + (1.0f - f0) * m2 * m2 * m;
 }
 
+// GGX distribution times Smith visibility (with its 1/4), as glTF viewers have them: times Fresnel, irradiance's share that
+// is mirrored a steradian.
+SHARED float ggx(float n_h, float n_l, float n_v, float roughness) {
+  float a = roughness * roughness;
+  float a2 = a * a;
+  float f = n_h * n_h * (a2 - 1.0f) + 1.0f;
+  float k = 0.5f * a + 0.0001f;
+  float visibility = 0.25f / ((n_l * (1.0f - k) + k) * (n_v * (1.0f - k) + k));
+  return a2 / (3.14159265f * f * f + 1.0e-7f) * visibility;
+}
+
 // Reflectance of a thin pane: both of its faces mirror, and what goes to and fro between them adds up. `once`: one face.
 SHARED float pane_reflectance(float once) { return 2.0f * once / (1.0f + once); }
 

@@ -5,3 +5,8 @@
 SHARED float sphere_depth(float center_depth, float radius, vec2 disc, float side) {
   return center_depth + side * radius * sqrt(max(1.0f - dot(disc, disc), 0.0f));
 }
+
+// The same of an ellipsoid (passes/splats.h, SplatShape).
+SHARED float ellipsoid_depth(float center_depth, vec2 tilt, float depth_radius, vec2 disc, float side) {
+  return center_depth + dot(tilt, disc) + side * depth_radius * sqrt(max(1.0f - dot(disc, disc), 0.0f));
+}

@@ -9,16 +9,6 @@ struct Lit {
   float ambient;  // share of the whole that occlusion may take away, 0–1
 };
 
-// GGX distribution times Smith visibility, as used by glTF viewers.
-float ggx(float n_h, float n_l, float n_v, float roughness) {
-  float a = roughness * roughness;
-  float a2 = a * a;
-  float f = n_h * n_h * (a2 - 1.0) + 1.0;
-  float k = 0.5 * a + 0.0001;
-  float visibility = 0.25 / ((n_l * (1.0 - k) + k) * (n_v * (1.0 - k) + k));
-  return a2 / (3.14159265 * f * f + 1.0e-7) * visibility;
-}
-
 // normal and to_eye: unit, world. light: share of the key light that arrives, per channel.
 Lit light_surface(vec3 normal, vec3 to_eye, vec3 base_color, float metallic, float roughness, vec3 light) {
   vec3 to_light = to_light_world.xyz;

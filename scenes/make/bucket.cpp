@@ -99,8 +99,9 @@ SceneWriter make_bucket() {
                   {{"slosh", "fluid"},
                    {"density_kg_m3", 1000.0},
                    {"viscosity_pa_s", 0.05},
-                   {"color", list({0.05, 0.30, 0.60})},
-                   {"extinction_per_m", list({40.0, 11.0, 6.0})}});
+                   {"color", list({0.10, 0.42, 0.60})},
+                   {"extinction_per_m", list({14.0, 4.0, 2.5})},
+                   {"scattering", 0.35}});
   for (const bool right : {false, true}) {
     const std::string side = right ? "right" : "left";
     const glm::dvec3 at((right ? 1.0 : -1.0) * (kHandleEnd + kHandleReach + kHandleRadius), kHandleHeight,

@@ -40,7 +40,11 @@ SceneWriter make_pool() {
   const Solid fluid = box({-0.5 * kInner.x, kPoolWall, -0.5 * kInner.z},
                           {0.5 * kInner.x, kPoolWall + kFluidDepth, 0.5 * kInner.z});
   writer.add_node("water", writer.add_mesh("water", fluid, look), {},
-                  {{"slosh", "fluid"}, {"density_kg_m3", 1000.0}, {"viscosity_pa_s", 0.05}});
+                  {{"slosh", "fluid"},
+                   {"density_kg_m3", 1000.0},
+                   {"viscosity_pa_s", 0.05},
+                   {"extinction_per_m", list({4.0, 1.2, 0.7})},
+                   {"scattering", 0.3}});
   const int node =
       writer.add_node("ball", writer.add_mesh("ball", sphere(kBallRadius, 24, 48), rubber), ball_pose(0.0),
                       {{"slosh", "body"}, {"motion", "free"}, {"mass_kg", 2.5}, {"viscosity_pa_s", 0.0}});

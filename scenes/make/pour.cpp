@@ -103,8 +103,12 @@ SceneWriter make_pour() {
                   {{"slosh", "fluid"},
                    {"density_kg_m3", 1100.0},
                    {"viscosity_pa_s", 1.5},
-                   {"color", list({0.92, 0.80, 0.45})},
-                   {"extinction_per_m", list({250.0, 280.0, 400.0})}});
+                   {"color", list({0.92, 0.76, 0.38})},
+                   {"extinction_per_m", list({250.0, 280.0, 400.0})},
+                   {"scattering", 1.0},
+                   {"refraction", 1.4},
+                   {"gloss", 0.8},
+                   {"roughness", 0.4}});
   add_held(writer, "bowl", bowl_node, {{-0.13, kBowlRim - 0.014, 0.0}, {1.0, 0.0, 0.0, 0.0}}, 0, bowl_pose);
   add_held(writer, "pan", pan_node, {{0.17, 0.036, 0.0}, {1.0, 0.0, 0.0, 0.0}}, 1, pan_pose);
   writer.add_camera({0.26, 0.74, 0.80}, {0.0, 0.20, 0.0}, 36.0);

@@ -40,7 +40,11 @@ SceneWriter make_probe() {
   const Solid fluid =
       box({-0.5 * kInner.x, kWall, -0.5 * kInner.z}, {0.5 * kInner.x, kWall + kFluidDepth, 0.5 * kInner.z});
   writer.add_node("water", writer.add_mesh("water", fluid, look), {},
-                  {{"slosh", "fluid"}, {"density_kg_m3", 1000.0}, {"viscosity_pa_s", 0.05}});
+                  {{"slosh", "fluid"},
+                   {"density_kg_m3", 1000.0},
+                   {"viscosity_pa_s", 0.05},
+                   {"extinction_per_m", list({4.0, 1.2, 0.7})},
+                   {"scattering", 0.3}});
   const int node = writer.add_node("probe", writer.add_mesh("probe", sphere(0.006, 12, 24), red),
                                    probe_pose(0.0), {{"slosh", "probe"}, {"mass_kg", 0.05}});
   writer.add_node("probe_hand", -1, {},

@@ -37,7 +37,9 @@ SceneWriter make_spin() {
                                   {{"density_kg_m3", 1000.0},
                                    {"viscosity_pa_s", 2.0},
                                    {"color", list({0.70, 0.25, 0.04})},
-                                   {"extinction_per_m", list({6.0, 20.0, 60.0})}}}};
+                                   {"extinction_per_m", list({6.0, 20.0, 60.0})},
+                                   {"scattering", 0.08},
+                                   {"refraction", 1.49}}}};
   SceneWriter writer({{"title", "Four glasses with walls of 2, 10, 20 and 40 Pa·s spin up and stop (6.4.3)"},
                       {"spacing_min_m", 0.006},
                       {"spacing_max_m", 0.012},

@@ -84,7 +84,9 @@ SceneWriter make_spoon() {
                    {"density_kg_m3", 1000.0},
                    {"viscosity_pa_s", 0.1},
                    {"color", list({0.85, 0.35, 0.06})},
-                   {"extinction_per_m", list({3.0, 9.0, 25.0})}});
+                   {"extinction_per_m", list({3.0, 9.0, 25.0})},
+                   {"scattering", 0.5},
+                   {"refraction", 1.35}});
   const int node = writer.add_node(
       "spoon", writer.add_mesh("spoon", spoon(), steel), spoon_pose(0.0),
       {{"slosh", "body"}, {"motion", "free"}, {"mass_kg", 0.12}, {"viscosity_pa_s", 0.0}, {"friction", 0.3}});

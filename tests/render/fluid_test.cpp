@@ -195,7 +195,7 @@ TEST_F(FluidTest, TheFilterFlattensASheetAndLeavesItWhereItIs) {
   EXPECT_LT(paper_filter.slope, 0.6 * raw.slope);
   EXPECT_LT(wide.slope, 0.6 * paper_filter.slope);
   EXPECT_NEAR(paper_filter.mean_depth, raw.mean_depth, 0.1 * spacing);
-  EXPECT_NEAR(wide.mean_depth, raw.mean_depth, 0.1 * spacing);
+  EXPECT_NEAR(wide.mean_depth, raw.mean_depth, 0.2 * spacing) << "balls reach further out than ellipsoids";
 }
 
 TEST_F(FluidTest, TheFilterKeepsADepthEdge) {
@@ -222,7 +222,7 @@ TEST_F(FluidTest, DarkensByExtinctionTimesThickness) {
     FluidLook look;
     look.color = glm::vec3(0.0f);
     look.extinction = {12.0f, 4.0f, 2.5f};
-    look.refraction = 0.0f;
+    look.displacement = 0.0f;
     look.specular = glm::vec3(0.0f);
     frame.fluids = {look};
     auto renderer = make(paper());
@@ -304,7 +304,7 @@ TEST_F(FluidTest, RefractionNeverShowsABodyThatIsInFront) {
   std::vector<glm::vec3> points = cluster({0.0f, 0.0f, 0.0f}, 0.2f, 0.03f);
   const std::vector<std::uint8_t> fluids(points.size(), 0);
   Frame frame = frame_of(points, fluids, 0.015f);
-  frame.fluids[0].refraction = 3.0f;
+  frame.fluids[0].displacement = 3.0f;
   frame.fluids[0].extinction = glm::vec3(0.0f);
   frame.fluids[0].specular = glm::vec3(0.0f);
   auto renderer = make(paper());

@@ -80,7 +80,7 @@ TEST_F(LooksTest, APoolLiesInTheShadowOfFluidAboveIt) {
   frame.view = kit::make_view({0.0f, 0.35f, 0.9f}, {0.0f, 0.0f, 0.0f}, kWidth, kHeight);
   frame.light_direction = {0.0f, -1.0f, 0.0f};
   frame.fluids = {kit::batter()};
-  frame.fluids[0].specular = glm::vec3(0.0f);
+  frame.fluids[0].gloss = 0.0f;
   frame.meshes = {place(*renderer, kit::make_box({-0.5f, -0.2f, -0.5f}, {0.5f, -0.12f, 0.5f}))};
   renderer->draw(frame);
   const FloatImage lit = renderer->read_buffer(Buffer::kFinalColor);
@@ -92,6 +92,46 @@ TEST_F(LooksTest, APoolLiesInTheShadowOfFluidAboveIt) {
   EXPECT_LT(luma(shaded, x, y), 0.6f * luma(lit, x, y));
   EXPECT_GT(luma(shaded, x, y), 0.1f * luma(lit, x, y)) << "the sky still lights it";
   EXPECT_NEAR(luma(shaded, x - 70, y), luma(lit, x - 70, y), 0.1f * luma(lit, x - 70, y)) << "beside it";
+}
+
+TEST_F(LooksTest, TwoSheetsWithAirBetweenAreAsThickAsTheyAre) {
+  auto both = kit::jitter_lattice({-0.3f, -0.25f, -0.04f}, {0.3f, 0.25f, 0.0f}, 0.01f, 3);
+  const std::size_t one = both.size();
+  const auto behind = kit::jitter_lattice({-0.4f, -0.35f, -0.34f}, {0.4f, 0.35f, -0.30f}, 0.01f, 4);
+  both.insert(both.end(), behind.begin(), behind.end());
+  const std::vector<std::uint8_t> fluids(both.size(), 0);
+  Frame frame = frame_of(both, fluids, 0.0062f);
+  const auto mean_thickness = [&](const RenderOptions& options) {
+    auto renderer = make(options);
+    renderer->draw(frame);
+    const FloatImage thickness = renderer->read_buffer(Buffer::kThickness);
+    double sum = 0.0;
+    for (int y = 40; y < kHeight - 40; ++y) {
+      for (int x = 50; x < kWidth - 50; ++x) sum += thickness.at(x, y);
+    }
+    return sum / ((kHeight - 80.0) * (kWidth - 100.0));
+  };
+  EXPECT_NEAR(mean_thickness(small()), 0.08, 0.012);
+  RenderOptions span = small();
+  span.layers = false;
+  EXPECT_GT(mean_thickness(span), 0.3) << "back less front has the air in it";
+  EXPECT_GT(mean_thickness(paper()), 0.3) << "and so has section 5 as it stands";
+  frame.particles = std::span(both).first(one);
+  EXPECT_NEAR(mean_thickness(small()), 0.04, 0.006);
+  EXPECT_NEAR(mean_thickness(span), mean_thickness(small()), 2e-4)
+      << "one layer: the span, which has no noise";
+}
+
+TEST_F(LooksTest, AWallBetweenSheetsHidesTheFarOne) {
+  auto both = kit::jitter_lattice({-0.3f, -0.25f, -0.04f}, {0.3f, 0.25f, 0.0f}, 0.01f, 3);
+  const auto behind = kit::jitter_lattice({-0.4f, -0.35f, -0.34f}, {0.4f, 0.35f, -0.30f}, 0.01f, 4);
+  both.insert(both.end(), behind.begin(), behind.end());
+  const std::vector<std::uint8_t> fluids(both.size(), 0);
+  Frame frame = frame_of(both, fluids, 0.0062f);
+  auto renderer = make(small());
+  frame.meshes = {place(*renderer, kit::make_box({-1.0f, -1.0f, -0.25f}, {1.0f, 1.0f, -0.2f}))};
+  renderer->draw(frame);
+  EXPECT_NEAR(renderer->read_buffer(Buffer::kThickness).at(kWidth / 2, kHeight / 2), 0.04f, 0.01f);
 }
 
 TEST_F(LooksTest, ADropsShadowIsRoundAlsoInItsTop) {

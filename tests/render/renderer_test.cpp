@@ -283,6 +283,7 @@ TEST_F(RendererTest, ThePictureIsTheDisplayTransformOfTheLight) {
   for (Display display : {Display::kAces, Display::kSrgb}) {
     RenderOptions options = small();
     options.display = display;
+    options.antialias = false;
     auto renderer = make(options);
     kit::DamBreak scene(*renderer, 800, kWidth, kHeight);
     renderer->draw(scene.frame);
@@ -369,7 +370,7 @@ TEST_F(RendererTest, ManyParticles) {
   ASSERT_GT(points.size(), 180000u);
   const std::vector<std::uint8_t> fluids(points.size(), 0);
   auto renderer = make(small());
-  renderer->draw(frame_of(points, fluids, 0.005f));
+  renderer->draw(frame_of(points, fluids, 0.0063f));
   EXPECT_GT(renderer->read_buffer(Buffer::kThickness).at(kWidth / 2, kHeight / 2), 0.55f);
 }
 

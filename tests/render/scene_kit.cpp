@@ -95,6 +95,8 @@ FluidLook batter() {
   look.extinction = glm::vec3(400.0f, 500.0f, 700.0f);
   look.specular = glm::vec3(0.25f);
   look.specular_exponent = 60.0f;
+  look.scattering = 1.0f;
+  look.roughness = 0.4f;
   return look;
 }
 
@@ -127,7 +129,7 @@ DamBreak::DamBreak(Renderer& renderer, int wanted, int width, int height) {
   frame.particles = particles;
   frame.particle_fluid = fluids;
   frame.fluids = {water()};
-  frame.particle_radius = 0.5f * spacing;
+  frame.particle_radius = 0.62f * spacing;
 }
 
 }  // namespace slosh::kit

@@ -116,12 +116,13 @@ TEST(SmoothCenters, AFlatSurfaceStaysItsNoiseGoesAndADropStays) {
   points.emplace_back(0.0f, 0.0f, 0.3f);
   const std::vector<std::uint8_t> fluids(points.size(), 0);
   const Frame frame = frame_of_points(points, fluids, 0.62f * spacing);
-  std::vector<glm::vec4> spheres;
+  Splats splats;
+  std::vector<glm::vec4>& spheres = splats.spheres;
   for (const glm::vec3& p : points)
     spheres.emplace_back(glm::vec3(frame.view.view * glm::vec4(p, 1.0f)), 3.0f);
   SmoothCenters centers;
   centers.sort(frame);
-  centers.move(frame, spheres);
+  centers.move(frame, splats);
   // Of the particles of the upper layer, away from the sides.
   double before = 0.0, after = 0.0, before2 = 0.0, after2 = 0.0;
   int count = 0;
@@ -141,6 +142,14 @@ TEST(SmoothCenters, AFlatSurfaceStaysItsNoiseGoesAndADropStays) {
   EXPECT_NEAR(mean_after, mean_before, 0.35 * spacing) << "the surface stays";
   EXPECT_LT(after2 / count - mean_after * mean_after, 0.5 * (before2 / count - mean_before * mean_before));
   EXPECT_NEAR(spheres.back().z, 0.3f - 1.0f, 1e-5f) << "a particle alone stays";
+  EXPECT_NEAR(splats.shapes.back().depth_radius, 1.2f * frame.particle_radius, 1e-6f) << "and is a ball";
+  // On the flat surface ellipsoids lie flat in it.
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const glm::vec3& p = points[i];
+    if (p.z < -0.2f * spacing || std::max(std::abs(p.x), std::abs(p.y)) > 0.12f) continue;
+    EXPECT_LT(splats.shapes[i].depth_radius, 0.7f * splats.shapes[i].outline.x);
+    EXPECT_GT(splats.shapes[i].outline.x, 1.3f * frame.particle_radius);
+  }
 }
 
 }  // namespace

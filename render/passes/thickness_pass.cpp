@@ -1,0 +1,54 @@
+#include "render/passes/thickness_pass.h"
+
+#include <algorithm>
+
+namespace slosh {
+namespace {
+
+/// Radius of a summed sphere over a particle's: wide enough that the sum of a few layers is even.
+constexpr float kWide = 1.5f;
+/// Optical depth of four particle radii above which a channel shows nothing of what is behind.
+constexpr float kOpaque = 5.0f;
+
+}  // namespace
+
+bool any_fluid_is_clear(const Frame& frame) {
+  return std::ranges::any_of(frame.fluids, [&](const FluidLook& fluid) {
+    const glm::vec3& e = fluid.extinction;
+    return std::min({e.x, e.y, e.z}) * 4.0f * frame.particle_radius < kOpaque;
+  });
+}
+
+Result<ThicknessPass> ThicknessPass::create() {
+  auto program = gl::Program::create("chord.vert", "chord.frag");
+  if (!program) return program.error();
+  ThicknessPass pass;
+  pass.program_ = std::move(program.value());
+  pass.array_ = gl::make_vertex_array();
+  glEnableVertexArrayAttrib(pass.array_.name(), 0);
+  glVertexArrayAttribFormat(pass.array_.name(), 0, 4, GL_FLOAT, GL_FALSE, 0);
+  glVertexArrayAttribBinding(pass.array_.name(), 0, 0);
+  return pass;
+}
+
+void ThicknessPass::draw(const Frame& frame, const Targets& targets, std::span<const glm::vec4> spheres) {
+  const glm::vec4 none(0.0f);
+  glClearNamedFramebufferfv(targets.chord_target.name(), GL_COLOR, 0, &none.x);
+  buffer_.upload(spheres);
+  glVertexArrayVertexBuffer(array_.name(), 0, buffer_.name(), 0, sizeof(glm::vec4));
+  program_.set("sphere", glm::vec2(kWide * frame.particle_radius, frame.particle_radius));
+  gl::bind_textures({&targets.scene_depth});
+  glBindFramebuffer(GL_FRAMEBUFFER, targets.chord_target.name());
+  glViewport(0, 0, targets.half_size.x, targets.half_size.y);
+  glEnable(GL_PROGRAM_POINT_SIZE);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ONE, GL_ONE);
+  program_.use();
+  glBindVertexArray(array_.name());
+  glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(spheres.size()));
+  glBlendFunc(GL_ONE, GL_ZERO);
+  glDisable(GL_BLEND);
+  glDisable(GL_PROGRAM_POINT_SIZE);
+}
+
+}  // namespace slosh

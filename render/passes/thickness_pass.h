@@ -1,0 +1,31 @@
+// How much fluid lies along each line of sight, summed particle by particle: two layers with air between
+// count as two. Beyond the paper, whose thickness is back less front.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <span>
+
+#include "render/frame.h"
+#include "render/gl/objects.h"
+#include "render/passes/targets.h"
+#include "render/renderer.h"
+
+namespace slosh {
+
+class ThicknessPass {
+ public:
+  static Result<ThicknessPass> create();
+
+  /// Reads S_d and `spheres` (eye position m, fluid; all of them, hidden ones too); writes targets.chord.
+  void draw(const Frame& frame, const Targets& targets, std::span<const glm::vec4> spheres);
+
+ private:
+  gl::Program program_;
+  gl::VertexArray array_;
+  gl::StreamBuffer buffer_;
+};
+
+/// Some fluid of the frame lets light through a layer of a few particles: else nobody sees how thick it is.
+bool any_fluid_is_clear(const Frame& frame);
+
+}  // namespace slosh

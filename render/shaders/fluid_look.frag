@@ -1,0 +1,68 @@
+// The fluid as it looks beyond the paper: fluid_look.glsl for one pixel. Pixels without fluid are left as the scene drew them.
+#include "fluid_data.glsl"
+#include "fluid_normal.glsl"
+#include "environment.glsl"
+#include "shadow.glsl"
+#include "look_block.glsl"
+#include "fluid_look.glsl"
+layout(binding = 4) uniform sampler2D scene_color;
+layout(location = 0) out vec4 color;
+
+// How much of the sky the fluid leaves open over this point, 0–1: taps on two rings over the smoothed depths.
+float open_sky(vec3 here, vec3 n, ivec2 texel, int taps) {
+  float reach = 6.0 * splat.x;
+  float pixels = min(reach * splat.y / -here.z, 80.0);
+  float hidden = 0.0;
+  for (int i = 0; i < taps; ++i) {
+    float angle = float(i) * 1.0471976;
+    vec2 at = vec2(texel) + 0.5 + pixels * (0.45 + 0.45 * float(i & 1)) * vec2(cos(angle), sin(angle));
+    float there = texelFetch(smooth_depth, clamp(ivec2(at), ivec2(0), ivec2(picture.xy) - 1), 0).r;
+    vec3 to = eye_position(at, there) - here;
+    float squared = dot(to, to);
+    float near = max(1.0 - squared / (4.0 * reach * reach), 0.0);
+    hidden += near * max(dot(to, n) * inversesqrt(squared + 1.0e-10) - 0.1, 0.0);
+  }
+  return clamp(1.0 - 0.35 * hidden, 0.25, 1.0);
+}
+
+// The scene behind. A body in front of the fluid must not show through it; whole texels, as a mean would mix such a body in.
+vec3 seen_behind(vec3 here, vec3 n, float refraction, float thickness, ivec2 texel) {
+  float scene = min(texelFetch(scene_depth, texel, 0).r, camera.w);
+  float behind = max(scene + here.z - thickness, 0.0);
+  vec3 place = seen_place(here, normalize(here), n, refraction, thickness, behind);
+  vec2 at = (place.xy / (unproject.xy * max(-place.z, 1.0e-3)) - unproject.zw) * 0.5 + 0.5;
+  // No farther than a sixth of the picture's height: a normal that is off must not fetch the other end of the room.
+  vec2 off = (at - gl_FragCoord.xy * picture.zw) * picture.xy;
+  off *= min(1.0, 0.16 * picture.y / max(length(off), 1.0e-3));
+  ivec2 looked_up = clamp(ivec2(gl_FragCoord.xy + off), ivec2(0), ivec2(picture.xy) - 1);
+  if (texelFetch(scene_depth, looked_up, 0).r < -here.z) looked_up = texel;
+  return texelFetch(scene_color, looked_up, 0).rgb;
+}
+
+void main() {
+  ivec2 texel = ivec2(gl_FragCoord.xy);
+  float raw = texelFetch(front_depth, texel, 0).r;
+  float front = texelFetch(smooth_depth, texel, 0).r;
+  float thickness = thickness_at(texel, raw, front);
+  if (thickness <= 0.0) discard;
+
+  Look look = looks[floatBitsToUint(raw) & 15u];
+  FluidMatter matter = FluidMatter(look.color_displacement.rgb, look.extinction_scattering.rgb, look.extinction_scattering.a,
+                                   look.surface.x * switches.x, look.surface.y, look.surface.z);
+  vec3 eye = eye_position(gl_FragCoord.xy, front);
+  FluidSurface surface = surface_of_pixel(smooth_depth, eye, texel);
+  vec3 to_eye = normalize(-eye);
+  FluidPoint point = FluidPoint(surface.normal, to_eye, to_light_eye.xyz, thickness);
+
+  vec3 world_n = mat3(world_from_eye) * surface.normal;
+  vec3 world = (world_from_eye * vec4(eye, 1.0)).xyz;
+  vec3 light = vec3(light_past_meshes(world, world_n));
+  if (switches.z > 0.5) light *= light_past_fluid_above(world, matter.extinction);
+  // What scatters little is hardly lit: it needs no open sky.
+  int taps = matter.scattering > 0.02 ? 6 : 0;
+  vec3 mirror = mat3(world_from_eye) * reflect(-to_eye, surface.normal);
+  FluidLight lit = FluidLight(key_light.rgb * light, ambient_light(world_n) * open_sky(eye, surface.normal, texel, taps),
+                              mix(studio(mirror), ambient_light(mirror), min(1.4 * matter.roughness, 1.0)),
+                              seen_behind(eye, surface.normal, matter.refraction, thickness, texel));
+  color = vec4(fluid_radiance(matter, point, lit, surface.whole), 0.0);
+}

@@ -1,0 +1,90 @@
+// Light off and out of a fluid. GLSL and C++; pure functions. Beyond the paper.
+//
+// A clean liquid's surface mirrors by Fresnel; what is not mirrored goes in, where Beer and Lambert's law takes the scene
+// behind away and, in a cloudy fluid, gives light of the fluid's own colour for it.
+
+struct FluidMatter {
+  vec3 color;        // of the light that comes back from a deep layer, F_c
+  vec3 extinction;   // F_e, 1/m
+  float scattering;  // share of the light taken that comes back, 0–1
+  float gloss;       // share of a clean surface's reflection, 0–1
+  float refraction;  // refractive index, >= 1
+  float roughness;   // 0–1, as glTF's
+};
+
+struct FluidPoint {
+  vec3 normal;      // these three unit, away from the surface
+  vec3 to_eye;
+  vec3 to_light;
+  float thickness;  // m of fluid on the line of sight
+};
+
+// Radiances; key: irradiance of the light on what faces it.
+struct FluidLight {
+  vec3 key;
+  vec3 ambient;   // irradiance / π from all round
+  vec3 mirrored;  // from where the surface mirrors to
+  vec3 behind;    // of the scene, refracted
+};
+
+// Reflectance at a right angle, from air.
+SHARED float normal_reflectance(float refraction) {
+  float r = (refraction - 1.0f) / (refraction + 1.0f);
+  return r * r;
+}
+
+// Share of the light that is mirrored to the eye: Schlick's, less towards the rim where the surface is rough.
+SHARED float fluid_reflectance(FluidMatter m, float cos_eye) {
+  float f0 = normal_reflectance(m.refraction);
+  return m.gloss * (f0 + max(1.0f - m.roughness - f0, 0.0f) * schlick(0.0f, cos_eye));
+}
+
+// How far round its lit side light comes out of a fluid, 0–1: it wanders some 1/F_e, which is much in clear fluid and
+// little in batter. `size`: of the fluid's features, m.
+SHARED float light_wandering(vec3 extinction, float size) {
+  float mean = (extinction.x + extinction.y + extinction.z) / 3.0f;
+  return clamp(1.0f / (1.0f + mean * size), 0.2f, 1.0f);
+}
+
+// Irradiance / π over that of light straight down, on a surface that light comes out of beyond its lit side; the same in
+// sum over a ball for every `wandering`.
+SHARED float wrapped_lambert(float cos_light, float wandering) {
+  float all = 1.0f + wandering;
+  return max(cos_light + wandering, 0.0f) / (all * all);
+}
+
+// What comes out of the fluid where nothing is mirrored.
+SHARED vec3 light_inside(FluidMatter m, FluidPoint p, FluidLight l) {
+  vec3 through = transmittance(m.extinction, p.thickness);
+  // A layer that is thin for the light's wandering shows the light, not the side it comes from.
+  float lit = wrapped_lambert(dot(p.normal, p.to_light), light_wandering(m.extinction, 0.01f));
+  vec3 back = m.color * m.scattering * (l.key * (0.31830989f * lit) + l.ambient);
+  return mix(back, l.behind, through);
+}
+
+// The light itself as the surface mirrors it. It is no point: a surface smoother than `kLightSize` shows its size.
+const float kLightSize = 0.28f;  // roughness
+SHARED vec3 light_glint(FluidMatter m, FluidPoint p, FluidLight l) {
+  float n_l = max(dot(p.normal, p.to_light), 0.0f);
+  float n_v = max(dot(p.normal, p.to_eye), 1.0e-3f);
+  vec3 sum = p.to_light + p.to_eye;
+  vec3 half_way = sum / max(length(sum), 1.0e-6f);
+  float rough = max(m.roughness, kLightSize);
+  float mirrored = fluid_reflectance(m, max(dot(half_way, p.to_eye), 0.0f));
+  return l.key * (n_l * mirrored * ggx(max(dot(p.normal, half_way), 0.0f), n_l, n_v, rough));
+}
+
+// Radiance towards the eye. `whole`: 0 where the surface's normal is not known well, nothing is mirrored there.
+SHARED vec3 fluid_radiance(FluidMatter m, FluidPoint p, FluidLight l, float whole) {
+  float mirrored = whole * fluid_reflectance(m, max(dot(p.normal, p.to_eye), 0.0f));
+  return mix(light_inside(m, p, l), l.mirrored, mirrored) + whole * light_glint(m, p, l);
+}
+
+// Where the eye sees through a layer of fluid of `depth_in` m along the line of sight's depth, with `depth_behind` m of air
+// between it and what is seen: a place in eye axes. The far side is taken to lie along the near one, so that light leaves as
+// it came (a slab). here: the point of the surface; way: unit, from the eye; Snell's law.
+SHARED vec3 seen_place(vec3 here, vec3 way, vec3 normal, float refraction, float depth_in, float depth_behind) {
+  vec3 inside = refract(way, normal, 1.0f / refraction);
+  vec3 out_at = here + inside * (depth_in / max(-inside.z, 0.25f));
+  return out_at + way * (depth_behind / max(-way.z, 0.25f));
+}
