@@ -1,5 +1,7 @@
 // `slosh report picture`: ways to make a surface of particles beside each other, in numbers and pictures.
 #include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <tuple>
 
@@ -11,7 +13,9 @@
 #include "peer/verbs/verbs.h"
 #include "peer/view/frame_builder.h"
 #include "peer/view/orbit_camera.h"
+#include "render/color/display_transform.h"
 #include "render/context.h"
+#include "render/reference/path_tracer.h"
 #include "render/renderer.h"
 #include "render/score/score.h"
 #include "sim/math/format.h"
@@ -34,6 +38,10 @@ constexpr Method kMethods[] = {{"paper, section 5", Surface::kPaper},
                                {"curvature flow", Surface::kCurvatureFlow},
                                {"ours", Surface::kOurs}};
 
+/// Paths a pixel of the reference, and its size over a picture's.
+constexpr int kSamples = 96;
+constexpr int kQuickSamples = 24;
+
 struct Row {
   score::SurfaceScore at5;
   score::SurfaceScore at15;
@@ -41,6 +49,7 @@ struct Row {
   double flicker = 0.0;       ///< of 255
   double filter_ms = 0.0;
   double frame_ms = 0.0;
+  double off_reference = -1.0;  ///< of 255; below 0 without a reference
 };
 
 RenderOptions options_of(const Method& method, int width, int height) {
@@ -170,6 +179,35 @@ class Stand {
   Image image_;
 };
 
+/// The same by path tracing. Errors: built without Embree.
+Result<Image> reference_picture(const Scene& scene, double spacing, const Snapshot& snapshot, int samples,
+                                int threads) {
+  auto tracer = reference::PathTracer::create();
+  if (!tracer) return tracer.error();
+  FrameBuilder builder(scene, spacing, *tracer.value());
+  const OrbitCamera camera(scene.camera);
+  Frame frame = builder.build(snapshot, camera.distance());
+  frame.view = camera.view(static_cast<double>(kWidth) / kHeight);
+  reference::Options options;
+  options.width = kWidth;
+  options.height = kHeight;
+  options.samples = samples;
+  options.threads = threads;
+  const FloatImage light = tracer.value()->draw(frame, options);
+  std::vector<glm::vec3> linear(light.values.size() / 3);
+  for (std::size_t i = 0; i < linear.size(); ++i)
+    linear[i] = {light.values[3 * i], light.values[3 * i + 1], light.values[3 * i + 2]};
+  const auto shown = display_colors(Display::kAces, linear);
+  if (!shown) return shown.error();
+  Image image{kWidth, kHeight, {}};
+  for (const glm::vec3& color : shown.value()) {
+    for (int c = 0; c < 3; ++c)
+      image.rgba.push_back(static_cast<std::uint8_t>(std::lround(255.0f * color[c])));
+    image.rgba.push_back(255);
+  }
+  return image;
+}
+
 /// Pictures of one height beside each other.
 Image beside(const std::vector<Image>& images) {
   Image sheet;
@@ -196,14 +234,17 @@ std::string table_of(const std::vector<Row>& rows) {
   std::string text =
       "| surface | normal error at 5 px: mean, p95, edge band | at 15 px | outline off, at 5 px | still "
       "water: normal "
-      "error | flicker | filter, ms | frame, ms |\n|---|---|---|---|---|---|---|---|\n";
+      "error | flicker | off the reference | filter, ms | frame, ms "
+      "|\n|---|---|---|---|---|---|---|---|---|\n";
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Row& row = rows[i];
     text += format(
-        "| %s | %.1f°, %.1f°, %.1f° | %.1f°, %.1f°, %.1f° | %.1f px | %.1f° | %.2f/255 | %.1f | %.1f |\n",
+        "| %s | %.1f°, %.1f°, %.1f° | %.1f°, %.1f°, %.1f° | %.1f px | %.1f° | %.2f/255 | %s | %.1f | %.1f "
+        "|\n",
         kMethods[i].name, row.at5.normal_mean, row.at5.normal_p95, row.at5.edge_mean, row.at15.normal_mean,
         row.at15.normal_p95, row.at15.edge_mean, row.at5.silhouette, row.still_normal, row.flicker,
-        row.filter_ms, row.frame_ms);
+        row.off_reference < 0.0 ? "–" : format("%.1f/255", row.off_reference).c_str(), row.filter_ms,
+        row.frame_ms);
   }
   return text;
 }
@@ -224,6 +265,8 @@ int report_picture(const ReportOptions& options) {
 
   std::vector<Row> rows(std::size(kMethods));
   std::vector<Image> pictures;
+  double reference_seconds = 0.0;
+  std::string no_reference;
   std::size_t particles = 0;
   try {
     const Scene dam_scene = tank_scene(true);
@@ -273,6 +316,19 @@ int report_picture(const ReportOptions& options) {
                                still_surface(calm.value()->view(), spacing), radius, 3.0f * radius)
               .normal_mean;
     }
+    std::printf("the reference, by path tracing\n");
+    const auto start = std::chrono::steady_clock::now();
+    const auto truth = reference_picture(dam_scene, spacing, broken, options.quick ? kQuickSamples : kSamples,
+                                         std::max(options.threads, 1));
+    reference_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (truth) {
+      for (std::size_t i = 0; i < rows.size(); ++i)
+        rows[i].off_reference = score::flicker(pictures[i], truth.value());
+      pictures.push_back(truth.value());
+    } else {
+      no_reference = truth.error().text();
+      std::printf("%s\n", no_reference.c_str());
+    }
   } catch (const report::Refused& refused) {
     return fail(refused.error);
   } catch (const report::Stopped&) {
@@ -284,17 +340,23 @@ int report_picture(const ReportOptions& options) {
       "edge\n"
       "apart) and against still water that was simulated; flicker: mean change of a channel between "
       "pictures\n"
-      "1/30 s apart of that water; times of a broken dam of %zu particles at %dx%d, medians.\n\n",
-      options.quick ? "480x270" : "960x540", particles, kWidth, kHeight);
+      "1/30 s apart of that water; times of a broken dam of %zu particles at %dx%d, medians; off the "
+      "reference: "
+      "mean\ndifference of a channel of that picture from one by path tracing%s.\n\n",
+      options.quick ? "480x270" : "960x540", particles, kWidth, kHeight,
+      no_reference.empty()
+          ? format(" (%d paths a pixel, %.0f s)", options.quick ? kQuickSamples : kSamples, reference_seconds)
+                .c_str()
+          : ", which is not there");
   const std::string drawn_by =
       context.value()->description() +
       format(", %d thread%s; ", headless.software_threads, headless.software_threads == 1 ? "" : "s") +
       machine_line(options) + "\n";
   std::printf("\n%s\n%s", table.c_str(), drawn_by.c_str());
-  const Result<bool> written =
-      write_whole(folder.value() / kTable, about + table + "\n" + drawn_by +
-                                               "\nThe pictures, left to right: paper, curvature "
-                                               "flow, ours.\n\n![](picture.png)\n");
+  const Result<bool> written = write_whole(
+      folder.value() / kTable,
+      about + table + "\n" + drawn_by + "\nThe pictures, left to right: paper, curvature flow, ours" +
+          (no_reference.empty() ? ", the reference" : "") + ".\n\n![](picture.png)\n");
   if (!written) return fail(written.error());
   const auto sheet = write_png(folder.value() / kSheet, beside(pictures));
   if (!sheet) return fail(sheet.error());

@@ -1,0 +1,347 @@
+#include "render/reference/path_tracer.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <limits>
+#include <thread>
+#include <vector>
+
+#include "render/passes/frame_block.h"
+#include "render/reference/fluid_mesh.h"
+#include "render/reference/ray_scene.h"
+#include "render/shader_math.h"
+
+namespace slosh::reference {
+namespace {
+
+constexpr int kMostTurns = 96;       // of one path
+constexpr float kLightSize = 0.99f;  // cosine of the light's half angle as a mirror shows it
+
+/// PCG (O'Neill 2014).
+class Random {
+ public:
+  Random(std::uint64_t pixel, std::uint64_t sample) : state_((pixel << 20) ^ sample ^ 0x853c49e6748fea9bull) {
+    (*this)();
+    (*this)();
+  }
+  float operator()() {
+    state_ = state_ * 6364136223846793005ull + 1442695040888963407ull;
+    const auto mixed = static_cast<std::uint32_t>(((state_ >> 18) ^ state_) >> 27);
+    const auto turn = static_cast<std::uint32_t>(state_ >> 59);
+    const std::uint32_t bits = (mixed >> turn) | (mixed << ((32 - turn) & 31));
+    return static_cast<float>(bits >> 8) * (1.0f / 16777216.0f);
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+glm::vec3 around(const glm::vec3& axis, float cosine, float turn) {
+  const glm::vec3 other = std::abs(axis.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
+  const glm::vec3 u = glm::normalize(glm::cross(other, axis));
+  const glm::vec3 v = glm::cross(axis, u);
+  const float sine = std::sqrt(std::max(1.0f - cosine * cosine, 0.0f));
+  const float angle = glm::two_pi<float>() * turn;
+  return axis * cosine + (u * std::cos(angle) + v * std::sin(angle)) * sine;
+}
+
+/// A normal of a rough surface, by the GGX distribution.
+glm::vec3 rough_normal(const glm::vec3& normal, float roughness, Random& random) {
+  const float a = roughness * roughness;
+  if (a < 1e-4f) return normal;
+  const float u = random();
+  return around(normal, std::sqrt((1.0f - u) / (1.0f + (a * a - 1.0f) * u)), random());
+}
+
+/// Unpolarised reflectance of a smooth surface, light coming at `cosine` from the side that `eta` is relative
+/// to.
+float dielectric(float cosine, float eta) {
+  const float sine2 = (1.0f - cosine * cosine) / (eta * eta);
+  if (sine2 >= 1.0f) return 1.0f;
+  const float inner = std::sqrt(1.0f - sine2);
+  const float s = (cosine - eta * inner) / (cosine + eta * inner);
+  const float p = (inner - eta * cosine) / (inner + eta * cosine);
+  return 0.5f * (s * s + p * p);
+}
+
+/// Single-scattering albedo of a medium whose deep layers send `back` of the light back (Chiang, Kutz &
+/// Burley 2016).
+glm::vec3 scattering_albedo(const glm::vec3& back) {
+  const glm::vec3 a = glm::clamp(back, 0.0f, 0.999f);
+  return 1.0f - glm::exp(-5.09406f * a + 2.61188f * a * a - 4.31805f * a * a * a);
+}
+
+class Tracer {
+ public:
+  Tracer(const RayScene& scene, const Frame& frame, const Studio& studio)
+      : scene_(scene), frame_(frame), key_(studio.key_light) {
+    room_ = {studio.sky, studio.horizon, studio.ground, studio.softbox, direction_to_light(frame)};
+    for (const FluidLook& fluid : frame.fluids)
+      albedo_.push_back(scattering_albedo(fluid.color * fluid.scattering));
+  }
+
+  glm::vec3 path(glm::vec3 from, glm::vec3 way, Random& random) const {
+    glm::vec3 light(0.0f), share(1.0f);
+    int fluid = -1;            // that the path is in
+    bool scattered = false;    // in it
+    bool mirror_chain = true;  // from the eye on: the light itself is to be seen
+    for (int turn = 0; turn < kMostTurns; ++turn) {
+      const Hit hit = scene_.nearest(from, way);
+      if (fluid >= 0) {
+        const float distance = walk(fluid, hit.distance, share, random);
+        if (distance < hit.distance) {
+          from += way * distance;
+          share *= albedo_[static_cast<std::size_t>(fluid)];
+          light += share * key_ * light_to(from, fluid) / (4.0f * glm::pi<float>());
+          way = around(glm::vec3(0, 1, 0), 2.0f * random() - 1.0f, random());
+          scattered = true;
+          mirror_chain = false;
+          if (!survives(share, turn, random)) break;
+          continue;
+        }
+      }
+      if (!hit.there()) return light + share * seen_far(way, mirror_chain);
+      from += way * hit.distance;
+      if (hit.fluid >= 0) {
+        cross_surface(hit, way, fluid, scattered, random);
+      } else if (hit.look->opacity < 1.0f) {
+        cross_pane(hit, way, share, random);
+      } else {
+        const glm::vec3 normal = glm::dot(hit.normal, way) > 0.0f ? -hit.normal : hit.normal;
+        light += share * lit_body(hit, from, normal, way, fluid);
+        bounce(hit, normal, way, share, random);
+        mirror_chain = false;
+      }
+      from += way * kApart;
+      if (!survives(share, turn, random)) break;
+    }
+    return light;
+  }
+
+ private:
+  static constexpr float kApart = 2e-5f;  // m that a new ray starts off a surface
+
+  static bool survives(glm::vec3& share, int turn, Random& random) {
+    const float most = std::max({share.x, share.y, share.z});
+    if (!(most > 0.0f)) return false;
+    if (turn < 6) return true;
+    const float chance = std::min(most, 0.95f);
+    if (random() >= chance) return false;
+    share /= chance;
+    return true;
+  }
+
+  glm::vec3 seen_far(const glm::vec3& way, bool light_too) const {
+    glm::vec3 seen = shader::room_radiance(room_, way);
+    // As bright as gives the light's irradiance on what faces it.
+    if (light_too && glm::dot(way, room_.to_light) > kLightSize)
+      seen += key_ / (glm::two_pi<float>() * (1.0f - kLightSize) * 0.5f * (1.0f + kLightSize));
+    return seen;
+  }
+
+  /// How far light gets in the fluid, up to `most`; takes what is absorbed off `share`. Distances are drawn
+  /// for one of the three channels, each as often as it matters, and weighed by all.
+  float walk(int fluid, float most, glm::vec3& share, Random& random) const {
+    const glm::vec3& extinction = frame_.fluids[static_cast<std::size_t>(fluid)].extinction;
+    const glm::vec3& albedo = albedo_[static_cast<std::size_t>(fluid)];
+    most = std::min(most, 1e3f);
+    if (std::max({albedo.x, albedo.y, albedo.z}) < 1e-4f) {
+      share *= glm::exp(-extinction * most);
+      return std::numeric_limits<float>::infinity();
+    }
+    const float sum = share.x + share.y + share.z;
+    const glm::vec3 chance = share / sum;
+    const float pick = random();
+    const int channel = pick < chance.x ? 0 : pick < chance.x + chance.y ? 1 : 2;
+    const float drawn = -std::log(std::max(1.0f - random(), 1e-12f)) / std::max(extinction[channel], 1e-6f);
+    if (drawn < most) {
+      const glm::vec3 density = extinction * glm::exp(-extinction * drawn);
+      share *= density / std::max(glm::dot(chance, density), 1e-20f);
+      return drawn;
+    }
+    const glm::vec3 left = glm::exp(-extinction * most);
+    share *= left / std::max(glm::dot(chance, left), 1e-20f);
+    return std::numeric_limits<float>::infinity();
+  }
+
+  void cross_surface(const Hit& hit, glm::vec3& way, int& fluid, bool& scattered, Random& random) const {
+    const FluidLook& look = frame_.fluids[static_cast<std::size_t>(hit.fluid)];
+    const bool entering = glm::dot(hit.face, way) < 0.0f;
+    glm::vec3 normal = rough_normal(hit.normal, look.roughness, random);
+    if (!entering) normal = -normal;
+    const float cosine = -glm::dot(normal, way);
+    const bool free = !entering && scattered;
+    if (cosine > 0.0f && !free) {
+      const float eta = entering ? look.refraction : 1.0f / look.refraction;
+      const float whole = dielectric(cosine, eta);
+      const float mirrored = whole >= 1.0f ? 1.0f : whole * look.gloss;
+      if (random() < mirrored) {
+        const glm::vec3 to = glm::reflect(way, normal);
+        const bool same_side = (glm::dot(hit.face, to) < 0.0f) == !entering;
+        if (same_side) {
+          way = to;
+          return;
+        }
+      } else {
+        const glm::vec3 in = glm::refract(way, normal, 1.0f / eta);
+        if (glm::dot(in, in) > 0.5f) way = in;
+      }
+    }
+    fluid = entering ? hit.fluid : -1;
+    scattered = false;
+  }
+
+  void cross_pane(const Hit& hit, glm::vec3& way, glm::vec3& share, Random& random) const {
+    const glm::vec3 normal = glm::dot(hit.normal, way) > 0.0f ? -hit.normal : hit.normal;
+    const float facing = std::max(-glm::dot(normal, way), 1e-3f);
+    if (random() < shader::pane_reflectance(shader::schlick(0.04f, facing)))
+      way = glm::reflect(way, normal);
+    else
+      share *= pane_tint(*hit.look, facing);
+  }
+
+  static glm::vec3 pane_tint(const MeshLook& look, float facing) {
+    return glm::pow(glm::mix(glm::vec3(1.0f), look.base_color, look.opacity),
+                    glm::vec3(1.0f / std::max(facing, 0.25f)));
+  }
+
+  glm::vec3 lit_body(const Hit& hit, const glm::vec3& at, const glm::vec3& normal, const glm::vec3& way,
+                     int fluid) const {
+    const float n_l = glm::dot(normal, room_.to_light);
+    if (n_l <= 0.0f) return glm::vec3(0.0f);
+    const MeshLook& look = *hit.look;
+    const glm::vec3 half_way = glm::normalize(room_.to_light - way);
+    const glm::vec3 f0 = glm::mix(glm::vec3(0.04f), look.base_color, look.metallic);
+    const glm::vec3 fresnel = f0 + (1.0f - f0) * shader::schlick(0.0f, glm::dot(half_way, -way));
+    const float lobe = shader::ggx(std::max(glm::dot(normal, half_way), 0.0f), n_l,
+                                   std::max(-glm::dot(normal, way), 1e-3f), std::max(look.roughness, 0.05f));
+    const glm::vec3 albedo = look.base_color * (1.0f - look.metallic);
+    return key_ * n_l * (albedo / glm::pi<float>() + fresnel * lobe) * light_to(at + normal * kApart, fluid);
+  }
+
+  void bounce(const Hit& hit, const glm::vec3& normal, glm::vec3& way, glm::vec3& share,
+              Random& random) const {
+    const MeshLook& look = *hit.look;
+    const glm::vec3 f0 = glm::mix(glm::vec3(0.04f), look.base_color, look.metallic);
+    const float facing = std::max(-glm::dot(normal, way), 1e-3f);
+    const glm::vec3 mirrored =
+        f0 + (glm::max(glm::vec3(1.0f - look.roughness), f0) - f0) * shader::schlick(0.0f, facing);
+    const glm::vec3 albedo = look.base_color * (1.0f - look.metallic);
+    const float m = mirrored.x + mirrored.y + mirrored.z;
+    const float chance = m / (m + albedo.x + albedo.y + albedo.z);
+    if (random() < chance) {
+      way = glm::reflect(way, rough_normal(normal, look.roughness, random));
+      if (glm::dot(way, normal) <= 0.0f) way = glm::reflect(way, normal);
+      share *= mirrored / chance;
+    } else {
+      way = around(normal, std::sqrt(random()), random());
+      share *= albedo / (1.0f - chance);
+    }
+  }
+
+  /// Share of the key light that arrives at a point in `fluid` (−1: in air), straight.
+  glm::vec3 light_to(glm::vec3 at, int fluid) const {
+    glm::vec3 share(1.0f);
+    for (int turn = 0; turn < 32; ++turn) {
+      const Hit hit = scene_.nearest(at, room_.to_light);
+      if (fluid >= 0 && hit.there())
+        share *= glm::exp(-frame_.fluids[static_cast<std::size_t>(fluid)].extinction * hit.distance);
+      if (!hit.there() || share.x + share.y + share.z < 1e-5f) return share;
+      const float facing = std::max(std::abs(glm::dot(hit.normal, room_.to_light)), 1e-3f);
+      if (hit.fluid >= 0) {
+        const FluidLook& look = frame_.fluids[static_cast<std::size_t>(hit.fluid)];
+        const bool leaving = glm::dot(hit.face, room_.to_light) > 0.0f;
+        // Light falls onto the surface from above, whichever way the ray goes.
+        if (leaving) share *= 1.0f - look.gloss * dielectric(facing, look.refraction);
+        fluid = leaving ? -1 : hit.fluid;
+      } else if (hit.look->opacity < 1.0f) {
+        share *=
+            pane_tint(*hit.look, facing) * (1.0f - shader::pane_reflectance(shader::schlick(0.04f, facing)));
+      } else {
+        return glm::vec3(0.0f);
+      }
+      at += room_.to_light * (hit.distance + kApart);
+    }
+    return glm::vec3(0.0f);
+  }
+
+  const RayScene& scene_;
+  const Frame& frame_;
+  glm::vec3 key_;
+  shader::Room room_;
+  std::vector<glm::vec3> albedo_;  // one a fluid
+};
+
+class EmbreeTracer : public PathTracer {
+ public:
+  MeshHandle add_mesh(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
+                      std::span<const glm::uvec3> triangles) override {
+    meshes_.push_back({{positions.begin(), positions.end()},
+                       {normals.begin(), normals.end()},
+                       {triangles.begin(), triangles.end()}});
+    Triangles& mesh = meshes_.back();
+    mesh.normals.resize(mesh.positions.size(), glm::vec3(0.0f, 1.0f, 0.0f));
+    std::erase_if(mesh.triangles, [&](const glm::uvec3& t) {
+      return std::max({t.x, t.y, t.z}) >= mesh.positions.size();
+    });
+    return static_cast<MeshHandle>(meshes_.size() - 1);
+  }
+
+  FloatImage draw(const Frame& frame, const Options& options) override {
+    RayScene scene;
+    for (const MeshInstance& instance : frame.meshes) {
+      if (instance.mesh < meshes_.size())
+        scene.add(meshes_[instance.mesh], instance.model, &instance.look, -1);
+    }
+    for (FluidMesh& fluid : mesh_fluids(frame, options.cell))
+      scene.add({std::move(fluid.positions), std::move(fluid.normals), std::move(fluid.triangles)},
+                glm::mat4(1.0f), nullptr, static_cast<int>(fluid.fluid));
+    scene.finish();
+    const Tracer tracer(scene, frame, Studio{});
+    FloatImage image{options.width, options.height, 3,
+                     std::vector<float>(std::size_t{3} * options.width * options.height)};
+    const glm::mat4 world_from_eye = glm::inverse(frame.view.view);
+    const glm::mat4& p = frame.view.projection;
+    std::atomic<int> next_row{0};
+    const auto work = [&] {
+      for (int y = next_row++; y < options.height; y = next_row++) {
+        for (int x = 0; x < options.width; ++x) {
+          const std::size_t pixel = static_cast<std::size_t>(y) * options.width + x;
+          glm::vec3 sum(0.0f);
+          for (int s = 0; s < options.samples; ++s) {
+            Random random(pixel, static_cast<std::uint64_t>(s));
+            const glm::vec2 ndc(2.0f * (x + random()) / options.width - 1.0f,
+                                1.0f - 2.0f * (y + random()) / options.height);
+            const glm::vec3 eye((ndc.x + p[2][0]) / p[0][0], (ndc.y + p[2][1]) / p[1][1], -1.0f);
+            const glm::vec3 light = tracer.path(glm::vec3(world_from_eye[3]),
+                                                glm::normalize(glm::mat3(world_from_eye) * eye), random);
+            // A rare bright path must not become a spot: what it has beyond this is lost.
+            sum += glm::min(light, glm::vec3(40.0f));
+          }
+          for (int c = 0; c < 3; ++c)
+            image.values[3 * pixel + static_cast<std::size_t>(c)] =
+                sum[c] / static_cast<float>(options.samples);
+        }
+      }
+    };
+    std::vector<std::thread> threads;
+    for (int i = 1; i < options.threads; ++i) threads.emplace_back(work);
+    work();
+    for (std::thread& thread : threads) thread.join();
+    return image;
+  }
+
+ private:
+  std::vector<Triangles> meshes_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<PathTracer>> PathTracer::create() {
+  if (auto started = RayScene::available(); !started) return started.error();
+  return std::unique_ptr<PathTracer>(std::make_unique<EmbreeTracer>());
+}
+
+}  // namespace slosh::reference

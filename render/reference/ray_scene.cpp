@@ -1,0 +1,121 @@
+#include "render/reference/ray_scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+#ifdef SLOSH_EMBREE
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+#endif
+
+namespace slosh::reference {
+
+#ifdef SLOSH_EMBREE
+
+struct RayScene::Parts {
+  struct Mesh {
+    std::vector<glm::vec3> normals;  // world
+    std::vector<glm::uvec3> triangles;
+    const MeshLook* look;
+    int fluid;
+  };
+  RTCDevice device = rtcNewDevice(nullptr);
+  RTCScene scene = rtcNewScene(device);
+  std::vector<Mesh> meshes;  // by Embree's number of the geometry
+  ~Parts() {
+    rtcReleaseScene(scene);
+    rtcReleaseDevice(device);
+  }
+};
+
+Result<bool> RayScene::available() {
+  RTCDevice device = rtcNewDevice(nullptr);
+  if (!device) return Error{"reference picture", "Embree cannot start", "Update libembree-dev"};
+  rtcReleaseDevice(device);
+  return true;
+}
+
+RayScene::RayScene() : parts_(std::make_unique<Parts>()) {
+  rtcSetSceneFlags(parts_->scene, RTC_SCENE_FLAG_ROBUST);
+}
+
+void RayScene::add(const Triangles& mesh, const glm::mat4& model, const MeshLook* look, int fluid) {
+  if (mesh.triangles.empty()) return;
+  RTCGeometry geometry = rtcNewGeometry(parts_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* positions = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), mesh.positions.size()));
+  std::ranges::transform(mesh.positions, positions,
+                         [&](const glm::vec3& p) { return glm::vec3(model * glm::vec4(p, 1.0f)); });
+  auto* triangles = static_cast<glm::uvec3*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3), mesh.triangles.size()));
+  std::ranges::copy(mesh.triangles, triangles);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(parts_->scene, geometry, static_cast<unsigned>(parts_->meshes.size()));
+  rtcReleaseGeometry(geometry);
+  Parts::Mesh kept{mesh.normals, mesh.triangles, look, fluid};
+  for (glm::vec3& n : kept.normals) n = glm::mat3(model) * n;
+  parts_->meshes.push_back(std::move(kept));
+}
+
+void RayScene::finish() {
+  rtcCommitScene(parts_->scene);
+}
+
+Hit RayScene::nearest(const glm::vec3& from, const glm::vec3& way) const {
+  RTCRayHit ray{};
+  ray.ray.org_x = from.x;
+  ray.ray.org_y = from.y;
+  ray.ray.org_z = from.z;
+  ray.ray.dir_x = way.x;
+  ray.ray.dir_y = way.y;
+  ray.ray.dir_z = way.z;
+  ray.ray.tnear = 0.0f;
+  ray.ray.tfar = std::numeric_limits<float>::infinity();
+  ray.ray.mask = ~0u;
+  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+#if RTC_VERSION_MAJOR >= 4
+  rtcIntersect1(parts_->scene, &ray);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(parts_->scene, &context, &ray);
+#endif
+  Hit hit;
+  if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return hit;
+  const Parts::Mesh& mesh = parts_->meshes[ray.hit.geomID];
+  const glm::uvec3& t = mesh.triangles[ray.hit.primID];
+  hit.distance = ray.ray.tfar;
+  hit.face = glm::normalize(glm::vec3(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z));
+  const glm::vec3 n = mesh.normals[t.x] * (1.0f - ray.hit.u - ray.hit.v) + mesh.normals[t.y] * ray.hit.u +
+                      mesh.normals[t.z] * ray.hit.v;
+  const float length = glm::length(n);
+  hit.normal = length > 1e-6f ? n / length : hit.face;
+  // A vertex' normal must not turn the surface round.
+  if ((glm::dot(hit.normal, way) > 0.0f) != (glm::dot(hit.face, way) > 0.0f)) hit.normal = hit.face;
+  hit.look = mesh.look;
+  hit.fluid = mesh.fluid;
+  return hit;
+}
+
+#else
+
+struct RayScene::Parts {};
+Result<bool> RayScene::available() {
+  return Error{"reference picture", "this slosh was built without Embree",
+               "apt-get install libembree-dev, remove the build folder's CMakeCache.txt and build again"};
+}
+RayScene::RayScene() = default;
+void RayScene::add(const Triangles&, const glm::mat4&, const MeshLook*, int) {}
+void RayScene::finish() {}
+Hit RayScene::nearest(const glm::vec3&, const glm::vec3&) const {
+  return {};
+}
+
+#endif
+
+RayScene::~RayScene() = default;
+
+}  // namespace slosh::reference

@@ -1,0 +1,159 @@
+// The path tracer and the fluid's surface of triangles: known answers.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/passes/frame_block.h"
+#include "render/reference/fluid_mesh.h"
+#include "render/reference/path_tracer.h"
+#include "render/shader_math.h"
+#include "tests/render/scene_kit.h"
+
+namespace slosh {
+namespace {
+
+Frame frame_of(const std::vector<glm::vec3>& points, const std::vector<std::uint8_t>& fluids, float radius,
+               int width, int height) {
+  Frame frame;
+  frame.view = kit::make_view({0.0f, 0.0f, 1.0f}, glm::vec3(0.0f), width, height);
+  frame.particles = points;
+  frame.particle_fluid = fluids;
+  frame.fluids = {kit::water()};
+  frame.particle_radius = radius;
+  return frame;
+}
+
+double volume(const reference::FluidMesh& mesh) {
+  double sum = 0.0;
+  for (const glm::uvec3& t : mesh.triangles)
+    sum += glm::dot(glm::dvec3(mesh.positions[t.x]),
+                    glm::cross(glm::dvec3(mesh.positions[t.y]), glm::dvec3(mesh.positions[t.z]))) /
+           6.0;
+  return sum;
+}
+
+TEST(FluidMesh, AParticleAloneIsABallOfItsVolume) {
+  const std::vector<glm::vec3> points{{0.3f, -0.2f, 0.1f}};
+  const std::vector<std::uint8_t> fluids{0};
+  const auto meshes = reference::mesh_fluids(frame_of(points, fluids, 0.01f, 64, 48), 0.2f);
+  ASSERT_EQ(meshes.size(), 1u);
+  const double ball = 4.0 / 3.0 * M_PI * 1e-6;
+  EXPECT_NEAR(volume(meshes[0]), ball, 0.1 * ball) << "and it is turned outward";
+  for (std::size_t i = 0; i < meshes[0].positions.size(); ++i)
+    EXPECT_GT(glm::dot(meshes[0].normals[i], meshes[0].positions[i] - points[0]), 0.0f);
+}
+
+TEST(FluidMesh, AFullBoxHasItsVolumeAndEachFluidItsMesh) {
+  auto points = kit::jitter_lattice(glm::vec3(0.0f), {0.2f, 0.1f, 0.2f}, 0.01f, 3);
+  kit::relax(points, 0.01f, glm::vec3(0.005f), {0.195f, 0.095f, 0.195f}, 8);
+  std::vector<std::uint8_t> fluids(points.size(), 0);
+  points.emplace_back(0.5f, 0.0f, 0.0f);
+  fluids.push_back(1);
+  points.emplace_back(NAN, 0.0f, 0.0f);
+  fluids.push_back(1);
+  Frame frame = frame_of(points, fluids, 0.0062f, 64, 48);
+  frame.fluids = {kit::water(), kit::batter()};
+  const auto meshes = reference::mesh_fluids(frame);
+  ASSERT_EQ(meshes.size(), 2u);
+  EXPECT_NEAR(volume(meshes[0]), 0.004, 0.0004);
+  EXPECT_EQ(meshes[1].fluid, 1u);
+}
+
+class PathTracing : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    auto made = reference::PathTracer::create();
+    if (!made) GTEST_SKIP() << made.error().text();
+    tracer_ = std::move(made.value());
+  }
+  reference::Options small(int samples) {
+    reference::Options options;
+    options.width = 24;
+    options.height = 18;
+    options.samples = samples;
+    return options;
+  }
+  std::unique_ptr<reference::PathTracer> tracer_;
+};
+
+TEST_F(PathTracing, AnEmptyFrameIsTheRoom) {
+  Frame frame = frame_of({}, {}, 0.01f, 24, 18);
+  const FloatImage image = tracer_->draw(frame, small(64));
+  const Studio studio;
+  const shader::Room room{studio.sky, studio.horizon, studio.ground, studio.softbox,
+                          direction_to_light(frame)};
+  const glm::vec3 ahead = shader::room_radiance(room, {0.0f, 0.0f, -1.0f});
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(image.at(12, 9, c), ahead[c], 0.03f);
+}
+
+TEST_F(PathTracing, AWallIsLitByTheKeyAndTheRoomByItsColour) {
+  Frame frame = frame_of({}, {}, 0.01f, 24, 18);
+  frame.light_direction = {0.0f, 0.0f, -1.0f};
+  const kit::Shape box = kit::make_box({-2.0f, -2.0f, -0.3f}, {2.0f, 2.0f, 0.0f});
+  MeshLook look;
+  look.roughness = 1.0f;
+  look.base_color = glm::vec3(0.4f);
+  frame.meshes = {{tracer_->add_mesh(box.positions, box.normals, box.triangles), glm::mat4(1.0f), look}};
+  const float lit = tracer_->draw(frame, small(256)).at(12, 9, 1);
+  frame.light_direction = {0.0f, 0.0f, 1.0f};
+  const float shaded = tracer_->draw(frame, small(256)).at(12, 9, 1);
+  const float expected = Studio{}.key_light.y * 0.4f / 3.14159265f;
+  EXPECT_NEAR(lit - shaded, expected, 0.12f * expected) << "Lambert's law, and a little sheen";
+  EXPECT_GT(shaded, 0.1f);
+}
+
+TEST_F(PathTracing, ClearFluidTakesLightByItsThickness) {
+  // A slab of fluid that does not refract, before the room: Beer and Lambert's law and nothing else.
+  auto points = kit::jitter_lattice({-0.4f, -0.3f, -0.05f}, {0.4f, 0.3f, 0.05f}, 0.01f, 3);
+  kit::relax(points, 0.01f, {-0.4f, -0.3f, -0.045f}, {0.4f, 0.3f, 0.045f}, 8);
+  const std::vector<std::uint8_t> fluids(points.size(), 0);
+  Frame frame = frame_of(points, fluids, 0.0062f, 24, 18);
+  frame.fluids[0].refraction = 1.0f;
+  frame.fluids[0].scattering = 0.0f;
+  frame.fluids[0].extinction = {10.0f, 5.0f, 0.0f};
+  const FloatImage image = tracer_->draw(frame, small(64));
+  const Frame bare = frame_of({}, {}, 0.01f, 24, 18);
+  const FloatImage room = tracer_->draw(bare, small(64));
+  for (int c = 0; c < 3; ++c) {
+    const float through = std::exp(-0.1f * frame.fluids[0].extinction[c]);
+    EXPECT_NEAR(image.at(12, 9, c) / room.at(12, 9, c), through, 0.08f) << c;
+  }
+}
+
+TEST_F(PathTracing, ACloudyFluidsDeepLayerGivesItsColourBack) {
+  // A wall of milk that mirrors nothing, lit by the key alone in front: F_c of it comes back.
+  auto points = kit::jitter_lattice({-0.5f, -0.4f, -0.1f}, {0.5f, 0.4f, 0.0f}, 0.02f, 3);
+  kit::relax(points, 0.02f, {-0.5f, -0.4f, -0.1f}, {0.5f, 0.4f, -0.01f}, 8);
+  const std::vector<std::uint8_t> fluids(points.size(), 0);
+  Frame frame = frame_of(points, fluids, 0.0124f, 24, 18);
+  frame.fluids[0] = kit::batter();
+  frame.fluids[0].gloss = 0.0f;
+  frame.fluids[0].refraction = 1.0f;
+  frame.fluids[0].color = glm::vec3(0.8f);
+  frame.fluids[0].extinction = glm::vec3(800.0f);
+  frame.light_direction = {0.0f, 0.0f, -1.0f};
+  const auto mean = [&] {
+    const FloatImage image = tracer_->draw(frame, small(96));
+    double sum = 0.0;
+    for (int y = 5; y < 13; ++y) {
+      for (int x = 6; x < 18; ++x) sum += image.at(x, y, 1) / 96.0;
+    }
+    return sum;
+  };
+  const double lit = mean();
+  frame.light_direction = {0.0f, 0.0f, 1.0f};
+  const double expected = Studio{}.key_light.y * 0.8 / M_PI;
+  EXPECT_NEAR(lit - mean(), expected, 0.2 * expected);
+}
+
+TEST_F(PathTracing, TheSameAgainIsTheSame) {
+  Frame frame = frame_of({}, {}, 0.01f, 24, 18);
+  reference::Options options = small(4);
+  const FloatImage once = tracer_->draw(frame, options);
+  options.threads = 2;
+  EXPECT_EQ(tracer_->draw(frame, options).values, once.values);
+}
+
+}  // namespace
+}  // namespace slosh
