@@ -84,7 +84,8 @@ TEST_F(Sweep, AnInterruptKeepsWhatIsDone) {
   test::Process slosh({test::program(), "sweep", "probe", "--set", "probe.mass_kg=0.05,0.1,0.15,0.2,0.25,0.3",
                        "--seconds", "0.5", "--out", "out", "--threads", "1"},
                       test::test_folder());
-  for (int i = 0; i < 1200 && slosh.running() && rows(out / "sweep.csv").size() < 2; ++i)
+  // A sanitizer takes minutes for the first run.
+  for (int i = 0; i < 30000 && slosh.running() && rows(out / "sweep.csv").size() < 2; ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   slosh.signal(SIGINT);
   const Outcome outcome = slosh.wait();
