@@ -173,8 +173,8 @@ class CpuEngine final : public ParticleEngine {
   }
   void place_bodies(double) { moving_.place(context_, bodies_); }
   void find_density(double) { compute_density(context_, team_, fluid_, fixed_.sorted(), moving_.sorted()); }
-  void find_forces(double) {
-    compute_fluid_forces(context_, team_, fluid_, fixed_.sorted(), moving_.sorted());
+  void find_forces(double dt) {
+    compute_fluid_forces(context_, team_, fluid_, fixed_.sorted(), moving_.sorted(), dt, fluid_drag_);
   }
   void sum_wrenches(double) {
     centers_.clear();
@@ -189,7 +189,7 @@ class CpuEngine final : public ParticleEngine {
   }
   void drag_on_fluid(double) { drag_fluid(context_, team_, fluid_, moving_.sorted()); }
   void solve_implicit_drag(double dt) {
-    const ViscousReport report = solver_.solve(context_, team_, {fluid_, fixed_.sorted(), moving_, bodies_}, dt,
+    const ViscousReport report = solver_.solve(context_, team_, {fluid_, fixed_.sorted(), moving_, bodies_, fluid_drag_}, dt,
                                                viscous_.bodies, wanted_, viscous_.wrenches);
     drags_ = solver_.drags();
     if (!report.converged) context_.status.fetch_or(kStatusViscosityCut, std::memory_order_relaxed);
@@ -259,6 +259,7 @@ class CpuEngine final : public ParticleEngine {
   std::vector<Wrench> found_;  // one a body, by the last forces()
   std::vector<BodyDrag> drags_;  // one a body, by the same
   SurfaceSums body_scratch_;
+  FluidDrag fluid_drag_;
   ViscousSolver solver_;
   Viscous viscous_;
   StepTimes times_;

@@ -1,6 +1,7 @@
 // Eq 5, 6 and 9 on fluid particles, and Eq 10–12 on bodies.
 #include "sim/cpu/passes.h"
-#include "sim/cpu/row_force.h"
+#include "sim/cpu/row_drag.h"
+#include "sim/viscosity/implicit.h"
 
 namespace slosh {
 
@@ -22,42 +23,165 @@ Symmetric<float> drag_rate(const ParticleView<FloatBatch>& self, const NeighborC
           scale * lane_sum(sum.yy), scale * lane_sum(sum.yz), scale * lane_sum(sum.zz)};
 }
 
+// What the passes over fluid particles go through.
+struct FluidWalk {
+  const PassContext& context;
+  ThreadTeam& team;
+  FluidParticles& fluid;
+  const BoundaryParticles& fixed;
+  const BoundaryParticles& moving;
+};
+
+// Where drag is not solved for, nothing is written down beside the forces.
+struct NoRows {
+  struct Given {};
+  struct Row {
+    Row(NoRows&, std::uint32_t, const ParticleView<FloatBatch>&) {}
+    auto fluid() { return kNothingMore; }
+    auto fixed() { return kNothingMore; }
+    auto moving() { return kNothingMore; }
+    void end() {}
+  };
+  NoRows(const Given&, std::size_t) {}
+};
+
+// Who drags whom, of one chunk of runs. By fluid and by moving bodies' particles, which are numbered on
+// behind the fluid's; fixed ones are in the own block alone.
+template <class Parts, Viscosity viscosity>
+struct RowsOf {
+  struct Given {
+    const FluidWalk& walk;
+    float dt;
+    FluidDrag& drag;
+  };
+
+  // Of one particle; small enough to stay in registers.
+  class Row {
+   public:
+    Row(RowsOf& rows, std::uint32_t p, const ParticleView<FloatBatch>& self)
+        : rows_(rows), p_(p), self_(self) {
+      rows_.writer.begin(p);
+    }
+    auto fluid() {
+      return [this](std::uint32_t j, FloatBatch weight) {
+        rows_.writer.add(j, pairs<viscosity, Neighbours::kFluid>(rows_.fluids, j, weight));
+      };
+    }
+    auto moving() {
+      return [this](std::uint32_t j, FloatBatch weight) {
+        rows_.writer.add(rows_.behind + j,
+                         pairs<Viscosity::kPair, Neighbours::kWalls>(rows_.bodies, j, weight));
+      };
+    }
+    auto fixed() {
+      return [this](std::uint32_t j, FloatBatch weight) {
+        const PairBatch w = pairs<Viscosity::kPair, Neighbours::kWalls>(rows_.walls, j, weight);
+        const FloatBatch x = w.q * w.x, y = w.q * w.y;
+        by_walls_.xx += x * w.x;
+        by_walls_.xy += x * w.y;
+        by_walls_.xz += x * w.z;
+        by_walls_.yy += y * w.y;
+        by_walls_.yz += y * w.z;
+        by_walls_.zz += w.q * w.z * w.z;
+      };
+    }
+    void end() {
+      const Symmetric<float> all = rows_.writer.end(), walls = summed(by_walls_);
+      const FluidWalk& walk = rows_.given.walk;
+      rows_.given.drag.by_walls[p_] = walls;
+      rows_.given.drag.block[p_] = inverse_block(walk.context.kinds[walk.fluid.kind[p_]].mass, 1.0f,
+                                                 {all.xx + walls.xx, all.xy + walls.xy, all.xz + walls.xz,
+                                                  all.yy + walls.yy, all.yz + walls.yz, all.zz + walls.zz});
+    }
+
+   private:
+    template <Viscosity of_pair, Neighbours neighbours>
+    PairBatch pairs(const NeighborColumns& n, std::uint32_t j, FloatBatch weight) {
+      return drag_pairs<Parts, of_pair, neighbours>(self_, n, j, weight, rows_.h, rows_.factor,
+                                                    FloatBatch(1.0f));
+    }
+
+    RowsOf& rows_;
+    const std::uint32_t p_;
+    const ParticleView<FloatBatch> self_;
+    Symmetric<FloatBatch> by_walls_ = no_rate();
+  };
+
+  RowsOf(const Given& g, std::size_t chunk)
+      : given(g),
+        writer(g.drag.rows, chunk),
+        fluids(columns(g.walk.fluid)),
+        walls(columns(g.walk.fixed)),
+        bodies(columns(g.walk.moving)),
+        h(g.walk.context.support_radius),
+        factor(kCentralDrag * g.dt * g.walk.context.force_scale),
+        behind(static_cast<std::uint32_t>(g.walk.fluid.index.particles())) {}
+
+  const Given given;
+  DragRows::Writer writer;
+  const NeighborColumns fluids, walls, bodies;
+  const FloatBatch h, factor;
+  const std::uint32_t behind;
+};
+
+template <class Parts, Viscosity viscosity, class Rows>
+void find_forces(const FluidWalk& walk, const typename Rows::Given& given) {
+  // Body particles have viscosities of their own, so against them Eq 9 holds even where one fluid has Eq 6.
+  constexpr Viscosity kAgainstBodies = viscosity == Viscosity::kNone ? Viscosity::kNone : Viscosity::kPair;
+  const PassContext& context = walk.context;
+  FluidParticles& fluid = walk.fluid;
+  const std::vector<CellRun>& runs = fluid.index.runs();
+  const NeighborColumns fluid_columns = columns(fluid);
+  const NeighborColumns fixed_columns = columns(walk.fixed);
+  const NeighborColumns moving_columns = columns(walk.moving);
+  const FloatBatch h(context.support_radius), one(1.0f);
+  walk.team.run(runs.size(), kRunsPerChunk, [&](std::size_t begin, std::size_t end) {
+    Rows rows(given, begin / kRunsPerChunk);
+    for (std::size_t r = begin; r < end; ++r) {
+      const RowList fluid_rows = fluid.index.rows(context.grid, runs[r].cell);
+      const RowList fixed_rows = walk.fixed.index.rows(context.grid, runs[r].cell);
+      const RowList moving_rows = walk.moving.index.rows(context.grid, runs[r].cell);
+      for (std::uint32_t p = runs[r].particles.begin; p < runs[r].particles.end; ++p) {
+        const ParticleView<FloatBatch> self =
+            broadcast(fluid_columns, p, context.kinds[fluid.kind[p]].viscosity);
+        typename Rows::Row row(rows, p, self);
+        ForceSum<FloatBatch> sum{FloatBatch(0.0f), FloatBatch(0.0f), FloatBatch(0.0f)};
+        add_row_forces<Parts, Parts::kFluids, viscosity>(self, fluid_columns, fluid_rows, h, sum, one,
+                                                         row.fluid());
+        if (fixed_rows.count)
+          add_row_forces<Parts, Parts::kWalls, kAgainstBodies, Neighbours::kWalls>(
+              self, fixed_columns, fixed_rows, h, sum, one, row.fixed());
+        if (moving_rows.count)
+          add_row_forces<Parts, Parts::kWalls, kAgainstBodies, Neighbours::kWalls>(
+              self, moving_columns, moving_rows, h, sum, one, row.moving());
+        row.end();
+        const float scale = context.force_scale;
+        fluid.fx[p] = scale * lane_sum(sum.x);
+        fluid.fy[p] = scale * lane_sum(sum.y);
+        fluid.fz[p] = scale * lane_sum(sum.z);
+        fluid.near_wall[p] = fixed_rows.count + moving_rows.count > 0;
+      }
+    }
+  });
+}
+
 }  // namespace
 
 void compute_fluid_forces(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
-                          const BoundaryParticles& fixed, const BoundaryParticles& moving) {
-  const std::vector<CellRun>& runs = fluid.index.runs();
-  const NeighborColumns fluid_columns = columns(fluid);
-  const NeighborColumns fixed_columns = columns(fixed);
-  const NeighborColumns moving_columns = columns(moving);
-  const FloatBatch h(context.support_radius);
+                          const BoundaryParticles& fixed, const BoundaryParticles& moving, double dt,
+                          FluidDrag& drag) {
+  const FluidWalk walk{context, team, fluid, fixed, moving};
   with_physics(context.plan, [&]<class Parts, Viscosity viscosity>() {
-    // Body particles have viscosities of their own, so against them Eq 9 holds even where one fluid has Eq 6.
-    constexpr Viscosity kAgainstBodies = viscosity == Viscosity::kNone ? Viscosity::kNone : Viscosity::kPair;
-    team.run(runs.size(), kRunsPerChunk, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t r = begin; r < end; ++r) {
-        const RowList fluid_rows = fluid.index.rows(context.grid, runs[r].cell);
-        const RowList fixed_rows = fixed.index.rows(context.grid, runs[r].cell);
-        const RowList moving_rows = moving.index.rows(context.grid, runs[r].cell);
-        for (std::uint32_t p = runs[r].particles.begin; p < runs[r].particles.end; ++p) {
-          const ParticleView<FloatBatch> self =
-              broadcast(fluid_columns, p, context.kinds[fluid.kind[p]].viscosity);
-          ForceSum<FloatBatch> sum{FloatBatch(0.0f), FloatBatch(0.0f), FloatBatch(0.0f)};
-          add_row_forces<Parts, Parts::kFluids, viscosity>(self, fluid_columns, fluid_rows, h, sum);
-          if (fixed_rows.count)
-            add_row_forces<Parts, Parts::kWalls, kAgainstBodies, Neighbours::kWalls>(self, fixed_columns,
-                                                                                     fixed_rows, h, sum);
-          if (moving_rows.count)
-            add_row_forces<Parts, Parts::kWalls, kAgainstBodies, Neighbours::kWalls>(self, moving_columns,
-                                                                                     moving_rows, h, sum);
-          const float scale = context.force_scale;
-          fluid.fx[p] = scale * lane_sum(sum.x);
-          fluid.fy[p] = scale * lane_sum(sum.y);
-          fluid.fz[p] = scale * lane_sum(sum.z);
-          fluid.near_wall[p] = fixed_rows.count + moving_rows.count > 0;
-        }
+    if constexpr (Parts::kCorrected && viscosity == Viscosity::kNone) {
+      if (context.plan.has(PassId::kImplicitDrag)) {
+        drag.clear(fluid.index.particles(), chunk_count(fluid.index.runs().size(), kRunsPerChunk));
+        with_solved_viscosity(context.plan, [&]<Viscosity solved>() {
+          find_forces<Parts, viscosity, RowsOf<Parts, solved>>(walk, {walk, static_cast<float>(dt), drag});
+        });
+        return;
       }
-    });
+    }
+    find_forces<Parts, viscosity, NoRows>(walk, {});
   });
 }
 

@@ -18,6 +18,8 @@ struct PassContext : RunConstants {
   std::atomic<std::uint32_t> status{0};
 };
 
+struct FluidDrag;
+
 /// Sorts fluid particles by cell and reorders every column that lives on; forgets the retired ones.
 void sort_fluid(PassContext& context, ThreadTeam& team, FluidParticles& fluid, KeySorter& sorter,
                 GatheredColumns& scratch);
@@ -51,9 +53,11 @@ void compute_density(PassContext& context, ThreadTeam& team, FluidParticles& flu
 void compute_corrected_density(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
                                const BoundaryParticles& fixed, const BoundaryParticles& moving);
 
-/// Eq 5, 6 and 9 on fluid particles, by fluid and by body particles.
+/// Eq 5, 6 and 9 on fluid particles, by fluid and by body particles. With kImplicitDrag without drag, and
+/// `drag` gets who drags whom over `dt` s: the same walk over the neighbours finds both.
 void compute_fluid_forces(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
-                          const BoundaryParticles& fixed, const BoundaryParticles& moving);
+                          const BoundaryParticles& fixed, const BoundaryParticles& moving, double dt,
+                          FluidDrag& drag);
 
 /// What each body particle feels, in the order of the cells.
 struct SurfaceSums {

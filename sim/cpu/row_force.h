@@ -56,9 +56,14 @@ FloatBatch viscosity_of(const ParticleView<FloatBatch>& p, const NeighborColumns
   }
 }
 
-template <class Parts, PairRule rule, Viscosity viscosity, Neighbours neighbours = Neighbours::kFluid>
+inline constexpr auto kNothingMore = [](std::uint32_t, FloatBatch) {};
+
+/// `also`(j, weight) is called for each batch beside it.
+template <class Parts, PairRule rule, Viscosity viscosity, Neighbours neighbours = Neighbours::kFluid,
+          class Also = decltype(kNothingMore)>
 void add_row_forces(const ParticleView<FloatBatch>& p, const NeighborColumns& n, const RowList& rows,
-                    FloatBatch h, ForceSum<FloatBatch>& sum, FloatBatch of_fluid = FloatBatch(1.0f)) {
+                    FloatBatch h, ForceSum<FloatBatch>& sum, FloatBatch of_fluid = FloatBatch(1.0f),
+                    Also also = kNothingMore) {
   // What pairs of one viscosity drag by is in u already.
   constexpr bool kViscous =
       rule == PairRule::kCorrected ? viscosity == Viscosity::kPair : viscosity != Viscosity::kNone;
@@ -88,6 +93,7 @@ void add_row_forces(const ParticleView<FloatBatch>& p, const NeighborColumns& n,
       i.viscosity = viscosity_of<viscosity, neighbours>(p, n, j, of_fluid);
     }
     add_pair_force<typename Parts::ForceKernel, rule, Parts::kDrag, kViscous>(p, i, h, weight, sum);
+    also(j, weight);
   };
   for_each_batch(rows, add);
 }

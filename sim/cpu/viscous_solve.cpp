@@ -43,31 +43,35 @@ glm::vec3 times(const Symmetric<float>& s, const glm::vec3& v) {
           s.xz * v.x + s.yz * v.y + s.zz * v.z};
 }
 
+Vector4 vector4(const glm::vec3& v) {
+  return {v.x, v.y, v.z, 0.0f};
+}
+glm::vec3 vec3(const Vector4& v) {
+  return {v.x, v.y, v.z};
+}
+glm::vec3 vec3(const ForceSum<float>& f) {
+  return {f.x, f.y, f.z};
+}
+
 }  // namespace
 
 // The velocities of moving bodies' particles, behind the fluid's.
-void ViscousSolver::carry_surface(const Work& work, std::span<const Twist> twists,
-                                  VectorColumns& velocities) {
+void ViscousSolver::carry_surface(const Work& work, std::span<const Twist> twists) {
   work.sides.moving.set_velocities(work.sides.bodies, twists);
   const BoundaryParticles& moving = work.sides.moving.sorted();
-  std::copy_n(moving.vx.begin(), work.surface,
-              velocities.x.begin() + static_cast<std::ptrdiff_t>(work.fluid));
-  std::copy_n(moving.vy.begin(), work.surface,
-              velocities.y.begin() + static_cast<std::ptrdiff_t>(work.fluid));
-  std::copy_n(moving.vz.begin(), work.surface,
-              velocities.z.begin() + static_cast<std::ptrdiff_t>(work.fluid));
+  for (std::size_t i = 0; i < work.surface; ++i)
+    direction_[work.fluid + i] = {moving.vx[i], moving.vy[i], moving.vz[i], 0.0f};
 }
 
-// on_bodies_: N·s on those that move, in one fixed order, so that the sum does not depend on the threads.
-void ViscousSolver::sum_over_bodies(const Work& work, const VectorColumns& velocities) {
+// on_bodies_: N·s on those that move, all moving by direction_, in one fixed order, so that the sum does not
+// depend on the threads.
+void ViscousSolver::sum_over_bodies(const Work& work) {
   const BoundaryParticles& moving = work.sides.moving.sorted();
   on_surface_.resize(work.surface);
   work.team.run(work.surface, 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const ForceSum<float> f = body_rows_.drag_on(static_cast<std::uint32_t>(i), moving.vx[i], moving.vy[i],
-                                                   moving.vz[i], velocities);
-      on_surface_[i] = {f.x, f.y, f.z};
-    }
+    for (std::size_t i = begin; i < end; ++i)
+      on_surface_[i] = vec3(
+          body_rows_.drag_on(static_cast<std::uint32_t>(i), direction_[work.fluid + i], direction_.data()));
   });
   on_bodies_.assign(work.bodies.size(), Wrench{});
   for (std::size_t i = 0; i < work.surface; ++i) {
@@ -80,38 +84,46 @@ void ViscousSolver::sum_over_bodies(const Work& work, const VectorColumns& veloc
   }
 }
 
-// The residual of the velocities that the sub-step begins with, and everybody's own block.
-void ViscousSolver::begin(const Work& work) {
+// The residual of the velocities that the sub-step begins with, and everybody's own block. Returns residual ·
+// product.
+double ViscousSolver::begin(const Work& work) {
   FluidParticles& fluid = work.sides.fluid;
-  const BoundaryParticles& moving = work.sides.moving.sorted();
-  for (VectorColumns* v : {&change_, &residual_, &direction_, &product_})
-    v->provide(work.fluid + work.surface);
-  write_fluid_rows(work);
+  const FluidDrag& drag = work.sides.drag;
+  change_.resize(work.fluid);
+  residual_.resize(work.fluid);
+  product_.resize(work.fluid);
+  direction_.resize(work.fluid + work.surface);
   write_body_rows(work);
-  std::copy_n(fluid.vx.begin(), work.fluid, direction_.x.begin());
-  std::copy_n(fluid.vy.begin(), work.fluid, direction_.y.begin());
-  std::copy_n(fluid.vz.begin(), work.fluid, direction_.z.begin());
+  for (std::size_t p = 0; p < work.fluid; ++p) direction_[p] = {fluid.vx[p], fluid.vy[p], fluid.vz[p], 0.0f};
   twists_.assign(work.bodies.size(), Twist{});
   for (std::size_t b = 0; b < work.bodies.size(); ++b) twists_[b] = work.bodies[b].twist;
-  carry_surface(work, twists_, direction_);
-  sum_over_bodies(work, direction_);
+  carry_surface(work, twists_);
+  sum_over_bodies(work);
   const glm::vec3 g = work.context.gravity;
+  parts_.assign(chunk_count(work.fluid, kParticlesPerChunk), 0.0);
   work.team.run(work.fluid, kParticlesPerChunk, [&](std::size_t begin, std::size_t end) {
+    double sum = 0.0;
     for (std::size_t p = begin; p < end; ++p) {
       const float mass = work.context.kinds[fluid.kind[p]].mass;
-      const glm::vec3 v(fluid.vx[p], fluid.vy[p], fluid.vz[p]);
-      const glm::vec3 by_walls = times(by_walls_[p], v);
-      const ForceSum<float> drag =
-          fluid_rows_.drag_on(static_cast<std::uint32_t>(p), v.x, v.y, v.z, direction_);
-      residual_.x[p] = work.dt * (fluid.fx[p] + mass * g.x) + drag.x - by_walls.x;
-      residual_.y[p] = work.dt * (fluid.fy[p] + mass * g.y) + drag.y - by_walls.y;
-      residual_.z[p] = work.dt * (fluid.fz[p] + mass * g.z) + drag.z - by_walls.z;
-      change_.x[p] = change_.y[p] = change_.z[p] = 0.0f;
+      const glm::vec3 force(fluid.fx[p], fluid.fy[p], fluid.fz[p]);
+      const glm::vec3 dragged =
+          vec3(drag.rows.drag_on(static_cast<std::uint32_t>(p), direction_[p], direction_.data()));
+      const glm::vec3 r =
+          work.dt * (force + mass * g) + dragged - times(drag.by_walls[p], vec3(direction_[p]));
+      const glm::vec3 z = times(drag.block[p], r);
+      residual_[p] = vector4(r);
+      product_[p] = vector4(z);
+      change_[p] = {};
+      sum += static_cast<double>(glm::dot(r, z));
     }
+    parts_[begin / kParticlesPerChunk] = sum;
   });
-  for (Column<float>* column : {&direction_.x, &direction_.y, &direction_.z})
-    std::fill(column->begin(), column->end(), 0.0f);
+  begin_bodies(work);
+  return total(parts_) + precondition_bodies(work);
+}
 
+void ViscousSolver::begin_bodies(const Work& work) {
+  const BoundaryParticles& moving = work.sides.moving.sorted();
   drags_.assign(work.bodies.size(), BodyDrag{});
   for (std::size_t i = 0; i < work.surface; ++i) {
     const Symmetric<float>& rate = rate_[i];
@@ -137,22 +149,9 @@ void ViscousSolver::begin(const Work& work) {
   }
 }
 
-// product = block⁻¹ residual; returns residual · product.
-double ViscousSolver::precondition(const Work& work) {
-  parts_.assign(chunk_count(work.fluid, kParticlesPerChunk), 0.0);
-  work.team.run(work.fluid, kParticlesPerChunk, [&](std::size_t begin, std::size_t end) {
-    double sum = 0.0;
-    for (std::size_t p = begin; p < end; ++p) {
-      const glm::vec3 r(residual_.x[p], residual_.y[p], residual_.z[p]);
-      const glm::vec3 z = times(block_[p], r);
-      product_.x[p] = z.x;
-      product_.y[p] = z.y;
-      product_.z[p] = z.z;
-      sum += static_cast<double>(glm::dot(r, z));
-    }
-    parts_[begin / kParticlesPerChunk] = sum;
-  });
-  double sum = total(parts_);
+// A body's product = block⁻¹ residual; returns the sum of residual · product over the bodies.
+double ViscousSolver::precondition_bodies(const Work& work) {
+  double sum = 0.0;
   for (std::size_t b = 0; b < unknowns_.size(); ++b) {
     if (!work.bodies[b].moves) continue;
     Unknown& u = unknowns_[b];
@@ -167,9 +166,8 @@ void ViscousSolver::follow(const Work& work, double keep) {
   const float k = static_cast<float>(keep);
   work.team.run(work.fluid, kParticlesPerChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
-      direction_.x[p] = product_.x[p] + k * direction_.x[p];
-      direction_.y[p] = product_.y[p] + k * direction_.y[p];
-      direction_.z[p] = product_.z[p] + k * direction_.z[p];
+      const Vector4 z = product_[p], d = direction_[p];
+      direction_[p] = {z.x + k * d.x, z.y + k * d.y, z.z + k * d.z, 0.0f};
     }
   });
   for (std::size_t b = 0; b < unknowns_.size(); ++b) {
@@ -177,63 +175,60 @@ void ViscousSolver::follow(const Work& work, double keep) {
     for (int i = 0; i < 6; ++i) u.direction[i] = u.product[i] + keep * u.direction[i];
     twists_[b] = twist_of(u.direction);
   }
-  carry_surface(work, twists_, direction_);
+  carry_surface(work, twists_);
 }
 
 // product = (M + dt D) direction; returns direction · product.
 double ViscousSolver::multiply(const Work& work) {
   const FluidParticles& fluid = work.sides.fluid;
+  const FluidDrag& drag = work.sides.drag;
   parts_.assign(chunk_count(work.fluid, kParticlesPerChunk), 0.0);
   work.team.run(work.fluid, kParticlesPerChunk, [&](std::size_t begin, std::size_t end) {
     double sum = 0.0;
     for (std::size_t p = begin; p < end; ++p) {
       const float mass = work.context.kinds[fluid.kind[p]].mass;
-      const glm::vec3 d(direction_.x[p], direction_.y[p], direction_.z[p]);
-      const ForceSum<float> drag =
-          fluid_rows_.drag_on(static_cast<std::uint32_t>(p), d.x, d.y, d.z, direction_);
-      const glm::vec3 q = mass * d + times(by_walls_[p], d) - glm::vec3(drag.x, drag.y, drag.z);
-      product_.x[p] = q.x;
-      product_.y[p] = q.y;
-      product_.z[p] = q.z;
+      const glm::vec3 d = vec3(direction_[p]);
+      const glm::vec3 dragged =
+          vec3(drag.rows.drag_on(static_cast<std::uint32_t>(p), direction_[p], direction_.data()));
+      const glm::vec3 q = mass * d + times(drag.by_walls[p], d) - dragged;
+      product_[p] = vector4(q);
       sum += static_cast<double>(glm::dot(d, q));
     }
     parts_[begin / kParticlesPerChunk] = sum;
   });
   double sum = total(parts_);
-  sum_over_bodies(work, direction_);
+  sum_over_bodies(work);
   for (std::size_t b = 0; b < unknowns_.size(); ++b) {
     if (!work.bodies[b].moves) continue;
     Unknown& u = unknowns_[b];
-    const Vector6 drag = vector_of(on_bodies_[b]);
+    const Vector6 on_body = vector_of(on_bodies_[b]);
     u.product = times(work.bodies[b].inertia, u.direction);
-    for (int i = 0; i < 6; ++i) u.product[i] -= drag[i];
+    for (int i = 0; i < 6; ++i) u.product[i] -= on_body[i];
     sum += dot(u.direction, u.product);
   }
   return sum;
 }
 
-// One turn's way along the direction. Returns the sums of mass · (residual/mass)² and of mass · change².
-ViscousSolver::Squares ViscousSolver::advance(const Work& work, double length) {
+// One turn's way along the direction, and what is left made ready for the next.
+ViscousSolver::Sums ViscousSolver::advance(const Work& work, double length) {
   const FluidParticles& fluid = work.sides.fluid;
   const float a = static_cast<float>(length);
-  parts_.assign(chunk_count(work.fluid, kParticlesPerChunk), 0.0);
-  more_parts_.assign(parts_.size(), 0.0);
+  sums_.assign(chunk_count(work.fluid, kParticlesPerChunk), Sums{});
   work.team.run(work.fluid, kParticlesPerChunk, [&](std::size_t begin, std::size_t end) {
-    double left = 0.0, changed = 0.0;
+    Sums sums;
     for (std::size_t p = begin; p < end; ++p) {
       const float mass = work.context.kinds[fluid.kind[p]].mass;
-      const auto along = [&](float& u, float& r, float d, float q) {
-        u += a * d;
-        r -= a * q;
-        left += static_cast<double>(r * r / mass);
-        changed += static_cast<double>(mass * u * u);
-      };
-      along(change_.x[p], residual_.x[p], direction_.x[p], product_.x[p]);
-      along(change_.y[p], residual_.y[p], direction_.y[p], product_.y[p]);
-      along(change_.z[p], residual_.z[p], direction_.z[p], product_.z[p]);
+      const glm::vec3 u = vec3(change_[p]) + a * vec3(direction_[p]);
+      const glm::vec3 r = vec3(residual_[p]) - a * vec3(product_[p]);
+      const glm::vec3 z = times(work.sides.drag.block[p], r);
+      change_[p] = vector4(u);
+      residual_[p] = vector4(r);
+      product_[p] = vector4(z);
+      sums.left += static_cast<double>(glm::dot(r, r) / mass);
+      sums.changed += static_cast<double>(mass * glm::dot(u, u));
+      sums.step += static_cast<double>(glm::dot(r, z));
     }
-    parts_[begin / kParticlesPerChunk] = left;
-    more_parts_[begin / kParticlesPerChunk] = changed;
+    sums_[begin / kParticlesPerChunk] = sums;
   });
   for (Unknown& u : unknowns_) {
     for (int i = 0; i < 6; ++i) {
@@ -241,7 +236,14 @@ ViscousSolver::Squares ViscousSolver::advance(const Work& work, double length) {
       u.residual[i] -= length * u.product[i];
     }
   }
-  return {total(parts_), total(more_parts_)};
+  Sums all;
+  for (const Sums& part : sums_) {
+    all.left += part.left;
+    all.changed += part.changed;
+    all.step += part.step;
+  }
+  all.step += precondition_bodies(work);
+  return all;
 }
 
 // What is left over goes to each by its mass, so that the pair keeps its momentum.
@@ -252,9 +254,10 @@ void ViscousSolver::finish(const Work& work, std::span<Wrench> wrenches) {
   work.team.run(work.fluid, kParticlesPerChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       const float mass = work.context.kinds[fluid.kind[p]].mass;
-      fluid.fx[p] = per_step * (mass * change_.x[p] + residual_.x[p]) - mass * g.x;
-      fluid.fy[p] = per_step * (mass * change_.y[p] + residual_.y[p]) - mass * g.y;
-      fluid.fz[p] = per_step * (mass * change_.z[p] + residual_.z[p]) - mass * g.z;
+      const glm::vec3 force = per_step * (mass * vec3(change_[p]) + vec3(residual_[p])) - mass * g;
+      fluid.fx[p] = force.x;
+      fluid.fy[p] = force.y;
+      fluid.fz[p] = force.z;
     }
   });
   for (std::size_t b = 0; b < unknowns_.size(); ++b) {
@@ -282,7 +285,7 @@ ViscousReport ViscousSolver::solve(const PassContext& context, ThreadTeam& team,
                   measured,
                   sides.fluid.index.particles(),
                   sides.moving.sorted().index.particles()};
-  begin(work);
+  double now = begin(work);
   double mass = 0.0;
   for (std::size_t p = 0; p < work.fluid; ++p) mass += context.kinds[sides.fluid.kind[p]].mass;
   const double floor = kViscousFloor * glm::length(context.gravity) * dt;
@@ -290,7 +293,6 @@ ViscousReport ViscousSolver::solve(const PassContext& context, ThreadTeam& team,
   report.converged = false;
   double before = 0.0;
   while (report.turns < kMostViscousTurns) {
-    const double now = precondition(work);
     if (!(now > 0.0)) {
       report.converged = now == 0.0;
       break;
@@ -299,12 +301,13 @@ ViscousReport ViscousSolver::solve(const PassContext& context, ThreadTeam& team,
     before = now;
     const double curvature = multiply(work);
     if (!(curvature > 0.0)) break;
-    const Squares left = advance(work, now / curvature);
+    const Sums sums = advance(work, now / curvature);
     ++report.turns;
-    if (left.residual <= kViscousTolerance * kViscousTolerance * left.change + floor * floor * mass) {
+    if (sums.left <= kViscousTolerance * kViscousTolerance * sums.changed + floor * floor * mass) {
       report.converged = true;
       break;
     }
+    now = sums.step;
   }
   finish(work, wrenches);
   return report;

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "sim/cpu/drag_rows.h"
 #include "sim/cpu/passes.h"
+#include "sim/cpu/row_drag.h"
 #include "sim/viscosity/implicit.h"
 
 namespace slosh {
@@ -16,6 +16,7 @@ struct DragSides {
   const BoundaryParticles& fixed;
   BodySurface& moving;
   std::span<const RigidBody> bodies;  ///< as they were when `moving` was placed
+  const FluidDrag& drag;              ///< from the force pass
 };
 
 /// Conjugate gradients over the fluid and the bodies that move. Keeps its memory from one solve to the next.
@@ -28,8 +29,8 @@ class ViscousSolver {
   ViscousReport solve(const PassContext& context, ThreadTeam& team, const DragSides& sides, double dt,
                       std::span<const ViscousBody> bodies, const std::vector<char>& measured,
                       std::span<Wrench> wrenches);
-  /// By the last solve(), one a body: what the drag on it loses for each unit of its twist while the fluid stays as
-  /// it is; of those that move.
+  /// By the last solve(), one a body: what the drag on it loses for each unit of its twist while the fluid
+  /// stays as it is; of those that move.
   const std::vector<BodyDrag>& drags() const { return drags_; }
 
  private:
@@ -47,35 +48,36 @@ class ViscousSolver {
     const std::vector<char>& measured;
     std::size_t fluid = 0, surface = 0;  // particles
   };
-  struct Squares {
-    double residual = 0.0, change = 0.0;
+  struct Sums {
+    double left = 0.0;     // mass · (residual/mass)²
+    double changed = 0.0;  // mass · change²
+    double step = 0.0;     // residual · product
   };
 
-  void write_fluid_rows(const Work& work);
   void write_body_rows(const Work& work);
-  void begin(const Work& work);
-  double precondition(const Work& work);
+  double begin(const Work& work);
+  void begin_bodies(const Work& work);
+  double precondition_bodies(const Work& work);
   void follow(const Work& work, double keep);
   double multiply(const Work& work);
-  Squares advance(const Work& work, double length);
+  Sums advance(const Work& work, double length);
   void finish(const Work& work, std::span<Wrench> wrenches);
   void add_fixed(const Work& work, std::span<Wrench> wrenches);
 
-  void carry_surface(const Work& work, std::span<const Twist> twists, VectorColumns& velocities);
-  void sum_over_bodies(const Work& work, const VectorColumns& velocities);
+  void carry_surface(const Work& work, std::span<const Twist> twists);
+  void sum_over_bodies(const Work& work);
 
-  // Of the fluid's particles, and behind them of the moving bodies'.
-  VectorColumns change_, residual_, direction_, product_;
-  DragRows fluid_rows_, body_rows_;
-  std::vector<Symmetric<float>>
-      by_walls_;  // N·s for each m/s of its own that fixed bodies take, one a particle
-  std::vector<Symmetric<float>> block_;     // the inverse of a particle's own block
-  std::vector<Symmetric<float>> rate_;      // of the moving bodies' particles, N·s for each m/s
-  std::vector<Unknown> unknowns_;           // one a body
-  std::vector<glm::vec3> on_surface_;       // N·s, one a particle of the moving bodies
-  std::vector<BodyDrag> drags_;             // one a body
-  std::vector<Wrench> on_bodies_;           // N·s, one a body
-  std::vector<double> parts_, more_parts_;  // of sums, in a fixed order
+  std::vector<Vector4> change_, residual_, product_;  // of the fluid's particles
+  std::vector<Vector4> direction_;                    // and behind them of the moving bodies'
+  Column<float> end_x_, end_y_, end_z_;               // the velocities found, where fixed bodies are measured
+  DragRows body_rows_;
+  std::vector<Symmetric<float>> rate_;  // of the moving bodies' particles, N·s for each m/s
+  std::vector<Unknown> unknowns_;       // one a body
+  std::vector<glm::vec3> on_surface_;   // N·s, one a particle of the moving bodies
+  std::vector<BodyDrag> drags_;         // one a body
+  std::vector<Wrench> on_bodies_;       // N·s, one a body
+  std::vector<double> parts_;           // of a sum, in a fixed order
+  std::vector<Sums> sums_;              // likewise
   std::vector<Twist> twists_;
 };
 
