@@ -67,7 +67,7 @@ class DragRows {
     Symmetric<float> end();
 
    private:
-    void make_room();
+    __attribute__((noinline)) void make_room();
 
     DragRows& rows_;
     std::uint32_t chunk_, p_ = 0;

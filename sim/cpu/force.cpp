@@ -124,8 +124,11 @@ struct RowsOf {
   const std::uint32_t behind;
 };
 
+// One chunk of runs. All of a pair in one loop: left to itself the compiler calls functions where rows are
+// written, and hands batches over in memory.
 template <class Parts, Viscosity viscosity, class Rows>
-void find_forces(const FluidWalk& walk, const typename Rows::Given& given) {
+__attribute__((flatten)) void find_forces_of(const FluidWalk& walk, const typename Rows::Given& given,
+                                             std::size_t begin, std::size_t end) {
   // Body particles have viscosities of their own, so against them Eq 9 holds even where one fluid has Eq 6.
   constexpr Viscosity kAgainstBodies = viscosity == Viscosity::kNone ? Viscosity::kNone : Viscosity::kPair;
   const PassContext& context = walk.context;
@@ -135,33 +138,38 @@ void find_forces(const FluidWalk& walk, const typename Rows::Given& given) {
   const NeighborColumns fixed_columns = columns(walk.fixed);
   const NeighborColumns moving_columns = columns(walk.moving);
   const FloatBatch h(context.support_radius), one(1.0f);
-  walk.team.run(runs.size(), kRunsPerChunk, [&](std::size_t begin, std::size_t end) {
-    Rows rows(given, begin / kRunsPerChunk);
-    for (std::size_t r = begin; r < end; ++r) {
-      const RowList fluid_rows = fluid.index.rows(context.grid, runs[r].cell);
-      const RowList fixed_rows = walk.fixed.index.rows(context.grid, runs[r].cell);
-      const RowList moving_rows = walk.moving.index.rows(context.grid, runs[r].cell);
-      for (std::uint32_t p = runs[r].particles.begin; p < runs[r].particles.end; ++p) {
-        const ParticleView<FloatBatch> self =
-            broadcast(fluid_columns, p, context.kinds[fluid.kind[p]].viscosity);
-        typename Rows::Row row(rows, p, self);
-        ForceSum<FloatBatch> sum{FloatBatch(0.0f), FloatBatch(0.0f), FloatBatch(0.0f)};
-        add_row_forces<Parts, Parts::kFluids, viscosity>(self, fluid_columns, fluid_rows, h, sum, one,
-                                                         row.fluid());
-        if (fixed_rows.count)
-          add_row_forces<Parts, Parts::kWalls, kAgainstBodies, Neighbours::kWalls>(
-              self, fixed_columns, fixed_rows, h, sum, one, row.fixed());
-        if (moving_rows.count)
-          add_row_forces<Parts, Parts::kWalls, kAgainstBodies, Neighbours::kWalls>(
-              self, moving_columns, moving_rows, h, sum, one, row.moving());
-        row.end();
-        const float scale = context.force_scale;
-        fluid.fx[p] = scale * lane_sum(sum.x);
-        fluid.fy[p] = scale * lane_sum(sum.y);
-        fluid.fz[p] = scale * lane_sum(sum.z);
-        fluid.near_wall[p] = fixed_rows.count + moving_rows.count > 0;
-      }
+  Rows rows(given, begin / kRunsPerChunk);
+  for (std::size_t r = begin; r < end; ++r) {
+    const RowList fluid_rows = fluid.index.rows(context.grid, runs[r].cell);
+    const RowList fixed_rows = walk.fixed.index.rows(context.grid, runs[r].cell);
+    const RowList moving_rows = walk.moving.index.rows(context.grid, runs[r].cell);
+    for (std::uint32_t p = runs[r].particles.begin; p < runs[r].particles.end; ++p) {
+      const ParticleView<FloatBatch> self =
+          broadcast(fluid_columns, p, context.kinds[fluid.kind[p]].viscosity);
+      typename Rows::Row row(rows, p, self);
+      ForceSum<FloatBatch> sum{FloatBatch(0.0f), FloatBatch(0.0f), FloatBatch(0.0f)};
+      add_row_forces<Parts, Parts::kFluids, viscosity>(self, fluid_columns, fluid_rows, h, sum, one,
+                                                       row.fluid());
+      if (fixed_rows.count)
+        add_row_forces<Parts, Parts::kWalls, kAgainstBodies, Neighbours::kWalls>(
+            self, fixed_columns, fixed_rows, h, sum, one, row.fixed());
+      if (moving_rows.count)
+        add_row_forces<Parts, Parts::kWalls, kAgainstBodies, Neighbours::kWalls>(
+            self, moving_columns, moving_rows, h, sum, one, row.moving());
+      row.end();
+      const float scale = context.force_scale;
+      fluid.fx[p] = scale * lane_sum(sum.x);
+      fluid.fy[p] = scale * lane_sum(sum.y);
+      fluid.fz[p] = scale * lane_sum(sum.z);
+      fluid.near_wall[p] = fixed_rows.count + moving_rows.count > 0;
     }
+  }
+}
+
+template <class Parts, Viscosity viscosity, class Rows>
+void find_forces(const FluidWalk& walk, const typename Rows::Given& given) {
+  walk.team.run(walk.fluid.index.runs().size(), kRunsPerChunk, [&](std::size_t begin, std::size_t end) {
+    find_forces_of<Parts, viscosity, Rows>(walk, given, begin, end);
   });
 }
 
