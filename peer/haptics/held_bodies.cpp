@@ -107,6 +107,7 @@ void HeldBodies::tell(Entry& entry, const BodyMessage& newest, std::int64_t now_
   HostWord word;
   word.now_ns = now_ns;
   word.time = bodies.time;
+  word.time_step = newest.time_step;
   word.motion = {body.center_of_mass, body.pose.orientation, body.twist};
   word.hands = entry.said;
   entry.held.hear(word);

@@ -28,13 +28,6 @@ TEST(CouplingAtADistance, EveryKnownBreakerIsSteady) {
       std::printf("%-28s %3.0f ms: %s, %.2g mJ generated, peak %.1f N, swing %.4f m/s\n", c.name.c_str(),
                   1e3 * round_trip, word(r.verdict), 1e3 * r.generated, r.peak, r.swing);
       const std::string what = c.name + " at " + std::to_string(round_trip);
-      // A body that bounces on a table under one hand is not steady from 100 ms on, but it stays small.
-      if (c.load == Load::kTable) {
-        EXPECT_NE(r.verdict, Verdict::kDiverged) << what;
-        EXPECT_LT(r.generated, 20e-3) << what;
-        EXPECT_LT(r.peak, 45.0) << what;
-        continue;
-      }
       EXPECT_EQ(r.verdict, Verdict::kStable) << what;
       EXPECT_LE(r.generated, kMostGenerated) << what;
     }

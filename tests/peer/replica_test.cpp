@@ -5,7 +5,9 @@
 #include <cstdio>
 #include <limits>
 
+#include "net/clock.h"
 #include "peer/haptics/replica/body_replica.h"
+#include "peer/haptics/replica/load_work.h"
 #include "sim/bodies/body_solve.h"
 
 namespace slosh {
@@ -86,6 +88,96 @@ TEST(Replica, MovesAsTheHostsSolveDoes) {
   // here.
   EXPECT_LT(farthest, 2e-4);
   EXPECT_GT(glm::length(host.velocity), 0.01) << "it moves";
+}
+
+/// Weight and a drag on a body that a hand swings and turns: what they gave is told by the body's motion and
+/// by what its couplings were given, also where most words are lost.
+TEST(LoadWork, IsWhatActsBesidesGave) {
+  const ReplicaBody body = bucket();
+  const std::vector<ReplicaGrip> grips = two_grips();
+  for (const int each : {1, 3, 5}) {
+    LoadWork work(body, grips);
+    RigidBody host;
+    host.free = true;
+    host.mass = body.mass;
+    host.inertia = body.inertia;
+    host.inverse_inertia = glm::inverse(body.inertia);
+    host.local_center = body.center;
+    host.position = body.center;
+    const double dt = 0.002;
+    double truth = 0.0, most = 0.0, more = 0.0, less = 0.0;
+    for (int i = 0; i < 2000; ++i) {
+      std::vector<ActiveCoupling> couplings;
+      for (int g = 0; g < 2; ++g) {
+        const ReplicaHand hand = hand_at(dt * i, g);
+        ActiveCoupling& c = couplings.emplace_back();
+        c.gains = grips[static_cast<std::size_t>(g)].gains;
+        c.handle = hand.handle;
+        c.handle_twist = hand.twist;
+        c.grip_pose = compose(host.mesh_pose(), grips[static_cast<std::size_t>(g)].pose);
+        c.arm = c.grip_pose.position - host.position;
+      }
+      const Wrench acting{glm::dvec3(0.0, -9.81 * body.mass, 0.0) - 8.0 * host.velocity,
+                          -0.05 * host.angular_velocity};
+      const RigidBody before = host;
+      BodySolve solve;
+      ASSERT_TRUE(solve_body(host, acting, couplings, dt, solve));
+      advance_body(host, solve, dt);
+      truth += glm::dot(acting.force, host.position - before.position) +
+               glm::dot(acting.torque, rotation_between(before.orientation, host.orientation));
+      // An implicit step takes this out of the motion; nobody gets it.
+      const glm::dvec3 gained = host.velocity - before.velocity;
+      const glm::dvec3 spun = host.angular_velocity - before.angular_velocity;
+      const glm::dmat3 r = glm::mat3_cast(host.orientation);
+      truth -= 0.5 * body.mass * glm::dot(gained, gained) +
+               0.5 * glm::dot(spun, r * body.inertia * glm::transpose(r) * spun);
+      std::vector<HostHand> said(2);
+      for (std::size_t g = 0; g < 2; ++g) {
+        const Wrench on_body = coupling_wrench(couplings[g], solve, dt);
+        said[g].on_hand = {-on_body.force, -on_body.torque};
+      }
+      if (i % each != 0) continue;
+      HostWord word;
+      word.time = dt * i;
+      word.time_step = dt;
+      word.motion = {host.position, host.orientation, {host.velocity, host.angular_velocity}};
+      word.hands = said;
+      if (i == 0) truth = 0.0;
+      work.hear(word);
+      most = std::max(most, std::abs(truth));
+      more = std::max(more, work.work() - truth);
+      less = std::max(less, truth - work.work());
+    }
+    std::printf("each %d. word: %.1f %% more or %.1f %% less than %.2f J at most\n", each,
+                100.0 * more / most, 100.0 * less / most, most);
+    EXPECT_LT(more, 0.05 * most) << each;
+    EXPECT_LT(less, (each == 1 ? 0.05 : 0.12 * each) * most) << each;
+  }
+}
+
+/// A load that is not believed gives nothing: what it drove is taken out of the motion.
+TEST(Replica, ALoadThatIsNotBelievedDrivesNothing) {
+  for (const double believed : {1.0, 0.0}) {
+    BodyReplica replica(bucket(), two_grips());
+    replica.restart({});
+    replica.believe_load(believed);
+    FluidLoad push;
+    push.wrench = {5.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    replica.set_load(push);
+    const std::vector<ReplicaHand> nobody(2);
+    for (int i = 0; i < 500; ++i) replica.advance(nobody, kTick, to_nanoseconds(kTick * (i + 1)));
+    const double speed = replica.motion().twist.linear.x;
+    if (believed == 1.0) {
+      EXPECT_NEAR(speed, 1.0, 0.01);
+      EXPECT_NEAR(replica.work(), replica.stored(), 0.01);
+    } else {
+      EXPECT_LT(speed, 0.1);
+    }
+    // The host's own count is believed in any case.
+    replica.hear({replica.motion(), to_nanoseconds(0.4), 0.7});
+    replica.advance(nobody, kTick, to_nanoseconds(0.501));
+    EXPECT_EQ(replica.work_heard(), 0.7);
+  }
 }
 
 TEST(Replica, TakesTheHostsWordOverByItsTimeConstant) {

@@ -69,7 +69,7 @@ void BodyReplica::restart(const RigidMotion& motion) noexcept {
   has_word_ = loaded_ = false;
   load_ = heard_ = FluidLoad{};
   std::fill(ledgers_.begin(), ledgers_.end(), Ledger{});
-  excess_ = work_ = 0.0;
+  excess_ = work_ = work_heard_ = stored_ = 0.0;
   started_ = true;
 }
 
@@ -89,7 +89,12 @@ void BodyReplica::compare(std::int64_t now_ns) noexcept {
   if (!has_word_ || word_.ack_ns > now_ns) return;
   has_word_ = false;
   RigidMotion then;
-  if (history_.at(word_.ack_ns, then)) pending_ = difference(word_.motion, then);
+  double work = 0.0;
+  if (!history_.at(word_.ack_ns, then, work)) return;
+  pending_ = difference(word_.motion, then);
+  work_heard_ = word_.work;
+  work_ += word_.work - work;
+  history_.correct_work(word_.work - work);
 }
 
 void BodyReplica::set_load(const FluidLoad& load) noexcept {
@@ -226,21 +231,30 @@ void BodyReplica::settle(const std::vector<ReplicaHand>& hands, double dt) noexc
       debtor = &ledger;
     }
   }
+  const double unbelieved = (1.0 - believed_) * (work_ - work_heard_);
+  if (unbelieved > worst) {
+    work_ -= take(unbelieved);
+    return;
+  }
   if (debtor == nullptr) return;
-  const Matrix6 mass = mass_matrix();
+  const double taken = take(worst);
+  debtor->given -= taken;
+  excess_ = worst - taken;
+}
+
+/// Takes `energy` J, but no more than a share of the kinetic energy, out of the motion; returns what was
+/// taken.
+double BodyReplica::take(double energy) noexcept {
   const Vector6 v = six(now_.twist.linear, now_.twist.angular);
-  const Vector6 p = product(mass, v);
+  const Vector6 p = product(mass_matrix(), v);
   double kinetic = 0.0;
   for (std::size_t i = 0; i < 6; ++i) kinetic += 0.5 * v[i] * p[i];
-  if (kinetic > 0.0) {
-    const double take = std::min(worst, tuning_.most_taken * kinetic);
-    const double keep = std::sqrt(1.0 - take / kinetic);
-    now_.twist.linear *= keep;
-    now_.twist.angular *= keep;
-    debtor->given -= take;
-    worst -= take;
-  }
-  excess_ = worst;
+  if (!(kinetic > 0.0)) return 0.0;
+  const double taken = std::min(energy, tuning_.most_taken * kinetic);
+  const double keep = std::sqrt(1.0 - taken / kinetic);
+  now_.twist.linear *= keep;
+  now_.twist.angular *= keep;
+  return taken;
 }
 
 void BodyReplica::advance(const std::vector<ReplicaHand>& hands, double dt, std::int64_t now_ns,
@@ -305,7 +319,7 @@ void BodyReplica::advance(const std::vector<ReplicaHand>& hands, double dt, std:
   now_.position += dt * now_.twist.linear;
   now_.orientation = rotate_by(now_.orientation, dt * now_.twist.angular);
 
-  history_.note(now_ns, now_);
+  history_.note(now_ns, now_, work_);
   compare(now_ns);
   const double share = 1.0 - std::exp(-dt / time_constant());
   const MotionError by = scaled(pending_, share);
@@ -317,6 +331,24 @@ void BodyReplica::advance(const std::vector<ReplicaHand>& hands, double dt, std:
   now_ = moved(now_, by);
   history_.correct(by);
   settle(hands, dt);
+  sum_up(hands);
+}
+
+void BodyReplica::sum_up(const std::vector<ReplicaHand>& hands) noexcept {
+  const Vector6 v = six(now_.twist.linear, now_.twist.angular);
+  const Vector6 p = product(mass_matrix(), v);
+  stored_ = 0.0;
+  for (std::size_t i = 0; i < 6; ++i) stored_ += 0.5 * v[i] * p[i];
+  for (std::size_t g = 0; g < grips_.size() && g < hands.size(); ++g) {
+    const ReplicaHand& hand = hands[g];
+    if (!hand.engaged) continue;
+    const GripState at = grip(g);
+    const glm::dvec3 off = hand.handle.position - at.pose.position;
+    const glm::dvec3 turn = rotation_between(at.pose.orientation, hand.handle.orientation);
+    const CouplingGains& k = grips_[g].gains;
+    stored_ += 0.5 * (hand.own ? 1.0 : soft_) * k.stiffness * glm::dot(off, off) +
+               0.5 * (hand.own ? 1.0 : rotational_soft_) * k.rotational_stiffness * glm::dot(turn, turn);
+  }
 }
 
 }  // namespace slosh

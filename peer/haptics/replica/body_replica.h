@@ -39,6 +39,7 @@ struct ReplicaHand {
 struct HostMotion {
   RigidMotion motion;
   std::int64_t ack_ns = 0;  ///< when the newest of our readings that it follows was read; 0 = none
+  double work = 0.0;        ///< J that what acts besides couplings put into the body there (LoadWork)
 };
 
 /// Constants of the scheme.
@@ -85,8 +86,22 @@ class BodyReplica {
   double shared() const noexcept { return shared_; }
   /// J that the hands of other sites gave here beyond what their persons put in, worst of them.
   double excess() const noexcept { return excess_; }
-  /// J that the load put into the body since restart().
+  /// J that the load put into the body since restart(): the host's count as far as that is heard, and from
+  /// there on what it gave here.
   double work() const noexcept { return work_; }
+  double work_heard() const noexcept { return work_heard_; }  ///< J: of that the host's count alone
+  /// Share, 0–1, of what the load gives here since the host's word that is believed; the rest is taken out of
+  /// the motion.
+  void believe_load(double share) noexcept { believed_ = share; }
+  /// J of the load's work that is believed; of what came since the host's word the own hands' part alone, as
+  /// nobody knows yet what the others did about theirs.
+  double work_believed() const noexcept {
+    const double since = (1.0 - shared_) * (work_ - work_heard_);
+    return work_heard_ + (since > 0.0 ? believed_ * since : since);
+  }
+  /// J that the body's motion and its couplings hold, those of other sites as soft as they are here. As of
+  /// the last advance().
+  double stored() const noexcept { return stored_; }
 
  private:
   Matrix6 mass_matrix() const noexcept;
@@ -95,6 +110,8 @@ class BodyReplica {
   void soften(const std::vector<ReplicaHand>& hands) noexcept;
   void share_out(const std::vector<ReplicaHand>& hands, Vector6& load) const noexcept;
   void settle(const std::vector<ReplicaHand>& hands, double dt) noexcept;
+  double take(double energy) noexcept;
+  void sum_up(const std::vector<ReplicaHand>& hands) noexcept;
 
   ReplicaBody body_;
   std::vector<ReplicaGrip> grips_;
@@ -119,6 +136,9 @@ class BodyReplica {
   double shared_ = 0.0;  // of all stiffness, what hands of other sites have
   double excess_ = 0.0;
   double work_ = 0.0;
+  double work_heard_ = 0.0;
+  double believed_ = 1.0;
+  double stored_ = 0.0;
   bool started_ = false;
 };
 

@@ -26,6 +26,14 @@ constexpr double kUnrest = 15.0;
 constexpr double kUnrestMemory = 5.0;
 /// J: where nobody counts for another hand, nothing that comes out is too much.
 constexpr double kUncounted = 1e9;
+/// J by which the balance may be more than the replica holds, and s, or round trips if that is longer, over
+/// which what is beyond is forgotten: dampers used it up. Until then it may be on its way to another hand.
+constexpr double kKept = 2e-3;
+constexpr double kForesees = 2.0;
+constexpr double kDoubt = 3.0;
+constexpr double kForgets = 1.0;
+constexpr double kForgetsRoundTrips = 4.0;
+constexpr double kForgives = 1.0;  // s, in which a debt that others made is let go of
 
 }  // namespace
 
@@ -34,7 +42,8 @@ HeldBody::HeldBody(const ReplicaBody& body, std::vector<ReplicaGrip> grips, cons
       replica_(body, grips, tuning),
       hands_(grips.size()),
       speeds_(grips.size()),
-      guards_(grips.size()) {
+      guards_(grips.size()),
+      load_work_(body, grips) {
   for (const ReplicaGrip& grip : grips) {
     grips_.push_back(grip.pose);
     gains_.push_back(grip.gains);
@@ -44,10 +53,11 @@ HeldBody::HeldBody(const ReplicaBody& body, std::vector<ReplicaGrip> grips, cons
 void HeldBody::restart() noexcept {
   started_ = false;
   delay_.restart();
+  load_work_.restart();
   fluid_ = FluidLoad{};
   for (ReplicaHand& hand : hands_) hand.engaged = false;
   for (VelocityWindow& speed : speeds_) speed.forget();
-  firing_ = calm_ = unrest_ = 0.0;
+  firing_ = calm_ = unrest_ = doubt_ = calm_load_ = 0.0;
   fallen_back_ = false;
   spring_ = 0.0;
 }
@@ -85,6 +95,7 @@ void HeldBody::hear(const HostWord& word) noexcept {
   load.reference = {word.motion.position, word.motion.orientation};
   load.twist = word.motion.twist;
   load.wrench = rest_of(word);
+  load_work_.hear(word);
   heard_time_ = word.time;
   heard_ = word.motion;
   heard_ns_ = word.now_ns;
@@ -120,7 +131,7 @@ void HeldBody::hear(const HostWord& word) noexcept {
   if (ack_ns == 0) return;
   delay_.note(to_seconds(word.now_ns - ack_ns), elapsed);
   replica_.set_delay(delay_.delay());
-  replica_.hear({word.motion, ack_ns});
+  replica_.hear({word.motion, ack_ns, load_work_.work()});
 }
 
 /// What acts changes by more than is told of it: a table that is met, a fluid that nobody models. That
@@ -131,11 +142,17 @@ void HeldBody::note_unrest(const FluidLoad& load, double elapsed) noexcept {
   const double now = std::min(glm::length(off) / kUnrest, 1.0);
   const double forget = 1.0 - std::exp(-std::clamp(elapsed, 0.0, 1.0) / kUnrestMemory);
   unrest_ = now > unrest_ ? now : unrest_ + forget * (now - unrest_);
+  const double doubt = std::min(glm::length(off) / kDoubt, 1.0);
+  doubt_ = doubt > doubt_ ? doubt : doubt_ + forget * (doubt - doubt_);
+  calm_load_ += elapsed;
+  // A weight that is carried down gives; one that rests on something does not.
+  replica_.believe_load(std::clamp(calm_load_ / kForesees, 0.0, 1.0) * (1.0 - doubt_));
 }
 
-/// Springs that are stretched already when this begins have energy to give.
+/// A body that moves and springs that are stretched already when this begins have energy to give.
 void HeldBody::begin_count(const HostWord& word) noexcept {
-  stored_ = 0.0;
+  stored_ = load_work_.kinetic();
+  forgotten_ = 0.0;
   for (std::size_t g = 0; g < hands_.size(); ++g) {
     stored_ -= hands_[g].own ? guards_[g].energy() : hands_[g].energy;
     if (g >= word.hands.size()) continue;
@@ -162,10 +179,7 @@ GripState HeldBody::grip(std::size_t g) const noexcept {
 
 Wrench HeldBody::guard(std::size_t g, const Wrench& wanted, const Pose& hand, const Twist& twist, double dt,
                        double most_damping) noexcept {
-  double credit = stored_ + replica_.work() + (counted_ ? 0.0 : kUncounted);
-  for (std::size_t j = 0; j < hands_.size(); ++j) {
-    if (j != g) credit += hands_[j].own ? guards_[j].energy() : hands_[j].energy;
-  }
+  const double credit = balance() - guards_[g].energy() + (counted_ ? 0.0 : kUncounted);
   // What others hold is felt across the delay; alone on the body nothing is.
   const double share = std::max({replica_.shared(), unrest_, spring_});
   const double damping = std::min(share * replica_.damping(g), most_damping);
@@ -174,6 +188,27 @@ Wrench HeldBody::guard(std::size_t g, const Wrench& wanted, const Pose& hand, co
   const Wrench safe = guards_[g].guard(damped, hand, twist, dt, credit, most_damping);
   fires_ = fires_ || guards_[g].fires();
   return safe;
+}
+
+double HeldBody::balance() const noexcept {
+  double sum = stored_ + replica_.work_believed() - forgotten_;
+  for (std::size_t j = 0; j < hands_.size(); ++j)
+    sum += hands_[j].own ? guards_[j].energy() : hands_[j].energy;
+  return sum;
+}
+
+/// What was put in and is held nowhere went into dampers: it does not come out again, or a body that bounces
+/// would live for long on what it took to bring it there.
+void HeldBody::forget_surplus(double dt) noexcept {
+  const double balance_now = balance();
+  const double surplus = balance_now - replica_.stored() - kKept;
+  if (surplus > 0.0) {
+    const double time = std::max(kForgets, kForgetsRoundTrips * delay_.delay().round_trip);
+    forgotten_ += surplus * (1.0 - std::exp(-dt / time));
+  }
+  // Others took what was forgotten too early: no hand is to carry on without force for that.
+  const double debt = -balance_now - PassivityController::kSlack;
+  if (debt > 0.0) forgotten_ -= debt * (1.0 - std::exp(-dt / kForgives));
 }
 
 /// A guard that fires all the time says that the replica is wrong about the body.
@@ -211,6 +246,7 @@ void HeldBody::advance(std::span<const OwnHand> own, double dt, std::int64_t now
   since_heard_ += dt;
   const double trust = std::clamp(1.0 - (since_heard_ - kLoadHolds) / kLoadFades, 0.0, 1.0);
   replica_.advance(hands_, dt, now_ns, trust);
+  forget_surplus(dt);
   watch(dt);
 }
 

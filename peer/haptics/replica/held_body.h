@@ -7,28 +7,11 @@
 
 #include "peer/haptics/devices/velocity_window.h"
 #include "peer/haptics/replica/body_replica.h"
+#include "peer/haptics/replica/host_word.h"
+#include "peer/haptics/replica/load_work.h"
 #include "peer/haptics/replica/passivity_controller.h"
 
 namespace slosh {
-
-/// What the host says of one grip of the body.
-struct HostHand {
-  bool engaged = false;
-  Pose handle;              ///< as the step used it
-  Wrench on_hand;           ///< that the step put on it, about the handle
-  std::int64_t ack_ns = 0;  ///< of our own: when the reading that the state follows was read, and so much
-                            ///< later as the step carried it on; 0 = none
-  bool counted = false;     ///< somebody counts for it …
-  double energy = 0.0;      ///< … the J that its person put in
-};
-
-/// The host's word on the body after one step, as soon as it comes.
-struct HostWord {
-  std::int64_t now_ns = 0;  ///< when it came
-  double time = 0.0;        ///< s, the body's time that the state belongs to
-  RigidMotion motion;
-  std::span<const HostHand> hands;  ///< one a grip of the body
-};
 
 /// One own hand in one tick.
 struct OwnHand {
@@ -76,6 +59,9 @@ class HeldBody {
 
   /// J that the person at own grip `g` put in.
   double energy(std::size_t g) const noexcept { return guards_[g].energy(); }
+  /// J that may still come out at the own hands: what all persons put in and what acts besides gave the body
+  /// at the host, less what dampers used up.
+  double balance() const noexcept;
   LoopDelay delay() const noexcept { return delay_.delay(); }
   const BodyReplica& replica() const noexcept { return replica_; }
   /// The guards have fired so often that the replica is not followed: a damped spring to the host's word is.
@@ -84,6 +70,7 @@ class HeldBody {
 
  private:
   void watch(double dt) noexcept;
+  void forget_surplus(double dt) noexcept;
   void begin_count(const HostWord& word) noexcept;
   void note_unrest(const FluidLoad& load, double elapsed) noexcept;
   /// What acts on the body besides couplings and the fluid's answer to its acceleration: fluid, weight,
@@ -105,13 +92,17 @@ class HeldBody {
   std::int64_t heard_ns_ = 0;
   double since_heard_ = 0.0;  // s
   bool started_ = false;
-  double unrest_ = 0.0;  // 0–1
-  bool fires_ = false;   // in this tick
-  double firing_ = 0.0;  // share of ticks lately
-  double calm_ = 0.0;    // s since a guard fired
+  double unrest_ = 0.0;     // 0–1
+  double doubt_ = 0.0;      // 0–1
+  double calm_load_ = 0.0;  // s since this began or something acted that was not foreseen
+  bool fires_ = false;      // in this tick
+  double firing_ = 0.0;     // share of ticks lately
+  double calm_ = 0.0;       // s since a guard fired
   bool fallen_back_ = false;
   double spring_ = 0.0;  // share of the damped spring, 0–1
-  double stored_ = 0.0;  // J in the couplings when this began, less what had been counted by then
+  LoadWork load_work_;
+  double stored_ = 0.0;     // J in the couplings when this began, less what had been counted by then
+  double forgotten_ = 0.0;  // J of the balance that nothing here holds any more
   std::uint64_t fired_ = 0;
 };
 

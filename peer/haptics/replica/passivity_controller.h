@@ -1,8 +1,8 @@
-// The energy that a person puts in at a device, and a damper that acts when more would come out than there
-// is.
+// The energy that a person puts in at a device, and no more force than what is left of it covers.
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "sim/math/pose.h"
 
@@ -17,6 +17,8 @@ class PassivityController {
   static constexpr double kSlack = 5e-4;
   /// m: a turning hand counts as one that moves on a circle of this radius.
   static constexpr double kArm = 0.1;
+  /// kg that a hand on a device moves at least: with less, a tick's force gives more than it is counted for.
+  static constexpr double kLeastMass = 0.3;
 
   /// Nothing was sent yet; the hand is here. What was counted stays: others have it.
   void restart(const Pose& hand) noexcept {
@@ -24,9 +26,10 @@ class PassivityController {
     before_ = hand;
   }
 
-  /// Counts what was sent until now, and gives the wrench for the hand: `wanted`, and a damper on `twist`
-  /// where `credit` (J that others, weight and fluid put in) and what this person put in do not cover what
-  /// came out. `most`: N·s/m that the device holds. `dt` s > 0 to the next sending.
+  /// Counts what was sent until now, and gives the wrench for the hand: of `wanted` what `credit` (J that
+  /// others, weight and fluid put in) and this person's own energy cover until the next sending, and where
+  /// more came out than there was a damper on `twist` of at most `most` N·s/m, what the device holds. `dt` s
+  /// > 0 to the next sending.
   Wrench guard(const Wrench& wanted, const Pose& hand, const Twist& twist, double dt, double credit,
                double most) noexcept {
     energy_ -= glm::dot(sent_.force, hand.position - before_.position) +
@@ -34,17 +37,26 @@ class PassivityController {
     before_ = hand;
     fires_ = false;
     const double left = energy_ + credit + kSlack;
-    // What this wrench is about to give counts too: so that the balance does not first go wrong.
+    // What it is about to give: over the hand's way at its speed, and over what the force itself adds to that
+    // way. So a hand that stands is not pushed off for a tick, each tick.
+    const double turned = kArm * kArm;
     const double gives = dt * (glm::dot(wanted.force, twist.linear) + glm::dot(wanted.torque, twist.angular));
-    const double pace =
-        glm::dot(twist.linear, twist.linear) + kArm * kArm * glm::dot(twist.angular, twist.angular);
-    if (gives <= left || gives <= 0.0 || pace <= 0.0) return wanted;
+    const double pushes =
+        0.5 * dt * dt / kLeastMass *
+        (glm::dot(wanted.force, wanted.force) + glm::dot(wanted.torque, wanted.torque) / turned);
+    if (gives + pushes <= left || !(pushes > 0.0)) return wanted;
     fires_ = true;
-    // As much as takes away what is too much of it, never harder than the force itself; and what is owed from
-    // before by a damper that the device holds.
-    const double damping =
-        (gives - std::max(left, 0.0)) / (dt * pace) + std::min(std::max(-left, 0.0) / (dt * pace), most);
-    return {wanted.force - damping * twist.linear, wanted.torque - kArm * kArm * damping * twist.angular};
+    // The most of it that is covered; what takes energy in from the hand, as much as takes in the most.
+    double share = std::min(-0.5 * gives / pushes, 1.0);
+    if (left > 0.0)
+      share = std::min((std::sqrt(gives * gives + 4.0 * pushes * left) - gives) / (2.0 * pushes), 1.0);
+    const Wrench covered = share > 0.0 ? Wrench{share * wanted.force, share * wanted.torque} : Wrench{};
+    // What is owed from before, by a damper that the device holds.
+    const double pace =
+        glm::dot(twist.linear, twist.linear) + turned * glm::dot(twist.angular, twist.angular);
+    const double owed = std::max(-left, 0.0);
+    const double damping = gives > 0.0 && pace > 0.0 ? std::min(owed / (dt * pace), most) : 0.0;
+    return {covered.force - damping * twist.linear, covered.torque - turned * damping * twist.angular};
   }
   /// What the device was really sent.
   void sent(const Wrench& wrench) noexcept { sent_ = wrench; }

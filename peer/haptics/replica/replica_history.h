@@ -48,12 +48,15 @@ class ReplicaHistory {
   void forget() {
     count_ = 0;
     corrected_ = MotionError{};
+    work_corrected_ = 0.0;
   }
-  void note(std::int64_t stamp_ns, const RigidMotion& motion) {
+  /// `work`: J that what acts besides couplings put in by then.
+  void note(std::int64_t stamp_ns, const RigidMotion& motion, double work = 0.0) {
     newest_ = (newest_ + 1) % entries_.size();
     if (count_ < entries_.size()) count_ += 1;
-    entries_[newest_] = {stamp_ns, motion, corrected_};
+    entries_[newest_] = {stamp_ns, motion, corrected_, work - work_corrected_};
   }
+  void correct_work(double by) { work_corrected_ += by; }
   void correct(const MotionError& by) {
     corrected_.position += by.position;
     corrected_.turn += by.turn;  // small: their order does not matter
@@ -63,9 +66,14 @@ class ReplicaHistory {
   /// The motion at `stamp_ns`, between the two entries around it, as corrected by now. False when that is
   /// older than all that is known.
   bool at(std::int64_t stamp_ns, RigidMotion& out) const {
+    double work = 0.0;
+    return at(stamp_ns, out, work);
+  }
+  bool at(std::int64_t stamp_ns, RigidMotion& out, double& work) const {
     if (count_ == 0) return false;
     if (stamp_ns >= entry(0).stamp_ns) {
       out = now(entry(0));
+      work = entry(0).work + work_corrected_;
       return true;
     }
     std::size_t low = 0, high = count_;  // entry(low) is younger than the stamp
@@ -78,6 +86,7 @@ class ReplicaHistory {
     const auto apart = static_cast<double>(entry(low).stamp_ns - entry(high).stamp_ns);
     const double share = static_cast<double>(stamp_ns - entry(high).stamp_ns) / apart;
     out = moved(older, scaled(difference(younger, older), share));
+    work = entry(high).work + share * (entry(low).work - entry(high).work) + work_corrected_;
     return true;
   }
 
@@ -86,6 +95,7 @@ class ReplicaHistory {
     std::int64_t stamp_ns = 0;
     RigidMotion motion;
     MotionError corrected;  // before it was noted
+    double work = 0.0;      // less what it had been corrected by
   };
   const Entry& entry(std::size_t back) const {
     return entries_[(newest_ + entries_.size() - back) % entries_.size()];
@@ -101,6 +111,7 @@ class ReplicaHistory {
   std::size_t newest_ = 0;
   std::size_t count_ = 0;
   MotionError corrected_;
+  double work_corrected_ = 0.0;
 };
 
 }  // namespace slosh

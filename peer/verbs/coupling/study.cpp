@@ -185,7 +185,8 @@ class Study {
       put_in += sites_[g]->put_in;
     }
     if (perfect_ && i > 0) step_host();
-    run_.generated = std::max(run_.generated, -put_in);
+    // What a weight gave by sinking is nobody's making.
+    run_.generated = std::max(run_.generated, -put_in - std::max(host_.given(), 0.0));
   }
 
   void read(Site& site) {
@@ -280,7 +281,7 @@ class Study {
       if (j == g && hand.stamp >= 0.0) said_[j].ack_ns = to_nanoseconds(hand.stamp + time_step_) + 1;
     }
     if (c_.load == Load::kFluid) site.held->set_fluid(site.state.load);
-    site.held->hear({to_nanoseconds(now_) + 1, site.state.stamp, site.state.motion, said_});
+    site.held->hear({to_nanoseconds(now_) + 1, site.state.stamp, time_step_, site.state.motion, said_});
   }
 
   Verdict verdict() {

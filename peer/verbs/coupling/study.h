@@ -49,7 +49,8 @@ enum class Verdict {
 
 struct Outcome {
   Verdict verdict = Verdict::kStable;
-  double generated = 0.0;    ///< J that came out beyond what all persons had put in, the most at any moment
+  double generated = 0.0;    ///< J that came out beyond what all persons and a sinking weight had put in, the
+                             ///< most at any moment
   double peak = 0.0;         ///< N, largest force on a hand
   double swing = 0.0;        ///< m/s, rms over all hands in the last second
   double fired = 0.0;        ///< share of ticks in which a site's guard acted

@@ -72,10 +72,13 @@ void VirtualHost::step(const std::vector<HandWord>& hands) {
     c.arm = c.grip_pose.position - body_.position;
   }
   const Wrench acting = external();
-  const glm::dvec3 before = body_.velocity;
+  const glm::dvec3 before = body_.velocity, place = body_.position;
+  const glm::dquat axes = body_.orientation;
   BodySolve solve;
   if (!solve_body(body_, acting, couplings, dt_, solve)) return;
   advance_body(body_, solve, dt_);
+  given_ += glm::dot(acting.force, body_.position - place) +
+            glm::dot(acting.torque, rotation_between(axes, body_.orientation));
   for (const ActiveCoupling& c : couplings) {
     const Wrench on_body = coupling_wrench(c, solve, dt_);
     on_hand_[static_cast<std::size_t>(c.grip)] = {-on_body.force, -on_body.torque};

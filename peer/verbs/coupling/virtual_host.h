@@ -32,6 +32,8 @@ class VirtualHost {
   const RigidBody& body() const { return body_; }
   const std::vector<Wrench>& on_hand() const { return on_hand_; }  ///< of the last step
   const FluidLoad& load() const { return load_; }
+  /// J that the load gave the body so far; a weight that sinks gives.
+  double given() const { return given_; }
 
  private:
   Wrench external();
@@ -43,6 +45,7 @@ class VirtualHost {
   std::vector<Pose> grips_;
   std::vector<Wrench> on_hand_;
   FluidLoad load_;
+  double given_ = 0.0;
   glm::dvec3 fluid_place_{0.0};
   glm::dvec3 fluid_velocity_{0.0};
 };
