@@ -5,6 +5,11 @@
 #include <cstdio>
 
 namespace slosh {
+namespace {
+
+constexpr double kLongestEngagement = 60.0;  // s
+
+}  // namespace
 
 Result<bool> check_limits(const DeviceLimits& limits, const std::string& device) {
   struct Field {
@@ -19,7 +24,9 @@ Result<bool> check_limits(const DeviceLimits& limits, const std::string& device)
                           {"max_damping", limits.max_damping},
                           {"max_rotational_stiffness", limits.max_rotational_stiffness},
                           {"max_rotational_damping", limits.max_rotational_damping},
-                          {"workspace_radius", limits.workspace_radius}};
+                          {"workspace_radius", limits.workspace_radius},
+                          {"max_force_jerk", limits.max_force_jerk},
+                          {"max_torque_jerk", limits.max_torque_jerk}};
   const std::string where = "device '" + device + "'";
   constexpr const char* kMend =
       "Its driver must state what the device can hold; without that it gets no force";
@@ -27,6 +34,12 @@ Result<bool> check_limits(const DeviceLimits& limits, const std::string& device)
     if (std::isfinite(field.value) && field.value > 0.0) continue;
     char what[120];
     std::snprintf(what, sizeof what, "its limit %s is %g, and not a number above 0", field.name, field.value);
+    return Error{where, what, kMend};
+  }
+  if (!(limits.engagement_time >= 0.0 && limits.engagement_time <= kLongestEngagement)) {
+    char what[120];
+    std::snprintf(what, sizeof what, "its engagement_time is %g, and not 0 to %g s", limits.engagement_time,
+                  kLongestEngagement);
     return Error{where, what, kMend};
   }
   const glm::dvec3& c = limits.workspace_center;
@@ -45,6 +58,8 @@ DeviceLimits limits_without_a_hand() {
   limits.max_rotational_stiffness = 1e4;
   limits.max_rotational_damping = 1e3;
   limits.workspace_radius = 1e6;
+  limits.max_force_jerk = limits.max_torque_jerk = 1e12;
+  limits.engagement_time = 0.0;
   return limits;
 }
 

@@ -12,7 +12,8 @@ namespace slosh {
 
 /// What a device can take and hold, by its data sheet. Every number > 0 and finite: a field that a driver
 /// forgets is 0 and the device is refused, never driven with a guess. A device that gives no torque says what
-/// its sheet would allow and passes over what it is sent.
+/// its sheet would allow and passes over what it is sent. No sheet states the last three: they are about the
+/// hand, and have defaults.
 struct DeviceLimits {
   double max_force = 0.0;                 ///< N
   double max_torque = 0.0;                ///< N·m
@@ -24,6 +25,12 @@ struct DeviceLimits {
   double max_rotational_damping = 0.0;    ///< N·m·s/rad
   glm::dvec3 workspace_center{0.0};       ///< m, world, finite
   double workspace_radius = 0.0;          ///< m: handles farther from the centre are taken to be at this edge
+  /// N/s²: how fast the rate of the force may change. The default lets a force begin by 0.2 N in its first
+  /// millisecond and reach 1000 N/s after five, and passes 5 N at 30 Hz as it is.
+  double max_force_jerk = 2.0e5;
+  double max_torque_jerk = 4.0e3;  ///< N·m/s²: the same for a handle of 0.02 m
+  /// s, ≥ 0: over which a hand gets force that had none (FeltHand); 0 for what nobody feels.
+  double engagement_time = 2.0;
 };
 
 /// Errors: a number that is not finite or not above 0, with its name; `device` is for the message.

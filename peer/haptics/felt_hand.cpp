@@ -37,10 +37,14 @@ Wrench FeltHand::couple(const WorldBelief& world, const DeviceReport& hand, cons
     engagement_ = Engagement{};
     jumps_ = true;
   }
+  // Who takes hold begins without force; a silence took as much of it as it lasted.
+  const bool begins = world.anew || now.leapt || (hand.engaged && !held_on_);
+  held_on_ = hand.engaged;
+  if (gentle_ && begins) share_ = 0.0;
   hold_anew_ = believed < 1.0;
   believed_ = believed;
   // What comes back after a gap comes back as gently as it went.
-  share_ = std::min(believed, share_ + now.period / kFadeStale);
+  share_ = std::min(believed, share_ + now.period / rise_);
 
   held_ = engagement_.update(hand.engaged, now.time, hand.pose, hand.twist, gains_, grip, now.shared);
   const Wrench full = gives_way_
@@ -50,10 +54,13 @@ Wrench FeltHand::couple(const WorldBelief& world, const DeviceReport& hand, cons
   return {felt * full.force, felt * full.torque};
 }
 
-ForceLimiter::Outcome FeltHand::finish(Wrench wanted, const Moment& now) noexcept {
+ForceLimiter::Outcome FeltHand::finish(Wrench wanted, const Twist& twist, const Moment& now) noexcept {
   if (is_finite(wanted)) {
     wanted = capped(wanted, current_);
-    wanted = {share_ * wanted.force, share_ * wanted.torque};
+    const double share = gentle_ ? share_ * share_ * (3.0 - 2.0 * share_) : share_;
+    const double damped = engagement_.engaged() ? believed_ * (1.0 - share) : 0.0;
+    wanted = {share * wanted.force - damped * damping_ * twist.linear,
+              share * wanted.torque - damped * rotational_damping_ * twist.angular};
     if (jumps_) {
       bridge_ = {last_.force - wanted.force, last_.torque - wanted.torque};
       left_ = 1.0;

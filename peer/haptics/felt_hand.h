@@ -1,6 +1,8 @@
 // What one hand feels: the coupling to its grip, and nothing that only the link or a pause would add.
 #pragma once
 
+#include <algorithm>
+
 #include "net/engagement.h"
 #include "peer/haptics/device.h"
 #include "peer/haptics/force_limiter.h"
@@ -15,8 +17,11 @@ namespace slosh {
 /// grows by them.
 ///  - While words are late the force is at most what it was with the last that was in time, and it fades as
 ///    freshness() has it.
-///  - Whoever was not heard for a moment takes hold anew (net/engagement.h), and the force comes back over
-///    kFadeStale.
+///  - A hand that had no force gets it over DeviceLimits::engagement_time: with a new device, after a pause,
+///  a
+///    reset or a silence, when it takes hold again, when it suddenly is elsewhere. A silence that took a part
+///    of the force takes as large a part of that time. Meanwhile its own motion is damped. Where nobody feels
+///    it, what a silence took comes back over kFadeStale.
 ///  - Where the force would jump all the same, because the world stopped or the hand's hold is another one,
 ///  the
 ///    difference is worked off over kBridge.
@@ -34,6 +39,12 @@ class FeltHand {
     *this = FeltHand(gains);
     limiter_ = ForceLimiter(limits);
     gives_way_ = gives_way;
+    if (!gives_way || limits.engagement_time <= 0.0) return;
+    rise_ = limits.engagement_time;
+    gentle_ = true;
+    share_ = 0.0;
+    damping_ = 0.5 * std::min(limits.max_damping, kMostRampDamping);
+    rotational_damping_ = 0.5 * std::min(limits.max_rotational_damping, kMostRampTurning);
   }
 
   struct Moment {
@@ -54,7 +65,7 @@ class FeltHand {
   ForceLimiter::Outcome feel(const WorldBelief& world, const DeviceReport& hand, const GripState& grip,
                              const Moment& now, Guard&& guard) noexcept {
     const Wrench wanted = couple(world, hand, grip, now);
-    return finish(guard(wanted), now);
+    return finish(guard(wanted), hand.twist, now);
   }
 
   /// The hand as its coupling used it in the last feel(), and whether it held on.
@@ -65,13 +76,16 @@ class FeltHand {
   /// last feel(); false for a hand that gives way, one that does not hold on, and where a limit acted.
   bool follows_world() const { return follows_world_; }
 
+  /// N·s/m and N·m·s/rad, twice the most that damps a hand that is about to get force.
+  static constexpr double kMostRampDamping = 10.0;
+  static constexpr double kMostRampTurning = 0.02;
   /// s over which a jump is worked off: a hand of 15 N is let go of at 150 N/s.
   static constexpr double kBridge = 0.1;
 
  private:
   Wrench couple(const WorldBelief& world, const DeviceReport& hand, const GripState& grip,
                 const Moment& now) noexcept;
-  ForceLimiter::Outcome finish(Wrench wanted, const Moment& now) noexcept;
+  ForceLimiter::Outcome finish(Wrench wanted, const Twist& twist, const Moment& now) noexcept;
   Wrench capped(const Wrench& full, bool current) noexcept;
 
   CouplingGains gains_;
@@ -81,9 +95,14 @@ class FeltHand {
   bool jumps_ = false;  // in this call
   bool gives_way_ = true;
   bool follows_world_ = false;
+  bool gentle_ = false;       // a hand feels it
+  double rise_ = kFadeStale;  // s from no force to all of it
+  double damping_ = 0.0;      // of a hand that gets it
+  double rotational_damping_ = 0.0;
   double share_ = 1.0;
   double believed_ = 1.0;    // at the call before
   bool hold_anew_ = false;   // words had stopped
+  bool held_on_ = false;     // the hand, at the call before
   bool current_ = true;      // the world was, at the call before
   double most_force_ = 0.0;  // N, with the last state that was in time
   double most_torque_ = 0.0;

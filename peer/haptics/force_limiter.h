@@ -1,6 +1,7 @@
-// The last guard before a device: magnitude and rate of the wrench within what the device takes.
+// The last guard before a device: magnitude, rate and jerk of the wrench within what device and hand take.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "peer/haptics/device_limits.h"
@@ -16,14 +17,16 @@ inline glm::dvec3 limit_length(const glm::dvec3& v, double longest, bool& limite
   return v * (longest / length);
 }
 
-/// One device's limiter. Directions are kept; a non-finite wrench becomes zero.
+/// One device's limiter. What is wanted within the limits passes as it is; beyond them the wrench follows as
+/// fast as they allow, and slows down in time to stop where it is wanted. A non-finite wrench becomes zero at
+/// once.
 class ForceLimiter {
  public:
   explicit ForceLimiter(const DeviceLimits& limits) : limits_(limits) {}
 
   struct Outcome {
     Wrench wrench;
-    bool limited = false;
+    bool limited = false;  ///< by size or rate; the jerk alone is not told
     bool non_finite = false;
   };
   /// `period` in s since the wrench before.
@@ -33,21 +36,55 @@ class ForceLimiter {
                        wanted.torque.z;
     if (!std::isfinite(sum)) {
       outcome.non_finite = true;
-      last_ = Wrench{};
+      last_ = rate_ = wanted_ = Wrench{};
       return outcome;
     }
     bool& cut = outcome.limited;
     const glm::dvec3 force = limit_length(wanted.force, limits_.max_force, cut);
     const glm::dvec3 torque = limit_length(wanted.torque, limits_.max_torque, cut);
-    last_.force += limit_length(force - last_.force, limits_.max_force_rate * period, cut);
-    last_.torque += limit_length(torque - last_.torque, limits_.max_torque_rate * period, cut);
+    follow(force, wanted_.force, last_.force, rate_.force, limits_.max_force_rate, limits_.max_force_jerk,
+           period, cut);
+    follow(torque, wanted_.torque, last_.torque, rate_.torque, limits_.max_torque_rate,
+           limits_.max_torque_jerk, period, cut);
+    bool over = false;  // by following a target that turned away
+    last_.force = limit_length(last_.force, limits_.max_force, over);
+    last_.torque = limit_length(last_.torque, limits_.max_torque, over);
     outcome.wrench = last_;
     return outcome;
   }
 
  private:
+  static void follow(const glm::dvec3& wanted, glm::dvec3& before, glm::dvec3& at, glm::dvec3& rate,
+                     double most_rate, double jerk, double period, bool& cut) noexcept {
+    // What is wanted moves by itself; what is left to catch up with is from before.
+    const glm::dvec3 moves = (wanted - before) / period;
+    const glm::dvec3 left = before - at;
+    before = wanted;
+    const double distance = glm::length(left);
+    // The rate from which it can still stop there: d = v²/2j + v·T/2.
+    const double half = 0.5 * jerk * period;
+    const double stops = 2.0 * jerk * distance / (std::sqrt(half * half + 2.0 * jerk * distance) + half);
+    const bool reaches = distance <= stops * period;
+    glm::dvec3 goal = (wanted - at) / period;
+    if (!reaches) goal = moves + left * (stops / distance);
+    bool fast = false;
+    goal = limit_length(goal, most_rate, fast);
+    cut = cut || fast;
+    const glm::dvec3 change = goal - rate;
+    const double jolt = glm::length(change);
+    if (jolt <= jerk * period) {
+      rate = goal;
+      at = reaches && !fast ? wanted : at + period * rate;
+    } else {
+      rate += change * (jerk * period / jolt);
+      at += period * rate;
+    }
+  }
+
   DeviceLimits limits_;
   Wrench last_;
+  Wrench rate_;    // a second, of the call before
+  Wrench wanted_;  // within the limits of size, at the call before
 };
 
 }  // namespace slosh

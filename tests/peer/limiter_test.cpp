@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "peer/haptics/force_limiter.h"
@@ -44,6 +46,34 @@ TEST(ForceLimiter, RisesAndFallsNoFasterThanItsRate) {
     last = outcome.wrench.force.x;
   }
   EXPECT_NEAR(limiter.limit({}, 0.001).wrench.force.x, 4.0, 1e-9);
+}
+
+/// Towards a force that stands, leaps or swings: no rate and no jerk beyond the limits, no way past what is
+/// wanted.
+TEST(ForceLimiter, TheRateChangesNoFasterThanTheJerk) {
+  DeviceLimits l = limits();
+  l.max_force_rate = 500.0;
+  l.max_force_jerk = 2e4;
+  ForceLimiter limiter(l);
+  constexpr double kPeriod = 0.001;
+  double last = 0.0, rate = 0.0, most = 0.0;
+  int reached = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const double wanted = i < 400 ? 8.0 : i < 600 ? -2.0 : 0.5 * std::sin(60.0 * kPeriod * i);
+    const double now = limiter.limit({{wanted, 0.0, 0.0}, {}}, kPeriod).wrench.force.x;
+    const double is = (now - last) / kPeriod;
+    EXPECT_LE(std::abs(is), 500.0 + 1e-6) << i;
+    EXPECT_LE(std::abs(is - rate), 20.0 + 1e-6) << i;
+    if (reached == 0 && now == 8.0) reached = i;
+    most = std::max(most, now);
+    last = now;
+    rate = is;
+    if (i >= 700) {
+      EXPECT_NEAR(now, wanted, 1e-9) << "what is gentle passes as it is";
+    }
+  }
+  EXPECT_LE(most, 8.0 + 1e-9);
+  EXPECT_NEAR(reached, 41, 3) << "16 ms at 500 N/s, 25 ms to get there and to stop";
 }
 
 TEST(ForceLimiter, NothingNonFiniteGetsThrough) {

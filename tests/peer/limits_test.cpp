@@ -42,7 +42,9 @@ TEST(DeviceLimits, ANumberThatIsMissingOrNoneIsRefusedWithItsName) {
         Field{"max_damping", &DeviceLimits::max_damping},
         Field{"max_rotational_stiffness", &DeviceLimits::max_rotational_stiffness},
         Field{"max_rotational_damping", &DeviceLimits::max_rotational_damping},
-        Field{"workspace_radius", &DeviceLimits::workspace_radius}}) {
+        Field{"workspace_radius", &DeviceLimits::workspace_radius},
+        Field{"max_force_jerk", &DeviceLimits::max_force_jerk},
+        Field{"max_torque_jerk", &DeviceLimits::max_torque_jerk}}) {
     for (const double bad :
          {0.0, -1.0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
       DeviceLimits l = touch();
@@ -57,6 +59,13 @@ TEST(DeviceLimits, ANumberThatIsMissingOrNoneIsRefusedWithItsName) {
   DeviceLimits l = touch();
   l.workspace_center.y = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(check_limits(l, "touch"));
+  for (const double bad : {-0.1, 61.0, std::numeric_limits<double>::quiet_NaN()}) {
+    l = touch();
+    l.engagement_time = bad;
+    const Result<bool> checked = check_limits(l, "touch");
+    ASSERT_FALSE(checked) << bad;
+    EXPECT_NE(checked.error().text().find("engagement_time"), std::string::npos) << checked.error().text();
+  }
 }
 
 TEST(DeviceLimits, AServoRefusesADeviceAtOnceAndKeepsWhatItHad) {
@@ -77,7 +86,8 @@ TEST(DeviceLimits, AHostsStiffnessIsClampedToWhatTheDeviceHolds) {
   DeviceLimits limits = touch();
   limits.max_force = 1e6;  // the gains, and not the last guard, are what holds here
   limits.max_torque = 1e6;
-  limits.max_force_rate = limits.max_torque_rate = 1e12;
+  limits.max_force_rate = limits.max_torque_rate = limits.max_force_jerk = limits.max_torque_jerk = 1e12;
+  limits.engagement_time = 0.0;
   for (const bool turns : {false, true}) {
     Scene scene = test::one_grip_scene();
     scene.grips[0].stiffness = 1e6;  // the most that a scene may ask for

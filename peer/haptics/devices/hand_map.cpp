@@ -131,6 +131,8 @@ DeviceLimits HandMap::to_world(const DeviceLimits& at_device) const {
   l.max_torque /= f;
   l.max_force_rate /= f;
   l.max_torque_rate /= f;
+  l.max_force_jerk /= f;
+  l.max_torque_jerk /= f;
   l.max_stiffness /= f * s;
   l.max_damping /= f * s;
   l.max_rotational_stiffness /= f;
