@@ -23,8 +23,8 @@ struct Inspection {
   std::optional<Scene> scene;     ///< where there is no error
 };
 
-/// Reads a file as load_scene does, but to its end: every object's first error, without those that only
-/// follow from another; and looks for what exports from Blender are known to lose (scenes/README.md lists
+/// Reads a file as load_scene does, but to its end: everything that is wrong with each object, without what only
+/// follows from another error; and looks for what exports from Blender are known to lose (scenes/README.md lists
 /// it). What it cannot see: a modifier that was not applied leaves no trace but a mesh that is open or
 /// coarse; a scene on its side is told by vessels that are open to where Blender's up went, or by a camera
 /// that lies.

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "net/text/nearest.h"
+
 namespace slosh::gltf {
 namespace {
 
@@ -37,7 +39,10 @@ std::string short_number(double value) {
 }
 
 void Extras::fail(const std::string& key, std::string what, std::string mend) {
-  if (!error_) error_ = Error{owner_ + ": extras." + key, std::move(what), std::move(mend)};
+  const std::string where = owner_ + ": extras." + key;
+  for (const Error& error : errors_)
+    if (error.where == where) return;
+  errors_.push_back({where, std::move(what), std::move(mend)});
 }
 
 const nlohmann::json* Extras::find(const char* key) {
@@ -123,19 +128,26 @@ const nlohmann::json* Extras::object(const char* key) {
   return nullptr;
 }
 
-std::optional<Error> Extras::error() const {
-  if (error_) return error_;
+std::vector<Error> Extras::errors() const {
+  std::vector<Error> all = errors_;
+  std::string list;
+  for (const std::string& known : known_) list += (list.empty() ? "" : ", ") + known;
   for (const auto& [key, value] : object_.items()) {
     if (key.empty() || key[0] == '_' || std::isupper(static_cast<unsigned char>(key[0]))) continue;
     if (std::find(std::begin(kExporterKeys), std::end(kExporterKeys), key) != std::end(kExporterKeys))
       continue;
     if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
-    std::string list;
-    for (const std::string& known : known_) list += (list.empty() ? "" : ", ") + known;
-    return Error{owner_ + ": extras." + key, "is not a property that is known here",
-                 "Use one of: " + list + "; or begin the name with _ to have it ignored"};
+    const std::string near = nearest_word(key, known_);
+    all.push_back({owner_ + ": extras." + key, "is not a property that is known here",
+                   (near.empty() ? "" : "Did you mean " + near + "? ") + "Use one of: " + list +
+                       "; or begin the name with _ to have it ignored"});
   }
-  return std::nullopt;
+  return all;
+}
+
+std::optional<Error> Extras::error() const {
+  const std::vector<Error> all = errors();
+  return all.empty() ? std::nullopt : std::optional(all.front());
 }
 
 }  // namespace slosh::gltf

@@ -23,9 +23,8 @@ inline constexpr Range kPositive{0.0, 1e9, true};
 inline constexpr Range kNotNegative{0.0, 1e9, false};
 inline constexpr Range kAnyNumber{-1e9, 1e9, false};
 
-/// Reads an `extras` object. A getter returns the fallback when the key is absent or wrong; the first thing
-/// wrong is kept, so a caller may read everything and ask once at the end. Every key asked for is a valid
-/// key.
+/// Reads an `extras` object. A getter returns the fallback when the key is absent or wrong; what is wrong is
+/// kept, so a caller may read everything and ask once at the end. Every key asked for is a valid key.
 class Extras {
  public:
   /// `owner` begins every error: "file: node 'x'". The object must outlive this.
@@ -41,11 +40,13 @@ class Extras {
   std::vector<double> numbers(const char* key, std::size_t count, Range each);  ///< empty when absent
   const nlohmann::json* object(const char* key);                                ///< nullptr when absent
 
-  /// Notes an error about `key` unless one is noted already.
+  /// Notes an error about `key` unless one about it is noted already: a second one would only follow from it.
   void fail(const std::string& key, std::string what, std::string mend);
 
-  /// The first thing wrong, else an unknown key. Keys that begin with "_" or a capital letter, and those that
+  /// Everything that is wrong, unknown keys last. Keys that begin with "_" or a capital letter, and those that
   /// exporters are known to leave, are nobody's.
+  std::vector<Error> errors() const;
+  /// The first of these.
   std::optional<Error> error() const;
 
  private:
@@ -54,7 +55,7 @@ class Extras {
   const nlohmann::json& object_;
   std::string owner_;
   std::vector<std::string> known_;
-  std::optional<Error> error_;
+  std::vector<Error> errors_;
 };
 
 /// A number for people: at most 6 digits.

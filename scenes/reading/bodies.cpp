@@ -82,17 +82,22 @@ Problem read_body(Reading& reading, int node) {
   extras.text("slosh", "");
   const std::string motion = extras.choice("motion", "fixed", {"fixed", "free"});
   body.motion = motion == "free" ? BodyMotion::kFree : BodyMotion::kFixed;
-  if (Problem problem = read_node_mesh(reading, node, rest, true, body.mesh)) return problem;
-  const mesh::WeldedMesh welded = mesh::weld(reading.scene.meshes[body.mesh]);
-  mesh::Components parts;
-  mesh::find_defects(welded, &parts);
-  read_mass(extras, mesh::integrate_volume(welded, parts), body);
+  const Problem mesh_problem = read_node_mesh(reading, node, rest, true, body.mesh);
+  mesh::VolumeIntegrals volume;
+  volume.volume = 1.0;  // so that fields are looked at where there is no solid to weigh
+  if (!mesh_problem) {
+    const mesh::WeldedMesh welded = mesh::weld(reading.scene.meshes[body.mesh]);
+    mesh::Components parts;
+    mesh::find_defects(welded, &parts);
+    volume = mesh::integrate_volume(welded, parts);
+  }
+  read_mass(extras, volume, body);
   read_common(extras, body);
   read_wall_viscosity(extras, body);
   body.twist.linear = extras.vector("velocity_m_s", glm::dvec3(0.0), Range{-1e3, 1e3});
   body.twist.angular = extras.vector("angular_velocity_rad_s", glm::dvec3(0.0), Range{-1e3, 1e3});
   body.material = gltf::read_material(reading.document, reading.document.model.nodes[node].mesh);
-  if (Problem problem = extras.error()) return problem;
+  if (Problem problem = all_of(reading, mesh_problem, extras)) return problem;
   if (reading.scene.bodies.size() >= kMostBodies) {
     return Error{reading.document.owner(node), "more than " + std::to_string(kMostBodies) + " bodies",
                  "Use fewer"};
@@ -115,7 +120,7 @@ Problem read_probe(Reading& reading, int node) {
   body.mass.inertia = glm::dmat3(0.4 * body.mass.mass * kProbeRadius * kProbeRadius);
   read_common(extras, body);
   body.dynamic_viscosity = extras.number("viscosity_pa_s", 0.0, Range{0.0, 1e7});
-  if (Problem problem = extras.error()) return problem;
+  if (Problem problem = all_of(reading, std::nullopt, extras)) return problem;
   const int look = reading.document.model.nodes[node].mesh;
   if (look >= 0) {
     if (Problem problem = read_node_mesh(reading, node, rest, false, body.mesh)) return problem;
@@ -166,8 +171,8 @@ Problem read_fluid_volume(Reading& reading, int node) {
     }
   }
   if (scene.fluids.size() > 250) extras.fail("fluid", "is one of more than 250 fluids", "Use fewer");
-  if (Problem problem = extras.error()) return problem;
-  if (Problem problem = read_node_mesh(reading, node, rest, true, volume.mesh)) return problem;
+  const Problem mesh_problem = read_node_mesh(reading, node, rest, true, volume.mesh);
+  if (Problem problem = all_of(reading, mesh_problem, extras)) return problem;
   scene.fluid_volumes.push_back(std::move(volume));
   return std::nullopt;
 }

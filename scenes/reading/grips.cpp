@@ -22,12 +22,9 @@ std::string grip_names(const Scene& scene) {
 
 }  // namespace
 
-Problem read_grip(Reading& reading, int node) {
+/// The body that a grip hangs on, and where on it.
+Problem place_grip(Reading& reading, int node, Grip& grip) {
   const gltf::Document& document = reading.document;
-  Grip grip;
-  grip.name = document.name(node);
-  Extras extras(document.extras[node], document.owner(node));
-  extras.text("slosh", "");
   int up = document.parent[node];
   while (up >= 0 && !reading.body_of_node.contains(up)) up = document.parent[up];
   if (up < 0) {
@@ -44,20 +41,33 @@ Problem read_grip(Reading& reading, int node) {
   glm::dmat3 rest;
   if (Problem problem = read_pose(reading, node, world, rest)) return problem;
   grip.pose = compose(inverse(body.pose), world);
+  return std::nullopt;
+}
+
+Problem read_grip(Reading& reading, int node) {
+  const gltf::Document& document = reading.document;
+  Grip grip;
+  grip.name = document.name(node);
+  Extras extras(document.extras[node], document.owner(node));
+  extras.text("slosh", "");
+  const Problem place = place_grip(reading, node, grip);
+  const bool on_point = grip.body >= 0 && reading.scene.bodies[grip.body].point_probe;
   grip.stiffness = extras.number("stiffness_n_m", grip.stiffness, Range{0.0, 1e6});
   grip.damping = extras.number("damping_n_s_m", grip.damping, Range{0.0, 1e4});
-  const double turning = body.point_probe ? 0.0 : 1.0;
+  const double turning = on_point ? 0.0 : 1.0;
   grip.rotational_stiffness =
       extras.number("rotational_stiffness_nm_rad", turning * grip.rotational_stiffness, Range{0.0, 1e4});
   grip.rotational_damping =
       extras.number("rotational_damping_nm_s_rad", turning * grip.rotational_damping, Range{0.0, 1e3});
-  if (body.point_probe && (grip.rotational_stiffness > 0.0 || grip.rotational_damping > 0.0)) {
-    extras.fail("rotational_stiffness_nm_rad", "is not 0, but '" + body.name + "' is a point and cannot turn",
+  if (on_point && (grip.rotational_stiffness > 0.0 || grip.rotational_damping > 0.0)) {
+    extras.fail("rotational_stiffness_nm_rad",
+                "is not 0, but '" + reading.scene.bodies[grip.body].name + "' is a point and cannot turn",
                 "Leave it out, and rotational_damping_nm_s_rad too");
   }
-  reading.devices.push_back(extras.integer("device", -1, -1, 1000));
+  const int device = extras.integer("device", -1, -1, 1000);
+  if (Problem problem = all_of(reading, place, extras)) return problem;
+  reading.devices.push_back(device);
   reading.grip_nodes.push_back(node);
-  if (Problem problem = extras.error()) return problem;
   reading.scene.grips.push_back(std::move(grip));
   return std::nullopt;
 }
@@ -93,7 +103,7 @@ Problem read_hand(Reading& reading, int node) {
     extras.fail("grip", extras.has("grip") ? "names '" + name + "', which is no grip" : "is missing",
                 "Name one of the grips: " + grip_names(reading.scene));
   }
-  if (Problem problem = extras.error()) return problem;
+  if (Problem problem = all_of(reading, std::nullopt, extras)) return problem;
   if (!grip->hand_motion.empty()) {
     extras.fail("grip", "names '" + name + "', which another hand holds already", "Keep one hand a grip");
     return extras.error();

@@ -32,7 +32,7 @@ Problem read_gauge(Reading& reading, int node) {
   gauge.name = reading.document.name(node);
   gltf::Extras extras(reading.document.extras[node], reading.document.owner(node));
   extras.text("slosh", "");
-  if (Problem problem = extras.error()) return problem;
+  if (Problem problem = all_of(reading, std::nullopt, extras)) return problem;
   Pose pose;
   glm::dmat3 rest;
   if (Problem problem = read_place(reading, node, gauge.body, pose, rest)) return problem;
@@ -51,10 +51,10 @@ Problem read_region(Reading& reading, int node) {
   region.name = reading.document.name(node);
   gltf::Extras extras(reading.document.extras[node], reading.document.owner(node));
   extras.text("slosh", "");
-  if (Problem problem = extras.error()) return problem;
   glm::dmat3 rest;
-  if (Problem problem = read_place(reading, node, region.body, region.pose, rest)) return problem;
-  if (Problem problem = read_node_mesh(reading, node, rest, true, region.mesh)) return problem;
+  Problem place = read_place(reading, node, region.body, region.pose, rest);
+  if (!place) place = read_node_mesh(reading, node, rest, true, region.mesh);
+  if (Problem problem = all_of(reading, place, extras)) return problem;
   if (reading.scene.regions.size() >= kMostOfEach) return too_many(reading, node, "regions");
   reading.scene.regions.push_back(std::move(region));
   return std::nullopt;

@@ -37,11 +37,16 @@ struct Reading {
   std::map<std::tuple<int, std::vector<double>>, SharedMesh> shared;
   std::map<std::string, int> names;  ///< of nodes with a `slosh` property
   std::set<int> failed;              ///< nodes that could not be read
+  std::vector<Error> further;        ///< of what is being read, beside the problem that is returned
 };
 
 /// All stages in order. The first problem ends the reading; with `all` every one is put there instead, but for those
 /// that only follow from another (a grip on a body that could not be read). A scene only where there was none.
 std::optional<Scene> read_stages(const gltf::Document& document, std::vector<Error>& problems, bool all);
+
+/// What is wrong with a node: `first`, where there is one, then all that `extras` has. The first of these is returned,
+/// the others go to Reading::further.
+Problem all_of(Reading& reading, Problem first, const gltf::Extras& extras);
 
 /// Sets a node's kind. Errors: unknown `slosh`, a name used twice, a mesh missing.
 Problem read_kind(Reading& reading, int node);

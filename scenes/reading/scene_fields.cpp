@@ -63,6 +63,7 @@ Problem read_scene_fields(Reading& reading) {
   }
   extras.vector("domain_min_m", glm::dvec3(0.0), gltf::kAnyNumber);  // read_domain takes them up
   extras.vector("domain_max_m", glm::dvec3(0.0), gltf::kAnyNumber);
+  Problem fields_problem;
   if (const nlohmann::json* fluids = extras.object("fluids")) {
     for (const auto& [name, fields] : fluids->items()) {
       if (!fields.is_object()) {
@@ -74,12 +75,12 @@ Problem read_scene_fields(Reading& reading) {
       Fluid fluid;
       fluid.name = name;
       read_fluid_fields(one, fluid);
-      if (Problem problem = one.error()) return problem;
+      fields_problem = all_of(reading, fields_problem, one);
       reading.declared_fluids[name] = static_cast<int>(scene.fluids.size());
       scene.fluids.push_back(fluid);
     }
   }
-  return extras.error();
+  return all_of(reading, fields_problem, extras);
 }
 
 Bounds bounds_of_scene(const Scene& scene) {

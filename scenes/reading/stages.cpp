@@ -48,19 +48,28 @@ class Stages {
   void nodes(ReadNode read, std::optional<NodeKind> kind = std::nullopt) {
     for (const int node : reading_.document.nodes) {
       if (over() || (kind && reading_.kinds[node] != *kind)) continue;
-      const Problem problem = read(reading_, node);
+      const Problem problem = read_one([&] { return read(reading_, node); });
       if (!problem) continue;
-      if (!follows_from_another(reading_, node)) problems_.push_back(*problem);
+      if (!follows_from_another(reading_, node)) note(*problem);
       reading_.failed.insert(node);
     }
   }
   /// `needs_all`: its problem would only say that nodes are missing which could not be read.
   void whole(Problem (*read)(Reading&), bool needs_all = false) {
     if (over() || (needs_all && (!reading_.failed.empty() || !problems_.empty()))) return;
-    if (const Problem problem = read(reading_)) problems_.push_back(*problem);
+    if (const Problem problem = read_one([&] { return read(reading_); })) note(*problem);
   }
 
  private:
+  template <class Read>
+  Problem read_one(Read&& read) {
+    reading_.further.clear();
+    return read();
+  }
+  void note(const Error& problem) {
+    problems_.push_back(problem);
+    problems_.insert(problems_.end(), reading_.further.begin(), reading_.further.end());
+  }
   bool over() const { return !all_ && !problems_.empty(); }
 
   Reading& reading_;
@@ -70,8 +79,18 @@ class Stages {
 
 }  // namespace
 
+Problem all_of(Reading& reading, Problem first, const gltf::Extras& extras) {
+  for (Error& error : extras.errors()) {
+    if (first)
+      reading.further.push_back(std::move(error));
+    else
+      first = std::move(error);
+  }
+  return first;
+}
+
 std::optional<Scene> read_stages(const gltf::Document& document, std::vector<Error>& problems, bool all) {
-  Reading reading{document, {}, {}, {}, {}, {}, {}, 0, {}, {}, {}};
+  Reading reading{document, {}, {}, {}, {}, {}, {}, 0, {}, {}, {}, {}};
   const std::filesystem::path file = document.file;
   reading.scene.name = clean_text(file.stem().string(), kMostTextBytes);
   reading.scene.source_file = document.file;
