@@ -17,15 +17,32 @@ const char* const kStyle =
     "set grid lc rgb \"#dcdcdc\" lt 1 lw 1\n"
     "set tics nomirror textcolor rgb \"#303030\"\n";
 
-std::string terminal(int width, int height) {
-  return format(
-      "set terminal pngcairo size %d,%d noenhanced font \"DejaVu Sans,11\" background rgb \"white\"\n", width,
-      height);
-}
-
 bool shown(const ChartPanel& panel, const glm::dvec2& p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && (!panel.log_x || p.x > 0.0) &&
          (!panel.log_y || p.y > 0.0);
+}
+
+/// Stretches of the axis, every second one shaded, their names above the curves.
+std::string spans_script(const ChartPanel& panel) {
+  std::string script = "unset object\nunset label\n";
+  if (panel.spans.empty()) return script + "set xrange [*:*]\nset tmargin\nset bmargin\n";
+  // Room above for the names, below for what stands in the corner.
+  script += format("set xrange [%.8g:%.8g]\nset tmargin 4.5\nset bmargin 5\n", panel.spans.front().from,
+                   panel.spans.back().to);
+  for (std::size_t i = 0; i < panel.spans.size(); ++i) {
+    const ChartSpan& span = panel.spans[i];
+    if (i % 2 == 1) {
+      script += format(
+          "set object rectangle from first %.8g,graph 0 to first %.8g,graph 1 behind fc rgb \"#eef1f5\" fs "
+          "solid noborder\n",
+          span.from, span.to);
+    }
+    script +=
+        "set label " + gnuplot_text(span.name) +
+        format(" at first %.8g,graph 1.0 center offset 0,0.6 tc rgb \"#505050\" font \"DejaVu Sans,8\"\n",
+               0.5 * (span.from + span.to));
+  }
+  return script;
 }
 
 std::string panel_script(const ChartPanel& panel, std::size_t number) {
@@ -46,12 +63,13 @@ std::string panel_script(const ChartPanel& panel, std::size_t number) {
     plot += " lc rgb \"" + series.color + "\" ";
     plot += series.name.empty() ? "notitle" : "title " + gnuplot_text(series.name);
   }
-  std::string script = data + "unset logscale\n";
+  std::string script = data + "unset logscale\n" + spans_script(panel);
   script += panel.legend ? "set key outside right top reverse Left samplen 2 font \"DejaVu Sans,9\"\n"
                          : "unset key\n";
   if (panel.log_x) script += "set logscale x\n";
   if (panel.log_y) script += "set logscale y\n";
-  script += "set title " + gnuplot_text(panel.title) + " font \"DejaVu Sans,12\"\n";
+  script += "set title " + gnuplot_text(panel.title) + (panel.spans.empty() ? "" : " offset 0,0.7") +
+            " font \"DejaVu Sans,12\"\n";
   script +=
       "set xlabel " + gnuplot_text(panel.x_label) + "\nset ylabel " + gnuplot_text(panel.y_label) + "\n";
   // Where nothing is to be drawn the panel says so, or gnuplot would fail over an empty range.
@@ -63,15 +81,26 @@ std::string panel_script(const ChartPanel& panel, std::size_t number) {
 
 }  // namespace
 
-std::string chart_script(const std::vector<ChartPanel>& panels, int columns, const std::string& title) {
+std::string chart_script(const std::vector<ChartPanel>& panels, int columns, const std::string& title,
+                         const std::string& picture, const std::string& corner) {
   const int rows = (static_cast<int>(panels.size()) + columns - 1) / columns;
-  std::string script = kStyle + terminal(columns * kPanelWidth, rows * kPanelHeight + kTitleHeight);
+  std::string script =
+      kStyle + gnuplot_terminal(picture, columns * kPanelWidth, rows * kPanelHeight + kTitleHeight, 11);
   script +=
       "set format x \"%g\"\nset format y \"%g\"\nset offsets graph 0.05, graph 0.05, graph 0.08, graph "
       "0.08\n";
   script += format("set multiplot layout %d,%d title ", rows, columns) + gnuplot_text(title) +
             " font \"DejaVu Sans,14\"\n";
-  for (std::size_t i = 0; i < panels.size(); ++i) script += panel_script(panels[i], i);
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    std::string panel = panel_script(panels[i], i);
+    if (i + 1 == panels.size() && !corner.empty()) {
+      // With the last panel, as each begins without labels.
+      panel.insert(panel.rfind("plot "),
+                   "set label " + gnuplot_text(corner) +
+                       " at screen 0.995,0.012 right tc rgb \"#707070\" font \"DejaVu Sans,7\"\n");
+    }
+    script += panel;
+  }
   return script + "unset multiplot\n";
 }
 
@@ -80,7 +109,7 @@ std::string tile_script(const TileMap& map) {
   const int rows = static_cast<int>(map.rows.size()), columns = static_cast<int>(map.columns.size());
   const double width = kLeft + kColumn * columns + 40, height = kTop + kRow * rows + 30;
   std::string script =
-      "set encoding utf8\n" + terminal(static_cast<int>(width), static_cast<int>(height)) +
+      "set encoding utf8\n" + gnuplot_terminal("png", static_cast<int>(width), static_cast<int>(height), 11) +
       format("set lmargin at screen %.5f\nset rmargin at screen %.5f\n", kLeft / width,
              (kLeft + kColumn * columns) / width) +
       format("set tmargin at screen %.5f\nset bmargin at screen %.5f\n", 1.0 - kTop / height, 20.0 / height) +

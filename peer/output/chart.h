@@ -20,15 +20,24 @@ struct ChartSeries {
   bool dashed = false;
 };
 
+/// A named stretch of the horizontal axis, a phase of a motion for one.
+struct ChartSpan {
+  std::string name;
+  double from = 0.0, to = 0.0;
+};
+
 struct ChartPanel {
   std::string title, x_label, y_label;
   bool log_x = false, log_y = false;
   std::vector<ChartSeries> series;
   bool legend = true;
+  std::vector<ChartSpan> spans = {};  ///< in order; every second one is shaded
 };
 
-/// A complete gnuplot script, data included, that writes a PNG: panels in rows of `columns`, under one title.
-std::string chart_script(const std::vector<ChartPanel>& panels, int columns, const std::string& title);
+/// A complete gnuplot script, data included, that writes a picture ("png", "svg" or "pdf"): panels in rows of `columns`,
+/// under one title; `corner` small at the bottom right.
+std::string chart_script(const std::vector<ChartPanel>& panels, int columns, const std::string& title,
+                         const std::string& picture = "png", const std::string& corner = "");
 
 /// A map: one coloured tile a row and column. `kind[row][column]` is an index into `kinds`, or −1 for none.
 struct TileMap {

@@ -4,6 +4,7 @@
 
 #include "peer/output/child_process.h"
 #include "peer/output/whole_file.h"
+#include "sim/math/format.h"
 
 namespace slosh {
 
@@ -15,6 +16,12 @@ std::string gnuplot_text(const std::string& text) {
     out += octal;
   }
   return out + "\"";
+}
+
+std::string gnuplot_terminal(const std::string& kind, int width, int height, int font_points) {
+  const std::string font = format(" noenhanced font \"DejaVu Sans,%d\" background rgb \"white\"\n", font_points);
+  if (kind == "pdf") return format("set terminal pdfcairo size %.3f,%.3f", width / 72.0, height / 72.0) + font;
+  return format("set terminal %s size %d,%d", kind == "svg" ? "svg" : "pngcairo", width, height) + font;
 }
 
 Result<bool> draw(const std::string& script, const std::filesystem::path& file) {

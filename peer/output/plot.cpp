@@ -11,11 +11,12 @@
 #include "peer/output/gnuplot.h"
 #include "peer/output/recorder.h"
 #include "peer/palette.h"
+#include "sim/math/format.h"
 
 namespace slosh {
 namespace {
 
-constexpr std::size_t kPlotRows = 1500;
+constexpr std::size_t kPlotPoints = 3000;
 
 // What there is room for.
 constexpr std::size_t kMostHandBytes = 24;   // of a hand's name in the legend
@@ -30,28 +31,42 @@ std::string shortened(const std::string& text, std::size_t most_bytes) {
   return shown;
 }
 
-std::string row_text(double time, const Wrench& w) {
-  char text[200];
-  std::snprintf(text, sizeof text, "%.5f %.6g %.6g %.6g %.6g %.6g %.6g %.6g %.6g\n", time,
-                glm::length(w.force), w.force.x, w.force.y, w.force.z, glm::length(w.torque), w.torque.x,
-                w.torque.y, w.torque.z);
-  return text;
-}
-
 struct Quantity {
   const char* name;
   const char* label;
-  int column;  ///< of row_text's rows, from 1
+  int part;  ///< 0 the size, 1–3 along an axis; 4 and 5–7 the same of the torque
 };
 
-constexpr std::array<Quantity, 8> kQuantities{{{"force", "force on the hand, N", 2},
-                                               {"fx", "force along x, N", 3},
-                                               {"fy", "force along y, N", 4},
-                                               {"fz", "force along z, N", 5},
-                                               {"torque", "torque on the hand, N·m", 6},
-                                               {"tx", "torque about x, N·m", 7},
-                                               {"ty", "torque about y, N·m", 8},
-                                               {"tz", "torque about z, N·m", 9}}};
+constexpr std::array<Quantity, 8> kQuantities{{{"force", "force on the hand, N", 0},
+                                               {"fx", "force along x, N", 1},
+                                               {"fy", "force along y, N", 2},
+                                               {"fz", "force along z, N", 3},
+                                               {"torque", "torque on the hand, N·m", 4},
+                                               {"tx", "torque about x, N·m", 5},
+                                               {"ty", "torque about y, N·m", 6},
+                                               {"tz", "torque about z, N·m", 7}}};
+
+double reading(const Wrench& w, int part) {
+  const glm::dvec3& of = part < 4 ? w.force : w.torque;
+  return part % 4 == 0 ? glm::length(of) : of[part % 4 - 1];
+}
+
+/// Data blocks $qQdD, a quantity and device each: time and value, peaks kept.
+std::string data_of(const std::vector<WrenchSeries>& series, const std::vector<Quantity>& quantities) {
+  std::string script;
+  for (std::size_t q = 0; q < quantities.size(); ++q) {
+    for (std::size_t d = 0; d < series.size(); ++d) {
+      std::vector<glm::dvec2> curve;
+      for (std::size_t i = 0; i < series[d].time.size(); ++i)
+        curve.emplace_back(series[d].time[i], reading(series[d].on_hand[i], quantities[q].part));
+      script += format("$q%zud%zu << END_OF_DATA\n", q, d);
+      for (const glm::dvec2& point : thinned(curve, kPlotPoints))
+        script += format("%.5f %.6g\n", point.x, point.y);
+      script += "END_OF_DATA\n";
+    }
+  }
+  return script;
+}
 
 /// The world axis on which the vectors vary most, 0–2.
 template <class Pick>
@@ -103,7 +118,7 @@ std::string line_of(std::size_t order, std::size_t device) {
   return std::string(kLines[order % kLines.size()]) + " lc rgb \"" + device_color(device).hex + "\"";
 }
 
-std::string curves_of(const std::vector<WrenchSeries>& series, const PlotSheet& sheet, int column,
+std::string curves_of(const std::vector<WrenchSeries>& series, const PlotSheet& sheet, std::size_t quantity,
                       bool legend) {
   std::string script;
   const std::vector<std::size_t> shown = devices_shown(series);
@@ -111,25 +126,11 @@ std::string curves_of(const std::vector<WrenchSeries>& series, const PlotSheet& 
     const std::size_t i = shown[order];
     const std::string name =
         i < sheet.names.size() ? shortened(sheet.names[i], kMostHandBytes) : "device " + std::to_string(i);
-    script += (order == 0 ? "plot \\\n  " : ", \\\n  ") + std::string("$device") + std::to_string(i) +
-              " using 1:" + std::to_string(column) + " with lines " + line_of(order, i) +
+    script += (order == 0 ? "plot \\\n  " : ", \\\n  ") + format("$q%zud%zu", quantity, i) +
+              " using 1:2 with lines " + line_of(order, i) +
               (legend ? " title " + gnuplot_text(name) : std::string(" notitle"));
   }
   return script + "\n";
-}
-
-/// Pixels; a vector's are points of 1/72 inch.
-std::string terminal_of(const std::string& format, int width, int height) {
-  const std::string size = std::to_string(width) + "," + std::to_string(height);
-  const std::string font = " noenhanced font \"DejaVu Sans,12\" background rgb \"white\"\n";
-  if (format == "svg") return "set terminal svg size " + size + font;
-  if (format == "pdf") {
-    // In inches; letters are then as large on the sheet as in the other formats.
-    char inches[64];
-    std::snprintf(inches, sizeof inches, "%.3f,%.3f", width / 72.0, height / 72.0);
-    return std::string("set terminal pdfcairo size ") + inches + font;
-  }
-  return "set terminal pngcairo size " + size + font;
 }
 
 }  // namespace
@@ -167,22 +168,21 @@ Result<std::vector<WrenchSeries>> read_wrenches(const std::filesystem::path& fil
   return series;
 }
 
-WrenchSeries thinned(const WrenchSeries& series, std::size_t rows) {
-  const std::size_t count = series.time.size();
-  const std::size_t group = rows == 0 ? 1 : (count + rows - 1) / rows;
-  if (group <= 1) return series;
-  WrenchSeries out;
-  for (std::size_t begin = 0; begin < count; begin += group) {
-    const std::size_t end = std::min(begin + group, count);
-    double time = 0.0;
-    Wrench sum;
+std::vector<glm::dvec2> thinned(const std::vector<glm::dvec2>& curve, std::size_t points) {
+  const std::size_t groups = std::max<std::size_t>(1, points / 2);
+  const std::size_t group = (curve.size() + groups - 1) / groups;
+  if (group <= 2) return curve;
+  std::vector<glm::dvec2> out;
+  for (std::size_t begin = 0; begin < curve.size(); begin += group) {
+    const std::size_t end = std::min(begin + group, curve.size());
+    std::size_t least = begin;
+    std::size_t most = begin;
     for (std::size_t i = begin; i < end; ++i) {
-      time += series.time[i];
-      sum = sum + series.on_hand[i];
+      if (curve[i].y < curve[least].y) least = i;
+      if (curve[i].y > curve[most].y) most = i;
     }
-    const double share = 1.0 / static_cast<double>(end - begin);
-    out.time.push_back(time * share);
-    out.on_hand.push_back({sum.force * share, sum.torque * share});
+    out.push_back(curve[std::min(least, most)]);
+    if (least != most) out.push_back(curve[std::max(least, most)]);
   }
   return out;
 }
@@ -202,22 +202,15 @@ const std::vector<std::string>& plot_formats() {
 }
 
 std::string plot_script(const std::vector<WrenchSeries>& series, const PlotSheet& sheet) {
-  std::string script;
-  for (std::size_t i = 0; i < series.size(); ++i) {
-    script += "$device" + std::to_string(i) + " << END_OF_DATA\n";
-    const WrenchSeries rows = thinned(series[i], kPlotRows);
-    for (std::size_t row = 0; row < rows.time.size(); ++row)
-      script += row_text(rows.time[row], rows.on_hand[row]);
-    script += "END_OF_DATA\n";
-  }
   const std::vector<Quantity> quantities = chosen(series, sheet);
+  std::string script = data_of(series, quantities);
   const int panels = static_cast<int>(quantities.size());
   const int head = 58 + 18 * static_cast<int>(sheet.parameters.size());
   const int height = head + 212 * panels + 60;
   const auto from_top = [&](int pixels) {
     return std::to_string(1.0 - static_cast<double>(pixels) / height);
   };
-  script += "set encoding utf8\n" + terminal_of(sheet.format, kSheetWidth, height);
+  script += "set encoding utf8\n" + gnuplot_terminal(sheet.format, kSheetWidth, height, 12);
   script += "set multiplot layout " + std::to_string(panels) + ",1 margins 0.085,0.97," +
             std::to_string(60.0 / height) + "," + from_top(head) + " spacing 0," +
             std::to_string(16.0 / height) + "\n";
@@ -246,7 +239,7 @@ std::string plot_script(const std::vector<WrenchSeries>& series, const PlotSheet
     } else {
       script += "set format x \"%g\"\nset xlabel \"simulated time, s\"\n";
     }
-    script += curves_of(series, sheet, quantity.column, i == 0);
+    script += curves_of(series, sheet, static_cast<std::size_t>(i), i == 0);
     if (i == 0) script += "unset label\nunset key\n";
   }
   return script + "unset multiplot\n";

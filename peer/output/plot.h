@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <glm/glm.hpp>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,9 @@ struct WrenchSeries {
 /// Reads a wrenches.csv, one series a device. Errors: it cannot be read, a row that is not eight numbers.
 Result<std::vector<WrenchSeries>> read_wrenches(const std::filesystem::path& file);
 
-/// The same run in at most `rows` points a device, each the mean of the samples it stands for.
-WrenchSeries thinned(const WrenchSeries& series, std::size_t rows);
+/// The same curve (s, value) in about `points` points: of each stretch the least and the largest sample, so that no peak
+/// is lost. One that has no more points stays as it is.
+std::vector<glm::dvec2> thinned(const std::vector<glm::dvec2>& curve, std::size_t points);
 
 /// What a sheet of curves says and shows beside the data.
 struct PlotSheet {

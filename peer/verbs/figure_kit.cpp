@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "peer/palette.h"
 #include "sim/math/format.h"
@@ -50,29 +49,15 @@ ChartSeries curve(const std::string& name, const WrenchSeries& s, const Reading&
 }
 
 void mark_phases(ChartPanel& panel, const std::vector<Phase>& phases) {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -low;
-  for (const ChartSeries& series : panel.series) {
-    for (const glm::dvec2& p : series.points) {
-      low = std::min(low, p.y);
-      high = std::max(high, p.y);
-    }
-  }
-  std::string names;
-  for (const Phase& phase : phases) {
-    names += (names.empty() ? "" : " | ") + phase.name;
-    if (phase.from <= 0.0) continue;
-    ChartSeries line;
-    line.color = "#909090";
-    line.mark = 0;
-    line.width = 1.0;
-    line.dashed = true;
-    line.points = {{phase.from, low}, {phase.from, high}};
-    panel.series.push_back(line);
-  }
-  // What there is room for.
-  if (phases.size() > 5) names = phases.front().name + format(" | %zu strokes", phases.size() - 1);
-  panel.title += (panel.title.empty() ? "" : ": ") + names;
+  // What there is room for above many of them.
+  const auto shown = [&](const std::string& name) {
+    if (phases.size() <= 5) return name;
+    return name == "forward"    ? std::string("\xE2\x86\x92")
+           : name == "backward" ? std::string("\xE2\x86\x90")
+                                : name;
+  };
+  for (const Phase& phase : phases)
+    if (phase.to > phase.from) panel.spans.push_back({shown(phase.name), phase.from, phase.to});
 }
 
 ChartPanel panel_of(const std::string& title, const std::string& y_label) {

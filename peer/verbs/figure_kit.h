@@ -26,7 +26,7 @@ double torque_size(const Wrench& w);
 /// A reading over time; `color` of the palette.
 ChartSeries curve(const std::string& name, const WrenchSeries& s, const Reading& of, std::size_t color,
                   bool dashed = false);
-/// Upright lines where phases begin, over the panel's curves.
+/// Phases as spans of the panel.
 void mark_phases(ChartPanel& panel, const std::vector<Phase>& phases);
 ChartPanel panel_of(const std::string& title, const std::string& y_label);
 /// Of a handle, m/s and rad/s, a value a sample; the first is 0.

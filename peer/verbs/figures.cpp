@@ -73,6 +73,7 @@ FigureParts judge_spoon(const ScriptedRun& run, bool tare) {
   FigureParts parts;
   std::vector<Phase> phases{rest};
   phases.insert(phases.end(), moves.begin(), moves.end());
+  phases.push_back({"rest", phases.back().to, hand.time.back()});
   parts.panels = {
       panel_of("", format("force along %s%s, N", kAxes[static_cast<std::size_t>(axis)], tared.c_str())),
       panel_of("", format("torque about %s%s, N\xC2\xB7m", kAxes[static_cast<std::size_t>(about)],
@@ -248,7 +249,8 @@ FigureParts judge_bucket(const ScriptedRun& run) {
   bool lower_more = !tilts.empty(), torque_more = !tilts.empty();
   for (const Tilt& t : tilts) {
     const bool to_left = t.angle > 0.0;
-    phases.push_back({to_left ? "left" : "right", t.time, t.time});
+    const double before = phases.empty() ? 0.0 : phases.back().to;
+    phases.push_back({to_left ? "to the left" : "to the right", before, t.time});
     said += format("%s%.0f\xC2\xB0 to the %s at %.1f s: left %.2f N, right %.2f N", said.empty() ? "" : "; ",
                    glm::degrees(std::abs(t.angle)), to_left ? "left" : "right", t.time, t.left, t.right);
     torques +=
@@ -256,6 +258,7 @@ FigureParts judge_bucket(const ScriptedRun& run) {
     lower_more &= to_left ? t.left > t.right : t.right > t.left;
     torque_more &= to_left ? t.left_torque > t.right_torque : t.right_torque > t.left_torque;
   }
+  if (!phases.empty()) phases.push_back({"back", phases.back().to, time.back()});
   for (ChartPanel& panel : parts.panels) mark_phases(panel, phases);
   const Reading down = [](const Wrench& w) { return -w.force.y; };
   const double tenth = 0.1 * time.back();

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "peer/output/machine.h"
+#include "peer/output/plot.h"
 #include "peer/verbs/common_options.h"
 #include "peer/verbs/interrupt.h"
 #include "peer/verbs/verbs.h"
@@ -129,13 +130,17 @@ void add_report(CLI::App& app, VerbRun& chosen) {
   figure->add_option("--spacing", which->spacing, "Metres between particles (the scene's coarsest)")
       ->check(in_range(1e-4, 1.0));
   figure->add_flag("--tare", which->tare, "Figure 8 without what the hand carries at rest");
+  figure->add_option("--plot", which->plot, "Format of the picture: png, svg or pdf")
+      ->check(CLI::IsMember(plot_formats()))
+      ->capture_default_str();
   figure->add_option("--out", options->out, "Folder for picture, words and table (slosh-report-figure)");
   add_machine_options(*figure, *options);
   figure->footer(
       "Plays the shipped scene's hands, every step kept: no peak is averaged away. Figure 10 runs the paper's model\n"
-      "and the default one. Writes figure-N.png, phases marked, with this command under its title; figure-N.md, each\n"
+      "and the default one. Writes figure-N.png (or .svg, .pdf), phases shaded and named, with this command, the\n"
+      "version and the machine in its corner; figure-N.md, each\n"
       "sentence of the paper with what was measured and whether it holds; figure-N.csv, the wrenches.\n\n"
-      "Examples:\n  slosh report figure 10\n  slosh report figure 8 --tare --spacing 0.008 --out figures");
+      "Examples:\n  slosh report figure 10\n  slosh report figure 8 --tare --spacing 0.008 --plot pdf --out figures");
   figure->callback([&chosen, options, which] { chosen = [options, which] { return report_figure(*options, *which); }; });
 }
 

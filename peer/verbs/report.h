@@ -37,6 +37,7 @@ struct FigureOptions {
   int number = 8;        ///< of the paper, 8–11
   double spacing = 0.0;  ///< m; 0: the scene's coarsest
   bool tare = false;     ///< Figure 8 less what the hand carries at rest
+  std::string plot = "png";  ///< of plot_formats()
 };
 int report_figure(const ReportOptions& options, const FigureOptions& figure);
 

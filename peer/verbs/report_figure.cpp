@@ -1,4 +1,5 @@
 // `slosh report figure N`: a figure of the paper again, and its words held against the numbers.
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 
@@ -16,8 +17,9 @@ namespace {
 
 /// What was asked for, to be typed again.
 std::string command_line(const ReportOptions& options, const FigureOptions& figure, double spacing) {
-  return format("slosh report figure %d --spacing %g%s --backend %s", figure.number, spacing,
-                figure.tare ? " --tare" : "", options.backend.c_str());
+  return format("slosh report figure %d --spacing %g%s --backend %s%s", figure.number, spacing,
+                figure.tare ? " --tare" : "", options.backend.c_str(),
+                figure.plot == "png" ? "" : (" --plot " + figure.plot).c_str());
 }
 
 std::string words(const FigureOptions& figure, const std::vector<Claim>& claims, const std::string& origin) {
@@ -90,12 +92,14 @@ int report_figure(const ReportOptions& options, const FigureOptions& figure) {
   const std::string text = words(figure, all.claims, origin);
   const Result<bool> written = write_whole(folder.value() / (stem + ".md"), text);
   if (!written) return fail(written.error());
-  const std::string title =
-      format("Figure %d: ", figure.number) + scene.title + "\n" + command + ", slosh " SLOSH_VERSION;
-  const Result<bool> drawn = draw(chart_script(all.panels, 2, title), folder.value() / (stem + ".png"));
+  const std::string title = format("Figure %d: ", figure.number) + scene.title;
+  const Result<bool> drawn = draw(chart_script(all.panels, std::min<int>(2, static_cast<int>(all.panels.size())), title,
+                                               figure.plot, origin),
+                                  folder.value() / (stem + "." + figure.plot));
   if (!drawn) return fail(drawn.error());
   progress.note("");
-  std::printf("%s\n%s.png, .md and .csv are in %s\n", text.c_str(), stem.c_str(), folder.value().c_str());
+  std::printf("%s\n%s.%s, .md and .csv are in %s\n", text.c_str(), stem.c_str(), figure.plot.c_str(),
+              folder.value().c_str());
   return kExitOk;
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -90,17 +91,19 @@ TEST(ReadWrenches, NamesTheLineThatIsCutShort) {
   EXPECT_NE(series.error().where.find("line 3"), std::string::npos);
 }
 
-TEST(Thinned, KeepsMeansAndTheNumberOfRows) {
-  WrenchSeries series;
-  for (int i = 0; i < 1000; ++i) {
-    series.time.push_back(i);
-    series.on_hand.push_back({{static_cast<double>(i), 0, 0}, {}});
-  }
-  const WrenchSeries thin = thinned(series, 100);
-  ASSERT_EQ(thin.time.size(), 100u);
-  EXPECT_DOUBLE_EQ(thin.time[0], 4.5);
-  EXPECT_DOUBLE_EQ(thin.on_hand[99].force.x, 994.5);
-  EXPECT_EQ(thinned(series, 5000).time.size(), 1000u);
+TEST(Thinned, KeepsEveryPeak) {
+  std::vector<glm::dvec2> curve;
+  for (int i = 0; i < 1000; ++i) curve.emplace_back(i, std::sin(0.01 * i));
+  curve[377].y = 5.0;  // one sample, up and down
+  curve[612].y = -4.0;
+  const std::vector<glm::dvec2> thin = thinned(curve, 100);
+  EXPECT_LE(thin.size(), 100u);
+  EXPECT_GE(thin.size(), 90u);
+  for (const std::size_t peak : {377u, 612u})
+    EXPECT_NE(std::find(thin.begin(), thin.end(), curve[peak]), thin.end()) << peak;
+  for (std::size_t i = 1; i < thin.size(); ++i) EXPECT_LT(thin[i - 1].x, thin[i].x) << "time rises";
+  EXPECT_EQ(thinned(curve, 5000).size(), 1000u);
+  EXPECT_TRUE(thinned({}, 100).empty());
 }
 
 TEST(PlotScript, ForceAboveTorqueBelowOneColourADevice) {
