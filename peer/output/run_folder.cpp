@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kRunFiles[] = {"summary.json", "wrenches.csv", "poses.csv",    "bodies.csv",
                                      "probes.csv",   "wrenches.png", "wrenches.svg", "wrenches.pdf",
-                                     "view.mp4",     "final.png"};
+                                     "view.mp4",     "final.png",    "frames/frames.csv"};
 constexpr int kMostFolders = 10'000;
 constexpr const char* kAnother = "Choose another folder with --out";
 
@@ -28,6 +28,27 @@ std::string earlier_file(const fs::path& folder) {
     if (fs::exists(fs::symlink_status(folder / name, code))) return name;
   }
   return {};
+}
+
+/// Whether a name is one that an exporter gives (peer/export).
+bool is_frame(const std::string& name) {
+  return name == "frames.csv" || name == "particles.pvd" || name.starts_with("particles_") || name.starts_with("surface_");
+}
+
+/// Removes what an earlier run exported, and the folder where nothing else is in it. The error that there was, if any.
+std::error_code remove_frames(const fs::path& folder) {
+  std::error_code code;
+  std::vector<fs::path> frames;
+  for (fs::directory_iterator at(folder, code), end; !code && at != end; at.increment(code)) {
+    if (is_frame(at->path().filename().string())) frames.push_back(at->path());
+  }
+  if (code == std::errc::no_such_file_or_directory) return {};
+  for (const fs::path& frame : frames) {
+    if (!code) fs::remove(frame, code);
+  }
+  std::error_code not_empty;
+  fs::remove(folder, not_empty);
+  return code;
 }
 
 struct Locked {
@@ -82,6 +103,8 @@ Result<RunFolder> RunFolder::take(const fs::path& wanted, bool overwrite) {
     fs::remove(wanted / name, code);
     if (code) return Error{(wanted / name).string(), "cannot be overwritten: " + code.message(), kAnother};
   }
+  if (const std::error_code code = remove_frames(wanted / "frames"))
+    return Error{(wanted / "frames").string(), "cannot be overwritten: " + code.message(), kAnother};
   return folder;
 }
 

@@ -165,6 +165,9 @@ Json to_json(const RunSummary& s) {
   json["interrupted"] = s.interrupted;
   if (!s.verdict.empty()) json["verdict"] = s.verdict;
   if (!s.recording.empty()) json["recording"] = {{"file", s.recording}, {"problem", s.recording_problem}};
+  if (s.export_frames + s.export_left_out > 0) {
+    json["export"] = {{"frames", s.export_frames}, {"left_out", s.export_left_out}, {"seconds", s.export_seconds}};
+  }
   if (s.network) json["network"] = network_json(*s.network);
   json["files"] = s.files;
   json["problems"] = s.problems;
@@ -199,6 +202,10 @@ std::string in_words(const RunSummary& s) {
   if (s.particles_in_solids > 0)
     text += format("%s fluid particles are inside solids.\n", grouped(s.particles_in_solids).c_str());
   text += in_words(s.measured);
+  if (s.export_frames > 0) {
+    text += format("%s frames for other programs, %.2f s each.\n", grouped(s.export_frames).c_str(),
+                   s.export_seconds / static_cast<double>(s.export_frames));
+  }
   if (!s.recording.empty()) text += "Recorded to " + s.recording + ".\n";
   if (!s.recording_problem.empty()) text += "The recording is not whole: " + s.recording_problem + ".\n";
   if (!s.verdict.empty()) text += "Compared with the recording: " + s.verdict + ".\n";

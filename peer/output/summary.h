@@ -101,6 +101,9 @@ struct RunSummary {
   Machine machine;
   std::string version;
   bool interrupted = false;
+  std::uint64_t export_frames = 0;    ///< written for other programs
+  std::uint64_t export_left_out = 0;  ///< what came faster than it could be written
+  double export_seconds = 0.0;        ///< of wall time that packing and writing took
   std::string recording;              ///< file that the run was recorded to; empty = none
   std::string recording_problem;      ///< why it is not whole; empty = it is
   std::string verdict;                ///< of a replay: whether it came out as it was recorded; empty = none

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cstdio>
 
+#include "peer/export/export_options.h"
 #include "peer/output/plot.h"
 
 namespace slosh {
@@ -97,6 +98,25 @@ CLI::Option* add_measure_option(CLI::App& verb, ShowOptions& options) {
           "Simulated seconds between rows of bodies.csv and probes.csv, 0 for none (0.01 where the scene has "
           "gauges, regions or measured bodies)")
       ->check(in_range(0.0, 1e3));
+}
+
+void add_export_options(CLI::App& verb, ShowOptions& options) {
+  CLI::Option* what =
+      verb.add_option("--export", options.exports,
+                      "Also write frames for other programs, into DIR/frames; again for more:\n"
+                      "particles:ply, particles:vtu (ParaView), surface:vdb, surface:ply, surface:glb. Metres; .ply and .vdb\n"
+                      "z up as Blender, .vtu and .glb y up; with velocity, pressure and which fluid")
+          ->allow_extra_args(false)
+          ->check(CLI::Validator(
+              [](std::string& word) {
+                const Result<std::vector<ExportKind>> kinds = parse_exports({word});
+                return kinds ? std::string() : kinds.error().what + ". " + kinds.error().mend;
+              },
+              "WHAT:FORMAT"));
+  verb.add_option("--export-rate", options.export_rate, "Of these, frames a simulated second")
+      ->check(in_range(0.01, 10000.0))
+      ->capture_default_str()
+      ->needs(what);
 }
 
 void add_backend_option(CLI::App& verb, std::string& backend, const std::string& text) {

@@ -27,6 +27,9 @@ void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window);
 void add_headset_options(CLI::App& verb, ShowOptions& options);
 CLI::Option* add_measure_option(CLI::App& verb, ShowOptions& options);
 
+/// --export and --export-rate, for a run that writes files.
+void add_export_options(CLI::App& verb, ShowOptions& options);
+
 /// What a world is made of and runs on: --backend, --spacing, --particles, --threads, --yes. `all_cores` says
 /// what --threads is by default.
 void add_world_options(CLI::App& verb, PlayOptions& options, const std::string& all_cores);

@@ -107,6 +107,8 @@ void print_summary(const HostedRun& run, const HostReport& report, const ServerF
   if (!run.measured().empty())
     std::printf("measured   %s: probes.csv, and bodies.csv where there are bodies to follow\n",
                 clean_text(run.measured().string(), kMostTextBytes).c_str());
+  if (run.exporter() != nullptr)
+    std::printf("exported   %s frames for other programs\n", grouped(run.exporter()->report().frames).c_str());
   const keep::RecordingReport& recorded = run.recording();
   if (recorded.bytes > 0) {
     const std::string& why = recorded.problem.empty() ? recorded.totals.ended_early : recorded.problem;

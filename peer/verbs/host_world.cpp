@@ -91,6 +91,7 @@ Result<HostedWorld> carry_on(const HostVerbOptions& options, Progress& progress)
     p.claim = folder.value();
     p.folder = p.claim.path();
     set_measure(options, p);
+    if (const Result<bool> exports = set_exports(options, p); !exports) return exports.error();
   }
   progress.phase("sampling");
   Result<SampledScene> sampled = sample_told(p.scene, kept.spacing, progress);

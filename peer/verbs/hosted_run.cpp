@@ -55,6 +55,7 @@ Result<std::unique_ptr<HostedRun>> HostedRun::create(HostedWorld& hosted, const 
   if (s.checkpoint_) s.host_->add_tap(*s.checkpoint_);
   if (s.recording_) s.host_->add_tap(*s.recording_);
   if (s.measure_tap_) s.host_->add_tap(*s.measure_tap_);
+  if (s.export_tap_) s.host_->add_tap(*s.export_tap_);
   return run;
 }
 
@@ -209,6 +210,12 @@ Result<bool> HostedRun::open_files() {
     measurer_ = std::move(measurer.value());
     measure_tap_ = std::make_unique<MeasureTap>(*measurer_);
   }
+  if (!p.exports.empty()) {
+    Result<std::unique_ptr<Exporter>> exporter = start_export(p, p.sampled.spacing, false);
+    if (!exporter) return exporter.error();
+    exporter_ = std::move(exporter.value());
+    export_tap_ = std::make_unique<ExportTap>(*exporter_);
+  }
   return true;
 }
 
@@ -239,6 +246,7 @@ void HostedRun::stop(const std::string& why) {
   if (checkpoint_) checkpoint_->flush();
   if (recording_) recording_report_ = recording_->finish();
   if (measurer_) measurer_->stop();
+  if (exporter_) exporter_->stop();
 }
 
 std::vector<std::string> HostedRun::news() {
@@ -254,6 +262,7 @@ std::string HostedRun::trouble() const {
   if (recording_) say("the recording has ended: ", recording_->trouble());
   if (checkpoint_) say("the world is not saved: ", checkpoint_->report().problem);
   if (measurer_) say("the instruments are not written: ", measurer_->problem());
+  if (exporter_) say("", exporter_->problem());
   return all;
 }
 

@@ -15,6 +15,7 @@
 #include "host/server/console_door.h"
 #include "host/server/net_loop.h"
 #include "host/server/snapshot_coder.h"
+#include "peer/verbs/export_source.h"
 #include "peer/verbs/host_world.h"
 #include "peer/verbs/measure_tap.h"
 
@@ -58,6 +59,7 @@ class HostedRun {
   std::filesystem::path measured() const {
     return measurer_ ? hosted_.prepared.folder : std::filesystem::path();
   }
+  const Exporter* exporter() const { return exporter_.get(); }
   double coding_seconds() const { return coding_seconds_; }
 
  private:
@@ -91,6 +93,8 @@ class HostedRun {
   std::unique_ptr<keep::RecordingWriter> recording_;
   std::unique_ptr<Measurer> measurer_;  // null where nothing is measured, as its tap
   std::unique_ptr<MeasureTap> measure_tap_;
+  std::unique_ptr<Exporter> exporter_;  // null where nothing is exported, as its tap
+  std::unique_ptr<ExportTap> export_tap_;
   std::unique_ptr<Host> host_;
   std::unique_ptr<SnapshotThread> snapshots_;
   std::unique_ptr<NetLoop> net_;

@@ -71,6 +71,9 @@ class LiveRun {
   /// nothing has.
   virtual std::string trouble() const { return {}; }
 
+  /// Frames for other programs that wait to be written; stop() writes them.
+  virtual std::size_t exports_waiting() const { return 0; }
+
   /// Fills what the run knows; after stop().
   virtual void report(RunSummary& summary) const = 0;
 };

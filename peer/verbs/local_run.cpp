@@ -79,6 +79,14 @@ Result<std::unique_ptr<LocalRun>> LocalRun::create(const Prepared& prepared, Dev
     run->measure_tap_ = std::make_unique<MeasureTap>(*run->measurer_);
     run->host_->add_tap(*run->measure_tap_);
   }
+  if (!prepared.exports.empty()) {
+    Result<std::unique_ptr<Exporter>> exporter =
+        start_export(prepared, prepared.sampled.spacing, prepared.unpaced);
+    if (!exporter) return exporter.error();
+    run->exporter_ = std::move(exporter.value());
+    run->export_tap_ = std::make_unique<ExportTap>(*run->exporter_);
+    run->host_->add_tap(*run->export_tap_);
+  }
   if (prepared.unpaced) {
     run->lockstep_ = std::make_unique<Lockstep>(*run->servo_, *run->channel_);
     run->host_->add_tap(*run->lockstep_);
@@ -104,6 +112,7 @@ void LocalRun::stop() {
     host_->wait();
   }
   if (measurer_) measurer_->stop();
+  if (exporter_) exporter_->stop();
   if (loop_) loop_->stop();
   if (servo_) servo_->close_devices();
   if (recorder_) recorder_->stop();
@@ -111,8 +120,10 @@ void LocalRun::stop() {
 }
 
 std::string LocalRun::trouble() const {
-  const std::string problem = recorder_->problem();
-  return run_trouble(problem.empty() && measurer_ ? measurer_->problem() : problem, *servo_, prepared_.scene);
+  std::string problem = recorder_->problem();
+  if (problem.empty() && measurer_) problem = measurer_->problem();
+  if (problem.empty() && exporter_) problem = exporter_->problem();
+  return run_trouble(problem, *servo_, prepared_.scene);
 }
 
 bool LocalRun::start_again() {
@@ -201,6 +212,7 @@ void LocalRun::report(RunSummary& s) const {
   }
   if (!prepared_.folder.empty()) s.files = {"wrenches.csv", "poses.csv"};
   report_instruments(measurer_.get(), prepared_.scene, prepared_.sampled, host_->world(), s);
+  report_export(exporter_.get(), s);
 }
 
 }  // namespace slosh

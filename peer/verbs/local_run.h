@@ -9,6 +9,7 @@
 #include "peer/haptics/device_loop.h"
 #include "peer/haptics/make_device.h"
 #include "peer/output/recorder.h"
+#include "peer/verbs/export_source.h"
 #include "peer/verbs/live_run.h"
 #include "peer/verbs/lockstep.h"
 #include "peer/verbs/measure_tap.h"
@@ -57,6 +58,7 @@ class LocalRun final : public LiveRun {
   /// In place where the run is recorded, so that the recording goes on.
   bool start_again() override;
   std::string trouble() const override;
+  std::size_t exports_waiting() const override { return exporter_ ? exporter_->waiting() : 0; }
   void report(RunSummary& summary) const override;
 
   Host& host() { return *host_; }
@@ -72,6 +74,8 @@ class LocalRun final : public LiveRun {
   SwitchTap switches_;
   std::unique_ptr<Measurer> measurer_;  // null where nothing is measured, as its tap
   std::unique_ptr<MeasureTap> measure_tap_;
+  std::unique_ptr<Exporter> exporter_;  // null where nothing is exported, as its tap
+  std::unique_ptr<ExportTap> export_tap_;
   std::unique_ptr<Lockstep> lockstep_;  // null where the run is paced
   std::unique_ptr<Host> host_;
   std::unique_ptr<Servo> servo_;

@@ -84,6 +84,7 @@ void add_play(CLI::App& app, VerbRun& chosen) {
   verb->add_flag("--unpaced", o->unpaced,
                  "As fast as the machine goes, the same again to the bit; headless, for measuring");
   add_measure_option(*verb, *o);
+  add_export_options(*verb, *o);
   verb->footer(kFooter);
   verb->callback([&chosen, o] { chosen = [o] { return play(*o); }; });
 }

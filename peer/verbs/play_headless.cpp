@@ -137,6 +137,11 @@ Result<bool> show_headless(const Stage& stage, LiveRun& run, const ShowOptions& 
   }
   progress.typed("");
   input.reset();
+  if (run.exports_waiting() > 0) progress.phase("writing frames");
+  for (std::size_t left = run.exports_waiting(); left > 0; left = run.exports_waiting()) {
+    progress.update(-1.0, std::to_string(left) + " frames left");
+    std::this_thread::sleep_for(kTurn);
+  }
   run.stop();
 
   if (view) {

@@ -32,6 +32,8 @@ struct ShowOptions {
   std::vector<std::string> curves;  ///< of plot_quantities(); empty = chosen
   double measure =
       -1.0;  ///< simulated s between rows of the instruments; 0 = none, below 0 = as the scene asks
+  std::vector<std::string> exports;  ///< of kExportNames
+  double export_rate = 30.0;         ///< frames a simulated second
 };
 
 struct PlayOptions : ShowOptions {

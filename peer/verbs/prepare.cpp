@@ -141,11 +141,22 @@ Result<bool> set_stage(const ShowOptions& options, bool headless, Stage& stage) 
   stage.seconds = options.seconds > 0.0 ? options.seconds
                   : headless            ? stage.scene.duration
                                         : std::numeric_limits<double>::infinity();
+  if (const Result<bool> exports = set_exports(options, stage); !exports) return exports.error();
   Result<RunFolder> folder = take_folder(options, stage.scene, headless);
   if (!folder) return folder.error();
+  if (!stage.exports.empty() && folder.value().path().empty())
+    return Error{"--export", "there is no folder to write to", "Give one with --out, or run with --headless"};
   stage.claim = folder.value();
   stage.folder = stage.claim.path();
   set_measure(options, stage);
+  return true;
+}
+
+Result<bool> set_exports(const ShowOptions& options, Stage& stage) {
+  Result<std::vector<ExportKind>> exports = parse_exports(options.exports);
+  if (!exports) return exports.error();
+  stage.exports = std::move(exports.value());
+  stage.export_rate = options.export_rate;
   return true;
 }
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "peer/export/export_options.h"
 #include "peer/output/machine.h"
 #include "peer/output/progress.h"
 #include "peer/output/run_folder.h"
@@ -25,6 +26,8 @@ struct Stage {
   int width = 0;
   int height = 0;
   double measure = 0.0;  ///< simulated s between rows of the instruments; 0 = none
+  std::vector<ExportKind> exports;  ///< what is written for other programs; empty = nothing
+  double export_rate = 30.0;        ///< frames a simulated second
 };
 
 struct Prepared : Stage {
@@ -56,8 +59,11 @@ constexpr double kLongSampling = 5.0;
 /// How often the instruments of `stage` are read: never without a folder to write to.
 void set_measure(const ShowOptions& options, Stage& stage);
 
+/// What `stage` is to export. Errors: a word that is none.
+Result<bool> set_exports(const ShowOptions& options, Stage& stage);
+
 /// Fills `stage` but for its scene, which must be there: size, seconds, folder (made, and this run's own).
-/// Errors: a size that is none, a folder that cannot be made or that holds another run.
+/// Errors: a size that is none, a folder that cannot be made or that holds another run, none for what is exported.
 Result<bool> set_stage(const ShowOptions& options, bool headless, Stage& stage);
 
 /// Loads, makes the folder, measures, samples, plans; whatever was asked for is looked at before the

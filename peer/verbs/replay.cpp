@@ -88,6 +88,7 @@ void add_replay(CLI::App& app, VerbRun& chosen) {
       ->check(CLI::Range(1, 1024));
   add_show_options(*verb, *o, false);
   add_measure_option(*verb, *o);
+  add_export_options(*verb, *o);
   verb->footer(kFooter);
   verb->callback([&chosen, o] { chosen = [o] { return replay(*o); }; });
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <optional>
 
 #include "net/clock.h"
 #include "peer/output/recorder.h"
@@ -36,6 +37,11 @@ Result<std::unique_ptr<ReplayRun>> ReplayRun::create(keep::Replayer& replayer, c
     if (!measurer) return measurer.error();
     run->measurer_ = std::move(measurer.value());
   }
+  if (!stage.exports.empty()) {
+    Result<std::unique_ptr<Exporter>> exporter = start_export(stage, replayer.head().spacing, true);
+    if (!exporter) return exporter.error();
+    run->exporter_ = std::move(exporter.value());
+  }
   return run;
 }
 
@@ -51,6 +57,7 @@ void ReplayRun::start() {
 void ReplayRun::stop() {
   request_stop();
   if (thread_.joinable()) thread_.join();
+  if (exporter_) exporter_->stop();
   snapshots_.close();
 }
 
@@ -86,8 +93,11 @@ void ReplayRun::write_samples() {
 void ReplayRun::run() {
   const std::int64_t begin_ns = steady_now_ns();
   const double time_step = replayer_.world().plan().time_step;
+  std::optional<ExportSource> frames;
+  if (exporter_) frames.emplace(*exporter_);
   show();
   if (measurer_) measurer_->begin(replayer_.world(), replayer_.elapsed());
+  if (frames) frames->show(replayer_.world(), replayer_.elapsed());
   while (!stop_.load(std::memory_order_relaxed) && replayer_.elapsed() + 0.5 * time_step < stage_.seconds) {
     const std::int64_t step_ns = steady_now_ns();
     const Result<bool> stepped = replayer_.step();
@@ -106,6 +116,7 @@ void ReplayRun::run() {
     total_.total += parts.total;
     write_samples();
     if (measurer_) measurer_->step(replayer_.world(), replayer_.elapsed());
+    if (frames) frames->show(replayer_.world(), replayer_.elapsed());
     show();
     wall_ = to_seconds(now_ns - begin_ns);
     shown_time_.store(replayer_.elapsed(), std::memory_order_relaxed);
@@ -158,6 +169,7 @@ void ReplayRun::report(RunSummary& s) const {
   if (wrenches_) s.files.emplace_back("wrenches.csv");
   if (wrenches_ && !wrenches_->problem().empty()) s.problems.push_back(wrenches_->problem());
   report_instruments(measurer_.get(), stage_.scene, replayer_.sampled(), world, s);
+  report_export(exporter_.get(), s);
 }
 
 }  // namespace slosh

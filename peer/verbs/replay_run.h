@@ -8,6 +8,7 @@
 #include "host/keep/replay.h"
 #include "net/histogram.h"
 #include "peer/output/table.h"
+#include "peer/verbs/export_source.h"
 #include "peer/verbs/live_run.h"
 #include "peer/verbs/measurer.h"
 #include "peer/verbs/prepare.h"
@@ -34,6 +35,7 @@ class ReplayRun final : public LiveRun {
   void pause(bool) override {}
   bool paused() const override { return false; }
   MouseTarget* mouse_target(std::size_t) override { return nullptr; }
+  std::size_t exports_waiting() const override { return exporter_ ? exporter_->waiting() : 0; }
   void report(RunSummary& summary) const override;
 
   /// Why the replay ended before its end; after stop(). Empty = it did not.
@@ -52,6 +54,7 @@ class ReplayRun final : public LiveRun {
   RateLog rates_;
   std::unique_ptr<Table> wrenches_;
   std::unique_ptr<Measurer> measurer_;  // null where nothing is measured
+  std::unique_ptr<Exporter> exporter_;  // null where nothing is exported
   double next_snapshot_ = 0.0;          // s since the recording's start
   double next_sample_ = 0.0;
   BodySnapshot bodies_;

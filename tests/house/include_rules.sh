@@ -33,6 +33,7 @@ toolkits='
 ^<(hidapi|libusb)             | peer/haptics/devices | HID and USB only in the drivers
 ^<pybind11/                   | peer/python | Python only in its module
 ^"peer/python/                | peer/python | nothing that ships knows the Python module
+^<(openvdb|tbb)/              | peer/export/fluid_surface.cpp | OpenVDB takes long to compile: it is in one source file
 ^<unicode/                    | net/text | ICU only behind net/text
 ^"net/impair/                 | net/impair tests | a bad network is for tests and for the program slosh-impair
 ^"peer/verbs/                 | peer/verbs peer/main.cpp tests | only the program joins host and peer
