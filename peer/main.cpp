@@ -7,6 +7,7 @@
 
 #include "net/text/clean.h"
 #include "peer/install/version.h"
+#include "peer/verbs/settings_in_force.h"
 #include "peer/verbs/verbs.h"
 
 namespace slosh {
@@ -31,6 +32,9 @@ int run(int argc, char** argv) {
   add_plan(app, chosen);
   add_sweep(app, chosen);
   add_report(app, chosen);
+  SettingsFile settings = read_settings(settings_path());
+  add_settings(app, settings, chosen);
+  put_in_force(settings, app);
   if (names_a_verb &&
       app.get_subcommands([&](const CLI::App* sub) { return sub->check_name(argv[1]); }).empty()) {
     const std::string verb = clean_text(argv[1], kMostTextBytes);
@@ -45,6 +49,12 @@ int run(int argc, char** argv) {
     for (const CLI::App* sub : app.get_subcommands()) verb = sub->get_name() + " ";
     const std::string what = clean_lines(error.what(), kMostTextBytes);
     std::fprintf(stderr, "slosh: %s. See `slosh %s--help`.\n", what.c_str(), verb.c_str());
+    return kExitUsage;
+  }
+  // Wrong settings are said before anything is begun, and nothing is begun with half of them.
+  if (!settings.errors.empty() && !app.got_subcommand("settings")) {
+    for (const Error& error : settings.errors) fail(error);
+    std::fprintf(stderr, "slosh: nothing was begun. `slosh settings` shows them all; SLOSH_SETTINGS=none goes without.\n");
     return kExitUsage;
   }
   return chosen();

@@ -6,6 +6,7 @@ set -euo pipefail
 program=${1:?usage: man_pages.sh PROGRAM VERSION OUT}
 version=${2:?usage: man_pages.sh PROGRAM VERSION OUT}
 out=${3:?usage: man_pages.sh PROGRAM VERSION OUT}
+export SLOSH_SETTINGS=none  # the defaults, not those of whoever builds
 
 # page NAME [VERB]
 page() {

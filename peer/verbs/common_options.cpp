@@ -59,6 +59,13 @@ void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window) {
       "OpenColorIO configuration that makes the picture of the light ($OCIO; none: the built-in ACES)");
   verb.add_option("--display", options.display, "Display of that configuration, by name (its first)");
   verb.add_option("--view", options.view, "View of that display, by name (its first)");
+  verb.add_option("--font-scale", options.font_scale, "Letters of the HUD, times their size")
+      ->check(in_range(0.5, 4.0))
+      ->capture_default_str();
+  if (has_window) {
+    verb.add_option("--runs", options.runs, "Folder in which runs get numbered folders where --out is not given")
+        ->capture_default_str();
+  }
   verb.add_option("--plot", options.plot, "Format of the sheet of forces: png, svg or pdf")
       ->check(CLI::IsMember(plot_formats()))
       ->capture_default_str();

@@ -150,7 +150,7 @@ int join(JoinOptions options) {
   stage.scene = visit.world().scene;
   stage.machine = this_machine();
   options.default_out =
-      "out/" + folder_name(stage.scene.name, "scene") + "-" + folder_name(status.welcome.name, "peer");
+      folder_name(stage.scene.name, "scene") + "-" + folder_name(status.welcome.name, "peer");
   const Result<bool> set = set_stage(options, headless, stage);
   if (!set) return fail(set.error());
   // Somebody else's world runs for as long as they like.

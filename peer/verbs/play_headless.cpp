@@ -12,6 +12,7 @@
 #include "peer/verbs/play_modes.h"
 #include "peer/view/headless_view.h"
 #include "render/color/display_transform.h"
+#include "render/hud_scale.h"
 
 namespace slosh {
 namespace {
@@ -91,6 +92,7 @@ RenderOptions picture_options(const Stage& stage, const ShowOptions& options, Pr
   RenderOptions render;
   if (options.surface == "paper") render = section_five(render);
   if (options.surface == "flow") render.surface = Surface::kCurvatureFlow;
+  set_hud_scale(static_cast<float>(options.font_scale));
   render.width = stage.width;
   render.height = stage.height;
   render.bilateral_iterations = options.bilateral;

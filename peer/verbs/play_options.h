@@ -13,7 +13,8 @@ namespace slosh {
 struct ShowOptions {
   double seconds = 0.0;     ///< simulated; 0 = chosen
   std::string out;          ///< folder; empty = default_out when headless, nothing with a window
-  std::string default_out;  ///< folder, numbered where it is taken; empty = out/<scene>
+  std::string default_out;  ///< folder in `runs`, numbered where it is taken; empty = <scene>
+  std::string runs = "out";
   bool overwrite = false;   ///< an earlier run in `out` may be lost
   bool headless = false;
   std::vector<std::string> devices;  ///< none, one for all, or one a grip
@@ -24,6 +25,7 @@ struct ShowOptions {
   std::string ocio;              ///< file of an OpenColorIO configuration; empty = $OCIO; "none" = ours
   std::string display;           ///< of that configuration, by name; empty = its first
   std::string view;              ///< of that display, by name; empty = its first
+  double font_scale = 1.0;       ///< of the HUD's letters
   bool render = true;
   bool vr = false;  ///< a headset is asked for
   HeadsetWish headset;

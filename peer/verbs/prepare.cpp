@@ -76,8 +76,9 @@ Result<Spacing> choose(const Scene& scene, const PlayOptions& options, std::opti
 Result<RunFolder> take_folder(const ShowOptions& options, const Scene& scene, bool headless) {
   if (!options.out.empty()) return RunFolder::take(options.out, options.overwrite);
   if (!headless) return RunFolder();
-  if (!options.default_out.empty()) return RunFolder::take_free(options.default_out);
-  return RunFolder::take_free(std::filesystem::path("out") / folder_name(scene.name, "scene"));
+  const std::string name =
+      !options.default_out.empty() ? options.default_out : folder_name(scene.name, "scene");
+  return RunFolder::take_free(std::filesystem::path(options.runs) / name);
 }
 
 /// Whether a recording can be begun there later. Errors: no such folder, not writable, something is there.

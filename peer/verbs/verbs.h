@@ -13,6 +13,8 @@ constexpr int kExitOk = 0;
 constexpr int kExitFailed = 1;
 constexpr int kExitUsage = 2;
 
+struct SettingsFile;
+
 /// What the chosen verb will do once the command line is read.
 using VerbRun = std::function<int()>;
 
@@ -28,6 +30,8 @@ void add_check(CLI::App& app, VerbRun& chosen);
 void add_plan(CLI::App& app, VerbRun& chosen);
 void add_sweep(CLI::App& app, VerbRun& chosen);
 void add_report(CLI::App& app, VerbRun& chosen);
+/// `file` must outlive `chosen`.
+void add_settings(CLI::App& app, const SettingsFile& file, VerbRun& chosen);
 
 /// "slosh: <where>: <what>. <mend>." on stderr; returns kExitFailed.
 int fail(const Error& error);

@@ -5,8 +5,11 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <filesystem>
+
+#include "render/hud_scale.h"
 
 namespace slosh {
 namespace {
@@ -15,11 +18,16 @@ namespace {
 constexpr const char* kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSansMono.ttf";
 constexpr int kLeastPixels = 13;
 constexpr int kMostPixels = 96;
+std::atomic<float> hud_scale{1.0f};
 
 }  // namespace
 
 int hud_font_pixels(float picture_height) {
   return std::clamp(static_cast<int>(std::lround(0.0195f * picture_height)), kLeastPixels, kMostPixels);
+}
+
+void set_hud_scale(float scale) {
+  hud_scale.store(scale, std::memory_order_relaxed);
 }
 
 Result<std::unique_ptr<HudPass>> HudPass::create(Context& context) {
@@ -55,7 +63,9 @@ HudPass::~HudPass() {
 void HudPass::fit_font() {
   ImGuiIO& io = ImGui::GetIO();
   const float scale = io.DisplayFramebufferScale.y > 0.0f ? io.DisplayFramebufferScale.y : 1.0f;
-  const int pixels = hud_font_pixels(io.DisplaySize.y * scale);
+  const float wanted = hud_scale.load(std::memory_order_relaxed);
+  const int fitting = hud_font_pixels(io.DisplaySize.y * scale);
+  const int pixels = std::min(static_cast<int>(std::lround(wanted * static_cast<float>(fitting))), kMostPixels);
   io.FontGlobalScale = 1.0f / scale;
   if (pixels == font_pixels_) return;
   font_pixels_ = pixels;

@@ -24,6 +24,7 @@ Terminal::Terminal(const std::vector<std::string>& arguments, const std::filesys
   pid_ = forkpty(&fd_, nullptr, nullptr, &size);
   if (pid_ != 0) return;
   setenv("TERM", "xterm", 1);
+  setenv("SLOSH_SETTINGS", "none", 0);
   unsetenv("DISPLAY");
   unsetenv("WAYLAND_DISPLAY");
   if (chdir(folder.c_str()) != 0) _exit(125);

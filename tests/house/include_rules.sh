@@ -34,6 +34,7 @@ toolkits='
 ^<pybind11/                   | peer/python | Python only in its module
 ^"peer/python/                | peer/python | nothing that ships knows the Python module
 ^<(openvdb|tbb)/              | peer/export/fluid_surface.cpp | OpenVDB takes long to compile: it is in one source file
+^<toml\+\+/                   | peer/settings | TOML only where settings are read
 ^<unicode/                    | net/text | ICU only behind net/text
 ^"net/impair/                 | net/impair tests | a bad network is for tests and for the program slosh-impair
 ^"peer/verbs/                 | peer/verbs peer/main.cpp tests | only the program joins host and peer

@@ -26,6 +26,7 @@ Process::Process(const std::vector<std::string>& arguments, const std::filesyste
   // The child.
   unsetenv("DISPLAY");
   unsetenv("WAYLAND_DISPLAY");
+  setenv("SLOSH_SETTINGS", "none", 0);  // nobody's own settings change a test
   const int in = open("/dev/null", O_RDONLY);
   const int to_out = open(out.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0644);
   const int to_err = open(err.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0644);
