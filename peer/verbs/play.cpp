@@ -22,6 +22,7 @@ constexpr const char* kFooter =
     "  poses.csv      where the handles were; --device replay:FILE plays it again\n"
     "  bodies.csv, probes.csv   what the scene's instruments read, see --measure\n"
     "  wrenches.png   forces above, torques below, one colour a device; --plot svg or pdf for a paper\n"
+    "  frames/        what --export asks for, numbered by time\n"
     "  view.mp4, final.png, summary.json\n"
     "\n"
     "In the window the mouse takes over what scripts hold: drag a thing (with all its hands) or one handle, "
