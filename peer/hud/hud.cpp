@@ -114,6 +114,8 @@ std::uint32_t Hud::status() const {
   for (std::size_t bit = 0; bit < status_until_.size(); ++bit) {
     if (status_until_[bit] >= time_) status |= 1u << bit;
   }
+  // That walls held something back is how they hold; alone it asks for nothing (README.md, Warnings).
+  if (!(status & kStatusCompressed)) status &= ~static_cast<std::uint32_t>(kStatusGuarded);
   return status;
 }
 

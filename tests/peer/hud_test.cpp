@@ -133,6 +133,24 @@ TEST_F(HudTest, AWarningOfOneStepCanBeRead) {
   EXPECT_LE(vertices(5.0, 0), without + 8) << "and goes; the time may have another digit";
 }
 
+TEST_F(HudTest, WallsThatHoldAreNoWarningUnlessTheyCrush) {
+  const Scene bare = scene();
+  Hud hud(bare, facts());
+  const auto vertices = [&](double time, std::uint32_t status) {
+    Snapshot snapshot;
+    snapshot.rigid.time = time;
+    snapshot.rigid.status = status;
+    hud.record(snapshot);
+    draw(hud);
+    return ImGui::GetDrawData()->TotalVtxCount;
+  };
+  const int without = vertices(1.0, 0);
+  EXPECT_EQ(vertices(1.1, kStatusGuarded), without);
+  const int crushed = vertices(3.0, kStatusCompressed);
+  EXPECT_GT(crushed, without);
+  EXPECT_GT(vertices(3.1, kStatusGuarded | kStatusCompressed), crushed) << "then both are said";
+}
+
 TEST_F(HudTest, FourHandsHideNoneOfTheirGlasses) {
   // As the scene spin has them: across the picture, at half its height.
   Scene many = scene();
