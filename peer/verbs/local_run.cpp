@@ -127,7 +127,6 @@ std::string LocalRun::trouble() const {
 }
 
 bool LocalRun::start_again() {
-  if (!recording_) return false;
   host_->post({HostAction::kReset});
   return true;
 }

@@ -55,7 +55,7 @@ class LocalRun final : public LiveRun {
   void step_standing(int steps) override { host_->step_standing(steps); }
   std::vector<std::string> take_refusals() override { return switches_.take_refusals(); }
   void look_from(const glm::dquat& axes) override { servo_->look_from(axes); }
-  /// In place where the run is recorded, so that the recording goes on.
+  /// In place, so that the files of the run, its film and its recording go on.
   bool start_again() override;
   std::string trouble() const override;
   std::size_t exports_waiting() const override { return exporter_ ? exporter_->waiting() : 0; }

@@ -151,6 +151,16 @@ TEST_F(WindowTest, KeysPauseStepAndSlowTheWorld) {
   display->act({"key", "space"});
   EXPECT_TRUE(comes([&] { return rows() > before + 50; })) << "it goes on";
   for (int i = 0; i < 4; ++i) display->act({"key", "Down"});
+  // The world starts again, and what was written before stays.
+  const Result<std::vector<PoseKey>> earlier = read_poses(out / "poses.csv", 0);
+  ASSERT_TRUE(earlier);
+  display->act({"key", "r"});
+  EXPECT_TRUE(comes([&] { return rows() > earlier.value().size() + 50; }));
+  const Result<std::vector<PoseKey>> later = read_poses(out / "poses.csv", 0);
+  ASSERT_TRUE(later) << later.error().text();
+  for (std::size_t i = 0; i < earlier.value().size(); i += 10)
+    EXPECT_EQ(later.value()[i].time, earlier.value()[i].time);
+  for (std::size_t i = 1; i < later.value().size(); ++i) EXPECT_LT(later.value()[i - 1].time, later.value()[i].time);
   display->act({"key", "h"});
   display->act({"key", "Tab"});
   display->act({"key", "p"});
