@@ -1,6 +1,7 @@
 // Scenes made in Python: closed meshes with the custom properties that a scene file has, written and read
 // back by the same code as any file.
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 #include <stdlib.h>
 
 #include <cmath>
@@ -349,9 +350,8 @@ void bind_builder(py::module_& m) {
            "times a second. At time 0 it is within 50 mm of its grip.")
       .def("camera", &SceneBuilder::camera, py::arg("eye"), py::arg("target"),
            py::arg("vertical_fov_deg") = 40.0, "Where the view starts, (3,) m each.")
-      .def(
-          "write", [](SceneBuilder& b, const std::string& file) { b.write(file); }, py::arg("file"),
-          "Writes a .glb, or a .gltf with everything inside. Raises slosh.Error.")
+      .def("write", &SceneBuilder::write, py::arg("file"),
+           "Writes a .glb, or a .gltf with everything inside. Raises slosh.Error.")
       .def("scene", &SceneBuilder::scene,
            "The Scene, checked as a file is. Raises slosh.Error that names node and field.");
 }

@@ -1,5 +1,6 @@
 // Recordings: what is in them, and the same world run again from them.
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
 #include "host/keep/recording.h"
 #include "host/keep/replay.h"
@@ -84,7 +85,7 @@ void add(const keep::RecordingEvent& event, double time_step, Columns& c) {
   }
 }
 
-RecordingTable open(const std::string& file) {
+RecordingTable open(const std::filesystem::path& file) {
   Interrupts interrupts;
   Columns c;
   RecordingTable table;
@@ -128,7 +129,7 @@ struct ReplayTable {
   std::string verdict;
 };
 
-ReplayTable replay(const std::string& file, const std::string& backend, int threads, long every) {
+ReplayTable replay(const std::filesystem::path& file, const std::string& backend, int threads, long every) {
   const std::optional<Backend> wanted = backend_named(backend);
   if (!wanted) throw py::value_error("backend: '" + backend + "' is unknown: choose auto, cpu or cuda");
   if (threads < 0) throw py::value_error("threads: 0 (all cores) or more");

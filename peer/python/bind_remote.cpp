@@ -1,5 +1,6 @@
 // slosh.join and slosh.Remote
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
 #include "net/clock.h"
 #include "peer/python/bindings.h"
@@ -12,7 +13,7 @@ namespace {
 
 std::unique_ptr<RemoteProgram> join(const std::string& link, const std::string& name,
                                     const std::vector<std::string>& grips, bool watch, bool particles,
-                                    const std::string& key, double timeout) {
+                                    const std::filesystem::path& key, double timeout) {
   return std::make_unique<RemoteProgram>(link,
                                          RemoteProgramOptions{name, grips, watch, particles, key, timeout});
 }

@@ -1,5 +1,6 @@
 // What a world is: scenes from files, what is wrong with them, which passes they need.
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
 #include "net/grip_start.h"
 #include "peer/python/bindings.h"
@@ -28,8 +29,8 @@ FieldEdit to_edit(const std::string& where, const py::handle& value) {
   return {where.substr(0, dot), where.substr(dot + 1), std::move(text)};
 }
 
-std::shared_ptr<Scene> load(const std::string& name_or_path, const std::optional<py::dict>& edits) {
-  const std::filesystem::path file = take(find_scene(name_or_path));
+std::shared_ptr<Scene> load(const std::filesystem::path& name_or_path, const std::optional<py::dict>& edits) {
+  const std::filesystem::path file = take(find_scene(name_or_path.string()));
   std::vector<FieldEdit> list;
   if (edits)
     for (const auto& [where, value] : *edits) list.push_back(to_edit(where.cast<std::string>(), value));
@@ -193,9 +194,8 @@ void bind_scene(py::module_& m) {
       .def_property_readonly("what", [](const PlainFinding& f) { return f.text.what; })
       .def_property_readonly("mend", [](const PlainFinding& f) { return f.text.mend; })
       .def("__str__", [](const PlainFinding& f) { return f.text.text(); });
-  m.def(
-      "check", [](const std::string& file) { return check(file); }, py::arg("file"),
-      "Everything that is wrong with a scene file, or not as its maker will have meant it: list[Finding].");
+  m.def("check", &check, py::arg("file"),
+        "Everything that is wrong with a scene file, or not as its maker will have meant it: list[Finding].");
 
   py::class_<Plan>(
       m, "Plan",

@@ -1,5 +1,6 @@
 // slosh.World
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
 #include "peer/python/bindings.h"
 #include "peer/python/words.h"

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::int64_t kPeriodNs = 1'000'000;  // of the device loop
 
-Identity identity_for(const std::string& key) {
+Identity identity_for(const std::filesystem::path& key) {
   if (key.empty()) return Identity::generate();
   return python::take(open_peer_key(key)).identity;
 }

@@ -4,6 +4,7 @@
 #include <pybind11/pybind11.h>
 
 #include <atomic>
+#include <filesystem>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -25,8 +26,8 @@ struct RemoteProgramOptions {
   std::vector<std::string> grips;
   bool watch = false;
   bool particles = true;
-  std::string key;        ///< file; empty = a key for this visit alone
-  double timeout = 10.0;  ///< s until the world is there
+  std::filesystem::path key;  ///< file; empty = a key for this visit alone
+  double timeout = 10.0;      ///< s until the world is there
 };
 
 /// Everything with Python's lock; waiting lets go of it. Poses go out and forces come in on threads of their

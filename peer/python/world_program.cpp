@@ -75,7 +75,7 @@ WorldProgram::WorldProgram(std::shared_ptr<const Scene> scene, const WorldProgra
     hands_.emplace_back(grip_start(*scene_, i), scene_->grips[i]);
   inputs_.resize(hands_.size());
   if (!options.hands.is_none()) {
-    for (const auto& [name, source] : options.hands.cast<py::dict>())
+    for (const auto& [name, source] : py::dict(options.hands))
       hold(py::reinterpret_borrow<py::object>(name), py::reinterpret_borrow<py::object>(source));
   }
 
@@ -285,7 +285,7 @@ void WorldProgram::refuse_while_recorded(const char* what) const {
                   "a recording cannot say that the world was put elsewhere", "Call stop_recording() first"});
 }
 
-void WorldProgram::record(const std::string& file) {
+void WorldProgram::record(const std::filesystem::path& file) {
   refuse_while_moving();
   if (recording_) throw Raised({"slosh.World", "it is being recorded already", "stop_recording() ends that"});
   keep::RecordingOptions options;

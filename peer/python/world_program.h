@@ -1,6 +1,7 @@
 // A world that a Python program steps, with a hand for each of its grips.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -64,7 +65,7 @@ class WorldProgram {
   const Measurement& measure();
 
   /// Recordings: slosh replay, slosh.Recording and slosh.replay() read them.
-  void record(const std::string& file);
+  void record(const std::filesystem::path& file);
   void stop_recording();
 
  private:

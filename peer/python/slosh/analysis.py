@@ -99,7 +99,7 @@ def fit_sine(time: npt.ArrayLike, values: npt.ArrayLike, frequency: float) -> Tu
 
 
 def sweep(
-    scene: str,
+    scene: Union[str, "os.PathLike[str]"],
     values: Mapping[str, Sequence[Value]],
     measure: Callable[[World], Mapping[str, float]],
     spacing: Optional[float] = None,

@@ -1,6 +1,7 @@
 """Scenes: read, changed, built, checked, planned; what is refused."""
 
 import os
+import pathlib
 import tempfile
 import unittest
 
@@ -144,6 +145,7 @@ class Building(unittest.TestCase):
                 self.assertEqual([f.kind for f in findings if f.is_error], [])
                 self.assertIn("no-camera", [f.kind for f in findings])
                 self.assertEqual(slosh.load_scene(file).fluids[0].density, 900.0)
+                self.assertEqual(slosh.load_scene(pathlib.Path(file)).name, "tank")
             with self.assertRaises(ValueError):
                 self.tank()[0].write(os.path.join(folder, "tank.obj"))
             with self.assertRaises(slosh.Error):

@@ -163,6 +163,9 @@ class Runs(unittest.TestCase):
                 world().run(seconds)
         with self.assertRaises(ValueError):
             world().step(0)
+        for hands in (5, {"elbow": None}, {0: "by heart"}):
+            with self.assertRaises((TypeError, KeyError, ValueError)):
+                world(hands=hands)
 
 
 class Threads(unittest.TestCase):
