@@ -45,8 +45,9 @@ void add_case_options(CLI::App& verb, ReportOptions& options, const std::string&
 }  // namespace
 
 void add_report(CLI::App& app, VerbRun& chosen) {
-  CLI::App* verb =
-      app.add_subcommand("report", "Measure: error against run time, stability, hands over a delay, what passes cost, pictures, the paper's figures");
+  CLI::App* verb = app.add_subcommand("report",
+                                      "Measure: error against run time, stability, hands over a delay, what "
+                                      "passes cost, pictures, the paper's figures");
   verb->require_subcommand(1);
   auto options = std::make_shared<ReportOptions>();
   CLI::App* error = verb->add_subcommand("error", "Cases with a known answer: how far off, at what cost");
@@ -86,7 +87,7 @@ void add_report(CLI::App& app, VerbRun& chosen) {
       "Examples:\n  slosh report picture\n  slosh report picture --quick --out here");
   picture->callback([&chosen, options] { chosen = [options] { return report_picture(*options); }; });
   CLI::App* coupling = verb->add_subcommand("coupling", "Hands at several sites on one body, over a delay");
-  coupling->add_flag("--quick", options->quick, "The cases that broke schemes, to 300 ms: half a minute");
+  coupling->add_flag("--quick", options->quick, "The cases that broke schemes, to 300 ms: a minute");
   coupling->add_option("--out", options->out, "Folder for the table and pictures (slosh-report-coupling)");
   coupling->add_flag("--overwrite", options->overwrite, "Lose the report that is in that folder");
   coupling->footer(
@@ -97,11 +98,15 @@ void add_report(CLI::App& app, VerbRun& chosen) {
       "the "
       "host's force\n"
       "(the published scheme), a spring at the peer, and the replica that peers use. Writes coupling.csv, a "
-      "row as "
-      "soon as\n"
+      "row as soon as\n"
       "it is there; a map a scheme of what is stable, with the energy generated; force_error.png, with "
       "theory's "
-      "bounds.\n\n"
+      "bounds;\n"
+      "transparency.csv and .png: the impedance that a hand is rendered, 0.1 to 30 Hz, and what it should "
+      "be;\n"
+      "spectrum.csv and .png: a force in syrup with and without the host's model of it, host at 60 to 1000 "
+      "Hz.\n"
+      "All of it takes about 20 minutes on one core; Ctrl-C keeps the table so far.\n\n"
       "Examples:\n  slosh report coupling --quick\n  slosh report coupling --out here");
   coupling->callback([&chosen, options] { chosen = [options] { return report_coupling(*options); }; });
   CLI::App* passes = verb->add_subcommand("passes", "What a scene's step saves by what it leaves out");
@@ -122,7 +127,8 @@ void add_report(CLI::App& app, VerbRun& chosen) {
   passes->callback([&chosen, options, scene, spacing] {
     chosen = [options, scene, spacing] { return report_passes(*options, *scene, *spacing); };
   });
-  CLI::App* figure = verb->add_subcommand("figure", "A figure of the paper again, judged against the paper's words");
+  CLI::App* figure =
+      verb->add_subcommand("figure", "A figure of the paper again, judged against the paper's words");
   auto which = std::make_shared<FigureOptions>();
   figure->add_option("N", which->number, "8 spoon, 9 pouring, 10 spinning glasses, 11 bucket in two hands")
       ->required()

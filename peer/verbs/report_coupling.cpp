@@ -1,5 +1,7 @@
 // `slosh report coupling`: hands at several sites on one body, in virtual time: where each scheme is steady,
 // and how far off its force is.
+#include "peer/verbs/report_coupling.h"
+
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
@@ -248,8 +250,14 @@ int report_coupling(const ReportOptions& options) {
   const Result<bool> drawn = draw(chart_script(panels, 2, "Hands at a distance, in virtual time"),
                                   folder.value() / "force_error.png");
   if (!drawn) return fail(drawn.error());
-  std::printf("Written: %s/coupling.csv, a map_….png each scheme, and force_error.png\n",
-              clean_text(folder.value().string(), kMostTextBytes).c_str());
+  for (const auto part : {report_transparency, report_spectra}) {
+    const Result<bool> told = part(options, folder.value(), progress);
+    if (!told) return fail(told.error());
+  }
+  std::printf(
+      "Written: %s/coupling.csv, a map_….png each scheme, force_error.png, and transparency and spectrum as "
+      "csv and png\n",
+      clean_text(folder.value().string(), kMostTextBytes).c_str());
   return kExitOk;
 }
 

@@ -15,16 +15,18 @@
 namespace slosh::coupling {
 namespace {
 
-constexpr double kPeriod = 0.001;   // s, of every device loop
-constexpr double kBegins = 0.5;     // s
-constexpr double kMoves = 4.0;      // s
-constexpr double kReach = 0.08;     // m
-constexpr double kPace = 0.9;       // Hz
-constexpr double kReleased = 2.0;   // s: about where a hand is fastest
-constexpr double kBroken = 2000.0;  // N
-constexpr double kGone = 3.0;       // m
-constexpr double kStill = 2e-3;     // m/s: slower than this counts as still
-constexpr double kRounding = 1e-9;  // s
+constexpr double kPeriod = 0.001;    // s, of every device loop
+constexpr double kBegins = 0.5;      // s
+constexpr double kMoves = 4.0;       // s
+constexpr double kReach = 0.08;      // m
+constexpr double kPace = 0.9;        // Hz
+constexpr double kReleased = 2.0;    // s: about where a hand is fastest
+constexpr double kBroken = 2000.0;   // N
+constexpr double kGone = 3.0;        // m
+constexpr double kStill = 2e-3;      // m/s: slower than this counts as still
+constexpr double kRounding = 1e-9;   // s
+constexpr double kToneSpeed = 0.03;  // m/s
+constexpr double kToneWay = 0.008;   // m
 
 /// What the host tells a site.
 struct StateWord {
@@ -91,6 +93,24 @@ std::vector<PoseKey> wanted_motion(const Pose& start, double share, bool release
   return keys;
 }
 
+/// A sum of tones whose phases keep it from leaping at once.
+std::vector<PoseKey> toned_motion(const Pose& start, const std::vector<double>& tones, double seconds) {
+  std::vector<PoseKey> keys;
+  for (double t = 0.0; t <= seconds + kRounding; t += 0.002) {
+    double place = 0.0;
+    for (std::size_t i = 0; i < tones.size(); ++i) {
+      const double pace = 2.0 * std::numbers::pi * tones[i];
+      const double phase = std::numbers::pi * static_cast<double>(i * i) / static_cast<double>(tones.size());
+      place += std::min(kToneSpeed / pace, kToneWay) * std::sin(pace * t + phase);
+    }
+    PoseKey& key = keys.emplace_back();
+    key.time = t;
+    key.pose = start;
+    key.pose.position.x += place * std::min(t, 1.0);
+  }
+  return keys;
+}
+
 double share_of(Motion motion, int hand) {
   switch (motion) {
     case Motion::kTogether:
@@ -153,7 +173,12 @@ class Study {
                                                                     0.0,
                                                                     false,
                                                                     0}));
-      const PoseTrack track(wanted_motion(start, share_of(c.motion, i), c.motion == Motion::kRelease), start);
+      std::vector<PoseKey> wanted;
+      if (c.tones.empty())
+        wanted = wanted_motion(start, share_of(c.motion, i), c.motion == Motion::kRelease);
+      else if (i == 0)
+        wanted = toned_motion(start, c.tones, c.seconds);
+      const PoseTrack track(wanted, start);
       site.person = std::make_unique<OperatorDevice>(track, parse_operator(c.grip + ",correction=0").value());
       site.held = std::make_unique<HeldBody>(body, grips, tuning);
       site.own.resize(grips.size());
@@ -165,6 +190,7 @@ class Study {
   Outcome all() {
     const auto ticks = static_cast<std::size_t>(std::lround(c_.seconds / kPeriod));
     run_.felt.reserve(ticks * sites_.size());
+    run_.handles.reserve(ticks);
     for (std::size_t i = 0; i < ticks && !broken_; ++i) tick(i);
     run_.verdict = verdict();
     for (const auto& site : sites_) {
@@ -196,6 +222,7 @@ class Study {
         glm::dot(site.felt.torque, rotation_between(site.before.orientation, report.pose.orientation));
     site.before = report.pose;
     const bool first = &site == sites_.front().get();
+    if (first) run_.handles.push_back(report.pose);
     const bool let_go = first && c_.motion == Motion::kRelease && now_ > kBegins + kReleased;
     site.hand = {now_, report.pose, report.twist, !let_go, scheme_ == Scheme::kReplica ? 0.0 : site.put_in};
     if (!(glm::length(report.pose.position) < kGone)) broken_ = true;
@@ -280,7 +307,7 @@ class Study {
       // The step's end answers to the reading and its whole length.
       if (j == g && hand.stamp >= 0.0) said_[j].ack_ns = to_nanoseconds(hand.stamp + time_step_) + 1;
     }
-    if (c_.load == Load::kFluid) site.held->set_fluid(site.state.load);
+    if (c_.load == Load::kFluid || c_.load == Load::kSyrup) site.held->set_fluid(site.state.load);
     site.held->hear({to_nanoseconds(now_) + 1, site.state.stamp, time_step_, site.state.motion, said_});
   }
 

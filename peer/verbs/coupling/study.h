@@ -21,8 +21,8 @@ enum class Scheme {
 enum class Motion { kTogether, kOneMoves, kOpposing, kRelease };
 /// What acts on the body besides hands: nothing; drag and 1.5 kg of fluid that swings at 1.5 Hz, of which the
 /// host says a model as added mass and drag; the same, and it says none; its weight, and a table that it
-/// starts on.
-enum class Load { kNone, kFluid, kFluidUntold, kTable };
+/// starts on; a syrup that drags by 40 N·s/m, of which the host says a model, or none.
+enum class Load { kNone, kFluid, kFluidUntold, kTable, kSyrup, kSyrupUntold };
 
 struct Case {
   std::string name;
@@ -39,6 +39,10 @@ struct Case {
   double replica_mass = 1.0;    ///< times the body's: how wrong the replica is
   double most_damping = 100.0;  ///< N·s/m that the devices hold
   double seconds = 12.0;        ///< the hands move for 4 of them, from 0.5 on
+  double body_mass = 2.5;       ///< kg
+  /// Hz: not empty, and the first hand moves along x by a sum of these from the start to the end, each at
+  /// 0.03 m/s but at most 8 mm; the others stand.
+  std::vector<double> tones;
 };
 
 enum class Verdict {
@@ -56,6 +60,7 @@ struct Outcome {
   double fired = 0.0;        ///< share of ticks in which a site's guard acted
   bool fell_back = false;    ///< a site went over to the damped spring
   std::vector<Wrench> felt;  ///< each tick's, hand by hand
+  std::vector<Pose> handles;  ///< each tick's, of the first hand
 };
 
 /// Runs `c`: the same numbers on every machine of a kind. About 0.01 s a hand and second of 1 kHz.

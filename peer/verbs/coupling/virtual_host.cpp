@@ -7,13 +7,14 @@
 namespace slosh::coupling {
 namespace {
 
-constexpr double kMass = 2.5;            // kg
 constexpr double kRadius = 0.15;         // m
 constexpr double kFluidMass = 1.5;       // kg
 constexpr double kSwing = 1.5;           // Hz
 constexpr double kFluidDamping = 1.0;    // N·s/m, of the swing
 constexpr double kDrag = 4.0;            // N·s/m
 constexpr double kTurningDrag = 0.02;    // N·m·s/rad
+constexpr double kSyrupDrag = 40.0;      // N·s/m
+constexpr double kSyrupTurning = 0.1;    // N·m·s/rad
 constexpr double kGravity = 9.81;        // m/s²
 constexpr double kTable = 2e4;           // N/m
 constexpr double kTableDamping = 100.0;  // N·s/m
@@ -26,7 +27,7 @@ VirtualHost::VirtualHost(const Case& c, double time_step)
       gains_{c.stiffness, 0.03 * c.stiffness, 0.01 * c.stiffness, 0.0003 * c.stiffness},
       on_hand_(static_cast<std::size_t>(c.hands)) {
   body_.free = true;
-  body_.mass = kMass;
+  body_.mass = c.body_mass;
   body_.inertia = glm::dmat3(0.0);
   body_.inertia[0][0] = body_.inertia[2][2] = 0.03;
   body_.inertia[1][1] = 0.025;
@@ -48,8 +49,10 @@ Wrench VirtualHost::external() {
   if (kind_ == Load::kTable) {
     const double in = std::max(-body_.position.y, 0.0);
     const double pushes = in > 0.0 ? kTable * in - kTableDamping * body_.velocity.y : 0.0;
-    return {{0.0, std::max(pushes, 0.0) - kMass * kGravity, 0.0}, {}};
+    return {{0.0, std::max(pushes, 0.0) - body_.mass * kGravity, 0.0}, {}};
   }
+  if (kind_ == Load::kSyrup || kind_ == Load::kSyrupUntold)
+    return {-kSyrupDrag * body_.velocity, -kSyrupTurning * body_.angular_velocity};
   const double pace = 2.0 * std::numbers::pi * kSwing;
   const glm::dvec3 pull = kFluidMass * pace * pace * (fluid_place_ - body_.position) +
                           kFluidDamping * (fluid_velocity_ - body_.velocity);
@@ -83,16 +86,18 @@ void VirtualHost::step(const std::vector<HandWord>& hands) {
     const Wrench on_body = coupling_wrench(c, solve, dt_);
     on_hand_[static_cast<std::size_t>(c.grip)] = {-on_body.force, -on_body.torque};
   }
-  if (kind_ != Load::kFluid) return;
+  const bool syrup = kind_ == Load::kSyrup;
+  if (kind_ != Load::kFluid && !syrup) return;
   // As a host says it: what is left of the force without what it gave for being accelerated.
-  const glm::dvec3 left = acting.force + kFluidMass * (body_.velocity - before) / dt_;
+  const double added = syrup ? 0.0 : kFluidMass;
+  const glm::dvec3 left = acting.force + added * (body_.velocity - before) / dt_;
   load_.reference = {body_.position, body_.orientation};
   load_.twist = {body_.velocity, body_.angular_velocity};
   load_.wrench = {left.x, left.y, left.z, acting.torque.x, acting.torque.y, acting.torque.z};
   for (std::size_t i = 0; i < 3; ++i) {
-    load_.added_mass[i][i] = kFluidMass;
-    load_.d_velocity[i][i] = -kDrag;
-    load_.d_velocity[3 + i][3 + i] = -kTurningDrag;
+    load_.added_mass[i][i] = added;
+    load_.d_velocity[i][i] = syrup ? -kSyrupDrag : -kDrag;
+    load_.d_velocity[3 + i][3 + i] = syrup ? -kSyrupTurning : -kTurningDrag;
   }
 }
 

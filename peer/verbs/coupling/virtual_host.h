@@ -19,7 +19,7 @@ struct HandWord {
   double energy = 0.0;  ///< J
 };
 
-/// A bucket's worth: 2.5 kg, 0.03 kg·m², grips on a circle of 0.15 m.
+/// A bucket's worth: 0.03 kg·m² at 2.5 kg, grips on a circle of 0.15 m.
 class VirtualHost {
  public:
   VirtualHost(const Case& c, double time_step);
