@@ -59,6 +59,11 @@ Result<HandDevice> make_device(const Scene& scene, std::size_t grip, const std::
   return hand;
 }
 
+bool is_felt(const std::string& spec) {
+  const std::string kind = spec.substr(0, spec.find(':'));
+  return kind == "falcon" || kind == "plugin" || kind == "operator";
+}
+
 Result<DeviceSet> make_devices(const Scene& scene, const std::vector<std::string>& specs, bool has_window,
                                const std::shared_ptr<HeadsetLink>& headset) {
   const std::size_t grips = scene.grips.size();

@@ -32,6 +32,10 @@ Result<HandDevice> make_device(const Scene& scene, std::size_t grip, const std::
                                const Pose& start, bool has_window,
                                const std::shared_ptr<HeadsetLink>& headset = nullptr);
 
+/// Whether a device that `spec` asks for gives a force that moves the hand (Device::gives_way), as far as its
+/// kind tells; what is no kind at all does not.
+bool is_felt(const std::string& spec);
+
 /// `specs`: none (all `script`), one for all, or one a grip. `has_window` is what a mouse needs. Errors: an
 /// unknown kind, more specs than grips, a mouse without a window, a controller without a headset or for two
 /// grips, a replay file that cannot be used.

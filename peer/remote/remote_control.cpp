@@ -48,6 +48,7 @@ void RemoteLink::say_hello() {
   wire::Hello hello;
   hello.token = options_.token;
   hello.name = options_.name;
+  if (!options_.fluid_models) hello.capabilities &= ~wire::kFluidWrenches;
   hello.snapshots = !options_.snapshots.wanted ? wire::SnapshotWish::kNone
                     : options_.snapshots.film  ? wire::SnapshotWish::kFilm
                                                : wire::SnapshotWish::kNewest;

@@ -1,5 +1,6 @@
 // The verbs `join` and `watch`: somebody else's world, by a link.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <limits>
 #include <memory>
@@ -7,6 +8,7 @@
 #include "net/clock.h"
 #include "net/console_verbs.h"
 #include "net/link.h"
+#include "peer/haptics/make_device.h"
 #include "peer/remote/peer_key.h"
 #include "peer/verbs/common_options.h"
 #include "peer/verbs/find_headset.h"
@@ -130,6 +132,9 @@ int join(JoinOptions options) {
   }
   remote.wants_grip = !options.watch;
   remote.grips = options.grips;
+  // Only a replica that a hand feels uses them.
+  remote.fluid_models =
+      options.coupling == "replica" && std::any_of(options.devices.begin(), options.devices.end(), is_felt);
   remote.snapshots.wanted = options.render;
   remote.snapshots.film = headless && options.render;
   remote.snapshots.frames_per_second = options.frames_per_second;

@@ -103,5 +103,18 @@ TEST(DeviceReport, SoundnessNeedsFiniteNumbersAndARotation) {
   EXPECT_FALSE(is_sound(report));
 }
 
+/// What a spec says of the force is what the device that it makes says.
+TEST(Devices, ASpecTellsWhetherTheHandIsMoved) {
+  Scene scene;
+  scene.grips.resize(1);
+  for (const char* spec :
+       {"script", "mouse", "spacemouse", "falcon:1", "plugin:./lib.so", "operator:tight"}) {
+    const Result<HandDevice> hand = make_device(scene, 0, spec, Pose{}, true);
+    ASSERT_TRUE(hand) << spec;
+    EXPECT_EQ(is_felt(spec), hand.value().device->gives_way()) << spec;
+  }
+  EXPECT_FALSE(is_felt("nothing at all"));
+}
+
 }  // namespace
 }  // namespace slosh

@@ -343,6 +343,18 @@ TEST(RemoteLink, WhoDrawsNothingAsksForNoSnapshots) {
   }
 }
 
+TEST(RemoteLink, WhoCannotUseModelsOfTheFluidAsksForNone) {
+  for (const bool wanted : {true, false}) {
+    RemoteOptions options;
+    options.fluid_models = wanted;
+    Together both({}, options);
+    ASSERT_TRUE(both.run_until(LinkState::kLive));
+    const wire::Capabilities asked = both.host.hellos[0].capabilities;
+    EXPECT_EQ((asked & wire::kFluidWrenches) != 0, wanted);
+    EXPECT_EQ(asked | wire::kFluidWrenches, wire::kOurCapabilities) << "and for all else";
+  }
+}
+
 TEST(RemoteLink, AStalledHostLetsTheForceGoAndIsToldOf) {
   Together both;
   ASSERT_TRUE(both.run_until(LinkState::kLive));
