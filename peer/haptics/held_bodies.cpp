@@ -174,10 +174,11 @@ void HeldBodies::advance(std::int64_t now_ns) noexcept {
   for (Entry& entry : bodies_) {
     const LoopDelay delay = entry.held.delay();
     const double far = (delay.round_trip + delay.jitter - kNear) / (kFar - kNear);
-    const bool at_hand = here_ || coupling_ == Coupling::kSpring;
-    const double goal = at_hand ? 0.0 : std::clamp(far, 0.0, 1.0);
-    entry.share =
-        here_ ? 0.0 : entry.share + std::clamp(goal - entry.share, -tick / kShareRise, tick / kShareRise);
+    const bool modelled = entry.model_tick != 0;
+    double goal = here_ ? (modelled ? 1.0 : 0.0) : std::clamp(far, 0.0, 1.0);
+    if (coupling_ == Coupling::kSpring) goal = 0.0;
+    entry.share += std::clamp(goal - entry.share, -tick / kShareRise, tick / kShareRise);
+    if (here_ && !modelled) entry.share = 0.0;
     entry.held.advance(entry.own, tick * rate_, now_ns);
   }
 }

@@ -19,7 +19,9 @@ enum class Coupling {
 
 /// A HeldBody for each free body with grips. How far its replica counts goes by the delay of this site's
 /// loop: where host and hand are in one process, or a few milliseconds apart, the host's own body is as new
-/// and is used as it is. One thread, the device loop's; neither allocates nor locks once made.
+/// and is used as it is. In one process with a model of the fluid's wrench on it the replica is used all the
+/// same: it has the fluid at 1 kHz, however slow the world's steps are. One thread, the device loop's;
+/// neither allocates nor locks once made.
 class HeldBodies {
  public:
   HeldBodies(const Scene& scene, Coupling coupling);
@@ -65,7 +67,7 @@ class HeldBodies {
     std::vector<HostHand> said;
     double share = 0.0;
     bool anew = false;
-    std::uint64_t model_tick = 0;
+    std::uint64_t model_tick = 0;  // of the newest model; 0 = none came
   };
   void tell(Entry& entry, const BodyMessage& newest, std::int64_t now_ns) noexcept;
 

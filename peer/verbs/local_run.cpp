@@ -49,6 +49,12 @@ Result<std::unique_ptr<LocalRun>> LocalRun::create(const Prepared& prepared, Dev
   options.snapshot_rate = snapshot_rate;
   options.until = prepared.seconds;
   options.paced = !prepared.unpaced;
+  std::uint64_t felt = 0;
+  for (std::size_t i = 0; i < devices.devices.size() && i < FluidDemand::kMostGrips; ++i) {
+    if (devices.devices[i] && devices.devices[i]->gives_way()) felt |= std::uint64_t{1} << i;
+  }
+  run->fluid_demand_.want(felt);
+  options.fluid_demand = &run->fluid_demand_;
   run->host_ = std::make_unique<Host>(std::move(world), scene, *run->channel_, options);
   if (!prepared.record.empty()) {
     keep::RecordingOptions recording;

@@ -77,6 +77,7 @@ class LocalRun final : public LiveRun {
   std::unique_ptr<Exporter> exporter_;  // null where nothing is exported, as its tap
   std::unique_ptr<ExportTap> export_tap_;
   std::unique_ptr<Lockstep> lockstep_;  // null where the run is paced
+  FluidDemand fluid_demand_;            // of hands that feel
   std::unique_ptr<Host> host_;
   std::unique_ptr<Servo> servo_;
   std::unique_ptr<DeviceLoop> loop_;
