@@ -30,8 +30,9 @@ PairBatch drag_pairs(const ParticleView<FloatBatch>& p, const NeighborColumns& n
   pairs.z = p.z - FloatBatch::load_unaligned(n.z + j);
   pairs.r_squared = pairs.x * pairs.x + pairs.y * pairs.y + pairs.z * pairs.z;
   const auto kernel = Parts::ForceKernel::pair(pairs.r_squared, h, weight);
-  const FloatBatch drag = factor * drag_coefficient(p, i, kernel.laplacian);
-  pairs.q = drag * (kernel.inverse_r * kernel.inverse_r);
+  // Eq 9's factor, so that both sides of a pair find the same to the bit.
+  const FloatBatch of_both = (FloatBatch(0.5f) * (p.viscosity + i.viscosity)) * (p.volume * i.volume);
+  pairs.q = of_both * (factor * kernel.laplacian * (kernel.inverse_r * kernel.inverse_r));
   return pairs;
 }
 
