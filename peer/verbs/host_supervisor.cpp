@@ -183,7 +183,12 @@ int supervise_host(const HostVerbOptions& options, const HostBody& body, const H
       signals.release();
       // Nobody can stop a child whose supervisor was killed, and its port would stay taken.
       prctl(PR_SET_PDEATHSIG, SIGKILL);
-      return getppid() == parent ? body(now, &reins) : kExitFailed;
+      const int code = getppid() == parent ? body(now, &reins) : kExitFailed;
+      std::fflush(nullptr);
+      // Not exit(): what libraries do there was begun in the parent. log4cplus, which OpenVDB brings along,
+      // starts threads as it is loaded and waits for them at its end; in a child they never were, and a host
+      // that had been stopped stayed for ever (KeptHost.ItsRecordingReplays…).
+      _exit(code);
     }
     if (child < 0) {
       signals.release();
