@@ -88,8 +88,9 @@ HostVerbOptions restarted(const HostVerbOptions& options, const std::string& che
 using HostBody = std::function<int(const HostVerbOptions&, HostReins*)>;
 
 /// Runs `body` in a child process, again and again where a fault ends it, or where its world or its network
-/// hangs. Returns what the last child came to (128 + signal where one ended it); a child ends with what `body`
-/// did, without exit()'s handlers. Signals that ask for the end are passed on. Before any thread of ours starts.
+/// hangs. Returns what the last child came to (128 + signal where one ended it); a child ends with what
+/// `body` did, without exit()'s handlers. Signals that ask for the end are passed on. Before any thread of
+/// ours starts.
 int supervise_host(const HostVerbOptions& options, const HostBody& body, const HangLimits& limits = {});
 
 }  // namespace slosh
