@@ -119,7 +119,9 @@ TEST(Report, OfPicturesComparesSurfaces) {
   EXPECT_LT(degrees("ours"), 0.4 * degrees("curvature flow")) << table;
   const Result<Image> sheet = read_png(test::test_folder() / "p" / "picture.png");
   ASSERT_TRUE(sheet) << sheet.error().text();
-  EXPECT_EQ(sheet.value().width, 3 * 640);
+  // With Embree, which the tests' packages bring, the traced truth stands beside the three.
+  EXPECT_EQ(sheet.value().width, 4 * 640);
+  EXPECT_NE(table.find("reference"), std::string::npos) << table;
   EXPECT_EQ(test::slosh({"report", "picture", "--quick", "--out", "p"}).code, 1)
       << "an earlier one is not lost";
 }
