@@ -93,11 +93,12 @@ TEST_F(PlayTest, WritesEveryFileOfARun) {
   EXPECT_EQ(last.value().width, 320);
   EXPECT_EQ(last.value().height, 240);
 
-  // Two hands hold one bucket: after the first swing they carry it, so both are pulled down. Where a sanitizer
-  // makes steps that take longer than a device waits for a force, it has faded, as it must.
-  if (summary["step_ms"]["p50"] > 50.0) return;
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  // Two hands hold one bucket: after the first swing they carry it, so both are pulled down. A sanitizer's
+  // steps take longer than a device waits for a force, which then has faded, as it must.
   const std::vector<WrenchSeries> felt = read_wrenches(out() / "wrenches.csv").value();
   for (const WrenchSeries& hand : felt) EXPECT_LT(hand.on_hand.back().force.y, -2.0);
+#endif
 }
 
 TEST_F(PlayTest, SurfaceAndSheetAreAsAskedFor) {
