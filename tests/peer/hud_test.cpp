@@ -67,6 +67,15 @@ class HudTest : public ::testing::Test {
     hud.draw(rates);
     ImGui::Render();
   }
+  /// Vertices of the panel after a step at `time` (s) with these status bits.
+  static int drawn_with(Hud& hud, double time, std::uint32_t status) {
+    Snapshot snapshot;
+    snapshot.rigid.time = time;
+    snapshot.rigid.status = status;
+    hud.record(snapshot);
+    draw(hud);
+    return ImGui::GetDrawData()->TotalVtxCount;
+  }
   /// How far below (px) what a command may draw on some of its vertices lie, at worst.
   static float cut_off() {
     float most = 0.0f;
@@ -118,14 +127,7 @@ TEST_F(HudTest, AWarningIsWholeFromItsFirstPictureOn) {
 TEST_F(HudTest, AWarningOfOneStepCanBeRead) {
   const Scene bare = scene();
   Hud hud(bare, facts());
-  const auto vertices = [&](double time, std::uint32_t status) {
-    Snapshot snapshot;
-    snapshot.rigid.time = time;
-    snapshot.rigid.status = status;
-    hud.record(snapshot);
-    draw(hud);
-    return ImGui::GetDrawData()->TotalVtxCount;
-  };
+  const auto vertices = [&](double time, std::uint32_t status) { return drawn_with(hud, time, status); };
   const int without = vertices(1.0, 0);
   const int with = vertices(1.1, kStatusSpeedLimited);
   EXPECT_GT(with, without);
@@ -136,14 +138,7 @@ TEST_F(HudTest, AWarningOfOneStepCanBeRead) {
 TEST_F(HudTest, WallsThatHoldAreNoWarningUnlessTheyCrush) {
   const Scene bare = scene();
   Hud hud(bare, facts());
-  const auto vertices = [&](double time, std::uint32_t status) {
-    Snapshot snapshot;
-    snapshot.rigid.time = time;
-    snapshot.rigid.status = status;
-    hud.record(snapshot);
-    draw(hud);
-    return ImGui::GetDrawData()->TotalVtxCount;
-  };
+  const auto vertices = [&](double time, std::uint32_t status) { return drawn_with(hud, time, status); };
   const int without = vertices(1.0, 0);
   EXPECT_EQ(vertices(1.1, kStatusGuarded), without);
   const int crushed = vertices(3.0, kStatusCompressed);

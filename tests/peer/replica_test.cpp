@@ -44,11 +44,8 @@ ReplicaHand hand_at(double time, int i) {
   return hand;
 }
 
-/// With hands of this site alone, it is the host's own solve at the device loop's step.
-TEST(Replica, MovesAsTheHostsSolveDoes) {
-  const ReplicaBody body = bucket();
-  const std::vector<ReplicaGrip> grips = two_grips();
-  BodyReplica replica(body, grips);
+/// The same body as the host solves it, free and at rest.
+RigidBody on_the_host(const ReplicaBody& body) {
   RigidBody host;
   host.free = true;
   host.mass = body.mass;
@@ -56,6 +53,15 @@ TEST(Replica, MovesAsTheHostsSolveDoes) {
   host.inverse_inertia = glm::inverse(body.inertia);
   host.local_center = body.center;
   host.position = body.center;
+  return host;
+}
+
+/// With hands of this site alone, it is the host's own solve at the device loop's step.
+TEST(Replica, MovesAsTheHostsSolveDoes) {
+  const ReplicaBody body = bucket();
+  const std::vector<ReplicaGrip> grips = two_grips();
+  BodyReplica replica(body, grips);
+  RigidBody host = on_the_host(body);
   replica.restart({host.position, host.orientation, {}});
   FluidLoad weight;
   weight.wrench = {0.0, -9.81 * body.mass, 0.0, 0.0, 0.0, 0.0};
@@ -97,13 +103,7 @@ TEST(LoadWork, IsWhatActsBesidesGave) {
   const std::vector<ReplicaGrip> grips = two_grips();
   for (const int each : {1, 3, 5}) {
     LoadWork work(body, grips);
-    RigidBody host;
-    host.free = true;
-    host.mass = body.mass;
-    host.inertia = body.inertia;
-    host.inverse_inertia = glm::inverse(body.inertia);
-    host.local_center = body.center;
-    host.position = body.center;
+    RigidBody host = on_the_host(body);
     const double dt = 0.002;
     double truth = 0.0, most = 0.0, more = 0.0, less = 0.0;
     for (int i = 0; i < 2000; ++i) {
