@@ -89,7 +89,13 @@ void add_report(CLI::App& app, VerbRun& chosen) {
   CLI::App* coupling = verb->add_subcommand("coupling", "Hands at several sites on one body, over a delay");
   coupling->add_flag("--quick", options->quick, "The cases that broke schemes, to 300 ms: a minute");
   coupling->add_option("--out", options->out, "Folder for the table and pictures (slosh-report-coupling)");
-  coupling->add_flag("--overwrite", options->overwrite, "Lose the report that is in that folder");
+  coupling->add_option("--jobs", options->threads, "Runs at once (one a core)")->check(CLI::Range(1, 1024));
+  CLI::Option* overwrite =
+      coupling->add_flag("--overwrite", options->overwrite, "Lose the report that is in that folder");
+  coupling
+      ->add_flag("--resume", options->resume,
+                 "Go on with the report in that folder: its rows are kept, what is missing is measured, all is drawn")
+      ->excludes(overwrite);
   coupling->footer(
       "In virtual time, so that it is the same again on every machine of a kind: simulated operators hold a "
       "body of "
@@ -106,8 +112,10 @@ void add_report(CLI::App& app, VerbRun& chosen) {
       "be;\n"
       "spectrum.csv and .png: a force in syrup with and without the host's model of it, host at 60 to 1000 "
       "Hz.\n"
-      "All of it takes about 20 minutes on one core; Ctrl-C keeps the table so far.\n\n"
-      "Examples:\n  slosh report coupling --quick\n  slosh report coupling --out here");
+      "A core does all of it in about @@ minutes, and cores share it; needs no display and no network. Ctrl-C keeps\n"
+      "the table so far, and --resume goes on from there.\n\n"
+      "Examples:\n  slosh report coupling --quick\n  slosh report coupling --out here\n"
+      "  slosh report coupling --out here --resume");
   coupling->callback([&chosen, options] { chosen = [options] { return report_coupling(*options); }; });
   CLI::App* passes = verb->add_subcommand("passes", "What a scene's step saves by what it leaves out");
   auto scene = std::make_shared<std::string>();

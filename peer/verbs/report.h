@@ -18,6 +18,7 @@ struct ReportOptions {
   bool quick = false;
   std::string out;  ///< empty: slosh-report-KIND
   bool overwrite = false;
+  bool resume = false;  ///< keep what the folder has, measure the rest
   std::vector<std::string> cases, models;
   std::string backend = "cpu";
   int threads = 0;

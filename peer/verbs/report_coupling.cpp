@@ -3,17 +3,18 @@
 #include "peer/verbs/report_coupling.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
-#include <fstream>
-#include <map>
 
-#include "host/report/csv.h"
+#include "net/clock.h"
 #include "net/text/clean.h"
 #include "peer/output/chart.h"
 #include "peer/output/gnuplot.h"
 #include "peer/output/progress.h"
-#include "peer/verbs/coupling/study.h"
+#include "peer/output/whole_file.h"
+#include "peer/verbs/coupling/cells.h"
 #include "peer/verbs/interrupt.h"
+#include "peer/verbs/on_cores.h"
 #include "peer/verbs/report.h"
 #include "peer/verbs/verbs.h"
 #include "sim/math/format.h"
@@ -22,75 +23,11 @@ namespace slosh {
 namespace {
 
 using coupling::Case;
-using coupling::Outcome;
 using coupling::Scheme;
 
 constexpr const char* kTable = "coupling.csv";
-constexpr const char* kHeader =
-    "case,scheme,hands,stiffness_n_m,grip,round_trip_ms,jitter_ms,loss,pose_rate_hz,host_rate_hz,verdict,"
-    "generated_mj,force_error,peak_n,swing_mm_s,guarded,fell_back";
-constexpr Scheme kSchemes[] = {Scheme::kHostForce, Scheme::kPeerSpring, Scheme::kReplica};
-
-struct Row {
-  Case c;
-  Scheme scheme;
-  coupling::Verdict verdict;
-  double generated, error, peak, swing, fired;
-  bool fell_back;
-};
-
-std::string csv_line(const Row& r) {
-  return report::csv_field(r.c.name) + "," + coupling::word(r.scheme) +
-         format(",%d,%g,", r.c.hands, r.c.stiffness) + report::csv_field(r.c.grip) +
-         format(",%g,%g,%g,%g,%g,%s,%.4g,%.4g,%.4g,%.4g,%.3g,%d", 1e3 * r.c.round_trip, 1e3 * r.c.jitter,
-                r.c.loss, r.c.pose_rate, r.c.host_rate, coupling::word(r.verdict), 1e3 * r.generated, r.error,
-                r.peak, 1e3 * r.swing, r.fired, r.fell_back ? 1 : 0);
-}
-
-std::vector<double> round_trips(bool quick) {
-  if (quick) return {0.0, 0.05, 0.1, 0.2, 0.3};
-  return {0.0, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5};
-}
-
-/// The cases of the map: alone, what broke schemes, and in a full report every number of hands, stiffness,
-/// grip and link.
-std::vector<Case> cases_of(bool quick) {
-  std::vector<Case> cases;
-  for (const char* grip : {"tight", "loose,mass=1.5"}) {
-    Case& alone = cases.emplace_back();
-    alone.hands = 1;
-    alone.grip = grip;
-    alone.name = std::string("alone, ") + (alone.grip == "tight" ? "tight" : "loose");
-  }
-  for (const Case& c : coupling::known_breakers()) cases.push_back(c);
-  if (quick) return cases;
-  struct Link {
-    const char* name;
-    double jitter, loss, poses, host;
-  };
-  constexpr Link kLinks[] = {{"good link", 0.0, 0.0, 500.0, 500.0},
-                             {"40 ms, 20 %", 0.04, 0.2, 500.0, 500.0},
-                             {"40 ms, 20 %, 60 Hz", 0.04, 0.2, 60.0, 70.0}};
-  for (const int hands : {2, 4, 8}) {
-    for (const double stiffness : {200.0, 700.0, 2000.0}) {
-      for (const char* grip : {"tight", "loose"}) {
-        for (const Link& link : kLinks) {
-          Case& c = cases.emplace_back();
-          c.hands = hands;
-          c.stiffness = stiffness;
-          c.grip = grip;
-          c.motion = coupling::Motion::kOpposing;
-          c.jitter = link.jitter;
-          c.loss = link.loss;
-          c.pose_rate = link.poses;
-          c.host_rate = link.host;
-          c.name = format("%d hands, %g N/m, %s, %s", hands, stiffness, grip, link.name);
-        }
-      }
-    }
-  }
-  return cases;
-}
+using coupling::kMapped;
+using coupling::Row;
 
 TileMap map_of(const std::vector<Row>& rows, Scheme scheme, const std::string& machine) {
   TileMap map;
@@ -131,13 +68,13 @@ std::vector<ChartPanel> error_panels(const std::vector<Row>& rows) {
     panel.title = std::string("Force against zero delay: ") + shown;
     panel.x_label = "round trip, ms";
     panel.y_label = "error, % rms (above 300: not shown)";
-    for (std::size_t s = 0; s < std::size(kSchemes); ++s) {
+    for (std::size_t s = 0; s < std::size(kMapped); ++s) {
       ChartSeries series;
-      series.name = coupling::word(kSchemes[s]);
+      series.name = coupling::word(kMapped[s]);
       series.color = kColors[s];
       series.width = 1.5;
       for (const Row& row : rows) {
-        if (row.scheme == kSchemes[s] && row.c.name == shown && row.error <= 3.0)
+        if (row.scheme == kMapped[s] && row.c.name == shown && row.error <= 3.0)
           series.points.push_back({1e3 * row.c.round_trip, 1e2 * row.error});
       }
       panel.series.push_back(series);
@@ -146,18 +83,69 @@ std::vector<ChartPanel> error_panels(const std::vector<Row>& rows) {
   return panels;
 }
 
-/// The longest round trip at which one hand holds steadily, by stiffness, found by halving; and what theory
-/// says of a spring.
-ChartPanel bound_panel(const std::string& grip, bool quick, Progress& progress) {
+/// The longest round trip at which one hand holds steadily.
+struct Bound {
+  const char* grip;
+  Scheme scheme;
+  double stiffness;        // N/m
+  double steady = 0.0;     // s
+  double by_theory = 0.0;  // s, of a spring
+};
+
+/// By halving, one a grip, scheme and stiffness; nothing when it was interrupted.
+std::vector<Bound> measure_bounds(const ReportOptions& options, Progress& progress) {
+  std::vector<Bound> bounds;
+  for (const char* grip : {"tight", "loose"})
+    for (const Scheme scheme : kMapped)
+      for (const double stiffness : {200.0, 500.0, 1000.0, 2000.0})
+        bounds.push_back({grip, scheme, stiffness});
+  const auto find = [&](Bound& bound) {
+    Case c;
+    c.hands = 1;
+    c.grip = bound.grip;
+    c.stiffness = bound.stiffness;
+    bound.by_theory = coupling::spring_bound(c);
+    const auto steady = [&](double round_trip) {
+      c.round_trip = round_trip;
+      return coupling::run(c, bound.scheme).verdict == coupling::Verdict::kStable;
+    };
+    double low = 0.0, high = 0.5;
+    if (steady(high)) low = high;
+    for (int i = 0; low < high && i < (options.quick ? 5 : 8); ++i) {
+      const double middle = 0.5 * (low + high);
+      (steady(middle) ? low : high) = middle;
+    }
+    bound.steady = low;
+  };
+  double done = 0.0;
+  const bool all = run_on_cores(
+      bounds.size(), options.threads, [&](std::size_t i) { find(bounds[i]); },
+      [&](std::size_t i) {
+        done += 1.0 / static_cast<double>(bounds.size());
+        progress.update(
+            done, format("%g N/m, %s, %s", bounds[i].stiffness, bounds[i].grip, word(bounds[i].scheme)));
+      },
+      [] { return interrupted_by() != 0; });
+  if (!all) bounds.clear();
+  return bounds;
+}
+
+Result<bool> write_bounds(const std::vector<Bound>& bounds, const std::filesystem::path& file) {
+  std::string text = "grip,scheme,stiffness_n_m,steady_round_trip_ms,gil_hulin_ms\n";
+  for (const Bound& b : bounds)
+    text += format("%s,%s,%g,%.4g,%.4g\n", b.grip, word(b.scheme), b.stiffness, 1e3 * b.steady,
+                   1e3 * b.by_theory);
+  return write_whole(file, text);
+}
+
+/// By stiffness, and what theory says of a spring.
+ChartPanel bound_panel(const std::vector<Bound>& bounds, const std::string& grip) {
   ChartPanel panel;
   panel.title = "Longest steady round trip, one hand, " + grip;
   panel.x_label = "stiffness, N/m";
   panel.y_label = "round trip, ms (500: none found)";
   panel.log_x = true;
   panel.log_y = true;
-  const auto steady = [&](const Case& c, Scheme scheme) {
-    return coupling::run(c, scheme).verdict == coupling::Verdict::kStable;
-  };
   constexpr const char* kColors[] = {"#c8322b", "#e0893c", "#2a6fb0"};
   ChartSeries gil;
   gil.name = "Gil & Hulin: (b + B)/K − T/2";
@@ -165,27 +153,15 @@ ChartPanel bound_panel(const std::string& grip, bool quick, Progress& progress) 
   gil.mark = 0;
   gil.width = 1.5;
   gil.dashed = true;
-  for (std::size_t s = 0; s < std::size(kSchemes); ++s) {
+  for (std::size_t s = 0; s < std::size(kMapped); ++s) {
     ChartSeries series;
-    series.name = coupling::word(kSchemes[s]);
+    series.name = word(kMapped[s]);
     series.color = kColors[s];
     series.width = 1.5;
-    for (const double stiffness : {200.0, 500.0, 1000.0, 2000.0}) {
-      if (interrupted_by() != 0) return panel;
-      progress.update(-1.0, panel.title);
-      Case c;
-      c.hands = 1;
-      c.grip = grip;
-      c.stiffness = stiffness;
-      double low = 0.0, high = 0.5;
-      c.round_trip = high;
-      if (steady(c, kSchemes[s])) low = high;
-      for (int i = 0; low < high && i < (quick ? 5 : 8); ++i) {
-        c.round_trip = 0.5 * (low + high);
-        (steady(c, kSchemes[s]) ? low : high) = c.round_trip;
-      }
-      series.points.push_back({stiffness, 1e3 * low});
-      if (s == 0) gil.points.push_back({stiffness, 1e3 * coupling::spring_bound(c)});
+    for (const Bound& b : bounds) {
+      if (b.grip != grip || b.scheme != kMapped[s]) continue;
+      series.points.push_back({b.stiffness, 1e3 * b.steady});
+      if (s == 0) gil.points.push_back({b.stiffness, 1e3 * b.by_theory});
     }
     panel.series.push_back(series);
   }
@@ -194,71 +170,106 @@ ChartPanel bound_panel(const std::string& grip, bool quick, Progress& progress) 
 }
 
 void print_summary(const std::vector<Row>& rows) {
-  for (const Scheme scheme : kSchemes) {
+  for (const Scheme scheme : kMapped) {
     int counts[3] = {0, 0, 0};
     double worst = 0.0;
+    int steps = 0;
     for (const Row& row : rows) {
       if (row.scheme != scheme || row.c.round_trip > 0.3001) continue;
       counts[static_cast<std::size_t>(row.verdict)] += 1;
       worst = std::max(worst, row.generated);
+      steps += row.verdict == coupling::Verdict::kDiverged ? 0 : row.steps;
     }
-    std::printf("%-12s to 300 ms: stable %d, limit cycle %d, diverged %d; most energy generated %.3g mJ\n",
-                coupling::word(scheme), counts[0], counts[1], counts[2], 1e3 * worst);
+    std::printf(
+        "%-12s to 300 ms: stable %d, limit cycle %d, diverged %d; most energy generated %.3g mJ, "
+        "steps over 1 N within 2 ms where it did not diverge: %d\n",
+        coupling::word(scheme), counts[0], counts[1], counts[2], 1e3 * worst, steps);
   }
 }
 
 }  // namespace
 
 int report_coupling(const ReportOptions& options) {
-  const Result<std::filesystem::path> folder = report_folder(options, "coupling", kTable);
+  ReportOptions here = options;
+  here.overwrite = options.overwrite || options.resume;
+  const Result<std::filesystem::path> folder = report_folder(here, "coupling", kTable);
   if (!folder) return fail(folder.error());
   catch_interrupts();
-  const std::filesystem::path table = folder.value() / kTable;
-  std::ofstream out(table);
-  out << kHeader << '\n';
-  std::vector<Row> rows;
   Progress progress;
-  std::vector<ReportJob> jobs;
-  for (const Case& c : cases_of(options.quick)) {
-    jobs.push_back({c.name, static_cast<double>(c.hands), [&, c] {
-                      if (interrupted_by() != 0) throw report::Stopped();
-                      const Outcome reference = coupling::run(c, Scheme::kZeroDelay);
-                      for (const Scheme scheme : kSchemes) {
-                        for (const double round_trip : round_trips(options.quick)) {
-                          Case at = c;
-                          at.round_trip = round_trip;
-                          const Outcome o = coupling::run(at, scheme);
-                          rows.push_back({at, scheme, o.verdict, o.generated, force_error(o, reference),
-                                          o.peak, o.swing, o.fired, o.fell_back});
-                          out << csv_line(rows.back()) << '\n';
-                        }
-                      }
-                    }});
-  }
-  if (const Result<bool> ran = run_jobs(jobs, out, table, progress); !ran) return fail(ran.error());
-  std::vector<ChartPanel> panels = error_panels(rows);
-  progress.phase("measuring", "bounds");
-  for (const char* grip : {"tight", "loose"}) panels.push_back(bound_panel(grip, options.quick, progress));
+  const std::vector<Case> cases = coupling::map_cases(options.quick);
+  const std::vector<double> round_trips = coupling::map_round_trips(options.quick);
+  const std::size_t cells = cases.size() * round_trips.size() * std::size(kMapped);
+  progress.phase("measuring", format("%zu runs", cells));
+  const std::int64_t began_ns = steady_now_ns();
+  coupling::CellRun run;
+  run.jobs = options.threads;
+  run.resume = options.resume;
+  run.stop = [] { return interrupted_by() != 0; };
+  run.told = [&](double share, const std::string& which) {
+    const double passed = to_seconds(steady_now_ns() - began_ns);
+    const double left = share > 0.0 ? passed * (1.0 - share) / share : 0.0;
+    progress.update(share, which + format(", about %.0f min left", std::ceil(left / 60.0)));
+  };
+  const Result<std::vector<Row>> measured = measure_cells(cases, round_trips, folder.value() / kTable, run);
+  if (!measured) return fail(measured.error());
+  const std::vector<Row>& rows = measured.value();
   print_summary(rows);
-  for (const Scheme scheme : kSchemes) {
+
+  // All numbers before the first picture: these need gnuplot.
+  std::vector<Bound> bounds;
+  std::vector<ChartPanel> transparency, spectra;
+  if (interrupted_by() == 0) {
+    progress.phase("measuring", "bounds");
+    bounds = measure_bounds(options, progress);
+    if (!bounds.empty()) {
+      if (const Result<bool> written = write_bounds(bounds, folder.value() / "bounds.csv"); !written)
+        return fail(written.error());
+    }
+    for (const auto& [part, panels] :
+         {std::pair{report_transparency, &transparency}, {report_spectra, &spectra}}) {
+      if (interrupted_by() != 0) break;
+      const Result<bool> told = part(options, folder.value(), progress, *panels);
+      if (!told) return fail(told.error());
+    }
+  }
+  const int signal = interrupted_by();
+  if (signal != 0)
+    progress.note(format("interrupted: drawing what there is; `slosh report coupling%s --resume` goes on",
+                         options.quick ? " --quick" : ""));
+  std::vector<ChartPanel> panels = error_panels(rows);
+  if (!bounds.empty())
+    for (const char* grip : {"tight", "loose"}) panels.push_back(bound_panel(bounds, grip));
+  struct Picture {
+    std::string script, name;
+  };
+  std::vector<Picture> pictures;
+  for (const Scheme scheme : kMapped) {
+    if (rows.empty()) break;
     std::string name = std::string("map_") + coupling::word(scheme) + ".png";
     std::replace(name.begin(), name.end(), ' ', '_');
-    const Result<bool> drawn =
-        draw(tile_script(map_of(rows, scheme, machine_line(options))), folder.value() / name);
-    if (!drawn) return fail(drawn.error());
+    pictures.push_back({tile_script(map_of(rows, scheme, machine_line(options))), name});
   }
-  const Result<bool> drawn = draw(chart_script(panels, 2, "Hands at a distance, in virtual time"),
-                                  folder.value() / "force_error.png");
-  if (!drawn) return fail(drawn.error());
-  for (const auto part : {report_transparency, report_spectra}) {
-    const Result<bool> told = part(options, folder.value(), progress);
-    if (!told) return fail(told.error());
+  pictures.push_back({chart_script(panels, 2, "Hands at a distance, in virtual time"), "force_error.png"});
+  if (!transparency.empty())
+    pictures.push_back(
+        {chart_script(transparency, 2, "Transparency: what a hand is rendered, and what it should be"),
+         "transparency.png"});
+  if (!spectra.empty())
+    pictures.push_back(
+        {chart_script(spectra, 2, "Spectrum of a hand's force, by the host's rate"), "spectrum.png"});
+  for (const Picture& picture : pictures) {
+    const Result<bool> drawn = draw(picture.script, folder.value() / picture.name);
+    if (drawn) continue;
+    Error error = drawn.error();
+    error.mend += "; the tables are whole, and `slosh report coupling --resume` with this folder draws them";
+    return fail(error);
   }
   std::printf(
-      "Written: %s/coupling.csv, a map_….png each scheme, force_error.png, and transparency and spectrum as "
-      "csv and png\n",
-      clean_text(folder.value().string(), kMostTextBytes).c_str());
-  return kExitOk;
+      "Written in %.0f s: %s/coupling.csv (%zu of %zu cells), a map_….png each scheme, force_error.png with "
+      "bounds.csv, and transparency and spectrum as csv and png\n",
+      to_seconds(steady_now_ns() - began_ns), clean_text(folder.value().string(), kMostTextBytes).c_str(),
+      rows.size(), cells);
+  return signal != 0 ? 128 + signal : kExitOk;
 }
 
 }  // namespace slosh

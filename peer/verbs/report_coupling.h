@@ -2,19 +2,21 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
+#include "peer/output/chart.h"
 #include "peer/output/progress.h"
 #include "peer/verbs/report.h"
 
 namespace slosh {
 
-/// Rendered against commanded impedance, 0.1 to 30 Hz, by scheme and round trip: transparency.csv and .png.
-/// Errors: a file cannot be written or drawn.
+/// Rendered against commanded impedance, 0.1 to 30 Hz, by scheme and round trip: transparency.csv, and
+/// `panels` for its picture. On options.threads threads; interrupted it writes nothing and gives no panels.
+/// Errors: the file cannot be written.
 Result<bool> report_transparency(const ReportOptions& options, const std::filesystem::path& folder,
-                                 Progress& progress);
-/// Force in a syrup with and without the host's model of it, by the host's rate: spectrum.csv and .png.
-/// Errors: as above.
+                                 Progress& progress, std::vector<ChartPanel>& panels);
+/// Force in a syrup with and without the host's model of it, by the host's rate: spectrum.csv. As above.
 Result<bool> report_spectra(const ReportOptions& options, const std::filesystem::path& folder,
-                            Progress& progress);
+                            Progress& progress, std::vector<ChartPanel>& panels);
 
 }  // namespace slosh

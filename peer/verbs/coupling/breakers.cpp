@@ -57,6 +57,11 @@ std::vector<Case> known_breakers() {
     c.hands = 1;
   });
   add("on a table", [](Case& c) { c.load = Load::kTable; });
+  add("carried, with fluid", [](Case& c) { c.load = Load::kCarried; });
+  add("carried, with fluid, bad link", [&](Case& c) {
+    bad_link(c);
+    c.load = Load::kCarried;
+  });
   add("two, all at once", [&](Case& c) {
     bad_link(c);
     c.stiffness = 2000.0;

@@ -24,6 +24,7 @@ constexpr double kReleased = 2.0;    // s: about where a hand is fastest
 constexpr double kBroken = 2000.0;   // N
 constexpr double kGone = 3.0;        // m
 constexpr double kStill = 2e-3;      // m/s: slower than this counts as still
+constexpr double kStep = 1.0;        // N
 constexpr double kRounding = 1e-9;   // s
 constexpr double kToneSpeed = 0.03;  // m/s
 constexpr double kToneWay = 0.008;   // m
@@ -134,6 +135,7 @@ struct Site {
   std::vector<OwnHand> own;
   HandWord hand;
   Wrench felt;
+  glm::dvec3 row{0.0};  // N, felt at the last even tick
   Pose before;
   double put_in = 0.0;  // J, as it is, not as the site counts it
   double next_send = 0.0;
@@ -167,6 +169,7 @@ class Study {
                                                                     {},
                                                                     {},
                                                                     {},
+                                                                    glm::dvec3(0.0),
                                                                     {},
                                                                     0.0,
                                                                     0.0,
@@ -201,6 +204,7 @@ class Study {
 
  private:
   void tick(std::size_t i) {
+    tick_ = i;
     now_ = kPeriod * static_cast<double>(i);
     for (const auto& site : sites_) read(*site);
     // At zero delay hand and body are compared at one moment: the body moves on when all have felt it.
@@ -261,6 +265,10 @@ class Study {
     if (!(force < kBroken)) broken_ = true;
     run_.peak = std::max(run_.peak, force);
     run_.felt.push_back(felt);
+    if (tick_ % 2 == 0) {
+      if (glm::length(felt.force - site.row) > kStep) run_.steps += 1;
+      site.row = felt.force;
+    }
     site.felt = felt;
     site.person->write(felt);
   }
@@ -307,7 +315,8 @@ class Study {
       // The step's end answers to the reading and its whole length.
       if (j == g && hand.stamp >= 0.0) said_[j].ack_ns = to_nanoseconds(hand.stamp + time_step_) + 1;
     }
-    if (c_.load == Load::kFluid || c_.load == Load::kSyrup) site.held->set_fluid(site.state.load);
+    if (c_.load == Load::kFluid || c_.load == Load::kSyrup || c_.load == Load::kCarried)
+      site.held->set_fluid(site.state.load);
     site.held->hear({to_nanoseconds(now_) + 1, site.state.stamp, time_step_, site.state.motion, said_});
   }
 
@@ -329,6 +338,7 @@ class Study {
   std::vector<HostHand> said_;
   std::mt19937_64 random_{7};
   double now_ = 0.0;
+  std::size_t tick_ = 0;
   double next_step_ = 0.0;
   double last_ = 0.0, before_ = 0.0;  // sums of squared speeds
   bool broken_ = false;

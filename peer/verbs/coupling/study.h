@@ -21,8 +21,9 @@ enum class Scheme {
 enum class Motion { kTogether, kOneMoves, kOpposing, kRelease };
 /// What acts on the body besides hands: nothing; drag and 1.5 kg of fluid that swings at 1.5 Hz, of which the
 /// host says a model as added mass and drag; the same, and it says none; its weight, and a table that it
-/// starts on; a syrup that drags by 40 N·s/m, of which the host says a model, or none.
-enum class Load { kNone, kFluid, kFluidUntold, kTable, kSyrup, kSyrupUntold };
+/// starts on; a syrup that drags by 40 N·s/m, of which the host says a model, or none; its weight and the
+/// fluid that swings, with its model.
+enum class Load { kNone, kFluid, kFluidUntold, kTable, kSyrup, kSyrupUntold, kCarried };
 
 struct Case {
   std::string name;
@@ -59,6 +60,7 @@ struct Outcome {
   double swing = 0.0;        ///< m/s, rms over all hands in the last second
   double fired = 0.0;        ///< share of ticks in which a site's guard acted
   bool fell_back = false;    ///< a site went over to the damped spring
+  int steps = 0;             ///< times that a hand's force changed by over 1 N within 2 ms, over all hands
   std::vector<Wrench> felt;  ///< each tick's, hand by hand
   std::vector<Pose> handles;  ///< each tick's, of the first hand
 };

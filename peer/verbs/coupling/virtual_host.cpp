@@ -58,7 +58,8 @@ Wrench VirtualHost::external() {
                           kFluidDamping * (fluid_velocity_ - body_.velocity);
   fluid_velocity_ -= dt_ / kFluidMass * pull;
   fluid_place_ += dt_ * fluid_velocity_;
-  return {pull - kDrag * body_.velocity, -kTurningDrag * body_.angular_velocity};
+  const glm::dvec3 weight(0.0, kind_ == Load::kCarried ? -(body_.mass + kFluidMass) * kGravity : 0.0, 0.0);
+  return {pull + weight - kDrag * body_.velocity, -kTurningDrag * body_.angular_velocity};
 }
 
 void VirtualHost::step(const std::vector<HandWord>& hands) {
@@ -87,7 +88,7 @@ void VirtualHost::step(const std::vector<HandWord>& hands) {
     on_hand_[static_cast<std::size_t>(c.grip)] = {-on_body.force, -on_body.torque};
   }
   const bool syrup = kind_ == Load::kSyrup;
-  if (kind_ != Load::kFluid && !syrup) return;
+  if (kind_ != Load::kFluid && kind_ != Load::kCarried && !syrup) return;
   // As a host says it: what is left of the force without what it gave for being accelerated.
   const double added = syrup ? 0.0 : kFluidMass;
   const glm::dvec3 left = acting.force + added * (body_.velocity - before) / dt_;
