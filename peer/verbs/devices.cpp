@@ -23,7 +23,7 @@ namespace slosh {
 namespace {
 
 constexpr const char* kFooter =
-    "Lists SpaceMice and Falcons that are plugged in, each with what to give to --device, and what is wrong\n"
+    "Lists SpaceMice, gamepads and Falcons that are plugged in, each with what to give to --device, and what is wrong\n"
     "with it. Mostly that is a permission: --install-udev-rule puts a rule in place that lets whoever sits "
     "at\n"
     "the machine open them (needs root; without it the rule and the command are printed).\n"
@@ -68,7 +68,7 @@ int list_devices() {
   const std::vector<FoundDevice> all = find_hardware();
   if (all.empty())
     std::printf(
-        "No SpaceMouse and no Falcon is plugged in. script, mouse, replay, operator and plugin need none.\n");
+        "No SpaceMouse, no gamepad and no Falcon is plugged in. script, mouse, replay, operator and plugin need none.\n");
   bool well = true;
   for (const FoundDevice& each : all) {
     std::printf("%s (%s)\n    --device %s\n", each.name.c_str(), each.where.c_str(), each.spec.c_str());

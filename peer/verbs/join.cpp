@@ -197,11 +197,11 @@ void add(CLI::App& app, VerbRun& chosen, bool watch) {
   if (!watch) {
     verb->add_option("--grip", o->grips, "A grip by name or number, again for more (the first free one)")
         ->allow_extra_args(false);
-    verb->add_option(
-            "--device", o->devices,
-            "script, mouse, xr-left, xr-right, replay:FILE, spacemouse, falcon, plugin:FILE or operator; "
-            "one for all your hands, "
-            "or one each, in order")
+    verb->add_option("--device", o->devices,
+                     "script, mouse, xr-left, xr-right, replay:FILE, spacemouse, gamepad, falcon, "
+                     "plugin:FILE or operator; "
+                     "one for all your hands, "
+                     "or one each, in order")
         ->allow_extra_args(false);
     verb->add_option("--coupling", o->coupling,
                      "What a device that is felt is coupled to: replica, this site's own copy of what it "

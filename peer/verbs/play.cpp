@@ -75,11 +75,11 @@ void add_play(CLI::App& app, VerbRun& chosen) {
   add_show_options(*verb, *o, true);
   add_headset_options(*verb, *o);
   add_world_options(*verb, *o, "all but one; all with --no-render");
-  verb->add_option(
-          "--device", o->devices,
-          "script, mouse, xr-left, xr-right, replay:FILE, spacemouse, falcon, plugin:FILE or operator; "
-          "one for all handles, or one "
-          "each; `slosh devices` lists what is there")
+  verb->add_option("--device", o->devices,
+                   "script, mouse, xr-left, xr-right, replay:FILE, spacemouse, gamepad, falcon, plugin:FILE "
+                   "or operator; "
+                   "one for all handles, or one "
+                   "each; `slosh devices` lists what is there")
       ->allow_extra_args(false);
   verb->add_option("--record", o->record, "Keep the run's inputs and states in a file, for `slosh replay`");
   verb->add_flag("--unpaced", o->unpaced,

@@ -112,7 +112,7 @@ void add_report(CLI::App& app, VerbRun& chosen) {
       "be;\n"
       "spectrum.csv and .png: a force in syrup with and without the host's model of it, host at 60 to 1000 "
       "Hz.\n"
-      "A core does all of it in about @@ minutes, and cores share it; needs no display and no network. Ctrl-C keeps\n"
+      "A core does all of it in about 8 minutes, and cores share it; needs no display and no network. Ctrl-C keeps\n"
       "the table so far, and --resume goes on from there.\n\n"
       "Examples:\n  slosh report coupling --quick\n  slosh report coupling --out here\n"
       "  slosh report coupling --out here --resume");

@@ -225,24 +225,29 @@ int report_coupling(const ReportOptions& options) {
       if (const Result<bool> written = write_bounds(bounds, folder.value() / "bounds.csv"); !written)
         return fail(written.error());
     }
-    for (const auto& [part, panels] :
-         {std::pair{report_transparency, &transparency}, {report_spectra, &spectra}}) {
+    using Part = Result<bool> (*)(const ReportOptions&, const std::filesystem::path&, Progress&,
+                                  std::vector<ChartPanel>&);
+    for (const auto& [part, drawn] :
+         {std::pair<Part, std::vector<ChartPanel>*>{report_transparency, &transparency},
+          {report_spectra, &spectra}}) {
       if (interrupted_by() != 0) break;
-      const Result<bool> told = part(options, folder.value(), progress, *panels);
+      const Result<bool> told = part(options, folder.value(), progress, *drawn);
       if (!told) return fail(told.error());
     }
   }
   const int signal = interrupted_by();
   if (signal != 0)
-    progress.note(format("interrupted: drawing what there is; `slosh report coupling%s --resume` goes on",
-                         options.quick ? " --quick" : ""));
+    progress.note("interrupted: drawing what there is; `slosh report coupling" +
+                  std::string(options.quick ? " --quick" : "") +
+                  (options.out.empty() ? "" : " --out " + clean_text(options.out, kMostTextBytes)) +
+                  " --resume` goes on");
   std::vector<ChartPanel> panels = error_panels(rows);
   if (!bounds.empty())
     for (const char* grip : {"tight", "loose"}) panels.push_back(bound_panel(bounds, grip));
-  struct Picture {
+  struct Drawing {
     std::string script, name;
   };
-  std::vector<Picture> pictures;
+  std::vector<Drawing> pictures;
   for (const Scheme scheme : kMapped) {
     if (rows.empty()) break;
     std::string name = std::string("map_") + coupling::word(scheme) + ".png";
@@ -257,7 +262,7 @@ int report_coupling(const ReportOptions& options) {
   if (!spectra.empty())
     pictures.push_back(
         {chart_script(spectra, 2, "Spectrum of a hand's force, by the host's rate"), "spectrum.png"});
-  for (const Picture& picture : pictures) {
+  for (const Drawing& picture : pictures) {
     const Result<bool> drawn = draw(picture.script, folder.value() / picture.name);
     if (drawn) continue;
     Error error = drawn.error();

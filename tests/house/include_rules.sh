@@ -30,7 +30,7 @@ toolkits='
 ^<(epoxy|GL|EGL|GLFW)/        | render tests/xr | GL only in render, and in the runtime that tests show pictures to
 ^<(openxr|X11)/               | render/xr tests/xr | OpenXR only behind render/headset.h
 ^<(ngtcp2|gnutls)/            | net/quic | QUIC and TLS only behind net/quic/endpoint.h
-^<(hidapi|libusb)             | peer/haptics/devices | HID and USB only in the drivers
+^<(hidapi|libusb|libevdev)    | peer/haptics/devices | HID, USB and input events only in the drivers
 ^<pybind11/                   | peer/python | Python only in its module
 ^"peer/python/                | peer/python | nothing that ships knows the Python module
 ^<(openvdb|tbb)/              | peer/export/fluid_surface.cpp | OpenVDB takes long to compile: it is in one source file

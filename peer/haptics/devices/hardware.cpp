@@ -4,6 +4,7 @@
 
 #include "peer/haptics/devices/falcon_device.h"
 #include "peer/haptics/devices/falcon_usb.h"
+#include "peer/haptics/devices/gamepad_device.h"
 #include "peer/haptics/devices/operator_device.h"
 #include "peer/haptics/devices/plugin_device.h"
 #include "peer/haptics/devices/spacemouse_device.h"
@@ -50,6 +51,7 @@ std::optional<Made> make_hardware(const std::string& spec, const HandPlace& plac
   const std::string kind = spec.substr(0, colon);
   const std::string rest = colon == std::string::npos ? "" : spec.substr(colon + 1);
   if (kind == "spacemouse") return Made(std::make_unique<SpaceMouseDevice>(rest, place.start, place.camera));
+  if (kind == "gamepad") return Made(std::make_unique<GamepadDevice>(rest, place.start, place.camera));
   if (kind == "falcon") {
     return Made(std::make_unique<FalconDevice>([rest] { return open_falcon(rest); }, place));
   }
@@ -67,6 +69,18 @@ std::vector<FoundDevice> find_hardware() {
     if (!found.hid.serial.empty()) device.where += ", serial " + found.hid.serial;
     device.spec = "spacemouse:" + (found.hid.serial.empty() ? found.hid.path : found.hid.serial);
     if (const Result<bool> may = check_hid_access(found.hid.path); !may) {
+      device.problem = may.error().what;
+      device.mend = may.error().mend;
+    }
+    all.push_back(std::move(device));
+  }
+  for (const GamepadFound& found : find_gamepads()) {
+    FoundDevice device;
+    device.name = found.name.empty() ? "gamepad" : found.name;
+    device.where = found.path;
+    if (!found.serial.empty()) device.where += ", serial " + found.serial;
+    device.spec = "gamepad:" + (found.serial.empty() ? found.path : found.serial);
+    if (const Result<bool> may = check_gamepad_access(found.path); !may) {
       device.problem = may.error().what;
       device.mend = may.error().mend;
     }
@@ -94,6 +108,7 @@ std::string udev_rule() {
     rule += "KERNEL==\"hidraw*\", ATTRS{idVendor}==\"" + hex(vendor) + "\", ATTRS{idProduct}==\"" + product +
             "\", TAG+=\"uaccess\"\n";
   }
+  rule += "KERNEL==\"event*\", SUBSYSTEM==\"input\", ENV{ID_INPUT_JOYSTICK}==\"1\", TAG+=\"uaccess\"\n";
   rule += "SUBSYSTEM==\"usb\", ATTR{idVendor}==\"" + hex(kFalconVendor) + "\", ATTR{idProduct}==\"" +
           hex(kFalconProduct) + "\", TAG+=\"uaccess\"\n";
   return rule;

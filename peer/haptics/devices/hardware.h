@@ -27,7 +27,7 @@ std::optional<Result<std::unique_ptr<Device>>> make_hardware(const std::string& 
 
 /// How a spec of these kinds is written, for errors and help.
 constexpr const char* kHardwareSpecs =
-    "spacemouse[:SERIAL|PATH], falcon[:SERIAL], plugin:FILE[:OPTIONS] or operator[:tight|loose,...]";
+    "spacemouse[:SERIAL|PATH], gamepad[:SERIAL|NAME|PATH], falcon[:SERIAL], plugin:FILE[:OPTIONS] or operator[:tight|loose,...]";
 
 /// Something that is plugged in, or why it cannot be used.
 struct FoundDevice {

@@ -34,10 +34,10 @@ void read_axes(DeviceFile& file, SpaceMouseSettings& settings) {
 
 }  // namespace
 
-Result<SpaceMouseSettings> read_spacemouse_settings(DeviceFile file) {
-  SpaceMouseSettings s;
-  s.rate = file.word("mode", "rate", {"rate", "position"}) == "rate";
-  s.by_camera = file.word("relative_to", "camera", {"camera", "world"}) == "camera";
+Result<SpaceMouseSettings> read_spacemouse_settings(DeviceFile file, const SpaceMouseSettings& otherwise) {
+  SpaceMouseSettings s = otherwise;
+  s.rate = file.word("mode", s.rate ? "rate" : "position", {"rate", "position"}) == "rate";
+  s.by_camera = file.word("relative_to", s.by_camera ? "camera" : "world", {"camera", "world"}) == "camera";
   s.deadzone = file.whole("deadzone", s.deadzone, 0, kSpaceMouseFull - 1);
   s.speed = file.number("speed_m_s", s.speed, 0.0, 5.0);
   s.turn_rate = file.number("turn_rad_s", s.turn_rate, 0.0, 20.0);

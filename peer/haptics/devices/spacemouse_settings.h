@@ -29,7 +29,8 @@ struct SpaceMouseSettings {
   int deadman_button = 0;  ///< the hand holds on only while it is held; 0 = it always does
 };
 
-/// Errors: those of the file; with the line.
-Result<SpaceMouseSettings> read_spacemouse_settings(DeviceFile file);
+/// What the file leaves out is as `otherwise` has it. Errors: those of the file; with the line.
+Result<SpaceMouseSettings> read_spacemouse_settings(DeviceFile file,
+                                                    const SpaceMouseSettings& otherwise = {});
 
 }  // namespace slosh
