@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <libevdev/libevdev.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -120,8 +121,9 @@ GamepadPort::GamepadPort(GamepadPort&& other) noexcept
 }
 
 GamepadPort::~GamepadPort() {
-  if (device_ != nullptr) libevdev_free(device_);
-  if (node_ >= 0) ::close(node_);
+  if (node_ < 0) return;  // moved from: open() still holds the claims then
+  libevdev_free(device_);
+  ::close(node_);
   const std::lock_guard lock(claims_mutex());
   claims().erase(path_);
 }
@@ -151,6 +153,9 @@ Result<GamepadPort> GamepadPort::open(const std::string& path) {
 }
 
 bool GamepadPort::take(SpaceMouseState& state, std::uint64_t& events) {
+  // Reading a node whose device went may end without an error: to libevdev that is nothing new.
+  pollfd at{node_, POLLIN, 0};
+  if (poll(&at, 1, 0) > 0 && (at.revents & (POLLHUP | POLLERR | POLLNVAL)) != 0) return false;
   unsigned mode = LIBEVDEV_READ_FLAG_NORMAL;
   for (int i = 0; i < kMostEvents; ++i) {
     input_event event{};

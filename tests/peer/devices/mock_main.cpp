@@ -1,10 +1,33 @@
 // Starts the tests again with umockdev's library in front of the C library's, so that a driver opens what the
 // test made and not the machine's own devices. With AddressSanitizer its library must come first.
+// A test that waits for ever for a made-up device ends here, with its name, and not the whole suite with it.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
+
+namespace {
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr unsigned kLongest = 1200;
+#else
+constexpr unsigned kLongest = 120;  // s of one test, which takes 2
+#endif
+
+class EndsHanging : public ::testing::EmptyTestEventListener {
+  void OnTestStart(const ::testing::TestInfo&) override { alarm(kLongest); }
+  void OnTestEnd(const ::testing::TestInfo&) override { alarm(0); }
+};
+
+extern "C" void end_hanging(int) {
+  constexpr char kWords[] = "The test above hung and was ended\n";
+  (void)!write(STDERR_FILENO, kWords, sizeof kWords - 1);
+  _exit(1);
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   constexpr const char* kMark = "SLOSH_UNDER_UMOCKDEV";
@@ -20,5 +43,7 @@ int main(int argc, char** argv) {
     return 1;
   }
   ::testing::InitGoogleTest(&argc, argv);
+  std::signal(SIGALRM, end_hanging);
+  ::testing::UnitTest::GetInstance()->listeners().Append(new EndsHanging);
   return RUN_ALL_TESTS();
 }
