@@ -78,6 +78,7 @@ struct Renderer::Parts {
   glm::ivec2 panel_size{0};
   bool drew_fluid = false;  ///< in the last picture
   bool fast = false;        ///< Quality, resolved
+  bool made_fast = false;   ///< that of the targets
   bool timing = false;
   PassTimer timer;
   std::vector<PassTime> times;
@@ -123,11 +124,12 @@ Result<bool> Renderer::Parts::fit_to_options() {
   if (auto chosen = fluid_passes->choose(options.surface); !chosen) return chosen.error();
   const glm::ivec2 size(options.width, options.height);
   const glm::ivec2 back = options.half_resolution_back ? (size + 1) / 2 : size;
-  if (targets.size != size || targets.back_size != back) {
-    targets = make_targets(size, options.half_resolution_back);
+  if (targets.size != size || targets.back_size != back || made_fast != fast) {
+    made_fast = fast;
+    targets = make_targets(size, options.half_resolution_back, fast);
     drew_fluid = false;
   }
-  const int shadow_size = fast ? (3 * options.shadow_size + 3) / 4 : options.shadow_size;
+  const int shadow_size = fast ? (options.shadow_size + 1) / 2 : options.shadow_size;
   if (shadow_size == 0) {
     shadow_pass.reset();
   } else if (!shadow_pass || shadow_pass->size() != shadow_size) {
@@ -193,6 +195,7 @@ void Renderer::prepare(const Frame& frame, std::span<const View> views) {
   p.run("fluid shadow", [&] { p.fluid_shadow_pass->draw(p.frame, p.options, p.shadow); });
   p.uniforms.upload_looks(p.frame.fluids);
   p.centers_sorted = false;
+  glFlush();  // a CPU's driver draws the shadows with its own threads meanwhile
 }
 
 void Renderer::draw(const View& view, const PictureTarget& target) {
@@ -220,8 +223,8 @@ void Renderer::Parts::draw_scene() {
   });
   if (drew_fluid) {
     run("front depth", [&] { fluid_passes->splat_front(targets); });
+    run("fetch front", [&] { fluid_passes->fetch_front(targets, options); });
     run("back depth", [&] { fluid_passes->splat_back(targets); });
-    run("surface filter", [&] { fluid_passes->smooth(targets, options, frame); });
   }
 
   const bool occlusion = options.ambient_occlusion && !fast;
@@ -230,6 +233,11 @@ void Renderer::Parts::draw_scene() {
   if (occlusion) {
     run("occlusion", [&] { scene_pass->draw_occlusion(targets, kOcclusionReach); });
     run("resolve", [&] { scene_pass->resolve_occlusion(targets); });
+  }
+  if (drew_fluid) {
+    // A CPU's driver draws the passes before with its own threads while a filter in main memory works.
+    glFlush();
+    run("surface filter", [&] { fluid_passes->smooth(targets, options, frame); });
   }
   if (drew_fluid && chords) {
     run("thickness", [&] { thickness_pass->draw(frame, targets, splats.all); });

@@ -87,6 +87,10 @@ void FluidPasses::splat_back(const Targets& targets) {
   glDisable(GL_BLEND);
 }
 
+void FluidPasses::fetch_front(const Targets& targets, const RenderOptions& options) {
+  if (options.bilateral_iterations > 0) filter_->fetch(targets);
+}
+
 Result<bool> FluidPasses::choose(Surface surface) {
   if (filter_ && surface == surface_) return true;
   auto filter = make_surface_filter(surface, fast_);
@@ -97,7 +101,9 @@ Result<bool> FluidPasses::choose(Surface surface) {
 }
 
 void FluidPasses::smooth(const Targets& targets, const RenderOptions& options, const Frame& frame) {
-  for (const gl::Framebuffer& target : targets.smooth_target) clear_to(target, kNoFluidDepth);
+  if (filter_->on_gpu()) {
+    for (const gl::Framebuffer& target : targets.smooth_target) clear_to(target, kNoFluidDepth);
+  }
   smoothed_ = options.bilateral_iterations == 0
                   ? -1
                   : filter_->run(targets, options, frame, {&tile_vertices_, tile_corners_});

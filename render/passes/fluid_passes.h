@@ -22,6 +22,9 @@ class FluidPasses {
   void splat_back(const Targets& targets);
   /// The filter that smooth() runs. Errors: a shader that the driver refuses.
   Result<bool> choose(Surface surface);
+  /// After splat_front(): what the filter needs in main memory. A CPU that draws may then go on with other
+  /// passes.
+  void fetch_front(const Targets& targets, const RenderOptions& options);
   /// Reads front; writes smooth by turns.
   void smooth(const Targets& targets, const RenderOptions& options, const Frame& frame);
   /// 5.2: Eq 15, or with `lit` fluid_look.glsl. Reads front, smooth, back, scene_depth, scene_color; writes

@@ -100,13 +100,19 @@ void leave_out_hidden(const Frame& frame, const RenderOptions& options, Splats& 
     back.each_touched(disc_of(sphere), [&](float deepest) { return !(shows = far_side * slack >= deepest); });
     if (shows) splats.back.push_back(sphere);
   }
-  std::erase_if(splats.spheres, [&](const glm::vec4& sphere) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < splats.spheres.size(); ++i) {
+    const glm::vec4 sphere = splats.spheres[i];
     const float near_side = -sphere.z - radius;
     bool shows = false;
     front.each_touched(disc_of(sphere),
                        [&](float nearest) { return !(shows = near_side <= nearest * slack); });
-    return !shows;
-  });
+    if (!shows) continue;
+    splats.spheres[kept] = sphere;
+    splats.particles[kept++] = splats.particles[i];
+  }
+  splats.spheres.resize(kept);
+  splats.particles.resize(kept);
 }
 
 }  // namespace slosh

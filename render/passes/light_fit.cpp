@@ -84,6 +84,7 @@ LightFit fit_light(std::span<const Caster> meshes, const Bounds& fluid, std::spa
     bool casts = i >= meshes.size() || !meshes[i].convex;
     for (std::size_t j = 0; j < things.size() && !casts; ++j)
       casts = j != i && !all_before_a_lit_side(meshes[i], things[j], to_light);
+    if (i < meshes.size()) fit.casts.push_back(casts);
     for (const glm::vec3& corner : things[i]) {
       const glm::vec3 near = glm::clamp(corner, eye - view.far_plane, eye + view.far_plane);
       everything.add(near);

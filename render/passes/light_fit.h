@@ -20,6 +20,7 @@ struct LightFit {
   glm::mat4 light_from_world{1.0f};  ///< turned so that the light travels down −z
   /// In light axes, m. x and y: what casts a shadow on something and lies in an eye's view. z: everything.
   Bounds box;
+  std::vector<bool> casts;  ///< of each mesh: it may cast a shadow on something
 };
 
 /// A mesh is no caster where it is convex and all others, and the fluid, lie before a side of its box that

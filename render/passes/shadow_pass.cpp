@@ -13,14 +13,16 @@ namespace {
 /// Texture unit of shaders/shadow.glsl.
 constexpr GLuint kShadowUnit = 8;
 
-/// The frame's known opaque meshes.
-std::vector<Caster> casters_of(const Frame& frame, const MeshStore& meshes) {
+/// The frame's known opaque meshes; `drawn`: which they are.
+std::vector<Caster> casters_of(const Frame& frame, const MeshStore& meshes,
+                               std::vector<const MeshInstance*>& drawn) {
   std::vector<Caster> casters;
   for (const MeshInstance& instance : frame.meshes) {
     if (!meshes.has(instance.mesh) || instance.look.opacity < 1.0f) continue;
     const glm::vec4 sum = instance.model[0] + instance.model[1] + instance.model[2] + instance.model[3];
     if (!std::isfinite(glm::dot(sum, glm::vec4(1.0f)))) continue;  // a body that blew up
     casters.push_back({meshes.bounds(instance.mesh), instance.model, meshes.convex(instance.mesh)});
+    drawn.push_back(&instance);
   }
   return casters;
 }
@@ -59,7 +61,8 @@ Result<ShadowPass> ShadowPass::create(int size) {
 
 ShadowView ShadowPass::draw(const Frame& frame, const MeshStore& meshes, std::span<const View> views) {
   glBindTextureUnit(kShadowUnit, map_.name());
-  const std::vector<Caster> casters = casters_of(frame, meshes);
+  std::vector<const MeshInstance*> drawn;
+  const std::vector<Caster> casters = casters_of(frame, meshes, drawn);
   if (casters.empty()) return {};
   const LightFit fit = fit_light(casters, fluid_box(frame, views.front()), views, direction_to_light(frame));
   const glm::mat4 clip_from_world = light_clip_from_world(fit, size_);
@@ -73,10 +76,10 @@ ShadowView ShadowPass::draw(const Frame& frame, const MeshStore& meshes, std::sp
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(2.0f, 4.0f);
   program_.use();
-  for (const MeshInstance& instance : frame.meshes) {
-    if (!meshes.has(instance.mesh) || instance.look.opacity < 1.0f) continue;
-    program_.set("clip_from_model", clip_from_world * instance.model);
-    meshes.draw(instance.mesh);
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    if (!fit.casts[i]) continue;  // a table alone would fill the map
+    program_.set("clip_from_model", clip_from_world * drawn[i]->model);
+    meshes.draw(drawn[i]->mesh);
   }
   glDisable(GL_POLYGON_OFFSET_FILL);
   glDisable(GL_DEPTH_TEST);

@@ -101,38 +101,47 @@ void SmoothCenters::sort(const Frame& frame) {
   sorted_.resize(kept);
   // Filled from each bucket's end downwards; afterwards begin_[b + 1] is where b begins.
   for (std::size_t i = count; i-- > 0;) {
-    if (bucket_[i] != kNone) sorted_[--begin_[bucket_[i] + 1]] = frame.particles[i];
+    if (bucket_[i] == kNone) continue;
+    sorted_[--begin_[bucket_[i] + 1]] = {frame.particles[i], cell_of(frame.particles[i], reach_)};
   }
   for (std::size_t b = 0; b + 1 < begin_.size(); ++b) begin_[b] = begin_[b + 1];
   begin_.back() = static_cast<std::uint32_t>(kept);
+  smoothed_.resize(count);
+  known_.assign(count, 0);
 }
 
-void SmoothCenters::move(const Frame& frame, Splats& splats) const {
-  const glm::mat4 world_from_eye = glm::inverse(frame.view.view);
-  const glm::mat3 turn(frame.view.view);
+SmoothCenters::Smoothed SmoothCenters::smooth(const glm::vec3& at, float radius) const {
   const float inverse = 1.0f / reach_;
+  const glm::ivec3 middle = cell_of(at, reach_);
+  Neighbourhood around;
+  for (int n = 0; n < 27; ++n) {
+    const glm::ivec3 cell = middle + glm::ivec3(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+    const std::size_t bucket = bucket_of(cell);
+    for (std::uint32_t k = begin_[bucket]; k < begin_[bucket + 1]; ++k) {
+      const glm::vec3 way = sorted_[k].at - at;
+      const float squared = glm::dot(way, way);
+      // Cells may share a bucket: what is not of this cell comes with its own.
+      if (squared >= reach_ * reach_ || sorted_[k].cell != cell) continue;
+      const float share = std::sqrt(squared) * inverse;
+      around.add(way, 1.0f - share * share * share);
+    }
+  }
+  return {at + around.step(reach_), around.ellipsoid(reach_, radius)};
+}
+
+void SmoothCenters::move(const Frame& frame, Splats& splats) {
+  const glm::mat3 turn(frame.view.view);
   splats.shapes.resize(splats.spheres.size());
   for (std::size_t i = 0; i < splats.spheres.size(); ++i) {
-    glm::vec4& sphere = splats.spheres[i];
-    const glm::vec3 at(world_from_eye * glm::vec4(glm::vec3(sphere), 1.0f));
-    const glm::ivec3 middle = cell_of(at, reach_);
-    Neighbourhood around;
-    for (int n = 0; n < 27; ++n) {
-      const glm::ivec3 cell = middle + glm::ivec3(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
-      const std::size_t bucket = bucket_of(cell);
-      for (std::uint32_t k = begin_[bucket]; k < begin_[bucket + 1]; ++k) {
-        const glm::vec3 way = sorted_[k] - at;
-        const float squared = glm::dot(way, way);
-        // Cells may share a bucket: what is not of this cell comes with its own.
-        if (squared >= reach_ * reach_ || cell_of(sorted_[k], reach_) != cell) continue;
-        const float share = std::sqrt(squared) * inverse;
-        around.add(way, 1.0f - share * share * share);
-      }
+    const std::uint32_t particle = splats.particles[i];
+    Smoothed& smoothed = smoothed_[particle];
+    if (!known_[particle]) {
+      smoothed = smooth(frame.particles[particle], frame.particle_radius);
+      known_[particle] = 1;
     }
-    const glm::vec3 moved = at + around.step(reach_);
-    sphere = glm::vec4(glm::vec3(frame.view.view * glm::vec4(moved, 1.0f)), sphere.w);
-    const glm::mat3 matrix = turn * around.ellipsoid(reach_, frame.particle_radius) * glm::transpose(turn);
-    splats.shapes[i] = shape_of(matrix, glm::vec3(sphere));
+    glm::vec4& sphere = splats.spheres[i];
+    sphere = glm::vec4(glm::vec3(frame.view.view * glm::vec4(smoothed.center, 1.0f)), sphere.w);
+    splats.shapes[i] = shape_of(turn * smoothed.ellipsoid * glm::transpose(turn), glm::vec3(sphere));
   }
 }
 

@@ -78,6 +78,7 @@ SplatShape shape_of(const glm::mat3& matrix, const glm::vec3& center) {
 
 void prepare_splats(const Frame& frame, const RenderOptions& options, Splats& out) {
   out.spheres.clear();
+  out.particles.clear();
   out.shapes.clear();
   out.back.clear();
   out.tiles.clear();
@@ -104,6 +105,7 @@ void prepare_splats(const Frame& frame, const RenderOptions& options, Splats& ou
     const glm::vec2 reach = glm::abs(radius * scale / depth);
     if (!(std::abs(center.x) < 1.0f + reach.x && std::abs(center.y) < 1.0f + reach.y)) continue;
     out.spheres.emplace_back(eye, static_cast<float>(fluid));
+    out.particles.push_back(static_cast<std::uint32_t>(i));
     const glm::vec2 low = glm::max((center - reach + 1.0f) * half_picture, glm::vec2(0.0f));
     tiles.touch(low, glm::min((center + reach + 1.0f) * half_picture, 2.0f * half_picture));
   }

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "render/passes/narrow_range_on_cpu.h"
+
 namespace slosh {
 namespace {
 
@@ -61,10 +63,14 @@ class CurvatureFlow : public SurfaceFilter {
   gl::Program program_;
 };
 
+// Of Truong & Yuksel's, in splat radii; the best of those tried on analytic pools (render/score).
+constexpr float kReach = 3.2f;
+constexpr float kRange = 5.0f;
+
 /// Truong & Yuksel 2018: along both axes, then 5 × 5 pixels.
 class NarrowRange : public SurfaceFilter {
  public:
-  static Result<std::unique_ptr<SurfaceFilter>> create(bool fast) {
+  static Result<std::unique_ptr<SurfaceFilter>> create() {
     auto along = gl::Program::create("tiles.vert", "narrow_range.frag");
     if (!along) return along.error();
     auto clean = gl::Program::create("tiles.vert", "narrow_range.frag", {"CLEAN"});
@@ -72,13 +78,12 @@ class NarrowRange : public SurfaceFilter {
     auto filter = std::make_unique<NarrowRange>();
     filter->along_ = std::move(along.value());
     filter->clean_ = std::move(clean.value());
-    filter->most_taps_ = fast ? 6.0f : 40.0f;
     return std::unique_ptr<SurfaceFilter>(std::move(filter));
   }
   int run(const Targets& targets, const RenderOptions& options, const Frame& frame,
           const TileDraw& tiles) override {
     const float radius = options.splat_scale * frame.particle_radius;
-    const glm::vec3 kernel(kReach * radius, kRange * radius, most_taps_);
+    const glm::vec3 kernel(kReach * radius, kRange * radius, kTaps);
     along_.set("kernel", kernel);
     clean_.set("kernel", kernel);
     along_.set("axis", glm::ivec2(1, 0));
@@ -89,12 +94,35 @@ class NarrowRange : public SurfaceFilter {
   }
 
  private:
-  // In splat radii; the best of those tried on analytic pools (render/score).
-  static constexpr float kReach = 3.2f;
-  static constexpr float kRange = 5.0f;
+  static constexpr float kTaps = 40.0f;
   gl::Program along_;
   gl::Program clean_;
-  float most_taps_ = 0.0f;
+};
+
+/// The same in main memory, with fewer taps.
+class NarrowRangeBesideGl : public SurfaceFilter {
+ public:
+  void fetch(const Targets& targets) override {
+    front_.resize(static_cast<std::size_t>(targets.size.x) * static_cast<std::size_t>(targets.size.y));
+    glGetTextureImage(targets.front.name(), 0, GL_RED, GL_FLOAT,
+                      static_cast<GLsizei>(front_.size() * sizeof(float)), front_.data());
+  }
+  int run(const Targets& targets, const RenderOptions& options, const Frame& frame,
+          const TileDraw&) override {
+    const float radius = options.splat_scale * frame.particle_radius;
+    const float pixels = 0.5f * frame.view.projection[1][1] * static_cast<float>(targets.size.y);
+    const std::span<const float> surface =
+        filter_.run(front_, targets.size, {kReach * radius, kRange * radius, kTaps, pixels});
+    glTextureSubImage2D(targets.smooth[0].name(), 0, 0, 0, targets.size.x, targets.size.y, GL_RED, GL_FLOAT,
+                        surface.data());
+    return 0;
+  }
+  bool on_gpu() const override { return false; }
+
+ private:
+  static constexpr int kTaps = 6;
+  NarrowRangeOnCpu filter_;
+  std::vector<float> front_;
 };
 
 }  // namespace
@@ -104,7 +132,7 @@ void TileDraw::operator()() const {
   glDrawArrays(GL_TRIANGLES, 0, corners);
 }
 
-Result<std::unique_ptr<SurfaceFilter>> make_surface_filter(Surface surface, bool fast) {
+Result<std::unique_ptr<SurfaceFilter>> make_surface_filter(Surface surface, bool on_cpu) {
   switch (surface) {
     case Surface::kPaper:
       return PaperFilter::create();
@@ -113,7 +141,8 @@ Result<std::unique_ptr<SurfaceFilter>> make_surface_filter(Surface surface, bool
     case Surface::kOurs:
       break;
   }
-  return NarrowRange::create(fast);
+  if (on_cpu) return std::unique_ptr<SurfaceFilter>(std::make_unique<NarrowRangeBesideGl>());
+  return NarrowRange::create();
 }
 
 }  // namespace slosh

@@ -19,13 +19,17 @@ struct TileDraw {
 class SurfaceFilter {
  public:
   virtual ~SurfaceFilter() = default;
-  /// Reads targets.front, writes targets.smooth by turns, both cleared to no fluid before. Returns the index
-  /// of the one that holds the surface, −1 = front itself.
+  /// Called when front is drawn, before run(): a filter that works in main memory fetches it here, so that
+  /// the driver draws other passes while it works.
+  virtual void fetch(const Targets& targets) { (void)targets; }
+  /// Reads targets.front, writes targets.smooth by turns, both cleared to no fluid before where on_gpu().
+  /// Returns the index of the one that holds the surface, −1 = front itself.
   virtual int run(const Targets& targets, const RenderOptions& options, const Frame& frame,
                   const TileDraw& tiles) = 0;
+  virtual bool on_gpu() const { return true; }
 };
 
-/// `fast`: fewer taps, for a CPU. Errors: a shader that the driver refuses.
-Result<std::unique_ptr<SurfaceFilter>> make_surface_filter(Surface surface, bool fast);
+/// `on_cpu`: the quickest way where a CPU draws. Errors: a shader that the driver refuses.
+Result<std::unique_ptr<SurfaceFilter>> make_surface_filter(Surface surface, bool on_cpu);
 
 }  // namespace slosh

@@ -2,12 +2,13 @@
 
 namespace slosh {
 
-Targets make_targets(glm::ivec2 size, bool half_resolution_back) {
+Targets make_targets(glm::ivec2 size, bool half_resolution_back, bool fast) {
   using gl::make_framebuffer;
   using gl::make_texture;
   Targets t;
   t.size = size;
   t.half_size = (size + 1) / 2;
+  t.chord_size = fast ? (size + 3) / 4 : t.half_size;
   t.back_size = half_resolution_back ? t.half_size : size;
 
   t.mesh_color = make_texture(size, GL_RGBA16F, GL_NEAREST);
@@ -18,7 +19,7 @@ Targets make_targets(glm::ivec2 size, bool half_resolution_back) {
   t.front = make_texture(size, GL_R32F, GL_LINEAR);
   for (gl::Texture& texture : t.smooth) texture = make_texture(size, GL_R32F, GL_LINEAR);
   t.back = make_texture(t.back_size, GL_R32F, GL_LINEAR);
-  t.chord = make_texture(t.half_size, GL_R16F, GL_LINEAR);
+  t.chord = make_texture(t.chord_size, GL_R16F, GL_LINEAR);
   t.occlusion = make_texture(t.half_size, GL_R8, GL_LINEAR);
   t.sharp = make_texture(size, GL_RGBA8, GL_NEAREST);
   t.display = make_texture(size, GL_RGBA8, GL_LINEAR);

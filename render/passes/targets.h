@@ -13,6 +13,8 @@ struct Targets {
   glm::ivec2 half_size{0};
   glm::ivec2 back_size{0};  ///< of the back depth: half_size or size
 
+  glm::ivec2 chord_size{0};  ///< half of size, or a quarter where that has to be quick
+
   gl::Texture mesh_color;             ///< RGBA16F: meshes before occlusion; alpha = share occlusion may take
   gl::Texture color;                  ///< RGBA16F: the picture in scene-linear light
   gl::Texture scene_color;            ///< RGBA16F: S_c, a copy of color from before the fluid
@@ -21,7 +23,7 @@ struct Targets {
   gl::Texture front;                  ///< R32F: F_fD as splatted, the fluid's index in the low four bits
   std::array<gl::Texture, 2> smooth;  ///< R32F: F_fD through the filter, by turns
   gl::Texture back;                   ///< R32F, back_size: F_bD
-  gl::Texture chord;                  ///< R16F, half_size: fluid along the line of sight, summed, m
+  gl::Texture chord;                  ///< R16F, chord_size: fluid along the line of sight, summed, m
   gl::Texture occlusion;              ///< R8, half_size: 1 = open
   gl::Texture sharp;                  ///< RGBA8: the picture as shown, before its edges are smoothed
   gl::Texture display;                ///< RGBA8: the picture as shown
@@ -39,7 +41,7 @@ struct Targets {
   gl::Framebuffer display_target;
 };
 
-/// Sizes in pixels, >= 1.
-Targets make_targets(glm::ivec2 size, bool half_resolution_back);
+/// Sizes in pixels, >= 1. `fast`: less for a CPU.
+Targets make_targets(glm::ivec2 size, bool half_resolution_back, bool fast);
 
 }  // namespace slosh

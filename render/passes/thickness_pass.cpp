@@ -37,9 +37,11 @@ void ThicknessPass::draw(const Frame& frame, const Targets& targets, std::span<c
   buffer_.upload(spheres);
   glVertexArrayVertexBuffer(array_.name(), 0, buffer_.name(), 0, sizeof(glm::vec4));
   program_.set("sphere", glm::vec2(kWide * frame.particle_radius, frame.particle_radius));
+  // Of the picture's pixels in one of its own, along a side.
+  program_.set("pixels", targets.chord_size == targets.half_size ? 2 : 4);
   gl::bind_textures({&targets.scene_depth});
   glBindFramebuffer(GL_FRAMEBUFFER, targets.chord_target.name());
-  glViewport(0, 0, targets.half_size.x, targets.half_size.y);
+  glViewport(0, 0, targets.chord_size.x, targets.chord_size.y);
   glEnable(GL_PROGRAM_POINT_SIZE);
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE);

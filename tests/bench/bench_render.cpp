@@ -1,12 +1,13 @@
 // How long each pass of a frame takes: bench_render [--width W] [--height H] [--particles N] [--frames F]
 // [--threads T] [--batter] [--paper] [--flow] [--full] [--stereo] [--out PICTURE.png]. Times are medians over
 // the frames, with a glFinish after each pass. --stereo: both eyes of one frame against one, each of that
-// size, with the HUD.
+// size, with the HUD. --reference PATHS: no times, but the same picture by path tracing into --out.
 #include <imgui.h>
 
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -15,6 +16,8 @@
 #include <string>
 #include <vector>
 
+#include "render/color/display_transform.h"
+#include "render/reference/path_tracer.h"
 #include "render/renderer.h"
 #include "tests/render/scene_kit.h"
 
@@ -32,6 +35,7 @@ struct Wishes {
   bool flow = false;
   bool hud = false;
   bool stereo = false;
+  int reference = 0;
   std::string out;
 };
 
@@ -51,6 +55,7 @@ Wishes read_arguments(int count, char** words) {
     if (word == "--flow") wishes.flow = true;
     if (word == "--hud") wishes.hud = true;
     if (word == "--stereo") wishes.stereo = wishes.hud = true;
+    if (word == "--reference") wishes.reference = std::max(std::atoi(next), 1);
     if (word == "--out") wishes.out = next;
   }
   return wishes;
@@ -100,6 +105,35 @@ void time_stereo(slosh::Renderer& renderer, const slosh::Frame& frame, int frame
               median(stereo) / median(mono), std::ranges::min(stereo) / std::ranges::min(mono));
 }
 
+/// The picture by path tracing.
+slosh::Result<bool> write_reference(const Wishes& wishes) {
+  using namespace slosh;
+  auto tracer = reference::PathTracer::create();
+  if (!tracer) return tracer.error();
+  kit::DamBreak scene(*tracer.value(), wishes.particles, wishes.width, wishes.height);
+  if (wishes.batter) scene.frame.fluids = {kit::batter()};
+  reference::Options options;
+  options.width = wishes.width;
+  options.height = wishes.height;
+  options.samples = wishes.reference;
+  options.threads = std::max(wishes.threads, 1);
+  const FloatImage light = tracer.value()->draw(scene.frame, options);
+  std::vector<glm::vec3> linear(light.values.size() / 3);
+  for (std::size_t i = 0; i < linear.size(); ++i)
+    linear[i] = {light.values[3 * i], light.values[3 * i + 1], light.values[3 * i + 2]};
+  const auto shown = display_colors(Display::kAces, linear);
+  if (!shown) return shown.error();
+  Image image{wishes.width, wishes.height, {}};
+  for (const glm::vec3& color : shown.value()) {
+    for (int c = 0; c < 3; ++c)
+      image.rgba.push_back(static_cast<std::uint8_t>(std::lround(255.0f * color[c])));
+    image.rgba.push_back(255);
+  }
+  const auto written = write_png(wishes.out, image);
+  if (!written) return written.error();
+  return true;
+}
+
 int fail(const slosh::Error& error) {
   std::fprintf(stderr, "%s\n", error.text().c_str());
   return 1;
@@ -110,6 +144,10 @@ int fail(const slosh::Error& error) {
 int main(int argc, char** argv) {
   using namespace slosh;
   const Wishes wishes = read_arguments(argc, argv);
+  if (wishes.reference > 0) {
+    const auto written = write_reference(wishes);
+    return written ? 0 : fail(written.error());
+  }
   HeadlessOptions headless;
   headless.software_threads = wishes.threads;
   auto context = make_headless_context(headless);

@@ -100,7 +100,7 @@ FluidLook batter() {
   return look;
 }
 
-DamBreak::DamBreak(Renderer& renderer, int wanted, int width, int height) {
+DamBreak::DamBreak(MeshSink& meshes, int wanted, int width, int height) {
   const glm::vec3 low(-0.25f, 0.0f, -0.125f);
   const glm::vec3 high(0.25f, 0.28f, 0.125f);
   const auto surface = [](float x, float z) {
@@ -116,7 +116,7 @@ DamBreak::DamBreak(Renderer& renderer, int wanted, int width, int height) {
   fluids.assign(particles.size(), 0);
 
   const auto add = [&](const Shape& shape, const MeshLook& look, const glm::vec3& at) {
-    const MeshHandle mesh = renderer.add_mesh(shape.positions, shape.normals, shape.triangles);
+    const MeshHandle mesh = meshes.add_mesh(shape.positions, shape.normals, shape.triangles);
     frame.meshes.push_back({mesh, glm::translate(glm::mat4(1.0f), at), look});
   };
   add(make_box({-0.9f, -0.05f, -0.6f}, {0.9f, -0.006f, 0.6f}), {{0.24f, 0.15f, 0.09f}, 0.0f, 0.55f, 1.0f},

@@ -36,7 +36,7 @@ struct DamBreak {
   std::vector<std::uint8_t> fluids;
   Frame frame;
 
-  DamBreak(Renderer& renderer, int particles, int width, int height);
+  DamBreak(MeshSink& meshes, int particles, int width, int height);
 };
 
 FluidLook water();
