@@ -26,7 +26,7 @@ struct PathFigures {
   double latest_rtt = 0.0;
   std::uint64_t window = 0;
   std::uint64_t in_flight = 0;
-  double delivery_rate = 0.0;
+  double delivery_rate = 0.0;  // measured by DeliveredRate, not by the library
   double pacing_rate = 0.0;
 };
 
@@ -89,9 +89,6 @@ inline PathFigures path_figures(ngtcp2_conn* conn) {
   figures.latest_rtt = 1e-9 * static_cast<double>(info.latest_rtt);
   figures.window = info.cwnd;
   figures.in_flight = info.bytes_in_flight;
-  // 1.x keeps its delivery rate to itself: what the window lets through is the nearest thing.
-  if (figures.smoothed_rtt > 0.0)
-    figures.delivery_rate = static_cast<double>(info.cwnd) / figures.smoothed_rtt;
   return figures;
 }
 
@@ -163,7 +160,6 @@ inline PathFigures path_figures(ngtcp2_conn* conn) {
   figures.latest_rtt = 1e-9 * static_cast<double>(stat.latest_rtt);
   figures.window = stat.cwnd;
   figures.in_flight = stat.bytes_in_flight;
-  figures.delivery_rate = static_cast<double>(stat.delivery_rate_sec);
   figures.pacing_rate = stat.pacing_rate * 1e9;  // the library counts in bytes a ns
   return figures;
 }

@@ -266,7 +266,7 @@ ConnectionStats Connection::stats() const {
   stats.min_rtt = figures.min_rtt;
   stats.window = figures.window;
   stats.in_flight = figures.in_flight;
-  stats.delivery_rate = figures.delivery_rate;
+  stats.delivery_rate = rate_;
   stats.datagrams_lost = ledger_.lost();
   stats.bytes_sent = bytes_sent_;
   stats.bytes_received = bytes_received_;

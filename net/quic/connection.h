@@ -11,6 +11,7 @@
 #include "net/quic/compat.h"
 #include "net/quic/connection_memory.h"
 #include "net/quic/datagram_queues.h"
+#include "net/quic/delivered_rate.h"
 #include "net/quic/endpoint.h"
 #include "net/quic/loss_ledger.h"
 #include "net/quic/pace.h"
@@ -161,6 +162,8 @@ class Connection {
   StreamOutbox streams_;
   std::size_t snapshots_in_a_row_ = 0;
   PaceGain pace_;
+  DeliveredRate delivered_rate_;
+  double rate_ = 0.0;  // by it, bytes a s
   SnapshotRoom snapshot_room_;
   PoseRoom pose_room_;
   LossLedger ledger_;

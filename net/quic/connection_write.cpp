@@ -33,8 +33,11 @@ void Connection::flush(std::int64_t now) {
     return;
   }
   streams_.unblock_all();
-  const PathFigures figures = path_figures(conn_);
+  PathFigures figures = path_figures(conn_);
   const std::size_t limit = burst(figures);
+  rate_ =
+      delivered_rate_.note(bytes_sent_ - std::min(bytes_sent_, figures.in_flight), now, figures.smoothed_rtt);
+  figures.delivery_rate = rate_;
   const std::size_t most = snapshot_room_.limit(figures, now);
   room_ = most > figures.in_flight ? most - figures.in_flight : 0;
   const std::size_t wide = pose_room_.limit(figures, now);

@@ -49,7 +49,7 @@ struct ConnectionStats {
   double min_rtt = 0.0;          ///< s
   std::uint64_t window = 0;      ///< bytes that may be in flight
   std::uint64_t in_flight = 0;   ///< bytes
-  double delivery_rate = 0.0;    ///< bytes a s, the transport's own estimate; 0 = none yet
+  double delivery_rate = 0.0;    ///< bytes a s, the most of the last seconds; 0 = not known yet
   std::uint64_t bytes_sent = 0;  ///< of UDP payload
   std::uint64_t bytes_received = 0;
   std::uint64_t datagrams_sent[kPriorities] = {};

@@ -22,7 +22,9 @@ class QueueDrain {
       began_ = now;
       until_ = now + static_cast<std::int64_t>(1e9 * std::min(kRoundTrips * path.smoothed_rtt, kLongest));
     }
-    if (path.latest_rtt <= kGone * shortest) until_ = 0;
+    // By the shortest that there ever was: the last seconds' has a queue in it that was not let run empty.
+    const double way = path.min_rtt > 0.0 ? std::min(shortest, path.min_rtt) : shortest;
+    if (path.latest_rtt <= kGone * way) until_ = 0;
     return now < until_;
   }
 
@@ -31,7 +33,7 @@ class QueueDrain {
   static constexpr std::int64_t kEvery = 3'000'000'000;
   static constexpr double kRoundTrips = 2.5;
   static constexpr double kLongest = 1.2;  // s
-  static constexpr double kGone = 1.1;     // of the shortest round trip
+  static constexpr double kGone = 1.05;    // of the shortest round trip
 
   std::int64_t began_ = 0;
   std::int64_t until_ = 0;

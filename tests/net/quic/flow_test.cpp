@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "net/impair/relay.h"
+#include "net/quic/delivered_rate.h"
 #include "net/quic/loss_ledger.h"
 #include "net/quic/pace.h"
 #include "net/quic/pose_room.h"
@@ -136,6 +137,39 @@ TEST(SnapshotRoom, IsALittleMoreThanWhatFillsTheWay) {
   EXPECT_GT(limit, 40'000u);  // 1 MB/s × 40 ms
   EXPECT_LT(limit, 2 * 40'000u);
   EXPECT_EQ(room.limit(path(0.2, 0.04), 3), limit) << "a queue is no longer way";
+}
+
+TEST(SnapshotRoom, LeavesLittleBeyondTheWayWhereAQueueStands) {
+  SnapshotRoom room;
+  std::int64_t now = 1;
+  const auto pass = [&](double rtt, double seconds) {
+    std::size_t limit = 0;
+    for (double t = 0.0; t < seconds; t += 1e-3) limit = room.limit(path(rtt, 0.04), now += 1'000'000);
+    return limit;
+  };
+  EXPECT_GT(pass(0.04, 1.0), 60'000u);
+  EXPECT_LT(pass(0.07, 1.0), 48'000u) << "1 MB/s × 40 ms and four packets";
+  EXPECT_EQ(pass(0.07, 2.2), 0u) << "after three seconds it is let run empty";
+  // A radio's round trips dither, and are short now and then: that is no queue.
+  for (int i = 0; i < 3000; ++i) room.limit(path(i % 10 == 0 ? 0.04 : 0.07, 0.04), now += 1'000'000);
+  EXPECT_GT(room.limit(path(0.07, 0.04), now += 1'000'000), 60'000u);
+}
+
+TEST(DeliveredRate, IsAMeanOverARoundTripAndForgets) {
+  quic::DeliveredRate rate;
+  std::int64_t now = 1;
+  std::uint64_t delivered = 0;
+  EXPECT_EQ(rate.note(delivered, now, 0.04), 0.0);
+  const auto clumps = [&](double bytes_a_second, double seconds) {
+    double told = 0.0;
+    for (int ms = 1; ms <= static_cast<int>(1e3 * seconds); ++ms) {
+      if (ms % 30 == 0) delivered += static_cast<std::uint64_t>(0.03 * bytes_a_second);
+      told = rate.note(delivered, now += 1'000'000, 0.04);
+    }
+    return told;
+  };
+  EXPECT_NEAR(clumps(1e6, 3.0), 1.1e6, 0.15e6) << "30 ms of bytes at a time";
+  EXPECT_LT(clumps(0.2e6, 5.0), 0.3e6) << "the link has got slower";
 }
 
 TEST(SnapshotRoom, FindsOutThatTheWayGotLonger) {
