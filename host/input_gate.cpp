@@ -80,6 +80,7 @@ bool InputGate::accept(const PoseMessage& message, std::int64_t clock_ns) {
     if (hand.has_good && hand.good.engaged) {
       hand.lost_at = time_;
       hand.lost_scale = hand.scale;
+      hand.lost_fade = shared(hand) ? kHandOver : kLostFade;
     }
   } else {
     hand.lost_scale = 0.0;
@@ -123,14 +124,20 @@ void InputGate::stood_still() {
   for (Hand& hand : hands_) hand.engagement = Engagement{};
 }
 
-// The coupling weakens where the hand was last, at rest.
-void InputGate::fade(Hand& hand, HandleInput& input, double time) {
-  const double left = 1.0 - (time - hand.lost_at) / kLostFade;
+// The coupling weakens where the hand was last, at rest; whoever is heard does not pull against it.
+void InputGate::fade(Hand& hand, HandleInput& input, const GripState& grip, double time,
+                     std::int64_t clock_ns) {
+  const double left = 1.0 - (time - hand.lost_at) / hand.lost_fade;
   input.engaged = left > 0.0;
   input.scale = input.engaged ? hand.lost_scale * left : 0.0;
   input.pose = hand.last_held;
   input.twist = Twist{};
-  if (!input.engaged) hand.lost_scale = 0.0;
+  if (!input.engaged) {
+    hand.lost_scale = 0.0;
+  } else if (another_holds(hand, clock_ns)) {
+    give_way(hand, input, grip);
+    hand.last_held = input.pose;
+  }
 }
 
 /// Whether somebody who is heard holds the same body.
@@ -204,7 +211,9 @@ void InputGate::fill_input(Hand& hand, std::size_t grip, const BodySnapshot& now
     }
   }
   if (input.engaged) hand.last_held = input.pose;
-  if (!input.engaged && hand.lost_scale > 0.0) fade(hand, input, now.time);
+  if (!input.engaged && hand.lost_scale > 0.0) {
+    fade(hand, input, grip < now.grips.size() ? now.grips[grip] : nowhere, now.time, clock_ns);
+  }
   hand.scale = input.scale;
 }
 

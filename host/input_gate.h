@@ -17,6 +17,9 @@ namespace slosh {
 
 /// s of simulated time over which a coupling fades whose hand was lost (PoseMessage::lost).
 constexpr double kLostFade = 0.4;
+/// The same where somebody else holds the body too, who gets its weight from it: as long as a hand is let
+/// feel what it takes hold of (net/engagement.h). In 0.4 s a load that doubles lets the other arm drop.
+constexpr double kHandOver = 2.0;
 /// s of wall time without a message after which a hand is taken to come to rest: a twist as old as that would
 /// drag the body along ...
 constexpr double kStaleTwist = 0.015;
@@ -74,10 +77,11 @@ class InputGate {
     double scale = 0.0;            // of the last step
     double lost_at = 0.0;          // simulated s
     double lost_scale = 0.0;       // what is left to fade; 0 = nothing
+    double lost_fade = kLostFade;  // s, simulated, over which it does
     Pose last_held;                // the pose that the last engaged step used
   };
   void fill_input(Hand& hand, std::size_t grip, const BodySnapshot& now, std::int64_t clock_ns);
-  void fade(Hand& hand, HandleInput& input, double time);
+  void fade(Hand& hand, HandleInput& input, const GripState& grip, double time, std::int64_t clock_ns);
   bool another_holds(const Hand& hand, std::int64_t clock_ns) const;
   bool shared(const Hand& hand) const;
   void give_way(Hand& hand, HandleInput& input, const GripState& grip) const;

@@ -257,6 +257,36 @@ TEST(InputGate, ASilentHandGivesWayToOneThatIsHeard) {
   }
 }
 
+// One of two is lost for good: the other gets the weight over kHandOver, and may move meanwhile.
+TEST(InputGate, ALostHandsShareGoesToTheOtherSlowly) {
+  TwoHands hands;
+  hands.now.grips[0].pose.position.y = -0.01;
+  hands.now.grips[0].on_hand.force.y = -0.01 * hands.scene.grips[0].stiffness;  // its share of a weight
+  for (int i = 0; i < 20; ++i) hands.step(true, true);
+  const double share = hands.force().y;
+  PoseMessage lost = message(0, 0.0, hands.clock);
+  lost.lost = true;
+  lost.engaged = false;
+  ASSERT_TRUE(hands.gate.accept(lost, hands.clock));
+  double before = hands.force().y;
+  for (int i = 0; i < 1990; ++i) {
+    hands.now.grips[0].pose.position +=
+        glm::dvec3(0.0005, 0.0002, 0.0);  // the other one carries the body away
+    hands.step(false, true);
+    ASSERT_TRUE(hands.silent.engaged) << i;
+    const double left = 1.0 - 0.001 * i / kHandOver;
+    EXPECT_NEAR(hands.silent.scale, left, 0.002);
+    const glm::dvec3 gives = hands.silent.scale * hands.force();
+    EXPECT_LE(glm::length(gives - glm::dvec3(0.0, left * share, 0.0)),
+              left * kYieldForce + 0.002 * std::abs(share))
+        << "it pulls at nobody";
+    EXPECT_LE(std::abs(gives.y - before), 0.5) << "and never jumps";
+    before = gives.y;
+  }
+  for (int i = 0; i < 20; ++i) hands.step(false, true);
+  EXPECT_FALSE(hands.silent.engaged);
+}
+
 TEST(InputGate, HandsThatAreAllSilentHoldTheBodyWhereItIs) {
   TwoHands hands;
   for (int i = 0; i < 20; ++i) hands.step(true, true);
