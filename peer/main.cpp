@@ -54,7 +54,9 @@ int run(int argc, char** argv) {
   // Wrong settings are said before anything is begun, and nothing is begun with half of them.
   if (!settings.errors.empty() && !app.got_subcommand("settings")) {
     for (const Error& error : settings.errors) fail(error);
-    std::fprintf(stderr, "slosh: nothing was begun. `slosh settings` shows them all; SLOSH_SETTINGS=none goes without.\n");
+    std::fprintf(
+        stderr,
+        "slosh: nothing was begun. `slosh settings` shows them all; SLOSH_SETTINGS=none goes without.\n");
     return kExitUsage;
   }
   return chosen();
@@ -70,7 +72,7 @@ int main(int argc, char** argv) {
   try {
     return slosh::run(argc, argv);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "slosh: %s\n", error.what());
+    std::fprintf(stderr, "slosh: %s\n", slosh::clean_lines(error.what(), slosh::kMostTextBytes).c_str());
     return slosh::kExitFailed;
   }
 }

@@ -84,7 +84,7 @@ int list_devices() {
   else
     std::printf("No headset: %s. %s.\n", clean_text(headset.error().what, kMostTextBytes).c_str(),
                 headset.error().mend.c_str());
-  std::printf("Settings: %s\n", device_settings_folder().c_str());
+  std::printf("Settings: %s\n", clean_text(device_settings_folder().string(), kMostTextBytes).c_str());
   if (well) return kExitOk;
   std::printf("\nThe rule that lets whoever sits here open them (%s):\n%s", kUdevRuleFile,
               udev_rule().c_str());

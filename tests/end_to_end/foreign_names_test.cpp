@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "net/text/clean.h"
 #include "peer/output/plot.h"
@@ -37,14 +38,14 @@ const std::vector<std::string>& hostile_names() {
 }
 
 /// A cup in many hands.
-void write_scene(const fs::path& file) {
+void write_scene(const fs::path& file, const std::string& fluid = "water") {
   const nlohmann::json about{{"title", "`touch obeyed-title` \x1b]0;t\x07 \u009b31m"}};
   make::SceneWriter writer(about);
   const int paint = writer.add_material("paint", {});
   const int cup =
       writer.add_node("cup", writer.add_mesh("cup_mesh", make::tank({0.1, 0.1, 0.1}, 0.02), paint), {},
                       {{"slosh", "body"}, {"motion", "free"}, {"mass_kg", 0.5}});
-  writer.add_node("water",
+  writer.add_node(fluid,
                   writer.add_mesh("water_mesh", make::box({-0.05, 0.02, -0.05}, {0.05, 0.09, 0.05}), paint),
                   {}, {{"slosh", "fluid"}});
   const Pose top{{0.0, 0.1, 0.0}, {1.0, 0.0, 0.0, 0.0}};
@@ -103,6 +104,62 @@ TEST(ForeignNames, ARecordingsNamesRunNothingEither) {
   expect_nothing_obeyed();
   expect_fit_for_a_terminal(outcome.out);
   expect_fit_for_a_terminal(outcome.err);
+}
+
+TEST(ForeignNames, FiguresAndFramesHoldThemAsText) {
+  fs::remove_all(test::test_folder());
+  const std::string fluid = "--><script>alert(1)</script>]]>\nend_header\n`touch obeyed-fluid`";
+  write_scene(test::test_folder() / "]]><script>.glb", fluid);
+  for (const char* format : {"svg", "pdf"}) {
+    const Outcome outcome = test::slosh({"play",
+                                         "]]><script>.glb",
+                                         "--headless",
+                                         "--no-render",
+                                         "--unpaced",
+                                         "--threads",
+                                         "1",
+                                         "--seconds",
+                                         "0.1",
+                                         "--spacing",
+                                         "0.02",
+                                         "--plot",
+                                         format,
+                                         "--out",
+                                         format,
+                                         "--export",
+                                         "particles:ply",
+                                         "--export",
+                                         "particles:vtu",
+                                         "--export",
+                                         "surface:vdb",
+                                         "--export",
+                                         "surface:glb"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    expect_fit_for_a_terminal(outcome.out);
+    expect_nothing_obeyed();
+  }
+  // A reader of XML that is not ours takes all of it for text.
+  const char* const read =
+      "import sys, xml.etree.ElementTree as tree\n"
+      "for file in sys.argv[1:]:\n"
+      "  parts = list(tree.parse(file).iter())\n"
+      "  print(file, len(parts), sum('script' in part.tag for part in parts))\n";
+  const Outcome parsed = test::Process({"/usr/bin/python3", "-c", read, "svg/wrenches.svg",
+                                        "svg/frames/particles.pvd", "svg/frames/particles_00000.vtu"},
+                                       test::test_folder())
+                             .wait();
+  ASSERT_EQ(parsed.code, 0) << parsed.out << parsed.err;
+  std::istringstream rows(parsed.out);
+  std::string file;
+  int parts = 0, scripts = 0, files = 0;
+  for (; rows >> file >> parts >> scripts; ++files) {
+    EXPECT_GE(parts, 3) << file;
+    EXPECT_EQ(scripts, 0) << file;
+  }
+  EXPECT_EQ(files, 3);
+  EXPECT_EQ(test::read_text(test::test_folder() / "pdf/wrenches.pdf").rfind("%PDF-", 0), 0u);
+  const std::string ply = test::read_text(test::test_folder() / "svg/frames/particles_00000.ply");
+  EXPECT_EQ(ply.find("\nend_header\n"), ply.rfind("\nend_header\n")) << "one line of a name stays one";
 }
 
 TEST(ForeignNames, CheckAndPlanPrintThemClean) {

@@ -3,14 +3,17 @@
 
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <random>
 #include <sstream>
 
 #include "peer/export/exporter.h"
 #include "peer/export/fluid_surface.h"
 #include "peer/export/particle_files.h"
+#include "peer/export/surface_files.h"
 #include "tests/support/places.h"
 
 namespace slosh {
@@ -162,6 +165,54 @@ TEST(Surface, OfNoParticlesIsEmpty) {
   ASSERT_EQ(made.fluids.size(), 1u);
   EXPECT_TRUE(made.fluids[0].positions.empty());
   EXPECT_FALSE(made.vdb.empty()) << "a file without grids";
+}
+
+/// What a stranger may call a fluid, as the scene's reader leaves it.
+TEST(Exports, NamesAreTextInEveryFile) {
+  const std::vector<std::string> names{"--><script>alert(1)</script>",
+                                       "</VTKFile>",
+                                       "a-- --!>-",
+                                       "\"/><x y=\"",
+                                       "end_header",
+                                       "../../etc/passwd",
+                                       std::string(400, '`')};
+  ExportedFluids named;
+  named.spacing = kSpacing;
+  ParticleFrame frame;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    named.names.push_back(names[i]);
+    named.colors.emplace_back(0.5f);
+    fill(frame, 2, 0.0f, static_cast<std::uint8_t>(i), {1.0f * static_cast<float>(i), 0.0f, 0.0f},
+         [](int, int, int) { return true; });
+  }
+  const std::string ply = particles_as_ply(frame, named);
+  const std::size_t end = ply.find("\nend_header\n");
+  ASSERT_NE(end, std::string::npos);
+  std::size_t comments = 0, lines = 0;
+  std::istringstream head(ply.substr(0, end));
+  for (std::string line; std::getline(head, line); ++lines)
+    comments += line.rfind("comment ", 0) == 0 ? 1 : 0;
+  EXPECT_EQ(comments, 4 + names.size());
+  EXPECT_EQ(lines, comments + 2 + 1 + 9) << "ply, format, the element and its properties";
+  EXPECT_EQ(ply.size() - (end + 12), frame.size() * 33) << "what follows is the particles and nothing else";
+
+  const std::string vtu = particles_as_vtu(frame, named);
+  const std::size_t comment = vtu.find("<!--");
+  const std::size_t closed = vtu.find("-->", comment);
+  ASSERT_NE(closed, std::string::npos);
+  EXPECT_EQ(vtu.find("--", comment + 4), closed) << "XML allows no -- within a comment";
+  EXPECT_EQ(vtu.find("<VTKFile", closed), closed + 4) << "and it ends where ours does";
+  EXPECT_EQ(vtu.find("script", closed), std::string::npos);
+  EXPECT_EQ(vtu.find("</VTKFile>", closed), vtu.size() - 11);
+
+  const SurfaceFrame made = make_surfaces(frame, named, true, 1);
+  const std::string glb = surface_as_glb(made, frame, named);
+  std::uint32_t json_bytes = 0;
+  std::memcpy(&json_bytes, glb.data() + 12, sizeof(json_bytes));
+  const nlohmann::json json = nlohmann::json::parse(glb.substr(20, json_bytes));
+  ASSERT_EQ(json["nodes"].size(), names.size());
+  for (std::size_t i = 0; i < names.size(); ++i) EXPECT_EQ(json["nodes"][i]["name"], names[i]);
+  for (const nlohmann::json& buffer : json["buffers"]) EXPECT_FALSE(buffer.contains("uri"));
 }
 
 TEST(Exports, AreNamedAndRefusedByName) {

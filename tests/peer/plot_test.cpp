@@ -163,6 +163,56 @@ TEST(PlotScript, WhatNamesAreMadeOfIsNeverParsed) {
   }
 }
 
+/// What is wrong with the markup, empty when nothing is: an element that no drawing of gnuplot's has, or what
+/// XML does not allow in text.
+std::string strange_markup(const std::string& svg) {
+  const std::vector<std::string> known{"?xml", "svg",    "desc",    "title",       "defs",
+                                       "g",    "filter", "feFlood", "feComposite", "circle",
+                                       "path", "rect",   "text",    "use"};
+  if (svg.find("]]>") != std::string::npos) return "]]>";
+  for (std::size_t at = svg.find('<'); at != std::string::npos; at = svg.find('<', at + 1)) {
+    const std::size_t begin = svg[at + 1] == '/' ? at + 2 : at + 1;
+    const std::string element = svg.substr(begin, svg.find_first_of(" >/\n\t", begin) - begin);
+    if (std::find(known.begin(), known.end(), element) == known.end()) return svg.substr(at, 40);
+  }
+  for (std::size_t at = svg.find('&'); at != std::string::npos; at = svg.find('&', at + 1)) {
+    const std::string entity = svg.substr(at, svg.find(';', at) + 1 - at);
+    if (entity != "&lt;" && entity != "&gt;" && entity != "&amp;") return svg.substr(at, 40);
+  }
+  return "";
+}
+
+TEST(PlotWrenches, NamesAreTextInEveryFormat) {
+  std::signal(SIGPIPE, SIG_IGN);
+  const std::filesystem::path marker = temporary("obeyed_markup");
+  std::filesystem::remove(marker);
+  const std::filesystem::path file = temporary("markup.csv");
+  write_rows(file, 10);
+  std::vector<std::string> names = hostile_names(marker.string());
+  const std::size_t of_shells = names.size();
+  for (const char* markup : {"<script>alert(1)</script>", "</text></svg><script>alert(1)</script>",
+                             "]]><script/>", "&#60;script&#62;", "<!-- ", "\" onload=\"alert(1)", "<![CDATA[",
+                             "<span foreground='red'>", "%PDF-1.7 endobj"})
+    names.emplace_back(markup);
+  for (const char* format : {"svg", "pdf", "png"}) {
+    for (const std::size_t first : {std::size_t{0}, of_shells, of_shells + 2, of_shells + 6}) {
+      PlotSheet sheet = sheet_of({names[first], names[first + 1]}, names[first + 2], names);
+      sheet.format = format;
+      const std::filesystem::path picture = temporary(std::string("markup.") + format);
+      const Result<bool> drawn = plot_wrenches(file, sheet, picture);
+      ASSERT_TRUE(drawn) << drawn.error().text();
+      EXPECT_FALSE(std::filesystem::exists(marker)) << format;
+      std::ifstream in(picture, std::ios::binary);
+      const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+      EXPECT_GT(bytes.size(), 1000u) << format;
+      if (std::string(format) != "svg") continue;
+      EXPECT_EQ(strange_markup(bytes), "");
+      EXPECT_NE(bytes.find("&lt;script>alert(1)&lt;/script>"), std::string::npos) << "it is shown as it is";
+      EXPECT_NE(bytes.find("]]&gt;"), std::string::npos);
+    }
+  }
+}
+
 TEST(PlotWrenches, GnuplotDrawsBothColours) {
   std::signal(SIGPIPE, SIG_IGN);
   const std::filesystem::path file = temporary("draw.csv");
