@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <numeric>
+#include <string>
 
 namespace slosh {
 namespace {
@@ -28,6 +30,22 @@ TEST(ThreadTeam, TakesEmptyAndSmallRanges) {
   EXPECT_EQ(calls, 0);
   team.run(5, 16, [&](std::size_t begin, std::size_t end) { calls += static_cast<int>(end - begin); });
   EXPECT_EQ(calls, 5);
+}
+
+TEST(ThreadTeam, TakesNoMoreThanTheEnvironmentSaysWhereNobodyElseDoes) {
+  const char* before = std::getenv("SLOSH_THREADS");
+  const std::string kept = before ? before : "";
+  unsetenv("SLOSH_THREADS");
+  const int there = ThreadTeam(0).size();
+  setenv("SLOSH_THREADS", "1", 1);
+  EXPECT_EQ(ThreadTeam(0).size(), 1);
+  EXPECT_EQ(ThreadTeam(3).size(), 3) << "who says a number gets it";
+  for (const char* none : {"", "0", "-2", "many", "100000"}) {
+    setenv("SLOSH_THREADS", none, 1);
+    EXPECT_EQ(ThreadTeam(0).size(), there) << none;
+  }
+  unsetenv("SLOSH_THREADS");
+  if (before) setenv("SLOSH_THREADS", kept.c_str(), 1);
 }
 
 }  // namespace
