@@ -203,9 +203,10 @@ int run_host(const HostVerbOptions& options, HostReins* reins) {
 }  // namespace
 
 int host_world(const HostVerbOptions& options) {
+  if (const auto reins = inherited_reins()) return run_host(reins->to_run(options), reins.get());
   // Without a checkpoint another process would have nothing to carry on from.
   if (!options.supervised || options.checkpoint == "none") return run_host(options, nullptr);
-  return supervise_host(options, run_host);
+  return supervise_host(options, again_from_the_start());
 }
 
 }  // namespace slosh

@@ -3,14 +3,19 @@
 #include <signal.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <termios.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <new>
 
 #include "net/clock.h"
@@ -22,6 +27,58 @@ namespace {
 constexpr std::int64_t kOneWish = 500'000'000;  // ns within which a second signal is the first's echo
 constexpr std::int64_t kHeardWithin =
     300'000'000;  // ns in which a child that was signalled says that it ends
+
+// The descriptor of the page that both see, for the process that is started.
+constexpr const char* kReinsVariable = "SLOSH_REINS";
+
+void keep_path(const std::string& path, char* room, std::size_t longest) {
+  // Longer ones no file can have.
+  const std::size_t length = path.size() <= longest ? path.size() : 0;
+  std::memcpy(room, path.data(), length);
+  room[length] = '\0';
+}
+
+HostReins* map_reins(int descriptor) {
+  void* page = mmap(nullptr, sizeof(HostReins), PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0);
+  return page == MAP_FAILED ? nullptr : static_cast<HostReins*>(page);
+}
+
+void unmap_reins(HostReins* reins) {
+  munmap(reins, sizeof(HostReins));
+}
+
+/// The page, and the word of it that a child inherits.
+class SharedReins {
+ public:
+  SharedReins() : descriptor_(memfd_create("slosh-host", 0)) {
+    if (descriptor_ < 0 || ftruncate(descriptor_, sizeof(HostReins)) != 0) return;
+    void* page = map_reins(descriptor_);
+    if (!page) return;
+    reins_ = new (page) HostReins;
+    // Now and not in the child, which a fork leaves with one thread and perhaps somebody else's locks.
+    setenv(kReinsVariable, std::to_string(descriptor_).c_str(), 1);
+  }
+  ~SharedReins() {
+    if (reins_) unmap_reins(reins_);
+    if (descriptor_ >= 0) close(descriptor_);
+    unsetenv(kReinsVariable);
+  }
+  SharedReins(const SharedReins&) = delete;
+  SharedReins& operator=(const SharedReins&) = delete;
+  HostReins* get() const { return reins_; }
+
+ private:
+  int descriptor_;
+  HostReins* reins_ = nullptr;
+};
+
+/// What this process was started with.
+std::vector<std::string> command_line() {
+  std::ifstream file("/proc/self/cmdline", std::ios::binary);
+  std::vector<std::string> words;
+  for (std::string word; std::getline(file, word, '\0');) words.push_back(word);
+  return words;
+}
 
 /// The terminal as it was found: a child that dies leaves it as it needed it.
 class TerminalKeeper {
@@ -135,11 +192,40 @@ std::string HostReins::checkpoint() const {
   return ready_.load(std::memory_order_acquire) ? checkpoint_ : std::string();
 }
 
-void HostReins::restart() {
+void HostReins::restart(const HostVerbOptions& next) {
   ready_.store(false, std::memory_order_relaxed);
   pulse_.store(0, std::memory_order_relaxed);
   network_pulse_.store(0, std::memory_order_relaxed);
   ending_.store(false, std::memory_order_relaxed);
+  restarts_ = next.restarts;
+  keep_path(next.resume, resume_, kLongestPath);
+  keep_path(next.record, record_, kLongestPath);
+}
+
+HostVerbOptions HostReins::to_run(const HostVerbOptions& typed) const {
+  if (restarts_ == 0) return typed;
+  HostVerbOptions next = restarted(typed, resume_, restarts_);
+  next.record = record_;  // the name that the supervisor has said
+  return next;
+}
+
+std::unique_ptr<HostReins, void (*)(HostReins*)> inherited_reins() {
+  std::unique_ptr<HostReins, void (*)(HostReins*)> reins(nullptr, unmap_reins);
+  const char* said = std::getenv(kReinsVariable);
+  if (!said) return reins;
+  int descriptor = -1;
+  const char* end = said + std::strlen(said);
+  const auto [rest, failure] = std::from_chars(said, end, descriptor);
+  unsetenv(kReinsVariable);
+  struct stat page {};
+  // Somebody's own variable of that name is none of ours.
+  const bool ours = failure == std::errc() && rest == end && descriptor > STDERR_FILENO &&
+                    fstat(descriptor, &page) == 0 && S_ISREG(page.st_mode) && page.st_nlink == 0 &&
+                    page.st_size == sizeof(HostReins);
+  if (!ours) return reins;
+  reins.reset(map_reins(descriptor));
+  close(descriptor);
+  return reins;
 }
 
 bool RestartBudget::take(std::int64_t now_ns) {
@@ -166,16 +252,32 @@ HostVerbOptions restarted(const HostVerbOptions& options, const std::string& che
   return next;
 }
 
+HostBody again_from_the_start() {
+  return [words = command_line()](const HostVerbOptions&, HostReins*) -> int {
+    std::vector<char*> arguments;
+    for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+    arguments.push_back(nullptr);
+    execv("/proc/self/exe", arguments.data());
+    say(std::string("the host's own process cannot be started: ") + std::strerror(errno) +
+        ". Run it in this one with --no-supervisor");
+    return kExitFailed;
+  };
+}
+
 int supervise_host(const HostVerbOptions& options, const HostBody& body, const HangLimits& limits) {
-  void* page = mmap(nullptr, sizeof(HostReins), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-  if (page == MAP_FAILED) return body(options, nullptr);
-  HostReins& reins = *new (page) HostReins;
+  const SharedReins shared;
+  if (!shared.get()) {
+    say(std::string("no memory to look after the host with: ") + std::strerror(errno) +
+        ". Run it in this process with --no-supervisor");
+    return kExitFailed;
+  }
+  HostReins& reins = *shared.get();
   const TerminalKeeper terminal;
   const pid_t parent = getpid();
   RestartBudget budget;
   HostVerbOptions now = options;
   while (true) {
-    reins.restart();
+    reins.restart(now);
     std::fflush(nullptr);  // else the child would say it once more
     const HeldSignals signals;
     const pid_t child = fork();
@@ -185,10 +287,7 @@ int supervise_host(const HostVerbOptions& options, const HostBody& body, const H
       prctl(PR_SET_PDEATHSIG, SIGKILL);
       const int code = getppid() == parent ? body(now, &reins) : kExitFailed;
       std::fflush(nullptr);
-      // Not exit(): what libraries do there was begun in the parent. log4cplus, which OpenVDB brings along,
-      // starts threads as it is loaded and waits for them at its end; in a child they never were, and a host
-      // that had been stopped stayed for ever (KeptHost.ItsRecordingReplays…).
-      _exit(code);
+      _exit(code);  // not exit(): the parent's handlers are not the child's
     }
     if (child < 0) {
       signals.release();

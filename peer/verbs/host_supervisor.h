@@ -6,15 +6,21 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "peer/verbs/host_options.h"
 
 namespace slosh {
 
-/// What the child tells its supervisor, in a page that both see.
+/// What a host's process and its supervisor tell each other, in a page that both see.
 class HostReins {
  public:
+  /// Another is about to run: it has told nothing yet, and is to do what `next` asks for.
+  void restart(const HostVerbOptions& next);
+  /// What the process that was started is to run: what was typed, or what carries it on.
+  HostVerbOptions to_run(const HostVerbOptions& typed) const;
+
   /// From now on the world can be carried on from `checkpoint`.
   void can_carry_on_from(const std::string& checkpoint);
   /// The child was asked to end, and does.
@@ -29,7 +35,6 @@ class HostReins {
   std::uint64_t network_pulse() const { return network_pulse_.load(std::memory_order_relaxed); }
   std::string checkpoint() const;  ///< empty: it cannot be carried on yet
   bool ending() const { return ending_.load(std::memory_order_acquire); }
-  void restart();
 
  private:
   static constexpr std::size_t kLongestPath = 4095;
@@ -38,7 +43,15 @@ class HostReins {
   std::atomic<std::uint64_t> pulse_{0};
   std::atomic<std::uint64_t> network_pulse_{0};
   char checkpoint_[kLongestPath + 1] = {};
+  // Of restart(): how often, from what and into which recording it is carried on.
+  int restarts_ = 0;
+  char resume_[kLongestPath + 1] = {};
+  char record_[kLongestPath + 1] = {};
 };
+
+/// The page that the process which started this one keeps, where it is supervised; else empty. For once: it
+/// is not passed on to what this process starts.
+std::unique_ptr<HostReins, void (*)(HostReins*)> inherited_reins();
 
 /// A thread that lives and does nothing: its pulse stood for so many looks, one a second. Looks are counted
 /// in place of a clock, so that whoever was stopped together with it, or slept with the machine, blames
@@ -89,8 +102,15 @@ using HostBody = std::function<int(const HostVerbOptions&, HostReins*)>;
 
 /// Runs `body` in a child process, again and again where a fault ends it, or where its world or its network
 /// hangs. Returns what the last child came to (128 + signal where one ended it); a child ends with what
-/// `body` did, without exit()'s handlers. Signals that ask for the end are passed on. Before any thread of
-/// ours starts.
+/// `body` did, without exit()'s handlers. Signals that ask for the end are passed on.
+///
+/// The child is a fork, and a library may have threads from before main (log4cplus, which OpenVDB brings
+/// along, has), which a fork leaves behind. So a body that does more than to wait or to die is
+/// again_from_the_start().
 int supervise_host(const HostVerbOptions& options, const HostBody& body, const HangLimits& limits = {});
+
+/// A body that begins this very program anew with the command line that it has: it finds inherited_reins().
+/// Returns only where that fails, with words on stderr.
+HostBody again_from_the_start();
 
 }  // namespace slosh
