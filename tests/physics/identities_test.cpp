@@ -45,7 +45,7 @@ TEST_P(EachModel, fluid_gains_what_gravity_and_walls_give) {
       << "a slowed particle's momentum is not given to anyone";
   report_value(std::string("momentum identity, ") + name(GetParam()) + " model, worst step, share of M g dt",
                worst, "");
-  EXPECT_LT(worst, 1e-4);
+  EXPECT_LT(worst, 1e-6);
 }
 
 INSTANTIATE_TEST_SUITE_P(models, EachModel,
@@ -88,7 +88,7 @@ TEST(Momentum, fluid_and_free_body_together) {
   }
   EXPECT_GT(fluid_on_box, 0.5 * box_mass * kGravity) << "the box never met the fluid: the test tests nothing";
   report_value("momentum identity with a free box, worst step, share of M g dt", worst, "");
-  EXPECT_LT(worst, 1e-4);
+  EXPECT_LT(worst, 1e-6);
 }
 
 // Angular momentum about the origin. Velocities are differences of positions (the snapshot has no others):

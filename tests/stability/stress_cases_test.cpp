@@ -24,7 +24,9 @@ struct Expected {
 };
 // All others run true.
 constexpr Expected kExpected[] = {
-    {"thrown_10", Verdict::kLimited, 0.55, 2e-5},  // 1.4e-5; why is not known
+    // 1.4e-5 while the wall stops it: 9e-8 of what the wall gives in that step, as much as the weight in 300.
+    // Without gravity 1.2e-5, so it is the rounding of large pair forces.
+    {"thrown_10", Verdict::kLimited, 0.55, 2e-5},
     {"doubled", Verdict::kLimited, 0.60},
     {"far_away", Verdict::kLimited, 0.001},
     {"not_a_number", Verdict::kLimited, 0.002},
