@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # With the real Blender: what `slosh check` says of exports that it made (broken_exports.py makes them and says what has to be
-# found); what it reads of frames that slosh exported (round_trip.py); the tutorial from its first command to its last.
+# found); the add-on, installed and used; what it reads of frames that slosh exported (round_trip.py); the tutorial from its first command to its last.
 # Usage: run.sh BUILD
 set -euo pipefail
 build=${1:?usage: run.sh BUILD}
@@ -48,7 +48,7 @@ step() {
   "$@" >"$folder/step.log" 2>&1 </dev/null || code=$?
   if ((code == 0)); then
     passed=$((passed + 1))
-    grep -E '^(round_trip|film)\.py:' "$folder/step.log" || true
+    grep -E '^(addon|round_trip|film)\.py:' "$folder/step.log" || true
   else
     failed=$((failed + 1))
     tail -n 20 "$folder/step.log"
@@ -60,6 +60,9 @@ in_blender() { blender --background --factory-startup --python-exit-code 1 --pyt
 
 step "the mug scene" in_blender "$root/scenes/blender/mug.py" -- "$folder/mug.glb"
 exports=(--export particles:ply --export surface:ply --export surface:glb --export surface:vdb)
+mkdir "$folder/home"
+step "the add-on" env HOME="$folder/home" XDG_CONFIG_HOME="$folder/home/.config" blender --background --factory-startup \
+  --python-exit-code 1 --python "$here/addon.py" -- "$build/slosh_blender.zip" "$build/bin/slosh" "$folder/home"
 step "frames of it" "$build/bin/slosh" play "$folder/mug.glb" --headless --no-render --unpaced --yes --spacing 0.008 \
   --seconds 0.02 --export-rate 50 "${exports[@]}" --out "$folder/round"
 step "frames read by Blender" in_blender "$here/round_trip.py" -- "$folder/mug.glb" "$folder/round/frames" 0.008
@@ -87,4 +90,4 @@ for file in mug.glb mug.blend mug-film/view.mp4 mug-fine/frames/surface_00000.vd
   [[ -s "$folder/tutorial/$file" ]] || { failed=$((failed + 1)); echo "the tutorial left no $file"; }
 done
 echo "$passed passed, $failed failed; $commands commands of the tutorial"
-((failed == 0 && passed >= 30 && commands >= 7))
+((failed == 0 && passed >= 31 && commands >= 7))
