@@ -27,7 +27,7 @@ TEST(Launcher, HelpListsTheVerbs) {
   for (const std::vector<std::string>& arguments : {std::vector<std::string>{}, {"help"}, {"--help"}}) {
     const Outcome outcome = launcher(arguments);
     EXPECT_EQ(outcome.code, 0) << outcome.err;
-    for (const char* verb : {"play", "devices", "scenes", "check", "plan", "report", "python", "test", "bench", "format", "help"}) {
+    for (const char* verb : {"play", "devices", "scenes", "check", "plan", "report", "python", "package", "test", "bench", "format", "help"}) {
       EXPECT_NE(outcome.out.find(std::string("./slosh ") + verb), std::string::npos) << verb;
     }
   }
@@ -43,7 +43,7 @@ TEST(Launcher, AnUnknownVerbGetsTheNearest) {
 }
 
 TEST(Launcher, ExplainsItsOwnVerbsWithoutBuilding) {
-  for (const char* verb : {"python", "test", "bench", "format"}) {
+  for (const char* verb : {"python", "package", "test", "bench", "format"}) {
     const Outcome outcome = launcher({verb, "--help"});
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_NE(outcome.out.find("Usage"), std::string::npos);

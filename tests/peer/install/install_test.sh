@@ -59,6 +59,7 @@ try_files() {
   grep -q 'SUBSYSTEM' "$prefix/lib/udev/rules.d/70-slosh.rules" || fail "the udev rule is empty"
   printf '#include <slosh/slosh_device.h>\nint main(void) { return 0; }\n' >header.c
   cc -fsyntax-only -Wall -Werror -I "$prefix/include" header.c || fail "the header of devices does not compile"
+  grep -qa 'slosh_addon/__init__.py' "$prefix/share/slosh/slosh_blender.zip" || fail "no add-on for Blender"
   # Completion, as bash asks for it.
   (
     PATH="$prefix/bin:$PATH"
@@ -81,6 +82,25 @@ try_program "$folder/prefix"
 try_files "$folder/prefix"
 echo "installed and run from elsewhere"
 
+# A processor that has less than the program needs is told so; nothing crashes.
+arch="$(sed -n 's/^SLOSH_ARCH:STRING=//p' "$build/CMakeCache.txt")"
+if [[ "$(uname -m)" == x86_64 && "$arch" =~ ^(native|x86-64-v[34])$ ]]; then
+  command -v qemu-x86_64 >/dev/null || fail "no qemu-x86_64 here to be an older processor with (qemu-user)"
+  code=0
+  said="$(qemu-x86_64 -cpu Nehalem "$build/bin/slosh" --version 2>&1)" || code=$?
+  ((code == 1)) || fail "on an older processor: exit code $code: $said"
+  has "$said" "it lacks avx, "
+  echo "an older processor is refused in words"
+fi
+# What looks for instructions beyond a package's own finds one, and none where there is none.
+printf 'void f(void) { __asm__("vpaddd %%%s0, %%%s0, %%%s0"); }\n' zmm zmm zmm >wide.c
+printf 'void f(void) { __asm__("vpaddd %%%s0, %%%s0, %%%s0"); }\n' ymm ymm ymm >narrow.c
+cc -c wide.c && cc -c narrow.c
+source_dir="$(sed -n 's/^CMAKE_HOME_DIRECTORY:INTERNAL=//p' "$build/CMakeCache.txt")"
+! "$source_dir/peer/install/check_baseline.sh" wide.o >found.txt || fail "AVX-512 was not found"
+grep -q '^vpaddd 1$' found.txt || fail "found: $(cat found.txt)"
+"$source_dir/peer/install/check_baseline.sh" narrow.o || fail "AVX2 was taken for more"
+
 command -v dpkg-shlibdeps >/dev/null || { echo "skipped: no dpkg-shlibdeps here, so no Debian package"; exit 77; }
 (cd "$build" && cpack -G DEB -B "$folder/package") >"$folder/cpack.log" 2>&1 || fail "cpack: $(tail -n 20 "$folder/cpack.log")"
 packages=("$folder"/package/slosh_"$version"_*.deb)
@@ -88,6 +108,7 @@ packages=("$folder"/package/slosh_"$version"_*.deb)
 info="$(dpkg-deb -I "${packages[0]}")"
 has "$info" "Package: slosh"
 has "$info" "Version: $version"
+has "$info" "Built for the instruction set"
 for library in libc6 libstdc++6 libgnutls30 libngtcp2 libglfw3 libicu libopencolorio libusb-1.0-0 libzstd1; do
   grep -q "^ Depends:.*$library" <<<"$info" || fail "it does not depend on $library: $info"
 done
