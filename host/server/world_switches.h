@@ -36,9 +36,10 @@ class WorldSwitches {
   }
   /// For who comes while it waits.
   std::string waiting_text() const {
-    return hands_to_start_ == 1
-               ? "the world waits for the first hand to take hold"
-               : "the world waits until " + std::to_string(hands_to_start_) + " grips are held";
+    return (hands_to_start_ == 1
+                ? std::string("the world waits for the first hand to take hold")
+                : "the world waits until " + std::to_string(hands_to_start_) + " grips are held") +
+           ", or until somebody who may types continue";
   }
 
   wire::WorldInfo message() const {

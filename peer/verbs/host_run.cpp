@@ -15,6 +15,7 @@
 #include "peer/verbs/hosted_run.h"
 #include "peer/verbs/interrupt.h"
 #include "peer/verbs/verbs.h"
+#include "sim/math/format.h"
 
 namespace slosh {
 namespace {
@@ -181,6 +182,11 @@ int run_host(const HostVerbOptions& options, HostReins* reins) {
     progress.note("saved " + every(options.checkpoint_seconds) + " in " + run.checkpoint_file());
   if (reins) reins->can_carry_on_from(run.checkpoint_file());
   if (options.restarts == 0) print_links(run);
+  if (run.waits()) {
+    progress.note(format("the world stands still until %s; type continue to start it now (--wait 0: at once)",
+                         options.wait == 1 ? "the first hand takes hold"
+                                           : format("%d grips are held", options.wait).c_str()));
+  }
   if (!options.links_file.empty()) {
     const Result<bool> written = write_private(
         options.links_file,

@@ -59,6 +59,8 @@ class HostedRun {
   std::filesystem::path measured() const {
     return measurer_ ? hosted_.prepared.folder : std::filesystem::path();
   }
+  /// Whether the world stands until hands take hold (--wait).
+  bool waits() const { return hosted_.waits; }
   const Exporter* exporter() const { return exporter_.get(); }
   double coding_seconds() const { return coding_seconds_; }
 

@@ -250,7 +250,7 @@ TEST_F(LockedServerTest, OnlyTheHostSetsParameters) {
 
 TEST_F(WaitingServerTest, TheWorldWaitsForTheFirstHand) {
   ScriptedPeer& ana = join(1, "Ana");
-  EXPECT_TRUE(ana.noticed("waits for the first hand"));
+  EXPECT_TRUE(ana.noticed("waits for the first hand to take hold, or until somebody who may types continue"));
   EXPECT_TRUE(commands.empty());
   EXPECT_TRUE(pose(0).engaged) << "the host holds it meanwhile";
   ana.take(0);
