@@ -177,6 +177,43 @@ TEST(HeldBody, AHandAtRestIsNotPushedOff) {
   }
 }
 
+/// What others put in is heard of in packets. A force that is let through until each is used up would rattle
+/// at the packets' rate: it finds what the balance carries, and comes back slowly where there is more; now
+/// and then it has to find it again.
+TEST(HeldBody, WhereTheBalanceIsOutTheForceDoesNotRattle) {
+  PassivityController guard;
+  guard.restart({});
+  const ArmImpedance arm{1.0, 30.0, 1.0};
+  ArmState at;
+  Wrench felt;
+  glm::dvec3 row{0.0};
+  double out = 0.0, credit = 0.0, largest = 0.0, least = 10.0;
+  int steps = 0;
+  for (int i = 0; i < 3000; ++i) {
+    if (i % 10 == 0) credit += 2e-3;
+    const ArmState next = arm_after(arm, at, felt.force, kTick);
+    out += glm::dot(felt.force, next.place - at.place);
+    at = next;
+    felt = guard.guard({{10.0, 0.0, 0.0}, {}}, {at.place, {1, 0, 0, 0}}, {at.velocity, {}}, kTick, credit,
+                       100.0);
+    guard.sent(felt);
+    EXPECT_LE(out, credit + 1e-3) << i;
+    if (i % 2 != 0) continue;
+    const double step = glm::length(felt.force - row);
+    row = felt.force;
+    if (i >= 1000) {
+      steps += step > 1.0 ? 1 : 0;
+      largest = std::max(largest, step);
+      least = std::min(least, felt.force.x);
+    }
+  }
+  std::printf("%.0f mJ of %.0f given, %d steps above 1 N in 2 s, the largest %.2f N, never below %.2f N\n",
+              1e3 * out, 1e3 * credit, steps, largest, least);
+  EXPECT_LE(steps, 3);
+  EXPECT_LE(largest, 5.0);
+  EXPECT_GT(out, 0.8 * credit) << "what is there is given";
+}
+
 /// What a person put into dampers does not come out again: a body that bounces on for itself ends soon.
 TEST(HeldBody, WhatDampersUsedUpIsForgotten) {
   const CouplingGains gains{1000.0, 30.0, 10.0, 0.3};

@@ -19,17 +19,26 @@ class PassivityController {
   static constexpr double kArm = 0.1;
   /// kg that a hand on a device moves at least: with less, a tick's force gives more than it is counted for.
   static constexpr double kLeastMass = 0.3;
+  /// s for which what is left of the energy is made to last where it was out within the last kWary s: so the
+  /// force goes down before it is out, and not all at once each time that a packet's worth is used up.
+  static constexpr double kLasts = 0.1;
+  static constexpr double kWary = 1.0;
+  /// s over which a force that was cut comes back, and over which a damper for what is owed comes and goes.
+  static constexpr double kReturns = 0.2;
+  static constexpr double kDamps = 0.05;
 
   /// Nothing was sent yet; the hand is here. What was counted stays: others have it.
   void restart(const Pose& hand) noexcept {
     sent_ = Wrench{};
     before_ = hand;
+    wary_ = damping_ = 0.0;
+    open_ = 1.0;
   }
 
   /// Counts what was sent until now, and gives the wrench for the hand: of `wanted` what `credit` (J that
   /// others, weight and fluid put in) and this person's own energy cover until the next sending, and where
-  /// more came out than there was a damper on `twist` of at most `most` N·s/m, what the device holds. `dt` s
-  /// > 0 to the next sending.
+  /// more came out than there was a damper on `twist` of at most `most` N·s/m, what the device holds. A share
+  /// that was cut grows back over kReturns. `dt` s > 0 to the next sending.
   Wrench guard(const Wrench& wanted, const Pose& hand, const Twist& twist, double dt, double credit,
                double most) noexcept {
     energy_ -= glm::dot(sent_.force, hand.position - before_.position) +
@@ -44,19 +53,28 @@ class PassivityController {
     const double pushes =
         0.5 * dt * dt / kLeastMass *
         (glm::dot(wanted.force, wanted.force) + glm::dot(wanted.torque, wanted.torque) / turned);
-    if (gives + pushes <= left || !(pushes > 0.0)) return wanted;
-    fires_ = true;
-    // The most of it that is covered; what takes energy in from the hand, as much as takes in the most.
-    double share = std::min(-0.5 * gives / pushes, 1.0);
-    if (left > 0.0)
-      share = std::min((std::sqrt(gives * gives + 4.0 * pushes * left) - gives) / (2.0 * pushes), 1.0);
-    const Wrench covered = share > 0.0 ? Wrench{share * wanted.force, share * wanted.torque} : Wrench{};
-    // What is owed from before, by a damper that the device holds.
-    const double pace =
-        glm::dot(twist.linear, twist.linear) + turned * glm::dot(twist.angular, twist.angular);
-    const double owed = std::max(-left, 0.0);
-    const double damping = gives > 0.0 && pace > 0.0 ? std::min(owed / (dt * pace), most) : 0.0;
-    return {covered.force - damping * twist.linear, covered.torque - turned * damping * twist.angular};
+    fires_ = pushes > 0.0 && gives + pushes > left;
+    double share = 1.0, damping = 0.0;
+    if (fires_) {
+      // The most of it that is covered; what takes energy in from the hand, as much as takes in the most.
+      share = std::min(-0.5 * gives / pushes, 1.0);
+      if (left > 0.0)
+        share = std::min((std::sqrt(gives * gives + 4.0 * pushes * left) - gives) / (2.0 * pushes), 1.0);
+      // What is owed from before, by a damper that the device holds.
+      const double pace =
+          glm::dot(twist.linear, twist.linear) + turned * glm::dot(twist.angular, twist.angular);
+      const double owed = std::max(-left, 0.0);
+      if (gives > 0.0 && pace > 0.0) damping = std::min(owed / (dt * pace), most);
+    }
+    // Where it was out lately, only so much that what is left lasts for a while.
+    wary_ = fires_ ? 1.0 : wary_ * std::exp(-dt / kWary);
+    const double lasts = wary_ * kLasts * gives / dt;
+    if (lasts > 0.0) share = std::min(share, std::max(left, 0.0) / lasts);
+    open_ = std::clamp(share, 0.0, std::min(open_ + dt / kReturns, 1.0));
+    const double change = most * dt / kDamps;
+    damping_ += std::clamp(damping - damping_, -change, change);
+    return {open_ * wanted.force - damping_ * twist.linear,
+            open_ * wanted.torque - turned * damping_ * twist.angular};
   }
   /// What the device was really sent.
   void sent(const Wrench& wrench) noexcept { sent_ = wrench; }
@@ -69,6 +87,9 @@ class PassivityController {
   Wrench sent_;
   double energy_ = 0.0;
   bool fires_ = false;
+  double wary_ = 0.0;     // 0–1: 1 where it was out just now
+  double open_ = 1.0;     // share of the force that is let through
+  double damping_ = 0.0;  // N·s/m
 };
 
 }  // namespace slosh
