@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <tuple>
 
 #include "host/report/scene_builder.h"
@@ -49,7 +50,7 @@ struct Row {
   double flicker = 0.0;       ///< of 255
   double filter_ms = 0.0;
   double frame_ms = 0.0;
-  double off_reference = -1.0;  ///< of 255; below 0 without a reference
+  std::optional<score::PictureScore> off_reference;
 };
 
 RenderOptions options_of(const Method& method, int width, int height) {
@@ -234,7 +235,7 @@ std::string table_of(const std::vector<Row>& rows) {
   std::string text =
       "| surface | normal error at 5 px: mean, p95, edge band | at 15 px | outline off, at 5 px | still "
       "water: normal "
-      "error | flicker | off the reference | filter, ms | frame, ms "
+      "error | flicker | off the reference: in the fluid, along its edges | filter, ms | frame, ms "
       "|\n|---|---|---|---|---|---|---|---|---|\n";
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Row& row = rows[i];
@@ -243,8 +244,10 @@ std::string table_of(const std::vector<Row>& rows) {
         "|\n",
         kMethods[i].name, row.at5.normal_mean, row.at5.normal_p95, row.at5.edge_mean, row.at15.normal_mean,
         row.at15.normal_p95, row.at15.edge_mean, row.at5.silhouette, row.still_normal, row.flicker,
-        row.off_reference < 0.0 ? "–" : format("%.1f/255", row.off_reference).c_str(), row.filter_ms,
-        row.frame_ms);
+        row.off_reference
+            ? format("%.1f, %.1f of 255", row.off_reference->inside, row.off_reference->edges).c_str()
+            : "–",
+        row.filter_ms, row.frame_ms);
   }
   return text;
 }
@@ -265,6 +268,7 @@ int report_picture(const ReportOptions& options) {
 
   std::vector<Row> rows(std::size(kMethods));
   std::vector<Image> pictures;
+  FloatImage fluid_depth;  ///< of ours
   double reference_seconds = 0.0;
   std::string no_reference;
   std::size_t particles = 0;
@@ -300,6 +304,8 @@ int report_picture(const ReportOptions& options) {
       auto stand = Stand::create(*context.value(), kMethods[i], dam_scene, spacing);
       if (!stand) return fail(stand.error());
       pictures.push_back(stand.value()->draw(broken));
+      if (kMethods[i].surface == Surface::kOurs)
+        fluid_depth = stand.value()->renderer().read_buffer(Buffer::kFrontDepth);
       std::tie(rows[i].filter_ms, rows[i].frame_ms) = stand.value()->times(options.quick ? 3 : 20);
       auto calm = Stand::create(*context.value(), kMethods[i], still_scene, spacing);
       if (!calm) return fail(calm.error());
@@ -323,7 +329,7 @@ int report_picture(const ReportOptions& options) {
     reference_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (truth) {
       for (std::size_t i = 0; i < rows.size(); ++i)
-        rows[i].off_reference = score::flicker(pictures[i], truth.value());
+        rows[i].off_reference = score::score_picture(pictures[i], truth.value(), fluid_depth, 0.05f);
       pictures.push_back(truth.value());
     } else {
       no_reference = truth.error().text();
@@ -342,7 +348,9 @@ int report_picture(const ReportOptions& options) {
       "pictures\n"
       "1/30 s apart of that water; times of a broken dam of %zu particles at %dx%d, medians; off the "
       "reference: "
-      "mean\ndifference of a channel of that picture from one by path tracing%s.\n\n",
+      "mean\ndifference of a channel of that picture from one by path tracing%s, over the fluid's pixels and "
+      "over those "
+      "within 8 px\nof its edges.\n\n",
       options.quick ? "480x270" : "960x540", particles, kWidth, kHeight,
       no_reference.empty()
           ? format(" (%d paths a pixel, %.0f s)", options.quick ? kQuickSamples : kSamples, reference_seconds)

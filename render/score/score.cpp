@@ -88,6 +88,22 @@ SurfaceScore score_surface(const FloatImage& depth, const FloatImage& normal, co
   return score;
 }
 
+PictureScore score_picture(const Image& drawn, const Image& right, const FloatImage& depth, float jump) {
+  const std::vector<bool> edge = edges(depth, jump);
+  PictureScore score;
+  for (std::size_t i = 0; i < edge.size(); ++i) {
+    if (!edge[i] && !is_fluid(depth.values[i])) continue;
+    double off = 0.0;
+    for (std::size_t c = 0; c < 3; ++c)
+      off += std::abs(int{drawn.rgba[4 * i + c]} - int{right.rgba[4 * i + c]}) / 3.0;
+    (edge[i] ? score.edges : score.inside) += off;
+    ++(edge[i] ? score.edge_pixels : score.inside_pixels);
+  }
+  score.inside /= static_cast<double>(std::max<std::size_t>(score.inside_pixels, 1));
+  score.edges /= static_cast<double>(std::max<std::size_t>(score.edge_pixels, 1));
+  return score;
+}
+
 double flicker(const Image& a, const Image& b) {
   if (a.rgba.size() != b.rgba.size() || a.rgba.empty()) return 0.0;
   double sum = 0.0;

@@ -26,6 +26,19 @@ struct SurfaceScore {
 SurfaceScore score_surface(const FloatImage& depth, const FloatImage& normal, const Exact& exact,
                            float particle_radius, float jump);
 
+/// How far a picture is from the right one where there is fluid: a mean over the whole picture is mostly of
+/// what no surface changes.
+struct PictureScore {
+  double inside = 0.0;  ///< mean difference of a channel, of 255, over fluid away from its edges
+  double edges = 0.0;   ///< the same within kEdgeBand of them, outside of the fluid too
+  std::size_t inside_pixels = 0;
+  std::size_t edge_pixels = 0;
+};
+
+/// `depth`: of the fluid, one for all pictures that are compared (Buffer::kFrontDepth of one of them);
+/// `jump`: difference in depth that is an edge, m. Pictures and depth of one size.
+PictureScore score_picture(const Image& drawn, const Image& right, const FloatImage& depth, float jump);
+
 /// Mean change of a channel of a pixel, of 255. Pictures of one size.
 double flicker(const Image& a, const Image& b);
 

@@ -128,6 +128,28 @@ TEST_F(ScoreTest, TheFilterInMainMemoryIsTheShaders) {
   EXPECT_GT(moved, fluid / 2);
 }
 
+TEST(PictureScore, TellsFluidItsEdgesAndTheRestApart) {
+  constexpr int kSide = 60;
+  FloatImage depth{kSide, kSide, 1, std::vector<float>(kSide * kSide, kNoFluidDepth)};
+  Image right{kSide, kSide, std::vector<std::uint8_t>(4 * kSide * kSide, 100)};
+  Image drawn = right;
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      const std::size_t i = static_cast<std::size_t>(y) * kSide + x;
+      if (x >= 30) depth.values[i] = 1.0f;
+      const int off = x >= 45 ? 6 : x < 15 ? 90 : 0;  // well inside, and far from the fluid
+      for (std::size_t c = 0; c < 3; ++c) drawn.rgba[4 * i + c] = static_cast<std::uint8_t>(100 + off);
+    }
+  }
+  const score::PictureScore inside = score::score_picture(drawn, right, depth, 0.05f);
+  EXPECT_EQ(inside.edges, 0.0);
+  EXPECT_GT(inside.edge_pixels, std::size_t{kSide * 2 * score::kEdgeBand});
+  EXPECT_NEAR(inside.inside, 6.0 * 15 / (30 - score::kEdgeBand), 0.5);
+  for (int y = 0; y < kSide; ++y) drawn.rgba[4 * (static_cast<std::size_t>(y) * kSide + 29)] = 130;
+  EXPECT_GT(score::score_picture(drawn, right, depth, 0.05f).edges, 0.4)
+      << "what is drawn beside the fluid counts";
+}
+
 Frame frame_of_points(const std::vector<glm::vec3>& points, const std::vector<std::uint8_t>& fluids,
                       float radius) {
   Frame frame;
