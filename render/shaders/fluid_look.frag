@@ -25,6 +25,27 @@ float open_sky(vec3 here, vec3 n, ivec2 texel, int taps) {
   return clamp(1.0 - 0.35 * hidden, 0.25, 1.0);
 }
 
+// Share of what is seen behind that is mirrored by the fluid's floor, 0–1. Light that came in through a side meets the floor so
+// flat that all of it is mirrored, where air or thin glass is under the floor and not a body that is wet. The far side of the
+// fluid is a floor where it goes on level from pixel to pixel. inside: unit, of the light in the fluid, eye axes.
+float mirrored_by_floor(vec3 inside, float refraction, float back, float scene) {
+  vec3 up = eye_from_world[1].xyz;
+  float down = -dot(inside, up);
+  float flat_enough = smoothstep(0.0, 0.06, (1.0 - down * down) * refraction * refraction - 1.0) * step(0.0, down);
+  float apart = smoothstep(0.0, 0.25, (scene - back) / splat.x);
+  float reach = clamp(2.5 * splat.x * splat.y / back, 2.0, 24.0);
+  vec2 above = gl_FragCoord.xy + vec2(0.0, reach);
+  vec2 below = gl_FragCoord.xy - vec2(0.0, reach);
+  vec2 size = vec2(textureSize(back_depth, 0));
+  float back_above = texelFetch(back_depth, ivec2(clamp(above * picture.zw, vec2(0.0), vec2(0.999)) * size), 0).r;
+  float back_below = texelFetch(back_depth, ivec2(clamp(below * picture.zw, vec2(0.0), vec2(0.999)) * size), 0).r;
+  back_above = back_above > 0.0 ? back_above : back;
+  back_below = back_below > 0.0 ? back_below : back;
+  vec3 along = eye_position(above, back_above) - eye_position(below, back_below);
+  float level = 1.0 - smoothstep(0.55, 0.9, abs(dot(along, up)) * inversesqrt(dot(along, along) + 1.0e-12));
+  return flat_enough * apart * level;
+}
+
 // The scene behind. A body in front of the fluid must not show through it; whole texels, as a mean would mix such a body in.
 vec3 seen_behind(vec3 here, vec3 n, float refraction, float thickness, ivec2 texel) {
   float scene = min(texelFetch(scene_depth, texel, 0).r, camera.w);
@@ -37,6 +58,17 @@ vec3 seen_behind(vec3 here, vec3 n, float refraction, float thickness, ivec2 tex
   ivec2 looked_up = clamp(ivec2(gl_FragCoord.xy + off), ivec2(0), ivec2(picture.xy) - 1);
   if (texelFetch(scene_depth, looked_up, 0).r < -here.z) looked_up = texel;
   return texelFetch(scene_color, looked_up, 0).rgb;
+}
+
+// The same with what the fluid's floor mirrors: the room beyond the far side, through some more fluid.
+vec3 seen_through_fluid(vec3 here, vec3 n, FluidMatter matter, float thickness, ivec2 texel) {
+  vec3 seen = seen_behind(here, n, matter.refraction, thickness, texel);
+  vec3 way = normalize(here);
+  float scene = texelFetch(scene_depth, texel, 0).r;
+  float back = back_depth_at(vec2(texel) + 0.5);
+  float mirrored = mirrored_by_floor(refract(way, n, 1.0 / matter.refraction), matter.refraction, back, scene);
+  vec3 out_way = mat3(world_from_eye) * way * vec3(1.0, -1.0, 1.0);
+  return mix(seen, studio(out_way) * transmittance(matter.extinction, thickness), mirrored);
 }
 
 void main() {
@@ -63,6 +95,6 @@ void main() {
   vec3 mirror = mat3(world_from_eye) * reflect(-to_eye, surface.normal);
   FluidLight lit = FluidLight(key_light.rgb * light, ambient_light(world_n) * open_sky(eye, surface.normal, texel, taps),
                               mix(studio(mirror), ambient_light(mirror), min(1.4 * matter.roughness, 1.0)),
-                              seen_behind(eye, surface.normal, matter.refraction, thickness, texel));
+                              seen_through_fluid(eye, surface.normal, matter, thickness, texel));
   color = vec4(fluid_radiance(matter, point, lit, surface.whole), 0.0);
 }
