@@ -12,6 +12,7 @@
 #include "peer/verbs/window_controls.h"
 #include "peer/verbs/window_film.h"
 #include "peer/view/painter.h"
+#include "peer/view/picture_scale.h"
 #include "render/context.h"
 
 namespace slosh {
@@ -76,6 +77,12 @@ class WindowRun {
       }
       if (context_.should_close() || interrupted_by() != 0) return Outcome::kEnd;
       const glm::ivec2 picture(renderer_.options().width, renderer_.options().height);
+      if (const glm::ivec2 window = context_.framebuffer_size(); window.x > 0 && window.y > 0) {
+        const glm::vec2 share =
+            glm::vec2(picture) / glm::vec2(window);  // the picture is stretched to the window
+        input.mouse *= share;
+        input.mouse_delta *= share;
+      }
       const WindowControls::Wish wish =
           controls_.follow(input, picture, snapshot ? &snapshot->rigid : nullptr);
       if (wish == WindowControls::Wish::kEnd) return Outcome::kEnd;
@@ -113,20 +120,31 @@ class WindowRun {
         sleep_until_ns(steady_now_ns() + to_nanoseconds(0.02));
         continue;
       }
-      if (size.x != renderer_.options().width || size.y != renderer_.options().height) {
-        renderer_.resize(size.x, size.y);
+      const glm::ivec2 drawn = drawn_size(size);
+      if (drawn.x != renderer_.options().width || drawn.y != renderer_.options().height) {
+        renderer_.resize(drawn.x, drawn.y);
       }
       const std::int64_t begin_ns = steady_now_ns();
       painter_.draw(*snapshot, rates, [this] { controls_.draw(); });
       if (wish == WindowControls::Wish::kPicture) keep_picture();
       if (film_.due()) film_.add(renderer_.read_back());
+      const double drawing = to_seconds(steady_now_ns() - begin_ns);
       context_.swap();
+      if (context_.is_software()) pixels_.took(1e3 * drawing);
       frame_time.add(to_seconds(steady_now_ns() - begin_ns));
       frames += 1;
     }
   }
 
  private:
+  static constexpr double kBudget = 33.0;  // ms of a picture where a CPU draws
+
+  /// Of a window of that many pixels. A film's pictures are all of one size.
+  glm::ivec2 drawn_size(const glm::ivec2& window) const {
+    const double scale = film_.wanted() ? 1.0 : pixels_.scale();
+    return glm::max(glm::ivec2(glm::round(scale * glm::dvec2(window))), glm::ivec2(16));
+  }
+
   static constexpr double kWaitForHeadset = 5.0;  // s
 
   void draw_eyes(const HeadsetPictures& pictures, const SnapshotPointer& snapshot, const Rates& rates,
@@ -157,6 +175,7 @@ class WindowRun {
   Progress& progress_;
   Painter painter_;
   WindowControls controls_;
+  PictureScale pixels_{kBudget};
 };
 
 }  // namespace

@@ -17,6 +17,8 @@ class WindowFilm {
   WindowFilm(std::filesystem::path folder, double frames_per_second)
       : folder_(std::move(folder)), frames_per_second_(frames_per_second) {}
 
+  /// Whether there is to be a film.
+  bool wanted() const { return !folder_.empty(); }
   /// Whether the picture on show now is to be one of the film's: then add() it.
   bool due() const;
   void add(Image image);

@@ -8,6 +8,7 @@
 #include "peer/view/frame_builder.h"
 #include "peer/view/mouse_hand.h"
 #include "peer/view/orbit_camera.h"
+#include "peer/view/picture_scale.h"
 
 namespace slosh {
 namespace {
@@ -125,6 +126,27 @@ TEST(UnitBall, IsClosedRoundAndFacesOutward) {
   }
   EXPECT_GT(volume, 0.9 * 4.18879) << "positive: counter-clockwise from outside";
   EXPECT_LT(volume, 4.18879);
+}
+
+TEST(PictureScale, GoesDownWhereItTakesTooLongAndUpOnlyWhereThatFits) {
+  PictureScale scale(33.0);
+  EXPECT_EQ(scale.scale(), 1.0);
+  // One slow picture says nothing.
+  scale.took(500.0);
+  for (int i = 0; i < 100; ++i) scale.took(30.0);
+  EXPECT_EQ(scale.scale(), 1.0);
+  // A machine that takes 80 ms for all pixels.
+  for (int i = 0; i < 200; ++i) scale.took(80.0 * scale.scale() * scale.scale());
+  EXPECT_EQ(scale.scale(), 0.6) << "28.8 ms";
+  int changes = 0;
+  for (int i = 0; i < 500; ++i) changes += scale.took(80.0 * scale.scale() * scale.scale()) ? 1 : 0;
+  EXPECT_EQ(changes, 0) << "it does not go to and fro";
+  // It has time again.
+  for (int i = 0; i < 500; ++i) scale.took(20.0 * scale.scale() * scale.scale());
+  EXPECT_EQ(scale.scale(), 1.0);
+  // There is an end to it.
+  for (int i = 0; i < 500; ++i) scale.took(1e4);
+  EXPECT_EQ(scale.scale(), 0.5);
 }
 
 }  // namespace
