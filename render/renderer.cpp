@@ -8,6 +8,7 @@
 #include "render/gl/objects.h"
 #include "render/passes/arrow_pass.h"
 #include "render/passes/display_pass.h"
+#include "render/passes/far_light.h"
 #include "render/passes/fluid_passes.h"
 #include "render/passes/fluid_shadow_pass.h"
 #include "render/passes/frame_block.h"
@@ -61,6 +62,7 @@ struct Renderer::Parts {
   FrameUniforms uniforms;
   Splats splats;
   SmoothCenters centers;
+  FarLight far_light;
   Targets targets;
   std::optional<ShadowPass> shadow_pass;
   std::optional<FluidShadowPass> fluid_shadow_pass;
@@ -105,16 +107,22 @@ struct Renderer::Parts {
 Result<bool> Renderer::Parts::fit_to_options() {
   const bool want_fast =
       options.quality == Quality::kAuto ? context.is_software() : options.quality == Quality::kFast;
-  if (!scene_pass || want_fast != fast) {
-    auto scene = ScenePass::create(want_fast);
+  if (!scene_pass || want_fast != fast || !far_light.shows(options.environment)) {
+    FarLight light;
+    light.choose(options.environment);
+    auto arrows = ArrowPass::create(light.defines());
+    if (!arrows) return arrows.error();
+    auto scene = ScenePass::create(want_fast, light.defines());
     if (!scene) return scene.error();
-    auto fluid = FluidPasses::create(want_fast);
+    auto fluid = FluidPasses::create(want_fast, light.defines());
     if (!fluid) return fluid.error();
     auto fluid_shadow = FluidShadowPass::create(want_fast);
     if (!fluid_shadow) return fluid_shadow.error();
     auto thickness = ThicknessPass::create();
     if (!thickness) return thickness.error();
     thickness_pass = std::move(thickness.value());
+    arrow_pass = std::move(arrows.value());
+    far_light = std::move(light);
     scene_pass = std::move(scene.value());
     fluid_shadow_pass = std::move(fluid_shadow.value());
     fluid_passes = std::move(fluid.value());
@@ -159,7 +167,7 @@ RenderOptions section_five(RenderOptions options) {
   options.splat_scale = 1.2f;
   options.half_resolution_back = true;
   options.fresnel = options.lit_fluid = options.layers = options.fluid_shadow = false;
-  options.antialias = false;
+  options.antialias = options.dither = false;
   return options;
 }
 
@@ -169,11 +177,8 @@ Renderer::~Renderer() = default;
 Result<std::unique_ptr<Renderer>> Renderer::create(Context& context, const RenderOptions& options) {
   if (auto wrong = check(options)) return *wrong;
   auto parts = std::make_unique<Parts>(context, options);
-  auto arrows = ArrowPass::create();
-  if (!arrows) return arrows.error();
   auto hud = HudPass::create(context);
   if (!hud) return hud.error();
-  parts->arrow_pass = std::move(arrows.value());
   parts->hud_pass = std::move(hud.value());
   if (auto fitted = parts->fit_to_options(); !fitted) return fitted.error();
   return std::unique_ptr<Renderer>(new Renderer(std::move(parts)));
@@ -209,6 +214,7 @@ void Renderer::draw(const View& view, const PictureTarget& target) {
 
 void Renderer::Parts::draw_scene() {
   const bool chords = options.layers && options.surface != Surface::kPaper && any_fluid_is_clear(frame);
+  far_light.bind();
   uniforms.upload(make_frame_block(frame, options, shadow, chords));
   run("prepare splats", [&] {
     prepare_splats(frame, options, splats);
@@ -260,7 +266,7 @@ void Renderer::Parts::draw_scene() {
   if (!frame.arrows.empty()) {
     run("arrows", [&] { arrow_pass->draw(frame, targets, fluid_depth()); });
   }
-  run("display", [&] { display_pass->draw(targets, options.exposure, options.antialias); });
+  run("display", [&] { display_pass->draw(targets, options.exposure, options.dither, options.antialias); });
   if (options.antialias) {
     run("edges", [&] { display_pass->smooth_edges(targets, context.is_software()); });
   }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "render/context.h"
+#include "render/environment.h"
 #include "render/frame.h"
 #include "render/image.h"
 #include "sim/math/result.h"
@@ -56,7 +57,7 @@ struct RenderOptions {
   float splat_scale = 1.2f;  ///< splat radius over particle radius (5.1), > 0
   bool half_resolution_back = true;  ///< back depth at half the picture's size (5.1)
 
-  bool fresnel = true;    ///< beyond the paper: Schlick reflection of the surroundings, F0 0.02
+  bool fresnel = true;  ///< beyond the paper: Schlick reflection of the surroundings, F0 0.02
   bool lit_fluid =
       true;  ///< beyond the paper: light off and out of the fluid as its look says, in place of Eq 15
   bool layers = true;  ///< beyond the paper: layers of fluid with air between count each by itself; not with
@@ -69,7 +70,11 @@ struct RenderOptions {
   bool draw_background = true;  ///< false: black behind everything
   Quality quality = Quality::kAuto;
   Display display = Display::kAces;
-  ColorConfig color;      ///< goes before `display` where it names a file
+  ColorConfig color;  ///< goes before `display` where it names a file
+  bool dither =
+      true;  ///< beyond the paper: less than a step of eight bits, so that soft shades show no bands
+  std::shared_ptr<const Environment>
+      environment;        ///< what is far away, in place of our studio's formula (environment.h)
   float exposure = 1.0f;  ///< factor on scene-linear light before the display transform, > 0
 };
 

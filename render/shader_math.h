@@ -34,6 +34,7 @@ using glm::sqrt;
 #include "render/shaders/display_shaper.glsl"
 #include "render/shaders/edges.glsl"
 #include "render/shaders/narrow_range.glsl"
+#include "render/shaders/octahedral.glsl"
 #include "render/shaders/optics.glsl"
 #include "render/shaders/fluid_look.glsl"
 #include "render/shaders/room.glsl"

@@ -51,7 +51,8 @@ void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window) {
                   "curvature flow of van der Laan 2009")
       ->check(CLI::IsMember({"ours", "paper", "flow"}))
       ->capture_default_str();
-  verb.add_option("--bilateral", options.bilateral, "Iterations of the paper's filter; 0: particles stay the balls they are, with any surface")
+  verb.add_option("--bilateral", options.bilateral,
+                  "Iterations of the paper's filter; 0: particles stay the balls they are, with any surface")
       ->check(CLI::Range(0, 64))
       ->capture_default_str();
   verb.add_option(
@@ -59,11 +60,15 @@ void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window) {
       "OpenColorIO configuration that makes the picture of the light ($OCIO; none: the built-in ACES)");
   verb.add_option("--display", options.display, "Display of that configuration, by name (its first)");
   verb.add_option("--view", options.view, "View of that display, by name (its first)");
+  verb.add_option(
+      "--environment", options.environment,
+      "Room that lights the scene and is mirrored: a Radiance picture (.hdr), or studio (a plain room)");
   verb.add_option("--font-scale", options.font_scale, "Letters of the HUD, times their size")
       ->check(in_range(0.5, 4.0))
       ->capture_default_str();
   if (has_window) {
-    verb.add_option("--runs", options.runs, "Folder in which runs get numbered folders where --out is not given")
+    verb.add_option("--runs", options.runs,
+                    "Folder in which runs get numbered folders where --out is not given")
         ->capture_default_str();
   }
   verb.add_option("--plot", options.plot, "Format of the sheet of forces: png, svg or pdf")
@@ -111,7 +116,8 @@ void add_export_options(CLI::App& verb, ShowOptions& options) {
   CLI::Option* what =
       verb.add_option("--export", options.exports,
                       "Also write frames for other programs, into DIR/frames; again for more:\n"
-                      "particles:ply, particles:vtu (ParaView), surface:vdb, surface:ply, surface:glb. Metres; .ply and .vdb\n"
+                      "particles:ply, particles:vtu (ParaView), surface:vdb, surface:ply, surface:glb. "
+                      "Metres; .ply and .vdb\n"
                       "z up as Blender, .vtu and .glb y up; with velocity, pressure and which fluid")
           ->allow_extra_args(false)
           ->check(CLI::Validator(
@@ -134,7 +140,8 @@ void add_backend_option(CLI::App& verb, std::string& backend, const std::string&
 
 void add_world_options(CLI::App& verb, PlayOptions& options, const std::string& all_cores) {
   add_backend_option(verb, options.backend, "What the simulation runs on");
-  verb.add_option("--spacing", options.spacing, "Metres between particles, or auto: measures the finest in real time (kept once it was)");
+  verb.add_option("--spacing", options.spacing,
+                  "Metres between particles, or auto: measures the finest in real time (kept once it was)");
   verb.add_option("--particles", options.particles, "Fluid particles to aim at, in place of a spacing")
       ->check(CLI::Range(1, 100000000))
       ->excludes("--spacing");

@@ -18,8 +18,10 @@ void add_seconds_option(CLI::App& verb, double& seconds, double least, const std
 /// Where the files of a run go: --out with `text`, --overwrite.
 void add_out_options(CLI::App& verb, ShowOptions& options, const std::string& text);
 
-/// How a run is drawn: --size, --fps, --surface, --bilateral, --ocio, --display, --view, --font-scale, --runs,
-/// --plot, --curves, --no-render. `has_window`: the verb can also open one. `verb` and `options` must outlive the parsing.
+/// How a run is drawn: --size, --fps, --surface, --bilateral, --ocio, --display, --view, --environment,
+/// --font-scale, --runs,
+/// --plot, --curves, --no-render. `has_window`: the verb can also open one. `verb` and `options` must outlive
+/// the parsing.
 void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window);
 
 /// --measure, for a run that writes files.

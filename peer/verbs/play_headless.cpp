@@ -12,6 +12,7 @@
 #include "peer/verbs/play_modes.h"
 #include "peer/view/headless_view.h"
 #include "render/color/display_transform.h"
+#include "render/environment.h"
 #include "render/hud_scale.h"
 
 namespace slosh {
@@ -86,6 +87,15 @@ ColorConfig chosen_colors(const ShowOptions& options, Progress& progress) {
   return {};
 }
 
+std::shared_ptr<const Environment> chosen_environment(const ShowOptions& options, Progress& progress) {
+  if (options.environment.empty()) return nullptr;
+  if (options.environment == "studio") return make_studio_environment();
+  const auto found = read_environment(options.environment);
+  if (found) return found.value();
+  progress.note("slosh: " + found.error().text() + "; the plain room is used");
+  return nullptr;
+}
+
 }  // namespace
 
 RenderOptions picture_options(const Stage& stage, const ShowOptions& options, Progress& progress) {
@@ -97,6 +107,7 @@ RenderOptions picture_options(const Stage& stage, const ShowOptions& options, Pr
   render.height = stage.height;
   render.bilateral_iterations = options.bilateral;
   render.color = chosen_colors(options, progress);
+  render.environment = chosen_environment(options, progress);
   return render;
 }
 

@@ -15,7 +15,7 @@ struct ShowOptions {
   std::string out;          ///< folder; empty = default_out when headless, nothing with a window
   std::string default_out;  ///< folder in `runs`, numbered where it is taken; empty = <scene>
   std::string runs = "out";
-  bool overwrite = false;   ///< an earlier run in `out` may be lost
+  bool overwrite = false;  ///< an earlier run in `out` may be lost
   bool headless = false;
   std::vector<std::string> devices;  ///< none, one for all, or one a grip
   std::string size;                  ///< "WxH"; empty = chosen
@@ -25,13 +25,14 @@ struct ShowOptions {
   std::string ocio;              ///< file of an OpenColorIO configuration; empty = $OCIO; "none" = ours
   std::string display;           ///< of that configuration, by name; empty = its first
   std::string view;              ///< of that display, by name; empty = its first
+  std::string environment;       ///< a Radiance picture of a room, or "studio"; empty = the formula's room
   double font_scale = 1.0;       ///< of the HUD's letters
   bool render = true;
   bool vr = false;  ///< a headset is asked for
   HeadsetWish headset;
   std::shared_ptr<HeadsetLink> controllers;  ///< of the headset that was found; null without one
-  std::string plot = "png";         ///< of plot_formats()
-  std::vector<std::string> curves;  ///< of plot_quantities(); empty = chosen
+  std::string plot = "png";                  ///< of plot_formats()
+  std::vector<std::string> curves;           ///< of plot_quantities(); empty = chosen
   double measure =
       -1.0;  ///< simulated s between rows of the instruments; 0 = none, below 0 = as the scene asks
   std::vector<std::string> exports;  ///< of kExportNames

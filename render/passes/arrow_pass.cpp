@@ -56,8 +56,8 @@ void append_arrow(const Arrow& arrow, float eye_distance, std::vector<ArrowVerte
   }
 }
 
-Result<ArrowPass> ArrowPass::create() {
-  auto program = gl::Program::create("arrow.vert", "arrow.frag");
+Result<ArrowPass> ArrowPass::create(const std::vector<std::string>& defines) {
+  auto program = gl::Program::create("arrow.vert", "arrow.frag", defines);
   if (!program) return program.error();
   ArrowPass pass;
   pass.program_ = std::move(program.value());

@@ -1,6 +1,7 @@
 // Arrows in the world, as lit cones on shafts, dim where something hides them.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "render/frame.h"
@@ -22,7 +23,7 @@ void append_arrow(const Arrow& arrow, float eye_distance, std::vector<ArrowVerte
 
 class ArrowPass {
  public:
-  static Result<ArrowPass> create();
+  static Result<ArrowPass> create(const std::vector<std::string>& defines);
   /// Reads S_d and the fluid's depth (null: none); blends into color. The depth buffer is used up.
   void draw(const Frame& frame, const Targets& targets, const gl::Texture* fluid);
 

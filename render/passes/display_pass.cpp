@@ -34,13 +34,14 @@ Result<DisplayPass> DisplayPass::create(Display display, const ColorConfig& colo
   return pass;
 }
 
-void DisplayPass::draw(const Targets& targets, float exposure, bool edges_follow) {
+void DisplayPass::draw(const Targets& targets, float exposure, bool dither, bool edges_follow) {
   const gl::Framebuffer& target = edges_follow ? targets.sharp_target : targets.display_target;
   glBindFramebuffer(GL_FRAMEBUFFER, target.name());
   glViewport(0, 0, targets.size.x, targets.size.y);
   gl::bind_textures({&targets.color, &table_});
   program_.use();
   program_.set("exposure", exposure);
+  program_.set("dither", dither ? 1.0f / 255.0f : 0.0f);
   glBindVertexArray(no_vertices_.name());
   glDrawArrays(GL_TRIANGLES, 0, 3);
 }

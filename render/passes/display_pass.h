@@ -11,7 +11,7 @@ class DisplayPass {
  public:
   static Result<DisplayPass> create(Display display, const ColorConfig& color);
   /// Reads color; writes display, or sharp where smooth_edges follows.
-  void draw(const Targets& targets, float exposure, bool edges_follow);
+  void draw(const Targets& targets, float exposure, bool dither, bool edges_follow);
   /// Reads sharp; writes display. `on_cpu`: where a CPU draws.
   void smooth_edges(const Targets& targets, bool on_cpu);
   bool shows(Display display, const ColorConfig& color) const {

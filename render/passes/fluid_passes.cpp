@@ -18,9 +18,11 @@ void draw_into(const gl::Framebuffer& target, glm::ivec2 size) {
 
 }  // namespace
 
-Result<FluidPasses> FluidPasses::create(bool fast) {
+Result<FluidPasses> FluidPasses::create(bool fast, const std::vector<std::string>& far_light) {
   FluidPasses passes;
   passes.fast_ = fast;
+  std::vector<std::string> looks = far_light;
+  if (fast) looks.emplace_back("FAST");
   const auto load = [](gl::Program& into, const char* vertex, const char* fragment,
                        std::vector<std::string> defines = {}) -> Result<bool> {
     auto program = gl::Program::create(vertex, fragment, std::move(defines));
@@ -32,9 +34,8 @@ Result<FluidPasses> FluidPasses::create(bool fast) {
        {load(passes.front_program_, "splat.vert", "splat.frag", {"FRONT"}),
         load(passes.shaped_program_, "splat.vert", "splat.frag", {"FRONT", "SHAPED"}),
         load(passes.back_program_, "splat.vert", "splat.frag"),
-        load(passes.composite_program_, "tiles.vert", "composite.frag"),
-        load(passes.look_program_, "tiles.vert", "fluid_look.frag",
-             std::vector<std::string>(fast ? 1 : 0, "FAST")),
+        load(passes.composite_program_, "tiles.vert", "composite.frag", far_light),
+        load(passes.look_program_, "tiles.vert", "fluid_look.frag", looks),
         load(passes.thickness_program_, "tiles.vert", "thickness.frag"),
         load(passes.normal_program_, "tiles.vert", "normal.frag")}) {
     if (!loaded) return loaded.error();

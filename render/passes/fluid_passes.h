@@ -2,6 +2,8 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "render/gl/objects.h"
 #include "render/passes/splats.h"
@@ -13,7 +15,7 @@ namespace slosh {
 
 class FluidPasses {
  public:
-  static Result<FluidPasses> create(bool fast);
+  static Result<FluidPasses> create(bool fast, const std::vector<std::string>& far_light);
 
   /// Uploads this frame's splats and tiles.
   void upload(const Splats& splats);

@@ -38,10 +38,13 @@ bool has_translucent(const Frame& frame) {
   return std::ranges::any_of(frame.meshes, [](const MeshInstance& m) { return m.look.opacity < 1.0f; });
 }
 
-Result<ScenePass> ScenePass::create(bool fast) {
+Result<ScenePass> ScenePass::create(bool fast, const std::vector<std::string>& far_light) {
   ScenePass pass;
   pass.fast_ = fast;
-  const std::vector<std::string> quality(fast ? 1 : 0, "FAST");
+  std::vector<std::string> quality = far_light;
+  if (fast) quality.emplace_back("FAST");
+  std::vector<std::string> behind = far_light;
+  behind.emplace_back("BEHIND");
   const auto load = [](gl::Program& into, const char* vertex, const char* fragment,
                        std::vector<std::string> defines = {}) -> Result<bool> {
     auto program = gl::Program::create(vertex, fragment, std::move(defines));
@@ -51,11 +54,11 @@ Result<ScenePass> ScenePass::create(bool fast) {
   };
   for (const Result<bool>& loaded :
        {load(pass.opaque_, "mesh.vert", "mesh.frag", quality),
-        load(pass.background_, "fullscreen.vert", "background.frag"),
+        load(pass.background_, "fullscreen.vert", "background.frag", far_light),
         load(pass.occlusion_, "fullscreen.vert", "occlusion.frag", {"TAPS 8"}),
         load(pass.resolve_, "fullscreen.vert", "resolve.frag"),
-        load(pass.translucent_behind_, "mesh.vert", "translucent.frag", {"BEHIND"}),
-        load(pass.translucent_front_, "mesh.vert", "translucent.frag")}) {
+        load(pass.translucent_behind_, "mesh.vert", "translucent.frag", behind),
+        load(pass.translucent_front_, "mesh.vert", "translucent.frag", far_light)}) {
     if (!loaded) return loaded.error();
   }
   pass.no_vertices_ = gl::make_vertex_array();

@@ -1,6 +1,9 @@
 // The meshes: opaque ones before the fluid, translucent ones round it.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "render/frame.h"
 #include "render/gl/objects.h"
 #include "render/passes/meshes.h"
@@ -11,7 +14,7 @@ namespace slosh {
 
 class ScenePass {
  public:
-  static Result<ScenePass> create(bool fast);
+  static Result<ScenePass> create(bool fast, const std::vector<std::string>& far_light);
 
   /// Reads opaque meshes and the shadow map; writes S_d, the depth buffer and the colour (mesh_color if
   /// occlusion follows, else color).

@@ -75,8 +75,8 @@ glm::vec3 scattering_albedo(const glm::vec3& back) {
 
 class Tracer {
  public:
-  Tracer(const RayScene& scene, const Frame& frame, const Studio& studio)
-      : scene_(scene), frame_(frame), key_(studio.key_light) {
+  Tracer(const RayScene& scene, const Frame& frame, const Studio& studio, const Environment* environment)
+      : scene_(scene), frame_(frame), key_(studio.key_light), environment_(environment) {
     room_ = {studio.sky, studio.horizon, studio.ground, studio.softbox, direction_to_light(frame)};
     for (const FluidLook& fluid : frame.fluids)
       albedo_.push_back(scattering_albedo(fluid.color * fluid.scattering));
@@ -134,7 +134,7 @@ class Tracer {
   }
 
   glm::vec3 seen_far(const glm::vec3& way, bool light_too) const {
-    glm::vec3 seen = shader::room_radiance(room_, way);
+    glm::vec3 seen = environment_ ? environment_->from(way) : shader::room_radiance(room_, way);
     // As bright as gives the light's irradiance on what faces it.
     if (light_too && glm::dot(way, room_.to_light) > kLightSize)
       seen += key_ / (glm::two_pi<float>() * (1.0f - kLightSize) * 0.5f * (1.0f + kLightSize));
@@ -270,6 +270,7 @@ class Tracer {
   const RayScene& scene_;
   const Frame& frame_;
   glm::vec3 key_;
+  const Environment* environment_;
   shader::Room room_;
   std::vector<glm::vec3> albedo_;  // one a fluid
 };
@@ -299,7 +300,7 @@ class EmbreeTracer : public PathTracer {
       scene.add({std::move(fluid.positions), std::move(fluid.normals), std::move(fluid.triangles)},
                 glm::mat4(1.0f), nullptr, static_cast<int>(fluid.fluid));
     scene.finish();
-    const Tracer tracer(scene, frame, Studio{});
+    const Tracer tracer(scene, frame, Studio{}, options.environment);
     FloatImage image{options.width, options.height, 3,
                      std::vector<float>(std::size_t{3} * options.width * options.height)};
     const glm::mat4 world_from_eye = glm::inverse(frame.view.view);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "render/environment.h"
 #include "render/frame.h"
 #include "render/image.h"
 #include "sim/math/result.h"
@@ -14,9 +15,10 @@ namespace slosh::reference {
 struct Options {
   int width = 640;  ///< pixels, 1–16384
   int height = 480;
-  int samples = 64;   ///< paths a pixel, 1–65536; the noise falls with their root
-  int threads = 1;    ///< >= 1
-  float cell = 0.6f;  ///< of the fluid's surface, particle radii (fluid_mesh.h)
+  int samples = 64;                          ///< paths a pixel, 1–65536; the noise falls with their root
+  int threads = 1;                           ///< >= 1
+  const Environment* environment = nullptr;  ///< what is far away; null: our studio
+  float cell = 0.6f;                         ///< of the fluid's surface, particle radii (fluid_mesh.h)
 };
 
 class PathTracer : public MeshSink {

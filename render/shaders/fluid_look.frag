@@ -94,7 +94,7 @@ void main() {
   int taps = matter.scattering > 0.02 ? 6 : 0;
   vec3 mirror = mat3(world_from_eye) * reflect(-to_eye, surface.normal);
   FluidLight lit = FluidLight(key_light.rgb * light, ambient_light(world_n) * open_sky(eye, surface.normal, texel, taps),
-                              mix(studio(mirror), ambient_light(mirror), min(1.4 * matter.roughness, 1.0)),
+                              rough_studio(mirror, matter.roughness),
                               seen_through_fluid(eye, surface.normal, matter, thickness, texel));
   color = vec4(fluid_radiance(matter, point, lit, surface.whole), 0.0);
 }

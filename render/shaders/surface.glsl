@@ -22,8 +22,7 @@ Lit light_surface(vec3 normal, vec3 to_eye, vec3 base_color, float metallic, flo
   vec3 key = key_light.rgb * light * n_l;
   vec3 around = ambient_light(normal);
   vec3 rest = f0 + (max(vec3(1.0 - rough), f0) - f0) * schlick(0.0, n_v);
-  vec3 mirror_direction = reflect(-to_eye, normal);
-  vec3 mirror = mix(mirrored(mirror_direction), ambient_light(mirror_direction), min(rough * 1.4, 1.0));
+  vec3 mirror = rough_mirrored(reflect(-to_eye, normal), rough);
 
   Lit lit;
   lit.diffuse = albedo * (key * 0.31830989 + around);

@@ -2,6 +2,7 @@
 // [--threads T] [--batter] [--paper] [--flow] [--full] [--stereo] [--out PICTURE.png]. Times are medians over
 // the frames, with a glFinish after each pass. --stereo: both eyes of one frame against one, each of that
 // size, with the HUD. --reference PATHS: no times, but the same picture by path tracing into --out.
+// --environment FILE.hdr|studio: the room.
 #include <imgui.h>
 
 #include <algorithm>
@@ -36,6 +37,7 @@ struct Wishes {
   bool hud = false;
   bool stereo = false;
   int reference = 0;
+  std::string environment;
   std::string out;
 };
 
@@ -56,6 +58,7 @@ Wishes read_arguments(int count, char** words) {
     if (word == "--hud") wishes.hud = true;
     if (word == "--stereo") wishes.stereo = wishes.hud = true;
     if (word == "--reference") wishes.reference = std::max(std::atoi(next), 1);
+    if (word == "--environment") wishes.environment = next;
     if (word == "--out") wishes.out = next;
   }
   return wishes;
@@ -105,6 +108,16 @@ void time_stereo(slosh::Renderer& renderer, const slosh::Frame& frame, int frame
               median(stereo) / median(mono), std::ranges::min(stereo) / std::ranges::min(mono));
 }
 
+/// A file, "studio", or none.
+std::shared_ptr<const slosh::Environment> environment_of(const Wishes& wishes) {
+  if (wishes.environment.empty()) return nullptr;
+  if (wishes.environment == "studio") return slosh::make_studio_environment();
+  auto read = slosh::read_environment(wishes.environment);
+  if (read) return read.value();
+  std::fprintf(stderr, "%s\n", read.error().text().c_str());
+  return nullptr;
+}
+
 /// The picture by path tracing.
 slosh::Result<bool> write_reference(const Wishes& wishes) {
   using namespace slosh;
@@ -117,6 +130,8 @@ slosh::Result<bool> write_reference(const Wishes& wishes) {
   options.height = wishes.height;
   options.samples = wishes.reference;
   options.threads = std::max(wishes.threads, 1);
+  const auto environment = environment_of(wishes);
+  options.environment = environment.get();
   const FloatImage light = tracer.value()->draw(scene.frame, options);
   std::vector<glm::vec3> linear(light.values.size() / 3);
   for (std::size_t i = 0; i < linear.size(); ++i)
@@ -156,6 +171,7 @@ int main(int argc, char** argv) {
   options.width = wishes.width;
   options.height = wishes.height;
   if (wishes.paper) options = section_five(options);
+  options.environment = environment_of(wishes);
   if (wishes.flow) options.surface = Surface::kCurvatureFlow;
   if (wishes.full) options.quality = Quality::kFull;
   auto made = Renderer::create(*context.value(), options);
