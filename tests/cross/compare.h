@@ -36,7 +36,8 @@ void compare_steps(const char* name, const Tank& tank, const Plan& plan, int ste
 /// The same hash each time on the GPU, whatever else is going on.
 void repeat(const char* name, const Tank& tank, double hand_height, int steps = 300);
 
-/// viscous_worlds.cpp: implicit viscosity.
+/// viscous_worlds.cpp: implicit viscosity; one step of it.
 void compare_viscous();
+void compare_viscous_step();
 
 }  // namespace slosh::testing

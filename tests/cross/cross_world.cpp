@@ -1,6 +1,6 @@
 // The same worlds on the CPU and on the GPU (tests/cross/README.md). Prints every comparison with its
 // tolerance; exits 1 when one fails, 77 where there is no GPU.
-// Usage: cross_world [viscous|others]: implicit viscosity alone, or all but it
+// Usage: cross_world [viscous|others|quick]: implicit viscosity alone, or all but it, or single steps of each
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -229,24 +229,7 @@ void compare_guarded() {
 constexpr ParticleModel kModels[] = {ParticleModel::kCorrected, ParticleModel::kConsistent,
                                      ParticleModel::kPaper};
 
-int conclude() {
-  std::printf(failures() ? "%d comparison(s) FAILED\n" : "all agree (%d failures)\n", failures());
-  return failures() ? 1 : 0;
-}
-
-}  // namespace
-
-int main(int argc, char** argv) {
-  std::setvbuf(stdout, nullptr, _IOLBF, 0);
-  const CudaDevice device = find_cuda_device();
-  if (!device.available) {
-    std::printf("no GPU here (%s): compiled, not run\n", device.reason.c_str());
-    return 77;
-  }
-  std::printf("%s\n", device.name.c_str());
-  const std::string part = argc > 1 ? argv[1] : "all";
-  if (part != "others") compare_viscous();
-  if (part == "viscous") return conclude();
+void compare_single_steps() {
   for (const ParticleModel model : kModels) {
     const Tank tank = shaken(stirred_tank(model));
     const std::string name = std::string(slosh::name(model)) + " model, two fluids, paddle";
@@ -265,6 +248,29 @@ int main(int argc, char** argv) {
     variant.runs.set(PassId::kOneViscosity, false);
     compare_steps("no viscosity", one, variant, 1, 1e-5);
   }
+}
+
+int conclude() {
+  std::printf(failures() ? "%d comparison(s) FAILED\n" : "all agree (%d failures)\n", failures());
+  return failures() ? 1 : 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);
+  const CudaDevice device = find_cuda_device();
+  if (!device.available) {
+    std::printf("no GPU here (%s): compiled, not run\n", device.reason.c_str());
+    return 77;
+  }
+  std::printf("%s\n", device.name.c_str());
+  const std::string part = argc > 1 ? argv[1] : "all";
+  if (part == "quick") compare_viscous_step();
+  if (part != "others" && part != "quick") compare_viscous();
+  if (part == "viscous") return conclude();
+  compare_single_steps();
+  if (part == "quick") return conclude();
   // Large enough to fill the GPU: blocks come and go in another order each time.
   for (const ParticleModel model : kModels) {
     Tank large = shaken(pool(300000));

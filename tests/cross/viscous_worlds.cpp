@@ -89,6 +89,17 @@ void compare_pulled(const char* name, const Tank& tank) {
 
 }  // namespace
 
+void compare_viscous_step() {
+  const Tank tank = shaken(thick_tank(50.0, 500.0));
+  const Plan plan = solving_plan(tank);
+  compare_steps("implicit viscosity, 50 Pa·s under 500", tank, plan, 1, kOneStep);
+  World cpu = world_on(Backend::kCpu, tank, plan);
+  World gpu = world_on(Backend::kCuda, tank, plan);
+  step(cpu, kPaddleHeight);
+  step(gpu, kPaddleHeight);
+  compare_drags(cpu, gpu);
+}
+
 void compare_viscous() {
   struct Case {
     const char* name;

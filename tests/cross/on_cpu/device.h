@@ -1,0 +1,105 @@
+// What the kernels of sim/cuda need to be compiled as C++ and run by one CPU thread: each of a grid's threads
+// after the other, as fibers where a kernel has barriers. Included before everything else. Shows wrong sums,
+// wrong indices and barriers that not all reach; not races, not what a GPU's own arithmetic rounds.
+#pragma once
+
+#include <cuda_runtime.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+// The library's own use of what is a word of CUDA's from here on.
+#include <memory>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#undef __launch_bounds__
+#define __launch_bounds__(...)
+#undef __grid_constant__
+#define __grid_constant__
+#undef __noinline__
+#define __noinline__ __attribute__((noinline))
+// One block's at a time: none lives on over a barrier of the grid, where blocks take turns.
+#define __shared__ static
+
+namespace on_cpu {
+
+struct Index {
+  unsigned x, y, z;
+};
+extern Index thread_index, block_index, block_size, grid_size;
+
+void block_barrier();
+void grid_barrier();
+
+/// Runs `body` once a thread. `fibers`: it has barriers. Aborts where some of a block's threads wait at a
+/// barrier that the others have passed by.
+void run_grid(unsigned blocks, unsigned threads, bool fibers, const std::function<void()>& body);
+
+/// What kernel<<<blocks, threads>>>(arguments) becomes (launches.py).
+struct Launch {
+  unsigned blocks, threads;
+  bool fibers;
+  template <class Kernel, class... Arguments>
+  void run(Kernel&& kernel, Arguments&&... arguments) {
+    run_grid(blocks, threads, fibers, [&] { kernel(arguments...); });
+  }
+};
+
+extern double shuffled[1024];
+
+template <class T>
+T shuffle_down(T value, int by) {
+  const unsigned thread = thread_index.x;
+  shuffled[thread] = value;
+  block_barrier();
+  const T other = thread % 32 + by < 32 ? static_cast<T>(shuffled[thread + by]) : value;
+  block_barrier();
+  return other;
+}
+
+}  // namespace on_cpu
+
+#define threadIdx on_cpu::thread_index
+#define blockIdx on_cpu::block_index
+#define blockDim on_cpu::block_size
+#define gridDim on_cpu::grid_size
+#define __syncthreads on_cpu::block_barrier
+#define __shfl_down_sync(mask, value, by) on_cpu::shuffle_down(value, by)
+
+template <class T>
+T __ldg(const T* at) {
+  return *at;
+}
+template <class T>
+T __ldcs(const T* at) {
+  return *at;
+}
+inline float __uint_as_float(unsigned bits) {
+  float value;
+  std::memcpy(&value, &bits, sizeof value);
+  return value;
+}
+inline unsigned __float_as_uint(float value) {
+  unsigned bits;
+  std::memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
+template <class T, class U>
+T atomicAdd(T* at, U more) {
+  const T before = *at;
+  *at += more;
+  return before;
+}
+template <class T, class U>
+T atomicOr(T* at, U bits) {
+  const T before = *at;
+  *at |= bits;
+  return before;
+}
+using std::isfinite;
+using std::max;
+using std::min;
