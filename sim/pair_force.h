@@ -10,10 +10,11 @@ namespace slosh {
 /// Adds one neighbour's (or one batch of neighbours') part of the pressure force and, with `viscous`, of Eq 9
 /// to `sum`. The force on p is Kernel::scale(h) times the sum. The pair (p, i) and the pair (i, p) give
 /// opposite forces to rounding: every factor is symmetric but d and dv. Coincident particles (and p itself)
-/// add nothing. `weight` is 1 where the neighbour counts, else 0.
-template <class Kernel, PairRule rule, DragRule drag_rule, bool viscous, class Real>
+/// add nothing. `weight` is 1 where the neighbour counts, else 0. `Sum`: ForceSum, or SurfaceSum where p is a
+/// wall's.
+template <class Kernel, PairRule rule, DragRule drag_rule, bool viscous, class Real, class Sum>
 SLOSH_HD void add_pair_force(const ParticleView<Real>& p, const ParticleView<Real>& i, Real h, Real weight,
-                             ForceSum<Real>& sum) {
+                             Sum& sum) {
   const Real dx = p.x - i.x;
   const Real dy = p.y - i.y;
   const Real dz = p.z - i.z;
@@ -22,9 +23,21 @@ SLOSH_HD void add_pair_force(const ParticleView<Real>& p, const ParticleView<Rea
   Real along(0.0f);  // of d
   if constexpr (presses_by_tensor(rule)) {
     const Symmetric<Real> t = pressure_tensor<rule>(p, i);
-    sum.x += kernel.slope_over_r * (t.xx * dx + t.xy * dy + t.xz * dz);
-    sum.y += kernel.slope_over_r * (t.xy * dx + t.yy * dy + t.yz * dz);
-    sum.z += kernel.slope_over_r * (t.xz * dx + t.yz * dy + t.zz * dz);
+    const Real tx = kernel.slope_over_r * (t.xx * dx + t.xy * dy + t.xz * dz);
+    const Real ty = kernel.slope_over_r * (t.xy * dx + t.yy * dy + t.yz * dz);
+    const Real tz = kernel.slope_over_r * (t.xz * dx + t.yz * dy + t.zz * dz);
+    sum.x += tx;
+    sum.y += ty;
+    sum.z += tz;
+    // Fluid presses without a torque on all that its moment counts, and that has a wall as one layer: what
+    // the layers beyond it bear has its reaction on the body where the fluid is, not where the wall's
+    // particle is. A body takes a force anywhere, so the pair turns nothing.
+    if constexpr (rule == PairRule::kCorrectedBody && requires { sum.cx; }) {
+      const Real beyond(1.0f - 1.0f / kWallShare);
+      sum.cx += beyond * (ty * dz - tz * dy);
+      sum.cy += beyond * (tz * dx - tx * dz);
+      sum.cz += beyond * (tx * dy - ty * dx);
+    }
   } else {
     along = pressure_coefficient<rule>(p, i) * kernel.slope_over_r;
   }

@@ -24,4 +24,10 @@ struct ForceSum {
   Real x, y, z;
 };
 
+/// Of a body's particle, with what turns the body besides the force's moment about its centre.
+template <class Real>
+struct SurfaceSum : ForceSum<Real> {
+  Real cx, cy, cz;
+};
+
 }  // namespace slosh

@@ -201,6 +201,7 @@ void sum_body_wrenches(PassContext& context, ThreadTeam& team, const FluidPartic
   const std::size_t count = boundary.index.particles();
   if (count == 0) return;
   scratch.force.resize(count);
+  scratch.couple.resize(count);
   if (!drags.empty()) scratch.drag_rate.resize(count);
   const NeighborColumns fluid_columns = columns(fluid);
   const NeighborColumns own = columns(boundary);
@@ -210,10 +211,11 @@ void sum_body_wrenches(PassContext& context, ThreadTeam& team, const FluidPartic
       for (std::size_t r = begin; r < end; ++r) {
         const RowList rows = fluid.index.rows(context.grid, runs[r].cell);
         for (std::uint32_t i = runs[r].particles.begin; i < runs[r].particles.end; ++i) {
-          scratch.force[i] = glm::vec3(0.0f);
+          scratch.force[i] = scratch.couple[i] = glm::vec3(0.0f);
           if (!drags.empty()) scratch.drag_rate[i] = {};
           if (rows.count == 0 || !wanted[boundary.body[i]]) continue;
-          ForceSum<FloatBatch> sum{FloatBatch(0.0f), FloatBatch(0.0f), FloatBatch(0.0f)};
+          const FloatBatch none(0.0f);
+          SurfaceSum<FloatBatch> sum{{none, none, none}, none, none, none};
           const WallViscosity wall = wall_viscosity(boundary.viscosity[i]);
           const ParticleView<FloatBatch> self =
               broadcast(own, i, own_viscosity<viscosity>(wall, context.kinds.front().viscosity));
@@ -221,6 +223,7 @@ void sum_body_wrenches(PassContext& context, ThreadTeam& team, const FluidPartic
                                                              FloatBatch(wall.of_fluid));
           const float scale = context.force_scale;
           scratch.force[i] = scale * glm::vec3(lane_sum(sum.x), lane_sum(sum.y), lane_sum(sum.z));
+          scratch.couple[i] = scale * glm::vec3(lane_sum(sum.cx), lane_sum(sum.cy), lane_sum(sum.cz));
           if constexpr (viscosity != Viscosity::kNone) {
             if (!drags.empty())
               scratch.drag_rate[i] =
@@ -237,7 +240,7 @@ void sum_body_wrenches(PassContext& context, ThreadTeam& team, const FluidPartic
     const glm::dvec3 force(scratch.force[i]);
     const glm::dvec3 arm = glm::dvec3(boundary.x[i], boundary.y[i], boundary.z[i]) - centers[body];
     wrenches[body].force += force;
-    wrenches[body].torque += glm::cross(arm, force);
+    wrenches[body].torque += glm::cross(arm, force) + glm::dvec3(scratch.couple[i]);
     if (drags.empty()) continue;
     const Symmetric<float>& rate = scratch.drag_rate[i];
     drags[body].add({rate.xx, rate.xy, rate.xz, rate.yy, rate.yz, rate.zz}, arm);

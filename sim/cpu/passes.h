@@ -62,6 +62,7 @@ void compute_fluid_forces(PassContext& context, ThreadTeam& team, FluidParticles
 /// What each body particle feels, in the order of the cells.
 struct SurfaceSums {
   std::vector<glm::vec3> force;             // N
+  std::vector<glm::vec3> couple;            // N·m, of what bears elsewhere (SurfaceSum)
   std::vector<Symmetric<float>> drag_rate;  // N·s/m
 };
 

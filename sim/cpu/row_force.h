@@ -60,9 +60,9 @@ inline constexpr auto kNothingMore = [](std::uint32_t, FloatBatch) {};
 
 /// `also`(j, weight) is called for each batch beside it.
 template <class Parts, PairRule rule, Viscosity viscosity, Neighbours neighbours = Neighbours::kFluid,
-          class Also = decltype(kNothingMore)>
+          class Also = decltype(kNothingMore), class Sum = ForceSum<FloatBatch>>
 void add_row_forces(const ParticleView<FloatBatch>& p, const NeighborColumns& n, const RowList& rows,
-                    FloatBatch h, ForceSum<FloatBatch>& sum, FloatBatch of_fluid = FloatBatch(1.0f),
+                    FloatBatch h, Sum& sum, FloatBatch of_fluid = FloatBatch(1.0f),
                     Also also = kNothingMore) {
   // What pairs of one viscosity drag by is in u already.
   constexpr bool kViscous =

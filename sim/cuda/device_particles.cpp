@@ -118,7 +118,7 @@ void SurfaceBuffers::allocate(const std::vector<SurfaceParticle>& particles, con
   position_.upload(position, check);
   material_.upload(material, check);
   body_.upload(body, check);
-  for (DeviceBuffer<float4>* buffer : {&placed_, &velocity_, &force_, &sorted_x_, &sorted_v_}) {
+  for (DeviceBuffer<float4>* buffer : {&placed_, &velocity_, &force_, &couple_, &sorted_x_, &sorted_v_}) {
     buffer->allocate(count, check);
   }
   for (DeviceBuffer<std::uint32_t>* buffer : {&key_, &sorted_key_, &order_}) buffer->allocate(count, check);
@@ -129,7 +129,7 @@ void SurfaceBuffers::allocate(const std::vector<SurfaceParticle>& particles, con
   cells_.allocate(constants.grid.cell_count(), check);
   local_view_ = {count,          position_.data(), material_.data(), body_.data(),
                  placed_.data(), velocity_.data(), key_.data(),      force_.data(),
-                 drag_a_.data(), drag_b_.data()};
+                 couple_.data(), drag_a_.data(),   drag_b_.data()};
   sorted_view_ = {count,
                   sorted_x_.data(),
                   sorted_v_.data(),

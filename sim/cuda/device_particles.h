@@ -74,7 +74,7 @@ class SurfaceBuffers {
   const SortedSurface& sorted() const { return sorted_view_; }
 
  private:
-  DeviceBuffer<float4> position_, placed_, velocity_, force_, sorted_x_, sorted_v_;
+  DeviceBuffer<float4> position_, placed_, velocity_, force_, couple_, sorted_x_, sorted_v_;
   DeviceBuffer<float2> material_;
   DeviceBuffer<float4> drag_a_;  // kBodyDrag
   DeviceBuffer<float2> drag_b_;

@@ -103,6 +103,7 @@ struct LocalSurface {
   float4* velocity = nullptr;    ///< world, m/s, local order; w: volume
   std::uint32_t* key = nullptr;  ///< local order
   float4* force = nullptr;       ///< by the fluid, N, local order
+  float4* couple = nullptr;      ///< what turns the body besides the force's moment, N·m, local order
   float4* drag_a = nullptr;      ///< kBodyDrag: xx, xy, xz, yy of what the force loses for each m/s, N·s/m
   float2* drag_b = nullptr;      ///< yz, zz of it
 };

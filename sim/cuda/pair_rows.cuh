@@ -51,10 +51,11 @@ __device__ inline float viscosity_of(const ParticleView<float>& p, const Neighbo
   }
 }
 
-template <class Parts, PairRule rule, Viscosity viscosity, Neighbours neighbours = Neighbours::kFluid>
+template <class Parts, PairRule rule, Viscosity viscosity, Neighbours neighbours = Neighbours::kFluid,
+          class Sum = ForceSum<float>>
 __device__ inline void add_forces(const StepConstants& c, const ParticleView<float>& p,
                                   const NeighborColumns& n, const CellTable& cells, std::uint32_t cell,
-                                  ForceSum<float>& sum, float of_fluid = 1.0f) {
+                                  Sum& sum, float of_fluid = 1.0f) {
   constexpr bool kOfFluid = rule == PairRule::kCorrected || rule == PairRule::kCorrectedBody;
   // What pairs of one viscosity drag by is in u already.
   constexpr bool kViscous =

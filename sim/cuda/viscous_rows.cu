@@ -75,6 +75,7 @@ __global__ __launch_bounds__(kThreads) void fixed_kernel(StepConstants c, float 
         });
   }
   local.force[fixed.order[i]] = make_float4(force.x, force.y, force.z, 0.0f);
+  local.couple[fixed.order[i]] = make_float4(0.0f, 0.0f, 0.0f, 0.0f);
 }
 
 }  // namespace

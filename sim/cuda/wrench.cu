@@ -16,7 +16,7 @@ __global__ __launch_bounds__(kThreads) void surface_force_kernel(StepConstants c
   const std::uint32_t i = thread_index();
   if (i >= surface.count || !wanted[surface.body[i]]) return;
   const std::uint32_t cell = surface.key[i];
-  ForceSum<float> sum{0.0f, 0.0f, 0.0f};
+  SurfaceSum<float> sum{};
   Symmetric<float> rate{};
   if (cell < c.grid.retired_key()) {
     // Where the fluid has one viscosity its column is not filled: Eq 9's mean is known up front.
@@ -36,6 +36,8 @@ __global__ __launch_bounds__(kThreads) void surface_force_kernel(StepConstants c
   }
   const std::uint32_t at = surface.order[i];
   local.force[at] = make_float4(c.force_scale * sum.x, c.force_scale * sum.y, c.force_scale * sum.z, 0.0f);
+  local.couple[at] =
+      make_float4(c.force_scale * sum.cx, c.force_scale * sum.cy, c.force_scale * sum.cz, 0.0f);
   if constexpr (with_drag) {
     const Symmetric<float> scaled = scaled_and_shifted(rate, c.force_scale, 0.0f);
     local.drag_a[at] = make_float4(scaled.xx, scaled.xy, scaled.xz, scaled.yy);
@@ -77,10 +79,11 @@ __global__ __launch_bounds__(kSumThreads) void chunk_kernel(LocalSurface fixed, 
   glm::dvec3 force(0.0), torque(0.0);
   for (std::uint32_t i = chunk.begin + threadIdx.x; i < chunk.end; i += kSumThreads) {
     const float4 f = surface.force[i];
+    const float4 c = surface.couple[i];
     const float4 x = surface.placed[i];
     const glm::dvec3 part(f.x, f.y, f.z);
     force += part;
-    torque += glm::cross(glm::dvec3(x.x, x.y, x.z) - center, part);
+    torque += glm::cross(glm::dvec3(x.x, x.y, x.z) - center, part) + glm::dvec3(c.x, c.y, c.z);
   }
   const DeviceWrench sum = sum_block<kSumThreads>(
       DeviceWrench{{force.x, force.y, force.z}, {torque.x, torque.y, torque.z}});

@@ -5,6 +5,9 @@
 
 namespace slosh {
 
+/// How many lattice particles one wall particle on a flat sheet at the spacing stands for.
+inline constexpr float kWallShare = 2.0f;
+
 /// How two particles press on each other. The force on p is −(coefficient) · ∇W:
 enum class PairRule {
   kPaper,       ///< Eq 5: V_p V_i (P_p + P_i)/2. `pressure` is P.

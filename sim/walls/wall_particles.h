@@ -6,11 +6,9 @@
 
 #include "scenes/scene.h"
 #include "sim/plan.h"
+#include "sim/pressure/pair_pressure.h"
 
 namespace slosh {
-
-/// How many lattice particles one on a flat sheet at the spacing stands for.
-inline constexpr float kWallShare = 2.0f;
 
 /// One particle of a body, as it stays for the run.
 struct SurfaceParticle {

@@ -121,6 +121,73 @@ TEST(PairForce, TheCorrectedVirialIsThePressureWhateverTheNeighbours) {
   EXPECT_GT(worst_plain, 0.2);
 }
 
+// A particle over a wall, among fluid and wall particles at random: what it does to all of them together
+// turns nothing, though a wall counts in its moment as one layer and is pressed on as more.
+TEST(PairForce, FluidAtAWallExertsNoTorque) {
+  std::mt19937 random(16);
+  std::uniform_real_distribution<double> jitter(-0.3, 0.3);
+  constexpr double kSpacing = 0.5 * kSupport;
+  double worst = 0.0, worst_without = 0.0;
+  for (int repeat = 0; repeat < 100; ++repeat) {
+    std::vector<glm::dvec3> fluids, walls;
+    for (int x = -2; x <= 2; ++x)
+      for (int y = -2; y <= 2; ++y)
+        for (int z = -1; z <= 2; ++z) {
+          if (x == 0 && y == 0 && z == 0) continue;
+          const glm::dvec3 at(x + jitter(random), y + jitter(random), z);
+          if (z < 0)
+            walls.push_back(kSpacing * (at - glm::dvec3(0.0, 0.0, 0.2)));
+          else
+            fluids.push_back(kSpacing * (at + glm::dvec3(0.0, 0.0, jitter(random))));
+        }
+    Neighborhood<double> sum{};
+    double rest = 0.0;
+    for (int x = -2; x <= 2; ++x)
+      for (int y = -2; y <= 2; ++y)
+        for (int z = -2; z <= 2; ++z) {
+          const double r2 = kSpacing * kSpacing * (x * x + y * y + z * z);
+          rest += kSpacing * kSpacing * x * x * Spiky::pair(r2, kSupport, 1.0).slope_over_r;
+        }
+    for (const glm::dvec3& at : fluids)
+      add_fluid_neighbor<Spiky>(-at.x, -at.y, -at.z, 0.0, 0.0, 0.0, kSupport, 1.0, sum);
+    for (const glm::dvec3& at : walls)
+      add_wall_neighbor<Spiky>(-at.x, -at.y, -at.z, 2.0, 1.0, kSupport, 1.0, sum);
+    const auto share = [&](double sum_of) { return static_cast<float>(sum_of / rest); };
+    const Symmetric<double>& m = sum.moment;
+    const Symmetric<float> push = pressure_directions(
+        {share(m.xx), share(m.xy), share(m.xz), share(m.yy), share(m.yz), share(m.zz)}, 1.0f, 1.3f);
+    View self{};
+    self.push = {push.xx, push.xy, push.xz, push.yy, push.yz, push.zz};
+    glm::dvec3 torque(0.0), couple(0.0);
+    double size = 0.0;
+    const auto place = [](const glm::dvec3& at) {
+      View other{};
+      other.x = at.x, other.y = at.y, other.z = at.z;
+      return other;
+    };
+    for (const glm::dvec3& at : fluids) {
+      const glm::dvec3 turned = glm::cross(at, force<PairRule::kCorrected>(place(at), self));
+      torque += turned;
+      size += glm::length(turned);
+    }
+    for (const glm::dvec3& at : walls) {
+      View wall = place(at);
+      wall.pressure = 2.0;
+      SurfaceSum<double> on_wall{{0.0, 0.0, 0.0}, 0.0, 0.0, 0.0};
+      add_pair_force<Spiky, PairRule::kCorrectedBody, DragRule::kCentral, true>(wall, self, kSupport, 1.0,
+                                                                                on_wall);
+      const glm::dvec3 turned = glm::cross(at, {on_wall.x, on_wall.y, on_wall.z});
+      torque += turned;
+      couple += glm::dvec3(on_wall.cx, on_wall.cy, on_wall.cz);
+      size += glm::length(turned);
+    }
+    worst = std::max(worst, glm::length(torque + couple) / size);
+    worst_without = std::max(worst_without, glm::length(torque) / size);
+  }
+  EXPECT_LT(worst, 1e-6);
+  EXPECT_GT(worst_without, 0.01);
+}
+
 TEST(PairForce, NothingIsCorrectedInAnImpactOrInSpray) {
   const Symmetric<float> uneven{1.4f, 0.2f, 0.0f, 0.9f, 0.1f, 0.8f};
   const Symmetric<float> struck = pressure_directions(uneven, corrected_share(kImpact), 1.3f);
