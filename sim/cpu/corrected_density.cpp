@@ -75,10 +75,9 @@ class CorrectedDensity {
         lane_sum(batch.vy),
         lane_sum(batch.vz)};
     const ParticleKind& kind = context_.kinds[fluid_.kind[p]];
-    const CorrectedState state =
-        corrected_state(n, context_.correction, kind.pressing_density,
-                        one_explicit_ ? kind.viscosity : 0.0f, fluid_.volume[p],
-                        {fluid_.vx[p], fluid_.vy[p], fluid_.vz[p]});
+    const CorrectedState state = corrected_state(
+        n, context_.correction, kind.pressing_density, kind.viscosity, one_explicit_ ? kind.viscosity : 0.0f,
+        fluid_.volume[p], {fluid_.vx[p], fluid_.vy[p], fluid_.vz[p]});
     fluid_.pressure[p] = state.pressure;
     fluid_.volume[p] = state.volume;
     fluid_.pxx[p] = state.push.xx;

@@ -86,8 +86,8 @@ __global__ __launch_bounds__(kThreads) void corrected_density_kernel(
   const ParticleKind kind = kinds[fluid.state.kind[p]];
   const float4 motion = fluid.state.v[p];
   const CorrectedState state =
-      corrected_state(sum, c.correction, kind.pressing_density, one_viscosity ? kind.viscosity : 0.0f, motion.w,
-                      {motion.x, motion.y, motion.z});
+      corrected_state(sum, c.correction, kind.pressing_density, kind.viscosity,
+                      one_viscosity ? kind.viscosity : 0.0f, motion.w, {motion.x, motion.y, motion.z});
   fluid.pressed[p] = make_float4(x.x, x.y, x.z, state.volume);
   fluid.push_a[p] = make_float4(state.push.xx, state.push.xy, state.push.xz, state.push.yy);
   fluid.push_b[p] = make_float4(state.push.yz, state.push.zz, state.u[0], state.u[1]);

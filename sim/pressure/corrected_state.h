@@ -28,9 +28,10 @@ struct CorrectedState {
   float u[3];             ///< Pa·m
 };
 
-/// `shared_viscosity`: of all fluids, Pa·s, where there is one (Eq 6), else 0. `v`: m/s.
+/// `viscosity`: the fluid's own, Pa·s. `in_u`: the same where u is to carry it (all fluids share it and drag
+/// is explicit, Eq 6), else 0. `v`: m/s.
 SLOSH_HD inline CorrectedState corrected_state(const Neighborhood<float>& n, const CorrectionConstants& c,
-                                               float pressing_density, float shared_viscosity,
+                                               float pressing_density, float viscosity, float in_u,
                                                float last_volume, const float (&v)[3]) {
   const PressureState eos = pressure_state(n.number, c.rest_number, c.rest_volume, pressing_density,
                                            c.stiffness, c.tension, last_volume, true);
@@ -43,8 +44,8 @@ SLOSH_HD inline CorrectedState corrected_state(const Neighborhood<float>& n, con
   const float virial = c.push_scale * (c.rest_volume / eos.volume);
   state.push = scaled_and_shifted(pressure_directions(moment, corrected_share(eos.compression), virial),
                                   eos.pressure, 0.0f);
-  for (int k = 0; k < 3; ++k) state.u[k] = shared_viscosity * v[k];
-  add_noise(n, c.own_number, c.noise_viscosity, v, state.u);
+  for (int k = 0; k < 3; ++k) state.u[k] = in_u * v[k];
+  add_noise(n, c.own_number, jostling_viscosity(c.noise_viscosity, viscosity), v, state.u);
   return state;
 }
 
