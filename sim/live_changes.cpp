@@ -18,7 +18,7 @@ Error too_much(const std::string& where, double value, double most, const char* 
 
 }  // namespace
 
-LiveChanges::LiveChanges(const Scene& scene) {
+LiveChanges::LiveChanges(const Scene& scene, const Plan& plan) : sheet_(drag_sheet(scene, plan)) {
   for (const Fluid& fluid : scene.fluids) first_viscosities_.push_back(fluid.dynamic_viscosity);
 }
 
@@ -32,7 +32,7 @@ Result<bool> LiveChanges::allow_viscosity(const Scene& scene, const Plan& plan, 
   const std::string where = "viscosity of " + scene.fluids[fluid].name;
   if (!(value >= 0.0)) return Error{where, "it cannot be below 0", ""};
   // The scene's own value is what the step was chosen for, whatever rounding says.
-  const double most = std::max(most_viscous_allowed(scene, plan), first_viscosities_[fluid]);
+  const double most = std::max(most_viscous_allowed(scene, plan, sheet_), first_viscosities_[fluid]);
   if (value <= most) return true;
   return too_much(where, value, most, "Pa·s");
 }

@@ -5,12 +5,14 @@
 
 #include "sim/math/result.h"
 #include "sim/plan.h"
+#include "sim/viscosity/wall_drag.h"
 
 namespace slosh {
 
 class LiveChanges {
  public:
-  explicit LiveChanges(const Scene& scene);
+  /// `scene` as it starts.
+  LiveChanges(const Scene& scene, const Plan& plan);
 
   /// Whether a fluid's viscosity may become `pascal_seconds`. `scene` as it is now. Errors as
   /// World::set_viscosity.
@@ -23,6 +25,7 @@ class LiveChanges {
 
  private:
   std::vector<double> first_viscosities_;
+  DragSheet sheet_;
 };
 
 }  // namespace slosh

@@ -213,7 +213,7 @@ std::optional<Error> refuse_endless(const Scene& scene, const Plan& plan) {
   if (!plan.viscous()) return error;
   Plan shortest = plan;
   shortest.time_step = kShortestStep;
-  const double most = most_viscous_allowed(scene, shortest);
+  const double most = most_viscous_allowed(scene, shortest, drag_sheet(scene, plan));
   if (most > 0.0 && most < fluid_extremes(scene).most_viscous)
     error.mend = format("Up to %.3g Pa·s run at this spacing; coarser particles allow more", most);
   return error;

@@ -32,7 +32,7 @@ struct World::Impl {
         options(options_in),
         constants(make_run_constants(scene, sampled, std::move(plan_in))),
         bodies(scene, sampled),
-        live(scene),
+        live(scene, constants.plan),
         found(scene.bodies.size()),
         drags(scene.bodies.size()),
         drag_matrices(scene.bodies.size()),

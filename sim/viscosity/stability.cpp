@@ -6,7 +6,6 @@
 #include "sim/model.h"
 #include "sim/viscosity/implicit.h"
 #include "sim/viscosity/noise.h"
-#include "sim/viscosity/wall_drag.h"
 
 namespace slosh {
 
@@ -52,9 +51,10 @@ double viscous_rate(const Scene& scene, const Plan& plan, const FluidExtremes& f
 
 // What a wall adds to the sum of the first layer: half of its rate, since it does not swing against the fluid
 // as the fluid's own layers do.
-double wall_part(const Scene& scene, const Plan& plan) {
-  return plan.model == ParticleModel::kCorrected ? 0.5 * wall_drag(plan.model, scene.support_ratio).rate
-                                                 : kOneLayer;
+double wall_part(const Scene& scene, const Plan& plan, DragSheet sheet) {
+  return plan.model == ParticleModel::kCorrected
+             ? 0.5 * wall_drag(plan.model, scene.support_ratio, sheet).rate
+             : kOneLayer;
 }
 
 // The others' sheets drag by less, and their steps stay as they are, to compare with.
@@ -80,7 +80,7 @@ double most_viscous_body(const Scene& scene, double most_viscous_fluid) {
 
 double viscous_step(const Scene& scene, const Plan& plan, const FluidExtremes& fluids) {
   const double mean = 0.5 * (fluids.most_viscous + most_viscous_body(scene, fluids.most_viscous));
-  const double by_wall = wall_part(scene, plan) * mean;
+  const double by_wall = wall_part(scene, plan, drag_sheet(scene, plan)) * mean;
   const double at_walls =
       std::max(kHalfLattice * fluids.most_viscous + by_wall,
                of_an_edge(plan) * (kQuarterLattice * fluids.most_viscous + 2.0 * by_wall));
@@ -92,12 +92,12 @@ double jostling_step(const Scene& scene, const Plan& plan, const FluidExtremes& 
   return kViscousFactor / (jostling(plan, fluids) * viscous_rate(scene, plan, fluids));
 }
 
-double most_viscous_allowed(const Scene& scene, const Plan& plan) {
+double most_viscous_allowed(const Scene& scene, const Plan& plan, DragSheet sheet) {
   const FluidExtremes fluids = fluid_extremes(scene);
   const double whole = kViscousFactor / (plan.time_step * viscous_rate(scene, plan, fluids)) *
                            (plan.solves_drag ? kMostImplicit : 1.0) -
                        jostling(plan, fluids);
-  const double part = wall_part(scene, plan);
+  const double part = wall_part(scene, plan, sheet);
   const double of_bodies = most_viscous_body(scene, 0.0);
   const double at_walls = (whole - 0.5 * part * of_bodies) / (kHalfLattice + 0.5 * part);
   const double at_edges = (whole / of_an_edge(plan) - part * of_bodies) / (kQuarterLattice + part);

@@ -3,6 +3,7 @@
 
 #include "sim/fluid_extremes.h"
 #include "sim/plan.h"
+#include "sim/viscosity/wall_drag.h"
 
 namespace slosh {
 
@@ -15,7 +16,8 @@ double viscous_step(const Scene& scene, const Plan& plan, const FluidExtremes& f
 /// s, the longest step at which what drags on jostling stays stable where nothing else drags explicitly.
 double jostling_step(const Scene& scene, const Plan& plan, const FluidExtremes& fluids);
 
-/// The largest viscosity of a fluid, Pa·s, at which the plan's step stays stable. Needs no mesh.
-double most_viscous_allowed(const Scene& scene, const Plan& plan);
+/// The largest viscosity of a fluid, Pa·s, at which the plan's step stays stable where walls drag by `sheet`.
+/// Needs no mesh.
+double most_viscous_allowed(const Scene& scene, const Plan& plan, DragSheet sheet);
 
 }  // namespace slosh

@@ -1,8 +1,12 @@
 #include "sim/viscosity/wall_drag.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "sim/fluid_extremes.h"
 #include "sim/model.h"
+#include "sim/viscosity/noise.h"
+#include "sim/viscosity/stability.h"
 
 namespace slosh {
 namespace {
@@ -35,8 +39,9 @@ LayerDrag layer_drag(double height, double ratio) {
 }
 
 template <class Kernel>
-WallDrag computed(double ratio) {
+WallDrag computed(double ratio, DragSheet sheet) {
   const int reach = static_cast<int>(std::ceil(ratio));
+  const double behind = sheet == DragSheet::kBehind ? kWallInset : 0.0;
   double stress = 0.0, wall = 0.0, whole = layer_drag<Kernel>(0.0, ratio).along;
   for (int n = 1; n <= reach; ++n) {
     const LayerDrag layer = layer_drag<Kernel>(n, ratio);
@@ -44,20 +49,35 @@ WallDrag computed(double ratio) {
         n * n * layer.along;  // n pairs of layers that far apart lie across a plane, n spacings of shear each
     whole += 2.0 * layer.along;
   }
-  for (int n = 0; n < reach; ++n)
-    wall += (kFirstLayer + n) * layer_drag<Kernel>(kWallInset + kFirstLayer + n, ratio).along;
+  const auto passed = [&](double height) {
+    return height * layer_drag<Kernel>(behind + height, ratio).along;
+  };
+  constexpr int kHeights = 20;  // of evenly lying fluid, a layer
+  for (int n = 0; n < reach; ++n) {
+    const double layered = passed(kFirstLayer + n);
+    double even = 0.0;
+    for (int k = 0; k < kHeights; ++k) even += passed(n + (k + 0.5) / kHeights) / kHeights;
+    wall += sheet == DragSheet::kBehind ? layered : 0.5 * (layered + even);
+  }
   WallDrag drag;
   if (wall > 0.0) drag.factor = stress / wall;
-  const LayerDrag first = layer_drag<Kernel>(kWallInset + kFirstLayer, ratio);
+  const LayerDrag first = layer_drag<Kernel>(behind + kFirstLayer, ratio);
   drag.rate = drag.factor * (first.along + first.across) / whole;
   return drag;
 }
 
 }  // namespace
 
-WallDrag wall_drag(ParticleModel model, double support_ratio) {
+DragSheet drag_sheet(const Scene& scene, const Plan& plan) {
+  if (plan.model != ParticleModel::kCorrected) return DragSheet::kBehind;
+  const FluidExtremes fluids = fluid_extremes(scene);
+  const double most = std::max(fluids.most_viscous, most_viscous_body(scene, fluids.most_viscous));
+  return most > kThin * noise_viscosity(plan, fluids.lightest) ? DragSheet::kSurface : DragSheet::kBehind;
+}
+
+WallDrag wall_drag(ParticleModel model, double support_ratio, DragSheet sheet) {
   if (model != ParticleModel::kCorrected) return {};
-  return computed<ModelParts<ParticleModel::kCorrected>::ForceKernel>(support_ratio);
+  return computed<ModelParts<ParticleModel::kCorrected>::ForceKernel>(support_ratio, sheet);
 }
 
 }  // namespace slosh

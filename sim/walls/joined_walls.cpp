@@ -177,4 +177,15 @@ std::vector<std::vector<glm::vec3>> joined_sheets(std::span<const FixedSolid> so
   return std::move(sheets.of_body());
 }
 
+std::vector<std::vector<glm::vec3>> exposed_samples(std::span<const FixedSolid> solids, float spacing) {
+  std::vector<std::vector<glm::vec3>> exposed(solids.size());
+  std::vector<bool> joined(solids.size(), false);
+  for (std::size_t b = 0; b < solids.size(); ++b) {
+    const std::vector<Sample> samples = samples_of(solids, b, spacing, joined);
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      if (!samples[i].hidden) exposed[b].push_back(solids[b].surface->positions[i]);
+  }
+  return exposed;
+}
+
 }  // namespace slosh

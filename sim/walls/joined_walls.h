@@ -30,4 +30,7 @@ struct FixedSolid {
 std::vector<std::vector<glm::vec3>> joined_sheets(std::span<const FixedSolid> solids, float depth,
                                                   float spacing);
 
+/// The samples of each solid's surface that no other hides, m, in each body's mesh frame.
+std::vector<std::vector<glm::vec3>> exposed_samples(std::span<const FixedSolid> solids, float spacing);
+
 }  // namespace slosh

@@ -151,18 +151,43 @@ JoinedWalls joined_walls(const Scene& scene, const SampledScene& sampled, const 
   return walls;
 }
 
+// Where the bodies whose motion is `motion` drag, body by body, in their mesh frames: the samples of their
+// surfaces but for those that another fixed body hides.
+std::vector<std::vector<glm::vec3>> dragging_sheets(const Scene& scene, const SampledScene& sampled,
+                                                    const Plan& plan, BodyMotion motion) {
+  std::vector<std::vector<glm::vec3>> sheets(scene.bodies.size());
+  std::vector<FixedSolid> solids;
+  std::vector<std::size_t> body_of;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const Body& body = scene.bodies[b];
+    if (body.motion != motion || body.point_probe) continue;
+    sheets[b] = sampled.surfaces[b].positions;
+    if (motion == BodyMotion::kFree || sampled.distance_fields[b].distance.empty()) continue;
+    solids.push_back({&sampled.surfaces[b], sampled.distance_fields[b].view(), body.pose});
+    body_of.push_back(b);
+  }
+  std::vector<std::vector<glm::vec3>> exposed = exposed_samples(solids, static_cast<float>(plan.spacing));
+  for (std::size_t n = 0; n < exposed.size(); ++n) sheets[body_of[n]] = std::move(exposed[n]);
+  return sheets;
+}
+
 }  // namespace
 
 std::vector<SurfaceParticle> surface_particles(const Scene& scene, const SampledScene& sampled,
                                                const Plan& plan, BodyMotion motion) {
   std::vector<SurfaceParticle> particles;
-  const float drag = static_cast<float>(wall_drag(plan.model, scene.support_ratio).factor);
-  const bool walls = plan.has(PassId::kWalls);
+  if (!plan.has(PassId::kWalls)) return particles;
+  const DragSheet sheet = drag_sheet(scene, plan);
+  const bool apart = sheet == DragSheet::kSurface;  // what presses and what drags
+  const float lattice_volume = static_cast<float>(std::pow(plan.spacing, 3));
+  const float drag = static_cast<float>(wall_drag(plan.model, scene.support_ratio, sheet).factor);
   JoinedWalls joined;
-  if (walls && motion == BodyMotion::kFixed) joined = joined_walls(scene, sampled, plan);
+  if (motion == BodyMotion::kFixed) joined = joined_walls(scene, sampled, plan);
+  std::vector<std::vector<glm::vec3>> dragging;
+  if (apart) dragging = dragging_sheets(scene, sampled, plan, motion);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
-    if (!walls || body.motion != motion || body.point_probe) continue;
+    if (body.motion != motion || body.point_probe) continue;
     std::vector<glm::vec3> positions;
     std::vector<float> pressures;
     if (motion == BodyMotion::kFixed && !joined.positions[b].empty()) {
@@ -173,13 +198,17 @@ std::vector<SurfaceParticle> surface_particles(const Scene& scene, const Sampled
       pressures.assign(positions.size(), static_cast<float>(plan.body_pressure[b]));
       if (plan.model != ParticleModel::kPaper) pressures = crowding_shares(positions, plan);
     }
-    const float lattice_volume = static_cast<float>(std::pow(plan.spacing, 3));
+    const auto add = [&](const glm::vec3& at, float pressure, float volume) {
+      particles.push_back(
+          {at, static_cast<std::uint16_t>(b), pressure, volume, static_cast<float>(body.dynamic_viscosity)});
+    };
     for (std::size_t i = 0; i < positions.size(); ++i) {
       const float volume = plan.model == ParticleModel::kPaper ? sampled.surfaces[b].particle_volume
                                                                : pressures[i] / kWallShare * lattice_volume * drag;
-      particles.push_back({positions[i], static_cast<std::uint16_t>(b), pressures[i], volume,
-                           static_cast<float>(body.dynamic_viscosity)});
+      add(positions[i], pressures[i], apart ? 0.0f : volume);
     }
+    if (!apart) continue;
+    for (const glm::vec3& p : dragging[b]) add(p, 0.0f, drag * sampled.surfaces[b].particle_volume);
   }
   return particles;
 }

@@ -105,14 +105,20 @@ INSTANTIATE_TEST_SUITE_P(
                            {"sloshing", 0.016, "swing kept a period", 0.12}},
         std::vector<Known>{{"sloshing", 0.01, "period", 0.013},
                            {"sloshing", 0.01, "swing kept a period", 0.06}},
-        std::vector<Known>{{"spin_up", 0.005, "torque at tau 0.02", 0.04},
-                           {"spin_up", 0.005, "torque at tau 0.05", 0.04},
-                           {"spin_up", 0.005, "torque at tau 0.10", 0.05},
-                           {"spin_up", 0.005, "impulse", 0.04}},
-        std::vector<Known>{{"couette", 0.00667, "torque", 0.10}},
-        std::vector<Known>{{"stokes", 0.008, "drag", 0.34}, {"stokes", 0.008, "drift over a stroke", 0.03}},
-        std::vector<Known>{{"stokes_honey", 0.008, "drag", 0.43},
-                           {"stokes_honey", 0.008, "drift over a stroke", 0.03}},
+        // Until walls gave the whole of their torque (Honey below loses none now) 0.04, 0.04 and 0.05 held: 5
+        // % that was lost made up for as much that fluid at walls is too stiff by.
+        std::vector<Known>{{"spin_up", 0.005, "torque at tau 0.02", 0.06},
+                           {"spin_up", 0.005, "torque at tau 0.05", 0.065},
+                           {"spin_up", 0.005, "torque at tau 0.10", 0.06},
+                           {"spin_up", 0.005, "impulse", 0.03}},
+        std::vector<Known>{{"couette", 0.00667, "torque", 0.08}},
+        // A ball of 1.5 and 2 spacings. It meets particle by particle what drags it now, so a stroke's halves
+        // differ more (0.03 held where it slid through).
+        std::vector<Known>{{"stokes", 0.008, "drag", 0.06}, {"stokes", 0.008, "drift over a stroke", 0.05}},
+        std::vector<Known>{{"stokes", 0.006, "drag", 0.06}, {"stokes", 0.006, "drift over a stroke", 0.03}},
+        std::vector<Known>{{"stokes_honey", 0.008, "drag", 0.07},
+                           {"stokes_honey", 0.008, "drift over a stroke", 0.07}},
+        std::vector<Known>{{"stokes_honey", 0.006, "drag", 0.09}},
         std::vector<Known>{{"slow_ball", 0.006, "force, moving", 0.035},
                            {"slow_ball", 0.006, "force left 0.9 s after", 0.02}},
         std::vector<Known>{{"dam_break", 0.146 / 16, "front, worst", 0.17}},

@@ -140,6 +140,24 @@ TEST(JoinedWalls, ThoseThatStandApartAreLeftAlone) {
   }
 }
 
+// What drags stands on the surface: where a wall stands on a floor, neither's face under it does.
+TEST(JoinedWalls, WhatAnotherHidesIsNotExposed) {
+  Box floor(kFloorLow, kFloorHigh), wall(kWallLow, kWallHigh);
+  const std::vector<FixedSolid> solids = {floor.solid(), wall.solid()};
+  const std::vector<std::vector<glm::vec3>> exposed = exposed_samples(solids, kSpacing);
+  for (std::size_t b = 0; b < solids.size(); ++b) {
+    const std::vector<glm::vec3>& all = solids[b].surface->positions;
+    EXPECT_LT(exposed[b].size(), all.size());
+    std::size_t open = 0;
+    for (const glm::vec3& p : all) open += sample_distance(solids[1 - b].field, p).distance > 0.5f * kSpacing;
+    EXPECT_GE(exposed[b].size(), open);
+    for (const glm::vec3& p : exposed[b])
+      EXPECT_GT(sample_distance(solids[1 - b].field, p).distance, -0.3f * kSpacing);
+  }
+  const std::vector<FixedSolid> alone = {floor.solid()};
+  EXPECT_EQ(exposed_samples(alone, kSpacing)[0].size(), alone[0].surface->positions.size());
+}
+
 // A plate of a spacing on a block: nothing of it is inside the block, all of what it covers is
 // hidden.
 TEST(JoinedWalls, AThinPlateHasItsOuterFace) {
