@@ -26,13 +26,13 @@ inline double noise_viscosity(const Plan& plan, double density) {
 /// jostling.
 inline constexpr double kThin = 0.25;
 
-/// What is left to damp in a fluid of `viscosity`, Pa·s, of the `noise` that one without needs: all up to
-/// three quarters of it, nothing from five quarters on, where its own drag does it. At walls and surfaces,
-/// where neighbours lie on one side, the flow does feel the drag on jostling (torque between cylinders of 1
-/// Pa·s, three spacings apart: +13 % with all of 0.66 Pa·s); with less than it needs a fluid resists more
-/// (surface of a turning glass of 0.5 Pa·s: -12 % with a third, -8 % with all of 0.75).
+/// What is left to damp in a fluid of `viscosity`, Pa·s, of the `noise` that one without needs: all in a thin
+/// one, nothing where its own drag is as strong. At walls and surfaces, where neighbours lie on one side, the
+/// flow does feel the drag on jostling (torque between cylinders of 1 Pa·s, three spacings apart: +13 % with
+/// all of 0.66 Pa·s). Weak where it is partly made: the surface of a turning glass of 0.5 Pa·s rises 12 % too
+/// little with a third of 0.75 Pa·s, 8 % with all of it.
 SLOSH_HD inline float jostling_viscosity(float noise, float viscosity) {
-  const float left = 2.5f * noise - 2.0f * viscosity;
+  const float left = (noise - viscosity) / (1.0f - static_cast<float>(kThin));
   return left > noise ? noise : RealOps<float>::positive_part(left);
 }
 
