@@ -53,13 +53,32 @@ SHARED float wrapped_lambert(float cos_light, float wandering) {
   return max(cos_light + wandering, 0.0f) / (all * all);
 }
 
+// Shares of diffuse light that a layer sends back and lets through.
+struct FluidLayer {
+  vec3 back;
+  vec3 through;
+};
+
+// A layer that scatters, by Kubelka & Munk (1931), with the albedo of which a deep layer gives F_c back: light that is
+// scattered much wanders on, so that cloudy fluid must be many 1/F_e deep before it shows its own colour, and the channels
+// that it takes least are the last.
+SHARED FluidLayer scattering_layer(FluidMatter m, float thickness) {
+  vec3 whole = m.color * m.scattering;
+  vec3 deep = min(whole, vec3(0.999f));  // at 1 the formula is nought over nought
+  vec3 lost = 1.0f - deep * deep;
+  vec3 rate = 1.5f * lost / (2.0f * deep + 0.375f * (1.0f - deep) * (1.0f - deep));
+  vec3 left = exp(-(thickness * m.extinction * rate));
+  vec3 all = 1.0f - deep * deep * left;
+  return FluidLayer(whole * (1.0f - left) / all, lost * sqrt(left) / all);
+}
+
 // What comes out of the fluid where nothing is mirrored.
 SHARED vec3 light_inside(FluidMatter m, FluidPoint p, FluidLight l) {
   vec3 through = transmittance(m.extinction, p.thickness);
   // A layer that is thin for the light's wandering shows the light, not the side it comes from.
   float lit = wrapped_lambert(dot(p.normal, p.to_light), light_wandering(m.extinction, 0.01f));
-  vec3 back = m.color * m.scattering * (l.key * (0.31830989f * lit) + l.ambient);
-  return mix(back, l.behind, through);
+  FluidLayer layer = scattering_layer(m, p.thickness);
+  return layer.back * (l.key * (0.31830989f * lit) + l.ambient) + max(through, layer.through) * l.behind;
 }
 
 // The light itself as the surface mirrors it. It is no point: a surface smoother than `kLightSize` shows its size.

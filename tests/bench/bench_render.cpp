@@ -1,7 +1,8 @@
 // How long each pass of a frame takes: bench_render [--width W] [--height H] [--particles N] [--frames F]
-// [--threads T] [--batter] [--paper] [--flow] [--full] [--stereo] [--out PICTURE.png]. Times are medians over
-// the frames, with a glFinish after each pass. --stereo: both eyes of one frame against one, each of that
-// size, with the HUD. --reference PATHS: no times, but the same picture by path tracing into --out.
+// [--threads T] [--batter] [--juice] [--paper] [--flow] [--full] [--stereo] [--out PICTURE.png]. Times are
+// medians over the frames, with a glFinish after each pass. --stereo: both eyes of one frame against one,
+// each of that size, with the HUD. --reference PATHS: no times, but the same picture by path tracing into
+// --out.
 // --environment FILE.hdr|studio: the room.
 #include <imgui.h>
 
@@ -31,6 +32,7 @@ struct Wishes {
   int frames = 30;
   int threads = 1;
   bool batter = false;
+  bool juice = false;
   bool paper = false;
   bool full = false;
   bool flow = false;
@@ -52,6 +54,7 @@ Wishes read_arguments(int count, char** words) {
     if (word == "--frames") wishes.frames = std::max(std::atoi(next), 1);
     if (word == "--threads") wishes.threads = std::atoi(next);
     if (word == "--batter") wishes.batter = true;
+    if (word == "--juice") wishes.juice = true;
     if (word == "--paper") wishes.paper = true;
     if (word == "--full") wishes.full = true;
     if (word == "--flow") wishes.flow = true;
@@ -108,6 +111,11 @@ void time_stereo(slosh::Renderer& renderer, const slosh::Frame& frame, int frame
               median(stereo) / median(mono), std::ranges::min(stereo) / std::ranges::min(mono));
 }
 
+void choose_fluid(const Wishes& wishes, slosh::Frame& frame) {
+  if (wishes.batter) frame.fluids = {slosh::kit::batter()};
+  if (wishes.juice) frame.fluids = {slosh::kit::cloudy_juice()};
+}
+
 /// A file, "studio", or none.
 std::shared_ptr<const slosh::Environment> environment_of(const Wishes& wishes) {
   if (wishes.environment.empty()) return nullptr;
@@ -124,7 +132,7 @@ slosh::Result<bool> write_reference(const Wishes& wishes) {
   auto tracer = reference::PathTracer::create();
   if (!tracer) return tracer.error();
   kit::DamBreak scene(*tracer.value(), wishes.particles, wishes.width, wishes.height);
-  if (wishes.batter) scene.frame.fluids = {kit::batter()};
+  choose_fluid(wishes, scene.frame);
   reference::Options options;
   options.width = wishes.width;
   options.height = wishes.height;
@@ -178,7 +186,7 @@ int main(int argc, char** argv) {
   if (!made) return fail(made.error());
   Renderer& renderer = *made.value();
   kit::DamBreak scene(renderer, wishes.particles, wishes.width, wishes.height);
-  if (wishes.batter) scene.frame.fluids = {kit::batter()};
+  choose_fluid(wishes, scene.frame);
   if (wishes.hud) {
     scene.frame.arrows = {{{0.1f, 0.06f, 0.02f}, {0.1f, 0.26f, 0.02f}, {0.9f, 0.5f, 0.1f}}};
     scene.frame.hud = [] {

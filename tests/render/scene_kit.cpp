@@ -100,6 +100,15 @@ FluidLook batter() {
   return look;
 }
 
+FluidLook cloudy_juice() {
+  FluidLook look;
+  look.color = {0.85f, 0.35f, 0.06f};
+  look.extinction = {3.0f, 9.0f, 25.0f};
+  look.scattering = 0.5f;
+  look.refraction = 1.35f;
+  return look;
+}
+
 DamBreak::DamBreak(MeshSink& meshes, int wanted, int width, int height) {
   const glm::vec3 low(-0.25f, 0.0f, -0.125f);
   const glm::vec3 high(0.25f, 0.28f, 0.125f);

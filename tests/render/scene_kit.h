@@ -41,5 +41,7 @@ struct DamBreak {
 
 FluidLook water();
 FluidLook batter();
+/// As scenes/README.md has it: clear enough to be seen through, and scattering.
+FluidLook cloudy_juice();
 
 }  // namespace slosh::kit
