@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <limits>
 
 namespace slosh::make {
@@ -190,7 +191,12 @@ void SceneWriter::add_camera(const glm::dvec3& eye, const glm::dvec3& target, do
 
 bool SceneWriter::write(const std::filesystem::path& file) {
   const bool binary = file.extension() == ".glb";
-  return tinygltf::TinyGLTF().WriteGltfSceneToFile(&model_, file.string(), true, true, !binary, binary);
+  // Not WriteGltfSceneToFile: that returns true where the file cannot be opened, or the disk is full.
+  std::ofstream out(file, std::ios::binary | std::ios::trunc);
+  if (!out) return false;
+  const bool written = tinygltf::TinyGLTF().WriteGltfSceneToStream(&model_, out, !binary, binary);
+  out.close();  // what is still in its buffer may find no room
+  return written && !out.fail();
 }
 
 }  // namespace slosh::make

@@ -259,5 +259,19 @@ TEST(Pour, LipStaysOverThePanWhileTheBowlTilts) {
   EXPECT_GT(bowl.pose.position.y, 0.2);
 }
 
+/// tinygltf's own writer says that all went well in each of these.
+TEST(SceneWriter, SaysWhatCannotBeWritten) {
+  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "scene_writer";
+  std::filesystem::create_directories(folder);
+  for (const char* name : {"probe.gltf", "probe.glb"}) {
+    EXPECT_FALSE(make::make_probe().write(folder / "missing" / name)) << "no such folder";
+    EXPECT_TRUE(make::make_probe().write(folder / name));
+    EXPECT_TRUE(load_scene(folder / name)) << "and what was written is a scene";
+  }
+  if (std::filesystem::exists("/dev/full")) {
+    EXPECT_FALSE(make::make_probe().write("/dev/full")) << "a full disk";
+  }
+}
+
 }  // namespace
 }  // namespace slosh
