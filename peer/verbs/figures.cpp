@@ -200,6 +200,9 @@ FigureParts judge_spin(const ScriptedRun& run, const std::string& model) {
     spin_before = spin;
   }
   mark_phases(parts.panels[0], phases);
+  parts.reproduced = start_apart && spin_apart && seen;
+  parts.panels[0].title +=
+      parts.reproduced ? ": as in the paper, the four are apart" : ": not as in the paper";
   parts.claims = {
       {"the increase in viscosity leads to higher forces, each of the 4 viscosities clearly shown (" + model +
            ")",

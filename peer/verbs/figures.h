@@ -20,6 +20,7 @@ struct Claim {
 struct FigureParts {
   std::vector<ChartPanel> panels;
   std::vector<Claim> claims;
+  bool reproduced = false;  ///< of Figure 10: this model shows what the paper shows
 };
 
 /// A part of a motion between two times.

@@ -22,11 +22,28 @@ std::string command_line(const ReportOptions& options, const FigureOptions& figu
                 figure.plot == "png" ? "" : (" --plot " + figure.plot).c_str());
 }
 
-std::string words(const FigureOptions& figure, const std::vector<Claim>& claims, const std::string& origin) {
+std::string words(const FigureOptions& figure, const std::vector<Claim>& claims, const std::string& conclusion,
+                  const std::string& origin) {
   std::string text = format("# Figure %d\n\n%s\n\n", figure.number, origin.c_str());
+  if (!conclusion.empty()) text += conclusion + ".\n\n";
   for (const Claim& claim : claims) {
     text += std::string(claim.holds ? "- **holds**" : "- **does not hold**") + ": \xE2\x80\x9C" +
             claim.paper + "\xE2\x80\x9D: " + claim.measured + "\n";
+  }
+  return text;
+}
+
+/// Which model shows what the paper's Figure 10 shows, and why the other one cannot. Two lines of a sheet.
+std::string spin_in_words(const std::vector<bool>& reproduced) {
+  const bool paper = !reproduced.empty() && reproduced[0];
+  const bool ours = reproduced.size() > 1 && reproduced[1];
+  std::string text = paper && ours ? "Both models reproduce the figure"
+                     : paper       ? "The paper's model reproduces the figure, the default model does not"
+                     : ours        ? "The default model reproduces the figure, the paper's model does not"
+                                   : "Neither model reproduces the figure";
+  if (!ours) {
+    text += ": by default fluid sticks to its walls, as real fluid does, and turns with its glass; without slip there is "
+            "nothing by which the walls' viscosities could differ. The paper's walls slip, and drag for as long as they turn";
   }
   return text;
 }
@@ -67,6 +84,7 @@ int report_figure(const ReportOptions& options, const FigureOptions& figure) {
   Progress progress;
   progress.phase("measuring", scene.title);
   FigureParts all;
+  std::vector<bool> reproduced;  // by each model
   try {
     for (std::size_t m = 0; m < models.size(); ++m) {
       scene.model = models[m];
@@ -77,6 +95,7 @@ int report_figure(const ReportOptions& options, const FigureOptions& figure) {
       FigureParts parts = judge(figure, run, scene);
       all.panels.insert(all.panels.end(), parts.panels.begin(), parts.panels.end());
       all.claims.insert(all.claims.end(), parts.claims.begin(), parts.claims.end());
+      reproduced.push_back(parts.reproduced);
       const std::string table = stem + (models.size() > 1 ? std::string("-") + name(models[m]) : "") + ".csv";
       if (!write_wrenches(folder.value() / table, run))
         return fail({(folder.value() / table).string(), "cannot be written", "Is the disk full?"});
@@ -89,7 +108,7 @@ int report_figure(const ReportOptions& options, const FigureOptions& figure) {
   }
   const std::string command = command_line(options, figure, setting.spacing);
   const std::string origin = command + ", " + machine_line(options);
-  const std::string text = words(figure, all.claims, origin);
+  const std::string text = words(figure, all.claims, figure.number == 10 ? spin_in_words(reproduced) : "", origin);
   const Result<bool> written = write_whole(folder.value() / (stem + ".md"), text);
   if (!written) return fail(written.error());
   const std::string title = format("Figure %d: ", figure.number) + scene.title;

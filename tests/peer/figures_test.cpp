@@ -55,7 +55,8 @@ TEST(Figures, TenTellsViscositiesAndPhasesApartOrSaysThatItDoesNot) {
   ASSERT_EQ(apart.claims.size(), 2u);
   EXPECT_TRUE(apart.claims[0].holds) << apart.claims[0].measured;
   EXPECT_TRUE(apart.claims[1].holds) << apart.claims[1].measured;
-  EXPECT_EQ(apart.panels[0].title, "a model");
+  EXPECT_EQ(apart.panels[0].title, "a model: as in the paper, the four are apart");
+  EXPECT_TRUE(apart.reproduced);
   ASSERT_EQ(apart.panels[0].spans.size(), 4u);
   const char* const kPhases[] = {"rest", "start", "spin", "stop"};
   for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(apart.panels[0].spans[i].name, kPhases[i]);
@@ -63,6 +64,8 @@ TEST(Figures, TenTellsViscositiesAndPhasesApartOrSaysThatItDoesNot) {
   EXPECT_NEAR(apart.panels[0].spans[2].to, 6.0, 0.05);
   const FigureParts same = judge_spin(spin_run({1.0, 1.02, 1.04, 1.06}, {0.3, 0.31, 0.31, 0.32}), "a model");
   EXPECT_FALSE(same.claims[0].holds);
+  EXPECT_FALSE(same.reproduced);
+  EXPECT_EQ(same.panels[0].title, "a model: not as in the paper") << "who has the picture alone is told too";
   EXPECT_TRUE(same.claims[1].holds) << "alike, and in four phases all the same";
   const FigureParts flat = judge_spin(spin_run({1.0, 2.0, 3.0, 4.0}, {0.0, 0.0, 0.0, 0.0}), "a model");
   EXPECT_FALSE(flat.claims[1].holds) << "a spin without a torque is no phase that shows";
