@@ -9,7 +9,9 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
+#include <sstream>
 #include <system_error>
 
 #include "net/text/clean.h"
@@ -47,6 +49,14 @@ std::string last_line(std::string text) {
 }
 
 }  // namespace
+
+bool program_there(const std::string& name) {
+  const char* const path = std::getenv("PATH");
+  std::stringstream folders(path ? path : "");
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (access(((folder.empty() ? "." : folder) + "/" + name).c_str(), X_OK) == 0) return true;
+  return false;
+}
 
 ChildProcess::ChildProcess(std::string name, pid_t pid, int input, int written, int said)
     : name_(std::move(name)), pid_(pid), input_(input), written_(written), said_(said) {}

@@ -12,6 +12,9 @@
 
 namespace slosh {
 
+/// Whether a program of that name is on the PATH.
+bool program_there(const std::string& name);
+
 /// Started in a process group of its own, so that Ctrl-C reaches this program alone and the child can finish
 /// its file. What it says on stderr is kept and shown when it fails, what it writes to stdout is kept for
 /// output(). No shell is between. SIGPIPE must be ignored by the process.

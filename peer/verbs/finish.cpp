@@ -1,5 +1,6 @@
 #include <cstdio>
 
+#include "peer/output/child_process.h"
 #include "peer/output/plot.h"
 #include "peer/verbs/interrupt.h"
 #include "peer/verbs/play_modes.h"
@@ -49,7 +50,12 @@ int finish_run(const Stage& stage, const ShowOptions& options, Progress& progres
       const std::string name = "wrenches." + options.plot;
       const Result<bool> plotted = plot_wrenches(stage.folder / "wrenches.csv",
                                                  sheet_of(stage, options, summary), stage.folder / name);
-      if (!plotted) {
+      if (!plotted && !program_there("gnuplot")) {
+        // Nothing was lost: the sheet is drawn from what is in the table.
+        progress.note("slosh: no " + name +
+                      ", as gnuplot is not installed (apt-get install gnuplot-nox); "
+                      "what it would show is in wrenches.csv");
+      } else if (!plotted) {
         summary.problems.push_back("the plot: " + plotted.error().text());
       } else if (plotted.value()) {
         summary.files.push_back(name);

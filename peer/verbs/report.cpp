@@ -5,6 +5,7 @@
 #include <ctime>
 #include <memory>
 
+#include "peer/output/child_process.h"
 #include "peer/output/machine.h"
 #include "peer/output/plot.h"
 #include "peer/verbs/common_options.h"
@@ -160,6 +161,9 @@ void add_report(CLI::App& app, VerbRun& chosen) {
 
 Result<std::filesystem::path> report_folder(const ReportOptions& options, const std::string& kind,
                                             const char* main_file) {
+  // Before anything is measured: what cannot be drawn in the end would have been measured for nothing.
+  if (!program_there("gnuplot"))
+    return Error{"gnuplot", "is not installed, and draws what is measured", "apt-get install gnuplot-nox"};
   const std::filesystem::path folder = options.out.empty() ? "slosh-report-" + kind : options.out;
   std::error_code code;
   if (!options.overwrite && std::filesystem::exists(folder / main_file, code)) {

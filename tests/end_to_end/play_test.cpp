@@ -115,6 +115,26 @@ TEST_F(PlayTest, SurfaceAndSheetAreAsAskedFor) {
   EXPECT_EQ(probe(out() / "view.mp4", "color_space"), "bt709");
 }
 
+TEST_F(PlayTest, WithoutGnuplotTheSheetIsMissedInWordsAndNothingElse) {
+  const std::vector<std::string> without{"env", "PATH=" + test::test_folder().string(), test::program()};
+  std::vector<std::string> play = without;
+  play.insert(play.end(), {"play", "probe", "--headless", "--no-render", "--unpaced", "--seconds", "0.2", "--spacing",
+                           "0.0135", "--out", "out"});
+  Outcome outcome = test::Process(play, test::test_folder()).wait();
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("gnuplot is not installed"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(std::filesystem::exists(out() / "wrenches.png"));
+  expect_rows(out(), 1, 0.2);
+  EXPECT_TRUE(json::parse(read_text(out() / "summary.json"))["problems"].empty());
+  // A report is told so before it has measured for minutes.
+  std::vector<std::string> report = without;
+  report.insert(report.end(), {"report", "figure", "10", "--out", "ten"});
+  outcome = test::Process(report, test::test_folder()).wait();
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.err.find("apt-get install gnuplot-nox"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(std::filesystem::exists(test::test_folder() / "ten"));
+}
+
 TEST_F(PlayTest, ARecordedRunCanBeReplayed) {
   const std::vector<std::string> common = {"play",      "probe", "--no-render", "--threads", "1",
                                            "--seconds", "1",     "--spacing",   "0.012",     "--out"};
