@@ -62,7 +62,7 @@ void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window) {
   verb.add_option("--view", options.view, "View of that display, by name (its first)");
   verb.add_option(
       "--environment", options.environment,
-      "Room that lights the scene and is mirrored: a Radiance picture (.hdr), or studio (a plain room)");
+      "Room that lights the scene and is mirrored: a Radiance picture (.hdr), or studio (one of our own with soft boxes)");
   verb.add_option("--font-scale", options.font_scale, "Letters of the HUD, times their size")
       ->check(in_range(0.5, 4.0))
       ->capture_default_str();
