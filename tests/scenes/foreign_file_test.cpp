@@ -1,9 +1,13 @@
 // A scene from a stranger: what it may open, and what its names may do.
+#include <arpa/inet.h>
+#include <sys/inotify.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <vector>
 
 #include "net/text/clean.h"
 #include "support.h"
@@ -34,6 +38,49 @@ std::string base64_decoded(const std::string& uri) {
   }
   return out;
 }
+
+/// Whether somebody opens files, as the kernel sees it.
+class Openings {
+ public:
+  explicit Openings(const std::vector<fs::path>& files) : notify_(inotify_init1(IN_NONBLOCK)) {
+    for (const fs::path& file : files)
+      EXPECT_GE(inotify_add_watch(notify_, file.c_str(), IN_OPEN | IN_ACCESS), 0) << file;
+  }
+  ~Openings() { close(notify_); }
+  bool any() const {
+    char room[4096];
+    return read(notify_, room, sizeof room) > 0;
+  }
+
+ private:
+  int notify_;
+};
+
+/// A server of this machine that says nothing: whether anybody comes.
+class Ear {
+ public:
+  Ear() : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK, 0)) {
+    sockaddr_in here{};
+    here.sin_family = AF_INET;
+    here.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    EXPECT_EQ(bind(socket_, reinterpret_cast<const sockaddr*>(&here), sizeof here), 0);
+    EXPECT_EQ(listen(socket_, 4), 0);
+    socklen_t size = sizeof here;
+    getsockname(socket_, reinterpret_cast<sockaddr*>(&here), &size);
+    at_ = "127.0.0.1:" + std::to_string(ntohs(here.sin_port));
+  }
+  ~Ear() { close(socket_); }
+  const std::string& at() const { return at_; }
+  bool anybody() const {
+    const int caller = accept(socket_, nullptr, nullptr);
+    if (caller >= 0) close(caller);
+    return caller >= 0;
+  }
+
+ private:
+  int socket_;
+  std::string at_;
+};
 
 /// The cup with its buffer in a file of its own: JSON and the file's bytes.
 struct Cup {
@@ -92,6 +139,39 @@ TEST(ForeignFile, NothingElseIsOpened) {
     EXPECT_NE(scene.error().where.find("buffer 0"), std::string::npos) << scene.error().text();
     EXPECT_NE(scene.error().mend.find("folder below it"), std::string::npos) << scene.error().text();
   }
+}
+
+TEST(ForeignFile, APictureIsNeitherOpenedNorFetched) {
+  const TempFolder outer;
+  fs::create_directories(outer / "scene");
+  test::write_text(outer / "secret.png", "\x89PNG");
+  test::write_text(outer / "scene/own.png", "\x89PNG");
+  fs::create_symlink(outer / "secret.png", outer / "scene/link.png");
+  ASSERT_EQ(mkfifo((outer / "scene/pipe.png").c_str(), 0600), 0);  // who opened it would wait for ever
+  const Ear ear;
+  const std::string secret = (outer / "secret.png").string();
+  for (const std::string& uri :
+       {std::string("/etc/passwd"), secret, "file://" + secret, std::string("../secret.png"),
+        std::string("link.png"), std::string("own.png"), std::string("pipe.png"),
+        "http://" + ear.at() + "/a.png", "https://" + ear.at() + "/a.png", "//" + ear.at() + "/a.png",
+        std::string("data:image/png;base64,AAAA")}) {
+    nlohmann::json json;
+    ASSERT_TRUE(test::make_cup().write(outer / "scene/cup.gltf"));
+    json = test::read_json(outer / "scene/cup.gltf");
+    json["images"] = nlohmann::json::array({{{"uri", uri}}});
+    json["textures"] = nlohmann::json::array({{{"source", 0}}});
+    json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
+    test::write_text(outer / "scene/cup.gltf", json.dump());
+    const Openings openings({outer / "secret.png", outer / "scene/own.png", outer / "scene/pipe.png"});
+    const Result<Scene> scene = load_scene(outer / "scene/cup.gltf");
+    EXPECT_TRUE(scene) << uri << ": " << (scene ? "" : scene.error().text());
+    EXPECT_FALSE(openings.any()) << uri;
+    EXPECT_FALSE(ear.anybody()) << uri;
+  }
+  // Both would be seen.
+  const Openings openings({outer / "scene/own.png"});
+  read_bytes(outer / "scene/own.png");
+  EXPECT_TRUE(openings.any());
 }
 
 TEST(ForeignFile, WhatIsNoFileIsNotOpened) {
