@@ -137,7 +137,7 @@ Result<bool> Renderer::Parts::fit_to_options() {
     targets = make_targets(size, options.half_resolution_back, fast);
     drew_fluid = false;
   }
-  const int shadow_size = fast ? (options.shadow_size + 1) / 2 : options.shadow_size;
+  const int shadow_size = fast ? (3 * options.shadow_size + 3) / 4 : options.shadow_size;
   if (shadow_size == 0) {
     shadow_pass.reset();
   } else if (!shadow_pass || shadow_pass->size() != shadow_size) {

@@ -34,7 +34,7 @@ struct ColorConfig {
 /// How much is spent on looks where the paper leaves it open.
 enum class Quality : std::uint8_t {
   kAuto,  ///< kFast where a CPU draws (llvmpipe), else kFull
-  kFast,  ///< two shadow taps, shadow map of half the size, no occlusion of meshes, only the
+  kFast,  ///< two shadow taps, shadow map of 3/4 the size, no occlusion of meshes, only the
           ///< sides of glass that face the eye and are before the fluid
   kFull,
 };
