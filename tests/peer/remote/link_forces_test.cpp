@@ -283,6 +283,33 @@ TEST_P(LinkForces, APersonWhoIsStoppedComesBackWithoutABlow) {
   EXPECT_LT(back.leap, steady.leap + 2.0);
 }
 
+/// Given up, and back while the other one is still getting the weight.
+TEST_P(LinkForces, APersonWhoIsBackDuringTheHandOverFeelsNoBlow) {
+  Person& one = *people[0];
+  for (const double away : {0.2, 1.0, 1.9}) {
+    one.stopped = true;
+    run(4.0);
+    one.connected = false;
+    host->hands.lose(one.grip, clock);
+    run(away);
+    one.stopped = false;
+    one.inbox.restart();
+    one.connected = true;
+    one.number = 0;
+    host->hands.taken(one.grip, clock);
+    run(8.0);
+    const Numbers back = numbers();
+    std::printf(
+        "back %.1f s into the hand-over: %.1f and %.1f N felt, %.1f N from row to row, %.1f N on the body\n",
+        away, one.peak, people[1]->peak, back.leap, back.carried);
+    EXPECT_LT(one.peak, 1.2 * steady.peak + 2.0);
+    EXPECT_LT(back.peak, 1.2 * (steady.peak + kShare) + 2.0)
+        << "up to then the other one carries more and more";
+    EXPECT_LT(back.leap, steady.leap + 2.0);
+    forget();
+  }
+}
+
 /// What a link does that stood for a second: silence for several, and a trickle before it flows again.
 TEST_P(LinkForces, ASilenceOfBothHandsIsNoBlow) {
   for (const Flow flow : {Flow::kStands, Flow::kDrops}) {
