@@ -4,17 +4,27 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "net/text/spreadsheet.h"
+
 namespace slosh::report {
 namespace {
 
+/// The texts that csv_field was given, as far as it kept them.
 Fields fields_of(const std::string& line) {
   Fields fields;
   std::istringstream cells(line + ',');
-  for (std::string cell; std::getline(cells, cell, ',');) fields.push_back(cell);
+  for (std::string cell; std::getline(cells, cell, ',');) fields.push_back(from_spreadsheet_text(cell));
   return fields;
 }
 
 }  // namespace
+
+std::string csv_field(std::string text) {
+  for (char& c : text) {
+    if (c == ',' || c == '\n' || c == '\r' || c == '"') c = ';';
+  }
+  return as_spreadsheet_text(text);
+}
 
 Result<bool> read_rows(const std::filesystem::path& file, const std::string& header, const std::string& kind,
                        const std::function<void(const Fields&)>& take) {

@@ -10,13 +10,9 @@
 
 namespace slosh::report {
 
-/// A text as one field of a CSV: without separators, quotes or ends of lines.
-inline std::string csv_field(std::string text) {
-  for (char& c : text) {
-    if (c == ',' || c == '\n' || c == '\r' || c == '"') c = ';';
-  }
-  return text;
-}
+/// A text as one field of a CSV: without separators, quotes or ends of lines, and no formula
+/// (net/text/spreadsheet.h).
+std::string csv_field(std::string text);
 
 using Fields = std::vector<std::string>;
 

@@ -3,6 +3,8 @@
 #include <chrono>
 #include <utility>
 
+#include "net/text/spreadsheet.h"
+
 namespace slosh {
 
 Result<std::unique_ptr<LaterTable>> LaterTable::create(const std::filesystem::path& file,
@@ -55,8 +57,9 @@ void LaterTable::write() {
   problem_ = table_->problem();
 }
 
-std::string csv_cell(std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+std::string csv_cell(std::string_view name) {
+  std::string text = as_spreadsheet_text(name);
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string cell = "\"";
   for (const char c : text) cell += c == '"' ? std::string("\"\"") : std::string(1, c);
   return cell + "\"";

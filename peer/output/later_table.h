@@ -42,7 +42,7 @@ class LaterTable {
   std::thread thread_;
 };
 
-/// A text as one cell of a CSV file: quoted where it has to be.
-std::string csv_cell(std::string_view text);
+/// A name as one cell of a CSV file: quoted where it has to be, and no formula (net/text/spreadsheet.h).
+std::string csv_cell(std::string_view name);
 
 }  // namespace slosh

@@ -7,6 +7,7 @@
 
 #include "peer/output/chart.h"
 #include "peer/output/gnuplot.h"
+#include "peer/output/later_table.h"
 #include "peer/palette.h"
 #include "peer/verbs/common_options.h"
 #include "peer/verbs/interrupt.h"
@@ -159,7 +160,8 @@ int sweep(const SweepVerbOptions& options) {
   const std::filesystem::path table = folder.value() / kTable;
   std::ofstream out(table);
   out << "run";
-  for (const FieldEdit& edit : family.value().front().edits) out << "," << edit.object << "." << edit.field;
+  for (const FieldEdit& edit : family.value().front().edits)
+    out << "," << csv_cell(edit.object + "." + edit.field);
   out << ",device,mean_force_n,peak_force_n,mean_torque_nm,peak_torque_nm,fluid_particles,lost,wall_s\n";
   catch_interrupts();
   Progress progress;

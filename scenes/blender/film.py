@@ -7,6 +7,7 @@ frame only, --still N one frame, as FILM.png. Saves FILM.blend too, to go on fro
 """
 import argparse
 import csv
+import re
 import sys
 from pathlib import Path
 
@@ -16,6 +17,8 @@ from mathutils import Quaternion
 
 # Blender 3.4's glTF importer asks numpy for a name that numpy 1.24, Debian 12's, has no more.
 numpy.__dict__.setdefault("bool", bool)
+
+FORMULA = r"(^|[,;\t\r\n])'(?='*[=+\-@\t\r\uff1d\uff0b\uff0d\uff20])"  # net/text/spreadsheet.h
 
 
 def read_arguments():
@@ -30,11 +33,16 @@ def read_arguments():
     return parser.parse_args(sys.argv[sys.argv.index("--") + 1:])
 
 
+def name_in(cell):
+    """A name of a table: what a spreadsheet would take for a formula has an apostrophe in front."""
+    return re.sub(FORMULA, r"\1", cell)
+
+
 def move_bodies(run, rate):
     """Keys from bodies.csv, whose axes are y up: Blender's are (x, -z, y)."""
     with open(run / "bodies.csv", newline="") as table:
         for row in csv.DictReader(table):
-            thing = bpy.data.objects.get(row["body"])
+            thing = bpy.data.objects.get(name_in(row["body"]))
             if thing is None:
                 continue
             thing.rotation_mode = "QUATERNION"

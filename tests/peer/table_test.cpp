@@ -11,6 +11,7 @@
 #include <functional>
 #include <iterator>
 
+#include "peer/output/later_table.h"
 #include "peer/output/whole_file.h"
 
 namespace slosh {
@@ -53,6 +54,14 @@ TEST_F(TableTest, RowsAreThereOnceFlushed) {
   EXPECT_TRUE(table.value()->flush());
   EXPECT_EQ(text(), "a,b\n1,2\n3,4\n");
   EXPECT_EQ(table.value()->problem(), "");
+}
+
+TEST_F(TableTest, ANameIsOneCellAndNoFormula) {
+  EXPECT_EQ(csv_cell("left hand"), "left hand");
+  EXPECT_EQ(csv_cell("a,b"), "\"a,b\"");
+  EXPECT_EQ(csv_cell("a;=1+1"), "a;'=1+1") << "where semicolons divide cells";
+  EXPECT_EQ(csv_cell("=1+1"), "'=1+1");
+  EXPECT_EQ(csv_cell("@a \"b\", c"), "\"'@a \"\"b\"\", c\"");
 }
 
 TEST_F(TableTest, AFullDiskEndsItAfterAWholeRow) {

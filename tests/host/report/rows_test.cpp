@@ -53,6 +53,19 @@ TEST(ErrorRows, AreReadAsTheyWereWritten) {
   EXPECT_TRUE(back.is_default());
 }
 
+TEST(ErrorRows, NoTextIsAFormula) {
+  ErrorRow row = some_row();
+  row.quantity = "@SUM(1)";
+  row.refused = "-1+1 is no spacing";
+  const std::string line = csv_line(row);
+  EXPECT_NE(line.find(",'@SUM(1),"), std::string::npos) << line;
+  EXPECT_NE(line.find(",'-1+1 is no spacing"), std::string::npos) << line;
+  const auto read = read_errors(file_with(std::string(kErrorHeader) + '\n' + line + '\n'));
+  ASSERT_TRUE(read) << read.error().text();
+  EXPECT_EQ(read.value()[0].quantity, row.quantity);
+  EXPECT_EQ(read.value()[0].refused, row.refused);
+}
+
 TEST(ErrorRows, OfOtherFilesAndCutLinesAreRefusedWithTheirLine) {
   EXPECT_FALSE(read_errors("nowhere.csv"));
   EXPECT_FALSE(read_errors(file_with("time,device\n1,2\n")));
