@@ -8,6 +8,7 @@
 #include "net/text/clean.h"
 #include "peer/install/version.h"
 #include "peer/verbs/settings_in_force.h"
+#include "peer/verbs/uncaught.h"
 #include "peer/verbs/verbs.h"
 
 namespace slosh {
@@ -66,13 +67,13 @@ int run(int argc, char** argv) {
 }  // namespace slosh
 
 int main(int argc, char** argv) {
+  slosh::say_uncaught_cleanly();
   // A child (ffmpeg) that dies must be an error to report, not the end of this program; so must a file that
   // may grow no further (ulimit -f).
   for (const int signal_number : {SIGPIPE, SIGXFSZ}) std::signal(signal_number, SIG_IGN);
   try {
     return slosh::run(argc, argv);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "slosh: %s\n", slosh::clean_lines(error.what(), slosh::kMostTextBytes).c_str());
-    return slosh::kExitFailed;
+    return slosh::fail_uncaught(error);
   }
 }
