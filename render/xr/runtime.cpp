@@ -14,7 +14,8 @@ constexpr const char* kInstall =
     "manifest in XR_RUNTIME_JSON";
 
 bool has(const std::vector<XrExtensionProperties>& all, std::string_view name) {
-  return std::ranges::any_of(all, [&](const XrExtensionProperties& e) { return e.extensionName == name; });
+  return std::ranges::any_of(
+      all, [&](const XrExtensionProperties& e) { return text_of(e.extensionName) == name; });
 }
 
 /// What the loader finds wrong is in our own sentence; its log would stand in the run's status line.
@@ -82,7 +83,7 @@ Result<std::unique_ptr<Runtime>> Runtime::find() {
 
   auto properties = typed<XrInstanceProperties>(XR_TYPE_INSTANCE_PROPERTIES);
   if (XR_SUCCEEDED(xrGetInstanceProperties(runtime->instance_, &properties)))
-    runtime->description_ = properties.runtimeName;
+    runtime->description_ = text_of(properties.runtimeName);
   auto wish = typed<XrSystemGetInfo>(XR_TYPE_SYSTEM_GET_INFO);
   wish.formFactor = XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY;
   result = xrGetSystem(runtime->instance_, &wish, &runtime->system_);
@@ -92,7 +93,7 @@ Result<std::unique_ptr<Runtime>> Runtime::find() {
   if (XR_FAILED(result)) return failed("xrGetSystem", result);
   auto system = typed<XrSystemProperties>(XR_TYPE_SYSTEM_PROPERTIES);
   if (XR_SUCCEEDED(xrGetSystemProperties(runtime->instance_, runtime->system_, &system)))
-    runtime->description_ = std::string(system.systemName) + ", " + runtime->description_;
+    runtime->description_ = text_of(system.systemName) + ", " + runtime->description_;
   if (times) {
     runtime->to_time_ =
         function_of<PFN_xrConvertTimespecTimeToTimeKHR>(runtime->instance_, "xrConvertTimespecTimeToTimeKHR");

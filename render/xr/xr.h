@@ -13,6 +13,7 @@
 #include <cstring>
 #include <string>
 
+#include "net/text/clean.h"
 #include "sim/math/pose.h"
 #include "sim/math/result.h"
 
@@ -50,6 +51,12 @@ template <std::size_t N>
 void put(char (&array)[N], const std::string& text) {
   std::strncpy(array, text.c_str(), N - 1);
   array[N - 1] = '\0';
+}
+
+/// What a runtime wrote into one of OpenXR's arrays, fit to be shown, whether or not it ended it.
+template <std::size_t N>
+std::string text_of(const char (&array)[N]) {
+  return clean_text({array, strnlen(array, N)}, N);
 }
 
 /// A function of an extension; null where the runtime has none by that name.

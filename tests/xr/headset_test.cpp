@@ -116,6 +116,20 @@ TEST_F(HeadsetTest, SaysWhatIsMissing) {
   EXPECT_NE(refusal_.find("takes pictures of a window alone"), std::string::npos) << refusal_;
 }
 
+TEST_F(HeadsetTest, ARuntimesNameIsTextAndEnds) {
+  const std::string hostile = "\x1b]0;owned\x07\u009b2J\u202e\xff=cmd";
+  begin("runtime " + hostile + "\n");
+  ASSERT_TRUE(headset_) << refusal_;
+  EXPECT_EQ(headset_->description(), "Test headset, ?]0;owned??2J?=cmd");
+  headset_.reset();
+  begin("runtime " + std::string(500, 'n') + "\n");
+  ASSERT_TRUE(headset_) << refusal_;
+  EXPECT_EQ(headset_->description(), "Test headset, " + std::string(128, 'n'));
+  headset_.reset();
+  begin("headset 0\nruntime " + hostile + "\n");
+  EXPECT_NE(refusal_.find("the runtime (?]0;owned??2J?=cmd) has no headset"), std::string::npos) << refusal_;
+}
+
 /// The mean place of what is much more red than green, in pixels; x < 0: nothing.
 glm::dvec2 red_middle(const RuntimeFolder::Picture& picture) {
   glm::dvec2 sum(0.0);

@@ -1,5 +1,6 @@
 #include "tests/xr/runtime/runtime.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstring>
 #include <iterator>
@@ -101,7 +102,10 @@ XrResult destroy_instance(XrInstance) {
 }
 
 XrResult instance_properties(XrInstance, XrInstanceProperties* properties) {
-  std::strncpy(properties->runtimeName, the().script.name.c_str(), XR_MAX_RUNTIME_NAME_SIZE - 1);
+  // A name that fills the room has no end: what a program may not count on.
+  const std::string& name = the().script.name;
+  std::memcpy(properties->runtimeName, name.c_str(),
+              std::min<std::size_t>(name.size() + 1, XR_MAX_RUNTIME_NAME_SIZE));
   properties->runtimeVersion = XR_MAKE_VERSION(1, 0, 0);
   return XR_SUCCESS;
 }
