@@ -2,10 +2,12 @@
 
 #include <OpenColorIO/OpenColorIO.h>
 
+#include <cstdio>
 #include <exception>
 #include <optional>
 #include <string>
 
+#include "net/text/clean.h"
 #include "render/shader_math.h"
 
 namespace slosh {
@@ -76,6 +78,18 @@ ocio::ConstConfigRcPtr make_config() {
   return config;
 }
 
+/// What the library warns of by itself holds words of the file: an unknown key, say.
+void say_warnings_cleanly() {
+  ocio::SetLoggingFunction(
+      [](const char* message) { std::fputs(clean_lines(message, kMostTextBytes).c_str(), stderr); });
+}
+
+/// What a configuration or the library says, fit to be shown.
+Error refused(const std::string& where, const std::string& what, const char* mend) {
+  constexpr std::size_t kMost = 4000;
+  return {clean_text(where, kMost), clean_text(what, kMost), mend};
+}
+
 constexpr const char* kMend =
     "Give --ocio, --display and --view what `ociocheck` lists, or none of them for the built-in transform";
 
@@ -97,10 +111,11 @@ std::string interchange_of(const ocio::ConstConfigRcPtr& config) {
 }
 
 Result<ocio::ConstConfigRcPtr> read_config(const ColorConfig& color) {
+  say_warnings_cleanly();
   try {
     return ocio::Config::CreateFromFile(color.file.c_str());
   } catch (const std::exception& failure) {
-    return Error{"colour configuration '" + color.file + "'", failure.what(), kMend};
+    return refused("colour configuration '" + color.file + "'", failure.what(), kMend);
   }
 }
 
@@ -117,7 +132,7 @@ std::optional<Error> put_through(const ColorConfig& color, std::vector<glm::vec3
     transform->setView(color.view.c_str());
     config.value()->getProcessor(transform)->getDefaultCPUProcessor()->apply(pixels);
   } catch (const std::exception& failure) {
-    return Error{"colour configuration '" + color.file + "'", failure.what(), kMend};
+    return refused("colour configuration '" + color.file + "'", failure.what(), kMend);
   }
   return std::nullopt;
 }
@@ -133,28 +148,28 @@ Result<ColorConfig> find_display_view(const ColorConfig& asked) {
   try {
     if (found.display.empty()) found.display = config->getDefaultDisplay();
     if (config->getNumViews(found.display.c_str()) == 0) {
-      return Error{where,
-                   "has no display '" + found.display + "'; it has " +
-                       list_of(config->getNumDisplays(), [&](int i) { return config->getDisplay(i); }),
-                   kMend};
+      return refused(where,
+                     "has no display '" + found.display + "'; it has " +
+                         list_of(config->getNumDisplays(), [&](int i) { return config->getDisplay(i); }),
+                     kMend);
     }
     if (found.view.empty()) found.view = config->getDefaultView(found.display.c_str());
     const int views = config->getNumViews(found.display.c_str());
     bool has = false;
     for (int i = 0; i < views; ++i) has = has || found.view == config->getView(found.display.c_str(), i);
     if (!has) {
-      return Error{where,
-                   "has no view '" + found.view + "' for the display '" + found.display + "'; it has " +
-                       list_of(views, [&](int i) { return config->getView(found.display.c_str(), i); }),
-                   kMend};
+      return refused(where,
+                     "has no view '" + found.view + "' for the display '" + found.display + "'; it has " +
+                         list_of(views, [&](int i) { return config->getView(found.display.c_str(), i); }),
+                     kMend);
     }
     if (interchange_of(config).empty()) {
-      return Error{where,
-                   "says nowhere which of its colour spaces is ACES2065-1, by which light is handed over",
-                   "Add the role aces_interchange to it, as OpenColorIO 2 has it"};
+      return refused(where,
+                     "says nowhere which of its colour spaces is ACES2065-1, by which light is handed over",
+                     "Add the role aces_interchange to it, as OpenColorIO 2 has it");
     }
   } catch (const std::exception& failure) {
-    return Error{where, failure.what(), kMend};
+    return refused(where, failure.what(), kMend);
   }
   std::vector<glm::vec3> one{glm::vec3(0.18f)};  // its look-up tables are files too
   if (const auto failed = put_through(found, one)) return *failed;

@@ -2,6 +2,7 @@
 // nowhere else and tells a terminal nothing.
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -160,6 +161,79 @@ TEST(ForeignNames, FiguresAndFramesHoldThemAsText) {
   EXPECT_EQ(test::read_text(test::test_folder() / "pdf/wrenches.pdf").rfind("%PDF-", 0), 0u);
   const std::string ply = test::read_text(test::test_folder() / "svg/frames/particles_00000.ply");
   EXPECT_EQ(ply.find("\nend_header\n"), ply.rfind("\nend_header\n")) << "one line of a name stays one";
+}
+
+TEST(ForeignNames, AreNoFormulasInTables) {
+  fs::remove_all(test::test_folder());
+  fs::create_directories(test::test_folder());
+  const std::string formula = "=cmd|' /C touch obeyed'!A0", other = "@SUM(1,1);=1+1";
+  make::SceneWriter writer({{"title", "=1+1"}, {"spacing_m", 0.02}});
+  const int paint = writer.add_material("paint", {});
+  writer.add_node(formula, writer.add_mesh("tank", make::tank({0.16, 0.12, 0.12}, 0.03), paint), {},
+                  {{"slosh", "body"}, {"measured", true}});
+  writer.add_node("+water",
+                  writer.add_mesh("water", make::box({-0.08, 0.03, -0.06}, {0.08, 0.09, 0.06}), paint), {},
+                  {{"slosh", "fluid"}});
+  writer.add_node(other, -1, {{0.0, 0.05, 0.0}, {1, 0, 0, 0}}, {{"slosh", "gauge"}});
+  writer.add_node("-1+1", writer.add_mesh("right", make::box({0.0, -0.1, -0.2}, {0.3, 0.4, 0.2}), paint), {},
+                  {{"slosh", "region"}});
+  ASSERT_TRUE(writer.write(test::test_folder() / "=1+1.glb"));
+  const Outcome outcome = test::slosh({"play", "=1+1.glb", "--headless", "--no-render", "--unpaced",
+                                       "--threads", "1", "--seconds", "0.05", "--out", "out"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  // As a spreadsheet divides them, by commas or by semicolons.
+  const char* const read =
+      "import csv, sys\n"
+      "for file in sys.argv[1:]:\n"
+      "  for between in ',;':\n"
+      "    for row in csv.reader(open(file, newline=''), delimiter=between):\n"
+      "      for cell in row:\n"
+      "        if cell[:1] in ('=', '+', '@') or cell[:1] == '-' and not cell[1:2].isdigit(): "
+      "print('formula', cell)\n"
+      "table = list(csv.reader(open('out/probes.csv', newline='')))\n"
+      "print(table[0][-3:], {len(row) for row in table})\n"
+      "table = list(csv.DictReader(open('out/bodies.csv', newline='')))\n"
+      "print({row['body'] for row in table})\n";
+  const Outcome tables =
+      test::Process({"/usr/bin/python3", "-c", read, "out/probes.csv", "out/bodies.csv"}, test::test_folder())
+          .wait();
+  ASSERT_EQ(tables.code, 0) << tables.out << tables.err;
+  EXPECT_EQ(tables.out.find("formula"), std::string::npos) << tables.out;
+  EXPECT_NE(
+      tables.out.find("\"'@SUM(1,1);'=1+1_level_m\", \"'@SUM(1,1);'=1+1_pressure_pa\", \"'-1+1_mass_kg\"]"),
+      std::string::npos)
+      << tables.out;
+  EXPECT_NE(tables.out.find("{\"'" + formula + "\"}"), std::string::npos) << tables.out;
+  expect_nothing_obeyed();
+}
+
+TEST(ForeignNames, AColorConfigurationOfAStrangerIsShownAsText) {
+  fs::remove_all(test::test_folder());
+  fs::create_directories(test::test_folder());
+  std::ofstream(test::test_folder() / "studio.ocio")
+      << "ocio_profile_version: 2\nroles:\n  aces_interchange: aces\n  default: aces\ndisplays:\n"
+         "  \"P\\e[2J\\x9b31m`touch obeyed`\":\n    - !<View> {name: \"V\\e]0;t\\x07\", colorspace: aces}\n"
+         "colorspaces:\n  - !<ColorSpace>\n    name: aces\n    \"\\e[2Jkey\": 1\n";
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{}, {"--view", "no\x1b[2Jview"}, {"--display", "no\u009b2Jdisplay"}}) {
+    std::vector<std::string> all{"play",  "probe",       "--headless", "--threads", "1",      "--spacing",
+                                 "0.012", "--seconds",   "0.1",        "--size",    "64x48",  "--fps",
+                                 "5",     "--overwrite", "--out",      "out",       "--ocio", "studio.ocio"};
+    all.insert(all.end(), more.begin(), more.end());
+    const Outcome outcome = test::Process(
+                                [&] {
+                                  all.insert(all.begin(), test::program());
+                                  return all;
+                                }(),
+                                test::test_folder())
+                                .wait();
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    expect_fit_for_a_terminal(outcome.out);
+    expect_fit_for_a_terminal(outcome.err);
+    if (!more.empty())
+      EXPECT_NE(outcome.err.find("it has 'P?[2J?31m`touch obeyed`"), std::string::npos) << outcome.err;
+  }
+  expect_nothing_obeyed();
 }
 
 TEST(ForeignNames, CheckAndPlanPrintThemClean) {

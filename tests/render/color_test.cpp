@@ -1,9 +1,11 @@
 // A user's OpenColorIO configuration: found by name, refused with a sentence, drawn with.
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
+#include "net/text/clean.h"
 #include "render/color/display_transform.h"
 #include "tests/render/render_test.h"
 
@@ -34,13 +36,14 @@ class File {
  public:
   explicit File(const std::string& text)
       : path_(std::filesystem::temp_directory_path() /
-              ("slosh-color-" + std::to_string(getpid()) + ".ocio")) {
+              ("slosh-color-" + std::to_string(getpid()) + "-" + std::to_string(++count_) + ".ocio")) {
     std::ofstream(path_) << text;
   }
   ~File() { std::filesystem::remove(path_); }
   std::string path() const { return path_.string(); }
 
  private:
+  static inline int count_ = 0;
   std::filesystem::path path_;
 };
 
@@ -71,6 +74,48 @@ TEST(ColorConfigs, WhatIsNotThereIsNamedWithWhatIs) {
   no_role.replace(no_role.find("  aces_interchange: aces\n"), 25, "");
   const File mute(no_role);
   EXPECT_NE(error({mute.path(), "", ""}).find("aces_interchange"), std::string::npos);
+}
+
+// A file from a stranger, in which displays, views and keys are called what would move a terminal.
+TEST(ColorConfigs, NamesOfAStrangersFileAreShownAsText) {
+  const std::string name = R"("\e]0;owned\x07\x9b2J\u202e`touch obeyed`")";
+  const std::string shown = "?]0;owned??2J`touch obeyed`";
+  std::string hostile = kConfig;
+  const auto rename = [&](const std::string& from, const std::string& to) {
+    for (std::size_t at = 0; (at = hostile.find(from, at)) != std::string::npos; at += to.size())
+      hostile.replace(at, from.size(), to);
+  };
+  rename("Projector", name);
+  rename("Half", name);
+  hostile += "    \"\\e[2Junknown\": 1\n";
+  const File file(hostile);
+  const auto error = [](const ColorConfig& asked) {
+    const auto found = find_display_view(asked);
+    return found ? std::string() : found.error().text();
+  };
+  ::testing::internal::CaptureStderr();
+  std::string all;
+  for (const ColorConfig& asked :
+       {ColorConfig{file.path(), "Phone", ""},
+        ColorConfig{file.path(), "\x1b]0;owned\x07\u009b2J`touch obeyed`", "x"},
+        ColorConfig{file.path(), "", "no \x1b[2J view"}, ColorConfig{"/nowhere/\x1b[2J.ocio", "", ""}}) {
+    const std::string said = error(asked);
+    EXPECT_NE(said, "");
+    EXPECT_EQ(text_problem(said), "") << clean_text(said, 4000);
+    all += said;
+  }
+  EXPECT_NE(all.find(shown), std::string::npos) << all;
+  std::string broken = hostile;
+  broken.replace(broken.find("!<View>"), 7, "!<\x1b[2J>");
+  broken += "\x1b[2J: [";
+  const File second(broken);
+  EXPECT_EQ(text_problem(error({second.path(), "", ""})), "");
+  const std::string warned = ::testing::internal::GetCapturedStderr();
+  for (std::size_t at = 0, end = 0; at < warned.size(); at = end + 1) {
+    end = std::min(warned.find('\n', at), warned.size());
+    EXPECT_EQ(text_problem(warned.substr(at, end - at)), "") << "what the library says by itself";
+  }
+  EXPECT_NE(warned.find("unknown"), std::string::npos) << "the library warns: " << warned;
 }
 
 TEST(ColorConfigs, LightGoesThroughTheUsersView) {
