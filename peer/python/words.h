@@ -5,13 +5,20 @@
 #include <string>
 #include <utility>
 
+#include "net/text/clean.h"
 #include "sim/math/result.h"
 
 namespace slosh::python {
 
+/// Whoever catches nothing has it in a terminal: fit for one, as what the program says is.
+inline Error cleaned(const Error& e) {
+  constexpr std::size_t kMost = 4000;
+  return {clean_lines(e.where, kMost), clean_lines(e.what, kMost), clean_lines(e.mend, kMost)};
+}
+
 /// Becomes slosh.Error, with its three parts as attributes.
 struct Raised : std::exception {
-  explicit Raised(Error e) : error(std::move(e)), text(error.text()) {}
+  explicit Raised(const Error& e) : error(cleaned(e)), text(error.text()) {}
   const char* what() const noexcept override { return text.c_str(); }
   Error error;
   std::string text;
