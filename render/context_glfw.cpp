@@ -82,7 +82,7 @@ class GlfwContext final : public Context {
 
   const InputState& poll() override {
     scroll_ = glm::vec2(0.0f);
-    input_.keys_pressed.fill(false);
+    input_.presses.clear();
     glfwPollEvents();
     input_.scroll = scroll_;
     take_mouse();
@@ -131,7 +131,7 @@ class GlfwContext final : public Context {
     }
     if (key == Key::kCount) return;
     input_.keys[index_of(key)] = action == GLFW_PRESS;
-    if (action == GLFW_PRESS) input_.keys_pressed[index_of(key)] = true;
+    if (action == GLFW_PRESS) input_.presses.push_back({key, input_.held(Key::kShift)});
   }
 
   GLFWwindow* window_;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <vector>
 
 namespace slosh {
 
@@ -79,6 +80,12 @@ enum class Key : std::uint8_t {
 
 enum class MouseButton : std::uint8_t { kLeft, kRight, kMiddle, kCount };
 
+/// A key that went down, and what was held then.
+struct KeyPress {
+  Key key = Key::kEscape;
+  bool shift = false;
+};
+
 /// State at the last poll. A headless context always reports the default state.
 struct InputState {
   glm::vec2 mouse{0.0f};  ///< framebuffer pixels from the top left corner
@@ -88,13 +95,12 @@ struct InputState {
   glm::vec2 scroll{0.0f};  ///< wheel notches since the poll before, +y away from the user
   std::array<bool, static_cast<std::size_t>(MouseButton::kCount)> buttons{};  ///< held
   std::array<bool, static_cast<std::size_t>(Key::kCount)> keys{};             ///< held
-  std::array<bool, static_cast<std::size_t>(Key::kCount)>
-      keys_pressed{};               ///< went down since the poll before
+  /// What went down since the poll before, in that order: on a slow picture that may be several, and twice the same.
+  std::vector<KeyPress> presses;
   bool hud_wants_mouse = false;     ///< the pointer is over a HUD panel: leave the camera alone
   bool hud_wants_keyboard = false;  ///< a HUD field is being typed into
 
   bool held(Key key) const { return keys[static_cast<std::size_t>(key)]; }
-  bool pressed(Key key) const { return keys_pressed[static_cast<std::size_t>(key)]; }
   bool held(MouseButton button) const { return buttons[static_cast<std::size_t>(button)]; }
 };
 

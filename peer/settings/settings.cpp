@@ -9,6 +9,7 @@
 
 #include "net/text/clean.h"
 #include "net/text/nearest.h"
+#include "peer/settings/key_bindings.h"
 #include "sim/math/format.h"
 
 namespace slosh {
@@ -29,6 +30,8 @@ const char* in_words(SettingKind kind) {
       return "true or false";
     case SettingKind::kTexts:
       return "a text in quotes, or several in brackets";
+    case SettingKind::kKeys:
+      return "a table of what a key does, each a key in quotes or several in brackets";
   }
   return "";
 }
@@ -44,6 +47,7 @@ std::string with_home(const std::string& path) {
 
 /// A value as the command line would have it; nothing where it is of another kind.
 std::optional<std::vector<std::string>> words_of(const toml::node& node, SettingKind kind) {
+  if (kind == SettingKind::kKeys) return std::nullopt;  // a table: read_keys()
   if (kind == SettingKind::kSwitch) {
     if (const auto* truth = node.as_boolean())
       return std::vector<std::string>{truth->get() ? "true" : "false"};
@@ -67,6 +71,48 @@ std::optional<std::vector<std::string>> words_of(const toml::node& node, Setting
   return words;
 }
 
+/// [keys]: each entry with its own line, and together no key twice.
+void read_keys(const toml::table& table, const SettingKey& key, int line, SettingsFile& file) {
+  std::vector<std::string> choices;
+  std::vector<int> lines;
+  bool wrong = false;
+  for (const auto& [name, node] : table) {
+    const int at = static_cast<int>(node.source().begin.line);
+    std::string choice = std::string(name.str()) + "=";
+    bool texts = node.is_string();
+    if (texts) choice += node.as_string()->get();
+    if (const toml::array* const several = node.as_array()) {
+      texts = true;
+      for (const toml::node& each : *several) {
+        texts = texts && each.is_string();
+        if (texts) choice += (choice.ends_with('=') ? "" : "+") + each.as_string()->get();
+      }
+    }
+    const Result<KeyChoice> parsed =
+        texts ? parse_key_choice(choice)
+              : Result<KeyChoice>(Error{"", "keys." + clean_text(std::string(name.str()), kMostTextBytes) +
+                                                " is a key in quotes, or several in brackets",
+                                        "For example pause = \"Space\""});
+    if (!parsed) {
+      wrong = true;
+      file.errors.push_back(settings_error(file.path, at, parsed.error().what, parsed.error().mend));
+      continue;
+    }
+    choices.push_back(choice);
+    lines.push_back(at);
+  }
+  if (wrong) return;
+  if (const Result<KeyBindings> made = KeyBindings::make(choices); !made) {
+    int at = line;  // of the entry that the error names
+    for (std::size_t i = 0; i < choices.size(); ++i)
+      if (("keys." + choices[i]).starts_with(made.error().where + "=")) at = lines[i];
+    file.errors.push_back(
+        settings_error(file.path, at, made.error().where + ": " + made.error().what, made.error().mend));
+    return;
+  }
+  if (!choices.empty()) file.values.push_back({&key, std::move(choices), line});
+}
+
 void read_entry(const std::string& name, const toml::node& node, SettingsFile& file) {
   const int line = static_cast<int>(node.source().begin.line);
   const SettingKey* found = nullptr;
@@ -84,6 +130,7 @@ void read_entry(const std::string& name, const toml::node& node, SettingsFile& f
                                              : "The nearest is " + near + "; `slosh settings` lists all"));
     return;
   }
+  if (found->kind == SettingKind::kKeys && node.is_table()) return read_keys(*node.as_table(), *found, line, file);
   std::optional<std::vector<std::string>> words = words_of(node, found->kind);
   if (!words) {
     file.errors.push_back(settings_error(file.path, line, shown + " is " + in_words(found->kind),
@@ -148,6 +195,11 @@ const std::vector<SettingKey>& setting_keys() {
        {"play", "join", "watch", "replay"},
        "1.5",
        "letters of the HUD, times their size"},
+      {"keys",
+       Kind::kKeys,
+       {"play", "join", "watch"},
+       "{ pause = \"Space\", end = [\"Escape\", \"Q\"] }",
+       "what keys do in the window"},
       {"plot", Kind::kText, {"play", "join", "watch", "replay"}, "\"pdf\"", "format of the sheet of forces"},
   };
   return keys;

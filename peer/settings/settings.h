@@ -11,7 +11,7 @@
 
 namespace slosh {
 
-enum class SettingKind { kText, kNumber, kSwitch, kPath, kTexts };
+enum class SettingKind { kText, kNumber, kSwitch, kPath, kTexts, kKeys };
 
 /// One key of the file. Its value goes to the option --KEY (with "-" for "_") of `verbs`, and is checked as
 /// that option's is.

@@ -6,6 +6,7 @@
 
 #include "peer/export/export_options.h"
 #include "peer/output/plot.h"
+#include "peer/settings/key_bindings.h"
 
 namespace slosh {
 
@@ -67,8 +68,17 @@ void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window) {
       ->check(in_range(0.5, 4.0))
       ->capture_default_str();
   if (has_window) {
-    verb.add_option("--runs", options.runs,
-                    "Folder in which runs get numbered folders where --out is not given")
+    verb.add_option("--keys", options.keys,
+                    "Keys of the window by your choice, ACTION=KEY, with commas between; ACTION=A+B for two keys,\n"
+                    "ACTION= for none. `slosh settings` lists the actions")
+        ->delimiter(',')
+        ->check(CLI::Validator(
+            [](std::string& word) {
+              const Result<KeyChoice> choice = parse_key_choice(word);
+              return choice ? std::string() : choice.error().what + ". " + choice.error().mend;
+            },
+            "ACTION=KEY"));
+    verb.add_option("--runs", options.runs, "Folder in which runs get numbered folders where --out is not given")
         ->capture_default_str();
   }
   verb.add_option("--plot", options.plot, "Format of the sheet of forces: png, svg or pdf")

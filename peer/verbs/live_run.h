@@ -1,6 +1,7 @@
 // A world that runs while somebody looks on: in this process, or on a host elsewhere.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -63,6 +64,13 @@ class LiveRun {
   virtual void step_standing(int steps) { (void)steps; }
   /// Lines about what was not granted since the last call.
   virtual std::vector<std::string> take_refusals() { return {}; }
+
+  /// Pa, one a particle, as new as they are at hand, where the world is in this process; null else and before there are
+  /// any. `wanted`: they are looked at from now on.
+  virtual std::shared_ptr<const std::vector<float>> pressures(bool wanted) {
+    (void)wanted;
+    return nullptr;
+  }
 
   /// The camera turned (Device::look_from).
   virtual void look_from(const glm::dquat& axes) { (void)axes; }

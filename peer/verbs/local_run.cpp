@@ -93,6 +93,7 @@ Result<std::unique_ptr<LocalRun>> LocalRun::create(const Prepared& prepared, Dev
     run->export_tap_ = std::make_unique<ExportTap>(*run->exporter_);
     run->host_->add_tap(*run->export_tap_);
   }
+  run->host_->add_tap(run->pressure_tap_);
   if (prepared.unpaced) {
     run->lockstep_ = std::make_unique<Lockstep>(*run->servo_, *run->channel_);
     run->host_->add_tap(*run->lockstep_);

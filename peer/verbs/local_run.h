@@ -14,6 +14,7 @@
 #include "peer/verbs/lockstep.h"
 #include "peer/verbs/measure_tap.h"
 #include "peer/verbs/prepare.h"
+#include "peer/verbs/pressure_tap.h"
 #include "peer/verbs/switch_tap.h"
 #include "peer/verbs/wrench_tap.h"
 
@@ -57,6 +58,7 @@ class LocalRun final : public LiveRun {
   void look_from(const glm::dquat& axes) override { servo_->look_from(axes); }
   /// In place, so that the files of the run, its film and its recording go on.
   bool start_again() override;
+  std::shared_ptr<const std::vector<float>> pressures(bool wanted) override { return pressure_tap_.look(wanted); }
   std::string trouble() const override;
   std::size_t exports_waiting() const override { return exporter_ ? exporter_->waiting() : 0; }
   void report(RunSummary& summary) const override;
@@ -76,6 +78,7 @@ class LocalRun final : public LiveRun {
   std::unique_ptr<MeasureTap> measure_tap_;
   std::unique_ptr<Exporter> exporter_;  // null where nothing is exported, as its tap
   std::unique_ptr<ExportTap> export_tap_;
+  PressureTap pressure_tap_;
   std::unique_ptr<Lockstep> lockstep_;  // null where the run is paced
   FluidDemand fluid_demand_;            // of hands that feel
   std::unique_ptr<Host> host_;

@@ -26,6 +26,7 @@ struct ShowOptions {
   std::string display;           ///< of that configuration, by name; empty = its first
   std::string view;              ///< of that display, by name; empty = its first
   std::string environment;       ///< a Radiance picture of a room, or "studio"; empty = the formula's room
+  std::vector<std::string> keys; ///< of the window: "ACTION=KEY" (KeyBindings::make)
   double font_scale = 1.0;       ///< of the HUD's letters
   bool render = true;
   bool vr = false;  ///< a headset is asked for

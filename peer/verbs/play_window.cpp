@@ -5,6 +5,7 @@
 
 #include "net/clock.h"
 #include "peer/haptics/devices/hardware.h"
+#include "peer/output/whole_file.h"
 #include "peer/verbs/find_headset.h"
 #include "peer/verbs/interrupt.h"
 #include "peer/verbs/local_run.h"
@@ -20,12 +21,14 @@ namespace {
 
 enum class Outcome { kEnd, kAgain };
 
-/// Where a picture that somebody wants to keep goes: with the run's files, else here.
-std::filesystem::path free_picture_name(const Stage& stage) {
-  const std::string stem =
-      stage.folder.empty() ? "slosh-" + folder_name(stage.scene.name, "scene") : "picture";
+/// Where a picture or table that somebody wants to keep goes: with the run's files, else here. `what`:
+/// "picture".
+std::filesystem::path free_name(const Stage& stage, const std::string& what, const char* extension) {
+  const std::string stem = stage.folder.empty() ? "slosh-" + folder_name(stage.scene.name, "scene") +
+                                                      (what == "picture" ? "" : "-" + what)
+                                                : what;
   for (int n = 1;; ++n) {
-    std::filesystem::path file = stage.folder / (stem + "-" + std::to_string(n) + ".png");
+    std::filesystem::path file = stage.folder / (stem + "-" + std::to_string(n) + extension);
     std::error_code code;
     if (!std::filesystem::exists(file, code)) return file;
   }
@@ -36,7 +39,7 @@ class WindowRun {
  public:
   /// `headset`: null without one.
   WindowRun(const Stage& stage, LiveRun& run, Context& context, Renderer& renderer, HeadsetView* headset,
-            WindowFilm& film, Progress& progress)
+            WindowFilm& film, KeyBindings keys, Progress& progress)
       : stage_(stage),
         run_(run),
         context_(context),
@@ -45,8 +48,10 @@ class WindowRun {
         film_(film),
         progress_(progress),
         painter_(stage.scene, run.facts(kWindowSnapshotRate), renderer),
-        controls_(stage.scene, run, painter_.camera(),
-                  [&progress](const std::string& text) { progress.note(text); }) {}
+        controls_(stage.scene, run, painter_.camera(), std::move(keys),
+                  [&progress](const std::string& text) { progress.note(text); }) {
+    controls_.filter = renderer.options().bilateral_iterations;
+  }
 
   /// Until somebody wears the headset and their hands are followed; they may take longer than this.
   void wait_for_headset() {
@@ -87,6 +92,10 @@ class WindowRun {
           controls_.follow(input, picture, snapshot ? &snapshot->rigid : nullptr);
       if (wish == WindowControls::Wish::kEnd) return Outcome::kEnd;
       if (wish == WindowControls::Wish::kAgain) return Outcome::kAgain;
+      if (RenderOptions render = renderer_.options(); render.bilateral_iterations != controls_.filter) {
+        render.bilateral_iterations = controls_.filter;
+        if (const Result<bool> set = renderer_.set_options(render); !set) controls_.say(set.error().text());
+      }
       painter_.hud().paused = run_.paused();
       const OrbitCamera& camera = painter_.camera();
       run_.look_from(camera_axes(camera.eye(), camera.target()));
@@ -95,6 +104,7 @@ class WindowRun {
       if (SnapshotPointer newest = run_.newest_snapshot()) {
         snapshot = std::move(newest);
         painter_.record(*snapshot);
+        controls_.record(*snapshot);
       }
       const Rates rates = run_.note_rates();
       progress_.update(std::isfinite(stage_.seconds) ? (rates.time - rates.start) / stage_.seconds : -1.0,
@@ -125,7 +135,8 @@ class WindowRun {
         renderer_.resize(drawn.x, drawn.y);
       }
       const std::int64_t begin_ns = steady_now_ns();
-      painter_.draw(*snapshot, rates, [this] { controls_.draw(); });
+      painter_.draw(*snapshot, rates, [&] { controls_.draw(*snapshot, size); });
+      if (const std::optional<std::string> table = controls_.take_forces()) keep_forces(*table);
       if (wish == WindowControls::Wish::kPicture) keep_picture();
       if (film_.due()) film_.add(renderer_.read_back());
       const double drawing = to_seconds(steady_now_ns() - begin_ns);
@@ -161,8 +172,15 @@ class WindowRun {
   }
 
   void keep_picture() {
-    const Result<std::filesystem::path> written = write_png(free_picture_name(stage_), renderer_.read_back());
+    const Result<std::filesystem::path> written =
+        write_png(free_name(stage_, "picture", ".png"), renderer_.read_back());
     controls_.say(written ? "the picture is in " + written.value().string() : written.error().text());
+  }
+
+  void keep_forces(const std::string& table) {
+    const std::filesystem::path file = free_name(stage_, "forces", ".csv");
+    const Result<bool> written = write_whole(file, table);
+    controls_.say(written ? "the forces are in " + file.string() : written.error().text());
   }
 
   const Stage& stage_;
@@ -182,6 +200,8 @@ class WindowRun {
 
 Result<bool> show_in_window(const Stage& stage, const MakeRun& make_run, const ShowOptions& options,
                             HeadsetView* headset, Progress& progress, RunSummary& summary) {
+  Result<KeyBindings> keys = KeyBindings::make(options.keys);
+  if (!keys) return keys.error();
   Result<std::unique_ptr<Context>> context =
       make_view_context("slosh: " + stage.scene.name, stage.width, stage.height, options, headset);
   if (!context) return context.error();
@@ -210,7 +230,7 @@ Result<bool> show_in_window(const Stage& stage, const MakeRun& make_run, const S
     Result<std::unique_ptr<LiveRun>> made = make_run();
     if (!made) return made.error();
     LiveRun& run = *made.value();
-    WindowRun window(stage, run, *context.value(), *renderer.value(), headset, film, progress);
+    WindowRun window(stage, run, *context.value(), *renderer.value(), headset, film, keys.value(), progress);
     window.wait_for_headset();
     run.start();
     outcome = window.show(frame_time, summary.frames);

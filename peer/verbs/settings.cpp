@@ -8,6 +8,7 @@
 
 #include "net/text/clean.h"
 #include "peer/output/whole_file.h"
+#include "peer/settings/key_bindings.h"
 #include "peer/verbs/settings_in_force.h"
 #include "peer/verbs/verbs.h"
 #include "sim/math/format.h"
@@ -87,6 +88,14 @@ int show(const SettingsFile& file) {
     std::printf("%-12s %-26s %-9s %s %s: %s\n", key.key, value.c_str(), from.c_str(), verbs_of(key).c_str(),
                 option_of(key).c_str(), key.text);
   }
+  KeyBindings keys;
+  for (const Setting& setting : file.values) {
+    if (setting.key->kind != SettingKind::kKeys || !file.errors.empty()) continue;
+    if (const Result<KeyBindings> made = KeyBindings::make(setting.words)) keys = made.value();
+  }
+  std::printf("\n%-12s %-26s %s\n", "[keys]", "now", "what it does in the window");
+  for (const WindowActionWords& each : window_actions())
+    std::printf("%-12s %-26s %s\n", each.name, keys.shown(each.action).c_str(), each.text);
   std::printf("\nThe command line wins over the file. sweep, report and bench take none of this.\n");
   std::fflush(stdout);
   for (const Error& error : file.errors) fail(error);

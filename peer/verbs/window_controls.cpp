@@ -25,13 +25,16 @@ std::vector<std::string> names_of_fluids(const Scene& scene) {
 
 }  // namespace
 
-WindowControls::WindowControls(const Scene& scene, LiveRun& run, OrbitCamera& camera,
+WindowControls::WindowControls(const Scene& scene, LiveRun& run, OrbitCamera& camera, KeyBindings keys,
                                std::function<void(const std::string&)> tell)
     : scene_(scene),
       run_(run),
       camera_(camera),
       tell_(std::move(tell)),
       grab_(scene),
+      keys_(keys),
+      guide_(std::move(keys)),
+      forces_(scene),
       panel_(names_of_fluids(scene)),
       lent_(scene.grips.size(), nullptr),
       hands_(scene.grips.size()) {}
@@ -45,7 +48,12 @@ WindowControls::Wish WindowControls::follow(const InputState& input, const glm::
                                             const BodySnapshot* world) {
   for (std::size_t i = 0; i < lent_.size(); ++i) lent_[i] = run_.lent_hand(i);
   for (const std::string& line : run_.take_refusals()) say(line);
-  for (const LiveWish& wish : panel_.take_wishes()) run_.change(wish);
+  for (const LiveWish& wish : panel_.take_wishes()) {
+    if (wish.kind == LiveWish::Kind::kFilter)
+      filter = static_cast<int>(std::lround(wish.value));
+    else
+      run_.change(wish);
+  }
   const Wish wish = input.hud_wants_keyboard ? Wish::kNothing : follow_keys(input);
   if (wish == Wish::kEnd || wish == Wish::kAgain) return wish;
   if (world != nullptr) follow_mouse(input, picture, *world);
@@ -53,36 +61,97 @@ WindowControls::Wish WindowControls::follow(const InputState& input, const glm::
   return wish;
 }
 
+/// Keys in the order in which they were pressed: a step and "go on" within one slow picture are not "go on"
+/// and a step.
 WindowControls::Wish WindowControls::follow_keys(const InputState& input) {
-  if (input.pressed(Key::kEscape) || input.pressed(Key::kQ)) return Wish::kEnd;
-  if (input.pressed(Key::kR)) {
-    reset_hands();
-    if (!run_.start_again()) return Wish::kAgain;
+  Wish wish = Wish::kNothing;
+  for (const KeyPress& press : input.presses) {
+    const std::optional<WindowAction> action = keys_.action_of(press.key);
+    if (!action) continue;
+    const Wish one = follow_key(*action, press.shift);
+    if (one == Wish::kEnd || one == Wish::kAgain) return one;
+    if (one != Wish::kNothing) wish = one;
   }
-  if (input.pressed(Key::kH)) {
-    guide_.show_all = !guide_.show_all;
-    guide_.note(WindowGuide::Used::kKeys);
-  }
-  if (input.pressed(Key::kC)) camera_.reset();
-  if (input.pressed(Key::kSpace)) run_.pause(!run_.paused());
-  if (input.pressed(Key::kG)) run_.change_grip();
-  if (input.pressed(Key::kTab)) panel_.shown = !panel_.shown;
-  if (input.pressed(Key::kB)) {
-    reset_hands();
-    guide_.note(WindowGuide::Used::kGiveBack);
-  }
-  follow_pace(input, run_.live_values());
-  return input.pressed(Key::kP) ? Wish::kPicture : Wish::kNothing;
+  return wish;
 }
 
-void WindowControls::follow_pace(const InputState& input, const LiveValues& values) {
-  if (!values.may_pace) return;
-  if (input.pressed(Key::kN)) {
-    if (!run_.paused()) run_.pause(true);
-    run_.step_standing(input.held(Key::kShift) ? kManySteps : 1);
+WindowControls::Wish WindowControls::follow_key(WindowAction action, bool shift) {
+  switch (action) {
+    case WindowAction::kEnd:
+      return Wish::kEnd;
+    case WindowAction::kAgain:
+      reset_hands();
+      return run_.start_again() ? Wish::kNothing : Wish::kAgain;
+    case WindowAction::kHelp:
+      guide_.show_all = !guide_.show_all;
+      guide_.note(WindowGuide::Used::kKeys);
+      break;
+    case WindowAction::kCameraBack:
+      camera_.reset();
+      break;
+    case WindowAction::kPause:
+      run_.pause(!run_.paused());
+      break;
+    case WindowAction::kGrip:
+      run_.change_grip();
+      break;
+    case WindowAction::kSliders:
+      panel_.shown = !panel_.shown;
+      break;
+    case WindowAction::kGiveBack:
+      reset_hands();
+      guide_.note(WindowGuide::Used::kGiveBack);
+      break;
+    case WindowAction::kStep:
+    case WindowAction::kSlower:
+    case WindowAction::kFaster:
+      follow_pace(action, shift);
+      break;
+    case WindowAction::kPicture:
+      return Wish::kPicture;
+    case WindowAction::kParticles:
+      guide_.say(std::string("shown: ") + measures_.next_particles(), wall_seconds());
+      break;
+    case WindowAction::kAxes:
+      measures_.axes = !measures_.axes;
+      break;
+    case WindowAction::kForces:
+      forces_.shown = !forces_.shown;
+      break;
+    case WindowAction::kView1:
+    case WindowAction::kView2:
+    case WindowAction::kView3:
+    case WindowAction::kView4:
+      follow_view(static_cast<std::size_t>(action) - static_cast<std::size_t>(WindowAction::kView1), shift);
+      break;
+    case WindowAction::kCount:
+      break;
   }
-  const bool slower = input.pressed(Key::kDown);
-  if (!slower && !input.pressed(Key::kUp)) return;
+  return Wish::kNothing;
+}
+
+void WindowControls::follow_view(std::size_t number, bool keep) {
+  const std::string key =
+      keys_.shown(static_cast<WindowAction>(static_cast<std::size_t>(WindowAction::kView1) + number));
+  if (keep) {
+    views_[number] = camera_.look();
+    guide_.say("kept: " + key + " brings this view back", wall_seconds());
+  } else if (views_[number]) {
+    camera_.look(*views_[number]);
+  } else {
+    guide_.say("no view is kept there yet: Shift + " + key + " keeps this one", wall_seconds());
+  }
+}
+
+void WindowControls::follow_pace(WindowAction action, bool shift) {
+  const LiveValues values = run_.live_values();
+  if (!values.may_pace) return;
+  if (action == WindowAction::kStep) {
+    if (!run_.paused()) run_.pause(true);
+    run_.step_standing(shift ? kManySteps : 1);
+    return;
+  }
+  const bool slower = action == WindowAction::kSlower;
   // From the nearest of them: a slider may have set any.
   const auto nearest = std::min_element(kPaces.begin(), kPaces.end(), [&](double a, double b) {
     return std::abs(a - values.pace) < std::abs(b - values.pace);
@@ -138,6 +207,7 @@ void WindowControls::learn(const glm::ivec2& picture) {
   facts_.may_pace = values.may_pace;
   facts_.pace = values.pace;
   facts_.paused = run_.paused();
+  facts_.hands = scene_.grips.size();
   facts_.holding = grab_.held().has_value();
   facts_.taken = grab_.any_taken();
   facts_.over.clear();
@@ -155,9 +225,19 @@ void WindowControls::reset_hands() {
   grab_.give_back(lent_);
 }
 
-void WindowControls::draw() {
+void WindowControls::record(const Snapshot& snapshot) {
+  measures_.record(snapshot);
+  forces_.record(snapshot.rigid);
+}
+
+void WindowControls::draw(const Snapshot& snapshot, const glm::ivec2& picture) {
+  const auto pressures = run_.pressures(measures_.particles == ParticleView::kPressure);
+  measures_.draw(snapshot, pressures.get(), camera_, picture);
   guide_.draw(facts_, wall_seconds());
-  panel_.draw(run_.live_values(), wall_seconds());
+  LiveValues values = run_.live_values();
+  values.filter = filter;
+  panel_.draw(values, wall_seconds());
+  forces_.draw();
 }
 
 }  // namespace slosh

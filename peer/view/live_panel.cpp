@@ -13,6 +13,7 @@ constexpr double kSendEvery = 0.1;        // s, while a slider is dragged
 constexpr float kLeastViscosity = 1e-3f;  // Pa·s: water's
 constexpr float kMostViscosity = 100.0f;  // above it the host may say by itself what it cannot do
 constexpr float kSlowest = 0.05f;
+constexpr float kMostFilter = 16.0f;
 
 }  // namespace
 
@@ -38,7 +39,7 @@ void LivePanel::slider(std::size_t id, const char* label, const char* pattern, f
 }
 
 void LivePanel::draw(const LiveValues& now, double wall_seconds) {
-  if (!shown || (!now.may_change && !now.may_pace)) return;
+  if (!shown) return;
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos(ImVec2(size.x - kMargin, kMargin), ImGuiCond_Always, ImVec2(1.0f, 0.0f));
   ImGui::SetNextWindowBgAlpha(0.7f);
@@ -50,12 +51,14 @@ void LivePanel::draw(const LiveValues& now, double wall_seconds) {
       slider(0, "pace", "\xC3\x97 %.2f", kSlowest, 1.0f, true, now.pace, wall_seconds,
              {LiveWish::Kind::kPace, 0, 0.0});
     }
+    slider(1, "surface filter", "%.0f turns", 0.0f, kMostFilter, false, now.filter, wall_seconds,
+           {LiveWish::Kind::kFilter, 0, 0.0});
     if (now.may_change) {
-      slider(1, "gravity", "\xC3\x97 %.2f", 0.0f, 2.0f, false, now.gravity_scale, wall_seconds,
+      slider(2, "gravity", "\xC3\x97 %.2f", 0.0f, 2.0f, false, now.gravity_scale, wall_seconds,
              {LiveWish::Kind::kGravityScale, 0, 0.0});
       for (std::size_t i = 0; i < now.viscosities.size() && i < fluid_names_.size(); ++i) {
         const std::string label = "viscosity of " + fluid_names_[i];
-        slider(2 + i, label.c_str(), "%.4g Pa\xC2\xB7s", kLeastViscosity, kMostViscosity, true,
+        slider(3 + i, label.c_str(), "%.4g Pa\xC2\xB7s", kLeastViscosity, kMostViscosity, true,
                now.viscosities[i], wall_seconds, {LiveWish::Kind::kViscosity, i, 0.0});
       }
     }

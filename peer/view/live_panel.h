@@ -15,11 +15,12 @@ struct LiveValues {
   std::vector<double> viscosities;  ///< Pa·s, one a fluid
   bool may_pace = false;            ///< the world is this person's own: slow motion, single steps
   double pace = 1.0;                ///< simulated s a wall s at most
+  int filter = 0;  ///< turns of the surface's filter, 0–64: 0 shows the balls that particles are
 };
 
 /// One value that somebody wants.
 struct LiveWish {
-  enum class Kind : std::uint8_t { kPace, kGravityScale, kViscosity } kind = Kind::kPace;
+  enum class Kind : std::uint8_t { kPace, kGravityScale, kViscosity, kFilter } kind = Kind::kPace;
   std::size_t fluid = 0;
   double value = 0.0;
 };

@@ -21,6 +21,19 @@ class OrbitCamera {
   void follow(const InputState& input, int picture_height);
   void reset();
 
+  /// Where it is, to come back to.
+  struct Look {
+    glm::dvec3 target{0.0};
+    double distance = 1.0, azimuth = 0.0, elevation = 0.0;
+  };
+  Look look() const { return {target_, distance_, azimuth_, elevation_}; }
+  void look(const Look& at) {
+    target_ = at.target;
+    distance_ = at.distance;
+    azimuth_ = at.azimuth;
+    elevation_ = at.elevation;
+  }
+
   View view(double aspect) const;
   glm::dvec3 eye() const;
   glm::dvec3 target() const { return target_; }

@@ -3,6 +3,7 @@
 #include <imgui.h>
 
 #include <cstdio>
+#include <initializer_list>
 
 namespace slosh {
 namespace {
@@ -15,73 +16,93 @@ constexpr ImGuiWindowFlags kPanel = ImGuiWindowFlags_NoDecoration | ImGuiWindowF
                                     ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoInputs |
                                     ImGuiWindowFlags_AlwaysAutoResize;
 
-void panel(const char* name, const std::string& text, ImVec2 at, ImVec2 pivot) {
+void panel(const char* name, const std::string& text, ImVec2 at, ImVec2 pivot, float opacity = 0.7f) {
   ImGui::SetNextWindowPos(at, ImGuiCond_Always, pivot);
-  ImGui::SetNextWindowBgAlpha(0.7f);
+  ImGui::SetNextWindowBgAlpha(opacity);
   if (ImGui::Begin(name, nullptr, kPanel)) ImGui::TextUnformatted(text.c_str());
   ImGui::End();
 }
 
 }  // namespace
 
-std::string WindowGuide::all_keys(const GuideFacts& facts) {
+std::string WindowGuide::all_keys(const GuideFacts& facts, const KeyBindings& keys) {
+  using Action = WindowAction;
   std::string text;
+  const auto row = [&text](const std::string& what, const std::string& does) {
+    text += what + std::string(what.size() < 19 ? 19 - what.size() : 1, ' ') + does + "\n";
+  };
+  // What a key does stands with its name in the settings (key_bindings.cpp); several in one row.
+  const auto bound = [&](std::initializer_list<Action> actions, const char* does = nullptr) {
+    std::string names;
+    for (const Action action : actions) {
+      if (keys.keys_of(action).empty()) continue;
+      names += (names.empty() ? "" : ", ") + keys.shown(action);
+    }
+    if (!names.empty())
+      row(names, does ? does : window_actions()[static_cast<std::size_t>(*actions.begin())].text);
+  };
   if (facts.can_grab) {
-    text +=
-        "drag a handle      move it; the other hands of that thing give way\n"
-        "drag the thing     move it with all its hands\n"
-        "  wheel            tilt it: pour to the side\n"
-        "  Ctrl + drag      tilt it any way\n"
-        "  Shift + drag     over the table instead of up and down\n"
-        "  Shift + wheel    away and nearer\n"
-        "B                  give the hands back to the script\n\n";
+    row("drag a handle", "move it; the other hands of that thing give way");
+    row("drag the thing", "move it with all its hands");
+    row("  wheel", "tilt it: pour to the side");
+    row("  Ctrl + drag", "tilt it any way");
+    row("  Shift + drag", "over the table instead of up and down");
+    row("  Shift + wheel", "away and nearer");
+    bound({Action::kGiveBack});
+    text += "\n";
   }
   if (facts.mouse_is_hand) {
-    text +=
-        "move               the handle in the picture's plane\n"
-        "wheel              the handle nearer and farther\n"
-        "right drag         turn the handle\n"
-        "left drag          turn the camera\n";
+    row("move", "the handle in the picture's plane");
+    row("wheel", "the handle nearer and farther");
+    row("right drag", "turn the handle");
+    row("left drag", "turn the camera");
   } else {
-    text += facts.can_grab ? "drag elsewhere     turn the camera\n" : "left drag          turn the camera\n";
-    text +=
-        "right drag         shift the camera\n"
-        "wheel              nearer and farther\n";
+    row(facts.can_grab ? "drag elsewhere" : "left drag", "turn the camera");
+    row("right drag", "shift the camera");
+    row("wheel", "nearer and farther");
   }
-  text += "C                  the camera back to where it was\n\n";
-  if (facts.shared) text += "G                  take a free grip, let go\n";
-  if (facts.may_change) text += "Space              pause, go on\n";
+  bound({Action::kCameraBack});
+  bound({Action::kView1, Action::kView2, Action::kView3, Action::kView4},
+        "the camera as kept there; with Shift keep it");
+  text += "\n";
+  bound({Action::kParticles});
+  bound({Action::kAxes});
+  if (facts.hands > 0) bound({Action::kForces});
+  text += "\n";
+  if (facts.shared) bound({Action::kGrip});
+  if (facts.may_change) bound({Action::kPause});
   if (facts.may_pace) {
-    text +=
-        "N, Shift + N       one step, ten steps (the world then stands)\n"
-        "Down, Up           slower, faster\n";
+    bound({Action::kStep});
+    bound({Action::kSlower, Action::kFaster}, "slower, faster");
   }
   if (facts.may_change) {
-    text +=
-        "R                  start again\n"
-        "Tab                sliders: viscosity, gravity, pace\n";
+    bound({Action::kAgain});
+    bound({Action::kSliders});
   }
-  text +=
-      "P                  keep the picture as a file\n"
-      "H                  these keys\n"
-      "Esc, Q             end";
+  bound({Action::kPicture});
+  bound({Action::kHelp}, "these keys");
+  bound({Action::kEnd});
+  while (text.ends_with('\n')) text.pop_back();
   return text;
 }
 
 std::string WindowGuide::hint(const GuideFacts& facts) const {
   const auto done = [this](Used used) { return used_[static_cast<std::size_t>(used)]; };
-  const std::string help = done(Used::kKeys) ? "" : "\nH: all keys";
+  const std::string all =
+      keys_.keys_of(WindowAction::kHelp).empty() ? "" : keys_.shown(WindowAction::kHelp) + ": all keys";
+  const std::string help = done(Used::kKeys) || all.empty() ? "" : "\n" + all;
   if (facts.holding) {
     if (done(Used::kTilt)) return {};
     return "wheel: tilt and pour\nCtrl:  tilt any way\nShift: over the table";
   }
-  if (facts.taken && !done(Used::kGiveBack)) return "B: the script takes the hands again" + help;
+  if (facts.taken && !done(Used::kGiveBack))
+    return keys_.shown(WindowAction::kGiveBack) + ": the script takes the hands again" + help;
   if (facts.can_grab && !done(Used::kGrab)) {
     const std::string what =
         facts.over.empty() ? "Drag the thing or one of its handles: it is yours" : facts.over;
     return what + help;
   }
-  return done(Used::kKeys) ? std::string() : "H: all keys";
+  return done(Used::kKeys) ? std::string() : all;
 }
 
 void WindowGuide::say(std::string text, double wall_seconds) {
@@ -98,7 +119,8 @@ void WindowGuide::draw(const GuideFacts& facts, double wall_seconds) const {
     const ImU32 color = facts.holding ? IM_COL32(255, 220, 120, 255) : IM_COL32(255, 255, 255, 190);
     ImGui::GetBackgroundDrawList()->AddCircle(at, kRing, color, 0, facts.holding ? 3.0f : 2.0f);
   }
-  if (show_all) panel("keys", all_keys(facts), ImVec2(0.5f * size.x, 0.5f * size.y), ImVec2(0.5f, 0.5f));
+  if (show_all)
+    panel("keys", all_keys(facts, keys_), ImVec2(0.5f * size.x, 0.5f * size.y), ImVec2(0.5f, 0.5f), 0.92f);
   std::string line = hint(facts);
   if (facts.may_pace && facts.pace < 0.999) {
     char text[48];

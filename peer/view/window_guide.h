@@ -2,10 +2,13 @@
 // notices.
 #pragma once
 
+#include <cstddef>
 #include <glm/glm.hpp>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "peer/settings/key_bindings.h"
 
 namespace slosh {
 
@@ -17,6 +20,7 @@ struct GuideFacts {
   bool may_change = false;     ///< pausing, starting again, viscosity and gravity
   bool may_pace = false;       ///< slow motion and single steps
   bool paused = false;
+  std::size_t hands = 0;  ///< that anything is felt of
   double pace = 1.0;
   bool holding = false;           ///< a thing is held with the mouse right now
   bool taken = false;             ///< hands were taken and not given back
@@ -27,6 +31,8 @@ struct GuideFacts {
 /// On the drawing thread; draw() inside Frame::hud.
 class WindowGuide {
  public:
+  explicit WindowGuide(KeyBindings keys = {}) : keys_(std::move(keys)) {}
+
   bool show_all = false;
 
   /// What was done once needs no hint any more.
@@ -39,9 +45,10 @@ class WindowGuide {
   /// The line at the bottom: what matters now and was not done yet; empty when there is nothing to say.
   std::string hint(const GuideFacts& facts) const;
   /// Every key that does something here, a line each.
-  static std::string all_keys(const GuideFacts& facts);
+  static std::string all_keys(const GuideFacts& facts, const KeyBindings& keys = {});
 
  private:
+  KeyBindings keys_;
   bool used_[4] = {};
   std::string said_;
   double until_ = 0.0;  // wall s

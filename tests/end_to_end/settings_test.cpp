@@ -49,6 +49,16 @@ TEST_F(SettingsTest, AreDefaultsAndTheCommandLineWins) {
   EXPECT_TRUE(fs::exists(at("films/probe-2/wrenches.png")));
 }
 
+TEST_F(SettingsTest, AKeyThatWouldDoTwoThingsIsRefusedBeforeAnythingIsBegun) {
+  write("[keys]\npause = \"P\"\n");
+  Outcome outcome = slosh({"play", "probe", "--headless"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("settings.toml:2: keys.pause: P does 'picture' already"), std::string::npos) << outcome.err;
+  write("[keys]\npause = \"K\"\n");
+  outcome = slosh({"settings"});
+  EXPECT_NE(outcome.out.find("pause        K  "), std::string::npos) << outcome.out;
+}
+
 TEST_F(SettingsTest, AreShownWithTheirLinesAndInHelp) {
   write("\n\nname = \"Ana\"\ndevice = [\"script\", \"mouse\"]\n");
   Outcome outcome = slosh({"settings"});

@@ -2,8 +2,10 @@
 // below them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <functional>
 #include <memory>
@@ -166,6 +168,42 @@ TEST_F(WindowTest, KeysPauseStepAndSlowTheWorld) {
   display->act({"key", "p"});
   EXPECT_TRUE(comes([&] { return std::filesystem::exists(out / "picture-1.png"); }));
   display->act({"key", "Escape"});
+  EXPECT_EQ(slosh.wait().code, 0);
+}
+
+/// Keys of the settings file, particles by speed, axes and the plot of forces; the pictures are there to be looked at.
+TEST_F(WindowTest, KeysOfTheSettingsShowWhatIsMeasured) {
+  std::ofstream(test::test_folder() / "settings.toml")
+      << "[keys]\npause = \"K\"\nparticles = \"M\"\nend = \"F10\"\n";
+  std::vector<std::string> words = display->on({"SLOSH_SETTINGS=settings.toml", test::program(), "play", "bucket",
+                                                "--spacing", "0.012", "--size", "640x480", "--out", "out"});
+  Process slosh(words, test::test_folder());
+  ASSERT_TRUE(comes([&] { return !slosh.running() || rows() > 50; }));
+  ASSERT_TRUE(slosh.running()) << read_text(test::test_folder() / "stderr.txt");
+  display->act({"mousemove", "320", "60"});
+  const auto picture = [&](const std::string& name) {
+    display->act({"key", "p"});
+    EXPECT_TRUE(comes([&] { return static_cast<bool>(read_png(out / name)); })) << name;
+    const Result<Image> read = read_png(out / name);
+    return read ? read.value() : Image{};
+  };
+  const Image plain = picture("picture-1.png");
+  for (const char* key : {"m", "x", "f"}) display->act({"key", key});
+  const Image measured = picture("picture-2.png");
+  ASSERT_EQ(plain.rgba.size(), measured.rgba.size());
+  std::size_t differ = 0;
+  for (std::size_t i = 0; i < plain.rgba.size(); i += 4) {
+    int by = 0;
+    for (std::size_t c = 0; c < 3; ++c) by = std::max(by, std::abs(plain.rgba[i + c] - measured.rgba[i + c]));
+    differ += by > 40;
+  }
+  EXPECT_GT(differ, plain.rgba.size() / 4 / 20) << "of " << plain.rgba.size() / 4 << " pixels";
+  display->act({"key", "q"});
+  display->act({"key", "Escape"});
+  display->act({"key", "h"});
+  picture("picture-3.png");
+  EXPECT_TRUE(slosh.running()) << "neither ends it any more";
+  display->act({"key", "F10"});
   EXPECT_EQ(slosh.wait().code, 0);
 }
 

@@ -5,6 +5,8 @@
 
 #include <cstdlib>
 
+#include "peer/settings/key_bindings.h"
+
 namespace slosh {
 namespace {
 
@@ -51,6 +53,66 @@ TEST(Settings, ThatAreWrongAreAllToldWithLineAndMend) {
   EXPECT_NE(all.find("settings.toml:5: there is no setting 'window'. `slosh settings` lists"),
             std::string::npos)
       << all;
+}
+
+TEST(Settings, KeysAreChosenInATable) {
+  const SettingsFile file = parse("fps = 60\n[keys]\npause = \"k\"\nend = [\"Esc\", \"F10\"]\naxes = []\n");
+  ASSERT_TRUE(file.errors.empty()) << file.errors[0].text();
+  ASSERT_EQ(file.values.size(), 2u);
+  const Result<KeyBindings> keys = KeyBindings::make(file.values[1].words);
+  ASSERT_TRUE(keys) << keys.error().text();
+  EXPECT_EQ(keys.value().action_of(Key::kK), WindowAction::kPause);
+  EXPECT_EQ(keys.value().action_of(Key::kSpace), std::nullopt) << "it is free now";
+  EXPECT_EQ(keys.value().action_of(Key::kF10), WindowAction::kEnd);
+  EXPECT_EQ(keys.value().action_of(Key::kQ), std::nullopt);
+  EXPECT_EQ(keys.value().shown(WindowAction::kEnd), "Esc, F10");
+  EXPECT_EQ(keys.value().shown(WindowAction::kAxes), "no key");
+  EXPECT_EQ(keys.value().action_of(Key::kR), WindowAction::kAgain) << "what is not named stays";
+}
+
+TEST(Settings, KeysThatAreWrongAreToldWithTheirLine) {
+  const auto said = [](std::string_view text) {
+    const SettingsFile file = parse(text);
+    std::string all;
+    for (const Error& error : file.errors) all += error.text() + "\n";
+    EXPECT_TRUE(file.values.empty()) << all;
+    return all;
+  };
+  EXPECT_EQ(
+      said("[keys]\npuase = \"K\"\nend = \"Escap\"\nhelp = 3\n"),
+      "settings.toml:3: there is no key 'Escap'. The nearest is Escape\n"
+      "settings.toml:4: keys.help is a key in quotes, or several in brackets. For example pause = \"Space\"\n"
+      "settings.toml:2: no key does 'puase'. The nearest is pause\n");
+  EXPECT_EQ(said("[keys]\npause = \"Shift\"\n").substr(0, 50),
+            "settings.toml:2: there is no key 'Shift'. There ar");
+  // Two of one's own, and one of one's own against one that was there.
+  EXPECT_NE(
+      said("[keys]\npause = \"K\"\nstep = \"K\"\n")
+          .find("settings.toml:3: keys.step: K does 'pause' already (pause, go on). Choose another key"),
+      std::string::npos);
+  EXPECT_NE(said("[keys]\n\npause = \"P\"\n").find("settings.toml:3: keys.pause: P does 'picture' already"),
+            std::string::npos);
+  EXPECT_EQ(said("keys = \"pause\"\n").substr(0, 39), "settings.toml:1: keys is a table of wha");
+}
+
+TEST(Settings, EveryKeyHasANameThatIsReadAgainAndEveryActionOneOfItsOwn) {
+  int keys = 0;
+  for (int i = 0; i < static_cast<int>(Key::kCount); ++i) {
+    const Key key = static_cast<Key>(i);
+    if (const std::optional<Key> read = key_named(name_of(key))) {
+      EXPECT_EQ(*read, key) << name_of(key);
+      ++keys;
+    }
+  }
+  EXPECT_EQ(keys, static_cast<int>(Key::kCount) - 3) << "all but Shift, Ctrl and Alt";
+  EXPECT_TRUE(KeyBindings::make({})) << "by default no key does two things";
+  std::size_t i = 0;
+  for (const WindowActionWords& each : window_actions()) {
+    EXPECT_EQ(static_cast<std::size_t>(each.action), i++) << "the table is in the order of the actions";
+    ASSERT_FALSE(KeyBindings().keys_of(each.action).empty()) << each.name;
+  }
+  EXPECT_EQ(i, static_cast<std::size_t>(WindowAction::kCount));
+  EXPECT_FALSE(KeyBindings::make({"pause=K", "pause=L"}));
 }
 
 TEST(Settings, ThatAreNoTomlAreToldWithTheLine) {
