@@ -10,7 +10,8 @@ import slosh
 LURE = os.environ.get("SLOSH_LURE", "")
 GUESTS = 60
 # What a visit may say: words of refusal, of a close, of notices, names and a farewell.
-TRICKS = {"texts": 3, "refusal": 3, "close": 3, "everything": 2, "bad welcome": 2, "bad scene": 2}
+TRICKS = {"texts": 3, "refusal": 3, "close": 3, "everything": 2, "bad welcome": 2, "bad scene": 2, "streams": 2,
+          "states": 2}
 HIDDEN = ("Cc", "Cf", "Cs", "Co", "Zl", "Zp")
 
 
