@@ -15,7 +15,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <new>
 
 #include "net/clock.h"
@@ -253,11 +252,16 @@ HostVerbOptions restarted(const HostVerbOptions& options, const std::string& che
 }
 
 HostBody again_from_the_start() {
-  return [words = command_line()](const HostVerbOptions&, HostReins*) -> int {
+  // All made here: the child, which a fork left with one thread, is to take nothing that has a lock.
+  struct Command {
+    std::vector<std::string> words = command_line();
     std::vector<char*> arguments;
-    for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-    arguments.push_back(nullptr);
-    execv("/proc/self/exe", arguments.data());
+  };
+  const auto command = std::make_shared<Command>();
+  for (std::string& word : command->words) command->arguments.push_back(word.data());
+  command->arguments.push_back(nullptr);
+  return [command](const HostVerbOptions&, HostReins*) -> int {
+    execv("/proc/self/exe", command->arguments.data());
     say(std::string("the host's own process cannot be started: ") + std::strerror(errno) +
         ". Run it in this one with --no-supervisor");
     return kExitFailed;
