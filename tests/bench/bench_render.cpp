@@ -1,11 +1,8 @@
-// How long each pass of a frame takes: bench_render [--width W] [--height H] [--particles N] [--frames F]
-// [--threads T] [--batter] [--juice] [--paper] [--flow] [--full] [--stereo] [--out PICTURE.png]. Times are
-// medians over the frames, with a glFinish after each pass. --stereo: both eyes of one frame against one,
-// each of that size, with the HUD. --reference PATHS: no times, but the same picture by path tracing into
-// --out.
-// --environment FILE.hdr|studio: the room.
+// How long each pass of a frame takes, on whatever draws here: `bench_render --help`. Medians over the
+// frames: by timer queries on a GPU, with a glFinish after each pass where a processor draws.
 #include <imgui.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -43,28 +40,31 @@ struct Wishes {
   std::string out;
 };
 
-Wishes read_arguments(int count, char** words) {
-  Wishes wishes;
-  for (int i = 1; i < count; ++i) {
-    const std::string word = words[i];
-    const char* next = i + 1 < count ? words[i + 1] : "";
-    if (word == "--width") wishes.width = std::atoi(next);
-    if (word == "--height") wishes.height = std::atoi(next);
-    if (word == "--particles") wishes.particles = std::max(std::atoi(next), 1);
-    if (word == "--frames") wishes.frames = std::max(std::atoi(next), 1);
-    if (word == "--threads") wishes.threads = std::atoi(next);
-    if (word == "--batter") wishes.batter = true;
-    if (word == "--juice") wishes.juice = true;
-    if (word == "--paper") wishes.paper = true;
-    if (word == "--full") wishes.full = true;
-    if (word == "--flow") wishes.flow = true;
-    if (word == "--hud") wishes.hud = true;
-    if (word == "--stereo") wishes.stereo = wishes.hud = true;
-    if (word == "--reference") wishes.reference = std::max(std::atoi(next), 1);
-    if (word == "--environment") wishes.environment = next;
-    if (word == "--out") wishes.out = next;
-  }
-  return wishes;
+void say_options(CLI::App& app, Wishes& wishes) {
+  app.add_option("--width", wishes.width, "pixels")->check(CLI::Range(16, 8192))->capture_default_str();
+  app.add_option("--height", wishes.height, "pixels")->check(CLI::Range(16, 8192))->capture_default_str();
+  app.add_option("--particles", wishes.particles, "in a broken dam, about")
+      ->check(CLI::Range(1, 4'000'000))
+      ->capture_default_str();
+  app.add_option("--frames", wishes.frames, "measured, after two that are not")
+      ->check(CLI::Range(1, 10'000))
+      ->capture_default_str();
+  app.add_option("--threads", wishes.threads, "of a processor that draws")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  app.add_flag("--batter", wishes.batter, "an opaque fluid instead of water");
+  app.add_flag("--juice", wishes.juice, "a cloudy one");
+  app.add_flag("--paper", wishes.paper, "the paper's section 5");
+  app.add_flag("--flow", wishes.flow, "curvature flow");
+  app.add_flag("--full", wishes.full, "full quality: what a film has");
+  app.add_flag("--hud", wishes.hud, "arrows and a panel over it");
+  app.add_flag("--stereo", wishes.stereo, "both eyes against one as well, each of that size, with the HUD");
+  app.add_option("--environment", wishes.environment, "the room: FILE.hdr or studio");
+  app.add_option("--out", wishes.out, "the picture, FILE.png");
+  app.add_option("--reference", wishes.reference,
+                 "no times: the picture by this many paths a pixel, into --out")
+      ->check(CLI::Range(1, 100'000))
+      ->needs("--out");
 }
 
 double median(std::vector<double> values) {
@@ -166,7 +166,11 @@ int fail(const slosh::Error& error) {
 
 int main(int argc, char** argv) {
   using namespace slosh;
-  const Wishes wishes = read_arguments(argc, argv);
+  Wishes wishes;
+  CLI::App app{"Times each pass of a frame of a broken dam, on the GPU or the processor that draws here."};
+  say_options(app, wishes);
+  CLI11_PARSE(app, argc, argv);
+  wishes.hud = wishes.hud || wishes.stereo;
   if (wishes.reference > 0) {
     const auto written = write_reference(wishes);
     return written ? 0 : fail(written.error());
@@ -199,6 +203,7 @@ int main(int argc, char** argv) {
 
   std::map<std::string, std::vector<double>> times;
   std::vector<std::string> order;
+  std::vector<double> sums;
   std::vector<double> whole;
   for (int i = 0; i < wishes.frames + 2; ++i) {
     renderer.set_timing(true);
@@ -210,10 +215,13 @@ int main(int argc, char** argv) {
     (void)renderer.read_back();
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
     if (i < 2) continue;  // shaders are compiled at their first use
+    double together = 0.0;
     for (const PassTime& pass : passes) {
+      together += pass.milliseconds;
       if (!times.contains(pass.pass)) order.push_back(pass.pass);
       times[pass.pass].push_back(pass.milliseconds);
     }
+    sums.push_back(together);
     whole.push_back(took.count());
   }
   std::printf("%s, threads %d\n%d x %d, %zu particles, median of %d frames\n",
@@ -221,9 +229,10 @@ int main(int argc, char** argv) {
               scene.particles.size(), wishes.frames);
   std::printf("%-20s %10s %10s\n", "pass", "median ms", "fastest ms");
   for (const std::string& pass : order) {
-    std::printf("%-20s %10.2f %10.2f\n", pass.c_str(), median(times[pass]), std::ranges::min(times[pass]));
+    std::printf("%-20s %10.3f %10.3f\n", pass.c_str(), median(times[pass]), std::ranges::min(times[pass]));
   }
-  std::printf("%-20s %10.2f %10.2f\n", "frame + read-back", median(whole), std::ranges::min(whole));
+  std::printf("%-20s %10.3f %10.3f\n", "all passes", median(sums), std::ranges::min(sums));
+  std::printf("%-20s %10.3f %10.3f\n", "frame + read-back", median(whole), std::ranges::min(whole));
   if (wishes.stereo) time_stereo(renderer, scene.frame, wishes.frames);
   if (!wishes.out.empty()) {
     const auto written = write_png(wishes.out, renderer.read_back());
