@@ -2,12 +2,14 @@
 
 #include <algorithm>
 
+#include "net/text/nearest.h"
 #include "net/wire/text.h"
 
 namespace slosh {
 namespace {
 
-constexpr unsigned kAtHost = 1, kAtPeer = 2, kAtBoth = kAtHost | kAtPeer;
+constexpr unsigned kAtHost = 1, kAtPeer = 2, kAtPlay = 4;
+constexpr unsigned kAtBoth = kAtHost | kAtPeer, kAtAll = kAtBoth | kAtPlay;
 constexpr std::size_t kAny = 1000;  // words: the command's own rules say more
 constexpr std::size_t kHelpColumn = 31;
 
@@ -22,7 +24,7 @@ struct Command {
 };
 
 constexpr Command kCommands[] = {
-    {ConsoleVerb::kHelp, "help", kAtBoth, 0, 0, nullptr, nullptr, nullptr},
+    {ConsoleVerb::kHelp, "help", kAtAll, 0, 0, nullptr, nullptr, nullptr},
     {ConsoleVerb::kWho, "who", kAtBoth, 0, 0, nullptr, "who", "who is here and holds what"},
     {ConsoleVerb::kLinks, "links", kAtHost, 0, 0, nullptr, "links",
      "every link: id, for whom, until when, used by"},
@@ -42,22 +44,32 @@ constexpr Command kCommands[] = {
      "close somebody's connection, and keep their key out for a time"},
     {ConsoleVerb::kUnban, "unban", kAtHost, 1, 1, "needs a person's name, as `who` shows it", "unban NAME",
      "let somebody in again before that time is over"},
-    {ConsoleVerb::kPause, "pause", kAtHost, 0, 0, nullptr, "pause, continue, reset", "the world"},
+    {ConsoleVerb::kPause, "pause", kAtHost | kAtPlay, 0, 0, nullptr, "pause, continue, reset", "the world"},
     {ConsoleVerb::kPause, "pause", kAtPeer, 0, 0, nullptr, "pause, continue, reset",
      "the world, for everybody"},
-    {ConsoleVerb::kContinue, "continue", kAtBoth, 0, 0, nullptr, nullptr, nullptr},
-    {ConsoleVerb::kReset, "reset", kAtBoth, 0, 0, nullptr, nullptr, nullptr},
-    {ConsoleVerb::kSet, "set", kAtBoth, 0, kAny, nullptr, "set viscosity [FLUID] X",
+    {ConsoleVerb::kContinue, "continue", kAtAll, 0, 0, nullptr, nullptr, nullptr},
+    {ConsoleVerb::kReset, "reset", kAtAll, 0, 0, nullptr, nullptr, nullptr},
+    {ConsoleVerb::kSet, "set", kAtAll, 0, kAny, nullptr, "set viscosity [FLUID] X",
      "Pa·s, while the world runs"},
-    {ConsoleVerb::kSet, "set", kAtBoth, 0, kAny, nullptr, "set gravity X", "times the scene's, 0 to 2"},
+    {ConsoleVerb::kSet, "set", kAtAll, 0, kAny, nullptr, "set gravity X", "times the scene's, 0 to 2"},
     {ConsoleVerb::kStatus, "status", kAtHost, 0, 0, nullptr, "status", "how the world and the links do"},
     {ConsoleVerb::kStatus, "status", kAtPeer, 0, 0, nullptr, "status", "how the network and the world do"},
+    {ConsoleVerb::kStatus, "status", kAtPlay, 0, 0, nullptr, "status", "how the world does"},
+    {ConsoleVerb::kQuit, "quit", kAtPlay, 0, 0, nullptr, "quit", "end the run"},
     {ConsoleVerb::kQuit, "quit", kAtHost, 0, 0, nullptr, "quit", "end the run for everybody"},
     {ConsoleVerb::kQuit, "quit", kAtPeer, 0, 0, nullptr, "quit", "leave"},
 };
 
 bool is_at(const Command& command, Console console) {
-  return (command.where & (console == Console::kHost ? kAtHost : kAtPeer)) != 0;
+  switch (console) {
+    case Console::kHost:
+      return (command.where & kAtHost) != 0;
+    case Console::kPeer:
+      return (command.where & kAtPeer) != 0;
+    case Console::kPlay:
+      return (command.where & kAtPlay) != 0;
+  }
+  return false;
 }
 
 }  // namespace
@@ -72,7 +84,11 @@ Result<ConsoleVerb> console_verb(Console console, const std::vector<std::string>
     if (command.needs == nullptr) return Error{"", words[0] + " stands alone", kHelp};
     return Error{"", words[0] + " " + command.needs, "Put a name of several words in quotes"};
   }
-  return Error{"", "'" + wire::clean_text(words[0], 40) + "' means nothing here", kHelp};
+  std::vector<std::string> known;
+  for (const Command& command : kCommands)
+    if (is_at(command, console)) known.emplace_back(command.word);
+  return Error{"", "'" + wire::clean_text(words[0], 40) + "' means nothing here",
+               did_you_mean(words[0], known) + kHelp};
 }
 
 std::string console_help(Console console) {

@@ -1,4 +1,5 @@
-// Every command that may be typed at a host or at a peer: one table, for both consoles and their help.
+// Every command that may be typed at a host, at a peer or at a world of one's own: one table, for all consoles and their
+// help.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +30,11 @@ enum class ConsoleVerb : std::uint8_t {
   kQuit,
 };
 
-enum class Console : std::uint8_t { kHost, kPeer };
+enum class Console : std::uint8_t {
+  kHost,
+  kPeer,
+  kPlay,  ///< a world in this process, with nobody else in it
+};
 
 /// Which command the words are: the first one's, once there are as many words after it as it takes. What
 /// these say is the console's to find out. Errors: no command of this console, or too few or many words.

@@ -1,11 +1,14 @@
 // The program `slosh`: reads the command line and runs one verb.
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <initializer_list>
 
 #include "net/text/clean.h"
+#include "net/text/nearest.h"
 #include "peer/install/version.h"
 #include "peer/verbs/settings_in_force.h"
 #include "peer/verbs/uncaught.h"
@@ -13,6 +16,34 @@
 
 namespace slosh {
 namespace {
+
+/// Options of `app` whose names are near to words that it did not know: "--headless, --seconds".
+std::string options_near(const CLI::App& app, const std::vector<std::string>& words) {
+  std::vector<std::string> known;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+  std::string all;
+  for (const std::string& word : words) {
+    const std::string near = word.starts_with("--") ? nearest_word(word.substr(0, word.find('=')), known) : "";
+    if (!near.empty()) all += (all.empty() ? "" : ", ") + near;
+  }
+  return all;
+}
+
+int no_such_verb(const CLI::App& app, const char* word) {
+  std::vector<std::string> verbs;
+  for (const CLI::App* verb : app.get_subcommands({})) verbs.push_back(verb->get_name());
+  const std::string shown = clean_text(word, kMostTextBytes);
+  // Those that the launcher of a source tree does by itself.
+  constexpr std::array kLaunchers{"test", "bench", "python", "package", "format"};
+  if (std::find(kLaunchers.begin(), kLaunchers.end(), shown) != kLaunchers.end())
+    std::fprintf(stderr, "slosh: %s is done by the launcher ./slosh in the sources, not by the program. See `slosh --help`.\n",
+                 shown.c_str());
+  else
+    std::fprintf(stderr, "slosh: there is no verb '%s'. %sSee `slosh --help`.\n", shown.c_str(),
+                 did_you_mean(shown, verbs).c_str());
+  return kExitUsage;
+}
 
 int run(int argc, char** argv) {
   CLI::App app("Touch simulated fluids together.", "slosh");
@@ -37,19 +68,21 @@ int run(int argc, char** argv) {
   add_settings(app, settings, chosen);
   put_in_force(settings, app);
   if (names_a_verb &&
-      app.get_subcommands([&](const CLI::App* sub) { return sub->check_name(argv[1]); }).empty()) {
-    const std::string verb = clean_text(argv[1], kMostTextBytes);
-    std::fprintf(stderr, "slosh: there is no verb '%s'. See `slosh --help`.\n", verb.c_str());
-    return kExitUsage;
-  }
+      app.get_subcommands([&](const CLI::App* sub) { return sub->check_name(argv[1]); }).empty())
+    return no_such_verb(app, argv[1]);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     std::string verb;
-    for (const CLI::App* sub : app.get_subcommands()) verb = sub->get_name() + " ";
+    std::string near;
+    for (const CLI::App* sub : app.get_subcommands()) {
+      verb = sub->get_name() + " ";
+      near = options_near(*sub, sub->remaining(true));
+    }
+    if (!near.empty()) near = "Did you mean " + near + "? ";
     const std::string what = clean_lines(error.what(), kMostTextBytes);
-    std::fprintf(stderr, "slosh: %s. See `slosh %s--help`.\n", what.c_str(), verb.c_str());
+    std::fprintf(stderr, "slosh: %s. %sSee `slosh %s--help`.\n", what.c_str(), near.c_str(), verb.c_str());
     return kExitUsage;
   }
   // Wrong settings are said before anything is begun, and nothing is begun with half of them.

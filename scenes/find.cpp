@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <system_error>
 
+#include "net/text/nearest.h"
 #include "scenes/gltf/container.h"
 #include "scenes/load.h"
 
@@ -55,6 +56,18 @@ std::string read_title(const fs::path& file) {
   }
 }
 
+/// Names of the scene files in the folder that `path` names.
+std::vector<std::string> scene_files_beside(const fs::path& path) {
+  constexpr std::size_t kMost = 1000;
+  std::vector<std::string> names;
+  std::error_code code;
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  for (fs::directory_iterator it(folder, code), end; !code && it != end && names.size() < kMost; it.increment(code)) {
+    if (is_gltf(it->path())) names.push_back(it->path().filename().string());
+  }
+  return names;
+}
+
 std::size_t rank(const std::string& name) {
   return static_cast<std::size_t>(std::find(std::begin(kOrder), std::end(kOrder), name) - std::begin(kOrder));
 }
@@ -80,21 +93,24 @@ Result<fs::path> find_scene(const std::string& name_or_path) {
   if (is_gltf(path)) {
     if (fs::is_regular_file(path, code)) return path;
     return Error{name_or_path, "there is no such file",
-                 "Check the path, or list the shipped scenes with 'slosh scenes'"};
+                 did_you_mean(path.filename().string(), scene_files_beside(path)) +
+                     "Check the path, or list the shipped scenes with 'slosh scenes'"};
   }
-  std::string names;
   for (const char* extension : {".gltf", ".glb"}) {
     if (path.has_parent_path() || name_or_path.empty()) break;
     const fs::path file = scenes_folder() / (name_or_path + extension);
     if (fs::is_regular_file(file, code)) return file;
   }
-  for (fs::directory_iterator it(scenes_folder(), code), end; !code && it != end; it.increment(code)) {
-    if (is_gltf(it->path())) names += (names.empty() ? "" : ", ") + it->path().stem().string();
+  std::vector<std::string> known;
+  std::string names;
+  for (const SceneEntry& entry : shipped_scenes()) {
+    known.push_back(entry.name);
+    names += (names.empty() ? "" : ", ") + entry.name;
   }
   return Error{"scene '" + name_or_path + "'", "is neither a shipped scene nor a .gltf or .glb file",
                names.empty() ? "There are no shipped scenes in " + scenes_folder().string() +
                                    ": build them, or set SLOSH_SCENES"
-                             : "Shipped: " + names};
+                             : did_you_mean(name_or_path, known) + "Shipped: " + names};
 }
 
 }  // namespace slosh

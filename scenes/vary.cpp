@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "net/text/clean.h"
+#include "net/text/nearest.h"
 #include "scenes/gltf/document.h"
 #include "scenes/reading/reading.h"
 
@@ -38,12 +39,12 @@ bool of_fluid(const std::string& field) {
          reading::kFluidFields.end();
 }
 
-std::string known_objects(const gltf::Document& document) {
-  std::string list = "scene, body, fluid, grip";
+std::vector<std::string> known_objects(const gltf::Document& document) {
+  std::vector<std::string> known{"scene", "body", "fluid", "grip"};
   for (const int node : document.nodes) {
-    if (!kind_of(document.extras[node]).empty()) list += ", " + document.name(node);
+    if (!kind_of(document.extras[node]).empty()) known.push_back(document.name(node));
   }
-  return list;
+  return known;
 }
 
 std::optional<Error> make_edit(gltf::Document& document, const FieldEdit& edit) {
@@ -71,8 +72,11 @@ std::optional<Error> make_edit(gltf::Document& document, const FieldEdit& edit) 
     found = true;
   }
   if (found) return std::nullopt;
+  const std::vector<std::string> known = known_objects(document);
+  std::string list;
+  for (const std::string& each : known) list += (list.empty() ? "" : ", ") + each;
   return Error{"--set " + edit.object + "." + edit.field, "the scene has no '" + edit.object + "'",
-               "Name one of: " + known_objects(document)};
+               did_you_mean(edit.object, known) + "Name one of: " + list};
 }
 
 Error cleaned(const Error& error) {

@@ -44,12 +44,17 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
   std::size_t fewest = 0;
   for (const std::string& each : known) {
     const std::size_t now = edits(plain(word), plain(each));
-    if (now > std::max<std::size_t>(2, each.size() / 3)) continue;
+    if (now > std::max<std::size_t>(2, each.size() / 3) || now >= word.size()) continue;
     if (!best.empty() && now >= fewest) continue;
     best = each;
     fewest = now;
   }
   return best;
+}
+
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& known) {
+  const std::string near = nearest_word(word, known);
+  return near.empty() ? std::string() : "Did you mean " + near + "? ";
 }
 
 }  // namespace slosh

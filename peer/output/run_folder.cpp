@@ -57,7 +57,10 @@ struct Locked {
 };
 
 /// Where a file system knows no locks, runs are not kept apart: that is no reason not to run.
-Locked lock_folder(const fs::path& folder) {
+///
+/// Folders of `made` that are still empty go with the last copy, the deepest first: a run that was refused, or that wrote
+/// nothing, leaves none behind.
+Locked lock_folder(const fs::path& folder, std::vector<fs::path> made) {
   const int file = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (file < 0) return {};
   if (flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
@@ -65,15 +68,22 @@ Locked lock_folder(const fs::path& folder) {
     return {nullptr, true};
   }
   return {std::shared_ptr<const int>(new int(file),
-                                     [](const int* held) {
+                                     [made = std::move(made)](const int* held) {
+                                       std::error_code not_empty;
+                                       for (auto at = made.rbegin(); at != made.rend() && !not_empty; ++at)
+                                         fs::remove(*at, not_empty);
                                        close(*held);
                                        delete held;
                                      }),
           false};
 }
 
-std::optional<Error> make(const fs::path& folder) {
+/// `made`: the folders that were not there before, the outermost first.
+std::optional<Error> make(const fs::path& folder, std::vector<fs::path>& made) {
   std::error_code code;
+  made.clear();
+  for (fs::path at = folder; !at.empty() && !fs::exists(fs::symlink_status(at, code)); at = at.parent_path())
+    made.insert(made.begin(), at);
   fs::create_directories(folder, code);
   if (code || !fs::is_directory(folder))
     return Error{folder.string(), "cannot be made: " + (code ? code.message() : "it is a file"), kAnother};
@@ -86,9 +96,10 @@ std::optional<Error> make(const fs::path& folder) {
 }  // namespace
 
 Result<RunFolder> RunFolder::take(const fs::path& wanted, bool overwrite) {
-  if (const std::optional<Error> problem = make(wanted)) return *problem;
+  std::vector<fs::path> made;
+  if (const std::optional<Error> problem = make(wanted, made)) return *problem;
   RunFolder folder;
-  const Locked locked = lock_folder(wanted);
+  const Locked locked = lock_folder(wanted, std::move(made));
   if (locked.taken) return Error{wanted.string(), "another run writes there now", kAnother};
   folder.path_ = wanted;
   folder.lock_ = locked.lock;
@@ -111,8 +122,9 @@ Result<RunFolder> RunFolder::take(const fs::path& wanted, bool overwrite) {
 Result<RunFolder> RunFolder::take_free(const fs::path& wanted) {
   for (int i = 1; i <= kMostFolders; ++i) {
     const fs::path one = i == 1 ? wanted : fs::path(wanted.string() + "-" + std::to_string(i));
-    if (const std::optional<Error> problem = make(one)) return *problem;
-    const Locked locked = lock_folder(one);
+    std::vector<fs::path> made;
+    if (const std::optional<Error> problem = make(one, made)) return *problem;
+    const Locked locked = lock_folder(one, std::move(made));
     if (locked.taken || !earlier_file(one).empty()) continue;
     RunFolder folder;
     folder.path_ = one;

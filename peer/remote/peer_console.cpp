@@ -30,12 +30,12 @@ PeerLine world(wire::WorldAction action) {
   return ask(command);
 }
 
-std::string status_lines(const RemoteStatus& status, const Scene& scene, double picture_delay,
-                         std::int64_t now_ns) {
+/// `connection`: the line before all others; may be empty.
+std::string status_lines(const RemoteStatus& status, const Scene& scene, const std::string& connection) {
   char text[160];
   std::snprintf(text, sizeof text, "the world is at %.2f s%s, gravity × %.3g", status.world_time,
                 status.world.paused ? ", paused" : "", status.world.gravity_scale);
-  std::string all = connection_text(status, picture_delay, now_ns) + "\n" + text;
+  std::string all = connection + (connection.empty() ? "" : "\n") + text;
   for (std::size_t i = 0; i < status.world.viscosities.size() && i < scene.fluids.size(); ++i) {
     std::snprintf(text, sizeof text, "\nfluid '%.60s': %.4g Pa·s", scene.fluids[i].name.c_str(),
                   status.world.viscosities[i]);
@@ -104,18 +104,16 @@ PeerLine set(const std::vector<std::string>& words, const Scene& scene) {
   return ask(command);
 }
 
-}  // namespace
-
-PeerLine peer_line(std::string_view typed, const RemoteStatus& status, const Scene& scene,
-                   double picture_delay, std::int64_t now_ns) {
+PeerLine line_of(Console console, std::string_view typed, const RemoteStatus& status, const Scene& scene,
+                 const std::string& connection) {
   const Result<std::vector<std::string>> split = console_words(typed);
   if (!split) return say(split.error().text());
   const std::vector<std::string>& words = split.value();
-  const Result<ConsoleVerb> verb = console_verb(Console::kPeer, words);
+  const Result<ConsoleVerb> verb = console_verb(console, words);
   if (!verb) return say(verb.error().text());
   switch (verb.value()) {
     case ConsoleVerb::kHelp:
-      return say(console_help(Console::kPeer));
+      return say(console_help(console));
     case ConsoleVerb::kWho:
       return say(everybody(status, scene));
     case ConsoleVerb::kTake:
@@ -131,7 +129,7 @@ PeerLine peer_line(std::string_view typed, const RemoteStatus& status, const Sce
     case ConsoleVerb::kSet:
       return set(words, scene);
     case ConsoleVerb::kStatus:
-      return say(status_lines(status, scene, picture_delay, now_ns));
+      return say(status_lines(status, scene, connection));
     case ConsoleVerb::kQuit: {
       PeerLine line;
       line.quit = true;
@@ -140,6 +138,20 @@ PeerLine peer_line(std::string_view typed, const RemoteStatus& status, const Sce
     default:
       return {};
   }
+}
+
+}  // namespace
+
+PeerLine peer_line(std::string_view typed, const RemoteStatus& status, const Scene& scene,
+                   double picture_delay, std::int64_t now_ns) {
+  return line_of(Console::kPeer, typed, status, scene, connection_text(status, picture_delay, now_ns));
+}
+
+PeerLine own_world_line(std::string_view typed, const wire::WorldInfo& world, double time, const Scene& scene) {
+  RemoteStatus status;
+  status.world = world;
+  status.world_time = time;
+  return line_of(Console::kPlay, typed, status, scene, "");
 }
 
 }  // namespace slosh

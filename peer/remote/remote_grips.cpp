@@ -54,30 +54,19 @@ void RemoteLink::request_grip(std::uint32_t grip, bool take, bool any) {
   say(request);
 }
 
-void RemoteLink::request_world(wire::WorldAction action) {
-  constexpr std::array kDone{"you paused the world", "the world goes on", "the world is back at its start"};
+void RemoteLink::request_world(const RemoteCommand& command) {
   if (requests_.size() > kMostRequests) return;
   wire::WorldRequest request;
   request.request = remember(
-      {0, wire::ControlType::kWorldRequest, 0, false, false, kDone[static_cast<std::size_t>(action)]});
-  request.action = action;
+      {0, wire::ControlType::kWorldRequest, 0, false, false, done_text(command, world_.scene)});
+  request.action = command.action;
   say(request);
 }
 
 void RemoteLink::request_parameter(const RemoteCommand& command) {
   if (requests_.size() > kMostRequests) return;
-  char done[160];
-  if (command.parameter == wire::Parameter::kGravityScale) {
-    std::snprintf(done, sizeof done, "gravity is %.3g times the scene's now", command.value);
-  } else {
-    const auto& fluids = world_.scene.fluids;
-    const std::string name =
-        command.index < fluids.size() ? fluids[command.index].name : std::to_string(command.index);
-    std::snprintf(done, sizeof done, "the viscosity of '%.60s' is %.4g Pa·s now", name.c_str(),
-                  command.value);
-  }
   wire::ParameterRequest request;
-  request.request = remember({0, wire::ControlType::kParameterRequest, 0, false, false, done});
+  request.request = remember({0, wire::ControlType::kParameterRequest, 0, false, false, done_text(command, world_.scene)});
   request.parameter = command.parameter;
   request.index = command.index;
   request.value = command.value;
@@ -132,7 +121,7 @@ void RemoteLink::obey(const RemoteCommand& command) {
       if (!take_a_free_grip(false)) notice("no grip is free");
       return;
     case RemoteCommand::Kind::kWorld:
-      request_world(command.action);
+      request_world(command);
       return;
     case RemoteCommand::Kind::kParameter:
       request_parameter(command);

@@ -130,7 +130,7 @@ class RemoteLink final : public EndpointEvents {
   void go_live_if_ready(std::int64_t now_ns);
   void ask_for_grips();
   void request_grip(std::uint32_t grip, bool take, bool any);
-  void request_world(wire::WorldAction action);
+  void request_world(const RemoteCommand& command);
   void request_parameter(const RemoteCommand& command);
   std::uint32_t remember(Request request);
   bool take_a_free_grip(bool quietly);

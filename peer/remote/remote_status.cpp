@@ -1,11 +1,29 @@
 #include "peer/remote/remote_status.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 
 #include "net/clock.h"
 
 namespace slosh {
+
+std::string done_text(const RemoteCommand& command, const Scene& scene) {
+  if (command.kind == RemoteCommand::Kind::kWorld) {
+    constexpr std::array kDone{"you paused the world", "the world goes on", "the world is back at its start"};
+    return kDone[static_cast<std::size_t>(command.action)];
+  }
+  char text[160];
+  if (command.parameter == wire::Parameter::kGravityScale) {
+    std::snprintf(text, sizeof text, "gravity is %.3g times the scene's now", command.value);
+    return text;
+  }
+  const std::string name = command.index < scene.fluids.size() ? scene.fluids[command.index].name
+                                                               : std::to_string(command.index);
+  std::snprintf(text, sizeof text, "the viscosity of '%.60s' is %.4g Pa·s now", name.c_str(), command.value);
+  return text;
+}
+
 std::string connection_text(const RemoteStatus& status, double picture_delay, std::int64_t now_ns) {
   char text[160] = "";
   switch (status.state) {

@@ -78,6 +78,9 @@ struct RemoteShared {
   std::vector<RemoteCommand> commands;
 };
 
+/// What to tell the person once a command of kind kWorld or kParameter was carried out.
+std::string done_text(const RemoteCommand& command, const Scene& scene);
+
 /// "reconnecting for 3 s", "rtt 61 ms, delay 12 ms".
 std::string connection_text(const RemoteStatus& status, double picture_delay, std::int64_t now_ns);
 /// People but oneself who are connected: not those who left, nor whose contact is lost.

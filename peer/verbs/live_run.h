@@ -58,12 +58,12 @@ class LiveRun {
 
   /// What may be changed while it runs, as it is.
   virtual LiveValues live_values() const { return {}; }
-  /// Asks for one of these; what is refused is in take_refusals().
+  /// Asks for one of these; what is refused is in take_notices().
   virtual void change(const LiveWish& wish) { (void)wish; }
   /// So many steps of a world that stands, where LiveValues::may_pace.
   virtual void step_standing(int steps) { (void)steps; }
-  /// Lines about what was not granted since the last call.
-  virtual std::vector<std::string> take_refusals() { return {}; }
+  /// Lines about what was done and what was not granted since the last call, where nobody else tells the person.
+  virtual std::vector<std::string> take_notices() { return {}; }
 
   /// Pa, one a particle, as new as they are at hand, where the world is in this process; null else and before there are
   /// any. `wanted`: they are looked at from now on.

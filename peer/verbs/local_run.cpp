@@ -1,7 +1,9 @@
 #include "peer/verbs/local_run.h"
 
 #include <algorithm>
+#include <array>
 
+#include "peer/remote/peer_console.h"
 #include "peer/verbs/hand_trouble.h"
 #include "peer/verbs/interrupt.h"
 #include "peer/verbs/run_report.h"
@@ -160,7 +162,32 @@ void LocalRun::change(const LiveWish& wish) {
   command.index = static_cast<std::uint32_t>(wish.fluid);
   command.value = wish.value;
   host_->post(command, [this](const Result<bool>& done) {
-    if (!done) switches_.refuse(done.error().text());
+    if (!done) switches_.tell(done.error().text());
+  });
+}
+
+std::string LocalRun::hear(const std::string& line) {
+  const HostState state = switches_.state();
+  const PeerLine heard = own_world_line(
+      line, {state.paused, state.run, state.gravity_scale, state.viscosities}, host_->progress().time, prepared_.scene);
+  for (const RemoteCommand& command : heard.commands) carry_out(command);
+  if (heard.quit) request_stop();
+  return heard.text;
+}
+
+/// The answer comes after the step that is under way, which may take long: nobody waits for it.
+void LocalRun::carry_out(const RemoteCommand& command) {
+  constexpr std::array kWorldActions{HostAction::kPause, HostAction::kContinue, HostAction::kReset};
+  HostCommand order;
+  if (command.kind == RemoteCommand::Kind::kWorld) {
+    order.action = kWorldActions[static_cast<std::size_t>(command.action)];
+    if (command.action != wire::WorldAction::kReset) paused_ = command.action == wire::WorldAction::kPause;
+  } else {
+    order = {command.parameter == wire::Parameter::kGravityScale ? HostAction::kGravityScale : HostAction::kViscosity,
+             command.index, command.value};
+  }
+  host_->post(order, [this, said = done_text(command, prepared_.scene)](const Result<bool>& done) {
+    switches_.tell(done ? said : done.error().text());
   });
 }
 

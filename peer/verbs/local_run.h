@@ -9,6 +9,7 @@
 #include "peer/haptics/device_loop.h"
 #include "peer/haptics/make_device.h"
 #include "peer/output/recorder.h"
+#include "peer/remote/remote_status.h"
 #include "peer/verbs/export_source.h"
 #include "peer/verbs/live_run.h"
 #include "peer/verbs/lockstep.h"
@@ -54,7 +55,9 @@ class LocalRun final : public LiveRun {
   LiveValues live_values() const override;
   void change(const LiveWish& wish) override;
   void step_standing(int steps) override { host_->step_standing(steps); }
-  std::vector<std::string> take_refusals() override { return switches_.take_refusals(); }
+  std::vector<std::string> take_notices() override { return switches_.take_notices(); }
+  bool hears() const override { return true; }
+  std::string hear(const std::string& line) override;
   void look_from(const glm::dquat& axes) override { servo_->look_from(axes); }
   /// In place, so that the files of the run, its film and its recording go on.
   bool start_again() override;
@@ -68,6 +71,7 @@ class LocalRun final : public LiveRun {
 
  private:
   explicit LocalRun(const Prepared& prepared) : prepared_(prepared) {}
+  void carry_out(const RemoteCommand& command);
 
   const Prepared& prepared_;
   std::unique_ptr<Channel> channel_;

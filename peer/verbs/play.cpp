@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "net/console_verbs.h"
 #include "peer/verbs/common_options.h"
 #include "peer/verbs/find_headset.h"
 #include "peer/verbs/interrupt.h"
@@ -33,6 +34,10 @@ constexpr const char* kFooter =
     "Tab sliders, P keeps the picture, R starts again, H shows all keys, Esc ends. Ctrl-C ends a run in\n"
     "order, with everything written (exit code 130).\n"
     "\n"
+    "While it runs, type in the terminal, or through a pipe:\n";
+
+constexpr const char* kExamples =
+    "\n\n"
     "Examples:\n"
     "  slosh play\n"
     "  slosh play pour --seconds 5 --out out/pour --headless\n"
@@ -86,7 +91,7 @@ void add_play(CLI::App& app, VerbRun& chosen) {
                  "As fast as the machine goes, the same again to the bit; headless, for measuring");
   add_measure_option(*verb, *o);
   add_export_options(*verb, *o);
-  verb->footer(kFooter);
+  verb->footer(kFooter + console_help(Console::kPlay) + kExamples);
   verb->callback([&chosen, o] { chosen = [o] { return play(*o); }; });
 }
 

@@ -142,6 +142,7 @@ Result<bool> show_headless(const Stage& stage, LiveRun& run, const ShowOptions& 
     else
       std::this_thread::sleep_for(kTurn);
     hear_lines(run, input ? &*input : nullptr, progress);
+    for (const std::string& line : run.take_notices()) progress.note(line);
     trouble.tell(run, progress);
     const Rates rates = run.note_rates();
     progress.update(std::isfinite(stage.seconds) ? (rates.time - rates.start) / stage.seconds : -1.0,

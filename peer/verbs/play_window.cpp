@@ -6,6 +6,7 @@
 #include "net/clock.h"
 #include "peer/haptics/devices/hardware.h"
 #include "peer/output/whole_file.h"
+#include "peer/verbs/file_of_views.h"
 #include "peer/verbs/find_headset.h"
 #include "peer/verbs/interrupt.h"
 #include "peer/verbs/local_run.h"
@@ -48,7 +49,7 @@ class WindowRun {
         film_(film),
         progress_(progress),
         painter_(stage.scene, run.facts(kWindowSnapshotRate), renderer),
-        controls_(stage.scene, run, painter_.camera(), std::move(keys),
+        controls_(stage.scene, run, painter_.camera(), std::move(keys), KeptViews(file_of_views(stage.scene)),
                   [&progress](const std::string& text) { progress.note(text); }) {
     controls_.filter = renderer.options().bilateral_iterations;
   }

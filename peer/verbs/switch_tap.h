@@ -20,14 +20,14 @@ class SwitchTap final : public HostTap {
     return state_;
   }
   /// For answers to commands.
-  void refuse(const std::string& why) {
+  void tell(const std::string& what) {
     const std::lock_guard lock(mutex_);
-    refusals_.push_back(why);
+    notices_.push_back(what);
   }
-  std::vector<std::string> take_refusals() {
+  std::vector<std::string> take_notices() {
     const std::lock_guard lock(mutex_);
     std::vector<std::string> taken;
-    taken.swap(refusals_);
+    taken.swap(notices_);
     return taken;
   }
 
@@ -38,7 +38,7 @@ class SwitchTap final : public HostTap {
   }
   mutable std::mutex mutex_;
   HostState state_;
-  std::vector<std::string> refusals_;
+  std::vector<std::string> notices_;
 };
 
 }  // namespace slosh

@@ -26,7 +26,7 @@ std::vector<std::string> names_of_fluids(const Scene& scene) {
 }  // namespace
 
 WindowControls::WindowControls(const Scene& scene, LiveRun& run, OrbitCamera& camera, KeyBindings keys,
-                               std::function<void(const std::string&)> tell)
+                               KeptViews views, std::function<void(const std::string&)> tell)
     : scene_(scene),
       run_(run),
       camera_(camera),
@@ -35,9 +35,12 @@ WindowControls::WindowControls(const Scene& scene, LiveRun& run, OrbitCamera& ca
       keys_(keys),
       guide_(std::move(keys)),
       forces_(scene),
+      views_(std::move(views)),
       panel_(names_of_fluids(scene)),
       lent_(scene.grips.size(), nullptr),
-      hands_(scene.grips.size()) {}
+      hands_(scene.grips.size()) {
+  if (!views_.problem().empty()) tell_("slosh: " + views_.problem());
+}
 
 void WindowControls::say(const std::string& text) {
   guide_.say(text, wall_seconds());
@@ -47,7 +50,7 @@ void WindowControls::say(const std::string& text) {
 WindowControls::Wish WindowControls::follow(const InputState& input, const glm::ivec2& picture,
                                             const BodySnapshot* world) {
   for (std::size_t i = 0; i < lent_.size(); ++i) lent_[i] = run_.lent_hand(i);
-  for (const std::string& line : run_.take_refusals()) say(line);
+  for (const std::string& line : run_.take_notices()) say(line);
   for (const LiveWish& wish : panel_.take_wishes()) {
     if (wish.kind == LiveWish::Kind::kFilter)
       filter = static_cast<int>(std::lround(wish.value));
@@ -134,10 +137,14 @@ void WindowControls::follow_view(std::size_t number, bool keep) {
   const std::string key =
       keys_.shown(static_cast<WindowAction>(static_cast<std::size_t>(WindowAction::kView1) + number));
   if (keep) {
-    views_[number] = camera_.look();
-    guide_.say("kept: " + key + " brings this view back", wall_seconds());
-  } else if (views_[number]) {
-    camera_.look(*views_[number]);
+    const Result<bool> kept = views_.keep(number, camera_.look());
+    const std::string back = key + " brings this view back";
+    if (kept)
+      guide_.say("kept: " + back, wall_seconds());
+    else
+      say(back + " in this run; " + kept.error().text());
+  } else if (views_.view(number)) {
+    camera_.look(*views_.view(number));
   } else {
     guide_.say("no view is kept there yet: Shift + " + key + " keeps this one", wall_seconds());
   }

@@ -1,7 +1,6 @@
 // What a person does in the window, to the run, the camera and the hands; and what the window says of it.
 #pragma once
 
-#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -10,6 +9,7 @@
 
 #include "peer/verbs/live_run.h"
 #include "peer/view/force_panel.h"
+#include "peer/view/kept_views.h"
 #include "peer/view/measures.h"
 #include "peer/view/mouse_grab.h"
 #include "peer/view/mouse_hand.h"
@@ -22,8 +22,8 @@ namespace slosh {
 /// On the window's thread; one a run.
 class WindowControls {
  public:
-  /// All must outlive it. `tell`: a line for the terminal.
-  WindowControls(const Scene& scene, LiveRun& run, OrbitCamera& camera, KeyBindings keys,
+  /// All but `views` must outlive it. `tell`: a line for the terminal.
+  WindowControls(const Scene& scene, LiveRun& run, OrbitCamera& camera, KeyBindings keys, KeptViews views,
                  std::function<void(const std::string&)> tell);
 
   /// Turns of the surface's filter (RenderOptions::bilateral_iterations): as it is, and as the slider wants
@@ -61,7 +61,7 @@ class WindowControls {
   WindowGuide guide_;
   Measures measures_;
   ForcePanel forces_;
-  std::array<std::optional<OrbitCamera::Look>, 4> views_;
+  KeptViews views_;
   LivePanel panel_;
   GuideFacts facts_;
   std::vector<LentHand*> lent_;  // one a grip, as the run has them now

@@ -7,7 +7,6 @@
 namespace slosh {
 namespace {
 
-constexpr double kSteepest = 1.55;       // rad: the up direction stays defined
 constexpr double kTurnPerPixel = 0.006;  // rad
 
 }  // namespace

@@ -137,9 +137,8 @@ std::vector<Error> Extras::errors() const {
     if (std::find(std::begin(kExporterKeys), std::end(kExporterKeys), key) != std::end(kExporterKeys))
       continue;
     if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
-    const std::string near = nearest_word(key, known_);
     all.push_back({owner_ + ": extras." + key, "is not a property that is known here",
-                   (near.empty() ? "" : "Did you mean " + near + "? ") + "Use one of: " + list +
+                   did_you_mean(key, known_) + "Use one of: " + list +
                        "; or begin the name with _ to have it ignored"});
   }
   return all;

@@ -27,9 +27,32 @@ void expect_error(const Arguments& arguments, int code, const std::vector<std::s
 }
 
 TEST(Errors, AnUnknownSceneNamesTheKnownOnes) {
-  expect_error({"play", "bukket", "--headless"}, 1, {"slosh: ", "bukket", "bucket", "pour"});
+  expect_error({"play", "bukket", "--headless"}, 1, {"slosh: ", "bukket", "Did you mean bucket?", "pour"});
   expect_error({"plan", "bukket"}, 1, {"bukket"});
   expect_error({"check", "nowhere.gltf"}, 1, {"nowhere.gltf"});
+}
+
+/// A slip of the finger is answered with what was meant, wherever a word stands for one of a few.
+TEST(Errors, MisspeltWordsAreAnsweredWithTheNearest) {
+  expect_error({"plya", "bucket"}, 2, {"'plya'", "Did you mean play?"});
+  expect_error({"test"}, 2, {"./slosh"});
+  expect_error({"play", "--headles"}, 2, {"--headles", "Did you mean --headless?", "slosh play --help"});
+  expect_error({"play", "--secnds=3"}, 2, {"Did you mean --seconds?"});
+  expect_error({"sweep", "spoon", "--set", "fluid.viscosity_pas=1,2"}, 1, {"Did you mean viscosity_pa_s?"});
+  expect_error({"sweep", "spoon", "--set", "spon.friction=1"}, 1, {"'spon'", "Did you mean spoon?"});
+  std::filesystem::create_directories(test::test_folder());
+  std::ofstream(test::test_folder() / "kitchen.gltf") << "{}";
+  expect_error({"check", "kichen.gltf"}, 1, {"there is no such file", "Did you mean kitchen.gltf?"});
+}
+
+/// A run that was refused leaves no folder behind.
+TEST(Errors, WhatWasRefusedLeavesNoFolder) {
+  const std::filesystem::path folder = test::test_folder() / "refused";
+  std::filesystem::remove_all(folder);
+  expect_error({"play", "bucket", "--no-render", "--spacing", "0.05", "--out", "refused/deep"}, 1, {"50 mm"});
+  EXPECT_FALSE(std::filesystem::exists(folder));
+  expect_error({"host", "bucket", "--spacing", "0.05", "--out", "refused", "--listen", "127.0.0.1:0"}, 1, {"50 mm"});
+  EXPECT_FALSE(std::filesystem::exists(folder));
 }
 
 TEST(Errors, BadCommandLinesPointToHelp) {

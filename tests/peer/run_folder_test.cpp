@@ -32,6 +32,25 @@ TEST_F(RunFolderTest, IsMadeAndHeld) {
   EXPECT_FALSE(RunFolder::take(base_ / "deep/out", true)) << "nor may it be overwritten meanwhile";
 }
 
+TEST_F(RunFolderTest, WhatStaysEmptyGoesAgain) {
+  fs::create_directories(base_);
+  {
+    const Result<RunFolder> made = RunFolder::take(base_ / "deep/out/", false);
+    ASSERT_TRUE(made);
+    const RunFolder copy = made.value();
+  }
+  EXPECT_FALSE(fs::exists(base_ / "deep"));
+  EXPECT_TRUE(fs::exists(base_)) << "it was there before";
+  { ASSERT_TRUE(RunFolder::take(base_, false)); }
+  EXPECT_TRUE(fs::exists(base_)) << "empty, but not made here";
+  {
+    const Result<RunFolder> made = RunFolder::take_free(base_ / "deep/out");
+    ASSERT_TRUE(made);
+    leave(base_ / "deep/out/summary.json");
+  }
+  EXPECT_TRUE(fs::exists(base_ / "deep/out/summary.json"));
+}
+
 TEST_F(RunFolderTest, AnEarlierRunIsNotOverwrittenUnlessAsked) {
   for (const char* file :
        {"summary.json", "wrenches.csv", "poses.csv", "wrenches.png", "view.mp4", "final.png"}) {

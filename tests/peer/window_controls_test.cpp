@@ -2,7 +2,11 @@
 #include "peer/verbs/window_controls.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <sstream>
 
 #include "peer/verbs/pressure_tap.h"
@@ -49,8 +53,9 @@ class NotedRun : public LiveRun {
 
 class WindowControlsTest : public ::testing::Test {
  protected:
-  WindowControls controls(const std::vector<std::string>& keys = {}) {
-    return {scene, run, camera, KeyBindings::make(keys).value(), [](const std::string&) {}};
+  WindowControls controls(const std::vector<std::string>& keys = {}, const std::filesystem::path& views = {}) {
+    return {scene, run, camera, KeyBindings::make(keys).value(), KeptViews(views),
+            [this](const std::string& line) { told += line + "\n"; }};
   }
   static InputState pressed(std::vector<KeyPress> presses) {
     InputState input;
@@ -61,6 +66,7 @@ class WindowControlsTest : public ::testing::Test {
   Scene scene;
   NotedRun run;
   OrbitCamera camera{Camera{}};
+  std::string told;
 };
 
 /// On a slow picture several come at once. A step and then "go on" left the world standing when each key was
@@ -111,6 +117,53 @@ TEST_F(WindowControlsTest, ViewsAreKeptAndComeBack) {
   EXPECT_GT(glm::distance(camera.eye(), eye), 0.05) << "nothing is kept there";
   window.follow(pressed({{Key::k2}}), {640, 480}, nullptr);
   EXPECT_LT(glm::distance(camera.eye(), eye), 1e-12);
+}
+
+TEST_F(WindowControlsTest, ViewsAreThereInTheNextRun) {
+  const std::filesystem::path folder =
+      std::filesystem::path(::testing::TempDir()) / ("views_" + std::to_string(getpid()));
+  std::filesystem::remove_all(folder);
+  const std::filesystem::path file = folder / "deep/bucket.json";
+  camera.turn(0.5, 0.1);
+  camera.pan({0.1, -0.2});
+  const glm::dvec3 eye = camera.eye();
+  const glm::dvec3 target = camera.target();
+  const auto comes_back = [&] {
+    camera.reset();
+    controls({}, file).follow(pressed({{Key::k2}}), {640, 480}, nullptr);
+    return glm::distance(camera.eye(), eye) + glm::distance(camera.target(), target) < 1e-9;
+  };
+  EXPECT_FALSE(comes_back()) << "no file yet";
+  camera.turn(0.5, 0.1);
+  camera.pan({0.1, -0.2});
+  {
+    WindowControls one = controls({}, file);
+    WindowControls other = controls({}, file);
+    one.follow(pressed({{Key::k2, true}}), {640, 480}, nullptr);
+    other.follow(pressed({{Key::k4, true}}), {640, 480}, nullptr);  // of another run at the same time
+  }
+  EXPECT_TRUE(comes_back());
+  EXPECT_TRUE(KeptViews(file).view(3));
+  EXPECT_EQ(told, "");
+
+  // What cannot be read is said, and nobody writes over it.
+  for (const char* bytes : {"", "not json", "{\"format\": \"slosh views 1\", \"views\": {\"2\": {\"distance_m\": -1}}}",
+                            "{\"format\": \"slosh views 1\", \"views\": {\"9\": {}}}", "[1, 2]"}) {
+    std::ofstream(file) << bytes;
+    told.clear();
+    WindowControls window = controls({}, file);
+    EXPECT_NE(told.find(file.string()), std::string::npos) << bytes;
+    EXPECT_NE(told.find("Mend it or move it away"), std::string::npos) << told;
+    window.follow(pressed({{Key::k1, true}}), {640, 480}, nullptr);
+    EXPECT_NE(told.find("in this run"), std::string::npos) << told;
+    const glm::dvec3 kept = camera.eye();
+    camera.turn(1.0, 0.0);
+    window.follow(pressed({{Key::k1}}), {640, 480}, nullptr);
+    EXPECT_LT(glm::distance(camera.eye(), kept), 1e-9) << "for this run they are kept";
+    std::ifstream in(file);
+    EXPECT_EQ(std::string(std::istreambuf_iterator<char>(in), {}), bytes);
+  }
+  std::filesystem::remove_all(folder);
 }
 
 TEST(PressureTap, ReadsOnlyWhileItIsLookedAt) {

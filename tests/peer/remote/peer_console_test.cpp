@@ -90,6 +90,22 @@ TEST_F(PeerConsole, QuestionsAreAnsweredFromWhatIsKnown) {
   EXPECT_TRUE(type("  \t\r\n").text.empty());
 }
 
+/// The same words at a world of one's own, but for those that need somebody else.
+TEST_F(PeerConsole, AWorldOfOnesOwnHearsTheSameWords) {
+  const auto own = [&](const char* line) { return own_world_line(line, {true, 0, 0.5, {0.001, 5.0}}, 1.25, scene); };
+  ASSERT_EQ(own("set viscosity honey 2.5").commands.size(), 1u);
+  EXPECT_EQ(own("set viscosity honey 2.5").commands[0].index, 1u);
+  EXPECT_EQ(own("set viscosity 3").text, type("set viscosity 3").text);
+  EXPECT_EQ(own("pause").commands.at(0).action, wire::WorldAction::kPause);
+  EXPECT_TRUE(own("quit").quit);
+  EXPECT_EQ(own("status").text,
+            "the world is at 1.25 s, paused, gravity × 0.5\nfluid 'water': 0.001 Pa·s\nfluid 'honey': 5 Pa·s");
+  for (const char* line : {"take", "release", "who", "links"})
+    EXPECT_NE(own(line).text.find("means nothing here"), std::string::npos) << line;
+  EXPECT_EQ(own("help").text.find("take"), std::string::npos) << own("help").text;
+  EXPECT_NE(own("puase").text.find("Did you mean pause?"), std::string::npos) << own("puase").text;
+}
+
 TEST_F(PeerConsole, AnyBytesAreAnsweredInWords) {
   std::mt19937 random(7);
   for (int i = 0; i < 5000; ++i) {
