@@ -12,6 +12,7 @@
 namespace slosh {
 namespace {
 
+using test::Outcome;
 using test::Terminal;
 
 class TerminalTest : public test::HostedTest {
@@ -88,6 +89,30 @@ TEST_F(TerminalTest, APeerSetsParametersAndPausesFromItsTerminal) {
     EXPECT_EQ((*one)->wait(), 0) << (*one)->screen();
     EXPECT_TRUE((*one)->echoes());
   }
+}
+
+TEST_F(TerminalTest, AWorldOfOnesOwnHearsTheSameLines) {
+  const auto play = at_terminal("play", {"play", "probe", "--spacing", "0.01", "--threads", "1", "--no-render", "--seconds",
+                                         "600", "--out", "out", "--record", "typed.rec"});
+  ASSERT_TRUE(play->shows("real time")) << play->screen();
+  play->type("set gravity 0.5\rset viscosity 1e6\rpause\r");
+  EXPECT_TRUE(play->shows("gravity is 0.5 times the scene's now")) << play->screen();
+  EXPECT_TRUE(play->shows("too much for the time step")) << play->screen();
+  EXPECT_TRUE(play->shows("you paused the world")) << play->screen();
+  play->type("status\r");
+  EXPECT_TRUE(play->shows("paused, gravity × 0.5")) << play->screen();
+  play->type("take\r");
+  EXPECT_TRUE(play->shows("'take' means nothing here")) << play->screen();
+  play->type("help\r");
+  EXPECT_TRUE(play->shows("set viscosity [FLUID] X")) << play->screen();
+  play->type("continue\rreset\r");
+  EXPECT_TRUE(play->shows("the world is back at its start")) << play->screen();
+  play->type("quit\r");
+  EXPECT_EQ(play->wait(), 0) << play->screen();
+  EXPECT_TRUE(play->echoes());
+  const Outcome again = run("play", {"replay", "typed.rec"})->wait();
+  EXPECT_EQ(again.code, 0) << again.err;
+  EXPECT_NE(again.out.find("hashes agree"), std::string::npos) << again.out;
 }
 
 TEST_F(TerminalTest, AHostMayKeepTheParametersToItself) {
