@@ -38,8 +38,8 @@ TEST(Errors, MisspeltWordsAreAnsweredWithTheNearest) {
   expect_error({"test"}, 2, {"./slosh"});
   expect_error({"play", "--headles"}, 2, {"--headles", "Did you mean --headless?", "slosh play --help"});
   expect_error({"play", "--secnds=3"}, 2, {"Did you mean --seconds?"});
-  expect_error({"sweep", "spoon", "--set", "fluid.viscosity_pas=1,2"}, 1, {"Did you mean viscosity_pa_s?"});
-  expect_error({"sweep", "spoon", "--set", "spon.friction=1"}, 1, {"'spon'", "Did you mean spoon?"});
+  expect_error({"sweep", "spoon", "--set", "fluid.viscosity_pas=1,2", "--out", "swept"}, 1, {"Did you mean viscosity_pa_s?"});
+  expect_error({"sweep", "spoon", "--set", "spon.friction=1", "--out", "swept"}, 1, {"'spon'", "Did you mean spoon?"});
   std::filesystem::create_directories(test::test_folder());
   std::ofstream(test::test_folder() / "kitchen.gltf") << "{}";
   expect_error({"check", "kichen.gltf"}, 1, {"there is no such file", "Did you mean kitchen.gltf?"});
