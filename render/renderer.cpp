@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include "render/gl/objects.h"
@@ -52,9 +53,19 @@ constexpr float kOcclusionReach = 0.06f;
 
 }  // namespace
 
+namespace {
+
+/// A processor that draws, too, has its hands full; beside a GPU a quarter of its cores is free for this.
+int smoothing_threads(const Context& context) {
+  return context.is_software() ? 1
+                               : std::clamp(static_cast<int>(std::thread::hardware_concurrency()) / 4, 1, 4);
+}
+
+}  // namespace
+
 struct Renderer::Parts {
   Parts(Context& where, const RenderOptions& what)
-      : context(where), options(what), timer(where.is_software()) {}
+      : context(where), options(what), centers(smoothing_threads(where)), timer(where.is_software()) {}
 
   Context& context;
   RenderOptions options;

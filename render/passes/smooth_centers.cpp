@@ -1,8 +1,11 @@
 #include "render/passes/smooth_centers.h"
 
 #include <algorithm>
-#include <bit>
+#include <array>
 #include <cmath>
+#include <numeric>
+#include <span>
+#include <thread>
 
 namespace slosh {
 namespace {
@@ -18,15 +21,67 @@ constexpr float kRound = 1.2f;
 constexpr float kThin = 0.6f;
 constexpr float kFull = 0.15f;  // of the reach squared: a neighbourhood's variance where it is full
 
+constexpr std::size_t kWorthAThread = 4000;  // particles: some 2 ms of work
+
+constexpr int kWide =
+    16;  // neighbours side by side: loops over them are plain, so that the compiler makes them wide
+using Lanes = std::array<float, kWide>;
+
+/// Particles that lie one after the other in memory.
+struct Run {
+  std::uint32_t first, end;
+};
+
+float total(Lanes lanes) {
+  for (int half = kWide / 2; half > 0; half /= 2) {
+    for (int i = 0; i < half; ++i) lanes[i] += lanes[i + half];
+  }
+  return lanes[0];
+}
+
 /// Weighted moments of the ways to a particle's neighbours, itself among them. m
 class Neighbourhood {
  public:
-  void add(const glm::vec3& way, float weight) {
-    weights_ += weight;
-    sum_ += weight * way;
-    const glm::vec3 w = weight * way;
-    square_ += way * w;
-    mixed_ += glm::vec3(w.x * way.y, w.y * way.z, w.z * way.x);
+  /// Of all in `runs` that lie within reach of `at`. Up to kWide - 1 places behind a run are read.
+  Neighbourhood(const std::array<std::vector<float>, 3>& places, std::span<const Run> runs,
+                const glm::vec3& at, float reach) {
+    const float inverse = 1.0f / reach;
+    const float squared_reach = reach * reach;
+    Lanes w{}, x{}, y{}, z{}, xx{}, yy{}, zz{}, xy{}, yz{}, zx{};
+    for (const Run& run : runs) {
+      for (std::uint32_t k = run.first; k < run.end; k += kWide) {
+        const float* px = &places[0][k];
+        const float* py = &places[1][k];
+        const float* pz = &places[2][k];
+        const int here = static_cast<int>(run.end - k);
+        for (int i = 0; i < kWide; ++i) {
+          const float dx = px[i] - at.x;
+          const float dy = py[i] - at.y;
+          const float dz = pz[i] - at.z;
+          const float squared = dx * dx + dy * dy + dz * dz;
+          const float share = std::sqrt(squared) * inverse;
+          const float whole = 1.0f - share * share * share;
+          const float weight = (i < here) & (squared < squared_reach) ? whole : 0.0f;
+          const float wx = weight * dx;
+          const float wy = weight * dy;
+          const float wz = weight * dz;
+          w[i] += weight;
+          x[i] += wx;
+          y[i] += wy;
+          z[i] += wz;
+          xx[i] += wx * dx;
+          yy[i] += wy * dy;
+          zz[i] += wz * dz;
+          xy[i] += wx * dy;
+          yz[i] += wy * dz;
+          zx[i] += wz * dx;
+        }
+      }
+    }
+    weights_ = total(w);
+    sum_ = {total(x), total(y), total(z)};
+    square_ = {total(xx), total(yy), total(zz)};
+    mixed_ = {total(xy), total(yz), total(zx)};
   }
 
   /// Where the centre goes.
@@ -69,70 +124,113 @@ class Neighbourhood {
   glm::vec3 mixed_{0.0f};  // xy, yz, zx
 };
 
-glm::ivec3 cell_of(const glm::vec3& at, float reach) {
-  return glm::ivec3(glm::floor(glm::clamp(at / reach, glm::vec3(-1e8f), glm::vec3(1e8f))));
+bool counts(const Frame& frame, std::size_t i) {
+  const glm::vec3& at = frame.particles[i];
+  return frame.particle_fluid[i] < frame.fluids.size() && std::isfinite(at.x + at.y + at.z);
+}
+
+/// Kept small enough for an integer.
+glm::vec3 in_cells(const glm::vec3& at, float reach) {
+  return glm::floor(glm::clamp(at / reach, glm::vec3(-1e8f), glm::vec3(1e8f)));
 }
 
 }  // namespace
 
-std::size_t SmoothCenters::bucket_of(const glm::ivec3& cell) const {
-  const auto hash = static_cast<std::uint32_t>(cell.x) * 73856093u ^
-                    static_cast<std::uint32_t>(cell.y) * 19349663u ^
-                    static_cast<std::uint32_t>(cell.z) * 83492791u;
-  return hash & (begin_.size() - 2);
+glm::ivec3 SmoothCenters::cell_of(const glm::vec3& at) const {
+  return glm::clamp(glm::ivec3(in_cells(at, reach_)) - lowest_, glm::ivec3(0), cells_ - 1);
+}
+
+std::size_t SmoothCenters::row_of(int y, int z) const {
+  return (static_cast<std::size_t>(z) * cells_.y + y) * cells_.x;
+}
+
+void SmoothCenters::fit_cells(const Frame& frame, std::size_t count) {
+  glm::vec3 low(1e9f), high(-1e9f);
+  glm::dvec3 sum(0.0);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!counts(frame, i)) continue;
+    const glm::vec3 cell = in_cells(frame.particles[i], reach_);
+    low = glm::min(low, cell);
+    high = glm::max(high, cell);
+    sum += cell;
+    ++kept;
+  }
+  if (kept == 0) low = high = glm::vec3(0.0f);
+  // A drop that flew far makes no large table: cells are cut off around the middle of all, and what lies
+  // beyond is counted in the outermost, where whoever was near it is as well.
+  const glm::vec3 middle = kept == 0 ? low : glm::vec3(glm::floor(sum / static_cast<double>(kept)));
+  const double most = 8.0 * static_cast<double>(kept) + 4096.0;
+  for (;;) {
+    const glm::vec3 size = high - low + 1.0f;
+    if (static_cast<double>(size.x) * size.y * size.z <= most) break;
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    low[axis] = std::max(low[axis], middle[axis] - std::floor(0.25f * size[axis]));
+    high[axis] = std::min(high[axis], middle[axis] + std::floor(0.25f * size[axis]));
+  }
+  lowest_ = glm::ivec3(low);
+  cells_ = glm::ivec3(high - low) + 1;
 }
 
 void SmoothCenters::sort(const Frame& frame) {
   const std::size_t count = std::min(frame.particles.size(), frame.particle_fluid.size());
   reach_ = kReach * frame.particle_radius;
-  // Buckets: a power of two, and one entry for the end of the last.
-  begin_.assign(std::bit_ceil(std::max<std::size_t>(count, 2)) + 1, 0);
+  fit_cells(frame, count);
+  begin_.assign(row_of(0, cells_.z) + 1, 0);
   constexpr std::uint32_t kNone = ~0u;
-  bucket_.assign(count, kNone);
+  cell_.assign(count, kNone);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const glm::vec3& at = frame.particles[i];
-    if (frame.particle_fluid[i] >= frame.fluids.size() || !std::isfinite(at.x + at.y + at.z)) continue;
-    bucket_[i] = static_cast<std::uint32_t>(bucket_of(cell_of(at, reach_)));
-    ++begin_[bucket_[i] + 1];
+    if (!counts(frame, i)) continue;
+    const glm::ivec3 cell = cell_of(frame.particles[i]);
+    cell_[i] = static_cast<std::uint32_t>(row_of(cell.y, cell.z)) + static_cast<std::uint32_t>(cell.x);
+    ++begin_[cell_[i] + 1];
     ++kept;
   }
-  for (std::size_t b = 1; b < begin_.size(); ++b) begin_[b] += begin_[b - 1];
-  sorted_.resize(kept);
-  // Filled from each bucket's end downwards; afterwards begin_[b + 1] is where b begins.
+  std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+  for (auto& column : at_) column.assign(kept + kWide, 0.0f);
+  // Filled from each cell's end downwards; afterwards begin_[c + 1] is where c begins.
   for (std::size_t i = count; i-- > 0;) {
-    if (bucket_[i] == kNone) continue;
-    sorted_[--begin_[bucket_[i] + 1]] = {frame.particles[i], cell_of(frame.particles[i], reach_)};
+    if (cell_[i] == kNone) continue;
+    const std::uint32_t place = --begin_[cell_[i] + 1];
+    for (int axis = 0; axis < 3; ++axis) at_[axis][place] = frame.particles[i][axis];
   }
-  for (std::size_t b = 0; b + 1 < begin_.size(); ++b) begin_[b] = begin_[b + 1];
+  std::copy(begin_.begin() + 1, begin_.end(), begin_.begin());
   begin_.back() = static_cast<std::uint32_t>(kept);
   smoothed_.resize(count);
   known_.assign(count, 0);
 }
 
 SmoothCenters::Smoothed SmoothCenters::smooth(const glm::vec3& at, float radius) const {
-  const float inverse = 1.0f / reach_;
-  const glm::ivec3 middle = cell_of(at, reach_);
-  Neighbourhood around;
-  for (int n = 0; n < 27; ++n) {
-    const glm::ivec3 cell = middle + glm::ivec3(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
-    const std::size_t bucket = bucket_of(cell);
-    for (std::uint32_t k = begin_[bucket]; k < begin_[bucket + 1]; ++k) {
-      const glm::vec3 way = sorted_[k].at - at;
-      const float squared = glm::dot(way, way);
-      // Cells may share a bucket: what is not of this cell comes with its own.
-      if (squared >= reach_ * reach_ || sorted_[k].cell != cell) continue;
-      const float share = std::sqrt(squared) * inverse;
-      around.add(way, 1.0f - share * share * share);
+  const glm::ivec3 middle = cell_of(at);
+  const glm::ivec3 low = glm::max(middle - 1, glm::ivec3(0));
+  const glm::ivec3 high = glm::min(middle + 1, cells_ - 1);
+  std::array<Run, 9> runs{};
+  std::size_t count = 0;
+  for (int z = low.z; z <= high.z; ++z) {
+    for (int y = low.y; y <= high.y; ++y) {
+      const std::size_t row = row_of(y, z);
+      runs[count++] = {begin_[row + low.x], begin_[row + high.x + 1]};
     }
   }
+  const Neighbourhood around(at_, {runs.data(), count}, at, reach_);
   return {at + around.step(reach_), around.ellipsoid(reach_, radius)};
 }
 
 void SmoothCenters::move(const Frame& frame, Splats& splats) {
-  const glm::mat3 turn(frame.view.view);
   splats.shapes.resize(splats.spheres.size());
-  for (std::size_t i = 0; i < splats.spheres.size(); ++i) {
+  const std::size_t count = splats.spheres.size();
+  const std::size_t parts = std::clamp<std::size_t>(count / kWorthAThread, 1, threads_);
+  std::vector<std::jthread> others;
+  for (std::size_t part = 1; part < parts; ++part) {
+    others.emplace_back([&, part] { move(frame, splats, count * part / parts, count * (part + 1) / parts); });
+  }
+  move(frame, splats, 0, count / parts);
+}
+
+void SmoothCenters::move(const Frame& frame, Splats& splats, std::size_t first, std::size_t end) {
+  const glm::mat3 turn(frame.view.view);
+  for (std::size_t i = first; i < end; ++i) {
     const std::uint32_t particle = splats.particles[i];
     Smoothed& smoothed = smoothed_[particle];
     if (!known_[particle]) {

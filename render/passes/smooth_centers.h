@@ -3,6 +3,8 @@
 // CPU; no GL here.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
@@ -14,6 +16,8 @@ namespace slosh {
 
 class SmoothCenters {
  public:
+  /// By up to so many threads, the caller's among them; what comes out is the same.
+  explicit SmoothCenters(int threads = 1) : threads_(static_cast<std::size_t>(std::max(threads, 1))) {}
   /// Sorts the frame's particles into cells; those that are not finite or of no fluid of the frame are left
   /// out.
   void sort(const Frame& frame);
@@ -28,19 +32,23 @@ class SmoothCenters {
     glm::vec3 center{0.0f};
     glm::mat3 ellipsoid{0.0f};
   };
-  struct Sorted {
-    glm::vec3 at{0.0f};
-    glm::ivec3 cell{0};
-  };
-  std::size_t bucket_of(const glm::ivec3& cell) const;
+  /// Chooses lowest_ and cells_ for the first `count` particles.
+  void fit_cells(const Frame& frame, std::size_t count);
+  glm::ivec3 cell_of(const glm::vec3& at) const;
+  std::size_t row_of(int y, int z) const;
+  /// move() for the splats from `first` to before `end`.
+  void move(const Frame& frame, Splats& splats, std::size_t first, std::size_t end);
   Smoothed smooth(const glm::vec3& at, float radius) const;
 
+  std::size_t threads_;
   float reach_ = 1.0f;
-  std::vector<std::uint32_t> begin_;  // a bucket each, and the end
-  std::vector<Sorted> sorted_;
-  std::vector<Smoothed> smoothed_;  // a particle each, where known_
+  glm::ivec3 lowest_{0};  // cells; who is outside counts as in the nearest
+  glm::ivec3 cells_{1};
+  std::vector<std::uint32_t> begin_;      // a cell each, x fastest, and the end
+  std::array<std::vector<float>, 3> at_;  // sorted by cell: x, y, z, each with room behind to read on
+  std::vector<Smoothed> smoothed_;        // a particle each, where known_
   std::vector<std::uint8_t> known_;
-  std::vector<std::uint32_t> bucket_;  // scratch
+  std::vector<std::uint32_t> cell_;  // scratch
 };
 
 }  // namespace slosh

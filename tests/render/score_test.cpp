@@ -206,5 +206,52 @@ TEST(SmoothCenters, AFlatSurfaceStaysItsNoiseGoesAndADropStays) {
   }
 }
 
+/// Every particle of the frame as a splat, where it is.
+Splats splats_of(const Frame& frame) {
+  Splats splats;
+  for (const glm::vec3& p : frame.particles) {
+    splats.particles.push_back(static_cast<std::uint32_t>(splats.spheres.size()));
+    splats.spheres.emplace_back(glm::vec3(frame.view.view * glm::vec4(p, 1.0f)), 0.0f);
+  }
+  return splats;
+}
+
+TEST(SmoothCenters, OnlyNeighboursCountHoweverFarOthersFlewAndWhoeverDoesTheWork) {
+  const float spacing = 0.02f;
+  auto points = kit::jitter_lattice({-0.3f, -0.3f, -0.3f}, {0.3f, 0.3f, 0.3f}, spacing, 7);
+  const std::size_t near = points.size();
+  ASSERT_GT(near, 20000u) << "enough for several threads";
+  const std::vector<std::uint8_t> all_fluid(near, 0);
+  const Frame alone = frame_of_points(points, all_fluid, 0.62f * spacing);
+  // Two drops of a pair each, so far off that no table of cells reaches them; one that is lost; another's.
+  for (const glm::vec3 far : {glm::vec3(4e3f, -2e3f, 50.0f), glm::vec3(-9e6f, 0.0f, 0.0f)}) {
+    points.push_back(far);
+    points.push_back(far + glm::vec3(0.5f * spacing, 0.0f, 0.0f));
+  }
+  points.emplace_back(NAN, 0.0f, 0.0f);
+  points.emplace_back(0.001f, 0.0f, 0.0f);
+  std::vector<std::uint8_t> fluids(points.size(), 0);
+  fluids.back() = 9;
+  const Frame frame = frame_of_points(points, fluids, 0.62f * spacing);
+
+  Splats expected = splats_of(alone);
+  SmoothCenters one;
+  one.sort(alone);
+  one.move(alone, expected);
+  for (const int threads : {1, 3}) {
+    Splats splats = splats_of(frame);
+    SmoothCenters centers(threads);
+    centers.sort(frame);
+    centers.move(frame, splats);
+    for (std::size_t i = 0; i < near; ++i) {
+      ASSERT_LT(glm::distance(splats.spheres[i], expected.spheres[i]), 1e-6f) << i;
+      ASSERT_NEAR(splats.shapes[i].depth_radius, expected.shapes[i].depth_radius, 1e-6f) << i;
+    }
+    // The first pair meets in the middle, nearly.
+    const glm::vec3 apart(splats.spheres[near + 1] - splats.spheres[near]);
+    EXPECT_LT(glm::length(apart), 0.4f * spacing);
+  }
+}
+
 }  // namespace
 }  // namespace slosh
