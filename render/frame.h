@@ -7,7 +7,37 @@
 #include <span>
 #include <vector>
 
+#include "sim/math/texture_sampling.h"
+
 namespace slosh {
+
+/// A mesh the renderer keeps on the GPU.
+using MeshHandle = std::uint32_t;
+
+/// A texture it keeps there.
+using TextureHandle = std::uint32_t;
+inline constexpr TextureHandle kNoTexture = 0xffffffffu;
+
+/// Pixels of a texture, for the time of a call.
+struct TextureImage {
+  int width = 0;                       ///< 1–16384
+  int height = 0;                      ///< 1–16384
+  std::span<const std::uint8_t> rgba;  ///< 4 · width · height, rows from the top (v = 0) down
+  bool srgb = false;                   ///< colours are sRGB; else the numbers as they are. Alpha is linear
+  TextureSampling sampling;
+};
+
+/// What lies over a surface, as glTF has it: each multiplies the number of the same name. An unknown handle
+/// is none.
+struct MeshMaps {
+  TextureHandle base_color = kNoTexture;
+  TextureHandle metallic_roughness = kNoTexture;  ///< green roughness, blue metallic
+  TextureHandle normal = kNoTexture;              ///< tangent space, y towards smaller v
+  TextureHandle occlusion = kNoTexture;           ///< red: share of the light from all around that arrives
+  TextureHandle emissive = kNoTexture;
+  float normal_scale = 1.0f;
+  float occlusion_strength = 1.0f;  ///< 0–1
+};
 
 /// How a surface looks (linear sRGB primaries, glTF metallic-roughness).
 struct MeshLook {
@@ -15,19 +45,23 @@ struct MeshLook {
   float metallic = 0.0f;
   float roughness = 0.6f;
   float opacity = 1.0f;  ///< below 1 drawn blended after the fluid's background, a glass
+  glm::vec3 emissive{0.0f};   ///< scene-linear light that it gives off, not to others
+  float alpha_cutoff = 0.0f;  ///< an opaque surface has holes where the base colour map's alpha is below it
+  MeshMaps maps{};            ///< of a glass only base_color is read
 };
-
-/// A mesh the renderer keeps on the GPU.
-using MeshHandle = std::uint32_t;
 
 /// What draws frames and keeps their meshes.
 class MeshSink {
  public:
   virtual ~MeshSink() = default;
   /// Copies a mesh for good. One normal a position; triangles counter-clockwise seen from outside; a triangle
-  /// with an index out of range is left out.
+  /// with an index out of range is left out. `texcoords`: one a position, v downward, or empty: then maps of
+  /// its looks show their corner.
   virtual MeshHandle add_mesh(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
-                              std::span<const glm::uvec3> triangles) = 0;
+                              std::span<const glm::uvec3> triangles,
+                              std::span<const glm::vec2> texcoords = {}) = 0;
+  /// Copies a texture for good. Sizes out of range or too few pixels give kNoTexture.
+  virtual TextureHandle add_texture(const TextureImage& image) = 0;
 };
 
 struct MeshInstance {

@@ -21,6 +21,7 @@
 #include "render/passes/smooth_centers.h"
 #include "render/passes/splats.h"
 #include "render/passes/targets.h"
+#include "render/passes/textures.h"
 #include "render/passes/thickness_pass.h"
 #include "render/read_back.h"
 
@@ -65,11 +66,16 @@ int smoothing_threads(const Context& context) {
 
 struct Renderer::Parts {
   Parts(Context& where, const RenderOptions& what)
-      : context(where), options(what), centers(smoothing_threads(where)), timer(where.is_software()) {}
+      : context(where),
+        options(what),
+        textures(!where.is_software()),
+        centers(smoothing_threads(where)),
+        timer(where.is_software()) {}
 
   Context& context;
   RenderOptions options;
   MeshStore meshes;
+  TextureStore textures;
   FrameUniforms uniforms;
   Splats splats;
   SmoothCenters centers;
@@ -196,8 +202,12 @@ Result<std::unique_ptr<Renderer>> Renderer::create(Context& context, const Rende
 }
 
 MeshHandle Renderer::add_mesh(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
-                              std::span<const glm::uvec3> triangles) {
-  return parts_->meshes.add(positions, normals, triangles);
+                              std::span<const glm::uvec3> triangles, std::span<const glm::vec2> texcoords) {
+  return parts_->meshes.add(positions, normals, triangles, texcoords);
+}
+
+TextureHandle Renderer::add_texture(const TextureImage& image) {
+  return parts_->textures.add(image);
 }
 
 void Renderer::prepare(const Frame& frame, std::span<const View> views) {
@@ -246,7 +256,7 @@ void Renderer::Parts::draw_scene() {
 
   const bool occlusion = options.ambient_occlusion && !fast;
   run("opaque meshes",
-      [&] { scene_pass->draw_opaque(frame, meshes, targets, options.draw_background, occlusion); });
+      [&] { scene_pass->draw_opaque(frame, meshes, textures, targets, options.draw_background, occlusion); });
   if (occlusion) {
     run("occlusion", [&] { scene_pass->draw_occlusion(targets, kOcclusionReach); });
     run("resolve", [&] { scene_pass->resolve_occlusion(targets); });
@@ -263,7 +273,7 @@ void Renderer::Parts::draw_scene() {
   if (drew_fluid) {
     if (translucent && !fast) {
       run("translucent behind",
-          [&] { scene_pass->draw_translucent(frame, meshes, targets, fluid_depth(), true); });
+          [&] { scene_pass->draw_translucent(frame, meshes, textures, targets, fluid_depth(), true); });
     }
     run("copy scene colour", [&] {
       glCopyImageSubData(targets.color.name(), GL_TEXTURE_2D, 0, 0, 0, 0, targets.scene_color.name(),
@@ -272,7 +282,8 @@ void Renderer::Parts::draw_scene() {
     run("composite", [&] { fluid_passes->composite(targets, options.lit_fluid); });
   }
   if (translucent) {
-    run("translucent", [&] { scene_pass->draw_translucent(frame, meshes, targets, fluid_depth(), false); });
+    run("translucent",
+        [&] { scene_pass->draw_translucent(frame, meshes, textures, targets, fluid_depth(), false); });
   }
   if (!frame.arrows.empty()) {
     run("arrows", [&] { arrow_pass->draw(frame, targets, fluid_depth()); });

@@ -121,7 +121,9 @@ class Renderer : public MeshSink {
 
   /// To the GPU.
   MeshHandle add_mesh(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
-                      std::span<const glm::uvec3> triangles) override;
+                      std::span<const glm::uvec3> triangles,
+                      std::span<const glm::vec2> texcoords = {}) override;
+  TextureHandle add_texture(const TextureImage& image) override;
 
   /// What all pictures of a moment share, once: shadows that reach all of `views` (Frame::view is passed
   /// over; without any nothing is shadowed), the fluids' looks. The frame is kept, so what it points to must

@@ -33,6 +33,7 @@ using glm::sqrt;
 #include "render/shaders/bilateral.glsl"
 #include "render/shaders/display_shaper.glsl"
 #include "render/shaders/edges.glsl"
+#include "render/shaders/material.glsl"
 #include "render/shaders/narrow_range.glsl"
 #include "render/shaders/octahedral.glsl"
 #include "render/shaders/optics.glsl"

@@ -11,6 +11,8 @@
 
 #include "sim/math/distance_field.h"
 #include "sim/math/pose.h"
+#include "sim/math/result.h"
+#include "sim/math/texture_sampling.h"
 
 namespace slosh {
 
@@ -20,6 +22,41 @@ struct TriangleMesh {
   std::vector<glm::vec3> positions;   ///< m
   std::vector<glm::vec3> normals;     ///< unit, one a position (smooth or flat as the file has them)
   std::vector<glm::uvec3> triangles;  ///< counter-clockwise seen from outside
+  std::vector<glm::vec2> texcoords;   ///< one a position, v downward (as glTF); empty where no texture is
+};
+
+/// A picture for textures as its file has it: a PNG or a JPEG (images/decode.h unpacks it).
+struct SceneImage {
+  std::string name;
+  std::vector<std::uint8_t> bytes;  ///< at most kMostImageBytes
+};
+
+inline constexpr std::size_t kMostImageBytes = 64u << 20;  ///< of one image, packed
+inline constexpr std::size_t kMostImages = 256;            ///< of one scene
+
+/// A picture laid over a surface.
+struct TextureMap {
+  int image = -1;  ///< index into Scene::images, −1 = none
+  TextureSampling sampling;
+
+  bool operator==(const TextureMap&) const = default;
+};
+
+/// glTF's five, each multiplied with the number of the same name.
+struct MaterialMaps {
+  TextureMap base_color;          ///< sRGB; alpha counts where Material::alpha_cutoff or opacity asks for it
+  TextureMap metallic_roughness;  ///< linear: green roughness, blue metallic
+  TextureMap normal;              ///< linear: tangent space, y towards smaller v
+  TextureMap occlusion;           ///< linear: red
+  TextureMap emissive;            ///< sRGB
+  float normal_scale = 1.0f;      ///< ±10
+  float occlusion_strength = 1.0f;  ///< 0–1
+
+  bool any() const {
+    return base_color.image >= 0 || metallic_roughness.image >= 0 || normal.image >= 0 ||
+           occlusion.image >= 0 || emissive.image >= 0;
+  }
+  bool operator==(const MaterialMaps&) const = default;
 };
 
 /// How a surface looks (linear sRGB primaries, glTF metallic-roughness).
@@ -28,6 +65,11 @@ struct Material {
   float metallic = 0.0f;   ///< 0–1
   float roughness = 0.6f;  ///< 0–1
   float opacity = 1.0f;    ///< 1 opaque; below 1 drawn blended (a glass)
+  glm::vec3 emissive{0.0f};   ///< 0–100, scene-linear: light that it gives off
+  float alpha_cutoff = 0.0f;  ///< 0–1: where the base colour map's alpha is below it there is nothing
+  MaterialMaps maps{};
+
+  bool operator==(const Material&) const = default;
 };
 
 /// Fluid::scattering where nothing is said of it: what hides all that is a centimetre down (1/m) was given a
@@ -155,6 +197,8 @@ struct Scene {
   std::string title;        ///< one line for `slosh scenes`
   std::string source_file;  ///< where it was read from, for errors
   std::vector<TriangleMesh> meshes;
+  std::vector<SceneImage> images;  ///< of textures
+  std::vector<Error> left_out;     ///< what of the file's looks cannot be shown; the scene runs without it
   std::vector<Fluid> fluids;
   std::vector<FluidVolume> fluid_volumes;
   std::vector<Body> bodies;

@@ -14,6 +14,8 @@ constexpr std::size_t kMaxPictures = 4096;
 constexpr std::size_t kMaxFluidVolumes = 1024;
 constexpr std::size_t kMaxInstruments = 1000;  // of each kind
 constexpr std::size_t kMaxPoseKeys = 1'000'000;
+constexpr std::size_t kMaxSentImages = 16u
+                                       << 20;  ///< bytes of all that travel; pack_scene leaves others behind
 constexpr double kMaxDomain = 1e9;    ///< m
 constexpr double kMaxInertia = 1e18;  ///< kg·m²
 constexpr double kMaxMass = 1e9;      ///< kg
@@ -41,6 +43,14 @@ struct SettledScene {
 struct LookedScene {
   SettledScene settled;
   std::vector<Fluid> looks;  ///< one a fluid; the rest of each is in the list above
+};
+
+/// The same of a scene with textures or light of its own.
+struct TexturedScene {
+  LookedScene looked;
+  std::vector<std::vector<glm::vec2>> texcoords;  ///< one a mesh
+  std::vector<Material>
+      materials;  ///< one a body, then one a picture; the numbers of each are in the lists above
 };
 
 /// Positive definite, as a solid's is.
@@ -238,6 +248,58 @@ void visit(V& v, LookedScene& m) {
     each.real32("scattering", fluid.scattering, 0.0, 1.0);
     each.real32("roughness", fluid.roughness, 0.0, 1.0);
   });
+}
+
+inline constexpr std::array kWrapNames{"repeat", "mirror", "clamp"};
+inline constexpr std::array kShrinkNames{
+    "nearest",          "linear", "nearest_mip_nearest", "linear_mip_nearest", "nearest_mip_linear",
+    "linear_mip_linear"};
+
+template <class V>
+void visit(V& v, TextureMap& m, std::size_t images) {
+  v.index("image", m.image, "images", images, true);
+  v.choice("wrap_u", m.sampling.wrap_u, kWrapNames);
+  v.choice("wrap_v", m.sampling.wrap_v, kWrapNames);
+  v.choice("shrink", m.sampling.shrink, kShrinkNames);
+  v.flag("nearest", m.sampling.nearest);
+}
+
+template <class V>
+void visit(V& v, TexturedScene& m) {
+  visit(v, m.looked);
+  Scene& scene = m.looked.settled.measured.packed.scene;
+  v.list("images", scene.images, kMostImages, [](auto& each, SceneImage& image) {
+    each.text("name", image.name, kMaxText);
+    each.bytes("bytes", image.bytes, 0, kMaxSentImages);
+  });
+  // One a mesh, of no or of all its positions.
+  v.list_as_long("texcoords", m.texcoords, "meshes", scene.meshes.size(),
+                 [&scene, mesh = std::size_t{0}](auto& each, std::vector<glm::vec2>& texcoords) mutable {
+                   each.list("of_mesh", texcoords, kMaxMeshVertices, [](auto& of, glm::vec2& t) {
+                     of.real32("u", t.x, -1e4, 1e4);
+                     of.real32("v", t.y, -1e4, 1e4);
+                   });
+                   const std::size_t positions =
+                       mesh < scene.meshes.size() ? scene.meshes[mesh].positions.size() : texcoords.size();
+                   each.rule("of_mesh", texcoords.empty() || texcoords.size() == positions,
+                             "is not one for each position");
+                   ++mesh;
+                 });
+  const std::size_t images = scene.images.size();
+  v.list_as_long("materials", m.materials, "bodies and pictures", scene.bodies.size() + scene.pictures.size(),
+                 [images](auto& each, Material& material) {
+                   for (float* channel : {&material.emissive.x, &material.emissive.y, &material.emissive.z})
+                     each.real32("emissive", *channel, 0.0, 100.0);
+                   each.real32("alpha_cutoff", material.alpha_cutoff, 0.0, 1.0);
+                   MaterialMaps& maps = material.maps;
+                   visit(each, maps.base_color, images);
+                   visit(each, maps.metallic_roughness, images);
+                   visit(each, maps.normal, images);
+                   visit(each, maps.occlusion, images);
+                   visit(each, maps.emissive, images);
+                   each.real32("normal_scale", maps.normal_scale, -10.0, 10.0);
+                   each.real32("occlusion_strength", maps.occlusion_strength, 0.0, 1.0);
+                 });
 }
 
 }  // namespace slosh::wire

@@ -14,13 +14,76 @@ namespace {
 using wire::Bytes;
 using wire::ByteView;
 
-// A package: its version, how the rest is coded, the rest. A scene whose fluids say how they look has the
-// fourth version, else one that settles before its run the third, else one with gauges or regions the second;
-// any other the first, which programs from before these can read. A peer needs the first or the fourth.
+// A package: its version, how the rest is coded, the rest. A scene with textures or light of its own has the
+// fifth version, else one whose fluids say how they look the fourth, else one that settles before its run the
+// third, else one with gauges or regions the second; any other the first, which programs from before these
+// can read. A peer needs the first, the fourth or the fifth.
 constexpr std::uint8_t kVersion = 1;
 constexpr std::uint8_t kMeasured = 2;
 constexpr std::uint8_t kSettled = 3;
 constexpr std::uint8_t kLooked = 4;
+constexpr std::uint8_t kTextured = 5;
+
+/// Without what packages before the fifth version leave out.
+Material plain(Material material) {
+  const Material usual;
+  material.emissive = usual.emissive;
+  material.alpha_cutoff = usual.alpha_cutoff;
+  material.maps = usual.maps;
+  return material;
+}
+
+template <class Visit>
+void each_material(Scene& scene, Visit&& visit) {
+  for (Body& body : scene.bodies) visit(body.material);
+  for (Picture& picture : scene.pictures) visit(picture.material);
+}
+
+template <class Visit>
+void each_map(MaterialMaps& maps, Visit&& visit) {
+  for (TextureMap* map :
+       {&maps.base_color, &maps.metallic_roughness, &maps.normal, &maps.occlusion, &maps.emissive})
+    visit(*map);
+}
+
+/// Which images travel: in the scene's order, while they fit.
+std::vector<bool> which_travel(const Scene& scene) {
+  std::vector<bool> travel;
+  std::size_t bytes = 0;
+  for (const SceneImage& image : scene.images) {
+    travel.push_back(image.bytes.size() <= wire::kMaxSentImages - bytes);
+    if (travel.back()) bytes += image.bytes.size();
+  }
+  return travel;
+}
+
+/// Leaves the images that travel and are shown, and what belongs to them.
+void keep_sent_images(Scene& scene) {
+  const std::vector<bool> travel = which_travel(scene);
+  std::vector<int> moved(scene.images.size(), -1);
+  std::vector<SceneImage> kept;
+  bool any_map = false;
+  each_material(scene, [&](Material& material) {
+    each_map(material.maps, [&](TextureMap& map) {
+      const auto from = static_cast<std::size_t>(map.image);
+      if (map.image < 0 || from >= travel.size() || !travel[from]) {
+        map = {};
+        return;
+      }
+      int& to = moved[from];
+      if (to < 0) {
+        to = static_cast<int>(kept.size());
+        kept.push_back(std::move(scene.images[from]));
+      }
+      map.image = to;
+      any_map = true;
+    });
+  });
+  scene.images = std::move(kept);
+  if (!any_map) {
+    for (TriangleMesh& mesh : scene.meshes) mesh.texcoords.clear();
+  }
+}
 
 /// Without what packages before the fourth version leave out.
 Fluid plain(Fluid fluid) {
@@ -33,6 +96,10 @@ Fluid plain(Fluid fluid) {
 }
 
 std::uint8_t version_of(const Scene& scene) {
+  for (const Body& body : scene.bodies)
+    if (body.material != plain(body.material)) return kTextured;
+  for (const Picture& picture : scene.pictures)
+    if (picture.material != plain(picture.material)) return kTextured;
   for (const Fluid& fluid : scene.fluids)
     if (fluid != plain(fluid)) return kLooked;
   if (scene.settle > 0.0) return kSettled;
@@ -41,11 +108,12 @@ std::uint8_t version_of(const Scene& scene) {
 
 // What a version has, of a scene of the last one.
 template <class F>
-wire::Fault with_version(std::uint8_t version, wire::LookedScene& whole, F&& f) {
-  if (version == kLooked) return f(whole);
-  if (version == kSettled) return f(whole.settled);
-  if (version == kMeasured) return f(whole.settled.measured);
-  return f(whole.settled.measured.packed);
+wire::Fault with_version(std::uint8_t version, wire::TexturedScene& whole, F&& f) {
+  if (version == kTextured) return f(whole);
+  if (version == kLooked) return f(whole.looked);
+  if (version == kSettled) return f(whole.looked.settled);
+  if (version == kMeasured) return f(whole.looked.settled.measured);
+  return f(whole.looked.settled.measured.packed);
 }
 enum Coding : std::uint8_t { kStored, kZstd };
 constexpr std::size_t kHead = 2;
@@ -99,10 +167,25 @@ Result<Bytes> decompressed(ByteView packed) {
 
 }  // namespace
 
+std::vector<std::string> images_left_behind(const Scene& scene) {
+  std::vector<std::string> told;
+  const std::vector<bool> travel = which_travel(scene);
+  for (std::size_t i = 0; i < travel.size(); ++i) {
+    if (travel[i]) continue;
+    told.push_back("image '" + scene.images[i].name + "' stays behind: with the others it is more than the " +
+                   std::to_string(wire::kMaxSentImages >> 20) +
+                   " MB of pictures that go to peers and into recordings");
+  }
+  return told;
+}
+
 Result<Bytes> pack_scene(const Scene& scene, double spacing, SceneParts parts) {
-  wire::LookedScene whole{{{{scene, spacing}}}, scene.fluids};
-  Scene& sent = whole.settled.measured.packed.scene;
+  wire::TexturedScene whole{{{{{scene, spacing}}}, scene.fluids}, {}, {}};
+  Scene& sent = whole.looked.settled.measured.packed.scene;
   if (parts == SceneParts::kSeen) keep_seen(sent);
+  keep_sent_images(sent);
+  for (const TriangleMesh& mesh : sent.meshes) whole.texcoords.push_back(mesh.texcoords);
+  each_material(sent, [&](Material& material) { whole.materials.push_back(material); });
   const std::uint8_t version = version_of(sent);
   Bytes content;
   if (const wire::Fault fault =
@@ -134,7 +217,7 @@ Result<Bytes> pack_scene(const Scene& scene, double spacing, SceneParts parts) {
 Result<UnpackedScene> unpack_scene(ByteView package) {
   if (package.size() < kHead) return damaged("it is empty");
   if (package.size() > wire::kMaxSceneBytes + kHead) return damaged("it is too large");
-  if (package[0] < kVersion || package[0] > kLooked)
+  if (package[0] < kVersion || package[0] > kTextured)
     return damaged("its version is " + std::to_string(package[0]));
   if (package[1] > kZstd) return damaged("its coding is " + std::to_string(package[1]));
   ByteView content = package.subspan(kHead);
@@ -145,19 +228,30 @@ Result<UnpackedScene> unpack_scene(ByteView package) {
     unpacked = std::move(result.value());
     content = unpacked;
   }
-  wire::LookedScene whole;
+  wire::TexturedScene whole;
   if (const wire::Fault fault =
           with_version(package[0], whole, [&](auto& fields) { return wire::decode(content, fields); })) {
     return damaged(fault.text());
   }
-  wire::PackedScene& packed = whole.settled.measured.packed;
+  wire::PackedScene& packed = whole.looked.settled.measured.packed;
   for (std::size_t i = 0; i < packed.scene.fluids.size(); ++i) {
     Fluid& fluid = packed.scene.fluids[i];
-    const Fluid look = package[0] == kLooked ? whole.looks[i] : plain(fluid);
+    const Fluid look = package[0] >= kLooked ? whole.looked.looks[i] : plain(fluid);
     fluid.gloss = look.gloss;
     fluid.refraction = look.refraction;
     fluid.scattering = look.scattering;
     fluid.roughness = look.roughness;
+  }
+  if (package[0] == kTextured) {
+    for (std::size_t i = 0; i < packed.scene.meshes.size(); ++i)
+      packed.scene.meshes[i].texcoords = std::move(whole.texcoords[i]);
+    auto read = whole.materials.begin();
+    each_material(packed.scene, [&](Material& material) {
+      material.emissive = read->emissive;
+      material.alpha_cutoff = read->alpha_cutoff;
+      material.maps = read->maps;
+      ++read;
+    });
   }
   return UnpackedScene{std::move(packed.scene), packed.spacing};
 }

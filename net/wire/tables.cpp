@@ -51,7 +51,7 @@ std::vector<Table> tables() {
           message<Bodies>("Bodies"),
           message<Hands>("Hands"),
           message<FluidWrench>("FluidWrench"),
-          part<LookedScene>("Scene")};
+          part<TexturedScene>("Scene")};
 }
 
 constexpr const char kBegin[] = "<!-- table: ";

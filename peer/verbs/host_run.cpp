@@ -8,6 +8,7 @@
 
 #include "net/clock.h"
 #include "net/text/clean.h"
+#include "net/wire/scene_package.h"
 #include "peer/output/line_input.h"
 #include "peer/output/summary.h"
 #include "peer/verbs/host_links.h"
@@ -175,6 +176,8 @@ int run_host(const HostVerbOptions& options, HostReins* reins) {
   }
   HostedRun& run = *created.value();
   progress.note("listening at " + run.address());
+  for (const std::string& sentence : images_left_behind(hosted.value().prepared.scene))
+    progress.note("slosh: " + sentence);
   if (!run.set_aside().empty())
     progress.note("an earlier host's world was there: carry it on with ./slosh host --resume " +
                   run.set_aside());

@@ -129,6 +129,8 @@ Result<bool> show_headless(const Stage& stage, LiveRun& run, const ShowOptions& 
       return error;
     }
     view = std::move(started.value());
+    for (const Error& what : view->report().left_out)
+      progress.note("slosh: " + what.text() + "; the run goes on without it");
   }
 
   progress.phase("running");

@@ -205,6 +205,8 @@ Result<Prepared> prepare(const PlayOptions& options, bool headless, Progress& pr
   Result<Scene> scene = load_named_scene(options.scene);
   if (!scene) return scene.error();
   p.scene = std::move(scene.value());
+  for (const Error& what : p.scene.left_out)
+    progress.note("slosh: " + what.text() + "; the run goes on without it");
   if (!options.devices.empty()) {
     const Result<DeviceSet> devices = make_devices(p.scene, options.devices, !headless, options.controllers);
     if (!devices) return devices.error();

@@ -5,7 +5,9 @@
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "net/text/clean.h"
 #include "peer/palette.h"
+#include "scenes/images/decode.h"
 
 namespace slosh {
 namespace {
@@ -15,7 +17,10 @@ constexpr double kArrowLength = 0.22;       // of the view distance, for the lar
 constexpr double kSmallestReference = 1.0;  // N: below it noise would be drawn large
 
 MeshLook look_of(const Material& m) {
-  return {m.base_color, m.metallic, m.roughness, m.opacity};
+  MeshLook look{m.base_color, m.metallic, m.roughness, m.opacity};
+  look.emissive = m.emissive;
+  look.alpha_cutoff = m.alpha_cutoff;
+  return look;
 }
 
 }  // namespace
@@ -54,6 +59,75 @@ namespace {
 constexpr double kRadiusOfSpacing = 0.6204;  // (3 / 4π)^(1/3)
 }  // namespace
 
+/// Hands textures over, each once, image by image. The scene may be a stranger's.
+class FrameBuilder::Textures {
+ public:
+  Textures(const Scene& scene, MeshSink& sink, std::vector<Error>& left_out)
+      : scene_(scene), sink_(sink), left_out_(left_out), wanted_(scene.images.size()) {}
+
+  void want(const TextureMap& map, bool srgb, TextureHandle& handle) {
+    if (map.image >= 0 && static_cast<std::size_t>(map.image) < wanted_.size())
+      wanted_[static_cast<std::size_t>(map.image)].push_back({&map, srgb, &handle});
+  }
+  void want(const MaterialMaps& maps, MeshMaps& handles) {
+    want(maps.base_color, true, handles.base_color);
+    want(maps.metallic_roughness, false, handles.metallic_roughness);
+    want(maps.normal, false, handles.normal);
+    want(maps.occlusion, false, handles.occlusion);
+    want(maps.emissive, true, handles.emissive);
+    handles.normal_scale = maps.normal_scale;
+    handles.occlusion_strength = maps.occlusion_strength;
+  }
+  /// One image's pixels are in memory at a time.
+  void hand_over() {
+    std::size_t pixels = 0;
+    for (std::size_t i = 0; i < wanted_.size(); ++i) {
+      if (wanted_[i].empty()) continue;
+      const SceneImage& image = scene_.images[i];
+      const std::string name = "image '" + clean_text(image.name, 100) + "'";
+      const Result<images::Facts> facts = images::look_at(image.bytes, name);
+      if (facts && pixels + facts.value().pixels() > images::kMostPixels) {
+        left_out_.push_back({name,
+                             "would be more than " + std::to_string(images::kMostPixels >> 20) +
+                                 " million pixels in one scene",
+                             "Scale the pictures down"});
+        continue;
+      }
+      const Result<images::Pixels> unpacked = images::decode(image.bytes, name);
+      if (!unpacked) {
+        left_out_.push_back(unpacked.error());
+        continue;
+      }
+      pixels += facts.value().pixels();
+      hand_over(unpacked.value(), wanted_[i]);
+    }
+  }
+
+ private:
+  struct Wanted {
+    const TextureMap* map;
+    bool srgb;
+    TextureHandle* handle;
+  };
+  void hand_over(const images::Pixels& pixels, const std::vector<Wanted>& all) {
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const auto same = [&](const Wanted& other) {
+        return other.srgb == all[i].srgb && other.map->sampling == all[i].map->sampling;
+      };
+      const auto before = std::find_if(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(i), same);
+      *all[i].handle = before != all.begin() + static_cast<std::ptrdiff_t>(i)
+                           ? *before->handle
+                           : sink_.add_texture({pixels.width, pixels.height, pixels.rgba, all[i].srgb,
+                                                all[i].map->sampling});
+    }
+  }
+
+  const Scene& scene_;
+  MeshSink& sink_;
+  std::vector<Error>& left_out_;
+  std::vector<std::vector<Wanted>> wanted_;  // one an image
+};
+
 FrameBuilder::FrameBuilder(const Scene& scene, double spacing, MeshSink& meshes)
     : scene_(scene), particle_radius_(static_cast<float>(kRadiusOfSpacing * spacing)) {
   std::vector<MeshHandle> handles(scene.meshes.size());
@@ -62,7 +136,7 @@ FrameBuilder::FrameBuilder(const Scene& scene, double spacing, MeshSink& meshes)
     const auto i = static_cast<std::size_t>(index);
     if (!loaded[i]) {
       const TriangleMesh& mesh = scene.meshes[i];
-      handles[i] = meshes.add_mesh(mesh.positions, mesh.normals, mesh.triangles);
+      handles[i] = meshes.add_mesh(mesh.positions, mesh.normals, mesh.triangles, mesh.texcoords);
       loaded[i] = true;
     }
     return handles[i];
@@ -78,6 +152,13 @@ FrameBuilder::FrameBuilder(const Scene& scene, double spacing, MeshSink& meshes)
     if (picture.mesh < 0) continue;
     placed_.push_back({upload(picture.mesh), -1, look_of(picture.material), model_matrix(picture.pose)});
   }
+  Textures textures(scene, meshes, left_out_);
+  std::size_t next = 0;
+  for (const Body& body : scene.bodies)
+    if (body.mesh >= 0) textures.want(body.material.maps, placed_[next++].look.maps);
+  for (const Picture& picture : scene.pictures)
+    if (picture.mesh >= 0) textures.want(picture.material.maps, placed_[next++].look.maps);
+  textures.hand_over();
   for (const Fluid& fluid : scene.fluids) {
     FluidLook look;
     look.color = fluid.color;

@@ -21,6 +21,8 @@ class FrameBuilder {
   Frame build(const Snapshot& snapshot, double view_distance);
   /// A hand's controller at `pose`, so that one sees one's own hands.
   void add_controller(const Pose& pose, double scale, Frame& frame) const;
+  /// Textures that are not shown because their picture cannot be unpacked, one an image.
+  const std::vector<Error>& left_out() const { return left_out_; }
 
  private:
   struct Placed {
@@ -29,7 +31,10 @@ class FrameBuilder {
     MeshLook look;
     glm::mat4 model;  // of a picture
   };
+  class Textures;
+
   const Scene& scene_;
+  std::vector<Error> left_out_;
   std::vector<Placed> placed_;
   std::vector<FluidLook> fluids_;
   MeshHandle ball_ = 0;

@@ -76,6 +76,7 @@ void HeadlessView::run(const Setup& setup) {
     return;
   }
   Painter painter(setup.scene, setup.facts, renderer);
+  report_.left_out = painter.left_out();
   SnapshotQueue& queue = setup.queue;
   RateLog& rates = setup.rates;
   setup.ready->set_value(true);

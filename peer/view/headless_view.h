@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "net/histogram.h"
 #include "net/snapshot_queue.h"
@@ -28,6 +29,7 @@ struct ViewReport {
   Histogram frame_time;  ///< drawing and reading back, s
   std::string renderer;
   std::string problem;  ///< an error's text, empty when all went well
+  std::vector<Error> left_out;  ///< of the scene's looks; there when start() returns
 };
 
 constexpr int kViewSoftwareThreads = 1;  ///< that a software renderer may take from the simulation

@@ -71,6 +71,9 @@ class Painter {
     if (pictures.panel.texture != 0) renderer_.draw_panel(pictures.panel_size, pictures.panel);
   }
 
+  /// As FrameBuilder's.
+  const std::vector<Error>& left_out() const { return builder_.left_out(); }
+
   OrbitCamera& camera() { return camera_; }
   Hud& hud() { return hud_; }
 

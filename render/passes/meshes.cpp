@@ -38,7 +38,7 @@ bool is_convex(std::span<const glm::vec3> positions, std::span<const glm::uvec3>
 }  // namespace
 
 MeshHandle MeshStore::add(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
-                          std::span<const glm::uvec3> triangles) {
+                          std::span<const glm::uvec3> triangles, std::span<const glm::vec2> texcoords) {
   const auto handle = static_cast<MeshHandle>(meshes_.size());
   Mesh mesh;
   std::vector<Vertex> vertices;
@@ -71,6 +71,15 @@ MeshHandle MeshStore::add(std::span<const glm::vec3> positions, std::span<const 
       glEnableVertexArrayAttrib(array, attribute);
       glVertexArrayAttribFormat(array, attribute, 3, GL_FLOAT, GL_FALSE, attribute * sizeof(glm::vec3));
       glVertexArrayAttribBinding(array, attribute, 0);
+    }
+    if (texcoords.size() >= positions.size()) {  // else the shader reads (0, 0)
+      glEnableVertexArrayAttrib(array, 2);
+      glVertexArrayAttribFormat(array, 2, 2, GL_FLOAT, GL_FALSE, 0);
+      glVertexArrayAttribBinding(array, 2, 1);
+      mesh.texcoords = gl::make_buffer();
+      glNamedBufferStorage(mesh.texcoords.name(), static_cast<GLsizeiptr>(texcoords.size_bytes()),
+                           texcoords.data(), 0);
+      glVertexArrayVertexBuffer(array, 1, mesh.texcoords.name(), 0, sizeof(glm::vec2));
     }
     mesh.index_count = static_cast<GLsizei>(3 * kept.size());
     mesh.convex = is_convex(positions, kept, mesh.bounds);

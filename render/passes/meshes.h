@@ -29,7 +29,7 @@ struct Bounds {
 class MeshStore {
  public:
   MeshHandle add(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
-                 std::span<const glm::uvec3> triangles);
+                 std::span<const glm::uvec3> triangles, std::span<const glm::vec2> texcoords = {});
 
   bool has(MeshHandle handle) const { return handle < meshes_.size() && meshes_[handle].index_count > 0; }
   /// The mesh's box in its own frame.
@@ -42,6 +42,7 @@ class MeshStore {
  private:
   struct Mesh {
     gl::Buffer vertices;
+    gl::Buffer texcoords;
     gl::Buffer indices;
     gl::VertexArray array;
     GLsizei index_count = 0;

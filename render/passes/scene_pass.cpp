@@ -8,10 +8,15 @@
 namespace slosh {
 namespace {
 
-void set_look(const gl::Program& program, const MeshInstance& instance) {
+void set_look(const gl::Program& program, const MeshInstance& instance, unsigned bits) {
   program.set("model", instance.model);
   program.set("base", glm::vec4(instance.look.base_color, glm::clamp(instance.look.opacity, 0.0f, 1.0f)));
   program.set("roughness", glm::vec2(instance.look.metallic, instance.look.roughness));
+  if (bits == 0) return;
+  program.set("emissive", instance.look.emissive);
+  program.set("alpha_cutoff", instance.look.alpha_cutoff);
+  program.set("normal_scale", instance.look.maps.normal_scale);
+  program.set("occlusion_strength", instance.look.maps.occlusion_strength);
 }
 
 /// The frame's known meshes of a wanted opacity, nearest centre first.
@@ -38,6 +43,26 @@ bool has_translucent(const Frame& frame) {
   return std::ranges::any_of(frame.meshes, [](const MeshInstance& m) { return m.look.opacity < 1.0f; });
 }
 
+Result<ScenePass::Programs> ScenePass::Programs::create(const char* fragment,
+                                                        std::vector<std::string> defines) {
+  Programs out;
+  out.fragment = fragment;
+  out.defines = std::move(defines);
+  auto plain = gl::Program::create("mesh.vert", fragment, out.defines);
+  if (!plain) return plain.error();
+  out.by_bits[0] = std::move(plain.value());
+  return out;
+}
+
+const gl::Program& ScenePass::Programs::of(unsigned bits) {
+  if (const auto known = by_bits.find(bits); known != by_bits.end()) return known->second;
+  std::vector<std::string> all = defines;
+  for (std::string& define : map_defines(bits)) all.push_back(std::move(define));
+  auto made = gl::Program::create("mesh.vert", fragment, std::move(all));
+  if (!made) return by_bits[0];  // a driver that refuses this one: its numbers without its maps
+  return by_bits[bits] = std::move(made.value());
+}
+
 Result<ScenePass> ScenePass::create(bool fast, const std::vector<std::string>& far_light) {
   ScenePass pass;
   pass.fast_ = fast;
@@ -52,21 +77,29 @@ Result<ScenePass> ScenePass::create(bool fast, const std::vector<std::string>& f
     into = std::move(program.value());
     return true;
   };
-  for (const Result<bool>& loaded :
-       {load(pass.opaque_, "mesh.vert", "mesh.frag", quality),
-        load(pass.background_, "fullscreen.vert", "background.frag", far_light),
-        load(pass.occlusion_, "fullscreen.vert", "occlusion.frag", {"TAPS 8"}),
-        load(pass.resolve_, "fullscreen.vert", "resolve.frag"),
-        load(pass.translucent_behind_, "mesh.vert", "translucent.frag", behind),
-        load(pass.translucent_front_, "mesh.vert", "translucent.frag", far_light)}) {
+  for (const Result<bool>& loaded : {load(pass.background_, "fullscreen.vert", "background.frag", far_light),
+                                     load(pass.occlusion_, "fullscreen.vert", "occlusion.frag", {"TAPS 8"}),
+                                     load(pass.resolve_, "fullscreen.vert", "resolve.frag")}) {
     if (!loaded) return loaded.error();
+  }
+  const auto make = [](Programs& into, const char* fragment,
+                       std::vector<std::string> defines) -> Result<bool> {
+    auto made = Programs::create(fragment, std::move(defines));
+    if (!made) return made.error();
+    into = std::move(made.value());
+    return true;
+  };
+  for (const Result<bool>& made :
+       {make(pass.opaque_, "mesh.frag", quality), make(pass.translucent_behind_, "translucent.frag", behind),
+        make(pass.translucent_front_, "translucent.frag", far_light)}) {
+    if (!made) return made.error();
   }
   pass.no_vertices_ = gl::make_vertex_array();
   return pass;
 }
 
-void ScenePass::draw_opaque(const Frame& frame, const MeshStore& meshes, const Targets& targets,
-                            bool background, bool occlusion_follows) {
+void ScenePass::draw_opaque(const Frame& frame, const MeshStore& meshes, const TextureStore& textures,
+                            const Targets& targets, bool background, bool occlusion_follows) {
   const gl::Framebuffer& target = occlusion_follows ? targets.mesh_target : targets.plain_mesh_target;
   const glm::vec4 black(0.0f);
   const glm::vec4 nothing(kNoFluidDepth);
@@ -78,7 +111,6 @@ void ScenePass::draw_opaque(const Frame& frame, const MeshStore& meshes, const T
   glViewport(0, 0, targets.size.x, targets.size.y);
   glEnable(GL_DEPTH_TEST);
   glDepthMask(GL_TRUE);
-  opaque_.use();
   // Near before far and outsides before insides: what is hidden is then not shaded. Insides show where a mesh
   // is open or the eye is in it.
   const auto sorted = sorted_by_distance(frame, meshes, [](float opacity) { return opacity >= 1.0f; });
@@ -86,7 +118,11 @@ void ScenePass::draw_opaque(const Frame& frame, const MeshStore& meshes, const T
   for (GLenum culled : {GL_BACK, GL_FRONT}) {
     glCullFace(culled);
     for (const MeshInstance* instance : sorted) {
-      set_look(opaque_, *instance);
+      const unsigned bits = map_bits(instance->look, textures);
+      const gl::Program& program = opaque_.of(bits);
+      program.use();
+      set_look(program, *instance, bits);
+      bind_maps(instance->look.maps, bits, textures);
       meshes.draw(instance->mesh);
     }
   }
@@ -125,13 +161,11 @@ void ScenePass::resolve_occlusion(const Targets& targets) {
   glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-void ScenePass::draw_translucent(const Frame& frame, const MeshStore& meshes, const Targets& targets,
-                                 const gl::Texture* fluid, bool behind) {
+void ScenePass::draw_translucent(const Frame& frame, const MeshStore& meshes, const TextureStore& textures,
+                                 const Targets& targets, const gl::Texture* fluid, bool behind) {
   const auto sorted = sorted_by_distance(frame, meshes, [](float opacity) { return opacity < 1.0f; });
   if (sorted.empty()) return;
-  const gl::Program& program = behind ? translucent_behind_ : translucent_front_;
-  program.use();
-  program.set("has_fluid", fluid ? 1 : 0);
+  Programs& programs = behind ? translucent_behind_ : translucent_front_;
   if (fluid) gl::bind_textures({fluid});
   glBindFramebuffer(GL_FRAMEBUFFER, targets.blend_target.name());
   glViewport(0, 0, targets.size.x, targets.size.y);
@@ -142,7 +176,12 @@ void ScenePass::draw_translucent(const Frame& frame, const MeshStore& meshes, co
   glEnable(GL_CULL_FACE);
   for (auto at = sorted.rbegin(); at != sorted.rend(); ++at) {  // far before near
     const MeshInstance* instance = *at;
-    set_look(program, *instance);
+    const unsigned bits = map_bits(instance->look, textures) & kBaseMap;
+    const gl::Program& program = programs.of(bits);
+    program.use();
+    program.set("has_fluid", fluid ? 1 : 0);
+    set_look(program, *instance, bits);
+    bind_maps(instance->look.maps, bits, textures);
     for (GLenum culled : {GL_FRONT, GL_BACK}) {  // the far side first
       if (fast_ && culled == GL_FRONT) continue;
       glCullFace(culled);

@@ -1,6 +1,7 @@
 // The meshes: opaque ones before the fluid, translucent ones round it.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "render/gl/objects.h"
 #include "render/passes/meshes.h"
 #include "render/passes/targets.h"
+#include "render/passes/textures.h"
 #include "render/renderer.h"
 
 namespace slosh {
@@ -18,24 +20,34 @@ class ScenePass {
 
   /// Reads opaque meshes and the shadow map; writes S_d, the depth buffer and the colour (mesh_color if
   /// occlusion follows, else color).
-  void draw_opaque(const Frame& frame, const MeshStore& meshes, const Targets& targets, bool background,
-                   bool occlusion_follows);
+  void draw_opaque(const Frame& frame, const MeshStore& meshes, const TextureStore& textures,
+                   const Targets& targets, bool background, bool occlusion_follows);
   /// Reads S_d and mesh_color; writes occlusion, then color.
   void draw_occlusion(const Targets& targets, float reach);
   void resolve_occlusion(const Targets& targets);
   /// Blends translucent meshes into color: those behind the fluid's surface, or those in front of it. `fluid`
   /// is the smoothed F_fD, null without fluid.
-  void draw_translucent(const Frame& frame, const MeshStore& meshes, const Targets& targets,
-                        const gl::Texture* fluid, bool behind);
+  void draw_translucent(const Frame& frame, const MeshStore& meshes, const TextureStore& textures,
+                        const Targets& targets, const gl::Texture* fluid, bool behind);
 
  private:
+  /// A mesh's program with what its look has compiled in; made when first asked for.
+  struct Programs {
+    const char* fragment = "";
+    std::vector<std::string> defines;  ///< of all
+    std::map<unsigned, gl::Program> by_bits;
+
+    static Result<Programs> create(const char* fragment, std::vector<std::string> defines);
+    const gl::Program& of(unsigned bits);
+  };
+
   bool fast_ = false;  ///< glass: only the sides that face the eye
-  gl::Program opaque_;
+  Programs opaque_;
   gl::Program background_;
   gl::Program occlusion_;
   gl::Program resolve_;
-  gl::Program translucent_behind_;
-  gl::Program translucent_front_;
+  Programs translucent_behind_;
+  Programs translucent_front_;
   gl::VertexArray no_vertices_;
 };
 

@@ -11,6 +11,7 @@
 #include "render/passes/frame_block.h"
 #include "render/reference/fluid_mesh.h"
 #include "render/reference/ray_scene.h"
+#include "render/reference/ray_texture.h"
 #include "render/shader_math.h"
 
 namespace slosh::reference {
@@ -75,8 +76,9 @@ glm::vec3 scattering_albedo(const glm::vec3& back) {
 
 class Tracer {
  public:
-  Tracer(const RayScene& scene, const Frame& frame, const Studio& studio, const Environment* environment)
-      : scene_(scene), frame_(frame), key_(studio.key_light), environment_(environment) {
+  Tracer(const RayScene& scene, const Frame& frame, const std::vector<RayTexture>& textures,
+         const Studio& studio, const Environment* environment)
+      : scene_(scene), frame_(frame), textures_(textures), key_(studio.key_light), environment_(environment) {
     room_ = {studio.sky, studio.horizon, studio.ground, studio.softbox, direction_to_light(frame)};
     for (const FluidLook& fluid : frame.fluids)
       albedo_.push_back(scattering_albedo(fluid.color * fluid.scattering));
@@ -106,12 +108,15 @@ class Tracer {
       from += way * hit.distance;
       if (hit.fluid >= 0) {
         cross_surface(hit, way, fluid, scattered, random);
-      } else if (hit.look->opacity < 1.0f) {
-        cross_pane(hit, way, share, random);
-      } else {
-        const glm::vec3 normal = glm::dot(hit.normal, way) > 0.0f ? -hit.normal : hit.normal;
-        light += share * lit_body(hit, from, normal, way, fluid);
-        bounce(hit, normal, way, share, random);
+      } else if (const SurfaceLook surface = look_at(hit, textures_); surface.look.opacity < 1.0f) {
+        cross_pane(hit, surface.look, way, share, random);
+      } else if (!surface.hole) {
+        glm::vec3 normal = glm::dot(hit.normal, way) > 0.0f ? -surface.normal : surface.normal;
+        // A bent normal that faces away from the eye is turned to it as far as it must be.
+        const float away = glm::dot(normal, way);
+        if (away > -1e-3f) normal = glm::normalize(normal - way * (away + 1e-3f));
+        light += share * (surface.look.emissive + lit_body(surface.look, from, normal, way, fluid));
+        bounce(surface, normal, way, share, random);
         mirror_chain = false;
       }
       from += way * kApart;
@@ -193,13 +198,14 @@ class Tracer {
     scattered = false;
   }
 
-  void cross_pane(const Hit& hit, glm::vec3& way, glm::vec3& share, Random& random) const {
+  void cross_pane(const Hit& hit, const MeshLook& look, glm::vec3& way, glm::vec3& share,
+                  Random& random) const {
     const glm::vec3 normal = glm::dot(hit.normal, way) > 0.0f ? -hit.normal : hit.normal;
     const float facing = std::max(-glm::dot(normal, way), 1e-3f);
     if (random() < shader::pane_reflectance(shader::schlick(0.04f, facing)))
       way = glm::reflect(way, normal);
     else
-      share *= pane_tint(*hit.look, facing);
+      share *= pane_tint(look, facing);
   }
 
   static glm::vec3 pane_tint(const MeshLook& look, float facing) {
@@ -207,11 +213,10 @@ class Tracer {
                     glm::vec3(1.0f / std::max(facing, 0.25f)));
   }
 
-  glm::vec3 lit_body(const Hit& hit, const glm::vec3& at, const glm::vec3& normal, const glm::vec3& way,
+  glm::vec3 lit_body(const MeshLook& look, const glm::vec3& at, const glm::vec3& normal, const glm::vec3& way,
                      int fluid) const {
     const float n_l = glm::dot(normal, room_.to_light);
     if (n_l <= 0.0f) return glm::vec3(0.0f);
-    const MeshLook& look = *hit.look;
     const glm::vec3 half_way = glm::normalize(room_.to_light - way);
     const glm::vec3 f0 = glm::mix(glm::vec3(0.04f), look.base_color, look.metallic);
     const glm::vec3 fresnel = f0 + (1.0f - f0) * shader::schlick(0.0f, glm::dot(half_way, -way));
@@ -221,9 +226,10 @@ class Tracer {
     return key_ * n_l * (albedo / glm::pi<float>() + fresnel * lobe) * light_to(at + normal * kApart, fluid);
   }
 
-  void bounce(const Hit& hit, const glm::vec3& normal, glm::vec3& way, glm::vec3& share,
+  void bounce(const SurfaceLook& surface, const glm::vec3& normal, glm::vec3& way, glm::vec3& share,
               Random& random) const {
-    const MeshLook& look = *hit.look;
+    const MeshLook& look = surface.look;
+    share *= surface.open;
     const glm::vec3 f0 = glm::mix(glm::vec3(0.04f), look.base_color, look.metallic);
     const float facing = std::max(-glm::dot(normal, way), 1e-3f);
     const glm::vec3 mirrored =
@@ -256,10 +262,10 @@ class Tracer {
         // Light falls onto the surface from above, whichever way the ray goes.
         if (leaving) share *= 1.0f - look.gloss * dielectric(facing, look.refraction);
         fluid = leaving ? -1 : hit.fluid;
-      } else if (hit.look->opacity < 1.0f) {
-        share *=
-            pane_tint(*hit.look, facing) * (1.0f - shader::pane_reflectance(shader::schlick(0.04f, facing)));
-      } else {
+      } else if (const SurfaceLook surface = look_at(hit, textures_); surface.look.opacity < 1.0f) {
+        share *= pane_tint(surface.look, facing) *
+                 (1.0f - shader::pane_reflectance(shader::schlick(0.04f, facing)));
+      } else if (!surface.hole) {
         return glm::vec3(0.0f);
       }
       at += room_.to_light * (hit.distance + kApart);
@@ -269,6 +275,7 @@ class Tracer {
 
   const RayScene& scene_;
   const Frame& frame_;
+  const std::vector<RayTexture>& textures_;
   glm::vec3 key_;
   const Environment* environment_;
   shader::Room room_;
@@ -278,16 +285,27 @@ class Tracer {
 class EmbreeTracer : public PathTracer {
  public:
   MeshHandle add_mesh(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
-                      std::span<const glm::uvec3> triangles) override {
+                      std::span<const glm::uvec3> triangles, std::span<const glm::vec2> texcoords) override {
     meshes_.push_back({{positions.begin(), positions.end()},
                        {normals.begin(), normals.end()},
-                       {triangles.begin(), triangles.end()}});
+                       {triangles.begin(), triangles.end()},
+                       {texcoords.begin(), texcoords.end()}});
     Triangles& mesh = meshes_.back();
+    if (mesh.texcoords.size() < mesh.positions.size()) mesh.texcoords.clear();
     mesh.normals.resize(mesh.positions.size(), glm::vec3(0.0f, 1.0f, 0.0f));
     std::erase_if(mesh.triangles, [&](const glm::uvec3& t) {
       return std::max({t.x, t.y, t.z}) >= mesh.positions.size();
     });
     return static_cast<MeshHandle>(meshes_.size() - 1);
+  }
+
+  TextureHandle add_texture(const TextureImage& image) override {
+    if (image.width < 1 || image.height < 1 ||
+        image.rgba.size() <
+            std::size_t{4} * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height))
+      return kNoTexture;
+    textures_.emplace_back(image);
+    return static_cast<TextureHandle>(textures_.size() - 1);
   }
 
   FloatImage draw(const Frame& frame, const Options& options) override {
@@ -297,10 +315,10 @@ class EmbreeTracer : public PathTracer {
         scene.add(meshes_[instance.mesh], instance.model, &instance.look, -1);
     }
     for (FluidMesh& fluid : mesh_fluids(frame, options.cell))
-      scene.add({std::move(fluid.positions), std::move(fluid.normals), std::move(fluid.triangles)},
+      scene.add({std::move(fluid.positions), std::move(fluid.normals), std::move(fluid.triangles), {}},
                 glm::mat4(1.0f), nullptr, static_cast<int>(fluid.fluid));
     scene.finish();
-    const Tracer tracer(scene, frame, Studio{}, options.environment);
+    const Tracer tracer(scene, frame, textures_, Studio{}, options.environment);
     FloatImage image{options.width, options.height, 3,
                      std::vector<float>(std::size_t{3} * options.width * options.height)};
     const glm::mat4 world_from_eye = glm::inverse(frame.view.view);
@@ -336,6 +354,7 @@ class EmbreeTracer : public PathTracer {
 
  private:
   std::vector<Triangles> meshes_;
+  std::vector<RayTexture> textures_;
 };
 
 }  // namespace

@@ -19,6 +19,8 @@ struct RayScene::Parts {
   struct Mesh {
     std::vector<glm::vec3> normals;  // world
     std::vector<glm::uvec3> triangles;
+    std::vector<glm::vec2> texcoords;
+    std::vector<glm::vec3> positions;  // world; empty without texture coordinates
     const MeshLook* look;
     int fluid;
   };
@@ -55,7 +57,8 @@ void RayScene::add(const Triangles& mesh, const glm::mat4& model, const MeshLook
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(parts_->scene, geometry, static_cast<unsigned>(parts_->meshes.size()));
   rtcReleaseGeometry(geometry);
-  Parts::Mesh kept{mesh.normals, mesh.triangles, look, fluid};
+  Parts::Mesh kept{mesh.normals, mesh.triangles, mesh.texcoords, {}, look, fluid};
+  if (!mesh.texcoords.empty()) kept.positions.assign(positions, positions + mesh.positions.size());
   for (glm::vec3& n : kept.normals) n = glm::mat3(model) * n;
   parts_->meshes.push_back(std::move(kept));
 }
@@ -96,6 +99,15 @@ Hit RayScene::nearest(const glm::vec3& from, const glm::vec3& way) const {
   // A vertex' normal must not turn the surface round.
   if ((glm::dot(hit.normal, way) > 0.0f) != (glm::dot(hit.face, way) > 0.0f)) hit.normal = hit.face;
   hit.look = mesh.look;
+  if (!mesh.positions.empty()) {
+    const glm::vec3& corner = mesh.positions[t.x];
+    const glm::vec2& texcoord = mesh.texcoords[t.x];
+    hit.edges[0] = mesh.positions[t.y] - corner;
+    hit.edges[1] = mesh.positions[t.z] - corner;
+    hit.texture_edges[0] = mesh.texcoords[t.y] - texcoord;
+    hit.texture_edges[1] = mesh.texcoords[t.z] - texcoord;
+    hit.texcoord = texcoord + ray.hit.u * hit.texture_edges[0] + ray.hit.v * hit.texture_edges[1];
+  }
   hit.fluid = mesh.fluid;
   return hit;
 }

@@ -15,6 +15,7 @@ struct Triangles {
   std::vector<glm::vec3> positions;
   std::vector<glm::vec3> normals;  ///< one a position
   std::vector<glm::uvec3> triangles;
+  std::vector<glm::vec2> texcoords;  ///< one a position, or empty
 };
 
 struct Hit {
@@ -23,6 +24,10 @@ struct Hit {
   glm::vec3 normal{0.0f};                                   ///< unit: as the vertices have it, outward
   const MeshLook* look = nullptr;                           ///< of a mesh
   int fluid = -1;  ///< of a fluid's surface: index into Frame::fluids
+  // Of a mesh with texture coordinates: where, and two edges of its triangle, world and texture.
+  glm::vec2 texcoord{0.0f};
+  glm::vec3 edges[2]{};
+  glm::vec2 texture_edges[2]{};
   bool there() const { return distance < std::numeric_limits<float>::infinity(); }
 };
 

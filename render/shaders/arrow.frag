@@ -12,6 +12,6 @@ void main() {
   ivec2 texel = ivec2(gl_FragCoord.xy);
   float hidden_by = texelFetch(scene_depth, texel, 0).r;
   if (has_fluid != 0) hidden_by = min(hidden_by, texelFetch(fluid_depth, texel, 0).r);
-  Lit lit = light_surface(normalize(world_normal), normalize(camera.xyz - world), arrow_tint, 0.0, 0.5, vec3(1.0));
+  Lit lit = light_surface(normalize(world_normal), normalize(camera.xyz - world), arrow_tint, 0.0, 0.5, vec3(1.0), 1.0);
   color = vec4(lit.diffuse + lit.specular, eye_depth > hidden_by + 1.0e-3 ? 0.35 : 1.0);
 }

@@ -9,8 +9,9 @@ struct Lit {
   float ambient;  // share of the whole that occlusion may take away, 0–1
 };
 
-// normal and to_eye: unit, world. light: share of the key light that arrives, per channel.
-Lit light_surface(vec3 normal, vec3 to_eye, vec3 base_color, float metallic, float roughness, vec3 light) {
+// normal and to_eye: unit, world. light: share of the key light that arrives, per channel; open: share of the light from all
+// around that does.
+Lit light_surface(vec3 normal, vec3 to_eye, vec3 base_color, float metallic, float roughness, vec3 light, float open) {
   vec3 to_light = to_light_world.xyz;
   float n_l = max(dot(normal, to_light), 0.0);
   float n_v = max(dot(normal, to_eye), 1.0e-3);
@@ -20,9 +21,9 @@ Lit light_surface(vec3 normal, vec3 to_eye, vec3 base_color, float metallic, flo
   float rough = max(roughness, 0.05);
 
   vec3 key = key_light.rgb * light * n_l;
-  vec3 around = ambient_light(normal);
+  vec3 around = ambient_light(normal) * open;
   vec3 rest = f0 + (max(vec3(1.0 - rough), f0) - f0) * schlick(0.0, n_v);
-  vec3 mirror = rough_mirrored(reflect(-to_eye, normal), rough);
+  vec3 mirror = rough_mirrored(reflect(-to_eye, normal), rough) * open;
 
   Lit lit;
   lit.diffuse = albedo * (key * 0.31830989 + around);

@@ -37,6 +37,8 @@ int gltf_type(int components) {
   switch (components) {
     case 1:
       return TINYGLTF_TYPE_SCALAR;
+    case 2:
+      return TINYGLTF_TYPE_VEC2;
     case 3:
       return TINYGLTF_TYPE_VEC3;
     case 4:

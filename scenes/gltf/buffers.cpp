@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uintmax_t kMostBytes = 512ull << 20;
 constexpr const char* kOwnFolder =
-    "Keep the buffers beside the scene or in a folder below it, or export one .glb that holds everything";
+    "Keep what it names beside the scene or in a folder below it, or export one .glb that holds everything";
 
 bool has_scheme(const std::string& uri) {
   const std::size_t colon = uri.find(':');
@@ -45,28 +45,6 @@ std::string percent_decoded(const std::string& uri) {
 bool is_below(const fs::path& folder, const fs::path& path) {
   const auto [end, at] = std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
   return end == folder.end() && at != path.end();
-}
-
-/// The file that a buffer's uri names, or what is wrong with it.
-Result<fs::path> resolve(const fs::path& file, const std::string& who, const std::string& uri) {
-  const std::string where = file.string() + ": " + who;
-  const std::string named = "names '" + clean_text(uri, 100) + "'";
-  if (has_scheme(uri))
-    return Error{where, named + ", which is neither data nor a file of its own", kOwnFolder};
-  const std::string decoded = percent_decoded(uri);
-  if (decoded.find('\0') != std::string::npos) return Error{where, named + ", which is no file", kOwnFolder};
-  std::error_code code;
-  const fs::path folder = fs::canonical(fs::absolute(file, code).parent_path(), code);
-  if (code) return Error{where, named + ": " + code.message(), kOwnFolder};
-  const fs::path found = fs::weakly_canonical(folder / decoded, code);
-  if (code || !is_below(folder, found))
-    return Error{where, named + ", which leads out of the scene's own folder", kOwnFolder};
-  const fs::file_status status = fs::status(found, code);
-  if (status.type() == fs::file_type::not_found)
-    return Error{where, named + ", and there is no such file", kOwnFolder};
-  if (code || status.type() != fs::file_type::regular)
-    return Error{where, named + ", which is not a file", kOwnFolder};
-  return found;
 }
 
 using Files = std::map<std::string, fs::path>;
@@ -113,8 +91,28 @@ void also_size(Callbacks& callbacks) {
     };
   }
 }
-
 }  // namespace
+
+Result<fs::path> find_own_file(const fs::path& file, const std::string& who, const std::string& uri) {
+  const std::string where = file.string() + ": " + who;
+  const std::string named = "names '" + clean_text(uri, 100) + "'";
+  if (has_scheme(uri))
+    return Error{where, named + ", which is neither data nor a file of its own", kOwnFolder};
+  const std::string decoded = percent_decoded(uri);
+  if (decoded.find('\0') != std::string::npos) return Error{where, named + ", which is no file", kOwnFolder};
+  std::error_code code;
+  const fs::path folder = fs::canonical(fs::absolute(file, code).parent_path(), code);
+  if (code) return Error{where, named + ": " + code.message(), kOwnFolder};
+  const fs::path found = fs::weakly_canonical(folder / decoded, code);
+  if (code || !is_below(folder, found))
+    return Error{where, named + ", which leads out of the scene's own folder", kOwnFolder};
+  const fs::file_status status = fs::status(found, code);
+  if (status.type() == fs::file_type::not_found)
+    return Error{where, named + ", and there is no such file", kOwnFolder};
+  if (code || status.type() != fs::file_type::regular)
+    return Error{where, named + ", which is not a file", kOwnFolder};
+  return found;
+}
 
 Result<BufferFiles> BufferFiles::find(const fs::path& file, nlohmann::json& json) {
   BufferFiles out;
@@ -128,7 +126,7 @@ Result<BufferFiles> BufferFiles::find(const fs::path& file, nlohmann::json& json
       return Error{file.string() + ": " + who, "its uri is not a text", "Export the file again"};
     const std::string uri = buffer["uri"].get<std::string>();
     if (uri.starts_with("data:")) continue;
-    const Result<fs::path> found = resolve(file, who, uri);
+    const Result<fs::path> found = find_own_file(file, who, uri);
     if (!found) return found.error();
     std::error_code code;
     bytes += fs::file_size(found.value(), code);

@@ -12,6 +12,11 @@
 
 namespace slosh::gltf {
 
+/// The file that `uri` of `who` (a buffer, an image) names, in `file`'s own folder or below it once links,
+/// ".." and %2e are resolved. Errors: it leads elsewhere, a scheme, no such file, not a file.
+Result<std::filesystem::path> find_own_file(const std::filesystem::path& file, const std::string& who,
+                                            const std::string& uri);
+
 /// A scene may come from a stranger: what it names is opened only where it lies in the scene's own folder or
 /// below it, after every "..", every link and every %2e is resolved. tinygltf itself opens nothing.
 class BufferFiles {

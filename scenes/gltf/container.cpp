@@ -95,8 +95,8 @@ void clean_texts(nlohmann::json& value) {
   }
 }
 
-/// All but the uris of buffers, which hold the data themselves or are looked at by BufferFiles.
-void clean_all_texts(nlohmann::json& root) {
+/// All but the uris of buffers and images, which hold the data themselves or are looked at by find_own_file.
+void clean_all_texts(nlohmann::json& root, nlohmann::json& images) {
   std::vector<nlohmann::json> uris;
   const bool has_buffers = root.contains("buffers") && root["buffers"].is_array();
   if (has_buffers) {
@@ -105,7 +105,8 @@ void clean_all_texts(nlohmann::json& root) {
       if (buffer.is_object() && buffer.contains("uri")) uris.back().swap(buffer["uri"]);
     }
   }
-  root.erase("images");  // nobody looks at them, and they may be large
+  if (root.contains("images")) images.swap(root["images"]);  // they may be large
+  root.erase("images");
   clean_texts(root);
   for (std::size_t i = 0; i < uris.size(); ++i) {
     if (!uris[i].is_null()) root["buffers"][i]["uri"].swap(uris[i]);
@@ -144,7 +145,7 @@ Result<Container> read_container(const std::filesystem::path& file) {
   }
   if (!out.json.is_object())
     return Error{file.string(), "the JSON is not an object", "Export the file again"};
-  clean_all_texts(out.json);
+  clean_all_texts(out.json, out.images);
   return out;
 }
 

@@ -147,6 +147,8 @@ Result<Document> read_document(const std::filesystem::path& file) {
     const nlohmann::json& scene = json["scenes"][json.value("scene", std::size_t{0})];
     if (scene.contains("extras") && scene["extras"].is_object()) document.scene_extras = scene["extras"];
   }
+  document.looks = take_looks(json);
+  document.looks["images"] = std::move(container.value().images);
   drop_unused(json);
   Result<tinygltf::Model> model = to_model(file, container.value());
   if (!model) return model.error();

@@ -15,8 +15,8 @@
 namespace slosh::gltf {
 
 /// What was read. References between nodes, meshes, cameras, materials, accessors and buffer views are in
-/// range; accessors' bounds are not yet checked (accessor.h does that on reading). Textures and skins are
-/// left out.
+/// range; accessors' bounds are not yet checked (accessor.h does that on reading). Textures are in `looks`,
+/// skins are left out.
 struct Document {
   std::string file;  ///< as the user named it, for errors
   tinygltf::Model model;
@@ -25,6 +25,8 @@ struct Document {
   std::vector<glm::dmat4> world;       ///< by node: node frame to world, all parents applied, finite
   std::vector<nlohmann::json> extras;  ///< by node; an object, empty when the node has none
   nlohmann::json scene_extras;         ///< of the default scene; an object
+  nlohmann::json looks;  ///< "materials" (a list of objects, where there), "textures", "samplers", "images":
+                         ///< as they stand
 
   /// "file: node 'name'", as errors begin.
   std::string owner(int node) const;

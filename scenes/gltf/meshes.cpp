@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "scenes/gltf/accessor.h"
+#include "scenes/gltf/textures.h"
 
 namespace slosh::gltf {
 namespace {
@@ -60,6 +61,21 @@ std::optional<Error> append_primitive(const Document& document, const tinygltf::
   return std::nullopt;
 }
 
+/// Looks alone: coordinates that are missing or cannot be read are (0, 0).
+void append_texcoords(const Document& document, const tinygltf::Primitive& primitive, const TexcoordUse& use,
+                      TriangleMesh& out) {
+  const std::size_t base = out.texcoords.size();
+  out.texcoords.resize(out.positions.size(), glm::vec2(0.0f));
+  const auto attribute = primitive.attributes.find("TEXCOORD_" + std::to_string(use.set));
+  if (attribute == primitive.attributes.end()) return;
+  const auto read = read_numbers(document.model, attribute->second, 2, true, "TEXCOORD");
+  if (!read || read.value().size() / 2 != out.positions.size() - base) return;
+  for (std::size_t i = base; i < out.texcoords.size(); ++i) {
+    const double* t = read.value().data() + 2 * (i - base);
+    out.texcoords[i] = glm::vec2(glm::clamp(use.linear * glm::dvec2(t[0], t[1]) + use.offset, -1e4, 1e4));
+  }
+}
+
 /// Gives every vertex without a usable normal the area-weighted mean of its faces.
 void mend_normals(TriangleMesh& mesh) {
   std::vector<glm::dvec3> sums(mesh.positions.size(), glm::dvec3(0.0));
@@ -97,8 +113,11 @@ Result<TriangleMesh> read_mesh(const Document& document, int mesh, const glm::dm
   TriangleMesh out;
   out.name = source.name.empty() ? std::string("#").append(std::to_string(mesh)) : source.name;
   const std::string who = where + ": mesh '" + out.name + "'";
+  const std::optional<TexcoordUse> texcoords =
+      read_material_use(document, material_of(document, mesh), nullptr).texcoords();
   for (const tinygltf::Primitive& primitive : source.primitives) {
     if (const auto problem = append_primitive(document, primitive, who, out)) return *problem;
+    if (texcoords) append_texcoords(document, primitive, *texcoords, out);
   }
   if (out.triangles.empty()) return Error{who, "has no triangles", "Give it faces, or take the node out"};
   bake(rest, out);
@@ -108,25 +127,6 @@ Result<TriangleMesh> read_mesh(const Document& document, int mesh, const glm::dm
     }
   }
   mend_normals(out);
-  return out;
-}
-
-Material read_material(const Document& document, int mesh) {
-  Material out;
-  for (const tinygltf::Primitive& primitive : document.model.meshes[mesh].primitives) {
-    if (primitive.material < 0) continue;
-    const tinygltf::Material& source = document.model.materials[primitive.material];
-    const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
-    const auto unit = [](double v) { return static_cast<float>(v >= 0.0 ? std::min(v, 1.0) : 0.0); };
-    if (pbr.baseColorFactor.size() == 4) {
-      for (int i = 0; i < 3; ++i) out.base_color[i] = unit(pbr.baseColorFactor[i]);
-      // Alpha counts only where the material asks for blending, as glTF has it.
-      if (source.alphaMode == "BLEND") out.opacity = unit(pbr.baseColorFactor[3]);
-    }
-    out.metallic = unit(pbr.metallicFactor);
-    out.roughness = unit(pbr.roughnessFactor);
-    break;
-  }
   return out;
 }
 

@@ -170,6 +170,14 @@ std::optional<Error> check_references(const std::string& file, const nlohmann::j
   return ReferenceCheck(file, root).run();
 }
 
+nlohmann::json take_looks(const nlohmann::json& root) {
+  json looks = json::object();
+  for (const char* list : {"materials", "textures", "samplers"}) {
+    if (root.contains(list)) looks[list] = root[list];
+  }
+  return looks;
+}
+
 void drop_unused(nlohmann::json& root) {
   for (const char* list :
        {"images", "textures", "samplers", "skins", "extensions", "extensionsUsed", "extensionsRequired"}) {

@@ -14,8 +14,12 @@ namespace slosh::gltf {
 /// and that the needed extensions are understood.
 std::optional<Error> check_references(const std::string& file, const nlohmann::json& json);
 
-/// Drops what a scene does not use, so that it can neither slow the reading nor break it: images, textures,
-/// samplers of textures, skins, and materials' references to textures.
+/// What textures.h reads, before drop_unused: "materials", "textures" and "samplers", unchecked but for that
+/// materials are objects.
+nlohmann::json take_looks(const nlohmann::json& json);
+
+/// Drops what the library underneath is not to see, so that it can neither slow the reading nor break it:
+/// images, textures, samplers of textures, skins, and materials' references to textures.
 void drop_unused(nlohmann::json& json);
 
 }  // namespace slosh::gltf

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <glm/gtc/constants.hpp>
 
+#include "scenes/images/decode.h"
 #include "scenes/inspection/inspection.h"
 #include "scenes/mesh/tree.h"
 #include "scenes/reading/reading.h"
@@ -188,11 +189,24 @@ glm::dvec3 in_blender(const glm::dvec3& place) {
   return {place.x, 0.0 - place.z, place.y};
 }
 
+namespace {
+
+void look_at_textures(const gltf::Document& document, const Scene& scene, std::vector<Finding>& warnings) {
+  for (const Error& what : scene.left_out) warnings.push_back({"texture", what});
+  for (const SceneImage& image : scene.images) {
+    const auto unpacked = images::decode(image.bytes, document.file + ": image '" + image.name + "'");
+    if (!unpacked) warnings.push_back({"texture", unpacked.error()});
+  }
+}
+
+}  // namespace
+
 void look_at_scene(const gltf::Document& document, const Scene& scene, std::vector<Finding>& warnings) {
   look_at_gravity(document, scene, warnings);
   look_at_up(document, scene, warnings);
   look_at_size(document, scene, warnings);
   look_at_modifiers(document, scene, warnings);
+  look_at_textures(document, scene, warnings);
 }
 
 }  // namespace slosh::inspection

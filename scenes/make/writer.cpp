@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <fstream>
 #include <limits>
 
@@ -44,23 +43,55 @@ SceneWriter::SceneWriter(const nlohmann::json& scene_extras) {
   model_.defaultScene = 0;
 }
 
-int SceneWriter::add_accessor(const std::vector<float>& numbers, int components, bool with_bounds,
-                              int target) {
+int SceneWriter::add_view(std::span<const std::uint8_t> content, int target) {
   std::vector<unsigned char>& bytes = model_.buffers[0].data;
+  bytes.resize((bytes.size() + 3) & ~std::size_t{3});  // what follows an image is aligned, too
   tinygltf::BufferView view;
   view.buffer = 0;
   view.byteOffset = bytes.size();
-  view.byteLength = numbers.size() * sizeof(float);
+  view.byteLength = content.size();
   view.target = target;
-  bytes.resize(bytes.size() + view.byteLength);
-  std::memcpy(bytes.data() + view.byteOffset, numbers.data(), view.byteLength);
+  bytes.insert(bytes.end(), content.begin(), content.end());
   model_.bufferViews.push_back(view);
+  return static_cast<int>(model_.bufferViews.size()) - 1;
+}
+
+int SceneWriter::add_image(const std::string& name, std::span<const std::uint8_t> bytes) {
+  tinygltf::Image image;
+  image.name = name;
+  image.mimeType = !bytes.empty() && bytes[0] == 0xff ? "image/jpeg" : "image/png";
+  image.bufferView = add_view(bytes, 0);
+  model_.images.push_back(image);
+  return static_cast<int>(model_.images.size()) - 1;
+}
+
+int SceneWriter::add_texture(const PaintMap& map) {
+  if (map.image < 0) return -1;
+  constexpr int kWraps[] = {TINYGLTF_TEXTURE_WRAP_REPEAT, TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT,
+                            TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE};
+  constexpr int kShrinks[] = {9728, 9729, 9984, 9985, 9986, 9987};
+  tinygltf::Sampler sampler;
+  sampler.wrapS = kWraps[static_cast<std::size_t>(map.sampling.wrap_u)];
+  sampler.wrapT = kWraps[static_cast<std::size_t>(map.sampling.wrap_v)];
+  sampler.minFilter = kShrinks[static_cast<std::size_t>(map.sampling.shrink)];
+  sampler.magFilter = map.sampling.nearest ? TINYGLTF_TEXTURE_FILTER_NEAREST : TINYGLTF_TEXTURE_FILTER_LINEAR;
+  tinygltf::Texture texture;
+  texture.source = map.image;
+  texture.sampler = static_cast<int>(model_.samplers.size());
+  model_.samplers.push_back(sampler);
+  model_.textures.push_back(texture);
+  return static_cast<int>(model_.textures.size()) - 1;
+}
+
+int SceneWriter::add_accessor(const std::vector<float>& numbers, int components, bool with_bounds,
+                              int target) {
   tinygltf::Accessor accessor;
-  accessor.bufferView = static_cast<int>(model_.bufferViews.size()) - 1;
+  accessor.bufferView = add_view(
+      {reinterpret_cast<const std::uint8_t*>(numbers.data()), numbers.size() * sizeof(float)}, target);
   accessor.componentType = TINYGLTF_COMPONENT_TYPE_FLOAT;
   accessor.count = numbers.size() / static_cast<std::size_t>(components);
-  accessor.type =
-      components == 1 ? TINYGLTF_TYPE_SCALAR : (components == 3 ? TINYGLTF_TYPE_VEC3 : TINYGLTF_TYPE_VEC4);
+  constexpr int kTypes[] = {TINYGLTF_TYPE_SCALAR, TINYGLTF_TYPE_VEC2, TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC4};
+  accessor.type = kTypes[components - 1];
   if (with_bounds) {
     accessor.minValues.assign(components, std::numeric_limits<double>::infinity());
     accessor.maxValues.assign(components, -std::numeric_limits<double>::infinity());
@@ -82,34 +113,43 @@ int SceneWriter::add_material(const std::string& name, const Paint& paint) {
   material.pbrMetallicRoughness.metallicFactor = paint.metallic;
   material.pbrMetallicRoughness.roughnessFactor = paint.roughness;
   if (paint.color.a < 1.0) material.alphaMode = "BLEND";
+  material.emissiveFactor = to_list(paint.emissive);
+  material.pbrMetallicRoughness.baseColorTexture.index = add_texture(paint.base_color_map);
+  material.pbrMetallicRoughness.metallicRoughnessTexture.index = add_texture(paint.metallic_roughness_map);
+  material.normalTexture.index = add_texture(paint.normal_map);
+  material.normalTexture.scale = paint.normal_scale;
+  material.occlusionTexture.index = add_texture(paint.occlusion_map);
+  material.occlusionTexture.strength = paint.occlusion_strength;
+  material.emissiveTexture.index = add_texture(paint.emissive_map);
   model_.materials.push_back(material);
   return static_cast<int>(model_.materials.size()) - 1;
 }
 
 int SceneWriter::add_mesh(const std::string& name, const Solid& solid, int material) {
-  const TriangleMesh triangles = with_normals(solid);
+  return add_mesh(name, with_normals(solid), material);
+}
+
+int SceneWriter::add_mesh(const std::string& name, const TriangleMesh& triangles, int material) {
   std::vector<float> positions;
   std::vector<float> normals;
   for (std::size_t i = 0; i < triangles.positions.size(); ++i) {
     for (int c = 0; c < 3; ++c) positions.push_back(triangles.positions[i][c]);
     for (int c = 0; c < 3; ++c) normals.push_back(triangles.normals[i][c]);
   }
-  std::vector<unsigned char>& bytes = model_.buffers[0].data;
   tinygltf::Primitive primitive;
   primitive.mode = TINYGLTF_MODE_TRIANGLES;
   primitive.material = material;
   primitive.attributes["POSITION"] = add_accessor(positions, 3, true, TINYGLTF_TARGET_ARRAY_BUFFER);
   primitive.attributes["NORMAL"] = add_accessor(normals, 3, false, TINYGLTF_TARGET_ARRAY_BUFFER);
-  tinygltf::BufferView view;
-  view.buffer = 0;
-  view.byteOffset = bytes.size();
-  view.byteLength = triangles.triangles.size() * sizeof(glm::uvec3);
-  view.target = TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER;
-  bytes.resize(bytes.size() + view.byteLength);
-  std::memcpy(bytes.data() + view.byteOffset, triangles.triangles.data(), view.byteLength);
-  model_.bufferViews.push_back(view);
+  if (!triangles.texcoords.empty()) {
+    std::vector<float> texcoords;
+    for (const glm::vec2& t : triangles.texcoords) texcoords.insert(texcoords.end(), {t.x, t.y});
+    primitive.attributes["TEXCOORD_0"] = add_accessor(texcoords, 2, false, TINYGLTF_TARGET_ARRAY_BUFFER);
+  }
+  const auto* indices = reinterpret_cast<const std::uint8_t*>(triangles.triangles.data());
   tinygltf::Accessor accessor;
-  accessor.bufferView = static_cast<int>(model_.bufferViews.size()) - 1;
+  accessor.bufferView = add_view({indices, triangles.triangles.size() * sizeof(glm::uvec3)},
+                                 TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
   accessor.componentType = TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
   accessor.count = 3 * triangles.triangles.size();
   accessor.type = TINYGLTF_TYPE_SCALAR;

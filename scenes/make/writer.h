@@ -7,17 +7,29 @@
 #include <functional>
 #include <glm/glm.hpp>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 
 #include "scenes/make/solid.h"
 #include "sim/math/pose.h"
+#include "sim/math/texture_sampling.h"
 
 namespace slosh::make {
+
+/// A texture of a Paint: an image of add_image, how it is read beyond its edges and between its texels.
+struct PaintMap {
+  int image = -1;  ///< none
+  TextureSampling sampling;
+};
 
 struct Paint {
   glm::dvec4 color{0.7, 0.7, 0.7, 1.0};  ///< linear; alpha below 1 is blended
   double metallic = 0.0;
   double roughness = 0.6;
+  glm::dvec3 emissive{0.0};
+  PaintMap base_color_map{}, metallic_roughness_map{}, normal_map{}, occlusion_map{}, emissive_map{};
+  double normal_scale = 1.0;
+  double occlusion_strength = 1.0;
 };
 
 class SceneWriter {
@@ -25,8 +37,12 @@ class SceneWriter {
   /// Properties of the whole scene (scenes/README.md).
   explicit SceneWriter(const nlohmann::json& scene_extras);
 
+  /// `bytes`: a PNG or a JPEG; it goes into the file's buffer.
+  int add_image(const std::string& name, std::span<const std::uint8_t> bytes);
   int add_material(const std::string& name, const Paint& paint);
   int add_mesh(const std::string& name, const Solid& solid, int material);
+  /// The same of triangles with normals, and with texture coordinates where there are any.
+  int add_mesh(const std::string& name, const TriangleMesh& triangles, int material);
   /// `mesh` −1 makes an empty; `parent` −1 a root.
   int add_node(const std::string& name, int mesh, const Pose& pose, const nlohmann::json& extras,
                int parent = -1);
@@ -41,6 +57,8 @@ class SceneWriter {
   bool write(const std::filesystem::path& file);
 
  private:
+  int add_view(std::span<const std::uint8_t> bytes, int target);
+  int add_texture(const PaintMap& map);
   int add_accessor(const std::vector<float>& numbers, int components, bool with_bounds, int target);
 
   tinygltf::Model model_;

@@ -96,7 +96,7 @@ Problem read_body(Reading& reading, int node) {
   read_wall_viscosity(extras, body);
   body.twist.linear = extras.vector("velocity_m_s", glm::dvec3(0.0), Range{-1e3, 1e3});
   body.twist.angular = extras.vector("angular_velocity_rad_s", glm::dvec3(0.0), Range{-1e3, 1e3});
-  body.material = gltf::read_material(reading.document, reading.document.model.nodes[node].mesh);
+  body.material = read_material(reading, reading.document.model.nodes[node].mesh);
   if (Problem problem = all_of(reading, mesh_problem, extras)) return problem;
   if (reading.scene.bodies.size() >= kMostBodies) {
     return Error{reading.document.owner(node), "more than " + std::to_string(kMostBodies) + " bodies",
@@ -124,7 +124,7 @@ Problem read_probe(Reading& reading, int node) {
   const int look = reading.document.model.nodes[node].mesh;
   if (look >= 0) {
     if (Problem problem = read_node_mesh(reading, node, rest, false, body.mesh)) return problem;
-    body.material = gltf::read_material(reading.document, look);
+    body.material = read_material(reading, look);
   }
   reading.body_of_node[node] = static_cast<int>(reading.scene.bodies.size());
   reading.scene.bodies.push_back(std::move(body));
@@ -184,7 +184,7 @@ Problem read_picture(Reading& reading, int node) {
   if (Problem problem = read_pose(reading, node, picture.pose, rest)) return problem;
   // A node without the key is only looked at: its properties, if any, are somebody else's.
   if (Problem problem = read_node_mesh(reading, node, rest, false, picture.mesh)) return problem;
-  picture.material = gltf::read_material(reading.document, reading.document.model.nodes[node].mesh);
+  picture.material = read_material(reading, reading.document.model.nodes[node].mesh);
   reading.scene.pictures.push_back(std::move(picture));
   return std::nullopt;
 }

@@ -38,6 +38,9 @@ struct Reading {
   std::map<std::string, int> names;  ///< of nodes with a `slosh` property
   std::set<int> failed;              ///< nodes that could not be read
   std::vector<Error> further;        ///< of what is being read, beside the problem that is returned
+  std::map<int, Material> materials;  ///< glTF material → what came of it
+  std::map<int, int> images;          ///< glTF image → Scene::images, −1 where it could not be read
+  std::size_t image_pixels = 0;       ///< of all of these
 };
 
 /// All stages in order. The first problem ends the reading; with `all` every one is put there instead, but for those
@@ -68,6 +71,10 @@ Problem read_region(Reading& reading, int node);  ///< after all bodies
 Problem read_camera(Reading& reading);          ///< after everything with a size
 Problem read_domain(Reading& reading);          ///< likewise
 Problem fit_spacing(Reading& reading);          ///< likewise: a coarsest spacing that was not given fits the walls
+
+/// What the mesh is shown with: the material of its first primitive that has one. Images go to Scene::images;
+/// what of them cannot be read is left out, and told in Scene::left_out.
+Material read_material(Reading& reading, int mesh);
 
 /// Rigid pose of a node, and what the pose leaves of its transform.
 Problem read_pose(const Reading& reading, int node, Pose& pose, glm::dmat3& rest);

@@ -90,7 +90,7 @@ Problem all_of(Reading& reading, Problem first, const gltf::Extras& extras) {
 }
 
 std::optional<Scene> read_stages(const gltf::Document& document, std::vector<Error>& problems, bool all) {
-  Reading reading{document, {}, {}, {}, {}, {}, {}, 0, {}, {}, {}, {}};
+  Reading reading{document, {}, {}, {}, {}, {}, {}, 0, {}, {}, {}, {}, {}, {}};
   const std::filesystem::path file = document.file;
   reading.scene.name = clean_text(file.stem().string(), kMostTextBytes);
   reading.scene.source_file = document.file;

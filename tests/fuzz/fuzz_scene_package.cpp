@@ -16,6 +16,8 @@ void check_scene(const Scene& scene) {
   const auto at = [](const auto& list, int index) { return static_cast<std::size_t>(index) < list.size(); };
   for (const TriangleMesh& mesh : scene.meshes) {
     test::must(mesh.normals.size() == mesh.positions.size(), "a normal for each position");
+    test::must(mesh.texcoords.empty() || mesh.texcoords.size() == mesh.positions.size(),
+               "texture coordinates likewise");
     for (const glm::uvec3& t : mesh.triangles)
       test::must(std::max({t.x, t.y, t.z}) < mesh.positions.size(), "triangles of the mesh's positions");
   }
@@ -27,6 +29,13 @@ void check_scene(const Scene& scene) {
   }
   for (const Picture& picture : scene.pictures)
     test::must(at(scene.meshes, picture.mesh), "a picture's mesh");
+  const auto check_maps = [&](const MaterialMaps& maps) {
+    for (const TextureMap* map :
+         {&maps.base_color, &maps.metallic_roughness, &maps.normal, &maps.occlusion, &maps.emissive})
+      test::must(map->image == -1 || at(scene.images, map->image), "a texture's image");
+  };
+  for (const Body& body : scene.bodies) check_maps(body.material.maps);
+  for (const Picture& picture : scene.pictures) check_maps(picture.material.maps);
   for (const Grip& grip : scene.grips) {
     test::must(at(scene.bodies, grip.body), "a grip's body");
     for (std::size_t i = 1; i < grip.hand_motion.size(); ++i)
@@ -62,5 +71,18 @@ std::vector<std::vector<std::uint8_t>> slosh_fuzz_seeds() {
     wire::encode(packed, stored);
     seeds.push_back(stored);
   }
+  // With textures; the images are anything, as they are when they arrive.
+  Scene textured = test::small_scene();
+  textured.images = {{"paint", {1, 2, 3}}, {"bumps", {4, 5}}};
+  for (TriangleMesh& mesh : textured.meshes) mesh.texcoords.resize(mesh.positions.size(), glm::vec2(0.5f));
+  textured.bodies[0].material.maps.base_color.image = 0;
+  textured.pictures[0].material.maps.normal.image = 1;
+  wire::TexturedScene whole{{{{{textured, 0.01}}}, textured.fluids}, {}, {}};
+  for (const TriangleMesh& mesh : textured.meshes) whole.texcoords.push_back(mesh.texcoords);
+  for (const Body& body : textured.bodies) whole.materials.push_back(body.material);
+  for (const Picture& picture : textured.pictures) whole.materials.push_back(picture.material);
+  std::vector<std::uint8_t> stored{5, 0};
+  wire::encode(whole, stored);
+  seeds.push_back(stored);
   return seeds;
 }

@@ -141,7 +141,7 @@ TEST(ForeignFile, NothingElseIsOpened) {
   }
 }
 
-TEST(ForeignFile, APictureIsNeitherOpenedNorFetched) {
+TEST(ForeignFile, APictureIsHeldToTheSame) {
   const TempFolder outer;
   fs::create_directories(outer / "scene");
   test::write_text(outer / "secret.png", "\x89PNG");
@@ -153,8 +153,8 @@ TEST(ForeignFile, APictureIsNeitherOpenedNorFetched) {
   for (const std::string& uri :
        {std::string("/etc/passwd"), secret, "file://" + secret, std::string("../secret.png"),
         std::string("link.png"), std::string("own.png"), std::string("pipe.png"),
-        "http://" + ear.at() + "/a.png", "https://" + ear.at() + "/a.png", "//" + ear.at() + "/a.png",
-        std::string("data:image/png;base64,AAAA")}) {
+        std::string("%2e%2e/secret.png"), "http://" + ear.at() + "/a.png", "https://" + ear.at() + "/a.png",
+        "//" + ear.at() + "/a.png", std::string("data:image/png;base64,AAAA")}) {
     nlohmann::json json;
     ASSERT_TRUE(test::make_cup().write(outer / "scene/cup.gltf"));
     json = test::read_json(outer / "scene/cup.gltf");
@@ -162,15 +162,23 @@ TEST(ForeignFile, APictureIsNeitherOpenedNorFetched) {
     json["textures"] = nlohmann::json::array({{{"source", 0}}});
     json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
     test::write_text(outer / "scene/cup.gltf", json.dump());
-    const Openings openings({outer / "secret.png", outer / "scene/own.png", outer / "scene/pipe.png"});
+    const Openings openings({outer / "secret.png", outer / "scene/pipe.png"});
+    const Openings own({outer / "scene/own.png"});
     const Result<Scene> scene = load_scene(outer / "scene/cup.gltf");
-    EXPECT_TRUE(scene) << uri << ": " << (scene ? "" : scene.error().text());
+    ASSERT_TRUE(scene) << uri << ": " << scene.error().text();
     EXPECT_FALSE(openings.any()) << uri;
+    EXPECT_EQ(own.any(), uri == "own.png") << uri;
     EXPECT_FALSE(ear.anybody()) << uri;
+    // None of them is a picture: one sentence, and the scene without it.
+    ASSERT_EQ(scene.value().left_out.size(), 1u) << uri;
+    EXPECT_NE(scene.value().left_out[0].where.find("image"), std::string::npos)
+        << scene.value().left_out[0].text();
+    EXPECT_TRUE(scene.value().images.empty()) << uri;
+    EXPECT_FALSE(scene.value().bodies[0].material.maps.any()) << uri;
   }
-  // Both would be seen.
-  const Openings openings({outer / "scene/own.png"});
-  read_bytes(outer / "scene/own.png");
+  // It would be seen.
+  const Openings openings({outer / "secret.png"});
+  read_bytes(outer / "secret.png");
   EXPECT_TRUE(openings.any());
 }
 

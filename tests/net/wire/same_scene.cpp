@@ -15,10 +15,6 @@ bool same(const Pose& a, const Pose& b) {
 bool same(const Twist& a, const Twist& b) {
   return a.linear == b.linear && a.angular == b.angular;
 }
-bool same(const Material& a, const Material& b) {
-  return a.base_color == b.base_color && a.metallic == b.metallic && a.roughness == b.roughness &&
-         a.opacity == b.opacity;
-}
 
 }  // namespace
 
@@ -30,6 +26,11 @@ void expect_same_scene(const Scene& a, const Scene& b) {
   SAME(source_file);
   ASSERT_EQ(a.meshes.size(), b.meshes.size());
   ASSERT_EQ(a.fluids.size(), b.fluids.size());
+  ASSERT_EQ(a.images.size(), b.images.size());
+  for (std::size_t i = 0; i < a.images.size(); ++i) {
+    SAME(images[i].name);
+    SAME(images[i].bytes);
+  }
   ASSERT_EQ(a.fluid_volumes.size(), b.fluid_volumes.size());
   ASSERT_EQ(a.bodies.size(), b.bodies.size());
   ASSERT_EQ(a.pictures.size(), b.pictures.size());
@@ -39,6 +40,7 @@ void expect_same_scene(const Scene& a, const Scene& b) {
     SAME(meshes[i].positions);
     SAME(meshes[i].normals);
     SAME(meshes[i].triangles);
+    SAME(meshes[i].texcoords);
   }
   for (std::size_t i = 0; i < a.fluids.size(); ++i) {
     SAME(fluids[i].name);
