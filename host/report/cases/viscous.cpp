@@ -253,7 +253,7 @@ std::vector<ErrorCase> viscous_cases() {
        1,
        stokes<5>},
       {"stokes_honey",
-       "The same in 50 Pa·s, where the corrected model solves for the drag",
+       "A ball on that axis in 50 Pa·s",
        "6πμaU, times 2.37 for the tube",
        {0.008, 0.006},
        1,
