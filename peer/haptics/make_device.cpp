@@ -5,6 +5,7 @@
 #include "net/grip_start.h"
 #include "peer/haptics/devices/controller_device.h"
 #include "peer/haptics/devices/hardware.h"
+#include "peer/haptics/devices/room_tie.h"
 #include "peer/haptics/script_device.h"
 
 namespace slosh {
@@ -46,8 +47,8 @@ Result<HandDevice> make_device(const Scene& scene, std::size_t grip, const std::
     if (!keys) return keys.error();
     hand.device = std::make_unique<TrackDevice>(PoseTrack(keys.value(), start), "replay");
   } else {
-    const HandPlace place{start, camera_axes(scene.camera.eye, scene.camera.target),
-                          scene.grips[grip].hand_motion};
+    HandPlace place{start, camera_axes(scene.camera.eye, scene.camera.target), scene.grips[grip].hand_motion};
+    if (headset && is_tied(spec)) place.tie = std::make_shared<RoomTie>(headset);
     std::optional<Result<std::unique_ptr<Device>>> made = make_hardware(spec, place);
     if (!made) {
       return Error{"--device", "'" + spec + "' is no device",

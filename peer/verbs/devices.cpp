@@ -14,6 +14,7 @@
 #include "peer/haptics/devices/hardware.h"
 #include "peer/output/whole_file.h"
 #include "peer/verbs/common_options.h"
+#include "peer/verbs/devices_calibrate.h"
 #include "peer/verbs/devices_test.h"
 #include "peer/verbs/interrupt.h"
 #include "peer/verbs/verbs.h"
@@ -23,7 +24,8 @@ namespace slosh {
 namespace {
 
 constexpr const char* kFooter =
-    "Lists SpaceMice, gamepads and Falcons that are plugged in, each with what to give to --device, and what is wrong\n"
+    "Lists SpaceMice, gamepads and Falcons that are plugged in, each with what to give to --device, and what "
+    "is wrong\n"
     "with it. Mostly that is a permission: --install-udev-rule puts a rule in place that lets whoever sits "
     "at\n"
     "the machine open them (needs root; without it the rule and the command are printed).\n"
@@ -31,7 +33,8 @@ constexpr const char* kFooter =
     "--live shows what devices say, ten times a second, until Ctrl-C: hold it, move every axis, press every\n"
     "button. `slosh devices test NAME` pushes slowly along each axis and tells stiffness and damping of "
     "what\n"
-    "holds the handle, and how even the device's loop is.\n"
+    "holds the handle, and how even the device's loop is. `slosh devices calibrate NAME` finds where it\n"
+    "stands in the room of a headset.\n"
     "\n"
     "Besides hardware there are always\n"
     "  script, mouse, replay:FILE       see `slosh play --help`\n"
@@ -219,6 +222,7 @@ void add_devices(CLI::App& app, VerbRun& chosen) {
   });
   verb->require_subcommand(0, 1);
   add_devices_test(*verb, chosen);
+  add_devices_calibrate(*verb, chosen);
 }
 
 }  // namespace slosh

@@ -57,7 +57,9 @@ HeadsetPanel panel_place(const Pose& head, const AnchorWish& wish) {
 }
 
 HeadsetView::HeadsetView(std::unique_ptr<Headset> headset, const HeadsetWish& wish)
-    : headset_(std::move(headset)), wish_(wish), link_(std::make_shared<HeadsetLink>(headset_->hands())) {}
+    : headset_(std::move(headset)),
+      wish_(wish),
+      link_(std::make_shared<HeadsetLink>(headset_->hands(), 1.0 / wish.scale)) {}
 
 Result<std::unique_ptr<HeadsetView>> HeadsetView::find(const HeadsetWish& wish) {
   HeadsetOptions options;
@@ -119,6 +121,9 @@ HeadsetView::Turn HeadsetView::turn(const std::function<void(const HeadsetPictur
     std::optional<RoomInWorld> room = link_->room();
     if (!room) {  // once: the world never moves the head
       room = anchor_room(head, anchor_);
+      // Where an arm was calibrated the scene comes to it: its hand is where the arm's tip is.
+      if (const std::optional<LeadingHand> arm = link_->leading())
+        room->origin += arm->in_world - room->to_world(Pose{arm->in_room, {}}).position;
       panel_ = panel_place(head, anchor_);
       link_->place(*room);
     }

@@ -5,6 +5,8 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "peer/haptics/devices/room_tie.h"
+
 namespace slosh {
 namespace {
 
@@ -53,7 +55,7 @@ Result<bool> FalconDevice::open() {
   HandMapSettings defaults;
   defaults.scale = 3.0;
   defaults.clutch_button = kCentreButton;
-  const HandMapSettings settings = read_hand_map(file.value(), defaults);
+  HandMapSettings settings = read_hand_map(file.value(), defaults);
   const std::optional<std::string> firmware = file.value().text("firmware");
   if (const Result<bool> fine = file.value().check(); !fine) return fine;
   if (!begin_falcon_packets(*link_) || !answers()) {
@@ -64,6 +66,10 @@ Result<bool> FalconDevice::open() {
           "of slosh; 7 to 9 kB, for example novint.bin)"};
     }
     if (const Result<bool> started = start(*firmware); !started) return started;
+  }
+  if (place_.tie) {
+    if (const Result<bool> begun = place_.tie->begin("falcon"); !begun) return begun;
+    if (place_.tie->shared()) tie_to_room(settings, place_.tie->scale());
   }
   ChosenGains gains = choose_gains(sheet(), kOwnDamping, 1.0, kPeriod, settings, "falcon");
   warnings_ = std::move(gains.warnings);
@@ -151,7 +157,8 @@ DeviceReport FalconDevice::read(const DeviceMoment&) {
     set_trouble(homed_ ? "" : "the Falcon lost its place: pull its grip out and push it in once");
   }
   if (!homed_) return silent();
-  if (const glm::dquat* axes = camera_now_.news()) map_->look_from(*axes);
+  const bool shared = place_.tie && place_.tie->shared();
+  if (const glm::dquat* axes = camera_now_.news(); axes && !shared) map_->look_from(*axes);
   for (std::size_t i = 0; i < 3; ++i) angles_[i] = falcon_angle_of(state->counts[i]);
   const std::optional<glm::dvec3> grip = falcon_grip(angles_, grip_);
   if (!grip) return silent();
@@ -161,7 +168,11 @@ DeviceReport FalconDevice::read(const DeviceMoment&) {
   report.pose.position = grip_ - glm::dvec3(0.0, 0.0, kFalconMiddle);
   report.twist = velocity_.add(report.pose, now_ns);
   report.buttons = state->buttons;
-  return map_->to_world(report);
+  const DeviceReport in_world = map_->to_world(report);
+  if (place_.tie) {
+    if (const auto axes = place_.tie->follow(report.pose, in_world.pose)) map_->look_from(*axes);
+  }
+  return in_world;
 }
 
 void FalconDevice::write(const Wrench& on_hand) {

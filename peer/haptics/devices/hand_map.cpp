@@ -75,6 +75,11 @@ ChosenGains choose_gains(const DeviceLimits& sheet, double own_damping, double o
   return chosen;
 }
 
+void tie_to_room(HandMapSettings& settings, double scale) {
+  settings.scale = scale;
+  settings.by_camera = true;  // so that look_from() counts, which the room calls and the camera does not
+}
+
 HandMap::HandMap(const HandMapSettings& settings, const HandPlace& place)
     : settings_(settings),
       axes_(settings.by_camera ? place.camera : glm::dquat(1.0, 0.0, 0.0, 0.0)),

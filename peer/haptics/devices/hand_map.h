@@ -25,6 +25,10 @@ struct HandMapSettings {
 /// Takes the keys of every device that gives a force; check() is the caller's.
 HandMapSettings read_hand_map(DeviceFile& file, HandMapSettings defaults);
 
+/// A device that shares a room with a headset: its axes and its scale are the room's (RoomTie), a metre a
+/// metre.
+void tie_to_room(HandMapSettings& settings, double scale);
+
 /// A device's gains: its sheet's, within what its own damping holds (passive_gains.h) unless the file asks
 /// for more, which is warned of in words.
 struct ChosenGains {

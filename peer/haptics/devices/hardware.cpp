@@ -60,6 +60,11 @@ std::optional<Made> make_hardware(const std::string& spec, const HandPlace& plac
   return std::nullopt;
 }
 
+bool is_tied(const std::string& spec) {
+  const std::string kind = spec.substr(0, spec.find(':'));
+  return kind == "falcon" || kind == "plugin";
+}
+
 std::vector<FoundDevice> find_hardware() {
   std::vector<FoundDevice> all;
   for (const SpaceMouseFound& found : find_spacemice()) {

@@ -11,11 +11,15 @@
 
 namespace slosh {
 
+class RoomTie;
+
 /// Where a hand begins, and what it would do by itself.
 struct HandPlace {
   Pose start;
   glm::dquat camera{1.0, 0.0, 0.0, 0.0};  ///< the camera's axes (right, up, towards the eye) to the world's
   std::vector<PoseKey> motion;            ///< the scene's, for the simulated operator; may be empty
+  std::shared_ptr<RoomTie> tie =
+      nullptr;  ///< to a headset's room, of a device that tells its place; null: none
 };
 
 /// The orientation of a camera that looks from `eye` at `target`, y up.
@@ -24,6 +28,9 @@ glm::dquat camera_axes(const glm::dvec3& eye, const glm::dvec3& target);
 /// The device that `spec` names, not open yet; nothing where it names none of these kinds. Errors: what
 /// stands after the kind cannot be used.
 std::optional<Result<std::unique_ptr<Device>>> make_hardware(const std::string& spec, const HandPlace& place);
+
+/// Whether a device of `spec` tells a place of its own, and so may share a room with a headset.
+bool is_tied(const std::string& spec);
 
 /// How a spec of these kinds is written, for errors and help.
 constexpr const char* kHardwareSpecs =

@@ -8,6 +8,7 @@
 
 #include "net/clock.h"
 #include "net/text/clean.h"
+#include "peer/haptics/devices/room_tie.h"
 
 namespace slosh {
 namespace {
@@ -110,8 +111,12 @@ Result<bool> PluginDevice::settle(const slosh_device_capabilities& said) {
 
   Result<DeviceFile> file = DeviceFile::read(device_settings_file(settings_name(name.data()), ""));
   if (!file) return file.error();
-  const HandMapSettings settings = read_hand_map(file.value(), HandMapSettings{});
+  HandMapSettings settings = read_hand_map(file.value(), HandMapSettings{});
   if (const Result<bool> fine = file.value().check(); !fine) return fine;
+  if (place_.tie) {
+    if (const Result<bool> begun = place_.tie->begin(settings_name(name.data())); !begun) return begun;
+    if (place_.tie->shared()) tie_to_room(settings, place_.tie->scale());
+  }
   ChosenGains gains =
       choose_gains(sheet_of(said), said.own_damping_n_s_m, said.own_rotational_damping_nm_s_rad,
                    std::max(said.period_s, 0.001), settings, clean_text(name.data(), 64));
@@ -135,7 +140,8 @@ DeviceReport PluginDevice::taken(const slosh_device_reading& r) {
   report.buttons = r.buttons;
   report.engaged = (r.flags & SLOSH_READING_LET_GO) == 0;
   const bool sound = is_sound(report);
-  if (const glm::dquat* axes = camera_now_.news()) map_->look_from(*axes);
+  const bool shared = place_.tie && place_.tie->shared();
+  if (const glm::dquat* axes = camera_now_.news(); axes && !shared) map_->look_from(*axes);
   if (sound == unsound_) {
     unsound_ = !sound;
     set_trouble(sound ? ""
@@ -146,7 +152,11 @@ DeviceReport PluginDevice::taken(const slosh_device_reading& r) {
     return silent();
   }
   if ((r.flags & SLOSH_READING_HAS_TWIST) == 0) report.twist = velocity_.add(report.pose, steady_now_ns());
-  return map_->to_world(report);
+  const DeviceReport in_world = map_->to_world(report);
+  if (place_.tie) {
+    if (const auto axes = place_.tie->follow(report.pose, in_world.pose)) map_->look_from(*axes);
+  }
+  return in_world;
 }
 
 DeviceReport PluginDevice::silent() const {
