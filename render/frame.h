@@ -101,6 +101,13 @@ struct Arrow {
   glm::vec3 color{1.0f};
 };
 
+/// A drop of spray, a bubble, a patch of foam.
+struct FoamPoint {
+  glm::vec3 position{0.0f};  ///< m, world
+  float radius = 0.001f;     ///< m
+  float opacity = 1.0f;      ///< 0–1
+};
+
 struct Frame {
   View view;
   glm::vec3 light_direction{-0.4f, -1.0f, -0.35f};  ///< the way the light travels
@@ -110,6 +117,7 @@ struct Frame {
   std::vector<FluidLook> fluids;
   float particle_radius =
       0.005f;  ///< m, of the ball with a particle's volume; splats are 1.2 times larger (5.1)
+  std::span<const FoamPoint> foam;  ///< drawn over the fluid; fades below its surface
   std::vector<Arrow> arrows;
   std::function<void()>
       hud;  ///< Dear ImGui calls for this frame, run between NewFrame and Render; may be empty

@@ -12,6 +12,7 @@
 #include "render/passes/far_light.h"
 #include "render/passes/fluid_passes.h"
 #include "render/passes/fluid_shadow_pass.h"
+#include "render/passes/foam_pass.h"
 #include "render/passes/frame_block.h"
 #include "render/passes/hud_pass.h"
 #include "render/passes/meshes.h"
@@ -86,6 +87,7 @@ struct Renderer::Parts {
   std::optional<ScenePass> scene_pass;
   std::optional<FluidPasses> fluid_passes;
   std::optional<ThicknessPass> thickness_pass;
+  std::optional<FoamPass> foam_pass;  ///< made when there is foam
   std::optional<ArrowPass> arrow_pass;
   std::optional<DisplayPass> display_pass;
   std::unique_ptr<HudPass> hud_pass;
@@ -139,6 +141,7 @@ Result<bool> Renderer::Parts::fit_to_options() {
     if (!thickness) return thickness.error();
     thickness_pass = std::move(thickness.value());
     arrow_pass = std::move(arrows.value());
+    foam_pass.reset();
     far_light = std::move(light);
     scene_pass = std::move(scene.value());
     fluid_shadow_pass = std::move(fluid_shadow.value());
@@ -280,6 +283,12 @@ void Renderer::Parts::draw_scene() {
                          GL_TEXTURE_2D, 0, 0, 0, 0, targets.size.x, targets.size.y, 1);
     });
     run("composite", [&] { fluid_passes->composite(targets, options.lit_fluid); });
+  }
+  if (!frame.foam.empty()) {
+    if (!foam_pass) {
+      if (auto made = FoamPass::create(far_light.defines())) foam_pass = std::move(made.value());
+    }
+    if (foam_pass) run("foam", [&] { foam_pass->draw(frame, targets, fluid_depth()); });
   }
   if (translucent) {
     run("translucent",

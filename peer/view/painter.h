@@ -7,6 +7,7 @@
 #include <span>
 
 #include "peer/hud/hud.h"
+#include "peer/view/foam.h"
 #include "peer/view/frame_builder.h"
 #include "peer/view/held_rects.h"
 #include "peer/view/orbit_camera.h"
@@ -20,16 +21,21 @@ class Painter {
   Painter(const Scene& scene, const HudFacts& facts, Renderer& renderer)
       : renderer_(renderer),
         builder_(scene, facts.spacing, renderer),
+        foam_(scene, facts.spacing),
         camera_(scene.camera),
         hud_(scene, facts),
         held_(scene) {}
 
-  /// A new snapshot for the charts.
-  void record(const Snapshot& snapshot) { hud_.record(snapshot); }
+  /// A new snapshot for the charts and the foam.
+  void record(const Snapshot& snapshot) {
+    hud_.record(snapshot);
+    foam_.record(snapshot);
+  }
 
   /// `over`: Dear ImGui calls after the HUD's own; may be empty.
   void draw(const Snapshot& snapshot, const Rates& rates, const std::function<void()>& over = {}) {
     Frame frame = builder_.build(snapshot, camera_.distance());
+    frame.foam = foam_.points();
     const RenderOptions& size = renderer_.options();
     frame.view = camera_.view(static_cast<double>(size.width) / size.height);
     hud_.keep_clear = held_.of(snapshot, frame.view);
@@ -45,6 +51,7 @@ class Painter {
   void draw(const HeadsetPictures& pictures, const Snapshot& snapshot, const Rates& rates,
             std::span<const Pose> controllers, double scale, Image* keep) {
     Frame frame = builder_.build(snapshot, camera_.distance());
+    frame.foam = foam_.points();
     for (const Pose& pose : controllers) builder_.add_controller(pose, scale, frame);
     hud_.keep_clear.clear();  // the panel stands behind the scene
     frame.hud = [this, &rates] { hud_.draw(rates); };
@@ -80,6 +87,7 @@ class Painter {
  private:
   Renderer& renderer_;
   FrameBuilder builder_;
+  Foam foam_;
   OrbitCamera camera_;
   Hud hud_;
   HeldRects held_;

@@ -1,0 +1,218 @@
+// Foam: the three potentials on states whose answer is known, and what a viewer makes of them.
+#include "peer/view/foam.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace slosh {
+namespace {
+
+constexpr float kSpacing = 0.01f;
+
+Scene water(double viscosity = 0.001, float extinction = 5.0f) {
+  Scene scene;
+  scene.fluids.emplace_back();
+  scene.fluids[0].dynamic_viscosity = viscosity;
+  scene.fluids[0].extinction = glm::vec3(extinction);
+  scene.domain_min = glm::dvec3(-10.0);
+  scene.domain_max = glm::dvec3(10.0);
+  return scene;
+}
+
+/// A jittered lattice where `inside` holds; the first particle is the one nearest to the origin.
+template <class Inside>
+std::vector<glm::vec3> lattice(int half, Inside&& inside) {
+  std::vector<glm::vec3> points;
+  std::uint32_t state = 7;
+  const auto jitter = [&] {
+    state = state * 1664525u + 1013904223u;
+    return (static_cast<float>(state >> 8) / 16777216.0f - 0.5f) * 0.2f * kSpacing;
+  };
+  for (int z = -half; z <= half; ++z)
+    for (int y = -half; y <= half; ++y)
+      for (int x = -half; x <= half; ++x) {
+        const glm::vec3 p = glm::vec3(x, y, z) * kSpacing + glm::vec3(jitter(), jitter(), jitter());
+        if (inside(p)) points.push_back(p);
+      }
+  std::ranges::partial_sort(points, points.begin() + 1, {},
+                            [](const glm::vec3& p) { return glm::length(p); });
+  return points;
+}
+
+template <class Velocity>
+FoamPotential of_first(const std::vector<glm::vec3>& points, Velocity&& velocity) {
+  static const Scene scene = water();
+  Foam foam(scene, kSpacing);
+  std::vector<glm::vec3> velocities;
+  for (const glm::vec3& p : points) velocities.push_back(velocity(p));
+  return foam.potential(0, points, velocities);
+}
+
+TEST(FoamPotentials, AirIsTrappedWhereFluidMeetsFluid) {
+  const auto block = lattice(5, [](const glm::vec3&) { return true; });
+  const auto side = [](const glm::vec3& p) { return p.x < 0.0f ? 1.0f : -1.0f; };
+  EXPECT_EQ(of_first(block, [](const glm::vec3&) { return glm::vec3(2.0f, 1.0f, 0.0f); }).trapped_air, 0.0f)
+      << "all go one way";
+  const float meet =
+      of_first(block, [&](const glm::vec3& p) { return glm::vec3(side(p), 0, 0); }).trapped_air;
+  const float part =
+      of_first(block, [&](const glm::vec3& p) { return glm::vec3(-side(p), 0, 0); }).trapped_air;
+  EXPECT_GT(meet, 0.8f);
+  EXPECT_LT(part, 0.3f * meet);
+  const float slow =
+      of_first(block, [&](const glm::vec3& p) { return glm::vec3(0.1f * side(p), 0, 0); }).trapped_air;
+  EXPECT_LT(slow, 0.05f);
+}
+
+TEST(FoamPotentials, ACrestIsConvexAndLeads) {
+  const glm::vec3 up(0.0f, 1.5f, 0.0f);
+  const auto rising = [&](const glm::vec3&) { return up; };
+  const auto ridge = lattice(6, [](const glm::vec3& p) { return p.y < 0.004f - 0.8f * std::abs(p.x); });
+  const auto flat = lattice(6, [](const glm::vec3& p) { return p.y < 0.004f; });
+  const auto valley = lattice(6, [](const glm::vec3& p) { return p.y < 0.004f + 0.8f * std::abs(p.x); });
+  const float crest = of_first(ridge, rising).wave_crest;
+  EXPECT_GT(crest, 0.5f);
+  EXPECT_LT(of_first(flat, rising).wave_crest, 0.15f);
+  EXPECT_LT(of_first(valley, rising).wave_crest, 0.3f * crest);
+  EXPECT_EQ(of_first(ridge, [&](const glm::vec3&) { return -up; }).wave_crest, 0.0f) << "it falls back";
+  EXPECT_EQ(of_first(ridge, [](const glm::vec3&) { return glm::vec3(0, 0, 1.5f); }).wave_crest, 0.0f)
+      << "it goes along the ridge";
+  const auto inside = lattice(5, [](const glm::vec3&) { return true; });
+  EXPECT_EQ(of_first(inside, rising).wave_crest, 0.0f) << "no surface";
+}
+
+TEST(FoamPotentials, EnergyIsHalfTheSpeedSquared) {
+  const auto block = lattice(3, [](const glm::vec3&) { return true; });
+  const auto at = [&](float speed) {
+    return of_first(block, [&](const glm::vec3&) { return glm::vec3(0, speed, 0); }).energy;
+  };
+  EXPECT_EQ(at(0.0f), 0.0f);
+  EXPECT_NEAR(at(0.6f), 0.0f, 1e-6f);
+  EXPECT_NEAR(at(std::sqrt(2.0f * 0.69f)), 0.5f, 1e-3f) << "0.69 J/kg is halfway";
+  EXPECT_EQ(at(1.6f), 1.0f);
+}
+
+Snapshot snapshot(double time, std::vector<glm::vec3> positions) {
+  Snapshot s;
+  s.rigid.time = time;
+  s.fluid_index.assign(positions.size(), 0);
+  s.positions = std::move(positions);
+  return s;
+}
+
+/// Two blocks that run into each other at `speed`, `frames` pictures of it.
+void collide(Foam& foam, float speed, int frames, int half = 5, std::uint8_t fluid = 0) {
+  const auto block = lattice(half, [](const glm::vec3&) { return true; });
+  for (int frame = 0; frame < frames; ++frame) {
+    const float time = static_cast<float>(frame) / 60.0f;
+    std::vector<glm::vec3> points = block;
+    for (glm::vec3& p : points) p.x += (p.x < 0.0f ? 1.0f : -1.0f) * (speed * time - 0.03f);
+    Snapshot s = snapshot(time, points);
+    s.fluid_index.assign(points.size(), fluid);
+    foam.record(s);
+  }
+}
+
+TEST(FoamOnAPeer, IsLeftOutWhereTheSceneDoesNotNeedIt) {
+  const Scene thin = water(), thick = water(5.0), milk = water(0.001, 500.0f);
+  EXPECT_TRUE(plan_foam(thin).any());
+  for (const Scene* scene : {&thick, &milk}) {
+    EXPECT_FALSE(plan_foam(*scene).any());
+    EXPECT_NE(plan_foam(*scene).reason.find("every fluid"), std::string::npos);
+    Foam foam(*scene, kSpacing);
+    collide(foam, 2.0f, 10);
+    EXPECT_TRUE(foam.points().empty());
+    EXPECT_EQ(foam.looked_at(), 0u);
+  }
+  // Water that moves gently is looked at for its speeds alone.
+  Foam foam(thin, kSpacing);
+  collide(foam, 0.3f, 20);
+  EXPECT_TRUE(foam.points().empty());
+  EXPECT_EQ(foam.looked_at(), 0u);
+  EXPECT_EQ(plan_foam(Scene{}).reason, "there is no fluid");
+}
+
+TEST(FoamOnAPeer, IsThereWhereFluidIsViolentAndGoesAgain) {
+  const Scene scene = water();
+  Foam foam(scene, kSpacing);
+  collide(foam, 2.0f, 4);
+  ASSERT_GT(foam.points().size(), 20u);
+  // It begins where the blocks meet.
+  glm::vec3 mean(0.0f);
+  for (const FoamPoint& p : foam.points()) {
+    mean += p.position / static_cast<float>(foam.points().size());
+    EXPECT_GT(p.opacity, 0.0f);
+    EXPECT_LE(p.opacity, 1.0f);
+    EXPECT_GT(p.radius, 0.0f);
+    EXPECT_LT(p.radius, 0.5f * kSpacing);
+  }
+  EXPECT_LT(std::abs(mean.x), 0.02f);
+  // The fluid rests: all of it is gone within the longest of its lives.
+  const auto rest = lattice(5, [](const glm::vec3&) { return true; });
+  for (int frame = 4; frame < 4 + 150; ++frame) foam.record(snapshot(frame / 60.0, rest));
+  EXPECT_TRUE(foam.points().empty());
+  EXPECT_EQ(foam.looked_at(), 0u);
+}
+
+TEST(FoamOnAPeer, SprayFallsFreely) {
+  const Scene scene = water();
+  Foam foam(scene, kSpacing);
+  collide(foam, 2.0f, 4);
+  const auto height = [&] {
+    double sum = 0.0;
+    for (const FoamPoint& p : foam.points()) sum += static_cast<double>(p.position.y);
+    return sum / static_cast<double>(foam.points().size());
+  };
+  // The fluid goes away from under it: what is left is spray.
+  const std::vector<glm::vec3> away(lattice(5, [](const glm::vec3&) { return true; }).size(),
+                                    glm::vec3(5.0f));
+  ASSERT_FALSE(foam.points().empty());
+  foam.record(snapshot(4.0 / 60.0, away));
+  foam.record(snapshot(5.0 / 60.0, away));
+  const std::size_t count = foam.points().size();
+  std::vector<double> heights;
+  for (int frame = 6; frame < 12; ++frame) {
+    heights.push_back(height());
+    foam.record(snapshot(frame / 60.0, away));
+  }
+  ASSERT_EQ(foam.points().size(), count) << "none died meanwhile";
+  for (std::size_t k = 2; k < heights.size(); ++k)
+    EXPECT_NEAR((heights[k] - 2.0 * heights[k - 1] + heights[k - 2]) * 3600.0, -9.81, 0.1);
+}
+
+TEST(FoamOnAPeer, CostsNoMoreThanItsBounds) {
+  const Scene scene = water();
+  Foam foam(scene, kSpacing);
+  collide(foam, 3.0f, 12, 16);  // 35 937 particles, all fast
+  EXPECT_LE(foam.points().size(), Foam::kMost);
+  EXPECT_LE(foam.looked_at(), Foam::kMostLooked);
+  EXPECT_GT(foam.points().size(), Foam::kMost / 8);
+}
+
+TEST(FoamOnAPeer, RepeatsAndStartsAnewWithTheWorld) {
+  const Scene scene = water();
+  Foam a(scene, kSpacing), b(scene, kSpacing);
+  collide(a, 2.0f, 6);
+  collide(b, 2.0f, 6);
+  ASSERT_EQ(a.points().size(), b.points().size());
+  for (std::size_t i = 0; i < a.points().size(); ++i)
+    EXPECT_EQ(a.points()[i].position, b.points()[i].position);
+  a.record(snapshot(0.0, lattice(5, [](const glm::vec3&) { return true; })));
+  EXPECT_TRUE(a.points().empty());
+  // Particles that are not drawn, and numbers that are none, do no harm.
+  Foam c(scene, kSpacing);
+  collide(c, 2.0f, 6, 4, 255);
+  EXPECT_TRUE(c.points().empty());
+  for (int frame = 0; frame < 4; ++frame) {
+    auto wild = lattice(4, [](const glm::vec3&) { return true; });
+    wild[3].y = std::nanf("");
+    wild[4].x = 1e30f * static_cast<float>(frame);
+    for (glm::vec3& p : wild) p.z += 0.05f * static_cast<float>(frame);
+    c.record(snapshot(frame / 60.0, wild));
+  }
+}
+
+}  // namespace
+}  // namespace slosh
