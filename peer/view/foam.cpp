@@ -221,6 +221,8 @@ void Foam::move(float passed, std::span<const glm::vec3> positions) {
       drop.velocity += (flow - drop.velocity) * dragged - gravity * (kRises * passed);
       drop.life -= 0.5f * passed;
     }
+    // Bodies do not stop it: where no particle is any more it would fly on through a wall.
+    if (neighbours == 0.0f) drop.life = 0.0f;
     drop.at += drop.velocity * passed;
   }
   const glm::vec3 low(scene_.domain_min), high(scene_.domain_max);

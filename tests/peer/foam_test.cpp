@@ -156,30 +156,16 @@ TEST(FoamOnAPeer, IsThereWhereFluidIsViolentAndGoesAgain) {
   EXPECT_EQ(foam.looked_at(), 0u);
 }
 
-TEST(FoamOnAPeer, SprayFallsFreely) {
+TEST(FoamOnAPeer, SprayIsGoneWhereNoParticleIs) {
+  // It knows no walls, so it must not fly on alone.
   const Scene scene = water();
   Foam foam(scene, kSpacing);
   collide(foam, 2.0f, 4);
-  const auto height = [&] {
-    double sum = 0.0;
-    for (const FoamPoint& p : foam.points()) sum += static_cast<double>(p.position.y);
-    return sum / static_cast<double>(foam.points().size());
-  };
-  // The fluid goes away from under it: what is left is spray.
-  const std::vector<glm::vec3> away(lattice(5, [](const glm::vec3&) { return true; }).size(),
-                                    glm::vec3(5.0f));
   ASSERT_FALSE(foam.points().empty());
+  const auto block = lattice(5, [](const glm::vec3&) { return true; });
+  const std::vector<glm::vec3> away(block.size(), glm::vec3(5.0f));
   foam.record(snapshot(4.0 / 60.0, away));
-  foam.record(snapshot(5.0 / 60.0, away));
-  const std::size_t count = foam.points().size();
-  std::vector<double> heights;
-  for (int frame = 6; frame < 12; ++frame) {
-    heights.push_back(height());
-    foam.record(snapshot(frame / 60.0, away));
-  }
-  ASSERT_EQ(foam.points().size(), count) << "none died meanwhile";
-  for (std::size_t k = 2; k < heights.size(); ++k)
-    EXPECT_NEAR((heights[k] - 2.0 * heights[k - 1] + heights[k - 2]) * 3600.0, -9.81, 0.1);
+  EXPECT_TRUE(foam.points().empty());
 }
 
 TEST(FoamOnAPeer, CostsNoMoreThanItsBounds) {
