@@ -76,6 +76,11 @@ Result<bool> Host::carry_out(const HostCommand& command) {
       return world_.set_viscosity(command.index, command.value);
     case HostAction::kGravityScale:
       return world_.set_gravity_scale(command.value);
+    case HostAction::kGripStiffness: {
+      const Result<bool> set = world_.set_grip_stiffness(command.index, command.value);
+      if (set) gate_.set_stiffness(command.index, command.value);
+      return set;
+    }
   }
   return Error{"command", "is unknown", ""};
 }
@@ -83,6 +88,7 @@ Result<bool> Host::carry_out(const HostCommand& command) {
 Result<bool> Host::reset() {
   const Result<bool> restored = keep::reset_world(world_, fluids_, start_state_);
   if (!restored) return restored;
+  for (std::size_t g = 0; g < world_.grip_stiffness().size(); ++g) gate_.set_stiffness(g, world_.grip_stiffness()[g]);
   run_ += 1;
   for (double& until : status_until_) until = 0.0;
   world_.fill(latest_);
@@ -96,7 +102,8 @@ Result<bool> Host::reset() {
 }
 
 HostState state_of(const World& world, std::size_t fluids, bool paused, std::uint32_t run) {
-  HostState state{paused, run, world.gravity_scale(), {}};
+  HostState state{paused, run, world.gravity_scale(), {}, {}};
+  state.grip_stiffness.assign(world.grip_stiffness().begin(), world.grip_stiffness().end());
   for (std::size_t i = 0; i < fluids; ++i) state.viscosities.push_back(world.viscosity(i));
   return state;
 }

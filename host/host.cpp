@@ -74,6 +74,7 @@ Host::Host(World world, const Scene& scene, Channel& channel, HostOptions option
       gate_(scene),
       fluid_models_(scene) {
   for (const Grip& grip : scene.grips) grip_bodies_.push_back(grip.body);
+  for (std::size_t g = 0; g < world_.grip_stiffness().size(); ++g) gate_.set_stiffness(g, world_.grip_stiffness()[g]);
   modelled_.resize(scene.bodies.size());
   fluids_ = scene.fluids.size();
   start_state_ = std::move(options_.start_state);

@@ -30,7 +30,7 @@ InputGate::InputGate(const Scene& scene)
   for (const Grip& grip : scene.grips) {
     Hand hand;
     hand.body = grip.body;
-    hand.gains = {grip.stiffness, grip.damping, grip.rotational_stiffness, grip.rotational_damping};
+    hand.gains = hand.of_scene = {grip.stiffness, grip.damping, grip.rotational_stiffness, grip.rotational_damping};
     hands_.push_back(hand);
   }
   inputs_.resize(hands_.size());

@@ -55,6 +55,9 @@ class InputGate {
   /// hand that was not heard for kHoldAnew s of wall time (net/engagement.h), when it is heard again.
   void stood_still();
 
+  /// The world's springs of that grip are so many times the scene's from now on.
+  void set_stiffness(std::size_t grip, double scale) { hands_[grip].gains = stiffened(hands_[grip].of_scene, scale); }
+
   /// The newest message of each grip that was used; valid until the next call of anything here.
   std::span<const PoseMessage> poses() const { return used_; }
 
@@ -66,7 +69,8 @@ class InputGate {
  private:
   struct Hand {
     int body = 0;
-    CouplingGains gains;
+    CouplingGains of_scene;
+    CouplingGains gains;  // as the world has them
     Engagement engagement;
     Wrench carried;  // on the hand, in the last step that it was heard for
     PoseMessage good;

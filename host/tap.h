@@ -18,6 +18,7 @@ enum class HostAction : std::uint8_t {
   kReset,         ///< back to the start; live parameters stay
   kViscosity,     ///< index: fluid; value: Pa·s
   kGravityScale,  ///< value: times the scene's, 0–2
+  kGripStiffness,  ///< index: grip; value: times the scene's (World::set_grip_stiffness)
 };
 
 struct HostCommand {
@@ -32,6 +33,7 @@ struct HostState {
   std::uint32_t run = 0;  ///< rises by one with every reset
   double gravity_scale = 1.0;
   std::vector<double> viscosities;  ///< Pa·s, one a fluid
+  std::vector<double> grip_stiffness;  ///< times the scene's, one a grip
 };
 
 /// The switches of a world of so many fluids; who runs it knows whether it stands and how often it was reset.

@@ -52,6 +52,8 @@ constexpr Command kCommands[] = {
     {ConsoleVerb::kSet, "set", kAtAll, 0, kAny, nullptr, "set viscosity [FLUID] X",
      "Pa·s, while the world runs"},
     {ConsoleVerb::kSet, "set", kAtAll, 0, kAny, nullptr, "set gravity X", "times the scene's, 0 to 2"},
+    {ConsoleVerb::kSet, "set", kAtAll, 0, kAny, nullptr, "set stiffness [GRIP] X",
+     "of the hold on it: times the scene's, 0.05 to 4"},
     {ConsoleVerb::kStatus, "status", kAtHost, 0, 0, nullptr, "status", "how the world and the links do"},
     {ConsoleVerb::kStatus, "status", kAtPeer, 0, 0, nullptr, "status", "how the network and the world do"},
     {ConsoleVerb::kStatus, "status", kAtPlay, 0, 0, nullptr, "status", "how the world does"},

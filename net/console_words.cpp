@@ -37,13 +37,17 @@ Result<std::vector<std::string>> console_words(std::string_view typed) {
 
 Result<SetWish> parse_set(const std::vector<std::string>& words) {
   const Error error{"", "set needs what and a number",
-                    "As in: set viscosity [FLUID] 0.5, or: set gravity 0.5"};
+                    "As in: set viscosity [FLUID] 0.5, set gravity 0.5 or set stiffness [GRIP] 0.5"};
   if (words.size() < 3 || words.size() > 4) return error;
   SetWish wish;
-  wish.gravity = words[1] == "gravity";
-  if (!wish.gravity && words[1] != "viscosity") return error;
-  if (wish.gravity && words.size() != 3) return error;
-  if (words.size() == 4) wish.fluid = words[2];
+  if (words[1] == "gravity")
+    wish.what = SetWish::What::kGravity;
+  else if (words[1] == "stiffness")
+    wish.what = SetWish::What::kStiffness;
+  else if (words[1] != "viscosity")
+    return error;
+  if (wish.what == SetWish::What::kGravity && words.size() != 3) return error;
+  if (words.size() == 4) wish.which = words[2];
   const std::string& number = words.back();
   const char* end = number.data() + number.size();
   const auto [at, code] = std::from_chars(number.data(), end, wish.value);

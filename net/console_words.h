@@ -2,6 +2,7 @@
 #pragma once
 
 #include <charconv>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,11 +18,11 @@ constexpr std::size_t kMaxConsoleLine = 1000;  ///< bytes
 /// Errors: too long, or text that cannot be shown.
 Result<std::vector<std::string>> console_words(std::string_view typed);
 
-/// `set viscosity [FLUID] X` or `set gravity X`.
+/// `set viscosity [FLUID] X`, `set gravity X` or `set stiffness [GRIP] X`.
 struct SetWish {
-  bool gravity = false;  ///< rather than viscosity
-  std::string fluid;     ///< name or number; empty = not said
-  double value = 0.0;    ///< Pa·s, or times the scene's gravity; finite, ≥ 0
+  enum class What : std::uint8_t { kViscosity, kGravity, kStiffness } what = What::kViscosity;
+  std::string which;   ///< fluid or grip, name or number; empty = not said
+  double value = 0.0;  ///< Pa·s, or times the scene's; finite, ≥ 0
 };
 /// `words` begin with "set". Errors say what was expected.
 Result<SetWish> parse_set(const std::vector<std::string>& words);
@@ -61,11 +62,11 @@ std::string no_grip_text(const std::string& text, const std::vector<T>& grips) {
   return "there is no grip '" + text + "'. There are: " + names_of(grips);
 }
 
-/// Which fluid a SetWish means: the one it names, or the only one there is.
+/// Which fluid or grip a SetWish means: the one it names, or the only one there is.
 template <class T>
-std::optional<std::size_t> fluid_meant(const std::vector<T>& fluids, const std::string& text) {
-  if (!text.empty()) return index_named(fluids, text);
-  return fluids.size() == 1 ? std::optional<std::size_t>(0) : std::nullopt;
+std::optional<std::size_t> one_meant(const std::vector<T>& things, const std::string& text) {
+  if (!text.empty()) return index_named(things, text);
+  return things.size() == 1 ? std::optional<std::size_t>(0) : std::nullopt;
 }
 
 }  // namespace slosh

@@ -18,6 +18,23 @@ Error too_much(const std::string& where, double value, double most, const char* 
 
 }  // namespace
 
+Result<bool> allow_grip_stiffness(const Scene& scene, std::size_t grip, double scale) {
+  // What a scene may have (scenes/README.md).
+  constexpr double kMostSpring = 1e6;   // N/m
+  constexpr double kMostTurning = 1e4;  // N·m/rad
+  if (grip >= scene.grips.size())
+    return Error{"grip stiffness", "there is no grip " + std::to_string(grip) + " in this world", ""};
+  const Grip& of = scene.grips[grip];
+  const std::string where = "stiffness of " + of.name;
+  if (!(scale >= kLeastGripStiffness && scale <= kMostGripStiffness))
+    return Error{where, format("it can be %g to %g times the scene's", kLeastGripStiffness, kMostGripStiffness), ""};
+  // The scene's own is let be, whatever it has.
+  if (scale > 1.0 && (scale * of.stiffness > kMostSpring || scale * of.rotational_stiffness > kMostTurning))
+    return Error{where, format("%.4g N/m and %.4g N·m/rad are too much", scale * of.stiffness, scale * of.rotational_stiffness),
+                 "At most a million N/m and ten thousand N·m/rad"};
+  return true;
+}
+
 LiveChanges::LiveChanges(const Scene& scene, const Plan& plan) : sheet_(drag_sheet(scene, plan)) {
   for (const Fluid& fluid : scene.fluids) first_viscosities_.push_back(fluid.dynamic_viscosity);
 }

@@ -9,6 +9,9 @@
 
 namespace slosh {
 
+/// As World::set_grip_stiffness.
+Result<bool> allow_grip_stiffness(const Scene& scene, std::size_t grip, double scale);
+
 class LiveChanges {
  public:
   /// `scene` as it starts.

@@ -16,7 +16,8 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::uint32_t kMagic = 0x54535753;  // "SWST"
-constexpr std::uint32_t kVersion = 3;
+constexpr std::uint32_t kVersion = 4;
+constexpr std::uint32_t kBeforeStiffness = 3;  // without grip_stiffness, and read as well: it was the scene's
 constexpr double kLargest = 1.0e9;  // beyond this no position, speed or force of a body is one
 constexpr std::int64_t kMostOfImpulse = std::int64_t{1} << 62;
 const char kWhere[] = "saved world";
@@ -308,6 +309,8 @@ void write_state(const StateFrame& frame, const RunConstants& constants, const S
     const HandleInput nothing;
     hand_state(s, input.engaged ? input : nothing);
   }
+  for (const auto* scales : {&state.grip_stiffness.wanted, &state.grip_stiffness.acting})
+    for (const double scale : *scales) s.real(scale);
   s.raw(static_cast<std::uint32_t>(state.impulses.size()));
   for (const KeptImpulse& k : state.impulses) kept_impulse(s, k);
   s.column(std::span<const std::int64_t>(state.walls));
@@ -326,7 +329,7 @@ Result<bool> read_state(std::span<const std::uint8_t> bytes, const StateFrame& f
   s.raw(magic);
   s.raw(version);
   if (magic != kMagic) s.fail("these are not the bytes of a saved world");
-  if (version != kVersion) {
+  if (version != kVersion && version != kBeforeStiffness) {
     s.fail("it has version " + std::to_string(version) + ", and this program reads version " +
            std::to_string(kVersion));
   }
@@ -360,6 +363,11 @@ Result<bool> read_state(std::span<const std::uint8_t> bytes, const StateFrame& f
     hand_state(s, input);
     input.engaged = engaged == 1;
     if (engaged > 1) s.fail("a hand in it neither holds nor lets go");
+  }
+  for (auto* scales : {&state.grip_stiffness.wanted, &state.grip_stiffness.acting}) {
+    scales->assign(frame.grips, 1.0);
+    if (version == kBeforeStiffness) continue;
+    for (double& scale : *scales) s.real(scale);  // whether it may be is World::restore's to say
   }
   read_impulses(s, frame.bodies, state.impulses);
   state.walls = no_impulses(frame.bodies);

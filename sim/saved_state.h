@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/bodies/contact_memory.h"
+#include "sim/bodies/hands.h"
 #include "sim/bodies/rigid_body.h"
 #include "sim/columns.h"
 #include "sim/math/result.h"
@@ -40,6 +41,7 @@ struct SavedState {
   std::vector<Wrench> wrenches;         ///< by the fluid, one a body
   std::vector<GripState> grips;         ///< handle and on_hand
   std::vector<HandleInput> last_input;  ///< one a grip
+  Hands::Stiffness grip_stiffness;      ///< one a grip
   std::vector<KeptImpulse> impulses;    ///< of contacts, pair by pair
   ImpulseSums walls;                    ///< what bodies have still to be given (walls/guard_impulse.h)
   ParticleState particles;  ///< in the order that the engine has them: sums over neighbours depend on it

@@ -205,7 +205,7 @@ void World::step(std::span<const HandleInput> handles) {
   Impl& w = *impl_;
   Stopwatch whole;
   w.begin_step();
-  w.status |= w.bodies.begin_step(handles);
+  w.status |= w.bodies.begin_step(handles, w.plan().time_step);
   for (int i = 0; i < w.plan().sub_steps; ++i) {
     w.run(w.sub_step(i), TakePart::kAll);
   }
@@ -222,7 +222,7 @@ void World::settle(double seconds, std::span<const HandleInput> handles, bool (*
     if (stopped && stopped()) return;
     const bool with_bodies = !handles.empty() && done >= 0.5 * seconds;
     w.begin_step();
-    if (with_bodies) w.status |= w.bodies.begin_step(handles);
+    if (with_bodies) w.status |= w.bodies.begin_step(handles, w.plan().time_step);
     for (int i = 0; i < w.plan().sub_steps; ++i) {
       SubStep step = w.sub_step(i);
       step.elapsed = 0.0;  // the hands stand still
@@ -322,6 +322,7 @@ Result<bool> World::save(std::vector<std::uint8_t>& out) const {
   state.wrenches = w.wrenches;
   state.grips = w.bodies.grips();
   state.last_input = w.bodies.last_inputs();
+  state.grip_stiffness = w.bodies.grip_stiffness();
   state.impulses = w.bodies.kept_impulses();
   if (!w.engine->save(state.particles, state.walls))
     return Error{"the world", "cannot be saved: " + w.engine->failure(), "Run again with the CPU backend"};
@@ -342,6 +343,12 @@ Result<bool> World::restore(std::span<const std::uint8_t> saved) {
   }
   const Result<bool> gravity = w.live.allow_gravity(w.scene, w.plan(), state.gravity_scale);
   if (!gravity) return gravity;
+  for (std::size_t g = 0; g < state.grip_stiffness.wanted.size(); ++g) {
+    for (const double scale : {state.grip_stiffness.wanted[g], state.grip_stiffness.acting[g]}) {
+      const Result<bool> allowed = allow_grip_stiffness(w.scene, g, scale);
+      if (!allowed) return allowed;
+    }
+  }
 
   for (std::size_t f = 0; f < state.viscosities.size(); ++f)
     w.scene.fluids[f].dynamic_viscosity = state.viscosities[f];
@@ -349,7 +356,7 @@ Result<bool> World::restore(std::span<const std::uint8_t> saved) {
   w.take_parameters();
   w.wrenches = std::move(state.wrenches);
   w.bodies.restore(std::move(state.bodies), std::move(state.grips), std::move(state.last_input),
-                   std::move(state.impulses));
+                   std::move(state.grip_stiffness),                   std::move(state.impulses));
   w.engine->restore(state.particles, state.walls);
   std::fill(w.found.begin(), w.found.end(), Wrench{});
   std::fill(w.drag_matrices.begin(), w.drag_matrices.end(), Matrix6{});
@@ -375,6 +382,17 @@ Result<bool> World::set_gravity_scale(double scale) {
   impl_->gravity_scale = scale;
   impl_->take_parameters();
   return true;
+}
+
+Result<bool> World::set_grip_stiffness(std::size_t grip, double scale) {
+  const Result<bool> allowed = allow_grip_stiffness(impl_->scene, grip, scale);
+  if (!allowed) return allowed;
+  impl_->bodies.want_grip_stiffness(grip, scale);
+  return true;
+}
+
+std::span<const double> World::grip_stiffness() const {
+  return impl_->bodies.grip_stiffness().wanted;
 }
 
 double World::viscosity(std::size_t fluid) const {

@@ -17,6 +17,9 @@
 namespace slosh {
 
 constexpr double kMostGravityScale = 2.0;
+/// World::set_grip_stiffness: times the scene's.
+constexpr double kLeastGripStiffness = 0.05;
+constexpr double kMostGripStiffness = 4.0;
 
 /// One handle's input for one step, in the order of Scene::grips.
 struct HandleInput {
@@ -110,6 +113,12 @@ class World {
   Result<bool> set_viscosity(std::size_t fluid, double pascal_seconds);
   /// Times the scene's gravity, 0 to kMostGravityScale. Errors as above.
   Result<bool> set_gravity_scale(double scale);
+  /// Springs of a grip's coupling, straight and turning, times the scene's: kLeastGripStiffness to kMostGripStiffness. The
+  /// dampers stay. It is gone over to from the next step on, by kGripStiffnessPace, so that what hangs there is not thrown.
+  /// Errors: no such grip, beyond these, or a spring of more than a scene may have (10⁶ N/m, 10⁴ N·m/rad).
+  Result<bool> set_grip_stiffness(std::size_t grip, double scale);
+  /// As it was set, one a grip.
+  std::span<const double> grip_stiffness() const;
   double viscosity(std::size_t fluid) const;  ///< Pa·s; 0 for a fluid that is not there
   double gravity_scale() const;
 

@@ -35,6 +35,7 @@ Result<bool> reset_world(World& world, std::size_t fluids, std::span<const std::
   std::vector<double> viscosities;
   for (std::size_t i = 0; i < fluids; ++i) viscosities.push_back(world.viscosity(i));
   const double gravity_scale = world.gravity_scale();
+  const std::vector<double> stiffness(world.grip_stiffness().begin(), world.grip_stiffness().end());
   const Result<bool> restored = world.restore(start);
   if (!restored) return restored;
   for (std::size_t i = 0; i < fluids; ++i) {
@@ -42,6 +43,8 @@ Result<bool> reset_world(World& world, std::size_t fluids, std::span<const std::
     if (viscosities[i] != world.viscosity(i)) (void)world.set_viscosity(i, viscosities[i]);
   }
   if (gravity_scale != world.gravity_scale()) (void)world.set_gravity_scale(gravity_scale);
+  for (std::size_t g = 0; g < stiffness.size(); ++g)
+    if (stiffness[g] != world.grip_stiffness()[g]) (void)world.set_grip_stiffness(g, stiffness[g]);
   return true;
 }
 

@@ -61,7 +61,7 @@ struct ChangeRecord {
 };
 template <class V>
 void visit(V& v, ChangeRecord& m) {
-  v.choice("action", m.command.action, 5);
+  v.choice("action", m.command.action, 6);
   v.natural("index", m.command.index, 0, 255);
   v.real64("value", m.command.value, -1e9, 1e9);
 }

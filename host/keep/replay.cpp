@@ -82,6 +82,8 @@ Result<bool> Replayer::change(const HostCommand& command) {
       return world_.set_viscosity(command.index, command.value);
     case HostAction::kGravityScale:
       return world_.set_gravity_scale(command.value);
+    case HostAction::kGripStiffness:
+      return world_.set_grip_stiffness(command.index, command.value);
     case HostAction::kPause:
     case HostAction::kContinue:
       break;  // simulated time knows no pause

@@ -69,8 +69,8 @@ Result<ConsoleCommand> parse_set_command(const std::vector<std::string>& words) 
   if (!wish) return wish.error();
   ConsoleCommand command;
   command.verb = ConsoleVerb::kSet;
-  command.gravity = wish.value().gravity;
-  command.text = wish.value().fluid;
+  command.what = wish.value().what;
+  command.text = wish.value().which;
   command.value = wish.value().value;
   return command;
 }

@@ -17,8 +17,8 @@ struct ConsoleCommand {
   std::string text;              ///< a person's name, a link's id, a grip's or fluid's name or number
   bool watch = false;            ///< kLink
   std::int64_t lifetime_ns = 0;  ///< kLink, kExpire: 0 = for ever; kKick: 0 = may come again at once
-  bool gravity = false;          ///< kSet: gravity rather than viscosity
-  double value = 0.0;            ///< kSet: Pa·s, or times the scene's gravity
+  SetWish::What what = SetWish::What::kViscosity;  ///< kSet
+  double value = 0.0;            ///< kSet: Pa·s, or times the scene's
 };
 
 /// Errors say what was expected. Any bytes may come.

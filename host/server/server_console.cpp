@@ -70,9 +70,14 @@ Outcome Server::run(const ConsoleCommand& command) {
       state_dirty_ = true;
       return {true, command.text + " may come in again"};
     case ConsoleVerb::kSet: {
-      if (command.gravity) return world({HostAction::kGravityScale, 0, command.value});
+      if (command.what == SetWish::What::kGravity) return world({HostAction::kGravityScale, 0, command.value});
+      if (command.what == SetWish::What::kStiffness) {
+        const std::optional<std::size_t> grip = one_meant(world_.scene->grips, command.text);
+        if (!grip) return {false, "say which grip: " + names_of(world_.scene->grips)};
+        return world({HostAction::kGripStiffness, static_cast<std::uint32_t>(*grip), command.value});
+      }
       const auto& fluids = world_.scene->fluids;
-      const std::optional<std::size_t> fluid = fluid_meant(fluids, command.text);
+      const std::optional<std::size_t> fluid = one_meant(fluids, command.text);
       if (!fluid) return {false, "say which fluid: " + names_of(fluids)};
       return world({HostAction::kViscosity, static_cast<std::uint32_t>(*fluid), command.value});
     }
@@ -216,6 +221,12 @@ std::string Server::status_text() const {
   for (std::size_t i = 0; i < state.viscosities.size() && i < world_.scene->fluids.size(); ++i) {
     std::snprintf(text, sizeof text, "\nfluid '%.60s': %.4g Pa·s", world_.scene->fluids[i].name.c_str(),
                   state.viscosities[i]);
+    all += text;
+  }
+  for (std::size_t i = 0; i < state.grip_stiffness.size() && i < world_.scene->grips.size(); ++i) {
+    if (state.grip_stiffness[i] == 1.0) continue;
+    std::snprintf(text, sizeof text, "\ngrip '%.60s': stiffness × %.3g", world_.scene->grips[i].name.c_str(),
+                  state.grip_stiffness[i]);
     all += text;
   }
   return all;

@@ -204,13 +204,24 @@ wire::Fault Server::handle(Peer& peer, const wire::WorldRequest& request) {
 
 wire::Fault Server::handle(Peer& peer, const wire::ParameterRequest& request) {
   if (options_.lock_parameters && peer.participant) {
-    answer(peer, request.request, false, "here only the host sets viscosity and gravity");
+    answer(peer, request.request, false, "here only the host sets viscosity, gravity and stiffness");
     return {};
   }
   char did[120];
   if (request.parameter == wire::Parameter::kGravityScale) {
     std::snprintf(did, sizeof did, "set gravity to %.3g times the scene's", request.value);
     ask_world(peer, request.request, {HostAction::kGravityScale, 0, request.value}, did);
+    return {};
+  }
+  if (request.parameter == wire::Parameter::kGripStiffness) {
+    const auto& grips = world_.scene->grips;
+    if (request.index >= grips.size()) {
+      answer(peer, request.request, false, no_grip_text(std::to_string(request.index), grips));
+      return {};
+    }
+    std::snprintf(did, sizeof did, "set the hold on '%.40s' to %.3g times the scene's stiffness",
+                  grips[request.index].name.c_str(), request.value);
+    ask_world(peer, request.request, {HostAction::kGripStiffness, request.index, request.value}, did);
     return {};
   }
   if (request.index >= world_.scene->fluids.size()) {

@@ -22,8 +22,11 @@ constexpr Capabilities kFluidWrenches = 1u << 1;  ///< FluidWrench comes for eac
 /// step used.
 constexpr Capabilities kCouplings = 1u << 2;
 
+/// Parameter::kGripStiffness may be asked for, and WorldInfo has the grips' stiffnesses.
+constexpr Capabilities kGripStiffnesses = 1u << 3;
+
 /// What this program understands; a peer's Hello asks for all of it.
-constexpr Capabilities kOurCapabilities = kRosterChanges | kFluidWrenches | kCouplings;
+constexpr Capabilities kOurCapabilities = kRosterChanges | kFluidWrenches | kCouplings | kGripStiffnesses;
 /// For what has no other side: pages, tests of single messages, files.
 constexpr Capabilities kAllCapabilities = ~Capabilities{0};
 

@@ -1,6 +1,7 @@
 // Messages of the control stream, field by field: who comes and goes, who holds what, the world's switches.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
@@ -97,8 +98,9 @@ void visit(V& v, WorldRequest& m) {
 enum class Parameter : std::uint8_t {
   kFluidViscosity,  ///< Pa·s; index = fluid
   kGravityScale,    ///< times the scene's, 0–2; index unused
+  kGripStiffness,   ///< times the scene's; index = grip; where kGripStiffnesses is agreed
 };
-constexpr std::array kParameterNames{"fluid viscosity", "gravity scale"};
+constexpr std::array kParameterNames{"fluid viscosity", "gravity scale", "grip stiffness"};
 constexpr std::uint64_t kParameters = kParameterNames.size();
 
 struct ParameterRequest {
@@ -112,7 +114,7 @@ template <class V>
 void visit(V& v, ParameterRequest& m) {
   v.natural("request", m.request, 0, 0xffffffff);
   v.choice("parameter", m.parameter, kParameterNames);
-  v.natural("index", m.index, 0, kMaxFluids - 1);
+  v.natural("index", m.index, 0, std::max(kMaxFluids, kMaxGrips) - 1);
   v.real64("value", m.value, 0.0, kMaxViscosity);
 }
 
@@ -250,6 +252,7 @@ struct WorldInfo {
   std::uint32_t run = 0;  ///< rises by one with every reset
   double gravity_scale = 1.0;
   std::vector<double> viscosities;  ///< Pa·s, one a fluid
+  std::vector<double> grip_stiffness;  ///< times the scene's, one a grip; none where kGripStiffnesses is not agreed
 };
 template <class V>
 void visit(V& v, WorldInfo& m) {
@@ -258,6 +261,11 @@ void visit(V& v, WorldInfo& m) {
   v.real64("gravity_scale", m.gravity_scale, 0.0, kMaxGravityScale);
   v.list("viscosities", m.viscosities, kMaxFluids,
          [](auto& each, double& value) { each.real64("viscosity", value, 0.0, kMaxViscosity); });
+  if (v.agreed(kGripStiffnesses)) {
+    v.list("grip_stiffnesses", m.grip_stiffness, kMaxGrips, [](auto& each, double& value) {
+      each.real64("grip_stiffness", value, kMinGripStiffness, kMaxGripStiffness);
+    });
+  }
 }
 
 /// Something to tell a person: who came, who went, what was refused.

@@ -30,6 +30,8 @@ constexpr std::size_t kMaxMissingRanges = 128;  ///< likewise
 constexpr double kMaxEnergy = 1e9;              ///< J
 constexpr double kMaxViscosity = 1e7;           ///< Pa·s, as scenes have it
 constexpr double kMaxGravityScale = 2.0;        ///< times the scene's
+constexpr double kMinGripStiffness = 0.05;      ///< times the scene's
+constexpr double kMaxGripStiffness = 4.0;
 constexpr std::size_t kTokenBytes = 16;
 
 using Token = std::array<std::uint8_t, kTokenBytes>;

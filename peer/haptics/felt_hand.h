@@ -47,6 +47,9 @@ class FeltHand {
     rotational_damping_ = 0.5 * std::min(limits.max_rotational_damping, kMostRampTurning);
   }
 
+  /// The coupling as it is from now on; its hold stays.
+  void set_gains(const CouplingGains& gains) noexcept { gains_ = gains; }
+
   struct Moment {
     double time = 0.0;          ///< simulated s, never falling but when the world was reset
     double period = 0.001;      ///< s since the call before

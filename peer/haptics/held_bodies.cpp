@@ -162,6 +162,11 @@ void HeldBodies::sent(std::size_t i, const Wrench& wrench, bool engaged, const P
   entry.own[place.grip] = {true, engaged, held, twist};
 }
 
+void HeldBodies::set_gains(std::size_t i, const CouplingGains& gains) noexcept {
+  const Place& place = places_[i];
+  if (place.body >= 0) bodies_[static_cast<std::size_t>(place.body)].held.set_gains(place.grip, gains);
+}
+
 void HeldBodies::not_here(std::size_t i) noexcept {
   const Place& place = places_[i];
   if (place.body >= 0) bodies_[static_cast<std::size_t>(place.body)].own[place.grip] = OwnHand{};

@@ -42,6 +42,8 @@ class HeldBodies {
                double most_damping) noexcept;
   /// What the device of grip `i` was sent, and what its coupling used of the hand.
   void sent(std::size_t i, const Wrench& wrench, bool engaged, const Pose& held, const Twist& twist) noexcept;
+  /// The coupling of grip `i` is that from now on, at the host and here.
+  void set_gains(std::size_t i, const CouplingGains& gains) noexcept;
   /// Nobody here moves grip `i`.
   void not_here(std::size_t i) noexcept;
   /// The end of a tick: on to `now_ns`.

@@ -109,13 +109,24 @@ void Servo::change_device(Hand& hand, DevicePort* port) noexcept {
   hand.port = port;
   if (port != nullptr) {
     hand.limits = port->limits();
-    hand.felt.restart(within(hand.gains, hand.limits), hand.limits, port->device().gives_way());
+    hand.felt.restart(within(stiffened(hand.gains, hand.stiffness), hand.limits), hand.limits,
+                      port->device().gives_way());
   }
   hand.good = DeviceReport{};
   hand.good.pose = hand.start;
   hand.good.engaged = false;
   hand.readings = 0;
   hand.in_use.store(port);
+}
+
+/// Here as in the world, so that no hand is thrown; the device's limits go last.
+void Servo::follow_stiffness(std::size_t i, Hand& hand) noexcept {
+  const double wanted = hand.stiffness_wanted.load(std::memory_order_relaxed);
+  if (hand.stiffness == wanted || !(wanted > 0.0)) return;
+  hand.stiffness = toward_stiffness(hand.stiffness, wanted, options_.period);
+  const CouplingGains gains = stiffened(hand.gains, hand.stiffness);
+  held_.set_gains(i, gains);
+  hand.felt.set_gains(within(gains, hand.limits));
 }
 
 void Servo::follow_run(const BodyMessage& message) noexcept {
@@ -248,6 +259,7 @@ void Servo::tick(std::int64_t now_ns, bool fresh) noexcept {
     Hand& hand = hands_[i];
     DevicePort* const port = claim_device(hand);
     if (port != hand.port) change_device(hand, port);
+    follow_stiffness(i, hand);
     if (port == nullptr) {
       held_.not_here(i);
       continue;

@@ -57,6 +57,10 @@ class Servo {
   /// end. Errors: limits that are not sound (check_limits); then nothing changes.
   Result<bool> set_device(std::size_t i, std::unique_ptr<Device> device);
 
+  /// The springs of grip `i` are so many times the scene's (World::set_grip_stiffness): the loop goes over to it by
+  /// kGripStiffnessPace, as the world does, and no device is asked for more than it holds. > 0; the control thread's.
+  void set_stiffness(std::size_t i, double scale) { hands_[i].stiffness_wanted.store(scale, std::memory_order_relaxed); }
+
   std::size_t devices() const { return hands_.size(); }  ///< grips, whoever holds them
   /// The grip's device, or the last one that it had; null when there never was one.
   const Device* device(std::size_t i) const {
@@ -89,12 +93,14 @@ class Servo {
     std::atomic<DevicePort*> wanted{nullptr};
     std::atomic<DevicePort*> claimed{nullptr};
     std::atomic<DevicePort*> in_use{nullptr};
+    std::atomic<double> stiffness_wanted{1.0};       // times the scene's
     std::vector<std::unique_ptr<DevicePort>> owned;  // the newest last; the control thread's
 
     // The loop's.
     DevicePort* port = nullptr;
     DeviceLimits limits;
     CouplingGains gains;  // the scene's
+    double stiffness = 1.0;  // times that, now
     Pose start;
     int body = 0;
     FeltHand felt;
@@ -107,6 +113,7 @@ class Servo {
   DevicePort* claim_device(Hand& hand) noexcept;
   void change_device(Hand& hand, DevicePort* port) noexcept;
   void free_unused(Hand& hand);
+  void follow_stiffness(std::size_t i, Hand& hand) noexcept;
   void follow_run(const BodyMessage& message) noexcept;
   void tick(std::int64_t now_ns, bool fresh) noexcept;
   /// Takes in what the device says; true when the hand leapt.

@@ -25,6 +25,8 @@ const char* name_of(HostAction action) {
       return "viscosity";
     case HostAction::kGravityScale:
       return "gravity_scale";
+    case HostAction::kGripStiffness:
+      return "grip_stiffness";
   }
   return "unknown";
 }
@@ -185,7 +187,7 @@ void bind_recording(py::module_& m) {
       .def_readonly("body_index", &RecordingTable::body_index, "(F,) int: which of Scene.bodies they are")
       .def_readonly("hashes", &RecordingTable::hashes, "[(tick, hash of the world)]")
       .def_readonly("changes", &RecordingTable::changes,
-                    "[(time s, 'pause', 'continue', 'reset', 'viscosity' or 'gravity_scale', fluid, value)]");
+                    "[(time s, 'pause', 'continue', 'reset', 'viscosity', 'gravity_scale' or 'grip_stiffness', fluid or grip, value)]");
   py::class_<ReplayTable>(m, "Replay", "A recording run again.")
       .def_readonly("scene", &ReplayTable::scene, "Scene")
       .def_readonly("run", &ReplayTable::run, "Run; its time goes on over resets")

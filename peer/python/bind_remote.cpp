@@ -140,6 +140,12 @@ void bind_asking(py::class_<RemoteProgram>& c) {
           "set_gravity_scale",
           [](RemoteProgram& r, double scale) { set(r, wire::Parameter::kGravityScale, 0, scale); },
           py::arg("scale"), "Asks for gravity, times the scene's, 0 to 2.")
+      .def(
+          "set_grip_stiffness",
+          [](RemoteProgram& r, const py::object& which, double scale) {
+            set(r, wire::Parameter::kGripStiffness, r.grip(which), scale);
+          },
+          py::arg("grip"), py::arg("scale"), "Asks for the springs of a grip, times the scene's, 0.05 to 4.")
       .def("notices", &RemoteProgram::notices,
            "What a person should read, oldest first, each once: list[str].");
 }

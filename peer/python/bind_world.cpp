@@ -112,6 +112,17 @@ void bind_changes(py::class_<WorldProgram>& c) {
             w.change({HostAction::kGravityScale, 0, scale});
           },
           "Times the scene's gravity, 0 to 2; from the next step on.")
+      .def(
+          "grip_stiffness",
+          [](const WorldProgram& w, const py::object& which) { return w.world().grip_stiffness()[w.grip(which)]; },
+          py::arg("grip"), "Springs of a grip's coupling (name or number), times the scene's.")
+      .def(
+          "set_grip_stiffness",
+          [](WorldProgram& w, const py::object& which, double scale) {
+            w.change({HostAction::kGripStiffness, static_cast<std::uint32_t>(w.grip(which)), scale});
+          },
+          py::arg("grip"), py::arg("scale"),
+          "Times the scene's springs, 0.05 to 4; gone over to from the next step on, in 0.3 s from 1 to 4. The dampers stay.")
       .def("save", &save,
            "bytes from which a world of the same scene and spacing goes on, on the CPU to the bit.")
       .def(

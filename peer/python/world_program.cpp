@@ -271,6 +271,8 @@ void WorldProgram::change(const HostCommand& command) {
   refuse_while_moving();
   if (command.action == HostAction::kViscosity) {
     take(world_->set_viscosity(command.index, command.value));
+  } else if (command.action == HostAction::kGripStiffness) {
+    take(world_->set_grip_stiffness(command.index, command.value));
   } else {
     take(world_->set_gravity_scale(command.value));
   }

@@ -41,6 +41,12 @@ std::string status_lines(const RemoteStatus& status, const Scene& scene, const s
                   status.world.viscosities[i]);
     all += text;
   }
+  for (std::size_t i = 0; i < status.world.grip_stiffness.size() && i < scene.grips.size(); ++i) {
+    if (status.world.grip_stiffness[i] == 1.0) continue;
+    std::snprintf(text, sizeof text, "\ngrip '%.60s': stiffness × %.3g", scene.grips[i].name.c_str(),
+                  status.world.grip_stiffness[i]);
+    all += text;
+  }
   return all;
 }
 
@@ -86,20 +92,43 @@ PeerLine set(const std::vector<std::string>& words, const Scene& scene) {
   RemoteCommand command;
   command.kind = RemoteCommand::Kind::kParameter;
   command.value = wish.value().value;
-  command.parameter =
-      wish.value().gravity ? wire::Parameter::kGravityScale : wire::Parameter::kFluidViscosity;
   // Beyond these the message itself would bring the value into range, and something else would be granted.
-  const double most = wish.value().gravity ? wire::kMaxGravityScale : wire::kMaxViscosity;
+  double least = 0.0;
+  double most = wire::kMaxViscosity;
+  const char* unit = "Pa·s";
+  const std::string& which = wish.value().which;
+  switch (wish.value().what) {
+    case SetWish::What::kGravity:
+      command.parameter = wire::Parameter::kGravityScale;
+      most = wire::kMaxGravityScale;
+      unit = "times the scene's gravity";
+      break;
+    case SetWish::What::kViscosity: {
+      command.parameter = wire::Parameter::kFluidViscosity;
+      const std::optional<std::size_t> fluid = one_meant(scene.fluids, which);
+      if (!fluid) return say("say which fluid: " + names_of(scene.fluids));
+      command.index = static_cast<std::uint32_t>(*fluid);
+      break;
+    }
+    case SetWish::What::kStiffness: {
+      command.parameter = wire::Parameter::kGripStiffness;
+      least = wire::kMinGripStiffness;
+      most = wire::kMaxGripStiffness;
+      unit = "times the scene's stiffness";
+      const std::optional<std::size_t> grip = one_meant(scene.grips, which);
+      if (!grip) return say("say which grip: " + names_of(scene.grips));
+      command.index = static_cast<std::uint32_t>(*grip);
+      break;
+    }
+  }
+  char text[120];
   if (command.value > most) {
-    char text[120];
-    std::snprintf(text, sizeof text, "%.6g is too much: at most %.6g %s", command.value, most,
-                  wish.value().gravity ? "times the scene's gravity" : "Pa·s");
+    std::snprintf(text, sizeof text, "%.6g is too much: at most %.6g %s", command.value, most, unit);
     return say(text);
   }
-  if (!wish.value().gravity) {
-    const std::optional<std::size_t> fluid = fluid_meant(scene.fluids, wish.value().fluid);
-    if (!fluid) return say("say which fluid: " + names_of(scene.fluids));
-    command.index = static_cast<std::uint32_t>(*fluid);
+  if (command.value < least) {
+    std::snprintf(text, sizeof text, "%.6g is too little: at least %.6g %s", command.value, least, unit);
+    return say(text);
   }
   return ask(command);
 }

@@ -170,7 +170,7 @@ wire::Fault RemoteLink::on_answer(wire::ByteView payload) {
 
 wire::Fault RemoteLink::on_world_info(wire::ByteView payload) {
   wire::WorldInfo info;
-  if (wire::Fault fault = wire::decode(payload, info)) return fault;
+  if (wire::Fault fault = wire::decode(payload, info, agreed_)) return fault;
   status_.world = info;
   if (inbox_) inbox_->set_paused(info.paused);
   publish(now());

@@ -65,6 +65,10 @@ void RemoteLink::request_world(const RemoteCommand& command) {
 
 void RemoteLink::request_parameter(const RemoteCommand& command) {
   if (requests_.size() > kMostRequests) return;
+  if (command.parameter == wire::Parameter::kGripStiffness && !(agreed_ & wire::kGripStiffnesses)) {
+    notice("this host is of an earlier version, and its grips are as stiff as the scene has them");
+    return;
+  }
   wire::ParameterRequest request;
   request.request = remember({0, wire::ControlType::kParameterRequest, 0, false, false, done_text(command, world_.scene)});
   request.parameter = command.parameter;

@@ -65,8 +65,8 @@ struct RemoteCommand {
   bool take = true;
   wire::WorldAction action = wire::WorldAction::kPause;
   wire::Parameter parameter = wire::Parameter::kGravityScale;
-  std::uint32_t index = 0;  ///< fluid
-  double value = 0.0;       ///< Pa·s, or times the scene's gravity
+  std::uint32_t index = 0;  ///< fluid or grip
+  double value = 0.0;       ///< Pa·s, or times the scene's
 };
 
 /// Between the network's thread and the others. Everything under the mutex.

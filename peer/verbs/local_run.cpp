@@ -6,6 +6,7 @@
 #include "peer/remote/peer_console.h"
 #include "peer/verbs/hand_trouble.h"
 #include "peer/verbs/interrupt.h"
+#include "peer/verbs/live_grips.h"
 #include "peer/verbs/run_report.h"
 #include "peer/verbs/time_estimate.h"
 
@@ -13,6 +14,18 @@ namespace slosh {
 namespace {
 
 constexpr std::size_t kSnapshotBytes = std::size_t{512} << 20;
+
+HostAction action_of(wire::Parameter parameter) {
+  switch (parameter) {
+    case wire::Parameter::kFluidViscosity:
+      return HostAction::kViscosity;
+    case wire::Parameter::kGravityScale:
+      return HostAction::kGravityScale;
+    case wire::Parameter::kGripStiffness:
+      break;
+  }
+  return HostAction::kGripStiffness;
+}
 
 }  // namespace
 
@@ -146,6 +159,7 @@ LiveValues LocalRun::live_values() const {
   values.may_change = true;
   values.gravity_scale = state.gravity_scale;
   values.viscosities = state.viscosities;
+  values.grips = live_grips(prepared_.scene, state.grip_stiffness, *servo_);
   values.may_pace = !prepared_.unpaced;
   values.pace = host_->pace();
   return values;
@@ -156,11 +170,9 @@ void LocalRun::change(const LiveWish& wish) {
     host_->set_pace(wish.value);
     return;
   }
-  HostCommand command;
-  command.action =
-      wish.kind == LiveWish::Kind::kViscosity ? HostAction::kViscosity : HostAction::kGravityScale;
-  command.index = static_cast<std::uint32_t>(wish.fluid);
-  command.value = wish.value;
+  const std::optional<wire::Parameter> parameter = parameter_of(wish.kind);
+  if (!parameter) return;
+  const HostCommand command{action_of(*parameter), static_cast<std::uint32_t>(wish.index), wish.value};
   host_->post(command, [this](const Result<bool>& done) {
     if (!done) switches_.tell(done.error().text());
   });
@@ -169,7 +181,7 @@ void LocalRun::change(const LiveWish& wish) {
 std::string LocalRun::hear(const std::string& line) {
   const HostState state = switches_.state();
   const PeerLine heard = own_world_line(
-      line, {state.paused, state.run, state.gravity_scale, state.viscosities}, host_->progress().time, prepared_.scene);
+      line, {state.paused, state.run, state.gravity_scale, state.viscosities, state.grip_stiffness}, host_->progress().time, prepared_.scene);
   for (const RemoteCommand& command : heard.commands) carry_out(command);
   if (heard.quit) request_stop();
   return heard.text;
@@ -183,8 +195,7 @@ void LocalRun::carry_out(const RemoteCommand& command) {
     order.action = kWorldActions[static_cast<std::size_t>(command.action)];
     if (command.action != wire::WorldAction::kReset) paused_ = command.action == wire::WorldAction::kPause;
   } else {
-    order = {command.parameter == wire::Parameter::kGravityScale ? HostAction::kGravityScale : HostAction::kViscosity,
-             command.index, command.value};
+    order = {action_of(command.parameter), command.index, command.value};
   }
   host_->post(order, [this, said = done_text(command, prepared_.scene)](const Result<bool>& done) {
     switches_.tell(done ? said : done.error().text());
@@ -205,6 +216,7 @@ HudFacts LocalRun::facts(double picture_rate) const {
 
 Rates LocalRun::note_rates() {
   const HostProgress progress = host_->progress();
+  follow_stiffness(switches_.state().grip_stiffness, *servo_);
   Rates rates;
   rates.time = progress.time;
   rates.real_time = progress.rate;

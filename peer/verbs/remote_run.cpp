@@ -5,6 +5,7 @@
 #include "net/clock.h"
 #include "net/grip_start.h"
 #include "peer/remote/peer_console.h"
+#include "peer/verbs/live_grips.h"
 #include "peer/verbs/run_report.h"
 
 namespace slosh {
@@ -83,6 +84,7 @@ HudFacts RemoteRun::facts(double picture_rate) const {
 Rates RemoteRun::note_rates() {
   status_ = visit_.status();
   follow_time();
+  follow_stiffness(status_.world.grip_stiffness, *servo_);
   const Result<bool> followed = follow_grips();
   (void)followed;  // each trouble was told, and the grip let go
   for (const std::string& notice : visit_.take_notices()) options_.tell(notice);
@@ -182,15 +184,17 @@ LiveValues RemoteRun::live_values() const {
   values.may_change = status_.welcome.role == wire::Role::kParticipant;
   values.gravity_scale = status_.world.gravity_scale;
   values.viscosities = status_.world.viscosities;
+  values.grips = live_grips(stage_.scene, status_.world.grip_stiffness, *servo_);
   return values;
 }
 
 void RemoteRun::change(const LiveWish& wish) {
+  const std::optional<wire::Parameter> parameter = parameter_of(wish.kind);
+  if (!parameter) return;
   RemoteCommand command;
   command.kind = RemoteCommand::Kind::kParameter;
-  command.parameter = wish.kind == LiveWish::Kind::kViscosity ? wire::Parameter::kFluidViscosity
-                                                              : wire::Parameter::kGravityScale;
-  command.index = static_cast<std::uint32_t>(wish.fluid);
+  command.parameter = *parameter;
+  command.index = static_cast<std::uint32_t>(wish.index);
   command.value = wish.value;
   visit_.ask(command);
 }

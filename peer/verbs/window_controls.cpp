@@ -17,10 +17,11 @@ double wall_seconds() {
   return to_seconds(steady_now_ns());
 }
 
-std::vector<std::string> names_of_fluids(const Scene& scene) {
-  std::vector<std::string> names;
-  for (const Fluid& fluid : scene.fluids) names.push_back(fluid.name);
-  return names;
+template <class T>
+std::vector<std::string> names(const std::vector<T>& things) {
+  std::vector<std::string> all;
+  for (const T& thing : things) all.push_back(thing.name);
+  return all;
 }
 
 }  // namespace
@@ -36,7 +37,7 @@ WindowControls::WindowControls(const Scene& scene, LiveRun& run, OrbitCamera& ca
       guide_(std::move(keys)),
       forces_(scene),
       views_(std::move(views)),
-      panel_(names_of_fluids(scene)),
+      panel_(names(scene.fluids), names(scene.grips)),
       lent_(scene.grips.size(), nullptr),
       hands_(scene.grips.size()) {
   if (!views_.problem().empty()) tell_("slosh: " + views_.problem());

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "sim/math/format.h"
+
 namespace slosh {
 namespace {
 
@@ -14,8 +16,17 @@ constexpr float kLeastViscosity = 1e-3f;  // Pa·s: water's
 constexpr float kMostViscosity = 100.0f;  // above it the host may say by itself what it cannot do
 constexpr float kSlowest = 0.05f;
 constexpr float kMostFilter = 16.0f;
+constexpr float kSoftest = 0.05f, kStiffest = 4.0f;  // of a grip, times the scene's: what World::set_grip_stiffness takes
 
 }  // namespace
+
+std::string grip_text(const LiveGrip& grip) {
+  const double spring = grip.stiffness * grip.of_scene;
+  if (!(grip.of_scene > 0.0)) return "";
+  if (grip.of_device > 0.0 && spring > grip.of_device)
+    return format("= %.4g N/m, felt as %.4g", spring, grip.of_device);
+  return format("= %.4g N/m", spring);
+}
 
 void LivePanel::slider(std::size_t id, const char* label, const char* pattern, float least, float most,
                        bool logarithmic, double now, double wall_seconds, const LiveWish& wish) {
@@ -60,6 +71,11 @@ void LivePanel::draw(const LiveValues& now, double wall_seconds) {
         const std::string label = "viscosity of " + fluid_names_[i];
         slider(3 + i, label.c_str(), "%.4g Pa\xC2\xB7s", kLeastViscosity, kMostViscosity, true,
                now.viscosities[i], wall_seconds, {LiveWish::Kind::kViscosity, i, 0.0});
+      }
+      for (std::size_t i = 0; i < now.grips.size() && i < grip_names_.size(); ++i) {
+        const std::string label = "stiffness of " + grip_names_[i] + " " + grip_text(now.grips[i]);
+        slider(3 + fluid_names_.size() + i, label.c_str(), "\xC3\x97 %.2f", kSoftest, kStiffest, true,
+               now.grips[i].stiffness, wall_seconds, {LiveWish::Kind::kGripStiffness, i, 0.0});
       }
     }
   }

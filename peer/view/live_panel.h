@@ -8,11 +8,19 @@
 
 namespace slosh {
 
+/// The springs of a grip.
+struct LiveGrip {
+  double stiffness = 1.0;   ///< times the scene's, 0.05–4
+  double of_scene = 0.0;    ///< N/m
+  double of_device = 0.0;   ///< N/m that the device holds at most; 0: no hand of this person's feels it
+};
+
 /// What can be changed live, as it is.
 struct LiveValues {
   bool may_change = false;          ///< viscosity and gravity are this person's to change
   double gravity_scale = 1.0;       ///< times the scene's, 0–2
   std::vector<double> viscosities;  ///< Pa·s, one a fluid
+  std::vector<LiveGrip> grips;      ///< one a grip, or none where their stiffness is not to change
   bool may_pace = false;            ///< the world is this person's own: slow motion, single steps
   double pace = 1.0;                ///< simulated s a wall s at most
   int filter = 0;  ///< turns of the surface's filter, 0–64: 0 shows the balls that particles are
@@ -20,15 +28,19 @@ struct LiveValues {
 
 /// One value that somebody wants.
 struct LiveWish {
-  enum class Kind : std::uint8_t { kPace, kGravityScale, kViscosity, kFilter } kind = Kind::kPace;
-  std::size_t fluid = 0;
+  enum class Kind : std::uint8_t { kPace, kGravityScale, kViscosity, kGripStiffness, kFilter } kind = Kind::kPace;
+  std::size_t index = 0;  ///< fluid or grip
   double value = 0.0;
 };
+
+/// What a slider for it shows beside its value: "= 500 N/m", and what the device makes of it where that is less.
+std::string grip_text(const LiveGrip& grip);
 
 /// On the drawing thread, inside Frame::hud.
 class LivePanel {
  public:
-  explicit LivePanel(std::vector<std::string> fluid_names) : fluid_names_(std::move(fluid_names)) {}
+  LivePanel(std::vector<std::string> fluid_names, std::vector<std::string> grip_names)
+      : fluid_names_(std::move(fluid_names)), grip_names_(std::move(grip_names)) {}
 
   bool shown = false;
 
@@ -47,6 +59,7 @@ class LivePanel {
               bool logarithmic, double now, double wall_seconds, const LiveWish& wish);
 
   std::vector<std::string> fluid_names_;
+  std::vector<std::string> grip_names_;
   std::vector<Slider> sliders_;
   std::vector<LiveWish> wishes_;
 };

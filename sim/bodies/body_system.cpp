@@ -17,9 +17,9 @@ BodySystem::BodySystem(const Scene& scene, const SampledScene& sampled)
   }
 }
 
-std::uint32_t BodySystem::begin_step(std::span<const HandleInput> handles) {
+std::uint32_t BodySystem::begin_step(std::span<const HandleInput> handles, double time_step) {
   for (GripState& state : grips_) state.on_hand = Wrench{};
-  return hands_.take(handles);
+  return hands_.take(handles, time_step);
 }
 
 std::uint32_t BodySystem::solve(const Plan& plan, const BodyForces& forces, const SubStep& step,
@@ -118,10 +118,12 @@ void BodySystem::damp_held(double keep) {
 }
 
 void BodySystem::restore(std::vector<RigidBody> bodies, std::vector<GripState> grips,
-                         std::vector<HandleInput> inputs, std::vector<KeptImpulse> impulses) {
+                         std::vector<HandleInput> inputs, Hands::Stiffness stiffness,
+                         std::vector<KeptImpulse> impulses) {
   bodies_ = std::move(bodies);
   grips_ = std::move(grips);
   hands_.restore(std::move(inputs));
+  hands_.restore(std::move(stiffness));
   memory_.restore(std::move(impulses));
 }
 

@@ -32,7 +32,8 @@ class BodySystem {
 
   /// Takes the handles' inputs of a step and forgets what the step before put on the hands. Returns
   /// StatusBits.
-  std::uint32_t begin_step(std::span<const HandleInput> handles);
+  /// `time_step` in s.
+  std::uint32_t begin_step(std::span<const HandleInput> handles, double time_step);
   /// The velocities that the bodies end the sub-step with, by couplings and contacts as far as the plan has
   /// them. With `held_only` the other bodies stand still. Returns StatusBits.
   std::uint32_t solve(const Plan& plan, const BodyForces& forces, const SubStep& step, bool held_only);
@@ -52,9 +53,11 @@ class BodySystem {
   /// Handles and what was put on the hands, as means over the last step; poses and twists are not set.
   const std::vector<GripState>& grips() const { return grips_; }
   const std::vector<HandleInput>& last_inputs() const { return hands_.last(); }
+  const Hands::Stiffness& grip_stiffness() const { return hands_.stiffness(); }
+  void want_grip_stiffness(std::size_t grip, double scale) { hands_.want_stiffness(grip, scale); }
   const std::vector<KeptImpulse>& kept_impulses() const { return memory_.kept(); }
   void restore(std::vector<RigidBody> bodies, std::vector<GripState> grips, std::vector<HandleInput> inputs,
-               std::vector<KeptImpulse> impulses);
+               Hands::Stiffness stiffness, std::vector<KeptImpulse> impulses);
 
  private:
   std::span<const ActiveCoupling> couplings_of(int body) const;

@@ -28,11 +28,15 @@ bool usable(const HandleInput& input) {
          std::isfinite(input.scale);
 }
 
-Hands::Hands(const Scene& scene) : grips_(scene.grips), last_(scene.grips.size()) {}
+Hands::Hands(const Scene& scene)
+    : grips_(scene.grips),
+      last_(scene.grips.size()),
+      stiffness_{std::vector<double>(scene.grips.size(), 1.0), std::vector<double>(scene.grips.size(), 1.0)} {}
 
-std::uint32_t Hands::take(std::span<const HandleInput> handles) {
+std::uint32_t Hands::take(std::span<const HandleInput> handles, double time_step) {
   std::uint32_t status = 0;
   for (std::size_t g = 0; g < last_.size(); ++g) {
+    stiffness_.acting[g] = toward_stiffness(stiffness_.acting[g], stiffness_.wanted[g], time_step);
     HandleInput input = g < handles.size() ? handles[g] : HandleInput{};
     if (input.engaged && !usable(input)) {
       status |= kStatusInputRejected;
@@ -54,7 +58,8 @@ const std::vector<ActiveCoupling>& Hands::couple(const std::vector<RigidBody>& b
     ActiveCoupling coupling;
     coupling.grip = static_cast<int>(g);
     coupling.body = grip.body;
-    coupling.gains = {scale * grip.stiffness, scale * grip.damping, scale * grip.rotational_stiffness,
+    const double spring = scale * stiffness_.acting[g];
+    coupling.gains = {spring * grip.stiffness, scale * grip.damping, spring * grip.rotational_stiffness,
                       scale * grip.rotational_damping};
     coupling.handle = input.pose;
     coupling.handle.orientation = glm::normalize(input.pose.orientation);

@@ -71,6 +71,9 @@ TEST_F(TerminalTest, APeerSetsParametersAndPausesFromItsTerminal) {
   EXPECT_TRUE(eve->shows("Ana set gravity to 0.5 times the scene's")) << eve->screen();
   ana->type("set viscosity 1e6\r");
   EXPECT_TRUE(ana->shows("too much for the time step")) << ana->screen();
+  ana->type("set stiffness 0.5\r");
+  EXPECT_TRUE(ana->shows("the hold on 'grip' is 0.5 times as stiff as the scene has it now")) << ana->screen();
+  EXPECT_TRUE(eve->shows("Ana set the hold on 'grip' to 0.5 times the scene's stiffness")) << eve->screen();
   ana->type("pause\r");
   EXPECT_TRUE(host->shows("Ana paused the world")) << host->screen();
   ana->type("status\r");

@@ -67,6 +67,8 @@ TEST(HostCommands, KeepTheirOrderAndAnswer) {
   auto thick = rig.host.ask({HostAction::kViscosity, 0, 1e9});
   auto none = rig.host.ask({HostAction::kViscosity, 99, 0.001});
   auto light = rig.host.ask({HostAction::kGravityScale, 0, 0.5});
+  auto soft = rig.host.ask({HostAction::kGripStiffness, 0, 0.5});
+  auto nobodys = rig.host.ask({HostAction::kGripStiffness, 7, 0.5});
   auto reset = rig.host.ask({HostAction::kReset});
   rig.host.start();
   const Result<bool> answer = thick.get();
@@ -74,13 +76,17 @@ TEST(HostCommands, KeepTheirOrderAndAnswer) {
   EXPECT_NE(answer.error().text().find("will do"), std::string::npos) << answer.error().text();
   EXPECT_FALSE(none.get());
   EXPECT_TRUE(light.get());
+  EXPECT_TRUE(soft.get());
+  EXPECT_FALSE(nobodys.get());
   EXPECT_TRUE(reset.get());
   EXPECT_EQ(rig.host.progress().tick, 0u);
   EXPECT_TRUE(rig.host.progress().paused);
   EXPECT_TRUE(rig.host.ask({HostAction::kContinue}).get());
   rig.host.wait();
   EXPECT_EQ(log.changes,
-            (std::vector<HostAction>{HostAction::kGravityScale, HostAction::kReset, HostAction::kContinue}));
+            (std::vector<HostAction>{HostAction::kGravityScale, HostAction::kGripStiffness, HostAction::kReset,
+                                     HostAction::kContinue}));
+  EXPECT_EQ(log.state.grip_stiffness, std::vector<double>{0.5}) << "a reset leaves it";
   EXPECT_EQ(log.state.gravity_scale, 0.5) << "a reset leaves the parameters";
   EXPECT_EQ(rig.host.world().gravity_scale(), 0.5);
   const Result<bool> late = rig.host.ask({HostAction::kReset}).get();

@@ -39,6 +39,7 @@ inline Recorded record(const RecordingOptions& options, double seconds, bool eve
   AtTick pause(45, [&] {
     rig.host.post({HostAction::kPause});
     rig.host.post({HostAction::kViscosity, 0, 0.002});
+    rig.host.post({HostAction::kGripStiffness, 0, 0.3});
     rig.host.post({HostAction::kContinue});
   });
   if (eventful) {
@@ -86,6 +87,8 @@ inline Played play(RecordingReader& reader, World* world) {
           EXPECT_TRUE(world->set_gravity_scale(e.change.value));
         } else if (e.change.action == HostAction::kViscosity) {
           EXPECT_TRUE(world->set_viscosity(e.change.index, e.change.value));
+        } else if (e.change.action == HostAction::kGripStiffness) {
+          EXPECT_TRUE(world->set_grip_stiffness(e.change.index, e.change.value));
         }
         break;
       case Kind::kState: {

@@ -100,6 +100,33 @@ TEST(Servo, DevicesAreExchangedUnderARunningLoop) {
   EXPECT_GE(closed, 300) << "none is forgotten";
 }
 
+/// A grip that is made stiffer or softer while it is held: gone over to, and never beyond what the device holds.
+TEST(Servo, AGripsStiffnessChangesLiveWithinTheDevicesLimits) {
+  DeviceLimits limits = limits_without_a_hand();
+  limits.max_stiffness = 1500.0;
+  ServoKit kit(limits);
+  kit.device->next.pose = test::at(-0.001);
+  kit.device->next.engaged = true;
+  int tick = 0;
+  const auto felt_after = [&](int ticks) {
+    for (const int end = tick + ticks; tick < end; ++tick) {
+      if (tick % 2 == 0) kit.publish(0.001 * tick);
+      kit.tick(0.001 * tick);
+    }
+    return kit.device->last.force.x;
+  };
+  const double scenes = felt_after(1000);  // 1 mm at 1000 N/m, but for what the engagement keeps of the start
+  ASSERT_GT(scenes, 0.0);
+  kit.servo->set_stiffness(0, 0.25);
+  const double at_once = felt_after(1);
+  EXPECT_GT(at_once, 0.98 * scenes) << "gone over to";
+  EXPECT_NEAR(felt_after(500), 0.25 * scenes, 1e-6 * scenes);
+  kit.servo->set_stiffness(0, 4.0);
+  EXPECT_NEAR(felt_after(1000), 1.5 * scenes, 1e-6 * scenes) << "the device holds 1500 N/m";
+  kit.servo->set_stiffness(0, 1.0);
+  EXPECT_NEAR(felt_after(1000), scenes, 1e-6 * scenes);
+}
+
 TEST(Servo, SamplesAtItsIntervalOfSimulatedTime) {
   ServoKit kit;
   for (int i = 0; i <= 100; ++i) {

@@ -233,6 +233,59 @@ TEST(World, SettlingHangsABodyInTheHandThatHoldsIt) {
   EXPECT_LT(glm::distance(at_rest.bodies[1].pose.position, later.bodies[1].pose.position), 3e-4);
 }
 
+/// A body that hangs in a hand hangs by its weight over the spring: half the spring, twice the way. It gets there without
+/// being thrown, and what is saved goes on as it was.
+TEST(World, AGripIsAsStiffAsItIsSetLive) {
+  const Tank tank = stirred_tank();
+  World world = make_world(tank);
+  HandleInput hand;
+  hand.engaged = true;
+  hand.pose.position = {-0.05, 0.09, 0.0};
+  const auto way = [&](World& of) {
+    BodySnapshot now;
+    for (int i = 0; i < 200; ++i) of.step({&hand, 1});
+    of.settle(1.0, {&hand, 1});
+    for (int i = 0; i < 200; ++i) of.step({&hand, 1});
+    of.fill(now);
+    const double load = -now.grips[0].on_hand.force.y;
+    const double stretched = now.grips[0].handle.position.y - now.grips[0].pose.position.y;
+    return load > 0.0 ? stretched / load : 0.0;
+  };
+  const double softness = 1.0 / tank.scene.grips[0].stiffness;  // m/N
+  EXPECT_EQ(world.grip_stiffness()[0], 1.0);
+  EXPECT_NEAR(way(world), softness, 0.02 * softness);
+  ASSERT_TRUE(world.set_grip_stiffness(0, 0.5));
+  std::vector<std::uint8_t> bytes;
+  ASSERT_TRUE(world.save(bytes));
+  BodySnapshot before, after;
+  world.fill(before);
+  world.step({&hand, 1});
+  world.fill(after);
+  EXPECT_LT(glm::length(after.bodies[1].twist.linear - before.bodies[1].twist.linear), 5e-3) << "it is not dropped";
+  EXPECT_NEAR(way(world), 2.0 * softness, 0.04 * softness);
+
+  World again = make_world(tank);
+  ASSERT_TRUE(again.restore(bytes));
+  EXPECT_EQ(again.grip_stiffness()[0], 0.5);
+  World other = make_world(tank);
+  ASSERT_TRUE(other.restore(bytes));
+  for (int i = 0; i < 30; ++i) {
+    again.step({&hand, 1});
+    other.step({&hand, 1});
+  }
+  EXPECT_EQ(again.hash(), other.hash());
+  EXPECT_NEAR(way(again), 2.0 * softness, 0.04 * softness) << "on its way there it was saved";
+
+  for (const double wrong : {0.0, -1.0, 0.04, 4.1, std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_FALSE(world.set_grip_stiffness(0, wrong)) << wrong;
+  EXPECT_FALSE(world.set_grip_stiffness(1, 1.0)) << "there is one";
+  Tank hard = stirred_tank();
+  hard.scene.grips[0].stiffness = 4e5;
+  World stiff = make_world(hard);
+  EXPECT_FALSE(stiff.set_grip_stiffness(0, 3.0)) << "harder than a scene may have it";
+  EXPECT_TRUE(stiff.set_grip_stiffness(0, 2.0));
+}
+
 TEST(World, SettlesAsLongAsItIsToldAndAsksNotWhatMoves) {
   Tank tank = make_tank({});
   for (glm::vec3& v : tank.sampled.fluid_velocities) v = {0.3f, 0.0f, 0.0f};

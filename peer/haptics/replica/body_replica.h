@@ -23,7 +23,7 @@ struct ReplicaBody {
 /// One coupling of the body.
 struct ReplicaGrip {
   Pose pose;            ///< in the mesh frame
-  CouplingGains gains;  ///< the scene's
+  CouplingGains gains;  ///< as the host has them
 };
 
 /// What moves one grip.
@@ -60,6 +60,7 @@ class BodyReplica {
   void restart(const RigidMotion& motion) noexcept;
   bool started() const { return started_; }
 
+  void set_gains(std::size_t g, const CouplingGains& gains) noexcept { grips_[g].gains = gains; }
   void set_delay(const LoopDelay& delay) noexcept { delay_ = delay; }
   /// What acts besides couplings, weight and all, with the host's motion as its reference.
   void set_load(const FluidLoad& load) noexcept;

@@ -53,6 +53,11 @@ class HeldBody {
   /// holds.
   Wrench guard(std::size_t g, const Wrench& wanted, const Pose& hand, const Twist& twist, double dt,
                double most_damping) noexcept;
+  /// Grip `g`'s coupling is that from now on, here as at the host.
+  void set_gains(std::size_t g, const CouplingGains& gains) noexcept {
+    gains_[g] = gains;
+    replica_.set_gains(g, gains);
+  }
   void sent(std::size_t g, const Wrench& wrench) noexcept { guards_[g].sent(wrench); }
   /// On by `dt` s of the body's time, to `now_ns`.
   void advance(std::span<const OwnHand> own, double dt, std::int64_t now_ns) noexcept;

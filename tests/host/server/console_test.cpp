@@ -50,10 +50,12 @@ TEST(Console, LinksTakeANameARoleAndATime) {
 
 TEST(Console, ParametersTakeAFluidAndANumber) {
   const ConsoleCommand one = good("set viscosity 0.5");
-  EXPECT_FALSE(one.gravity);
+  EXPECT_EQ(one.what, SetWish::What::kViscosity);
   EXPECT_EQ(one.value, 0.5);
   EXPECT_EQ(good("set viscosity honey 1e1").text, "honey");
-  EXPECT_TRUE(good("set gravity 0.2").gravity);
+  EXPECT_EQ(good("set gravity 0.2").what, SetWish::What::kGravity);
+  EXPECT_EQ(good("set stiffness 'left hand' 0.2").what, SetWish::What::kStiffness);
+  EXPECT_EQ(good("set stiffness 'left hand' 0.2").text, "left hand");
 }
 
 TEST(Console, WhatIsWrongIsSaidInWords) {

@@ -205,6 +205,14 @@ TEST_F(ServerTest, TheWorldObeysThoseWithHands) {
   EXPECT_NE(eve.answers[0].text.find("for watching"), std::string::npos);
   EXPECT_TRUE(eve.noticed("Ana paused the world"));
 
+  ana.say(wire::ParameterRequest{6, wire::Parameter::kGripStiffness, 1, 0.5});
+  ana.say(wire::ParameterRequest{7, wire::Parameter::kGripStiffness, 60, 0.5});
+  go(0.1);
+  EXPECT_EQ(commands.back().action, HostAction::kGripStiffness);
+  EXPECT_EQ(commands.back().index, 1u);
+  EXPECT_FALSE(ana.answers.back().granted);
+  EXPECT_NE(ana.answers.back().text.find("there is no grip '60'"), std::string::npos) << ana.answers.back().text;
+
   refuse_commands = "0.9 Pa·s is too much for the time step";
   ana.say(wire::ParameterRequest{5, wire::Parameter::kFluidViscosity, 0, 0.9});
   go(0.1);
@@ -240,7 +248,7 @@ TEST_F(LockedServerTest, OnlyTheHostSetsParameters) {
   ana.say(wire::WorldRequest{3, wire::WorldAction::kPause});
   go(0.1);
   ASSERT_EQ(ana.answers.size(), 3u);
-  EXPECT_EQ(ana.answers[0].text, "here only the host sets viscosity and gravity");
+  EXPECT_EQ(ana.answers[0].text, "here only the host sets viscosity, gravity and stiffness");
   EXPECT_FALSE(ana.answers[1].granted);
   EXPECT_TRUE(ana.answers[2].granted) << "a pause is no parameter";
   server->command("set gravity 0.5");

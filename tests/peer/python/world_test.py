@@ -140,6 +140,11 @@ class Runs(unittest.TestCase):
         self.assertEqual(w.gravity_scale, 0.5)
         with self.assertRaises(slosh.Error):
             w.gravity_scale = 5.0
+        grip = w.scene.grips[0].name
+        w.set_grip_stiffness(grip, 0.5)
+        self.assertEqual(w.grip_stiffness(0), 0.5)
+        with self.assertRaises(slosh.Error):
+            w.set_grip_stiffness(grip, 100.0)
         with self.assertRaises(KeyError) as raised:
             w.set_viscosity("beer", 1.0)
         self.assertIn(fluid.name, str(raised.exception))

@@ -43,6 +43,13 @@ TEST_F(PeerConsole, ParametersAreAskedForAsAtTheHost) {
   const RemoteCommand gravity = asked("set gravity 0.5\n");
   EXPECT_EQ(gravity.parameter, wire::Parameter::kGravityScale);
   EXPECT_EQ(gravity.value, 0.5);
+  const RemoteCommand firm = asked("set stiffness 'right hand' 2");
+  EXPECT_EQ(firm.parameter, wire::Parameter::kGripStiffness);
+  EXPECT_EQ(firm.index, 1u);
+  EXPECT_EQ(firm.value, 2.0);
+  EXPECT_EQ(type("set stiffness 2").text, "say which grip: left, right hand");
+  EXPECT_NE(type("set stiffness left 5").text.find("at most 4"), std::string::npos);
+  EXPECT_NE(type("set stiffness left 0").text.find("at least 0.05"), std::string::npos);
   EXPECT_EQ(type("set viscosity 3").text, "say which fluid: water, honey");
   EXPECT_EQ(type("set viscosity oil 3").text, "say which fluid: water, honey");
   EXPECT_NE(type("set gravity 3").text.find("at most 2"), std::string::npos);
@@ -92,14 +99,15 @@ TEST_F(PeerConsole, QuestionsAreAnsweredFromWhatIsKnown) {
 
 /// The same words at a world of one's own, but for those that need somebody else.
 TEST_F(PeerConsole, AWorldOfOnesOwnHearsTheSameWords) {
-  const auto own = [&](const char* line) { return own_world_line(line, {true, 0, 0.5, {0.001, 5.0}}, 1.25, scene); };
+  const auto own = [&](const char* line) { return own_world_line(line, {true, 0, 0.5, {0.001, 5.0}, {1.0, 0.25}}, 1.25, scene); };
   ASSERT_EQ(own("set viscosity honey 2.5").commands.size(), 1u);
   EXPECT_EQ(own("set viscosity honey 2.5").commands[0].index, 1u);
   EXPECT_EQ(own("set viscosity 3").text, type("set viscosity 3").text);
   EXPECT_EQ(own("pause").commands.at(0).action, wire::WorldAction::kPause);
   EXPECT_TRUE(own("quit").quit);
   EXPECT_EQ(own("status").text,
-            "the world is at 1.25 s, paused, gravity × 0.5\nfluid 'water': 0.001 Pa·s\nfluid 'honey': 5 Pa·s");
+            "the world is at 1.25 s, paused, gravity × 0.5\nfluid 'water': 0.001 Pa·s\nfluid 'honey': 5 Pa·s\n"
+            "grip 'right hand': stiffness × 0.25");
   for (const char* line : {"take", "release", "who", "links"})
     EXPECT_NE(own(line).text.find("means nothing here"), std::string::npos) << line;
   EXPECT_EQ(own("help").text.find("take"), std::string::npos) << own("help").text;
