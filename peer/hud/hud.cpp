@@ -177,7 +177,7 @@ void Hud::draw_hands(const glm::vec2& picture) {
     const glm::vec2 far = picture - size - kMargin;
     const std::array<glm::vec2, 4> places{glm::vec2(kMargin, far.y), far, glm::vec2(far.x, kMargin),
                                           glm::vec2(kMargin)};
-    return place_panel(size, places, clear, hands_at_);
+    return place_panel(size, places, clear, hands_panel_.low);
   };
   // Many hands below each other may hide one: then beside each other, if that hides less.
   const glm::vec2 column_at = place(column);
@@ -187,8 +187,9 @@ void Hud::draw_hands(const glm::vec2& picture) {
   const bool fits = hands_.size() > 1 && row.x + 2.0f * kMargin < picture.x;
   in_a_row_ = fits && (in_a_row_ ? by_row <= by_column : by_row < 0.5f * by_column);
   const glm::vec2& size = in_a_row_ ? row : column;
-  hands_at_ = in_a_row_ ? row_at : column_at;
-  ImGui::SetNextWindowPos(ImVec2(hands_at_.x, hands_at_.y));
+  hands_panel_.low = in_a_row_ ? row_at : column_at;
+  hands_panel_.high = hands_panel_.low + size;
+  ImGui::SetNextWindowPos(ImVec2(hands_panel_.low.x, hands_panel_.low.y));
   ImGui::SetNextWindowSize(ImVec2(size.x, size.y));
   ImGui::SetNextWindowBgAlpha(0.55f);
   if (ImGui::Begin("forces", nullptr, kPanel)) {

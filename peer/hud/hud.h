@@ -37,6 +37,8 @@ class Hud {
 
   void record(const Snapshot& snapshot);
   void draw(const Rates& rates);
+  /// Where the panels lie in what draw() drew last, in Dear ImGui's pixels.
+  std::array<Rect, 2> panels() const { return {run_panel_, hands_panel_}; }
 
   bool paused = false;
   /// What the panels leave free where they can: what hands hold, in shares of the picture, y down.
@@ -64,7 +66,7 @@ class Hud {
     return never;
   }();  // simulated s, a StatusBit each
   Rect run_panel_;
-  glm::vec2 hands_at_{-1.0f};
+  Rect hands_panel_{glm::vec2(-1.0f), glm::vec2(-1.0f)};
   bool in_a_row_ = false;  ///< the hands' panel
 };
 

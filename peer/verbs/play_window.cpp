@@ -138,7 +138,7 @@ class WindowRun {
         renderer_.resize(drawn.x, drawn.y);
       }
       const std::int64_t begin_ns = steady_now_ns();
-      painter_.draw(*snapshot, rates, [&] { controls_.draw(*snapshot, size); });
+      painter_.draw(*snapshot, rates, [&] { controls_.draw(*snapshot, size, painter_.hud().panels()); });
       if (const std::optional<std::string> table = controls_.take_forces()) keep_forces(*table);
       if (wish == WindowControls::Wish::kPicture) keep_picture();
       if (film_.due()) film_.add(renderer_.read_back());

@@ -238,13 +238,13 @@ void WindowControls::record(const Snapshot& snapshot) {
   forces_.record(snapshot.rigid);
 }
 
-void WindowControls::draw(const Snapshot& snapshot, const glm::ivec2& picture) {
+void WindowControls::draw(const Snapshot& snapshot, const glm::ivec2& picture, std::span<const Rect> taken) {
   const auto pressures = run_.pressures(measures_.particles == ParticleView::kPressure);
   measures_.draw(snapshot, pressures.get(), camera_, picture);
-  guide_.draw(facts_, wall_seconds());
+  guide_.draw(facts_, wall_seconds(), taken);
   LiveValues values = run_.live_values();
   values.filter = filter;
-  panel_.draw(values, wall_seconds());
+  panel_.draw(values, wall_seconds(), taken);
   forces_.draw();
 }
 

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,8 +36,8 @@ class WindowControls {
   Wish follow(const InputState& input, const glm::ivec2& picture, const BodySnapshot* world);
   /// A new snapshot, for what is drawn and plotted over the picture.
   void record(const Snapshot& snapshot);
-  /// Dear ImGui calls, inside Frame::hud, over the picture of `snapshot`.
-  void draw(const Snapshot& snapshot, const glm::ivec2& picture);
+  /// Dear ImGui calls, inside Frame::hud, over the picture of `snapshot`. `taken`: where panels lie already.
+  void draw(const Snapshot& snapshot, const glm::ivec2& picture, std::span<const Rect> taken);
   /// The table of forces that somebody asked to keep since the last call.
   std::optional<std::string> take_forces() { return forces_.take_table(); }
   /// In the window and in the terminal.

@@ -49,10 +49,14 @@ void LivePanel::slider(std::size_t id, const char* label, const char* pattern, f
   ImGui::PopID();
 }
 
-void LivePanel::draw(const LiveValues& now, double wall_seconds) {
+void LivePanel::draw(const LiveValues& now, double wall_seconds, std::span<const Rect> taken) {
   if (!shown) return;
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos(ImVec2(size.x - kMargin, kMargin), ImGuiCond_Always, ImVec2(1.0f, 0.0f));
+  const glm::vec2 panel(kWidth + 2.0f * ImGui::GetStyle().WindowPadding.x, 0.5f * size.y);
+  const bool left = covered_area({size.x - kMargin - panel.x, kMargin}, panel, taken) >
+                    covered_area({kMargin, kMargin}, panel, taken);
+  ImGui::SetNextWindowPos(ImVec2(left ? kMargin : size.x - kMargin, kMargin), ImGuiCond_Always,
+                          ImVec2(left ? 0.0f : 1.0f, 0.0f));
   ImGui::SetNextWindowBgAlpha(0.7f);
   constexpr ImGuiWindowFlags kFlags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                                       ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav |

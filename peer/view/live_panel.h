@@ -3,8 +3,11 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
+
+#include "peer/hud/panels.h"
 
 namespace slosh {
 
@@ -44,7 +47,8 @@ class LivePanel {
 
   bool shown = false;
 
-  void draw(const LiveValues& now, double wall_seconds);
+  /// At the top on the right, or on the left where a panel of `taken` lies there.
+  void draw(const LiveValues& now, double wall_seconds, std::span<const Rect> taken);
   /// What was asked for since the last call; of each value the newest, at most ten times a second while it is
   /// dragged.
   std::vector<LiveWish> take_wishes();

@@ -2,6 +2,8 @@
 
 #include <imgui.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <initializer_list>
 
@@ -21,6 +23,17 @@ void panel(const char* name, const std::string& text, ImVec2 at, ImVec2 pivot, f
   ImGui::SetNextWindowBgAlpha(opacity);
   if (ImGui::Begin(name, nullptr, kPanel)) ImGui::TextUnformatted(text.c_str());
   ImGui::End();
+}
+
+/// Where a line of `size` lies: at the bottom in the middle, else in a corner there, else above what is there.
+glm::vec2 hint_place(const glm::vec2& size, const glm::vec2& picture, std::span<const Rect> taken, const glm::vec2& now) {
+  const glm::vec2 low(0.5f * (picture.x - size.x), picture.y - size.y - kMargin);
+  float above = low.y;
+  for (const Rect& rect : taken)
+    if (rect.high.y > low.y) above = std::min(above, rect.low.y - size.y - kMargin);
+  const std::array places{low, glm::vec2(picture.x - size.x - kMargin, low.y), glm::vec2(kMargin, low.y),
+                          glm::vec2(low.x, std::max(above, kMargin))};
+  return place_panel(size, places, taken, now);
 }
 
 }  // namespace
@@ -110,7 +123,7 @@ void WindowGuide::say(std::string text, double wall_seconds) {
   until_ = wall_seconds + kSaidSeconds;
 }
 
-void WindowGuide::draw(const GuideFacts& facts, double wall_seconds) const {
+void WindowGuide::draw(const GuideFacts& facts, double wall_seconds, std::span<const Rect> taken) {
   const ImGuiIO& io = ImGui::GetIO();
   const ImVec2 size = io.DisplaySize;
   if (facts.mark) {
@@ -128,8 +141,11 @@ void WindowGuide::draw(const GuideFacts& facts, double wall_seconds) const {
     line = line.empty() ? text : std::string(text) + "\n" + line;
   }
   if (wall_seconds < until_) line = line.empty() ? said_ : said_ + "\n" + line;
-  if (!line.empty() && !show_all)
-    panel("hint", line, ImVec2(0.5f * size.x, size.y - kMargin), ImVec2(0.5f, 1.0f));
+  if (line.empty() || show_all) return;
+  const ImVec2 text = ImGui::CalcTextSize(line.c_str());
+  const ImVec2 padding = ImGui::GetStyle().WindowPadding;
+  hint_at_ = hint_place({text.x + 2.0f * padding.x, text.y + 2.0f * padding.y}, {size.x, size.y}, taken, hint_at_);
+  panel("hint", line, ImVec2(hint_at_.x, hint_at_.y), ImVec2(0.0f, 0.0f));
 }
 
 }  // namespace slosh

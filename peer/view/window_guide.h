@@ -5,9 +5,11 @@
 #include <cstddef>
 #include <glm/glm.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "peer/hud/panels.h"
 #include "peer/settings/key_bindings.h"
 
 namespace slosh {
@@ -41,7 +43,8 @@ class WindowGuide {
   /// A line that stays for some seconds.
   void say(std::string text, double wall_seconds);
 
-  void draw(const GuideFacts& facts, double wall_seconds) const;
+  /// `taken`: other panels, which the line at the bottom keeps clear of.
+  void draw(const GuideFacts& facts, double wall_seconds, std::span<const Rect> taken);
   /// The line at the bottom: what matters now and was not done yet; empty when there is nothing to say.
   std::string hint(const GuideFacts& facts) const;
   /// Every key that does something here, a line each.
@@ -52,6 +55,7 @@ class WindowGuide {
   bool used_[4] = {};
   std::string said_;
   double until_ = 0.0;  // wall s
+  glm::vec2 hint_at_{-1.0f};
 };
 
 }  // namespace slosh
