@@ -45,6 +45,19 @@ std::string spans_script(const ChartPanel& panel) {
   return script;
 }
 
+/// Whether the values are all at or above nothing and begin there: then the axis does too.
+bool begins_at_zero(const ChartPanel& panel) {
+  double least = INFINITY, most = -INFINITY;
+  for (const ChartSeries& series : panel.series) {
+    for (const glm::dvec2& p : series.points) {
+      if (!shown(panel, p)) continue;
+      least = std::min(least, p.y);
+      most = std::max(most, p.y);
+    }
+  }
+  return !panel.log_y && least >= 0.0 && least < 0.1 * most;
+}
+
 std::string panel_script(const ChartPanel& panel, std::size_t number) {
   std::string data, plot;
   for (std::size_t i = 0; i < panel.series.size(); ++i) {
@@ -68,6 +81,7 @@ std::string panel_script(const ChartPanel& panel, std::size_t number) {
                          : "unset key\n";
   if (panel.log_x) script += "set logscale x\n";
   if (panel.log_y) script += "set logscale y\n";
+  script += begins_at_zero(panel) ? "set yrange [0:*]\n" : "set yrange [*:*]\n";
   script += "set title " + gnuplot_text(panel.title) + (panel.spans.empty() ? "" : " offset 0,0.7") +
             " font \"DejaVu Sans,12\"\n";
   script +=

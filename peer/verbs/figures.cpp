@@ -79,7 +79,7 @@ FigureParts judge_spoon(const ScriptedRun& run, bool tare) {
       panel_of("", format("torque about %s%s, N\xC2\xB7m", kAxes[static_cast<std::size_t>(about)],
                           tared.c_str()))};
   parts.panels[0].series.push_back(curve("spoon", hand, force, 0));
-  parts.panels[1].series.push_back(curve("spoon", hand, torque, 1));
+  parts.panels[1].series.push_back(curve("spoon", hand, torque, 0));
   for (ChartPanel& panel : parts.panels) mark_phases(panel, phases);
   const Phase moving{"", rest.to, hand.time.back()};
   const auto forward =
@@ -133,10 +133,9 @@ FigureParts judge_pour(const ScriptedRun& run) {
                   panel_of("", "torque about the middle of the vessel, N\xC2\xB7m"),
                   panel_of("", "torque about the handle, N\xC2\xB7m")};
   // As in the paper: the bowl blue, the pan red.
-  parts.panels[0].series = {curve("bowl", bowl, weight, 1), curve("pan", pan, weight, 0, true)};
-  parts.panels[1].series = {curve("bowl", inside, torque_size, 1),
-                            curve("pan", pan_inside, torque_size, 0, true)};
-  parts.panels[2].series = {curve("bowl", bowl, torque_size, 1), curve("pan", pan, torque_size, 0, true)};
+  parts.panels[0].series = {curve("bowl", bowl, weight, 1), curve("pan", pan, weight, 0)};
+  parts.panels[1].series = {curve("bowl", inside, torque_size, 1), curve("pan", pan_inside, torque_size, 0)};
+  parts.panels[2].series = {curve("bowl", bowl, torque_size, 1), curve("pan", pan, torque_size, 0)};
   for (ChartPanel& panel : parts.panels) mark_phases(panel, phases);
   parts.claims = {
       {"weight shifts from the bowl to the pan",

@@ -49,6 +49,17 @@ TEST(Chart, LeavesOutWhatHasNoLogarithm) {
   EXPECT_NE(script.find("4.25 1"), std::string::npos);
 }
 
+/// What cannot be below nothing does not begin there.
+TEST(Chart, AnAxisOfWhatBeginsAtNothingBeginsThere) {
+  ChartPanel panel{"t", "x", "y", false, false, {}};
+  panel.series.push_back({"s", "#000000", {{0.0, 1e-12}, {1.0, 2.0}}, 0, 1.0, 1.0, false});
+  EXPECT_NE(chart_script({panel}, 1, "t").find("set yrange [0:*]"), std::string::npos);
+  panel.series[0].points.push_back({2.0, -0.1});
+  EXPECT_EQ(chart_script({panel}, 1, "t").find("set yrange [0:*]"), std::string::npos);
+  panel.series[0].points = {{0.0, 5.0}, {1.0, 6.0}};
+  EXPECT_EQ(chart_script({panel}, 1, "t").find("set yrange [0:*]"), std::string::npos) << "far from it";
+}
+
 TEST(TileMap, DrawsWhateverItIsGiven) {
   TileMap map;
   map.title = kHostile;
