@@ -21,11 +21,12 @@ namespace {
 std::string options_near(const CLI::App& app, const std::vector<std::string>& words) {
   std::vector<std::string> known;
   for (const CLI::Option* option : app.get_options())
-    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+    for (const std::string& name : option->get_lnames()) known.push_back(name);
   std::string all;
   for (const std::string& word : words) {
-    const std::string near = word.starts_with("--") ? nearest_word(word.substr(0, word.find('=')), known) : "";
-    if (!near.empty()) all += (all.empty() ? "" : ", ") + near;
+    if (!word.starts_with("--")) continue;
+    const std::string near = nearest_word(word.substr(2, word.find('=') - 2), known);
+    if (!near.empty()) all += (all.empty() ? "--" : ", --") + near;
   }
   return all;
 }

@@ -7,6 +7,7 @@ namespace slosh {
 namespace {
 
 constexpr std::size_t kMostLetters = 64;  // a longer word is none of ours
+constexpr std::size_t kShort = 5;         // letters, below which two of them wrong are another word
 
 std::string plain(std::string_view word) {
   std::string out(word);
@@ -44,7 +45,8 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
   std::size_t fewest = 0;
   for (const std::string& each : known) {
     const std::size_t now = edits(plain(word), plain(each));
-    if (now > std::max<std::size_t>(2, each.size() / 3) || now >= word.size()) continue;
+    const std::size_t most = std::max<std::size_t>(each.size() < kShort ? 1 : 2, each.size() / 3);
+    if (now > most || now >= word.size()) continue;
     if (!best.empty() && now >= fewest) continue;
     best = each;
     fewest = now;

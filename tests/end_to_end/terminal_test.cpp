@@ -98,11 +98,13 @@ TEST_F(TerminalTest, AWorldOfOnesOwnHearsTheSameLines) {
   const auto play = at_terminal("play", {"play", "probe", "--spacing", "0.01", "--threads", "1", "--no-render", "--seconds",
                                          "600", "--out", "out", "--record", "typed.rec"});
   ASSERT_TRUE(play->shows("real time")) << play->screen();
-  play->type("set gravity 0.5\rset viscosity 1e6\rpause\r");
+  play->type("set gravity 0.5\rset viscosity 1e6\rset stiffness 2\rpause\r");
   EXPECT_TRUE(play->shows("gravity is 0.5 times the scene's now")) << play->screen();
   EXPECT_TRUE(play->shows("too much for the time step")) << play->screen();
+  EXPECT_TRUE(play->shows("the hold on 'grip' is 2 times as stiff")) << play->screen();
   EXPECT_TRUE(play->shows("you paused the world")) << play->screen();
   play->type("status\r");
+  EXPECT_TRUE(play->shows("grip 'grip': stiffness × 2")) << play->screen();
   EXPECT_TRUE(play->shows("paused, gravity × 0.5")) << play->screen();
   play->type("take\r");
   EXPECT_TRUE(play->shows("'take' means nothing here")) << play->screen();

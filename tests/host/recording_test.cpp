@@ -14,7 +14,7 @@ TEST(Recording, RunsAgainToTheBitThroughResetsAndChanges) {
   const Recorded recorded = record(recording_options(fresh_folder() / "run"), 0.4, true);
   EXPECT_EQ(recorded.report.problem, "");
   EXPECT_EQ(recorded.report.totals.ended_early, "");
-  EXPECT_EQ(recorded.report.totals.changes, 5u);
+  EXPECT_EQ(recorded.report.totals.changes, 6u);
   EXPECT_EQ(recorded.report.bytes, std::filesystem::file_size(recorded.file));
   auto reader = RecordingReader::open(recorded.file);
   ASSERT_TRUE(reader) << reader.error().text();

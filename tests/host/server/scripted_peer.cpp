@@ -98,7 +98,7 @@ void ScriptedPeer::on_stream(ConnectionId, std::int64_t stream, std::span<const 
   const wire::Fault found = splitter_.feed(bytes, [&](std::uint64_t type, wire::ByteView payload) {
     control_bytes += payload.size();
     order.push_back(static_cast<wire::ControlType>(type));
-    return wire::dispatch(wire::HostControl{}, type, payload, [&]<class M>(const M& message) {
+    const auto take = [&]<class M>(const M& message) {
       if constexpr (std::is_same_v<M, wire::Welcome>) keep(welcomes, message);
       if constexpr (std::is_same_v<M, wire::Refused>) keep(refusals, message);
       if constexpr (std::is_same_v<M, wire::Roster>) keep(rosters, message);
@@ -110,7 +110,8 @@ void ScriptedPeer::on_stream(ConnectionId, std::int64_t stream, std::span<const 
       if constexpr (std::is_same_v<M, wire::Answer>) keep(answers, message);
       if constexpr (std::is_same_v<M, wire::WorldInfo>) keep(worlds, message);
       if constexpr (std::is_same_v<M, wire::Notice>) keep(notices, message.text);
-    });
+    };
+    return wire::dispatch(wire::HostControl{}, type, payload, take, capabilities & wire::kOurCapabilities);
   });
   if (found) fault = found.text();
 }

@@ -14,6 +14,8 @@ TEST(NearestWord, IsTheOneThatWasMeant) {
   EXPECT_EQ(nearest_word("gravity", known), "");
   EXPECT_EQ(nearest_word("", known), "");
   EXPECT_EQ(nearest_word("on", {"who"}), "") << "nothing of it is left";
+  EXPECT_EQ(nearest_word("yes", {"set"}), "") << "another word";
+  EXPECT_EQ(nearest_word("plya", {"play"}), "play");
   EXPECT_EQ(did_you_mean("Spacng", known), "Did you mean spacing? ");
   EXPECT_EQ(did_you_mean("gravity", known), "");
   EXPECT_EQ(nearest_word(std::string(1'000'000, 'x'), known), "");

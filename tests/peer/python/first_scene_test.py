@@ -1,0 +1,60 @@
+"""What somebody models first: a mug is poured over a funnel into a tray with a rim, everything default."""
+
+import math
+import os
+import tempfile
+import unittest
+
+import slosh
+
+SPACING = 0.008  # m
+SECONDS = 5.5
+
+
+def pour(time: float) -> slosh.Pose:
+    share = 0.5 - 0.5 * math.cos(math.pi * min(max((time - 0.3) / 3.5, 0.0), 1.0))
+    return slosh.Pose.turned((0, 0, 1), 2.0 * share, (0.06, 0.365, 0))
+
+
+def mug_over_funnel(**walls: float) -> slosh.SceneBuilder:
+    builder = slosh.SceneBuilder(title="A mug over a funnel over a tray", duration_s=SECONDS)
+    builder.body("tray", slosh.tank((0.36, 0.05, 0.36), 0.02), pose=(0, -0.02, 0), **walls)
+    funnel = [(0.037, 0.10), (0.037, 0.15), (0.12, 0.225), (0.11, 0.24), (0.025, 0.16), (0.025, 0.10)]
+    builder.body("funnel", slosh.lathe(funnel), **walls)
+    mug = [(0, 0), (0.058, 0), (0.058, 0.11), (0.046, 0.11), (0.046, 0.012), (0, 0.012)]
+    builder.body("mug", slosh.lathe(mug), motion="free", mass_kg=0.3, pose=(0.118, 0.255, 0), **walls)
+    water = [(0, 0.0125), (0.0455, 0.0125), (0.0455, 0.0985), (0, 0.0985)]
+    builder.fluid("water", slosh.lathe(water), pose=(0.118, 0.255, 0))
+    builder.grip("lip", on="mug", pose=(-0.058, 0.11, 0))
+    builder.hand("hand", "lip", pour, duration=SECONDS)
+    builder.camera((0.5, 0.5, 0.8), (0, 0.15, 0))
+    return builder
+
+
+def lost(builder: slosh.SceneBuilder) -> float:
+    """kg that left the domain, of 0.558."""
+    world = slosh.World(builder.scene(), SPACING)
+    before = world.measure().mass
+    world.run(SECONDS, every=1000)
+    return float(before - world.measure().mass)
+
+
+class FirstScene(unittest.TestCase):
+    def test_nothing_is_wrong_with_it(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = os.path.join(folder, "mug.glb")
+            mug_over_funnel().write(file)
+            self.assertEqual(slosh.check(file), [])
+
+    def test_what_is_poured_stays(self):
+        # Reached: 0.088 kg, at 6 mm 0.094; drops that fall 20 cm onto a dry floor bounce over the rim of 5 cm. By the
+        # published model 0.45 of 0.55 kg of such a mug were gone.
+        self.assertLess(lost(mug_over_funnel()), 0.12)
+
+    def test_walls_of_honey_keep_all_of_it(self):
+        # What the program advises where fluid was lost. Reached: nothing is lost.
+        self.assertLess(lost(mug_over_funnel(viscosity_pa_s=2.0)), 0.005)
+
+
+if __name__ == "__main__":
+    unittest.main()
