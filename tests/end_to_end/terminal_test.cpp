@@ -72,8 +72,8 @@ TEST_F(TerminalTest, APeerSetsParametersAndPausesFromItsTerminal) {
   ana->type("set viscosity 1e6\r");
   EXPECT_TRUE(ana->shows("too much for the time step")) << ana->screen();
   ana->type("set stiffness 0.5\r");
-  EXPECT_TRUE(ana->shows("the hold on 'grip' is 0.5 times as stiff as the scene has it now")) << ana->screen();
-  EXPECT_TRUE(eve->shows("Ana set the hold on 'grip' to 0.5 times the scene's stiffness")) << eve->screen();
+  EXPECT_TRUE(ana->shows("the hold on 'probe_hand' is 0.5 times as stiff as the scene has it now")) << ana->screen();
+  EXPECT_TRUE(eve->shows("Ana set the hold on 'probe_hand' to 0.5 times the scene's stiffness")) << eve->screen();
   ana->type("pause\r");
   EXPECT_TRUE(host->shows("Ana paused the world")) << host->screen();
   ana->type("status\r");
@@ -101,10 +101,10 @@ TEST_F(TerminalTest, AWorldOfOnesOwnHearsTheSameLines) {
   play->type("set gravity 0.5\rset viscosity 1e6\rset stiffness 2\rpause\r");
   EXPECT_TRUE(play->shows("gravity is 0.5 times the scene's now")) << play->screen();
   EXPECT_TRUE(play->shows("too much for the time step")) << play->screen();
-  EXPECT_TRUE(play->shows("the hold on 'grip' is 2 times as stiff")) << play->screen();
+  EXPECT_TRUE(play->shows("the hold on 'probe_hand' is 2 times as stiff")) << play->screen();
   EXPECT_TRUE(play->shows("you paused the world")) << play->screen();
   play->type("status\r");
-  EXPECT_TRUE(play->shows("grip 'grip': stiffness × 2")) << play->screen();
+  EXPECT_TRUE(play->shows("grip 'probe_hand': stiffness × 2")) << play->screen();
   EXPECT_TRUE(play->shows("paused, gravity × 0.5")) << play->screen();
   play->type("take\r");
   EXPECT_TRUE(play->shows("'take' means nothing here")) << play->screen();
