@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "host/pace_line.h"
 #include "host/pacer.h"
 #include "net/clock.h"
 
@@ -12,24 +13,14 @@ namespace {
 constexpr double kStatusMemory = 0.5;  // simulated s that a status stays on show
 constexpr double kRateWindow = 0.25;   // wall s over which the shown rates are averaged
 
-/// Rates over the last window, and a quick estimate for extrapolation.
+/// Rates over the last window.
 class RateMeter {
  public:
   void restart(std::int64_t now_ns) {
-    last_ns_ = window_ns_ = now_ns;
+    window_ns_ = now_ns;
     window_steps_ = 0;
     window_step_time_ = 0.0;
   }
-
-  /// Simulated seconds a wall second, from step to step, smoothed over about ten steps. Never above 1: a
-  /// loop that catches up must not throw the extrapolated hands ahead.
-  double quick(double time_step, std::int64_t now_ns) {
-    const double elapsed = std::max(to_seconds(now_ns - last_ns_), 1e-9);
-    last_ns_ = now_ns;
-    mean_interval_ += 0.1 * (elapsed - mean_interval_);
-    return std::min(1.0, time_step / std::max(mean_interval_, 1e-9));
-  }
-  void seed(double interval) { mean_interval_ = interval; }
 
   /// True when a window is over; then the rates are new.
   bool add(double step_time, std::int64_t now_ns) {
@@ -49,9 +40,7 @@ class RateMeter {
   double step_ms = 0.0;
 
  private:
-  std::int64_t last_ns_ = 0;
   std::int64_t window_ns_ = 0;
-  double mean_interval_ = 0.0;
   std::uint64_t window_steps_ = 0;
   double window_step_time_ = 0.0;
 };
@@ -212,9 +201,10 @@ void Host::run() {
   Pacer pacer(time_step);
   RateMeter meter;
   std::int64_t begin_ns = steady_now_ns();
+  PaceLine line;
   pacer.restart(begin_ns);
+  line.restart(begin_ns);
   meter.restart(begin_ns);
-  meter.seed(time_step);
   simulated_ns_ = begin_ns;
   next_snapshot_ = world_.time();
   for (HostTap* tap : taps_) tap->on_start(world_, state());
@@ -233,19 +223,16 @@ void Host::run() {
       stand_still();
       begin_ns = steady_now_ns();
       pacer.restart(begin_ns);
+      line.restart(begin_ns);
       meter.restart(begin_ns);
-      meter.seed(time_step);
       continue;
     }
     if (!single) steps_asked_.store(0, std::memory_order_relaxed);
-    std::int64_t scheduled_end_ns = 0;
-    bool on_schedule = false;
+    Pacer::Turn turn;
     const double pace = options_.paced ? pace_.load(std::memory_order_relaxed) : 1.0;
     if (options_.paced && !single) {
       pacer.set_period(time_step / pace, steady_now_ns());
-      const Pacer::Turn turn = pacer.next(steady_now_ns());
-      scheduled_end_ns = turn.deadline_ns + to_nanoseconds(time_step / pace);
-      on_schedule = !turn.slipped;
+      turn = pacer.next(steady_now_ns());
       if (turn.slipped) note_status(kStatusTimeSlipped);
       sleep_until_ns(turn.deadline_ns);
     }
@@ -266,14 +253,14 @@ void Host::run() {
     world_.fill(latest_);
     model_fluid(input);
     for (HostTap* tap : taps_) tap->after_step(world_);
-    const double measured_rate = meter.quick(time_step, step_end_ns);
-    const double rate = on_schedule || !options_.paced ? pace : measured_rate;
     if (single) {
       publish_bodies(0.0, clock_ns());
       publish_snapshot();
       next_snapshot_ = std::max(next_snapshot_, world_.time());
     } else {
-      publish_bodies(rate, options_.paced ? scheduled_end_ns : simulated_ns_);
+      const PaceLine::Moment moment = options_.paced ? line.after_step(time_step, pace, turn, step_end_ns)
+                                                     : PaceLine::Moment{simulated_ns_, pace};
+      publish_bodies(moment.rate, moment.stamp_ns);
       publish_snapshot_if_due();
     }
     tell_published();

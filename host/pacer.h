@@ -33,6 +33,7 @@ class Pacer {
   struct Turn {
     std::int64_t deadline_ns = 0;  ///< sleep until then, then step
     bool slipped = false;
+    double behind = 0.0;  ///< s after the schedule that this is; negative where there is time left
   };
 
   /// Call when ready to step.
@@ -40,11 +41,11 @@ class Pacer {
     steps_ += 1;
     const std::int64_t deadline = origin_ns_ + std::llround(period_ns_ * static_cast<double>(steps_));
     const std::int64_t behind = now_ns - deadline;
-    if (behind <= tolerance_ns_) return {deadline, false};
+    if (behind <= tolerance_ns_) return {deadline, false, to_seconds(behind)};
     origin_ns_ += behind;
     slips_ += 1;
     slipped_ns_ += behind;
-    return {now_ns, true};
+    return {now_ns, true, to_seconds(behind)};
   }
 
   std::uint64_t slips() const { return slips_; }

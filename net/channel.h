@@ -19,7 +19,7 @@ struct PoseMessage {
   double time = 0.0;           ///< simulated s that the pose belongs to, by the peer's reckoning
   std::uint32_t device = 0;    ///< index into Scene::grips
   Pose pose;                   ///< handle, world
-  Twist twist;                 ///< handle, world
+  Twist twist;                 ///< handle, world, m and rad a simulated s: as fast as the world sees it
   bool engaged = false;
   bool lost = false;         ///< not engaged because contact was lost: the host lets go gently
   std::uint32_t hold = 0;    ///< another one than in the message before: another hand, which may be anywhere

@@ -53,6 +53,10 @@ class Device {
   /// felt is the wrench that the world itself put on the hand: nothing is to be kept stable by a spring of
   /// this end.
   virtual bool gives_way() const { return true; }
+  /// True when it moves by simulated time (DeviceMoment::time): its velocities are m per simulated s. False
+  /// for all that goes by the clock on the wall, as hardware and who holds it do: what passes between it and a
+  /// world that is slower is converted.
+  virtual bool goes_with_world() const { return false; }
   /// May be called more than once.
   virtual void close() {}
   virtual std::string kind() const = 0;

@@ -16,13 +16,30 @@ namespace slosh {
 namespace {
 
 constexpr double kPeriod = 0.001;  // s
+/// s before the loop's next tick at which a device that does not wait itself is read, so that its answer is
+/// there at once; s that the answer is waited for, and s between two looks.
+constexpr double kLead = 2e-4;
+constexpr double kAnswerWait = 5e-4;
+constexpr double kLook = 5e-5;
+/// s that a reading takes from which on the device goes at its own pace, and s without an order after which
+/// nobody knows when the loop ticks.
+constexpr double kOwnPace = 3e-4;
+constexpr double kLoopLost = 0.01;
 
 /// What the loop wants written.
 struct Order {
   Wrench on_hand;
   std::int64_t stamp_ns = 0;  // 0 = none yet
   double time = 0.0;          // simulated s
+  std::uint64_t answers = 0;  // DeviceReading::number that the loop had
 };
+
+/// When to read so that the tick that follows is soon: as long after `order` as the loop's period says.
+std::int64_t next_reading_ns(const Order& order, std::int64_t now_ns) {
+  const std::int64_t period_ns = to_nanoseconds(kPeriod);
+  const std::int64_t first_ns = order.stamp_ns + period_ns - to_nanoseconds(kLead);
+  return first_ns > now_ns ? first_ns : first_ns + ((now_ns - first_ns) / period_ns + 1) * period_ns;
+}
 
 Wrench scaled(double scale, const Wrench& w) {
   return {scale * w.force, scale * w.torque};
@@ -61,6 +78,20 @@ struct DevicePort::Own {
   std::condition_variable ended;
   bool over = false;       // the thread has written its last
   bool abandoned = false;  // nobody waits for it any more
+
+  bool ends() const { return stop.load(std::memory_order_relaxed) || asked_to_let_go(); }
+  /// Returns when there is an order that answers reading `number`, read at `read_ns`, or after kAnswerWait.
+  void wait_for_answer(std::uint64_t number, std::int64_t read_ns) {
+    const std::int64_t until_ns = read_ns + to_nanoseconds(kAnswerWait);
+    // Nothing comes before the loop's next tick.
+    std::int64_t look_ns = orders.front().stamp_ns + to_nanoseconds(kPeriod + 0.5 * kLook);
+    while (orders.update(), orders.front().answers < number && !ends()) {
+      const std::int64_t now_ns = steady_now_ns();
+      if (now_ns >= until_ns) return;
+      look_ns = std::min(std::max(look_ns, now_ns + to_nanoseconds(kLook)), until_ns);
+      sleep_until_ns(look_ns);
+    }
+  }
 };
 
 DevicePort::DevicePort(std::unique_ptr<Device> device)
@@ -84,9 +115,9 @@ void DevicePort::run(const std::shared_ptr<Own>& own) {
     try {
       std::int64_t deadline_ns = steady_now_ns();
       std::uint64_t number = 0;
-      const auto over = [&] { return own->stop.load(std::memory_order_relaxed) || asked_to_let_go(); };
-      while (!over()) {
+      while (!own->ends()) {
         own->orders.update();
+        const std::int64_t begin_ns = steady_now_ns();
         const double time = own->orders.front().time;
         DeviceReading& reading = own->readings.back();
         reading.report = device.read({time, kPeriod});
@@ -96,8 +127,12 @@ void DevicePort::run(const std::shared_ptr<Own>& own) {
           reading.time = time;
           own->readings.publish();
         }
-        if (over()) break;
-        // What the loop wants by now: the reading may have taken its time.
+        const std::int64_t read_ns = steady_now_ns();
+        const bool own_pace = read_ns - begin_ns > to_nanoseconds(kOwnPace);
+        const bool loop_ticks = read_ns - own->orders.front().stamp_ns < to_nanoseconds(kLoopLost);
+        // Where the device has no pace of its own the loop's tick is near.
+        if (reading.report.heard && !own_pace && loop_ticks) own->wait_for_answer(number, read_ns);
+        if (own->ends()) break;
         own->orders.update();
         const Order& order = own->orders.front();
         const std::int64_t now_ns = steady_now_ns();
@@ -105,6 +140,7 @@ void DevicePort::run(const std::shared_ptr<Own>& own) {
             order.stamp_ns == 0 ? 0.0 : freshness(to_seconds(now_ns - order.stamp_ns), kPeriod);
         device.write(scaled(believed, order.on_hand));
         deadline_ns = std::max(deadline_ns + to_nanoseconds(kPeriod), now_ns - to_nanoseconds(kPeriod));
+        if (!own_pace && loop_ticks) deadline_ns = next_reading_ns(order, now_ns);
         sleep_until_ns(deadline_ns);
       }
     } catch (...) {
@@ -139,6 +175,7 @@ const DeviceReading& DevicePort::read(const DeviceMoment& moment, std::int64_t n
   if (own_) {
     own_->readings.update();
     own_->orders.back().time = moment.time;
+    own_->orders.back().answers = own_->readings.front().number;
     return own_->readings.front();
   }
   guarded([&] {

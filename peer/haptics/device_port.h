@@ -21,7 +21,8 @@ struct DeviceReading {
 };
 
 /// Owns an open device with sound limits. An immediate one is read and written by whoever calls, which is the
-/// device loop. Any other has a thread, on its own 1 ms grid or at the pace at which its read() returns;
+/// device loop. Any other has a thread, which reads it just before the loop's tick and writes just after that what
+/// the loop makes of it, or goes at the pace at which its read() returns, a reading and the newest wrench in turn;
 /// newest readings and wrenches are exchanged without a lock, so that a device that does not answer is late
 /// alone. The thread writes a wrench that the loop has not renewed only as long as freshness() has it, and
 /// zero last.

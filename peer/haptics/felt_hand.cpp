@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "peer/haptics/world_pace.h"
+
 namespace slosh {
 namespace {
 
@@ -46,9 +48,13 @@ Wrench FeltHand::couple(const WorldBelief& world, const DeviceReport& hand, cons
   // What comes back after a gap comes back as gently as it went.
   share_ = std::min(believed, share_ + now.period / rise_);
 
-  held_ = engagement_.update(hand.engaged, now.time, hand.pose, hand.twist, gains_, grip, now.shared);
+  CouplingGains gains = gains_;
+  gains.damping = std::min(gains.damping, now.pace * most_damping_);
+  gains.rotational_damping = std::min(gains.rotational_damping, now.pace * most_turning_);
+  const Twist twist = sped_up(hand.twist, now.pace);
+  held_ = engagement_.update(hand.engaged, now.time, hand.pose, twist, gains, grip, now.shared);
   const Wrench full = gives_way_
-                          ? coupling_wrench_on_hand(gains_, held_.pose, held_.twist, grip.pose, grip.twist)
+                          ? coupling_wrench_on_hand(gains, held_.pose, held_.twist, grip.pose, grip.twist)
                           : grip.on_hand;
   const double felt = gives_way_ || !engagement_.engaged() ? engagement_.felt() : 1.0;
   return {felt * full.force, felt * full.torque};

@@ -39,6 +39,8 @@ class FeltHand {
     *this = FeltHand(gains);
     limiter_ = ForceLimiter(limits);
     gives_way_ = gives_way;
+    most_damping_ = limits.max_damping;
+    most_turning_ = limits.max_rotational_damping;
     if (!gives_way || limits.engagement_time <= 0.0) return;
     rise_ = limits.engagement_time;
     gentle_ = true;
@@ -56,8 +58,11 @@ class FeltHand {
     double device_share = 1.0;  ///< freshness of the device's own word
     bool leapt = false;         ///< the hand is suddenly elsewhere (net/leap.h)
     bool shared = false;        ///< another hand holds the same body
+    double pace = 1.0;          ///< simulated s a s of the device's own time, > 0
   };
-  /// The wrench for the device. `grip` carried on to `now.time`.
+  /// The wrench for the device. `hand` as the device has it, its velocities by the device's own time; `grip` as
+  /// the world has it, carried on to `now.time`. Where the world is slower (`now.pace`), the coupling is the
+  /// world's, with the hand as fast as the world sees it, and damps no harder than the device holds.
   ForceLimiter::Outcome feel(const WorldBelief& world, const DeviceReport& hand, const GripState& grip,
                              const Moment& now) noexcept {
     return feel(world, hand, grip, now, [](const Wrench& wanted) { return wanted; });
@@ -102,6 +107,8 @@ class FeltHand {
   double rise_ = kFadeStale;  // s from no force to all of it
   double damping_ = 0.0;      // of a hand that gets it
   double rotational_damping_ = 0.0;
+  double most_damping_ = 0.0;  // N·s/m and N·m·s/rad that the device holds
+  double most_turning_ = 0.0;
   double share_ = 1.0;
   double believed_ = 1.0;    // at the call before
   bool hold_anew_ = false;   // words had stopped

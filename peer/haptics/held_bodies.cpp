@@ -108,6 +108,7 @@ void HeldBodies::tell(Entry& entry, const BodyMessage& newest, std::int64_t now_
   word.now_ns = now_ns;
   word.time = bodies.time;
   word.time_step = newest.time_step;
+  word.pace = std::clamp(newest.rate, 0.0, 1.0);
   word.motion = {body.center_of_mass, body.pose.orientation, body.twist};
   word.hands = entry.said;
   entry.held.hear(word);
@@ -142,24 +143,25 @@ GripState HeldBodies::grip(std::size_t i, const GripState& at_host) const noexce
 }
 
 Wrench HeldBodies::guard(std::size_t i, const Wrench& wanted, const Pose& hand, const Twist& twist, double dt,
-                         double most_damping) noexcept {
+                         double most_damping, double pace) noexcept {
   const Place& place = places_[i];
   if (place.body < 0) return wanted;
   Entry& entry = bodies_[static_cast<std::size_t>(place.body)];
   const Wrench guarded =
-      entry.held.guard(place.grip, wanted, hand, twist, dt, std::min(most_damping, kMostDamping));
+      entry.held.guard(place.grip, wanted, hand, twist, dt, std::min(most_damping, kMostDamping), pace);
   if (entry.share <= 0.0) return wanted;
   return {wanted.force + entry.share * (guarded.force - wanted.force),
           wanted.torque + entry.share * (guarded.torque - wanted.torque)};
 }
 
 void HeldBodies::sent(std::size_t i, const Wrench& wrench, bool engaged, const Pose& held,
-                      const Twist& twist) noexcept {
+                      const Twist& twist, bool with_world) noexcept {
   const Place& place = places_[i];
   if (place.body < 0) return;
   Entry& entry = bodies_[static_cast<std::size_t>(place.body)];
   entry.held.sent(place.grip, wrench);
   entry.own[place.grip] = {true, engaged, held, twist};
+  entry.on_the_wall = entry.on_the_wall || !with_world;
 }
 
 void HeldBodies::set_gains(std::size_t i, const CouplingGains& gains) noexcept {
@@ -172,10 +174,10 @@ void HeldBodies::not_here(std::size_t i) noexcept {
   if (place.body >= 0) bodies_[static_cast<std::size_t>(place.body)].own[place.grip] = OwnHand{};
 }
 
-void HeldBodies::advance(std::int64_t now_ns) noexcept {
-  const double elapsed = advanced_ns_ == 0 ? 0.0 : to_seconds(now_ns - advanced_ns_);
+void HeldBodies::advance(std::int64_t now_ns, double pace, double elapsed) noexcept {
+  const double passed = advanced_ns_ == 0 ? 0.0 : to_seconds(now_ns - advanced_ns_);
   advanced_ns_ = now_ns;
-  const double tick = std::clamp(elapsed, 0.0, kLongestTick);
+  const double tick = std::clamp(passed, 0.0, kLongestTick);
   for (Entry& entry : bodies_) {
     const LoopDelay delay = entry.held.delay();
     const double far = (delay.round_trip + delay.jitter - kNear) / (kFar - kNear);
@@ -184,7 +186,10 @@ void HeldBodies::advance(std::int64_t now_ns) noexcept {
     if (coupling_ == Coupling::kSpring) goal = 0.0;
     entry.share += std::clamp(goal - entry.share, -tick / kShareRise, tick / kShareRise);
     if (here_ && !modelled) entry.share = 0.0;
-    entry.held.advance(entry.own, tick * rate_, now_ns);
+    const double wall = rate_ > 0.0 ? tick * pace : 0.0;
+    const double step = entry.on_the_wall ? wall : std::clamp(elapsed, 0.0, kLongestTick);
+    entry.held.advance(entry.own, step, now_ns);
+    entry.on_the_wall = false;
   }
 }
 

@@ -39,15 +39,19 @@ class HeldBodies {
   GripState grip(std::size_t i, const GripState& at_host) const noexcept;
   /// In place of the coupling's `wanted` (HeldBody::guard).
   Wrench guard(std::size_t i, const Wrench& wanted, const Pose& hand, const Twist& twist, double dt,
-               double most_damping) noexcept;
-  /// What the device of grip `i` was sent, and what its coupling used of the hand.
-  void sent(std::size_t i, const Wrench& wrench, bool engaged, const Pose& held, const Twist& twist) noexcept;
+               double most_damping, double pace) noexcept;
+  /// What the device of grip `i` was sent, and what its coupling used of the hand, by the world's time.
+  /// `with_world`: the hand itself goes by that (Device::goes_with_world).
+  void sent(std::size_t i, const Wrench& wrench, bool engaged, const Pose& held, const Twist& twist,
+            bool with_world) noexcept;
   /// The coupling of grip `i` is that from now on, at the host and here.
   void set_gains(std::size_t i, const CouplingGains& gains) noexcept;
   /// Nobody here moves grip `i`.
   void not_here(std::size_t i) noexcept;
-  /// The end of a tick: on to `now_ns`.
-  void advance(std::int64_t now_ns) noexcept;
+  /// The end of a tick: on to `now_ns`. A replica goes by the time that its hands go by: the wall's times
+  /// `pace`, simulated s a s, smoothed; or, where all go with the world, by the `elapsed` simulated s that they
+  /// were told of in this tick.
+  void advance(std::int64_t now_ns, double pace, double elapsed) noexcept;
 
   /// J that the person at grip `i` put in; false where that is not counted: a fixed body.
   bool counted(std::size_t i) const noexcept { return places_[i].body >= 0; }
@@ -68,6 +72,7 @@ class HeldBodies {
     std::vector<OwnHand> own;
     std::vector<HostHand> said;
     double share = 0.0;
+    bool on_the_wall = false;  // one of its hands goes by the wall's clock
     bool anew = false;
     std::uint64_t model_tick = 0;  // of the newest model; 0 = none came
   };

@@ -33,6 +33,7 @@ class LentDevice final : public Device {
   DeviceLimits limits() const override { return script_->limits(); }
   bool immediate() const override { return true; }
   bool gives_way() const override { return false; }
+  bool goes_with_world() const override { return true; }
   std::string kind() const override { return script_->kind(); }
 
  private:

@@ -25,6 +25,7 @@ class TrackDevice final : public Device {
   DeviceLimits limits() const override { return limits_without_a_hand(); }
   bool immediate() const override { return true; }
   bool gives_way() const override { return false; }
+  bool goes_with_world() const override { return true; }
   std::string kind() const override { return kind_; }
   double end() const { return track_.end(); }
 

@@ -6,11 +6,20 @@
 #include "net/clock.h"
 #include "net/grip_start.h"
 #include "net/leap.h"
+#include "peer/haptics/world_pace.h"
 
 namespace slosh {
 namespace {
 
 constexpr double kRounding = 1e-9;  // s: sums of time steps miss a multiple by less than this
+/// Times the world's pace that simulated time goes at least and at most while it goes on, and s by which it may
+/// be behind before it leaps.
+constexpr double kLeastOn = 0.5;
+constexpr double kMostOn = 1.5;
+constexpr double kFarBehind = 0.03;
+constexpr double kPaceMemory = 0.1;  // s over which the world's pace is smoothed
+constexpr double kMostSpeed = 18.0;    // m/s that a hand is said to have: a host refuses 20
+constexpr double kMostTurning = 90.0;  // rad/s, the same of 100
 constexpr double kStatesApart =
     4.0;  // ticks: a loop that missed states knows what was between two that it has
 
@@ -109,6 +118,7 @@ void Servo::change_device(Hand& hand, DevicePort* port) noexcept {
   hand.port = port;
   if (port != nullptr) {
     hand.limits = port->limits();
+    hand.with_world = port->device().goes_with_world();
     hand.felt.restart(within(stiffened(hand.gains, hand.stiffness), hand.limits), hand.limits,
                       port->device().gives_way());
   }
@@ -137,7 +147,30 @@ void Servo::follow_run(const BodyMessage& message) noexcept {
   // One interval further, so that the times of a file's rows rise.
   sample_offset_ += time_ - message.bodies.time + options_.sample_interval;
   time_ = message.bodies.time;
+  ticked_ns_ = 0;
   next_sample_ = time_;
+}
+
+/// What the host says of its pace, smoothed: a damper takes it times a velocity.
+void Servo::follow_pace(const BodyMessage& message) noexcept {
+  const bool moving = message.rate > 0.0;
+  const double said = std::clamp(message.rate, kSlowestFelt, 1.0);
+  if (moving) pace_ = moving_ ? pace_ + options_.period / kPaceMemory * (said - pace_) : said;
+  moving_ = moving;
+}
+
+/// On to where the world is now, never beyond `most`, and evenly: states that are late or early by some ms
+/// are no reason for hands and replicas to stand and to leap.
+void Servo::follow_time(double now, double most, std::int64_t now_ns) noexcept {
+  const double even = ticked_ns_ == 0 ? 0.0 : pace_ * to_seconds(now_ns - ticked_ns_);
+  ticked_ns_ = now_ns;
+  const double on = now - time_;
+  if (!moving_ || even <= 0.0 || on > kFarBehind || (on >= kLeastOn * even && on <= kMostOn * even)) {
+    time_ = std::max(time_, now);
+    return;
+  }
+  const double step = std::clamp(on, kLeastOn * even, kMostOn * even);
+  time_ = std::max(time_, std::min(time_ + step, most));
 }
 
 bool Servo::read_device(Hand& hand, std::int64_t now_ns) noexcept {
@@ -173,7 +206,11 @@ void Servo::post_pose(std::size_t i, const Hand& hand, std::uint64_t tick) noexc
   up.time = hand.read_time;
   up.device = static_cast<std::uint32_t>(i);
   up.pose = hand.good.pose;
-  up.twist = hand.good.twist;
+  // By the world's time, in which a hand is faster the slower the world is; no faster than hosts take.
+  up.twist = sped_up(hand.good.twist, pace_of(hand));
+  bool limited = false;
+  up.twist.linear = limit_length(up.twist.linear, kMostSpeed, limited);
+  up.twist.angular = limit_length(up.twist.angular, kMostTurning, limited);
   up.engaged = hand.good.engaged;
   up.counted = held_.counted(i);
   up.energy = held_.energy(i);
@@ -245,12 +282,15 @@ void Servo::tick(std::int64_t now_ns, bool fresh) noexcept {
   else
     held_.hear(message, fresh, now_ns);
   follow_run(message);
+  follow_pace(message);
   note_steps(message);
   // Simulated time now: the newest state's, carried on at the pace the world runs; grips by two ticks at
   // most.
   const double longest = 2.0 * message.time_step;
   const double farthest = std::max(longest, message.carry_on);
-  time_ = std::max(time_, bodies.time + std::clamp(age * message.rate, -longest, farthest));
+  const double before = time_;
+  follow_time(bodies.time + std::clamp(age * message.rate, -longest, farthest), bodies.time + farthest,
+              now_ns);
   const double ahead = std::clamp(time_ - bodies.time, -longest, longest);
 
   const bool stopped = message.rate <= 0.0 && bodies.tick > 0;
@@ -274,13 +314,17 @@ void Servo::tick(std::int64_t now_ns, bool fresh) noexcept {
       grip.pose = extrapolate(grip.pose, grip.twist, ahead);
       if (port->device().gives_way()) grip = held_.grip(i, grip);
       felt = hand.felt.feel(belief, hand.good, grip,
-                            {time_, options_.period, device_share, leap, another_holds(bodies, i)},
+                            {time_, options_.period, device_share, leap, another_holds(bodies, i),
+                             pace_of(hand)},
                             [&](const Wrench& wanted) {
-                              const Wrench safe = held_.guard(i, wanted, hand.good.pose, hand.good.twist,
-                                                              options_.period, hand.limits.max_damping);
+                              const double elapses = options_.period * (hand.with_world ? pace_ : 1.0);
+                              const Wrench safe =
+                                  held_.guard(i, wanted, hand.good.pose, hand.good.twist, elapses,
+                                              hand.limits.max_damping, pace_of(hand));
                               return port->device().gives_way() ? safe : wanted;
                             });
-      held_.sent(i, felt.wrench, hand.felt.holds(), hand.felt.held().pose, hand.felt.held().twist);
+      held_.sent(i, felt.wrench, hand.felt.holds(), hand.felt.held().pose, hand.felt.held().twist,
+                 hand.with_world);
     }
     if (felt.limited) note(kStatusForceLimited);
     if (felt.non_finite) note(kStatusNonFinite);
@@ -295,7 +339,7 @@ void Servo::tick(std::int64_t now_ns, bool fresh) noexcept {
     line_.add({sample_offset_ + time_, static_cast<std::uint32_t>(i), felt.wrench, hand.good.pose}, time_,
               hand.felt.follows_world());
   }
-  held_.advance(now_ns + to_nanoseconds(options_.period));
+  held_.advance(now_ns + to_nanoseconds(options_.period), pace_, time_ - before);
   pass_on(false);
   if (sample_due) {
     // On the grid of intervals, whatever the tick that met it: rows stay evenly spread over the run.

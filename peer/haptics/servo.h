@@ -106,6 +106,7 @@ class Servo {
     FeltHand felt;
     DeviceReport good;
     std::uint64_t readings = 0;  // of the device so far
+    bool with_world = false;     // it goes by simulated time
     std::int64_t read_ns = 0;    // when it last said something
     double read_time = 0.0;      // simulated s that it belongs to
   };
@@ -115,6 +116,10 @@ class Servo {
   void free_unused(Hand& hand);
   void follow_stiffness(std::size_t i, Hand& hand) noexcept;
   void follow_run(const BodyMessage& message) noexcept;
+  void follow_pace(const BodyMessage& message) noexcept;
+  void follow_time(double now, double most, std::int64_t now_ns) noexcept;
+  /// Simulated s a s of the hand's own time.
+  double pace_of(const Hand& hand) const noexcept { return hand.with_world ? 1.0 : pace_; }
   void tick(std::int64_t now_ns, bool fresh) noexcept;
   /// Takes in what the device says; true when the hand leapt.
   bool read_device(Hand& hand, std::int64_t now_ns) noexcept;
@@ -130,6 +135,9 @@ class Servo {
   std::deque<Hand> hands_;  // a hand never moves: the loop and the control thread share it
   std::uint32_t run_ = 0;
   double time_ = 0.0;
+  double pace_ = 1.0;  // simulated s a s on the wall, smoothed
+  bool moving_ = false;
+  std::int64_t ticked_ns_ = 0;
   double sample_offset_ = 0.0;  // s that samples' time is ahead of the world's, after resets
   Hearing hearing_;
   HeldBodies held_;

@@ -269,5 +269,45 @@ TEST(DevicePort, ADeviceThatThrowsIsSentZeroAndNamedAndTheLoopGoesOn) {
   }
 }
 
+/// Counts which of its readings each write answers: the loop's wrench says the reading that it had.
+struct Turns {
+  std::atomic<std::uint64_t> all{0};
+  std::atomic<std::uint64_t> at_once{0};
+};
+class CountingDevice final : public Device {
+ public:
+  explicit CountingDevice(std::shared_ptr<Turns> turns) : turns_(std::move(turns)) {}
+  DeviceReport read(const DeviceMoment&) override {
+    reads_ += 1;
+    return {};
+  }
+  void write(const Wrench& on_hand) override {
+    turns_->all += 1;
+    if (on_hand.force.x == static_cast<double>(reads_)) turns_->at_once += 1;
+  }
+  DeviceLimits limits() const override { return limits_without_a_hand(); }
+  std::string kind() const override { return "counting"; }
+
+ private:
+  std::shared_ptr<Turns> turns_;
+  std::uint64_t reads_ = 0;
+};
+
+/// A device that does not wait itself is written what the loop makes of the reading just before, and not of the one
+/// before that. On a busy machine the loop here may miss many turns; where nobody waited for it, it would all.
+TEST(DevicePort, AReadingIsAnsweredByTheWriteThatFollows) {
+  const auto turns = std::make_shared<Turns>();
+  DevicePort port(std::make_unique<CountingDevice>(turns));
+  while (turns->all < 1000) {
+    const DeviceReading& reading = port.read({0.0, 0.001}, steady_now_ns());
+    port.write({{static_cast<double>(reading.number), 0.0, 0.0}, {}});
+    std::this_thread::sleep_for(std::chrono::microseconds(100));
+  }
+  port.stop();
+  std::printf("%d of %d writes answer the reading just before\n", static_cast<int>(turns->at_once),
+              static_cast<int>(turns->all));
+  EXPECT_GT(turns->at_once, turns->all / 5);
+}
+
 }  // namespace
 }  // namespace slosh

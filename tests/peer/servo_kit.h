@@ -19,6 +19,7 @@ class FakeDevice final : public Device {
   DeviceLimits limit = limits_without_a_hand();
   Wrench last;
   double last_time = -1.0;
+  bool with_world = false;
 
   DeviceReport read(const DeviceMoment& moment) noexcept override {
     last_time = moment.time;
@@ -27,6 +28,7 @@ class FakeDevice final : public Device {
   void write(const Wrench& on_hand) noexcept override { last = on_hand; }
   DeviceLimits limits() const override { return limit; }
   bool immediate() const override { return true; }
+  bool goes_with_world() const override { return with_world; }
   std::string kind() const override { return "fake"; }
 };
 

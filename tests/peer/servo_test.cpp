@@ -38,6 +38,59 @@ TEST(Servo, ADamperSeesTheDifferenceOfVelocities) {
   EXPECT_NEAR(kit.device->last.force.y, -10.0, 1e-9);
 }
 
+/// In a world at half its pace a hand of 0.25 m a second is one of 0.5 m a simulated second.
+TEST(Servo, AHandIsAsFastAsASlowWorldSeesIt) {
+  ServoKit kit;
+  Twist moving;
+  moving.linear.y = 0.5;
+  kit.publish(1.0, {}, moving, 0.5);
+  kit.device->next.twist.linear.y = 0.25;
+  kit.tick(1.0);
+  EXPECT_NEAR(kit.device->last.force.y, 0.0, 1e-9) << "hand and grip go together";
+  kit.device->next.twist.linear.y = 0.0;
+  kit.tick(1.0);
+  EXPECT_NEAR(kit.device->last.force.y, 10.0, 1e-9) << "20 N·s/m in the world's time";
+  kit.device->next.twist.linear.y = 0.25;
+  kit.tick(1.0);
+  ASSERT_TRUE(kit.channel.pose(0).update());
+  EXPECT_NEAR(kit.channel.pose(0).front().twist.linear.y, 0.5, 1e-12) << "so the host is told";
+  kit.device->next.twist.linear.y = 5.0;
+  kit.publish(1.002, {}, {}, 0.05);
+  for (int i = 0; i < 2000; ++i) kit.tick(1.002);
+  ASSERT_TRUE(kit.channel.pose(0).update());
+  EXPECT_LT(kit.channel.pose(0).front().twist.linear.y, 20.0) << "no faster than a host takes";
+}
+
+/// A damper of the world's time is the harder the slower the world is: no harder than the device holds.
+TEST(Servo, ASlowWorldDampsNoHarderThanTheDeviceHolds) {
+  DeviceLimits limits = limits_without_a_hand();
+  limits.max_damping = 30.0;
+  ServoKit kit(limits);
+  kit.publish(1.0, {}, {}, 0.25);
+  kit.tick(1.0);
+  kit.device->next.twist.linear.y = 0.1;
+  kit.tick(1.0);
+  EXPECT_NEAR(kit.device->last.force.y, -3.0, 1e-9) << "30 N·s/m, where 20 of the world's would be 80";
+}
+
+TEST(Servo, WhoGoesByTheWorldsTimeIsAsFastAsTheySay) {
+  ServoKit kit;
+  ASSERT_TRUE(kit.servo->set_device(0, nullptr));
+  auto made = std::make_unique<test::FakeDevice>();
+  made->with_world = true;
+  made->next.twist.linear.y = 0.5;
+  test::FakeDevice* const device = made.get();
+  ASSERT_TRUE(kit.servo->set_device(0, std::move(made)));
+  Twist moving;
+  moving.linear.y = 0.5;
+  kit.publish(1.0, {}, moving, 0.25);
+  kit.tick(1.0);
+  kit.tick(1.0);
+  EXPECT_NEAR(device->last.force.y, 0.0, 1e-9);
+  ASSERT_TRUE(kit.channel.pose(0).update());
+  EXPECT_EQ(kit.channel.pose(0).front().twist.linear.y, 0.5);
+}
+
 TEST(Servo, TheGripIsCarriedOnByItsTwistAtMostTwoTicks) {
   ServoKit kit;
   Twist moving;

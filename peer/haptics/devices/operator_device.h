@@ -33,6 +33,7 @@ class OperatorDevice final : public Device {
   void write(const Wrench& on_hand) noexcept override;
   DeviceLimits limits() const override { return limits_without_a_hand(); }
   bool immediate() const override { return true; }
+  bool goes_with_world() const override { return true; }
   std::string kind() const override { return "operator"; }
 
  private:

@@ -61,6 +61,7 @@ class BodyReplica {
   bool started() const { return started_; }
 
   void set_gains(std::size_t g, const CouplingGains& gains) noexcept { grips_[g].gains = gains; }
+  /// By the body's time, as all here.
   void set_delay(const LoopDelay& delay) noexcept { delay_ = delay; }
   /// What acts besides couplings, weight and all, with the host's motion as its reference.
   void set_load(const FluidLoad& load) noexcept;

@@ -99,6 +99,7 @@ void HeldBody::hear(const HostWord& word) noexcept {
   heard_time_ = word.time;
   heard_ = word.motion;
   heard_ns_ = word.now_ns;
+  pace_ = word.pace;
   since_heard_ = 0.0;
   std::int64_t ack_ns = 0;
   counted_ = true;
@@ -130,7 +131,8 @@ void HeldBody::hear(const HostWord& word) noexcept {
   replica_.set_load(load);
   if (ack_ns == 0) return;
   delay_.note(to_seconds(word.now_ns - ack_ns), elapsed);
-  replica_.set_delay(delay_.delay());
+  const LoopDelay delay = delay_.delay();
+  replica_.set_delay({pace_ * delay.round_trip, pace_ * delay.jitter});
   replica_.hear({word.motion, ack_ns, load_work_.work()});
 }
 
@@ -178,12 +180,12 @@ GripState HeldBody::grip(std::size_t g) const noexcept {
 }
 
 Wrench HeldBody::guard(std::size_t g, const Wrench& wanted, const Pose& hand, const Twist& twist, double dt,
-                       double most_damping) noexcept {
+                       double most_damping, double pace) noexcept {
   const double credit = balance() - guards_[g].energy() + (counted_ ? 0.0 : kUncounted);
   // What others hold is felt across the delay; alone on the body nothing is.
   const double share = std::max({replica_.shared(), unrest_, spring_});
-  const double damping = std::min(share * replica_.damping(g), most_damping);
-  const double turning = share * replica_.rotational_damping(g);
+  const double damping = std::min(share / pace * replica_.damping(g), most_damping);
+  const double turning = share / pace * replica_.rotational_damping(g);
   const Wrench damped{wanted.force - damping * twist.linear, wanted.torque - turning * twist.angular};
   const Wrench safe = guards_[g].guard(damped, hand, twist, dt, credit, most_damping);
   fires_ = fires_ || guards_[g].fires();
@@ -203,7 +205,7 @@ void HeldBody::forget_surplus(double dt) noexcept {
   const double balance_now = balance();
   const double surplus = balance_now - replica_.stored() - kKept;
   if (surplus > 0.0) {
-    const double time = std::max(kForgets, kForgetsRoundTrips * delay_.delay().round_trip);
+    const double time = std::max(kForgets, kForgetsRoundTrips * pace_ * delay_.delay().round_trip);
     forgotten_ += surplus * (1.0 - std::exp(-dt / time));
   }
   // Others took what was forgotten too early: no hand is to carry on without force for that.

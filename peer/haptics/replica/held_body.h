@@ -18,7 +18,7 @@ struct OwnHand {
   bool here = false;  ///< a device of this site moves the grip
   bool engaged = false;
   Pose handle;  ///< as the coupling uses it (net/engagement.h)
-  Twist twist;
+  Twist twist;  ///< by the body's time
 };
 
 /// From `a` (share 0) to `b` (1), what is not a motion as `a` has it.
@@ -49,10 +49,10 @@ class HeldBody {
   /// Where an own hand's coupling goes to, at the moment of the last advance().
   GripState grip(std::size_t g) const noexcept;
   /// The wrench for own hand `g` in place of its coupling's `wanted`: damped for the delay, and so that no
-  /// more comes out of this site than went in. `hand`: as it is read. `most_damping`: N·s/m that the device
-  /// holds.
+  /// more comes out of this site than went in. `hand`: as it is read; its `twist`, `dt` and `most_damping` (N·s/m
+  /// that the device holds) by the device's own time, of which a second is `pace` s of the body's.
   Wrench guard(std::size_t g, const Wrench& wanted, const Pose& hand, const Twist& twist, double dt,
-               double most_damping) noexcept;
+               double most_damping, double pace = 1.0) noexcept;
   /// Grip `g`'s coupling is that from now on, here as at the host.
   void set_gains(std::size_t g, const CouplingGains& gains) noexcept {
     gains_[g] = gains;
@@ -67,7 +67,7 @@ class HeldBody {
   /// J that may still come out at the own hands: what all persons put in and what acts besides gave the body
   /// at the host, less what dampers used up.
   double balance() const noexcept;
-  LoopDelay delay() const noexcept { return delay_.delay(); }
+  LoopDelay delay() const noexcept { return delay_.delay(); }  ///< by the clock on the wall
   const BodyReplica& replica() const noexcept { return replica_; }
   /// The guards have fired so often that the replica is not followed: a damped spring to the host's word is.
   bool fallen_back() const noexcept { return fallen_back_; }
@@ -95,6 +95,7 @@ class HeldBody {
   double heard_time_ = 0.0;
   bool counted_ = false;  // all who hold the body
   std::int64_t heard_ns_ = 0;
+  double pace_ = 1.0;  // HostWord::pace
   double since_heard_ = 0.0;  // s
   bool started_ = false;
   double unrest_ = 0.0;     // 0–1

@@ -27,6 +27,7 @@ struct HostWord {
   double time_step = 0.0;   ///< s of one step of the host's; 0: not known, and each word is taken for one
   RigidMotion motion;
   std::span<const HostHand> hands;  ///< one a grip of the body
+  double pace = 1.0;                ///< s of the body's time a s of `now_ns`' clock, 0–1
 };
 
 }  // namespace slosh

@@ -84,7 +84,7 @@ class ReplicaHistory {
     if (high == count_) return false;
     const RigidMotion older = now(entry(high)), younger = now(entry(low));
     const auto apart = static_cast<double>(entry(low).stamp_ns - entry(high).stamp_ns);
-    const double share = static_cast<double>(stamp_ns - entry(high).stamp_ns) / apart;
+    const double share = apart > 0.0 ? static_cast<double>(stamp_ns - entry(high).stamp_ns) / apart : 0.0;
     out = moved(older, scaled(difference(younger, older), share));
     work = entry(high).work + share * (entry(low).work - entry(high).work) + work_corrected_;
     return true;

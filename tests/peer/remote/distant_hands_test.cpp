@@ -45,6 +45,7 @@ class NotedOperator final : public Device {
     return limits;
   }
   bool immediate() const override { return true; }
+  bool goes_with_world() const override { return true; }
   std::string kind() const override { return "operator"; }
   Wrench last;
   double nudge = 0.0;                           // m, on top of where the arm is
