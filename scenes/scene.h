@@ -109,13 +109,19 @@ struct MassProperties {
 
 /// Which particle model a scene runs. sim/README.md compares them in numbers.
 enum class ParticleModel : std::uint8_t {
-  kConsistent,  ///< density and pressure from one kernel, walls counted in both
-  kPaper,       ///< Eq 2 with poly6 and without body particles, Eq 5 as printed, constant body pressure
-  kCorrected,   ///< consistent, gradients corrected for uneven neighbours (Bonet & Lok 1999): the default
+  kConsistent,      ///< density and pressure from one kernel, walls counted in both
+  kPaper,           ///< Eq 2 with poly6 and without body particles, Eq 5 as printed, constant body pressure
+  kCorrected,       ///< consistent, gradients corrected for uneven neighbours (Bonet & Lok 1999): the default
+  kIncompressible,  ///< corrected, with pressures that are solved for in place of Eq 7's
 };
 
+/// Whether a model presses by corrected gradients.
+constexpr bool corrects_gradients(ParticleModel model) {
+  return model == ParticleModel::kCorrected || model == ParticleModel::kIncompressible;
+}
+
 /// Their names in scene files and on the wire, in the order of the values.
-inline constexpr std::array kParticleModelNames{"consistent", "paper", "corrected"};
+inline constexpr std::array kParticleModelNames{"consistent", "paper", "corrected", "incompressible"};
 inline const char* name(ParticleModel model) {
   return kParticleModelNames[static_cast<std::size_t>(model)];
 }

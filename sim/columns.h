@@ -21,7 +21,8 @@ enum class ColumnLife : std::uint8_t {
 enum class ColumnNeed : std::uint8_t {
   kAlways,
   kPairViscosity,  ///< those with PassId::kPairViscosity
-  kCorrected,      ///< those of ParticleModel::kCorrected
+  kCorrected,      ///< those whose model corrects_gradients()
+  kSolved,         ///< those with PassId::kPressureSolve
 };
 
 /// Where the GPU keeps a column: four to sixteen bytes, so that a neighbour is one load in the density pass
@@ -37,7 +38,8 @@ enum class Pack : std::uint8_t {
   kPushA,
   kPushB,
   kDrag,
-  kForce
+  kForce,
+  kNone,  ///< it has none
 };
 
 // clang-format off
@@ -53,7 +55,8 @@ enum class Pack : std::uint8_t {
   ROW(id,        std::uint32_t, kCarried, true,  true,   kAlways,        kId,            0)    /* fixed for the run */ \
   ROW(kind,      std::uint8_t,  kCarried, false, false,  kAlways,        kKind,          0)    /* RunConstants::kinds; follows from id */ \
   ROW(key,       std::uint32_t, kKey,     true,  false,  kAlways,        kKey,           0)    /* cell, or retired */ \
-  ROW(pressure,  float,         kStep,    false, false,  kAlways,        kPressed,       3)    /* Pa; kConsistent: V²P, N·m⁴ */ \
+  ROW(solved,    float,         kCarried, true,  false,  kSolved,        kNone,          0)    /* Pa, that the last step found */ \
+  ROW(pressure,  float,         kStep,    false, false,  kAlways,        kPressed,       3)    /* Pa; kConsistent: V²P, N·m⁴; kIncompressible: wanted ρ⁰/ρ − 1 */ \
   ROW(viscosity, float,         kStep,    false, false,  kPairViscosity, kViscosity,     0)    /* Pa·s */       \
   ROW(pxx,       float,         kStep,    false, false,  kCorrected,     kPushA,         0)    /* N·m⁴, the corrected */ \
   ROW(pxy,       float,         kStep,    false, false,  kCorrected,     kPushA,         1)    /* model's pressure */ \
@@ -92,6 +95,10 @@ inline constexpr std::array kFluidColumns{
     SLOSH_FLUID_COLUMNS(SLOSH_ROW)
 #undef SLOSH_ROW
 };
+
+struct Plan;
+/// Whether a plan has such columns.
+bool needs(const Plan& plan, ColumnNeed need);
 
 constexpr const ColumnInfo& info(FluidColumn column) {
   return kFluidColumns[static_cast<std::size_t>(column)];

@@ -21,6 +21,7 @@ struct ModelParts<ParticleModel::kPaper> {
   static constexpr bool kWallsCount = false;      ///< in the density
   static constexpr bool kPressureEnergy = false;  ///< `pressure` is V²P, and feels bulk damping
   static constexpr bool kCorrected = false;       ///< pressure is a tensor, and jostling is damped
+  static constexpr bool kSolved = false;          ///< and solved for
 };
 
 template <>
@@ -34,6 +35,7 @@ struct ModelParts<ParticleModel::kConsistent> {
   static constexpr bool kWallsCount = true;
   static constexpr bool kPressureEnergy = true;
   static constexpr bool kCorrected = false;
+  static constexpr bool kSolved = false;
 };
 
 template <>
@@ -44,12 +46,24 @@ struct ModelParts<ParticleModel::kCorrected> : ModelParts<ParticleModel::kConsis
   static constexpr bool kCorrected = true;
 };
 
+template <>
+struct ModelParts<ParticleModel::kIncompressible> : ModelParts<ParticleModel::kCorrected> {
+  static constexpr PairRule kFluids = PairRule::kSolved;
+  static constexpr PairRule kWalls = PairRule::kSolvedWall;
+  static constexpr PairRule kOnBodies = PairRule::kSolvedBody;
+  static constexpr bool kSolved = true;
+};
+
 /// Calls f.template operator()<Parts>() for a model, and returns what it returns.
 template <class F>
 auto with_model(ParticleModel model, F&& f) {
   if (model == ParticleModel::kPaper) return f.template operator()<ModelParts<ParticleModel::kPaper>>();
   if (model == ParticleModel::kCorrected)
     return f.template operator()<ModelParts<ParticleModel::kCorrected>>();
+#ifndef __CUDACC__  // the GPU has it not (can_solve_pressure)
+  if (model == ParticleModel::kIncompressible)
+    return f.template operator()<ModelParts<ParticleModel::kIncompressible>>();
+#endif
   return f.template operator()<ModelParts<ParticleModel::kConsistent>>();
 }
 

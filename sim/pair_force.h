@@ -32,16 +32,16 @@ SLOSH_HD void add_pair_force(const ParticleView<Real>& p, const ParticleView<Rea
     // Fluid presses without a torque on all that its moment counts, and that has a wall as one layer: what
     // the layers beyond it bear has its reaction on the body where the fluid is, not where the wall's
     // particle is. A body takes a force anywhere, so the pair turns nothing.
-    if constexpr (rule == PairRule::kCorrectedBody && requires { sum.cx; }) {
+    if constexpr (is_corrected_body(rule) && requires { sum.cx; }) {
       const Real beyond(1.0f - 1.0f / kWallShare);
       sum.cx += beyond * (ty * dz - tz * dy);
       sum.cy += beyond * (tz * dx - tx * dz);
       sum.cz += beyond * (tx * dy - ty * dx);
     }
-  } else {
+  } else if constexpr (presses(rule)) {
     along = pressure_coefficient<rule>(p, i) * kernel.slope_over_r;
   }
-  if constexpr (rule == PairRule::kCorrected) {
+  if constexpr (is_corrected_fluid(rule)) {
     const Real dragged = (i.ux - p.ux) * dx + (i.uy - p.uy) * dy + (i.uz - p.uz) * dz;
     along += (Real(kCentralDrag) * (p.volume * i.volume) * kernel.laplacian) *
              (dragged * (kernel.inverse_r * kernel.inverse_r));

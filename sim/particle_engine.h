@@ -48,6 +48,11 @@ class ParticleEngine {
   /// s by the velocities that this ends with (viscosity/implicit.h), and to `wrenches` that on the bodies that
   /// move or are measured.
   virtual void solve_drag(double dt, std::span<const ViscousBody> bodies, std::span<Wrench> wrenches) = 0;
+  /// With kPressureSolve, after wrenches() and solve_drag(), one entry a body: solves for the pressures over
+  /// `dt` s (pressure/solved_state.h), adds to the forces on the fluid what they differ by from the last
+  /// step's, and to `wrenches` that on the bodies that move, and all of it on the fixed ones that are
+  /// measured.
+  virtual void solve_pressure(double dt, std::span<const ViscousBody> bodies, std::span<Wrench> wrenches);
   /// Multiplies every fluid velocity by `keep` (0–1).
   virtual void damp(float keep) = 0;
 

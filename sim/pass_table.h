@@ -10,7 +10,7 @@
 namespace slosh {
 
 /// The part of a sub-step that a pass belongs to: ParticleEngine's calls.
-enum class SubStepPart { kPrepare, kForces, kSolve, kDrag, kAdvance };
+enum class SubStepPart { kPrepare, kForces, kSolve, kPress, kDrag, kAdvance };
 
 /// One row. `covers` has several passes where the backend does them in one loop over the neighbours; the loop
 /// then leaves out those that the plan has not.
@@ -38,9 +38,10 @@ void run_passes(Engine& engine, std::span<const PassRow<Engine>> table, SubStepP
 /// Every pass of the particles but those that the backend lacks is carried out by one row and no more.
 template <class Engine, std::size_t count>
 constexpr bool covers_all_particle_passes(const PassRow<Engine> (&table)[count], PassSet lacking = {}) {
-  for (const PassId id : {PassId::kSortFluid, PassId::kPlaceBodies, PassId::kDensity, PassId::kPressureForce,
-                          PassId::kOneViscosity, PassId::kPairViscosity, PassId::kWalls, PassId::kWrenches,
-                          PassId::kBodyDrag, PassId::kImplicitDrag, PassId::kIntegrateFluid}) {
+  for (const PassId id :
+       {PassId::kSortFluid, PassId::kPlaceBodies, PassId::kDensity, PassId::kPressureForce,
+        PassId::kOneViscosity, PassId::kPairViscosity, PassId::kWalls, PassId::kWrenches, PassId::kBodyDrag,
+        PassId::kImplicitDrag, PassId::kPressureSolve, PassId::kIntegrateFluid}) {
     int rows = 0;
     for (const PassRow<Engine>& row : table) rows += row.covers.has(id);
     if (rows != (lacking.has(id) ? 0 : 1)) return false;

@@ -6,6 +6,7 @@
 
 #include "sim/fluid_extremes.h"
 #include "sim/math/format.h"
+#include "sim/pressure/pressure_solve.h"
 #include "sim/step_limits.h"
 #include "sim/viscosity/stability.h"
 
@@ -71,7 +72,7 @@ constexpr double kWorthSolving = 4.0;
 
 // A probe's velocity is its body's, which is solved for later. The other models stay as they are, to compare with.
 bool suits_drag_solve(const Scene& scene, const Plan& plan) {
-  return plan.viscous() && plan.model == ParticleModel::kCorrected && !any_probe(scene);
+  return plan.viscous() && corrects_gradients(plan.model) && !any_probe(scene);
 }
 
 void decide_drag_solve(Plan& plan) {
@@ -100,7 +101,10 @@ Reasons reasons_for(PassId id, const Scene& scene, const FluidExtremes& fluids, 
       return {paper ? "Eq 2 and 7, fluid particles only (section 4.1)" : "Eq 2 and 7, body particles counted",
               "no fluid"};
     case PassId::kPressureForce:
-      return {paper ? "Eq 5" : "Eq 5 as the gradient of an energy", "no fluid"};
+      return {paper                              ? "Eq 5"
+              : plan.has(PassId::kPressureSolve) ? "Eq 5 by corrected gradients and the last step's pressures"
+                                                 : "Eq 5 as the gradient of an energy",
+              "no fluid"};
     case PassId::kOneViscosity:
       return {
           format("Eq 6: every fluid has %.3g Pa·s", fluids.most_viscous),
@@ -126,10 +130,15 @@ Reasons reasons_for(PassId id, const Scene& scene, const FluidExtremes& fluids, 
       return {format("drag by the velocities at the step's end, all solved together: explicit it would need "
                      "steps of %.3g ms",
                      1e3 * viscous_step(scene, plan, fluids)),
-              !plan.viscous()                             ? "nothing is viscous"
-              : plan.model != ParticleModel::kCorrected   ? "the corrected model's"
-              : any_probe(scene)                          ? "beside a probe drag stays explicit"
-                                                          : "explicit drag costs less here"};
+              !plan.viscous()                   ? "nothing is viscous"
+              : !corrects_gradients(plan.model) ? "the corrected and the incompressible model's"
+              : any_probe(scene)                ? "beside a probe drag stays explicit"
+                                                : "explicit drag costs less here"};
+    case PassId::kPressureSolve:
+      return {format("in place of Eq 7: pressures that keep fluid from being compressed, %d turns at most",
+                     kMostPressureTurns),
+              plan.has_fluid() ? "Eq 7 gives the pressures: the incompressible model solves for them"
+                               : "no fluid"};
     case PassId::kIntegrateFluid:
       return {"leap-frog", "no fluid"};
     case PassId::kCouplings:
@@ -186,6 +195,7 @@ Plan make_plan(const Scene& scene, double spacing, bool may_solve_drag) {
   for (const PassId id :
        {PassId::kSortFluid, PassId::kDensity, PassId::kPressureForce, PassId::kIntegrateFluid})
     plan.runs.set(id, fluid);
+  plan.runs.set(PassId::kPressureSolve, fluid && plan.model == ParticleModel::kIncompressible);
   plan.stiffness = scene.stiffness > 0.0 ? scene.stiffness : stiffness_for(scene);
   decide_viscosity(scene, plan);
   decide_bodies(scene, fluid_extremes(scene), plan);

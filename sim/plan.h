@@ -23,6 +23,7 @@ enum class PassId : std::uint8_t {
   kWrenches,       ///< Eq 10–12 for the bodies in Plan::wrench_bodies
   kBodyDrag,       ///< Eq 9 between fluid and free bodies by the velocities that bodies end a step with
   kImplicitDrag,   ///< Eq 6 or 9 by the velocities that fluid and bodies end a sub-step with, in one solve
+  kPressureSolve,  ///< pressures that keep fluid from being compressed, in one solve with the bodies
   kIntegrateFluid,
   kCouplings,
   kContacts,
@@ -84,9 +85,9 @@ struct Plan {
   bool has_fluid() const { return runs.has(PassId::kSortFluid); }
   /// Particles are kept from passing walls (walls/wall_guard.h). The paper has no such thing.
   bool guards_walls() const { return has(PassId::kWalls) && model != ParticleModel::kPaper; }
-  /// The fluid moves on after the bodies only.
-  bool fluid_waits() const {
-    return has(PassId::kBodyDrag) || has(PassId::kImplicitDrag) || (guards_walls() && waits_for_bodies);
+  bool fluid_waits() const {  ///< it moves on after the bodies only
+    return runs.has_any_of({PassId::kBodyDrag, PassId::kImplicitDrag, PassId::kPressureSolve}) ||
+           (guards_walls() && waits_for_bodies);
   }
   bool viscous() const { return runs.has_any_of({PassId::kOneViscosity, PassId::kPairViscosity}); }
   /// Drag is among the forces that a sub-step begins with.

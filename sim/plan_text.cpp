@@ -26,6 +26,7 @@ const PassNames& names(PassId id) {
       {"wrenches", "wrench on bodies"},
       {"body_drag", "implicit drag on free bodies"},
       {"implicit_drag", "implicit viscosity"},
+      {"pressure_solve", "solve for pressures"},
       {"integrate_fluid", "integrate fluid"},
       {"couplings", "virtual couplings"},
       {"contacts", "contacts"},
@@ -45,8 +46,13 @@ std::string describe(const Plan& plan) {
   text += format("model           %s\n", name(plan.model));
   text += format("spacing         %.4g mm\n", plan.spacing * 1e3);
   text += format("support radius  %.4g mm\n", plan.support_radius * 1e3);
-  text +=
-      format("stiffness       %.4g m²/s² (sound at %.3g m/s)\n", plan.stiffness, std::sqrt(plan.stiffness));
+  if (plan.has(PassId::kPressureSolve)) {
+    text += format("stiffness       none: pressures are solved for (jostling is damped as by %.4g m²/s²)\n",
+                   plan.stiffness);
+  } else {
+    text +=
+        format("stiffness       %.4g m²/s² (sound at %.3g m/s)\n", plan.stiffness, std::sqrt(plan.stiffness));
+  }
   if (plan.driven_speed > 0.0)
     text += format("driven          at up to %.3g m/s, by start velocities and scripted hands\n",
                    plan.driven_speed);

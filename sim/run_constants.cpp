@@ -123,7 +123,7 @@ RunConstants make_run_constants(const Scene& scene, const SampledScene& sampled,
   });
   const double volume = std::pow(spacing, 3);
   c.rest_volume = static_cast<float>(volume);
-  if (c.plan.model == ParticleModel::kCorrected) {
+  if (corrects_gradients(c.plan.model)) {
     const double moment = rest_moment<Spiky>(spacing, h);
     c.correction = {c.rest_number_density,
                     static_cast<float>(moment),
@@ -135,7 +135,8 @@ RunConstants make_run_constants(const Scene& scene, const SampledScene& sampled,
                     static_cast<float>(c.plan.tension)};
   }
   c.gravity = glm::vec3(scene.gravity);
-  c.load_compression = 0.5 * glm::length(scene.gravity) * fluid_heights(scene).load / c.plan.stiffness;
+  if (c.plan.model != ParticleModel::kIncompressible)
+    c.load_compression = 0.5 * glm::length(scene.gravity) * fluid_heights(scene).load / c.plan.stiffness;
   c.kinds = particle_kinds(scene, spacing);
   double heaviest = 0.0;
   for (const ParticleKind& kind : c.kinds) heaviest = std::max<double>(heaviest, kind.mass);

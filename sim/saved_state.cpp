@@ -149,19 +149,19 @@ void read_impulses(Source& s, std::uint64_t bodies, std::vector<KeptImpulse>& im
 
 // Every saved column but the key, which follows from the position: of it one byte tells who is retired.
 template <class S, class P>
-void columns(S& s, P& p) {
+void columns(S& s, const Plan& plan, P& p) {
   for_each_column(
       [&](auto column, auto& values) {
-        if constexpr (info(column).saved && column != FluidColumn::key)
+        if (info(column).saved && column != FluidColumn::key && needs(plan, info(column).need))
           s.column(std::span(values.data(), values.size()));
       },
       p);
 }
 
-constexpr std::size_t bytes_a_particle() {
+std::size_t bytes_a_particle(const Plan& plan) {
   std::size_t bytes = 1;
   for (const ColumnInfo& column : kFluidColumns) {
-    if (column.saved && column.life != ColumnLife::kKey) bytes += column.bytes;
+    if (column.saved && column.life != ColumnLife::kKey && needs(plan, column.need)) bytes += column.bytes;
   }
   return bytes;
 }
@@ -230,6 +230,8 @@ void check_particles(Source& s, const StateFrame& frame, const RunConstants& con
                         std::isfinite(p.vx[i]) && std::isfinite(p.vy[i]) && std::isfinite(p.vz[i]);
     if (!finite || !(p.volume[i] > 0.0f) || !std::isfinite(p.volume[i]))
       return s.fail("it holds a particle that is not finite");
+    if (!(p.solved[i] >= 0.0f) || !std::isfinite(p.solved[i]))
+      return s.fail("it holds a pressure that is none");
     // A probe may be outside, with the hand that holds it.
     if (!probe && !constants.grid.contains(p.x[i], p.y[i], p.z[i]))
       return s.fail("it holds a particle that is outside the domain");
@@ -289,8 +291,8 @@ StateFrame state_frame(const Scene& scene, const Plan& plan, const ParticleStart
 void write_state(const StateFrame& frame, const RunConstants& constants, const SavedState& state,
                  std::vector<std::uint8_t>& out) {
   const ParticleState& p = state.particles;
-  out.reserve(out.size() + bytes_a_particle() * p.size() + 400 * (state.bodies.size() + state.grips.size()) +
-              1024);
+  out.reserve(out.size() + bytes_a_particle(constants.plan) * p.size() +
+              400 * (state.bodies.size() + state.grips.size()) + 1024);
   Sink s(out);
   s.raw(kMagic);
   s.raw(kVersion);
@@ -315,7 +317,7 @@ void write_state(const StateFrame& frame, const RunConstants& constants, const S
   for (const KeptImpulse& k : state.impulses) kept_impulse(s, k);
   s.column(std::span<const std::int64_t>(state.walls));
   s.raw(static_cast<std::uint32_t>(p.size()));
-  columns(s, p);
+  columns(s, constants.plan, p);
   std::vector<std::uint8_t> gone(p.size());
   for (std::size_t i = 0; i < p.size(); ++i) gone[i] = p.key[i] >= constants.grid.retired_key();
   s.column(std::span<const std::uint8_t>(gone));
@@ -379,11 +381,11 @@ Result<bool> read_state(std::span<const std::uint8_t> bytes, const StateFrame& f
   s.raw(count);
   ParticleState& p = state.particles;
   // What is there decides how much is allocated.
-  if (s.ok() && s.left() != std::uint64_t{bytes_a_particle()} * count)
+  if (s.ok() && s.left() != std::uint64_t{bytes_a_particle(constants.plan)} * count)
     s.fail("its length does not fit its number of particles");
   if (s.ok()) {
     p.resize(count);
-    columns(s, p);
+    columns(s, constants.plan, p);
     std::vector<std::uint8_t> gone(count);
     s.column(std::span(gone));
     check_particles(s, frame, constants, gone, p);

@@ -20,6 +20,9 @@ namespace {
 constexpr double kCourant = 0.8;
 // The same for a change while the world runs, between what a plan keeps to and what was measured to hold.
 constexpr double kLiveCourant = 1.0;
+// Where pressures are solved for there is no sound: dt ≤ factor · support radius / speed. Half as long again,
+// and a dam break has particles slowed and crushed.
+constexpr double kSolvedCourant = 0.4;
 // Free bodies above this share of the fluid layer around them need no shorter step. With 0.05 a ball let go
 // in water rattled from there on (bodies/README.md, *Light bodies*); in a hand or in honey it was calm.
 constexpr double kLightBody = 0.1;
@@ -115,6 +118,21 @@ double reach_of(const Scene& scene, const Grip& grip) {
   return reach;
 }
 
+void limit_by_drag(const Scene& scene, const Plan& plan, const FluidExtremes& fluids, StepLimit& limit) {
+  if (plan.has(PassId::kImplicitDrag)) {
+    if (corrects_gradients(plan.model))
+      limit.lower_to(jostling_step(scene, plan, fluids), "what drags on jostling particles, explicit");
+    limit.lower_to(kMostImplicit * viscous_step(scene, plan, fluids),
+                   format("implicit viscosity of %.3g Pa·s: %g explicit steps in one", fluids.most_viscous,
+                          kMostImplicit));
+  } else if (plan.viscous() || corrects_gradients(plan.model)) {
+    const double of_bodies = most_viscous_body(scene, fluids.most_viscous);
+    limit.lower_to(viscous_step(scene, plan, fluids),
+                   format("explicit viscosity of %.3g Pa·s in the fluid, %.3g Pa·s at walls",
+                          fluids.most_viscous, 0.5 * (fluids.most_viscous + of_bodies)));
+  }
+}
+
 }  // namespace
 
 double driven_speed(const Scene& scene) {
@@ -170,6 +188,12 @@ StepLimit step_limit(const Scene& scene, Plan& plan) {
   const double sound = fastest_sound(scene, plan);
   const double speed =
       expected_speed(glm::length(scene.gravity), heights.depth, heights.drop, plan.driven_speed);
+  if (plan.has(PassId::kPressureSolve)) {
+    limit.lower_to(kSolvedCourant * plan.support_radius / speed,
+                   format("speed: %.2f · support radius / %.1f m/s", kSolvedCourant, speed));
+    limit_by_drag(scene, plan, fluids, limit);
+    return limit;
+  }
   const double courant = kCourant * plan.support_radius / (sound + speed);
   limit.lower_to(courant, format("sound: %.2f · support radius / (%.1f + %.1f m/s)", kCourant, sound, speed));
   // With one k for all (the paper's) a light particle is pushed about by its heavy neighbours.
@@ -187,18 +211,7 @@ StepLimit step_limit(const Scene& scene, Plan& plan) {
                    format("sound, at a body of %.3g times the mass of the fluid layer around it", share));
   }
   plan.sound_share = std::sqrt(std::min(1.0, share / kLightBody) / contrast);
-  if (plan.has(PassId::kImplicitDrag)) {
-    if (plan.model == ParticleModel::kCorrected)
-      limit.lower_to(jostling_step(scene, plan, fluids), "what drags on jostling particles, explicit");
-    limit.lower_to(kMostImplicit * viscous_step(scene, plan, fluids),
-                   format("implicit viscosity of %.3g Pa·s: %g explicit steps in one", fluids.most_viscous,
-                          kMostImplicit));
-  } else if (plan.viscous() || plan.model == ParticleModel::kCorrected) {
-    const double of_bodies = most_viscous_body(scene, fluids.most_viscous);
-    limit.lower_to(viscous_step(scene, plan, fluids),
-                   format("explicit viscosity of %.3g Pa·s in the fluid, %.3g Pa·s at walls",
-                          fluids.most_viscous, 0.5 * (fluids.most_viscous + of_bodies)));
-  }
+  limit_by_drag(scene, plan, fluids, limit);
   return limit;
 }
 
@@ -222,8 +235,11 @@ std::optional<Error> refuse_endless(const Scene& scene, const Plan& plan) {
 double most_gravity_allowed(const Scene& scene, const Plan& plan) {
   const double g = glm::length(scene.gravity);
   if (!plan.has_fluid() || g <= 0.0) return std::numeric_limits<double>::infinity();
-  const double speed =
-      kLiveCourant * plan.sound_share * plan.support_radius / plan.time_step - fastest_sound(scene, plan);
+  // Where pressures are solved for, by the same margin over what the plan keeps to.
+  const double speed = plan.has(PassId::kPressureSolve)
+                           ? kLiveCourant / kCourant * kSolvedCourant * plan.support_radius / plan.time_step
+                           : kLiveCourant * plan.sound_share * plan.support_radius / plan.time_step -
+                                 fastest_sound(scene, plan);
   // The speed at which expected_speed() comes out, solved for the gravity.
   const auto reached = [&](double fall, double squared) {
     return fall > 0.0 ? std::max(squared, 0.0) / (2.0 * g * fall) : std::numeric_limits<double>::infinity();

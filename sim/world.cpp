@@ -69,7 +69,7 @@ struct World::Impl {
   // The fluid's age, and what it presses by at it.
   void grow_older(double dt) {
     if (packed) return;
-    if (plan().model == ParticleModel::kCorrected)
+    if (corrects_gradients(plan().model))
       engine->set_correction(settled(constants.correction, constants.load_compression, age));
     packed = age >= kSettlingTime;
     if (!packed) age += dt;
@@ -93,7 +93,8 @@ struct World::Impl {
     const bool fluid = plan().has_fluid();
     const bool moving = part != TakePart::kFluid;
     const bool implicit = fluid && plan().has(PassId::kImplicitDrag);
-    const bool fluid_waits = implicit || (moving && plan().fluid_waits());
+    const bool pressed = fluid && plan().has(PassId::kPressureSolve);
+    const bool fluid_waits = implicit || pressed || (moving && plan().fluid_waits());
     if (fluid) {
       grow_older(step.dt);
       engine->prepare(bodies.bodies());
@@ -103,6 +104,7 @@ struct World::Impl {
     }
     if (implicit) drag_implicitly(step, moving, part == TakePart::kHeld);
     const bool with_drag = moving && plan().has(PassId::kBodyDrag);
+    if (pressed) solve_pressure(step, moving, part == TakePart::kHeld, with_drag);
     if (moving) solve_bodies(step, part == TakePart::kHeld, with_drag);
     if (with_drag) engine->drag(bodies.changes());
     if (moving) {
@@ -118,6 +120,15 @@ struct World::Impl {
     bodies.predict(plan(), {found, {}, gravity_scale * scene.gravity}, step, moving, held_only, viscous_bodies);
     engine->solve_drag(step.dt, viscous_bodies, found);
     take_drags();
+  }
+
+  void solve_pressure(const SubStep& step, bool moving, bool held_only, bool with_drag) {
+    if (with_drag) take_drags();
+    bodies.predict(plan(),
+                   {found, with_drag ? std::span<const Matrix6>(drag_matrices) : std::span<const Matrix6>(),
+                    gravity_scale * scene.gravity},
+                   step, moving, held_only, viscous_bodies);
+    engine->solve_pressure(step.dt, viscous_bodies, found);
   }
 
   void take_drags() {
@@ -290,6 +301,10 @@ void World::fill_pressures(std::vector<float>& out) const {
   for (std::size_t i = 0; i < particles.size(); ++i) {
     const std::size_t id = particles.id[i];
     if (id >= out.size() || particles.key[i] == w.constants.grid.retired_key()) continue;
+    if (w.plan().has(PassId::kPressureSolve)) {
+      out[id] = particles.solved[i];
+      continue;
+    }
     // The volume is what the density pass left; a bulk-damped pressure is not kept.
     const ParticleKind& kind = w.constants.kinds[w.fluid_of[id]];
     const float compression = w.constants.rest_volume / particles.volume[i] - 1.0f;

@@ -64,10 +64,7 @@ double farthest(const Snapshot& a, const Snapshot& b) {
 double bytes_a_particle(const Plan& plan) {
   double bytes = 0.0;
   for (const ColumnInfo& column : kFluidColumns) {
-    const bool there = column.need == ColumnNeed::kAlways ||
-                       (column.need == ColumnNeed::kPairViscosity && plan.has(PassId::kPairViscosity)) ||
-                       (column.need == ColumnNeed::kCorrected && plan.model == ParticleModel::kCorrected);
-    if (there) bytes += static_cast<double>(column.bytes);
+    if (needs(plan, column.need)) bytes += static_cast<double>(column.bytes);
   }
   return plan.has_fluid() ? bytes : 0.0;
 }

@@ -42,9 +42,10 @@ ErrorRow row_of(const ErrorCase& which, const Setting& setting, const Cost& cost
 std::vector<Setting> base_settings(const SweepOptions& options) {
   std::vector<Setting> settings;
   for (const Backend backend : options.backends) {
-    for (const ParticleModel model :
-         {ParticleModel::kPaper, ParticleModel::kConsistent, ParticleModel::kCorrected}) {
+    for (const ParticleModel model : {ParticleModel::kPaper, ParticleModel::kConsistent,
+                                      ParticleModel::kCorrected, ParticleModel::kIncompressible}) {
       if (!wanted(options.models, name(model))) continue;
+      if (model == ParticleModel::kIncompressible && !can_solve_pressure(backend)) continue;
       Setting setting;
       setting.model = model;
       setting.backend = backend;

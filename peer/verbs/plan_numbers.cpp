@@ -32,9 +32,11 @@ std::string stiffness_line(const Scene& scene, const Plan& plan, double head) {
 // What the step is, of what each explicit part would bear.
 std::string share_lines(const Scene& scene, const Plan& plan) {
   const double step = plan.time_step / plan.sub_steps;
-  std::string text = format("sound number    %.2g (c · step / support radius)\n",
-                            std::sqrt(plan.stiffness) * step / plan.support_radius);
-  if (plan.viscous() || plan.model == ParticleModel::kCorrected) {
+  std::string text;
+  if (!plan.has(PassId::kPressureSolve))
+    text += format("sound number    %.2g (c · step / support radius)\n",
+                   std::sqrt(plan.stiffness) * step / plan.support_radius);
+  if (plan.viscous() || corrects_gradients(plan.model)) {
     const FluidExtremes fluids = fluid_extremes(scene);
     text += format("viscous number  %.2g (ν · step / spacing²), %.0f %% of the step that explicit viscosity allows\n",
                    fluids.most_viscous / fluids.lightest * step / (plan.spacing * plan.spacing),
@@ -60,7 +62,8 @@ std::string plan_numbers(const Scene& scene, const Plan& plan, double fluid, dou
     const double head = g * heights.load + 0.5 * plan.driven_speed * plan.driven_speed;
     text += format("depth           %.3g m of fluid, the weight of %.3g m of the heaviest; %.3g m to fall\n",
                    heights.depth, heights.load, heights.drop);
-    text += stiffness_line(scene, plan, head) + share_lines(scene, plan);
+    if (!plan.has(PassId::kPressureSolve)) text += stiffness_line(scene, plan, head);
+    text += share_lines(scene, plan);
   }
   text += format("particles       about %s of fluid and %s of bodies\n",
                  grouped(static_cast<std::uint64_t>(fluid)).c_str(),

@@ -30,7 +30,8 @@ struct Look {
   const char* model;
   const char* color;
 };
-constexpr Look kLooks[] = {{"paper", "#8c6d31"}, {"consistent", "#1f5fbf"}, {"corrected", "#c8322b"}};
+constexpr Look kLooks[] = {
+    {"paper", "#8c6d31"}, {"consistent", "#1f5fbf"}, {"corrected", "#c8322b"}, {"incompressible", "#2e8b57"}};
 
 /// One picture's and one table line's rows: of one case and one quantity of it.
 struct Group {
@@ -132,8 +133,8 @@ std::string markdown(const std::vector<Group>& groups, const std::string& machin
       "# Error against run time\n\n" + machine +
       "\n\nError in % and, after the slash, wall seconds a simulated second; support ratio 2, the "
       "plan's time step. Bold: nothing in the report has less error for as little time.\n\n"
-      "| case | reads | spacing, mm | paper | consistent | corrected | CUDA, corrected |\n"
-      "|---|---|---|---|---|---|---|\n";
+      "| case | reads | spacing, mm | paper | consistent | corrected | incompressible | CUDA, corrected |\n"
+      "|---|---|---|---|---|---|---|---|\n";
   for (const Group& group : groups) {
     const std::vector<glm::dvec2> best = frontier_of(group.rows);
     std::vector<double> spacings;
@@ -143,8 +144,11 @@ std::string markdown(const std::vector<Group>& groups, const std::string& machin
     const std::string title = group.title.substr(0, group.title.rfind(": "));
     for (const double spacing : spacings) {
       text += format("| %s | %s | %.3g |", title.c_str(), group.quantity.c_str(), 1e3 * spacing);
-      for (const auto& [model, backend] :
-           {std::pair{"paper", "cpu"}, {"consistent", "cpu"}, {"corrected", "cpu"}, {"corrected", "cuda"}}) {
+      for (const auto& [model, backend] : {std::pair{"paper", "cpu"},
+                                           {"consistent", "cpu"},
+                                           {"corrected", "cpu"},
+                                           {"incompressible", "cpu"},
+                                           {"corrected", "cuda"}}) {
         const auto row = std::find_if(group.rows.begin(), group.rows.end(), [&](const ErrorRow& r) {
           return r.model == model && r.backend == backend && r.spacing == spacing && r.is_base();
         });

@@ -49,7 +49,8 @@ void BodySystem::predict(const Plan& plan, const BodyForces& forces, const SubSt
     if (!out[b].moves) continue;
     Wrench external = forces.fluid[b];
     external.force += body.mass * forces.gravity;
-    assemble_body(body, external, held, step.dt, out[b].inertia, out[b].momentum);
+    const Matrix6* drag = forces.drags.empty() ? nullptr : &forces.drags[b];
+    assemble_body(body, external, held, step.dt, out[b].inertia, out[b].momentum, drag);
   }
   if (!plan.has(PassId::kContacts)) return;
   for (const KeptImpulse& kept : memory_.kept()) {

@@ -5,7 +5,7 @@
 #include "sim/cpu/passes.h"
 #include "sim/cpu/row_batches.h"
 #include "sim/model.h"
-#include "sim/pressure/corrected_state.h"
+#include "sim/pressure/solved_state.h"
 #include "sim/snapshot.h"
 #include "sim/walls/wall_particles.h"
 
@@ -75,10 +75,22 @@ class CorrectedDensity {
         lane_sum(batch.vy),
         lane_sum(batch.vz)};
     const ParticleKind& kind = context_.kinds[fluid_.kind[p]];
-    const CorrectedState state = corrected_state(
-        n, context_.correction, kind.pressing_density, kind.viscosity, one_explicit_ ? kind.viscosity : 0.0f,
-        fluid_.volume[p], {fluid_.vx[p], fluid_.vy[p], fluid_.vz[p]});
+    const float in_u = one_explicit_ ? kind.viscosity : 0.0f;
+    const float v[3] = {fluid_.vx[p], fluid_.vy[p], fluid_.vz[p]};
+    if (context_.plan.has(PassId::kPressureSolve)) {
+      const SolvedState state = solved_state(n, context_.correction, kind.viscosity, in_u, v);
+      fluid_.pressure[p] = state.expansion;
+      return keep(p, kind, state);
+    }
+    const CorrectedState state = corrected_state(n, context_.correction, kind.pressing_density,
+                                                 kind.viscosity, in_u, fluid_.volume[p], v);
     fluid_.pressure[p] = state.pressure;
+    return keep(p, kind, state);
+  }
+
+  // What the two models find alike.
+  template <class State>
+  float keep(std::uint32_t p, const ParticleKind& kind, const State& state) const {
     fluid_.volume[p] = state.volume;
     fluid_.pxx[p] = state.push.xx;
     fluid_.pxy[p] = state.push.xy;

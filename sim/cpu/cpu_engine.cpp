@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sim/cpu/passes.h"
+#include "sim/cpu/pressure_solve.h"
 #include "sim/cpu/viscous_solve.h"
 #include "sim/fluid_sums.h"
 #include "sim/pass_table.h"
@@ -32,7 +33,7 @@ class CpuEngine final : public ParticleEngine {
     fixed_measured_ = std::any_of(constants.plan.wrench_bodies.begin(), constants.plan.wrench_bodies.end(),
                                   [&](int b) { return !bodies[b].free; });
     fluid_.provide(context_.plan, kinds_.size());
-    scratch_.provide(kinds_.size());
+    scratch_.provide(context_.plan, kinds_.size());
     for (const DistanceField& field : fields_) views_.push_back(field.distance.empty() ? DistanceFieldView{} : field.view());
     restore(start.particles, impulses_);
     context_.status = start.status;
@@ -70,6 +71,11 @@ class CpuEngine final : public ParticleEngine {
     run(SubStepPart::kSolve, dt);
   }
 
+  void solve_pressure(double dt, std::span<const ViscousBody> bodies, std::span<Wrench> wrenches) override {
+    viscous_ = {bodies, wrenches};
+    run(SubStepPart::kPress, dt);
+  }
+
   void damp(float keep) override {
     for (Column<float>* column : {&fluid_.vx, &fluid_.vy, &fluid_.vz}) {
       for (std::size_t p = 0; p < fluid_.active; ++p) (*column)[p] *= keep;
@@ -87,7 +93,9 @@ class CpuEngine final : public ParticleEngine {
     out.resize(fluid_.active);
     for_each_column(
         [&](auto column, const auto& from, auto& to) {
-          if constexpr (info(column).saved) std::copy_n(from.begin(), fluid_.active, to.begin());
+          if constexpr (info(column).saved) {
+            if (!from.empty()) std::copy_n(from.begin(), fluid_.active, to.begin());
+          }
         },
         fluid_, out);
     return true;
@@ -97,7 +105,9 @@ class CpuEngine final : public ParticleEngine {
     impulses_ = impulses;
     for_each_column(
         [](auto column, const auto& from, auto& to) {
-          if constexpr (info(column).saved) std::copy(from.begin(), from.end(), to.begin());
+          if constexpr (info(column).saved) {
+            if (!to.empty()) std::copy(from.begin(), from.end(), to.begin());
+          }
         },
         state, fluid_);
     for (std::size_t p = 0; p < state.size(); ++p) fluid_.kind[p] = kinds_[state.id[p]];
@@ -159,6 +169,7 @@ class CpuEngine final : public ParticleEngine {
          &StepTimes::force},
         {SubStepPart::kForces, {kWrenches}, &CpuEngine::sum_wrenches, &StepTimes::force},
         {SubStepPart::kSolve, {kImplicitDrag}, &CpuEngine::solve_implicit_drag, &StepTimes::force},
+        {SubStepPart::kPress, {kPressureSolve}, &CpuEngine::solve_for_pressure, &StepTimes::force},
         {SubStepPart::kDrag, {kBodyDrag}, &CpuEngine::drag_on_fluid, &StepTimes::force},
         {SubStepPart::kAdvance, {kIntegrateFluid}, &CpuEngine::integrate, &StepTimes::force},
     };
@@ -174,7 +185,10 @@ class CpuEngine final : public ParticleEngine {
   void place_bodies(double) { moving_.place(context_, bodies_); }
   void find_density(double) { compute_density(context_, team_, fluid_, fixed_.sorted(), moving_.sorted()); }
   void find_forces(double dt) {
-    compute_fluid_forces(context_, team_, fluid_, fixed_.sorted(), moving_.sorted(), dt, fluid_drag_);
+    compute_fluid_forces(context_, team_, fluid_, fixed_.sorted(), moving_.sorted(), dt, fluid_drag_,
+                         pressure_rows_);
+    if (context_.plan.has(PassId::kPressureSolve))
+      pressure_solver_.push_by_last(context_, team_, {fluid_, moving_.sorted(), bodies_, pressure_rows_});
   }
   void sum_wrenches(double) {
     centers_.clear();
@@ -184,8 +198,9 @@ class CpuEngine final : public ParticleEngine {
                         drags);
     };
     sum(moving_, context_.plan.has(PassId::kBodyDrag) ? std::span(drags_) : std::span<BodyDrag>());
-    if (fixed_measured_) sum(fixed_, {});
-    carry_probe_forces_out();
+    // Fixed ones are measured when all of the pressure is known.
+    if (fixed_measured_ && !context_.plan.has(PassId::kPressureSolve)) sum(fixed_, {});
+    if (!context_.plan.has(PassId::kPressureSolve)) carry_probe_forces_out(found_);
   }
   void drag_on_fluid(double) { drag_fluid(context_, team_, fluid_, moving_.sorted()); }
   void solve_implicit_drag(double dt) {
@@ -193,6 +208,14 @@ class CpuEngine final : public ParticleEngine {
                                                viscous_.bodies, wanted_, viscous_.wrenches);
     drags_ = solver_.drags();
     if (!report.converged) context_.status.fetch_or(kStatusViscosityCut, std::memory_order_relaxed);
+  }
+  void solve_for_pressure(double dt) {
+    pressure_solver_.solve(context_, team_, {fluid_, moving_.sorted(), bodies_, pressure_rows_}, dt,
+                           viscous_.bodies, viscous_.wrenches);
+    if (fixed_measured_)
+      sum_body_wrenches(context_, team_, fluid_, fixed_.sorted(), centers_, wanted_, body_scratch_,
+                        viscous_.wrenches, {});
+    carry_probe_forces_out(viscous_.wrenches);
   }
   void integrate(double dt) { integrate_fluid(context_, team_, fluid_, {guarded_, centers_, impulses_}, dt); }
 
@@ -224,16 +247,16 @@ class CpuEngine final : public ParticleEngine {
     }
   }
 
-  void carry_probe_forces_out() {
+  void carry_probe_forces_out(std::span<Wrench> out) const {
     if (probes_.empty()) return;
     for (std::size_t p = 0; p < fluid_.active; ++p) {
       if (fluid_.id[p] < fluid_count_) continue;
-      found_[probes_[fluid_.id[p] - fluid_count_].body].force +=
+      out[probes_[fluid_.id[p] - fluid_count_].body].force +=
           glm::dvec3(fluid_.fx[p], fluid_.fy[p], fluid_.fz[p]);
     }
   }
 
-  // What solve_drag() is called with.
+  // What solve_drag() and solve_pressure() are called with.
   struct Viscous {
     std::span<const ViscousBody> bodies;
     std::span<Wrench> wrenches;
@@ -261,6 +284,8 @@ class CpuEngine final : public ParticleEngine {
   SurfaceSums body_scratch_;
   FluidDrag fluid_drag_;
   ViscousSolver solver_;
+  FluidPress pressure_rows_;
+  PressureSolver pressure_solver_;
   Viscous viscous_;
   StepTimes times_;
 };

@@ -1,7 +1,5 @@
 // Eq 5, 6 and 9 on fluid particles, and Eq 10–12 on bodies.
-#include "sim/cpu/passes.h"
-#include "sim/cpu/row_drag.h"
-#include "sim/viscosity/implicit.h"
+#include "sim/cpu/force_rows.h"
 
 namespace slosh {
 
@@ -23,106 +21,19 @@ Symmetric<float> drag_rate(const ParticleView<FloatBatch>& self, const NeighborC
           scale * lane_sum(sum.yy), scale * lane_sum(sum.yz), scale * lane_sum(sum.zz)};
 }
 
-// What the passes over fluid particles go through.
-struct FluidWalk {
-  const PassContext& context;
-  ThreadTeam& team;
-  FluidParticles& fluid;
-  const BoundaryParticles& fixed;
-  const BoundaryParticles& moving;
-};
-
-// Where drag is not solved for, nothing is written down beside the forces.
-struct NoRows {
-  struct Given {};
-  struct Row {
-    Row(NoRows&, std::uint32_t, const ParticleView<FloatBatch>&) {}
-    auto fluid() { return kNothingMore; }
-    auto fixed() { return kNothingMore; }
-    auto moving() { return kNothingMore; }
-    void end() {}
-  };
-  NoRows(const Given&, std::size_t) {}
-};
-
-// Who drags whom, of one chunk of runs. By fluid and by moving bodies' particles, which are numbered on
-// behind the fluid's; fixed ones are in the own block alone.
-template <class Parts, Viscosity viscosity>
-struct RowsOf {
-  struct Given {
-    const FluidWalk& walk;
-    float dt;
-    FluidDrag& drag;
-  };
-
-  // Of one particle; small enough to stay in registers.
-  class Row {
-   public:
-    Row(RowsOf& rows, std::uint32_t p, const ParticleView<FloatBatch>& self)
-        : rows_(rows), p_(p), self_(self) {
-      rows_.writer.begin(p);
+void gather_tensors(const FluidWalk& walk, FluidPress& press) {
+  const FluidParticles& fluid = walk.fluid;
+  const float s = walk.context.force_scale;
+  walk.team.run(fluid.index.particles(), 2048, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      const ParticleKind& kind = walk.context.kinds[fluid.kind[p]];
+      press.tensors[p] = {
+          {s * fluid.pxx[p], s * fluid.pxy[p], s * fluid.pxz[p], kind.probe ? 0.0f : 1.0f / kind.mass},
+          {s * fluid.pxy[p], s * fluid.pyy[p], s * fluid.pyz[p], 0.0f},
+          {s * fluid.pxz[p], s * fluid.pyz[p], s * fluid.pzz[p], 0.0f}};
     }
-    auto fluid() {
-      return [this](std::uint32_t j, FloatBatch weight) {
-        rows_.writer.add(j, pairs<viscosity, Neighbours::kFluid>(rows_.fluids, j, weight));
-      };
-    }
-    auto moving() {
-      return [this](std::uint32_t j, FloatBatch weight) {
-        rows_.writer.add(rows_.behind + j,
-                         pairs<Viscosity::kPair, Neighbours::kWalls>(rows_.bodies, j, weight));
-      };
-    }
-    auto fixed() {
-      return [this](std::uint32_t j, FloatBatch weight) {
-        const PairBatch w = pairs<Viscosity::kPair, Neighbours::kWalls>(rows_.walls, j, weight);
-        const FloatBatch x = w.q * w.x, y = w.q * w.y;
-        by_walls_.xx += x * w.x;
-        by_walls_.xy += x * w.y;
-        by_walls_.xz += x * w.z;
-        by_walls_.yy += y * w.y;
-        by_walls_.yz += y * w.z;
-        by_walls_.zz += w.q * w.z * w.z;
-      };
-    }
-    void end() {
-      const Symmetric<float> all = rows_.writer.end(), walls = summed(by_walls_);
-      const FluidWalk& walk = rows_.given.walk;
-      rows_.given.drag.by_walls[p_] = walls;
-      rows_.given.drag.block[p_] = inverse_block(walk.context.kinds[walk.fluid.kind[p_]].mass, 1.0f,
-                                                 {all.xx + walls.xx, all.xy + walls.xy, all.xz + walls.xz,
-                                                  all.yy + walls.yy, all.yz + walls.yz, all.zz + walls.zz});
-    }
-
-   private:
-    template <Viscosity of_pair, Neighbours neighbours>
-    PairBatch pairs(const NeighborColumns& n, std::uint32_t j, FloatBatch weight) {
-      return drag_pairs<Parts, of_pair, neighbours>(self_, n, j, weight, rows_.h, rows_.factor,
-                                                    FloatBatch(1.0f));
-    }
-
-    RowsOf& rows_;
-    const std::uint32_t p_;
-    const ParticleView<FloatBatch> self_;
-    Symmetric<FloatBatch> by_walls_ = no_rate();
-  };
-
-  RowsOf(const Given& g, std::size_t chunk)
-      : given(g),
-        writer(g.drag.rows, chunk),
-        fluids(columns(g.walk.fluid)),
-        walls(columns(g.walk.fixed)),
-        bodies(columns(g.walk.moving)),
-        h(g.walk.context.support_radius),
-        factor(kCentralDrag * g.dt * g.walk.context.force_scale),
-        behind(static_cast<std::uint32_t>(g.walk.fluid.index.particles())) {}
-
-  const Given given;
-  DragRows::Writer writer;
-  const NeighborColumns fluids, walls, bodies;
-  const FloatBatch h, factor;
-  const std::uint32_t behind;
-};
+  });
+}
 
 // One chunk of runs. All of a pair in one loop: left to itself the compiler calls functions where rows are
 // written, and hands batches over in memory.
@@ -177,19 +88,35 @@ void find_forces(const FluidWalk& walk, const typename Rows::Given& given) {
 
 void compute_fluid_forces(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
                           const BoundaryParticles& fixed, const BoundaryParticles& moving, double dt,
-                          FluidDrag& drag) {
+                          FluidDrag& drag, FluidPress& press) {
   const FluidWalk walk{context, team, fluid, fixed, moving};
   with_physics(context.plan, [&]<class Parts, Viscosity viscosity>() {
+    const std::size_t particles = fluid.index.particles();
+    const std::size_t chunks = chunk_count(fluid.index.runs().size(), kRunsPerChunk);
+    if constexpr (Parts::kSolved) {
+      press.clear(particles, chunks);
+      gather_tensors(walk, press);
+    }
     if constexpr (Parts::kCorrected && viscosity == Viscosity::kNone) {
       if (context.plan.has(PassId::kImplicitDrag)) {
-        drag.clear(fluid.index.particles(), chunk_count(fluid.index.runs().size(), kRunsPerChunk));
+        drag.clear(particles, chunks);
         with_solved_viscosity(context.plan, [&]<Viscosity solved>() {
-          find_forces<Parts, viscosity, RowsOf<Parts, solved>>(walk, {walk, static_cast<float>(dt), drag});
+          using Drag = RowsOf<Parts, solved>;
+          const typename Drag::Given dragged{walk, static_cast<float>(dt), drag};
+          if constexpr (Parts::kSolved) {
+            find_forces<Parts, viscosity, BothRows<Drag, PressRowsOf<Parts>>>(walk, {dragged, {walk, press}});
+          } else {
+            find_forces<Parts, viscosity, Drag>(walk, dragged);
+          }
         });
         return;
       }
     }
-    find_forces<Parts, viscosity, NoRows>(walk, {});
+    if constexpr (Parts::kSolved) {
+      find_forces<Parts, viscosity, PressRowsOf<Parts>>(walk, {walk, press});
+    } else {
+      find_forces<Parts, viscosity, NoRows>(walk, {});
+    }
   });
 }
 

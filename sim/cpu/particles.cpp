@@ -9,18 +9,6 @@ void make(C& column, std::size_t count) {
   if (column.empty()) column.assign(count + kLanes, {});
 }
 
-bool needs(const Plan& plan, ColumnNeed need) {
-  switch (need) {
-    case ColumnNeed::kAlways:
-      return true;
-    case ColumnNeed::kPairViscosity:
-      return plan.has(PassId::kPairViscosity);
-    case ColumnNeed::kCorrected:
-      return plan.model == ParticleModel::kCorrected;
-  }
-  return true;
-}
-
 }  // namespace
 
 void FluidParticles::provide(const Plan& plan, std::size_t count) {
@@ -32,10 +20,10 @@ void FluidParticles::provide(const Plan& plan, std::size_t count) {
   near_wall.resize(count);
 }
 
-void GatheredColumns::provide(std::size_t count) {
+void GatheredColumns::provide(const Plan& plan, std::size_t count) {
   for_each_column(
       [&](auto column, auto& values) {
-        if constexpr (info(column).life == ColumnLife::kCarried) make(values, count);
+        if (info(column).life == ColumnLife::kCarried && needs(plan, info(column).need)) make(values, count);
       },
       *this);
 }

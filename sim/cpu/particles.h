@@ -23,7 +23,7 @@ struct FluidParticles : FluidColumns<Column> {
 
 /// Where a sort gathers to: only the columns that it carries are there.
 struct GatheredColumns : FluidColumns<Column> {
-  void provide(std::size_t count);
+  void provide(const Plan& plan, std::size_t count);
 };
 
 /// Particles of rigid bodies with constant density (section 4.1). One set for the fixed bodies, sorted once,

@@ -19,6 +19,7 @@ struct PassContext : RunConstants {
 };
 
 struct FluidDrag;
+struct FluidPress;
 
 /// Sorts fluid particles by cell and reorders every column that lives on; forgets the retired ones.
 void sort_fluid(PassContext& context, ThreadTeam& team, FluidParticles& fluid, KeySorter& sorter,
@@ -54,10 +55,11 @@ void compute_corrected_density(PassContext& context, ThreadTeam& team, FluidPart
                                const BoundaryParticles& fixed, const BoundaryParticles& moving);
 
 /// Eq 5, 6 and 9 on fluid particles, by fluid and by body particles. With kImplicitDrag without drag, and
-/// `drag` gets who drags whom over `dt` s: the same walk over the neighbours finds both.
+/// `drag` gets who drags whom over `dt` s; with kPressureSolve `press` gets who presses on whom: the same
+/// walk over the neighbours finds all.
 void compute_fluid_forces(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
                           const BoundaryParticles& fixed, const BoundaryParticles& moving, double dt,
-                          FluidDrag& drag);
+                          FluidDrag& drag, FluidPress& press);
 
 /// What each body particle feels, in the order of the cells.
 struct SurfaceSums {

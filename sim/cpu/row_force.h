@@ -19,9 +19,10 @@ struct NeighborColumns {
 
 // The corrected model's are null where the plan has them not, and for bodies.
 inline NeighborColumns columns(const FluidParticles& f) {
-  return {f.x.data(),        f.y.data(),      f.z.data(),         f.vx.data(),  f.vy.data(),  f.vz.data(),
-          f.pressure.data(), f.volume.data(), f.viscosity.data(), f.pxx.data(), f.pxy.data(), f.pxz.data(),
-          f.pyy.data(),      f.pyz.data(),    f.pzz.data(),       f.ux.data(),  f.uy.data(),  f.uz.data()};
+  const Column<float>& pressure = f.solved.empty() ? f.pressure : f.solved;
+  return {f.x.data(),      f.y.data(),      f.z.data(),         f.vx.data(),  f.vy.data(),  f.vz.data(),
+          pressure.data(), f.volume.data(), f.viscosity.data(), f.pxx.data(), f.pxy.data(), f.pxz.data(),
+          f.pyy.data(),    f.pyz.data(),    f.pzz.data(),       f.ux.data(),  f.uy.data(),  f.uz.data()};
 }
 
 inline NeighborColumns columns(const BoundaryParticles& b) {
@@ -56,9 +57,10 @@ FloatBatch viscosity_of(const ParticleView<FloatBatch>& p, const NeighborColumns
   }
 }
 
-inline constexpr auto kNothingMore = [](std::uint32_t, FloatBatch) {};
+using BatchView = ParticleView<FloatBatch>;
+inline constexpr auto kNothingMore = [](const BatchView&, const BatchView&, std::uint32_t, FloatBatch) {};
 
-/// `also`(j, weight) is called for each batch beside it.
+/// `also`(p, i, j, weight) is called for each batch i beside it.
 template <class Parts, PairRule rule, Viscosity viscosity, Neighbours neighbours = Neighbours::kFluid,
           class Also = decltype(kNothingMore), class Sum = ForceSum<FloatBatch>>
 void add_row_forces(const ParticleView<FloatBatch>& p, const NeighborColumns& n, const RowList& rows,
@@ -66,21 +68,21 @@ void add_row_forces(const ParticleView<FloatBatch>& p, const NeighborColumns& n,
                     Also also = kNothingMore) {
   // What pairs of one viscosity drag by is in u already.
   constexpr bool kViscous =
-      rule == PairRule::kCorrected ? viscosity == Viscosity::kPair : viscosity != Viscosity::kNone;
-  constexpr bool kVolume = kViscous || rule == PairRule::kPaper || rule == PairRule::kCorrected;
+      is_corrected_fluid(rule) ? viscosity == Viscosity::kPair : viscosity != Viscosity::kNone;
+  constexpr bool kVolume = kViscous || rule == PairRule::kPaper || is_corrected_fluid(rule);
   const auto add = [&](std::uint32_t j, FloatBatch weight) {
     ParticleView<FloatBatch> i;
     i.x = FloatBatch::load_unaligned(n.x + j);
     i.y = FloatBatch::load_unaligned(n.y + j);
     i.z = FloatBatch::load_unaligned(n.z + j);
-    if constexpr (rule == PairRule::kCorrected || rule == PairRule::kCorrectedBody) {
+    if constexpr (rule == PairRule::kCorrected || is_corrected_body(rule)) {
       i.push = {FloatBatch::load_unaligned(n.pxx + j), FloatBatch::load_unaligned(n.pxy + j),
                 FloatBatch::load_unaligned(n.pxz + j), FloatBatch::load_unaligned(n.pyy + j),
                 FloatBatch::load_unaligned(n.pyz + j), FloatBatch::load_unaligned(n.pzz + j)};
-    } else {
-      i.pressure = FloatBatch::load_unaligned(n.pressure + j);
     }
-    if constexpr (rule == PairRule::kCorrected) {
+    if constexpr (presses(rule) && rule != PairRule::kCorrected && rule != PairRule::kCorrectedBody)
+      i.pressure = FloatBatch::load_unaligned(n.pressure + j);
+    if constexpr (is_corrected_fluid(rule)) {
       i.ux = FloatBatch::load_unaligned(n.ux + j);
       i.uy = FloatBatch::load_unaligned(n.uy + j);
       i.uz = FloatBatch::load_unaligned(n.uz + j);
@@ -93,7 +95,7 @@ void add_row_forces(const ParticleView<FloatBatch>& p, const NeighborColumns& n,
       i.viscosity = viscosity_of<viscosity, neighbours>(p, n, j, of_fluid);
     }
     add_pair_force<typename Parts::ForceKernel, rule, Parts::kDrag, kViscous>(p, i, h, weight, sum);
-    also(j, weight);
+    also(p, i, j, weight);
   };
   for_each_batch(rows, add);
 }

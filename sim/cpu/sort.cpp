@@ -17,6 +17,7 @@ void sort_fluid(PassContext& context, ThreadTeam& team, FluidParticles& fluid, K
     for_each_column(
         [&](auto column, const auto& from, auto& to) {
           if constexpr (info(column).life == ColumnLife::kCarried) {
+            if (to.empty()) return;  // the plan has it not
             for (std::size_t p = begin; p < end; ++p) to[p] = from[order[p]];
           }
         },

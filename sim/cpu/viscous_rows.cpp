@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t kRunsPerChunk = 16;
 
-// Drag is solved for in this model alone (Plan::solves_drag).
+// Drag is solved for in this model and the incompressible one, which drags alike (Plan::solves_drag).
 using Parts = ModelParts<ParticleModel::kCorrected>;
 static_assert(Parts::kDrag == DragRule::kCentral);
 

@@ -68,7 +68,8 @@ constexpr bool carried(Pack pack) {
 /// Every column that outlives a step is in one of the packs above.
 constexpr bool packs_hold_every_column() {
   for (const ColumnInfo& column : kFluidColumns) {
-    if (column.life != ColumnLife::kStep && column.pack > Pack::kKey) return false;
+    if (column.life != ColumnLife::kStep && column.pack > Pack::kKey && column.pack != Pack::kNone)
+      return false;
   }
   return true;
 }

@@ -21,6 +21,15 @@ SLOSH_HD Real determinant(const Symmetric<Real>& t) {
          t.xz * (t.xy * t.yz - t.yy * t.xz);
 }
 
+template <class Real>
+struct Vector3 {
+  Real x, y, z;
+};
+template <class Real>
+SLOSH_HD Vector3<Real> times(const Symmetric<Real>& t, Real x, Real y, Real z) {
+  return {t.xx * x + t.xy * y + t.xz * z, t.xy * x + t.yy * y + t.yz * z, t.xz * x + t.yz * y + t.zz * z};
+}
+
 /// a · t + b · 1.
 template <class Real>
 SLOSH_HD Symmetric<Real> scaled_and_shifted(const Symmetric<Real>& t, Real a, Real b) {

@@ -28,6 +28,22 @@ struct CorrectedState {
   float u[3];             ///< Pa·m
 };
 
+/// What V² P is multiplied by. `volume`: m³; `compression`: ρ/ρ⁰ − 1.
+SLOSH_HD inline Symmetric<float> directions_of(const Neighborhood<float>& n, const CorrectionConstants& c,
+                                               float volume, float compression) {
+  const Symmetric<float> moment = scaled_and_shifted(n.moment, 1.0f / c.rest_moment, 0.0f);
+  // The energy's gradient has V², a virial of V P has V V⁰.
+  const float virial = c.push_scale * (c.rest_volume / volume);
+  return pressure_directions(moment, corrected_share(compression), virial);
+}
+
+/// What it drags by, Pa·m.
+SLOSH_HD inline void set_drag(const Neighborhood<float>& n, const CorrectionConstants& c, float viscosity,
+                              float in_u, const float (&v)[3], float (&u)[3]) {
+  for (int k = 0; k < 3; ++k) u[k] = in_u * v[k];
+  add_noise(n, c.own_number, jostling_viscosity(c.noise_viscosity, viscosity), v, u);
+}
+
 /// `viscosity`: the fluid's own, Pa·s. `in_u`: the same where u is to carry it (all fluids share it and drag
 /// is explicit, Eq 6), else 0. `v`: m/s.
 SLOSH_HD inline CorrectedState corrected_state(const Neighborhood<float>& n, const CorrectionConstants& c,
@@ -39,13 +55,8 @@ SLOSH_HD inline CorrectedState corrected_state(const Neighborhood<float>& n, con
   state.volume = eos.volume;
   state.compression = eos.compression;
   state.pressure = eos.pressure;
-  const Symmetric<float> moment = scaled_and_shifted(n.moment, 1.0f / c.rest_moment, 0.0f);
-  // The energy's gradient has V², a virial of V P has V V⁰.
-  const float virial = c.push_scale * (c.rest_volume / eos.volume);
-  state.push = scaled_and_shifted(pressure_directions(moment, corrected_share(eos.compression), virial),
-                                  eos.pressure, 0.0f);
-  for (int k = 0; k < 3; ++k) state.u[k] = in_u * v[k];
-  add_noise(n, c.own_number, jostling_viscosity(c.noise_viscosity, viscosity), v, state.u);
+  state.push = scaled_and_shifted(directions_of(n, c, eos.volume, eos.compression), eos.pressure, 0.0f);
+  set_drag(n, c, viscosity, in_u, v, state.u);
   return state;
 }
 

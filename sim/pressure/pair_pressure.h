@@ -17,10 +17,26 @@ enum class PairRule {
   kCorrected,      ///< (T_p + T_i) ∇W of two tensors `push`.
   kCorrectedWall,  ///< fluid p against wall particle i: T_p times the wall's share.
   kCorrectedBody,  ///< the other side of it: wall particle p against fluid i.
+  // Where pressures are solved for:
+  kSolved,      ///< of fluid on fluid: the solve presses, and only drag is left here
+  kSolvedWall,  ///< of walls on fluid, likewise
+  kSolvedBody,  ///< kCorrectedBody, where `push` is the tensor of 1 Pa, m⁶, and `pressure` the fluid's, Pa
 };
 
 constexpr bool presses_by_tensor(PairRule rule) {
-  return rule == PairRule::kCorrected || rule == PairRule::kCorrectedWall || rule == PairRule::kCorrectedBody;
+  return rule == PairRule::kCorrected || rule == PairRule::kCorrectedWall ||
+         rule == PairRule::kCorrectedBody || rule == PairRule::kSolvedBody;
+}
+/// Between fluid particles, which drag on jostling besides.
+constexpr bool is_corrected_fluid(PairRule rule) {
+  return rule == PairRule::kCorrected || rule == PairRule::kSolved;
+}
+/// On a wall's particle, by fluid.
+constexpr bool is_corrected_body(PairRule rule) {
+  return rule == PairRule::kCorrectedBody || rule == PairRule::kSolvedBody;
+}
+constexpr bool presses(PairRule rule) {
+  return rule != PairRule::kSolved && rule != PairRule::kSolvedWall;
 }
 
 /// What a pair presses with, where that is a tensor.
@@ -31,6 +47,8 @@ SLOSH_HD Symmetric<Real> pressure_tensor(const ParticleView<Real>& p, const Part
             p.push.yy + i.push.yy, p.push.yz + i.push.yz, p.push.zz + i.push.zz};
   } else if constexpr (rule == PairRule::kCorrectedWall) {
     return scaled_and_shifted(p.push, i.pressure, Real(0.0f));
+  } else if constexpr (rule == PairRule::kSolvedBody) {
+    return scaled_and_shifted(i.push, p.pressure * i.pressure, Real(0.0f));
   } else {
     return scaled_and_shifted(i.push, p.pressure, Real(0.0f));
   }

@@ -52,19 +52,18 @@ double viscous_rate(const Scene& scene, const Plan& plan, const FluidExtremes& f
 // What a wall adds to the sum of the first layer: half of its rate, since it does not swing against the fluid
 // as the fluid's own layers do.
 double wall_part(const Scene& scene, const Plan& plan, DragSheet sheet) {
-  return plan.model == ParticleModel::kCorrected
-             ? 0.5 * wall_drag(plan.model, scene.support_ratio, sheet).rate
-             : kOneLayer;
+  return corrects_gradients(plan.model) ? 0.5 * wall_drag(plan.model, scene.support_ratio, sheet).rate
+                                        : kOneLayer;
 }
 
 // The others' sheets drag by less, and their steps stay as they are, to compare with.
 double of_an_edge(const Plan& plan) {
-  return plan.model == ParticleModel::kCorrected ? kOfAnEdge : 0.0;
+  return corrects_gradients(plan.model) ? kOfAnEdge : 0.0;
 }
 
 // Pa·s that the roughest mode feels besides the fluid's own.
 double jostling(const Plan& plan, const FluidExtremes& fluids) {
-  return plan.model == ParticleModel::kCorrected ? noise_viscosity(plan, fluids.lightest) : 0.0;
+  return corrects_gradients(plan.model) ? noise_viscosity(plan, fluids.lightest) : 0.0;
 }
 
 }  // namespace

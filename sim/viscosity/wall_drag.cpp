@@ -69,14 +69,14 @@ WallDrag computed(double ratio, DragSheet sheet) {
 }  // namespace
 
 DragSheet drag_sheet(const Scene& scene, const Plan& plan) {
-  if (plan.model != ParticleModel::kCorrected) return DragSheet::kBehind;
+  if (!corrects_gradients(plan.model)) return DragSheet::kBehind;
   const FluidExtremes fluids = fluid_extremes(scene);
   const double most = std::max(fluids.most_viscous, most_viscous_body(scene, fluids.most_viscous));
   return most > kThin * noise_viscosity(plan, fluids.lightest) ? DragSheet::kSurface : DragSheet::kBehind;
 }
 
 WallDrag wall_drag(ParticleModel model, double support_ratio, DragSheet sheet) {
-  if (model != ParticleModel::kCorrected) return {};
+  if (!corrects_gradients(model)) return {};
   return computed<ModelParts<ParticleModel::kCorrected>::ForceKernel>(support_ratio, sheet);
 }
 

@@ -82,7 +82,7 @@ std::vector<glm::vec3> sheet_positions(const SurfaceSamples& surface, const Dist
   if (plan.model == ParticleModel::kPaper) return positions;
   const float spacing = static_cast<float>(plan.spacing);
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    const auto move = plan.model == ParticleModel::kCorrected && field.distance ? on_level_set : inset;
+    const auto move = corrects_gradients(plan.model) && field.distance ? on_level_set : inset;
     positions[i] = move(positions[i], surface.normals[i], static_cast<float>(kWallInset) * spacing, field);
   }
   if (field.distance) close_gaps(field, static_cast<float>(kWallInset) * spacing, spacing, positions);
@@ -123,7 +123,7 @@ struct JoinedWalls {
 JoinedWalls joined_walls(const Scene& scene, const SampledScene& sampled, const Plan& plan) {
   JoinedWalls walls{std::vector<std::vector<glm::vec3>>(scene.bodies.size()),
                     std::vector<std::vector<float>>(scene.bodies.size())};
-  if (plan.model != ParticleModel::kCorrected) return walls;
+  if (!corrects_gradients(plan.model)) return walls;
   std::vector<FixedSolid> solids;
   std::vector<std::size_t> body_of;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {

@@ -50,12 +50,14 @@ TEST_P(EachModel, fluid_gains_what_gravity_and_walls_give) {
 
 INSTANTIATE_TEST_SUITE_P(models, EachModel,
                          ::testing::Values(ParticleModel::kCorrected, ParticleModel::kConsistent,
-                                           ParticleModel::kPaper),
+                                           ParticleModel::kPaper, ParticleModel::kIncompressible),
                          [](const auto& p) { return name(p.param); });
 
 // The same with a free box that falls into the fluid: box and fluid together.
-TEST(Momentum, fluid_and_free_body_together) {
-  testing::Tank tank = sloshing_tank(ParticleModel::kCorrected);
+class Corrected : public ::testing::TestWithParam<ParticleModel> {};
+
+TEST_P(Corrected, momentum_of_fluid_and_free_body_together) {
+  testing::Tank tank = sloshing_tank(GetParam());
   SceneBuilder b;
   b.scene = tank.scene;
   const int box = b.add_free("box", make::box({-0.03, -0.03, -0.03}, {0.03, 0.03, 0.03}), 0.15,
@@ -87,7 +89,9 @@ TEST(Momentum, fluid_and_free_body_together) {
     fluid_on_box = std::max(fluid_on_box, e.bodies().bodies[box].fluid.force.y);
   }
   EXPECT_GT(fluid_on_box, 0.5 * box_mass * kGravity) << "the box never met the fluid: the test tests nothing";
-  report_value("momentum identity with a free box, worst step, share of M g dt", worst, "");
+  report_value(std::string("momentum identity with a free box, ") + name(GetParam()) +
+                   " model, worst step, share of M g dt",
+               worst, "");
   EXPECT_LT(worst, 1e-6);
 }
 
@@ -145,6 +149,9 @@ TEST(AngularMomentum, consistent_model_keeps_it_and_eq_9_does_not) {
   const double consistent = angular_momentum_drift(ParticleModel::kConsistent);
   const double paper = angular_momentum_drift(ParticleModel::kPaper);
   const double corrected = angular_momentum_drift(ParticleModel::kCorrected);
+  const double incompressible = angular_momentum_drift(ParticleModel::kIncompressible);
+  report_value("angular momentum lost in 100 steps, incompressible", 100.0 * incompressible, "%");
+  EXPECT_LT(incompressible, 1e-3);
   report_value("angular momentum lost in 100 steps, consistent", 100.0 * consistent, "%");
   report_value("angular momentum lost in 100 steps, corrected", 100.0 * corrected, "%");
   report_value("angular momentum lost in 100 steps, paper's Eq 9", 100.0 * paper, "%");
@@ -154,8 +161,9 @@ TEST(AngularMomentum, consistent_model_keeps_it_and_eq_9_does_not) {
 }
 
 // A closed box full of turning fluid: dL is what the walls' torque gave.
-TEST(AngularMomentum, closed_container_takes_what_the_fluid_loses) {
+TEST_P(Corrected, closed_container_takes_the_angular_momentum_that_the_fluid_loses) {
   SceneBuilder b;
+  b.scene.model = GetParam();
   b.add_fluid(1000.0, 0.5);
   const int tank = b.add_fixed("tank", tank_at_floor({0.12, 0.08, 0.12}, 0.03));
   const int lid = b.add_fixed("lid", make::box({-0.09, 0.081, -0.09}, {0.09, 0.12, 0.09}));
@@ -186,6 +194,10 @@ TEST(AngularMomentum, closed_container_takes_what_the_fluid_loses) {
   EXPECT_LT(std::abs(report("angular impulse of the walls", given.y, change.y, "N·m·s")), 1e-5);
   EXPECT_LT(glm::length(given - change), 1e-5 * glm::length(change));
 }
+
+INSTANTIATE_TEST_SUITE_P(models, Corrected,
+                         ::testing::Values(ParticleModel::kCorrected, ParticleModel::kIncompressible),
+                         [](const auto& p) { return name(p.param); });
 
 // Momentum and angular momentum about the origin, fluid and bodies, of the floats that the world has: saved
 // and read again, with position and the velocity half a step behind it as the leap-frog keeps them.
@@ -291,6 +303,8 @@ INSTANTIATE_TEST_SUITE_P(
     Models, Honey,
     ::testing::Values(HoneyCase{"consistent", ParticleModel::kConsistent, 20.0, false, 1e-5},
                       HoneyCase{"corrected", ParticleModel::kCorrected, 20.0, false, 1e-5},
+                      HoneyCase{"incompressible", ParticleModel::kIncompressible, 20.0, false, 1e-5},
+                      HoneyCase{"incompressible_solved", ParticleModel::kIncompressible, 50.0, true, 1e-5},
                       HoneyCase{"solved", ParticleModel::kCorrected, 50.0, true, 1e-5}),
     [](const auto& p) { return p.param.name; });
 

@@ -47,6 +47,20 @@ TEST(Backend, AskingForCudaGivesCudaOrAnError) {
   EXPECT_NE(world.error().mend.find("CPU"), std::string::npos);
 }
 
+// The incompressible model is the CPU's: asked for the GPU it says so, left to choose it takes the CPU.
+TEST(Backend, IncompressibleModelRunsOnTheCpu) {
+  Tank tank = make_tank({});
+  tank.scene.model = ParticleModel::kIncompressible;
+  const Plan plan = make_plan(tank.scene, tank.sampled.spacing);
+  const Result<World> refused = make_world(tank.scene, tank.sampled, plan, {1, Backend::kCuda});
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().what.find("CPU only"), std::string::npos) << refused.error().text();
+  EXPECT_NE(refused.error().mend.find("corrected"), std::string::npos);
+  const Result<World> world = make_world(tank.scene, tank.sampled, plan, {1, Backend::kAuto});
+  ASSERT_TRUE(world);
+  EXPECT_EQ(world.value().backend().rfind("CPU, ", 0), 0u);
+}
+
 TEST(Backend, AutoTakesWhatThereIs) {
   Result<World> world = tank_on(Backend::kAuto);
   ASSERT_TRUE(world);

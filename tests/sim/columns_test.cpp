@@ -47,10 +47,14 @@ TEST(Columns, WhatAPlanDoesNotNeedTakesNoMemory) {
   EXPECT_EQ(fluid.x[3], 7.0f) << "what is there stays";
 
   GatheredColumns gathered;
-  gathered.provide(100);
+  gathered.provide(make_plan(tank.scene, 0.01), 100);
   EXPECT_EQ(gathered.volume.size(), 100 + kLanes);
   EXPECT_TRUE(gathered.pressure.empty());
   EXPECT_TRUE(gathered.key.empty());
+  EXPECT_TRUE(gathered.solved.empty());
+  tank.scene.model = ParticleModel::kIncompressible;
+  gathered.provide(make_plan(tank.scene, 0.01), 100);
+  EXPECT_EQ(gathered.solved.size(), 100 + kLanes);
 }
 
 }  // namespace

@@ -64,8 +64,11 @@ void expect_same(const BodySnapshot& a, const BodySnapshot& b) {
   }
 }
 
-TEST(SavedWorld, GoesOnToTheBit) {
-  const Tank tank = stirred_tank();
+class SavedModel : public ::testing::TestWithParam<ParticleModel> {};
+
+TEST_P(SavedModel, GoesOnToTheBit) {
+  Tank tank = stirred_tank();
+  tank.scene.model = GetParam();
   World whole = make_world(tank);
   std::vector<Bytes> at;
   for (const std::uint64_t tick : {0u, 150u, 320u}) {
@@ -88,6 +91,11 @@ TEST(SavedWorld, GoesOnToTheBit) {
     expect_same(snapshot, end);
   }
 }
+
+// Of the incompressible model with the pressures that the next solve begins with.
+INSTANTIATE_TEST_SUITE_P(Models, SavedModel,
+                         ::testing::Values(ParticleModel::kCorrected, ParticleModel::kIncompressible),
+                         [](const auto& p) { return name(p.param); });
 
 TEST(SavedWorld, KeepsRetiredParticlesOutAndTheOrderOfTheOthers) {
   Tank tank = stirred_tank();
@@ -211,6 +219,22 @@ TEST(SavedWorld, RefusesParticlesThatCannotBe) {
   refused(columns + 4 * (7 * n + 1), &id, 4, "twice");
   id = static_cast<std::uint32_t>(n);
   refused(columns + 4 * (7 * n + 1), &id, 4, "not of this world");
+}
+
+TEST(SavedWorld, RefusesAPressureThatIsNone) {
+  Tank tank = stirred_tank();
+  tank.scene.model = ParticleModel::kIncompressible;
+  World world = make_world(tank);
+  run(world, 3);
+  const Bytes bytes = saved(world);
+  const std::size_t n = world.fluid_count();
+  for (const float none : {-1.0f, std::numeric_limits<float>::quiet_NaN()}) {
+    Bytes damaged = bytes;
+    std::memcpy(damaged.data() + damaged.size() - 5 * n + 4 * 7, &none, 4);  // behind it who is retired
+    const Result<bool> restored = world.restore(damaged);
+    ASSERT_FALSE(restored);
+    EXPECT_NE(restored.error().text().find("pressure"), std::string::npos) << restored.error().text();
+  }
 }
 
 TEST(LiveViscosity, ThickensUpToWhatTheStepHolds) {

@@ -51,10 +51,18 @@ TEST(World, PaperModelIsTheSameWhateverTheThreads) {
   EXPECT_NE(run_and_hash(tank, 1, 60), run_and_hash(stirred_tank(), 1, 60));
 }
 
+TEST(World, IncompressibleModelIsTheSameWhateverTheThreads) {
+  Tank tank = stirred_tank();
+  tank.scene.model = ParticleModel::kIncompressible;
+  const std::uint64_t one = run_and_hash(tank, 1, 100);
+  EXPECT_EQ(one, run_and_hash(tank, 2, 100));
+  EXPECT_EQ(one, run_and_hash(tank, 5, 100));
+}
+
 // What the walls and the paddle do to the fluid, the fluid does to them: all momentum is accounted for.
 TEST(World, EveryStepBalancesMomentum) {
-  for (const ParticleModel model :
-       {ParticleModel::kCorrected, ParticleModel::kConsistent, ParticleModel::kPaper}) {
+  for (const ParticleModel model : {ParticleModel::kCorrected, ParticleModel::kConsistent,
+                                    ParticleModel::kPaper, ParticleModel::kIncompressible}) {
     Tank tank = stirred_tank();
     tank.scene.model = model;
     World world = make_world(tank);

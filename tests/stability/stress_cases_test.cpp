@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <ostream>
+#include <span>
 #include <string>
 
 #include "host/report/stress_case.h"
@@ -40,6 +41,26 @@ constexpr Expected kExpected[] = {
     {"jerk", Verdict::kLimited, 0.0},
 };
 
+// With the incompressible model. It holds what is shaken at 0.6 and 1.25 m/s without a word, and is weak
+// where fluid is trapped under a hand that presses with all its force (`press`: of the corrected model's
+// nothing is lost). In 10⁵ Pa·s the two solves undo each other's work: 7e-4 of the energy there can be stays,
+// and its rounding is 5.4e-5 of the weight's momentum.
+constexpr Expected kExpectedIncompressible[] = {
+    {"viscosity_100000", Verdict::kFailed, 0.0, 2e-4},
+    {"thrown_10", Verdict::kLimited, 0.30},
+    {"doubled", Verdict::kLimited, 0.55},
+    {"far_away", Verdict::kLimited, 0.001},
+    {"not_a_number", Verdict::kLimited, 0.002},
+    {"step_10", Verdict::kLimited, 0.0},
+    {"light_5", Verdict::kLimited, 0.0},
+    {"heavy_20", Verdict::kLimited, 0.0},
+    {"honey_20", Verdict::kLimited, 0.0},
+    {"press", Verdict::kLimited, 0.45},
+    {"stiff", Verdict::kLimited, 0.0},
+    {"fast", Verdict::kLimited, 0.03},
+    {"shaken_250", Verdict::kLimited, 0.0},
+};
+
 std::vector<StressCase> quick_cases() {
   std::vector<StressCase> quick;
   for (const StressCase& each : stress_cases()) {
@@ -50,13 +71,14 @@ std::vector<StressCase> quick_cases() {
 
 class Stressed : public ::testing::TestWithParam<StressCase> {};
 
-TEST_P(Stressed, ends_as_written) {
+void expect_as_written(const StressCase& which, ParticleModel model, std::span<const Expected> written) {
   Setting setting;
-  setting.spacing = GetParam().spacing;
+  setting.model = model;
+  setting.spacing = which.spacing;
   setting.threads = 1;
-  const StressRow row = run_stress(GetParam(), setting);
-  Expected expected{GetParam().id, Verdict::kTrue, row.found.most_lost};
-  for (const Expected& each : kExpected) {
+  const StressRow row = run_stress(which, setting);
+  Expected expected{which.id, Verdict::kTrue, row.found.most_lost};
+  for (const Expected& each : written) {
     if (row.case_id == each.case_id) expected = each;
   }
   EXPECT_EQ(row.verdict, expected.verdict)
@@ -66,7 +88,17 @@ TEST_P(Stressed, ends_as_written) {
   if ((row.cost.status & kStatusSpeedLimited) == 0) {
     EXPECT_LT(row.found.momentum_error, expected.most_momentum_error) << row.why;
   }
-  RecordProperty("verdict", kVerdictNames[static_cast<std::size_t>(row.verdict)]);
+  ::testing::Test::RecordProperty("verdict", kVerdictNames[static_cast<std::size_t>(row.verdict)]);
+}
+
+TEST_P(Stressed, ends_as_written) {
+  expect_as_written(GetParam(), ParticleModel::kCorrected, kExpected);
+}
+
+// Where pressures are solved for; without a fluid that is the same world.
+TEST_P(Stressed, ends_as_written_incompressible) {
+  if (!GetParam().fluid) GTEST_SKIP();
+  expect_as_written(GetParam(), ParticleModel::kIncompressible, kExpectedIncompressible);
 }
 
 INSTANTIATE_TEST_SUITE_P(quick, Stressed, ::testing::ValuesIn(quick_cases()),

@@ -1,0 +1,342 @@
+#include "sim/cpu/pressure_solve.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/model.h"
+
+namespace slosh {
+
+namespace {
+
+constexpr std::size_t kParticlesPerChunk = 2048;
+constexpr std::size_t kRunsPerChunk = 16;
+// Pressures that are cut off below 0 are put right when they come to more than this share of what is left.
+constexpr double kMostClipped = 0.02;
+
+using Kernel = ModelParts<ParticleModel::kIncompressible>::ForceKernel;
+
+double dot(const Vector6& a, const Vector6& b) {
+  double sum = 0.0;
+  for (int i = 0; i < 6; ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+glm::vec3 vec3(const Vector4& v) {
+  return {v.x, v.y, v.z};
+}
+glm::vec3 vec3(const Vector3<float>& v) {
+  return {v.x, v.y, v.z};
+}
+Vector4 thrice(float x) {
+  return {x, x, x, 0.0f};
+}
+
+}  // namespace
+
+// What 1 Pa of each fluid particle puts on the bodies around it. The second layer of a wall's pressure bears
+// on the body where the fluid is (pair_force.h).
+void PressureSolver::find_touches(const Work& work) {
+  const FluidParticles& fluid = work.sides.fluid;
+  const BoundaryParticles& moving = work.sides.moving;
+  const std::vector<CellRun>& runs = fluid.index.runs();
+  const float h = work.context.support_radius;
+  found_touches_.resize(chunk_count(runs.size(), kRunsPerChunk));
+  const bool any = moving.index.particles() > 0;
+  work.team.run(any ? runs.size() : 0, kRunsPerChunk, [&](std::size_t begin, std::size_t end) {
+    std::vector<Touch>& found = found_touches_[begin / kRunsPerChunk];
+    found.clear();
+    for (std::size_t r = begin; r < end; ++r) {
+      const RowList rows = moving.index.rows(work.context.grid, runs[r].cell);
+      for (std::uint32_t p = runs[r].particles.begin; p < runs[r].particles.end && rows.count > 0; ++p) {
+        const glm::vec3 x(fluid.x[p], fluid.y[p], fluid.z[p]);
+        const Symmetric<float> push{fluid.pxx[p], fluid.pxy[p], fluid.pxz[p],
+                                    fluid.pyy[p], fluid.pyz[p], fluid.pzz[p]};
+        const std::size_t first = found.size();
+        for (int row = 0; row < rows.count; ++row) {
+          for (std::uint32_t i = rows.rows[row].begin; i < rows.rows[row].end; ++i) {
+            const glm::vec3 surface(moving.x[i], moving.y[i], moving.z[i]);
+            const glm::vec3 d = x - surface;
+            const float r_squared = glm::dot(d, d);
+            if (r_squared >= h * h || moving.pressure[i] == 0.0f) continue;
+            const float slope = Kernel::pair(r_squared, h, 1.0f).slope_over_r;
+            const glm::vec3 on_fluid = work.context.force_scale * moving.pressure[i] *
+                                       vec3(times(push, slope * d.x, slope * d.y, slope * d.z));
+            const int body = moving.body[i];
+            std::size_t at = first;
+            while (at < found.size() && found[at].body != body) ++at;
+            if (at == found.size()) found.push_back({p, body, {}});
+            const glm::dvec3 force(-on_fluid);
+            const glm::dvec3 arm = glm::dvec3(surface) - work.sides.bodies[body].position;
+            const glm::dvec3 torque = glm::cross(arm + (1.0 - 1.0 / kWallShare) * glm::dvec3(d), force);
+            for (int k = 0; k < 3; ++k) {
+              found[at].push[k] += force[k];
+              found[at].push[k + 3] += torque[k];
+            }
+          }
+        }
+      }
+    }
+  });
+  touches_.clear();
+  if (any) {
+    for (const std::vector<Touch>& found : found_touches_)
+      touches_.insert(touches_.end(), found.begin(), found.end());
+  }
+  first_touch_.assign(work.fluid + 1, 0);
+  for (const Touch& touch : touches_) ++first_touch_[touch.particle + 1];
+  for (std::size_t p = 0; p < work.fluid; ++p) first_touch_[p + 1] += first_touch_[p];
+}
+
+void PressureSolver::begin_bodies(const Work& work) {
+  factors_.assign(work.bodies.size(), Matrix6{});
+  twists_.assign(work.bodies.size(), Vector6{});
+  for (std::size_t b = 0; b < work.bodies.size(); ++b) {
+    const ViscousBody& body = work.bodies[b];
+    if (body.moves && cholesky(body.inertia, factors_[b]))
+      twists_[b] = cholesky_solve(factors_[b], body.momentum);
+  }
+}
+
+// The flows that there would be by the last step's pressures, and the system's diagonal.
+void PressureSolver::begin(const Work& work) {
+  FluidParticles& fluid = work.sides.fluid;
+  const FluidPress& press = work.sides.press;
+  for (std::vector<float>* column : {&flow_, &inverse_, &pressure_, &residual_, &product_, &clipped_})
+    column->resize(work.fluid);
+  direction_.resize(work.fluid);
+  velocity_.resize(work.fluid);
+  find_touches(work);
+  begin_bodies(work);
+  const glm::vec3 g = work.context.gravity;
+  work.team.run(work.fluid, kParticlesPerChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      const ParticleKind& kind = work.context.kinds[fluid.kind[p]];
+      const glm::vec3 v(fluid.vx[p], fluid.vy[p], fluid.vz[p]);
+      const float per_mass = kind.probe ? 0.0f : 1.0f / kind.mass;
+      const glm::vec3 force = glm::vec3(fluid.fx[p], fluid.fy[p], fluid.fz[p]);
+      const glm::vec3 then = kind.probe ? v : v + work.dt * (per_mass * force + g);
+      velocity_[p] = {then.x, then.y, then.z, per_mass};
+    }
+  });
+  const float wanted = work.context.rest_volume / work.dt;
+  work.team.run(work.fluid, kParticlesPerChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      const std::uint32_t at = static_cast<std::uint32_t>(p);
+      const glm::vec3 own = vec3(press.own[p]);
+      double flow = glm::dot(own, vec3(velocity_[p])) - press.rows.flow_by(at, velocity_.data());
+      double diagonal = work.dt * (glm::dot(own, own) * velocity_[p].w + press.own[p].w);
+      for (std::uint32_t t = first_touch_[p]; t < first_touch_[p + 1]; ++t) {
+        const Touch& touch = touches_[t];
+        if (!work.bodies[touch.body].moves) continue;
+        flow += dot(touch.push, twists_[touch.body]);
+        diagonal += work.dt * dot(touch.push, cholesky_solve(factors_[touch.body], touch.push));
+      }
+      flow_[p] = static_cast<float>(flow) - wanted * fluid.pressure[p];
+      inverse_[p] = diagonal > 0.0 ? static_cast<float>(1.0 / diagonal) : 0.0f;
+      pressure_[p] = diagonal > 0.0 ? fluid.solved[p] : 0.0f;
+      clipped_[p] = 0.0f;
+    }
+  });
+}
+
+PressureSolver::Sums PressureSolver::total() const {
+  Sums all;
+  for (const Sums& part : sums_) {
+    all.left += part.left;
+    all.step += part.step;
+    all.turned += part.turned;
+    all.clipped += part.clipped;
+    all.squares += part.squares;
+    all.pressing += part.pressing;
+  }
+  return all;
+}
+
+// What is left, of those that press or are pushed together.
+PressureSolver::Sums PressureSolver::look(const Work& work) {
+  sums_.assign(chunk_count(work.fluid, kParticlesPerChunk), Sums{});
+  work.team.run(work.fluid, kParticlesPerChunk, [&](std::size_t begin, std::size_t end) {
+    Sums sums;
+    for (std::size_t p = begin; p < end; ++p) {
+      const bool presses = pressure_[p] > 0.0f || flow_[p] < 0.0f;
+      const float r = presses ? -flow_[p] : 0.0f;
+      residual_[p] = r;
+      sums.step += static_cast<double>(inverse_[p] * r * r);
+      sums.squares += static_cast<double>(r) * r;
+      sums.pressing += presses;
+    }
+    sums_[begin / kParticlesPerChunk] = sums;
+  });
+  return total();
+}
+
+// direction = preconditioned residual + keep · direction, of those that press.
+void PressureSolver::follow(const Work& work, double keep) {
+  const float k = static_cast<float>(keep);
+  work.team.run(work.fluid, kParticlesPerChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      const bool presses = pressure_[p] > 0.0f || flow_[p] < 0.0f;
+      const float before = k > 0.0f ? k * direction_[p].x : 0.0f;
+      direction_[p] = thrice(presses ? inverse_[p] * residual_[p] + before : 0.0f);
+    }
+  });
+}
+
+// N on a particle by the direction, as pressures.
+glm::vec3 PressureSolver::pushed(const Work& work, std::size_t p) const {
+  const FluidPress& press = work.sides.press;
+  return direction_[p].x * vec3(press.own[p]) +
+         vec3(press.rows.push_on(static_cast<std::uint32_t>(p), direction_.data()));
+}
+
+// velocity and twists: what the direction, as pressures, changes them by over the sub-step.
+void PressureSolver::push(const Work& work) {
+  work.team.run(work.fluid, kParticlesPerChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      const float f = work.dt * velocity_[p].w;
+      const glm::vec3 u = f * pushed(work, p);
+      velocity_[p] = {u.x, u.y, u.z, velocity_[p].w};
+    }
+  });
+  for (Vector6& twist : twists_) twist = {};
+  for (const Touch& touch : touches_) {
+    const double pressure = work.dt * static_cast<double>(direction_[touch.particle].x);
+    for (int i = 0; i < 6; ++i) twists_[touch.body][i] += pressure * touch.push[i];
+  }
+  for (std::size_t b = 0; b < twists_.size(); ++b)
+    twists_[b] = work.bodies[b].moves ? cholesky_solve(factors_[b], twists_[b]) : Vector6{};
+}
+
+// product = system · direction, after push(); returns direction · product.
+double PressureSolver::multiply(const Work& work) {
+  const FluidPress& press = work.sides.press;
+  parts_.assign(chunk_count(work.fluid, kParticlesPerChunk), 0.0);
+  work.team.run(work.fluid, kParticlesPerChunk, [&](std::size_t begin, std::size_t end) {
+    double sum = 0.0;
+    for (std::size_t p = begin; p < end; ++p) {
+      float flow = glm::dot(vec3(press.own[p]), vec3(velocity_[p])) -
+                   press.rows.flow_by(static_cast<std::uint32_t>(p), velocity_.data());
+      for (std::uint32_t t = first_touch_[p]; t < first_touch_[p + 1]; ++t)
+        flow += static_cast<float>(dot(touches_[t].push, twists_[touches_[t].body]));
+      product_[p] = flow;
+      sum += static_cast<double>(direction_[p].x) * flow;
+    }
+    parts_[begin / kParticlesPerChunk] = sum;
+  });
+  double sum = 0.0;
+  for (const double part : parts_) sum += part;
+  return sum;
+}
+
+// One turn's way along the direction, no pressure below 0, and what is left.
+PressureSolver::Sums PressureSolver::advance(const Work& work, double length) {
+  const float a = static_cast<float>(length);
+  sums_.assign(chunk_count(work.fluid, kParticlesPerChunk), Sums{});
+  work.team.run(work.fluid, kParticlesPerChunk, [&](std::size_t begin, std::size_t end) {
+    Sums sums;
+    for (std::size_t p = begin; p < end; ++p) {
+      const float to = pressure_[p] + a * direction_[p].x;
+      pressure_[p] = to > 0.0f ? to : 0.0f;
+      clipped_[p] += pressure_[p] - to;
+      flow_[p] += a * product_[p];
+      const bool presses = pressure_[p] > 0.0f || flow_[p] < 0.0f;
+      const float r = presses ? -flow_[p] : 0.0f;
+      const float z = inverse_[p] * r;
+      sums.step += static_cast<double>(z) * r;
+      sums.turned += static_cast<double>(z) * residual_[p];
+      sums.squares += static_cast<double>(r) * r;
+      sums.pressing += presses;
+      if (clipped_[p] > 0.0f) sums.clipped += static_cast<double>(clipped_[p]) * clipped_[p] / inverse_[p];
+      residual_[p] = r;
+    }
+    sums_[begin / kParticlesPerChunk] = sums;
+  });
+  return total();
+}
+
+// The flows get to know of what was cut off.
+void PressureSolver::undo_clips(const Work& work) {
+  work.team.run(work.fluid, kParticlesPerChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) direction_[p] = thrice(clipped_[p]);
+  });
+  push(work);
+  multiply(work);
+  work.team.run(work.fluid, kParticlesPerChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      flow_[p] += product_[p];
+      clipped_[p] = 0.0f;
+    }
+  });
+}
+
+// The direction, as pressures, on the fluid.
+void PressureSolver::add_forces(const Work& work) {
+  FluidParticles& fluid = work.sides.fluid;
+  work.team.run(work.fluid, kParticlesPerChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      const glm::vec3 force = pushed(work, p);
+      fluid.fx[p] += force.x;
+      fluid.fy[p] += force.y;
+      fluid.fz[p] += force.z;
+    }
+  });
+}
+
+void PressureSolver::finish(const Work& work, std::span<Wrench> wrenches) {
+  FluidParticles& fluid = work.sides.fluid;
+  work.team.run(work.fluid, kParticlesPerChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) direction_[p] = thrice(pressure_[p] - fluid.solved[p]);
+  });
+  add_forces(work);
+  for (const Touch& touch : touches_) {
+    const double pressure = static_cast<double>(pressure_[touch.particle]) - fluid.solved[touch.particle];
+    Wrench& wrench = wrenches[touch.body];
+    for (int i = 0; i < 3; ++i) {
+      wrench.force[i] += pressure * touch.push[i];
+      wrench.torque[i] += pressure * touch.push[i + 3];
+    }
+  }
+  std::copy(pressure_.begin(), pressure_.end(), fluid.solved.begin());
+}
+
+void PressureSolver::push_by_last(const PassContext& context, ThreadTeam& team, const PressedSides& sides) {
+  const Work work{context, team, sides, 0.0f, {}, sides.fluid.index.particles()};
+  direction_.resize(work.fluid);
+  for (std::size_t p = 0; p < work.fluid; ++p) direction_[p] = thrice(sides.fluid.solved[p]);
+  add_forces(work);
+}
+
+PressureReport PressureSolver::solve(const PassContext& context, ThreadTeam& team, const PressedSides& sides,
+                                     double dt, std::span<const ViscousBody> bodies,
+                                     std::span<Wrench> wrenches) {
+  const Work work{context, team, sides, static_cast<float>(dt), bodies, sides.fluid.index.particles()};
+  begin(work);
+  Sums sums = look(work);
+  const double per_flow = dt / context.rest_volume;
+  const auto left = [&] { return per_flow * std::sqrt(sums.squares / std::max(sums.pressing, 1.0)); };
+  const double enough = std::max(kPressureFloor, kPressureTolerance * left());
+  PressureReport report;
+  double keep = 0.0;
+  while (report.turns < kMostPressureTurns && sums.step > 0.0 && left() > enough) {
+    const double before = sums.step;
+    follow(work, keep);
+    push(work);
+    const double curvature = multiply(work);
+    ++report.turns;
+    if (!(curvature > 0.0)) break;
+    sums = advance(work, before / curvature);
+    keep = std::max(0.0, (sums.step - sums.turned) / before);
+    if (sums.clipped > kMostClipped * sums.step && report.turns + 1 < kMostPressureTurns) {
+      undo_clips(work);
+      ++report.turns;
+      sums = look(work);
+      keep = 0.0;
+    }
+  }
+  report.left = left();
+  finish(work, wrenches);
+  return report;
+}
+
+}  // namespace slosh
