@@ -162,14 +162,14 @@ void EvilHost::greet(Guest& guest) {
       welcome.name = "Ana";
       welcome.role = wire::Role::kParticipant;
       welcome.scene_bytes = m.one_in(4) ? m.any() % wire::kMaxSceneBytes : package.size();
-      say(guest, wire::WorldInfo{});
+      raw(guest, wire::control(wire::WorldInfo{}, nullptr, 0));  // comes before anything is agreed
       say(guest, welcome);
       return stream(guest, package, true);
     }
     case Trick::kEndlessScene: {
       wire::Welcome welcome;
       welcome.scene_bytes = m.any() % wire::kMaxSceneBytes;
-      say(guest, wire::WorldInfo{});
+      raw(guest, wire::control(wire::WorldInfo{}, nullptr, 0));  // comes before anything is agreed
       say(guest, welcome);
       return;
     }
@@ -210,7 +210,7 @@ void EvilHost::enter(Guest& guest, const Scene& scene) {
   for (std::uint32_t i = 0; i < scene.grips.size(); ++i) entry.grips.push_back(i);
   wire::Roster roster;
   roster.peers.push_back(entry);
-  say(guest, wire::WorldInfo{});
+  raw(guest, wire::control(wire::WorldInfo{}, nullptr, 0));  // comes before anything is agreed
   say(guest, welcome);
   say(guest, roster);
   stream(guest, package, true);
