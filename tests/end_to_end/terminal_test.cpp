@@ -126,7 +126,7 @@ TEST_F(TerminalTest, AHostMayKeepTheParametersToItself) {
   const auto ana = join("join", "Ana");
   ASSERT_TRUE(ana->shows("you hold grip")) << ana->screen();
   ana->type("set gravity 0.5\r");
-  EXPECT_TRUE(ana->shows("here only the host sets viscosity and gravity")) << ana->screen();
+  EXPECT_TRUE(ana->shows("here only the host sets viscosity, gravity and stiffness")) << ana->screen();
 }
 
 }  // namespace
