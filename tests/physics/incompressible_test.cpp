@@ -55,8 +55,8 @@ TEST(Incompressible, keeps_its_density_inside_a_tank_at_rest) {
   ASSERT_GT(count, 300);
   report_value("density inside a tank at rest, mean error", 100.0 * sum / count, "%");
   report_value("the largest", 100.0 * most, "%");
-  EXPECT_LT(sum / count, 1e-3);
-  EXPECT_LT(most, 1e-2);
+  EXPECT_LT(sum / count, 6e-4);
+  EXPECT_LT(most, 4e-3);
   EXPECT_EQ(world.take_status(), 0u);
 }
 
