@@ -154,7 +154,8 @@ void Servo::follow_run(const BodyMessage& message) noexcept {
 /// What the host says of its pace, smoothed: a damper takes it times a velocity.
 void Servo::follow_pace(const BodyMessage& message) noexcept {
   const bool moving = message.rate > 0.0;
-  const double said = std::clamp(message.rate, kSlowestFelt, 1.0);
+  // A tick a step: the hands' time is the world's, however long a step takes, and runs repeat to the bit.
+  const double said = goes_with_world_ ? 1.0 : std::clamp(message.rate, kSlowestFelt, 1.0);
   if (moving) pace_ = moving_ ? pace_ + options_.period / kPaceMemory * (said - pace_) : said;
   moving_ = moving;
 }
@@ -165,7 +166,7 @@ void Servo::follow_time(double now, double most, std::int64_t now_ns) noexcept {
   const double even = ticked_ns_ == 0 ? 0.0 : pace_ * to_seconds(now_ns - ticked_ns_);
   ticked_ns_ = now_ns;
   const double on = now - time_;
-  if (!moving_ || even <= 0.0 || on > kFarBehind || (on >= kLeastOn * even && on <= kMostOn * even)) {
+  if (goes_with_world_ || !moving_ || even <= 0.0 || on > kFarBehind || (on >= kLeastOn * even && on <= kMostOn * even)) {
     time_ = std::max(time_, now);
     return;
   }
@@ -265,6 +266,7 @@ void Servo::tick(std::int64_t now_ns) noexcept {
 }
 
 void Servo::tick_with_world() noexcept {
+  goes_with_world_ = true;
   const bool fresh = channel_.bodies().update();
   tick(channel_.bodies().front().stamp_ns, fresh);
 }

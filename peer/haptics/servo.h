@@ -136,6 +136,7 @@ class Servo {
   std::uint32_t run_ = 0;
   double time_ = 0.0;
   double pace_ = 1.0;  // simulated s a s on the wall, smoothed
+  bool goes_with_world_ = false;  // tick_with_world(): nothing goes by the wall's clock
   bool moving_ = false;
   std::int64_t ticked_ns_ = 0;
   double sample_offset_ = 0.0;  // s that samples' time is ahead of the world's, after resets
