@@ -166,7 +166,8 @@ void Servo::follow_time(double now, double most, std::int64_t now_ns) noexcept {
   const double even = ticked_ns_ == 0 ? 0.0 : pace_ * to_seconds(now_ns - ticked_ns_);
   ticked_ns_ = now_ns;
   const double on = now - time_;
-  if (goes_with_world_ || !moving_ || even <= 0.0 || on > kFarBehind || (on >= kLeastOn * even && on <= kMostOn * even)) {
+  if (goes_with_world_ || !moving_ || even <= 0.0 || on > kFarBehind ||
+      (on >= kLeastOn * even && on <= kMostOn * even)) {
     time_ = std::max(time_, now);
     return;
   }
