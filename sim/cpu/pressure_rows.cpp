@@ -3,29 +3,14 @@
 #include <algorithm>
 #include <cstring>
 
+#include "sim/cpu/four_vectors.h"
+
 namespace slosh {
 
 namespace {
 
-// Four vectors side by side. The compiler makes of it what the machine has.
-using Four = float __attribute__((vector_size(16)));
-using Eight = float __attribute__((vector_size(32)));
-using Sixteen = float __attribute__((vector_size(64)));
-using SixteenBits = std::int32_t __attribute__((vector_size(64)));
-
-Sixteen side_by_side(Four a, Four b, Four c, Four d) {
-  const Eight low = __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
-  const Eight high = __builtin_shufflevector(c, d, 0, 1, 2, 3, 4, 5, 6, 7);
-  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-}
-
-Four load(const float* v) {
-  Four out;
-  std::memcpy(&out, v, sizeof out);
-  return out;
-}
 Four load(const Vector4& v) {
-  return load(&v.x);
+  return four_at(&v.x);
 }
 
 constexpr SixteenBits kOfVectors = {-1, -1, -1, 0, -1, -1, -1, 0, -1, -1, -1, 0, -1, -1, -1, 0};
@@ -72,7 +57,7 @@ Vector4 PressureRows::Writer::end(const PressTensor* tensors) {
   Pair* const own = chunk.own.data() + chunk.size;
   Pair* const other = chunk.other.data() + chunk.size;
   const auto times = [](const PressTensor& t, float x, float y, float z) {
-    return x * load(t.x) + y * load(t.y) + z * load(t.z);
+    return x * four_at(t.x) + y * four_at(t.y) + z * four_at(t.z);
   };
   const PressTensor self = tensors[p_];
   Four sum = {}, squares = {};
