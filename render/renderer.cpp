@@ -17,6 +17,7 @@
 #include "render/passes/hud_pass.h"
 #include "render/passes/meshes.h"
 #include "render/passes/pass_timer.h"
+#include "render/passes/pixel_choice.h"
 #include "render/passes/scene_pass.h"
 #include "render/passes/shadow_pass.h"
 #include "render/passes/smooth_centers.h"
@@ -100,6 +101,8 @@ struct Renderer::Parts {
   bool drew_fluid = false;  ///< in the last picture
   bool fast = false;        ///< Quality, resolved
   bool made_fast = false;   ///< that of the targets
+  bool compute = false;     ///< PixelPasses, resolved
+  gl::PixelProgram copy_program;  ///< for compute
   bool timing = false;
   PassTimer timer;
   std::vector<PassTime> times;
@@ -126,19 +129,25 @@ struct Renderer::Parts {
 Result<bool> Renderer::Parts::fit_to_options() {
   const bool want_fast =
       options.quality == Quality::kAuto ? context.is_software() : options.quality == Quality::kFast;
-  if (!scene_pass || want_fast != fast || !far_light.shows(options.environment)) {
+  const bool want_compute = options.pixel_passes == PixelPasses::kMeasured
+                                ? compute_is_quicker(context)
+                                : options.pixel_passes == PixelPasses::kCompute;
+  if (!scene_pass || want_fast != fast || want_compute != compute || !far_light.shows(options.environment)) {
     FarLight light;
     light.choose(options.environment);
     auto arrows = ArrowPass::create(light.defines());
     if (!arrows) return arrows.error();
-    auto scene = ScenePass::create(want_fast, light.defines());
+    auto scene = ScenePass::create(want_fast, want_compute, light.defines());
     if (!scene) return scene.error();
-    auto fluid = FluidPasses::create(want_fast, light.defines());
+    auto fluid = FluidPasses::create(want_fast, want_compute, light.defines());
     if (!fluid) return fluid.error();
-    auto fluid_shadow = FluidShadowPass::create(want_fast);
+    auto fluid_shadow = FluidShadowPass::create(want_fast, want_compute);
     if (!fluid_shadow) return fluid_shadow.error();
-    auto thickness = ThicknessPass::create();
+    auto thickness = ThicknessPass::create(want_compute);
     if (!thickness) return thickness.error();
+    auto copying = gl::PixelProgram::create("copy.frag", want_compute);
+    if (!copying) return copying.error();
+    copy_program = std::move(copying.value());
     thickness_pass = std::move(thickness.value());
     arrow_pass = std::move(arrows.value());
     foam_pass.reset();
@@ -148,6 +157,7 @@ Result<bool> Renderer::Parts::fit_to_options() {
     fluid_passes = std::move(fluid.value());
     drew_fluid = false;
     fast = want_fast;
+    compute = want_compute;
   }
   if (auto chosen = fluid_passes->choose(options.surface); !chosen) return chosen.error();
   const glm::ivec2 size(options.width, options.height);
@@ -165,8 +175,8 @@ Result<bool> Renderer::Parts::fit_to_options() {
     if (!pass) return pass.error();
     shadow_pass = std::move(pass.value());
   }
-  if (!display_pass || !display_pass->shows(options.display, options.color)) {
-    auto pass = DisplayPass::create(options.display, options.color);
+  if (!display_pass || !display_pass->shows(options.display, options.color, compute)) {
+    auto pass = DisplayPass::create(options.display, options.color, compute);
     if (!pass) return pass.error();
     display_pass = std::move(pass.value());
   }
@@ -279,6 +289,11 @@ void Renderer::Parts::draw_scene() {
           [&] { scene_pass->draw_translucent(frame, meshes, textures, targets, fluid_depth(), true); });
     }
     run("copy scene colour", [&] {
+      if (compute) {
+        gl::bind_textures({&targets.color});
+        copy_program.run({targets.scene_color, targets.scene_color_target, targets.size, GL_RGBA16F});
+        return;
+      }
       glCopyImageSubData(targets.color.name(), GL_TEXTURE_2D, 0, 0, 0, 0, targets.scene_color.name(),
                          GL_TEXTURE_2D, 0, 0, 0, 0, targets.size.x, targets.size.y, 1);
     });
@@ -395,6 +410,10 @@ Result<bool> Renderer::set_options(const RenderOptions& options) {
   auto fitted = parts_->fit_to_options();
   if (!fitted) parts_->options = old;
   return fitted;
+}
+
+bool Renderer::on_compute() const {
+  return parts_->compute;
 }
 
 void Renderer::resize(int width, int height) {

@@ -46,6 +46,13 @@ enum class Surface : std::uint8_t {
   kOurs,           ///< centres smoothed (Yu & Turk 2013), narrow-range filter (Truong & Yuksel 2018)
 };
 
+/// How passes over pixels, and splats, are drawn.
+enum class PixelPasses : std::uint8_t {
+  kMeasured,   ///< as is quicker on this machine: both are timed once, when the first renderer is made
+  kFragments,  ///< by the part of a chip that is made for pictures
+  kCompute,    ///< by compute shaders: all of a chip. The picture is the same to rounding
+};
+
 struct RenderOptions {
   int width = 960;  ///< pixels of the picture, 1–16384
   int height = 540;
@@ -69,6 +76,7 @@ struct RenderOptions {
   bool antialias = true;     ///< beyond the paper: smooth edges in the picture as shown (not in its buffers)
   bool draw_background = true;  ///< false: black behind everything
   Quality quality = Quality::kAuto;
+  PixelPasses pixel_passes = PixelPasses::kMeasured;
   Display display = Display::kAces;
   ColorConfig color;  ///< goes before `display` where it names a file
   bool dither =
@@ -85,6 +93,7 @@ RenderOptions section_five(RenderOptions options);
 struct PassTime {
   std::string pass;
   double milliseconds = 0.0;
+  double cpu_milliseconds = 0.0;  ///< of which the caller's thread was busy with it, or waited
 };
 
 /// What tests may look at. Depths are linear eye depths in m; kNoFluidDepth or more = no fluid here.
@@ -150,6 +159,8 @@ class Renderer : public MeshSink {
   FloatImage read_buffer(Buffer buffer);
 
   const RenderOptions& options() const;
+  /// What PixelPasses came to.
+  bool on_compute() const;
   /// Takes effect at the next draw. Errors as create; the old options then stay.
   Result<bool> set_options(const RenderOptions& options);
   /// Changes the picture's size; out-of-range sizes are clamped.

@@ -31,6 +31,17 @@ Result<Shader> compile(GLenum kind, const char* file, const std::string& text) {
                "Report this with the name of your graphics driver"};
 }
 
+/// `what`: the files, for the error.
+Result<bool> link(GLuint program, std::initializer_list<GLuint> shaders, const std::string& what) {
+  for (const GLuint shader : shaders) glAttachShader(program, shader);
+  glLinkProgram(program);
+  GLint good = GL_FALSE;
+  glGetProgramiv(program, GL_LINK_STATUS, &good);
+  if (good) return true;
+  return Error{what, info_log(program, glGetProgramiv, glGetProgramInfoLog),
+               "Report this with the name of your graphics driver"};
+}
+
 }  // namespace
 
 Texture make_texture(glm::ivec2 size, GLenum internal_format, GLenum filter) {
@@ -91,16 +102,21 @@ Result<Program> Program::create_with(const char* vertex, const char* fragment,
   if (!fragment_shader) return fragment_shader.error();
 
   Program program(glCreateProgram());
-  glAttachShader(program.name(), vertex_shader.value().name());
-  glAttachShader(program.name(), fragment_shader.value().name());
-  glLinkProgram(program.name());
-  GLint good = GL_FALSE;
-  glGetProgramiv(program.name(), GL_LINK_STATUS, &good);
-  if (!good) {
-    return Error{std::string("shaders ") + vertex + " and " + fragment,
-                 info_log(program.name(), glGetProgramiv, glGetProgramInfoLog),
-                 "Report this with the name of your graphics driver"};
-  }
+  const auto linked = link(program.name(), {vertex_shader.value().name(), fragment_shader.value().name()},
+                           std::string("shaders ") + vertex + " and " + fragment);
+  if (!linked) return linked.error();
+  return program;
+}
+
+Result<Program> Program::create_compute(const char* file, std::vector<std::string> defines) {
+  defines.emplace_back("COMPUTE");
+  auto text = shader_source(file, defines);
+  if (!text) return text.error();
+  auto shader = compile(GL_COMPUTE_SHADER, file, text.value());
+  if (!shader) return shader.error();
+  Program program(glCreateProgram());
+  const auto linked = link(program.name(), {shader.value().name()}, std::string("shader ") + file);
+  if (!linked) return linked.error();
   return program;
 }
 
@@ -139,6 +155,17 @@ void StreamBuffer::upload(std::span<const std::byte> bytes) {
   if (bytes.size() > capacity_) capacity_ = bytes.size() + bytes.size() / 2;
   glNamedBufferData(buffer_.name(), static_cast<GLsizeiptr>(capacity_), nullptr, GL_STREAM_DRAW);
   glNamedBufferSubData(buffer_.name(), 0, static_cast<GLsizeiptr>(bytes.size()), bytes.data());
+}
+
+void StreamBuffer::zero(std::size_t bytes) {
+  if (bytes == 0) return;
+  if (!buffer_) buffer_ = make_buffer();
+  if (bytes > capacity_) {
+    capacity_ = bytes;
+    glNamedBufferData(buffer_.name(), static_cast<GLsizeiptr>(capacity_), nullptr, GL_STREAM_DRAW);
+  }
+  glClearNamedBufferSubData(buffer_.name(), GL_R32UI, 0, static_cast<GLsizeiptr>(bytes), GL_RED_INTEGER,
+                            GL_UNSIGNED_INT, nullptr);
 }
 
 }  // namespace slosh::gl

@@ -64,7 +64,7 @@ VertexArray make_vertex_array();
 /// A framebuffer of colour attachments in order, and a depth attachment if not null.
 Framebuffer make_framebuffer(std::initializer_list<const Texture*> colors, const Texture* depth = nullptr);
 
-/// A linked vertex + fragment program and its uniforms by name.
+/// A linked program, of a vertex and a fragment shader or of a compute shader, and its uniforms by name.
 class Program : public Object<delete_program> {
  public:
   Program() = default;
@@ -75,6 +75,9 @@ class Program : public Object<delete_program> {
   /// The same with `appended` put before the fragment file's own text (generated GLSL).
   static Result<Program> create_with(const char* vertex, const char* fragment,
                                      std::vector<std::string> defines, const std::string& prelude);
+
+  /// A compute shader.
+  static Result<Program> create_compute(const char* file, std::vector<std::string> defines = {});
 
   void use() const { glUseProgram(name()); }
   /// Uniforms that the compiler dropped are ignored.
@@ -102,6 +105,8 @@ class StreamBuffer {
   void upload(std::span<const T> items) {
     upload(std::as_bytes(items));
   }
+  /// Makes it so many bytes of zeros, by the GPU.
+  void zero(std::size_t bytes);
   GLuint name() const { return buffer_.name(); }
 
  private:

@@ -5,12 +5,12 @@
 
 namespace slosh {
 
-Result<DisplayPass> DisplayPass::create(Display display, const ColorConfig& color) {
+Result<DisplayPass> DisplayPass::create(Display display, const ColorConfig& color, bool compute) {
   auto table = make_display_table(display, color);
   if (!table) return table.error();
-  auto program = gl::Program::create("fullscreen.vert", "display.frag");
+  auto program = gl::PixelProgram::create("display.frag", compute);
   if (!program) return program.error();
-  auto edges = gl::Program::create("fullscreen.vert", "edges.frag");
+  auto edges = gl::PixelProgram::create("edges.frag", compute);
   if (!edges) return edges.error();
 
   DisplayPass pass;
@@ -18,7 +18,6 @@ Result<DisplayPass> DisplayPass::create(Display display, const ColorConfig& colo
   pass.color_ = color;
   pass.program_ = std::move(program.value());
   pass.edges_ = std::move(edges.value());
-  pass.no_vertices_ = gl::make_vertex_array();
   const int n = kDisplayTableSize;
   GLuint name = 0;
   glCreateTextures(GL_TEXTURE_3D, 1, &name);
@@ -30,20 +29,16 @@ Result<DisplayPass> DisplayPass::create(Display display, const ColorConfig& colo
   for (GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R}) {
     glTextureParameteri(name, wrap, GL_CLAMP_TO_EDGE);
   }
-  pass.program_.set("table_scale", glm::vec2((n - 1.0f) / n, 0.5f / n));
+  pass.program_.program().set("table_scale", glm::vec2((n - 1.0f) / n, 0.5f / n));
   return pass;
 }
 
 void DisplayPass::draw(const Targets& targets, float exposure, bool dither, bool edges_follow) {
-  const gl::Framebuffer& target = edges_follow ? targets.sharp_target : targets.display_target;
-  glBindFramebuffer(GL_FRAMEBUFFER, target.name());
-  glViewport(0, 0, targets.size.x, targets.size.y);
   gl::bind_textures({&targets.color, &table_});
-  program_.use();
-  program_.set("exposure", exposure);
-  program_.set("dither", dither ? 1.0f / 255.0f : 0.0f);
-  glBindVertexArray(no_vertices_.name());
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  program_.program().set("exposure", exposure);
+  program_.program().set("dither", dither ? 1.0f / 255.0f : 0.0f);
+  const gl::Texture& into = edges_follow ? targets.sharp : targets.display;
+  program_.run({into, edges_follow ? targets.sharp_target : targets.display_target, targets.size, GL_RGBA8});
 }
 
 void DisplayPass::smooth_edges(const Targets& targets, bool on_cpu) {
@@ -58,12 +53,8 @@ void DisplayPass::smooth_edges(const Targets& targets, bool on_cpu) {
     glBindFramebuffer(GL_FRAMEBUFFER, targets.display_target.name());
     return;
   }
-  glBindFramebuffer(GL_FRAMEBUFFER, targets.display_target.name());
-  glViewport(0, 0, targets.size.x, targets.size.y);
   gl::bind_textures({&targets.sharp});
-  edges_.use();
-  glBindVertexArray(no_vertices_.name());
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  edges_.run({targets.display, targets.display_target, targets.size, GL_RGBA8});
 }
 
 }  // namespace slosh

@@ -18,26 +18,29 @@ void draw_into(const gl::Framebuffer& target, glm::ivec2 size) {
 
 }  // namespace
 
-Result<FluidPasses> FluidPasses::create(bool fast, const std::vector<std::string>& far_light) {
+Result<FluidPasses> FluidPasses::create(bool fast, bool compute, const std::vector<std::string>& far_light) {
   FluidPasses passes;
   passes.fast_ = fast;
+  passes.compute_ = compute;
   std::vector<std::string> looks = far_light;
   if (fast) looks.emplace_back("FAST");
-  const auto load = [](gl::Program& into, const char* vertex, const char* fragment,
-                       std::vector<std::string> defines = {}) -> Result<bool> {
-    auto program = gl::Program::create(vertex, fragment, std::move(defines));
-    if (!program) return program.error();
-    into = std::move(program.value());
+  const auto load = [](auto& into, auto&& made) -> Result<bool> {
+    if (!made) return made.error();
+    into = std::move(made.value());
     return true;
   };
+  const auto splats = [&](std::vector<std::string> defines) {
+    return compute ? gl::Program::create_compute("splat.comp", std::move(defines))
+                   : gl::Program::create("splat.vert", "splat.frag", std::move(defines));
+  };
   for (const Result<bool>& loaded :
-       {load(passes.front_program_, "splat.vert", "splat.frag", {"FRONT"}),
-        load(passes.shaped_program_, "splat.vert", "splat.frag", {"FRONT", "SHAPED"}),
-        load(passes.back_program_, "splat.vert", "splat.frag"),
-        load(passes.composite_program_, "tiles.vert", "composite.frag", far_light),
-        load(passes.look_program_, "tiles.vert", "fluid_look.frag", looks),
-        load(passes.thickness_program_, "tiles.vert", "thickness.frag"),
-        load(passes.normal_program_, "tiles.vert", "normal.frag")}) {
+       {load(passes.front_program_, splats({"FRONT"})),
+        load(passes.shaped_program_, splats({"FRONT", "SHAPED"})), load(passes.back_program_, splats({})),
+        load(passes.composite_program_, gl::PixelProgram::create("composite.frag", compute, true, far_light)),
+        load(passes.look_program_, gl::PixelProgram::create("fluid_look.frag", compute, true, looks)),
+        load(passes.fill_program_, gl::PixelProgram::create("fill.frag", compute)),
+        load(passes.thickness_program_, gl::Program::create("tiles.vert", "thickness.frag")),
+        load(passes.normal_program_, gl::Program::create("tiles.vert", "normal.frag"))}) {
     if (!loaded) return loaded.error();
   }
   passes.no_vertices_ = gl::make_vertex_array();
@@ -54,38 +57,44 @@ void FluidPasses::upload(const Splats& splats) {
   if (shaped_) shape_buffer_.upload(std::span<const SplatShape>(splats.shapes));
   tile_buffer_.upload(std::span<const glm::vec2>(splats.tiles));
   glVertexArrayVertexBuffer(tile_vertices_.name(), 0, tile_buffer_.name(), 0, sizeof(glm::vec2));
-  front_count_ = static_cast<GLsizei>(splats.spheres.size());
+  front_count_ = splats.spheres.size();
   back_buffer_.upload(std::span<const glm::vec4>(splats.back));
-  back_count_ = static_cast<GLsizei>(splats.back.size());
+  back_count_ = splats.back.size();
   tile_corners_ = static_cast<GLsizei>(splats.tiles.size());
 }
 
-void FluidPasses::splat_front(const Targets& targets) {
-  clear_to(targets.front_target, kNoFluidDepth);
-  draw_into(targets.front_target, targets.size);
+void FluidPasses::splat(const gl::Program& program, const gl::PixelTarget& target, GLenum blending,
+                        float cleared, const gl::StreamBuffer& buffer, std::size_t count) {
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, buffer.name());
+  if (compute_) {
+    fill_program_.program().set("fill_with", glm::vec4(cleared));
+    fill_program_.run(target);
+    glBindImageTexture(0, target.texture.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_R32UI);
+    gl::run_rows(program, count);
+    return;
+  }
+  clear_to(target.framebuffer, cleared);
+  draw_into(target.framebuffer, target.size);
   glEnable(GL_BLEND);
-  glBlendEquation(GL_MIN);
-  (shaped_ ? shaped_program_ : front_program_).use();
-  if (shaped_) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, shape_buffer_.name());
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, sphere_buffer_.name());
+  glBlendEquation(blending);
+  program.use();
   glBindVertexArray(no_vertices_.name());
-  glDrawArrays(GL_TRIANGLES, 0, 3 * front_count_);
+  glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(3 * count));
   glBlendEquation(GL_FUNC_ADD);
   glDisable(GL_BLEND);
 }
 
+void FluidPasses::splat_front(const Targets& targets) {
+  if (shaped_) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, shape_buffer_.name());
+  splat(shaped_ ? shaped_program_ : front_program_,
+        {targets.front, targets.front_target, targets.size, GL_R32F}, GL_MIN, kNoFluidDepth, sphere_buffer_,
+        front_count_);
+}
+
 void FluidPasses::splat_back(const Targets& targets) {
-  clear_to(targets.back_target, 0.0f);
-  draw_into(targets.back_target, targets.back_size);
-  glEnable(GL_BLEND);
-  glBlendEquation(GL_MAX);
-  back_program_.use();
   const bool own = back_count_ > 0;
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, own ? back_buffer_.name() : sphere_buffer_.name());
-  glBindVertexArray(no_vertices_.name());
-  glDrawArrays(GL_TRIANGLES, 0, 3 * (own ? back_count_ : front_count_));
-  glBlendEquation(GL_FUNC_ADD);
-  glDisable(GL_BLEND);
+  splat(back_program_, {targets.back, targets.back_target, targets.back_size, GL_R32F}, GL_MAX, 0.0f,
+        own ? back_buffer_ : sphere_buffer_, own ? back_count_ : front_count_);
 }
 
 void FluidPasses::fetch_front(const Targets& targets, const RenderOptions& options) {
@@ -94,7 +103,7 @@ void FluidPasses::fetch_front(const Targets& targets, const RenderOptions& optio
 
 Result<bool> FluidPasses::choose(Surface surface) {
   if (filter_ && surface == surface_) return true;
-  auto filter = make_surface_filter(surface, fast_);
+  auto filter = make_surface_filter(surface, fast_, compute_);
   if (!filter) return filter.error();
   filter_ = std::move(filter.value());
   surface_ = surface;
@@ -102,20 +111,18 @@ Result<bool> FluidPasses::choose(Surface surface) {
 }
 
 void FluidPasses::smooth(const Targets& targets, const RenderOptions& options, const Frame& frame) {
-  if (filter_->on_gpu()) {
+  if (filter_->writes_tiles()) {
     for (const gl::Framebuffer& target : targets.smooth_target) clear_to(target, kNoFluidDepth);
   }
-  smoothed_ = options.bilateral_iterations == 0
-                  ? -1
-                  : filter_->run(targets, options, frame, {&tile_vertices_, tile_corners_});
+  smoothed_ = options.bilateral_iterations == 0 ? -1 : filter_->run(targets, options, frame, tiles());
 }
 
 void FluidPasses::composite(const Targets& targets, bool lit) {
   gl::bind_textures({&targets.front, &smoothed(targets), &targets.back, &targets.scene_depth,
                      &targets.scene_color, &targets.chord});
-  draw_into(targets.color_target, targets.size);
-  (lit ? look_program_ : composite_program_).use();
-  draw_tiles();
+  const gl::TileDraw where = tiles();
+  (lit ? look_program_ : composite_program_)
+      .run({targets.color, targets.color_target, targets.size, GL_RGBA16F}, &where);
 }
 
 void FluidPasses::thickness(const Targets& targets, const gl::Framebuffer& target) {
@@ -133,15 +140,11 @@ void FluidPasses::draw_data(const gl::Program& program, const Targets& targets,
   clear_to(target, 0.0f);
   draw_into(target, targets.size);
   program.use();
-  draw_tiles();
+  tiles()();
 }
 
 const gl::Texture& FluidPasses::smoothed(const Targets& targets) const {
   return smoothed_ < 0 ? targets.front : targets.smooth[static_cast<std::size_t>(smoothed_)];
-}
-
-void FluidPasses::draw_tiles() {
-  TileDraw{&tile_vertices_, tile_corners_}();
 }
 
 }  // namespace slosh

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "render/gl/objects.h"
+#include "render/gl/pixel_program.h"
 #include "render/passes/splats.h"
 #include "render/passes/surface_filter.h"
 #include "render/passes/targets.h"
@@ -15,7 +15,8 @@ namespace slosh {
 
 class FluidPasses {
  public:
-  static Result<FluidPasses> create(bool fast, const std::vector<std::string>& far_light);
+  /// `compute`: by compute shaders where it can be.
+  static Result<FluidPasses> create(bool fast, bool compute, const std::vector<std::string>& far_light);
 
   /// Uploads this frame's splats and tiles.
   void upload(const Splats& splats);
@@ -40,14 +41,18 @@ class FluidPasses {
   const gl::Texture& smoothed(const Targets& targets) const;
 
  private:
-  void draw_tiles();
+  /// Splats of `buffer` into a cleared texture of depths, by blending or atomics.
+  void splat(const gl::Program& program, const gl::PixelTarget& target, GLenum blending, float cleared,
+             const gl::StreamBuffer& buffer, std::size_t count);
+  gl::TileDraw tiles() const { return {&tile_vertices_, tile_corners_}; }
   void draw_data(const gl::Program& program, const Targets& targets, const gl::Framebuffer& target);
 
   gl::Program front_program_;
   gl::Program shaped_program_;  ///< front of splats with shapes
   gl::Program back_program_;
-  gl::Program composite_program_;
-  gl::Program look_program_;
+  gl::PixelProgram composite_program_;
+  gl::PixelProgram look_program_;
+  gl::PixelProgram fill_program_;  ///< for compute
   gl::Program thickness_program_;
   gl::Program normal_program_;
   gl::StreamBuffer sphere_buffer_;
@@ -56,11 +61,12 @@ class FluidPasses {
   gl::StreamBuffer tile_buffer_;
   gl::VertexArray no_vertices_;
   gl::VertexArray tile_vertices_;
-  GLsizei front_count_ = 0;
+  std::size_t front_count_ = 0;
   bool shaped_ = false;
-  GLsizei back_count_ = 0;
+  std::size_t back_count_ = 0;
   GLsizei tile_corners_ = 0;
   bool fast_ = false;
+  bool compute_ = false;
   Surface surface_ = Surface::kOurs;
   std::unique_ptr<SurfaceFilter> filter_;
   int smoothed_ = -1;  ///< index into Targets::smooth, −1 = front

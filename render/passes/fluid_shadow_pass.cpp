@@ -12,11 +12,17 @@ constexpr GLuint kFluidShadowUnit = 9;
 
 }  // namespace
 
-Result<FluidShadowPass> FluidShadowPass::create(bool fast) {
-  auto program = gl::Program::create("fluid_shadow.vert", "fluid_shadow.frag");
+Result<FluidShadowPass> FluidShadowPass::create(bool fast, bool compute) {
+  auto program = compute ? gl::Program::create_compute("fluid_shadow.comp")
+                         : gl::Program::create("fluid_shadow.vert", "fluid_shadow.frag");
   if (!program) return program.error();
   FluidShadowPass pass;
   pass.program_ = std::move(program.value());
+  if (compute) {
+    auto sum = gl::PixelProgram::create("fluid_shadow_sum.frag", true);
+    if (!sum) return sum.error();
+    pass.sum_ = std::move(sum.value());
+  }
   pass.size_ = fast ? 256 : 512;
   pass.most_ = fast ? 4000 : 1000000;
   pass.map_ = gl::make_texture(glm::ivec2(pass.size_), GL_RGBA16F, GL_LINEAR);
@@ -47,7 +53,6 @@ void FluidShadowPass::draw(const Frame& frame, const RenderOptions& options, con
   }
   if (particles_.empty()) return;
   buffer_.upload(std::span<const glm::vec4>(particles_));
-  glVertexArrayVertexBuffer(array_.name(), 0, buffer_.name(), 0, sizeof(glm::vec4));
 
   std::array<glm::vec3, kMaxFluidLooks> extinction{};
   for (std::size_t i = 0; i < fluids; ++i) extinction[i] = frame.fluids[i].extinction;
@@ -66,6 +71,18 @@ void FluidShadowPass::draw(const Frame& frame, const RenderOptions& options, con
   // A disc of another size keeps the sphere's volume.
   program_.set("chord", 2.0f * volume * volume * volume / (drawn_radius * drawn_radius));
 
+  if (sum_.on_compute()) {
+    const auto side = static_cast<std::size_t>(size_);
+    sums_.zero(4 * sizeof(std::uint32_t) * side * side);
+    program_.set("size", size_);
+    sum_.program().set("size", size_);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, buffer_.name());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, sums_.name());
+    gl::run_rows(program_, particles_.size());
+    sum_.run({map_, target_, glm::ivec2(size_), GL_RGBA16F});
+    return;
+  }
+  glVertexArrayVertexBuffer(array_.name(), 0, buffer_.name(), 0, sizeof(glm::vec4));
   glBindFramebuffer(GL_FRAMEBUFFER, target_.name());
   glViewport(0, 0, size_, size_);
   glEnable(GL_PROGRAM_POINT_SIZE);

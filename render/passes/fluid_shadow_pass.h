@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "render/frame.h"
-#include "render/gl/objects.h"
+#include "render/gl/pixel_program.h"
 #include "render/passes/frame_block.h"
 #include "render/renderer.h"
 
@@ -13,13 +13,16 @@ namespace slosh {
 
 class FluidShadowPass {
  public:
-  static Result<FluidShadowPass> create(bool fast);
+  /// `compute`: by compute shaders.
+  static Result<FluidShadowPass> create(bool fast, bool compute);
 
   /// Reads all particles of the frame; writes the map and binds it. The map is empty without a shadow view.
   void draw(const Frame& frame, const RenderOptions& options, const ShadowView& shadow);
 
  private:
   gl::Program program_;
+  gl::PixelProgram sum_;   ///< for compute
+  gl::StreamBuffer sums_;  ///< four whole numbers a texel (shaders/sums.glsl)
   gl::Texture map_;
   gl::Framebuffer target_;
   gl::VertexArray array_;

@@ -9,12 +9,13 @@ PassTimer::~PassTimer() {
 }
 
 void PassTimer::begin(const char* pass) {
-  times_.push_back({pass, 0.0});
+  times_.push_back({pass, 0.0, 0.0});
   if (software_) {
     glFinish();
     start_ = std::chrono::steady_clock::now();
     return;
   }
+  start_ = std::chrono::steady_clock::now();
   if (queries_.size() < times_.size()) {
     queries_.push_back(0);
     glCreateQueries(GL_TIME_ELAPSED, 1, &queries_.back());
@@ -23,13 +24,13 @@ void PassTimer::begin(const char* pass) {
 }
 
 void PassTimer::end() {
-  if (!software_) {
+  if (software_)
+    glFinish();
+  else
     glEndQuery(GL_TIME_ELAPSED);
-    return;
-  }
-  glFinish();
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start_;
-  times_.back().milliseconds = took.count();
+  times_.back().cpu_milliseconds = took.count();
+  if (software_) times_.back().milliseconds = took.count();
 }
 
 std::vector<PassTime> PassTimer::take() {

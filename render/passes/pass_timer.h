@@ -28,7 +28,7 @@ class PassTimer {
 
  private:
   bool software_;
-  std::chrono::steady_clock::time_point start_;
+  std::chrono::steady_clock::time_point start_;  // of the pass
   std::vector<PassTime> times_;
   std::vector<GLuint> queries_;  // one a pass at most in a frame; kept
 };

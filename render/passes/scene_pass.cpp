@@ -63,23 +63,22 @@ const gl::Program& ScenePass::Programs::of(unsigned bits) {
   return by_bits[bits] = std::move(made.value());
 }
 
-Result<ScenePass> ScenePass::create(bool fast, const std::vector<std::string>& far_light) {
+Result<ScenePass> ScenePass::create(bool fast, bool compute, const std::vector<std::string>& far_light) {
   ScenePass pass;
   pass.fast_ = fast;
   std::vector<std::string> quality = far_light;
   if (fast) quality.emplace_back("FAST");
   std::vector<std::string> behind = far_light;
   behind.emplace_back("BEHIND");
-  const auto load = [](gl::Program& into, const char* vertex, const char* fragment,
-                       std::vector<std::string> defines = {}) -> Result<bool> {
-    auto program = gl::Program::create(vertex, fragment, std::move(defines));
+  const auto load = [](auto& into, auto&& program) -> Result<bool> {
     if (!program) return program.error();
     into = std::move(program.value());
     return true;
   };
-  for (const Result<bool>& loaded : {load(pass.background_, "fullscreen.vert", "background.frag", far_light),
-                                     load(pass.occlusion_, "fullscreen.vert", "occlusion.frag", {"TAPS 8"}),
-                                     load(pass.resolve_, "fullscreen.vert", "resolve.frag")}) {
+  for (const Result<bool>& loaded :
+       {load(pass.background_, gl::Program::create("fullscreen.vert", "background.frag", far_light)),
+        load(pass.occlusion_, gl::PixelProgram::create("occlusion.frag", compute, false, {"TAPS 8"})),
+        load(pass.resolve_, gl::PixelProgram::create("resolve.frag", compute))}) {
     if (!loaded) return loaded.error();
   }
   const auto make = [](Programs& into, const char* fragment,
@@ -143,22 +142,14 @@ void ScenePass::draw_opaque(const Frame& frame, const MeshStore& meshes, const T
 }
 
 void ScenePass::draw_occlusion(const Targets& targets, float reach) {
-  glBindFramebuffer(GL_FRAMEBUFFER, targets.occlusion_target.name());
-  glViewport(0, 0, targets.half_size.x, targets.half_size.y);
   gl::bind_textures({&targets.scene_depth});
-  occlusion_.use();
-  occlusion_.set("reach", reach);
-  glBindVertexArray(no_vertices_.name());
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  occlusion_.program().set("reach", reach);
+  occlusion_.run({targets.occlusion, targets.occlusion_target, targets.half_size, GL_R8});
 }
 
 void ScenePass::resolve_occlusion(const Targets& targets) {
-  glBindFramebuffer(GL_FRAMEBUFFER, targets.color_target.name());
-  glViewport(0, 0, targets.size.x, targets.size.y);
   gl::bind_textures({&targets.mesh_color, &targets.occlusion});
-  resolve_.use();
-  glBindVertexArray(no_vertices_.name());
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  resolve_.run({targets.color, targets.color_target, targets.size, GL_RGBA16F});
 }
 
 void ScenePass::draw_translucent(const Frame& frame, const MeshStore& meshes, const TextureStore& textures,

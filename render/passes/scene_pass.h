@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "render/frame.h"
-#include "render/gl/objects.h"
+#include "render/gl/pixel_program.h"
 #include "render/passes/meshes.h"
 #include "render/passes/targets.h"
 #include "render/passes/textures.h"
@@ -16,7 +16,8 @@ namespace slosh {
 
 class ScenePass {
  public:
-  static Result<ScenePass> create(bool fast, const std::vector<std::string>& far_light);
+  /// `compute`: occlusion by compute shaders.
+  static Result<ScenePass> create(bool fast, bool compute, const std::vector<std::string>& far_light);
 
   /// Reads opaque meshes and the shadow map; writes S_d, the depth buffer and the colour (mesh_color if
   /// occlusion follows, else color).
@@ -44,8 +45,8 @@ class ScenePass {
   bool fast_ = false;  ///< glass: only the sides that face the eye
   Programs opaque_;
   gl::Program background_;
-  gl::Program occlusion_;
-  gl::Program resolve_;
+  gl::PixelProgram occlusion_;
+  gl::PixelProgram resolve_;
   Programs translucent_behind_;
   Programs translucent_front_;
   gl::VertexArray no_vertices_;

@@ -7,60 +7,47 @@
 namespace slosh {
 namespace {
 
-/// Draws `program` from where the surface is into the other smooth texture; returns which that is.
-int turn(const gl::Program& program, int from, const Targets& targets, const TileDraw& tiles) {
-  const int into = from == 0 ? 1 : 0;
+/// Runs `program` from where the surface is into the other smooth texture; returns which that is.
+int turn(const gl::PixelProgram& program, int from, const Targets& targets, const gl::TileDraw& tiles) {
+  const std::size_t into = from == 0 ? 1 : 0;
   const gl::Texture& source = from < 0 ? targets.front : targets.smooth[static_cast<std::size_t>(from)];
   gl::bind_textures({&source});
-  glBindFramebuffer(GL_FRAMEBUFFER, targets.smooth_target[static_cast<std::size_t>(into)].name());
-  glViewport(0, 0, targets.size.x, targets.size.y);
-  program.use();
-  tiles();
-  return into;
+  program.run({targets.smooth[into], targets.smooth_target[into], targets.size, GL_R32F}, &tiles);
+  return static_cast<int>(into);
 }
 
 /// Section 5.1 and Fig 5.
 class PaperFilter : public SurfaceFilter {
  public:
-  static Result<std::unique_ptr<SurfaceFilter>> create() {
-    auto program = gl::Program::create("tiles.vert", "smooth.frag");
-    if (!program) return program.error();
-    auto filter = std::make_unique<PaperFilter>();
-    filter->program_ = std::move(program.value());
-    return std::unique_ptr<SurfaceFilter>(std::move(filter));
-  }
+  explicit PaperFilter(gl::PixelProgram program) : program_(std::move(program)) {}
   int run(const Targets& targets, const RenderOptions& options, const Frame&,
-          const TileDraw& tiles) override {
+          const gl::TileDraw& tiles) override {
     int at = -1;
     for (int i = 0; i < options.bilateral_iterations; ++i) at = turn(program_, at, targets, tiles);
     return at;
   }
+  bool writes_tiles() const override { return !program_.on_compute(); }
 
  private:
-  gl::Program program_;
+  gl::PixelProgram program_;
 };
 
 /// van der Laan, Green & Sainz 2009.
 class CurvatureFlow : public SurfaceFilter {
  public:
-  static Result<std::unique_ptr<SurfaceFilter>> create() {
-    auto program = gl::Program::create("tiles.vert", "curvature_flow.frag");
-    if (!program) return program.error();
-    auto filter = std::make_unique<CurvatureFlow>();
-    filter->program_ = std::move(program.value());
-    return std::unique_ptr<SurfaceFilter>(std::move(filter));
-  }
-  int run(const Targets& targets, const RenderOptions&, const Frame&, const TileDraw& tiles) override {
-    program_.set("time_step", kTimeStep);
+  explicit CurvatureFlow(gl::PixelProgram program) : program_(std::move(program)) {}
+  int run(const Targets& targets, const RenderOptions&, const Frame&, const gl::TileDraw& tiles) override {
+    program_.program().set("time_step", kTimeStep);
     int at = -1;
     for (int i = 0; i < kSteps; ++i) at = turn(program_, at, targets, tiles);
     return at;
   }
+  bool writes_tiles() const override { return !program_.on_compute(); }
 
  private:
   static constexpr int kSteps = 60;         // as timed there
   static constexpr float kTimeStep = 0.8f;  // of the longest stable one
-  gl::Program program_;
+  gl::PixelProgram program_;
 };
 
 // Of Truong & Yuksel's, in splat radii; the best of those tried on analytic pools (render/score).
@@ -70,33 +57,26 @@ constexpr float kRange = 5.0f;
 /// Truong & Yuksel 2018: along both axes, then 5 × 5 pixels.
 class NarrowRange : public SurfaceFilter {
  public:
-  static Result<std::unique_ptr<SurfaceFilter>> create() {
-    auto along = gl::Program::create("tiles.vert", "narrow_range.frag");
-    if (!along) return along.error();
-    auto clean = gl::Program::create("tiles.vert", "narrow_range.frag", {"CLEAN"});
-    if (!clean) return clean.error();
-    auto filter = std::make_unique<NarrowRange>();
-    filter->along_ = std::move(along.value());
-    filter->clean_ = std::move(clean.value());
-    return std::unique_ptr<SurfaceFilter>(std::move(filter));
-  }
+  NarrowRange(gl::PixelProgram along, gl::PixelProgram clean)
+      : along_(std::move(along)), clean_(std::move(clean)) {}
   int run(const Targets& targets, const RenderOptions& options, const Frame& frame,
-          const TileDraw& tiles) override {
+          const gl::TileDraw& tiles) override {
     const float radius = options.splat_scale * frame.particle_radius;
     const glm::vec3 kernel(kReach * radius, kRange * radius, kTaps);
-    along_.set("kernel", kernel);
-    clean_.set("kernel", kernel);
-    along_.set("axis", glm::ivec2(1, 0));
+    along_.program().set("kernel", kernel);
+    clean_.program().set("kernel", kernel);
+    along_.program().set("axis", glm::ivec2(1, 0));
     int at = turn(along_, -1, targets, tiles);
-    along_.set("axis", glm::ivec2(0, 1));
+    along_.program().set("axis", glm::ivec2(0, 1));
     at = turn(along_, at, targets, tiles);
     return turn(clean_, at, targets, tiles);
   }
+  bool writes_tiles() const override { return !along_.on_compute(); }
 
  private:
   static constexpr float kTaps = 40.0f;
-  gl::Program along_;
-  gl::Program clean_;
+  gl::PixelProgram along_;
+  gl::PixelProgram clean_;
 };
 
 /// The same in main memory, with fewer taps.
@@ -108,7 +88,7 @@ class NarrowRangeBesideGl : public SurfaceFilter {
                       static_cast<GLsizei>(front_.size() * sizeof(float)), front_.data());
   }
   int run(const Targets& targets, const RenderOptions& options, const Frame& frame,
-          const TileDraw&) override {
+          const gl::TileDraw&) override {
     const float radius = options.splat_scale * frame.particle_radius;
     const float pixels = 0.5f * frame.view.projection[1][1] * static_cast<float>(targets.size.y);
     const std::span<const float> surface =
@@ -117,7 +97,7 @@ class NarrowRangeBesideGl : public SurfaceFilter {
                         surface.data());
     return 0;
   }
-  bool on_gpu() const override { return false; }
+  bool writes_tiles() const override { return false; }
 
  private:
   static constexpr int kTaps = 6;
@@ -127,22 +107,20 @@ class NarrowRangeBesideGl : public SurfaceFilter {
 
 }  // namespace
 
-void TileDraw::operator()() const {
-  glBindVertexArray(vertices->name());
-  glDrawArrays(GL_TRIANGLES, 0, corners);
-}
-
-Result<std::unique_ptr<SurfaceFilter>> make_surface_filter(Surface surface, bool on_cpu) {
-  switch (surface) {
-    case Surface::kPaper:
-      return PaperFilter::create();
-    case Surface::kCurvatureFlow:
-      return CurvatureFlow::create();
-    case Surface::kOurs:
-      break;
-  }
-  if (on_cpu) return std::unique_ptr<SurfaceFilter>(std::make_unique<NarrowRangeBesideGl>());
-  return NarrowRange::create();
+Result<std::unique_ptr<SurfaceFilter>> make_surface_filter(Surface surface, bool on_cpu, bool compute) {
+  using Made = Result<std::unique_ptr<SurfaceFilter>>;
+  if (surface == Surface::kOurs && on_cpu) return Made(std::make_unique<NarrowRangeBesideGl>());
+  const char* file = surface == Surface::kPaper           ? "smooth.frag"
+                     : surface == Surface::kCurvatureFlow ? "curvature_flow.frag"
+                                                          : "narrow_range.frag";
+  auto program = gl::PixelProgram::create(file, compute, true);
+  if (!program) return program.error();
+  if (surface == Surface::kPaper) return Made(std::make_unique<PaperFilter>(std::move(program.value())));
+  if (surface == Surface::kCurvatureFlow)
+    return Made(std::make_unique<CurvatureFlow>(std::move(program.value())));
+  auto clean = gl::PixelProgram::create(file, compute, true, {"CLEAN"});
+  if (!clean) return clean.error();
+  return Made(std::make_unique<NarrowRange>(std::move(program.value()), std::move(clean.value())));
 }
 
 }  // namespace slosh

@@ -3,18 +3,11 @@
 
 #include <memory>
 
-#include "render/gl/objects.h"
+#include "render/gl/pixel_program.h"
 #include "render/passes/targets.h"
 #include "render/renderer.h"
 
 namespace slosh {
-
-/// The tiles of the picture that fluid may cover, ready to be drawn by a program with tiles.vert.
-struct TileDraw {
-  const gl::VertexArray* vertices = nullptr;
-  GLsizei corners = 0;
-  void operator()() const;
-};
 
 class SurfaceFilter {
  public:
@@ -22,14 +15,16 @@ class SurfaceFilter {
   /// Called when front is drawn, before run(): a filter that works in main memory fetches it here, so that
   /// the driver draws other passes while it works.
   virtual void fetch(const Targets& targets) { (void)targets; }
-  /// Reads targets.front, writes targets.smooth by turns, both cleared to no fluid before where on_gpu().
-  /// Returns the index of the one that holds the surface, −1 = front itself.
+  /// Reads targets.front, writes targets.smooth by turns, both cleared to no fluid before where
+  /// writes_tiles(). Returns the index of the one that holds the surface, −1 = front itself.
   virtual int run(const Targets& targets, const RenderOptions& options, const Frame& frame,
-                  const TileDraw& tiles) = 0;
-  virtual bool on_gpu() const { return true; }
+                  const gl::TileDraw& tiles) = 0;
+  /// Only the tiles that fluid may cover are written.
+  virtual bool writes_tiles() const = 0;
 };
 
-/// `on_cpu`: the quickest way where a CPU draws. Errors: a shader that the driver refuses.
-Result<std::unique_ptr<SurfaceFilter>> make_surface_filter(Surface surface, bool on_cpu);
+/// `on_cpu`: the quickest way where a CPU draws. `compute`: what is left for shaders is for compute shaders.
+/// Errors: a shader that the driver refuses.
+Result<std::unique_ptr<SurfaceFilter>> make_surface_filter(Surface surface, bool on_cpu, bool compute);
 
 }  // namespace slosh

@@ -27,6 +27,7 @@ Targets make_targets(glm::ivec2 size, bool half_resolution_back, bool fast) {
   t.mesh_target = make_framebuffer({&t.mesh_color, &t.scene_depth}, &t.depth);
   t.plain_mesh_target = make_framebuffer({&t.color, &t.scene_depth}, &t.depth);
   t.color_target = make_framebuffer({&t.color});
+  t.scene_color_target = make_framebuffer({&t.scene_color});
   t.blend_target = make_framebuffer({&t.color}, &t.depth);
   t.front_target = make_framebuffer({&t.front});
   for (std::size_t i = 0; i < 2; ++i) t.smooth_target[i] = make_framebuffer({&t.smooth[i]});

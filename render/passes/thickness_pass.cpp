@@ -19,11 +19,17 @@ bool any_fluid_is_clear(const Frame& frame) {
   });
 }
 
-Result<ThicknessPass> ThicknessPass::create() {
-  auto program = gl::Program::create("chord.vert", "chord.frag");
+Result<ThicknessPass> ThicknessPass::create(bool compute) {
+  auto program =
+      compute ? gl::Program::create_compute("chord.comp") : gl::Program::create("chord.vert", "chord.frag");
   if (!program) return program.error();
   ThicknessPass pass;
   pass.program_ = std::move(program.value());
+  if (compute) {
+    auto sum = gl::PixelProgram::create("chord_sum.frag", true);
+    if (!sum) return sum.error();
+    pass.sum_ = std::move(sum.value());
+  }
   pass.array_ = gl::make_vertex_array();
   glEnableVertexArrayAttrib(pass.array_.name(), 0);
   glVertexArrayAttribFormat(pass.array_.name(), 0, 4, GL_FLOAT, GL_FALSE, 0);
@@ -32,14 +38,25 @@ Result<ThicknessPass> ThicknessPass::create() {
 }
 
 void ThicknessPass::draw(const Frame& frame, const Targets& targets, std::span<const glm::vec4> spheres) {
-  const glm::vec4 none(0.0f);
-  glClearNamedFramebufferfv(targets.chord_target.name(), GL_COLOR, 0, &none.x);
   buffer_.upload(spheres);
-  glVertexArrayVertexBuffer(array_.name(), 0, buffer_.name(), 0, sizeof(glm::vec4));
   program_.set("sphere", glm::vec2(kWide * frame.particle_radius, frame.particle_radius));
   // Of the picture's pixels in one of its own, along a side.
   program_.set("pixels", targets.chord_size == targets.half_size ? 2 : 4);
   gl::bind_textures({&targets.scene_depth});
+  if (sum_.on_compute()) {
+    const glm::ivec2 size = targets.chord_size;
+    sums_.zero(sizeof(std::uint32_t) * static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y));
+    program_.set("size", size);
+    sum_.program().set("size", size);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, buffer_.name());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, sums_.name());
+    gl::run_rows(program_, spheres.size());
+    sum_.run({targets.chord, targets.chord_target, size, GL_R16F});
+    return;
+  }
+  const glm::vec4 none(0.0f);
+  glClearNamedFramebufferfv(targets.chord_target.name(), GL_COLOR, 0, &none.x);
+  glVertexArrayVertexBuffer(array_.name(), 0, buffer_.name(), 0, sizeof(glm::vec4));
   glBindFramebuffer(GL_FRAMEBUFFER, targets.chord_target.name());
   glViewport(0, 0, targets.chord_size.x, targets.chord_size.y);
   glEnable(GL_PROGRAM_POINT_SIZE);

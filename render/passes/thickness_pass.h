@@ -6,7 +6,7 @@
 #include <span>
 
 #include "render/frame.h"
-#include "render/gl/objects.h"
+#include "render/gl/pixel_program.h"
 #include "render/passes/targets.h"
 #include "render/renderer.h"
 
@@ -14,13 +14,16 @@ namespace slosh {
 
 class ThicknessPass {
  public:
-  static Result<ThicknessPass> create();
+  /// `compute`: by compute shaders.
+  static Result<ThicknessPass> create(bool compute);
 
   /// Reads S_d and `spheres` (eye position m, fluid; all of them, hidden ones too); writes targets.chord.
   void draw(const Frame& frame, const Targets& targets, std::span<const glm::vec4> spheres);
 
  private:
   gl::Program program_;
+  gl::PixelProgram sum_;   ///< for compute
+  gl::StreamBuffer sums_;  ///< a whole number a texel (shaders/sums.glsl)
   gl::VertexArray array_;
   gl::StreamBuffer buffer_;
 };

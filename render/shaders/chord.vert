@@ -1,17 +1,12 @@
-// A particle as a sphere whose chords are summed (chord.frag), at a half or a quarter of the picture's size.
-#include "frame_block.glsl"
+// A particle as a point over its sphere (chord_point.glsl).
+#include "chord_point.glsl"
 layout(location = 0) in vec4 particle;  // eye position
-uniform int pixels;                     // of the picture along one of a texel here
-uniform vec2 sphere;                    // radius of what is drawn and of the particle, m
 flat out float center_depth;
-flat out float weight;                  // keeps the particle's volume
+flat out float weight;
 void main() {
   gl_Position = clip_from_eye * vec4(particle.xyz, 1.0);
   center_depth = -particle.z;
-  // A point has a largest size: what is nearer than it allows is drawn smaller and denser.
-  float wanted = 2.0 * sphere.x * splat.y / (center_depth * float(pixels));
-  gl_PointSize = clamp(wanted, 1.0, 256.0);
-  float share = sphere.y / sphere.x;
-  float drawn = wanted / gl_PointSize;
-  weight = share * share * share * drawn * drawn;
+  ChordPoint point = chord_point(center_depth);
+  gl_PointSize = point.size;
+  weight = point.weight;
 }

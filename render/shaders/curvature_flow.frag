@@ -5,7 +5,6 @@
 #include "bilateral.glsl"
 layout(binding = 0) uniform sampler2D source;
 uniform float time_step;  // share of the longest stable one
-layout(location = 0) out float depth;
 
 float beside(ivec2 texel, ivec2 off, float here) {
   ivec2 at = clamp(texel + off, ivec2(0), ivec2(picture.xy) - 1);
@@ -13,11 +12,10 @@ float beside(ivec2 texel, ivec2 off, float here) {
   return d < kFluidDepthLimit && abs(d - here) * splat.z < 1.0 ? d : here;
 }
 
-void main() {
-  ivec2 texel = ivec2(gl_FragCoord.xy);
+bool pixel(ivec2 texel, out vec4 value) {
   float z = texelFetch(source, texel, 0).r;
-  depth = z;
-  if (z > kFluidDepthLimit) return;
+  value = vec4(z);
+  if (z > kFluidDepthLimit) return true;
   float right = beside(texel, ivec2(1, 0), z), left = beside(texel, ivec2(-1, 0), z);
   float up = beside(texel, ivec2(0, 1), z), down = beside(texel, ivec2(0, -1), z);
   float zx = 0.5 * (right - left), zy = 0.5 * (up - down);
@@ -33,5 +31,7 @@ void main() {
   float ey = 0.5 * zy * dy - zyy * d;
   float curvature = (cy * ex + cx * ey) / max(pow(d, 1.5), 1.0e-30);  // twice the mean one
   // On a plane that faces the eye this is diffusion with 1/(c z) pixels² a unit of time: at most a quarter is stable.
-  depth = z - time_step * 0.25 * min(cx, cy) * z * curvature;
+  value = vec4(z - time_step * 0.25 * min(cx, cy) * z * curvature);
+  return true;
 }
+#include "pixel_main.glsl"

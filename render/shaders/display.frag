@@ -6,11 +6,12 @@ layout(binding = 1) uniform sampler3D display_table;
 uniform float exposure;
 uniform float dither;      // of a step of eight bits
 uniform vec2 table_scale;  // (size − 1)/size, 0.5/size
-layout(location = 0) out vec4 color;
-void main() {
-  vec3 lit = texelFetch(linear_color, ivec2(gl_FragCoord.xy), 0).rgb * exposure;
+bool pixel(ivec2 texel, out vec4 value) {
+  vec3 lit = texelFetch(linear_color, texel, 0).rgb * exposure;
   vec3 shown = texture(display_table, display_shape(lit) * table_scale.x + table_scale.y).rgb;
   // Interleaved gradient noise (Jimenez 2014): even over any few pixels, and the same in every picture, so that nothing flickers.
-  float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715)))) - 0.5;
-  color = vec4(shown + noise * dither, 1.0);
+  float noise = fract(52.9829189 * fract(dot(vec2(texel) + 0.5, vec2(0.06711056, 0.00583715)))) - 0.5;
+  value = vec4(shown + noise * dither, 1.0);
+  return true;
 }
+#include "pixel_main.glsl"

@@ -3,12 +3,9 @@
 #include "shared.glsl"
 #include "edges.glsl"
 layout(binding = 0) uniform sampler2D shown;
-layout(location = 0) out vec4 color;
-
-vec2 texel_size;
 
 // By the sampler, which clamps at the picture's edges: a CPU samples eight-bit colours faster than it fetches them.
-vec3 color_at(vec2 at) { return textureLod(shown, at * texel_size, 0.0).rgb; }
+vec3 color_at(vec2 at) { return textureLod(shown, at / vec2(textureSize(shown, 0)), 0.0).rgb; }
 float brightness_at(vec2 at) { return brightness(color_at(at)); }
 
 // Steps from `texel` along the edge to where it ends, and there the mean brightness over the edge less that here.
@@ -25,9 +22,8 @@ vec2 edge_end(vec2 texel, vec2 along, vec2 over, float here, float tolerance) {
   return end;
 }
 
-void main() {
-  vec2 texel = gl_FragCoord.xy;
-  texel_size = 1.0 / vec2(textureSize(shown, 0));
+bool pixel(ivec2 whole_texel, out vec4 value) {
+  vec2 texel = vec2(whole_texel) + 0.5;
   vec3 middle = color_at(texel);
   Cross cross_of = Cross(brightness(middle), brightness_at(texel + vec2(0, 1)), brightness_at(texel - vec2(0, 1)),
                          brightness_at(texel + vec2(1, 0)), brightness_at(texel - vec2(1, 0)));
@@ -50,5 +46,7 @@ void main() {
     vec2 back = edge_end(texel, -along, over, here, tolerance);
     seen = mix(middle, color_at(texel + over), other_share(cross_of, corners, here, ahead, back));
   }
-  color = vec4(seen, 1.0);
+  value = vec4(seen, 1.0);
+  return true;
 }
+#include "pixel_main.glsl"

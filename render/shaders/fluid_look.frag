@@ -6,7 +6,6 @@
 #include "look_block.glsl"
 #include "fluid_look.glsl"
 layout(binding = 4) uniform sampler2D scene_color;
-layout(location = 0) out vec4 color;
 
 // How much of the sky the fluid leaves open over this point, 0–1: taps on two rings over the smoothed depths.
 float open_sky(vec3 here, vec3 n, ivec2 texel, int taps) {
@@ -28,14 +27,14 @@ float open_sky(vec3 here, vec3 n, ivec2 texel, int taps) {
 // Share of what is seen behind that is mirrored by the fluid's floor, 0–1. Light that came in through a side meets the floor so
 // flat that all of it is mirrored, where air or thin glass is under the floor and not a body that is wet. The far side of the
 // fluid is a floor where it goes on level from pixel to pixel. inside: unit, of the light in the fluid, eye axes.
-float mirrored_by_floor(vec3 inside, float refraction, float back, float scene) {
+float mirrored_by_floor(vec3 inside, float refraction, float back, float scene, vec2 middle) {
   vec3 up = eye_from_world[1].xyz;
   float down = -dot(inside, up);
   float flat_enough = smoothstep(0.0, 0.06, (1.0 - down * down) * refraction * refraction - 1.0) * step(0.0, down);
   float apart = smoothstep(0.0, 0.25, (scene - back) / splat.x);
   float reach = clamp(2.5 * splat.x * splat.y / back, 2.0, 24.0);
-  vec2 above = gl_FragCoord.xy + vec2(0.0, reach);
-  vec2 below = gl_FragCoord.xy - vec2(0.0, reach);
+  vec2 above = middle + vec2(0.0, reach);
+  vec2 below = middle - vec2(0.0, reach);
   vec2 size = vec2(textureSize(back_depth, 0));
   float back_above = texelFetch(back_depth, ivec2(clamp(above * picture.zw, vec2(0.0), vec2(0.999)) * size), 0).r;
   float back_below = texelFetch(back_depth, ivec2(clamp(below * picture.zw, vec2(0.0), vec2(0.999)) * size), 0).r;
@@ -53,9 +52,10 @@ vec3 seen_behind(vec3 here, vec3 n, float refraction, float thickness, ivec2 tex
   vec3 place = seen_place(here, normalize(here), n, refraction, thickness, behind);
   vec2 at = (place.xy / (unproject.xy * max(-place.z, 1.0e-3)) - unproject.zw) * 0.5 + 0.5;
   // No farther than a sixth of the picture's height: a normal that is off must not fetch the other end of the room.
-  vec2 off = (at - gl_FragCoord.xy * picture.zw) * picture.xy;
+  vec2 middle = vec2(texel) + 0.5;
+  vec2 off = (at - middle * picture.zw) * picture.xy;
   off *= min(1.0, 0.16 * picture.y / max(length(off), 1.0e-3));
-  ivec2 looked_up = clamp(ivec2(gl_FragCoord.xy + off), ivec2(0), ivec2(picture.xy) - 1);
+  ivec2 looked_up = clamp(ivec2(middle + off), ivec2(0), ivec2(picture.xy) - 1);
   if (texelFetch(scene_depth, looked_up, 0).r < -here.z) looked_up = texel;
   return texelFetch(scene_color, looked_up, 0).rgb;
 }
@@ -66,22 +66,21 @@ vec3 seen_through_fluid(vec3 here, vec3 n, FluidMatter matter, float thickness, 
   vec3 way = normalize(here);
   float scene = texelFetch(scene_depth, texel, 0).r;
   float back = back_depth_at(vec2(texel) + 0.5);
-  float mirrored = mirrored_by_floor(refract(way, n, 1.0 / matter.refraction), matter.refraction, back, scene);
+  float mirrored = mirrored_by_floor(refract(way, n, 1.0 / matter.refraction), matter.refraction, back, scene, vec2(texel) + 0.5);
   vec3 out_way = mat3(world_from_eye) * way * vec3(1.0, -1.0, 1.0);
   return mix(seen, studio(out_way) * transmittance(matter.extinction, thickness), mirrored);
 }
 
-void main() {
-  ivec2 texel = ivec2(gl_FragCoord.xy);
+bool pixel(ivec2 texel, out vec4 value) {
   float raw = texelFetch(front_depth, texel, 0).r;
   float front = texelFetch(smooth_depth, texel, 0).r;
   float thickness = thickness_at(texel, raw, front);
-  if (thickness <= 0.0) discard;
+  if (thickness <= 0.0) return false;
 
   Look look = looks[floatBitsToUint(raw) & 15u];
   FluidMatter matter = FluidMatter(look.color_displacement.rgb, look.extinction_scattering.rgb, look.extinction_scattering.a,
                                    look.surface.x * switches.x, look.surface.y, look.surface.z);
-  vec3 eye = eye_position(gl_FragCoord.xy, front);
+  vec3 eye = eye_position(vec2(texel) + 0.5, front);
   FluidSurface surface = surface_of_pixel(smooth_depth, eye, texel);
   vec3 to_eye = normalize(-eye);
   FluidPoint point = FluidPoint(surface.normal, to_eye, to_light_eye.xyz, thickness);
@@ -96,5 +95,7 @@ void main() {
   FluidLight lit = FluidLight(key_light.rgb * light, ambient_light(world_n) * open_sky(eye, surface.normal, texel, taps),
                               rough_studio(mirror, matter.roughness),
                               seen_through_fluid(eye, surface.normal, matter, thickness, texel));
-  color = vec4(fluid_radiance(matter, point, lit, surface.whole), 0.0);
+  value = vec4(fluid_radiance(matter, point, lit, surface.whole), 0.0);
+  return true;
 }
+#include "pixel_main.glsl"

@@ -7,17 +7,15 @@
 layout(binding = 0) uniform sampler2D source;
 uniform ivec2 axis;
 uniform vec3 kernel;  // reach m, range m, taps a side at most
-layout(location = 0) out float depth;
 
 float fetch(ivec2 at) {
   return texelFetch(source, clamp(at, ivec2(0), ivec2(picture.xy) - 1), 0).r;
 }
 
-void main() {
-  ivec2 texel = ivec2(gl_FragCoord.xy);
+bool pixel(ivec2 texel, out vec4 value) {
   float here = texelFetch(source, texel, 0).r;
-  depth = here;
-  if (here > kFluidDepthLimit) return;
+  value = vec4(here);
+  if (here > kFluidDepthLimit) return true;
   float moved = 0.0;
   float weights = 1.0;
 #ifdef CLEAN
@@ -52,5 +50,7 @@ void main() {
     if (b_in) behind = widened(behind, b, kernel.y);
   }
 #endif
-  depth = here + moved / weights;
+  value = vec4(here + moved / weights);
+  return true;
 }
+#include "pixel_main.glsl"

@@ -2,18 +2,17 @@
 #include "depth_normal.glsl"
 layout(binding = 0) uniform sampler2D scene_depth;
 uniform float reach;  // m
-layout(location = 0) out float open;
 
-void main() {
-  ivec2 texel = min(ivec2(gl_FragCoord.xy) * 2, ivec2(picture.xy) - 1);
+bool pixel(ivec2 half_texel, out vec4 value) {
+  ivec2 texel = min(half_texel * 2, ivec2(picture.xy) - 1);
   float d = texelFetch(scene_depth, texel, 0).r;
-  open = 1.0;
-  if (d > camera.w) return;
+  value = vec4(1.0);
+  if (d > camera.w) return true;
   vec3 here = eye_position(vec2(texel) + 0.5, d);
   vec3 n = depth_normal(scene_depth, here, texel, camera.w);
   float pixels = min(reach * splat.y / d, 120.0);
   // A spiral turned by a 4×4 pattern, which the 4×4 blur of the resolve takes away again.
-  ivec2 cell = ivec2(gl_FragCoord.xy) & 3;
+  ivec2 cell = half_texel & 3;
   float turn = float((cell.x * 4 + cell.y * 7 + (cell.x ^ cell.y) * 5) & 15) * (6.2831853 / 16.0);
   float hidden = 0.0;
   for (int i = 0; i < TAPS; ++i) {
@@ -27,5 +26,7 @@ void main() {
     float near = max(1.0 - squared / (reach * reach), 0.0);
     hidden += near * lift * inversesqrt(squared + 1.0e-8);
   }
-  open = clamp(1.0 - 2.2 * hidden / float(TAPS), 0.0, 1.0);
+  value = vec4(clamp(1.0 - 2.2 * hidden / float(TAPS), 0.0, 1.0));
+  return true;
 }
+#include "pixel_main.glsl"

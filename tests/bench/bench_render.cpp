@@ -1,5 +1,5 @@
-// How long each pass of a frame takes, on whatever draws here: `bench_render --help`. Medians over the
-// frames: by timer queries on a GPU, with a glFinish after each pass where a processor draws.
+// How long each pass of a frame takes, on whatever draws here, by fragments and by compute shaders in turn:
+// `bench_render --help`. By timer queries on a GPU, with a glFinish after each pass where a processor draws.
 #include <imgui.h>
 
 #include <CLI/CLI.hpp>
@@ -35,6 +35,7 @@ struct Wishes {
   bool flow = false;
   bool hud = false;
   bool stereo = false;
+  std::string pixels = "both";
   int reference = 0;
   std::string environment;
   std::string out;
@@ -59,6 +60,10 @@ void say_options(CLI::App& app, Wishes& wishes) {
   app.add_flag("--full", wishes.full, "full quality: what a film has");
   app.add_flag("--hud", wishes.hud, "arrows and a panel over it");
   app.add_flag("--stereo", wishes.stereo, "both eyes against one as well, each of that size, with the HUD");
+  app.add_option("--pixels", wishes.pixels,
+                 "passes over pixels by fragments, compute, both in turn, or as measured")
+      ->check(CLI::IsMember({"both", "fragments", "compute", "measured"}))
+      ->capture_default_str();
   app.add_option("--environment", wishes.environment, "the room: FILE.hdr or studio");
   app.add_option("--out", wishes.out, "the picture, FILE.png");
   app.add_option("--reference", wishes.reference,
@@ -157,6 +162,132 @@ slosh::Result<bool> write_reference(const Wishes& wishes) {
   return true;
 }
 
+/// One of the ways that passes over pixels are drawn in, and what was measured of it.
+struct Way {
+  std::string name;
+  std::unique_ptr<slosh::Renderer> renderer;
+  std::unique_ptr<slosh::kit::DamBreak> scene;
+  std::vector<std::string> order;
+  std::map<std::string, std::vector<double>> times;      ///< ms, by pass
+  std::map<std::string, std::vector<double>> cpu_times;  ///< of which this thread had
+  std::vector<double> sums;
+  std::vector<double> cpu_sums;
+  std::vector<double> whole;
+
+  /// Once with its passes timed and once as a whole.
+  void draw(bool counts) {
+    renderer->set_timing(true);
+    renderer->draw(scene->frame);
+    const auto passes = renderer->pass_times();
+    renderer->set_timing(false);
+    const auto start = std::chrono::steady_clock::now();
+    renderer->draw(scene->frame);
+    (void)renderer->read_back();
+    const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
+    if (!counts) return;
+    double together = 0.0;
+    double cpu_together = 0.0;
+    for (const slosh::PassTime& pass : passes) {
+      together += pass.milliseconds;
+      cpu_together += pass.cpu_milliseconds;
+      if (!times.contains(pass.pass)) order.push_back(pass.pass);
+      times[pass.pass].push_back(pass.milliseconds);
+      cpu_times[pass.pass].push_back(pass.cpu_milliseconds);
+    }
+    sums.push_back(together);
+    cpu_sums.push_back(cpu_together);
+    whole.push_back(took.count());
+  }
+};
+
+slosh::Result<std::unique_ptr<Way>> make_way(const char* name, const Wishes& wishes,
+                                             slosh::Context& context) {
+  using namespace slosh;
+  RenderOptions options;
+  options.width = wishes.width;
+  options.height = wishes.height;
+  if (wishes.paper) options = section_five(options);
+  options.environment = environment_of(wishes);
+  if (wishes.flow) options.surface = Surface::kCurvatureFlow;
+  if (wishes.full) options.quality = Quality::kFull;
+  if (name == std::string("fragments")) options.pixel_passes = PixelPasses::kFragments;
+  if (name == std::string("compute")) options.pixel_passes = PixelPasses::kCompute;
+  auto made = Renderer::create(context, options);
+  if (!made) return made.error();
+  auto way = std::make_unique<Way>();
+  way->name = name;
+  way->renderer = std::move(made.value());
+  way->scene = std::make_unique<kit::DamBreak>(*way->renderer, wishes.particles, wishes.width, wishes.height);
+  choose_fluid(wishes, way->scene->frame);
+  if (wishes.hud) {
+    way->scene->frame.arrows = {{{0.1f, 0.06f, 0.02f}, {0.1f, 0.26f, 0.02f}, {0.9f, 0.5f, 0.1f}}};
+    way->scene->frame.hud = [] {
+      ImGui::Begin("forces");
+      ImGui::Text("left hand  12.3 N");
+      ImGui::Text("right hand  9.8 N");
+      ImGui::End();
+    };
+  }
+  return way;
+}
+
+/// Median and fastest of each pass, and what of it this thread was busy with, ms; a column group a way.
+void print_table(const std::vector<std::unique_ptr<Way>>& ways) {
+  std::printf("%-20s", "");
+  for (const auto& way : ways) std::printf("  %-32s", way->name.c_str());
+  std::printf("\n%-20s", "ms");
+  for (std::size_t i = 0; i < ways.size(); ++i)
+    std::printf("  %10s %10s %10s", "median", "fastest", "this thread");
+  std::printf("\n");
+  const auto row = [&](const char* name, auto&& values, auto&& cpu_values) {
+    std::printf("%-20s", name);
+    for (const auto& way : ways) {
+      const std::vector<double>* all = values(*way);
+      if (!all || all->empty()) {
+        std::printf("  %10s %10s %10s", "", "", "");
+        continue;
+      }
+      std::printf("  %10.3f %10.3f", median(*all), std::ranges::min(*all));
+      const std::vector<double>* cpu = cpu_values(*way);
+      if (cpu)
+        std::printf(" %11.3f", median(*cpu));
+      else
+        std::printf(" %11s", "");
+    }
+    std::printf("\n");
+  };
+  for (const std::string& pass : ways.front()->order) {
+    row(
+        pass.c_str(), [&](Way& way) { return &way.times[pass]; },
+        [&](Way& way) { return &way.cpu_times[pass]; });
+  }
+  using Values = const std::vector<double>*;
+  row(
+      "all passes", [](Way& way) { return &way.sums; }, [](Way& way) { return &way.cpu_sums; });
+  row(
+      "frame + read-back", [](Way& way) { return &way.whole; }, [](Way&) { return Values{nullptr}; });
+}
+
+/// By how much the two ways' pictures differ.
+void print_difference(const std::vector<std::unique_ptr<Way>>& ways) {
+  const slosh::Image one = ways[0]->renderer->read_back();
+  const slosh::Image other = ways[1]->renderer->read_back();
+  double sum = 0.0;
+  int most = 0;
+  std::size_t over = 0;
+  for (std::size_t i = 0; i < one.rgba.size(); ++i) {
+    const int off = std::abs(int{one.rgba[i]} - int{other.rgba[i]});
+    sum += off;
+    most = std::max(most, off);
+    over += off > 2 ? 1 : 0;
+  }
+  const auto channels = static_cast<double>(one.rgba.size());
+  std::printf(
+      "the two pictures differ by %.4f of 255 in the mean, %d at most; by more than 2 in %.4f %% of "
+      "channels\n",
+      sum / channels, most, 100.0 * static_cast<double>(over) / channels);
+}
+
 int fail(const slosh::Error& error) {
   std::fprintf(stderr, "%s\n", error.text().c_str());
   return 1;
@@ -179,63 +310,31 @@ int main(int argc, char** argv) {
   headless.software_threads = wishes.threads;
   auto context = make_headless_context(headless);
   if (!context) return fail(context.error());
-  RenderOptions options;
-  options.width = wishes.width;
-  options.height = wishes.height;
-  if (wishes.paper) options = section_five(options);
-  options.environment = environment_of(wishes);
-  if (wishes.flow) options.surface = Surface::kCurvatureFlow;
-  if (wishes.full) options.quality = Quality::kFull;
-  auto made = Renderer::create(*context.value(), options);
-  if (!made) return fail(made.error());
-  Renderer& renderer = *made.value();
-  kit::DamBreak scene(renderer, wishes.particles, wishes.width, wishes.height);
-  choose_fluid(wishes, scene.frame);
-  if (wishes.hud) {
-    scene.frame.arrows = {{{0.1f, 0.06f, 0.02f}, {0.1f, 0.26f, 0.02f}, {0.9f, 0.5f, 0.1f}}};
-    scene.frame.hud = [] {
-      ImGui::Begin("forces");
-      ImGui::Text("left hand  12.3 N");
-      ImGui::Text("right hand  9.8 N");
-      ImGui::End();
-    };
+  std::vector<std::unique_ptr<Way>> ways;
+  for (const char* name : {"fragments", "compute", "measured"}) {
+    if (wishes.pixels != name && (wishes.pixels != "both" || name == std::string("measured"))) continue;
+    auto way = make_way(name, wishes, *context.value());
+    if (!way) return fail(way.error());
+    ways.push_back(std::move(way.value()));
   }
-
-  std::map<std::string, std::vector<double>> times;
-  std::vector<std::string> order;
-  std::vector<double> sums;
-  std::vector<double> whole;
   for (int i = 0; i < wishes.frames + 2; ++i) {
-    renderer.set_timing(true);
-    renderer.draw(scene.frame);
-    const auto passes = renderer.pass_times();
-    renderer.set_timing(false);
-    const auto start = std::chrono::steady_clock::now();
-    renderer.draw(scene.frame);
-    (void)renderer.read_back();
-    const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
-    if (i < 2) continue;  // shaders are compiled at their first use
-    double together = 0.0;
-    for (const PassTime& pass : passes) {
-      together += pass.milliseconds;
-      if (!times.contains(pass.pass)) order.push_back(pass.pass);
-      times[pass.pass].push_back(pass.milliseconds);
+    for (const auto& way : ways) way->draw(i >= 2);  // shaders are compiled at their first use
+  }
+  std::printf("%s, threads %d\n%d x %d, %zu particles, %d frames\n", context.value()->description().c_str(),
+              wishes.threads, wishes.width, wishes.height, ways.front()->scene->particles.size(),
+              wishes.frames);
+  if (wishes.pixels == "measured")
+    std::printf("measured: by %s\n", ways.front()->renderer->on_compute() ? "compute" : "fragments");
+  print_table(ways);
+  if (ways.size() == 2) print_difference(ways);
+  if (wishes.stereo) {
+    for (const auto& way : ways) {
+      std::printf("%s\n", way->name.c_str());
+      time_stereo(*way->renderer, way->scene->frame, wishes.frames);
     }
-    sums.push_back(together);
-    whole.push_back(took.count());
   }
-  std::printf("%s, threads %d\n%d x %d, %zu particles, median of %d frames\n",
-              context.value()->description().c_str(), wishes.threads, wishes.width, wishes.height,
-              scene.particles.size(), wishes.frames);
-  std::printf("%-20s %10s %10s\n", "pass", "median ms", "fastest ms");
-  for (const std::string& pass : order) {
-    std::printf("%-20s %10.3f %10.3f\n", pass.c_str(), median(times[pass]), std::ranges::min(times[pass]));
-  }
-  std::printf("%-20s %10.3f %10.3f\n", "all passes", median(sums), std::ranges::min(sums));
-  std::printf("%-20s %10.3f %10.3f\n", "frame + read-back", median(whole), std::ranges::min(whole));
-  if (wishes.stereo) time_stereo(renderer, scene.frame, wishes.frames);
   if (!wishes.out.empty()) {
-    const auto written = write_png(wishes.out, renderer.read_back());
+    const auto written = write_png(wishes.out, ways.back()->renderer->read_back());
     if (!written) return fail(written.error());
   }
   return 0;

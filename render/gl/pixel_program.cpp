@@ -1,0 +1,63 @@
+#include "render/gl/pixel_program.h"
+
+#include <algorithm>
+
+namespace slosh::gl {
+namespace {
+
+// As pixel_main.glsl and splat_rows.glsl have them.
+constexpr glm::ivec2 kPixelGroup(16, 8);
+constexpr std::size_t kRowsInGroup = 4;
+constexpr std::size_t kMostGroups = 32768;  // on an axis; at least 65535 are allowed
+
+}  // namespace
+
+void TileDraw::operator()() const {
+  glBindVertexArray(vertices->name());
+  glDrawArrays(GL_TRIANGLES, 0, corners);
+}
+
+Result<PixelProgram> PixelProgram::create(const char* file, bool compute, bool tiled,
+                                          std::vector<std::string> defines) {
+  auto made = compute ? Program::create_compute(file, std::move(defines))
+                      : Program::create(tiled ? "tiles.vert" : "fullscreen.vert", file, std::move(defines));
+  if (!made) return made.error();
+  PixelProgram out;
+  out.program_ = std::move(made.value());
+  out.no_vertices_ = make_vertex_array();
+  out.compute_ = compute;
+  return out;
+}
+
+void PixelProgram::run(const PixelTarget& target, const TileDraw* tiles) const {
+  program_.use();
+  if (compute_) {
+    glBindImageTexture(0, target.texture.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, target.format);
+    const glm::ivec2 groups = (target.size + kPixelGroup - 1) / kPixelGroup;
+    glDispatchCompute(static_cast<GLuint>(groups.x), static_cast<GLuint>(groups.y), 1);
+    finish_compute();
+    return;
+  }
+  glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer.name());
+  glViewport(0, 0, target.size.x, target.size.y);
+  TileDraw whole{&no_vertices_, 3};
+  (tiles ? *tiles : whole)();
+}
+
+void finish_compute() {
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
+                  GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
+                  GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+void run_rows(const Program& program, std::size_t count) {
+  if (count == 0) return;
+  const std::size_t groups = (count + kRowsInGroup - 1) / kRowsInGroup;
+  const std::size_t across = std::min(groups, kMostGroups);
+  program.use();
+  program.set("count", static_cast<int>(count));
+  glDispatchCompute(static_cast<GLuint>(across), static_cast<GLuint>((groups + across - 1) / across), 1);
+  finish_compute();
+}
+
+}  // namespace slosh::gl

@@ -1,0 +1,55 @@
+// A pass over pixels as fragments or as a compute shader, from the same file (shaders/pixel_main.glsl).
+// Fragments are drawn by the part of a chip that makes pictures, which is little of a data-centre GPU;
+// compute shaders run on all of it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "render/gl/objects.h"
+
+namespace slosh::gl {
+
+/// Triangles in clip space that confine a pass drawn as fragments; a compute shader goes over all pixels.
+struct TileDraw {
+  const VertexArray* vertices = nullptr;  ///< two floats a corner
+  GLsizei corners = 0;
+  void operator()() const;
+};
+
+/// What a pass over pixels writes.
+struct PixelTarget {
+  const Texture& texture;
+  const Framebuffer& framebuffer;  ///< of that texture alone
+  glm::ivec2 size;                 ///< of that texture, pixels
+  GLenum format;                   ///< of that texture: a sized one that images can have
+};
+
+class PixelProgram {
+ public:
+  PixelProgram() = default;
+  /// `file` ends with pixel_main.glsl. `tiled`: fragments are drawn over the TileDraw given to run(). Errors
+  /// carry the driver's log.
+  static Result<PixelProgram> create(const char* file, bool compute, bool tiled = false,
+                                     std::vector<std::string> defines = {});
+
+  /// Its textures and uniforms are set by the caller before. What it writes, whoever comes next may read.
+  void run(const PixelTarget& target, const TileDraw* tiles = nullptr) const;
+
+  bool on_compute() const { return compute_; }
+  const Program& program() const { return program_; }
+
+ private:
+  Program program_;
+  VertexArray no_vertices_;
+  bool compute_ = false;
+};
+
+/// What was written by compute shaders may be read, drawn over, copied and fetched after this.
+void finish_compute();
+
+/// Runs a compute shader that takes one row of splat_rows.glsl for each of `count` splats, whose uniform
+/// `count` it sets.
+void run_rows(const Program& program, std::size_t count);
+
+}  // namespace slosh::gl

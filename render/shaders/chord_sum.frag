@@ -1,0 +1,9 @@
+// What chord.comp summed, in metres.
+#include "sums.glsl"
+layout(std430, binding = 2) readonly buffer Sums { uint sums[]; };
+uniform ivec2 size;
+bool pixel(ivec2 texel, out vec4 value) {
+  value = vec4(float(sums[texel.y * size.x + texel.x]) / kChordSteps);
+  return true;
+}
+#include "pixel_main.glsl"

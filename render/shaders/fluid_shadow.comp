@@ -1,0 +1,33 @@
+// fluid_shadow.vert and fluid_shadow.frag by atomics: a row of invocations goes over each point's texels.
+#include "fluid_shadow.glsl"
+#include "splat_rows.glsl"
+#include "sums.glsl"
+layout(local_size_x = 32, local_size_y = 4) in;
+layout(std430, binding = 0) readonly buffer Particles { vec4 particles[]; };  // world position, fluid index
+layout(std430, binding = 2) buffer Sums { uint sums[]; };                     // four a texel
+uniform int size;  // of the map, texels a side
+uniform int count;
+void main() {
+  int index = int(splat_row());
+  if (index >= count) return;
+  vec4 particle = particles[index];
+  vec4 at = clip_from_world * vec4(particle.xyz, 1.0);
+  if (any(greaterThan(abs(at.xy), vec2(1.0)))) return;  // as points are clipped
+  vec4 optical = dimming_of(at, particle.w);
+  vec2 middle = 0.5 * (at.xy + 1.0) * float(size);
+  float radius = 0.5 * point_size;
+  PixelBox box = pixel_box(middle - radius, middle + radius, ivec2(size));
+  for (int i = int(gl_LocalInvocationID.x); i < box.size.x * box.size.y; i += 32) {
+    ivec2 texel = box.low + ivec2(i % box.size.x, i / box.size.x);
+    vec2 disc = (vec2(texel) + 0.5 - middle) / radius;
+    float off = dot(disc, disc);
+    if (off >= 1.0) continue;
+    vec4 here = dimming_at(optical, off);
+    int first = 4 * (texel.y * size + texel.x);
+    for (int channel = 0; channel < 3; ++channel) {
+      uint steps = uint(min(here[channel], kMostDimming) * kDimmingSteps + 0.5);
+      if (steps > 0u) atomicAdd(sums[first + channel], steps);
+    }
+    atomicMax(sums[first + 3], floatBitsToUint(here.a));
+  }
+}

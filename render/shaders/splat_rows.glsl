@@ -1,0 +1,14 @@
+// Splats by compute shaders: a row of 32 invocations each, four rows a group, groups on two axes as one is too short for a million.
+struct PixelBox {
+  ivec2 low;
+  ivec2 size;  // none if the box is off the picture
+};
+
+// The pixels whose middles lie between two places, within a picture.
+PixelBox pixel_box(vec2 low, vec2 high, ivec2 picture_size) {
+  ivec2 first = max(ivec2(ceil(low - 0.5)), ivec2(0));
+  ivec2 last = min(ivec2(floor(high - 0.5)), picture_size - 1);
+  return PixelBox(first, max(last - first + 1, ivec2(0)));
+}
+
+uint splat_row() { return (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 4u + gl_LocalInvocationID.y; }

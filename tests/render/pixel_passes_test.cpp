@@ -1,0 +1,112 @@
+// Passes over pixels and splats as compute shaders: the same picture as by fragments, to rounding.
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "tests/render/render_test.h"
+
+namespace slosh {
+namespace {
+
+using PixelPassesTest = RenderTest;
+
+struct Drawn {
+  FloatImage front;
+  FloatImage back;
+  FloatImage surface;
+  FloatImage thickness;
+  Image picture;
+};
+
+Drawn draw(Context& context, RenderOptions options, PixelPasses way) {
+  options.pixel_passes = way;
+  auto made = Renderer::create(context, options);
+  EXPECT_TRUE(made) << made.error().text();
+  Renderer& renderer = *made.value();
+  EXPECT_EQ(renderer.on_compute(), way == PixelPasses::kCompute);
+  kit::DamBreak scene(renderer, 2500, options.width, options.height);
+  scene.frame.fluids.push_back(kit::cloudy_juice());
+  for (std::size_t i = 0; i < scene.fluids.size() / 2; ++i) scene.fluids[i] = 1;
+  renderer.draw(scene.frame);
+  return {renderer.read_buffer(Buffer::kFrontDepth), renderer.read_buffer(Buffer::kBackDepth),
+          renderer.read_buffer(Buffer::kSmoothDepth), renderer.read_buffer(Buffer::kThickness),
+          renderer.read_back()};
+}
+
+/// Share of values that are farther apart than `apart`.
+double share_off(const FloatImage& a, const FloatImage& b, float apart) {
+  EXPECT_EQ(a.values.size(), b.values.size());
+  std::size_t off = 0;
+  for (std::size_t i = 0; i < a.values.size(); ++i)
+    off += std::abs(a.values[i] - b.values[i]) > apart ? 1 : 0;
+  return static_cast<double>(off) / static_cast<double>(a.values.size());
+}
+
+/// Chords are summed in whole numbers, not in half floats: a step of eight bits here and there.
+void expect_same(const Image& a, const Image& b) {
+  ASSERT_EQ(a.rgba.size(), b.rgba.size());
+  double sum = 0.0;
+  std::size_t off = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); ++i) {
+    const int apart = std::abs(int{a.rgba[i]} - int{b.rgba[i]});
+    sum += apart;
+    off += apart > 2 ? 1 : 0;
+  }
+  const auto channels = static_cast<double>(a.rgba.size());
+  EXPECT_LT(sum / channels, 0.005);
+  EXPECT_LT(static_cast<double>(off) / channels, 3e-4);
+}
+
+void expect_same(const RenderOptions& options, Context& context) {
+  const Drawn by_fragments = draw(context, options, PixelPasses::kFragments);
+  const Drawn by_compute = draw(context, options, PixelPasses::kCompute);
+  // A pixel on the very rim of a splat may be its or not.
+  EXPECT_LT(share_off(by_fragments.front, by_compute.front, 2e-5f), 1e-4);
+  EXPECT_LT(share_off(by_fragments.back, by_compute.back, 2e-5f), 1e-4);
+  EXPECT_LT(share_off(by_fragments.surface, by_compute.surface, 2e-5f), 1e-4);
+  EXPECT_LT(share_off(by_fragments.thickness, by_compute.thickness, 5e-4f), 3e-3);
+  expect_same(by_fragments.picture, by_compute.picture);
+}
+
+TEST_F(PixelPassesTest, EverySurfaceIsTheSameByComputeShadersAtFullQuality) {
+  for (const Surface surface : {Surface::kOurs, Surface::kCurvatureFlow, Surface::kPaper}) {
+    SCOPED_TRACE(static_cast<int>(surface));
+    RenderOptions options = small();
+    if (surface == Surface::kPaper) options = section_five(options);
+    options.surface = surface;
+    options.quality = Quality::kFull;
+    expect_same(options, *context_);
+  }
+}
+
+TEST_F(PixelPassesTest, AndWhereTheQuickWaysOfAProcessorAreTaken) {
+  RenderOptions options = small();
+  options.quality = Quality::kFast;
+  options.width = 189;  // no whole number of groups
+  options.height = 131;
+  expect_same(options, *context_);
+}
+
+TEST_F(PixelPassesTest, SumsComeOutTheSameEachTime) {
+  RenderOptions options = small();
+  options.quality = Quality::kFull;
+  const Drawn once = draw(*context_, options, PixelPasses::kCompute);
+  const Drawn again = draw(*context_, options, PixelPasses::kCompute);
+  EXPECT_EQ(once.picture.rgba, again.picture.rgba);
+}
+
+TEST_F(PixelPassesTest, WhatIsMeasuredIsKeptAndMayBeChangedLater) {
+  RenderOptions options = small();
+  auto first = make(options);
+  const bool on_compute = first->on_compute();
+  EXPECT_EQ(make(options)->on_compute(), on_compute);
+  options.pixel_passes = on_compute ? PixelPasses::kFragments : PixelPasses::kCompute;
+  ASSERT_TRUE(first->set_options(options));
+  EXPECT_NE(first->on_compute(), on_compute);
+  kit::DamBreak scene(*first, 500, kWidth, kHeight);
+  first->draw(scene.frame);
+  EXPECT_FALSE(first->read_back().rgba.empty());
+}
+
+}  // namespace
+}  // namespace slosh
