@@ -93,7 +93,7 @@ TEST_F(PlayTest, WritesEveryFileOfARun) {
   EXPECT_EQ(last.value().width, 320);
   EXPECT_EQ(last.value().height, 240);
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#ifndef SLOSH_SANITIZED
   // Two hands hold one bucket: after the first swing they carry it, so both are pulled down. A sanitizer's
   // steps take longer than a device waits for a force, which then has faded, as it must.
   const std::vector<WrenchSeries> felt = read_wrenches(out() / "wrenches.csv").value();

@@ -14,7 +14,7 @@ extern "C" {
 
 const char* __asan_default_options();
 const char* __asan_default_options() {
-#ifdef __AVX512F__
+#if defined(__AVX512F__) && !defined(__clang__)
   // GCC 12.2 does not align frames there to the 64 bytes that its own AVX-512 code counts on (its bug 110027):
   // SpinUp.torque_of_a_long_cylinder ended at its first array, and does not without.
   return "detect_stack_use_after_return=0:strict_string_checks=1:detect_leaks=1:exitcode=86";

@@ -10,7 +10,7 @@ namespace slosh::test {
 /// Asks `there` again and again until it says yes. Its patience is only reached on failure; under sanitizers
 /// a second of a world may take a minute.
 inline bool comes(const std::function<bool()>& there) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef SLOSH_SANITIZED
   constexpr std::chrono::minutes kPatience(15);
 #else
   constexpr std::chrono::minutes kPatience(4);

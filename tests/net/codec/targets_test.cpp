@@ -14,7 +14,7 @@ using bench::FlowOptions;
 
 // Under sanitizers the flow alone would take a quarter of an hour: a small one then, which shows that every
 // frame comes out whole and says nothing of the targets.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef SLOSH_SANITIZED
 constexpr int kSide = 12;
 #else
 constexpr int kSide = 32;

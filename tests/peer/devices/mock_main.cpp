@@ -10,7 +10,7 @@
 
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef SLOSH_SANITIZED
 constexpr unsigned kLongest = 1200;
 #else
 constexpr unsigned kLongest = 120;  // s of one test, which takes 2
@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
   constexpr const char* kMark = "SLOSH_UNDER_UMOCKDEV";
   if (std::getenv(kMark) == nullptr) {
     setenv(kMark, "1", 1);
-#ifdef __SANITIZE_ADDRESS__
+#ifdef __SANITIZE_ADDRESS__  // g++: its runtime is a library that insists on being the first; clang's is in the program
     setenv("LD_PRELOAD", "libasan.so.8:libumockdev-preload.so.0", 1);
 #else
     setenv("LD_PRELOAD", "libumockdev-preload.so.0", 1);
