@@ -24,7 +24,7 @@ Result<FluidShadowPass> FluidShadowPass::create(bool fast, bool compute) {
     pass.sum_ = std::move(sum.value());
   }
   pass.size_ = fast ? 256 : 512;
-  pass.most_ = fast ? 4000 : 1000000;
+  pass.most_ = fast ? 8000 : 1000000;
   pass.map_ = gl::make_texture(glm::ivec2(pass.size_), GL_RGBA16F, GL_LINEAR);
   pass.target_ = gl::make_framebuffer({&pass.map_});
   pass.array_ = gl::make_vertex_array();
@@ -58,13 +58,15 @@ void FluidShadowPass::draw(const Frame& frame, const RenderOptions& options, con
   for (std::size_t i = 0; i < fluids; ++i) extinction[i] = frame.fluids[i].extinction;
   glProgramUniform3fv(program_.name(), glGetUniformLocation(program_.name(), "extinction"),
                       static_cast<GLsizei>(extinction.size()), &extinction[0].x);
-  // Fewer splats are drawn wider, so that they still close up, and their sum stays the same.
-  const float radius = options.splat_scale * frame.particle_radius * std::cbrt(static_cast<float>(step));
+  // Fewer splats are drawn wider, so that they still close up, and their sum stays the same. No wider than
+  // that takes: the shadow is to end where the fluid does.
+  const float radius =
+      frame.particle_radius * std::max(options.splat_scale, std::cbrt(static_cast<float>(step)));
   const glm::mat4& clip = shadow.clip_from_world;
   const float clip_per_metre = glm::length(glm::vec3(clip[0][0], clip[1][0], clip[2][0]));
   const float texels = std::clamp(radius * clip_per_metre * static_cast<float>(size_), 1.0f, 64.0f);
   const float drawn_radius = texels / (clip_per_metre * static_cast<float>(size_));
-  const float volume = options.splat_scale * frame.particle_radius;
+  const float volume = frame.particle_radius;
   program_.set("clip_from_world", clip);
   program_.set("point_size", texels);
   program_.set("weight", static_cast<float>(step));

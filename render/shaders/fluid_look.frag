@@ -24,25 +24,45 @@ float open_sky(vec3 here, vec3 n, ivec2 texel, int taps) {
   return clamp(1.0 - 0.35 * hidden, 0.25, 1.0);
 }
 
-// Share of what is seen behind that is mirrored by the fluid's floor, 0–1. Light that came in through a side meets the floor so
-// flat that all of it is mirrored, where air or thin glass is under the floor and not a body that is wet. The far side of the
-// fluid is a floor where it goes on level from pixel to pixel. inside: unit, of the light in the fluid, eye axes.
-float mirrored_by_floor(vec3 inside, float refraction, float back, float scene, vec2 middle) {
+// The fluid's far side where air or thin glass is behind it and not a body that is wet: what meets it so flat that all of it is
+// mirrored there. Off its floor, for light that came in through a wall, the room beyond is seen; off its walls, which light meets
+// flat from above and through another wall, what is under the fluid. Either comes a longer way through the fluid, as long as
+// that of the pixels next to it: so a rim is as dark as the rest, as in a glass of honey. The far side is a floor where it
+// goes on level from pixel to pixel, a wall where it is upright.
+struct FarSide {
+  float by_floor;  // shares mirrored, 0–1
+  float by_wall;
+};
+
+float back_at(vec2 pixel) {
+  vec2 size = vec2(textureSize(back_depth, 0));
+  return texelFetch(back_depth, ivec2(clamp(pixel * picture.zw, vec2(0.0), vec2(0.999)) * size), 0).r;
+}
+
+// inside: unit, of the light in the fluid, eye axes. back: of this pixel.
+FarSide far_side(vec3 inside, float refraction, float back, float scene, vec2 middle) {
   vec3 up = eye_from_world[1].xyz;
   float down = -dot(inside, up);
   float flat_enough = smoothstep(0.0, 0.06, (1.0 - down * down) * refraction * refraction - 1.0) * step(0.0, down);
   float apart = smoothstep(0.0, 0.25, (scene - back) / splat.x);
-  float reach = clamp(2.5 * splat.x * splat.y / back, 2.0, 24.0);
-  vec2 above = middle + vec2(0.0, reach);
-  vec2 below = middle - vec2(0.0, reach);
-  vec2 size = vec2(textureSize(back_depth, 0));
-  float back_above = texelFetch(back_depth, ivec2(clamp(above * picture.zw, vec2(0.0), vec2(0.999)) * size), 0).r;
-  float back_below = texelFetch(back_depth, ivec2(clamp(below * picture.zw, vec2(0.0), vec2(0.999)) * size), 0).r;
-  back_above = back_above > 0.0 ? back_above : back;
-  back_below = back_below > 0.0 ? back_below : back;
-  vec3 along = eye_position(above, back_above) - eye_position(below, back_below);
-  float level = 1.0 - smoothstep(0.55, 0.9, abs(dot(along, up)) * inversesqrt(dot(along, along) + 1.0e-12));
-  return flat_enough * apart * level;
+  vec2 reach = vec2(0.0, clamp(2.5 * splat.x * splat.y / back, 2.0, 24.0));
+  float above = back_at(middle + reach);
+  float below = back_at(middle - reach);
+  vec3 along = eye_position(middle + reach, above > 0.0 ? above : back) - eye_position(middle - reach, below > 0.0 ? below : back);
+  float upright = smoothstep(0.55, 0.9, abs(dot(along, up)) * inversesqrt(dot(along, along) + 1.0e-12));
+  return FarSide(flat_enough * apart * (1.0 - upright), apart * upright);
+}
+
+// The longest way through the fluid, m, of four pixels eight splats away.
+float way_beside(vec2 middle, float back) {
+  float reach = clamp(8.0 * splat.x * splat.y / back, 4.0, 96.0);
+  float way = 0.0;
+  for (int k = 0; k < 4; ++k) {
+    vec2 at = middle + reach * vec2(k < 2 ? 2 * k - 1 : 0, k < 2 ? 0 : 2 * k - 5);
+    float front = texelFetch(smooth_depth, clamp(ivec2(at), ivec2(0), ivec2(picture.xy) - 1), 0).r;
+    way = max(way, back_at(at) - front);
+  }
+  return way;
 }
 
 // The scene behind. A body in front of the fluid must not show through it; whole texels, as a mean would mix such a body in.
@@ -60,17 +80,6 @@ vec3 seen_behind(vec3 here, vec3 n, float refraction, float thickness, ivec2 tex
   return texelFetch(scene_color, looked_up, 0).rgb;
 }
 
-// The same with what the fluid's floor mirrors: the room beyond the far side, through some more fluid.
-vec3 seen_through_fluid(vec3 here, vec3 n, FluidMatter matter, float thickness, ivec2 texel) {
-  vec3 seen = seen_behind(here, n, matter.refraction, thickness, texel);
-  vec3 way = normalize(here);
-  float scene = texelFetch(scene_depth, texel, 0).r;
-  float back = back_depth_at(vec2(texel) + 0.5);
-  float mirrored = mirrored_by_floor(refract(way, n, 1.0 / matter.refraction), matter.refraction, back, scene, vec2(texel) + 0.5);
-  vec3 out_way = mat3(world_from_eye) * way * vec3(1.0, -1.0, 1.0);
-  return mix(seen, studio(out_way) * transmittance(matter.extinction, thickness), mirrored);
-}
-
 bool pixel(ivec2 texel, out vec4 value) {
   float raw = texelFetch(front_depth, texel, 0).r;
   float front = texelFetch(smooth_depth, texel, 0).r;
@@ -83,7 +92,13 @@ bool pixel(ivec2 texel, out vec4 value) {
   vec3 eye = eye_position(vec2(texel) + 0.5, front);
   FluidSurface surface = surface_of_pixel(smooth_depth, eye, texel);
   vec3 to_eye = normalize(-eye);
-  FluidPoint point = FluidPoint(surface.normal, to_eye, to_light_eye.xyz, thickness);
+  float scene = texelFetch(scene_depth, texel, 0).r;
+  vec3 inside = refract(-to_eye, surface.normal, 1.0 / matter.refraction);
+  vec2 middle = vec2(texel) + 0.5;
+  float back = back_depth_at(middle);
+  FarSide far = far_side(inside, matter.refraction, back, scene, middle);
+  float way = thickness + (far.by_floor + far.by_wall) * way_beside(middle, back);
+  FluidPoint point = FluidPoint(surface.normal, to_eye, to_light_eye.xyz, way);
 
   vec3 world_n = mat3(world_from_eye) * surface.normal;
   vec3 world = (world_from_eye * vec4(eye, 1.0)).xyz;
@@ -94,7 +109,8 @@ bool pixel(ivec2 texel, out vec4 value) {
   vec3 mirror = mat3(world_from_eye) * reflect(-to_eye, surface.normal);
   FluidLight lit = FluidLight(key_light.rgb * light, ambient_light(world_n) * open_sky(eye, surface.normal, texel, taps),
                               rough_studio(mirror, matter.roughness),
-                              seen_through_fluid(eye, surface.normal, matter, thickness, texel));
+                              mix(seen_behind(eye, surface.normal, matter.refraction, thickness, texel),
+                                  studio(mat3(world_from_eye) * -to_eye * vec3(1.0, -1.0, 1.0)), far.by_floor));
   value = vec4(fluid_radiance(matter, point, lit, surface.whole), 0.0);
   return true;
 }
