@@ -6,6 +6,8 @@
 // The test bed that devices are mocked with (umockdev) waits for its thread by GLib's locks, which are not built with
 // it either. That is all that is suppressed.
 //
+// Stacks are named by binutils' addr2line, which is there with every compiler (llvm-symbolizer is a package of its own).
+//
 // AddressSanitizer ends a program with 86, ThreadSanitizer with 66: a test that expects a refusal (1) does not take one
 // for the other.
 
@@ -17,9 +19,9 @@ const char* __asan_default_options() {
 #if defined(__AVX512F__) && !defined(__clang__)
   // GCC 12.2 does not align frames there to the 64 bytes that its own AVX-512 code counts on (its bug 110027):
   // SpinUp.torque_of_a_long_cylinder ended at its first array, and does not without.
-  return "detect_stack_use_after_return=0:strict_string_checks=1:detect_leaks=1:exitcode=86";
+  return "allow_addr2line=1:detect_stack_use_after_return=0:strict_string_checks=1:detect_leaks=1:exitcode=86";
 #else
-  return "detect_stack_use_after_return=1:strict_string_checks=1:detect_leaks=1:exitcode=86";
+  return "allow_addr2line=1:detect_stack_use_after_return=1:strict_string_checks=1:detect_leaks=1:exitcode=86";
 #endif
 }
 
@@ -34,12 +36,12 @@ const char* __lsan_default_suppressions() {
 
 const char* __ubsan_default_options();
 const char* __ubsan_default_options() {
-  return "halt_on_error=1:print_stacktrace=1";
+  return "allow_addr2line=1:halt_on_error=1:print_stacktrace=1";
 }
 
 const char* __tsan_default_options();
 const char* __tsan_default_options() {
-  return "second_deadlock_stack=1";
+  return "allow_addr2line=1:second_deadlock_stack=1";
 }
 
 const char* __tsan_default_suppressions();
