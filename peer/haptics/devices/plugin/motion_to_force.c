@@ -1,7 +1,10 @@
 /* A device of no hardware that measures how long own motion takes to become force, through whatever lies behind
- * it: a handle held so firmly that no force moves it, which jumps by 2 mm at known instants of the clock. The
- * force that answers changes against the jump. OPTIONS: a file for one line a jump (default: none). What came
- * out is told on standard error when it is closed. */
+ * it: a handle held so firmly that no force moves it, which goes 2 mm to and fro, each way begun at a known instant
+ * of the clock. The force that answers changes against the way. OPTIONS: a file for one line a way (default:
+ * none). What came out is told on standard error when it is closed.
+ *
+ * It moves as a hand can, and does not jump: who jumps works against no force, and a guard that counts what a hand
+ * put in (peer/haptics/replica) rightly gives it none. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,16 +14,17 @@
 #include "peer/haptics/devices/plugin/slosh_device.h"
 
 #define MOST_JUMPS 20000
-static const double kJump = 0.002;     /* m */
+static const double kWay = 0.002;      /* m */
+static const double kSpeed = 0.2;      /* m/s */
 static const double kFirst = 6.0;      /* s: taking hold is over by then, over a long way too */
-static const double kApart = 0.1;      /* s between two jumps, */
+static const double kApart = 0.1;      /* s from one beginning to the next, */
 static const double kChance = 0.05;    /* and up to so much more */
-static const double kAnswer = 0.1;     /* N that the force changes against the jump */
-static const double kGivenUp = 0.08;   /* s after which a jump counts as not answered */
+static const double kAnswer = 0.1;     /* N that the force changes against the way */
+static const double kGivenUp = 0.08;   /* s after which a way counts as not answered */
 
 typedef struct answer {
-  double instant_s; /* of the jump, since the device was opened */
-  double motion_ms; /* from the jump to the write that answers */
+  double instant_s; /* that motion began, since the device was opened */
+  double motion_ms; /* from then to the write that answers */
   double read_ms;   /* from the reading that told of it */
   int writes;       /* after that reading, with the one that answers */
 } answer;
@@ -28,16 +32,15 @@ typedef struct answer {
 typedef struct handle {
   char file[1024];
   double opened_s;
-  double next_s;  /* of the next jump */
-  int jumps;
-  int side;       /* 0 or 1: where it is, times kJump */
-  int told;       /* a reading told of the last jump ... */
-  double told_s;  /* ... then */
+  double next_s;  /* of the next beginning */
+  int ways;
+  int side;       /* 0 or 1: where it goes, times kWay */
+  double told_s;  /* a reading told of the last beginning then */
   int waiting;    /* for its answer */
   int writes;
   double force;   /* N along x: of the last write, */
-  double before;  /* and of the last one before the jump */
-  double jump_s;
+  double before;  /* and of the last one before this way */
+  double began_s;
   unsigned chance;
   int count, missed;
   answer answers[MOST_JUMPS];
@@ -96,9 +99,9 @@ int slosh_device_read(void* device, slosh_device_reading* reading) {
   const double now = now_s();
   if (now >= h->next_s) {
     if (h->waiting) h->missed += 1;
-    h->jump_s = h->next_s;
+    h->began_s = h->next_s;
     h->side = 1 - h->side;
-    h->jumps += 1;
+    h->ways += 1;
     h->before = h->force;
     h->waiting = 1;
     h->told_s = now;
@@ -106,8 +109,12 @@ int slosh_device_read(void* device, slosh_device_reading* reading) {
     h->next_s = now + kApart + kChance * chance(h);
   }
   memset(reading, 0, sizeof *reading);
-  reading->position_m[0] = kJump * h->side;
   reading->orientation_wxyz[0] = 1.0;
+  if (h->ways > 0) {
+    const double gone = kSpeed * (now - h->began_s) < kWay ? kSpeed * (now - h->began_s) : kWay;
+    reading->position_m[0] = h->side ? gone : kWay - gone;
+    reading->velocity_m_s[0] = gone < kWay ? (h->side ? kSpeed : -kSpeed) : 0.0;
+  }
   reading->flags = SLOSH_READING_HAS_TWIST;
   return 0;
 }
@@ -120,15 +127,15 @@ int slosh_device_write(void* device, const double force_n[3], const double torqu
   const double now = now_s();
   h->writes += 1;
   const double against = h->side ? h->before - h->force : h->force - h->before;
-  if (now - h->jump_s > kGivenUp) {
+  if (now - h->began_s > kGivenUp) {
     h->waiting = 0;
     h->missed += 1;
   } else if (against > kAnswer) {
     h->waiting = 0;
     if (h->count < MOST_JUMPS) {
       answer* a = &h->answers[h->count++];
-      a->instant_s = h->jump_s - h->opened_s;
-      a->motion_ms = 1e3 * (now - h->jump_s);
+      a->instant_s = h->began_s - h->opened_s;
+      a->motion_ms = 1e3 * (now - h->began_s);
       a->read_ms = 1e3 * (now - h->told_s);
       a->writes = h->writes;
     }
@@ -139,6 +146,12 @@ int slosh_device_write(void* device, const double force_n[3], const double torqu
 static int by_motion(const void* a, const void* b) {
   const double x = ((const answer*)a)->motion_ms, y = ((const answer*)b)->motion_ms;
   return (x > y) - (x < y);
+}
+
+/* ms in which so much of the answers had come, of answers in the order of their time. */
+static double motion_of_share(const handle* h, double share) {
+  const int rank = (int)ceil(share * h->count);
+  return h->answers[rank > 1 ? rank - 1 : 0].motion_ms;
 }
 
 void slosh_device_close(void* device) {
@@ -159,12 +172,11 @@ void slosh_device_close(void* device) {
     fprintf(stderr, "motion_to_force: no force answered; it needs %g s and somebody it may hold a body for\n", kFirst);
   } else {
     qsort(h->answers, (size_t)h->count, sizeof h->answers[0], by_motion);
-    const answer* a = h->answers;
     fprintf(stderr,
-            "motion_to_force: %d jumps of %g mm, %d not answered within %g ms; from motion to force median %.2f ms, "
-            "p99 %.2f ms, longest %.2f ms\n",
-            h->jumps, 1e3 * kJump, h->missed, 1e3 * kGivenUp, a[h->count / 2].motion_ms,
-            a[(h->count - 1) * 99 / 100].motion_ms, a[h->count - 1].motion_ms);
+            "motion_to_force: %d ways of %g mm at %g m/s, %d not answered within %g ms; from motion to force median "
+            "%.2f ms, p99 %.2f ms, longest %.2f ms\n",
+            h->ways, 1e3 * kWay, kSpeed, h->missed, 1e3 * kGivenUp, motion_of_share(h, 0.5), motion_of_share(h, 0.99),
+            motion_of_share(h, 1.0));
   }
   free(h);
 }
