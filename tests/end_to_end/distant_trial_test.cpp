@@ -1,10 +1,6 @@
 // Two simulated people carry the bucket over 200 ms: programs as users start them, QUIC between them and the
 // impairment relay on its way. Needs nothing of the machine but loopback, so it is never left out.
-#include <arpa/inet.h>
 #include <gtest/gtest.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -25,19 +21,6 @@ using test::read_text;
 
 constexpr double kSeconds = 9.0;  // simulated; the bucket is tilted to both sides in it
 constexpr double kWeight = 31.2;  // N, bucket and water
-
-/// A port that nobody listens on now; 0 when there is no loopback.
-int free_port() {
-  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  sockaddr_in at{};
-  at.sin_family = AF_INET;
-  at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof at;
-  const bool bound = bind(socket, reinterpret_cast<const sockaddr*>(&at), sizeof at) == 0 &&
-                     getsockname(socket, reinterpret_cast<sockaddr*>(&at), &size) == 0;
-  close(socket);
-  return bound ? ntohs(at.sin_port) : 0;
-}
 
 /// What one person felt and did.
 struct Felt {
@@ -91,8 +74,8 @@ class DistantTrial : public test::HostedTest {
 };
 
 TEST_F(DistantTrial, TwoSimulatedPeopleCarryTheBucketOver200Milliseconds) {
-  const std::string host_at = "127.0.0.1:" + std::to_string(free_port());
-  const std::string wire_at = "127.0.0.1:" + std::to_string(free_port());
+  const std::string host_at = "127.0.0.1:" + std::to_string(test::free_port());
+  const std::string wire_at = "127.0.0.1:" + std::to_string(test::free_port());
   const std::unique_ptr<Process> host =
       run("host", {"host", "bucket", "--spacing", "0.014", "--threads", "1", "--wait", "2", "--listen",
                    host_at, "--address", wire_at, "--links", "links.txt", "--seconds",

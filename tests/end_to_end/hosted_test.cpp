@@ -1,5 +1,8 @@
 #include "hosted_test.h"
 
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -8,6 +11,18 @@
 #include "tests/support/comes.h"
 
 namespace slosh::test {
+
+int free_port() {
+  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_in at{};
+  at.sin_family = AF_INET;
+  at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof at;
+  const bool bound = bind(socket, reinterpret_cast<const sockaddr*>(&at), sizeof at) == 0 &&
+                     getsockname(socket, reinterpret_cast<sockaddr*>(&at), &size) == 0;
+  close(socket);
+  return bound ? ntohs(at.sin_port) : 0;
+}
 
 void HostedTest::SetUp() {
   std::filesystem::remove_all(test_folder());

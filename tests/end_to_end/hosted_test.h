@@ -13,6 +13,9 @@
 
 namespace slosh::test {
 
+/// A port of loopback that nobody listens on now; 0 when there is no loopback.
+int free_port();
+
 class HostedTest : public ::testing::Test {
  protected:
   void SetUp() override;

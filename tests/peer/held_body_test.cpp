@@ -154,6 +154,38 @@ TEST(HeldBody, AnotherHandThatPutNothingInMovesNobody) {
   }
 }
 
+/// What a hand does acts on its body at the host whether the hand feels it or not. Where nothing is left and
+/// the force comes back slowly, it paid for a twentieth of that, and was in debt for good (a spoon over 100
+/// ms, moved by 2 mm ten times a second: 25 mJ taken by the fluid each s, 1.2 paid).
+TEST(HeldBody, WhoHasNothingLeftFeelsWhatTheyDoAtOnce) {
+  PassivityController guard;
+  guard.restart({});
+  constexpr double kCredit = -0.05, kMost = 10.0, kSpeed = 0.2;  // J, N·s/m, m/s
+  for (int i = 0; i < 100; ++i)
+    guard.sent(guard.guard({{-5.0, 0.0, 0.0}, {}}, {}, {}, kTick, kCredit, kMost));
+  EXPECT_TRUE(guard.fires());
+  Pose hand;
+  double paid = 0.0;
+  for (int i = 1; i <= 10; ++i) {
+    hand.position.x += kSpeed * kTick;
+    const Wrench felt =
+        guard.guard({{-5.0, 0.0, 0.0}, {}}, hand, {{kSpeed, 0.0, 0.0}, {}}, kTick, kCredit, kMost);
+    EXPECT_NEAR(felt.force.x, -kMost * kSpeed, 0.2) << i << ": as hard as the device may be damped";
+    EXPECT_LE(std::abs(felt.force.x), 5.0);
+    guard.sent(felt);
+    paid -= felt.force.x * kSpeed * kTick;
+  }
+  EXPECT_NEAR(paid, 2.0 * 0.002, 5e-4);
+  // A force that gives is none, whatever it is.
+  const Wrench gives =
+      guard.guard({{5.0, 0.0, 0.0}, {}}, hand, {{kSpeed, 0.0, 0.0}, {}}, kTick, kCredit, kMost);
+  EXPECT_LE(gives.force.x, 0.0);
+  // No damper takes more than the force it stands for.
+  const Wrench little =
+      guard.guard({{-0.1, 0.0, 0.0}, {}}, hand, {{kSpeed, 0.0, 0.0}, {}}, kTick, 1.0, kMost);
+  EXPECT_NEAR(little.force.x, -0.1, 0.01);
+}
+
 /// A hand that stands and is pushed with nothing behind it: each tick's force would move it before it is
 /// counted.
 TEST(HeldBody, AHandAtRestIsNotPushedOff) {

@@ -38,7 +38,8 @@ class PassivityController {
   /// Counts what was sent until now, and gives the wrench for the hand: of `wanted` what `credit` (J that
   /// others, weight and fluid put in) and this person's own energy cover until the next sending, and where
   /// more came out than there was a damper on `twist` of at most `most` N·s/m, what the device holds. A share
-  /// that was cut grows back over kReturns. `dt` s > 0 to the next sending.
+  /// that was cut grows back over kReturns; meanwhile a damper, of `most` too, stands for what it would take
+  /// from the hand's motion. `dt` s > 0 to the next sending.
   Wrench guard(const Wrench& wanted, const Pose& hand, const Twist& twist, double dt, double credit,
                double most) noexcept {
     energy_ -= glm::dot(sent_.force, hand.position - before_.position) +
@@ -73,8 +74,15 @@ class PassivityController {
     open_ = std::clamp(share, 0.0, std::min(open_ + dt / kReturns, 1.0));
     const double change = most * dt / kDamps;
     damping_ += std::clamp(damping - damping_, -change, change);
-    return {open_ * wanted.force - damping_ * twist.linear,
-            open_ * wanted.torque - turned * damping_ * twist.angular};
+    // What is cut of a force that goes against the hand's motion is a damper at once: it can only take energy
+    // in, and where a hand felt nothing of what it does it could never pay for what its body is given at the
+    // host.
+    const double shut = 1.0 - open_;
+    const double resists = damping_ + shut * against(wanted.force, twist.linear, most);
+    const double resists_turning =
+        turned * damping_ + shut * against(wanted.torque, twist.angular, turned * most);
+    return {open_ * wanted.force - resists * twist.linear,
+            open_ * wanted.torque - resists_turning * twist.angular};
   }
   /// What the device was really sent.
   void sent(const Wrench& wrench) noexcept { sent_ = wrench; }
@@ -83,6 +91,13 @@ class PassivityController {
   bool fires() const noexcept { return fires_; }      ///< in the last guard()
 
  private:
+  /// The damper, of at most `most`, that takes as much as `force` does of a hand that moves; 0 where it
+  /// gives.
+  static double against(const glm::dvec3& force, const glm::dvec3& velocity, double most) noexcept {
+    const double pace = glm::dot(velocity, velocity);
+    return pace > 0.0 ? std::clamp(-glm::dot(force, velocity) / pace, 0.0, most) : 0.0;
+  }
+
   Pose before_;
   Wrench sent_;
   double energy_ = 0.0;

@@ -1,10 +1,10 @@
-/* A device of no hardware that measures how long own motion takes to become force, through whatever lies behind
- * it: a handle held so firmly that no force moves it, which goes 2 mm to and fro, each way begun at a known instant
- * of the clock. The force that answers changes against the way. OPTIONS: a file for one line a way (default:
- * none). What came out is told on standard error when it is closed.
+/* A device of no hardware that measures how long own motion takes to become force, through whatever lies
+ * behind it: a handle held so firmly that no force moves it, which goes 2 mm to and fro, each way begun at a
+ * known instant of the clock. The force that answers changes against the way. OPTIONS: a file for one line a way
+ * (default: none). What came out is told on standard error when it is closed.
  *
- * It moves as a hand can, and does not jump: who jumps works against no force, and a guard that counts what a hand
- * put in (peer/haptics/replica) rightly gives it none. */
+ * It moves as a hand can, and does not jump: who jumps works against no force, and a guard that counts what a
+ * hand put in (peer/haptics/replica) gives it none. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -169,14 +169,15 @@ void slosh_device_close(void* device) {
     }
   }
   if (h->count == 0) {
-    fprintf(stderr, "motion_to_force: no force answered; it needs %g s and somebody it may hold a body for\n", kFirst);
+    fprintf(stderr, "motion_to_force: no force answered; it needs %g s and somebody it may hold a body for\n",
+            kFirst);
   } else {
     qsort(h->answers, (size_t)h->count, sizeof h->answers[0], by_motion);
     fprintf(stderr,
-            "motion_to_force: %d ways of %g mm at %g m/s, %d not answered within %g ms; from motion to force median "
-            "%.2f ms, p99 %.2f ms, longest %.2f ms\n",
-            h->ways, 1e3 * kWay, kSpeed, h->missed, 1e3 * kGivenUp, motion_of_share(h, 0.5), motion_of_share(h, 0.99),
-            motion_of_share(h, 1.0));
+            "motion_to_force: %d ways of %g mm at %g m/s, %d not answered within %g ms; from motion to force "
+            "median %.2f ms, p99 %.2f ms, longest %.2f ms\n",
+            h->ways, 1e3 * kWay, kSpeed, h->missed, 1e3 * kGivenUp, motion_of_share(h, 0.5),
+            motion_of_share(h, 0.99), motion_of_share(h, 1.0));
   }
   free(h);
 }
