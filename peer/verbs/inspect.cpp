@@ -33,7 +33,7 @@ int print_plan(const std::string& name, double spacing) {
   if (spacing <= 0.0) spacing = scene.spacing > 0.0 ? scene.spacing : scene.spacing_max;
   const Plan plan = make_plan(scene, spacing, can_solve_drag(Backend::kAuto));
   const ParticleEstimate count = estimate_particles(scene, spacing);
-  std::printf("%s\nThe numbers behind it\n%s", describe(plan).c_str(),
+  std::printf("%s%s\nThe numbers behind it\n%s", describe(plan).c_str(), picture_in_words(scene).c_str(),
               plan_numbers(scene, plan, count.fluid, count.surface).c_str());
   std::fflush(stdout);
   std::printf("%s", step_cost_in_words(scene, plan, count.fluid + count.surface).c_str());

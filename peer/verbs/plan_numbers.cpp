@@ -6,6 +6,7 @@
 #include "host/report/passes.h"
 #include "peer/output/summary.h"
 #include "peer/verbs/time_estimate.h"
+#include "peer/view/foam.h"
 #include "scenes/sample.h"
 #include "sim/fluid_extremes.h"
 #include "sim/math/format.h"
@@ -86,6 +87,30 @@ std::string step_cost_in_words(const Scene& scene, const Plan& plan, double part
     return line(measure_step(world.value(), {}), "on this machine's cores, as the scene starts");
   }
   return line(particles * kStatedStepCost, "on one core of an ordinary machine, not measured");
+}
+
+std::string picture_in_words(const Scene& scene) {
+  struct Line {
+    const char* what;
+    bool there;
+    std::string reason;
+  };
+  const bool glass = std::ranges::any_of(
+      scene.bodies, [](const Body& body) { return body.mesh >= 0 && body.material.opacity < 1.0f; });
+  const FoamPlan foam = plan_foam(scene);
+  const bool fluid = !scene.fluids.empty();
+  const Line lines[] = {
+      {"the fluid's surface and its shadow", fluid, fluid ? "there is fluid" : "there is no fluid"},
+      {"glass", glass, glass ? "a body lets light through" : "no body lets light through"},
+      {"foam, spray and bubbles", foam.any(), foam.reason}};
+  std::string text = "\nEach picture\n";
+  for (const Line& line : lines)
+    if (line.there) text += format("  %-38s %s\n", line.what, line.reason.c_str());
+  if (std::ranges::all_of(lines, &Line::there)) return text;
+  text += "Left out\n";
+  for (const Line& line : lines)
+    if (!line.there) text += format("  %-38s %s\n", line.what, line.reason.c_str());
+  return text;
 }
 
 }  // namespace slosh

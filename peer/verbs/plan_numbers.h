@@ -16,6 +16,10 @@ std::string start_in_words(const Scene& scene);
 /// memory. `surface`, `fluid`: particles.
 std::string plan_numbers(const Scene& scene, const Plan& plan, double fluid, double surface);
 
+/// What its pictures have beside bodies and fluid, and what they leave out, each with its reason; a line
+/// each.
+std::string picture_in_words(const Scene& scene);
+
 /// Above so many particles (estimate_particles) `plan` does not sample the scene to take its steps.
 constexpr double kMostToStep = 150000.0;
 

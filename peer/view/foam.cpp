@@ -29,6 +29,7 @@ constexpr float kRises = 1.2f;         // of gravity, a bubble (k_b)
 constexpr float kDragged = 12.0f;      // a second, a bubble to the fluid's velocity (k_d)
 constexpr float kLongest = 0.2f;       // s between snapshots that belong together
 constexpr float kDropSize = 0.2f;      // of the spacing
+constexpr float kClear = 0.1f;         // of the spacing, off a wall
 
 float share(float value, const float (&between)[2]) {
   return std::clamp((value - between[0]) / (between[1] - between[0]), 0.0f, 1.0f);
@@ -182,12 +183,16 @@ void Foam::record(const Snapshot& snapshot) {
       if (foams_[i] && 0.5f * speed2 > kEnergy[0]) fast_.push_back(static_cast<std::uint32_t>(i));
     }
     // Still water has no foam and costs a look at its speeds.
-    if (!fast_.empty() || !drops_.empty()) {
+    const bool violent = !fast_.empty() || !drops_.empty();
+    if (violent && !walls_) walls_.emplace(scene_, kClear * spacing_);
+    if (walls_) walls_->move(snapshot.rigid.bodies);
+    if (violent) {
       sort(positions);
       move(static_cast<float>(passed), positions);
       make(static_cast<float>(passed), positions);
     }
   } else {
+    if (walls_) walls_->move(snapshot.rigid.bodies);
     drops_.clear();
   }
   before_ = snapshot.positions;
@@ -221,9 +226,15 @@ void Foam::move(float passed, std::span<const glm::vec3> positions) {
       drop.velocity += (flow - drop.velocity) * dragged - gravity * (kRises * passed);
       drop.life -= 0.5f * passed;
     }
-    // Bodies do not stop it: where no particle is any more it would fly on through a wall.
+    // What flew off alone would hang about the room.
     if (neighbours == 0.0f) drop.life = 0.0f;
-    drop.at += drop.velocity * passed;
+    const glm::vec3 to = drop.at + drop.velocity * passed;
+    if (const auto stopped = walls_->stop(drop.at, to)) {
+      drop.velocity = (*stopped - drop.at) / passed;
+      drop.at = *stopped;
+    } else {
+      drop.at = to;
+    }
   }
   const glm::vec3 low(scene_.domain_min), high(scene_.domain_max);
   std::erase_if(drops_, [&](const Drop& drop) {
@@ -255,6 +266,7 @@ void Foam::make(float passed, std::span<const glm::vec3> positions) {
       const float angle = glm::two_pi<float>() * random();
       const glm::vec3 aside = radius * (std::cos(angle) * u + std::sin(angle) * v);
       const glm::vec3 at = positions[i] + aside - random() * passed * velocities_[i];
+      if (walls_->stop_now(positions[i], at)) continue;  // its way began on a wall's other side
       drops_.push_back({at, velocities_[i] + aside * (0.2f * speed / spacing_),
                         kLives * (0.4f + 0.6f * random()), Kind::kFoam});
     }

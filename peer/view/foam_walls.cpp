@@ -1,0 +1,59 @@
+#include "peer/view/foam_walls.h"
+
+#include <algorithm>
+
+namespace slosh {
+
+FoamWalls::FoamWalls(const Scene& scene, float clearance) : clearance_(clearance) {
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Body& body = scene.bodies[i];
+    if (body.mesh < 0 || body.point_probe) continue;
+    walls_.push_back(
+        {i, mesh::MeshTree(scene.meshes[static_cast<std::size_t>(body.mesh)]), body.pose, body.pose});
+  }
+}
+
+void FoamWalls::move(std::span<const BodyState> bodies) {
+  for (Wall& wall : walls_) {
+    if (wall.body >= bodies.size()) continue;
+    const Pose& pose = bodies[wall.body].pose;
+    wall.before = placed_ ? wall.now : pose;
+    wall.now = pose;
+  }
+  placed_ = true;
+}
+
+std::optional<glm::vec3> FoamWalls::stop(const glm::vec3& from, const glm::vec3& to, bool moved) const {
+  std::optional<glm::vec3> stopped;
+  glm::vec3 end = to;
+  for (const Wall& wall : walls_) {
+    // Seen from the body, so that one that moves meets drops that stand still.
+    const glm::vec3 start(transform_point(inverse(moved ? wall.before : wall.now), glm::dvec3(from)));
+    const glm::vec3 way = glm::vec3(transform_point(inverse(wall.now), glm::dvec3(end))) - start;
+    const float length = glm::length(way);
+    if (!(length > 1e-9f)) continue;
+    const glm::vec3 low = glm::min(start, start + way) - clearance_;
+    const glm::vec3 high = glm::max(start, start + way) + clearance_;
+    if (glm::any(glm::lessThan(high, wall.tree.low())) || glm::any(glm::greaterThan(low, wall.tree.high())))
+      continue;
+    const glm::vec3 along = way / length;
+    float nearest = length + clearance_;
+    wall.tree.each_hit(start, along, [&](float distance, int) {
+      if (distance >= 0.0f) nearest = std::min(nearest, distance);
+    });
+    if (nearest >= length + clearance_) continue;
+    end = glm::vec3(
+        transform_point(wall.now, glm::dvec3(start + along * std::max(nearest - clearance_, 0.0f))));
+    stopped = end;
+  }
+  return stopped;
+}
+
+std::optional<glm::vec3> FoamWalls::stop(const glm::vec3& from, const glm::vec3& to) const {
+  return stop(from, to, true);
+}
+std::optional<glm::vec3> FoamWalls::stop_now(const glm::vec3& from, const glm::vec3& to) const {
+  return stop(from, to, false);
+}
+
+}  // namespace slosh

@@ -1,0 +1,43 @@
+// The bodies' faces, which drops of foam do not pass.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "scenes/mesh/tree.h"
+#include "scenes/scene.h"
+#include "sim/snapshot.h"
+
+namespace slosh {
+
+class FoamWalls {
+ public:
+  /// A tree a body that has a mesh. `clearance`: m that a drop keeps off a face.
+  FoamWalls(const Scene& scene, float clearance);
+
+  /// The bodies of a new snapshot, one a body of the scene; those before are kept for stop().
+  void move(std::span<const BodyState> bodies);
+
+  /// Where a drop that goes from `from`, among the bodies as they were, to `to`, among them as they are, is
+  /// stopped by a face on its way: before it, and moved along with it. Nothing: it gets there. m, world.
+  std::optional<glm::vec3> stop(const glm::vec3& from, const glm::vec3& to) const;
+  /// The same among the bodies as they are.
+  std::optional<glm::vec3> stop_now(const glm::vec3& from, const glm::vec3& to) const;
+
+ private:
+  struct Wall {
+    std::size_t body;
+    mesh::MeshTree tree;
+    Pose before;
+    Pose now;
+  };
+  std::optional<glm::vec3> stop(const glm::vec3& from, const glm::vec3& to, bool moved) const;
+
+  std::vector<Wall> walls_;
+  float clearance_;
+  bool placed_ = false;
+};
+
+}  // namespace slosh
