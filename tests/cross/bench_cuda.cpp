@@ -1,6 +1,6 @@
 // A pool of fluid at growing counts, step after step: CSV on standard output.
-// Usage: bench_cuda [drag] [cuda|cpu [particles…]]
-// At rest; or with `drag` turning, without viscosity, at 50 Pa·s by explicit steps and at 50 Pa·s solved.
+// Usage: bench_cuda [drag] [paper|consistent|corrected] [cuda|cpu] [particles…]
+// With the default model, or the one that is named. At rest; or with `drag` turning, without viscosity, at 50 Pa·s by explicit steps and at 50 Pa·s solved.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -30,8 +30,9 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-testing::Tank pool_for(Drag drag, double particles) {
+testing::Tank pool_for(ParticleModel model, Drag drag, double particles) {
   testing::Tank pool = testing::pool(particles);
+  pool.scene.model = model;
   pool.scene.bodies[0].measured = false;
   if (drag == Drag::kResting) return pool;
   pool.scene.fluids[0].dynamic_viscosity = drag == Drag::kNone ? 0.0 : 50.0;
@@ -52,8 +53,8 @@ struct Length {
 };
 
 // False when the backend is not there.
-bool measure(Backend backend, Drag drag, double particles, const Length& length) {
-  const testing::Tank pool = pool_for(drag, particles);
+bool measure(Backend backend, ParticleModel model, Drag drag, double particles, const Length& length) {
+  const testing::Tank pool = pool_for(model, drag, particles);
   Result<World> made =
       make_world(pool.scene, pool.sampled, make_plan(pool.scene, pool.sampled.spacing, drag == Drag::kSolved),
                  {0, backend});
@@ -80,8 +81,8 @@ bool measure(Backend backend, Drag drag, double particles, const Length& length)
   const auto of = [&](const std::vector<double>& times) {
     return drag == Drag::kResting ? median(times) : mean(times);
   };
-  std::printf("\"%s\",\"%s\",%zu,%zu,%.3f,%.4f,%.4f,%.4f,%.4f,%.3f,%.1f,%llu\n", world.backend().c_str(),
-              name(drag), world.fluid_count(), world.boundary_count(), 1e3 * world.plan().time_step,
+  std::printf("\"%s\",%s,\"%s\",%zu,%zu,%.3f,%.4f,%.4f,%.4f,%.4f,%.3f,%.1f,%llu\n", world.backend().c_str(),
+              name(model), name(drag), world.fluid_count(), world.boundary_count(), 1e3 * world.plan().time_step,
               1e3 * seconds, 1e3 * of(sort), 1e3 * of(density), 1e3 * of(force),
               1e9 * seconds / count, 1.0 / seconds, static_cast<unsigned long long>(after.retired));
   std::fflush(stdout);
@@ -91,23 +92,36 @@ bool measure(Backend backend, Drag drag, double particles, const Length& length)
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::vector<std::string> given(argv + 1, argv + argc);
-  std::size_t at = 0;
-  const bool drag = at < given.size() && given[at] == "drag";
-  at += drag;
-  const Backend backend = at < given.size() && given[at] == "cpu" ? Backend::kCpu : Backend::kCuda;
+  bool drag = false;
+  Backend backend = Backend::kCuda;
+  ParticleModel model = Scene{}.model;
   std::vector<double> sizes;
-  for (++at; at < given.size(); ++at) sizes.push_back(std::atof(given[at].c_str()));
+  for (const std::string word : std::vector<std::string>(argv + 1, argv + argc)) {
+    const auto* const named = std::find(std::begin(kParticleModelNames), std::end(kParticleModelNames), word);
+    if (word == "drag") {
+      drag = true;
+    } else if (word == "cuda" || word == "cpu") {
+      backend = word == "cpu" ? Backend::kCpu : Backend::kCuda;
+    } else if (named != std::end(kParticleModelNames)) {
+      model = static_cast<ParticleModel>(named - std::begin(kParticleModelNames));
+    } else if (std::atof(word.c_str()) >= 1.0) {
+      sizes.push_back(std::atof(word.c_str()));
+    } else {
+      std::fprintf(stderr, "bench_cuda: '%s' is neither drag, nor a model, nor cuda or cpu, nor a count of particles\n",
+                   word.c_str());
+      return 2;
+    }
+  }
   if (sizes.empty()) sizes = {32768, 131072, 524288, 1048576, 2097152};
   std::puts(
-      "backend,drag,fluid_particles,body_particles,time_step_ms,step_ms,sort_ms,density_ms,force_ms,ns_per_"
+      "backend,model,drag,fluid_particles,body_particles,time_step_ms,step_ms,sort_ms,density_ms,force_ms,ns_per_"
       "particle,steps_per_s,retired");
   const Length length = backend == Backend::kCuda ? Length{100, 200} : Length{5, 20};
   const std::vector<Drag> ways =
       drag ? std::vector{Drag::kNone, Drag::kStepped, Drag::kSolved} : std::vector{Drag::kResting};
   for (const double size : sizes) {
     for (const Drag way : ways) {
-      if (!measure(backend, way, size, length)) return 1;
+      if (!measure(backend, model, way, size, length)) return 1;
     }
   }
   return 0;
