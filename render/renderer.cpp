@@ -254,12 +254,13 @@ void Renderer::Parts::draw_scene() {
     prepare_splats(frame, options, splats);
     if (chords) splats.all = splats.spheres;
     if (fast) leave_out_hidden(frame, options, splats);
-    if (options.surface == Surface::kOurs && !splats.empty()) {
-      if (!std::exchange(centers_sorted, true)) centers.sort(frame);
-      centers.move(frame, splats);
-    }
     drew_fluid = !splats.empty();
+    const bool moves = options.surface == Surface::kOurs && drew_fluid;
+    const bool anew = moves && !std::exchange(centers_sorted, true);
+    if (anew) centers.sort(frame);
+    if (moves && !compute) centers.move(frame, splats);
     if (drew_fluid) fluid_passes->upload(splats);
+    if (moves && compute) fluid_passes->smooth_centers(centers, frame.particle_radius, anew);
   });
   if (drew_fluid) {
     run("front depth", [&] { fluid_passes->splat_front(targets); });

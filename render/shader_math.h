@@ -6,6 +6,7 @@
 
 namespace slosh::shader {
 
+using glm::mat3;
 using glm::vec2;
 using glm::vec3;
 using glm::vec4;
@@ -13,6 +14,7 @@ using glm::vec4;
 using glm::abs;
 using glm::clamp;
 using glm::cross;
+using glm::determinant;
 using glm::dot;
 using glm::exp;
 using glm::exp2;
@@ -39,6 +41,7 @@ using glm::sqrt;
 #include "render/shaders/optics.glsl"
 #include "render/shaders/fluid_look.glsl"
 #include "render/shaders/room.glsl"
+#include "render/shaders/smoothing.glsl"
 #include "render/shaders/sphere.glsl"
 #include "render/shaders/thickness.glsl"
 // clang-format on

@@ -132,6 +132,9 @@ void Program::set(const char* uniform, const glm::vec2& value) const {
 void Program::set(const char* uniform, const glm::ivec2& value) const {
   glProgramUniform2iv(name(), glGetUniformLocation(name(), uniform), 1, glm::value_ptr(value));
 }
+void Program::set(const char* uniform, const glm::ivec3& value) const {
+  glProgramUniform3iv(name(), glGetUniformLocation(name(), uniform), 1, glm::value_ptr(value));
+}
 void Program::set(const char* uniform, const glm::vec3& value) const {
   glProgramUniform3fv(name(), glGetUniformLocation(name(), uniform), 1, glm::value_ptr(value));
 }
@@ -157,13 +160,16 @@ void StreamBuffer::upload(std::span<const std::byte> bytes) {
   glNamedBufferSubData(buffer_.name(), 0, static_cast<GLsizeiptr>(bytes.size()), bytes.data());
 }
 
+void StreamBuffer::reserve(std::size_t bytes) {
+  if (!buffer_) buffer_ = make_buffer();
+  if (bytes <= capacity_) return;
+  capacity_ = bytes + bytes / 2;
+  glNamedBufferData(buffer_.name(), static_cast<GLsizeiptr>(capacity_), nullptr, GL_STREAM_DRAW);
+}
+
 void StreamBuffer::zero(std::size_t bytes) {
   if (bytes == 0) return;
-  if (!buffer_) buffer_ = make_buffer();
-  if (bytes > capacity_) {
-    capacity_ = bytes;
-    glNamedBufferData(buffer_.name(), static_cast<GLsizeiptr>(capacity_), nullptr, GL_STREAM_DRAW);
-  }
+  reserve(bytes);
   glClearNamedBufferSubData(buffer_.name(), GL_R32UI, 0, static_cast<GLsizeiptr>(bytes), GL_RED_INTEGER,
                             GL_UNSIGNED_INT, nullptr);
 }

@@ -85,6 +85,7 @@ class Program : public Object<delete_program> {
   void set(const char* uniform, float value) const;
   void set(const char* uniform, const glm::vec2& value) const;
   void set(const char* uniform, const glm::ivec2& value) const;
+  void set(const char* uniform, const glm::ivec3& value) const;
   void set(const char* uniform, const glm::vec3& value) const;
   void set(const char* uniform, const glm::vec4& value) const;
   void set(const char* uniform, const glm::mat4& value) const;
@@ -105,6 +106,8 @@ class StreamBuffer {
   void upload(std::span<const T> items) {
     upload(std::as_bytes(items));
   }
+  /// Makes it so many bytes of anything.
+  void reserve(std::size_t bytes);
   /// Makes it so many bytes of zeros, by the GPU.
   void zero(std::size_t bytes);
   GLuint name() const { return buffer_.name(); }

@@ -8,6 +8,7 @@ namespace {
 // As pixel_main.glsl and splat_rows.glsl have them.
 constexpr glm::ivec2 kPixelGroup(16, 8);
 constexpr std::size_t kRowsInGroup = 4;
+constexpr std::size_t kEachInGroup = 64;
 constexpr std::size_t kMostGroups = 32768;  // on an axis; at least 65535 are allowed
 
 }  // namespace
@@ -50,14 +51,25 @@ void finish_compute() {
                   GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
-void run_rows(const Program& program, std::size_t count) {
+namespace {
+
+void run_groups(const Program& program, std::size_t count, std::size_t in_group) {
   if (count == 0) return;
-  const std::size_t groups = (count + kRowsInGroup - 1) / kRowsInGroup;
+  const std::size_t groups = (count + in_group - 1) / in_group;
   const std::size_t across = std::min(groups, kMostGroups);
   program.use();
   program.set("count", static_cast<int>(count));
   glDispatchCompute(static_cast<GLuint>(across), static_cast<GLuint>((groups + across - 1) / across), 1);
   finish_compute();
+}
+
+}  // namespace
+
+void run_each(const Program& program, std::size_t count) {
+  run_groups(program, count, kEachInGroup);
+}
+void run_rows(const Program& program, std::size_t count) {
+  run_groups(program, count, kRowsInGroup);
 }
 
 }  // namespace slosh::gl

@@ -43,6 +43,10 @@ Result<FluidPasses> FluidPasses::create(bool fast, bool compute, const std::vect
         load(passes.normal_program_, gl::Program::create("tiles.vert", "normal.frag"))}) {
     if (!loaded) return loaded.error();
   }
+  if (compute) {
+    const auto loaded = load(passes.centers_, SmoothCentersOnGpu::create());
+    if (!loaded) return loaded.error();
+  }
   passes.no_vertices_ = gl::make_vertex_array();
   passes.tile_vertices_ = gl::make_vertex_array();
   glEnableVertexArrayAttrib(passes.tile_vertices_.name(), 0);
@@ -61,6 +65,12 @@ void FluidPasses::upload(const Splats& splats) {
   back_buffer_.upload(std::span<const glm::vec4>(splats.back));
   back_count_ = splats.back.size();
   tile_corners_ = static_cast<GLsizei>(splats.tiles.size());
+}
+
+void FluidPasses::smooth_centers(const SmoothCenters& centers, float particle_radius, bool anew) {
+  if (anew) centers_.upload(centers);
+  centers_.move(centers, particle_radius, sphere_buffer_, shape_buffer_, front_count_);
+  shaped_ = true;
 }
 
 void FluidPasses::splat(const gl::Program& program, const gl::PixelTarget& target, GLenum blending,

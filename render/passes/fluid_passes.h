@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "render/gl/pixel_program.h"
+#include "render/passes/smooth_centers_on_gpu.h"
 #include "render/passes/splats.h"
 #include "render/passes/surface_filter.h"
 #include "render/passes/targets.h"
@@ -20,6 +21,9 @@ class FluidPasses {
 
   /// Uploads this frame's splats and tiles.
   void upload(const Splats& splats);
+  /// Moves and shapes what was uploaded, by a compute shader, after `centers` was sorted; `anew`: since the
+  /// last call. The view's uniform block is bound.
+  void smooth_centers(const SmoothCenters& centers, float particle_radius, bool anew);
   /// 5.1. Reads the splats; writes front and back.
   void splat_front(const Targets& targets);
   void splat_back(const Targets& targets);
@@ -47,6 +51,7 @@ class FluidPasses {
   gl::TileDraw tiles() const { return {&tile_vertices_, tile_corners_}; }
   void draw_data(const gl::Program& program, const Targets& targets, const gl::Framebuffer& target);
 
+  SmoothCentersOnGpu centers_;  ///< for compute
   gl::Program front_program_;
   gl::Program shaped_program_;  ///< front of splats with shapes
   gl::Program back_program_;

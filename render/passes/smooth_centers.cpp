@@ -7,19 +7,12 @@
 #include <span>
 #include <thread>
 
+#include "render/shader_math.h"
+
 namespace slosh {
 namespace {
 
 constexpr float kReach = 4.0f;  // particle radii, 2.5 spacings: some 60 neighbours inside the fluid
-constexpr float kShare = 0.9f;  // of the way to the mean (their λ)
-constexpr float kFlat = 0.22f;  // of the reach: from a flat surface's particles to their mean
-
-// Of ellipsoids, in particle radii. Along a flat surface, and in what is round: a drop, or a particle inside
-// that shows through a gap; the least that an ellipsoid is thick, which is what a sheet of one layer has.
-constexpr float kAlong = 2.2f;
-constexpr float kRound = 1.2f;
-constexpr float kThin = 0.6f;
-constexpr float kFull = 0.15f;  // of the reach squared: a neighbourhood's variance where it is full
 
 constexpr std::size_t kWorthAThread = 4000;  // particles: some 2 ms of work
 
@@ -39,90 +32,47 @@ float total(Lanes lanes) {
   return lanes[0];
 }
 
-/// Weighted moments of the ways to a particle's neighbours, itself among them. m
-class Neighbourhood {
- public:
-  /// Of all in `runs` that lie within reach of `at`. Up to kWide - 1 places behind a run are read.
-  Neighbourhood(const std::array<std::vector<float>, 3>& places, std::span<const Run> runs,
-                const glm::vec3& at, float reach) {
-    const float inverse = 1.0f / reach;
-    const float squared_reach = reach * reach;
-    Lanes w{}, x{}, y{}, z{}, xx{}, yy{}, zz{}, xy{}, yz{}, zx{};
-    for (const Run& run : runs) {
-      for (std::uint32_t k = run.first; k < run.end; k += kWide) {
-        const float* px = &places[0][k];
-        const float* py = &places[1][k];
-        const float* pz = &places[2][k];
-        const int here = static_cast<int>(run.end - k);
-        for (int i = 0; i < kWide; ++i) {
-          const float dx = px[i] - at.x;
-          const float dy = py[i] - at.y;
-          const float dz = pz[i] - at.z;
-          const float squared = dx * dx + dy * dy + dz * dz;
-          const float share = std::sqrt(squared) * inverse;
-          const float whole = 1.0f - share * share * share;
-          const float weight = (i < here) & (squared < squared_reach) ? whole : 0.0f;
-          const float wx = weight * dx;
-          const float wy = weight * dy;
-          const float wz = weight * dz;
-          w[i] += weight;
-          x[i] += wx;
-          y[i] += wy;
-          z[i] += wz;
-          xx[i] += wx * dx;
-          yy[i] += wy * dy;
-          zz[i] += wz * dz;
-          xy[i] += wx * dy;
-          yz[i] += wy * dz;
-          zx[i] += wz * dx;
-        }
+/// Of all in `runs` that lie within reach of `at`. Up to kWide - 1 places behind a run are read.
+shader::Neighbourhood neighbourhood_of(const std::array<std::vector<float>, 3>& places,
+                                       std::span<const Run> runs, const glm::vec3& at, float reach) {
+  const float inverse = 1.0f / reach;
+  const float squared_reach = reach * reach;
+  Lanes w{}, x{}, y{}, z{}, xx{}, yy{}, zz{}, xy{}, yz{}, zx{};
+  for (const Run& run : runs) {
+    for (std::uint32_t k = run.first; k < run.end; k += kWide) {
+      const float* px = &places[0][k];
+      const float* py = &places[1][k];
+      const float* pz = &places[2][k];
+      const int here = static_cast<int>(run.end - k);
+      for (int i = 0; i < kWide; ++i) {
+        const float dx = px[i] - at.x;
+        const float dy = py[i] - at.y;
+        const float dz = pz[i] - at.z;
+        const float squared = dx * dx + dy * dy + dz * dz;
+        const float share = std::sqrt(squared) * inverse;
+        const float whole = shader::neighbour_weight(share);
+        const float weight = (i < here) & (squared < squared_reach) ? whole : 0.0f;
+        const float wx = weight * dx;
+        const float wy = weight * dy;
+        const float wz = weight * dz;
+        w[i] += weight;
+        x[i] += wx;
+        y[i] += wy;
+        z[i] += wz;
+        xx[i] += wx * dx;
+        yy[i] += wy * dy;
+        zz[i] += wz * dz;
+        xy[i] += wx * dy;
+        yz[i] += wy * dz;
+        zx[i] += wz * dx;
       }
     }
-    weights_ = total(w);
-    sum_ = {total(x), total(y), total(z)};
-    square_ = {total(xx), total(yy), total(zz)};
-    mixed_ = {total(xy), total(yz), total(zx)};
   }
-
-  /// Where the centre goes.
-  glm::vec3 step(float reach) const {
-    if (weights_ <= 0.0f) return glm::vec3(0.0f);
-    // A particle of a flat surface would go inwards by a length that is known: without it, what sticks out
-    // goes in, what lies deep comes out, and the surface as a whole stays. Inside, and in a thin sheet, means
-    // are near: no correction.
-    const glm::vec3 way = sum_ / weights_;
-    const float length = glm::length(way);
-    const float flat = kFlat * reach;
-    const float kept = glm::smoothstep(0.3f * flat, 0.8f * flat, length) * flat / std::max(length, 1e-9f);
-    return kShare * (1.0f - kept) * way;
-  }
-
-  /// m². Radii go with the variances, as theirs do; so no axes have to be found.
-  glm::mat3 ellipsoid(float reach, float radius) const {
-    const float ball = kRound * kRound * radius * radius;
-    if (weights_ < kFewNeighbours) return glm::mat3(ball);
-    const glm::vec3 mean = sum_ / weights_;
-    const float scale = 1.0f / (kFull * reach * reach);
-    const glm::vec3 d = (square_ / weights_ - mean * mean) * scale;
-    const glm::vec3 m = (mixed_ / weights_ - mean * glm::vec3(mean.y, mean.z, mean.x)) * scale;
-    const glm::mat3 variance(d.x, m.x, m.z, m.x, d.y, m.y, m.z, m.y, d.z);
-    // 1 where it is as wide in every direction.
-    const float third = (d.x + d.y + d.z) / 3.0f;
-    const float round = glm::determinant(variance) / std::max(third * third * third, 1e-9f);
-    const float size = radius * glm::mix(kAlong, kRound, glm::smoothstep(0.7f, 0.95f, round));
-    const glm::mat3 wide = size * size * (variance * variance) + glm::mat3(kThin * kThin * radius * radius);
-    // Few neighbours say little about a shape.
-    const float known = glm::smoothstep(kFewNeighbours, 2.0f * kFewNeighbours, weights_);
-    return glm::mat3(ball) * (1.0f - known) + wide * known;
-  }
-
- private:
-  static constexpr float kFewNeighbours = 4.0f;  // in sum of weights, itself counting as one
-  float weights_ = 0.0f;
-  glm::vec3 sum_{0.0f};
-  glm::vec3 square_{0.0f};
-  glm::vec3 mixed_{0.0f};  // xy, yz, zx
-};
+  return {total(w),
+          {total(x), total(y), total(z)},
+          {total(xx), total(yy), total(zz)},
+          {total(xy), total(yz), total(zx)}};
+}
 
 bool counts(const Frame& frame, std::size_t i) {
   const glm::vec3& at = frame.particles[i];
@@ -213,8 +163,8 @@ SmoothCenters::Smoothed SmoothCenters::smooth(const glm::vec3& at, float radius)
       runs[count++] = {begin_[row + low.x], begin_[row + high.x + 1]};
     }
   }
-  const Neighbourhood around(at_, {runs.data(), count}, at, reach_);
-  return {at + around.step(reach_), around.ellipsoid(reach_, radius)};
+  const shader::Neighbourhood around = neighbourhood_of(at_, {runs.data(), count}, at, reach_);
+  return {at + shader::smoothing_step(around, reach_), shader::smoothing_ellipsoid(around, reach_, radius)};
 }
 
 void SmoothCenters::move(const Frame& frame, Splats& splats) {

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 #include "render/frame.h"
@@ -25,6 +26,16 @@ class SmoothCenters {
   /// within kReach particle radii, and gives each its shape. A particle alone stays where and what it is.
   /// What was found of a particle serves all views until the next sort().
   void move(const Frame& frame, Splats& splats);
+
+  /// What sort() made, for whoever moves splats in another way.
+  struct Cells {
+    float reach;        ///< m, also a cell's side
+    glm::ivec3 lowest;  ///< cells from the origin; who is outside counts as in the nearest
+    glm::ivec3 count;
+    std::span<const std::uint32_t> begin;         ///< a cell each, x fastest, and the end
+    const std::array<std::vector<float>, 3>& at;  ///< m, world, by cell
+  };
+  Cells cells() const { return {reach_, lowest_, cells_, begin_, at_}; }
 
  private:
   /// Of a particle, in the world.

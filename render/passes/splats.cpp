@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "render/passes/frame_block.h"
+#include "render/shader_math.h"
 
 namespace slosh {
 namespace {
@@ -57,23 +58,8 @@ class TileGrid {
 }  // namespace
 
 SplatShape shape_of(const glm::mat3& matrix, const glm::vec3& center) {
-  // A point's place in the picture moves with its depth where it lies off the middle: that is a shear. Then a
-  // Cholesky factor, whose rows are the two axes of the picture and the depth.
-  const float depth = -center.z;
-  const glm::vec3 x(1.0f, 0.0f, center.x / depth);
-  const glm::vec3 y(0.0f, 1.0f, center.y / depth);
-  const glm::vec3 away(0.0f, 0.0f, -1.0f);
-  const glm::vec3 mx = matrix * x;
-  const glm::vec3 my = matrix * y;
-  SplatShape shape;
-  shape.outline.x = std::sqrt(std::max(glm::dot(x, mx), 1e-12f));
-  shape.outline.y = glm::dot(y, mx) / shape.outline.x;
-  shape.outline.z = std::sqrt(std::max(glm::dot(y, my) - shape.outline.y * shape.outline.y, 1e-12f));
-  shape.tilt.x = glm::dot(away, mx) / shape.outline.x;
-  shape.tilt.y = (glm::dot(away, my) - shape.tilt.x * shape.outline.y) / shape.outline.z;
-  shape.depth_radius =
-      std::sqrt(std::max(glm::dot(away, matrix * away) - glm::dot(shape.tilt, shape.tilt), 1e-12f));
-  return shape;
+  const shader::EllipsoidOutline shape = shader::ellipsoid_outline(matrix, center);
+  return {shape.outline, shape.depth_radius, shape.tilt, {}};
 }
 
 void prepare_splats(const Frame& frame, const RenderOptions& options, Splats& out) {

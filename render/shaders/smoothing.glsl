@@ -1,0 +1,82 @@
+// A particle's centre and ellipsoid from its neighbourhood (Yu & Turk 2013). GLSL and C++; pure functions.
+
+const float kSmoothingShare = 0.9f;  // of the way to the mean (their λ)
+const float kSmoothingFlat = 0.22f;  // of the reach: from a flat surface's particles to their mean
+
+// Of ellipsoids, in particle radii. Along a flat surface, and in what is round: a drop, or a particle inside that shows through
+// a gap; the least that an ellipsoid is thick, which is what a sheet of one layer has.
+const float kEllipsoidAlong = 2.2f;
+const float kEllipsoidRound = 1.2f;
+const float kEllipsoidThin = 0.6f;
+const float kFullVariance = 0.15f;  // of the reach squared: a neighbourhood's variance where it is full
+const float kFewNeighbours = 4.0f;  // in sum of weights, itself counting as one
+
+// Weighted moments of the ways to a particle's neighbours, itself among them. m
+struct Neighbourhood {
+  float weights;
+  vec3 sum;
+  vec3 square;
+  vec3 mixed;  // xy, yz, zx
+};
+
+// At a share of the reach, below 1.
+SHARED float neighbour_weight(float share) { return 1.0f - share * share * share; }
+
+// Where the centre goes.
+SHARED vec3 smoothing_step(Neighbourhood n, float reach) {
+  if (n.weights <= 0.0f) return vec3(0.0f);
+  // A particle of a flat surface would go inwards by a length that is known: without it, what sticks out goes in, what lies deep
+  // comes out, and the surface as a whole stays. Inside, and in a thin sheet, means are near: no correction.
+  vec3 way = n.sum / n.weights;
+  float off = length(way);
+  float flat_way = kSmoothingFlat * reach;
+  float kept = smoothstep(0.3f * flat_way, 0.8f * flat_way, off) * flat_way / max(off, 1e-9f);
+  return kSmoothingShare * (1.0f - kept) * way;
+}
+
+// m². Radii go with the variances, as theirs do; so no axes have to be found.
+SHARED mat3 smoothing_ellipsoid(Neighbourhood n, float reach, float radius) {
+  float ball = kEllipsoidRound * kEllipsoidRound * radius * radius;
+  if (n.weights < kFewNeighbours) return mat3(ball);
+  vec3 mean = n.sum / n.weights;
+  float scale = 1.0f / (kFullVariance * reach * reach);
+  vec3 d = (n.square / n.weights - mean * mean) * scale;
+  vec3 m = (n.mixed / n.weights - mean * vec3(mean.y, mean.z, mean.x)) * scale;
+  mat3 variance = mat3(d.x, m.x, m.z, m.x, d.y, m.y, m.z, m.y, d.z);
+  // 1 where it is as wide in every direction.
+  float third = (d.x + d.y + d.z) / 3.0f;
+  float roundness = determinant(variance) / max(third * third * third, 1e-9f);
+  float size = radius * mix(kEllipsoidAlong, kEllipsoidRound, smoothstep(0.7f, 0.95f, roundness));
+  mat3 wide = size * size * (variance * variance) + mat3(kEllipsoidThin * kEllipsoidThin * radius * radius);
+  // Few neighbours say little about a shape.
+  float known = smoothstep(kFewNeighbours, 2.0f * kFewNeighbours, n.weights);
+  return mat3(ball) * (1.0f - known) + wide * known;
+}
+
+// passes/splats.h, SplatShape.
+struct EllipsoidOutline {
+  vec3 outline;
+  float depth_radius;
+  vec2 tilt;
+};
+
+// Of the points p about `center` (eye axes, m, in front of the eye) with pᵀ matrix⁻¹ p = 1. To first order in its size over its
+// distance.
+SHARED EllipsoidOutline ellipsoid_outline(mat3 matrix, vec3 center) {
+  // A point's place in the picture moves with its depth where it lies off the middle: that is a shear. Then a Cholesky
+  // factor, whose rows are the two axes of the picture and the depth.
+  float depth = -center.z;
+  vec3 x = vec3(1.0f, 0.0f, center.x / depth);
+  vec3 y = vec3(0.0f, 1.0f, center.y / depth);
+  vec3 away = vec3(0.0f, 0.0f, -1.0f);
+  vec3 mx = matrix * x;
+  vec3 my = matrix * y;
+  EllipsoidOutline shape;
+  shape.outline.x = sqrt(max(dot(x, mx), 1e-12f));
+  shape.outline.y = dot(y, mx) / shape.outline.x;
+  shape.outline.z = sqrt(max(dot(y, my) - shape.outline.y * shape.outline.y, 1e-12f));
+  shape.tilt.x = dot(away, mx) / shape.outline.x;
+  shape.tilt.y = (dot(away, my) - shape.tilt.x * shape.outline.y) / shape.outline.z;
+  shape.depth_radius = sqrt(max(dot(away, matrix * away) - dot(shape.tilt, shape.tilt), 1e-12f));
+  return shape;
+}
