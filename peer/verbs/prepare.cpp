@@ -81,6 +81,15 @@ Result<RunFolder> take_folder(const ShowOptions& options, const Scene& scene, bo
   return RunFolder::take_free(std::filesystem::path(options.runs) / name);
 }
 
+/// Steps of 1/`rate` s, of as many sub-steps no longer than the plan's own steps.
+void step_at(Plan& plan, double rate) {
+  constexpr double kRounding = 1e-9;
+  const double own = plan.time_step / plan.sub_steps;
+  plan.time_step = 1.0 / rate;
+  plan.sub_steps = std::max(1, static_cast<int>(std::ceil(plan.time_step / own - kRounding)));
+  plan.max_speed = speed_limit(plan, plan.time_step / plan.sub_steps);
+}
+
 /// Whether a recording can be begun there later. Errors: no such folder, not writable, something is there.
 Result<bool> check_record(const std::string& record) {
   if (record.empty()) return true;
@@ -231,6 +240,7 @@ Result<Prepared> prepare(const PlayOptions& options, bool headless, Progress& pr
   if (!sampled) return sampled.error();
   p.sampled = std::move(sampled.value());
   p.plan = make_plan(p.scene, spacing.value().metres, can_solve_drag(p.backend));
+  if (options.step_rate > 0.0) step_at(p.plan, options.step_rate);
   return p;
 }
 

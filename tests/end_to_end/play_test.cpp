@@ -135,6 +135,26 @@ TEST_F(PlayTest, WithoutGnuplotTheSheetIsMissedInWordsAndNothingElse) {
   EXPECT_FALSE(std::filesystem::exists(test::test_folder() / "ten"));
 }
 
+/// To feel what a slower host is like: the world meets the hand 100 times a second in place of 344, in as many
+/// sub-steps as its own steps ask for. No force is asserted: it goes by the wall's clock.
+TEST_F(PlayTest, AWorldStepsAsSeldomAsAskedFor) {
+  const Outcome outcome =
+      test::slosh({"play", "spoon", "--headless", "--no-render", "--spacing", "0.012", "--threads", "1",
+                   "--seconds", "1", "--device", "operator:tight", "--step-rate", "100", "--out", "out"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const json summary = json::parse(read_text(out() / "summary.json"));
+  EXPECT_DOUBLE_EQ(summary["time_step_s"], 0.01);
+  expect_rows(out(), 1, 1.0);
+  for (const char* other : {"--unpaced", "--record"}) {
+    std::vector<std::string> words{"play", "spoon", "--headless", "--step-rate", "100", other};
+    if (words.back() == "--record") words.push_back("run.rec");
+    const Outcome refused = test::slosh(words);
+    EXPECT_EQ(refused.code, 2) << other;
+    EXPECT_NE(refused.err.find("--step-rate"), std::string::npos) << refused.err;
+  }
+  EXPECT_EQ(test::slosh({"play", "spoon", "--headless", "--step-rate", "5"}).code, 2);
+}
+
 TEST_F(PlayTest, ARecordedRunCanBeReplayed) {
   const std::vector<std::string> common = {"play",      "probe", "--no-render", "--threads", "1",
                                            "--seconds", "1",     "--spacing",   "0.012",     "--out"};
