@@ -44,13 +44,14 @@ FarSide far_side(vec3 inside, float refraction, float back, float scene, vec2 mi
   vec3 up = eye_from_world[1].xyz;
   float down = -dot(inside, up);
   float flat_enough = smoothstep(0.0, 0.06, (1.0 - down * down) * refraction * refraction - 1.0) * step(0.0, down);
-  float apart = smoothstep(0.0, 0.25, (scene - back) / splat.x);
+  float apart = (scene - back) / splat.x;
   vec2 reach = vec2(0.0, clamp(2.5 * splat.x * splat.y / back, 2.0, 24.0));
   float above = back_at(middle + reach);
   float below = back_at(middle - reach);
   vec3 along = eye_position(middle + reach, above > 0.0 ? above : back) - eye_position(middle - reach, below > 0.0 ? below : back);
   float upright = smoothstep(0.55, 0.9, abs(dot(along, up)) * inversesqrt(dot(along, along) + 1.0e-12));
-  return FarSide(flat_enough * apart * (1.0 - upright), apart * upright);
+  // Along a line of sight that grazes a wet wall there is some way from the splats to it.
+  return FarSide(flat_enough * smoothstep(0.0, 0.25, apart) * (1.0 - upright), smoothstep(1.5, 3.0, apart) * upright);
 }
 
 // The longest way through the fluid, m, of four pixels eight splats away.

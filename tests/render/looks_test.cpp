@@ -188,5 +188,90 @@ TEST_F(LooksTest, AClearPaneIsSeenThrough) {
   }
 }
 
+/// A fluid 65 mm deep, in a tank of such a look, on a table.
+FloatImage pool_picture(Renderer& renderer, const FluidLook& fluid, const MeshLook& tank, const View& view) {
+  const glm::vec3 low(-0.15f, 0.0f, -0.09f), high(0.15f, 0.12f, 0.09f);
+  constexpr float kSpacing = 0.006f;
+  const auto points = kit::make_fluid(low + 0.5f * kSpacing, high - 0.5f * kSpacing, kSpacing,
+                                      [](float, float) { return 0.065f; });
+  const std::vector<std::uint8_t> fluids(points.size(), 0);
+  const auto add = [&](const kit::Shape& shape, const MeshLook& look) {
+    return MeshInstance{renderer.add_mesh(shape.positions, shape.normals, shape.triangles), glm::mat4(1.0f),
+                        look};
+  };
+  Frame frame;
+  frame.meshes = {add(kit::make_box({-0.5f, -0.05f, -0.4f}, {0.5f, -0.006f, 0.4f}),
+                      {{0.42f, 0.22f, 0.11f}, 0.0f, 0.55f, 1.0f}),
+                  add(kit::make_tank(low, high, 0.005f), tank)};
+  frame.view = view;
+  frame.particles = points;
+  frame.particle_fluid = fluids;
+  frame.fluids = {fluid};
+  frame.particle_radius = 0.62f * kSpacing;
+  renderer.draw(frame);
+  return renderer.read_buffer(Buffer::kFinalColor);
+}
+
+TEST_F(LooksTest, WaterAtAWetWallHasNoSpecks) {
+  // Along a grazed opaque wall, where there is some way from splats to wall: no pixel is far off those beside
+  // it.
+  RenderOptions options = small();
+  options.width = 320;
+  options.height = 240;
+  auto renderer = make(options);
+  const View view = kit::make_view({0.0f, 0.38f, 0.32f}, {0.0f, 0.04f, 0.0f}, options.width, options.height);
+  const FloatImage light =
+      pool_picture(*renderer, kit::water(), {{0.6f, 0.1f, 0.08f}, 0.0f, 0.4f, 1.0f}, view);
+  const FloatImage fluid = renderer->read_buffer(Buffer::kFluidIndex);
+  int specks = 0;
+  int pixels = 0;
+  for (int y = 4; y < options.height - 4; ++y) {
+    for (int x = 4; x < options.width - 4; ++x) {
+      bool inside = true;
+      for (int d = -4; d <= 4; ++d)
+        inside = inside && fluid.at(x + d, y) >= 0.0f && fluid.at(x, y + d) >= 0.0f;
+      if (!inside) continue;
+      ++pixels;
+      const float red = light.at(x, y, 0);
+      const bool darker = red < 0.8f * light.at(x - 4, y, 0) && red < 0.8f * light.at(x + 4, y, 0);
+      const bool brighter = red > 1.25f * light.at(x - 4, y, 0) && red > 1.25f * light.at(x + 4, y, 0);
+      specks += darker || brighter ? 1 : 0;
+    }
+  }
+  ASSERT_GT(pixels, 3000);
+  EXPECT_LT(specks, pixels / 500);
+}
+
+TEST_F(LooksTest, HoneyInGlassHasNoOliveRim) {
+  RenderOptions options = small();
+  options.width = 320;
+  options.height = 240;
+  auto renderer = make(options);
+  FluidLook honey;
+  honey.color = {0.9f, 0.45f, 0.05f};
+  honey.extinction = {8.0f, 40.0f, 250.0f};
+  honey.scattering = 0.25f;
+  honey.roughness = 0.03f;
+  honey.refraction = 1.49f;
+  const View view = kit::make_view({0.0f, 0.25f, 0.5f}, {0.0f, 0.03f, 0.0f}, options.width, options.height);
+  const FloatImage light = pool_picture(*renderer, honey, {{0.85f, 0.93f, 0.95f}, 0.0f, 0.05f, 0.1f}, view);
+  const FloatImage fluid = renderer->read_buffer(Buffer::kFluidIndex);
+  // The front face's lowest pixels: green over red, and so where the face is deep.
+  const auto green = [&](int above_rim) {
+    float sum = 0.0f;
+    for (int x = 130; x <= 190; ++x) {
+      int rim = options.height - 1;
+      while (rim > 0 && fluid.at(x, rim) < 0.0f) --rim;
+      sum += light.at(x, rim - above_rim, 1) / light.at(x, rim - above_rim, 0) / 61.0f;
+    }
+    return sum;
+  };
+  const float deep = green(20);
+  for (int above = 1; above < 8; ++above) {
+    EXPECT_LT(green(above), deep) << above;
+    EXPECT_GT(green(above), 0.6f * deep) << above;
+  }
+}
+
 }  // namespace
 }  // namespace slosh
