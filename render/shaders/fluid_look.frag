@@ -54,16 +54,18 @@ FarSide far_side(vec3 inside, float refraction, float back, float scene, vec2 mi
   return FarSide(flat_enough * smoothstep(0.0, 0.25, apart) * (1.0 - upright), smoothstep(1.5, 3.0, apart) * upright);
 }
 
-// The longest way through the fluid, m, of four pixels eight splats away.
+// How much farther light comes that the far side mirrored, m: half the longest way through the fluid of four pixels eight splats away.
 float way_beside(vec2 middle, float back) {
   float reach = clamp(8.0 * splat.x * splat.y / back, 4.0, 96.0);
   float way = 0.0;
   for (int k = 0; k < 4; ++k) {
     vec2 at = middle + reach * vec2(k < 2 ? 2 * k - 1 : 0, k < 2 ? 0 : 2 * k - 5);
     float front = texelFetch(smooth_depth, clamp(ivec2(at), ivec2(0), ivec2(picture.xy) - 1), 0).r;
-    way = max(way, back_at(at) - front);
+    float span = max(back_at(at) - front, 0.0);
+    // Of spray it is its few drops that count, not the air between them.
+    way = max(way, look_switches.x > 0.5 ? min(span, texture(summed_chord, at * picture.zw).r) : span);
   }
-  return way;
+  return 0.5 * way;
 }
 
 // The scene behind. A body in front of the fluid must not show through it; whole texels, as a mean would mix such a body in.

@@ -53,7 +53,7 @@ void expect_same(const Image& a, const Image& b) {
     off += apart > 2 ? 1 : 0;
   }
   const auto channels = static_cast<double>(a.rgba.size());
-  EXPECT_LT(sum / channels, 0.005);
+  EXPECT_LT(sum / channels, 0.015);
   EXPECT_LT(static_cast<double>(off) / channels, 3e-4);
 }
 
