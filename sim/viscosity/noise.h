@@ -30,13 +30,20 @@ inline double noise_viscosity(const Plan& plan, double density) {
 /// jostling.
 inline constexpr double kThin = 0.25;
 
-/// What is left to damp in a fluid of `viscosity`, Pa·s, of the `noise` that one without needs: all in a thin
-/// one, nothing where its own drag is as strong. At walls and surfaces, where neighbours lie on one side, the
-/// flow does feel the drag on jostling (torque between cylinders of 1 Pa·s, three spacings apart: +13 % with
-/// all of 0.66 Pa·s). Weak where it is partly made: the surface of a turning glass of 0.5 Pa·s rises 12 % too
-/// little with a third of 0.75 Pa·s, 8 % with all of it.
+/// Up to this share of it a fluid gets all of the drag on jostling beside its own, and from the second on
+/// none. A step's length counts all of it at any viscosity (viscosity/stability.cpp).
+inline constexpr double kAllOfIt = 0.75;
+inline constexpr double kNoneOfIt = 1.25;
+
+/// What is left to damp in a fluid of `viscosity`, Pa·s, of the `noise` that one without needs: nothing where
+/// its own drag is stronger. At walls and surfaces, where neighbours lie on one side, the flow does feel the
+/// drag on jostling (torque between cylinders of 1 Pa·s, three spacings apart: +13 % with all of 0.66 Pa·s).
+/// With less than all, jostling lowers the surface of a turning glass: 0.5 Pa·s beside a third of 0.75 rises
+/// 12 % too little, 8 % beside all of it.
 SLOSH_HD inline float jostling_viscosity(float noise, float viscosity) {
-  const float left = (noise - viscosity) / (1.0f - static_cast<float>(kThin));
+  constexpr auto kNone = static_cast<float>(kNoneOfIt);
+  constexpr auto kWay = static_cast<float>(kNoneOfIt - kAllOfIt);
+  const float left = (kNone * noise - viscosity) / kWay;
   return left > noise ? noise : RealOps<float>::positive_part(left);
 }
 
