@@ -55,10 +55,10 @@ FarSide far_side(vec3 inside, float refraction, float back, float scene, vec2 mi
 }
 
 // How much farther light comes that the far side mirrored, m: half the longest way through the fluid of four pixels eight splats away.
-float way_beside(vec2 middle, float back) {
+float way_beside(vec2 middle, float back, int taps) {
   float reach = clamp(8.0 * splat.x * splat.y / back, 4.0, 96.0);
   float way = 0.0;
-  for (int k = 0; k < 4; ++k) {
+  for (int k = 0; k < taps; ++k) {
     vec2 at = middle + reach * vec2(k < 2 ? 2 * k - 1 : 0, k < 2 ? 0 : 2 * k - 5);
     float front = texelFetch(smooth_depth, clamp(ivec2(at), ivec2(0), ivec2(picture.xy) - 1), 0).r;
     float span = max(back_at(at) - front, 0.0);
@@ -100,7 +100,8 @@ bool pixel(ivec2 texel, out vec4 value) {
   vec2 middle = vec2(texel) + 0.5;
   float back = back_depth_at(middle);
   FarSide far = far_side(inside, matter.refraction, back, scene, middle);
-  float way = thickness + (far.by_floor + far.by_wall) * way_beside(middle, back);
+  float mirrored = far.by_floor + far.by_wall;
+  float way = thickness + mirrored * way_beside(middle, back, mirrored > 0.0 ? 4 : 0);
   FluidPoint point = FluidPoint(surface.normal, to_eye, to_light_eye.xyz, way);
 
   vec3 world_n = mat3(world_from_eye) * surface.normal;
