@@ -42,6 +42,12 @@ class NotedOperator final : public Device {
     DeviceLimits limits = inner_.limits();
     limits.max_force_rate = kForceRate;
     limits.max_damping = 100.0;
+    if (!impedance) return limits;
+    limits.max_force = 20.0;
+    limits.max_stiffness = kStiffness;
+    limits.max_damping = 30.0;
+    limits.max_force_jerk = 2e5;
+    limits.engagement_time = 2.0;
     return limits;
   }
   bool immediate() const override { return true; }
@@ -49,6 +55,8 @@ class NotedOperator final : public Device {
   std::string kind() const override { return "operator"; }
   Wrench last;
   double nudge = 0.0;                           // m, on top of where the arm is
+  bool impedance = false;                       // its limits are a haptic arm's, and its force comes gently
+  static constexpr double kStiffness = 1000.0;  // N/m, half the grip's
   static constexpr double kForceRate = 2000.0;  // N/s
 
  private:
@@ -94,11 +102,12 @@ struct Person {
   int ticks = 0;
 
   Person(const Scene& scene, std::uint32_t at, const BodyMessage& first, double dt, PoseTrack track,
-         Coupling coupling)
+         Coupling coupling, bool impedance)
       : grip(at), channel(scene.grips.size(), first, 1000), inbox(scene, dt), uplink(channel) {
     std::vector<std::unique_ptr<Device>> devices(scene.grips.size());
     auto made = std::make_unique<NotedOperator>(std::move(track), OperatorSettings{});
     device = made.get();
+    device->impedance = impedance;
     devices[at] = std::move(made);
     ServoOptions options;
     options.coupling = coupling;
@@ -134,7 +143,8 @@ class DistantHands : public ::testing::Test {
     }
     return PoseTrack(keys, start);
   }
-  void begin(double round_trip, double jitter, double loss, Coupling coupling) {
+  /// `arm`: the first person's device is a haptic arm.
+  void begin(double round_trip, double jitter, double loss, Coupling coupling, bool arm = false) {
     World world(scene, sample_scene(scene, kSpacing).value(), make_plan(scene, kSpacing),
                 WorldOptions{1, Backend::kCpu});
     std::vector<HandleInput> stands;
@@ -151,7 +161,8 @@ class DistantHands : public ::testing::Test {
     first.bodies = host->now;
     for (std::uint32_t i = 0; i < 2; ++i) {
       people.push_back(
-          std::make_unique<Person>(scene, i, first, dt, carrying(grip_start(scene, i)), coupling));
+          std::make_unique<Person>(scene, i, first, dt, carrying(grip_start(scene, i)), coupling,
+                                   arm && i == 0));
       people.back()->up.delay = people.back()->down.delay = 0.5 * round_trip;
       people.back()->up.jitter = people.back()->down.jitter = jitter;
       people.back()->up.loss = people.back()->down.loss = loss;
@@ -264,7 +275,7 @@ TEST_F(DistantHands, CarryABeamOver200Milliseconds) {
 }
 
 /// A hand's own motion is felt in the tick that reads it, whatever the distance: 0.5 mm at 2000 N/m. Once it
-/// carries: over 400 ms the guard holds some of the force back for seconds after taking hold.
+/// carries: over 400 ms the guard is shut for up to 4 s after taking hold (peer/haptics/replica, known limits).
 TEST_F(DistantHands, OwnMotionIsFeltInItsTick) {
   for (const double round_trip : {0.001, 0.2, 0.4}) {
     people.clear();
@@ -275,6 +286,35 @@ TEST_F(DistantHands, OwnMotionIsFeltInItsTick) {
     people[0]->device->nudge = 5e-4;
     run(0.001);
     EXPECT_NEAR(people[0]->device->last.force.y - before, -1.0, 0.1) << round_trip;
+  }
+}
+
+/// One person's device is a haptic arm that renders half of the grip's stiffness, up to 20 N, and gives its
+/// force over 2 s; another person holds the same beam by the whole. At rest the arm feels half of the share and
+/// the other all of it, and nothing swings up or steps.
+TEST_F(DistantHands, AnArmThatIsSofterCarriesWithAnother) {
+  for (const double round_trip : {0.001, 0.05, 0.2}) {
+    people.clear();
+    clock = to_nanoseconds(1000.0);
+    begin(round_trip, 0.0, 0.0, Coupling::kReplica, true);
+    const Person& arm = *people[0];
+    const Person& other = *people[1];
+    run(3.0);
+    forget();
+    run(6.0);
+    const double arm_peak = arm.peak, other_peak = other.peak, arm_step = arm.step;
+    forget();
+    run(3.0);
+    const double felt = -arm.device->last.force.y, others = -other.device->last.force.y;
+    std::printf(
+        "%.0f ms: arm %.2f N at rest, %.1f at most, %.2f from tick to tick; other %.2f N, %.1f at most\n",
+        1e3 * round_trip, felt, arm_peak, arm_step, others, other_peak);
+    EXPECT_NEAR(felt, 0.5 * kShare, 0.02 * kShare) << round_trip;
+    EXPECT_NEAR(others, kShare, 0.02 * kShare) << round_trip;
+    EXPECT_LE(arm_peak, 20.0 + 1e-9) << "what it may give";
+    EXPECT_LT(other_peak, 2.0 * kShare) << round_trip;
+    EXPECT_LT(arm_step, 0.2) << round_trip;
+    EXPECT_LT(step(), 0.05) << round_trip << ": at rest after";
   }
 }
 
@@ -318,7 +358,9 @@ TEST_F(DistantHands, NothingJumpsWhenContactIsLostOrTheWorldStops) {
     people[0]->up.dark = people[0]->down.dark = true;
     run(dark);
     expect_gentle("dark");
-    if (dark > 0.5) EXPECT_LT(glm::length(people[0]->device->last.force), 1e-9);
+    if (dark > 0.5) {
+      EXPECT_LT(glm::length(people[0]->device->last.force), 1e-9);
+    }
     people[0]->up.dark = people[0]->down.dark = false;
     run(4.0);
     expect_gentle("and back");
