@@ -96,7 +96,7 @@ int main(int argc, char** argv) {
   Backend backend = Backend::kCuda;
   ParticleModel model = Scene{}.model;
   std::vector<double> sizes;
-  for (const std::string word : std::vector<std::string>(argv + 1, argv + argc)) {
+  for (const std::string& word : std::vector<std::string>(argv + 1, argv + argc)) {
     const auto* const named = std::find(std::begin(kParticleModelNames), std::end(kParticleModelNames), word);
     if (word == "drag") {
       drag = true;

@@ -54,7 +54,10 @@ const char* __tsan_default_suppressions() {
          "race:libgallium\n"
          "race:libEGL_mesa\n"
          "race:libglapi\n"
-         "race:libumockdev\n";
+         "race:libumockdev\n"
+         "race:libglib\n"  // its thread, and how it is called
+         "race:libgobject\n"
+         "race:libffi\n";
 }
 
 }  // extern "C"
