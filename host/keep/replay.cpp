@@ -32,7 +32,7 @@ std::string ReplayVerdict::text(double spacing) const {
   };
   const auto number = [](std::uint64_t n) { return static_cast<unsigned long long>(n); };
   if (hashes_comparable && hashes == 0) {
-    add("it holds no hash to compare");
+    all += "it holds no hash to compare";
   } else if (hashes_comparable) {
     add("%llu of %llu hashes agree", number(agree), number(hashes));
     if (agree < hashes) add("; the first that differs is at tick %llu", number(first_difference));

@@ -23,7 +23,7 @@ struct Options {
 
 class PathTracer : public MeshSink {
  public:
-  /// Errors: built without Embree, or Embree cannot start.
+  /// Errors: built without Embree, none installed, or it cannot start.
   static Result<std::unique_ptr<PathTracer>> create();
   /// Scene-linear Rec.709, three channels. What differs from Renderer's pictures: the fluid is one surface of
   /// triangles whose light is followed in and out (Fresnel, Snell, Beer and Lambert; a random walk where it

@@ -2,13 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #ifdef SLOSH_EMBREE
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
+#include "render/reference/embree_library.h"
 #endif
 
 namespace slosh::reference {
@@ -24,39 +21,45 @@ struct RayScene::Parts {
     const MeshLook* look;
     int fluid;
   };
-  RTCDevice device = rtcNewDevice(nullptr);
-  RTCScene scene = rtcNewScene(device);
+  const EmbreeLibrary& embree = *embree_library();
+  RTCDevice device = embree.new_device(nullptr);
+  RTCScene scene = embree.new_scene(device);
   std::vector<Mesh> meshes;  // by Embree's number of the geometry
   ~Parts() {
-    rtcReleaseScene(scene);
-    rtcReleaseDevice(device);
+    embree.release_scene(scene);
+    embree.release_device(device);
   }
 };
 
 Result<bool> RayScene::available() {
-  RTCDevice device = rtcNewDevice(nullptr);
-  if (!device) return Error{"reference picture", "Embree cannot start", "Update libembree-dev"};
-  rtcReleaseDevice(device);
+  const EmbreeLibrary* embree = embree_library();
+  if (!embree)
+    return Error{"reference picture", std::string("there is no Embree here (") + embree_library_name() + ")",
+                 "Install it: libembree3-3 in Debian 12, libembree4-4 in Debian 13"};
+  RTCDevice device = embree->new_device(nullptr);
+  if (!device) return Error{"reference picture", "Embree cannot start", "Update it"};
+  embree->release_device(device);
   return true;
 }
 
 RayScene::RayScene() : parts_(std::make_unique<Parts>()) {
-  rtcSetSceneFlags(parts_->scene, RTC_SCENE_FLAG_ROBUST);
+  parts_->embree.set_scene_flags(parts_->scene, RTC_SCENE_FLAG_ROBUST);
 }
 
 void RayScene::add(const Triangles& mesh, const glm::mat4& model, const MeshLook* look, int fluid) {
   if (mesh.triangles.empty()) return;
-  RTCGeometry geometry = rtcNewGeometry(parts_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* positions = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(
+  const EmbreeLibrary& embree = parts_->embree;
+  RTCGeometry geometry = embree.new_geometry(parts_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* positions = static_cast<glm::vec3*>(embree.set_new_geometry_buffer(
       geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), mesh.positions.size()));
   std::ranges::transform(mesh.positions, positions,
                          [&](const glm::vec3& p) { return glm::vec3(model * glm::vec4(p, 1.0f)); });
-  auto* triangles = static_cast<glm::uvec3*>(rtcSetNewGeometryBuffer(
+  auto* triangles = static_cast<glm::uvec3*>(embree.set_new_geometry_buffer(
       geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3), mesh.triangles.size()));
   std::ranges::copy(mesh.triangles, triangles);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometryByID(parts_->scene, geometry, static_cast<unsigned>(parts_->meshes.size()));
-  rtcReleaseGeometry(geometry);
+  embree.commit_geometry(geometry);
+  embree.attach_geometry_by_id(parts_->scene, geometry, static_cast<unsigned>(parts_->meshes.size()));
+  embree.release_geometry(geometry);
   Parts::Mesh kept{mesh.normals, mesh.triangles, mesh.texcoords, {}, look, fluid};
   if (!mesh.texcoords.empty()) kept.positions.assign(positions, positions + mesh.positions.size());
   for (glm::vec3& n : kept.normals) n = glm::mat3(model) * n;
@@ -64,7 +67,7 @@ void RayScene::add(const Triangles& mesh, const glm::mat4& model, const MeshLook
 }
 
 void RayScene::finish() {
-  rtcCommitScene(parts_->scene);
+  parts_->embree.commit_scene(parts_->scene);
 }
 
 Hit RayScene::nearest(const glm::vec3& from, const glm::vec3& way) const {
@@ -80,11 +83,11 @@ Hit RayScene::nearest(const glm::vec3& from, const glm::vec3& way) const {
   ray.ray.mask = ~0u;
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
 #if RTC_VERSION_MAJOR >= 4
-  rtcIntersect1(parts_->scene, &ray);
+  parts_->embree.intersect_1(parts_->scene, &ray);
 #else
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  rtcIntersect1(parts_->scene, &context, &ray);
+  parts_->embree.intersect_1(parts_->scene, &context, &ray);
 #endif
   Hit hit;
   if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return hit;

@@ -1,4 +1,4 @@
-// Triangles and the nearest of them along a ray, by Embree. No Embree type leaves ray_scene.cpp.
+// Triangles and the nearest of them along a ray, by Embree. No Embree type leaves ray_scene.cpp and embree_library.h.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -33,7 +33,7 @@ struct Hit {
 
 class RayScene {
  public:
-  /// Errors: built without Embree, or Embree cannot start.
+  /// Errors: built without Embree, none installed, or it cannot start.
   static Result<bool> available();
 
   RayScene();

@@ -1,6 +1,8 @@
 // The launcher at the top of the repository. Where this is the build that it uses, through it to the program.
 #include <gtest/gtest.h>
 
+#include <sstream>
+
 #include "process.h"
 #include "tests/support/places.h"
 
@@ -47,6 +49,8 @@ TEST(Launcher, ExplainsItsOwnVerbsWithoutBuilding) {
     const Outcome outcome = launcher({verb, "--help"});
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_NE(outcome.out.find("Usage"), std::string::npos);
+    std::istringstream lines(outcome.out);
+    for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 110u) << line;
   }
   EXPECT_EQ(launcher({"test", "--preset", "quick"}).code, 2);
 }

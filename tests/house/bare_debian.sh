@@ -115,7 +115,7 @@ fi
 # ---- scenes/blender/README.md
 if wanted tutorial; then
   step first root "apt install blender python3-numpy" \
-    "DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends blender python3-numpy"
+    "DEBIAN_FRONTEND=noninteractive apt-get install -y blender python3-numpy"
   while read -r command; do
     step first stranger "tutorial: $command" "$command"
   done < <(sed -n 's/^    \(\(\.\/slosh\|blender\) .*\)$/\1/p' "$root/scenes/blender/README.md")

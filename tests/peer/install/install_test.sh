@@ -59,6 +59,8 @@ try_files() {
   grep -q 'SUBSYSTEM' "$prefix/lib/udev/rules.d/70-slosh.rules" || fail "the udev rule is empty"
   printf '#include <slosh/slosh_device.h>\nint main(void) { return 0; }\n' >header.c
   cc -fsyntax-only -Wall -Werror -I "$prefix/include" header.c || fail "the header of devices does not compile"
+  cc -fsyntax-only -Wall -Werror -I "$prefix/include" "$prefix/share/doc/slosh/examples/example.c" ||
+    fail "the example of a device does not compile"
   grep -qa 'slosh_addon/__init__.py' "$prefix/share/slosh/slosh_blender.zip" || fail "no add-on for Blender"
   # Completion, as bash asks for it.
   (
@@ -113,6 +115,8 @@ for library in libc6 libstdc++6 libgnutls30 libngtcp2 libglfw3 libicu libopencol
   grep -q "^ Depends:.*$library" <<<"$info" || fail "it does not depend on $library: $info"
 done
 has "$info" "Recommends: gnuplot-nox, ffmpeg"
+! grep -E "^ (Depends|Pre-Depends):.*(embree|gtest|umockdev|draco|meshoptimizer)" <<<"$info" ||
+  fail "it depends on what tests and reports alone need: $info"
 dpkg-deb -x "${packages[0]}" "$folder/unpacked"
 try_program "$folder/unpacked/usr"
 try_files "$folder/unpacked/usr"
