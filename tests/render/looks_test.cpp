@@ -266,9 +266,10 @@ TEST_F(LooksTest, HoneyInGlassHasNoOliveRim) {
     }
     return sum;
   };
+  // A processor with wider vectors, whose driver rounds otherwise, reaches 1.012 times; the olive rim had 1.9 times.
   const float deep = green(20);
   for (int above = 1; above < 8; ++above) {
-    EXPECT_LT(green(above), deep) << above;
+    EXPECT_LT(green(above), 1.03f * deep) << above;
     EXPECT_GT(green(above), 0.6f * deep) << above;
   }
 }
