@@ -10,6 +10,7 @@
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <sstream>
 #include <thread>
 
@@ -169,6 +170,54 @@ TEST_F(WindowTest, KeysPauseStepAndSlowTheWorld) {
   EXPECT_TRUE(comes([&] { return std::filesystem::exists(out / "picture-1.png"); }));
   display->act({"key", "Escape"});
   EXPECT_EQ(slosh.wait().code, 0);
+}
+
+/// R begins the world again and takes nothing from what is being written: tables, frames, a recording, and the film of it.
+TEST_F(WindowTest, BeginningAgainKeepsTheTimeBeforeIt) {
+  Process slosh(display->on({test::program(), "play", "bucket", "--spacing", "0.0135", "--size", "320x240", "--out", "out",
+                             "--record", "r.rec", "--measure", "0.05", "--export", "particles:ply", "--export-rate", "5"}),
+                test::test_folder());
+  ASSERT_TRUE(comes([&] { return !slosh.running() || rows() > 1000; }));
+  ASSERT_TRUE(slosh.running()) << read_text(test::test_folder() / "stderr.txt");
+  const std::vector<std::string> tables{"poses.csv", "wrenches.csv", "probes.csv", "bodies.csv", "frames/frames.csv"};
+  std::vector<std::string> before;
+  for (const std::string& table : tables) {
+    const std::string text = read_text(out / table);
+    before.push_back(text.substr(0, text.rfind('\n') + 1));
+  }
+  const std::string frame = read_text(out / "frames/particles_00000.ply");
+  const std::size_t rows_before = rows();
+  display->act({"mousemove", "160", "60"});
+  display->act({"key", "r"});
+  ASSERT_TRUE(comes([&] { return rows() > rows_before + 1000; }));
+  display->act({"key", "r"});
+  const std::size_t rows_between = rows();
+  ASSERT_TRUE(comes([&] { return rows() > rows_between + 500; }));
+  display->act({"key", "q"});
+  const Outcome outcome = slosh.wait();
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+
+  for (std::size_t i = 0; i < tables.size(); ++i) {
+    const std::string after = read_text(out / tables[i]);
+    EXPECT_GT(before[i].size(), 20u) << tables[i];
+    EXPECT_GT(after.size(), before[i].size()) << tables[i];
+    EXPECT_TRUE(after.starts_with(before[i])) << tables[i] << ": what stood there before R is not there any more";
+  }
+  EXPECT_EQ(read_text(out / "frames/particles_00000.ply"), frame);
+
+  // The recording has all of it, both beginnings too, and the film of it is as long as the whole.
+  const Result<std::vector<PoseKey>> keys = read_poses(out / "poses.csv", 0);
+  ASSERT_TRUE(keys) << keys.error().text();
+  const double seconds = keys.value().back().time;
+  EXPECT_GT(seconds, 2.4) << "s: 1 before the first R, 1 between them, half a second after";
+  const Outcome again = Process({test::program(), "replay", "../r.rec", "--out", "film", "--size", "160x120", "--fps", "10"},
+                                test::test_folder() / "again")
+                            .wait();
+  EXPECT_EQ(again.code, 0) << again.err;
+  EXPECT_NE(again.out.find("hashes agree"), std::string::npos) << again.out;
+  std::smatch pictures;
+  ASSERT_TRUE(std::regex_search(again.out, pictures, std::regex("(\\d+) pictures of"))) << again.out;
+  EXPECT_NEAR(std::stod(pictures[1]), 10.0 * seconds, 3.0) << "pictures, 10 a second";
 }
 
 /// Keys of the settings file, particles by speed, axes and the plot of forces; the pictures are there to be looked at.

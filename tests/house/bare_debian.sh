@@ -51,7 +51,7 @@ in_root() {
 passed=0 failed=0
 step() {
   local machine=$1 user=$2 words=$3 command=$4 begun=$SECONDS code=0
-  local log="$folder/logs/$(printf %02d $((passed + failed + 1))).log"
+  local log="$folder/logs/${only%%,*}-$(printf %02d $((passed + failed + 1))).log"
   printf '$ %s\n' "$command" >"$log"
   in_root "$machine" "$user" bash -c "$command" >>"$log" 2>&1 || code=$?
   if ((code == 0)); then
@@ -154,7 +154,7 @@ fi
 
 if wanted test; then
   step first stranger "./slosh test ${tests[*]-}" "./slosh test ${tests[*]-}"
-  tail -n 30 "$folder/logs/$(printf %02d $((passed + failed))).log" | grep -E '^skipped|passed, ' || true
+  tail -n 30 "$folder/logs/${only%%,*}-$(printf %02d $((passed + failed))).log" | grep -E '^skipped|passed, ' || true
 fi
 
 echo "$passed passed, $failed failed"
