@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <exception>
 #include <initializer_list>
+#include <memory>
 
 #include "net/text/clean.h"
 #include "net/text/nearest.h"
@@ -13,6 +14,7 @@
 #include "peer/verbs/settings_in_force.h"
 #include "peer/verbs/uncaught.h"
 #include "peer/verbs/verbs.h"
+#include "peer/verbs/wrapped_help.h"
 
 namespace slosh {
 namespace {
@@ -50,6 +52,7 @@ int run(int argc, char** argv) {
   CLI::App app("Touch simulated fluids together.", "slosh");
   app.set_version_flag("--version", version_text);
   app.require_subcommand(1);
+  app.formatter(std::make_shared<WrappedHelp>());
   app.get_formatter()->column_width(34);
   VerbRun chosen;
   const bool names_a_verb = argc > 1 && argv[1][0] != '-';

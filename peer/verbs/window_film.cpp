@@ -1,8 +1,14 @@
 #include "peer/verbs/window_film.h"
 
+#include <algorithm>
+
 #include "net/clock.h"
 
 namespace slosh {
+
+namespace {
+constexpr std::int64_t kLongestGap = 1'000'000'000;  // ns
+}
 
 bool WindowFilm::due() const {
   return !folder_.empty() && (frames_ == 0 || steady_now_ns() >= next_ns_);
@@ -10,8 +16,18 @@ bool WindowFilm::due() const {
 
 void WindowFilm::add(Image image) {
   if (folder_.empty()) return;
-  if (frames_ == 0) next_ns_ = steady_now_ns();
-  next_ns_ += to_nanoseconds(1.0 / frames_per_second_);
+  const std::int64_t now = steady_now_ns();
+  const std::int64_t period = to_nanoseconds(1.0 / frames_per_second_);
+  if (frames_ == 0) next_ns_ = now;
+  // Where pictures come slower than the film runs, each stands in it for as long as it was on show. A longer gap, a
+  // headset taken off, is left out.
+  std::int64_t missed = std::max<std::int64_t>((now - next_ns_) / period, 0);
+  if (missed * period > kLongestGap) {
+    missed = 0;
+    next_ns_ = now;
+  }
+  next_ns_ += (missed + 1) * period;
+  for (; video_ && missed > 0; --missed, ++frames_) (void)video_->add(image_);
   image_ = std::move(image);
   if (!video_) {
     Result<std::unique_ptr<Video>> started =
