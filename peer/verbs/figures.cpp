@@ -220,6 +220,10 @@ FigureParts judge_bucket(const ScriptedRun& run) {
   const WrenchSeries& left = run.hands[0];
   const WrenchSeries& right = run.hands[1];
   const std::vector<double>& time = left.time;
+  // The paper sums a device's torque at the body's centre of mass (Eq 11, Algorithm 2). About the handle there is only
+  // what its spring is turned by, and one rigid bucket turns both springs alike.
+  const WrenchSeries left_about = about_centers(run, 0);
+  const WrenchSeries right_about = about_centers(run, 1);
   // The tilt about z, rad; positive lowers the left.
   std::vector<double> rate(time.size(), 0.0);
   std::vector<double> angle(time.size(), 0.0);
@@ -238,14 +242,27 @@ FigureParts judge_bucket(const ScriptedRun& run) {
     if (std::abs(angle[i]) < 0.2) continue;  // upright again
     const Phase held{"", turn.to - 0.1, turn.to + 0.1};
     tilts.push_back({turn.to, angle[i], mean(left, held, force_size), mean(right, held, force_size),
-                     mean(left, held, torque_size), mean(right, held, torque_size)});
+                     mean(left_about, held, torque_size), mean(right_about, held, torque_size)});
   }
   FigureParts parts;
-  parts.panels = {panel_of("", "force on the hand, N"), panel_of("", "torque on the hand, N\xC2\xB7m")};
+  parts.panels = {panel_of("", "force on the hand, N"),
+                  panel_of("", "torque about the bucket's middle, N\xC2\xB7m"),
+                  panel_of("", "torque about the handle, N\xC2\xB7m")};
   parts.panels[0].series = {curve("left hand", left, force_size, 0),
                             curve("right hand", right, force_size, 1, true)};
-  parts.panels[1].series = {curve("left hand", left, torque_size, 0),
-                            curve("right hand", right, torque_size, 1, true)};
+  parts.panels[1].series = {curve("left hand", left_about, torque_size, 0),
+                            curve("right hand", right_about, torque_size, 1, true)};
+  // Curves on each other cannot be told apart: one is drawn, and says so.
+  const double left_top = peak(left, {"", 0.0, time.back()}, torque_size).value;
+  double apart = 0.0;
+  for (std::size_t i = 0; i < time.size(); ++i)
+    apart = std::max(apart, std::abs(torque_size(left.on_hand[i]) - torque_size(right.on_hand[i])));
+  if (apart <= (kSame - 1.0) * left_top) {
+    parts.panels[2].series = {curve("either hand: the same", left, torque_size, 4)};
+  } else {
+    parts.panels[2].series = {curve("left hand", left, torque_size, 0),
+                              curve("right hand", right, torque_size, 1, true)};
+  }
   std::vector<Phase> phases;
   std::string said, torques;
   bool lower_more = !tilts.empty(), torque_more = !tilts.empty();
@@ -267,14 +284,25 @@ FigureParts judge_bucket(const ScriptedRun& run) {
   const Phase first{"", 0.0, tenth}, last{"", time.back() - 0.2, time.back()};
   const double before = mean(left, first, down) + mean(right, first, down);
   const double after = mean(left, last, down) + mean(right, last, down);
+  const double torque_before = mean(left_about, first, torque_size) + mean(right_about, first, torque_size);
+  const double torque_after = mean(left_about, last, torque_size) + mean(right_about, last, torque_size);
   parts.claims = {{"the bucket is tilted to the left, to the right, and then to the left again",
                    format("%zu tilts", tilts.size()),
                    tilts.size() == 3 && tilts[0].angle > 0.0 && tilts[1].angle < 0.0 && tilts[2].angle > 0.0},
                   {"increasing the force on the side to which the bucket is tilted", said, lower_more},
-                  {"and the torque on that side", torques + " (left and right, in that order)", torque_more},
-                  {"forces progressively decrease as fluid is spilled",
-                   format("both hands together carry %.2f N at first and %.2f N at the end", before, after),
-                   after < (1.0 - kVisible) * before}};
+                  {"and the torque on the side to which the bucket is tilted",
+                   format("about the bucket's centre of mass, where the paper sums it, left and right %s; about its handle "
+                          "each hand feels up to %.2f N\xC2\xB7m, %s",
+                          torques.c_str(), left_top,
+                          apart <= (kSame - 1.0) * left_top
+                              ? "the same in both, as one bucket turns both springs alike"
+                              : "not the same in both"),
+                   torque_more},
+                  {"forces and torques progressively decrease as fluid is spilled",
+                   format("both hands together carry %.2f N at first and %.2f N at the end; their torques about the bucket's "
+                          "middle are %.2f and %.2f N\xC2\xB7m",
+                          before, after, torque_before, torque_after),
+                   after < (1.0 - kVisible) * before && torque_after < (1.0 - kVisible) * torque_before}};
   return parts;
 }
 

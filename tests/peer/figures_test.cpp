@@ -97,15 +97,24 @@ TEST(Figures, ElevenWantsTheLowerHandToCarryMore) {
     for (std::size_t i = 0; i < 2; ++i) {
       run.poses[i][k] = turned({0.0, 0.0, angle});
       run.hands[i].on_hand[k].force.y = -(15.0 - t) - (i == 0 ? 2.0 : -2.0) * angle;
+      run.poses[i][k].position.x = i == 0 ? -0.14 : 0.14;
     }
   }
   FigureParts parts = judge_bucket(run);
   EXPECT_TRUE(parts.claims[0].holds) << parts.claims[0].measured;
   EXPECT_TRUE(parts.claims[1].holds) << parts.claims[1].measured;
-  EXPECT_FALSE(parts.claims[2].holds) << "no torque was given to either";
+  EXPECT_TRUE(parts.claims[2].holds) << "about the middle a hand's force has an arm: " << parts.claims[2].measured;
   EXPECT_TRUE(parts.claims[3].holds) << parts.claims[3].measured;
+  ASSERT_EQ(parts.panels.size(), 3u);
+  EXPECT_EQ(parts.panels[2].series.size(), 1u) << "of two curves on each other one is drawn";
+  run.hands[1].on_hand[300].torque.z = 1.0;
+  EXPECT_EQ(judge_bucket(run).panels[2].series.size(), 2u);
   std::swap(run.hands[0], run.hands[1]);
   EXPECT_FALSE(judge_bucket(run).claims[1].holds) << "the upper hand carries more";
+  EXPECT_FALSE(judge_bucket(run).claims[2].holds) << "and has more torque";
+  for (auto& hand : run.hands)
+    for (Wrench& w : hand.on_hand) w.force = {0.0, -10.0, 0.0};
+  EXPECT_FALSE(judge_bucket(run).claims[3].holds) << "nothing is spilled";
 }
 
 TEST(Figures, ThereAreFour) {
