@@ -13,6 +13,7 @@ namespace {
 using namespace figure;
 constexpr std::array kAxes{"x", "y", "z"};
 constexpr double kSame = 1.1;     // curves that are less apart than this ratio are drawn on each other
+constexpr double kRise = 1.02;    // less than this ratio is noise
 constexpr double kVisible = 0.1;  // of the largest: less is flat in a plot
 
 }  // namespace
@@ -231,18 +232,33 @@ FigureParts judge_bucket(const ScriptedRun& run) {
     angle[i] = rotation_between(run.poses[0].front().orientation, run.poses[0][i].orientation).z;
     if (i > 0) rate[i] = (angle[i] - angle[i - 1]) / (time[i] - time[i - 1]);
   }
+  // A reading of the lower hand upright before a tilt, its largest while it tilts, and of both at the end.
+  struct Shares {
+    double upright, top, lower, upper;
+    bool rises() const { return top > kRise * upright; }
+  };
   struct Tilt {
-    double time, angle, left, right, left_torque, right_torque;
+    double time, angle;
+    Shares force, middle, handle;
   };
   std::vector<Tilt> tilts;
   for (const Phase& turn : strokes(time, rate)) {
-    const auto at =
+    const auto end =
         static_cast<std::size_t>(std::lower_bound(time.begin(), time.end(), turn.to) - time.begin());
-    const std::size_t i = std::min(at, time.size() - 1);
+    const std::size_t i = std::min(end, time.size() - 1);
     if (std::abs(angle[i]) < 0.2) continue;  // upright again
+    std::size_t upright = i;
+    while (upright > 0 && std::abs(angle[upright - 1]) < std::abs(angle[upright])) --upright;
+    const Phase before{"", time[upright] - 0.05, time[upright] + 0.05};
+    const Phase tilting{"", time[upright], turn.to + 0.1};
     const Phase held{"", turn.to - 0.1, turn.to + 0.1};
-    tilts.push_back({turn.to, angle[i], mean(left, held, force_size), mean(right, held, force_size),
-                     mean(left_about, held, torque_size), mean(right_about, held, torque_size)});
+    const auto shares = [&](const WrenchSeries& one, const WrenchSeries& other, const Reading& of) {
+      const WrenchSeries& low = angle[i] > 0.0 ? one : other;
+      const WrenchSeries& high = angle[i] > 0.0 ? other : one;
+      return Shares{mean(low, before, of), peak(low, tilting, of).value, mean(low, held, of), mean(high, held, of)};
+    };
+    tilts.push_back({turn.to, angle[i], shares(left, right, force_size),
+                     shares(left_about, right_about, torque_size), shares(left, right, torque_size)});
   }
   FigureParts parts;
   parts.panels = {panel_of("", "force on the hand, N"),
@@ -257,7 +273,8 @@ FigureParts judge_bucket(const ScriptedRun& run) {
   double apart = 0.0;
   for (std::size_t i = 0; i < time.size(); ++i)
     apart = std::max(apart, std::abs(torque_size(left.on_hand[i]) - torque_size(right.on_hand[i])));
-  if (apart <= (kSame - 1.0) * left_top) {
+  const bool one_curve = apart <= (kSame - 1.0) * left_top;
+  if (one_curve) {
     parts.panels[2].series = {curve("either hand: the same", left, torque_size, 4)};
   } else {
     parts.panels[2].series = {curve("left hand", left, torque_size, 0),
@@ -265,17 +282,23 @@ FigureParts judge_bucket(const ScriptedRun& run) {
   }
   std::vector<Phase> phases;
   std::string said, torques;
-  bool lower_more = !tilts.empty(), torque_more = !tilts.empty();
+  bool force_rises = !tilts.empty(), middle_rises = force_rises, handle_rises = force_rises;
+  bool lower_more = force_rises, middle_more = force_rises, handle_more = force_rises;
   for (const Tilt& t : tilts) {
     const bool to_left = t.angle > 0.0;
     const double before = phases.empty() ? 0.0 : phases.back().to;
     phases.push_back({to_left ? "to the left" : "to the right", before, t.time});
-    said += format("%s%.0f\xC2\xB0 to the %s at %.1f s: left %.2f N, right %.2f N", said.empty() ? "" : "; ",
-                   glm::degrees(std::abs(t.angle)), to_left ? "left" : "right", t.time, t.left, t.right);
-    torques +=
-        format("%s%.2f and %.2f N\xC2\xB7m", torques.empty() ? "" : "; ", t.left_torque, t.right_torque);
-    lower_more &= to_left ? t.left > t.right : t.right > t.left;
-    torque_more &= to_left ? t.left_torque > t.right_torque : t.right_torque > t.left_torque;
+    said += format("%s%.0f\xC2\xB0 to the %s at %.1f s: lower hand %.2f N, up to %.2f from %.2f upright, upper hand %.2f N",
+                   said.empty() ? "" : "; ", glm::degrees(std::abs(t.angle)), to_left ? "left" : "right", t.time,
+                   t.force.lower, t.force.top, t.force.upright, t.force.upper);
+    torques += format("%s%.2f and %.2f (the lower's %.2f upright)", torques.empty() ? "" : "; ", t.middle.lower,
+                      t.middle.upper, t.middle.upright);
+    force_rises &= t.force.rises();
+    middle_rises &= t.middle.rises();
+    handle_rises &= t.handle.rises();
+    lower_more &= t.force.lower > t.force.upper;
+    middle_more &= t.middle.lower > t.middle.upper;
+    handle_more &= t.handle.lower > kSame * t.handle.upper;
   }
   if (!phases.empty()) phases.push_back({"back", phases.back().to, time.back()});
   for (ChartPanel& panel : parts.panels) mark_phases(panel, phases);
@@ -289,15 +312,15 @@ FigureParts judge_bucket(const ScriptedRun& run) {
   parts.claims = {{"the bucket is tilted to the left, to the right, and then to the left again",
                    format("%zu tilts", tilts.size()),
                    tilts.size() == 3 && tilts[0].angle > 0.0 && tilts[1].angle < 0.0 && tilts[2].angle > 0.0},
-                  {"increasing the force on the side to which the bucket is tilted", said, lower_more},
+                  {"increasing the force on the side to which the bucket is tilted", said, force_rises && lower_more},
                   {"and the torque on the side to which the bucket is tilted",
-                   format("about the bucket's centre of mass, where the paper sums it, left and right %s; about its handle "
-                          "each hand feels up to %.2f N\xC2\xB7m, %s",
-                          torques.c_str(), left_top,
-                          apart <= (kSame - 1.0) * left_top
-                              ? "the same in both, as one bucket turns both springs alike"
-                              : "not the same in both"),
-                   torque_more},
+                   format("about the bucket's centre of mass, where the paper sums it, lower and upper hand %s N\xC2\xB7m: the "
+                          "lower's %s the larger, and %s than upright%s; about its handle %s: up to %.2f N\xC2\xB7m, %s",
+                          torques.c_str(), middle_more ? "is" : "is not", middle_rises ? "more" : "no more",
+                          middle_rises ? "" : ", as a tilt shortens both arms",
+                          handle_rises ? "each tilt raises it" : "not every tilt raises it", left_top,
+                          one_curve ? "in both hands alike, as one bucket turns two alike springs" : "not alike in both hands"),
+                   (middle_rises && middle_more) || (handle_rises && handle_more)},
                   {"forces and torques progressively decrease as fluid is spilled",
                    format("both hands together carry %.2f N at first and %.2f N at the end; their torques about the bucket's "
                           "middle are %.2f and %.2f N\xC2\xB7m",
