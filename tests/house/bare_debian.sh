@@ -7,7 +7,8 @@
 # Usage, as root: bare_debian.sh FOLDER [--ccache DIR] [--only STEPS] [--test [CTEST OPTIONS…]]
 #   FOLDER         keeps the machines (10 GB) and a log of each step; given again, what is there goes on
 #   --ccache DIR   read DIR, compiled by the same g++, in place of compiling; nothing is written there
-#   --only STEPS   of play,tutorial,python,package,test, by commas (all but test)
+#   --only STEPS   of play,tutorial,blender,python,package,install,test, by commas (all but blender, which is
+#                  ./slosh test --with-blender, and test); install takes the packages in FOLDER/second/tmp
 #   --test         ./slosh test there too, to its closing line; the rest goes to it
 # MIRROR in the environment names another mirror than deb.debian.org.
 set -euo pipefail
@@ -20,7 +21,7 @@ if [[ -z "${SLOSH_BARE_INSIDE:-}" ]]; then
 fi
 folder=${1:?usage: bare_debian.sh FOLDER [--ccache DIR] [--only STEPS] [--test [CTEST OPTIONS...]]}
 shift
-ccache="" only=play,tutorial,python,package tests=()
+ccache="" only=play,tutorial,python,package,install tests=()
 while (($# > 0)); do
   case "$1" in
     --ccache) ccache=${2:?--ccache needs a folder}; shift ;;
@@ -122,6 +123,11 @@ if wanted tutorial; then
   made "the tutorial" mug.glb mug.blend mug-film/view.mp4 mug-film/wrenches.png mug-fine/frames/surface_00000.vdb film.mp4 film.blend
 fi
 
+if wanted blender; then
+  step first stranger "./slosh test --with-blender" "./slosh test --with-blender"
+  tail -n 1 "$folder/logs/${only%%,*}-$(printf %02d $((passed + failed))).log"
+fi
+
 # ---- peer/python/README.md
 if wanted python; then
   step first stranger "./slosh python" "./slosh python"
@@ -137,6 +143,8 @@ fi
 if wanted package; then
   step first stranger "./slosh package" "./slosh package"
   cp "$folder"/first/home/stranger/slosh/build/package/slosh_*.deb "$folder/second/tmp/"
+fi
+if wanted install; then
   step second root "apt install ./slosh.deb, where no sources are" \
     "apt-get update && DEBIAN_FRONTEND=noninteractive apt-get install -y /tmp/slosh_*.deb"
   step second stranger "slosh --version there" "slosh --version"
