@@ -9,12 +9,12 @@ namespace slosh::cuda {
 
 namespace {
 
-template <class Parts>
+template <class Team, class Parts>
 __global__ __launch_bounds__(kThreads) void density_kernel(StepConstants c, const ParticleKind* kinds,
                                                            SortedFluid fluid, SortedSurface fixed,
                                                            SortedSurface moving, bool viscosities,
                                                            std::uint32_t* status) {
-  const std::uint32_t p = thread_index();
+  const std::uint32_t p = Team::particle();
   if (p >= fluid.count) return;
   const std::uint32_t cell = fluid.state.key[p];
   if (cell >= c.grid.retired_key()) return;
@@ -28,12 +28,12 @@ __global__ __launch_bounds__(kThreads) void density_kernel(StepConstants c, cons
     return dx * dx + dy * dy + dz * dz;
   };
   float sum = 0.0f;
-  for_neighbors(c.grid, fluid.cells, cell,
+  for_neighbors<Team>(c.grid, fluid.cells, cell,
                 [&](std::uint32_t j) { sum += Kernel::shape(r_squared(__ldg(fluid.state.x + j)), support); });
   if constexpr (Parts::kWallsCount) {
     const auto add_walls = [&](const SortedSurface& walls) {
       if (walls.count == 0) return;
-      for_neighbors(c.grid, walls.cells, cell, [&](std::uint32_t j) {
+      for_neighbors<Team>(c.grid, walls.cells, cell, [&](std::uint32_t j) {
         const float4 wall = __ldg(walls.x + j);
         sum += Kernel::shape(r_squared(wall), support) * wall.w;
       });
@@ -41,6 +41,8 @@ __global__ __launch_bounds__(kThreads) void density_kernel(StepConstants c, cons
     add_walls(fixed);
     add_walls(moving);
   }
+  Team::sum(sum);
+  if (Team::lane() != 0) return;
   const ParticleKind kind = kinds[fluid.state.kind[p]];
   const PressureState state =
       pressure_state(sum, c.rest_number_density, c.rest_volume, kind.pressing_density, c.stiffness, c.tension,
@@ -52,18 +54,19 @@ __global__ __launch_bounds__(kThreads) void density_kernel(StepConstants c, cons
 }
 
 // The corrected model's: sim/cpu/corrected_density.cpp.
+template <class Team>
 __global__ __launch_bounds__(kThreads) void corrected_density_kernel(
     StepConstants c, const ParticleKind* kinds, SortedFluid fluid, SortedSurface fixed, SortedSurface moving,
     bool one_viscosity, bool viscosities, std::uint32_t* status) {
   using Kernel = ModelParts<ParticleModel::kCorrected>::DensityKernel;
-  const std::uint32_t p = thread_index();
+  const std::uint32_t p = Team::particle();
   if (p >= fluid.count) return;
   const std::uint32_t cell = fluid.state.key[p];
   if (cell >= c.grid.retired_key()) return;
   const float4 x = fluid.state.x[p];
   const float h = c.support_radius;
   Neighborhood<float> sum{};
-  for_neighbors(c.grid, fluid.cells, cell, [&](std::uint32_t j) {
+  for_neighbors<Team>(c.grid, fluid.cells, cell, [&](std::uint32_t j) {
     const float4 y = __ldg(fluid.state.x + j);
     const float dx = x.x - y.x;
     const float dy = x.y - y.y;
@@ -75,7 +78,7 @@ __global__ __launch_bounds__(kThreads) void corrected_density_kernel(
   });
   const auto add_walls = [&](const SortedSurface& walls) {
     if (walls.count == 0) return;
-    for_neighbors(c.grid, walls.cells, cell, [&](std::uint32_t j) {
+    for_neighbors<Team>(c.grid, walls.cells, cell, [&](std::uint32_t j) {
       const float4 wall = __ldg(walls.x + j);
       add_wall_neighbor<Kernel>(x.x - wall.x, x.y - wall.y, x.z - wall.z, wall.w, wall.w / kWallShare, h,
                                 1.0f, sum);
@@ -83,6 +86,8 @@ __global__ __launch_bounds__(kThreads) void corrected_density_kernel(
   };
   add_walls(fixed);
   add_walls(moving);
+  Team::sum(sum.moment, sum.number, sum.fluid_number, sum.vx, sum.vy, sum.vz);
+  if (Team::lane() != 0) return;
   const ParticleKind kind = kinds[fluid.state.kind[p]];
   const float4 motion = fluid.state.v[p];
   const CorrectedState state =
@@ -103,14 +108,18 @@ void launch_density(const StepConstants& constants, const Plan& plan, const Part
                     const SortedFluid& fluid, const SortedSurface& fixed, const SortedSurface& moving,
                     std::uint32_t* status, cudaStream_t stream) {
   if (plan.model == ParticleModel::kCorrected) {
-    corrected_density_kernel<<<blocks_for(fluid.count), kThreads, 0, stream>>>(
-        constants, kinds, fluid, fixed, moving, plan.has(PassId::kOneViscosity) && plan.drags_explicitly(),
-        plan.has(PassId::kPairViscosity), status);
+    with_team<kTensorTeams>(fluid.count, [&]<class Team>() {
+      corrected_density_kernel<Team><<<blocks_for(fluid.count * Team::kLanes), kThreads, 0, stream>>>(
+          constants, kinds, fluid, fixed, moving, plan.has(PassId::kOneViscosity) && plan.drags_explicitly(),
+          plan.has(PassId::kPairViscosity), status);
+    });
     return;
   }
   with_model(plan.model, [&]<class Parts>() {
-    density_kernel<Parts><<<blocks_for(fluid.count), kThreads, 0, stream>>>(
-        constants, kinds, fluid, fixed, moving, plan.has(PassId::kPairViscosity), status);
+    with_team<kDensityTeams>(fluid.count, [&]<class Team>() {
+      density_kernel<Team, Parts><<<blocks_for(fluid.count * Team::kLanes), kThreads, 0, stream>>>(
+          constants, kinds, fluid, fixed, moving, plan.has(PassId::kPairViscosity), status);
+    });
   });
 }
 

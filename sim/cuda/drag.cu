@@ -23,7 +23,7 @@ __global__ __launch_bounds__(kThreads) void drag_kernel(StepConstants c, const P
   const ParticleView<float> self =
       view(fluid.state.x[p], fluid.state.v[p], kinds[fluid.state.kind[p]].viscosity);
   ForceSum<float> sum{0.0f, 0.0f, 0.0f};
-  for_each_dragged<Viscosity::kPair, Neighbours::kWalls>(
+  for_each_dragged<Alone, Viscosity::kPair, Neighbours::kWalls>(
       c, self, columns(moving), moving.cells, cell, 1.0f, [&](const ParticleView<float>& i) {
         add_pair_drag<typename Parts::ForceKernel, Parts::kDrag>(self, i, c.support_radius, 1.0f, sum);
       });

@@ -5,11 +5,11 @@ namespace slosh::cuda {
 
 namespace {
 
-template <class Parts, Viscosity viscosity>
+template <class Team, class Parts, Viscosity viscosity>
 __global__ __launch_bounds__(kThreads) void force_kernel(StepConstants c, const ParticleKind* kinds,
                                                          SortedFluid fluid, SortedSurface fixed,
                                                          SortedSurface moving) {
-  const std::uint32_t p = thread_index();
+  const std::uint32_t p = Team::particle();
   if (p >= fluid.count) return;
   const std::uint32_t cell = fluid.state.key[p];
   if (cell >= c.grid.retired_key()) return;
@@ -18,15 +18,17 @@ __global__ __launch_bounds__(kThreads) void force_kernel(StepConstants c, const 
   ParticleView<float> self = view(fluid.pressed[p], fluid.state.v[p], kinds[fluid.state.kind[p]].viscosity);
   if constexpr (Parts::kCorrected) read_corrected(columns(fluid), p, self);
   ForceSum<float> sum{0.0f, 0.0f, 0.0f};
-  add_forces<Parts, Parts::kFluids, viscosity>(c, self, columns(fluid), fluid.cells, cell, sum);
+  add_forces<Team, Parts, Parts::kFluids, viscosity>(c, self, columns(fluid), fluid.cells, cell, sum);
   if (fixed.count) {
-    add_forces<Parts, Parts::kWalls, kAgainstBodies, Neighbours::kWalls>(c, self, columns(fixed), fixed.cells,
-                                                                         cell, sum);
+    add_forces<Team, Parts, Parts::kWalls, kAgainstBodies, Neighbours::kWalls>(c, self, columns(fixed),
+                                                                               fixed.cells, cell, sum);
   }
   if (moving.count) {
-    add_forces<Parts, Parts::kWalls, kAgainstBodies, Neighbours::kWalls>(c, self, columns(moving),
-                                                                         moving.cells, cell, sum);
+    add_forces<Team, Parts, Parts::kWalls, kAgainstBodies, Neighbours::kWalls>(c, self, columns(moving),
+                                                                               moving.cells, cell, sum);
   }
+  Team::sum(sum.x, sum.y, sum.z);
+  if (Team::lane() != 0) return;
   const bool near_wall = (fixed.count && any_near(c.grid, fixed.cells, cell)) ||
                          (moving.count && any_near(c.grid, moving.cells, cell));
   fluid.force[p] = make_float4(c.force_scale * sum.x, c.force_scale * sum.y, c.force_scale * sum.z,
@@ -39,8 +41,10 @@ void launch_force(const StepConstants& constants, const Plan& plan, const Partic
                   const SortedFluid& fluid, const SortedSurface& fixed, const SortedSurface& moving,
                   cudaStream_t stream) {
   with_physics(plan, [&]<class Parts, Viscosity viscosity>() {
-    force_kernel<Parts, viscosity>
-        <<<blocks_for(fluid.count), kThreads, 0, stream>>>(constants, kinds, fluid, fixed, moving);
+    with_team<Parts::kCorrected ? kTensorTeams : kForceTeams>(fluid.count, [&]<class Team>() {
+      force_kernel<Team, Parts, viscosity><<<blocks_for(fluid.count * Team::kLanes), kThreads, 0, stream>>>(
+          constants, kinds, fluid, fixed, moving);
+    });
   });
 }
 

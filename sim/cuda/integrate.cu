@@ -67,7 +67,19 @@ __global__ __launch_bounds__(kThreads) void integrate_kernel(StepConstants c, co
   if (status) atomicOr(out_status, status);
 }
 
+__global__ void hand_over_kernel(std::int64_t* impulses, std::int64_t* out, std::uint32_t words) {
+  const std::uint32_t i = thread_index();
+  if (i >= words) return;
+  out[i] = impulses[i];
+  impulses[i] = 0;
+}
+
 }  // namespace
+
+void launch_hand_over(std::int64_t* impulses, std::int64_t* out, std::size_t words, cudaStream_t stream) {
+  const auto count = static_cast<std::uint32_t>(words);
+  if (count > 0) hand_over_kernel<<<blocks_for(count), kThreads, 0, stream>>>(impulses, out, count);
+}
 
 void launch_integrate(const StepConstants& constants, const ParticleKind* kinds, const SortedFluid& fluid,
                       float dt, float max_speed, const GuardView& guard, const ProbeOutput& probes,

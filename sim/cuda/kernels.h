@@ -201,6 +201,8 @@ struct GuardView {
   unsigned long long* impulses = nullptr;  ///< as ImpulseSums; added to
   ImpulseUnits units;
 };
+/// integrate.cu: out[i] = impulses[i], impulses[i] = 0.
+void launch_hand_over(std::int64_t* impulses, std::int64_t* out, std::size_t words, cudaStream_t stream);
 /// integrate.cu: the leap-frog over `dt` s, in place, no further than to the walls, with the new keys. Probes
 /// stay where they are.
 void launch_integrate(const StepConstants& constants, const ParticleKind* kinds, const SortedFluid& fluid,

@@ -51,8 +51,9 @@ __device__ inline float viscosity_of(const ParticleView<float>& p, const Neighbo
   }
 }
 
-template <class Parts, PairRule rule, Viscosity viscosity, Neighbours neighbours = Neighbours::kFluid,
-          class Sum = ForceSum<float>>
+/// Adds the forces of the neighbours, or of the thread's share of them.
+template <class Team, class Parts, PairRule rule, Viscosity viscosity,
+          Neighbours neighbours = Neighbours::kFluid, class Sum = ForceSum<float>>
 __device__ inline void add_forces(const StepConstants& c, const ParticleView<float>& p,
                                   const NeighborColumns& n, const CellTable& cells, std::uint32_t cell,
                                   Sum& sum, float of_fluid = 1.0f) {
@@ -60,18 +61,21 @@ __device__ inline void add_forces(const StepConstants& c, const ParticleView<flo
   // What pairs of one viscosity drag by is in u already.
   constexpr bool kViscous =
       rule == PairRule::kCorrected ? viscosity == Viscosity::kPair : viscosity != Viscosity::kNone;
-  for_neighbors(c.grid, cells, cell, [&](std::uint32_t j) {
+  for_neighbors<Team>(c.grid, cells, cell, [&](std::uint32_t j) {
     ParticleView<float> i;
     const float4 x = __ldg(n.x + j);
     i.x = x.x;
     i.y = x.y;
     i.z = x.z;
-    if constexpr (kOfFluid) {
-      // Of 216 candidates 34 are in reach: of the others nothing more is fetched.
+    // Of 216 candidates 34 are in reach: of the others nothing more is fetched. Where four threads share a
+    // particle, waiting for its place first costs more than a velocity that nobody needs.
+    if constexpr (kOfFluid || Team::kLanes < 4) {
       const float dx = p.x - x.x;
       const float dy = p.y - x.y;
       const float dz = p.z - x.z;
       if (dx * dx + dy * dy + dz * dz >= c.support_radius * c.support_radius) return;
+    }
+    if constexpr (kOfFluid) {
       i.volume = x.w;
       read_corrected(n, j, i);
     } else {
@@ -94,12 +98,12 @@ __device__ inline ParticleView<float> view(const float4& x, const float4& v, flo
   return {x.x, x.y, x.z, v.x, v.y, v.z, x.w, v.w, viscosity, {}, 0.0f, 0.0f, 0.0f};
 }
 
-/// Calls f(i) for the neighbours of p as drag between them sees them.
-template <Viscosity viscosity, Neighbours neighbours, class F>
+/// Calls f(i) for the neighbours of p as drag between them sees them, or the thread's share of them.
+template <class Team, Viscosity viscosity, Neighbours neighbours, class F>
 __device__ inline void for_each_dragged(const StepConstants& c, const ParticleView<float>& p,
                                         const NeighborColumns& n, const CellTable& cells, std::uint32_t cell,
                                         float of_fluid, F&& f) {
-  for_neighbors(c.grid, cells, cell, [&](std::uint32_t j) {
+  for_neighbors<Team>(c.grid, cells, cell, [&](std::uint32_t j) {
     f(view(__ldg(n.x + j), __ldg(n.v + j), viscosity_of<viscosity, neighbours>(p, n, j, of_fluid)));
   });
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sim/cuda/kernels.h"
+#include "sim/math/symmetric.h"
 
 namespace slosh::cuda {
 
@@ -15,8 +16,52 @@ __device__ inline std::uint32_t thread_index() {
   return blockIdx.x * blockDim.x + threadIdx.x;
 }
 
-/// Calls f(j) for every particle in the 27 cells around `cell`, in memory's order.
-template <class F>
+/// The `lanes` neighbouring threads of a warp (1, 2 or 4) that share one particle's neighbours. A world
+/// of 30,000 particles, one thread each, leaves most of a GPU waiting for memory.
+template <int lanes>
+struct Team {
+  static constexpr std::uint32_t kLanes = lanes;
+  /// Which particle is this thread's.
+  __device__ static std::uint32_t particle() { return thread_index() / kLanes; }
+  __device__ static std::uint32_t lane() { return threadIdx.x % kLanes; }
+  /// The sum over the team, in an order that depends on nothing: the same on all of its threads, which all
+  /// call.
+  template <class... Floats>
+  __device__ static void sum(Floats&... values) {
+    const unsigned team = ((1u << kLanes) - 1u) << (threadIdx.x % 32u / kLanes * kLanes);
+    for (std::uint32_t step = 1; step < kLanes; step *= 2) {
+      ((values += __shfl_xor_sync(team, values, static_cast<int>(step))), ...);
+    }
+  }
+  template <class... Floats>
+  __device__ static void sum(Symmetric<float>& s, Floats&... values) {
+    sum(s.xx, s.xy, s.xz, s.yy, s.yz, s.zz, values...);
+  }
+};
+using Alone = Team<1>;
+
+/// Up to how many particles teams of four and of two are quickest; measured on an H200
+/// (tests/bench/results/2026-11-cuda-teams-h200.csv).
+struct TeamSizes {
+  std::uint32_t four, two;
+};
+/// Calls f.template operator()<Team>() with the team for `count` particles.
+template <TeamSizes sizes, class F>
+void with_team(std::uint32_t count, F&& f) {
+  if (count <= sizes.four) return f.template operator()<Team<4>>();
+  if constexpr (sizes.two > sizes.four) {
+    if (count <= sizes.two) return f.template operator()<Team<2>>();
+  }
+  f.template operator()<Alone>();
+}
+/// Of the corrected model, whose pairs take more work, and of bodies' particles.
+inline constexpr TeamSizes kTensorTeams{100'000, 0};
+inline constexpr TeamSizes kDensityTeams{50'000, 100'000};
+inline constexpr TeamSizes kForceTeams{100'000, 700'000};
+
+/// Calls f(j) for every particle in the 27 cells around `cell`, in memory's order, or the thread's share of
+/// them.
+template <class Team = Alone, class F>
 __device__ inline void for_neighbors(const CellGrid& grid, const CellTable& cells, std::uint32_t cell,
                                      F&& f) {
   for (std::uint32_t n = 0; n < 9; ++n) {
@@ -25,13 +70,13 @@ __device__ inline void for_neighbors(const CellGrid& grid, const CellTable& cell
         min(min(__ldg(cells.begin + first), __ldg(cells.begin + first + 1)), __ldg(cells.begin + first + 2));
     const std::uint32_t end =
         max(max(__ldg(cells.end + first), __ldg(cells.end + first + 1)), __ldg(cells.end + first + 2));
-    for (std::uint32_t j = begin; j < end; ++j) f(j);
+    for (std::uint32_t j = begin + Team::lane(); j < end; j += Team::kLanes) f(j);
   }
 }
 
 /// Whether there is any particle in the 27 cells around `cell`.
 __device__ inline bool any_near(const CellGrid& grid, const CellTable& cells, std::uint32_t cell) {
-  std::uint32_t end = 0;
+  std::uint32_t end = 0;  // an empty cell ends at 0
   for (std::uint32_t n = 0; n < 9; ++n) {
     const std::uint32_t first = grid.row_around(cell, n);
     end |= __ldg(cells.end + first) | __ldg(cells.end + first + 1) | __ldg(cells.end + first + 2);

@@ -19,9 +19,22 @@ void WallGuards::plan(const RunConstants& constants, const ParticleStart& start,
   sent_.allocate(views_.size(), check);
 }
 
+bool WallGuards::goes_as_sent(std::span<const RigidBody> before, std::span<const RigidBody> after) {
+  bool same = places_.size() == 2 * after.size();
+  places_.resize(2 * after.size());
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    const RigidBody& body = i < after.size() ? before[i] : after[i - after.size()];
+    const Place place{body.position, body.orientation, body.velocity, body.angular_velocity};
+    same = same && places_[i] == place;
+    places_[i] = place;
+  }
+  return same;
+}
+
 void WallGuards::send(const Plan& plan, std::span<const RigidBody> before, std::span<const RigidBody> after,
                       CallCheck& check, cudaStream_t stream) {
   if (guards_.size() == 0 || check.failed()) return;
+  if (goes_as_sent(before, after)) return;
   guard_bodies(views_, plan, before, after, guarded_);
   any_fast_ = false;
   for (std::size_t b = 0; b < guarded_.size(); ++b) {
@@ -39,9 +52,9 @@ GuardView WallGuards::view(const ImpulseUnits& units) const {
 
 void WallGuards::hand_over(unsigned char* out, CallCheck& check, cudaStream_t stream) const {
   if (guards_.size() == 0 || check.failed()) return;
-  check.ok(cudaMemcpyAsync(out, impulses_.data(), handed_bytes(), cudaMemcpyDeviceToDevice, stream),
-           "handing impulses over");
-  check.ok(cudaMemsetAsync(impulses_.data(), 0, handed_bytes(), stream), "clearing impulses");
+  launch_hand_over(impulses_.data(), reinterpret_cast<std::int64_t*>(out), guards_.size() * kImpulseWords,
+                   stream);
+  check.launched("handing impulses over");
 }
 
 }  // namespace slosh::cuda

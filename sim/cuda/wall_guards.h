@@ -17,8 +17,8 @@ class WallGuards {
   /// How many bodies; 0: nothing is guarded.
   std::size_t size() const { return guards_.size(); }
 
-  /// The bodies' ways in this sub-step, to the GPU. The copy before has been made by now: the engine was
-  /// waited for since, or the bodies stood still.
+  /// The bodies' ways in this sub-step, to the GPU, unless it has them: bodies that stand still are sent
+  /// once. The copy before has been made by now: the engine was waited for since, or the bodies stood still.
   void send(const Plan& plan, std::span<const RigidBody> before, std::span<const RigidBody> after,
             CallCheck& check, cudaStream_t stream);
   GuardView view(const ImpulseUnits& units) const;
@@ -33,6 +33,16 @@ class WallGuards {
   std::size_t handed_bytes() const { return guards_.size() * kImpulseWords * sizeof(std::int64_t); }
 
  private:
+  /// All of a body that its way depends on.
+  struct Place {
+    glm::dvec3 position;
+    glm::dquat orientation;
+    glm::dvec3 velocity, angular_velocity;
+    bool operator==(const Place&) const = default;
+  };
+  bool goes_as_sent(std::span<const RigidBody> before, std::span<const RigidBody> after);
+
+  std::vector<Place> places_;  // before and after, of each
   DeviceBuffer<float> fields_;  // one after the other
   std::vector<DistanceFieldView> views_;
   std::vector<GuardedBody> guarded_;

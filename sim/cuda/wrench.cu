@@ -8,12 +8,12 @@ namespace {
 constexpr int kSumThreads = 256;
 constexpr int kDragThreads = 128;  // 21 doubles each fit into a block's memory
 
-template <class Parts, Viscosity viscosity, bool with_drag>
+template <class Team, class Parts, Viscosity viscosity, bool with_drag>
 __global__ __launch_bounds__(kThreads) void surface_force_kernel(StepConstants c, float first_viscosity,
                                                                  SortedFluid fluid, SortedSurface surface,
                                                                  const std::uint8_t* wanted,
                                                                  LocalSurface local) {
-  const std::uint32_t i = thread_index();
+  const std::uint32_t i = Team::particle();
   if (i >= surface.count || !wanted[surface.body[i]]) return;
   const std::uint32_t cell = surface.key[i];
   SurfaceSum<float> sum{};
@@ -24,16 +24,19 @@ __global__ __launch_bounds__(kThreads) void surface_force_kernel(StepConstants c
     const float used =
         viscosity == Viscosity::kOne ? 0.5f * (wall.own + wall.of_fluid * first_viscosity) : wall.own;
     const ParticleView<float> self = view(surface.x[i], surface.v[i], used);
-    add_forces<Parts, Parts::kOnBodies, viscosity>(c, self, columns(fluid), fluid.cells, cell, sum,
-                                                   wall.of_fluid);
+    add_forces<Team, Parts, Parts::kOnBodies, viscosity>(c, self, columns(fluid), fluid.cells, cell, sum,
+                                                         wall.of_fluid);
     if constexpr (with_drag) {
-      for_each_dragged<viscosity, Neighbours::kFluid>(
+      for_each_dragged<Team, viscosity, Neighbours::kFluid>(
           c, self, columns(fluid), fluid.cells, cell, wall.of_fluid, [&](const ParticleView<float>& p) {
             add_pair_drag_rate<typename Parts::ForceKernel, Parts::kDrag>(self, p, c.support_radius, 1.0f,
                                                                           rate);
           });
     }
   }
+  Team::sum(sum.x, sum.y, sum.z, sum.cx, sum.cy, sum.cz);
+  if constexpr (with_drag) Team::sum(rate);
+  if (Team::lane() != 0) return;
   const std::uint32_t at = surface.order[i];
   local.force[at] = make_float4(c.force_scale * sum.x, c.force_scale * sum.y, c.force_scale * sum.z, 0.0f);
   local.couple[at] =
@@ -123,14 +126,16 @@ void launch_surface_forces(const StepConstants& constants, const Plan& plan, flo
                            const SortedFluid& fluid, const SortedSurface& surface, const std::uint8_t* wanted,
                            const LocalSurface& local, bool with_drag, cudaStream_t stream) {
   with_physics(plan, [&]<class Parts, Viscosity viscosity>() {
-    const auto launch = [&](auto kernel) {
-      kernel<<<blocks_for(surface.count), kThreads, 0, stream>>>(constants, first_viscosity, fluid, surface,
-                                                                 wanted, local);
-    };
-    if constexpr (viscosity != Viscosity::kNone) {
-      if (with_drag) return launch(surface_force_kernel<Parts, viscosity, true>);
-    }
-    launch(surface_force_kernel<Parts, viscosity, false>);
+    with_team<kTensorTeams>(surface.count, [&]<class Team>() {
+      const auto launch = [&](auto kernel) {
+        kernel<<<blocks_for(surface.count * Team::kLanes), kThreads, 0, stream>>>(
+            constants, first_viscosity, fluid, surface, wanted, local);
+      };
+      if constexpr (viscosity != Viscosity::kNone) {
+        if (with_drag) return launch(surface_force_kernel<Team, Parts, viscosity, true>);
+      }
+      launch(surface_force_kernel<Team, Parts, viscosity, false>);
+    });
   });
 }
 

@@ -1,6 +1,7 @@
 // A pool of fluid at growing counts, step after step: CSV on standard output.
 // Usage: bench_cuda [drag] [paper|consistent|corrected] [cuda|cpu] [particles…]
-// With the default model, or the one that is named. At rest; or with `drag` turning, without viscosity, at 50 Pa·s by explicit steps and at 50 Pa·s solved.
+// With the default model, or the one that is named. At rest; or with `drag` turning, without viscosity, at
+// 50 Pa·s by explicit steps and at 50 Pa·s solved.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
