@@ -10,16 +10,18 @@
 namespace on_cpu {
 
 Index thread_index{}, block_index{}, block_size{1, 1, 1}, grid_size{1, 1, 1};
-double shuffled[1024];
+double shuffled[1024], exchanged[2 * 1024];
 
 namespace {
 
-enum class State { kRuns, kAtBlock, kAtGrid, kDone };
+enum class State { kRuns, kAtWarp, kAtBlock, kAtGrid, kDone };
 
 struct Fiber {
   static constexpr std::size_t kStack = 65536;
   ucontext_t context;
   State state;
+  unsigned members;  // of the warp, that it waits for
+  unsigned turn;     // how many exchanges it has come to
   std::unique_ptr<char[]> stack;
   Index thread, block;
 };
@@ -56,7 +58,28 @@ void prepare(Fiber& fiber, unsigned block, unsigned thread) {
   fiber.thread = {thread, 0, 0};
   fiber.block = {block, 0, 0};
   fiber.state = State::kRuns;
+  fiber.turn = 0;
   makecontext(&fiber.context, begin, 0);
+}
+
+// Lets those of a warp go on that are all there. False where there are none.
+bool release_warp(Fiber* warp, unsigned threads) {
+  bool any = false;
+  for (unsigned t = 0; t < threads; ++t) {
+    if (warp[t].state != State::kAtWarp) continue;
+    const unsigned members = warp[t].members;
+    bool all = (members >> t & 1u) != 0;
+    for (unsigned other = 0; other < 32; ++other) {
+      if (members >> other & 1u)
+        all = all && other < threads && warp[other].state == State::kAtWarp && warp[other].members == members;
+    }
+    if (!all) continue;
+    for (unsigned other = 0; other < 32; ++other) {
+      if (members >> other & 1u) warp[other].state = State::kRuns;
+    }
+    any = true;
+  }
+  return any;
 }
 
 // Until all of its threads wait for the grid, or all are done.
@@ -75,19 +98,34 @@ void run_block(Fiber* block, unsigned threads) {
       done += block[t].state == State::kDone;
     }
     if (at_grid == threads || done == threads) return;
-    if (at_block != threads) give_up("not all of a block's threads come to the same barrier");
+    bool released = false;
+    for (unsigned t = 0; t < threads; t += 32) released |= release_warp(block + t, std::min(32u, threads - t));
+    if (released) continue;
+    if (at_block != threads) give_up("not all of a block's or a team's threads come to the same barrier");
     for (unsigned t = 0; t < threads; ++t) block[t].state = State::kRuns;
   }
 }
 
-void run_fibers(unsigned blocks, unsigned threads, const std::function<void()>& body) {
-  kernel = &body;
-  const std::size_t count = std::size_t{blocks} * threads;
+void need_fibers(std::size_t count) {
   if (fibers.size() < count) fibers.resize(count);
+}
+
+void run_blocks(unsigned blocks, unsigned threads) {
+  need_fibers(threads);
+  // The last first: a GPU promises no order of blocks.
+  for (unsigned b = blocks; b-- > 0;) {
+    for (unsigned t = 0; t < threads; ++t) prepare(fibers[t], b, t);
+    run_block(fibers.data(), threads);
+    if (fibers.front().state != State::kDone) give_up("waits for the grid, unknown to launches.py");
+  }
+}
+
+void run_all_blocks(unsigned blocks, unsigned threads) {
+  const std::size_t count = std::size_t{blocks} * threads;
+  need_fibers(count);
   for (std::size_t i = 0; i < count; ++i)
     prepare(fibers[i], static_cast<unsigned>(i / threads), static_cast<unsigned>(i % threads));
   while (true) {
-    // The last first: a GPU promises no order of blocks.
     for (unsigned b = blocks; b-- > 0;) run_block(&fibers[std::size_t{b} * threads], threads);
     std::size_t done = 0;
     for (std::size_t i = 0; i < count; ++i) done += fibers[i].state == State::kDone;
@@ -95,7 +133,6 @@ void run_fibers(unsigned blocks, unsigned threads, const std::function<void()>& 
     if (done > 0) give_up("not all blocks come to the same barrier of the grid");
     for (std::size_t i = 0; i < count; ++i) fibers[i].state = State::kRuns;
   }
-  running = nullptr;
 }
 
 }  // namespace
@@ -106,11 +143,30 @@ void block_barrier() {
 void grid_barrier() {
   wait(State::kAtGrid);
 }
+void warp_barrier(unsigned members) {
+  if (running) {
+    running->members = members;
+    ++running->turn;
+  }
+  wait(State::kAtWarp);
+}
+unsigned warp_turn() {
+  return running ? running->turn : 0;
+}
 
-void run_grid(unsigned blocks, unsigned threads, bool needs_fibers, const std::function<void()>& body) {
+void run_grid(unsigned blocks, unsigned threads, Waits waits, const std::function<void()>& body) {
   grid_size = {blocks, 1, 1};
   block_size = {threads, 1, 1};
-  if (needs_fibers) return run_fibers(blocks, threads, body);
+  if (waits != Waits::kForNobody) {
+    kernel = &body;
+    if (waits == Waits::kInBlock) {
+      run_blocks(blocks, threads);
+    } else {
+      run_all_blocks(blocks, threads);
+    }
+    running = nullptr;
+    return;
+  }
   for (unsigned b = 0; b < blocks; ++b) {
     for (unsigned t = 0; t < threads; ++t) {
       block_index = {b, 0, 0};

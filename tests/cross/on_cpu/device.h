@@ -1,6 +1,7 @@
 // What the kernels of sim/cuda need to be compiled as C++ and run by one CPU thread: each of a grid's threads
-// after the other, as fibers where a kernel has barriers. Included before everything else. Shows wrong sums,
-// wrong indices and barriers that not all reach; not races, not what a GPU's own arithmetic rounds.
+// after the other, as fibers where a kernel's threads wait for each other. Included before everything else.
+// Shows wrong sums, wrong indices and barriers that not all reach; not races, not what a GPU's own arithmetic
+// rounds.
 #pragma once
 
 #include <cuda_runtime.h>
@@ -34,22 +35,28 @@ extern Index thread_index, block_index, block_size, grid_size;
 
 void block_barrier();
 void grid_barrier();
+/// Of the threads of a warp that `members` has a bit of.
+void warp_barrier(unsigned members);
 
-/// Runs `body` once a thread. `fibers`: it has barriers. Aborts where some of a block's threads wait at a
-/// barrier that the others have passed by.
-void run_grid(unsigned blocks, unsigned threads, bool fibers, const std::function<void()>& body);
+/// For whom a kernel's threads wait, and so what runs as fibers.
+enum class Waits { kForNobody, kInBlock, kInGrid };
+
+/// Runs `body` once a thread. Aborts where some of those who should come to a barrier do not.
+void run_grid(unsigned blocks, unsigned threads, Waits waits, const std::function<void()>& body);
 
 /// What kernel<<<blocks, threads>>>(arguments) becomes (launches.py).
 struct Launch {
   unsigned blocks, threads;
-  bool fibers;
+  Waits waits;
   template <class Kernel, class... Arguments>
   void run(Kernel&& kernel, Arguments&&... arguments) {
-    run_grid(blocks, threads, fibers, [&] { kernel(arguments...); });
+    run_grid(blocks, threads, waits, [&] { kernel(arguments...); });
   }
 };
 
-extern double shuffled[1024];
+extern double shuffled[1024], exchanged[2 * 1024];
+/// How many of these the thread has come to.
+unsigned warp_turn();
 
 template <class T>
 T shuffle_down(T value, int by) {
@@ -61,6 +68,16 @@ T shuffle_down(T value, int by) {
   return other;
 }
 
+template <class T>
+T shuffle_xor(unsigned members, T value, int by) {
+  const unsigned thread = thread_index.x;
+  // Nobody is more than one exchange ahead of its team, so two places in turn are enough.
+  const unsigned turn = warp_turn() % 2 * 1024;
+  exchanged[turn + thread] = value;
+  warp_barrier(members);
+  return static_cast<T>(exchanged[turn + (thread ^ static_cast<unsigned>(by))]);
+}
+
 }  // namespace on_cpu
 
 #define threadIdx on_cpu::thread_index
@@ -69,6 +86,7 @@ T shuffle_down(T value, int by) {
 #define gridDim on_cpu::grid_size
 #define __syncthreads on_cpu::block_barrier
 #define __shfl_down_sync(mask, value, by) on_cpu::shuffle_down(value, by)
+#define __shfl_xor_sync(mask, value, by) on_cpu::shuffle_xor(mask, value, by)
 
 template <class T>
 T __ldg(const T* at) {

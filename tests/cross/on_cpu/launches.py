@@ -5,8 +5,10 @@ Usage: launches.py SOURCE.cu RESULT.cpp
 import re
 import sys
 
-# Those that have barriers, and run as fibers. A barrier in any other ends the program with words.
-WITH_BARRIERS = {"chunk_kernel", "chunk_drag_kernel", "body_kernel"}
+# Those whose threads wait for others of their block, and run as fibers. Waiting in any other ends the program with
+# words. "kernel" is what surface_force_kernel is called where it is launched.
+WAITING = {"chunk_kernel", "chunk_drag_kernel", "body_kernel", "density_kernel", "corrected_density_kernel",
+           "force_kernel", "kernel"}
 
 
 def split(text):
@@ -23,8 +25,9 @@ def split(text):
 
 def launch(match):
     kernel, (blocks, threads, *_) = match[1], split(match[2])
-    fibers = "true" if kernel.split("<")[0] in WITH_BARRIERS else "false"
-    return (f"on_cpu::Launch{{static_cast<unsigned>({blocks}), static_cast<unsigned>({threads}), {fibers}}}"
+    waits = "kInBlock" if kernel.split("<")[0] in WAITING else "kForNobody"
+    return (f"on_cpu::Launch{{static_cast<unsigned>({blocks}), static_cast<unsigned>({threads}), "
+            f"on_cpu::Waits::{waits}}}"
             f".run([&](auto&&... a) {{ {kernel}(a...); }}, ")
 
 
@@ -35,7 +38,7 @@ def main():
     text = re.sub(r"([A-Za-z_]\w*(?:<[^<>;(){}]*>)?)\s*<<<(.*?)>>>\s*\(", launch, text, flags=re.S)
     # The one cooperative launch: its arguments by their names, which an array of addresses hides.
     text = re.sub(r"return cudaLaunchCooperativeKernel\(.*?stream\);",
-                  "on_cpu::Launch{grid, kSolveThreads, true}.run("
+                  "on_cpu::Launch{grid, kSolveThreads, on_cpu::Waits::kInGrid}.run("
                   "[&](auto&&... a) { solve_kernel<viscosity>(a...); }, solve, status);\n    return cudaSuccess;",
                   text, flags=re.S)
     with open(result, "w", encoding="utf-8") as file:
