@@ -88,7 +88,8 @@ class GlfwContext final : public Context {
     take_mouse();
     if (ImGui::GetCurrentContext()) {
       input_.hud_wants_mouse = ImGui::GetIO().WantCaptureMouse;
-      input_.hud_wants_keyboard = ImGui::GetIO().WantCaptureKeyboard;
+      // Not WantCaptureKeyboard: that is any slider under the mouse, and takes keys that are nobody's.
+      input_.hud_wants_keyboard = ImGui::GetIO().WantTextInput;
     }
     return input_;
   }

@@ -115,6 +115,8 @@ TEST_F(WindowTest, AMousePoursTheDefaultBucket) {
   const Outcome outcome = slosh.wait();
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_TRUE(read_png(out / "picture-1.png"));
+  ASSERT_TRUE(std::filesystem::exists(out / "view.mp4"));
+  EXPECT_GT(std::filesystem::file_size(out / "view.mp4"), 10000u) << "bytes: the film of it";
 
   // Four fifths of the water lies on the table or went over its edge: its middle is far below where it was.
   std::ifstream probes(out / "probes.csv");
@@ -169,6 +171,63 @@ TEST_F(WindowTest, KeysPauseStepAndSlowTheWorld) {
   display->act({"key", "p"});
   EXPECT_TRUE(comes([&] { return std::filesystem::exists(out / "picture-1.png"); }));
   display->act({"key", "Escape"});
+  EXPECT_EQ(slosh.wait().code, 0);
+}
+
+/// The knobs of the sliders in a picture, from the first down: a few rows of one blue each. Pixels.
+std::vector<glm::ivec2> slider_knobs(const Image& picture) {
+  std::vector<glm::ivec2> knobs;
+  for (int y = 0; y < picture.height; ++y) {
+    int first = -1, last = -1;
+    for (int x = picture.width / 2; x < picture.width; ++x) {
+      const std::uint8_t* p = &picture.rgba[4 * static_cast<std::size_t>(y * picture.width + x)];
+      if (std::abs(p[0] - 61) > 20 || std::abs(p[1] - 133) > 20 || std::abs(p[2] - 224) > 20) continue;
+      if (first < 0) first = x;
+      last = x;
+    }
+    if (last - first < 5 || last - first > 30) continue;
+    if (knobs.empty() || y > knobs.back().y + 15) knobs.emplace_back((first + last) / 2, y + 4);
+  }
+  return knobs;
+}
+
+/// A slider is dragged, and the hands feel it: without gravity they carry nothing.
+TEST_F(WindowTest, ASliderChangesTheWorldThatRuns) {
+  Process slosh(display->on({test::program(), "play", "bucket", "--spacing", "0.0135", "--size", "640x480", "--out", "out"}),
+                test::test_folder());
+  ASSERT_TRUE(comes([&] { return !slosh.running() || rows() > 50; }));
+  ASSERT_TRUE(slosh.running()) << read_text(test::test_folder() / "stderr.txt");
+  // N, of the left hand: the newest row's.
+  const auto weight = [&] {
+    const std::string text = read_text(out / "wrenches.csv");
+    const std::size_t end = text.rfind("\n");
+    if (end == std::string::npos || end == 0) return 0.0;
+    std::stringstream row(text.substr(text.rfind("\n", end - 1) + 1));
+    std::string field;
+    for (int i = 0; i < 4; ++i) std::getline(row, field, ',');
+    return std::atof(field.c_str());
+  };
+  EXPECT_LT(weight(), -9.0) << "it hangs on both hands";
+  display->act({"mousemove", "320", "200"});
+  display->act({"key", "Tab"});
+  std::vector<glm::ivec2> knobs;
+  for (int i = 1; i <= 5 && knobs.size() < 6; ++i) {
+    const std::string name = "picture-" + std::to_string(i) + ".png";
+    display->act({"key", "p"});
+    ASSERT_TRUE(comes([&] { return static_cast<bool>(read_png(out / name)); })) << name;
+    knobs = slider_knobs(read_png(out / name).value());
+  }
+  ASSERT_EQ(knobs.size(), 6u) << "pace, filter, gravity, viscosity of the water, stiffness of two hands";
+  const glm::ivec2 gravity = knobs[2];
+  point(gravity);
+  display->act({"mousedown", "1"});
+  int moved = 0;
+  EXPECT_TRUE(comes([&] {
+    if (moved < 150) point(gravity - glm::ivec2(moved += 10, 0));
+    return std::abs(weight()) < 1.0;
+  })) << weight() << " N";
+  display->act({"mouseup", "1"});
+  display->act({"key", "q"});
   EXPECT_EQ(slosh.wait().code, 0);
 }
 
