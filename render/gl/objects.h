@@ -14,6 +14,15 @@
 
 namespace slosh::gl {
 
+/// Puts what was made into `into`, or gives on why it was not. All of a list may be made before the first is
+/// looked at.
+template <class T>
+Result<bool> take(T& into, Result<T> made) {
+  if (!made) return made.error();
+  into = std::move(made.value());
+  return true;
+}
+
 /// Owns one GL name; `Delete` frees it on the context that is current then.
 template <void (*Delete)(GLuint)>
 class Object {

@@ -24,27 +24,22 @@ Result<FluidPasses> FluidPasses::create(bool fast, bool compute, const std::vect
   passes.compute_ = compute;
   std::vector<std::string> looks = far_light;
   if (fast) looks.emplace_back("FAST");
-  const auto load = [](auto& into, auto&& made) -> Result<bool> {
-    if (!made) return made.error();
-    into = std::move(made.value());
-    return true;
-  };
   const auto splats = [&](std::vector<std::string> defines) {
     return compute ? gl::Program::create_compute("splat.comp", std::move(defines))
                    : gl::Program::create("splat.vert", "splat.frag", std::move(defines));
   };
   for (const Result<bool>& loaded :
-       {load(passes.front_program_, splats({"FRONT"})),
-        load(passes.shaped_program_, splats({"FRONT", "SHAPED"})), load(passes.back_program_, splats({})),
-        load(passes.composite_program_, gl::PixelProgram::create("composite.frag", compute, true, far_light)),
-        load(passes.look_program_, gl::PixelProgram::create("fluid_look.frag", compute, true, looks)),
-        load(passes.fill_program_, gl::PixelProgram::create("fill.frag", compute)),
-        load(passes.thickness_program_, gl::Program::create("tiles.vert", "thickness.frag")),
-        load(passes.normal_program_, gl::Program::create("tiles.vert", "normal.frag"))}) {
+       {gl::take(passes.front_program_, splats({"FRONT"})),
+        gl::take(passes.shaped_program_, splats({"FRONT", "SHAPED"})), gl::take(passes.back_program_, splats({})),
+        gl::take(passes.composite_program_, gl::PixelProgram::create("composite.frag", compute, true, far_light)),
+        gl::take(passes.look_program_, gl::PixelProgram::create("fluid_look.frag", compute, true, looks)),
+        gl::take(passes.fill_program_, gl::PixelProgram::create("fill.frag", compute)),
+        gl::take(passes.thickness_program_, gl::Program::create("tiles.vert", "thickness.frag")),
+        gl::take(passes.normal_program_, gl::Program::create("tiles.vert", "normal.frag"))}) {
     if (!loaded) return loaded.error();
   }
   if (compute) {
-    const auto loaded = load(passes.centers_, SmoothCentersOnGpu::create());
+    const auto loaded = gl::take(passes.centers_, SmoothCentersOnGpu::create());
     if (!loaded) return loaded.error();
   }
   passes.no_vertices_ = gl::make_vertex_array();

@@ -70,28 +70,14 @@ Result<ScenePass> ScenePass::create(bool fast, bool compute, const std::vector<s
   if (fast) quality.emplace_back("FAST");
   std::vector<std::string> behind = far_light;
   behind.emplace_back("BEHIND");
-  const auto load = [](auto& into, auto&& program) -> Result<bool> {
-    if (!program) return program.error();
-    into = std::move(program.value());
-    return true;
-  };
   for (const Result<bool>& loaded :
-       {load(pass.background_, gl::Program::create("fullscreen.vert", "background.frag", far_light)),
-        load(pass.occlusion_, gl::PixelProgram::create("occlusion.frag", compute, false, {"TAPS 8"})),
-        load(pass.resolve_, gl::PixelProgram::create("resolve.frag", compute))}) {
+       {gl::take(pass.background_, gl::Program::create("fullscreen.vert", "background.frag", far_light)),
+        gl::take(pass.occlusion_, gl::PixelProgram::create("occlusion.frag", compute, false, {"TAPS 8"})),
+        gl::take(pass.resolve_, gl::PixelProgram::create("resolve.frag", compute)),
+        gl::take(pass.opaque_, Programs::create("mesh.frag", quality)),
+        gl::take(pass.translucent_behind_, Programs::create("translucent.frag", behind)),
+        gl::take(pass.translucent_front_, Programs::create("translucent.frag", far_light))}) {
     if (!loaded) return loaded.error();
-  }
-  const auto make = [](Programs& into, const char* fragment,
-                       std::vector<std::string> defines) -> Result<bool> {
-    auto made = Programs::create(fragment, std::move(defines));
-    if (!made) return made.error();
-    into = std::move(made.value());
-    return true;
-  };
-  for (const Result<bool>& made :
-       {make(pass.opaque_, "mesh.frag", quality), make(pass.translucent_behind_, "translucent.frag", behind),
-        make(pass.translucent_front_, "translucent.frag", far_light)}) {
-    if (!made) return made.error();
   }
   pass.no_vertices_ = gl::make_vertex_array();
   return pass;

@@ -1,0 +1,173 @@
+#include "render/renderer_parts.h"
+
+#include <algorithm>
+#include <thread>
+#include <utility>
+
+#include "render/passes/pixel_choice.h"
+
+namespace slosh {
+namespace {
+
+/// How far ambient occlusion looks, in multiples of the distance to what is looked at.
+constexpr float kOcclusionReach = 0.06f;
+
+/// A processor that draws, too, has its hands full; beside a GPU a quarter of its cores is free for this.
+int smoothing_threads(const Context& context) {
+  return context.is_software() ? 1
+                               : std::clamp(static_cast<int>(std::thread::hardware_concurrency()) / 4, 1, 4);
+}
+
+}  // namespace
+
+Renderer::Parts::Parts(Context& where, const RenderOptions& what)
+    : context(where),
+      options(what),
+      textures(!where.is_software()),
+      centers(smoothing_threads(where)),
+      timer(where.is_software()) {}
+
+void Renderer::Parts::copy(const gl::Texture& from, glm::ivec2 size, const PictureTarget& target) {
+  glCopyImageSubData(from.name(), GL_TEXTURE_2D, 0, 0, 0, 0, target.texture, GL_TEXTURE_2D, 0, 0, 0, 0,
+                     size.x, size.y, 1);
+}
+
+Result<bool> Renderer::Parts::fit_to_options() {
+  const bool want_fast =
+      options.quality == Quality::kAuto ? context.is_software() : options.quality == Quality::kFast;
+  const bool want_compute = options.pixel_passes == PixelPasses::kMeasured
+                                ? compute_is_quicker(context)
+                                : options.pixel_passes == PixelPasses::kCompute;
+  if (!scene_pass || want_fast != fast || want_compute != compute || !far_light.shows(options.environment)) {
+    FarLight light;
+    light.choose(options.environment);
+    auto arrows = ArrowPass::create(light.defines());
+    if (!arrows) return arrows.error();
+    auto scene = ScenePass::create(want_fast, want_compute, light.defines());
+    if (!scene) return scene.error();
+    auto fluid = FluidPasses::create(want_fast, want_compute, light.defines());
+    if (!fluid) return fluid.error();
+    auto fluid_shadow = FluidShadowPass::create(want_fast, want_compute);
+    if (!fluid_shadow) return fluid_shadow.error();
+    auto thickness = ThicknessPass::create(want_compute);
+    if (!thickness) return thickness.error();
+    auto copying = gl::PixelProgram::create("copy.frag", want_compute);
+    if (!copying) return copying.error();
+    copy_program = std::move(copying.value());
+    thickness_pass = std::move(thickness.value());
+    arrow_pass = std::move(arrows.value());
+    foam_pass.reset();
+    far_light = std::move(light);
+    scene_pass = std::move(scene.value());
+    fluid_shadow_pass = std::move(fluid_shadow.value());
+    fluid_passes = std::move(fluid.value());
+    drew_fluid = false;
+    fast = want_fast;
+    compute = want_compute;
+  }
+  if (auto chosen = fluid_passes->choose(options.surface); !chosen) return chosen.error();
+  const glm::ivec2 size(options.width, options.height);
+  const glm::ivec2 back = options.half_resolution_back ? (size + 1) / 2 : size;
+  if (targets.size != size || targets.back_size != back || made_fast != fast) {
+    made_fast = fast;
+    targets = make_targets(size, options.half_resolution_back, fast);
+    drew_fluid = false;
+  }
+  const int shadow_size = fast ? (3 * options.shadow_size + 3) / 4 : options.shadow_size;
+  if (shadow_size == 0) {
+    shadow_pass.reset();
+  } else if (!shadow_pass || shadow_pass->size() != shadow_size) {
+    auto pass = ShadowPass::create(shadow_size);
+    if (!pass) return pass.error();
+    shadow_pass = std::move(pass.value());
+  }
+  if (!display_pass || !display_pass->shows(options.display, options.color, compute)) {
+    auto pass = DisplayPass::create(options.display, options.color, compute);
+    if (!pass) return pass.error();
+    display_pass = std::move(pass.value());
+  }
+  return true;
+}
+
+void Renderer::Parts::show_in_window() {
+  const glm::ivec2 window = context.framebuffer_size();
+  if (window.x < 1 || window.y < 1) return;
+  glBlitNamedFramebuffer(targets.display_target.name(), 0, 0, 0, targets.size.x, targets.size.y, 0, 0,
+                         window.x, window.y, GL_COLOR_BUFFER_BIT,
+                         window == targets.size ? GL_NEAREST : GL_LINEAR);
+}
+
+void Renderer::Parts::draw_scene() {
+  const bool chords = options.layers && options.surface != Surface::kPaper && any_fluid_is_clear(frame);
+  far_light.bind();
+  uniforms.upload(make_frame_block(frame, options, shadow, chords));
+  run("prepare splats", [&] {
+    prepare_splats(frame, options, splats);
+    if (chords) splats.all = splats.spheres;
+    if (fast) leave_out_hidden(frame, options, splats);
+    drew_fluid = !splats.empty();
+    const bool moves = options.surface == Surface::kOurs && drew_fluid;
+    const bool anew = moves && !std::exchange(centers_sorted, true);
+    if (anew) centers.sort(frame);
+    if (moves && !compute) centers.move(frame, splats);
+    if (drew_fluid) fluid_passes->upload(splats);
+    if (moves && compute) fluid_passes->smooth_centers(centers, frame.particle_radius, anew);
+  });
+  if (drew_fluid) {
+    run("front depth", [&] { fluid_passes->splat_front(targets); });
+    run("fetch front", [&] { fluid_passes->fetch_front(targets, options); });
+    run("back depth", [&] { fluid_passes->splat_back(targets); });
+  }
+
+  const bool occlusion = options.ambient_occlusion && !fast;
+  run("opaque meshes",
+      [&] { scene_pass->draw_opaque(frame, meshes, textures, targets, options.draw_background, occlusion); });
+  if (occlusion) {
+    run("occlusion", [&] { scene_pass->draw_occlusion(targets, kOcclusionReach); });
+    run("resolve", [&] { scene_pass->resolve_occlusion(targets); });
+  }
+  if (drew_fluid) {
+    // A CPU's driver draws the passes before with its own threads while a filter in main memory works.
+    glFlush();
+    run("surface filter", [&] { fluid_passes->smooth(targets, options, frame); });
+  }
+  if (drew_fluid && chords) {
+    run("thickness", [&] { thickness_pass->draw(frame, targets, splats.all); });
+  }
+  const bool translucent = has_translucent(frame);
+  if (drew_fluid) {
+    if (translucent && !fast) {
+      run("translucent behind",
+          [&] { scene_pass->draw_translucent(frame, meshes, textures, targets, fluid_depth(), true); });
+    }
+    run("copy scene colour", [&] {
+      if (compute) {
+        gl::bind_textures({&targets.color});
+        copy_program.run({targets.scene_color, targets.scene_color_target, targets.size, GL_RGBA16F});
+        return;
+      }
+      glCopyImageSubData(targets.color.name(), GL_TEXTURE_2D, 0, 0, 0, 0, targets.scene_color.name(),
+                         GL_TEXTURE_2D, 0, 0, 0, 0, targets.size.x, targets.size.y, 1);
+    });
+    run("composite", [&] { fluid_passes->composite(targets, options.lit_fluid); });
+  }
+  if (!frame.foam.empty()) {
+    if (!foam_pass) {
+      if (auto made = FoamPass::create(far_light.defines())) foam_pass = std::move(made.value());
+    }
+    if (foam_pass) run("foam", [&] { foam_pass->draw(frame, targets, fluid_depth()); });
+  }
+  if (translucent) {
+    run("translucent",
+        [&] { scene_pass->draw_translucent(frame, meshes, textures, targets, fluid_depth(), false); });
+  }
+  if (!frame.arrows.empty()) {
+    run("arrows", [&] { arrow_pass->draw(frame, targets, fluid_depth()); });
+  }
+  run("display", [&] { display_pass->draw(targets, options.exposure, options.dither, options.antialias); });
+  if (options.antialias) {
+    run("edges", [&] { display_pass->smooth_edges(targets, context.is_software()); });
+  }
+}
+
+}  // namespace slosh

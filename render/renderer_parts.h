@@ -1,0 +1,83 @@
+// What a Renderer is made of: its passes, its targets, and the frame it draws.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "render/gl/objects.h"
+#include "render/gl/pixel_program.h"
+#include "render/passes/arrow_pass.h"
+#include "render/passes/display_pass.h"
+#include "render/passes/far_light.h"
+#include "render/passes/fluid_passes.h"
+#include "render/passes/fluid_shadow_pass.h"
+#include "render/passes/foam_pass.h"
+#include "render/passes/frame_block.h"
+#include "render/passes/hud_pass.h"
+#include "render/passes/meshes.h"
+#include "render/passes/pass_timer.h"
+#include "render/passes/scene_pass.h"
+#include "render/passes/shadow_pass.h"
+#include "render/passes/smooth_centers.h"
+#include "render/passes/splats.h"
+#include "render/passes/targets.h"
+#include "render/passes/textures.h"
+#include "render/passes/thickness_pass.h"
+#include "render/renderer.h"
+
+namespace slosh {
+
+struct Renderer::Parts {
+  Parts(Context& where, const RenderOptions& what);
+
+  Context& context;
+  RenderOptions options;
+  MeshStore meshes;
+  TextureStore textures;
+  FrameUniforms uniforms;
+  Splats splats;
+  SmoothCenters centers;
+  FarLight far_light;
+  Targets targets;
+  std::optional<ShadowPass> shadow_pass;
+  std::optional<FluidShadowPass> fluid_shadow_pass;
+  std::optional<ScenePass> scene_pass;
+  std::optional<FluidPasses> fluid_passes;
+  std::optional<ThicknessPass> thickness_pass;
+  std::optional<FoamPass> foam_pass;  ///< made when there is foam
+  std::optional<ArrowPass> arrow_pass;
+  std::optional<DisplayPass> display_pass;
+  std::unique_ptr<HudPass> hud_pass;
+  Frame frame;        ///< what was prepared, and the view being drawn
+  ShadowView shadow;  ///< of this frame
+  bool centers_sorted = false;
+  gl::Texture panel;  ///< RGBA8, made when first asked for
+  gl::Framebuffer panel_target;
+  glm::ivec2 panel_size{0};
+  bool drew_fluid = false;  ///< in the last picture
+  bool fast = false;        ///< Quality, resolved
+  bool made_fast = false;   ///< that of the targets
+  bool compute = false;     ///< PixelPasses, resolved
+  gl::PixelProgram copy_program;  ///< for compute
+  bool timing = false;
+  PassTimer timer;
+  std::vector<PassTime> times;
+
+  /// Makes what `options` asks for and is not there yet.
+  Result<bool> fit_to_options();
+  const gl::Texture* fluid_depth() const { return drew_fluid ? &fluid_passes->smoothed(targets) : nullptr; }
+  void draw_scene();
+  static void copy(const gl::Texture& from, glm::ivec2 size, const PictureTarget& target);
+  void show_in_window();
+
+  /// Runs one pass, timed if asked.
+  template <class Pass>
+  void run(const char* name, Pass&& pass) {
+    if (timing) timer.begin(name);
+    pass();
+    if (timing) timer.end();
+  }
+};
+
+}  // namespace slosh
