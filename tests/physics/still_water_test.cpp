@@ -48,8 +48,9 @@ Turnover turnover(ParticleModel model) {
   return {std::sqrt(squares / static_cast<double>(after.positions.size())), up.mean()};
 }
 
-// The corrected model's water rises along the axis and sinks at the walls, and what the correction does to
-// the first layers is why (sim/README.md, *Still water turns over*). 16 and 15 mm/s are reached.
+// The corrected model's water rises along the axis and sinks near the walls, whose first layer bears more
+// than its weight and whose second less; jostling does the rest (sim/README.md, *Still water turns over*). 16
+// and 15 mm/s are reached.
 TEST(StillWater, turns_over_by_itself) {
   const Turnover corrected = turnover(ParticleModel::kCorrected);
   report_value("still water moves, corrected", corrected.all, "m/s");
