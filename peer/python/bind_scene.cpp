@@ -68,14 +68,14 @@ std::vector<std::string> pass_names(const std::vector<Pass>& passes) {
 
 void bind_parts(py::module_& m) {
   py::class_<Fluid>(m, "Fluid", "A fluid of a scene.")
-      .def_readonly("name", &Fluid::name)
+      .def_readonly("name", &Fluid::name, "the node's name in the file")
       .def_readonly("density", &Fluid::rest_density, "kg/m³ at rest")
       .def_readonly("viscosity", &Fluid::dynamic_viscosity, "Pa·s");
   py::class_<Body>(m, "Body", "A rigid body of a scene, as it starts.")
-      .def_readonly("name", &Body::name)
+      .def_readonly("name", &Body::name, "the node's name in the file")
       .def_property_readonly(
           "free", [](const Body& b) { return b.motion == BodyMotion::kFree; }, "False: it is fixed")
-      .def_readonly("point_probe", &Body::point_probe)
+      .def_readonly("point_probe", &Body::point_probe, "True: a point that feels fluid and cannot turn")
       .def_property_readonly(
           "pose",
           [](const Body& b) {
@@ -89,11 +89,11 @@ void bind_parts(py::module_& m) {
           "(3,) m, mesh frame")
       .def_readonly("viscosity", &Body::dynamic_viscosity,
                     "Pa·s of its surface; -1: that of the fluid that touches it")
-      .def_readonly("friction", &Body::friction)
-      .def_readonly("restitution", &Body::restitution)
-      .def_readonly("measured", &Body::measured);
+      .def_readonly("friction", &Body::friction, "coefficient against other bodies, 0 to 10")
+      .def_readonly("restitution", &Body::restitution, "share of the speed that a bounce gives back, 0 to 1")
+      .def_readonly("measured", &Body::measured, "True: its pose and the fluid's wrench on it are written");
   py::class_<Grip>(m, "Grip", "Where one hand takes hold of one body.")
-      .def_readonly("name", &Grip::name)
+      .def_readonly("name", &Grip::name, "the node's name in the file")
       .def_readonly("body", &Grip::body, "index into Scene.bodies")
       .def_readonly("stiffness", &Grip::stiffness, "N/m")
       .def_readonly("damping", &Grip::damping, "N·s/m")
@@ -113,8 +113,8 @@ void bind_scene(py::module_& m) {
   bind_parts(m);
   py::class_<Scene, std::shared_ptr<Scene>>(m, "Scene",
                                             "The immutable description of a world. SI units, y up.")
-      .def_readonly("name", &Scene::name)
-      .def_readonly("title", &Scene::title)
+      .def_readonly("name", &Scene::name, "of the file, without its ending")
+      .def_readonly("title", &Scene::title, "what the scene says of itself, or empty")
       .def_readonly("source", &Scene::source_file, "where it was read from")
       .def_readonly("fluids", &Scene::fluids, "list[Fluid]")
       .def_readonly("bodies", &Scene::bodies, "list[Body]")
@@ -190,9 +190,9 @@ void bind_scene(py::module_& m) {
       .def_readonly("is_error", &PlainFinding::is_error,
                     "True: the scene does not load; False: it will surprise")
       .def_readonly("kind", &PlainFinding::kind, "stays the same over versions: 'error', 'no-camera', ...")
-      .def_property_readonly("where", [](const PlainFinding& f) { return f.text.where; })
-      .def_property_readonly("what", [](const PlainFinding& f) { return f.text.what; })
-      .def_property_readonly("mend", [](const PlainFinding& f) { return f.text.mend; })
+      .def_property_readonly("where", [](const PlainFinding& f) { return f.text.where; }, "file, object and field that it is about")
+      .def_property_readonly("what", [](const PlainFinding& f) { return f.text.what; }, "what is wrong or will surprise")
+      .def_property_readonly("mend", [](const PlainFinding& f) { return f.text.mend; }, "what to do about it")
       .def("__str__", [](const PlainFinding& f) { return f.text.text(); });
   m.def("check", &check, py::arg("file"),
         "Everything that is wrong with a scene file, or not as its maker will have meant it: list[Finding].");
@@ -203,7 +203,7 @@ void bind_scene(py::module_& m) {
       .def_readonly("spacing", &Plan::spacing, "m")
       .def_readonly("support_radius", &Plan::support_radius, "m")
       .def_readonly("time_step", &Plan::time_step, "s")
-      .def_readonly("time_step_reason", &Plan::time_step_reason)
+      .def_readonly("time_step_reason", &Plan::time_step_reason, "what limits the time step, in words")
       .def_readonly("stiffness", &Plan::stiffness, "m²/s²")
       .def_property_readonly(
           "passes", [](const Plan& p) { return pass_names(p.passes); }, "names of those that run, in order")

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <thread>
 
@@ -118,6 +119,34 @@ TEST_F(TerminalTest, AWorldOfOnesOwnHearsTheSameLines) {
   const Outcome again = run("play", {"replay", "typed.rec"})->wait();
   EXPECT_EQ(again.code, 0) << again.err;
   EXPECT_NE(again.out.find("hashes agree"), std::string::npos) << again.out;
+}
+
+TEST_F(TerminalTest, ASlowPlanSaysItsEstimateAndAsks) {
+  // From minutes to a day is asked for: this takes 50 minutes of one core, and where others have it 13 hours.
+  const std::vector<std::string> slow{"play", "pool", "--particles", "40000", "--seconds", "600", "--threads", "1",
+                                      "--no-render", "--unpaced", "--out", "out"};
+  const auto declined = at_terminal("declined", slow);
+  ASSERT_TRUE(declined->shows("Go on?")) << declined->screen();
+  for (const char* part : {"slow: ", "steps of", "for the run", "real time"})
+    EXPECT_TRUE(declined->shows(part)) << part << " in " << declined->screen();
+  declined->type("n\r");
+  EXPECT_TRUE(declined->shows("was not wanted")) << declined->screen();
+  EXPECT_TRUE(declined->shows("--spacing")) << "what to do instead";
+  EXPECT_NE(declined->wait(), 0);
+  EXPECT_FALSE(std::filesystem::exists(folder("declined") / "out")) << "nothing was begun";
+
+  const auto agreed = at_terminal("agreed", slow);
+  ASSERT_TRUE(agreed->shows("Go on?")) << agreed->screen();
+  agreed->type("y\r");
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  agreed->type("\x03");
+  EXPECT_EQ(agreed->wait(), 130) << agreed->screen();
+  EXPECT_EQ(agreed->screen().find("not wanted"), std::string::npos) << agreed->screen();
+
+  const auto ended = at_terminal("ended", slow);
+  ASSERT_TRUE(ended->shows("Go on?")) << ended->screen();
+  ended->type("\x03");
+  EXPECT_NE(ended->wait(), 0) << "the first Ctrl-C acts, here too: " << ended->screen();
 }
 
 TEST_F(TerminalTest, AHostMayKeepTheParametersToItself) {
