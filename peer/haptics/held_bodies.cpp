@@ -5,6 +5,7 @@
 
 #include "net/clock.h"
 #include "net/engagement.h"
+#include "peer/haptics/freshness.h"
 
 namespace slosh {
 namespace {
@@ -13,6 +14,8 @@ constexpr double kShareRise = 0.5;  // s over which the replica comes in, or goe
 /// N·s/m: more would shake a hand of 1 kg that is felt each ms, whatever its device holds.
 constexpr double kMostDamping = 100.0;
 constexpr double kLongestTick = 0.02;  // s: a loop that was stopped goes on from where it was
+/// s of missed ticks that are caught up with, at most; who was gone for longer takes hold anew soon after.
+constexpr double kMostCaughtUp = kHoldAnew;
 /// s of simulated time by which a host carries a pose on at most (host/input_gate.h).
 constexpr double kMostCarried = 0.02;
 
@@ -48,7 +51,7 @@ HeldBodies::HeldBodies(const Scene& scene, Coupling coupling)
       places_[places[i]] = {static_cast<int>(bodies_.size()), i};
     const std::size_t count = grips.size();
     bodies_.push_back({b, std::move(places), HeldBody(body, std::move(grips)), std::vector<OwnHand>(count),
-                       std::vector<HostHand>(count), 0.0, false, 0});
+                       std::vector<MotionError>(count), std::vector<HostHand>(count), 0.0, false, 0});
   }
 }
 
@@ -61,8 +64,10 @@ void HeldBodies::hear(const BodyMessage& newest, bool fresh, std::int64_t now_ns
   }
   here_ = newest.heard_pose_ns == kPoseNotTold;
   // After a pause, a silence or a reset the body is where the host says, whatever was here.
-  const bool begin = rate_ <= 0.0 || newest.run != run_ || to_seconds(now_ns - heard_ns_) > kHoldAnew;
+  const bool begin =
+      rate_ <= 0.0 || newest.run != run_ || freshness(to_seconds(now_ns - heard_ns_), interval_) < 1.0;
   rate_ = newest.rate;
+  interval_ = newest.time_step / newest.rate;
   run_ = newest.run;
   heard_ns_ = now_ns;
   for (Entry& entry : bodies_) {
@@ -154,6 +159,45 @@ Wrench HeldBodies::guard(std::size_t i, const Wrench& wanted, const Pose& hand, 
           wanted.torque + entry.share * (guarded.torque - wanted.torque)};
 }
 
+void HeldBodies::read(std::size_t i, const Pose& before, const Pose& now) noexcept {
+  const Place& place = places_[i];
+  if (place.body < 0) return;
+  MotionError& way = bodies_[static_cast<std::size_t>(place.body)].way[place.grip];
+  way.position = now.position - before.position;
+  way.turn = rotation_between(before.orientation, now.orientation);
+}
+
+void HeldBodies::catch_up(std::int64_t now_ns, double period, double pace, double elapsed) noexcept {
+  caught_up_ = 0.0;
+  const double missed = advanced_ns_ == 0 ? 0.0 : to_seconds(now_ns - advanced_ns_);
+  const bool late = missed > 0.5 * period && missed <= kMostCaughtUp;
+  if (late) {
+    caught_up_ = std::clamp(elapsed - pace * period, 0.0, pace * missed);
+    for (Entry& entry : bodies_) {
+      const double whole = entry.on_the_wall ? (rate_ > 0.0 ? pace * missed : 0.0) : caught_up_;
+      const int steps = static_cast<int>(std::ceil(missed / period));
+      if (!(whole > 0.0)) continue;
+      // The tick after the last reading is gone already.
+      const double since = whole + pace * period;
+      for (std::size_t g = 0; g < entry.own.size(); ++g) {
+        OwnHand& hand = entry.own[g];
+        hand.twist = {entry.way[g].position / since, entry.way[g].turn / since};
+        hand.handle = extrapolate(hand.handle, hand.twist, pace * period);
+      }
+      for (int k = 0; k < steps; ++k) {
+        const std::int64_t then_ns = now_ns - to_nanoseconds(missed * (steps - 1 - k) / steps);
+        entry.held.advance(entry.own, whole / steps, then_ns);
+        for (OwnHand& hand : entry.own) hand.handle = extrapolate(hand.handle, hand.twist, whole / steps);
+      }
+    }
+    advanced_ns_ = now_ns;
+  }
+  for (Entry& entry : bodies_) {
+    std::fill(entry.way.begin(), entry.way.end(), MotionError{});
+    entry.on_the_wall = false;
+  }
+}
+
 void HeldBodies::sent(std::size_t i, const Wrench& wrench, bool engaged, const Pose& held,
                       const Twist& twist, bool with_world) noexcept {
   const Place& place = places_[i];
@@ -187,9 +231,8 @@ void HeldBodies::advance(std::int64_t now_ns, double pace, double elapsed) noexc
     entry.share += std::clamp(goal - entry.share, -tick / kShareRise, tick / kShareRise);
     if (here_ && !modelled) entry.share = 0.0;
     const double wall = rate_ > 0.0 ? tick * pace : 0.0;
-    const double step = entry.on_the_wall ? wall : std::clamp(elapsed, 0.0, kLongestTick);
+    const double step = entry.on_the_wall ? wall : std::clamp(elapsed - caught_up_, 0.0, kLongestTick);
     entry.held.advance(entry.own, step, now_ns);
-    entry.on_the_wall = false;
   }
 }
 

@@ -35,6 +35,12 @@ class HeldBodies {
 
   /// Whether the body of grip `i` was begun anew in the last hear(): its hands take hold anew.
   bool anew(std::size_t i) const noexcept;
+  /// The device of grip `i` was read here, and at the reading before there.
+  void read(std::size_t i, const Pose& before, const Pose& now) noexcept;
+  /// After all were read, before grip(): a loop that missed ticks brings the replicas to `now_ns`, with each
+  /// hand evenly from where it was to where it is: against a replica that stood meanwhile it would be far
+  /// ahead of it. `period`: of ticks, s; `pace` and `elapsed` as in advance().
+  void catch_up(std::int64_t now_ns, double period, double pace, double elapsed) noexcept;
   /// Where the coupling of grip `i` goes to, of what it is at the host, carried on to now.
   GripState grip(std::size_t i, const GripState& at_host) const noexcept;
   /// In place of the coupling's `wanted` (HeldBody::guard).
@@ -70,6 +76,7 @@ class HeldBodies {
     std::vector<std::size_t> grips;  // in the scene
     HeldBody held;
     std::vector<OwnHand> own;
+    std::vector<MotionError> way;  // of own hands' devices since the tick before
     std::vector<HostHand> said;
     double share = 0.0;
     bool on_the_wall = false;  // one of its hands goes by the wall's clock
@@ -83,9 +90,11 @@ class HeldBodies {
   std::deque<Entry> bodies_;
   std::uint32_t run_ = 0;
   double rate_ = 0.0;
+  double interval_ = 0.0;  // s between words
   bool here_ = true;  // the host is in this process
   std::int64_t heard_ns_ = 0;
   std::int64_t advanced_ns_ = 0;
+  double caught_up_ = 0.0;  // simulated s of this tick that were caught up with
 };
 
 }  // namespace slosh

@@ -155,7 +155,7 @@ void Servo::follow_run(const BodyMessage& message) noexcept {
 void Servo::follow_pace(const BodyMessage& message) noexcept {
   const bool moving = message.rate > 0.0;
   // A tick a step: the hands' time is the world's, however long a step takes, and runs repeat to the bit.
-  const double said = goes_with_world_ ? 1.0 : std::clamp(message.rate, kSlowestFelt, 1.0);
+  const double said = lockstep_ ? 1.0 : std::clamp(message.rate, kSlowestFelt, 1.0);
   if (moving) pace_ = moving_ ? pace_ + options_.period / kPaceMemory * (said - pace_) : said;
   moving_ = moving;
 }
@@ -166,7 +166,7 @@ void Servo::follow_time(double now, double most, std::int64_t now_ns) noexcept {
   const double even = ticked_ns_ == 0 ? 0.0 : pace_ * to_seconds(now_ns - ticked_ns_);
   ticked_ns_ = now_ns;
   const double on = now - time_;
-  if (goes_with_world_ || !moving_ || even <= 0.0 || on > kFarBehind ||
+  if (lockstep_ || !moving_ || even <= 0.0 || on > kFarBehind ||
       (on >= kLeastOn * even && on <= kMostOn * even)) {
     time_ = std::max(time_, now);
     return;
@@ -266,8 +266,8 @@ void Servo::tick(std::int64_t now_ns) noexcept {
   tick(now_ns, channel_.bodies().update());
 }
 
-void Servo::tick_with_world() noexcept {
-  goes_with_world_ = true;
+void Servo::tick_in_lockstep() noexcept {
+  lockstep_ = true;
   const bool fresh = channel_.bodies().update();
   tick(channel_.bodies().front().stamp_ns, fresh);
 }
@@ -307,7 +307,15 @@ void Servo::tick(std::int64_t now_ns, bool fresh) noexcept {
       held_.not_here(i);
       continue;
     }
-    const bool leap = read_device(hand, now_ns) || held_.anew(i);
+    const Pose was = hand.good.pose;
+    hand.leapt = read_device(hand, now_ns) || held_.anew(i);
+    if (!hand.leapt) held_.read(i, was, hand.good.pose);
+  }
+  held_.catch_up(now_ns, options_.period, pace_, time_ - before);
+  for (std::size_t i = 0; i < hands_.size(); ++i) {
+    Hand& hand = hands_[i];
+    DevicePort* const port = hand.port;
+    if (port == nullptr) continue;
     const double device_share =
         hand.readings == 0 ? 0.0 : freshness(to_seconds(now_ns - hand.read_ns), options_.period);
 
@@ -317,7 +325,7 @@ void Servo::tick(std::int64_t now_ns, bool fresh) noexcept {
       grip.pose = extrapolate(grip.pose, grip.twist, ahead);
       if (port->device().gives_way()) grip = held_.grip(i, grip);
       felt = hand.felt.feel(belief, hand.good, grip,
-                            {time_, options_.period, device_share, leap, another_holds(bodies, i),
+                            {time_, options_.period, device_share, hand.leapt, another_holds(bodies, i),
                              pace_of(hand)},
                             [&](const Wrench& wanted) {
                               const double elapses = options_.period * (hand.with_world ? pace_ : 1.0);

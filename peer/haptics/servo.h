@@ -47,7 +47,7 @@ class Servo {
 
   void tick(std::int64_t now_ns) noexcept;
   /// A tick at the moment that the newest body state belongs to, for a world that is not paced.
-  void tick_with_world() noexcept;
+  void tick_in_lockstep() noexcept;
   /// A wrench of zero to every device, for good: what ticks come after this write nothing. By the device loop
   /// at its end, or by anybody once it is over.
   void let_go() noexcept;
@@ -109,6 +109,7 @@ class Servo {
     bool with_world = false;     // it goes by simulated time
     std::int64_t read_ns = 0;    // when it last said something
     double read_time = 0.0;      // simulated s that it belongs to
+    bool leapt = false;          // it is suddenly elsewhere, in this tick
   };
   /// The device that is wanted, safe from being freed.
   DevicePort* claim_device(Hand& hand) noexcept;
@@ -136,7 +137,7 @@ class Servo {
   std::uint32_t run_ = 0;
   double time_ = 0.0;
   double pace_ = 1.0;  // simulated s a s on the wall, smoothed
-  bool goes_with_world_ = false;  // tick_with_world(): nothing goes by the wall's clock
+  bool lockstep_ = false;  // tick_in_lockstep(): a run whose clock is the world's
   bool moving_ = false;
   std::int64_t ticked_ns_ = 0;
   double sample_offset_ = 0.0;  // s that samples' time is ahead of the world's, after resets

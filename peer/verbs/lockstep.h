@@ -20,7 +20,7 @@ class Lockstep final : public HostTap {
 
   /// Bodies are in the channel: the hands answer before the next step.
   void after_publish() override {
-    servo_.tick_with_world();
+    servo_.tick_in_lockstep();
     while (channel_.snapshots().waiting() >= kSnapshotsAhead && !stop_.load(std::memory_order_relaxed))
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }

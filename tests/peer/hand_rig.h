@@ -67,11 +67,14 @@ struct RigOptions {
   double spacing = 0.01;  ///< m
   /// Sub-steps of 1 ms in a step of the host's; 0: the plan's own step.
   int sub_steps = 0;
+  double step_size = 0.0;    ///< s of such a step; 0: 1 ms a sub-step
   bool models = true;        ///< of the fluid's wrench
   bool on_the_wall = false;  ///< the hand goes by the clock on the wall
   Coupling coupling = Coupling::kReplica;
   /// s of the wall's clock that the step after simulated time t takes.
   std::function<double(double)> step_takes;
+  /// s after which a tick at so many s of the wall's clock is followed by the next; empty: 1 ms.
+  std::function<double(double)> tick_after;
 };
 
 /// Grip 0 of a scene in a hand.
@@ -112,7 +115,9 @@ class HandRig {
       if (clock_ns_ == tick_ns_) {
         servo_->tick(clock_ns_);
         ticks_.back().at_host = now_.grips[0].on_hand;
-        tick_ns_ += kTick_ns;
+        tick_ns_ += options_.tick_after
+                        ? to_nanoseconds(options_.tick_after(to_seconds(clock_ns_ - began_ns_)))
+                        : kTick_ns;
       } else if (!stepping_) {
         stepping_ = true;
         ready_ns_ =
@@ -141,8 +146,8 @@ class HandRig {
     Plan plan = make_plan(scene, options.spacing);
     if (options.sub_steps > 0) {
       plan.sub_steps = options.sub_steps;
-      plan.time_step = 0.001 * options.sub_steps;
-      plan.max_speed = speed_limit(plan, 0.001);
+      plan.time_step = options.step_size > 0.0 ? options.step_size : 0.001 * options.sub_steps;
+      plan.max_speed = speed_limit(plan, plan.time_step / plan.sub_steps);
     }
     auto sampled = sample_scene(scene, options.spacing);
     if (!sampled) throw std::runtime_error(sampled.error().text());
@@ -181,6 +186,7 @@ class HandRig {
   Pacer pacer_;
   PaceLine line_;
   std::int64_t clock_ns_ = 1'000'000'000'000;
+  std::int64_t began_ns_ = clock_ns_;
   std::int64_t tick_ns_ = 0, ready_ns_ = 0, begin_ns_ = 0;
   Pacer::Turn turn_;
   bool stepping_ = false;

@@ -10,6 +10,7 @@ namespace {
 
 /// s for which another site's hand, and the host's body for a spring to it, are carried on by their twists.
 constexpr double kCarriedOn = 0.02;
+constexpr double kTwistForesees = 0.01;  // s for which a hand goes about as it went
 /// s over which the share of ticks with a guard firing is averaged, the share that is too much, and s of calm
 /// after which the replica is tried again.
 constexpr double kFiringMemory = 0.5;
@@ -100,6 +101,7 @@ void HeldBody::hear(const HostWord& word) noexcept {
   heard_ = word.motion;
   heard_ns_ = word.now_ns;
   pace_ = word.pace;
+  step_ = std::min(word.time_step, kLongestStep);
   since_heard_ = 0.0;
   std::int64_t ack_ns = 0;
   counted_ = true;
@@ -131,8 +133,11 @@ void HeldBody::hear(const HostWord& word) noexcept {
   replica_.set_load(load);
   if (ack_ns == 0) return;
   delay_.note(to_seconds(word.now_ns - ack_ns), elapsed);
+  ahead_ = pace_ * std::max(to_seconds(ack_ns - word.now_ns), 0.0);
   const LoopDelay delay = delay_.delay();
-  replica_.set_delay({pace_ * delay.round_trip, pace_ * delay.jitter});
+  // What a hand does within a long step that its twist did not foresee acts at the host in the next.
+  const double unforeseen = std::max(word.time_step - kTwistForesees, 0.0);
+  replica_.set_delay({pace_ * delay.round_trip + unforeseen, pace_ * delay.jitter});
   replica_.hear({word.motion, ack_ns, load_work_.work()});
 }
 
@@ -154,7 +159,8 @@ void HeldBody::note_unrest(const FluidLoad& load, double elapsed) noexcept {
 /// A body that moves and springs that are stretched already when this begins have energy to give.
 void HeldBody::begin_count(const HostWord& word) noexcept {
   stored_ = load_work_.kinetic();
-  forgotten_ = 0.0;
+  forgotten_ = lent_ = 0.0;
+  work_heard_ = replica_.work_heard();
   for (std::size_t g = 0; g < hands_.size(); ++g) {
     stored_ -= hands_[g].own ? guards_[g].energy() : hands_[g].energy;
     if (g >= word.hands.size()) continue;
@@ -169,7 +175,7 @@ void HeldBody::begin_count(const HostWord& word) noexcept {
 GripState HeldBody::grip(std::size_t g) const noexcept {
   const GripState here = replica_.grip(g);
   if (spring_ <= 0.0) return here;
-  const double on = std::min(since_heard_, kCarriedOn);
+  const double on = std::min(since_heard_ - ahead_, std::max(kCarriedOn, step_));
   const Pose body{heard_.position + on * heard_.twist.linear,
                   rotate_by(heard_.orientation, on * heard_.twist.angular)};
   const glm::dvec3 arm = body.orientation * (grips_[g].position - body_.center);
@@ -193,7 +199,7 @@ Wrench HeldBody::guard(std::size_t g, const Wrench& wanted, const Pose& hand, co
 }
 
 double HeldBody::balance() const noexcept {
-  double sum = stored_ + replica_.work_believed() - forgotten_;
+  double sum = stored_ + replica_.work_believed() - forgotten_ + lent_;
   for (std::size_t j = 0; j < hands_.size(); ++j)
     sum += hands_[j].own ? guards_[j].energy() : hands_[j].energy;
   return sum;
@@ -211,6 +217,16 @@ void HeldBody::forget_surplus(double dt) noexcept {
   // Others took what was forgotten too early: no hand is to carry on without force for that.
   const double debt = -balance_now - PassivityController::kSlack;
   if (debt > 0.0) forgotten_ -= debt * (1.0 - std::exp(-dt / kForgives));
+}
+
+/// What the host's step took for the load beyond all that there was it made itself: it carries hands on, and
+/// what it gives their couplings by that nobody put in. No hand is to stand for it; but what comes back of it
+/// is no gift.
+void HeldBody::lend() noexcept {
+  const double gave = replica_.work_heard() - work_heard_;
+  work_heard_ += gave;
+  if (gave > 0.0) lent_ -= std::min(lent_, gave);
+  if (gave < 0.0) lent_ += std::clamp(-balance(), 0.0, -gave);
 }
 
 /// A guard that fires all the time says that the replica is wrong about the body.
@@ -248,6 +264,7 @@ void HeldBody::advance(std::span<const OwnHand> own, double dt, std::int64_t now
   since_heard_ += dt;
   const double trust = std::clamp(1.0 - (since_heard_ - kLoadHolds) / kLoadFades, 0.0, 1.0);
   replica_.advance(hands_, dt, now_ns, trust);
+  lend();
   forget_surplus(dt);
   watch(dt);
 }

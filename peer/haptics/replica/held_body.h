@@ -76,6 +76,7 @@ class HeldBody {
  private:
   void watch(double dt) noexcept;
   void forget_surplus(double dt) noexcept;
+  void lend() noexcept;
   void begin_count(const HostWord& word) noexcept;
   void note_unrest(const FluidLoad& load, double elapsed) noexcept;
   /// What acts on the body besides couplings and the fluid's answer to its acceleration: fluid, weight,
@@ -97,6 +98,8 @@ class HeldBody {
   std::int64_t heard_ns_ = 0;
   double pace_ = 1.0;  // HostWord::pace
   double since_heard_ = 0.0;  // s
+  double ahead_ =
+      0.0;  // s until the moment that the word was of, when it came: a slow host's is of a step's end
   bool started_ = false;
   double unrest_ = 0.0;     // 0–1
   double doubt_ = 0.0;      // 0–1
@@ -109,6 +112,9 @@ class HeldBody {
   LoadWork load_work_;
   double stored_ = 0.0;     // J in the couplings when this began, less what had been counted by then
   double forgotten_ = 0.0;  // J of the balance that nothing here holds any more
+  double work_heard_ = 0.0;  // J: BodyReplica::work_heard() at the tick before
+  double lent_ = 0.0;        // J that loads took and nobody had put in
+  double step_ = 0.0;        // s of the host's step
   std::uint64_t fired_ = 0;
 };
 
