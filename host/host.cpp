@@ -211,6 +211,9 @@ void Host::run() {
   // The first snapshot of a run comes whether somebody looks or not: those who count runs need it.
   publish_snapshot();
   next_snapshot_ += options_.snapshot_rate > 0.0 ? 1.0 / options_.snapshot_rate : 0.0;
+  // The clock of a run that is not paced begins with the first state that its hands see: how long there was
+  // from making it to here is the machine's.
+  if (!options_.paced) publish_bodies(0.0, clock_ns());
   tell_published();
 
   while (!stop_.load(std::memory_order_relaxed) && world_.time() + 0.5 * time_step < options_.until) {
