@@ -226,7 +226,12 @@ void HeldBody::lend() noexcept {
   const double gave = replica_.work_heard() - work_heard_;
   work_heard_ += gave;
   if (gave > 0.0) lent_ -= std::min(lent_, gave);
-  if (gave < 0.0) lent_ += std::clamp(-balance(), 0.0, -gave);
+  if (gave >= 0.0) return;
+  // What was thought used up and was on its way comes first: a load that sank and is lifted again.
+  const double short_of = std::clamp(-balance(), 0.0, -gave);
+  const double kept = std::clamp(forgotten_, 0.0, short_of);
+  forgotten_ -= kept;
+  lent_ += short_of - kept;
 }
 
 /// A guard that fires all the time says that the replica is wrong about the body.

@@ -274,18 +274,20 @@ TEST_F(DistantHands, CarryABeamOver200Milliseconds) {
   EXPECT_LT(step(), 0.05);
 }
 
-/// A hand's own motion is felt in the tick that reads it, whatever the distance: 0.5 mm at 2000 N/m. Once it
-/// carries: over 400 ms the guard is shut for up to 4 s after taking hold (peer/haptics/replica, known limits).
+/// A hand's own motion is felt in the tick that reads it, whatever the distance: 0.5 mm at 2000 N/m. From 2 s
+/// after taking hold on: until then the beam still settles into the hands, and a guard may be shut.
 TEST_F(DistantHands, OwnMotionIsFeltInItsTick) {
-  for (const double round_trip : {0.001, 0.2, 0.4}) {
-    people.clear();
-    clock = to_nanoseconds(1000.0);
-    begin(round_trip, 0.0, 0.0, Coupling::kReplica);
-    run(6.0);
-    const double before = people[0]->device->last.force.y;
-    people[0]->device->nudge = 5e-4;
-    run(0.001);
-    EXPECT_NEAR(people[0]->device->last.force.y - before, -1.0, 0.1) << round_trip;
+  for (const double round_trip : {0.001, 0.2, 0.3, 0.4, 0.5}) {
+    for (const double held : {2.0, 3.0, 6.0}) {
+      people.clear();
+      clock = to_nanoseconds(1000.0);
+      begin(round_trip, 0.0, 0.0, Coupling::kReplica);
+      run(held);
+      const double before = people[0]->device->last.force.y;
+      people[0]->device->nudge = 5e-4;
+      run(0.001);
+      EXPECT_NEAR(people[0]->device->last.force.y - before, -1.0, 0.05) << round_trip << " s, after " << held;
+    }
   }
 }
 
