@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # A stranger's first hour: a machine with nothing but Debian 12 (debootstrap's smallest, git and sudo beside it), a user who
-# is not root, a clone of this commit; then what the pages say, to the letter: both commands of the first page, the tutorial from its first
+# is not root, a clone of this commit; then what the pages say, to the letter: `./slosh play`, the tutorial from its first
 # command to its last, the Python module, and the Debian package on a second such machine that never saw the sources.
 # Part of no `./slosh test`: it fetches half a gigabyte and compiles for half an hour on two cores.
 #
@@ -68,7 +68,7 @@ step() {
 made() {
   local file
   for file in "${@:2}"; do
-    [[ -s "$folder/first/home/stranger/slosh/$file" ]] && continue
+    [[ -s "$clone/$file" ]] && continue
     failed=$((failed + 1))
     echo "NOT         $1 left no $file"
   done
@@ -107,7 +107,9 @@ fi
 echo "Debian $(cat "$folder/first/etc/debian_version"), $(in_root first root dpkg-query -W | wc -l) packages, commit $(git -C "$root" rev-parse --short HEAD)"
 
 # ---- README.md
+clone="$folder/first/home/stranger/slosh"  # what an earlier run of this left there would be refused or numbered
 if wanted play; then
+  rm -rf "$clone/out"
   step first stranger "./slosh play, from nothing to a film" "./slosh play"
   made "./slosh play" out/bucket/view.mp4 out/bucket/wrenches.png out/bucket/wrenches.csv
   step first stranger "slosh --version" "./slosh --version"
@@ -115,6 +117,7 @@ fi
 
 # ---- scenes/blender/README.md
 if wanted tutorial; then
+  rm -rf "$clone"/mug* "$clone"/film.*
   step first root "apt install blender python3-numpy" \
     "DEBIAN_FRONTEND=noninteractive apt-get install -y blender python3-numpy"
   while read -r command; do
@@ -142,13 +145,13 @@ fi
 # ---- peer/install/README.md
 if wanted package; then
   step first stranger "./slosh package" "./slosh package"
-  cp "$folder"/first/home/stranger/slosh/build/package/slosh_*.deb "$folder/second/tmp/"
+  cp "$clone"/build/package/slosh_*.deb "$folder/second/tmp/"
 fi
 if wanted install; then
   step second root "apt install ./slosh.deb, where no sources are" \
     "apt-get update && DEBIAN_FRONTEND=noninteractive apt-get install -y /tmp/slosh_*.deb"
   step second stranger "slosh --version there" "slosh --version"
-  step second stranger "slosh play there, to a film" "slosh play --headless --seconds 1 --out played && test -s played/view.mp4 -a -s played/wrenches.png"
+  step second stranger "slosh play there, to a film" "rm -rf played && slosh play --headless --seconds 1 --out played && test -s played/view.mp4 -a -s played/wrenches.png"
   step second stranger "what it depends on is there, and nothing that tests need" \
     "! ldd /usr/bin/slosh | grep -E 'not found|embree|gtest'"
   step second root "man slosh-play, and its completion" \
@@ -156,7 +159,7 @@ if wanted install; then
      man slosh-play | grep -q -- --unpaced && bash -c '. /usr/share/bash-completion/bash_completion; . /usr/share/bash-completion/completions/slosh
        COMP_WORDS=(slosh play bu) COMP_CWORD=2; _slosh; [[ \"\${COMPREPLY[*]}\" == *bucket* ]]'"
   step second stranger "a device of one's own by the header there" \
-    "cp /usr/share/doc/slosh/examples/example.c . && gcc -shared -fPIC -O2 -Wall -Werror -o mine.so example.c -lm &&
+    "rm -rf mine && cp /usr/share/doc/slosh/examples/example.c . && gcc -shared -fPIC -O2 -Wall -Werror -o mine.so example.c -lm &&
      slosh play spoon --device plugin:./mine.so --headless --no-render --seconds 1 --spacing 0.012 --out mine"
 fi
 
