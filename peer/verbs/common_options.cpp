@@ -68,6 +68,10 @@ void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window) {
       ->check(in_range(0.5, 4.0))
       ->capture_default_str();
   if (has_window) {
+    verb.add_option("--rows", options.row_rate,
+                    "Rows a simulated second of poses.csv and wrenches.csv; 1000 is each tick of the device loop")
+        ->check(in_range(1.0, 1000.0))
+        ->capture_default_str();
     verb.add_option("--keys", options.keys,
                     "Keys of the window by your choice, ACTION=KEY, with commas between; ACTION=A+B for two keys,\n"
                     "ACTION= for none. `slosh settings` lists the actions")

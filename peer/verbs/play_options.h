@@ -38,6 +38,7 @@ struct ShowOptions {
       -1.0;  ///< simulated s between rows of the instruments; 0 = none, below 0 = as the scene asks
   std::vector<std::string> exports;  ///< of kExportNames
   double export_rate = 30.0;         ///< frames a simulated second
+  double row_rate = 500.0;           ///< of hands' files, rows a simulated second
 };
 
 struct PlayOptions : ShowOptions {

@@ -28,6 +28,7 @@ struct Stage {
   double measure = 0.0;  ///< simulated s between rows of the instruments; 0 = none
   std::vector<ExportKind> exports;  ///< what is written for other programs; empty = nothing
   double export_rate = 30.0;        ///< frames a simulated second
+  double row_rate = 500.0;          ///< of hands, rows a simulated second
 };
 
 struct Prepared : Stage {

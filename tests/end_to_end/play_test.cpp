@@ -135,6 +135,20 @@ TEST_F(PlayTest, WithoutGnuplotTheSheetIsMissedInWordsAndNothingElse) {
   EXPECT_FALSE(std::filesystem::exists(test::test_folder() / "ten"));
 }
 
+/// How many there are goes by the machine; how near they lie does not.
+TEST_F(PlayTest, HandsAreRecordedAtTheDeviceLoopsOwnRateWhereThatIsAskedFor) {
+  const Outcome outcome = test::slosh({"play", "probe", "--headless", "--no-render", "--spacing", "0.012",
+                                       "--seconds", "0.5", "--rows", "1000", "--out", "out"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Result<std::vector<WrenchSeries>> series = read_wrenches(out() / "wrenches.csv");
+  ASSERT_TRUE(series);
+  const std::vector<double>& time = series.value().front().time;
+  double nearest = 1.0;
+  for (std::size_t i = 1; i < time.size(); ++i) nearest = std::min(nearest, time[i] - time[i - 1]);
+  EXPECT_LT(nearest, 0.0015);
+  EXPECT_EQ(test::slosh({"play", "probe", "--headless", "--rows", "5000"}).code, 2);
+}
+
 /// To feel what a slower host is like: the world meets the hand 100 times a second in place of 344, in as many
 /// sub-steps as its own steps ask for. No force is asserted: it goes by the wall's clock.
 TEST_F(PlayTest, AWorldStepsAsSeldomAsAskedFor) {
