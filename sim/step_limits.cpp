@@ -23,6 +23,7 @@ constexpr double kLiveCourant = 1.0;
 // Where pressures are solved for there is no sound: dt ≤ factor · support radius / speed. Half as long again,
 // and a dam break has particles slowed and crushed.
 constexpr double kSolvedCourant = 0.4;
+constexpr double kFarShorter = 0.25;  // of the step that the flow asks for: density_time()
 // Free bodies above this share of the fluid layer around them need no shorter step. With 0.05 a ball let go
 // in water rattled from there on (bodies/README.md, *Light bodies*); in a hand or in honey it was calm.
 constexpr double kLightBody = 0.1;
@@ -174,6 +175,12 @@ FluidHeights fluid_heights(const Scene& scene) {
       glm::mix(scene.domain_max, scene.domain_min, glm::greaterThanEqual(up, glm::dvec3(0.0)));
   if (scene.domain_min != scene.domain_max) heights.drop = std::max(0.0, top - glm::dot(up, lowest_corner));
   return heights;
+}
+
+double density_time(const Plan& plan, double gravity, double dt) {
+  const double speed = expected_speed(gravity, plan.fluid_depth, plan.fluid_drop, plan.driven_speed);
+  const double asked_for = kSolvedCourant * plan.support_radius / speed;
+  return dt < kFarShorter * asked_for ? asked_for : dt;
 }
 
 StepLimit step_limit(const Scene& scene, Plan& plan) {

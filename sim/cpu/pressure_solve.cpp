@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sim/model.h"
+#include "sim/step_limits.h"
 
 namespace slosh {
 
@@ -119,7 +120,9 @@ void PressureSolver::begin(const Work& work) {
       velocity_[p] = {then.x, then.y, then.z, per_mass};
     }
   });
-  const float wanted = work.context.rest_volume / work.dt;
+  const double gravity = glm::length(work.context.gravity);
+  const float wanted =
+      work.context.rest_volume / static_cast<float>(density_time(work.context.plan, gravity, work.dt));
   work.team.run(work.fluid, kParticlesPerChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       const std::uint32_t at = static_cast<std::uint32_t>(p);
