@@ -178,7 +178,7 @@ DeviceReport FalconDevice::read(const DeviceMoment&) {
 void FalconDevice::write(const Wrench& on_hand) {
   std::array<int, 3> motors{};
   if (homed_ && placed_) {
-    const std::optional<glm::dvec3> torques = falcon_torques(grip_, angles_, map_->to_device(on_hand).force);
+    const std::optional<glm::dvec3> torques = falcon_torques(grip_, angles_, map_->filtered(on_hand).force);
     if (torques) {
       glm::dvec3 values = kMotorPerTorque * *torques;
       // Together: the direction stays.

@@ -23,13 +23,13 @@ std::optional<double> optional_number(DeviceFile& file, const std::string& key, 
 }
 
 std::string warning(const std::string& device, const char* what, double asked, double holds, double own,
-                    double period) {
-  char text[320];
+                    double period, bool held_back) {
+  char text[360];
   std::snprintf(
       text, sizeof text,
-      "%s: its file asks for a %s of %g, and by its own damping of %g at a period of %g ms it holds "
+      "%s: its file asks for a %s of %g, and by its own damping of %g at a period of %g ms%s it holds "
       "%.3g (Colgate: b > K·T/2 + B): it may hum or run away. Hold it loosely at first",
-      device.c_str(), what, asked, own, 1e3 * period, holds);
+      device.c_str(), what, asked, own, 1e3 * period, held_back ? " (low_pass_hz counted)" : "", holds);
   return text;
 }
 
@@ -38,6 +38,7 @@ std::string warning(const std::string& device, const char* what, double asked, d
 HandMapSettings read_hand_map(DeviceFile& file, HandMapSettings s) {
   s.scale = file.number("scale", s.scale, 0.01, 100.0);
   s.force_scale = file.number("force_scale", s.force_scale, 0.001, 10.0);
+  s.low_pass_hz = file.number("low_pass_hz", s.low_pass_hz, 0.0, 1000.0);
   s.by_camera = file.word("relative_to", s.by_camera ? "camera" : "world", {"camera", "world"}) == "camera";
   s.clutch_button = file.whole("clutch_button", s.clutch_button, 0, kMostButtons);
   s.deadman_button = file.whole("deadman_button", s.deadman_button, 0, kMostButtons);
@@ -52,6 +53,7 @@ HandMapSettings read_hand_map(DeviceFile& file, HandMapSettings s) {
 
 ChosenGains choose_gains(const DeviceLimits& sheet, double own_damping, double own_rotational_damping,
                          double period, const HandMapSettings& settings, const std::string& device) {
+  period += 2.0 * LowPass::lag(settings.low_pass_hz);
   const double own = settings.own_damping.value_or(own_damping);
   const double turning = settings.own_rotational_damping.value_or(own_rotational_damping);
   ChosenGains chosen{passive_limits(sheet, own, turning, period), {}};
@@ -69,7 +71,8 @@ ChosenGains choose_gains(const DeviceLimits& sheet, double own_damping, double o
         Asked{"rotational damping", settings.rotational_damping, &l.max_rotational_damping, turning}}) {
     if (!asked.value) continue;
     if (*asked.value > *asked.limit)
-      chosen.warnings.push_back(warning(device, asked.what, *asked.value, *asked.limit, asked.own, period));
+      chosen.warnings.push_back(warning(device, asked.what, *asked.value, *asked.limit, asked.own, period,
+                                        settings.low_pass_hz > 0.0));
     *asked.limit = *asked.value;
   }
   return chosen;
@@ -80,8 +83,9 @@ void tie_to_room(HandMapSettings& settings, double scale) {
   settings.by_camera = true;  // so that look_from() counts, which the room calls and the camera does not
 }
 
-HandMap::HandMap(const HandMapSettings& settings, const HandPlace& place)
+HandMap::HandMap(const HandMapSettings& settings, const HandPlace& place, double period)
     : settings_(settings),
+      low_pass_(settings.low_pass_hz, period),
       axes_(settings.by_camera ? place.camera : glm::dquat(1.0, 0.0, 0.0, 0.0)),
       start_(place.start) {}
 

@@ -8,6 +8,7 @@
 #include "peer/haptics/device.h"
 #include "peer/haptics/devices/device_file.h"
 #include "peer/haptics/devices/hardware.h"
+#include "peer/haptics/devices/low_pass.h"
 
 namespace slosh {
 
@@ -17,6 +18,7 @@ struct HandMapSettings {
   bool by_camera = true;     ///< the device's axes are the camera's, else the world's
   int clutch_button = 0;     ///< while it is held the hand stays and the device moves freely; 0 = none
   int deadman_button = 0;    ///< the hand holds on only while it is held; 0 = it always does
+  double low_pass_hz = 0.0;  ///< the force's band, −3 dB; 0 = all of it
   /// In place of what the device's damping allows; absent: that.
   std::optional<double> stiffness, damping, rotational_stiffness, rotational_damping;
   std::optional<double> own_damping, own_rotational_damping;
@@ -42,12 +44,15 @@ ChosenGains choose_gains(const DeviceLimits& sheet, double own_damping, double o
 /// handle is. Pure; one thread; no allocation.
 class HandMap {
  public:
-  HandMap(const HandMapSettings& settings, const HandPlace& place);
+  /// `period`, s: from one write to the next.
+  HandMap(const HandMapSettings& settings, const HandPlace& place, double period = 0.001);
 
   DeviceReport to_world(const DeviceReport& at_device) noexcept;
   /// The camera turned: from here on the device moves the hand that way, and the hand stays where it is.
   void look_from(const glm::dquat& axes) noexcept;
   Wrench to_device(const Wrench& in_world) const noexcept;
+  /// What is written: that, within its band.
+  Wrench filtered(const Wrench& in_world) noexcept { return low_pass_.pass(to_device(in_world)); }
   /// What the servo may ask of the hand in the world's measure.
   DeviceLimits to_world(const DeviceLimits& at_device) const;
 
@@ -55,6 +60,7 @@ class HandMap {
   Pose mapped(const Pose& at_device) const noexcept;
 
   HandMapSettings settings_;
+  LowPass low_pass_;
   glm::dquat axes_;  // device's to the world's
   Pose start_;
   Pose device_;  // as it last was

@@ -121,7 +121,7 @@ Result<bool> PluginDevice::settle(const slosh_device_capabilities& said) {
       choose_gains(sheet_of(said), said.own_damping_n_s_m, said.own_rotational_damping_nm_s_rad,
                    std::max(said.period_s, 0.001), settings, clean_text(name.data(), 64));
   warnings_ = std::move(gains.warnings);
-  map_.emplace(settings, place_);
+  map_.emplace(settings, place_, std::max(said.period_s, 0.001));
   limits_ = map_->to_world(gains.limits);
   if (handle_->read_code == 0) first_ = taken(handle_->reading);
   return true;
@@ -187,7 +187,7 @@ DeviceReport PluginDevice::read(const DeviceMoment&) {
 }
 
 void PluginDevice::write(const Wrench& on_hand) {
-  const Wrench wrench = map_->to_device(on_hand);
+  const Wrench wrench = map_->filtered(on_hand);
   const double force[3] = {wrench.force.x, wrench.force.y, wrench.force.z};
   const double torque[3] = {wrench.torque.x, wrench.torque.y, wrench.torque.z};
   int code = 0;

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "peer/haptics/devices/velocity_window.h"
 
 namespace slosh {
@@ -72,6 +75,27 @@ TEST(HandMap, ForceAndMotionStayOneAnothersAndGainsFollowBothScales) {
   EXPECT_NEAR(limits.max_stiffness * 4.0 * 0.5, 1000.0, 1e-9);
   EXPECT_NEAR(glm::length(map.to_device({glm::dvec3(limits.max_force, 0, 0), {}}).force), 8.0, 1e-12);
   EXPECT_NEAR(limits.workspace_radius, 0.32, 1e-12);
+}
+
+TEST(LowPass, TakesOutWhatIsAboveItAndEndsWithTheForce) {
+  const double period = 1e-4;
+  for (const double hz : {20.0, 200.0}) {
+    LowPass filter(hz, period);
+    double most = 0.0;
+    for (int i = 1; i < 20000; ++i) {
+      const double wave = std::sin(2.0 * 3.14159265358979 * hz * period * i);
+      const Wrench out = filter.pass({{wave, 0.0, 0.0}, {0.0, 2.0 * wave, 0.0}});
+      if (i > 10000) most = std::max(most, out.force.x);
+      EXPECT_EQ(out.torque.y, 2.0 * out.force.x);
+    }
+    EXPECT_NEAR(most, std::sqrt(0.5), 0.05) << hz;
+    for (int i = 0; i < 20000; ++i) filter.pass({{3.0, 0.0, 0.0}, {}});
+    EXPECT_NEAR(filter.pass({{3.0, 0.0, 0.0}, {}}).force.x, 3.0, 1e-9) << "slow forces pass whole";
+    EXPECT_EQ(filter.pass({}).force.x, 0.0) << "and an end is one at once";
+  }
+  LowPass off(0.0, 0.001);
+  EXPECT_EQ(off.pass({{5.0, 0.0, 0.0}, {}}).force.x, 5.0);
+  EXPECT_EQ(off.pass({{-5.0, 0.0, 0.0}, {}}).force.x, -5.0);
 }
 
 TEST(HandMap, TheClutchLetsTheDeviceGoBackWithoutTheHand) {

@@ -3,6 +3,8 @@
 
 #include <atomic>
 #include <chrono>
+#include <filesystem>
+#include <fstream>
 #include <thread>
 
 #include "peer/haptics/device_loop.h"
@@ -48,6 +50,29 @@ TEST_F(Plugins, TheExampleGivesWayToAForceAndComesBack) {
   };
   settle({2.0, 0.0, 0.0}, 0.02);  // 2 N on 100 N/m
   settle({0.0, 0.0, 0.0}, 0.0);
+  device->close();
+}
+
+// By its file, as a user would.
+TEST_F(Plugins, ABandForTheForceIsKeptTo) {
+  std::filesystem::create_directories(folder_.path() / "slosh" / "devices");
+  std::ofstream(folder_.path() / "slosh" / "devices" / "example.conf") << "low_pass_hz = 1\n";
+  auto device = plugin("slosh_example_device", "100");
+  ASSERT_TRUE(open_device(*device));
+  // By 10 writes 1 ms apart of 2 N a pole at 1 Hz has let 6 % through: it gives way by that of 20 mm at most.
+  double furthest = 0.0;
+  for (int i = 0; i < 10; ++i) {
+    furthest = std::max(furthest, device->read({0.0, 0.001}).pose.position.x);
+    device->write({{2.0, 0.0, 0.0}, glm::dvec3(0.0)});
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_LT(furthest, 0.0013);
+  for (int i = 0; i < 2000; ++i) device->write({{2.0, 0.0, 0.0}, glm::dvec3(0.0)});
+  for (double off = 1.0; off > 1e-4;) {
+    device->write({{2.0, 0.0, 0.0}, glm::dvec3(0.0)});
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    off = std::abs(device->read({0.0, 0.001}).pose.position.x - 0.02);
+  }
   device->close();
 }
 
