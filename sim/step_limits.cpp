@@ -66,6 +66,11 @@ double expected_speed(double gravity, double depth, double drop, double driven) 
                   std::sqrt(2.0 * gravity * drop + driven * driven));
 }
 
+// s, where there is no sound.
+double solved_step(const Plan& plan, double speed) {
+  return kSolvedCourant * plan.support_radius / speed;
+}
+
 // The box of a volume, with y along up.
 struct Block {
   glm::dvec3 low{std::numeric_limits<double>::infinity()};
@@ -179,7 +184,7 @@ FluidHeights fluid_heights(const Scene& scene) {
 
 double density_time(const Plan& plan, double gravity, double dt) {
   const double speed = expected_speed(gravity, plan.fluid_depth, plan.fluid_drop, plan.driven_speed);
-  const double asked_for = kSolvedCourant * plan.support_radius / speed;
+  const double asked_for = solved_step(plan, speed);
   return dt < kFarShorter * asked_for ? asked_for : dt;
 }
 
@@ -196,7 +201,7 @@ StepLimit step_limit(const Scene& scene, Plan& plan) {
   const double speed =
       expected_speed(glm::length(scene.gravity), heights.depth, heights.drop, plan.driven_speed);
   if (plan.has(PassId::kPressureSolve)) {
-    limit.lower_to(kSolvedCourant * plan.support_radius / speed,
+    limit.lower_to(solved_step(plan, speed),
                    format("speed: %.2f · support radius / %.1f m/s", kSolvedCourant, speed));
     limit_by_drag(scene, plan, fluids, limit);
     return limit;

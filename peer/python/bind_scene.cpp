@@ -190,9 +190,12 @@ void bind_scene(py::module_& m) {
       .def_readonly("is_error", &PlainFinding::is_error,
                     "True: the scene does not load; False: it will surprise")
       .def_readonly("kind", &PlainFinding::kind, "stays the same over versions: 'error', 'no-camera', ...")
-      .def_property_readonly("where", [](const PlainFinding& f) { return f.text.where; }, "file, object and field that it is about")
-      .def_property_readonly("what", [](const PlainFinding& f) { return f.text.what; }, "what is wrong or will surprise")
-      .def_property_readonly("mend", [](const PlainFinding& f) { return f.text.mend; }, "what to do about it")
+      .def_property_readonly(
+          "where", [](const PlainFinding& f) { return f.text.where; }, "file, object and field that it is about")
+      .def_property_readonly(
+          "what", [](const PlainFinding& f) { return f.text.what; }, "what is wrong or will surprise")
+      .def_property_readonly(
+          "mend", [](const PlainFinding& f) { return f.text.mend; }, "what to do about it")
       .def("__str__", [](const PlainFinding& f) { return f.text.text(); });
   m.def("check", &check, py::arg("file"),
         "Everything that is wrong with a scene file, or not as its maker will have meant it: list[Finding].");

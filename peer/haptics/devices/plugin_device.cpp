@@ -117,11 +117,12 @@ Result<bool> PluginDevice::settle(const slosh_device_capabilities& said) {
     if (const Result<bool> begun = place_.tie->begin(settings_name(name.data())); !begun) return begun;
     if (place_.tie->shared()) tie_to_room(settings, place_.tie->scale());
   }
+  const double period = std::max(said.period_s, 0.001);
   ChosenGains gains =
-      choose_gains(sheet_of(said), said.own_damping_n_s_m, said.own_rotational_damping_nm_s_rad,
-                   std::max(said.period_s, 0.001), settings, clean_text(name.data(), 64));
+      choose_gains(sheet_of(said), said.own_damping_n_s_m, said.own_rotational_damping_nm_s_rad, period, settings,
+                   clean_text(name.data(), 64));
   warnings_ = std::move(gains.warnings);
-  map_.emplace(settings, place_, std::max(said.period_s, 0.001));
+  map_.emplace(settings, place_, period);
   limits_ = map_->to_world(gains.limits);
   if (handle_->read_code == 0) first_ = taken(handle_->reading);
   return true;
