@@ -40,6 +40,9 @@ class Device {
   virtual DeviceReport read(const DeviceMoment& moment) = 0;
   /// The wrench on the hand, within limits().
   virtual void write(const Wrench& on_hand) { (void)on_hand; }
+  /// In place of write(), last: no wrench, and no motion either where it is one that is told where to go.
+  /// Also by whoever ends the process.
+  virtual void rest() { write(Wrench{}); }
   /// Constant while the device is open. Checked by check_limits before anything is written.
   virtual DeviceLimits limits() const = 0;
   /// The viewer's camera turned: `axes` takes its right, up and towards-the-eye to the world's. For devices whose

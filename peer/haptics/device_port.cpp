@@ -58,7 +58,7 @@ std::string words_of_exception() {
 
 void write_zero_to(void* device) noexcept {
   try {
-    static_cast<Device*>(device)->write(Wrench{});
+    static_cast<Device*>(device)->rest();
   } catch (...) {
     // It was told; there is nobody left to tell that it would not listen.
   }

@@ -166,7 +166,7 @@ class Run {
 
 void write_zero_to(void* device) noexcept {
   try {
-    static_cast<Device*>(device)->write(Wrench{});
+    static_cast<Device*>(device)->rest();
   } catch (...) {
     // It was told.
   }

@@ -9,11 +9,15 @@
 #include "net/clock.h"
 #include "net/text/clean.h"
 #include "peer/haptics/devices/room_tie.h"
+#include "sim/math/format.h"
 
 namespace slosh {
 namespace {
 
 constexpr double kLongestPeriod = 0.1;  // s
+constexpr double kLongestStep =
+    0.005;                           // s that a device is moved on by: a thread that was late makes no leap
+constexpr double kFirmHand = 800.0;  // N/m, a firm grip's, as the simulated operator's
 
 DeviceLimits sheet_of(const slosh_device_capabilities& c) {
   DeviceLimits l;
@@ -41,6 +45,22 @@ std::string settings_name(const char* name) {
     kept += plain || *c == '-' ? *c : '_';
   }
   return kept.empty() ? "plugin" : kept;
+}
+
+Wrench wrench_of(const slosh_device_reading& r) {
+  return {{r.force_n[0], r.force_n[1], r.force_n[2]}, {r.torque_nm[0], r.torque_nm[1], r.torque_nm[2]}};
+}
+
+bool is_finite(const Wrench& w) {
+  return std::isfinite(w.force.x + w.force.y + w.force.z + w.torque.x + w.torque.y + w.torque.z);
+}
+
+slosh_device_motion motion_of(const AdmittanceMotion& motion) {
+  const glm::dvec3& p = motion.pose().position;
+  const glm::dquat& q = motion.pose().orientation;
+  const glm::dvec3& v = motion.twist().linear;
+  const glm::dvec3& w = motion.twist().angular;
+  return {{p.x, p.y, p.z}, {q.w, q.x, q.y, q.z}, {v.x, v.y, v.z}, {w.x, w.y, w.z}};
 }
 
 }  // namespace
@@ -107,25 +127,77 @@ Result<bool> PluginDevice::settle(const slosh_device_capabilities& said) {
     if (!above_zero(value)) return failed(std::string("its capability ") + what + " is not a number above 0");
   }
   if (said.period_s > kLongestPeriod) return failed("its period_s is longer than 0.1 s");
+  if (said.kind > SLOSH_DEVICE_ADMITTANCE) return failed("its capability kind is none that this slosh knows");
   if (const Result<bool> sound = check_limits(sheet_of(said), "plugin:" + file_); !sound) return sound;
 
   Result<DeviceFile> file = DeviceFile::read(device_settings_file(settings_name(name.data()), ""));
   if (!file) return file.error();
   HandMapSettings settings = read_hand_map(file.value(), HandMapSettings{});
+  if (said.kind == SLOSH_DEVICE_ADMITTANCE) {
+    const Result<bool> moves =
+        settle_motion(said, file.value(), settings.own_damping.value_or(said.own_damping_n_s_m),
+                      settings.own_rotational_damping.value_or(said.own_rotational_damping_nm_s_rad));
+    if (!moves) return moves;
+  }
   if (const Result<bool> fine = file.value().check(); !fine) return fine;
   if (place_.tie) {
     if (const Result<bool> begun = place_.tie->begin(settings_name(name.data())); !begun) return begun;
     if (place_.tie->shared()) tie_to_room(settings, place_.tie->scale());
   }
-  const double period = std::max(said.period_s, 0.001);
+  const double period = period_ = std::max(said.period_s, 0.001);
   ChosenGains gains =
       choose_gains(sheet_of(said), said.own_damping_n_s_m, said.own_rotational_damping_nm_s_rad, period, settings,
                    clean_text(name.data(), 64));
-  warnings_ = std::move(gains.warnings);
+  warnings_.insert(warnings_.end(), gains.warnings.begin(), gains.warnings.end());
   map_.emplace(settings, place_, period);
   limits_ = map_->to_world(gains.limits);
   if (handle_->read_code == 0) first_ = taken(handle_->reading);
   return true;
+}
+
+/// What moves a device that measures force: its sheet's mass and damper, or its user's.
+Result<bool> PluginDevice::settle_motion(const slosh_device_capabilities& said, DeviceFile& file, double own,
+                                         double own_turning) {
+  for (const auto& [what, value] :
+       {std::pair{"virtual_mass_kg", said.virtual_mass_kg},
+        std::pair{"virtual_inertia_kg_m2", said.virtual_inertia_kg_m2},
+        std::pair{"max_speed_m_s", said.max_speed_m_s},
+        std::pair{"max_turning_rad_s", said.max_turning_rad_s}, std::pair{"following_s", said.following_s}}) {
+    if (!above_zero(value)) return failed(std::string("its capability ") + what + " is not a number above 0");
+  }
+  if (handle_->library.move == nullptr)
+    return failed("it measures force and lacks the function slosh_device_move");
+  AdmittanceSettings s;
+  s.mass = file.number("virtual_mass_kg", said.virtual_mass_kg, 0.01, 100.0);
+  s.inertia = file.number("virtual_inertia_kg_m2", said.virtual_inertia_kg_m2, 1e-6, 10.0);
+  s.damping = own;
+  s.rotational_damping = own_turning;
+  s.max_speed = said.max_speed_m_s;
+  s.max_turning = said.max_turning_rad_s;
+  s.following = said.following_s;
+  const std::string name = clean_text(said.name, sizeof said.name);
+  if (s.mass < said.virtual_mass_kg || s.inertia < said.virtual_inertia_kg_m2)
+    warnings_.push_back(
+        name +
+        ": its file asks for a lighter handle than the device is made for: it may hum. Hold it "
+        "loosely at first");
+  if (s.damping < s.following * kFirmHand)
+    warnings_.push_back(
+        name + format(": a hand stiffer than %.0f N/m may make it hum: it is %.1f ms behind, and its "
+                      "damping of %.3g N·s/m holds no more (own_damping_n_s_m)",
+                      s.damping / s.following, 1e3 * s.following, s.damping));
+  motion_.emplace(s);
+  moves_ = false;
+  return true;
+}
+
+/// The hand of a device that is moved is where it is told to be: a coupling to a place that comes later would
+/// hum.
+void PluginDevice::sense(const slosh_device_reading& reading, const DeviceReport& measured) {
+  if (!moves_) motion_->begin(measured.pose);
+  moves_ = true;
+  motion_->sense(measured.pose, wrench_of(reading));
+  sensed_ns_ = steady_now_ns();
 }
 
 DeviceReport PluginDevice::taken(const slosh_device_reading& r) {
@@ -140,19 +212,28 @@ DeviceReport PluginDevice::taken(const slosh_device_reading& r) {
   }
   report.buttons = r.buttons;
   report.engaged = (r.flags & SLOSH_READING_LET_GO) == 0;
-  const bool sound = is_sound(report);
+  const bool forced = !motion_ || ((r.flags & SLOSH_READING_HAS_WRENCH) != 0 && is_finite(wrench_of(r)));
+  const bool sound = is_sound(report) && forced;
   const bool shared = place_.tie && place_.tie->shared();
   if (const glm::dquat* axes = camera_now_.news(); axes && !shared) map_->look_from(*axes);
   if (sound == unsound_) {
     unsound_ = !sound;
     set_trouble(sound ? ""
-                      : "the plug-in " + file_ + " says a pose or velocity that is no number or no rotation");
+                : forced
+                    ? "the plug-in " + file_ + " says a pose or velocity that is no number or no rotation"
+                    : "the plug-in " + file_ + " says no force of the hand, or one that is no number");
   }
   if (!sound) {
     velocity_.forget();
+    sensed_ns_ = 0;
     return silent();
   }
-  if ((r.flags & SLOSH_READING_HAS_TWIST) == 0) report.twist = velocity_.add(report.pose, steady_now_ns());
+  if (motion_) {
+    sense(r, report);
+    report.pose = motion_->pose();
+    report.twist = motion_->twist();
+  } else if ((r.flags & SLOSH_READING_HAS_TWIST) == 0)
+    report.twist = velocity_.add(report.pose, steady_now_ns());
   const DeviceReport in_world = map_->to_world(report);
   if (place_.tie) {
     if (const auto axes = place_.tie->follow(report.pose, in_world.pose)) map_->look_from(*axes);
@@ -174,32 +255,52 @@ DeviceReport PluginDevice::read(const DeviceMoment&) {
     return first;
   }
   slosh_device_reading reading{};
+  const int code = asked("read", [&] { return handle_->library.read(handle_->device, &reading); });
+  return code == 0 ? taken(reading) : silent();
+}
+
+template <class Call>
+int PluginDevice::asked(const char* function, Call&& call) const {
   int code = 0;
   try {
-    code = handle_->library.read(handle_->device, &reading);
+    code = call();
   } catch (const std::exception& error) {
-    throw std::runtime_error("the plug-in " + file_ + " threw from read: " + clean_text(error.what(), 200));
+    throw std::runtime_error("the plug-in " + file_ + " threw from " + function + ": " +
+                             clean_text(error.what(), 200));
   } catch (...) {
-    throw std::runtime_error("the plug-in " + file_ + " threw from read, without words");
+    throw std::runtime_error("the plug-in " + file_ + " threw from " + function + ", without words");
   }
   if (code < 0) throw std::runtime_error("the plug-in " + file_ + " says that its device is gone");
-  if (code == 0) return taken(reading);
-  return silent();
+  return code;
 }
 
 void PluginDevice::write(const Wrench& on_hand) {
   const Wrench wrench = map_->filtered(on_hand);
+  if (motion_) {
+    move(wrench);
+    return;
+  }
   const double force[3] = {wrench.force.x, wrench.force.y, wrench.force.z};
   const double torque[3] = {wrench.torque.x, wrench.torque.y, wrench.torque.z};
-  int code = 0;
-  try {
-    code = handle_->library.write(handle_->device, force, torque);
-  } catch (const std::exception& error) {
-    throw std::runtime_error("the plug-in " + file_ + " threw from write: " + clean_text(error.what(), 200));
-  } catch (...) {
-    throw std::runtime_error("the plug-in " + file_ + " threw from write, without words");
-  }
-  if (code < 0) throw std::runtime_error("the plug-in " + file_ + " says that its device is gone");
+  asked("write", [&] { return handle_->library.write(handle_->device, force, torque); });
+}
+
+void PluginDevice::move(const Wrench& wrench) {
+  if (!moves_) return;  // nobody knows yet where it is
+  const std::int64_t now_ns = steady_now_ns();
+  const double seconds = moved_ns_ == 0 ? 0.0 : to_seconds(now_ns - moved_ns_);
+  moved_ns_ = now_ns;
+  if (to_seconds(now_ns - sensed_ns_) > std::max(kForceHolds, 3.0 * period_))
+    motion_->stand();
+  else
+    motion_->advance(wrench, std::min(seconds, std::max(kLongestStep, 2.0 * period_)));
+  const slosh_device_motion motion = motion_of(*motion_);
+  asked("move", [&] { return handle_->library.move(handle_->device, &motion); });
+}
+
+void PluginDevice::rest() {
+  sensed_ns_ = 0;  // what is moved stands; it takes no wrench
+  write(Wrench{});
 }
 
 void PluginDevice::close() {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "peer/haptics/devices/admittance_motion.h"
 #include "peer/haptics/devices/camera_view.h"
 #include "peer/haptics/devices/hand_map.h"
 #include "peer/haptics/devices/plugin_library.h"
@@ -16,7 +17,9 @@ namespace slosh {
 
 /// What the plug-in does wrong stays its own: what it throws or blocks ends or silences this hand
 /// (DevicePort); numbers that are not finite silence it; opening and closing are given kPatience. open()
-/// reads once, so that a plug-in that never answers is known before a world waits for it.
+/// reads once, so that a plug-in that never answers is known before a world waits for it. One that measures
+/// force (SLOSH_DEVICE_ADMITTANCE) is moved by AdmittanceMotion: its hand is where it is told to be. A force
+/// that is not known for kForceHolds, or that is no number, moves nothing: it is told to stand.
 class PluginDevice final : public Device {
  public:
   PluginDevice(std::string file, std::string options, HandPlace place);
@@ -27,6 +30,7 @@ class PluginDevice final : public Device {
   Result<bool> open() override;
   DeviceReport read(const DeviceMoment& moment) override;
   void write(const Wrench& on_hand) override;
+  void rest() override;
   DeviceLimits limits() const override { return limits_; }
   void look_from(const glm::dquat& axes) override { camera_now_.publish(axes); }
   void close() override;
@@ -36,6 +40,7 @@ class PluginDevice final : public Device {
 
   static constexpr double kPatience = 5.0;   ///< s for open
   static constexpr double kCloseWait = 1.0;  ///< s
+  static constexpr double kForceHolds = 0.01;  ///< s
 
  private:
   struct Handle;  // what a call that never returns goes on using
@@ -43,6 +48,13 @@ class PluginDevice final : public Device {
   Result<bool> settle(const slosh_device_capabilities& said);
   DeviceReport taken(const slosh_device_reading& reading);
   DeviceReport silent() const;
+  Result<bool> settle_motion(const slosh_device_capabilities& said, DeviceFile& file, double own,
+                             double own_turning);
+  void sense(const slosh_device_reading& reading, const DeviceReport& measured);
+  void move(const Wrench& wrench);
+  /// Passes a call's throw and its refusal on, as an exception that names the plug-in.
+  template <class Call>
+  int asked(const char* function, Call&& call) const;
   void set_trouble(const std::string& words);
 
   const std::string file_;
@@ -54,6 +66,11 @@ class PluginDevice final : public Device {
   DeviceLimits limits_;
   std::vector<std::string> warnings_;
   VelocityWindow velocity_;
+  std::optional<AdmittanceMotion> motion_;  // of a device that measures force
+  bool moves_ = false;                      // and it is known where it is
+  double period_ = 0.001;                   // s
+  std::int64_t sensed_ns_ = 0;
+  std::int64_t moved_ns_ = 0;
   std::optional<DeviceReport> first_;
   bool unsound_ = false;
 

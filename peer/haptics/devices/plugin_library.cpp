@@ -81,13 +81,16 @@ Result<PluginLibrary> load_plugin(const std::string& file) {
   // Its version first: another one may have other functions.
   if (!find(library, "slosh_device_version", plugin.version)) return lacks(where, "slosh_device_version");
   const std::uint32_t version = plugin.version();
-  if (version != SLOSH_DEVICE_VERSION) {
+  // Older ones fill the beginning of the structures, of which the rest is zero.
+  if (version < 1 || version > SLOSH_DEVICE_VERSION) {
     return Error{where,
                  "it is of version " + std::to_string(version) +
-                     " of the plug-in interface, and this slosh has " + std::to_string(SLOSH_DEVICE_VERSION),
+                     " of the plug-in interface, and this slosh knows 1 to " +
+                     std::to_string(SLOSH_DEVICE_VERSION),
                  "Rebuild it with this slosh's peer/haptics/devices/plugin/slosh_device.h"};
   }
   if (const char* const missing = missing_function(library, plugin)) return lacks(where, missing);
+  if (version >= 2) (void)find(library, "slosh_device_move", plugin.move);
   return plugin;
 }
 

@@ -1,4 +1,4 @@
-// A plug-in's shared library: its six functions, each call fenced.
+// A plug-in's shared library: its functions, each call fenced.
 #pragma once
 
 #include <functional>
@@ -19,10 +19,12 @@ struct PluginLibrary {
   decltype(&slosh_device_read) read = nullptr;
   decltype(&slosh_device_write) write = nullptr;
   decltype(&slosh_device_close) close = nullptr;
+  decltype(&slosh_device_move) move = nullptr;  ///< null where it has none: not asked of impedance devices
 };
 
 /// Loads a library and finds its functions. It stays loaded until the process ends: a call of it may never
-/// return. Errors: it cannot be loaded, lacks a function, is of another version.
+/// return. Errors: it cannot be loaded, lacks a function of the six, is of a version that this slosh does not
+/// know.
 Result<PluginLibrary> load_plugin(const std::string& file);
 
 /// Runs `call` on a thread of its own, for `seconds` at most: what it throws or how long it takes is not the

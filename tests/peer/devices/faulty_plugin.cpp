@@ -21,6 +21,8 @@ extern "C" {
 uint32_t slosh_device_version(void) {
 #ifdef OTHER_VERSION
   return SLOSH_DEVICE_VERSION + 1;
+#elif defined(VERSION_ONE)
+  return 1;
 #else
   return SLOSH_DEVICE_VERSION;
 #endif
@@ -49,6 +51,19 @@ int slosh_device_get_capabilities(void*, slosh_device_capabilities* c) {
   c->max_rotational_stiffness_nm_rad = c->max_rotational_damping_nm_s_rad = 1.0;
   c->own_damping_n_s_m = c->own_rotational_damping_nm_s_rad = 1.0;
   c->workspace_radius_m = 0.1;
+#ifdef ADMITTANCE
+  c->kind = SLOSH_DEVICE_ADMITTANCE;
+  c->virtual_mass_kg = c->virtual_inertia_kg_m2 = c->max_turning_rad_s = 1.0;
+  c->max_speed_m_s = 0.1;
+  c->following_s = 0.005;  // so that what it is told stays within 1 mm of where it is
+#endif
+#ifdef VERSION_ONE
+  // Its fields end with the workspace's radius.
+  std::memset(&c->kind, 0, sizeof *c - offsetof(slosh_device_capabilities, kind));
+#endif
+#ifdef NO_SPEED
+  c->max_speed_m_s = 0.0;
+#endif
 #ifdef NAN_CAPABILITY
   c->max_force_n = std::nan("");
 #endif
@@ -65,6 +80,12 @@ int slosh_device_read(void*, slosh_device_reading* reading) {
 #ifdef THROWS_IN_READ
   if (late) throw std::runtime_error("the cable is out");
 #endif
+#ifdef ADMITTANCE
+  reading->flags = SLOSH_READING_HAS_WRENCH;
+#endif
+#ifdef NAN_FORCE
+  if (late) reading->force_n[2] = std::nan("");
+#endif
 #ifdef BLOCKS_IN_READ
   if (late) never_return();
 #endif
@@ -80,6 +101,15 @@ int slosh_device_read(void*, slosh_device_reading* reading) {
 #ifndef LACKS_WRITE
 int slosh_device_write(void*, const double[3], const double[3]) {
 #ifdef THROWS_IN_WRITE
+  if (++writes > 400) throw 7;
+#endif
+  return 0;
+}
+#endif
+
+#if defined(ADMITTANCE) && !defined(LACKS_MOVE)
+int slosh_device_move(void*, const slosh_device_motion*) {
+#ifdef THROWS_IN_MOVE
   if (++writes > 400) throw 7;
 #endif
   return 0;
