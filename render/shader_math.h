@@ -12,6 +12,7 @@ using glm::vec3;
 using glm::vec4;
 
 using glm::abs;
+using glm::ceil;
 using glm::clamp;
 using glm::cross;
 using glm::determinant;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "render/renderer.h"
 #include "render/shader_math.h"
 
 namespace slosh {
@@ -37,22 +38,24 @@ void smooth_along(const Lines& lines, const float* here, int count, const Narrow
                   float* out) {
   Lanes depth, share, moved, weights, ahead_near, ahead_far, behind_near, behind_far;
   Indices stride, taps, at;
+  const int last = lines.length - 1;
   int most = 0;
   for (int i = 0; i < kWide; ++i) {
     const bool fluid = i < count && here[std::min(i, count - 1)] <= shader::kFluidDepthLimit;
     depth[i] = fluid ? here[i] : shader::kFluidDepthLimit;
-    const float reach = std::max(kernel.reach * kernel.pixels_per_metre / depth[i], 1.0f);
-    stride[i] = static_cast<int>(std::ceil(reach / static_cast<float>(kernel.taps)));
-    taps[i] = fluid ? static_cast<int>(reach) / stride[i] : 0;
+    at[i] = lines.at + (lines.at_moves ? i : 0);
+    const int inside = std::min(at[i], last - at[i]);
+    const float reach = shader::filter_reach(kernel.reach * kernel.pixels_per_metre / depth[i],
+                                             static_cast<float>(inside));
+    stride[i] = static_cast<int>(shader::filter_stride(reach, static_cast<float>(kernel.taps)));
+    taps[i] = fluid && inside > 0 ? static_cast<int>(reach) / stride[i] : 0;
     share[i] = static_cast<float>(stride[i]) / (reach + 1.0f);
     moved[i] = 0.0f;
     weights[i] = 1.0f;
     ahead_near[i] = behind_near[i] = depth[i] - kernel.range;
     ahead_far[i] = behind_far[i] = depth[i] + kernel.range;
-    at[i] = lines.at + (lines.at_moves ? i : 0);
     most = std::max(most, taps[i]);
   }
-  const int last = lines.length - 1;
   const int lane = lines.at_moves ? 0 : 1;
   for (int k = 1; k <= most; ++k) {
     for (int i = 0; i < kWide; ++i) {
@@ -112,7 +115,8 @@ std::span<const float> NarrowRangeOnCpu::run(std::span<const float> depths, glm:
   const std::ptrdiff_t bordered = width + 2 * kBorder;
   rows_.resize(depths.size());
   surface_.resize(depths.size());
-  columns_.resize(static_cast<std::size_t>(bordered) * static_cast<std::size_t>(height + 2 * kBorder));
+  columns_.assign(static_cast<std::size_t>(bordered) * static_cast<std::size_t>(height + 2 * kBorder),
+                  kNoFluidDepth);
   const auto for_each_run = [&](auto&& work) {
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; x += kWide) work(x, y, std::min(kWide, width - x));
@@ -133,16 +137,6 @@ std::span<const float> NarrowRangeOnCpu::run(std::span<const float> depths, glm:
     else
       std::copy_n(here, count, out);
   });
-  for (int y = 0; y < height; ++y) {
-    float* row = columns_.data() + (y + kBorder) * bordered;
-    std::fill_n(row, kBorder, row[kBorder]);
-    std::fill_n(row + kBorder + width, kBorder, row[kBorder + width - 1]);
-  }
-  for (int k = 0; k < kBorder; ++k) {
-    std::copy_n(columns_.data() + kBorder * bordered, bordered, columns_.data() + k * bordered);
-    std::copy_n(columns_.data() + (height + kBorder - 1) * bordered, bordered,
-                columns_.data() + (height + kBorder + k) * bordered);
-  }
   for_each_run([&](int x, int y, int count) {
     const float* here = columns_.data() + (y + kBorder) * bordered + kBorder + x;
     float* out = surface_.data() + std::ptrdiff_t{y} * width + x;

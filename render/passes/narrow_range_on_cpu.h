@@ -13,7 +13,7 @@ class NarrowRangeOnCpu {
   struct Kernel {
     float reach = 0.0f;             ///< m, to a side
     float range = 0.0f;             ///< m of depth
-    int taps = 6;                   ///< to a side at most; farther apart where the reach is more pixels
+    int taps = 6;                   ///< to a side, more where the reach is many pixels (filter_stride)
     float pixels_per_metre = 0.0f;  ///< of a metre at one metre's depth
   };
 

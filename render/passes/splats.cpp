@@ -10,7 +10,7 @@ namespace slosh {
 namespace {
 
 /// Reach of a splat that smooth_centers shapes, over that of the sphere it was.
-constexpr float kWidest = 1.9f;
+constexpr float kWidest = 2.15f;
 
 /// Which tiles are touched, a flag a tile.
 class TileGrid {

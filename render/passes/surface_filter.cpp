@@ -51,7 +51,7 @@ class CurvatureFlow : public SurfaceFilter {
 };
 
 // Of Truong & Yuksel's, in splat radii; the best of those tried on analytic pools (render/score).
-constexpr float kReach = 3.2f;
+constexpr float kReach = 3.8f;
 constexpr float kRange = 5.0f;
 
 /// Truong & Yuksel 2018: along both axes, then 5 × 5 pixels.

@@ -6,10 +6,12 @@
 #include "narrow_range.glsl"
 layout(binding = 0) uniform sampler2D source;
 uniform ivec2 axis;
-uniform vec3 kernel;  // reach m, range m, taps a side at most
+uniform vec3 kernel;  // reach m, range m, taps a side
 
 float fetch(ivec2 at) {
-  return texelFetch(source, clamp(at, ivec2(0), ivec2(picture.xy) - 1), 0).r;
+  ivec2 last = ivec2(picture.xy) - 1;
+  bool inside = all(greaterThanEqual(at, ivec2(0))) && all(lessThanEqual(at, last));
+  return inside ? texelFetch(source, clamp(at, ivec2(0), last), 0).r : 1.0e6;
 }
 
 bool pixel(ivec2 texel, out vec4 value) {
@@ -30,9 +32,11 @@ bool pixel(ivec2 texel, out vec4 value) {
     }
   }
 #else
-  float reach = max(kernel.x * splat.y / here, 1.0);
-  int stride = int(ceil(reach / kernel.z));
-  int taps = int(reach) / stride;
+  ivec2 ends = min(texel, ivec2(picture.xy) - 1 - texel);
+  int inside = axis.x != 0 ? ends.x : ends.y;
+  float reach = filter_reach(kernel.x * splat.y / here, float(inside));
+  int stride = int(filter_stride(reach, kernel.z));
+  int taps = inside > 0 ? int(reach) / stride : 0;
   float share = float(stride) / (reach + 1.0);
   DepthRange ahead = narrow_range(here, kernel.y);
   DepthRange behind = ahead;

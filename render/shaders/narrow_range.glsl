@@ -25,3 +25,13 @@ SHARED float kernel_weight(float share) {
   float left = 1.0f - share * share;
   return left * left;
 }
+
+// Pixels to a side that a pixel's line is smoothed over, at least 1: its reach, less near the picture's edge, where what would
+// be opposite is not seen. inside: pixels from here to that edge.
+SHARED float filter_reach(float reach, float inside) { return max(min(reach, inside), 1.0f); }
+
+// How far its taps are apart, pixels: by so many taps, by more where they would be farther apart than the 5 × 5 pixels after
+// them even out (a drop of large particles showed a net of lines), by kMostTaps at most.
+const float kWidestStride = 5.0f;
+const float kMostTaps = 40.0f;
+SHARED float filter_stride(float reach, float taps) { return ceil(reach / clamp(reach / kWidestStride, taps, kMostTaps)); }

@@ -5,9 +5,9 @@ const float kSmoothingFlat = 0.22f;  // of the reach: from a flat surface's part
 
 // Of ellipsoids, in particle radii. Along a flat surface, and in what is round: a drop, or a particle inside that shows through
 // a gap; the least that an ellipsoid is thick, which is what a sheet of one layer has.
-const float kEllipsoidAlong = 2.2f;
+const float kEllipsoidAlong = 2.4f;
 const float kEllipsoidRound = 1.2f;
-const float kEllipsoidThin = 0.6f;
+const float kEllipsoidThin = 0.9f;
 const float kFullVariance = 0.15f;  // of the reach squared: a neighbourhood's variance where it is full
 const float kFewNeighbours = 4.0f;  // in sum of weights, itself counting as one
 

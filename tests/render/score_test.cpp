@@ -35,8 +35,7 @@ class ScoreTest : public RenderTest {
   }
 };
 
-// As measured (llvmpipe): paper 22°, flow 18°, ours 3.3° at 5 pixels of radius. Ours on a GPU takes more
-// taps: 3.1°.
+// As measured (llvmpipe): paper 22°, flow 18°, ours 2.4° at 5 pixels of radius, with a GPU's taps too.
 TEST_F(ScoreTest, NormalsOfAnAnalyticPool) {
   const score::Pool pool = score::make_pool(5.0f, kPoolWidth, kPoolHeight);
   const score::Exact exact = score::exact_pool(pool, kPoolWidth, kPoolHeight);
@@ -47,12 +46,24 @@ TEST_F(ScoreTest, NormalsOfAnAnalyticPool) {
   EXPECT_LT(flow.normal_mean, 0.9 * paper.normal_mean);
   for (const Quality quality : {Quality::kFast, Quality::kFull}) {
     const score::SurfaceScore ours = score_of(pool, exact, Surface::kOurs, quality);
-    EXPECT_LT(ours.normal_mean, 4.5);
-    EXPECT_LT(ours.normal_p95, 11.0);
-    EXPECT_LT(ours.edge_mean, 0.7 * paper.edge_mean);
-    EXPECT_LT(std::abs(ours.depth_bias), 0.9) << "particle radii: smoothing must not shrink the fluid";
-    EXPECT_LT(ours.depth_rms, paper.depth_rms);
-    EXPECT_LT(ours.silhouette, 0.8 * 5.0) << "px, of particles of 5 px radius";
+    EXPECT_LT(ours.normal_mean, 3.0);
+    EXPECT_LT(ours.normal_p95, 7.0);
+    EXPECT_LT(ours.edge_mean, 10.0);
+    EXPECT_LT(std::abs(ours.depth_bias), 0.15) << "particle radii: smoothing must not shrink the fluid, nor swell it";
+    EXPECT_LT(ours.depth_rms, 0.4);
+    EXPECT_LT(ours.silhouette, 2.2) << "px, of particles of 5 px radius";
+  }
+}
+
+// Taps far apart leave a net of lines in large particles' surface, and a filter that takes what is beyond the picture for
+// flat bends its rim. As measured 6.9° and 16.0° (p95); with such a net 7.3° and 18.0°, with a bent rim too 7.6° and 20.2°.
+TEST_F(ScoreTest, LargeParticlesShowNoNetAndThePictureNoRim) {
+  const score::Pool pool = score::make_pool(15.0f, kPoolWidth, kPoolHeight);
+  const score::Exact exact = score::exact_pool(pool, kPoolWidth, kPoolHeight);
+  for (const Quality quality : {Quality::kFast, Quality::kFull}) {
+    const score::SurfaceScore ours = score_of(pool, exact, Surface::kOurs, quality);
+    EXPECT_LT(ours.normal_mean, 7.1);
+    EXPECT_LT(ours.normal_p95, 17.0);
   }
 }
 
@@ -111,7 +122,7 @@ TEST_F(ScoreTest, TheFilterInMainMemoryIsTheShaders) {
   NarrowRangeOnCpu filter;
   const std::span<const float> smooth =
       filter.run(front.values, {kWidth, kHeight},
-                 {3.2f * radius, 5.0f * radius, 40, 0.5f * scene.frame.view.projection[1][1] * kHeight});
+                 {3.8f * radius, 5.0f * radius, 40, 0.5f * scene.frame.view.projection[1][1] * kHeight});
   int fluid = 0;
   int moved = 0;
   for (std::size_t i = 0; i < front.values.size(); ++i) {
