@@ -28,6 +28,8 @@ class ForceLimiter {
     Wrench wrench;
     bool limited = false;  ///< by size or rate; the jerk alone is not told
     bool non_finite = false;
+    double asked_force = 0.0;   ///< N that was wanted, whatever was given
+    double asked_torque = 0.0;  ///< N·m
   };
   /// `period` in s since the wrench before.
   Outcome limit(const Wrench& wanted, double period) noexcept {
@@ -40,6 +42,8 @@ class ForceLimiter {
       return outcome;
     }
     bool& cut = outcome.limited;
+    outcome.asked_force = glm::length(wanted.force);
+    outcome.asked_torque = glm::length(wanted.torque);
     const glm::dvec3 force = limit_length(wanted.force, limits_.max_force, cut);
     const glm::dvec3 torque = limit_length(wanted.torque, limits_.max_torque, cut);
     follow(force, wanted_.force, last_.force, rate_.force, limits_.max_force_rate, limits_.max_force_jerk,

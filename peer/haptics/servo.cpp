@@ -119,6 +119,7 @@ void Servo::change_device(Hand& hand, DevicePort* port) noexcept {
   if (port != nullptr) {
     hand.limits = port->limits();
     hand.with_world = port->device().goes_with_world();
+    hand.budget.restart();
     hand.felt.restart(within(stiffened(hand.gains, hand.stiffness), hand.limits), hand.limits,
                       port->device().gives_way());
   }
@@ -338,6 +339,7 @@ void Servo::tick(std::int64_t now_ns, bool fresh) noexcept {
                  hand.with_world);
     }
     if (felt.limited) note(kStatusForceLimited);
+    hand.budget.note(felt.asked_force, felt.asked_torque, hand.limits, options_.period);
     if (felt.non_finite) note(kStatusNonFinite);
     if (!let_go_) port->write(felt.wrench);
     // A device that does not answer is not spoken for: the host takes its hand for silent, as it is.

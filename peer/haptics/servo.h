@@ -12,6 +12,7 @@
 #include "net/ring.h"
 #include "peer/haptics/device_port.h"
 #include "peer/haptics/felt_hand.h"
+#include "peer/haptics/force_budget.h"
 #include "peer/haptics/held_bodies.h"
 #include "peer/haptics/sample_line.h"
 #include "scenes/scene.h"
@@ -70,6 +71,8 @@ class Servo {
   std::string failure(std::size_t i) const {
     return hands_[i].owned.empty() ? std::string() : hands_[i].owned.back()->failure();
   }
+  /// What the grip's coupling asks of its device and that gives; any thread.
+  ForceBudget budget(std::size_t i) const { return hands_[i].budget.now(); }
   /// Tells every device where the viewer looks from (Device::look_from).
   void look_from(const glm::dquat& axes) {
     for (Hand& hand : hands_)
@@ -104,6 +107,7 @@ class Servo {
     Pose start;
     int body = 0;
     FeltHand felt;
+    ForceBudgetNote budget;
     DeviceReport good;
     std::uint64_t readings = 0;  // of the device so far
     bool with_world = false;     // it goes by simulated time

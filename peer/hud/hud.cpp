@@ -138,7 +138,8 @@ std::vector<PanelRow> Hud::run_rows(const Rates& rates, bool brief) const {
     }
   }
   const std::string warning = status_lines(status() | rates.device_status, rates.status_steps);
-  if (!warning.empty()) rows.push_back({Kind::kWarning, warning, {}});
+  for (const std::string& lines : {warning, rates.budgets})
+    if (!lines.empty()) rows.push_back({Kind::kWarning, lines, {}});
   return rows;
 }
 

@@ -16,6 +16,7 @@ struct Rates {
   double step_ms = 0.0;
   double device_rate = 0.0;         ///< Hz
   std::uint32_t device_status = 0;  ///< StatusBits that the device loop ever set
+  std::string budgets;              ///< a line for each hand whose device clips; empty where none does
   std::array<std::uint64_t, 32>
       status_steps{};               ///< in how many steps each was set; 0 where that is not known
   double start = 0.0;               ///< simulated s when this person's run began

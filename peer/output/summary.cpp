@@ -126,7 +126,8 @@ Json to_json(const RunSummary& s) {
     devices.push_back({{"grip", d.grip},
                        {"device", d.device},
                        {"peak_force_n", d.peak_force},
-                       {"peak_torque_nm", d.peak_torque}});
+                       {"peak_torque_nm", d.peak_torque},
+                       {"clipped_s", d.clipped}});
   }
   Json json;
   json["scene"] = s.scene;
@@ -186,8 +187,11 @@ std::string in_words(const RunSummary& s) {
   }
   if (!s.devices.empty()) {
     for (const DeviceSummary& d : s.devices) {
-      text += format("%s (%s) felt up to %.1f N and %.2f N·m.\n", d.grip.c_str(), d.device.c_str(),
-                     d.peak_force, d.peak_torque);
+      text += format("%s (%s) felt up to %.1f N and %.2f N·m", d.grip.c_str(), d.device.c_str(), d.peak_force,
+                     d.peak_torque);
+      if (d.clipped > 0.0)
+        text += format(", for %.2g s all that its device gives, and more was asked", d.clipped);
+      text += ".\n";
     }
   }
   if (s.rendered) {

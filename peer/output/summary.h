@@ -27,6 +27,7 @@ struct DeviceSummary {
   std::string device;        ///< script, mouse, replay
   double peak_force = 0.0;   ///< N, on the hand
   double peak_torque = 0.0;  ///< N·m
+  double clipped = 0.0;      ///< s in which more was asked of the device than it gives
 };
 
 /// What the network was like for a peer of somebody else's world.

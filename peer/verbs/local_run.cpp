@@ -226,6 +226,7 @@ Rates LocalRun::note_rates() {
   rates.status_steps = progress.status_steps;
   rates.device_rate = servo_->devices() == 0 ? 0.0 : loop_->rate();
   rates.device_status = servo_->status();
+  rates.budgets = budget_lines(*servo_, prepared_.scene);
   rates_.add(rates);
   return rates;
 }

@@ -95,6 +95,7 @@ Rates RemoteRun::note_rates() {
   rates.real_time = status_.state == LinkState::kLive ? status_.moment.rate : 0.0;
   rates.device_rate = servo_->holds_any() ? loop_->rate() : 0.0;
   rates.device_status = servo_->status();
+  rates.budgets = budget_lines(*servo_, stage_.scene);
   rates.connection = connection_text(status_, visit_.world().maker->delay(), steady_now_ns());
   rates.people = people_text(status_, grip_names_);
   rates_.add(rates);

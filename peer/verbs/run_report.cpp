@@ -11,6 +11,16 @@ Spread spread_of(const Histogram& histogram, double unit) {
 
 }  // namespace
 
+std::string budget_lines(const Servo& servo, const Scene& scene) {
+  std::string lines;
+  for (std::size_t i = 0; i < servo.devices(); ++i) {
+    const std::string line =
+        servo.holds(i) ? budget_line(scene.grips[i].name, servo.budget(i)) : std::string();
+    if (!line.empty()) lines += (lines.empty() ? "" : "\n") + line;
+  }
+  return lines;
+}
+
 void report_stage(const Stage& stage, RunSummary& s) {
   s.scene = stage.scene.name;
   s.scene_file = stage.scene.source_file;
@@ -48,7 +58,8 @@ void report_hands(const DeviceLoop& loop, const Servo& servo, const Recorder& re
   for (std::size_t i = 0; i < servo.devices(); ++i) {
     if (servo.device(i) == nullptr) continue;
     const Peak& peak = recorder.peaks()[i];
-    s.devices.push_back({scene.grips[i].name, servo.device(i)->kind(), peak.force, peak.torque});
+    s.devices.push_back(
+        {scene.grips[i].name, servo.device(i)->kind(), peak.force, peak.torque, servo.budget(i).clipped});
   }
   for (const std::string& each : run_troubles(recorder.problem(), servo, scene)) s.problems.push_back(each);
 }

@@ -16,6 +16,8 @@ void report_stage(const Stage& stage, RunSummary& summary);
 void report_time(double simulated, double wall, RunSummary& summary);
 /// How long steps took and what they spent it on. `total` in any unit, `step_time` in s.
 void report_steps(const StepTimes& total, const Histogram& step_time, RunSummary& summary);
+/// A line for each hand whose device clips (budget_line); empty where none does.
+std::string budget_lines(const Servo& servo, const Scene& scene);
 /// The device loop, the devices and their files. All stopped; the recorder's and the servo's grips are
 /// `scene`'s.
 void report_hands(const DeviceLoop& loop, const Servo& servo, const Recorder& recorder, const Scene& scene,

@@ -62,10 +62,13 @@ TEST(DevicesCommand, APluginGoesByTheWallClockOnly) {
 TEST(DevicesCommand, APluginIsPlayedWithAndSaysThatTheSceneAsksForMore) {
   std::filesystem::remove_all(test::test_folder());
   const Outcome outcome =
-      test::slosh({"play", "bucket", "--headless", "--no-render", "--spacing", "0.014", "--seconds", "1",
+      test::slosh({"play", "bucket", "--headless", "--no-render", "--spacing", "0.014", "--seconds", "4",
                    "--device", "script", "--device", "plugin:" + example(), "--out", "o"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_TRUE(contains(outcome.err, "holds at most")) << outcome.err;
+  // It gives 0.5 N·m, and the bucket turns in its grip by more.
+  EXPECT_TRUE(contains(outcome.out, "all that its device gives")) << outcome.out;
+  EXPECT_TRUE(contains(outcome.out, "a device's force met its limit")) << outcome.out;
 }
 
 /// The bucket in the hands of two simulated people: it is carried, and nothing swings up.

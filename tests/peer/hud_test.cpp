@@ -135,6 +135,22 @@ TEST_F(HudTest, AWarningOfOneStepCanBeRead) {
   EXPECT_LE(vertices(5.0, 0), without + 8) << "and goes; the time may have another digit";
 }
 
+TEST_F(HudTest, AForceBudgetIsShownWhileADeviceClips) {
+  const Scene bare = scene();
+  Hud hud(bare, facts());
+  hud.record(Snapshot{});
+  const auto vertices = [&](const std::string& budgets) {
+    Rates rates;
+    rates.budgets = budgets;
+    draw(hud, rates);
+    return ImGui::GetDrawData()->TotalVtxCount;
+  };
+  const int without = vertices("");
+  EXPECT_GT(vertices("left: 25.0 N asked of a device of 8.0 N"), without + 4 * 25) << "four a letter";
+  EXPECT_LE(cut_off(), 1.0f);
+  EXPECT_EQ(vertices(""), without);
+}
+
 TEST_F(HudTest, WallsThatHoldAreNoWarningUnlessTheyCrush) {
   const Scene bare = scene();
   Hud hud(bare, facts());

@@ -232,6 +232,31 @@ TEST(Servo, StaysWithinTheDevicesLimitsAndSaysSo) {
   EXPECT_NE(kit.servo->status() & kStatusForceLimited, 0u);
 }
 
+TEST(Servo, SaysWhatIsAskedOfADeviceThatClipsAndForHowLongItDid) {
+  DeviceLimits limits = limits_without_a_hand();
+  limits.max_force = 8.0;
+  ServoKit kit(limits);
+  kit.publish(0.0);
+  kit.tick(0.0);
+  EXPECT_EQ(budget_line("left", kit.servo->budget(0)), "");
+  kit.device->next.pose = at(0.025);  // 1000 N/m
+  for (int i = 1; i <= 100; ++i) {
+    kit.publish(0.001 * i);
+    kit.tick(0.001 * i);
+  }
+  EXPECT_EQ(budget_line("left", kit.servo->budget(0)), "left: 25.0 N asked of a device of 8.0 N");
+  EXPECT_NEAR(kit.servo->budget(0).clipped, 0.1, 1e-9);
+  kit.device->next.pose = at(0.007);
+  int shown = 0;  // ms that it can be read after it is over
+  for (int i = 101; i <= 3000; ++i) {
+    kit.publish(0.001 * i);
+    kit.tick(0.001 * i);
+    shown += budget_line("left", kit.servo->budget(0)).empty() ? 0 : 1;
+  }
+  EXPECT_NEAR(shown, 1500, 2);
+  EXPECT_NEAR(kit.servo->budget(0).clipped, 0.1, 1e-9) << "the summary's";
+}
+
 TEST(Servo, AResetWorldStartsTimeAnewAndTheRecordGoesOn) {
   ServoKit kit;
   for (int i = 0; i <= 500; ++i) {

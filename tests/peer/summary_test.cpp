@@ -28,7 +28,7 @@ RunSummary example() {
   s.rendered = true;
   s.frames = 301;
   s.status = kStatusTimeSlipped | kStatusForceLimited;
-  s.devices = {{"left_hand", "script", 31.2, 1.25}};
+  s.devices = {{"left_hand", "script", 31.2, 1.25, 0.5}};
   s.backend = "cpu";
   s.version = "0.1.0";
   s.folder = "out/bucket";
@@ -51,12 +51,14 @@ TEST(Summary, JsonHasEveryFieldThatIsPromised) {
   EXPECT_EQ(json["render"]["frames"], 301);
   EXPECT_EQ(json["status"].size(), 2u);
   EXPECT_EQ(json["devices"][0]["peak_force_n"], 31.2);
+  EXPECT_EQ(json["devices"][0]["clipped_s"], 0.5);
 }
 
 TEST(Summary, InWordsSaysTheNumbers) {
   const std::string text = in_words(example());
-  for (const char* part : {"2 812", "13 104", "11.0 mm", "× 0.95",
-                           "left_hand (script) felt up to 31.2 N and 1.25", "out/bucket", "wrenches.csv"}) {
+  for (const char* part :
+       {"2 812", "13 104", "11.0 mm", "× 0.95", "left_hand (script) felt up to 31.2 N and 1.25",
+        "for 0.5 s all that its device gives", "out/bucket", "wrenches.csv"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
   }
   EXPECT_EQ(text.find("interrupted"), std::string::npos);
