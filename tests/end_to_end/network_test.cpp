@@ -13,8 +13,8 @@
 
 #include "hosted_test.h"
 #include "peer/output/plot.h"
+#include "peer/verbs/coupling/network_sites.h"
 #include "render/image.h"
-#include "sites.h"
 #include "tests/support/comes.h"
 #include "tests/support/network_here.h"
 
@@ -82,7 +82,7 @@ double differing(const Image& a, const Image& b, int least) {
 }
 
 TEST_F(NetworkTest, TwoPeopleCarryTheBucketOverABadWire) {
-  const test::Sites sites({"host", "ana", "ben", "eve"});
+  const NetworkSites sites({"host", "ana", "ben", "eve"});
   if (!sites.problem().empty()) GTEST_SKIP() << "no network namespaces here: " << sites.problem();
   const auto start = [&](const std::string& site, const std::string& name,
                          const std::vector<std::string>& with) {

@@ -1,11 +1,10 @@
 // The machines in one that the tests over a network stand on.
-#include "sites.h"
-
 #include <gtest/gtest.h>
 #include <signal.h>
 
 #include <filesystem>
 
+#include "peer/verbs/coupling/network_sites.h"
 #include "process.h"
 
 namespace slosh {
@@ -13,7 +12,7 @@ namespace {
 
 using test::Outcome;
 using test::Process;
-using test::Sites;
+using Sites = NetworkSites;
 
 Outcome run(const Sites& sites, const std::string& site, const std::string& command) {
   return Process(sites.at(site, {"sh", "-c", command}), test::test_folder()).wait();

@@ -56,17 +56,8 @@ Result<bool> FalconDevice::open() {
   defaults.scale = 3.0;
   defaults.clutch_button = kCentreButton;
   HandMapSettings settings = read_hand_map(file.value(), defaults);
-  const std::optional<std::string> firmware = file.value().text("firmware");
+  firmware_ = file.value().text("firmware");
   if (const Result<bool> fine = file.value().check(); !fine) return fine;
-  if (!begin_falcon_packets(*link_) || !answers()) {
-    if (!firmware) {
-      return Error{
-          path.string(), "the Falcon has no firmware yet, and none is named",
-          "Write `firmware = FILE` there, with the file of Novint's driver (it is theirs and not part "
-          "of slosh; 7 to 9 kB, for example novint.bin)"};
-    }
-    if (const Result<bool> started = start(*firmware); !started) return started;
-  }
   if (place_.tie) {
     if (const Result<bool> begun = place_.tie->begin("falcon"); !begun) return begun;
     if (place_.tie->shared()) tie_to_room(settings, place_.tie->scale());
@@ -75,6 +66,19 @@ Result<bool> FalconDevice::open() {
   warnings_ = std::move(gains.warnings);
   map_.emplace(settings, place_);
   limits_ = map_->to_world(gains.limits);
+  return bring_up();
+}
+
+Result<bool> FalconDevice::bring_up() {
+  if (!begin_falcon_packets(*link_) || !answers()) {
+    if (!firmware_) {
+      return Error{
+          device_settings_file("falcon", "").string(), "the Falcon has no firmware yet, and none is named",
+          "Write `firmware = FILE` there, with the file of Novint's driver (it is theirs and not part "
+          "of slosh; 7 to 9 kB, for example novint.bin)"};
+    }
+    if (const Result<bool> started = start(*firmware_); !started) return started;
+  }
   heard_ns_ = now_ns_();
   runs_ = true;
   answered_ = false;
@@ -82,6 +86,24 @@ Result<bool> FalconDevice::open() {
     return Error{"Falcon", "it takes no packets", "Unplug it, plug it in and try again"};
   set_trouble("the Falcon does not know where it is yet: pull its grip out and push it in once");
   return true;
+}
+
+void FalconDevice::lose(const std::string& words) {
+  link_.reset();
+  runs_ = homed_ = placed_ = answered_ = false;
+  looked_ns_ = now_ns_();
+  velocity_.forget();
+  set_trouble(words + " It goes on when it is back and its grip was pulled out and pushed in once");
+}
+
+void FalconDevice::look_again(std::int64_t now_ns) {
+  if (to_seconds(now_ns - looked_ns_) < kLookAgain) return;
+  looked_ns_ = now_ns;
+  Result<std::unique_ptr<FalconLink>> link = open_link_();
+  if (!link) return;
+  link_ = std::move(link.value());
+  const Result<bool> up = bring_up();
+  if (!up) lose(up.error().where + ": " + up.error().what + ".");
 }
 
 Result<bool> FalconDevice::start(const std::filesystem::path& firmware) {
@@ -133,7 +155,10 @@ std::optional<FalconState> FalconDevice::next_state() {
   // A packet may come in pieces.
   for (std::size_t i = 0; i < kFalconPacket; ++i) {
     const int size = link_->read(bytes.data(), bytes.size(), kReadPatience);
-    if (size < 0) throw std::runtime_error("the Falcon is gone: is its cable out?");
+    if (size < 0) {
+      lose("the Falcon is gone: is its cable out?");
+      break;
+    }
     if (size == 0) break;
     if (const auto state = stream_.add(bytes.data(), static_cast<std::size_t>(size))) return state;
   }
@@ -142,12 +167,14 @@ std::optional<FalconState> FalconDevice::next_state() {
 
 DeviceReport FalconDevice::read(const DeviceMoment&) {
   placed_ = false;
+  if (!link_) look_again(now_ns_());
+  if (!link_) return silent();
   const std::optional<FalconState> state = next_state();
   answered_ = state.has_value();
   const std::int64_t now_ns = now_ns_();
   if (!state) {
     const double silence = to_seconds(now_ns - heard_ns_);
-    if (silence > kGone) throw std::runtime_error("the Falcon does not answer any more: has it power?");
+    if (link_ && silence > kGone) lose("the Falcon does not answer any more: has it power?");
     return silent();
   }
   heard_ns_ = now_ns;
@@ -176,6 +203,7 @@ DeviceReport FalconDevice::read(const DeviceMoment&) {
 }
 
 void FalconDevice::write(const Wrench& on_hand) {
+  if (!link_) return;
   std::array<int, 3> motors{};
   if (homed_ && placed_) {
     const std::optional<glm::dvec3> torques = falcon_torques(grip_, angles_, map_->filtered(on_hand).force);
@@ -194,7 +222,7 @@ void FalconDevice::write(const Wrench& on_hand) {
   const bool ends = motors == std::array<int, 3>{} && sent_ != motors;
   if (!answered_ && !overdue && !ends) return;
   answered_ = false;
-  if (!send(motors)) throw std::runtime_error("the Falcon takes no force: is its cable out?");
+  if (!send(motors)) lose("the Falcon takes no force: is its cable out?");
 }
 
 void FalconDevice::close() {

@@ -20,7 +20,9 @@ namespace slosh {
 
 /// On its own thread (DevicePort) at the pace of its USB: each reading is answered by one packet of motor
 /// values. Until its three arms were moved through their zeros it says nothing and gets no force. A force
-/// that no mechanism place carries (singular, not reachable) is none.
+/// that no mechanism place carries (singular, not reachable) is none. Unplugged or without power it is
+/// silent, and looked for every kLookAgain: it goes on where it is when it is back, has its firmware and was
+/// moved through its zeros.
 class FalconDevice final : public Device {
  public:
   using OpenLink = std::function<Result<std::unique_ptr<FalconLink>>()>;
@@ -42,10 +44,16 @@ class FalconDevice final : public Device {
   std::string trouble() const override;
   std::vector<std::string> warnings() const override { return warnings_; }
 
+  static constexpr double kLookAgain = 1.0;  ///< s
+
  private:
   /// Whether it answers packets already: firmware stays until its power goes.
   bool answers();
   Result<bool> start(const std::filesystem::path& firmware);
+  /// Its packets run, with its firmware sent where it has none, and the first is on its way.
+  Result<bool> bring_up();
+  void lose(const std::string& words);
+  void look_again(std::int64_t now_ns);
   std::optional<FalconState> next_state();
   bool send(const std::array<int, 3>& motors);
   void set_trouble(const std::string& words);
@@ -59,6 +67,7 @@ class FalconDevice final : public Device {
   std::optional<HandMap> map_;
   DeviceLimits limits_;
   std::vector<std::string> warnings_;
+  std::optional<std::string> firmware_;  // its file
   FalconStream stream_;
   VelocityWindow velocity_;
   FalconAngles angles_{};
@@ -70,6 +79,7 @@ class FalconDevice final : public Device {
   std::array<int, 3> sent_{};
   std::int64_t sent_ns_ = 0;
   std::int64_t heard_ns_ = 0;
+  std::int64_t looked_ns_ = 0;
 
   mutable std::mutex mutex_;
   std::string trouble_;

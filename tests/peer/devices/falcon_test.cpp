@@ -140,12 +140,15 @@ class Falcon : public ::testing::Test {
   std::unique_ptr<FalconDevice> make() {
     return std::make_unique<FalconDevice>(
         [this]() -> Result<std::unique_ptr<FalconLink>> {
+          opened_ += 1;
+          if (falcon_.gone) return Error{"Falcon", "none is there", "Plug it in"};
           return std::unique_ptr<FalconLink>(std::make_unique<FakeFalconLink>(falcon_));
         },
         HandPlace{}, [this] { return falcon_.now_ns; });
   }
 
   FakeFalcon falcon_;
+  std::size_t opened_ = 0;
   test::OwnFolder own_;
   const std::filesystem::path folder_ = own_.path();
 };
@@ -275,27 +278,64 @@ TEST_F(Falcon, TheMotorsPutTheForceOnTheHandWithinTheirLimit) {
   EXPECT_EQ(parse_falcon(falcon_.commands.back())->counts, (std::array<int, 3>{0, 0, 0})) << "zero last";
 }
 
-TEST_F(Falcon, UnpluggedOrWithoutPowerItIsOutOfUseInWords) {
+TEST_F(Falcon, UnpluggedItIsSilentAndGoesOnWhenItIsBackAndWasHomed) {
   auto device = make();
   ASSERT_TRUE(open_device(*device));
-  falcon_.gone = true;
-  try {
-    device->read({});
-    FAIL();
-  } catch (const std::runtime_error& error) {
-    EXPECT_NE(std::string(error.what()).find("cable"), std::string::npos);
+  falcon_.grip.x += 0.01;
+  device->write({});
+  DeviceReport report;
+  for (int i = 0; i < 5; ++i) {
+    report = device->read({});
+    device->write({{1.0, 0.0, 0.0}, {}});
   }
+  ASSERT_TRUE(report.heard);
+  const double place = report.pose.position.x;
+
+  falcon_.gone = true;
+  const std::size_t opened = opened_;
+  for (int i = 0; i < 1500; ++i) {  // a second and a half
+    EXPECT_FALSE(device->read({}).heard);
+    device->write({{1.0, 0.0, 0.0}, {}});
+    falcon_.now_ns += 1'000'000;
+  }
+  EXPECT_NE(device->trouble().find("cable"), std::string::npos) << device->trouble();
+  EXPECT_EQ(opened_ - opened, 1u) << "it is looked for once a second";
+
+  // Plugged in again, power and all: without its firmware and its place.
   falcon_.gone = false;
-  device = make();
+  falcon_.step = FakeFalcon::Step::kOff;
+  falcon_.received.clear();
+  falcon_.out.clear();
+  falcon_.homed = false;
+  for (int i = 0; i < 1500; ++i) {
+    EXPECT_FALSE(device->read({}).heard);
+    device->write({{1.0, 0.0, 0.0}, {}});
+    falcon_.now_ns += 1'000'000;
+  }
+  EXPECT_EQ(falcon_.received, falcon_.firmware);
+  EXPECT_NE(device->trouble().find("pull its grip out"), std::string::npos) << device->trouble();
+  EXPECT_EQ(parse_falcon(falcon_.commands.back())->counts, (std::array<int, 3>{0, 0, 0})) << "no force yet";
+  falcon_.homed = true;
+  for (int i = 0; i < 5; ++i) {
+    report = device->read({});
+    device->write({{1.0, 0.0, 0.0}, {}});
+  }
+  EXPECT_TRUE(report.heard);
+  EXPECT_EQ(device->trouble(), "");
+  EXPECT_NEAR(report.pose.position.x, place, 1e-4) << "where it is, not where it begins";
+  EXPECT_NE(parse_falcon(falcon_.commands.back())->counts, (std::array<int, 3>{0, 0, 0}));
+}
+
+TEST_F(Falcon, WithoutPowerItIsSilentAndSaysSo) {
+  auto device = make();
   ASSERT_TRUE(open_device(*device));
   falcon_.silent = true;
   falcon_.out.clear();
-  EXPECT_THROW(
-      for (int i = 0; i < 1000; ++i) {
-        EXPECT_FALSE(device->read({}).heard);
-        device->write({});
-      },
-      std::runtime_error);
+  for (int i = 0; i < 1000 && device->trouble().find("power") == std::string::npos; ++i) {
+    EXPECT_FALSE(device->read({}).heard);
+    device->write({});
+  }
+  EXPECT_NE(device->trouble().find("has it power"), std::string::npos) << device->trouble();
 }
 
 TEST_F(Falcon, ItsGainsAreWhatItsDampingHolds) {

@@ -1,4 +1,4 @@
-#include "sites.h"
+#include "peer/verbs/coupling/network_sites.h"
 
 #include <fcntl.h>
 #include <sys/socket.h>
@@ -10,7 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-namespace slosh::test {
+namespace slosh {
 namespace {
 
 constexpr const char* kWire = "wire";
@@ -53,15 +53,15 @@ std::string joined(const std::vector<std::string>& words) {
 
 }  // namespace
 
-Sites::Sites(std::vector<std::string> names) : names_(std::move(names)) {
+NetworkSites::NetworkSites(std::vector<std::string> names) : names_(std::move(names)) {
   if (!build()) release();
 }
 
-Sites::~Sites() {
+NetworkSites::~NetworkSites() {
   release();
 }
 
-bool Sites::build() {
+bool NetworkSites::build() {
   // What this process may do itself, else what it may do as root of a namespace of users.
   if (!hold(kWire, {"unshare", "--net"})) {
     const std::string without = problem_;
@@ -97,7 +97,7 @@ bool Sites::build() {
   return true;
 }
 
-bool Sites::hold(const std::string& site, const std::vector<std::string>& unshare) {
+bool NetworkSites::hold(const std::string& site, const std::vector<std::string>& unshare) {
   // "cat" tells that the namespace is there by giving back a letter, and ends when nobody can write to it any
   // more.
   int line[2];
@@ -131,24 +131,24 @@ bool Sites::hold(const std::string& site, const std::vector<std::string>& unshar
   return false;
 }
 
-bool Sites::run(const std::string& site, const std::string& command) {
+bool NetworkSites::run(const std::string& site, const std::string& command) {
   std::string said;
   if (run_program(at(site, {"sh", "-c", command}), said) == 0) return true;
   problem_ = command + " at " + site + ": " + said.substr(0, said.find('\n'));
   return false;
 }
 
-void Sites::release() {
+void NetworkSites::release() {
   for (const Holder& holder : holders_) close(holder.keep);
   for (const Holder& holder : holders_) reap(holder.pid);
   holders_.clear();
 }
 
-int Sites::number(const std::string& site) const {
+int NetworkSites::number(const std::string& site) const {
   return static_cast<int>(std::find(names_.begin(), names_.end(), site) - names_.begin());
 }
 
-std::vector<std::string> Sites::at(const std::string& site, std::vector<std::string> command) const {
+std::vector<std::string> NetworkSites::at(const std::string& site, std::vector<std::string> command) const {
   const auto holder =
       std::find_if(holders_.begin(), holders_.end(), [&](const Holder& each) { return each.site == site; });
   if (holder == holders_.end()) return command;
@@ -159,12 +159,12 @@ std::vector<std::string> Sites::at(const std::string& site, std::vector<std::str
   return all;
 }
 
-std::string Sites::address(const std::string& site) const {
+std::string NetworkSites::address(const std::string& site) const {
   return "10.77." + std::to_string(number(site)) + ".2";
 }
 
-std::string Sites::wire_address(const std::string& site) const {
+std::string NetworkSites::wire_address(const std::string& site) const {
   return "10.77." + std::to_string(number(site)) + ".1";
 }
 
-}  // namespace slosh::test
+}  // namespace slosh

@@ -6,17 +6,17 @@
 #include <string>
 #include <vector>
 
-namespace slosh::test {
+namespace slosh {
 
 /// One site a name. All are joined through one more namespace, "wire", in which the impairment relay runs.
 /// Root is not needed where the kernel lets a user make a namespace of users. The namespaces are held by
 /// processes that end with this one, however it ends, and nothing of them stays.
-class Sites {
+class NetworkSites {
  public:
-  explicit Sites(std::vector<std::string> names);
-  ~Sites();
-  Sites(const Sites&) = delete;
-  Sites& operator=(const Sites&) = delete;
+  explicit NetworkSites(std::vector<std::string> names);
+  ~NetworkSites();
+  NetworkSites(const NetworkSites&) = delete;
+  NetworkSites& operator=(const NetworkSites&) = delete;
 
   /// Why there are no sites here, in words; empty when all is well.
   const std::string& problem() const { return problem_; }
@@ -45,4 +45,4 @@ class Sites {
   std::string problem_;
 };
 
-}  // namespace slosh::test
+}  // namespace slosh

@@ -1,0 +1,293 @@
+#include "peer/verbs/coupling/link_study.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "peer/output/child_process.h"
+#include "peer/output/plot.h"
+#include "peer/verbs/coupling/network_sites.h"
+#include "sim/math/format.h"
+
+namespace slosh::coupling {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kSeconds = 9.0;        // simulated; the bucket is tilted to both sides in it
+constexpr double kWeight = 31.2;        // N, bucket and water
+constexpr double kCompared = 3.0;       // s from which on forces are compared: both have taken hold
+constexpr double kBroken = 999.0;       // N: a simulated person's device gives 1000
+constexpr double kHums = 0.3;           // N from row to row: more is no carrying
+constexpr int kPatience = 600;          // looks of 0.1 s for the host's links
+constexpr const char* kGiveUp = "120";  // s, of wall time, after which a program is ended
+
+struct Felt {
+  std::vector<double> time;
+  std::vector<glm::dvec3> force;
+  std::vector<double> put_in;  // J by then
+  std::vector<double> height;  // m, of the hand
+};
+
+/// What a person's run wrote, of the one grip that they held. Errors: those of read_wrenches(), no rows.
+Result<std::pair<int, Felt>> felt_in(const fs::path& out) {
+  const Result<std::vector<WrenchSeries>> series = read_wrenches(out / "wrenches.csv");
+  if (!series) return series.error();
+  const auto held =
+      std::max_element(series.value().begin(), series.value().end(),
+                       [](const auto& a, const auto& b) { return a.time.size() < b.time.size(); });
+  if (held == series.value().end() || held->time.size() < 100)
+    return Error{out.string(), "has no forces of a person who held on",
+                 "Look at stderr of the programs there"};
+  std::vector<Pose> places;
+  std::ifstream poses(out / "poses.csv");
+  for (std::string line; std::getline(poses, line);) {
+    double time = 0.0;
+    int device = 0;
+    Pose p;
+    glm::dvec3& x = p.position;
+    glm::dquat& q = p.orientation;
+    if (std::sscanf(line.c_str(), "%lf,%d,%lf,%lf,%lf,%lf,%lf,%lf,%lf", &time, &device, &x.x, &x.y, &x.z,
+                    &q.w, &q.x, &q.y, &q.z) == 9)
+      places.push_back(p);
+  }
+  Felt felt;
+  const std::size_t rows = std::min(held->time.size(), places.size());
+  for (std::size_t i = 0; i < rows; ++i) {
+    const Wrench now = held->on_hand[i];
+    double put_in = 0.0;
+    if (i > 0) {
+      const Wrench mean{0.5 * (now.force + held->on_hand[i - 1].force),
+                        0.5 * (now.torque + held->on_hand[i - 1].torque)};
+      put_in = felt.put_in.back() - glm::dot(mean.force, places[i].position - places[i - 1].position) -
+               glm::dot(mean.torque, rotation_between(places[i - 1].orientation, places[i].orientation));
+    }
+    felt.time.push_back(held->time[i]);
+    felt.force.push_back(now.force);
+    felt.put_in.push_back(put_in);
+    felt.height.push_back(places[i].position.y);
+  }
+  return std::pair{static_cast<int>(held - series.value().begin()), std::move(felt)};
+}
+
+/// Of a table of rising times, the row at `time`.
+std::size_t row_at(const Felt& felt, double time) {
+  const auto at = std::lower_bound(felt.time.begin(), felt.time.end(), time);
+  return std::min(static_cast<std::size_t>(at - felt.time.begin()), felt.time.size() - 1);
+}
+
+double generated_by(const std::array<Felt, 2>& people) {
+  double most = 0.0;
+  for (std::size_t i = 0; i < people[0].time.size(); ++i) {
+    const std::size_t j = row_at(people[1], people[0].time[i]);
+    const double sank = 0.5 * (people[0].height.front() - people[0].height[i] + people[1].height.front() -
+                               people[1].height[j]);
+    most = std::max(most, -people[0].put_in[i] - people[1].put_in[j] - kWeight * std::max(sank, 0.0));
+  }
+  return most;
+}
+
+double error_of(const Felt& felt, const Felt& reference) {
+  double off = 0.0, all = 0.0;
+  for (std::size_t i = row_at(reference, kCompared); i < reference.time.size(); ++i) {
+    const glm::dvec3 difference = felt.force[row_at(felt, reference.time[i])] - reference.force[i];
+    off += glm::dot(difference, difference);
+    all += glm::dot(reference.force[i], reference.force[i]);
+  }
+  return all > 0.0 ? std::sqrt(off / all) : 0.0;
+}
+
+void note_felt(const Felt& felt, LinkRow& row) {
+  int carried = 0, last = 0;
+  for (std::size_t i = 0; i < felt.time.size(); ++i) {
+    row.peak = std::max(row.peak, glm::length(felt.force[i]));
+    if (felt.time[i] > kSeconds - 4.0) {
+      row.carried -= felt.force[i].y;
+      carried += 1;
+    }
+    const double step = i > 0 ? glm::length(felt.force[i] - felt.force[i - 1]) : 0.0;
+    row.steps += step > 1.0 ? 1 : 0;
+    if (felt.time[i] > kSeconds - 2.0) {
+      row.row_step += step;
+      last += 1;
+    }
+  }
+  row.carried /= std::max(carried, 1);
+  row.row_step /= std::max(last, 1);
+  row.verdict = row.peak > kBroken     ? Verdict::kDiverged
+                : row.row_step > kHums ? Verdict::kLimitCycle
+                                       : Verdict::kStable;
+}
+
+/// The host's link of that kind, once it has written it; empty before.
+std::string link_in(const fs::path& file, const std::string& kind) {
+  std::ifstream lines(file);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string word, link;
+    if (words >> word >> link && word == kind) return link;
+  }
+  return {};
+}
+
+class Trial {
+ public:
+  Trial(const NetworkSites& sites, const LinkCase& c, const LinkRun& run, const fs::path& folder)
+      : sites_(sites), c_(c), run_(run), folder_(folder) {}
+
+  /// Both people's rows and what they felt, by grip.
+  Result<std::array<LinkRow, 2>> go(std::array<Felt, 2>& people) {
+    std::error_code code;
+    fs::remove_all(folder_, code);
+    fs::create_directories(folder_, code);
+    if (code) return Error{folder_.string(), "cannot be made: " + code.message(), "Choose another --out"};
+    const std::string at = sites_.address("host") + ":4433";
+    std::vector<std::string> words{"host",           "bucket",
+                                   "--spacing",      "0.014",
+                                   "--threads",      "1",
+                                   "--wait",         "2",
+                                   "--listen",       at,
+                                   "--links",        links().string(),
+                                   "--seconds",      format("%g", kSeconds),
+                                   "--checkpoint",   "none",
+                                   "--no-supervisor"};
+    for (const char* site : {"ana", "ben"})
+      words.insert(words.end(), {"--address", sites_.wire_address(site) + ":5000"});
+    auto host = start("host", words);
+    if (!host) return host.error();
+    for (int i = 0; i < kPatience && link_in(links(), "watch").empty(); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    const std::string link = link_in(links(), "hold");
+    if (link.empty()) return Error{"slosh host", "wrote no link within a minute", "Is the machine too busy?"};
+    auto wire = ChildProcess::start(
+        sites_.at("wire", {(run_.program.parent_path() / "slosh-impair").string(), "--listen", "0.0.0.0:5000",
+                           "--to", at, "--delay-ms", format("%g", 500.0 * c_.round_trip), "--jitter-ms",
+                           format("%g", 1e3 * c_.jitter), "--loss", format("%g", c_.loss), "--seed", "7"}));
+    if (!wire) return wire.error();
+    const std::string coupling = c_.scheme == Scheme::kReplica ? "replica" : "spring";
+    std::vector<std::unique_ptr<ChildProcess>> joined;
+    for (const char* name : {"ana", "ben"}) {
+      auto person = start(name, {"join", link, "--name", name, "--headless", "--no-render", "--coupling",
+                                 coupling, "--device", "operator:tight", "--out", out(name).string(), "--key",
+                                 (folder_ / (std::string(name) + ".key")).string()});
+      if (!person) return person.error();
+      joined.push_back(std::move(person.value()));
+    }
+    for (const auto& person : joined)
+      if (const Result<bool> ended = person->finish(); !ended) return ended.error();
+    const Result<bool> hosted = host.value()->finish();
+    const std::string quit = "quit\n";
+    (void)wire.value()->write(quit.data(), quit.size());
+    if (!hosted) return hosted.error();
+    return take(people);
+  }
+
+ private:
+  fs::path links() const { return folder_ / "links.txt"; }
+  fs::path out(const std::string& name) const { return folder_ / name; }
+  Result<std::unique_ptr<ChildProcess>> start(const std::string& site,
+                                              const std::vector<std::string>& words) const {
+    const std::string home = (folder_ / "home").string();
+    std::vector<std::string> all{"timeout", kGiveUp, "env", "SLOSH_SETTINGS=none"};
+    for (const char* kind : {"XDG_STATE_HOME=", "XDG_DATA_HOME=", "XDG_CONFIG_HOME=", "XDG_CACHE_HOME="})
+      all.push_back(kind + home);
+    all.push_back(run_.program.string());
+    all.insert(all.end(), words.begin(), words.end());
+    return ChildProcess::start(sites_.at(site, all));
+  }
+  Result<std::array<LinkRow, 2>> take(std::array<Felt, 2>& people) const {
+    std::array<LinkRow, 2> rows;
+    for (const char* name : {"ana", "ben"}) {
+      Result<std::pair<int, Felt>> felt = felt_in(out(name));
+      if (!felt) return felt.error();
+      const auto grip = static_cast<std::size_t>(felt.value().first);
+      if (grip > 1 || !people[grip].time.empty())
+        return Error{out(name).string(), "holds a grip that the other has",
+                     "Delete the folder and try again"};
+      LinkRow& row = rows[grip];
+      row.c = c_;
+      row.grip = static_cast<int>(grip);
+      const auto summary = nlohmann::json::parse(std::ifstream(out(name) / "summary.json"), nullptr, false);
+      if (summary.is_discarded() || !summary.contains("network"))
+        return Error{(out(name) / "summary.json").string(), "is not whole", "Try again"};
+      row.measured_round_trip = 1e-3 * summary["network"].value("rtt_ms", 0.0);
+      row.pace = summary.value("real_time_factor", 0.0);
+      note_felt(felt.value().second, row);
+      people[grip] = std::move(felt.value().second);
+    }
+    const double generated = generated_by(people);
+    for (LinkRow& row : rows) row.generated = generated;
+    return rows;
+  }
+
+  const NetworkSites& sites_;
+  const LinkCase& c_;
+  const LinkRun& run_;
+  const fs::path folder_;
+};
+
+std::string name_of(const LinkCase& c) {
+  return format("%s, %g ms", word(c.scheme), 1e3 * c.round_trip) +
+         (c.loss > 0.0 ? format(", jitter %g ms, %g %% lost", 1e3 * c.jitter, 1e2 * c.loss) : std::string());
+}
+
+}  // namespace
+
+const char* const kLinkHeader =
+    "scheme,round_trip_ms,jitter_ms,loss,grip,measured_round_trip_ms,pace,verdict,generated_mj,force_error,"
+    "peak_n,"
+    "carried_n,row_step_n,steps_over_1n";
+
+std::string csv_line(const LinkRow& r) {
+  return format("%s,%g,%g,%g,%d,%.4g,%.3g,%s,%.4g,%.3g,%.4g,%.4g,%.3g,%d", word(r.c.scheme),
+                1e3 * r.c.round_trip, 1e3 * r.c.jitter, r.c.loss, r.grip, 1e3 * r.measured_round_trip, r.pace,
+                word(r.verdict), 1e3 * r.generated, r.error, r.peak, r.carried, r.row_step, r.steps);
+}
+
+std::vector<LinkCase> link_cases(bool quick) {
+  std::vector<LinkCase> cases{{Scheme::kReplica, 0.0}, {Scheme::kReplica, 0.2, 0.0, 0.01}};
+  if (quick) return cases;
+  cases.push_back({Scheme::kReplica, 0.1});
+  cases.push_back({Scheme::kReplica, 0.3});
+  cases.push_back({Scheme::kReplica, 0.3, 0.04, 0.2});
+  cases.push_back({Scheme::kReplica, 0.5, 0.04, 0.2});
+  cases.push_back({Scheme::kPeerSpring, 0.1});
+  cases.push_back({Scheme::kPeerSpring, 0.3, 0.04, 0.2});
+  return cases;
+}
+
+Result<std::vector<LinkRow>> measure_link(const std::vector<LinkCase>& cases, const LinkRun& run) {
+  std::error_code code;
+  if (!fs::exists(run.program.parent_path() / "slosh-impair", code))
+    return Error{(run.program.parent_path() / "slosh-impair").string(),
+                 "is not there: it is the wire between the sites",
+                 "Run the slosh of a build folder, which has it beside it"};
+  const NetworkSites sites({"host", "ana", "ben"});
+  if (!sites.problem().empty())
+    return Error{"network namespaces", "cannot be made here: " + sites.problem(),
+                 "Allow a user namespaces (sysctl kernel.unprivileged_userns_clone=1) or run as root"};
+  std::vector<LinkRow> rows;
+  std::array<Felt, 2> reference;
+  for (std::size_t i = 0; i < cases.size() && !(run.stop && run.stop()); ++i) {
+    if (run.told) run.told(static_cast<double>(i) / static_cast<double>(cases.size()), name_of(cases[i]));
+    std::array<Felt, 2> people;
+    Result<std::array<LinkRow, 2>> measured =
+        Trial(sites, cases[i], run, run.folder / format("link_%zu", i)).go(people);
+    if (!measured) return measured.error();
+    if (i == 0) reference = people;
+    for (LinkRow& row : measured.value()) {
+      const auto grip = static_cast<std::size_t>(row.grip);
+      row.error = error_of(people[grip], reference[grip]);
+      rows.push_back(row);
+    }
+  }
+  return rows;
+}
+
+}  // namespace slosh::coupling

@@ -1,0 +1,53 @@
+// `slosh report coupling --link`: the handful over the real link.
+#include <csignal>
+#include <cstdio>
+
+#include "net/text/clean.h"
+#include "peer/output/progress.h"
+#include "peer/output/whole_file.h"
+#include "peer/verbs/coupling/link_study.h"
+#include "peer/verbs/interrupt.h"
+#include "peer/verbs/report_coupling.h"
+#include "peer/verbs/verbs.h"
+#include "sim/math/format.h"
+
+namespace slosh {
+
+int report_coupling_link(const ReportOptions& options) {
+  constexpr const char* kTable = "coupling_link.csv";
+  const Result<std::filesystem::path> folder = report_folder(options, "coupling", kTable);
+  if (!folder) return fail(folder.error());
+  std::signal(SIGPIPE, SIG_IGN);
+  catch_interrupts();
+  Progress progress;
+  const std::vector<coupling::LinkCase> cases = coupling::link_cases(options.quick);
+  progress.phase("measuring", format("%zu runs over QUIC", cases.size()));
+  std::error_code code;
+  coupling::LinkRun run;
+  run.program = std::filesystem::read_symlink("/proc/self/exe", code);
+  run.folder = std::filesystem::absolute(folder.value(), code);
+  run.stop = [] { return interrupted_by() != 0; };
+  run.told = [&](double share, const std::string& which) { progress.update(share, which); };
+  const Result<std::vector<coupling::LinkRow>> rows = measure_link(cases, run);
+  if (!rows) return fail(rows.error());
+  std::string text = std::string(coupling::kLinkHeader) + "\n";
+  std::printf("%-12s %-26s grip  verdict      force off  peak     carried  from row to row  generated\n",
+              "scheme", "link");
+  for (const coupling::LinkRow& r : rows.value()) {
+    text += csv_line(r) + "\n";
+    const std::string link =
+        format("%g ms", 1e3 * r.c.round_trip) +
+        (r.c.loss > 0.0 ? format(", %g ms, %g %% lost", 1e3 * r.c.jitter, 1e2 * r.c.loss) : "");
+    std::printf("%-12s %-26s %4d  %-11s  %6.1f %%  %6.1f N  %5.1f N  %10.3f N  %9.3g J\n", word(r.c.scheme),
+                link.c_str(), r.grip, word(r.verdict), 1e2 * r.error, r.peak, r.carried, r.row_step,
+                r.generated);
+  }
+  if (const Result<bool> written = write_whole(folder.value() / kTable, text); !written)
+    return fail(written.error());
+  std::printf("Written to %s: coupling_link.csv, and what each person felt in link_…/\n",
+              clean_text(folder.value().string(), kMostTextBytes).c_str());
+  const int signal = interrupted_by();
+  return signal != 0 ? 128 + signal : kExitOk;
+}
+
+}  // namespace slosh
