@@ -37,6 +37,7 @@ struct MeshMaps {
   TextureHandle emissive = kNoTexture;
   float normal_scale = 1.0f;
   float occlusion_strength = 1.0f;  ///< 0–1
+  bool operator==(const MeshMaps&) const = default;
 };
 
 /// How a surface looks (linear sRGB primaries, glTF metallic-roughness).
@@ -48,6 +49,7 @@ struct MeshLook {
   glm::vec3 emissive{0.0f};   ///< scene-linear light that it gives off, not to others
   float alpha_cutoff = 0.0f;  ///< an opaque surface has holes where the base colour map's alpha is below it
   MeshMaps maps{};            ///< of a glass only base_color is read
+  bool operator==(const MeshLook&) const = default;
 };
 
 /// What draws frames and keeps their meshes.
@@ -68,6 +70,7 @@ struct MeshInstance {
   MeshHandle mesh = 0;
   glm::mat4 model{1.0f};  ///< mesh frame to world, rigid
   MeshLook look;
+  bool operator==(const MeshInstance&) const = default;
 };
 
 /// How a fluid looks.
@@ -92,6 +95,7 @@ struct View {
   glm::mat4 projection{1.0f};  ///< OpenGL clip space
   float near_plane = 0.02f;    ///< m
   float far_plane = 20.0f;     ///< m
+  bool operator==(const View&) const = default;
 };
 
 /// An arrow in the world: a force in the HUD.

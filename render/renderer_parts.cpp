@@ -65,6 +65,7 @@ Result<bool> Renderer::Parts::fit_to_options() {
     fast = want_fast;
     compute = want_compute;
   }
+  kept.forget();
   if (auto chosen = fluid_passes->choose(options.surface); !chosen) return chosen.error();
   const glm::ivec2 size(options.width, options.height);
   const glm::ivec2 back = options.half_resolution_back ? (size + 1) / 2 : size;
@@ -97,7 +98,24 @@ void Renderer::Parts::show_in_window() {
                          window == targets.size ? GL_NEAREST : GL_LINEAR);
 }
 
+std::optional<PixelBox> Renderer::Parts::part_to_draw() {
+  // Edges are smoothed in main memory then, which is where the picture is kept without a HUD.
+  if (!options.keep_still || !options.antialias || !fast || compute || !context.is_software()) return std::nullopt;
+  return kept.changed(frame, meshes, targets.size, shadow.size > 0 ? shadow.texel : 0.0f);
+}
+
 void Renderer::Parts::draw_scene() {
+  const std::optional<PixelBox> part = part_to_draw();
+  const auto run_in_part = [&](const char* name, auto&& pass) {
+    run(name, [&] {
+      if (part) {
+        glEnable(GL_SCISSOR_TEST);
+        glScissor(part->low.x, part->low.y, part->size().x, part->size().y);
+      }
+      pass();
+      glDisable(GL_SCISSOR_TEST);
+    });
+  };
   const bool chords = options.layers && options.surface != Surface::kPaper && any_fluid_is_clear(frame);
   far_light.bind();
   uniforms.upload(make_frame_block(frame, options, shadow, chords));
@@ -120,8 +138,8 @@ void Renderer::Parts::draw_scene() {
   }
 
   const bool occlusion = options.ambient_occlusion && !fast;
-  run("opaque meshes",
-      [&] { scene_pass->draw_opaque(frame, meshes, textures, targets, options.draw_background, occlusion); });
+  run_in_part("opaque meshes",
+              [&] { scene_pass->draw_opaque(frame, meshes, textures, targets, options.draw_background, occlusion); });
   if (occlusion) {
     run("occlusion", [&] { scene_pass->draw_occlusion(targets, kOcclusionReach); });
     run("resolve", [&] { scene_pass->resolve_occlusion(targets); });
@@ -146,27 +164,29 @@ void Renderer::Parts::draw_scene() {
         copy_program.run({targets.scene_color, targets.scene_color_target, targets.size, GL_RGBA16F});
         return;
       }
-      glCopyImageSubData(targets.color.name(), GL_TEXTURE_2D, 0, 0, 0, 0, targets.scene_color.name(),
-                         GL_TEXTURE_2D, 0, 0, 0, 0, targets.size.x, targets.size.y, 1);
+      const PixelBox box = part.value_or(PixelBox{glm::ivec2(0), targets.size});
+      glCopyImageSubData(targets.color.name(), GL_TEXTURE_2D, 0, box.low.x, box.low.y, 0,
+                         targets.scene_color.name(), GL_TEXTURE_2D, 0, box.low.x, box.low.y, 0, box.size().x,
+                         box.size().y, 1);
     });
-    run("composite", [&] { fluid_passes->composite(targets, options.lit_fluid); });
+    run_in_part("composite", [&] { fluid_passes->composite(targets, options.lit_fluid); });
   }
   if (!frame.foam.empty()) {
     if (!foam_pass) {
       if (auto made = FoamPass::create(far_light.defines())) foam_pass = std::move(made.value());
     }
-    if (foam_pass) run("foam", [&] { foam_pass->draw(frame, targets, fluid_depth()); });
+    if (foam_pass) run_in_part("foam", [&] { foam_pass->draw(frame, targets, fluid_depth()); });
   }
   if (translucent) {
-    run("translucent",
+    run_in_part("translucent",
         [&] { scene_pass->draw_translucent(frame, meshes, textures, targets, fluid_depth(), false); });
   }
   if (!frame.arrows.empty()) {
-    run("arrows", [&] { arrow_pass->draw(frame, targets, fluid_depth()); });
+    run_in_part("arrows", [&] { arrow_pass->draw(frame, targets, fluid_depth()); });
   }
-  run("display", [&] { display_pass->draw(targets, options.exposure, options.dither, options.antialias); });
+  run_in_part("display", [&] { display_pass->draw(targets, options.exposure, options.dither, options.antialias); });
   if (options.antialias) {
-    run("edges", [&] { display_pass->smooth_edges(targets, context.is_software()); });
+    run("edges", [&] { display_pass->smooth_edges(targets, context.is_software(), part); });
   }
 }
 

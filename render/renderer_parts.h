@@ -15,6 +15,7 @@
 #include "render/passes/foam_pass.h"
 #include "render/passes/frame_block.h"
 #include "render/passes/hud_pass.h"
+#include "render/passes/kept_picture.h"
 #include "render/passes/meshes.h"
 #include "render/passes/pass_timer.h"
 #include "render/passes/scene_pass.h"
@@ -51,6 +52,7 @@ struct Renderer::Parts {
   std::unique_ptr<HudPass> hud_pass;
   Frame frame;        ///< what was prepared, and the view being drawn
   ShadowView shadow;  ///< of this frame
+  KeptPicture kept;
   bool centers_sorted = false;
   gl::Texture panel;  ///< RGBA8, made when first asked for
   gl::Framebuffer panel_target;
@@ -68,6 +70,8 @@ struct Renderer::Parts {
   Result<bool> fit_to_options();
   const gl::Texture* fluid_depth() const { return drew_fluid ? &fluid_passes->smoothed(targets) : nullptr; }
   void draw_scene();
+  /// What has to be drawn of this picture; nothing where that is all of it.
+  std::optional<PixelBox> part_to_draw();
   static void copy(const gl::Texture& from, glm::ivec2 size, const PictureTarget& target);
   void show_in_window();
 

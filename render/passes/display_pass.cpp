@@ -41,15 +41,23 @@ void DisplayPass::draw(const Targets& targets, float exposure, bool dither, bool
   program_.run({into, edges_follow ? targets.sharp_target : targets.display_target, targets.size, GL_RGBA8});
 }
 
-void DisplayPass::smooth_edges(const Targets& targets, bool on_cpu) {
+void DisplayPass::smooth_edges(const Targets& targets, bool on_cpu, const std::optional<PixelBox>& part) {
   if (on_cpu) {
     const glm::ivec2 size = targets.size;
-    sharp_.resize(std::size_t{4} * static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y));
-    glGetTextureImage(targets.sharp.name(), 0, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(sharp_.size()),
-                      sharp_.data());
-    const std::vector<std::uint8_t> smooth = slosh::smooth_edges(sharp_, size, brightness_);
+    const std::size_t bytes = std::size_t{4} * static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
+    PixelBox box{glm::ivec2(0), size};
+    if (part && sharp_.size() == bytes) box = *part;
+    sharp_.resize(bytes);
+    if (!box.empty()) {
+      const std::size_t first = 4 * (static_cast<std::size_t>(box.low.y) * size.x + box.low.x);
+      glPixelStorei(GL_PACK_ROW_LENGTH, size.x);
+      glGetTextureSubImage(targets.sharp.name(), 0, box.low.x, box.low.y, 0, box.size().x, box.size().y, 1, GL_RGBA,
+                           GL_UNSIGNED_BYTE, static_cast<GLsizei>(bytes - first), sharp_.data() + first);
+      glPixelStorei(GL_PACK_ROW_LENGTH, 0);
+      slosh::smooth_edges(sharp_, size, box, brightness_, smooth_);
+    }
     glTextureSubImage2D(targets.display.name(), 0, 0, 0, size.x, size.y, GL_RGBA, GL_UNSIGNED_BYTE,
-                        smooth.data());
+                        smooth_.data());
     glBindFramebuffer(GL_FRAMEBUFFER, targets.display_target.name());
     return;
   }

@@ -62,23 +62,31 @@ glm::vec3 smoothed(const Shown& shown, const glm::ivec2& texel, const shader::Cr
 
 }  // namespace
 
-std::vector<std::uint8_t> smooth_edges(std::span<const std::uint8_t> rgba, glm::ivec2 size,
-                                       std::vector<float>& brightness) {
-  std::vector<std::uint8_t> out(rgba.begin(), rgba.end());
+void smooth_edges(std::span<const std::uint8_t> rgba, glm::ivec2 size, PixelBox changed,
+                  std::vector<float>& brightness, std::vector<std::uint8_t>& out) {
   const auto width = static_cast<std::size_t>(size.x);
   const auto height = static_cast<std::size_t>(size.y);
+  if (brightness.size() != width * height || out.size() != rgba.size()) changed = {glm::ivec2(0), size};
   brightness.resize(width * height);
-  for (std::size_t i = 0; i < brightness.size(); ++i) {
-    brightness[i] = (0.299f * rgba[4 * i] + 0.587f * rgba[4 * i + 1] + 0.114f * rgba[4 * i + 2]) / 255.0f;
+  out.resize(rgba.size());
+  for (int y = changed.low.y; y < changed.high.y; ++y) {
+    const std::size_t end = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(changed.high.x);
+    for (std::size_t i = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(changed.low.x); i < end; ++i)
+      brightness[i] = (0.299f * rgba[4 * i] + 0.587f * rgba[4 * i + 1] + 0.114f * rgba[4 * i + 2]) / 255.0f;
   }
+  // An edge's end is looked for so far away, and one more is read beyond it.
+  const PixelBox box = changed.grown(shader::kLongestEdge + 2, size);
+  const auto left = static_cast<std::size_t>(box.low.x);
+  const auto right = static_cast<std::size_t>(box.high.x);
   const Shown shown(rgba, size, brightness);
   std::vector<std::uint8_t> edge(width);
-  for (std::size_t y = 0; y < height; ++y) {
+  for (auto y = static_cast<std::size_t>(box.low.y); y < static_cast<std::size_t>(box.high.y); ++y) {
+    std::copy_n(&rgba[4 * (y * width + left)], 4 * (right - left), &out[4 * (y * width + left)]);
     const float* row = &brightness[y * width];
     const float* above = y + 1 < height ? row + width : row;
     const float* below = y > 0 ? row - width : row;
     // Most pixels have none: a plain loop over the row, which the compiler makes wide.
-    for (std::size_t x = 1; x + 1 < width; ++x) {
+    for (std::size_t x = std::max<std::size_t>(left, 1); x < std::min(right, width - 1); ++x) {
       const float high =
           std::max(std::max(row[x], above[x]), std::max(below[x], std::max(row[x - 1], row[x + 1])));
       const float low =
@@ -86,7 +94,7 @@ std::vector<std::uint8_t> smooth_edges(std::span<const std::uint8_t> rgba, glm::
       edge[x] = high - low > std::max(0.04f, 0.125f * high) ? 1 : 0;
     }
     edge.front() = edge.back() = 1;  // asked below
-    for (std::size_t x = 0; x < width; ++x) {
+    for (std::size_t x = left; x < right; ++x) {
       if (!edge[x]) continue;
       const glm::ivec2 texel(static_cast<int>(x), static_cast<int>(y));
       const auto at = [&](int dx, int dy) { return shown.brightness(texel + glm::ivec2(dx, dy)); };
@@ -98,7 +106,6 @@ std::vector<std::uint8_t> smooth_edges(std::span<const std::uint8_t> rgba, glm::
             static_cast<std::uint8_t>(std::lround(color[c]));
     }
   }
-  return out;
 }
 
 }  // namespace slosh

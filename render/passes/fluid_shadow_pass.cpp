@@ -10,6 +10,9 @@ namespace {
 /// Texture unit of shaders/shadow.glsl.
 constexpr GLuint kFluidShadowUnit = 9;
 
+/// Of a disc that falls off evenly, over a ball that is as dark at half its height (fluid_shadow.glsl).
+constexpr float kSoft = 1.25f;
+
 }  // namespace
 
 Result<FluidShadowPass> FluidShadowPass::create(bool fast, bool compute) {
@@ -58,10 +61,10 @@ void FluidShadowPass::draw(const Frame& frame, const RenderOptions& options, con
   for (std::size_t i = 0; i < fluids; ++i) extinction[i] = frame.fluids[i].extinction;
   glProgramUniform3fv(program_.name(), glGetUniformLocation(program_.name(), "extinction"),
                       static_cast<GLsizei>(extinction.size()), &extinction[0].x);
-  // Fewer splats are drawn wider, so that they still close up, and their sum stays the same. No wider than
+  // Fewer splats are drawn wider, so that they still close up, and their sum stays the same. Little wider than
   // that takes: the shadow is to end where the fluid does.
   const float radius =
-      frame.particle_radius * std::max(options.splat_scale, std::cbrt(static_cast<float>(step)));
+      kSoft * frame.particle_radius * std::max(options.splat_scale, std::cbrt(static_cast<float>(step)));
   const glm::mat4& clip = shadow.clip_from_world;
   const float clip_per_metre = glm::length(glm::vec3(clip[0][0], clip[1][0], clip[2][0]));
   const float texels = std::clamp(radius * clip_per_metre * static_cast<float>(size_), 1.0f, 64.0f);

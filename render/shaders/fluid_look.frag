@@ -93,7 +93,7 @@ bool pixel(ivec2 texel, out vec4 value) {
   FluidMatter matter = FluidMatter(look.color_displacement.rgb, look.extinction_scattering.rgb, look.extinction_scattering.a,
                                    look.surface.x * switches.x, look.surface.y, look.surface.z);
   vec3 eye = eye_position(vec2(texel) + 0.5, front);
-  FluidSurface surface = surface_of_pixel(smooth_depth, eye, texel);
+  FluidSurface surface = fluid_surface(smooth_depth, eye, texel);
   vec3 to_eye = normalize(-eye);
   float scene = texelFetch(scene_depth, texel, 0).r;
   vec3 inside = refract(-to_eye, surface.normal, 1.0 / matter.refraction);

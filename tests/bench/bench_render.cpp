@@ -35,6 +35,7 @@ struct Wishes {
   bool flow = false;
   bool hud = false;
   bool stereo = false;
+  bool bucket = false;
   std::string pixels = "both";
   int reference = 0;
   std::string environment;
@@ -59,10 +60,12 @@ void say_options(CLI::App& app, Wishes& wishes) {
   app.add_flag("--flow", wishes.flow, "curvature flow");
   app.add_flag("--full", wishes.full, "full quality: what a film has");
   app.add_flag("--hud", wishes.hud, "arrows and a panel over it");
+  app.add_flag("--bucket", wishes.bucket, "the tank is no glass");
   app.add_flag("--stereo", wishes.stereo, "both eyes against one as well, each of that size, with the HUD");
   app.add_option("--pixels", wishes.pixels,
-                 "passes over pixels by fragments, compute, both in turn, or as measured")
-      ->check(CLI::IsMember({"both", "fragments", "compute", "measured"}))
+                 "passes over pixels by fragments, compute, both in turn, or as measured; still: by fragments, all anew "
+                 "and with what stands still kept, in turn")
+      ->check(CLI::IsMember({"both", "fragments", "compute", "measured", "still"}))
       ->capture_default_str();
   app.add_option("--environment", wishes.environment, "the room: FILE.hdr or studio");
   app.add_option("--out", wishes.out, "the picture, FILE.png");
@@ -210,7 +213,9 @@ slosh::Result<std::unique_ptr<Way>> make_way(const char* name, const Wishes& wis
   options.environment = environment_of(wishes);
   if (wishes.flow) options.surface = Surface::kCurvatureFlow;
   if (wishes.full) options.quality = Quality::kFull;
-  if (name == std::string("fragments")) options.pixel_passes = PixelPasses::kFragments;
+  if (name != std::string("compute") && name != std::string("measured"))
+    options.pixel_passes = PixelPasses::kFragments;
+  if (name == std::string("anew")) options.keep_still = false;
   if (name == std::string("compute")) options.pixel_passes = PixelPasses::kCompute;
   auto made = Renderer::create(context, options);
   if (!made) return made.error();
@@ -219,6 +224,7 @@ slosh::Result<std::unique_ptr<Way>> make_way(const char* name, const Wishes& wis
   way->renderer = std::move(made.value());
   way->scene = std::make_unique<kit::DamBreak>(*way->renderer, wishes.particles, wishes.width, wishes.height);
   choose_fluid(wishes, way->scene->frame);
+  if (wishes.bucket) way->scene->frame.meshes.back().look.opacity = 1.0f;
   if (wishes.hud) {
     way->scene->frame.arrows = {{{0.1f, 0.06f, 0.02f}, {0.1f, 0.26f, 0.02f}, {0.9f, 0.5f, 0.1f}}};
     way->scene->frame.hud = [] {
@@ -311,8 +317,12 @@ int main(int argc, char** argv) {
   auto context = make_headless_context(headless);
   if (!context) return fail(context.error());
   std::vector<std::unique_ptr<Way>> ways;
-  for (const char* name : {"fragments", "compute", "measured"}) {
-    if (wishes.pixels != name && (wishes.pixels != "both" || name == std::string("measured"))) continue;
+  const std::map<std::string, std::vector<const char*>> named{{"both", {"fragments", "compute"}},
+                                                              {"fragments", {"fragments"}},
+                                                              {"compute", {"compute"}},
+                                                              {"measured", {"measured"}},
+                                                              {"still", {"anew", "kept"}}};
+  for (const char* name : named.at(wishes.pixels)) {
     auto way = make_way(name, wishes, *context.value());
     if (!way) return fail(way.error());
     ways.push_back(std::move(way.value()));

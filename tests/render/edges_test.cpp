@@ -52,7 +52,8 @@ TEST(Edges, OnACpuTheyBecomeSmoothToo) {
     }
   }
   std::vector<float> scratch;
-  const auto smooth = smooth_edges(picture, {kSide, kSide}, scratch);
+  std::vector<std::uint8_t> smooth;
+  smooth_edges(picture, {kSide, kSide}, {}, scratch, smooth);
   ASSERT_EQ(smooth.size(), picture.size());
   const auto column = [&](const std::vector<std::uint8_t>& image, int x) {
     double sum = 0.0;
