@@ -59,6 +59,7 @@ RenderOptions options_of(const Method& method, int width, int height) {
   options.surface = method.surface;
   options.width = width;
   options.height = height;
+  options.keep_still = false;  // a picture's time is that of all of it
   return options;
 }
 

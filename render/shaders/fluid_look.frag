@@ -46,9 +46,17 @@ FarSide far_side(vec3 inside, float refraction, float back, float scene, vec2 mi
   float flat_enough = smoothstep(0.0, 0.06, (1.0 - down * down) * refraction * refraction - 1.0) * step(0.0, down);
   float apart = (scene - back) / splat.x;
   vec2 reach = vec2(0.0, clamp(2.5 * splat.x * splat.y / back, 2.0, 24.0));
-  float above = back_at(middle + reach);
-  float below = back_at(middle - reach);
-  vec3 along = eye_position(middle + reach, above > 0.0 ? above : back) - eye_position(middle - reach, below > 0.0 ? below : back);
+  // Over three columns: by one alone every ball at the far side's foot had a tooth of its own in the line where the floor begins.
+  float above = 0.0;
+  float below = 0.0;
+  for (int k = -1; k <= 1; ++k) {
+    vec2 column = middle + vec2(0.6 * float(k) * reach.y, 0.0);
+    float a = back_at(column + reach);
+    float b = back_at(column - reach);
+    above += a > 0.0 ? a : back;
+    below += b > 0.0 ? b : back;
+  }
+  vec3 along = eye_position(middle + reach, above / 3.0) - eye_position(middle - reach, below / 3.0);
   float upright = smoothstep(0.55, 0.9, abs(dot(along, up)) * inversesqrt(dot(along, along) + 1.0e-12));
   // Along a line of sight that grazes a wet wall there is some way from the splats to it.
   return FarSide(flat_enough * smoothstep(0.0, 0.25, apart) * (1.0 - upright), smoothstep(1.5, 3.0, apart) * upright);

@@ -215,7 +215,7 @@ slosh::Result<std::unique_ptr<Way>> make_way(const char* name, const Wishes& wis
   if (wishes.full) options.quality = Quality::kFull;
   if (name != std::string("compute") && name != std::string("measured"))
     options.pixel_passes = PixelPasses::kFragments;
-  if (name == std::string("anew")) options.keep_still = false;
+  options.keep_still = name == std::string("kept");  // else two pictures of one moment would be one
   if (name == std::string("compute")) options.pixel_passes = PixelPasses::kCompute;
   auto made = Renderer::create(context, options);
   if (!made) return made.error();

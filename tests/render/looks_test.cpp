@@ -140,7 +140,7 @@ TEST_F(LooksTest, ADropsShadowIsRoundAlsoInItsTop) {
   const float radius = 0.06f;
   auto points = kit::jitter_lattice({-0.3f, -0.3f, -0.3f}, {0.3f, -0.2f, 0.3f}, 0.06f, 3);
   const std::size_t pool = points.size();
-  const float off = 0.85f * 1.2f * radius;
+  const float off = 0.85f * 1.25f * 1.2f * radius;
   points.emplace_back(off, 0.3f, off);
   const std::vector<std::uint8_t> fluids(points.size(), 0);
   auto renderer = make(small());
