@@ -14,7 +14,9 @@ constexpr double kShareRise = 0.5;  // s over which the replica comes in, or goe
 /// N·s/m: more would shake a hand of 1 kg that is felt each ms, whatever its device holds.
 constexpr double kMostDamping = 100.0;
 constexpr double kLongestTick = 0.02;  // s: a loop that was stopped goes on from where it was
-/// s of missed ticks that are caught up with, at most; who was gone for longer takes hold anew soon after.
+/// s of missed ticks that are caught up with, at most: who was gone for longer takes hold anew, as after any
+/// silence. A quick host's words would be stale by then; one of few steps is waited for longer than this
+/// (freshness()).
 constexpr double kMostCaughtUp = kHoldAnew;
 /// s of simulated time by which a host carries a pose on at most (host/input_gate.h).
 constexpr double kMostCarried = 0.02;
@@ -56,29 +58,37 @@ HeldBodies::HeldBodies(const Scene& scene, Coupling coupling)
 }
 
 void HeldBodies::hear(const BodyMessage& newest, bool fresh, std::int64_t now_ns) noexcept {
+  began_ = false;
   for (Entry& entry : bodies_) entry.anew = false;
   const bool stands = newest.rate <= 0.0;
+  const bool gone = advanced_ns_ != 0 && to_seconds(now_ns - advanced_ns_) > kMostCaughtUp;
   if (!fresh || stands) {
-    if (stands) rate_ = 0.0;
+    if (stands || gone) rate_ = 0.0;
+    if (gone) {
+      for (Entry& entry : bodies_) restart(entry);
+    }
     return;
   }
   here_ = newest.heard_pose_ns == kPoseNotTold;
   // After a pause, a silence or a reset the body is where the host says, whatever was here.
-  const bool begin =
-      rate_ <= 0.0 || newest.run != run_ || freshness(to_seconds(now_ns - heard_ns_), interval_) < 1.0;
+  const bool begin = gone || rate_ <= 0.0 || newest.run != run_ ||
+                     freshness(to_seconds(now_ns - heard_ns_), interval_) < 1.0;
+  began_ = begin;
   rate_ = newest.rate;
   interval_ = newest.time_step / newest.rate;
   run_ = newest.run;
   heard_ns_ = now_ns;
   for (Entry& entry : bodies_) {
-    if (begin) {
-      // Whoever holds the host's body as it is goes on with that.
-      entry.anew = entry.share > 0.0 && entry.held.started();
-      entry.held.restart();
-      entry.model_tick = 0;
-    }
+    if (begin) restart(entry);
     tell(entry, newest, now_ns);
   }
+}
+
+void HeldBodies::restart(Entry& entry) noexcept {
+  // Whoever holds the host's body as it is goes on with that.
+  entry.anew = entry.share > 0.0 && entry.held.started();
+  entry.held.restart();
+  entry.model_tick = 0;
 }
 
 void HeldBodies::tell(Entry& entry, const BodyMessage& newest, std::int64_t now_ns) noexcept {
@@ -170,7 +180,8 @@ void HeldBodies::read(std::size_t i, const Pose& before, const Pose& now) noexce
 void HeldBodies::catch_up(std::int64_t now_ns, double period, double pace, double elapsed) noexcept {
   caught_up_ = 0.0;
   const double missed = advanced_ns_ == 0 ? 0.0 : to_seconds(now_ns - advanced_ns_);
-  const bool late = missed > 0.5 * period && missed <= kMostCaughtUp;
+  // A replica that began with the newest word is where it should be.
+  const bool late = missed > 0.5 * period && missed <= kMostCaughtUp && !began_;
   if (late) {
     caught_up_ = std::clamp(elapsed - pace * period, 0.0, pace * missed);
     for (Entry& entry : bodies_) {

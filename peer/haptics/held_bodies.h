@@ -83,6 +83,7 @@ class HeldBodies {
     bool anew = false;
     std::uint64_t model_tick = 0;  // of the newest model; 0 = none came
   };
+  static void restart(Entry& entry) noexcept;
   void tell(Entry& entry, const BodyMessage& newest, std::int64_t now_ns) noexcept;
 
   Coupling coupling_;
@@ -95,6 +96,7 @@ class HeldBodies {
   std::int64_t heard_ns_ = 0;
   std::int64_t advanced_ns_ = 0;
   double caught_up_ = 0.0;  // simulated s of this tick that were caught up with
+  bool began_ = false;      // replicas did, with this tick's word
 };
 
 }  // namespace slosh

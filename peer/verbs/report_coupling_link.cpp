@@ -1,4 +1,5 @@
 // `slosh report coupling --link`: the handful over the real link.
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 
@@ -12,6 +13,11 @@
 #include "sim/math/format.h"
 
 namespace slosh {
+namespace {
+
+constexpr double kTooSlow = 0.8;  // of real time
+
+}  // namespace
 
 int report_coupling_link(const ReportOptions& options) {
   constexpr const char* kTable = "coupling_link.csv";
@@ -42,6 +48,13 @@ int report_coupling_link(const ReportOptions& options) {
                 link.c_str(), r.grip, word(r.verdict), 1e2 * r.error, r.peak, r.carried, r.row_step,
                 r.generated);
   }
+  double slowest = 1.0;
+  for (const coupling::LinkRow& r : rows.value()) slowest = std::min(slowest, r.pace);
+  if (slowest < kTooSlow)
+    std::printf(
+        "The slowest run kept %.2f of real time, joining included: a delay counts for as much less there "
+        "(pace)\n",
+        slowest);
   if (const Result<bool> written = write_whole(folder.value() / kTable, text); !written)
     return fail(written.error());
   std::printf("Written to %s: coupling_link.csv, and what each person felt in link_…/\n",

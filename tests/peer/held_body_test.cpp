@@ -283,6 +283,43 @@ TEST(HeldBody, WhatDampersUsedUpIsForgotten) {
   EXPECT_LT(held.balance(), 5e-3);
 }
 
+// The host's coupling pushes the body with 50 N at 0.1 m/s, the load takes all of it, and nobody here put it
+// in, as where a host of few steps carries a hand on. 1.26 J are in spring and motion at first; what is taken
+// beyond them is lent, so that the hand does not owe it. What then comes back of the load pays the loan
+// before it is anybody's.
+TEST(HeldBody, WhatTheHostsStepTookBeyondAllThereWasIsLentAndPaidBack) {
+  const CouplingGains gains{1000.0, 30.0, 10.0, 0.3};
+  constexpr double kForce = 50.0, kSpeed = 0.1;
+  const double begins = 0.5 * kForce * kForce / gains.stiffness + 0.5 * body().mass * kSpeed * kSpeed;
+  HeldBody held(body(), {{Pose{}, gains}});
+  std::vector<OwnHand> own(1);
+  const auto run = [&](int from, int to, double force) {
+    for (int i = from; i < to; ++i) {
+      const double now = kTick * i;
+      HostWord word;
+      word.now_ns = to_nanoseconds(now) + 1;
+      word.time = now;
+      word.motion.position.x = kSpeed * now;
+      word.motion.twist.linear.x = kSpeed;
+      own[0] = {true, true, {word.motion.position, {1, 0, 0, 0}}, word.motion.twist};
+      own[0].handle.position.x += force / gains.stiffness;
+      const HostHand said{true, own[0].handle, {{-force, 0.0, 0.0}, {}}, word.now_ns, true, 0.0};
+      word.hands = {&said, 1};
+      held.hear(word);
+      (void)held.guard(0, {}, own[0].handle, own[0].twist, kTick, 500.0);
+      held.sent(0, {});  // its device gives nothing, so that its person puts nothing in
+      held.advance(own, kTick, to_nanoseconds(now + kTick) + 1);
+    }
+    return held.balance();
+  };
+  EXPECT_NEAR(run(0, 200, kForce), begins - 1.0, 0.05) << "1 J of 1.26 was taken";
+  EXPECT_NEAR(run(200, 500, kForce), 0.0, 0.03) << "2.5 J were, 1.24 of them lent";
+  EXPECT_NEAR(run(500, 700, -kForce), 0.0, 0.03) << "1 J came back and paid";
+  EXPECT_NEAR(run(700, 900, -kForce), begins - 0.5, 0.1)
+      << "2 J came back: what is beyond the loan is there again";
+  EXPECT_EQ(held.energy(0), 0.0);
+}
+
 TEST(HeldBody, BeginsAnewAfterARestart) {
   HeldBody held(body(), {{Pose{}, {1000.0, 30.0, 10.0, 0.3}}});
   HostWord word;

@@ -75,5 +75,17 @@ TEST(StepRate, MissedTicksAreNotFelt) {
   }
 }
 
+/// Nor does one that was not let run for longer, up to what a host of few steps is waited for: it takes hold
+/// anew. Once it was neither caught up with nor begun anew, and struck by 52 N.
+TEST(StepRate, AfterALongerGapTheHandTakesHoldAnew) {
+  for (const auto& [rate, gap] : {std::pair{15.0, 0.12}, {15.0, 0.15}, {15.0, 0.18}, {8.0, 0.15}}) {
+    const double takes = 0.3 / rate;
+    const Felt felt = stir(
+        rate, [=](int) { return takes; }, gap);
+    EXPECT_LE(felt.peak, 2.5) << rate << " Hz, " << gap << " s";
+    EXPECT_LE(felt.change, 2.4) << rate << " Hz, " << gap << " s";
+  }
+}
+
 }  // namespace
 }  // namespace slosh
