@@ -42,8 +42,8 @@ std::string spin_in_words(const std::vector<bool>& reproduced) {
                      : ours        ? "The default model reproduces the figure, the paper's model does not"
                                    : "Neither model reproduces the figure";
   if (!ours) {
-    text += ": by default fluid sticks to its walls, as real fluid does, and turns with its glass; without slip there is "
-            "nothing by which the walls' viscosities could differ. The paper's walls slip, and drag for as long as they turn";
+    text += ": by default fluid sticks to its walls, as real fluid does, and soon turns with its glass, and then no viscosity is "
+            "felt. The paper's walls slip, and drag for as long as they turn";
   }
   return text;
 }
