@@ -4,6 +4,9 @@
 #include <cstdio>
 
 #include "net/text/clean.h"
+#include "peer/output/chart.h"
+#include "peer/output/gnuplot.h"
+#include "peer/output/plot.h"
 #include "peer/output/progress.h"
 #include "peer/output/whole_file.h"
 #include "peer/verbs/coupling/link_study.h"
@@ -16,6 +19,37 @@ namespace slosh {
 namespace {
 
 constexpr double kTooSlow = 0.8;  // of real time
+
+/// What both hands felt over the time, a panel a case; of a person whose table cannot be read no curve.
+std::vector<ChartPanel> felt_panels(const std::vector<coupling::LinkCase>& cases, std::size_t measured,
+                                    const std::filesystem::path& folder) {
+  constexpr const char* kPeople[] = {"ana", "ben"};
+  constexpr const char* kColors[] = {"#2a6fb0", "#c8322b"};
+  constexpr std::size_t kPoints = 900;
+  std::vector<ChartPanel> panels;
+  for (std::size_t i = 0; i < measured; ++i) {
+    ChartPanel& panel = panels.emplace_back();
+    panel.title = name_of(cases[i]);
+    panel.x_label = "s";
+    panel.y_label = "force on the hand, N";
+    for (std::size_t person = 0; person < 2; ++person) {
+      const auto felt = read_wrenches(coupling::case_folder(folder, i) / kPeople[person] / "wrenches.csv");
+      if (!felt) continue;
+      std::vector<glm::dvec2> curve;
+      for (const WrenchSeries& series : felt.value())
+        for (std::size_t k = 0; k < series.time.size(); ++k)
+          curve.emplace_back(series.time[k], glm::length(series.on_hand[k].force));
+      ChartSeries line;
+      line.name = kPeople[person];
+      line.color = kColors[person];
+      line.mark = 0;
+      line.width = 1.0;
+      for (const glm::dvec2& point : thinned(curve, kPoints)) line.points.push_back({point.x, point.y});
+      panel.series.push_back(std::move(line));
+    }
+  }
+  return panels;
+}
 
 }  // namespace
 
@@ -57,7 +91,14 @@ int report_coupling_link(const ReportOptions& options) {
         slowest);
   if (const Result<bool> written = write_whole(folder.value() / kTable, text); !written)
     return fail(written.error());
-  std::printf("Written to %s: coupling_link.csv, and what each person felt in link_…/\n",
+  const std::vector<ChartPanel> panels = felt_panels(cases, rows.value().size() / 2, folder.value());
+  if (!panels.empty()) {
+    const std::string title = "What two hands feel over the real link. " + machine_line(options);
+    if (const Result<bool> drawn = draw(chart_script(panels, 2, title), folder.value() / "coupling_link.png");
+        !drawn)
+      return fail(drawn.error());
+  }
+  std::printf("Written to %s: coupling_link.csv and .png, and what each person felt in link_…/\n",
               clean_text(folder.value().string(), kMostTextBytes).c_str());
   const int signal = interrupted_by();
   return signal != 0 ? 128 + signal : kExitOk;

@@ -65,6 +65,7 @@ TEST(Report, OfTheCouplingOverTheRealLinkHasTwoPeoplesRowsACase) {
     EXPECT_LT(std::stod(fields[10]), 62.4) << "N, twice what the bucket weighs: " << line;
   }
   EXPECT_EQ(rows, 4) << "two people, at no round trip and at 200 ms";
+  EXPECT_GT(text_of(test::test_folder() / "link" / "coupling_link.png").size(), 5000u);
   EXPECT_TRUE(std::filesystem::exists(test::test_folder() / "link" / "link_1" / "ana" / "wrenches.csv"));
 }
 

@@ -232,11 +232,6 @@ class Trial {
   const fs::path folder_;
 };
 
-std::string name_of(const LinkCase& c) {
-  return format("%s, %g ms", word(c.scheme), 1e3 * c.round_trip) +
-         (c.loss > 0.0 ? format(", jitter %g ms, %g %% lost", 1e3 * c.jitter, 1e2 * c.loss) : std::string());
-}
-
 }  // namespace
 
 const char* const kLinkHeader =
@@ -248,6 +243,15 @@ std::string csv_line(const LinkRow& r) {
   return format("%s,%g,%g,%g,%d,%.4g,%.3g,%s,%.4g,%.3g,%.4g,%.4g,%.3g,%d", word(r.c.scheme),
                 1e3 * r.c.round_trip, 1e3 * r.c.jitter, r.c.loss, r.grip, 1e3 * r.measured_round_trip, r.pace,
                 word(r.verdict), 1e3 * r.generated, r.error, r.peak, r.carried, r.row_step, r.steps);
+}
+
+std::string name_of(const LinkCase& c) {
+  return format("%s, %g ms", word(c.scheme), 1e3 * c.round_trip) +
+         (c.loss > 0.0 ? format(", jitter %g ms, %g %% lost", 1e3 * c.jitter, 1e2 * c.loss) : std::string());
+}
+
+fs::path case_folder(const fs::path& folder, std::size_t i) {
+  return folder / format("link_%zu", i);
 }
 
 std::vector<LinkCase> link_cases(bool quick) {
@@ -278,7 +282,7 @@ Result<std::vector<LinkRow>> measure_link(const std::vector<LinkCase>& cases, co
     if (run.told) run.told(static_cast<double>(i) / static_cast<double>(cases.size()), name_of(cases[i]));
     std::array<Felt, 2> people;
     Result<std::array<LinkRow, 2>> measured =
-        Trial(sites, cases[i], run, run.folder / format("link_%zu", i)).go(people);
+        Trial(sites, cases[i], run, case_folder(run.folder, i)).go(people);
     if (!measured) return measured.error();
     if (i == 0) reference = people;
     for (LinkRow& row : measured.value()) {

@@ -38,6 +38,9 @@ struct LinkRow {
 
 /// The handful. The first is what the others' forces are measured against.
 std::vector<LinkCase> link_cases(bool quick);
+std::string name_of(const LinkCase& c);
+/// Where case `i` of a run keeps what its programs write: "ana" and "ben" below it.
+std::filesystem::path case_folder(const std::filesystem::path& folder, std::size_t i);
 /// One row of the table without its end, and the line over it.
 extern const char* const kLinkHeader;
 std::string csv_line(const LinkRow& row);
