@@ -2,6 +2,7 @@
 // its first thread does the body's 6×6 in double.
 #pragma once
 
+#include "sim/cuda/solve_sums.cuh"
 #include "sim/cuda/viscous_kernels.h"
 
 namespace slosh::cuda {
@@ -18,32 +19,6 @@ struct Solve {
   ViscousView view;
 };
 
-inline constexpr int kWarps = kSolveThreads / 32;
-
-/// The sums of each of a block's threads' values, in every thread.
-template <int count>
-__device__ inline void sum_block(double (&values)[count]) {
-  __shared__ double shared[count][kWarps];
-  for (double& value : values) {
-    for (int half = 16; half > 0; half /= 2) value += __shfl_down_sync(0xffffffffu, value, half);
-  }
-  __syncthreads();  // who has still to read what the last call left
-  if (threadIdx.x % 32 == 0) {
-    for (int k = 0; k < count; ++k) shared[k][threadIdx.x / 32] = values[k];
-  }
-  __syncthreads();
-  for (int k = 0; k < count; ++k) {
-    values[k] = 0.0;
-    for (int w = 0; w < kWarps; ++w) values[k] += shared[k][w];
-  }
-}
-
-__device__ inline double part_of(const double* parts, std::uint32_t count) {
-  double sum = 0.0;
-  for (std::uint32_t i = threadIdx.x; i < count; i += kSolveThreads) sum += parts[i];
-  return sum;
-}
-
 /// The velocity of a body's particle by its body's twist.
 __device__ inline float4 carried(const Solve& s, std::uint32_t i, const Vector6& twist) {
   const float4 x = s.moving.x[i];
@@ -54,20 +29,6 @@ __device__ inline float4 carried(const Solve& s, std::uint32_t i, const Vector6&
                           static_cast<float>(twist[5]));
   const glm::vec3 v = linear + glm::cross(angular, arm);
   return make_float4(v.x, v.y, v.z, 0.0f);
-}
-
-__device__ inline double dot(const Vector6& a, const Vector6& b) {
-  double sum = 0.0;
-  for (int i = 0; i < 6; ++i) sum += a[i] * b[i];
-  return sum;
-}
-__device__ inline Vector6 times(const Matrix6& m, const Vector6& v) {
-  Vector6 out{};
-  for (int i = 0; i < 6; ++i) out[i] = dot(m[i], v);
-  return out;
-}
-__device__ inline Vector6 vector_of(const Twist& t) {
-  return {t.linear.x, t.linear.y, t.linear.z, t.angular.x, t.angular.y, t.angular.z};
 }
 
 /// Calls f(b, on_body) for each moving body that is this block's, in its first thread: N·s and N·m·s on it by

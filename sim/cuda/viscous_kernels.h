@@ -5,7 +5,7 @@
 // the particles of the bodies that may move, in theirs. The latter move with their bodies' twists.
 #pragma once
 
-#include "sim/cuda/kernels.h"
+#include "sim/cuda/solve_rows.h"
 #include "sim/viscosity/implicit.h"
 
 namespace slosh::cuda {
@@ -14,22 +14,6 @@ namespace slosh::cuda {
 struct TensorColumn {
   float4* a = nullptr;
   float2* b = nullptr;
-};
-
-/// The pairs in which each entry is dragged, as sim/cpu/drag_rows.h: w, √kg, and in its last four bytes the
-/// other's entry. Row k of entry e lies where the rows k of a warp's 32 entries are one run of memory.
-struct PairRows {
-  std::uint32_t room = 0;  ///< pairs of an entry; who has more walks the neighbours anew each turn
-  float4* pairs = nullptr;
-  std::uint32_t* counts = nullptr;  ///< of pairs, written or not
-
-  SLOSH_HD std::size_t at(std::uint32_t entry, std::uint32_t k) const {
-    return (std::size_t{entry / 32} * room + k) * 32 + entry % 32;
-  }
-  /// Places for `entries` entries with `room` pairs each.
-  static std::size_t places(std::size_t entries, std::uint32_t room) {
-    return (entries + 31) / 32 * 32 * room;
-  }
 };
 
 /// A body as the solve gets it.
@@ -52,8 +36,6 @@ struct ViscousOutcome {
   std::uint32_t turns = 0;
   std::uint32_t converged = 0;
 };
-
-inline constexpr int kSolveThreads = 256;  // entries that one partial sum is over
 
 /// Sums over the fluid: one part for each kSolveThreads entries, and one for each body.
 struct ViscousParts {

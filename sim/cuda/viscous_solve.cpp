@@ -1,19 +1,10 @@
 #include "sim/cuda/viscous_solve.h"
 
-#include <cmath>
 #include <cstring>
 
 namespace slosh::cuda {
 
 namespace {
-
-// Pairs that an entry's row has room for: half again as many as particles of a lattice within reach, in whole
-// eights. Few have more, and those walk the neighbours anew each turn.
-std::uint32_t row_room(const Plan& plan) {
-  const double ratio = plan.support_radius / plan.spacing;
-  const double in_reach = 4.0 / 3.0 * 3.14159265358979323846 * ratio * ratio * ratio;
-  return 8 * static_cast<std::uint32_t>(std::ceil(1.5 * in_reach / 8.0));
-}
 
 template <class T>
 T read_at(const PinnedBuffer<unsigned char>& from, std::size_t at, std::size_t index) {

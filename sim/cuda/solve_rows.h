@@ -1,0 +1,30 @@
+// What a solve of one launch has of its pairs: written down once a sub-step, asked for turn after turn.
+#pragma once
+
+#include "sim/cuda/kernels.h"
+
+namespace slosh::cuda {
+
+inline constexpr int kSolveThreads = 256;  // entries that one partial sum is over
+
+/// The pairs in which each entry meets another, a vector each, and in its last four bytes the other's entry.
+/// Row k of entry e lies where the rows k of a warp's 32 entries are one run of memory.
+struct PairRows {
+  std::uint32_t room = 0;  ///< pairs of an entry; who has more walks the neighbours anew each turn
+  float4* pairs = nullptr;
+  std::uint32_t* counts = nullptr;  ///< of pairs, written or not
+
+  SLOSH_HD std::size_t at(std::uint32_t entry, std::uint32_t k) const {
+    return (std::size_t{entry / 32} * room + k) * 32 + entry % 32;
+  }
+  /// Places for `entries` entries with `room` pairs each.
+  static std::size_t places(std::size_t entries, std::uint32_t room) {
+    return (entries + 31) / 32 * 32 * room;
+  }
+};
+
+/// Pairs that an entry's row has room for: half again as many as particles of a lattice within reach, in whole
+/// eights. Few have more.
+std::uint32_t row_room(const Plan& plan);
+
+}  // namespace slosh::cuda
