@@ -34,7 +34,4 @@ bool cuda_available(std::string* reason = nullptr);
 /// Whether the backend has implicit viscosity, for make_plan. Every one has.
 bool can_solve_drag(Backend backend);
 
-/// Whether it has the incompressible model's solve for pressures.
-bool can_solve_pressure(Backend backend);
-
 }  // namespace slosh

@@ -60,10 +60,8 @@ auto with_model(ParticleModel model, F&& f) {
   if (model == ParticleModel::kPaper) return f.template operator()<ModelParts<ParticleModel::kPaper>>();
   if (model == ParticleModel::kCorrected)
     return f.template operator()<ModelParts<ParticleModel::kCorrected>>();
-#ifndef __CUDACC__  // the GPU has it not (can_solve_pressure)
   if (model == ParticleModel::kIncompressible)
     return f.template operator()<ModelParts<ParticleModel::kIncompressible>>();
-#endif
   return f.template operator()<ModelParts<ParticleModel::kConsistent>>();
 }
 

@@ -1,7 +1,5 @@
 #include "sim/particle_engine.h"
 
-#include <cassert>
-
 #include "sim/cpu/cpu_engine.h"
 #include "sim/cuda/cuda_engine.h"
 
@@ -36,25 +34,11 @@ bool can_solve_drag(Backend) {
   return true;
 }
 
-bool can_solve_pressure(Backend backend) {
-  return backend != Backend::kCuda;
-}
-
-// An engine that cannot is never given such a plan.
-void ParticleEngine::solve_pressure(double, std::span<const ViscousBody>, std::span<Wrench>) {
-  assert(false);
-}
-
 Result<std::unique_ptr<ParticleEngine>> make_particle_engine(const RunConstants& constants,
                                                              const ParticleStart& start,
                                                              std::span<const RigidBody> bodies,
                                                              const WorldOptions& options) {
-  const bool on_cpu_only = constants.plan.has(PassId::kPressureSolve) && !can_solve_pressure(Backend::kCuda);
-  if (on_cpu_only && options.backend == Backend::kCuda) {
-    return Error{"backend cuda", "the incompressible model's pressures are solved for on the CPU only",
-                 "Use the CPU backend (cpu or auto), or the corrected model"};
-  }
-  if (options.backend != Backend::kCpu && !on_cpu_only) {
+  if (options.backend != Backend::kCpu) {
     const CudaDevice device = find_cuda_device();
     if (device.available) {
       Result<std::unique_ptr<ParticleEngine>> engine = make_cuda_engine(constants, start, bodies);

@@ -52,7 +52,8 @@ class ParticleEngine {
   /// `dt` s (pressure/solved_state.h), adds to the forces on the fluid what they differ by from the last
   /// step's, and to `wrenches` that on the bodies that move, and all of it on the fixed ones that are
   /// measured.
-  virtual void solve_pressure(double dt, std::span<const ViscousBody> bodies, std::span<Wrench> wrenches);
+  virtual void solve_pressure(double dt, std::span<const ViscousBody> bodies,
+                              std::span<Wrench> wrenches) = 0;
   /// Multiplies every fluid velocity by `keep` (0–1).
   virtual void damp(float keep) = 0;
 

@@ -35,16 +35,16 @@ void run_passes(Engine& engine, std::span<const PassRow<Engine>> table, SubStepP
   }
 }
 
-/// Every pass of the particles but those that the backend lacks is carried out by one row and no more.
+/// Every pass of the particles is carried out by one row and no more.
 template <class Engine, std::size_t count>
-constexpr bool covers_all_particle_passes(const PassRow<Engine> (&table)[count], PassSet lacking = {}) {
+constexpr bool covers_all_particle_passes(const PassRow<Engine> (&table)[count]) {
   for (const PassId id :
        {PassId::kSortFluid, PassId::kPlaceBodies, PassId::kDensity, PassId::kPressureForce,
         PassId::kOneViscosity, PassId::kPairViscosity, PassId::kWalls, PassId::kWrenches, PassId::kBodyDrag,
         PassId::kImplicitDrag, PassId::kPressureSolve, PassId::kIntegrateFluid}) {
     int rows = 0;
     for (const PassRow<Engine>& row : table) rows += row.covers.has(id);
-    if (rows != (lacking.has(id) ? 0 : 1)) return false;
+    if (rows != 1) return false;
   }
   return true;
 }

@@ -45,7 +45,6 @@ std::vector<Setting> base_settings(const SweepOptions& options) {
     for (const ParticleModel model : {ParticleModel::kPaper, ParticleModel::kConsistent,
                                       ParticleModel::kCorrected, ParticleModel::kIncompressible}) {
       if (!wanted(options.models, name(model))) continue;
-      if (model == ParticleModel::kIncompressible && !can_solve_pressure(backend)) continue;
       Setting setting;
       setting.model = model;
       setting.backend = backend;

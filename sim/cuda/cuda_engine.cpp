@@ -7,6 +7,7 @@
 #include "sim/cuda/device_particles.h"
 #include "sim/cuda/host_particles.h"
 #include "sim/cuda/pass_clock.h"
+#include "sim/cuda/pressure_solve.h"
 #include "sim/cuda/step_report.h"
 #include "sim/cuda/viscous_solve.h"
 #include "sim/cuda/wall_guards.h"
@@ -41,6 +42,7 @@ class CudaEngine final : public ParticleEngine {
     sums_.plan(constants_.plan, start, bodies.size(), check_);
     guards_.plan(constants_, start, bodies.size(), check_);
     viscous_.plan(constants_.plan, start, bodies.size(), sums_, check_);
+    pressure_.plan(constants_.plan, start, bodies.size(), sums_, check_);
     report_.plan(sums_.bodies().size(), guards_.handed_bytes(), probes_.size(), check_);
     sent_.allocate(bodies.size(), check_);
     sent_probes_.allocate(probes_, check_);
@@ -83,13 +85,10 @@ class CudaEngine final : public ParticleEngine {
     guards_.send(constants_.plan, prepared_, after, check_, stream_);
     run(SubStepPart::kAdvance, dt);
     clock_.mark(PassClock::kForce, check_, stream_);
-    // A probe's force comes out of the last pass, and its place changes before the next sort.
+    // A probe's place changes before the next sort.
     sorted_ahead_ = probes_.empty();
-    if (sorted_ahead_) {
-      fluid_.sort(step_, space_, check_, stream_);
-    } else {
-      report_.fetch(check_, stream_);
-    }
+    if (sorted_ahead_) fluid_.sort(step_, space_, check_, stream_);
+    if (probes_report()) report_.fetch(check_, stream_);
     clock_.mark(PassClock::kEnd, check_, stream_);
   }
 
@@ -117,6 +116,11 @@ class CudaEngine final : public ParticleEngine {
     if (idle()) return;
     asked_ = {bodies, wrenches};
     run(SubStepPart::kSolve, dt);
+  }
+  void solve_pressure(double dt, std::span<const ViscousBody> bodies, std::span<Wrench> wrenches) override {
+    if (idle()) return;
+    asked_ = {bodies, wrenches};
+    run(SubStepPart::kPress, dt);
   }
 
   void damp(float keep) override {
@@ -216,14 +220,18 @@ class CudaEngine final : public ParticleEngine {
          &CudaEngine::find_forces,
          nullptr},
         {SubStepPart::kSolve, {kImplicitDrag}, &CudaEngine::solve_implicit_drag, nullptr},
+        {SubStepPart::kPress, {kPressureSolve}, &CudaEngine::solve_for_pressure, nullptr},
         {SubStepPart::kDrag, {kBodyDrag}, &CudaEngine::drag_on_fluid, nullptr},
         {SubStepPart::kAdvance, {kIntegrateFluid}, &CudaEngine::integrate, nullptr},
     };
-    static_assert(covers_all_particle_passes(kTable, {PassId::kPressureSolve}));
+    static_assert(covers_all_particle_passes(kTable));
     return kTable;
   }
   void run(SubStepPart part, double dt) { run_passes(*this, table(), part, constants_.plan, dt, nullptr); }
 
+  // A probe's force comes out of the last pass, and the report waits for it; not where the pressures' solve fetches
+  // it.
+  bool probes_report() const { return !probes_.empty() && !constants_.plan.has(PassId::kPressureSolve); }
   bool idle() const { return check_.failed() || fluid_.count() == 0; }
 
   void sort(double) {
@@ -240,7 +248,7 @@ class CudaEngine final : public ParticleEngine {
   }
 
   void find_forces(double dt) {
-    if (probes_.empty()) report_.fetch(check_, stream_);
+    if (!probes_report()) report_.fetch(check_, stream_);
     clock_.mark(PassClock::kWrench, check_, stream_);
     if (check_.failed()) return;
     launch_force(step_, constants_.plan, kinds_.data(), fluid_.sorted(), fixed_.sorted(), moving_.sorted(),
@@ -248,16 +256,20 @@ class CudaEngine final : public ParticleEngine {
     check_.launched("forces");
     // While the CPU sees where the bodies are going.
     if (constants_.plan.has(PassId::kImplicitDrag))
-      viscous_.write_rows(viscous_sides(), static_cast<float>(dt), check_, stream_);
+      viscous_.write_rows(solve_sides(), static_cast<float>(dt), check_, stream_);
+    if (constants_.plan.has(PassId::kPressureSolve)) pressure_.push_by_last(solve_sides(), check_, stream_);
   }
 
-  ViscousSides viscous_sides() const {
+  SolveSides solve_sides() const {
     return {step_,           constants_.plan, kinds_,  constants_.kinds.front().viscosity,
             fluid_.sorted(), fixed_,          moving_, sent_.bodies()};
   }
   void solve_implicit_drag(double dt) {
-    viscous_.solve(viscous_sides(), static_cast<float>(dt), asked_.bodies, prepared_, report_.status(),
+    viscous_.solve(solve_sides(), static_cast<float>(dt), asked_.bodies, prepared_, report_.status(),
                    asked_.wrenches, check_, stream_);
+  }
+  void solve_for_pressure(double dt) {
+    pressure_.solve(solve_sides(), dt, asked_.bodies, prepared_, probes_, asked_.wrenches, check_, stream_);
   }
 
   void drag_on_fluid(double) {
@@ -279,7 +291,7 @@ class CudaEngine final : public ParticleEngine {
 
   template <class T>
   void fetch(const T* from, T* to, std::size_t count) const {
-    if (check_.failed() || count == 0) return;
+    if (check_.failed() || count == 0 || !from) return;  // a pack that the plan does not need
     check_.ok(cudaMemcpyAsync(to, from, count * sizeof(T), cudaMemcpyDeviceToHost, stream_), "download");
     check_.ok(cudaStreamSynchronize(stream_), "download");
   }
@@ -315,9 +327,10 @@ class CudaEngine final : public ParticleEngine {
   void read_report(std::span<Wrench> wrenches) {
     status_ |= report_.got_status();
     for (std::size_t i = 0; i < sums_.bodies().size(); ++i) {
-      const DeviceWrench w = report_.got_wrench(i);
-      wrenches[sums_.bodies()[i]].force += glm::dvec3(w.force[0], w.force[1], w.force[2]);
-      wrenches[sums_.bodies()[i]].torque += glm::dvec3(w.torque[0], w.torque[1], w.torque[2]);
+      const std::uint32_t b = sums_.bodies()[i];
+      // Fixed ones are measured when all of the pressure is known.
+      if (constants_.plan.has(PassId::kPressureSolve) && !prepared_[b].free) continue;
+      wrenches[b] = wrenches[b] + report_.got_wrench(i).wrench();
     }
     if (guards_.size() > 0) {
       for (const std::uint32_t b : sums_.bodies()) {
@@ -326,14 +339,14 @@ class CudaEngine final : public ParticleEngine {
         wrenches[b] = wrenches[b] + impulse_wrench(words, constants_.impulse_units, forces_dt_);
       }
     }
-    if (!constants_.plan.has(PassId::kWrenches)) return;
+    if (!constants_.plan.has(PassId::kWrenches) || !probes_report()) return;
     for (std::size_t i = 0; i < probes_.size(); ++i) {
       const float4 f = report_.got_probe(i);
       wrenches[probes_[i].body].force += glm::dvec3(f.x, f.y, f.z);
     }
   }
 
-  struct Asked {  // of solve_drag()
+  struct Asked {  // of solve_drag() and solve_pressure()
     std::span<const ViscousBody> bodies;
     std::span<Wrench> wrenches;
   };
@@ -358,6 +371,7 @@ class CudaEngine final : public ParticleEngine {
   WallGuards guards_;
   StepReport report_;
   ViscousSolver viscous_;
+  PressureSolver pressure_;
   Asked asked_;
 
   SentBodies sent_;

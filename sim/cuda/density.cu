@@ -1,7 +1,7 @@
 // Eq 2 and 7 on the GPU; what is counted, and why, is in sim/cpu/density.cpp.
 #include "sim/cuda/rows.cuh"
 #include "sim/model.h"
-#include "sim/pressure/corrected_state.h"
+#include "sim/pressure/solved_state.h"
 #include "sim/snapshot.h"
 #include "sim/walls/wall_particles.h"
 
@@ -53,8 +53,8 @@ __global__ __launch_bounds__(kThreads) void density_kernel(StepConstants c, cons
   if (state.compression > kTooCompressed) atomicOr(status, kStatusCompressed);
 }
 
-// The corrected model's: sim/cpu/corrected_density.cpp.
-template <class Team>
+// The corrected model's and, `solved`, the incompressible one's: sim/cpu/corrected_density.cpp.
+template <class Team, bool solved>
 __global__ __launch_bounds__(kThreads) void corrected_density_kernel(
     StepConstants c, const ParticleKind* kinds, SortedFluid fluid, SortedSurface fixed, SortedSurface moving,
     bool one_viscosity, bool viscosities, std::uint32_t* status) {
@@ -90,9 +90,17 @@ __global__ __launch_bounds__(kThreads) void corrected_density_kernel(
   if (Team::lane() != 0) return;
   const ParticleKind kind = kinds[fluid.state.kind[p]];
   const float4 motion = fluid.state.v[p];
-  const CorrectedState state =
-      corrected_state(sum, c.correction, kind.pressing_density, kind.viscosity,
-                      one_viscosity ? kind.viscosity : 0.0f, motion.w, {motion.x, motion.y, motion.z});
+  const float in_u = one_viscosity ? kind.viscosity : 0.0f;
+  const float velocity[3] = {motion.x, motion.y, motion.z};
+  const auto state = [&] {
+    if constexpr (solved) {
+      return solved_state(sum, c.correction, kind.viscosity, in_u, velocity);
+    } else {
+      return corrected_state(sum, c.correction, kind.pressing_density, kind.viscosity, in_u, motion.w,
+                             velocity);
+    }
+  }();
+  if constexpr (solved) fluid.expansion[p] = state.expansion;
   fluid.pressed[p] = make_float4(x.x, x.y, x.z, state.volume);
   fluid.push_a[p] = make_float4(state.push.xx, state.push.xy, state.push.xz, state.push.yy);
   fluid.push_b[p] = make_float4(state.push.yz, state.push.zz, state.u[0], state.u[1]);
@@ -107,19 +115,21 @@ __global__ __launch_bounds__(kThreads) void corrected_density_kernel(
 void launch_density(const StepConstants& constants, const Plan& plan, const ParticleKind* kinds,
                     const SortedFluid& fluid, const SortedSurface& fixed, const SortedSurface& moving,
                     std::uint32_t* status, cudaStream_t stream) {
-  if (plan.model == ParticleModel::kCorrected) {
-    with_team<kTensorTeams>(fluid.count, [&]<class Team>() {
-      corrected_density_kernel<Team><<<blocks_for(fluid.count * Team::kLanes), kThreads, 0, stream>>>(
-          constants, kinds, fluid, fixed, moving, plan.has(PassId::kOneViscosity) && plan.drags_explicitly(),
-          plan.has(PassId::kPairViscosity), status);
-    });
-    return;
-  }
+  const bool viscosities = plan.has(PassId::kPairViscosity);
+  const bool one_viscosity = plan.has(PassId::kOneViscosity) && plan.drags_explicitly();
   with_model(plan.model, [&]<class Parts>() {
-    with_team<kDensityTeams>(fluid.count, [&]<class Team>() {
-      density_kernel<Team, Parts><<<blocks_for(fluid.count * Team::kLanes), kThreads, 0, stream>>>(
-          constants, kinds, fluid, fixed, moving, plan.has(PassId::kPairViscosity), status);
-    });
+    if constexpr (Parts::kCorrected) {
+      with_team<kTensorTeams>(fluid.count, [&]<class Team>() {
+        corrected_density_kernel<Team, Parts::kSolved>
+            <<<blocks_for(fluid.count * Team::kLanes), kThreads, 0, stream>>>(
+                constants, kinds, fluid, fixed, moving, one_viscosity, viscosities, status);
+      });
+    } else {
+      with_team<kDensityTeams>(fluid.count, [&]<class Team>() {
+        density_kernel<Team, Parts><<<blocks_for(fluid.count * Team::kLanes), kThreads, 0, stream>>>(
+            constants, kinds, fluid, fixed, moving, viscosities, status);
+      });
+    }
   });
 }
 

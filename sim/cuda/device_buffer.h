@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <string>
 
@@ -94,5 +95,13 @@ class PinnedBuffer {
   T* data_ = nullptr;
   std::size_t size_ = 0;
 };
+
+/// One of the values that lie from byte `at` on.
+template <class T>
+T read_at(const PinnedBuffer<unsigned char>& from, std::size_t at, std::size_t index) {
+  T value;
+  std::memcpy(&value, from.data() + at + index * sizeof value, sizeof value);
+  return value;
+}
 
 }  // namespace slosh::cuda

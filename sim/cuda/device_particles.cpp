@@ -60,21 +60,27 @@ FluidView view_of(const MovingPacks<DeviceBuffer>& packs) {
 
 void FluidBuffers::allocate(std::size_t count, const RunConstants& constants, CallCheck& check) {
   for (MovingPacks<DeviceBuffer>& packs : packs_)
-    for_each_pack([&](auto, auto& buffer) { buffer.allocate(count, check); }, packs);
+    for_each_pack(
+        [&](auto pack, auto& buffer) {
+          if (pack != Pack::kSolved || needs(constants.plan, ColumnNeed::kSolved)) buffer.allocate(count, check);
+        },
+        packs);
   pressed_.allocate(count, check);
   force_.allocate(count, check);
   cells_.allocate(constants.grid.cell_count(), check);
-  if (constants.plan.model == ParticleModel::kCorrected) {
+  if (needs(constants.plan, ColumnNeed::kCorrected)) {
     push_a_.allocate(count, check);
     push_b_.allocate(count, check);
     drag_z_.allocate(count, check);
   }
+  if (needs(constants.plan, ColumnNeed::kSolved)) expansion_.allocate(count, check);
   view_.count = static_cast<std::uint32_t>(count);
   view_.state = view_of(packs_[current_]);
   view_.pressed = pressed_.data();
   view_.push_a = push_a_.data();
   view_.push_b = push_b_.data();
   view_.drag_z = drag_z_.data();
+  view_.expansion = expansion_.data();
   view_.force = force_.data();
   view_.cells = cells_.view();
   allow_viscosities(constants, check);
@@ -87,8 +93,11 @@ void FluidBuffers::allow_viscosities(const RunConstants& constants, CallCheck& c
 }
 
 void FluidBuffers::write(const MovingPacks<PlainColumn>& packs, CallCheck& check, cudaStream_t stream) {
-  for_each_pack([&](auto, const auto& from, auto& buffer) { buffer.write(from, check, stream); }, packs,
-                packs_[current_]);
+  for_each_pack(
+      [&](auto, const auto& from, auto& buffer) {
+        if (buffer.size() > 0) buffer.write(from, check, stream);
+      },
+      packs, packs_[current_]);
 }
 
 void FluidBuffers::sort(const StepConstants& constants, SortSpace& space, CallCheck& check,

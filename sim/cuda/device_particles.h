@@ -56,7 +56,7 @@ class FluidBuffers {
   DeviceBuffer<float4> pressed_, force_;
   DeviceBuffer<float> viscosity_;
   DeviceBuffer<float4> push_a_, push_b_;
-  DeviceBuffer<float> drag_z_;
+  DeviceBuffer<float> drag_z_, expansion_;
   CellTableBuffers cells_;
   SortedFluid view_;
 };

@@ -45,6 +45,7 @@ struct MovingPacks {
   Store<float4> v{};           ///< velocity, m/s, half a step behind x; w: volume, m³, from the density pass
   Store<std::uint32_t> id{};   ///< fixed for the run
   Store<std::uint8_t> kind{};  ///< into the table of kinds
+  Store<float> solved{};       ///< Pa, that the last step found; there only where pressures are solved for
   Store<std::uint32_t> key{};  ///< cell, or retired
 };
 
@@ -55,6 +56,7 @@ SLOSH_HD void for_each_pack(F&& f, Sets&&... sets) {
   f(std::integral_constant<Pack, Pack::kMotion>{}, sets.v...);
   f(std::integral_constant<Pack, Pack::kId>{}, sets.id...);
   f(std::integral_constant<Pack, Pack::kKind>{}, sets.kind...);
+  f(std::integral_constant<Pack, Pack::kSolved>{}, sets.solved...);
   f(std::integral_constant<Pack, Pack::kKey>{}, sets.key...);
 }
 
@@ -85,10 +87,11 @@ using FluidView = MovingPacks<DevicePointer>;
 struct SortedFluid {
   std::uint32_t count = 0;  ///< retired ones, at the end, included
   FluidView state;
-  float4* pressed = nullptr;  ///< position, and in w the pressure (kConsistent: V²P; kCorrected: the volume)
-  float4* push_a = nullptr;   ///< kCorrected: xx, xy, xz, yy of the pressure tensor, N·m⁴
+  float4* pressed = nullptr;  ///< position, and in w the pressure (kConsistent: V²P; corrects_gradients(): the volume)
+  float4* push_a = nullptr;   ///< kCorrected: xx, xy, xz, yy of the pressure tensor, N·m⁴; kIncompressible: of 1 Pa's
   float4* push_b = nullptr;   ///< kCorrected: yz, zz of it; x, y of what pairs drag by, Pa·m
   float* drag_z = nullptr;    ///< kCorrected: z of that
+  float* expansion = nullptr;  ///< kIncompressible: wanted ρ⁰/ρ − 1
   float* viscosity = nullptr;  ///< Pa·s; there and written only where pairs differ
   float4* force = nullptr;     ///< N; w: 1 where bodies are in the cells around, else 0
   CellTable cells;
@@ -154,6 +157,8 @@ struct WrenchRange {
 struct DeviceWrench {
   double force[3] = {};
   double torque[3] = {};
+
+  Wrench wrench() const { return {{force[0], force[1], force[2]}, {torque[0], torque[1], torque[2]}}; }
 };
 
 /// sort.cu. Stable; keys below 2^bits. Call with temp = nullptr to learn temp_bytes.

@@ -26,7 +26,11 @@ __global__ void gather_fluid_kernel(StepConstants c, FluidView from, const std::
   const std::uint32_t source = order[p];
   for_each_pack(
       [&](auto pack, const auto* values, auto* gathered) {
-        if constexpr (carried(pack)) gathered[p] = values[source];
+        if constexpr (pack == Pack::kSolved) {
+          if (values) gathered[p] = values[source];
+        } else if constexpr (carried(pack)) {
+          gathered[p] = values[source];
+        }
       },
       from, to.state);
   mark_cell(to.state.key, p, to.count, c.grid.retired_key(), to.cells);

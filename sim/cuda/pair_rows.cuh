@@ -16,10 +16,12 @@ struct NeighborColumns {
   const float4* push_a = nullptr;
   const float4* push_b = nullptr;
   const float* drag_z = nullptr;
+  const float* solved = nullptr;
 };
 
 __device__ inline NeighborColumns columns(const SortedFluid& fluid) {
-  return {fluid.pressed, fluid.state.v, fluid.viscosity, fluid.push_a, fluid.push_b, fluid.drag_z};
+  return {fluid.pressed, fluid.state.v, fluid.viscosity, fluid.push_a, fluid.push_b,
+          fluid.drag_z,  fluid.state.solved};
 }
 __device__ inline NeighborColumns columns(const SortedSurface& surface) {
   return {surface.x, surface.v, surface.viscosity};
@@ -57,10 +59,10 @@ template <class Team, class Parts, PairRule rule, Viscosity viscosity,
 __device__ inline void add_forces(const StepConstants& c, const ParticleView<float>& p,
                                   const NeighborColumns& n, const CellTable& cells, std::uint32_t cell,
                                   Sum& sum, float of_fluid = 1.0f) {
-  constexpr bool kOfFluid = rule == PairRule::kCorrected || rule == PairRule::kCorrectedBody;
+  constexpr bool kOfFluid = is_corrected_fluid(rule) || is_corrected_body(rule);
   // What pairs of one viscosity drag by is in u already.
   constexpr bool kViscous =
-      rule == PairRule::kCorrected ? viscosity == Viscosity::kPair : viscosity != Viscosity::kNone;
+      is_corrected_fluid(rule) ? viscosity == Viscosity::kPair : viscosity != Viscosity::kNone;
   for_neighbors<Team>(c.grid, cells, cell, [&](std::uint32_t j) {
     ParticleView<float> i;
     const float4 x = __ldg(n.x + j);
@@ -78,6 +80,7 @@ __device__ inline void add_forces(const StepConstants& c, const ParticleView<flo
     if constexpr (kOfFluid) {
       i.volume = x.w;
       read_corrected(n, j, i);
+      if constexpr (rule == PairRule::kSolvedBody) i.pressure = __ldg(n.solved + j);
     } else {
       i.pressure = x.w;
     }

@@ -35,22 +35,15 @@ class StepReport {
   void wait(CallCheck& check) { check.ok(cudaEventSynchronize(ready_), "waiting for the step"); }
 
   // As fetched:
-  std::uint32_t got_status() const { return read<std::uint32_t>(0, 0); }
-  DeviceWrench got_wrench(std::size_t sum) const { return read<DeviceWrench>(wrenches_at_, sum); }
-  BodyDrag got_drag(std::size_t sum) const { return read<BodyDrag>(drags_at_, sum); }
+  std::uint32_t got_status() const { return read_at<std::uint32_t>(got_, 0, 0); }
+  DeviceWrench got_wrench(std::size_t sum) const { return read_at<DeviceWrench>(got_, wrenches_at_, sum); }
+  BodyDrag got_drag(std::size_t sum) const { return read_at<BodyDrag>(got_, drags_at_, sum); }
   void got_impulses(std::size_t body, std::int64_t (&words)[kImpulseWords]) const {
     std::memcpy(words, got_.data() + impulses_at_ + body * sizeof words, sizeof words);
   }
-  float4 got_probe(std::size_t probe) const { return read<float4>(probes_at_, probe); }
+  float4 got_probe(std::size_t probe) const { return read_at<float4>(got_, probes_at_, probe); }
 
  private:
-  template <class T>
-  T read(std::size_t at, std::size_t index) const {
-    T value;
-    std::memcpy(&value, got_.data() + at + index * sizeof value, sizeof value);
-    return value;
-  }
-
   cudaEvent_t ready_ = nullptr;
   DeviceBuffer<unsigned char> device_;
   PinnedBuffer<unsigned char> got_;

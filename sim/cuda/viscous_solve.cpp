@@ -4,17 +4,6 @@
 
 namespace slosh::cuda {
 
-namespace {
-
-template <class T>
-T read_at(const PinnedBuffer<unsigned char>& from, std::size_t at, std::size_t index) {
-  T value;
-  std::memcpy(&value, from.data() + at + index * sizeof value, sizeof value);
-  return value;
-}
-
-}  // namespace
-
 void ViscousSolver::plan(const Plan& plan, const ParticleStart& start, std::size_t body_count,
                          const WrenchSums& sums, CallCheck& check) {
   if (!plan.solves_drag) return;
@@ -80,7 +69,7 @@ void ViscousSolver::allocate_vectors(CallCheck& check) {
   view_.parts.body_curvature = at + view_.bodies;
 }
 
-void ViscousSolver::write_rows(const ViscousSides& sides, float dt, CallCheck& check, cudaStream_t stream) {
+void ViscousSolver::write_rows(const SolveSides& sides, float dt, CallCheck& check, cudaStream_t stream) {
   if (check.failed()) return;
   launch_viscous_rows(sides.constants, sides.plan, sides.kinds.data(), sides.first_viscosity, dt, sides.fluid,
                       sides.fixed.sorted(), sides.moving.sorted(), sides.moving.local(), view_, stream);
@@ -98,7 +87,7 @@ void ViscousSolver::send(std::span<const ViscousBody> bodies, std::span<const Ri
            "sending bodies for the drag's solve");
 }
 
-void ViscousSolver::solve(const ViscousSides& sides, float dt, std::span<const ViscousBody> bodies,
+void ViscousSolver::solve(const SolveSides& sides, float dt, std::span<const ViscousBody> bodies,
                           std::span<const RigidBody> before, std::uint32_t* status,
                           std::span<Wrench> wrenches, CallCheck& check, cudaStream_t stream) {
   send(bodies, before, check, stream);
@@ -132,9 +121,7 @@ void ViscousSolver::read(std::span<const RigidBody> before, std::span<Wrench> wr
   for (std::size_t i = 0; i < sums_->bodies().size(); ++i) {
     const std::uint32_t b = sums_->bodies()[i];
     if (before[b].free) continue;
-    const DeviceWrench w = read_at<DeviceWrench>(got_, fixed_at_, i);
-    wrenches[b].force += glm::dvec3(w.force[0], w.force[1], w.force[2]);
-    wrenches[b].torque += glm::dvec3(w.torque[0], w.torque[1], w.torque[2]);
+    wrenches[b] = wrenches[b] + read_at<DeviceWrench>(got_, fixed_at_, i).wrench();
   }
 }
 

@@ -9,18 +9,6 @@
 
 namespace slosh::cuda {
 
-/// What one solve is between, on the GPU.
-struct ViscousSides {
-  const StepConstants& constants;
-  const Plan& plan;
-  const DeviceBuffer<ParticleKind>& kinds;
-  float first_viscosity;  ///< Pa·s, of the first fluid
-  const SortedFluid& fluid;
-  const SurfaceBuffers& fixed;
-  const SurfaceBuffers& moving;
-  const DeviceBody* bodies;
-};
-
 class ViscousSolver {
  public:
   ViscousSolver() = default;
@@ -35,10 +23,10 @@ class ViscousSolver {
             CallCheck& check);
 
   /// Writes down who drags whom over `dt` s; needs the densities only.
-  void write_rows(const ViscousSides& sides, float dt, CallCheck& check, cudaStream_t stream);
+  void write_rows(const SolveSides& sides, float dt, CallCheck& check, cudaStream_t stream);
   /// After write_rows(): adds to the forces on the fluid, and to `wrenches` where bodies are measured or
   /// free: then it waits for the GPU. `before`: the bodies as they were placed.
-  void solve(const ViscousSides& sides, float dt, std::span<const ViscousBody> bodies,
+  void solve(const SolveSides& sides, float dt, std::span<const ViscousBody> bodies,
              std::span<const RigidBody> before, std::uint32_t* status, std::span<Wrench> wrenches,
              CallCheck& check, cudaStream_t stream);
   /// By the last solve(), one a body: of those that moved in it.

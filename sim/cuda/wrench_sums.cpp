@@ -55,7 +55,7 @@ void WrenchSums::find_forces(const StepConstants& constants, const Plan& plan, f
     check.launched("forces on bodies");
   };
   if (moving_measured_) find(sides.moving, with_drag);
-  if (fixed_measured_) find(sides.fixed, false);
+  if (fixed_measured_ && !plan.has(PassId::kPressureSolve)) find(sides.fixed, false);
 }
 
 void WrenchSums::sum_wrenches(const SurfaceSides& sides, const DeviceBody* bodies, DeviceWrench* wrenches,

@@ -15,6 +15,18 @@ struct SurfaceSides {
   const SurfaceBuffers& moving;
 };
 
+/// What one solve is between, on the GPU.
+struct SolveSides {
+  const StepConstants& constants;
+  const Plan& plan;
+  const DeviceBuffer<ParticleKind>& kinds;
+  float first_viscosity;  ///< Pa·s, of the first fluid
+  const SortedFluid& fluid;
+  const SurfaceBuffers& fixed;
+  const SurfaceBuffers& moving;
+  const DeviceBody* bodies;
+};
+
 class WrenchSums {
  public:
   /// Cuts the particles of the bodies that the plan measures into chunks; local order is body by body.
@@ -26,7 +38,8 @@ class WrenchSums {
   bool fixed_measured() const { return fixed_measured_; }
   const std::uint8_t* wanted() const { return wanted_.data(); }
 
-  /// Forces on the particles, `with_drag` with what those on free ones lose for their velocity.
+  /// Forces on the particles, `with_drag` with what those on free ones lose for their velocity; on fixed ones
+  /// where no pressures are solved for.
   void find_forces(const StepConstants& constants, const Plan& plan, float first_viscosity,
                    const SortedFluid& fluid, const SurfaceSides& sides, bool with_drag, CallCheck& check,
                    cudaStream_t stream) const;

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "tests/support/stirred_tank.h"
+
 namespace slosh::testing {
 
 namespace {
@@ -20,6 +22,14 @@ std::uint64_t hash_after(World& world, int steps, double hand_height, bool look)
     world.diagnostics();
   }
   return world.hash();
+}
+
+void restore_into(World& world, const World& from) {
+  std::vector<std::uint8_t> bytes;
+  expect_true("the state can be saved", static_cast<bool>(from.save(bytes)));
+  const Result<bool> restored = world.restore(bytes);
+  if (!restored) std::printf("  %s\n", restored.error().text().c_str());
+  expect_true("and restored", static_cast<bool>(restored));
 }
 
 }  // namespace
@@ -107,6 +117,54 @@ void compare_steps(const char* name, const Tank& tank, const Plan& plan, int ste
     step(gpu, 0.09);
   }
   compare_worlds(cpu, gpu, tolerance);
+}
+
+void compare_momenta(const Tank& tank, const Plan& plan, int steps, double tolerance) {
+  World gpu = world_on(Backend::kCuda, tank, plan);
+  const double dt = plan.time_step;
+  double worst = 0.0;
+  Snapshot now;
+  Diagnostics before = gpu.diagnostics();
+  for (int i = 0; i < steps; ++i) {
+    const glm::dvec3 handed = before.guarded_impulse;  // walls have it from the step before
+    step(gpu, kPaddleHeight);
+    gpu.fill(now);
+    const Diagnostics after = gpu.diagnostics();
+    glm::dvec3 given = dt * before.mass * tank.scene.gravity;
+    for (const BodyState& body : now.rigid.bodies) given -= dt * body.fluid.force;
+    given += handed - after.guarded_impulse;
+    worst =
+        std::max(worst, glm::length(after.momentum - before.momentum - given) / (dt * 9.81 * before.mass));
+    before = after;
+  }
+  expect_at_most("momentum identity, worst step / (weight dt)", worst, tolerance);
+  expect_true("no solve was cut short", (gpu.take_status() & kStatusViscosityCut) == 0);
+}
+
+void compare_restored(const char* name, const Tank& tank, double hand_height) {
+  std::printf("%s, saved after 100 steps and restored\n", name);
+  World whole = world_on(Backend::kCuda, tank);
+  for (int i = 0; i < 100; ++i) step(whole, hand_height);
+  World again = world_on(Backend::kCuda, tank);
+  for (int i = 0; i < 7; ++i) step(again, hand_height);
+  restore_into(again, whole);
+  expect_true("the same hash at once", again.hash() == whole.hash());
+  for (int i = 0; i < 100; ++i) {
+    step(whole, hand_height);
+    step(again, hand_height);
+  }
+  expect_true("the same hash 100 steps later", again.hash() == whole.hash());
+  // From one backend to the other, both ways, then one step each.
+  World cpu = world_on(Backend::kCpu, tank);
+  restore_into(cpu, whole);
+  step(cpu, hand_height);
+  step(whole, hand_height);
+  compare_worlds(cpu, whole, 1e-5);
+  World gpu = world_on(Backend::kCuda, tank);
+  restore_into(gpu, cpu);
+  step(cpu, hand_height);
+  step(gpu, hand_height);
+  compare_worlds(cpu, gpu, 1e-5);
 }
 
 void repeat(const char* name, const Tank& tank, double hand_height, int steps) {

@@ -33,11 +33,20 @@ void compare_worlds(const World& cpu, const World& gpu, double tolerance);
 /// After one step from the same start the two differ by rounding alone; velocities show in momentum and
 /// energy.
 void compare_steps(const char* name, const Tank& tank, const Plan& plan, int steps, double tolerance);
+/// On the GPU, after each step: what the fluid's momentum changed by is what bodies and gravity gave. The worst step,
+/// over weight · dt. No solve may be cut short.
+void compare_momenta(const Tank& tank, const Plan& plan, int steps, double tolerance);
 /// The same hash each time on the GPU, whatever else is going on.
 void repeat(const char* name, const Tank& tank, double hand_height, int steps = 300);
+
+/// Saved after 100 steps and restored on the GPU, and from one backend to the other, both ways.
+void compare_restored(const char* name, const Tank& tank, double hand_height);
 
 /// viscous_worlds.cpp: implicit viscosity; one step of it.
 void compare_viscous();
 void compare_viscous_step();
+/// pressed_worlds.cpp: pressures that are solved for; single steps of it.
+void compare_pressed();
+void compare_pressed_steps();
 
 }  // namespace slosh::testing

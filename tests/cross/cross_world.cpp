@@ -1,6 +1,7 @@
 // The same worlds on the CPU and on the GPU (tests/cross/README.md). Prints every comparison with its
 // tolerance; exits 1 when one fails, 77 where there is no GPU.
-// Usage: cross_world [viscous|others|quick]: implicit viscosity alone, or all but it, or single steps of each
+// Usage: cross_world [viscous|pressed|others|quick]: implicit viscosity alone, or pressures that are solved for, or
+// all but these, or single steps of each
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -15,40 +16,6 @@ namespace {
 
 using namespace slosh;
 using namespace slosh::testing;
-
-void restore_into(World& world, const World& from) {
-  std::vector<std::uint8_t> bytes;
-  expect_true("the state can be saved", static_cast<bool>(from.save(bytes)));
-  const Result<bool> restored = world.restore(bytes);
-  if (!restored) std::printf("  %s\n", restored.error().text().c_str());
-  expect_true("and restored", static_cast<bool>(restored));
-}
-
-void compare_restored(const char* name, const Tank& tank, double hand_height) {
-  std::printf("%s, saved after 100 steps and restored\n", name);
-  World whole = world_on(Backend::kCuda, tank);
-  for (int i = 0; i < 100; ++i) step(whole, hand_height);
-  World again = world_on(Backend::kCuda, tank);
-  for (int i = 0; i < 7; ++i) step(again, hand_height);
-  restore_into(again, whole);
-  expect_true("the same hash at once", again.hash() == whole.hash());
-  for (int i = 0; i < 100; ++i) {
-    step(whole, hand_height);
-    step(again, hand_height);
-  }
-  expect_true("the same hash 100 steps later", again.hash() == whole.hash());
-  // From one backend to the other, both ways, then one step each.
-  World cpu = world_on(Backend::kCpu, tank);
-  restore_into(cpu, whole);
-  step(cpu, hand_height);
-  step(whole, hand_height);
-  compare_worlds(cpu, whole, 1e-5);
-  World gpu = world_on(Backend::kCuda, tank);
-  restore_into(gpu, cpu);
-  step(cpu, hand_height);
-  step(gpu, hand_height);
-  compare_worlds(cpu, gpu, 1e-5);
-}
 
 void compare_changed() {
   std::printf("viscosities and gravity changed while it runs\n");
@@ -266,11 +233,14 @@ int main(int argc, char** argv) {
   }
   std::printf("%s\n", device.name.c_str());
   const std::string part = argc > 1 ? argv[1] : "all";
-  if (part == "quick") compare_viscous_step();
-  if (part != "others" && part != "quick") compare_viscous();
-  if (part == "viscous") return conclude();
+  const bool quick = part == "quick", whole = part == "all";
+  if (quick) compare_viscous_step();
+  if (quick) compare_pressed_steps();
+  if (whole || part == "viscous") compare_viscous();
+  if (whole || part == "pressed") compare_pressed();
+  if (part == "viscous" || part == "pressed") return conclude();
   compare_single_steps();
-  if (part == "quick") return conclude();
+  if (quick) return conclude();
   // Large enough to fill the GPU: blocks come and go in another order each time.
   for (const ParticleModel model : kModels) {
     Tank large = shaken(pool(300000));

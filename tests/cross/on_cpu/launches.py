@@ -36,11 +36,14 @@ def main():
     with open(source, encoding="utf-8") as file:
         text = file.read()
     text = re.sub(r"([A-Za-z_]\w*(?:<[^<>;(){}]*>)?)\s*<<<(.*?)>>>\s*\(", launch, text, flags=re.S)
-    # The one cooperative launch: its arguments by their names, which an array of addresses hides.
-    text = re.sub(r"return cudaLaunchCooperativeKernel\(.*?stream\);",
-                  "on_cpu::Launch{grid, kSolveThreads, on_cpu::Waits::kInGrid}.run("
-                  "[&](auto&&... a) { solve_kernel<viscosity>(a...); }, solve, status);\n    return cudaSuccess;",
-                  text, flags=re.S)
+    # Cooperative launches: their arguments by their names, which an array of addresses hides.
+    names = re.search(r"void\* arguments\[\] = \{(.*?)\};", text)
+    if names:
+        text = re.sub(r"return cudaLaunchCooperativeKernel\(reinterpret_cast<const void\*>\(([^()]*)\).*?stream\);",
+                      lambda match: "on_cpu::Launch{grid, kSolveThreads, on_cpu::Waits::kInGrid}.run("
+                      f"[&](auto&&... a) {{ {match[1]}(a...); }}, {names[1].replace('&', '')});\n"
+                      "    return cudaSuccess;",
+                      text, flags=re.S)
     with open(result, "w", encoding="utf-8") as file:
         file.write(f'#line 1 "{source}"\n{text}')
 

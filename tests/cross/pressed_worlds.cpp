@@ -1,0 +1,104 @@
+// Pressures that are solved for, on both backends: with a body that a hand holds and one that nobody does, drag
+// stepped and solved for beside them, a probe, more neighbours than a row has room for.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "tests/cross/compare.h"
+#include "tests/support/stirred_tank.h"
+
+namespace slosh::testing {
+
+namespace {
+
+// A solve ends by its tolerance: rounding may give one of the two a turn more, and then they differ by what the
+// tolerance leaves.
+constexpr double kOneStep = 1e-5;
+constexpr double kTenSteps = 2e-3;
+
+Tank pressed(Tank tank) {
+  tank.scene.model = ParticleModel::kIncompressible;
+  return tank;
+}
+
+Plan pressing_plan(const Tank& tank) {
+  const Plan plan = make_plan(tank.scene, tank.sampled.spacing);
+  expect_true("the plan solves for pressures", plan.has(PassId::kPressureSolve));
+  return plan;
+}
+
+void compare_steps(const char* name, const Tank& tank, int steps, double tolerance) {
+  compare_steps(name, tank, pressing_plan(tank), steps, tolerance);
+}
+
+// What a hand feels over a second's tenth, and where a free box comes to be.
+void compare_held(const char* name, const Tank& tank, int steps) {
+  std::printf("%s, held paddle, %d steps\n", name, steps);
+  const Plan plan = pressing_plan(tank);
+  glm::dvec3 mean[2]{}, at[2]{};
+  double weight = 0.0, kinetic[2]{};
+  int n = 0;
+  for (const Backend backend : {Backend::kCpu, Backend::kCuda}) {
+    World world = world_on(backend, tank, plan);
+    weight = 9.81 * world.diagnostics().mass;
+    BodySnapshot bodies;
+    for (int i = 0; i < steps; ++i) {
+      step(world, kPaddleHeight);
+      world.fill(bodies);
+      mean[n] += bodies.bodies[1].fluid.force / static_cast<double>(steps);
+    }
+    at[n] = bodies.bodies.back().pose.position;
+    kinetic[n++] = world.diagnostics().kinetic_energy;
+  }
+  std::printf("  mean force on the paddle: CPU %.5f %.5f %.5f N, GPU %.5f %.5f %.5f N\n", mean[0].x, mean[0].y,
+              mean[0].z, mean[1].x, mean[1].y, mean[1].z);
+  expect_true("the fluid presses on it", glm::length(mean[0]) > 0.01 * weight);
+  expect_at_most("mean force on the paddle", glm::distance(mean[0], mean[1]) / glm::length(mean[0]), 0.03);
+  expect_at_most("where the last body is, m", glm::distance(at[0], at[1]), 5e-4);
+  expect_at_most("kinetic energy", std::abs(kinetic[1] / kinetic[0] - 1.0), 0.1);
+}
+
+}  // namespace
+
+void compare_pressed_steps() {
+  compare_steps("pressures solved for, two fluids, paddle", shaken(pressed(stirred_tank(ParticleModel::kCorrected))), 1,
+                kOneStep);
+  const Tank thick = shaken(pressed(thick_tank(50.0, 500.0)));
+  compare_steps("pressures and drag solved for, held paddle and free box", thick, 1, kOneStep);
+  compare_momenta(thick, pressing_plan(thick), 3, 1e-5);
+  const Tank probed = pressed(probed_tank());
+  compare_steps("pressures solved for, probe", probed, 3, kOneStep);
+}
+
+void compare_pressed() {
+  struct Case {
+    const char* name;
+    Tank tank;
+  };
+  for (const Case& c :
+       {Case{"pressures solved for, two fluids, paddle", pressed(stirred_tank(ParticleModel::kCorrected))},
+        Case{"pressures solved for, light paddle in honey", pressed(paddle_in_honey(ParticleModel::kCorrected))},
+        Case{"pressures solved for, held paddle and free box", pressed(thick_tank(0.1, 0.1))},
+        Case{"pressures and drag solved for, held paddle and free box", pressed(thick_tank(50.0, 500.0))}}) {
+    const Tank tank = shaken(c.tank);
+    compare_steps(c.name, tank, 1, kOneStep);
+    compare_steps(c.name, tank, 10, kTenSteps);
+    compare_held(c.name, c.tank, 100);
+    compare_momenta(tank, pressing_plan(tank), 50, 1e-5);
+    repeat(c.name, c.tank, kPaddleHeight, 100);
+  }
+  const Tank probed = pressed(probed_tank());
+  compare_steps("pressures solved for, probe", probed, 3, kOneStep);
+  repeat("pressures solved for, probe", probed, 0.05, 100);
+  compare_restored("pressures solved for, two fluids, paddle", pressed(stirred_tank(ParticleModel::kCorrected)),
+                   kPaddleHeight);
+  Tank squeezed = pressed(thick_tank(0.1, 0.1));
+  for (glm::vec3& x : squeezed.sampled.fluid_positions) x = x * 0.7f;
+  compare_steps("pressures solved for, more neighbours than a row has room for", squeezed, 1, kOneStep);
+  Tank large = shaken(pressed(pool(300000)));
+  compare_steps("large pool, pressures solved for", large, 1, kOneStep);
+  repeat("large pool, pressures solved for", large, 0.09, 20);
+}
+
+}  // namespace slosh::testing
