@@ -59,10 +59,14 @@ std::vector<Setting> base_settings(const SweepOptions& options) {
 std::vector<Setting> settings_of(const ErrorCase& which, const SweepOptions& options) {
   std::vector<Setting> settings;
   for (const Setting& base : base_settings(options)) {
-    const std::size_t spacings = options.quick ? which.quick : which.spacings.size();
-    for (std::size_t i = 0; i < spacings; ++i) {
+    std::vector<double> spacings = options.spacings;
+    if (spacings.empty()) {
+      spacings = which.spacings;
+      if (options.quick) spacings.resize(which.quick);
+    }
+    for (const double spacing : spacings) {
       Setting setting = base;
-      setting.spacing = which.spacings[i];
+      setting.spacing = spacing;
       settings.push_back(setting);
       if (options.quick) continue;
       setting.support_ratio = kWideSupport;

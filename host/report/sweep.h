@@ -15,6 +15,7 @@ struct SweepOptions {
   bool quick = false;               ///< each case's coarsest spacings, no variants
   std::vector<std::string> cases;   ///< ids; empty: all
   std::vector<std::string> models;  ///< names; empty: all
+  std::vector<double> spacings;     ///< m, in place of each case's own; empty: those
   std::vector<Backend> backends{Backend::kCpu};
   int threads = 0;
   bool (*stopped)() = nullptr;  ///< Setting::stopped

@@ -54,6 +54,11 @@ void add_report(CLI::App& app, VerbRun& chosen) {
   auto options = std::make_shared<ReportOptions>();
   CLI::App* error = verb->add_subcommand("error", "Cases with a known answer: how far off, at what cost");
   add_case_options(*error, *options, "error", "errors.csv");
+  error
+      ->add_option("--spacing", options->spacings,
+                   "These spacings, metres, in place of each case's own; may be given more than once. With --quick "
+                   "at these\nalone, without the wider support and the shorter step")
+      ->check(CLI::Range(1e-4, 1.0));
   error->footer(
       "Runs every case with every particle model and spacing; a full report also with a wider support and "
       "half\n"
@@ -61,6 +66,7 @@ void add_report(CLI::App& app, VerbRun& chosen) {
       "seconds a simulated second, and against the spacing; errors.md, the table. Ctrl-C draws what there "
       "is.\n\n"
       "Examples:\n  slosh report error --quick\n  slosh report error --case sloshing --backend both\n"
+      "  slosh report error --case spin_up --spacing 0.003 --quick --model corrected --backend cuda\n"
       "  slosh report error --from here.csv --from there.csv --out both");
   error->callback([&chosen, options] { chosen = [options] { return report_error(*options); }; });
   CLI::App* stability =
@@ -210,7 +216,7 @@ std::vector<Backend> backends_of(const ReportOptions& options) {
 }
 
 report::SweepOptions sweep_of(const ReportOptions& options) {
-  return {options.quick,        options.cases,   options.models,
+  return {options.quick,        options.cases,        options.models,  options.spacings,
           backends_of(options), options.threads, [] { return interrupted_by() != 0; }};
 }
 

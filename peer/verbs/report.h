@@ -20,6 +20,7 @@ struct ReportOptions {
   bool overwrite = false;
   bool resume = false;  ///< keep what the folder has, measure the rest
   std::vector<std::string> cases, models;
+  std::vector<double> spacings;  ///< m, of report error; empty: each case's own
   std::string backend = "cpu";
   int threads = 0;
   std::vector<std::string> from;  ///< CSVs of earlier reports, drawn instead of running anything

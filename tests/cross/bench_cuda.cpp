@@ -1,6 +1,6 @@
 // A pool of fluid at growing counts, step after step: CSV on standard output.
-// Usage: bench_cuda [drag] [paper|consistent|corrected] [cuda|cpu] [particles…]
-// With the default model, or the one that is named. At rest; or with `drag` turning, without viscosity, at
+// Usage: bench_cuda [drag] [MODEL] [cuda|cpu] [particles…]
+// MODEL: paper, consistent, corrected or incompressible; the default one unless named. At rest; or with `drag` turning, without viscosity, at
 // 50 Pa·s by explicit steps and at 50 Pa·s solved.
 #include <algorithm>
 #include <chrono>
@@ -80,7 +80,8 @@ bool measure(Backend backend, ParticleModel model, Drag drag, double particles, 
   const double count = static_cast<double>(world.fluid_count());
   // Solves take as many turns as they need: what is typical says little there.
   const auto of = [&](const std::vector<double>& times) {
-    return drag == Drag::kResting ? median(times) : mean(times);
+    const bool solved = drag != Drag::kResting || model == ParticleModel::kIncompressible;
+    return solved ? mean(times) : median(times);
   };
   std::printf("\"%s\",%s,\"%s\",%zu,%zu,%.3f,%.4f,%.4f,%.4f,%.4f,%.3f,%.1f,%llu\n", world.backend().c_str(),
               name(model), name(drag), world.fluid_count(), world.boundary_count(), 1e3 * world.plan().time_step,

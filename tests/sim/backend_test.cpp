@@ -47,18 +47,20 @@ TEST(Backend, AskingForCudaGivesCudaOrAnError) {
   EXPECT_NE(world.error().mend.find("CPU"), std::string::npos);
 }
 
-// The incompressible model is the CPU's: asked for the GPU it says so, left to choose it takes the CPU.
-TEST(Backend, IncompressibleModelRunsOnTheCpu) {
-  Tank tank = make_tank({});
-  tank.scene.model = ParticleModel::kIncompressible;
-  const Plan plan = make_plan(tank.scene, tank.sampled.spacing);
-  const Result<World> refused = make_world(tank.scene, tank.sampled, plan, {1, Backend::kCuda});
-  ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().what.find("CPU only"), std::string::npos) << refused.error().text();
-  EXPECT_NE(refused.error().mend.find("corrected"), std::string::npos);
-  const Result<World> world = make_world(tank.scene, tank.sampled, plan, {1, Backend::kAuto});
-  ASSERT_TRUE(world);
-  EXPECT_EQ(world.value().backend().rfind("CPU, ", 0), 0u);
+// No model is one backend's alone.
+TEST(Backend, AutoTakesTheSameForEveryModel) {
+  for (const ParticleModel model : {ParticleModel::kPaper, ParticleModel::kConsistent, ParticleModel::kCorrected,
+                                    ParticleModel::kIncompressible}) {
+    Tank tank = make_tank({});
+    tank.scene.model = model;
+    Result<World> world =
+        make_world(tank.scene, tank.sampled, make_plan(tank.scene, tank.sampled.spacing), {1, Backend::kAuto});
+    ASSERT_TRUE(world) << name(model);
+    EXPECT_EQ(world.value().backend().rfind(cuda_available() ? "CUDA, " : "CPU, ", 0), 0u) << name(model);
+    for (int i = 0; i < 3; ++i) world.value().step({});
+    EXPECT_EQ(world.value().failure(), "") << name(model);
+    EXPECT_EQ(world.value().take_status(), 0u) << name(model);
+  }
 }
 
 TEST(Backend, AutoTakesWhatThereIs) {

@@ -121,6 +121,11 @@ TEST(Sweep, AQuickOneIsTheCoarseSpacingsAndAFullOneHasVariants) {
   std::size_t base = 0;
   for (const Setting& each : all) base += each.support_ratio == 2.0 && each.step_share == 1.0;
   EXPECT_EQ(base, 12u);
+  options.spacings = {0.003};
+  EXPECT_EQ(settings_of(some, options).size(), 4u * 3u);
+  options.quick = true;
+  ASSERT_EQ(settings_of(some, options).size(), 4u);
+  EXPECT_EQ(settings_of(some, options)[0].spacing, 0.003);
 }
 
 TEST(Verdicts, ARefusalIsARowAndNoCrash) {
