@@ -60,9 +60,11 @@ constexpr glm::dvec2 kColumnForce[] = {{0.33, 1.0},   {0.367, 25.0}, {0.396, 33.
                                        {1.00, 8.8},   {1.20, 4.9}};
 
 // A column of 12 cm stands in the way of a dam break. Peak of the mean over 20 ms, and the impulse of the
-// first wave. The experiment's floor was wet by about a centimetre, this one is dry.
+// first wave. The experiment's floor could not be drained: about a centimetre of water stood on it (Gómez-Gesteira and
+// Dalrymple 2004), here a layer of particles at least.
 std::vector<Reading> column(const Setting& setting, Cost& cost) {
   constexpr double kLength = 1.6, kWidth = 0.61, kHeight = 0.4, kDam = 0.4, kDepth = 0.3, kHalf = 0.06;
+  const double wet = std::max(0.01, setting.spacing);
   SceneBuilder b;
   b.add_fluid(1000.0, 0.001);
   b.add_fixed("tank", tank_at_floor({kLength, kHeight, kWidth}, 0.06));
@@ -70,6 +72,7 @@ std::vector<Reading> column(const Setting& setting, Cost& cost) {
   const int post = b.add_fixed("column", make::box({-kHalf, 0.0, -kHalf}, {kHalf, 0.75, kHalf}),
                                {{left + 0.96, 0.0, 0.0}, {1, 0, 0, 0}});
   b.add_volume(make::box({left, 0.0, -0.5 * kWidth}, {left + kDam, kDepth, 0.5 * kWidth}));
+  b.add_volume(make::box({left + kDam, 0.0, -0.5 * kWidth}, {0.5 * kLength, wet, 0.5 * kWidth}));
   b.set_domain({-1.2, -0.3, -0.6}, {1.2, 1.2, 0.6});
   Trial e(b.scene, setting, cost);
   std::vector<glm::dvec2> force;
@@ -141,7 +144,7 @@ std::vector<ErrorCase> flow_cases() {
       {"column",
        "A dam breaks against a column",
        "experiment of Yeh and Petroff",
-       {0.025, 0.02, 0.015, 0.012},
+       {0.012, 0.01},
        1,
        column},
       {"torricelli", "Water runs out of a hole", "√(2gh)", {0.0075, 0.006, 0.005}, 1, torricelli},
