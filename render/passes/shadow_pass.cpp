@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
+#include <utility>
 #include <vector>
 
 #include "render/passes/light_fit.h"
@@ -59,14 +60,7 @@ Result<ShadowPass> ShadowPass::create(int size) {
   return pass;
 }
 
-ShadowView ShadowPass::draw(const Frame& frame, const MeshStore& meshes, std::span<const View> views) {
-  glBindTextureUnit(kShadowUnit, map_.name());
-  std::vector<const MeshInstance*> drawn;
-  const std::vector<Caster> casters = casters_of(frame, meshes, drawn);
-  if (casters.empty()) return {};
-  const LightFit fit = fit_light(casters, fluid_box(frame, views.front()), views, direction_to_light(frame));
-  const glm::mat4 clip_from_world = light_clip_from_world(fit, size_);
-
+void ShadowPass::draw_map(const MeshStore& meshes, std::span<const Shown> shown) {
   glBindFramebuffer(GL_FRAMEBUFFER, target_.name());
   glViewport(0, 0, size_, size_);
   const float farthest = 1.0f;
@@ -76,13 +70,29 @@ ShadowView ShadowPass::draw(const Frame& frame, const MeshStore& meshes, std::sp
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(2.0f, 4.0f);
   program_.use();
-  for (std::size_t i = 0; i < drawn.size(); ++i) {
-    if (!fit.casts[i]) continue;  // a table alone would fill the map
-    program_.set("clip_from_model", clip_from_world * drawn[i]->model);
-    meshes.draw(drawn[i]->mesh);
+  for (const Shown& one : shown) {
+    program_.set("clip_from_model", one.clip_from_model);
+    meshes.draw(one.mesh);
   }
   glDisable(GL_POLYGON_OFFSET_FILL);
   glDisable(GL_DEPTH_TEST);
+}
+
+ShadowView ShadowPass::draw(const Frame& frame, const MeshStore& meshes, std::span<const View> views) {
+  glBindTextureUnit(kShadowUnit, map_.name());
+  std::vector<const MeshInstance*> drawn;
+  const std::vector<Caster> casters = casters_of(frame, meshes, drawn);
+  if (casters.empty()) return {};
+  const LightFit fit = fit_light(casters, fluid_box(frame, views.front()), views, direction_to_light(frame));
+  const glm::mat4 clip_from_world = light_clip_from_world(fit, size_);
+
+  std::vector<Shown> shown;
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    // A table alone would fill the map.
+    if (fit.casts[i]) shown.push_back({drawn[i]->mesh, clip_from_world * drawn[i]->model});
+  }
+  if (!kept_ || shown != *kept_) draw_map(meshes, shown);
+  kept_ = std::move(shown);
 
   const glm::mat4 to_texture =
       glm::translate(glm::mat4(1.0f), glm::vec3(0.5f)) * glm::scale(glm::mat4(1.0f), glm::vec3(0.5f));

@@ -1,7 +1,9 @@
 // The light's view of the opaque meshes: a depth map that mesh.frag and composite.frag read.
 #pragma once
 
+#include <optional>
 #include <span>
+#include <vector>
 
 #include "render/frame.h"
 #include "render/gl/objects.h"
@@ -16,13 +18,21 @@ class ShadowPass {
   static Result<ShadowPass> create(int size);
 
   /// Reads the opaque meshes, and where the fluid is; writes the depth map that serves all `views` (one at
-  /// least) and binds it. Returns no
-  /// shadow (size 0) for an empty scene.
+  /// least) and binds it. A map that would come out the same is kept. Returns no shadow (size 0) for an empty scene.
   ShadowView draw(const Frame& frame, const MeshStore& meshes, std::span<const View> views);
 
   int size() const { return size_; }
 
  private:
+  /// A mesh in the map.
+  struct Shown {
+    MeshHandle mesh;
+    glm::mat4 clip_from_model;
+    bool operator==(const Shown&) const = default;
+  };
+  void draw_map(const MeshStore& meshes, std::span<const Shown> shown);
+
+  std::optional<std::vector<Shown>> kept_;  ///< what the map shows
   gl::Program program_;
   gl::Texture map_;
   gl::Framebuffer target_;

@@ -86,6 +86,32 @@ TEST_F(KeptPictureTest, LooksLikeOneThatIsDrawnWhole) {
   EXPECT_EQ(different_from_before, 11u) << "each change was seen";
 }
 
+TEST_F(KeptPictureTest, AShadowMapIsKeptUntilABodyMoves) {
+  RenderOptions options = small();
+  options.keep_still = false;
+  const auto renderer = make(options);
+  const kit::Shape floor = kit::make_box({-1.0f, -0.1f, -1.0f}, {1.0f, 0.0f, 1.0f});
+  Frame frame;
+  frame.view = kit::make_view({0.0f, 0.8f, 1.0f}, {0.0f, 0.0f, 0.0f}, kWidth, kHeight);
+  frame.light_direction = {0.0f, -1.0f, 0.0f};
+  frame.meshes = {place(*renderer, floor), place(*renderer, kit::make_sphere(0.1f))};
+  const auto light_under_the_ball = [&](float x, float at) {
+    frame.meshes[1].model = glm::translate(glm::mat4(1.0f), glm::vec3(x, 0.5f, 0.0f));
+    renderer->draw(frame);
+    const glm::vec4 clip = frame.view.projection * frame.view.view * glm::vec4(at, 0.0f, 0.0f, 1.0f);
+    const glm::vec2 pixel = (glm::vec2(clip) / clip.w + 1.0f) * 0.5f * glm::vec2(kWidth, kHeight);
+    return renderer->read_buffer(Buffer::kFinalColor)
+        .at(static_cast<int>(pixel.x), kHeight - 1 - static_cast<int>(pixel.y), 0);
+  };
+  const float dark = light_under_the_ball(-0.4f, -0.4f);
+  const float lit = light_under_the_ball(-0.4f, 0.4f);
+  EXPECT_LT(dark, 0.7f * lit);
+  EXPECT_EQ(light_under_the_ball(-0.4f, -0.4f), dark) << "kept";
+  EXPECT_GT(light_under_the_ball(0.4f, -0.4f), 0.9f * lit) << "the ball has gone, its shadow with it";
+  frame.meshes[1].look.opacity = 0.1f;
+  EXPECT_GT(light_under_the_ball(-0.4f, -0.4f), 0.9f * lit) << "a glass casts none";
+}
+
 TEST_F(KeptPictureTest, WhatMovesIsALittleOfThePicture) {
   MeshStore meshes;
   const auto add = [&](const kit::Shape& shape) {
