@@ -237,7 +237,7 @@ Result<bool> run_jobs(const std::vector<ReportJob>& jobs, std::ofstream& out,
     try {
       job.run();
     } catch (const report::Stopped&) {
-      progress.note("interrupted: drawing what there is");
+      if (interrupted_by() != 0) progress.note("interrupted: drawing what there is");
       break;
     }
     if (!out.flush()) break;

@@ -16,8 +16,11 @@
 #include "peer/verbs/scripted_run.h"
 #include "peer/verbs/verbs.h"
 #include "scenes/load.h"
+#include "scenes/sample.h"
 #include "scenes/vary.h"
+#include "sim/backend.h"
 #include "sim/math/format.h"
+#include "sim/step_limits.h"
 
 namespace slosh {
 namespace {
@@ -77,6 +80,28 @@ Result<std::vector<Member>> members(const SweepVerbOptions& options) {
     all.push_back({std::move(edits), std::move(scene.value())});
   }
   return all;
+}
+
+/// m, of one member.
+double spacing_of(const SweepVerbOptions& options, const Scene& scene) {
+  if (options.spacing > 0.0) return options.spacing;
+  return scene.spacing > 0.0 ? scene.spacing : scene.spacing_max;
+}
+
+/// Why one of them cannot be run: its step would be endless, or its walls are too thin. No field of --set moves a mesh, so
+/// each spacing is sampled once.
+std::optional<Error> refused(const SweepVerbOptions& options, const std::vector<Member>& family, Backend backend) {
+  std::vector<double> sampled;
+  for (const Member& member : family) {
+    const double spacing = spacing_of(options, member.scene);
+    if (std::optional<Error> endless = refuse_endless(member.scene, make_plan(member.scene, spacing, can_solve_drag(backend))))
+      return endless;
+    if (std::find(sampled.begin(), sampled.end(), spacing) != sampled.end()) continue;
+    const Result<SampledScene> there = sample_scene(member.scene, spacing);
+    if (!there) return there.error();
+    sampled.push_back(spacing);
+  }
+  return std::nullopt;
 }
 
 struct Felt {
@@ -155,6 +180,7 @@ int sweep(const SweepVerbOptions& options) {
   setting.backend = backends_of(machine).front();
   setting.threads = options.threads;
   setting.stopped = [] { return interrupted_by() != 0; };
+  if (const std::optional<Error> wrong = refused(options, family.value(), setting.backend)) return fail(*wrong);
   const Result<std::filesystem::path> folder = report_folder(machine, "sweep", kTable);
   if (!folder) return fail(folder.error());
   const std::filesystem::path table = folder.value() / kTable;
@@ -174,9 +200,7 @@ int sweep(const SweepVerbOptions& options) {
     jobs.push_back({member.name(), 1.0, [&, n] {
                       const Scene& scene = family.value()[n].scene;
                       report::Setting one = setting;
-                      one.spacing = options.spacing > 0.0 ? options.spacing
-                                    : scene.spacing > 0.0 ? scene.spacing
-                                                          : scene.spacing_max;
+                      one.spacing = spacing_of(options, scene);
                       const double seconds = options.seconds > 0.0 ? options.seconds : scene.duration;
                       const std::string name = family.value()[n].name();
                       try {

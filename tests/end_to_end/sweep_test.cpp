@@ -68,6 +68,22 @@ TEST_F(Sweep, WhatIsWrongIsSaidBeforeAnythingRuns) {
   }
 }
 
+TEST_F(Sweep, WhatCannotBeRunIsSaidBeforeAnythingRuns) {
+  // The second value alone: a step beside a probe is explicit, and 10⁷ Pa·s ask for one without end.
+  const std::vector<std::pair<Arguments, Arguments>> wrongs{
+      {{"--set", "probe.mass_kg=0.05,0.1", "--spacing", "0.05"}, {"thick", "spacing_max_m"}},
+      {{"--set", "fluid.viscosity_pa_s=1,1e7"}, {"viscosity of 1e+07", "steps for each simulated second"}}};
+  for (const auto& [options, words] : wrongs) {
+    Arguments arguments{"sweep", "probe", "--out", "out"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const Outcome outcome = test::slosh(arguments);
+    EXPECT_EQ(outcome.code, 1) << options[1];
+    for (const std::string& word : words) EXPECT_NE(outcome.err.find(word), std::string::npos) << outcome.err;
+    EXPECT_EQ(outcome.err.find("interrupted"), std::string::npos) << outcome.err;
+    EXPECT_FALSE(std::filesystem::exists(out)) << "nothing was begun: " << outcome.err;
+  }
+}
+
 TEST_F(Sweep, EveryCombinationOfSeveral) {
   const Outcome outcome =
       test::slosh({"sweep", "probe", "--set", "scene.model=paper,corrected", "--set",
