@@ -74,8 +74,8 @@ struct RenderOptions {
   bool ambient_occlusion = true;  ///< darken creases of the meshes (kFull)
   bool fluid_shadow = true;  ///< beyond the paper: fluid dims the light that passes it; needs shadow_size > 0
   bool antialias = true;     ///< beyond the paper: smooth edges in the picture as shown (not in its buffers)
-  bool keep_still = true;    ///< where a CPU draws with antialias: what cannot have changed since the picture before is
-                             ///< kept while the eye stands still
+  bool keep_still = true;    ///< where a CPU draws with antialias: what cannot have changed since the picture
+                           ///< before is kept while the eye stands still
   bool draw_background = true;  ///< false: black behind everything
   Quality quality = Quality::kAuto;
   PixelPasses pixel_passes = PixelPasses::kMeasured;

@@ -100,7 +100,8 @@ void Renderer::Parts::show_in_window() {
 
 std::optional<PixelBox> Renderer::Parts::part_to_draw() {
   // Edges are smoothed in main memory then, which is where the picture is kept without a HUD.
-  if (!options.keep_still || !options.antialias || !fast || compute || !context.is_software()) return std::nullopt;
+  if (!options.keep_still || !options.antialias || !fast || compute || !context.is_software())
+    return std::nullopt;
   return kept.changed(frame, meshes, targets.size, shadow.size > 0 ? shadow.texel : 0.0f);
 }
 
@@ -138,8 +139,9 @@ void Renderer::Parts::draw_scene() {
   }
 
   const bool occlusion = options.ambient_occlusion && !fast;
-  run_in_part("opaque meshes",
-              [&] { scene_pass->draw_opaque(frame, meshes, textures, targets, options.draw_background, occlusion); });
+  run_in_part("opaque meshes", [&] {
+    scene_pass->draw_opaque(frame, meshes, textures, targets, options.draw_background, occlusion);
+  });
   if (occlusion) {
     run("occlusion", [&] { scene_pass->draw_occlusion(targets, kOcclusionReach); });
     run("resolve", [&] { scene_pass->resolve_occlusion(targets); });
@@ -178,13 +180,15 @@ void Renderer::Parts::draw_scene() {
     if (foam_pass) run_in_part("foam", [&] { foam_pass->draw(frame, targets, fluid_depth()); });
   }
   if (translucent) {
-    run_in_part("translucent",
-        [&] { scene_pass->draw_translucent(frame, meshes, textures, targets, fluid_depth(), false); });
+    run_in_part("translucent", [&] {
+      scene_pass->draw_translucent(frame, meshes, textures, targets, fluid_depth(), false);
+    });
   }
   if (!frame.arrows.empty()) {
     run_in_part("arrows", [&] { arrow_pass->draw(frame, targets, fluid_depth()); });
   }
-  run_in_part("display", [&] { display_pass->draw(targets, options.exposure, options.dither, options.antialias); });
+  run_in_part("display",
+              [&] { display_pass->draw(targets, options.exposure, options.dither, options.antialias); });
   if (options.antialias) {
     run("edges", [&] { display_pass->smooth_edges(targets, context.is_software(), part); });
   }

@@ -187,8 +187,8 @@ class Stand {
   Image image_;
 };
 
-/// Processor time of a picture of the shipped bucket with its read-back, ms: drawn whole, and with what stands still
-/// kept. Medians, by turns, over pictures 1/30 s apart.
+/// Processor time of a picture of the shipped bucket with its read-back, ms: drawn whole, and with what
+/// stands still kept. Medians, by turns, over pictures 1/30 s apart.
 struct BucketTimes {
   double whole = 0.0;
   double kept = 0.0;
@@ -408,7 +408,8 @@ int report_picture(const ReportOptions& options) {
       format(", %d thread%s; ", headless.software_threads, headless.software_threads == 1 ? "" : "s") +
       machine_line(options) + "\n";
   const std::string of_bucket = format(
-      "\nA picture of the shipped bucket (%dx%d, %g mm), let go over its table, with its read-back: %.1f ms of processor "
+      "\nA picture of the shipped bucket (%dx%d, %g mm), let go over its table, with its read-back: %.1f ms "
+      "of processor "
       "time\nwhole, %.1f with what stands still kept, as a window has it while the eye stands still.\n\n",
       kWidth, kHeight, 1e3 * kBucketSpacing, bucket.whole, bucket.kept);
   std::printf("\n%s%s%s", table.c_str(), of_bucket.c_str(), drawn_by.c_str());

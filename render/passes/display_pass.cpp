@@ -44,15 +44,17 @@ void DisplayPass::draw(const Targets& targets, float exposure, bool dither, bool
 void DisplayPass::smooth_edges(const Targets& targets, bool on_cpu, const std::optional<PixelBox>& part) {
   if (on_cpu) {
     const glm::ivec2 size = targets.size;
-    const std::size_t bytes = std::size_t{4} * static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
+    const std::size_t bytes =
+        std::size_t{4} * static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
     PixelBox box{glm::ivec2(0), size};
     if (part && sharp_.size() == bytes) box = *part;
     sharp_.resize(bytes);
     if (!box.empty()) {
       const std::size_t first = 4 * (static_cast<std::size_t>(box.low.y) * size.x + box.low.x);
       glPixelStorei(GL_PACK_ROW_LENGTH, size.x);
-      glGetTextureSubImage(targets.sharp.name(), 0, box.low.x, box.low.y, 0, box.size().x, box.size().y, 1, GL_RGBA,
-                           GL_UNSIGNED_BYTE, static_cast<GLsizei>(bytes - first), sharp_.data() + first);
+      glGetTextureSubImage(targets.sharp.name(), 0, box.low.x, box.low.y, 0, box.size().x, box.size().y, 1,
+                           GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(bytes - first),
+                           sharp_.data() + first);
       glPixelStorei(GL_PACK_ROW_LENGTH, 0);
       slosh::smooth_edges(sharp_, size, box, brightness_, smooth_);
     }

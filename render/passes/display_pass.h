@@ -16,8 +16,8 @@ class DisplayPass {
   static Result<DisplayPass> create(Display display, const ColorConfig& color, bool compute);
   /// Reads color; writes display, or sharp where smooth_edges follows.
   void draw(const Targets& targets, float exposure, bool dither, bool edges_follow);
-  /// Reads sharp; writes display. `on_cpu`: where a CPU draws; then `part` may say what of sharp was written since
-  /// the call before.
+  /// Reads sharp; writes display. `on_cpu`: where a CPU draws; then `part` may say what of sharp was written
+  /// since the call before.
   void smooth_edges(const Targets& targets, bool on_cpu, const std::optional<PixelBox>& part = std::nullopt);
   bool shows(Display display, const ColorConfig& color, bool compute) const {
     return display == display_ && color == color_ && compute == program_.on_compute();

@@ -71,7 +71,8 @@ void smooth_edges(std::span<const std::uint8_t> rgba, glm::ivec2 size, PixelBox 
   out.resize(rgba.size());
   for (int y = changed.low.y; y < changed.high.y; ++y) {
     const std::size_t end = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(changed.high.x);
-    for (std::size_t i = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(changed.low.x); i < end; ++i)
+    for (std::size_t i = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(changed.low.x);
+         i < end; ++i)
       brightness[i] = (0.299f * rgba[4 * i] + 0.587f * rgba[4 * i + 1] + 0.114f * rgba[4 * i + 2]) / 255.0f;
   }
   // An edge's end is looked for so far away, and one more is read beyond it.

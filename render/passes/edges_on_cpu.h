@@ -11,9 +11,9 @@
 
 namespace slosh {
 
-/// `rgba`: a picture as shown, eight bits a channel, any row order. Writes it with its edges smoothed to `out`, as far as
-/// that may differ from the call before where `changed` is what changed in it. `brightness` and `out` are kept from
-/// picture to picture; where they have another size all of it is written.
+/// `rgba`: a picture as shown, eight bits a channel, any row order. Writes it with its edges smoothed to
+/// `out`, as far as that may differ from the call before where `changed` is what changed in it. `brightness`
+/// and `out` are kept from picture to picture; where they have another size all of it is written.
 void smooth_edges(std::span<const std::uint8_t> rgba, glm::ivec2 size, PixelBox changed,
                   std::vector<float>& brightness, std::vector<std::uint8_t>& out);
 

@@ -61,8 +61,8 @@ void FluidShadowPass::draw(const Frame& frame, const RenderOptions& options, con
   for (std::size_t i = 0; i < fluids; ++i) extinction[i] = frame.fluids[i].extinction;
   glProgramUniform3fv(program_.name(), glGetUniformLocation(program_.name(), "extinction"),
                       static_cast<GLsizei>(extinction.size()), &extinction[0].x);
-  // Fewer splats are drawn wider, so that they still close up, and their sum stays the same. Little wider than
-  // that takes: the shadow is to end where the fluid does.
+  // Fewer splats are drawn wider, so that they still close up, and their sum stays the same. Little wider
+  // than that takes: the shadow is to end where the fluid does.
   const float radius =
       kSoft * frame.particle_radius * std::max(options.splat_scale, std::cbrt(static_cast<float>(step)));
   const glm::mat4& clip = shadow.clip_from_world;

@@ -9,8 +9,8 @@
 namespace slosh {
 namespace {
 
-/// Of a fluid's shadow: how far a particle's disc reaches past its centre in the picture or in the light's map, where
-/// one disc stands for several, particle radii.
+/// Of a fluid's shadow: how far a particle's disc reaches past its centre in the picture or in the light's
+/// map, where one disc stands for several, particle radii.
 constexpr float kFluidReach = 4.0f;
 constexpr float kDiscs = 8000.0f;
 
@@ -31,7 +31,8 @@ class Projector {
   /// Where a box is seen, and what it may cast a shadow on. `pad`: m around it.
   PixelBox of(Bounds box, float pad) const {
     if (box.empty()) return {};
-    // Shadows are softened over some texels of their map, and those of a fluid lie in one of a third of its size.
+    // Shadows are softened over some texels of their map, and those of a fluid lie in one of a third of its
+    // size.
     const float soft = 8.0f * texel_;
     box.low -= pad + soft;
     box.high += pad + soft;
@@ -43,7 +44,8 @@ class Projector {
     glm::vec2 high(-1e9f);
     for (int corner = 0; corner < 8; ++corner) {
       for (const float along : {0.0f, way}) {
-        const glm::vec4 clip = clip_from_world_ * glm::vec4(box_corner(box, corner) - along * to_light_, 1.0f);
+        const glm::vec4 clip =
+            clip_from_world_ * glm::vec4(box_corner(box, corner) - along * to_light_, 1.0f);
         if (!(clip.w > near_)) return whole();  // beside or behind the eye, or no number
         const glm::vec2 at = (glm::vec2(clip) / clip.w + 1.0f) * 0.5f * glm::vec2(size_);
         low = glm::min(low, at);
@@ -114,7 +116,8 @@ PixelBox moving_parts(const Frame& frame, const Projector& seen) {
     Bounds box;
     box.add(arrow.from);
     box.add(arrow.to);
-    all.add(seen.of(box, 0.02f * glm::distance(arrow.from, eye)));  // arrow_pass.cpp: its head's width, at most
+    all.add(
+        seen.of(box, 0.02f * glm::distance(arrow.from, eye)));  // arrow_pass.cpp: its head's width, at most
   }
   return all;
 }

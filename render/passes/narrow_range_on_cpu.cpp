@@ -45,8 +45,8 @@ void smooth_along(const Lines& lines, const float* here, int count, const Narrow
     depth[i] = fluid ? here[i] : shader::kFluidDepthLimit;
     at[i] = lines.at + (lines.at_moves ? i : 0);
     const int inside = std::min(at[i], last - at[i]);
-    const float reach = shader::filter_reach(kernel.reach * kernel.pixels_per_metre / depth[i],
-                                             static_cast<float>(inside));
+    const float reach =
+        shader::filter_reach(kernel.reach * kernel.pixels_per_metre / depth[i], static_cast<float>(inside));
     stride[i] = static_cast<int>(shader::filter_stride(reach, static_cast<float>(kernel.taps)));
     taps[i] = fluid && inside > 0 ? static_cast<int>(reach) / stride[i] : 0;
     share[i] = static_cast<float>(stride[i]) / (reach + 1.0f);

@@ -18,7 +18,8 @@ class ShadowPass {
   static Result<ShadowPass> create(int size);
 
   /// Reads the opaque meshes, and where the fluid is; writes the depth map that serves all `views` (one at
-  /// least) and binds it. A map that would come out the same is kept. Returns no shadow (size 0) for an empty scene.
+  /// least) and binds it. A map that would come out the same is kept. Returns no shadow (size 0) for an empty
+  /// scene.
   ShadowView draw(const Frame& frame, const MeshStore& meshes, std::span<const View> views);
 
   int size() const { return size_; }

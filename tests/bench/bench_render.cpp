@@ -63,7 +63,8 @@ void say_options(CLI::App& app, Wishes& wishes) {
   app.add_flag("--bucket", wishes.bucket, "the tank is no glass");
   app.add_flag("--stereo", wishes.stereo, "both eyes against one as well, each of that size, with the HUD");
   app.add_option("--pixels", wishes.pixels,
-                 "passes over pixels by fragments, compute, both in turn, or as measured; still: by fragments, all anew "
+                 "passes over pixels by fragments, compute, both in turn, or as measured; still: by "
+                 "fragments, all anew "
                  "and with what stands still kept, in turn")
       ->check(CLI::IsMember({"both", "fragments", "compute", "measured", "still"}))
       ->capture_default_str();

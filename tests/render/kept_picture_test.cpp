@@ -119,8 +119,9 @@ TEST_F(KeptPictureTest, WhatMovesIsALittleOfThePicture) {
   };
   Frame frame;
   frame.view = kit::make_view({0.0f, 0.6f, 1.0f}, {0.0f, 0.0f, 0.0f}, kWidth, kHeight);
-  frame.meshes = {{add(kit::make_box({-0.9f, -0.05f, -0.6f}, {0.9f, 0.0f, 0.6f})), glm::mat4(1.0f), {}},
-                  {add(kit::make_sphere(0.05f)), glm::translate(glm::mat4(1.0f), glm::vec3(0.0f, 0.1f, 0.0f)), {}}};
+  frame.meshes = {
+      {add(kit::make_box({-0.9f, -0.05f, -0.6f}, {0.9f, 0.0f, 0.6f})), glm::mat4(1.0f), {}},
+      {add(kit::make_sphere(0.05f)), glm::translate(glm::mat4(1.0f), glm::vec3(0.0f, 0.1f, 0.0f)), {}}};
   const glm::ivec2 size(kWidth, kHeight);
   KeptPicture kept;
   EXPECT_EQ(kept.changed(frame, meshes, size, 1e-3f).size(), size) << "the first";
@@ -131,10 +132,12 @@ TEST_F(KeptPictureTest, WhatMovesIsALittleOfThePicture) {
   EXPECT_LT(moved.size().x * moved.size().y, kWidth * kHeight / 4);
   // Both places, and where light past them meets the table's lower side.
   for (const float x : {0.0f, 0.1f}) {
-    for (const glm::vec3 at : {glm::vec3(x, 0.1f, 0.0f), glm::vec3(x, 0.1f, 0.0f) + 0.1f * frame.light_direction}) {
+    for (const glm::vec3 at :
+         {glm::vec3(x, 0.1f, 0.0f), glm::vec3(x, 0.1f, 0.0f) + 0.1f * frame.light_direction}) {
       const glm::vec4 clip = frame.view.projection * frame.view.view * glm::vec4(at, 1.0f);
       const glm::vec2 pixel = (glm::vec2(clip) / clip.w + 1.0f) * 0.5f * glm::vec2(size);
-      EXPECT_TRUE(pixel.x > moved.low.x && pixel.x < moved.high.x && pixel.y > moved.low.y && pixel.y < moved.high.y);
+      EXPECT_TRUE(pixel.x > moved.low.x && pixel.x < moved.high.x && pixel.y > moved.low.y &&
+                  pixel.y < moved.high.y);
     }
   }
   frame.meshes[1].model[3].x = NAN;

@@ -49,14 +49,16 @@ TEST_F(ScoreTest, NormalsOfAnAnalyticPool) {
     EXPECT_LT(ours.normal_mean, 3.0);
     EXPECT_LT(ours.normal_p95, 7.0);
     EXPECT_LT(ours.edge_mean, 10.0);
-    EXPECT_LT(std::abs(ours.depth_bias), 0.15) << "particle radii: smoothing must not shrink the fluid, nor swell it";
+    EXPECT_LT(std::abs(ours.depth_bias), 0.15)
+        << "particle radii: smoothing must not shrink the fluid, nor swell it";
     EXPECT_LT(ours.depth_rms, 0.4);
     EXPECT_LT(ours.silhouette, 2.2) << "px, of particles of 5 px radius";
   }
 }
 
-// Taps far apart leave a net of lines in large particles' surface, and a filter that takes what is beyond the picture for
-// flat bends its rim. As measured 6.9° and 16.0° (p95); with such a net 7.3° and 18.0°, with a bent rim too 7.6° and 20.2°.
+// Taps far apart leave a net of lines in large particles' surface, and a filter that takes what is beyond the
+// picture for flat bends its rim. As measured 6.9° and 16.0° (p95); with such a net 7.3° and 18.0°, with a
+// bent rim too 7.6° and 20.2°.
 TEST_F(ScoreTest, LargeParticlesShowNoNetAndThePictureNoRim) {
   const score::Pool pool = score::make_pool(15.0f, kPoolWidth, kPoolHeight);
   const score::Exact exact = score::exact_pool(pool, kPoolWidth, kPoolHeight);
