@@ -58,7 +58,28 @@ bool begins_at_zero(const ChartPanel& panel) {
   return !panel.log_y && least >= 0.0 && least < 0.1 * most;
 }
 
+std::string look_of(const ChartSeries& series) {
+  std::string look = series.width > 0.0 ? (series.mark > 0 ? "linespoints" : "lines") : "points";
+  if (series.width > 0.0) look += format(" lw %.2g dt %s", series.width, series.dashed ? "2" : "1");
+  if (series.mark > 0) look += format(" pt %d ps %.2g", series.mark, series.size);
+  return look + " lc rgb \"" + series.color + "\" ";
+}
+
+std::string key_script(const ChartPanel& panel) {
+  std::string script =
+      "unset logscale\nunset object\nunset label\nset xrange [0:1]\nset yrange [0:1]\nunset border\nunset tics\n"
+      "unset title\nunset xlabel\nunset ylabel\n"
+      "set key inside left top reverse Left samplen 2 font \"DejaVu Sans,10\"\n";
+  std::string plot;
+  for (const ChartSeries& series : panel.series) {
+    plot += (plot.empty() ? "plot " : ", \\\n  ") + std::string("NaN with ") + look_of(series) + "title " +
+            gnuplot_text(series.name);
+  }
+  return script + plot + "\n" + kStyle + "set tics\nset autoscale\n";
+}
+
 std::string panel_script(const ChartPanel& panel, std::size_t number) {
+  if (panel.key_alone) return key_script(panel);
   std::string data, plot;
   for (std::size_t i = 0; i < panel.series.size(); ++i) {
     const ChartSeries& series = panel.series[i];
@@ -70,10 +91,7 @@ std::string panel_script(const ChartPanel& panel, std::size_t number) {
     const std::string block = format("$p%zus%zu", number, i);
     data += block + " << END_OF_DATA\n" + rows + "END_OF_DATA\n";
     plot += (plot.empty() ? "plot " : ", \\\n  ") + block + " using 1:2 with ";
-    plot += series.width > 0.0 ? (series.mark > 0 ? "linespoints" : "lines") : "points";
-    if (series.width > 0.0) plot += format(" lw %.2g dt %s", series.width, series.dashed ? "2" : "1");
-    if (series.mark > 0) plot += format(" pt %d ps %.2g", series.mark, series.size);
-    plot += " lc rgb \"" + series.color + "\" ";
+    plot += look_of(series);
     plot += series.name.empty() ? "notitle" : "title " + gnuplot_text(series.name);
   }
   std::string script = data + "unset logscale\n" + spans_script(panel);
@@ -119,7 +137,7 @@ std::string chart_script(const std::vector<ChartPanel>& panels, int columns, con
 }
 
 std::string tile_script(const TileMap& map) {
-  constexpr int kRow = 24, kColumn = 140, kLeft = 420, kTop = 146;
+  constexpr int kRow = 24, kColumn = 165, kLeft = 420, kTop = 146;
   const int rows = static_cast<int>(map.rows.size()), columns = static_cast<int>(map.columns.size());
   const double width = kLeft + kColumn * columns + 40, height = kTop + kRow * rows + 30;
   std::string script =

@@ -32,6 +32,7 @@ struct ChartPanel {
   std::vector<ChartSeries> series;
   bool legend = true;
   std::vector<ChartSpan> spans = {};  ///< in order; every second one is shaded
+  bool key_alone = false;             ///< no axes: the series' names and looks alone, their points do not matter
 };
 
 /// A complete gnuplot script, data included, that writes a picture ("png", "svg" or "pdf"): panels in rows of `columns`,

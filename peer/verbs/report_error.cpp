@@ -174,6 +174,20 @@ std::string markdown(const std::vector<Group>& groups, const std::string& machin
   return text;
 }
 
+// What the marks of the pictures mean, each once.
+ChartPanel key_of(const std::vector<ChartPanel>& panels) {
+  ChartPanel key;
+  key.key_alone = true;
+  for (const ChartPanel& panel : panels) {
+    for (const ChartSeries& series : panel.series) {
+      const bool known = std::any_of(key.series.begin(), key.series.end(),
+                                     [&](const ChartSeries& other) { return other.name == series.name; });
+      if (!known && !series.points.empty()) key.series.push_back(series);
+    }
+  }
+  return key;
+}
+
 int write_up(const std::vector<ErrorRow>& rows, const std::filesystem::path& folder,
              const std::string& machine) {
   const std::vector<Group> groups = groups_of(rows);
@@ -186,9 +200,10 @@ int write_up(const std::vector<ErrorRow>& rows, const std::filesystem::path& fol
         draw(chart_script({panel, against_spacing(group)}, 2, machine), folder / file_name(group));
     if (!drawn) return fail(drawn.error());
     all.push_back(panel);
-    all.back().legend = all.size() == 1;
+    all.back().legend = false;
   }
   if (all.empty()) return kExitOk;
+  all.push_back(key_of(all));
   const Result<bool> drawn =
       draw(chart_script(all, 3, "Error against run time: " + machine), folder / "errors.png");
   if (!drawn) return fail(drawn.error());

@@ -15,7 +15,7 @@ namespace {
 // A solve ends by its tolerance: rounding may give one of the two a turn more, and then they differ by what the
 // tolerance leaves.
 constexpr double kOneStep = 1e-5;
-constexpr double kTenSteps = 2e-3;
+constexpr double kTenSteps = 1e-3;
 
 Tank pressed(Tank tank) {
   tank.scene.model = ParticleModel::kIncompressible;
@@ -54,9 +54,9 @@ void compare_held(const char* name, const Tank& tank, int steps) {
   std::printf("  mean force on the paddle: CPU %.5f %.5f %.5f N, GPU %.5f %.5f %.5f N\n", mean[0].x, mean[0].y,
               mean[0].z, mean[1].x, mean[1].y, mean[1].z);
   expect_true("the fluid presses on it", glm::length(mean[0]) > 0.01 * weight);
-  expect_at_most("mean force on the paddle", glm::distance(mean[0], mean[1]) / glm::length(mean[0]), 0.03);
-  expect_at_most("where the last body is, m", glm::distance(at[0], at[1]), 5e-4);
-  expect_at_most("kinetic energy", std::abs(kinetic[1] / kinetic[0] - 1.0), 0.1);
+  expect_at_most("mean force on the paddle", glm::distance(mean[0], mean[1]) / glm::length(mean[0]), 0.02);
+  expect_at_most("where the last body is, m", glm::distance(at[0], at[1]), 3e-4);
+  expect_at_most("kinetic energy", std::abs(kinetic[1] / kinetic[0] - 1.0), 0.03);
 }
 
 }  // namespace
@@ -66,7 +66,7 @@ void compare_pressed_steps() {
                 kOneStep);
   const Tank thick = shaken(pressed(thick_tank(50.0, 500.0)));
   compare_steps("pressures and drag solved for, held paddle and free box", thick, 1, kOneStep);
-  compare_momenta(thick, pressing_plan(thick), 3, 1e-5);
+  compare_momenta(thick, pressing_plan(thick), 3, 2e-6);
   const Tank probed = pressed(probed_tank());
   compare_steps("pressures solved for, probe", probed, 3, kOneStep);
 }
@@ -85,7 +85,7 @@ void compare_pressed() {
     compare_steps(c.name, tank, 1, kOneStep);
     compare_steps(c.name, tank, 10, kTenSteps);
     compare_held(c.name, c.tank, 100);
-    compare_momenta(tank, pressing_plan(tank), 50, 1e-5);
+    compare_momenta(tank, pressing_plan(tank), 50, 2e-6);
     repeat(c.name, c.tank, kPaddleHeight, 100);
   }
   const Tank probed = pressed(probed_tank());
