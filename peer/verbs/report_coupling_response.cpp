@@ -87,7 +87,7 @@ Result<bool> report_transparency(const ReportOptions& options, const std::filesy
     Scheme scheme;
     std::size_t trip = 0;  // which of the round trips
     bool diverged = false;
-    std::vector<Impedance> z;
+    std::vector<Impedance> z = {};
   };
   std::vector<Part> parts;
   for (const Site& site : kSites) {

@@ -230,8 +230,9 @@ TEST(ForeignNames, AColorConfigurationOfAStrangerIsShownAsText) {
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     expect_fit_for_a_terminal(outcome.out);
     expect_fit_for_a_terminal(outcome.err);
-    if (!more.empty())
+    if (!more.empty()) {
       EXPECT_NE(outcome.err.find("'P?[2J?31m`touch obeyed`"), std::string::npos) << outcome.err;
+    }
   }
   expect_nothing_obeyed();
 }

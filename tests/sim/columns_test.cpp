@@ -26,9 +26,12 @@ TEST(Columns, EachHasANameAndAPlaceOfItsOwn) {
 // when it is taken.
 TEST(Columns, OnlyWhatOutlivesAStepIsSavedOrHashed) {
   for (const ColumnInfo& column : kFluidColumns) {
-    if (column.life == ColumnLife::kStep) EXPECT_FALSE(column.saved || column.hashed) << column.name;
-    if (column.hashed)
+    if (column.life == ColumnLife::kStep) {
+      EXPECT_FALSE(column.saved || column.hashed) << column.name;
+    }
+    if (column.hashed) {
       EXPECT_TRUE(column.saved) << column.name << ": a restored world would have another hash";
+    }
   }
 }
 
