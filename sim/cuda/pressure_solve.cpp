@@ -15,12 +15,7 @@ void PressureSolver::plan(const Plan& plan, const ParticleStart& start, std::siz
   view_.surface = static_cast<std::uint32_t>(start.moving.size());
   view_.rows.room = row_room(plan);
   view_.bodies = view_.surface ? static_cast<std::uint32_t>(body_count) : 0;
-  placed_.resize(body_count);
-  for (std::uint32_t i = 0; i < view_.surface; ++i) {  // body by body
-    Placed& placed = placed_[start.moving[i].body];
-    if (placed.end == 0) placed.begin = i;
-    placed.end = i + 1;
-  }
+  placed_ = ranges_of(start.moving, body_count);
   allocate_vectors(check);
   bodies_.allocate(view_.bodies, check);
   sent_.allocate(view_.bodies, check);

@@ -32,10 +32,6 @@ class PressureSolver {
              CallCheck& check, cudaStream_t stream);
 
  private:
-  struct Placed {
-    std::uint32_t begin = 0, end = 0;  // in local order
-  };
-
   void allocate_vectors(CallCheck& check);
   void send(std::span<const ViscousBody> bodies, std::span<const RigidBody> before, CallCheck& check,
             cudaStream_t stream);
@@ -46,7 +42,7 @@ class PressureSolver {
   const WrenchSums* sums_ = nullptr;
   PressureView view_;
   int blocks_ = 0;
-  std::vector<Placed> placed_;  // one a body
+  std::vector<BodyRange> placed_;  // one a body
   cudaEvent_t ready_ = nullptr;
 
   DeviceBuffer<float4> pairs_, by_other_, own_, velocity_, on_surface_, turning_;

@@ -10,4 +10,14 @@ std::uint32_t row_room(const Plan& plan) {
   return 8 * static_cast<std::uint32_t>(std::ceil(1.5 * in_reach / 8.0));
 }
 
+std::vector<BodyRange> ranges_of(std::span<const SurfaceParticle> moving, std::size_t body_count) {
+  std::vector<BodyRange> ranges(body_count);
+  for (std::uint32_t i = 0; i < moving.size(); ++i) {
+    BodyRange& range = ranges[moving[i].body];
+    if (range.end == 0) range.begin = i;
+    range.end = i + 1;
+  }
+  return ranges;
+}
+
 }  // namespace slosh::cuda

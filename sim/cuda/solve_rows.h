@@ -1,6 +1,9 @@
 // What a solve of one launch has of its pairs: written down once a sub-step, asked for turn after turn.
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "sim/cuda/kernels.h"
 
 namespace slosh::cuda {
@@ -26,5 +29,12 @@ struct PairRows {
 /// Pairs that an entry's row has room for: half again as many as particles of a lattice within reach, in whole
 /// eights. Few have more.
 std::uint32_t row_room(const Plan& plan);
+
+/// A body's particles in local order; none where it does not move.
+struct BodyRange {
+  std::uint32_t begin = 0, end = 0;
+};
+/// One a body. `moving` is body by body.
+std::vector<BodyRange> ranges_of(std::span<const SurfaceParticle> moving, std::size_t body_count);
 
 }  // namespace slosh::cuda

@@ -15,14 +15,10 @@ void ViscousSolver::plan(const Plan& plan, const ParticleStart& start, std::size
   view_.surface = static_cast<std::uint32_t>(start.moving.size());
   view_.rows.room = row_room(plan);
   view_.bodies = view_.surface ? static_cast<std::uint32_t>(body_count) : 0;
-  placed_.resize(body_count);
-  for (std::uint32_t i = 0; i < view_.surface; ++i) {  // body by body
-    Placed& placed = placed_[start.moving[i].body];
-    if (placed.end == 0) placed.begin = i;
-    placed.end = i + 1;
-  }
+  placed_ = ranges_of(start.moving, body_count);
+  drag_of_.assign(body_count, -1);
   for (std::size_t i = 0; i < sums.bodies().size(); ++i)
-    placed_[sums.bodies()[i]].drag = static_cast<std::int32_t>(i);
+    drag_of_[sums.bodies()[i]] = static_cast<std::int32_t>(i);
   allocate_vectors(check);
   bodies_.allocate(view_.bodies, check);
   sent_.allocate(view_.bodies, check);
@@ -82,7 +78,7 @@ void ViscousSolver::send(std::span<const ViscousBody> bodies, std::span<const Ri
                          CallCheck& check, cudaStream_t stream) {
   if (view_.bodies == 0 || check.failed()) return;
   for (std::size_t b = 0; b < bodies.size(); ++b)
-    sent_[b] = {bodies[b], before[b].position, placed_[b].begin, placed_[b].end, placed_[b].drag};
+    sent_[b] = {bodies[b], before[b].position, placed_[b].begin, placed_[b].end, drag_of_[b]};
   check.ok(cudaMemcpyAsync(bodies_.data(), sent_.data(), bodies_.bytes(), cudaMemcpyHostToDevice, stream),
            "sending bodies for the drag's solve");
 }

@@ -33,11 +33,6 @@ class ViscousSolver {
   void drags(std::span<BodyDrag> out) const;
 
  private:
-  struct Placed {
-    std::uint32_t begin = 0, end = 0;  // in local order
-    std::int32_t drag = -1;
-  };
-
   void allocate_vectors(CallCheck& check);
   void send(std::span<const ViscousBody> bodies, std::span<const RigidBody> before, CallCheck& check,
             cudaStream_t stream);
@@ -52,7 +47,8 @@ class ViscousSolver {
   const WrenchSums* sums_ = nullptr;
   ViscousView view_;
   int blocks_ = 0;
-  std::vector<Placed> placed_;  // one a body
+  std::vector<BodyRange> placed_;       // one a body
+  std::vector<std::int32_t> drag_of_;  // likewise: its place among the drags, below 0: none
   std::vector<char> moved_;     // one a body, in the last solve()
   cudaEvent_t ready_ = nullptr;
 
