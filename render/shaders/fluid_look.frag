@@ -39,6 +39,28 @@ float back_at(vec2 pixel) {
   return texelFetch(back_depth, ivec2(clamp(pixel * picture.zw, vec2(0.0), vec2(0.999)) * size), 0).r;
 }
 
+// A floor goes on as steeply below a pixel as above it, in two of three columns: here, or where it begins or ends at most one reach
+// away. In a jet and in spray the far side is one drop's here and another's there; taken for a floor, it was flat patches of
+// the room's colour. 0–1.
+float goes_on_evenly(vec2 middle, vec2 reach) {
+  vec3 evenness[3];  // of a column: below, here, above
+  for (int k = -1; k <= 1; ++k) {
+    vec2 column = middle + vec2(0.6 * float(k) * reach.y, 0.0);
+    float before = 0.0;
+    float step_before = 0.0;
+    for (int row = -2; row <= 2; ++row) {
+      float depth = back_at(column + float(row) * reach);
+      float rise = depth > 0.0 && before > 0.0 ? depth - before : -1.0;
+      if (row >= 0) evenness[k + 1][row] = min(rise, step_before) / max(max(rise, step_before), 1.0e-6);
+      step_before = rise;
+      before = depth;
+    }
+  }
+  vec3 high = max(evenness[0], evenness[1]);
+  vec3 second = max(min(evenness[0], evenness[1]), min(high, evenness[2]));
+  return smoothstep(0.1, 0.5, max(second.x, max(second.y, second.z)));
+}
+
 // inside: unit, of the light in the fluid, eye axes. back: of this pixel.
 FarSide far_side(vec3 inside, float refraction, float back, float scene, vec2 middle) {
   vec3 up = eye_from_world[1].xyz;
@@ -59,7 +81,9 @@ FarSide far_side(vec3 inside, float refraction, float back, float scene, vec2 mi
   vec3 along = eye_position(middle + reach, above / 3.0) - eye_position(middle - reach, below / 3.0);
   float upright = smoothstep(0.55, 0.9, abs(dot(along, up)) * inversesqrt(dot(along, along) + 1.0e-12));
   // Along a line of sight that grazes a wet wall there is some way from the splats to it.
-  return FarSide(flat_enough * smoothstep(0.0, 0.25, apart) * (1.0 - upright), smoothstep(1.5, 3.0, apart) * upright);
+  float by_floor = flat_enough * smoothstep(0.0, 0.25, apart) * (1.0 - upright);
+  if (by_floor > 0.0) by_floor *= goes_on_evenly(middle, reach);
+  return FarSide(by_floor, smoothstep(1.5, 3.0, apart) * upright);
 }
 
 // How much farther light comes that the far side mirrored, m: half the longest way through the fluid of four pixels eight splats away.
