@@ -61,8 +61,13 @@ float goes_on_evenly(vec2 middle, vec2 reach) {
   return smoothstep(0.1, 0.5, max(second.x, max(second.y, second.z)));
 }
 
+// How much of the way from front to back is fluid, 0–1: of spray and of a jet that breaks up it is little.
+float filled(vec2 middle, float span) {
+  return look_switches.x > 0.5 ? texture(summed_chord, middle * picture.zw).r / max(span, 1.0e-6) : 0.0;
+}
+
 // inside: unit, of the light in the fluid, eye axes. back: of this pixel.
-FarSide far_side(vec3 inside, float refraction, float back, float scene, vec2 middle) {
+FarSide far_side(vec3 inside, float refraction, float front, float back, float scene, vec2 middle) {
   vec3 up = eye_from_world[1].xyz;
   float down = -dot(inside, up);
   float flat_enough = smoothstep(0.0, 0.06, (1.0 - down * down) * refraction * refraction - 1.0) * step(0.0, down);
@@ -82,7 +87,7 @@ FarSide far_side(vec3 inside, float refraction, float back, float scene, vec2 mi
   float upright = smoothstep(0.55, 0.9, abs(dot(along, up)) * inversesqrt(dot(along, along) + 1.0e-12));
   // Along a line of sight that grazes a wet wall there is some way from the splats to it.
   float by_floor = flat_enough * smoothstep(0.0, 0.25, apart) * (1.0 - upright);
-  if (by_floor > 0.0) by_floor *= goes_on_evenly(middle, reach);
+  if (by_floor > 0.0) by_floor *= max(goes_on_evenly(middle, reach), smoothstep(0.75, 0.9, filled(middle, back - front)));
   return FarSide(by_floor, smoothstep(1.5, 3.0, apart) * upright);
 }
 
@@ -131,7 +136,7 @@ bool pixel(ivec2 texel, out vec4 value) {
   vec3 inside = refract(-to_eye, surface.normal, 1.0 / matter.refraction);
   vec2 middle = vec2(texel) + 0.5;
   float back = back_depth_at(middle);
-  FarSide far = far_side(inside, matter.refraction, back, scene, middle);
+  FarSide far = far_side(inside, matter.refraction, front, back, scene, middle);
   float mirrored = far.by_floor + far.by_wall;
   float way = thickness + mirrored * way_beside(middle, back, mirrored > 0.0 ? 4 : 0);
   FluidPoint point = FluidPoint(surface.normal, to_eye, to_light_eye.xyz, way);
