@@ -52,7 +52,7 @@ TEST_F(ExportTest, EveryKindIsReadBackByAnotherProgram) {
 
   // A replay writes the same to the byte.
   arguments = {"replay", "run.rec", "--out", "again", "--no-render", "--threads", "2", "--export-rate", "40"};
-  for (const std::string& kind : {"particles:ply", "surface:ply"})
+  for (const std::string kind : {"particles:ply", "surface:ply"})
     arguments.insert(arguments.end(), {"--export", kind});
   outcome = test::slosh(arguments);
   ASSERT_EQ(outcome.code, 0) << outcome.err;
