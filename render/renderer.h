@@ -70,6 +70,10 @@ struct RenderOptions {
   bool layers = true;  ///< beyond the paper: layers of fluid with air between count each by itself; not with
                        ///< Surface::kPaper
 
+  bool soft_mixing =
+      true;  ///< beyond the paper: where fluids meet, their looks go over into each other within some four
+             ///< particles; needs lit_fluid. Costs nothing where all that is seen is one fluid
+
   int shadow_size = 1024;         ///< texels a side of the light's shadow map, 0 = no shadows, up to 8192
   bool ambient_occlusion = true;  ///< darken creases of the meshes (kFull)
   bool fluid_shadow = true;  ///< beyond the paper: fluid dims the light that passes it; needs shadow_size > 0

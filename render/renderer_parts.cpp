@@ -57,6 +57,7 @@ Result<bool> Renderer::Parts::fit_to_options() {
     thickness_pass = std::move(thickness.value());
     arrow_pass = std::move(arrows.value());
     foam_pass.reset();
+    mixing_pass.reset();
     far_light = std::move(light);
     scene_pass = std::move(scene.value());
     fluid_shadow_pass = std::move(fluid_shadow.value());
@@ -103,6 +104,22 @@ std::optional<PixelBox> Renderer::Parts::part_to_draw() {
   if (!options.keep_still || !options.antialias || !fast || compute || !context.is_software())
     return std::nullopt;
   return kept.changed(frame, meshes, targets.size, shadow.size > 0 ? shadow.texel : 0.0f);
+}
+
+int Renderer::Parts::draw_mixing() {
+  const int layers = options.soft_mixing && options.lit_fluid ? mixing_layers(frame, splats) : 0;
+  if (layers == 0) return 0;
+  if (!mixing_pass) {
+    auto made = MixingPass::create(compute);
+    if (!made) return 0;  // a driver that refuses it: the front-most particle brings its look
+    mixing_pass = std::move(made.value());
+  }
+  run("mixing", [&] {
+    mixing_pass->draw(frame, targets, fluid_passes->smoothed(targets), fluid_passes->spheres(),
+                      splats.spheres.size(), layers);
+  });
+  mixing_pass->bind();
+  return layers;
 }
 
 void Renderer::Parts::draw_scene() {
@@ -171,7 +188,8 @@ void Renderer::Parts::draw_scene() {
                          targets.scene_color.name(), GL_TEXTURE_2D, 0, box.low.x, box.low.y, 0, box.size().x,
                          box.size().y, 1);
     });
-    run_in_part("composite", [&] { fluid_passes->composite(targets, options.lit_fluid); });
+    const int mixed = draw_mixing();
+    run_in_part("composite", [&] { fluid_passes->composite(targets, options.lit_fluid, mixed); });
   }
   if (!frame.foam.empty()) {
     if (!foam_pass) {

@@ -17,6 +17,7 @@
 #include "render/passes/hud_pass.h"
 #include "render/passes/kept_picture.h"
 #include "render/passes/meshes.h"
+#include "render/passes/mixing_pass.h"
 #include "render/passes/pass_timer.h"
 #include "render/passes/scene_pass.h"
 #include "render/passes/shadow_pass.h"
@@ -46,6 +47,7 @@ struct Renderer::Parts {
   std::optional<ScenePass> scene_pass;
   std::optional<FluidPasses> fluid_passes;
   std::optional<ThicknessPass> thickness_pass;
+  std::optional<MixingPass> mixing_pass;  ///< made when fluids meet
   std::optional<FoamPass> foam_pass;  ///< made when there is foam
   std::optional<ArrowPass> arrow_pass;
   std::optional<DisplayPass> display_pass;
@@ -70,6 +72,8 @@ struct Renderer::Parts {
   Result<bool> fit_to_options();
   const gl::Texture* fluid_depth() const { return drew_fluid ? &fluid_passes->smoothed(targets) : nullptr; }
   void draw_scene();
+  /// The shares of the fluids that are seen, where there are several; the textures they take, 0: none.
+  int draw_mixing();
   /// What has to be drawn of this picture; nothing where that is all of it.
   std::optional<PixelBox> part_to_draw();
   static void copy(const gl::Texture& from, glm::ivec2 size, const PictureTarget& target);

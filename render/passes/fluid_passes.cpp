@@ -24,6 +24,7 @@ Result<FluidPasses> FluidPasses::create(bool fast, bool compute, const std::vect
   passes.compute_ = compute;
   std::vector<std::string> looks = far_light;
   if (fast) looks.emplace_back("FAST");
+  passes.look_defines_ = looks;
   const auto splats = [&](std::vector<std::string> defines) {
     return compute ? gl::Program::create_compute("splat.comp", std::move(defines))
                    : gl::Program::create("splat.vert", "splat.frag", std::move(defines));
@@ -122,11 +123,25 @@ void FluidPasses::smooth(const Targets& targets, const RenderOptions& options, c
   smoothed_ = options.bilateral_iterations == 0 ? -1 : filter_->run(targets, options, frame, tiles());
 }
 
-void FluidPasses::composite(const Targets& targets, bool lit) {
+const gl::PixelProgram& FluidPasses::mixed_look(int mixed, const Targets& targets) {
+  const auto [at, anew] = mixed_look_programs_.try_emplace(mixed);
+  if (anew) {
+    std::vector<std::string> defines = look_defines_;
+    defines.push_back("MIXED " + std::to_string(mixed));
+    auto made = gl::PixelProgram::create("fluid_look.frag", compute_, true, std::move(defines));
+    if (made) at->second = std::move(made.value());
+  }
+  const gl::Program& program = at->second.program();
+  if (!program) return look_program_;  // a driver that refuses it: the front-most particle brings its look
+  program.set("share_pixels", targets.chord_size == targets.half_size ? 2 : 4);
+  return at->second;
+}
+
+void FluidPasses::composite(const Targets& targets, bool lit, int mixed) {
   gl::bind_textures({&targets.front, &smoothed(targets), &targets.back, &targets.scene_depth,
                      &targets.scene_color, &targets.chord});
   const gl::TileDraw where = tiles();
-  (lit ? look_program_ : composite_program_)
+  (mixed > 0 ? mixed_look(mixed, targets) : lit ? look_program_ : composite_program_)
       .run({targets.color, targets.color_target, targets.size, GL_RGBA16F}, &where);
 }
 

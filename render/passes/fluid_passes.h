@@ -1,6 +1,7 @@
 // Section 5's fluid: splat, smooth, composite.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -35,12 +36,15 @@ class FluidPasses {
   /// Reads front; writes smooth by turns.
   void smooth(const Targets& targets, const RenderOptions& options, const Frame& frame);
   /// 5.2: Eq 15, or with `lit` fluid_look.glsl. Reads front, smooth, back, scene_depth, scene_color; writes
-  /// color where there is fluid.
-  void composite(const Targets& targets, bool lit);
+  /// color where there is fluid. `mixed`: lit, with the shares of fluids in so many textures that
+  /// passes/mixing_pass.h bound; 0: none.
+  void composite(const Targets& targets, bool lit, int mixed);
   /// T for tests, into an R32F target of the picture's size; and n, into an RGBA32F one.
   void thickness(const Targets& targets, const gl::Framebuffer& target);
   void normals(const Targets& targets, const gl::Framebuffer& target);
 
+  /// What upload() took, as smooth_centers() moved it: eye position m, fluid.
+  const gl::StreamBuffer& spheres() const { return sphere_buffer_; }
   /// F_fD after the last smooth(), or before it if no iteration was asked for.
   const gl::Texture& smoothed(const Targets& targets) const;
 
@@ -48,6 +52,8 @@ class FluidPasses {
   /// Splats of `buffer` into a cleared texture of depths, by blending or atomics.
   void splat(const gl::Program& program, const gl::PixelTarget& target, GLenum blending, float cleared,
              const gl::StreamBuffer& buffer, std::size_t count);
+  /// The lit composite for so many textures of shares; made when first asked for.
+  const gl::PixelProgram& mixed_look(int mixed, const Targets& targets);
   gl::TileDraw tiles() const { return {&tile_vertices_, tile_corners_}; }
   void draw_data(const gl::Program& program, const Targets& targets, const gl::Framebuffer& target);
 
@@ -57,6 +63,8 @@ class FluidPasses {
   gl::Program back_program_;
   gl::PixelProgram composite_program_;
   gl::PixelProgram look_program_;
+  std::map<int, gl::PixelProgram> mixed_look_programs_;
+  std::vector<std::string> look_defines_;
   gl::PixelProgram fill_program_;  ///< for compute
   gl::Program thickness_program_;
   gl::Program normal_program_;

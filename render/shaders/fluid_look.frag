@@ -120,15 +120,48 @@ vec3 seen_behind(vec3 here, vec3 n, float refraction, float thickness, ivec2 tex
   return texelFetch(scene_color, looked_up, 0).rgb;
 }
 
+FluidMatter matter_of_look(uint index) {
+  Look look = looks[index];
+  return FluidMatter(look.color_displacement.rgb, look.extinction_scattering.rgb, look.extinction_scattering.a,
+                     look.surface.x * switches.x, look.surface.y, look.surface.z);
+}
+
+#ifdef MIXED
+// Where fluids meet: by their shares in the surface here (mixing.glsl), between the four texels round the pixel whose surface is
+// this one. What has none there is the front-most particle's alone.
+layout(binding = 12) uniform sampler2D shares[MIXED];  // of four fluids each
+uniform int share_pixels;                              // of the picture along one of their texels
+FluidMatter matter_here(uint own, ivec2 texel, float front) {
+  ivec2 last = textureSize(shares[0], 0) - 1;
+  vec2 at = (vec2(texel) + 0.5) / float(share_pixels) - 0.5;
+  vec2 low = floor(at);
+  vec2 off = at - low;
+  vec4 sum[MIXED];
+  for (int i = 0; i < MIXED; ++i) sum[i] = vec4(0.0);
+  for (int k = 0; k < 4; ++k) {
+    ivec2 corner = clamp(ivec2(low) + ivec2(k & 1, k >> 1), ivec2(0), last);
+    float there = texelFetch(smooth_depth, min(corner * share_pixels + share_pixels / 2, ivec2(picture.xy) - 1), 0).r;
+    float weight = ((k & 1) == 1 ? off.x : 1.0 - off.x) * ((k >> 1) == 1 ? off.y : 1.0 - off.y);
+    weight *= max(1.0 - abs(there - front) * splat.z, 0.0);
+    for (int i = 0; i < MIXED; ++i) sum[i] += weight * texelFetch(shares[i], corner, 0);
+  }
+  FluidMixture mixture = add_to_mixture(no_mixture(), matter_of_look(own), 1.0e-3);
+  for (int i = 0; i < MIXED; ++i) {
+    for (int k = 0; k < 4; ++k) mixture = add_to_mixture(mixture, matter_of_look(uint(4 * i + k)), sum[i][k]);
+  }
+  return matter_of(mixture);
+}
+#else
+FluidMatter matter_here(uint own, ivec2 texel, float front) { return matter_of_look(own); }
+#endif
+
 bool pixel(ivec2 texel, out vec4 value) {
   float raw = texelFetch(front_depth, texel, 0).r;
   float front = texelFetch(smooth_depth, texel, 0).r;
   float thickness = thickness_at(texel, raw, front);
   if (thickness <= 0.0) return false;
 
-  Look look = looks[floatBitsToUint(raw) & 15u];
-  FluidMatter matter = FluidMatter(look.color_displacement.rgb, look.extinction_scattering.rgb, look.extinction_scattering.a,
-                                   look.surface.x * switches.x, look.surface.y, look.surface.z);
+  FluidMatter matter = matter_here(floatBitsToUint(raw) & 15u, texel, front);
   vec3 eye = eye_position(vec2(texel) + 0.5, front);
   FluidSurface surface = fluid_surface(smooth_depth, eye, texel);
   vec3 to_eye = normalize(-eye);

@@ -99,6 +99,49 @@ SHARED vec3 fluid_radiance(FluidMatter m, FluidPoint p, FluidLight l, float whol
   return mix(light_inside(m, p, l), l.mirrored, mirrored) + whole * light_glint(m, p, l);
 }
 
+// Fluids that are mixed, each with its share added up (add_to_mixture); what is in here is sums.
+struct FluidMixture {
+  FluidMatter sum;
+  vec3 color_weight;
+  float scattering_weight;
+  float share;
+};
+const float kMixtureDepth = 0.01f;  // m
+SHARED FluidMixture no_mixture() {
+  FluidMixture none;
+  none.sum = FluidMatter(vec3(0.0f), vec3(0.0f), 0.0f, 0.0f, 0.0f, 0.0f);
+  none.color_weight = vec3(0.0f);
+  none.scattering_weight = 0.0f;
+  none.share = 0.0f;
+  return none;
+}
+
+// What a mixture takes from light is the sum of what its parts take; the colour and the share that comes back are those of what
+// takes most of it within a centimetre: a little milk makes water white, batter in chocolate counts as much as chocolate in batter.
+SHARED FluidMixture add_to_mixture(FluidMixture mixture, FluidMatter m, float share) {
+  vec3 taken = share * (1.0f - exp(-(kMixtureDepth * m.extinction)) + 1.0e-4f);
+  float taken_mean = (taken.x + taken.y + taken.z) / 3.0f;
+  vec3 back = taken * (m.scattering + 1.0e-4f);
+  mixture.sum.color += back * m.color;
+  mixture.color_weight += back;
+  mixture.sum.scattering += taken_mean * m.scattering;
+  mixture.scattering_weight += taken_mean;
+  mixture.sum.extinction += share * m.extinction;
+  mixture.sum.gloss += share * m.gloss;
+  mixture.sum.refraction += share * m.refraction;
+  mixture.sum.roughness += share * m.roughness;
+  mixture.share += share;
+  return mixture;
+}
+
+// Of at least one fluid with a share above 0.
+SHARED FluidMatter matter_of(FluidMixture mixture) {
+  FluidMatter m = mixture.sum;
+  float each = 1.0f / mixture.share;
+  return FluidMatter(m.color / mixture.color_weight, m.extinction * each, m.scattering / mixture.scattering_weight, m.gloss * each,
+                     m.refraction * each, m.roughness * each);
+}
+
 // Where the eye sees through a layer of fluid of `depth_in` m along the line of sight's depth, with `depth_behind` m of air
 // between it and what is seen: a place in eye axes. The far side is taken to lie along the near one, so that light leaves as
 // it came (a slab). here: the point of the surface; way: unit, from the eye; Snell's law.

@@ -30,6 +30,8 @@ struct Wishes {
   int threads = 1;
   bool batter = false;
   bool juice = false;
+  bool mix = false;
+  bool hard = false;
   bool paper = false;
   bool full = false;
   bool flow = false;
@@ -56,6 +58,8 @@ void say_options(CLI::App& app, Wishes& wishes) {
       ->capture_default_str();
   app.add_flag("--batter", wishes.batter, "an opaque fluid instead of water");
   app.add_flag("--juice", wishes.juice, "a cloudy one");
+  app.add_flag("--mix", wishes.mix, "a cloudy one into which an opaque one runs");
+  app.add_flag("--hard", wishes.hard, "fluids meet in hard outlines");
   app.add_flag("--paper", wishes.paper, "the paper's section 5");
   app.add_flag("--flow", wishes.flow, "curvature flow");
   app.add_flag("--full", wishes.full, "full quality: what a film has");
@@ -120,9 +124,18 @@ void time_stereo(slosh::Renderer& renderer, const slosh::Frame& frame, int frame
               median(stereo) / median(mono), std::ranges::min(stereo) / std::ranges::min(mono));
 }
 
-void choose_fluid(const Wishes& wishes, slosh::Frame& frame) {
-  if (wishes.batter) frame.fluids = {slosh::kit::batter()};
-  if (wishes.juice) frame.fluids = {slosh::kit::cloudy_juice()};
+void choose_fluid(const Wishes& wishes, slosh::kit::DamBreak& scene) {
+  if (wishes.batter) scene.frame.fluids = {slosh::kit::batter()};
+  if (wishes.juice) scene.frame.fluids = {slosh::kit::cloudy_juice()};
+  if (!wishes.mix) return;
+  scene.frame.fluids = {slosh::kit::cloudy_juice(), slosh::kit::batter()};
+  // In tongues, and particle by particle within a hand's breadth of them.
+  for (std::size_t i = 0; i < scene.particles.size(); ++i) {
+    const glm::vec3& at = scene.particles[i];
+    const float tongue = 0.05f * std::sin(55.0f * at.z) + 0.03f * std::sin(90.0f * at.x + 20.0f * at.z);
+    const float stray = 0.02f * std::sin(12.9898f * static_cast<float>(i));
+    scene.fluids[i] = at.x + tongue + stray < -0.03f ? 1 : 0;
+  }
 }
 
 /// A file, "studio", or none.
@@ -141,7 +154,7 @@ slosh::Result<bool> write_reference(const Wishes& wishes) {
   auto tracer = reference::PathTracer::create();
   if (!tracer) return tracer.error();
   kit::DamBreak scene(*tracer.value(), wishes.particles, wishes.width, wishes.height);
-  choose_fluid(wishes, scene.frame);
+  choose_fluid(wishes, scene);
   reference::Options options;
   options.width = wishes.width;
   options.height = wishes.height;
@@ -214,6 +227,7 @@ slosh::Result<std::unique_ptr<Way>> make_way(const char* name, const Wishes& wis
   options.environment = environment_of(wishes);
   if (wishes.flow) options.surface = Surface::kCurvatureFlow;
   if (wishes.full) options.quality = Quality::kFull;
+  if (wishes.hard) options.soft_mixing = false;
   if (name != std::string("compute") && name != std::string("measured"))
     options.pixel_passes = PixelPasses::kFragments;
   options.keep_still = name == std::string("kept");  // else two pictures of one moment would be one
@@ -224,7 +238,7 @@ slosh::Result<std::unique_ptr<Way>> make_way(const char* name, const Wishes& wis
   way->name = name;
   way->renderer = std::move(made.value());
   way->scene = std::make_unique<kit::DamBreak>(*way->renderer, wishes.particles, wishes.width, wishes.height);
-  choose_fluid(wishes, way->scene->frame);
+  choose_fluid(wishes, *way->scene);
   if (wishes.bucket) way->scene->frame.meshes.back().look.opacity = 1.0f;
   if (wishes.hud) {
     way->scene->frame.arrows = {{{0.1f, 0.06f, 0.02f}, {0.1f, 0.26f, 0.02f}, {0.9f, 0.5f, 0.1f}}};

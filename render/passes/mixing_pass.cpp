@@ -1,0 +1,87 @@
+#include "render/passes/mixing_pass.h"
+
+#include <algorithm>
+
+namespace slosh {
+namespace {
+
+/// How far a particle counts, particle radii: some two particles to each side of a boundary.
+constexpr float kReach = 3.6f;
+/// First texture unit of fluid_look.frag's shares.
+constexpr GLuint kSharesUnit = 12;
+
+}  // namespace
+
+int mixing_layers(const Frame& frame, const Splats& splats) {
+  if (frame.fluids.size() < 2 || splats.empty()) return 0;
+  const auto [least, most] = std::ranges::minmax(splats.spheres, {}, &glm::vec4::w);
+  return least.w == most.w ? 0 : 1 + static_cast<int>(most.w) / 4;
+}
+
+Result<MixingPass> MixingPass::create(bool compute) {
+  auto program = compute ? gl::Program::create_compute("mixing.comp")
+                         : gl::Program::create("mixing.vert", "mixing.frag");
+  if (!program) return program.error();
+  MixingPass pass;
+  pass.program_ = std::move(program.value());
+  if (compute) {
+    auto sum = gl::PixelProgram::create("mixing_sum.frag", true);
+    if (!sum) return sum.error();
+    pass.sum_ = std::move(sum.value());
+  }
+  pass.no_vertices_ = gl::make_vertex_array();
+  return pass;
+}
+
+void MixingPass::make_shares(glm::ivec2 size, int layers) {
+  if (size != size_) {
+    shares_.clear();
+    share_targets_.clear();
+    size_ = size;
+  }
+  while (shares_.size() < static_cast<std::size_t>(layers)) {
+    shares_.push_back(gl::make_texture(size, GL_RGBA16F, GL_NEAREST));
+    share_targets_.push_back(gl::make_framebuffer({&shares_.back()}));
+  }
+}
+
+void MixingPass::draw(const Frame& frame, const Targets& targets, const gl::Texture& smoothed,
+                      const gl::StreamBuffer& spheres, std::size_t count, int layers) {
+  const glm::ivec2 size = targets.chord_size;
+  make_shares(size, layers);
+  program_.set("pixels", size == targets.half_size ? 2 : 4);
+  program_.set("radius", kReach * frame.particle_radius);
+  gl::bind_textures({&smoothed});
+  for (std::size_t i = 0; i < static_cast<std::size_t>(layers); ++i) {
+    program_.set("first", 4 * static_cast<int>(i));
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, spheres.name());
+    if (sum_.on_compute()) {
+      sums_.zero(4 * sizeof(std::uint32_t) * static_cast<std::size_t>(size.x) *
+                 static_cast<std::size_t>(size.y));
+      program_.set("size", size);
+      sum_.program().set("size", size);
+      glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, sums_.name());
+      gl::run_rows(program_, count);
+      sum_.run({shares_[i], share_targets_[i], size, GL_RGBA16F});
+      continue;
+    }
+    const glm::vec4 none(0.0f);
+    glClearNamedFramebufferfv(share_targets_[i].name(), GL_COLOR, 0, &none.x);
+    glBindFramebuffer(GL_FRAMEBUFFER, share_targets_[i].name());
+    glViewport(0, 0, size.x, size.y);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_ONE, GL_ONE);
+    program_.use();
+    glBindVertexArray(no_vertices_.name());
+    glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(3 * count));
+    glBlendFunc(GL_ONE, GL_ZERO);
+    glDisable(GL_BLEND);
+  }
+}
+
+void MixingPass::bind() const {
+  for (std::size_t i = 0; i < shares_.size(); ++i)
+    glBindTextureUnit(kSharesUnit + static_cast<GLuint>(i), shares_[i].name());
+}
+
+}  // namespace slosh
