@@ -173,11 +173,13 @@ void Renderer::Parts::draw_scene() {
   }
   const bool translucent = has_translucent(frame);
   if (drew_fluid) {
+    bool copied = false;
     if (translucent && !fast) {
-      run("translucent behind",
-          [&] { scene_pass->draw_translucent(frame, meshes, textures, targets, fluid_depth(), true); });
+      run("translucent behind", [&] {
+        copied = scene_pass->draw_translucent(frame, meshes, textures, targets, fluid_depth(), true);
+      });
     }
-    run("copy scene colour", [&] {
+    const auto copy_scene = [&] {
       if (compute) {
         gl::bind_textures({&targets.color});
         copy_program.run({targets.scene_color, targets.scene_color_target, targets.size, GL_RGBA16F});
@@ -187,7 +189,8 @@ void Renderer::Parts::draw_scene() {
       glCopyImageSubData(targets.color.name(), GL_TEXTURE_2D, 0, box.low.x, box.low.y, 0,
                          targets.scene_color.name(), GL_TEXTURE_2D, 0, box.low.x, box.low.y, 0, box.size().x,
                          box.size().y, 1);
-    });
+    };
+    if (!copied) run("copy scene colour", copy_scene);
     const int mixed = draw_mixing();
     run_in_part("composite", [&] { fluid_passes->composite(targets, options.lit_fluid, mixed); });
   }

@@ -53,23 +53,27 @@ void finish_compute() {
 
 namespace {
 
-void run_groups(const Program& program, std::size_t count, std::size_t in_group) {
+void start_groups(const Program& program, std::size_t count, std::size_t in_group) {
   if (count == 0) return;
   const std::size_t groups = (count + in_group - 1) / in_group;
   const std::size_t across = std::min(groups, kMostGroups);
   program.use();
   program.set("count", static_cast<int>(count));
   glDispatchCompute(static_cast<GLuint>(across), static_cast<GLuint>((groups + across - 1) / across), 1);
-  finish_compute();
 }
 
 }  // namespace
 
+void start_each(const Program& program, std::size_t count) {
+  start_groups(program, count, kEachInGroup);
+}
 void run_each(const Program& program, std::size_t count) {
-  run_groups(program, count, kEachInGroup);
+  start_each(program, count);
+  finish_compute();
 }
 void run_rows(const Program& program, std::size_t count) {
-  run_groups(program, count, kRowsInGroup);
+  start_groups(program, count, kRowsInGroup);
+  finish_compute();
 }
 
 }  // namespace slosh::gl

@@ -51,6 +51,9 @@ void finish_compute();
 /// Runs a compute shader of 64 invocations a group, one for each of `count`, whose uniform `count` it sets.
 void run_each(const Program& program, std::size_t count);
 
+/// The same without finish_compute(): for several in a row that write to different places.
+void start_each(const Program& program, std::size_t count);
+
 /// Runs a compute shader that takes one row of splat_rows.glsl for each of `count` splats, whose uniform
 /// `count` it sets.
 void run_rows(const Program& program, std::size_t count);

@@ -36,6 +36,12 @@ class MeshStore {
   const Bounds& bounds(MeshHandle handle) const { return meshes_[handle].bounds; }
   /// All of it lies behind each of its triangles (of small meshes alone: a large one is taken not to be).
   bool convex(MeshHandle handle) const { return meshes_[handle].convex; }
+  std::size_t triangle_count(MeshHandle handle) const {
+    return static_cast<std::size_t>(meshes_[handle].index_count) / 3;
+  }
+  /// GL names of its buffers: a position and a normal each, six floats; three corners a triangle.
+  GLuint vertices(MeshHandle handle) const { return meshes_[handle].vertices.name(); }
+  GLuint indices(MeshHandle handle) const { return meshes_[handle].indices.name(); }
   /// Issues the draw call; the program is the caller's.
   void draw(MeshHandle handle) const;
 

@@ -79,12 +79,23 @@ Result<ScenePass> ScenePass::create(bool fast, bool compute, const std::vector<s
         gl::take(pass.translucent_front_, Programs::create("translucent.frag", far_light))}) {
     if (!loaded) return loaded.error();
   }
+  if (compute) {
+    auto tiled = TiledMeshes::create(fast, far_light);
+    if (!tiled) return tiled.error();
+    pass.tiled_ = std::move(tiled.value());
+  }
   pass.no_vertices_ = gl::make_vertex_array();
   return pass;
 }
 
 void ScenePass::draw_opaque(const Frame& frame, const MeshStore& meshes, const TextureStore& textures,
                             const Targets& targets, bool background, bool occlusion_follows) {
+  const auto sorted = sorted_by_distance(frame, meshes, [](float opacity) { return opacity >= 1.0f; });
+  by_tiles_ = tiled_ && TiledMeshes::suit(frame, meshes, textures);
+  if (by_tiles_) {
+    tiled_->draw_opaque(sorted, frame.view, meshes, targets, background, occlusion_follows);
+    return;
+  }
   const gl::Framebuffer& target = occlusion_follows ? targets.mesh_target : targets.plain_mesh_target;
   const glm::vec4 black(0.0f);
   const glm::vec4 nothing(kNoFluidDepth);
@@ -98,7 +109,6 @@ void ScenePass::draw_opaque(const Frame& frame, const MeshStore& meshes, const T
   glDepthMask(GL_TRUE);
   // Near before far and outsides before insides: what is hidden is then not shaded. Insides show where a mesh
   // is open or the eye is in it.
-  const auto sorted = sorted_by_distance(frame, meshes, [](float opacity) { return opacity >= 1.0f; });
   glEnable(GL_CULL_FACE);
   for (GLenum culled : {GL_BACK, GL_FRONT}) {
     glCullFace(culled);
@@ -138,10 +148,15 @@ void ScenePass::resolve_occlusion(const Targets& targets) {
   resolve_.run({targets.color, targets.color_target, targets.size, GL_RGBA16F});
 }
 
-void ScenePass::draw_translucent(const Frame& frame, const MeshStore& meshes, const TextureStore& textures,
+bool ScenePass::draw_translucent(const Frame& frame, const MeshStore& meshes, const TextureStore& textures,
                                  const Targets& targets, const gl::Texture* fluid, bool behind) {
-  const auto sorted = sorted_by_distance(frame, meshes, [](float opacity) { return opacity < 1.0f; });
-  if (sorted.empty()) return;
+  auto sorted = sorted_by_distance(frame, meshes, [](float opacity) { return opacity < 1.0f; });
+  if (sorted.empty()) return false;
+  std::ranges::reverse(sorted);  // far before near
+  if (by_tiles_) {
+    tiled_->draw_glass(sorted, frame.view, meshes, targets, fluid, behind);
+    return behind;
+  }
   Programs& programs = behind ? translucent_behind_ : translucent_front_;
   if (fluid) gl::bind_textures({fluid});
   glBindFramebuffer(GL_FRAMEBUFFER, targets.blend_target.name());
@@ -151,8 +166,7 @@ void ScenePass::draw_translucent(const Frame& frame, const MeshStore& meshes, co
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_SRC1_COLOR);  // translucent.frag: light added, share of what is behind
   glEnable(GL_CULL_FACE);
-  for (auto at = sorted.rbegin(); at != sorted.rend(); ++at) {  // far before near
-    const MeshInstance* instance = *at;
+  for (const MeshInstance* instance : sorted) {
     const unsigned bits = map_bits(instance->look, textures) & kBaseMap;
     const gl::Program& program = programs.of(bits);
     program.use();
@@ -171,6 +185,7 @@ void ScenePass::draw_translucent(const Frame& frame, const MeshStore& meshes, co
   glBlendFunc(GL_ONE, GL_ZERO);
   glDepthMask(GL_TRUE);
   glDisable(GL_DEPTH_TEST);
+  return false;
 }
 
 }  // namespace slosh

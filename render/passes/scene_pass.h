@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,13 +11,14 @@
 #include "render/passes/meshes.h"
 #include "render/passes/targets.h"
 #include "render/passes/textures.h"
+#include "render/passes/tiled_meshes.h"
 #include "render/renderer.h"
 
 namespace slosh {
 
 class ScenePass {
  public:
-  /// `compute`: occlusion by compute shaders.
+  /// `compute`: occlusion by compute shaders, and meshes that suit them.
   static Result<ScenePass> create(bool fast, bool compute, const std::vector<std::string>& far_light);
 
   /// Reads opaque meshes and the shadow map; writes S_d, the depth buffer and the colour (mesh_color if
@@ -27,8 +29,8 @@ class ScenePass {
   void draw_occlusion(const Targets& targets, float reach);
   void resolve_occlusion(const Targets& targets);
   /// Blends translucent meshes into color: those behind the fluid's surface, or those in front of it. `fluid`
-  /// is the smoothed F_fD, null without fluid.
-  void draw_translucent(const Frame& frame, const MeshStore& meshes, const TextureStore& textures,
+  /// is the smoothed F_fD, null without fluid. True: color was copied to scene_color on the way.
+  bool draw_translucent(const Frame& frame, const MeshStore& meshes, const TextureStore& textures,
                         const Targets& targets, const gl::Texture* fluid, bool behind);
 
  private:
@@ -43,6 +45,8 @@ class ScenePass {
   };
 
   bool fast_ = false;  ///< glass: only the sides that face the eye
+  std::optional<TiledMeshes> tiled_;  ///< where compute shaders draw
+  bool by_tiles_ = false;             ///< this picture's meshes
   Programs opaque_;
   gl::Program background_;
   gl::PixelProgram occlusion_;

@@ -1,7 +1,6 @@
 // An opaque mesh: scene-linear colour, and the linear eye depth S_d. What a look has is compiled in (textures.h): BASE_MAP,
 // METAL_ROUGH_MAP, NORMAL_MAP, OCCLUSION_MAP, EMISSIVE_MAP, each with TEXTURED; EMITS; HOLES.
-#include "surface.glsl"
-#include "shadow.glsl"
+#include "mesh_light.glsl"
 #include "material.glsl"
 in vec3 world;
 in vec3 world_normal;
@@ -62,16 +61,13 @@ void main() {
 #ifdef HOLES
   if (base_texel.a < alpha_cutoff) discard;
 #endif
-  Lit lit = light_surface(n, to_eye, painted, metal_rough.x, metal_rough.y, light_past_meshes(world, n) * light_past_fluid(world), open);
-  color = vec4(lit.diffuse + lit.specular, lit.ambient);
+  color = mesh_light(world, n, to_eye, painted, metal_rough, open);
 #ifdef EMITS
   vec3 own = emissive;
 #ifdef EMISSIVE_MAP
   own *= texture(emissive_map, texcoord).rgb;
 #endif
-  // Occlusion takes none of it.
-  float before = dot(color.rgb, vec3(1.0));
-  color = vec4(color.rgb + own, color.a * before / max(before + dot(own, vec3(1.0)), 1.0e-5));
+  color = with_own_light(color, own);
 #endif
   depth = eye_depth;
 }

@@ -42,7 +42,9 @@ double share_off(const FloatImage& a, const FloatImage& b, float apart) {
   return static_cast<double>(off) / static_cast<double>(a.values.size());
 }
 
-/// Chords are summed in whole numbers, not in half floats: a step of eight bits here and there.
+/// Chords are summed in whole numbers, not in half floats, and panes of glass are laid over each other before they are
+/// rounded to half floats, not after each: a step of eight bits here and there. A pixel on the very edge of a triangle
+/// may be its or not.
 void expect_same(const Image& a, const Image& b) {
   ASSERT_EQ(a.rgba.size(), b.rgba.size());
   double sum = 0.0;
@@ -53,8 +55,8 @@ void expect_same(const Image& a, const Image& b) {
     off += apart > 2 ? 1 : 0;
   }
   const auto channels = static_cast<double>(a.rgba.size());
-  EXPECT_LT(sum / channels, 0.015);
-  EXPECT_LT(static_cast<double>(off) / channels, 3e-4);
+  EXPECT_LT(sum / channels, 0.018);
+  EXPECT_LT(static_cast<double>(off) / channels, 4e-4);
 }
 
 void expect_same(const RenderOptions& options, Context& context) {

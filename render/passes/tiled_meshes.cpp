@@ -1,0 +1,130 @@
+#include "render/passes/tiled_meshes.h"
+
+#include <utility>
+
+#include "render/gl/pixel_program.h"
+
+namespace slosh {
+namespace {
+
+// As the shaders have them.
+constexpr int kTile = 32;
+constexpr std::size_t kTriangleBytes = 6 * sizeof(glm::vec4);
+constexpr std::size_t kBoxBytes = 2 * sizeof(std::uint32_t);
+struct Item {
+  glm::vec4 base;
+  glm::vec4 surface;
+  glm::vec4 emissive;
+};
+
+/// Each tile looks at each triangle's box.
+constexpr std::size_t kMostTriangles = 100000;
+
+}  // namespace
+
+Result<TiledMeshes> TiledMeshes::create(bool fast, const std::vector<std::string>& far_light) {
+  TiledMeshes out;
+  out.fast_ = fast;
+  std::vector<std::string> quality = far_light;
+  if (fast) quality.emplace_back("FAST");
+  std::vector<std::string> behind = far_light;
+  behind.emplace_back("BEHIND");
+  for (const Result<bool>& loaded :
+       {gl::take(out.triangles_, gl::Program::create_compute("mesh_triangles.comp")),
+        gl::take(out.opaque_, gl::Program::create_compute("mesh_pixels.comp", quality)),
+        gl::take(out.behind_, gl::Program::create_compute("glass_pixels.comp", behind)),
+        gl::take(out.before_, gl::Program::create_compute("glass_pixels.comp", far_light))}) {
+    if (!loaded) return loaded.error();
+  }
+  return out;
+}
+
+bool TiledMeshes::suit(const Frame& frame, const MeshStore& meshes, const TextureStore& textures) {
+  std::size_t triangles = 0;
+  for (const MeshInstance& instance : frame.meshes) {
+    if (!meshes.has(instance.mesh)) continue;
+    const bool opaque = instance.look.opacity >= 1.0f;
+    const unsigned bits = map_bits(instance.look, textures);
+    if (opaque ? (bits & ~unsigned{kEmits}) != 0 : (bits & kBaseMap) != 0) return false;
+    triangles += meshes.triangle_count(instance.mesh) * (opaque ? 1 : 2);
+  }
+  return triangles <= kMostTriangles;
+}
+
+void TiledMeshes::fill(List& list, Instances instances, std::span<const Sides> passes, const View& view,
+                       const MeshStore& meshes) {
+  std::size_t count = 0;
+  std::vector<Item> items;
+  for (const MeshInstance* instance : instances) {
+    count += passes.size() * meshes.triangle_count(instance->mesh);
+    const MeshLook& look = instance->look;
+    items.push_back({{look.base_color, glm::clamp(look.opacity, 0.0f, 1.0f)},
+                     {look.metallic, look.roughness, 0.0f, 0.0f},
+                     {look.emissive, 0.0f}});
+  }
+  list.count = static_cast<int>(count);
+  list.filled = true;
+  list.items.upload(std::span<const Item>(items));
+  list.triangles.reserve(count * kTriangleBytes);
+  list.boxes.reserve(count * kBoxBytes);
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, list.triangles.name());
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, list.boxes.name());
+  triangles_.set("near_plane", view.near_plane);
+  int first = 0;
+  for (std::size_t i = 0; i < instances.size(); ++i) {
+    const MeshInstance& instance = *instances[i];
+    const auto own = meshes.triangle_count(instance.mesh);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, meshes.vertices(instance.mesh));
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, meshes.indices(instance.mesh));
+    triangles_.set("model", instance.model);
+    triangles_.set("item", static_cast<int>(i));
+    for (const Sides sides : passes) {
+      triangles_.set("first", first);
+      triangles_.set("sides", static_cast<int>(sides));
+      gl::start_each(triangles_, own);
+      first += static_cast<int>(own);
+    }
+  }
+  gl::finish_compute();
+}
+
+void TiledMeshes::run(const gl::Program& program, const List& list, const View& view, glm::ivec2 size) {
+  if (list.count > 0) {
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, list.triangles.name());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, list.boxes.name());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, list.items.name());
+  }
+  program.use();
+  program.set("count", list.count);
+  program.set("near_plane", view.near_plane);
+  const glm::ivec2 tiles = (size + kTile - 1) / kTile;
+  glDispatchCompute(static_cast<GLuint>(tiles.x), static_cast<GLuint>(tiles.y), 1);
+  gl::finish_compute();
+}
+
+void TiledMeshes::draw_opaque(Instances nearest_first, const View& view, const MeshStore& meshes,
+                              const Targets& targets, bool background, bool occlusion_follows) {
+  constexpr Sides kSides[] = {Sides::kBoth};
+  fill(opaque_list_, nearest_first, kSides, view, meshes);
+  glass_list_.filled = false;
+  const gl::Texture& color = occlusion_follows ? targets.mesh_color : targets.color;
+  glBindImageTexture(0, color.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA16F);
+  glBindImageTexture(1, targets.scene_depth.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
+  opaque_.set("background", background ? 1 : 0);
+  run(opaque_, opaque_list_, view, targets.size);
+}
+
+void TiledMeshes::draw_glass(Instances farthest_first, const View& view, const MeshStore& meshes,
+                             const Targets& targets, const gl::Texture* fluid, bool behind) {
+  constexpr Sides kSides[] = {Sides::kInside, Sides::kOutside};  // the far side first
+  if (!glass_list_.filled)
+    fill(glass_list_, farthest_first, std::span(kSides).subspan(fast_ ? 1 : 0), view, meshes);
+  const gl::Program& program = behind ? behind_ : before_;
+  program.set("has_fluid", fluid ? 1 : 0);
+  gl::bind_textures({fluid ? fluid : &targets.scene_depth, &targets.scene_depth});
+  glBindImageTexture(0, targets.color.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA16F);
+  if (behind) glBindImageTexture(1, targets.scene_color.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA16F);
+  run(program, glass_list_, view, targets.size);
+}
+
+}  // namespace slosh

@@ -1,0 +1,62 @@
+// Meshes by compute shaders: their triangles are put into eye axes, then every tile of pixels goes through those that touch it
+// (shaders/mesh_tiles.glsl). For chips that draw fragments slowly; the picture is that of scene_pass to rounding.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "render/frame.h"
+#include "render/gl/objects.h"
+#include "render/passes/meshes.h"
+#include "render/passes/targets.h"
+#include "render/passes/textures.h"
+
+namespace slosh {
+
+class TiledMeshes {
+ public:
+  using Instances = std::span<const MeshInstance* const>;
+
+  /// Errors carry the driver's log.
+  static Result<TiledMeshes> create(bool fast, const std::vector<std::string>& far_light);
+
+  /// The frame's meshes have no maps, and are not so many triangles that tiles would take long to go through
+  /// them.
+  static bool suit(const Frame& frame, const MeshStore& meshes, const TextureStore& textures);
+
+  /// Opaque ones, nearest first: writes S_d and the colour (mesh_color if occlusion follows, else color).
+  void draw_opaque(Instances nearest_first, const View& view, const MeshStore& meshes, const Targets& targets,
+                   bool background, bool occlusion_follows);
+  /// Glass, farthest first, into color: what lies behind the fluid's surface, which also copies color to
+  /// scene_color, or what lies before it. `fluid` is the smoothed F_fD, null without fluid. Between two calls
+  /// of draw_opaque the instances stay the same.
+  void draw_glass(Instances farthest_first, const View& view, const MeshStore& meshes, const Targets& targets,
+                  const gl::Texture* fluid, bool behind);
+
+ private:
+  /// Of one kind, in the order in which they are drawn.
+  struct List {
+    gl::StreamBuffer triangles;
+    gl::StreamBuffer boxes;  ///< of pixels
+    gl::StreamBuffer items;  ///< looks
+    int count = 0;           ///< triangles
+    bool filled = false;
+  };
+  /// What is seen of a mesh.
+  enum class Sides : int { kInside = -1, kBoth = 0, kOutside = 1 };
+
+  void fill(List& list, Instances instances, std::span<const Sides> passes, const View& view,
+            const MeshStore& meshes);
+  static void run(const gl::Program& program, const List& list, const View& view, glm::ivec2 size);
+
+  bool fast_ = false;  ///< glass: only the sides that face the eye
+  gl::Program triangles_;
+  gl::Program opaque_;
+  gl::Program behind_;
+  gl::Program before_;
+  List opaque_list_;
+  List glass_list_;
+};
+
+}  // namespace slosh

@@ -1,0 +1,71 @@
+// Glass by compute shaders: translucent.frag, all panes of a pixel at once, in the order in which they would be drawn. BEHIND: those
+// behind the fluid's surface, and what is seen through it is copied for the fluid.
+#include "glass.glsl"
+#include "mesh_tiles.glsl"
+layout(binding = 0, rgba16f) uniform image2D color;
+#ifdef BEHIND
+layout(binding = 1) writeonly uniform image2D scene_color;
+#endif
+layout(binding = 0) uniform sampler2D fluid_depth;
+layout(binding = 1) uniform sampler2D scene_depth;
+uniform int has_fluid;
+void main() {
+  float nearest[kPixels];   // between these is what is drawn
+  float farthest[kPixels];
+  vec2 ray[kPixels];
+  vec3 added[kPixels];
+  vec3 through[kPixels];
+  bool touched[kPixels];
+  for (int k = 0; k < kPixels; ++k) {
+    ivec2 texel = min(texel_of(k), ivec2(picture.xy) - 1);
+    float scene = texelFetch(scene_depth, texel, 0).r;
+    float surface = has_fluid != 0 ? texelFetch(fluid_depth, texel, 0).r : 1.0e6;
+#ifdef BEHIND
+    nearest[k] = surface;
+    farthest[k] = scene;
+#else
+    nearest[k] = 0.0;
+    farthest[k] = min(scene, surface);
+#endif
+    ray[k] = ray_of(texel_of(k));
+    added[k] = vec3(0.0);
+    through[k] = vec3(1.0);
+    touched[k] = false;
+  }
+  for (int first = 0; first < count; first += 256) {
+    look_for(first);
+    for (int word = 0; word < 8; ++word) {
+      for (uint left = touching[word]; left != 0u; left &= left - 1u) {
+        int index = first + 32 * word + findLSB(left);
+        Triangle t = triangles[index];
+        for (int k = 0; k < kPixels; ++k) {
+          Hit hit;
+          if (!meets(t, ray[k], hit)) continue;
+#ifdef BEHIND
+          if (hit.depth <= nearest[k] || hit.depth >= farthest[k]) continue;
+#else
+          if (hit.depth > farthest[k]) continue;
+#endif
+          Item item = items[int(t.a.w)];
+          Pane pane = glass_pane(world_of(ray[k], hit.depth), normal_of(t, hit.weights), item.base, item.surface.y);
+          added[k] = added[k] * pane.through + pane.added;
+          through[k] *= pane.through;
+          touched[k] = true;
+        }
+      }
+    }
+  }
+  for (int k = 0; k < kPixels; ++k) {
+    ivec2 texel = texel_of(k);
+    if (any(greaterThanEqual(texel, ivec2(picture.xy)))) continue;
+#ifndef BEHIND
+    if (!touched[k]) continue;
+#endif
+    vec4 value = imageLoad(color, texel);
+    value = vec4(value.rgb * through[k] + added[k], value.a);
+    if (touched[k]) imageStore(color, texel, value);
+#ifdef BEHIND
+    imageStore(scene_color, texel, value);
+#endif
+  }
+}

@@ -1,0 +1,62 @@
+// Triangles of one mesh as tiles of pixels look through them: in eye axes, with the box of pixels that each may cover.
+#include "frame_block.glsl"
+#include "mesh_triangle.glsl"
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) readonly buffer Vertices { float vertices[]; };  // position and normal, six each
+layout(std430, binding = 1) readonly buffer Corners { uint corners[]; };     // three each
+layout(std430, binding = 2) writeonly buffer Triangles { Triangle triangles[]; };
+layout(std430, binding = 3) writeonly buffer Boxes { uvec2 boxes[]; };
+uniform int count;
+uniform int first;  // where this mesh's are put
+uniform int item;
+uniform int sides;  // what is seen of it: 1 the outside, −1 the inside, 0 both
+uniform float near_plane;
+uniform mat4 model;
+
+// The picture's place of an eye point before the eye (x, y, depth), in pixels.
+vec2 place(vec3 at) { return ((at.xy / at.z / unproject.xy - unproject.zw) * 0.5 + 0.5) * picture.xy; }
+
+// Corners lie on 256ths of a pixel, as chips have them that draw triangles: so the same pixels are covered.
+vec2 snapped(vec3 at) {
+  vec2 pixel = round(place(at) * 256.0) / 256.0;
+  return eye_position(pixel, at.z).xy;
+}
+
+void main() {
+  int index = int(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64 + int(gl_LocalInvocationID.x);
+  if (index >= count) return;
+  vec3 at[3];
+  vec3 normal[3];
+  for (int k = 0; k < 3; ++k) {
+    int v = 6 * int(corners[3 * index + k]);
+    vec4 world = model * vec4(vertices[v], vertices[v + 1], vertices[v + 2], 1.0);
+    normal[k] = mat3(model) * vec3(vertices[v + 3], vertices[v + 4], vertices[v + 5]);
+    at[k] = (eye_from_world * world).xyz * vec3(1.0, 1.0, -1.0);
+    if (at[k].z >= near_plane) at[k].xy = snapped(at[k]);
+  }
+  // The part beyond the near plane.
+  vec2 low = vec2(1.0e9);
+  vec2 high = vec2(-1.0e9);
+  for (int k = 0; k < 3; ++k) {
+    vec3 a = at[k];
+    vec3 b = at[(k + 1) % 3];
+    if (a.z >= near_plane) {
+      vec2 p = place(a);
+      low = min(low, p);
+      high = max(high, p);
+    }
+    if ((a.z >= near_plane) != (b.z >= near_plane)) {
+      vec2 p = place(vec3(mix(a.xy, b.xy, (near_plane - a.z) / (b.z - a.z)), near_plane));
+      low = min(low, p);
+      high = max(high, p);
+    }
+  }
+  // Positive where the eye is on its outer side; depth points away from the eye, which turns the hand.
+  float outside = dot(cross(at[1] - at[0], at[2] - at[0]), at[0]);
+  bool seen = sides == 0 || outside * float(sides) > 0.0;
+  ivec2 from = ivec2(clamp(floor(low - 1.0), vec2(0.0), picture.xy));
+  ivec2 to = ivec2(clamp(ceil(high + 1.0), vec2(-1.0), picture.xy - 1.0));
+  bool any_pixel = seen && all(lessThanEqual(from, to)) && low.x <= high.x;
+  boxes[first + index] = any_pixel ? uvec2(uint(from.x) | uint(from.y) << 16, uint(to.x) | uint(to.y) << 16) : uvec2(0xffffffffu, 0u);
+  triangles[first + index] = Triangle(vec4(at[0], float(item)), vec4(at[1], 0.0), vec4(at[2], 0.0), vec4(normal[0], 0.0), vec4(normal[1], 0.0), vec4(normal[2], 0.0));
+}
