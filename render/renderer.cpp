@@ -74,7 +74,14 @@ void Renderer::prepare(const Frame& frame, std::span<const View> views) {
   if (p.shadow_pass && !views.empty()) {
     p.run("shadow map", [&] { p.shadow = p.shadow_pass->draw(p.frame, p.meshes, views); });
   }
-  p.run("fluid shadow", [&] { p.fluid_shadow_pass->draw(p.frame, p.options, p.shadow); });
+  if (p.particles) {
+    const bool moves = p.options.surface == Surface::kOurs;
+    p.run("particles", [&] { p.particles->take(p.frame, moves); });
+    p.run("fluid shadow", [&] { p.fluid_shadow_pass->draw(p.frame, p.options, p.shadow, *p.particles); });
+    if (moves) p.run("smooth centres", [&] { p.particles->smooth(); });
+  } else {
+    p.run("fluid shadow", [&] { p.fluid_shadow_pass->draw(p.frame, p.options, p.shadow); });
+  }
   p.uniforms.upload_looks(p.frame.fluids);
   p.centers_sorted = false;
   glFlush();  // a CPU's driver draws the shadows with its own threads meanwhile

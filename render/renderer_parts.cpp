@@ -53,6 +53,12 @@ Result<bool> Renderer::Parts::fit_to_options() {
     if (!thickness) return thickness.error();
     auto copying = gl::PixelProgram::create("copy.frag", want_compute);
     if (!copying) return copying.error();
+    particles.reset();
+    if (want_compute && !want_fast) {
+      auto taken = ParticlesOnGpu::create();
+      if (!taken) return taken.error();
+      particles = std::move(taken.value());
+    }
     copy_program = std::move(copying.value());
     thickness_pass = std::move(thickness.value());
     arrow_pass = std::move(arrows.value());
@@ -107,7 +113,8 @@ std::optional<PixelBox> Renderer::Parts::part_to_draw() {
 }
 
 int Renderer::Parts::draw_mixing() {
-  const int layers = options.soft_mixing && options.lit_fluid ? mixing_layers(frame, splats) : 0;
+  if (!options.soft_mixing || !options.lit_fluid) return 0;
+  const int layers = particles ? mixing_layers(frame) : mixing_layers(frame, splats);
   if (layers == 0) return 0;
   if (!mixing_pass) {
     auto made = MixingPass::create(compute);
@@ -116,10 +123,28 @@ int Renderer::Parts::draw_mixing() {
   }
   run("mixing", [&] {
     mixing_pass->draw(frame, targets, fluid_passes->smoothed(targets), fluid_passes->spheres(),
-                      splats.spheres.size(), layers);
+                      fluid_passes->splats().count, layers);
   });
   mixing_pass->bind();
   return layers;
+}
+
+bool Renderer::Parts::prepare_fluid(bool chords) {
+  if (particles) {
+    if (particles->count() == 0) return false;
+    fluid_passes->place(*particles, frame, options);
+    return true;
+  }
+  prepare_splats(frame, options, splats);
+  if (chords) splats.all = splats.spheres;
+  if (fast) leave_out_hidden(frame, options, splats);
+  if (splats.empty()) return false;
+  if (options.surface == Surface::kOurs) {
+    if (!std::exchange(centers_sorted, true)) centers.sort(frame);
+    centers.move(frame, splats);
+  }
+  fluid_passes->upload(splats);
+  return true;
 }
 
 void Renderer::Parts::draw_scene() {
@@ -137,18 +162,7 @@ void Renderer::Parts::draw_scene() {
   const bool chords = options.layers && options.surface != Surface::kPaper && any_fluid_is_clear(frame);
   far_light.bind();
   uniforms.upload(make_frame_block(frame, options, shadow, chords));
-  run("prepare splats", [&] {
-    prepare_splats(frame, options, splats);
-    if (chords) splats.all = splats.spheres;
-    if (fast) leave_out_hidden(frame, options, splats);
-    drew_fluid = !splats.empty();
-    const bool moves = options.surface == Surface::kOurs && drew_fluid;
-    const bool anew = moves && !std::exchange(centers_sorted, true);
-    if (anew) centers.sort(frame);
-    if (moves && !compute) centers.move(frame, splats);
-    if (drew_fluid) fluid_passes->upload(splats);
-    if (moves && compute) fluid_passes->smooth_centers(centers, frame.particle_radius, anew);
-  });
+  run("prepare splats", [&] { drew_fluid = prepare_fluid(chords); });
   if (drew_fluid) {
     run("front depth", [&] { fluid_passes->splat_front(targets); });
     run("fetch front", [&] { fluid_passes->fetch_front(targets, options); });
@@ -169,7 +183,11 @@ void Renderer::Parts::draw_scene() {
     run("surface filter", [&] { fluid_passes->smooth(targets, options, frame); });
   }
   if (drew_fluid && chords) {
-    run("thickness", [&] { thickness_pass->draw(frame, targets, splats.all); });
+    run("thickness", [&] {
+      if (!particles) return thickness_pass->draw(frame, targets, splats.all);
+      const SplatBuffers& all = fluid_passes->splats();
+      thickness_pass->draw(frame, targets, all.unmoved(), all.count);
+    });
   }
   const bool translucent = has_translucent(frame);
   if (drew_fluid) {

@@ -18,6 +18,7 @@
 #include "render/passes/kept_picture.h"
 #include "render/passes/meshes.h"
 #include "render/passes/mixing_pass.h"
+#include "render/passes/particles_on_gpu.h"
 #include "render/passes/pass_timer.h"
 #include "render/passes/scene_pass.h"
 #include "render/passes/shadow_pass.h"
@@ -40,6 +41,7 @@ struct Renderer::Parts {
   FrameUniforms uniforms;
   Splats splats;
   SmoothCenters centers;
+  std::optional<ParticlesOnGpu> particles;  ///< for compute, but where hidden ones are left out on a CPU
   FarLight far_light;
   Targets targets;
   std::optional<ShadowPass> shadow_pass;
@@ -74,6 +76,8 @@ struct Renderer::Parts {
   void draw_scene();
   /// The shares of the fluids that are seen, where there are several; the textures they take, 0: none.
   int draw_mixing();
+  /// What is left of the splats for a view; whether it has any.
+  bool prepare_fluid(bool chords);
   /// What has to be drawn of this picture; nothing where that is all of it.
   std::optional<PixelBox> part_to_draw();
   static void copy(const gl::Texture& from, glm::ivec2 size, const PictureTarget& target);

@@ -39,10 +39,6 @@ Result<FluidPasses> FluidPasses::create(bool fast, bool compute, const std::vect
         gl::take(passes.normal_program_, gl::Program::create("tiles.vert", "normal.frag"))}) {
     if (!loaded) return loaded.error();
   }
-  if (compute) {
-    const auto loaded = gl::take(passes.centers_, SmoothCentersOnGpu::create());
-    if (!loaded) return loaded.error();
-  }
   passes.no_vertices_ = gl::make_vertex_array();
   passes.tile_vertices_ = gl::make_vertex_array();
   glEnableVertexArrayAttrib(passes.tile_vertices_.name(), 0);
@@ -52,21 +48,27 @@ Result<FluidPasses> FluidPasses::create(bool fast, bool compute, const std::vect
 }
 
 void FluidPasses::upload(const Splats& splats) {
-  sphere_buffer_.upload(std::span<const glm::vec4>(splats.spheres));
-  shaped_ = splats.shapes.size() == splats.spheres.size();
-  if (shaped_) shape_buffer_.upload(std::span<const SplatShape>(splats.shapes));
-  tile_buffer_.upload(std::span<const glm::vec2>(splats.tiles));
-  glVertexArrayVertexBuffer(tile_vertices_.name(), 0, tile_buffer_.name(), 0, sizeof(glm::vec2));
-  front_count_ = splats.spheres.size();
+  splats_.count = splats.spheres.size();
+  splats_.spheres.upload(std::span<const glm::vec4>(splats.spheres));
+  splats_.shaped = splats.shapes.size() == splats.spheres.size();
+  if (splats_.shaped) splats_.shapes.upload(std::span<const SplatShape>(splats.shapes));
   back_buffer_.upload(std::span<const glm::vec4>(splats.back));
   back_count_ = splats.back.size();
-  tile_corners_ = static_cast<GLsizei>(splats.tiles.size());
+  upload_tiles(splats.tiles);
 }
 
-void FluidPasses::smooth_centers(const SmoothCenters& centers, float particle_radius, bool anew) {
-  if (anew) centers_.upload(centers);
-  centers_.move(centers, particle_radius, sphere_buffer_, shape_buffer_, front_count_);
-  shaped_ = true;
+void FluidPasses::upload_tiles(std::span<const glm::vec2> corners) {
+  tile_buffer_.upload(corners);
+  glVertexArrayVertexBuffer(tile_vertices_.name(), 0, tile_buffer_.name(), 0, sizeof(glm::vec2));
+  tile_corners_ = static_cast<GLsizei>(corners.size());
+}
+
+void FluidPasses::place(const ParticlesOnGpu& particles, const Frame& frame, const RenderOptions& options) {
+  particles.place(frame, splat_reach(frame.particle_radius, options), splats_);
+  back_count_ = 0;
+  // Nobody here knows where they are: passes drawn as fragments go over the whole picture.
+  constexpr glm::vec2 kPicture[] = {{-1.0f, -1.0f}, {3.0f, -1.0f}, {-1.0f, 3.0f}};
+  if (tile_corners_ != static_cast<GLsizei>(std::size(kPicture))) upload_tiles(kPicture);
 }
 
 void FluidPasses::splat(const gl::Program& program, const gl::PixelTarget& target, GLenum blending,
@@ -91,16 +93,16 @@ void FluidPasses::splat(const gl::Program& program, const gl::PixelTarget& targe
 }
 
 void FluidPasses::splat_front(const Targets& targets) {
-  if (shaped_) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, shape_buffer_.name());
-  splat(shaped_ ? shaped_program_ : front_program_,
-        {targets.front, targets.front_target, targets.size, GL_R32F}, GL_MIN, kNoFluidDepth, sphere_buffer_,
-        front_count_);
+  if (splats_.shaped) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, splats_.shapes.name());
+  splat(splats_.shaped ? shaped_program_ : front_program_,
+        {targets.front, targets.front_target, targets.size, GL_R32F}, GL_MIN, kNoFluidDepth, splats_.spheres,
+        splats_.count);
 }
 
 void FluidPasses::splat_back(const Targets& targets) {
   const bool own = back_count_ > 0;
   splat(back_program_, {targets.back, targets.back_target, targets.back_size, GL_R32F}, GL_MAX, 0.0f,
-        own ? back_buffer_ : sphere_buffer_, own ? back_count_ : front_count_);
+        own ? back_buffer_ : splats_.spheres, own ? back_count_ : splats_.count);
 }
 
 void FluidPasses::fetch_front(const Targets& targets, const RenderOptions& options) {

@@ -3,11 +3,12 @@
 
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "render/gl/pixel_program.h"
-#include "render/passes/smooth_centers_on_gpu.h"
+#include "render/passes/particles_on_gpu.h"
 #include "render/passes/splats.h"
 #include "render/passes/surface_filter.h"
 #include "render/passes/targets.h"
@@ -22,9 +23,10 @@ class FluidPasses {
 
   /// Uploads this frame's splats and tiles.
   void upload(const Splats& splats);
-  /// Moves and shapes what was uploaded, by a compute shader, after `centers` was sorted; `anew`: since the
-  /// last call. The view's uniform block is bound.
-  void smooth_centers(const SmoothCenters& centers, float particle_radius, bool anew);
+  /// The same of particles that are on the GPU. The view's uniform block is bound.
+  void place(const ParticlesOnGpu& particles, const Frame& frame, const RenderOptions& options);
+  /// What place() made.
+  const SplatBuffers& splats() const { return splats_; }
   /// 5.1. Reads the splats; writes front and back.
   void splat_front(const Targets& targets);
   void splat_back(const Targets& targets);
@@ -44,7 +46,7 @@ class FluidPasses {
   void normals(const Targets& targets, const gl::Framebuffer& target);
 
   /// What upload() took, as smooth_centers() moved it: eye position m, fluid.
-  const gl::StreamBuffer& spheres() const { return sphere_buffer_; }
+  const gl::StreamBuffer& spheres() const { return splats_.spheres; }
   /// F_fD after the last smooth(), or before it if no iteration was asked for.
   const gl::Texture& smoothed(const Targets& targets) const;
 
@@ -55,9 +57,9 @@ class FluidPasses {
   /// The lit composite for so many textures of shares; made when first asked for.
   const gl::PixelProgram& mixed_look(int mixed, const Targets& targets);
   gl::TileDraw tiles() const { return {&tile_vertices_, tile_corners_}; }
+  void upload_tiles(std::span<const glm::vec2> corners);
   void draw_data(const gl::Program& program, const Targets& targets, const gl::Framebuffer& target);
 
-  SmoothCentersOnGpu centers_;  ///< for compute
   gl::Program front_program_;
   gl::Program shaped_program_;  ///< front of splats with shapes
   gl::Program back_program_;
@@ -68,14 +70,11 @@ class FluidPasses {
   gl::PixelProgram fill_program_;  ///< for compute
   gl::Program thickness_program_;
   gl::Program normal_program_;
-  gl::StreamBuffer sphere_buffer_;
-  gl::StreamBuffer shape_buffer_;
+  SplatBuffers splats_;  ///< in front
   gl::StreamBuffer back_buffer_;
   gl::StreamBuffer tile_buffer_;
   gl::VertexArray no_vertices_;
   gl::VertexArray tile_vertices_;
-  std::size_t front_count_ = 0;
-  bool shaped_ = false;
   std::size_t back_count_ = 0;
   GLsizei tile_corners_ = 0;
   bool fast_ = false;

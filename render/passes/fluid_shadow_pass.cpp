@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace slosh {
 namespace {
@@ -37,28 +38,20 @@ Result<FluidShadowPass> FluidShadowPass::create(bool fast, bool compute) {
   return pass;
 }
 
-void FluidShadowPass::draw(const Frame& frame, const RenderOptions& options, const ShadowView& shadow) {
+bool FluidShadowPass::begin(const Frame& frame, const RenderOptions& options, const ShadowView& shadow,
+                            std::size_t count) {
   glBindTextureUnit(kFluidShadowUnit, map_.name());
+  const bool empty = !options.fluid_shadow || shadow.size == 0 || count == 0 || frame.fluids.empty();
   const glm::vec4 clear(0.0f);
   glClearNamedFramebufferfv(target_.name(), GL_COLOR, 0, &clear.x);
-  const std::size_t count = std::min(frame.particles.size(), frame.particle_fluid.size());
-  const std::size_t fluids = std::min(frame.fluids.size(), kMaxFluidLooks);
-  if (!options.fluid_shadow || shadow.size == 0 || count == 0 || fluids == 0) return;
+  return !empty;
+}
 
-  const std::size_t step = (count + most_ - 1) / most_;
-  particles_.clear();
-  for (std::size_t i = 0; i < count; i += step) {
-    const glm::vec3& at = frame.particles[i];
-    const float sum = at.x + at.y + at.z;
-    if (frame.particle_fluid[i] < fluids && std::isfinite(sum)) {
-      particles_.emplace_back(at, static_cast<float>(frame.particle_fluid[i]));
-    }
-  }
-  if (particles_.empty()) return;
-  buffer_.upload(std::span<const glm::vec4>(particles_));
-
+void FluidShadowPass::set_up(const Frame& frame, const RenderOptions& options, const ShadowView& shadow,
+                             std::size_t step) {
   std::array<glm::vec3, kMaxFluidLooks> extinction{};
-  for (std::size_t i = 0; i < fluids; ++i) extinction[i] = frame.fluids[i].extinction;
+  for (std::size_t i = 0; i < std::min(frame.fluids.size(), kMaxFluidLooks); ++i)
+    extinction[i] = frame.fluids[i].extinction;
   glProgramUniform3fv(program_.name(), glGetUniformLocation(program_.name(), "extinction"),
                       static_cast<GLsizei>(extinction.size()), &extinction[0].x);
   // Fewer splats are drawn wider, so that they still close up, and their sum stays the same. Little wider
@@ -75,17 +68,47 @@ void FluidShadowPass::draw(const Frame& frame, const RenderOptions& options, con
   program_.set("weight", static_cast<float>(step));
   // A disc of another size keeps the sphere's volume.
   program_.set("chord", 2.0f * volume * volume * volume / (drawn_radius * drawn_radius));
+}
 
+void FluidShadowPass::draw(const Frame& frame, const RenderOptions& options, const ShadowView& shadow,
+                           const ParticlesOnGpu& particles) {
+  if (!begin(frame, options, shadow, particles.count())) return;
+  const std::size_t step = (particles.count() + most_ - 1) / most_;
+  set_up(frame, options, shadow, step);
+  program_.set("stride", static_cast<int>(step));
+  sum_up(particles.particles(), (particles.count() + step - 1) / step);
+}
+
+void FluidShadowPass::sum_up(const gl::StreamBuffer& particles, std::size_t count) {
+  const auto side = static_cast<std::size_t>(size_);
+  if (!std::exchange(sums_ready_, true)) sums_.zero(4 * sizeof(std::uint32_t) * side * side);
+  program_.set("size", size_);
+  sum_.program().set("size", size_);
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, particles.name());
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, sums_.name());
+  gl::run_rows(program_, count);
+  sum_.run({map_, target_, glm::ivec2(size_), GL_RGBA16F});
+}
+
+void FluidShadowPass::draw(const Frame& frame, const RenderOptions& options, const ShadowView& shadow) {
+  const std::size_t count = std::min(frame.particles.size(), frame.particle_fluid.size());
+  if (!begin(frame, options, shadow, count)) return;
+  const std::size_t fluids = std::min(frame.fluids.size(), kMaxFluidLooks);
+  const std::size_t step = (count + most_ - 1) / most_;
+  particles_.clear();
+  for (std::size_t i = 0; i < count; i += step) {
+    const glm::vec3& at = frame.particles[i];
+    const float sum = at.x + at.y + at.z;
+    if (frame.particle_fluid[i] < fluids && std::isfinite(sum)) {
+      particles_.emplace_back(at, static_cast<float>(frame.particle_fluid[i]));
+    }
+  }
+  if (particles_.empty()) return;
+  buffer_.upload(std::span<const glm::vec4>(particles_));
+  set_up(frame, options, shadow, step);
   if (sum_.on_compute()) {
-    const auto side = static_cast<std::size_t>(size_);
-    sums_.zero(4 * sizeof(std::uint32_t) * side * side);
-    program_.set("size", size_);
-    sum_.program().set("size", size_);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, buffer_.name());
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, sums_.name());
-    gl::run_rows(program_, particles_.size());
-    sum_.run({map_, target_, glm::ivec2(size_), GL_RGBA16F});
-    return;
+    program_.set("stride", 1);
+    return sum_up(buffer_, particles_.size());
   }
   glVertexArrayVertexBuffer(array_.name(), 0, buffer_.name(), 0, sizeof(glm::vec4));
   glBindFramebuffer(GL_FRAMEBUFFER, target_.name());

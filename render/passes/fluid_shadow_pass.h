@@ -7,6 +7,7 @@
 #include "render/frame.h"
 #include "render/gl/pixel_program.h"
 #include "render/passes/frame_block.h"
+#include "render/passes/particles_on_gpu.h"
 #include "render/renderer.h"
 
 namespace slosh {
@@ -18,11 +19,22 @@ class FluidShadowPass {
 
   /// Reads all particles of the frame; writes the map and binds it. The map is empty without a shadow view.
   void draw(const Frame& frame, const RenderOptions& options, const ShadowView& shadow);
+  /// The same by compute shaders, of particles that are on the GPU.
+  void draw(const Frame& frame, const RenderOptions& options, const ShadowView& shadow,
+            const ParticlesOnGpu& particles);
 
  private:
+  /// Clears and binds the map; whether there is something to draw into it.
+  bool begin(const Frame& frame, const RenderOptions& options, const ShadowView& shadow, std::size_t count);
+  /// Sets the program's uniforms, each particle drawn standing for `step`.
+  void set_up(const Frame& frame, const RenderOptions& options, const ShadowView& shadow, std::size_t step);
+  /// By compute shaders.
+  void sum_up(const gl::StreamBuffer& particles, std::size_t count);
+
   gl::Program program_;
   gl::PixelProgram sum_;   ///< for compute
-  gl::StreamBuffer sums_;  ///< four whole numbers a texel (shaders/sums.glsl)
+  gl::StreamBuffer sums_;  ///< four whole numbers a texel (shaders/sums.glsl); zeros from picture to picture
+  bool sums_ready_ = false;
   gl::Texture map_;
   gl::Framebuffer target_;
   gl::VertexArray array_;

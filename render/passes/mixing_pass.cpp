@@ -1,6 +1,9 @@
 #include "render/passes/mixing_pass.h"
 
 #include <algorithm>
+#include <cstdint>
+
+#include "render/passes/frame_block.h"
 
 namespace slosh {
 namespace {
@@ -16,6 +19,19 @@ int mixing_layers(const Frame& frame, const Splats& splats) {
   if (frame.fluids.size() < 2 || splats.empty()) return 0;
   const auto [least, most] = std::ranges::minmax(splats.spheres, {}, &glm::vec4::w);
   return least.w == most.w ? 0 : 1 + static_cast<int>(most.w) / 4;
+}
+
+int mixing_layers(const Frame& frame) {
+  const auto fluids = static_cast<std::uint8_t>(std::min(frame.fluids.size(), kMaxFluidLooks));
+  if (fluids < 2) return 0;
+  std::uint8_t least = 255;
+  std::uint8_t most = 0;
+  for (const std::uint8_t fluid : frame.particle_fluid) {
+    const bool drawn = fluid < fluids;
+    least = std::min<std::uint8_t>(least, drawn ? fluid : 255);
+    most = std::max<std::uint8_t>(most, drawn ? fluid : 0);
+  }
+  return least >= most ? 0 : 1 + most / 4;
 }
 
 Result<MixingPass> MixingPass::create(bool compute) {

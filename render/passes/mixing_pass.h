@@ -39,5 +39,7 @@ class MixingPass {
 
 /// Textures that the shares of what is on screen take: 0 where it is all of one fluid.
 int mixing_layers(const Frame& frame, const Splats& splats);
+/// The same of all the frame's particles, where nobody knows which are on screen.
+int mixing_layers(const Frame& frame);
 
 }  // namespace slosh

@@ -12,8 +12,6 @@
 namespace slosh {
 namespace {
 
-constexpr float kReach = 4.0f;  // particle radii, 2.5 spacings: some 60 neighbours inside the fluid
-
 constexpr std::size_t kWorthAThread = 4000;  // particles: some 2 ms of work
 
 constexpr int kWide =
@@ -124,7 +122,7 @@ void SmoothCenters::fit_cells(const Frame& frame, std::size_t count) {
 
 void SmoothCenters::sort(const Frame& frame) {
   const std::size_t count = std::min(frame.particles.size(), frame.particle_fluid.size());
-  reach_ = kReach * frame.particle_radius;
+  reach_ = reach(frame.particle_radius);
   fit_cells(frame, count);
   begin_.assign(row_of(0, cells_.z) + 1, 0);
   constexpr std::uint32_t kNone = ~0u;

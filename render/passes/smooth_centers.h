@@ -27,15 +27,8 @@ class SmoothCenters {
   /// What was found of a particle serves all views until the next sort().
   void move(const Frame& frame, Splats& splats);
 
-  /// What sort() made, for whoever moves splats in another way.
-  struct Cells {
-    float reach;        ///< m, also a cell's side
-    glm::ivec3 lowest;  ///< cells from the origin; who is outside counts as in the nearest
-    glm::ivec3 count;
-    std::span<const std::uint32_t> begin;         ///< a cell each, x fastest, and the end
-    const std::array<std::vector<float>, 3>& at;  ///< m, world, by cell
-  };
-  Cells cells() const { return {reach_, lowest_, cells_, begin_, at_}; }
+  /// How far off a particle's neighbours are, m.
+  static float reach(float particle_radius) { return kReach * particle_radius; }
 
  private:
   /// Of a particle, in the world.
@@ -50,6 +43,9 @@ class SmoothCenters {
   /// move() for the splats from `first` to before `end`.
   void move(const Frame& frame, Splats& splats, std::size_t first, std::size_t end);
   Smoothed smooth(const glm::vec3& at, float radius) const;
+
+  static constexpr float kReach =
+      4.0f;  ///< particle radii, 2.5 spacings: some 60 neighbours inside the fluid
 
   std::size_t threads_;
   float reach_ = 1.0f;

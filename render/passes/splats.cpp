@@ -62,6 +62,10 @@ SplatShape shape_of(const glm::mat3& matrix, const glm::vec3& center) {
   return {shape.outline, shape.depth_radius, shape.tilt, {}};
 }
 
+float splat_reach(float particle_radius, const RenderOptions& options) {
+  return options.splat_scale * particle_radius * (options.surface == Surface::kOurs ? kWidest : 1.0f);
+}
+
 void prepare_splats(const Frame& frame, const RenderOptions& options, Splats& out) {
   out.spheres.clear();
   out.particles.clear();
@@ -70,9 +74,7 @@ void prepare_splats(const Frame& frame, const RenderOptions& options, Splats& ou
   out.tiles.clear();
   const std::size_t count = std::min(frame.particles.size(), frame.particle_fluid.size());
   const std::size_t fluids = std::min(frame.fluids.size(), kMaxFluidLooks);
-  // Ours makes wide ellipsoids of spheres later.
-  const float radius =
-      options.splat_scale * frame.particle_radius * (options.surface == Surface::kOurs ? kWidest : 1.0f);
+  const float radius = splat_reach(frame.particle_radius, options);
   if (count == 0 || fluids == 0 || !(radius > 0.0f) || !std::isfinite(radius)) return;
 
   const glm::mat4& projection = frame.view.projection;

@@ -14,6 +14,9 @@ namespace slosh {
 /// Pixels a side of the tiles by which the fluid's full-picture passes are confined.
 inline constexpr int kTileSize = 16;
 
+/// How far from a particle it may be drawn, m: ours makes wide ellipsoids of spheres.
+float splat_reach(float particle_radius, const RenderOptions& options);
+
 /// An ellipsoid as the eye sees it: with u a point of the unit disc, the outline's point is (u.x outline.x,
 /// u.x outline.y + u.y outline.z) from the centre in the picture's plane there, and its depth is the centre's
 /// plus dot(tilt, u) ± depth_radius √(1 − u²). m.

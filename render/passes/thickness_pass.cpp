@@ -37,23 +37,32 @@ Result<ThicknessPass> ThicknessPass::create(bool compute) {
   return pass;
 }
 
-void ThicknessPass::draw(const Frame& frame, const Targets& targets, std::span<const glm::vec4> spheres) {
-  buffer_.upload(spheres);
+void ThicknessPass::set_up(const Frame& frame, const Targets& targets) {
   program_.set("sphere", glm::vec2(kWide * frame.particle_radius, frame.particle_radius));
   // Of the picture's pixels in one of its own, along a side.
   program_.set("pixels", targets.chord_size == targets.half_size ? 2 : 4);
   gl::bind_textures({&targets.scene_depth});
-  if (sum_.on_compute()) {
-    const glm::ivec2 size = targets.chord_size;
+}
+
+void ThicknessPass::draw(const Frame& frame, const Targets& targets, const gl::StreamBuffer& spheres,
+                         std::size_t count) {
+  set_up(frame, targets);
+  const glm::ivec2 size = targets.chord_size;
+  if (sums_size_ != size)
     sums_.zero(sizeof(std::uint32_t) * static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y));
-    program_.set("size", size);
-    sum_.program().set("size", size);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, buffer_.name());
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, sums_.name());
-    gl::run_rows(program_, spheres.size());
-    sum_.run({targets.chord, targets.chord_target, size, GL_R16F});
-    return;
-  }
+  sums_size_ = size;
+  program_.set("size", size);
+  sum_.program().set("size", size);
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, spheres.name());
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, sums_.name());
+  gl::run_rows(program_, count);
+  sum_.run({targets.chord, targets.chord_target, size, GL_R16F});
+}
+
+void ThicknessPass::draw(const Frame& frame, const Targets& targets, std::span<const glm::vec4> spheres) {
+  buffer_.upload(spheres);
+  if (sum_.on_compute()) return draw(frame, targets, buffer_, spheres.size());
+  set_up(frame, targets);
   const glm::vec4 none(0.0f);
   glClearNamedFramebufferfv(targets.chord_target.name(), GL_COLOR, 0, &none.x);
   glVertexArrayVertexBuffer(array_.name(), 0, buffer_.name(), 0, sizeof(glm::vec4));

@@ -19,11 +19,16 @@ class ThicknessPass {
 
   /// Reads S_d and `spheres` (eye position m, fluid; all of them, hidden ones too); writes targets.chord.
   void draw(const Frame& frame, const Targets& targets, std::span<const glm::vec4> spheres);
+  /// The same by compute shaders, of `count` spheres on the GPU, those with a fluid below 0 left out.
+  void draw(const Frame& frame, const Targets& targets, const gl::StreamBuffer& spheres, std::size_t count);
 
  private:
+  void set_up(const Frame& frame, const Targets& targets);
+
   gl::Program program_;
   gl::PixelProgram sum_;   ///< for compute
-  gl::StreamBuffer sums_;  ///< a whole number a texel (shaders/sums.glsl)
+  gl::StreamBuffer sums_;  ///< a whole number a texel (shaders/sums.glsl); zeros from picture to picture
+  glm::ivec2 sums_size_{0};
   gl::VertexArray array_;
   gl::StreamBuffer buffer_;
 };

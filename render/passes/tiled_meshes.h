@@ -1,5 +1,6 @@
-// Meshes by compute shaders: their triangles are put into eye axes, then every tile of pixels goes through those that touch it
-// (shaders/mesh_tiles.glsl). For chips that draw fragments slowly; the picture is that of scene_pass to rounding.
+// Meshes by compute shaders: their triangles are put into eye axes, then every tile of pixels goes through
+// those that touch it (shaders/mesh_tiles.glsl). For chips that draw fragments slowly; the picture is that of
+// scene_pass to rounding.
 #pragma once
 
 #include <span>

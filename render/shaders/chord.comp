@@ -10,6 +10,7 @@ uniform int count;
 void main() {
   int index = int(splat_row());
   if (index >= count) return;
+  if (splats[index].w < 0.0) return;
   SplatPlace place = splat_place(splats[index].xyz);
   if (any(greaterThan(abs(place.center), vec2(1.0)))) return;  // as points are clipped
   ChordPoint point = chord_point(place.depth);

@@ -3,14 +3,16 @@
 #include "splat_rows.glsl"
 #include "sums.glsl"
 layout(local_size_x = 32, local_size_y = 4) in;
-layout(std430, binding = 0) readonly buffer Particles { vec4 particles[]; };  // world position, fluid index
+layout(std430, binding = 0) readonly buffer Particles { vec4 particles[]; };  // world position, fluid index; −1: none
 layout(std430, binding = 2) buffer Sums { uint sums[]; };                     // four a texel
 uniform int size;  // of the map, texels a side
 uniform int count;
+uniform int stride;  // particles that one stands for
 void main() {
   int index = int(splat_row());
   if (index >= count) return;
-  vec4 particle = particles[index];
+  vec4 particle = particles[index * stride];
+  if (particle.w < 0.0) return;
   vec4 at = clip_from_world * vec4(particle.xyz, 1.0);
   if (any(greaterThan(abs(at.xy), vec2(1.0)))) return;  // as points are clipped
   vec4 optical = dimming_of(at, particle.w);

@@ -1,42 +1,42 @@
-// Splats moved to where their neighbours' mean is, and made ellipsoids: passes/smooth_centers on the GPU, an invocation each.
-#include "frame_block.glsl"
+// Particles moved to where their neighbours' mean is, and made ellipsoids: passes/smooth_centers on the GPU, an invocation each.
 #include "shared.glsl"
 #include "smoothing.glsl"
+#include "particles.glsl"
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) buffer Splats { vec4 splats[]; };  // eye position, fluid index
-struct Shape {
-  vec4 outline_depth;  // outline, depth_radius
-  vec4 tilt;
+layout(std430, binding = 0) writeonly buffer Centers { vec4 centers[]; };  // world, fluid index; −1: no particle
+struct Ellipsoid {
+  vec4 xx_xy_xz_yy;  // m²
+  vec4 yz_zz;
 };
-layout(std430, binding = 1) writeonly buffer Shapes { Shape shapes[]; };
-layout(std430, binding = 2) readonly buffer Places { float places[]; };  // by cell: all x, all y, all z; m, world
-layout(std430, binding = 3) readonly buffer Begins { uint begins[]; };   // a cell each, x fastest, and the end
+layout(std430, binding = 1) writeonly buffer Ellipsoids { Ellipsoid ellipsoids[]; };
+layout(std430, binding = 3) readonly buffer Counts { uint counts[]; };
+layout(std430, binding = 5) readonly buffer Begins { uint begins[]; };
+layout(std430, binding = 7) buffer Sorted { vec4 sorted[]; };
 uniform int count;
-uniform int column;    // floats in a column of places
-uniform ivec3 lowest;  // cell
-uniform ivec3 cells;
+uniform int entries;
 uniform vec2 lengths;  // reach and particle radius, m
 
 Neighbourhood neighbourhood_of(vec3 at) {
   float reach = lengths.x;
-  ivec3 middle = clamp(ivec3(floor(clamp(at / reach, vec3(-1.0e8), vec3(1.0e8)))) - lowest, ivec3(0), cells - 1);
-  ivec3 low = max(middle - 1, ivec3(0));
-  ivec3 high = min(middle + 1, cells - 1);
+  ivec3 middle = cell_of(at, reach);
   Neighbourhood n = Neighbourhood(0.0, vec3(0.0), vec3(0.0), vec3(0.0));
-  for (int z = low.z; z <= high.z; ++z) {
-    for (int y = low.y; y <= high.y; ++y) {
-      int row = (z * cells.y + y) * cells.x;
-      uint end = begins[row + high.x + 1];
-      for (uint k = begins[row + low.x]; k < end; ++k) {
-        int i = int(k);
-        vec3 way = vec3(places[i], places[column + i], places[2 * column + i]) - at;
-        float squared = dot(way, way);
-        if (squared >= reach * reach) continue;
-        float weight = neighbour_weight(sqrt(squared) / reach);
-        n.weights += weight;
-        n.sum += weight * way;
-        n.square += weight * way * way;
-        n.mixed += weight * way * way.yzx;
+  for (int z = middle.z - 1; z <= middle.z + 1; ++z) {
+    for (int y = middle.y - 1; y <= middle.y + 1; ++y) {
+      for (int x = middle.x - 1; x <= middle.x + 1; ++x) {
+        uint entry = entry_of(ivec3(x, y, z), entries);
+        uint first = begins[entry];
+        uint end = first + counts[entry];
+        for (uint k = first; k < end; ++k) {
+          vec3 there = sorted[k].xyz;
+          vec3 way = there - at;
+          float squared = dot(way, way);
+          if (squared >= reach * reach || cell_of(there, reach) != ivec3(x, y, z)) continue;
+          float weight = neighbour_weight(sqrt(squared) / reach);
+          n.weights += weight;
+          n.sum += weight * way;
+          n.square += weight * way * way;
+          n.mixed += weight * way * way.yzx;
+        }
       }
     }
   }
@@ -44,15 +44,16 @@ Neighbourhood neighbourhood_of(vec3 at) {
 }
 
 void main() {
-  int index = int(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64 + int(gl_LocalInvocationID.x);
+  int index = invocation();
   if (index >= count) return;
-  vec4 splat_in = splats[index];
-  vec3 at = (world_from_eye * vec4(splat_in.xyz, 1.0)).xyz;
-  Neighbourhood around = neighbourhood_of(at);
-  mat3 turn = mat3(eye_from_world);
-  vec3 center = (eye_from_world * vec4(at + smoothing_step(around, lengths.x), 1.0)).xyz;
-  mat3 ellipsoid = turn * smoothing_ellipsoid(around, lengths.x, lengths.y) * transpose(turn);
-  EllipsoidOutline shape = ellipsoid_outline(ellipsoid, center);
-  splats[index] = vec4(center, splat_in.w);
-  shapes[index] = Shape(vec4(shape.outline, shape.depth_radius), vec4(shape.tilt, 0.0, 0.0));
+  if (uint(index) >= counts[entries]) {  // fewer are drawn
+    centers[index] = vec4(0.0, 0.0, 0.0, -1.0);
+    sorted[index].w = -1.0;
+    return;
+  }
+  vec4 particle = sorted[index];
+  Neighbourhood around = neighbourhood_of(particle.xyz);
+  mat3 e = smoothing_ellipsoid(around, lengths.x, lengths.y);
+  centers[index] = vec4(particle.xyz + smoothing_step(around, lengths.x), particle.w);
+  ellipsoids[index] = Ellipsoid(vec4(e[0][0], e[0][1], e[0][2], e[1][1]), vec4(e[1][2], e[2][2], 0.0, 0.0));
 }

@@ -8,6 +8,7 @@ void main() {
   int index = int(splat_row());
   if (index >= count) return;
   vec4 splat_in = splats[index];
+  if (splat_in.w < 0.0) return;
   SplatPlace place = splat_place(splat_in.xyz);
 #ifdef SHAPED
   Shape shape = shapes[index];

@@ -38,6 +38,8 @@ struct Wishes {
   bool hud = false;
   bool stereo = false;
   bool bucket = false;
+  bool moving = false;
+  int detail = 0;
   std::string pixels = "both";
   int reference = 0;
   std::string environment;
@@ -65,6 +67,9 @@ void say_options(CLI::App& app, Wishes& wishes) {
   app.add_flag("--full", wishes.full, "full quality: what a film has");
   app.add_flag("--hud", wishes.hud, "arrows and a panel over it");
   app.add_flag("--bucket", wishes.bucket, "the tank is no glass");
+  app.add_flag("--moving", wishes.moving, "a ball moves from picture to picture, so that no shadow is kept");
+  app.add_option("--detail", wishes.detail, "a ball more, of four times the square of this triangles")
+      ->check(CLI::Range(2, 1000));
   app.add_flag("--stereo", wishes.stereo, "both eyes against one as well, each of that size, with the HUD");
   app.add_option("--pixels", wishes.pixels,
                  "passes over pixels by fragments, compute, both in turn, or as measured; still: by "
@@ -99,6 +104,12 @@ void time_stereo(slosh::Renderer& renderer, const slosh::Frame& frame, int frame
     draw();
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   };
+  const auto draw_both = [&](int i) {
+    renderer.prepare(frame, eyes);
+    for (const View& eye : eyes) renderer.draw(eye);
+    if (i % 6 == 0) renderer.draw_hud();
+    renderer.present();
+  };
   std::vector<double> mono;
   std::vector<double> stereo;
   for (int i = 0; i < frames + 2; ++i) {
@@ -119,9 +130,46 @@ void time_stereo(slosh::Renderer& renderer, const slosh::Frame& frame, int frame
     mono.push_back(one);
     stereo.push_back(two);
   }
-  std::printf("%-20s %10.2f %10.2f\n%-20s %10.2f %10.2f\n%-20s %10.2f %10.2f\n", "one eye", median(mono),
-              std::ranges::min(mono), "both eyes", median(stereo), std::ranges::min(stereo), "both / one",
-              median(stereo) / median(mono), std::ranges::min(stereo) / std::ranges::min(mono));
+  const auto print = [](const char* what, std::vector<double> one, std::vector<double> both) {
+    std::printf("%s\n%-20s %10.3f %10.3f\n%-20s %10.3f %10.3f\n%-20s %10.3f %10.3f\n", what, "one eye",
+                median(one), std::ranges::min(one), "both eyes", median(both), std::ranges::min(both),
+                "both / one", median(both) / median(one), std::ranges::min(both) / std::ranges::min(one));
+  };
+  print("with read-back", mono, stereo);
+
+  // As a headset has them: nobody reads them back, and nobody waits for one before the next is begun.
+  mono.clear();
+  stereo.clear();
+  constexpr int kRow = 20;
+  for (int i = 0; i < std::max(frames / 4, 3); ++i) {
+    const auto in_a_row = [&](auto&& draw) {
+      return time([&] {
+               for (int k = 0; k < kRow; ++k) draw(k);
+               (void)renderer.read_buffer(Buffer::kBackDepth);  // the smallest: waits for all
+             }) /
+             kRow;
+    };
+    mono.push_back(in_a_row([&](int) { renderer.draw(frame); }));
+    stereo.push_back(in_a_row(draw_both));
+  }
+  print("without, twenty in a row", mono, stereo);
+
+  mono.clear();
+  stereo.clear();
+  renderer.set_timing(true);
+  const auto passes = [&] {
+    double sum = 0.0;
+    for (const PassTime& pass : renderer.pass_times()) sum += pass.milliseconds;
+    return sum;
+  };
+  for (int i = 0; i < frames; ++i) {
+    renderer.draw(frame);
+    mono.push_back(passes());
+    draw_both(i);
+    stereo.push_back(passes());
+  }
+  renderer.set_timing(false);
+  print("all passes", mono, stereo);
 }
 
 void choose_fluid(const Wishes& wishes, slosh::kit::DamBreak& scene) {
@@ -191,8 +239,14 @@ struct Way {
   std::vector<double> cpu_sums;
   std::vector<double> whole;
 
+  bool moving = false;
+
   /// Once with its passes timed and once as a whole.
   void draw(bool counts) {
+    if (moving) {
+      glm::mat4& ball = scene->frame.meshes[2].model;
+      ball[3].y = ball[3].y > 0.024f ? 0.024f : 0.025f;
+    }
     renderer->set_timing(true);
     renderer->draw(scene->frame);
     const auto passes = renderer->pass_times();
@@ -239,7 +293,14 @@ slosh::Result<std::unique_ptr<Way>> make_way(const char* name, const Wishes& wis
   way->renderer = std::move(made.value());
   way->scene = std::make_unique<kit::DamBreak>(*way->renderer, wishes.particles, wishes.width, wishes.height);
   choose_fluid(wishes, *way->scene);
-  if (wishes.bucket) way->scene->frame.meshes.back().look.opacity = 1.0f;
+  if (wishes.bucket) way->scene->frame.meshes[3].look.opacity = 1.0f;
+  way->moving = wishes.moving;
+  if (wishes.detail > 0) {
+    const kit::Shape ball = kit::make_sphere(0.03f, wishes.detail, 2 * wishes.detail);
+    const MeshHandle mesh = way->renderer->add_mesh(ball.positions, ball.normals, ball.triangles);
+    way->scene->frame.meshes.push_back(
+        {mesh, glm::translate(glm::mat4(1.0f), glm::vec3(0.36f, 0.024f, -0.10f)), {}});
+  }
   if (wishes.hud) {
     way->scene->frame.arrows = {{{0.1f, 0.06f, 0.02f}, {0.1f, 0.26f, 0.02f}, {0.9f, 0.5f, 0.1f}}};
     way->scene->frame.hud = [] {

@@ -42,9 +42,9 @@ double share_off(const FloatImage& a, const FloatImage& b, float apart) {
   return static_cast<double>(off) / static_cast<double>(a.values.size());
 }
 
-/// Chords are summed in whole numbers, not in half floats, and panes of glass are laid over each other before they are
-/// rounded to half floats, not after each: a step of eight bits here and there. A pixel on the very edge of a triangle
-/// may be its or not.
+/// Chords are summed in whole numbers, not in half floats, and panes of glass are laid over each other before
+/// they are rounded to half floats, not after each: a step of eight bits here and there. A pixel on the very
+/// edge of a triangle may be its or not.
 void expect_same(const Image& a, const Image& b) {
   ASSERT_EQ(a.rgba.size(), b.rgba.size());
   double sum = 0.0;

@@ -1,0 +1,118 @@
+#include "render/passes/particles_on_gpu.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "render/gl/pixel_program.h"
+#include "render/passes/frame_block.h"
+#include "render/passes/smooth_centers.h"
+#include "render/passes/splats.h"
+
+namespace slosh {
+namespace {
+
+void bind(GLuint binding, const gl::StreamBuffer& buffer) {
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer.name());
+}
+
+constexpr std::size_t kVec4 = sizeof(glm::vec4);
+
+}  // namespace
+
+Result<ParticlesOnGpu> ParticlesOnGpu::create() {
+  ParticlesOnGpu out;
+  for (const Result<bool>& loaded :
+       {gl::take(out.take_, gl::Program::create_compute("particles.comp")),
+        gl::take(out.take_into_cells_, gl::Program::create_compute("particles.comp", {"CELLS"})),
+        gl::take(out.begin_, gl::Program::create_compute("cells_begin.comp")),
+        gl::take(out.fill_, gl::Program::create_compute("cells_fill.comp")),
+        gl::take(out.sort_, gl::Program::create_compute("cells_fill.comp", {"SORT"})),
+        gl::take(out.smooth_, gl::Program::create_compute("smooth_centers.comp")),
+        gl::take(out.place_, gl::Program::create_compute("splats.comp")),
+        gl::take(out.place_shaped_, gl::Program::create_compute("splats.comp", {"SHAPED"}))}) {
+    if (!loaded) return loaded.error();
+  }
+  return out;
+}
+
+void ParticlesOnGpu::take(const Frame& frame, bool moves) {
+  const std::size_t fluids = std::min(frame.fluids.size(), kMaxFluidLooks);
+  count_ = std::min(frame.particles.size(), frame.particle_fluid.size());
+  radius_ = frame.particle_radius;
+  moves_ = moves && radius_ > 0.0f && std::isfinite(radius_);
+  if (fluids == 0) count_ = 0;
+  if (count_ == 0) return;
+  places_.upload(std::as_bytes(frame.particles.first(count_)));
+  fluids_.upload(std::as_bytes(frame.particle_fluid.first(count_)));
+  particles_.reserve(count_ * kVec4);
+  const gl::Program& program = moves_ ? take_into_cells_ : take_;
+  if (moves_) {
+    // Some fifteen particles are in a cell inside a fluid.
+    entries_ = std::bit_ceil(std::max<std::size_t>(count_ / 2, 1024));
+    counts_.zero((entries_ + 1) * sizeof(std::uint32_t));
+    ranks_.reserve(count_ * sizeof(std::uint32_t));
+    program.set("entries", static_cast<int>(entries_));
+    program.set("reach", SmoothCenters::reach(radius_));
+    bind(3, counts_);
+    bind(4, ranks_);
+  }
+  places_.bind(0);
+  fluids_.bind(1);
+  bind(2, particles_);
+  program.set("fluids", static_cast<int>(fluids));
+  program.set("floats", 3);
+  gl::run_each(program, count_);
+  places_.done();
+  fluids_.done();
+}
+
+void ParticlesOnGpu::smooth() {
+  if (count_ == 0 || !moves_) return;
+  begins_.reserve(entries_ * sizeof(std::uint32_t));
+  listed_.reserve(count_ * sizeof(std::uint32_t));
+  sorted_.reserve(count_ * kVec4);
+  centers_.reserve(count_ * kVec4);
+  ellipsoids_.reserve(count_ * 2 * kVec4);
+  bind(2, particles_);
+  bind(3, counts_);
+  bind(4, ranks_);
+  bind(5, begins_);
+  bind(6, listed_);
+  bind(7, sorted_);
+  gl::run_each(begin_, entries_);
+  const float reach = SmoothCenters::reach(radius_);
+  for (const gl::Program* program : {&fill_, &sort_}) {
+    program->set("entries", static_cast<int>(entries_));
+    program->set("reach", reach);
+    gl::run_each(*program, count_);
+  }
+  bind(0, centers_);
+  bind(1, ellipsoids_);
+  smooth_.set("entries", static_cast<int>(entries_));
+  smooth_.set("lengths", glm::vec2(reach, radius_));
+  gl::run_each(smooth_, count_);
+}
+
+void ParticlesOnGpu::place(const Frame& frame, float splat_radius, SplatBuffers& out) const {
+  out.count = count_;
+  out.shaped = moves_;
+  if (count_ == 0) return;
+  const gl::Program& program = moves_ ? place_shaped_ : place_;
+  out.spheres.reserve(count_ * kVec4);
+  bind(0, out.spheres);
+  bind(2, moves_ ? sorted_ : particles_);
+  if (moves_) {
+    out.shapes.reserve(count_ * sizeof(SplatShape));
+    out.balls.reserve(count_ * kVec4);
+    bind(1, out.shapes);
+    bind(3, out.balls);
+    bind(4, centers_);
+    bind(5, ellipsoids_);
+  }
+  program.set("near_plane", frame.view.near_plane);
+  program.set("reach", splat_radius);
+  gl::run_each(program, count_);
+}
+
+}  // namespace slosh

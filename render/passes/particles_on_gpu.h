@@ -1,0 +1,67 @@
+// A frame's particles where compute shaders draw: given once, sorted into cells, moved and shaped by their
+// neighbours (what smooth_centers does on a CPU), once for all views; then placed for each view. What comes
+// out is the same each time.
+#pragma once
+
+#include <cstddef>
+
+#include "render/frame.h"
+#include "render/gl/objects.h"
+#include "render/gl/upload_ring.h"
+
+namespace slosh {
+
+/// Splats of a view: eye position m, index into Frame::fluids, or −1 where nothing is seen of it.
+struct SplatBuffers {
+  gl::StreamBuffer spheres;  ///< vec4
+  gl::StreamBuffer shapes;   ///< SplatShape, of moved spheres
+  gl::StreamBuffer balls;    ///< vec4: the spheres before they were moved
+  std::size_t count = 0;
+  bool shaped = false;
+
+  const gl::StreamBuffer& unmoved() const { return shaped ? balls : spheres; }
+};
+
+class ParticlesOnGpu {
+ public:
+  /// Errors carry the driver's log.
+  static Result<ParticlesOnGpu> create();
+
+  /// Takes the frame's particles. `moves`: they are counted into cells, for smooth().
+  void take(const Frame& frame, bool moves);
+  /// Sorts them, and finds where their neighbours move them and their ellipsoids.
+  void smooth();
+  /// As the view whose uniform block is bound sees them, moved if they were smoothed.
+  void place(const Frame& frame, float splat_radius, SplatBuffers& out) const;
+
+  /// Of the frame, some of which may be of no fluid.
+  std::size_t count() const { return count_; }
+  /// vec4 each: world position m, index into Frame::fluids, or −1 where it is not drawn.
+  const gl::StreamBuffer& particles() const { return particles_; }
+
+ private:
+  gl::Program take_;
+  gl::Program take_into_cells_;
+  gl::Program begin_;
+  gl::Program fill_;
+  gl::Program sort_;
+  gl::Program smooth_;
+  gl::Program place_;
+  gl::Program place_shaped_;
+  gl::UploadRing places_;
+  gl::UploadRing fluids_;
+  gl::StreamBuffer particles_;
+  gl::StreamBuffer counts_;  ///< an entry of the table each, and the sum of all
+  gl::StreamBuffer ranks_;
+  gl::StreamBuffer begins_;
+  gl::StreamBuffer listed_;
+  gl::StreamBuffer sorted_;      ///< as particles_, by cell
+  gl::StreamBuffer centers_;     ///< of the sorted
+  gl::StreamBuffer ellipsoids_;  ///< of the sorted
+  std::size_t count_ = 0;
+  std::size_t entries_ = 0;
+  float radius_ = 0.0f;  ///< m
+  bool moves_ = false;
+};
+
+}  // namespace slosh
