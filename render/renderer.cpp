@@ -39,6 +39,7 @@ RenderOptions section_five(RenderOptions options) {
   options.bilateral_iterations = 4;
   options.splat_scale = 1.2f;
   options.half_resolution_back = true;
+  options.body_reflections = false;
   options.fresnel = options.lit_fluid = options.layers = options.fluid_shadow = options.soft_mixing = false;
   options.antialias = options.dither = false;
   return options;

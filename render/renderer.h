@@ -36,7 +36,7 @@ enum class Quality : std::uint8_t {
   kAuto,  ///< kFast where a CPU draws (llvmpipe), else kFull
   kFast,  ///< two shadow taps, shadow map of 3/4 the size, no occlusion of meshes, only the
           ///< sides of glass that face the eye and are before the fluid
-  kFull,
+  kFull,  ///< with all of these, and the bodies mirrored in the fluid
 };
 
 /// How the splats' depths become the fluid's surface.
@@ -67,6 +67,8 @@ struct RenderOptions {
   bool fresnel = true;  ///< beyond the paper: Schlick reflection of the surroundings, F0 0.02
   bool lit_fluid =
       true;  ///< beyond the paper: light off and out of the fluid as its look says, in place of Eq 15
+  bool body_reflections = true;  ///< beyond the paper: the fluid mirrors the bodies, too, as far as the
+                                 ///< picture shows them (kFull); needs fresnel and lit_fluid
   bool layers = true;  ///< beyond the paper: layers of fluid with air between count each by itself; not with
                        ///< Surface::kPaper
 

@@ -209,8 +209,9 @@ void Renderer::Parts::draw_scene() {
                          box.size().y, 1);
     };
     if (!copied) run("copy scene colour", copy_scene);
-    const int mixed = draw_mixing();
-    run_in_part("composite", [&] { fluid_passes->composite(targets, options.lit_fluid, mixed); });
+    const bool bodies = !fast && options.body_reflections && options.fresnel && has_opaque(frame);
+    const LitLook look{draw_mixing(), bodies};
+    run_in_part("composite", [&] { fluid_passes->composite(targets, options.lit_fluid ? &look : nullptr); });
   }
   if (!frame.foam.empty()) {
     if (!foam_pass) {

@@ -52,6 +52,13 @@ void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window) {
                   "curvature flow of van der Laan 2009")
       ->check(CLI::IsMember({"ours", "paper", "flow"}))
       ->capture_default_str();
+  verb.add_option(
+          "--quality", options.quality,
+          "What is spent on looks: full has softer shadows and the bodies mirrored in the fluid; auto is "
+          "fast\n"
+          "where a processor draws, else full")
+      ->check(CLI::IsMember({"auto", "fast", "full"}))
+      ->capture_default_str();
   verb.add_option("--bilateral", options.bilateral,
                   "Iterations of the paper's filter; 0: particles stay the balls they are, with any surface")
       ->check(CLI::Range(0, 64))

@@ -102,6 +102,8 @@ RenderOptions picture_options(const Stage& stage, const ShowOptions& options, Pr
   RenderOptions render;
   if (options.surface == "paper") render = section_five(render);
   if (options.surface == "flow") render.surface = Surface::kCurvatureFlow;
+  if (options.quality == "fast") render.quality = Quality::kFast;
+  if (options.quality == "full") render.quality = Quality::kFull;
   set_hud_scale(static_cast<float>(options.font_scale));
   render.width = stage.width;
   render.height = stage.height;

@@ -125,25 +125,27 @@ void FluidPasses::smooth(const Targets& targets, const RenderOptions& options, c
   smoothed_ = options.bilateral_iterations == 0 ? -1 : filter_->run(targets, options, frame, tiles());
 }
 
-const gl::PixelProgram& FluidPasses::mixed_look(int mixed, const Targets& targets) {
-  const auto [at, anew] = mixed_look_programs_.try_emplace(mixed);
+const gl::PixelProgram& FluidPasses::program_of(const LitLook& look, const Targets& targets) {
+  if (look == LitLook{}) return look_program_;
+  const auto [at, anew] = more_look_programs_.try_emplace(look);
   if (anew) {
     std::vector<std::string> defines = look_defines_;
-    defines.push_back("MIXED " + std::to_string(mixed));
+    if (look.mixed > 0) defines.push_back("MIXED " + std::to_string(look.mixed));
+    if (look.bodies) defines.emplace_back("BODIES");
     auto made = gl::PixelProgram::create("fluid_look.frag", compute_, true, std::move(defines));
     if (made) at->second = std::move(made.value());
   }
   const gl::Program& program = at->second.program();
-  if (!program) return look_program_;  // a driver that refuses it: the front-most particle brings its look
-  program.set("share_pixels", targets.chord_size == targets.half_size ? 2 : 4);
+  if (!program) return look_program_;  // a driver that refuses it: without
+  if (look.mixed > 0) program.set("share_pixels", targets.chord_size == targets.half_size ? 2 : 4);
   return at->second;
 }
 
-void FluidPasses::composite(const Targets& targets, bool lit, int mixed) {
+void FluidPasses::composite(const Targets& targets, const LitLook* look) {
   gl::bind_textures({&targets.front, &smoothed(targets), &targets.back, &targets.scene_depth,
                      &targets.scene_color, &targets.chord});
   const gl::TileDraw where = tiles();
-  (mixed > 0 ? mixed_look(mixed, targets) : lit ? look_program_ : composite_program_)
+  (look ? program_of(*look, targets) : composite_program_)
       .run({targets.color, targets.color_target, targets.size, GL_RGBA16F}, &where);
 }
 

@@ -1,6 +1,7 @@
 // Section 5's fluid: splat, smooth, composite.
 #pragma once
 
+#include <compare>
 #include <map>
 #include <memory>
 #include <span>
@@ -15,6 +16,13 @@
 #include "render/renderer.h"
 
 namespace slosh {
+
+/// What a lit composite has compiled in beside fluid_look.glsl.
+struct LitLook {
+  int mixed = 0;        ///< textures that passes/mixing_pass.h bound, with the fluids' shares; 0: no mixing
+  bool bodies = false;  ///< they are mirrored
+  auto operator<=>(const LitLook&) const = default;
+};
 
 class FluidPasses {
  public:
@@ -38,9 +46,8 @@ class FluidPasses {
   /// Reads front; writes smooth by turns.
   void smooth(const Targets& targets, const RenderOptions& options, const Frame& frame);
   /// 5.2: Eq 15, or with `lit` fluid_look.glsl. Reads front, smooth, back, scene_depth, scene_color; writes
-  /// color where there is fluid. `mixed`: lit, with the shares of fluids in so many textures that
-  /// passes/mixing_pass.h bound; 0: none.
-  void composite(const Targets& targets, bool lit, int mixed);
+  /// color where there is fluid. `look`: null for Eq 15.
+  void composite(const Targets& targets, const LitLook* look);
   /// T for tests, into an R32F target of the picture's size; and n, into an RGBA32F one.
   void thickness(const Targets& targets, const gl::Framebuffer& target);
   void normals(const Targets& targets, const gl::Framebuffer& target);
@@ -54,8 +61,8 @@ class FluidPasses {
   /// Splats of `buffer` into a cleared texture of depths, by blending or atomics.
   void splat(const gl::Program& program, const gl::PixelTarget& target, GLenum blending, float cleared,
              const gl::StreamBuffer& buffer, std::size_t count);
-  /// The lit composite for so many textures of shares; made when first asked for.
-  const gl::PixelProgram& mixed_look(int mixed, const Targets& targets);
+  /// Made when first asked for.
+  const gl::PixelProgram& program_of(const LitLook& look, const Targets& targets);
   gl::TileDraw tiles() const { return {&tile_vertices_, tile_corners_}; }
   void upload_tiles(std::span<const glm::vec2> corners);
   void draw_data(const gl::Program& program, const Targets& targets, const gl::Framebuffer& target);
@@ -64,8 +71,8 @@ class FluidPasses {
   gl::Program shaped_program_;  ///< front of splats with shapes
   gl::Program back_program_;
   gl::PixelProgram composite_program_;
-  gl::PixelProgram look_program_;
-  std::map<int, gl::PixelProgram> mixed_look_programs_;
+  gl::PixelProgram look_program_;  ///< of LitLook{}
+  std::map<LitLook, gl::PixelProgram> more_look_programs_;
   std::vector<std::string> look_defines_;
   gl::PixelProgram fill_program_;  ///< for compute
   gl::Program thickness_program_;

@@ -43,6 +43,10 @@ bool has_translucent(const Frame& frame) {
   return std::ranges::any_of(frame.meshes, [](const MeshInstance& m) { return m.look.opacity < 1.0f; });
 }
 
+bool has_opaque(const Frame& frame) {
+  return std::ranges::any_of(frame.meshes, [](const MeshInstance& m) { return m.look.opacity >= 1.0f; });
+}
+
 Result<ScenePass::Programs> ScenePass::Programs::create(const char* fragment,
                                                         std::vector<std::string> defines) {
   Programs out;

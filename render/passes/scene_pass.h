@@ -56,7 +56,8 @@ class ScenePass {
   gl::VertexArray no_vertices_;
 };
 
-/// The frame has a mesh that is drawn blended.
+/// The frame has a mesh that is drawn blended; one that is not.
 bool has_translucent(const Frame& frame);
+bool has_opaque(const Frame& frame);
 
 }  // namespace slosh

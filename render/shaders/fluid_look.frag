@@ -6,6 +6,9 @@
 #include "look_block.glsl"
 #include "fluid_look.glsl"
 layout(binding = 4) uniform sampler2D scene_color;
+#ifdef BODIES
+#include "mirrored_bodies.glsl"
+#endif
 
 // How much of the sky the fluid leaves open over this point, 0–1: taps on two rings over the smoothed depths.
 float open_sky(vec3 here, vec3 n, ivec2 texel, int taps) {
@@ -181,8 +184,14 @@ bool pixel(ivec2 texel, out vec4 value) {
   // What scatters little is hardly lit: it needs no open sky.
   int taps = matter.scattering > 0.02 ? 6 : 0;
   vec3 mirror = mat3(world_from_eye) * reflect(-to_eye, surface.normal);
+  vec3 mirrored_light = rough_studio(mirror, matter.roughness);
+#ifdef BODIES
+  // A rough surface mirrors a blur of them, which one ray does not find.
+  vec4 body = mirrored_body(eye, reflect(-to_eye, surface.normal));
+  mirrored_light = mix(mirrored_light, body.rgb, body.a * (1.0 - smoothstep(0.15, 0.45, matter.roughness)));
+#endif
   FluidLight lit = FluidLight(key_light.rgb * light, ambient_light(world_n) * open_sky(eye, surface.normal, texel, taps),
-                              rough_studio(mirror, matter.roughness),
+                              mirrored_light,
                               mix(seen_behind(eye, surface.normal, matter.refraction, thickness, texel),
                                   studio(mat3(world_from_eye) * -to_eye * vec3(1.0, -1.0, 1.0)), far.by_floor));
   value = vec4(fluid_radiance(matter, point, lit, surface.whole), 0.0);

@@ -32,6 +32,8 @@ struct Wishes {
   bool juice = false;
   bool mix = false;
   bool hard = false;
+  bool no_bodies = false;
+  bool basin = false;
   bool paper = false;
   bool full = false;
   bool flow = false;
@@ -62,6 +64,8 @@ void say_options(CLI::App& app, Wishes& wishes) {
   app.add_flag("--juice", wishes.juice, "a cloudy one");
   app.add_flag("--mix", wishes.mix, "a cloudy one into which an opaque one runs");
   app.add_flag("--hard", wishes.hard, "fluids meet in hard outlines");
+  app.add_flag("--basin", wishes.basin, "a still basin with a post behind it, in place of the broken dam");
+  app.add_flag("--no-bodies", wishes.no_bodies, "the fluid mirrors the room alone");
   app.add_flag("--paper", wishes.paper, "the paper's section 5");
   app.add_flag("--flow", wishes.flow, "curvature flow");
   app.add_flag("--full", wishes.full, "full quality: what a film has");
@@ -172,6 +176,13 @@ void time_stereo(slosh::Renderer& renderer, const slosh::Frame& frame, int frame
   print("all passes", mono, stereo);
 }
 
+/// What is drawn. `spacing` of the basin is that of so many particles.
+struct Load {
+  std::unique_ptr<slosh::kit::DamBreak> dam;
+  std::unique_ptr<slosh::kit::StillBasin> basin;
+  slosh::Frame& frame() { return dam ? dam->frame : basin->frame; }
+};
+
 void choose_fluid(const Wishes& wishes, slosh::kit::DamBreak& scene) {
   if (wishes.batter) scene.frame.fluids = {slosh::kit::batter()};
   if (wishes.juice) scene.frame.fluids = {slosh::kit::cloudy_juice()};
@@ -184,6 +195,19 @@ void choose_fluid(const Wishes& wishes, slosh::kit::DamBreak& scene) {
     const float stray = 0.02f * std::sin(12.9898f * static_cast<float>(i));
     scene.fluids[i] = at.x + tongue + stray < -0.03f ? 1 : 0;
   }
+}
+
+Load make_load(const Wishes& wishes, slosh::MeshSink& meshes) {
+  Load load;
+  if (wishes.basin) {
+    const float spacing = std::cbrt(0.8f * 0.6f * 0.06f / static_cast<float>(wishes.particles));
+    load.basin = std::make_unique<slosh::kit::StillBasin>(meshes, spacing, wishes.width, wishes.height);
+    return load;
+  }
+  load.dam = std::make_unique<slosh::kit::DamBreak>(meshes, wishes.particles, wishes.width, wishes.height);
+  choose_fluid(wishes, *load.dam);
+  if (wishes.bucket) load.dam->frame.meshes[3].look.opacity = 1.0f;
+  return load;
 }
 
 /// A file, "studio", or none.
@@ -201,8 +225,7 @@ slosh::Result<bool> write_reference(const Wishes& wishes) {
   using namespace slosh;
   auto tracer = reference::PathTracer::create();
   if (!tracer) return tracer.error();
-  kit::DamBreak scene(*tracer.value(), wishes.particles, wishes.width, wishes.height);
-  choose_fluid(wishes, scene);
+  Load load = make_load(wishes, *tracer.value());
   reference::Options options;
   options.width = wishes.width;
   options.height = wishes.height;
@@ -210,7 +233,7 @@ slosh::Result<bool> write_reference(const Wishes& wishes) {
   options.threads = std::max(wishes.threads, 1);
   const auto environment = environment_of(wishes);
   options.environment = environment.get();
-  const FloatImage light = tracer.value()->draw(scene.frame, options);
+  const FloatImage light = tracer.value()->draw(load.frame(), options);
   std::vector<glm::vec3> linear(light.values.size() / 3);
   for (std::size_t i = 0; i < linear.size(); ++i)
     linear[i] = {light.values[3 * i], light.values[3 * i + 1], light.values[3 * i + 2]};
@@ -231,7 +254,7 @@ slosh::Result<bool> write_reference(const Wishes& wishes) {
 struct Way {
   std::string name;
   std::unique_ptr<slosh::Renderer> renderer;
-  std::unique_ptr<slosh::kit::DamBreak> scene;
+  Load load;
   std::vector<std::string> order;
   std::map<std::string, std::vector<double>> times;      ///< ms, by pass
   std::map<std::string, std::vector<double>> cpu_times;  ///< of which this thread had
@@ -244,15 +267,15 @@ struct Way {
   /// Once with its passes timed and once as a whole.
   void draw(bool counts) {
     if (moving) {
-      glm::mat4& ball = scene->frame.meshes[2].model;
+      glm::mat4& ball = load.frame().meshes[2].model;
       ball[3].y = ball[3].y > 0.024f ? 0.024f : 0.025f;
     }
     renderer->set_timing(true);
-    renderer->draw(scene->frame);
+    renderer->draw(load.frame());
     const auto passes = renderer->pass_times();
     renderer->set_timing(false);
     const auto start = std::chrono::steady_clock::now();
-    renderer->draw(scene->frame);
+    renderer->draw(load.frame());
     (void)renderer->read_back();
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
     if (!counts) return;
@@ -281,6 +304,7 @@ slosh::Result<std::unique_ptr<Way>> make_way(const char* name, const Wishes& wis
   options.environment = environment_of(wishes);
   if (wishes.flow) options.surface = Surface::kCurvatureFlow;
   if (wishes.full) options.quality = Quality::kFull;
+  if (wishes.no_bodies) options.body_reflections = false;
   if (wishes.hard) options.soft_mixing = false;
   if (name != std::string("compute") && name != std::string("measured"))
     options.pixel_passes = PixelPasses::kFragments;
@@ -291,19 +315,17 @@ slosh::Result<std::unique_ptr<Way>> make_way(const char* name, const Wishes& wis
   auto way = std::make_unique<Way>();
   way->name = name;
   way->renderer = std::move(made.value());
-  way->scene = std::make_unique<kit::DamBreak>(*way->renderer, wishes.particles, wishes.width, wishes.height);
-  choose_fluid(wishes, *way->scene);
-  if (wishes.bucket) way->scene->frame.meshes[3].look.opacity = 1.0f;
+  way->load = make_load(wishes, *way->renderer);
   way->moving = wishes.moving;
   if (wishes.detail > 0) {
     const kit::Shape ball = kit::make_sphere(0.03f, wishes.detail, 2 * wishes.detail);
     const MeshHandle mesh = way->renderer->add_mesh(ball.positions, ball.normals, ball.triangles);
-    way->scene->frame.meshes.push_back(
+    way->load.frame().meshes.push_back(
         {mesh, glm::translate(glm::mat4(1.0f), glm::vec3(0.36f, 0.024f, -0.10f)), {}});
   }
   if (wishes.hud) {
-    way->scene->frame.arrows = {{{0.1f, 0.06f, 0.02f}, {0.1f, 0.26f, 0.02f}, {0.9f, 0.5f, 0.1f}}};
-    way->scene->frame.hud = [] {
+    way->load.frame().arrows = {{{0.1f, 0.06f, 0.02f}, {0.1f, 0.26f, 0.02f}, {0.9f, 0.5f, 0.1f}}};
+    way->load.frame().hud = [] {
       ImGui::Begin("forces");
       ImGui::Text("left hand  12.3 N");
       ImGui::Text("right hand  9.8 N");
@@ -407,7 +429,7 @@ int main(int argc, char** argv) {
     for (const auto& way : ways) way->draw(i >= 2);  // shaders are compiled at their first use
   }
   std::printf("%s, threads %d\n%d x %d, %zu particles, %d frames\n", context.value()->description().c_str(),
-              wishes.threads, wishes.width, wishes.height, ways.front()->scene->particles.size(),
+              wishes.threads, wishes.width, wishes.height, ways.front()->load.frame().particles.size(),
               wishes.frames);
   if (wishes.pixels == "measured")
     std::printf("measured: by %s\n", ways.front()->renderer->on_compute() ? "compute" : "fragments");
@@ -416,7 +438,7 @@ int main(int argc, char** argv) {
   if (wishes.stereo) {
     for (const auto& way : ways) {
       std::printf("%s\n", way->name.c_str());
-      time_stereo(*way->renderer, way->scene->frame, wishes.frames);
+      time_stereo(*way->renderer, way->load.frame(), wishes.frames);
     }
   }
   if (!wishes.out.empty()) {

@@ -141,4 +141,25 @@ DamBreak::DamBreak(MeshSink& meshes, int wanted, int width, int height) {
   frame.particle_radius = 0.62f * spacing;
 }
 
+StillBasin::StillBasin(MeshSink& meshes, float spacing, int width, int height) {
+  particles = jitter_lattice(kLow + 0.5f * spacing, kHigh - 0.5f * spacing, spacing, 1);
+  relax(particles, spacing, kLow + 0.5f * spacing, kHigh - 0.5f * spacing, 8);
+  const glm::vec3 ball(0.14f, 0.03f, -0.06f);
+  std::erase_if(particles,
+                [&](const glm::vec3& p) { return glm::distance(p, ball) < 0.055f + 0.5f * spacing; });
+  fluids.assign(particles.size(), 0);
+  const auto add = [&](const Shape& shape, const MeshLook& look, const glm::vec3& at) {
+    const MeshHandle mesh = meshes.add_mesh(shape.positions, shape.normals, shape.triangles);
+    frame.meshes.push_back({mesh, glm::translate(glm::mat4(1.0f), at), look});
+  };
+  add(make_tank(kLow, {kHigh.x, 0.006f, kHigh.z}, 0.02f), {{0.30f, 0.29f, 0.27f}, 0.0f, 0.8f, 1.0f}, {});
+  add(make_box(kPostLow, kPostHigh), {{0.80f, 0.06f, 0.04f}, 0.0f, 0.9f, 1.0f}, {});
+  add(make_sphere(0.055f), {{0.85f, 0.60f, 0.10f}, 0.0f, 0.5f, 1.0f}, ball);
+  frame.view = make_view({0.0f, 0.20f, 0.85f}, {0.0f, 0.02f, -0.1f}, width, height);
+  frame.particles = particles;
+  frame.particle_fluid = fluids;
+  frame.fluids = {water()};
+  frame.particle_radius = 0.62f * spacing;
+}
+
 }  // namespace slosh::kit

@@ -39,6 +39,22 @@ struct DamBreak {
   DamBreak(MeshSink& meshes, int particles, int width, int height);
 };
 
+/// Still water with a level surface at y = 0 in a shallow stone basin, looked at flat across; a red post
+/// stands behind it and a ball swims in it: what it mirrors is known.
+struct StillBasin {
+  static constexpr glm::vec3 kLow{-0.40f, -0.06f, -0.25f};  ///< of the water, m
+  static constexpr glm::vec3 kHigh{0.40f, 0.0f, 0.35f};
+  static constexpr glm::vec3 kPostLow{-0.20f, -0.06f, -0.33f};
+  static constexpr glm::vec3 kPostHigh{-0.13f, 0.22f, -0.28f};
+
+  std::vector<glm::vec3> particles;
+  std::vector<std::uint8_t> fluids;
+  Frame frame;
+
+  /// spacing: m between particles.
+  StillBasin(MeshSink& meshes, float spacing, int width, int height);
+};
+
 FluidLook water();
 FluidLook batter();
 /// As scenes/README.md has it: clear enough to be seen through, and scattering.
