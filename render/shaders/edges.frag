@@ -38,7 +38,7 @@ bool pixel(ivec2 whole_texel, out vec4 value) {
     float after = level ? cross_of.above : cross_of.right;
     bool to_before = abs(before - cross_of.middle) >= abs(after - cross_of.middle);
     float other = to_before ? before : after;
-    vec2 over = (level ? vec2(0, 1) : vec2(1, 0)) * (to_before ? -1 : 1);
+    vec2 over = (level ? vec2(0, 1) : vec2(1, 0)) * (to_before ? -1.0 : 1.0);
     vec2 along = level ? vec2(1, 0) : vec2(0, 1);
     float here = 0.5 * (cross_of.middle + other);
     float tolerance = 0.25 * abs(other - cross_of.middle);

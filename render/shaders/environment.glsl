@@ -8,7 +8,7 @@ layout(binding = 10) uniform sampler2D far_light;              // FAR_LIGHT texe
 layout(binding = 11) uniform sampler2DArray blurred_far_light;  // BLURRED_FAR_LIGHT a side; roughness 0.2, 0.4, … 1
 layout(std140, binding = 2) uniform DiffuseLight { vec4 diffuse_light[9]; };  // spherical harmonics of irradiance / π
 
-vec3 studio(vec3 direction) { return textureLod(far_light, octahedral_texture(direction, FAR_LIGHT), 0.0).rgb; }
+vec3 studio(vec3 direction) { return textureLod(far_light, octahedral_texture(direction, float(FAR_LIGHT)), 0.0).rgb; }
 vec3 mirrored(vec3 direction) { return studio(direction); }
 
 vec3 ambient_light(vec3 d) {
@@ -22,7 +22,7 @@ vec3 ambient_light(vec3 d) {
 vec3 rough_studio(vec3 direction, float roughness) {
   float layer = clamp(5.0 * roughness, 0.0, 5.0) - 1.0;  // −1: as sharp as it is
   float low = floor(layer);
-  vec2 at = octahedral_texture(direction, BLURRED_FAR_LIGHT);
+  vec2 at = octahedral_texture(direction, float(BLURRED_FAR_LIGHT));
   vec3 blurred = textureLod(blurred_far_light, vec3(at, min(low + 1.0, 4.0)), 0.0).rgb;
   vec3 sharper = low < 0.0 ? studio(direction) : textureLod(blurred_far_light, vec3(at, max(low, 0.0)), 0.0).rgb;
   return mix(sharper, blurred, layer - low);
