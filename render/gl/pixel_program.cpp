@@ -8,6 +8,7 @@ namespace {
 // As pixel_main.glsl and splat_rows.glsl have them.
 constexpr glm::ivec2 kPixelGroup(16, 8);
 constexpr std::size_t kRowsInGroup = 4;
+constexpr std::size_t kPartsOfRows = 64;
 constexpr std::size_t kEachInGroup = 64;
 constexpr std::size_t kMostGroups = 32768;  // on an axis; at least 65535 are allowed
 
@@ -53,9 +54,10 @@ void finish_compute() {
 
 namespace {
 
-void start_groups(const Program& program, std::size_t count, std::size_t in_group) {
+/// `invocations` or rows of them, for `count`.
+void start_groups(const Program& program, std::size_t count, std::size_t invocations, std::size_t in_group) {
   if (count == 0) return;
-  const std::size_t groups = (count + in_group - 1) / in_group;
+  const std::size_t groups = (invocations + in_group - 1) / in_group;
   const std::size_t across = std::min(groups, kMostGroups);
   program.use();
   program.set("count", static_cast<int>(count));
@@ -64,15 +66,16 @@ void start_groups(const Program& program, std::size_t count, std::size_t in_grou
 
 }  // namespace
 
-void start_each(const Program& program, std::size_t count) {
-  start_groups(program, count, kEachInGroup);
+void start_each(const Program& program, std::size_t count, std::size_t share) {
+  start_groups(program, count, count * share, kEachInGroup);
 }
-void run_each(const Program& program, std::size_t count) {
-  start_each(program, count);
+void run_each(const Program& program, std::size_t count, std::size_t share) {
+  start_each(program, count, share);
   finish_compute();
 }
 void run_rows(const Program& program, std::size_t count) {
-  start_groups(program, count, kRowsInGroup);
+  const std::size_t rows = (count + kPartsOfRows - 1) / kPartsOfRows * kPartsOfRows;
+  start_groups(program, count, rows, kRowsInGroup);
   finish_compute();
 }
 

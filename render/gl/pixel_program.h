@@ -48,11 +48,11 @@ class PixelProgram {
 /// What was written by compute shaders may be read, drawn over, copied and fetched after this.
 void finish_compute();
 
-/// Runs a compute shader of 64 invocations a group, one for each of `count`, whose uniform `count` it sets.
-void run_each(const Program& program, std::size_t count);
+/// Runs a compute shader of 64 invocations a group, `share` for each of `count`, whose uniform `count` it sets.
+void run_each(const Program& program, std::size_t count, std::size_t share = 1);
 
 /// The same without finish_compute(): for several in a row that write to different places.
-void start_each(const Program& program, std::size_t count);
+void start_each(const Program& program, std::size_t count, std::size_t share = 1);
 
 /// Runs a compute shader that takes one row of splat_rows.glsl for each of `count` splats, whose uniform
 /// `count` it sets.

@@ -38,12 +38,17 @@ Result<FluidShadowPass> FluidShadowPass::create(bool fast, bool compute) {
   return pass;
 }
 
+void FluidShadowPass::clear() const {
+  const glm::vec4 none(0.0f);
+  glClearNamedFramebufferfv(target_.name(), GL_COLOR, 0, &none.x);
+}
+
 bool FluidShadowPass::begin(const Frame& frame, const RenderOptions& options, const ShadowView& shadow,
                             std::size_t count) {
   glBindTextureUnit(kFluidShadowUnit, map_.name());
   const bool empty = !options.fluid_shadow || shadow.size == 0 || count == 0 || frame.fluids.empty();
-  const glm::vec4 clear(0.0f);
-  glClearNamedFramebufferfv(target_.name(), GL_COLOR, 0, &clear.x);
+  // What sums up writes every texel.
+  if (empty || !sum_.on_compute()) clear();
   return !empty;
 }
 
@@ -52,6 +57,12 @@ void FluidShadowPass::set_up(const Frame& frame, const RenderOptions& options, c
   std::array<glm::vec3, kMaxFluidLooks> extinction{};
   for (std::size_t i = 0; i < std::min(frame.fluids.size(), kMaxFluidLooks); ++i)
     extinction[i] = frame.fluids[i].extinction;
+  // Where all dim alike, one sum a texel does for the three channels.
+  const float most = std::max({extinction[0].x, extinction[0].y, extinction[0].z});
+  const bool alike = sum_.on_compute() && frame.fluids.size() == 1 && most > 0.0f;
+  program_.set("sums_a_texel", alike ? 1 : 3);
+  alike_ = alike ? extinction[0] / most : glm::vec3(0.0f);
+  if (alike) extinction[0] = glm::vec3(most);
   glProgramUniform3fv(program_.name(), glGetUniformLocation(program_.name(), "extinction"),
                       static_cast<GLsizei>(extinction.size()), &extinction[0].x);
   // Fewer splats are drawn wider, so that they still close up, and their sum stays the same. Little wider
@@ -84,6 +95,7 @@ void FluidShadowPass::sum_up(const gl::StreamBuffer& particles, std::size_t coun
   if (!std::exchange(sums_ready_, true)) sums_.zero(4 * sizeof(std::uint32_t) * side * side);
   program_.set("size", size_);
   sum_.program().set("size", size_);
+  sum_.program().set("alike", alike_);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, particles.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, sums_.name());
   gl::run_rows(program_, count);
@@ -103,7 +115,10 @@ void FluidShadowPass::draw(const Frame& frame, const RenderOptions& options, con
       particles_.emplace_back(at, static_cast<float>(frame.particle_fluid[i]));
     }
   }
-  if (particles_.empty()) return;
+  if (particles_.empty()) {
+    clear();
+    return;
+  }
   buffer_.upload(std::span<const glm::vec4>(particles_));
   set_up(frame, options, shadow, step);
   if (sum_.on_compute()) {

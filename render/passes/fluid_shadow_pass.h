@@ -24,6 +24,7 @@ class FluidShadowPass {
             const ParticlesOnGpu& particles);
 
  private:
+  void clear() const;
   /// Clears and binds the map; whether there is something to draw into it.
   bool begin(const Frame& frame, const RenderOptions& options, const ShadowView& shadow, std::size_t count);
   /// Sets the program's uniforms, each particle drawn standing for `step`.
@@ -35,6 +36,7 @@ class FluidShadowPass {
   gl::PixelProgram sum_;   ///< for compute
   gl::StreamBuffer sums_;  ///< four whole numbers a texel (shaders/sums.glsl); zeros from picture to picture
   bool sums_ready_ = false;
+  glm::vec3 alike_{0.0f};  ///< channels of what is summed once for all; 0: each by itself
   gl::Texture map_;
   gl::Framebuffer target_;
   gl::VertexArray array_;

@@ -17,6 +17,7 @@ void bind(GLuint binding, const gl::StreamBuffer& buffer) {
 }
 
 constexpr std::size_t kVec4 = sizeof(glm::vec4);
+constexpr std::size_t kSmoothShare = 8;  // invocations a particle, as smooth_centers.comp has it
 
 }  // namespace
 
@@ -91,7 +92,7 @@ void ParticlesOnGpu::smooth() {
   bind(1, ellipsoids_);
   smooth_.set("entries", static_cast<int>(entries_));
   smooth_.set("lengths", glm::vec2(reach, radius_));
-  gl::run_each(smooth_, count_);
+  gl::run_each(smooth_, count_, kSmoothShare);
 }
 
 void ParticlesOnGpu::place(const Frame& frame, float splat_radius, SplatBuffers& out) const {

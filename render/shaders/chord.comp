@@ -8,7 +8,7 @@ layout(std430, binding = 2) buffer Sums { uint sums[]; };  // a texel each
 uniform ivec2 size;
 uniform int count;
 void main() {
-  int index = int(splat_row());
+  int index = int(splat_row(count));
   if (index >= count) return;
   if (splats[index].w < 0.0) return;
   SplatPlace place = splat_place(splats[index].xyz);

@@ -7,9 +7,10 @@ layout(std430, binding = 0) readonly buffer Particles { vec4 particles[]; };  //
 layout(std430, binding = 2) buffer Sums { uint sums[]; };                     // four a texel
 uniform int size;  // of the map, texels a side
 uniform int count;
+uniform int sums_a_texel;  // 3, or 1 where all channels dim alike
 uniform int stride;  // particles that one stands for
 void main() {
-  int index = int(splat_row());
+  int index = int(splat_row(count));
   if (index >= count) return;
   vec4 particle = particles[index * stride];
   if (particle.w < 0.0) return;
@@ -26,7 +27,7 @@ void main() {
     if (off >= 1.0) continue;
     vec4 here = dimming_at(optical, off);
     int first = 4 * (texel.y * size + texel.x);
-    for (int channel = 0; channel < 3; ++channel) {
+    for (int channel = 0; channel < sums_a_texel; ++channel) {
       uint steps = uint(min(here[channel], kMostDimming) * kDimmingSteps + 0.5);
       if (steps > 0u) atomicAdd(sums[first + channel], steps);
     }

@@ -36,11 +36,14 @@ void main() {
     look_for(first);
     for (int word = 0; word < 8; ++word) {
       for (uint left = touching[word]; left != 0u; left &= left - 1u) {
-        int index = first + 32 * word + findLSB(left);
+        int place = 32 * word + findLSB(left);
+        uint blocks = blocks_touched(place);
+        if (blocks == 0u) continue;
+        int index = first + place;
         Triangle t = triangles[index];
         for (int k = 0; k < kPixels; ++k) {
           Hit hit;
-          if (!meets(t, ray[k], hit)) continue;
+          if ((blocks >> k & 1u) == 0u || !meets(t, ray[k], hit)) continue;
 #ifdef BEHIND
           if (hit.depth <= nearest[k] || hit.depth >= farthest[k]) continue;
 #else

@@ -32,7 +32,6 @@ void main() {
     vec4 world = model * vec4(vertices[v], vertices[v + 1], vertices[v + 2], 1.0);
     normal[k] = mat3(model) * vec3(vertices[v + 3], vertices[v + 4], vertices[v + 5]);
     at[k] = (eye_from_world * world).xyz * vec3(1.0, 1.0, -1.0);
-    if (at[k].z >= near_plane) at[k].xy = snapped(at[k]);
   }
   // The part beyond the near plane.
   vec2 low = vec2(1.0e9);
@@ -51,12 +50,20 @@ void main() {
       high = max(high, p);
     }
   }
+  // Depths are those of the plane it is in, not of the one through its corners as they are snapped: that of a floor would be off by
+  // a tenth of a millimetre a metre.
+  vec3 plane = cross(at[1] - at[0], at[2] - at[0]);
+  float distance = dot(plane, at[0]);
+  plane = abs(distance) > 1.0e-12 ? plane / distance : vec3(0.0);
   // Positive where the eye is on its outer side; depth points away from the eye, which turns the hand.
-  float outside = dot(cross(at[1] - at[0], at[2] - at[0]), at[0]);
+  float outside = distance;
   bool seen = sides == 0 || outside * float(sides) > 0.0;
   ivec2 from = ivec2(clamp(floor(low - 1.0), vec2(0.0), picture.xy));
   ivec2 to = ivec2(clamp(ceil(high + 1.0), vec2(-1.0), picture.xy - 1.0));
   bool any_pixel = seen && all(lessThanEqual(from, to)) && low.x <= high.x;
   boxes[first + index] = any_pixel ? uvec2(uint(from.x) | uint(from.y) << 16, uint(to.x) | uint(to.y) << 16) : uvec2(0xffffffffu, 0u);
-  triangles[first + index] = Triangle(vec4(at[0], float(item)), vec4(at[1], 0.0), vec4(at[2], 0.0), vec4(normal[0], 0.0), vec4(normal[1], 0.0), vec4(normal[2], 0.0));
+  for (int k = 0; k < 3; ++k) {
+    if (at[k].z >= near_plane) at[k].xy = snapped(at[k]);
+  }
+  triangles[first + index] = Triangle(vec4(at[0], float(item)), vec4(at[1], plane.x), vec4(at[2], plane.y), vec4(normal[0], plane.z), vec4(normal[1], 0.0), vec4(normal[2], 0.0));
 }

@@ -7,7 +7,7 @@ layout(std430, binding = 2) buffer Sums { uint sums[]; };  // four a texel
 uniform ivec2 size;
 uniform int count;
 void main() {
-  int index = int(splat_row());
+  int index = int(splat_row(count));
   if (index >= count) return;
   vec4 splat_in = splats[index];
   int channel = int(splat_in.w) - first;

@@ -5,7 +5,7 @@ layout(local_size_x = 32, local_size_y = 4) in;
 layout(binding = 0, r32ui) uniform uimage2D depths;
 uniform int count;
 void main() {
-  int index = int(splat_row());
+  int index = int(splat_row(count));
   if (index >= count) return;
   vec4 splat_in = splats[index];
   if (splat_in.w < 0.0) return;

@@ -11,4 +11,9 @@ PixelBox pixel_box(vec2 low, vec2 high, ivec2 picture_size) {
   return PixelBox(first, max(last - first + 1, ivec2(0)));
 }
 
-uint splat_row() { return (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 4u + gl_LocalInvocationID.y; }
+// Which splat an invocation's row takes, of `count`; none if it is not below. Rows that run at the same time take splats from 64 parts of
+// all: those that follow each other lie side by side, where atomics would wait for each other.
+uint splat_row(int count) {
+  uint row = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 4u + gl_LocalInvocationID.y;
+  return (row & 63u) * (uint(count + 63) >> 6) + (row >> 6);
+}

@@ -42,6 +42,7 @@ struct Wishes {
   bool bucket = false;
   bool moving = false;
   int detail = 0;
+  int warm = 0;
   std::string pixels = "both";
   int reference = 0;
   std::string environment;
@@ -74,6 +75,8 @@ void say_options(CLI::App& app, Wishes& wishes) {
   app.add_flag("--moving", wishes.moving, "a ball moves from picture to picture, so that no shadow is kept");
   app.add_option("--detail", wishes.detail, "a ball more, of four times the square of this triangles")
       ->check(CLI::Range(2, 1000));
+  app.add_option("--warm", wishes.warm, "pictures more before each that is measured: a GPU that waits slows down")
+      ->check(CLI::Range(0, 1000));
   app.add_flag("--stereo", wishes.stereo, "both eyes against one as well, each of that size, with the HUD");
   app.add_option("--pixels", wishes.pixels,
                  "passes over pixels by fragments, compute, both in turn, or as measured; still: by "
@@ -263,6 +266,7 @@ struct Way {
   std::vector<double> whole;
 
   bool moving = false;
+  int warm = 0;
 
   /// Once with its passes timed and once as a whole.
   void draw(bool counts) {
@@ -270,6 +274,7 @@ struct Way {
       glm::mat4& ball = load.frame().meshes[2].model;
       ball[3].y = ball[3].y > 0.024f ? 0.024f : 0.025f;
     }
+    for (int i = 0; i < warm; ++i) renderer->draw(scene->frame);
     renderer->set_timing(true);
     renderer->draw(load.frame());
     const auto passes = renderer->pass_times();
@@ -317,6 +322,7 @@ slosh::Result<std::unique_ptr<Way>> make_way(const char* name, const Wishes& wis
   way->renderer = std::move(made.value());
   way->load = make_load(wishes, *way->renderer);
   way->moving = wishes.moving;
+  way->warm = wishes.warm;
   if (wishes.detail > 0) {
     const kit::Shape ball = kit::make_sphere(0.03f, wishes.detail, 2 * wishes.detail);
     const MeshHandle mesh = way->renderer->add_mesh(ball.positions, ball.normals, ball.triangles);
