@@ -274,7 +274,7 @@ struct Way {
       glm::mat4& ball = load.frame().meshes[2].model;
       ball[3].y = ball[3].y > 0.024f ? 0.024f : 0.025f;
     }
-    for (int i = 0; i < warm; ++i) renderer->draw(scene->frame);
+    for (int i = 0; i < warm; ++i) renderer->draw(load.frame());
     renderer->set_timing(true);
     renderer->draw(load.frame());
     const auto passes = renderer->pass_times();

@@ -133,6 +133,7 @@ TEST_F(EsShaders, PassesOverPixelsAndMeshesCompile) {
   const Pair pairs[] = {
       {"tiles.vert", "fluid_look.frag", {}},
       {"tiles.vert", "fluid_look.frag", {"FAST"}},
+      {"tiles.vert", "fluid_look.frag", {"BODIES"}},
       {"tiles.vert", "fluid_look.frag", far_light},
       {"tiles.vert", "composite.frag", {}},
       {"tiles.vert", "composite.frag", far_light},
@@ -215,7 +216,7 @@ TEST_F(EsShaders, TheFluidLooksAsTheRendererDrewIt) {
   std::unique_ptr<EsContext> es;
   if (const auto why = EsContext::make(es, *context_)) GTEST_SKIP() << *why;
   std::string log;
-  const GLuint program = es_program("fullscreen.vert", "fluid_look.frag", {}, log);
+  const GLuint program = es_program("fullscreen.vert", "fluid_look.frag", {"BODIES"}, log);
   ASSERT_NE(program, 0u) << log;
   for (const auto& [unit, image] : read) texture_at(unit, image);
   block_at(0, make_frame_block(scene.frame, options, {}, false));
