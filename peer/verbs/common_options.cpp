@@ -43,6 +43,8 @@ void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window) {
   verb.add_option("--size", options.size,
                   has_window ? "Picture in pixels, WxH (640x480 headless, 1280x720 in a window)"
                              : "Picture in pixels, WxH (640x480)");
+  verb.add_flag("--stereo", options.stereo,
+                "A film in both eyes, side by side, each of that size (a headset's films are so anyway)");
   verb.add_option("--fps", options.frames_per_second, "Pictures a second of the film")
       ->check(in_range(1.0, 240.0))
       ->capture_default_str();

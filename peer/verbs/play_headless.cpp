@@ -25,7 +25,7 @@ void fill_view(RunSummary& summary, const HeadlessView& view, const ViewOptions&
   const ViewReport& report = view.report();
   summary.rendered = true;
   summary.renderer = report.renderer;
-  summary.width = options.render.width;
+  summary.width = (options.stereo ? 2 : 1) * options.render.width;
   summary.height = options.render.height;
   summary.frames = report.frames;
   summary.frames_dropped = dropped;
@@ -120,6 +120,7 @@ Result<bool> show_headless(const Stage& stage, LiveRun& run, const ShowOptions& 
   if (options.render) {
     progress.phase("preparing the picture");
     view_options.render = picture_options(stage, options, progress);
+    view_options.stereo = options.stereo;
     view_options.frames_per_second = options.frames_per_second;
     view_options.folder = stage.folder;
     Result<std::unique_ptr<HeadlessView>> started = HeadlessView::start(

@@ -19,6 +19,7 @@ struct ShowOptions {
   bool headless = false;
   std::vector<std::string> devices;  ///< none, one for all, or one a grip
   std::string size;                  ///< "WxH"; empty = chosen
+  bool stereo = false;               ///< a film without a display has both eyes
   double frames_per_second = 30.0;
   int bilateral = 4;
   std::string surface = "ours";  ///< how particles become a surface: ours, paper, flow

@@ -215,6 +215,8 @@ Result<bool> show_in_window(const Stage& stage, const MakeRun& make_run, const S
     }
   } const give_back{headset};  // before the context goes
   const auto tell = [&progress](const std::string& text) { progress.note("slosh: " + text); };
+  if (options.stereo && !headset)
+    tell("--stereo is of films without a window (--headless); this one has one eye");
   if (headset) {
     const Result<bool> started = headset->start(*context.value(), stage.scene, tell);
     if (!started && !context.value()->has_window()) return started.error();

@@ -68,8 +68,9 @@ void HeadlessView::run(const Setup& setup) {
     return;
   }
   Renderer& renderer = *created.value();
-  Result<std::unique_ptr<Video>> video = Video::start(options.folder / "view.mp4", options.render.width,
-                                                      options.render.height, options.frames_per_second);
+  Result<std::unique_ptr<Video>> video =
+      Video::start(options.folder / "view.mp4", (options.stereo ? 2 : 1) * options.render.width,
+                   options.render.height, options.frames_per_second);
   if (!video) {
     done();
     setup.ready->set_value(video.error());
@@ -88,8 +89,13 @@ void HeadlessView::run(const Setup& setup) {
     if (!snapshot) continue;
     const std::int64_t begin_ns = steady_now_ns();
     painter.record(*snapshot);
-    painter.draw(*snapshot, rates.at(snapshot->rigid.time));
-    image = renderer.read_back();
+    const Rates now = rates.at(snapshot->rigid.time);
+    if (options.stereo) {
+      image = painter.draw_both(*snapshot, now);
+    } else {
+      painter.draw(*snapshot, now);
+      image = renderer.read_back();
+    }
     report_.frame_time.add(to_seconds(steady_now_ns() - begin_ns));
     report_.frames += 1;
     if (recording && !video.value()->add(image)) recording = false;  // finish() below says why

@@ -19,6 +19,7 @@ namespace slosh {
 
 struct ViewOptions {
   RenderOptions render;             ///< size, filter iterations
+  bool stereo = false;              ///< both eyes side by side, each of that size
   double frames_per_second = 30.0;  ///< of the film
   std::filesystem::path folder;     ///< gets view.mp4 and final.png; must exist
 };

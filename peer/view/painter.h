@@ -11,6 +11,7 @@
 #include "peer/view/frame_builder.h"
 #include "peer/view/held_rects.h"
 #include "peer/view/orbit_camera.h"
+#include "peer/view/stereo_views.h"
 #include "render/headset.h"
 
 namespace slosh {
@@ -67,6 +68,27 @@ class Painter {
     }
     if (pictures.panel.texture != 0) renderer_.draw_panel(pictures.panel_size, pictures.panel);
     if (keep) *keep = side_by_side(read[0], read[1]);
+  }
+
+  /// Both eyes of a film (stereo_views.h), the HUD over each, in the screen: side by side.
+  Image draw_both(const Snapshot& snapshot, const Rates& rates) {
+    Frame frame = builder_.build(snapshot, camera_.distance());
+    frame.foam = foam_.points();
+    const RenderOptions& size = renderer_.options();
+    frame.view = camera_.view(static_cast<double>(size.width) / size.height);
+    hud_.keep_clear = held_.of(snapshot, frame.view);
+    frame.hud = [this, &rates] { hud_.draw(rates); };
+    const std::array<View, 2> eyes =
+        stereo_views(frame.view, kEyesApart, static_cast<float>(camera_.distance()));
+    renderer_.prepare(frame, eyes);
+    std::array<Image, 2> read;
+    for (std::size_t eye = 0; eye < 2; ++eye) {
+      renderer_.draw(eyes[eye]);
+      renderer_.draw_hud();
+      read[eye] = renderer_.read_back();
+    }
+    renderer_.present();
+    return side_by_side(read[0], read[1]);
   }
 
   /// The studio without a scene, for a headset that waits.

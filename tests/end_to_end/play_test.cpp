@@ -13,8 +13,10 @@
 #include "peer/haptics/script_device.h"
 #include "peer/output/plot.h"
 #include "peer/output/recorder.h"
+#include "peer/view/orbit_camera.h"
 #include "process.h"
 #include "render/image.h"
+#include "scenes/load.h"
 
 namespace slosh {
 namespace {
@@ -113,6 +115,59 @@ TEST_F(PlayTest, SurfaceAndSheetAreAsAskedFor) {
   EXPECT_NE(sheet.find("spacing 12 mm"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(out() / "wrenches.png"));
   EXPECT_EQ(probe(out() / "view.mp4", "color_space"), "bt709");
+}
+
+/// How far left the right half of a picture of both eyes has what the left half has round `pixel`, in pixels:
+/// where a patch of 40 x 40 differs least.
+int patch_apart(const Image& both, const glm::dvec2& pixel) {
+  const int half = both.width / 2;
+  const auto channel = [&](int x, int y, int c) {
+    const auto at =
+        static_cast<std::size_t>(y) * static_cast<std::size_t>(both.width) + static_cast<std::size_t>(x);
+    return int{both.rgba[4 * at + static_cast<std::size_t>(c)]};
+  };
+  int best = 0;
+  long least = -1;
+  for (int apart = -40; apart <= 40; ++apart) {
+    long sum = 0;
+    for (int y = static_cast<int>(pixel.y) - 20; y < static_cast<int>(pixel.y) + 20; ++y) {
+      for (int x = static_cast<int>(pixel.x) - 20; x < static_cast<int>(pixel.x) + 20; ++x) {
+        for (int c = 0; c < 3; ++c) sum += std::abs(channel(x, y, c) - channel(half + x - apart, y, c));
+      }
+    }
+    if (least >= 0 && sum >= least) continue;
+    least = sum;
+    best = apart;
+  }
+  return best;
+}
+
+TEST_F(PlayTest, AFilmInBothEyesDiffersAsFarAsEyesAreApart) {
+  const Outcome outcome =
+      test::slosh({"play", "probe", "--headless", "--seconds", "0.2", "--spacing", "0.012", "--size",
+                   "640x480", "--fps", "10", "--stereo", "--unpaced", "--out", "out"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(probe(out() / "view.mp4", "width"), "1280");
+  EXPECT_EQ(probe(out() / "view.mp4", "nb_read_frames"), "3");
+  EXPECT_EQ(json::parse(read_text(out() / "summary.json"))["render"]["width"], 1280);
+  const Result<Image> last = read_png(out() / "final.png");
+  ASSERT_TRUE(last) << last.error().text();
+  ASSERT_EQ(last.value().width, 1280);
+  // The tank's near and its far foot, by similar triangles: what the camera looks at lies in the screen.
+  const Result<Scene> scene = load_scene(find_scene("probe").value());
+  ASSERT_TRUE(scene) << scene.error().text();
+  const OrbitCamera camera(scene.value().camera);
+  const TriangleMesh& tank = scene.value().meshes[static_cast<std::size_t>(scene.value().bodies[0].mesh)];
+  glm::dvec3 near(0.0);
+  for (const auto& p : tank.positions) near = glm::max(near, glm::dvec3(p));
+  near.y = 0.0;
+  const glm::dvec3 far(-near.x, 0.0, near.z);
+  const double pixels = 480.0 / camera.height_at_target() * camera.distance();  // of a metre, a metre away
+  for (const glm::dvec3& foot : {near, far}) {
+    const double expected = pixels * 0.063 * (1.0 / camera.depth_of(foot) - 1.0 / camera.distance());
+    const glm::dvec2 left = camera.pixel_of(foot, {640, 480}) + glm::dvec2(0.5 * expected, 0.0);
+    EXPECT_NEAR(patch_apart(last.value(), left), expected, 1.5) << foot.x;
+  }
 }
 
 TEST_F(PlayTest, WithoutGnuplotTheSheetIsMissedInWordsAndNothingElse) {

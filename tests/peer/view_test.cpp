@@ -9,6 +9,7 @@
 #include "peer/view/mouse_hand.h"
 #include "peer/view/orbit_camera.h"
 #include "peer/view/picture_scale.h"
+#include "peer/view/stereo_views.h"
 
 namespace slosh {
 namespace {
@@ -55,6 +56,27 @@ TEST(OrbitCamera, DraggingMovesTheWorldWithTheMouse) {
   const glm::dvec3 eye = orbit.eye();
   orbit.follow(input, 500);
   EXPECT_EQ(orbit.eye(), eye) << "the HUD has the mouse";
+}
+
+TEST(StereoViews, EyesDifferAsFarAsTheyAreApart) {
+  const OrbitCamera orbit(camera());
+  const View middle = orbit.view(1.5);
+  const auto screen = static_cast<float>(orbit.distance());
+  const auto eyes = stereo_views(middle, 0.063f, screen);
+  const glm::dvec3 forward = glm::normalize(camera().target - camera().eye);
+  for (const double depth : {0.5, static_cast<double>(screen), 3.0}) {
+    for (const double aside : {-0.1, 0.0, 0.2}) {
+      const glm::dvec3 point = camera().eye + depth * forward + glm::dvec3(aside, 0.0, 0.0);
+      const glm::vec3 left = clip(eyes[0], point);
+      const glm::vec3 right = clip(eyes[1], point);
+      // Similar triangles: what is nearer than the screen is seen crossed, with an eye's distance as its
+      // base.
+      const double apart = middle.projection[0][0] * 0.063 * (1.0 / depth - 1.0 / screen);
+      EXPECT_NEAR(left.x - right.x, apart, 1e-5) << depth << " m";
+      EXPECT_NEAR(0.5f * (left.x + right.x), clip(middle, point).x, 1e-5f);
+      EXPECT_NEAR(left.y, right.y, 1e-6f);
+    }
+  }
 }
 
 TEST(Hud, SaysInHowManyStepsEachStatusWasSet) {
