@@ -33,6 +33,8 @@ constexpr int kWidth = 640;
 constexpr int kHeight = 480;
 constexpr double kInner[3] = {0.36, 0.26, 0.20};  // m, the tank
 constexpr double kFill = 0.10;                    // m of still water
+constexpr double kStirRadius = 0.07;              // m, of the circle that a rod goes in
+constexpr double kStirPeriod = 7.0;               // s: 63 mm a second
 constexpr double kBucketSpacing = 0.012;          // m, the scene's coarsest
 
 struct Method {
@@ -52,6 +54,7 @@ struct Row {
   score::SurfaceScore at15;
   double still_normal = 0.0;  ///< degrees
   double flicker = 0.0;       ///< of 255
+  score::StirScore stir;
   double filter_ms = 0.0;
   double frame_ms = 0.0;
   std::optional<score::PictureScore> off_reference;
@@ -68,7 +71,7 @@ RenderOptions options_of(const Method& method, int width, int height) {
 }
 
 /// Water in a glass tank on a table; the dam: all of it at one end, twice as high.
-Scene tank_scene(bool dam) {
+report::SceneBuilder tank_scene(bool dam) {
   report::SceneBuilder b;
   b.add_fluid(1000.0, 0.01);
   const double x = 0.5 * kInner[0];
@@ -89,7 +92,37 @@ Scene tank_scene(bool dam) {
   b.scene.pictures.push_back(table);
   b.scene.camera.eye = {0.30, 0.42, 0.66};
   b.scene.camera.target = {0.0, 0.10, 0.0};
-  return b.scene;
+  return b;
+}
+
+/// Where the rod's hand is, that stirs from time 0 on.
+Pose rod_at(double time) {
+  const double angle = 2.0 * report::kPi * time / kStirPeriod;
+  Pose pose;
+  pose.position = {kStirRadius * std::cos(angle), 0.11, kStirRadius * std::sin(angle)};
+  return pose;
+}
+
+/// Pictures 1/30 s apart of that water, stirred slowly by a rod.
+std::pair<Scene, std::vector<Snapshot>> stirred_water(const report::Setting& setting, double spacing,
+                                                      int pictures) {
+  report::SceneBuilder b = tank_scene(false);
+  const double half = std::max(0.01, spacing);
+  const int rod = b.add_free("rod", make::box({-half, -0.07, -half}, {half, 0.09, half}), 0.2, rod_at(0.0));
+  b.add_grip(rod, 1000.0, 20.0, 10.0, 0.2);
+  report::Cost cost;
+  report::Trial trial(b.scene, setting, cost);
+  trial.handle(0) = {rod_at(0.0), {}, true};
+  trial.settle(0.5, true);
+  const double begun = trial.world().time();
+  const auto stir = [&] { trial.handle(0).pose = rod_at(trial.world().time() - begun); };
+  trial.run(1.5, stir);
+  std::vector<Snapshot> stirred;
+  for (int i = 0; i < pictures; ++i) {
+    trial.run(1.0 / 30.0, stir);
+    stirred.push_back(trial.picture());
+  }
+  return {b.scene, std::move(stirred)};
 }
 
 /// The still water's upper side as the camera should see it, away from walls by four spacings.
@@ -187,6 +220,27 @@ class Stand {
   Image image_;
 };
 
+/// Means over each picture with the one before and the one after.
+score::StirScore score_stirred(Stand& stand, const std::vector<Snapshot>& stirred) {
+  std::array<FloatImage, 3> light;
+  std::array<FloatImage, 3> index;
+  score::StirScore mean;
+  const auto each = 1.0 / static_cast<double>(stirred.size() - 2);
+  for (std::size_t i = 0; i < stirred.size(); ++i) {
+    stand.draw(stirred[i]);
+    std::ranges::rotate(light, light.begin() + 1);
+    std::ranges::rotate(index, index.begin() + 1);
+    light[2] = stand.renderer().read_buffer(Buffer::kFinalColor);
+    index[2] = stand.renderer().read_buffer(Buffer::kFluidIndex);
+    if (i < 2) continue;
+    const score::StirScore one = score::score_stir(light, index);
+    mean.change += one.change * each;
+    mean.restless += one.restless * each;
+    mean.pixels += one.pixels;
+  }
+  return mean;
+}
+
 /// Processor time of a picture of the shipped bucket with its read-back, ms: drawn whole, and with what
 /// stands still kept. Medians, by turns, over pictures 1/30 s apart.
 struct BucketTimes {
@@ -277,15 +331,18 @@ std::string table_of(const std::vector<Row>& rows) {
   std::string text =
       "| surface | normal error at 5 px: mean, p95, edge band | at 15 px | outline off, at 5 px | still "
       "water: normal "
-      "error | flicker | off the reference: in the fluid, along its edges | filter, ms | frame, ms "
-      "|\n|---|---|---|---|---|---|---|---|---|\n";
+      "error | flicker | slow stir: restless, of all change | off the reference: in the fluid, along its "
+      "edges | filter, ms | frame, ms "
+      "|\n|---|---|---|---|---|---|---|---|---|---|\n";
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Row& row = rows[i];
     text += format(
-        "| %s | %.1f°, %.1f°, %.1f° | %.1f°, %.1f°, %.1f° | %.1f px | %.1f° | %.2f/255 | %s | %.1f | %.1f "
+        "| %s | %.1f°, %.1f°, %.1f° | %.1f°, %.1f°, %.1f° | %.1f px | %.1f° | %.2f/255 | %.2f of %.2f/255 | "
+        "%s | %.1f | %.1f "
         "|\n",
         kMethods[i].name, row.at5.normal_mean, row.at5.normal_p95, row.at5.edge_mean, row.at15.normal_mean,
         row.at15.normal_p95, row.at15.edge_mean, row.at5.silhouette, row.still_normal, row.flicker,
+        row.stir.restless, row.stir.change,
         row.off_reference
             ? format("%.1f, %.1f of 255", row.off_reference->inside, row.off_reference->edges).c_str()
             : "–",
@@ -316,8 +373,8 @@ int report_picture(const ReportOptions& options) {
   BucketTimes bucket;
   std::size_t particles = 0;
   try {
-    const Scene dam_scene = tank_scene(true);
-    const Scene still_scene = tank_scene(false);
+    const Scene dam_scene = tank_scene(true).scene;
+    const Scene still_scene = tank_scene(false).scene;
     report::Cost cost;
     report::Trial dam(dam_scene, setting, cost);
     std::printf("a dam breaks\n");
@@ -332,6 +389,8 @@ int report_picture(const ReportOptions& options) {
       still.run(1.0 / 30.0);
       rest.push_back(still.picture());
     }
+    std::printf("it is stirred\n");
+    const auto [stir_scene, stirred] = stirred_water(setting, spacing, 12);
     std::printf("pools are filled\n");
     const int width = options.quick ? 480 : 960;
     const int height = options.quick ? 270 : 540;
@@ -358,6 +417,9 @@ int report_picture(const ReportOptions& options) {
         rows[i].flicker += score::flicker(before, now) / static_cast<double>(rest.size() - 1);
         before = now;
       }
+      auto stirring = Stand::create(*context.value(), kMethods[i], stir_scene, spacing);
+      if (!stirring) return fail(stirring.error());
+      rows[i].stir = score_stirred(*stirring.value(), stirred);
       const float radius = static_cast<float>(0.62 * spacing);
       rows[i].still_normal =
           score::score_surface(calm.value()->renderer().read_buffer(Buffer::kSmoothDepth),
@@ -393,7 +455,13 @@ int report_picture(const ReportOptions& options) {
       "edge\n"
       "apart) and against still water that was simulated; flicker: mean change of a channel between "
       "pictures\n"
-      "1/30 s apart of that water; times of a broken dam of %zu particles at %dx%d, medians; off the "
+      "1/30 s apart of that water; slow stir: a rod goes through it at 63 mm/s; mean change of a channel of "
+      "a\n"
+      "pixel of fluid from one such picture to the next, and of it what is restless: how far a picture is "
+      "from "
+      "the\n"
+      "mean of the one before and the one after; times of a broken dam of %zu particles at %dx%d, medians; "
+      "off the "
       "reference: "
       "mean\ndifference of a channel of that picture from one by path tracing%s, over the fluid's pixels and "
       "over those "

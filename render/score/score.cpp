@@ -113,4 +113,26 @@ double flicker(const Image& a, const Image& b) {
   return sum / (0.75 * static_cast<double>(a.rgba.size()));
 }
 
+StirScore score_stir(const std::array<FloatImage, 3>& light, const std::array<FloatImage, 3>& index) {
+  const auto shown = [](float value) {
+    const double v = std::clamp(static_cast<double>(value), 0.0, 1.0);
+    return 255.0 * (v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1.0 / 2.4) - 0.055);
+  };
+  StirScore score;
+  for (std::size_t i = 0; i < index[1].values.size(); ++i) {
+    if (std::ranges::any_of(index, [&](const FloatImage& of) { return of.values[i] < 0.0f; })) continue;
+    ++score.pixels;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double before = shown(light[0].values[3 * i + c]);
+      const double now = shown(light[1].values[3 * i + c]);
+      const double after = shown(light[2].values[3 * i + c]);
+      score.change += (std::abs(now - before) + std::abs(after - now)) / 6.0;
+      score.restless += std::abs(now - 0.5 * (before + after)) / 3.0;
+    }
+  }
+  score.change /= static_cast<double>(std::max<std::size_t>(score.pixels, 1));
+  score.restless /= static_cast<double>(std::max<std::size_t>(score.pixels, 1));
+  return score;
+}
+
 }  // namespace slosh::score

@@ -1,6 +1,8 @@
 // How far a drawn surface is from the right one, and how much a picture changes that should not. Plain maths.
 #pragma once
 
+#include <array>
+
 #include "render/image.h"
 #include "render/score/pool.h"
 
@@ -41,5 +43,18 @@ PictureScore score_picture(const Image& drawn, const Image& right, const FloatIm
 
 /// Mean change of a channel of a pixel, of 255. Pictures of one size.
 double flicker(const Image& a, const Image& b);
+
+/// What three pictures, evenly apart in time, show of the fluid's motion, over the pixels where all three
+/// show fluid: mean change of a channel, of 255, as sRGB shows it.
+struct StirScore {
+  double change = 0.0;  ///< from one picture to the next: what moves, too
+  /// Of the middle one from the mean of the others: what goes back and forth. What changes evenly adds
+  /// nothing, what flickers from picture to picture counts as it does for `change`.
+  double restless = 0.0;
+  std::size_t pixels = 0;
+};
+
+/// `light`: scene-linear, three channels (Buffer::kFinalColor); `index`: Buffer::kFluidIndex. Of one size.
+StirScore score_stir(const std::array<FloatImage, 3>& light, const std::array<FloatImage, 3>& index);
 
 }  // namespace slosh::score

@@ -142,6 +142,13 @@ TEST(Report, OfPicturesComparesSurfaces) {
   EXPECT_GT(degrees("paper, section 5"), 10.0) << table;
   EXPECT_GT(degrees("ours"), 0.1) << table;
   EXPECT_LT(degrees("ours"), 0.4 * degrees("curvature flow")) << table;
+  // "restless of all change", of 255, in a slow stir.
+  const std::size_t stir = table.find("/255 | ", table.find("| ours | ")) + 7;
+  const double restless = std::atof(table.c_str() + stir);
+  const double change = std::atof(table.c_str() + table.find(" of ", stir) + 4);
+  EXPECT_GT(restless, 0.01) << table;
+  EXPECT_LT(restless, 3.0) << table;
+  EXPECT_GT(change, restless) << "it moves as well";
   const Result<Image> sheet = read_png(test::test_folder() / "p" / "picture.png");
   ASSERT_TRUE(sheet) << sheet.error().text();
   // With Embree, which the tests' packages bring, the traced truth stands beside the three.

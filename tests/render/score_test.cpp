@@ -98,6 +98,26 @@ TEST(Flicker, IsTheMeanChangeOfAChannel) {
   EXPECT_DOUBLE_EQ(score::flicker(a, b), 1.0);
 }
 
+TEST(StirScore, WhatChangesEvenlyIsNotRestless) {
+  const auto gray = [](float shown) {  // of 255, as sRGB
+    const float v = shown / 255.0f;
+    const float light = v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
+    return FloatImage{2, 1, 3, {light, light, light, 0.3f, 0.3f, 0.3f}};
+  };
+  const FloatImage left_is_fluid{2, 1, 1, {0.0f, -1.0f}};
+  const std::array<FloatImage, 3> index{left_is_fluid, left_is_fluid, left_is_fluid};
+  const score::StirScore even = score::score_stir({gray(100), gray(104), gray(108)}, index);
+  EXPECT_EQ(even.pixels, 1u);
+  EXPECT_NEAR(even.change, 4.0, 1e-3);
+  EXPECT_NEAR(even.restless, 0.0, 1e-3);
+  const score::StirScore flickers = score::score_stir({gray(100), gray(104), gray(100)}, index);
+  EXPECT_NEAR(flickers.change, 4.0, 1e-3);
+  EXPECT_NEAR(flickers.restless, 4.0, 1e-3);
+  FloatImage bare = left_is_fluid;
+  bare.values[0] = -1.0f;
+  EXPECT_EQ(score::score_stir({gray(100), gray(104), gray(108)}, {bare, left_is_fluid, bare}).pixels, 0u);
+}
+
 TEST(NarrowRange, ASlopeStaysOneSurfaceAndAStepDoesNot) {
   using namespace shader;
   DepthRange range = narrow_range(1.0f, 0.1f);
