@@ -44,7 +44,8 @@ bool obey(slosh::Relay& relay, const std::string& line) {
 int main(int argc, char** argv) {
   CLI::App app{
       "Passes UDP between peers and a slosh host, as a bad network would. Give peers this program's "
-      "address in place of the host's."};
+      "address in place of the host's.",
+      "slosh-impair"};
   slosh::RelayOptions options;
   bool down_only = false;
   bool up_only = false;

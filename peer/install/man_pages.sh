@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
-# Man pages of the program and of each of its verbs, from what --help says: one text, two forms.
-# Usage: man_pages.sh PROGRAM VERSION OUT
-#   OUT gets slosh.1.gz and slosh-VERB.1.gz
+# Man pages of the program, of each of its verbs and of what is installed beside it, from what --help says: one text, two
+# forms.
+# Usage: man_pages.sh PROGRAM VERSION OUT [OTHER PROGRAM…]
+#   OUT gets slosh.1.gz, slosh-VERB.1.gz and a page of each other program
 set -euo pipefail
-program=${1:?usage: man_pages.sh PROGRAM VERSION OUT}
-version=${2:?usage: man_pages.sh PROGRAM VERSION OUT}
-out=${3:?usage: man_pages.sh PROGRAM VERSION OUT}
+program=${1:?usage: man_pages.sh PROGRAM VERSION OUT [OTHER PROGRAM…]}
+version=${2:?usage: man_pages.sh PROGRAM VERSION OUT [OTHER PROGRAM…]}
+out=${3:?usage: man_pages.sh PROGRAM VERSION OUT [OTHER PROGRAM…]}
 export SLOSH_SETTINGS=none  # the defaults, not those of whoever builds
 
-# page NAME [VERB]
+# page NAME [VERB]: of `program`
 page() {
   local name=$1 verb=${2:-}
   "$program" ${verb:+"$verb"} --help | awk -v name="$name" -v version="$version" -v verb="$verb" '
@@ -56,7 +57,7 @@ page() {
   block { print plain($0) }
   END {
     section("SEE ALSO")
-    print verb == "" ? "\\fBslosh VERB \\-\\-help\\fR, and the page \\fBslosh\\-VERB\\fR(1) of each verb" : "\\fBslosh\\fR(1)"
+    print verb == "" && name == "slosh" ? "\\fBslosh VERB \\-\\-help\\fR, and the page \\fBslosh\\-VERB\\fR(1) of each verb" : "\\fBslosh\\fR(1)"
   }'
 }
 
@@ -65,4 +66,8 @@ rm -f "$out"/*.1.gz
 page slosh | gzip -9n >"$out/slosh.1.gz"
 for verb in $("$program" --help | sed -n '/^Subcommands:/,$s/^  \([a-z]\{1,\}\) .*/\1/p'); do
   page "slosh-$verb" "$verb" | gzip -9n >"$out/slosh-$verb.1.gz"
+done
+shift 3
+for program in "$@"; do
+  page "$(basename "$program")" | gzip -9n >"$out/$(basename "$program").1.gz"
 done

@@ -108,8 +108,8 @@ void add_report(CLI::App& app, VerbRun& chosen) {
   coupling->add_flag(
       "--link", *link,
       "In place of it a handful over the real link: two simulated people and the bucket over QUIC between "
-      "network namespaces, 0 to 500 ms, 20 % lost; two minutes (--quick: two cases). Writes "
-      "coupling_link.csv and .png");
+      "network namespaces, 0 to 500 ms, 20 % lost; two minutes (--quick: two cases), one case after "
+      "another, without --jobs and --resume. Writes coupling_link.csv and .png");
   coupling->footer(
       "In virtual time, so that it is the same again on every machine of a kind: simulated operators hold a "
       "body of "

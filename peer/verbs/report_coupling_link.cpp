@@ -55,6 +55,12 @@ std::vector<ChartPanel> felt_panels(const std::vector<coupling::LinkCase>& cases
 
 int report_coupling_link(const ReportOptions& options) {
   constexpr const char* kTable = "coupling_link.csv";
+  if (options.resume)
+    return fail({"--resume", "is not for --link, whose handful is measured as a whole, each case against the first",
+                 "Leave it out; --overwrite measures again into the same folder"});
+  if (options.threads > 0)
+    return fail({"--jobs", "is not for --link, whose programs go by the wall's clock: two cases at once would disturb "
+                 "one another", "Leave it out"});
   const Result<std::filesystem::path> folder = report_folder(options, "coupling", kTable);
   if (!folder) return fail(folder.error());
   std::signal(SIGPIPE, SIG_IGN);

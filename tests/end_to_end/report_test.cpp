@@ -69,6 +69,17 @@ TEST(Report, OfTheCouplingOverTheRealLinkHasTwoPeoplesRowsACase) {
   EXPECT_TRUE(std::filesystem::exists(test::test_folder() / "link" / "link_1" / "ana" / "wrenches.csv"));
 }
 
+TEST(Report, OfTheCouplingOverTheRealLinkRefusesWhatIsOfVirtualTime) {
+  empty_folder();
+  const Outcome resumed = test::slosh({"report", "coupling", "--link", "--resume", "--out", "link"});
+  EXPECT_EQ(resumed.code, 1);
+  EXPECT_NE(resumed.err.find("--resume: is not for --link"), std::string::npos) << resumed.err;
+  const Outcome at_once = test::slosh({"report", "coupling", "--link", "--jobs", "2", "--out", "link"});
+  EXPECT_EQ(at_once.code, 1);
+  EXPECT_NE(at_once.err.find("--jobs: is not for --link"), std::string::npos) << at_once.err;
+  EXPECT_FALSE(std::filesystem::exists(test::test_folder() / "link")) << "nothing was begun";
+}
+
 TEST(Report, OfErrorsDrawsEarlierRowsAgain) {
   empty_folder();
   ASSERT_EQ(test::slosh({"report", "error", "--quick", "--case", "bounce", "--out", "one"}).code, 0);

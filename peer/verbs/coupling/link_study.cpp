@@ -271,7 +271,7 @@ Result<std::vector<LinkRow>> measure_link(const std::vector<LinkCase>& cases, co
   if (!fs::exists(run.program.parent_path() / "slosh-impair", code))
     return Error{(run.program.parent_path() / "slosh-impair").string(),
                  "is not there: it is the wire between the sites",
-                 "Run the slosh of a build folder, which has it beside it"};
+                 "Run the slosh of a build folder or of a package, which have it beside it"};
   const NetworkSites sites({"host", "ana", "ben"});
   if (!sites.problem().empty())
     return Error{"network namespaces", "cannot be made here: " + sites.problem(),

@@ -39,12 +39,15 @@ try_program() {
   run N "$program" play bucket --headless --no-render --unpaced --seconds 0.1 --spacing 0.0135 --threads 1 --out played
   [[ -s played/wrenches.csv && -s played/summary.json ]] || fail "play left no wrenches.csv or summary.json"
   rm -r played
+  # What `slosh report coupling --link` has for a wire, where it looks for it.
+  run "listening at 127.0.0.1:" timeout -s INT 20 bash -c '(sleep 1; echo quit) | "$0" --listen 127.0.0.1:0 --to 127.0.0.1:9' \
+    "$prefix/bin/slosh-impair"
 }
 
 # What lies beside the program.
 try_files() {
   local prefix=$1 page verb
-  for page in slosh slosh-play slosh-host slosh-join slosh-report; do
+  for page in slosh slosh-play slosh-host slosh-join slosh-report slosh-impair; do
     [[ -s "$prefix/share/man/man1/$page.1.gz" ]] || fail "no man page $page"
   done
   page="$(zcat "$prefix/share/man/man1/slosh-host.1.gz")"
@@ -92,6 +95,10 @@ if [[ "$(uname -m)" == x86_64 && "$arch" =~ ^(native|x86-64-v[34])$ ]]; then
   said="$(qemu-x86_64 -cpu Nehalem "$build/bin/slosh" --version 2>&1)" || code=$?
   ((code == 1)) || fail "on an older processor: exit code $code: $said"
   has "$said" "it lacks avx, "
+  code=0
+  said="$(qemu-x86_64 -cpu Nehalem "$build/bin/slosh-impair" --help 2>&1)" || code=$?
+  ((code == 1)) || fail "slosh-impair on an older processor: exit code $code: $said"
+  has "$said" "it lacks avx, "
   echo "an older processor is refused in words"
 fi
 # What looks for instructions beyond a package's own finds one, and none where there is none.
@@ -120,7 +127,9 @@ has "$info" "Recommends: gnuplot-nox, ffmpeg"
 dpkg-deb -x "${packages[0]}" "$folder/unpacked"
 try_program "$folder/unpacked/usr"
 try_files "$folder/unpacked/usr"
-# Every library that the program needs is asked for: none is missing, none of its paths leads to the build.
-! ldd "$folder/unpacked/usr/bin/slosh" | grep -E "not found|$build" || fail "a library is missing or the build's own"
+# Every library that the programs need is asked for: none is missing, none of its paths leads to the build.
+for program in slosh slosh-impair; do
+  ! ldd "$folder/unpacked/usr/bin/$program" | grep -E "not found|$build" || fail "$program: a library is missing or the build's own"
+done
 echo "$(basename "${packages[0]}"): $(du -k "${packages[0]}" | cut -f1) kB, $(dpkg-deb -c "${packages[0]}" | grep -vc '/$') files"
 rm -rf "$folder"
