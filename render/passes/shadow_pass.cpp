@@ -31,21 +31,13 @@ std::vector<Caster> casters_of(const Frame& frame, const MeshStore& meshes,
 /// Of the particles within the far plane's distance of the eye.
 Bounds fluid_box(const Frame& frame, const View& view) {
   const glm::vec3 eye(glm::inverse(view.view)[3]);
-  const float far = view.far_plane;
   Bounds box;
   const std::size_t count = std::min(frame.particles.size(), frame.particle_fluid.size());
   for (std::size_t i = 0; i < count; ++i) {
-    const glm::vec3& at = frame.particles[i];
-    const glm::vec3 off = glm::abs(at - eye);
-    // Without branches: there may be a million. What is no number is not near.
-    const bool near =
-        (off.x < far) & (off.y < far) & (off.z < far) & (frame.particle_fluid[i] < frame.fluids.size());
-    for (int axis = 0; axis < 3; ++axis) {
-      const float low = near ? at[axis] : 1e30f;
-      const float high = near ? at[axis] : -1e30f;
-      box.low[axis] = low < box.low[axis] ? low : box.low[axis];
-      box.high[axis] = high > box.high[axis] ? high : box.high[axis];
-    }
+    const glm::vec3 off = glm::abs(frame.particles[i] - eye);
+    const bool near = std::max({off.x, off.y, off.z}) < view.far_plane;
+    if (near && std::isfinite(off.x + off.y + off.z) && frame.particle_fluid[i] < frame.fluids.size())
+      box.add(frame.particles[i]);
   }
   if (box.empty()) return box;
   box.low -= frame.particle_radius;

@@ -17,8 +17,9 @@ struct Item {
   glm::vec4 emissive;
 };
 
-/// Each tile looks at each triangle's box.
-constexpr std::size_t kMostTriangles = 100000;
+/// More in one tile take longer than fragments: on an H200 a ball of 4900 makes 0.26 ms, one of 40 000 3.3, while
+/// by fragments the meshes of a picture take 1.7.
+constexpr std::size_t kMostTriangles = 16000;
 
 }  // namespace
 

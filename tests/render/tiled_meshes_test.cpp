@@ -103,7 +103,7 @@ TEST_F(TiledMeshesTest, TheEyeIsInsideABody) {
 TEST_F(TiledMeshesTest, ManySmallTrianglesAndSomeThatAreNotSeen) {
   expect_same(
       [](Renderer& renderer, Frame& frame) {
-        frame.meshes = {place(renderer, kit::make_sphere(0.12f, 100, 200))};  // 40 000, of less than a pixel
+        frame.meshes = {place(renderer, kit::make_sphere(0.12f, 50, 100))};  // 10 000, of a pixel or so
         for (int i = 0; i < 6; ++i) {
           frame.meshes.push_back(frame.meshes.front());
           frame.meshes.back().model =
