@@ -75,6 +75,32 @@ TEST(CouplingAtADistance, AloneOnTheBodyTheDelayIsNotFelt) {
   }
 }
 
+/// 1.5 kg that swing at 1.5 Hz, the hand at 0.9: by the host's linear model alone it is off by 38 % at 50 ms, 65 at 200.
+/// 10 % are asked for: reached to 100 ms; at 200 it is 12, and 20 where the host says nothing of the fluid.
+TEST(CouplingAtADistance, AloneOnABodyWhoseFluidSwingsTheDelayIsHardlyFelt) {
+  for (const Load load : {Load::kFluid, Load::kFluidUntold}) {
+    Case c = alone();
+    c.load = load;
+    const Outcome reference = run(c, Scheme::kZeroDelay);
+    for (const auto& [round_trip, most] : {std::pair{0.0, 0.03}, {0.05, 0.05}, {0.1, 0.12}, {0.2, 0.22}}) {
+      c.round_trip = round_trip;
+      ReplicaTuning without;
+      without.follows_slosh = false;
+      const Outcome r = run(c, Scheme::kReplica);
+      const double off = force_error(r, reference),
+                   line = force_error(run(c, Scheme::kReplica, without), reference);
+      std::printf("%s, %.0f ms: force off by %.1f %%, without a mode %.1f %%\n",
+                  load == Load::kFluid ? "fluid" : "fluid untold", 1e3 * round_trip, 1e2 * off, 1e2 * line);
+      EXPECT_LE(off, most);
+      EXPECT_EQ(r.verdict, Verdict::kStable);
+      EXPECT_LE(r.generated, kMostGenerated);
+      if (round_trip > 0.0) {
+        EXPECT_GT(line, 0.3);
+      }
+    }
+  }
+}
+
 TEST(CouplingAtADistance, OneOfTwoHandsMoves) {
   Case c;
   c.motion = Motion::kOneMoves;

@@ -8,6 +8,7 @@ namespace {
 
 constexpr std::size_t kRemembered = 2048;  // ticks: a host's answer may be 2 s late
 constexpr double kNoStiffness = 1e-6;      // N/m, N·m/rad
+constexpr double kSloshTaken = 0.03;       // s over which what swings is corrected
 constexpr double kRootTwo = 1.4142135623730951;
 
 glm::dvec3 linear(const Vector6& v) {
@@ -65,11 +66,12 @@ BodyReplica::BodyReplica(const ReplicaBody& body, std::vector<ReplicaGrip> grips
 void BodyReplica::restart(const RigidMotion& motion) noexcept {
   now_ = motion;
   pending_ = MotionError{};
+  swings_ = swings_pending_ = {};
   history_.forget();
   has_word_ = loaded_ = false;
   load_ = heard_ = FluidLoad{};
   std::fill(ledgers_.begin(), ledgers_.end(), Ledger{});
-  excess_ = work_ = work_heard_ = stored_ = 0.0;
+  excess_ = work_ = work_heard_ = slosh_work_ = slosh_heard_ = stored_ = 0.0;
   started_ = true;
 }
 
@@ -90,11 +92,57 @@ void BodyReplica::compare(std::int64_t now_ns) noexcept {
   has_word_ = false;
   RigidMotion then;
   double work = 0.0;
-  if (!history_.at(word_.ack_ns, then, work)) return;
+  if (!history_.at(word_.ack_ns, then, work, slosh_heard_)) return;
   pending_ = difference(word_.motion, then);
+  foresee_slosh(then.twist.linear);
   work_heard_ = word_.work;
   work_ += word_.work - work;
   history_.correct_work(word_.work - work);
+}
+
+/// What swung at the host then swings on until now, moved as the body was here since.
+void BodyReplica::foresee_slosh(glm::dvec3 velocity) noexcept {
+  double mass = 0.0;
+  for (const SloshMode& mode : load_.swings) mass += mode.mass;
+  if (!(mass > 0.0)) return;
+  std::array<SloshState, 3> then = word_.swings;
+  std::int64_t stamp_ns = word_.ack_ns;
+  double steps_for = 0.0;
+  std::array<SloshStep, 3> steps;
+  history_.since(word_.ack_ns, [&](std::int64_t to_ns, const RigidMotion& motion) {
+    const double dt = 1e-9 * static_cast<double>(to_ns - stamp_ns);
+    if (std::abs(dt - steps_for) > 1e-6) {
+      steps_for = dt;
+      for (int i = 0; i < 3; ++i) {
+        const auto axis = static_cast<std::size_t>(i);
+        steps[axis] = SloshStep(load_.swings[axis].pace, load_.swings[axis].damping, dt);
+      }
+    }
+    for (int i = 0; i < 3; ++i) {
+      const auto axis = static_cast<std::size_t>(i);
+      then[axis] = steps[axis](then[axis], motion.twist.linear[i] - velocity[i]);
+    }
+    velocity = motion.twist.linear;
+    stamp_ns = to_ns;
+  });
+  for (std::size_t i = 0; i < 3; ++i)
+    swings_pending_[i] = {then[i].place - swings_[i].place, then[i].speed - swings_[i].speed};
+}
+
+/// `change`: of the body's velocity in this step, without what was corrected of it.
+void BodyReplica::swing(const glm::dvec3& change, double dt) noexcept {
+  const double share = 1.0 - std::exp(-dt / kSloshTaken);
+  for (int i = 0; i < 3; ++i) {
+    const auto axis = static_cast<std::size_t>(i);
+    const SloshMode& mode = load_.swings[axis];
+    SloshState& s = swings_[axis];
+    SloshState& pending = swings_pending_[axis];
+    s = SloshStep(mode.pace, mode.damping, dt)(s, change[i]);
+    s.place += share * pending.place;
+    s.speed += share * pending.speed;
+    pending.place *= 1.0 - share;
+    pending.speed *= 1.0 - share;
+  }
 }
 
 void BodyReplica::set_load(const FluidLoad& load) noexcept {
@@ -125,6 +173,11 @@ void BodyReplica::follow_load(double dt) noexcept {
   load_.twist.angular += share * (heard_.twist.angular - load_.twist.angular);
   load_.trust_distance = heard_.trust_distance;
   load_.trust_angle = heard_.trust_angle;
+  for (std::size_t i = 0; i < 3; ++i) {
+    towards(load_.swings[i].mass, heard_.swings[i].mass);
+    load_.swings[i].pace = heard_.swings[i].pace;
+    load_.swings[i].damping = heard_.swings[i].damping;
+  }
 }
 
 GripState BodyReplica::grip(std::size_t g) const noexcept {
@@ -231,7 +284,7 @@ void BodyReplica::settle(const std::vector<ReplicaHand>& hands, double dt) noexc
       debtor = &ledger;
     }
   }
-  const double unbelieved = (1.0 - believed_) * (work_ - work_heard_);
+  const double unbelieved = (1.0 - believed_) * (work_ - work_heard_ - slosh_since());
   if (unbelieved > worst) {
     work_ -= take(unbelieved);
     return;
@@ -276,6 +329,9 @@ void BodyReplica::advance(const std::vector<ReplicaHand>& hands, double dt, std:
   Vector6 fluid = load_.wrench;
   add(fluid, product(load_.d_pose, six(off, turn)));
   add(fluid, product(load_.d_velocity, six(load_.twist.linear, load_.twist.angular)), -1.0);
+  Vector6 slosh{};
+  for (std::size_t i = 0; i < 3; ++i) slosh[i] = slosh_force(load_.swings[i], swings_[i]);
+  add(fluid, slosh);
   Vector6 acting = fluid;  // whole, as its work is: everybody's energy is counted
   share_out(hands, fluid);
   add(rhs, fluid, dt * trust);
@@ -314,12 +370,16 @@ void BodyReplica::advance(const std::vector<ReplicaHand>& hands, double dt, std:
   Vector6 middle = v;
   add(middle, next);
   add(acting, product(load_.d_velocity, next));
-  for (std::size_t i = 0; i < 6; ++i) work_ += 0.5 * dt * trust * acting[i] * middle[i];
+  for (std::size_t i = 0; i < 6; ++i) {
+    work_ += 0.5 * dt * trust * acting[i] * middle[i];
+    slosh_work_ += 0.5 * dt * trust * slosh[i] * middle[i];
+  }
+  swing(linear(next) - now_.twist.linear, dt);
   now_.twist = {linear(next), body_.point ? glm::dvec3(0.0) : angular(next)};
   now_.position += dt * now_.twist.linear;
   now_.orientation = rotate_by(now_.orientation, dt * now_.twist.angular);
 
-  history_.note(now_ns, now_, work_);
+  history_.note(now_ns, now_, work_, slosh_work_);
   compare(now_ns);
   const double share = 1.0 - std::exp(-dt / time_constant());
   const MotionError by = scaled(pending_, share);
@@ -327,7 +387,10 @@ void BodyReplica::advance(const std::vector<ReplicaHand>& hands, double dt, std:
   // What the load does over the way that a correction takes counts as well: a weight that the host has lower
   // is lower.
   const Vector6 way = six(by.position, by.turn);
-  for (std::size_t i = 0; i < 6; ++i) work_ += trust * acting[i] * way[i];
+  for (std::size_t i = 0; i < 6; ++i) {
+    work_ += trust * acting[i] * way[i];
+    slosh_work_ += trust * slosh[i] * way[i];
+  }
   now_ = moved(now_, by);
   history_.correct(by);
   settle(hands, dt);

@@ -1,6 +1,7 @@
 // A held rigid body as this site has it: every coupling of it at the device loop's rate, drawn to the host's.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -40,6 +41,7 @@ struct HostMotion {
   RigidMotion motion;
   std::int64_t ack_ns = 0;  ///< when the newest of our readings that it follows was read; 0 = none
   double work = 0.0;        ///< J that what acts besides couplings put into the body there (LoadWork)
+  std::array<SloshState, 3> swings{};  ///< of FluidLoad::swings, then
 };
 
 /// Constants of the scheme.
@@ -48,6 +50,7 @@ struct ReplicaTuning {
   double least_time = 0.05;       ///< s: T_c is this at least …
   double round_trips = 2.0;       ///< … and so many round trips
   double load_round_trips = 2.0;  ///< a change of the fluid's model acts over so many round trips
+  bool follows_slosh = true;      ///< what of the fluid swings is found and goes on here
   double most_taken = 0.05;       ///< share of the kinetic energy that a tick may take for a ledger
 };
 
@@ -98,17 +101,21 @@ class BodyReplica {
   /// J of the load's work that is believed; of what came since the host's word the own hands' part alone, as
   /// nobody knows yet what the others did about theirs.
   double work_believed() const noexcept {
-    const double since = (1.0 - shared_) * (work_ - work_heard_);
-    return work_heard_ + (since > 0.0 ? believed_ * since : since);
+    const double own = 1.0 - shared_, slosh = own * slosh_since(), since = own * (work_ - work_heard_) - slosh;
+    return work_heard_ + slosh + (since > 0.0 ? believed_ * since : since);
   }
   /// J that the body's motion and its couplings hold, those of other sites as soft as they are here. As of
   /// the last advance().
   double stored() const noexcept { return stored_; }
 
  private:
+  /// J that what swings gave here since the host's word: what it had, so none of it is in doubt.
+  double slosh_since() const noexcept { return slosh_work_ - slosh_heard_; }
   Matrix6 mass_matrix() const noexcept;
   void compare(std::int64_t now_ns) noexcept;
   void follow_load(double dt) noexcept;
+  void foresee_slosh(glm::dvec3 velocity) noexcept;
+  void swing(const glm::dvec3& change, double dt) noexcept;
   void soften(const std::vector<ReplicaHand>& hands) noexcept;
   void share_out(const std::vector<ReplicaHand>& hands, Vector6& load) const noexcept;
   void settle(const std::vector<ReplicaHand>& hands, double dt) noexcept;
@@ -126,6 +133,8 @@ class BodyReplica {
   HostMotion word_;  // of the host, not compared yet
   bool has_word_ = false;
   MotionError pending_;  // of the host's newest word, not taken over yet
+  std::array<SloshState, 3> swings_;          // of load_.swings
+  std::array<SloshState, 3> swings_pending_;  // of what the host's word says of them, not taken over yet
   ReplicaHistory history_;
   struct Ledger {
     double given = 0.0;  // J that this hand gave here
@@ -139,6 +148,8 @@ class BodyReplica {
   double excess_ = 0.0;
   double work_ = 0.0;
   double work_heard_ = 0.0;
+  double slosh_work_ = 0.0;   // J that what swings gave here
+  double slosh_heard_ = 0.0;  // of it by the moment that the host's word is of
   double believed_ = 1.0;
   double stored_ = 0.0;
   bool started_ = false;

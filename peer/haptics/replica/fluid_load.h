@@ -1,9 +1,11 @@
 // What acts on a held body besides its couplings, as a local linear model that is safe to integrate.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 
+#include "peer/haptics/replica/slosh_mode.h"
 #include "sim/math/dense.h"
 #include "sim/math/pose.h"
 
@@ -21,6 +23,7 @@ struct FluidLoad {
   Matrix6 added_mass{};          ///< kg, kg·m, kg·m²: symmetric, positive semidefinite
   double trust_distance = 0.01;  ///< m of δx beyond which the model goes on as at that distance
   double trust_angle = 0.1;      ///< rad, the same
+  std::array<SloshMode, 3> swings;  ///< along x, y, z: what swings besides, whose force `wrench` is without
 };
 
 /// 0.5·(a + aᵀ)·sign.

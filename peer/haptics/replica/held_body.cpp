@@ -34,7 +34,22 @@ constexpr double kForesees = 2.0;
 constexpr double kDoubt = 3.0;
 constexpr double kForgets = 1.0;
 constexpr double kForgetsRoundTrips = 4.0;
+constexpr double kMostSlosh = 4.0;  // times the body's mass: no more of its fluid swings
 constexpr double kForgives = 1.0;  // s, in which a debt that others made is let go of
+
+/// What of `load` acts whatever the body does; `damped`: but for what its damper answers.
+glm::dvec3 still_force(const FluidLoad& load, bool damped) {
+  const double share = damped ? 0.0 : 1.0;
+  const Vector6 v{load.twist.linear.x,  load.twist.linear.y,  load.twist.linear.z,
+                  load.twist.angular.x, load.twist.angular.y, load.twist.angular.z};
+  glm::dvec3 force;
+  for (int i = 0; i < 3; ++i) {
+    const auto row = static_cast<std::size_t>(i);
+    force[i] = load.wrench[row];
+    for (std::size_t j = 0; j < 6; ++j) force[i] -= share * load.d_velocity[row][j] * v[j];
+  }
+  return force;
+}
 
 }  // namespace
 
@@ -44,7 +59,10 @@ HeldBody::HeldBody(const ReplicaBody& body, std::vector<ReplicaGrip> grips, cons
       hands_(grips.size()),
       speeds_(grips.size()),
       guards_(grips.size()),
-      load_work_(body, grips) {
+      load_work_(body, grips),
+      follows_slosh_(tuning.follows_slosh),
+      on_hands_(grips.size()) {
+  for (SloshFinder& finder : slosh_) finder.restart(kMostSlosh * body_.mass);
   for (const ReplicaGrip& grip : grips) {
     grips_.push_back(grip.pose);
     gains_.push_back(grip.gains);
@@ -56,6 +74,9 @@ void HeldBody::restart() noexcept {
   delay_.restart();
   load_work_.restart();
   fluid_ = FluidLoad{};
+  for (SloshFinder& finder : slosh_) finder.restart(kMostSlosh * body_.mass);
+  slosh_share_ = 0.0;
+  std::fill(on_hands_.begin(), on_hands_.end(), Wrench{});
   for (ReplicaHand& hand : hands_) hand.engaged = false;
   for (VelocityWindow& speed : speeds_) speed.forget();
   firing_ = calm_ = unrest_ = doubt_ = calm_load_ = 0.0;
@@ -63,11 +84,14 @@ void HeldBody::restart() noexcept {
   spring_ = 0.0;
 }
 
-Vector6 HeldBody::rest_of(const HostWord& word) const noexcept {
+/// What acts on the body besides couplings and the fluid's answer to its acceleration: fluid, weight,
+/// contacts.
+FluidLoad HeldBody::load_of(const HostWord& word) noexcept {
   const RigidMotion& now = word.motion;
   const double elapsed = word.time - heard_time_;
   Vector6 pace{};  // linear and angular acceleration
-  if (started_ && elapsed > 0.0 && elapsed < kLongestStep) {
+  const bool known = started_ && elapsed > 0.0 && elapsed < kLongestStep;
+  if (known) {
     const glm::dvec3 a = (now.twist.linear - heard_.twist.linear) / elapsed;
     const glm::dvec3 b = (now.twist.angular - heard_.twist.angular) / elapsed;
     pace = {a.x, a.y, a.z, b.x, b.y, b.z};
@@ -77,25 +101,58 @@ Vector6 HeldBody::rest_of(const HostWord& word) const noexcept {
   const glm::dvec3 turning{pace[3], pace[4], pace[5]};
   glm::dvec3 force = body_.mass * glm::dvec3(pace[0], pace[1], pace[2]);
   glm::dvec3 torque = inertia * turning + glm::cross(now.twist.angular, inertia * now.twist.angular);
+  // Of steps that were missed the couplings' forces are taken to have gone over evenly.
+  const double steps = word.time_step > 0.0 ? std::max(std::round(elapsed / word.time_step), 1.0) : 1.0;
+  const double older = 0.5 * (steps - 1.0) / steps;
+  glm::dvec3 mean = force;
   for (std::size_t g = 0; g < grips_.size() && g < word.hands.size(); ++g) {
     const Wrench& on_hand = word.hands[g].on_hand;
     const glm::dvec3 arm = now.orientation * (grips_[g].position - body_.center);
     force += on_hand.force;
     torque += glm::cross(arm, on_hand.force) + on_hand.torque;
+    mean += on_hand.force + older * (on_hands_[g].force - on_hand.force);
+    on_hands_[g] = on_hand;
   }
   if (body_.point) torque = glm::dvec3(0.0);
-  Vector6 rest{force.x, force.y, force.z, torque.x, torque.y, torque.z};
+  if (known && follows_slosh_) {
+    for (int i = 0; i < 3; ++i)
+      slosh_[static_cast<std::size_t>(i)].hear(elapsed, heard_.twist.linear[i], now.twist.linear[i], mean[i]);
+  }
+  // What others do within the delay is not known, and a mode that went by it would be driven by it.
+  const double alone = replica_.shared() > 0.0 ? 0.0 : 1.0;
+  const double most = std::clamp(elapsed, 0.0, kLongestStep) / kChange;
+  slosh_share_ += std::clamp(alone - slosh_share_, -most, most);
+  FluidLoad load = fluid_;
+  load.reference = {now.position, now.orientation};
+  load.twist = now.twist;
+  // What swings takes the place of the fluid's line, as far as it explains more.
+  Vector6 kept{1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
+  for (std::size_t i = 0; i < 3; ++i) kept[i] = std::sqrt(1.0 - slosh_share_ * slosh_[i].share());
   for (std::size_t i = 0; i < 6; ++i)
-    for (std::size_t j = 0; j < 6; ++j) rest[i] += fluid_.added_mass[i][j] * pace[j];
-  return rest;
+    for (std::size_t j = 0; j < 6; ++j) {
+      const double both = kept[i] * kept[j];
+      load.added_mass[i][j] *= both;
+      load.d_velocity[i][j] *= both;
+      load.d_pose[i][j] *= both;
+    }
+  Vector6 rest{force.x, force.y, force.z, torque.x, torque.y, torque.z};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double share = slosh_share_ * slosh_[i].share();
+    load.added_mass[i][i] += share * slosh_[i].rigid();
+    load.d_velocity[i][i] -= share * slosh_[i].drag();
+    load.swings[i] = slosh_[i].mode();
+    load.swings[i].mass *= share;
+    rest[i] -= slosh_force(load.swings[i], slosh_[i].state());
+  }
+  for (std::size_t i = 0; i < 6; ++i)
+    for (std::size_t j = 0; j < 6; ++j) rest[i] += load.added_mass[i][j] * pace[j];
+  load.wrench = rest;
+  return load;
 }
 
 void HeldBody::hear(const HostWord& word) noexcept {
   const double elapsed = started_ ? to_seconds(word.now_ns - heard_ns_) : 0.0;
-  FluidLoad load = fluid_;
-  load.reference = {word.motion.position, word.motion.orientation};
-  load.twist = word.motion.twist;
-  load.wrench = rest_of(word);
+  const FluidLoad load = load_of(word);
   load_work_.hear(word);
   heard_time_ = word.time;
   heard_ = word.motion;
@@ -138,14 +195,15 @@ void HeldBody::hear(const HostWord& word) noexcept {
   // What a hand does within a long step that its twist did not foresee acts at the host in the next.
   const double unforeseen = std::max(word.time_step - kTwistForesees, 0.0);
   replica_.set_delay({pace_ * delay.round_trip + unforeseen, pace_ * delay.jitter});
-  replica_.hear({word.motion, ack_ns, load_work_.work()});
+  replica_.hear({word.motion, ack_ns, load_work_.work(), {slosh_[0].state(), slosh_[1].state(), slosh_[2].state()}});
 }
 
 /// What acts changes by more than is told of it: a table that is met, a fluid that nobody models. That
 /// answers to this hand a round trip late, as another hand would.
 void HeldBody::note_unrest(const FluidLoad& load, double elapsed) noexcept {
-  const Vector6& acts = replica_.load().wrench;
-  const glm::dvec3 off(load.wrench[0] - acts[0], load.wrench[1] - acts[1], load.wrench[2] - acts[2]);
+  // Alone, what a damper answers to the body's own speed is foreseen.
+  const bool damped = replica_.shared() > 0.0;
+  const glm::dvec3 off = still_force(load, damped) - still_force(replica_.load(), damped);
   const double now = std::min(glm::length(off) / kUnrest, 1.0);
   const double forget = 1.0 - std::exp(-std::clamp(elapsed, 0.0, 1.0) / kUnrestMemory);
   unrest_ = now > unrest_ ? now : unrest_ + forget * (now - unrest_);

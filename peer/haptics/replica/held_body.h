@@ -10,6 +10,7 @@
 #include "peer/haptics/replica/host_word.h"
 #include "peer/haptics/replica/load_work.h"
 #include "peer/haptics/replica/passivity_controller.h"
+#include "peer/haptics/replica/slosh_finder.h"
 
 namespace slosh {
 
@@ -69,6 +70,7 @@ class HeldBody {
   double balance() const noexcept;
   LoopDelay delay() const noexcept { return delay_.delay(); }  ///< by the clock on the wall
   const BodyReplica& replica() const noexcept { return replica_; }
+  const SloshFinder& slosh(std::size_t axis) const noexcept { return slosh_[axis]; }
   /// The guards have fired so often that the replica is not followed: a damped spring to the host's word is.
   bool fallen_back() const noexcept { return fallen_back_; }
   std::uint64_t fired() const noexcept { return fired_; }  ///< ticks in which a guard did
@@ -81,7 +83,7 @@ class HeldBody {
   void note_unrest(const FluidLoad& load, double elapsed) noexcept;
   /// What acts on the body besides couplings and the fluid's answer to its acceleration: fluid, weight,
   /// contacts.
-  Vector6 rest_of(const HostWord& word) const noexcept;
+  FluidLoad load_of(const HostWord& word) noexcept;
 
   ReplicaBody body_;
   BodyReplica replica_;
@@ -110,6 +112,10 @@ class HeldBody {
   bool fallen_back_ = false;
   double spring_ = 0.0;  // share of the damped spring, 0–1
   LoadWork load_work_;
+  bool follows_slosh_;
+  double slosh_share_ = 0.0;          // 0–1: how far what swings is followed at all
+  std::array<SloshFinder, 3> slosh_;  // along x, y, z
+  std::vector<Wrench> on_hands_;      // of the word before
   double stored_ = 0.0;     // J in the couplings when this began, less what had been counted by then
   double forgotten_ = 0.0;  // J of the balance that nothing here holds any more
   double work_heard_ = 0.0;  // J: BodyReplica::work_heard() at the tick before

@@ -50,11 +50,11 @@ class ReplicaHistory {
     corrected_ = MotionError{};
     work_corrected_ = 0.0;
   }
-  /// `work`: J that what acts besides couplings put in by then.
-  void note(std::int64_t stamp_ns, const RigidMotion& motion, double work = 0.0) {
+  /// `work`: J that what acts besides couplings put in by then; `slosh`: of that what swings did.
+  void note(std::int64_t stamp_ns, const RigidMotion& motion, double work = 0.0, double slosh = 0.0) {
     newest_ = (newest_ + 1) % entries_.size();
     if (count_ < entries_.size()) count_ += 1;
-    entries_[newest_] = {stamp_ns, motion, corrected_, work - work_corrected_};
+    entries_[newest_] = {stamp_ns, motion, corrected_, work - work_corrected_, slosh};
   }
   void correct_work(double by) { work_corrected_ += by; }
   void correct(const MotionError& by) {
@@ -66,14 +66,15 @@ class ReplicaHistory {
   /// The motion at `stamp_ns`, between the two entries around it, as corrected by now. False when that is
   /// older than all that is known.
   bool at(std::int64_t stamp_ns, RigidMotion& out) const {
-    double work = 0.0;
-    return at(stamp_ns, out, work);
+    double work = 0.0, slosh = 0.0;
+    return at(stamp_ns, out, work, slosh);
   }
-  bool at(std::int64_t stamp_ns, RigidMotion& out, double& work) const {
+  bool at(std::int64_t stamp_ns, RigidMotion& out, double& work, double& slosh) const {
     if (count_ == 0) return false;
     if (stamp_ns >= entry(0).stamp_ns) {
       out = now(entry(0));
       work = entry(0).work + work_corrected_;
+      slosh = entry(0).slosh;
       return true;
     }
     std::size_t low = 0, high = count_;  // entry(low) is younger than the stamp
@@ -87,7 +88,15 @@ class ReplicaHistory {
     const double share = apart > 0.0 ? static_cast<double>(stamp_ns - entry(high).stamp_ns) / apart : 0.0;
     out = moved(older, scaled(difference(younger, older), share));
     work = entry(high).work + share * (entry(low).work - entry(high).work) + work_corrected_;
+    slosh = entry(high).slosh + share * (entry(low).slosh - entry(high).slosh);
     return true;
+  }
+  /// The motions after `stamp_ns`, oldest first, as corrected by now, each with its stamp.
+  template <class F>
+  void since(std::int64_t stamp_ns, F&& each) const {
+    std::size_t first = 0;
+    while (first < count_ && entry(first).stamp_ns > stamp_ns) first += 1;
+    while (first-- > 0) each(entry(first).stamp_ns, now(entry(first)));
   }
 
  private:
@@ -96,6 +105,7 @@ class ReplicaHistory {
     RigidMotion motion;
     MotionError corrected;  // before it was noted
     double work = 0.0;      // less what it had been corrected by
+    double slosh = 0.0;
   };
   const Entry& entry(std::size_t back) const {
     return entries_[(newest_ + entries_.size() - back) % entries_.size()];

@@ -1,0 +1,81 @@
+// Which slosh mode a held body's motion and forces are taken for.
+#include "peer/haptics/replica/slosh_finder.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <functional>
+#include <numbers>
+
+namespace slosh {
+namespace {
+
+constexpr double kStep = 0.002;  // s
+constexpr double kWeight = -20.0;  // N
+
+/// A body led by swelling sines at 0.9 and 1.9 Hz for `seconds` (by one alone, masses could not be told apart); `force`: of its velocity, acceleration and time.
+SloshFinder led(double seconds, const std::function<double(double, double, double)>& force) {
+  SloshFinder finder;
+  finder.restart(10.0);
+  double before = 0.0;
+  for (double t = 0.0; t < seconds; t += kStep) {
+    const double angle = 2.0 * std::numbers::pi * t;
+    const double now = 0.15 * std::min(t, 1.0) * (std::sin(0.9 * angle) + std::sin(1.9 * angle));
+    finder.hear(kStep, before, now, force(now, (now - before) / kStep, t));
+    before = now;
+  }
+  return finder;
+}
+
+TEST(SloshMode, GivesNoMoreThanItWasGiven) {
+  const SloshMode mode{1.5, 2.0 * std::numbers::pi * 1.5, 0.02};
+  SloshState state;
+  double velocity = 0.0, given = 0.0;
+  for (int i = 0; i < 20000; ++i) {
+    // A body that goes by everything between 0.2 and 6 Hz.
+    const double t = 0.001 * i, next = 0.4 * std::sin(0.2 * t * t + t);
+    const SloshState was = state;
+    state = SloshStep(mode.pace, mode.damping, 0.001)(state, next - velocity);
+    given += 0.001 * 0.5 * (slosh_force(mode, was) + slosh_force(mode, state)) * 0.5 * (velocity + next);
+    velocity = next;
+    ASSERT_LT(given, 1e-3) << "J at " << t;
+  }
+  EXPECT_LT(given, -0.1) << "it took something";
+}
+
+TEST(SloshFinder, FindsAMassOnASpring) {
+  const SloshMode truth{1.5, 2.0 * std::numbers::pi * 1.53, 0.05};
+  SloshState state;
+  double last = 0.0, peak = 0.0;
+  const SloshFinder found = led(4.0, [&](double v, double a, double) {
+    const SloshState was = state;
+    state = SloshStep(truth.pace, truth.damping, kStep)(state, v - last);
+    const double middle = 0.5 * (v + last);
+    last = v;
+    peak = std::max(peak, std::abs(slosh_force(truth, state)));
+    return kWeight - 0.8 * a - 3.0 * middle + 0.5 * (slosh_force(truth, was) + slosh_force(truth, state));
+  });
+  const SloshMode& mode = found.mode();
+  std::printf("%.3f kg at %.3f Hz, damping %.3f, beside %.3f kg and %.2f N s/m; share %.2f\n", mode.mass,
+              mode.pace / (2.0 * std::numbers::pi), mode.damping, found.rigid(), found.drag(), found.share());
+  EXPECT_GT(found.share(), 0.95);
+  EXPECT_NEAR(mode.pace, truth.pace, 0.02 * truth.pace);
+  EXPECT_NEAR(mode.mass, truth.mass, 0.15 * truth.mass);
+  EXPECT_NEAR(found.rigid(), 0.8, 0.25);
+  const double off = std::abs(slosh_force(mode, found.state()) - slosh_force(truth, state));
+  std::printf("its force off by %.2f N, at most it was %.1f N\n", off, peak);
+  EXPECT_LT(off, 0.15 * peak);
+}
+
+TEST(SloshFinder, FollowsNothingWhereNothingSwings) {
+  EXPECT_LT(led(4.0, [](double v, double a, double) { return kWeight - 1.5 * a - 3.0 * v; }).share(), 0.05);
+  EXPECT_EQ(led(4.0, [](double, double, double) { return kWeight; }).share(), 0.0);
+  // A table that is met now and then, and does not hang on how the body moves.
+  const double share =
+      led(6.0, [](double, double, double t) { return std::fmod(t, 1.7) < 0.4 ? 12.0 : kWeight; }).share();
+  std::printf("a table met every 1.7 s: share %.3f\n", share);
+  EXPECT_LT(share, 0.05);
+}
+
+}  // namespace
+}  // namespace slosh
