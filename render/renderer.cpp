@@ -39,7 +39,7 @@ RenderOptions section_five(RenderOptions options) {
   options.bilateral_iterations = 4;
   options.splat_scale = 1.2f;
   options.half_resolution_back = true;
-  options.body_reflections = false;
+  options.body_reflections = options.caustics = false;
   options.fresnel = options.lit_fluid = options.layers = options.fluid_shadow = options.soft_mixing = false;
   options.antialias = options.dither = false;
   return options;
@@ -164,6 +164,17 @@ FloatImage Renderer::read_buffer(Buffer buffer) {
       const gl::Texture texture = gl::make_texture(t.size, GL_R32F, GL_NEAREST);
       p.fluid_passes->thickness(t, gl::make_framebuffer({&texture}));
       return read_floats(texture, t.size, 1);
+    }
+    case Buffer::kCaustics: {
+      FloatImage ratio{t.half_size.x, t.half_size.y, 1, {}};
+      const auto pixels = static_cast<std::size_t>(t.half_size.x) * static_cast<std::size_t>(t.half_size.y);
+      ratio.values.assign(pixels, 1.0f);
+      if (!p.drew_caustics) return ratio;
+      const FloatImage sums = read_floats(p.caustics_pass->sums(), t.half_size, 3);
+      for (std::size_t i = 0; i < pixels; ++i) {
+        if (sums.values[3 * i + 1] > 1e-6f) ratio.values[i] = sums.values[3 * i] / sums.values[3 * i + 1];
+      }
+      return ratio;
     }
     case Buffer::kNormal: {
       const gl::Texture texture = gl::make_texture(t.size, GL_RGBA32F, GL_NEAREST);

@@ -69,6 +69,8 @@ struct RenderOptions {
       true;  ///< beyond the paper: light off and out of the fluid as its look says, in place of Eq 15
   bool body_reflections = true;  ///< beyond the paper: the fluid mirrors the bodies, too, as far as the
                                  ///< picture shows them (kFull); needs fresnel and lit_fluid
+  bool caustics = false;  ///< beyond the paper: the fluid's surface focuses the light on what lies below, as
+                          ///< far as the picture shows both (kFull); needs lit_fluid and shadow_size > 0
   bool layers = true;  ///< beyond the paper: layers of fluid with air between count each by itself; not with
                        ///< Surface::kPaper
 
@@ -114,7 +116,8 @@ enum class Buffer : std::uint8_t {
   kBackDepth,    ///< F_bD, at half size if so asked; 0 where there is no fluid
   kThickness,    ///< T of Eq 15, m; 0 = no fluid seen
   kFluidIndex,   ///< the front-most particle's index into Frame::fluids, −1 = none
-  kNormal,       ///< three channels, unit, eye axes; 0 where no fluid is drawn
+  kCaustics,  ///< at half size: light that comes through the surface over that through a level one; 1: none
+  kNormal,    ///< three channels, unit, eye axes; 0 where no fluid is drawn
 };
 
 inline constexpr float kNoFluidDepth = 1.0e6f;

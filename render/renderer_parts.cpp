@@ -129,6 +129,18 @@ int Renderer::Parts::draw_mixing() {
   return layers;
 }
 
+bool Renderer::Parts::draw_caustics() {
+  const bool wanted = options.caustics && options.lit_fluid && !fast && shadow.size > 0;
+  if (!wanted || !has_opaque(frame) || !any_fluid_is_clear(frame)) return false;
+  if (!caustics_pass) {
+    auto made = CausticsPass::create();
+    if (!made) return false;  // a driver that refuses it: without
+    caustics_pass = std::move(made.value());
+  }
+  run("caustics", [&] { caustics_pass->draw(frame, targets, fluid_passes->smoothed(targets)); });
+  return true;
+}
+
 bool Renderer::Parts::prepare_fluid(bool chords) {
   if (particles) {
     if (particles->count() == 0) return false;
@@ -162,6 +174,7 @@ void Renderer::Parts::draw_scene() {
   const bool chords = options.layers && options.surface != Surface::kPaper && any_fluid_is_clear(frame);
   far_light.bind();
   uniforms.upload(make_frame_block(frame, options, shadow, chords));
+  drew_caustics = false;
   run("prepare splats", [&] { drew_fluid = prepare_fluid(chords); });
   if (drew_fluid) {
     run("front depth", [&] { fluid_passes->splat_front(targets); });
@@ -210,7 +223,8 @@ void Renderer::Parts::draw_scene() {
     };
     if (!copied) run("copy scene colour", copy_scene);
     const bool bodies = !fast && options.body_reflections && options.fresnel && has_opaque(frame);
-    const LitLook look{draw_mixing(), bodies};
+    drew_caustics = draw_caustics();
+    const LitLook look{draw_mixing(), bodies, drew_caustics};
     run_in_part("composite", [&] { fluid_passes->composite(targets, options.lit_fluid ? &look : nullptr); });
   }
   if (!frame.foam.empty()) {

@@ -8,6 +8,7 @@
 #include "render/gl/objects.h"
 #include "render/gl/pixel_program.h"
 #include "render/passes/arrow_pass.h"
+#include "render/passes/caustics_pass.h"
 #include "render/passes/display_pass.h"
 #include "render/passes/far_light.h"
 #include "render/passes/fluid_passes.h"
@@ -50,6 +51,8 @@ struct Renderer::Parts {
   std::optional<FluidPasses> fluid_passes;
   std::optional<ThicknessPass> thickness_pass;
   std::optional<MixingPass> mixing_pass;  ///< made when fluids meet
+  std::optional<CausticsPass> caustics_pass;  ///< made when first asked for
+  bool drew_caustics = false;                 ///< in the last picture
   std::optional<FoamPass> foam_pass;  ///< made when there is foam
   std::optional<ArrowPass> arrow_pass;
   std::optional<DisplayPass> display_pass;
@@ -76,6 +79,8 @@ struct Renderer::Parts {
   void draw_scene();
   /// The shares of the fluids that are seen, where there are several; the textures they take, 0: none.
   int draw_mixing();
+  /// Whether there are caustics in this picture.
+  bool draw_caustics();
   /// What is left of the splats for a view; whether it has any.
   bool prepare_fluid(bool chords);
   /// What has to be drawn of this picture; nothing where that is all of it.

@@ -132,6 +132,7 @@ const gl::PixelProgram& FluidPasses::program_of(const LitLook& look, const Targe
     std::vector<std::string> defines = look_defines_;
     if (look.mixed > 0) defines.push_back("MIXED " + std::to_string(look.mixed));
     if (look.bodies) defines.emplace_back("BODIES");
+    if (look.caustics) defines.emplace_back("CAUSTICS");
     auto made = gl::PixelProgram::create("fluid_look.frag", compute_, true, std::move(defines));
     if (made) at->second = std::move(made.value());
   }

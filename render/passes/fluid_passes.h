@@ -21,6 +21,7 @@ namespace slosh {
 struct LitLook {
   int mixed = 0;        ///< textures that passes/mixing_pass.h bound, with the fluids' shares; 0: no mixing
   bool bodies = false;  ///< they are mirrored
+  bool caustics = false;  ///< passes/caustics_pass.h bound them
   auto operator<=>(const LitLook&) const = default;
 };
 

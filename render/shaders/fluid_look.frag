@@ -6,8 +6,11 @@
 #include "look_block.glsl"
 #include "fluid_look.glsl"
 layout(binding = 4) uniform sampler2D scene_color;
-#ifdef BODIES
+#if defined(BODIES) || defined(CAUSTICS)
 #include "mirrored_bodies.glsl"
+#endif
+#ifdef CAUSTICS
+#include "caustic_light.glsl"
 #endif
 
 // How much of the sky the fluid leaves open over this point, 0–1: taps on two rings over the smoothed depths.
@@ -120,7 +123,11 @@ vec3 seen_behind(vec3 here, vec3 n, float refraction, float thickness, ivec2 tex
   off *= min(1.0, 0.16 * picture.y / max(length(off), 1.0e-3));
   ivec2 looked_up = clamp(ivec2(middle + off), ivec2(0), ivec2(picture.xy) - 1);
   if (texelFetch(scene_depth, looked_up, 0).r < -here.z) looked_up = texel;
+#ifdef CAUSTICS
+  return texelFetch(scene_color, looked_up, 0).rgb * caustic_light(vec2(looked_up) + 0.5);
+#else
   return texelFetch(scene_color, looked_up, 0).rgb;
+#endif
 }
 
 FluidMatter matter_of_look(uint index) {

@@ -34,6 +34,7 @@ struct Wishes {
   bool hard = false;
   bool no_bodies = false;
   bool basin = false;
+  bool caustics = false;
   bool paper = false;
   bool full = false;
   bool flow = false;
@@ -66,6 +67,7 @@ void say_options(CLI::App& app, Wishes& wishes) {
   app.add_flag("--mix", wishes.mix, "a cloudy one into which an opaque one runs");
   app.add_flag("--hard", wishes.hard, "fluids meet in hard outlines");
   app.add_flag("--basin", wishes.basin, "a still basin with a post behind it, in place of the broken dam");
+  app.add_flag("--caustics", wishes.caustics, "light focused by the fluid's surface, with --full");
   app.add_flag("--no-bodies", wishes.no_bodies, "the fluid mirrors the room alone");
   app.add_flag("--paper", wishes.paper, "the paper's section 5");
   app.add_flag("--flow", wishes.flow, "curvature flow");
@@ -309,6 +311,7 @@ slosh::Result<std::unique_ptr<Way>> make_way(const char* name, const Wishes& wis
   options.environment = environment_of(wishes);
   if (wishes.flow) options.surface = Surface::kCurvatureFlow;
   if (wishes.full) options.quality = Quality::kFull;
+  options.caustics = wishes.caustics;
   if (wishes.no_bodies) options.body_reflections = false;
   if (wishes.hard) options.soft_mixing = false;
   if (name != std::string("compute") && name != std::string("measured"))
