@@ -9,6 +9,7 @@
 #include "sim/snapshot.h"
 #include "sim/step_limits.h"
 #include "sim/viscosity/noise.h"
+#include "sim/viscosity/stability.h"
 
 namespace slosh {
 
@@ -132,7 +133,9 @@ RunConstants make_run_constants(const Scene& scene, const SampledScene& sampled,
                     static_cast<float>(noise_viscosity(c.plan, fluid_extremes(scene).lightest)),
                     c.rest_volume,
                     static_cast<float>(c.plan.stiffness),
-                    static_cast<float>(c.plan.tension)};
+                    static_cast<float>(c.plan.tension),
+                    static_cast<float>(impact_growth(c.plan)),
+                    static_cast<float>(most_explicit_drag(scene, c.plan))};
   }
   c.gravity = glm::vec3(scene.gravity);
   if (c.plan.model != ParticleModel::kIncompressible)

@@ -2,6 +2,8 @@
 // pass.
 #pragma once
 
+#include <cmath>
+
 #include "sim/pressure/equation_of_state.h"
 #include "sim/pressure/gradient_correction.h"
 #include "sim/viscosity/noise.h"
@@ -18,6 +20,8 @@ struct CorrectionConstants {
   float rest_volume = 0.0f;      ///< m³
   float stiffness = 0.0f;        ///< m²/s²
   float tension = 0.0f;
+  float impact_growth = 0.0f;  ///< s/m (viscosity/noise.h)
+  float most_drag = 0.0f;      ///< Pa·s (viscosity/stability.h, most_explicit_drag)
 };
 
 struct CorrectedState {
@@ -41,7 +45,14 @@ SLOSH_HD inline Symmetric<float> directions_of(const Neighborhood<float>& n, con
 SLOSH_HD inline void set_drag(const Neighborhood<float>& n, const CorrectionConstants& c, float viscosity,
                               float in_u, const float (&v)[3], float (&u)[3]) {
   for (int k = 0; k < 3; ++k) u[k] = in_u * v[k];
-  add_noise(n, c.own_number, jostling_viscosity(c.noise_viscosity, viscosity), v, u);
+  float jostling = jostling_viscosity(c.noise_viscosity, viscosity);
+  if (c.impact_growth > 0.0f) {
+    float d[3] = {};
+    add_noise(n, c.own_number, 1.0f, v, d);
+    const float speed = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    jostling = viscosity_in_impact(jostling, c.impact_growth, speed, viscosity, c.most_drag);
+  }
+  add_noise(n, c.own_number, jostling, v, u);
 }
 
 /// `viscosity`: the fluid's own, Pa·s. `in_u`: the same where u is to carry it (all fluids share it and drag

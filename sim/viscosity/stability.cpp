@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sim/model.h"
 #include "sim/viscosity/implicit.h"
@@ -89,6 +90,12 @@ double viscous_step(const Scene& scene, const Plan& plan, const FluidExtremes& f
 
 double jostling_step(const Scene& scene, const Plan& plan, const FluidExtremes& fluids) {
   return kViscousFactor / (jostling(plan, fluids) * viscous_rate(scene, plan, fluids));
+}
+
+double most_explicit_drag(const Scene& scene, const Plan& plan) {
+  if (!plan.has_fluid()) return std::numeric_limits<double>::infinity();
+  const double step = plan.time_step / plan.sub_steps;
+  return kViscousFactor / (step * viscous_rate(scene, plan, fluid_extremes(scene)));
 }
 
 double most_viscous_allowed(const Scene& scene, const Plan& plan, DragSheet sheet) {

@@ -222,6 +222,23 @@ TEST(Noise, IsWhatAParticleDoesNotShareWithItsNeighbours) {
   EXPECT_EQ(alone[0], 0.0f);
 }
 
+// In an impact it is damped by more, up to what the step holds; calm fluid by the same to the bit.
+TEST(Noise, GrowsWithTheSpeedOfAnImpactUpToWhatTheStepHolds) {
+  constexpr float kJostling = 0.8f, kSound = 5.0f, kMost = 6.0f;
+  constexpr auto kGrowth = static_cast<float>(kImpactGrowth) / kSound;
+  const auto at = [&](float speed, float viscosity) {
+    return viscosity_in_impact(kJostling, kGrowth, speed, viscosity, kMost);
+  };
+  EXPECT_EQ(at(0.0f, 0.0f), kJostling);
+  EXPECT_EQ(at(0.99f * static_cast<float>(kImpactSpeed) * kSound, 0.0f), kJostling);
+  // A tenth of the speed of sound is 0.05 beyond: 50 · 0.05 times as much more.
+  EXPECT_FLOAT_EQ(at(0.1f * kSound, 0.0f), kJostling * 3.5f);
+  EXPECT_FLOAT_EQ(at(kSound, 0.0f), kMost);
+  EXPECT_FLOAT_EQ(at(kSound, 2.0f), kMost - 2.0f);
+  // Where the fluid's own drag is all that the step holds it is what it would be in calm.
+  EXPECT_EQ(at(kSound, kMost), kJostling);
+}
+
 TEST(PairForce, ConsistentPairsConserveAngularMomentum) {
   std::mt19937 random(12);
   for (int repeat = 0; repeat < 1000; ++repeat) {
