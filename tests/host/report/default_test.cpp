@@ -30,26 +30,26 @@ struct Beaten {
       by;  // of the scale, where it is most: the default's error less the least of any that takes no longer
 };
 constexpr Beaten kBeaten[] = {
-    {"column", "impulse", 0.0965},                // 10 mm: 10.7 %; consistent, 12 mm: 1.0
+    {"column", "impulse", 0.0801},                // 12 mm: 9.0 %; consistent: 1.0
     {"couette", "torque", 0.0435},                // 5 mm: 5.6 %; consistent: 1.2
     {"dam_break", "front; worst", 0.0365},        // 12 mm: 16.2 %; consistent: 12.5
-    {"dam_break_long", "front; worst", 0.0376},   // 5.7 mm: 12.4 %; consistent: 8.7
-    {"draft", "draft", 0.0153},                   // 8 mm: 3.0 %; itself at 10 mm: 1.5
-    {"paraboloid", "rise over r²", 0.0489},       // 7.5 mm: 8.6 %; consistent: 3.7
-    {"released", "acceleration", 0.2745},         // 10 mm: 43.3 %; the paper's at 8 mm, support 2.5: 15.8
+    {"dam_break_long", "front; worst", 0.0351},   // 5.7 mm: 12.2 %; consistent: 8.7
+    {"mug", "water kept", 0.0842},                // 10 mm: 8.4 %; itself, support 2.5: 0.0
+    {"paraboloid", "rise over r²", 0.0386},       // 6 mm: 6.2 %; consistent, 7.5 mm, half the step: 2.4
+    {"released", "acceleration", 0.1728},         // 8 mm: 33.1 %; the paper's, support 2.5: 15.8
     {"shear_wave", "rate of decay", 0.0191},      // 5.7 mm: 1.9 %; consistent: 0.0
-    {"slope", "slope", 0.0235},                   // 7.5 mm: 2.4 %; consistent, 10 mm, half the step: 0.1
-    {"sloshing", "period", 0.0111},               // 5 mm: 1.1 %; consistent, 10 mm, half the step: 0.0
-    {"sloshing", "swing kept a period", 0.0148},  // 8 mm: 5.8 %; itself at 10 mm, support 2.5: 4.3
-    {"slow_ball", "force; moving", 0.0108},       // 8 mm: 5.4 %; itself, support 2.5: 4.3
+    {"slope", "slope", 0.0288},                   // 7.5 mm: 3.0 %; consistent, 10 mm, half the step: 0.1
+    {"sloshing", "period", 0.0115},               // 5 mm: 1.1 %; consistent, 10 mm, half the step: 0.0
+    {"sloshing", "swing kept a period", 0.0179},  // 8 mm: 5.7 %; itself at 10 mm, support 2.5: 3.9
+    {"slow_ball", "force left 0.9 s after", 0.0139},  // 4.8 mm: 1.4 %; incompressible, 8 mm: 0.0
     {"spin_up", "torque at tau 0.02", 0.3650},    // 10 mm: 39.1 %; consistent, half the step: 2.6
     {"still_tank", "level", 0.0103},              // 6.2 mm: 1.1 %; itself at 8 mm, support 2.5: 0.1
     {"still_tank", "pressure at 70 mm", 0.0181},  // 20 mm: 9.7 %; consistent: 7.8
     {"stokes", "drag", 0.0321},                   // 5 mm: 4.4 %; incompressible, 6 mm: 1.2
     {"stokes_honey", "drag", 0.0482},             // 6 mm: 7.0 %; incompressible: 2.1
     {"tank_faces", "floor", 0.1284},              // 20 mm: 13.3 %; the paper's, support 2.5: 0.4
-    // 5 mm: 5.7 %; the paper's, support 2.5: 0.4
-    {"torricelli", "speed of the jet over Torricelli's", 0.0526},
+    // 6 mm: 6.5 %; the paper's, 5 mm, support 2.5: 0.4
+    {"torricelli", "speed of the jet over Torricelli's", 0.0610},
 };
 
 using Groups = std::map<std::pair<std::string, std::string>, std::vector<ErrorRow>>;

@@ -16,8 +16,10 @@ def pour(time: float) -> slosh.Pose:
     return slosh.Pose.turned((0, 0, 1), 2.0 * share, (0.06, 0.365, 0))
 
 
-def mug_over_funnel(model: str = "corrected", **walls: float) -> slosh.SceneBuilder:
-    builder = slosh.SceneBuilder(title="A mug over a funnel over a tray", duration_s=SECONDS, model=model)
+def mug_over_funnel(model: str = "corrected", support_ratio: float = 2.0, **walls: float) -> slosh.SceneBuilder:
+    builder = slosh.SceneBuilder(
+        title="A mug over a funnel over a tray", duration_s=SECONDS, model=model, support_ratio=support_ratio
+    )
     builder.body("tray", slosh.tank((0.36, 0.05, 0.36), 0.02), pose=(0, -0.02, 0), **walls)
     funnel = [(0.037, 0.10), (0.037, 0.15), (0.12, 0.225), (0.11, 0.24), (0.025, 0.16), (0.025, 0.10)]
     builder.body("funnel", slosh.lathe(funnel), **walls)
@@ -47,9 +49,13 @@ class FirstScene(unittest.TestCase):
             self.assertEqual(slosh.check(file), [])
 
     def test_what_is_poured_stays(self):
-        # Reached: 0.088 kg, at 6 mm 0.094; what falls on the shallow water of the tray comes back particle by particle, over
-        # the rim of 5 cm (scenes/README.md). By the published model 0.45 of 0.55 kg of such a mug were gone.
-        self.assertLess(lost(mug_over_funnel()), 0.12)
+        # Reached: 0.023 kg, at 6, 10 and 12 mm 0.021, 0.045, 0.052: 0.088 until impacts were damped (sim/viscosity/noise.h).
+        # By the published model 0.45 of 0.55 kg of such a mug were gone.
+        self.assertLess(lost(mug_over_funnel()), 0.035)
+
+    def test_a_wider_support_keeps_it_for_the_same_time(self):
+        # Reached: 0.0015 kg; at 6 and 10 mm 0.012 and nothing.
+        self.assertLess(lost(mug_over_funnel(support_ratio=2.5)), 0.005)
 
     def test_pressures_that_are_solved_for_keep_it(self):
         # What the program advises where fluid was lost. Reached: 0.004 kg; at 6 and 10 mm 0.013 and 0.007.
