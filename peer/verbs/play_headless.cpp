@@ -104,6 +104,7 @@ RenderOptions picture_options(const Stage& stage, const ShowOptions& options, Pr
   if (options.surface == "flow") render.surface = Surface::kCurvatureFlow;
   if (options.quality == "fast") render.quality = Quality::kFast;
   if (options.quality == "full") render.quality = Quality::kFull;
+  render.caustics = options.caustics;
   set_hud_scale(static_cast<float>(options.font_scale));
   render.width = stage.width;
   render.height = stage.height;

@@ -24,6 +24,7 @@ struct ShowOptions {
   int bilateral = 4;
   std::string surface = "ours";  ///< how particles become a surface: ours, paper, flow
   std::string quality = "auto";  ///< of looks: auto, fast, full
+  bool caustics = false;         ///< at full quality
   std::string ocio;              ///< file of an OpenColorIO configuration; empty = $OCIO; "none" = ours
   std::string display;           ///< of that configuration, by name; empty = its first
   std::string view;              ///< of that display, by name; empty = its first

@@ -142,6 +142,36 @@ int patch_apart(const Image& both, const glm::dvec2& pixel) {
   return best;
 }
 
+// Light that a wavy surface gathers is seen where it was asked for, at the quality that has it, and nowhere else.
+TEST_F(PlayTest, CausticsAreThereWhereTheyAreAskedFor) {
+  const auto drawn = [&](const std::string& folder, std::vector<std::string> looks) {
+    std::vector<std::string> command{"play",      "pool",   "--headless", "--seconds",  "0.3",   "--spacing",
+                                     "0.05",      "--size", "640x480",    "--unpaced",  "--out", folder,
+                                     "--fps",     "10"};
+    command.insert(command.end(), looks.begin(), looks.end());
+    const Outcome outcome = test::slosh(command);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const Result<Image> picture = read_png(out().parent_path() / folder / "final.png");
+    EXPECT_TRUE(picture) << picture.error().text();
+    // Right of the panels, which say how long a step took.
+    std::vector<std::uint8_t> right;
+    for (int y = 0; picture && y < 480; ++y) {
+      const auto row = picture.value().rgba.begin() + 4 * 640 * y;
+      right.insert(right.end(), row + 4 * 240, row + 4 * 640);
+    }
+    return right;
+  };
+  const auto fast = drawn("fast", {"--quality", "fast"});
+  EXPECT_TRUE(fast == drawn("fast_asked", {"--quality", "fast", "--caustics"})) << "only at full quality";
+  const auto full = drawn("full", {"--quality", "full"});
+  const auto lit = drawn("lit", {"--quality", "full", "--caustics"});
+  ASSERT_EQ(full.size(), lit.size());
+  std::size_t other = 0;
+  for (std::size_t i = 0; i < full.size(); ++i) other += std::abs(int{full[i]} - int{lit[i]}) > 4;
+  std::printf("caustics change %zu of %zu channels by more than 4\n", other, full.size());
+  EXPECT_GT(other, full.size() / 200);
+}
+
 TEST_F(PlayTest, AFilmInBothEyesDiffersAsFarAsEyesAreApart) {
   const Outcome outcome =
       test::slosh({"play", "probe", "--headless", "--seconds", "0.2", "--spacing", "0.012", "--size",
