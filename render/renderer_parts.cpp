@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "render/passes/pixel_choice.h"
+#include "render/passes/window_part.h"
 
 namespace slosh {
 namespace {
@@ -100,8 +101,13 @@ Result<bool> Renderer::Parts::fit_to_options() {
 void Renderer::Parts::show_in_window() {
   const glm::ivec2 window = context.framebuffer_size();
   if (window.x < 1 || window.y < 1) return;
-  glBlitNamedFramebuffer(targets.display_target.name(), 0, 0, 0, targets.size.x, targets.size.y, 0, 0,
-                         window.x, window.y, GL_COLOR_BUFFER_BIT,
+  const PixelBox part = window_part(targets.size, window);
+  if (part.size() != window) {
+    constexpr float kBlack[] = {0.0f, 0.0f, 0.0f, 1.0f};
+    glClearNamedFramebufferfv(0, GL_COLOR, 0, kBlack);
+  }
+  glBlitNamedFramebuffer(targets.display_target.name(), 0, 0, 0, targets.size.x, targets.size.y, part.low.x,
+                         part.low.y, part.high.x, part.high.y, GL_COLOR_BUFFER_BIT,
                          window == targets.size ? GL_NEAREST : GL_LINEAR);
 }
 

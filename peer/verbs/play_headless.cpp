@@ -65,6 +65,7 @@ void TroubleTeller::tell(const LiveRun& run, Progress& progress) {
   const std::string trouble = run.trouble();
   if (trouble == told_) return;
   told_ = trouble;
+  if (trouble.empty()) return progress.note("slosh: what was out of order is in use again");
   progress.note("slosh: " + trouble + "; the run goes on");
 }
 

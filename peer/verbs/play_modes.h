@@ -40,7 +40,7 @@ RenderOptions picture_options(const Stage& stage, const ShowOptions& options, Pr
 /// Lines typed at a run go to it, their answers to stdout; nothing where the run hears none. Does not wait.
 void hear_lines(LiveRun& run, LineInput* input, Progress& progress);
 
-/// Tells once, when it begins, that the run's files are in trouble.
+/// Tells once, when it begins and when it is over, what is wrong with the run's files or devices.
 class TroubleTeller {
  public:
   void tell(const LiveRun& run, Progress& progress);

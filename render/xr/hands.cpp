@@ -65,6 +65,7 @@ Result<bool> Hands::attach(const Runtime& runtime, XrSession session, XrSpace ro
   const std::lock_guard lock(mutex_);
   runtime_ = &runtime;
   session_ = session;
+  gone_ = false;
   room_ = room;
   Result<bool> made = make_actions(runtime.instance());
   if (made) made = make_spaces();
@@ -167,6 +168,11 @@ Result<bool> Hands::make_spaces() {
   return true;
 }
 
+bool Hands::answers(XrResult result) {
+  if (result == XR_ERROR_SESSION_LOST || result == XR_ERROR_INSTANCE_LOST) gone_ = true;
+  return XR_SUCCEEDED(result);
+}
+
 void Hands::sync() {
   const std::int64_t now_ns = steady_ns();
   if (now_ns - synced_ns_ < kSyncEvery) return;
@@ -175,7 +181,8 @@ void Hands::sync() {
   auto info = typed<XrActionsSyncInfo>(XR_TYPE_ACTIONS_SYNC_INFO);
   info.countActiveActionSets = 1;
   info.activeActionSets = &active;
-  focused_ = xrSyncActions(session_, &info) == XR_SUCCESS;  // XR_SESSION_NOT_FOCUSED is no failure either
+  const XrResult result = xrSyncActions(session_, &info);
+  focused_ = answers(result) && result == XR_SUCCESS;  // XR_SESSION_NOT_FOCUSED is no failure either
 }
 
 float Hands::value(XrAction action, int side) const {
@@ -200,7 +207,7 @@ HandReading Hands::read(HandSide hand) {
   const int side = hand == HandSide::kLeft ? 0 : 1;
   const std::lock_guard lock(mutex_);
   HandReading reading;
-  if (session_ == XR_NULL_HANDLE) return reading;
+  if (session_ == XR_NULL_HANDLE || gone_) return reading;
   sync();
   if (!focused_) return reading;
   XrTime time = runtime_->now();
@@ -211,7 +218,7 @@ HandReading Hands::read(HandSide hand) {
   location.next = &velocity;
   constexpr XrSpaceLocationFlags kPlace =
       XR_SPACE_LOCATION_POSITION_VALID_BIT | XR_SPACE_LOCATION_ORIENTATION_VALID_BIT;
-  if (XR_FAILED(xrLocateSpace(spaces_[static_cast<std::size_t>(side)], room_, time, &location)) ||
+  if (!answers(xrLocateSpace(spaces_[static_cast<std::size_t>(side)], room_, time, &location)) ||
       (location.locationFlags & kPlace) != kPlace) {
     return reading;
   }
@@ -233,7 +240,7 @@ HandReading Hands::read(HandSide hand) {
 
 void Hands::vibrate(HandSide hand, double strength, double seconds) {
   const std::lock_guard lock(mutex_);
-  if (session_ == XR_NULL_HANDLE || !focused_) return;
+  if (session_ == XR_NULL_HANDLE || gone_ || !focused_) return;
   auto info = typed<XrHapticActionInfo>(XR_TYPE_HAPTIC_ACTION_INFO);
   info.action = shake_;
   info.subactionPath = sides_[hand == HandSide::kLeft ? 0 : 1];

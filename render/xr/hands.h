@@ -27,6 +27,8 @@ class Hands final : public HeadsetHands {
   Result<bool> make_actions(XrInstance instance);
   Result<bool> make_spaces();
   void sync();
+  /// Whether a call went well; notes a session that is gone for good.
+  bool answers(XrResult result);
   float value(XrAction action, int side) const;
   bool pressed(XrAction action, int side) const;
 
@@ -46,6 +48,7 @@ class Hands final : public HeadsetHands {
   XrTime predicted_ = 0;
   std::int64_t synced_ns_ = 0;
   bool focused_ = false;
+  bool gone_ = false;  // the runtime said so: it is not asked a thousand times a second until the next attach()
 };
 
 }  // namespace slosh::xr

@@ -12,6 +12,7 @@
 #include "render/passes/arrow_pass.h"
 #include "render/passes/light_fit.h"
 #include "render/passes/splats.h"
+#include "render/passes/window_part.h"
 #include "render/shader_math.h"
 #include "tests/render/scene_kit.h"
 #include "tests/support/places.h"
@@ -33,6 +34,23 @@ TEST(ShaderSource, NamesAMissingFile) {
   const auto text = shader_source("a", {}, files);
   ASSERT_FALSE(text);
   EXPECT_NE(text.error().text().find("gone.glsl"), std::string::npos);
+}
+
+TEST(WindowPart, IsInThePicturesShape) {
+  // An eye that is higher than wide, in a wide window: full height, 538 · 720/605 = 640 columns in the middle.
+  const PixelBox eye = window_part({538, 605}, {1280, 720});
+  EXPECT_EQ(eye.low, glm::ivec2(320, 0));
+  EXPECT_EQ(eye.size(), glm::ivec2(640, 720));
+  const PixelBox wide = window_part({600, 100}, {60, 50});
+  EXPECT_EQ(wide.low, glm::ivec2(0, 20));
+  EXPECT_EQ(wide.size(), glm::ivec2(60, 10));
+  // Drawn smaller than the window, in its own shape but for rounding: all of the window.
+  for (const glm::ivec2 window : {glm::ivec2(640, 480), glm::ivec2(1281, 721), glm::ivec2(33, 977)}) {
+    for (const double scale : {1.0, 0.71, 0.5}) {
+      const glm::ivec2 drawn(glm::round(scale * glm::dvec2(window)));
+      EXPECT_EQ(window_part(drawn, window).size(), window) << drawn.x << " by " << drawn.y;
+    }
+  }
 }
 
 Frame frame_at(const std::vector<glm::vec3>& particles, const std::vector<std::uint8_t>& fluids) {

@@ -248,6 +248,11 @@ TEST_F(HeadsetTest, ALostSessionIsTakenUpAgain) {
     for (int i = 0; i < 1000 && state_ != HeadsetState::kLost; ++i) turn();
     ASSERT_EQ(state_, HeadsetState::kLost) << how;
     EXPECT_NE(said_.find("headset: "), std::string::npos);
+    for (int i = 0; i < 10; ++i) {
+      headset_->hands()->read(i % 2 == 0 ? HandSide::kLeft : HandSide::kRight);
+      std::this_thread::sleep_for(std::chrono::milliseconds(6));  // longer than hands are not asked for anew
+    }
+    EXPECT_LE(folder_->count("hands asked for of a session that is lost"), 1) << "what is gone is let be";
     headset_->stop();
     EXPECT_FALSE(headset_->hands()->read(HandSide::kLeft).tracked) << "and it is no crash to ask";
     headset_->hands()->vibrate(HandSide::kLeft, 1.0, 0.1);

@@ -62,6 +62,10 @@ XrResult sync(XrSession session, const XrActionsSyncInfo*) {
   if (number_of(session) != s.session)
     return wrong("xrSyncActions on a session that is gone", XR_ERROR_HANDLE_INVALID);
   if (!s.attached) return wrong("xrSyncActions before attaching", XR_ERROR_ACTIONSET_NOT_ATTACHED);
+  if (s.lost) {
+    s.log.say("hands asked for of a session that is lost");
+    return XR_ERROR_SESSION_LOST;
+  }
   return s.state == XR_SESSION_STATE_FOCUSED ? XR_SUCCESS : XR_SESSION_NOT_FOCUSED;
 }
 

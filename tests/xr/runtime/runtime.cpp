@@ -185,6 +185,7 @@ XrResult destroy_session(XrSession) {
   if (!s.chains.empty()) wrong("a session destroyed before its swapchains", XR_SUCCESS);
   s.spaces.clear();
   s.session = 0;
+  s.lost = false;
   s.log.say("session gone");
   return XR_SUCCESS;
 }
@@ -249,7 +250,8 @@ XrResult wait_frame(XrSession, const XrFrameWaitInfo*, XrFrameState* frame) {
       if (!at->second.done) happen(at->second.what);
       at->second.done = true;
     }
-    if (refuse("session")) return XR_ERROR_SESSION_LOST;
+    if (refuse("session")) s.lost = true;
+    if (s.lost) return XR_ERROR_SESSION_LOST;
     if (refuse("xrWaitFrame")) return XR_ERROR_RUNTIME_FAILURE;
     const auto period = static_cast<std::int64_t>(1e9 / s.script.rate);
     s.next_ns = std::max(s.next_ns + period, now_ns());

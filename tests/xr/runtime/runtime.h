@@ -61,6 +61,7 @@ struct State {
   // The session.
   std::uint64_t session = 0;
   bool running = false;
+  bool lost = false;
   XrSessionState state = XR_SESSION_STATE_UNKNOWN;
   std::int64_t began_ns = 0;
   std::uint64_t frame = 0;  // of xrWaitFrame, over all sessions
