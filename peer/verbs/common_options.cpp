@@ -61,8 +61,10 @@ void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window) {
           "where a processor draws, else full")
       ->check(CLI::IsMember({"auto", "fast", "full"}))
       ->capture_default_str();
-  verb.add_flag("--caustics", options.caustics,
-                "Light that the fluid's surface gathers on what lies below it, at full quality");
+  verb.add_flag(
+      "--caustics", options.caustics,
+      "Light that the fluid's surface gathers on what lies below it. Asks for --quality full; not with\n"
+      "--quality fast or --surface paper");
   verb.add_option("--bilateral", options.bilateral,
                   "Iterations of the paper's filter; 0: particles stay the balls they are, with any surface")
       ->check(CLI::Range(0, 64))

@@ -105,7 +105,14 @@ RenderOptions picture_options(const Stage& stage, const ShowOptions& options, Pr
   if (options.surface == "flow") render.surface = Surface::kCurvatureFlow;
   if (options.quality == "fast") render.quality = Quality::kFast;
   if (options.quality == "full") render.quality = Quality::kFull;
-  render.caustics = options.caustics;
+  if (options.caustics && (options.quality == "fast" || options.surface == "paper")) {
+    progress.note("slosh: --caustics: there are none with --" +
+                  std::string(options.quality == "fast" ? "quality fast" : "surface paper") +
+                  "; the picture is drawn without them");
+  } else if (options.caustics) {
+    render.caustics = true;
+    render.quality = Quality::kFull;
+  }
   set_hud_scale(static_cast<float>(options.font_scale));
   render.width = stage.width;
   render.height = stage.height;

@@ -10,8 +10,10 @@
 
 #include "render/passes/frame_block.h"
 #include "render/reference/fluid_mesh.h"
+#include "render/reference/focused_light.h"
 #include "render/reference/ray_scene.h"
 #include "render/reference/ray_texture.h"
+#include "render/reference/sampling.h"
 #include "render/shader_math.h"
 
 namespace slosh::reference {
@@ -19,53 +21,6 @@ namespace {
 
 constexpr int kMostTurns = 96;       // of one path
 constexpr float kLightSize = 0.99f;  // cosine of the light's half angle as a mirror shows it
-
-/// PCG (O'Neill 2014).
-class Random {
- public:
-  Random(std::uint64_t pixel, std::uint64_t sample) : state_((pixel << 20) ^ sample ^ 0x853c49e6748fea9bull) {
-    (*this)();
-    (*this)();
-  }
-  float operator()() {
-    state_ = state_ * 6364136223846793005ull + 1442695040888963407ull;
-    const auto mixed = static_cast<std::uint32_t>(((state_ >> 18) ^ state_) >> 27);
-    const auto turn = static_cast<std::uint32_t>(state_ >> 59);
-    const std::uint32_t bits = (mixed >> turn) | (mixed << ((32 - turn) & 31));
-    return static_cast<float>(bits >> 8) * (1.0f / 16777216.0f);
-  }
-
- private:
-  std::uint64_t state_;
-};
-
-glm::vec3 around(const glm::vec3& axis, float cosine, float turn) {
-  const glm::vec3 other = std::abs(axis.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
-  const glm::vec3 u = glm::normalize(glm::cross(other, axis));
-  const glm::vec3 v = glm::cross(axis, u);
-  const float sine = std::sqrt(std::max(1.0f - cosine * cosine, 0.0f));
-  const float angle = glm::two_pi<float>() * turn;
-  return axis * cosine + (u * std::cos(angle) + v * std::sin(angle)) * sine;
-}
-
-/// A normal of a rough surface, by the GGX distribution.
-glm::vec3 rough_normal(const glm::vec3& normal, float roughness, Random& random) {
-  const float a = roughness * roughness;
-  if (a < 1e-4f) return normal;
-  const float u = random();
-  return around(normal, std::sqrt((1.0f - u) / (1.0f + (a * a - 1.0f) * u)), random());
-}
-
-/// Unpolarised reflectance of a smooth surface, light coming at `cosine` from the side that `eta` is relative
-/// to.
-float dielectric(float cosine, float eta) {
-  const float sine2 = (1.0f - cosine * cosine) / (eta * eta);
-  if (sine2 >= 1.0f) return 1.0f;
-  const float inner = std::sqrt(1.0f - sine2);
-  const float s = (cosine - eta * inner) / (cosine + eta * inner);
-  const float p = (inner - eta * cosine) / (inner + eta * cosine);
-  return 0.5f * (s * s + p * p);
-}
 
 /// Single-scattering albedo of a medium whose deep layers send `back` of the light back (Chiang, Kutz &
 /// Burley 2016).
@@ -83,6 +38,12 @@ class Tracer {
     for (const FluidLook& fluid : frame.fluids)
       albedo_.push_back(scattering_albedo(fluid.color * fluid.scattering));
   }
+
+  /// What bodies get of the key light by way of a fluid's surface comes so from now on, not straight.
+  void focus(FocusedLight light) { focused_ = std::move(light); }
+  glm::vec3 to_light() const { return room_.to_light; }
+  /// Share of the key light that arrives at a point in the air.
+  glm::vec3 arriving(const glm::vec3& at) const { return light_to(at, -1); }
 
   glm::vec3 path(glm::vec3 from, glm::vec3 way, Random& random) const {
     glm::vec3 light(0.0f), share(1.0f);
@@ -172,28 +133,10 @@ class Tracer {
   }
 
   void cross_surface(const Hit& hit, glm::vec3& way, int& fluid, bool& scattered, Random& random) const {
-    const FluidLook& look = frame_.fluids[static_cast<std::size_t>(hit.fluid)];
     const bool entering = glm::dot(hit.face, way) < 0.0f;
-    glm::vec3 normal = rough_normal(hit.normal, look.roughness, random);
-    if (!entering) normal = -normal;
-    const float cosine = -glm::dot(normal, way);
-    const bool free = !entering && scattered;
-    if (cosine > 0.0f && !free) {
-      const float eta = entering ? look.refraction : 1.0f / look.refraction;
-      const float whole = dielectric(cosine, eta);
-      const float mirrored = whole >= 1.0f ? 1.0f : whole * look.gloss;
-      if (random() < mirrored) {
-        const glm::vec3 to = glm::reflect(way, normal);
-        const bool same_side = (glm::dot(hit.face, to) < 0.0f) == !entering;
-        if (same_side) {
-          way = to;
-          return;
-        }
-      } else {
-        const glm::vec3 in = glm::refract(way, normal, 1.0f / eta);
-        if (glm::dot(in, in) > 0.5f) way = in;
-      }
-    }
+    if (!cross_fluid(hit, frame_.fluids[static_cast<std::size_t>(hit.fluid)], !entering && scattered, way,
+                     random))
+      return;
     fluid = entering ? hit.fluid : -1;
     scattered = false;
   }
@@ -208,22 +151,20 @@ class Tracer {
       share *= pane_tint(look, facing);
   }
 
-  static glm::vec3 pane_tint(const MeshLook& look, float facing) {
-    return glm::pow(glm::mix(glm::vec3(1.0f), look.base_color, look.opacity),
-                    glm::vec3(1.0f / std::max(facing, 0.25f)));
-  }
-
   glm::vec3 lit_body(const MeshLook& look, const glm::vec3& at, const glm::vec3& normal, const glm::vec3& way,
                      int fluid) const {
+    const glm::vec3 albedo = look.base_color * (1.0f - look.metallic);
+    const glm::vec3 focused =
+        focused_.empty() ? glm::vec3(0.0f) : key_ * albedo / glm::pi<float>() * focused_.at(at, normal);
     const float n_l = glm::dot(normal, room_.to_light);
-    if (n_l <= 0.0f) return glm::vec3(0.0f);
+    if (n_l <= 0.0f) return focused;
     const glm::vec3 half_way = glm::normalize(room_.to_light - way);
     const glm::vec3 f0 = glm::mix(glm::vec3(0.04f), look.base_color, look.metallic);
     const glm::vec3 fresnel = f0 + (1.0f - f0) * shader::schlick(0.0f, glm::dot(half_way, -way));
     const float lobe = shader::ggx(std::max(glm::dot(normal, half_way), 0.0f), n_l,
                                    std::max(-glm::dot(normal, way), 1e-3f), std::max(look.roughness, 0.05f));
-    const glm::vec3 albedo = look.base_color * (1.0f - look.metallic);
-    return key_ * n_l * (albedo / glm::pi<float>() + fresnel * lobe) * light_to(at + normal * kApart, fluid);
+    return focused + key_ * n_l * (albedo / glm::pi<float>() + fresnel * lobe) *
+                         light_to(at + normal * kApart, fluid, focused_.empty());
   }
 
   void bounce(const SurfaceLook& surface, const glm::vec3& normal, glm::vec3& way, glm::vec3& share,
@@ -247,11 +188,13 @@ class Tracer {
     }
   }
 
-  /// Share of the key light that arrives at a point in `fluid` (−1: in air), straight.
-  glm::vec3 light_to(glm::vec3 at, int fluid) const {
+  /// Share of the key light that arrives at a point in `fluid` (−1: in air), straight; `through`: also
+  /// through fluid.
+  glm::vec3 light_to(glm::vec3 at, int fluid, bool through = true) const {
     glm::vec3 share(1.0f);
     for (int turn = 0; turn < 32; ++turn) {
       const Hit hit = scene_.nearest(at, room_.to_light);
+      if (!through && (fluid >= 0 || hit.fluid >= 0)) return glm::vec3(0.0f);
       if (fluid >= 0 && hit.there())
         share *= glm::exp(-frame_.fluids[static_cast<std::size_t>(fluid)].extinction * hit.distance);
       if (!hit.there() || share.x + share.y + share.z < 1e-5f) return share;
@@ -280,6 +223,7 @@ class Tracer {
   const Environment* environment_;
   shader::Room room_;
   std::vector<glm::vec3> albedo_;  // one a fluid
+  FocusedLight focused_;
 };
 
 class EmbreeTracer : public PathTracer {
@@ -314,11 +258,21 @@ class EmbreeTracer : public PathTracer {
       if (instance.mesh < meshes_.size())
         scene.add(meshes_[instance.mesh], instance.model, &instance.look, -1);
     }
-    for (FluidMesh& fluid : mesh_fluids(frame, options.cell))
+    FocusedLight::Source source;
+    for (FluidMesh& fluid : mesh_fluids(frame, options.cell)) {
+      for (const glm::vec3& p : fluid.positions) source.fluids.add(p);
       scene.add({std::move(fluid.positions), std::move(fluid.normals), std::move(fluid.triangles), {}},
                 glm::mat4(1.0f), nullptr, static_cast<int>(fluid.fluid));
+    }
     scene.finish();
-    const Tracer tracer(scene, frame, textures_, Studio{}, options.environment);
+    Tracer tracer(scene, frame, textures_, Studio{}, options.environment);
+    if (options.photons > 0) {
+      source.to_light = tracer.to_light();
+      source.photons = options.photons;
+      source.threads = options.threads;
+      source.arriving = [&tracer](const glm::vec3& at) { return tracer.arriving(at); };
+      tracer.focus({scene, frame.fluids, textures_, source});
+    }
     FloatImage image{options.width, options.height, 3,
                      std::vector<float>(std::size_t{3} * options.width * options.height)};
     const glm::mat4 world_from_eye = glm::inverse(frame.view.view);

@@ -16,6 +16,7 @@ struct Options {
   int width = 640;  ///< pixels, 1–16384
   int height = 480;
   int samples = 64;                          ///< paths a pixel, 1–65536; the noise falls with their root
+  int photons = 0;                           ///< sent from the light through fluid: caustics; 0: none
   int threads = 1;                           ///< >= 1
   const Environment* environment = nullptr;  ///< what is far away; null: our studio
   float cell = 0.6f;                         ///< of the fluid's surface, particle radii (fluid_mesh.h)
@@ -29,9 +30,10 @@ class PathTracer : public MeshSink {
   /// triangles whose light is followed in and out (Fresnel, Snell, Beer and Lambert; a random walk where it
   /// scatters, with the single-scattering albedo that gives F_c from a deep layer: Chiang, Kutz & Burley
   /// 2016), and bodies light each other. Light comes straight through fluid to what lies in it or below,
-  /// dimmed: no caustics. Glass is the same thin pane. Light that has scattered leaves the fluid without
-  /// being mirrored back at its surface, since F_c is what comes out. No arrows, no HUD. The same frame and
-  /// options give the same picture.
+  /// dimmed; with `photons` bodies get it as the fluids' surfaces refract and mirror it (focused_light.h),
+  /// their sheen of it left out. Glass is the same thin pane. Light that has scattered leaves the fluid
+  /// without being mirrored back at its surface, since F_c is what comes out. No arrows, no HUD. The same
+  /// frame and options give the same picture.
   virtual FloatImage draw(const Frame& frame, const Options& options) = 0;
 };
 

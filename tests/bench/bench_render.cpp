@@ -235,6 +235,7 @@ slosh::Result<bool> write_reference(const Wishes& wishes) {
   options.width = wishes.width;
   options.height = wishes.height;
   options.samples = wishes.reference;
+  if (wishes.caustics) options.photons = 4'000'000;
   options.threads = std::max(wishes.threads, 1);
   const auto environment = environment_of(wishes);
   options.environment = environment.get();

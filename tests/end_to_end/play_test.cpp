@@ -144,6 +144,7 @@ int patch_apart(const Image& both, const glm::dvec2& pixel) {
 
 // Light that a wavy surface gathers is seen where it was asked for, at the quality that has it, and nowhere else.
 TEST_F(PlayTest, CausticsAreThereWhereTheyAreAskedFor) {
+  std::string said;
   const auto drawn = [&](const std::string& folder, std::vector<std::string> looks) {
     std::vector<std::string> command{"play",      "pool",   "--headless", "--seconds",  "0.3",   "--spacing",
                                      "0.05",      "--size", "640x480",    "--unpaced",  "--out", folder,
@@ -151,6 +152,7 @@ TEST_F(PlayTest, CausticsAreThereWhereTheyAreAskedFor) {
     command.insert(command.end(), looks.begin(), looks.end());
     const Outcome outcome = test::slosh(command);
     EXPECT_EQ(outcome.code, 0) << outcome.err;
+    said = outcome.err;
     const Result<Image> picture = read_png(out().parent_path() / folder / "final.png");
     EXPECT_TRUE(picture) << picture.error().text();
     // Right of the panels, which say how long a step took.
@@ -163,8 +165,13 @@ TEST_F(PlayTest, CausticsAreThereWhereTheyAreAskedFor) {
   };
   const auto fast = drawn("fast", {"--quality", "fast"});
   EXPECT_TRUE(fast == drawn("fast_asked", {"--quality", "fast", "--caustics"})) << "only at full quality";
+  EXPECT_NE(
+      said.find("slosh: --caustics: there are none with --quality fast; the picture is drawn without them"),
+      std::string::npos)
+      << said;
   const auto full = drawn("full", {"--quality", "full"});
-  const auto lit = drawn("lit", {"--quality", "full", "--caustics"});
+  const auto lit = drawn("lit", {"--caustics"});
+  EXPECT_EQ(said.find("slosh: --caustics"), std::string::npos) << said << ": it asks for full quality itself";
   ASSERT_EQ(full.size(), lit.size());
   std::size_t other = 0;
   for (std::size_t i = 0; i < full.size(); ++i) other += std::abs(int{full[i]} - int{lit[i]}) > 4;

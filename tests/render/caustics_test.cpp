@@ -4,6 +4,8 @@
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "render/reference/fluid_mesh.h"
+#include "render/reference/focused_light.h"
 #include "tests/render/render_test.h"
 
 namespace slosh {
@@ -96,6 +98,67 @@ TEST_F(Focus, AWaveFocusesAsItsCurvatureSays) {
   };
   EXPECT_NEAR(near(0.0), 1.0 / (1.0 - (kDepth + height) * curved), 0.06) << "below a crest";
   EXPECT_NEAR(near(0.5 * kWave), 1.0 / (1.0 + (kDepth - height) * curved), 0.06) << "below a trough";
+}
+
+/// Light on the floor by photons through the surface that the path tracer makes of the particles.
+struct Photons {
+  explicit Photons(float height) : meshes(), waves(meshes, height) {
+    reference::FocusedLight::Source source;
+    for (reference::FluidMesh& fluid : reference::mesh_fluids(waves.frame)) {
+      for (const glm::vec3& p : fluid.positions) source.fluids.add(p);
+      scene.add({std::move(fluid.positions), std::move(fluid.normals), std::move(fluid.triangles), {}},
+                glm::mat4(1.0f), nullptr, 0);
+    }
+    // Below the lower side of that surface, which is the floor of the particles.
+    const kit::Shape floor = kit::make_box({-1.0f, -0.03f, -1.0f}, {1.0f, -0.01f, 1.0f});
+    scene.add({floor.positions, floor.normals, floor.triangles, {}}, glm::mat4(1.0f), &look, -1);
+    scene.finish();
+    source.photons = 2'000'000;
+    source.threads = 2;
+    source.arriving = [](const glm::vec3&) { return glm::vec3(1.0f); };
+    light = {scene, waves.frame.fluids, {}, source};
+  }
+  double at(double x) const {
+    double sum = 0.0;
+    for (int i = -40; i <= 40; ++i)
+      sum += light.at({static_cast<float>(x), -0.01f, 0.004f * static_cast<float>(i)}, {0.0f, 1.0f, 0.0f}).y /
+             81.0;
+    return sum;
+  }
+
+  struct NoMeshes : MeshSink {
+    MeshHandle add_mesh(std::span<const glm::vec3>, std::span<const glm::vec3>, std::span<const glm::uvec3>,
+                        std::span<const glm::vec2>) override {
+      return 0;
+    }
+    TextureHandle add_texture(const TextureImage&) override { return kNoTexture; }
+  } meshes;
+  Waves waves;
+  MeshLook look;
+  reference::RayScene scene;
+  reference::FocusedLight light;
+};
+
+TEST_F(Focus, OfThePictureIsNearThatOfPhotons) {
+  if (const auto there = reference::RayScene::available(); !there) GTEST_SKIP() << there.error().text();
+  const Photons wave(0.01f);
+  const Photons level(0.0f);
+  const auto found = ratios(0.01f);
+  // Columns alone differ by the ripples, as wide as particles, that both surfaces have: strips of four of
+  // them.
+  for (int at = -3; at <= 3; ++at) {
+    const double strip = 0.048 * at;
+    double drawn = 0.0, traced = 0.0;
+    int count = 0;
+    for (const auto& [x, ratio] : found) {
+      if (std::abs(x - strip) > 0.024) continue;
+      drawn += ratio;
+      traced += wave.at(x) / level.at(x);
+      ++count;
+    }
+    std::printf("%+.3f m: %.3f in the picture, %.3f by photons\n", strip, drawn / count, traced / count);
+    EXPECT_NEAR(drawn / count, traced / count, 0.1) << strip;
+  }
 }
 
 TEST_F(Focus, IsOfFullQualityAloneAndOnlyWhereAskedFor) {

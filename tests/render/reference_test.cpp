@@ -6,6 +6,7 @@
 
 #include "render/passes/frame_block.h"
 #include "render/reference/fluid_mesh.h"
+#include "render/reference/focused_light.h"
 #include "render/reference/path_tracer.h"
 #include "render/shader_math.h"
 #include "tests/render/scene_kit.h"
@@ -145,6 +146,120 @@ TEST_F(PathTracing, ACloudyFluidsDeepLayerGivesItsColourBack) {
   frame.light_direction = {0.0f, 0.0f, 1.0f};
   const double expected = Studio{}.key_light.y * 0.8 / M_PI;
   EXPECT_NEAR(lit - mean(), expected, 0.2 * expected);
+}
+
+/// Water 0.1 m deep over a floor, 0.48 m square, its surface a · cos(k x); and the photons that come through.
+class PhotonsThroughAWave : public PathTracing {
+ protected:
+  static constexpr float kLength = 0.24f, kDepth = 0.1f, kHalf = 0.24f;
+  static constexpr float kIndex = 1.33f;
+  static constexpr double kNumber = 2.0 * M_PI / kLength;  // 1/m
+
+  reference::FocusedLight through(float height, const glm::vec3& to_light, int photons) {
+    constexpr int kSteps = 480;
+    reference::Triangles water;
+    for (int row = 0; row < 2; ++row) {
+      for (int i = 0; i <= kSteps; ++i) {
+        const float x = kHalf * (2.0f * static_cast<float>(i) / kSteps - 1.0f);
+        const auto k = static_cast<float>(kNumber);
+        water.positions.emplace_back(x, kDepth + height * std::cos(k * x), row == 0 ? -kHalf : kHalf);
+        water.normals.push_back(glm::normalize(glm::vec3(height * k * std::sin(k * x), 1.0f, 0.0f)));
+        const auto a = static_cast<std::uint32_t>(i), b = static_cast<std::uint32_t>(kSteps + 1 + i);
+        if (row == 0 && i < kSteps)
+          water.triangles.insert(water.triangles.end(), {{a, b, a + 1}, {a + 1, b, b + 1}});
+      }
+    }
+    const kit::Shape ground = kit::make_box({-1.0f, -0.02f, -1.0f}, {1.0f, 0.0f, 1.0f});
+    scene_ = std::make_unique<reference::RayScene>();
+    scene_->add(water, glm::mat4(1.0f), nullptr, 0);
+    scene_->add({ground.positions, ground.normals, ground.triangles, {}}, glm::mat4(1.0f), &look_, -1);
+    scene_->finish();
+    looks_ = {kit::water()};
+    looks_[0].refraction = kIndex;
+    looks_[0].extinction = glm::vec3(1.0f, 2.0f, 0.0f);
+    reference::FocusedLight::Source source;
+    source.to_light = to_light;
+    for (const glm::vec3& p : water.positions) source.fluids.add(p);
+    source.photons = photons;
+    source.threads = 2;
+    source.arriving = [](const glm::vec3&) { return glm::vec3(1.0f); };
+    return {*scene_, looks_, {}, source};
+  }
+  /// What falls on the floor, on the mean over a strip along z at x.
+  static glm::dvec3 falls(const reference::FocusedLight& light, float x) {
+    glm::dvec3 sum(0.0);
+    for (int i = -20; i <= 20; ++i)
+      sum += light.at({x, 0.0f, 0.004f * static_cast<float>(i)}, {0.0f, 1.0f, 0.0f});
+    return sum / 41.0;
+  }
+
+ private:
+  MeshLook look_;
+  std::vector<FluidLook> looks_;
+  std::unique_ptr<reference::RayScene> scene_;
+};
+
+TEST_F(PhotonsThroughAWave, LevelWaterTakesFresnelsAndBeersShare) {
+  const double slant = 0.5;  // radians off the vertical
+  const auto light = through(0.0f, {0.0f, std::cos(slant), std::sin(slant)}, 1'000'000);
+  const double inside = std::asin(std::sin(slant) / kIndex);
+  const double s = std::pow(std::sin(slant - inside) / std::sin(slant + inside), 2.0);
+  const double p = std::pow(std::tan(slant - inside) / std::tan(slant + inside), 2.0);
+  for (int c = 0; c < 3; ++c) {
+    const double taken = std::array{1.0, 2.0, 0.0}[static_cast<std::size_t>(c)] * kDepth / std::cos(inside);
+    const double expected = std::cos(slant) * (1.0 - 0.5 * (s + p)) * std::exp(-taken);
+    EXPECT_NEAR(falls(light, 0.0f)[c], expected, 0.01 * expected) << c;
+  }
+}
+
+TEST_F(PhotonsThroughAWave, CrestsGatherAndTroughsSpreadAsCurvatureSays) {
+  const double height = 0.01;
+  const auto level = through(0.0f, {0.0f, 1.0f, 0.0f}, 1'000'000);
+  const double plain = falls(level, 0.0f).z;
+  const auto wave = through(static_cast<float>(height), {0.0f, 1.0f, 0.0f}, 4'000'000);
+  const double curved = (1.0 - 1.0 / kIndex) * height * kNumber * kNumber;  // 1/f
+  const double crest = 1.0 / (1.0 - (kDepth + height) * curved);
+  const double trough = 1.0 / (1.0 + (kDepth - height) * curved);
+  EXPECT_NEAR(falls(wave, 0.0f).z / plain, crest, 0.02 * crest);
+  EXPECT_NEAR(falls(wave, 0.5f * kLength).z / plain, trough, 0.02 * trough);
+}
+
+TEST_F(PhotonsThroughAWave, SlantingLightIsGatheredAcrossItsPlaneByCoddingtonsEquation) {
+  // Light whose plane of incidence lies along the crests: n/s' = (n cos t' − cos t) / R, s' along the ray.
+  const double height = 0.006;
+  const double slant = 0.6;
+  const double inside = std::asin(std::sin(slant) / kIndex);
+  const glm::vec3 to_light(0.0f, std::cos(slant), std::sin(slant));
+  const auto wave = through(static_cast<float>(height), to_light, 4'000'000);
+  const auto level = through(0.0f, to_light, 1'000'000);
+  const double power = (kIndex * std::cos(inside) - std::cos(slant)) * height * kNumber * kNumber / kIndex;
+  const double crest = 1.0 / (1.0 - (kDepth + height) / std::cos(inside) * power);
+  EXPECT_NEAR(falls(wave, 0.0f).z / falls(level, 0.0f).z, crest, 0.02 * crest);
+}
+
+TEST_F(PathTracing, WithPhotonsALevelPoolsFloorIsAsBrightAsStraightLightMakesIt) {
+  auto points = kit::jitter_lattice({-0.4f, -0.1f, -0.4f}, {0.4f, 0.0f, 0.4f}, 0.02f, 3);
+  kit::relax(points, 0.02f, {-0.4f, -0.09f, -0.4f}, {0.4f, -0.01f, 0.4f}, 8);
+  const std::vector<std::uint8_t> fluids(points.size(), 0);
+  Frame frame = frame_of(points, fluids, 0.0124f, 24, 18);
+  frame.view = kit::make_view({0.0f, 1.0f, 0.2f}, {0.0f, -0.1f, 0.0f}, 24, 18);
+  frame.light_direction = {0.0f, -1.0f, 0.0f};
+  const kit::Shape ground = kit::make_box({-1.0f, -0.12f, -1.0f}, {1.0f, -0.105f, 1.0f});
+  frame.meshes = {
+      {tracer_->add_mesh(ground.positions, ground.normals, ground.triangles), glm::mat4(1.0f), {}}};
+  const auto mean = [&](int photons) {
+    reference::Options options = small(48);
+    options.photons = photons;
+    options.threads = 2;
+    const FloatImage image = tracer_->draw(frame, options);
+    double sum = 0.0;
+    for (int y = 6; y < 12; ++y) {
+      for (int x = 8; x < 16; ++x) sum += image.at(x, y, 1) / 48.0;
+    }
+    return sum;
+  };
+  const double straight = mean(0);
+  EXPECT_NEAR(mean(400'000), straight, 0.06 * straight) << "gathered or not, it is the same light";
 }
 
 TEST_F(PathTracing, TheSameAgainIsTheSame) {
