@@ -70,16 +70,13 @@ const gl::Program& ScenePass::Programs::of(unsigned bits) {
 Result<ScenePass> ScenePass::create(bool fast, bool compute, const std::vector<std::string>& far_light) {
   ScenePass pass;
   pass.fast_ = fast;
-  std::vector<std::string> quality = far_light;
-  if (fast) quality.emplace_back("FAST");
-  std::vector<std::string> behind = far_light;
-  behind.emplace_back("BEHIND");
+  const MeshDefines defines = mesh_defines(fast, far_light);
   for (const Result<bool>& loaded :
        {gl::take(pass.background_, gl::Program::create("fullscreen.vert", "background.frag", far_light)),
         gl::take(pass.occlusion_, gl::PixelProgram::create("occlusion.frag", compute, false, {"TAPS 8"})),
         gl::take(pass.resolve_, gl::PixelProgram::create("resolve.frag", compute)),
-        gl::take(pass.opaque_, Programs::create("mesh.frag", quality)),
-        gl::take(pass.translucent_behind_, Programs::create("translucent.frag", behind)),
+        gl::take(pass.opaque_, Programs::create("mesh.frag", defines.opaque)),
+        gl::take(pass.translucent_behind_, Programs::create("translucent.frag", defines.behind)),
         gl::take(pass.translucent_front_, Programs::create("translucent.frag", far_light))}) {
     if (!loaded) return loaded.error();
   }

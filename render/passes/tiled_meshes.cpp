@@ -23,17 +23,21 @@ constexpr std::size_t kMostTriangles = 16000;
 
 }  // namespace
 
+MeshDefines mesh_defines(bool fast, const std::vector<std::string>& far_light) {
+  MeshDefines defines{far_light, far_light};
+  if (fast) defines.opaque.emplace_back("FAST");
+  defines.behind.emplace_back("BEHIND");
+  return defines;
+}
+
 Result<TiledMeshes> TiledMeshes::create(bool fast, const std::vector<std::string>& far_light) {
   TiledMeshes out;
   out.fast_ = fast;
-  std::vector<std::string> quality = far_light;
-  if (fast) quality.emplace_back("FAST");
-  std::vector<std::string> behind = far_light;
-  behind.emplace_back("BEHIND");
+  const MeshDefines defines = mesh_defines(fast, far_light);
   for (const Result<bool>& loaded :
        {gl::take(out.triangles_, gl::Program::create_compute("mesh_triangles.comp")),
-        gl::take(out.opaque_, gl::Program::create_compute("mesh_pixels.comp", quality)),
-        gl::take(out.behind_, gl::Program::create_compute("glass_pixels.comp", behind)),
+        gl::take(out.opaque_, gl::Program::create_compute("mesh_pixels.comp", defines.opaque)),
+        gl::take(out.behind_, gl::Program::create_compute("glass_pixels.comp", defines.behind)),
         gl::take(out.before_, gl::Program::create_compute("glass_pixels.comp", far_light))}) {
     if (!loaded) return loaded.error();
   }

@@ -15,6 +15,13 @@
 
 namespace slosh {
 
+/// What the programs of meshes and of glass behind the fluid have compiled in, by fragments and by tiles.
+struct MeshDefines {
+  std::vector<std::string> opaque;
+  std::vector<std::string> behind;
+};
+MeshDefines mesh_defines(bool fast, const std::vector<std::string>& far_light);
+
 class TiledMeshes {
  public:
   using Instances = std::span<const MeshInstance* const>;
