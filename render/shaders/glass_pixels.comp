@@ -39,16 +39,16 @@ void main() {
         int place = 32 * word + findLSB(left);
         uint blocks = blocks_touched(place);
         if (blocks == 0u) continue;
-        int index = first + place;
-        Triangle t = triangles[index];
+        Facet facet = facets[place];
         for (int k = 0; k < kPixels; ++k) {
           Hit hit;
-          if ((blocks >> k & 1u) == 0u || !meets(t, ray[k], hit)) continue;
+          if ((blocks >> k & 1u) == 0u || !meets(facet, ray[k], hit)) continue;
 #ifdef BEHIND
           if (hit.depth <= nearest[k] || hit.depth >= farthest[k]) continue;
 #else
           if (hit.depth > farthest[k]) continue;
 #endif
+          Triangle t = triangles[first + place];
           Item item = items[int(t.a.w)];
           Pane pane = glass_pane(world_of(ray[k], hit.depth), normal_of(t, hit.weights), item.base, item.surface.y);
           added[k] = added[k] * pane.through + pane.added;

@@ -21,7 +21,7 @@ void main() {
         uint blocks = blocks_touched(place);
         if (blocks == 0u) continue;
         int index = first + place;
-        Triangle t = triangles[index];
+        Facet t = facets[place];
         for (int k = 0; k < kPixels; ++k) {
           Hit hit;
           if ((blocks >> k & 1u) == 0u || !meets(t, ray[k], hit)) continue;
@@ -45,7 +45,7 @@ void main() {
     }
     Triangle t = triangles[triangle[k]];
     Hit hit;
-    meets(t, ray[k], hit);
+    meets(facet_of(t), ray[k], hit);
     Item item = items[int(t.a.w)];
     vec3 world = world_of(ray[k], hit.depth);
     vec3 to_eye = normalize(camera.xyz - world);

@@ -30,6 +30,14 @@ ivec2 texel_of(int k) {
 // A ray's x and y at depth 1.
 vec2 ray_of(ivec2 texel) { return eye_position(vec2(texel) + 0.5, 1.0).xy; }
 
+// What of a triangle meets() looks at: the rest is fetched where it is hit.
+struct Facet {
+  vec4 a;  // corner, plane.z
+  vec4 b;  // corner, plane.x
+  vec4 c;  // corner, plane.y
+};
+Facet facet_of(Triangle t) { return Facet(vec4(t.a.xyz, t.normal_a.w), t.b, t.c); }
+
 struct Hit {
   vec3 weights;  // of the corners
   float depth;   // m
@@ -43,7 +51,7 @@ bool right_of(float area, vec2 from, vec2 to) {
 
 // Where a ray meets a triangle. Corners are taken off along the ray to the eye's plane, which is exact to rounding of what is left,
 // however far they are; the areas about an edge are the same from both its triangles, but for the sign.
-bool meets(Triangle t, vec2 ray, out Hit hit) {
+bool meets(Facet t, vec2 ray, out Hit hit) {
   precise vec2 a = fma(vec2(-t.a.z), ray, t.a.xy);
   precise vec2 b = fma(vec2(-t.b.z), ray, t.b.xy);
   precise vec2 c = fma(vec2(-t.c.z), ray, t.c.xy);
@@ -56,7 +64,7 @@ bool meets(Triangle t, vec2 ray, out Hit hit) {
                           : all_of_it < 0.0 && right_of(-to_a, c, b) && right_of(-to_b, a, c) && right_of(-to_c, b, a);
   hit.weights = vec3(to_a, to_b, to_c) / all_of_it;
   vec3 depths = vec3(t.a.z, t.b.z, t.c.z);
-  float slope = dot(vec3(t.b.w, t.c.w, t.normal_a.w), vec3(ray, 1.0));
+  float slope = dot(vec3(t.b.w, t.c.w, t.a.w), vec3(ray, 1.0));
   float in_plane = slope > 0.0 ? 1.0 / slope : dot(hit.weights, depths);
   hit.depth = clamp(in_plane, min(depths.x, min(depths.y, depths.z)), max(depths.x, max(depths.y, depths.z)));
   return inside && hit.depth >= near_plane && hit.depth <= camera.w;
@@ -70,6 +78,7 @@ vec3 world_of(vec2 ray, float depth) { return (world_from_eye * vec4(vec3(ray, -
 
 shared uint touching[8];
 shared ivec4 touched_box[256];  // low and high, in the tile
+shared Facet facets[256];
 
 // Which of the 256 triangles from `first` on touch the tile, a bit each in `touching`.
 void look_for(int first) {
@@ -86,6 +95,7 @@ void look_for(int first) {
     if (all(lessThan(low, tile + kTile)) && all(greaterThanEqual(high, tile))) {
       atomicOr(touching[local >> 5], 1u << (local & 31u));
       touched_box[local] = ivec4(low - tile, high - tile);
+      facets[local] = facet_of(triangles[index]);
     }
   }
   barrier();
