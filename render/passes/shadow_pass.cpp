@@ -33,11 +33,18 @@ Bounds fluid_box(const Frame& frame, const View& view) {
   const glm::vec3 eye(glm::inverse(view.view)[3]);
   Bounds box;
   const std::size_t count = std::min(frame.particles.size(), frame.particle_fluid.size());
+  const glm::vec3 lowest = eye - view.far_plane;
+  const glm::vec3 highest = eye + view.far_plane;
+  // No branches: of a million particles they took several milliseconds. What is not finite is not within either.
   for (std::size_t i = 0; i < count; ++i) {
-    const glm::vec3 off = glm::abs(frame.particles[i] - eye);
-    const bool near = std::max({off.x, off.y, off.z}) < view.far_plane;
-    if (near && std::isfinite(off.x + off.y + off.z) && frame.particle_fluid[i] < frame.fluids.size())
-      box.add(frame.particles[i]);
+    const glm::vec3& at = frame.particles[i];
+    const bool counts = (at.x > lowest.x) & (at.x < highest.x) & (at.y > lowest.y) & (at.y < highest.y) &
+                        (at.z > lowest.z) & (at.z < highest.z) &
+                        (frame.particle_fluid[i] < frame.fluids.size());
+    const glm::vec3 low = counts ? at : box.low;
+    const glm::vec3 high = counts ? at : box.high;
+    box.low = glm::min(box.low, low);
+    box.high = glm::max(box.high, high);
   }
   if (box.empty()) return box;
   box.low -= frame.particle_radius;
