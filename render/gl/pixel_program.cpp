@@ -7,7 +7,10 @@ namespace {
 
 // As pixel_main.glsl and splat_rows.glsl have them.
 constexpr glm::ivec2 kPixelGroup(16, 8);
-constexpr std::size_t kRowsInGroup = 4;
+constexpr std::size_t kInRows = 128;  // invocations in a group of rows
+constexpr int kLongRow = 32;
+constexpr int kShortRow = 8;
+constexpr std::size_t kMany = 100000;  // splats
 constexpr std::size_t kPartsOfRows = 64;
 constexpr std::size_t kEachInGroup = 64;
 constexpr std::size_t kMostGroups = 32768;  // on an axis; at least 65535 are allowed
@@ -73,9 +76,28 @@ void run_each(const Program& program, std::size_t count, std::size_t share) {
   start_each(program, count, share);
   finish_compute();
 }
-void run_rows(const Program& program, std::size_t count) {
+
+Result<RowProgram> RowProgram::create(const char* file, const std::vector<std::string>& defines) {
+  RowProgram out;
+  const auto with_lanes = [&](int lanes) {
+    std::vector<std::string> all = defines;
+    all.push_back("LANES " + std::to_string(lanes));
+    return Program::create_compute(file, std::move(all));
+  };
+  for (const Result<bool>& loaded :
+       {take(out.few_, with_lanes(kLongRow)), take(out.many_, with_lanes(kShortRow))}) {
+    if (!loaded) return loaded.error();
+  }
+  return out;
+}
+
+const Program& RowProgram::of(std::size_t count) const {
+  return count < kMany ? few_ : many_;
+}
+
+void RowProgram::run(std::size_t count) const {
   const std::size_t rows = (count + kPartsOfRows - 1) / kPartsOfRows * kPartsOfRows;
-  start_groups(program, count, rows, kRowsInGroup);
+  start_groups(of(count), count, rows, kInRows / (count < kMany ? kLongRow : kShortRow));
   finish_compute();
 }
 

@@ -54,8 +54,20 @@ void run_each(const Program& program, std::size_t count, std::size_t share = 1);
 /// The same without finish_compute(): for several in a row that write to different places.
 void start_each(const Program& program, std::size_t count, std::size_t share = 1);
 
-/// Runs a compute shader that takes one row of splat_rows.glsl for each of `count` splats, whose uniform
-/// `count` it sets.
-void run_rows(const Program& program, std::size_t count);
+/// A compute shader that takes one row of splat_rows.glsl for each splat. Of very many splats each is small in
+/// a picture: their rows are shorter.
+class RowProgram {
+ public:
+  /// Errors carry the driver's log.
+  static Result<RowProgram> create(const char* file, const std::vector<std::string>& defines = {});
+
+  /// What runs for so many: its uniforms are set by the caller, but for `count`.
+  const Program& of(std::size_t count) const;
+  void run(std::size_t count) const;
+
+ private:
+  Program few_;
+  Program many_;
+};
 
 }  // namespace slosh::gl

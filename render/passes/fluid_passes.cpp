@@ -25,9 +25,8 @@ Result<FluidPasses> FluidPasses::create(bool fast, bool compute, const std::vect
   std::vector<std::string> looks = far_light;
   if (fast) looks.emplace_back("FAST");
   passes.look_defines_ = looks;
-  const auto splats = [&](std::vector<std::string> defines) {
-    return compute ? gl::Program::create_compute("splat.comp", std::move(defines))
-                   : gl::Program::create("splat.vert", "splat.frag", std::move(defines));
+  const auto splats = [&](const std::vector<std::string>& defines) {
+    return SplatProgram::create(compute, defines);
   };
   for (const Result<bool>& loaded :
        {gl::take(passes.front_program_, splats({"FRONT"})),
@@ -45,6 +44,15 @@ Result<FluidPasses> FluidPasses::create(bool fast, bool compute, const std::vect
   glVertexArrayAttribFormat(passes.tile_vertices_.name(), 0, 2, GL_FLOAT, GL_FALSE, 0);
   glVertexArrayAttribBinding(passes.tile_vertices_.name(), 0, 0);
   return passes;
+}
+
+Result<FluidPasses::SplatProgram> FluidPasses::SplatProgram::create(bool compute,
+                                                                    const std::vector<std::string>& defines) {
+  SplatProgram out;
+  const auto made = compute ? gl::take(out.rows, gl::RowProgram::create("splat.comp", defines))
+                            : gl::take(out.triangles, gl::Program::create("splat.vert", "splat.frag", defines));
+  if (!made) return made.error();
+  return out;
 }
 
 void FluidPasses::upload(const Splats& splats) {
@@ -71,21 +79,21 @@ void FluidPasses::place(const ParticlesOnGpu& particles, const Frame& frame, con
   if (tile_corners_ != static_cast<GLsizei>(std::size(kPicture))) upload_tiles(kPicture);
 }
 
-void FluidPasses::splat(const gl::Program& program, const gl::PixelTarget& target, GLenum blending,
+void FluidPasses::splat(const SplatProgram& program, const gl::PixelTarget& target, GLenum blending,
                         float cleared, const gl::StreamBuffer& buffer, std::size_t count) {
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, buffer.name());
   if (compute_) {
     fill_program_.program().set("fill_with", glm::vec4(cleared));
     fill_program_.run(target);
     glBindImageTexture(0, target.texture.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_R32UI);
-    gl::run_rows(program, count);
+    program.rows.run(count);
     return;
   }
   clear_to(target.framebuffer, cleared);
   draw_into(target.framebuffer, target.size);
   glEnable(GL_BLEND);
   glBlendEquation(blending);
-  program.use();
+  program.triangles.use();
   glBindVertexArray(no_vertices_.name());
   glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(3 * count));
   glBlendEquation(GL_FUNC_ADD);

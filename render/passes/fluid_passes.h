@@ -59,8 +59,14 @@ class FluidPasses {
   const gl::Texture& smoothed(const Targets& targets) const;
 
  private:
+  /// By one of which splats are drawn.
+  struct SplatProgram {
+    gl::Program triangles;
+    gl::RowProgram rows;  ///< for compute
+    static Result<SplatProgram> create(bool compute, const std::vector<std::string>& defines);
+  };
   /// Splats of `buffer` into a cleared texture of depths, by blending or atomics.
-  void splat(const gl::Program& program, const gl::PixelTarget& target, GLenum blending, float cleared,
+  void splat(const SplatProgram& program, const gl::PixelTarget& target, GLenum blending, float cleared,
              const gl::StreamBuffer& buffer, std::size_t count);
   /// Made when first asked for.
   const gl::PixelProgram& program_of(const LitLook& look, const Targets& targets);
@@ -68,9 +74,9 @@ class FluidPasses {
   void upload_tiles(std::span<const glm::vec2> corners);
   void draw_data(const gl::Program& program, const Targets& targets, const gl::Framebuffer& target);
 
-  gl::Program front_program_;
-  gl::Program shaped_program_;  ///< front of splats with shapes
-  gl::Program back_program_;
+  SplatProgram front_program_;
+  SplatProgram shaped_program_;  ///< front of splats with shapes
+  SplatProgram back_program_;
   gl::PixelProgram composite_program_;
   gl::PixelProgram look_program_;  ///< of LitLook{}
   std::map<LitLook, gl::PixelProgram> more_look_programs_;

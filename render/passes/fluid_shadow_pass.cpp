@@ -17,15 +17,17 @@ constexpr float kSoft = 1.25f;
 }  // namespace
 
 Result<FluidShadowPass> FluidShadowPass::create(bool fast, bool compute) {
-  auto program = compute ? gl::Program::create_compute("fluid_shadow.comp")
-                         : gl::Program::create("fluid_shadow.vert", "fluid_shadow.frag");
-  if (!program) return program.error();
   FluidShadowPass pass;
-  pass.program_ = std::move(program.value());
   if (compute) {
-    auto sum = gl::PixelProgram::create("fluid_shadow_sum.frag", true);
-    if (!sum) return sum.error();
-    pass.sum_ = std::move(sum.value());
+    for (const Result<bool>& loaded :
+         {gl::take(pass.rows_, gl::RowProgram::create("fluid_shadow.comp")),
+          gl::take(pass.sum_, gl::PixelProgram::create("fluid_shadow_sum.frag", true))}) {
+      if (!loaded) return loaded.error();
+    }
+  } else if (auto made =
+                 gl::take(pass.program_, gl::Program::create("fluid_shadow.vert", "fluid_shadow.frag"));
+             !made) {
+    return made.error();
   }
   pass.size_ = fast ? 256 : 512;
   pass.most_ = fast ? 8000 : 1000000;
@@ -52,18 +54,18 @@ bool FluidShadowPass::begin(const Frame& frame, const RenderOptions& options, co
   return !empty;
 }
 
-void FluidShadowPass::set_up(const Frame& frame, const RenderOptions& options, const ShadowView& shadow,
-                             std::size_t step) {
+void FluidShadowPass::set_up(const gl::Program& program, const Frame& frame, const RenderOptions& options,
+                             const ShadowView& shadow, std::size_t step) {
   std::array<glm::vec3, kMaxFluidLooks> extinction{};
   for (std::size_t i = 0; i < std::min(frame.fluids.size(), kMaxFluidLooks); ++i)
     extinction[i] = frame.fluids[i].extinction;
   // Where all dim alike, one sum a texel does for the three channels.
   const float most = std::max({extinction[0].x, extinction[0].y, extinction[0].z});
   const bool alike = sum_.on_compute() && frame.fluids.size() == 1 && most > 0.0f;
-  program_.set("sums_a_texel", alike ? 1 : 3);
+  program.set("sums_a_texel", alike ? 1 : 3);
   alike_ = alike ? extinction[0] / most : glm::vec3(0.0f);
   if (alike) extinction[0] = glm::vec3(most);
-  glProgramUniform3fv(program_.name(), glGetUniformLocation(program_.name(), "extinction"),
+  glProgramUniform3fv(program.name(), glGetUniformLocation(program.name(), "extinction"),
                       static_cast<GLsizei>(extinction.size()), &extinction[0].x);
   // Fewer splats are drawn wider, so that they still close up, and their sum stays the same. Little wider
   // than that takes: the shadow is to end where the fluid does.
@@ -74,31 +76,33 @@ void FluidShadowPass::set_up(const Frame& frame, const RenderOptions& options, c
   const float texels = std::clamp(radius * clip_per_metre * static_cast<float>(size_), 1.0f, 64.0f);
   const float drawn_radius = texels / (clip_per_metre * static_cast<float>(size_));
   const float volume = frame.particle_radius;
-  program_.set("clip_from_world", clip);
-  program_.set("point_size", texels);
-  program_.set("weight", static_cast<float>(step));
+  program.set("clip_from_world", clip);
+  program.set("point_size", texels);
+  program.set("weight", static_cast<float>(step));
   // A disc of another size keeps the sphere's volume.
-  program_.set("chord", 2.0f * volume * volume * volume / (drawn_radius * drawn_radius));
+  program.set("chord", 2.0f * volume * volume * volume / (drawn_radius * drawn_radius));
 }
 
 void FluidShadowPass::draw(const Frame& frame, const RenderOptions& options, const ShadowView& shadow,
                            const ParticlesOnGpu& particles) {
   if (!begin(frame, options, shadow, particles.count())) return;
   const std::size_t step = (particles.count() + most_ - 1) / most_;
-  set_up(frame, options, shadow, step);
-  program_.set("stride", static_cast<int>(step));
-  sum_up(particles.particles(), (particles.count() + step - 1) / step);
+  const std::size_t drawn = (particles.count() + step - 1) / step;
+  const gl::Program& program = rows_.of(drawn);
+  set_up(program, frame, options, shadow, step);
+  program.set("stride", static_cast<int>(step));
+  sum_up(particles.particles(), drawn);
 }
 
 void FluidShadowPass::sum_up(const gl::StreamBuffer& particles, std::size_t count) {
   const auto side = static_cast<std::size_t>(size_);
   if (!std::exchange(sums_ready_, true)) sums_.zero(4 * sizeof(std::uint32_t) * side * side);
-  program_.set("size", size_);
+  rows_.of(count).set("size", size_);
   sum_.program().set("size", size_);
   sum_.program().set("alike", alike_);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, particles.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, sums_.name());
-  gl::run_rows(program_, count);
+  rows_.run(count);
   sum_.run({map_, target_, glm::ivec2(size_), GL_RGBA16F});
 }
 
@@ -120,9 +124,10 @@ void FluidShadowPass::draw(const Frame& frame, const RenderOptions& options, con
     return;
   }
   buffer_.upload(std::span<const glm::vec4>(particles_));
-  set_up(frame, options, shadow, step);
+  const gl::Program& program = sum_.on_compute() ? rows_.of(particles_.size()) : program_;
+  set_up(program, frame, options, shadow, step);
   if (sum_.on_compute()) {
-    program_.set("stride", 1);
+    program.set("stride", 1);
     return sum_up(buffer_, particles_.size());
   }
   glVertexArrayVertexBuffer(array_.name(), 0, buffer_.name(), 0, sizeof(glm::vec4));

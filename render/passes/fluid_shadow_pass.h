@@ -28,11 +28,13 @@ class FluidShadowPass {
   /// Clears and binds the map; whether there is something to draw into it.
   bool begin(const Frame& frame, const RenderOptions& options, const ShadowView& shadow, std::size_t count);
   /// Sets the program's uniforms, each particle drawn standing for `step`.
-  void set_up(const Frame& frame, const RenderOptions& options, const ShadowView& shadow, std::size_t step);
+  void set_up(const gl::Program& program, const Frame& frame, const RenderOptions& options,
+              const ShadowView& shadow, std::size_t step);
   /// By compute shaders.
   void sum_up(const gl::StreamBuffer& particles, std::size_t count);
 
   gl::Program program_;
+  gl::RowProgram rows_;    ///< for compute
   gl::PixelProgram sum_;   ///< for compute
   gl::StreamBuffer sums_;  ///< four whole numbers a texel (shaders/sums.glsl); zeros from picture to picture
   bool sums_ready_ = false;

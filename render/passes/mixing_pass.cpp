@@ -35,15 +35,15 @@ int mixing_layers(const Frame& frame) {
 }
 
 Result<MixingPass> MixingPass::create(bool compute) {
-  auto program = compute ? gl::Program::create_compute("mixing.comp")
-                         : gl::Program::create("mixing.vert", "mixing.frag");
-  if (!program) return program.error();
   MixingPass pass;
-  pass.program_ = std::move(program.value());
   if (compute) {
-    auto sum = gl::PixelProgram::create("mixing_sum.frag", true);
-    if (!sum) return sum.error();
-    pass.sum_ = std::move(sum.value());
+    for (const Result<bool>& loaded :
+         {gl::take(pass.rows_, gl::RowProgram::create("mixing.comp")),
+          gl::take(pass.sum_, gl::PixelProgram::create("mixing_sum.frag", true))}) {
+      if (!loaded) return loaded.error();
+    }
+  } else if (auto made = gl::take(pass.program_, gl::Program::create("mixing.vert", "mixing.frag")); !made) {
+    return made.error();
   }
   pass.no_vertices_ = gl::make_vertex_array();
   return pass;
@@ -65,19 +65,20 @@ void MixingPass::draw(const Frame& frame, const Targets& targets, const gl::Text
                       const gl::StreamBuffer& spheres, std::size_t count, int layers) {
   const glm::ivec2 size = targets.chord_size;
   make_shares(size, layers);
-  program_.set("pixels", size == targets.half_size ? 2 : 4);
-  program_.set("radius", kReach * frame.particle_radius);
+  const gl::Program& program = sum_.on_compute() ? rows_.of(count) : program_;
+  program.set("pixels", size == targets.half_size ? 2 : 4);
+  program.set("radius", kReach * frame.particle_radius);
   gl::bind_textures({&smoothed});
   for (std::size_t i = 0; i < static_cast<std::size_t>(layers); ++i) {
-    program_.set("first", 4 * static_cast<int>(i));
+    program.set("first", 4 * static_cast<int>(i));
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, spheres.name());
     if (sum_.on_compute()) {
       sums_.zero(4 * sizeof(std::uint32_t) * static_cast<std::size_t>(size.x) *
                  static_cast<std::size_t>(size.y));
-      program_.set("size", size);
+      program.set("size", size);
       sum_.program().set("size", size);
       glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, sums_.name());
-      gl::run_rows(program_, count);
+      rows_.run(count);
       sum_.run({shares_[i], share_targets_[i], size, GL_RGBA16F});
       continue;
     }

@@ -19,6 +19,9 @@ void bind(GLuint binding, const gl::StreamBuffer& buffer) {
 constexpr std::size_t kVec4 = sizeof(glm::vec4);
 constexpr std::size_t kSmoothShare = 8;  // invocations a particle, as smooth_centers.comp has it
 
+/// Of fewer particles most are near a surface, and those that are not cost less than to find them.
+constexpr std::size_t kManyParticles = 100000;
+
 }  // namespace
 
 Result<ParticlesOnGpu> ParticlesOnGpu::create() {
@@ -29,7 +32,9 @@ Result<ParticlesOnGpu> ParticlesOnGpu::create() {
         gl::take(out.begin_, gl::Program::create_compute("cells_begin.comp")),
         gl::take(out.fill_, gl::Program::create_compute("cells_fill.comp")),
         gl::take(out.sort_, gl::Program::create_compute("cells_fill.comp", {"SORT"})),
+        gl::take(out.deep_program_, gl::Program::create_compute("cells_deep.comp")),
         gl::take(out.smooth_, gl::Program::create_compute("smooth_centers.comp")),
+        gl::take(out.smooth_seen_, gl::Program::create_compute("smooth_centers.comp", {"DEEP"})),
         gl::take(out.place_, gl::Program::create_compute("splats.comp")),
         gl::take(out.place_shaped_, gl::Program::create_compute("splats.comp", {"SHAPED"}))}) {
     if (!loaded) return loaded.error();
@@ -42,6 +47,8 @@ void ParticlesOnGpu::take(const Frame& frame, bool moves) {
   count_ = std::min(frame.particles.size(), frame.particle_fluid.size());
   radius_ = frame.particle_radius;
   moves_ = moves && radius_ > 0.0f && std::isfinite(radius_);
+  // Where fluids mix, what is two particles deep counts too.
+  leaves_out_deep_ = count_ > kManyParticles && fluids == 1;
   if (fluids == 0) count_ = 0;
   if (count_ == 0) return;
   places_.upload(std::as_bytes(frame.particles.first(count_)));
@@ -88,11 +95,18 @@ void ParticlesOnGpu::smooth() {
     program->set("reach", reach);
     gl::run_each(*program, count_);
   }
+  if (leaves_out_deep_) {
+    deep_.reserve(entries_ * sizeof(std::uint32_t));
+    bind(8, deep_);
+    deep_program_.set("reach", reach);
+    gl::run_each(deep_program_, entries_);
+  }
   bind(0, centers_);
   bind(1, ellipsoids_);
-  smooth_.set("entries", static_cast<int>(entries_));
-  smooth_.set("lengths", glm::vec2(reach, radius_));
-  gl::run_each(smooth_, count_, kSmoothShare);
+  const gl::Program& program = leaves_out_deep_ ? smooth_seen_ : smooth_;
+  program.set("entries", static_cast<int>(entries_));
+  program.set("lengths", glm::vec2(reach, radius_));
+  gl::run_each(program, count_, kSmoothShare);
 }
 
 void ParticlesOnGpu::place(const Frame& frame, float splat_radius, SplatBuffers& out) const {

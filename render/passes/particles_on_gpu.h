@@ -29,7 +29,8 @@ class ParticlesOnGpu {
 
   /// Takes the frame's particles. `moves`: they are counted into cells, for smooth().
   void take(const Frame& frame, bool moves);
-  /// Sorts them, and finds where their neighbours move them and their ellipsoids.
+  /// Sorts them, and finds where their neighbours move them and their ellipsoids. Of many particles of one fluid
+  /// those that are deep inside are not drawn since (but for their chords): nobody sees them.
   void smooth();
   /// As the view whose uniform block is bound sees them, moved if they were smoothed.
   void place(const Frame& frame, float splat_radius, SplatBuffers& out) const;
@@ -45,7 +46,9 @@ class ParticlesOnGpu {
   gl::Program begin_;
   gl::Program fill_;
   gl::Program sort_;
+  gl::Program deep_program_;
   gl::Program smooth_;
+  gl::Program smooth_seen_;  ///< but for what is deep in the fluid
   gl::Program place_;
   gl::Program place_shaped_;
   gl::UploadRing places_;
@@ -55,6 +58,7 @@ class ParticlesOnGpu {
   gl::StreamBuffer ranks_;
   gl::StreamBuffer begins_;
   gl::StreamBuffer listed_;
+  gl::StreamBuffer deep_;        ///< an entry each: its cell's particles are not seen
   gl::StreamBuffer sorted_;      ///< as particles_, by cell
   gl::StreamBuffer centers_;     ///< of the sorted
   gl::StreamBuffer ellipsoids_;  ///< of the sorted
@@ -62,6 +66,7 @@ class ParticlesOnGpu {
   std::size_t entries_ = 0;
   float radius_ = 0.0f;  ///< m
   bool moves_ = false;
+  bool leaves_out_deep_ = false;
 };
 
 }  // namespace slosh

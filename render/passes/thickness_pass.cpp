@@ -20,15 +20,14 @@ bool any_fluid_is_clear(const Frame& frame) {
 }
 
 Result<ThicknessPass> ThicknessPass::create(bool compute) {
-  auto program =
-      compute ? gl::Program::create_compute("chord.comp") : gl::Program::create("chord.vert", "chord.frag");
-  if (!program) return program.error();
   ThicknessPass pass;
-  pass.program_ = std::move(program.value());
   if (compute) {
-    auto sum = gl::PixelProgram::create("chord_sum.frag", true);
-    if (!sum) return sum.error();
-    pass.sum_ = std::move(sum.value());
+    for (const Result<bool>& loaded : {gl::take(pass.rows_, gl::RowProgram::create("chord.comp")),
+                                       gl::take(pass.sum_, gl::PixelProgram::create("chord_sum.frag", true))}) {
+      if (!loaded) return loaded.error();
+    }
+  } else if (auto made = gl::take(pass.program_, gl::Program::create("chord.vert", "chord.frag")); !made) {
+    return made.error();
   }
   pass.array_ = gl::make_vertex_array();
   glEnableVertexArrayAttrib(pass.array_.name(), 0);
@@ -37,32 +36,33 @@ Result<ThicknessPass> ThicknessPass::create(bool compute) {
   return pass;
 }
 
-void ThicknessPass::set_up(const Frame& frame, const Targets& targets) {
-  program_.set("sphere", glm::vec2(kWide * frame.particle_radius, frame.particle_radius));
+void ThicknessPass::set_up(const gl::Program& program, const Frame& frame, const Targets& targets) {
+  program.set("sphere", glm::vec2(kWide * frame.particle_radius, frame.particle_radius));
   // Of the picture's pixels in one of its own, along a side.
-  program_.set("pixels", targets.chord_size == targets.half_size ? 2 : 4);
+  program.set("pixels", targets.chord_size == targets.half_size ? 2 : 4);
   gl::bind_textures({&targets.scene_depth});
 }
 
 void ThicknessPass::draw(const Frame& frame, const Targets& targets, const gl::StreamBuffer& spheres,
                          std::size_t count) {
-  set_up(frame, targets);
+  const gl::Program& program = rows_.of(count);
+  set_up(program, frame, targets);
   const glm::ivec2 size = targets.chord_size;
   if (sums_size_ != size)
     sums_.zero(sizeof(std::uint32_t) * static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y));
   sums_size_ = size;
-  program_.set("size", size);
+  program.set("size", size);
   sum_.program().set("size", size);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, spheres.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, sums_.name());
-  gl::run_rows(program_, count);
+  rows_.run(count);
   sum_.run({targets.chord, targets.chord_target, size, GL_R16F});
 }
 
 void ThicknessPass::draw(const Frame& frame, const Targets& targets, std::span<const glm::vec4> spheres) {
   buffer_.upload(spheres);
   if (sum_.on_compute()) return draw(frame, targets, buffer_, spheres.size());
-  set_up(frame, targets);
+  set_up(program_, frame, targets);
   const glm::vec4 none(0.0f);
   glClearNamedFramebufferfv(targets.chord_target.name(), GL_COLOR, 0, &none.x);
   glVertexArrayVertexBuffer(array_.name(), 0, buffer_.name(), 0, sizeof(glm::vec4));

@@ -23,9 +23,10 @@ class ThicknessPass {
   void draw(const Frame& frame, const Targets& targets, const gl::StreamBuffer& spheres, std::size_t count);
 
  private:
-  void set_up(const Frame& frame, const Targets& targets);
+  static void set_up(const gl::Program& program, const Frame& frame, const Targets& targets);
 
   gl::Program program_;
+  gl::RowProgram rows_;    ///< for compute
   gl::PixelProgram sum_;   ///< for compute
   gl::StreamBuffer sums_;  ///< a whole number a texel (shaders/sums.glsl); zeros from picture to picture
   glm::ivec2 sums_size_{0};

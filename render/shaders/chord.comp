@@ -3,7 +3,6 @@
 #include "splat_place.glsl"
 #include "splat_rows.glsl"
 #include "sums.glsl"
-layout(local_size_x = 32, local_size_y = 4) in;
 layout(std430, binding = 2) buffer Sums { uint sums[]; };  // a texel each
 uniform ivec2 size;
 uniform int count;
@@ -17,7 +16,7 @@ void main() {
   vec2 middle = 0.5 * (place.center + 1.0) * vec2(size);
   float radius = 0.5 * point.size;
   PixelBox box = pixel_box(middle - radius, middle + radius, size);
-  for (int i = int(gl_LocalInvocationID.x); i < box.size.x * box.size.y; i += 32) {
+  for (int i = int(gl_LocalInvocationID.x); i < box.size.x * box.size.y; i += LANES) {
     ivec2 texel = box.low + ivec2(i % box.size.x, i / box.size.x);
     vec2 disc = (vec2(texel) + 0.5 - middle) / radius;
     uint steps = uint(chord_at(texel, disc, place.depth, point.weight) * kChordSteps + 0.5);

@@ -2,7 +2,6 @@
 #include "fluid_shadow.glsl"
 #include "splat_rows.glsl"
 #include "sums.glsl"
-layout(local_size_x = 32, local_size_y = 4) in;
 layout(std430, binding = 0) readonly buffer Particles { vec4 particles[]; };  // world position, fluid index; −1: none
 layout(std430, binding = 2) buffer Sums { uint sums[]; };                     // four a texel
 uniform int size;  // of the map, texels a side
@@ -20,7 +19,7 @@ void main() {
   vec2 middle = 0.5 * (at.xy + 1.0) * float(size);
   float radius = 0.5 * point_size;
   PixelBox box = pixel_box(middle - radius, middle + radius, ivec2(size));
-  for (int i = int(gl_LocalInvocationID.x); i < box.size.x * box.size.y; i += 32) {
+  for (int i = int(gl_LocalInvocationID.x); i < box.size.x * box.size.y; i += LANES) {
     ivec2 texel = box.low + ivec2(i % box.size.x, i / box.size.x);
     vec2 disc = (vec2(texel) + 0.5 - middle) / radius;
     float off = dot(disc, disc);

@@ -2,7 +2,6 @@
 #include "mixing.glsl"
 #include "splat_rows.glsl"
 #include "sums.glsl"
-layout(local_size_x = 32, local_size_y = 4) in;
 layout(std430, binding = 2) buffer Sums { uint sums[]; };  // four a texel
 uniform ivec2 size;
 uniform int count;
@@ -18,7 +17,7 @@ void main() {
   vec2 middle = (place.center + 1.0) * half_size;
   vec2 texels = reach * place.scale * half_size;
   PixelBox box = pixel_box(middle - texels, middle + texels, size);
-  for (int i = int(gl_LocalInvocationID.x); i < box.size.x * box.size.y; i += 32) {
+  for (int i = int(gl_LocalInvocationID.x); i < box.size.x * box.size.y; i += LANES) {
     ivec2 texel = box.low + ivec2(i % box.size.x, i / box.size.x);
     uint steps = uint(share_at(texel, splat_in.xyz, reach) * kShareSteps + 0.5);
     if (steps > 0u) atomicAdd(sums[4 * (texel.y * size.x + texel.x) + channel], steps);

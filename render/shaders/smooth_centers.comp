@@ -1,10 +1,11 @@
 // Particles moved to where their neighbours' mean is, and made ellipsoids: passes/smooth_centers on the GPU. Eight invocations share the
-// 27 cells round a particle; what they sum is added up in one order, so that it comes out the same each time.
+// 27 cells round a particle; what they sum is added up in one order, so that it comes out the same each time. DEEP: but for particles of
+// cells deep in the fluid (cells_deep.comp), which nobody sees.
 #include "shared.glsl"
 #include "smoothing.glsl"
 #include "particles.glsl"
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) writeonly buffer Centers { vec4 centers[]; };  // world, fluid index; −1: no particle
+layout(std430, binding = 0) writeonly buffer Centers { vec4 centers[]; };  // world, fluid index; −1: not drawn
 struct Ellipsoid {
   vec4 xx_xy_xz_yy;  // m²
   vec4 yz_zz;
@@ -13,6 +14,9 @@ layout(std430, binding = 1) writeonly buffer Ellipsoids { Ellipsoid ellipsoids[]
 layout(std430, binding = 3) restrict readonly buffer Counts { uint counts[]; };
 layout(std430, binding = 5) restrict readonly buffer Begins { uint begins[]; };
 layout(std430, binding = 7) restrict readonly buffer Sorted { vec4 sorted[]; };
+#ifdef DEEP
+layout(std430, binding = 8) restrict readonly buffer Deep { uint deep[]; };
+#endif
 uniform int count;
 uniform int entries;
 uniform vec2 lengths;  // reach and particle radius, m
@@ -44,11 +48,25 @@ Neighbourhood part_of(vec3 at, int part) {
   return n;
 }
 
+bool is_deep(vec3 at) {
+#ifdef DEEP
+  ivec3 cell = cell_of(at, lengths.x);
+  uint entry = entry_of(cell, entries);
+  return deep[entry] != 0u && cell_of(sorted[begins[entry]].xyz, lengths.x) == cell;
+#else
+  return false;
+#endif
+}
+
 void main() {
   int local = int(gl_LocalInvocationID.x);
   int index = invocation() / kShare;
   bool drawn = index < count && uint(index) < counts[entries];  // fewer are drawn than given
   vec4 particle = drawn ? sorted[index] : vec4(0.0, 0.0, 0.0, -1.0);
+  if (drawn && is_deep(particle.xyz)) {
+    drawn = false;
+    particle.w = -1.0;
+  }
   if (drawn) parts[local] = part_of(particle.xyz, local % kShare);
   barrier();
   if (index >= count || local % kShare != 0) return;

@@ -1,7 +1,6 @@
 // splat.vert and splat.frag by atomics: a row of invocations goes over each splat's pixels.
 #include "splat_place.glsl"
 #include "splat_rows.glsl"
-layout(local_size_x = 32, local_size_y = 4) in;
 layout(binding = 0, r32ui) uniform uimage2D depths;
 uniform int count;
 void main() {
@@ -23,7 +22,7 @@ void main() {
   vec2 reach = reach_of_outline(outline) * place.scale * half_size;
   PixelBox box = pixel_box(middle - reach, middle + reach, imageSize(depths));
   vec2 metres = 1.0 / (place.scale * half_size);  // a pixel
-  for (int i = int(gl_LocalInvocationID.x); i < box.size.x * box.size.y; i += 32) {
+  for (int i = int(gl_LocalInvocationID.x); i < box.size.x * box.size.y; i += LANES) {
     ivec2 texel = box.low + ivec2(i % box.size.x, i / box.size.x);
     vec2 disc = disc_of_off(outline, (vec2(texel) + 0.5 - middle) * metres);
     if (dot(disc, disc) > 1.0) continue;

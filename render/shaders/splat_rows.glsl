@@ -1,4 +1,7 @@
-// Splats by compute shaders: a row of 32 invocations each, four rows a group, groups on two axes as one is too short for a million.
+// Splats by compute shaders: a row of LANES invocations each (gl/pixel_program.h, RowProgram), 128 in a group, groups on two axes as one
+// is too short for a million.
+layout(local_size_x = LANES, local_size_y = 128 / LANES) in;
+
 struct PixelBox {
   ivec2 low;
   ivec2 size;  // none if the box is off the picture
@@ -14,6 +17,6 @@ PixelBox pixel_box(vec2 low, vec2 high, ivec2 picture_size) {
 // Which splat an invocation's row takes, of `count`; none if it is not below. Rows that run at the same time take splats from 64 parts of
 // all: those that follow each other lie side by side, where atomics would wait for each other.
 uint splat_row(int count) {
-  uint row = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 4u + gl_LocalInvocationID.y;
+  uint row = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.y + gl_LocalInvocationID.y;
   return (row & 63u) * (uint(count + 63) >> 6) + (row >> 6);
 }

@@ -37,7 +37,8 @@ void main() {
 #ifdef SHAPED
   balls[index] = vec4(eye, fluid);
   vec3 center = (eye_from_world * vec4(centers[index].xyz, 1.0)).xyz;
-  splats[index] = vec4(center, fluid);
+  seen = seen && centers[index].w >= 0.0;
+  splats[index] = vec4(center, seen ? fluid : -1.0);
   if (!seen) return;
   vec4 e = ellipsoids[index].xx_xy_xz_yy;
   vec2 f = ellipsoids[index].yz_zz.xy;

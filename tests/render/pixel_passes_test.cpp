@@ -18,19 +18,27 @@ struct Drawn {
   Image picture;
 };
 
-Drawn draw(Context& context, RenderOptions options, PixelPasses way) {
+/// `fill`: makes the scene's fluid what it is to be.
+template <class Fill>
+Drawn draw(Context& context, RenderOptions options, PixelPasses way, int particles, Fill&& fill) {
   options.pixel_passes = way;
   auto made = Renderer::create(context, options);
   EXPECT_TRUE(made) << made.error().text();
   Renderer& renderer = *made.value();
   EXPECT_EQ(renderer.on_compute(), way == PixelPasses::kCompute);
-  kit::DamBreak scene(renderer, 2500, options.width, options.height);
-  scene.frame.fluids.push_back(kit::cloudy_juice());
-  for (std::size_t i = 0; i < scene.fluids.size() / 2; ++i) scene.fluids[i] = 1;
+  kit::DamBreak scene(renderer, particles, options.width, options.height);
+  fill(scene);
   renderer.draw(scene.frame);
   return {renderer.read_buffer(Buffer::kFrontDepth), renderer.read_buffer(Buffer::kBackDepth),
           renderer.read_buffer(Buffer::kSmoothDepth), renderer.read_buffer(Buffer::kThickness),
           renderer.read_back()};
+}
+
+Drawn draw(Context& context, const RenderOptions& options, PixelPasses way) {
+  return draw(context, options, way, 2500, [](kit::DamBreak& scene) {
+    scene.frame.fluids.push_back(kit::cloudy_juice());
+    for (std::size_t i = 0; i < scene.fluids.size() / 2; ++i) scene.fluids[i] = 1;
+  });
 }
 
 /// Share of values that are farther apart than `apart`.
@@ -59,14 +67,29 @@ void expect_same(const Image& a, const Image& b) {
   EXPECT_LT(static_cast<double>(off) / channels, 4e-4);
 }
 
+/// Shares of pixels that may be apart.
+struct Apart {
+  double front;
+  double back;
+  double surface;
+  double thickness;
+};
+/// A pixel on the very rim of a splat may be its or not.
+constexpr Apart kBySoftware{1e-4, 1e-4, 1e-4, 3e-3};
+/// A chip has a triangle's corners on 256ths of a pixel, and a splat's disc with them, which shows near its rim,
+/// where depths fall off steeply: with the corners put there compute shaders differ from an H200's fragments in no
+/// pixel of the front and one in 7000 of the back. All of what thickness differs by is the sum of chords (without
+/// it: none), in half floats there, in whole numbers here.
+constexpr Apart kByChip{6e-3, 2.6e-2, 2e-3, 7e-2};
+
 void expect_same(const RenderOptions& options, Context& context) {
+  const Apart& most = context.is_software() ? kBySoftware : kByChip;
   const Drawn by_fragments = draw(context, options, PixelPasses::kFragments);
   const Drawn by_compute = draw(context, options, PixelPasses::kCompute);
-  // A pixel on the very rim of a splat may be its or not.
-  EXPECT_LT(share_off(by_fragments.front, by_compute.front, 2e-5f), 1e-4);
-  EXPECT_LT(share_off(by_fragments.back, by_compute.back, 2e-5f), 1e-4);
-  EXPECT_LT(share_off(by_fragments.surface, by_compute.surface, 2e-5f), 1e-4);
-  EXPECT_LT(share_off(by_fragments.thickness, by_compute.thickness, 5e-4f), 3e-3);
+  EXPECT_LT(share_off(by_fragments.front, by_compute.front, 2e-5f), most.front);
+  EXPECT_LT(share_off(by_fragments.back, by_compute.back, 2e-5f), most.back);
+  EXPECT_LT(share_off(by_fragments.surface, by_compute.surface, 2e-5f), most.surface);
+  EXPECT_LT(share_off(by_fragments.thickness, by_compute.thickness, 5e-4f), most.thickness);
   expect_same(by_fragments.picture, by_compute.picture);
 }
 
@@ -87,6 +110,21 @@ TEST_F(PixelPassesTest, AndWhereTheQuickWaysOfAProcessorAreTaken) {
   options.width = 189;  // no whole number of groups
   options.height = 131;
   expect_same(options, *context_);
+}
+
+TEST_F(PixelPassesTest, OfManyParticlesWhatIsDeepInTheFluidIsNotMissed) {
+  RenderOptions options = small();
+  options.quality = Quality::kFull;
+  constexpr int kMany = 115000;
+  const Drawn seen = draw(*context_, options, PixelPasses::kCompute, kMany, [](kit::DamBreak&) {});
+  // Where there may be several fluids all of it is drawn.
+  const Drawn all = draw(*context_, options, PixelPasses::kCompute, kMany, [](kit::DamBreak& scene) {
+    scene.frame.fluids.push_back(kit::cloudy_juice());
+  });
+  EXPECT_EQ(seen.front.values, all.front.values);
+  EXPECT_EQ(seen.back.values, all.back.values);
+  EXPECT_EQ(seen.surface.values, all.surface.values);
+  EXPECT_EQ(seen.thickness.values, all.thickness.values);
 }
 
 TEST_F(PixelPassesTest, SumsComeOutTheSameEachTime) {

@@ -1,0 +1,30 @@
+// Which cells lie deep in the fluid: their 26 neighbours are all well filled, so that nobody sees a particle of theirs as the first
+// or the last of the fluid. An invocation an entry; of cells that share one, the first particle's.
+#include "particles.glsl"
+layout(local_size_x = 64) in;
+layout(std430, binding = 3) restrict readonly buffer Counts { uint counts[]; };
+layout(std430, binding = 5) restrict readonly buffer Begins { uint begins[]; };
+layout(std430, binding = 7) restrict readonly buffer Sorted { vec4 sorted[]; };
+layout(std430, binding = 8) restrict writeonly buffer Deep { uint deep[]; };  // an entry each: 1 or 0
+uniform int count;  // entries
+uniform float reach;
+
+// The cell's particles are half as many as there are inside a fluid, and all of its entry, by its first and last.
+bool filled(ivec3 cell) {
+  uint entry = entry_of(cell, count);
+  uint own = counts[entry];
+  if (own < 8u) return false;
+  uint first = begins[entry];
+  return cell_of(sorted[first].xyz, reach) == cell && cell_of(sorted[first + own - 1u].xyz, reach) == cell;
+}
+
+void main() {
+  int index = invocation();
+  if (index >= count) return;
+  bool all_round = counts[index] > 0u;
+  if (all_round) {
+    ivec3 middle = cell_of(sorted[begins[index]].xyz, reach);
+    for (int c = 0; c < 27 && all_round; ++c) all_round = filled(middle + ivec3(c % 3, c / 3 % 3, c / 9) - 1);
+  }
+  deep[index] = all_round ? 1u : 0u;
+}
