@@ -48,7 +48,7 @@ HeldBodies::HeldBodies(const Scene& scene, Coupling coupling)
     }
     if (grips.empty() || source.motion != BodyMotion::kFree || !(source.mass.mass > 0.0)) continue;
     const ReplicaBody body{source.mass.mass, source.point_probe ? glm::dmat3(1.0) : source.mass.inertia,
-                           source.mass.center_of_mass, source.point_probe};
+                           source.mass.center_of_mass, source.point_probe, scene.gravity};
     for (std::size_t i = 0; i < places.size(); ++i)
       places_[places[i]] = {static_cast<int>(bodies_.size()), i};
     const std::size_t count = grips.size();
@@ -126,6 +126,8 @@ void HeldBodies::tell(Entry& entry, const BodyMessage& newest, std::int64_t now_
   word.pace = std::clamp(newest.rate, 0.0, 1.0);
   word.motion = {body.center_of_mass, body.pose.orientation, body.twist};
   word.hands = entry.said;
+  word.tells_fluid = true;
+  word.fluid = body.fluid;
   entry.held.hear(word);
 }
 

@@ -52,7 +52,9 @@ TEST(Transparency, TheReplicaRendersWhatIsCommanded) {
       const double spring = farthest_off(rendered(toned(hands, round_trip), Scheme::kPeerSpring), commanded);
       std::printf("%d hands, %.0f ms: impedance off by %.0f %% at most, by a spring %.0f %%\n", hands,
                   1e3 * round_trip, 1e2 * ours, 1e2 * spring);
-      if (hands == 1) EXPECT_LE(ours, 0.10);
+      if (hands == 1) {
+        EXPECT_LE(ours, 0.10);
+      }
       EXPECT_LT(ours, spring);
     }
   }

@@ -67,6 +67,7 @@ void BodyReplica::restart(const RigidMotion& motion) noexcept {
   now_ = motion;
   pending_ = MotionError{};
   swings_ = swings_pending_ = {};
+  pace_ = glm::dvec3(0.0);
   history_.forget();
   has_word_ = loaded_ = false;
   load_ = heard_ = FluidLoad{};
@@ -138,6 +139,8 @@ void BodyReplica::swing(const glm::dvec3& change, double dt) noexcept {
     SloshState& s = swings_[axis];
     SloshState& pending = swings_pending_[axis];
     s = SloshStep(mode.pace, mode.damping, dt)(s, change[i]);
+    // A body that is accelerated upwards makes it the heavier.
+    s.speed += mode.pace * mode.pace * s.place * glm::dot(load_.bowl, change);
     s.place += share * pending.place;
     s.speed += share * pending.speed;
     pending.place *= 1.0 - share;
@@ -173,8 +176,9 @@ void BodyReplica::follow_load(double dt) noexcept {
   load_.twist.angular += share * (heard_.twist.angular - load_.twist.angular);
   load_.trust_distance = heard_.trust_distance;
   load_.trust_angle = heard_.trust_angle;
+  load_.bowl = heard_.bowl;
   for (std::size_t i = 0; i < 3; ++i) {
-    towards(load_.swings[i].mass, heard_.swings[i].mass);
+    load_.swings[i].mass = heard_.swings[i].mass;
     load_.swings[i].pace = heard_.swings[i].pace;
     load_.swings[i].damping = heard_.swings[i].damping;
   }
@@ -331,6 +335,10 @@ void BodyReplica::advance(const std::vector<ReplicaHand>& hands, double dt, std:
   add(fluid, product(load_.d_velocity, six(load_.twist.linear, load_.twist.angular)), -1.0);
   Vector6 slosh{};
   for (std::size_t i = 0; i < 3; ++i) slosh[i] = slosh_force(load_.swings[i], swings_[i]);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double rises = bowl_force(load_.swings[i], swings_[i], pace_[static_cast<int>(i)]);
+    for (std::size_t j = 0; j < 3; ++j) slosh[j] += load_.bowl[static_cast<int>(j)] * rises;
+  }
   add(fluid, slosh);
   Vector6 acting = fluid;  // whole, as its work is: everybody's energy is counted
   share_out(hands, fluid);
@@ -375,6 +383,7 @@ void BodyReplica::advance(const std::vector<ReplicaHand>& hands, double dt, std:
     slosh_work_ += 0.5 * dt * trust * slosh[i] * middle[i];
   }
   swing(linear(next) - now_.twist.linear, dt);
+  pace_ = (linear(next) - now_.twist.linear) / dt;
   now_.twist = {linear(next), body_.point ? glm::dvec3(0.0) : angular(next)};
   now_.position += dt * now_.twist.linear;
   now_.orientation = rotate_by(now_.orientation, dt * now_.twist.angular);

@@ -19,6 +19,7 @@ struct ReplicaBody {
   glm::dmat3 inertia{1.0};  ///< kg·m², about the centre of mass, body axes, positive definite
   glm::dvec3 center{0.0};   ///< centre of mass in the mesh frame, m
   bool point = false;       ///< it does not turn
+  glm::dvec3 gravity{0.0, -9.81, 0.0};  ///< m/s²
 };
 
 /// One coupling of the body.
@@ -134,6 +135,7 @@ class BodyReplica {
   bool has_word_ = false;
   MotionError pending_;  // of the host's newest word, not taken over yet
   std::array<SloshState, 3> swings_;          // of load_.swings
+  glm::dvec3 pace_{0.0};                      // m/s² of the body in the last step, without what was corrected
   std::array<SloshState, 3> swings_pending_;  // of what the host's word says of them, not taken over yet
   ReplicaHistory history_;
   struct Ledger {

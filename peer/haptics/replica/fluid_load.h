@@ -24,6 +24,7 @@ struct FluidLoad {
   double trust_distance = 0.01;  ///< m of δx beyond which the model goes on as at that distance
   double trust_angle = 0.1;      ///< rad, the same
   std::array<SloshMode, 3> swings;  ///< along x, y, z: what swings besides, whose force `wrench` is without
+  glm::dvec3 bowl{0.0};             ///< s²/m, down, 1/g long: what swings rises by it (bowl_force); 0: it does not
 };
 
 /// 0.5·(a + aᵀ)·sign.

@@ -30,11 +30,11 @@ constexpr double kUncounted = 1e9;
 /// J by which the balance may be more than the replica holds, and s, or round trips if that is longer, over
 /// which what is beyond is forgotten: dampers used it up. Until then it may be on its way to another hand.
 constexpr double kKept = 2e-3;
+constexpr double kLoadRoundTrips = 2.0;  // after which a table that is met counts as told of
 constexpr double kForesees = 2.0;
 constexpr double kDoubt = 3.0;
 constexpr double kForgets = 1.0;
 constexpr double kForgetsRoundTrips = 4.0;
-constexpr double kMostSlosh = 4.0;  // times the body's mass: no more of its fluid swings
 constexpr double kForgives = 1.0;  // s, in which a debt that others made is let go of
 
 /// What of `load` acts whatever the body does; `damped`: but for what its damper answers.
@@ -61,8 +61,8 @@ HeldBody::HeldBody(const ReplicaBody& body, std::vector<ReplicaGrip> grips, cons
       guards_(grips.size()),
       load_work_(body, grips),
       follows_slosh_(tuning.follows_slosh),
+      carried_(body),
       on_hands_(grips.size()) {
-  for (SloshFinder& finder : slosh_) finder.restart(kMostSlosh * body_.mass);
   for (const ReplicaGrip& grip : grips) {
     grips_.push_back(grip.pose);
     gains_.push_back(grip.gains);
@@ -74,7 +74,7 @@ void HeldBody::restart() noexcept {
   delay_.restart();
   load_work_.restart();
   fluid_ = FluidLoad{};
-  for (SloshFinder& finder : slosh_) finder.restart(kMostSlosh * body_.mass);
+  carried_.restart();
   slosh_share_ = 0.0;
   std::fill(on_hands_.begin(), on_hands_.end(), Wrench{});
   for (ReplicaHand& hand : hands_) hand.engaged = false;
@@ -104,49 +104,30 @@ FluidLoad HeldBody::load_of(const HostWord& word) noexcept {
   // Of steps that were missed the couplings' forces are taken to have gone over evenly.
   const double steps = word.time_step > 0.0 ? std::max(std::round(elapsed / word.time_step), 1.0) : 1.0;
   const double older = 0.5 * (steps - 1.0) / steps;
-  glm::dvec3 mean = force;
+  Acting acting{known ? elapsed : 0.0, heard_.twist.linear, now.twist.linear, force, word.tells_fluid,
+                word.fluid.force + (known ? older : 0.0) * (fluid_force_ - word.fluid.force)};
   for (std::size_t g = 0; g < grips_.size() && g < word.hands.size(); ++g) {
     const Wrench& on_hand = word.hands[g].on_hand;
     const glm::dvec3 arm = now.orientation * (grips_[g].position - body_.center);
     force += on_hand.force;
     torque += glm::cross(arm, on_hand.force) + on_hand.torque;
-    mean += on_hand.force + older * (on_hands_[g].force - on_hand.force);
+    acting.force += on_hand.force + older * (on_hands_[g].force - on_hand.force);
     on_hands_[g] = on_hand;
   }
   if (body_.point) torque = glm::dvec3(0.0);
-  if (known && follows_slosh_) {
-    for (int i = 0; i < 3; ++i)
-      slosh_[static_cast<std::size_t>(i)].hear(elapsed, heard_.twist.linear[i], now.twist.linear[i], mean[i]);
-  }
-  // What others do within the delay is not known, and a mode that went by it would be driven by it.
-  const double alone = replica_.shared() > 0.0 ? 0.0 : 1.0;
-  const double most = std::clamp(elapsed, 0.0, kLongestStep) / kChange;
-  slosh_share_ += std::clamp(alone - slosh_share_, -most, most);
+  tells_fluid_ = word.tells_fluid;
+  fluid_force_ = word.fluid.force;
+  met_ = acting.force - acting.fluid;
   FluidLoad load = fluid_;
   load.reference = {now.position, now.orientation};
   load.twist = now.twist;
-  // What swings takes the place of the fluid's line, as far as it explains more.
-  Vector6 kept{1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
-  for (std::size_t i = 0; i < 3; ++i) kept[i] = std::sqrt(1.0 - slosh_share_ * slosh_[i].share());
-  for (std::size_t i = 0; i < 6; ++i)
-    for (std::size_t j = 0; j < 6; ++j) {
-      const double both = kept[i] * kept[j];
-      load.added_mass[i][j] *= both;
-      load.d_velocity[i][j] *= both;
-      load.d_pose[i][j] *= both;
-    }
-  Vector6 rest{force.x, force.y, force.z, torque.x, torque.y, torque.z};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double share = slosh_share_ * slosh_[i].share();
-    load.added_mass[i][i] += share * slosh_[i].rigid();
-    load.d_velocity[i][i] -= share * slosh_[i].drag();
-    load.swings[i] = slosh_[i].mode();
-    load.swings[i].mass *= share;
-    rest[i] -= slosh_force(load.swings[i], slosh_[i].state());
-  }
-  for (std::size_t i = 0; i < 6; ++i)
-    for (std::size_t j = 0; j < 6; ++j) rest[i] += load.added_mass[i][j] * pace[j];
-  load.wrench = rest;
+  load.wrench = {force.x, force.y, force.z, torque.x, torque.y, torque.z};
+  if (follows_slosh_) carried_.hear(acting);
+  // What others do within the delay is not known, and a mode that went by it would be driven by it.
+  const double alone = follows_slosh_ && !(replica_.shared() > 0.0) ? 1.0 : 0.0;
+  const double most = std::clamp(elapsed, 0.0, kLongestStep) / kChange;
+  slosh_share_ += std::clamp(alone - slosh_share_, -most, most);
+  carried_.put_into(load, load.wrench, pace, acting, slosh_share_, pace_ * delay_.delay().round_trip);
   return load;
 }
 
@@ -182,6 +163,7 @@ void HeldBody::hear(const HostWord& word) noexcept {
   if (!started_) {
     replica_.restart(word.motion);
     replica_.set_load(load);
+    met_late_ = met_;
     started_ = true;
     begin_count(word);
     return;
@@ -195,7 +177,7 @@ void HeldBody::hear(const HostWord& word) noexcept {
   // What a hand does within a long step that its twist did not foresee acts at the host in the next.
   const double unforeseen = std::max(word.time_step - kTwistForesees, 0.0);
   replica_.set_delay({pace_ * delay.round_trip + unforeseen, pace_ * delay.jitter});
-  replica_.hear({word.motion, ack_ns, load_work_.work(), {slosh_[0].state(), slosh_[1].state(), slosh_[2].state()}});
+  replica_.hear({word.motion, ack_ns, load_work_.work(), carried_.states()});
 }
 
 /// What acts changes by more than is told of it: a table that is met, a fluid that nobody models. That
@@ -204,10 +186,20 @@ void HeldBody::note_unrest(const FluidLoad& load, double elapsed) noexcept {
   // Alone, what a damper answers to the body's own speed is foreseen.
   const bool damped = replica_.shared() > 0.0;
   const glm::dvec3 off = still_force(load, damped) - still_force(replica_.load(), damped);
-  const double now = std::min(glm::length(off) / kUnrest, 1.0);
+  // Fluid that the replica does not follow late drives nothing, and what it gives is no gift of a table's.
+  double unforeseen = glm::length(off), doubtful = unforeseen;
+  if (tells_fluid_) {
+    const LoopDelay delay = delay_.delay();
+    const double late = kLoadRoundTrips * pace_ * (delay.round_trip + delay.jitter);
+    const glm::dvec3 met = met_ - met_late_;
+    met_late_ += (late > elapsed ? 1.0 - std::exp(-elapsed / late) : 1.0) * met;
+    unforeseen = glm::length(met) + (1.0 - carried_.foreseen()) * glm::length(off - met);
+    doubtful = glm::length(met);
+  }
+  const double now = std::min(unforeseen / kUnrest, 1.0);
   const double forget = 1.0 - std::exp(-std::clamp(elapsed, 0.0, 1.0) / kUnrestMemory);
   unrest_ = now > unrest_ ? now : unrest_ + forget * (now - unrest_);
-  const double doubt = std::min(glm::length(off) / kDoubt, 1.0);
+  const double doubt = std::min(doubtful / kDoubt, 1.0);
   doubt_ = doubt > doubt_ ? doubt : doubt_ + forget * (doubt - doubt_);
   calm_load_ += elapsed;
   // A weight that is carried down gives; one that rests on something does not.

@@ -7,10 +7,10 @@
 
 #include "peer/haptics/devices/velocity_window.h"
 #include "peer/haptics/replica/body_replica.h"
+#include "peer/haptics/replica/carried_fluid.h"
 #include "peer/haptics/replica/host_word.h"
 #include "peer/haptics/replica/load_work.h"
 #include "peer/haptics/replica/passivity_controller.h"
-#include "peer/haptics/replica/slosh_finder.h"
 
 namespace slosh {
 
@@ -70,7 +70,7 @@ class HeldBody {
   double balance() const noexcept;
   LoopDelay delay() const noexcept { return delay_.delay(); }  ///< by the clock on the wall
   const BodyReplica& replica() const noexcept { return replica_; }
-  const SloshFinder& slosh(std::size_t axis) const noexcept { return slosh_[axis]; }
+  const SloshFinder& slosh(std::size_t axis) const noexcept { return carried_.finder(axis); }
   /// The guards have fired so often that the replica is not followed: a damped spring to the host's word is.
   bool fallen_back() const noexcept { return fallen_back_; }
   std::uint64_t fired() const noexcept { return fired_; }  ///< ticks in which a guard did
@@ -114,7 +114,11 @@ class HeldBody {
   LoadWork load_work_;
   bool follows_slosh_;
   double slosh_share_ = 0.0;          // 0–1: how far what swings is followed at all
-  std::array<SloshFinder, 3> slosh_;  // along x, y, z
+  CarriedFluid carried_;
+  bool tells_fluid_ = false;          // the newest word did
+  glm::dvec3 fluid_force_{0.0};       // N, of the word before
+  glm::dvec3 met_{0.0};               // N: what acts besides couplings and fluid, weight and contacts
+  glm::dvec3 met_late_{0.0};          // N: the same as late as the replica follows it
   std::vector<Wrench> on_hands_;      // of the word before
   double stored_ = 0.0;     // J in the couplings when this began, less what had been counted by then
   double forgotten_ = 0.0;  // J of the balance that nothing here holds any more

@@ -28,6 +28,8 @@ struct HostWord {
   RigidMotion motion;
   std::span<const HostHand> hands;  ///< one a grip of the body
   double pace = 1.0;                ///< s of the body's time a s of `now_ns`' clock, 0–1
+  bool tells_fluid = false;         ///< the host says what the fluid alone puts on the body:
+  Wrench fluid{};                   ///< N, N·m about the centre of mass, the mean over the step
 };
 
 }  // namespace slosh

@@ -12,6 +12,13 @@ constexpr double kLeastKnown = 0.6;  // of it, s, before anything is followed
 constexpr double kLowPass = 0.02;  // s, each of two
 constexpr double kSweep = 0.05;    // s in which the whole bank is looked at, a few rows a word
 constexpr double kAdopted = 0.1;  // s over which what is found is taken over
+// What is expected, against a force that no model explains of this much over this long: N, s.
+constexpr double kNoise = 0.5;
+constexpr double kNoiseLasts = 0.1;
+constexpr double kExpectedDamping = 0.03;
+constexpr double kSureOfMass = 0.3;   // of what is expected, one σ
+constexpr double kSureOfPace = 0.2;  // the same, of its logarithm
+constexpr double kLeastObserved = 0.3;  // kg: of a lighter mode the force says less
 constexpr double kObserved = 0.25;  // s over which the state is drawn to what the force says
 // Motion that weighs as much as what is taken to be so beforehand: no mass, no drag.
 constexpr double kUsualAcceleration = 0.02;  // m/s²
@@ -20,6 +27,7 @@ constexpr double kLeastForce = 0.05;  // N rms that neither rigid mass nor dampe
 /// Of what neither rigid mass nor damper explains, the share that a mode explains from which on it is followed, and at
 /// which it is wholly.
 constexpr double kLeastGain = 0.7, kWholeGain = 0.9;
+constexpr double kGainOfExpected = 0.1;  // the same where it is of what is carried in a vessel
 
 }  // namespace
 
@@ -30,6 +38,17 @@ double SloshFinder::damping_of(double j) {
   const auto low = static_cast<std::size_t>(std::clamp(std::floor(j), 0.0, kDampings - 2.0));
   const double share = j - static_cast<double>(low);
   return kDampingsOfBank[low] * std::pow(kDampingsOfBank[low + 1] / kDampingsOfBank[low], share);
+}
+
+void SloshFinder::expect(double rigid, double mass, double pace) noexcept {
+  expected_rigid_ = rigid;
+  expected_mass_ = mass;
+  expected_pace_ = pace;
+  if (expects_) return;
+  expects_ = true;
+  mode_ = {mass, pace, kExpectedDamping};
+  rigid_ = rigid;
+  share_ = 1.0;
 }
 
 void SloshFinder::hear(double dt, double before, double now, double force) noexcept {
@@ -44,8 +63,10 @@ void SloshFinder::hear(double dt, double before, double now, double force) noexc
   if (std::abs(dt - bank_step_) > 1e-9) {
     bank_step_ = dt;
     for (std::size_t i = 0; i < kPaces; ++i)
-      for (std::size_t j = 0; j < kDampings; ++j)
+      for (std::size_t j = 0; j < kDampings; ++j) {
         bank_[i][j].step = SloshStep(paces_[i], kDampingsOfBank[j], dt);
+        bank_[i][j].pace = paces_[i];
+      }
   }
   const double low = 1.0 - std::exp(-dt / kLowPass), keep = std::exp(-dt / kMemory);
   a_.to(acceleration, low);
@@ -78,7 +99,7 @@ void SloshFinder::hear(double dt, double before, double now, double force) noexc
   if (mode_.mass > 1e-6) {
     const double foreseen = constant_ - rigid_ * acceleration - drag_ * 0.5 * (before + now) +
                             0.5 * (slosh_force(mode_, was) + slosh_force(mode_, state_));
-    const double off = (force - foreseen) / (mode_.mass * mode_.pace * mode_.pace);
+    const double off = (force - foreseen) / (std::max(mode_.mass, kLeastObserved) * mode_.pace * mode_.pace);
     state_.place += std::min(2.0 * dt / kObserved, 0.5) * off;
   }
   look_on(dt);
@@ -116,6 +137,20 @@ SloshFinder::Fit SloshFinder::fit(const Candidate* candidate) const {
     a[kCommon][kCommon] = candidate->square + window * kUsualAcceleration * kUsualAcceleration;
     b[kCommon] = candidate->answer;
   }
+  double base = 0.0;
+  if (expects_) {
+    const double sure = kSureOfMass * (expected_rigid_ + expected_mass_), weight = kNoise * kNoise * kNoiseLasts / (sure * sure);
+    a[1][1] += weight;
+    b[1] += weight * expected_rigid_;
+    base += weight * expected_rigid_ * expected_rigid_;
+    if (candidate) {
+      a[kCommon][kCommon] += weight;
+      b[kCommon] += weight * expected_mass_;
+      base += weight * expected_mass_ * expected_mass_;
+      const double off = std::log(candidate->pace / expected_pace_) / kSureOfPace;
+      base += kNoise * kNoise * kNoiseLasts * off * off;
+    }
+  }
   Fit best;
   while (true) {
     // Gauss without pivots: positive definite.
@@ -140,7 +175,7 @@ SloshFinder::Fit SloshFinder::fit(const Candidate* candidate) const {
     if (worst == 0) break;
     out[worst] = true;
   }
-  best.rest = force_square_;
+  best.rest = force_square_ + base;
   for (std::size_t p = 0; p < kAll; ++p) best.rest -= best.x[p] * b[p];
   return best;
 }
@@ -155,11 +190,11 @@ void SloshFinder::choose(double seconds) noexcept {
   const Fit without = fit(nullptr);
   const double rigid = std::max(without.rest, 0.0);
   // Nothing swings, or too little is known yet: what was found holds on.
-  if (weight_ < kLeastKnown || rigid < kLeastForce * kLeastForce * weight_) return;
+  if ((weight_ < kLeastKnown && !expects_) || rigid < kLeastForce * kLeastForce * weight_) return;
   double pace = pace_of(static_cast<double>(bi)), damping = kDampingsOfBank[bj];
   // At an end of the bank it is something else that is so slow or so quick.
   const bool swings = bi > 0 && bi + 1 < kPaces && found.x[3] > 0.0 && found.x[3] < most_ &&
-                      found.rest < (1.0 - kLeastGain) * rigid;
+                      found.rest < (1.0 - (expects_ ? kGainOfExpected : kLeastGain)) * rigid;
   if (swings) {
     // Between neighbours, by the parabola through three.
     const auto between = [](double low, double at, double high) {
@@ -178,7 +213,7 @@ void SloshFinder::choose(double seconds) noexcept {
     found = without;
   }
   const double gain = swings ? 1.0 - std::max(found.rest, 0.0) / rigid : 0.0;
-  const double trust = std::clamp((gain - kLeastGain) / (kWholeGain - kLeastGain), 0.0, 1.0);
+  const double trust = expects_ ? 1.0 : std::clamp((gain - kLeastGain) / (kWholeGain - kLeastGain), 0.0, 1.0);
   const bool first = swings && !(mode_.mass > 0.0);
   if (first) {
     mode_ = {0.0, pace, damping};

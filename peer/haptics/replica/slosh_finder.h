@@ -21,6 +21,8 @@ class SloshFinder {
     *this = SloshFinder{};
     most_ = most;
   }
+  /// What is taken to be so before anything has moved: kg that go with the body, kg that swing, rad/s. Followed at once.
+  void expect(double rigid, double mass, double pace) noexcept;
   /// Over the last `dt` s the body went from velocity `before` to `now`, and the fluid put the mean force
   /// `force` on it.
   void hear(double dt, double before, double now, double force) noexcept;
@@ -46,6 +48,7 @@ class SloshFinder {
   };
   struct Candidate {
     SloshStep step;
+    double pace = 1.0;  // rad/s
     SloshState state;
     LowPass low;
     std::array<double, kCommon> with{};  // Σ φ·(1, −a, −v)
@@ -76,6 +79,8 @@ class SloshFinder {
   double swept_ = 0.0;  // s that this sweep has taken
 
   double most_ = 0.0;
+  bool expects_ = false;
+  double expected_rigid_ = 0.0, expected_mass_ = 0.0, expected_pace_ = 0.0;
   SloshMode mode_;
   SloshState state_;
   double rigid_ = 0.0, drag_ = 0.0, constant_ = 0.0, share_ = 0.0;

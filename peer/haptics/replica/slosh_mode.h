@@ -25,6 +25,13 @@ inline double slosh_force(const SloshMode& mode, const SloshState& s) {
   return mode.mass * mode.pace * (mode.pace * s.place + 2.0 * mode.damping * s.speed);
 }
 
+/// N along what FluidLoad::bowl points against, for a bowl of 1 s²/m: the mass rises as it swings, on a bowl whose
+/// steepness gives it its pace, and its weight and its going up and down press on the body. `acceleration`: the body's along r.
+inline double bowl_force(const SloshMode& mode, const SloshState& s, double acceleration) {
+  const double faster = -acceleration - mode.pace * (mode.pace * s.place + 2.0 * mode.damping * s.speed);
+  return mode.mass * mode.pace * mode.pace * (s.speed * s.speed + s.place * faster);
+}
+
 /// Exact over `dt` s in which the body's velocity changes evenly.
 class SloshStep {
  public:

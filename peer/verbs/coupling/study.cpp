@@ -36,6 +36,7 @@ struct StateWord {
   std::vector<HandWord> hands;
   std::vector<Wrench> on_hand;
   FluidLoad load;
+  Wrench fluid;
 };
 
 /// One way of a link: each packet late by its own, or lost.
@@ -243,7 +244,7 @@ class Study {
       next_step_ += time_step_;
       for (std::size_t g = 0; g < sites_.size(); ++g) sites_[g]->up.receive(now_, known_[g]);
       host_.step(known_);
-      const StateWord word{now_, host_.motion(), known_, host_.on_hand(), host_.load()};
+      const StateWord word{now_, host_.motion(), known_, host_.on_hand(), host_.load(), host_.fluid()};
       for (const auto& site : sites_) site->down.send(word, now_, random_);
     }
   }
@@ -317,7 +318,8 @@ class Study {
     }
     if (c_.load == Load::kFluid || c_.load == Load::kSyrup || c_.load == Load::kCarried)
       site.held->set_fluid(site.state.load);
-    site.held->hear({to_nanoseconds(now_) + 1, site.state.stamp, time_step_, site.state.motion, said_});
+    site.held->hear({to_nanoseconds(now_) + 1, site.state.stamp, time_step_, site.state.motion, said_, 1.0, true,
+                     site.state.fluid});
   }
 
   Verdict verdict() {

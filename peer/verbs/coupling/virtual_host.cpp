@@ -52,14 +52,15 @@ Wrench VirtualHost::external() {
     return {{0.0, std::max(pushes, 0.0) - body_.mass * kGravity, 0.0}, {}};
   }
   if (kind_ == Load::kSyrup || kind_ == Load::kSyrupUntold)
-    return {-kSyrupDrag * body_.velocity, -kSyrupTurning * body_.angular_velocity};
+    return fluid_ = {-kSyrupDrag * body_.velocity, -kSyrupTurning * body_.angular_velocity};
   const double pace = 2.0 * std::numbers::pi * kSwing;
   const glm::dvec3 pull = kFluidMass * pace * pace * (fluid_place_ - body_.position) +
                           kFluidDamping * (fluid_velocity_ - body_.velocity);
   fluid_velocity_ -= dt_ / kFluidMass * pull;
   fluid_place_ += dt_ * fluid_velocity_;
-  const glm::dvec3 weight(0.0, kind_ == Load::kCarried ? -(body_.mass + kFluidMass) * kGravity : 0.0, 0.0);
-  return {pull + weight - kDrag * body_.velocity, -kTurningDrag * body_.angular_velocity};
+  const glm::dvec3 gravity(0.0, kind_ == Load::kCarried ? -kGravity : 0.0, 0.0);
+  fluid_ = {pull + kFluidMass * gravity - kDrag * body_.velocity, -kTurningDrag * body_.angular_velocity};
+  return {fluid_.force + body_.mass * gravity, fluid_.torque};
 }
 
 void VirtualHost::step(const std::vector<HandWord>& hands) {

@@ -32,6 +32,7 @@ class VirtualHost {
   const RigidBody& body() const { return body_; }
   const std::vector<Wrench>& on_hand() const { return on_hand_; }  ///< of the last step
   const FluidLoad& load() const { return load_; }
+  const Wrench& fluid() const { return fluid_; }  ///< on the body, in the last step
   /// J that the load gave the body so far; a weight that sinks gives.
   double given() const { return given_; }
 
@@ -45,6 +46,7 @@ class VirtualHost {
   std::vector<Pose> grips_;
   std::vector<Wrench> on_hand_;
   FluidLoad load_;
+  Wrench fluid_;
   double given_ = 0.0;
   glm::dvec3 fluid_place_{0.0};
   glm::dvec3 fluid_velocity_{0.0};

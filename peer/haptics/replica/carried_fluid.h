@@ -1,0 +1,60 @@
+// What is known of the fluid on a held body from the host's words: what of it swings, what that lifts, what lasts.
+#pragma once
+
+#include <array>
+
+#include "peer/haptics/replica/body_replica.h"
+#include "peer/haptics/replica/slosh_finder.h"
+
+namespace slosh {
+
+/// What acts on the body besides couplings, over the time between two words of the host.
+struct Acting {
+  double elapsed = 0.0;      ///< s; 0: nothing came before, and there is no acceleration
+  glm::dvec3 before{0.0};    ///< m/s, of the centre of mass, at the word before
+  glm::dvec3 now{0.0};       ///< at this
+  glm::dvec3 force{0.0};     ///< N: all that acts, the mean
+  bool tells_fluid = false;  ///< the host says what of that is the fluid's:
+  glm::dvec3 fluid{0.0};     ///< N, the mean
+};
+
+/// Three slosh modes along the world's axes, the bowl in which what swings rises, and how far the replica goes by
+/// all that. Where fluid weighs on the body it is in it as in a vessel, and what it weighs says what of it swings
+/// and how fast before anything has moved. Neither allocates nor reads a clock; one thread.
+class CarriedFluid {
+ public:
+  explicit CarriedFluid(const ReplicaBody& body) : body_(body) { restart(); }
+
+  void restart() noexcept;
+  void hear(const Acting& acting) noexcept;
+  /// Puts what swings in the place of the line in `load`, as far as it explains more, times `share` (0–1), and takes
+  /// it out of `rest`: the wrench that acts besides couplings, to which the answer to `pace` (linear and angular
+  /// acceleration) is added. Of what no model explains of the fluid only what lasts is left there, once words are
+  /// `round_trip` s old: what goes to and fro would come too late, and at most paces make it worse.
+  void put_into(FluidLoad& load, Vector6& rest, const Vector6& pace, const Acting& acting, double share,
+                double round_trip) noexcept;
+
+  /// Of the fluid's changes, the share that the replica no longer follows late, as of the last put_into().
+  double foreseen() const noexcept { return foreseen_; }
+  std::array<SloshState, 3> states() const noexcept {
+    return {finders_[0].state(), finders_[1].state(), finders_[2].state()};
+  }
+  const SloshFinder& finder(std::size_t axis) const noexcept { return finders_[axis]; }
+
+ private:
+  void look_for_vessel(const Acting& acting) noexcept;
+
+  ReplicaBody body_;
+  std::array<SloshFinder, 3> finders_;  // along x, y, z
+  glm::dvec3 down_{0.0};                // 0 where nothing is carried
+  double bowl_ = 0.0;                   // s²/m: 1/g of a whole bowl
+  double lifts_ = 0.0;                  // N, down: what swings puts on the body by rising in a whole bowl
+  double lifts_share_ = 1.0;            // how far it does, 0–1
+  double lifts_square_ = 0.0, lifts_answer_ = 0.0;  // N²·s
+  glm::dvec3 lasting_{0.0};             // N: of what no model explains, what lasts
+  glm::dvec3 passing_{0.0};             // N: the rest of it, the bowl not taken off
+  bool lasting_known_ = false;
+  double foreseen_ = 0.0;
+};
+
+}  // namespace slosh
