@@ -23,6 +23,13 @@ enum class Display : std::uint8_t {
   kSrgb,  ///< clip to 0–1 and encode as sRGB: a colour below 1 stays what it is
 };
 
+/// How a shader gets there.
+enum class DisplayBy : std::uint8_t {
+  kSmaller,  ///< OpenColorIO's own text where that needs no textures and is short, else the table
+  kTable,    ///< a baked table of 40³ colours: within 4/255, light up to 32 times white
+  kText,     ///< that text wherever it needs no textures: exact
+};
+
 /// A user's OpenColorIO configuration in place of Display.
 struct ColorConfig {
   std::string file;     ///< an .ocio file; empty: none
@@ -88,6 +95,7 @@ struct RenderOptions {
   Quality quality = Quality::kAuto;
   PixelPasses pixel_passes = PixelPasses::kMeasured;
   Display display = Display::kAces;
+  DisplayBy display_by = DisplayBy::kSmaller;
   ColorConfig color;  ///< goes before `display` where it names a file
   bool dither =
       true;  ///< beyond the paper: less than a step of eight bits, so that soft shades show no bands

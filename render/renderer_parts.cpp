@@ -90,8 +90,9 @@ Result<bool> Renderer::Parts::fit_to_options() {
     if (!pass) return pass.error();
     shadow_pass = std::move(pass.value());
   }
-  if (!display_pass || !display_pass->shows(options.display, options.color, compute)) {
-    auto pass = DisplayPass::create(options.display, options.color, compute);
+  const DisplayPass::Wish shown{options.display, options.color, options.display_by, compute};
+  if (!display_pass || !display_pass->is(shown)) {
+    auto pass = DisplayPass::create(shown);
     if (!pass) return pass.error();
     display_pass = std::move(pass.value());
   }

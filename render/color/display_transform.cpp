@@ -2,6 +2,7 @@
 
 #include <OpenColorIO/OpenColorIO.h>
 
+#include <array>
 #include <cstdio>
 #include <exception>
 #include <optional>
@@ -119,6 +120,36 @@ Result<ocio::ConstConfigRcPtr> read_config(const ColorConfig& color) {
   }
 }
 
+ocio::DisplayViewTransformRcPtr to_display(const std::string& from, const std::string& display,
+                                           const std::string& view) {
+  auto transform = ocio::DisplayViewTransform::Create();
+  transform->setSrc(from.c_str());
+  transform->setDisplay(display.c_str());
+  transform->setView(view.c_str());
+  return transform;
+}
+
+/// The built-in one, within make_config().
+ocio::DisplayViewTransformRcPtr built_in(Display display) {
+  return to_display("Linear Rec.709", "sRGB", display == Display::kAces ? "ACES" : "Plain");
+}
+
+/// From our light to ACES2065-1 as numbers, for a config of any version: a matrix.
+ocio::MatrixTransformRcPtr to_aces() {
+  std::array<glm::vec3, 3> columns{glm::vec3(1, 0, 0), glm::vec3(0, 1, 0), glm::vec3(0, 0, 1)};
+  ocio::PackedImageDesc pixels(&columns.front().x, 3, 1, 3);
+  make_config()->getProcessor("Linear Rec.709", "ACES2065-1")->getDefaultCPUProcessor()->apply(pixels);
+  std::array<double, 16> rows{};
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c)
+      rows[static_cast<std::size_t>(4 * r + c)] = columns[static_cast<std::size_t>(c)][r];
+  }
+  rows[15] = 1.0;
+  auto matrix = ocio::MatrixTransform::Create();
+  matrix->setMatrix(rows.data());
+  return matrix;
+}
+
 /// Our light, first to ACES2065-1 by our config, then by the user's to its display.
 std::optional<Error> put_through(const ColorConfig& color, std::vector<glm::vec3>& colors) {
   const auto config = read_config(color);
@@ -126,11 +157,10 @@ std::optional<Error> put_through(const ColorConfig& color, std::vector<glm::vec3
   try {
     ocio::PackedImageDesc pixels(&colors.front().x, static_cast<long>(colors.size()), 1, 3);
     make_config()->getProcessor("Linear Rec.709", "ACES2065-1")->getDefaultCPUProcessor()->apply(pixels);
-    auto transform = ocio::DisplayViewTransform::Create();
-    transform->setSrc(interchange_of(config.value()).c_str());
-    transform->setDisplay(color.display.c_str());
-    transform->setView(color.view.c_str());
-    config.value()->getProcessor(transform)->getDefaultCPUProcessor()->apply(pixels);
+    config.value()
+        ->getProcessor(to_display(interchange_of(config.value()), color.display, color.view))
+        ->getDefaultCPUProcessor()
+        ->apply(pixels);
   } catch (const std::exception& failure) {
     return refused("colour configuration '" + color.file + "'", failure.what(), kMend);
   }
@@ -186,11 +216,7 @@ Result<std::vector<glm::vec3>> display_colors(Display display, std::span<const g
     return colors;
   }
   try {
-    auto transform = ocio::DisplayViewTransform::Create();
-    transform->setSrc("Linear Rec.709");
-    transform->setDisplay("sRGB");
-    transform->setView(display == Display::kAces ? "ACES" : "Plain");
-    const auto processor = make_config()->getProcessor(transform)->getDefaultCPUProcessor();
+    const auto processor = make_config()->getProcessor(built_in(display))->getDefaultCPUProcessor();
     ocio::PackedImageDesc pixels(&colors.front().x, static_cast<long>(colors.size()), 1, 3);
     processor->apply(pixels);
   } catch (const std::exception& failure) {
@@ -212,6 +238,37 @@ Result<std::vector<glm::vec3>> make_display_table(Display display, const ColorCo
     }
   }
   return display_colors(display, nodes, color);
+}
+
+Result<std::optional<std::string>> display_shader(Display display, const ColorConfig& color) {
+  ocio::ConstConfigRcPtr config;
+  if (!color.file.empty()) {
+    const auto read = read_config(color);
+    if (!read) return read.error();
+    config = read.value();
+  }
+  try {
+    ocio::ConstProcessorRcPtr processor;
+    if (config) {
+      auto both = ocio::GroupTransform::Create();
+      both->appendTransform(to_aces());
+      both->appendTransform(to_display(interchange_of(config), color.display, color.view));
+      processor = config->getProcessor(both);
+    } else {
+      processor = make_config()->getProcessor(built_in(display));
+    }
+    auto shader = ocio::GpuShaderDesc::CreateShaderDesc();
+    shader->setLanguage(ocio::GPU_LANGUAGE_GLSL_4_0);
+    shader->setFunctionName("display_color");
+    shader->setResourcePrefix("ocio");
+    processor->getDefaultGPUProcessor()->extractGpuShaderInfo(shader);
+    if (shader->getNumTextures() + shader->getNum3DTextures() + shader->getNumUniforms() > 0)
+      return std::optional<std::string>();
+    return std::optional<std::string>(shader->getShaderText());
+  } catch (const std::exception& failure) {
+    return refused(color.file.empty() ? "display transform" : "colour configuration '" + color.file + "'",
+                   failure.what(), kMend);
+  }
 }
 
 }  // namespace slosh

@@ -1,9 +1,11 @@
-// Scene-linear Rec.709 light → the display's code values, by OpenColorIO, baked into a table that a shader
-// looks up.
+// Scene-linear Rec.709 light → the display's code values, by OpenColorIO: its own shader text, or baked into
+// a table that a shader looks up.
 #pragma once
 
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "render/renderer.h"
@@ -27,5 +29,10 @@ Result<std::vector<glm::vec3>> display_colors(Display display, std::span<const g
 /// scene-linear colour display_unshape(r / (size − 1)), … (shaders/display_shaper.glsl). Errors as
 /// display_colors.
 Result<std::vector<glm::vec3>> make_display_table(Display display, const ColorConfig& color = {});
+
+/// OpenColorIO's own GLSL 4 of the transform: `vec4 display_color(vec4 light)` of scene-linear light >= 0,
+/// alpha any, exact but for rounding, not limited to 0–1. None where it would need textures of its own, which
+/// is where the table is the smaller one. Errors as display_colors.
+Result<std::optional<std::string>> display_shader(Display display, const ColorConfig& color = {});
 
 }  // namespace slosh

@@ -108,10 +108,12 @@ Result<Program> Program::create_with(const char* vertex, const char* fragment,
   return program;
 }
 
-Result<Program> Program::create_compute(const char* file, std::vector<std::string> defines) {
+Result<Program> Program::create_compute(const char* file, std::vector<std::string> defines,
+                                        const std::string& prelude) {
   defines.emplace_back("COMPUTE");
   auto text = shader_source(file, defines);
   if (!text) return text.error();
+  text.value().insert(text.value().find('\n') + 1, prelude);
   auto shader = compile(GL_COMPUTE_SHADER, file, text.value());
   if (!shader) return shader.error();
   Program program(glCreateProgram());

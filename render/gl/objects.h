@@ -81,12 +81,13 @@ class Program : public Object<delete_program> {
   /// From files of render/shaders. Errors carry the driver's log.
   static Result<Program> create(const char* vertex, const char* fragment,
                                 std::vector<std::string> defines = {});
-  /// The same with `appended` put before the fragment file's own text (generated GLSL).
+  /// The same with `prelude` put before the fragment file's own text (generated GLSL).
   static Result<Program> create_with(const char* vertex, const char* fragment,
                                      std::vector<std::string> defines, const std::string& prelude);
 
-  /// A compute shader.
-  static Result<Program> create_compute(const char* file, std::vector<std::string> defines = {});
+  /// A compute shader; `prelude` as above.
+  static Result<Program> create_compute(const char* file, std::vector<std::string> defines = {},
+                                        const std::string& prelude = {});
 
   void use() const { glUseProgram(name()); }
   /// Uniforms that the compiler dropped are ignored.

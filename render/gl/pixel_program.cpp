@@ -23,9 +23,10 @@ void TileDraw::operator()() const {
 }
 
 Result<PixelProgram> PixelProgram::create(const char* file, bool compute, bool tiled,
-                                          std::vector<std::string> defines) {
-  auto made = compute ? Program::create_compute(file, std::move(defines))
-                      : Program::create(tiled ? "tiles.vert" : "fullscreen.vert", file, std::move(defines));
+                                          std::vector<std::string> defines, const std::string& prelude) {
+  auto made = compute ? Program::create_compute(file, std::move(defines), prelude)
+                      : Program::create_with(tiled ? "tiles.vert" : "fullscreen.vert", file,
+                                             std::move(defines), prelude);
   if (!made) return made.error();
   PixelProgram out;
   out.program_ = std::move(made.value());

@@ -28,10 +28,10 @@ struct PixelTarget {
 class PixelProgram {
  public:
   PixelProgram() = default;
-  /// `file` ends with pixel_main.glsl. `tiled`: fragments are drawn over the TileDraw given to run(). Errors
-  /// carry the driver's log.
+  /// `file` ends with pixel_main.glsl. `tiled`: fragments are drawn over the TileDraw given to run().
+  /// `prelude`: generated GLSL before the file's own. Errors carry the driver's log.
   static Result<PixelProgram> create(const char* file, bool compute, bool tiled = false,
-                                     std::vector<std::string> defines = {});
+                                     std::vector<std::string> defines = {}, const std::string& prelude = {});
 
   /// Its textures and uniforms are set by the caller before. What it writes, whoever comes next may read.
   void run(const PixelTarget& target, const TileDraw* tiles = nullptr) const;

@@ -5,19 +5,44 @@
 
 namespace slosh {
 
-Result<DisplayPass> DisplayPass::create(Display display, const ColorConfig& color, bool compute) {
-  auto table = make_display_table(display, color);
-  if (!table) return table.error();
-  auto program = gl::PixelProgram::create("display.frag", compute);
-  if (!program) return program.error();
-  auto edges = gl::PixelProgram::create("edges.frag", compute);
-  if (!edges) return edges.error();
+namespace {
 
+/// Of OpenColorIO's text: a pixel of the table takes as long (llvmpipe: 1048 characters 2.9 ms, 12 283 12.4
+/// ms, the table 4.3 ms).
+constexpr std::size_t kMostText = 2500;  // characters
+
+/// The program with OpenColorIO's own text; none where the table is the smaller one, or a driver refuses the
+/// text.
+std::optional<gl::PixelProgram> by_its_text(const DisplayPass::Wish& wish) {
+  if (wish.by == DisplayBy::kTable) return std::nullopt;
+  const auto text = display_shader(wish.display, wish.color);
+  if (!text || !text.value()) return std::nullopt;
+  if (wish.by == DisplayBy::kSmaller && text.value()->size() > kMostText) return std::nullopt;
+  auto program = gl::PixelProgram::create("display.frag", wish.compute, false, {"BY_TEXT"}, *text.value());
+  if (!program) return std::nullopt;
+  return std::move(program.value());
+}
+
+}  // namespace
+
+Result<DisplayPass> DisplayPass::create(const Wish& wish) {
   DisplayPass pass;
-  pass.display_ = display;
-  pass.color_ = color;
-  pass.program_ = std::move(program.value());
+  pass.wish_ = wish;
+  auto edges = gl::PixelProgram::create("edges.frag", wish.compute);
+  if (!edges) return edges.error();
   pass.edges_ = std::move(edges.value());
+  if (auto program = by_its_text(wish)) {
+    // What a configuration lacks is told in either way.
+    const glm::vec3 one(0.18f);
+    if (const auto shown = display_colors(wish.display, {&one, 1}, wish.color); !shown) return shown.error();
+    pass.program_ = std::move(*program);
+    return pass;
+  }
+  auto table = make_display_table(wish.display, wish.color);
+  if (!table) return table.error();
+  auto program = gl::PixelProgram::create("display.frag", wish.compute);
+  if (!program) return program.error();
+  pass.program_ = std::move(program.value());
   const int n = kDisplayTableSize;
   GLuint name = 0;
   glCreateTextures(GL_TEXTURE_3D, 1, &name);
@@ -34,7 +59,8 @@ Result<DisplayPass> DisplayPass::create(Display display, const ColorConfig& colo
 }
 
 void DisplayPass::draw(const Targets& targets, float exposure, bool dither, bool edges_follow) {
-  gl::bind_textures({&targets.color, &table_});
+  gl::bind_textures({&targets.color});
+  if (!by_text()) glBindTextureUnit(1, table_.name());
   program_.program().set("exposure", exposure);
   program_.program().set("dither", dither ? 1.0f / 255.0f : 0.0f);
   const gl::Texture& into = edges_follow ? targets.sharp : targets.display;

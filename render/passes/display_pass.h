@@ -12,16 +12,22 @@ namespace slosh {
 
 class DisplayPass {
  public:
-  /// `compute`: by compute shaders.
-  static Result<DisplayPass> create(Display display, const ColorConfig& color, bool compute);
+  struct Wish {
+    Display display = Display::kAces;
+    ColorConfig color;
+    DisplayBy by = DisplayBy::kSmaller;
+    bool compute = false;  ///< by compute shaders
+    bool operator==(const Wish&) const = default;
+  };
+  static Result<DisplayPass> create(const Wish& wish);
   /// Reads color; writes display, or sharp where smooth_edges follows.
   void draw(const Targets& targets, float exposure, bool dither, bool edges_follow);
   /// Reads sharp; writes display. `on_cpu`: where a CPU draws; then `part` may say what of sharp was written
   /// since the call before.
   void smooth_edges(const Targets& targets, bool on_cpu, const std::optional<PixelBox>& part = std::nullopt);
-  bool shows(Display display, const ColorConfig& color, bool compute) const {
-    return display == display_ && color == color_ && compute == program_.on_compute();
-  }
+  bool is(const Wish& wish) const { return wish == wish_; }
+  /// Whether by OpenColorIO's own text, not by the table.
+  bool by_text() const { return table_.name() == 0; }
 
  private:
   gl::PixelProgram program_;
@@ -30,8 +36,7 @@ class DisplayPass {
   std::vector<std::uint8_t> sharp_;   ///< in main memory
   std::vector<std::uint8_t> smooth_;  ///< likewise, its edges smoothed
   std::vector<float> brightness_;
-  Display display_ = Display::kAces;
-  ColorConfig color_;
+  Wish wish_;
 };
 
 }  // namespace slosh

@@ -35,6 +35,9 @@ struct Wishes {
   bool no_bodies = false;
   bool basin = false;
   bool caustics = false;
+  bool table = false;
+  bool text = false;
+  bool srgb = false;
   bool paper = false;
   bool full = false;
   bool flow = false;
@@ -67,6 +70,9 @@ void say_options(CLI::App& app, Wishes& wishes) {
   app.add_flag("--mix", wishes.mix, "a cloudy one into which an opaque one runs");
   app.add_flag("--hard", wishes.hard, "fluids meet in hard outlines");
   app.add_flag("--basin", wishes.basin, "a still basin with a post behind it, in place of the broken dam");
+  app.add_flag("--srgb", wishes.srgb, "the plain sRGB display in place of ACES");
+  app.add_flag("--table", wishes.table, "colours by the baked table alone");
+  app.add_flag("--text", wishes.text, "colours by OpenColorIO's own shader text");
   app.add_flag("--caustics", wishes.caustics, "light focused by the fluid's surface, with --full");
   app.add_flag("--no-bodies", wishes.no_bodies, "the fluid mirrors the room alone");
   app.add_flag("--paper", wishes.paper, "the paper's section 5");
@@ -313,6 +319,9 @@ slosh::Result<std::unique_ptr<Way>> make_way(const char* name, const Wishes& wis
   if (wishes.flow) options.surface = Surface::kCurvatureFlow;
   if (wishes.full) options.quality = Quality::kFull;
   options.caustics = wishes.caustics;
+  if (wishes.srgb) options.display = Display::kSrgb;
+  if (wishes.table) options.display_by = DisplayBy::kTable;
+  if (wishes.text) options.display_by = DisplayBy::kText;
   if (wishes.no_bodies) options.body_reflections = false;
   if (wishes.hard) options.soft_mixing = false;
   if (name != std::string("compute") && name != std::string("measured"))

@@ -155,5 +155,132 @@ TEST_F(ColorPictures, AreDrawnWithIt) {
   EXPECT_EQ(renderer->options().color.view, "Half") << "the old ones stay";
 }
 
+constexpr const char* kGammaConfig = R"(ocio_profile_version: 2
+roles:
+  aces_interchange: aces
+  default: aces
+  scene_linear: aces
+displays:
+  Projector:
+    - !<View> {name: Gamma, colorspace: gamma}
+    - !<View> {name: Curve, colorspace: curve}
+colorspaces:
+  - !<ColorSpace>
+    name: aces
+  - !<ColorSpace>
+    name: gamma
+    from_scene_reference: !<GroupTransform>
+      children:
+        - !<MatrixTransform> {matrix: [0.02, 0.01, 0, 0, 0, 0.03, 0, 0, 0.01, 0.01, 0.01, 0, 0, 0, 0, 1]}
+        - !<ExponentTransform> {value: [2.2, 2.2, 2.2, 1], direction: inverse}
+  - !<ColorSpace>
+    name: curve
+    from_scene_reference: !<FileTransform> {src: LUT, interpolation: linear}
+)";
+
+/// How the picture of an empty room differs from the transform applied to its light on the CPU, in 255ths.
+struct Off {
+  double most = 0.0;
+  double mean = 0.0;
+};
+
+class DisplayShaders : public RenderTest {
+ protected:
+  Off off(const RenderOptions& options) {
+    auto renderer = make(options);
+    renderer->draw(frame_of({}, {}, 0.01f));
+    const FloatImage light = renderer->read_buffer(Buffer::kFinalColor);
+    const Image image = renderer->read_back();
+    std::vector<glm::vec3> linear;
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x)
+        linear.push_back(options.exposure *
+                         glm::vec3(light.at(x, y, 0), light.at(x, y, 1), light.at(x, y, 2)));
+    }
+    const auto expected = display_colors(options.display, linear, options.color);
+    EXPECT_TRUE(expected) << expected.error().text();
+    Off found;
+    for (std::size_t i = 0; expected && i < linear.size(); ++i) {
+      for (int c = 0; c < 3; ++c) {
+        const double apart =
+            std::abs(image.rgba[4 * i + static_cast<std::size_t>(c)] - 255.0 * expected.value()[i][c]);
+        found.most = std::max(found.most, apart);
+        found.mean += apart / (3.0 * static_cast<double>(linear.size()));
+      }
+    }
+    return found;
+  }
+  RenderOptions plain() const {
+    RenderOptions options = small();
+    options.antialias = options.dither = false;
+    return options;
+  }
+};
+
+TEST_F(DisplayShaders, AMatrixAndAGammaAreExactToTheEight) {
+  const File file(kGammaConfig);
+  const ColorConfig gamma{file.path(), "Projector", "Gamma"};
+  // By hand: Rec.709 to ACES2065-1 (Bradford), the config's matrix, its gamma.
+  const glm::vec3 light(20.0f, 7.0f, 2.0f);
+  const glm::mat3 to_aces = glm::transpose(glm::mat3(0.4396329, 0.3829886, 0.1773785, 0.0897764, 0.8134394,
+                                                     0.0967841, 0.0175412, 0.1115466, 0.8709123));
+  const glm::mat3 own = glm::transpose(glm::mat3(0.02, 0.01, 0, 0, 0.03, 0, 0.01, 0.01, 0.01));
+  const glm::vec3 right = glm::pow(own * to_aces * light, glm::vec3(1.0f / 2.2f));
+  const auto by_cpu = display_colors(Display::kAces, {&light, 1}, gamma);
+  ASSERT_TRUE(by_cpu) << by_cpu.error().text();
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(by_cpu.value()[0][c], right[c], 2e-4f);
+  const auto text = display_shader(Display::kAces, gamma);
+  ASSERT_TRUE(text) << text.error().text();
+  ASSERT_TRUE(text.value()) << "it needs no textures";
+  std::printf("a matrix and a gamma take %zu characters, ACES %zu, sRGB %zu\n", text.value()->size(),
+              display_shader(Display::kAces).value()->size(), display_shader(Display::kSrgb).value()->size());
+  // Light far above the table's 32 times white comes out right by the text.
+  RenderOptions options = plain();
+  options.color = gamma;
+  for (const float exposure : {1.0f, 60.0f}) {
+    options.exposure = exposure;
+    options.display_by = DisplayBy::kSmaller;
+    const Off shown = off(options);
+    options.display_by = DisplayBy::kTable;
+    const Off baked = off(options);
+    std::printf("exposure %g: off by %.2f at most, %.3f on the mean by the text; %.2f, %.3f by the table\n",
+                double{exposure}, shown.most, shown.mean, baked.most, baked.mean);
+    EXPECT_LT(shown.most, 0.51) << "rounded to the nearest of 255";
+    EXPECT_GT(baked.most, shown.most);
+  }
+}
+
+TEST_F(DisplayShaders, TheBuiltInOnesAreExactByTheirTextAndNearByTheTable) {
+  for (const Display display : {Display::kAces, Display::kSrgb}) {
+    RenderOptions options = plain();
+    options.display = display;
+    options.display_by = DisplayBy::kText;
+    const Off shown = off(options);
+    options.display_by = DisplayBy::kTable;
+    const Off baked = off(options);
+    std::printf("%s: off by %.2f at most, %.3f on the mean by the text; %.2f, %.3f by the table\n",
+                display == Display::kAces ? "ACES" : "sRGB", shown.most, shown.mean, baked.most, baked.mean);
+    EXPECT_LT(shown.most, 0.55);
+    EXPECT_LT(baked.most, 4.0);
+  }
+}
+
+TEST_F(DisplayShaders, AViewOfALookUpTableHasTheBakedOne) {
+  const std::filesystem::path lut =
+      std::filesystem::temp_directory_path() / ("slosh-curve-" + std::to_string(getpid()) + ".spi1d");
+  std::ofstream(lut) << "Version 1\nFrom 0.0 1.0\nLength 3\nComponents 1\n{\n0.0\n0.7\n1.0\n}\n";
+  std::string config = kGammaConfig;
+  config.replace(config.find("LUT"), 3, lut.string());
+  const File file(config);
+  RenderOptions options = plain();
+  options.color = {file.path(), "Projector", "Curve"};
+  const auto text = display_shader(Display::kAces, options.color);
+  ASSERT_TRUE(text) << text.error().text();
+  EXPECT_FALSE(text.value()) << "it needs a texture of its own";
+  options.display_by = DisplayBy::kText;
+  EXPECT_LT(off(options).most, 4.0);
+  std::filesystem::remove(lut);
+}
+
 }  // namespace
 }  // namespace slosh
