@@ -78,8 +78,14 @@ void Renderer::prepare(const Frame& frame, std::span<const View> views) {
   if (p.particles) {
     const bool moves = p.options.surface == Surface::kOurs;
     p.run("particles", [&] { p.particles->take(p.frame, moves); });
-    p.run("fluid shadow", [&] { p.fluid_shadow_pass->draw(p.frame, p.options, p.shadow, *p.particles); });
-    if (moves) p.run("smooth centres", [&] { p.particles->smooth(); });
+    p.run("fluid shadow, cells", [&] {
+      const bool dims = p.fluid_shadow_pass->start_sums(p.frame, p.options, p.shadow, *p.particles);
+      p.particles->start_next();
+      gl::finish_compute();
+      if (dims) p.fluid_shadow_pass->start_map();
+      p.particles->start_next();
+      gl::finish_compute();
+    });
   } else {
     p.run("fluid shadow", [&] { p.fluid_shadow_pass->draw(p.frame, p.options, p.shadow); });
   }
@@ -89,11 +95,17 @@ void Renderer::prepare(const Frame& frame, std::span<const View> views) {
 }
 
 void Renderer::draw(const View& view, const PictureTarget& target) {
+  draw({&view, 1}, {&target, 1});
+}
+
+void Renderer::draw(std::span<const View> views, std::span<const PictureTarget> targets) {
   Parts& p = *parts_;
-  p.frame.view = view;
-  p.draw_scene();
-  if (target.texture != 0) {
-    p.run("copy", [&] { p.copy(p.targets.display, p.targets.size, target); });
+  views = views.first(std::min(views.size(), p.pictures.size()));
+  if (views.empty()) return;
+  p.draw_together(views);
+  for (std::size_t i = 0; i < std::min(views.size(), targets.size()); ++i) {
+    if (targets[i].texture == 0) continue;
+    p.run("copy", [&] { p.copy(p.pictures[i].targets.display, p.targets.size, targets[i]); });
   }
 }
 
@@ -135,8 +147,9 @@ void Renderer::draw(const Frame& frame) {
   parts_->frame = {};  // what it points to may go now
 }
 
-Image Renderer::read_back() {
-  return read_image(parts_->targets.display_target, parts_->targets.size);
+Image Renderer::read_back(std::size_t view) {
+  const Targets& drawn = parts_->pictures[std::min<std::size_t>(view, 1)].targets;
+  return read_image((drawn.size == glm::ivec2(0) ? parts_->targets : drawn).display_target, parts_->targets.size);
 }
 
 FloatImage Renderer::read_buffer(Buffer buffer) {

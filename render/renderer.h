@@ -161,7 +161,10 @@ class Renderer : public MeshSink {
   /// One picture of what was prepared, without a HUD: into the renderer's own, which read_back() reads, and
   /// from there to `target` as the bytes are.
   void draw(const View& view, const PictureTarget& target = {});
-  /// Runs Frame::hud once, over the picture drawn last.
+  /// Two pictures of it, as both eyes have them, each the same as by itself: side by side where compute shaders
+  /// draw, which takes less time than one after the other. More than two are left out.
+  void draw(std::span<const View> views, std::span<const PictureTarget> targets = {});
+  /// Runs Frame::hud once, over the picture drawn last (of two, the first).
   void draw_hud();
   /// Runs Frame::hud once, by itself, into `target` of `size` pixels: sRGB, transparent where nothing is,
   /// colours multiplied by alpha.
@@ -173,8 +176,8 @@ class Renderer : public MeshSink {
   /// All of this for one picture: of Frame::view, with the HUD over it.
   void draw(const Frame& frame);
 
-  /// The picture drawn last.
-  Image read_back();
+  /// The picture drawn last; of two that were drawn together, `view` 0 or 1.
+  Image read_back(std::size_t view = 0);
   FloatImage read_buffer(Buffer buffer);
 
   const RenderOptions& options() const;

@@ -10,9 +10,6 @@
 namespace slosh {
 namespace {
 
-/// How far ambient occlusion looks, in multiples of the distance to what is looked at.
-constexpr float kOcclusionReach = 0.06f;
-
 /// A processor that draws, too, has its hands full; beside a GPU a quarter of its cores is free for this.
 int smoothing_threads(const Context& context) {
   return context.is_software() ? 1
@@ -31,6 +28,24 @@ Renderer::Parts::Parts(Context& where, const RenderOptions& what)
 void Renderer::Parts::copy(const gl::Texture& from, glm::ivec2 size, const PictureTarget& target) {
   glCopyImageSubData(from.name(), GL_TEXTURE_2D, 0, 0, 0, 0, target.texture, GL_TEXTURE_2D, 0, 0, 0, 0,
                      size.x, size.y, 1);
+}
+
+void Renderer::Parts::draw_together(std::span<const View> views) {
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    Picture& picture = pictures[i];
+    picture.view = views[i];
+    if (picture.targets.size != targets.size)
+      picture.targets = make_targets(targets.size, options.half_resolution_back, fast);
+  }
+  if (particles) return draw_stages(std::span(pictures).first(views.size()));
+  // One after the other into the first one's, which the last stays in.
+  for (std::size_t i = views.size(); i-- > 0;) {
+    frame.view = views[i];
+    draw_scene();
+    if (i == 0) continue;
+    std::swap(pictures[0].targets, pictures[i].targets);
+    kept.forget();
+  }
 }
 
 Result<bool> Renderer::Parts::fit_to_options() {
@@ -80,6 +95,7 @@ Result<bool> Renderer::Parts::fit_to_options() {
   if (targets.size != size || targets.back_size != back || made_fast != fast) {
     made_fast = fast;
     targets = make_targets(size, options.half_resolution_back, fast);
+    pictures[1].targets = {};
     drew_fluid = false;
   }
   const int shadow_size = fast ? (3 * options.shadow_size + 3) / 4 : options.shadow_size;
@@ -119,7 +135,7 @@ std::optional<PixelBox> Renderer::Parts::part_to_draw() {
   return kept.changed(frame, meshes, targets.size, shadow.size > 0 ? shadow.texel : 0.0f);
 }
 
-int Renderer::Parts::draw_mixing() {
+int Renderer::Parts::draw_mixing(const Targets& into, const SplatBuffers& of) {
   if (!options.soft_mixing || !options.lit_fluid) return 0;
   const int layers = particles ? mixing_layers(frame) : mixing_layers(frame, splats);
   if (layers == 0) return 0;
@@ -129,14 +145,13 @@ int Renderer::Parts::draw_mixing() {
     mixing_pass = std::move(made.value());
   }
   run("mixing", [&] {
-    mixing_pass->draw(frame, targets, fluid_passes->smoothed(targets), fluid_passes->spheres(),
-                      fluid_passes->splats().count, layers);
+    mixing_pass->draw(frame, into, fluid_passes->smoothed(into), of.spheres, of.count, layers);
   });
   mixing_pass->bind();
   return layers;
 }
 
-bool Renderer::Parts::draw_caustics() {
+bool Renderer::Parts::draw_caustics(const Targets& into) {
   const bool wanted = options.caustics && options.lit_fluid && !fast && shadow.size > 0;
   if (!wanted || !has_opaque(frame) || !any_fluid_is_clear(frame)) return false;
   if (!caustics_pass) {
@@ -144,16 +159,11 @@ bool Renderer::Parts::draw_caustics() {
     if (!made) return false;  // a driver that refuses it: without
     caustics_pass = std::move(made.value());
   }
-  run("caustics", [&] { caustics_pass->draw(frame, targets, fluid_passes->smoothed(targets)); });
+  run("caustics", [&] { caustics_pass->draw(frame, into, fluid_passes->smoothed(into)); });
   return true;
 }
 
 bool Renderer::Parts::prepare_fluid(bool chords) {
-  if (particles) {
-    if (particles->count() == 0) return false;
-    fluid_passes->place(*particles, frame, options);
-    return true;
-  }
   prepare_splats(frame, options, splats);
   if (chords) splats.all = splats.spheres;
   if (fast) leave_out_hidden(frame, options, splats);
@@ -164,6 +174,21 @@ bool Renderer::Parts::prepare_fluid(bool chords) {
   }
   fluid_passes->upload(splats);
   return true;
+}
+
+bool Renderer::Parts::sums_chords() const {
+  return options.layers && options.surface != Surface::kPaper && any_fluid_is_clear(frame);
+}
+
+bool Renderer::Parts::mirrors_bodies() const {
+  return !fast && options.body_reflections && options.fresnel && has_opaque(frame);
+}
+
+void Renderer::Parts::draw_foam(const Targets& into) {
+  if (!foam_pass) {
+    if (auto made = FoamPass::create(far_light.defines())) foam_pass = std::move(made.value());
+  }
+  if (foam_pass) foam_pass->draw(frame, into, fluid_depth(into));
 }
 
 void Renderer::Parts::draw_scene() {
@@ -178,7 +203,7 @@ void Renderer::Parts::draw_scene() {
       glDisable(GL_SCISSOR_TEST);
     });
   };
-  const bool chords = options.layers && options.surface != Surface::kPaper && any_fluid_is_clear(frame);
+  const bool chords = sums_chords();
   far_light.bind();
   uniforms.upload(make_frame_block(frame, options, shadow, chords));
   drew_caustics = false;
@@ -189,7 +214,7 @@ void Renderer::Parts::draw_scene() {
     run("back depth", [&] { fluid_passes->splat_back(targets); });
   }
 
-  const bool occlusion = options.ambient_occlusion && !fast;
+  const bool occlusion = occludes();
   run_in_part("opaque meshes", [&] {
     scene_pass->draw_opaque(frame, meshes, textures, targets, options.draw_background, occlusion);
   });
@@ -203,18 +228,14 @@ void Renderer::Parts::draw_scene() {
     run("surface filter", [&] { fluid_passes->smooth(targets, options, frame); });
   }
   if (drew_fluid && chords) {
-    run("thickness", [&] {
-      if (!particles) return thickness_pass->draw(frame, targets, splats.all);
-      const SplatBuffers& all = fluid_passes->splats();
-      thickness_pass->draw(frame, targets, all.unmoved(), all.count);
-    });
+    run("thickness", [&] { thickness_pass->draw(frame, targets, splats.all); });
   }
   const bool translucent = has_translucent(frame);
   if (drew_fluid) {
     bool copied = false;
     if (translucent && !fast) {
       run("translucent behind", [&] {
-        copied = scene_pass->draw_translucent(frame, meshes, textures, targets, fluid_depth(), true);
+        copied = scene_pass->draw_translucent(frame, meshes, textures, targets, fluid_depth(targets), true);
       });
     }
     const auto copy_scene = [&] {
@@ -229,24 +250,18 @@ void Renderer::Parts::draw_scene() {
                          box.size().y, 1);
     };
     if (!copied) run("copy scene colour", copy_scene);
-    const bool bodies = !fast && options.body_reflections && options.fresnel && has_opaque(frame);
-    drew_caustics = draw_caustics();
-    const LitLook look{draw_mixing(), bodies, drew_caustics};
+    drew_caustics = draw_caustics(targets);
+    const LitLook look{draw_mixing(targets, fluid_passes->splats()), mirrors_bodies(), drew_caustics};
     run_in_part("composite", [&] { fluid_passes->composite(targets, options.lit_fluid ? &look : nullptr); });
   }
-  if (!frame.foam.empty()) {
-    if (!foam_pass) {
-      if (auto made = FoamPass::create(far_light.defines())) foam_pass = std::move(made.value());
-    }
-    if (foam_pass) run_in_part("foam", [&] { foam_pass->draw(frame, targets, fluid_depth()); });
-  }
+  if (!frame.foam.empty()) run_in_part("foam", [&] { draw_foam(targets); });
   if (translucent) {
     run_in_part("translucent", [&] {
-      scene_pass->draw_translucent(frame, meshes, textures, targets, fluid_depth(), false);
+      scene_pass->draw_translucent(frame, meshes, textures, targets, fluid_depth(targets), false);
     });
   }
   if (!frame.arrows.empty()) {
-    run_in_part("arrows", [&] { arrow_pass->draw(frame, targets, fluid_depth()); });
+    run_in_part("arrows", [&] { arrow_pass->draw(frame, targets, fluid_depth(targets)); });
   }
   run_in_part("display",
               [&] { display_pass->draw(targets, options.exposure, options.dither, options.antialias); });

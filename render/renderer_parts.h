@@ -1,8 +1,10 @@
 // What a Renderer is made of: its passes, its targets, and the frame it draws.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "render/gl/objects.h"
@@ -32,6 +34,20 @@
 
 namespace slosh {
 
+/// How far ambient occlusion looks, in multiples of the distance to what is looked at.
+inline constexpr float kOcclusionReach = 0.06f;
+
+/// What a view has for itself. The first one's serves all that are drawn alone.
+struct Picture {
+  View view;
+  Targets targets;
+  // Where compute shaders draw:
+  gl::StreamBuffer block;  ///< uniforms
+  SplatBuffers splats;
+  ThicknessPass::Sums chord_sums;
+  TiledMeshes::Lists meshes;
+};
+
 struct Renderer::Parts {
   Parts(Context& where, const RenderOptions& what);
 
@@ -40,11 +56,12 @@ struct Renderer::Parts {
   MeshStore meshes;
   TextureStore textures;
   FrameUniforms uniforms;
+  std::array<Picture, 2> pictures;  ///< of the views drawn together last
+  Targets& targets = pictures[0].targets;
   Splats splats;
   SmoothCenters centers;
   std::optional<ParticlesOnGpu> particles;  ///< for compute, but where hidden ones are left out on a CPU
   FarLight far_light;
-  Targets targets;
   std::optional<ShadowPass> shadow_pass;
   std::optional<FluidShadowPass> fluid_shadow_pass;
   std::optional<ScenePass> scene_pass;
@@ -75,12 +92,37 @@ struct Renderer::Parts {
 
   /// Makes what `options` asks for and is not there yet.
   Result<bool> fit_to_options();
-  const gl::Texture* fluid_depth() const { return drew_fluid ? &fluid_passes->smoothed(targets) : nullptr; }
+  const gl::Texture* fluid_depth(const Targets& of) const {
+    return drew_fluid ? &fluid_passes->smoothed(of) : nullptr;
+  }
+  bool sums_chords() const;
+  bool occludes() const { return options.ambient_occlusion && !fast; }
+  bool mirrors_bodies() const;
+  /// Draws views into as many pictures.
+  void draw_together(std::span<const View> views);
   void draw_scene();
+  /// draw_scene() of several views at once where particles are on the GPU: what does not wait for each other
+  /// runs side by side (renderer_stages.cpp).
+  void draw_stages(std::span<Picture> drawn);
+  void draw_stages_before_fluid(std::span<Picture> drawn, bool tiled);
+  void draw_stages_of_fluid(std::span<Picture> drawn, bool chords);
+  void draw_stages_of_look(std::span<Picture> drawn, bool tiled);
+  void draw_stages_after(std::span<Picture> drawn, bool tiled);
+  /// Makes a picture the one that passes draw.
+  void choose(const Picture& picture);
+  /// Starts something for each picture, whose view is then the frame's.
+  template <class Start>
+  void each(std::span<Picture> drawn, Start&& start) {
+    for (Picture& picture : drawn) {
+      choose(picture);
+      start(picture);
+    }
+  }
   /// The shares of the fluids that are seen, where there are several; the textures they take, 0: none.
-  int draw_mixing();
+  int draw_mixing(const Targets& into, const SplatBuffers& of);
   /// Whether there are caustics in this picture.
-  bool draw_caustics();
+  bool draw_caustics(const Targets& into);
+  void draw_foam(const Targets& into);
   /// What is left of the splats for a view; whether it has any.
   bool prepare_fluid(bool chords);
   /// What has to be drawn of this picture; nothing where that is all of it.

@@ -36,12 +36,16 @@ Result<PixelProgram> PixelProgram::create(const char* file, bool compute, bool t
 }
 
 void PixelProgram::run(const PixelTarget& target, const TileDraw* tiles) const {
+  start(target, tiles);
+  if (compute_) finish_compute();
+}
+
+void PixelProgram::start(const PixelTarget& target, const TileDraw* tiles) const {
   program_.use();
   if (compute_) {
     glBindImageTexture(0, target.texture.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, target.format);
     const glm::ivec2 groups = (target.size + kPixelGroup - 1) / kPixelGroup;
     glDispatchCompute(static_cast<GLuint>(groups.x), static_cast<GLuint>(groups.y), 1);
-    finish_compute();
     return;
   }
   glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer.name());
@@ -97,9 +101,13 @@ const Program& RowProgram::of(std::size_t count) const {
 }
 
 void RowProgram::run(std::size_t count) const {
+  start(count);
+  finish_compute();
+}
+
+void RowProgram::start(std::size_t count) const {
   const std::size_t rows = (count + kPartsOfRows - 1) / kPartsOfRows * kPartsOfRows;
   start_groups(of(count), count, rows, kInRows / (count < kMany ? kLongRow : kShortRow));
-  finish_compute();
 }
 
 }  // namespace slosh::gl

@@ -35,6 +35,8 @@ class PixelProgram {
 
   /// Its textures and uniforms are set by the caller before. What it writes, whoever comes next may read.
   void run(const PixelTarget& target, const TileDraw* tiles = nullptr) const;
+  /// The same, but nobody reads it before finish_compute().
+  void start(const PixelTarget& target, const TileDraw* tiles = nullptr) const;
 
   bool on_compute() const { return compute_; }
   const Program& program() const { return program_; }
@@ -64,6 +66,8 @@ class RowProgram {
   /// What runs for so many: its uniforms are set by the caller, but for `count`.
   const Program& of(std::size_t count) const;
   void run(std::size_t count) const;
+  /// The same without finish_compute().
+  void start(std::size_t count) const;
 
  private:
   Program few_;

@@ -59,12 +59,17 @@ Result<DisplayPass> DisplayPass::create(const Wish& wish) {
 }
 
 void DisplayPass::draw(const Targets& targets, float exposure, bool dither, bool edges_follow) {
+  start(targets, exposure, dither, edges_follow);
+  if (program_.on_compute()) gl::finish_compute();
+}
+
+void DisplayPass::start(const Targets& targets, float exposure, bool dither, bool edges_follow) {
   gl::bind_textures({&targets.color});
   if (!by_text()) glBindTextureUnit(1, table_.name());
   program_.program().set("exposure", exposure);
   program_.program().set("dither", dither ? 1.0f / 255.0f : 0.0f);
   const gl::Texture& into = edges_follow ? targets.sharp : targets.display;
-  program_.run({into, edges_follow ? targets.sharp_target : targets.display_target, targets.size, GL_RGBA8});
+  program_.start({into, edges_follow ? targets.sharp_target : targets.display_target, targets.size, GL_RGBA8});
 }
 
 void DisplayPass::smooth_edges(const Targets& targets, bool on_cpu, const std::optional<PixelBox>& part) {
@@ -89,8 +94,13 @@ void DisplayPass::smooth_edges(const Targets& targets, bool on_cpu, const std::o
     glBindFramebuffer(GL_FRAMEBUFFER, targets.display_target.name());
     return;
   }
+  start_edges(targets);
+  if (edges_.on_compute()) gl::finish_compute();
+}
+
+void DisplayPass::start_edges(const Targets& targets) {
   gl::bind_textures({&targets.sharp});
-  edges_.run({targets.display, targets.display_target, targets.size, GL_RGBA8});
+  edges_.start({targets.display, targets.display_target, targets.size, GL_RGBA8});
 }
 
 }  // namespace slosh

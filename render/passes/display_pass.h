@@ -22,6 +22,9 @@ class DisplayPass {
   static Result<DisplayPass> create(const Wish& wish);
   /// Reads color; writes display, or sharp where smooth_edges follows.
   void draw(const Targets& targets, float exposure, bool dither, bool edges_follow);
+  /// The same, and edges by shaders, but nobody reads it before gl::finish_compute().
+  void start(const Targets& targets, float exposure, bool dither, bool edges_follow);
+  void start_edges(const Targets& targets);
   /// Reads sharp; writes display. `on_cpu`: where a CPU draws; then `part` may say what of sharp was written
   /// since the call before.
   void smooth_edges(const Targets& targets, bool on_cpu, const std::optional<PixelBox>& part = std::nullopt);

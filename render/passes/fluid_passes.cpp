@@ -71,10 +71,7 @@ void FluidPasses::upload_tiles(std::span<const glm::vec2> corners) {
   tile_corners_ = static_cast<GLsizei>(corners.size());
 }
 
-void FluidPasses::place(const ParticlesOnGpu& particles, const Frame& frame, const RenderOptions& options) {
-  particles.place(frame, splat_reach(frame.particle_radius, options), splats_);
-  back_count_ = 0;
-  // Nobody here knows where they are: passes drawn as fragments go over the whole picture.
+void FluidPasses::use_whole_picture() {
   constexpr glm::vec2 kPicture[] = {{-1.0f, -1.0f}, {3.0f, -1.0f}, {-1.0f, 3.0f}};
   if (tile_corners_ != static_cast<GLsizei>(std::size(kPicture))) upload_tiles(kPicture);
 }
@@ -98,6 +95,34 @@ void FluidPasses::splat(const SplatProgram& program, const gl::PixelTarget& targ
   glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(3 * count));
   glBlendEquation(GL_FUNC_ADD);
   glDisable(GL_BLEND);
+}
+
+void FluidPasses::start_clear(const Targets& targets) const {
+  fill_program_.program().set("fill_with", glm::vec4(kNoFluidDepth));
+  fill_program_.start({targets.front, targets.front_target, targets.size, GL_R32F});
+  fill_program_.program().set("fill_with", glm::vec4(0.0f));
+  fill_program_.start({targets.back, targets.back_target, targets.back_size, GL_R32F});
+}
+
+void FluidPasses::start_splats(const Targets& targets, const SplatBuffers& splats) const {
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, splats.spheres.name());
+  if (splats.shaped) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, splats.shapes.name());
+  glBindImageTexture(0, targets.front.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_R32UI);
+  (splats.shaped ? shaped_program_ : front_program_).rows.start(splats.count);
+  glBindImageTexture(0, targets.back.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_R32UI);
+  back_program_.rows.start(splats.count);
+}
+
+int FluidPasses::begin_filter(const RenderOptions& options) {
+  // Nobody here knows where the splats are: what is drawn as fragments later goes over the whole picture.
+  use_whole_picture();
+  smoothed_ = -1;
+  return options.bilateral_iterations == 0 ? 0 : filter_->turns(options);
+}
+
+void FluidPasses::start_turn(int i, const Targets& targets, const RenderOptions& options, const Frame& frame) {
+  filter_->start_turn(i, targets, options, frame, tiles());
+  smoothed_ = i % 2;
 }
 
 void FluidPasses::splat_front(const Targets& targets) {
@@ -151,11 +176,16 @@ const gl::PixelProgram& FluidPasses::program_of(const LitLook& look, const Targe
 }
 
 void FluidPasses::composite(const Targets& targets, const LitLook* look) {
+  start_composite(targets, look);
+  if (compute_) gl::finish_compute();
+}
+
+void FluidPasses::start_composite(const Targets& targets, const LitLook* look) {
   gl::bind_textures({&targets.front, &smoothed(targets), &targets.back, &targets.scene_depth,
                      &targets.scene_color, &targets.chord});
   const gl::TileDraw where = tiles();
   (look ? program_of(*look, targets) : composite_program_)
-      .run({targets.color, targets.color_target, targets.size, GL_RGBA16F}, &where);
+      .start({targets.color, targets.color_target, targets.size, GL_RGBA16F}, &where);
 }
 
 void FluidPasses::thickness(const Targets& targets, const gl::Framebuffer& target) {

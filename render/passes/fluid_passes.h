@@ -32,9 +32,7 @@ class FluidPasses {
 
   /// Uploads this frame's splats and tiles.
   void upload(const Splats& splats);
-  /// The same of particles that are on the GPU. The view's uniform block is bound.
-  void place(const ParticlesOnGpu& particles, const Frame& frame, const RenderOptions& options);
-  /// What place() made.
+  /// What upload() took.
   const SplatBuffers& splats() const { return splats_; }
   /// 5.1. Reads the splats; writes front and back.
   void splat_front(const Targets& targets);
@@ -46,15 +44,21 @@ class FluidPasses {
   void fetch_front(const Targets& targets, const RenderOptions& options);
   /// Reads front; writes smooth by turns.
   void smooth(const Targets& targets, const RenderOptions& options, const Frame& frame);
+  /// The same by compute shaders, of splats that were placed there, in steps of which nobody reads before
+  /// gl::finish_compute(): front and back cleared; the splats; each turn of the filter, of which begin_filter() tells how many there are.
+  void start_clear(const Targets& targets) const;
+  void start_splats(const Targets& targets, const SplatBuffers& splats) const;
+  int begin_filter(const RenderOptions& options);
+  void start_turn(int i, const Targets& targets, const RenderOptions& options, const Frame& frame);
   /// 5.2: Eq 15, or with `lit` fluid_look.glsl. Reads front, smooth, back, scene_depth, scene_color; writes
   /// color where there is fluid. `look`: null for Eq 15.
   void composite(const Targets& targets, const LitLook* look);
+  /// The same, but nobody reads it before gl::finish_compute().
+  void start_composite(const Targets& targets, const LitLook* look);
   /// T for tests, into an R32F target of the picture's size; and n, into an RGBA32F one.
   void thickness(const Targets& targets, const gl::Framebuffer& target);
   void normals(const Targets& targets, const gl::Framebuffer& target);
 
-  /// What upload() took, as smooth_centers() moved it: eye position m, fluid.
-  const gl::StreamBuffer& spheres() const { return splats_.spheres; }
   /// F_fD after the last smooth(), or before it if no iteration was asked for.
   const gl::Texture& smoothed(const Targets& targets) const;
 
@@ -72,6 +76,7 @@ class FluidPasses {
   const gl::PixelProgram& program_of(const LitLook& look, const Targets& targets);
   gl::TileDraw tiles() const { return {&tile_vertices_, tile_corners_}; }
   void upload_tiles(std::span<const glm::vec2> corners);
+  void use_whole_picture();
   void draw_data(const gl::Program& program, const Targets& targets, const gl::Framebuffer& target);
 
   SplatProgram front_program_;

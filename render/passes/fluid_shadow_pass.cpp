@@ -83,27 +83,32 @@ void FluidShadowPass::set_up(const gl::Program& program, const Frame& frame, con
   program.set("chord", 2.0f * volume * volume * volume / (drawn_radius * drawn_radius));
 }
 
-void FluidShadowPass::draw(const Frame& frame, const RenderOptions& options, const ShadowView& shadow,
-                           const ParticlesOnGpu& particles) {
-  if (!begin(frame, options, shadow, particles.count())) return;
+bool FluidShadowPass::start_sums(const Frame& frame, const RenderOptions& options, const ShadowView& shadow,
+                                 const ParticlesOnGpu& particles) {
+  if (!begin(frame, options, shadow, particles.count())) return false;
   const std::size_t step = (particles.count() + most_ - 1) / most_;
   const std::size_t drawn = (particles.count() + step - 1) / step;
   const gl::Program& program = rows_.of(drawn);
   set_up(program, frame, options, shadow, step);
   program.set("stride", static_cast<int>(step));
-  sum_up(particles.particles(), drawn);
+  start_rows(particles.particles(), drawn);
+  return true;
 }
 
-void FluidShadowPass::sum_up(const gl::StreamBuffer& particles, std::size_t count) {
+void FluidShadowPass::start_rows(const gl::StreamBuffer& particles, std::size_t count) {
   const auto side = static_cast<std::size_t>(size_);
   if (!std::exchange(sums_ready_, true)) sums_.zero(4 * sizeof(std::uint32_t) * side * side);
   rows_.of(count).set("size", size_);
-  sum_.program().set("size", size_);
-  sum_.program().set("alike", alike_);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, particles.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, sums_.name());
-  rows_.run(count);
-  sum_.run({map_, target_, glm::ivec2(size_), GL_RGBA16F});
+  rows_.start(count);
+}
+
+void FluidShadowPass::start_map() {
+  sum_.program().set("size", size_);
+  sum_.program().set("alike", alike_);
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, sums_.name());
+  sum_.start({map_, target_, glm::ivec2(size_), GL_RGBA16F});
 }
 
 void FluidShadowPass::draw(const Frame& frame, const RenderOptions& options, const ShadowView& shadow) {
@@ -128,7 +133,10 @@ void FluidShadowPass::draw(const Frame& frame, const RenderOptions& options, con
   set_up(program, frame, options, shadow, step);
   if (sum_.on_compute()) {
     program.set("stride", 1);
-    return sum_up(buffer_, particles_.size());
+    start_rows(buffer_, particles_.size());
+    gl::finish_compute();
+    start_map();
+    return gl::finish_compute();
   }
   glVertexArrayVertexBuffer(array_.name(), 0, buffer_.name(), 0, sizeof(glm::vec4));
   glBindFramebuffer(GL_FRAMEBUFFER, target_.name());

@@ -19,9 +19,11 @@ class FluidShadowPass {
 
   /// Reads all particles of the frame; writes the map and binds it. The map is empty without a shadow view.
   void draw(const Frame& frame, const RenderOptions& options, const ShadowView& shadow);
-  /// The same by compute shaders, of particles that are on the GPU.
-  void draw(const Frame& frame, const RenderOptions& options, const ShadowView& shadow,
-            const ParticlesOnGpu& particles);
+  /// The same by compute shaders, of particles that are on the GPU, in two steps of which nobody reads before
+  /// gl::finish_compute(): sums, and the map of them. False: there is nothing to sum up, and the map is empty.
+  bool start_sums(const Frame& frame, const RenderOptions& options, const ShadowView& shadow,
+                  const ParticlesOnGpu& particles);
+  void start_map();
 
  private:
   void clear() const;
@@ -30,8 +32,7 @@ class FluidShadowPass {
   /// Sets the program's uniforms, each particle drawn standing for `step`.
   void set_up(const gl::Program& program, const Frame& frame, const RenderOptions& options,
               const ShadowView& shadow, std::size_t step);
-  /// By compute shaders.
-  void sum_up(const gl::StreamBuffer& particles, std::size_t count);
+  void start_rows(const gl::StreamBuffer& particles, std::size_t count);
 
   gl::Program program_;
   gl::RowProgram rows_;    ///< for compute

@@ -50,7 +50,10 @@ void ParticlesOnGpu::take(const Frame& frame, bool moves) {
   // Where fluids mix, what is two particles deep counts too.
   leaves_out_deep_ = count_ > kManyParticles && fluids == 1;
   if (fluids == 0) count_ = 0;
+  steps_.clear();
   if (count_ == 0) return;
+  if (moves_) steps_ = {Step::kSmooth, Step::kSort, Step::kFill, Step::kBegin};
+  if (moves_ && leaves_out_deep_) steps_.insert(steps_.begin() + 1, Step::kFindDeep);
   places_.upload(std::as_bytes(frame.particles.first(count_)));
   fluids_.upload(std::as_bytes(frame.particle_fluid.first(count_)));
   particles_.reserve(count_ * kVec4);
@@ -60,6 +63,12 @@ void ParticlesOnGpu::take(const Frame& frame, bool moves) {
     entries_ = std::bit_ceil(std::max<std::size_t>(count_ / 2, 1024));
     counts_.zero((entries_ + 1) * sizeof(std::uint32_t));
     ranks_.reserve(count_ * sizeof(std::uint32_t));
+    begins_.reserve(entries_ * sizeof(std::uint32_t));
+    deep_.reserve(entries_ * sizeof(std::uint32_t));
+    listed_.reserve(count_ * sizeof(std::uint32_t));
+    sorted_.reserve(count_ * kVec4);
+    centers_.reserve(count_ * kVec4);
+    ellipsoids_.reserve(count_ * 2 * kVec4);
     program.set("entries", static_cast<int>(entries_));
     program.set("reach", SmoothCenters::reach(radius_));
     bind(3, counts_);
@@ -75,41 +84,46 @@ void ParticlesOnGpu::take(const Frame& frame, bool moves) {
   fluids_.done();
 }
 
-void ParticlesOnGpu::smooth() {
-  if (count_ == 0 || !moves_) return;
-  begins_.reserve(entries_ * sizeof(std::uint32_t));
-  listed_.reserve(count_ * sizeof(std::uint32_t));
-  sorted_.reserve(count_ * kVec4);
-  centers_.reserve(count_ * kVec4);
-  ellipsoids_.reserve(count_ * 2 * kVec4);
+void ParticlesOnGpu::start_next() {
+  if (steps_.empty()) return;
+  const Step step = steps_.back();
+  steps_.pop_back();
+  const float reach = SmoothCenters::reach(radius_);
   bind(2, particles_);
   bind(3, counts_);
   bind(4, ranks_);
   bind(5, begins_);
   bind(6, listed_);
   bind(7, sorted_);
-  gl::run_each(begin_, entries_);
-  const float reach = SmoothCenters::reach(radius_);
-  for (const gl::Program* program : {&fill_, &sort_}) {
-    program->set("entries", static_cast<int>(entries_));
-    program->set("reach", reach);
-    gl::run_each(*program, count_);
+  bind(8, deep_);
+  const auto set_cells = [&](const gl::Program& program) {
+    program.set("entries", static_cast<int>(entries_));
+    program.set("reach", reach);
+  };
+  switch (step) {
+    case Step::kBegin:
+      return gl::start_each(begin_, entries_);
+    case Step::kFill:
+      set_cells(fill_);
+      return gl::start_each(fill_, count_);
+    case Step::kSort:
+      set_cells(sort_);
+      return gl::start_each(sort_, count_);
+    case Step::kFindDeep:
+      deep_program_.set("reach", reach);
+      return gl::start_each(deep_program_, entries_);
+    case Step::kSmooth: {
+      bind(0, centers_);
+      bind(1, ellipsoids_);
+      const gl::Program& program = leaves_out_deep_ ? smooth_seen_ : smooth_;
+      program.set("entries", static_cast<int>(entries_));
+      program.set("lengths", glm::vec2(reach, radius_));
+      return gl::start_each(program, count_, kSmoothShare);
+    }
   }
-  if (leaves_out_deep_) {
-    deep_.reserve(entries_ * sizeof(std::uint32_t));
-    bind(8, deep_);
-    deep_program_.set("reach", reach);
-    gl::run_each(deep_program_, entries_);
-  }
-  bind(0, centers_);
-  bind(1, ellipsoids_);
-  const gl::Program& program = leaves_out_deep_ ? smooth_seen_ : smooth_;
-  program.set("entries", static_cast<int>(entries_));
-  program.set("lengths", glm::vec2(reach, radius_));
-  gl::run_each(program, count_, kSmoothShare);
 }
 
-void ParticlesOnGpu::place(const Frame& frame, float splat_radius, SplatBuffers& out) const {
+void ParticlesOnGpu::start_placing(const Frame& frame, float splat_radius, SplatBuffers& out) const {
   out.count = count_;
   out.shaped = moves_;
   if (count_ == 0) return;
@@ -127,7 +141,7 @@ void ParticlesOnGpu::place(const Frame& frame, float splat_radius, SplatBuffers&
   }
   program.set("near_plane", frame.view.near_plane);
   program.set("reach", splat_radius);
-  gl::run_each(program, count_);
+  gl::start_each(program, count_);
 }
 
 }  // namespace slosh

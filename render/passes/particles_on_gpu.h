@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "render/frame.h"
 #include "render/gl/objects.h"
@@ -27,13 +29,16 @@ class ParticlesOnGpu {
   /// Errors carry the driver's log.
   static Result<ParticlesOnGpu> create();
 
-  /// Takes the frame's particles. `moves`: they are counted into cells, for smooth().
+  /// Takes the frame's particles. `moves`: they are counted into cells, to be sorted and smoothed.
   void take(const Frame& frame, bool moves);
-  /// Sorts them, and finds where their neighbours move them and their ellipsoids. Of many particles of one fluid
-  /// those that are deep inside are not drawn since (but for their chords): nobody sees them.
-  void smooth();
-  /// As the view whose uniform block is bound sees them, moved if they were smoothed.
-  void place(const Frame& frame, float splat_radius, SplatBuffers& out) const;
+  /// How many steps are left until they are sorted and their neighbours' means and ellipsoids are found. Of many
+  /// particles of one fluid those that are deep inside are not drawn since (but for their chords): nobody sees
+  /// them.
+  std::size_t steps_left() const { return steps_.size(); }
+  /// Starts the next of them, if one is left; the one after it is for after gl::finish_compute().
+  void start_next();
+  /// As the view whose uniform block is bound sees them, once no step is left; likewise.
+  void start_placing(const Frame& frame, float splat_radius, SplatBuffers& out) const;
 
   /// Of the frame, some of which may be of no fluid.
   std::size_t count() const { return count_; }
@@ -41,6 +46,7 @@ class ParticlesOnGpu {
   const gl::StreamBuffer& particles() const { return particles_; }
 
  private:
+  enum class Step : std::uint8_t { kBegin, kFill, kSort, kFindDeep, kSmooth };
   gl::Program take_;
   gl::Program take_into_cells_;
   gl::Program begin_;
@@ -67,6 +73,7 @@ class ParticlesOnGpu {
   float radius_ = 0.0f;  ///< m
   bool moves_ = false;
   bool leaves_out_deep_ = false;
+  std::vector<Step> steps_;  ///< left, the last of them first
 };
 
 }  // namespace slosh

@@ -92,10 +92,11 @@ Result<ScenePass> ScenePass::create(bool fast, bool compute, const std::vector<s
 void ScenePass::draw_opaque(const Frame& frame, const MeshStore& meshes, const TextureStore& textures,
                             const Targets& targets, bool background, bool occlusion_follows) {
   const auto sorted = sorted_by_distance(frame, meshes, [](float opacity) { return opacity >= 1.0f; });
-  by_tiles_ = tiled_ && TiledMeshes::suit(frame, meshes, textures);
-  if (by_tiles_) {
-    tiled_->draw_opaque(sorted, frame.view, meshes, targets, background, occlusion_follows);
-    return;
+  if (choose_tiles(frame, meshes, textures)) {
+    start_lists(frame, meshes, lists_);
+    gl::finish_compute();
+    start_opaque(frame, lists_, targets, background, occlusion_follows);
+    return gl::finish_compute();
   }
   const gl::Framebuffer& target = occlusion_follows ? targets.mesh_target : targets.plain_mesh_target;
   const glm::vec4 black(0.0f);
@@ -138,15 +139,47 @@ void ScenePass::draw_opaque(const Frame& frame, const MeshStore& meshes, const T
   glDisable(GL_DEPTH_TEST);
 }
 
-void ScenePass::draw_occlusion(const Targets& targets, float reach) {
+bool ScenePass::choose_tiles(const Frame& frame, const MeshStore& meshes, const TextureStore& textures) {
+  by_tiles_ = tiled_ && TiledMeshes::suit(frame, meshes, textures);
+  return by_tiles_;
+}
+
+void ScenePass::start_lists(const Frame& frame, const MeshStore& meshes, TiledMeshes::Lists& lists) const {
+  const auto opaque = sorted_by_distance(frame, meshes, [](float opacity) { return opacity >= 1.0f; });
+  auto glass = sorted_by_distance(frame, meshes, [](float opacity) { return opacity < 1.0f; });
+  std::ranges::reverse(glass);  // far before near
+  tiled_->start_lists(opaque, glass, frame.view, meshes, lists);
+}
+
+void ScenePass::start_opaque(const Frame& frame, const TiledMeshes::Lists& lists, const Targets& targets,
+                             bool background, bool occlusion_follows) const {
+  tiled_->start_opaque(lists, frame.view, targets, background, occlusion_follows);
+}
+
+void ScenePass::start_translucent(const Frame& frame, const TiledMeshes::Lists& lists, const Targets& targets,
+                                  const gl::Texture* fluid, bool behind) const {
+  tiled_->start_glass(lists, frame.view, targets, fluid, behind);
+}
+
+void ScenePass::start_occlusion(const Targets& targets, float reach) const {
   gl::bind_textures({&targets.scene_depth});
   occlusion_.program().set("reach", reach);
-  occlusion_.run({targets.occlusion, targets.occlusion_target, targets.half_size, GL_R8});
+  occlusion_.start({targets.occlusion, targets.occlusion_target, targets.half_size, GL_R8});
+}
+
+void ScenePass::start_resolve(const Targets& targets) const {
+  gl::bind_textures({&targets.mesh_color, &targets.occlusion});
+  resolve_.start({targets.color, targets.color_target, targets.size, GL_RGBA16F});
+}
+
+void ScenePass::draw_occlusion(const Targets& targets, float reach) {
+  start_occlusion(targets, reach);
+  if (occlusion_.on_compute()) gl::finish_compute();
 }
 
 void ScenePass::resolve_occlusion(const Targets& targets) {
-  gl::bind_textures({&targets.mesh_color, &targets.occlusion});
-  resolve_.run({targets.color, targets.color_target, targets.size, GL_RGBA16F});
+  start_resolve(targets);
+  if (resolve_.on_compute()) gl::finish_compute();
 }
 
 bool ScenePass::draw_translucent(const Frame& frame, const MeshStore& meshes, const TextureStore& textures,
@@ -155,7 +188,8 @@ bool ScenePass::draw_translucent(const Frame& frame, const MeshStore& meshes, co
   if (sorted.empty()) return false;
   std::ranges::reverse(sorted);  // far before near
   if (by_tiles_) {
-    tiled_->draw_glass(sorted, frame.view, meshes, targets, fluid, behind);
+    start_translucent(frame, lists_, targets, fluid, behind);
+    gl::finish_compute();
     return behind;
   }
   Programs& programs = behind ? translucent_behind_ : translucent_front_;

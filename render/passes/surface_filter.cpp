@@ -7,24 +7,21 @@
 namespace slosh {
 namespace {
 
-/// Runs `program` from where the surface is into the other smooth texture; returns which that is.
-int turn(const gl::PixelProgram& program, int from, const Targets& targets, const gl::TileDraw& tiles) {
-  const std::size_t into = from == 0 ? 1 : 0;
-  const gl::Texture& source = from < 0 ? targets.front : targets.smooth[static_cast<std::size_t>(from)];
-  gl::bind_textures({&source});
-  program.run({targets.smooth[into], targets.smooth_target[into], targets.size, GL_R32F}, &tiles);
-  return static_cast<int>(into);
+/// Turn `i` of a filter.
+void start(const gl::PixelProgram& program, int i, const Targets& targets, const gl::TileDraw& tiles) {
+  const auto into = static_cast<std::size_t>(i % 2);
+  gl::bind_textures({i == 0 ? &targets.front : &targets.smooth[1 - into]});
+  program.start({targets.smooth[into], targets.smooth_target[into], targets.size, GL_R32F}, &tiles);
 }
 
 /// Section 5.1 and Fig 5.
 class PaperFilter : public SurfaceFilter {
  public:
   explicit PaperFilter(gl::PixelProgram program) : program_(std::move(program)) {}
-  int run(const Targets& targets, const RenderOptions& options, const Frame&,
-          const gl::TileDraw& tiles) override {
-    int at = -1;
-    for (int i = 0; i < options.bilateral_iterations; ++i) at = turn(program_, at, targets, tiles);
-    return at;
+  int turns(const RenderOptions& options) const override { return options.bilateral_iterations; }
+  void start_turn(int i, const Targets& targets, const RenderOptions&, const Frame&,
+                  const gl::TileDraw& tiles) override {
+    start(program_, i, targets, tiles);
   }
   bool writes_tiles() const override { return !program_.on_compute(); }
 
@@ -36,11 +33,11 @@ class PaperFilter : public SurfaceFilter {
 class CurvatureFlow : public SurfaceFilter {
  public:
   explicit CurvatureFlow(gl::PixelProgram program) : program_(std::move(program)) {}
-  int run(const Targets& targets, const RenderOptions&, const Frame&, const gl::TileDraw& tiles) override {
+  int turns(const RenderOptions&) const override { return kSteps; }
+  void start_turn(int i, const Targets& targets, const RenderOptions&, const Frame&,
+                  const gl::TileDraw& tiles) override {
     program_.program().set("time_step", kTimeStep);
-    int at = -1;
-    for (int i = 0; i < kSteps; ++i) at = turn(program_, at, targets, tiles);
-    return at;
+    start(program_, i, targets, tiles);
   }
   bool writes_tiles() const override { return !program_.on_compute(); }
 
@@ -59,17 +56,14 @@ class NarrowRange : public SurfaceFilter {
  public:
   NarrowRange(gl::PixelProgram along, gl::PixelProgram clean)
       : along_(std::move(along)), clean_(std::move(clean)) {}
-  int run(const Targets& targets, const RenderOptions& options, const Frame& frame,
-          const gl::TileDraw& tiles) override {
+  int turns(const RenderOptions&) const override { return 3; }
+  void start_turn(int i, const Targets& targets, const RenderOptions& options, const Frame& frame,
+                  const gl::TileDraw& tiles) override {
+    const gl::PixelProgram& program = i < 2 ? along_ : clean_;
     const float radius = options.splat_scale * frame.particle_radius;
-    const glm::vec3 kernel(kReach * radius, kRange * radius, kTaps);
-    along_.program().set("kernel", kernel);
-    clean_.program().set("kernel", kernel);
-    along_.program().set("axis", glm::ivec2(1, 0));
-    int at = turn(along_, -1, targets, tiles);
-    along_.program().set("axis", glm::ivec2(0, 1));
-    at = turn(along_, at, targets, tiles);
-    return turn(clean_, at, targets, tiles);
+    program.program().set("kernel", glm::vec3(kReach * radius, kRange * radius, kTaps));
+    if (i < 2) program.program().set("axis", glm::ivec2(1 - i, i));
+    start(program, i, targets, tiles);
   }
   bool writes_tiles() const override { return !along_.on_compute(); }
 
@@ -106,6 +100,18 @@ class NarrowRangeBesideGl : public SurfaceFilter {
 };
 
 }  // namespace
+
+void SurfaceFilter::start_turn(int, const Targets&, const RenderOptions&, const Frame&, const gl::TileDraw&) {}
+
+int SurfaceFilter::run(const Targets& targets, const RenderOptions& options, const Frame& frame,
+                       const gl::TileDraw& tiles) {
+  const int count = turns(options);
+  for (int i = 0; i < count; ++i) {
+    start_turn(i, targets, options, frame, tiles);
+    if (!writes_tiles()) gl::finish_compute();
+  }
+  return count == 0 ? -1 : (count - 1) % 2;
+}
 
 Result<std::unique_ptr<SurfaceFilter>> make_surface_filter(Surface surface, bool on_cpu, bool compute) {
   using Made = Result<std::unique_ptr<SurfaceFilter>>;

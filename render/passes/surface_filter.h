@@ -18,7 +18,15 @@ class SurfaceFilter {
   /// Reads targets.front, writes targets.smooth by turns, both cleared to no fluid before where
   /// writes_tiles(). Returns the index of the one that holds the surface, −1 = front itself.
   virtual int run(const Targets& targets, const RenderOptions& options, const Frame& frame,
-                  const gl::TileDraw& tiles) = 0;
+                  const gl::TileDraw& tiles);
+  /// How many turns run() takes, and turn `i` of them by itself, of which nobody reads before
+  /// gl::finish_compute(): the first reads front, each writes smooth[i % 2].
+  virtual int turns(const RenderOptions& options) const {
+    (void)options;
+    return 0;
+  }
+  virtual void start_turn(int i, const Targets& targets, const RenderOptions& options, const Frame& frame,
+                          const gl::TileDraw& tiles);
   /// Only the tiles that fluid may cover are written.
   virtual bool writes_tiles() const = 0;
 };

@@ -43,25 +43,35 @@ void ThicknessPass::set_up(const gl::Program& program, const Frame& frame, const
   gl::bind_textures({&targets.scene_depth});
 }
 
-void ThicknessPass::draw(const Frame& frame, const Targets& targets, const gl::StreamBuffer& spheres,
-                         std::size_t count) {
+void ThicknessPass::start_sums(const Frame& frame, const Targets& targets, const gl::StreamBuffer& spheres,
+                               std::size_t count, Sums& sums) const {
   const gl::Program& program = rows_.of(count);
   set_up(program, frame, targets);
   const glm::ivec2 size = targets.chord_size;
-  if (sums_size_ != size)
-    sums_.zero(sizeof(std::uint32_t) * static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y));
-  sums_size_ = size;
+  if (sums.size != size)
+    sums.texels.zero(sizeof(std::uint32_t) * static_cast<std::size_t>(size.x) *
+                     static_cast<std::size_t>(size.y));
+  sums.size = size;
   program.set("size", size);
-  sum_.program().set("size", size);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, spheres.name());
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, sums_.name());
-  rows_.run(count);
-  sum_.run({targets.chord, targets.chord_target, size, GL_R16F});
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, sums.texels.name());
+  rows_.start(count);
+}
+
+void ThicknessPass::start_chords(const Targets& targets, const Sums& sums) const {
+  sum_.program().set("size", sums.size);
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, sums.texels.name());
+  sum_.start({targets.chord, targets.chord_target, sums.size, GL_R16F});
 }
 
 void ThicknessPass::draw(const Frame& frame, const Targets& targets, std::span<const glm::vec4> spheres) {
   buffer_.upload(spheres);
-  if (sum_.on_compute()) return draw(frame, targets, buffer_, spheres.size());
+  if (sum_.on_compute()) {
+    start_sums(frame, targets, buffer_, spheres.size(), sums_);
+    gl::finish_compute();
+    start_chords(targets, sums_);
+    return gl::finish_compute();
+  }
   set_up(program_, frame, targets);
   const glm::vec4 none(0.0f);
   glClearNamedFramebufferfv(targets.chord_target.name(), GL_COLOR, 0, &none.x);

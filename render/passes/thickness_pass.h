@@ -19,8 +19,16 @@ class ThicknessPass {
 
   /// Reads S_d and `spheres` (eye position m, fluid; all of them, hidden ones too); writes targets.chord.
   void draw(const Frame& frame, const Targets& targets, std::span<const glm::vec4> spheres);
-  /// The same by compute shaders, of `count` spheres on the GPU, those with a fluid below 0 left out.
-  void draw(const Frame& frame, const Targets& targets, const gl::StreamBuffer& spheres, std::size_t count);
+  /// Where compute shaders add up.
+  struct Sums {
+    gl::StreamBuffer texels;  ///< a whole number each (shaders/sums.glsl); zeros from picture to picture
+    glm::ivec2 size{0};
+  };
+  /// The same by compute shaders, of `count` spheres on the GPU, those with a fluid below 0 left out: the sums,
+  /// and then the chords of them. Nobody reads either before gl::finish_compute().
+  void start_sums(const Frame& frame, const Targets& targets, const gl::StreamBuffer& spheres,
+                  std::size_t count, Sums& sums) const;
+  void start_chords(const Targets& targets, const Sums& sums) const;
 
  private:
   static void set_up(const gl::Program& program, const Frame& frame, const Targets& targets);
@@ -28,8 +36,7 @@ class ThicknessPass {
   gl::Program program_;
   gl::RowProgram rows_;    ///< for compute
   gl::PixelProgram sum_;   ///< for compute
-  gl::StreamBuffer sums_;  ///< a whole number a texel (shaders/sums.glsl); zeros from picture to picture
-  glm::ivec2 sums_size_{0};
+  Sums sums_;
   gl::VertexArray array_;
   gl::StreamBuffer buffer_;
 };

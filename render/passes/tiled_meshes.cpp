@@ -57,7 +57,7 @@ bool TiledMeshes::suit(const Frame& frame, const MeshStore& meshes, const Textur
 }
 
 void TiledMeshes::fill(List& list, Instances instances, std::span<const Sides> passes, const View& view,
-                       const MeshStore& meshes) {
+                       const MeshStore& meshes) const {
   std::size_t count = 0;
   std::vector<Item> items;
   for (const MeshInstance* instance : instances) {
@@ -68,7 +68,7 @@ void TiledMeshes::fill(List& list, Instances instances, std::span<const Sides> p
                      {look.emissive, 0.0f}});
   }
   list.count = static_cast<int>(count);
-  list.filled = true;
+  if (count == 0) return;
   list.items.upload(std::span<const Item>(items));
   list.triangles.reserve(count * kTriangleBytes);
   list.boxes.reserve(count * kBoxBytes);
@@ -90,10 +90,9 @@ void TiledMeshes::fill(List& list, Instances instances, std::span<const Sides> p
       first += static_cast<int>(own);
     }
   }
-  gl::finish_compute();
 }
 
-void TiledMeshes::run(const gl::Program& program, const List& list, const View& view, glm::ivec2 size) {
+void TiledMeshes::start(const gl::Program& program, const List& list, const View& view, glm::ivec2 size) {
   if (list.count > 0) {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, list.triangles.name());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, list.boxes.name());
@@ -104,32 +103,33 @@ void TiledMeshes::run(const gl::Program& program, const List& list, const View& 
   program.set("near_plane", view.near_plane);
   const glm::ivec2 tiles = (size + kTile - 1) / kTile;
   glDispatchCompute(static_cast<GLuint>(tiles.x), static_cast<GLuint>(tiles.y), 1);
-  gl::finish_compute();
 }
 
-void TiledMeshes::draw_opaque(Instances nearest_first, const View& view, const MeshStore& meshes,
-                              const Targets& targets, bool background, bool occlusion_follows) {
-  constexpr Sides kSides[] = {Sides::kBoth};
-  fill(opaque_list_, nearest_first, kSides, view, meshes);
-  glass_list_.filled = false;
+void TiledMeshes::start_lists(Instances opaque_nearest_first, Instances glass_farthest_first, const View& view,
+                              const MeshStore& meshes, Lists& lists) const {
+  constexpr Sides kEitherSide[] = {Sides::kBoth};
+  constexpr Sides kFarSideFirst[] = {Sides::kInside, Sides::kOutside};
+  fill(lists.opaque, opaque_nearest_first, kEitherSide, view, meshes);
+  fill(lists.glass, glass_farthest_first, std::span(kFarSideFirst).subspan(fast_ ? 1 : 0), view, meshes);
+}
+
+void TiledMeshes::start_opaque(const Lists& lists, const View& view, const Targets& targets, bool background,
+                               bool occlusion_follows) const {
   const gl::Texture& color = occlusion_follows ? targets.mesh_color : targets.color;
   glBindImageTexture(0, color.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA16F);
   glBindImageTexture(1, targets.scene_depth.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
   opaque_.set("background", background ? 1 : 0);
-  run(opaque_, opaque_list_, view, targets.size);
+  start(opaque_, lists.opaque, view, targets.size);
 }
 
-void TiledMeshes::draw_glass(Instances farthest_first, const View& view, const MeshStore& meshes,
-                             const Targets& targets, const gl::Texture* fluid, bool behind) {
-  constexpr Sides kSides[] = {Sides::kInside, Sides::kOutside};  // the far side first
-  if (!glass_list_.filled)
-    fill(glass_list_, farthest_first, std::span(kSides).subspan(fast_ ? 1 : 0), view, meshes);
+void TiledMeshes::start_glass(const Lists& lists, const View& view, const Targets& targets,
+                              const gl::Texture* fluid, bool behind) const {
   const gl::Program& program = behind ? behind_ : before_;
   program.set("has_fluid", fluid ? 1 : 0);
   gl::bind_textures({fluid ? fluid : &targets.scene_depth, &targets.scene_depth});
   glBindImageTexture(0, targets.color.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA16F);
   if (behind) glBindImageTexture(1, targets.scene_color.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA16F);
-  run(program, glass_list_, view, targets.size);
+  start(program, lists.glass, view, targets.size);
 }
 
 }  // namespace slosh

@@ -33,38 +33,43 @@ class TiledMeshes {
   /// them.
   static bool suit(const Frame& frame, const MeshStore& meshes, const TextureStore& textures);
 
-  /// Opaque ones, nearest first: writes S_d and the colour (mesh_color if occlusion follows, else color).
-  void draw_opaque(Instances nearest_first, const View& view, const MeshStore& meshes, const Targets& targets,
-                   bool background, bool occlusion_follows);
-  /// Glass, farthest first, into color: what lies behind the fluid's surface, which also copies color to
-  /// scene_color, or what lies before it. `fluid` is the smoothed F_fD, null without fluid. Between two calls
-  /// of draw_opaque the instances stay the same.
-  void draw_glass(Instances farthest_first, const View& view, const MeshStore& meshes, const Targets& targets,
-                  const gl::Texture* fluid, bool behind);
-
- private:
   /// Of one kind, in the order in which they are drawn.
   struct List {
     gl::StreamBuffer triangles;
     gl::StreamBuffer boxes;  ///< of pixels
     gl::StreamBuffer items;  ///< looks
     int count = 0;           ///< triangles
-    bool filled = false;
   };
+  /// What a view has of them.
+  struct Lists {
+    List opaque;
+    List glass;
+  };
+
+  /// Fills a view's lists. Of this and what follows nobody reads before gl::finish_compute().
+  void start_lists(Instances opaque_nearest_first, Instances glass_farthest_first, const View& view,
+                   const MeshStore& meshes, Lists& lists) const;
+  /// Opaque ones: writes S_d and the colour (mesh_color if occlusion follows, else color).
+  void start_opaque(const Lists& lists, const View& view, const Targets& targets, bool background,
+                    bool occlusion_follows) const;
+  /// Glass into color: what lies behind the fluid's surface, which also copies color to scene_color, or what
+  /// lies before it. `fluid` is the smoothed F_fD, null without fluid.
+  void start_glass(const Lists& lists, const View& view, const Targets& targets, const gl::Texture* fluid,
+                   bool behind) const;
+
+ private:
   /// What is seen of a mesh.
   enum class Sides : int { kInside = -1, kBoth = 0, kOutside = 1 };
 
   void fill(List& list, Instances instances, std::span<const Sides> passes, const View& view,
-            const MeshStore& meshes);
-  static void run(const gl::Program& program, const List& list, const View& view, glm::ivec2 size);
+            const MeshStore& meshes) const;
+  static void start(const gl::Program& program, const List& list, const View& view, glm::ivec2 size);
 
   bool fast_ = false;  ///< glass: only the sides that face the eye
   gl::Program triangles_;
   gl::Program opaque_;
   gl::Program behind_;
   gl::Program before_;
-  List opaque_list_;
-  List glass_list_;
 };
 
 }  // namespace slosh
