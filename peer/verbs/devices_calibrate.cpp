@@ -102,7 +102,7 @@ class Stage {
     if (renderer_.options().width != pictures.size.x || renderer_.options().height != pictures.size.y)
       renderer_.resize(pictures.size.x, pictures.size.y);
     renderer_.prepare(frame, pictures.views);
-    for (std::size_t eye = 0; eye < 2; ++eye) renderer_.draw(pictures.views[eye], pictures.targets[eye]);
+    renderer_.draw(pictures.views, pictures.targets);
     if (pictures.panel.texture != 0) renderer_.draw_panel(pictures.panel_size, pictures.panel);
   }
 

@@ -60,14 +60,9 @@ class Painter {
     if (size.width != pictures.size.x || size.height != pictures.size.y)
       renderer_.resize(pictures.size.x, pictures.size.y);
     renderer_.prepare(frame, pictures.views);
-    std::array<Image, 2> read;
-    for (const std::size_t eye :
-         {std::size_t{1}, std::size_t{0}}) {  // a window shows the left one, drawn last
-      renderer_.draw(pictures.views[eye], pictures.targets[eye]);
-      if (keep) read[eye] = renderer_.read_back();
-    }
+    renderer_.draw(pictures.views, pictures.targets);  // a window shows the first, the left one
     if (pictures.panel.texture != 0) renderer_.draw_panel(pictures.panel_size, pictures.panel);
-    if (keep) *keep = side_by_side(read[0], read[1]);
+    if (keep) *keep = side_by_side(renderer_.read_back(0), renderer_.read_back(1));
   }
 
   /// Both eyes of a film (stereo_views.h), the HUD over each, in the screen: side by side.
@@ -96,7 +91,7 @@ class Painter {
     if (renderer_.options().width != pictures.size.x || renderer_.options().height != pictures.size.y)
       renderer_.resize(pictures.size.x, pictures.size.y);
     renderer_.prepare({}, pictures.views);
-    for (std::size_t eye = 0; eye < 2; ++eye) renderer_.draw(pictures.views[eye], pictures.targets[eye]);
+    renderer_.draw(pictures.views, pictures.targets);
     if (pictures.panel.texture != 0) renderer_.draw_panel(pictures.panel_size, pictures.panel);
   }
 

@@ -121,7 +121,7 @@ void time_stereo(slosh::Renderer& renderer, const slosh::Frame& frame, int frame
   };
   const auto draw_both = [&](int i) {
     renderer.prepare(frame, eyes);
-    for (const View& eye : eyes) renderer.draw(eye);
+    renderer.draw(eyes);
     if (i % 6 == 0) renderer.draw_hud();
     renderer.present();
   };
@@ -134,10 +134,8 @@ void time_stereo(slosh::Renderer& renderer, const slosh::Frame& frame, int frame
     });
     const double two = time([&] {
       renderer.prepare(frame, eyes);
-      for (const View& eye : eyes) {
-        renderer.draw(eye);
-        (void)renderer.read_back();
-      }
+      renderer.draw(eyes);
+      for (std::size_t eye = 0; eye < 2; ++eye) (void)renderer.read_back(eye);
       if (i % 6 == 0) renderer.draw_hud();
       renderer.present();
     });
