@@ -105,11 +105,18 @@ void add_report(CLI::App& app, VerbRun& chosen) {
                  "Go on with the report in that folder: its rows are kept, what is missing is measured, all is drawn")
       ->excludes(overwrite);
   auto link = std::make_shared<bool>(false);
-  coupling->add_flag(
+  auto water = std::make_shared<bool>(false);
+  CLI::Option* over_link = coupling->add_flag(
       "--link", *link,
       "In place of it a handful over the real link: two simulated people and the bucket over QUIC between "
       "network namespaces, 0 to 500 ms, 20 % lost; two minutes (--quick: two cases), one case after "
       "another, without --jobs and --resume. Writes coupling_link.csv and .png");
+  coupling
+      ->add_flag("--water", *water,
+                 "In place of it one hand on the shipped bucket's real water: how far off its force is by way of the hand and round "
+                 "trip, and what chance and the best models would leave; three minutes of a core (--quick: three ways). Writes "
+                 "coupling_water.csv and .png")
+      ->excludes(over_link);
   coupling->footer(
       "In virtual time, so that it is the same again on every machine of a kind: simulated operators hold a "
       "body of "
@@ -131,9 +138,13 @@ void add_report(CLI::App& app, VerbRun& chosen) {
       "the table so far, and --resume goes on from there.\n\n"
       "Examples:\n  slosh report coupling --quick\n  slosh report coupling --out here\n"
       "  slosh report coupling --out here --resume\n"
-      "  slosh report coupling --link --out here");
-  coupling->callback([&chosen, options, link] {
-    chosen = [options, link] { return *link ? report_coupling_link(*options) : report_coupling(*options); };
+      "  slosh report coupling --link --out here\n"
+      "  slosh report coupling --water --out here");
+  coupling->callback([&chosen, options, link, water] {
+    chosen = [options, link, water] {
+      return *link ? report_coupling_link(*options)
+                   : (*water ? report_coupling_water(*options) : report_coupling(*options));
+    };
   });
   CLI::App* passes = verb->add_subcommand("passes", "What a scene's step saves by what it leaves out");
   auto scene = std::make_shared<std::string>();

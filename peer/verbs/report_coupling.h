@@ -13,6 +13,10 @@ namespace slosh {
 /// A handful of cases over QUIC between network namespaces, in place of virtual time: coupling_link.csv.
 int report_coupling_link(const ReportOptions& options);
 
+/// One hand on the shipped bucket's real water, in virtual time: how far off its force is by way of the hand and round trip, and
+/// what chance between two runs and the best models leave: coupling_water.csv and .png.
+int report_coupling_water(const ReportOptions& options);
+
 /// Rendered against commanded impedance, 0.1 to 30 Hz, by scheme and round trip: transparency.csv, and
 /// `panels` for its picture. On options.threads threads; interrupted it writes nothing and gives no panels.
 /// Errors: the file cannot be written.
