@@ -111,9 +111,16 @@ float way_beside(vec2 middle, float back, int taps) {
   return 0.5 * way;
 }
 
-// The scene behind. A body in front of the fluid must not show through it; whole texels, as a mean would mix such a body in.
-vec3 seen_behind(vec3 here, vec3 n, float refraction, float thickness, ivec2 texel) {
-  float scene = min(texelFetch(scene_depth, texel, 0).r, camera.w);
+// What of the scene behind is seen. A body in front of the fluid must not show through it; whole texels, as a mean would mix such a
+// body in. There may be a body in the fluid here, and beside it, what lies behind: with the body's short way that was a pale rim at its
+// foot.
+struct Behind {
+  ivec2 texel;
+  float farther;  // than at the pixel itself the fluid goes on, m
+};
+
+Behind behind_here(vec3 here, vec3 n, float refraction, float thickness, float own_scene, float back, ivec2 texel) {
+  float scene = min(own_scene, camera.w);
   float behind = max(scene + here.z - thickness, 0.0);
   vec3 place = seen_place(here, normalize(here), n, refraction, thickness, behind);
   vec2 at = (place.xy / (unproject.xy * max(-place.z, 1.0e-3)) - unproject.zw) * 0.5 + 0.5;
@@ -122,7 +129,13 @@ vec3 seen_behind(vec3 here, vec3 n, float refraction, float thickness, ivec2 tex
   vec2 off = (at - middle * picture.zw) * picture.xy;
   off *= min(1.0, 0.16 * picture.y / max(length(off), 1.0e-3));
   ivec2 looked_up = clamp(ivec2(middle + off), ivec2(0), ivec2(picture.xy) - 1);
-  if (texelFetch(scene_depth, looked_up, 0).r < -here.z) looked_up = texel;
+  float there = texelFetch(scene_depth, looked_up, 0).r;
+  if (there < -here.z) return Behind(texel, 0.0);
+  float farther = min(there, back_at(vec2(looked_up) + 0.5)) - min(scene, back);
+  return Behind(looked_up, there - scene > splat.x ? max(farther, 0.0) : 0.0);
+}
+
+vec3 seen_behind(ivec2 looked_up) {
 #ifdef CAUSTICS
   return texelFetch(scene_color, looked_up, 0).rgb * caustic_light(vec2(looked_up) + 0.5);
 #else
@@ -182,6 +195,8 @@ bool pixel(ivec2 texel, out vec4 value) {
   FarSide far = far_side(inside, matter.refraction, front, back, scene, middle);
   float mirrored = far.by_floor + far.by_wall;
   float way = thickness + mirrored * way_beside(middle, back, mirrored > 0.0 ? 4 : 0);
+  Behind behind = behind_here(eye, surface.normal, matter.refraction, thickness, scene, back, texel);
+  way += behind.farther;
   FluidPoint point = FluidPoint(surface.normal, to_eye, to_light_eye.xyz, way);
 
   vec3 world_n = mat3(world_from_eye) * surface.normal;
@@ -199,7 +214,7 @@ bool pixel(ivec2 texel, out vec4 value) {
 #endif
   FluidLight lit = FluidLight(key_light.rgb * light, ambient_light(world_n) * open_sky(eye, surface.normal, texel, taps),
                               mirrored_light,
-                              mix(seen_behind(eye, surface.normal, matter.refraction, thickness, texel),
+                              mix(seen_behind(behind.texel),
                                   studio(mat3(world_from_eye) * -to_eye * vec3(1.0, -1.0, 1.0)), far.by_floor));
   value = vec4(fluid_radiance(matter, point, lit, surface.whole), 0.0);
   return true;

@@ -307,5 +307,82 @@ TEST_F(LooksTest, HoneyInGlassHasNoOliveRim) {
   }
 }
 
+TEST_F(LooksTest, WaterAtABallsFootHasNoPaleRim) {
+  // What is seen past the ball through the water before it came by the ball's short way.
+  RenderOptions options = small();
+  options.width = 960;
+  options.height = 720;
+  options.quality = Quality::kFull;
+  options.body_reflections = false;
+  auto renderer = make(options);
+  const kit::StillBasin basin(*renderer, 0.0125f, options.width, options.height);
+  renderer->draw(basin.frame);
+  const FloatImage thickness = renderer->read_buffer(Buffer::kThickness);
+  const FloatImage scene = renderer->read_buffer(Buffer::kSceneDepth);
+  const FloatImage light = renderer->read_buffer(Buffer::kFinalColor);
+  double foot = 0.0, below = 0.0;
+  int count = 0;
+  for (int x = 606; x < 642; ++x) {
+    int last = 0;  // the lowest of the ball in the water
+    for (int y = 380; y < 440; ++y) {
+      if (scene.at(x, y) > 0.95f || thickness.at(x, y) <= 0.0f) continue;
+      foot += luma(light, x, y);
+      ++count;
+      last = y;
+    }
+    ASSERT_GT(last, 0) << x;
+    for (int y = last + 6; y < last + 16; ++y) below += 0.1 * luma(light, x, y) / 36.0;
+  }
+  ASSERT_GT(count, 100);
+  std::printf("%.3f at the foot, %.3f below\n", foot / count, below);
+  EXPECT_LT(foot / count, below);
+}
+
+TEST_F(LooksTest, AGlassStandsOnATableWithoutStripes) {
+  RenderOptions options = small();
+  options.width = 480;
+  options.height = 360;
+  options.quality = Quality::kFull;
+  options.antialias = false;
+  options.ambient_occlusion = false;
+  auto renderer = make(options);
+  Frame frame = frame_of({}, {}, 0.01f);
+  const kit::Shape table = kit::make_box({-1.0f, -0.05f, -1.0f}, {1.0f, 0.0f, 1.0f});
+  const kit::Shape glass = kit::make_box({-0.15f, 0.0f, -0.11f}, {0.15f, 0.2f, 0.11f});
+  const auto add = [&](const kit::Shape& shape, const MeshLook& look) {
+    frame.meshes.push_back(
+        {renderer->add_mesh(shape.positions, shape.normals, shape.triangles), glm::mat4(1.0f), look});
+  };
+  add(table, {{0.5f, 0.3f, 0.15f}, 0.0f, 0.9f, 1.0f});
+  add(glass, {{0.2f, 0.3f, 0.4f}, 0.0f, 0.05f, 0.3f});
+  int spots = 0;
+  int seen = 0;
+  for (const float turn : {0.1f, 0.35f, 0.6f, 0.85f}) {
+    frame.view = kit::make_view({0.9f * std::sin(turn), 0.55f, 0.9f * std::cos(turn)}, {0.0f, 0.02f, 0.0f},
+                                options.width, options.height);
+    renderer->draw(frame);
+    const FloatImage light = renderer->read_buffer(Buffer::kFinalColor);
+    const glm::mat4 clip = frame.view.projection * frame.view.view;
+    // Round the middle of the underside.
+    for (float x = -0.1f; x < 0.1f; x += 0.002f) {
+      for (float z = -0.07f; z < 0.07f; z += 0.002f) {
+        const glm::vec4 at = clip * glm::vec4(x, 0.0f, z, 1.0f);
+        const int px = static_cast<int>((0.5f + 0.5f * at.x / at.w) * static_cast<float>(options.width));
+        const int py = static_cast<int>((0.5f - 0.5f * at.y / at.w) * static_cast<float>(options.height));
+        const float here = luma(light, px, py);
+        const auto jumps = [&](int dx, int dy) {
+          const float one = luma(light, px + dx, py + dy) - here;
+          const float other = luma(light, px - dx, py - dy) - here;
+          return one * other > 0.0f && std::min(std::abs(one), std::abs(other)) > 0.02f * here;
+        };
+        ++seen;
+        spots += jumps(1, 0) || jumps(0, 1);
+      }
+    }
+  }
+  std::printf("%d of %d pixels stand out\n", spots, seen);
+  EXPECT_LT(spots, seen / 1000);
+}
+
 }  // namespace
 }  // namespace slosh
