@@ -33,7 +33,8 @@ double Hearing::follow_poses(const BodyMessage& message, bool& current) noexcept
   }
   // Before its first step a world follows nobody.
   const double lag = to_seconds(message.stamp_ns - std::max(message.heard_pose_ns, moving_ns_));
-  if (message.heard_pose_ns < moving_ns_) return freshness(lag, period_);
+  // The first that can follow us is a round trip away: no silence yet.
+  if (message.heard_pose_ns < moving_ns_) return freshness(lag - message.answer_after, period_);
   if (!usual_known_) {
     usual_lag_ = lag;
     lag_spread_ = 0.0;

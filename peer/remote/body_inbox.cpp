@@ -219,6 +219,7 @@ void BodyInbox::apply(const Pending& pending, const ClockSync& clock) {
   // What a device loop takes for a tick is how often states come.
   state_.time_step = std::max(time_step_, interval_);
   state_.carry_on = kHoldAnew;
+  state_.answer_after = std::clamp(clock.round_trip(), 0.0, kLongestAnswer);
   state_.stamp_ns = due_ns(pending, clock);
   lay_out(pending, state_);
   given_ = true;

@@ -52,6 +52,21 @@ TEST(Hearing, BelievesAWorldAtItsPace) {
   EXPECT_TRUE(link.hearing.speaks());
 }
 
+/// Over a long link the first state that can follow us is a round trip away: that is no silence, and the hand keeps what it
+/// was given. Where none comes by then it fades.
+TEST(Hearing, TheFirstAnswerMayTakeARoundTrip) {
+  for (const bool comes : {true, false}) {
+    Link link;
+    link.message.answer_after = 0.3;
+    link.up = false;
+    link.run(390);
+    EXPECT_EQ(link.belief.share, 1.0);
+    link.up = comes;
+    link.run(350);
+    EXPECT_EQ(link.belief.share, comes ? 1.0 : 0.0);
+  }
+}
+
 TEST(Hearing, AStateThatDoesNotFollowOurPosesFadesAsALateOneDoes) {
   Link link;
   link.run(500);
