@@ -63,8 +63,8 @@ void add_report(CLI::App& app, VerbRun& chosen) {
       "Runs every case with every particle model and spacing; a full report also with a wider support and "
       "half\n"
       "the time step. Writes errors.csv, a row as soon as it is there; a picture a case: error against wall\n"
-      "seconds a simulated second, and against the spacing; errors.md, the table. Ctrl-C draws what there "
-      "is.\n\n"
+      "seconds a simulated second, and against the spacing; errors.md, the table; with all cases scenes.png, where\n"
+      "each shipped scene's cases are judged together. Ctrl-C draws what there is.\n\n"
       "Examples:\n  slosh report error --quick\n  slosh report error --case sloshing --backend both\n"
       "  slosh report error --case spin_up --spacing 0.003 --quick --model corrected --backend cuda\n"
       "  slosh report error --from here.csv --from there.csv --out both");

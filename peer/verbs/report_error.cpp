@@ -15,6 +15,7 @@
 #include "peer/output/whole_file.h"
 #include "peer/verbs/interrupt.h"
 #include "peer/verbs/report.h"
+#include "peer/verbs/report_error_scenes.h"
 #include "peer/verbs/verbs.h"
 #include "sim/math/format.h"
 
@@ -27,12 +28,7 @@ using report::Setting;
 
 constexpr const char* kTable = "errors.csv";
 
-struct Look {
-  const char* model;
-  const char* color;
-};
-constexpr Look kLooks[] = {
-    {"paper", "#8c6d31"}, {"consistent", "#1f5fbf"}, {"corrected", "#c8322b"}, {"incompressible", "#2e8b57"}};
+constexpr const char* kModels[] = {"paper", "consistent", "corrected", "incompressible"};
 
 /// One picture's and one table line's rows: of one case and one quantity of it.
 struct Group {
@@ -77,13 +73,14 @@ ChartPanel against_time(const Group& group) {
   ChartPanel panel{group.title, "wall s per simulated s", "|error|, %", true, true, {}};
   panel.series.push_back({"frontier", "#909090", frontier_of(group.rows), 0, 1.0, 1.5, true});
   for (const bool cuda : {false, true}) {
-    for (const Look& look : kLooks) {
+    for (const std::string model : kModels) {
       const std::string on = cuda ? " (CUDA)" : "";
-      ChartSeries base{look.model + on, look.color, {}, cuda ? 9 : 7, 0.9, 1.2, false};
-      ChartSeries variants{look.model + on + ", support 2.5", look.color, {}, cuda ? 11 : 5, 0.9, 0.0, false};
-      ChartSeries shorter{look.model + on + ", half the step", look.color, {}, 2, 0.8, 0.0, false};
+      ChartSeries base{model + on, color_of_model(model), {}, cuda ? 9 : 7, 0.9, 1.2, false};
+      ChartSeries variants{
+          model + on + ", support 2.5", color_of_model(model), {}, cuda ? 11 : 5, 0.9, 0.0, false};
+      ChartSeries shorter{model + on + ", half the step", color_of_model(model), {}, 2, 0.8, 0.0, false};
       for (const ErrorRow& row : group.rows) {
-        if (row.model != look.model || (row.backend == "cuda") != cuda) continue;
+        if (row.model != model || (row.backend == "cuda") != cuda) continue;
         auto& to = row.is_base() ? base : row.support_ratio != 2.0 ? variants : shorter;
         to.points.push_back(time_and_error(row));
       }
@@ -118,11 +115,11 @@ std::vector<glm::dvec2> by_spacing(const Group& group, const std::string& model)
 
 ChartPanel against_spacing(const Group& group) {
   ChartPanel panel{"convergence", "spacing, mm", "|error|, %", true, true, {}};
-  for (const Look& look : kLooks) {
-    const std::vector<glm::dvec2> points = by_spacing(group, look.model);
+  for (const std::string model : kModels) {
+    const std::vector<glm::dvec2> points = by_spacing(group, model);
     const std::optional<double> order = report::order_of(points);
-    panel.series.push_back({look.model + (order ? format(", order %.1f", *order) : std::string()), look.color,
-                            points, 7, 0.9, 1.2, false});
+    panel.series.push_back({model + (order ? format(", order %.1f", *order) : std::string()),
+                            color_of_model(model), points, 7, 0.9, 1.2, false});
   }
   return panel;
 }
@@ -137,7 +134,8 @@ std::string markdown(const std::vector<Group>& groups, const std::string& machin
       "# Error against run time\n\n" + machine +
       "\n\nError in % and, after the slash, wall seconds a simulated second; support ratio 2, the "
       "plan's time step. Bold: nothing in the report has less error for as little time.\n\n"
-      "| case | reads | spacing, mm | paper | consistent | corrected | incompressible | CUDA, corrected | CUDA, "
+      "| case | reads | spacing, mm | paper | consistent | corrected | incompressible | CUDA, corrected | "
+      "CUDA, "
       "incompressible |\n"
       "|---|---|---|---|---|---|---|---|---|\n";
   for (const Group& group : groups) {
@@ -191,7 +189,7 @@ ChartPanel key_of(const std::vector<ChartPanel>& panels) {
 int write_up(const std::vector<ErrorRow>& rows, const std::filesystem::path& folder,
              const std::string& machine) {
   const std::vector<Group> groups = groups_of(rows);
-  const Result<bool> table = write_whole(folder / "errors.md", markdown(groups, machine));
+  const Result<bool> table = write_whole(folder / "errors.md", markdown(groups, machine) + scene_table(rows));
   if (!table) return fail(table.error());
   std::vector<ChartPanel> all;
   for (const Group& group : groups) {
@@ -207,8 +205,17 @@ int write_up(const std::vector<ErrorRow>& rows, const std::filesystem::path& fol
   const Result<bool> drawn =
       draw(chart_script(all, 3, "Error against run time: " + machine), folder / "errors.png");
   if (!drawn) return fail(drawn.error());
-  std::printf("Written: %s/errors.csv, errors.md, errors.png and a picture for each of %zu readings\n",
-              clean_text(folder.string(), kMostTextBytes).c_str(), groups.size());
+  std::vector<ChartPanel> scenes = scene_panels(rows);
+  if (!scenes.empty()) {
+    for (ChartPanel& panel : scenes) panel.legend = false;
+    scenes.push_back(key_of(scenes));
+    const Result<bool> by_scene =
+        draw(chart_script(scenes, 3, "Error against run time, by scenes, on a CPU: " + machine), folder / "scenes.png");
+    if (!by_scene) return fail(by_scene.error());
+  }
+  std::printf("Written: %s/errors.csv, errors.md, errors.png%s and a picture for each of %zu readings\n",
+              clean_text(folder.string(), kMostTextBytes).c_str(), scenes.empty() ? "" : ", scenes.png",
+              groups.size());
   return kExitOk;
 }
 

@@ -102,10 +102,10 @@ INSTANTIATE_TEST_SUITE_P(
         std::vector<Known>{{"buoyancy_box", 0.008, "buoyancy", 0.015}},
         std::vector<Known>{{"buoyancy_sphere", 0.00714, "buoyancy", 0.02}},
         std::vector<Known>{{"draft", 0.013, "draft", 0.09}},
-        std::vector<Known>{{"sloshing", 0.016, "period", 0.014},
-                           {"sloshing", 0.016, "swing kept a period", 0.12}},
-        std::vector<Known>{{"sloshing", 0.01, "period", 0.013},
-                           {"sloshing", 0.01, "swing kept a period", 0.06}},
+        std::vector<Known>{{"sloshing", 0.016, "period", 0.006},
+                           {"sloshing", 0.016, "swing kept a period", 0.105}},
+        std::vector<Known>{{"sloshing", 0.01, "period", 0.005},
+                           {"sloshing", 0.01, "swing kept a period", 0.045}},
         // Until walls gave the whole of their torque (Honey below loses none now) 0.04, 0.04 and 0.05 held: 5
         // % that was lost made up for as much that fluid at walls is too stiff by.
         std::vector<Known>{{"spin_up", 0.005, "torque at tau 0.02", 0.06},
@@ -120,9 +120,12 @@ INSTANTIATE_TEST_SUITE_P(
         std::vector<Known>{{"stokes_honey", 0.008, "drag", 0.07},
                            {"stokes_honey", 0.008, "drift over a stroke", 0.07}},
         std::vector<Known>{{"stokes_honey", 0.006, "drag", 0.09}},
-        std::vector<Known>{{"slow_ball", 0.006, "force, moving", 0.035},
-                           {"slow_ball", 0.006, "force left 0.9 s after", 0.02}},
-        std::vector<Known>{{"dam_break", 0.146 / 16, "front, worst", 0.17}},
+        std::vector<Known>{{"slow_ball", 0.006, "force, moving", 0.02},
+                           {"slow_ball", 0.006, "force left 0.9 s after", 0.006}},
+        // The one experiment's front is a fifth slower than the other's, in units of their bases.
+        std::vector<Known>{{"dam_break", 0.146 / 16, "front, worst", 0.245}},
+        std::vector<Known>{{"dam_break_long", 0.05715 / 10, "speed of the front", 0.05},
+                           {"dam_break_long", 0.05715 / 10, "front, worst", 0.19}},
         std::vector<Known>{{"shear_wave", 0.01, "rate of decay", 0.02}},
         std::vector<Known>{{"shear_wave", 0.008, "rate of decay", 0.01}},
         std::vector<Known>{{"bounce", 0.015, "rebound", 1e-3}}),
@@ -135,13 +138,14 @@ INSTANTIATE_TEST_SUITE_P(
         std::vector<Known>{{"still_tank", 0.0125, "level", 0.01, ParticleModel::kCorrected, 2.5},
                            {"still_tank", 0.0125, "pressure at 70 mm", 0.055},
                            {"still_tank", 0.0125, "pressure gained from 30 to 70 mm", 0.06}},
-        // A gap of three spacings is little for a kernel of 2.5: 0.04 held where walls dragged from 0.7 spacings behind.
-        // By g++ 0.107, by clang, which rounds otherwise, 0.129: the torque is no surer than that.
+        // A gap of three spacings is little for a kernel of 2.5: 0.04 held where walls dragged from 0.7
+        // spacings behind. By g++ 0.107, by clang, which rounds otherwise, 0.129: the torque is no surer than
+        // that.
         std::vector<Known>{{"couette", 0.00667, "torque", 0.14, ParticleModel::kCorrected, 2.5}},
         // Its faces lack neighbours as deep as the kernel is wide.
         std::vector<Known>{{"shear_wave", 0.01, "rate of decay", 0.14, ParticleModel::kCorrected, 2.5}},
-        std::vector<Known>{{"sloshing", 0.016, "swing kept a period", 0.10, ParticleModel::kCorrected, 2.5},
-                           {"sloshing", 0.016, "period", 0.01}}),
+        std::vector<Known>{{"sloshing", 0.016, "swing kept a period", 0.09, ParticleModel::kCorrected, 2.5},
+                           {"sloshing", 0.016, "period", 0.004}}),
     named);
 
 // Where pressures are solved for: closer than the default in calm fluid. Its runs differ more from build to
@@ -156,8 +160,8 @@ INSTANTIATE_TEST_SUITE_P(
                       std::vector<Known>{{"buoyancy_box", 0.016, "buoyancy", 0.035, kSolved}},
                       std::vector<Known>{{"buoyancy_sphere", 0.01, "buoyancy", 0.03, kSolved}},
                       std::vector<Known>{{"draft", 0.013, "draft", 0.06, kSolved}},
-                      std::vector<Known>{{"sloshing", 0.016, "period", 0.01, kSolved},
-                                         {"sloshing", 0.016, "swing kept a period", 0.11}}),
+                      std::vector<Known>{{"sloshing", 0.016, "period", 0.006, kSolved},
+                                         {"sloshing", 0.016, "swing kept a period", 0.10}}),
     named);
 
 // The published model, where it keeps its fluid: how far off it is, and no further.

@@ -1,6 +1,6 @@
-// Whether the setting that scenes have unless their author says otherwise lies on the frontier of error
-// against run time, by the committed report. Where it does not, the exception stands here with its size: who
-// changes the default or brings a new report sees what changes.
+// Where the setting that scenes have unless their author says otherwise is beaten, case by case, by the
+// committed report: each with its size, so that who changes the default or brings a new report sees what
+// changes. That each scene's cases together have it on their frontier is scene_frontier_test.cpp's.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "host/report/sweep.h"
-#include "scenes/load.h"
 #include "tests/support/places.h"
 
 namespace slosh::report {
@@ -30,26 +29,26 @@ struct Beaten {
       by;  // of the scale, where it is most: the default's error less the least of any that takes no longer
 };
 constexpr Beaten kBeaten[] = {
-    {"column", "impulse", 0.0801},                // 12 mm: 9.0 %; consistent: 1.0
     {"couette", "torque", 0.0435},                // 5 mm: 5.6 %; consistent: 1.2
-    {"dam_break", "front; worst", 0.0365},        // 12 mm: 16.2 %; consistent: 12.5
-    {"dam_break_long", "front; worst", 0.0351},   // 5.7 mm: 12.2 %; consistent: 8.7
+    {"dam_break", "front; worst", 0.0379},        // 6 mm: 23.4 %; consistent, 9 mm, half the step: 19.6
+    {"dam_break", "speed of the front", 0.0712},  // 6 mm: 23.2 %; consistent, support 2.5: 16.1
+    {"dam_break_long", "front; worst", 0.0378},   // 2.9 mm: 20.0 %; consistent, 5.7 mm: 16.2
+    // 5.7 mm: 4.1 %; itself, support 2.5: 0.3
+    {"dam_break_long", "speed of the front", 0.0381},
     {"mug", "water kept", 0.0842},                // 10 mm: 8.4 %; itself, support 2.5: 0.0
     {"paraboloid", "rise over r²", 0.0386},       // 6 mm: 6.2 %; consistent, 7.5 mm, half the step: 2.4
     {"released", "acceleration", 0.1728},         // 8 mm: 33.1 %; the paper's, support 2.5: 15.8
     {"shear_wave", "rate of decay", 0.0191},      // 5.7 mm: 1.9 %; consistent: 0.0
     {"slope", "slope", 0.0288},                   // 7.5 mm: 3.0 %; consistent, 10 mm, half the step: 0.1
-    {"sloshing", "period", 0.0115},               // 5 mm: 1.1 %; consistent, 10 mm, half the step: 0.0
-    {"sloshing", "swing kept a period", 0.0179},  // 8 mm: 5.7 %; itself at 10 mm, support 2.5: 3.9
-    {"slow_ball", "force left 0.9 s after", 0.0139},  // 4.8 mm: 1.4 %; incompressible, 8 mm: 0.0
+    {"sloshing", "swing kept a period", 0.0167},  // 10 mm: 3.5 %; itself, support 2.5: 1.8
     {"spin_up", "torque at tau 0.02", 0.3650},    // 10 mm: 39.1 %; consistent, half the step: 2.6
     {"still_tank", "level", 0.0103},              // 6.2 mm: 1.1 %; itself at 8 mm, support 2.5: 0.1
     {"still_tank", "pressure at 70 mm", 0.0181},  // 20 mm: 9.7 %; consistent: 7.8
     {"stokes", "drag", 0.0321},                   // 5 mm: 4.4 %; incompressible, 6 mm: 1.2
     {"stokes_honey", "drag", 0.0482},             // 6 mm: 7.0 %; incompressible: 2.1
     {"tank_faces", "floor", 0.1284},              // 20 mm: 13.3 %; the paper's, support 2.5: 0.4
-    // 6 mm: 6.5 %; the paper's, 5 mm, support 2.5: 0.4
-    {"torricelli", "speed of the jet over Torricelli's", 0.0610},
+    // 7.5 mm: 7.2 %; itself, 10 mm, where it crosses nothing: 0.3
+    {"torricelli", "speed of the jet over Torricelli's", 0.0697},
 };
 
 using Groups = std::map<std::pair<std::string, std::string>, std::vector<ErrorRow>>;
@@ -104,35 +103,6 @@ TEST(Default, IsBeatenWhereAndByAsMuchAsIsWrittenHere) {
     }
   }
   EXPECT_EQ(exceptions, std::size(kBeaten)) << "an exception's case is not in the report";
-}
-
-// A scene's cases: what a hand feels in it. `probe` has none, the report knows no single particle.
-struct Stands {
-  const char* scene;
-  const char* case_id;
-};
-constexpr Stands kStands[] = {{"bucket", "sloshing"}, {"bucket", "still_tank"}, {"spoon", "slow_ball"},
-                              {"spoon", "stokes"},    {"pour", "torricelli"},   {"pour", "dam_break"},
-                              {"spin", "spin_up"},    {"pool", "slow_ball"},    {"pool", "buoyancy_sphere"}};
-
-TEST(Default, IsWhatShippedScenesHaveAndTheReportMeasured) {
-  const Groups groups = groups_of_the_report();
-  for (const Stands& each : kStands) {
-    const auto file = find_scene(each.scene);
-    ASSERT_TRUE(file) << file.error().text();
-    const auto scene = load_scene(file.value());
-    ASSERT_TRUE(scene) << scene.error().text();
-    ErrorRow row;
-    row.model = name(scene.value().model);
-    row.support_ratio = scene.value().support_ratio;
-    row.step_share = 1.0;
-    EXPECT_TRUE(row.is_default()) << each.scene;
-    EXPECT_EQ(scene.value().stiffness, 0.0) << each.scene << ": the plan chooses";
-    const bool measured = std::any_of(groups.begin(), groups.end(), [&](const auto& group) {
-      return group.first.first == each.case_id && most_beaten_by(group.second) >= 0.0;
-    });
-    EXPECT_TRUE(measured) << each.scene << ", " << each.case_id;
-  }
 }
 
 }  // namespace
