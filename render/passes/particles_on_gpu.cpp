@@ -80,8 +80,7 @@ void ParticlesOnGpu::take(const Frame& frame, bool moves) {
   program.set("fluids", static_cast<int>(fluids));
   program.set("floats", 3);
   gl::run_each(program, count_);
-  places_.done();
-  fluids_.done();
+  places_.done();  // which says the same of fluids_: both go round together
 }
 
 void ParticlesOnGpu::start_next() {
