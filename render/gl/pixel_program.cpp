@@ -82,22 +82,25 @@ void run_each(const Program& program, std::size_t count, std::size_t share) {
   finish_compute();
 }
 
-Result<RowProgram> RowProgram::create(const char* file, const std::vector<std::string>& defines) {
+Result<RowProgram> RowProgram::create(const char* file, bool small, const std::vector<std::string>& defines) {
   RowProgram out;
   const auto with_lanes = [&](int lanes) {
     std::vector<std::string> all = defines;
     all.push_back("LANES " + std::to_string(lanes));
     return Program::create_compute(file, std::move(all));
   };
-  for (const Result<bool>& loaded :
-       {take(out.few_, with_lanes(kLongRow)), take(out.many_, with_lanes(kShortRow))}) {
-    if (!loaded) return loaded.error();
-  }
+  if (auto made = take(out.few_, with_lanes(kLongRow)); !made) return made.error();
+  if (!small) return out;
+  if (auto made = take(out.many_, with_lanes(kShortRow)); !made) return made.error();
   return out;
 }
 
+bool RowProgram::short_rows(std::size_t count) const {
+  return many_ && count >= kMany;
+}
+
 const Program& RowProgram::of(std::size_t count) const {
-  return count < kMany ? few_ : many_;
+  return short_rows(count) ? many_ : few_;
 }
 
 void RowProgram::run(std::size_t count) const {
@@ -107,7 +110,7 @@ void RowProgram::run(std::size_t count) const {
 
 void RowProgram::start(std::size_t count) const {
   const std::size_t rows = (count + kPartsOfRows - 1) / kPartsOfRows * kPartsOfRows;
-  start_groups(of(count), count, rows, kInRows / (count < kMany ? kLongRow : kShortRow));
+  start_groups(of(count), count, rows, kInRows / (short_rows(count) ? kShortRow : kLongRow));
 }
 
 }  // namespace slosh::gl

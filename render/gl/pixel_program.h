@@ -56,12 +56,13 @@ void run_each(const Program& program, std::size_t count, std::size_t share = 1);
 /// The same without finish_compute(): for several in a row that write to different places.
 void start_each(const Program& program, std::size_t count, std::size_t share = 1);
 
-/// A compute shader that takes one row of splat_rows.glsl for each splat. Of very many splats each is small in
-/// a picture: their rows are shorter.
+/// A compute shader that takes one row of splat_rows.glsl for each splat.
 class RowProgram {
  public:
-  /// Errors carry the driver's log.
-  static Result<RowProgram> create(const char* file, const std::vector<std::string>& defines = {});
+  /// `small`: at half the picture's size very many splats are a few pixels each, and their rows shorter. Errors
+  /// carry the driver's log.
+  static Result<RowProgram> create(const char* file, bool small,
+                                   const std::vector<std::string>& defines = {});
 
   /// What runs for so many: its uniforms are set by the caller, but for `count`.
   const Program& of(std::size_t count) const;
@@ -70,8 +71,10 @@ class RowProgram {
   void start(std::size_t count) const;
 
  private:
+  bool short_rows(std::size_t count) const;
+
   Program few_;
-  Program many_;
+  Program many_;  ///< where they are small
 };
 
 }  // namespace slosh::gl

@@ -49,7 +49,7 @@ Result<FluidPasses> FluidPasses::create(bool fast, bool compute, const std::vect
 Result<FluidPasses::SplatProgram> FluidPasses::SplatProgram::create(bool compute,
                                                                     const std::vector<std::string>& defines) {
   SplatProgram out;
-  const auto made = compute ? gl::take(out.rows, gl::RowProgram::create("splat.comp", defines))
+  const auto made = compute ? gl::take(out.rows, gl::RowProgram::create("splat.comp", defines.empty(), defines))
                             : gl::take(out.triangles, gl::Program::create("splat.vert", "splat.frag", defines));
   if (!made) return made.error();
   return out;

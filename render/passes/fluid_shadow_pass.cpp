@@ -20,7 +20,7 @@ Result<FluidShadowPass> FluidShadowPass::create(bool fast, bool compute) {
   FluidShadowPass pass;
   if (compute) {
     for (const Result<bool>& loaded :
-         {gl::take(pass.rows_, gl::RowProgram::create("fluid_shadow.comp")),
+         {gl::take(pass.rows_, gl::RowProgram::create("fluid_shadow.comp", false)),
           gl::take(pass.sum_, gl::PixelProgram::create("fluid_shadow_sum.frag", true))}) {
       if (!loaded) return loaded.error();
     }

@@ -38,7 +38,7 @@ Result<MixingPass> MixingPass::create(bool compute) {
   MixingPass pass;
   if (compute) {
     for (const Result<bool>& loaded :
-         {gl::take(pass.rows_, gl::RowProgram::create("mixing.comp")),
+         {gl::take(pass.rows_, gl::RowProgram::create("mixing.comp", false)),
           gl::take(pass.sum_, gl::PixelProgram::create("mixing_sum.frag", true))}) {
       if (!loaded) return loaded.error();
     }

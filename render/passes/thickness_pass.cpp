@@ -22,7 +22,7 @@ bool any_fluid_is_clear(const Frame& frame) {
 Result<ThicknessPass> ThicknessPass::create(bool compute) {
   ThicknessPass pass;
   if (compute) {
-    for (const Result<bool>& loaded : {gl::take(pass.rows_, gl::RowProgram::create("chord.comp")),
+    for (const Result<bool>& loaded : {gl::take(pass.rows_, gl::RowProgram::create("chord.comp", true)),
                                        gl::take(pass.sum_, gl::PixelProgram::create("chord_sum.frag", true))}) {
       if (!loaded) return loaded.error();
     }

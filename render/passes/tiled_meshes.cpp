@@ -8,10 +8,7 @@ namespace slosh {
 namespace {
 
 // As the shaders have them.
-constexpr int kTileWidth = 32;
-constexpr int kTileHeight = 8;  // times the pixels of an invocation
-constexpr int kOpaquePixels = 4;
-constexpr int kGlassPixels = 2;  // a pane takes more of a chip's registers
+constexpr int kTile = 32;
 constexpr std::size_t kTriangleBytes = 6 * sizeof(glm::vec4);
 constexpr std::size_t kBoxBytes = 2 * sizeof(std::uint32_t);
 struct Item {
@@ -36,16 +33,12 @@ MeshDefines mesh_defines(bool fast, const std::vector<std::string>& far_light) {
 Result<TiledMeshes> TiledMeshes::create(bool fast, const std::vector<std::string>& far_light) {
   TiledMeshes out;
   out.fast_ = fast;
-  MeshDefines defines = mesh_defines(fast, far_light);
-  std::vector<std::string> before = far_light;
-  defines.opaque.push_back("PIXELS " + std::to_string(kOpaquePixels));
-  for (std::vector<std::string>* glass : {&defines.behind, &before})
-    glass->push_back("PIXELS " + std::to_string(kGlassPixels));
+  const MeshDefines defines = mesh_defines(fast, far_light);
   for (const Result<bool>& loaded :
        {gl::take(out.triangles_, gl::Program::create_compute("mesh_triangles.comp")),
         gl::take(out.opaque_, gl::Program::create_compute("mesh_pixels.comp", defines.opaque)),
         gl::take(out.behind_, gl::Program::create_compute("glass_pixels.comp", defines.behind)),
-        gl::take(out.before_, gl::Program::create_compute("glass_pixels.comp", before))}) {
+        gl::take(out.before_, gl::Program::create_compute("glass_pixels.comp", far_light))}) {
     if (!loaded) return loaded.error();
   }
   return out;
@@ -99,8 +92,7 @@ void TiledMeshes::fill(List& list, Instances instances, std::span<const Sides> p
   }
 }
 
-void TiledMeshes::start(const gl::Program& program, const List& list, const View& view, glm::ivec2 size,
-                        int pixels) {
+void TiledMeshes::start(const gl::Program& program, const List& list, const View& view, glm::ivec2 size) {
   if (list.count > 0) {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, list.triangles.name());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, list.boxes.name());
@@ -109,8 +101,7 @@ void TiledMeshes::start(const gl::Program& program, const List& list, const View
   program.use();
   program.set("count", list.count);
   program.set("near_plane", view.near_plane);
-  const glm::ivec2 tile(kTileWidth, kTileHeight * pixels);
-  const glm::ivec2 tiles = (size + tile - 1) / tile;
+  const glm::ivec2 tiles = (size + kTile - 1) / kTile;
   glDispatchCompute(static_cast<GLuint>(tiles.x), static_cast<GLuint>(tiles.y), 1);
 }
 
@@ -128,7 +119,7 @@ void TiledMeshes::start_opaque(const Lists& lists, const View& view, const Targe
   glBindImageTexture(0, color.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA16F);
   glBindImageTexture(1, targets.scene_depth.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
   opaque_.set("background", background ? 1 : 0);
-  start(opaque_, lists.opaque, view, targets.size, kOpaquePixels);
+  start(opaque_, lists.opaque, view, targets.size);
 }
 
 void TiledMeshes::start_glass(const Lists& lists, const View& view, const Targets& targets,
@@ -138,7 +129,7 @@ void TiledMeshes::start_glass(const Lists& lists, const View& view, const Target
   gl::bind_textures({fluid ? fluid : &targets.scene_depth, &targets.scene_depth});
   glBindImageTexture(0, targets.color.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA16F);
   if (behind) glBindImageTexture(1, targets.scene_color.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA16F);
-  start(program, lists.glass, view, targets.size, kGlassPixels);
+  start(program, lists.glass, view, targets.size);
 }
 
 }  // namespace slosh

@@ -63,8 +63,7 @@ class TiledMeshes {
 
   void fill(List& list, Instances instances, std::span<const Sides> passes, const View& view,
             const MeshStore& meshes) const;
-  static void start(const gl::Program& program, const List& list, const View& view, glm::ivec2 size,
-                    int pixels);
+  static void start(const gl::Program& program, const List& list, const View& view, glm::ivec2 size);
 
   bool fast_ = false;  ///< glass: only the sides that face the eye
   gl::Program triangles_;

@@ -9,13 +9,18 @@ layout(std430, binding = 8) restrict writeonly buffer Deep { uint deep[]; };  //
 uniform int count;  // entries
 uniform float reach;
 
-// The cell's particles are half as many as there are inside a fluid, and all of its entry, by its first and last.
+// The cell's particles are half as many as there are inside a fluid. Where the first and the last of its entry are the cell's, all are
+// taken to be.
 bool filled(ivec3 cell) {
   uint entry = entry_of(cell, count);
-  uint own = counts[entry];
-  if (own < 8u) return false;
+  uint all_of_entry = counts[entry];
+  if (all_of_entry < 8u) return false;
   uint first = begins[entry];
-  return cell_of(sorted[first].xyz, reach) == cell && cell_of(sorted[first + own - 1u].xyz, reach) == cell;
+  uint end = first + all_of_entry;
+  if (cell_of(sorted[first].xyz, reach) == cell && cell_of(sorted[end - 1u].xyz, reach) == cell) return true;
+  uint own = 0u;
+  for (uint k = first; k < end && own < 8u; ++k) own += cell_of(sorted[k].xyz, reach) == cell ? 1u : 0u;
+  return own >= 8u;
 }
 
 void main() {

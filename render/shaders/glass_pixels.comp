@@ -17,30 +17,26 @@ void main() {
   vec3 through[kPixels];
   bool touched[kPixels];
   for (int k = 0; k < kPixels; ++k) {
+    ivec2 texel = min(texel_of(k), ivec2(picture.xy) - 1);
+    float scene = texelFetch(scene_depth, texel, 0).r;
+    float surface = has_fluid != 0 ? texelFetch(fluid_depth, texel, 0).r : 1.0e6;
+#ifdef BEHIND
+    nearest[k] = surface;
+    farthest[k] = scene;
+#else
+    nearest[k] = 0.0;
+    farthest[k] = min(scene, surface);
+#endif
     ray[k] = ray_of(texel_of(k));
     added[k] = vec3(0.0);
     through[k] = vec3(1.0);
     touched[k] = false;
   }
-  bool looked = false;  // what lies there is known
-  for (int first = 0; first < count; first += kBlock) {
-    uint all_found = look_for(first);
-    for (int k = 0; k < kPixels && all_found > 0u && !looked; ++k) {
-      ivec2 texel = min(texel_of(k), ivec2(picture.xy) - 1);
-      float scene = texelFetch(scene_depth, texel, 0).r;
-      float surface = has_fluid != 0 ? texelFetch(fluid_depth, texel, 0).r : 1.0e6;
-#ifdef BEHIND
-      nearest[k] = surface;
-      farthest[k] = scene;
-#else
-      nearest[k] = 0.0;
-      farthest[k] = min(scene, surface);
-#endif
-    }
-    looked = looked || all_found > 0u;
-    for (uint from = 0u; from < all_found; from += 256u) {
-      int fetched = int(fetch_triangles(from, all_found));
-      for (int place = 0; place < fetched; ++place) {
+  for (int first = 0; first < count; first += 256) {
+    look_for(first);
+    for (int word = 0; word < 8; ++word) {
+      for (uint left = touching[word]; left != 0u; left &= left - 1u) {
+        int place = 32 * word + findLSB(left);
         uint blocks = blocks_touched(place);
         if (blocks == 0u) continue;
         Facet facet = facets[place];
@@ -52,7 +48,7 @@ void main() {
 #else
           if (hit.depth > farthest[k]) continue;
 #endif
-          Triangle t = triangles[int(listed[from + uint(place)])];
+          Triangle t = triangles[first + place];
           Item item = items[int(t.a.w)];
           Pane pane = glass_pane(world_of(ray[k], hit.depth), normal_of(t, hit.weights), item.base, item.surface.y);
           added[k] = added[k] * pane.through + pane.added;

@@ -13,14 +13,14 @@ void main() {
     triangle[k] = -1;
     ray[k] = ray_of(texel_of(k));
   }
-  for (int first = 0; first < count; first += kBlock) {
-    uint all_found = look_for(first);
-    for (uint from = 0u; from < all_found; from += 256u) {
-      int fetched = int(fetch_triangles(from, all_found));
-      for (int place = 0; place < fetched; ++place) {
+  for (int first = 0; first < count; first += 256) {
+    look_for(first);
+    for (int word = 0; word < 8; ++word) {
+      for (uint left = touching[word]; left != 0u; left &= left - 1u) {
+        int place = 32 * word + findLSB(left);
         uint blocks = blocks_touched(place);
         if (blocks == 0u) continue;
-        int index = int(listed[from + uint(place)]);
+        int index = first + place;
         Facet t = facets[place];
         for (int k = 0; k < kPixels; ++k) {
           Hit hit;

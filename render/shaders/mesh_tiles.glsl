@@ -1,4 +1,4 @@
-// Meshes by compute shaders: a group looks after 32 × 8 PIXELS pixels, an invocation after PIXELS of them, and all go through the triangles
+// Meshes by compute shaders: a group looks after 32 × 32 pixels, an invocation after four of them, and all go through the triangles
 // whose boxes touch the tile, in the order in which they would be drawn. Invocations that a chip runs as one (up to 32) have blocks of
 // 8 × 4 pixels, so that they pass over small triangles elsewhere together.
 #include "frame_block.glsl"
@@ -15,8 +15,8 @@ layout(std430, binding = 4) restrict readonly buffer Items { Item items[]; };
 uniform int count;
 uniform float near_plane;
 
-const int kPixels = PIXELS;  // of an invocation
-const ivec2 kTile = ivec2(32, 8 * PIXELS);
+const int kTile = 32;
+const int kPixels = 4;  // of an invocation
 
 // Of the tile: the corner of the first of this invocation's blocks; the others lie 8 rows on each.
 ivec2 first_block() {
@@ -76,66 +76,32 @@ vec3 normal_of(Triangle t, vec3 weights) {
 
 vec3 world_of(vec2 ray, float depth) { return (world_from_eye * vec4(vec3(ray, -1.0) * depth, 1.0)).xyz; }
 
-const int kBlock = 2048;  // triangles looked at together
-shared uint words[kBlock / 32];   // a bit each: it touches the tile
-shared uint before[kBlock / 32];  // how many do in the words before
-shared uint found;
-shared uint listed[kBlock];  // which they are, in their order
+shared uint touching[8];
 shared ivec4 touched_box[256];  // low and high, in the tile
 shared Facet facets[256];
 
-ivec4 box_in_tile(int index) {
-  uvec2 box = boxes[index];
-  ivec2 tile = ivec2(gl_WorkGroupID.xy) * kTile;
-  return ivec4(ivec2(box.x & 0xffffu, box.x >> 16) - tile, ivec2(box.y & 0xffffu, box.y >> 16) - tile);
-}
-
-// Lists which of the triangles from `first` on, kBlock at most, touch the tile; how many do.
-uint look_for(int first) {
-  int local = int(gl_LocalInvocationIndex);
+// Which of the 256 triangles from `first` on touch the tile, a bit each in `touching`.
+void look_for(int first) {
+  uint local = gl_LocalInvocationIndex;
   barrier();
-  if (local < kBlock / 32) words[local] = 0u;
-  if (local == 0) found = 0u;
+  if (local < 8u) touching[local] = 0u;
   barrier();
-  int end = min(count - first, kBlock);
-  for (int i = local; i < end; i += 256) {
-    ivec4 box = box_in_tile(first + i);
-    if (all(lessThan(box.xy, kTile)) && all(greaterThanEqual(box.zw, ivec2(0)))) {
-      atomicOr(words[i >> 5], 1u << (i & 31));
-      atomicAdd(found, 1u);
+  int index = first + int(local);
+  if (index < count) {
+    uvec2 box = boxes[index];
+    ivec2 low = ivec2(box.x & 0xffffu, box.x >> 16);
+    ivec2 high = ivec2(box.y & 0xffffu, box.y >> 16);
+    ivec2 tile = ivec2(gl_WorkGroupID.xy) * kTile;
+    if (all(lessThan(low, tile + kTile)) && all(greaterThanEqual(high, tile))) {
+      atomicOr(touching[local >> 5], 1u << (local & 31u));
+      touched_box[local] = ivec4(low - tile, high - tile);
+      facets[local] = facet_of(triangles[index]);
     }
   }
   barrier();
-  uint all_found = found;
-  if (all_found == 0u) return 0u;
-  if (local < kBlock / 32) {
-    uint sum = 0u;
-    for (int word = 0; word < local; ++word) sum += uint(bitCount(words[word]));
-    before[local] = sum;
-  }
-  barrier();
-  for (int i = local; i < end; i += 256) {
-    uint word = words[i >> 5];
-    uint bit = 1u << (i & 31);
-    if ((word & bit) != 0u) listed[before[i >> 5] + uint(bitCount(word & (bit - 1u)))] = uint(first + i);
-  }
-  return all_found;
 }
 
-// Fetches those from place `from` of the list on, 256 at most; how many they are.
-uint fetch_triangles(uint from, uint all_found) {
-  uint local = gl_LocalInvocationIndex;
-  barrier();
-  if (from + local < all_found) {
-    int index = int(listed[from + local]);
-    touched_box[local] = box_in_tile(index);
-    facets[local] = facet_of(triangles[index]);
-  }
-  barrier();
-  return min(all_found - from, 256u);
-}
-
-// In which of the invocation's four blocks pixels of the box lie that was fetched to `place`, a bit each.
+// In which of the invocation's four blocks pixels of the box lie that look_for() found at `place`, a bit each.
 uint blocks_touched(int place) {
   ivec4 box = touched_box[place];
   ivec2 block = first_block();
