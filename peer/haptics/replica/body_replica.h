@@ -15,10 +15,10 @@ namespace slosh {
 
 /// What does not change of the body.
 struct ReplicaBody {
-  double mass = 1.0;        ///< kg, > 0
-  glm::dmat3 inertia{1.0};  ///< kg·m², about the centre of mass, body axes, positive definite
-  glm::dvec3 center{0.0};   ///< centre of mass in the mesh frame, m
-  bool point = false;       ///< it does not turn
+  double mass = 1.0;                    ///< kg, > 0
+  glm::dmat3 inertia{1.0};              ///< kg·m², about the centre of mass, body axes, positive definite
+  glm::dvec3 center{0.0};               ///< centre of mass in the mesh frame, m
+  bool point = false;                   ///< it does not turn
   glm::dvec3 gravity{0.0, -9.81, 0.0};  ///< m/s²
 };
 
@@ -102,7 +102,8 @@ class BodyReplica {
   /// J of the load's work that is believed; of what came since the host's word the own hands' part alone, as
   /// nobody knows yet what the others did about theirs.
   double work_believed() const noexcept {
-    const double own = 1.0 - shared_, slosh = own * slosh_since(), since = own * (work_ - work_heard_) - slosh;
+    const double own = 1.0 - shared_, slosh = own * slosh_since(),
+                 since = own * (work_ - work_heard_) - slosh;
     return work_heard_ + slosh + (since > 0.0 ? believed_ * since : since);
   }
   /// J that the body's motion and its couplings hold, those of other sites as soft as they are here. As of
@@ -133,9 +134,9 @@ class BodyReplica {
   RigidMotion now_;
   HostMotion word_;  // of the host, not compared yet
   bool has_word_ = false;
-  MotionError pending_;  // of the host's newest word, not taken over yet
-  std::array<SloshState, 3> swings_;          // of load_.swings
-  glm::dvec3 pace_{0.0};                      // m/s² of the body in the last step, without what was corrected
+  MotionError pending_;               // of the host's newest word, not taken over yet
+  std::array<SloshState, 3> swings_;  // of load_.swings
+  glm::dvec3 pace_{0.0};              // m/s² of the body in the last step, without what was corrected
   std::array<SloshState, 3> swings_pending_;  // of what the host's word says of them, not taken over yet
   ReplicaHistory history_;
   struct Ledger {

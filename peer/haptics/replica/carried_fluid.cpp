@@ -5,17 +5,17 @@
 namespace slosh {
 namespace {
 
-constexpr double kMostSlosh = 4.0;      // times the body's mass: no more of its fluid swings
-constexpr double kLeastCarried = 0.1;   // times the body's mass: less in it is not looked at
-constexpr double kWater = 1000.0;       // kg/m³: what is carried is taken to be about as dense
+constexpr double kMostSlosh = 4.0;     // times the body's mass: no more of its fluid swings
+constexpr double kLeastCarried = 0.1;  // times the body's mass: less in it is not looked at
+constexpr double kWater = 1000.0;      // kg/m³: what is carried is taken to be about as dense
 /// A round vessel filled as deep as half its width (Abramson 1966): the share of it that swings, and R·ω²/g.
 constexpr double kSwings = 0.43;
 constexpr double kQuick = 1.841 * 0.951;
 constexpr double kLasts = 1.0;  // s, after which what no model explains is taken to last
 /// s of round trip at which half of what does not last is followed.
 constexpr double kLate = 0.03;
-/// s and N²·s: over which, and against how much before anything was seen, it is found how far a bowl explains what the
-/// fluid does upwards. As steep as it gets a surface breaks.
+/// s and N²·s: over which, and against how much before anything was seen, it is found how far a bowl explains
+/// what the fluid does upwards. As steep as it gets a surface breaks.
 constexpr double kLiftMemory = 1.0;
 constexpr double kSureOfLift = 1.0;
 
@@ -61,8 +61,8 @@ void CarriedFluid::look_for_vessel(const Acting& acting) noexcept {
   }
 }
 
-void CarriedFluid::put_into(FluidLoad& load, Vector6& rest, const Vector6& pace, const Acting& acting, double share,
-                            double round_trip) noexcept {
+void CarriedFluid::put_into(FluidLoad& load, Vector6& rest, const Vector6& pace, const Acting& acting,
+                            double share, double round_trip) noexcept {
   load.bowl = share * lifts_share_ * bowl_ * down_;
   Vector6 kept{1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
   for (std::size_t i = 0; i < 3; ++i) kept[i] = std::sqrt(1.0 - share * finders_[i].share());

@@ -1,4 +1,5 @@
-// What is known of the fluid on a held body from the host's words: what of it swings, what that lifts, what lasts.
+// What is known of the fluid on a held body from the host's words: what of it swings, what that lifts, what
+// lasts.
 #pragma once
 
 #include <array>
@@ -18,19 +19,20 @@ struct Acting {
   glm::dvec3 fluid{0.0};     ///< N, the mean
 };
 
-/// Three slosh modes along the world's axes, the bowl in which what swings rises, and how far the replica goes by
-/// all that. Where fluid weighs on the body it is in it as in a vessel, and what it weighs says what of it swings
-/// and how fast before anything has moved. Neither allocates nor reads a clock; one thread.
+/// Three slosh modes along the world's axes, the bowl in which what swings rises, and how far the replica
+/// goes by all that. Where fluid weighs on the body it is in it as in a vessel, and what it weighs says what
+/// of it swings and how fast before anything has moved. Neither allocates nor reads a clock; one thread.
 class CarriedFluid {
  public:
   explicit CarriedFluid(const ReplicaBody& body) : body_(body) { restart(); }
 
   void restart() noexcept;
   void hear(const Acting& acting) noexcept;
-  /// Puts what swings in the place of the line in `load`, as far as it explains more, times `share` (0–1), and takes
-  /// it out of `rest`: the wrench that acts besides couplings, to which the answer to `pace` (linear and angular
-  /// acceleration) is added. Of what no model explains of the fluid only what lasts is left there, once words are
-  /// `round_trip` s old: what goes to and fro would come too late, and at most paces make it worse.
+  /// Puts what swings in the place of the line in `load`, as far as it explains more, times `share` (0–1),
+  /// and takes it out of `rest`: the wrench that acts besides couplings, to which the answer to `pace`
+  /// (linear and angular acceleration) is added. Of what no model explains of the fluid only what lasts is
+  /// left there, once words are `round_trip` s old: what goes to and fro would come too late, and at most
+  /// paces make it worse.
   void put_into(FluidLoad& load, Vector6& rest, const Vector6& pace, const Acting& acting, double share,
                 double round_trip) noexcept;
 
@@ -51,8 +53,8 @@ class CarriedFluid {
   double lifts_ = 0.0;                  // N, down: what swings puts on the body by rising in a whole bowl
   double lifts_share_ = 1.0;            // how far it does, 0–1
   double lifts_square_ = 0.0, lifts_answer_ = 0.0;  // N²·s
-  glm::dvec3 lasting_{0.0};             // N: of what no model explains, what lasts
-  glm::dvec3 passing_{0.0};             // N: the rest of it, the bowl not taken off
+  glm::dvec3 lasting_{0.0};                         // N: of what no model explains, what lasts
+  glm::dvec3 passing_{0.0};                         // N: the rest of it, the bowl not taken off
   bool lasting_known_ = false;
   double foreseen_ = 0.0;
 };

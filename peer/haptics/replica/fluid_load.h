@@ -15,16 +15,16 @@ namespace slosh {
 /// Order of the six: linear x, y, z, angular x, y, z; world axes; torque about the centre of mass. All zero:
 /// nothing acts.
 struct FluidLoad {
-  Pose reference;                ///< of the centre of mass and the body's axes
-  Twist twist;                   ///< there
-  Vector6 wrench{};              ///< N, N·m
-  Matrix6 d_pose{};              ///< N/m, N/rad, N·m/m, N·m/rad
-  Matrix6 d_velocity{};          ///< N·s/m …
-  Matrix6 added_mass{};          ///< kg, kg·m, kg·m²: symmetric, positive semidefinite
-  double trust_distance = 0.01;  ///< m of δx beyond which the model goes on as at that distance
-  double trust_angle = 0.1;      ///< rad, the same
+  Pose reference;                   ///< of the centre of mass and the body's axes
+  Twist twist;                      ///< there
+  Vector6 wrench{};                 ///< N, N·m
+  Matrix6 d_pose{};                 ///< N/m, N/rad, N·m/m, N·m/rad
+  Matrix6 d_velocity{};             ///< N·s/m …
+  Matrix6 added_mass{};             ///< kg, kg·m, kg·m²: symmetric, positive semidefinite
+  double trust_distance = 0.01;     ///< m of δx beyond which the model goes on as at that distance
+  double trust_angle = 0.1;         ///< rad, the same
   std::array<SloshMode, 3> swings;  ///< along x, y, z: what swings besides, whose force `wrench` is without
-  glm::dvec3 bowl{0.0};             ///< s²/m, down, 1/g long: what swings rises by it (bowl_force); 0: it does not
+  glm::dvec3 bowl{0.0};  ///< s²/m, down, 1/g long: what swings rises by it (bowl_force); 0: it does not
 };
 
 /// 0.5·(a + aᵀ)·sign.

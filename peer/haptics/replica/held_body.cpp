@@ -104,8 +104,9 @@ FluidLoad HeldBody::load_of(const HostWord& word) noexcept {
   // Of steps that were missed the couplings' forces are taken to have gone over evenly.
   const double steps = word.time_step > 0.0 ? std::max(std::round(elapsed / word.time_step), 1.0) : 1.0;
   const double older = known ? 0.5 * (steps - 1.0) / steps : 0.0;
-  Acting acting{known ? elapsed : 0.0, heard_.twist.linear, now.twist.linear, force, word.tells_fluid,
-                word.fluid.force + older * (fluid_force_ - word.fluid.force)};
+  Acting acting{known ? elapsed : 0.0, heard_.twist.linear,
+                now.twist.linear,      force,
+                word.tells_fluid,      word.fluid.force + older * (fluid_force_ - word.fluid.force)};
   for (std::size_t g = 0; g < grips_.size() && g < word.hands.size(); ++g) {
     const Wrench& on_hand = word.hands[g].on_hand;
     const glm::dvec3 arm = now.orientation * (grips_[g].position - body_.center);

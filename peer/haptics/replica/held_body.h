@@ -50,8 +50,8 @@ class HeldBody {
   /// Where an own hand's coupling goes to, at the moment of the last advance().
   GripState grip(std::size_t g) const noexcept;
   /// The wrench for own hand `g` in place of its coupling's `wanted`: damped for the delay, and so that no
-  /// more comes out of this site than went in. `hand`: as it is read; its `twist`, `dt` and `most_damping` (N·s/m
-  /// that the device holds) by the device's own time, of which a second is `pace` s of the body's.
+  /// more comes out of this site than went in. `hand`: as it is read; its `twist`, `dt` and `most_damping`
+  /// (N·s/m that the device holds) by the device's own time, of which a second is `pace` s of the body's.
   Wrench guard(std::size_t g, const Wrench& wanted, const Pose& hand, const Twist& twist, double dt,
                double most_damping, double pace = 1.0) noexcept;
   /// Grip `g`'s coupling is that from now on, here as at the host.
@@ -98,7 +98,7 @@ class HeldBody {
   double heard_time_ = 0.0;
   bool counted_ = false;  // all who hold the body
   std::int64_t heard_ns_ = 0;
-  double pace_ = 1.0;  // HostWord::pace
+  double pace_ = 1.0;         // HostWord::pace
   double since_heard_ = 0.0;  // s
   double ahead_ =
       0.0;  // s until the moment that the word was of, when it came: a slow host's is of a step's end
@@ -113,18 +113,18 @@ class HeldBody {
   double spring_ = 0.0;  // share of the damped spring, 0–1
   LoadWork load_work_;
   bool follows_slosh_;
-  double slosh_share_ = 0.0;          // 0–1: how far what swings is followed at all
+  double slosh_share_ = 0.0;  // 0–1: how far what swings is followed at all
   CarriedFluid carried_;
-  bool tells_fluid_ = false;          // the newest word did
-  glm::dvec3 fluid_force_{0.0};       // N, of the word before
-  glm::dvec3 met_{0.0};               // N: what acts besides couplings and fluid, weight and contacts
-  glm::dvec3 met_late_{0.0};          // N: the same as late as the replica follows it
-  std::vector<Wrench> on_hands_;      // of the word before
-  double stored_ = 0.0;     // J in the couplings when this began, less what had been counted by then
-  double forgotten_ = 0.0;  // J of the balance that nothing here holds any more
-  double work_heard_ = 0.0;  // J: BodyReplica::work_heard() at the tick before
-  double lent_ = 0.0;        // J that loads took and nobody had put in
-  double step_ = 0.0;        // s of the host's step
+  bool tells_fluid_ = false;      // the newest word did
+  glm::dvec3 fluid_force_{0.0};   // N, of the word before
+  glm::dvec3 met_{0.0};           // N: what acts besides couplings and fluid, weight and contacts
+  glm::dvec3 met_late_{0.0};      // N: the same as late as the replica follows it
+  std::vector<Wrench> on_hands_;  // of the word before
+  double stored_ = 0.0;           // J in the couplings when this began, less what had been counted by then
+  double forgotten_ = 0.0;        // J of the balance that nothing here holds any more
+  double work_heard_ = 0.0;       // J: BodyReplica::work_heard() at the tick before
+  double lent_ = 0.0;             // J that loads took and nobody had put in
+  double step_ = 0.0;             // s of the host's step
   std::uint64_t fired_ = 0;
 };
 

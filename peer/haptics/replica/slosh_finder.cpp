@@ -7,25 +7,26 @@ namespace {
 
 constexpr double kSlowest = 0.6, kFastest = 5.0;  // Hz
 constexpr std::array<double, 5> kDampingsOfBank{0.01, 0.03, 0.08, 0.16, 0.32};
-constexpr double kMemory = 3.0;    // s, the forgetting's time constant
+constexpr double kMemory = 3.0;      // s, the forgetting's time constant
 constexpr double kLeastKnown = 0.6;  // of it, s, before anything is followed
-constexpr double kLowPass = 0.02;  // s, each of two
-constexpr double kSweep = 0.05;    // s in which the whole bank is looked at, a few rows a word
-constexpr double kAdopted = 0.1;  // s over which what is found is taken over
+constexpr double kLowPass = 0.02;    // s, each of two
+constexpr double kSweep = 0.05;      // s in which the whole bank is looked at, a few rows a word
+constexpr double kAdopted = 0.1;     // s over which what is found is taken over
 // What is expected, against a force that no model explains of this much over this long: N, s.
 constexpr double kNoise = 0.5;
 constexpr double kNoiseLasts = 0.1;
 constexpr double kExpectedDamping = 0.03;
-constexpr double kSureOfMass = 0.3;   // of what is expected, one σ
-constexpr double kSureOfPace = 0.2;  // the same, of its logarithm
+constexpr double kSureOfMass = 0.3;     // of what is expected, one σ
+constexpr double kSureOfPace = 0.2;     // the same, of its logarithm
 constexpr double kLeastObserved = 0.3;  // kg: of a lighter mode the force says less
-constexpr double kObserved = 0.25;  // s over which the state is drawn to what the force says
+constexpr double kObserved = 0.25;      // s over which the state is drawn to what the force says
 // Motion that weighs as much as what is taken to be so beforehand: no mass, no drag.
 constexpr double kUsualAcceleration = 0.02;  // m/s²
 constexpr double kUsualSpeed = 0.01;         // m/s
-constexpr double kLeastForce = 0.05;  // N rms that neither rigid mass nor damper explains: less is not looked at
-/// Of what neither rigid mass nor damper explains, the share that a mode explains from which on it is followed, and at
-/// which it is wholly.
+constexpr double kLeastForce =
+    0.05;  // N rms that neither rigid mass nor damper explains: less is not looked at
+/// Of what neither rigid mass nor damper explains, the share that a mode explains from which on it is
+/// followed, and at which it is wholly.
 constexpr double kLeastGain = 0.7, kWholeGain = 0.9;
 constexpr double kGainOfExpected = 0.1;  // the same where it is of what is carried in a vessel
 
@@ -109,7 +110,8 @@ void SloshFinder::hear(double dt, double before, double now, double force) noexc
 void SloshFinder::look_on(double dt) noexcept {
   swept_ += dt;
   const double rows = std::ceil(static_cast<double>(kPaces) * dt / kSweep);
-  for (auto left = static_cast<std::size_t>(std::clamp(rows, 1.0, static_cast<double>(kPaces))); left > 0; --left) {
+  for (auto left = static_cast<std::size_t>(std::clamp(rows, 1.0, static_cast<double>(kPaces))); left > 0;
+       --left) {
     for (std::size_t j = 0; j < kDampings; ++j) fits_[row_][j] = fit(&bank_[row_][j]);
     row_ += 1;
     if (row_ < kPaces) continue;
@@ -139,7 +141,8 @@ SloshFinder::Fit SloshFinder::fit(const Candidate* candidate) const {
   }
   double base = 0.0;
   if (expects_) {
-    const double sure = kSureOfMass * (expected_rigid_ + expected_mass_), weight = kNoise * kNoise * kNoiseLasts / (sure * sure);
+    const double sure = kSureOfMass * (expected_rigid_ + expected_mass_),
+                 weight = kNoise * kNoise * kNoiseLasts / (sure * sure);
     a[1][1] += weight;
     b[1] += weight * expected_rigid_;
     base += weight * expected_rigid_ * expected_rigid_;

@@ -1,4 +1,5 @@
-// Which slosh mode of a held body's fluid explains what the host said of its motion and forces, along one axis.
+// Which slosh mode of a held body's fluid explains what the host said of its motion and forces, along one
+// axis.
 #pragma once
 
 #include <array>
@@ -12,8 +13,8 @@ namespace slosh {
 ///   F = F₀ − rigid·a − drag·v + (the mode's force),
 /// rigid, drag and the mode's mass ≥ 0: passive whatever is found. A bank of modes over pace and damping is
 /// moved by the body's motion; for each the other numbers are least squares with forgetting, of both sides
-/// through one low-pass; the best of the bank, between its neighbours, is the mode. Its state is an observer's: drawn to
-/// what the force says. Neither allocates nor reads a clock; one thread.
+/// through one low-pass; the best of the bank, between its neighbours, is the mode. Its state is an
+/// observer's: drawn to what the force says. Neither allocates nor reads a clock; one thread.
 class SloshFinder {
  public:
   /// `most`: kg that a mode may have.
@@ -21,7 +22,8 @@ class SloshFinder {
     *this = SloshFinder{};
     most_ = most;
   }
-  /// What is taken to be so before anything has moved: kg that go with the body, kg that swing, rad/s. Followed at once.
+  /// What is taken to be so before anything has moved: kg that go with the body, kg that swing, rad/s.
+  /// Followed at once.
   void expect(double rigid, double mass, double pace) noexcept;
   /// Over the last `dt` s the body went from velocity `before` to `now`, and the fluid put the mean force
   /// `force` on it.
@@ -31,7 +33,8 @@ class SloshFinder {
   const SloshState& state() const noexcept { return state_; }  ///< at the newest word
   double rigid() const noexcept { return rigid_; }             ///< kg
   double drag() const noexcept { return drag_; }               ///< N·s/m
-  /// How far all that is to be followed, 0–1: by how much the mode explains of what neither rigid mass nor damper does.
+  /// How far all that is to be followed, 0–1: by how much the mode explains of what neither rigid mass nor
+  /// damper does.
   double share() const noexcept { return share_; }
 
  private:

@@ -6,9 +6,9 @@
 
 namespace slosh {
 
-/// A slosh mode of the equivalent mechanical model (Abramson 1966; Ibrahim 2005): m·(d²r/dt² + a) = −k·r − d·dr/dt for
-/// a body that accelerates by a, r: where the mass is against the body, k = m·ω², d = 2ζ·m·ω. Of whatever m, ω
-/// and ζ > 0 it gives no more than it was given.
+/// A slosh mode of the equivalent mechanical model (Abramson 1966; Ibrahim 2005): m·(d²r/dt² + a) = −k·r −
+/// d·dr/dt for a body that accelerates by a, r: where the mass is against the body, k = m·ω², d = 2ζ·m·ω. Of
+/// whatever m, ω and ζ > 0 it gives no more than it was given.
 struct SloshMode {
   double mass = 0.0;     ///< kg, ≥ 0; 0: nothing swings
   double pace = 10.0;    ///< ω, rad/s, > 0
@@ -25,8 +25,9 @@ inline double slosh_force(const SloshMode& mode, const SloshState& s) {
   return mode.mass * mode.pace * (mode.pace * s.place + 2.0 * mode.damping * s.speed);
 }
 
-/// N along what FluidLoad::bowl points against, for a bowl of 1 s²/m: the mass rises as it swings, on a bowl whose
-/// steepness gives it its pace, and its weight and its going up and down press on the body. `acceleration`: the body's along r.
+/// N along what FluidLoad::bowl points against, for a bowl of 1 s²/m: the mass rises as it swings, on a bowl
+/// whose steepness gives it its pace, and its weight and its going up and down press on the body.
+/// `acceleration`: the body's along r.
 inline double bowl_force(const SloshMode& mode, const SloshState& s, double acceleration) {
   const double faster = -acceleration - mode.pace * (mode.pace * s.place + 2.0 * mode.damping * s.speed);
   return mode.mass * mode.pace * mode.pace * (s.speed * s.speed + s.place * faster);
