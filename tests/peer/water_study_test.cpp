@@ -8,7 +8,7 @@
 namespace slosh::coupling {
 namespace {
 
-/// 20 mm at 1.3 Hz: 10 % are asked for.
+/// 24 mm at 0.99 Hz: 10 % are asked for.
 TEST(WaterAtADistance, AHandThatSwingsItFeelsItAsIfItWereHere) {
   WaterCase c;
   c.way = 2;
