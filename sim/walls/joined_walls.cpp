@@ -18,6 +18,7 @@ glm::vec3 to_world(const Pose& pose, const glm::vec3& p) {
 struct Depth {
   float depth;       // m below the surface, negative outside
   glm::vec3 inward;  // unit
+  std::size_t body;  // whose surface that is
 };
 
 // The surface that is left of all bodies together, as discs around their samples. World frame.
@@ -25,14 +26,15 @@ class ExposedSurface {
  public:
   explicit ExposedSurface(float spacing) : radius_(kDisc * spacing), near_(2.0f * spacing) {}
 
-  void add(const glm::vec3& p, const glm::vec3& normal) {
+  void add(std::size_t body, const glm::vec3& p, const glm::vec3& normal) {
     near_.add(p);
     normals_.push_back(normal);
+    bodies_.push_back(body);
   }
 
   /// Of a point within two spacings of the surface; farther inside, infinity.
   Depth depth_at(const glm::vec3& p) const {
-    Depth best{std::numeric_limits<float>::infinity(), {0.0f, 0.0f, 0.0f}};
+    Depth best{std::numeric_limits<float>::infinity(), {0.0f, 0.0f, 0.0f}, 0};
     float least = best.depth;
     near_.around(p, [&](const glm::vec3& q, std::uint32_t n) {
       const glm::vec3& normal = normals_[n];
@@ -45,6 +47,7 @@ class ExposedSurface {
       least = distance;
       const bool outside = above > 0.0f && off <= radius_;
       best.depth = outside ? -distance : distance;
+      best.body = bodies_[n];
       best.inward = outside || distance < 1e-6f * radius_ ? -normal : away / distance;
     });
     return best;
@@ -54,6 +57,7 @@ class ExposedSurface {
   float radius_;
   PointBuckets near_;
   std::vector<glm::vec3> normals_;
+  std::vector<std::size_t> bodies_;
 };
 
 // Whether p, in front of a face of `own`, is inside another body; both are then joined.
@@ -143,7 +147,7 @@ std::vector<std::vector<glm::vec3>> joined_sheets(std::span<const FixedSolid> so
   for (std::size_t b = 0; b < solids.size(); ++b) {
     samples.push_back(samples_of(solids, b, spacing, joined));
     for (const Sample& s : samples[b])
-      if (!s.hidden) surface.add(s.position, s.normal);
+      if (!s.hidden) surface.add(b, s.position, s.normal);
   }
 
   Sheets sheets(solids.size(), spacing);
@@ -162,11 +166,12 @@ std::vector<std::vector<glm::vec3>> joined_sheets(std::span<const FixedSolid> so
     }
   }
   // What is left open: where faces of two bodies meet in a concave edge, and their sheets part as they move
-  // back.
+  // back. Each particle there is of the body whose face it is nearer to, whichever body's mesh it lies in:
+  // what a floor is pressed by is not to depend on whether it ends at the walls or goes on below them.
   for (std::size_t b = 0; b < solids.size(); ++b) {
     if (!joined[b]) continue;
     const auto fill = [&](glm::vec3 p) {
-      if (settle(surface, depth, p) && inside(b, p)) sheets.fill(b, p);
+      if (settle(surface, depth, p) && inside(b, p)) sheets.fill(surface.depth_at(p).body, p);
     };
     for (const Sample& s : samples[b])
       if (s.hidden) fill(s.position);

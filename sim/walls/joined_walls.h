@@ -25,8 +25,8 @@ struct FixedSolid {
 
 /// Particle positions, m, in each body's mesh frame: `depth` (m) behind the surface of all that touch
 /// together, at about `spacing` (m). Empty for a body that touches none, which has its own
-/// (wall_particles.cpp). A face is hidden where there is another body within a quarter of a spacing in front
-/// of it.
+/// (wall_particles.cpp). What fills an edge between two is of the one whose face is nearer. A face is hidden
+/// where there is another body within a quarter of a spacing in front of it.
 std::vector<std::vector<glm::vec3>> joined_sheets(std::span<const FixedSolid> solids, float depth,
                                                   float spacing);
 

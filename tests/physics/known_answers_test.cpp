@@ -89,8 +89,8 @@ INSTANTIATE_TEST_SUITE_P(
         // 0.09 held while all fluids had the whole drag on jostling (viscosity/noise.h).
         std::vector<Known>{{"paraboloid", 0.0075, "rise over r²", 0.10}},
         // Five slabs: as one solid they lose nothing; each for itself 46 particles, its floor +30 %.
-        std::vector<Known>{{"tank_faces", 0.02, "floor", 0.15}},
-        std::vector<Known>{{"tank_faces", 0.01, "floor", 0.06},
+        std::vector<Known>{{"tank_faces", 0.02, "floor", 0.04}},
+        std::vector<Known>{{"tank_faces", 0.01, "floor", 0.022},
                            {"tank_faces", 0.01, "side walls, mean", 0.03},
                            {"tank_faces", 0.01, "centre of pressure above the floor", 0.02}},
         std::vector<Known>{{"slope", 0.0125, "slope", 0.02}, {"slope", 0.0125, "force along the tank", 1e-3}},
