@@ -145,8 +145,17 @@ int report_coupling_water(const ReportOptions& options) {
   if (const Result<bool> written = write_whole(folder.value() / kTable, text); !written) return fail(written.error());
   std::vector<ChartPanel> panels{panel_of(rows, false)};
   if (!options.quick) panels.push_back(panel_of(rows, true));
-  const std::string title = "One hand on a bucket of water, over a delay. " + machine_line(options);
-  if (const Result<bool> drawn = draw(chart_script(panels, static_cast<int>(panels.size()), title), folder.value() / "coupling_water.png");
+  // The ways' names are long: beside the curves, not over them.
+  ChartPanel key;
+  key.key_alone = true;
+  for (ChartPanel& panel : panels) {
+    panel.legend = false;
+    key.series.insert(key.series.end(), panel.series.begin(), panel.series.end());
+  }
+  panels.push_back(key);
+  const std::string script = chart_script(panels, static_cast<int>(panels.size()),
+                                          "One hand on a bucket of water, over a delay", "png", machine_line(options));
+  if (const Result<bool> drawn = draw(script, folder.value() / "coupling_water.png");
       !drawn)
     return fail(drawn.error());
   std::printf("Written to %s: coupling_water.csv and .png\n", clean_text(folder.value().string(), kMostTextBytes).c_str());
