@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -18,172 +17,14 @@
 #include "render/color/display_transform.h"
 #include "render/reference/path_tracer.h"
 #include "render/renderer.h"
+#include "tests/bench/render_stereo.h"
+#include "tests/bench/render_wishes.h"
 #include "tests/render/scene_kit.h"
 
 namespace {
 
-struct Wishes {
-  int width = 640;
-  int height = 480;
-  int particles = 5000;
-  int frames = 30;
-  int threads = 1;
-  bool batter = false;
-  bool juice = false;
-  bool mix = false;
-  bool hard = false;
-  bool no_bodies = false;
-  bool basin = false;
-  bool caustics = false;
-  bool table = false;
-  bool text = false;
-  bool srgb = false;
-  bool paper = false;
-  bool full = false;
-  bool flow = false;
-  bool hud = false;
-  bool stereo = false;
-  bool bucket = false;
-  bool moving = false;
-  int detail = 0;
-  int warm = 0;
-  std::string pixels = "both";
-  int reference = 0;
-  std::string environment;
-  std::string out;
-};
-
-void say_options(CLI::App& app, Wishes& wishes) {
-  app.add_option("--width", wishes.width, "pixels")->check(CLI::Range(16, 8192))->capture_default_str();
-  app.add_option("--height", wishes.height, "pixels")->check(CLI::Range(16, 8192))->capture_default_str();
-  app.add_option("--particles", wishes.particles, "in a broken dam, about")
-      ->check(CLI::Range(1, 4'000'000))
-      ->capture_default_str();
-  app.add_option("--frames", wishes.frames, "measured, after two that are not")
-      ->check(CLI::Range(1, 10'000))
-      ->capture_default_str();
-  app.add_option("--threads", wishes.threads, "of a processor that draws")
-      ->check(CLI::Range(1, 256))
-      ->capture_default_str();
-  app.add_flag("--batter", wishes.batter, "an opaque fluid instead of water");
-  app.add_flag("--juice", wishes.juice, "a cloudy one");
-  app.add_flag("--mix", wishes.mix, "a cloudy one into which an opaque one runs");
-  app.add_flag("--hard", wishes.hard, "fluids meet in hard outlines");
-  app.add_flag("--basin", wishes.basin, "a still basin with a post behind it, in place of the broken dam");
-  app.add_flag("--srgb", wishes.srgb, "the plain sRGB display in place of ACES");
-  app.add_flag("--table", wishes.table, "colours by the baked table alone");
-  app.add_flag("--text", wishes.text, "colours by OpenColorIO's own shader text");
-  app.add_flag("--caustics", wishes.caustics, "light focused by the fluid's surface, with --full");
-  app.add_flag("--no-bodies", wishes.no_bodies, "the fluid mirrors the room alone");
-  app.add_flag("--paper", wishes.paper, "the paper's section 5");
-  app.add_flag("--flow", wishes.flow, "curvature flow");
-  app.add_flag("--full", wishes.full, "full quality: what a film has");
-  app.add_flag("--hud", wishes.hud, "arrows and a panel over it");
-  app.add_flag("--bucket", wishes.bucket, "the tank is no glass");
-  app.add_flag("--moving", wishes.moving, "a ball moves from picture to picture, so that no shadow is kept");
-  app.add_option("--detail", wishes.detail, "a ball more, of four times the square of this triangles")
-      ->check(CLI::Range(2, 1000));
-  app.add_option("--warm", wishes.warm, "pictures more before each that is measured: a GPU that waits slows down")
-      ->check(CLI::Range(0, 1000));
-  app.add_flag("--stereo", wishes.stereo, "both eyes against one as well, each of that size, with the HUD");
-  app.add_option("--pixels", wishes.pixels,
-                 "passes over pixels by fragments, compute, both in turn, or as measured; still: by "
-                 "fragments, all anew "
-                 "and with what stands still kept, in turn")
-      ->check(CLI::IsMember({"both", "fragments", "compute", "measured", "still"}))
-      ->capture_default_str();
-  app.add_option("--environment", wishes.environment, "the room: FILE.hdr or studio");
-  app.add_option("--out", wishes.out, "the picture, FILE.png");
-  app.add_option("--reference", wishes.reference,
-                 "no times: the picture by this many paths a pixel, into --out")
-      ->check(CLI::Range(1, 100'000))
-      ->needs("--out");
-}
-
-double median(std::vector<double> values) {
-  std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
-  return values[values.size() / 2];
-}
-
-/// Both eyes of a frame, the HUD on a panel of its own every sixth time, as a headset at 60 Hz has it;
-/// against one eye with the HUD over it. By turns, so that what else the machine does falls on both.
-void time_stereo(slosh::Renderer& renderer, const slosh::Frame& frame, int frames) {
-  using namespace slosh;
-  std::array<View, 2> eyes{frame.view, frame.view};
-  for (std::size_t eye = 0; eye < 2; ++eye) {
-    const float aside = eye == 0 ? 0.032f : -0.032f;
-    eyes[eye].view = glm::translate(glm::mat4(1.0f), glm::vec3(aside, 0.0f, 0.0f)) * frame.view.view;
-  }
-  const auto time = [](auto&& draw) {
-    const auto start = std::chrono::steady_clock::now();
-    draw();
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  };
-  const auto draw_both = [&](int i) {
-    renderer.prepare(frame, eyes);
-    renderer.draw(eyes);
-    if (i % 6 == 0) renderer.draw_hud();
-    renderer.present();
-  };
-  std::vector<double> mono;
-  std::vector<double> stereo;
-  for (int i = 0; i < frames + 2; ++i) {
-    const double one = time([&] {
-      renderer.draw(frame);
-      (void)renderer.read_back();
-    });
-    const double two = time([&] {
-      renderer.prepare(frame, eyes);
-      renderer.draw(eyes);
-      for (std::size_t eye = 0; eye < 2; ++eye) (void)renderer.read_back(eye);
-      if (i % 6 == 0) renderer.draw_hud();
-      renderer.present();
-    });
-    if (i < 2) continue;
-    mono.push_back(one);
-    stereo.push_back(two);
-  }
-  const auto print = [](const char* what, std::vector<double> one, std::vector<double> both) {
-    std::printf("%s\n%-20s %10.3f %10.3f\n%-20s %10.3f %10.3f\n%-20s %10.3f %10.3f\n", what, "one eye",
-                median(one), std::ranges::min(one), "both eyes", median(both), std::ranges::min(both),
-                "both / one", median(both) / median(one), std::ranges::min(both) / std::ranges::min(one));
-  };
-  print("with read-back", mono, stereo);
-
-  // As a headset has them: nobody reads them back, and nobody waits for one before the next is begun.
-  mono.clear();
-  stereo.clear();
-  constexpr int kRow = 20;
-  for (int i = 0; i < std::max(frames / 4, 3); ++i) {
-    const auto in_a_row = [&](auto&& draw) {
-      return time([&] {
-               for (int k = 0; k < kRow; ++k) draw(k);
-               (void)renderer.read_buffer(Buffer::kBackDepth);  // the smallest: waits for all
-             }) /
-             kRow;
-    };
-    mono.push_back(in_a_row([&](int) { renderer.draw(frame); }));
-    stereo.push_back(in_a_row(draw_both));
-  }
-  print("without, twenty in a row", mono, stereo);
-
-  mono.clear();
-  stereo.clear();
-  renderer.set_timing(true);
-  const auto passes = [&] {
-    double sum = 0.0;
-    for (const PassTime& pass : renderer.pass_times()) sum += pass.milliseconds;
-    return sum;
-  };
-  for (int i = 0; i < frames; ++i) {
-    renderer.draw(frame);
-    mono.push_back(passes());
-    draw_both(i);
-    stereo.push_back(passes());
-  }
-  renderer.set_timing(false);
-  print("all passes", mono, stereo);
-}
+using slosh::bench::median;
+using slosh::bench::Wishes;
 
 /// What is drawn. `spacing` of the basin is that of so many particles.
 struct Load {
@@ -420,7 +261,7 @@ int main(int argc, char** argv) {
   using namespace slosh;
   Wishes wishes;
   CLI::App app{"Times each pass of a frame of a broken dam, on the GPU or the processor that draws here."};
-  say_options(app, wishes);
+  bench::say_options(app, wishes);
   CLI11_PARSE(app, argc, argv);
   wishes.hud = wishes.hud || wishes.stereo;
   if (wishes.reference > 0) {
@@ -455,7 +296,7 @@ int main(int argc, char** argv) {
   if (wishes.stereo) {
     for (const auto& way : ways) {
       std::printf("%s\n", way->name.c_str());
-      time_stereo(*way->renderer, way->load.frame(), wishes.frames);
+      bench::time_stereo(*way->renderer, way->load.frame(), wishes.frames);
     }
   }
   if (!wishes.out.empty()) {
