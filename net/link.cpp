@@ -20,7 +20,7 @@ constexpr char kAskAgain[] = "Copy the whole link anew, or ask for it again";
 constexpr char kDamaged[] = "the link is cut off or mistyped";
 
 std::string version_text() {
-  return "v" + std::to_string(kLinkVersion);
+  return std::string("v") + std::to_string(kLinkVersion);
 }
 
 char lower(char c) {

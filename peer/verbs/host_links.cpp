@@ -39,7 +39,7 @@ std::vector<std::string> own_addresses(bool with_ipv6) {
     } else {
       continue;
     }
-    const std::string host = each->ifa_addr->sa_family == AF_INET6 ? "[" + std::string(text) + "]" : text;
+    const std::string host = each->ifa_addr->sa_family == AF_INET6 ? std::string("[") + text + "]" : text;
     (each->ifa_flags & IFF_LOOPBACK ? near : far).push_back(host);
   }
   far.insert(far.end(), near.begin(), near.end());
