@@ -47,7 +47,7 @@ constexpr Beaten kBeaten[] = {
     {"stokes", "drag", 0.0321},                   // 5 mm: 4.4 %; incompressible, 6 mm: 1.2
     {"stokes_honey", "drag", 0.0482},             // 6 mm: 7.0 %; incompressible: 2.1
     {"tank_faces", "floor", 0.0434},              // 12.5 mm: 4.6 %; the paper's, support 2.5: 0.3
-    // 7.5 mm: 7.2 %; itself, 10 mm, where it crosses nothing: 0.3
+    // 7.5 mm: 7.2 %; itself at 10 mm, by chance: 0.3
     {"torricelli", "speed of the jet over Torricelli's", 0.0697},
 };
 
