@@ -237,7 +237,8 @@ std::optional<Error> refuse_endless(const Scene& scene, const Plan& plan) {
       "Take coarser particles, or a softer or a thinner fluid; where walls are viscous, less of that"};
   if (!plan.viscous()) return error;
   Plan shortest = plan;
-  shortest.time_step = kShortestStep;
+  shortest.time_step = kShortestStep;  // of a sub-step
+  shortest.sub_steps = 1;
   const double most = most_viscous_allowed(scene, shortest, drag_sheet(scene, plan));
   if (most > 0.0 && most < fluid_extremes(scene).most_viscous)
     error.mend = format("Up to %.3g Pa·s run at this spacing; coarser particles allow more", most);

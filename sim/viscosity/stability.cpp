@@ -100,9 +100,8 @@ double most_explicit_drag(const Scene& scene, const Plan& plan) {
 
 double most_viscous_allowed(const Scene& scene, const Plan& plan, DragSheet sheet) {
   const FluidExtremes fluids = fluid_extremes(scene);
-  const double whole = kViscousFactor / (plan.time_step * viscous_rate(scene, plan, fluids)) *
-                           (plan.solves_drag ? kMostImplicit : 1.0) -
-                       jostling(plan, fluids);
+  const double whole =
+      most_explicit_drag(scene, plan) * (plan.solves_drag ? kMostImplicit : 1.0) - jostling(plan, fluids);
   const double part = wall_part(scene, plan, sheet);
   const double of_bodies = most_viscous_body(scene, 0.0);
   const double at_walls = (whole - 0.5 * part * of_bodies) / (kHalfLattice + 0.5 * part);

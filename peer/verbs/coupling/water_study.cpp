@@ -8,6 +8,7 @@
 
 #include "net/clock.h"
 #include "peer/haptics/devices/operator_device.h"
+#include "peer/haptics/script_device.h"
 #include "scenes/load.h"
 #include "scenes/sample.h"
 #include "sim/fluid_models.h"
@@ -34,26 +35,6 @@ std::vector<PoseKey> keys_of(const WaterCase& c, const Pose& start) {
   }
   return keys;
 }
-
-/// A way that no force changes.
-class Led final : public Device {
- public:
-  explicit Led(PoseTrack track) : track_(std::move(track)) {}
-  DeviceReport read(const DeviceMoment& moment) override {
-    const PoseTrack::Sample at = track_.at(moment.time);
-    DeviceReport report;
-    report.pose = at.pose;
-    report.twist = at.twist;
-    return report;
-  }
-  DeviceLimits limits() const override { return limits_without_a_hand(); }
-  bool immediate() const override { return true; }
-  bool goes_with_world() const override { return true; }
-  std::string kind() const override { return "led"; }
-
- private:
-  PoseTrack track_;
-};
 
 Result<Scene> scene_of() {
   const Result<std::filesystem::path> file = find_scene("bucket");
@@ -165,7 +146,8 @@ class Site {
 
 Result<std::unique_ptr<Device>> hand_of(const WaterCase& c, const Pose& start) {
   PoseTrack track(keys_of(c, start), start);
-  if (c.grip.empty()) return std::unique_ptr<Device>(new Led(std::move(track)));
+  // A way that no force changes.
+  if (c.grip.empty()) return std::unique_ptr<Device>(new TrackDevice(std::move(track), "led"));
   const Result<OperatorSettings> settings = parse_operator(c.grip);
   if (!settings) return settings.error();
   return std::unique_ptr<Device>(new OperatorDevice(std::move(track), settings.value()));
