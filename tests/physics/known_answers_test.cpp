@@ -122,9 +122,11 @@ INSTANTIATE_TEST_SUITE_P(
         std::vector<Known>{{"stokes_honey", 0.006, "drag", 0.09}},
         std::vector<Known>{{"slow_ball", 0.006, "force, moving", 0.02},
                            {"slow_ball", 0.006, "force left 0.9 s after", 0.006}},
-        // The one experiment's front is a fifth slower than the other's, in units of their bases.
-        std::vector<Known>{{"dam_break", 0.146 / 16, "front, worst", 0.245}},
-        std::vector<Known>{{"dam_break_long", 0.05715 / 10, "speed of the front", 0.05},
+        // Films are behind potential flow by as much as they are behind these.
+        std::vector<Known>{{"dam_break", 0.146 / 16, "front against potential flow, worst", 0.03},
+                           {"dam_break", 0.146 / 16, "front, worst", 0.245}},
+        std::vector<Known>{{"dam_break_long", 0.05715 / 10, "front against potential flow, worst", 0.036},
+                           {"dam_break_long", 0.05715 / 10, "speed of the front", 0.05},
                            {"dam_break_long", 0.05715 / 10, "front, worst", 0.19}},
         std::vector<Known>{{"shear_wave", 0.01, "rate of decay", 0.02}},
         std::vector<Known>{{"shear_wave", 0.008, "rate of decay", 0.01}},

@@ -73,7 +73,8 @@ std::vector<Reading> dam_break(std::span<const glm::dvec2> fronts, const glm::dv
     const double truth = front_at(ideal, f.x, 0.5 * setting.spacing / length);
     readings.push_back({"front at " + std::to_string(f.x).substr(0, 5), "L", front, f.y, 0.0, false});
     worst = std::max(worst, std::abs(readings.back().error()));
-    worst_of_ideal = std::max(worst_of_ideal, std::abs(front / truth - 1.0));
+    // Beyond the far wall nothing is compared.
+    if (truth < room) worst_of_ideal = std::max(worst_of_ideal, std::abs(front / truth - 1.0));
   }
   const auto speed = [&](std::span<const glm::dvec2> line) {
     return (way.y - way.x) / (line_at(line, way.y, 1) - line_at(line, way.x, 1));
@@ -81,7 +82,7 @@ std::vector<Reading> dam_break(std::span<const glm::dvec2> fronts, const glm::dv
   readings.insert(readings.begin(),
                   {{"front against potential flow, worst", "", worst_of_ideal, 0.0, 1.0, true},
                    {"front, worst", "", worst, 0.0, 1.0, false},
-                   {"speed of the front", "√(2gL)", speed(track), speed(fronts), 0.0, true}});
+                   {"speed of the front", "√(2gL)", speed(track), speed(fronts), 0.0, false}});
   return readings;
 }
 
@@ -236,14 +237,14 @@ std::vector<Reading> poured_mug(const Setting& setting, Cost& cost) {
 std::vector<ErrorCase> flow_cases() {
   return {
       {"dam_break",
-       "A dam breaks: front against potential flow, and Koshizuka and Oka's film",
-       "boundary elements; experiment, 146 mm",
+       "A dam of 146 mm breaks",
+       "boundary elements; film of Koshizuka and Oka",
        {0.146 / 12, 0.146 / 16, 0.146 / 24},
        1,
        koshizuka_oka},
       {"dam_break_long",
-       "A dam breaks: front against potential flow, and Martin and Moyce's film",
-       "boundary elements; experiment, 57 mm, n² = 2",
+       "A dam of 57 mm breaks",
+       "boundary elements; film of Martin and Moyce",
        {0.05715 / 10, 0.05715 / 14, 0.05715 / 20},
        1,
        martin_moyce},
