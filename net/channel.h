@@ -40,8 +40,6 @@ struct HandWord {
 
 /// BodyMessage::heard_pose_ns in one process, where no pose is lost.
 constexpr std::int64_t kPoseNotTold = -1;
-/// s: BodyMessage::answer_after is this at most, or a host that never hears its reader would keep a force alive.
-constexpr double kLongestAnswer = 1.0;
 
 /// Down, every tick: where the bodies are.
 struct BodyMessage {
@@ -59,8 +57,6 @@ struct BodyMessage {
   /// When the newest of the reader's own poses that this state follows was read, on the reader's clock; 0 =
   /// it follows none yet.
   std::int64_t heard_pose_ns = kPoseNotTold;
-  /// s from a pose of the reader's to the first state that can follow it, at most kLongestAnswer; 0 in one process.
-  double answer_after = 0.0;
   std::vector<std::uint64_t> pose_numbers;  ///< one a grip: PoseMessage::number of what the step used
   BodySnapshot bodies;
   /// Of held bodies that somebody asked for, each body once at most, the newest there are of this run: of

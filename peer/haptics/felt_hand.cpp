@@ -31,8 +31,13 @@ Wrench FeltHand::capped(const Wrench& full, bool current) noexcept {
 
 Wrench FeltHand::couple(const WorldBelief& world, const DeviceReport& hand, const GripState& grip,
                         const Moment& now) noexcept {
-  const double believed = std::min(world.share, now.device_share);
-  const bool current = world.current && now.device_share >= 1.0;
+  double believed = std::min(world.share, now.device_share);
+  bool current = world.current && now.device_share >= 1.0;
+  if (world.anew) begun_ = false;
+  begun_ = begun_ || (believed >= 1.0 && current);
+  // Until then the hold is as if all were well, so that the world's and this one go together; the force is
+  // none.
+  if (!begun_) believed = 1.0, current = true;
   jumps_ = world.anew || world.resumed || believed < believed_ - kSudden || (current && !current_);
   current_ = current;
   if (world.anew || now.leapt || (believed >= 1.0 && hold_anew_)) {
@@ -46,7 +51,7 @@ Wrench FeltHand::couple(const WorldBelief& world, const DeviceReport& hand, cons
   hold_anew_ = believed < 1.0;
   believed_ = believed;
   // What comes back after a gap comes back as gently as it went.
-  share_ = std::min(believed, share_ + now.period / rise_);
+  share_ = begun_ ? std::min(believed, share_ + now.period / rise_) : gentle_ ? 0.0 : 1.0;
 
   CouplingGains gains = gains_;
   gains.damping = std::min(gains.damping, now.pace * most_damping_);
@@ -62,9 +67,9 @@ Wrench FeltHand::couple(const WorldBelief& world, const DeviceReport& hand, cons
 
 ForceLimiter::Outcome FeltHand::finish(Wrench wanted, const Twist& twist, const Moment& now) noexcept {
   if (is_finite(wanted)) {
-    wanted = capped(wanted, current_);
+    wanted = begun_ ? capped(wanted, current_) : Wrench{};
     const double share = gentle_ ? share_ * share_ * (3.0 - 2.0 * share_) : share_;
-    const double damped = engagement_.engaged() ? believed_ * (1.0 - share) : 0.0;
+    const double damped = begun_ && engagement_.engaged() ? believed_ * (1.0 - share) : 0.0;
     wanted = {share * wanted.force - damped * damping_ * twist.linear,
               share * wanted.torque - damped * rotational_damping_ * twist.angular};
     if (jumps_) {

@@ -22,6 +22,7 @@ namespace slosh {
 ///    reset or a silence, when it takes hold again, when it suddenly is elsewhere. A silence that took a part
 ///    of the force takes as large a part of that time. Meanwhile its own motion is damped. Where nobody feels
 ///    it, what a silence took comes back over kFadeStale.
+///  - No force begins before world and device are both believed wholly. Who feels none begins with all of it.
 ///  - Where the force would jump all the same, because the world stopped or the hand's hold is another one,
 ///  the
 ///    difference is worked off over kBridge.
@@ -111,6 +112,7 @@ class FeltHand {
   double most_turning_ = 0.0;
   double share_ = 1.0;
   double believed_ = 1.0;    // at the call before
+  bool begun_ = false;  // world and device were both believed since the device came, or the world was reset
   bool hold_anew_ = false;   // words had stopped
   bool held_on_ = false;     // the hand, at the call before
   bool current_ = true;      // the world was, at the call before

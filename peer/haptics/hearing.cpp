@@ -31,23 +31,30 @@ double Hearing::follow_poses(const BodyMessage& message, bool& current) noexcept
     }
     resuming_ = usual_known_ = false;
   }
-  // Before its first step a world follows nobody.
-  const double lag = to_seconds(message.stamp_ns - std::max(message.heard_pose_ns, moving_ns_));
-  // The first that can follow us is a round trip away: no silence yet.
-  if (message.heard_pose_ns < moving_ns_) return freshness(lag - message.answer_after, period_);
+  // A host that never heard us may never have: no force begins before it has, so that none is left to end.
+  if (message.heard_pose_ns <= 0) {
+    current = false;
+    return 0.0;
+  }
+  const double lag = to_seconds(message.stamp_ns - message.heard_pose_ns);
   if (!usual_known_) {
     usual_lag_ = lag;
     lag_spread_ = 0.0;
     usual_known_ = true;
   }
-  const double late = lag - usual_lag_ - kSpread * lag_spread_;
+  // A silence is no measure of itself: what is usual is as it was when a pose was last heard.
+  if (message.heard_pose_ns != followed_ns_) {
+    followed_ns_ = message.heard_pose_ns;
+    latest_ = usual_lag_ + kSpread * lag_spread_;
+  }
+  const double late = lag - latest_;
   if (late > kLatePose) current = false;
   if (late < kHoldStale) {  // beyond, it is a silence and says nothing of what is usual
     const double share = period_ / kLagMemory;
     lag_spread_ += share * (std::abs(lag - usual_lag_) - lag_spread_);
     usual_lag_ += share * (lag - usual_lag_);
   }
-  return freshness(late, period_);
+  return freshness(late, period_, latest_);
 }
 
 /// What we said before the silence may have been kept back with it: ours counts from when the link is back.
@@ -71,18 +78,19 @@ WorldBelief Hearing::hear(const BodyMessage& message, bool fresh, std::int64_t n
   ticked_ = true;
   const double since_heard = to_seconds(now_ns - heard_ns_);
   if (message.rate <= 0.0) {
-    moving_ns_ = 0;
     const double share = freshness(since_heard, kStandingInterval);
-    // After the first step a pace of 0 means that the world stopped: it holds nothing up any more.
-    if (message.bodies.tick == 0) belief.share = share;
+    // After the first step a pace of 0 means that the world stopped: it holds nothing up any more. Before it
+    // no world far away follows anybody's poses.
+    if (message.bodies.tick == 0 && message.heard_pose_ns == kPoseNotTold) belief.share = share;
     belief.current = belief.share >= 1.0;
     turn_to_speak(share >= 1.0, now_ns);
     return belief;
   }
-  if (moving_ns_ == 0) moving_ns_ = message.stamp_ns;
   const double age = to_seconds(now_ns - message.stamp_ns);  // negative while the state is still to come
   const double interval = message.time_step / message.rate;
-  const double states = std::min(freshness(age, interval), freshness(since_heard, interval));
+  // What it takes one way is a half of what it takes both.
+  const double way = 0.5 * latest_;
+  const double states = std::min(freshness(age, interval, way), freshness(since_heard, interval, way));
   turn_to_speak(states >= 1.0, now_ns);
   belief.current = age <= 2.0 * interval + period_;
   belief.resumed = fresh && late_;

@@ -16,9 +16,12 @@ struct WorldBelief {
 };
 
 /// Body states come one way and poses go the other, and each may fail alone.
-///  - States that are late are believed as freshness() has it; a world that waits for its first step, as long
-///  as
-///    it says so; a world that stopped, not at all.
+///  - States that are late are believed as freshness() has it; a world in this process that waits for its
+///  first
+///    step, as long as it says so; one that stopped, or that waits far away, not at all.
+///  - Nothing is believed before the first state that follows a pose of ours: on a link that takes a round
+///  trip, and
+///    until then nobody can tell a host that will never hear us from one that is far away.
 ///  - States that no longer follow our poses come from a host that does not hear us: the body stands where
 ///  our
 ///    hand was, and a spring to it would be the link's. Late poses count as late states do.
@@ -44,8 +47,7 @@ class Hearing {
   bool ticked_ = false;
   bool late_ = false;  // the newest state was, at the call before
   std::uint32_t run_ = 0;
-  std::int64_t heard_ns_ = 0;   // when the newest state came
-  std::int64_t moving_ns_ = 0;  // since when the world moves; 0 = it does not
+  std::int64_t heard_ns_ = 0;  // when the newest state came
   bool speaks_ = true;
   bool resuming_ = false;      // speaks again, and the host has not answered to it yet
   std::int64_t again_ns_ = 0;  // when it was heard again after a silence; 0 = it is not
@@ -53,6 +55,8 @@ class Hearing {
   double usual_lag_ = 0.0;     // s from our pose to a state that follows it, with the state's own delay
   double lag_spread_ = 0.0;    // s, its mean deviation
   bool usual_known_ = false;
+  std::int64_t followed_ns_ = 0;  // the newest pose of ours that a state followed
+  double latest_ = 0.0;           // s, the usual lag and what it varies by as they were then
 };
 
 }  // namespace slosh

@@ -48,6 +48,7 @@ bool Backlog::holds(double lateness, double usual, std::int64_t now_ns) {
 BodyInbox::BodyInbox(const Scene& scene, double time_step)
     : scene_(scene), time_step_(time_step), interval_(time_step) {
   state_.time_step = time_step;
+  state_.heard_pose_ns = 0;
   BodySnapshot& bodies = state_.bodies;
   for (const Body& body : scene.bodies) {
     BodyState& at = bodies.bodies.emplace_back();
@@ -219,7 +220,6 @@ void BodyInbox::apply(const Pending& pending, const ClockSync& clock) {
   // What a device loop takes for a tick is how often states come.
   state_.time_step = std::max(time_step_, interval_);
   state_.carry_on = kHoldAnew;
-  state_.answer_after = std::clamp(clock.round_trip(), 0.0, kLongestAnswer);
   state_.stamp_ns = due_ns(pending, clock);
   lay_out(pending, state_);
   given_ = true;

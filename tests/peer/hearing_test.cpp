@@ -17,6 +17,8 @@ struct Link {
   Hearing hearing{kPeriod};
   BodyMessage message;
   WorldBelief belief;
+  double lag = kLag;
+  int up_ends_ms = 1 << 30;  // poses read after this are lost
   int ms = 1000;
   bool down = true;
   bool up = true;
@@ -32,7 +34,8 @@ struct Link {
   void run(int count) {
     for (int i = 0; i < count; ++i) {
       ms += 1;
-      if (up && hearing.speaks()) said_ns = now() - to_nanoseconds(kLag);
+      const int read_ms = ms - static_cast<int>(1e3 * lag + 0.5);
+      if (up && hearing.speaks() && read_ms <= up_ends_ms) said_ns = std::int64_t{read_ms} * 1'000'000;
       if (up) arrived_ns = std::max(arrived_ns, said_ns);
       if (down) {
         message.stamp_ns = now();
@@ -52,18 +55,66 @@ TEST(Hearing, BelievesAWorldAtItsPace) {
   EXPECT_TRUE(link.hearing.speaks());
 }
 
-/// Over a long link the first state that can follow us is a round trip away: that is no silence, and the hand keeps what it
-/// was given. Where none comes by then it fades.
-TEST(Hearing, TheFirstAnswerMayTakeARoundTrip) {
-  for (const bool comes : {true, false}) {
+/// Over a long link the first state that can follow us is a round trip away: until then there is nothing to
+/// feel, and so nothing to fade where none ever comes. From then on it is believed at once.
+TEST(Hearing, BelievesNothingBeforeTheFirstAnswer) {
+  Link link;
+  link.up = false;
+  for (int ms = 0; ms < 2000; ++ms) {
+    link.run(1);
+    ASSERT_EQ(link.belief.share, 0.0) << ms;
+    ASSERT_TRUE(link.hearing.speaks());
+  }
+  link.up = true;
+  link.run(1);
+  EXPECT_EQ(link.belief.share, 1.0);
+  EXPECT_TRUE(link.belief.current);
+}
+
+/// A world far away that waits for its first step follows nobody: it may hear us or not.
+TEST(Hearing, AWorldFarAwayThatWaitsIsNotBelieved) {
+  Link link;
+  link.message.rate = 0.0;
+  link.run(500);
+  EXPECT_EQ(link.belief.share, 0.0);
+  EXPECT_TRUE(link.hearing.speaks());
+  link.message.rate = 1.0;
+  link.run(1);
+  EXPECT_EQ(link.belief.share, 1.0);
+}
+
+/// Where poses stop, nobody can know before an answer is due: the force is over 400 ms after the last pose
+/// that was heard, or where the link takes longer than 200 ms both ways, 200 ms after the answer to it.
+TEST(Hearing, PosesThatStopEndTheForceWithin400MillisecondsOfTheFault) {
+  for (const auto& [lag, after] : {std::pair{0.02, 400}, {0.1, 400}, {0.2, 400}, {0.3, 500}, {0.5, 700}}) {
     Link link;
-    link.message.answer_after = 0.3;
-    link.up = false;
-    link.run(390);
+    link.lag = lag;
+    link.run(3000);
     EXPECT_EQ(link.belief.share, 1.0);
-    link.up = comes;
-    link.run(350);
-    EXPECT_EQ(link.belief.share, comes ? 1.0 : 0.0);
+    // What is on its way still comes: the last pose that is heard was read now.
+    const int fault = link.ms;
+    link.up_ends_ms = fault;
+    double before = 1.0;
+    while (link.belief.share > 0.0 && link.ms < fault + 2000) {
+      link.run(1);
+      EXPECT_GT(link.belief.share, before - 0.0101) << "no quicker than a tenth of a second";
+      before = link.belief.share;
+    }
+    EXPECT_NEAR(link.ms - fault, after, 12) << lag;
+  }
+}
+
+/// The same where states stop: what was on its way is half of that.
+TEST(Hearing, StatesThatStopEndTheForceWithin400MillisecondsOfTheFault) {
+  for (const auto& [lag, after] : {std::pair{0.02, 390}, {0.2, 300}, {0.4, 200}, {0.5, 200}}) {
+    Link link;
+    link.lag = lag;
+    link.run(3000);
+    link.down = false;
+    const int last = link.ms;
+    while (link.belief.share > 0.0 && link.ms < last + 2000) link.run(1);
+    EXPECT_NEAR(link.ms - last, after, 5)
+        << lag << ": by what was heard last, half of it earlier by the host's clock";
   }
 }
 

@@ -75,12 +75,15 @@ struct ServoKit {
     return message;
   }
 
-  /// A body state of simulated time `time`, published at the same wall time.
-  void publish(double time, const Pose& grip = {}, const Twist& twist = {}, double rate = 1.0) {
+  /// A body state of simulated time `time`, published at the same wall time. `heard`: s, when the newest of
+  /// our poses was read that a host far away heard, 0 = none; less: it is in this process.
+  void publish(double time, const Pose& grip = {}, const Twist& twist = {}, double rate = 1.0,
+               double heard = -1.0) {
     BodyMessage& message = channel.bodies().back();
     message = first();
     message.stamp_ns = to_nanoseconds(time);
     message.rate = rate;
+    message.heard_pose_ns = heard < 0.0 ? kPoseNotTold : to_nanoseconds(heard);
     message.bodies.tick = static_cast<std::uint64_t>(std::lround(time / kTick));
     message.bodies.time = time;
     message.bodies.grips[0].pose = grip;

@@ -33,6 +33,43 @@ TEST(Servo, FadesOutWhenBodyStatesStop) {
   }
 }
 
+/// A host far away whose states come and that has not heard us: there is no force that would have to end,
+/// however long that lasts. From its first answer on there is: at once for who feels none, over their time
+/// for a hand.
+TEST(Servo, NoForceBeginsBeforeTheHostHasHeardTheHand) {
+  for (const bool hand : {false, true}) {
+    DeviceLimits limits = limits_without_a_hand();
+    if (hand) limits.engagement_time = 2.0;
+    ServoKit kit(limits);
+    kit.device->next.pose = at(0.01);
+    double now = 0.0;
+    double most = 0.0;
+    const auto run = [&](double seconds, bool answers) {
+      for (const double end = now + seconds; now < end; now += 0.001) {
+        kit.publish(now, {}, {}, 1.0, answers ? now - 0.1 : 0.0);
+        const double before = kit.device->last.force.x;
+        kit.tick(now);
+        most = std::max(most, std::abs(kit.device->last.force.x - before));
+      }
+    };
+    run(3.0, false);
+    EXPECT_EQ(most, 0.0);
+    run(0.002, true);
+    EXPECT_NEAR(kit.device->last.force.x, hand ? 0.0 : -10.0, 0.01);
+    most = 0.0;
+    run(2.1, true);
+    EXPECT_NEAR(kit.device->last.force.x, -10.0, 1e-6);
+    EXPECT_LT(most, 0.01) << "no step";
+    // It hears us no more: poses stop at `now`, and what is on its way still comes.
+    const double fault = now - 0.1;
+    for (const double end = now + 0.301; now < end; now += 0.001) {
+      kit.publish(now, {}, {}, 1.0, fault);
+      kit.tick(now);
+    }
+    EXPECT_EQ(kit.device->last.force.x, 0.0) << "400 ms after the last pose that it heard";
+  }
+}
+
 TEST(Servo, SilenceStretchesNoSpring) {
   ServoKit kit;
   kit.publish(0.0);

@@ -330,6 +330,7 @@ TEST(BodyInbox, AWorldThatStandsIsGivenOutAsOftenAsItIsToldOf) {
 
 TEST(BodyInbox, AStateTellsWhichOfOurPosesItFollows) {
   Inbox kit;
+  EXPECT_EQ(kit.inbox.state().heard_pose_ns, 0) << "far away before anything came";
   kit.take(state(1));
   ASSERT_NE(kit.next(1), nullptr);
   EXPECT_EQ(kit.inbox.state().heard_pose_ns, 0) << "none yet";

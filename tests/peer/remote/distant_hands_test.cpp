@@ -159,6 +159,7 @@ class DistantHands : public ::testing::Test {
     first.stamp_ns = clock;
     first.time_step = dt;
     first.bodies = host->now;
+    first.heard_pose_ns = 0;  // far away
     for (std::uint32_t i = 0; i < 2; ++i) {
       people.push_back(
           std::make_unique<Person>(scene, i, first, dt, carrying(grip_start(scene, i)), coupling,
@@ -318,6 +319,35 @@ TEST_F(DistantHands, AnArmThatIsSofterCarriesWithAnother) {
     EXPECT_LT(arm_step, 0.2) << round_trip;
     EXPECT_LT(step(), 0.05) << round_trip << ": at rest after";
   }
+}
+
+/// One of two people whose poses no one hears, from the start and later on, over 200 ms: nothing begins that
+/// would have to end, and what had begun is over 400 ms after the fault. The stand, or the other one, has the
+/// weight meanwhile.
+TEST_F(DistantHands, WhoIsNotHeardFeelsNothing) {
+  begin(0.2, 0.005, 0.0, Coupling::kReplica);
+  const double top = host->now.bodies[0].center_of_mass.y;
+  const auto felt = [&](std::size_t i) { return glm::length(people[i]->device->last.force); };
+  people[0]->up.dark = true;
+  run(3.0);
+  EXPECT_EQ(people[0]->peak, 0.0);
+  EXPECT_NEAR(felt(1), kShare, 1.0) << "the other one carries";
+  people[0]->up.dark = false;
+  double least = 1e9;
+  run(0.25);
+  for (int i = 0; i < 120; ++i) {
+    run(0.05);
+    least = std::min(least, felt(0));
+  }
+  std::printf("heard after 3 s: %.1f N at least, %.1f N in the end; the body %.1f mm lower\n", least, felt(0),
+              1e3 * (top - host->now.bodies[0].center_of_mass.y));
+  EXPECT_GT(least, 4.0);
+  EXPECT_NEAR(felt(0), kShare, 0.5);
+  people[0]->up.dark = true;
+  run(0.42);
+  EXPECT_EQ(felt(0), 0.0)
+      << "200 ms after the answer to the last pose was due, which took 0.2 s and 5 to 10 ms of jitter";
+  EXPECT_LE(step(), 1.001e-3 * NotedOperator::kForceRate);
 }
 
 TEST_F(DistantHands, TheSpringDoesNotCarryItAsWell) {

@@ -93,6 +93,7 @@ class LinkForces : public ::testing::TestWithParam<Hands> {
     first.stamp_ns = clock;
     first.time_step = dt;
     first.bodies = host->now;
+    first.heard_pose_ns = 0;  // far away
     const std::int64_t* const wall = GetParam().scripted ? nullptr : &clock;
     for (std::uint32_t i = 0; i < 2; ++i) {
       people.push_back(std::make_unique<Person>(scene, i, first, dt, wall, GetParam().motion));
