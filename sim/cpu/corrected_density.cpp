@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sim/cpu/passes.h"
+#include "sim/cpu/pressure_rows.h"
 #include "sim/cpu/row_batches.h"
 #include "sim/model.h"
 #include "sim/pressure/solved_state.h"
@@ -15,25 +16,81 @@ namespace {
 
 constexpr std::size_t kRunsPerChunk = 32;
 
+// What is written down beside the sums: nothing, or
+struct NoRow {
+  struct Writer {
+    Writer(FluidPress&, std::size_t) {}
+  };
+  NoRow(Writer&, std::uint32_t) {}
+  void add(std::uint32_t, const Vector3<FloatBatch>&, FloatBatch, FloatBatch) {}
+  void add_wall(const Vector3<FloatBatch>&, FloatBatch, FloatBatch, FloatBatch) {}
+  void end(const FluidParticles&, float) {}
+};
+
+// who presses on whom, where pressures are solved for: by fluid in rows, by all in the own vector.
+class PressRow {
+ public:
+  struct Writer {
+    Writer(FluidPress& p, std::size_t chunk) : press(p), rows(p.rows, chunk) {}
+    FluidPress& press;
+    PressureRows::Writer rows;
+  };
+  PressRow(Writer& writer, std::uint32_t p) : writer_(writer), p_(p) { writer_.rows.begin(p); }
+  void add(std::uint32_t j, const Vector3<FloatBatch>& d, FloatBatch h, FloatBatch weight) {
+    const FloatBatch r_squared = d.x * d.x + d.y * d.y + d.z * d.z;
+    const FloatBatch slope = Spiky::pair(r_squared, h, weight).slope_over_r;
+    writer_.rows.add(j, slope, r_squared * slope);
+    add(d, slope);
+  }
+  void add_wall(const Vector3<FloatBatch>& d, FloatBatch share, FloatBatch h, FloatBatch weight) {
+    add(d, share * Spiky::pair(d.x * d.x + d.y * d.y + d.z * d.z, h, weight).slope_over_r);
+  }
+  void end(const FluidParticles& fluid, float scale) {
+    writer_.rows.end();
+    const PressTensor t{scale * fluid.pxx[p_], scale * fluid.pyy[p_], scale * fluid.pzz[p_], 0.0f,
+                        scale * fluid.pxy[p_], scale * fluid.pyz[p_], scale * fluid.pxz[p_], 0.0f};
+    const float x = lane_sum(sum_.x), y = lane_sum(sum_.y), z = lane_sum(sum_.z);
+    writer_.press.places[p_] = {fluid.x[p_], fluid.y[p_], fluid.z[p_], 0.0f};
+    writer_.press.drags[p_] = {fluid.ux[p_], fluid.uy[p_], fluid.uz[p_], fluid.volume[p_]};
+    writer_.press.tensors[p_] = t;
+    writer_.press.own[p_] = {t.xx * x + t.xy * y + t.xz * z, t.xy * x + t.yy * y + t.yz * z,
+                             t.xz * x + t.yz * y + t.zz * z, 0.0f};
+  }
+
+ private:
+  void add(const Vector3<FloatBatch>& d, FloatBatch factor) {
+    sum_.x += factor * d.x;
+    sum_.y += factor * d.y;
+    sum_.z += factor * d.z;
+  }
+  Writer& writer_;
+  const std::uint32_t p_;
+  Vector3<FloatBatch> sum_{FloatBatch(0.0f), FloatBatch(0.0f), FloatBatch(0.0f)};
+};
+
 // The corrected model's pass: what pressure and noise need of the neighbours besides their number.
+template <class Row>
 class CorrectedDensity {
  public:
   CorrectedDensity(PassContext& context, FluidParticles& fluid, const BoundaryParticles& fixed,
                    const BoundaryParticles& moving)
       : context_(context), fluid_(fluid), fixed_(fixed), moving_(moving) {}
 
-  // One run of particles of a cell; returns the largest compression.
-  float operator()(const CellRun& run) const {
+  // One run of particles of a cell; returns the largest compression. All of it in one loop: left to itself
+  // the compiler calls functions where rows are written, and hands batches over in memory.
+  __attribute__((flatten)) float operator()(const CellRun& run, typename Row::Writer& writer) const {
     const RowList rows = fluid_.index.rows(context_.grid, run.cell);
     const RowList fixed_rows = fixed_.index.rows(context_.grid, run.cell);
     const RowList moving_rows = moving_.index.rows(context_.grid, run.cell);
     float densest = 0.0f;
     for (std::uint32_t p = run.particles.begin; p < run.particles.end; ++p) {
       Neighborhood<FloatBatch> sum = zero();
-      add_fluid(p, rows, sum);
-      add_walls(p, fixed_, fixed_rows, sum);
-      add_walls(p, moving_, moving_rows, sum);
+      Row row(writer, p);
+      add_fluid(p, rows, sum, row);
+      add_walls(p, fixed_, fixed_rows, sum, row);
+      add_walls(p, moving_, moving_rows, sum, row);
       densest = std::max(densest, finish(p, sum));
+      row.end(fluid_, context_.force_scale);
     }
     return densest;
   }
@@ -46,22 +103,25 @@ class CorrectedDensity {
     return {z, {z, z, z, z, z, z}, z, z, z, z};
   }
 
-  void add_fluid(std::uint32_t p, const RowList& rows, Neighborhood<FloatBatch>& sum) const {
+  void add_fluid(std::uint32_t p, const RowList& rows, Neighborhood<FloatBatch>& sum, Row& row) const {
     const FloatBatch x(fluid_.x[p]), y(fluid_.y[p]), z(fluid_.z[p]), h(context_.support_radius);
     for_each_batch(rows, [&](std::uint32_t j, FloatBatch weight) {
-      add_fluid_neighbor<Kernel>(x - load(fluid_.x, j), y - load(fluid_.y, j), z - load(fluid_.z, j),
-                                 load(fluid_.vx, j), load(fluid_.vy, j), load(fluid_.vz, j), h, weight, sum);
+      const Vector3<FloatBatch> d{x - load(fluid_.x, j), y - load(fluid_.y, j), z - load(fluid_.z, j)};
+      add_fluid_neighbor<Kernel>(d.x, d.y, d.z, load(fluid_.vx, j), load(fluid_.vy, j), load(fluid_.vz, j), h,
+                                 weight, sum);
+      row.add(j, d, h, weight);
     });
   }
 
   void add_walls(std::uint32_t p, const BoundaryParticles& walls, const RowList& rows,
-                 Neighborhood<FloatBatch>& sum) const {
+                 Neighborhood<FloatBatch>& sum, Row& row) const {
     if (rows.count == 0) return;
     const FloatBatch x(fluid_.x[p]), y(fluid_.y[p]), z(fluid_.z[p]), h(context_.support_radius);
     for_each_batch(rows, [&](std::uint32_t j, FloatBatch weight) {
       const FloatBatch share = load(walls.pressure, j);
-      add_wall_neighbor<Kernel>(x - load(walls.x, j), y - load(walls.y, j), z - load(walls.z, j), share,
-                                FloatBatch(1.0f / kWallShare) * share, h, weight, sum);
+      const Vector3<FloatBatch> d{x - load(walls.x, j), y - load(walls.y, j), z - load(walls.z, j)};
+      add_wall_neighbor<Kernel>(d.x, d.y, d.z, share, FloatBatch(1.0f / kWallShare) * share, h, weight, sum);
+      row.add_wall(d, share, h, weight);
     });
   }
 
@@ -115,17 +175,30 @@ class CorrectedDensity {
   const BoundaryParticles &fixed_, &moving_;
 };
 
+template <class Row>
+void find(PassContext& context, ThreadTeam& team, FluidParticles& fluid, const BoundaryParticles& fixed,
+          const BoundaryParticles& moving, FluidPress& press) {
+  const std::vector<CellRun>& runs = fluid.index.runs();
+  const CorrectedDensity<Row> pass(context, fluid, fixed, moving);
+  team.run(runs.size(), kRunsPerChunk, [&](std::size_t begin, std::size_t end) {
+    typename Row::Writer writer(press, begin / kRunsPerChunk);
+    float densest = 0.0f;
+    for (std::size_t r = begin; r < end; ++r) densest = std::max(densest, pass(runs[r], writer));
+    if (densest > kTooCompressed) context.status.fetch_or(kStatusCompressed, std::memory_order_relaxed);
+  });
+}
+
 }  // namespace
 
 void compute_corrected_density(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
-                               const BoundaryParticles& fixed, const BoundaryParticles& moving) {
-  const std::vector<CellRun>& runs = fluid.index.runs();
-  const CorrectedDensity pass(context, fluid, fixed, moving);
-  team.run(runs.size(), kRunsPerChunk, [&](std::size_t begin, std::size_t end) {
-    float densest = 0.0f;
-    for (std::size_t r = begin; r < end; ++r) densest = std::max(densest, pass(runs[r]));
-    if (densest > kTooCompressed) context.status.fetch_or(kStatusCompressed, std::memory_order_relaxed);
-  });
+                               const BoundaryParticles& fixed, const BoundaryParticles& moving,
+                               FluidPress& press) {
+  if (!context.plan.has(PassId::kPressureSolve)) {
+    find<NoRow>(context, team, fluid, fixed, moving, press);
+    return;
+  }
+  press.clear(fluid.index.particles(), chunk_count(fluid.index.runs().size(), kRunsPerChunk));
+  find<PressRow>(context, team, fluid, fixed, moving, press);
 }
 
 }  // namespace slosh

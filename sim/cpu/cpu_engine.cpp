@@ -183,7 +183,9 @@ class CpuEngine final : public ParticleEngine {
     sort_fluid(context_, team_, fluid_, sorter_, scratch_);
   }
   void place_bodies(double) { moving_.place(context_, bodies_); }
-  void find_density(double) { compute_density(context_, team_, fluid_, fixed_.sorted(), moving_.sorted()); }
+  void find_density(double) {
+    compute_density(context_, team_, fluid_, fixed_.sorted(), moving_.sorted(), pressure_rows_);
+  }
   void find_forces(double dt) {
     compute_fluid_forces(context_, team_, fluid_, fixed_.sorted(), moving_.sorted(), dt, fluid_drag_,
                          pressure_rows_);

@@ -90,10 +90,10 @@ void compute_density_of(PassContext& context, ThreadTeam& team, FluidParticles& 
 }  // namespace
 
 void compute_density(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
-                     const BoundaryParticles& fixed, const BoundaryParticles& moving) {
+                     const BoundaryParticles& fixed, const BoundaryParticles& moving, FluidPress& press) {
   with_model(context.plan.model, [&]<class Parts>() {
     if constexpr (Parts::kCorrected) {
-      compute_corrected_density(context, team, fluid, fixed, moving);
+      compute_corrected_density(context, team, fluid, fixed, moving, press);
     } else {
       compute_density_of<Parts>(context, team, fluid, fixed, moving);
     }

@@ -1,5 +1,8 @@
 // Eq 5, 6 and 9 on fluid particles, and Eq 10–12 on bodies.
+#include <cstring>
+
 #include "sim/cpu/force_rows.h"
+#include "sim/cpu/pressure_rows.h"
 
 namespace slosh {
 
@@ -21,23 +24,10 @@ Symmetric<float> drag_rate(const ParticleView<FloatBatch>& self, const NeighborC
           scale * lane_sum(sum.yy), scale * lane_sum(sum.yz), scale * lane_sum(sum.zz)};
 }
 
-void gather_tensors(const FluidWalk& walk, FluidPress& press) {
-  const FluidParticles& fluid = walk.fluid;
-  const float s = walk.context.force_scale;
-  walk.team.run(fluid.index.particles(), 2048, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t p = begin; p < end; ++p) {
-      const ParticleKind& kind = walk.context.kinds[fluid.kind[p]];
-      press.tensors[p] = {
-          {s * fluid.pxx[p], s * fluid.pxy[p], s * fluid.pxz[p], kind.probe ? 0.0f : 1.0f / kind.mass},
-          {s * fluid.pxy[p], s * fluid.pyy[p], s * fluid.pyz[p], 0.0f},
-          {s * fluid.pxz[p], s * fluid.pyz[p], s * fluid.pzz[p], 0.0f}};
-    }
-  });
-}
-
 // One chunk of runs. All of a pair in one loop: left to itself the compiler calls functions where rows are
 // written, and hands batches over in memory.
-template <class Parts, Viscosity viscosity, class Rows>
+// Without `by_fluid` what fluid does to fluid is there already.
+template <class Parts, Viscosity viscosity, class Rows, bool by_fluid>
 __attribute__((flatten)) void find_forces_of(const FluidWalk& walk, const typename Rows::Given& given,
                                              std::size_t begin, std::size_t end) {
   // Body particles have viscosities of their own, so against them Eq 9 holds even where one fluid has Eq 6.
@@ -55,12 +45,15 @@ __attribute__((flatten)) void find_forces_of(const FluidWalk& walk, const typena
     const RowList fixed_rows = walk.fixed.index.rows(context.grid, runs[r].cell);
     const RowList moving_rows = walk.moving.index.rows(context.grid, runs[r].cell);
     for (std::uint32_t p = runs[r].particles.begin; p < runs[r].particles.end; ++p) {
+      fluid.near_wall[p] = fixed_rows.count + moving_rows.count > 0;
+      if (!by_fluid && !fluid.near_wall[p]) continue;
       const ParticleView<FloatBatch> self =
           broadcast(fluid_columns, p, context.kinds[fluid.kind[p]].viscosity);
       typename Rows::Row row(rows, p, self);
       ForceSum<FloatBatch> sum{FloatBatch(0.0f), FloatBatch(0.0f), FloatBatch(0.0f)};
-      add_row_forces<Parts, Parts::kFluids, viscosity>(self, fluid_columns, fluid_rows, h, sum, one,
-                                                       row.fluid());
+      if constexpr (by_fluid)
+        add_row_forces<Parts, Parts::kFluids, viscosity>(self, fluid_columns, fluid_rows, h, sum, one,
+                                                         row.fluid());
       if (fixed_rows.count)
         add_row_forces<Parts, Parts::kWalls, kAgainstBodies, Neighbours::kWalls>(
             self, fixed_columns, fixed_rows, h, sum, one, row.fixed());
@@ -69,18 +62,40 @@ __attribute__((flatten)) void find_forces_of(const FluidWalk& walk, const typena
             self, moving_columns, moving_rows, h, sum, one, row.moving());
       row.end();
       const float scale = context.force_scale;
-      fluid.fx[p] = scale * lane_sum(sum.x);
-      fluid.fy[p] = scale * lane_sum(sum.y);
-      fluid.fz[p] = scale * lane_sum(sum.z);
-      fluid.near_wall[p] = fixed_rows.count + moving_rows.count > 0;
+      const auto put = [](float& force, float found) { force = by_fluid ? found : force + found; };
+      put(fluid.fx[p], scale * lane_sum(sum.x));
+      put(fluid.fy[p], scale * lane_sum(sum.y));
+      put(fluid.fz[p], scale * lane_sum(sum.z));
     }
   }
 }
 
-template <class Parts, Viscosity viscosity, class Rows>
+template <class Parts, Viscosity viscosity, class Rows, bool by_fluid = true>
 void find_forces(const FluidWalk& walk, const typename Rows::Given& given) {
   walk.team.run(walk.fluid.index.runs().size(), kRunsPerChunk, [&](std::size_t begin, std::size_t end) {
-    find_forces_of<Parts, viscosity, Rows>(walk, given, begin, end);
+    find_forces_of<Parts, viscosity, Rows, by_fluid>(walk, given, begin, end);
+  });
+}
+
+// What fluid that does not press drags fluid by, over the rows of who presses on whom.
+void drag_by_rows(const FluidWalk& walk, const FluidPress& press) {
+  FluidParticles& fluid = walk.fluid;
+  const float h = walk.context.support_radius, scale = kCentralDrag * walk.context.force_scale;
+  walk.team.run(press.rows.chunks(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t chunk = begin; chunk < end; ++chunk) {
+      press.rows.for_each_group(chunk, [&](const PressureRows::Walk& rows) {
+        const Sixteen drags = rows.drag(press.places.data(), press.drags.data(), h);
+        float of[16];
+        std::memcpy(of, &drags, sizeof drags);
+        for (std::uint32_t a = 0; a < rows.count; ++a) {
+          const std::uint32_t p = rows.first + a;
+          const float factor = scale * fluid.volume[p];
+          fluid.fx[p] = factor * of[4 * a];
+          fluid.fy[p] = factor * of[4 * a + 1];
+          fluid.fz[p] = factor * of[4 * a + 2];
+        }
+      });
+    }
   });
 }
 
@@ -88,32 +103,22 @@ void find_forces(const FluidWalk& walk, const typename Rows::Given& given) {
 
 void compute_fluid_forces(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
                           const BoundaryParticles& fixed, const BoundaryParticles& moving, double dt,
-                          FluidDrag& drag, FluidPress& press) {
+                          FluidDrag& drag, const FluidPress& press) {
   const FluidWalk walk{context, team, fluid, fixed, moving};
   with_physics(context.plan, [&]<class Parts, Viscosity viscosity>() {
-    const std::size_t particles = fluid.index.particles();
-    const std::size_t chunks = chunk_count(fluid.index.runs().size(), kRunsPerChunk);
-    if constexpr (Parts::kSolved) {
-      press.clear(particles, chunks);
-      gather_tensors(walk, press);
-    }
     if constexpr (Parts::kCorrected && viscosity == Viscosity::kNone) {
       if (context.plan.has(PassId::kImplicitDrag)) {
-        drag.clear(particles, chunks);
+        drag.clear(fluid.index.particles(), chunk_count(fluid.index.runs().size(), kRunsPerChunk));
         with_solved_viscosity(context.plan, [&]<Viscosity solved>() {
           using Drag = RowsOf<Parts, solved>;
-          const typename Drag::Given dragged{walk, static_cast<float>(dt), drag};
-          if constexpr (Parts::kSolved) {
-            find_forces<Parts, viscosity, BothRows<Drag, PressRowsOf<Parts>>>(walk, {dragged, {walk, press}});
-          } else {
-            find_forces<Parts, viscosity, Drag>(walk, dragged);
-          }
+          find_forces<Parts, viscosity, Drag>(walk, {walk, static_cast<float>(dt), drag});
         });
         return;
       }
     }
-    if constexpr (Parts::kSolved) {
-      find_forces<Parts, viscosity, PressRowsOf<Parts>>(walk, {walk, press});
+    if constexpr (Parts::kSolved && viscosity != Viscosity::kPair) {
+      drag_by_rows(walk, press);
+      find_forces<Parts, viscosity, NoRows, false>(walk, {});
     } else {
       find_forces<Parts, viscosity, NoRows>(walk, {});
     }

@@ -1,9 +1,7 @@
-// What the force pass writes down beside the forces, where a solve asks for the pairs again: who drags whom, who
-// presses on whom.
+// What the force pass writes down beside the forces, where a solve asks for the pairs again: who drags whom.
 #pragma once
 
 #include "sim/cpu/passes.h"
-#include "sim/cpu/pressure_rows.h"
 #include "sim/cpu/row_drag.h"
 #include "sim/viscosity/implicit.h"
 
@@ -108,100 +106,6 @@ struct RowsOf {
   const NeighborColumns fluids, walls, bodies;
   const FloatBatch h, factor;
   const std::uint32_t behind;
-};
-
-// Who presses on whom, of one chunk of runs. By fluid; walls and bodies are in the own vector alone.
-template <class Parts>
-struct PressRowsOf {
-  struct Given {
-    const FluidWalk& walk;
-    FluidPress& press;
-  };
-
-  class Row {
-   public:
-    Row(PressRowsOf& rows, std::uint32_t p, const ParticleView<FloatBatch>&) : rows_(rows), p_(p) {
-      rows_.writer.begin(p);
-    }
-    auto fluid() {
-      return [this](const BatchView& p, const BatchView& i, std::uint32_t j, FloatBatch weight) {
-        const FloatBatch dx = p.x - i.x, dy = p.y - i.y, dz = p.z - i.z;
-        const FloatBatch r_squared = dx * dx + dy * dy + dz * dz;
-        const FloatBatch slope = Parts::ForceKernel::pair(r_squared, rows_.h, weight).slope_over_r;
-        rows_.writer.add(j, {{slope * dx, slope * dy, slope * dz}, r_squared * slope});
-      };
-    }
-    auto fixed() { return of_walls(rows_.walls); }
-    auto moving() { return of_walls(rows_.bodies); }
-    void end() {
-      const Vector4 by_fluid = rows_.writer.end(rows_.given.press.tensors.data());
-      const PressTensor& t = rows_.given.press.tensors[p_];
-      const float x = lane_sum(by_walls_.x), y = lane_sum(by_walls_.y), z = lane_sum(by_walls_.z);
-      rows_.given.press.own[p_] = {by_fluid.x + (t.x[0] * x + t.y[0] * y + t.z[0] * z),
-                                   by_fluid.y + (t.x[1] * x + t.y[1] * y + t.z[1] * z),
-                                   by_fluid.z + (t.x[2] * x + t.y[2] * y + t.z[2] * z), by_fluid.w};
-    }
-
-   private:
-    auto of_walls(const NeighborColumns& n) {
-      return [this, &n](const BatchView& p, const BatchView& i, std::uint32_t j, FloatBatch weight) {
-        const FloatBatch dx = p.x - i.x, dy = p.y - i.y, dz = p.z - i.z;
-        const auto kernel = Parts::ForceKernel::pair(dx * dx + dy * dy + dz * dz, rows_.h, weight);
-        const FloatBatch by = kernel.slope_over_r * FloatBatch::load_unaligned(n.pressure + j);
-        by_walls_.x += by * dx;
-        by_walls_.y += by * dy;
-        by_walls_.z += by * dz;
-      };
-    }
-
-    PressRowsOf& rows_;
-    const std::uint32_t p_;
-    Vector3<FloatBatch> by_walls_{FloatBatch(0.0f), FloatBatch(0.0f), FloatBatch(0.0f)};
-  };
-
-  PressRowsOf(const Given& g, std::size_t chunk)
-      : given(g),
-        writer(g.press.rows, chunk),
-        walls(columns(g.walk.fixed)),
-        bodies(columns(g.walk.moving)),
-        h(g.walk.context.support_radius) {}
-
-  const Given given;
-  PressureRows::Writer writer;
-  const NeighborColumns walls, bodies;
-  const FloatBatch h;
-};
-
-// Both of one chunk.
-template <class A, class B>
-struct BothRows {
-  struct Given {
-    typename A::Given a;
-    typename B::Given b;
-  };
-  struct Row {
-    Row(BothRows& rows, std::uint32_t p, const ParticleView<FloatBatch>& self)
-        : a(rows.a, p, self), b(rows.b, p, self) {}
-    auto fluid() { return both(a.fluid(), b.fluid()); }
-    auto fixed() { return both(a.fixed(), b.fixed()); }
-    auto moving() { return both(a.moving(), b.moving()); }
-    void end() {
-      a.end();
-      b.end();
-    }
-    template <class F, class G>
-    static auto both(F f, G g) {
-      return [f, g](const BatchView& p, const BatchView& i, std::uint32_t j, FloatBatch weight) {
-        f(p, i, j, weight);
-        g(p, i, j, weight);
-      };
-    }
-    typename A::Row a;
-    typename B::Row b;
-  };
-  BothRows(const Given& given, std::size_t chunk) : a(given.a, chunk), b(given.b, chunk) {}
-  A a;
-  B b;
 };
 
 }  // namespace slosh

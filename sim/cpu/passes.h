@@ -46,20 +46,22 @@ class BodySurface {
   BoundaryParticles sorted_;
 };
 
-/// Eq 2 and 7: density (kPaper: from fluid particles only, section 4.1), then pressure and volume.
+/// Eq 2 and 7: density (kPaper: from fluid particles only, section 4.1), then pressure and volume. With
+/// kPressureSolve `press` gets who presses on whom: the same walk over the neighbours finds it.
 void compute_density(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
-                     const BoundaryParticles& fixed, const BoundaryParticles& moving);
+                     const BoundaryParticles& fixed, const BoundaryParticles& moving, FluidPress& press);
 
 /// The same for the corrected model (density.cpp calls it), and with it what each presses and drags by.
 void compute_corrected_density(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
-                               const BoundaryParticles& fixed, const BoundaryParticles& moving);
+                               const BoundaryParticles& fixed, const BoundaryParticles& moving,
+                               FluidPress& press);
 
 /// Eq 5, 6 and 9 on fluid particles, by fluid and by body particles. With kImplicitDrag without drag, and
-/// `drag` gets who drags whom over `dt` s; with kPressureSolve `press` gets who presses on whom: the same
-/// walk over the neighbours finds all.
+/// `drag` gets who drags whom over `dt` s: the same walk over the neighbours finds both. `press` is from the
+/// density pass.
 void compute_fluid_forces(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
                           const BoundaryParticles& fixed, const BoundaryParticles& moving, double dt,
-                          FluidDrag& drag, FluidPress& press);
+                          FluidDrag& drag, const FluidPress& press);
 
 /// What each body particle feels, in the order of the cells.
 struct SurfaceSums {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "sim/model.h"
 #include "sim/step_limits.h"
@@ -23,17 +24,59 @@ double dot(const Vector6& a, const Vector6& b) {
   return sum;
 }
 
-glm::vec3 vec3(const Vector4& v) {
-  return {v.x, v.y, v.z};
-}
 glm::vec3 vec3(const Vector3<float>& v) {
   return {v.x, v.y, v.z};
 }
-Vector4 thrice(float x) {
-  return {x, x, x, 0.0f};
+Four four_at(const Vector4& v) {
+  return slosh::four_at(&v.x);
 }
 
 }  // namespace
+
+// f(p, N on p by the direction, as pressures).
+template <class F>
+void PressureSolver::for_each_pushed(const Work& work, F&& f) const {
+  const FluidPress& press = work.sides.press;
+  work.team.run(press.rows.chunks(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t chunk = begin; chunk < end; ++chunk) {
+      press.rows.for_each_group(chunk, [&](const PressureRows::Walk& walk) {
+        float by_others[16];
+        const Sixteen pushed = walk.push(press.places.data(), pressing_.data());
+        std::memcpy(by_others, &pushed, sizeof pushed);
+        for (std::uint32_t a = 0; a < walk.count; ++a) {
+          const std::uint32_t p = walk.first + a;
+          f(p, direction_[p] * four_at(press.own[p]) + slosh::four_at(by_others + 4 * a));
+        }
+      });
+    }
+  });
+}
+
+// The sum of f(p, m³/s that velocity_ is as a flow out of p, without bodies), in an order that does not
+// depend on the threads.
+template <class F>
+double PressureSolver::sum_over_flows(const Work& work, F&& f) {
+  const FluidPress& press = work.sides.press;
+  parts_.assign(press.rows.chunks(), 0.0);
+  work.team.run(press.rows.chunks(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t chunk = begin; chunk < end; ++chunk) {
+      double sum = 0.0;
+      press.rows.for_each_group(chunk, [&](const PressureRows::Walk& walk) {
+        Sixteen parts =
+            walk.of_group<4>(&press.own[walk.first].x) * walk.of_group<4>(&velocity_[walk.first].x);
+        parts -= walk.flow(press.places.data(), press.tensors.data(), velocity_.data());
+        float of[16];
+        std::memcpy(of, &parts, sizeof parts);
+        for (std::uint32_t a = 0; a < walk.count; ++a)
+          sum += f(walk.first + a, (of[4 * a] + of[4 * a + 1]) + of[4 * a + 2]);
+      });
+      parts_[chunk] = sum;
+    }
+  });
+  double sum = 0.0;
+  for (const double part : parts_) sum += part;
+  return sum;
+}
 
 // What 1 Pa of each fluid particle puts on the bodies around it. The second layer of a wall's pressure bears
 // on the body where the fluid is (pair_force.h).
@@ -102,11 +145,11 @@ void PressureSolver::begin_bodies(const Work& work) {
 // The flows that there would be by the last step's pressures, and the system's diagonal.
 void PressureSolver::begin(const Work& work) {
   FluidParticles& fluid = work.sides.fluid;
-  const FluidPress& press = work.sides.press;
   for (std::vector<float>* column : {&flow_, &inverse_, &pressure_, &residual_, &product_, &clipped_})
     column->resize(work.fluid);
   direction_.resize(work.fluid);
-  velocity_.resize(work.fluid);
+  pressing_.resize(work.fluid + 4);
+  velocity_.resize(work.fluid + 4);
   find_touches(work);
   begin_bodies(work);
   const glm::vec3 g = work.context.gravity;
@@ -123,22 +166,47 @@ void PressureSolver::begin(const Work& work) {
   const double gravity = glm::length(work.context.gravity);
   const float wanted =
       work.context.rest_volume / static_cast<float>(density_time(work.context.plan, gravity, work.dt));
-  work.team.run(work.fluid, kParticlesPerChunk, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t p = begin; p < end; ++p) {
-      const std::uint32_t at = static_cast<std::uint32_t>(p);
-      const glm::vec3 own = vec3(press.own[p]);
-      double flow = glm::dot(own, vec3(velocity_[p])) - press.rows.flow_by(at, velocity_.data());
-      double diagonal = work.dt * (glm::dot(own, own) * velocity_[p].w + press.own[p].w);
-      for (std::uint32_t t = first_touch_[p]; t < first_touch_[p + 1]; ++t) {
-        const Touch& touch = touches_[t];
-        if (!work.bodies[touch.body].moves) continue;
-        flow += dot(touch.push, twists_[touch.body]);
-        diagonal += work.dt * dot(touch.push, cholesky_solve(factors_[touch.body], touch.push));
-      }
-      flow_[p] = static_cast<float>(flow) - wanted * fluid.pressure[p];
-      inverse_[p] = diagonal > 0.0 ? static_cast<float>(1.0 / diagonal) : 0.0f;
-      pressure_[p] = diagonal > 0.0 ? fluid.solved[p] : 0.0f;
-      clipped_[p] = 0.0f;
+  find_diagonal(work);
+  sum_over_flows(work, [&](std::uint32_t p, double flow) {
+    double diagonal = inverse_[p];
+    for (std::uint32_t t = first_touch_[p]; t < first_touch_[p + 1]; ++t) {
+      const Touch& touch = touches_[t];
+      if (!work.bodies[touch.body].moves) continue;
+      flow += dot(touch.push, twists_[touch.body]);
+      diagonal += work.dt * dot(touch.push, cholesky_solve(factors_[touch.body], touch.push));
+    }
+    flow_[p] = static_cast<float>(flow) - wanted * fluid.pressure[p];
+    inverse_[p] = diagonal > 0.0 ? static_cast<float>(1.0 / diagonal) : 0.0f;
+    pressure_[p] = diagonal > 0.0 ? fluid.solved[p] : 0.0f;
+    clipped_[p] = 0.0f;
+    return 0.0;
+  });
+}
+
+// inverse_ gets the system's diagonal itself, without bodies.
+void PressureSolver::find_diagonal(const Work& work) {
+  const FluidPress& press = work.sides.press;
+  work.team.run(press.rows.chunks(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t chunk = begin; chunk < end; ++chunk) {
+      press.rows.for_each_group(chunk, [&](const PressureRows::Walk& walk) {
+        const PressureRows::Walk::Squares sums = walk.squares(press.places.data(), velocity_.data());
+        float even[16], odd[16];
+        std::memcpy(even, &sums.even, sizeof even);
+        std::memcpy(odd, &sums.odd, sizeof odd);
+        for (std::uint32_t a = 0; a < walk.count; ++a) {
+          const std::uint32_t p = walk.first + a;
+          const float *e = even + 4 * a, *o = odd + 4 * a;
+          // The sum over the pairs of (K g)² over each other's mass.
+          const auto by = [&](float x, float y, float z) {
+            return (x * x * e[0] + y * y * e[1] + z * z * e[2]) +
+                   2.0f * (x * y * o[0] + y * z * o[1] + x * z * o[2]);
+          };
+          const PressTensor& k = press.tensors[p];
+          const Four own = four_at(press.own[p]), squared = own * own;
+          inverse_[p] = work.dt * (((squared[0] + squared[1]) + squared[2]) * velocity_[p].w +
+                                   (by(k.xx, k.xy, k.xz) + by(k.xy, k.yy, k.yz) + by(k.xz, k.yz, k.zz)));
+        }
+      });
     }
   });
 }
@@ -174,37 +242,37 @@ PressureSolver::Sums PressureSolver::look(const Work& work) {
   return total();
 }
 
+// The direction of p, Pa.
+void PressureSolver::press(const Work& work, std::size_t p, float pressure) {
+  direction_[p] = pressure;
+  Eight tensor;
+  std::memcpy(&tensor, &work.sides.press.tensors[p], sizeof tensor);
+  tensor *= pressure;
+  std::memcpy(&pressing_[p], &tensor, sizeof tensor);
+}
+
 // direction = preconditioned residual + keep · direction, of those that press.
 void PressureSolver::follow(const Work& work, double keep) {
   const float k = static_cast<float>(keep);
   work.team.run(work.fluid, kParticlesPerChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       const bool presses = pressure_[p] > 0.0f || flow_[p] < 0.0f;
-      const float before = k > 0.0f ? k * direction_[p].x : 0.0f;
-      direction_[p] = thrice(presses ? inverse_[p] * residual_[p] + before : 0.0f);
+      const float before = k > 0.0f ? k * direction_[p] : 0.0f;
+      press(work, p, presses ? inverse_[p] * residual_[p] + before : 0.0f);
     }
   });
-}
-
-// N on a particle by the direction, as pressures.
-glm::vec3 PressureSolver::pushed(const Work& work, std::size_t p) const {
-  const FluidPress& press = work.sides.press;
-  return direction_[p].x * vec3(press.own[p]) +
-         vec3(press.rows.push_on(static_cast<std::uint32_t>(p), direction_.data()));
 }
 
 // velocity and twists: what the direction, as pressures, changes them by over the sub-step.
 void PressureSolver::push(const Work& work) {
-  work.team.run(work.fluid, kParticlesPerChunk, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t p = begin; p < end; ++p) {
-      const float f = work.dt * velocity_[p].w;
-      const glm::vec3 u = f * pushed(work, p);
-      velocity_[p] = {u.x, u.y, u.z, velocity_[p].w};
-    }
+  for_each_pushed(work, [&](std::uint32_t p, Four force) {
+    const float per_mass = velocity_[p].w;
+    const Four change = work.dt * per_mass * force;
+    velocity_[p] = {change[0], change[1], change[2], per_mass};
   });
   for (Vector6& twist : twists_) twist = {};
   for (const Touch& touch : touches_) {
-    const double pressure = work.dt * static_cast<double>(direction_[touch.particle].x);
+    const double pressure = work.dt * static_cast<double>(direction_[touch.particle]);
     for (int i = 0; i < 6; ++i) twists_[touch.body][i] += pressure * touch.push[i];
   }
   for (std::size_t b = 0; b < twists_.size(); ++b)
@@ -213,23 +281,12 @@ void PressureSolver::push(const Work& work) {
 
 // product = system · direction, after push(); returns direction · product.
 double PressureSolver::multiply(const Work& work) {
-  const FluidPress& press = work.sides.press;
-  parts_.assign(chunk_count(work.fluid, kParticlesPerChunk), 0.0);
-  work.team.run(work.fluid, kParticlesPerChunk, [&](std::size_t begin, std::size_t end) {
-    double sum = 0.0;
-    for (std::size_t p = begin; p < end; ++p) {
-      float flow = glm::dot(vec3(press.own[p]), vec3(velocity_[p])) -
-                   press.rows.flow_by(static_cast<std::uint32_t>(p), velocity_.data());
-      for (std::uint32_t t = first_touch_[p]; t < first_touch_[p + 1]; ++t)
-        flow += static_cast<float>(dot(touches_[t].push, twists_[touches_[t].body]));
-      product_[p] = flow;
-      sum += static_cast<double>(direction_[p].x) * flow;
-    }
-    parts_[begin / kParticlesPerChunk] = sum;
+  return sum_over_flows(work, [&](std::uint32_t p, float flow) {
+    for (std::uint32_t t = first_touch_[p]; t < first_touch_[p + 1]; ++t)
+      flow += static_cast<float>(dot(touches_[t].push, twists_[touches_[t].body]));
+    product_[p] = flow;
+    return static_cast<double>(direction_[p]) * flow;
   });
-  double sum = 0.0;
-  for (const double part : parts_) sum += part;
-  return sum;
 }
 
 // One turn's way along the direction, no pressure below 0, and what is left.
@@ -239,7 +296,7 @@ PressureSolver::Sums PressureSolver::advance(const Work& work, double length) {
   work.team.run(work.fluid, kParticlesPerChunk, [&](std::size_t begin, std::size_t end) {
     Sums sums;
     for (std::size_t p = begin; p < end; ++p) {
-      const float to = pressure_[p] + a * direction_[p].x;
+      const float to = pressure_[p] + a * direction_[p];
       pressure_[p] = to > 0.0f ? to : 0.0f;
       clipped_[p] += pressure_[p] - to;
       flow_[p] += a * product_[p];
@@ -261,7 +318,7 @@ PressureSolver::Sums PressureSolver::advance(const Work& work, double length) {
 // The flows get to know of what was cut off.
 void PressureSolver::undo_clips(const Work& work) {
   work.team.run(work.fluid, kParticlesPerChunk, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t p = begin; p < end; ++p) direction_[p] = thrice(clipped_[p]);
+    for (std::size_t p = begin; p < end; ++p) press(work, p, clipped_[p]);
   });
   push(work);
   multiply(work);
@@ -276,20 +333,17 @@ void PressureSolver::undo_clips(const Work& work) {
 // The direction, as pressures, on the fluid.
 void PressureSolver::add_forces(const Work& work) {
   FluidParticles& fluid = work.sides.fluid;
-  work.team.run(work.fluid, kParticlesPerChunk, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t p = begin; p < end; ++p) {
-      const glm::vec3 force = pushed(work, p);
-      fluid.fx[p] += force.x;
-      fluid.fy[p] += force.y;
-      fluid.fz[p] += force.z;
-    }
+  for_each_pushed(work, [&](std::uint32_t p, Four force) {
+    fluid.fx[p] += force[0];
+    fluid.fy[p] += force[1];
+    fluid.fz[p] += force[2];
   });
 }
 
 void PressureSolver::finish(const Work& work, std::span<Wrench> wrenches) {
   FluidParticles& fluid = work.sides.fluid;
   work.team.run(work.fluid, kParticlesPerChunk, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t p = begin; p < end; ++p) direction_[p] = thrice(pressure_[p] - fluid.solved[p]);
+    for (std::size_t p = begin; p < end; ++p) press(work, p, pressure_[p] - fluid.solved[p]);
   });
   add_forces(work);
   for (const Touch& touch : touches_) {
@@ -306,7 +360,10 @@ void PressureSolver::finish(const Work& work, std::span<Wrench> wrenches) {
 void PressureSolver::push_by_last(const PassContext& context, ThreadTeam& team, const PressedSides& sides) {
   const Work work{context, team, sides, 0.0f, {}, sides.fluid.index.particles()};
   direction_.resize(work.fluid);
-  for (std::size_t p = 0; p < work.fluid; ++p) direction_[p] = thrice(sides.fluid.solved[p]);
+  pressing_.resize(work.fluid + 4);
+  team.run(work.fluid, kParticlesPerChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) press(work, p, sides.fluid.solved[p]);
+  });
   add_forces(work);
 }
 

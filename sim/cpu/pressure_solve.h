@@ -16,7 +16,7 @@ struct PressedSides {
   FluidParticles& fluid;
   const BoundaryParticles& moving;
   std::span<const RigidBody> bodies;  ///< as they were when `moving` was placed
-  const FluidPress& press;            ///< from the force pass
+  const FluidPress& press;            ///< from the density pass
 };
 
 /// Conjugate gradients over the particles that press. Keeps its memory from one solve to the next.
@@ -58,8 +58,13 @@ class PressureSolver {
   void find_touches(const Work& work);
   void begin(const Work& work);
   void begin_bodies(const Work& work);
+  void find_diagonal(const Work& work);
   void follow(const Work& work, double keep);
-  glm::vec3 pushed(const Work& work, std::size_t p) const;
+  void press(const Work& work, std::size_t p, float pressure);
+  template <class F>
+  void for_each_pushed(const Work& work, F&& f) const;
+  template <class F>
+  double sum_over_flows(const Work& work, F&& f);
   void push(const Work& work);
   double multiply(const Work& work);
   Sums look(const Work& work);
@@ -75,7 +80,8 @@ class PressureSolver {
   std::vector<float> residual_;  // −flow_ of those that press
   std::vector<float> product_;   // the system times the direction
   std::vector<float> clipped_;   // Pa, what was cut off below 0 and flow_ does not know of
-  std::vector<Vector4> direction_;                 // Pa, three times the same
+  std::vector<float> direction_;                   // Pa
+  std::vector<PressTensor> pressing_;              // the direction times each one's tensor of 1 Pa
   std::vector<Vector4> velocity_;                  // m/s; in w 1/mass
   std::vector<Touch> touches_;                     // in the order of the particles
   std::vector<std::vector<Touch>> found_touches_;  // by chunk of runs
