@@ -33,7 +33,7 @@ class PressRow {
   struct Writer {
     Writer(FluidPress& p, std::size_t chunk) : press(p), rows(p.rows, chunk) {}
     FluidPress& press;
-    PressureRows::Writer rows;
+    PairRows::Writer rows;
   };
   PressRow(Writer& writer, std::uint32_t p) : writer_(writer), p_(p) { writer_.rows.begin(p); }
   void add(std::uint32_t j, const Vector3<FloatBatch>& d, FloatBatch h, FloatBatch weight) {

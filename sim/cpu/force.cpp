@@ -83,7 +83,7 @@ void drag_by_rows(const FluidWalk& walk, const FluidPress& press) {
   const float h = walk.context.support_radius, scale = kCentralDrag * walk.context.force_scale;
   walk.team.run(press.rows.chunks(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t chunk = begin; chunk < end; ++chunk) {
-      press.rows.for_each_group(chunk, [&](const PressureRows::Walk& rows) {
+      press.rows.for_each_group(chunk, [&](const PairRows::Walk& rows) {
         const Sixteen drags = rows.drag(press.places.data(), press.drags.data(), h);
         float of[16];
         std::memcpy(of, &drags, sizeof drags);

@@ -48,13 +48,12 @@ struct RowsOf {
     }
     auto fluid() {
       return [this](const BatchView&, const BatchView&, std::uint32_t j, FloatBatch weight) {
-        rows_.writer.add(j, pairs<viscosity, Neighbours::kFluid>(rows_.fluids, j, weight));
+        add(j, pairs<viscosity, Neighbours::kFluid>(rows_.fluids, j, weight));
       };
     }
     auto moving() {
       return [this](const BatchView&, const BatchView&, std::uint32_t j, FloatBatch weight) {
-        rows_.writer.add(rows_.behind + j,
-                         pairs<Viscosity::kPair, Neighbours::kWalls>(rows_.bodies, j, weight));
+        add(rows_.behind + j, pairs<Viscosity::kPair, Neighbours::kWalls>(rows_.bodies, j, weight));
       };
     }
     auto fixed() {
@@ -70,15 +69,14 @@ struct RowsOf {
       };
     }
     void end() {
-      const Symmetric<float> all = rows_.writer.end(), walls = summed(by_walls_);
-      const FluidWalk& walk = rows_.given.walk;
-      rows_.given.drag.by_walls[p_] = walls;
-      rows_.given.drag.block[p_] = inverse_block(walk.context.kinds[walk.fluid.kind[p_]].mass, 1.0f,
-                                                 {all.xx + walls.xx, all.xy + walls.xy, all.xz + walls.xz,
-                                                  all.yy + walls.yy, all.yz + walls.yz, all.zz + walls.zz});
+      rows_.writer.end();
+      rows_.given.drag.by_walls[p_] = summed(by_walls_);
     }
 
    private:
+    void add(std::uint32_t first, const PairBatch& found) {
+      rows_.writer.add(first, found.q, found.q * found.r_squared);
+    }
     template <Viscosity of_pair, Neighbours neighbours>
     PairBatch pairs(const NeighborColumns& n, std::uint32_t j, FloatBatch weight) {
       return drag_pairs<Parts, of_pair, neighbours>(self_, n, j, weight, rows_.h, rows_.factor,
@@ -102,7 +100,7 @@ struct RowsOf {
         behind(static_cast<std::uint32_t>(g.walk.fluid.index.particles())) {}
 
   const Given given;
-  DragRows::Writer writer;
+  PairRows::Writer writer;
   const NeighborColumns fluids, walls, bodies;
   const FloatBatch h, factor;
   const std::uint32_t behind;

@@ -39,7 +39,7 @@ void PressureSolver::for_each_pushed(const Work& work, F&& f) const {
   const FluidPress& press = work.sides.press;
   work.team.run(press.rows.chunks(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t chunk = begin; chunk < end; ++chunk) {
-      press.rows.for_each_group(chunk, [&](const PressureRows::Walk& walk) {
+      press.rows.for_each_group(chunk, [&](const PairRows::Walk& walk) {
         float by_others[16];
         const Sixteen pushed = walk.push(press.places.data(), pressing_.data());
         std::memcpy(by_others, &pushed, sizeof pushed);
@@ -61,7 +61,7 @@ double PressureSolver::sum_over_flows(const Work& work, F&& f) {
   work.team.run(press.rows.chunks(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t chunk = begin; chunk < end; ++chunk) {
       double sum = 0.0;
-      press.rows.for_each_group(chunk, [&](const PressureRows::Walk& walk) {
+      press.rows.for_each_group(chunk, [&](const PairRows::Walk& walk) {
         Sixteen parts =
             walk.of_group<4>(&press.own[walk.first].x) * walk.of_group<4>(&velocity_[walk.first].x);
         parts -= walk.flow(press.places.data(), press.tensors.data(), velocity_.data());
@@ -188,8 +188,8 @@ void PressureSolver::find_diagonal(const Work& work) {
   const FluidPress& press = work.sides.press;
   work.team.run(press.rows.chunks(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t chunk = begin; chunk < end; ++chunk) {
-      press.rows.for_each_group(chunk, [&](const PressureRows::Walk& walk) {
-        const PressureRows::Walk::Squares sums = walk.squares(press.places.data(), velocity_.data());
+      press.rows.for_each_group(chunk, [&](const PairRows::Walk& walk) {
+        const PairRows::Walk::Squares sums = walk.squares(press.places.data(), velocity_.data());
         float even[16], odd[16];
         std::memcpy(even, &sums.even, sizeof even);
         std::memcpy(odd, &sums.odd, sizeof odd);

@@ -22,29 +22,58 @@ void ViscousSolver::write_body_rows(const Work& work) {
   const std::vector<CellRun>& runs = moving.index.runs();
   const NeighborColumns fluids = columns(fluid), own = columns(moving);
   const FloatBatch h(context.support_radius), factor(kCentralDrag * work.dt * context.force_scale);
-  body_rows_.clear(work.surface, chunk_count(runs.size(), kRunsPerChunk));
+  body_rows_.clear(chunk_count(runs.size(), kRunsPerChunk));
   rate_.assign(work.surface, Symmetric<float>{});
   with_solved_viscosity(context.plan, [&]<Viscosity viscosity>() {
     work.team.run(runs.size(), kRunsPerChunk, [&](std::size_t begin, std::size_t end) {
-      DragRows::Writer writer(body_rows_, begin / kRunsPerChunk);
+      PairRows::Writer writer(body_rows_, begin / kRunsPerChunk);
       for (std::size_t r = begin; r < end; ++r) {
         const RowList rows = fluid.index.rows(context.grid, runs[r].cell);
-        if (rows.count == 0) continue;
         for (std::uint32_t i = runs[r].particles.begin; i < runs[r].particles.end; ++i) {
-          if (!work.bodies[moving.body[i]].moves) continue;
+          writer.begin(static_cast<std::uint32_t>(work.fluid) + i);
+          if (!work.bodies[moving.body[i]].moves) {
+            writer.end();
+            continue;
+          }
           const WallViscosity wall = wall_viscosity(moving.viscosity[i]);
           const ParticleView<FloatBatch> self =
               broadcast(own, i, own_viscosity<viscosity>(wall, context.kinds.front().viscosity));
-          writer.begin(i);
           for_each_batch(rows, [&](std::uint32_t j, FloatBatch weight) {
-            writer.add(j, drag_pairs<Parts, viscosity, Neighbours::kFluid>(self, fluids, j, weight, h, factor,
-                                                                           FloatBatch(wall.of_fluid)));
+            const PairBatch found = drag_pairs<Parts, viscosity, Neighbours::kFluid>(
+                self, fluids, j, weight, h, factor, FloatBatch(wall.of_fluid));
+            writer.add(j, found.q, found.q * found.r_squared);
           });
-          rate_[i] = writer.end();
+          writer.end();
         }
       }
     });
   });
+}
+
+// Where everybody is, and what it loses by its own velocity.
+void ViscousSolver::find_blocks(const Work& work) {
+  const FluidParticles& fluid = work.sides.fluid;
+  const BoundaryParticles& moving = work.sides.moving.sorted();
+  const FluidDrag& drag = work.sides.drag;
+  places_.resize(work.fluid + work.surface + 4);
+  block_.resize(work.fluid);
+  for (std::size_t p = 0; p < work.fluid; ++p) places_[p] = {fluid.x[p], fluid.y[p], fluid.z[p], 0.0f};
+  for (std::size_t i = 0; i < work.surface; ++i)
+    places_[work.fluid + i] = {moving.x[i], moving.y[i], moving.z[i], 0.0f};
+  work.team.run(drag.rows.chunks(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t chunk = begin; chunk < end; ++chunk) {
+      for_each_rate_of(drag.rows, chunk, places_.data(), [&](std::uint32_t p, const Symmetric<float>& all) {
+        const Symmetric<float>& walls = drag.by_walls[p];
+        block_[p] = inverse_block(work.context.kinds[fluid.kind[p]].mass, 1.0f,
+                                  {all.xx + walls.xx, all.xy + walls.xy, all.xz + walls.xz, all.yy + walls.yy,
+                                   all.yz + walls.yz, all.zz + walls.zz});
+      });
+    }
+  });
+  for (std::size_t chunk = 0; chunk < body_rows_.chunks(); ++chunk) {
+    for_each_rate_of(body_rows_, chunk, places_.data(),
+                     [&](std::uint32_t i, const Symmetric<float>& rate) { rate_[i - work.fluid] = rate; });
+  }
 }
 
 // The drag on fixed bodies that are measured, by the velocities that the turns found.

@@ -68,10 +68,12 @@ void ViscousSolver::carry_surface(const Work& work, std::span<const Twist> twist
 void ViscousSolver::sum_over_bodies(const Work& work) {
   const BoundaryParticles& moving = work.sides.moving.sorted();
   on_surface_.resize(work.surface);
-  work.team.run(work.surface, 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      on_surface_[i] = vec3(
-          body_rows_.drag_on(static_cast<std::uint32_t>(i), direction_[work.fluid + i], direction_.data()));
+  work.team.run(body_rows_.chunks(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t chunk = begin; chunk < end; ++chunk) {
+      for_each_dragged_of(
+          body_rows_, chunk, places_.data(), direction_.data(),
+          [&](std::uint32_t i, const ForceSum<float>& drag) { on_surface_[i - work.fluid] = vec3(drag); });
+    }
   });
   on_bodies_.assign(work.bodies.size(), Wrench{});
   for (std::size_t i = 0; i < work.surface; ++i) {
@@ -84,6 +86,24 @@ void ViscousSolver::sum_over_bodies(const Work& work) {
   }
 }
 
+// The sum of f(p, N·s on p, all moving by direction_), in an order that does not depend on the threads.
+template <class F>
+double ViscousSolver::sum_over_dragged(const Work& work, F&& f) {
+  const PairRows& rows = work.sides.drag.rows;
+  parts_.assign(rows.chunks(), 0.0);
+  work.team.run(rows.chunks(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t chunk = begin; chunk < end; ++chunk) {
+      double sum = 0.0;
+      for_each_dragged_of(rows, chunk, places_.data(), direction_.data(),
+                          [&](std::uint32_t p, const ForceSum<float>& drag) {
+                            sum += static_cast<double>(f(p, vec3(drag)));
+                          });
+      parts_[chunk] = sum;
+    }
+  });
+  return total(parts_);
+}
+
 // The residual of the velocities that the sub-step begins with, and everybody's own block. Returns residual ·
 // product.
 double ViscousSolver::begin(const Work& work) {
@@ -92,34 +112,27 @@ double ViscousSolver::begin(const Work& work) {
   change_.resize(work.fluid);
   residual_.resize(work.fluid);
   product_.resize(work.fluid);
-  direction_.resize(work.fluid + work.surface);
+  direction_.resize(work.fluid + work.surface + 4);
   write_body_rows(work);
+  find_blocks(work);
   for (std::size_t p = 0; p < work.fluid; ++p) direction_[p] = {fluid.vx[p], fluid.vy[p], fluid.vz[p], 0.0f};
   twists_.assign(work.bodies.size(), Twist{});
   for (std::size_t b = 0; b < work.bodies.size(); ++b) twists_[b] = work.bodies[b].twist;
   carry_surface(work, twists_);
   sum_over_bodies(work);
   const glm::vec3 g = work.context.gravity;
-  parts_.assign(chunk_count(work.fluid, kParticlesPerChunk), 0.0);
-  work.team.run(work.fluid, kParticlesPerChunk, [&](std::size_t begin, std::size_t end) {
-    double sum = 0.0;
-    for (std::size_t p = begin; p < end; ++p) {
-      const float mass = work.context.kinds[fluid.kind[p]].mass;
-      const glm::vec3 force(fluid.fx[p], fluid.fy[p], fluid.fz[p]);
-      const glm::vec3 dragged =
-          vec3(drag.rows.drag_on(static_cast<std::uint32_t>(p), direction_[p], direction_.data()));
-      const glm::vec3 r =
-          work.dt * (force + mass * g) + dragged - times(drag.by_walls[p], vec3(direction_[p]));
-      const glm::vec3 z = times(drag.block[p], r);
-      residual_[p] = vector4(r);
-      product_[p] = vector4(z);
-      change_[p] = {};
-      sum += static_cast<double>(glm::dot(r, z));
-    }
-    parts_[begin / kParticlesPerChunk] = sum;
+  const double sum = sum_over_dragged(work, [&](std::uint32_t p, const glm::vec3& dragged) {
+    const float mass = work.context.kinds[fluid.kind[p]].mass;
+    const glm::vec3 force(fluid.fx[p], fluid.fy[p], fluid.fz[p]);
+    const glm::vec3 r = work.dt * (force + mass * g) + dragged - times(drag.by_walls[p], vec3(direction_[p]));
+    const glm::vec3 z = times(block_[p], r);
+    residual_[p] = vector4(r);
+    product_[p] = vector4(z);
+    change_[p] = {};
+    return glm::dot(r, z);
   });
   begin_bodies(work);
-  return total(parts_) + precondition_bodies(work);
+  return sum + precondition_bodies(work);
 }
 
 void ViscousSolver::begin_bodies(const Work& work) {
@@ -182,21 +195,13 @@ void ViscousSolver::follow(const Work& work, double keep) {
 double ViscousSolver::multiply(const Work& work) {
   const FluidParticles& fluid = work.sides.fluid;
   const FluidDrag& drag = work.sides.drag;
-  parts_.assign(chunk_count(work.fluid, kParticlesPerChunk), 0.0);
-  work.team.run(work.fluid, kParticlesPerChunk, [&](std::size_t begin, std::size_t end) {
-    double sum = 0.0;
-    for (std::size_t p = begin; p < end; ++p) {
-      const float mass = work.context.kinds[fluid.kind[p]].mass;
-      const glm::vec3 d = vec3(direction_[p]);
-      const glm::vec3 dragged =
-          vec3(drag.rows.drag_on(static_cast<std::uint32_t>(p), direction_[p], direction_.data()));
-      const glm::vec3 q = mass * d + times(drag.by_walls[p], d) - dragged;
-      product_[p] = vector4(q);
-      sum += static_cast<double>(glm::dot(d, q));
-    }
-    parts_[begin / kParticlesPerChunk] = sum;
+  double sum = sum_over_dragged(work, [&](std::uint32_t p, const glm::vec3& dragged) {
+    const float mass = work.context.kinds[fluid.kind[p]].mass;
+    const glm::vec3 d = vec3(direction_[p]);
+    const glm::vec3 q = mass * d + times(drag.by_walls[p], d) - dragged;
+    product_[p] = vector4(q);
+    return glm::dot(d, q);
   });
-  double sum = total(parts_);
   sum_over_bodies(work);
   for (std::size_t b = 0; b < unknowns_.size(); ++b) {
     if (!work.bodies[b].moves) continue;
@@ -220,7 +225,7 @@ ViscousSolver::Sums ViscousSolver::advance(const Work& work, double length) {
       const float mass = work.context.kinds[fluid.kind[p]].mass;
       const glm::vec3 u = vec3(change_[p]) + a * vec3(direction_[p]);
       const glm::vec3 r = vec3(residual_[p]) - a * vec3(product_[p]);
-      const glm::vec3 z = times(work.sides.drag.block[p], r);
+      const glm::vec3 z = times(block_[p], r);
       change_[p] = vector4(u);
       residual_[p] = vector4(r);
       product_[p] = vector4(z);

@@ -55,10 +55,13 @@ class ViscousSolver {
   };
 
   void write_body_rows(const Work& work);
+  void find_blocks(const Work& work);
   double begin(const Work& work);
   void begin_bodies(const Work& work);
   double precondition_bodies(const Work& work);
   void follow(const Work& work, double keep);
+  template <class F>
+  double sum_over_dragged(const Work& work, F&& f);
   double multiply(const Work& work);
   Sums advance(const Work& work, double length);
   void finish(const Work& work, std::span<Wrench> wrenches);
@@ -70,7 +73,9 @@ class ViscousSolver {
   std::vector<Vector4> change_, residual_, product_;  // of the fluid's particles
   std::vector<Vector4> direction_;                    // and behind them of the moving bodies'
   Column<float> end_x_, end_y_, end_z_;               // the velocities found, where fixed bodies are measured
-  DragRows body_rows_;
+  std::vector<Vector4> places_;                       // m, as direction_
+  std::vector<Symmetric<float>> block_;  // the inverse of its own block, one a particle of the fluid
+  PairRows body_rows_;                   // of the moving bodies' particles, numbered as direction_
   std::vector<Symmetric<float>> rate_;  // of the moving bodies' particles, N·s for each m/s
   std::vector<Unknown> unknowns_;       // one a body
   std::vector<glm::vec3> on_surface_;   // N·s, one a particle of the moving bodies

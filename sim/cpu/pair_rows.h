@@ -1,0 +1,224 @@
+// Pairs of particles written down once a sub-step: a turn of a solve asks for them again and again.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sim/cpu/four_vectors.h"
+#include "sim/cpu/simd.h"
+
+namespace slosh {
+
+/// A vector of a particle's in 16 bytes, so that a neighbour's is one load. `w` means nothing unless said.
+struct alignas(16) Vector4 {
+  float x = 0.0f, y = 0.0f, z = 0.0f, w = 0.0f;
+};
+
+/// A symmetric tensor as a walk over rows takes it.
+struct alignas(32) PressTensor {
+  float xx, yy, zz, none0;  ///< the fourths are 0
+  float xy, yz, xz, none1;
+};
+
+/// For each of a set of particles its pairs, a weight each: who presses on whom (s = −W'/r without the kernel's
+/// constant, so that g = s d), who drags whom (q, kg/m²: q d (d · v)); d is from the other to the particle and comes
+/// from where the two are. 8 bytes a pair. Particles go by fours, a pair of each side by side: no row has a sum
+/// over lanes of its own.
+class PairRows {
+  struct Pair;
+  struct Chunk;
+
+ public:
+  /// Up to four particles one behind the other.
+  struct Group {
+    std::uint32_t first = 0, count = 0;
+    std::uint32_t begin = 0, end = 0;  ///< its pairs, of the chunk's
+  };
+
+  /// Begins anew, for particles in `chunks` chunks of cells.
+  void clear(std::size_t chunks);
+  std::size_t chunks() const { return used_; }
+
+  /// One chunk's rows as they are being written, particle after particle; chunks may be written beside each
+  /// other.
+  class Writer {
+   public:
+    Writer(PairRows& rows, std::size_t chunk) : chunk_(rows.chunks_[chunk]) {}
+    ~Writer() { put_group(); }
+    Writer(const Writer&) = delete;
+    Writer& operator=(const Writer&) = delete;
+    /// The row of p comes now, until end().
+    void begin(std::uint32_t p) {
+      if (group_.count == 0) group_.first = p;
+      count_ = 0;
+      make_room();
+    }
+    /// Of a batch of particles that begins at `first`; `reach` is 0 for those out of reach and for p itself.
+    void add(std::uint32_t first, FloatBatch weights, FloatBatch reach) {
+      const PickedLanes picked = lanes_above_zero(reach);
+      const int count = count_of(picked);
+      if (count == 0) return;
+      if (count_ + 2 * kLanes > row_->other.size()) make_room();
+      store_picked(weights, picked, row_->weight.data() + count_);
+      store_picked_indices(first, picked, row_->other.data() + count_);
+      count_ += static_cast<std::size_t>(count);
+    }
+    void end() {
+      row_->count = count_;
+      if (++group_.count == kTogether) put_group();
+    }
+
+   private:
+    struct OneRow {
+      std::vector<std::int32_t> other;
+      std::vector<float> weight;
+      std::size_t count = 0;
+    };
+    __attribute__((noinline)) void make_room();
+    __attribute__((noinline)) void put_group();
+
+    Chunk& chunk_;
+    Group group_;
+    OneRow rows_[4];
+    OneRow* row_ = rows_;
+    std::size_t count_ = 0;  // of one row; there is room for two batches behind it
+  };
+
+  class Walk;
+  /// f(walk) for the groups of a chunk.
+  template <class F>
+  void for_each_group(std::size_t chunk, F&& f) const {
+    const Chunk& c = chunks_[chunk];
+    for (const Group& group : c.groups) f(Walk{group, c.pairs.data()});
+  }
+
+  /// A group's rows. What has an entry a particle has four entries more than there are particles.
+  class Walk {
+   public:
+    Walk(const Group& group, const Pair* pairs)
+        : first(group.first), count(group.count), begin_(pairs + group.begin), end_(pairs + group.end) {}
+    const std::uint32_t first, count;
+
+    /// Of each of the group the sum of T g over its row, T each other's of `tensors`, with everybody at
+    /// `places`; fourths mean nothing.
+    Sixteen push(const Vector4* places, const PressTensor* tensors) const {
+      Sixteen straight = {}, turning = {}, back = {};
+      for_each_pair(places, [&](Sixteen g, const Pair* four) {
+        const Sixteen odd = of_others<8>(&tensors->xy, four);
+        straight += of_others<8>(&tensors->xx, four) * g;
+        turning += odd * turned(g);
+        back += odd * g;
+      });
+      return straight + turning + turned_back(back);
+    }
+    /// The sum of g · (T v), as the three parts of a sum, v each other's of `velocities`, T one's own of
+    /// `tensors`.
+    Sixteen flow(const Vector4* places, const PressTensor* tensors, const Vector4* velocities) const {
+      Sixteen even = {}, odd = {}, other_odd = {};
+      for_each_pair(places, [&](Sixteen g, const Pair* four) {
+        const Sixteen v = of_others<4>(&velocities->x, four);
+        even += g * v;
+        odd += turned(g) * v;
+        other_odd += g * turned(v);
+      });
+      return of_group<8>(&tensors[first].xx) * even + of_group<8>(&tensors[first].xy) * (odd + other_odd);
+    }
+    /// The sum of g ⊗ g times the fourth of each other's of `velocities`: xx, yy, zz in `even`, xy, yz, xz in
+    /// `odd`.
+    struct Squares {
+      Sixteen even = {}, odd = {};
+    };
+    Squares squares(const Vector4* places, const Vector4* velocities) const {
+      Squares sum;
+      for_each_pair(places, [&](Sixteen g, const Pair* four) {
+        const Sixteen weighed = fourths(of_others<4>(&velocities->x, four)) * g;
+        sum.even += weighed * g;
+        sum.odd += weighed * turned(g);
+      });
+      return sum;
+    }
+    /// The sum of V reach/r² d (d · (u − one's own)), u and, in the fourth, V each other's of `drags`: what
+    /// jostling drags by (pair_force.h). `h`: the support radius.
+    Sixteen drag(const Vector4* places, const Vector4* drags, float h) const {
+      const Sixteen self = of_group<4>(&places[first].x), own = of_group<4>(&drags[first].x);
+      const float floor = h * h * 1e-12f;
+      Sixteen sum = {};
+      for (const Pair* four = begin_; four < end_; four += kTogether) {
+        const Sixteen d = self - of_others<4>(&places->x, four), u = of_others<4>(&drags->x, four);
+        const Sixteen r_squared = sums(d * d) + floor, inverse_r = inverse_roots(r_squared);
+        const Sixteen weighed = (h - r_squared * inverse_r) * (inverse_r * inverse_r) * fourths(u);
+        const Sixteen along = weighed * sums(d * (u - own));
+        // What fills a row up has no weight.
+        const auto pairs = each_even_four_times(&four->weight) > 0.0f;
+        sum += reinterpret_cast<Sixteen>(reinterpret_cast<SixteenBits>(along) & pairs) * d;
+      }
+      return sum;
+    }
+    /// The sum of q d (d · (v − one's own)), v each other's of `velocities`, in rows of who drags whom.
+    Sixteen dragged(const Vector4* places, const Vector4* velocities) const {
+      const Sixteen own = of_group<4>(&velocities[first].x);
+      Sixteen sum = {};
+      for_each_way(places, [&](Sixteen d, const Pair* four) {
+        const Sixteen along = sums(d * (of_others<4>(&velocities->x, four) - own));
+        sum += (each_even_four_times(&four->weight) * along) * d;
+      });
+      return sum;
+    }
+    /// The sum of q d ⊗ d over each row.
+    Squares rates(const Vector4* places) const {
+      Squares sum;
+      for_each_way(places, [&](Sixteen d, const Pair* four) {
+        const Sixteen weighed = each_even_four_times(&four->weight) * d;
+        sum.even += weighed * d;
+        sum.odd += weighed * turned(d);
+      });
+      return sum;
+    }
+    /// Four floats of each of the group, `stride` floats from one particle to the next.
+    template <std::size_t stride>
+    static Sixteen of_group(const float* v) {
+      return side_by_side(four_at(v), four_at(v + stride), four_at(v + 2 * stride), four_at(v + 3 * stride));
+    }
+
+   private:
+    // f(d, pairs) of a pair of each; d's fourths are 0.
+    template <class F>
+    void for_each_way(const Vector4* places, F&& f) const {
+      const Sixteen self = of_group<4>(&places[first].x);
+      for (const Pair* four = begin_; four < end_; four += kTogether)
+        f(self - of_others<4>(&places->x, four), four);
+    }
+    // f(g, pairs) likewise.
+    template <class F>
+    void for_each_pair(const Vector4* places, F&& f) const {
+      for_each_way(places, [&](Sixteen d, const Pair* four) {
+        f(each_even_four_times(&four->weight) * d, four);
+      });
+    }
+    template <std::size_t stride>
+    static Sixteen of_others(const float* all, const Pair* four) {
+      const auto at = [&](int k) {
+        return four_at(all + stride * static_cast<std::uint32_t>(four[k].other));
+      };
+      return side_by_side(at(0), at(1), at(2), at(3));
+    }
+    const Pair *begin_, *end_;
+  };
+
+ private:
+  static constexpr std::uint32_t kTogether = 4;
+  struct alignas(8) Pair {
+    float weight;
+    std::int32_t other;
+  };
+  struct Chunk {
+    Column<Pair> pairs;
+    std::size_t size = 0;  // of what is written
+    std::vector<Group> groups;
+  };
+
+  std::vector<Chunk> chunks_;
+  std::size_t used_ = 0;
+};
+
+}  // namespace slosh
