@@ -1,5 +1,6 @@
 // `slosh report coupling --water`: one hand on the bucket of real water, and what could be had at best.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "net/text/clean.h"
@@ -26,6 +27,9 @@ constexpr const char* kPerson = "tight,correction=0";
 struct Felt {
   double round_trip = 0.0;  // s
   double error = 0.0, learning = 0.0, moving = 0.0, after = 0.0, line = 0.0;
+  /// Of a person, who goes elsewhere by what they feel: off what is right where they went, and m rms that is
+  /// elsewhere.
+  double same = 0.0, elsewhere = 0.0;
 };
 struct WaterRow {
   WaterCase c;
@@ -35,6 +39,18 @@ struct WaterRow {
   std::vector<Felt> felt;
   std::string problem;
 };
+
+/// m rms between two hands from kWaterBegins on.
+double apart(const std::vector<DeviceReport>& went, const WaterRun& reference) {
+  double off = 0.0, count = 0.0;
+  for (std::size_t i = 0; i < went.size() && i < reference.steps.size(); ++i) {
+    if (reference.steps[i].time < kWaterBegins) continue;
+    const glm::dvec3 d = went[i].pose.position - reference.steps[i].hand.position;
+    off += glm::dot(d, d);
+    count += 1.0;
+  }
+  return std::sqrt(off / std::max(count, 1.0));
+}
 
 Result<bool> measure(const std::vector<double>& round_trips, WaterRow& row) {
   const Result<WaterRun> run = run_water(row.c);
@@ -51,7 +67,8 @@ Result<bool> measure(const std::vector<double>& round_trips, WaterRow& row) {
   ReplicaTuning by_line;
   by_line.follows_slosh = false;
   for (const double round_trip : round_trips) {
-    const Result<std::vector<Wrench>> ours = feel_water(run.value(), round_trip);
+    std::vector<DeviceReport> went;
+    const Result<std::vector<Wrench>> ours = feel_water(run.value(), round_trip, {}, &went);
     if (!ours) return ours.error();
     Felt& f = row.felt.emplace_back();
     f.round_trip = round_trip;
@@ -59,8 +76,13 @@ Result<bool> measure(const std::vector<double>& round_trips, WaterRow& row) {
     f.learning = water_error(ours.value(), run.value(), kWaterBegins, kWaterLearnt);
     f.moving = water_error(ours.value(), run.value(), kWaterLearnt, kWaterStops);
     f.after = water_error(ours.value(), run.value(), kWaterStops, kWaterEnds);
-    // A hand that gives way would need a world of its own for that.
-    if (!row.c.grip.empty()) continue;
+    if (!row.c.grip.empty()) {
+      const Result<WaterRun> right = run_water_again(row.c, went);
+      if (!right) return right.error();
+      f.same = water_error(ours.value(), right.value());
+      f.elsewhere = apart(went, run.value());
+      continue;  // for the line it would need a world of its own
+    }
     const Result<std::vector<Wrench>> line = feel_water(run.value(), round_trip, by_line);
     if (!line) return line.error();
     f.line = water_error(line.value(), run.value());
@@ -76,7 +98,8 @@ std::string name_of(const WaterRow& row) {
 ChartPanel panel_of(const std::vector<WaterRow>& rows, bool person) {
   constexpr const char* kColors[] = {"#2a6fb0", "#c8322b", "#3a9d5d", "#e0893c", "#7a4fa3", "#808080", "#b5651d", "#208080"};
   ChartPanel panel;
-  panel.title = person ? "A simulated person" : "A hand that goes its way whatever the force";
+  panel.title = person ? "A simulated person, against the same motion at no delay"
+                       : "A hand that goes its way whatever the force";
   panel.x_label = "round trip, ms";
   panel.y_label = "force off, % rms of its change";
   std::size_t color = 0;
@@ -86,7 +109,13 @@ ChartPanel panel_of(const std::vector<WaterRow>& rows, bool person) {
     series.name = name_of(row) + format(" (%.1f N; chance %.0f %%)", row.force, 1e2 * row.chaos);
     series.color = kColors[color++ % std::size(kColors)];
     series.width = 1.5;
-    for (const Felt& f : row.felt) series.points.push_back({1e3 * f.round_trip, 1e2 * f.error});
+    for (const Felt& f : row.felt)
+      series.points.push_back({1e3 * f.round_trip, 1e2 * (person ? f.same : f.error)});
+    panel.series.push_back(series);
+    if (!person) continue;
+    series.name = "the same, with where they went by it";
+    series.dashed = true;
+    for (std::size_t i = 0; i < series.points.size(); ++i) series.points[i].y = 1e2 * row.felt[i].error;
     panel.series.push_back(series);
   }
   return panel;
@@ -96,7 +125,8 @@ ChartPanel panel_of(const std::vector<WaterRow>& rows, bool person) {
 
 int report_coupling_water(const ReportOptions& options) {
   if (options.resume)
-    return fail({"--resume", "is not for --water, which takes two minutes", "Leave it out; --overwrite measures again into "
+    return fail({"--resume", "is not for --water, which takes some minutes",
+                 "Leave it out; --overwrite measures again into "
                  "the same folder"});
   const Result<std::filesystem::path> folder = report_folder(options, "coupling", kTable);
   if (!folder) return fail(folder.error());
@@ -107,7 +137,7 @@ int report_coupling_water(const ReportOptions& options) {
   std::vector<WaterRow> rows;
   for (int way = 0; way < (options.quick ? 3 : 8); ++way) rows.push_back({{0.014, "", way, 0.0}, 0.0, 0.0, {}, {}, {}});
   for (const int way : {2, 3})
-    if (!options.quick) rows.push_back({{0.014, kPerson, way, 0.0}, 0.0, 0.0, {}, {}, {}});
+    if (!options.quick || way == 2) rows.push_back({{0.014, kPerson, way, 0.0}, 0.0, 0.0, {}, {}, {}});
   progress.phase("measuring", format("%zu ways of a hand", rows.size()));
   std::size_t done = 0;
   const bool all = run_on_cores(
@@ -124,8 +154,9 @@ int report_coupling_water(const ReportOptions& options) {
     if (!row.problem.empty()) return fail({"the bucket", row.problem, "Is this a whole build or package?"});
   if (!all) rows.erase(std::remove_if(rows.begin(), rows.end(), [](const WaterRow& row) { return row.felt.empty(); }), rows.end());
   std::string text =
-      "way,reach_mm,pace_hz,hand,force_n,chance,rigid_leaves,modes_leave,lifts_leave,round_trip_ms,force_error,error_to_1500ms,"
-      "error_moving,error_after,error_by_line\n";
+      "way,reach_mm,pace_hz,hand,force_n,chance,rigid_leaves,modes_leave,lifts_leave,round_trip_ms,force_"
+      "error,error_to_1500ms,"
+      "error_moving,error_after,error_by_line,error_for_the_same_motion,hand_elsewhere_mm\n";
   std::printf("%-30s force   chance  a model leaves: rigid, modes, lift   force off at", "a hand's way");
   for (const double round_trip : round_trips) std::printf(" %.0f", 1e3 * round_trip);
   std::printf(" ms\n");
@@ -135,16 +166,24 @@ int report_coupling_water(const ReportOptions& options) {
                 1e2 * row.split.rigid, 1e2 * row.split.modes, 1e2 * row.split.lifts);
     for (const Felt& f : row.felt) {
       std::printf(" %.0f", 1e2 * f.error);
-      text += format("%d,%.3g,%.3g,%s,%.4g,%.4g,%.4g,%.4g,%.4g,%g,%.4g,%.4g,%.4g,%.4g,", row.c.way, 1e3 * way.reach, way.pace,
-                     row.c.grip.empty() ? "led" : "person", row.force, row.chaos, row.split.rigid, row.split.modes, row.split.lifts,
-                     1e3 * f.round_trip, f.error, f.learning, f.moving, f.after) +
-              (row.c.grip.empty() ? format("%.4g", f.line) : std::string()) + "\n";
+      text +=
+          format("%d,%.3g,%.3g,%s,%.4g,%.4g,%.4g,%.4g,%.4g,%g,%.4g,%.4g,%.4g,%.4g,", row.c.way,
+                 1e3 * way.reach, way.pace, row.c.grip.empty() ? "led" : "person", row.force, row.chaos,
+                 row.split.rigid, row.split.modes, row.split.lifts, 1e3 * f.round_trip, f.error, f.learning,
+                 f.moving, f.after) +
+          (row.c.grip.empty() ? format("%.4g,,", f.line) : format(",%.4g,%.4g", f.same, 1e3 * f.elsewhere)) +
+          "\n";
     }
     std::printf(" %%\n");
+    if (row.c.grip.empty() || row.felt.empty()) continue;
+    std::printf("%-91s", "  for the same motion at no delay (the rest is where the person went by it)");
+    for (const Felt& f : row.felt) std::printf(" %.1f", 1e2 * f.same);
+    std::printf(" %%; elsewhere by");
+    for (const Felt& f : row.felt) std::printf(" %.1f", 1e3 * f.elsewhere);
+    std::printf(" mm\n");
   }
   if (const Result<bool> written = write_whole(folder.value() / kTable, text); !written) return fail(written.error());
-  std::vector<ChartPanel> panels{panel_of(rows, false)};
-  if (!options.quick) panels.push_back(panel_of(rows, true));
+  std::vector<ChartPanel> panels{panel_of(rows, false), panel_of(rows, true)};
   // The ways' names are long: beside the curves, not over them.
   ChartPanel key;
   key.key_alone = true;

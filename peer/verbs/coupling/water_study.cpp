@@ -169,7 +169,10 @@ WaterWay way_of(const WaterCase& c) {
   return way;
 }
 
-Result<WaterRun> run_water(const WaterCase& c) {
+namespace {
+
+/// `went`: where the hand was; null: as `c` has it.
+Result<WaterRun> run_hand(const WaterCase& c, const std::vector<DeviceReport>* went) {
   Result<Scene> scene = scene_of();
   if (!scene) return scene.error();
   const Result<SampledScene> sampled = sample_scene(scene.value(), c.spacing);
@@ -182,21 +185,32 @@ Result<WaterRun> run_water(const WaterCase& c) {
   const Body& body = scene.value().bodies[static_cast<std::size_t>(scene.value().grips[0].body)];
   run.body = {body.mass.mass, body.mass.inertia, body.mass.center_of_mass, false, scene.value().gravity};
   run.grip = {scene.value().grips[0].pose, host.gains()};
-  run.steps.resize(static_cast<std::size_t>(std::lround(kWaterEnds / kPeriod)));
+  run.steps.resize(went ? went->size() : static_cast<std::size_t>(std::lround(kWaterEnds / kPeriod)));
   for (std::size_t i = 0; i < run.steps.size(); ++i) {
     WaterStep& step = run.steps[i];
     step.time = kPeriod * static_cast<double>(i);
-    const DeviceReport report = hand.value()->read({step.time, kPeriod});
+    const DeviceReport report = went ? (*went)[i] : hand.value()->read({step.time, kPeriod});
     step.hand = report.pose;
     step.hand_twist = report.twist;
     step.felt = host.felt(report);
-    hand.value()->write(step.felt);
+    if (!went) hand.value()->write(step.felt);
     host.step(report, step);
   }
   return run;
 }
 
-Result<std::vector<Wrench>> feel_water(const WaterRun& reference, double round_trip, const ReplicaTuning& tuning) {
+}  // namespace
+
+Result<WaterRun> run_water(const WaterCase& c) {
+  return run_hand(c, nullptr);
+}
+
+Result<WaterRun> run_water_again(const WaterCase& c, const std::vector<DeviceReport>& went) {
+  return run_hand(c, &went);
+}
+
+Result<std::vector<Wrench>> feel_water(const WaterRun& reference, double round_trip,
+                                       const ReplicaTuning& tuning, std::vector<DeviceReport>* went) {
   const auto way = static_cast<std::size_t>(std::lround(0.5 * round_trip / kPeriod));
   std::vector<Wrench> felt(reference.steps.size());
   Site site(reference, tuning);
@@ -232,6 +246,7 @@ Result<std::vector<Wrench>> feel_water(const WaterRun& reference, double round_t
     felt[i] = site.held().started() ? site.tick(hands[i], now) : reference.steps[i].felt;
     hand.value()->write(felt[i]);
   }
+  if (went) *went = std::move(hands);
   return felt;
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "peer/haptics/device.h"
 #include "peer/haptics/replica/held_body.h"
 #include "sim/math/fluid_wrench.h"
 #include "sim/math/result.h"
@@ -56,11 +57,17 @@ struct WaterRun {
 /// nothing.
 Result<WaterRun> run_water(const WaterCase& c);
 
-/// What the hand of `reference` feels by its replica of the body, `round_trip` s (even ms) from the host, tick by tick.
-/// A hand that goes its way whatever the force has the host's run of `reference` over again; one that gives way has its own.
-/// Errors: as above.
+/// What the hand of `reference` feels by its replica of the body, `round_trip` s (even ms) from the host,
+/// tick by tick. A hand that goes its way whatever the force has the host's run of `reference` over again;
+/// one that gives way has its own, and goes elsewhere by what it feels: `went`, if not null, is given where
+/// it was at each tick. Errors: as above.
 Result<std::vector<Wrench>> feel_water(const WaterRun& reference, double round_trip,
-                                       const ReplicaTuning& tuning = {});
+                                       const ReplicaTuning& tuning = {},
+                                       std::vector<DeviceReport>* went = nullptr);
+
+/// The run at no delay of a hand that goes where another went, tick by tick, whatever the force: what that
+/// one should have felt. Errors: as above.
+Result<WaterRun> run_water_again(const WaterCase& c, const std::vector<DeviceReport>& went);
 
 /// RMS over a time of the difference of forces over the RMS of the reference's less its weight at rest; 1 = 100 %.
 double water_error(const std::vector<Wrench>& felt, const WaterRun& reference, double begin = kWaterBegins,
