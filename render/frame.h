@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "sim/math/shared_particles.h"
 #include "sim/math/texture_sampling.h"
 
 namespace slosh {
@@ -118,6 +120,8 @@ struct Frame {
   std::vector<MeshInstance> meshes;
   std::span<const glm::vec3> particles;          ///< m, world
   std::span<const std::uint8_t> particle_fluid;  ///< index into fluids, 255 = not drawn
+  /// Both once more, in memory of a GPU, or null: read there where compute shaders draw on that GPU.
+  std::shared_ptr<const SharedParticles> on_gpu;
   std::vector<FluidLook> fluids;
   float particle_radius =
       0.005f;  ///< m, of the ball with a particle's volume; splats are 1.2 times larger (5.1)

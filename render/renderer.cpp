@@ -71,6 +71,7 @@ void Renderer::prepare(const Frame& frame, std::span<const View> views) {
   Parts& p = *parts_;
   p.times.clear();
   p.frame = frame;
+  p.offered_on_gpu = p.offered_on_gpu || frame.on_gpu;
   p.shadow = {};
   if (p.shadow_pass && !views.empty()) {
     p.run("shadow map", [&] { p.shadow = p.shadow_pass->draw(p.frame, p.meshes, views); });
@@ -213,6 +214,17 @@ Result<bool> Renderer::set_options(const RenderOptions& options) {
   auto fitted = parts_->fit_to_options();
   if (!fitted) parts_->options = old;
   return fitted;
+}
+
+bool Renderer::reads_particles_on_gpu() const {
+  return parts_->particles && parts_->particles->given().shared();
+}
+
+std::string Renderer::particles_refused() const {
+  if (parts_->particles) return parts_->particles->given().refused();
+  return parts_->offered_on_gpu ? "particles that lie on the GPU: the picture is not drawn by compute "
+                                  "shaders, so they go through main memory"
+                                : std::string();
 }
 
 bool Renderer::on_compute() const {

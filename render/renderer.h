@@ -181,6 +181,11 @@ class Renderer : public MeshSink {
   FloatImage read_buffer(Buffer buffer);
 
   const RenderOptions& options() const;
+  /// The last frame's particles were read where they lie on the GPU (Frame::on_gpu).
+  bool reads_particles_on_gpu() const;
+  /// Why particles that were offered there go through main memory, in words; empty where they do not, or were
+  /// not.
+  std::string particles_refused() const;
   /// What PixelPasses came to.
   bool on_compute() const;
   /// Takes effect at the next draw. Errors as create; the old options then stay.

@@ -78,6 +78,7 @@ struct Renderer::Parts {
   ShadowView shadow;  ///< of this frame
   KeptPicture kept;
   bool centers_sorted = false;
+  bool offered_on_gpu = false;  ///< particles, by some frame
   gl::Texture panel;  ///< RGBA8, made when first asked for
   gl::Framebuffer panel_target;
   glm::ivec2 panel_size{0};

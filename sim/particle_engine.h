@@ -74,6 +74,15 @@ class ParticleEngine {
   /// By id; a retired one gets index 255 and a position that means nothing. Both have the fluid's count of
   /// entries.
   virtual void fill(std::span<glm::vec3> positions, std::span<std::uint8_t> fluid_index) const = 0;
+  /// The same, and where it lies on a GPU for who draws there: null where it is on none, or not shared, or
+  /// where all places for that are looked at.
+  virtual std::shared_ptr<const SharedParticles> fill_shared(std::span<glm::vec3> positions,
+                                                             std::span<std::uint8_t> fluid_index) const {
+    fill(positions, fluid_index);
+    return nullptr;
+  }
+  /// Lets fill_shared() share; false where there is no GPU. Errors: it exports no memory, in words.
+  virtual Result<bool> share() { return false; }
   /// The columns that the table says, in the order of the cells at the last sort, which the state itself
   /// fixes.
   virtual void add_to(Fingerprint& print) const = 0;

@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "sim/math/pose.h"
+#include "sim/math/shared_particles.h"
 
 namespace slosh {
 
@@ -58,6 +60,9 @@ struct Snapshot {
   std::vector<std::uint8_t> fluid_index;  ///< into Scene::fluids; 255 = retired, not to be drawn
   /// 1 = seen from outside (sim/shell.h), one a particle; empty unless the shell was asked for.
   std::vector<std::uint8_t> shell;
+  /// Positions and indices once more, in the memory of the GPU that stepped them; null where they are not
+  /// shared (World::share_particles), or where all places for that are still looked at.
+  std::shared_ptr<const SharedParticles> on_gpu;
 };
 
 }  // namespace slosh

@@ -106,9 +106,13 @@ void World::fill(Snapshot& out, bool with_shell) const {
   fill(out.rigid);
   out.positions.resize(impl_->fluid_count);
   out.fluid_index.resize(impl_->fluid_count);
-  impl_->engine->fill(out.positions, out.fluid_index);
+  out.on_gpu = impl_->engine->fill_shared(out.positions, out.fluid_index);
   out.shell.clear();
   if (with_shell) find_shell(out.positions, out.fluid_index, impl_->constants.plan.spacing, out.shell);
+}
+
+Result<bool> World::share_particles() {
+  return impl_->engine->share();
 }
 
 void World::fill_pressures(std::vector<float>& out) const {

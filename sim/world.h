@@ -92,6 +92,10 @@ class World {
   void fill(BodySnapshot& out) const;
   /// `with_shell` marks what is seen from outside (sim/shell.h); else Snapshot::shell is emptied.
   void fill(Snapshot& out, bool with_shell = false) const;
+  /// From now on snapshots also say where the GPU that steps the particles has them (Snapshot::on_gpu), for
+  /// six of them at a time. False where no GPU steps them. Errors, with everything as it was: its driver
+  /// shares nothing.
+  Result<bool> share_particles();
   /// Pa, one a fluid particle by id, by Eq 7 from its density in the last step (at the start: 0), without
   /// what damps impacts; NaN for what has left the world, for all when the GPU failed. About a millisecond
   /// for 32 768.

@@ -59,6 +59,11 @@ Result<std::unique_ptr<LocalRun>> LocalRun::create(const Prepared& prepared, Dev
   // Where a run begins again the first signal is not to wait for this.
   const auto stopped = [] { return interrupted_by() != 0; };
   world.settle(scene.settle, hands, stopped);
+  if (snapshot_rate > 0.0) {
+    // A GPU that also draws reads them where they are; the picture's side says where it does not.
+    const Result<bool> shared = world.share_particles();
+    if (!shared && progress) progress->note("slosh: " + shared.error().text());
+  }
   run->channel_ = std::make_unique<Channel>(scene.grips.size(), initial_message(world), kSnapshotBytes);
   HostOptions options;
   options.snapshot_rate = snapshot_rate;

@@ -185,6 +185,7 @@ Result<bool> show_headless(const Stage& stage, LiveRun& run, const ShowOptions& 
   run.report(summary);
   if (view) {
     fill_view(summary, *view, view_options, run.snapshots().dropped());
+    if (!view->report().refused.empty()) progress.note("slosh: " + view->report().refused);
   }
   return true;
 }

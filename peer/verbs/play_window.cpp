@@ -125,6 +125,7 @@ class WindowRun {
           renderer_.present();
           context_.swap();
           frames += 1;
+          tell_refused();
           continue;
         }
       }
@@ -147,10 +148,18 @@ class WindowRun {
       if (context_.is_software()) pixels_.took(1e3 * drawing);
       frame_time.add(to_seconds(steady_now_ns() - begin_ns));
       frames += 1;
+      tell_refused();
     }
   }
 
  private:
+  /// Once: that the particles go through main memory, and why.
+  void tell_refused() {
+    if (told_refused_ || renderer_.particles_refused().empty()) return;
+    progress_.note("slosh: " + renderer_.particles_refused());
+    told_refused_ = true;
+  }
+
   static constexpr double kBudget = 33.0;  // ms of a picture where a CPU draws
 
   /// Of a window of that many pixels. A film's pictures are all of one size.
@@ -192,6 +201,7 @@ class WindowRun {
   Renderer& renderer_;
   HeadsetView* headset_;
   bool worn_ = false;  // in the last turn
+  bool told_refused_ = false;
   WindowFilm& film_;
   Progress& progress_;
   Painter painter_;
@@ -244,7 +254,7 @@ Result<bool> show_in_window(const Stage& stage, const MakeRun& make_run, const S
     if (outcome != Outcome::kEnd) continue;
     run.report(summary);
     summary.rendered = true;
-    summary.renderer = context.value()->description();
+    summary.renderer = context.value()->description() + where_particles_are_read(*renderer.value());
     summary.width = renderer.value()->options().width;
     summary.height = renderer.value()->options().height;
     summary.frame_ms = {1e3 * frame_time.percentile(0.5), 1e3 * frame_time.percentile(0.99),

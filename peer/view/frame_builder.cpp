@@ -176,6 +176,7 @@ Frame FrameBuilder::build(const Snapshot& snapshot, double view_distance) {
   frame.light_direction = scene_.light_direction;
   frame.particles = snapshot.positions;
   frame.particle_fluid = snapshot.fluid_index;
+  frame.on_gpu = snapshot.on_gpu;
   frame.fluids = fluids_;
   frame.particle_radius = particle_radius_;
 

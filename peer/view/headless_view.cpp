@@ -101,6 +101,8 @@ void HeadlessView::run(const Setup& setup) {
     if (recording && !video.value()->add(image)) recording = false;  // finish() below says why
     done_.store(report_.frames, std::memory_order_relaxed);
   }
+  report_.renderer += where_particles_are_read(renderer);
+  report_.refused = renderer.particles_refused();
   const Result<bool> finished = video.value()->finish();
   if (!finished) report_.problem = finished.error().text();
   if (report_.frames > 0) {

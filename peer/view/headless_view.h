@@ -29,6 +29,7 @@ struct ViewReport {
   std::uint64_t frames = 0;
   Histogram frame_time;  ///< drawing and reading back, s
   std::string renderer;
+  std::string refused;  ///< why the particles go through main memory, where a GPU steps them; else empty
   std::string problem;  ///< an error's text, empty when all went well
   std::vector<Error> left_out;  ///< of the scene's looks; there when start() returns
 };

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <string>
 
 #include "peer/hud/hud.h"
 #include "peer/view/foam.h"
@@ -15,6 +16,11 @@
 #include "render/headset.h"
 
 namespace slosh {
+
+/// For a run's summary, after the renderer's name; empty where it is as everywhere.
+inline std::string where_particles_are_read(const Renderer& renderer) {
+  return renderer.reads_particles_on_gpu() ? ", particles read where CUDA has them" : "";
+}
 
 /// On the renderer's thread. The scene must outlive it.
 class Painter {

@@ -24,6 +24,14 @@ void Fence::wait() {
   glDeleteSync(std::exchange(sync_, nullptr));
 }
 
+bool Fence::passed() {
+  if (!sync_) return true;
+  const GLenum now = glClientWaitSync(sync_, 0, 0);
+  if (now != GL_ALREADY_SIGNALED && now != GL_CONDITION_SATISFIED) return false;
+  glDeleteSync(std::exchange(sync_, nullptr));
+  return true;
+}
+
 void UploadRing::upload(std::span<const std::byte> bytes) {
   used_ = std::max<std::size_t>(bytes.size(), 4);
   if (used_ > slot_bytes_) {

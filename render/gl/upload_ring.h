@@ -27,6 +27,8 @@ class Fence {
   void set();
   /// Until they are done; at once where none is set.
   void wait();
+  /// Whether they are; true where none is set.
+  bool passed();
 
  private:
   GLsync sync_ = nullptr;

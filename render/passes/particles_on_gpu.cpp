@@ -18,6 +18,7 @@ void bind(GLuint binding, const gl::StreamBuffer& buffer) {
 
 constexpr std::size_t kVec4 = sizeof(glm::vec4);
 constexpr std::size_t kSmoothShare = 8;  // invocations a particle, as smooth_centers.comp has it
+constexpr std::size_t kDeepShare = 8;    // an entry, as cells_deep.comp has it
 
 /// Of fewer particles most are near a surface. Of 33 thousand in a broken dam half are deep inside, of a million
 /// four in five.
@@ -55,8 +56,14 @@ void ParticlesOnGpu::take(const Frame& frame, bool moves) {
   if (count_ == 0) return;
   if (moves_) steps_ = {Step::kSmooth, Step::kSort, Step::kFill, Step::kBegin};
   if (moves_ && leaves_out_deep_) steps_.insert(steps_.begin() + 1, Step::kFindDeep);
-  places_.upload(std::as_bytes(frame.particles.first(count_)));
-  fluids_.upload(std::as_bytes(frame.particle_fluid.first(count_)));
+  start_taking(frame);
+  if (!given_.to_be_checked()) return;
+  const bool right = taken_are(frame);
+  given_.checked(right);
+  if (!right) start_taking(frame);
+}
+
+void ParticlesOnGpu::start_taking(const Frame& frame) {
   particles_.reserve(count_ * kVec4);
   const gl::Program& program = moves_ ? take_into_cells_ : take_;
   if (moves_) {
@@ -75,13 +82,32 @@ void ParticlesOnGpu::take(const Frame& frame, bool moves) {
     bind(3, counts_);
     bind(4, ranks_);
   }
-  places_.bind(0);
-  fluids_.bind(1);
+  given_.bind(frame, count_, 0, 1);
   bind(2, particles_);
-  program.set("fluids", static_cast<int>(fluids));
+  program.set("fluids", static_cast<int>(std::min(frame.fluids.size(), kMaxFluidLooks)));
   program.set("floats", 3);
   gl::run_each(program, count_);
-  places_.done();  // which says the same of fluids_: both go round together
+  given_.done();
+}
+
+/// Copied first: a buffer that is read back itself may be moved to where the GPU reads it slowly.
+bool ParticlesOnGpu::taken_are(const Frame& frame) const {
+  const gl::Buffer copy = gl::make_buffer();
+  const auto bytes = static_cast<GLsizeiptr>(count_ * kVec4);
+  glNamedBufferStorage(copy.name(), bytes, nullptr, 0);
+  glCopyNamedBufferSubData(particles_.name(), copy.name(), 0, 0, bytes);
+  std::vector<glm::vec4> taken(count_);
+  glGetNamedBufferSubData(copy.name(), 0, bytes, taken.data());
+  const std::size_t fluids = std::min(frame.fluids.size(), kMaxFluidLooks);
+  for (std::size_t i = 0; i < count_; ++i) {
+    const glm::vec3& at = frame.particles[i];
+    const bool finite = std::isfinite(at.x) && std::isfinite(at.y) && std::isfinite(at.z);
+    const bool drawn = frame.particle_fluid[i] < fluids && finite;
+    const glm::vec4 wanted =
+        drawn ? glm::vec4(at, frame.particle_fluid[i]) : glm::vec4(0.0f, 0.0f, 0.0f, -1.0f);
+    if (taken[i] != wanted) return false;
+  }
+  return true;
 }
 
 void ParticlesOnGpu::start_next() {
@@ -111,7 +137,7 @@ void ParticlesOnGpu::start_next() {
       return gl::start_each(sort_, count_);
     case Step::kFindDeep:
       deep_program_.set("reach", reach);
-      return gl::start_each(deep_program_, entries_);
+      return gl::start_each(deep_program_, entries_, kDeepShare);
     case Step::kSmooth: {
       bind(0, centers_);
       bind(1, ellipsoids_);

@@ -9,7 +9,7 @@
 
 #include "render/frame.h"
 #include "render/gl/objects.h"
-#include "render/gl/upload_ring.h"
+#include "render/passes/given_particles.h"
 
 namespace slosh {
 
@@ -44,8 +44,12 @@ class ParticlesOnGpu {
   std::size_t count() const { return count_; }
   /// vec4 each: world position m, index into Frame::fluids, or −1 where it is not drawn.
   const gl::StreamBuffer& particles() const { return particles_; }
+  /// Where they were read.
+  const GivenParticles& given() const { return given_; }
 
  private:
+  void start_taking(const Frame& frame);
+  bool taken_are(const Frame& frame) const;
   enum class Step : std::uint8_t { kBegin, kFill, kSort, kFindDeep, kSmooth };
   gl::Program take_;
   gl::Program take_into_cells_;
@@ -57,8 +61,7 @@ class ParticlesOnGpu {
   gl::Program smooth_seen_;  ///< but for what is deep in the fluid
   gl::Program place_;
   gl::Program place_shaped_;
-  gl::UploadRing places_;
-  gl::UploadRing fluids_;
+  GivenParticles given_;
   gl::StreamBuffer particles_;
   gl::StreamBuffer counts_;  ///< an entry of the table each, and the sum of all
   gl::StreamBuffer ranks_;

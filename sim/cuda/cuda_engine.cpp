@@ -8,6 +8,7 @@
 #include "sim/cuda/host_particles.h"
 #include "sim/cuda/pass_clock.h"
 #include "sim/cuda/pressure_solve.h"
+#include "sim/cuda/shared_slots.h"
 #include "sim/cuda/step_report.h"
 #include "sim/cuda/viscous_solve.h"
 #include "sim/cuda/wall_guards.h"
@@ -171,14 +172,19 @@ class CudaEngine final : public ParticleEngine {
   }
 
   void fill(std::span<glm::vec3> positions, std::span<std::uint8_t> fluid_index) const override {
-    std::fill(fluid_index.begin(), fluid_index.end(), std::uint8_t{255});
-    if (check_.failed() || positions.empty()) return;
-    launch_scatter(step_, fluid_.state(), fluid_.count(), static_cast<std::uint32_t>(fluid_count_),
-                   by_id_.data(), kind_by_id_.data(), stream_);
-    check_.launched("scattering");
-    fetch(by_id_.data(), reinterpret_cast<float*>(positions.data()), 3 * positions.size());
-    fetch(kind_by_id_.data(), fluid_index.data(), fluid_index.size());
+    fill_by({by_id_.data(), kind_by_id_.data(), nullptr}, positions, fluid_index);
   }
+  std::shared_ptr<const SharedParticles> fill_shared(std::span<glm::vec3> positions,
+                                                     std::span<std::uint8_t> fluid_index) const override {
+    const SharedSlots::Slot slot = shared_.take();
+    if (!slot.particles || positions.empty()) {
+      fill(positions, fluid_index);
+      return nullptr;
+    }
+    fill_by(slot, positions, fluid_index);
+    return check_.failed() ? nullptr : slot.particles;
+  }
+  Result<bool> share() override { return shared_.start(fluid_count_); }
 
   void add_to(Fingerprint& print) const override {
     const HostPacks packs = fetch_packs();
@@ -289,6 +295,18 @@ class CudaEngine final : public ParticleEngine {
     check_.launched("integration");
   }
 
+  /// By way of a place on the GPU that is its own by the time this returns.
+  void fill_by(const SharedSlots::Slot& way, std::span<glm::vec3> positions,
+               std::span<std::uint8_t> fluid_index) const {
+    std::fill(fluid_index.begin(), fluid_index.end(), std::uint8_t{255});
+    if (check_.failed() || positions.empty()) return;
+    launch_scatter(step_, fluid_.state(), fluid_.count(), static_cast<std::uint32_t>(fluid_count_),
+                   way.positions, way.kinds, stream_);
+    check_.launched("scattering");
+    fetch(way.positions, reinterpret_cast<float*>(positions.data()), 3 * positions.size());
+    fetch(way.kinds, fluid_index.data(), fluid_index.size());
+  }
+
   template <class T>
   void fetch(const T* from, T* to, std::size_t count) const {
     if (check_.failed() || count == 0 || !from) return;  // a pack that the plan does not need
@@ -380,6 +398,7 @@ class CudaEngine final : public ParticleEngine {
   double forces_dt_ = 0.0;           // s, of the last forces()
   DeviceBuffer<float> by_id_;
   DeviceBuffer<std::uint8_t> kind_by_id_;
+  SharedSlots shared_;
 };
 
 }  // namespace

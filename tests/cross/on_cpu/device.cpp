@@ -262,6 +262,16 @@ cudaError_t cudaGetDevice(int* device) {
   *device = 0;
   return cudaSuccess;
 }
+// No driver: its own calls are not to be had.
+#if CUDART_VERSION >= 12050
+cudaError_t cudaGetDriverEntryPointByVersion(const char*, void** call, unsigned, unsigned long long,
+                                             cudaDriverEntryPointQueryResult*) {
+#else
+cudaError_t cudaGetDriverEntryPoint(const char*, void** call, unsigned long long) {
+#endif
+  *call = nullptr;
+  return cudaErrorNotSupported;
+}
 #undef cudaGetDeviceProperties
 cudaError_t cudaGetDeviceProperties(cudaDeviceProp* device, int) {
   *device = cudaDeviceProp{};
