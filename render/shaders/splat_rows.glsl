@@ -15,8 +15,10 @@ PixelBox pixel_box(vec2 low, vec2 high, ivec2 picture_size) {
 }
 
 // Which splat an invocation's row takes, of `count`; none if it is not below. Rows that run at the same time take splats from 64 parts of
-// all: those that follow each other lie side by side, where atomics would wait for each other.
+// all: those that follow each other lie side by side, where atomics would wait for each other. Groups on two axes are more than are
+// needed: rows beyond the last take none.
 uint splat_row(int count) {
   uint row = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.y + gl_LocalInvocationID.y;
-  return (row & 63u) * (uint(count + 63) >> 6) + (row >> 6);
+  uint part = uint(count + 63) >> 6;
+  return row < 64u * part ? (row & 63u) * part + (row >> 6) : uint(count);
 }
