@@ -4,6 +4,8 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
+#include "render/passes/kept_picture.h"
+
 namespace slosh {
 namespace {
 
@@ -33,6 +35,48 @@ void append_band(const glm::mat3& axes, const glm::vec3& start, const Ring& a, c
     out.insert(out.end(), {a0, a1, b1, a0, b1, b0});
   }
 }
+
+/// The pixels that they may cover.
+PixelBox box_of(std::span<const ArrowVertex> vertices, const View& view, glm::ivec2 size) {
+  const glm::mat4 clip_from_world = view.projection * view.view;
+  const glm::vec2 picture(size);
+  glm::vec2 low(picture), high(0.0f);
+  for (const ArrowVertex& vertex : vertices) {
+    const glm::vec4 clip = clip_from_world * glm::vec4(vertex.position, 1.0f);
+    if (!(clip.w > view.near_plane)) return {glm::ivec2(0), size};  // goes past the eye
+    const glm::vec2 pixel =
+        glm::clamp((0.5f * glm::vec2(clip) / clip.w + 0.5f) * picture, glm::vec2(0.0f), picture);
+    low = glm::min(low, pixel);
+    high = glm::max(high, pixel);
+  }
+  return PixelBox{glm::ivec2(low), glm::ivec2(glm::ceil(high))}.grown(1, size);
+}
+
+/// Confines what is drawn to a box, within the one that it is confined to already.
+class Confined {
+ public:
+  explicit Confined(const PixelBox& box) : was_(glIsEnabled(GL_SCISSOR_TEST)) {
+    glGetIntegerv(GL_SCISSOR_BOX, &before_.x);
+    PixelBox in = box;
+    if (was_) {
+      in.low = glm::max(in.low, glm::ivec2(before_));
+      in.high = glm::min(in.high, glm::ivec2(before_.x + before_.z, before_.y + before_.w));
+    }
+    const glm::ivec2 size = in.size();
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(in.low.x, in.low.y, size.x, size.y);
+  }
+  ~Confined() {
+    glScissor(before_.x, before_.y, before_.z, before_.w);
+    if (!was_) glDisable(GL_SCISSOR_TEST);
+  }
+  Confined(const Confined&) = delete;
+  Confined& operator=(const Confined&) = delete;
+
+ private:
+  GLboolean was_;
+  glm::ivec4 before_{0};
+};
 
 }  // namespace
 
@@ -85,7 +129,9 @@ void ArrowPass::draw(const Frame& frame, const Targets& targets, const gl::Textu
   program_.set("has_fluid", fluid ? 1 : 0);
   gl::bind_textures({fluid ? fluid : &targets.scene_depth, &targets.scene_depth});
   const float farthest = 1.0f;
-  // Arrows hide each other but are seen through the scene: they get the depth buffer to themselves.
+  // Arrows hide each other but are seen through the scene: they get the depth buffer to themselves, which
+  // takes longer to clear than they do to draw.
+  const Confined confined(box_of(vertices_, frame.view, targets.size));
   glClearNamedFramebufferfv(targets.blend_target.name(), GL_DEPTH, 0, &farthest);
   glBindFramebuffer(GL_FRAMEBUFFER, targets.blend_target.name());
   glViewport(0, 0, targets.size.x, targets.size.y);

@@ -11,6 +11,11 @@ namespace {
 constexpr int kTile = 32;
 constexpr std::size_t kTriangleBytes = 6 * sizeof(glm::vec4);
 constexpr std::size_t kBoxBytes = 2 * sizeof(std::uint32_t);
+constexpr std::size_t kGroup = 64;  // triangles of one box
+
+std::size_t groups_of(std::size_t triangles) {
+  return (triangles + kGroup - 1) / kGroup;
+}
 struct Item {
   glm::vec4 base;
   glm::vec4 surface;
@@ -58,22 +63,24 @@ bool TiledMeshes::suit(const Frame& frame, const MeshStore& meshes, const Textur
 
 void TiledMeshes::fill(List& list, Instances instances, std::span<const Sides> passes, const View& view,
                        const MeshStore& meshes) const {
-  std::size_t count = 0;
+  std::size_t groups = 0;
   std::vector<Item> items;
   for (const MeshInstance* instance : instances) {
-    count += passes.size() * meshes.triangle_count(instance->mesh);
+    groups += passes.size() * groups_of(meshes.triangle_count(instance->mesh));
     const MeshLook& look = instance->look;
     items.push_back({{look.base_color, glm::clamp(look.opacity, 0.0f, 1.0f)},
                      {look.metallic, look.roughness, 0.0f, 0.0f},
                      {look.emissive, 0.0f}});
   }
-  list.count = static_cast<int>(count);
-  if (count == 0) return;
+  list.groups = static_cast<int>(groups);
+  if (groups == 0) return;
   list.items.upload(std::span<const Item>(items));
-  list.triangles.reserve(count * kTriangleBytes);
-  list.boxes.reserve(count * kBoxBytes);
+  list.triangles.reserve(groups * kGroup * kTriangleBytes);
+  list.boxes.reserve(groups * kGroup * kBoxBytes);
+  list.group_boxes.reserve(groups * kBoxBytes);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, list.triangles.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, list.boxes.name());
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 5, list.group_boxes.name());
   triangles_.set("near_plane", view.near_plane);
   int first = 0;
   for (std::size_t i = 0; i < instances.size(); ++i) {
@@ -87,19 +94,20 @@ void TiledMeshes::fill(List& list, Instances instances, std::span<const Sides> p
       triangles_.set("first", first);
       triangles_.set("sides", static_cast<int>(sides));
       gl::start_each(triangles_, own);
-      first += static_cast<int>(own);
+      first += static_cast<int>(kGroup * groups_of(own));
     }
   }
 }
 
 void TiledMeshes::start(const gl::Program& program, const List& list, const View& view, glm::ivec2 size) {
-  if (list.count > 0) {
+  if (list.groups > 0) {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, list.triangles.name());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, list.boxes.name());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, list.items.name());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 5, list.group_boxes.name());
   }
   program.use();
-  program.set("count", list.count);
+  program.set("count", list.groups);
   program.set("near_plane", view.near_plane);
   const glm::ivec2 tiles = (size + kTile - 1) / kTile;
   glDispatchCompute(static_cast<GLuint>(tiles.x), static_cast<GLuint>(tiles.y), 1);

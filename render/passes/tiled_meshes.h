@@ -36,9 +36,10 @@ class TiledMeshes {
   /// Of one kind, in the order in which they are drawn.
   struct List {
     gl::StreamBuffer triangles;
-    gl::StreamBuffer boxes;  ///< of pixels
+    gl::StreamBuffer boxes;        ///< of pixels
+    gl::StreamBuffer group_boxes;  ///< of 64 triangles each
     gl::StreamBuffer items;  ///< looks
-    int count = 0;           ///< triangles
+    int groups = 0;          ///< of 64 triangles, the last of each mesh with fewer
   };
   /// What a view has of them.
   struct Lists {

@@ -16,6 +16,7 @@ void main() {
   vec3 added[kPixels];
   vec3 through[kPixels];
   bool touched[kPixels];
+  bool any_between = false;
   for (int k = 0; k < kPixels; ++k) {
     ivec2 texel = min(texel_of(k), ivec2(picture.xy) - 1);
     // A pane that stands on something lies at its depth: it is seen, by all rays alike. Two hundredths of a millimetre
@@ -33,29 +34,34 @@ void main() {
     added[k] = vec3(0.0);
     through[k] = vec3(1.0);
     touched[k] = false;
+    any_between = any_between || nearest[k] < farthest[k];
   }
-  for (int first = 0; first < count; first += 256) {
-    look_for(first);
-    for (int word = 0; word < 8; ++word) {
-      for (uint left = touching[word]; left != 0u; left &= left - 1u) {
-        int place = 32 * word + findLSB(left);
-        uint blocks = blocks_touched(place);
-        if (blocks == 0u) continue;
-        Facet facet = facets[place];
-        for (int k = 0; k < kPixels; ++k) {
-          Hit hit;
-          if ((blocks >> k & 1u) == 0u || !meets(facet, ray[k], hit)) continue;
+  for (int base = 0; base < count; base += 256) {
+    look_for_groups(base);
+    for (int from = 0; from < found_groups; from += 4) {
+      look_for(from);
+      if (!any_between) continue;
+      for (int word = 0; word < 8; ++word) {
+        for (uint left = at_hand(word); left != 0u; left &= left - 1u) {
+          int place = 32 * word + findLSB(left);
+          uint blocks = blocks_touched(place);
+          Facet facet = facets[place];
+          int index = triangle_at(from, place);
+          for (int k = 0; k < kPixels; ++k) {
+            Hit hit;
+            if ((blocks >> 2 * k & 1u) == 0u || !meets(facet, ray[k], hit)) continue;
 #ifdef BEHIND
-          if (hit.depth <= nearest[k] || hit.depth >= farthest[k]) continue;
+            if (hit.depth <= nearest[k] || hit.depth >= farthest[k]) continue;
 #else
-          if (hit.depth > farthest[k]) continue;
+            if (hit.depth > farthest[k]) continue;
 #endif
-          Triangle t = triangles[first + place];
-          Item item = items[int(t.a.w)];
-          Pane pane = glass_pane(world_of(ray[k], hit.depth), normal_of(t, hit.weights), item.base, item.surface.y);
-          added[k] = added[k] * pane.through + pane.added;
-          through[k] *= pane.through;
-          touched[k] = true;
+            Triangle t = triangles[index];
+            Item item = items[int(t.a.w)];
+            Pane pane = glass_pane(world_of(ray[k], hit.depth), normal_of(t, hit.weights), item.base, item.surface.y);
+            added[k] = added[k] * pane.through + pane.added;
+            through[k] *= pane.through;
+            touched[k] = true;
+          }
         }
       }
     }

@@ -13,23 +13,25 @@ void main() {
     triangle[k] = -1;
     ray[k] = ray_of(texel_of(k));
   }
-  for (int first = 0; first < count; first += 256) {
-    look_for(first);
-    for (int word = 0; word < 8; ++word) {
-      for (uint left = touching[word]; left != 0u; left &= left - 1u) {
-        int place = 32 * word + findLSB(left);
-        uint blocks = blocks_touched(place);
-        if (blocks == 0u) continue;
-        int index = first + place;
-        Facet t = facets[place];
-        for (int k = 0; k < kPixels; ++k) {
-          Hit hit;
-          if ((blocks >> k & 1u) == 0u || !meets(t, ray[k], hit)) continue;
-          // Where an inside lies on an outside, the outside is seen.
-          float compared = hit.outer ? hit.depth : hit.depth * 1.000001;
-          if (compared >= nearest[k]) continue;
-          nearest[k] = compared;
-          triangle[k] = index;
+  for (int base = 0; base < count; base += 256) {
+    look_for_groups(base);
+    for (int from = 0; from < found_groups; from += 4) {
+      look_for(from);
+      for (int word = 0; word < 8; ++word) {
+        for (uint left = at_hand(word); left != 0u; left &= left - 1u) {
+          int place = 32 * word + findLSB(left);
+          uint blocks = blocks_touched(place);
+          int index = triangle_at(from, place);
+          Facet t = facets[place];
+          for (int k = 0; k < kPixels; ++k) {
+            Hit hit;
+            if ((blocks >> 2 * k & 1u) == 0u || !meets(t, ray[k], hit)) continue;
+            // Where an inside lies on an outside, the outside is seen.
+            float compared = hit.outer ? hit.depth : hit.depth * 1.000001;
+            if (compared >= nearest[k]) continue;
+            nearest[k] = compared;
+            triangle[k] = index;
+          }
         }
       }
     }

@@ -1,6 +1,7 @@
-// Meshes by compute shaders: a group looks after 32 × 32 pixels, an invocation after four of them, and all go through the triangles
-// whose boxes touch the tile, in the order in which they would be drawn. Invocations that a chip runs as one (up to 32) have blocks of
-// 8 × 4 pixels, so that they pass over small triangles elsewhere together.
+// Meshes by compute shaders: a group looks after 32 × 32 pixels, an invocation after four of them. It goes through those groups of 64
+// triangles whose boxes touch the tile, in the order in which they would be drawn. Invocations that a chip runs as one (up to 32) have blocks of
+// 8 × 4 pixels, one below the other, and a list of their own of the triangles that touch these: on a ball seen small each triangle is few
+// pixels, and what takes long is to ask.
 #include "frame_block.glsl"
 #include "mesh_triangle.glsl"
 layout(local_size_x = 16, local_size_y = 16) in;
@@ -12,7 +13,8 @@ struct Item {
   vec4 emissive;
 };
 layout(std430, binding = 4) restrict readonly buffer Items { Item items[]; };
-uniform int count;
+layout(std430, binding = 5) restrict readonly buffer Groups { uvec2 groups[]; };  // boxes of 64 triangles each
+uniform int count;  // groups
 uniform float near_plane;
 
 const int kTile = 32;
@@ -76,41 +78,69 @@ vec3 normal_of(Triangle t, vec3 weights) {
 
 vec3 world_of(vec2 ray, float depth) { return (world_from_eye * vec4(vec3(ray, -1.0) * depth, 1.0)).xyz; }
 
-shared uint touching[8];
-shared ivec4 touched_box[256];  // low and high, in the tile
+// Of the tile's own axes: whether a box touches it.
+bool touches_tile(uvec2 box, out ivec4 in_tile) {
+  ivec2 tile = ivec2(gl_WorkGroupID.xy) * kTile;
+  in_tile = ivec4(ivec2(box.x & 0xffffu, box.x >> 16) - tile, ivec2(box.y & 0xffffu, box.y >> 16) - tile);
+  return all(lessThan(in_tile.xy, ivec2(kTile))) && all(greaterThanEqual(in_tile.zw, ivec2(0))) && all(lessThanEqual(in_tile.xy, in_tile.zw));
+}
+
+shared uint near_groups[8];
+shared int found_group[256];  // those that touch the tile, in their order
+shared int found_groups;
+shared uint touching[64];     // of the triangles at hand, a bit each: eight words for each 32 invocations
+shared uint touched_rows[256];  // of the triangles at hand, a bit for each four rows of the tile
 shared Facet facets[256];
 
-// Which of the 256 triangles from `first` on touch the tile, a bit each in `touching`.
-void look_for(int first) {
+// Which of the 256 groups of 64 triangles from `base` on touch the tile.
+void look_for_groups(int base) {
   uint local = gl_LocalInvocationIndex;
   barrier();
-  if (local < 8u) touching[local] = 0u;
+  if (local < 8u) near_groups[local] = 0u;
   barrier();
-  int index = first + int(local);
-  if (index < count) {
-    uvec2 box = boxes[index];
-    ivec2 low = ivec2(box.x & 0xffffu, box.x >> 16);
-    ivec2 high = ivec2(box.y & 0xffffu, box.y >> 16);
-    ivec2 tile = ivec2(gl_WorkGroupID.xy) * kTile;
-    if (all(lessThan(low, tile + kTile)) && all(greaterThanEqual(high, tile))) {
-      atomicOr(touching[local >> 5], 1u << (local & 31u));
-      touched_box[local] = ivec4(low - tile, high - tile);
+  ivec4 box;
+  uint bit = 1u << (local & 31u);
+  bool near = base + int(local) < count && touches_tile(groups[base + int(local)], box);
+  if (near) atomicOr(near_groups[local >> 5], bit);
+  barrier();
+  int before = 0;
+  for (int word = 0; word < 8; ++word) {
+    if (word < int(local >> 5)) before += bitCount(near_groups[word]);
+    if (word == int(local >> 5)) before += bitCount(near_groups[word] & (bit - 1u));
+  }
+  if (near) found_group[before] = base + int(local);
+  if (local == 255u) found_groups = before + (near ? 1 : 0);
+  barrier();
+}
+
+// The triangle at `place` of those at hand, which are of the groups found from `from` on.
+int triangle_at(int from, int place) { return 64 * found_group[from + (place >> 6)] + (place & 63); }
+
+// Takes the triangles of the next four groups in hand: which of them touch whose pixels.
+void look_for(int from) {
+  uint local = gl_LocalInvocationIndex;
+  barrier();
+  if (local < 64u) touching[local] = 0u;
+  barrier();
+  ivec4 box;
+  if (from + int(local >> 6) < found_groups) {
+    int index = triangle_at(from, int(local));
+    if (touches_tile(boxes[index], box)) {
       facets[local] = facet_of(triangles[index]);
+      box = clamp(box, ivec4(0), ivec4(kTile - 1));
+      uint rows = (2u << (box.w >> 2)) - (1u << (box.y >> 2));
+      touched_rows[local] = rows;
+      for (int column = box.x >> 3; column <= box.z >> 3; ++column) {
+        for (int odd = 0; odd < 2; ++odd) {
+          if ((rows & 0x55u << odd) != 0u) atomicOr(touching[8 * (column + 4 * odd) + int(local >> 5)], 1u << (local & 31u));
+        }
+      }
     }
   }
   barrier();
 }
 
-// In which of the invocation's four blocks pixels of the box lie that look_for() found at `place`, a bit each.
-uint blocks_touched(int place) {
-  ivec4 box = touched_box[place];
-  ivec2 block = first_block();
-  uint blocks = 0u;
-  if (box.x < block.x + 8 && box.z >= block.x) {
-    for (int k = 0; k < kPixels; ++k) {
-      int row = block.y + 8 * k;
-      if (box.y < row + 4 && box.w >= row) blocks |= 1u << k;
-    }
-  }
-  return blocks;
-}
+// Those of them that touch this invocation's and its neighbours' pixels, 32 at a time, a bit each.
+uint at_hand(int word) { return touching[8 * int(gl_LocalInvocationIndex >> 5) + word]; }
+// In which of the invocation's four blocks pixels of one of them may lie, a bit every other.
+uint blocks_touched(int place) { return touched_rows[place] >> (gl_LocalInvocationIndex >> 7); }

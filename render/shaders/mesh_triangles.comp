@@ -1,4 +1,5 @@
-// Triangles of one mesh as tiles of pixels look through them: in eye axes, with the box of pixels that each may cover.
+// Triangles of one mesh as tiles of pixels look through them: in eye axes, with the box of pixels that each may cover, and that
+// of each 64 of them.
 #include "frame_block.glsl"
 #include "mesh_triangle.glsl"
 layout(local_size_x = 64) in;
@@ -6,12 +7,15 @@ layout(std430, binding = 0) readonly buffer Vertices { float vertices[]; };  // 
 layout(std430, binding = 1) readonly buffer Corners { uint corners[]; };     // three each
 layout(std430, binding = 2) writeonly buffer Triangles { Triangle triangles[]; };
 layout(std430, binding = 3) writeonly buffer Boxes { uvec2 boxes[]; };
+layout(std430, binding = 5) writeonly buffer Groups { uvec2 groups[]; };
 uniform int count;
-uniform int first;  // where this mesh's are put
+uniform int first;  // where this mesh's are put: a multiple of 64
 uniform int item;
 uniform int sides;  // what is seen of it: 1 the outside, −1 the inside, 0 both
 uniform float near_plane;
 uniform mat4 model;
+
+const uvec2 kNoBox = uvec2(0xffffffffu, 0u);
 
 // The picture's place of an eye point before the eye (x, y, depth), in pixels.
 vec2 place(vec3 at) { return ((at.xy / at.z / unproject.xy - unproject.zw) * 0.5 + 0.5) * picture.xy; }
@@ -22,9 +26,14 @@ vec2 snapped(vec3 at) {
   return eye_position(pixel, at.z).xy;
 }
 
-void main() {
-  int index = int(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64 + int(gl_LocalInvocationID.x);
-  if (index >= count) return;
+// Low and high corner, whole numbers below 65536; none: the low one beyond all.
+uvec2 packed_box(ivec2 low, ivec2 high) { return uvec2(uint(low.x) | uint(low.y) << 16, uint(high.x) | uint(high.y) << 16); }
+
+shared ivec2 group_low;
+shared ivec2 group_high;
+
+// The box of a triangle that is put where it is looked for.
+uvec2 put_triangle(int index) {
   vec3 at[3];
   vec3 normal[3];
   for (int k = 0; k < 3; ++k) {
@@ -34,6 +43,7 @@ void main() {
     at[k] = (eye_from_world * world).xyz * vec3(1.0, 1.0, -1.0);
   }
   // The part beyond the near plane.
+  bool cut = false;
   vec2 low = vec2(1.0e9);
   vec2 high = vec2(-1.0e9);
   for (int k = 0; k < 3; ++k) {
@@ -45,6 +55,7 @@ void main() {
       high = max(high, p);
     }
     if ((a.z >= near_plane) != (b.z >= near_plane)) {
+      cut = true;
       vec2 p = place(vec3(mix(a.xy, b.xy, (near_plane - a.z) / (b.z - a.z)), near_plane));
       low = min(low, p);
       high = max(high, p);
@@ -58,12 +69,35 @@ void main() {
   // Positive where the eye is on its outer side; depth points away from the eye, which turns the hand.
   float outside = distance;
   bool seen = sides == 0 || outside * float(sides) > 0.0;
-  ivec2 from = ivec2(clamp(floor(low - 1.0), vec2(0.0), picture.xy));
-  ivec2 to = ivec2(clamp(ceil(high + 1.0), vec2(-1.0), picture.xy - 1.0));
+  // Pixels whose middles it may cover, and no more: what is a few pixels large touches few tiles' parts then, and what lies between
+  // middles none. Room for rounding, and for corners that are moved.
+  vec2 room = cut ? vec2(1.5) : 0.02 + 2.0e-6 * max(abs(low), abs(high));
+  ivec2 from = ivec2(clamp(ceil(low - 0.5 - room), vec2(0.0), picture.xy));
+  ivec2 to = ivec2(clamp(floor(high - 0.5 + room), vec2(-1.0), picture.xy - 1.0));
   bool any_pixel = seen && all(lessThanEqual(from, to)) && low.x <= high.x;
-  boxes[first + index] = any_pixel ? uvec2(uint(from.x) | uint(from.y) << 16, uint(to.x) | uint(to.y) << 16) : uvec2(0xffffffffu, 0u);
   for (int k = 0; k < 3; ++k) {
     if (at[k].z >= near_plane) at[k].xy = snapped(at[k]);
   }
   triangles[first + index] = Triangle(vec4(at[0], float(item)), vec4(at[1], plane.x), vec4(at[2], plane.y), vec4(normal[0], plane.z), vec4(normal[1], 0.0), vec4(normal[2], 0.0));
+  return any_pixel ? packed_box(from, to) : kNoBox;
+}
+
+void main() {
+  int group = int(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x);
+  int index = group * 64 + int(gl_LocalInvocationID.x);
+  if (gl_LocalInvocationID.x == 0u) {
+    group_low = ivec2(0xffff);
+    group_high = ivec2(0);
+  }
+  barrier();
+  uvec2 box = index < count ? put_triangle(index) : kNoBox;
+  boxes[first + index] = box;
+  if (box != kNoBox) {
+    atomicMin(group_low.x, int(box.x & 0xffffu));
+    atomicMin(group_low.y, int(box.x >> 16));
+    atomicMax(group_high.x, int(box.y & 0xffffu));
+    atomicMax(group_high.y, int(box.y >> 16));
+  }
+  barrier();
+  if (gl_LocalInvocationID.x == 0u) groups[first / 64 + group] = packed_box(group_low, group_high);
 }
