@@ -50,17 +50,18 @@ std::vector<Reading> sphere(const Setting& setting, Cost& cost) {
   return lift(make::sphere(kRadius, 24, 48), 2.0 * kRadius, false, setting, cost);
 }
 
-// A slab of half the water's density floats with half its height in the water. The level is read where it is.
+// A slab of half the water's density floats with half its height in the water, where it is put: let fall from
+// 2 cm above it still bobbed by 0.6 mm after three seconds (4 mm). The level is read where it is.
 std::vector<Reading> draft(const Setting& setting, Cost& cost) {
-  constexpr double kSide = 0.08, kHeight = 0.04, kShare = 0.5, kTank = 0.2, kDepth = 0.1;
+  constexpr double kSide = 0.08, kHeight = 0.04, kShare = 0.5, kTank = 0.2, kDepth = 0.08;
   SceneBuilder b;
   b.add_fluid(1000.0, 0.05);
   b.add_fixed("tank", tank_at_floor({kTank, 0.2, kTank}, 0.04));
   const make::Solid solid =
       make::box({-0.5 * kSide, -0.5 * kHeight, -0.5 * kSide}, {0.5 * kSide, 0.5 * kHeight, 0.5 * kSide});
-  const int slab = b.add_free("slab", solid, kShare * 1000.0 * volume_of(solid),
-                              {{0.0, kDepth + 0.02, 0.0}, {1, 0, 0, 0}});
-  b.add_volume(make::box({-0.5 * kTank, 0.0, -0.5 * kTank}, {0.5 * kTank, kDepth - 0.02, 0.5 * kTank}));
+  const int slab =
+      b.add_free("slab", solid, kShare * 1000.0 * volume_of(solid), {{0.0, kDepth, 0.0}, {1, 0, 0, 0}});
+  b.add_volume(make::box({-0.5 * kTank, 0.0, -0.5 * kTank}, {0.5 * kTank, kDepth, 0.5 * kTank}));
   b.set_domain({-0.4, -0.3, -0.4}, {0.4, 0.6, 0.4});
   Trial e(b.scene, setting, cost);
   e.run(3.0);
