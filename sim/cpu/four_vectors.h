@@ -1,5 +1,4 @@
-// Vectors of four floats, four of them side by side: what rows of pairs are walked with. The compiler makes of it what
-// the machine has.
+// Vectors of four floats, four of them side by side: what rows of pairs are walked with.
 #pragma once
 
 #include <cstdint>
@@ -11,21 +10,25 @@ namespace slosh {
 
 using Four = float __attribute__((vector_size(16)));
 using Eight = float __attribute__((vector_size(32)));
-using Sixteen = float __attribute__((vector_size(64)));
-using SixteenBits = std::int32_t __attribute__((vector_size(64)));
+using EightBits = std::int32_t __attribute__((vector_size(32)));
+
+/// Two eights, as the widest vectors of many machines are: one vector of sixteen GCC takes apart float by
+/// float there.
+struct Sixteen {
+  Eight low, high;
+
+  Sixteen& operator+=(const Sixteen& o) { return *this = {low + o.low, high + o.high}; }
+  Sixteen& operator-=(const Sixteen& o) { return *this = {low - o.low, high - o.high}; }
+  friend Sixteen operator+(const Sixteen& a, const Sixteen& b) { return {a.low + b.low, a.high + b.high}; }
+  friend Sixteen operator-(const Sixteen& a, const Sixteen& b) { return {a.low - b.low, a.high - b.high}; }
+  friend Sixteen operator*(const Sixteen& a, const Sixteen& b) { return {a.low * b.low, a.high * b.high}; }
+  friend Sixteen operator+(const Sixteen& a, float b) { return {a.low + b, a.high + b}; }
+  friend Sixteen operator-(float a, const Sixteen& b) { return {a - b.low, a - b.high}; }
+};
 
 inline Sixteen side_by_side(Four a, Four b, Four c, Four d) {
-#ifdef __AVX512F__
-  // Left to itself GCC 12 takes twice as many instructions.
-  const __m256 low = _mm256_insertf128_ps(_mm256_castps128_ps256(a), b, 1);
-  const __m256 high = _mm256_insertf128_ps(_mm256_castps128_ps256(c), d, 1);
-  return _mm512_castpd_ps(
-      _mm512_insertf64x4(_mm512_castps_pd(_mm512_castps256_ps512(low)), _mm256_castps_pd(high), 1));
-#else
-  const Eight low = __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
-  const Eight high = __builtin_shufflevector(c, d, 0, 1, 2, 3, 4, 5, 6, 7);
-  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-#endif
+  return {__builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7),
+          __builtin_shufflevector(c, d, 0, 1, 2, 3, 4, 5, 6, 7)};
 }
 
 /// Of four floats that lie one after the other.
@@ -39,7 +42,8 @@ inline Four four_at(const float* v) {
 inline Sixteen each_even_four_times(const float* v) {
   Eight eight;
   std::memcpy(&eight, v, sizeof eight);
-  return __builtin_shufflevector(eight, eight, 0, 0, 0, 0, 2, 2, 2, 2, 4, 4, 4, 4, 6, 6, 6, 6);
+  return {__builtin_shufflevector(eight, eight, 0, 0, 0, 0, 2, 2, 2, 2),
+          __builtin_shufflevector(eight, eight, 4, 4, 4, 4, 6, 6, 6, 6)};
 }
 
 /// 1/√ of each, which must be above 0.
@@ -52,22 +56,35 @@ inline Sixteen inverse_roots(Sixteen v) {
   return v;
 }
 
+/// `v` where `test` is above 0, else 0.
+inline Sixteen where_above_zero(const Sixteen& test, const Sixteen& v) {
+  const auto half = [](Eight t, Eight x) {
+    return reinterpret_cast<Eight>(reinterpret_cast<EightBits>(x) & (t > 0.0f));
+  };
+  return {half(test.low, v.low), half(test.high, v.high)};
+}
+
+/// Each half's floats in the order of the template's arguments.
+template <int... order>
+Sixteen ordered(const Sixteen& v) {
+  return {__builtin_shufflevector(v.low, v.low, order...), __builtin_shufflevector(v.high, v.high, order...)};
+}
 /// In each four the second, the third, the first; the fourth stays.
-inline Sixteen turned(Sixteen v) {
-  return __builtin_shufflevector(v, v, 1, 2, 0, 3, 5, 6, 4, 7, 9, 10, 8, 11, 13, 14, 12, 15);
+inline Sixteen turned(const Sixteen& v) {
+  return ordered<1, 2, 0, 3, 5, 6, 4, 7>(v);
 }
 /// And back.
-inline Sixteen turned_back(Sixteen v) {
-  return __builtin_shufflevector(v, v, 2, 0, 1, 3, 6, 4, 5, 7, 10, 8, 9, 11, 14, 12, 13, 15);
+inline Sixteen turned_back(const Sixteen& v) {
+  return ordered<2, 0, 1, 3, 6, 4, 5, 7>(v);
 }
 /// In each four its fourth.
-inline Sixteen fourths(Sixteen v) {
-  return __builtin_shufflevector(v, v, 3, 3, 3, 3, 7, 7, 7, 7, 11, 11, 11, 11, 15, 15, 15, 15);
+inline Sixteen fourths(const Sixteen& v) {
+  return ordered<3, 3, 3, 3, 7, 7, 7, 7>(v);
 }
 /// In each four the sum of the four.
-inline Sixteen sums(Sixteen v) {
-  v += __builtin_shufflevector(v, v, 1, 0, 3, 2, 5, 4, 7, 6, 9, 8, 11, 10, 13, 12, 15, 14);
-  return v + __builtin_shufflevector(v, v, 2, 3, 0, 1, 6, 7, 4, 5, 10, 11, 8, 9, 14, 15, 12, 13);
+inline Sixteen sums(const Sixteen& v) {
+  const Sixteen pairs = v + ordered<1, 0, 3, 2, 5, 4, 7, 6>(v);
+  return pairs + ordered<2, 3, 0, 1, 6, 7, 4, 5>(pairs);
 }
 
 }  // namespace slosh

@@ -149,8 +149,7 @@ class PairRows {
         const Sixteen weighed = (h - r_squared * inverse_r) * (inverse_r * inverse_r) * fourths(u);
         const Sixteen along = weighed * sums(d * (u - own));
         // What fills a row up has no weight.
-        const auto pairs = each_even_four_times(&four->weight) > 0.0f;
-        sum += reinterpret_cast<Sixteen>(reinterpret_cast<SixteenBits>(along) & pairs) * d;
+        sum += where_above_zero(each_even_four_times(&four->weight), along) * d;
       }
       return sum;
     }
