@@ -244,16 +244,22 @@ TEST(LinkSteps, EveryStepEndsAndOnlyWhatMayComeLeadsOn) {
     const auto step = static_cast<LinkStep>(s);
     const bool ended = step == LinkStep::kEnded;
     EXPECT_EQ(next_step(step, LinkEvent::kEnd).has_value(), !ended);
-    if (!ended) EXPECT_EQ(next_step(step, LinkEvent::kEnd), LinkStep::kEnded);
+    if (!ended) {
+      EXPECT_EQ(next_step(step, LinkEvent::kEnd), LinkStep::kEnded);
+    }
     for (std::size_t e = 0; e < kLinkEventCount; ++e) {
       const std::optional<LinkStep> next = next_step(step, static_cast<LinkEvent>(e));
       if (!next) continue;
       ways += 1;
       EXPECT_FALSE(ended) << "nothing comes after the end";
       // Who was live once is never told again that nobody answered.
-      if (!before_live(step)) EXPECT_FALSE(before_live(*next));
+      if (!before_live(step)) {
+        EXPECT_FALSE(before_live(*next));
+      }
       // Only a handshake makes contact.
-      if (in_contact(*next) && !in_contact(step)) EXPECT_EQ(static_cast<LinkEvent>(e), LinkEvent::kAnswered);
+      if (in_contact(*next) && !in_contact(step)) {
+        EXPECT_EQ(static_cast<LinkEvent>(e), LinkEvent::kAnswered);
+      }
     }
   }
   EXPECT_EQ(ways, 22);
