@@ -140,7 +140,8 @@ bool bench_speed(Table& table, const std::vector<std::size_t>& counts, int steps
     const Result<SampledScene> sampled = sample_count(pool.value(), count);
     if (!sampled) return std::fprintf(stderr, "%s\n", sampled.error().text().c_str()), false;
     for (const ParticleModel model :
-         {ParticleModel::kCorrected, ParticleModel::kConsistent, ParticleModel::kPaper}) {
+         {ParticleModel::kCorrected, ParticleModel::kConsistent, ParticleModel::kPaper,
+          ParticleModel::kIncompressible}) {
       Scene scene = pool.value();
       scene.model = model;
       for (const int threads : {1, cores}) {
