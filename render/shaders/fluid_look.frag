@@ -45,35 +45,26 @@ float back_at(vec2 pixel) {
   return texelFetch(back_depth, ivec2(clamp(pixel * picture.zw, vec2(0.0), vec2(0.999)) * size), 0).r;
 }
 
-// A floor goes on as steeply below a pixel as above it, in two of three columns: here, or where it begins or ends at most one reach
-// away. In a jet and in spray the far side is one drop's here and another's there; taken for a floor, it was flat patches of
-// the room's colour. 0–1.
-float goes_on_evenly(vec2 middle, vec2 reach) {
-  vec3 evenness[3];  // of a column: below, here, above
-  for (int k = -1; k <= 1; ++k) {
-    vec2 column = middle + vec2(0.6 * float(k) * reach.y, 0.0);
-    float before = 0.0;
-    float step_before = 0.0;
-    for (int row = -2; row <= 2; ++row) {
-      float depth = back_at(column + float(row) * reach);
-      float rise = depth > 0.0 && before > 0.0 ? depth - before : -1.0;
-      if (row >= 0) evenness[k + 1][row] = min(rise, step_before) / max(max(rise, step_before), 1.0e-6);
-      step_before = rise;
-      before = depth;
-    }
+// How much of the way from front to back is fluid, 0–1, over a patch of five places one reach apart: in a jet and in spray, where the
+// far side is one drop's here and another's there, it is little; taken for a floor, they were flat patches of the room's colour.
+// Of one place it flips from pixel to pixel at a floor's foot, where few particles are behind each other.
+float filled(vec2 middle, float reach) {
+  if (look_switches.x <= 0.5) return 1.0;
+  float chords = 0.0;
+  float spans = 1.0e-6;
+  for (int k = 0; k < 5; ++k) {
+    vec2 at = middle + reach * (k == 0 ? vec2(0.0) : k < 3 ? vec2(2 * k - 3, 0) : vec2(0, 2 * k - 7));
+    ivec2 texel = clamp(ivec2(at), ivec2(0), ivec2(picture.xy) - 1);
+    // Up to a body in the fluid: no chord is counted behind it.
+    float span = min(back_at(at), texelFetch(scene_depth, texel, 0).r) - texelFetch(smooth_depth, texel, 0).r;
+    spans += max(span, 0.0);
+    chords += clamp(texture(summed_chord, at * picture.zw).r, 0.0, max(span, 0.0));
   }
-  vec3 high = max(evenness[0], evenness[1]);
-  vec3 second = max(min(evenness[0], evenness[1]), min(high, evenness[2]));
-  return smoothstep(0.1, 0.5, max(second.x, max(second.y, second.z)));
-}
-
-// How much of the way from front to back is fluid, 0–1: of spray and of a jet that breaks up it is little.
-float filled(vec2 middle, float span) {
-  return look_switches.x > 0.5 ? texture(summed_chord, middle * picture.zw).r / max(span, 1.0e-6) : 0.0;
+  return chords / spans;
 }
 
 // inside: unit, of the light in the fluid, eye axes. back: of this pixel.
-FarSide far_side(vec3 inside, float refraction, float front, float back, float scene, vec2 middle) {
+FarSide far_side(vec3 inside, float refraction, float back, float scene, vec2 middle) {
   vec3 up = eye_from_world[1].xyz;
   float down = -dot(inside, up);
   float flat_enough = smoothstep(0.0, 0.06, (1.0 - down * down) * refraction * refraction - 1.0) * step(0.0, down);
@@ -93,7 +84,7 @@ FarSide far_side(vec3 inside, float refraction, float front, float back, float s
   float upright = smoothstep(0.55, 0.9, abs(dot(along, up)) * inversesqrt(dot(along, along) + 1.0e-12));
   // Along a line of sight that grazes a wet wall there is some way from the splats to it.
   float by_floor = flat_enough * smoothstep(0.0, 0.25, apart) * (1.0 - upright);
-  if (by_floor > 0.0) by_floor *= max(goes_on_evenly(middle, reach), smoothstep(0.75, 0.9, filled(middle, back - front)));
+  if (by_floor > 0.0) by_floor *= smoothstep(0.4, 0.9, filled(middle, reach.y));
   return FarSide(by_floor, smoothstep(1.5, 3.0, apart) * upright);
 }
 
@@ -192,7 +183,7 @@ bool pixel(ivec2 texel, out vec4 value) {
   vec3 inside = refract(-to_eye, surface.normal, 1.0 / matter.refraction);
   vec2 middle = vec2(texel) + 0.5;
   float back = back_depth_at(middle);
-  FarSide far = far_side(inside, matter.refraction, front, back, scene, middle);
+  FarSide far = far_side(inside, matter.refraction, back, scene, middle);
   float mirrored = far.by_floor + far.by_wall;
   float way = thickness + mirrored * way_beside(middle, back, mirrored > 0.0 ? 4 : 0);
   Behind behind = behind_here(eye, surface.normal, matter.refraction, thickness, scene, back, texel);

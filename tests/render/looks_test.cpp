@@ -189,10 +189,10 @@ TEST_F(LooksTest, AClearPaneIsSeenThrough) {
 }
 
 /// A fluid 65 mm deep, in a tank of such a look, on a table.
-FloatImage pool_picture(Renderer& renderer, const FluidLook& fluid, const MeshLook& tank, const View& view) {
+FloatImage pool_picture(Renderer& renderer, const FluidLook& fluid, const MeshLook& tank, const View& view,
+                        float spacing = 0.006f) {
   const glm::vec3 low(-0.15f, 0.0f, -0.09f), high(0.15f, 0.12f, 0.09f);
-  constexpr float kSpacing = 0.006f;
-  const auto points = kit::make_fluid(low + 0.5f * kSpacing, high - 0.5f * kSpacing, kSpacing,
+  const auto points = kit::make_fluid(low + 0.5f * spacing, high - 0.5f * spacing, spacing,
                                       [](float, float) { return 0.065f; });
   const std::vector<std::uint8_t> fluids(points.size(), 0);
   const auto add = [&](const kit::Shape& shape, const MeshLook& look) {
@@ -207,7 +207,7 @@ FloatImage pool_picture(Renderer& renderer, const FluidLook& fluid, const MeshLo
   frame.particles = points;
   frame.particle_fluid = fluids;
   frame.fluids = {fluid};
-  frame.particle_radius = 0.62f * kSpacing;
+  frame.particle_radius = 0.62f * spacing;
   renderer.draw(frame);
   return renderer.read_buffer(Buffer::kFinalColor);
 }
@@ -244,7 +244,7 @@ TEST_F(LooksTest, WaterAtAWetWallHasNoSpecks) {
 
 TEST_F(LooksTest, SprayHasNoPatchesOfTheRoom) {
   // Drops that fall, before black: their far side is no floor that mirrors the room. (It was for 9 % of the
-  // pixels; now 0.6.)
+  // pixels; now 0.2.)
   auto points = kit::jitter_lattice({-0.05f, -0.2f, -0.05f}, {0.05f, 0.2f, 0.05f}, 0.008f, 5);
   unsigned state = 3;
   std::erase_if(points, [&](const glm::vec3& p) {
@@ -273,7 +273,8 @@ TEST_F(LooksTest, SprayHasNoPatchesOfTheRoom) {
     }
   }
   ASSERT_GT(pixels, 3000);
-  EXPECT_LT(pale, pixels / 100);
+  std::printf("%d of %d pixels are pale\n", pale, pixels);
+  EXPECT_LT(pale, pixels / 300);
 }
 
 TEST_F(LooksTest, HoneyInGlassHasNoOliveRim) {
@@ -307,6 +308,44 @@ TEST_F(LooksTest, HoneyInGlassHasNoOliveRim) {
     EXPECT_LT(green(above), 1.03f * deep) << above;
     EXPECT_GT(green(above), 0.6f * deep) << above;
   }
+}
+
+TEST_F(LooksTest, JuiceAtATanksFootHasNoCrumbs) {
+  // Along the foot of a glass tank it changed from pixel to pixel whether the far side is a floor: 498 of
+  // these pixels stood out, 254 do; without the floor's mirror 138.
+  RenderOptions options = small();
+  options.width = 640;
+  options.height = 480;
+  options.quality = Quality::kFull;
+  auto renderer = make(options);
+  int crumbs = 0;
+  int pixels = 0;
+  for (const float turn : {-0.45f, -0.1f, 0.2f, 0.48f, 0.7f}) {
+    const View view = kit::make_view({0.65f * std::sin(turn), 0.4f, 0.65f * std::cos(turn)},
+                                     {0.0f, 0.05f, 0.0f}, options.width, options.height, 36.0f);
+    const FloatImage light = pool_picture(*renderer, kit::cloudy_juice(),
+                                          {{0.75f, 0.82f, 0.85f}, 0.0f, 0.15f, 0.3f}, view, 0.012f);
+    const FloatImage fluid = renderer->read_buffer(Buffer::kFluidIndex);
+    for (int y = options.height / 2; y < options.height - 3; ++y) {
+      for (int x = 3; x < options.width - 3; ++x) {
+        bool inside = true;
+        for (int d = -3; d <= 3; ++d)
+          inside = inside && fluid.at(x + d, y) >= 0.0f && fluid.at(x, y + d) >= 0.0f;
+        if (!inside || y + 30 >= options.height || fluid.at(x, y + 30) >= 0.0f) continue;
+        ++pixels;
+        const float here = luma(light, x, y);
+        const auto stands_out = [&](int dx, int dy) {
+          const float one = luma(light, x + dx, y + dy) - here;
+          const float other = luma(light, x - dx, y - dy) - here;
+          return one * other > 0.0f && std::min(std::abs(one), std::abs(other)) > 0.08f * here;
+        };
+        crumbs += stands_out(2, 0) || stands_out(0, 2) ? 1 : 0;
+      }
+    }
+  }
+  std::printf("%d of %d pixels stand out\n", crumbs, pixels);
+  ASSERT_GT(pixels, 30000);
+  EXPECT_LT(crumbs, pixels / 125);
 }
 
 TEST_F(LooksTest, WaterAtABallsFootHasNoPaleRim) {
