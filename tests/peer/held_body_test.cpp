@@ -246,6 +246,45 @@ TEST(HeldBody, WhereTheBalanceIsOutTheForceDoesNotRattle) {
   EXPECT_GT(out, 0.8 * credit) << "what is there is given";
 }
 
+/// A hand that is lowered with a weight while what the other one lifts is not heard of yet: what there is
+/// runs out, also by what others use up while the hand hardly moves. The force went by 13 N in one tick.
+TEST(HeldBody, BeforeTheBalanceIsOutTheForceGoesGently) {
+  for (const double drained : {0.0, 0.3, 1.0}) {   // W
+    for (const double speed : {0.03, 0.1, 0.3}) {  // m/s
+      PassivityController guard;
+      guard.restart({});
+      constexpr double kHeld = 15.0;  // N
+      const ArmImpedance arm{1.5, 30.0, 800.0};
+      ArmState at;
+      Wrench felt{{kHeld, 0.0, 0.0}, {}};
+      Pose hand;
+      double out = 0.0, credit = 0.1, step = 0.0, least = kHeld;
+      for (int i = 0; i < 4000; ++i) {
+        const double goes = speed * std::min(kTick * i / 0.3, 1.0);
+        // The arm is wanted where it held the force at first, and from there on further.
+        const ArmState next = arm_after(arm, at, felt.force - glm::dvec3(kHeld, 0.0, 0.0), kTick);
+        const double way = next.place.x - at.place.x + goes * kTick;
+        out += felt.force.x * way;
+        hand.position.x += way;
+        at = next;
+        credit -= drained * kTick;
+        const double before = felt.force.x;
+        felt = guard.guard({{kHeld, 0.0, 0.0}, {}}, hand, {{at.velocity.x + goes, 0.0, 0.0}, {}}, kTick,
+                           credit, 100.0);
+        guard.sent(felt);
+        step = std::max(step, std::abs(felt.force.x - before));
+        least = std::min(least, felt.force.x);
+        if (drained <= 0.0) {
+          ASSERT_LE(out, credit + 1e-3) << i;
+        }
+      }
+      std::printf("%.2f m/s, %.1f W: %.2f N a tick at most, down to %.1f N\n", speed, drained, step, least);
+      EXPECT_LT(least, 2.0) << "it does run out";
+      EXPECT_LE(step, 2.0) << speed << " m/s, " << drained << " W";
+    }
+  }
+}
+
 /// What a person put into dampers does not come out again: a body that bounces on for itself ends soon.
 TEST(HeldBody, WhatDampersUsedUpIsForgotten) {
   const CouplingGains gains{1000.0, 30.0, 10.0, 0.3};

@@ -23,6 +23,11 @@ class PassivityController {
   /// force goes down before it is out, and not all at once each time that a packet's worth is used up.
   static constexpr double kLasts = 0.1;
   static constexpr double kWary = 1.0;
+  /// N/s, of a torque at kArm: so gently a force goes before what is left is out.
+  static constexpr double kGently = 1000.0;
+  /// s over which it is seen how fast others use up what there is: some of a host's words.
+  static constexpr double kDrain = 0.02;
+  static constexpr double kMostDrain = 20.0;  ///< W: more at once is another way of counting
   /// s over which a force that was cut comes back, and over which a damper for what is owed comes and goes.
   static constexpr double kReturns = 0.2;
   static constexpr double kDamps = 0.05;
@@ -31,7 +36,8 @@ class PassivityController {
   void restart(const Pose& hand) noexcept {
     sent_ = Wrench{};
     before_ = hand;
-    wary_ = damping_ = 0.0;
+    wary_ = damping_ = drain_ = 0.0;
+    counts_ = false;
     open_ = 1.0;
   }
 
@@ -70,7 +76,17 @@ class PassivityController {
     // Where it was out lately, only so much that what is left lasts for a while.
     wary_ = fires_ ? 1.0 : wary_ * std::exp(-dt / kWary);
     const double lasts = wary_ * kLasts * gives / dt;
-    if (lasts > 0.0) share = std::min(share, std::max(left, 0.0) / lasts);
+    const double lasting = lasts > 0.0 ? std::min(share, std::max(left, 0.0) / lasts) : share;
+    note_drain(credit, dt);
+    const double size =
+        std::sqrt(glm::dot(wanted.force, wanted.force) + glm::dot(wanted.torque, wanted.torque) / turned);
+    if (size > 0.0) {
+      const double gentle = open_ - kGently * dt / size;
+      double lets = covered(size, gives / dt, left);
+      // A force that takes energy in need not go at once.
+      if (!(gives > 0.0)) lets = std::max(lets, gentle);
+      share = std::min({share, lets, std::max(lasting, gentle)});
+    }
     open_ = std::clamp(share, 0.0, std::min(open_ + dt / kReturns, 1.0));
     const double change = most * dt / kDamps;
     damping_ += std::clamp(damping - damping_, -change, change);
@@ -91,6 +107,24 @@ class PassivityController {
   bool fires() const noexcept { return fires_; }      ///< in the last guard()
 
  private:
+  /// What others put in and used up, on balance.
+  void note_drain(double credit, double dt) noexcept {
+    const double used = counts_ ? std::clamp((credit_ - credit) / dt, -kMostDrain, kMostDrain) : 0.0;
+    drain_ += (1.0 - std::exp(-dt / kDrain)) * (used - drain_);
+    credit_ = credit;
+    counts_ = true;
+  }
+  /// The share of a force of `size` N that gives `power` W that can go down to none by kGently before `left`
+  /// J are out, with what others use up meanwhile: it is not cut off when they are.
+  double covered(double size, double power, double left) const noexcept {
+    const double time = size / kGently;  // s, for the whole of it
+    const double gives = 0.5 * time * std::max(power, 0.0);
+    const double goes = time * std::max(drain_ + std::min(power, 0.0), 0.0);
+    if (!(gives + goes > left)) return 1.0;
+    const double root = std::sqrt(goes * goes + 4.0 * gives * std::max(left, 0.0));
+    return 2.0 * std::max(left, 0.0) / (goes + root);
+  }
+
   /// The damper, of at most `most`, that takes as much as `force` does of a hand that moves; 0 where it
   /// gives.
   static double against(const glm::dvec3& force, const glm::dvec3& velocity, double most) noexcept {
@@ -103,6 +137,9 @@ class PassivityController {
   double energy_ = 0.0;
   bool fires_ = false;
   double wary_ = 0.0;     // 0–1: 1 where it was out just now
+  double credit_ = 0.0;   // J, at the call before
+  bool counts_ = false;   // there was one
+  double drain_ = 0.0;    // W
   double open_ = 1.0;     // share of the force that is let through
   double damping_ = 0.0;  // N·s/m
 };
