@@ -2,9 +2,9 @@
 // along each side, where its refracted light lands, and another where it would land through a level surface. Beyond the paper.
 #include "frame_block.glsl"
 #include "shared.glsl"
+layout(binding = 1) uniform sampler2D scene_depth;
 #include "fluid_normal.glsl"
 layout(binding = 0) uniform sampler2D smooth_depth;
-layout(binding = 1) uniform sampler2D scene_depth;
 uniform ivec2 size;        // of the sums, texels
 uniform float refraction;  // index
 flat out vec2 flux;        // through the surface as it is; through a level one

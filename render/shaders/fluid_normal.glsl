@@ -1,8 +1,10 @@
-// The fluid's surface from its smoothed depths: normal, and whether the surface goes on all round.
+// The fluid's surface from its smoothed depths: normal, and whether the surface goes on all round. Who includes it has `scene_depth`.
 #include "frame_block.glsl"
 #include "shared.glsl"
 #include "bilateral.glsl"
 #include "depth_normal.glsl"
+
+const float kBodyGap = 3.0;  // splat radii
 
 struct FluidSurface {
   vec3 normal;  // unit, eye axes, towards the eye
@@ -28,6 +30,16 @@ vec3 surface_tangent(sampler2D depths, vec3 here, ivec2 texel, ivec2 axis) {
   return ahead > 0.0 || behind > 0.0 ? to - from : eye_position(middle + vec2(axis), -here.z) - here;
 }
 
+// The surface goes up to a body that stands in it: it ends here before other fluid, and in the gap is the body, not air. Its
+// normals are a rim's in the half next to the body alone. Taken for one all over, water at a ball's foot mirrored nothing: a flat
+// patch of the water's own colour.
+bool body_beside(sampler2D depths, float here, ivec2 texel, ivec2 step_to) {
+  ivec2 at = clamp(texel + step_to, ivec2(0), ivec2(picture.xy) - 1);
+  float hidden = texelFetch(depths, at, 0).r;
+  float body = texelFetch(scene_depth, at, 0).r;
+  return hidden < kFluidDepthLimit && body < hidden && abs(body - here) < kBodyGap * splat.x;
+}
+
 FluidSurface fluid_surface(sampler2D depths, vec3 here, ivec2 texel) {
   FluidSurface surface;
   surface.normal = normalize(cross(surface_tangent(depths, here, texel, ivec2(1, 0)),
@@ -36,7 +48,9 @@ FluidSurface fluid_surface(sampler2D depths, vec3 here, ivec2 texel) {
   float found = 0.0;
   for (int k = 0; k < 4; ++k) {
     ivec2 way = k < 2 ? ivec2(k == 0 ? reach : -reach, 0) : ivec2(0, k == 2 ? reach : -reach);
-    found += depth_beside(depths, -here.z, texel, way) > 0.0 ? 1.0 : 0.0;
+    bool goes_on = depth_beside(depths, -here.z, texel, way) > 0.0 ||
+                   (body_beside(depths, -here.z, texel, way) && depth_beside(depths, -here.z, texel, way / 2) > 0.0);
+    found += goes_on ? 1.0 : 0.0;
   }
   surface.whole = max(found - 3.0, 0.0);
   return surface;

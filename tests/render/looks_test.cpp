@@ -361,22 +361,32 @@ TEST_F(LooksTest, WaterAtABallsFootHasNoPaleRim) {
   const FloatImage thickness = renderer->read_buffer(Buffer::kThickness);
   const FloatImage scene = renderer->read_buffer(Buffer::kSceneDepth);
   const FloatImage light = renderer->read_buffer(Buffer::kFinalColor);
-  double foot = 0.0, below = 0.0;
+  double foot = 0.0, below = 0.0, foot_red = 0.0, beside = 0.0, beside_red = 0.0;
   int count = 0;
   for (int x = 606; x < 642; ++x) {
     int last = 0;  // the lowest of the ball in the water
     for (int y = 380; y < 440; ++y) {
       if (scene.at(x, y) > 0.95f || thickness.at(x, y) <= 0.0f) continue;
       foot += luma(light, x, y);
+      foot_red += light.at(x, y, 0);
       ++count;
       last = y;
     }
     ASSERT_GT(last, 0) << x;
     for (int y = last + 6; y < last + 16; ++y) below += 0.1 * luma(light, x, y) / 36.0;
+    for (int y = last - 8; y < last; ++y) {  // to the right, out of the ball's reach
+      beside += luma(light, x + 90, y) / (8.0 * 36.0);
+      beside_red += light.at(x + 90, y, 0) / (8.0 * 36.0);
+    }
   }
   ASSERT_GT(count, 100);
-  std::printf("%.3f at the foot, %.3f below\n", foot / count, below);
+  std::printf("%.3f at the foot, %.3f below, %.3f beside; red %.3f, %.3f beside\n", foot / count, below,
+              beside, foot_red / count, beside_red);
   EXPECT_LT(foot / count, below);
+  // It was a patch of the water's own colour that mirrored nothing: 0.83 and, in red, 0.67 of the water
+  // beside it.
+  EXPECT_NEAR(foot / count / beside, 1.0, 0.1);
+  EXPECT_NEAR(foot_red / count / beside_red, 1.0, 0.1);
 }
 
 TEST_F(LooksTest, AGlassStandsOnATableWithoutStripes) {
