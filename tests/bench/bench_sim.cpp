@@ -1,5 +1,5 @@
-// What the simulation costs: a whole step of `pool` at several sizes, and the shipped bucket in two hands, with
-// what they feel against its weight. Known answers and passes: `slosh report`.
+// What the simulation costs: a whole step of `pool` at several sizes, and the shipped bucket in two hands,
+// with what they feel against its weight. Known answers and passes: `slosh report`.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -139,9 +139,8 @@ bool bench_speed(Table& table, const std::vector<std::size_t>& counts, int steps
     // The scene's finest spacing is a wish for real time, not a limit of the sampler.
     const Result<SampledScene> sampled = sample_count(pool.value(), count);
     if (!sampled) return std::fprintf(stderr, "%s\n", sampled.error().text().c_str()), false;
-    for (const ParticleModel model :
-         {ParticleModel::kCorrected, ParticleModel::kConsistent, ParticleModel::kPaper,
-          ParticleModel::kIncompressible}) {
+    for (const ParticleModel model : {ParticleModel::kCorrected, ParticleModel::kConsistent,
+                                      ParticleModel::kPaper, ParticleModel::kIncompressible}) {
       Scene scene = pool.value();
       scene.model = model;
       for (const int threads : {1, cores}) {
