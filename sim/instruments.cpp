@@ -12,10 +12,12 @@ namespace {
 constexpr std::uint8_t kRetired = 255;
 /// The fluid ends where its smoothed volume falls below a half.
 constexpr double kSurface = 0.5;
-constexpr double kReach = 2.0;        // spacings, of that smoothing
+constexpr double kReach = 2.0;  // spacings, of that smoothing
 /// A place at a wall has a half of what lies in the open; beyond that it is outside.
 constexpr double kInFluid = 0.3;
 constexpr double kLevelSteps = 10.0;  // a spacing
+/// Spacings: a drop alone lies on a surface to some hundredths.
+constexpr double kInSolid = 0.05;
 
 /// Wendland's C2 kernel in 3-D of reach h, times volume.
 double smoothed(double r, double h, double volume) {
@@ -49,7 +51,7 @@ Instruments::Instruments(const Scene& scene, const SampledScene& sampled)
 }
 
 template <class Found>
-void Instruments::find_inside(const Solid& solid, Found&& found) const {
+void Instruments::find_inside(const Solid& solid, double deeper, Found&& found) const {
   Pose pose = solid.pose;
   if (solid.body >= 0)
     pose = compose(snapshot_.rigid.bodies[static_cast<std::size_t>(solid.body)].pose, pose);
@@ -62,7 +64,7 @@ void Instruments::find_inside(const Solid& solid, Found&& found) const {
     if (snapshot_.fluid_index[i] == kRetired) continue;
     const glm::vec3 p = turn * (snapshot_.positions[i] - origin);
     if (glm::any(glm::lessThan(p, low)) || glm::any(glm::greaterThan(p, high))) continue;
-    if (sample_distance(view, p).distance < 0.0f) found(i);
+    if (static_cast<double>(sample_distance(view, p).distance) < -deeper) found(i);
   }
 }
 
@@ -126,7 +128,7 @@ const Measurement& Instruments::measure(const World& world) {
   result_.in_body.assign(snapshot_.rigid.bodies.size(), 0);
   inside_.assign(snapshot_.positions.size(), 0);
   for (const Solid& body : bodies_) {
-    find_inside(body, [&](std::size_t i) {
+    find_inside(body, kInSolid * spacing_, [&](std::size_t i) {
       result_.in_body[static_cast<std::size_t>(body.body)] += 1;
       inside_[i] = 1;
     });
@@ -134,7 +136,7 @@ const Measurement& Instruments::measure(const World& world) {
   result_.in_solids = static_cast<std::uint64_t>(std::count(inside_.begin(), inside_.end(), 1));
   result_.masses.assign(regions_.size(), 0.0);
   for (std::size_t r = 0; r < regions_.size(); ++r) {
-    find_inside(regions_[r],
+    find_inside(regions_[r], 0.0,
                 [&](std::size_t i) { result_.masses[r] += particle_mass_[snapshot_.fluid_index[i]]; });
   }
   result_.levels.clear();

@@ -11,9 +11,10 @@ namespace slosh {
 
 /// The world at one moment.
 struct Measurement {
-  double time = 0.0;                   ///< simulated s
-  Diagnostics fluid;                   ///< sums; `retired` are the particles that were lost
-  std::uint64_t in_solids = 0;         ///< particles whose centre is inside a body, each counted once
+  double time = 0.0;            ///< simulated s
+  Diagnostics fluid;            ///< sums; `retired` are the particles that were lost
+  std::uint64_t in_solids = 0;  ///< particles whose centre is inside a body, deeper than a twentieth of a
+                                ///< spacing (a drop alone lies on the surface), each counted once
   std::vector<std::uint64_t> in_body;  ///< the same, one a body
   std::vector<double> levels;          ///< m along up, one a gauge; NaN where no fluid is over or under it
   std::vector<double> pressures;       ///< Pa at the place of each gauge; NaN where it is not in fluid
@@ -41,9 +42,9 @@ class Instruments {
     Pose pose;
     const DistanceField* field;
   };
-  /// Marks particles inside; returns how many.
+  /// Calls found(i) for the particles that are more than `deeper` m inside.
   template <class Found>
-  void find_inside(const Solid& solid, Found&& found) const;
+  void find_inside(const Solid& solid, double deeper, Found&& found) const;
   double pressure(const glm::dvec3& at) const;
 
   glm::dvec3 up_{0.0, 1.0, 0.0};
@@ -56,7 +57,7 @@ class Instruments {
   std::vector<Gauge> gauges_;
   Snapshot snapshot_;
   std::vector<float> pressures_;  // one a particle
-  std::vector<char> inside_;  // one a particle
+  std::vector<char> inside_;      // one a particle
   Measurement result_;
 };
 

@@ -221,7 +221,7 @@ void bind_values(py::module_& m) {
       .def_property_readonly(
           "max_compression", [](const Measurement& x) { return x.fluid.max_compression; },
           "largest density over rest density, less 1")
-      .def_readonly("in_solids", &Measurement::in_solids, "particles whose centre is inside a body")
+      .def_readonly("in_solids", &Measurement::in_solids, "particles whose centre is deeper than a twentieth of a spacing inside a body")
       .def_property_readonly(
           "in_bodies", [](const Measurement& x) { return x.in_body; }, "the same, a body each: list[int]")
       .def_property_readonly(

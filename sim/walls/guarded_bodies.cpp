@@ -34,9 +34,12 @@ void guard_bodies(std::span<const DistanceFieldView> fields, const Plan& plan,
     const float travel = glm::distance(g.middle, came) + static_cast<float>(angle) * radius;
     // The field's box has its own margin around the solid.
     g.reach = radius + travel;
-    // Where a large body's field is coarse, so is the wall that it knows.
+    // Where a large body's field is coarse, so is the wall that it knows; but behind the wall's own particles
+    // a drop would stay for good.
+    const float spacing = static_cast<float>(plan.spacing);
     g.depth =
-        static_cast<float>(kGuardDepth) * std::max(static_cast<float>(plan.spacing), 2.0f * g.field.cell);
+        std::clamp(static_cast<float>(kGuardDepth) * 2.0f * g.field.cell,
+                   static_cast<float>(kGuardDepth) * spacing, static_cast<float>(kMostGuardDepth) * spacing);
     g.fast = travel > static_cast<float>(near);
   }
 }

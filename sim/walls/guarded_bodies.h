@@ -14,6 +14,9 @@ namespace slosh {
 /// How far into a wall a particle may get, in spacings: the wall's own particles sit twice as deep, and fluid
 /// at rest stays half a spacing outside.
 inline constexpr double kGuardDepth = 0.35;
+/// At most, where a field is coarser than a spacing: before the wall's own particles (0.7), which still push
+/// it out.
+inline constexpr double kMostGuardDepth = 0.6;
 
 /// The fields of the bodies that particles are guarded against, one a body; empty for those that have none,
 /// and for all where the plan guards nothing.
