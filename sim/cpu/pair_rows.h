@@ -20,10 +20,10 @@ struct alignas(32) PressTensor {
   float xy, yz, xz, none1;
 };
 
-/// For each of a set of particles its pairs, a weight each: who presses on whom (s = −W'/r without the kernel's
-/// constant, so that g = s d), who drags whom (q, kg/m²: q d (d · v)); d is from the other to the particle and comes
-/// from where the two are. 8 bytes a pair. Particles go by fours, a pair of each side by side: no row has a sum
-/// over lanes of its own.
+/// For each of a set of particles its pairs, a weight each: who presses on whom (s = −W'/r without the
+/// kernel's constant, so that g = s d), who drags whom (q, kg/m²: q d (d · v)); d is from the other to the
+/// particle and comes from where the two are. 8 bytes a pair. Particles go by fours, a pair of each side by
+/// side: no row has a sum over lanes of its own.
 class PairRows {
   struct Pair;
   struct Chunk;
@@ -156,12 +156,17 @@ class PairRows {
     /// The sum of q d (d · (v − one's own)), v each other's of `velocities`, in rows of who drags whom.
     Sixteen dragged(const Vector4* places, const Vector4* velocities) const {
       const Sixteen own = of_group<4>(&velocities[first].x);
-      Sixteen sum = {};
+      // A pair's two drags are opposite to the bit, so momentum is kept to what sums round: that is carried
+      // along.
+      Sixteen sum = {}, lost = {};
       for_each_way(places, [&](Sixteen d, const Pair* four) {
         const Sixteen along = sums(d * (of_others<4>(&velocities->x, four) - own));
-        sum += (each_even_four_times(&four->weight) * along) * d;
+        const Sixteen term = (each_even_four_times(&four->weight) * along) * d - lost;
+        const Sixteen next = sum + term;
+        lost = (next - sum) - term;
+        sum = next;
       });
-      return sum;
+      return sum - lost;
     }
     /// The sum of q d ⊗ d over each row.
     Squares rates(const Vector4* places) const {
@@ -190,9 +195,8 @@ class PairRows {
     // f(g, pairs) likewise.
     template <class F>
     void for_each_pair(const Vector4* places, F&& f) const {
-      for_each_way(places, [&](Sixteen d, const Pair* four) {
-        f(each_even_four_times(&four->weight) * d, four);
-      });
+      for_each_way(places,
+                   [&](Sixteen d, const Pair* four) { f(each_even_four_times(&four->weight) * d, four); });
     }
     template <std::size_t stride>
     static Sixteen of_others(const float* all, const Pair* four) {
