@@ -18,14 +18,12 @@ namespace slosh {
 ///  - While words are late the force is at most what it was with the last that was in time, and it fades as
 ///    freshness() has it.
 ///  - A hand that had no force gets it over DeviceLimits::engagement_time: with a new device, after a pause,
-///  a
-///    reset or a silence, when it takes hold again, when it suddenly is elsewhere. A silence that took a part
-///    of the force takes as large a part of that time. Meanwhile its own motion is damped. Where nobody feels
-///    it, what a silence took comes back over kFadeStale.
+///    a reset or a silence, when it takes hold again, when it suddenly is elsewhere. A silence that took a
+///    part of the force takes as large a part of that time. Meanwhile its own motion is damped. Where nobody
+///    feels it, what a silence took comes back over kFadeStale.
 ///  - No force begins before world and device are both believed wholly. Who feels none begins with all of it.
 ///  - Where the force would jump all the same, because the world stopped or the hand's hold is another one,
-///  the
-///    difference is worked off over kBridge.
+///    the difference is worked off over kBridge.
 /// A hand that gives way to the force (Device::gives_way) feels the coupling as this end has it, so that its
 /// own newest motion acts at once. Any other feels what the world put on it (GripState::on_hand): there hand
 /// and grip are compared at one time. Here they are not, as the grip's newest velocity answers a handle of
@@ -61,9 +59,9 @@ class FeltHand {
     bool shared = false;        ///< another hand holds the same body
     double pace = 1.0;          ///< simulated s a s of the device's own time, > 0
   };
-  /// The wrench for the device. `hand` as the device has it, its velocities by the device's own time; `grip` as
-  /// the world has it, carried on to `now.time`. Where the world is slower (`now.pace`), the coupling is the
-  /// world's, with the hand as fast as the world sees it, and damps no harder than the device holds.
+  /// The wrench for the device. `hand` as the device has it, its velocities by the device's own time; `grip`
+  /// as the world has it, carried on to `now.time`. Where the world is slower (`now.pace`), the coupling is
+  /// the world's, with the hand as fast as the world sees it, and damps no harder than the device holds.
   ForceLimiter::Outcome feel(const WorldBelief& world, const DeviceReport& hand, const GripState& grip,
                              const Moment& now) noexcept {
     return feel(world, hand, grip, now, [](const Wrench& wanted) { return wanted; });
@@ -111,7 +109,7 @@ class FeltHand {
   double most_damping_ = 0.0;  // N·s/m and N·m·s/rad that the device holds
   double most_turning_ = 0.0;
   double share_ = 1.0;
-  double believed_ = 1.0;    // at the call before
+  double believed_ = 1.0;  // at the call before
   bool begun_ = false;  // world and device were both believed since the device came, or the world was reset
   bool hold_anew_ = false;   // words had stopped
   bool held_on_ = false;     // the hand, at the call before

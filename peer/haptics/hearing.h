@@ -17,17 +17,13 @@ struct WorldBelief {
 
 /// Body states come one way and poses go the other, and each may fail alone.
 ///  - States that are late are believed as freshness() has it; a world in this process that waits for its
-///  first
-///    step, as long as it says so; one that stopped, or that waits far away, not at all.
+///    first step, as long as it says so; one that stopped, or that waits far away, not at all.
 ///  - Nothing is believed before the first state that follows a pose of ours: on a link that takes a round
-///  trip, and
-///    until then nobody can tell a host that will never hear us from one that is far away.
+///    trip, and until then nobody can tell a host that will never hear us from one that is far away.
 ///  - States that no longer follow our poses come from a host that does not hear us: the body stands where
-///  our
-///    hand was, and a spring to it would be the link's. Late poses count as late states do.
+///    our hand was, and a spring to it would be the link's. Late poses count as late states do.
 ///  - Who hears nothing says nothing. So the host takes the hand for silent too, and when contact is back
-///  both
-///    ends take hold anew (net/engagement.h), the loop when the host has.
+///    both ends take hold anew (net/engagement.h), the loop when the host has.
 /// Reads no clock; one thread; no allocation.
 class Hearing {
  public:
