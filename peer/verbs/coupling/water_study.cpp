@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <numbers>
 #include <random>
@@ -144,6 +145,23 @@ class Site {
   std::vector<OwnHand> own_{1};
 };
 
+/// A hand that goes where another went, with the velocity that it had there: a TrackDevice would have that from the
+/// cubic through the places.
+class WentDevice final : public Device {
+ public:
+  explicit WentDevice(const std::vector<DeviceReport>& went) : went_(went) {}
+  DeviceReport read(const DeviceMoment& moment) override {
+    return went_.at(static_cast<std::size_t>(std::lround(moment.time / kPeriod)));
+  }
+  DeviceLimits limits() const override { return limits_without_a_hand(); }
+  bool gives_way() const override { return false; }
+  bool goes_with_world() const override { return true; }
+  std::string kind() const override { return "led again"; }
+
+ private:
+  const std::vector<DeviceReport>& went_;
+};
+
 Result<std::unique_ptr<Device>> hand_of(const WaterCase& c, const Pose& start) {
   PoseTrack track(keys_of(c, start), start);
   // A way that no force changes.
@@ -171,29 +189,30 @@ WaterWay way_of(const WaterCase& c) {
 
 namespace {
 
-/// `went`: where the hand was; null: as `c` has it.
-Result<WaterRun> run_hand(const WaterCase& c, const std::vector<DeviceReport>* went) {
+using MakeHand = std::function<Result<std::unique_ptr<Device>>(const Pose& start)>;
+
+Result<WaterRun> run_hand(const WaterCase& c, const MakeHand& make_hand, std::size_t ticks) {
   Result<Scene> scene = scene_of();
   if (!scene) return scene.error();
   const Result<SampledScene> sampled = sample_scene(scene.value(), c.spacing);
   if (!sampled) return sampled.error();
   Host host(scene.value(), sampled.value(), c.spacing);
-  Result<std::unique_ptr<Device>> hand = hand_of(c, host.start());
+  Result<std::unique_ptr<Device>> hand = make_hand(host.start());
   if (!hand) return hand.error();
   WaterRun run;
   run.c = c;
   const Body& body = scene.value().bodies[static_cast<std::size_t>(scene.value().grips[0].body)];
   run.body = {body.mass.mass, body.mass.inertia, body.mass.center_of_mass, false, scene.value().gravity};
   run.grip = {scene.value().grips[0].pose, host.gains()};
-  run.steps.resize(went ? went->size() : static_cast<std::size_t>(std::lround(kWaterEnds / kPeriod)));
+  run.steps.resize(ticks);
   for (std::size_t i = 0; i < run.steps.size(); ++i) {
     WaterStep& step = run.steps[i];
     step.time = kPeriod * static_cast<double>(i);
-    const DeviceReport report = went ? (*went)[i] : hand.value()->read({step.time, kPeriod});
+    const DeviceReport report = hand.value()->read({step.time, kPeriod});
     step.hand = report.pose;
     step.hand_twist = report.twist;
     step.felt = host.felt(report);
-    if (!went) hand.value()->write(step.felt);
+    hand.value()->write(step.felt);
     host.step(report, step);
   }
   return run;
@@ -202,11 +221,15 @@ Result<WaterRun> run_hand(const WaterCase& c, const std::vector<DeviceReport>* w
 }  // namespace
 
 Result<WaterRun> run_water(const WaterCase& c) {
-  return run_hand(c, nullptr);
+  return run_hand(
+      c, [&](const Pose& start) { return hand_of(c, start); },
+      static_cast<std::size_t>(std::lround(kWaterEnds / kPeriod)));
 }
 
 Result<WaterRun> run_water_again(const WaterCase& c, const std::vector<DeviceReport>& went) {
-  return run_hand(c, &went);
+  return run_hand(
+      c, [&](const Pose&) { return Result<std::unique_ptr<Device>>(std::make_unique<WentDevice>(went)); },
+      went.size());
 }
 
 Result<std::vector<Wrench>> feel_water(const WaterRun& reference, double round_trip,
