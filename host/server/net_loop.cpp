@@ -11,7 +11,11 @@
 namespace slosh {
 namespace {
 
-constexpr std::int64_t kFarewell = 400'000'000;  // ns that last words get to leave
+/// ns that last words have at most: an endpoint lets each connection wait for its answer for 8 round trips, a
+/// second at most. Whoever goes on sending after that is told again, for kAgain: over a link that loses
+/// packets one word is not enough, and who never hears it tries to come back for minutes.
+constexpr std::int64_t kFarewell = 2'000'000'000;
+constexpr std::int64_t kAgain = 100'000'000;
 
 double thread_seconds() {
   timespec spent{};
@@ -43,9 +47,13 @@ void NetLoop::stop(const std::string& why) {
   thread_.join();
   // The thread is over: its work is this one's now.
   server_.end(why);
-  const std::int64_t until = steady_now_ns() + kFarewell;
-  while (endpoint_.endpoint_stats().connections > 0 && steady_now_ns() < until)
-    endpoint_.run_once(std::min(until, steady_now_ns() + 20'000'000));
+  if (endpoint_.endpoint_stats().connections == 0) return;
+  const auto run_until = [this](std::int64_t until, auto&& done) {
+    while (!done() && steady_now_ns() < until)
+      endpoint_.run_once(std::min(until, steady_now_ns() + 20'000'000));
+  };
+  run_until(steady_now_ns() + kFarewell, [this] { return endpoint_.endpoint_stats().connections == 0; });
+  run_until(steady_now_ns() + kAgain, [] { return false; });
 }
 
 template <class T, class Work>
