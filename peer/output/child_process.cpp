@@ -117,6 +117,18 @@ bool ChildProcess::write(const void* data, std::size_t bytes) {
   return bytes == 0;
 }
 
+bool ChildProcess::over() const {
+  if (pid_ < 0) return true;
+  siginfo_t seen{};
+  // Left to be waited for: finish() wants its status.
+  return waitid(P_PID, static_cast<id_t>(pid_), &seen, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+         seen.si_pid == pid_;
+}
+
+void ChildProcess::ask_to_end() const {
+  if (pid_ >= 0) kill(pid_, SIGTERM);
+}
+
 Result<bool> ChildProcess::finish() {
   if (pid_ < 0) return true;
   if (input_ >= 0) close(input_);

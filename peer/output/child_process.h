@@ -28,6 +28,10 @@ class ChildProcess {
 
   /// Waits while the pipe is full. False when the child is gone.
   bool write(const void* data, std::size_t bytes);
+  /// Whether it has ended; does not wait.
+  bool over() const;
+  /// Asks it to end (SIGTERM), which finish() then waits for.
+  void ask_to_end() const;
   /// Closes its input, waits for its end. Errors: it failed; the end of what it said is in `what`.
   Result<bool> finish();
   /// After finish(): every byte of its standard output.

@@ -76,6 +76,11 @@ int report_coupling_link(const ReportOptions& options) {
   run.told = [&](double share, const std::string& which) { progress.update(share, which); };
   const Result<std::vector<coupling::LinkRow>> rows = measure_link(cases, run);
   if (!rows) return fail(rows.error());
+  const int signal = interrupted_by();
+  if (rows.value().empty() && signal != 0) {
+    std::fprintf(stderr, "slosh: interrupted before a case was whole: there is no table.\n");
+    return 128 + signal;
+  }
   std::string text = std::string(coupling::kLinkHeader) + "\n";
   std::printf("%-12s %-26s grip  verdict      force off  peak     carried  from row to row  generated\n",
               "scheme", "link");
@@ -106,7 +111,6 @@ int report_coupling_link(const ReportOptions& options) {
   }
   std::printf("Written to %s: coupling_link.csv and .png, and what each person felt in link_…/\n",
               clean_text(folder.value().string(), kMostTextBytes).c_str());
-  const int signal = interrupted_by();
   return signal != 0 ? 128 + signal : kExitOk;
 }
 

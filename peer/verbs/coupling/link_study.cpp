@@ -25,8 +25,11 @@ constexpr double kWeight = 31.2;        // N, bucket and water
 constexpr double kCompared = 3.0;       // s from which on forces are compared: both have taken hold
 constexpr double kBroken = 999.0;       // N: a simulated person's device gives 1000
 constexpr double kHums = 0.3;           // N from row to row: more is no carrying
-constexpr int kPatience = 600;          // looks of 0.1 s for the host's links
-constexpr const char* kGiveUp = "120";  // s, of wall time, after which a program is ended
+constexpr double kLinks = 60.0;          // s that the host has for its links
+constexpr double kGoodbye = 10.0;        // s that a person has once the host has ended
+constexpr double kGiveUp = 120.0;        // s, of wall time, after which a program is asked to end,
+constexpr double kKilled = 10.0;         // and s after that until it is killed
+constexpr auto kLook = std::chrono::milliseconds(50);
 
 struct Felt {
   std::vector<double> time;
@@ -136,6 +139,39 @@ std::string link_in(const fs::path& file, const std::string& kind) {
   return {};
 }
 
+/// The programs of a trial. Whichever way it ends, none is left running.
+class Programs {
+ public:
+  explicit Programs(const LinkRun& run) : run_(run) {}
+  ~Programs() {
+    for (const auto& program : all_) program->ask_to_end();
+  }
+  Programs(const Programs&) = delete;
+  Programs& operator=(const Programs&) = delete;
+
+  Result<ChildProcess*> start(const std::vector<std::string>& command) {
+    Result<std::unique_ptr<ChildProcess>> made = ChildProcess::start(command);
+    if (!made) return made.error();
+    all_.push_back(std::move(made.value()));
+    return all_.back().get();
+  }
+  /// Waits until `done`, for so many seconds. False: the time is over, or the report is to end.
+  template <class Done>
+  bool wait(double seconds, Done&& done) const {
+    const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+    while (!done()) {
+      if (stopped() || std::chrono::steady_clock::now() > until) return false;
+      std::this_thread::sleep_for(kLook);
+    }
+    return true;
+  }
+  bool stopped() const { return run_.stop && run_.stop(); }
+
+ private:
+  const LinkRun& run_;
+  std::vector<std::unique_ptr<ChildProcess>> all_;
+};
+
 class Trial {
  public:
   Trial(const NetworkSites& sites, const LinkCase& c, const LinkRun& run, const fs::path& folder)
@@ -159,47 +195,66 @@ class Trial {
                                    "--no-supervisor"};
     for (const char* site : {"ana", "ben"})
       words.insert(words.end(), {"--address", sites_.wire_address(site) + ":5000"});
-    auto host = start("host", words);
+    Programs programs(run_);
+    const Result<ChildProcess*> host = programs.start(command("host", words));
     if (!host) return host.error();
-    for (int i = 0; i < kPatience && link_in(links(), "watch").empty(); ++i)
-      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    (void)programs.wait(kLinks, [&] { return host.value()->over() || !link_in(links(), "watch").empty(); });
     const std::string link = link_in(links(), "hold");
+    if (programs.stopped()) return interrupted();
     if (link.empty()) return Error{"slosh host", "wrote no link within a minute", "Is the machine too busy?"};
-    auto wire = ChildProcess::start(
-        sites_.at("wire", {(run_.program.parent_path() / "slosh-impair").string(), "--listen", "0.0.0.0:5000",
-                           "--to", at, "--delay-ms", format("%g", 500.0 * c_.round_trip), "--jitter-ms",
-                           format("%g", 1e3 * c_.jitter), "--loss", format("%g", c_.loss), "--seed", "7"}));
+    const Result<ChildProcess*> wire = programs.start(with_us(
+        "wire", {(run_.program.parent_path() / "slosh-impair").string(), "--listen", "0.0.0.0:5000", "--to", at,
+                 "--delay-ms", format("%g", 500.0 * c_.round_trip), "--jitter-ms", format("%g", 1e3 * c_.jitter),
+                 "--loss", format("%g", c_.loss), "--seed", "7"}));
     if (!wire) return wire.error();
     const std::string coupling = c_.scheme == Scheme::kReplica ? "replica" : "spring";
-    std::vector<std::unique_ptr<ChildProcess>> joined;
+    std::vector<ChildProcess*> joined;
     for (const char* name : {"ana", "ben"}) {
-      auto person = start(name, {"join", link, "--name", name, "--headless", "--no-render", "--coupling",
-                                 coupling, "--device", "operator:tight", "--out", out(name).string(), "--key",
-                                 (folder_ / (std::string(name) + ".key")).string()});
+      const Result<ChildProcess*> person = programs.start(
+          command(name, {"join", link, "--name", name, "--headless", "--no-render", "--coupling", coupling,
+                         "--device", "operator:tight", "--out", out(name).string(), "--key",
+                         (folder_ / (std::string(name) + ".key")).string()}));
       if (!person) return person.error();
-      joined.push_back(std::move(person.value()));
+      joined.push_back(person.value());
     }
-    for (const auto& person : joined)
-      if (const Result<bool> ended = person->finish(); !ended) return ended.error();
-    const Result<bool> hosted = host.value()->finish();
+    const auto over = [](const ChildProcess* program) { return program->over(); };
+    (void)programs.wait(kGiveUp, [&] { return over(host.value()) || std::ranges::any_of(joined, over); });
+    if (!programs.wait(kGoodbye, [&] { return over(host.value()); })) host.value()->ask_to_end();
+    // Who did not hear that the host has ended would try to come back for minutes; asked, they write what they felt.
+    std::vector<bool> asked;
+    for (ChildProcess* person : joined) {
+      asked.push_back(!programs.wait(kGoodbye, [&] { return over(person); }));
+      if (asked.back()) person->ask_to_end();
+    }
+    if (programs.stopped()) return interrupted();
+    for (std::size_t i = 0; i < joined.size(); ++i)
+      if (const Result<bool> ended = joined[i]->finish(); !ended && !asked[i]) return ended.error();
+    if (const Result<bool> hosted = host.value()->finish(); !hosted) return hosted.error();
     const std::string quit = "quit\n";
     (void)wire.value()->write(quit.data(), quit.size());
-    if (!hosted) return hosted.error();
     return take(people);
   }
 
  private:
   fs::path links() const { return folder_ / "links.txt"; }
   fs::path out(const std::string& name) const { return folder_ / name; }
-  Result<std::unique_ptr<ChildProcess>> start(const std::string& site,
-                                              const std::vector<std::string>& words) const {
+  static Error interrupted() { return {"report coupling --link", "was interrupted", "Run it again"}; }
+  /// As it runs at `site`, asked to end when this program is gone, however it ends. After nsenter, as entering a
+  /// namespace of users clears that.
+  std::vector<std::string> with_us(const std::string& site, std::vector<std::string> words) const {
+    const std::vector<std::string> before{"setpriv", "--pdeathsig", "TERM", "--"};
+    words.insert(words.begin(), before.begin(), before.end());
+    return sites_.at(site, std::move(words));
+  }
+  std::vector<std::string> command(const std::string& site, const std::vector<std::string>& words) const {
     const std::string home = (folder_ / "home").string();
-    std::vector<std::string> all{"timeout", kGiveUp, "env", "SLOSH_SETTINGS=none"};
+    std::vector<std::string> all{"timeout", "--kill-after", format("%g", kKilled), format("%g", kGiveUp), "env",
+                                 "SLOSH_SETTINGS=none"};
     for (const char* kind : {"XDG_STATE_HOME=", "XDG_DATA_HOME=", "XDG_CONFIG_HOME=", "XDG_CACHE_HOME="})
       all.push_back(kind + home);
     all.push_back(run_.program.string());
     all.insert(all.end(), words.begin(), words.end());
-    return ChildProcess::start(sites_.at(site, all));
+    return with_us(site, std::move(all));
   }
   Result<std::array<LinkRow, 2>> take(std::array<Felt, 2>& people) const {
     std::array<LinkRow, 2> rows;
@@ -283,6 +338,7 @@ Result<std::vector<LinkRow>> measure_link(const std::vector<LinkCase>& cases, co
     std::array<Felt, 2> people;
     Result<std::array<LinkRow, 2>> measured =
         Trial(sites, cases[i], run, case_folder(run.folder, i)).go(people);
+    if (!measured && run.stop && run.stop()) break;
     if (!measured) return measured.error();
     if (i == 0) reference = people;
     for (LinkRow& row : measured.value()) {

@@ -48,12 +48,13 @@ std::string csv_line(const LinkRow& row);
 struct LinkRun {
   std::filesystem::path program;  ///< slosh; slosh-impair lies beside it
   std::filesystem::path folder;   ///< what each program writes is kept here, a folder a case
-  std::function<bool()> stop;     ///< asked between cases
+  std::function<bool()> stop;     ///< asked all the time: the case that runs is given up
   std::function<void(double, const std::string&)> told;  ///< share of the work done, and which case is next
 };
 
-/// 9 s of the bucket at 14 mm each, in real time: two rows a case. Errors: no network namespaces here, a
-/// program that is not there or fails.
+/// 9 s of the bucket at 14 mm each, in real time: two rows a whole case. Every program that it starts has ended when
+/// it returns, and is asked to when this process is killed. Errors: no network namespaces here, a program that is
+/// not there or fails.
 Result<std::vector<LinkRow>> measure_link(const std::vector<LinkCase>& cases, const LinkRun& run);
 
 }  // namespace slosh::coupling
