@@ -40,6 +40,7 @@ constexpr const char* kFooter =
     "  script, mouse, replay:FILE       see `slosh play --help`\n"
     "  xr-left, xr-right                the controllers of a headset, with --vr\n"
     "  operator[:tight|loose,...]       a simulated person's arm, closing the loop by the force it feels\n"
+    "  osc[:[HOST:]PORT][,vrchat=1,...] a tracker that is told of over Open Sound Control\n"
     "  plugin:FILE[:OPTIONS]            any vendor's device behind a C interface:\n"
     "                                   peer/haptics/devices/plugin/slosh_device.h\n"
     "\n"

@@ -1,6 +1,7 @@
 #include "peer/haptics/devices/hardware.h"
 
 #include <cstdio>
+#include <filesystem>
 
 #include "peer/haptics/devices/falcon_device.h"
 #include "peer/haptics/devices/falcon_usb.h"
@@ -27,6 +28,19 @@ Made make_plugin(const std::string& rest, const HandPlace& place) {
     return Error{"--device plugin", "no library is named", "Give --device plugin:FILE[:OPTIONS]"};
   const std::string options = colon == std::string::npos ? "" : rest.substr(colon + 1);
   return Made(std::make_unique<PluginDevice>(file, options, place));
+}
+
+/// The plug-in for trackers lies beside the program as it was built or installed.
+Made make_tracker(const std::string& options, const HandPlace& place) {
+  constexpr const char* kLibrary = "slosh_osc_device.so";
+  std::error_code code;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", code).parent_path();
+  for (const char* folder : {"../lib", "../lib/slosh"}) {
+    const std::filesystem::path file = (program / folder / kLibrary).lexically_normal();
+    if (std::filesystem::exists(file, code)) return Made(std::make_unique<PluginDevice>(file.string(), options, place));
+  }
+  return Error{"--device osc", std::string("its plug-in ") + kLibrary + " does not lie in ../lib or ../lib/slosh of " + program.string(),
+               "Give --device plugin:FILE[:OPTIONS] with the path where it is"};
 }
 
 std::string hex(std::uint16_t number) {
@@ -56,6 +70,7 @@ std::optional<Made> make_hardware(const std::string& spec, const HandPlace& plac
     return Made(std::make_unique<FalconDevice>([rest] { return open_falcon(rest); }, place));
   }
   if (kind == "plugin") return make_plugin(rest, place);
+  if (kind == "osc") return make_tracker(rest, place);
   if (kind == "operator") return make_operator(rest, place);
   return std::nullopt;
 }

@@ -121,14 +121,18 @@ Result<bool> PluginDevice::open() {
 Result<bool> PluginDevice::settle(const slosh_device_capabilities& said) {
   std::array<char, sizeof said.name + 1> name{};
   std::memcpy(name.data(), said.name, sizeof said.name);
+  only_tells_ = said.kind == SLOSH_DEVICE_POSITION;
   for (const auto& [what, value] :
        {std::pair{"period_s", said.period_s}, std::pair{"own_damping_n_s_m", said.own_damping_n_s_m},
         std::pair{"own_rotational_damping_nm_s_rad", said.own_rotational_damping_nm_s_rad}}) {
     if (!above_zero(value)) return failed(std::string("its capability ") + what + " is not a number above 0");
+    if (only_tells_) break;
   }
   if (said.period_s > kLongestPeriod) return failed("its period_s is longer than 0.1 s");
-  if (said.kind > SLOSH_DEVICE_ADMITTANCE) return failed("its capability kind is none that this slosh knows");
-  if (const Result<bool> sound = check_limits(sheet_of(said), "plugin:" + file_); !sound) return sound;
+  if (said.kind > SLOSH_DEVICE_POSITION) return failed("its capability kind is none that this slosh knows");
+  if (!only_tells_) {
+    if (const Result<bool> sound = check_limits(sheet_of(said), "plugin:" + file_); !sound) return sound;
+  }
 
   Result<DeviceFile> file = DeviceFile::read(device_settings_file(settings_name(name.data()), ""));
   if (!file) return file.error();
@@ -145,12 +149,15 @@ Result<bool> PluginDevice::settle(const slosh_device_capabilities& said) {
     if (place_.tie->shared()) tie_to_room(settings, place_.tie->scale());
   }
   const double period = period_ = std::max(said.period_s, 0.001);
-  ChosenGains gains =
-      choose_gains(sheet_of(said), said.own_damping_n_s_m, said.own_rotational_damping_nm_s_rad, period, settings,
-                   clean_text(name.data(), 64));
-  warnings_.insert(warnings_.end(), gains.warnings.begin(), gains.warnings.end());
   map_.emplace(settings, place_, period);
-  limits_ = map_->to_world(gains.limits);
+  if (only_tells_) {
+    limits_ = limits_without_a_hand();
+  } else {
+    ChosenGains gains = choose_gains(sheet_of(said), said.own_damping_n_s_m, said.own_rotational_damping_nm_s_rad,
+                                     period, settings, clean_text(name.data(), 64));
+    warnings_.insert(warnings_.end(), gains.warnings.begin(), gains.warnings.end());
+    limits_ = map_->to_world(gains.limits);
+  }
   if (handle_->read_code == 0) first_ = taken(handle_->reading);
   return true;
 }
@@ -256,7 +263,22 @@ DeviceReport PluginDevice::read(const DeviceMoment&) {
   }
   slosh_device_reading reading{};
   const int code = asked("read", [&] { return handle_->library.read(handle_->device, &reading); });
+  if (handle_->library.say != nullptr) ask_words();
   return code == 0 ? taken(reading) : silent();
+}
+
+void PluginDevice::ask_words() {
+  const std::int64_t now_ns = steady_now_ns();
+  if (asked_ns_ != 0 && to_seconds(now_ns - asked_ns_) < kAskedAgain) return;
+  asked_ns_ = now_ns;
+  std::array<char, 400> words{};
+  const int code =
+      asked("say", [&] { return handle_->library.say(handle_->device, words.data(), words.size()); });
+  words.back() = '\0';
+  const std::string text = clean_text(words.data(), kMostTextBytes);
+  const std::lock_guard lock(mutex_);
+  its_trouble_ = code == 0 ? "" : text;
+  its_status_ = code == 0 ? text : "";
 }
 
 template <class Call>
@@ -275,6 +297,7 @@ int PluginDevice::asked(const char* function, Call&& call) const {
 }
 
 void PluginDevice::write(const Wrench& on_hand) {
+  if (only_tells_) return;
   const Wrench wrench = map_->filtered(on_hand);
   if (motion_) {
     move(wrench);
@@ -318,7 +341,12 @@ void PluginDevice::set_trouble(const std::string& words) {
 
 std::string PluginDevice::trouble() const {
   const std::lock_guard lock(mutex_);
-  return trouble_;
+  return trouble_.empty() ? its_trouble_ : trouble_;
+}
+
+std::string PluginDevice::status() const {
+  const std::lock_guard lock(mutex_);
+  return its_status_;
 }
 
 }  // namespace slosh

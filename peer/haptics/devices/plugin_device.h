@@ -19,7 +19,8 @@ namespace slosh {
 /// (DevicePort); numbers that are not finite silence it; opening and closing are given kPatience. open()
 /// reads once, so that a plug-in that never answers is known before a world waits for it. One that measures
 /// force (SLOSH_DEVICE_ADMITTANCE) is moved by AdmittanceMotion: its hand is where it is told to be. A force
-/// that is not known for kForceHolds, or that is no number, moves nothing: it is told to stand.
+/// that is not known for kForceHolds, or that is no number, moves nothing: it is told to stand. One that gives
+/// none (SLOSH_DEVICE_POSITION) is a hand as a gamepad's.
 class PluginDevice final : public Device {
  public:
   PluginDevice(std::string file, std::string options, HandPlace place);
@@ -34,13 +35,16 @@ class PluginDevice final : public Device {
   DeviceLimits limits() const override { return limits_; }
   void look_from(const glm::dquat& axes) override { camera_now_.publish(axes); }
   void close() override;
+  bool gives_way() const override { return !only_tells_; }
   std::string kind() const override { return "plugin"; }
   std::string trouble() const override;
+  std::string status() const override;
   std::vector<std::string> warnings() const override { return warnings_; }
 
   static constexpr double kPatience = 5.0;   ///< s for open
   static constexpr double kCloseWait = 1.0;  ///< s
   static constexpr double kForceHolds = 0.01;  ///< s
+  static constexpr double kAskedAgain = 0.1;   ///< s between two sentences of it
 
  private:
   struct Handle;  // what a call that never returns goes on using
@@ -56,6 +60,7 @@ class PluginDevice final : public Device {
   template <class Call>
   int asked(const char* function, Call&& call) const;
   void set_trouble(const std::string& words);
+  void ask_words();
 
   const std::string file_;
   const std::string options_;
@@ -73,9 +78,13 @@ class PluginDevice final : public Device {
   std::int64_t moved_ns_ = 0;
   std::optional<DeviceReport> first_;
   bool unsound_ = false;
+  bool only_tells_ = false;  // a device without force
+  std::int64_t asked_ns_ = 0;
 
   mutable std::mutex mutex_;
   std::string trouble_;
+  std::string its_trouble_;  // in its own words
+  std::string its_status_;
 };
 
 }  // namespace slosh

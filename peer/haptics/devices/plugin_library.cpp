@@ -91,6 +91,7 @@ Result<PluginLibrary> load_plugin(const std::string& file) {
   }
   if (const char* const missing = missing_function(library, plugin)) return lacks(where, missing);
   if (version >= 2) (void)find(library, "slosh_device_move", plugin.move);
+  if (version >= 3) (void)find(library, "slosh_device_say", plugin.say);
   return plugin;
 }
 

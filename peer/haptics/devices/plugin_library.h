@@ -20,6 +20,7 @@ struct PluginLibrary {
   decltype(&slosh_device_write) write = nullptr;
   decltype(&slosh_device_close) close = nullptr;
   decltype(&slosh_device_move) move = nullptr;  ///< null where it has none: not asked of impedance devices
+  decltype(&slosh_device_say) say = nullptr;    ///< null where it has none
 };
 
 /// Loads a library and finds its functions. It stays loaded until the process ends: a call of it may never

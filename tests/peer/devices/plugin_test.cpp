@@ -180,7 +180,7 @@ TEST_F(Plugins, WhatCannotBeOpenedIsNamed) {
     const char* name;
     const char* words;
   };
-  for (const Case& c : {Case{"slosh_plugin_other_version", "version 3"},
+  for (const Case& c : {Case{"slosh_plugin_other_version", "version 4"},
                         Case{"slosh_plugin_lacks_move", "lacks the function slosh_device_move"},
                         Case{"slosh_plugin_no_speed", "max_speed_m_s is not a number above 0"},
                         Case{"slosh_plugin_lacks_write", "lacks the function slosh_device_write"},

@@ -1,7 +1,7 @@
 /* A haptic device for slosh, as a shared library: implement these six functions, give its path to
  *     slosh play spoon --device plugin:/path/to/libmydevice.so:OPTIONS
  * C only, no library needed. An example: plugin/example.c. A device that measures force and is told where to
- * go (admittance) has a seventh: plugin/admittance.c.
+ * go (admittance) has a seventh: plugin/admittance.c. One that only tells where it is (a tracker): plugin/osc.
  *
  * Units are SI. The device's frame is right-handed as its user sees it: x to the right, y up, z towards the
  * user; slosh turns it into the world's. Calls come one at a time, though not all from one thread: open and
@@ -22,8 +22,8 @@ extern "C" {
 #endif
 
 /* Of this file. Fields are only ever added with a new version; a plug-in of an older one is taken as it is.
- * 2: devices that measure force. */
-#define SLOSH_DEVICE_VERSION 2u
+ * 2: devices that measure force. 3: devices without force, and slosh_device_say. */
+#define SLOSH_DEVICE_VERSION 3u
 
 #if defined(__GNUC__)
 #define SLOSH_DEVICE_EXPORT __attribute__((visibility("default")))
@@ -33,6 +33,9 @@ extern "C" {
 
 #define SLOSH_DEVICE_IMPEDANCE 0u  /* tells where it is, takes a force: slosh_device_write */
 #define SLOSH_DEVICE_ADMITTANCE 1u /* tells the hand's force, is told where to go: slosh_device_move */
+/* Since version 3: tells where it is and gives no force. Of its capabilities name, period_s and kind count;
+ * slosh_device_write is there and not called. */
+#define SLOSH_DEVICE_POSITION 2u
 
 /* What the device can hold, by its data sheet. Every number above 0 and finite, or it is refused; a device
  * without torque says what it likes there and passes over what it is sent. */
@@ -107,6 +110,11 @@ SLOSH_DEVICE_EXPORT int slosh_device_write(void* device, const double force_n[3]
  * 0: taken. Below 0: as for read. One that is not renewed for 0.1 s is over: let the device hold still then,
  * as at its last, which has no velocity. */
 SLOSH_DEVICE_EXPORT int slosh_device_move(void* device, const slosh_device_motion* motion);
+
+/* Since version 3, may be missing: a sentence about it now, of at most `size` bytes with its '\0', after a read, some
+ * ten times a second. 0: how it does ("60 readings a second"). 1: what keeps it from working ("the battery is
+ * empty"), in place of what `read` does not say. */
+SLOSH_DEVICE_EXPORT int slosh_device_say(void* device, char* words, size_t size);
 
 /* Last; a force of zero was written before, where the device still answered. */
 SLOSH_DEVICE_EXPORT void slosh_device_close(void* device);
