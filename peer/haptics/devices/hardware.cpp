@@ -37,9 +37,12 @@ Made make_tracker(const std::string& options, const HandPlace& place) {
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", code).parent_path();
   for (const char* folder : {"../lib", "../lib/slosh"}) {
     const std::filesystem::path file = (program / folder / kLibrary).lexically_normal();
-    if (std::filesystem::exists(file, code)) return Made(std::make_unique<PluginDevice>(file.string(), options, place));
+    if (std::filesystem::exists(file, code))
+      return Made(std::make_unique<PluginDevice>(file.string(), options, place));
   }
-  return Error{"--device osc", std::string("its plug-in ") + kLibrary + " does not lie in ../lib or ../lib/slosh of " + program.string(),
+  return Error{"--device osc",
+               std::string("its plug-in ") + kLibrary + " does not lie in ../lib or ../lib/slosh of " +
+                   program.string(),
                "Give --device plugin:FILE[:OPTIONS] with the path where it is"};
 }
 
