@@ -12,6 +12,11 @@ constexpr double kWater = 1000.0;      // kg/m³: what is carried is taken to be
 constexpr double kSwings = 0.43;
 constexpr double kQuick = 1.841 * 0.951;
 constexpr double kLasts = 1.0;  // s, after which what no model explains is taken to last
+/// s to one side, which is longer than what swings stays there, from which on weight is taken to be poured
+/// out or in; s over which it is then believed; and the share of the weight that counts as off.
+constexpr double kOneWay = 0.5;
+constexpr double kPoured = 0.1;
+constexpr double kOff = 0.06;
 /// s of round trip at which half of what does not last is followed.
 constexpr double kLate = 0.03;
 /// s and N²·s: over which, and against how much before anything was seen, it is found how far a bowl explains
@@ -23,7 +28,8 @@ constexpr double kSureOfLift = 1.0;
 
 void CarriedFluid::restart() noexcept {
   for (SloshFinder& finder : finders_) finder.restart(kMostSlosh * body_.mass);
-  down_ = lasting_ = passing_ = glm::dvec3(0.0);
+  down_ = lasting_ = passing_ = one_way_ = glm::dvec3(0.0);
+  weight_ = 0.0;
   bowl_ = lifts_ = lifts_square_ = lifts_answer_ = foreseen_ = 0.0;
   lifts_share_ = 1.0;
   lasting_known_ = false;
@@ -52,6 +58,7 @@ void CarriedFluid::look_for_vessel(const Acting& acting) noexcept {
   const double mass = glm::dot(lasting_known_ ? lasting_ : acting.fluid, down) / g;
   if (!(mass > kLeastCarried * body_.mass)) return;
   down_ = down;
+  weight_ = mass * g;
   bowl_ = 1.0 / g;
   const double radius = std::cbrt(mass / (std::numbers::pi * kWater));
   for (int i = 0; i < 3; ++i) {
@@ -91,11 +98,17 @@ void CarriedFluid::put_into(FluidLoad& load, Vector6& rest, const Vector6& pace,
   const double late = round_trip / kLate;
   foreseen_ = share * (1.0 - 1.0 / (1.0 + late * late));
   const double lasts = 1.0 - std::exp(-acting.elapsed / kLasts);
+  const double poured = 1.0 - std::exp(-acting.elapsed / kPoured);
   for (int i = 0; i < 3; ++i) {
     const auto row = static_cast<std::size_t>(i);
     double still = rest[row] - (acting.force[i] - acting.fluid[i]);
     for (int j = 0; j < 3; ++j) still -= load.d_velocity[row][static_cast<std::size_t>(j)] * acting.now[j];
-    lasting_[i] += (lasting_known_ ? lasts : 1.0) * (still - lasting_[i]);
+    const double off = lasting_known_ ? still - lasting_[i] : 0.0;
+    const bool weighs = std::abs(down_[i]) > 0.7 && std::abs(off) > kOff * weight_;
+    if (!weighs || off * one_way_[i] < 0.0) one_way_[i] = 0.0;
+    if (weighs) one_way_[i] += std::copysign(acting.elapsed, off);
+    const double soon = std::abs(one_way_[i]) > kOneWay ? poured : lasts;
+    lasting_[i] += (lasting_known_ ? soon : 1.0) * (still - lasting_[i]);
     passing_[i] = still - lasting_[i] + lifts_share_ * lifts_ * down_[i];
     rest[row] -= foreseen_ * (still - lasting_[i]);
   }

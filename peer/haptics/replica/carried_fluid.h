@@ -21,7 +21,8 @@ struct Acting {
 
 /// Three slosh modes along the world's axes, the bowl in which what swings rises, and how far the replica
 /// goes by all that. Where fluid weighs on the body it is in it as in a vessel, and what it weighs says what
-/// of it swings and how fast before anything has moved. Neither allocates nor reads a clock; one thread.
+/// of it swings and how fast before anything has moved. Weight that goes one way for longer than what swings does is
+/// poured out or in, and believed soon. Neither allocates nor reads a clock; one thread.
 class CarriedFluid {
  public:
   explicit CarriedFluid(const ReplicaBody& body) : body_(body) { restart(); }
@@ -55,6 +56,8 @@ class CarriedFluid {
   double lifts_square_ = 0.0, lifts_answer_ = 0.0;  // N²·s
   glm::dvec3 lasting_{0.0};                         // N: of what no model explains, what lasts
   glm::dvec3 passing_{0.0};                         // N: the rest of it, the bowl not taken off
+  double weight_ = 0.0;                             // N, of what is carried
+  glm::dvec3 one_way_{0.0};                         // s: for how long what lasts was off to one side, and to which
   bool lasting_known_ = false;
   double foreseen_ = 0.0;
 };
