@@ -110,10 +110,11 @@ void Renderer::draw(std::span<const View> views, std::span<const PictureTarget> 
   }
 }
 
-void Renderer::draw_hud() {
+void Renderer::draw_hud(std::size_t view) {
   Parts& p = *parts_;
-  if (!p.frame.hud) return;
-  p.run("hud", [&] { p.hud_pass->draw(p.frame.hud, p.targets.display_target, p.targets.size); });
+  const Targets& drawn = p.pictures[std::min<std::size_t>(view, 1)].targets;
+  if (!p.frame.hud || drawn.size != p.targets.size) return;
+  p.run("hud", [&] { p.hud_pass->draw(p.frame.hud, drawn.display_target, drawn.size); });
 }
 
 void Renderer::draw_panel(glm::ivec2 size, const PictureTarget& target) {

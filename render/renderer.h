@@ -164,8 +164,8 @@ class Renderer : public MeshSink {
   /// Two pictures of it, as both eyes have them, each the same as by itself: side by side where compute shaders
   /// draw, which takes less time than one after the other. More than two are left out.
   void draw(std::span<const View> views, std::span<const PictureTarget> targets = {});
-  /// Runs Frame::hud once, over the picture drawn last (of two, the first).
-  void draw_hud();
+  /// Runs Frame::hud once, over the picture drawn last (of two, the first, or `view` 1).
+  void draw_hud(std::size_t view = 0);
   /// Runs Frame::hud once, by itself, into `target` of `size` pixels: sRGB, transparent where nothing is,
   /// colours multiplied by alpha.
   void draw_panel(glm::ivec2 size, const PictureTarget& target);

@@ -1,5 +1,6 @@
 #include "render/room_in_world.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace slosh {
@@ -49,6 +50,16 @@ View eye_view(const EyeInRoom& eye, const RoomInWorld& room, double near_plane, 
   view.near_plane = static_cast<float>(near_plane);
   view.far_plane = static_cast<float>(far_plane);
   return view;
+}
+
+View panel_view(const Pose& panel, const glm::dvec2& size, const glm::dvec3& eye, const RoomInWorld& room,
+                double near_plane) {
+  const glm::dvec3 middle = transform_point(inverse(Pose{eye, panel.orientation}), panel.position);
+  const double away = std::max(-middle.z, 1e-6);
+  const EyeInRoom through{Pose{eye, panel.orientation}, (middle.x - 0.5 * size.x) / away,
+                          (middle.x + 0.5 * size.x) / away, (middle.y - 0.5 * size.y) / away,
+                          (middle.y + 0.5 * size.y) / away};
+  return eye_view(through, room, near_plane, std::max(away * room.scale, 2.0 * near_plane));
 }
 
 RoomInWorld anchor_room(const Pose& head, const AnchorWish& wish) {

@@ -40,7 +40,7 @@ std::vector<Rect> HeldRects::of(const Snapshot& snapshot, const View& view) cons
     Rect rect{glm::vec2(1e9f), glm::vec2(-1e9f)};
     for (const glm::vec3& point : points) {
       const glm::vec4 clip = view.projection * view.view * glm::vec4(point, 1.0f);
-      if (!(clip.w > view.near_plane)) continue;  // a NaN too
+      if (!(clip.w > view.near_plane && clip.w < view.far_plane)) continue;  // a NaN too
       const glm::vec2 at(0.5f + 0.5f * clip.x / clip.w, 0.5f - 0.5f * clip.y / clip.w);
       rect.low = glm::min(rect.low, at);
       rect.high = glm::max(rect.high, at);

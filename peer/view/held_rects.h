@@ -18,7 +18,7 @@ class HeldRects {
   explicit HeldRects(const Scene& scene);
 
   /// One a grip: round the projected box of the body it holds and its handle. In shares of the picture, 0–1,
-  /// y down; without what is behind the eye.
+  /// y down; without what is behind the eye or beyond the far plane.
   std::vector<Rect> of(const Snapshot& snapshot, const View& view) const;
 
  private:

@@ -60,7 +60,12 @@ class Painter {
     Frame frame = builder_.build(snapshot, camera_.distance());
     frame.foam = foam_.points();
     for (const Pose& pose : controllers) builder_.add_controller(pose, scale, frame);
-    hud_.keep_clear.clear();  // the panel stands behind the scene
+    // The panel stands behind the scene and would be drawn over what is lifted before it.
+    hud_.keep_clear.clear();
+    for (const View& eye : pictures.panel_views) {
+      if (pictures.panel.texture == 0) break;
+      for (const Rect& rect : held_.of(snapshot, eye)) hud_.keep_clear.push_back(rect);
+    }
     frame.hud = [this, &rates] { hud_.draw(rates); };
     const RenderOptions& size = renderer_.options();
     if (size.width != pictures.size.x || size.height != pictures.size.y)
@@ -71,7 +76,7 @@ class Painter {
     if (keep) *keep = side_by_side(renderer_.read_back(0), renderer_.read_back(1));
   }
 
-  /// Both eyes of a film (stereo_views.h), the HUD over each, in the screen: side by side.
+  /// Both eyes of a film (stereo_views.h), drawn together, the HUD over each, in the screen: side by side.
   Image draw_both(const Snapshot& snapshot, const Rates& rates) {
     Frame frame = builder_.build(snapshot, camera_.distance());
     frame.foam = foam_.points();
@@ -83,10 +88,10 @@ class Painter {
         stereo_views(frame.view, kEyesApart, static_cast<float>(camera_.distance()));
     renderer_.prepare(frame, eyes);
     std::array<Image, 2> read;
+    renderer_.draw(eyes, {});
     for (std::size_t eye = 0; eye < 2; ++eye) {
-      renderer_.draw(eyes[eye]);
-      renderer_.draw_hud();
-      read[eye] = renderer_.read_back();
+      renderer_.draw_hud(eye);
+      read[eye] = renderer_.read_back(eye);
     }
     renderer_.present();
     return side_by_side(read[0], read[1]);

@@ -235,6 +235,9 @@ bool Session::frame(const std::function<HeadsetPlaces(const Pose& head)>& places
         pictures.views[i] = eye_view({to_pose(eyes[i].pose), tangent(fov.angleLeft), tangent(fov.angleRight),
                                       tangent(fov.angleDown), tangent(fov.angleUp)},
                                      at.room, options_.near_plane, options_.far_plane);
+        if (panel.size.x <= 0.0) continue;
+        pictures.panel_views[i] = panel_view(panel.pose, panel.size, to_pose(eyes[i].pose).position, at.room,
+                                             options_.near_plane);
       }
       draw(pictures);
     }

@@ -1,4 +1,6 @@
 // Two pictures of one prepared frame, as a headset has them.
+#include <imgui.h>
+
 #include <array>
 #include <cmath>
 
@@ -71,6 +73,22 @@ TEST_P(StereoTogetherTest, EyesDrawnTogetherAreAsEachAlone) {
         EXPECT_EQ(renderer->read_back(eye).rgba, alone[eye]) << "eye " << eye << ", picture " << picture;
       EXPECT_EQ(renderer->read_buffer(Buffer::kSmoothDepth).values, depths[0]);
     }
+    // Each has its own HUD.
+    int huds = 0;
+    scene.frame.hud = [&] {
+      ++huds;
+      ImGui::GetForegroundDrawList()->AddRectFilled({4.0f, 4.0f}, {20.0f, 20.0f}, IM_COL32(255, 0, 255, 255));
+    };
+    renderer->prepare(scene.frame, eyes);
+    renderer->draw(eyes);
+    for (std::size_t eye = 0; eye < 2; ++eye) {
+      EXPECT_EQ(renderer->read_back(eye).rgba, alone[eye]) << "eye " << eye;
+      renderer->draw_hud(eye);
+      EXPECT_NE(renderer->read_back(eye).rgba, alone[eye]) << "eye " << eye;
+    }
+    EXPECT_EQ(huds, 2);
+    scene.frame.hud = {};
+    renderer->prepare(scene.frame, eyes);
     // And what is drawn alone after is not the other's.
     renderer->draw(eyes[1]);
     EXPECT_EQ(renderer->read_back().rgba, alone[1]);

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "peer/view/headset_view.h"
+#include "peer/view/held_rects.h"
 #include "render/room_in_world.h"
 
 namespace slosh {
@@ -124,6 +125,60 @@ TEST(PanelPlace, StandsBehindTheSceneAndFacesTheHead) {
     EXPECT_NEAR(glm::dot(glm::normalize(glm::dvec3(way.x, 0, way.z)), faces), 1.0, 1e-9);
     EXPECT_GT(std::hypot(way.x, way.z), wish.distance + 0.2);
   }
+}
+
+TEST(PanelView, HasThePanelAndWhatIsBeforeIt) {
+  const RoomInWorld room{{1.0, -0.5, 2.0}, 0.7, 0.5};
+  HeadsetPanel panel;
+  panel.pose = turned({0.2, 1.4, -1.1}, 0.3, 0.0);
+  panel.size = {0.9, 0.6};
+  const glm::dvec3 eye(0.05, 1.6, 0.4);
+  const View view = panel_view(panel.pose, panel.size, eye, room, 0.015);
+  const auto place = [&](const glm::dvec3& in_room) {
+    const glm::dvec3 world = room.to_world(Pose{in_room, {1, 0, 0, 0}}).position;
+    return view.projection * view.view * glm::vec4(glm::vec3(world), 1.0f);
+  };
+  for (const double x : {-1.0, 1.0}) {
+    for (const double y : {-1.0, 1.0}) {
+      const glm::dvec3 corner = panel.pose.position + panel.pose.orientation * glm::dvec3(0.45 * x, 0.3 * y, 0.0);
+      const glm::vec4 clip = place(corner);
+      EXPECT_NEAR(clip.x / clip.w, x, 1e-4);
+      EXPECT_NEAR(clip.y / clip.w, y, 1e-4);
+      EXPECT_NEAR(clip.w, view.far_plane, 1e-4);
+      // Half-way to the eye it hides the same corner, and lies before the panel; beyond it, behind.
+      const glm::vec4 before = place(0.5 * (corner + eye));
+      EXPECT_NEAR(before.x / before.w, x, 1e-4);
+      EXPECT_NEAR(before.w, 0.5 * view.far_plane, 1e-4);
+      EXPECT_GT(place(corner + 0.1 * (corner - eye)).w, view.far_plane);
+    }
+  }
+}
+
+TEST(PanelView, HeldBodiesBeforeItAreToldAndThoseBehindAreNot) {
+  Scene scene;
+  scene.meshes.resize(1);
+  scene.meshes[0].positions = {{-0.05f, -0.05f, -0.05f}, {0.05f, 0.05f, 0.05f}};
+  scene.bodies.resize(1);
+  scene.bodies[0].mesh = 0;
+  scene.grips.resize(1);
+  scene.grips[0].body = 0;
+  const HeldRects held(scene);
+  const Pose panel{{0.0, 1.5, -1.0}, {1, 0, 0, 0}};
+  const View view = panel_view(panel, {0.8, 0.6}, {0.0, 1.5, 0.0}, {}, 0.03);
+  Snapshot snapshot;
+  snapshot.rigid.bodies.resize(1);
+  snapshot.rigid.grips.resize(1);
+  const auto rects = [&](double z) {
+    snapshot.rigid.bodies[0].pose.position = {0.0, 1.5, z};
+    snapshot.rigid.grips[0].handle.position = {0.0, 1.5, z};
+    return held.of(snapshot, view);
+  };
+  ASSERT_EQ(rects(-0.5).size(), 1u);
+  // A tenth of a metre at half the way, its near side at 0.45: 0.05 · 1/0.45 of 0.8 and 0.6 each way.
+  EXPECT_NEAR(rects(-0.5)[0].low.x, 0.5 - 0.1111 / 0.8, 1e-3);
+  EXPECT_NEAR(rects(-0.5)[0].high.y, 0.5 + 0.1111 / 0.6, 1e-3);
+  EXPECT_TRUE(rects(-1.5).empty());
+  EXPECT_TRUE(rects(0.5).empty());
 }
 
 }  // namespace
