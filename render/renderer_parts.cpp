@@ -67,7 +67,7 @@ Result<bool> Renderer::Parts::fit_to_options() {
     if (!fluid_shadow) return fluid_shadow.error();
     auto thickness = ThicknessPass::create(want_compute);
     if (!thickness) return thickness.error();
-    auto copying = gl::PixelProgram::create("copy.frag", want_compute);
+    auto copying = gl::PixelProgram::create("copy.frag", want_compute, false, {"EACH 4"});
     if (!copying) return copying.error();
     particles.reset();
     if (want_compute && !want_fast) {

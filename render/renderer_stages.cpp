@@ -43,13 +43,15 @@ void Renderer::Parts::draw_stages_before_fluid(std::span<Picture> drawn, bool ti
       gl::finish_compute();
     } while (particles->steps_left() > 1);
   });
+  // Meshes first: where many small triangles are in one place a few groups take long, and the particles fill
+  // the rest of the chip meanwhile.
   run("opaque meshes, smooth centres", [&] {
-    particles->start_next();
     const bool background = options.draw_background;
     each(drawn, [&](Picture& p) {
       if (tiled) return scene_pass->start_opaque(frame, p.meshes, p.targets, background, occludes());
       scene_pass->draw_opaque(frame, meshes, textures, p.targets, background, occludes());
     });
+    particles->start_next();
     gl::finish_compute();
   });
   run("occlusion, prepare splats", [&] {

@@ -1,6 +1,7 @@
 #include "render/gl/pixel_program.h"
 
 #include <algorithm>
+#include <string>
 
 namespace slosh::gl {
 namespace {
@@ -13,6 +14,7 @@ constexpr int kShortRow = 8;
 constexpr std::size_t kMany = 100000;  // splats
 constexpr std::size_t kPartsOfRows = 64;
 constexpr std::size_t kEachInGroup = 64;
+constexpr std::size_t kByTurns = 16384;  // groups
 constexpr std::size_t kMostGroups = 32768;  // on an axis; at least 65535 are allowed
 
 }  // namespace
@@ -24,6 +26,10 @@ void TileDraw::operator()() const {
 
 Result<PixelProgram> PixelProgram::create(const char* file, bool compute, bool tiled,
                                           std::vector<std::string> defines, const std::string& prelude) {
+  glm::ivec2 group = kPixelGroup;
+  for (const std::string& define : defines) {
+    if (define.starts_with("EACH ")) group.y *= std::stoi(define.substr(5));
+  }
   auto made = compute ? Program::create_compute(file, std::move(defines), prelude)
                       : Program::create_with(tiled ? "tiles.vert" : "fullscreen.vert", file,
                                              std::move(defines), prelude);
@@ -31,6 +37,7 @@ Result<PixelProgram> PixelProgram::create(const char* file, bool compute, bool t
   PixelProgram out;
   out.program_ = std::move(made.value());
   out.no_vertices_ = make_vertex_array();
+  out.group_ = group;
   out.compute_ = compute;
   return out;
 }
@@ -44,7 +51,7 @@ void PixelProgram::start(const PixelTarget& target, const TileDraw* tiles) const
   program_.use();
   if (compute_) {
     glBindImageTexture(0, target.texture.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, target.format);
-    const glm::ivec2 groups = (target.size + kPixelGroup - 1) / kPixelGroup;
+    const glm::ivec2 groups = (target.size + group_ - 1) / group_;
     glDispatchCompute(static_cast<GLuint>(groups.x), static_cast<GLuint>(groups.y), 1);
     return;
   }
@@ -63,9 +70,11 @@ void finish_compute() {
 namespace {
 
 /// `invocations` or rows of them, for `count`.
-void start_groups(const Program& program, std::size_t count, std::size_t invocations, std::size_t in_group) {
+void start_groups(const Program& program, std::size_t count, std::size_t invocations, std::size_t in_group,
+                  bool by_turns = false) {
   if (count == 0) return;
-  const std::size_t groups = (invocations + in_group - 1) / in_group;
+  std::size_t groups = (invocations + in_group - 1) / in_group;
+  if (by_turns) groups = std::min(groups, kByTurns);
   const std::size_t across = std::min(groups, kMostGroups);
   program.use();
   program.set("count", static_cast<int>(count));
@@ -80,6 +89,10 @@ void start_each(const Program& program, std::size_t count, std::size_t share) {
 void run_each(const Program& program, std::size_t count, std::size_t share) {
   start_each(program, count, share);
   finish_compute();
+}
+
+void start_by_turns(const Program& program, std::size_t count, std::size_t share) {
+  start_groups(program, count, count * share, kEachInGroup, true);
 }
 
 Result<RowProgram> RowProgram::create(const char* file, bool small, const std::vector<std::string>& defines) {
@@ -110,7 +123,7 @@ void RowProgram::run(std::size_t count) const {
 
 void RowProgram::start(std::size_t count) const {
   const std::size_t rows = (count + kPartsOfRows - 1) / kPartsOfRows * kPartsOfRows;
-  start_groups(of(count), count, rows, kInRows / (short_rows(count) ? kShortRow : kLongRow));
+  start_groups(of(count), count, rows, kInRows / (short_rows(count) ? kShortRow : kLongRow), true);
 }
 
 }  // namespace slosh::gl

@@ -29,7 +29,8 @@ class PixelProgram {
  public:
   PixelProgram() = default;
   /// `file` ends with pixel_main.glsl. `tiled`: fragments are drawn over the TileDraw given to run().
-  /// `prelude`: generated GLSL before the file's own. Errors carry the driver's log.
+  /// `prelude`: generated GLSL before the file's own. Where little is done for a pixel, `defines` may say "EACH n":
+  /// a compute shader's invocation takes n of them. Errors carry the driver's log.
   static Result<PixelProgram> create(const char* file, bool compute, bool tiled = false,
                                      std::vector<std::string> defines = {}, const std::string& prelude = {});
 
@@ -44,6 +45,7 @@ class PixelProgram {
  private:
   Program program_;
   VertexArray no_vertices_;
+  glm::ivec2 group_{0};  ///< pixels
   bool compute_ = false;
 };
 
@@ -55,6 +57,9 @@ void run_each(const Program& program, std::size_t count, std::size_t share = 1);
 
 /// The same without finish_compute(): for several in a row that write to different places.
 void start_each(const Program& program, std::size_t count, std::size_t share = 1);
+
+/// The same with no more groups than a chip takes long to start: the shader goes over the rest by turns.
+void start_by_turns(const Program& program, std::size_t count, std::size_t share);
 
 /// A compute shader that takes one row of splat_rows.glsl for each splat.
 class RowProgram {

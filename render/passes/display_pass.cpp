@@ -18,7 +18,7 @@ std::optional<gl::PixelProgram> by_its_text(const DisplayPass::Wish& wish) {
   const auto text = display_shader(wish.display, wish.color);
   if (!text || !text.value()) return std::nullopt;
   if (wish.by == DisplayBy::kSmaller && text.value()->size() > kMostText) return std::nullopt;
-  auto program = gl::PixelProgram::create("display.frag", wish.compute, false, {"BY_TEXT"}, *text.value());
+  auto program = gl::PixelProgram::create("display.frag", wish.compute, false, {"BY_TEXT", "EACH 4"}, *text.value());
   if (!program) return std::nullopt;
   return std::move(program.value());
 }
@@ -28,7 +28,7 @@ std::optional<gl::PixelProgram> by_its_text(const DisplayPass::Wish& wish) {
 Result<DisplayPass> DisplayPass::create(const Wish& wish) {
   DisplayPass pass;
   pass.wish_ = wish;
-  auto edges = gl::PixelProgram::create("edges.frag", wish.compute);
+  auto edges = gl::PixelProgram::create("edges.frag", wish.compute, false, {"EACH 4"});
   if (!edges) return edges.error();
   pass.edges_ = std::move(edges.value());
   if (auto program = by_its_text(wish)) {
@@ -40,7 +40,7 @@ Result<DisplayPass> DisplayPass::create(const Wish& wish) {
   }
   auto table = make_display_table(wish.display, wish.color);
   if (!table) return table.error();
-  auto program = gl::PixelProgram::create("display.frag", wish.compute);
+  auto program = gl::PixelProgram::create("display.frag", wish.compute, false, {"EACH 4"});
   if (!program) return program.error();
   pass.program_ = std::move(program.value());
   const int n = kDisplayTableSize;

@@ -33,7 +33,7 @@ Result<FluidPasses> FluidPasses::create(bool fast, bool compute, const std::vect
         gl::take(passes.shaped_program_, splats({"FRONT", "SHAPED"})), gl::take(passes.back_program_, splats({})),
         gl::take(passes.composite_program_, gl::PixelProgram::create("composite.frag", compute, true, far_light)),
         gl::take(passes.look_program_, gl::PixelProgram::create("fluid_look.frag", compute, true, looks)),
-        gl::take(passes.fill_program_, gl::PixelProgram::create("fill.frag", compute)),
+        gl::take(passes.fill_program_, gl::PixelProgram::create("fill.frag", compute, false, {"EACH 4"})),
         gl::take(passes.thickness_program_, gl::Program::create("tiles.vert", "thickness.frag")),
         gl::take(passes.normal_program_, gl::Program::create("tiles.vert", "normal.frag"))}) {
     if (!loaded) return loaded.error();
@@ -49,7 +49,7 @@ Result<FluidPasses> FluidPasses::create(bool fast, bool compute, const std::vect
 Result<FluidPasses::SplatProgram> FluidPasses::SplatProgram::create(bool compute,
                                                                     const std::vector<std::string>& defines) {
   SplatProgram out;
-  const auto made = compute ? gl::take(out.rows, gl::RowProgram::create("splat.comp", defines.empty(), defines))
+  const auto made = compute ? gl::take(out.rows, gl::RowProgram::create("splat.comp", true, defines))
                             : gl::take(out.triangles, gl::Program::create("splat.vert", "splat.frag", defines));
   if (!made) return made.error();
   return out;
@@ -83,6 +83,7 @@ void FluidPasses::splat(const SplatProgram& program, const gl::PixelTarget& targ
     fill_program_.program().set("fill_with", glm::vec4(cleared));
     fill_program_.run(target);
     glBindImageTexture(0, target.texture.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_R32UI);
+    program.rows.of(count).set("seen_at", -1);
     program.rows.run(count);
     return;
   }
@@ -107,10 +108,14 @@ void FluidPasses::start_clear(const Targets& targets) const {
 void FluidPasses::start_splats(const Targets& targets, const SplatBuffers& splats) const {
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, splats.spheres.name());
   if (splats.shaped) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, splats.shapes.name());
-  glBindImageTexture(0, targets.front.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_R32UI);
-  (splats.shaped ? shaped_program_ : front_program_).rows.start(splats.count);
-  glBindImageTexture(0, targets.back.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_R32UI);
-  back_program_.rows.start(splats.count);
+  if (splats.seen) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 6, splats.seen->name());
+  const auto start = [&](const gl::RowProgram& rows, const gl::Texture& into) {
+    glBindImageTexture(0, into.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_R32UI);
+    rows.of(splats.count).set("seen_at", splats.seen_at);
+    rows.start(splats.count);
+  };
+  start((splats.shaped ? shaped_program_ : front_program_).rows, targets.front);
+  start(back_program_.rows, targets.back);
 }
 
 int FluidPasses::begin_filter(const RenderOptions& options) {

@@ -18,7 +18,7 @@ void bind(GLuint binding, const gl::StreamBuffer& buffer) {
 
 constexpr std::size_t kVec4 = sizeof(glm::vec4);
 constexpr std::size_t kSmoothShare = 8;  // invocations a particle, as smooth_centers.comp has it
-constexpr std::size_t kDeepShare = 8;    // an entry, as cells_deep.comp has it
+constexpr std::size_t kDeepShare = 8;    // an entry, as cells_filled.comp and cells_deep.comp have it
 
 /// Of fewer particles most are near a surface. Of 33 thousand in a broken dam half are deep inside, of a million
 /// four in five.
@@ -34,11 +34,13 @@ Result<ParticlesOnGpu> ParticlesOnGpu::create() {
         gl::take(out.begin_, gl::Program::create_compute("cells_begin.comp")),
         gl::take(out.fill_, gl::Program::create_compute("cells_fill.comp")),
         gl::take(out.sort_, gl::Program::create_compute("cells_fill.comp", {"SORT"})),
-        gl::take(out.deep_program_, gl::Program::create_compute("cells_deep.comp")),
+        gl::take(out.find_filled_, gl::Program::create_compute("cells_filled.comp")),
+        gl::take(out.find_seen_, gl::Program::create_compute("cells_deep.comp")),
         gl::take(out.smooth_, gl::Program::create_compute("smooth_centers.comp")),
-        gl::take(out.smooth_seen_, gl::Program::create_compute("smooth_centers.comp", {"DEEP"})),
+        gl::take(out.smooth_seen_, gl::Program::create_compute("smooth_centers.comp", {"SEEN"})),
         gl::take(out.place_, gl::Program::create_compute("splats.comp")),
-        gl::take(out.place_shaped_, gl::Program::create_compute("splats.comp", {"SHAPED"}))}) {
+        gl::take(out.place_shaped_, gl::Program::create_compute("splats.comp", {"SHAPED"})),
+        gl::take(out.place_seen_, gl::Program::create_compute("splats.comp", {"SHAPED", "SEEN"}))}) {
     if (!loaded) return loaded.error();
   }
   return out;
@@ -69,10 +71,13 @@ void ParticlesOnGpu::start_taking(const Frame& frame) {
   if (moves_) {
     // Some fifteen particles are in a cell inside a fluid.
     entries_ = std::bit_ceil(std::max<std::size_t>(count_ / 2, 1024));
-    counts_.zero((entries_ + 1) * sizeof(std::uint32_t));
+    counts_.zero((entries_ + 2) * sizeof(std::uint32_t));
     ranks_.reserve(count_ * sizeof(std::uint32_t));
     begins_.reserve(entries_ * sizeof(std::uint32_t));
-    deep_.reserve(entries_ * sizeof(std::uint32_t));
+    if (leaves_out_deep_) {
+      filled_.reserve(entries_ * 2 * sizeof(std::uint32_t));
+      seen_.reserve(count_ * sizeof(std::uint32_t));
+    }
     listed_.reserve(count_ * sizeof(std::uint32_t));
     sorted_.reserve(count_ * kVec4);
     centers_.reserve(count_ * kVec4);
@@ -121,7 +126,10 @@ void ParticlesOnGpu::start_next() {
   bind(5, begins_);
   bind(6, listed_);
   bind(7, sorted_);
-  bind(8, deep_);
+  if (leaves_out_deep_) {
+    bind(8, seen_);
+    bind(9, filled_);
+  }
   const auto set_cells = [&](const gl::Program& program) {
     program.set("entries", static_cast<int>(entries_));
     program.set("reach", reach);
@@ -134,17 +142,20 @@ void ParticlesOnGpu::start_next() {
       return gl::start_each(fill_, count_);
     case Step::kSort:
       set_cells(sort_);
-      return gl::start_each(sort_, count_);
+      gl::start_each(sort_, count_);
+      if (!leaves_out_deep_) return;
+      find_filled_.set("reach", reach);
+      return gl::start_each(find_filled_, entries_, kDeepShare);
     case Step::kFindDeep:
-      deep_program_.set("reach", reach);
-      return gl::start_each(deep_program_, entries_, kDeepShare);
+      find_seen_.set("reach", reach);
+      return gl::start_each(find_seen_, entries_, kDeepShare);
     case Step::kSmooth: {
       bind(0, centers_);
       bind(1, ellipsoids_);
       const gl::Program& program = leaves_out_deep_ ? smooth_seen_ : smooth_;
       program.set("entries", static_cast<int>(entries_));
       program.set("lengths", glm::vec2(reach, radius_));
-      return gl::start_each(program, count_, kSmoothShare);
+      return gl::start_by_turns(program, count_, kSmoothShare);
     }
   }
 }
@@ -153,7 +164,10 @@ void ParticlesOnGpu::start_placing(const Frame& frame, float splat_radius, Splat
   out.count = count_;
   out.shaped = moves_;
   if (count_ == 0) return;
-  const gl::Program& program = moves_ ? place_shaped_ : place_;
+  const bool listed = moves_ && leaves_out_deep_;
+  out.seen = listed ? &counts_ : nullptr;
+  out.seen_at = listed ? static_cast<int>(entries_) + 1 : -1;
+  const gl::Program& program = listed ? place_seen_ : moves_ ? place_shaped_ : place_;
   out.spheres.reserve(count_ * kVec4);
   bind(0, out.spheres);
   bind(2, moves_ ? sorted_ : particles_);
@@ -164,6 +178,11 @@ void ParticlesOnGpu::start_placing(const Frame& frame, float splat_radius, Splat
     bind(3, out.balls);
     bind(4, centers_);
     bind(5, ellipsoids_);
+  }
+  if (listed) {
+    bind(6, counts_);
+    bind(8, seen_);
+    program.set("seen_at", out.seen_at);
   }
   program.set("near_plane", frame.view.near_plane);
   program.set("reach", splat_radius);

@@ -18,8 +18,11 @@ struct SplatBuffers {
   gl::StreamBuffer spheres;  ///< vec4
   gl::StreamBuffer shapes;   ///< SplatShape, of moved spheres
   gl::StreamBuffer balls;    ///< vec4: the spheres before they were moved
-  std::size_t count = 0;
+  std::size_t count = 0;  ///< of balls, and of spheres if `seen` is null
   bool shaped = false;
+  /// Where the GPU has how many spheres there are, a uint; null: `count`.
+  const gl::StreamBuffer* seen = nullptr;
+  int seen_at = -1;  ///< which of its uints
 
   const gl::StreamBuffer& unmoved() const { return shaped ? balls : spheres; }
 };
@@ -32,8 +35,8 @@ class ParticlesOnGpu {
   /// Takes the frame's particles. `moves`: they are counted into cells, to be sorted and smoothed.
   void take(const Frame& frame, bool moves);
   /// How many steps are left until they are sorted and their neighbours' means and ellipsoids are found. Of many
-  /// particles of one fluid those that are deep inside are not drawn since (but for their chords): nobody sees
-  /// them.
+  /// particles of one fluid those that are deep inside are not smoothed nor drawn since (but for their chords):
+  /// nobody sees them.
   std::size_t steps_left() const { return steps_.size(); }
   /// Starts the next of them, if one is left; the one after it is for after gl::finish_compute().
   void start_next();
@@ -56,21 +59,24 @@ class ParticlesOnGpu {
   gl::Program begin_;
   gl::Program fill_;
   gl::Program sort_;
-  gl::Program deep_program_;
+  gl::Program find_filled_;
+  gl::Program find_seen_;
   gl::Program smooth_;
   gl::Program smooth_seen_;  ///< but for what is deep in the fluid
   gl::Program place_;
   gl::Program place_shaped_;
+  gl::Program place_seen_;
   GivenParticles given_;
   gl::StreamBuffer particles_;
-  gl::StreamBuffer counts_;  ///< an entry of the table each, and the sum of all
+  gl::StreamBuffer counts_;  ///< an entry of the table each, the sum of all, and how many of these are seen
   gl::StreamBuffer ranks_;
   gl::StreamBuffer begins_;
   gl::StreamBuffer listed_;
-  gl::StreamBuffer deep_;        ///< an entry each: its cell's particles are not seen
+  gl::StreamBuffer filled_;      ///< an entry each: its cell, where that is well filled
   gl::StreamBuffer sorted_;      ///< as particles_, by cell
-  gl::StreamBuffer centers_;     ///< of the sorted
-  gl::StreamBuffer ellipsoids_;  ///< of the sorted
+  gl::StreamBuffer seen_;        ///< of the sorted, those that are not deep in the fluid
+  gl::StreamBuffer centers_;     ///< of the sorted, or of those of them that are seen
+  gl::StreamBuffer ellipsoids_;  ///< likewise
   std::size_t count_ = 0;
   std::size_t entries_ = 0;
   float radius_ = 0.0f;  ///< m

@@ -74,7 +74,7 @@ Result<ScenePass> ScenePass::create(bool fast, bool compute, const std::vector<s
   for (const Result<bool>& loaded :
        {gl::take(pass.background_, gl::Program::create("fullscreen.vert", "background.frag", far_light)),
         gl::take(pass.occlusion_, gl::PixelProgram::create("occlusion.frag", compute, false, {"TAPS 8"})),
-        gl::take(pass.resolve_, gl::PixelProgram::create("resolve.frag", compute)),
+        gl::take(pass.resolve_, gl::PixelProgram::create("resolve.frag", compute, false, {"EACH 4"})),
         gl::take(pass.opaque_, Programs::create("mesh.frag", defines.opaque)),
         gl::take(pass.translucent_behind_, Programs::create("translucent.frag", defines.behind)),
         gl::take(pass.translucent_front_, Programs::create("translucent.frag", far_light))}) {

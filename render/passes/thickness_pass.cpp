@@ -23,7 +23,7 @@ Result<ThicknessPass> ThicknessPass::create(bool compute) {
   ThicknessPass pass;
   if (compute) {
     for (const Result<bool>& loaded : {gl::take(pass.rows_, gl::RowProgram::create("chord.comp", true)),
-                                       gl::take(pass.sum_, gl::PixelProgram::create("chord_sum.frag", true))}) {
+                                       gl::take(pass.sum_, gl::PixelProgram::create("chord_sum.frag", true, false, {"EACH 4"}))}) {
       if (!loaded) return loaded.error();
     }
   } else if (auto made = gl::take(pass.program_, gl::Program::create("chord.vert", "chord.frag")); !made) {

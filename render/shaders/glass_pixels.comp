@@ -9,6 +9,7 @@ layout(binding = 1) writeonly uniform image2D scene_color;
 layout(binding = 0) uniform sampler2D fluid_depth;
 layout(binding = 1) uniform sampler2D scene_depth;
 uniform int has_fluid;
+shared int any_in_tile;  // of whose pixels something may lie between
 void main() {
   float nearest[kPixels];   // between these is what is drawn
   float farthest[kPixels];
@@ -36,7 +37,12 @@ void main() {
     touched[k] = false;
     any_between = any_between || nearest[k] < farthest[k];
   }
-  for (int base = 0; base < count; base += 256) {
+  if (gl_LocalInvocationIndex == 0u) any_in_tile = 0;
+  barrier();
+  if (any_between) any_in_tile = 1;
+  barrier();
+  int groups_here = any_in_tile != 0 ? count : 0;
+  for (int base = 0; base < groups_here; base += 256) {
     look_for_groups(base);
     for (int from = 0; from < found_groups; from += 4) {
       look_for(from);

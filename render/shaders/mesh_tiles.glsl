@@ -64,12 +64,13 @@ bool meets(Facet t, vec2 ray, out Hit hit) {
   hit.outer = all_of_it > 0.0;
   bool inside = hit.outer ? right_of(to_a, b, c) && right_of(to_b, c, a) && right_of(to_c, a, b)
                           : all_of_it < 0.0 && right_of(-to_a, c, b) && right_of(-to_b, a, c) && right_of(-to_c, b, a);
+  if (!inside) return false;  // most rays pass beside
   hit.weights = vec3(to_a, to_b, to_c) / all_of_it;
   vec3 depths = vec3(t.a.z, t.b.z, t.c.z);
   float slope = dot(vec3(t.b.w, t.c.w, t.a.w), vec3(ray, 1.0));
   float in_plane = slope > 0.0 ? 1.0 / slope : dot(hit.weights, depths);
   hit.depth = clamp(in_plane, min(depths.x, min(depths.y, depths.z)), max(depths.x, max(depths.y, depths.z)));
-  return inside && hit.depth >= near_plane && hit.depth <= camera.w;
+  return hit.depth >= near_plane && hit.depth <= camera.w;
 }
 
 vec3 normal_of(Triangle t, vec3 weights) {
@@ -85,28 +86,33 @@ bool touches_tile(uvec2 box, out ivec4 in_tile) {
   return all(lessThan(in_tile.xy, ivec2(kTile))) && all(greaterThanEqual(in_tile.zw, ivec2(0))) && all(lessThanEqual(in_tile.xy, in_tile.zw));
 }
 
-shared uint near_groups[8];
+shared uint words[64];  // a bit for each of 256: the groups that touch the tile, then of the triangles at hand eight words for each 32 invocations
 shared int found_group[256];  // those that touch the tile, in their order
 shared int found_groups;
-shared uint touching[64];     // of the triangles at hand, a bit each: eight words for each 32 invocations
 shared uint touched_rows[256];  // of the triangles at hand, a bit for each four rows of the tile
 shared Facet facets[256];
+
+// No bit is set, once all have read those that were.
+void clear_words() {
+  barrier();
+  if (gl_LocalInvocationIndex < 64u) words[gl_LocalInvocationIndex] = 0u;
+  barrier();
+}
+// This invocation's bit of the 256 that begin with word 8 · row.
+void set_bit(int row) { atomicOr(words[8 * row + int(gl_LocalInvocationIndex >> 5)], 1u << (gl_LocalInvocationIndex & 31u)); }
 
 // Which of the 256 groups of 64 triangles from `base` on touch the tile.
 void look_for_groups(int base) {
   uint local = gl_LocalInvocationIndex;
-  barrier();
-  if (local < 8u) near_groups[local] = 0u;
-  barrier();
+  clear_words();
   ivec4 box;
-  uint bit = 1u << (local & 31u);
   bool near = base + int(local) < count && touches_tile(groups[base + int(local)], box);
-  if (near) atomicOr(near_groups[local >> 5], bit);
+  if (near) set_bit(0);
   barrier();
   int before = 0;
   for (int word = 0; word < 8; ++word) {
-    if (word < int(local >> 5)) before += bitCount(near_groups[word]);
-    if (word == int(local >> 5)) before += bitCount(near_groups[word] & (bit - 1u));
+    if (word < int(local >> 5)) before += bitCount(words[word]);
+    if (word == int(local >> 5)) before += bitCount(words[word] & ((1u << (local & 31u)) - 1u));
   }
   if (near) found_group[before] = base + int(local);
   if (local == 255u) found_groups = before + (near ? 1 : 0);
@@ -119,9 +125,7 @@ int triangle_at(int from, int place) { return 64 * found_group[from + (place >> 
 // Takes the triangles of the next four groups in hand: which of them touch whose pixels.
 void look_for(int from) {
   uint local = gl_LocalInvocationIndex;
-  barrier();
-  if (local < 64u) touching[local] = 0u;
-  barrier();
+  clear_words();
   ivec4 box;
   if (from + int(local >> 6) < found_groups) {
     int index = triangle_at(from, int(local));
@@ -132,7 +136,7 @@ void look_for(int from) {
       touched_rows[local] = rows;
       for (int column = box.x >> 3; column <= box.z >> 3; ++column) {
         for (int odd = 0; odd < 2; ++odd) {
-          if ((rows & 0x55u << odd) != 0u) atomicOr(touching[8 * (column + 4 * odd) + int(local >> 5)], 1u << (local & 31u));
+          if ((rows & 0x55u << odd) != 0u) set_bit(column + 4 * odd);
         }
       }
     }
@@ -141,6 +145,6 @@ void look_for(int from) {
 }
 
 // Those of them that touch this invocation's and its neighbours' pixels, 32 at a time, a bit each.
-uint at_hand(int word) { return touching[8 * int(gl_LocalInvocationIndex >> 5) + word]; }
+uint at_hand(int word) { return words[8 * int(gl_LocalInvocationIndex >> 5) + word]; }
 // In which of the invocation's four blocks pixels of one of them may lie, a bit every other.
 uint blocks_touched(int place) { return touched_rows[place] >> (gl_LocalInvocationIndex >> 7); }

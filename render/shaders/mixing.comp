@@ -5,9 +5,7 @@
 layout(std430, binding = 2) buffer Sums { uint sums[]; };  // four a texel
 uniform ivec2 size;
 uniform int count;
-void main() {
-  int index = int(splat_row(count));
-  if (index >= count) return;
+void draw_splat(int index) {
   vec4 splat_in = splats[index];
   int channel = int(splat_in.w) - first;
   if (channel < 0 || channel > 3) return;
@@ -17,9 +15,16 @@ void main() {
   vec2 middle = (place.center + 1.0) * half_size;
   vec2 texels = reach * place.scale * half_size;
   PixelBox box = pixel_box(middle - texels, middle + texels, size);
-  for (int i = int(gl_LocalInvocationID.x); i < box.size.x * box.size.y; i += LANES) {
-    ivec2 texel = box.low + ivec2(i % box.size.x, i / box.size.x);
+  for (ivec2 at = first_place(); at.y < box.size.y; at = next_place(at, box)) {
+    if (at.x >= box.size.x) continue;
+    ivec2 texel = box.low + at;
     uint steps = uint(share_at(texel, splat_in.xyz, reach) * kShareSteps + 0.5);
     if (steps > 0u) atomicAdd(sums[4 * (texel.y * size.x + texel.x) + channel], steps);
+  }
+}
+void main() {
+  for (uint row = first_row(); row < rows_of(count); row += all_rows()) {
+    int index = int(splat_of(row, count));
+    if (index < count) draw_splat(index);
   }
 }

@@ -7,4 +7,15 @@ uint entry_of(ivec3 cell, int entries) {
   return (row ^ (row >> 15)) + uint(cell.x) & uint(entries - 1);
 }
 
+// A cell in one value, 21 bits an axis and one that is set.
+const uvec2 kNotFilled = uvec2(0u);
+uvec2 packed_cell(ivec3 cell) {
+  uvec3 c = uvec3(cell) & 0x1fffffu;
+  return uvec2(c.x | c.y << 21, c.y >> 11 | c.z << 10 | 0x80000000u);
+}
+ivec3 cell_of_packed(uvec2 p) {
+  uvec3 c = uvec3(p.x & 0x1fffffu, p.x >> 21 | (p.y & 0x3ffu) << 11, p.y >> 10 & 0x1fffffu);
+  return ivec3(c << 11) >> 11;
+}
+
 int invocation() { return int(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64 + int(gl_LocalInvocationID.x); }

@@ -1,6 +1,6 @@
-// Particles moved to where their neighbours' mean is, and made ellipsoids: passes/smooth_centers on the GPU. Eight invocations share the
-// 27 cells round a particle; what they sum is added up in one order, so that it comes out the same each time. DEEP: but for particles of
-// cells deep in the fluid (cells_deep.comp), which nobody sees.
+// Particles moved to where their neighbours' mean is, and made ellipsoids: passes/smooth_centers on the GPU. Eight invocations a particle
+// go over its 27 cells together, a particle of the cell each, so that what they read lies side by side; what they sum is added up in one
+// order, so that it comes out the same each time. SEEN: of those alone that cells_deep.comp listed.
 #include "shared.glsl"
 #include "smoothing.glsl"
 #include "particles.glsl"
@@ -14,30 +14,48 @@ layout(std430, binding = 1) writeonly buffer Ellipsoids { Ellipsoid ellipsoids[]
 layout(std430, binding = 3) restrict readonly buffer Counts { uint counts[]; };
 layout(std430, binding = 5) restrict readonly buffer Begins { uint begins[]; };
 layout(std430, binding = 7) restrict readonly buffer Sorted { vec4 sorted[]; };
-#ifdef DEEP
-layout(std430, binding = 8) restrict readonly buffer Deep { uint deep[]; };
+#ifdef SEEN
+layout(std430, binding = 8) restrict readonly buffer Seen { uint seen[]; };  // sorted particles
 #endif
 uniform int count;
 uniform int entries;
 uniform vec2 lengths;  // reach and particle radius, m
 
 const int kShare = 8;  // invocations a particle
+const int kParticles = 64 / kShare;  // in a group
 shared Neighbourhood parts[64];
+shared uint cell_entry[kParticles * 27];
+shared uint cell_first[kParticles * 27];
+shared uint cell_end[kParticles * 27];
 
-Neighbourhood part_of(vec3 at, int part) {
-  float reach = lengths.x;
-  ivec3 middle = cell_of(at, reach);
-  Neighbourhood n = Neighbourhood(0.0, vec3(0.0), vec3(0.0), vec3(0.0));
+// The cells round a place, of which none is found by two entries: particles within reach of it are in one of them, whatever else shares
+// its entry.
+void find_cells(vec3 at, int own, int part) {
+  ivec3 middle = cell_of(at, lengths.x);
   for (int c = part; c < 27; c += kShare) {
-    ivec3 cell = middle + ivec3(c % 3, c / 3 % 3, c / 9) - 1;
-    uint entry = entry_of(cell, entries);
-    uint first = begins[entry];
-    uint end = first + counts[entry];
-    for (uint k = first; k < end; ++k) {
-      vec3 there = sorted[k].xyz;
-      vec3 way = there - at;
+    uint entry = entry_of(middle + ivec3(c % 3, c / 3 % 3, c / 9) - 1, entries);
+    cell_entry[27 * own + c] = entry;
+    cell_first[27 * own + c] = begins[entry];
+    cell_end[27 * own + c] = begins[entry] + counts[entry];
+  }
+}
+void leave_out_twice_found(int own, int part) {
+  for (int c = part; c < 27; c += kShare) {
+    bool twice = false;
+    for (int d = 0; d < c; ++d) twice = twice || cell_entry[27 * own + d] == cell_entry[27 * own + c];
+    if (twice) cell_end[27 * own + c] = 0u;
+  }
+}
+
+Neighbourhood part_of(vec3 at, int own, int part) {
+  float reach = lengths.x;
+  Neighbourhood n = Neighbourhood(0.0, vec3(0.0), vec3(0.0), vec3(0.0));
+  for (int c = 0; c < 27; ++c) {
+    uint end = cell_end[27 * own + c];
+    for (uint k = cell_first[27 * own + c] + uint(part); k < end; k += uint(kShare)) {
+      vec3 way = sorted[k].xyz - at;
       float squared = dot(way, way);
-      if (squared >= reach * reach || cell_of(there, reach) != cell) continue;
+      if (squared >= reach * reach) continue;
       float weight = neighbour_weight(sqrt(squared) / reach);
       n.weights += weight;
       n.sum += weight * way;
@@ -48,40 +66,45 @@ Neighbourhood part_of(vec3 at, int part) {
   return n;
 }
 
-bool is_deep(vec3 at) {
-#ifdef DEEP
-  ivec3 cell = cell_of(at, lengths.x);
-  uint entry = entry_of(cell, entries);
-  return deep[entry] != 0u && cell_of(sorted[begins[entry]].xyz, lengths.x) == cell;
-#else
-  return false;
-#endif
-}
-
 void main() {
   int local = int(gl_LocalInvocationID.x);
-  int index = invocation() / kShare;
-  bool drawn = index < count && uint(index) < counts[entries];  // fewer are drawn than given
-  vec4 particle = drawn ? sorted[index] : vec4(0.0, 0.0, 0.0, -1.0);
-  if (drawn && is_deep(particle.xyz)) {
-    drawn = false;
-    particle.w = -1.0;
+  int own = local / kShare;
+  int part = local % kShare;
+#ifdef SEEN
+  int all_of_them = int(counts[entries + 1]);
+#else
+  int all_of_them = count;
+#endif
+  // As many groups as there may be on an axis go over all of them by turns.
+  int at_once = int(gl_NumWorkGroups.x * gl_NumWorkGroups.y) * kParticles;
+  for (int first = int(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * kParticles; first < all_of_them; first += at_once) {
+    int index = first + own;
+#ifdef SEEN
+    bool drawn = index < all_of_them;
+    vec4 particle = drawn ? sorted[seen[index]] : vec4(0.0, 0.0, 0.0, -1.0);
+#else
+    bool drawn = index < count && uint(index) < counts[entries];  // fewer are drawn than given
+    vec4 particle = drawn ? sorted[index] : vec4(0.0, 0.0, 0.0, -1.0);
+#endif
+    if (drawn) find_cells(particle.xyz, own, part);
+    barrier();
+    if (drawn) leave_out_twice_found(own, part);
+    barrier();
+    if (drawn) parts[local] = part_of(particle.xyz, own, part);
+    barrier();
+    if (drawn && part == 0) {
+      Neighbourhood around = parts[local];
+      for (int i = 1; i < kShare; ++i) {
+        around.weights += parts[local + i].weights;
+        around.sum += parts[local + i].sum;
+        around.square += parts[local + i].square;
+        around.mixed += parts[local + i].mixed;
+      }
+      mat3 e = smoothing_ellipsoid(around, lengths.x, lengths.y);
+      centers[index] = vec4(particle.xyz + smoothing_step(around, lengths.x), particle.w);
+      ellipsoids[index] = Ellipsoid(vec4(e[0][0], e[0][1], e[0][2], e[1][1]), vec4(e[1][2], e[2][2], 0.0, 0.0));
+    } else if (part == 0 && index < count) {
+      centers[index] = particle;
+    }
   }
-  if (drawn) parts[local] = part_of(particle.xyz, local % kShare);
-  barrier();
-  if (index >= count || local % kShare != 0) return;
-  if (!drawn) {
-    centers[index] = particle;
-    return;
-  }
-  Neighbourhood around = parts[local];
-  for (int i = 1; i < kShare; ++i) {
-    around.weights += parts[local + i].weights;
-    around.sum += parts[local + i].sum;
-    around.square += parts[local + i].square;
-    around.mixed += parts[local + i].mixed;
-  }
-  mat3 e = smoothing_ellipsoid(around, lengths.x, lengths.y);
-  centers[index] = vec4(particle.xyz + smoothing_step(around, lengths.x), particle.w);
-  ellipsoids[index] = Ellipsoid(vec4(e[0][0], e[0][1], e[0][2], e[1][1]), vec4(e[1][2], e[2][2], 0.0, 0.0));
 }

@@ -3,9 +3,9 @@
 #include "splat_rows.glsl"
 layout(binding = 0, r32ui) uniform uimage2D depths;
 uniform int count;
-void main() {
-  int index = int(splat_row(count));
-  if (index >= count) return;
+uniform int seen_at;  // in Counts: how many there are, where nobody knows before; −1: `count`
+layout(std430, binding = 6) readonly buffer Counts { uint counts[]; };
+void draw_splat(int index) {
   vec4 splat_in = splats[index];
   if (splat_in.w < 0.0) return;
   SplatPlace place = splat_place(splat_in.xyz);
@@ -22,8 +22,9 @@ void main() {
   vec2 reach = reach_of_outline(outline) * place.scale * half_size;
   PixelBox box = pixel_box(middle - reach, middle + reach, imageSize(depths));
   vec2 metres = 1.0 / (place.scale * half_size);  // a pixel
-  for (int i = int(gl_LocalInvocationID.x); i < box.size.x * box.size.y; i += LANES) {
-    ivec2 texel = box.low + ivec2(i % box.size.x, i / box.size.x);
+  for (ivec2 at = first_place(); at.y < box.size.y; at = next_place(at, box)) {
+    if (at.x >= box.size.x) continue;
+    ivec2 texel = box.low + at;
     vec2 disc = disc_of_off(outline, (vec2(texel) + 0.5 - middle) * metres);
     if (dot(disc, disc) > 1.0) continue;
     uint bits = splat_depth_bits(place.depth, tilt, disc, uint(splat_in.w));
@@ -34,5 +35,12 @@ void main() {
 #else
     if (bits > there) imageAtomicMax(depths, texel, bits);
 #endif
+  }
+}
+void main() {
+  int drawn = seen_at < 0 ? count : int(counts[seen_at]);
+  for (uint row = first_row(); row < rows_of(drawn); row += all_rows()) {
+    int index = int(splat_of(row, drawn));
+    if (index < drawn) draw_splat(index);
   }
 }

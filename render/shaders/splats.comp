@@ -19,27 +19,42 @@ struct Ellipsoid {
   vec4 yz_zz;
 };
 layout(std430, binding = 5) readonly buffer Ellipsoids { Ellipsoid ellipsoids[]; };
+#ifdef SEEN
+layout(std430, binding = 6) readonly buffer Counts { uint counts[]; };
+layout(std430, binding = 8) readonly buffer Seen { uint seen[]; };
+uniform int seen_at;  // in Counts: how many are listed there; as many splats there are
+#endif
 #endif
 uniform int count;
 uniform float near_plane;
 uniform float reach;  // m, from a particle to what may be drawn of it
 
+// Whether a particle at an eye position may be seen.
+bool in_view(vec4 particle, vec3 eye) {
+  float depth = -eye.z;
+  vec2 scale = vec2(1.0) / (abs(unproject.xy) * max(depth, 1.0e-6));
+  vec2 off = abs(eye.xy / (unproject.xy * max(depth, 1.0e-6)) - unproject.zw);
+  return particle.w >= 0.0 && depth > near_plane && depth < camera.w && all(lessThan(off, 1.0 + reach * scale));
+}
+vec3 eye_of(vec3 world) { return (eye_from_world * vec4(world, 1.0)).xyz; }
+
 void main() {
   int index = invocation();
   if (index >= count) return;
   vec4 particle = particles[index];
-  vec3 eye = (eye_from_world * vec4(particle.xyz, 1.0)).xyz;
-  float depth = -eye.z;
-  vec2 scale = vec2(1.0) / (abs(unproject.xy) * max(depth, 1.0e-6));
-  vec2 off = abs(eye.xy / (unproject.xy * max(depth, 1.0e-6)) - unproject.zw);
-  bool seen = particle.w >= 0.0 && depth > near_plane && depth < camera.w && all(lessThan(off, 1.0 + reach * scale));
-  float fluid = seen ? particle.w : -1.0;
+  vec3 eye = eye_of(particle.xyz);
+  float fluid = in_view(particle, eye) ? particle.w : -1.0;
 #ifdef SHAPED
   balls[index] = vec4(eye, fluid);
-  vec3 center = (eye_from_world * vec4(centers[index].xyz, 1.0)).xyz;
-  seen = seen && centers[index].w >= 0.0;
-  splats[index] = vec4(center, seen ? fluid : -1.0);
-  if (!seen) return;
+#ifdef SEEN
+  if (uint(index) >= counts[seen_at]) return;
+  particle = particles[seen[index]];
+  fluid = in_view(particle, eye_of(particle.xyz)) ? particle.w : -1.0;
+#endif
+  vec3 center = eye_of(centers[index].xyz);
+  if (centers[index].w < 0.0) fluid = -1.0;
+  splats[index] = vec4(center, fluid);
+  if (fluid < 0.0) return;
   vec4 e = ellipsoids[index].xx_xy_xz_yy;
   vec2 f = ellipsoids[index].yz_zz.xy;
   mat3 turn = mat3(eye_from_world);
