@@ -28,7 +28,7 @@ std::optional<gl::PixelProgram> by_its_text(const DisplayPass::Wish& wish) {
 Result<DisplayPass> DisplayPass::create(const Wish& wish) {
   DisplayPass pass;
   pass.wish_ = wish;
-  auto edges = gl::PixelProgram::create("edges.frag", wish.compute, false, {"EACH 4"});
+  auto edges = gl::PixelProgram::create("edges.frag", wish.compute);
   if (!edges) return edges.error();
   pass.edges_ = std::move(edges.value());
   if (auto program = by_its_text(wish)) {

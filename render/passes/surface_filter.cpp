@@ -124,7 +124,7 @@ Result<std::unique_ptr<SurfaceFilter>> make_surface_filter(Surface surface, bool
   if (surface == Surface::kPaper) return Made(std::make_unique<PaperFilter>(std::move(program.value())));
   if (surface == Surface::kCurvatureFlow)
     return Made(std::make_unique<CurvatureFlow>(std::move(program.value())));
-  auto clean = gl::PixelProgram::create(file, compute, true, {"CLEAN", "EACH 4"});
+  auto clean = gl::PixelProgram::create(file, compute, true, {"CLEAN"});
   if (!clean) return clean.error();
   return Made(std::make_unique<NarrowRange>(std::move(program.value()), std::move(clean.value())));
 }

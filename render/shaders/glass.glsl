@@ -19,10 +19,8 @@ Pane glass_pane(vec3 world, vec3 n, vec4 paint, float roughness) {
   // The way through the pane is longer at a slant.
   vec3 tint = pow(mix(vec3(1.0), paint.rgb, paint.a), vec3(1.0 / max(facing, 0.25)));
   // No shadow and no glint of its own: the mirrored softbox is the glint.
-  Pane pane = Pane(mirrored(reflect(-to_eye, n)) * (1.0 - roughness) * mirroring, tint * ((1.0 - haze) * (1.0 - mirroring)));
-  if (haze > 0.0) {
-    vec3 key = key_light.rgb * (0.31830989 * max(dot(n, to_light_world.xyz), 0.0));
-    pane.added += paint.rgb * (key + ambient_light(n)) * haze;
-  }
-  return pane;
+  vec3 mirror = mirrored(reflect(-to_eye, n)) * (1.0 - roughness);
+  if (haze == 0.0) return Pane(mirror * mirroring, tint * (1.0 - mirroring));
+  vec3 key = key_light.rgb * (0.31830989 * max(dot(n, to_light_world.xyz), 0.0));
+  return Pane(paint.rgb * (key + ambient_light(n)) * haze + mirror * mirroring, tint * ((1.0 - haze) * (1.0 - mirroring)));
 }

@@ -1,6 +1,6 @@
-// Particles moved to where their neighbours' mean is, and made ellipsoids: passes/smooth_centers on the GPU. Eight invocations a particle
-// go over its 27 cells together, a particle of the cell each, so that what they read lies side by side; what they sum is added up in one
-// order, so that it comes out the same each time. SEEN: of those alone that cells_deep.comp listed.
+// Particles moved to where their neighbours' mean is, and made ellipsoids: passes/smooth_centers on the GPU. Eight invocations share the
+// 27 cells round a particle; what they sum is added up in one order, so that it comes out the same each time. SEEN: of those alone that
+// cells_deep.comp listed.
 #include "shared.glsl"
 #include "smoothing.glsl"
 #include "particles.glsl"
@@ -24,38 +24,21 @@ uniform vec2 lengths;  // reach and particle radius, m
 const int kShare = 8;  // invocations a particle
 const int kParticles = 64 / kShare;  // in a group
 shared Neighbourhood parts[64];
-shared uint cell_entry[kParticles * 27];
-shared uint cell_first[kParticles * 27];
-shared uint cell_end[kParticles * 27];
 
-// The cells round a place, of which none is found by two entries: particles within reach of it are in one of them, whatever else shares
-// its entry.
-void find_cells(vec3 at, int own, int part) {
-  ivec3 middle = cell_of(at, lengths.x);
-  for (int c = part; c < 27; c += kShare) {
-    uint entry = entry_of(middle + ivec3(c % 3, c / 3 % 3, c / 9) - 1, entries);
-    cell_entry[27 * own + c] = entry;
-    cell_first[27 * own + c] = begins[entry];
-    cell_end[27 * own + c] = begins[entry] + counts[entry];
-  }
-}
-void leave_out_twice_found(int own, int part) {
-  for (int c = part; c < 27; c += kShare) {
-    bool twice = false;
-    for (int d = 0; d < c; ++d) twice = twice || cell_entry[27 * own + d] == cell_entry[27 * own + c];
-    if (twice) cell_end[27 * own + c] = 0u;
-  }
-}
-
-Neighbourhood part_of(vec3 at, int own, int part) {
+Neighbourhood part_of(vec3 at, int part) {
   float reach = lengths.x;
+  ivec3 middle = cell_of(at, reach);
   Neighbourhood n = Neighbourhood(0.0, vec3(0.0), vec3(0.0), vec3(0.0));
-  for (int c = 0; c < 27; ++c) {
-    uint end = cell_end[27 * own + c];
-    for (uint k = cell_first[27 * own + c] + uint(part); k < end; k += uint(kShare)) {
-      vec3 way = sorted[k].xyz - at;
+  for (int c = part; c < 27; c += kShare) {
+    ivec3 cell = middle + ivec3(c % 3, c / 3 % 3, c / 9) - 1;
+    uint entry = entry_of(cell, entries);
+    uint first = begins[entry];
+    uint end = first + counts[entry];
+    for (uint k = first; k < end; ++k) {
+      vec3 there = sorted[k].xyz;
+      vec3 way = there - at;
       float squared = dot(way, way);
-      if (squared >= reach * reach) continue;
+      if (squared >= reach * reach || cell_of(there, reach) != cell) continue;
       float weight = neighbour_weight(sqrt(squared) / reach);
       n.weights += weight;
       n.sum += weight * way;
@@ -86,11 +69,7 @@ void main() {
     bool drawn = index < count && uint(index) < counts[entries];  // fewer are drawn than given
     vec4 particle = drawn ? sorted[index] : vec4(0.0, 0.0, 0.0, -1.0);
 #endif
-    if (drawn) find_cells(particle.xyz, own, part);
-    barrier();
-    if (drawn) leave_out_twice_found(own, part);
-    barrier();
-    if (drawn) parts[local] = part_of(particle.xyz, own, part);
+    if (drawn) parts[local] = part_of(particle.xyz, part);
     barrier();
     if (drawn && part == 0) {
       Neighbourhood around = parts[local];
@@ -106,5 +85,6 @@ void main() {
     } else if (part == 0 && index < count) {
       centers[index] = particle;
     }
+    barrier();
   }
 }

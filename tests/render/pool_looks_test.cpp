@@ -107,7 +107,6 @@ TEST_F(LooksTest, HoneyInGlassHasNoOliveRim) {
   RenderOptions options = small();
   options.width = 320;
   options.height = 240;
-  auto renderer = make(options);
   FluidLook honey;
   honey.color = {0.9f, 0.45f, 0.05f};
   honey.extinction = {8.0f, 40.0f, 250.0f};
@@ -115,24 +114,29 @@ TEST_F(LooksTest, HoneyInGlassHasNoOliveRim) {
   honey.roughness = 0.03f;
   honey.refraction = 1.49f;
   const View view = kit::make_view({0.0f, 0.25f, 0.5f}, {0.0f, 0.03f, 0.0f}, options.width, options.height);
-  const FloatImage light = pool_picture(*renderer, honey, {{0.85f, 0.93f, 0.95f}, 0.0f, 0.05f, 0.1f}, view);
-  const FloatImage fluid = renderer->read_buffer(Buffer::kFluidIndex);
-  // The front face's lowest pixels: green over red, and so where the face is deep.
-  const auto green = [&](int above_rim) {
-    float sum = 0.0f;
-    for (int x = 130; x <= 190; ++x) {
-      int rim = options.height - 1;
-      while (rim > 0 && fluid.at(x, rim) < 0.0f) --rim;
-      sum += light.at(x, rim - above_rim, 1) / light.at(x, rim - above_rim, 0) / 61.0f;
+  for (const Quality quality : {Quality::kFast, Quality::kFull}) {
+    SCOPED_TRACE(quality == Quality::kFast ? "fast" : "full");
+    options.quality = quality;
+    auto renderer = make(options);
+    const FloatImage light = pool_picture(*renderer, honey, {{0.85f, 0.93f, 0.95f}, 0.0f, 0.05f, 0.1f}, view);
+    const FloatImage fluid = renderer->read_buffer(Buffer::kFluidIndex);
+    // The front face's lowest pixels: green over red, and so where the face is deep.
+    const auto green = [&](int above_rim) {
+      float sum = 0.0f;
+      for (int x = 130; x <= 190; ++x) {
+        int rim = options.height - 1;
+        while (rim > 0 && fluid.at(x, rim) < 0.0f) --rim;
+        sum += light.at(x, rim - above_rim, 1) / light.at(x, rim - above_rim, 0) / 61.0f;
+      }
+      return sum;
+    };
+    // A processor with wider vectors, whose driver rounds otherwise, reaches 1.012 times; with the glass' far
+    // sides 1.09 in the lowest row; the olive rim had 1.9 times.
+    const float deep = green(20);
+    for (int above = 1; above < 8; ++above) {
+      EXPECT_LT(green(above), (quality == Quality::kFast ? 1.03f : 1.10f) * deep) << above;
+      EXPECT_GT(green(above), 0.6f * deep) << above;
     }
-    return sum;
-  };
-  // A processor with wider vectors, whose driver rounds otherwise, reaches 1.012 times; the olive rim had 1.9
-  // times.
-  const float deep = green(20);
-  for (int above = 1; above < 8; ++above) {
-    EXPECT_LT(green(above), 1.03f * deep) << above;
-    EXPECT_GT(green(above), 0.6f * deep) << above;
   }
 }
 
