@@ -129,6 +129,9 @@ inline const char* name(ParticleModel model) {
 /// A body's viscosity where it is that of whatever fluid touches it, so that Eq 9's mean is the fluid's own and the
 /// fluid sticks to the body.
 inline constexpr double kFluidsViscosity = -1.0;
+/// A body's viscosity where nothing drags at it: fluid slides along it freely, in every model. (0 is one side of
+/// Eq 9's mean, and halves the shear.)
+inline constexpr double kFreeSlip = -2.0;
 
 enum class BodyMotion : std::uint8_t { kFixed, kFree };
 
@@ -144,7 +147,8 @@ struct Body {
   MassProperties mass;       ///< meaningful when free
   double particle_density =
       0.0;  ///< kg/m³: the constant density of its particles (section 4.1); 0 = chosen by the plan
-  double dynamic_viscosity = 0.0;  ///< Pa·s: its side of Eq 9's (μᵢ + μⱼ)/2; 0 slips, or kFluidsViscosity
+  double dynamic_viscosity =
+      0.0;  ///< Pa·s, >= 0: its side of Eq 9's (μᵢ + μⱼ)/2; or kFluidsViscosity, or kFreeSlip
   double friction = 0.4;           ///< Coulomb, with the smaller of two touching bodies' values used
   double restitution = 0.0;        ///< 0–1
   bool measured = false;           ///< report the fluid's wrench on it even though it is fixed

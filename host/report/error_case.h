@@ -39,7 +39,8 @@ const ErrorCase* find_error_case(const std::string& id);
 std::vector<ErrorCase> resting_cases();   ///< tanks at rest, accelerated, turning
 std::vector<ErrorCase> buoyancy_cases();  ///< what is lifted, floats and rises
 std::vector<ErrorCase> wave_cases();
-std::vector<ErrorCase> viscous_cases();  ///< torques and drags
+std::vector<ErrorCase> viscous_cases();     ///< torques and drags
+std::vector<ErrorCase> plane_flow_cases();  ///< flows of one direction, and a vortex
 std::vector<ErrorCase> flow_cases();     ///< dam breaks, a column in a flow, a jet
 std::vector<ErrorCase> contact_cases();  ///< bodies alone
 

@@ -127,9 +127,11 @@ void visit(V& v, Body& m, std::size_t meshes) {
   v.rule("inertia_x", m.motion == BodyMotion::kFixed || can_turn(m.mass.inertia),
          "is not the inertia of a solid");
   v.real64("particle_density", m.particle_density, 0.0, 1e6);
-  v.real64("dynamic_viscosity", m.dynamic_viscosity, kFluidsViscosity, kMaxViscosity);
-  v.rule("dynamic_viscosity", m.dynamic_viscosity >= 0.0 || m.dynamic_viscosity == kFluidsViscosity,
-         "is below 0 and not -1");
+  v.real64("dynamic_viscosity", m.dynamic_viscosity, kFreeSlip, kMaxViscosity);
+  v.rule("dynamic_viscosity",
+         m.dynamic_viscosity >= 0.0 || m.dynamic_viscosity == kFluidsViscosity ||
+             m.dynamic_viscosity == kFreeSlip,
+         "is below 0 and neither -1 nor -2");
   v.real64("friction", m.friction, 0.0, 10.0);
   v.real64("restitution", m.restitution, 0.0, 1.0);
   v.flag("measured", m.measured);

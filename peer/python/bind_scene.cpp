@@ -88,7 +88,7 @@ void bind_parts(py::module_& m) {
           "center_of_mass", [](const Body& b) { return from_vector(b.mass.center_of_mass); },
           "(3,) m, mesh frame")
       .def_readonly("viscosity", &Body::dynamic_viscosity,
-                    "Pa·s of its surface; -1: that of the fluid that touches it")
+                    "Pa·s of its surface; -1: that of the fluid that touches it, -2: the fluid slides along it")
       .def_readonly("friction", &Body::friction, "coefficient against other bodies, 0 to 10")
       .def_readonly("restitution", &Body::restitution, "share of the speed that a bounce gives back, 0 to 1")
       .def_readonly("measured", &Body::measured, "True: its pose and the fluid's wrench on it are written");

@@ -36,11 +36,13 @@ void read_common(Extras& extras, Body& body) {
 /// A wall sticks unless it says that it slips.
 void read_wall_viscosity(Extras& extras, Body& body) {
   const bool slips = extras.flag("slip", false);
-  body.dynamic_viscosity = extras.number("viscosity_pa_s", slips ? 0.0 : kFluidsViscosity, Range{0.0, 1e7});
-  if (slips && body.dynamic_viscosity > 0.0) {
+  body.dynamic_viscosity = extras.number("viscosity_pa_s", kFluidsViscosity, Range{0.0, 1e7});
+  if (!slips) return;
+  if (body.dynamic_viscosity > 0.0) {
     extras.fail("slip", "is true, and viscosity_pa_s is not 0",
                 "Keep slip for a wall that the fluid slides along, viscosity_pa_s for one that drags");
   }
+  body.dynamic_viscosity = kFreeSlip;
 }
 
 void read_mass(Extras& extras, const mesh::VolumeIntegrals& volume, Body& body) {

@@ -51,7 +51,10 @@ FloatBatch viscosity_of(const ParticleView<FloatBatch>& p, const NeighborColumns
     return p.viscosity;
   } else if constexpr (neighbours == Neighbours::kWalls) {
     const FloatBatch own = FloatBatch::load_unaligned(n.viscosity + j);
-    return xsimd::select(own < FloatBatch(0.0f), p.viscosity, own);
+    // side_of_wall, for a batch
+    const FloatBatch fluids =
+        xsimd::select(own == FloatBatch(static_cast<float>(kFreeSlip)), -p.viscosity, p.viscosity);
+    return xsimd::select(own < FloatBatch(0.0f), fluids, own);
   } else {
     return of_fluid * FloatBatch::load_unaligned(n.viscosity + j);
   }

@@ -46,8 +46,7 @@ __device__ inline float viscosity_of(const ParticleView<float>& p, const Neighbo
   if constexpr (viscosity != Viscosity::kPair) {
     return p.viscosity;
   } else if constexpr (neighbours == Neighbours::kWalls) {
-    const float own = __ldg(n.viscosity + j);
-    return own < 0.0f ? p.viscosity : own;
+    return side_of_wall(__ldg(n.viscosity + j), p.viscosity);
   } else {
     return of_fluid * __ldg(n.viscosity + j);
   }

@@ -1,6 +1,7 @@
 // Eq 6 and 9 between two particles.
 #pragma once
 
+#include "scenes/scene.h"
 #include "sim/particle_view.h"
 
 namespace slosh {
@@ -16,12 +17,19 @@ enum class DragRule { kAlongVelocity, kCentral };
 inline constexpr float kCentralDrag = 5.0f;
 
 /// Both sides of Eq 9's mean (own + of_fluid · the fluid's)/2 for a wall's particle. Below 0
-/// (kFluidsViscosity) it has the fluid's viscosity, whichever fluid it is.
+/// (kFluidsViscosity) it has the fluid's viscosity, whichever fluid it is; at kFreeSlip nothing is dragged.
 struct WallViscosity {
   float own, of_fluid;
 };
 SLOSH_HD inline WallViscosity wall_viscosity(float viscosity) {
+  if (viscosity == static_cast<float>(kFreeSlip)) return {0.0f, 0.0f};
   return viscosity < 0.0f ? WallViscosity{0.0f, 2.0f} : WallViscosity{viscosity, 1.0f};
+}
+
+/// A wall's side of Eq 9 as a fluid's particle of `fluid` Pa·s sees it: the same, so that both sum to nothing
+/// where the fluid slides freely.
+SLOSH_HD inline float side_of_wall(float own, float fluid) {
+  return own >= 0.0f ? own : own == static_cast<float>(kFreeSlip) ? -fluid : fluid;
 }
 
 /// Eq 9's factor of the velocity difference, without the kernel's constant. What p alone decides comes first,

@@ -98,7 +98,7 @@ TEST(WallViscosity, AWallSticksUnlessItSaysThatItSlips) {
   };
   EXPECT_EQ(viscosity(nullptr, {}), kFluidsViscosity);
   EXPECT_EQ(viscosity("slip", false), kFluidsViscosity);
-  EXPECT_EQ(viscosity("slip", true), 0.0);
+  EXPECT_EQ(viscosity("slip", true), kFreeSlip);
   EXPECT_EQ(viscosity("viscosity_pa_s", 0.0), 0.0);
   EXPECT_EQ(viscosity("viscosity_pa_s", 2.5), 2.5);
   expect_edit_error(

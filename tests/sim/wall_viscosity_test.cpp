@@ -57,12 +57,21 @@ TEST(WallViscosity, OfTheFluidIsAsIfTheFluidsWereGiven) {
             make_plan(sliding(kViscosity), kSpacing).time_step);
 }
 
-TEST(WallViscosity, AWallThatSlipsHasHalfTheShear) {
+TEST(WallViscosity, AWallOfNoneHasHalfTheShear) {
   const double sticks = pull(sliding(kFluidsViscosity)).shear;
-  const double slips = pull(sliding(0.0)).shear;
+  const double none = pull(sliding(0.0)).shear;
   EXPECT_GT(sticks, 0.1);
-  std::printf("shear %.3f N where it sticks, %.3f N where it slips\n", sticks, slips);
-  EXPECT_NEAR(slips / sticks, 0.5, 0.05) << "Eq 9's mean of the fluid's viscosity and 0";
+  std::printf("shear %.3f N where it sticks, %.3f N where the wall's is 0\n", sticks, none);
+  EXPECT_NEAR(none / sticks, 0.5, 0.05) << "Eq 9's mean of the fluid's viscosity and 0";
+}
+
+// What is left is pressure: the same whatever the fluid.
+TEST(WallViscosity, AWallThatSlipsDragsNothing) {
+  const double sticks = pull(sliding(kFluidsViscosity)).shear;
+  const Pulled one = pull(sliding(kFreeSlip)), two = pull(sliding(kFreeSlip, 20.0));
+  EXPECT_EQ(one.shear, two.shear);
+  EXPECT_LT(std::abs(one.shear), 5e-3 * sticks);
+  for (const Pulled& each : {one, two}) EXPECT_LT(std::abs(each.identity), 1e-4 * sticks);
 }
 
 TEST(WallViscosity, EachFluidSticksByItsOwn) {

@@ -217,12 +217,14 @@ TEST(ScenePackage, ImagesBeyondTheLimitStayBehindAndAreNamed) {
   EXPECT_TRUE(images_left_behind(textured_scene()).empty());
 }
 
-TEST(ScenePackage, AWallHasAViscosityOrTheFluids) {
+TEST(ScenePackage, AWallHasAViscosityOrTheFluidsOrNone) {
   Scene scene = test::small_scene();
-  scene.bodies[0].dynamic_viscosity = kFluidsViscosity;
-  const Result<UnpackedScene> back = unpack_scene(packed(scene));
-  ASSERT_TRUE(static_cast<bool>(back)) << back.error().text();
-  EXPECT_EQ(back.value().scene.bodies[0].dynamic_viscosity, kFluidsViscosity);
+  for (const double wall : {kFluidsViscosity, kFreeSlip}) {
+    scene.bodies[0].dynamic_viscosity = wall;
+    const Result<UnpackedScene> back = unpack_scene(packed(scene));
+    ASSERT_TRUE(static_cast<bool>(back)) << back.error().text();
+    EXPECT_EQ(back.value().scene.bodies[0].dynamic_viscosity, wall);
+  }
   scene.bodies[0].dynamic_viscosity = -0.5;
   EXPECT_NE(pack_scene(scene, 0.01, SceneParts::kAll).error().text().find("dynamic_viscosity"),
             std::string::npos);
