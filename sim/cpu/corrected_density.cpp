@@ -24,10 +24,10 @@ struct NoRow {
   NoRow(Writer&, std::uint32_t) {}
   void add(std::uint32_t, const Vector3<FloatBatch>&, FloatBatch, FloatBatch) {}
   void add_wall(const Vector3<FloatBatch>&, FloatBatch, FloatBatch, FloatBatch) {}
-  void end(const FluidParticles&, float) {}
+  void end(const PassContext&, const FluidParticles&) {}
 };
 
-// who presses on whom, where pressures are solved for: by fluid in rows, by all in the own vector.
+// who presses on whom, where pressures or drag are solved for: by fluid in rows, by all in the own vector.
 class PressRow {
  public:
   struct Writer {
@@ -45,10 +45,17 @@ class PressRow {
   void add_wall(const Vector3<FloatBatch>& d, FloatBatch share, FloatBatch h, FloatBatch weight) {
     add(d, share * Spiky::pair(d.x * d.x + d.y * d.y + d.z * d.z, h, weight).slope_over_r);
   }
-  void end(const FluidParticles& fluid, float scale) {
+  void end(const PassContext& context, const FluidParticles& fluid) {
     writer_.rows.end();
-    const PressTensor t{scale * fluid.pxx[p_], scale * fluid.pyy[p_], scale * fluid.pzz[p_], 0.0f,
-                        scale * fluid.pxy[p_], scale * fluid.pyz[p_], scale * fluid.pxz[p_], 0.0f};
+    const float scale = context.force_scale;
+    const PressTensor t{scale * fluid.pxx[p_],
+                        scale * fluid.pyy[p_],
+                        scale * fluid.pzz[p_],
+                        fluid.volume[p_],
+                        scale * fluid.pxy[p_],
+                        scale * fluid.pyz[p_],
+                        scale * fluid.pxz[p_],
+                        context.kinds[fluid.kind[p_]].viscosity};
     const float x = lane_sum(sum_.x), y = lane_sum(sum_.y), z = lane_sum(sum_.z);
     writer_.press.places[p_] = {fluid.x[p_], fluid.y[p_], fluid.z[p_], 0.0f};
     writer_.press.drags[p_] = {fluid.ux[p_], fluid.uy[p_], fluid.uz[p_], fluid.volume[p_]};
@@ -90,7 +97,7 @@ class CorrectedDensity {
       add_walls(p, fixed_, fixed_rows, sum, row);
       add_walls(p, moving_, moving_rows, sum, row);
       densest = std::max(densest, finish(p, sum));
-      row.end(fluid_, context_.force_scale);
+      row.end(context_, fluid_);
     }
     return densest;
   }
@@ -193,7 +200,7 @@ void find(PassContext& context, ThreadTeam& team, FluidParticles& fluid, const B
 void compute_corrected_density(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
                                const BoundaryParticles& fixed, const BoundaryParticles& moving,
                                FluidPress& press) {
-  if (!context.plan.has(PassId::kPressureSolve)) {
+  if (!context.plan.has(PassId::kPressureSolve) && !context.plan.has(PassId::kImplicitDrag)) {
     find<NoRow>(context, team, fluid, fixed, moving, press);
     return;
   }

@@ -1,14 +1,24 @@
 // Eq 5, 6 and 9 on fluid particles, and Eq 10–12 on bodies.
 #include <cstring>
 
-#include "sim/cpu/force_rows.h"
+#include "sim/cpu/passes.h"
 #include "sim/cpu/pressure_rows.h"
+#include "sim/cpu/row_force.h"
 
 namespace slosh {
 
 namespace {
 
 constexpr std::size_t kRunsPerChunk = 16;
+
+// What the passes over fluid particles go through.
+struct FluidWalk {
+  const PassContext& context;
+  ThreadTeam& team;
+  FluidParticles& fluid;
+  const BoundaryParticles& fixed;
+  const BoundaryParticles& moving;
+};
 
 // Of one body particle, N·s/m.
 template <class Parts, Viscosity viscosity>
@@ -24,12 +34,11 @@ Symmetric<float> drag_rate(const ParticleView<FloatBatch>& self, const NeighborC
           scale * lane_sum(sum.yy), scale * lane_sum(sum.yz), scale * lane_sum(sum.zz)};
 }
 
-// One chunk of runs. All of a pair in one loop: left to itself the compiler calls functions where rows are
-// written, and hands batches over in memory.
+// One chunk of runs. All of a pair in one loop: left to itself the compiler calls functions and hands batches
+// over in memory.
 // Without `by_fluid` what fluid does to fluid is there already.
-template <class Parts, Viscosity viscosity, class Rows, bool by_fluid>
-__attribute__((flatten)) void find_forces_of(const FluidWalk& walk, const typename Rows::Given& given,
-                                             std::size_t begin, std::size_t end) {
+template <class Parts, Viscosity viscosity, bool by_fluid>
+__attribute__((flatten)) void find_forces_of(const FluidWalk& walk, std::size_t begin, std::size_t end) {
   // Body particles have viscosities of their own, so against them Eq 9 holds even where one fluid has Eq 6.
   constexpr Viscosity kAgainstBodies = viscosity == Viscosity::kNone ? Viscosity::kNone : Viscosity::kPair;
   const PassContext& context = walk.context;
@@ -38,8 +47,7 @@ __attribute__((flatten)) void find_forces_of(const FluidWalk& walk, const typena
   const NeighborColumns fluid_columns = columns(fluid);
   const NeighborColumns fixed_columns = columns(walk.fixed);
   const NeighborColumns moving_columns = columns(walk.moving);
-  const FloatBatch h(context.support_radius), one(1.0f);
-  Rows rows(given, begin / kRunsPerChunk);
+  const FloatBatch h(context.support_radius);
   for (std::size_t r = begin; r < end; ++r) {
     const RowList fluid_rows = fluid.index.rows(context.grid, runs[r].cell);
     const RowList fixed_rows = walk.fixed.index.rows(context.grid, runs[r].cell);
@@ -49,18 +57,15 @@ __attribute__((flatten)) void find_forces_of(const FluidWalk& walk, const typena
       if (!by_fluid && !fluid.near_wall[p]) continue;
       const ParticleView<FloatBatch> self =
           broadcast(fluid_columns, p, context.kinds[fluid.kind[p]].viscosity);
-      typename Rows::Row row(rows, p, self);
       ForceSum<FloatBatch> sum{FloatBatch(0.0f), FloatBatch(0.0f), FloatBatch(0.0f)};
       if constexpr (by_fluid)
-        add_row_forces<Parts, Parts::kFluids, viscosity>(self, fluid_columns, fluid_rows, h, sum, one,
-                                                         row.fluid());
+        add_row_forces<Parts, Parts::kFluids, viscosity>(self, fluid_columns, fluid_rows, h, sum);
       if (fixed_rows.count)
         add_row_forces<Parts, Parts::kWalls, kAgainstBodies, Neighbours::kWalls>(
-            self, fixed_columns, fixed_rows, h, sum, one, row.fixed());
+            self, fixed_columns, fixed_rows, h, sum);
       if (moving_rows.count)
         add_row_forces<Parts, Parts::kWalls, kAgainstBodies, Neighbours::kWalls>(
-            self, moving_columns, moving_rows, h, sum, one, row.moving());
-      row.end();
+            self, moving_columns, moving_rows, h, sum);
       const float scale = context.force_scale;
       const auto put = [](float& force, float found) { force = by_fluid ? found : force + found; };
       put(fluid.fx[p], scale * lane_sum(sum.x));
@@ -70,10 +75,10 @@ __attribute__((flatten)) void find_forces_of(const FluidWalk& walk, const typena
   }
 }
 
-template <class Parts, Viscosity viscosity, class Rows, bool by_fluid = true>
-void find_forces(const FluidWalk& walk, const typename Rows::Given& given) {
+template <class Parts, Viscosity viscosity, bool by_fluid = true>
+void find_forces(const FluidWalk& walk) {
   walk.team.run(walk.fluid.index.runs().size(), kRunsPerChunk, [&](std::size_t begin, std::size_t end) {
-    find_forces_of<Parts, viscosity, Rows, by_fluid>(walk, given, begin, end);
+    find_forces_of<Parts, viscosity, by_fluid>(walk, begin, end);
   });
 }
 
@@ -104,23 +109,17 @@ void drag_by_rows(const FluidWalk& walk, const FluidPress& press) {
 void compute_fluid_forces(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
                           const BoundaryParticles& fixed, const BoundaryParticles& moving, double dt,
                           FluidDrag& drag, const FluidPress& press) {
+  if (context.plan.has(PassId::kImplicitDrag)) {
+    compute_forces_by_rows(context, team, fluid, fixed, moving, dt, drag, press);
+    return;
+  }
   const FluidWalk walk{context, team, fluid, fixed, moving};
   with_physics(context.plan, [&]<class Parts, Viscosity viscosity>() {
-    if constexpr (Parts::kCorrected && viscosity == Viscosity::kNone) {
-      if (context.plan.has(PassId::kImplicitDrag)) {
-        drag.clear(fluid.index.particles(), chunk_count(fluid.index.runs().size(), kRunsPerChunk));
-        with_solved_viscosity(context.plan, [&]<Viscosity solved>() {
-          using Drag = RowsOf<Parts, solved>;
-          find_forces<Parts, viscosity, Drag>(walk, {walk, static_cast<float>(dt), drag});
-        });
-        return;
-      }
-    }
     if constexpr (Parts::kSolved && viscosity != Viscosity::kPair) {
       drag_by_rows(walk, press);
-      find_forces<Parts, viscosity, NoRows, false>(walk, {});
+      find_forces<Parts, viscosity, false>(walk);
     } else {
-      find_forces<Parts, viscosity, NoRows>(walk, {});
+      find_forces<Parts, viscosity>(walk);
     }
   });
 }

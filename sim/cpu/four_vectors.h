@@ -22,6 +22,7 @@ struct Sixteen {
   friend Sixteen operator+(const Sixteen& a, const Sixteen& b) { return {a.low + b.low, a.high + b.high}; }
   friend Sixteen operator-(const Sixteen& a, const Sixteen& b) { return {a.low - b.low, a.high - b.high}; }
   friend Sixteen operator*(const Sixteen& a, const Sixteen& b) { return {a.low * b.low, a.high * b.high}; }
+  friend Sixteen operator*(float a, const Sixteen& b) { return {a * b.low, a * b.high}; }
   friend Sixteen operator+(const Sixteen& a, float b) { return {a.low + b, a.high + b}; }
   friend Sixteen operator-(float a, const Sixteen& b) { return {a - b.low, a - b.high}; }
 };
@@ -46,14 +47,20 @@ inline Sixteen each_even_four_times(const float* v) {
           __builtin_shufflevector(eight, eight, 4, 4, 4, 4, 6, 6, 6, 6)};
 }
 
-/// 1/√ of each, which must be above 0.
-inline Sixteen inverse_roots(Sixteen v) {
-  alignas(64) float of[16];
-  std::memcpy(of, &v, sizeof v);
-  for (std::size_t k = 0; k < 16; k += kLanes)
-    RealOps<FloatBatch>::inverse_sqrt(FloatBatch::load_aligned(of + k)).store_aligned(of + k);
-  std::memcpy(&v, of, sizeof v);
-  return v;
+/// 1/√ of each, which must be above 0: an estimate and one Newton step, as RealOps<FloatBatch> has it.
+inline Eight inverse_roots(Eight v) {
+#ifdef __AVX512VL__
+  const Eight guess = reinterpret_cast<Eight>(_mm256_rsqrt14_ps(reinterpret_cast<__m256>(v)));
+#elif defined(__AVX__)
+  const Eight guess = reinterpret_cast<Eight>(_mm256_rsqrt_ps(reinterpret_cast<__m256>(v)));
+#else
+  Eight guess;
+  for (int k = 0; k < 8; ++k) guess[k] = RealOps<float>::inverse_sqrt(v[k]);
+#endif
+  return guess * (1.5f - 0.5f * v * guess * guess);
+}
+inline Sixteen inverse_roots(const Sixteen& v) {
+  return {inverse_roots(v.low), inverse_roots(v.high)};
 }
 
 /// `v` where `test` is above 0, else 0.
@@ -62,6 +69,15 @@ inline Sixteen where_above_zero(const Sixteen& test, const Sixteen& v) {
     return reinterpret_cast<Eight>(reinterpret_cast<EightBits>(x) & (t > 0.0f));
   };
   return {half(test.low, v.low), half(test.high, v.high)};
+}
+
+/// Of each four the first, in the place of the first, third, fifth and seventh of eight floats.
+inline void put_each_even(const Sixteen& from, float* to) {
+  Eight eight;
+  std::memcpy(&eight, to, sizeof eight);
+  const Eight firsts = __builtin_shufflevector(from.low, from.high, 0, 0, 4, 4, 8, 8, 12, 12);
+  eight = __builtin_shufflevector(firsts, eight, 0, 9, 2, 11, 4, 13, 6, 15);
+  std::memcpy(to, &eight, sizeof eight);
 }
 
 /// Each half's floats in the order of the template's arguments.

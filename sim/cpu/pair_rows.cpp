@@ -13,6 +13,10 @@ void PairRows::clear(std::size_t chunks) {
   }
 }
 
+void PairRows::Chunk::make_room(std::size_t more) {
+  if (size + more > pairs.size()) pairs.resize(std::max<std::size_t>({4096, 2 * pairs.size(), size + more}));
+}
+
 void PairRows::Writer::make_room() {
   row_ = rows_ + group_.count;
   if (count_ + 2 * kLanes <= row_->other.size()) return;
@@ -21,15 +25,21 @@ void PairRows::Writer::make_room() {
   row_->weight.resize(room);
 }
 
+PairRows::Pair* PairRows::Writer::take(const Walk& walk) {
+  put_group();
+  taken_ = walk.pairs();
+  chunk_.make_room(taken_);
+  return chunk_.pairs.data() + chunk_.size;
+}
+
 // The rows of up to four particles, as long as the longest: what fills them up is nobody's pair.
 void PairRows::Writer::put_group() {
   if (group_.count == 0) return;
   std::size_t longest = 0;
   for (std::uint32_t a = 0; a < group_.count; ++a) longest = std::max(longest, rows_[a].count);
   const std::size_t whole = kTogether * longest;
-  if (chunk_.size + whole > chunk_.pairs.size())
-    chunk_.pairs.resize(std::max<std::size_t>({4096, 2 * chunk_.pairs.size(), chunk_.size + whole}));
-  Pair* const pairs = chunk_.pairs.data() + chunk_.size;
+  chunk_.make_room(taken_ + whole);
+  Pair* const pairs = chunk_.pairs.data() + chunk_.size + taken_;
   for (std::uint32_t a = 0; a < kTogether; ++a) {
     const std::size_t count = a < group_.count ? rows_[a].count : 0;
     for (std::size_t k = 0; k < count; ++k)
@@ -38,10 +48,11 @@ void PairRows::Writer::put_group() {
       pairs[kTogether * k + a] = {0.0f, static_cast<std::int32_t>(group_.first)};
   }
   group_.begin = static_cast<std::uint32_t>(chunk_.size);
-  group_.end = static_cast<std::uint32_t>(chunk_.size + whole);
+  chunk_.size += taken_ + whole;
+  group_.end = static_cast<std::uint32_t>(chunk_.size);
   chunk_.groups.push_back(group_);
-  chunk_.size += whole;
   group_ = {};
+  taken_ = 0;
 }
 
 }  // namespace slosh

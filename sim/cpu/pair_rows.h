@@ -14,10 +14,11 @@ struct alignas(16) Vector4 {
   float x = 0.0f, y = 0.0f, z = 0.0f, w = 0.0f;
 };
 
-/// A symmetric tensor as a walk over rows takes it.
+/// A symmetric tensor as a walk over rows takes it, and what else is asked for with it: the fourths go into no
+/// product.
 struct alignas(32) PressTensor {
-  float xx, yy, zz, none0;  ///< the fourths are 0
-  float xy, yz, xz, none1;
+  float xx, yy, zz, volume;
+  float xy, yz, xz, viscosity;
 };
 
 /// For each of a set of particles its pairs, a weight each: who presses on whom (s = −W'/r without the
@@ -25,10 +26,15 @@ struct alignas(32) PressTensor {
 /// particle and comes from where the two are. 8 bytes a pair. Particles go by fours, a pair of each side by
 /// side: no row has a sum over lanes of its own.
 class PairRows {
-  struct Pair;
   struct Chunk;
 
  public:
+  struct alignas(8) Pair {
+    float weight;
+    std::int32_t other;
+  };
+  static constexpr std::uint32_t kTogether = 4;
+
   /// Up to four particles one behind the other.
   struct Group {
     std::uint32_t first = 0, count = 0;
@@ -39,6 +45,7 @@ class PairRows {
   void clear(std::size_t chunks);
   std::size_t chunks() const { return used_; }
 
+  class Walk;
   /// One chunk's rows as they are being written, particle after particle; chunks may be written beside each
   /// other.
   class Writer {
@@ -67,6 +74,9 @@ class PairRows {
       row_->count = count_;
       if (++group_.count == kTogether) put_group();
     }
+    /// Room for a group's pairs of other rows, to be written again as they lie there with weights of their own.
+    /// Then begin() … end() of each of its particles, for what goes behind them.
+    Pair* take(const Walk& walk);
 
    private:
     struct OneRow {
@@ -79,12 +89,12 @@ class PairRows {
 
     Chunk& chunk_;
     Group group_;
-    OneRow rows_[4];
+    OneRow rows_[kTogether];
     OneRow* row_ = rows_;
+    std::size_t taken_ = 0;  // pairs that lie there already
     std::size_t count_ = 0;  // of one row; there is room for two batches behind it
   };
 
-  class Walk;
   /// f(walk) for the groups of a chunk.
   template <class F>
   void for_each_group(std::size_t chunk, F&& f) const {
@@ -98,6 +108,8 @@ class PairRows {
     Walk(const Group& group, const Pair* pairs)
         : first(group.first), count(group.count), begin_(pairs + group.begin), end_(pairs + group.end) {}
     const std::uint32_t first, count;
+    /// Of all four, with what fills them up.
+    std::size_t pairs() const { return static_cast<std::size_t>(end_ - begin_); }
 
     /// Of each of the group the sum of T g over its row, T each other's of `tensors`, with everybody at
     /// `places`; fourths mean nothing.
@@ -140,18 +152,20 @@ class PairRows {
     /// The sum of V reach/r² d (d · (u − one's own)), u and, in the fourth, V each other's of `drags`: what
     /// jostling drags by (pair_force.h). `h`: the support radius.
     Sixteen drag(const Vector4* places, const Vector4* drags, float h) const {
-      const Sixteen self = of_group<4>(&places[first].x), own = of_group<4>(&drags[first].x);
-      const float floor = h * h * 1e-12f;
+      const Sixteen own = of_group<4>(&drags[first].x);
       Sixteen sum = {};
-      for (const Pair* four = begin_; four < end_; four += kTogether) {
-        const Sixteen d = self - of_others<4>(&places->x, four), u = of_others<4>(&drags->x, four);
-        const Sixteen r_squared = sums(d * d) + floor, inverse_r = inverse_roots(r_squared);
-        const Sixteen weighed = (h - r_squared * inverse_r) * (inverse_r * inverse_r) * fourths(u);
-        const Sixteen along = weighed * sums(d * (u - own));
+      for_each_way(places, [&](Sixteen d, const Pair* four) {
+        const Sixteen u = of_others<4>(&drags->x, four);
+        const Sixteen along = drag_shape(d, h) * fourths(u) * sums(d * (u - own));
         // What fills a row up has no weight.
         sum += where_above_zero(each_even_four_times(&four->weight), along) * d;
-      }
+      });
       return sum;
+    }
+    /// reach/r² of pairs at `d` from each other, m.
+    static Sixteen drag_shape(Sixteen d, float h) {
+      const Sixteen r_squared = sums(d * d) + h * h * 1e-12f, inverse_r = inverse_roots(r_squared);
+      return (h - r_squared * inverse_r) * (inverse_r * inverse_r);
     }
     /// The sum of q d (d · (v − one's own)), v each other's of `velocities`, in rows of who drags whom.
     Sixteen dragged(const Vector4* places, const Vector4* velocities) const {
@@ -183,21 +197,14 @@ class PairRows {
     static Sixteen of_group(const float* v) {
       return side_by_side(four_at(v), four_at(v + stride), four_at(v + 2 * stride), four_at(v + 3 * stride));
     }
-
-   private:
-    // f(d, pairs) of a pair of each; d's fourths are 0.
+    /// f(d, pairs) of a pair of each; d's fourths are 0.
     template <class F>
     void for_each_way(const Vector4* places, F&& f) const {
       const Sixteen self = of_group<4>(&places[first].x);
       for (const Pair* four = begin_; four < end_; four += kTogether)
         f(self - of_others<4>(&places->x, four), four);
     }
-    // f(g, pairs) likewise.
-    template <class F>
-    void for_each_pair(const Vector4* places, F&& f) const {
-      for_each_way(places,
-                   [&](Sixteen d, const Pair* four) { f(each_even_four_times(&four->weight) * d, four); });
-    }
+    /// Four floats of each other, of `all` that have `stride` each.
     template <std::size_t stride>
     static Sixteen of_others(const float* all, const Pair* four) {
       const auto at = [&](int k) {
@@ -205,19 +212,24 @@ class PairRows {
       };
       return side_by_side(at(0), at(1), at(2), at(3));
     }
+
+   private:
+    // f(g, pairs) as for_each_way().
+    template <class F>
+    void for_each_pair(const Vector4* places, F&& f) const {
+      for_each_way(places,
+                   [&](Sixteen d, const Pair* four) { f(each_even_four_times(&four->weight) * d, four); });
+    }
     const Pair *begin_, *end_;
   };
 
  private:
-  static constexpr std::uint32_t kTogether = 4;
-  struct alignas(8) Pair {
-    float weight;
-    std::int32_t other;
-  };
   struct Chunk {
     Column<Pair> pairs;
     std::size_t size = 0;  // of what is written
     std::vector<Group> groups;
+
+    void make_room(std::size_t more);
   };
 
   std::vector<Chunk> chunks_;

@@ -47,7 +47,7 @@ class BodySurface {
 };
 
 /// Eq 2 and 7: density (kPaper: from fluid particles only, section 4.1), then pressure and volume. With
-/// kPressureSolve `press` gets who presses on whom: the same walk over the neighbours finds it.
+/// kPressureSolve or kImplicitDrag `press` gets who presses on whom: the same walk over the neighbours finds it.
 void compute_density(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
                      const BoundaryParticles& fixed, const BoundaryParticles& moving, FluidPress& press);
 
@@ -57,11 +57,15 @@ void compute_corrected_density(PassContext& context, ThreadTeam& team, FluidPart
                                FluidPress& press);
 
 /// Eq 5, 6 and 9 on fluid particles, by fluid and by body particles. With kImplicitDrag without drag, and
-/// `drag` gets who drags whom over `dt` s: the same walk over the neighbours finds both. `press` is from the
-/// density pass.
+/// `drag` gets who drags whom over `dt` s (drag_rows.cpp): both by `press`, which is from the density pass.
 void compute_fluid_forces(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
                           const BoundaryParticles& fixed, const BoundaryParticles& moving, double dt,
                           FluidDrag& drag, const FluidPress& press);
+
+/// The same with kImplicitDrag (force.cpp calls it).
+void compute_forces_by_rows(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
+                            const BoundaryParticles& fixed, const BoundaryParticles& moving, double dt,
+                            FluidDrag& drag, const FluidPress& press);
 
 /// What each body particle feels, in the order of the cells.
 struct SurfaceSums {

@@ -1,4 +1,4 @@
-// Who presses on whom, as the solve for pressures asks for it.
+// Who presses on whom, as the solves for pressures and for drag ask for it.
 #pragma once
 
 #include <vector>
@@ -7,13 +7,16 @@
 
 namespace slosh {
 
-/// What the density pass writes down of fluid particles where pressures are solved for: four entries more
-/// than there are particles.
+/// What the density pass writes down of fluid particles where pressures or drag are solved for: four entries
+/// more than there are particles.
 struct FluidPress {
   PairRows rows;
   std::vector<Vector4> places;       ///< m, with 0 for a fourth
-  std::vector<PressTensor> tensors;  ///< what each presses by at 1 Pa, K with the kernel's constant
-  /// What 1 Pa of its own pushes each by, m², with 0 for a fourth: by fluid, walls and bodies.
+  /// What each presses by, with the kernel's constant: at 1 Pa where pressures are solved for; and its volume,
+  /// m³, and viscosity, Pa·s.
+  std::vector<PressTensor> tensors;
+  /// What its own pressure pushes each by, N (where pressures are solved for, of 1 Pa, m²), with 0 for a
+  /// fourth: by fluid, walls and bodies.
   std::vector<Vector4> own;
   std::vector<Vector4> drags;  ///< what each drags by, Pa·m, and in the fourth its volume, m³
 

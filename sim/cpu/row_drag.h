@@ -80,11 +80,11 @@ PairBatch drag_pairs(const ParticleView<FloatBatch>& p, const NeighborColumns& n
   const auto kernel = Parts::ForceKernel::pair(pairs.r_squared, h, weight);
   // Eq 9's factor, so that both sides of a pair find the same to the bit.
   const FloatBatch of_both = (FloatBatch(0.5f) * (p.viscosity + i.viscosity)) * (p.volume * i.volume);
-  pairs.q = of_both * (factor * kernel.laplacian * (kernel.inverse_r * kernel.inverse_r));
+  pairs.q = of_both * (factor * (kernel.laplacian * (kernel.inverse_r * kernel.inverse_r)));
   return pairs;
 }
 
-/// What the force pass writes down of fluid particles where drag is solved for (implicit.h).
+/// What the force pass (drag_rows.cpp) writes down of fluid particles where drag is solved for (implicit.h).
 struct FluidDrag {
   PairRows rows;  ///< with fluid, and behind it with moving bodies' particles
   std::vector<Symmetric<float>>

@@ -60,15 +60,10 @@ FloatBatch viscosity_of(const ParticleView<FloatBatch>& p, const NeighborColumns
   }
 }
 
-using BatchView = ParticleView<FloatBatch>;
-inline constexpr auto kNothingMore = [](const BatchView&, const BatchView&, std::uint32_t, FloatBatch) {};
-
-/// `also`(p, i, j, weight) is called for each batch i beside it.
 template <class Parts, PairRule rule, Viscosity viscosity, Neighbours neighbours = Neighbours::kFluid,
-          class Also = decltype(kNothingMore), class Sum = ForceSum<FloatBatch>>
+          class Sum = ForceSum<FloatBatch>>
 void add_row_forces(const ParticleView<FloatBatch>& p, const NeighborColumns& n, const RowList& rows,
-                    FloatBatch h, Sum& sum, FloatBatch of_fluid = FloatBatch(1.0f),
-                    Also also = kNothingMore) {
+                    FloatBatch h, Sum& sum, FloatBatch of_fluid = FloatBatch(1.0f)) {
   // What pairs of one viscosity drag by is in u already.
   constexpr bool kViscous =
       is_corrected_fluid(rule) ? viscosity == Viscosity::kPair : viscosity != Viscosity::kNone;
@@ -98,7 +93,6 @@ void add_row_forces(const ParticleView<FloatBatch>& p, const NeighborColumns& n,
       i.viscosity = viscosity_of<viscosity, neighbours>(p, n, j, of_fluid);
     }
     add_pair_force<typename Parts::ForceKernel, rule, Parts::kDrag, kViscous>(p, i, h, weight, sum);
-    also(p, i, j, weight);
   };
   for_each_batch(rows, add);
 }

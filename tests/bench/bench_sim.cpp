@@ -1,5 +1,6 @@
-// What the simulation costs: a whole step of `pool` at several sizes, and the shipped bucket in two hands,
-// with what they feel against its weight. Known answers and passes: `slosh report`.
+// What the simulation costs: a whole step of `pool` at several sizes, what viscosity that is solved for adds to
+// one, and the shipped bucket in two hands, with what they feel against its weight. Known answers and passes:
+// `slosh report`.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -15,6 +16,7 @@
 #include "scenes/sample.h"
 #include "sim/world.h"
 #include "tests/physics/lab.h"
+#include "tests/support/tank.h"
 
 namespace {
 
@@ -160,7 +162,66 @@ bool bench_speed(Table& table, const std::vector<std::size_t>& counts, int steps
   return true;
 }
 
-/// (b) The shipped bucket in two hands.
+/// A square column of about `count` particles at 10 mm, as high as wide, in a tank; it turns by 2 rad/s.
+testing::Tank turning_column(std::size_t count, double viscosity) {
+  testing::TankOptions options;
+  const double side = options.spacing * std::round(std::cbrt(static_cast<double>(count)));
+  options.inner = {side, 1.3 * side, side};
+  options.fill = side;
+  options.viscosity = viscosity;
+  options.wall_viscosity = viscosity > 0.0 ? kFluidsViscosity : 0.0;
+  testing::Tank tank = testing::make_tank(options);
+  tank.scene.bodies[0].measured = false;
+  for (std::size_t p = 0; p < tank.sampled.fluid_positions.size(); ++p) {
+    const glm::vec3& x = tank.sampled.fluid_positions[p];
+    tank.sampled.fluid_velocities[p] = 2.0f * glm::vec3(-x.z, 0.0f, x.x);
+  }
+  return tank;
+}
+
+/// (b) The same column without viscosity and with 50 Pa·s solved for, step by step in turns, so that what else
+/// the machine does meets both: the steps in which it is set in motion, and those after.
+bool bench_drag(Table& table, const std::vector<std::size_t>& counts, int steps) {
+  constexpr int kFirst = 12;
+  for (const std::size_t count : counts) {
+    for (const ParticleModel model : {ParticleModel::kCorrected, ParticleModel::kIncompressible}) {
+      std::vector<World> worlds;
+      for (const double viscosity : {0.0, 50.0}) {
+        testing::Tank tank = turning_column(count, viscosity);
+        tank.scene.model = model;
+        const Plan plan = make_plan(tank.scene, tank.sampled.spacing);
+        if (plan.has(PassId::kImplicitDrag) != (viscosity > 0.0))
+          return std::fprintf(stderr, "the plan does not solve drag\n"), false;
+        worlds.emplace_back(tank.scene, tank.sampled, plan, WorldOptions{1, Backend::kCpu});
+      }
+      for (const bool first : {true, false}) {
+        Timing times[2];
+        for (int i = 0; i < (first ? kFirst : steps); ++i) {
+          for (int w = 0; w < 2; ++w) {
+            const Timing one = time_steps(worlds[w], {}, 1);
+            times[w].total.push_back(one.total[0]);
+            times[w].density.push_back(one.density[0]);
+            times[w].force.push_back(one.force[0]);
+          }
+        }
+        const auto ms = [&](const std::vector<double>& of) { return 1e3 * percentile(of, 0.5); };
+        table.add({"drag",
+                   std::string("column ") + std::to_string(worlds[0].fluid_count()) + " " + name(model) +
+                       (first ? " first steps" : " later steps"),
+                   {{"without_ms", ms(times[0].total)},
+                    {"with_ms", ms(times[1].total)},
+                    {"ratio", ms(times[1].total) / ms(times[0].total)},
+                    {"without_density_ms", ms(times[0].density)},
+                    {"with_density_ms", ms(times[1].density)},
+                    {"without_force_ms", ms(times[0].force)},
+                    {"with_force_ms", ms(times[1].force)}}});
+      }
+    }
+  }
+  return true;
+}
+
+/// (c) The shipped bucket in two hands.
 bool bench_bucket(Table& table) {
   const Result<Scene> bucket = shipped("bucket");
   if (!bucket) return std::fprintf(stderr, "%s\n", bucket.error().text().c_str()), false;
@@ -201,13 +262,14 @@ int main(int argc, char** argv) {
   int steps = 100;
   std::vector<std::size_t> counts{4096, 8192, 16384, 32768, 65536, 131072};
   app.add_option("--csv", csv, "also write the results here");
-  app.add_option("--only", only, "one part")->check(CLI::IsMember({"speed", "error"}));
+  app.add_option("--only", only, "one part")->check(CLI::IsMember({"speed", "drag", "error"}));
   app.add_option("--steps", steps, "steps that are timed for each row")->check(CLI::Range(1, 100000));
-  app.add_option("--counts", counts, "particle counts of the speed part");
+  app.add_option("--counts", counts, "particle counts of the speed and drag parts");
   CLI11_PARSE(app, argc, argv);
   Table table;
   bool good = true;
   if (only.empty() || only == "speed") good = bench_speed(table, counts, steps) && good;
+  if (only.empty() || only == "drag") good = bench_drag(table, counts, steps) && good;
   if (only.empty() || only == "error") good = bench_bucket(table) && good;
   if (!csv.empty() && !table.write(csv)) {
     std::fprintf(stderr, "%s: cannot be written\n", csv.c_str());

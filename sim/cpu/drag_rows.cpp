@@ -1,0 +1,162 @@
+// The force pass where drag is solved for: it goes by who presses on whom, which the density pass found among
+// all candidates, and writes down who drags whom beside the forces.
+#include <algorithm>
+#include <cstring>
+
+#include "sim/cpu/passes.h"
+#include "sim/cpu/pressure_rows.h"
+#include "sim/cpu/row_drag.h"
+#include "sim/viscosity/noise.h"
+
+namespace slosh {
+
+namespace {
+
+// Drag is solved for in this model and the incompressible one, which drags alike (Plan::solves_drag).
+using Parts = ModelParts<ParticleModel::kCorrected>;
+
+// What all rows of a sub-step go through.
+struct DragWalk {
+  const PassContext& context;
+  FluidParticles& fluid;
+  const BoundaryParticles &fixed, &moving;
+  const FluidPress& press;
+  FluidDrag& drag;
+  float factor;  // kCentralDrag, the kernel's constant and the time, s, that drag acts for
+};
+
+// Writes a group's pairs with fluid down as drag has them. Returns what others press each by, and what jostling
+// drags it by without jostling_factor().
+struct GroupForces {
+  Sixteen pressed = {}, jostled = {};
+};
+template <bool presses, bool jostles>
+GroupForces write_fluid_pairs(const DragWalk& w, const PairRows::Walk& walk, PairRows::Writer& writer) {
+  const FluidPress& press = w.press;
+  const float h = w.context.support_radius;
+  const float* const tensors = &press.tensors[0].xx;
+  const Sixteen volume = fourths(walk.of_group<8>(tensors + 8 * walk.first));
+  const Sixteen viscosity = fourths(walk.of_group<8>(tensors + 8 * walk.first + 4));
+  const Sixteen own = walk.of_group<4>(&press.drags[walk.first].x);
+  PairRows::Pair* to = writer.take(walk);
+  Sixteen straight = {}, turning = {}, back = {}, jostled = {};
+  walk.for_each_way(press.places.data(), [&](Sixteen d, const PairRows::Pair* four) {
+    const Sixteen slope = each_even_four_times(&four->weight);
+    const Sixteen even = walk.of_others<8>(tensors, four), odd = walk.of_others<8>(tensors + 4, four);
+    if constexpr (presses) {
+      const Sixteen g = slope * d;
+      straight += even * g;
+      turning += odd * turned(g);
+      back += odd * g;
+    }
+    // Rounding may have what is just in reach by the one and just out of it by the other. What fills a row up
+    // has no weight.
+    const Sixteen reach = PairRows::Walk::drag_shape(d, h);
+    const Sixteen shape = where_above_zero(slope, where_above_zero(reach, reach));
+    if constexpr (jostles) {
+      const Sixteen u = walk.of_others<4>(&press.drags[0].x, four);
+      jostled += (shape * fourths(u) * sums(d * (u - own))) * d;
+    }
+    // As drag_pairs(): both sides of a pair find the same to the bit.
+    const Sixteen of_both = (0.5f * (viscosity + fourths(odd))) * (volume * fourths(even));
+    std::memcpy(to, four, PairRows::kTogether * sizeof *to);
+    put_each_even(of_both * (w.factor * shape), &to->weight);
+    to += PairRows::kTogether;
+  });
+  return {straight + turning + turned_back(back), jostled};
+}
+
+// Of one particle: its pairs with moving bodies' particles, which are numbered on behind the fluid's, go down
+// too; fixed ones are in the own block alone.
+void write_body_pairs(const DragWalk& w, std::uint32_t p, const RowList& fixed_rows, const RowList& moving_rows,
+                      PairRows::Writer& writer) {
+  const FloatBatch h(w.context.support_radius), factor(w.factor), one(1.0f);
+  const ParticleView<FloatBatch> self =
+      broadcast(columns(w.fluid), p, w.context.kinds[w.fluid.kind[p]].viscosity);
+  Symmetric<FloatBatch> by_walls = no_rate();
+  const NeighborColumns fixed = columns(w.fixed), moving = columns(w.moving);
+  for_each_batch(fixed_rows, [&](std::uint32_t j, FloatBatch weight) {
+    const PairBatch found =
+        drag_pairs<Parts, Viscosity::kPair, Neighbours::kWalls>(self, fixed, j, weight, h, factor, one);
+    const FloatBatch x = found.q * found.x, y = found.q * found.y;
+    by_walls.xx += x * found.x;
+    by_walls.xy += x * found.y;
+    by_walls.xz += x * found.z;
+    by_walls.yy += y * found.y;
+    by_walls.yz += y * found.z;
+    by_walls.zz += found.q * found.z * found.z;
+  });
+  const auto behind = static_cast<std::uint32_t>(w.fluid.index.particles());
+  for_each_batch(moving_rows, [&](std::uint32_t j, FloatBatch weight) {
+    const PairBatch found =
+        drag_pairs<Parts, Viscosity::kPair, Neighbours::kWalls>(self, moving, j, weight, h, factor, one);
+    writer.add(behind + j, found.q, found.q * found.r_squared);
+  });
+  w.drag.by_walls[p] = summed(by_walls);
+}
+
+// One chunk of rows. All of a pair in one loop, as in the density pass.
+template <bool presses, bool jostles>
+__attribute__((flatten)) void find_chunk(const DragWalk& w, std::size_t chunk) {
+  FluidParticles& fluid = w.fluid;
+  PairRows::Writer writer(w.drag.rows, chunk);
+  std::uint32_t cell = w.context.grid.retired_key();
+  RowList fixed_rows, moving_rows;
+  w.press.rows.for_each_group(chunk, [&](const PairRows::Walk& walk) {
+    const GroupForces forces = write_fluid_pairs<presses, jostles>(w, walk, writer);
+    float pressed[16], jostled[16];
+    std::memcpy(pressed, &forces.pressed, sizeof pressed);
+    std::memcpy(jostled, &forces.jostled, sizeof jostled);
+    for (std::uint32_t a = 0; a < walk.count; ++a) {
+      const std::uint32_t p = walk.first + a;
+      const float factor = kCentralDrag * w.context.force_scale * fluid.volume[p];
+      const auto force = [&](float own, int k) {
+        return (presses ? own + pressed[4 * a + k] : 0.0f) + (jostles ? factor * jostled[4 * a + k] : 0.0f);
+      };
+      fluid.fx[p] = force(w.press.own[p].x, 0);
+      fluid.fy[p] = force(w.press.own[p].y, 1);
+      fluid.fz[p] = force(w.press.own[p].z, 2);
+      if (fluid.key[p] != cell) {
+        cell = fluid.key[p];
+        fixed_rows = w.fixed.index.rows(w.context.grid, cell);
+        moving_rows = w.moving.index.rows(w.context.grid, cell);
+      }
+      fluid.near_wall[p] = fixed_rows.count + moving_rows.count > 0;
+      w.drag.by_walls[p] = {};
+      writer.begin(p);
+      if (fluid.near_wall[p]) write_body_pairs(w, p, fixed_rows, moving_rows, writer);
+      writer.end();
+    }
+  });
+}
+
+}  // namespace
+
+void compute_forces_by_rows(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
+                            const BoundaryParticles& fixed, const BoundaryParticles& moving, double dt,
+                            FluidDrag& drag, const FluidPress& press) {
+  drag.clear(fluid.index.particles(), press.rows.chunks());
+  const float factor = kCentralDrag * static_cast<float>(dt) * context.force_scale;
+  const DragWalk walk{context, fluid, fixed, moving, press, drag, factor};
+  // Where pressures are solved for they push later (PressureSolver::push_by_last).
+  const bool presses = !context.plan.has(PassId::kPressureSolve);
+  const bool jostles = std::any_of(context.kinds.begin(), context.kinds.end(), [&](const ParticleKind& kind) {
+    return jostling_viscosity(context.correction.noise_viscosity, kind.viscosity) > 0.0f;
+  });
+  const auto run = [&]<bool pressing, bool jostling>() {
+    team.run(press.rows.chunks(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t chunk = begin; chunk < end; ++chunk) find_chunk<pressing, jostling>(walk, chunk);
+    });
+  };
+  if (presses && jostles) {
+    run.operator()<true, true>();
+  } else if (presses) {
+    run.operator()<true, false>();
+  } else if (jostles) {
+    run.operator()<false, true>();
+  } else {
+    run.operator()<false, false>();
+  }
+}
+
+}  // namespace slosh
