@@ -1,6 +1,7 @@
 // Eq 2 and 7 for the corrected model, with what pressure and noise need of the neighbours besides their
 // number.
 #include <algorithm>
+#include <cstring>
 
 #include "sim/cpu/passes.h"
 #include "sim/cpu/pressure_rows.h"
@@ -16,183 +17,225 @@ namespace {
 
 constexpr std::size_t kRunsPerChunk = 32;
 
-// What is written down beside the sums: nothing, or
-struct NoRow {
-  struct Writer {
-    Writer(FluidPress&, std::size_t) {}
-  };
-  NoRow(Writer&, std::uint32_t) {}
-  void add(std::uint32_t, const Vector3<FloatBatch>&, FloatBatch, FloatBatch) {}
-  void add_wall(const Vector3<FloatBatch>&, FloatBatch, FloatBatch, FloatBatch) {}
-  void end(const PassContext&, const FluidParticles&) {}
+// What the pass goes through.
+struct Work {
+  PassContext& context;
+  FluidParticles& fluid;
+  const BoundaryParticles &fixed, &moving;
+  FluidPress& press;
 };
 
-// who presses on whom, where pressures or drag are solved for: by fluid in rows, by all in the own vector.
-class PressRow {
- public:
-  struct Writer {
-    Writer(FluidPress& p, std::size_t chunk) : press(p), rows(p.rows, chunk) {}
-    FluidPress& press;
-    PairRows::Writer rows;
-  };
-  PressRow(Writer& writer, std::uint32_t p) : writer_(writer), p_(p) { writer_.rows.begin(p); }
-  void add(std::uint32_t j, const Vector3<FloatBatch>& d, FloatBatch h, FloatBatch weight) {
-    const FloatBatch r_squared = d.x * d.x + d.y * d.y + d.z * d.z;
-    const FloatBatch slope = Spiky::pair(r_squared, h, weight).slope_over_r;
-    writer_.rows.add(j, slope, r_squared * slope);
-    add(d, slope);
-  }
-  void add_wall(const Vector3<FloatBatch>& d, FloatBatch share, FloatBatch h, FloatBatch weight) {
-    add(d, share * Spiky::pair(d.x * d.x + d.y * d.y + d.z * d.z, h, weight).slope_over_r);
-  }
-  void end(const PassContext& context, const FluidParticles& fluid) {
-    writer_.rows.end();
-    const float scale = context.force_scale;
-    const PressTensor t{scale * fluid.pxx[p_],
-                        scale * fluid.pyy[p_],
-                        scale * fluid.pzz[p_],
-                        fluid.volume[p_],
-                        scale * fluid.pxy[p_],
-                        scale * fluid.pyz[p_],
-                        scale * fluid.pxz[p_],
-                        context.kinds[fluid.kind[p_]].viscosity};
-    const float x = lane_sum(sum_.x), y = lane_sum(sum_.y), z = lane_sum(sum_.z);
-    writer_.press.places[p_] = {fluid.x[p_], fluid.y[p_], fluid.z[p_], 0.0f};
-    writer_.press.drags[p_] = {fluid.ux[p_], fluid.uy[p_], fluid.uz[p_], fluid.volume[p_]};
-    writer_.press.tensors[p_] = t;
-    writer_.press.own[p_] = {t.xx * x + t.xy * y + t.xz * z, t.xy * x + t.yy * y + t.yz * z,
-                             t.xz * x + t.yz * y + t.zz * z, 0.0f};
-  }
+FloatBatch load(const Column<float>& column, std::uint32_t j) {
+  return FloatBatch::load_unaligned(column.data() + j);
+}
 
- private:
-  void add(const Vector3<FloatBatch>& d, FloatBatch factor) {
-    sum_.x += factor * d.x;
-    sum_.y += factor * d.y;
-    sum_.z += factor * d.z;
-  }
-  Writer& writer_;
-  const std::uint32_t p_;
-  Vector3<FloatBatch> sum_{FloatBatch(0.0f), FloatBatch(0.0f), FloatBatch(0.0f)};
-};
-
-// The corrected model's pass: what pressure and noise need of the neighbours besides their number.
-template <class Row>
-class CorrectedDensity {
- public:
-  CorrectedDensity(PassContext& context, FluidParticles& fluid, const BoundaryParticles& fixed,
-                   const BoundaryParticles& moving)
-      : context_(context), fluid_(fluid), fixed_(fixed), moving_(moving) {}
-
-  // One run of particles of a cell; returns the largest compression. All of it in one loop: left to itself
-  // the compiler calls functions where rows are written, and hands batches over in memory.
-  __attribute__((flatten)) float operator()(const CellRun& run, typename Row::Writer& writer) const {
-    const RowList rows = fluid_.index.rows(context_.grid, run.cell);
-    const RowList fixed_rows = fixed_.index.rows(context_.grid, run.cell);
-    const RowList moving_rows = moving_.index.rows(context_.grid, run.cell);
-    float densest = 0.0f;
-    for (std::uint32_t p = run.particles.begin; p < run.particles.end; ++p) {
-      Neighborhood<FloatBatch> sum = zero();
-      Row row(writer, p);
-      add_fluid(p, rows, sum, row);
-      add_walls(p, fixed_, fixed_rows, sum, row);
-      add_walls(p, moving_, moving_rows, sum, row);
-      densest = std::max(densest, finish(p, sum));
-      row.end(context_, fluid_);
+// Where everybody is and goes, as the walks over rows take it.
+void place(const Work& w, ThreadTeam& team) {
+  constexpr std::size_t kParticlesPerChunk = 2048;
+  const FluidParticles& fluid = w.fluid;
+  // Nobody, who fills rows up, is out of everyone's reach.
+  constexpr float kFar = 1e9f;
+  w.press.places[fluid.index.particles()] = {kFar, kFar, kFar, 0.0f};
+  team.run(fluid.index.particles(), kParticlesPerChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      w.press.places[p] = {fluid.x[p], fluid.y[p], fluid.z[p], 0.0f};
+      w.press.velocities[p] = {fluid.vx[p], fluid.vy[p], fluid.vz[p], 1.0f};
     }
-    return densest;
-  }
+  });
+}
 
- private:
+// Those of the candidates that p has in reach, itself left out, into p's row.
+bool write_row(const Work& w, std::uint32_t p, const RowList& rows, PairRows::Writer& writer) {
+  // Columns of one's own: what is written may lie anywhere, for all that the compiler knows.
+  const float *const xs = w.fluid.x.data(), *const ys = w.fluid.y.data(), *const zs = w.fluid.z.data();
+  const FloatBatch x(xs[p]), y(ys[p]), z(zs[p]);
+  const float h = w.context.support_radius;
+  const FloatBatch h_squared(h * h);
+  std::uint32_t candidates = 0;
+  for (int row = 0; row < rows.count; ++row) candidates += rows.rows[row].end - rows.rows[row].begin;
+  std::int32_t* to = writer.begin(p, candidates);
+  for (int row = 0; row < rows.count; ++row) {
+    const ParticleRange range = rows.rows[row];
+    for (std::uint32_t j = range.begin; j < range.end; j += kLanes) {
+      const FloatBatch dx = x - FloatBatch::load_unaligned(xs + j);
+      const FloatBatch dy = y - FloatBatch::load_unaligned(ys + j);
+      const FloatBatch dz = z - FloatBatch::load_unaligned(zs + j);
+      PickedLanes picked = lanes_less(dx * dx + dy * dy + dz * dz, h_squared);
+      if (range.end - j < kLanes) picked &= (PickedLanes{1} << (range.end - j)) - 1;
+      if (p - j < kLanes) picked &= ~(PickedLanes{1} << (p - j));
+      store_picked_indices(j, picked, to);
+      to += count_of(picked);
+    }
+  }
+  return writer.end_at(to);
+}
+
+// What up to four particles' neighbours add up to; the rows get −W'/r, without the kernel's constant, as
+// weights.
+struct GroupSums {
+  Sixteen even = {}, odd = {};  // Σ d ⊗ d (−W'/r): xx, yy, zz; xy, yz, xz
+  Sixteen slope = {};           // Σ d (−W'/r)
+  Sixteen velocity = {};        // Σ W v, and in the fourth Σ W
+};
+PairRows::Walk weigh(const Work& w, PairRows::Writer& writer, GroupSums& sum) {
+  const float h = w.context.support_radius, floor = h * h * 1e-12f;
+  const float* const places = &w.press.places[0].x;
+  const float* const velocities = &w.press.velocities[0].x;
+  Sixteen even = {}, odd = {}, slopes = {}, velocity = {};
+  const auto nobody = static_cast<std::uint32_t>(w.fluid.index.particles());
+  const PairRows::Walk group =
+      writer.put_weighed(nobody, [&](std::uint32_t first, const PairRows::Others& others) {
+        const Sixteen d = PairRows::Walk::of_group<4>(places + std::size_t{4} * first) -
+                          PairRows::Walk::of_others<4>(places, others);
+        const Sixteen r_squared = sums(d * d) + floor, inverse_r = inverse_roots(r_squared);
+        const Sixteen reach = at_least_zero(h - r_squared * inverse_r);
+        const Sixteen squared = reach * reach, slope = squared * inverse_r, weighed = slope * d;
+        even += weighed * d;
+        odd += weighed * turned(d);
+        slopes += weighed;
+        velocity += (squared * reach) * PairRows::Walk::of_others<4>(velocities, others);
+        return slope;
+      });
+  sum = {even, odd, slopes, velocity};
+  return group;
+}
+
+// What walls add for one particle.
+struct WallSums {
+  Neighborhood<FloatBatch> sum;
+  Vector3<FloatBatch> slope;  // Σ d (−W'/r), walls with their share
+};
+void add_walls(const Work& w, std::uint32_t p, const BoundaryParticles& walls, const RowList& rows,
+               WallSums& sums) {
   using Kernel = ModelParts<ParticleModel::kCorrected>::DensityKernel;
+  const FluidParticles& fluid = w.fluid;
+  const FloatBatch x(fluid.x[p]), y(fluid.y[p]), z(fluid.z[p]), h(w.context.support_radius);
+  for_each_batch(rows, [&](std::uint32_t j, FloatBatch weight) {
+    const FloatBatch share = load(walls.pressure, j);
+    const FloatBatch dx = x - load(walls.x, j), dy = y - load(walls.y, j), dz = z - load(walls.z, j);
+    add_wall_neighbor<Kernel>(dx, dy, dz, share, FloatBatch(1.0f / kWallShare) * share, h, weight, sums.sum);
+    const FloatBatch slope = share * Kernel::pair(dx * dx + dy * dy + dz * dz, h, weight).slope_over_r;
+    sums.slope.x += slope * dx;
+    sums.slope.y += slope * dy;
+    sums.slope.z += slope * dz;
+  });
+}
 
-  static Neighborhood<FloatBatch> zero() {
-    const FloatBatch z(0.0f);
-    return {z, {z, z, z, z, z, z}, z, z, z, z};
-  }
+// From what one particle's neighbours add up to (each four floats of its group's sums) to what it presses and
+// drags by.
+class Finish {
+ public:
+  explicit Finish(const Work& work) : w_(work) {}
 
-  void add_fluid(std::uint32_t p, const RowList& rows, Neighborhood<FloatBatch>& sum, Row& row) const {
-    const FloatBatch x(fluid_.x[p]), y(fluid_.y[p]), z(fluid_.z[p]), h(context_.support_radius);
-    for_each_batch(rows, [&](std::uint32_t j, FloatBatch weight) {
-      const Vector3<FloatBatch> d{x - load(fluid_.x, j), y - load(fluid_.y, j), z - load(fluid_.z, j)};
-      add_fluid_neighbor<Kernel>(d.x, d.y, d.z, load(fluid_.vx, j), load(fluid_.vy, j), load(fluid_.vz, j), h,
-                                 weight, sum);
-      row.add(j, d, h, weight);
-    });
-  }
-
-  void add_walls(std::uint32_t p, const BoundaryParticles& walls, const RowList& rows,
-                 Neighborhood<FloatBatch>& sum, Row& row) const {
-    if (rows.count == 0) return;
-    const FloatBatch x(fluid_.x[p]), y(fluid_.y[p]), z(fluid_.z[p]), h(context_.support_radius);
-    for_each_batch(rows, [&](std::uint32_t j, FloatBatch weight) {
-      const FloatBatch share = load(walls.pressure, j);
-      const Vector3<FloatBatch> d{x - load(walls.x, j), y - load(walls.y, j), z - load(walls.z, j)};
-      add_wall_neighbor<Kernel>(d.x, d.y, d.z, share, FloatBatch(1.0f / kWallShare) * share, h, weight, sum);
-      row.add_wall(d, share, h, weight);
-    });
-  }
-
-  float finish(std::uint32_t p, const Neighborhood<FloatBatch>& batch) const {
-    const auto& m = batch.moment;
-    const Neighborhood<float> n{
-        lane_sum(batch.number),
-        {lane_sum(m.xx), lane_sum(m.xy), lane_sum(m.xz), lane_sum(m.yy), lane_sum(m.yz), lane_sum(m.zz)},
-        lane_sum(batch.fluid_number),
-        lane_sum(batch.vx),
-        lane_sum(batch.vy),
-        lane_sum(batch.vz)};
-    const ParticleKind& kind = context_.kinds[fluid_.kind[p]];
-    const float in_u = one_explicit_ ? kind.viscosity : 0.0f;
-    const float v[3] = {fluid_.vx[p], fluid_.vy[p], fluid_.vz[p]};
-    if (context_.plan.has(PassId::kPressureSolve)) {
-      const SolvedState state = solved_state(n, context_.correction, kind.viscosity, in_u, v);
-      fluid_.pressure[p] = state.expansion;
-      return keep(p, kind, state);
+  // Returns the compression.
+  float operator()(std::uint32_t p, const float* even, const float* odd, const float* slope,
+                   const float* velocity, const RowList& fixed_rows, const RowList& moving_rows) const {
+    const FluidParticles& fluid = w_.fluid;
+    const float own = own_;
+    const float v[3] = {fluid.vx[p], fluid.vy[p], fluid.vz[p]};
+    Neighborhood<float> n{velocity[3] + own,        {even[0], odd[0], odd[2], even[1], odd[1], even[2]},
+                          velocity[3] + own,        velocity[0] + own * v[0],
+                          velocity[1] + own * v[1], velocity[2] + own * v[2]};
+    Vector3<float> pushed{slope[0], slope[1], slope[2]};
+    if (fixed_rows.count + moving_rows.count > 0) {
+      const FloatBatch z(0.0f);
+      WallSums walls{{z, {z, z, z, z, z, z}, z, z, z, z}, {z, z, z}};
+      add_walls(w_, p, w_.fixed, fixed_rows, walls);
+      add_walls(w_, p, w_.moving, moving_rows, walls);
+      n.number += lane_sum(walls.sum.number);
+      const auto& m = walls.sum.moment;
+      n.moment.xx += lane_sum(m.xx);
+      n.moment.xy += lane_sum(m.xy);
+      n.moment.xz += lane_sum(m.xz);
+      n.moment.yy += lane_sum(m.yy);
+      n.moment.yz += lane_sum(m.yz);
+      n.moment.zz += lane_sum(m.zz);
+      pushed.x += lane_sum(walls.slope.x);
+      pushed.y += lane_sum(walls.slope.y);
+      pushed.z += lane_sum(walls.slope.z);
     }
-    const CorrectedState state = corrected_state(n, context_.correction, kind.pressing_density,
-                                                 kind.viscosity, in_u, fluid_.volume[p], v);
-    fluid_.pressure[p] = state.pressure;
-    return keep(p, kind, state);
+    const ParticleKind& kind = w_.context.kinds[fluid.kind[p]];
+    const float in_u = one_explicit_ ? kind.viscosity : 0.0f;
+    if (w_.context.plan.has(PassId::kPressureSolve)) {
+      const SolvedState state = solved_state(n, w_.context.correction, kind.viscosity, in_u, v);
+      return keep(p, kind, state, state.expansion, pushed);
+    }
+    const CorrectedState state = corrected_state(n, w_.context.correction, kind.pressing_density,
+                                                 kind.viscosity, in_u, fluid.volume[p], v);
+    return keep(p, kind, state, state.pressure, pushed);
   }
 
+ private:
   // What the two models find alike.
   template <class State>
-  float keep(std::uint32_t p, const ParticleKind& kind, const State& state) const {
-    fluid_.volume[p] = state.volume;
-    fluid_.pxx[p] = state.push.xx;
-    fluid_.pxy[p] = state.push.xy;
-    fluid_.pxz[p] = state.push.xz;
-    fluid_.pyy[p] = state.push.yy;
-    fluid_.pyz[p] = state.push.yz;
-    fluid_.pzz[p] = state.push.zz;
-    fluid_.ux[p] = state.u[0];
-    fluid_.uy[p] = state.u[1];
-    fluid_.uz[p] = state.u[2];
-    if (context_.plan.has(PassId::kPairViscosity)) fluid_.viscosity[p] = kind.viscosity;
+  float keep(std::uint32_t p, const ParticleKind& kind, const State& state, float pressure,
+             const Vector3<float>& pushed) const {
+    FluidParticles& fluid = w_.fluid;
+    fluid.pressure[p] = pressure;
+    fluid.volume[p] = state.volume;
+    fluid.pxx[p] = state.push.xx;
+    fluid.pxy[p] = state.push.xy;
+    fluid.pxz[p] = state.push.xz;
+    fluid.pyy[p] = state.push.yy;
+    fluid.pyz[p] = state.push.yz;
+    fluid.pzz[p] = state.push.zz;
+    fluid.ux[p] = state.u[0];
+    fluid.uy[p] = state.u[1];
+    fluid.uz[p] = state.u[2];
+    if (w_.context.plan.has(PassId::kPairViscosity)) fluid.viscosity[p] = kind.viscosity;
+    const Symmetric<float> t = scaled_and_shifted(state.push, w_.context.force_scale, 0.0f);
+    const Vector3<float> by_own = times(t, pushed.x, pushed.y, pushed.z);
+    w_.press.tensors[p] = {t.xx, t.yy, t.zz, state.volume, t.xy, t.yz, t.xz, kind.viscosity};
+    w_.press.own[p] = {by_own.x, by_own.y, by_own.z, 0.0f};
+    w_.press.drags[p] = {state.u[0], state.u[1], state.u[2], state.volume};
     return state.compression;
   }
 
-  static FloatBatch load(const Column<float>& column, std::uint32_t j) {
-    return FloatBatch::load_unaligned(column.data() + j);
-  }
+  using Kernel = ModelParts<ParticleModel::kCorrected>::DensityKernel;
 
-  PassContext& context_;
-  const bool one_explicit_ = context_.plan.drags_explicitly() && context_.plan.has(PassId::kOneViscosity);
-  FluidParticles& fluid_;
-  const BoundaryParticles &fixed_, &moving_;
+  const Work& w_;
+  // W(0) as pairs have it, with their floor: the pressure of a calm fluid hangs on the density's sixth digit.
+  const float own_ = Kernel::shape_of(Kernel::pair(0.0f, w_.context.support_radius, 1.0f));
+  const bool one_explicit_ = w_.context.plan.drags_explicitly() && w_.context.plan.has(PassId::kOneViscosity);
 };
 
-template <class Row>
-void find(PassContext& context, ThreadTeam& team, FluidParticles& fluid, const BoundaryParticles& fixed,
-          const BoundaryParticles& moving, FluidPress& press) {
-  const std::vector<CellRun>& runs = fluid.index.runs();
-  const CorrectedDensity<Row> pass(context, fluid, fixed, moving);
-  team.run(runs.size(), kRunsPerChunk, [&](std::size_t begin, std::size_t end) {
-    typename Row::Writer writer(press, begin / kRunsPerChunk);
-    float densest = 0.0f;
-    for (std::size_t r = begin; r < end; ++r) densest = std::max(densest, pass(runs[r], writer));
-    if (densest > kTooCompressed) context.status.fetch_or(kStatusCompressed, std::memory_order_relaxed);
-  });
+// One chunk of runs; returns the largest compression. All of it in one loop: left to itself the compiler
+// calls functions where rows are written, and hands batches over in memory.
+__attribute__((flatten)) float find_chunk(const Work& w, std::size_t begin, std::size_t end) {
+  const std::vector<CellRun>& runs = w.fluid.index.runs();
+  const CellGrid& grid = w.context.grid;
+  const Finish finish(w);
+  PairRows::Writer writer(w.press.rows, begin / kRunsPerChunk);
+  float densest = 0.0f;
+  std::uint32_t cell = grid.retired_key();
+  RowList fixed_rows, moving_rows;
+  const auto put = [&] {
+    GroupSums sums;
+    const PairRows::Walk group = weigh(w, writer, sums);
+    float even[16], odd[16], slope[16], velocity[16];
+    std::memcpy(even, &sums.even, sizeof even);
+    std::memcpy(odd, &sums.odd, sizeof odd);
+    std::memcpy(slope, &sums.slope, sizeof slope);
+    std::memcpy(velocity, &sums.velocity, sizeof velocity);
+    for (std::uint32_t a = 0; a < group.count; ++a) {
+      const std::uint32_t p = group.first + a;
+      if (w.fluid.key[p] != cell) {
+        cell = w.fluid.key[p];
+        fixed_rows = w.fixed.index.rows(grid, cell);
+        moving_rows = w.moving.index.rows(grid, cell);
+      }
+      densest = std::max(densest, finish(p, even + 4 * a, odd + 4 * a, slope + 4 * a, velocity + 4 * a,
+                                         fixed_rows, moving_rows));
+    }
+  };
+  for (std::size_t r = begin; r < end; ++r) {
+    const RowList rows = w.fluid.index.rows(grid, runs[r].cell);
+    for (std::uint32_t p = runs[r].particles.begin; p < runs[r].particles.end; ++p) {
+      if (write_row(w, p, rows, writer)) put();
+    }
+  }
+  if (writer.waits()) put();
+  return densest;
 }
 
 }  // namespace
@@ -200,12 +243,14 @@ void find(PassContext& context, ThreadTeam& team, FluidParticles& fluid, const B
 void compute_corrected_density(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
                                const BoundaryParticles& fixed, const BoundaryParticles& moving,
                                FluidPress& press) {
-  if (!context.plan.has(PassId::kPressureSolve) && !context.plan.has(PassId::kImplicitDrag)) {
-    find<NoRow>(context, team, fluid, fixed, moving, press);
-    return;
-  }
-  press.clear(fluid.index.particles(), chunk_count(fluid.index.runs().size(), kRunsPerChunk));
-  find<PressRow>(context, team, fluid, fixed, moving, press);
+  const Work work{context, fluid, fixed, moving, press};
+  const std::size_t runs = fluid.index.runs().size();
+  press.clear(fluid.index.particles(), chunk_count(runs, kRunsPerChunk));
+  place(work, team);
+  team.run(runs, kRunsPerChunk, [&](std::size_t begin, std::size_t end) {
+    if (find_chunk(work, begin, end) > kTooCompressed)
+      context.status.fetch_or(kStatusCompressed, std::memory_order_relaxed);
+  });
 }
 
 }  // namespace slosh

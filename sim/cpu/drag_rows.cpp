@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "sim/cpu/passes.h"
-#include "sim/cpu/pressure_rows.h"
+#include "sim/cpu/press_walk.h"
 #include "sim/cpu/row_drag.h"
 #include "sim/viscosity/noise.h"
 
@@ -25,51 +25,27 @@ struct DragWalk {
   float factor;  // kCentralDrag, the kernel's constant and the time, s, that drag acts for
 };
 
-// Writes a group's pairs with fluid down as drag has them. Returns what others press each by, and what jostling
-// drags it by without jostling_factor().
-struct GroupForces {
-  Sixteen pressed = {}, jostled = {};
-};
+// Writes a group's pairs with fluid down as drag has them.
 template <bool presses, bool jostles>
 GroupForces write_fluid_pairs(const DragWalk& w, const PairRows::Walk& walk, PairRows::Writer& writer) {
-  const FluidPress& press = w.press;
-  const float h = w.context.support_radius;
-  const float* const tensors = &press.tensors[0].xx;
-  const Sixteen volume = fourths(walk.of_group<8>(tensors + 8 * walk.first));
-  const Sixteen viscosity = fourths(walk.of_group<8>(tensors + 8 * walk.first + 4));
-  const Sixteen own = walk.of_group<4>(&press.drags[walk.first].x);
+  const float* const own = &w.press.tensors[walk.first].xx;
+  const Sixteen volume = fourths(walk.of_group<8>(own)), viscosity = fourths(walk.of_group<8>(own + 4));
   PairRows::Pair* to = writer.take(walk);
-  Sixteen straight = {}, turning = {}, back = {}, jostled = {};
-  walk.for_each_way(press.places.data(), [&](Sixteen d, const PairRows::Pair* four) {
-    const Sixteen slope = each_even_four_times(&four->weight);
-    const Sixteen even = walk.of_others<8>(tensors, four), odd = walk.of_others<8>(tensors + 4, four);
-    if constexpr (presses) {
-      const Sixteen g = slope * d;
-      straight += even * g;
-      turning += odd * turned(g);
-      back += odd * g;
-    }
-    // Rounding may have what is just in reach by the one and just out of it by the other. What fills a row up
-    // has no weight.
-    const Sixteen reach = PairRows::Walk::drag_shape(d, h);
-    const Sixteen shape = where_above_zero(slope, where_above_zero(reach, reach));
-    if constexpr (jostles) {
-      const Sixteen u = walk.of_others<4>(&press.drags[0].x, four);
-      jostled += (shape * fourths(u) * sums(d * (u - own))) * d;
-    }
-    // As drag_pairs(): both sides of a pair find the same to the bit.
-    const Sixteen of_both = (0.5f * (viscosity + fourths(odd))) * (volume * fourths(even));
-    std::memcpy(to, four, PairRows::kTogether * sizeof *to);
-    put_each_even(of_both * (w.factor * shape), &to->weight);
-    to += PairRows::kTogether;
-  });
-  return {straight + turning + turned_back(back), jostled};
+  return walk_forces<presses, jostles, false>(
+      w.press, walk, w.context.support_radius,
+      [&](const PairRows::Pair* four, const Sixteen& shape, const Sixteen& even, const Sixteen& odd) {
+        // As drag_pairs(): both sides of a pair find the same to the bit.
+        const Sixteen of_both = (0.5f * (viscosity + fourths(odd))) * (volume * fourths(even));
+        const PairRows::Others others{four[0].other, four[1].other, four[2].other, four[3].other};
+        put_pairs(of_both * (w.factor * shape), others.data(), to);
+        to += PairRows::kTogether;
+      });
 }
 
 // Of one particle: its pairs with moving bodies' particles, which are numbered on behind the fluid's, go down
 // too; fixed ones are in the own block alone.
-void write_body_pairs(const DragWalk& w, std::uint32_t p, const RowList& fixed_rows, const RowList& moving_rows,
-                      PairRows::Writer& writer) {
+void write_body_pairs(const DragWalk& w, std::uint32_t p, const RowList& fixed_rows,
+                      const RowList& moving_rows, PairRows::Writer& writer) {
   const FloatBatch h(w.context.support_radius), factor(w.factor), one(1.0f);
   const ParticleView<FloatBatch> self =
       broadcast(columns(w.fluid), p, w.context.kinds[w.fluid.kind[p]].viscosity);
@@ -90,7 +66,7 @@ void write_body_pairs(const DragWalk& w, std::uint32_t p, const RowList& fixed_r
   for_each_batch(moving_rows, [&](std::uint32_t j, FloatBatch weight) {
     const PairBatch found =
         drag_pairs<Parts, Viscosity::kPair, Neighbours::kWalls>(self, moving, j, weight, h, factor, one);
-    writer.add(behind + j, found.q, found.q * found.r_squared);
+    writer.add(behind + j, found.q, lanes_less(FloatBatch(0.0f), found.q * found.r_squared));
   });
   w.drag.by_walls[p] = summed(by_walls);
 }
@@ -106,7 +82,7 @@ __attribute__((flatten)) void find_chunk(const DragWalk& w, std::size_t chunk) {
     const GroupForces forces = write_fluid_pairs<presses, jostles>(w, walk, writer);
     float pressed[16], jostled[16];
     std::memcpy(pressed, &forces.pressed, sizeof pressed);
-    std::memcpy(jostled, &forces.jostled, sizeof jostled);
+    std::memcpy(jostled, &forces.dragged, sizeof jostled);
     for (std::uint32_t a = 0; a < walk.count; ++a) {
       const std::uint32_t p = walk.first + a;
       const float factor = kCentralDrag * w.context.force_scale * fluid.volume[p];

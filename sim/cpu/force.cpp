@@ -1,8 +1,9 @@
 // Eq 5, 6 and 9 on fluid particles, and Eq 10–12 on bodies.
+#include <algorithm>
 #include <cstring>
 
 #include "sim/cpu/passes.h"
-#include "sim/cpu/pressure_rows.h"
+#include "sim/cpu/press_walk.h"
 #include "sim/cpu/row_force.h"
 
 namespace slosh {
@@ -35,12 +36,12 @@ Symmetric<float> drag_rate(const ParticleView<FloatBatch>& self, const NeighborC
 }
 
 // One chunk of runs. All of a pair in one loop: left to itself the compiler calls functions and hands batches
-// over in memory.
-// Without `by_fluid` what fluid does to fluid is there already.
-template <class Parts, Viscosity viscosity, bool by_fluid>
+// over in memory. For the models that go by rows (forces_by_rows) only what walls drag by is left.
+template <class Parts, Viscosity viscosity>
 __attribute__((flatten)) void find_forces_of(const FluidWalk& walk, std::size_t begin, std::size_t end) {
   // Body particles have viscosities of their own, so against them Eq 9 holds even where one fluid has Eq 6.
   constexpr Viscosity kAgainstBodies = viscosity == Viscosity::kNone ? Viscosity::kNone : Viscosity::kPair;
+  constexpr PairRule kWalls = Parts::kCorrected ? PairRule::kSolvedWall : Parts::kWalls;
   const PassContext& context = walk.context;
   FluidParticles& fluid = walk.fluid;
   const std::vector<CellRun>& runs = fluid.index.runs();
@@ -49,25 +50,30 @@ __attribute__((flatten)) void find_forces_of(const FluidWalk& walk, std::size_t 
   const NeighborColumns moving_columns = columns(walk.moving);
   const FloatBatch h(context.support_radius);
   for (std::size_t r = begin; r < end; ++r) {
-    const RowList fluid_rows = fluid.index.rows(context.grid, runs[r].cell);
     const RowList fixed_rows = walk.fixed.index.rows(context.grid, runs[r].cell);
     const RowList moving_rows = walk.moving.index.rows(context.grid, runs[r].cell);
-    for (std::uint32_t p = runs[r].particles.begin; p < runs[r].particles.end; ++p) {
-      fluid.near_wall[p] = fixed_rows.count + moving_rows.count > 0;
-      if (!by_fluid && !fluid.near_wall[p]) continue;
+    const bool near_wall = fixed_rows.count + moving_rows.count > 0;
+    const ParticleRange own = runs[r].particles;
+    std::fill(fluid.near_wall.begin() + own.begin, fluid.near_wall.begin() + own.end, near_wall);
+    if (Parts::kCorrected && (!near_wall || viscosity == Viscosity::kNone)) continue;
+    RowList fluid_rows;
+    if constexpr (!Parts::kCorrected) fluid_rows = fluid.index.rows(context.grid, runs[r].cell);
+    for (std::uint32_t p = own.begin; p < own.end; ++p) {
       const ParticleView<FloatBatch> self =
           broadcast(fluid_columns, p, context.kinds[fluid.kind[p]].viscosity);
       ForceSum<FloatBatch> sum{FloatBatch(0.0f), FloatBatch(0.0f), FloatBatch(0.0f)};
-      if constexpr (by_fluid)
+      if constexpr (!Parts::kCorrected)
         add_row_forces<Parts, Parts::kFluids, viscosity>(self, fluid_columns, fluid_rows, h, sum);
       if (fixed_rows.count)
-        add_row_forces<Parts, Parts::kWalls, kAgainstBodies, Neighbours::kWalls>(
-            self, fixed_columns, fixed_rows, h, sum);
+        add_row_forces<Parts, kWalls, kAgainstBodies, Neighbours::kWalls>(self, fixed_columns, fixed_rows, h,
+                                                                          sum);
       if (moving_rows.count)
-        add_row_forces<Parts, Parts::kWalls, kAgainstBodies, Neighbours::kWalls>(
-            self, moving_columns, moving_rows, h, sum);
+        add_row_forces<Parts, kWalls, kAgainstBodies, Neighbours::kWalls>(self, moving_columns, moving_rows,
+                                                                          h, sum);
       const float scale = context.force_scale;
-      const auto put = [](float& force, float found) { force = by_fluid ? found : force + found; };
+      const auto put = [](float& force, float found) {
+        force = Parts::kCorrected ? force + found : found;
+      };
       put(fluid.fx[p], scale * lane_sum(sum.x));
       put(fluid.fy[p], scale * lane_sum(sum.y));
       put(fluid.fz[p], scale * lane_sum(sum.z));
@@ -75,29 +81,37 @@ __attribute__((flatten)) void find_forces_of(const FluidWalk& walk, std::size_t 
   }
 }
 
-template <class Parts, Viscosity viscosity, bool by_fluid = true>
+template <class Parts, Viscosity viscosity>
 void find_forces(const FluidWalk& walk) {
   walk.team.run(walk.fluid.index.runs().size(), kRunsPerChunk, [&](std::size_t begin, std::size_t end) {
-    find_forces_of<Parts, viscosity, by_fluid>(walk, begin, end);
+    find_forces_of<Parts, viscosity>(walk, begin, end);
   });
 }
 
-// What fluid that does not press drags fluid by, over the rows of who presses on whom.
-void drag_by_rows(const FluidWalk& walk, const FluidPress& press) {
+// By fluid, and what one's own pressure pushes by, walls among those that bear it. Where pressures are solved
+// for they push later. Pairs of one viscosity drag by u alone.
+template <class Parts, Viscosity viscosity>
+void forces_by_rows(const FluidWalk& walk, const FluidPress& press) {
+  constexpr bool kPresses = !Parts::kSolved;
   FluidParticles& fluid = walk.fluid;
   const float h = walk.context.support_radius, scale = kCentralDrag * walk.context.force_scale;
   walk.team.run(press.rows.chunks(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t chunk = begin; chunk < end; ++chunk) {
       press.rows.for_each_group(chunk, [&](const PairRows::Walk& rows) {
-        const Sixteen drags = rows.drag(press.places.data(), press.drags.data(), h);
-        float of[16];
-        std::memcpy(of, &drags, sizeof drags);
+        const GroupForces forces = walk_forces<kPresses, true, viscosity == Viscosity::kPair>(
+            press, rows, h, [](const auto&...) {});
+        float pressed[16], dragged[16];
+        std::memcpy(pressed, &forces.pressed, sizeof pressed);
+        std::memcpy(dragged, &forces.dragged, sizeof dragged);
         for (std::uint32_t a = 0; a < rows.count; ++a) {
           const std::uint32_t p = rows.first + a;
           const float factor = scale * fluid.volume[p];
-          fluid.fx[p] = factor * of[4 * a];
-          fluid.fy[p] = factor * of[4 * a + 1];
-          fluid.fz[p] = factor * of[4 * a + 2];
+          const auto force = [&](float own, std::uint32_t k) {
+            return (kPresses ? own + pressed[4 * a + k] : 0.0f) + factor * dragged[4 * a + k];
+          };
+          fluid.fx[p] = force(press.own[p].x, 0);
+          fluid.fy[p] = force(press.own[p].y, 1);
+          fluid.fz[p] = force(press.own[p].z, 2);
         }
       });
     }
@@ -115,12 +129,8 @@ void compute_fluid_forces(PassContext& context, ThreadTeam& team, FluidParticles
   }
   const FluidWalk walk{context, team, fluid, fixed, moving};
   with_physics(context.plan, [&]<class Parts, Viscosity viscosity>() {
-    if constexpr (Parts::kSolved && viscosity != Viscosity::kPair) {
-      drag_by_rows(walk, press);
-      find_forces<Parts, viscosity, false>(walk);
-    } else {
-      find_forces<Parts, viscosity>(walk);
-    }
+    if constexpr (Parts::kCorrected) forces_by_rows<Parts, viscosity>(walk, press);
+    find_forces<Parts, viscosity>(walk);
   });
 }
 

@@ -63,6 +63,11 @@ inline Sixteen inverse_roots(const Sixteen& v) {
   return {inverse_roots(v.low), inverse_roots(v.high)};
 }
 
+/// v, or 0 where that is below.
+inline Sixteen at_least_zero(const Sixteen& v) {
+  return {v.low > 0.0f ? v.low : Eight{}, v.high > 0.0f ? v.high : Eight{}};
+}
+
 /// `v` where `test` is above 0, else 0.
 inline Sixteen where_above_zero(const Sixteen& test, const Sixteen& v) {
   const auto half = [](Eight t, Eight x) {
@@ -71,13 +76,15 @@ inline Sixteen where_above_zero(const Sixteen& test, const Sixteen& v) {
   return {half(test.low, v.low), half(test.high, v.high)};
 }
 
-/// Of each four the first, in the place of the first, third, fifth and seventh of eight floats.
-inline void put_each_even(const Sixteen& from, float* to) {
-  Eight eight;
-  std::memcpy(&eight, to, sizeof eight);
-  const Eight firsts = __builtin_shufflevector(from.low, from.high, 0, 0, 4, 4, 8, 8, 12, 12);
-  eight = __builtin_shufflevector(firsts, eight, 0, 9, 2, 11, 4, 13, 6, 15);
-  std::memcpy(to, &eight, sizeof eight);
+/// Four pairs of 8 bytes: each four's first and the whole number that is beside it in the pair.
+inline void put_pairs(const Sixteen& firsts, const std::int32_t* numbers, void* to) {
+  using FourBits = std::int32_t __attribute__((vector_size(16)));
+  FourBits four;
+  std::memcpy(&four, numbers, sizeof four);
+  const Eight beside = reinterpret_cast<Eight>(__builtin_shufflevector(four, four, 0, 0, 1, 1, 2, 2, 3, 3));
+  const Eight even = __builtin_shufflevector(firsts.low, firsts.high, 0, 0, 4, 4, 8, 8, 12, 12);
+  const Eight pairs = __builtin_shufflevector(even, beside, 0, 9, 2, 11, 4, 13, 6, 15);
+  std::memcpy(to, &pairs, sizeof pairs);
 }
 
 /// Each half's floats in the order of the template's arguments.

@@ -26,7 +26,7 @@ void PairRows::Writer::make_room() {
 }
 
 PairRows::Pair* PairRows::Writer::take(const Walk& walk) {
-  put_group();
+  if (waits()) put_group();
   taken_ = walk.pairs();
   chunk_.make_room(taken_);
   return chunk_.pairs.data() + chunk_.size;
@@ -34,7 +34,6 @@ PairRows::Pair* PairRows::Writer::take(const Walk& walk) {
 
 // The rows of up to four particles, as long as the longest: what fills them up is nobody's pair.
 void PairRows::Writer::put_group() {
-  if (group_.count == 0) return;
   std::size_t longest = 0;
   for (std::uint32_t a = 0; a < group_.count; ++a) longest = std::max(longest, rows_[a].count);
   const std::size_t whole = kTogether * longest;
@@ -47,12 +46,7 @@ void PairRows::Writer::put_group() {
     for (std::size_t k = count; k < longest; ++k)
       pairs[kTogether * k + a] = {0.0f, static_cast<std::int32_t>(group_.first)};
   }
-  group_.begin = static_cast<std::uint32_t>(chunk_.size);
-  chunk_.size += taken_ + whole;
-  group_.end = static_cast<std::uint32_t>(chunk_.size);
-  chunk_.groups.push_back(group_);
-  group_ = {};
-  taken_ = 0;
+  close_group(taken_ + whole);
 }
 
 }  // namespace slosh

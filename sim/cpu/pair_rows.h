@@ -1,6 +1,8 @@
 // Pairs of particles written down once a sub-step: a turn of a solve asks for them again and again.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -14,8 +16,8 @@ struct alignas(16) Vector4 {
   float x = 0.0f, y = 0.0f, z = 0.0f, w = 0.0f;
 };
 
-/// A symmetric tensor as a walk over rows takes it, and what else is asked for with it: the fourths go into no
-/// product.
+/// A symmetric tensor as a walk over rows takes it, and what else is asked for with it: the fourths go into
+/// no product.
 struct alignas(32) PressTensor {
   float xx, yy, zz, volume;
   float xy, yz, xz, viscosity;
@@ -34,6 +36,8 @@ class PairRows {
     std::int32_t other;
   };
   static constexpr std::uint32_t kTogether = 4;
+  /// Of a pair of each.
+  using Others = std::array<std::int32_t, kTogether>;
 
   /// Up to four particles one behind the other.
   struct Group {
@@ -51,7 +55,9 @@ class PairRows {
   class Writer {
    public:
     Writer(PairRows& rows, std::size_t chunk) : chunk_(rows.chunks_[chunk]) {}
-    ~Writer() { put_group(); }
+    ~Writer() {
+      if (waits()) put_group();
+    }
     Writer(const Writer&) = delete;
     Writer& operator=(const Writer&) = delete;
     /// The row of p comes now, until end().
@@ -60,22 +66,37 @@ class PairRows {
       count_ = 0;
       make_room();
     }
-    /// Of a batch of particles that begins at `first`; `reach` is 0 for those out of reach and for p itself.
-    void add(std::uint32_t first, FloatBatch weights, FloatBatch reach) {
-      const PickedLanes picked = lanes_above_zero(reach);
-      const int count = count_of(picked);
-      if (count == 0) return;
+    /// The picked ones of a batch of particles that begins at `first`.
+    void add(std::uint32_t first, FloatBatch weights, PickedLanes picked) {
       if (count_ + 2 * kLanes > row_->other.size()) make_room();
       store_picked(weights, picked, row_->weight.data() + count_);
       store_picked_indices(first, picked, row_->other.data() + count_);
-      count_ += static_cast<std::size_t>(count);
+      count_ += static_cast<std::size_t>(count_of(picked));
     }
     void end() {
       row_->count = count_;
       if (++group_.count == kTogether) put_group();
     }
-    /// Room for a group's pairs of other rows, to be written again as they lie there with weights of their own.
-    /// Then begin() … end() of each of its particles, for what goes behind them.
+    /// The same where weights are found group by group: who is in p's row goes where this says, at most
+    /// `most` and a batch behind them, and then end_at(). Of each group put_weighed().
+    std::int32_t* begin(std::uint32_t p, std::size_t most) {
+      begin(p);
+      if (most + kLanes > row_->other.size()) row_->other.resize(most + kLanes);
+      return row_->other.data();
+    }
+    /// True where that was a group's last.
+    bool end_at(const std::int32_t* end) {
+      row_->count = static_cast<std::size_t>(end - row_->other.data());
+      return ++group_.count == kTogether;
+    }
+    /// Rows are waiting for put_weighed().
+    bool waits() const { return group_.count > 0; }
+    /// f(first, others), of a pair of each, gives their weights, each four times. Rows are filled up with
+    /// `nobody`, who must weigh nothing. Returns the group.
+    template <class F>
+    Walk put_weighed(std::uint32_t nobody, F&& f);
+    /// Room for a group's pairs of other rows, to be written again as they lie there with weights of their
+    /// own. Then begin() … end() of each of its particles, for what goes behind them.
     Pair* take(const Walk& walk);
 
    private:
@@ -86,6 +107,14 @@ class PairRows {
     };
     __attribute__((noinline)) void make_room();
     __attribute__((noinline)) void put_group();
+    void close_group(std::size_t pairs) {
+      group_.begin = static_cast<std::uint32_t>(chunk_.size);
+      chunk_.size += pairs;
+      group_.end = static_cast<std::uint32_t>(chunk_.size);
+      chunk_.groups.push_back(group_);
+      group_ = {};
+      taken_ = 0;
+    }
 
     Chunk& chunk_;
     Group group_;
@@ -149,19 +178,6 @@ class PairRows {
       });
       return sum;
     }
-    /// The sum of V reach/r² d (d · (u − one's own)), u and, in the fourth, V each other's of `drags`: what
-    /// jostling drags by (pair_force.h). `h`: the support radius.
-    Sixteen drag(const Vector4* places, const Vector4* drags, float h) const {
-      const Sixteen own = of_group<4>(&drags[first].x);
-      Sixteen sum = {};
-      for_each_way(places, [&](Sixteen d, const Pair* four) {
-        const Sixteen u = of_others<4>(&drags->x, four);
-        const Sixteen along = drag_shape(d, h) * fourths(u) * sums(d * (u - own));
-        // What fills a row up has no weight.
-        sum += where_above_zero(each_even_four_times(&four->weight), along) * d;
-      });
-      return sum;
-    }
     /// reach/r² of pairs at `d` from each other, m.
     static Sixteen drag_shape(Sixteen d, float h) {
       const Sixteen r_squared = sums(d * d) + h * h * 1e-12f, inverse_r = inverse_roots(r_squared);
@@ -206,11 +222,15 @@ class PairRows {
     }
     /// Four floats of each other, of `all` that have `stride` each.
     template <std::size_t stride>
-    static Sixteen of_others(const float* all, const Pair* four) {
-      const auto at = [&](int k) {
-        return four_at(all + stride * static_cast<std::uint32_t>(four[k].other));
+    static Sixteen of_others(const float* all, const Others& others) {
+      const auto at = [&](std::size_t k) {
+        return four_at(all + stride * static_cast<std::uint32_t>(others[k]));
       };
       return side_by_side(at(0), at(1), at(2), at(3));
+    }
+    template <std::size_t stride>
+    static Sixteen of_others(const float* all, const Pair* four) {
+      return of_others<stride>(all, Others{four[0].other, four[1].other, four[2].other, four[3].other});
     }
 
    private:
@@ -235,5 +255,29 @@ class PairRows {
   std::vector<Chunk> chunks_;
   std::size_t used_ = 0;
 };
+
+template <class F>
+PairRows::Walk PairRows::Writer::put_weighed(std::uint32_t nobody, F&& f) {
+  std::size_t longest = 0;
+  for (std::uint32_t a = group_.count; a < kTogether; ++a) rows_[a].count = 0;
+  for (const OneRow& row : rows_) longest = std::max(longest, row.count);
+  const std::int32_t* others[kTogether];
+  for (std::uint32_t a = 0; a < kTogether; ++a) {
+    OneRow& row = rows_[a];
+    if (row.other.size() < longest) row.other.resize(longest);
+    std::fill(row.other.begin() + static_cast<std::ptrdiff_t>(row.count),
+              row.other.begin() + static_cast<std::ptrdiff_t>(longest), static_cast<std::int32_t>(nobody));
+    others[a] = row.other.data();
+  }
+  chunk_.make_room(kTogether * longest);
+  Pair* to = chunk_.pairs.data() + chunk_.size;
+  const std::uint32_t first = group_.first;
+  for (std::size_t k = 0; k < longest; ++k, to += kTogether) {
+    const Others four{others[0][k], others[1][k], others[2][k], others[3][k]};
+    put_pairs(f(first, four), four.data(), to);
+  }
+  close_group(kTogether * longest);
+  return {chunk_.groups.back(), chunk_.pairs.data()};
+}
 
 }  // namespace slosh

@@ -1,4 +1,4 @@
-// Who presses on whom, as the solves for pressures and for drag ask for it.
+// Who presses on whom, as forces and the solves for pressures and for drag ask for it.
 #pragma once
 
 #include <vector>
@@ -7,11 +7,12 @@
 
 namespace slosh {
 
-/// What the density pass writes down of fluid particles where pressures or drag are solved for: four entries
-/// more than there are particles.
+/// What the density pass of the corrected and of the incompressible model writes down of fluid particles, four
+/// entries more than there are particles.
 struct FluidPress {
   PairRows rows;
   std::vector<Vector4> places;       ///< m, with 0 for a fourth
+  std::vector<Vector4> velocities;   ///< m/s, with 1 for a fourth
   /// What each presses by, with the kernel's constant: at 1 Pa where pressures are solved for; and its volume,
   /// m³, and viscosity, Pa·s.
   std::vector<PressTensor> tensors;
@@ -23,6 +24,7 @@ struct FluidPress {
   void clear(std::size_t particles, std::size_t chunks) {
     rows.clear(chunks);
     places.resize(particles + 4);
+    velocities.resize(particles + 4);
     tensors.resize(particles + 4);
     own.resize(particles + 4);
     drags.resize(particles + 4);

@@ -50,49 +50,71 @@ inline FloatBatch first_lanes(std::size_t count) {
   return FloatBatch::load_unaligned(kTable.data() + 64 - count);
 }
 
-/// Which lanes of a batch are above 0, for store_picked().
-#ifdef __AVX512F__
-using PickedLanes = __mmask16;
-inline PickedLanes lanes_above_zero(FloatBatch x) {
-  return _mm512_cmp_ps_mask(x, _mm512_setzero_ps(), _CMP_GT_OQ);
+/// Which lanes of a batch: bit k is lane k's.
+using PickedLanes = std::uint32_t;
+
+/// Those in which a < b.
+inline PickedLanes lanes_less(FloatBatch a, FloatBatch b) {
+#if defined(__AVX512F__)
+  return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ);
+#elif defined(__AVX2__)
+  return static_cast<PickedLanes>(_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LT_OQ)));
+#else
+  alignas(64) float of_a[kLanes], of_b[kLanes];
+  a.store_aligned(of_a);
+  b.store_aligned(of_b);
+  PickedLanes picked = 0;
+  for (std::size_t lane = 0; lane < kLanes; ++lane) picked |= PickedLanes{of_a[lane] < of_b[lane]} << lane;
+  return picked;
+#endif
 }
-inline int count_of(PickedLanes picked) { return __builtin_popcount(picked); }
+inline int count_of(PickedLanes picked) {
+  return __builtin_popcount(picked);
+}
+
+#if defined(__AVX2__) && !defined(__AVX512F__)
+/// For each set of lanes their numbers one after another.
+inline constexpr auto kLanesOf = [] {
+  std::array<std::array<std::int32_t, 8>, 256> table{};
+  for (std::size_t picked = 0; picked < 256; ++picked) {
+    std::size_t count = 0;
+    for (int lane = 0; lane < 8; ++lane) {
+      if (picked >> lane & 1) table[picked][count++] = lane;
+    }
+  }
+  return table;
+}();
+#endif
+
 /// Stores the picked lanes one after another; what lies behind them up to a whole batch is overwritten.
 inline void store_picked(FloatBatch x, PickedLanes picked, float* to) {
-  _mm512_storeu_ps(to, _mm512_maskz_compress_ps(picked, x));
+#if defined(__AVX512F__)
+  _mm512_storeu_ps(to, _mm512_maskz_compress_ps(static_cast<__mmask16>(picked), x));
+#elif defined(__AVX2__)
+  const __m256i lanes = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(kLanesOf[picked].data()));
+  _mm256_storeu_ps(to, _mm256_permutevar8x32_ps(x, lanes));
+#else
+  alignas(64) float values[kLanes];
+  x.store_aligned(values);
+  for (; picked; picked &= picked - 1) *to++ = values[__builtin_ctz(picked)];
+#endif
 }
+
 /// The same of first, first + 1, …
 inline void store_picked_indices(std::uint32_t first, PickedLanes picked, std::int32_t* to) {
+#if defined(__AVX512F__)
   const __m512i lanes = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-  _mm512_storeu_si512(to, _mm512_add_epi32(_mm512_maskz_compress_epi32(picked, lanes),
+  _mm512_storeu_si512(to, _mm512_add_epi32(_mm512_maskz_compress_epi32(static_cast<__mmask16>(picked), lanes),
                                            _mm512_set1_epi32(static_cast<int>(first))));
-}
+#elif defined(__AVX2__)
+  const __m256i lanes = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(kLanesOf[picked].data()));
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(to),
+                      _mm256_add_epi32(lanes, _mm256_set1_epi32(static_cast<int>(first))));
 #else
-struct PickedLanes {
-  std::array<std::uint8_t, kLanes + 1> lanes;  // one more than there can be, for the last that is not picked
-  int count = 0;
-};
-inline PickedLanes lanes_above_zero(FloatBatch x) {
-  alignas(64) float values[kLanes];
-  x.store_aligned(values);
-  PickedLanes picked;
-  for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    picked.lanes[static_cast<std::size_t>(picked.count)] = static_cast<std::uint8_t>(lane);
-    picked.count += values[lane] > 0.0f;
-  }
-  return picked;
-}
-inline int count_of(const PickedLanes& picked) { return picked.count; }
-inline void store_picked(FloatBatch x, const PickedLanes& picked, float* to) {
-  alignas(64) float values[kLanes];
-  x.store_aligned(values);
-  for (int k = 0; k < picked.count; ++k) to[k] = values[picked.lanes[static_cast<std::size_t>(k)]];
-}
-inline void store_picked_indices(std::uint32_t first, const PickedLanes& picked, std::int32_t* to) {
-  for (int k = 0; k < picked.count; ++k)
-    to[k] = static_cast<std::int32_t>(first + picked.lanes[static_cast<std::size_t>(k)]);
-}
+  for (; picked; picked &= picked - 1)
+    *to++ = static_cast<std::int32_t>(first + static_cast<std::uint32_t>(__builtin_ctz(picked)));
 #endif
+}
 
 /// Memory on cache lines, so that a batch does not straddle two at the start of an array.
 template <class T>

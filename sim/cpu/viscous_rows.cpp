@@ -41,7 +41,7 @@ void ViscousSolver::write_body_rows(const Work& work) {
           for_each_batch(rows, [&](std::uint32_t j, FloatBatch weight) {
             const PairBatch found = drag_pairs<Parts, viscosity, Neighbours::kFluid>(
                 self, fluids, j, weight, h, factor, FloatBatch(wall.of_fluid));
-            writer.add(j, found.q, found.q * found.r_squared);
+            writer.add(j, found.q, lanes_less(FloatBatch(0.0f), found.q * found.r_squared));
           });
           writer.end();
         }
