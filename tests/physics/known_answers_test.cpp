@@ -94,7 +94,8 @@ INSTANTIATE_TEST_SUITE_P(
                            {"tank_faces", 0.01, "side walls, mean", 0.03},
                            {"tank_faces", 0.01, "centre of pressure above the floor", 0.02}},
         std::vector<Known>{{"slope", 0.0125, "slope", 0.02}, {"slope", 0.0125, "force along the tank", 1e-3}},
-        std::vector<Known>{{"slope", 0.01, "slope", 0.02}, {"slope", 0.01, "force along the tank", 1e-3}},
+        // -1.9 %; of sums in another order, and from 9.8 to 10.1 mm, -1.1 to -2.8.
+        std::vector<Known>{{"slope", 0.01, "slope", 0.03}, {"slope", 0.01, "force along the tank", 1e-3}},
         std::vector<Known>{{"slope_gentle", 0.01, "slope", 0.05},  // -1.3 %; by clang -4.2
                            {"slope_gentle", 0.01, "force along the tank", 1e-3}},
         std::vector<Known>{{"buoyancy_box", 0.016, "buoyancy", 0.09}},
@@ -114,6 +115,16 @@ INSTANTIATE_TEST_SUITE_P(
                            {"spin_up", 0.005, "torque at tau 0.10", 0.06},
                            {"spin_up", 0.005, "impulse", 0.03}},
         std::vector<Known>{{"couette", 0.00667, "torque", 0.08}},
+        std::vector<Known>{{"couette_start", 0.005, "torque at 20 ms", 0.095},
+                           {"couette_start", 0.005, "torque at 40 ms", 0.06},
+                           {"couette_start", 0.005, "torque at 80 ms", 0.06}},
+        std::vector<Known>{{"poiseuille", 0.005, "flow, evenly", 0.04},
+                           {"poiseuille", 0.005, "flow at 40 ms", 0.03}},
+        // What is slow yields (sim/README.md): 45 % too little is left of it, and walls have bumps.
+        std::vector<Known>{{"taylor_green", 0.005, "rate of decay", 0.04},
+                           {"taylor_green", 0.005, "left of 2 cm/s after a decay's time", 0.55}},
+        std::vector<Known>{{"smooth_glass", 0.005, "kept after 0.4 s, 10 cm/s at the rim", 0.08},
+                           {"smooth_glass", 0.005, "kept after 0.4 s, 2 cm/s at the rim", 0.55}},
         // A ball of 1.5 and 2 spacings. It meets particle by particle what drags it now, so a stroke's halves
         // differ more (0.03 held where it slid through).
         std::vector<Known>{{"stokes", 0.008, "drag", 0.06}, {"stokes", 0.008, "drift over a stroke", 0.05}},

@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "sim/bodies/body_solve.h"
+#include "sim/math/gauss.h"
 
 namespace slosh {
 namespace {
@@ -53,6 +55,19 @@ TEST(Cholesky, SolvesAndRefuses) {
   EXPECT_FALSE(cholesky(a, lower));
   a[3][3] = std::nan("");
   EXPECT_FALSE(cholesky(a, lower));
+}
+
+TEST(Gauss, SolvesWhatNeedsItsRowsSwappedAndRefusesTheSingular) {
+  std::array<double, 9> a{0, 2, 1, 1, -2, -3, -1, 1, 2};
+  std::array<double, 3> x{-8, 0, 3};
+  ASSERT_TRUE(solve_dense(a, x));
+  EXPECT_NEAR(x[0], -4.0, 1e-14);
+  EXPECT_NEAR(x[1], -5.0, 1e-14);
+  EXPECT_NEAR(x[2], 2.0, 1e-14);
+  std::array<double, 4> singular{1, 2, 2, 4}, nan{1, 2, std::nan(""), 4};
+  std::array<double, 2> b{1, 1};
+  EXPECT_FALSE(solve_dense(singular, b));
+  EXPECT_FALSE(solve_dense(nan, b));
 }
 
 TEST(RigidBody, KeepsAngularMomentumWhileItTumbles) {

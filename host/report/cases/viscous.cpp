@@ -13,13 +13,13 @@ namespace {
 const glm::dvec3 kUp(0.0, 1.0, 0.0);
 
 struct Spin {
-  static constexpr double kRadius = 0.05;
+  static constexpr double kRadius = 0.05, kShort = 0.06, kTall = 0.12, kBetween = kTall - kShort;  // m
   static constexpr std::array<glm::dvec2, 3> kShape{{{0.02, 1.2790}, {0.05, 0.5711}, {0.1, 0.2377}}};
   std::array<double, kShape.size()> torque{};
   double impulse = 0.0;
 
-  // A glass filled to `height` with fluid of `viscosity` Pa·s that suddenly turns at `turning` rad/s until τ is
-  // `until`, held by a coupling so stiff that its inertia does not count.
+  // A glass filled to `height` with fluid of `viscosity` Pa·s that suddenly turns at `turning` rad/s until τ
+  // is `until`, held by a coupling so stiff that its inertia does not count.
   Spin(double height, double viscosity, double turning, double until, const Setting& setting, Cost& cost) {
     SceneBuilder b;
     b.add_fluid(1000.0, viscosity);
@@ -57,20 +57,20 @@ struct Spin {
 
 // Two fillings of the same glass: the floor's part is in both, so the difference is what the wall between the
 // two heights does to an infinitely long cylinder.
-constexpr double kShort = 0.06, kTall = 0.12, kLength = kTall - kShort, kR = Spin::kRadius;  // m
-
 std::vector<Reading> spin_up(const Setting& setting, Cost& cost) {
   constexpr double kViscosity = 2.0, kTurning = 0.5;  // slow: nothing is thrown outwards
-  const Spin low(kShort, kViscosity, kTurning, 0.6, setting, cost),
-      high(kTall, kViscosity, kTurning, 0.6, setting, cost);
+  const Spin low(Spin::kShort, kViscosity, kTurning, 0.6, setting, cost),
+      high(Spin::kTall, kViscosity, kTurning, 0.6, setting, cost);
   std::vector<Reading> readings;
   for (std::size_t i = 0; i < Spin::kShape.size(); ++i) {
-    const double expected = 4.0 * kPi * kViscosity * kTurning * kR * kR * Spin::kShape[i].y * kLength;
+    const double expected = 4.0 * kPi * kViscosity * kTurning * Spin::kRadius * Spin::kRadius *
+                            Spin::kShape[i].y * Spin::kBetween;
     readings.push_back({"torque at tau " + std::to_string(Spin::kShape[i].x).substr(0, 4), "N·m",
                         high.torque[i] - low.torque[i], expected, 0.0, i == 0});
   }
   readings.push_back({"impulse", "N·m·s", high.impulse - low.impulse,
-                      0.5 * kPi * 1000.0 * kTurning * std::pow(kR, 4) * kLength, 0.0, false});
+                      0.5 * kPi * 1000.0 * kTurning * std::pow(Spin::kRadius, 4) * Spin::kBetween, 0.0,
+                      false});
   return readings;
 }
 
@@ -79,13 +79,14 @@ std::vector<Reading> spin_up_all(const Setting& setting, Cost& cost) {
   std::vector<Reading> readings;
   for (const double turning : {0.5, 5.0}) {
     for (const double viscosity : {0.5, 1.0, 2.0, 5.0}) {
-      const Spin low(kShort, viscosity, turning, 0.055, setting, cost),
-          high(kTall, viscosity, turning, 0.055, setting, cost);
+      const Spin low(Spin::kShort, viscosity, turning, 0.055, setting, cost),
+          high(Spin::kTall, viscosity, turning, 0.055, setting, cost);
       char text[48];
       std::snprintf(text, sizeof text, "torque, %.1f Pa·s at %.1f rad/s", viscosity, turning);
       readings.push_back({text, "N·m", high.torque[1] - low.torque[1],
-                          4.0 * kPi * viscosity * turning * kR * kR * Spin::kShape[1].y * kLength, 0.0,
-                          readings.empty()});
+                          4.0 * kPi * viscosity * turning * Spin::kRadius * Spin::kRadius *
+                              Spin::kShape[1].y * Spin::kBetween,
+                          0.0, readings.empty()});
     }
   }
   return readings;

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <utility>
 
+#include "sim/math/gauss.h"
+
 namespace slosh::report {
 namespace {
 
@@ -130,29 +132,6 @@ Element element(const dvec2& eye, const dvec2& from, const dvec2& to) {
   const double flux = angle(b) - angle(a);
   const double flux_end = y != 0.0 ? (0.5 * y * std::log(square(b) / square(a)) - a * flux) / length : 0.0;
   return {{log - log_end, log_end}, {flux - flux_end, flux_end}};
-}
-
-// Gauss with pivots.
-std::vector<double> solved(std::vector<double> matrix, std::vector<double> rhs) {
-  const std::size_t n = rhs.size();
-  const auto row = [&](std::size_t i) { return matrix.data() + i * n; };
-  for (std::size_t k = 0; k < n; ++k) {
-    std::size_t pivot = k;
-    for (std::size_t i = k + 1; i < n; ++i)
-      if (std::abs(row(i)[k]) > std::abs(row(pivot)[k])) pivot = i;
-    std::swap_ranges(row(k), row(k) + n, row(pivot));
-    std::swap(rhs[k], rhs[pivot]);
-    for (std::size_t i = k + 1; i < n; ++i) {
-      const double w = row(i)[k] / row(k)[k];
-      for (std::size_t j = k + 1; j < n; ++j) row(i)[j] -= w * row(k)[j];
-      rhs[i] -= w * rhs[k];
-    }
-  }
-  for (std::size_t k = n; k-- > 0;) {
-    for (std::size_t j = k + 1; j < n; ++j) rhs[k] -= row(k)[j] * rhs[j];
-    rhs[k] /= row(k)[k];
-  }
-  return rhs;
 }
 
 std::vector<dvec2> velocities(const Surface& surface) {
@@ -316,7 +295,8 @@ std::vector<double> outward_speeds(const std::vector<dvec2>& points, const std::
       }
     }
   }
-  return solved(std::move(matrix), std::move(rhs));
+  solve_dense(matrix, rhs);
+  return rhs;
 }
 
 std::vector<DamSurface> potential_dam(double height, double until, const DamGrid& grid) {

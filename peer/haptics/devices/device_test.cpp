@@ -7,6 +7,7 @@
 
 #include "net/clock.h"
 #include "peer/haptics/let_go.h"
+#include "sim/math/gauss.h"
 
 namespace slosh {
 namespace {
@@ -28,29 +29,6 @@ double push_at(double time, double seconds) {
 
 double along(const glm::dvec3& v, std::size_t axis) {
   return v[static_cast<int>(axis % 3)];
-}
-
-/// Solves the symmetric `a`·x = b of four; false when it is singular.
-bool solve(std::array<std::array<double, 4>, 4> a, std::array<double, 4> b, std::array<double, 4>& x) {
-  for (std::size_t i = 0; i < 4; ++i) {
-    std::size_t pivot = i;
-    for (std::size_t j = i + 1; j < 4; ++j)
-      if (std::abs(a[j][i]) > std::abs(a[pivot][i])) pivot = j;
-    if (std::abs(a[pivot][i]) < 1e-12) return false;
-    std::swap(a[i], a[pivot]);
-    std::swap(b[i], b[pivot]);
-    for (std::size_t j = i + 1; j < 4; ++j) {
-      const double factor = a[j][i] / a[i][i];
-      for (std::size_t k = i; k < 4; ++k) a[j][k] -= factor * a[i][k];
-      b[j] -= factor * b[i];
-    }
-  }
-  for (std::size_t i = 4; i-- > 0;) {
-    double sum = b[i];
-    for (std::size_t k = i + 1; k < 4; ++k) sum -= a[i][k] * x[k];
-    x[i] = sum / a[i][i];
-  }
-  return true;
 }
 
 class Run {
@@ -194,8 +172,8 @@ void fit_axis(DeviceTestAxis& axis) {
     hardest = std::max(hardest, std::abs(acceleration(i)));
     strongest = std::max(strongest, std::abs(s[i].push));
   }
-  std::array<std::array<double, 4>, 4> a{};
-  std::array<double, 4> b{};
+  std::array<double, 16> a{};  // 4 × 4, row by row
+  std::array<double, 4> x{};
   double sum = 0.0, squares = 0.0, count = 0.0;
   const auto row_at = [&](std::size_t i) {
     return std::array<double, 4>{acceleration(i) / hardest, s[i].velocity / fastest,
@@ -205,15 +183,14 @@ void fit_axis(DeviceTestAxis& axis) {
     const std::array<double, 4> row = row_at(i);
     const double push = s[i].push / strongest;
     for (std::size_t j = 0; j < 4; ++j) {
-      for (std::size_t k = 0; k < 4; ++k) a[j][k] += row[j] * row[k];
-      b[j] += row[j] * push;
+      for (std::size_t k = 0; k < 4; ++k) a[4 * j + k] += row[j] * row[k];
+      x[j] += row[j] * push;
     }
     sum += push;
     squares += push * push;
     count += 1.0;
   }
-  std::array<double, 4> x{};
-  if (!solve(a, b, x)) {
+  if (!solve_dense(a, x, 1e-12)) {
     axis.moved = false;
     return;
   }
