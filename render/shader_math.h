@@ -3,10 +3,13 @@
 
 #include <cmath>
 #include <glm/glm.hpp>
+#include <glm/integer.hpp>
 
 namespace slosh::shader {
 
+using glm::ivec3;
 using glm::mat3;
+using glm::uint;
 using glm::vec2;
 using glm::vec3;
 using glm::vec4;
@@ -19,6 +22,7 @@ using glm::determinant;
 using glm::dot;
 using glm::exp;
 using glm::exp2;
+using glm::findMSB;
 using glm::length;
 using glm::log2;
 using glm::max;
@@ -34,6 +38,7 @@ using glm::sqrt;
 // fluid_look.glsl stands on optics.glsl: the order is not the alphabet's.
 // clang-format off
 #include "render/shaders/bilateral.glsl"
+#include "render/shaders/cell_table.glsl"
 #include "render/shaders/display_shaper.glsl"
 #include "render/shaders/edges.glsl"
 #include "render/shaders/material.glsl"

@@ -1,11 +1,9 @@
 // Particles on the GPU: the table of cells that they are counted into. Cells share entries, so whoever looks a cell up asks what lies
 // there whether it is of that cell.
+#include "shared.glsl"
+#include "cell_table.glsl"
 const float kFarCell = 1.0e6;  // cells beyond count as this one
 ivec3 cell_of(vec3 at, float reach) { return ivec3(clamp(floor(at / reach), vec3(-kFarCell), vec3(kFarCell))); }
-uint entry_of(ivec3 cell, int entries) {
-  uint row = uint(cell.y) * 0x9e3779b1u ^ uint(cell.z) * 0x85ebca77u;
-  return (row ^ (row >> 15)) + uint(cell.x) & uint(entries - 1);
-}
 
 // A cell in one value, 21 bits an axis and one that is set.
 const uvec2 kNotFilled = uvec2(0u);
