@@ -188,9 +188,9 @@ void add_report(CLI::App& app, VerbRun& chosen) {
 }
 
 Result<std::filesystem::path> report_folder(const ReportOptions& options, const std::string& kind,
-                                            const char* main_file) {
+                                            const char* main_file, Draws draws) {
   // Before anything is measured: what cannot be drawn in the end would have been measured for nothing.
-  if (!program_there("gnuplot"))
+  if (draws == Draws::kPlots && !program_there("gnuplot"))
     return Error{"gnuplot", "is not installed, and draws what is measured", "apt-get install gnuplot-nox"};
   const std::filesystem::path folder = options.out.empty() ? "slosh-report-" + kind : options.out;
   std::error_code code;

@@ -1,6 +1,7 @@
 // What the three reports share: where they write, and what they run on.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -43,9 +44,12 @@ struct FigureOptions {
 };
 int report_figure(const ReportOptions& options, const FigureOptions& figure);
 
-/// The folder that a report writes to. Errors: another report is there.
+/// Whether a report has plots, which gnuplot draws, or only tables and pictures of the renderer's.
+enum class Draws : std::uint8_t { kPlots, kNoPlots };
+
+/// The folder that a report writes to. Errors: another report is there; there are plots and no gnuplot.
 Result<std::filesystem::path> report_folder(const ReportOptions& options, const std::string& kind,
-                                            const char* main_file);
+                                            const char* main_file, Draws draws = Draws::kPlots);
 
 /// One run of a report.
 struct ReportJob {

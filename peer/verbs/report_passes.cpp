@@ -58,7 +58,7 @@ int report_passes(const ReportOptions& options, const std::string& scene_name, d
     std::printf("\n");
   }
   if (options.out.empty()) return kExitOk;
-  const Result<std::filesystem::path> folder = report_folder(options, "passes", kTable);
+  const Result<std::filesystem::path> folder = report_folder(options, "passes", kTable, Draws::kNoPlots);
   if (!folder) return fail(folder.error());
   std::ofstream out(folder.value() / kTable);
   out << csv;

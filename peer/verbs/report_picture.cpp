@@ -173,7 +173,7 @@ int report_picture(const ReportOptions& options) {
   headless.software_threads = options.threads > 0 ? options.threads : 1;
   auto context = make_headless_context(headless);
   if (!context) return fail(context.error());
-  const Result<std::filesystem::path> folder = report_folder(options, "picture", kTable);
+  const Result<std::filesystem::path> folder = report_folder(options, "picture", kTable, Draws::kNoPlots);
   if (!folder) return fail(folder.error());
   const double spacing = options.quick ? 0.012 : 0.008;
   report::Setting setting;
