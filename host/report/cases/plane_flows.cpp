@@ -151,7 +151,7 @@ std::vector<Reading> poiseuille(const Setting& setting, Cost& cost) {
     }
     before = now;
   });
-  return {{"flow, evenly", "", even.mean(), 1.0, 0.0, true},
+  return {{"flow", "", even.mean(), 1.0, 0.0, true},
           {"flow at 40 ms", "", starting.mean(), 1.0, 0.0, false}};
 }
 
@@ -240,8 +240,8 @@ std::vector<Reading> smooth_glass(const Setting& setting, Cost& cost) {
         .back()
         .y;
   };
-  return {{"kept after 0.4 s, 10 cm/s at the rim", "", kept(kFast), 1.0, 0.0, true},
-          {"kept after 0.4 s, 2 cm/s at the rim", "", kept(kSlow), 1.0, 0.0, false}};
+  return {{"kept, 10 cm/s at the rim", "", kept(kFast), 1.0, 0.0, true},
+          {"kept, 2 cm/s at the rim", "", kept(kSlow), 1.0, 0.0, false}};
 }
 
 }  // namespace
@@ -255,25 +255,25 @@ std::vector<ErrorCase> plane_flow_cases() {
        1,
        couette},
       {"couette_start",
-       "The inner of them suddenly turns",
+       "A rod suddenly turns in a gap of 20 mm, 1 Pa·s",
        "the gap's diffusion in r",
        {0.00667, 0.005, 0.004},
        1,
        couette_start},
       {"poiseuille",
-       "Fluid that stays behind in a ring-shaped gap that turns faster and faster, 1 Pa·s",
+       "Fluid lags in a ring that turns faster and faster",
        "Poiseuille's flow in a ring",
        {0.00667, 0.005, 0.004},
        1,
        poiseuille},
       {"taylor_green",
-       "A vortex dies in a square tank without friction, 1 Pa·s",
+       "A vortex dies in a tank without friction, 1 Pa·s",
        "exp(−2νk²t)",
        {0.01, 0.008, 0.005},
        1,
        taylor_green},
       {"smooth_glass",
-       "Fluid goes on turning in a glass without friction",
+       "Fluid turns in a glass without friction",
        "it keeps on",
        {0.01, 0.008, 0.005},
        1,
