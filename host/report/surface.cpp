@@ -33,7 +33,7 @@ std::size_t count_outside(const Snapshot& picture, const Pose& vessel, const Roo
   const Pose to_vessel = inverse(vessel);
   std::size_t outside = 0;
   for (std::size_t i = 0; i < picture.positions.size(); ++i) {
-    if (picture.fluid_index[i] == 255) {
+    if (picture.fluid_index[i] == kRetired) {
       ++outside;
       continue;
     }

@@ -4,10 +4,13 @@
 #include <cstdint>
 #include <exception>
 #include <functional>
+#include <glm/glm.hpp>
 #include <memory>
+#include <numbers>
 #include <string>
 #include <vector>
 
+#include "host/report/refused.h"
 #include "scenes/sample.h"
 #include "scenes/scene.h"
 #include "sim/world.h"
@@ -15,7 +18,8 @@
 namespace slosh::report {
 
 inline constexpr double kGravity = 9.81;  ///< m/s², what Scene has unless told otherwise
-inline constexpr double kPi = 3.14159265358979323846;
+inline constexpr double kPi = std::numbers::pi;
+inline const glm::dvec3 kUp(0.0, 1.0, 0.0);
 
 /// What a case is run with: one point of a report.
 struct Setting {
@@ -23,7 +27,7 @@ struct Setting {
   double spacing = 0.01;       ///< m
   double support_ratio = 2.0;  ///< as Scene's
   double step_share = 1.0;     ///< of the plan's time step, > 0
-  bool solve_drag = true;  ///< where the plan finds it worth it; else drag stays explicit
+  bool solve_drag = true;      ///< where the plan finds it worth it; else drag stays explicit
   Backend backend = Backend::kCpu;
   int threads = 0;              ///< of the CPU backend; 0 = all cores
   bool (*stopped)() = nullptr;  ///< asked each step; true ends the run: Trial throws Stopped
@@ -38,14 +42,6 @@ struct Cost {
   double simulated_s = 0.0;  ///< settling is not in it
   double wall_s = 0.0;       ///< in World::step alone, no sampling and no reading
   std::uint32_t status = 0;  ///< StatusBits, of all steps
-};
-
-/// What the sampler or the world said no to.
-struct Refused : std::exception {
-  explicit Refused(Error refusal) : error(std::move(refusal)), text(error.text()) {}
-  const char* what() const noexcept override { return text.c_str(); }
-  Error error;
-  std::string text;
 };
 
 /// Setting::stopped said so.

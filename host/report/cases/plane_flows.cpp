@@ -13,7 +13,6 @@ namespace {
 
 constexpr double kInner = 0.03, kOuter = 0.05;  // m, the gap's two walls
 constexpr double kViscosity = 1.0, kDensity = 1000.0;
-const glm::dvec3 kUp(0.0, 1.0, 0.0);
 
 // A rod that suddenly turns in a glass filled to `height`, for `lasts` seconds.
 struct SuddenRod {
@@ -52,9 +51,11 @@ struct SuddenRod {
   }
 };
 
-// Two heights of each: what floor and foot do is in both.
+// m, of two fillings of each: what floor and foot do is in both.
+constexpr double kShort = 0.06, kTall = 0.1;
+
 std::vector<Reading> couette(const Setting& setting, Cost& cost) {
-  constexpr double kShort = 0.06, kTall = 0.1, kR1 = kInner * kInner, kR2 = kOuter * kOuter;
+  constexpr double kR1 = kInner * kInner, kR2 = kOuter * kOuter;
   constexpr double kEven = 0.4;  // s; the gap's own time, (R₂ − R₁)²/(π²ν), is 40 ms
   const auto evenly = [&](double height) {
     Average torque;
@@ -81,7 +82,6 @@ double torque_at(const std::vector<SuddenRod::Moment>& moments, double time) {
 }
 
 std::vector<Reading> couette_start(const Setting& setting, Cost& cost) {
-  constexpr double kShort = 0.06, kTall = 0.1;
   const SuddenRod low(kShort, 0.1, setting, cost), high(kTall, 0.1, setting, cost);
   RingFlow flow(kInner, kOuter, kViscosity, kDensity);
   constexpr double kStep = 1e-5;
@@ -136,31 +136,27 @@ std::vector<Reading> poiseuille(const Setting& setting, Cost& cost) {
     const Snapshot now = e.picture();
     Average* flows = time > 0.15 ? &even : time > 0.03 && time < 0.05 ? &starting : nullptr;
     if (flows != nullptr) {
-      double along = 0.0, square = 0.0;
-      for (std::size_t i = 0; i < now.positions.size(); ++i) {
-        const glm::dvec3 from(before.positions[i]), to(now.positions[i]);
-        if (to.y < kFrom) continue;
+      flows->add(share_of_shape(before, now, [&](std::size_t, const glm::dvec3& from, const glm::dvec3& to) {
+        if (to.y < kFrom) return Along{};
         const double turned = std::atan2(from.z * to.x - from.x * to.z, from.x * to.x + from.z * to.z);
         const double radius = std::hypot(to.x, to.z);
         const double lag = radius * (turned / dt - turning),
                      expected = radius * (flow.turning_at(radius) - turning);
-        along += expected * lag;
-        square += expected * expected;
-      }
-      flows->add(along / square);
+        return Along{{lag, 0.0}, {expected, 0.0}};
+      }));
     }
     before = now;
   });
-  return {{"flow", "", even.mean(), 1.0, 0.0, true},
-          {"flow at 40 ms", "", starting.mean(), 1.0, 0.0, false}};
+  return {{"flow", "", even.mean(), 1.0, 0.0, true}, {"flow at 40 ms", "", starting.mean(), 1.0, 0.0, false}};
 }
 
-// Fluid of 1 Pa·s in a tank along whose walls and floor it slides, at rest under its own weight and then
-// given a horizontal flow that goes with `shape` (of x and z, at most 1). What is left of it at each moment,
-// as a share.
-using Shape = glm::dvec2 (*)(const glm::vec3& at);
-std::vector<glm::dvec2> left_of(Shape shape, double speed, double seconds, const make::Solid& vessel,
-                                const make::Solid& filling, const Setting& setting, Cost& cost) {
+// Fluid of 1 Pa·s in a vessel along whose walls and floor it slides, at rest under its own weight.
+struct Still {
+  Scene scene;
+  SampledScene sampled;
+};
+
+Still at_rest(const make::Solid& vessel, const make::Solid& filling, const Setting& setting, Cost& cost) {
   SceneBuilder b;
   b.add_fluid(kDensity, kViscosity);
   b.set_viscosity({b.add_fixed("tank", vessel)}, kFreeSlip);
@@ -169,15 +165,23 @@ std::vector<glm::dvec2> left_of(Shape shape, double speed, double seconds, const
   Result<SampledScene> sampled = sample_scene(with_setting(b.scene, setting), setting.spacing);
   if (!sampled) throw Refused(sampled.error());
   {
-    Trial still(b.scene, sampled.value(), setting, cost);
-    still.settle(1.0);
-    sampled.value().fluid_positions = still.picture().positions;
+    Trial settling(b.scene, sampled.value(), setting, cost);
+    settling.settle(1.0);
+    sampled.value().fluid_positions = settling.picture().positions;
   }
-  for (std::size_t i = 0; i < sampled.value().fluid_positions.size(); ++i) {
-    const glm::dvec2 v = speed * shape(sampled.value().fluid_positions[i]);
-    sampled.value().fluid_velocities[i] = {static_cast<float>(v.x), 0.0f, static_cast<float>(v.y)};
+  return {std::move(b.scene), std::move(sampled.value())};
+}
+
+// It is given a horizontal flow that goes with `shape` (of x and z, at most 1): what is left of that at each
+// moment, as a share.
+using Shape = glm::dvec2 (*)(const glm::vec3& at);
+std::vector<glm::dvec2> left_of(Shape shape, double speed, double seconds, Still still,
+                                const Setting& setting, Cost& cost) {
+  for (std::size_t i = 0; i < still.sampled.fluid_positions.size(); ++i) {
+    const glm::dvec2 v = speed * shape(still.sampled.fluid_positions[i]);
+    still.sampled.fluid_velocities[i] = {static_cast<float>(v.x), 0.0f, static_cast<float>(v.y)};
   }
-  Trial e(b.scene, sampled.value(), setting, cost);
+  Trial e(still.scene, still.sampled, setting, cost);
   Snapshot before = e.picture();
   const double start = e.world().time();
   double last = start;
@@ -186,15 +190,12 @@ std::vector<glm::dvec2> left_of(Shape shape, double speed, double seconds, const
     const Snapshot now = e.picture();
     const double dt = e.world().time() - last;
     last = e.world().time();
-    double along = 0.0, square = 0.0;
-    for (std::size_t i = 0; i < now.positions.size(); ++i) {
-      const glm::dvec3 way = glm::dvec3(now.positions[i]) - glm::dvec3(before.positions[i]);
-      const glm::dvec2 s = shape(0.5f * (now.positions[i] + before.positions[i]));
-      along += s.x * way.x + s.y * way.z;
-      square += glm::dot(s, s);
-    }
+    const auto goes = [&](std::size_t, const glm::dvec3& from, const glm::dvec3& to) {
+      return Along{{to.x - from.x, to.z - from.z}, shape(glm::vec3(0.5 * (to + from)))};
+    };
+    const double went = share_of_shape(before, now, goes);
     before = now;
-    left.emplace_back(last - start, along / (square * dt * speed));
+    left.emplace_back(last - start, went / (dt * speed));
   });
   return left;
 }
@@ -212,10 +213,9 @@ std::vector<Reading> taylor_green(const Setting& setting, Cost& cost) {
                  z = kWave * (static_cast<double>(at.z) + kHalf);
     return glm::dvec2(std::sin(x) * std::cos(z), -std::cos(x) * std::sin(z));
   };
-  const auto dies = [&](double speed) {
-    return left_of(vortex, speed, 1.2 / kRate, tank_at_floor({kSide, kHeight + 0.04, kSide}, 0.03),
-                   make::box({-kHalf, 0.0, -kHalf}, {kHalf, kHeight, kHalf}), setting, cost);
-  };
+  const Still still = at_rest(tank_at_floor({kSide, kHeight + 0.04, kSide}, 0.03),
+                              make::box({-kHalf, 0.0, -kHalf}, {kHalf, kHeight, kHalf}), setting, cost);
+  const auto dies = [&](double speed) { return left_of(vortex, speed, 1.2 / kRate, still, setting, cost); };
   // The first tenth, in which pressures come about, is left out.
   std::vector<glm::dvec2> logs;
   for (const glm::dvec2& left : dies(kFast))
@@ -234,12 +234,9 @@ std::vector<Reading> smooth_glass(const Setting& setting, Cost& cost) {
   const auto turning = [](const glm::vec3& at) {
     return glm::dvec2(static_cast<double>(at.z), -static_cast<double>(at.x)) / kRadius;
   };
-  const auto kept = [&](double speed) {
-    return left_of(turning, speed, 0.4, glass_of(kRadius, kHeight + 0.04, 0.03), filling_of(kRadius, kHeight),
-                   setting, cost)
-        .back()
-        .y;
-  };
+  const Still still =
+      at_rest(glass_of(kRadius, kHeight + 0.04, 0.03), filling_of(kRadius, kHeight), setting, cost);
+  const auto kept = [&](double speed) { return left_of(turning, speed, 0.4, still, setting, cost).back().y; };
   return {{"kept, 10 cm/s at the rim", "", kept(kFast), 1.0, 0.0, true},
           {"kept, 2 cm/s at the rim", "", kept(kSlow), 1.0, 0.0, false}};
 }

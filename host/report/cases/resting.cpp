@@ -155,9 +155,7 @@ std::vector<Reading> paraboloid(const Setting& setting, Cost& cost) {
   Trial e(b.scene, sampled.value(), setting, cost);
   e.handle(0).engaged = true;
   e.handle(0).twist.angular.y = kTurning;
-  const auto turn = [&] {
-    e.handle(0).pose.orientation = glm::angleAxis(kTurning * e.world().time(), glm::dvec3(0.0, 1.0, 0.0));
-  };
+  const auto turn = [&] { e.handle(0).pose.orientation = glm::angleAxis(kTurning * e.world().time(), kUp); };
   e.run(1.5, turn);
   // The surface over circles around the axis; the outermost stands one and a half spacings off the wall.
   constexpr int kCircles = 5, kAngles = 8;
@@ -170,7 +168,7 @@ std::vector<Reading> paraboloid(const Setting& setting, Cost& cost) {
     for (int i = 0; i < kCircles * kAngles; ++i) {
       const double r = widest * (i / kAngles) / (kCircles - 1), angle = 2.0 * kPi * (i % kAngles) / kAngles;
       level[static_cast<std::size_t>(i / kAngles)].add(
-          fluid_level(picture, {r * std::cos(angle), 0.0, r * std::sin(angle)}, {0.0, 1.0, 0.0}, setting.spacing));
+          fluid_level(picture, {r * std::cos(angle), 0.0, r * std::sin(angle)}, kUp, setting.spacing));
     }
   });
   std::vector<glm::dvec2> heights;

@@ -10,8 +10,6 @@
 namespace slosh::report {
 namespace {
 
-const glm::dvec3 kUp(0.0, 1.0, 0.0);
-
 struct Spin {
   static constexpr double kRadius = 0.05, kShort = 0.06, kTall = 0.12, kBetween = kTall - kShort;  // m
   static constexpr std::array<glm::dvec2, 3> kShape{{{0.02, 1.2790}, {0.05, 0.5711}, {0.1, 0.2377}}};
@@ -198,19 +196,15 @@ std::vector<Reading> shear_wave(const Setting& setting, Cost& cost) {
   Snapshot before = e.picture();
   std::vector<glm::dvec2> logs;
   const double dt = e.world().plan().time_step;
+  const auto inside = [&](std::size_t i, const glm::dvec3& from, const glm::dvec3& to) {
+    return std::abs(to.x) > kLength / 6.0 ? Along{} : Along{{to.x - from.x, 0.0}, {shape[i], 0.0}};
+  };
   e.run(1.5 / kRate, [&] {
     const Snapshot now = e.picture();
-    double along = 0.0, square = 0.0;
-    for (std::size_t i = 0; i < shape.size(); ++i) {
-      if (std::abs(now.positions[i].x) > kLength / 6.0) continue;
-      along +=
-          shape[i] * (static_cast<double>(now.positions[i].x) - static_cast<double>(before.positions[i].x));
-      square += shape[i] * shape[i];
-    }
+    const double speed = share_of_shape(before, now, inside) / dt;
     before = now;
     // What the sudden start makes of the lattice's own modes is gone by then.
-    if (e.world().time() > 0.3 / kRate)
-      logs.emplace_back(e.world().time(), std::log(std::max(along / (square * dt), 1e-12)));
+    if (e.world().time() > 0.3 / kRate) logs.emplace_back(e.world().time(), std::log(std::max(speed, 1e-12)));
   });
   return {{"rate of decay", "1/s", -slope_of(logs), kRate, 0.0, true}};
 }

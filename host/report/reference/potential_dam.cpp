@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <utility>
 
+#include "host/report/refused.h"
 #include "sim/math/gauss.h"
 
 namespace slosh::report {
@@ -295,7 +297,10 @@ std::vector<double> outward_speeds(const std::vector<dvec2>& points, const std::
       }
     }
   }
-  solve_dense(matrix, rhs);
+  if (!solve_dense(matrix, rhs) ||
+      !std::all_of(rhs.begin(), rhs.end(), [](double speed) { return std::isfinite(speed); }))
+    throw Refused({"a dam's potential flow", "its " + std::to_string(n) + " points have no speeds",
+                   "give it another grid"});
   return rhs;
 }
 

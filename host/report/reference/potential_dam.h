@@ -24,7 +24,7 @@ struct DamGrid {
 /// Potential flow by boundary elements: from a column 1 wide and `height` high, let go at time 0, one surface
 /// a step until `until`. Longuet-Higgins and Cokelet 1976, in the plane; linear elements, Runge and Kutta's
 /// four stages, a new grid each step. Takes some seconds: 2 for a height of 2 until 3.3. At most 2 % of the
-/// volume is lost with what is cut off.
+/// volume is lost with what is cut off. Throws Refused as outward_speeds does.
 std::vector<DamSurface> potential_dam(double height, double until, const DamGrid& grid = {});
 
 /// Where, in bases from the wall, the fluid is still `thickness` deep at `time`, within the times there are;
@@ -32,7 +32,8 @@ std::vector<DamSurface> potential_dam(double height, double until, const DamGrid
 double front_at(const std::vector<DamSurface>& surfaces, double time, double thickness);
 
 /// The speed across a surface, outwards, of a harmonic potential that has the values `potential` on it and
-/// whose images are even. Sizes equal, two points at least.
+/// whose images are even. Sizes equal, two points at least. Throws Refused where these have no answer: two
+/// neighbours in one place, something that is not a finite number.
 std::vector<double> outward_speeds(const std::vector<glm::dvec2>& points,
                                    const std::vector<double>& potential);
 

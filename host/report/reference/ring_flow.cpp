@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace slosh::report {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 double cube(double x) {
   return x * x * x;
@@ -16,7 +15,6 @@ double cube(double x) {
 
 RingFlow::RingFlow(double inner, double outer, double viscosity, double density, int cells)
     : inner_(inner),
-      outer_(outer),
       viscosity_(viscosity),
       density_(density),
       width_((outer - inner) / cells),
@@ -73,13 +71,7 @@ void RingFlow::go(double dt, double implicit_share, double inner_turning, double
 
 double RingFlow::inner_torque() const {
   // What the volumes are told that they got.
-  return 2.0 * kPi * viscosity_ * cube(inner_) * (at_inner_ - turning_[0]) / (0.5 * width_);
-}
-
-double RingFlow::mean_turning() const {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < turning_.size(); ++i) sum += turning_[i] * cell(static_cast<int>(i));
-  return sum * width_ / (0.5 * (outer_ * outer_ - inner_ * inner_));
+  return 2.0 * std::numbers::pi * viscosity_ * cube(inner_) * (at_inner_ - turning_[0]) / (0.5 * width_);
 }
 
 double RingFlow::turning_at(double radius) const {

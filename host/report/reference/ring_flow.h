@@ -18,17 +18,14 @@ class RingFlow {
 
   /// N·m a metre that the inner wall gives the fluid.
   double inner_torque() const;
-  /// rad/s, mean over the fluid's volume between the two.
-  double mean_turning() const;
   /// rad/s at `radius`, m, between the walls.
   double turning_at(double radius) const;
 
  private:
-  double cell(int i) const { return inner_ + (i + 0.5) * width_; }
   double face(int i) const { return inner_ + i * width_; }
   void go(double dt, double implicit_share, double inner_turning, double outer_turning);
 
-  double inner_, outer_, viscosity_, density_, width_;
+  double inner_, viscosity_, density_, width_;
   double at_inner_ = 0.0, at_outer_ = 0.0;  // rad/s
   int steps_ = 0;
   std::vector<double> turning_;  // rad/s of each cell

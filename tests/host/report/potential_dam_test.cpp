@@ -5,7 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
+
+#include "host/report/refused.h"
 
 namespace slosh::report {
 namespace {
@@ -56,6 +59,16 @@ TEST(PotentialDam, ItsSideSetsOutAsTheSeriesHasIt) {
     std::printf("%.1f up: %.3e, by the series %.3e\n", y, way, expected);
     EXPECT_NEAR(way, expected, 0.02 * expected) << y;
   }
+}
+
+TEST(PotentialDam, PointsWithoutAnAnswerAreRefused) {
+  const std::vector<glm::dvec2> good{{0.0, 1.0}, {0.7, 0.7}, {1.0, 0.0}};
+  const std::vector<double> potential{0.0, 0.1, 0.2};
+  EXPECT_EQ(outward_speeds(good, potential).size(), 3u);
+  EXPECT_THROW(outward_speeds({good[0], good[1], good[1], good[2]}, {0.0, 0.1, 0.1, 0.2}), Refused);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(outward_speeds({good[0], {nan, 0.5}, good[2]}, potential), Refused);
+  EXPECT_THROW(outward_speeds(good, {0.0, nan, 0.2}), Refused);
 }
 
 TEST(PotentialDam, AFinerOneHasTheSameFront) {
