@@ -67,16 +67,7 @@ HandleInput hand_at(double time, double height) {
 
 Tank probed_tank() {
   Tank tank = make_tank({});
-  Body probe;
-  probe.name = "probe";
-  probe.motion = BodyMotion::kFree;
-  probe.point_probe = true;
-  probe.mass.mass = 0.02;
-  probe.pose.position = {-0.05, 0.05, 0.0};
-  tank.scene.bodies.push_back(probe);
-  tank.sampled.surfaces.emplace_back();
-  tank.sampled.distance_fields.emplace_back();
-  add_grip(tank, 1);
+  add_grip(tank, add_probe(tank, {-0.05, 0.05, 0.0}));
   tank.scene.grips[0].rotational_stiffness = tank.scene.grips[0].rotational_damping = 0.0;
   return tank;
 }

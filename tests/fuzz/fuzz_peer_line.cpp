@@ -6,29 +6,12 @@
 #include "peer/remote/peer_console.h"
 #include "tests/fuzz/must.h"
 #include "tests/fuzz/seeds.h"
+#include "tests/support/joined.h"
 
 using namespace slosh;
 
-namespace {
-
-/// Two grips, two fluids and one other person, as after joining.
-struct Joined {
-  Joined() {
-    for (const char* name : {"left", "right hand"}) scene.grips.emplace_back().name = name;
-    for (const char* name : {"water", "honey"}) scene.fluids.emplace_back().name = name;
-    status.state = LinkState::kLive;
-    status.held = {false, true};
-    status.world.viscosities = {0.001, 5.0};
-    status.peers = {{0, "Ana", wire::Role::kParticipant, true, {1}}};
-  }
-  Scene scene;
-  RemoteStatus status;
-};
-
-}  // namespace
-
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const Joined joined;
+  static const test::Joined joined;
   const PeerLine line =
       peer_line({reinterpret_cast<const char*>(data), size}, joined.status, joined.scene, 0.02, 0);
   for (const RemoteCommand& command : line.commands) {

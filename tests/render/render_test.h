@@ -42,11 +42,16 @@ class RenderTest : public ::testing::Test {
     EXPECT_TRUE(made) << made.error().text();
     return std::move(made.value());
   }
+  /// Nothing, looked at from +z.
+  static Frame empty_frame(int width, int height) {
+    Frame frame;
+    frame.view = kit::make_view({0.0f, 0.0f, 1.0f}, {0.0f, 0.0f, 0.0f}, width, height);
+    return frame;
+  }
   /// Particles of one fluid, looked at from +z.
   static Frame frame_of(const std::vector<glm::vec3>& particles, const std::vector<std::uint8_t>& fluids,
                         float radius) {
-    Frame frame;
-    frame.view = kit::make_view({0.0f, 0.0f, 1.0f}, {0.0f, 0.0f, 0.0f}, kWidth, kHeight);
+    Frame frame = empty_frame(kWidth, kHeight);
     frame.particles = particles;
     frame.particle_fluid = fluids;
     frame.fluids = {kit::water()};

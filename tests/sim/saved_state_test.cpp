@@ -1,4 +1,4 @@
-// A world that is saved, restored and changed while it runs.
+// A world that is saved, restored and changed while it runs: to the bit on the CPU; tests/cross has the GPU.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,21 +16,14 @@ namespace {
 using testing::make_tank;
 using testing::stirred_tank;
 using testing::Tank;
+using testing::world_of;
 using Bytes = std::vector<std::uint8_t>;
-
-// To the bit on the CPU; tests/cross has the GPU.
-World make_world(const Tank& tank, int threads = 1) {
-  return World(tank.scene, tank.sampled, make_plan(tank.scene, tank.sampled.spacing),
-               {threads, Backend::kCpu});
-}
 
 // Takes hold, is rejected for a while (so that the last input counts), lets go.
 HandleInput hand_at(std::uint64_t tick, double time) {
-  HandleInput hand;
+  HandleInput hand = testing::paddle_hand(time);
   hand.engaged = tick < 330;
   hand.scale = std::min(1.0, static_cast<double>(tick) / 50.0);
-  hand.pose.position = {-0.05 + 0.2 * time, 0.09, 0.01 * std::sin(20.0 * time)};
-  hand.twist.linear = {0.2, 0.0, 0.2 * std::cos(20.0 * time)};
   if (tick > 140 && tick < 170) hand.pose.position.x = std::numeric_limits<double>::quiet_NaN();
   return hand;
 }
@@ -69,7 +62,7 @@ class SavedModel : public ::testing::TestWithParam<ParticleModel> {};
 TEST_P(SavedModel, GoesOnToTheBit) {
   Tank tank = stirred_tank();
   tank.scene.model = GetParam();
-  World whole = make_world(tank);
+  World whole = world_of(tank);
   std::vector<Bytes> at;
   for (const std::uint64_t tick : {0u, 150u, 320u}) {
     run(whole, tick);
@@ -79,7 +72,7 @@ TEST_P(SavedModel, GoesOnToTheBit) {
   BodySnapshot end;
   whole.fill(end);
   for (const Bytes& bytes : at) {
-    World again = make_world(tank, 2);
+    World again = world_of(tank, 2);
     run(again, 7);  // what it was before does not matter
     const Result<bool> restored = again.restore(bytes);
     ASSERT_TRUE(restored) << restored.error().text();
@@ -102,7 +95,7 @@ TEST(SavedWorld, KeepsRetiredParticlesOutAndTheOrderOfTheOthers) {
   tank.scene.domain_max.y = 0.14;
   for (std::size_t i = 0; i < 60; ++i) tank.sampled.fluid_velocities[i * 7] = {0.0f, 1e3f, 0.0f};
   tank.sampled.fluid_positions[3].x = std::numeric_limits<float>::quiet_NaN();
-  World whole = make_world(tank);
+  World whole = world_of(tank);
   std::vector<Bytes> at;
   while (whole.tick() < 120) {
     at.push_back(saved(whole));
@@ -110,7 +103,7 @@ TEST(SavedWorld, KeepsRetiredParticlesOutAndTheOrderOfTheOthers) {
   }
   ASSERT_GT(whole.diagnostics().retired, 1u);
   for (const Bytes& bytes : at) {
-    World again = make_world(tank);
+    World again = world_of(tank);
     const Result<bool> restored = again.restore(bytes);
     ASSERT_TRUE(restored) << restored.error().text();
     run(again, 120);
@@ -121,21 +114,12 @@ TEST(SavedWorld, KeepsRetiredParticlesOutAndTheOrderOfTheOthers) {
 
 TEST(SavedWorld, OfAProbeGoesOnToTheBit) {
   Tank tank = make_tank({});
-  Body probe;
-  probe.name = "probe";
-  probe.point_probe = true;
-  probe.motion = BodyMotion::kFree;
-  probe.mass.mass = 0.01;
-  probe.pose.position = {0.0, 0.15, 0.0};
-  tank.scene.bodies.push_back(probe);
-  tank.sampled.surfaces.emplace_back();
-  tank.sampled.distance_fields.emplace_back();
-  testing::add_grip(tank, 1);
-  World whole = make_world(tank);
+  testing::add_grip(tank, testing::add_probe(tank, {0.0, 0.15, 0.0}));
+  World whole = world_of(tank);
   run(whole, 60);
   const Bytes bytes = saved(whole);
   run(whole, 160);
-  World again = make_world(tank);
+  World again = world_of(tank);
   ASSERT_TRUE(again.restore(bytes));
   run(again, 160);
   EXPECT_EQ(again.hash(), whole.hash());
@@ -143,9 +127,9 @@ TEST(SavedWorld, OfAProbeGoesOnToTheBit) {
 
 TEST(SavedWorld, OfAnotherSceneSpacingOrPlanIsRefusedInWords) {
   const Tank tank = stirred_tank();
-  const Bytes bytes = saved(make_world(tank));
+  const Bytes bytes = saved(world_of(tank));
   const auto expect_refused = [&](const Tank& other, const char* words) {
-    World world = make_world(other);
+    World world = world_of(other);
     const std::uint64_t before = world.hash();
     const Result<bool> restored = world.restore(bytes);
     ASSERT_FALSE(restored);
@@ -171,10 +155,10 @@ TEST(SavedWorld, DamagedBytesDoNoHarm) {
   tank.sampled.fluid_positions.resize(40);
   tank.sampled.fluid_velocities.resize(40);
   tank.sampled.fluid_index.resize(40);
-  World world = make_world(tank);
+  World world = world_of(tank);
   run(world, 20);
   const Bytes bytes = saved(world);
-  World other = make_world(tank);
+  World other = world_of(tank);
   for (std::size_t length = 0; length < bytes.size(); ++length) {
     ASSERT_FALSE(other.restore({bytes.data(), length})) << length;
   }
@@ -193,7 +177,7 @@ TEST(SavedWorld, DamagedBytesDoNoHarm) {
 
 TEST(SavedWorld, RefusesParticlesThatCannotBe) {
   const Tank tank = stirred_tank();
-  World world = make_world(tank);
+  World world = world_of(tank);
   run(world, 3);
   const Bytes bytes = saved(world);
   const std::size_t n = world.fluid_count();
@@ -224,7 +208,7 @@ TEST(SavedWorld, RefusesParticlesThatCannotBe) {
 TEST(SavedWorld, RefusesAPressureThatIsNone) {
   Tank tank = stirred_tank();
   tank.scene.model = ParticleModel::kIncompressible;
-  World world = make_world(tank);
+  World world = world_of(tank);
   run(world, 3);
   const Bytes bytes = saved(world);
   const std::size_t n = world.fluid_count();
@@ -239,7 +223,7 @@ TEST(SavedWorld, RefusesAPressureThatIsNone) {
 
 TEST(LiveViscosity, ThickensUpToWhatTheStepHolds) {
   const Tank tank = make_tank({.viscosity = 0.0});
-  World world = make_world(tank);
+  World world = world_of(tank);
   ASSERT_FALSE(world.plan().viscous());
   const Result<bool> refused = world.set_viscosity(0, 1e4);
   ASSERT_FALSE(refused);
@@ -279,7 +263,7 @@ TEST(LiveViscosity, IsAsIfTheSceneHadIt) {
 
 TEST(LiveGravity, ScalesWeightAndIsBounded) {
   const Tank tank = make_tank({});
-  World world = make_world(tank);
+  World world = world_of(tank);
   EXPECT_FALSE(world.set_gravity_scale(2.1));
   EXPECT_FALSE(world.set_gravity_scale(-0.1));
   EXPECT_FALSE(world.set_gravity_scale(std::numeric_limits<double>::quiet_NaN()));
@@ -301,19 +285,19 @@ TEST(LiveGravity, ScalesWeightAndIsBounded) {
 
 TEST(LiveParameters, AreSavedAndRestored) {
   const Tank tank = stirred_tank();
-  World whole = make_world(tank);
+  World whole = world_of(tank);
   run(whole, 20);
   ASSERT_TRUE(whole.set_viscosity(1, 0.2));
   ASSERT_TRUE(whole.set_gravity_scale(0.5));
   const Bytes bytes = saved(whole);
-  World again = make_world(tank);
+  World again = world_of(tank);
   ASSERT_TRUE(again.restore(bytes));
   EXPECT_EQ(again.viscosity(1), 0.2);
   EXPECT_EQ(again.gravity_scale(), 0.5);
   run(whole, 120);
   run(again, 120);
   EXPECT_EQ(again.hash(), whole.hash());
-  World unchanged = make_world(tank);
+  World unchanged = world_of(tank);
   run(unchanged, 120);
   EXPECT_NE(unchanged.hash(), whole.hash());
 }

@@ -1,5 +1,7 @@
 #include "tests/support/stirred_tank.h"
 
+#include <cmath>
+
 namespace slosh::testing {
 
 void clear_box(SampledScene& s, const glm::vec3& center, const glm::vec3& half) {
@@ -20,6 +22,32 @@ void add_grip(Tank& tank, int body) {
   grip.name = "hand";
   grip.body = body;
   tank.scene.grips.push_back(grip);
+}
+
+int add_probe(Tank& tank, const glm::dvec3& position) {
+  Body probe;
+  probe.name = "probe";
+  probe.motion = BodyMotion::kFree;
+  probe.point_probe = true;
+  probe.mass.mass = 0.02;
+  probe.pose.position = position;
+  tank.scene.bodies.push_back(probe);
+  tank.sampled.surfaces.emplace_back();
+  tank.sampled.distance_fields.emplace_back();
+  return static_cast<int>(tank.scene.bodies.size()) - 1;
+}
+
+World world_of(const Tank& tank, int threads) {
+  return World(tank.scene, tank.sampled, make_plan(tank.scene, tank.sampled.spacing),
+               {threads, Backend::kCpu});
+}
+
+HandleInput paddle_hand(double time) {
+  HandleInput hand;
+  hand.engaged = true;
+  hand.pose.position = {-0.05 + 0.2 * time, 0.09, 0.01 * std::sin(20.0 * time)};
+  hand.twist.linear = {0.2, 0.0, 0.2 * std::cos(20.0 * time)};
+  return hand;
 }
 
 Tank stirred_tank(double wall_viscosity) {

@@ -1,6 +1,7 @@
 // A tank that a paddle, held by one hand, is drawn through: every pass of the method at once.
 #pragma once
 
+#include "sim/world.h"
 #include "tests/support/tank.h"
 
 namespace slosh::testing {
@@ -15,5 +16,14 @@ void clear_box(SampledScene& sampled, const glm::vec3& center, const glm::vec3& 
 
 /// A grip at the body's origin.
 void add_grip(Tank& tank, int body);
+
+/// A free point probe of 20 g at `position`, m, without a grip. Returns the body's index.
+int add_probe(Tank& tank, const glm::dvec3& position);
+
+/// The tank as it is planned, on the CPU.
+World world_of(const Tank& tank, int threads = 1);
+
+/// A hand that draws the stirred tank's paddle through it at 0.2 m/s, swaying sideways.
+HandleInput paddle_hand(double time);
 
 }  // namespace slosh::testing

@@ -13,19 +13,10 @@ namespace {
 
 using testing::CraftedEnd;
 
-BodyMessage still(const Scene& scene) {
-  BodyMessage message;
-  message.time_step = 0.002;
-  message.bodies.bodies.resize(scene.bodies.size());
-  message.bodies.grips.resize(scene.grips.size());
-  message.pose_numbers.resize(scene.grips.size());
-  return message;
-}
-
 /// As `slosh host` sets it up for a bucket: 188 connections, of which strangers get 128.
 class RealServer {
  public:
-  RealServer() : scene(served_scene()), channel(scene.grips.size(), still(scene), 1 << 20) {
+  RealServer() : scene(served_scene()), channel(scene.grips.size(), first_state(scene), 1 << 20) {
     ServedWorld world;
     world.scene = &scene;
     world.package = wire::Bytes(5000, 7);
@@ -40,7 +31,7 @@ class RealServer {
     ServerOptions options;
     options.hands_to_start = 0;
     options.admission.hello_patience = 60.0;  // whoever is put out is put out for want of room
-    options.silence = 5.0;          // of a loaded machine
+    options.silence = 5.0;                    // of a loaded machine
     options.tell = [this](const std::string& line) { told.push_back(line); };
     options.limits.participants = 6;
     options.limits.spectators = 54;

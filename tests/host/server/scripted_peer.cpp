@@ -10,6 +10,8 @@ void keep(std::vector<M>& all, const M& message) {
   all.push_back(message);
 }
 
+}  // namespace
+
 BodyMessage first_state(const Scene& scene) {
   BodyMessage message;
   message.time_step = 0.002;
@@ -18,8 +20,6 @@ BodyMessage first_state(const Scene& scene) {
   message.pose_numbers.resize(scene.grips.size());
   return message;
 }
-
-}  // namespace
 
 Scene served_scene() {
   Scene scene;

@@ -18,6 +18,8 @@ namespace slosh {
 
 /// Two boxes, three grips ("left" and "right" on the first, "spoon" on the second), one fluid.
 Scene served_scene();
+/// Every body and grip at the origin, at rest; steps of 2 ms.
+BodyMessage first_state(const Scene& scene);
 
 /// Everything that one peer was told.
 class ScriptedPeer final : public EndpointEvents {

@@ -5,6 +5,7 @@
 #include "host/input_gate.h"
 #include "host/server/hands.h"
 #include "net/channel.h"
+#include "net/grip_start.h"
 #include "tests/physics/lab.h"
 
 namespace slosh::test {
@@ -24,6 +25,34 @@ inline Scene held_beam() {
   for (const double x : {-0.15, 0.15}) b.add_grip(beam, 2000.0, 60.0, 20.0, 0.6, {{x, 0, 0}, {1, 0, 0, 0}});
   b.set_domain({-1.0, -0.5, -1.0}, {1.0, 2.0, 1.0});
   return b.scene;
+}
+
+inline World world_of(const Scene& scene) {
+  return World(scene, sample_scene(scene, kSpacing).value(), make_plan(scene, kSpacing),
+               WorldOptions{1, Backend::kCpu});
+}
+
+/// It hangs at rest in stands at its grips.
+inline World world_at_rest(const Scene& scene) {
+  World world = world_of(scene);
+  std::vector<HandleInput> stands;
+  for (std::size_t i = 0; i < scene.grips.size(); ++i)
+    stands.push_back({grip_start(scene, i), Twist{}, true, 1.0});
+  world.settle(1.0, stands);
+  return world;
+}
+
+/// A device's pose as the wire has it.
+inline wire::PoseSample sample_of(const PoseMessage& pose, std::uint32_t grip, std::uint64_t number) {
+  wire::PoseSample sample;
+  sample.grip = grip;
+  sample.number = number;
+  sample.stamp_ns = pose.stamp_ns;
+  sample.time = pose.time;
+  sample.pose = pose.pose;
+  sample.twist = pose.twist;
+  sample.engaged = pose.engaged;
+  return sample;
 }
 
 /// What dies in a crash.

@@ -17,7 +17,9 @@ using test::held_beam;
 using test::HostEnd;
 using test::kMass;
 using test::kShare;
-using test::kSpacing;
+using test::sample_of;
+using test::world_at_rest;
+using test::world_of;
 
 // The springs' ends go at kLetInSpeed at most, gained over kLetInRise and lost with the time constant
 // kLetInEnd: at most kLetInSpeed / kLetInEnd = 0.6 m/s² of the body, twice that when the springs swing with
@@ -47,7 +49,6 @@ struct Person {
 class HoldAnew : public ::testing::Test {
  protected:
   Scene scene = held_beam();
-  SampledScene sampled = sample_scene(scene, kSpacing).value();
   std::unique_ptr<HostEnd> host;
   std::vector<std::unique_ptr<Person>> people;
   std::int64_t clock = to_nanoseconds(1000.0);
@@ -55,16 +56,8 @@ class HoldAnew : public ::testing::Test {
   double felt = 0.0;     // N, the most that anybody felt
   double carried = 0.0;  // N, the most between the body and a hand
 
-  World new_world() const {
-    return World(scene, sampled, make_plan(scene, kSpacing), WorldOptions{1, Backend::kCpu});
-  }
   void SetUp() override {
-    World world = new_world();
-    std::vector<HandleInput> stands;
-    for (std::size_t i = 0; i < scene.grips.size(); ++i)
-      stands.push_back({grip_start(scene, i), Twist{}, true, 1.0});
-    world.settle(1.0, stands);
-    host = std::make_unique<HostEnd>(std::move(world), scene);
+    host = std::make_unique<HostEnd>(world_at_rest(scene), scene);
     dt = host->world.plan().time_step;
     host->hands.stand_all(clock);
     for (std::uint32_t i = 0; i < 2; ++i) {
@@ -110,16 +103,8 @@ class HoldAnew : public ::testing::Test {
   }
   void send(Person& person) {
     if (!person.channel.pose(person.grip).update()) return;  // PoseUplink sends what is new
-    const PoseMessage& m = person.channel.pose(person.grip).front();
-    wire::PoseSample sample;
-    sample.grip = person.grip;
-    sample.number = ++person.number;
-    sample.stamp_ns = m.stamp_ns;
-    sample.time = m.time;
-    sample.pose = m.pose;
-    sample.twist = m.twist;
-    sample.engaged = m.engaged;
-    host->hands.sample(sample, clock);
+    const PoseMessage& pose = person.channel.pose(person.grip).front();
+    host->hands.sample(sample_of(pose, person.grip, ++person.number), clock);
   }
   void move_hands(const glm::dvec3& by) {
     for (const auto& person : people) person->device->next.pose.position += by;
@@ -146,7 +131,7 @@ TEST_F(HoldAnew, AfterACrashAndAResumeHandsThatMovedArePulledNoHarderThanTheyCar
   move_hands({0.0, 0.3, 0.0});
   run(2.0);
 
-  World world = new_world();
+  World world = world_of(scene);
   ASSERT_TRUE(world.restore(saved));
   host = std::make_unique<HostEnd>(std::move(world), scene);
   host->hands.carry_on(host->now, clock);

@@ -25,7 +25,9 @@ using test::kSwingTime;
 using test::kTiltTime;
 using test::Motion;
 using test::MovingDevice;
+using test::sample_of;
 using test::Wire;
+using test::world_at_rest;
 
 constexpr std::size_t kSocketDatagrams = 800;  // what a kernel keeps for a process that was stopped
 constexpr double kRow = 0.002;                 // s between two rows of wrenches.csv
@@ -80,13 +82,7 @@ class LinkForces : public ::testing::TestWithParam<Hands> {
   Numbers steady;
 
   void SetUp() override {
-    World world(scene, sample_scene(scene, kSpacing).value(), make_plan(scene, kSpacing),
-                WorldOptions{1, Backend::kCpu});
-    std::vector<HandleInput> stands;
-    for (std::size_t i = 0; i < scene.grips.size(); ++i)
-      stands.push_back({grip_start(scene, i), Twist{}, true, 1.0});
-    world.settle(1.0, stands);
-    host = std::make_unique<HostEnd>(std::move(world), scene);
+    host = std::make_unique<HostEnd>(world_at_rest(scene), scene);
     dt = host->world.plan().time_step;
     host->hands.stand_all(clock);
     BodyMessage first;
@@ -182,16 +178,8 @@ class LinkForces : public ::testing::TestWithParam<Hands> {
     }
   }
   void send(Person& person) {
-    const PoseMessage& m = person.channel.pose(person.grip).front();
-    wire::PoseSample sample;
-    sample.grip = person.grip;
-    sample.number = ++person.number;
-    sample.stamp_ns = m.stamp_ns;
-    sample.time = m.time;
-    sample.pose = m.pose;
-    sample.twist = m.twist;
-    sample.engaged = m.engaged;
-    person.up.send(sample, clock, random);
+    const PoseMessage& pose = person.channel.pose(person.grip).front();
+    person.up.send(sample_of(pose, person.grip, ++person.number), clock, random);
   }
   /// The rule: no force above the steady one, and no jump, because of the link.
   void expect_no_blow(const char* what) {

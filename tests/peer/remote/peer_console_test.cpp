@@ -5,22 +5,15 @@
 #include <random>
 
 #include "net/wire/text.h"
+#include "tests/support/joined.h"
 
 namespace slosh {
 namespace {
 
 using Kind = RemoteCommand::Kind;
 
-class PeerConsole : public ::testing::Test {
+class PeerConsole : public ::testing::Test, protected test::Joined {
  protected:
-  PeerConsole() {
-    for (const char* name : {"left", "right hand"}) scene.grips.emplace_back().name = name;
-    for (const char* name : {"water", "honey"}) scene.fluids.emplace_back().name = name;
-    status.state = LinkState::kLive;
-    status.held = {false, true};
-    status.world.viscosities = {0.001, 5.0};
-    status.peers = {{0, "Ana", wire::Role::kParticipant, true, {1}}};
-  }
   PeerLine type(std::string_view line) const { return peer_line(line, status, scene, 0.02, 0); }
   /// The one thing that the line asks for.
   RemoteCommand asked(std::string_view line) const {
@@ -29,8 +22,6 @@ class PeerConsole : public ::testing::Test {
     EXPECT_TRUE(typed.text.empty()) << "the host answers";
     return typed.commands.empty() ? RemoteCommand{} : typed.commands[0];
   }
-  Scene scene;
-  RemoteStatus status;
 };
 
 TEST_F(PeerConsole, ParametersAreAskedForAsAtTheHost) {
@@ -99,15 +90,18 @@ TEST_F(PeerConsole, QuestionsAreAnsweredFromWhatIsKnown) {
 
 /// The same words at a world of one's own, but for those that need somebody else.
 TEST_F(PeerConsole, AWorldOfOnesOwnHearsTheSameWords) {
-  const auto own = [&](const char* line) { return own_world_line(line, {true, 0, 0.5, {0.001, 5.0}, {1.0, 0.25}}, 1.25, scene); };
+  const auto own = [&](const char* line) {
+    return own_world_line(line, {true, 0, 0.5, {0.001, 5.0}, {1.0, 0.25}}, 1.25, scene);
+  };
   ASSERT_EQ(own("set viscosity honey 2.5").commands.size(), 1u);
   EXPECT_EQ(own("set viscosity honey 2.5").commands[0].index, 1u);
   EXPECT_EQ(own("set viscosity 3").text, type("set viscosity 3").text);
   EXPECT_EQ(own("pause").commands.at(0).action, wire::WorldAction::kPause);
   EXPECT_TRUE(own("quit").quit);
-  EXPECT_EQ(own("status").text,
-            "the world is at 1.25 s, paused, gravity × 0.5\nfluid 'water': 0.001 Pa·s\nfluid 'honey': 5 Pa·s\n"
-            "grip 'right hand': stiffness × 0.25");
+  EXPECT_EQ(
+      own("status").text,
+      "the world is at 1.25 s, paused, gravity × 0.5\nfluid 'water': 0.001 Pa·s\nfluid 'honey': 5 Pa·s\n"
+      "grip 'right hand': stiffness × 0.25");
   for (const char* line : {"take", "release", "who", "links"})
     EXPECT_NE(own(line).text.find("means nothing here"), std::string::npos) << line;
   EXPECT_EQ(own("help").text.find("take"), std::string::npos) << own("help").text;
