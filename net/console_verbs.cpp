@@ -4,6 +4,7 @@
 
 #include "net/text/nearest.h"
 #include "net/wire/text.h"
+#include "sim/math/format.h"
 
 namespace slosh {
 namespace {
@@ -89,7 +90,7 @@ Result<ConsoleVerb> console_verb(Console console, const std::vector<std::string>
   std::vector<std::string> known;
   for (const Command& command : kCommands)
     if (is_at(command, console)) known.emplace_back(command.word);
-  return Error{"", "'" + wire::clean_text(words[0], 40) + "' means nothing here",
+  return Error{"", format("'%s' means nothing here", wire::clean_text(words[0], 40).c_str()),
                did_you_mean(words[0], known) + kHelp};
 }
 

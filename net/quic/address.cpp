@@ -7,6 +7,8 @@
 #include <charconv>
 #include <cstring>
 
+#include "sim/math/format.h"
+
 namespace slosh::quic {
 
 Address::Address(const sockaddr* address, socklen_t size) : v6{} {
@@ -39,7 +41,7 @@ bool Address::is_wildcard() const {
 std::string Address::text() const {
   if (length == 0) return "nowhere";
   char host[INET6_ADDRSTRLEN] = "?";
-  const std::string suffix = ":" + std::to_string(port());
+  const std::string suffix = format(":%u", port());
   if (any.sa_family == AF_INET) {
     inet_ntop(AF_INET, &v4.sin_addr, host, sizeof(host));
     return host + suffix;
@@ -50,8 +52,8 @@ std::string Address::text() const {
   }
   inet_ntop(AF_INET6, &v6.sin6_addr, host, sizeof(host));
   std::string zone;
-  if (v6.sin6_scope_id != 0) zone = "%" + std::to_string(v6.sin6_scope_id);
-  return "[" + (host + zone) + "]" + suffix;
+  if (v6.sin6_scope_id != 0) zone = format("%%%u", v6.sin6_scope_id);
+  return format("[%s%s]%s", host, zone.c_str(), suffix.c_str());
 }
 
 std::string Address::site() const {

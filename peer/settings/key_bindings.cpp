@@ -6,6 +6,7 @@
 
 #include "net/text/clean.h"
 #include "net/text/nearest.h"
+#include "sim/math/format.h"
 
 namespace slosh {
 namespace {
@@ -97,7 +98,7 @@ std::string name_of(Key key) {
   const auto from = [at](Key first) { return at - static_cast<int>(first); };
   if (key >= Key::kA && key <= Key::kZ) return std::string(1, static_cast<char>('A' + from(Key::kA)));
   if (key >= Key::k0 && key <= Key::k9) return std::to_string(from(Key::k0));
-  if (key >= Key::kF1 && key <= Key::kF12) return "F" + std::to_string(1 + from(Key::kF1));
+  if (key >= Key::kF1 && key <= Key::kF12) return format("F%d", 1 + from(Key::kF1));
   return key == Key::kShift ? "Shift" : key == Key::kControl ? "Ctrl" : key == Key::kAlt ? "Alt" : "?";
 }
 
@@ -113,7 +114,7 @@ std::optional<Key> key_named(const std::string& name) {
 Result<KeyChoice> parse_key_choice(const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos)
-    return Error{"keys", "'" + clean(text) + "' is not ACTION=KEY",
+    return Error{"keys", format("'%s' is not ACTION=KEY", clean(text).c_str()),
                  "For example pause=Space, or end=Escape+Q"};
   const std::string name = text.substr(0, equals);
   KeyChoice choice{WindowAction::kCount, {}};

@@ -30,7 +30,7 @@ std::vector<ChartPanel> felt_panels(const std::vector<coupling::LinkCase>& cases
   for (std::size_t i = 0; i < measured; ++i) {
     ChartPanel& panel = panels.emplace_back();
     panel.title = name_of(cases[i]);
-    panel.x_label = "s";
+    panel.x_label = std::string("s");
     panel.y_label = "force on the hand, N";
     for (std::size_t person = 0; person < 2; ++person) {
       const auto felt = read_wrenches(coupling::case_folder(folder, i) / kPeople[person] / "wrenches.csv");

@@ -213,7 +213,7 @@ Result<bool> report_spectra(const ReportOptions& options, const std::filesystem:
     ChartPanel& panel = panels.emplace_back();
     panel.title = format("Force in a syrup, host at %g Hz", rate);
     panel.x_label = "Hz";
-    panel.y_label = "N";
+    panel.y_label = std::string("N");
     panel.log_x = panel.log_y = true;
     for (std::size_t w = 0; w < kEach; ++w) {
       const Part& part = parts[1 + r * kEach + w];
