@@ -36,11 +36,13 @@ bool any_free(const Scene& scene) {
 void decide_bodies(const Scene& scene, const FluidExtremes& fluids, Plan& plan) {
   int solid = 0;
   int free_solid = 0;
+  int free_probes = 0;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& body = scene.bodies[i];
     const bool is_free = body.motion == BodyMotion::kFree;
     solid += !body.point_probe;
     free_solid += is_free && !body.point_probe;
+    free_probes += is_free && body.point_probe;
     const double reference = plan.has_fluid() ? fluids.heaviest : 1000.0;
     const double density =
         body.particle_density > 0.0 ? body.particle_density : reference * (1.0 + kBodyCompression);
@@ -52,7 +54,7 @@ void decide_bodies(const Scene& scene, const FluidExtremes& fluids, Plan& plan) 
   plan.runs.set(PassId::kPlaceBodies, plan.has(PassId::kWalls) && free_solid > 0);
   plan.runs.set(PassId::kWrenches, !plan.wrench_bodies.empty());
   plan.runs.set(PassId::kCouplings, !scene.grips.empty());
-  plan.runs.set(PassId::kContacts, free_solid > 0 && solid > 1);
+  plan.runs.set(PassId::kContacts, (free_solid > 0 && solid > 1) || (free_probes > 0 && solid > 0));
   plan.runs.set(PassId::kMoveBodies, any_free(scene));
 }
 
@@ -146,7 +148,7 @@ Reasons reasons_for(PassId id, const Scene& scene, const FluidExtremes& fluids, 
               "no grip"};
     case PassId::kContacts:
       return {"a free body can touch another body",
-              count_free(true) > 0 ? "one body alone" : "no free body with a surface"};
+              count_free(false) > 0 ? "no other body with a surface" : "no free body"};
     case PassId::kMoveBodies:
       return {format("Eq 13 and leap-frog for %zu free bodies", count_free(false)), "every body is fixed"};
   }

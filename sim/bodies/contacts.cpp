@@ -88,8 +88,13 @@ void add_corners(const TriangleMesh& mesh, std::vector<glm::vec3>& points, std::
 ContactFinder::ContactFinder(const Scene& scene, const SampledScene& sampled) : spacing_(sampled.spacing) {
   shapes_.resize(scene.bodies.size());
   for (std::size_t i = 0; i < shapes_.size(); ++i) {
-    if (scene.bodies[i].point_probe) continue;
     Shape& shape = shapes_[i];
+    if (scene.bodies[i].point_probe) {  // a point that meets solids, and that nothing meets
+      shape.points = {glm::vec3(0.0f)};
+      shape.normals = {glm::vec3(0.0f)};
+      shape.flat = {0};
+      continue;
+    }
     shape.points = sampled.surfaces[i].positions;
     shape.normals = sampled.surfaces[i].normals;
     shape.field = sampled.distance_fields[i];

@@ -66,6 +66,35 @@ TEST(Contact, dropped_box_does_not_bounce) {
   EXPECT_LT(glm::length(e.bodies().bodies[t.box].twist.linear), 1e-3);
 }
 
+// A probe of thirty times its particle's mass, which no fluid holds up: it used to fall through the floor and
+// out of the world.
+TEST(Contact, a_probe_that_is_let_go_stays_in_its_tank) {
+  for (const bool wet : {false, true}) {
+    SceneBuilder b;
+    b.add_fixed("tank", tank_at_floor({0.1, 0.1, 0.1}, 0.02));
+    if (wet) {
+      b.add_fluid(1000.0, 0.05);
+      b.add_volume(make::box({-0.05, 0.0, -0.05}, {0.05, 0.06, 0.05}));
+    }
+    Body probe;
+    probe.name = "probe";
+    probe.motion = BodyMotion::kFree;
+    probe.point_probe = true;
+    probe.mass.mass = 0.05;
+    probe.pose.position = {0.01, 0.08, 0.0};
+    b.scene.bodies.push_back(probe);
+    b.set_domain({-0.2, -0.2, -0.2}, {0.2, 0.3, 0.2});
+    Experiment e(b.scene, kSpacing);
+    double lowest = 1.0;
+    e.run(1.5, [&] { lowest = std::min(lowest, e.bodies().bodies[1].pose.position.y); });
+    const BodyState& rests = e.bodies().bodies[1];
+    report_value(wet ? "probe in water, lowest" : "probe in an empty tank, lowest", 1e3 * lowest, "mm");
+    EXPECT_GT(lowest, -1e-3);
+    EXPECT_LT(rests.pose.position.y, 0.01);
+    EXPECT_LT(glm::length(rests.twist.linear), wet ? 0.05 : 1e-3);
+  }
+}
+
 struct BouncingBox {
   SceneBuilder b;
   int box = 0;
