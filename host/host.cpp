@@ -72,7 +72,9 @@ Host::Host(World world, const Scene& scene, Channel& channel, HostOptions option
   run_ = options_.run;
   show_state();
   world_.fill(latest_);
-  report_.start_mass = world_.diagnostics().mass;
+  const Diagnostics start = world_.diagnostics();
+  report_.start_mass = start.mass;
+  report_.start_retired = start.retired;
 }
 
 Host::~Host() {

@@ -76,6 +76,7 @@ struct HostReport {
   std::array<std::uint64_t, 32> status_steps{};  ///< in how many steps, one a bit
   Diagnostics diagnostics;                       ///< of the last state
   double start_mass = 0.0;                       ///< kg of fluid at the start
+  std::uint64_t start_retired = 0;               ///< particles lost before it, while the world settled
 };
 
 /// Called on the host's thread with what came of a command.

@@ -1,9 +1,14 @@
 // The program `slosh`: reads the command line and runs one verb.
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <initializer_list>
 #include <memory>
@@ -48,6 +53,43 @@ int no_such_verb(const CLI::App& app, const char* word) {
   return kExitUsage;
 }
 
+/// Says what is wrong with the words behind a verb, or behind one of its own ("report error").
+int wrong_words(const CLI::App& app, const CLI::ParseError& error) {
+  const CLI::App* at = &app;
+  std::string verb;
+  for (; !at->get_subcommands().empty(); at = at->get_subcommands().front())
+    verb += at->get_subcommands().front()->get_name() + " ";
+  std::string what = clean_lines(error.what(), kMostTextBytes);
+  std::string near;
+  const std::vector<std::string> words = app.remaining(true);
+  std::vector<std::string> below;
+  for (const CLI::App* sub : at->get_subcommands({})) below.push_back(sub->get_name());
+  if (at != &app && !below.empty() && !words.empty() && !words[0].starts_with('-')) {
+    const std::string shown = clean_text(words[0], kMostTextBytes);
+    what = verb + "knows no '" + shown + "'";
+    near = did_you_mean(shown, below);
+  } else if (near = options_near(*at, words); !near.empty()) {
+    near = "Did you mean " + near + "? ";
+  }
+  std::fprintf(stderr, "slosh: %s. %sSee `slosh %s--help`.\n", what.c_str(), near.c_str(), verb.c_str());
+  return kExitUsage;
+}
+
+/// What is printed may be what was asked for: where it could not be written the run has failed. Who reads no
+/// further (| head) has what they want.
+int with_all_printed(int code) {
+  const bool before = std::ferror(stdout) != 0;
+  errno = 0;
+  if (std::fflush(stdout) == 0 && !before) return code;
+  struct stat out {};
+  if (fstat(STDOUT_FILENO, &out) != 0 || S_ISFIFO(out.st_mode) || S_ISSOCK(out.st_mode)) return code;
+  std::fprintf(
+      stderr,
+      "slosh: standard output: not all could be written%s%s. Free some space, or write it elsewhere.\n",
+      errno != 0 ? ": " : "", errno != 0 ? std::strerror(errno) : "");
+  return code == kExitOk ? kExitFailed : code;
+}
+
 int run(int argc, char** argv) {
   CLI::App app("Touch simulated fluids together.", "slosh");
   app.set_version_flag("--version", version_text);
@@ -77,17 +119,8 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    std::string verb;
-    std::string near;
-    for (const CLI::App* sub : app.get_subcommands()) {
-      verb = sub->get_name() + " ";
-      near = options_near(*sub, sub->remaining(true));
-    }
-    if (!near.empty()) near = "Did you mean " + near + "? ";
-    const std::string what = clean_lines(error.what(), kMostTextBytes);
-    std::fprintf(stderr, "slosh: %s. %sSee `slosh %s--help`.\n", what.c_str(), near.c_str(), verb.c_str());
-    return kExitUsage;
+    if (error.get_exit_code() == 0) return with_all_printed(app.exit(error));  // --help, --version
+    return wrong_words(app, error);
   }
   // Wrong settings are said before anything is begun, and nothing is begun with half of them.
   if (!settings.errors.empty() && !app.got_subcommand("settings")) {
@@ -97,7 +130,7 @@ int run(int argc, char** argv) {
         "slosh: nothing was begun. `slosh settings` shows them all; SLOSH_SETTINGS=none goes without.\n");
     return kExitUsage;
   }
-  return chosen();
+  return with_all_printed(chosen());
 }
 
 }  // namespace

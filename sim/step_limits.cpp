@@ -235,6 +235,17 @@ std::optional<Error> refuse_endless(const Scene& scene, const Plan& plan) {
       format("%.3g µs, by %s: %.3g steps for each simulated second would not come to an end", 1e6 * step,
              plan.time_step_reason.c_str(), 1.0 / step),
       "Take coarser particles, or a softer or a thinner fluid; where walls are viscous, less of that"};
+  const double g = glm::length(scene.gravity);
+  const double fall = expected_speed(g, 0.0, plan.fluid_drop, plan.driven_speed);
+  const double rest =
+      fastest_sound(scene, plan) + expected_speed(g, plan.fluid_depth, 0.0, plan.driven_speed);
+  if (fall > 10.0 * rest && step * (rest + fall) > rest * kShortestStep) {
+    error.mend = format(
+        "What falls to the floor of its domain, %.3g m below, goes at %.3g m/s: raise the "
+        "scene's domain_min_m",
+        plan.fluid_drop, fall);
+    return error;
+  }
   if (!plan.viscous()) return error;
   Plan shortest = plan;
   shortest.time_step = kShortestStep;  // of a sub-step

@@ -170,6 +170,9 @@ class Endpoint {
 Result<std::unique_ptr<Endpoint>> listen_quic(const std::string& address, const Identity& identity,
                                               EndpointEvents& events, const EndpointOptions& options = {});
 
+/// Whether listen_quic would get that address now. Errors: its own.
+Result<bool> can_listen(const std::string& address);
+
 /// Connects to the first of `addresses` that answers (all tried at once) with the key `host`. Returns before
 /// the handshake; on_connected or on_closed follow. One connection an endpoint. Errors: not an address, no
 /// socket.

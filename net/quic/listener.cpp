@@ -182,11 +182,25 @@ void Listener::accept(UdpSocket& socket, const Arrival& packet, const FirstPacke
 
 namespace slosh {
 
+namespace {
+
+Result<std::unique_ptr<quic::UdpSocket>> socket_at(const std::string& address) {
+  const auto found = quic::resolve(address);
+  if (!found) return found.error();
+  return quic::UdpSocket::listen(found.value().front());
+}
+
+}  // namespace
+
+Result<bool> can_listen(const std::string& address) {
+  const auto socket = socket_at(address);
+  if (!socket) return socket.error();
+  return true;
+}
+
 Result<std::unique_ptr<Endpoint>> listen_quic(const std::string& address, const Identity& identity,
                                               EndpointEvents& events, const EndpointOptions& options) {
-  auto found = quic::resolve(address);
-  if (!found) return found.error();
-  auto socket = quic::UdpSocket::listen(found.value().front());
+  auto socket = socket_at(address);
   if (!socket) return socket.error();
   try {
     return std::unique_ptr<Endpoint>(

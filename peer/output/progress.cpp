@@ -121,7 +121,6 @@ void Progress::phase(const std::string& name, const std::string& detail) {
 void Progress::update(double fraction, const std::string& text) {
   const std::int64_t now_ns = steady_now_ns();
   if (!terminal_ && now_ns - last_line_ns_ < between_ns_) return;
-  last_line_ns_ = now_ns;
   char percent[16] = "";
   if (fraction >= 0.0) std::snprintf(percent, sizeof percent, " %3.0f %%", 100.0 * std::min(fraction, 1.0));
   const std::string line = phase_ + percent + "  " + fit(text);
@@ -130,6 +129,9 @@ void Progress::update(double fraction, const std::string& text) {
     if (typed_.empty()) show();
     return;
   }
+  last_line_ns_ = now_ns;
+  if (line == status_) return;  // in a log it would say nothing new
+  status_ = line;
   std::fprintf(stderr, "%s\n", line.c_str());
   std::fflush(stderr);
 }

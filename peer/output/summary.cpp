@@ -137,6 +137,7 @@ Json to_json(const RunSummary& s) {
   json["particles"] = {{"fluid", s.fluid_particles},
                        {"boundary", s.boundary_particles},
                        {"retired", s.retired_particles},
+                       {"retired_settling", s.retired_settling},
                        {"in_solids", s.particles_in_solids}};
   json["steps"] = s.steps;
   json["time_step_s"] = s.time_step;
@@ -200,10 +201,14 @@ std::string in_words(const RunSummary& s) {
         s.frame_ms.p50,
         s.frames_dropped == 0 ? "" : (std::string(", ") + grouped(s.frames_dropped) + " dropped").c_str());
   }
-  if (s.fluid_mass_start > 0.0 && s.retired_particles > 0) {
-    text +=
-        format("%s of %s fluid particles were lost, %.3g of %.3g kg.\n", grouped(s.retired_particles).c_str(),
-               grouped(s.fluid_particles).c_str(), s.fluid_mass_start - s.fluid_mass_end, s.fluid_mass_start);
+  if (s.retired_settling > 0)
+    text += format("%s of %s fluid particles were lost while the world settled, before the run.\n",
+                   grouped(s.retired_settling).c_str(), grouped(s.fluid_particles).c_str());
+  if (s.fluid_mass_start > 0.0 && s.retired_particles > s.retired_settling) {
+    text += format("%s of %s fluid particles were lost, %.3g of %.3g kg.\n",
+                   grouped(s.retired_particles - s.retired_settling).c_str(),
+                   grouped(s.fluid_particles - s.retired_settling).c_str(),
+                   s.fluid_mass_start - s.fluid_mass_end, s.fluid_mass_start);
     // Measured: tests/peer/python/first_scene_test.py.
     if (s.fluid_mass_start - s.fluid_mass_end > kMuch * s.fluid_mass_start)
       text +=
@@ -211,7 +216,9 @@ std::string in_words(const RunSummary& s) {
           "  \"model\": \"incompressible\" 0.7 %, and viscosity_pa_s 2 on those bodies all.)\n";
   }
   if (s.particles_in_solids > 0)
-    text += format("%s fluid particles are inside solids.\n", grouped(s.particles_in_solids).c_str());
+    text += s.particles_in_solids == 1
+                ? "1 fluid particle is inside a solid.\n"
+                : grouped(s.particles_in_solids) + " fluid particles are inside solids.\n";
   text += in_words(s.measured);
   if (s.export_frames > 0) {
     text += format("%s frames for other programs, %.2f s each.\n", grouped(s.export_frames).c_str(),

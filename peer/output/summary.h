@@ -67,6 +67,7 @@ struct RunSummary {
   std::size_t fluid_particles = 0;
   std::size_t boundary_particles = 0;
   std::uint64_t retired_particles = 0;    ///< lost: outside the domain, or not finite
+  std::uint64_t retired_settling = 0;     ///< of these, before the run: while the world settled
   std::uint64_t particles_in_solids = 0;  ///< at the end
   std::uint64_t steps = 0;
   double time_step = 0.0;         ///< s
@@ -93,7 +94,7 @@ struct RunSummary {
   double slipped = 0.0;  ///< s
   std::uint64_t rejected_poses = 0;
   std::uint64_t samples_lost = 0;
-  double fluid_mass_start = 0.0;  ///< kg
+  double fluid_mass_start = 0.0;  ///< kg, of the run: after settling
   double fluid_mass_end = 0.0;    ///< kg still in the world
   MeasuredRun measured;
   std::vector<DeviceSummary> devices;

@@ -15,6 +15,9 @@
 #include "scenes/inspect.h"
 #include "scenes/load.h"
 #include "scenes/sample.h"
+#include "sim/backend.h"
+#include "sim/plan.h"
+#include "sim/step_limits.h"
 
 namespace slosh {
 namespace {
@@ -37,6 +40,9 @@ struct Counted {
 Result<Counted> count(const Scene& scene, double asked, Progress& progress) {
   Counted counted;
   counted.spacing = asked > 0.0 ? asked : scene.spacing > 0.0 ? scene.spacing : scene.spacing_max;
+  if (const std::optional<Error> endless =
+          refuse_endless(scene, make_plan(scene, counted.spacing, can_solve_drag(Backend::kAuto))))
+    return *endless;
   const Result<SampledScene> sampled = sample_told(scene, counted.spacing, progress, &counted.filling);
   if (!sampled) return sampled.error();
   counted.fluid = sampled.value().fluid_positions.size();

@@ -170,7 +170,7 @@ void add_world_options(CLI::App& verb, PlayOptions& options, const std::string& 
   verb.add_option("--spacing", options.spacing,
                   "Metres between particles, or auto: measures the finest in real time (kept once it was)");
   verb.add_option("--particles", options.particles, "Fluid particles to aim at, in place of a spacing")
-      ->check(CLI::Range(1, 100000000))
+      ->check(CLI::Range(1, 20000000))
       ->excludes("--spacing");
   verb.add_option("--threads", options.threads, "Cores for the simulation (" + all_cores + ")")
       ->check(CLI::Range(1, 1024));

@@ -162,6 +162,7 @@ std::string run_until_ended(HostedRun& run, Progress& progress, HostReins* reins
 int run_host(const HostVerbOptions& options, HostReins* reins) {
   end_at_interrupts();
   signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error like a full disk, and no reason to die
+  if (const Result<bool> there = can_host_there(options); !there) return fail(there.error());
   Progress progress;
   Result<HostedWorld> hosted = make_hosted_world(options, progress);
   if (!hosted) {

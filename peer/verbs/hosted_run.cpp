@@ -11,6 +11,7 @@
 #include "peer/verbs/host_links.h"
 #include "peer/verbs/host_supervisor.h"
 #include "peer/verbs/state_folder.h"
+#include "sim/math/format.h"
 
 namespace slosh {
 namespace {
@@ -20,7 +21,28 @@ constexpr std::uint16_t kPort = 4433;
 constexpr std::size_t kSpareHands = 4;   // participants beyond one a grip
 constexpr std::size_t kStrangers = 128;  // connections that nobody was let in by
 
+/// What `listen` gives at `asked`, else everywhere at the usual port; its errors with a host's mend.
+template <class Listen>
+auto at_the_place(const std::string& asked, Listen&& listen) {
+  const std::string port = format(":%d", kPort);
+  auto listening = listen(asked.empty() ? "[::]" + port : asked);
+  // A machine without IPv6, or a port in use: the second answer tells which.
+  if (!listening && asked.empty()) listening = listen("0.0.0.0" + port);
+  if (listening) return listening;
+  Error error = listening.error();
+  error.mend = "Choose another port with --listen, e.g. --listen '[::]:0' for any that is free";
+  return decltype(listening)(error);
+}
+
 }  // namespace
+
+Result<bool> can_host_there(const HostVerbOptions& options) {
+  if (!options.addresses.empty()) {
+    if (const Result<std::string> link = format_link({options.addresses, {}, {}}); !link) return link.error();
+  }
+  if (options.listen.empty() && !options.resume.empty()) return true;
+  return at_the_place(options.listen, can_listen);
+}
 
 Result<std::unique_ptr<HostedRun>> HostedRun::create(HostedWorld& hosted, const HostVerbOptions& options,
                                                      HostReins* reins) {
@@ -97,18 +119,12 @@ Result<bool> HostedRun::open_network(HostReins* reins) {
   link.queue_datagrams[static_cast<std::size_t>(Priority::kSnapshot)] =
       std::max<std::size_t>(512, hosted_.particles / 300);
   const std::string asked = options_.listen.empty() ? hosted_.place.listen : options_.listen;
-  const std::string port = ":" + std::to_string(kPort);
-  Result<std::unique_ptr<Endpoint>> listening =
-      listen_quic(asked.empty() ? "[::]" + port : asked, identity_, *server_, link);
-  if (!listening && asked.empty()) {
-    // A machine without IPv6, or a port in use: the second answer tells which.
-    listening = listen_quic("0.0.0.0" + port, identity_, *server_, link);
-  }
+  Result<std::unique_ptr<Endpoint>> listening = at_the_place(
+      asked, [&](const std::string& address) { return listen_quic(address, identity_, *server_, link); });
   if (!listening) {
     Error error = listening.error();
-    error.mend = options_.listen.empty() && !asked.empty()
-                     ? "It listened there before, and its links say so. Choose another place with --listen"
-                     : "Choose another port with --listen, e.g. --listen '[::]:0' for any that is free";
+    if (options_.listen.empty() && !asked.empty())
+      error.mend = "It listened there before, and its links say so. Choose another place with --listen";
     return error;
   }
   endpoint_ = std::move(listening.value());

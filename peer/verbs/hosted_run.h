@@ -23,6 +23,10 @@ namespace slosh {
 
 class HostReins;
 
+/// Whether the place that the options ask for, or the usual one, can be listened at now: else it would be
+/// said when all is measured and settled. Where an earlier host listened is its checkpoint's to say.
+Result<bool> can_host_there(const HostVerbOptions& options);
+
 /// Made, started and ended by one thread.
 class HostedRun {
  public:

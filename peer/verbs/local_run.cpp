@@ -247,6 +247,7 @@ void LocalRun::report(RunSummary& s) const {
   s.fluid_particles = host_->world().fluid_count();
   s.boundary_particles = host_->world().boundary_count();
   s.retired_particles = host.diagnostics.retired;
+  s.retired_settling = host.start_retired;
   s.steps = host.steps;
   s.time_step = prepared_.plan.time_step;
   s.status |= host.status;

@@ -177,7 +177,7 @@ Result<bool> show_headless(const Stage& stage, LiveRun& run, const ShowOptions& 
     while (!view->finished()) {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
       const double all = static_cast<double>(view->frames_done() + run.snapshots().waiting());
-      const std::string left = std::to_string(run.snapshots().waiting()) + " pictures left";
+      const std::string left = std::to_string(run.snapshots().waiting()) + " to draw";
       progress.update(all > 0.0 ? static_cast<double>(view->frames_done()) / all : 0.0, left);
     }
     view->wait();

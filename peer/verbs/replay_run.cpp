@@ -21,7 +21,7 @@ constexpr double kSampleInterval = 0.002;   // simulated s, as a live run's
 ReplayRun::ReplayRun(keep::Replayer& replayer, const Stage& stage, double snapshot_rate)
     : replayer_(replayer), stage_(stage), snapshot_rate_(snapshot_rate), snapshots_(kSnapshotBytes) {
   for (const Grip& grip : stage.scene.grips) peaks_.push_back({grip.name, "recorded", 0.0, 0.0});
-  start_mass_ = replayer.world().diagnostics().mass;
+  start_ = replayer.world().diagnostics();
 }
 
 Result<std::unique_ptr<ReplayRun>> ReplayRun::create(keep::Replayer& replayer, const Stage& stage,
@@ -158,10 +158,11 @@ void ReplayRun::report(RunSummary& s) const {
   s.fluid_particles = world.fluid_count();
   s.boundary_particles = world.boundary_count();
   s.retired_particles = end.retired;
+  s.retired_settling = start_.retired;
   s.steps = verdict.steps;
   s.time_step = world.plan().time_step;
   s.status = replayer_.status();
-  s.fluid_mass_start = start_mass_;
+  s.fluid_mass_start = start_.mass;
   s.fluid_mass_end = end.mass;
   s.devices = peaks_;
   s.backend = backend_name(replayer_.backend());

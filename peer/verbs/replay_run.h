@@ -62,7 +62,7 @@ class ReplayRun final : public LiveRun {
   Histogram step_time_;
   StepTimes total_;
   double wall_ = 0.0;
-  double start_mass_ = 0.0;
+  Diagnostics start_;
   std::string problem_;
   std::thread thread_;
   std::atomic<bool> stop_{false};

@@ -47,9 +47,8 @@ void add_case_options(CLI::App& verb, ReportOptions& options, const std::string&
 }  // namespace
 
 void add_report(CLI::App& app, VerbRun& chosen) {
-  CLI::App* verb = app.add_subcommand("report",
-                                      "Measure: error against run time, stability, hands over a delay, what "
-                                      "passes cost, pictures, the paper's figures");
+  CLI::App* verb = app.add_subcommand(
+      "report", "Measure: error against run time, stability, delays, passes, pictures, figures");
   verb->require_subcommand(1);
   auto options = std::make_shared<ReportOptions>();
   CLI::App* error = verb->add_subcommand("error", "Cases with a known answer: how far off, at what cost");

@@ -58,7 +58,9 @@ int make_new(const SettingsFile& file) {
   if (file.there) return fail({file.path.string(), "is there already and stays as it is", "Edit it"});
   std::error_code code;
   if (file.path.has_parent_path()) std::filesystem::create_directories(file.path.parent_path(), code);
-  if (code) return fail({file.path.parent_path().string(), "cannot be made: " + code.message(), ""});
+  if (code)
+    return fail({file.path.parent_path().string(), "cannot be made: " + code.message(),
+                 "Name a file that you may write with SLOSH_SETTINGS"});
   if (const Result<bool> written = write_whole(file.path, settings_example()); !written)
     return fail(
         {written.error().where, written.error().what, "Free some space, or let yourself write there"});

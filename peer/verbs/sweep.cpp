@@ -125,7 +125,7 @@ Felt felt(const WrenchSeries& hand) {
 
 std::string row_of(std::size_t number, const Member& member, std::size_t grip, const ScriptedRun& run) {
   std::string row = std::to_string(number);
-  for (const FieldEdit& edit : member.edits) row += "," + edit.value;
+  for (const FieldEdit& edit : member.edits) (row += ',') += csv_cell(edit.value);
   const Felt f = felt(run.hands[grip]);
   return row + format(",%zu,%.6g,%.6g,%.6g,%.6g,%llu,%llu,%.4g\n", grip, f.mean_force, f.peak_force,
                       f.mean_torque, f.peak_torque, static_cast<unsigned long long>(run.cost.particles),

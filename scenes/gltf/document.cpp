@@ -4,6 +4,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <optional>
 
+#include "net/text/clean.h"
 #include "scenes/gltf/buffers.h"
 #include "scenes/gltf/container.h"
 #include "scenes/gltf/references.h"
@@ -14,6 +15,18 @@ namespace {
 bool keep_no_image(tinygltf::Image*, const int, std::string*, std::string*, int, int, const unsigned char*,
                    int, void*) {
   return true;
+}
+
+/// The library's words, of which some hold a whole buffer.
+std::string in_a_sentence(std::string words) {
+  constexpr char kData[] = ";base64,";
+  constexpr std::size_t kShown = 12;
+  if (const std::size_t data = words.find(kData); data != std::string::npos && data + kShown < words.size())
+    words = words.substr(0, data + sizeof kData - 1 + kShown) + "…";
+  words = clean_text(words, kMostTextBytes);
+  while (!words.empty() && (words.back() == ' ' || words.back() == '.' || words.back() == '?'))
+    words.pop_back();
+  return words;
 }
 
 Result<tinygltf::Model> to_model(const std::filesystem::path& file, Container& container) {
@@ -33,8 +46,8 @@ Result<tinygltf::Model> to_model(const std::filesystem::path& file, Container& c
                                         reinterpret_cast<const unsigned char*>(bytes.data()), length, "")
           : loader.LoadASCIIFromString(&model, &problem, &warning, bytes.data(), length, "");
   if (!ok) {
-    while (!problem.empty() && std::isspace(static_cast<unsigned char>(problem.back()))) problem.pop_back();
-    return Error{file.string(), "not a valid glTF 2.0 file: " + problem, "Export the file again"};
+    return Error{file.string(), "not a valid glTF 2.0 file: " + in_a_sentence(problem),
+                 "Export the file again"};
   }
   return model;
 }

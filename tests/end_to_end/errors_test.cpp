@@ -1,13 +1,19 @@
 // What a person reads when something is wrong, and the verbs that only look.
+#include <arpa/inet.h>
 #include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
-#include <sstream>
-
+#include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "process.h"
 #include "scenes/load.h"
+#include "sim/math/format.h"
 
 namespace slosh {
 namespace {
@@ -45,6 +51,69 @@ TEST(Errors, MisspeltWordsAreAnsweredWithTheNearest) {
   std::filesystem::create_directories(test::test_folder());
   std::ofstream(test::test_folder() / "kitchen.gltf") << "{}";
   expect_error({"check", "kichen.gltf"}, 1, {"there is no such file", "Did you mean kitchen.gltf?"});
+}
+
+/// The words of a verb's own verbs too, and the help that is named is theirs.
+TEST(Errors, SoAreTheWordsBehindAVerb) {
+  expect_error({"report", "errors"}, 2,
+               {"report knows no 'errors'", "Did you mean error?", "slosh report --help"});
+  expect_error({"links", "nwe", "Zoe"}, 2, {"links knows no 'nwe'", "Did you mean new?"});
+  expect_error({"devices", "tset"}, 2, {"devices knows no 'tset'", "Did you mean test?"});
+  expect_error({"report", "figure", "12"}, 2, {"12", "slosh report figure --help"});
+  expect_error({"report", "error", "--spcing", "0.01"}, 2,
+               {"Did you mean --spacing?", "slosh report error --help"});
+  expect_error({"report"}, 2, {"slosh report --help"});
+}
+
+/// What cannot be met is said before anything is loaded, measured or settled.
+TEST(Errors, AnAddressOrAPluginThatIsNoneIsSaidAtOnce) {
+  const auto at_once = [](const Arguments& arguments, const std::vector<std::string>& parts) {
+    const Outcome outcome = test::slosh(arguments);
+    EXPECT_EQ(outcome.code, 1) << outcome.err;
+    for (const std::string& part : parts)
+      EXPECT_TRUE(contains(outcome.err, part)) << part << " in\n" << outcome.err;
+    for (const char* phase : {"measuring", "sampling", "settling"})
+      EXPECT_FALSE(contains(outcome.err, phase)) << outcome.err;
+  };
+  at_once({"host", "bucket", "--listen", "here"}, {"'here'", "no port", "--listen"});
+  at_once({"host", "bucket", "--listen", "127.0.0.1:99999"}, {"99999", "--listen"});
+  at_once({"host", "bucket", "--listen", "127.0.0.1:0", "--address", "router"}, {"router", "port"});
+  const int taken = socket(AF_INET, SOCK_DGRAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  ASSERT_EQ(bind(taken, reinterpret_cast<sockaddr*>(&address), size), 0);
+  ASSERT_EQ(getsockname(taken, reinterpret_cast<sockaddr*>(&address), &size), 0);
+  at_once({"host", "bucket", "--listen", "127.0.0.1:" + std::to_string(ntohs(address.sin_port))},
+          {"in use", "--listen"});
+  close(taken);
+  at_once({"play", "bucket", "--no-render", "--device", "plugin:nothing.so"},
+          {"nothing.so", "cannot be loaded"});
+}
+
+/// A table or a list that its disk has no room for is no success; who reads no further has what they want.
+TEST(Errors, WhatCouldNotBePrintedIsSaid) {
+  std::filesystem::create_directories(test::test_folder());
+  const std::string error = (test::test_folder() / "error.txt").string();
+  const std::string there = test::program();
+  const char* const program = there.c_str();
+  const auto code = [&](const std::string& rest) {
+    const int status = std::system(format("'%s' %s 2> '%s'", program, rest.c_str(), error.c_str()).c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  };
+  for (const char* what : {"check bucket --json", "plan bucket", "scenes", "--help"}) {
+    EXPECT_EQ(code(std::string(what) + " > /dev/full"), 1) << what;
+    EXPECT_TRUE(contains(test::read_text(error), "standard output: not all could be written: No space"))
+        << what;
+  }
+  const std::string ended = (test::test_folder() / "ended.txt").string();
+  ASSERT_EQ(std::system(format("{ '%s' plan bucket 2> '%s'; echo $? > '%s'; } | head -1 > /dev/null", program,
+                               error.c_str(), ended.c_str())
+                            .c_str()),
+            0);
+  EXPECT_EQ(test::read_text(ended), "0\n");
+  EXPECT_EQ(test::read_text(error), "");
 }
 
 /// A run that was refused leaves no folder behind.
@@ -129,6 +198,35 @@ TEST(Errors, CheckSaysEverythingAtOnceAndErrorsApartFromWarnings) {
   EXPECT_EQ(said["warnings"][0]["kind"], "no-camera");
 }
 
+/// What falls out of a domain that is far too large would need endless steps: check says so, and what to do.
+TEST(Errors, ADomainWithoutAFloorIsSaidByCheck) {
+  std::filesystem::create_directories(test::test_folder());
+  nlohmann::json bucket = nlohmann::json::parse(test::read_text(find_scene("bucket").value()));
+  bucket["scenes"][0]["extras"]["domain_min_m"] = {-1e9, -1e9, -1e9};
+  std::ofstream(test::test_folder() / "deep.gltf") << bucket.dump();
+  expect_error({"check", "deep.gltf"}, 1,
+               {"time step", "falls to the floor of its domain, 1e+09 m below", "domain_min_m"});
+}
+
+/// Kilogrammes and particles lost are of the same: of the run, without what settling lost.
+TEST(Verbs, PlayTellsApartWhatSettlingLost) {
+  std::filesystem::create_directories(test::test_folder());
+  nlohmann::json bucket = nlohmann::json::parse(test::read_text(find_scene("bucket").value()));
+  bucket["scenes"][0]["extras"]["gravity_m_s2"] = {0.0, 9.81, 0.0};
+  std::ofstream(test::test_folder() / "up.gltf") << bucket.dump();
+  const Outcome outcome =
+      test::slosh({"play", "up.gltf", "--no-render", "--unpaced", "--seconds", "0.1", "--spacing", "0.012",
+                   "--threads", "1", "--out", "out", "--overwrite"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const nlohmann::json summary =
+      nlohmann::json::parse(test::read_text(test::test_folder() / "out" / "summary.json"));
+  const double all = summary["particles"]["fluid"], settling = summary["particles"]["retired_settling"];
+  EXPECT_GT(settling, 0.0);
+  EXPECT_NEAR(summary["fluid_mass_kg"]["start"].get<double>(), (all - settling) * 1000.0 * std::pow(0.012, 3),
+              1e-6);
+  EXPECT_TRUE(contains(outcome.out, "fluid particles were lost while the world settled")) << outcome.out;
+}
+
 TEST(Verbs, ScenesListsEveryShippedScene) {
   const Outcome outcome = test::slosh({"scenes"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -163,6 +261,8 @@ TEST(Verbs, HelpExplainsWithExamples) {
     EXPECT_TRUE(contains(one.out, "Example")) << verb;
   }
   // No line runs on: what options are for is wrapped, the rest written so.
+  std::istringstream verbs(all.out);
+  for (std::string line; std::getline(verbs, line);) EXPECT_LE(line.size(), 120u) << line;
   for (const char* verb : {"play", "host", "join", "watch", "replay", "links", "devices", "scenes", "check", "plan", "sweep",
                            "report", "settings"}) {
     std::istringstream lines(test::slosh({verb, "--help"}).out);

@@ -96,6 +96,17 @@ TEST_F(Sweep, EveryCombinationOfSeveral) {
   EXPECT_EQ(table[3][1], "corrected");
 }
 
+/// A spreadsheet takes a text that begins so for a formula.
+TEST_F(Sweep, ValuesAreTextInTheTable) {
+  const Outcome outcome = test::slosh(
+      {"sweep", "probe", "--set", "scene.title==1+1", "--seconds", "0.02", "--out", "out", "--threads", "1"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto table = rows(out / "sweep.csv");
+  ASSERT_EQ(table.size(), 2u);
+  EXPECT_TRUE(table[1][1].ends_with("=1+1")) << table[1][1];
+  EXPECT_NE(table[1][1][0], '=');
+}
+
 TEST_F(Sweep, AnInterruptKeepsWhatIsDone) {
   test::Process slosh({test::program(), "sweep", "probe", "--set", "probe.mass_kg=0.05,0.1,0.15,0.2,0.25,0.3",
                        "--seconds", "0.5", "--out", "out", "--threads", "1"},

@@ -106,6 +106,26 @@ TEST(Summary, StatusesHaveTheirNumbers) {
   EXPECT_NE(in_words(s).find("264 of 344"), std::string::npos);
 }
 
+/// Kilogrammes are of the run; particles that settling lost are none of it.
+TEST(Summary, WhatSettlingLostIsToldApart) {
+  RunSummary s;
+  s.fluid_particles = 1240;
+  s.retired_particles = 1000;
+  s.retired_settling = 840;
+  s.fluid_mass_start = 0.4;
+  s.fluid_mass_end = 0.24;
+  s.particles_in_solids = 1;
+  const std::string words = in_words(s);
+  EXPECT_NE(words.find("840 of 1 240 fluid particles were lost while the world settled"), std::string::npos)
+      << words;
+  EXPECT_NE(words.find("160 of 400 fluid particles were lost, 0.16 of 0.4 kg"), std::string::npos) << words;
+  EXPECT_NE(words.find("1 fluid particle is inside a solid"), std::string::npos) << words;
+  EXPECT_EQ(to_json(s)["particles"]["retired_settling"], 840);
+  s.retired_particles = 840;
+  s.fluid_mass_end = 0.4;
+  EXPECT_EQ(in_words(s).find(" kg"), std::string::npos) << "the run itself lost nothing";
+}
+
 TEST(Grouped, ThousandsApart) {
   EXPECT_EQ(grouped(0), "0");
   EXPECT_EQ(grouped(999), "999");
@@ -128,6 +148,18 @@ TEST(Progress, ATerminalGetsOnlyWhatItCanShow) {
   for (const char* obeyed : {"\x1b", "\u009b", "\u202e", "\x9b", "\r"})
     EXPECT_EQ(shown.find(obeyed), std::string::npos) << obeyed;
   EXPECT_NE(shown.find("a?[2Jb?cd??\na?[2Jb?cd??\n"), std::string::npos) << "lines stay lines: " << shown;
+}
+
+TEST(Progress, ALogSaysNothingTwice) {
+  testing::internal::CaptureStderr();
+  {
+    Progress progress(false, 0.0);
+    progress.phase("encoding");
+    for (const char* text : {"93 to draw", "93 to draw", "92 to draw", "93 to draw"})
+      progress.update(0.0, text);
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            "encoding\nencoding   0 %  93 to draw\nencoding   0 %  92 to draw\nencoding   0 %  93 to draw\n");
 }
 
 TEST(Progress, NorDoesWhatIsPastedMoveIt) {

@@ -87,6 +87,15 @@ TEST(AccessorErrors, MissingBufferViewWithHugeCount) {
                     {"cup_mesh", "POSITION", "no bufferView"});
 }
 
+TEST(AccessorErrors, ABufferThatIsShorterThanItSaysIsNotPrinted) {
+  const auto loaded = test::load_edited([](json& j) { j["buffers"][0]["byteLength"] = 1000000; });
+  ASSERT_FALSE(loaded);
+  const std::string text = loaded.error().text();
+  EXPECT_NE(text.find("decode"), std::string::npos) << text;
+  EXPECT_LT(text.size(), 250u) << text;
+  EXPECT_EQ(text.find(".."), std::string::npos) << text;
+}
+
 TEST(AccessorErrors, PastItsBuffer) {
   for (const char* attribute : {"POSITION", "NORMAL", "indices"}) {
     SCOPED_TRACE(attribute);

@@ -8,6 +8,7 @@
 #include "peer/haptics/devices/gamepad_device.h"
 #include "peer/haptics/devices/operator_device.h"
 #include "peer/haptics/devices/plugin_device.h"
+#include "peer/haptics/devices/plugin_library.h"
 #include "peer/haptics/devices/spacemouse_device.h"
 
 namespace slosh {
@@ -26,6 +27,8 @@ Made make_plugin(const std::string& rest, const HandPlace& place) {
   const std::string file = rest.substr(0, colon);
   if (file.empty())
     return Error{"--device plugin", "no library is named", "Give --device plugin:FILE[:OPTIONS]"};
+  // Now, and not when all is measured and settled.
+  if (const Result<PluginLibrary> library = load_plugin(file); !library) return library.error();
   const std::string options = colon == std::string::npos ? "" : rest.substr(colon + 1);
   return Made(std::make_unique<PluginDevice>(file, options, place));
 }
