@@ -67,10 +67,10 @@ struct Renderer::Parts {
   std::optional<ScenePass> scene_pass;
   std::optional<FluidPasses> fluid_passes;
   std::optional<ThicknessPass> thickness_pass;
-  std::optional<MixingPass> mixing_pass;  ///< made when fluids meet
+  std::optional<MixingPass> mixing_pass;      ///< made when fluids meet
   std::optional<CausticsPass> caustics_pass;  ///< made when first asked for
   bool drew_caustics = false;                 ///< in the last picture
-  std::optional<FoamPass> foam_pass;  ///< made when there is foam
+  std::optional<FoamPass> foam_pass;          ///< made when there is foam
   std::optional<ArrowPass> arrow_pass;
   std::optional<DisplayPass> display_pass;
   std::unique_ptr<HudPass> hud_pass;
@@ -79,13 +79,13 @@ struct Renderer::Parts {
   KeptPicture kept;
   bool centers_sorted = false;
   bool offered_on_gpu = false;  ///< particles, by some frame
-  gl::Texture panel;  ///< RGBA8, made when first asked for
+  gl::Texture panel;            ///< RGBA8, made when first asked for
   gl::Framebuffer panel_target;
   glm::ivec2 panel_size{0};
-  bool drew_fluid = false;  ///< in the last picture
-  bool fast = false;        ///< Quality, resolved
-  bool made_fast = false;   ///< that of the targets
-  bool compute = false;     ///< PixelPasses, resolved
+  bool drew_fluid = false;        ///< in the last picture
+  bool fast = false;              ///< Quality, resolved
+  bool made_fast = false;         ///< that of the targets
+  bool compute = false;           ///< PixelPasses, resolved
   gl::PixelProgram copy_program;  ///< for compute
   bool timing = false;
   PassTimer timer;
@@ -106,9 +106,16 @@ struct Renderer::Parts {
   /// runs side by side (renderer_stages.cpp).
   void draw_stages(std::span<Picture> drawn);
   void draw_stages_before_fluid(std::span<Picture> drawn, bool tiled);
-  void draw_stages_of_fluid(std::span<Picture> drawn, bool chords);
+  void draw_stages_of_fluid(std::span<Picture> drawn, bool chords, bool tiled);
   void draw_stages_of_look(std::span<Picture> drawn, bool tiled);
   void draw_stages_after(std::span<Picture> drawn, bool tiled);
+  /// The glass behind the fluid goes over every pixel: it takes the occlusion off on the way.
+  bool resolves_with_glass(bool tiled) const;
+  /// It takes the panes before the fluid in hand, too, and the composite lays them over the fluid: nothing
+  /// comes between.
+  bool composite_lays_panes(bool tiled);
+  /// The composite has shares of several fluids or caustics, one after the other for each view.
+  bool blends_or_focuses() const;
   /// Makes a picture the one that passes draw.
   void choose(const Picture& picture);
   /// Starts something for each picture, whose view is then the frame's.

@@ -1,6 +1,6 @@
-// Pictures by compute shaders, the particles on the GPU: all views of a moment together, in stages. What stands in
-// one stage waits for nothing else of it, so a GPU runs it side by side: one view's last groups beside the next
-// one's first, meshes beside the smoothing of particles.
+// Pictures by compute shaders, the particles on the GPU: all views of a moment together, in stages. What
+// stands in one stage waits for nothing else of it, so a GPU runs it side by side: one view's last groups
+// beside the next one's first, meshes beside the smoothing of particles.
 #include <algorithm>
 #include <cstddef>
 
@@ -11,6 +11,20 @@ namespace slosh {
 void Renderer::Parts::choose(const Picture& picture) {
   frame.view = picture.view;
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, picture.block.name());
+}
+
+bool Renderer::Parts::resolves_with_glass(bool tiled) const {
+  return occludes() && drew_fluid && tiled && has_translucent(frame);
+}
+
+bool Renderer::Parts::composite_lays_panes(bool tiled) {
+  if (!resolves_with_glass(tiled) || !frame.foam.empty() || !options.lit_fluid || blends_or_focuses())
+    return false;
+  return fluid_passes->takes({0, mirrors_bodies(), false, true}, targets);
+}
+
+bool Renderer::Parts::blends_or_focuses() const {
+  return (options.soft_mixing && options.lit_fluid && mixing_layers(frame) > 0) || options.caustics;
 }
 
 void Renderer::Parts::draw_stages(std::span<Picture> drawn) {
@@ -25,7 +39,7 @@ void Renderer::Parts::draw_stages(std::span<Picture> drawn) {
   drew_caustics = false;
   const bool tiled = scene_pass->choose_tiles(frame, meshes, textures);
   draw_stages_before_fluid(drawn, tiled);
-  if (drew_fluid || occludes()) draw_stages_of_fluid(drawn, chords);
+  if (drew_fluid || occludes()) draw_stages_of_fluid(drawn, chords, tiled);
   if (drew_fluid) draw_stages_of_look(drawn, tiled);
   draw_stages_after(drawn, tiled);
   choose(drawn.front());
@@ -54,26 +68,32 @@ void Renderer::Parts::draw_stages_before_fluid(std::span<Picture> drawn, bool ti
     particles->start_next();
     gl::finish_compute();
   });
-  run("occlusion, prepare splats", [&] {
+  const bool occlusion_now = occludes() && !resolves_with_glass(tiled);
+  run(occlusion_now ? "occlusion, prepare splats" : "prepare splats", [&] {
     const float reach = splat_reach(frame.particle_radius, options);
     each(drawn, [&](Picture& p) {
       if (drew_fluid) particles->start_placing(frame, reach, p.splats);
-      if (occludes()) scene_pass->start_occlusion(p.targets, kOcclusionReach);
+      if (occlusion_now) scene_pass->start_occlusion(p.targets, kOcclusionReach);
     });
     gl::finish_compute();
   });
 }
 
-void Renderer::Parts::draw_stages_of_fluid(std::span<Picture> drawn, bool chords) {
-  run(occludes() ? "splats, resolve" : "splats", [&] {
-    each(drawn, [&](Picture& p) {
-      if (drew_fluid) fluid_passes->start_splats(p.targets, p.splats);
-      if (drew_fluid && chords)
-        thickness_pass->start_sums(frame, p.targets, p.splats.unmoved(), p.splats.count, p.chord_sums);
-      if (occludes()) scene_pass->start_resolve(p.targets);
-    });
-    gl::finish_compute();
-  });
+void Renderer::Parts::draw_stages_of_fluid(std::span<Picture> drawn, bool chords, bool tiled) {
+  const bool resolves = occludes() && !resolves_with_glass(tiled);
+  run(resolves     ? "splats, resolve"
+      : occludes() ? "splats, occlusion"
+                   : "splats",
+      [&] {
+        each(drawn, [&](Picture& p) {
+          if (drew_fluid) fluid_passes->start_splats(p.targets, p.splats);
+          if (drew_fluid && chords)
+            thickness_pass->start_sums(frame, p.targets, p.splats.unmoved(), p.splats.count, p.chord_sums);
+          if (resolves) scene_pass->start_resolve(p.targets);
+          if (occludes() && !resolves) scene_pass->start_occlusion(p.targets, kOcclusionReach);
+        });
+        gl::finish_compute();
+      });
   if (!drew_fluid) return;
   run("surface filter, thickness", [&] {
     const int turns = fluid_passes->begin_filter(options);
@@ -89,19 +109,26 @@ void Renderer::Parts::draw_stages_of_fluid(std::span<Picture> drawn, bool chords
 
 void Renderer::Parts::draw_stages_of_look(std::span<Picture> drawn, bool tiled) {
   const bool panes = has_translucent(frame);
-  run(panes ? "translucent behind" : "copy scene colour", [&] {
-    each(drawn, [&](Picture& p) {
-      const gl::Texture* fluid = fluid_depth(p.targets);
-      if (panes && tiled) return scene_pass->start_translucent(frame, p.meshes, p.targets, fluid, true);
-      if (panes) scene_pass->draw_translucent(frame, meshes, textures, p.targets, fluid, true);
-      gl::bind_textures({&p.targets.color});
-      copy_program.start({p.targets.scene_color, p.targets.scene_color_target, p.targets.size, GL_RGBA16F});
-    });
-    gl::finish_compute();
-  });
+  const bool all_at_once = composite_lays_panes(tiled);
+  run(all_at_once ? "translucent"
+      : panes     ? "translucent behind"
+                  : "copy scene colour",
+      [&] {
+        each(drawn, [&](Picture& p) {
+          const gl::Texture* fluid = fluid_depth(p.targets);
+          const GlassPart part = all_at_once                  ? GlassPart::kAllResolving
+                                 : resolves_with_glass(tiled) ? GlassPart::kBehindResolving
+                                                              : GlassPart::kBehind;
+          if (panes && tiled) return scene_pass->start_translucent(frame, p.meshes, p.targets, fluid, part);
+          if (panes) scene_pass->draw_translucent(frame, meshes, textures, p.targets, fluid, true);
+          gl::bind_textures({&p.targets.color});
+          copy_program.start(
+              {p.targets.scene_color, p.targets.scene_color_target, p.targets.size, GL_RGBA16F});
+        });
+        gl::finish_compute();
+      });
   // What these two write there is one of, not one for each view.
-  const bool mixes = options.soft_mixing && options.lit_fluid && mixing_layers(frame) > 0;
-  if (mixes || options.caustics) {
+  if (blends_or_focuses()) {
     each(drawn, [&](Picture& p) {
       drew_caustics = draw_caustics(p.targets);
       const LitLook look{draw_mixing(p.targets, p.splats), mirrors_bodies(), drew_caustics};
@@ -110,22 +137,23 @@ void Renderer::Parts::draw_stages_of_look(std::span<Picture> drawn, bool tiled) 
     return;
   }
   run("composite", [&] {
-    const LitLook look{0, mirrors_bodies(), false};
+    const LitLook look{0, mirrors_bodies(), false, all_at_once};
     each(drawn, [&](Picture& p) {
-      fluid_passes->start_composite(p.targets, options.lit_fluid ? &look : nullptr);
+      fluid_passes->start_composite(p.targets, options.lit_fluid ? &look : nullptr,
+                                    all_at_once ? &p.meshes.panes : nullptr);
     });
     gl::finish_compute();
   });
 }
 
 void Renderer::Parts::draw_stages_after(std::span<Picture> drawn, bool tiled) {
-  if (!frame.foam.empty())
-    run("foam", [&] { each(drawn, [&](Picture& p) { draw_foam(p.targets); }); });
-  if (has_translucent(frame)) {
+  if (!frame.foam.empty()) run("foam", [&] { each(drawn, [&](Picture& p) { draw_foam(p.targets); }); });
+  if (has_translucent(frame) && !composite_lays_panes(tiled)) {
     run("translucent", [&] {
       each(drawn, [&](Picture& p) {
         const gl::Texture* fluid = fluid_depth(p.targets);
-        if (tiled) return scene_pass->start_translucent(frame, p.meshes, p.targets, fluid, false);
+        if (tiled)
+          return scene_pass->start_translucent(frame, p.meshes, p.targets, fluid, GlassPart::kBefore);
         scene_pass->draw_translucent(frame, meshes, textures, p.targets, fluid, false);
       });
       gl::finish_compute();

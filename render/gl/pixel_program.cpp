@@ -14,7 +14,7 @@ constexpr int kShortRow = 8;
 constexpr std::size_t kMany = 100000;  // splats
 constexpr std::size_t kPartsOfRows = 64;
 constexpr std::size_t kEachInGroup = 64;
-constexpr std::size_t kByTurns = 16384;  // groups
+constexpr std::size_t kByTurns = 16384;     // groups
 constexpr std::size_t kMostGroups = 32768;  // on an axis; at least 65535 are allowed
 
 }  // namespace
@@ -93,6 +93,11 @@ void run_each(const Program& program, std::size_t count, std::size_t share) {
 
 void start_by_turns(const Program& program, std::size_t count, std::size_t share) {
   start_groups(program, count, count * share, kEachInGroup, true);
+}
+
+void start_groups_by_turns(const Program& program, std::size_t groups) {
+  program.use();
+  glDispatchCompute(static_cast<GLuint>(std::clamp<std::size_t>(groups, 1, kByTurns)), 1, 1);
 }
 
 Result<RowProgram> RowProgram::create(const char* file, bool small, const std::vector<std::string>& defines) {

@@ -29,8 +29,8 @@ class PixelProgram {
  public:
   PixelProgram() = default;
   /// `file` ends with pixel_main.glsl. `tiled`: fragments are drawn over the TileDraw given to run().
-  /// `prelude`: generated GLSL before the file's own. Where little is done for a pixel, `defines` may say "EACH n":
-  /// a compute shader's invocation takes n of them. Errors carry the driver's log.
+  /// `prelude`: generated GLSL before the file's own. Where little is done for a pixel, `defines` may say
+  /// "EACH n": a compute shader's invocation takes n of them. Errors carry the driver's log.
   static Result<PixelProgram> create(const char* file, bool compute, bool tiled = false,
                                      std::vector<std::string> defines = {}, const std::string& prelude = {});
 
@@ -52,7 +52,8 @@ class PixelProgram {
 /// What was written by compute shaders may be read, drawn over, copied and fetched after this.
 void finish_compute();
 
-/// Runs a compute shader of 64 invocations a group, `share` for each of `count`, whose uniform `count` it sets.
+/// Runs a compute shader of 64 invocations a group, `share` for each of `count`, whose uniform `count` it
+/// sets.
 void run_each(const Program& program, std::size_t count, std::size_t share = 1);
 
 /// The same without finish_compute(): for several in a row that write to different places.
@@ -61,11 +62,15 @@ void start_each(const Program& program, std::size_t count, std::size_t share = 1
 /// The same with no more groups than a chip takes long to start: the shader goes over the rest by turns.
 void start_by_turns(const Program& program, std::size_t count, std::size_t share);
 
+/// So many groups of a compute shader, or fewer that go over the rest by turns: it knows itself how many
+/// there are.
+void start_groups_by_turns(const Program& program, std::size_t groups);
+
 /// A compute shader that takes one row of splat_rows.glsl for each splat.
 class RowProgram {
  public:
-  /// `small`: at half the picture's size very many splats are a few pixels each, and their rows shorter. Errors
-  /// carry the driver's log.
+  /// `small`: at half the picture's size very many splats are a few pixels each, and their rows shorter.
+  /// Errors carry the driver's log.
   static Result<RowProgram> create(const char* file, bool small,
                                    const std::vector<std::string>& defines = {});
 

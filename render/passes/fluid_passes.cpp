@@ -6,6 +6,10 @@
 namespace slosh {
 namespace {
 
+// Of fluid_look.frag.
+constexpr GLuint kPaneAddedUnit = 7;
+constexpr GLuint kPaneThroughUnit = 21;
+
 void clear_to(const gl::Framebuffer& target, float depth) {
   const glm::vec4 value(depth);
   glClearNamedFramebufferfv(target.name(), GL_COLOR, 0, &value.x);
@@ -30,8 +34,10 @@ Result<FluidPasses> FluidPasses::create(bool fast, bool compute, const std::vect
   };
   for (const Result<bool>& loaded :
        {gl::take(passes.front_program_, splats({"FRONT"})),
-        gl::take(passes.shaped_program_, splats({"FRONT", "SHAPED"})), gl::take(passes.back_program_, splats({})),
-        gl::take(passes.composite_program_, gl::PixelProgram::create("composite.frag", compute, true, far_light)),
+        gl::take(passes.shaped_program_, splats({"FRONT", "SHAPED"})),
+        gl::take(passes.back_program_, splats({})),
+        gl::take(passes.composite_program_,
+                 gl::PixelProgram::create("composite.frag", compute, true, far_light)),
         gl::take(passes.look_program_, gl::PixelProgram::create("fluid_look.frag", compute, true, looks)),
         gl::take(passes.fill_program_, gl::PixelProgram::create("fill.frag", compute, false, {"EACH 4"})),
         gl::take(passes.thickness_program_, gl::Program::create("tiles.vert", "thickness.frag")),
@@ -49,8 +55,9 @@ Result<FluidPasses> FluidPasses::create(bool fast, bool compute, const std::vect
 Result<FluidPasses::SplatProgram> FluidPasses::SplatProgram::create(bool compute,
                                                                     const std::vector<std::string>& defines) {
   SplatProgram out;
-  const auto made = compute ? gl::take(out.rows, gl::RowProgram::create("splat.comp", true, defines))
-                            : gl::take(out.triangles, gl::Program::create("splat.vert", "splat.frag", defines));
+  const auto made = compute
+                        ? gl::take(out.rows, gl::RowProgram::create("splat.comp", true, defines))
+                        : gl::take(out.triangles, gl::Program::create("splat.vert", "splat.frag", defines));
   if (!made) return made.error();
   return out;
 }
@@ -125,7 +132,8 @@ int FluidPasses::begin_filter(const RenderOptions& options) {
   return options.bilateral_iterations == 0 ? 0 : filter_->turns(options);
 }
 
-void FluidPasses::start_turn(int i, const Targets& targets, const RenderOptions& options, const Frame& frame) {
+void FluidPasses::start_turn(int i, const Targets& targets, const RenderOptions& options,
+                             const Frame& frame) {
   filter_->start_turn(i, targets, options, frame, tiles());
   smoothed_ = i % 2;
 }
@@ -171,6 +179,7 @@ const gl::PixelProgram& FluidPasses::program_of(const LitLook& look, const Targe
     if (look.mixed > 0) defines.push_back("MIXED " + std::to_string(look.mixed));
     if (look.bodies) defines.emplace_back("BODIES");
     if (look.caustics) defines.emplace_back("CAUSTICS");
+    if (look.panes) defines.emplace_back("PANES");
     auto made = gl::PixelProgram::create("fluid_look.frag", compute_, true, std::move(defines));
     if (made) at->second = std::move(made.value());
   }
@@ -180,12 +189,20 @@ const gl::PixelProgram& FluidPasses::program_of(const LitLook& look, const Targe
   return at->second;
 }
 
+bool FluidPasses::takes(const LitLook& look, const Targets& targets) {
+  return look == LitLook{} || &program_of(look, targets) != &look_program_;
+}
+
 void FluidPasses::composite(const Targets& targets, const LitLook* look) {
   start_composite(targets, look);
   if (compute_) gl::finish_compute();
 }
 
-void FluidPasses::start_composite(const Targets& targets, const LitLook* look) {
+void FluidPasses::start_composite(const Targets& targets, const LitLook* look, const PanesBefore* panes) {
+  if (panes) {
+    glBindTextureUnit(kPaneAddedUnit, panes->added.name());
+    glBindTextureUnit(kPaneThroughUnit, panes->through.name());
+  }
   gl::bind_textures({&targets.front, &smoothed(targets), &targets.back, &targets.scene_depth,
                      &targets.scene_color, &targets.chord});
   const gl::TileDraw where = tiles();

@@ -13,15 +13,17 @@
 #include "render/passes/splats.h"
 #include "render/passes/surface_filter.h"
 #include "render/passes/targets.h"
+#include "render/passes/tiled_meshes.h"
 #include "render/renderer.h"
 
 namespace slosh {
 
 /// What a lit composite has compiled in beside fluid_look.glsl.
 struct LitLook {
-  int mixed = 0;        ///< textures that passes/mixing_pass.h bound, with the fluids' shares; 0: no mixing
-  bool bodies = false;  ///< they are mirrored
+  int mixed = 0;          ///< textures that passes/mixing_pass.h bound, with the fluids' shares; 0: no mixing
+  bool bodies = false;    ///< they are mirrored
   bool caustics = false;  ///< passes/caustics_pass.h bound them
+  bool panes = false;     ///< of glass before the fluid are laid over it
   auto operator<=>(const LitLook&) const = default;
 };
 
@@ -45,7 +47,8 @@ class FluidPasses {
   /// Reads front; writes smooth by turns.
   void smooth(const Targets& targets, const RenderOptions& options, const Frame& frame);
   /// The same by compute shaders, of splats that were placed there, in steps of which nobody reads before
-  /// gl::finish_compute(): front and back cleared; the splats; each turn of the filter, of which begin_filter() tells how many there are.
+  /// gl::finish_compute(): front and back cleared; the splats; each turn of the filter, of which
+  /// begin_filter() tells how many there are.
   void start_clear(const Targets& targets) const;
   void start_splats(const Targets& targets, const SplatBuffers& splats) const;
   int begin_filter(const RenderOptions& options);
@@ -54,7 +57,9 @@ class FluidPasses {
   /// color where there is fluid. `look`: null for Eq 15.
   void composite(const Targets& targets, const LitLook* look);
   /// The same, but nobody reads it before gl::finish_compute().
-  void start_composite(const Targets& targets, const LitLook* look);
+  void start_composite(const Targets& targets, const LitLook* look, const PanesBefore* panes = nullptr);
+  /// Whether the driver takes what a look has compiled in.
+  bool takes(const LitLook& look, const Targets& targets);
   /// T for tests, into an R32F target of the picture's size; and n, into an RGBA32F one.
   void thickness(const Targets& targets, const gl::Framebuffer& target);
   void normals(const Targets& targets, const gl::Framebuffer& target);

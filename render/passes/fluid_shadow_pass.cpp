@@ -30,7 +30,7 @@ Result<FluidShadowPass> FluidShadowPass::create(bool fast, bool compute) {
     return made.error();
   }
   pass.size_ = fast ? 256 : 512;
-  pass.most_ = fast ? 8000 : 1000000;
+  pass.most_ = fast ? 8000 : 300000;
   pass.map_ = gl::make_texture(glm::ivec2(pass.size_), GL_RGBA16F, GL_LINEAR);
   pass.target_ = gl::make_framebuffer({&pass.map_});
   pass.array_ = gl::make_vertex_array();

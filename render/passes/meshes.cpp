@@ -1,7 +1,11 @@
 #include "render/passes/meshes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
 
 namespace slosh {
 namespace {
@@ -33,6 +37,41 @@ bool is_convex(std::span<const glm::vec3> positions, std::span<const glm::uvec3>
       return true;
     });
   });
+}
+
+constexpr std::size_t kMostClosedWork = 16000;  // triangles; more are drawn by fragments, which need not know
+
+/// Corners at one place are one, to a hundred-thousandth of the mesh: those with several normals, and seams.
+bool is_closed(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles,
+               const Bounds& bounds) {
+  const float step = 1e-5f * glm::length(bounds.high - bounds.low);
+  if (!(step > 0.0f) || triangles.size() > kMostClosedWork) return false;
+  using Place = std::array<std::int32_t, 3>;
+  const auto place_of = [&](std::uint32_t corner) {
+    const glm::vec3 at = glm::round((positions[corner] - bounds.low) / step);
+    return Place{static_cast<std::int32_t>(at.x), static_cast<std::int32_t>(at.y),
+                 static_cast<std::int32_t>(at.z)};
+  };
+  std::vector<std::pair<std::pair<Place, Place>, int>> edges;  // the lesser end first; which way
+  double volume = 0.0;
+  for (const glm::uvec3& triangle : triangles) {
+    const glm::dvec3 a(positions[triangle.x] - bounds.low), b(positions[triangle.y] - bounds.low);
+    volume += glm::dot(a, glm::cross(b, glm::dvec3(positions[triangle.z] - bounds.low)));
+    for (int k = 0; k < 3; ++k) {
+      const Place from = place_of(triangle[k]);
+      const Place to = place_of(triangle[(k + 1) % 3]);
+      if (from < to) edges.push_back({{from, to}, 1});
+      if (to < from) edges.push_back({{to, from}, -1});
+    }
+  }
+  std::ranges::sort(edges);
+  for (std::size_t i = 0; i < edges.size();) {
+    int ways = 0;
+    const std::size_t first = i;
+    for (; i < edges.size() && edges[i].first == edges[first].first; ++i) ways += edges[i].second;
+    if (ways != 0) return false;
+  }
+  return volume > 0.0;
 }
 
 }  // namespace
@@ -83,6 +122,7 @@ MeshHandle MeshStore::add(std::span<const glm::vec3> positions, std::span<const 
     }
     mesh.index_count = static_cast<GLsizei>(3 * kept.size());
     mesh.convex = is_convex(positions, kept, mesh.bounds);
+    mesh.closed = is_closed(positions, kept, mesh.bounds);
   }
   meshes_.push_back(std::move(mesh));
   return handle;

@@ -36,6 +36,9 @@ class MeshStore {
   const Bounds& bounds(MeshHandle handle) const { return meshes_[handle].bounds; }
   /// All of it lies behind each of its triangles (of small meshes alone: a large one is taken not to be).
   bool convex(MeshHandle handle) const { return meshes_[handle].convex; }
+  /// Every edge is of two triangles that go along it in opposite ways, and its volume is positive: from
+  /// outside of its box nobody sees an inside (a large mesh is taken not to be).
+  bool closed(MeshHandle handle) const { return meshes_[handle].closed; }
   std::size_t triangle_count(MeshHandle handle) const {
     return static_cast<std::size_t>(meshes_[handle].index_count) / 3;
   }
@@ -54,6 +57,7 @@ class MeshStore {
     GLsizei index_count = 0;
     Bounds bounds;
     bool convex = false;
+    bool closed = false;
   };
   std::vector<Mesh> meshes_;
 };

@@ -17,11 +17,17 @@ void bind(GLuint binding, const gl::StreamBuffer& buffer) {
 }
 
 constexpr std::size_t kVec4 = sizeof(glm::vec4);
-constexpr std::size_t kSmoothShare = 8;  // invocations a particle, as smooth_centers.comp has it
-constexpr std::size_t kDeepShare = 8;    // an entry, as cells_filled.comp and cells_deep.comp have it
+// As particles.glsl and cells_deep.comp have them.
+constexpr std::size_t kCountsOfAll = 4;  // after the entries' own
+constexpr std::size_t kBatchBytes = 4 * sizeof(std::uint32_t);
+constexpr std::size_t kDeepInGroup = 8;  // cells
 
-/// Of fewer particles most are near a surface. Of 33 thousand in a broken dam half are deep inside, of a million
-/// four in five.
+/// About so many particles are in a cell at least, of a fluid that is not spray: groups that are started by
+/// it go over the rest by turns.
+constexpr std::size_t kInACell = 8;
+
+/// Of fewer particles most are near a surface. Of 33 thousand in a broken dam half are deep inside, of a
+/// million four in five.
 constexpr std::size_t kManyParticles = 10000;
 
 }  // namespace
@@ -32,12 +38,11 @@ Result<ParticlesOnGpu> ParticlesOnGpu::create() {
        {gl::take(out.take_, gl::Program::create_compute("particles.comp")),
         gl::take(out.take_into_cells_, gl::Program::create_compute("particles.comp", {"CELLS"})),
         gl::take(out.begin_, gl::Program::create_compute("cells_begin.comp")),
+        gl::take(out.begin_lists_, gl::Program::create_compute("cells_begin.comp", {"LISTS"})),
         gl::take(out.fill_, gl::Program::create_compute("cells_fill.comp")),
         gl::take(out.sort_, gl::Program::create_compute("cells_fill.comp", {"SORT"})),
-        gl::take(out.find_filled_, gl::Program::create_compute("cells_filled.comp")),
         gl::take(out.find_seen_, gl::Program::create_compute("cells_deep.comp")),
         gl::take(out.smooth_, gl::Program::create_compute("smooth_centers.comp")),
-        gl::take(out.smooth_seen_, gl::Program::create_compute("smooth_centers.comp", {"SEEN"})),
         gl::take(out.place_, gl::Program::create_compute("splats.comp")),
         gl::take(out.place_shaped_, gl::Program::create_compute("splats.comp", {"SHAPED"})),
         gl::take(out.place_seen_, gl::Program::create_compute("splats.comp", {"SHAPED", "SEEN"}))}) {
@@ -57,7 +62,6 @@ void ParticlesOnGpu::take(const Frame& frame, bool moves) {
   steps_.clear();
   if (count_ == 0) return;
   if (moves_) steps_ = {Step::kSmooth, Step::kSort, Step::kFill, Step::kBegin};
-  if (moves_ && leaves_out_deep_) steps_.insert(steps_.begin() + 1, Step::kFindDeep);
   start_taking(frame);
   if (!given_.to_be_checked()) return;
   const bool right = taken_are(frame);
@@ -71,11 +75,13 @@ void ParticlesOnGpu::start_taking(const Frame& frame) {
   if (moves_) {
     // Some fifteen particles are in a cell inside a fluid.
     entries_ = std::bit_ceil(std::max<std::size_t>(count_ / 2, 1024));
-    counts_.zero((entries_ + 2) * sizeof(std::uint32_t));
+    counts_.zero((entries_ + kCountsOfAll) * sizeof(std::uint32_t));
     ranks_.reserve(count_ * sizeof(std::uint32_t));
     begins_.reserve(entries_ * sizeof(std::uint32_t));
+    owners_.reserve(entries_ * 2 * sizeof(std::uint32_t));
+    batches_.reserve(count_ * kBatchBytes);
     if (leaves_out_deep_) {
-      filled_.reserve(entries_ * 2 * sizeof(std::uint32_t));
+      used_.reserve(std::min(count_, entries_) * sizeof(std::uint32_t));
       seen_.reserve(count_ * sizeof(std::uint32_t));
     }
     listed_.reserve(count_ * sizeof(std::uint32_t));
@@ -86,11 +92,11 @@ void ParticlesOnGpu::start_taking(const Frame& frame) {
     program.set("reach", SmoothCenters::reach(radius_));
     bind(3, counts_);
     bind(4, ranks_);
+    bind(10, owners_);
   }
   given_.bind(frame, count_, 0, 1);
   bind(2, particles_);
   program.set("fluids", static_cast<int>(std::min(frame.fluids.size(), kMaxFluidLooks)));
-  program.set("floats", 3);
   gl::run_each(program, count_);
   given_.done();
 }
@@ -126,9 +132,11 @@ void ParticlesOnGpu::start_next() {
   bind(5, begins_);
   bind(6, listed_);
   bind(7, sorted_);
+  bind(10, owners_);
+  bind(11, batches_);
   if (leaves_out_deep_) {
     bind(8, seen_);
-    bind(9, filled_);
+    bind(9, used_);
   }
   const auto set_cells = [&](const gl::Program& program) {
     program.set("entries", static_cast<int>(entries_));
@@ -136,7 +144,7 @@ void ParticlesOnGpu::start_next() {
   };
   switch (step) {
     case Step::kBegin:
-      return gl::start_each(begin_, entries_);
+      return gl::start_each(leaves_out_deep_ ? begin_lists_ : begin_, entries_);
     case Step::kFill:
       set_cells(fill_);
       return gl::start_each(fill_, count_);
@@ -144,19 +152,14 @@ void ParticlesOnGpu::start_next() {
       set_cells(sort_);
       gl::start_each(sort_, count_);
       if (!leaves_out_deep_) return;
-      find_filled_.set("reach", reach);
-      return gl::start_each(find_filled_, entries_, kDeepShare);
-    case Step::kFindDeep:
-      find_seen_.set("reach", reach);
-      return gl::start_each(find_seen_, entries_, kDeepShare);
-    case Step::kSmooth: {
+      find_seen_.set("entries", static_cast<int>(entries_));
+      return gl::start_groups_by_turns(find_seen_, count_ / (kInACell * kDeepInGroup) + 1);
+    case Step::kSmooth:
       bind(0, centers_);
       bind(1, ellipsoids_);
-      const gl::Program& program = leaves_out_deep_ ? smooth_seen_ : smooth_;
-      program.set("entries", static_cast<int>(entries_));
-      program.set("lengths", glm::vec2(reach, radius_));
-      return gl::start_by_turns(program, count_, kSmoothShare);
-    }
+      smooth_.set("entries", static_cast<int>(entries_));
+      smooth_.set("lengths", glm::vec2(reach, radius_));
+      return gl::start_groups_by_turns(smooth_, count_ / kInACell + 1);
   }
 }
 

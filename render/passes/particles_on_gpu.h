@@ -18,7 +18,7 @@ struct SplatBuffers {
   gl::StreamBuffer spheres;  ///< vec4
   gl::StreamBuffer shapes;   ///< SplatShape, of moved spheres
   gl::StreamBuffer balls;    ///< vec4: the spheres before they were moved
-  std::size_t count = 0;  ///< of balls, and of spheres if `seen` is null
+  std::size_t count = 0;     ///< of balls, and of spheres if `seen` is null
   bool shaped = false;
   /// Where the GPU has how many spheres there are, a uint; null: `count`.
   const gl::StreamBuffer* seen = nullptr;
@@ -34,9 +34,9 @@ class ParticlesOnGpu {
 
   /// Takes the frame's particles. `moves`: they are counted into cells, to be sorted and smoothed.
   void take(const Frame& frame, bool moves);
-  /// How many steps are left until they are sorted and their neighbours' means and ellipsoids are found. Of many
-  /// particles of one fluid those that are deep inside are not smoothed nor drawn since (but for their chords):
-  /// nobody sees them.
+  /// How many steps are left until they are sorted and their neighbours' means and ellipsoids are found. Of
+  /// many particles of one fluid those that are deep inside are not smoothed nor drawn since (but for their
+  /// chords): nobody sees them.
   std::size_t steps_left() const { return steps_.size(); }
   /// Starts the next of them, if one is left; the one after it is for after gl::finish_compute().
   void start_next();
@@ -53,26 +53,27 @@ class ParticlesOnGpu {
  private:
   void start_taking(const Frame& frame);
   bool taken_are(const Frame& frame) const;
-  enum class Step : std::uint8_t { kBegin, kFill, kSort, kFindDeep, kSmooth };
+  enum class Step : std::uint8_t { kBegin, kFill, kSort, kSmooth };
   gl::Program take_;
   gl::Program take_into_cells_;
   gl::Program begin_;
+  gl::Program begin_lists_;  ///< where what is deep in the fluid is left out
   gl::Program fill_;
   gl::Program sort_;
-  gl::Program find_filled_;
   gl::Program find_seen_;
   gl::Program smooth_;
-  gl::Program smooth_seen_;  ///< but for what is deep in the fluid
   gl::Program place_;
   gl::Program place_shaped_;
   gl::Program place_seen_;
   GivenParticles given_;
   gl::StreamBuffer particles_;
-  gl::StreamBuffer counts_;  ///< an entry of the table each, the sum of all, and how many of these are seen
+  gl::StreamBuffer counts_;  ///< an entry of the table each, and sums (shaders/particles.glsl)
   gl::StreamBuffer ranks_;
   gl::StreamBuffer begins_;
   gl::StreamBuffer listed_;
-  gl::StreamBuffer filled_;      ///< an entry each: its cell, where that is well filled
+  gl::StreamBuffer owners_;      ///< an entry each: its cell, where there is but one
+  gl::StreamBuffer used_;        ///< entries with particles
+  gl::StreamBuffer batches_;     ///< of particles that a group smooths
   gl::StreamBuffer sorted_;      ///< as particles_, by cell
   gl::StreamBuffer seen_;        ///< of the sorted, those that are not deep in the fluid
   gl::StreamBuffer centers_;     ///< of the sorted, or of those of them that are seen

@@ -156,9 +156,9 @@ void ScenePass::start_opaque(const Frame& frame, const TiledMeshes::Lists& lists
   tiled_->start_opaque(lists, frame.view, targets, background, occlusion_follows);
 }
 
-void ScenePass::start_translucent(const Frame& frame, const TiledMeshes::Lists& lists, const Targets& targets,
-                                  const gl::Texture* fluid, bool behind) const {
-  tiled_->start_glass(lists, frame.view, targets, fluid, behind);
+void ScenePass::start_translucent(const Frame& frame, TiledMeshes::Lists& lists, const Targets& targets,
+                                  const gl::Texture* fluid, GlassPart part) const {
+  tiled_->start_glass(lists, frame.view, targets, fluid, part);
 }
 
 void ScenePass::start_occlusion(const Targets& targets, float reach) const {
@@ -188,7 +188,7 @@ bool ScenePass::draw_translucent(const Frame& frame, const MeshStore& meshes, co
   if (sorted.empty()) return false;
   std::ranges::reverse(sorted);  // far before near
   if (by_tiles_) {
-    start_translucent(frame, lists_, targets, fluid, behind);
+    start_translucent(frame, lists_, targets, fluid, behind ? GlassPart::kBehind : GlassPart::kBefore);
     gl::finish_compute();
     return behind;
   }

@@ -25,14 +25,14 @@ class ScenePass {
   /// occlusion follows, else color).
   void draw_opaque(const Frame& frame, const MeshStore& meshes, const TextureStore& textures,
                    const Targets& targets, bool background, bool occlusion_follows);
-  /// Whether this frame's meshes go by tiles: then all of them, for each of its views, by what follows; nobody
-  /// reads any of it before gl::finish_compute(). A view's lists first.
+  /// Whether this frame's meshes go by tiles: then all of them, for each of its views, by what follows;
+  /// nobody reads any of it before gl::finish_compute(). A view's lists first.
   bool choose_tiles(const Frame& frame, const MeshStore& meshes, const TextureStore& textures);
   void start_lists(const Frame& frame, const MeshStore& meshes, TiledMeshes::Lists& lists) const;
   void start_opaque(const Frame& frame, const TiledMeshes::Lists& lists, const Targets& targets,
                     bool background, bool occlusion_follows) const;
-  void start_translucent(const Frame& frame, const TiledMeshes::Lists& lists, const Targets& targets,
-                         const gl::Texture* fluid, bool behind) const;
+  void start_translucent(const Frame& frame, TiledMeshes::Lists& lists, const Targets& targets,
+                         const gl::Texture* fluid, GlassPart part) const;
   /// Occlusion by itself, likewise.
   void start_occlusion(const Targets& targets, float reach) const;
   void start_resolve(const Targets& targets) const;
@@ -55,7 +55,7 @@ class ScenePass {
     const gl::Program& of(unsigned bits);
   };
 
-  bool fast_ = false;  ///< glass: only the sides that face the eye
+  bool fast_ = false;                 ///< glass: only the sides that face the eye
   std::optional<TiledMeshes> tiled_;  ///< where compute shaders draw
   bool by_tiles_ = false;             ///< this picture's meshes
   TiledMeshes::Lists lists_;          ///< of the view drawn by itself

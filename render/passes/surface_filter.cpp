@@ -68,7 +68,7 @@ class NarrowRange : public SurfaceFilter {
   bool writes_tiles() const override { return !along_.on_compute(); }
 
  private:
-  static constexpr float kTaps = 40.0f;
+  static constexpr float kTaps = 20.0f;
   gl::PixelProgram along_;
   gl::PixelProgram clean_;
 };
@@ -101,7 +101,8 @@ class NarrowRangeBesideGl : public SurfaceFilter {
 
 }  // namespace
 
-void SurfaceFilter::start_turn(int, const Targets&, const RenderOptions&, const Frame&, const gl::TileDraw&) {}
+void SurfaceFilter::start_turn(int, const Targets&, const RenderOptions&, const Frame&, const gl::TileDraw&) {
+}
 
 int SurfaceFilter::run(const Targets& targets, const RenderOptions& options, const Frame& frame,
                        const gl::TileDraw& tiles) {

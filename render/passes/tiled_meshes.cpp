@@ -1,5 +1,7 @@
 #include "render/passes/tiled_meshes.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "render/gl/pixel_program.h"
@@ -22,9 +24,23 @@ struct Item {
   glm::vec4 emissive;
 };
 
-/// More in one tile take longer than fragments: on an H200 a ball of 4900 makes 0.26 ms, one of 40 000 3.3, while
-/// by fragments the meshes of a picture take 1.7.
+/// More in one tile take longer than fragments: on an H200 a ball of 4900 makes 0.26 ms, one of 40 000 3.3,
+/// while by fragments the meshes of a picture take 1.7.
 constexpr std::size_t kMostTriangles = 16000;
+
+/// The eye is outside of it, by more than the near plane cuts off anywhere: so it sees no inside.
+bool shows_no_inside(const MeshInstance& instance, const MeshStore& meshes, const View& view) {
+  const glm::mat4 eye_from_model = view.view * instance.model;
+  const glm::mat3 turn(eye_from_model);
+  if (!meshes.closed(instance.mesh) || !(glm::determinant(turn) > 0.0f)) return false;
+  const glm::mat4& p = view.projection;
+  const glm::vec3 corner((1.0f + std::abs(p[2][0])) / p[0][0], (1.0f + std::abs(p[2][1])) / p[1][1], 1.0f);
+  const Bounds& box = meshes.bounds(instance.mesh);
+  const glm::vec3 eye(glm::inverse(eye_from_model)[3]);
+  const float least = std::min({glm::length(turn[0]), glm::length(turn[1]), glm::length(turn[2])});
+  return least * glm::length(eye - glm::clamp(eye, box.low, box.high)) >
+         view.near_plane * glm::length(corner);
+}
 
 }  // namespace
 
@@ -39,10 +55,16 @@ Result<TiledMeshes> TiledMeshes::create(bool fast, const std::vector<std::string
   TiledMeshes out;
   out.fast_ = fast;
   const MeshDefines defines = mesh_defines(fast, far_light);
+  std::vector<std::string> resolving = defines.behind;
+  resolving.emplace_back("RESOLVE");
+  std::vector<std::string> both = resolving;
+  both.emplace_back("BOTH");
   for (const Result<bool>& loaded :
        {gl::take(out.triangles_, gl::Program::create_compute("mesh_triangles.comp")),
         gl::take(out.opaque_, gl::Program::create_compute("mesh_pixels.comp", defines.opaque)),
         gl::take(out.behind_, gl::Program::create_compute("glass_pixels.comp", defines.behind)),
+        gl::take(out.behind_resolving_, gl::Program::create_compute("glass_pixels.comp", resolving)),
+        gl::take(out.all_resolving_, gl::Program::create_compute("glass_pixels.comp", both)),
         gl::take(out.before_, gl::Program::create_compute("glass_pixels.comp", far_light))}) {
     if (!loaded) return loaded.error();
   }
@@ -90,9 +112,10 @@ void TiledMeshes::fill(List& list, Instances instances, std::span<const Sides> p
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, meshes.indices(instance.mesh));
     triangles_.set("model", instance.model);
     triangles_.set("item", static_cast<int>(i));
+    const bool outside_alone = instance.look.opacity >= 1.0f && shows_no_inside(instance, meshes, view);
     for (const Sides sides : passes) {
       triangles_.set("first", first);
-      triangles_.set("sides", static_cast<int>(sides));
+      triangles_.set("sides", static_cast<int>(outside_alone ? Sides::kOutside : sides));
       gl::start_each(triangles_, own);
       first += static_cast<int>(kGroup * groups_of(own));
     }
@@ -113,8 +136,8 @@ void TiledMeshes::start(const gl::Program& program, const List& list, const View
   glDispatchCompute(static_cast<GLuint>(tiles.x), static_cast<GLuint>(tiles.y), 1);
 }
 
-void TiledMeshes::start_lists(Instances opaque_nearest_first, Instances glass_farthest_first, const View& view,
-                              const MeshStore& meshes, Lists& lists) const {
+void TiledMeshes::start_lists(Instances opaque_nearest_first, Instances glass_farthest_first,
+                              const View& view, const MeshStore& meshes, Lists& lists) const {
   constexpr Sides kEitherSide[] = {Sides::kBoth};
   constexpr Sides kFarSideFirst[] = {Sides::kInside, Sides::kOutside};
   fill(lists.opaque, opaque_nearest_first, kEitherSide, view, meshes);
@@ -130,13 +153,28 @@ void TiledMeshes::start_opaque(const Lists& lists, const View& view, const Targe
   start(opaque_, lists.opaque, view, targets.size);
 }
 
-void TiledMeshes::start_glass(const Lists& lists, const View& view, const Targets& targets,
-                              const gl::Texture* fluid, bool behind) const {
-  const gl::Program& program = behind ? behind_ : before_;
+void TiledMeshes::start_glass(Lists& lists, const View& view, const Targets& targets,
+                              const gl::Texture* fluid, GlassPart part) const {
+  const gl::Program& program = part == GlassPart::kBefore            ? before_
+                               : part == GlassPart::kBehind          ? behind_
+                               : part == GlassPart::kBehindResolving ? behind_resolving_
+                                                                     : all_resolving_;
   program.set("has_fluid", fluid ? 1 : 0);
-  gl::bind_textures({fluid ? fluid : &targets.scene_depth, &targets.scene_depth});
+  gl::bind_textures(
+      {fluid ? fluid : &targets.scene_depth, &targets.scene_depth, &targets.mesh_color, &targets.occlusion});
   glBindImageTexture(0, targets.color.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA16F);
-  if (behind) glBindImageTexture(1, targets.scene_color.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA16F);
+  if (part != GlassPart::kBefore)
+    glBindImageTexture(1, targets.scene_color.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA16F);
+  if (part == GlassPart::kAllResolving) {
+    PanesBefore& panes = lists.panes;
+    if (panes.size != targets.size) {
+      panes.added = gl::make_texture(targets.size, GL_RGBA16F, GL_NEAREST);
+      panes.through = gl::make_texture(targets.size, GL_RGBA16F, GL_NEAREST);
+      panes.size = targets.size;
+    }
+    glBindImageTexture(2, panes.added.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA16F);
+    glBindImageTexture(3, panes.through.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA16F);
+  }
   start(program, lists.glass, view, targets.size);
 }
 

@@ -3,6 +3,7 @@
 // scene_pass to rounding.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,6 +23,23 @@ struct MeshDefines {
 };
 MeshDefines mesh_defines(bool fast, const std::vector<std::string>& far_light);
 
+/// Which panes of glass are drawn.
+enum class GlassPart : std::uint8_t {
+  kBehind,           ///< behind the fluid's surface; color is copied to scene_color, too
+  kBehindResolving,  ///< the same over mesh_color less its occlusion (resolve.frag), which color becomes
+  kAllResolving,  ///< that, and before it: over color where there is no fluid, else for the composite to lay
+                  ///< over it
+  kBefore,        ///< before it
+};
+
+/// The panes before the fluid, where there is fluid: light = light · through + added. RGBA16F; made when
+/// first needed.
+struct PanesBefore {
+  gl::Texture added;
+  gl::Texture through;
+  glm::ivec2 size{0};
+};
+
 class TiledMeshes {
  public:
   using Instances = std::span<const MeshInstance* const>;
@@ -38,13 +56,14 @@ class TiledMeshes {
     gl::StreamBuffer triangles;
     gl::StreamBuffer boxes;        ///< of pixels
     gl::StreamBuffer group_boxes;  ///< of 64 triangles each
-    gl::StreamBuffer items;  ///< looks
-    int groups = 0;          ///< of 64 triangles, the last of each mesh with fewer
+    gl::StreamBuffer items;        ///< looks
+    int groups = 0;                ///< of 64 triangles, the last of each mesh with fewer
   };
   /// What a view has of them.
   struct Lists {
     List opaque;
     List glass;
+    PanesBefore panes;  ///< of GlassPart::kAllResolving
   };
 
   /// Fills a view's lists. Of this and what follows nobody reads before gl::finish_compute().
@@ -53,10 +72,9 @@ class TiledMeshes {
   /// Opaque ones: writes S_d and the colour (mesh_color if occlusion follows, else color).
   void start_opaque(const Lists& lists, const View& view, const Targets& targets, bool background,
                     bool occlusion_follows) const;
-  /// Glass into color: what lies behind the fluid's surface, which also copies color to scene_color, or what
-  /// lies before it. `fluid` is the smoothed F_fD, null without fluid.
-  void start_glass(const Lists& lists, const View& view, const Targets& targets, const gl::Texture* fluid,
-                   bool behind) const;
+  /// Glass into color. `fluid` is the smoothed F_fD, null without fluid.
+  void start_glass(Lists& lists, const View& view, const Targets& targets, const gl::Texture* fluid,
+                   GlassPart part) const;
 
  private:
   /// What is seen of a mesh.
@@ -70,6 +88,8 @@ class TiledMeshes {
   gl::Program triangles_;
   gl::Program opaque_;
   gl::Program behind_;
+  gl::Program behind_resolving_;
+  gl::Program all_resolving_;
   gl::Program before_;
 };
 

@@ -89,7 +89,7 @@ bool touches_tile(uvec2 box, out ivec4 in_tile) {
 shared uint words[64];  // a bit for each of 256: the groups that touch the tile, then of the triangles at hand eight words for each 32 invocations
 shared int found_group[256];  // those that touch the tile, in their order
 shared int found_groups;
-shared uint touched_rows[256];  // of the triangles at hand, a bit for each four rows of the tile
+shared uint hit_blocks[256];  // of the triangles at hand, a bit for each 8 × 4 pixels of the tile: 8 · column + row
 shared Facet facets[256];
 
 // No bit is set, once all have read those that were.
@@ -122,6 +122,45 @@ void look_for_groups(int base) {
 // The triangle at `place` of those at hand, which are of the groups found from `from` on.
 int triangle_at(int from, int place) { return 64 * found_group[from + (place >> 6)] + (place & 63); }
 
+// A function that is linear in the picture, as the areas of meets() are in the ray: its value in the tile's middle, what it changes by
+// from pixel to pixel.
+struct Slope {
+  float middle;
+  vec2 per_pixel;
+};
+Slope area_slope(vec3 b, vec3 c, vec2 b_off, vec2 c_off, vec2 pixel) {
+  return Slope(b_off.x * c_off.y - c_off.x * b_off.y,
+               pixel * vec2(c.z * b_off.y - b.z * c_off.y, b.z * c_off.x - c.z * b_off.x));
+}
+
+// In which of the tile's blocks of 8 × 4 pixels a ray may meet a triangle, of those in a box of blocks: where each of its areas may be
+// positive, or each negative. Half a pixel of room all round is far beyond what rounding moves an edge by.
+uint blocks_met(Facet t, ivec4 box) {
+  vec2 middle = ray_of(ivec2(gl_WorkGroupID.xy) * kTile + kTile / 2) - unproject.xy * picture.zw;
+  vec2 pixel = 2.0 * unproject.xy * picture.zw;  // of a ray
+  vec2 a = t.a.xy - t.a.z * middle;
+  vec2 b = t.b.xy - t.b.z * middle;
+  vec2 c = t.c.xy - t.c.z * middle;
+  Slope slopes[3] = Slope[3](area_slope(t.b.xyz, t.c.xyz, b, c, pixel), area_slope(t.c.xyz, t.a.xyz, c, a, pixel),
+                             area_slope(t.a.xyz, t.b.xyz, a, b, pixel));
+  uint blocks = 0u;
+  for (int column = box.x >> 3; column <= box.z >> 3; ++column) {
+    for (int row = box.y >> 2; row <= box.w >> 2; ++row) {
+      vec2 at = vec2(8 * column + 4, 4 * row + 2) - float(kTile / 2);
+      bool positive = true;
+      bool negative = true;
+      for (int k = 0; k < 3; ++k) {
+        float value = slopes[k].middle + dot(slopes[k].per_pixel, at);
+        float room = dot(abs(slopes[k].per_pixel), vec2(4.0, 2.0));
+        positive = positive && value + room >= 0.0;
+        negative = negative && value - room <= 0.0;
+      }
+      if (positive || negative) blocks |= 1u << (8 * column + row);
+    }
+  }
+  return blocks;
+}
+
 // Takes the triangles of the next four groups in hand: which of them touch whose pixels.
 void look_for(int from) {
   uint local = gl_LocalInvocationIndex;
@@ -130,13 +169,13 @@ void look_for(int from) {
   if (from + int(local >> 6) < found_groups) {
     int index = triangle_at(from, int(local));
     if (touches_tile(boxes[index], box)) {
-      facets[local] = facet_of(triangles[index]);
-      box = clamp(box, ivec4(0), ivec4(kTile - 1));
-      uint rows = (2u << (box.w >> 2)) - (1u << (box.y >> 2));
-      touched_rows[local] = rows;
-      for (int column = box.x >> 3; column <= box.z >> 3; ++column) {
+      Facet facet = facet_of(triangles[index]);
+      uint blocks = blocks_met(facet, clamp(box, ivec4(0), ivec4(kTile - 1)));
+      facets[local] = facet;
+      hit_blocks[local] = blocks;
+      for (int column = 0; column < 4; ++column) {
         for (int odd = 0; odd < 2; ++odd) {
-          if ((rows & 0x55u << odd) != 0u) set_bit(column + 4 * odd);
+          if ((blocks >> 8 * column & 0x55u << odd) != 0u) set_bit(column + 4 * odd);
         }
       }
     }
@@ -147,4 +186,7 @@ void look_for(int from) {
 // Those of them that touch this invocation's and its neighbours' pixels, 32 at a time, a bit each.
 uint at_hand(int word) { return words[8 * int(gl_LocalInvocationIndex >> 5) + word]; }
 // In which of the invocation's four blocks pixels of one of them may lie, a bit every other.
-uint blocks_touched(int place) { return touched_rows[place] >> (gl_LocalInvocationIndex >> 7); }
+uint blocks_touched(int place) {
+  int block = int(gl_LocalInvocationIndex >> 5);
+  return hit_blocks[place] >> (8 * (block & 3) + (block >> 2));
+}

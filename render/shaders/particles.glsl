@@ -6,7 +6,7 @@ const float kFarCell = 1.0e6;  // cells beyond count as this one
 ivec3 cell_of(vec3 at, float reach) { return ivec3(clamp(floor(at / reach), vec3(-kFarCell), vec3(kFarCell))); }
 
 // A cell in one value, 21 bits an axis and one that is set.
-const uvec2 kNotFilled = uvec2(0u);
+const uvec2 kNoCell = uvec2(0u);  // of several cells
 uvec2 packed_cell(ivec3 cell) {
   uvec3 c = uvec3(cell) & 0x1fffffu;
   return uvec2(c.x | c.y << 21, c.y >> 11 | c.z << 10 | 0x80000000u);
@@ -16,4 +16,16 @@ ivec3 cell_of_packed(uvec2 p) {
   return ivec3(c << 11) >> 11;
 }
 
+// Particles of one entry that a group smooths: (entry, first of the sorted, end, where the first one's result goes).
+const uint kBatch = 64u;  // of them at most
+uint batches_of(uint particles) { return (particles + kBatch - 1u) / kBatch; }
+
+// In Counts, after an entry each.
+int drawn_at(int entries) { return entries; }         // particles in all entries
+int seen_at_end(int entries) { return entries + 1; }  // of those, which are not deep
+int used_at(int entries) { return entries + 2; }      // entries with particles
+int batches_at(int entries) { return entries + 3; }
+
 int invocation() { return int(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64 + int(gl_LocalInvocationID.x); }
+int group_index() { return int(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x); }
+int all_groups() { return int(gl_NumWorkGroups.x * gl_NumWorkGroups.y); }

@@ -135,13 +135,55 @@ TEST_F(PixelPassesTest, OfManyParticlesWhatIsDeepInTheFluidIsNotMissed) {
     SCOPED_TRACE(many);
     const Drawn seen = draw(*context_, options, PixelPasses::kCompute, many, [](kit::DamBreak&) {});
     // Where there may be several fluids all of it is drawn.
-    const Drawn all = draw(*context_, options, PixelPasses::kCompute, many, [](kit::DamBreak& scene) {
-      scene.frame.fluids.push_back(kit::cloudy_juice());
-    });
+    const Drawn all = draw(*context_, options, PixelPasses::kCompute, many,
+                           [](kit::DamBreak& scene) { scene.frame.fluids.push_back(kit::cloudy_juice()); });
     EXPECT_EQ(seen.front.values, all.front.values);
     EXPECT_EQ(seen.back.values, all.back.values);
     EXPECT_EQ(seen.surface.values, all.surface.values);
     EXPECT_EQ(seen.thickness.values, all.thickness.values);
+  }
+}
+
+// Foam lies between the fluid and the panes before it: with it they are drawn after, else the composite lays
+// them over the fluid.
+TEST_F(PixelPassesTest, PanesBeforeTheFluidAreLaidOverItOrDrawnAfterFoam) {
+  static const std::vector<FoamPoint> kFoam = {{{0.0f, 0.1f, 0.05f}, 0.004f}};
+  RenderOptions options = small();
+  options.quality = Quality::kFull;
+  for (const bool foam : {false, true}) {
+    SCOPED_TRACE(foam);
+    const auto fill = [&](kit::DamBreak& scene) {
+      scene.frame.meshes.back().look.base_color = {0.4f, 0.8f, 0.5f};  // of the tank: tinted
+      scene.frame.meshes.back().look.opacity = 0.4f;
+      scene.frame.meshes.back().look.roughness = 0.35f;
+      if (foam) scene.frame.foam = kFoam;
+    };
+    const Drawn by_fragments = draw(*context_, options, PixelPasses::kFragments, 2500, fill);
+    const Drawn by_compute = draw(*context_, options, PixelPasses::kCompute, 2500, fill);
+    expect_same(by_fragments.picture, by_compute.picture,
+                context_->is_software() ? kPictures : kByChip.picture);
+  }
+}
+
+// Cells that share an entry of the table: their particles have each their own neighbours.
+TEST_F(PixelPassesTest, ParticlesFarApartAreSmoothedByTheirOwnNeighbours) {
+  RenderOptions options = small();
+  options.quality = Quality::kFull;
+  for (const int many : {3000, 12000}) {  // all are smoothed; those that are not deep
+    SCOPED_TRACE(many);
+    const auto spread = [](kit::DamBreak& scene) {
+      const float radius = scene.frame.particle_radius;
+      for (std::size_t i = 0; i < scene.particles.size(); ++i) {
+        glm::vec3& at = scene.particles[i];
+        at = i % 6 == 0 ? at + 6.0f * (at - glm::vec3(0.0f, 0.1f, 0.0f))
+                        : scene.particles[i - 1] + glm::vec3(0.9f, 0.5f, -0.4f) * radius;
+      }
+    };
+    const Drawn by_fragments = draw(*context_, options, PixelPasses::kFragments, many, spread);
+    const Drawn by_compute = draw(*context_, options, PixelPasses::kCompute, many, spread);
+    const Apart& most = context_->is_software() ? kBySoftware : kByChip;
+    EXPECT_LT(share_off(by_fragments.front, by_compute.front, 2e-5f), most.front);
+    EXPECT_LT(share_off(by_fragments.back, by_compute.back, 2e-5f), most.back);
   }
 }
 

@@ -144,7 +144,7 @@ TEST_F(ScoreTest, TheFilterInMainMemoryIsTheShaders) {
   NarrowRangeOnCpu filter;
   const std::span<const float> smooth =
       filter.run(front.values, {kWidth, kHeight},
-                 {3.8f * radius, 5.0f * radius, 40, 0.5f * scene.frame.view.projection[1][1] * kHeight});
+                 {3.8f * radius, 5.0f * radius, 20, 0.5f * scene.frame.view.projection[1][1] * kHeight});
   int fluid = 0;
   int moved = 0;
   for (std::size_t i = 0; i < front.values.size(); ++i) {

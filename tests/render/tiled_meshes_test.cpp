@@ -100,6 +100,37 @@ TEST_F(TiledMeshesTest, TheEyeIsInsideABody) {
       kWidth * kHeight);
 }
 
+// Of a closed mesh that is seen from outside insides are left out: not where they may be seen.
+TEST_F(TiledMeshesTest, InsidesShowWhereAMeshIsOpenMirroredOrCutByTheNearPlane) {
+  kit::Shape open = kit::make_box(glm::vec3(-0.1f), glm::vec3(0.1f));
+  open.triangles.resize(open.triangles.size() - 2);  // a side
+  const auto turned = [](float angle) {
+    return glm::rotate(glm::mat4(1.0f), angle, glm::vec3(0.3f, 1.0f, 0.2f));
+  };
+  for (const float angle : {0.0f, 1.5f, 3.0f, 4.5f}) {
+    SCOPED_TRACE(angle);
+    expect_same(
+        [&](Renderer& renderer, Frame& frame) {
+          frame.meshes = {place(renderer, open)};
+          frame.meshes[0].model = turned(angle);
+        },
+        500);
+  }
+  expect_same(
+      [&](Renderer& renderer, Frame& frame) {
+        frame.meshes = {place(renderer, kit::make_sphere(0.1f, 12, 24))};
+        frame.meshes[0].model = glm::scale(glm::mat4(1.0f), glm::vec3(-1.0f, 1.0f, 1.0f));
+      },
+      500);
+  expect_same(
+      [&](Renderer& renderer, Frame& frame) {
+        frame.meshes = {place(renderer, kit::make_box({-0.3f, -0.3f, -0.3f}, {0.29f, 0.24f, 0.59f}))};
+        frame.view.near_plane = 0.05f;  // the eye is a centimetre off
+        frame.view.projection = glm::perspective(0.9f, float(kWidth) / kHeight, 0.05f, frame.view.far_plane);
+      },
+      1);
+}
+
 TEST_F(TiledMeshesTest, ManySmallTrianglesAndSomeThatAreNotSeen) {
   expect_same(
       [](Renderer& renderer, Frame& frame) {
