@@ -81,6 +81,7 @@ void Renderer::Parts::draw_stages_before_fluid(std::span<Picture> drawn, bool ti
 
 void Renderer::Parts::draw_stages_of_fluid(std::span<Picture> drawn, bool chords, bool tiled) {
   const bool resolves = occludes() && !resolves_with_glass(tiled);
+  const float reach = splat_reach(frame.particle_radius, options);
   run(resolves     ? "splats, resolve"
       : occludes() ? "splats, occlusion"
                    : "splats",
@@ -88,7 +89,7 @@ void Renderer::Parts::draw_stages_of_fluid(std::span<Picture> drawn, bool chords
         each(drawn, [&](Picture& p) {
           if (drew_fluid) fluid_passes->start_splats(p.targets, p.splats);
           if (drew_fluid && chords)
-            thickness_pass->start_sums(frame, p.targets, p.splats.unmoved(), p.splats.count, p.chord_sums);
+            thickness_pass->start_sums(frame, p.targets, *particles, reach, p.chord_sums);
           if (resolves) scene_pass->start_resolve(p.targets);
           if (occludes() && !resolves) scene_pass->start_occlusion(p.targets, kOcclusionReach);
         });

@@ -176,9 +176,7 @@ void ParticlesOnGpu::start_placing(const Frame& frame, float splat_radius, Splat
   bind(2, moves_ ? sorted_ : particles_);
   if (moves_) {
     out.shapes.reserve(count_ * sizeof(SplatShape));
-    out.balls.reserve(count_ * kVec4);
     bind(1, out.shapes);
-    bind(3, out.balls);
     bind(4, centers_);
     bind(5, ellipsoids_);
   }

@@ -17,14 +17,11 @@ namespace slosh {
 struct SplatBuffers {
   gl::StreamBuffer spheres;  ///< vec4
   gl::StreamBuffer shapes;   ///< SplatShape, of moved spheres
-  gl::StreamBuffer balls;    ///< vec4: the spheres before they were moved
-  std::size_t count = 0;     ///< of balls, and of spheres if `seen` is null
+  std::size_t count = 0;     ///< of spheres, if `seen` is null
   bool shaped = false;
   /// Where the GPU has how many spheres there are, a uint; null: `count`.
   const gl::StreamBuffer* seen = nullptr;
   int seen_at = -1;  ///< which of its uints
-
-  const gl::StreamBuffer& unmoved() const { return shaped ? balls : spheres; }
 };
 
 class ParticlesOnGpu {
@@ -47,6 +44,8 @@ class ParticlesOnGpu {
   std::size_t count() const { return count_; }
   /// vec4 each: world position m, index into Frame::fluids, or −1 where it is not drawn.
   const gl::StreamBuffer& particles() const { return particles_; }
+  /// The same in another order, those of a cell beside each other, once no step is left.
+  const gl::StreamBuffer& by_cell() const { return moves_ ? sorted_ : particles_; }
   /// Where they were read.
   const GivenParticles& given() const { return given_; }
 

@@ -22,8 +22,10 @@ bool any_fluid_is_clear(const Frame& frame) {
 Result<ThicknessPass> ThicknessPass::create(bool compute) {
   ThicknessPass pass;
   if (compute) {
-    for (const Result<bool>& loaded : {gl::take(pass.rows_, gl::RowProgram::create("chord.comp", true)),
-                                       gl::take(pass.sum_, gl::PixelProgram::create("chord_sum.frag", true, false, {"EACH 4"}))}) {
+    for (const Result<bool>& loaded :
+         {gl::take(pass.rows_, gl::RowProgram::create("chord.comp", true)),
+          gl::take(pass.world_rows_, gl::RowProgram::create("chord.comp", true, {"WORLD"})),
+          gl::take(pass.sum_, gl::PixelProgram::create("chord_sum.frag", true, false, {"EACH 4"}))}) {
       if (!loaded) return loaded.error();
     }
   } else if (auto made = gl::take(pass.program_, gl::Program::create("chord.vert", "chord.frag")); !made) {
@@ -43,9 +45,17 @@ void ThicknessPass::set_up(const gl::Program& program, const Frame& frame, const
   gl::bind_textures({&targets.scene_depth});
 }
 
-void ThicknessPass::start_sums(const Frame& frame, const Targets& targets, const gl::StreamBuffer& spheres,
-                               std::size_t count, Sums& sums) const {
-  const gl::Program& program = rows_.of(count);
+void ThicknessPass::start_sums(const Frame& frame, const Targets& targets, const ParticlesOnGpu& particles,
+                               float reach, Sums& sums) const {
+  const gl::Program& program = world_rows_.of(particles.count());
+  program.set("near_plane", frame.view.near_plane);
+  program.set("reach", reach);
+  start_rows(world_rows_, frame, targets, particles.by_cell(), particles.count(), sums);
+}
+
+void ThicknessPass::start_rows(const gl::RowProgram& rows, const Frame& frame, const Targets& targets,
+                               const gl::StreamBuffer& spheres, std::size_t count, Sums& sums) {
+  const gl::Program& program = rows.of(count);
   set_up(program, frame, targets);
   const glm::ivec2 size = targets.chord_size;
   if (sums.size != size)
@@ -55,7 +65,7 @@ void ThicknessPass::start_sums(const Frame& frame, const Targets& targets, const
   program.set("size", size);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, spheres.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, sums.texels.name());
-  rows_.start(count);
+  rows.start(count);
 }
 
 void ThicknessPass::start_chords(const Targets& targets, const Sums& sums) const {
@@ -67,7 +77,7 @@ void ThicknessPass::start_chords(const Targets& targets, const Sums& sums) const
 void ThicknessPass::draw(const Frame& frame, const Targets& targets, std::span<const glm::vec4> spheres) {
   buffer_.upload(spheres);
   if (sum_.on_compute()) {
-    start_sums(frame, targets, buffer_, spheres.size(), sums_);
+    start_rows(rows_, frame, targets, buffer_, spheres.size(), sums_);
     gl::finish_compute();
     start_chords(targets, sums_);
     return gl::finish_compute();

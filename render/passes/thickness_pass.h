@@ -7,6 +7,7 @@
 
 #include "render/frame.h"
 #include "render/gl/pixel_program.h"
+#include "render/passes/particles_on_gpu.h"
 #include "render/passes/targets.h"
 #include "render/renderer.h"
 
@@ -24,18 +25,22 @@ class ThicknessPass {
     gl::StreamBuffer texels;  ///< a whole number each (shaders/sums.glsl); zeros from picture to picture
     glm::ivec2 size{0};
   };
-  /// The same by compute shaders, of `count` spheres on the GPU, those with a fluid below 0 left out: the sums,
-  /// and then the chords of them. Nobody reads either before gl::finish_compute().
-  void start_sums(const Frame& frame, const Targets& targets, const gl::StreamBuffer& spheres,
-                  std::size_t count, Sums& sums) const;
+  /// The same by compute shaders, of particles on the GPU, as the view whose uniform block is bound sees them
+  /// (`reach`: m, of what is drawn of one): the sums, and then the chords of them. Nobody reads either before
+  /// gl::finish_compute().
+  void start_sums(const Frame& frame, const Targets& targets, const ParticlesOnGpu& particles, float reach,
+                  Sums& sums) const;
   void start_chords(const Targets& targets, const Sums& sums) const;
 
  private:
   static void set_up(const gl::Program& program, const Frame& frame, const Targets& targets);
+  static void start_rows(const gl::RowProgram& rows, const Frame& frame, const Targets& targets,
+                         const gl::StreamBuffer& spheres, std::size_t count, Sums& sums);
 
   gl::Program program_;
-  gl::RowProgram rows_;    ///< for compute
-  gl::PixelProgram sum_;   ///< for compute
+  gl::RowProgram rows_;        ///< for compute
+  gl::RowProgram world_rows_;  ///< for compute, of particles on the GPU
+  gl::PixelProgram sum_;       ///< for compute
   Sums sums_;
   gl::VertexArray array_;
   gl::StreamBuffer buffer_;
