@@ -23,13 +23,14 @@ using namespace coupling;
 constexpr const char* kTable = "coupling_water.csv";
 constexpr double kNudge = 1e-6;  // m: nobody could tell
 constexpr const char* kPerson = "tight,correction=0";
+constexpr const char* kLoosePerson = "loose,correction=0";  // whose bucket tips, and pours
 
 struct Felt {
   double round_trip = 0.0;  // s
   double error = 0.0, learning = 0.0, moving = 0.0, after = 0.0, line = 0.0;
   /// Of a person, who goes elsewhere by what they feel: off what is right where they went, and m rms that is
-  /// elsewhere.
-  double same = 0.0, elsewhere = 0.0;
+  /// elsewhere; and what is right there, a round trip late.
+  double same = 0.0, elsewhere = 0.0, late = 0.0;
 };
 struct WaterRow {
   WaterCase c;
@@ -81,6 +82,7 @@ Result<bool> measure(const std::vector<double>& round_trips, WaterRow& row) {
       if (!right) return right.error();
       f.same = water_error(ours.value(), right.value());
       f.elsewhere = apart(went, run.value());
+      f.late = late_error(right.value(), round_trip);
       continue;  // for the line it would need a world of its own
     }
     const Result<std::vector<Wrench>> line = feel_water(run.value(), round_trip, by_line);
@@ -90,9 +92,13 @@ Result<bool> measure(const std::vector<double>& round_trips, WaterRow& row) {
   return true;
 }
 
+const char* words_of(const WaterCase& c) {
+  return c.grip.empty() ? "" : c.grip == kPerson ? ", a person" : ", a loose arm";
+}
+
 std::string name_of(const WaterRow& row) {
   const WaterWay way = way_of(row.c);
-  return format("%.0f mm at %.2f Hz%s", 1e3 * way.reach, way.pace, row.c.grip.empty() ? "" : ", a person");
+  return format("%.0f mm at %.2f Hz%s", 1e3 * way.reach, way.pace, words_of(row.c));
 }
 
 ChartPanel panel_of(const std::vector<WaterRow>& rows, bool person) {
@@ -136,8 +142,8 @@ int report_coupling_water(const ReportOptions& options) {
       options.quick ? std::vector<double>{0.1, 0.4} : std::vector<double>{0.0, 0.05, 0.1, 0.2, 0.3, 0.4};
   std::vector<WaterRow> rows;
   for (int way = 0; way < (options.quick ? 3 : 8); ++way) rows.push_back({{0.014, "", way, 0.0}, 0.0, 0.0, {}, {}, {}});
-  for (const int way : {2, 3})
-    if (!options.quick || way == 2) rows.push_back({{0.014, kPerson, way, 0.0}, 0.0, 0.0, {}, {}, {}});
+  for (const auto& [grip, way] : {std::pair{kPerson, 2}, {kPerson, 3}, {kPerson, 0}, {kLoosePerson, 2}})
+    if (!options.quick || (grip == kPerson && way == 2)) rows.push_back({{0.014, grip, way, 0.0}, 0.0, 0.0, {}, {}, {}});
   progress.phase("measuring", format("%zu ways of a hand", rows.size()));
   std::size_t done = 0;
   const bool all = run_on_cores(
@@ -156,7 +162,7 @@ int report_coupling_water(const ReportOptions& options) {
   std::string text =
       "way,reach_mm,pace_hz,hand,force_n,chance,rigid_leaves,modes_leave,lifts_leave,round_trip_ms,force_"
       "error,error_to_1500ms,"
-      "error_moving,error_after,error_by_line,error_for_the_same_motion,hand_elsewhere_mm\n";
+      "error_moving,error_after,error_by_line,error_for_the_same_motion,hand_elsewhere_mm,error_known_late\n";
   std::printf("%-30s force   chance  a model leaves: rigid, modes, lift   force off at", "a hand's way");
   for (const double round_trip : round_trips) std::printf(" %.0f", 1e3 * round_trip);
   std::printf(" ms\n");
@@ -168,10 +174,10 @@ int report_coupling_water(const ReportOptions& options) {
       std::printf(" %.0f", 1e2 * f.error);
       text +=
           format("%d,%.3g,%.3g,%s,%.4g,%.4g,%.4g,%.4g,%.4g,%g,%.4g,%.4g,%.4g,%.4g,", row.c.way,
-                 1e3 * way.reach, way.pace, row.c.grip.empty() ? "led" : "person", row.force, row.chaos,
+                 1e3 * way.reach, way.pace, row.c.grip.empty() ? "led" : row.c.grip == kPerson ? "person" : "loose", row.force, row.chaos,
                  row.split.rigid, row.split.modes, row.split.lifts, 1e3 * f.round_trip, f.error, f.learning,
                  f.moving, f.after) +
-          (row.c.grip.empty() ? format("%.4g,,", f.line) : format(",%.4g,%.4g", f.same, 1e3 * f.elsewhere)) +
+          (row.c.grip.empty() ? format("%.4g,,,", f.line) : format(",%.4g,%.4g,%.4g", f.same, 1e3 * f.elsewhere, f.late)) +
           "\n";
     }
     std::printf(" %%\n");
@@ -180,7 +186,9 @@ int report_coupling_water(const ReportOptions& options) {
     for (const Felt& f : row.felt) std::printf(" %.1f", 1e2 * f.same);
     std::printf(" %%; elsewhere by");
     for (const Felt& f : row.felt) std::printf(" %.1f", 1e3 * f.elsewhere);
-    std::printf(" mm\n");
+    std::printf(" mm; known a round trip late");
+    for (const Felt& f : row.felt) std::printf(" %.1f", 1e2 * f.late);
+    std::printf(" %%\n");
   }
   if (const Result<bool> written = write_whole(folder.value() / kTable, text); !written) return fail(written.error());
   std::vector<ChartPanel> panels{panel_of(rows, false), panel_of(rows, true)};

@@ -77,5 +77,33 @@ TEST(SloshFinder, FollowsNothingWhereNothingSwings) {
   EXPECT_LT(share, 0.05);
 }
 
+/// Half of what swings is poured out: found anew it would take as long as at first.
+TEST(SloshFinder, WhatIsPouredOutNeedNotBeFoundAgain) {
+  const SloshMode truth{1.5, 2.0 * std::numbers::pi * 1.53, 0.05};
+  for (const bool said : {true, false}) {
+    SloshFinder finder;
+    finder.restart(10.0);
+    SloshState state;
+    double before = 0.0, off = 0.0;
+    for (double t = 0.0; t < 4.5; t += kStep) {
+      const double angle = 2.0 * std::numbers::pi * t, left = t < 4.0 ? 1.0 : 0.5;
+      const double now = 0.15 * std::min(t, 1.0) * (std::sin(0.9 * angle) + std::sin(1.9 * angle));
+      const SloshState was = state;
+      state = SloshStep(truth.pace, truth.damping, kStep)(state, now - before);
+      if (said && t >= 4.0 && t < 4.0 + kStep) finder.lighten(0.5);
+      finder.hear(kStep, before, now,
+                  left * (kWeight - 0.8 * (now - before) / kStep +
+                          0.5 * (slosh_force(truth, was) + slosh_force(truth, state))));
+      before = now;
+      if (t > 4.1) off = std::max(off, std::abs(finder.mode().mass - 0.75));
+    }
+    std::printf("%s: off by %.2f kg of 0.75 at most\n", said ? "said" : "not said", off);
+    if (said)
+      EXPECT_LT(off, 0.15) << "1.3 kg of 1.5 were found";
+    else
+      EXPECT_GT(off, 0.4);
+  }
+}
+
 }  // namespace
 }  // namespace slosh

@@ -120,12 +120,14 @@ void BodyReplica::set_load(const FluidLoad& load) noexcept {
 void BodyReplica::follow_load(double dt) noexcept {
   const double time = tuning_.load_round_trips * (delay_.round_trip + delay_.jitter);
   const double share = time > dt ? 1.0 - std::exp(-dt / time) : 1.0;
+  // As what is foreseen is by the newest masses, so is the body.
+  const double weighed = share + heard_.foreseen * (1.0 - share);
   const auto towards = [share](double& at, double to) { at += share * (to - at); };
   for (std::size_t i = 0; i < 6; ++i) {
     towards(load_.wrench[i], heard_.wrench[i]);
     for (std::size_t j = 0; j < 6; ++j) {
       towards(load_.d_pose[i][j], heard_.d_pose[i][j]);
-      towards(load_.added_mass[i][j], heard_.added_mass[i][j]);
+      load_.added_mass[i][j] += weighed * (heard_.added_mass[i][j] - load_.added_mass[i][j]);
       towards(load_.d_velocity[i][j], heard_.d_velocity[i][j]);
     }
   }
@@ -138,6 +140,9 @@ void BodyReplica::follow_load(double dt) noexcept {
   load_.trust_distance = heard_.trust_distance;
   load_.trust_angle = heard_.trust_angle;
   load_.bowl = heard_.bowl;
+  load_.late += share * (heard_.late - load_.late);
+  load_.foreseen = heard_.foreseen;
+  load_.goes_on += (1.0 - std::exp(-dt / kGoesOnTaken)) * (heard_.goes_on - load_.goes_on);
   for (std::size_t i = 0; i < 3; ++i) {
     load_.swings[i].mass = heard_.swings[i].mass;
     load_.swings[i].pace = heard_.swings[i].pace;
@@ -292,6 +297,8 @@ void BodyReplica::advance(const std::vector<ReplicaHand>& hands, double dt, std:
   const glm::dvec3 turn =
       clipped(rotation_between(load_.reference.orientation, now_.orientation), load_.trust_angle);
   Vector6 fluid = load_.wrench;
+  for (std::size_t i = 0; i < 3; ++i)
+    fluid[i] += load_.foreseen * (load_.goes_on[static_cast<int>(i)] - load_.late[static_cast<int>(i)]);
   add(fluid, product(load_.d_pose, six(off, turn)));
   add(fluid, product(load_.d_velocity, six(load_.twist.linear, load_.twist.angular)), -1.0);
   Vector6 slosh{};

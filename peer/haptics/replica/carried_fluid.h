@@ -5,6 +5,7 @@
 #include <array>
 
 #include "peer/haptics/replica/body_replica.h"
+#include "peer/haptics/replica/residue_follower.h"
 #include "peer/haptics/replica/slosh_finder.h"
 
 namespace slosh {
@@ -21,8 +22,8 @@ struct Acting {
 
 /// Three slosh modes along the world's axes, the bowl in which what swings rises, and how far the replica
 /// goes by all that. Where fluid weighs on the body it is in it as in a vessel, and what it weighs says what
-/// of it swings and how fast before anything has moved. Weight that goes one way for longer than what swings does is
-/// poured out or in, and believed soon. Neither allocates nor reads a clock; one thread.
+/// of it swings and how fast before anything has moved. What is poured out or in changes all masses as it
+/// does the weight. Allocates when made; reads no clock; one thread.
 class CarriedFluid {
  public:
   explicit CarriedFluid(const ReplicaBody& body) : body_(body) { restart(); }
@@ -31,9 +32,8 @@ class CarriedFluid {
   void hear(const Acting& acting) noexcept;
   /// Puts what swings in the place of the line in `load`, as far as it explains more, times `share` (0–1),
   /// and takes it out of `rest`: the wrench that acts besides couplings, to which the answer to `pace`
-  /// (linear and angular acceleration) is added. Of what no model explains of the fluid only what lasts is
-  /// left there, once words are `round_trip` s old: what goes to and fro would come too late, and at most
-  /// paces make it worse.
+  /// (linear and angular acceleration) is added. What no model explains of the fluid is left in it as what is
+  /// late, and foreseen for when words that are `round_trip` s old are felt.
   void put_into(FluidLoad& load, Vector6& rest, const Vector6& pace, const Acting& acting, double share,
                 double round_trip) noexcept;
 
@@ -45,6 +45,8 @@ class CarriedFluid {
   const SloshFinder& finder(std::size_t axis) const noexcept { return finders_[axis]; }
 
  private:
+  /// Sets carried_, and changes the masses that were found with it.
+  void weigh(const Acting& acting) noexcept;
   void look_for_vessel(const Acting& acting) noexcept;
 
   ReplicaBody body_;
@@ -54,11 +56,13 @@ class CarriedFluid {
   double lifts_ = 0.0;                  // N, down: what swings puts on the body by rising in a whole bowl
   double lifts_share_ = 1.0;            // how far it does, 0–1
   double lifts_square_ = 0.0, lifts_answer_ = 0.0;  // N²·s
-  glm::dvec3 lasting_{0.0};                         // N: of what no model explains, what lasts
-  glm::dvec3 passing_{0.0};                         // N: the rest of it, the bowl not taken off
-  double weight_ = 0.0;                             // N, of what is carried
-  glm::dvec3 one_way_{0.0};                         // s: for how long what lasts was off to one side, and to which
-  bool lasting_known_ = false;
+  std::array<ResidueFollower, 3> residue_;          // what no model explains, along x, y, z
+  glm::dvec3 passing_{0.0};                         // N: of it, what does not last, the bowl not taken off
+  glm::dvec3 dragged_{0.0};                         // N: by the damper, of the word before
+  double round_trip_ = 0.0;                         // s
+  double mass_force_ = 0.0, mass_square_ = 0.0;     // N·m/s², m²/s⁴: means
+  double carried_ = 0.0;                            // kg; 0: nothing
+  double vessel_ = 0.0;                             // 0–1: something is carried
   double foreseen_ = 0.0;
 };
 

@@ -11,6 +11,8 @@
 
 namespace slosh {
 
+constexpr double kGoesOnTaken = 0.01;  ///< s over which a change of FluidLoad::goes_on is taken over
+
 /// W = wrench + d_pose·δx + d_velocity·δv about a reference state: what acts on a body besides its couplings.
 /// Order of the six: linear x, y, z, angular x, y, z; world axes; torque about the centre of mass. All zero:
 /// nothing acts.
@@ -18,6 +20,9 @@ struct FluidLoad {
   Pose reference;                   ///< of the centre of mass and the body's axes
   Twist twist;                      ///< there
   Vector6 wrench{};                 ///< N, N·m
+  glm::dvec3 late{0.0};             ///< N: of `wrench`, what is foreseen …
+  glm::dvec3 goes_on{0.0};          ///< N: … which is this by now: followed at once
+  double foreseen = 0.0;            ///< 0–1: how far it takes the place of `late`
   Matrix6 d_pose{};                 ///< N/m, N/rad, N·m/m, N·m/rad
   Matrix6 d_velocity{};             ///< N·s/m …
   Matrix6 added_mass{};             ///< kg, kg·m, kg·m²: symmetric, positive semidefinite
@@ -52,7 +57,8 @@ inline FluidLoad made_safe(FluidLoad load) noexcept {
       sum += load.d_pose[i][j] + load.d_velocity[i][j] + load.added_mass[i][j];
   }
   const glm::dvec3& p = load.reference.position;
-  sum += p.x + p.y + p.z + load.trust_distance + load.trust_angle +
+  sum += p.x + p.y + p.z + load.trust_distance + load.trust_angle + load.late.x + load.late.y + load.late.z +
+         load.goes_on.x + load.goes_on.y + load.goes_on.z + load.foreseen +
          glm::dot(load.twist.linear, load.twist.linear) + glm::dot(load.twist.angular, load.twist.angular);
   if (!std::isfinite(sum) || !std::isfinite(glm::dot(load.reference.orientation, load.reference.orientation)))
     return FluidLoad{};

@@ -16,10 +16,11 @@ constexpr double kAdopted = 0.1;     // s over which what is found is taken over
 constexpr double kNoise = 0.5;
 constexpr double kNoiseLasts = 0.1;
 constexpr double kExpectedDamping = 0.03;
-constexpr double kSureOfMass = 0.3;     // of what is expected, one σ
-constexpr double kSureOfPace = 0.2;     // the same, of its logarithm
-constexpr double kLeastObserved = 0.3;  // kg: of a lighter mode the force says less
-constexpr double kObserved = 0.25;      // s over which the state is drawn to what the force says
+constexpr double kLeastExpected = 1e-3;  // kg
+constexpr double kSureOfMass = 0.3;      // of what is expected, one σ
+constexpr double kSureOfPace = 0.2;      // the same, of its logarithm
+constexpr double kLeastObserved = 0.3;   // kg: of a lighter mode the force says less
+constexpr double kObserved = 0.25;       // s over which the state is drawn to what the force says
 // Motion that weighs as much as what is taken to be so beforehand: no mass, no drag.
 constexpr double kUsualAcceleration = 0.02;  // m/s²
 constexpr double kUsualSpeed = 0.01;         // m/s
@@ -50,6 +51,19 @@ void SloshFinder::expect(double rigid, double mass, double pace) noexcept {
   mode_ = {mass, pace, kExpectedDamping};
   rigid_ = rigid;
   share_ = 1.0;
+}
+
+void SloshFinder::lighten(double share) noexcept {
+  mode_.mass *= share;
+  rigid_ *= share;
+  drag_ *= share;
+  constant_ *= share;
+  for (double& answer : common_answer_) answer *= share;
+  for (auto& row : bank_)
+    for (Candidate& c : row) c.answer *= share;
+  force_square_ *= share * share;
+  f_.once *= share;
+  f_.twice *= share;
 }
 
 void SloshFinder::hear(double dt, double before, double now, double force) noexcept {
@@ -195,8 +209,10 @@ void SloshFinder::choose(double seconds) noexcept {
   // Nothing swings, or too little is known yet: what was found holds on.
   if ((weight_ < kLeastKnown && !expects_) || rigid < kLeastForce * kLeastForce * weight_) return;
   double pace = pace_of(static_cast<double>(bi)), damping = kDampingsOfBank[bj];
-  // At an end of the bank it is something else that is so slow or so quick.
-  const bool swings = bi > 0 && bi + 1 < kPaces && found.x[3] > 0.0 && found.x[3] < most_ &&
+  // At an end of the bank it is something else that is so slow or so quick; in a vessel nothing swings up and
+  // down.
+  const bool swings = !(expects_ && expected_mass_ < kLeastExpected) && bi > 0 && bi + 1 < kPaces &&
+                      found.x[3] > 0.0 && found.x[3] < most_ &&
                       found.rest < (1.0 - (expects_ ? kGainOfExpected : kLeastGain)) * rigid;
   if (swings) {
     // Between neighbours, by the parabola through three.

@@ -25,6 +25,9 @@ class SloshFinder {
   /// What is taken to be so before anything has moved: kg that go with the body, kg that swing, rad/s.
   /// Followed at once.
   void expect(double rigid, double mass, double pace) noexcept;
+  /// What is carried is `share` times what it was, > 0: so are all masses, and what was told is taken to have
+  /// been of that.
+  void lighten(double share) noexcept;
   /// Over the last `dt` s the body went from velocity `before` to `now`, and the fluid put the mean force
   /// `force` on it.
   void hear(double dt, double before, double now, double force) noexcept;

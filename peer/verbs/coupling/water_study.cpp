@@ -296,4 +296,11 @@ double water_error(const std::vector<Wrench>& felt, const WaterRun& reference, d
   return all > 0.0 ? std::sqrt(off / std::max(count, 1.0)) / all : 0.0;
 }
 
+double late_error(const WaterRun& reference, double round_trip) {
+  const auto late = static_cast<std::size_t>(std::lround(round_trip / kPeriod));
+  std::vector<Wrench> felt;
+  for (std::size_t i = 0; i < reference.steps.size(); ++i) felt.push_back(reference.steps[i - std::min(i, late)].felt);
+  return water_error(felt, reference);
+}
+
 }  // namespace slosh::coupling

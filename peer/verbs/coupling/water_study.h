@@ -72,6 +72,8 @@ Result<WaterRun> run_water_again(const WaterCase& c, const std::vector<DeviceRep
 /// RMS over a time of the difference of forces over the RMS of the reference's less its weight at rest; 1 = 100 %.
 double water_error(const std::vector<Wrench>& felt, const WaterRun& reference, double begin = kWaterBegins,
                    double end = kWaterEnds);
+/// The same of the reference's own force, known `round_trip` s late: what who knows nothing of water would have.
+double late_error(const WaterRun& reference, double round_trip);
 /// That RMS of the reference's, N.
 double water_force(const WaterRun& reference, double begin = kWaterBegins, double end = kWaterEnds);
 
