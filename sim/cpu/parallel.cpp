@@ -67,8 +67,10 @@ ThreadTeam::~ThreadTeam() {
 void ThreadTeam::run(std::size_t count, std::size_t chunk,
                      const std::function<void(std::size_t, std::size_t)>& body) {
   if (count == 0) return;
+  // The same chunks for one thread as for many: rows of pairs lie by fours within a chunk (pair_rows.h), and
+  // by who is beside whom a sum that carries its rounding along may end a bit elsewhere.
   if (workers_.empty() || count <= chunk) {
-    body(0, count);
+    for (std::size_t begin = 0; begin < count; begin += chunk) body(begin, std::min(begin + chunk, count));
     return;
   }
   body_ = &body;
