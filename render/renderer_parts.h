@@ -109,11 +109,9 @@ struct Renderer::Parts {
   void draw_stages_of_fluid(std::span<Picture> drawn, bool chords, bool tiled);
   void draw_stages_of_look(std::span<Picture> drawn, bool tiled);
   void draw_stages_after(std::span<Picture> drawn, bool tiled);
-  /// The glass behind the fluid goes over every pixel: it takes the occlusion off on the way.
-  bool resolves_with_glass(bool tiled) const;
-  /// It takes the panes before the fluid in hand, too, and the composite lays them over the fluid: nothing
-  /// comes between.
-  bool composite_lays_panes(bool tiled);
+  /// One pass goes over all the glass and takes the occlusion off on the way, and the composite lays the
+  /// panes before the fluid over it: nothing comes between.
+  bool takes_all_glass(bool tiled);
   /// The composite has shares of several fluids or caustics, one after the other for each view.
   bool blends_or_focuses() const;
   /// Makes a picture the one that passes draw.

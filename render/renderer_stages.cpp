@@ -13,14 +13,10 @@ void Renderer::Parts::choose(const Picture& picture) {
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, picture.block.name());
 }
 
-bool Renderer::Parts::resolves_with_glass(bool tiled) const {
-  return occludes() && drew_fluid && tiled && has_translucent(frame);
-}
-
-bool Renderer::Parts::composite_lays_panes(bool tiled) {
-  if (!resolves_with_glass(tiled) || !frame.foam.empty() || !options.lit_fluid || blends_or_focuses())
-    return false;
-  return fluid_passes->takes({0, mirrors_bodies(), false, true}, targets);
+bool Renderer::Parts::takes_all_glass(bool tiled) {
+  if (!occludes() || !drew_fluid || !tiled || !has_translucent(frame)) return false;
+  if (!frame.foam.empty() || !options.lit_fluid || blends_or_focuses()) return false;
+  return scene_pass->takes_all_glass() && fluid_passes->takes({0, mirrors_bodies(), false, true}, targets);
 }
 
 bool Renderer::Parts::blends_or_focuses() const {
@@ -68,7 +64,7 @@ void Renderer::Parts::draw_stages_before_fluid(std::span<Picture> drawn, bool ti
     particles->start_next();
     gl::finish_compute();
   });
-  const bool occlusion_now = occludes() && !resolves_with_glass(tiled);
+  const bool occlusion_now = occludes() && !takes_all_glass(tiled);
   run(occlusion_now ? "occlusion, prepare splats" : "prepare splats", [&] {
     const float reach = splat_reach(frame.particle_radius, options);
     each(drawn, [&](Picture& p) {
@@ -80,7 +76,7 @@ void Renderer::Parts::draw_stages_before_fluid(std::span<Picture> drawn, bool ti
 }
 
 void Renderer::Parts::draw_stages_of_fluid(std::span<Picture> drawn, bool chords, bool tiled) {
-  const bool resolves = occludes() && !resolves_with_glass(tiled);
+  const bool resolves = occludes() && !takes_all_glass(tiled);
   const float reach = splat_reach(frame.particle_radius, options);
   run(resolves     ? "splats, resolve"
       : occludes() ? "splats, occlusion"
@@ -110,16 +106,14 @@ void Renderer::Parts::draw_stages_of_fluid(std::span<Picture> drawn, bool chords
 
 void Renderer::Parts::draw_stages_of_look(std::span<Picture> drawn, bool tiled) {
   const bool panes = has_translucent(frame);
-  const bool all_at_once = composite_lays_panes(tiled);
+  const bool all_at_once = takes_all_glass(tiled);
   run(all_at_once ? "translucent"
       : panes     ? "translucent behind"
                   : "copy scene colour",
       [&] {
         each(drawn, [&](Picture& p) {
           const gl::Texture* fluid = fluid_depth(p.targets);
-          const GlassPart part = all_at_once                  ? GlassPart::kAllResolving
-                                 : resolves_with_glass(tiled) ? GlassPart::kBehindResolving
-                                                              : GlassPart::kBehind;
+          const GlassPart part = all_at_once ? GlassPart::kAll : GlassPart::kBehind;
           if (panes && tiled) return scene_pass->start_translucent(frame, p.meshes, p.targets, fluid, part);
           if (panes) scene_pass->draw_translucent(frame, meshes, textures, p.targets, fluid, true);
           gl::bind_textures({&p.targets.color});
@@ -149,7 +143,7 @@ void Renderer::Parts::draw_stages_of_look(std::span<Picture> drawn, bool tiled) 
 
 void Renderer::Parts::draw_stages_after(std::span<Picture> drawn, bool tiled) {
   if (!frame.foam.empty()) run("foam", [&] { each(drawn, [&](Picture& p) { draw_foam(p.targets); }); });
-  if (has_translucent(frame) && !composite_lays_panes(tiled)) {
+  if (has_translucent(frame) && !takes_all_glass(tiled)) {
     run("translucent", [&] {
       each(drawn, [&](Picture& p) {
         const gl::Texture* fluid = fluid_depth(p.targets);

@@ -17,9 +17,9 @@ void bind(GLuint binding, const gl::StreamBuffer& buffer) {
 }
 
 constexpr std::size_t kVec4 = sizeof(glm::vec4);
-// As particles.glsl and cells_deep.comp have them.
-constexpr std::size_t kCountsOfAll = 4;  // after the entries' own
-constexpr std::size_t kBatchBytes = 4 * sizeof(std::uint32_t);
+// As particles.glsl, smooth_centers.comp and cells_deep.comp have them.
+constexpr std::size_t kCountsOfAll = 3;  // after the entries' own
+constexpr std::size_t kSmoothShare = 8;  // invocations a particle
 constexpr std::size_t kDeepInGroup = 8;  // cells
 
 /// About so many particles are in a cell at least, of a fluid that is not spray: groups that are started by
@@ -43,6 +43,7 @@ Result<ParticlesOnGpu> ParticlesOnGpu::create() {
         gl::take(out.sort_, gl::Program::create_compute("cells_fill.comp", {"SORT"})),
         gl::take(out.find_seen_, gl::Program::create_compute("cells_deep.comp")),
         gl::take(out.smooth_, gl::Program::create_compute("smooth_centers.comp")),
+        gl::take(out.smooth_seen_, gl::Program::create_compute("smooth_centers.comp", {"SEEN"})),
         gl::take(out.place_, gl::Program::create_compute("splats.comp")),
         gl::take(out.place_shaped_, gl::Program::create_compute("splats.comp", {"SHAPED"})),
         gl::take(out.place_seen_, gl::Program::create_compute("splats.comp", {"SHAPED", "SEEN"}))}) {
@@ -79,7 +80,6 @@ void ParticlesOnGpu::start_taking(const Frame& frame) {
     ranks_.reserve(count_ * sizeof(std::uint32_t));
     begins_.reserve(entries_ * sizeof(std::uint32_t));
     owners_.reserve(entries_ * 2 * sizeof(std::uint32_t));
-    batches_.reserve(count_ * kBatchBytes);
     if (leaves_out_deep_) {
       used_.reserve(std::min(count_, entries_) * sizeof(std::uint32_t));
       seen_.reserve(count_ * sizeof(std::uint32_t));
@@ -133,7 +133,6 @@ void ParticlesOnGpu::start_next() {
   bind(6, listed_);
   bind(7, sorted_);
   bind(10, owners_);
-  bind(11, batches_);
   if (leaves_out_deep_) {
     bind(8, seen_);
     bind(9, used_);
@@ -154,12 +153,14 @@ void ParticlesOnGpu::start_next() {
       if (!leaves_out_deep_) return;
       find_seen_.set("entries", static_cast<int>(entries_));
       return gl::start_groups_by_turns(find_seen_, count_ / (kInACell * kDeepInGroup) + 1);
-    case Step::kSmooth:
+    case Step::kSmooth: {
       bind(0, centers_);
       bind(1, ellipsoids_);
-      smooth_.set("entries", static_cast<int>(entries_));
-      smooth_.set("lengths", glm::vec2(reach, radius_));
-      return gl::start_groups_by_turns(smooth_, count_ / kInACell + 1);
+      const gl::Program& program = leaves_out_deep_ ? smooth_seen_ : smooth_;
+      program.set("entries", static_cast<int>(entries_));
+      program.set("lengths", glm::vec2(reach, radius_));
+      return gl::start_by_turns(program, count_, kSmoothShare);
+    }
   }
 }
 

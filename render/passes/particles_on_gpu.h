@@ -61,6 +61,7 @@ class ParticlesOnGpu {
   gl::Program sort_;
   gl::Program find_seen_;
   gl::Program smooth_;
+  gl::Program smooth_seen_;  ///< but for what is deep in the fluid
   gl::Program place_;
   gl::Program place_shaped_;
   gl::Program place_seen_;
@@ -72,7 +73,6 @@ class ParticlesOnGpu {
   gl::StreamBuffer listed_;
   gl::StreamBuffer owners_;      ///< an entry each: its cell, where there is but one
   gl::StreamBuffer used_;        ///< entries with particles
-  gl::StreamBuffer batches_;     ///< of particles that a group smooths
   gl::StreamBuffer sorted_;      ///< as particles_, by cell
   gl::StreamBuffer seen_;        ///< of the sorted, those that are not deep in the fluid
   gl::StreamBuffer centers_;     ///< of the sorted, or of those of them that are seen

@@ -33,6 +33,7 @@ class ScenePass {
                     bool background, bool occlusion_follows) const;
   void start_translucent(const Frame& frame, TiledMeshes::Lists& lists, const Targets& targets,
                          const gl::Texture* fluid, GlassPart part) const;
+  bool takes_all_glass() { return tiled_ && tiled_->takes_all(); }
   /// Occlusion by itself, likewise.
   void start_occlusion(const Targets& targets, float reach) const;
   void start_resolve(const Targets& targets) const;

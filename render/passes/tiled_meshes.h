@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,11 +26,10 @@ MeshDefines mesh_defines(bool fast, const std::vector<std::string>& far_light);
 
 /// Which panes of glass are drawn.
 enum class GlassPart : std::uint8_t {
-  kBehind,           ///< behind the fluid's surface; color is copied to scene_color, too
-  kBehindResolving,  ///< the same over mesh_color less its occlusion (resolve.frag), which color becomes
-  kAllResolving,  ///< that, and before it: over color where there is no fluid, else for the composite to lay
-                  ///< over it
-  kBefore,        ///< before it
+  kBehind,  ///< behind the fluid's surface; color is copied to scene_color, too
+  kBefore,  ///< before it
+  kAll,  ///< both, over mesh_color less its occlusion (resolve.frag), which color becomes; those before the
+         ///< fluid over color where there is none, else for the composite to lay over it. After takes_all()
 };
 
 /// The panes before the fluid, where there is fluid: light = light · through + added. RGBA16F; made when
@@ -63,7 +63,7 @@ class TiledMeshes {
   struct Lists {
     List opaque;
     List glass;
-    PanesBefore panes;  ///< of GlassPart::kAllResolving
+    PanesBefore panes;  ///< of GlassPart::kAll
   };
 
   /// Fills a view's lists. Of this and what follows nobody reads before gl::finish_compute().
@@ -72,6 +72,8 @@ class TiledMeshes {
   /// Opaque ones: writes S_d and the colour (mesh_color if occlusion follows, else color).
   void start_opaque(const Lists& lists, const View& view, const Targets& targets, bool background,
                     bool occlusion_follows) const;
+  /// Whether GlassPart::kAll can be drawn.
+  bool takes_all();
   /// Glass into color. `fluid` is the smoothed F_fD, null without fluid.
   void start_glass(Lists& lists, const View& view, const Targets& targets, const gl::Texture* fluid,
                    GlassPart part) const;
@@ -88,8 +90,8 @@ class TiledMeshes {
   gl::Program triangles_;
   gl::Program opaque_;
   gl::Program behind_;
-  gl::Program behind_resolving_;
-  gl::Program all_resolving_;
+  std::optional<gl::Program> all_;  ///< made when first asked for; none: the driver refuses it
+  std::vector<std::string> all_defines_;
   gl::Program before_;
 };
 

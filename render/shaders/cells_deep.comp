@@ -8,7 +8,6 @@ layout(std430, binding = 5) restrict readonly buffer Begins { uint begins[]; };
 layout(std430, binding = 8) restrict writeonly buffer Seen { uint seen[]; };  // sorted particles
 layout(std430, binding = 9) restrict readonly buffer Used { uint used[]; };
 layout(std430, binding = 10) restrict readonly buffer Owners { uvec2 owners[]; };
-layout(std430, binding = 11) restrict writeonly buffer Batches { uvec4 batches[]; };
 uniform int entries;
 
 const uint kFew = 8u;
@@ -17,7 +16,6 @@ const int kOwn = 64 / kShare;
 shared uint open_cells[kOwn];
 shared uint sizes[kOwn];  // particles
 shared uint places[kOwn];  // of an entry's first in what is listed
-shared uint batch_places[kOwn];
 
 bool filled(ivec3 cell) {
   uint entry = entry_of(cell, entries);
@@ -48,29 +46,18 @@ void main() {
     barrier();
     if (gl_LocalInvocationID.x == 0u) {
       uint particles = 0u;
-      uint batches_here = 0u;
       for (int i = 0; i < kOwn; ++i) {
         places[i] = particles;
-        batch_places[i] = batches_here;
         uint here = open_cells[i] != 0u ? sizes[i] : 0u;
         particles += here;
-        batches_here += batches_of(here);
       }
       uint from = particles > 0u ? atomicAdd(counts[seen_at_end(entries)], particles) : 0u;
-      uint batches_from = particles > 0u ? atomicAdd(counts[batches_at(entries)], batches_here) : 0u;
-      for (int i = 0; i < kOwn; ++i) {
-        places[i] += from;
-        batch_places[i] += batches_from;
-      }
+      for (int i = 0; i < kOwn; ++i) places[i] += from;
     }
     barrier();
     if (has_one && open_cells[own] != 0u) {
       uint first = begins[entry];
       for (uint k = uint(part); k < many; k += uint(kShare)) seen[places[own] + k] = first + k;
-      for (uint k = uint(part); k < batches_of(many); k += uint(kShare)) {
-        uint from = first + k * kBatch;
-        batches[batch_places[own] + k] = uvec4(entry, from, min(from + kBatch, first + many), places[own] + k * kBatch);
-      }
     }
     barrier();
   }

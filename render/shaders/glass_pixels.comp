@@ -1,6 +1,6 @@
 // Glass by compute shaders: translucent.frag, all panes of a pixel at once, in the order in which they would be drawn: those before the
-// fluid's surface. BEHIND: those behind it, and what is seen through it is copied for the fluid; RESOLVE: over the meshes' colour as they
-// were lit. BOTH: one after the other, by the same lists; where there is fluid the composite lays those before it over it.
+// fluid's surface. BEHIND: those behind it, and what is seen through it is copied for the fluid. BOTH: one after the other, by the same
+// lists, over the meshes' colour as they were lit; where there is fluid the composite lays those before it over it.
 #include "glass.glsl"
 #include "mesh_tiles.glsl"
 #include "shared.glsl"
@@ -15,7 +15,7 @@ layout(binding = 3) writeonly uniform image2D pane_through;
 #endif
 layout(binding = 0) uniform sampler2D fluid_depth;
 layout(binding = 1) uniform sampler2D scene_depth;
-#ifdef RESOLVE
+#ifdef BOTH
 #include "resolve.glsl"
 layout(binding = 2) uniform sampler2D mesh_color;
 layout(binding = 3) uniform sampler2D occlusion;
@@ -122,7 +122,7 @@ void main() {
 #elif !defined(BEHIND)
       if (!at[k].touched) continue;
 #endif
-#ifdef RESOLVE
+#ifdef BOTH
       vec4 value = resolved(mesh_color, occlusion, texel);
 #else
       vec4 value = imageLoad(color, texel);
@@ -130,8 +130,6 @@ void main() {
       value = vec4(value.rgb * at[k].through + at[k].added, value.a);
 #ifdef BOTH
       behind[k] = value.rgb;
-#elif defined(RESOLVE)
-      imageStore(color, texel, value);
 #else
       if (at[k].touched) imageStore(color, texel, value);
 #endif

@@ -16,15 +16,10 @@ ivec3 cell_of_packed(uvec2 p) {
   return ivec3(c << 11) >> 11;
 }
 
-// Particles of one entry that a group smooths: (entry, first of the sorted, end, where the first one's result goes).
-const uint kBatch = 64u;  // of them at most
-uint batches_of(uint particles) { return (particles + kBatch - 1u) / kBatch; }
-
 // In Counts, after an entry each.
 int drawn_at(int entries) { return entries; }         // particles in all entries
 int seen_at_end(int entries) { return entries + 1; }  // of those, which are not deep
 int used_at(int entries) { return entries + 2; }      // entries with particles
-int batches_at(int entries) { return entries + 3; }
 
 int invocation() { return int(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64 + int(gl_LocalInvocationID.x); }
 int group_index() { return int(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x); }
