@@ -108,12 +108,13 @@ TEST(Devices, ASpecTellsWhetherTheHandIsMoved) {
   Scene scene;
   scene.grips.resize(1);
   for (const char* spec :
-       {"script", "mouse", "spacemouse", "falcon:1", "plugin:./lib.so", "operator:tight"}) {
+       {"script", "mouse", "spacemouse", "falcon:1", "plugin:" SLOSH_EXAMPLE_PLUGIN, "operator:tight"}) {
     const Result<HandDevice> hand = make_device(scene, 0, spec, Pose{}, true);
     ASSERT_TRUE(hand) << spec;
     EXPECT_EQ(is_felt(spec), hand.value().device->gives_way()) << spec;
   }
   EXPECT_FALSE(is_felt("nothing at all"));
+  EXPECT_FALSE(make_device(scene, 0, "plugin:./lib.so", Pose{}, true)) << "there is no such library";
 }
 
 }  // namespace

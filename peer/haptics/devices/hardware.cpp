@@ -2,6 +2,8 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <memory>
+#include <optional>
 
 #include "peer/haptics/devices/falcon_device.h"
 #include "peer/haptics/devices/falcon_usb.h"
@@ -22,13 +24,23 @@ Made make_operator(const std::string& options, const HandPlace& place) {
   return Made(std::make_unique<OperatorDevice>(PoseTrack(place.motion, place.start), settings.value()));
 }
 
+// Now, and not when all is measured and settled. Loading runs what is in a library, so it is fenced; what
+// does not end is said when the device is opened.
+std::optional<Error> why_not_loaded(const std::string& file) {
+  constexpr double kPatience = 1.0;  // s
+  const auto refused = std::make_shared<std::optional<Error>>();
+  const std::string did = fenced(kPatience, [refused, file] {
+    if (const Result<PluginLibrary> library = load_plugin(file); !library) *refused = library.error();
+  });
+  return did.empty() ? *refused : std::nullopt;
+}
+
 Made make_plugin(const std::string& rest, const HandPlace& place) {
   const std::size_t colon = rest.find(':');
   const std::string file = rest.substr(0, colon);
   if (file.empty())
     return Error{"--device plugin", "no library is named", "Give --device plugin:FILE[:OPTIONS]"};
-  // Now, and not when all is measured and settled.
-  if (const Result<PluginLibrary> library = load_plugin(file); !library) return library.error();
+  if (const std::optional<Error> error = why_not_loaded(file)) return *error;
   const std::string options = colon == std::string::npos ? "" : rest.substr(colon + 1);
   return Made(std::make_unique<PluginDevice>(file, options, place));
 }
