@@ -25,6 +25,9 @@ constexpr double kLongestStep = 0.1;
 /// N of a change that is not foreseen at which the whole damping acts, and s for which that is remembered.
 constexpr double kUnrest = 15.0;
 constexpr double kUnrestMemory = 5.0;
+/// N and N·m by which the damped spring may be stretched by the delay alone, whatever the host has in it.
+constexpr double kLeastStretch = 1.0;
+constexpr double kLeastTwist = 0.1;
 /// J: where nobody counts for another hand, nothing that comes out is too much.
 constexpr double kUncounted = 1e9;
 /// J by which the balance may be more than the replica holds, and s, or round trips if that is longer, over
@@ -62,7 +65,8 @@ HeldBody::HeldBody(const ReplicaBody& body, std::vector<ReplicaGrip> grips, cons
       load_work_(body, grips),
       follows_slosh_(tuning.follows_slosh),
       carried_(body),
-      on_hands_(grips.size()) {
+      on_hands_(grips.size()),
+      used_(grips.size()) {
   for (const ReplicaGrip& grip : grips) {
     grips_.push_back(grip.pose);
     gains_.push_back(grip.gains);
@@ -147,6 +151,10 @@ void HeldBody::hear(const HostWord& word) noexcept {
   for (std::size_t g = 0; g < hands_.size() && g < word.hands.size(); ++g) {
     const HostHand& said = word.hands[g];
     ReplicaHand& hand = hands_[g];
+    used_[g] = said.handle;
+    if (!said.engaged)
+      used_[g] = {heard_.position + heard_.orientation * (grips_[g].position - body_.center),
+                  heard_.orientation * grips_[g].orientation};
     if (hand.own) {
       if (said.engaged && said.ack_ns != 0)
         ack_ns = ack_ns == 0 ? said.ack_ns : std::min(ack_ns, said.ack_ns);
@@ -225,7 +233,14 @@ void HeldBody::begin_count(const HostWord& word) noexcept {
 
 GripState HeldBody::grip(std::size_t g) const noexcept {
   const GripState here = replica_.grip(g);
-  if (spring_ <= 0.0) return here;
+  return spring_ > 0.0 ? between(here, late_grip(g), spring_) : here;
+}
+
+/// The host's body goes with its hand, so that a spring to where it was is stretched by the delay: 142 N at
+/// most where 10 were right (2000 N/m, a quarter of a metre a second, 400 ms). What the hand did since the
+/// host used it counts only up to what the host itself has in the coupling: so a body that rests on something
+/// still holds it, and one that follows does not drag it back.
+GripState HeldBody::late_grip(std::size_t g) const noexcept {
   const double on = std::min(since_heard_ - ahead_, std::max(kCarriedOn, step_));
   const Pose body{heard_.position + on * heard_.twist.linear,
                   rotate_by(heard_.orientation, on * heard_.twist.angular)};
@@ -233,7 +248,29 @@ GripState HeldBody::grip(std::size_t g) const noexcept {
   GripState state;
   state.pose = {body.position + arm, body.orientation * grips_[g].orientation};
   state.twist = {heard_.twist.linear + glm::cross(heard_.twist.angular, arm), heard_.twist.angular};
-  return between(here, state, spring_);
+  const ReplicaHand& hand = hands_[g];
+  if (!hand.own || !hand.engaged) return state;
+  // The hand as it was used, carried on with the grip.
+  const glm::dvec3 old_arm = heard_.orientation * (grips_[g].position - body_.center);
+  const glm::dvec3 used = state.pose.position + used_[g].position - heard_.position - old_arm;
+  const glm::dquat used_turn =
+      rotate_by(state.pose.orientation,
+                rotation_between(heard_.orientation * grips_[g].orientation, used_[g].orientation));
+  const glm::dvec3 since = hand.handle.position - used;
+  const glm::dvec3 turned = rotation_between(used_turn, hand.handle.orientation);
+  const auto left_out = [](double stretched, double most) {
+    return stretched > most ? 1.0 - most / stretched : 0.0;
+  };
+  const CouplingGains& k = gains_[g];
+  const double goes_along =
+      left_out(k.stiffness * glm::length(since), std::max(glm::length(on_hands_[g].force), kLeastStretch));
+  const double turns_along = left_out(k.rotational_stiffness * glm::length(turned),
+                                      std::max(glm::length(on_hands_[g].torque), kLeastTwist));
+  state.pose.position += goes_along * since;
+  state.pose.orientation = rotate_by(state.pose.orientation, turns_along * turned);
+  state.twist.linear += goes_along * (hand.twist.linear - state.twist.linear);
+  state.twist.angular += turns_along * (hand.twist.angular - state.twist.angular);
+  return state;
 }
 
 Wrench HeldBody::guard(std::size_t g, const Wrench& wanted, const Pose& hand, const Twist& twist, double dt,

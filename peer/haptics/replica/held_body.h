@@ -81,6 +81,8 @@ class HeldBody {
   void lend() noexcept;
   void begin_count(const HostWord& word) noexcept;
   void note_unrest(const FluidLoad& load, double elapsed) noexcept;
+  /// Where the damped spring goes to.
+  GripState late_grip(std::size_t g) const noexcept;
   /// What acts on the body besides couplings and the fluid's answer to its acceleration: fluid, weight,
   /// contacts.
   FluidLoad load_of(const HostWord& word) noexcept;
@@ -120,6 +122,8 @@ class HeldBody {
   glm::dvec3 met_{0.0};           // N: what acts besides couplings and fluid, weight and contacts
   glm::dvec3 met_late_{0.0};      // N: the same as late as the replica follows it
   std::vector<Wrench> on_hands_;  // of the word before
+  std::vector<Pose> used_;        // own hands as the host used them, of the newest word; where none was
+                                  // engaged, the grip
   double stored_ = 0.0;           // J in the couplings when this began, less what had been counted by then
   double forgotten_ = 0.0;        // J of the balance that nothing here holds any more
   double work_heard_ = 0.0;       // J: BodyReplica::work_heard() at the tick before
