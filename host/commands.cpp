@@ -92,6 +92,7 @@ Result<bool> Host::reset() {
   run_ += 1;
   for (double& until : status_until_) until = 0.0;
   world_.fill(latest_);
+  gone_.update(latest_);
   gate_.reset(latest_, clock_ns());
   models_.clear();
   fluid_models_.restart();

@@ -63,6 +63,7 @@ Host::Host(World world, const Scene& scene, Channel& channel, HostOptions option
       gate_(scene),
       fluid_models_(scene) {
   for (const Grip& grip : scene.grips) grip_bodies_.push_back(grip.body);
+  for (const Body& body : scene.bodies) body_names_.push_back(body.name);
   for (std::size_t g = 0; g < world_.grip_stiffness().size(); ++g) gate_.set_stiffness(g, world_.grip_stiffness()[g]);
   modelled_.resize(scene.bodies.size());
   fluids_ = scene.fluids.size();
@@ -72,6 +73,7 @@ Host::Host(World world, const Scene& scene, Channel& channel, HostOptions option
   run_ = options_.run;
   show_state();
   world_.fill(latest_);
+  gone_.update(latest_);  // of a world that was restored: told then
   const Diagnostics start = world_.diagnostics();
   report_.start_mass = start.mass;
   report_.start_retired = start.retired;
@@ -191,6 +193,15 @@ void Host::tell_refused() {
   }
 }
 
+void Host::tell_gone() {
+  for (const GoneBody& gone : gone_.update(latest_)) {
+    const auto body = static_cast<std::size_t>(gone.body);
+    const std::string words = gone_text(body_names_[body], gone);
+    if (report_.gone.size() < kMostGone) report_.gone.push_back(words);
+    for (HostTap* tap : taps_) tap->on_gone_body(body, words);
+  }
+}
+
 void Host::show_state() {
   shown_time_.store(world_.time(), std::memory_order_relaxed);
   shown_tick_.store(world_.tick(), std::memory_order_relaxed);
@@ -256,6 +267,7 @@ void Host::run() {
 
     note_status(world_.take_status());
     world_.fill(latest_);
+    tell_gone();
     model_fluid(input);
     for (HostTap* tap : taps_) tap->after_step(world_);
     if (single) {

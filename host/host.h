@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "host/fluid_demand.h"
+#include "host/gone_bodies.h"
 #include "host/input_gate.h"
 #include "host/snapshot_demand.h"
 #include "host/tap.h"
@@ -74,10 +75,14 @@ struct HostReport {
   std::uint64_t fluid_models = 0;                ///< made, over all bodies
   std::uint32_t status = 0;                      ///< every StatusBit that was ever set
   std::array<std::uint64_t, 32> status_steps{};  ///< in how many steps, one a bit
+  std::vector<std::string> gone;                 ///< bodies that left for good, in words; kMostGone at most
   Diagnostics diagnostics;                       ///< of the last state
   double start_mass = 0.0;                       ///< kg of fluid at the start
   std::uint64_t start_retired = 0;               ///< particles lost before it, while the world settled
 };
+
+/// Of HostReport::gone.
+constexpr std::size_t kMostGone = 100;
 
 /// Called on the host's thread with what came of a command.
 using HostAnswer = std::function<void(const Result<bool>&)>;
@@ -146,6 +151,7 @@ class Host {
   void publish_snapshot_if_due();
   void tell_published();
   void tell_refused();
+  void tell_gone();
   void note_status(std::uint32_t status);
   std::uint32_t recent_status() const;
 
@@ -157,6 +163,8 @@ class Host {
   BodySnapshot latest_;  // what the gate compares new hands with
   FluidModels fluid_models_;
   std::vector<int> grip_bodies_;          // one a grip
+  std::vector<std::string> body_names_;
+  GoneBodies gone_;
   std::vector<char> modelled_;            // one a body
   std::vector<FluidWrenchModel> models_;  // of the last step
   double next_snapshot_ = 0.0;            // simulated s

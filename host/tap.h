@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "host/pose_fault.h"
@@ -60,6 +61,8 @@ class HostTap {
   virtual void while_standing(const World& world) { (void)world; }
   /// A pose of this grip was not used. As often as poses come: whoever tells people, tells them once.
   virtual void on_refused_pose(std::uint32_t grip, PoseFault fault) { (void)grip, (void)fault; }
+  /// A body has left the world for good; `words` say which, when and where. Once, until the world is set back.
+  virtual void on_gone_body(std::size_t body, const std::string& words) { (void)body, (void)words; }
   /// Body states, and a snapshot where one was due, are in the channel: wake whoever sends them.
   virtual void after_publish() {}
   /// After a command that was granted; the channel has the world as it is now.

@@ -7,8 +7,6 @@
 #include <string>
 #include <utility>
 
-#include "sim/hash.h"
-
 namespace slosh {
 
 namespace {
@@ -16,7 +14,8 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::uint32_t kMagic = 0x54535753;  // "SWST"
-constexpr std::uint32_t kVersion = 4;
+constexpr std::uint32_t kVersion = 5;
+constexpr std::uint32_t kBeforeGone = 4;  // without RigidBody::gone, and read as well: no body was
 constexpr std::uint32_t kBeforeStiffness = 3;  // without grip_stiffness, and read as well: it was the scene's
 constexpr double kLargest = 1.0e9;  // beyond this no position, speed or force of a body is one
 constexpr std::int64_t kMostOfImpulse = std::int64_t{1} << 62;
@@ -242,52 +241,6 @@ void check_particles(Source& s, const StateFrame& frame, const RunConstants& con
 
 }  // namespace
 
-StateFrame state_frame(const Scene& scene, const Plan& plan, const ParticleStart& start) {
-  Fingerprint print;
-  // Rounded, so that the last bit of a sum does not tell one machine's build from another's.
-  const auto real = [&](double value) { print.add(static_cast<float>(value)); };
-  const auto vector = [&](const glm::dvec3& v) {
-    for (int i = 0; i < 3; ++i) real(v[i]);
-  };
-  vector(scene.gravity);
-  vector(scene.domain_min);
-  vector(scene.domain_max);
-  real(scene.support_ratio);
-  real(plan.tension);
-  print.add(static_cast<std::uint32_t>(plan.model));
-  for (const Fluid& fluid : scene.fluids) {
-    real(fluid.rest_density);
-    real(fluid.dynamic_viscosity);
-  }
-  for (const Body& body : scene.bodies) {
-    print.add(static_cast<std::uint32_t>(body.motion));
-    print.add(static_cast<std::uint32_t>(body.point_probe));
-    vector(body.pose.position);
-    for (const double part :
-         {body.pose.orientation.w, body.pose.orientation.x, body.pose.orientation.y, body.pose.orientation.z,
-          body.dynamic_viscosity, body.friction, body.restitution, body.particle_density}) {
-      real(part);
-    }
-    if (body.motion != BodyMotion::kFree) continue;
-    real(body.mass.mass);
-    vector(body.mass.center_of_mass);
-    for (int i = 0; i < 3; ++i) vector(body.mass.inertia[i]);
-  }
-  for (const Grip& grip : scene.grips) {
-    print.add(static_cast<std::uint32_t>(grip.body));
-    vector(grip.pose.position);
-    for (const double part :
-         {grip.stiffness, grip.damping, grip.rotational_stiffness, grip.rotational_damping}) {
-      real(part);
-    }
-  }
-  for (const std::uint8_t kind : start.particles.kind) print.add(kind);
-  return {start.fluid_count,   start.probes.size(), start.fixed.size() + start.moving.size(),
-          scene.bodies.size(), scene.grips.size(),  scene.fluids.size(),
-          plan.spacing,        plan.time_step,      plan.stiffness,
-          print.value()};
-}
-
 void write_state(const StateFrame& frame, const RunConstants& constants, const SavedState& state,
                  std::vector<std::uint8_t>& out) {
   const ParticleState& p = state.particles;
@@ -302,7 +255,10 @@ void write_state(const StateFrame& frame, const RunConstants& constants, const S
   s.real(state.gravity_scale);
   s.real(state.age);
   for (const double viscosity : state.viscosities) s.real(viscosity);
-  for (const RigidBody& body : state.bodies) body_state(s, body);
+  for (const RigidBody& body : state.bodies) {
+    body_state(s, body);
+    s.raw(static_cast<std::uint8_t>(body.gone));
+  }
   for (const Wrench& w : state.wrenches) wrench(s, w);
   for (const GripState& grip : state.grips) grip_state(s, grip);
   for (const HandleInput& input : state.last_input) {
@@ -331,7 +287,7 @@ Result<bool> read_state(std::span<const std::uint8_t> bytes, const StateFrame& f
   s.raw(magic);
   s.raw(version);
   if (magic != kMagic) s.fail("these are not the bytes of a saved world");
-  if (version != kVersion && version != kBeforeStiffness) {
+  if (version != kVersion && version != kBeforeGone && version != kBeforeStiffness) {
     s.fail("it has version " + std::to_string(version) + ", and this program reads version " +
            std::to_string(kVersion));
   }
@@ -352,6 +308,10 @@ Result<bool> read_state(std::span<const std::uint8_t> bytes, const StateFrame& f
   for (RigidBody& body : state.bodies) {
     RigidBody read = body;
     body_state(s, read);
+    std::uint8_t gone = 0;
+    if (version == kVersion) s.raw(gone);
+    if (gone > (body.free ? 1 : 0)) s.fail("a body in it is neither in the world nor out of it");
+    read.gone = gone != 0;
     if (body.free) body = read;
   }
   state.wrenches.resize(frame.bodies);

@@ -6,7 +6,7 @@
 namespace slosh {
 
 std::string status_text(std::uint32_t status) {
-  static constexpr std::array<std::pair<StatusBit, const char*>, 10> kWords{{
+  static constexpr std::array<std::pair<StatusBit, const char*>, 11> kWords{{
       {kStatusNonFinite, "a particle or body became non-finite and was put out of the world"},
       {kStatusEscaped, "particles left the domain and were retired"},
       {kStatusSpeedLimited, "particles were too fast and were slowed"},
@@ -18,6 +18,7 @@ std::string status_text(std::uint32_t status) {
       {kStatusDeviceLost, "the GPU failed and the fluid stands still: run again with the CPU backend"},
       {kStatusGuarded, "fluid was pressed at a wall so hard that particles had to be held back"},
       {kStatusViscosityCut, "the fluid is so viscous that its drag was not solved to the end"},
+      {kStatusBodyGone, "a body left the world for good and was taken out of the motion"},
   }};
   std::string text;
   for (const auto& [bit, words] : kWords) {

@@ -25,6 +25,7 @@ enum StatusBit : std::uint32_t {
       1u << 7,  ///< a GPU call failed: the fluid stands still from here on (World::failure says why)
   kStatusGuarded = 1u << 8,  ///< particles would have passed a wall and were put back
   kStatusViscosityCut = 1u << 9,  ///< implicit viscosity ended before it was as exact as it should be
+  kStatusBodyGone = 1u << 10,  ///< a free body left the world for good and stands still outside (BodyState::gone)
 };
 
 /// The status in words, "; " between, empty when nothing is set.
@@ -35,6 +36,7 @@ struct BodyState {
   Twist twist;                     ///< of the centre of mass, world axes
   glm::dvec3 center_of_mass{0.0};  ///< world
   Wrench fluid;                    ///< on the body by the fluid, about its centre of mass, last step
+  bool gone = false;               ///< it left the world for good: it stands still, and no hand can hold it
 };
 
 struct GripState {

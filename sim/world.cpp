@@ -91,7 +91,7 @@ void World::fill(BodySnapshot& out) const {
   for (std::size_t b = 0; b < out.bodies.size(); ++b) {
     const RigidBody& body = bodies[b];
     out.bodies[b] = {
-        body.mesh_pose(), {body.velocity, body.angular_velocity}, body.position, impl_->wrenches[b]};
+        body.mesh_pose(), {body.velocity, body.angular_velocity}, body.position, impl_->wrenches[b], body.gone};
   }
   out.grips = impl_->bodies.grips();
   for (std::size_t g = 0; g < out.grips.size(); ++g) {

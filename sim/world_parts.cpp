@@ -83,6 +83,7 @@ void World::Impl::run(const SubStep& step, TakePart part) {
   if (moving) {
     Stopwatch watch;
     bodies.move(plan(), step);
+    status |= bodies.part_with_lost(gravity_scale * scene.gravity);
     times.body += watch.lap();
   }
   if (fluid_waits) engine->advance(step.dt, bodies.bodies());
@@ -113,7 +114,7 @@ std::span<const RigidBody> World::Impl::expected(const SubStep& step, bool movin
   if (!moving || !plan().guards_walls() || !plan().has(PassId::kPlaceBodies)) return bodies.bodies();
   ahead = bodies.bodies();
   for (RigidBody& body : ahead) {
-    if (!body.free) continue;
+    if (!body.moves()) continue;
     body.position += step.dt * body.velocity;
     body.orientation = rotate_by(body.orientation, step.dt * body.angular_velocity);
   }

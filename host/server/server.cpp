@@ -311,8 +311,19 @@ void Server::end(const std::string& why) {
   peers_.sweep();
 }
 
-void Server::on_start(const World&, const HostState& state) {
-  mailbox_.post([this, state] { switches_.told(state); });
+void Server::on_start(const World& world, const HostState& state) {
+  BodySnapshot bodies;
+  world.fill(bodies);
+  std::vector<char> gone;
+  for (const BodyState& body : bodies.bodies) gone.push_back(body.gone);
+  mailbox_.post([this, state, gone] {
+    switches_.told(state);
+    gone_ = gone;
+  });
+}
+
+void Server::on_gone_body(std::size_t body, const std::string& words) {
+  mailbox_.post([this, body, words] { body_gone(body, words); });
 }
 
 void Server::after_change(const World&, const HostCommand& change, const HostState& state) {

@@ -129,6 +129,7 @@ class Server final : public EndpointEvents, public HostTap {
   void on_start(const World& world, const HostState& state) override;
   void after_publish() override { mailbox_.wake(); }
   void after_change(const World& world, const HostCommand& change, const HostState& state) override;
+  void on_gone_body(std::size_t body, const std::string& words) override;
   void on_refused_pose(std::uint32_t grip, PoseFault fault) override;
 
  private:
@@ -170,6 +171,8 @@ class Server final : public EndpointEvents, public HostTap {
   void answer(Peer& peer, std::uint32_t request, bool granted, const std::string& text);
   void world_changed(const HostCommand& change, const HostState& state);
   void start_if_held();
+  void body_gone(std::size_t body, const std::string& words);
+  bool is_gone(std::uint32_t grip) const;
 
   // server_traffic.cpp
   void handle(Peer& peer, const wire::Poses& poses);
@@ -211,6 +214,7 @@ class Server final : public EndpointEvents, public HostTap {
   /// One a grip, bits by PoseFault: kinds that its holder was told of. The host's thread sets them, ours
   /// clears.
   std::vector<std::atomic<std::uint32_t>> faults_told_;
+  std::vector<char> gone_;  // one a body: it left the world
   std::uint64_t world_number_ = 0;
   std::uint16_t port_ = 0;
   wire::Bytes private_key_;

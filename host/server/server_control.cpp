@@ -152,6 +152,11 @@ void Server::answer(Peer& peer, std::uint32_t request, bool granted, const std::
 
 wire::Fault Server::handle(Peer& peer, const wire::GripRequest& request) {
   Seat& seat = *seats_.by_number(peer.seat);
+  if (request.take && is_gone(request.grip)) {
+    answer(peer, request.request, false,
+           seats_.grip_name(request.grip) + " is on a body that left the world, until the world is set back");
+    return {};
+  }
   const bool held = request.take && seats_.holder(request.grip) == &seat;
   const Outcome outcome = request.take ? seats_.take(seat, request.grip) : seats_.release(seat, request.grip);
   answer(peer, request.request, outcome.granted, outcome.text);
@@ -166,6 +171,25 @@ wire::Fault Server::handle(Peer& peer, const wire::GripRequest& request) {
   }
   roster_changed();
   return {};
+}
+
+bool Server::is_gone(std::uint32_t grip) const {
+  const std::vector<Grip>& grips = world_.scene->grips;
+  if (grip >= grips.size()) return false;
+  const auto body = static_cast<std::size_t>(grips[grip].body);
+  return body < gone_.size() && gone_[body] != 0;
+}
+
+void Server::body_gone(std::size_t body, const std::string& words) {
+  if (body >= gone_.size()) gone_.resize(body + 1, 0);
+  gone_[body] = 1;
+  for (std::uint32_t grip = 0; grip < hands_.size(); ++grip) {
+    if (!is_gone(grip)) continue;
+    if (const Seat* holder = seats_.holder(grip)) seats_.release(*seats_.by_number(holder->number), grip);
+    hands_.let_go(grip, now(), true);
+  }
+  roster_changed();
+  notice_all(words + kGoneAdvice);
 }
 
 void Server::start_if_held() {
@@ -244,7 +268,10 @@ wire::Fault Server::handle(Peer& peer, const wire::Bye& bye) {
 
 void Server::world_changed(const HostCommand& change, const HostState& state) {
   switches_.told(state);
-  if (change.action == HostAction::kReset) hands_.stand_all(now());
+  if (change.action == HostAction::kReset) {
+    hands_.stand_all(now());
+    gone_.clear();
+  }
   send_all(switches_.message());
 }
 

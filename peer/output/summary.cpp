@@ -156,6 +156,7 @@ Json to_json(const RunSummary& s) {
                     {"height", s.height},      {"frames", s.frames},     {"dropped", s.frames_dropped},
                     {"ms", spread(s.frame_ms)}};
   json["status"] = status_words(s);
+  if (!s.gone.empty()) json["gone"] = s.gone;
   json["slips"] = {{"count", s.slips}, {"seconds", s.slipped}};
   json["rejected_poses"] = s.rejected_poses;
   json["samples_lost"] = s.samples_lost;
@@ -219,6 +220,7 @@ std::string in_words(const RunSummary& s) {
     text += s.particles_in_solids == 1
                 ? "1 fluid particle is inside a solid.\n"
                 : grouped(s.particles_in_solids) + " fluid particles are inside solids.\n";
+  for (const std::string& body : s.gone) text += body + ".\n";
   text += in_words(s.measured);
   if (s.export_frames > 0) {
     text += format("%s frames for other programs, %.2f s each.\n", grouped(s.export_frames).c_str(),

@@ -90,6 +90,7 @@ struct RunSummary {
   std::uint32_t status = 0;  ///< StatusBits
   std::array<std::uint64_t, 32>
       status_steps{};  ///< in how many steps each was set; 0 where that is not known
+  std::vector<std::string> gone;  ///< bodies that left the world for good, in words
   std::uint64_t slips = 0;
   double slipped = 0.0;  ///< s
   std::uint64_t rejected_poses = 0;

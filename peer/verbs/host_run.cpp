@@ -98,6 +98,7 @@ void print_summary(const HostedRun& run, const HostReport& report, const ServerF
   std::printf("network    %.1f MB sent, %.1f s of processor time\n",
               1e-6 * static_cast<double>(figures.bytes_sent), net_seconds);
   if (report.status != 0) std::printf("status     %s\n", status_text(report.status).c_str());
+  for (const std::string& body : report.gone) std::printf("gone       %s\n", clean_lines(body, 300).c_str());
   if (run.checkpoint()) {
     const keep::CheckpointReport saved = run.checkpoint()->report();
     if (saved.problem.empty())

@@ -252,6 +252,7 @@ void LocalRun::report(RunSummary& s) const {
   s.time_step = prepared_.plan.time_step;
   s.status |= host.status;
   s.status_steps = host.status_steps;
+  s.gone = host.gone;
   s.slips = host.slips;
   s.slipped = host.slipped;
   s.rejected_poses += host.rejected_poses;

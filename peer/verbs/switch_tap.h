@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "host/gone_bodies.h"
 #include "host/tap.h"
 
 namespace slosh {
@@ -14,6 +15,8 @@ class SwitchTap final : public HostTap {
  public:
   void on_start(const World&, const HostState& state) override { set(state); }
   void after_change(const World&, const HostCommand&, const HostState& state) override { set(state); }
+
+  void on_gone_body(std::size_t, const std::string& words) override { tell(words + kGoneAdvice); }
 
   HostState state() const {
     const std::lock_guard lock(mutex_);

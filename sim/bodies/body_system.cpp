@@ -5,7 +5,8 @@
 namespace slosh {
 
 BodySystem::BodySystem(const Scene& scene, const SampledScene& sampled)
-    : finder_(scene, sampled),
+    : room_(scene, sampled),
+      finder_(scene, sampled),
       hands_(scene),
       solves_(scene.bodies.size()),
       changes_(scene.bodies.size()),
@@ -45,7 +46,7 @@ void BodySystem::predict(const Plan& plan, const BodyForces& forces, const SubSt
     const auto held = couplings_of(static_cast<int>(b));
     out[b] = ViscousBody{};
     out[b].twist = {body.velocity, body.angular_velocity};
-    out[b].moves = part && body.free && !(held_only && held.empty());
+    out[b].moves = part && body.moves() && !(held_only && held.empty());
     if (!out[b].moves) continue;
     Wrench external = forces.fluid[b];
     external.force += body.mass * forces.gravity;
@@ -71,6 +72,19 @@ void BodySystem::move(const Plan& plan, const SubStep& step) {
   }
 }
 
+std::uint32_t BodySystem::part_with_lost(const glm::dvec3& gravity) {
+  std::uint32_t status = 0;
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    RigidBody& body = bodies_[b];
+    if (!body.moves() || !room_.lost(body.position, gravity) || !couplings_of(static_cast<int>(b)).empty())
+      continue;
+    body.gone = true;
+    body.velocity = body.angular_momentum = body.angular_velocity = glm::dvec3(0.0);
+    status |= kStatusBodyGone;
+  }
+  return status;
+}
+
 std::span<const ActiveCoupling> BodySystem::couplings_of(int body) const {
   const auto first =
       std::find_if(couplings_.begin(), couplings_.end(), [&](const auto& c) { return c.body == body; });
@@ -84,7 +98,7 @@ std::uint32_t BodySystem::solve_alone(const BodyForces& forces, double dt, bool 
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     RigidBody& body = bodies_[b];
     const auto held = couplings_of(static_cast<int>(b));
-    if (!body.free || (held_only && held.empty())) {
+    if (!body.moves() || (held_only && held.empty())) {
       solves_[b] = BodySolve{};
       continue;
     }

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "sim/bodies/body_room.h"
 #include "sim/bodies/contacts.h"
 #include "sim/bodies/hands.h"
 #include "sim/plan.h"
@@ -45,6 +46,9 @@ class BodySystem {
   std::span<const Twist> changes() const { return changes_; }
   /// Moves the bodies on by the sub-step that was solved.
   void move(const Plan& plan, const SubStep& step);
+  /// Takes what left for good (BodyRoom) and is held by nobody out of the motion: it stands still from then on.
+  /// After move(). Returns StatusBits.
+  std::uint32_t part_with_lost(const glm::dvec3& gravity);
 
   /// Multiplies the velocities of the bodies that a hand holds by `keep`.
   void damp_held(double keep);
@@ -66,6 +70,7 @@ class BodySystem {
 
   std::vector<ContactMaterial> materials_;
   std::vector<RigidBody> bodies_;
+  BodyRoom room_;
   ContactFinder finder_;
   Hands hands_;
   std::span<const ActiveCoupling> couplings_;  // of this sub-step

@@ -291,6 +291,7 @@ void ContactFinder::find(const std::vector<RigidBody>& bodies, const std::vector
   for (int i = 0; i < count; ++i) {
     for (int j = i + 1; j < count; ++j) {
       if (!bodies[i].free && !bodies[j].free) continue;
+      if (bodies[i].gone || bodies[j].gone) continue;
       if (shapes_[i].points.empty() || shapes_[j].points.empty()) continue;
       const double reach =
           margin + dt * (motion.fastest(i, shapes_[i].radius) + motion.fastest(j, shapes_[j].radius));

@@ -10,7 +10,7 @@
 
 namespace slosh {
 
-/// Finds contacts between bodies of which at least one is free. A pair gets at most kMaxContactsPerPair,
+/// Finds contacts between bodies of which at least one is free and none gone. A pair gets at most kMaxContactsPerPair,
 /// spread over the touching patch. Deterministic.
 class ContactFinder {
  public:

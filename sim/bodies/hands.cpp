@@ -54,6 +54,7 @@ const std::vector<ActiveCoupling>& Hands::couple(const std::vector<RigidBody>& b
     const HandleInput& input = last_[g];
     if (!input.engaged) continue;
     const Grip& grip = grips_[g];
+    if (bodies[grip.body].gone) continue;
     const double scale = std::clamp(input.scale, 0.0, 1.0);
     ActiveCoupling coupling;
     coupling.grip = static_cast<int>(g);

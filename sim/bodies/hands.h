@@ -23,6 +23,7 @@ class Hands {
   std::uint32_t take(std::span<const HandleInput> handles, double time_step);
 
   /// The couplings `elapsed` s into the step, the handles moved on with their twists, sorted by body.
+  /// None where the body is gone.
   const std::vector<ActiveCoupling>& couple(const std::vector<RigidBody>& bodies, double elapsed);
 
   /// Times the scene's springs, > 0: what is asked for, and what acts on the way there. One a grip each.

@@ -11,6 +11,7 @@ namespace slosh {
 struct RigidBody {
   bool free = false;
   bool point = false;       ///< translation only (a probe)
+  bool gone = false;        ///< it left for good (body_room.h): it stands where it was then, and nothing touches or holds it
   double mass = 0.0;        ///< kg
   glm::dmat3 inertia{1.0};  ///< kg·m², about the centre of mass, body axes
   glm::dmat3 inverse_inertia{1.0};
@@ -22,6 +23,7 @@ struct RigidBody {
   glm::dvec3 angular_momentum{0.0};            ///< kg·m²/s, world
   glm::dvec3 angular_velocity{0.0};            ///< rad/s, world, from the momentum
 
+  bool moves() const { return free && !gone; }
   SLOSH_HD Pose mesh_pose() const { return {position - orientation * local_center, orientation}; }
   // Out of line: what the compiler fuses in it must not depend on its callers, or a run's hash would.
   SLOSH_HD __attribute__((noinline)) glm::dmat3 world_inertia() const {

@@ -202,6 +202,26 @@ TEST_F(HostTest, StepsAskedOfAWorldThatRunsAreNotTakenLater) {
   r->host.wait();
 }
 
+TEST_F(HostTest, ABodyThatLeavesTheWorldIsToldOnceARunWithItsNameAndPlace) {
+  for (Body& body : scene.bodies) {
+    if (body.point_probe) body.twist.linear = {6.0, 3.0, 0.0};
+  }
+  struct Listener : HostTap {
+    void on_gone_body(std::size_t, const std::string& words) override { told.push_back(words); }
+    std::vector<std::string> told;
+  } listener;
+  HostOptions options;
+  options.until = 2.0;
+  const auto r = rig(options);
+  r->host.add_tap(listener);
+  r->host.start();
+  r->host.wait();
+  ASSERT_EQ(listener.told.size(), 1u);
+  EXPECT_EQ(r->host.report().gone, listener.told);
+  EXPECT_EQ(listener.told[0].rfind("'probe' left the world at ", 0), 0u) << listener.told[0];
+  EXPECT_NE(r->host.report().status & kStatusBodyGone, 0u);
+}
+
 TEST_F(HostTest, AtASlowPaceTheWorldTakesItsTime) {
   HostOptions options;
   options.until = 0.05;

@@ -7,7 +7,7 @@ namespace {
 
 TEST(StatusText, SaysEveryBitInWords) {
   EXPECT_EQ(status_text(0), "");
-  for (std::uint32_t bit = 1; bit <= kStatusViscosityCut; bit <<= 1)
+  for (std::uint32_t bit = 1; bit <= kStatusBodyGone; bit <<= 1)
     EXPECT_FALSE(status_text(bit).empty()) << bit;
   const std::string both = status_text(kStatusEscaped | kStatusTimeSlipped);
   EXPECT_NE(both.find("left the domain"), std::string::npos);

@@ -4,6 +4,7 @@
 
 #include "net/clock.h"
 #include "tests/host/server/server_kit.h"
+#include "tests/support/stirred_tank.h"
 
 namespace slosh {
 namespace {
@@ -103,6 +104,34 @@ TEST_F(ServerTest, ARefusedPoseIsToldToItsHolderOnceAKind) {
   server->on_refused_pose(0, PoseFault::kTooFast);
   go(0.1);
   EXPECT_EQ(refusals(ana), 3) << "a new hold is told anew";
+}
+
+TEST_F(ServerTest, WhatLeftTheWorldIsToldToAllAndCannotBeHeldUntilItIsSetBack) {
+  ScriptedPeer& ana = join(1, "Ana");
+  ScriptedPeer& ben = join(2, "Ben");
+  ana.take(0);
+  go(0.1);
+  ASSERT_TRUE(ana.answers.at(0).granted);
+  const auto body = static_cast<std::size_t>(scene.grips[0].body);
+  server->on_gone_body(body, "'bucket' left the world at 1.00 s, at (0.00 -3.00 0.00) m");
+  go(0.1);
+  EXPECT_TRUE(ana.noticed("'bucket' left the world at 1.00 s"));
+  EXPECT_TRUE(ben.noticed("'bucket' left the world at 1.00 s"));
+  ASSERT_NE(ben.entry("Ana"), nullptr);
+  EXPECT_TRUE(ben.entry("Ana")->grips.empty()) << "nobody holds it any more";
+  ben.take(0);
+  go(0.1);
+  ASSERT_EQ(ben.answers.size(), 1u);
+  EXPECT_FALSE(ben.answers[0].granted);
+  EXPECT_EQ(ben.answers[0].text, "grip 'left' is on a body that left the world, until the world is set back");
+
+  const World other = testing::world_of(testing::stirred_tank());
+  server->after_change(other, {HostAction::kReset}, {});
+  go(0.1);
+  ben.take(0);
+  go(0.1);
+  ASSERT_EQ(ben.answers.size(), 2u);
+  EXPECT_TRUE(ben.answers[1].granted) << ben.answers[1].text;
 }
 
 TEST_F(ServerTest, GripsAreTakenReleasedAndRefusedInWords) {

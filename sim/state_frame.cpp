@@ -1,0 +1,53 @@
+// What must match for a saved world to fit.
+#include "sim/hash.h"
+#include "sim/saved_state.h"
+
+namespace slosh {
+
+StateFrame state_frame(const Scene& scene, const Plan& plan, const ParticleStart& start) {
+  Fingerprint print;
+  // Rounded, so that the last bit of a sum does not tell one machine's build from another's.
+  const auto real = [&](double value) { print.add(static_cast<float>(value)); };
+  const auto vector = [&](const glm::dvec3& v) {
+    for (int i = 0; i < 3; ++i) real(v[i]);
+  };
+  vector(scene.gravity);
+  vector(scene.domain_min);
+  vector(scene.domain_max);
+  real(scene.support_ratio);
+  real(plan.tension);
+  print.add(static_cast<std::uint32_t>(plan.model));
+  for (const Fluid& fluid : scene.fluids) {
+    real(fluid.rest_density);
+    real(fluid.dynamic_viscosity);
+  }
+  for (const Body& body : scene.bodies) {
+    print.add(static_cast<std::uint32_t>(body.motion));
+    print.add(static_cast<std::uint32_t>(body.point_probe));
+    vector(body.pose.position);
+    for (const double part :
+         {body.pose.orientation.w, body.pose.orientation.x, body.pose.orientation.y, body.pose.orientation.z,
+          body.dynamic_viscosity, body.friction, body.restitution, body.particle_density}) {
+      real(part);
+    }
+    if (body.motion != BodyMotion::kFree) continue;
+    real(body.mass.mass);
+    vector(body.mass.center_of_mass);
+    for (int i = 0; i < 3; ++i) vector(body.mass.inertia[i]);
+  }
+  for (const Grip& grip : scene.grips) {
+    print.add(static_cast<std::uint32_t>(grip.body));
+    vector(grip.pose.position);
+    for (const double part :
+         {grip.stiffness, grip.damping, grip.rotational_stiffness, grip.rotational_damping}) {
+      real(part);
+    }
+  }
+  for (const std::uint8_t kind : start.particles.kind) print.add(kind);
+  return {start.fluid_count,   start.probes.size(), start.fixed.size() + start.moving.size(),
+          scene.bodies.size(), scene.grips.size(),  scene.fluids.size(),
+          plan.spacing,        plan.time_step,      plan.stiffness,
+          print.value()};
+}
+
+}  // namespace slosh
