@@ -113,6 +113,27 @@ void clean_all_texts(nlohmann::json& root, nlohmann::json& images) {
   }
 }
 
+/// "2.0" and whatever else is 2.x.
+bool is_two(const nlohmann::json& version) {
+  if (!version.is_string()) return false;
+  const std::string& text = version.get_ref<const std::string&>();
+  return text.size() > 2 && text.rfind("2.", 0) == 0 &&
+         text.find_first_not_of("0123456789", 2) == std::string::npos;
+}
+
+/// What is not glTF 2 is not ours to guess at: names and units may mean something else there. Empty: all is well.
+std::string version_problem(const nlohmann::json& json) {
+  const auto asset = json.find("asset");
+  if (asset == json.end() || !asset->is_object() || !asset->contains("version"))
+    return "it does not say that it is glTF 2: asset.version is missing";
+  const nlohmann::json& version = (*asset)["version"];
+  if (!is_two(version)) return "asset.version is " + version.dump() + ", and glTF \"2.0\" is what is read";
+  const auto least = asset->find("minVersion");
+  if (least != asset->end() && *least != "2.0")
+    return "asset.minVersion is " + least->dump() + ", and glTF \"2.0\" is what is read";
+  return {};
+}
+
 }  // namespace
 
 Result<Container> read_container(const std::filesystem::path& file) {
@@ -146,6 +167,8 @@ Result<Container> read_container(const std::filesystem::path& file) {
   if (!out.json.is_object())
     return Error{file.string(), "the JSON is not an object", "Export the file again"};
   clean_all_texts(out.json, out.images);
+  const std::string problem = version_problem(out.json);
+  if (!problem.empty()) return Error{file.string(), problem, "Export the file again as glTF 2.0"};
   return out;
 }
 

@@ -44,6 +44,23 @@ TEST(FileErrors, Text) {
   }
 }
 
+TEST(FileErrors, OtherVersionsOfGltf) {
+  const auto with = [](const nlohmann::json& version) {
+    return test::load_edited([&](nlohmann::json& j) { j["asset"]["version"] = version; });
+  };
+  EXPECT_TRUE(with("2.0"));
+  EXPECT_TRUE(with("2.1"));
+  test::expect_error(with("1.0"), {"cup.gltf", "asset.version is \"1.0\", and glTF \"2.0\" is what is read"});
+  test::expect_error(with("3.0"), {"\"3.0\""});
+  test::expect_error(with("2"), {"\"2\""});
+  test::expect_error(with("2.x"), {"\"2.x\""});
+  test::expect_error(with(2.0), {"asset.version is 2.0"});
+  test::expect_error(test::load_edited([](nlohmann::json& j) { j["asset"].erase("version"); }),
+                     {"asset.version is missing"});
+  test::expect_error(test::load_edited([](nlohmann::json& j) { j["asset"]["minVersion"] = "2.1"; }),
+                     {"asset.minVersion is \"2.1\""});
+}
+
 TEST(FileErrors, DeepNestingDoesNotOverflowTheStack) {
   const TempFolder folder;
   test::write_text(folder / "deep.gltf", std::string(200000, '[') + std::string(200000, ']'));
