@@ -19,7 +19,18 @@ std::string RemoteLink::grip_name(std::uint32_t grip) const {
 
 void RemoteLink::ask_for_grips() {
   greeting_.grips_asked = true;
-  if (!options_.wants_grip || status_.welcome.role != wire::Role::kParticipant) return;
+  // A name that the scene lacks is wrong whoever comes, also to a seat that was kept.
+  std::vector<std::uint32_t> wished;
+  for (const std::string& wish : options_.grips) {
+    const std::optional<std::size_t> grip = index_named(world_.scene.grips, wish);
+    if (!grip) return end(Error{"--grip", no_grip_text(wish, world_.scene.grips), {}});
+    wished.push_back(static_cast<std::uint32_t>(*grip));
+  }
+  if (!options_.wants_grip) return;
+  if (status_.welcome.role != wire::Role::kParticipant) {
+    if (!wished.empty() && status_.live_ns == 0) notice("this link is for watching: --grip is of no use");
+    return;
+  }
   if (status_.live_ns != 0) {
     // Back again: what is not ours any more is asked for once more.
     for (const std::uint32_t grip : grips_had_) {
@@ -27,19 +38,16 @@ void RemoteLink::ask_for_grips() {
     }
     return;
   }
-  if (std::find(status_.held.begin(), status_.held.end(), true) != status_.held.end()) {
-    return;  // a seat that was kept
-  }
-  if (options_.grips.empty()) {
+  const bool kept = std::find(status_.held.begin(), status_.held.end(), true) != status_.held.end();
+  if (wished.empty()) {
+    if (kept) return;
     if (!world_.scene.grips.empty() && !take_a_free_grip(false)) {
       notice("no grip is free: you look on until one is");
     }
     return;
   }
-  for (const std::string& wish : options_.grips) {
-    const std::optional<std::size_t> grip = index_named(world_.scene.grips, wish);
-    if (!grip) return end(Error{"--grip", no_grip_text(wish, world_.scene.grips), {}});
-    request_grip(static_cast<std::uint32_t>(*grip), true, false);
+  for (const std::uint32_t grip : wished) {
+    if (!status_.held[grip]) request_grip(grip, true, false);
   }
 }
 

@@ -54,6 +54,19 @@ TEST(RemoteLink, AGripThatTheSceneHasNotEndsInWords) {
   Together both({}, options);
   ASSERT_TRUE(both.run_until(LinkState::kEnded));
   EXPECT_EQ(both.status().error->text(), "--grip: there is no grip 'middle'. There are: left, right");
+
+  Together back({}, options);
+  back.host.roster.peers.front().grips = {0};  // a seat that was kept
+  ASSERT_TRUE(back.run_until(LinkState::kEnded));
+  EXPECT_EQ(back.status().error->text(), "--grip: there is no grip 'middle'. There are: left, right");
+}
+
+TEST(RemoteLink, WhoComesBackToAKeptSeatGetsWhatIsAskedForBesides) {
+  RemoteOptions options;
+  options.grips = {"right"};
+  Together both({}, options);
+  both.host.roster.peers.front().grips = {0};
+  ASSERT_TRUE(both.run(2.0, [&] { return both.status().held == std::vector<bool>{true, true}; }));
 }
 
 TEST(RemoteLink, ARefusedGripIsToldAndTheNextFreeOneTaken) {
