@@ -45,6 +45,7 @@ class ChunkReader {
   /// From the file's current place to its end; the file stays the caller's.
   explicit ChunkReader(std::FILE* file);
   ChunkOutcome next(Chunk& chunk);
+  bool at_end() const { return next_ >= size_; }  ///< nothing follows the chunk of the last call
   std::uint64_t at() const { return at_; }  ///< bytes into the file: where the chunk of the last call begins
   const std::string& problem() const { return problem_; }
 

@@ -130,6 +130,7 @@ Result<bool> RecordingReader::next_chunk() {
   ByteView content = chunk_.content;
   if (chunk_.type == kEndChunk) {
     if (const wire::Fault fault = wire::decode(content, event_.totals)) return damaged(fault.text());
+    if (!chunks_.at_end()) return damaged("it is the recording's last, and something follows it");
     event_.kind = RecordingEvent::Kind::kEnd;
     complete_ = true;
     return true;

@@ -77,6 +77,24 @@ TEST(Recording, CutOffAnywhereIsReadableUpToThere) {
   EXPECT_EQ(before, recorded.report.totals.steps);
 }
 
+TEST(Recording, ThatGoesOnBehindItsEndSaysSo) {
+  const Recorded recorded = record(recording_options(fresh_folder() / "run"), 0.05, false);
+  const Bytes bytes = read_all(recorded.file);
+  for (const std::size_t more : {std::size_t{1}, std::size_t{100}, bytes.size()}) {
+    Bytes longer = bytes;
+    for (std::size_t i = 0; i < more; ++i) longer.push_back(more == bytes.size() ? bytes[i] : 'x');
+    const MemoryFile file(longer);
+    auto reader = RecordingReader::open(file.get(), "long");
+    ASSERT_TRUE(reader) << reader.error().text();
+    const Played played = play(*reader.value(), nullptr);
+    EXPECT_EQ(played.steps, recorded.report.totals.steps) << "what is there is played";
+    EXPECT_FALSE(played.complete);
+    EXPECT_NE(played.problem.find("it is the recording's last, and something follows it"), std::string::npos)
+        << played.problem;
+    EXPECT_NE(played.problem.find("What comes before is whole"), std::string::npos) << played.problem;
+  }
+}
+
 TEST(Recording, DamagedSaysWhere) {
   const Recorded recorded = record(recording_options(fresh_folder() / "run"), 0.05, false);
   const Bytes bytes = read_all(recorded.file);
