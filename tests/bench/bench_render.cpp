@@ -19,6 +19,7 @@
 #include "render/renderer.h"
 #include "tests/bench/render_stereo.h"
 #include "tests/bench/render_wishes.h"
+#include "tests/cross/on_gpu.h"
 #include "tests/render/scene_kit.h"
 
 namespace {
@@ -181,6 +182,11 @@ slosh::Result<std::unique_ptr<Way>> make_way(const char* name, const Wishes& wis
     way->load.frame().meshes.push_back(
         {mesh, glm::translate(glm::mat4(1.0f), glm::vec3(0.36f, 0.024f, -0.10f)), {}});
   }
+  if (wishes.on_gpu) {
+    auto put = slosh::testing::put_on_gpu(way->load.frame().particles, way->load.frame().particle_fluid);
+    if (!put) return put.error();
+    way->load.frame().on_gpu = std::move(put.value());
+  }
   if (wishes.hud) {
     way->load.frame().arrows = {{{0.1f, 0.06f, 0.02f}, {0.1f, 0.26f, 0.02f}, {0.9f, 0.5f, 0.1f}}};
     way->load.frame().hud = [] {
@@ -291,6 +297,11 @@ int main(int argc, char** argv) {
               wishes.frames);
   if (wishes.pixels == "measured")
     std::printf("measured: by %s\n", ways.front()->renderer->on_compute() ? "compute" : "fragments");
+  if (wishes.on_gpu) {
+    const slosh::Renderer& drew = *ways.back()->renderer;
+    std::printf("particles are read %s\n",
+                drew.reads_particles_on_gpu() ? "where CUDA has them" : drew.particles_refused().c_str());
+  }
   print_table(ways);
   if (ways.size() == 2) print_difference(ways);
   if (wishes.stereo) {

@@ -5,6 +5,8 @@
 #include <chrono>
 #include <cstdio>
 #include <glm/gtc/matrix_transform.hpp>
+#include <map>
+#include <string>
 
 namespace slosh::bench {
 
@@ -72,22 +74,36 @@ void time_stereo(Renderer& renderer, const Frame& frame, int frames) {
   }
   print("without, twenty in a row", mono, stereo);
 
+  // Pass by pass: what both eyes share costs the same, what each has for itself up to twice.
   mono.clear();
   stereo.clear();
   renderer.set_timing(true);
-  const auto passes = [&] {
+  std::vector<std::string> order;
+  std::map<std::string, std::array<std::vector<double>, 2>> by_pass;
+  const auto passes = [&](std::size_t eyes_drawn) {
     double sum = 0.0;
-    for (const PassTime& pass : renderer.pass_times()) sum += pass.milliseconds;
+    for (const PassTime& pass : renderer.pass_times()) {
+      sum += pass.milliseconds;
+      if (!by_pass.contains(pass.pass)) order.push_back(pass.pass);
+      by_pass[pass.pass][eyes_drawn - 1].push_back(pass.milliseconds);
+    }
     return sum;
   };
   for (int i = 0; i < frames; ++i) {
     renderer.draw(frame);
-    mono.push_back(passes());
+    mono.push_back(passes(1));
     draw_both(i);
-    stereo.push_back(passes());
+    stereo.push_back(passes(2));
   }
   renderer.set_timing(false);
   print("all passes", mono, stereo);
+  std::printf("%-34s %10s %10s %10s\n", "fastest, ms", "one eye", "both eyes", "both / one");
+  for (const std::string& pass : order) {
+    const auto& [one, both] = by_pass[pass];
+    if (one.empty() || both.empty()) continue;
+    const double a = std::ranges::min(one), b = std::ranges::min(both);
+    std::printf("%-34s %10.3f %10.3f %10.2f\n", pass.c_str(), a, b, a > 0.0 ? b / a : 0.0);
+  }
 }
 
 }  // namespace slosh::bench

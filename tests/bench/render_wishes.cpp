@@ -30,6 +30,7 @@ void say_options(CLI::App& app, Wishes& wishes) {
   app.add_flag("--hud", wishes.hud, "arrows and a panel over it");
   app.add_flag("--bucket", wishes.bucket, "the tank is no glass");
   app.add_flag("--moving", wishes.moving, "a ball moves from picture to picture, so that no shadow is kept");
+  app.add_flag("--on-gpu", wishes.on_gpu, "particles lie on the GPU already, where CUDA puts them");
   app.add_option("--detail", wishes.detail, "a ball more, of four times the square of this triangles")
       ->check(CLI::Range(2, 1000));
   app.add_option("--warm", wishes.warm,

@@ -27,6 +27,7 @@ struct Wishes {
   bool flow = false;
   bool hud = false;
   bool stereo = false;
+  bool on_gpu = false;
   bool bucket = false;
   bool moving = false;
   int detail = 0;
