@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <limits>
 
 #include "net/clock.h"
@@ -265,6 +266,19 @@ TEST(FluidLoad, WhatWouldDriveIsLeftOut) {
   FluidLoad light;
   light.added_mass[3][3] = -1.0;
   EXPECT_EQ(made_safe(light).added_mass[3][3], 0.0);
+}
+
+TEST(FluidLoad, ANumberThatIsNoneInAnyFieldLeavesNothing) {
+  int fields = 0;
+  for_each_load_field([&](const auto& row) {
+    FluidLoad load;
+    load.wrench[1] = -3.0;
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    std::memcpy(&(load.*row.field), &kNone, sizeof kNone);
+    EXPECT_EQ(made_safe(load).wrench[1], 0.0) << fields;
+    fields += 1;
+  });
+  EXPECT_EQ(fields, 13);
 }
 
 TEST(Replica, NoLoadMakesItLeaveTheWorld) {

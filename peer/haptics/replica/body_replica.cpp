@@ -121,33 +121,26 @@ void BodyReplica::follow_load(double dt) noexcept {
   const double time = tuning_.load_round_trips * (delay_.round_trip + delay_.jitter);
   const double share = time > dt ? 1.0 - std::exp(-dt / time) : 1.0;
   // As what is foreseen is by the newest masses, so is the body.
-  const double weighed = share + heard_.foreseen * (1.0 - share);
-  const auto towards = [share](double& at, double to) { at += share * (to - at); };
-  for (std::size_t i = 0; i < 6; ++i) {
-    towards(load_.wrench[i], heard_.wrench[i]);
-    for (std::size_t j = 0; j < 6; ++j) {
-      towards(load_.d_pose[i][j], heard_.d_pose[i][j]);
-      load_.added_mass[i][j] += weighed * (heard_.added_mass[i][j] - load_.added_mass[i][j]);
-      towards(load_.d_velocity[i][j], heard_.d_velocity[i][j]);
+  const double foreseen = share + heard_.foreseen * (1.0 - share);
+  const double goes_on = 1.0 - std::exp(-dt / kGoesOnTaken);
+  for_each_load_field([&](const auto& row) {
+    auto& at = load_.*row.field;
+    const auto& to = heard_.*row.field;
+    switch (row.taken) {
+      case LoadField::kAtOnce:
+        at = to;
+        break;
+      case LoadField::kLate:
+        ease(at, to, share);
+        break;
+      case LoadField::kForeseen:
+        ease(at, to, foreseen);
+        break;
+      case LoadField::kGoesOn:
+        ease(at, to, goes_on);
+        break;
     }
-  }
-  load_.reference.position += share * (heard_.reference.position - load_.reference.position);
-  load_.reference.orientation =
-      rotate_by(load_.reference.orientation,
-                share * rotation_between(load_.reference.orientation, heard_.reference.orientation));
-  load_.twist.linear += share * (heard_.twist.linear - load_.twist.linear);
-  load_.twist.angular += share * (heard_.twist.angular - load_.twist.angular);
-  load_.trust_distance = heard_.trust_distance;
-  load_.trust_angle = heard_.trust_angle;
-  load_.bowl = heard_.bowl;
-  load_.late += share * (heard_.late - load_.late);
-  load_.foreseen = heard_.foreseen;
-  load_.goes_on += (1.0 - std::exp(-dt / kGoesOnTaken)) * (heard_.goes_on - load_.goes_on);
-  for (std::size_t i = 0; i < 3; ++i) {
-    load_.swings[i].mass = heard_.swings[i].mass;
-    load_.swings[i].pace = heard_.swings[i].pace;
-    load_.swings[i].damping = heard_.swings[i].damping;
-  }
+  });
 }
 
 GripState BodyReplica::grip(std::size_t g) const noexcept {
