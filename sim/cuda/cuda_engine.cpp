@@ -4,8 +4,7 @@
 #include <bit>
 
 #include "sim/cuda/body_exchange.h"
-#include "sim/cuda/device_particles.h"
-#include "sim/cuda/host_particles.h"
+#include "sim/cuda/downloads.h"
 #include "sim/cuda/pass_clock.h"
 #include "sim/cuda/pressure_solve.h"
 #include "sim/cuda/shared_slots.h"
@@ -140,8 +139,8 @@ class CudaEngine final : public ParticleEngine {
   void set_correction(const CorrectionConstants& correction) override { step_.correction = correction; }
 
   bool save(ParticleState& out, ImpulseSums& impulses) const override {
-    const HostPacks packs = fetch_packs();
-    impulses = fetch_impulses();
+    const HostPacks packs = fetch_packs(fluid_, check_, stream_);
+    impulses = fetch_impulses(guards_, check_, stream_);
     if (check_.failed()) return false;
     to_state(packs, constants_.grid, out);
     return true;
@@ -187,7 +186,7 @@ class CudaEngine final : public ParticleEngine {
   Result<bool> share() override { return shared_.start(fluid_count_); }
 
   void add_to(Fingerprint& print) const override {
-    const HostPacks packs = fetch_packs();
+    const HostPacks packs = fetch_packs(fluid_, check_, stream_);
     for_each_present(packs, constants_.grid, [&](std::size_t p) {
       print.add(packs.id[p]);
       for_each_value(packs, p, [&](auto column, const auto& value) {
@@ -198,12 +197,12 @@ class CudaEngine final : public ParticleEngine {
 
   Diagnostics diagnostics() const override {
     FluidSums sums(constants_);
-    const HostPacks packs = fetch_packs();
+    const HostPacks packs = fetch_packs(fluid_, check_, stream_);
     for_each_present(packs, constants_.grid, [&](std::size_t p) {
       const float4 x = packs.x[p], v = packs.v[p];
       sums.add(packs.kind[p], {x.x, x.y, x.z}, {v.x, v.y, v.z}, v.w);
     });
-    sums.add(fetch_impulses());
+    sums.add(fetch_impulses(guards_, check_, stream_));
     return sums.finish(fluid_count_);
   }
 
@@ -303,34 +302,8 @@ class CudaEngine final : public ParticleEngine {
     launch_scatter(step_, fluid_.state(), fluid_.count(), static_cast<std::uint32_t>(fluid_count_),
                    way.positions, way.kinds, stream_);
     check_.launched("scattering");
-    fetch(way.positions, reinterpret_cast<float*>(positions.data()), 3 * positions.size());
-    fetch(way.kinds, fluid_index.data(), fluid_index.size());
-  }
-
-  template <class T>
-  void fetch(const T* from, T* to, std::size_t count) const {
-    if (check_.failed() || count == 0 || !from) return;  // a pack that the plan does not need
-    check_.ok(cudaMemcpyAsync(to, from, count * sizeof(T), cudaMemcpyDeviceToHost, stream_), "download");
-    check_.ok(cudaStreamSynchronize(stream_), "download");
-  }
-
-  HostPacks fetch_packs() const {
-    HostPacks packs;
-    if (check_.failed()) return packs;
-    for_each_pack(
-        [&](auto, auto& values, const auto* from) {
-          values.resize(fluid_.count());
-          fetch(from, values.data(), values.size());
-        },
-        packs, fluid_.state());
-    if (check_.failed()) return {};
-    return packs;
-  }
-
-  ImpulseSums fetch_impulses() const {
-    ImpulseSums sums(guards_.impulses().size());
-    fetch(guards_.impulses().data(), sums.data(), sums.size());
-    return sums;
+    fetch(way.positions, reinterpret_cast<float*>(positions.data()), 3 * positions.size(), check_, stream_);
+    fetch(way.kinds, fluid_index.data(), fluid_index.size(), check_, stream_);
   }
 
   void sum_wrenches(double) {
