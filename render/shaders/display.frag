@@ -17,7 +17,7 @@ bool pixel(ivec2 texel, out vec4 value) {
 #endif
   // Interleaved gradient noise (Jimenez 2014): even over any few pixels, and the same in every picture, so that nothing flickers.
   float noise = fract(52.9829189 * fract(dot(vec2(texel) + 0.5, vec2(0.06711056, 0.00583715)))) - 0.5;
-  // Rounded here: a chip that turns it into eight bits may be off by 0.6 of a step where 0.5 is the least (an H200: 0.56).
+  // Rounded here: a chip that stores eight bits does not always take the nearest (an H200 was off by 0.56 of a step).
   value = vec4(floor(clamp(shown + noise * dither, 0.0, 1.0) * 255.0 + 0.5) / 255.0, 1.0);
   return true;
 }
