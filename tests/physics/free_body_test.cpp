@@ -18,6 +18,8 @@ Scene alone(const make::Solid& solid, double mass, const Twist& twist) {
   const int body = b.add_free("body", solid, mass);
   b.scene.bodies[body].twist = twist;
   b.scene.gravity = {0.0, 0.0, 0.0};
+  b.set_domain({-10.0, -10.0, -10.0},
+               {10.0, 10.0, 10.0});  // it flies for some metres and is not to leave the world
   return b.scene;
 }
 
