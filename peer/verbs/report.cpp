@@ -111,6 +111,12 @@ void add_report(CLI::App& app, VerbRun& chosen) {
       "network namespaces, 0 to 500 ms, 20 % lost; two minutes (--quick: two cases), one case after "
       "another, without --jobs and --resume. Writes coupling_link.csv and .png");
   coupling
+      ->add_option(
+          "--case", options->cases,
+          "Of --link's cases those with this in their name, as \"replica, 500 ms\"; given again, those too, "
+          "or once more; the force error needs \"replica, 0 ms\" first")
+      ->needs(over_link);
+  coupling
       ->add_flag("--water", *water,
                  "In place of it one hand on the shipped bucket's real water: how far off its force is by way of "
                  "the hand and round trip, and what chance and the best models would leave; six minutes of a core "
@@ -138,6 +144,7 @@ void add_report(CLI::App& app, VerbRun& chosen) {
       "Examples:\n  slosh report coupling --quick\n  slosh report coupling --out here\n"
       "  slosh report coupling --out here --resume\n"
       "  slosh report coupling --link --out here\n"
+      "  slosh report coupling --link --case \"replica, 500 ms\"\n"
       "  slosh report coupling --water --out here");
   coupling->callback([&chosen, options, link, water] {
     chosen = [options, link, water] {

@@ -1,7 +1,9 @@
 // `slosh report coupling --link`: the handful over the real link.
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <iterator>
 
 #include "net/text/clean.h"
 #include "peer/output/chart.h"
@@ -51,6 +53,27 @@ std::vector<ChartPanel> felt_panels(const std::vector<coupling::LinkCase>& cases
   return panels;
 }
 
+/// Those asked for, in that order, again where asked for again; all of them where none was.
+std::vector<coupling::LinkCase> chosen_cases(const ReportOptions& options) {
+  const std::vector<coupling::LinkCase> all = coupling::link_cases(options.quick);
+  if (options.cases.empty()) return all;
+  std::vector<coupling::LinkCase> chosen;
+  for (const std::string& part : options.cases) {
+    const std::size_t before = chosen.size();
+    std::copy_if(all.begin(), all.end(), std::back_inserter(chosen),
+                 [&](const coupling::LinkCase& c) { return name_of(c).find(part) != std::string::npos; });
+    if (chosen.size() == before) return {};
+  }
+  return chosen;
+}
+
+std::string all_names(bool quick) {
+  std::string names;
+  for (const coupling::LinkCase& c : coupling::link_cases(quick))
+    names += (names.empty() ? "\"" : "; \"") + name_of(c) + "\"";
+  return names;
+}
+
 }  // namespace
 
 int report_coupling_link(const ReportOptions& options) {
@@ -66,7 +89,9 @@ int report_coupling_link(const ReportOptions& options) {
   std::signal(SIGPIPE, SIG_IGN);
   catch_interrupts();
   Progress progress;
-  const std::vector<coupling::LinkCase> cases = coupling::link_cases(options.quick);
+  const std::vector<coupling::LinkCase> cases = chosen_cases(options);
+  if (cases.empty())
+    return fail({"--case", "is in the name of none", "They are: " + all_names(options.quick)});
   progress.phase("measuring", format("%zu runs over QUIC", cases.size()));
   std::error_code code;
   coupling::LinkRun run;
@@ -89,8 +114,9 @@ int report_coupling_link(const ReportOptions& options) {
     const std::string link =
         format("%g ms", 1e3 * r.c.round_trip) +
         (r.c.loss > 0.0 ? format(", %g ms, %g %% lost", 1e3 * r.c.jitter, 1e2 * r.c.loss) : "");
-    std::printf("%-12s %-26s %4d  %-11s  %6.1f %%  %6.1f N  %5.1f N  %10.3f N  %9.3g J\n", word(r.c.scheme),
-                link.c_str(), r.grip, word(r.verdict), 1e2 * r.error, r.peak, r.carried, r.row_step,
+    const std::string off = std::isnan(r.error) ? "-" : format("%.1f", 1e2 * r.error);
+    std::printf("%-12s %-26s %4d  %-11s  %6s %%  %6.1f N  %5.1f N  %10.3f N  %9.3g J\n", word(r.c.scheme),
+                link.c_str(), r.grip, word(r.verdict), off.c_str(), r.peak, r.carried, r.row_step,
                 r.generated);
   }
   double slowest = 1.0;

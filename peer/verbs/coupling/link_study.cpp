@@ -12,6 +12,7 @@
 
 #include "peer/output/child_process.h"
 #include "peer/output/plot.h"
+#include "peer/verbs/coupling/link_count.h"
 #include "peer/verbs/coupling/network_sites.h"
 #include "sim/math/format.h"
 
@@ -21,8 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kSeconds = 9.0;        // simulated; the bucket is tilted to both sides in it
-constexpr double kWeight = 31.2;        // N, bucket and water
-constexpr double kCompared = 3.0;       // s from which on forces are compared: both have taken hold
 constexpr double kBroken = 999.0;       // N: a simulated person's device gives 1000
 constexpr double kHums = 0.3;           // N from row to row: more is no carrying
 constexpr double kLinks = 60.0;          // s that the host has for its links
@@ -30,13 +29,6 @@ constexpr double kGoodbye = 10.0;        // s that a person has once the host ha
 constexpr double kGiveUp = 120.0;        // s, of wall time, after which a program is asked to end,
 constexpr double kKilled = 10.0;         // and s after that until it is killed
 constexpr auto kLook = std::chrono::milliseconds(50);
-
-struct Felt {
-  std::vector<double> time;
-  std::vector<glm::dvec3> force;
-  std::vector<double> put_in;  // J by then
-  std::vector<double> height;  // m, of the hand
-};
 
 /// What a person's run wrote, of the one grip that they held. Errors: those of read_wrenches(), no rows.
 Result<std::pair<int, Felt>> felt_in(const fs::path& out) {
@@ -62,48 +54,8 @@ Result<std::pair<int, Felt>> felt_in(const fs::path& out) {
   }
   Felt felt;
   const std::size_t rows = std::min(held->time.size(), places.size());
-  for (std::size_t i = 0; i < rows; ++i) {
-    const Wrench now = held->on_hand[i];
-    double put_in = 0.0;
-    if (i > 0) {
-      const Wrench mean{0.5 * (now.force + held->on_hand[i - 1].force),
-                        0.5 * (now.torque + held->on_hand[i - 1].torque)};
-      put_in = felt.put_in.back() - glm::dot(mean.force, places[i].position - places[i - 1].position) -
-               glm::dot(mean.torque, rotation_between(places[i - 1].orientation, places[i].orientation));
-    }
-    felt.time.push_back(held->time[i]);
-    felt.force.push_back(now.force);
-    felt.put_in.push_back(put_in);
-    felt.height.push_back(places[i].position.y);
-  }
+  for (std::size_t i = 0; i < rows; ++i) felt.add(held->time[i], places[i], held->on_hand[i]);
   return std::pair{static_cast<int>(held - series.value().begin()), std::move(felt)};
-}
-
-/// Of a table of rising times, the row at `time`.
-std::size_t row_at(const Felt& felt, double time) {
-  const auto at = std::lower_bound(felt.time.begin(), felt.time.end(), time);
-  return std::min(static_cast<std::size_t>(at - felt.time.begin()), felt.time.size() - 1);
-}
-
-double generated_by(const std::array<Felt, 2>& people) {
-  double most = 0.0;
-  for (std::size_t i = 0; i < people[0].time.size(); ++i) {
-    const std::size_t j = row_at(people[1], people[0].time[i]);
-    const double sank = 0.5 * (people[0].height.front() - people[0].height[i] + people[1].height.front() -
-                               people[1].height[j]);
-    most = std::max(most, -people[0].put_in[i] - people[1].put_in[j] - kWeight * std::max(sank, 0.0));
-  }
-  return most;
-}
-
-double error_of(const Felt& felt, const Felt& reference) {
-  double off = 0.0, all = 0.0;
-  for (std::size_t i = row_at(reference, kCompared); i < reference.time.size(); ++i) {
-    const glm::dvec3 difference = felt.force[row_at(felt, reference.time[i])] - reference.force[i];
-    off += glm::dot(difference, difference);
-    all += glm::dot(reference.force[i], reference.force[i]);
-  }
-  return all > 0.0 ? std::sqrt(off / all) : 0.0;
 }
 
 void note_felt(const Felt& felt, LinkRow& row) {
@@ -340,7 +292,7 @@ Result<std::vector<LinkRow>> measure_link(const std::vector<LinkCase>& cases, co
         Trial(sites, cases[i], run, case_folder(run.folder, i)).go(people);
     if (!measured && run.stop && run.stop()) break;
     if (!measured) return measured.error();
-    if (i == 0) reference = people;
+    if (i == 0 && !(cases[i].round_trip > 0.0)) reference = people;
     for (LinkRow& row : measured.value()) {
       const auto grip = static_cast<std::size_t>(row.grip);
       row.error = error_of(people[grip], reference[grip]);

@@ -26,10 +26,11 @@ struct LinkRow {
   double measured_round_trip = 0.0;  ///< s, by QUIC, at the end
   double pace = 0.0;  ///< simulated s a wall s of the person's run, joining and waiting included
   Verdict verdict = Verdict::kStable;
-  /// J that came out of both hands beyond what they put in and a sinking bucket gave, the most at any moment.
-  /// What the fluid in it swings by and what is spilled is not counted: some 0.1 J of doubt.
+  /// J, generated_by() in link_count.h; what the fluid swings by and what is spilled is not counted.
   double generated = 0.0;
-  double error = 0.0;     ///< of force against the same grip's over a round trip of nothing; 1 = 100 %
+  /// Of force against the same grip's over a round trip of nothing; 1 = 100 %. NaN: the first case was no
+  /// such.
+  double error = 0.0;
   double peak = 0.0;      ///< N
   double carried = 0.0;   ///< N, in the mean of the last 4 s
   double row_step = 0.0;  ///< N, in the mean from row to row, 2 ms, of the last 2 s
