@@ -113,6 +113,13 @@ DevicePort* Servo::claim_device(Hand& hand) noexcept {
   }
 }
 
+/// Whether what it was given is still to go, as gently as its device asks for, before it is parted with:
+/// somebody has let go of its grip.
+bool Servo::parts(const Hand& hand, const DevicePort* wanted) const noexcept {
+  const bool felt = hand.given.force != glm::dvec3(0.0) || hand.given.torque != glm::dvec3(0.0);
+  return wanted == nullptr && hand.port != nullptr && felt && hand.port->device().gives_way();
+}
+
 void Servo::change_device(Hand& hand, DevicePort* port) noexcept {
   if (hand.port != nullptr) hand.port->write_zero();
   hand.port = port;
@@ -126,6 +133,7 @@ void Servo::change_device(Hand& hand, DevicePort* port) noexcept {
   hand.good = DeviceReport{};
   hand.good.pose = hand.start;
   hand.good.engaged = false;
+  hand.given = Wrench{};
   hand.readings = 0;
   hand.in_use.store(port);
 }
@@ -252,6 +260,12 @@ void Servo::pass_on(bool all) noexcept {
   }
 }
 
+/// A body that left the world stands where it was, for good: a spring to it would be one to nothing.
+bool Servo::is_gone(const BodySnapshot& bodies, int body) const noexcept {
+  const auto at = static_cast<std::size_t>(body);
+  return at < bodies.bodies.size() && bodies.bodies[at].gone;
+}
+
 /// Whether a hand but that of grip `i` holds the body, as far as the world says.
 bool Servo::another_holds(const BodySnapshot& bodies, std::size_t i) const noexcept {
   for (std::size_t j = 0; j < bodies.grips.size() && j < hands_.size(); ++j) {
@@ -301,16 +315,18 @@ void Servo::tick(std::int64_t now_ns, bool fresh) noexcept {
   const bool sample_due = !stopped && time_ + kRounding >= next_sample_;
   for (std::size_t i = 0; i < hands_.size(); ++i) {
     Hand& hand = hands_[i];
-    DevicePort* const port = claim_device(hand);
-    if (port != hand.port) change_device(hand, port);
+    DevicePort* const wanted = claim_device(hand);
+    const bool parting = parts(hand, wanted);
+    if (wanted != hand.port && !parting) change_device(hand, wanted);
     follow_stiffness(i, hand);
-    if (port == nullptr) {
+    if (hand.port == nullptr) {
       held_.not_here(i);
       continue;
     }
     const Pose was = hand.good.pose;
     hand.leapt = read_device(hand, now_ns) || held_.anew(i);
     if (!hand.leapt) held_.read(i, was, hand.good.pose);
+    if (parting || is_gone(bodies, hand.body)) hand.good.engaged = false;
   }
   held_.catch_up(now_ns, options_.period, pace_, time_ - before);
   for (std::size_t i = 0; i < hands_.size(); ++i) {
@@ -338,6 +354,7 @@ void Servo::tick(std::int64_t now_ns, bool fresh) noexcept {
       held_.sent(i, felt.wrench, hand.felt.holds(), hand.felt.held().pose, hand.felt.held().twist,
                  hand.with_world);
     }
+    hand.given = felt.wrench;
     if (felt.limited) note(kStatusForceLimited);
     hand.budget.note(felt.asked_force, felt.asked_torque, hand.limits, options_.period);
     if (felt.non_finite) note(kStatusNonFinite);

@@ -53,9 +53,10 @@ class Servo {
   /// at its end, or by anybody once it is over.
   void let_go() noexcept;
 
-  /// Hands `device`, already open, to grip `i` from the next tick on; null takes away what is there. What was
-  /// there is sent zero, closed and freed as soon as the loop has let go of it: at a later call, or at the
-  /// end. Errors: limits that are not sound (check_limits); then nothing changes.
+  /// Hands `device`, already open, to grip `i` from the next tick on; null takes away what is there,
+  /// once its force has gone by its limits; until then it is said not to hold on. What was there is sent
+  /// zero, closed and freed as soon as the loop has let go of it: at a later call, or at the end. Errors:
+  /// limits that are not sound (check_limits); then nothing changes.
   Result<bool> set_device(std::size_t i, std::unique_ptr<Device> device);
 
   /// The springs of grip `i` are so many times the scene's (World::set_grip_stiffness): the loop goes over to it by
@@ -109,6 +110,7 @@ class Servo {
     FeltHand felt;
     ForceBudgetNote budget;
     DeviceReport good;
+    Wrench given;                // in the last tick
     std::uint64_t readings = 0;  // of the device so far
     bool with_world = false;     // it goes by simulated time
     std::int64_t read_ns = 0;    // when it last said something
@@ -118,6 +120,8 @@ class Servo {
   /// The device that is wanted, safe from being freed.
   DevicePort* claim_device(Hand& hand) noexcept;
   void change_device(Hand& hand, DevicePort* port) noexcept;
+  bool parts(const Hand& hand, const DevicePort* wanted) const noexcept;
+  bool is_gone(const BodySnapshot& bodies, int body) const noexcept;
   void free_unused(Hand& hand);
   void follow_stiffness(std::size_t i, Hand& hand) noexcept;
   void follow_run(const BodyMessage& message) noexcept;

@@ -102,7 +102,7 @@ TEST_F(GentleForce, HoweverItComesBack) {
 
   ASSERT_TRUE(kit.servo->set_device(0, nullptr));
   on(0.1);
-  EXPECT_EQ(force(), 0.0) << "a device that is taken away is sent zero at once";
+  EXPECT_EQ(force(), 0.0) << "a device that is taken away is left with no force";
   auto made = std::make_unique<test::FakeDevice>();
   made->limit = limits();
   made->next.pose = at(0.01);
