@@ -63,7 +63,7 @@ RemoteProgram::RemoteProgram(const std::string& link_text, const RemoteProgramOp
   has_device_.assign(scene_->grips.size(), false);
   servo_ = std::make_unique<Servo>(*scene_, std::vector<std::unique_ptr<Device>>{}, *visit_->world().channel,
                                    ServoOptions{});
-  newest_ = visit_->world().channel->bodies().front();
+  newest_.note(visit_->world().channel->bodies().front());
   {
     const std::lock_guard lock(mutex_);
     follow_grips(visit_->status());
@@ -106,8 +106,7 @@ void RemoteProgram::run() {
       const std::lock_guard lock(mutex_);
       const std::int64_t now_ns = steady_now_ns();
       servo_->tick(now_ns);
-      const BodyMessage& heard = channel.bodies().front();
-      if (heard.bodies.tick != newest_.bodies.tick || heard.run != newest_.run) newest_ = heard;
+      newest_.note(channel.bodies().front());
       if (now_ns >= look_ns) {
         look_ns = now_ns + 20 * kPeriodNs;
         follow_grips(visit_->status());
@@ -151,7 +150,7 @@ RemoteStatus RemoteProgram::status() {
 
 BodyMessage RemoteProgram::newest() {
   const std::lock_guard lock(mutex_);
-  return newest_;
+  return newest_.state();
 }
 
 SnapshotPointer RemoteProgram::picture() {
@@ -187,7 +186,7 @@ void RemoteProgram::hold(const py::object& which, const py::object& source) {
 
 Pose RemoteProgram::handle(std::size_t i) {
   const std::lock_guard lock(mutex_);
-  if (!has_device_[i] || !lent_[i]) return newest_.bodies.grips.at(i).handle;
+  if (!has_device_[i] || !lent_[i]) return newest_.state().bodies.grips.at(i).handle;
   lent_[i]->now.update();
   return lent_[i]->now.front();
 }

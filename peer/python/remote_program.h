@@ -17,6 +17,7 @@
 #include "peer/haptics/servo.h"
 #include "peer/python/arrays.h"
 #include "peer/python/interrupts.h"
+#include "peer/remote/kept_state.h"
 #include "peer/remote/remote_visit.h"
 
 namespace slosh::python {
@@ -75,7 +76,7 @@ class RemoteProgram {
   SnapshotPointer picture_;
 
   std::mutex mutex_;  // what follows, and the servo's devices
-  BodyMessage newest_;
+  KeptState newest_;
   std::vector<std::shared_ptr<LentHand>> lent_;  // one a grip
   std::vector<std::vector<PoseKey>> keys_;       // what each hand plays where it is not moved
   std::vector<bool> has_device_;
