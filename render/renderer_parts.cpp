@@ -207,28 +207,27 @@ void Renderer::Parts::draw_scene() {
   far_light.bind();
   uniforms.upload(make_frame_block(frame, options, shadow, chords));
   drew_caustics = false;
+  const bool occlusion = occludes();
+  run_in_part("opaque meshes", [&] {
+    scene_pass->draw_opaque(frame, meshes, textures, targets, options.draw_background, occlusion);
+  });
+  // A CPU's driver draws these with its own threads while the splats are made ready in main memory, and what
+  // follows until the filter's depths are there while it works.
+  glFlush();
   run("prepare splats", [&] { drew_fluid = prepare_fluid(chords); });
   if (drew_fluid) {
     run("front depth", [&] { fluid_passes->splat_front(targets); });
     run("fetch front", [&] { fluid_passes->fetch_front(targets, options); });
     run("back depth", [&] { fluid_passes->splat_back(targets); });
+    if (chords) run("thickness", [&] { thickness_pass->draw(frame, targets, splats.all); });
   }
-
-  const bool occlusion = occludes();
-  run_in_part("opaque meshes", [&] {
-    scene_pass->draw_opaque(frame, meshes, textures, targets, options.draw_background, occlusion);
-  });
   if (occlusion) {
     run("occlusion", [&] { scene_pass->draw_occlusion(targets, kOcclusionReach); });
     run("resolve", [&] { scene_pass->resolve_occlusion(targets); });
   }
   if (drew_fluid) {
-    // A CPU's driver draws the passes before with its own threads while a filter in main memory works.
     glFlush();
     run("surface filter", [&] { fluid_passes->smooth(targets, options, frame); });
-  }
-  if (drew_fluid && chords) {
-    run("thickness", [&] { thickness_pass->draw(frame, targets, splats.all); });
   }
   const bool translucent = has_translucent(frame);
   if (drew_fluid) {

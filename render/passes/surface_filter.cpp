@@ -1,6 +1,9 @@
 #include "render/passes/surface_filter.h"
 
+#include <array>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "render/passes/narrow_range_on_cpu.h"
 
@@ -54,39 +57,42 @@ constexpr float kRange = 5.0f;
 /// Truong & Yuksel 2018: along both axes, then 5 × 5 pixels.
 class NarrowRange : public SurfaceFilter {
  public:
-  NarrowRange(gl::PixelProgram along, gl::PixelProgram clean)
-      : along_(std::move(along)), clean_(std::move(clean)) {}
+  /// One program a turn.
+  explicit NarrowRange(std::array<gl::PixelProgram, 3> programs) : programs_(std::move(programs)) {}
   int turns(const RenderOptions&) const override { return 3; }
   void start_turn(int i, const Targets& targets, const RenderOptions& options, const Frame& frame,
                   const gl::TileDraw& tiles) override {
-    const gl::PixelProgram& program = i < 2 ? along_ : clean_;
+    const gl::PixelProgram& program = programs_[static_cast<std::size_t>(i)];
     const float radius = options.splat_scale * frame.particle_radius;
     program.program().set("kernel", glm::vec3(kReach * radius, kRange * radius, kTaps));
     if (i < 2) program.program().set("axis", glm::ivec2(1 - i, i));
+    if (i == 0) glBindTextureUnit(1, targets.scene_depth.name());
     start(program, i, targets, tiles);
   }
-  bool writes_tiles() const override { return !along_.on_compute(); }
+  bool writes_tiles() const override { return !programs_[0].on_compute(); }
 
  private:
   static constexpr float kTaps = 20.0f;
-  gl::PixelProgram along_;
-  gl::PixelProgram clean_;
+  std::array<gl::PixelProgram, 3> programs_;
 };
 
 /// The same in main memory, with fewer taps.
 class NarrowRangeBesideGl : public SurfaceFilter {
  public:
   void fetch(const Targets& targets) override {
-    front_.resize(static_cast<std::size_t>(targets.size.x) * static_cast<std::size_t>(targets.size.y));
-    glGetTextureImage(targets.front.name(), 0, GL_RED, GL_FLOAT,
-                      static_cast<GLsizei>(front_.size() * sizeof(float)), front_.data());
+    for (const auto& [values, from] :
+         {std::pair{&front_, &targets.front}, std::pair{&bodies_, &targets.scene_depth}}) {
+      values->resize(static_cast<std::size_t>(targets.size.x) * static_cast<std::size_t>(targets.size.y));
+      glGetTextureImage(from->name(), 0, GL_RED, GL_FLOAT,
+                        static_cast<GLsizei>(values->size() * sizeof(float)), values->data());
+    }
   }
   int run(const Targets& targets, const RenderOptions& options, const Frame& frame,
           const gl::TileDraw&) override {
     const float radius = options.splat_scale * frame.particle_radius;
     const float pixels = 0.5f * frame.view.projection[1][1] * static_cast<float>(targets.size.y);
     const std::span<const float> surface =
-        filter_.run(front_, targets.size, {kReach * radius, kRange * radius, kTaps, pixels});
+        filter_.run(front_, bodies_, targets.size, {kReach * radius, kRange * radius, kTaps, pixels, radius});
     glTextureSubImage2D(targets.smooth[0].name(), 0, 0, 0, targets.size.x, targets.size.y, GL_RED, GL_FLOAT,
                         surface.data());
     return 0;
@@ -97,6 +103,7 @@ class NarrowRangeBesideGl : public SurfaceFilter {
   static constexpr int kTaps = 6;
   NarrowRangeOnCpu filter_;
   std::vector<float> front_;
+  std::vector<float> bodies_;
 };
 
 }  // namespace
@@ -120,14 +127,20 @@ Result<std::unique_ptr<SurfaceFilter>> make_surface_filter(Surface surface, bool
   const char* file = surface == Surface::kPaper           ? "smooth.frag"
                      : surface == Surface::kCurvatureFlow ? "curvature_flow.frag"
                                                           : "narrow_range.frag";
+  if (surface == Surface::kOurs) {
+    std::array<gl::PixelProgram, 3> turns;
+    const std::vector<std::string> defines[] = {{"FIRST"}, {}, {"CLEAN"}};
+    for (std::size_t i = 0; i < turns.size(); ++i) {
+      auto turn = gl::PixelProgram::create(file, compute, true, defines[i]);
+      if (!turn) return turn.error();
+      turns[i] = std::move(turn.value());
+    }
+    return Made(std::make_unique<NarrowRange>(std::move(turns)));
+  }
   auto program = gl::PixelProgram::create(file, compute, true);
   if (!program) return program.error();
   if (surface == Surface::kPaper) return Made(std::make_unique<PaperFilter>(std::move(program.value())));
-  if (surface == Surface::kCurvatureFlow)
-    return Made(std::make_unique<CurvatureFlow>(std::move(program.value())));
-  auto clean = gl::PixelProgram::create(file, compute, true, {"CLEAN"});
-  if (!clean) return clean.error();
-  return Made(std::make_unique<NarrowRange>(std::move(program.value()), std::move(clean.value())));
+  return Made(std::make_unique<CurvatureFlow>(std::move(program.value())));
 }
 
 }  // namespace slosh

@@ -18,11 +18,17 @@ float depth_beside(sampler2D depths, float here, ivec2 texel, ivec2 step_to) {
   float d = inside ? texelFetch(depths, at, 0).r : 1.0e6;
   return d < kFluidDepthLimit && abs(d - here) * splat.z < 1.0 ? d : 0.0;
 }
+// The same, or 0 for what a body hides, which is not smoothed.
+float seen_beside(sampler2D depths, float here, ivec2 texel, ivec2 step_to) {
+  float d = depth_beside(depths, here, texel, step_to);
+  ivec2 at = clamp(texel + step_to, ivec2(0), ivec2(picture.xy) - 1);
+  return d > texelFetch(scene_depth, at, 0).r + splat.x ? 0.0 : d;
+}
 
 // Along one axis of the picture: two-sided where both neighbours are there, else to the one that is.
 vec3 surface_tangent(sampler2D depths, vec3 here, ivec2 texel, ivec2 axis) {
-  float ahead = depth_beside(depths, -here.z, texel, axis);
-  float behind = depth_beside(depths, -here.z, texel, -axis);
+  float ahead = seen_beside(depths, -here.z, texel, axis);
+  float behind = seen_beside(depths, -here.z, texel, -axis);
   vec2 middle = vec2(texel) + 0.5;
   vec3 from = behind > 0.0 ? eye_position(middle - vec2(axis), behind) : here;
   vec3 to = ahead > 0.0 ? eye_position(middle + vec2(axis), ahead) : here;
@@ -31,8 +37,8 @@ vec3 surface_tangent(sampler2D depths, vec3 here, ivec2 texel, ivec2 axis) {
 }
 
 // The surface goes up to a body that stands in it: it ends here before other fluid, and in the gap is the body, not air. Its
-// normals are a rim's in the half next to the body alone. Taken for one all over, water at a ball's foot mirrored nothing: a flat
-// patch of the water's own colour.
+// normals go on as they do beside the body (narrow_range.glsl). Taken for a rim, water at a ball's foot mirrored nothing: a flat patch
+// of the water's own colour.
 bool body_beside(sampler2D depths, float here, ivec2 texel, ivec2 step_to) {
   ivec2 at = clamp(texel + step_to, ivec2(0), ivec2(picture.xy) - 1);
   float hidden = texelFetch(depths, at, 0).r;
@@ -48,8 +54,7 @@ FluidSurface fluid_surface(sampler2D depths, vec3 here, ivec2 texel) {
   float found = 0.0;
   for (int k = 0; k < 4; ++k) {
     ivec2 way = k < 2 ? ivec2(k == 0 ? reach : -reach, 0) : ivec2(0, k == 2 ? reach : -reach);
-    bool goes_on = depth_beside(depths, -here.z, texel, way) > 0.0 ||
-                   (body_beside(depths, -here.z, texel, way) && depth_beside(depths, -here.z, texel, way / 2) > 0.0);
+    bool goes_on = depth_beside(depths, -here.z, texel, way) > 0.0 || body_beside(depths, -here.z, texel, way);
     found += goes_on ? 1.0 : 0.0;
   }
   surface.whole = max(found - 3.0, 0.0);

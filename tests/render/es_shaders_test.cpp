@@ -138,6 +138,7 @@ TEST_F(EsShaders, PassesOverPixelsAndMeshesCompile) {
       {"tiles.vert", "composite.frag", {}},
       {"tiles.vert", "composite.frag", far_light},
       {"tiles.vert", "narrow_range.frag", {}},
+      {"tiles.vert", "narrow_range.frag", {"FIRST"}},
       {"tiles.vert", "narrow_range.frag", {"CLEAN"}},
       {"tiles.vert", "smooth.frag", {}},
       {"tiles.vert", "curvature_flow.frag", {}},

@@ -82,8 +82,10 @@ struct Apart {
   double thickness;
   PictureApart picture;
 };
-/// A pixel on the very rim of a splat may be its or not.
-constexpr Apart kBySoftware{1e-4, 1e-4, 1e-4, 3e-3, kPictures};
+/// A pixel on the very rim of a splat may be its or not. Thickness is by the sum of chords, in half floats or
+/// in whole numbers, but where the surface is nearer to the back: by the quick ways that is so in 76 of 24
+/// 759 pixels that are half a millimetre apart.
+constexpr Apart kBySoftware{1e-4, 1e-4, 1e-4, 3.5e-3, kPictures};
 /// A chip has a triangle's corners on 256ths of a pixel, and a splat's disc with them, which shows near its
 /// rim, where depths fall off steeply: with the corners put there compute shaders differ from an H200's
 /// fragments in no pixel of the front and one in 7000 of the back. All of what thickness differs by is the

@@ -139,12 +139,13 @@ TEST_F(ScoreTest, TheFilterInMainMemoryIsTheShaders) {
   const kit::DamBreak scene(*renderer, 1500, kWidth, kHeight);
   renderer->draw(scene.frame);
   const FloatImage front = renderer->read_buffer(Buffer::kFrontDepth);
+  const FloatImage bodies = renderer->read_buffer(Buffer::kSceneDepth);
   const FloatImage shader = renderer->read_buffer(Buffer::kSmoothDepth);
   const float radius = options.splat_scale * scene.frame.particle_radius;
   NarrowRangeOnCpu filter;
-  const std::span<const float> smooth =
-      filter.run(front.values, {kWidth, kHeight},
-                 {3.8f * radius, 5.0f * radius, 20, 0.5f * scene.frame.view.projection[1][1] * kHeight});
+  const std::span<const float> smooth = filter.run(
+      front.values, bodies.values, {kWidth, kHeight},
+      {3.8f * radius, 5.0f * radius, 20, 0.5f * scene.frame.view.projection[1][1] * kHeight, radius});
   int fluid = 0;
   int moved = 0;
   for (std::size_t i = 0; i < front.values.size(); ++i) {
