@@ -17,9 +17,12 @@ constexpr std::string_view kHead =
     "precision highp sampler2DShadow;\n"
     "precision highp sampler2DArray;\n";
 
-/// Of a texture whose edges are clamped; ES has it from 3.1 on.
+/// textureGather() of a texture whose edges are clamped; ES has it from 3.1 on. By another name: some
+/// compilers know that one and forbid another function of it.
+constexpr std::string_view kGatherCall = "textureGather(";
+constexpr std::string_view kOurGatherCall = "gathered(";
 constexpr std::string_view kGather = R"(
-vec4 textureGather(sampler2D s, vec2 at) {
+vec4 gathered(sampler2D s, vec2 at) {
   ivec2 last = textureSize(s, 0) - 1;
   ivec2 low = ivec2(floor(at * vec2(last + 1) - 0.5));
   ivec2 from = clamp(low, ivec2(0), last);
@@ -51,7 +54,7 @@ std::vector<std::string_view> words_of(std::string_view line) {
 }
 
 /// A line without `binding = N`, which is told in `out`.
-std::string without_binding(std::string_view line, EsShader& out) {
+std::string without_binding(std::string_view line, std::span<const std::string> defines, EsShader& out) {
   constexpr std::string_view kLayout = "layout(";
   constexpr std::string_view kBinding = "binding = ";
   const std::size_t start = line.find_first_not_of(' ');
@@ -67,32 +70,61 @@ std::string without_binding(std::string_view line, EsShader& out) {
   const bool block = words.size() == 2 && words[0] == "uniform";
   const bool sampler = words.size() == 3 && words[0] == "uniform" && words[1].starts_with("sampler");
   if (block) out.blocks.push_back({std::string(words[1]), unit});
-  if (sampler) out.textures.push_back({std::string(words[2]), unit});
+  const auto open = declared.find('[');
+  if (sampler && open < declared.find(';')) {
+    const int count = size_of_array(declared.substr(open + 1, declared.find(']') - open - 1), defines);
+    for (int k = 0; k < count; ++k)
+      out.textures.push_back({std::string(words[2]) + "[" + std::to_string(k) + "]", unit + k});
+  } else if (sampler) {
+    out.textures.push_back({std::string(words[2]), unit});
+  }
   return block ? "layout(std140)" + std::string(declared) : std::string(declared);
 }
 
-/// The part of `text` that `defines` leave of its #ifdef, #ifndef, #else and #endif; other directives stay.
-/// What ES lacks may stand in a part for compute shaders.
+/// Whether one is known of the words of `#if defined(A) || defined(B)`; nothing of other conditions.
+std::optional<bool> any_defined(std::string_view line, const std::vector<std::string>& known) {
+  constexpr std::string_view kDefined = "defined(";
+  if (line.find_first_of("!&=<>") != std::string_view::npos) return std::nullopt;
+  bool any = false;
+  std::size_t at = line.find(kDefined);
+  if (at == std::string_view::npos) return std::nullopt;
+  for (; at != std::string_view::npos; at = line.find(kDefined, at + 1))
+    any = any || std::ranges::find(known, words_of(line.substr(at + kDefined.size())).front()) != known.end();
+  return any;
+}
+
+/// The part of `text` that `defines` leave of its #ifdef, #ifndef, #if defined, #else and #endif; other
+/// conditions stay. What ES lacks may stand in a part for compute shaders.
 std::string chosen_parts(std::string_view text, std::span<const std::string> defines) {
   std::vector<std::string> known;
   for (const std::string& define : defines) known.push_back(define.substr(0, define.find(' ')));
-  std::vector<bool> taken;
+  enum class Part { kTaken, kLeftOut, kStays };
+  std::vector<Part> parts;
   std::string out;
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     const std::string_view line = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
     const bool ifdef = line.starts_with("#ifdef ");
+    bool directive = true;
     if (ifdef || line.starts_with("#ifndef ")) {
       const std::string_view name = words_of(line.substr(ifdef ? 7 : 8)).front();
-      taken.push_back((std::ranges::find(known, name) != known.end()) == ifdef);
-    } else if (line.starts_with("#else") && !taken.empty()) {
-      taken.back() = !taken.back();
-    } else if (line.starts_with("#endif") && !taken.empty()) {
-      taken.pop_back();
-    } else if (std::ranges::find(taken, false) == taken.end()) {
-      out.append(line).push_back('\n');
+      parts.push_back((std::ranges::find(known, name) != known.end()) == ifdef ? Part::kTaken
+                                                                               : Part::kLeftOut);
+    } else if (line.starts_with("#if ")) {
+      const auto any = any_defined(line, known);
+      parts.push_back(!any ? Part::kStays : *any ? Part::kTaken : Part::kLeftOut);
+      directive = any.has_value();
+    } else if (line.starts_with("#else") && !parts.empty() && parts.back() != Part::kStays) {
+      parts.back() = parts.back() == Part::kTaken ? Part::kLeftOut : Part::kTaken;
+    } else if (line.starts_with("#endif") && !parts.empty()) {
+      directive = parts.back() != Part::kStays;
+      parts.pop_back();
+    } else {
+      directive = false;
     }
+    if (!directive && std::ranges::find(parts, Part::kLeftOut) == parts.end())
+      out.append(line).push_back('\n');
   }
   return out;
 }
@@ -100,15 +132,9 @@ std::string chosen_parts(std::string_view text, std::span<const std::string> def
 /// What ES 3.0 has not and the text uses.
 std::optional<std::string> lacking(std::string_view text) {
   for (const auto& [word, what] :
-       {std::pair{"layout(std430", "storage buffers"}, std::pair{"image2D", "images"},
-        std::pair{"local_size_x", "compute shaders"}, std::pair{"index = 1", "two outputs of one blend"}})
+       {std::pair{"local_size_x", "compute shaders"}, std::pair{"layout(std430", "storage buffers"},
+        std::pair{"image2D", "images"}})
     if (text.find(word) != std::string_view::npos) return what;
-  // "uniform sampler2D shares[2];", of which a loop takes one after the other.
-  for (std::size_t at = text.find("uniform sampler"); at != std::string_view::npos;
-       at = text.find("uniform sampler", at + 1)) {
-    const std::size_t end = text.find_first_of(";[", at);
-    if (end != std::string_view::npos && text[end] == '[') return "arrays of textures that a loop looks up";
-  }
   return std::nullopt;
 }
 
@@ -118,19 +144,24 @@ Result<EsShader> es_shader_source(std::string_view name, std::span<const std::st
                                   std::span<const EmbeddedShader> files) {
   const auto desktop = shader_source(name, defines, files);
   if (!desktop) return desktop.error();
-  const std::string chosen = chosen_parts(desktop.value(), defines);
+  EsShader out;
+  std::string chosen = with_buffers_as_textures(chosen_parts(desktop.value(), defines), out.buffers);
+  chosen = with_one_output(with_arrays_by_number(std::move(chosen), defines),
+                           std::ranges::find(defines, kSecondOutput) != defines.end());
   if (const auto what = lacking(chosen))
     return Error{"shader " + std::string(name), "needs " + *what + ", which OpenGL ES 3.0 does not have",
                  "Draw this pass in another way there"};
-  EsShader out;
   out.text = kHead;
-  if (chosen.find("textureGather(") != std::string::npos) out.text += kGather;
+  std::size_t call = chosen.find(kGatherCall);
+  if (call != std::string::npos) out.text += kGather;
+  for (; call != std::string::npos; call = chosen.find(kGatherCall, call))
+    chosen.replace(call, kGatherCall.size(), kOurGatherCall);
   std::string_view rest = chosen;
   while (!rest.empty()) {
     const std::size_t end = std::min(rest.find('\n'), rest.size());
     const std::string_view line = rest.substr(0, end);
     rest.remove_prefix(std::min(end + 1, rest.size()));
-    if (!line.starts_with("#version")) out.text += without_binding(line, out) + "\n";
+    if (!line.starts_with("#version")) out.text += without_binding(line, defines, out) + "\n";
   }
   return out;
 }

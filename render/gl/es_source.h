@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "render/gl/es_lowering.h"
 #include "render/gl/shader_source.h"
 
 namespace slosh {
@@ -20,13 +21,15 @@ struct EsBinding {
 
 struct EsShader {
   std::string text;
-  std::vector<EsBinding> textures;  ///< samplers and their units
+  std::vector<EsBinding> textures;  ///< samplers and their units; of an array `name[0]` and on
   std::vector<EsBinding> blocks;    ///< uniform blocks and their binding points
+  std::vector<EsBuffer> buffers;    ///< storage buffers that have become textures, and their units
 };
 
-/// shader_source() of a vertex or fragment shader in ES 3.0's dialect. Storage buffers, images and compute
-/// shaders it does not have, nor blends of two outputs, nor arrays of textures looked up by a loop: passes
-/// over pixels are there, splats are not. Errors: an unknown file; one that needs what ES 3.0 lacks, by name.
+/// shader_source() of a vertex or fragment shader in ES 3.0's dialect; es_programs.h lists which. Of the two
+/// outputs of one blend the first, or with kSecondOutput among `defines` the second: what blends by both is
+/// drawn twice. Errors: an unknown file; one that needs what ES 3.0 lacks, by name (compute shaders, images,
+/// buffers that are written).
 Result<EsShader> es_shader_source(std::string_view name, std::span<const std::string> defines = {},
                                   std::span<const EmbeddedShader> files = embedded_shaders());
 
