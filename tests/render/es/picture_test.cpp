@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <glm/gtc/type_ptr.hpp>
 
 #include "tests/render/es/kit.h"
 #include "tests/render/render_test.h"
@@ -85,6 +86,38 @@ TEST_F(EsPictures, TheWholePictureIsWhatTheRendererDraws) {
   EXPECT_LT(lights / channels, 2e-4);
   EXPECT_LT(off.mean, 0.04);
   EXPECT_LT(off.beyond, 0.0006);
+}
+
+// Without glass each pixel of the fluid is the same but for the rounding of half floats.
+TEST_F(EsPictures, FluidAndBodiesAreTheSamePixelByPixel) {
+  const RenderOptions options = es::options_in_es(small());
+  const auto renderer = make(options);
+  kit::DamBreak scene(*renderer, 2500, kWidth, kHeight);
+  scene.frame.meshes.resize(3);
+  renderer->draw(scene.frame);
+  const FloatImage light = renderer->read_buffer(Buffer::kFinalColor);
+  const Image there = renderer->read_back();
+
+  std::unique_ptr<es::EsContext> context;
+  if (const auto why = es::EsContext::make(context, *context_)) GTEST_SKIP() << *why;
+  es::KeptMeshes kept;
+  kit::DamBreak same(kept, 2500, kWidth, kHeight);
+  same.frame.meshes.resize(3);
+  std::string log;
+  const auto here = es::draw_in_es(same.frame, options, kept, log);
+  if (log.find("no float pictures") != std::string::npos) GTEST_SKIP() << log;
+  ASSERT_TRUE(here) << log;
+  int off = 0;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const glm::vec3 ours(here->light[static_cast<std::size_t>(y * kWidth + x)]);
+      const glm::vec3 theirs =
+          glm::make_vec3(&light.values[3 * static_cast<std::size_t>((kHeight - 1 - y) * kWidth + x)]);
+      off += glm::length(ours - theirs) > 1e-3f * glm::length(theirs) ? 1 : 0;
+    }
+  }
+  EXPECT_LT(off, kWidth * kHeight / 1000);
+  EXPECT_LT(difference(here->shown, there).mean, 0.003);
 }
 
 }  // namespace
