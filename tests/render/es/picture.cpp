@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <glm/gtc/type_ptr.hpp>
 
 #include "render/color/display_transform.h"
 #include "render/passes/frame_block.h"
 #include "render/passes/smooth_centers.h"
 #include "render/passes/splats.h"
-#include "tests/render/es/kit.h"
+#include "tests/render/es/canvas.h"
+#include "tests/render/es/shadows.h"
 
 namespace slosh::es {
 namespace {
@@ -17,12 +17,22 @@ namespace {
 /// a side; a summed sphere's radius over a particle's.
 constexpr glm::vec3 kFilter(3.8f, 5.0f, 20.0f);
 constexpr float kWideChord = 1.5f;
+/// As renderer_parts.h has it, m.
+constexpr float kOcclusion = 0.06f;
+/// As passes/mixing_pass.cpp: particle radii, the first unit of shares.
+constexpr float kMixing = 3.6f;
+constexpr int kSharesUnit = 12;
 
 class Drawing {
  public:
   Drawing(const Frame& frame, const RenderOptions& options, const KeptMeshes& kept, std::string& log)
-      : frame_(frame), options_(options), size_(options.width, options.height), log_(log) {
-    block_at(0, make_frame_block(frame, options, {}, true));
+      : frame_(frame),
+        options_(options),
+        size_(options.width, options.height),
+        log_(log),
+        canvas_(size_, log),
+        shadows_(shadows_of(frame, kept, options.shadow_size)) {
+    block_at(0, make_frame_block(frame, options, shadows_.view, true));
     std::array<glm::vec4, 4 * kMaxFluidLooks> looks{};
     for (std::size_t i = 0; i < std::min(frame.fluids.size(), kMaxFluidLooks); ++i) {
       const FluidLook& look = frame.fluids[i];
@@ -32,21 +42,40 @@ class Drawing {
       looks[4 * i + 3] = glm::vec4(look.gloss, look.refraction, look.roughness, 0.0f);
     }
     block_at(1, looks);
-    glGenVertexArrays(1, &nothing_);
     for (const KeptMeshes::Mesh& mesh : kept.meshes) arrays_.push_back(array_of(mesh));
     for (const KeptMeshes::Mesh& mesh : kept.meshes)
       counts_.push_back(static_cast<GLsizei>(3 * mesh.triangles.size()));
   }
 
+  void light() {
+    const GLuint map = make_texture(glm::ivec2(shadows_.view.size), GL_DEPTH_COMPONENT32F, GL_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+    canvas_.target({}, map, glm::ivec2(shadows_.view.size));
+    glClear(GL_DEPTH_BUFFER_BIT);
+    glEnable(GL_DEPTH_TEST);
+    glEnable(GL_POLYGON_OFFSET_FILL);
+    glPolygonOffset(2.0f, 4.0f);
+    if (!canvas_.use("depth_only.vert", "nothing.frag", {})) return;
+    for (const MeshInstance* mesh : shadows_.casters) {
+      canvas_.set("clip_from_model", shadows_.view.clip_from_world * mesh->model);
+      draw_triangles(*mesh, 0, counts_.at(mesh->mesh));
+    }
+    glDisable(GL_POLYGON_OFFSET_FILL);
+    glDisable(GL_DEPTH_TEST);
+    bind_texture(8, map);
+    bind_texture(9, fluid_shadow(frame_, options_, shadows_.view, canvas_));
+  }
+
   void opaque_meshes() {
-    const GLuint target = target_of({color_, scene_depth_}, depth_);
+    canvas_.target({mesh_color_, scene_depth_}, depth_);
     const glm::vec4 black(0.0f);
     const glm::vec4 none(kNoFluidDepth);
     const float farthest = 1.0f;
     glClearBufferfv(GL_COLOR, 0, &black.x);
     glClearBufferfv(GL_COLOR, 1, &none.x);
     glClearBufferfv(GL_DEPTH, 0, &farthest);
-    if (!use("mesh.vert", "mesh.frag", {})) return;
+    if (!canvas_.use("mesh.vert", "mesh.frag", {})) return;
     glEnable(GL_DEPTH_TEST);
     glEnable(GL_CULL_FACE);
     for (const GLenum culled : {GL_BACK, GL_FRONT}) {
@@ -59,11 +88,16 @@ class Drawing {
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT1, GL_TEXTURE_2D, 0, 0);
     glDepthMask(GL_FALSE);
     glDepthFunc(GL_LEQUAL);
-    if (use("fullscreen.vert", "background.frag", {})) corners(3);
+    if (canvas_.use("fullscreen.vert", "background.frag", {})) canvas_.corners(3);
     glDepthFunc(GL_LESS);
     glDepthMask(GL_TRUE);
     glDisable(GL_DEPTH_TEST);
-    glDeleteFramebuffers(1, &target);
+    canvas_.target({occlusion_}, 0, half_);
+    if (!canvas_.use("fullscreen.vert", "occlusion.frag", {"TAPS 8"})) return;
+    canvas_.set("reach", kOcclusion);
+    canvas_.pixels("occlusion.frag", {"TAPS 8"}, {scene_depth_});
+    canvas_.target({color_});
+    canvas_.pixels("resolve.frag", {}, {mesh_color_, occlusion_});
   }
 
   void fluid_depths() {
@@ -81,12 +115,12 @@ class Drawing {
     bind_texture(kEsBufferUnit + 1, texture_of_items(shapes));
     glEnable(GL_BLEND);
     const auto count = static_cast<GLsizei>(3 * splats_.spheres.size());
-    clear_to(front_, size_, kNoFluidDepth);
+    canvas_.clear_to(front_, size_, kNoFluidDepth);
     glBlendEquation(GL_MIN);
-    if (use("splat.vert", "splat.frag", {"FRONT", "SHAPED"})) corners(count);
-    clear_to(back_, half_, 0.0f);
+    if (canvas_.use("splat.vert", "splat.frag", {"FRONT", "SHAPED"})) canvas_.corners(count);
+    canvas_.clear_to(back_, half_, 0.0f);
     glBlendEquation(GL_MAX);
-    if (use("splat.vert", "splat.frag", {})) corners(count);
+    if (canvas_.use("splat.vert", "splat.frag", {})) canvas_.corners(count);
     glBlendEquation(GL_FUNC_ADD);
     chords();
     glDisable(GL_BLEND);
@@ -98,13 +132,13 @@ class Drawing {
     GLuint from = front_;
     for (int i = 0; i < 3; ++i) {
       const GLuint to = smooth_[i % 2];
-      clear_to(to, size_, kNoFluidDepth);
-      if (!use("fullscreen.vert", "narrow_range.frag", turns[i])) return;
-      set("kernel", kFilter * glm::vec3(radius, radius, 1.0f));
-      if (i < 2) glUniform2i(at("axis"), 1 - i, i);
+      canvas_.clear_to(to, size_, kNoFluidDepth);
+      if (!canvas_.use("fullscreen.vert", "narrow_range.frag", turns[i])) return;
+      canvas_.set("kernel", kFilter * glm::vec3(radius, radius, 1.0f));
+      if (i < 2) glUniform2i(canvas_.at("axis"), 1 - i, i);
       bind_texture(0, from);
       bind_texture(1, scene_depth_);
-      corners(3);
+      canvas_.corners(3);
       from = to;
     }
     surface_ = from;
@@ -116,7 +150,7 @@ class Drawing {
     std::vector<const MeshInstance*> panes;
     for (const MeshInstance& mesh : frame_.meshes)
       if (mesh.look.opacity < 1.0f) panes.push_back(&mesh);
-    target_of({color_}, depth_);
+    canvas_.target({color_}, depth_);
     bind_texture(0, surface_);
     glEnable(GL_DEPTH_TEST);
     glDepthMask(GL_FALSE);
@@ -131,8 +165,8 @@ class Drawing {
         for (GLsizei corner = 0; corner < counts_.at(pane->mesh); corner += 3) {
           for (const bool second : {true, false}) {
             glBlendFunc(second ? GL_ZERO : GL_ONE, second ? GL_SRC_COLOR : GL_ONE);
-            if (!use("mesh.vert", "translucent.frag", pane_defines(behind, second))) return;
-            glUniform1i(at("has_fluid"), 1);
+            if (!canvas_.use("mesh.vert", "translucent.frag", pane_defines(behind, second))) return;
+            canvas_.set("has_fluid", 1);
             draw(*pane, corner, 3);
           }
         }
@@ -145,13 +179,38 @@ class Drawing {
     glDisable(GL_DEPTH_TEST);
   }
 
+  /// Shares of the fluids in the surface, four a texture; how many textures.
+  int mixing() {
+    if (frame_.fluids.size() < 2) return 0;
+    const int layers = 1 + static_cast<int>(frame_.fluids.size() - 1) / 4;
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_ONE, GL_ONE);
+    for (int i = 0; i < layers; ++i) {
+      const GLuint shares = make_texture(half_, GL_RGBA16F);
+      canvas_.clear_to(shares, half_, 0.0f);
+      if (!canvas_.use("mixing.vert", "mixing.frag", {})) return 0;
+      canvas_.set("pixels", 2);
+      canvas_.set("radius", kMixing * frame_.particle_radius);
+      canvas_.set("first", 4 * i);
+      bind_texture(0, surface_);
+      canvas_.corners(static_cast<GLsizei>(3 * splats_.spheres.size()));
+      bind_texture(kSharesUnit + i, shares);
+    }
+    glDisable(GL_BLEND);
+    return layers;
+  }
+
   void composite() {
-    whole(scene_color_, "copy.frag", {}, {color_});
-    target_of({color_});
-    if (!use("fullscreen.vert", "fluid_look.frag", {"BODIES"})) return;
+    std::vector<std::string> defines{"BODIES"};
+    if (const int layers = mixing()) defines.push_back("MIXED " + std::to_string(layers));
+    canvas_.target({scene_color_});
+    canvas_.pixels("copy.frag", {}, {color_});
+    canvas_.target({color_});
+    if (!canvas_.use("fullscreen.vert", "fluid_look.frag", defines)) return;
+    canvas_.set("share_pixels", 2);
     const GLuint read[] = {front_, surface_, back_, scene_depth_, scene_color_, chord_};
     for (int unit = 0; unit < 6; ++unit) bind_texture(unit, read[unit]);
-    corners(3);
+    canvas_.corners(3);
   }
 
   void display() {
@@ -178,28 +237,29 @@ class Drawing {
     for (const GLenum which : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
       glTexParameteri(GL_TEXTURE_3D, which, GL_CLAMP_TO_EDGE);
     bind_texture(1, name, GL_TEXTURE_3D);
-    target_of({sharp_});
-    if (!use("fullscreen.vert", "display.frag", {})) return;
+    canvas_.target({sharp_});
+    if (!canvas_.use("fullscreen.vert", "display.frag", {})) return;
     bind_texture(0, color_);
-    glUniform1f(at("exposure"), options_.exposure);
-    glUniform1f(at("dither"), options_.dither ? 1.0f / 255.0f : 0.0f);
-    glUniform2f(at("table_scale"), (n - 1.0f) / n, 0.5f / n);
-    corners(3);
-    whole(shown_, "edges.frag", {}, {sharp_});
+    canvas_.set("exposure", options_.exposure);
+    canvas_.set("dither", options_.dither ? 1.0f / 255.0f : 0.0f);
+    canvas_.set("table_scale", glm::vec2((n - 1.0f) / n, 0.5f / n));
+    canvas_.corners(3);
+    canvas_.target({shown_});
+    canvas_.pixels("edges.frag", {}, {sharp_});
   }
 
   EsPicture fetched() {
     EsPicture out;
     const auto pixels = static_cast<std::size_t>(size_.x * size_.y);
     out.light.resize(pixels);
-    target_of({color_});
+    canvas_.target({color_});
     glReadPixels(0, 0, size_.x, size_.y, GL_RGBA, GL_FLOAT, out.light.data());
     std::vector<glm::vec4> depths(pixels);
-    target_of({surface_});
+    canvas_.target({surface_});
     glReadPixels(0, 0, size_.x, size_.y, GL_RGBA, GL_FLOAT, depths.data());
     for (const glm::vec4& depth : depths) out.surface.push_back(depth.x);
     std::vector<std::uint8_t> bytes(4 * pixels);
-    target_of({shown_});
+    canvas_.target({shown_});
     glReadPixels(0, 0, size_.x, size_.y, GL_RGBA, GL_UNSIGNED_BYTE, bytes.data());
     out.shown = {size_.x, size_.y, {}};
     const std::ptrdiff_t row = 4 * std::ptrdiff_t{size_.x};
@@ -231,38 +291,15 @@ class Drawing {
   }
 
   void chords() {
-    GLuint array = 0;
-    GLuint buffer = 0;
-    glGenVertexArrays(1, &array);
-    glGenBuffers(1, &buffer);
-    glBindVertexArray(array);
-    glBindBuffer(GL_ARRAY_BUFFER, buffer);
-    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(all_.size() * sizeof(glm::vec4)), all_.data(),
-                 GL_STATIC_DRAW);
-    glEnableVertexAttribArray(0);
-    glVertexAttribPointer(0, 4, GL_FLOAT, GL_FALSE, 0, nullptr);
-    clear_to(chord_, half_, 0.0f);
+    canvas_.clear_to(chord_, half_, 0.0f);
     glBlendFunc(GL_ONE, GL_ONE);
-    if (!use("chord.vert", "chord.frag", {})) return;
-    glUniform2f(at("sphere"), kWideChord * frame_.particle_radius, frame_.particle_radius);
-    glUniform1i(at("pixels"), 2);
+    if (!canvas_.use("chord.vert", "chord.frag", {})) return;
+    canvas_.set("sphere", glm::vec2(kWideChord * frame_.particle_radius, frame_.particle_radius));
+    canvas_.set("pixels", 2);
     bind_texture(0, scene_depth_);
-    glBindVertexArray(array);
-    glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(all_.size()));
+    canvas_.points(all_);
   }
 
-  /// Programs are made once.
-  bool use(const char* vertex, const char* fragment, const std::vector<std::string>& defines) {
-    std::string key = std::string(vertex) + fragment;
-    for (const std::string& define : defines) key += " " + define;
-    const auto [known, anew] = programs_.try_emplace(key, 0);
-    if (anew) known->second = es_program({vertex, fragment, defines}, log_);
-    program_ = known->second;
-    glUseProgram(program_);
-    return program_ != 0;
-  }
-  GLint at(const char* uniform) const { return glGetUniformLocation(program_, uniform); }
-  void set(const char* uniform, const glm::vec3& value) const { glUniform3fv(at(uniform), 1, &value.x); }
   static std::vector<std::string> pane_defines(bool behind, bool second) {
     std::vector<std::string> defines;
     if (behind) defines.emplace_back("BEHIND");
@@ -271,51 +308,30 @@ class Drawing {
   }
   void draw(const MeshInstance& mesh) { draw(mesh, 0, counts_.at(mesh.mesh)); }
   void draw(const MeshInstance& mesh, GLsizei first, GLsizei count) {
-    glUniformMatrix4fv(at("model"), 1, GL_FALSE, glm::value_ptr(mesh.model));
-    const glm::vec4 base(mesh.look.base_color, glm::clamp(mesh.look.opacity, 0.0f, 1.0f));
-    glUniform4fv(at("base"), 1, &base.x);
-    glUniform2f(at("roughness"), mesh.look.metallic, mesh.look.roughness);
+    canvas_.set("model", mesh.model);
+    canvas_.set("base", glm::vec4(mesh.look.base_color, glm::clamp(mesh.look.opacity, 0.0f, 1.0f)));
+    canvas_.set("roughness", glm::vec2(mesh.look.metallic, mesh.look.roughness));
+    draw_triangles(mesh, first, count);
+  }
+  void draw_triangles(const MeshInstance& mesh, GLsizei first, GLsizei count) const {
     glBindVertexArray(arrays_.at(mesh.mesh));
     const auto* from = reinterpret_cast<const void*>(sizeof(GLuint) * static_cast<std::size_t>(first));
     glDrawElements(GL_TRIANGLES, count, GL_UNSIGNED_INT, from);
   }
-  void corners(GLsizei count) const {
-    glBindVertexArray(nothing_);
-    glDrawArrays(GL_TRIANGLES, 0, count);
-  }
-  GLuint target_of(const std::vector<GLuint>& colors, GLuint depth = 0) {
-    const GLuint target = make_target(colors, depth);
-    if (target == 0) log_ += "no float pictures in this ES 3.0; ";
-    glViewport(0, 0, size_.x, size_.y);
-    return target;
-  }
-  void clear_to(GLuint texture, glm::ivec2 size, float depth) {
-    target_of({texture});
-    glViewport(0, 0, size.x, size.y);
-    const glm::vec4 value(depth);
-    glClearBufferfv(GL_COLOR, 0, &value.x);
-  }
-  void whole(GLuint into, const char* file, const std::vector<std::string>& defines,
-             const std::vector<GLuint>& read) {
-    target_of({into});
-    if (!use("fullscreen.vert", file, defines)) return;
-    for (std::size_t unit = 0; unit < read.size(); ++unit) bind_texture(static_cast<int>(unit), read[unit]);
-    corners(3);
-  }
-
   const Frame& frame_;
   const RenderOptions& options_;
   glm::ivec2 size_;
   glm::ivec2 half_ = (size_ + 1) / 2;
   std::string& log_;
-  std::map<std::string, GLuint> programs_;
-  GLuint program_ = 0;
-  GLuint nothing_ = 0;
+  Canvas canvas_;
+  Shadows shadows_;
   std::vector<GLuint> arrays_;
   std::vector<GLsizei> counts_;
   Splats splats_;
   std::vector<glm::vec4> all_;
   // As passes/targets.h has them; none of depths needs to be looked up between texels.
+  GLuint mesh_color_ = make_texture(size_, GL_RGBA16F);
+  GLuint occlusion_ = make_texture(half_, GL_R8, GL_LINEAR);
   GLuint color_ = make_texture(size_, GL_RGBA16F);
   GLuint scene_color_ = make_texture(size_, GL_RGBA16F);
   GLuint scene_depth_ = make_texture(size_, GL_R32F);
@@ -343,8 +359,6 @@ RenderOptions options_in_es(RenderOptions options) {
   options.quality = Quality::kFull;
   options.pixel_passes = PixelPasses::kFragments;
   options.display_by = DisplayBy::kTable;
-  options.shadow_size = 0;
-  options.ambient_occlusion = false;
   return options;
 }
 
@@ -352,6 +366,7 @@ std::optional<EsPicture> draw_in_es(const Frame& frame, const RenderOptions& opt
                                     std::string& log) {
   glActiveTexture(GL_TEXTURE31);
   Drawing drawing(frame, options, kept, log);
+  drawing.light();
   drawing.opaque_meshes();
   drawing.fluid_depths();
   drawing.surface_filter();

@@ -29,7 +29,7 @@ class KeptMeshes : public MeshSink {
   std::vector<Mesh> meshes;
 };
 
-/// What each frame of the picture is drawn with here: no shadows, no occlusion, one fluid.
+/// What a renderer is to draw with so that its picture is the one here.
 RenderOptions options_in_es(RenderOptions options);
 
 struct EsPicture {
