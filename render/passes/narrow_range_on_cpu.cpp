@@ -42,7 +42,7 @@ struct Lines {
 /// line goes through may be hidden.
 template <bool kHides>
 void smooth_along(const Lines& lines, const float* here, int count, const NarrowRangeOnCpu::Kernel& kernel,
-                  float* out) {
+                  int wanted_taps, float* out) {
   Lanes depth, share, moved, weights, moved_along, along, squared;
   Lanes ahead_near, ahead_far, behind_near, behind_far;
   Indices stride, taps, at;
@@ -56,7 +56,7 @@ void smooth_along(const Lines& lines, const float* here, int count, const Narrow
     const int inside = std::min(at[i], last - at[i]);
     const float reach =
         shader::filter_reach(kernel.reach * kernel.pixels_per_metre / depth[i], static_cast<float>(inside));
-    stride[i] = static_cast<int>(shader::filter_stride(reach, static_cast<float>(kernel.taps)));
+    stride[i] = static_cast<int>(shader::filter_stride(reach, static_cast<float>(wanted_taps)));
     taps[i] = fluid && inside > 0 ? static_cast<int>(reach) / stride[i] : 0;
     share[i] = static_cast<float>(stride[i]) / (reach + 1.0f);
     moved[i] = 0.0f;
@@ -203,7 +203,12 @@ std::span<const float> NarrowRangeOnCpu::run(std::span<const float> depths, std:
     const int reach = static_cast<int>(std::min(kernel.reach * kernel.pixels_per_metre / nearest, most)) + 1;
     const glm::ivec2 off = lines.at_moves ? glm::ivec2(reach, 0) : glm::ivec2(0, reach);
     const bool hides = any_hidden(at - off, at + glm::ivec2(count - 1, 0) + off, size);
-    (hides ? smooth_along<true> : smooth_along<false>)(lines, here, count, kernel, out);
+    // Beside what is hidden a tap more or less shows: few of them, far apart, left a net of dots there, along
+    // rows that end at it and then down the columns of what those rows have made.
+    const bool beside =
+        hides || (!lines.at_moves && any_hidden(at - reach, at + glm::ivec2(count - 1, 0) + reach, size));
+    const int taps = beside ? 2 * kernel.taps : kernel.taps;
+    (hides ? smooth_along<true> : smooth_along<false>)(lines, here, count, kernel, taps, out);
   };
   for_each_run([&](int x, int y, int count) {
     const float* row = seen_.data() + std::ptrdiff_t{y} * width;
