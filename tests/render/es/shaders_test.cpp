@@ -1,10 +1,15 @@
 // The shader files in OpenGL ES 3.0's dialect: every program is in one of two lists, those of the one compile
 // and link in such a context, those of the other are refused.
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
 #include <string>
 
+#include "render/gl/es_export.h"
 #include "tests/render/es/kit.h"
 #include "tests/render/render_test.h"
 
@@ -193,6 +198,40 @@ TEST_F(EsShaders, BuffersArraysAndSecondOutputsAreRewritten) {
       {"b",
        "struct S {\n  vec4 x;\n  float y;\n};\nlayout(std430, binding = 0) readonly buffer B { S s[]; };\n"}};
   EXPECT_FALSE(es_shader_source("b", {}, mixed)) << "no texel holds it";
+}
+
+TEST_F(EsShaders, AreWrittenAsFilesThatAListNames) {
+  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "slosh-es-export";
+  const auto written = export_es_programs(folder / "in" / "it");
+  ASSERT_TRUE(written) << written.error().text();
+  EXPECT_EQ(written.value(), es_programs().size());
+  const auto read = [&](const char* file) {
+    std::ifstream in(folder / "in" / "it" / file);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  const auto list = nlohmann::json::parse(read("programs.json"));
+  ASSERT_EQ(list.size(), es_programs().size());
+  bool splats = false;
+  for (const auto& program : list) {
+    for (const char* stage : {"vertex", "fragment"}) {
+      const std::string file = program[stage]["file"];
+      EXPECT_TRUE(read(file.c_str()).starts_with("#version 300 es")) << file;
+    }
+    if (program["vertex"]["file"] != "splat-FRONT-SHAPED.vert") continue;
+    splats = true;
+    EXPECT_EQ(program["vertex"]["buffers"]["shapes_texels"]["texels"], 2);
+    EXPECT_EQ(program["vertex"]["blocks"]["FrameBlock"], 0);
+  }
+  EXPECT_TRUE(splats);
+  // A different text under a name would have been written over.
+  for (std::size_t i = 0; i < list.size(); ++i)
+    for (const auto& [stage, name] :
+         {std::pair{"vertex", es_programs()[i].vertex}, std::pair{"fragment", es_programs()[i].fragment}})
+      EXPECT_EQ(es_shader_source(name, es_programs()[i].defines).value().text,
+                read(list[i][stage]["file"].get<std::string>().c_str()));
+  std::ofstream(folder / "file") << "x";
+  EXPECT_FALSE(export_es_programs(folder / "file" / "below"));
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace
