@@ -20,7 +20,7 @@ bool finite(const glm::dvec3& v) {
 bool finite(const PoseMessage& m) {
   const glm::dquat& q = m.pose.orientation;
   return finite(m.pose.position) && finite(m.twist.linear) && finite(m.twist.angular) && std::isfinite(q.w) &&
-         std::isfinite(m.time) && finite(glm::dvec3(q.x, q.y, q.z));
+         std::isfinite(m.time) && std::isfinite(m.energy) && finite(glm::dvec3(q.x, q.y, q.z));
 }
 
 }  // namespace
@@ -30,7 +30,8 @@ InputGate::InputGate(const Scene& scene)
   for (const Grip& grip : scene.grips) {
     Hand hand;
     hand.body = grip.body;
-    hand.gains = hand.of_scene = {grip.stiffness, grip.damping, grip.rotational_stiffness, grip.rotational_damping};
+    hand.gains =
+        hand.of_scene = {grip.stiffness, grip.damping, grip.rotational_stiffness, grip.rotational_damping};
     hands_.push_back(hand);
   }
   inputs_.resize(hands_.size());

@@ -22,6 +22,13 @@ TEST(InputGate, RefusesWhatIsNoPose) {
   m.twist.angular.x = kNaN;
   EXPECT_FALSE(gate.accept(m));
   m = message(0);
+  m.time = kNaN;
+  EXPECT_FALSE(gate.accept(m));
+  m = message(0);
+  m.energy = kNaN;  // it would go to everybody who holds the body
+  EXPECT_FALSE(gate.accept(m));
+  EXPECT_EQ(gate.last_fault(), PoseFault::kNonFinite);
+  m = message(0);
   m.pose.orientation = glm::dquat(0, 0, 0, 0);
   EXPECT_FALSE(gate.accept(m));
   EXPECT_EQ(gate.last_fault(), PoseFault::kNotARotation);
@@ -33,7 +40,7 @@ TEST(InputGate, RefusesWhatIsNoPose) {
   EXPECT_FALSE(gate.accept(m));
   EXPECT_EQ(gate.last_fault(), PoseFault::kTooFast);
   EXPECT_FALSE(gate.accept(message(7))) << "no such device";
-  EXPECT_EQ(gate.rejected(), 7u);
+  EXPECT_EQ(gate.rejected(), 9u);
   EXPECT_TRUE(gate.accept(message(0)));
 }
 
