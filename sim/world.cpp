@@ -44,7 +44,17 @@ void World::step(std::span<const HandleInput> handles) {
 }
 
 void World::settle(double seconds, std::span<const HandleInput> handles, bool (*stopped)()) {
-  Impl& w = *impl_;
+  // Where fluid comes to rest does not hang on its viscosity, only when.
+  const std::vector<Fluid> fluids = impl_->scene.fluids;
+  const bool thick = impl_->thin_fluids(kSettlesAs);
+  impl_->come_to_rest(seconds, handles, stopped);
+  if (!thick) return;
+  impl_->scene.fluids = fluids;
+  impl_->take_parameters();
+}
+
+void World::Impl::come_to_rest(double seconds, std::span<const HandleInput> handles, bool (*stopped)()) {
+  Impl& w = *this;
   constexpr double kDampingTime =
       0.05;  // s: past critical for a hand-sized vessel's slosh, so it creeps to its level
   const double keep = std::exp(-w.sub_step(0).dt / kDampingTime);

@@ -18,7 +18,8 @@ World::Impl::Impl(const Scene& scene_in, const SampledScene& sampled, Plan plan_
       drags(scene.bodies.size()),
       drag_matrices(scene.bodies.size()),
       viscous_bodies(scene.bodies.size()),
-      wrenches(scene.bodies.size()) {
+      wrenches(scene.bodies.size()),
+      age(options.settled ? kSettlingTime : 0.0) {
   scene.meshes.clear();  // the surface particles stand for them from here on
 }
 
@@ -41,6 +42,16 @@ void World::Impl::take_parameters() {
   constants.gravity = glm::vec3(gravity_scale * scene.gravity);
   engine->set_constants(constants);
   packed = false;
+}
+
+bool World::Impl::thin_fluids(double most) {
+  bool thick = false;
+  for (Fluid& fluid : scene.fluids) {
+    thick |= fluid.dynamic_viscosity > most;
+    fluid.dynamic_viscosity = std::min(fluid.dynamic_viscosity, most);
+  }
+  if (thick) take_parameters();
+  return thick;
 }
 
 void World::Impl::grow_older(double dt) {

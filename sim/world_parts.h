@@ -24,6 +24,10 @@ struct World::Impl {
   const Plan& plan() const { return constants.plan; }
   /// What a live change means for everybody who has a copy of it.
   void take_parameters();
+  /// No fluid is thicker than `most`, Pa·s, from now on; whether one was.
+  bool thin_fluids(double most);
+  /// World::settle, with fluids as they are.
+  void come_to_rest(double seconds, std::span<const HandleInput> handles, bool (*stopped)());
   /// The fluid's age, and what it presses by at it.
   void grow_older(double dt);
   SubStep sub_step(int index) const;
@@ -59,7 +63,7 @@ struct World::Impl {
   std::uint64_t tick = 0;
   StepTimes times;
   double gravity_scale = 1.0;
-  double age = 0.0;     // s, as pressure/settled_packing.h counts it; no further than kSettlingTime
+  double age;           // s, as pressure/settled_packing.h counts it; no further than kSettlingTime
   bool packed = false;  // the engine has what that age needs, and it needs nothing else any more
   StateFrame frame;
 };

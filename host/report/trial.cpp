@@ -30,9 +30,9 @@ Trial::Trial(const Scene& scene, const Setting& setting, Cost& cost)
   start(with_setting(scene, setting), setting);
 }
 
-Trial::Trial(const Scene& scene, const SampledScene& sampled, const Setting& setting, Cost& cost)
+Trial::Trial(const Scene& scene, const SampledScene& sampled, const Setting& setting, Cost& cost, bool settled)
     : sampled_(sampled), stopped_(setting.stopped), cost_(cost) {
-  start(with_setting(scene, setting), setting);
+  start(with_setting(scene, setting), setting, settled);
 }
 
 Trial::~Trial() {
@@ -43,11 +43,11 @@ Trial::~Trial() {
   cost_.particles = std::max<std::uint64_t>(cost_.particles, world_->fluid_count());
 }
 
-void Trial::start(const Scene& scene, const Setting& setting) {
+void Trial::start(const Scene& scene, const Setting& setting, bool settled) {
   Plan plan = make_plan(scene, sampled_.spacing, setting.solve_drag && can_solve_drag(setting.backend));
   plan.time_step *= setting.step_share;
   plan.max_speed = speed_limit(plan, plan.time_step);
-  Result<World> made = make_world(scene, sampled_, plan, {setting.threads, setting.backend});
+  Result<World> made = make_world(scene, sampled_, plan, {setting.threads, setting.backend, settled});
   if (!made) throw Refused(made.error());
   world_ = std::make_unique<World>(std::move(made.value()));
   cost_.time_step = plan.time_step;

@@ -54,7 +54,9 @@ class Trial {
  public:
   /// Samples the scene, with the setting's model and support. Throws Refused. `cost` must outlive it.
   Trial(const Scene& scene, const Setting& setting, Cost& cost);
-  Trial(const Scene& scene, const SampledScene& sampled, const Setting& setting, Cost& cost);
+  /// `settled`: as WorldOptions has it.
+  Trial(const Scene& scene, const SampledScene& sampled, const Setting& setting, Cost& cost,
+        bool settled = false);
   ~Trial();
   Trial(const Trial&) = delete;
   Trial& operator=(const Trial&) = delete;
@@ -77,7 +79,7 @@ class Trial {
   void end_if_stopped() const {
     if (stopped_ && stopped_()) throw Stopped();
   }
-  void start(const Scene& scene, const Setting& setting);
+  void start(const Scene& scene, const Setting& setting, bool settled = false);
 
   SampledScene sampled_;
   std::unique_ptr<World> world_;

@@ -229,6 +229,24 @@ TEST(World, SettlesAsLongAsItIsToldAndAsksNotWhatMoves) {
   EXPECT_LT(world.diagnostics().kinetic_energy, 1e-2 * moving);
 }
 
+// Honey comes to its level in the time that water takes, and is honey again.
+TEST(World, ThickFluidSettlesAsAThinnerOne) {
+  for (const double viscosity : {kSettlesAs, 1000.0 * kSettlesAs}) {
+    TankOptions options;
+    options.spacing = 0.02;
+    options.viscosity = options.wall_viscosity = viscosity;
+    Tank tank = make_tank(options);
+    tank.scene.bodies[0].dynamic_viscosity = kFluidsViscosity;
+    for (glm::vec3& p : tank.sampled.fluid_positions)
+      if (p.x > 0.0f) p += glm::vec3(-0.1f, 0.1f, 0.0f);  // a column in one half
+    World world = world_of(tank);
+    world.settle(1.5);
+    EXPECT_NEAR(world.diagnostics().center.x, 0.0, 0.002) << viscosity << " Pa·s";
+    EXPECT_NEAR(world.diagnostics().center.y, 0.05, 0.003) << viscosity << " Pa·s";
+    EXPECT_EQ(world.viscosity(0), viscosity);
+  }
+}
+
 TEST(World, HandleThatIsNotANumberIsRefusedAndTheLastKept) {
   const Tank tank = stirred_tank();
   World world = world_of(tank);

@@ -181,7 +181,7 @@ std::vector<glm::dvec2> left_of(Shape shape, double speed, double seconds, Still
     const glm::dvec2 v = speed * shape(still.sampled.fluid_positions[i]);
     still.sampled.fluid_velocities[i] = {static_cast<float>(v.x), 0.0f, static_cast<float>(v.y)};
   }
-  Trial e(still.scene, still.sampled, setting, cost);
+  Trial e(still.scene, still.sampled, setting, cost, true);
   Snapshot before = e.picture();
   const double start = e.world().time();
   double last = start;
