@@ -91,8 +91,8 @@ void run_each(const Program& program, std::size_t count, std::size_t share) {
   finish_compute();
 }
 
-void start_by_turns(const Program& program, std::size_t count, std::size_t share) {
-  start_groups(program, count, count * share, kEachInGroup, true);
+void start_by_turns(const Program& program, std::size_t count, std::size_t in_group) {
+  start_groups(program, count, count, in_group, true);
 }
 
 void start_groups_by_turns(const Program& program, std::size_t groups) {

@@ -59,8 +59,9 @@ void run_each(const Program& program, std::size_t count, std::size_t share = 1);
 /// The same without finish_compute(): for several in a row that write to different places.
 void start_each(const Program& program, std::size_t count, std::size_t share = 1);
 
-/// The same with no more groups than a chip takes long to start: the shader goes over the rest by turns.
-void start_by_turns(const Program& program, std::size_t count, std::size_t share);
+/// A compute shader whose groups take `in_group` of `count` each, with no more groups than a chip takes long
+/// to start: the shader goes over the rest by turns. It sets the uniform `count`.
+void start_by_turns(const Program& program, std::size_t count, std::size_t in_group);
 
 /// So many groups of a compute shader, or fewer that go over the rest by turns: it knows itself how many
 /// there are.

@@ -19,7 +19,7 @@ void bind(GLuint binding, const gl::StreamBuffer& buffer) {
 constexpr std::size_t kVec4 = sizeof(glm::vec4);
 // As particles.glsl, smooth_centers.comp and cells_deep.comp have them.
 constexpr std::size_t kCountsOfAll = 3;  // after the entries' own
-constexpr std::size_t kSmoothShare = 8;  // invocations a particle
+constexpr std::size_t kSmoothed = 32;    // particles in a group
 constexpr std::size_t kDeepInGroup = 8;  // cells
 
 /// About so many particles are in a cell at least, of a fluid that is not spray: groups that are started by
@@ -159,7 +159,7 @@ void ParticlesOnGpu::start_next() {
       const gl::Program& program = leaves_out_deep_ ? smooth_seen_ : smooth_;
       program.set("entries", static_cast<int>(entries_));
       program.set("lengths", glm::vec2(reach, radius_));
-      return gl::start_by_turns(program, count_, kSmoothShare);
+      return gl::start_by_turns(program, count_, kSmoothed);
     }
   }
 }

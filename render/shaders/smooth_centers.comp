@@ -1,10 +1,11 @@
-// Particles moved to where their neighbours' mean is, and made ellipsoids: passes/smooth_centers on the GPU. Eight invocations share the
-// 27 cells round a particle; what they sum is added up in one order, so that it comes out the same each time. SEEN: of those alone that
-// cells_deep.comp listed.
+// Particles moved to where their neighbours' mean is, and made ellipsoids: passes/smooth_centers on the GPU. Four invocations share the
+// 27 cells round a particle; what they sum is added up in one order, so that it comes out the same each time. Those that a chip runs as one
+// (32) have a share each of as many particles that follow each other: mostly of one cell, so that they read the same neighbours at the same
+// time. SEEN: of those alone that cells_deep.comp listed.
 #include "shared.glsl"
 #include "smoothing.glsl"
 #include "particles.glsl"
-layout(local_size_x = 64) in;
+layout(local_size_x = 128) in;
 layout(std430, binding = 0) writeonly buffer Centers { vec4 centers[]; };  // world, fluid index; −1: not drawn
 struct Ellipsoid {
   vec4 xx_xy_xz_yy;  // m²
@@ -21,9 +22,30 @@ uniform int count;
 uniform int entries;
 uniform vec2 lengths;  // reach and particle radius, m
 
-const int kShare = 8;  // invocations a particle
-const int kParticles = 64 / kShare;  // in a group
-shared Neighbourhood parts[64];
+const int kShare = 4;       // invocations a particle
+const int kParticles = 32;  // in a group
+const int kMoments = 10;
+// Particles side by side, for a chip's memory banks.
+shared float moments[kMoments][kShare * kParticles];
+
+void put(int at, Neighbourhood n) {
+  moments[0][at] = n.weights;
+  for (int k = 0; k < 3; ++k) {
+    moments[1 + k][at] = n.sum[k];
+    moments[4 + k][at] = n.square[k];
+    moments[7 + k][at] = n.mixed[k];
+  }
+}
+
+// All shares of a particle, in their order.
+Neighbourhood together(int own) {
+  float m[kMoments];
+  for (int k = 0; k < kMoments; ++k) {
+    m[k] = moments[k][own];
+    for (int part = 1; part < kShare; ++part) m[k] += moments[k][part * kParticles + own];
+  }
+  return Neighbourhood(m[0], vec3(m[1], m[2], m[3]), vec3(m[4], m[5], m[6]), vec3(m[7], m[8], m[9]));
+}
 
 Neighbourhood part_of(vec3 at, int part) {
   float reach = lengths.x;
@@ -54,8 +76,8 @@ Neighbourhood part_of(vec3 at, int part) {
 
 void main() {
   int local = int(gl_LocalInvocationID.x);
-  int own = local / kShare;
-  int part = local % kShare;
+  int own = local % kParticles;
+  int part = local / kParticles;
 #ifdef SEEN
   int all_of_them = int(counts[seen_at_end(entries)]);
 #else
@@ -72,16 +94,10 @@ void main() {
     bool drawn = index < count && uint(index) < counts[drawn_at(entries)];  // fewer are drawn than given
     vec4 particle = drawn ? sorted[index] : vec4(0.0, 0.0, 0.0, -1.0);
 #endif
-    if (drawn) parts[local] = part_of(particle.xyz, part);
+    if (drawn) put(local, part_of(particle.xyz, part));
     barrier();
     if (drawn && part == 0) {
-      Neighbourhood around = parts[local];
-      for (int i = 1; i < kShare; ++i) {
-        around.weights += parts[local + i].weights;
-        around.sum += parts[local + i].sum;
-        around.square += parts[local + i].square;
-        around.mixed += parts[local + i].mixed;
-      }
+      Neighbourhood around = together(own);
       mat3 e = smoothing_ellipsoid(around, lengths.x, lengths.y);
       centers[index] = vec4(particle.xyz + smoothing_step(around, lengths.x), particle.w);
       ellipsoids[index] = Ellipsoid(vec4(e[0][0], e[0][1], e[0][2], e[1][1]), vec4(e[1][2], e[2][2], 0.0, 0.0));
