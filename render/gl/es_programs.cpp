@@ -67,8 +67,8 @@ std::vector<EsProgram> es_programs() {
 
 std::vector<NotInEs> files_not_in_es() {
   std::vector<NotInEs> out;
-  for (const char* file : {"cells_begin.comp", "cells_deep.comp", "cells_fill.comp", "particles.comp",
-                           "smooth_centers.comp", "splats.comp"})
+  for (const char* file : {"cells_begin.comp", "cells_clear.comp", "cells_deep.comp", "cells_fill.comp",
+                           "particles.comp", "smooth_centers.comp", "splats.comp"})
     out.push_back(
         {file, "compute shaders: particles are made ready on the CPU (prepare_splats, SmoothCenters)"});
   for (const char* file : {"splat.comp", "chord.comp", "fluid_shadow.comp", "mixing.comp"})

@@ -37,6 +37,7 @@ Result<ParticlesOnGpu> ParticlesOnGpu::create() {
   for (const Result<bool>& loaded :
        {gl::take(out.take_, gl::Program::create_compute("particles.comp")),
         gl::take(out.take_into_cells_, gl::Program::create_compute("particles.comp", {"CELLS"})),
+        gl::take(out.clear_, gl::Program::create_compute("cells_clear.comp")),
         gl::take(out.begin_, gl::Program::create_compute("cells_begin.comp")),
         gl::take(out.begin_lists_, gl::Program::create_compute("cells_begin.comp", {"LISTS"})),
         gl::take(out.fill_, gl::Program::create_compute("cells_fill.comp")),
@@ -76,7 +77,10 @@ void ParticlesOnGpu::start_taking(const Frame& frame) {
   if (moves_) {
     // Some fifteen particles are in a cell inside a fluid.
     entries_ = std::bit_ceil(std::max<std::size_t>(count_ / 2, 1024));
-    counts_.zero((entries_ + kCountsOfAll) * sizeof(std::uint32_t));
+    const std::size_t fours = (entries_ + kCountsOfAll + 3) / 4;
+    counts_.reserve(fours * kVec4);
+    bind(3, counts_);
+    gl::run_each(clear_, fours);
     ranks_.reserve(count_ * sizeof(std::uint32_t));
     begins_.reserve(entries_ * sizeof(std::uint32_t));
     owners_.reserve(entries_ * 2 * sizeof(std::uint32_t));
@@ -90,7 +94,6 @@ void ParticlesOnGpu::start_taking(const Frame& frame) {
     ellipsoids_.reserve(count_ * 2 * kVec4);
     program.set("entries", static_cast<int>(entries_));
     program.set("reach", SmoothCenters::reach(radius_));
-    bind(3, counts_);
     bind(4, ranks_);
     bind(10, owners_);
   }

@@ -55,6 +55,7 @@ class ParticlesOnGpu {
   enum class Step : std::uint8_t { kBegin, kFill, kSort, kSmooth };
   gl::Program take_;
   gl::Program take_into_cells_;
+  gl::Program clear_;
   gl::Program begin_;
   gl::Program begin_lists_;  ///< where what is deep in the fluid is left out
   gl::Program fill_;
