@@ -43,6 +43,7 @@ void Renderer::Parts::draw_stages(std::span<Picture> drawn) {
 
 void Renderer::Parts::draw_stages_before_fluid(std::span<Picture> drawn, bool tiled) {
   run("lists, cells", [&] {
+    if (tiled) each(drawn, [&](Picture& p) { scene_pass->upload_looks(frame, meshes, p.meshes); });
     each(drawn, [&](Picture& p) {
       if (tiled) scene_pass->start_lists(frame, meshes, p.meshes);
       if (drew_fluid) fluid_passes->start_clear(p.targets);

@@ -37,6 +37,19 @@ std::vector<const MeshInstance*> sorted_by_distance(const Frame& frame, const Me
   return sorted;
 }
 
+/// Those of each kind in the order in which they are drawn: opaque ones nearest first, glass farthest first.
+struct DrawOrder {
+  std::vector<const MeshInstance*> opaque;
+  std::vector<const MeshInstance*> glass;
+};
+DrawOrder draw_order(const Frame& frame, const MeshStore& meshes) {
+  DrawOrder order;
+  order.opaque = sorted_by_distance(frame, meshes, [](float opacity) { return opacity >= 1.0f; });
+  order.glass = sorted_by_distance(frame, meshes, [](float opacity) { return opacity < 1.0f; });
+  std::ranges::reverse(order.glass);
+  return order;
+}
+
 }  // namespace
 
 bool has_translucent(const Frame& frame) {
@@ -93,6 +106,7 @@ void ScenePass::draw_opaque(const Frame& frame, const MeshStore& meshes, const T
                             const Targets& targets, bool background, bool occlusion_follows) {
   const auto sorted = sorted_by_distance(frame, meshes, [](float opacity) { return opacity >= 1.0f; });
   if (choose_tiles(frame, meshes, textures)) {
+    upload_looks(frame, meshes, lists_);
     start_lists(frame, meshes, lists_);
     gl::finish_compute();
     start_opaque(frame, lists_, targets, background, occlusion_follows);
@@ -144,11 +158,14 @@ bool ScenePass::choose_tiles(const Frame& frame, const MeshStore& meshes, const 
   return by_tiles_;
 }
 
+void ScenePass::upload_looks(const Frame& frame, const MeshStore& meshes, TiledMeshes::Lists& lists) {
+  const DrawOrder order = draw_order(frame, meshes);
+  TiledMeshes::upload_looks(order.opaque, order.glass, lists);
+}
+
 void ScenePass::start_lists(const Frame& frame, const MeshStore& meshes, TiledMeshes::Lists& lists) const {
-  const auto opaque = sorted_by_distance(frame, meshes, [](float opacity) { return opacity >= 1.0f; });
-  auto glass = sorted_by_distance(frame, meshes, [](float opacity) { return opacity < 1.0f; });
-  std::ranges::reverse(glass);  // far before near
-  tiled_->start_lists(opaque, glass, frame.view, meshes, lists);
+  const DrawOrder order = draw_order(frame, meshes);
+  tiled_->start_lists(order.opaque, order.glass, frame.view, meshes, lists);
 }
 
 void ScenePass::start_opaque(const Frame& frame, const TiledMeshes::Lists& lists, const Targets& targets,

@@ -26,8 +26,9 @@ class ScenePass {
   void draw_opaque(const Frame& frame, const MeshStore& meshes, const TextureStore& textures,
                    const Targets& targets, bool background, bool occlusion_follows);
   /// Whether this frame's meshes go by tiles: then all of them, for each of its views, by what follows;
-  /// nobody reads any of it before gl::finish_compute(). A view's lists first.
+  /// nobody reads any of it before gl::finish_compute(). All views' looks first, then a view's lists.
   bool choose_tiles(const Frame& frame, const MeshStore& meshes, const TextureStore& textures);
+  static void upload_looks(const Frame& frame, const MeshStore& meshes, TiledMeshes::Lists& lists);
   void start_lists(const Frame& frame, const MeshStore& meshes, TiledMeshes::Lists& lists) const;
   void start_opaque(const Frame& frame, const TiledMeshes::Lists& lists, const Targets& targets,
                     bool background, bool occlusion_follows) const;

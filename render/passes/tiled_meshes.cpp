@@ -82,17 +82,10 @@ bool TiledMeshes::suit(const Frame& frame, const MeshStore& meshes, const Textur
 void TiledMeshes::fill(List& list, Instances instances, std::span<const Sides> passes, const View& view,
                        const MeshStore& meshes) const {
   std::size_t groups = 0;
-  std::vector<Item> items;
-  for (const MeshInstance* instance : instances) {
+  for (const MeshInstance* instance : instances)
     groups += passes.size() * groups_of(meshes.triangle_count(instance->mesh));
-    const MeshLook& look = instance->look;
-    items.push_back({{look.base_color, glm::clamp(look.opacity, 0.0f, 1.0f)},
-                     {look.metallic, look.roughness, 0.0f, 0.0f},
-                     {look.emissive, 0.0f}});
-  }
   list.groups = static_cast<int>(groups);
   if (groups == 0) return;
-  list.items.upload(std::span<const Item>(items));
   list.triangles.reserve(groups * kGroup * kTriangleBytes);
   list.boxes.reserve(groups * kGroup * kBoxBytes);
   list.group_boxes.reserve(groups * kBoxBytes);
@@ -130,6 +123,20 @@ void TiledMeshes::start(const gl::Program& program, const List& list, const View
   program.set("near_plane", view.near_plane);
   const glm::ivec2 tiles = (size + kTile - 1) / kTile;
   glDispatchCompute(static_cast<GLuint>(tiles.x), static_cast<GLuint>(tiles.y), 1);
+}
+
+void TiledMeshes::upload_looks(Instances opaque_nearest_first, Instances glass_farthest_first, Lists& lists) {
+  for (const auto& [list, instances] :
+       {std::pair{&lists.opaque, opaque_nearest_first}, std::pair{&lists.glass, glass_farthest_first}}) {
+    std::vector<Item> items;
+    for (const MeshInstance* instance : instances) {
+      const MeshLook& look = instance->look;
+      items.push_back({{look.base_color, glm::clamp(look.opacity, 0.0f, 1.0f)},
+                       {look.metallic, look.roughness, 0.0f, 0.0f},
+                       {look.emissive, 0.0f}});
+    }
+    list->items.upload(std::span<const Item>(items));
+  }
 }
 
 void TiledMeshes::start_lists(Instances opaque_nearest_first, Instances glass_farthest_first,

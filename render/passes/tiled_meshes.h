@@ -66,6 +66,9 @@ class TiledMeshes {
     PanesBefore panes;  ///< of GlassPart::kAll
   };
 
+  /// Uploads what a view's meshes look like. For all views before the first start_lists(): an upload between
+  /// two views' dispatches holds the second one up.
+  static void upload_looks(Instances opaque_nearest_first, Instances glass_farthest_first, Lists& lists);
   /// Fills a view's lists. Of this and what follows nobody reads before gl::finish_compute().
   void start_lists(Instances opaque_nearest_first, Instances glass_farthest_first, const View& view,
                    const MeshStore& meshes, Lists& lists) const;
