@@ -28,14 +28,26 @@ float light_past_meshes(vec3 world, vec3 normal) {
 }
 
 // What fluid above leaves of the light for a point on the fluid's own surface. It fades in from three to nine splat radii
-// below the fluid's top, so that neighbours do not dim each other; never more than the whole way through. Beyond the paper.
+// below the fluid's top, so that neighbours do not dim each other; never more than the whole way through. Each of the four texels about
+// the point says by itself whether it is below: between a drop's top and the surface there is nothing, and halfway down from one to the
+// other a shadow had polygons for edges. Beyond the paper.
 vec3 light_past_fluid_above(vec3 world, vec3 extinction) {
   vec3 at = in_shadow_map(world);
-  vec4 dimming = texture(fluid_shadow, at.xy);
-  float radii = (at.z - (1.0 - dimming.a)) * splat.w;
-  bool none = to_light_world.w < 0.5 || dimming.a <= 0.0;
-  vec3 left = exp(-min(dimming.rgb, extinction * (max(radii, 0.0) * splat.x)));
-  return none ? vec3(1.0) : mix(vec3(1.0), left, smoothstep(3.0, 9.0, radii));
+  vec2 texel = at.xy * vec2(textureSize(fluid_shadow, 0)) - 0.5;
+  ivec2 low = ivec2(floor(texel));
+  vec2 share = texel - vec2(low);
+  ivec2 last = textureSize(fluid_shadow, 0) - 1;
+  vec4 dimming[4];
+  for (int k = 0; k < 4; ++k) dimming[k] = texelFetch(fluid_shadow, clamp(low + ivec2(k & 1, k >> 1), ivec2(0), last), 0);
+  vec4 weights = vec4(1.0 - share.x, share.x, 1.0 - share.x, share.x) * vec4(1.0 - share.yy, share.yy);
+  vec4 radii = (at.z - 1.0 + vec4(dimming[0].a, dimming[1].a, dimming[2].a, dimming[3].a)) * splat.w;
+  vec4 below = smoothstep(3.0, 9.0, radii) * weights;
+  float shaded = dot(below, vec4(1.0));
+  float way = dot(below, radii) / max(shaded, 1.0e-6) * splat.x;
+  vec3 through = vec3(0.0);
+  for (int k = 0; k < 4; ++k) through += weights[k] * dimming[k].rgb;
+  vec3 left = exp(-min(through, extinction * way));
+  return to_light_world.w < 0.5 ? vec3(1.0) : mix(vec3(1.0), left, shaded);
 }
 
 // The same for what is below the fluid, per channel: exp of what the light passes through. The whole of it counts for a point anywhere

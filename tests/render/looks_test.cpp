@@ -94,6 +94,42 @@ TEST_F(LooksTest, APoolLiesInTheShadowOfFluidAboveIt) {
   EXPECT_NEAR(luma(shaded, x - 70, y), luma(lit, x - 70, y), 0.1f * luma(lit, x - 70, y)) << "beside it";
 }
 
+TEST_F(LooksTest, AShadowOnFluidHasSoftEdges) {
+  auto points = kit::jitter_lattice({-0.4f, -0.1f, -0.4f}, {0.4f, 0.0f, 0.4f}, 0.02f, 3);
+  const std::size_t pool = points.size();
+  const auto sheet = kit::jitter_lattice({-0.1f, 0.5f, -0.1f}, {0.1f, 0.54f, 0.1f}, 0.02f, 4);
+  points.insert(points.end(), sheet.begin(), sheet.end());
+  const std::vector<std::uint8_t> fluids(points.size(), 0);
+  RenderOptions options = small();
+  options.quality = Quality::kFast;
+  auto renderer = make(options);
+  Frame frame = frame_of(points, fluids, 0.01f);
+  // A texel of the shadow's map is several pixels.
+  frame.view = kit::make_view({-0.1f, 0.3f, 0.25f}, {-0.1f, 0.0f, 0.0f}, kWidth, kHeight, 20.0f);
+  frame.light_direction = {0.0f, -1.0f, 0.0f};
+  frame.fluids = {kit::batter()};
+  frame.fluids[0].gloss = 0.0f;
+  frame.meshes = {place(*renderer, kit::make_box({-0.5f, -0.2f, -0.5f}, {0.5f, -0.12f, 0.5f}))};
+  const auto light = [&](std::size_t drawn) {
+    frame.particles = std::span(points).first(drawn);
+    renderer->draw(frame);
+    return renderer->read_buffer(Buffer::kFinalColor);
+  };
+  const FloatImage lit = light(pool);
+  const FloatImage shaded = light(points.size());
+  int whole = 0;  // pixels in the shadow, and on its edge
+  int edge = 0;
+  for (int y = kHeight / 4; y < 3 * kHeight / 4; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const float left = luma(shaded, x, y) / luma(lit, x, y);
+      whole += left < 0.62f ? 1 : 0;
+      edge += left > 0.7f && left < 0.9f ? 1 : 0;
+    }
+  }
+  EXPECT_GT(whole, kWidth * kHeight / 8);
+  EXPECT_GT(edge, kHeight / 2) << "more than a pixel a row";
+}
+
 TEST_F(LooksTest, TwoSheetsWithAirBetweenAreAsThickAsTheyAre) {
   auto both = kit::jitter_lattice({-0.3f, -0.25f, -0.04f}, {0.3f, 0.25f, 0.0f}, 0.01f, 3);
   const std::size_t one = both.size();
