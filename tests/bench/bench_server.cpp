@@ -52,7 +52,7 @@ struct Client final : EndpointEvents {
     wire::PoseSample sample;
     sample.number = number;
     sample.stamp_ns = steady_now_ns();
-    sample.engaged = true;
+    sample.engaged = wire::HoldsOn::kYes;
     sample.pose.position.x = static_cast<double>(number % 8192);
     send(wire::Poses{{sample, sample, sample, sample}});
   }
