@@ -21,11 +21,15 @@ struct PoseMessage {
   Pose pose;                   ///< handle, world
   Twist twist;                 ///< handle, world, m and rad a simulated s: as fast as the world sees it
   bool engaged = false;
+  /// The person feels what the hand holds, or is nobody who does. False while their force has not begun,
+  /// because the host has not answered yet: one far away keeps its stand until then
+  /// (BodyMessage::stands_until_felt).
+  bool felt = true;
   bool lost = false;         ///< not engaged because contact was lost: the host lets go gently
   std::uint32_t hold = 0;    ///< another one than in the message before: another hand, which may be anywhere
   std::uint64_t number = 0;  ///< of the sender's samples, rising; comes back in BodyMessage::pose_numbers
   bool counted = false;      ///< somebody counts …
-  double energy = 0.0;       ///< … the J that the person put in, cumulative
+  double energy = 0.0;       ///< … the J that the person and the hold that was let in put in, cumulative
 };
 
 /// What a state says of the hand on one grip, besides GripState.
@@ -57,6 +61,9 @@ struct BodyMessage {
   /// When the newest of the reader's own poses that this state follows was read, on the reader's clock; 0 =
   /// it follows none yet.
   std::int64_t heard_pose_ns = kPoseNotTold;
+  /// The host holds a grip itself until its hand is felt, and the hand takes hold then: PoseMessage::felt
+  /// reaches it.
+  bool stands_until_felt = false;
   std::vector<std::uint64_t> pose_numbers;  ///< one a grip: PoseMessage::number of what the step used
   BodySnapshot bodies;
   /// Of held bodies that somebody asked for, each body once at most, the newest there are of this run: of

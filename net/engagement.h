@@ -63,7 +63,8 @@ class Engagement {
       *this = Engagement{};
       return {hand, twist};
     }
-    if (!engaged_) {
+    took_hold_ = !engaged_;
+    if (took_hold_) {
       take_hold(time, hand, twist, gains, grip);
     } else {
       let_in(time);
@@ -77,6 +78,7 @@ class Engagement {
   }
 
   bool engaged() const { return engaged_; }
+  bool took_hold() const { return took_hold_; }  ///< in the last update()
   /// Share of the force that the hand is given, 0–1, rising over kLetInRise where the hold was not a quiet
   /// one: the body goes on being carried as it was, but a hand that takes over a weight must not be struck by
   /// it.
@@ -174,6 +176,7 @@ class Engagement {
   static constexpr double kNothing = 1e-6;     // m, rad
 
   bool engaged_ = false;
+  bool took_hold_ = false;
   bool quiet_ = true;
   Wrench began_;  // what acted on the hand when it took hold
   double since_ = 0.0;

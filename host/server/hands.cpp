@@ -72,6 +72,7 @@ void HandTable::taken(std::size_t grip, std::int64_t now_ns) {
   hand.held = true;
   hand.base += hand.newest + 1;
   hand.newest = hand.first = hand.seen = 0;
+  hand.unfelt = false;
   hand.delivery = {};
   hand.heard_ns = now_ns;
   if (!hand.stand) hand.hold += 1;
@@ -79,7 +80,7 @@ void HandTable::taken(std::size_t grip, std::int64_t now_ns) {
 
 void HandTable::let_go(std::size_t grip, std::int64_t now_ns, bool also_stand) {
   GripHand& hand = grips_[grip];
-  hand.held = false;
+  hand.held = hand.unfelt = false;
   if (hand.stand && !hand.kept && !also_stand) return;
   hand.stand = false;
   PoseMessage message;
@@ -104,6 +105,7 @@ bool HandTable::another_is_heard(std::size_t grip, std::int64_t now_ns) const {
 
 void HandTable::lose(std::size_t grip, std::int64_t now_ns) {
   GripHand& hand = grips_[grip];
+  hand.unfelt = false;
   if (hand.stand) return;
   if (!hand.engaged || another_is_heard(grip, now_ns)) return let_go(grip, now_ns);
   hand.held = false;
@@ -152,16 +154,18 @@ bool HandTable::sample(const wire::PoseSample& sample, std::int64_t now_ns, bool
   PoseMessage message;
   message.device = sample.grip;
   message.stamp_ns = on_our_clock(hand, sample.stamp_ns, now_ns);
+  hand.unfelt = sample.engaged == wire::HoldsOn::kUnfelt;
+  if (hand.unfelt) return true;
   message.tick_ack = sample.tick_ack;
   message.time = sample.time;
   message.pose = sample.pose;
   message.twist = sample.twist;
-  message.engaged = sample.engaged;
+  message.engaged = sample.engaged == wire::HoldsOn::kYes;
   message.number = hand.base + sample.number;
   message.counted = counted;
   message.energy = sample.energy;
   if (hand.stand) {
-    if (!sample.engaged) return true;
+    if (!message.engaged) return true;
     hand.stand = false;
     hand.hold += 1;
   }
@@ -171,8 +175,8 @@ bool HandTable::sample(const wire::PoseSample& sample, std::int64_t now_ns, bool
 
 HandTable::Used HandTable::used(std::size_t grip, std::uint64_t pose_number) const {
   const GripHand& hand = grips_[grip];
-  if (pose_number <= hand.base) return {};
-  const std::uint64_t number = pose_number - hand.base;
+  if (!hand.unfelt && pose_number <= hand.base) return {};
+  const std::uint64_t number = hand.unfelt ? hand.newest : pose_number - hand.base;
   const Used& known = hand.known[number % kRemembered];
   return known.number == number ? known : Used{};
 }

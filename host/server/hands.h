@@ -26,8 +26,9 @@ class HandTable {
 
   /// Puts every grip without a holder on its stand: at the start and after a reset.
   void stand_all(std::int64_t now_ns);
-  /// A new holder, whose samples number anew. The stand holds on until its first engaged sample; then the
-  /// world is told that it is another hand (PoseMessage::hold), and lets it in as net/engagement.h has it.
+  /// A new holder, whose samples number anew. The stand holds on until its first engaged sample that is felt;
+  /// then the world is told that it is another hand (PoseMessage::hold), and lets it in as net/engagement.h
+  /// has it.
   void taken(std::size_t grip, std::int64_t now_ns);
   /// Not held any more: the host lets go gently. A stand stays, unless `also_stand`.
   void let_go(std::size_t grip, std::int64_t now_ns, bool also_stand = false);
@@ -37,15 +38,18 @@ class HandTable {
   /// After a restart of the host: what was held stands where the hand was, until its holder is back.
   void carry_on(const BodySnapshot& bodies, std::int64_t now_ns);
 
-  /// Takes in a sample of the holder's. True when it is the newest and went to the world.
-  /// `counted`: its energy is told (wire::kCouplings is agreed with the holder).
+  /// Takes in a sample of the holder's. True when it is the newest. It goes to the world, but where it holds
+  /// on and is not felt: it is answered then (used()), and what the world has of the grip stays: the stand,
+  /// or a hand that is silent, or nothing. Else who lifts before their force has begun would move the body by
+  /// a spring that nobody feels, and begin with all of that. `counted`: its energy is told (wire::kCouplings
+  /// is agreed with the holder).
   bool sample(const wire::PoseSample& sample, std::int64_t now_ns, bool counted = false);
 
   struct Used {
     std::uint64_t number = 0;   ///< the holder's; 0 = none of the holder's samples, or it is too long ago
     std::int64_t stamp_ns = 0;  ///< on the holder's clock
   };
-  /// From BodyMessage::pose_numbers to the holder's sample.
+  /// From BodyMessage::pose_numbers to the holder's sample; the newest one where that is not felt.
   Used used(std::size_t grip, std::uint64_t pose_number) const;
   const Delivery& delivery(std::size_t grip) const { return grips_[grip].delivery; }
   bool on_stand(std::size_t grip) const { return grips_[grip].stand; }
@@ -63,6 +67,7 @@ class HandTable {
     std::uint64_t base = 0;    // added to the holder's numbers, so that they rise over all holders
     std::uint64_t newest = 0;  // holder's number; 0 = none yet
     std::uint64_t first = 0;
+    bool unfelt = false;               // the newest sample is
     std::uint64_t seen = 0;            // bit i: newest − i came
     std::int64_t clock_offset_ns = 0;  // host's clock − holder's, by the quickest sample
     std::int64_t heard_ns = 0;

@@ -94,7 +94,8 @@ void StateSender::forward(const Peer& from, const wire::PoseSample& sample, std:
   if (now_ns < next) return;
   next = std::max(next, now_ns - kHandsEvery) + kHandsEvery;
   wire::Hands hands;
-  hands.hands.push_back({sample.grip, now_ns, sample.pose, sample.twist, sample.engaged});
+  hands.hands.push_back(
+      {sample.grip, now_ns, sample.pose, sample.twist, sample.engaged != wire::HoldsOn::kNo});
   to_other_hands(from.seat, hands);
 }
 

@@ -25,8 +25,13 @@ constexpr Capabilities kCouplings = 1u << 2;
 /// Parameter::kGripStiffness may be asked for, and WorldInfo has the grips' stiffnesses.
 constexpr Capabilities kGripStiffnesses = 1u << 3;
 
+/// A sample may say that its person does not feel what they hold yet (HoldsOn::kUnfelt); until they do, the
+/// host goes on holding.
+constexpr Capabilities kFeltHands = 1u << 4;
+
 /// What this program understands; a peer's Hello asks for all of it.
-constexpr Capabilities kOurCapabilities = kRosterChanges | kFluidWrenches | kCouplings | kGripStiffnesses;
+constexpr Capabilities kOurCapabilities =
+    kRosterChanges | kFluidWrenches | kCouplings | kGripStiffnesses | kFeltHands;
 /// For what has no other side: pages, tests of single messages, files.
 constexpr Capabilities kAllCapabilities = ~Capabilities{0};
 

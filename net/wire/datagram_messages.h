@@ -1,6 +1,7 @@
 // Messages of one datagram each, field by field: hands, bodies, clocks, what came of the particles.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -40,6 +41,15 @@ enum class DatagramType : std::uint8_t {
   kFluidWrench = 20,    ///< fluid_wrench.h; behind kFluidWrenches
 };
 
+/// Whether a hand holds on.
+enum class HoldsOn : std::uint8_t {
+  kNo,
+  kYes,
+  kUnfelt,  ///< it does, and its person's force has not begun: it moves nothing yet; where kFeltHands is
+            ///< agreed
+};
+constexpr std::array kHoldsOnNames{"no", "yes", "yes, but not felt yet"};
+
 /// One reading of one device.
 struct PoseSample {
   std::uint32_t grip = 0;
@@ -49,9 +59,9 @@ struct PoseSample {
   double time = 0.0;           ///< simulated s that it belongs to
   Pose pose;
   Twist twist;
-  bool engaged = false;
-  // Behind kCouplings: J that the person put in since this hand began, cumulative, so that a loss spoils
-  // nothing.
+  HoldsOn engaged = HoldsOn::kNo;
+  // Behind kCouplings: J that the person and the hold that was let in (engagement.h) put in since this
+  // hand began, cumulative, so that a loss spoils nothing.
   double energy = 0.0;
 };
 template <class V>
@@ -63,7 +73,7 @@ void visit(V& v, PoseSample& m) {
   v.real64("time", m.time, -1.0, kMaxTime);
   visit(v, m.pose);
   visit(v, m.twist);
-  v.flag("engaged", m.engaged);
+  v.choice("engaged", m.engaged, kHoldsOnNames);
   if (v.agreed(kCouplings)) v.real32("energy", m.energy, -kMaxEnergy, kMaxEnergy);
 }
 

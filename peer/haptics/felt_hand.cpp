@@ -29,14 +29,28 @@ Wrench FeltHand::capped(const Wrench& full, bool current) noexcept {
   return {limit_length(full.force, most_force_, limited), limit_length(full.torque, most_torque_, limited)};
 }
 
+void FeltHand::note_let_in(const Pose& hand, const GripState& grip) noexcept {
+  const glm::dvec3 ahead = hand.position - held_.pose.position;
+  const glm::dvec3 turn = rotation_between(held_.pose.orientation, hand.orientation);
+  const bool went_on = engagement_.engaged() && !engagement_.took_hold();
+  let_in_ = 0.0;
+  if (went_on && (ahead != ahead_ || turn != ahead_turn_)) {
+    const Wrench on_hand = coupling_wrench_on_hand(of_world_, held_.pose, held_.twist, grip.pose, grip.twist);
+    let_in_ = glm::dot(on_hand.force, ahead - ahead_) + glm::dot(on_hand.torque, turn - ahead_turn_);
+  }
+  ahead_ = ahead;
+  ahead_turn_ = turn;
+}
+
 Wrench FeltHand::couple(const WorldBelief& world, const DeviceReport& hand, const GripState& grip,
                         const Moment& now) noexcept {
   double believed = std::min(world.share, now.device_share);
   bool current = world.current && now.device_share >= 1.0;
   if (world.anew) begun_ = false;
   begun_ = begun_ || (believed >= 1.0 && current);
-  // Until then the hold is as if all were well, so that the world's and this one go together; the force is
-  // none.
+  const bool reaches = !gives_way_ || (begun_ && believed > 0.0);
+  // Where the host keeps no stand, its hold begins with the first pose: until then the one here is as if all
+  // were well, so that both go together; the force is none.
   if (!begun_) believed = 1.0, current = true;
   jumps_ = world.anew || world.resumed || believed < believed_ - kSudden || (current && !current_);
   current_ = current;
@@ -44,6 +58,9 @@ Wrench FeltHand::couple(const WorldBelief& world, const DeviceReport& hand, cons
     engagement_ = Engagement{};
     jumps_ = true;
   }
+  // A host that keeps its stand takes the hand as it is from here on, and the grip as it is then.
+  if (now.stands && !(reaches && felt_)) engagement_ = Engagement{};
+  felt_ = reaches;
   // Who takes hold begins without force; a silence took as much of it as it lasted.
   const bool begins = world.anew || now.leapt || (hand.engaged && !held_on_);
   held_on_ = hand.engaged;
@@ -57,10 +74,12 @@ Wrench FeltHand::couple(const WorldBelief& world, const DeviceReport& hand, cons
   gains.damping = std::min(gains.damping, now.pace * most_damping_);
   gains.rotational_damping = std::min(gains.rotational_damping, now.pace * most_turning_);
   const Twist twist = sped_up(hand.twist, now.pace);
-  held_ = engagement_.update(hand.engaged, now.time, hand.pose, twist, gains, grip, now.shared);
+  // As the world takes hold of it, whatever the device holds: else one slips where the other does not.
+  held_ = engagement_.update(hand.engaged, now.time, hand.pose, twist, of_world_, grip, now.shared);
   const Wrench full = gives_way_
                           ? coupling_wrench_on_hand(gains, held_.pose, held_.twist, grip.pose, grip.twist)
                           : grip.on_hand;
+  note_let_in(hand.pose, grip);
   const double felt = gives_way_ || !engagement_.engaged() ? engagement_.felt() : 1.0;
   return {felt * full.force, felt * full.torque};
 }

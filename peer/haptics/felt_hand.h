@@ -22,6 +22,7 @@ namespace slosh {
 ///    part of the force takes as large a part of that time. Meanwhile its own motion is damped. Where nobody
 ///    feels it, what a silence took comes back over kFadeStale.
 ///  - No force begins before world and device are both believed wholly. Who feels none begins with all of it.
+///    A host that keeps its stand until then is told by felt(), and the hand takes hold where it is by then.
 ///  - Where the force would jump all the same, because the world stopped or the hand's hold is another one,
 ///    the difference is worked off over kBridge.
 /// A hand that gives way to the force (Device::gives_way) feels the coupling as this end has it, so that its
@@ -31,11 +32,13 @@ namespace slosh {
 /// Pure; one thread; no allocation.
 class FeltHand {
  public:
-  explicit FeltHand(const CouplingGains& gains) : gains_(gains) {}
+  explicit FeltHand(const CouplingGains& of_world) : gains_(of_world), of_world_(of_world) {}
 
-  /// Another device: gains and limits, and no hold yet.
-  void restart(const CouplingGains& gains, const DeviceLimits& limits, bool gives_way) {
-    *this = FeltHand(gains);
+  /// Another device: its limits, and no hold yet. `of_world`: the coupling as the world has it, by which the
+  /// hand takes hold, here as there; it is felt within the limits.
+  void restart(const CouplingGains& of_world, const DeviceLimits& limits, bool gives_way) {
+    *this = FeltHand(of_world);
+    gains_ = within(of_world, limits);
     limiter_ = ForceLimiter(limits);
     gives_way_ = gives_way;
     most_damping_ = limits.max_damping;
@@ -48,8 +51,11 @@ class FeltHand {
     rotational_damping_ = 0.5 * std::min(limits.max_rotational_damping, kMostRampTurning);
   }
 
-  /// The coupling as it is from now on; its hold stays.
-  void set_gains(const CouplingGains& gains) noexcept { gains_ = gains; }
+  /// The world's coupling as it is from now on; the hold stays.
+  void set_gains(const CouplingGains& of_world, const DeviceLimits& limits) noexcept {
+    of_world_ = of_world;
+    gains_ = within(of_world, limits);
+  }
 
   struct Moment {
     double time = 0.0;          ///< simulated s, never falling but when the world was reset
@@ -57,6 +63,7 @@ class FeltHand {
     double device_share = 1.0;  ///< freshness of the device's own word
     bool leapt = false;         ///< the hand is suddenly elsewhere (net/leap.h)
     bool shared = false;        ///< another hand holds the same body
+    bool stands = false;        ///< BodyMessage::stands_until_felt
     double pace = 1.0;          ///< simulated s a s of the device's own time, > 0
   };
   /// The wrench for the device. `hand` as the device has it, its velocities by the device's own time; `grip`
@@ -78,6 +85,14 @@ class FeltHand {
   /// The hand as its coupling used it in the last feel(), and whether it held on.
   const Engagement::Held& held() const { return held_; }
   bool holds() const { return engagement_.engaged(); }
+  /// J that the last feel() gave the world's coupling because the hold was let in, towards the hand that
+  /// stays; less than 0 where it slipped: it is no motion of the hand's, and a body is lifted by it all the
+  /// same.
+  double let_in() const { return let_in_; }
+
+  /// Whether what the hand does is felt by its person, as of the last feel(): their force has begun and no
+  /// silence has taken it, or there is nobody who would feel it (PoseMessage::felt).
+  bool felt() const { return felt_; }
 
   /// Whether this hand felt, or would have felt but for a silence, just what the world put on it. As of the
   /// last feel(); false for a hand that gives way, one that does not hold on, and where a limit acted.
@@ -94,11 +109,16 @@ class FeltHand {
                 const Moment& now) noexcept;
   ForceLimiter::Outcome finish(Wrench wanted, const Twist& twist, const Moment& now) noexcept;
   Wrench capped(const Wrench& full, bool current) noexcept;
+  void note_let_in(const Pose& hand, const GripState& grip) noexcept;
 
-  CouplingGains gains_;
+  CouplingGains gains_;                   // as it is felt
+  CouplingGains of_world_;                // as the hold goes by it
   ForceLimiter limiter_{DeviceLimits{}};  // lets nothing through before restart()
   Engagement engagement_;
   Engagement::Held held_;
+  double let_in_ = 0.0;    // J
+  glm::dvec3 ahead_{0.0};  // hand less what it holds with, m and rad, at the call before
+  glm::dvec3 ahead_turn_{0.0};
   bool jumps_ = false;  // in this call
   bool gives_way_ = true;
   bool follows_world_ = false;
@@ -111,6 +131,7 @@ class FeltHand {
   double share_ = 1.0;
   double believed_ = 1.0;  // at the call before
   bool begun_ = false;  // world and device were both believed since the device came, or the world was reset
+  bool felt_ = false;
   bool hold_anew_ = false;   // words had stopped
   bool held_on_ = false;     // the hand, at the call before
   bool current_ = true;      // the world was, at the call before

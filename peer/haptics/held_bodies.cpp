@@ -211,12 +211,12 @@ void HeldBodies::catch_up(std::int64_t now_ns, double period, double pace, doubl
   }
 }
 
-void HeldBodies::sent(std::size_t i, const Wrench& wrench, bool engaged, const Pose& held,
-                      const Twist& twist, bool with_world) noexcept {
+void HeldBodies::sent(std::size_t i, const Wrench& wrench, bool engaged, const Pose& held, const Twist& twist,
+                      double let_in, bool with_world) noexcept {
   const Place& place = places_[i];
   if (place.body < 0) return;
   Entry& entry = bodies_[static_cast<std::size_t>(place.body)];
-  entry.held.sent(place.grip, wrench);
+  entry.held.sent(place.grip, wrench, let_in);
   entry.own[place.grip] = {true, engaged, held, twist};
   entry.on_the_wall = entry.on_the_wall || !with_world;
 }

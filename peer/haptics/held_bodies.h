@@ -46,20 +46,21 @@ class HeldBodies {
   /// In place of the coupling's `wanted` (HeldBody::guard).
   Wrench guard(std::size_t i, const Wrench& wanted, const Pose& hand, const Twist& twist, double dt,
                double most_damping, double pace) noexcept;
-  /// What the device of grip `i` was sent, and what its coupling used of the hand, by the world's time.
-  /// `with_world`: the hand itself goes by that (Device::goes_with_world).
+  /// What the device of grip `i` was sent, and what its coupling used of the hand, by the world's time;
+  /// `let_in`: J that its hold gave by being let in (FeltHand::let_in). `with_world`: the hand itself goes by
+  /// that (Device::goes_with_world).
   void sent(std::size_t i, const Wrench& wrench, bool engaged, const Pose& held, const Twist& twist,
-            bool with_world) noexcept;
+            double let_in, bool with_world) noexcept;
   /// The coupling of grip `i` is that from now on, at the host and here.
   void set_gains(std::size_t i, const CouplingGains& gains) noexcept;
   /// Nobody here moves grip `i`.
   void not_here(std::size_t i) noexcept;
   /// The end of a tick: on to `now_ns`. A replica goes by the time that its hands go by: the wall's times
-  /// `pace`, simulated s a s, smoothed; or, where all go with the world, by the `elapsed` simulated s that they
-  /// were told of in this tick.
+  /// `pace`, simulated s a s, smoothed; or, where all go with the world, by the `elapsed` simulated s that
+  /// they were told of in this tick.
   void advance(std::int64_t now_ns, double pace, double elapsed) noexcept;
 
-  /// J that the person at grip `i` put in; false where that is not counted: a fixed body.
+  /// J that the person at grip `i` and its hold put in; false where that is not counted: a fixed body.
   bool counted(std::size_t i) const noexcept { return places_[i].body >= 0; }
   double energy(std::size_t i) const noexcept;
   /// 0 = the host's body is used, 1 = the replica.
@@ -92,7 +93,7 @@ class HeldBodies {
   std::uint32_t run_ = 0;
   double rate_ = 0.0;
   double interval_ = 0.0;  // s between words
-  bool here_ = true;  // the host is in this process
+  bool here_ = true;       // the host is in this process
   std::int64_t heard_ns_ = 0;
   std::int64_t advanced_ns_ = 0;
   double caught_up_ = 0.0;  // simulated s of this tick that were caught up with

@@ -12,12 +12,12 @@ namespace slosh {
 namespace {
 
 constexpr double kRounding = 1e-9;  // s: sums of time steps miss a multiple by less than this
-/// Times the world's pace that simulated time goes at least and at most while it goes on, and s by which it may
-/// be behind before it leaps.
+/// Times the world's pace that simulated time goes at least and at most while it goes on, and s by which it
+/// may be behind before it leaps.
 constexpr double kLeastOn = 0.5;
 constexpr double kMostOn = 1.5;
 constexpr double kFarBehind = 0.03;
-constexpr double kPaceMemory = 0.1;  // s over which the world's pace is smoothed
+constexpr double kPaceMemory = 0.1;    // s over which the world's pace is smoothed
 constexpr double kMostSpeed = 18.0;    // m/s that a hand is said to have: a host refuses 20
 constexpr double kMostTurning = 90.0;  // rad/s, the same of 100
 constexpr double kStatesApart =
@@ -127,8 +127,7 @@ void Servo::change_device(Hand& hand, DevicePort* port) noexcept {
     hand.limits = port->limits();
     hand.with_world = port->device().goes_with_world();
     hand.budget.restart();
-    hand.felt.restart(within(stiffened(hand.gains, hand.stiffness), hand.limits), hand.limits,
-                      port->device().gives_way());
+    hand.felt.restart(stiffened(hand.gains, hand.stiffness), hand.limits, port->device().gives_way());
   }
   hand.good = DeviceReport{};
   hand.good.pose = hand.start;
@@ -145,7 +144,7 @@ void Servo::follow_stiffness(std::size_t i, Hand& hand) noexcept {
   hand.stiffness = toward_stiffness(hand.stiffness, wanted, options_.period);
   const CouplingGains gains = stiffened(hand.gains, hand.stiffness);
   held_.set_gains(i, gains);
-  hand.felt.set_gains(within(gains, hand.limits));
+  hand.felt.set_gains(gains, hand.limits);
 }
 
 void Servo::follow_run(const BodyMessage& message) noexcept {
@@ -223,6 +222,7 @@ void Servo::post_pose(std::size_t i, const Hand& hand, std::uint64_t tick) noexc
   up.twist.linear = limit_length(up.twist.linear, kMostSpeed, limited);
   up.twist.angular = limit_length(up.twist.angular, kMostTurning, limited);
   up.engaged = hand.good.engaged;
+  up.felt = hand.felt.felt();
   up.counted = held_.counted(i);
   up.energy = held_.energy(i);
   channel_.pose(i).publish();
@@ -343,7 +343,7 @@ void Servo::tick(std::int64_t now_ns, bool fresh) noexcept {
       if (port->device().gives_way()) grip = held_.grip(i, grip);
       felt = hand.felt.feel(belief, hand.good, grip,
                             {time_, options_.period, device_share, hand.leapt, another_holds(bodies, i),
-                             pace_of(hand)},
+                             message.stands_until_felt, pace_of(hand)},
                             [&](const Wrench& wanted) {
                               const double elapses = options_.period * (hand.with_world ? pace_ : 1.0);
                               const Wrench safe =
@@ -352,7 +352,7 @@ void Servo::tick(std::int64_t now_ns, bool fresh) noexcept {
                               return port->device().gives_way() ? safe : wanted;
                             });
       held_.sent(i, felt.wrench, hand.felt.holds(), hand.felt.held().pose, hand.felt.held().twist,
-                 hand.with_world);
+                 hand.felt.let_in(), hand.with_world);
     }
     hand.given = felt.wrench;
     if (felt.limited) note(kStatusForceLimited);

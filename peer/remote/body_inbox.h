@@ -74,6 +74,9 @@ class BodyInbox {
   /// The world stands still, by word of the host: the last state is handed out once more with a pace of 0.
   void set_paused(bool paused) { paused_ = paused; }
 
+  /// What this host's states say of its stands (BodyMessage::stands_until_felt), from the next one on.
+  void set_stands_until_felt(bool stands) { state_.stands_until_felt = newest_.stands_until_felt = stands; }
+
   /// The newest state that is due, made whole, or null when there is nothing new. The state of a world that
   /// stands still is given out again whenever the host says it again: a device loop must know that somebody
   /// does. Valid until the next call.

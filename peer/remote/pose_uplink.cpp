@@ -5,7 +5,14 @@
 namespace slosh {
 namespace {
 
-wire::PoseSample sample_of(const PoseMessage& message, std::uint32_t grip, std::uint64_t number) {
+wire::HoldsOn holds_on(const PoseMessage& message, wire::Capabilities agreed) {
+  if (!message.engaged) return wire::HoldsOn::kNo;
+  const bool waits = !message.felt && (agreed & wire::kFeltHands) != 0;
+  return waits ? wire::HoldsOn::kUnfelt : wire::HoldsOn::kYes;
+}
+
+wire::PoseSample sample_of(const PoseMessage& message, std::uint32_t grip, std::uint64_t number,
+                           wire::Capabilities agreed) {
   wire::PoseSample sample;
   sample.grip = grip;
   sample.number = number;
@@ -14,7 +21,7 @@ wire::PoseSample sample_of(const PoseMessage& message, std::uint32_t grip, std::
   sample.time = message.time;
   sample.pose = message.pose;
   sample.twist = message.twist;
-  sample.engaged = message.engaged;
+  sample.engaged = holds_on(message, agreed);
   sample.energy = message.energy;
   return sample;
 }
@@ -58,7 +65,7 @@ SharedBytes PoseUplink::make(const std::vector<bool>& held, wire::Capabilities a
     const PoseMessage& message = channel_.pose(i).front();
     if (message.stamp_ns == hand.last_stamp_ns || message.stamp_ns == 0) continue;
     hand.last_stamp_ns = message.stamp_ns;
-    const wire::PoseSample sample = sample_of(message, static_cast<std::uint32_t>(i), hand.next);
+    const wire::PoseSample sample = sample_of(message, static_cast<std::uint32_t>(i), hand.next, agreed);
     if (!can_be_sent(sample)) continue;
     hand.known[hand.next % kRemembered] = {hand.next, sample.stamp_ns, sample.time};
     hand.next += 1;

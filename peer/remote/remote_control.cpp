@@ -95,6 +95,7 @@ wire::Fault RemoteLink::on_welcome(wire::ByteView payload) {
   greeting_.welcome = true;
   status_.welcome = welcome;
   agreed_ = welcome.capabilities & wire::kOurCapabilities;
+  if (inbox_) inbox_->set_stands_until_felt((agreed_ & wire::kFeltHands) != 0);
   publish(now());
   return {};
 }
@@ -204,6 +205,7 @@ void RemoteLink::build_world() {
   const double time_step = status_.welcome.time_step;
   inbox_ = std::make_unique<BodyInbox>(world_.scene, time_step);
   inbox_->set_paused(status_.world.paused);
+  inbox_->set_stands_until_felt((agreed_ & wire::kFeltHands) != 0);
   world_.channel =
       std::make_unique<Channel>(world_.scene.grips.size(), inbox_->state(), options_.snapshot_bytes);
   SnapshotMakerOptions snapshots = options_.snapshots;

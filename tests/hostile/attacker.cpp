@@ -125,7 +125,7 @@ void Attacker::act() {
       wire::PoseSample sample = wire::random_message<wire::PoseSample>(mischief_.any());
       sample.grip = mischief_.one_in(2) ? 0 : grip;
       sample.number = mischief_.one_in(8) ? mischief_.any() % wire::kMaxTick : ++number_;
-      sample.engaged = true;
+      sample.engaged = mischief_.one_in(4) ? wire::HoldsOn::kUnfelt : wire::HoldsOn::kYes;
       wire::Poses poses;
       poses.samples.push_back(sample);
       return raw_datagram(wire::datagram(poses));

@@ -51,7 +51,7 @@ class HonestPeer::Line final : public EndpointEvents {
     sample.time = time_;
     sample.tick_ack = tick_;
     sample.pose = handle_;
-    sample.engaged = true;
+    sample.engaged = wire::HoldsOn::kYes;
     wire::Poses poses;
     poses.samples.push_back(sample);
     end->send_datagram(connection_, Priority::kPose,
@@ -80,7 +80,8 @@ class HonestPeer::Line final : public EndpointEvents {
   void on_stream(ConnectionId, std::int64_t stream, std::span<const std::uint8_t> bytes, bool) override {
     if (stream != control_) return;
     const wire::Fault found = splitter_.feed(bytes, [&](std::uint64_t type, wire::ByteView payload) {
-      return wire::dispatch(wire::HostControl{}, type, payload, [&]<class M>(const M& m) { heard(m); }, 0);
+      return wire::dispatch(
+          wire::HostControl{}, type, payload, [&]<class M>(const M& m) { heard(m); }, 0);
     });
     if (found) fault = "the host's control stream: " + found.text();
   }

@@ -46,7 +46,7 @@ double share_of(const Site& site, double seconds) {
       }
     }
     held.hear(message, fresh, now_ns);
-    held.sent(0, {}, true, Pose{}, Twist{}, false);
+    held.sent(0, {}, true, Pose{}, Twist{}, 0.0, false);
     held.advance(now_ns + 1'000'000, 1.0, 0.001);
   }
   return held.share(0);

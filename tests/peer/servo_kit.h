@@ -20,6 +20,7 @@ class FakeDevice final : public Device {
   Wrench last;
   double last_time = -1.0;
   bool with_world = false;
+  bool feels = true;
 
   DeviceReport read(const DeviceMoment& moment) noexcept override {
     last_time = moment.time;
@@ -29,6 +30,7 @@ class FakeDevice final : public Device {
   DeviceLimits limits() const override { return limit; }
   bool immediate() const override { return true; }
   bool goes_with_world() const override { return with_world; }
+  bool gives_way() const override { return feels; }
   std::string kind() const override { return "fake"; }
 };
 
@@ -57,6 +59,7 @@ struct ServoKit {
   Channel channel{1, first(), 1 << 20};
   FakeDevice* device = nullptr;
   std::unique_ptr<Servo> servo;
+  bool stands = false;  // BodyMessage::stands_until_felt
 
   explicit ServoKit(DeviceLimits limits = limits_without_a_hand(), ServoOptions options = {}) {
     auto made = std::make_unique<FakeDevice>();
@@ -84,6 +87,7 @@ struct ServoKit {
     message.stamp_ns = to_nanoseconds(time);
     message.rate = rate;
     message.heard_pose_ns = heard < 0.0 ? kPoseNotTold : to_nanoseconds(heard);
+    message.stands_until_felt = stands;
     message.bodies.tick = static_cast<std::uint64_t>(std::lround(time / kTick));
     message.bodies.time = time;
     message.bodies.grips[0].pose = grip;

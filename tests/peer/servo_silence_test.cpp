@@ -70,6 +70,63 @@ TEST(Servo, NoForceBeginsBeforeTheHostHasHeardTheHand) {
   }
 }
 
+/// A host that keeps its stand until a hand is felt: how far the hand went before its force begins stretches
+/// nothing, and the host is told from then on. One that does not took the hand with its first pose.
+TEST(Servo, TakesHoldWhereTheHandIsWhenItsForceBegins) {
+  for (const bool stands : {true, false}) {
+    ServoKit kit;
+    kit.stands = stands;
+    double now = 0.0;
+    const auto run = [&](double seconds, bool answers) {
+      for (const double end = now + seconds; now < end; now += 0.001) {
+        kit.device->next.pose = at(0.1 * now);
+        kit.publish(now, {}, {}, 1.0, answers ? now - 0.1 : 0.0);
+        kit.tick(now);
+      }
+      kit.channel.pose(0).update();
+      return kit.channel.pose(0).front();
+    };
+    PoseMessage said = run(0.5, false);
+    EXPECT_EQ(kit.device->last.force.x, 0.0);
+    EXPECT_TRUE(said.engaged);
+    EXPECT_FALSE(said.felt);
+    said = run(0.002, true);
+    EXPECT_TRUE(said.felt);
+    if (!stands) {
+      EXPECT_NEAR(kit.device->last.force.x, -50.0, 0.5) << "the world has the same spring";
+      continue;
+    }
+    EXPECT_NEAR(kit.device->last.force.x, 0.0, 0.1);
+    // A silence takes its force, and it takes hold anew after that, too.
+    now += 1.0;
+    said = run(0.1, false);
+    EXPECT_EQ(kit.device->last.force.x, 0.0);
+    said = run(0.5, false);
+    EXPECT_FALSE(said.felt) << "it speaks again, and no answer came";
+    said = run(0.002, true);
+    EXPECT_TRUE(said.felt);
+    EXPECT_NEAR(kit.device->last.force.x, 0.0, 0.1);
+  }
+}
+
+/// Nobody feels what a script or a mouse holds, and in one process the answer is there at once.
+TEST(Servo, NobodyWaitsForWhoFeelsNothing) {
+  ServoKit kit;
+  kit.stands = true;
+  auto script = std::make_unique<test::FakeDevice>();
+  script->feels = false;
+  ASSERT_TRUE(kit.servo->set_device(0, std::move(script)));
+  kit.publish(0.0, {}, {}, 1.0, 0.0);
+  kit.tick(0.0);
+  ASSERT_TRUE(kit.channel.pose(0).update());
+  EXPECT_TRUE(kit.channel.pose(0).front().felt);
+  ServoKit here;
+  here.publish(0.0);
+  here.tick(0.0);
+  ASSERT_TRUE(here.channel.pose(0).update());
+  EXPECT_TRUE(here.channel.pose(0).front().felt);
+}
+
 TEST(Servo, SilenceStretchesNoSpring) {
   ServoKit kit;
   kit.publish(0.0);

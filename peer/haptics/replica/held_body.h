@@ -59,11 +59,14 @@ class HeldBody {
     gains_[g] = gains;
     replica_.set_gains(g, gains);
   }
-  void sent(std::size_t g, const Wrench& wrench) noexcept { guards_[g].sent(wrench); }
+  /// What own hand `g` was sent, and J that its coupling was given besides the hand's motion.
+  void sent(std::size_t g, const Wrench& wrench, double let_in = 0.0) noexcept {
+    guards_[g].sent(wrench, let_in);
+  }
   /// On by `dt` s of the body's time, to `now_ns`.
   void advance(std::span<const OwnHand> own, double dt, std::int64_t now_ns) noexcept;
 
-  /// J that the person at own grip `g` put in.
+  /// J that the person at own grip `g` and the hold put in.
   double energy(std::size_t g) const noexcept { return guards_[g].energy(); }
   /// J that may still come out at the own hands: what all persons put in and what acts besides gave the body
   /// at the host, less what dampers used up.

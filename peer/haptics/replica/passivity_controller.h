@@ -100,10 +100,15 @@ class PassivityController {
     return {open_ * wanted.force - resists * twist.linear,
             open_ * wanted.torque - resists_turning * twist.angular};
   }
-  /// What the device was really sent.
-  void sent(const Wrench& wrench) noexcept { sent_ = wrench; }
+  /// What the device was really sent. `let_in`: J that the coupling was given on the hand's side by no motion
+  /// of the hand (FeltHand::let_in): the body has it, and without it what is left would be too little for
+  /// ever.
+  void sent(const Wrench& wrench, double let_in = 0.0) noexcept {
+    sent_ = wrench;
+    energy_ += let_in;
+  }
 
-  double energy() const noexcept { return energy_; }  ///< J that the person put in so far
+  double energy() const noexcept { return energy_; }  ///< J that the person and the hold put in so far
   bool fires() const noexcept { return fires_; }      ///< in the last guard()
 
  private:

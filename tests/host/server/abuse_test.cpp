@@ -152,7 +152,7 @@ TEST_F(Abuse, PosesThatAreNotFiniteOrHugeAreDropped) {
                          -std::numeric_limits<double>::infinity(), 1e30}) {
     wire::PoseSample sample;
     sample.number = ++number;
-    sample.engaged = true;
+    sample.engaged = wire::HoldsOn::kYes;
     wire::Bytes bytes = wire::datagram(wire::Poses{{sample}});
     const auto value = static_cast<float>(x);
     // The position follows type, count, grip, number, stamp, tick and time.

@@ -141,7 +141,7 @@ class StirredHost : public HostTap {
     const double e = std::min(1.0, t / 0.3);
     sample.pose.position.x += 0.02 * e * std::sin(turn * t);
     sample.twist.linear.x = 0.02 * e * turn * std::cos(turn * t);
-    sample.engaged = true;
+    sample.engaged = wire::HoldsOn::kYes;
     peer_->datagram(wire::Poses{{sample}});
   }
 

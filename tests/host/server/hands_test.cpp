@@ -17,6 +17,14 @@ class Hands : public ::testing::Test {
   }
   bool sample(std::uint64_t number, double x, std::int64_t stamp_ns = 0, bool engaged = true,
               std::uint32_t grip = 0) {
+    return sample_of(number, x, stamp_ns, engaged ? wire::HoldsOn::kYes : wire::HoldsOn::kNo, grip);
+  }
+  /// A hand that holds on and that its person does not feel yet.
+  bool unfelt(std::uint64_t number, double x, std::int64_t stamp_ns = 0) {
+    return sample_of(number, x, stamp_ns, wire::HoldsOn::kUnfelt, 0);
+  }
+  bool sample_of(std::uint64_t number, double x, std::int64_t stamp_ns, wire::HoldsOn engaged,
+                 std::uint32_t grip) {
     wire::PoseSample s;
     s.grip = grip;
     s.number = number;
@@ -63,6 +71,60 @@ TEST_F(Hands, AStandHoldsOnUntilTheHandDoesAndTheWorldIsToldThatItIsAnother) {
   hands.taken(0, now);
   ASSERT_TRUE(sample(1, start));
   EXPECT_NE(newest(0).hold, first) << "and somebody else's";
+}
+
+/// Else it would move the body by a spring that its person feels nothing of.
+TEST_F(Hands, AStandHoldsOnUntilTheHandIsFeltAndItsSamplesAreAnswered) {
+  hands.stand_all(now);
+  const double start = grip_start(scene, 0).position.x;
+  const std::uint32_t stand = newest(0).hold;
+  hands.taken(0, now);
+  EXPECT_EQ(hands.used(0, newest(0).number).number, 0u);
+  for (std::uint64_t number : {1u, 2u, 7u}) {
+    ASSERT_TRUE(unfelt(number, start + 1.0, static_cast<std::int64_t>(1000 * number)));
+    EXPECT_EQ(newest(0).pose.position.x, start);
+    EXPECT_EQ(newest(0).hold, stand);
+    EXPECT_EQ(hands.used(0, newest(0).number).number, number) << "or its person would never feel anything";
+    EXPECT_EQ(hands.used(0, newest(0).number).stamp_ns, static_cast<std::int64_t>(1000 * number));
+  }
+  EXPECT_FALSE(unfelt(5, start)) << "an older one";
+  EXPECT_TRUE(hands.on_stand(0));
+  ASSERT_TRUE(sample(8, start + 1.1, 8000));
+  EXPECT_EQ(newest(0).pose.position.x, start + 1.1);
+  EXPECT_NE(newest(0).hold, stand);
+  EXPECT_EQ(hands.used(0, newest(0).number).stamp_ns, 8000);
+}
+
+/// A silence has taken its force: to the world it is silent, too, until it is felt again.
+TEST_F(Hands, AHandThatIsFeltNoMoreMovesNothingAndIsAnswered) {
+  hands.let_go(0, now, true);
+  hands.taken(0, now);
+  ASSERT_TRUE(unfelt(1, 0.2));
+  EXPECT_FALSE(newest(0).engaged) << "nothing held it, and nothing does";
+  ASSERT_TRUE(sample(2, 0.3));
+  const std::uint32_t hold = newest(0).hold;
+  ASSERT_TRUE(unfelt(3, 0.4, 3000));
+  EXPECT_EQ(newest(0).pose.position.x, 0.3);
+  EXPECT_EQ(hands.used(0, newest(0).number).stamp_ns, 3000);
+  ASSERT_TRUE(sample(4, 0.5));
+  EXPECT_EQ(newest(0).pose.position.x, 0.5);
+  EXPECT_EQ(newest(0).hold, hold) << "the world knows of the silence by itself";
+  ASSERT_TRUE(unfelt(5, 0.6));
+  ASSERT_TRUE(sample(6, 0.6, 0, false));
+  EXPECT_FALSE(newest(0).engaged) << "who opens the hand is not waited for";
+
+  ASSERT_TRUE(sample(7, 0.6));
+  ASSERT_TRUE(unfelt(8, 0.7));
+  hands.lose(0, now);
+  EXPECT_TRUE(newest(0).engaged) << "nobody would catch it";
+  EXPECT_EQ(newest(0).pose.position.x, 0.6) << "where it was felt last";
+  hands.taken(0, now);
+  ASSERT_TRUE(unfelt(1, 0.9));
+  EXPECT_EQ(newest(0).pose.position.x, 0.6) << "nor moves it before";
+  ASSERT_TRUE(sample(2, 0.9));
+  EXPECT_EQ(newest(0).pose.position.x, 0.9);
+  hands.let_go(0, now);
+  EXPECT_EQ(hands.used(0, 0).number, 0u);
 }
 
 TEST_F(Hands, ALostHandLetsGoToOneThatIsHeardAndElseStays) {

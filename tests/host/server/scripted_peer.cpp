@@ -68,7 +68,7 @@ void ScriptedPeer::pose(std::uint32_t grip, std::uint64_t number, double x, std:
   sample.number = number;
   sample.stamp_ns = stamp_ns;
   sample.pose.position = {x, 0.5, 0.0};
-  sample.engaged = true;
+  sample.engaged = wire::HoldsOn::kYes;
   datagram(wire::Poses{{sample}});
 }
 

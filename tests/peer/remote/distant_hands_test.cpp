@@ -66,7 +66,8 @@ TEST_F(DistantHands, AnArmThatIsSofterCarriesWithAnother) {
         1e3 * round_trip, felt, arm_peak, arm_step, others, other_peak);
     EXPECT_NEAR(felt, 0.5 * kShare, 0.02 * kShare) << round_trip;
     EXPECT_NEAR(others, kShare, 0.02 * kShare) << round_trip;
-    EXPECT_LE(arm_peak, 20.0 + 1e-9) << "what it may give";
+    EXPECT_LT(arm_peak, 17.0)
+        << "its hold goes as the world's does, whatever it renders: 20 N, all that it may give, else";
     EXPECT_LT(other_peak, 2.0 * kShare) << round_trip;
     EXPECT_LT(arm_step, 0.2) << round_trip;
     EXPECT_LT(step(), 0.05) << round_trip << ": at rest after";
@@ -86,7 +87,7 @@ TEST_F(DistantHands, WhoIsNotHeardFeelsNothing) {
   EXPECT_NEAR(felt(1), kShare, 1.0) << "the other one carries";
   people[0]->up.dark = false;
   double least = 1e9;
-  run(0.25);
+  run(0.75);  // they are on their way by now: what they take hold of comes over half a second
   for (int i = 0; i < 120; ++i) {
     run(0.05);
     least = std::min(least, felt(0));

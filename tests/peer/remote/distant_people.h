@@ -127,6 +127,7 @@ class DistantPeople : public ::testing::Test {
   double rate = 1.0;
   std::uint32_t run_number = 0;
   int ticks = 0;
+  wire::Capabilities agreed = wire::kOurCapabilities;
 
   /// 0.15 m up and 0.2 m to the side and back, in 6 s, from 3 s on.
   static PoseTrack carrying(const Pose& start) {
@@ -139,6 +140,10 @@ class DistantPeople : public ::testing::Test {
     }
     return PoseTrack(keys, start);
   }
+  /// Where person `i` goes.
+  std::function<PoseTrack(std::size_t, const Pose&)> way = [](std::size_t, const Pose& start) {
+    return carrying(start);
+  };
   /// `arm`: the first person's device is a haptic arm.
   void begin(double round_trip, double jitter, double loss, Coupling coupling, bool arm = false) {
     host = std::make_unique<HostEnd>(world_at_rest(scene), scene);
@@ -151,8 +156,9 @@ class DistantPeople : public ::testing::Test {
     first.bodies = host->now;
     first.heard_pose_ns = 0;  // far away
     for (std::uint32_t i = 0; i < 2; ++i) {
-      people.push_back(std::make_unique<DistantPerson>(scene, i, first, dt, carrying(grip_start(scene, i)),
+      people.push_back(std::make_unique<DistantPerson>(scene, i, first, dt, way(i, grip_start(scene, i)),
                                                        coupling, arm && i == 0));
+      people.back()->inbox.set_stands_until_felt((agreed & wire::kFeltHands) != 0);
       people.back()->up.delay = people.back()->down.delay = 0.5 * round_trip;
       people.back()->up.jitter = people.back()->down.jitter = jitter;
       people.back()->up.loss = people.back()->down.loss = loss;
@@ -226,7 +232,7 @@ class DistantPeople : public ::testing::Test {
     person.square += glm::dot(off, off);
     person.ticks += 1;
     if (ticks % 2 == 0) {
-      if (SharedBytes poses = person.uplink.make(person.held)) person.up.send(poses, clock, random);
+      if (SharedBytes poses = person.uplink.make(person.held, agreed)) person.up.send(poses, clock, random);
     }
   }
   void forget() {

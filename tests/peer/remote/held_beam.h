@@ -51,7 +51,7 @@ inline wire::PoseSample sample_of(const PoseMessage& pose, std::uint32_t grip, s
   sample.time = pose.time;
   sample.pose = pose.pose;
   sample.twist = pose.twist;
-  sample.engaged = pose.engaged;
+  sample.engaged = pose.engaged ? wire::HoldsOn::kYes : wire::HoldsOn::kNo;
   return sample;
 }
 

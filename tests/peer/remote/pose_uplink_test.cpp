@@ -14,12 +14,13 @@ struct Uplink {
   Channel channel;
   PoseUplink uplink;
 
-  void post(std::size_t grip, std::int64_t stamp_ns, double x = 0.0) {
+  void post(std::size_t grip, std::int64_t stamp_ns, double x = 0.0, bool engaged = true, bool felt = true) {
     PoseMessage& m = channel.pose(grip).back();
     m.device = static_cast<std::uint32_t>(grip);
     m.stamp_ns = stamp_ns;
     m.pose.position.x = x;
-    m.engaged = true;
+    m.engaged = engaged;
+    m.felt = felt;
     channel.pose(grip).publish();
   }
   static wire::Poses read(const SharedBytes& bytes) {
@@ -90,6 +91,22 @@ TEST(PoseUplink, ManyHandsFitWithTheNewestOfEach) {
       if (s.stamp_ns == 1000 * i) newest.insert(s.grip);
     }
     EXPECT_EQ(newest.size(), 12u);
+  }
+}
+
+TEST(PoseUplink, AHostThatKnowsOfItIsToldThatAHandIsNotFeltYet) {
+  using wire::HoldsOn;
+  for (const bool known : {true, false}) {
+    Uplink kit(1);
+    const wire::Capabilities agreed = known ? wire::kAllCapabilities : ~wire::kFeltHands;
+    const auto said = [&](std::int64_t stamp_ns, bool engaged, bool felt) {
+      kit.post(0, stamp_ns, 0.0, engaged, felt);
+      return Uplink::read(kit.uplink.make({true}, agreed)).samples.front().engaged;
+    };
+    EXPECT_EQ(said(1000, true, false), known ? HoldsOn::kUnfelt : HoldsOn::kYes);
+    EXPECT_EQ(said(2000, true, true), HoldsOn::kYes);
+    EXPECT_EQ(said(3000, false, false), HoldsOn::kNo);
+    EXPECT_EQ(said(4000, false, true), HoldsOn::kNo);
   }
 }
 

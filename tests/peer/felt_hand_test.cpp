@@ -1,0 +1,60 @@
+// What a hold gives that is let in towards a hand which stays.
+#include "peer/haptics/felt_hand.h"
+
+#include <gtest/gtest.h>
+
+namespace slosh {
+namespace {
+
+constexpr CouplingGains kSprings{1000.0, 0.0, 10.0, 0.0};
+constexpr double kCarried = 15.0;  // N on the hand, as it takes hold
+
+class LetIn : public ::testing::Test {
+ protected:
+  LetIn() { felt.restart(kSprings, limits_without_a_hand(), true); }
+  /// J over that time, with the grip where it is.
+  double run(double seconds, const DeviceReport& hand) {
+    GripState grip;
+    grip.on_hand.force = {0.0, -kCarried, 0.0};
+    double sum = 0.0;
+    for (const double end = now + seconds; now < end; now += 0.001) {
+      (void)felt.feel({1.0, true, false, false}, hand, grip, {now});
+      sum += felt.let_in();
+    }
+    return sum;
+  }
+  static DeviceReport above(double way, double turn) {
+    DeviceReport hand;
+    hand.pose.position.y = way;
+    hand.pose.orientation = rotate_by(hand.pose.orientation, {0.0, 0.0, turn});
+    return hand;
+  }
+  FeltHand felt{kSprings};
+  double now = 0.0;
+};
+
+TEST_F(LetIn, IsWhatTheSpringsHaveMoreInTheEnd) {
+  const double stretched = 0.5 * kSprings.stiffness * 0.1 * 0.1;
+  const double before = 0.5 * kCarried * kCarried / kSprings.stiffness;
+  EXPECT_NEAR(run(4.0, above(0.1, 0.0)), stretched - before, 0.01 * stretched);
+  EXPECT_NEAR(run(1.0, above(0.1, 0.0)), 0.0, 1e-6) << "it is in";
+}
+
+TEST_F(LetIn, CountsTurnsToo) {
+  const double turned = 0.5 * kSprings.rotational_stiffness * 0.3 * 0.3;
+  EXPECT_NEAR(run(4.0, above(kCarried / kSprings.stiffness, 0.3)), turned, 0.01 * turned);
+}
+
+TEST_F(LetIn, IsNothingOfAHandThatHoldsWhereItIsOrNotAtAll) {
+  DeviceReport hand = above(kCarried / kSprings.stiffness, 0.0);
+  EXPECT_EQ(run(0.1, hand), 0.0);
+  hand.pose.position.y += 0.05;
+  EXPECT_EQ(run(0.1, hand), 0.0) << "its own motion";
+  hand.engaged = false;
+  EXPECT_EQ(run(0.1, hand), 0.0);
+  hand.engaged = true;
+  EXPECT_EQ(run(0.001, hand), 0.0) << "nor as it takes hold";
+}
+
+}  // namespace
+}  // namespace slosh
