@@ -71,8 +71,7 @@ void HandTable::taken(std::size_t grip, std::int64_t now_ns) {
   GripHand& hand = grips_[grip];
   hand.held = true;
   hand.base += hand.newest + 1;
-  hand.newest = hand.first = hand.seen = 0;
-  hand.unfelt = false;
+  hand.newest = hand.first = hand.seen = hand.answered = 0;
   hand.delivery = {};
   hand.heard_ns = now_ns;
   if (!hand.stand) hand.hold += 1;
@@ -80,7 +79,8 @@ void HandTable::taken(std::size_t grip, std::int64_t now_ns) {
 
 void HandTable::let_go(std::size_t grip, std::int64_t now_ns, bool also_stand) {
   GripHand& hand = grips_[grip];
-  hand.held = hand.unfelt = false;
+  hand.held = false;
+  hand.answered = 0;
   if (hand.stand && !hand.kept && !also_stand) return;
   hand.stand = false;
   PoseMessage message;
@@ -105,7 +105,7 @@ bool HandTable::another_is_heard(std::size_t grip, std::int64_t now_ns) const {
 
 void HandTable::lose(std::size_t grip, std::int64_t now_ns) {
   GripHand& hand = grips_[grip];
-  hand.unfelt = false;
+  hand.answered = 0;
   if (hand.stand) return;
   if (!hand.engaged || another_is_heard(grip, now_ns)) return let_go(grip, now_ns);
   hand.held = false;
@@ -154,8 +154,10 @@ bool HandTable::sample(const wire::PoseSample& sample, std::int64_t now_ns, bool
   PoseMessage message;
   message.device = sample.grip;
   message.stamp_ns = on_our_clock(hand, sample.stamp_ns, now_ns);
-  hand.unfelt = sample.engaged == wire::HoldsOn::kUnfelt;
-  if (hand.unfelt) return true;
+  if (sample.engaged == wire::HoldsOn::kUnfelt) {
+    hand.answered = sample.number;
+    return true;
+  }
   message.tick_ack = sample.tick_ack;
   message.time = sample.time;
   message.pose = sample.pose;
@@ -175,8 +177,8 @@ bool HandTable::sample(const wire::PoseSample& sample, std::int64_t now_ns, bool
 
 HandTable::Used HandTable::used(std::size_t grip, std::uint64_t pose_number) const {
   const GripHand& hand = grips_[grip];
-  if (!hand.unfelt && pose_number <= hand.base) return {};
-  const std::uint64_t number = hand.unfelt ? hand.newest : pose_number - hand.base;
+  const std::uint64_t number = std::max(pose_number - std::min(pose_number, hand.base), hand.answered);
+  if (number == 0) return {};
   const Used& known = hand.known[number % kRemembered];
   return known.number == number ? known : Used{};
 }

@@ -49,7 +49,8 @@ class HandTable {
     std::uint64_t number = 0;   ///< the holder's; 0 = none of the holder's samples, or it is too long ago
     std::int64_t stamp_ns = 0;  ///< on the holder's clock
   };
-  /// From BodyMessage::pose_numbers to the holder's sample; the newest one where that is not felt.
+  /// From BodyMessage::pose_numbers to the holder's sample, or to a newer one that is not felt: never back,
+  /// also not in states that were made before the first one that is felt came.
   Used used(std::size_t grip, std::uint64_t pose_number) const;
   const Delivery& delivery(std::size_t grip) const { return grips_[grip].delivery; }
   bool on_stand(std::size_t grip) const { return grips_[grip].stand; }
@@ -67,7 +68,7 @@ class HandTable {
     std::uint64_t base = 0;    // added to the holder's numbers, so that they rise over all holders
     std::uint64_t newest = 0;  // holder's number; 0 = none yet
     std::uint64_t first = 0;
-    bool unfelt = false;               // the newest sample is
+    std::uint64_t answered = 0;        // holder's number of the newest sample that was not felt; 0 = none
     std::uint64_t seen = 0;            // bit i: newest − i came
     std::int64_t clock_offset_ns = 0;  // host's clock − holder's, by the quickest sample
     std::int64_t heard_ns = 0;

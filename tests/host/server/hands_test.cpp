@@ -89,7 +89,9 @@ TEST_F(Hands, AStandHoldsOnUntilTheHandIsFeltAndItsSamplesAreAnswered) {
   }
   EXPECT_FALSE(unfelt(5, start)) << "an older one";
   EXPECT_TRUE(hands.on_stand(0));
+  const std::uint64_t of_stand = newest(0).number;
   ASSERT_TRUE(sample(8, start + 1.1, 8000));
+  EXPECT_EQ(hands.used(0, of_stand).number, 7u) << "a state that was made before it came: not back to none";
   EXPECT_EQ(newest(0).pose.position.x, start + 1.1);
   EXPECT_NE(newest(0).hold, stand);
   EXPECT_EQ(hands.used(0, newest(0).number).stamp_ns, 8000);
