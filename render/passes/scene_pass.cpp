@@ -21,8 +21,7 @@ void set_look(const gl::Program& program, const MeshInstance& instance, unsigned
 
 /// The frame's known meshes of a wanted opacity, nearest centre first.
 template <class Wanted>
-std::vector<const MeshInstance*> sorted_by_distance(const Frame& frame, const MeshStore& meshes,
-                                                    Wanted wanted) {
+TiledMeshes::Instances sorted_by_distance(const Frame& frame, const MeshStore& meshes, Wanted wanted) {
   std::vector<std::pair<float, const MeshInstance*>> found;
   for (const MeshInstance& instance : frame.meshes) {
     if (!meshes.has(instance.mesh) || !wanted(instance.look.opacity)) continue;
@@ -32,22 +31,19 @@ std::vector<const MeshInstance*> sorted_by_distance(const Frame& frame, const Me
     if (std::isfinite(distance)) found.emplace_back(distance, &instance);  // a body that blew up is not drawn
   }
   std::ranges::stable_sort(found, [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::vector<const MeshInstance*> sorted;
+  TiledMeshes::Instances sorted;
   for (const auto& [distance, instance] : found) sorted.push_back(instance);
   return sorted;
 }
 
-/// Those of each kind in the order in which they are drawn: opaque ones nearest first, glass farthest first.
-struct DrawOrder {
-  std::vector<const MeshInstance*> opaque;
-  std::vector<const MeshInstance*> glass;
-};
-DrawOrder draw_order(const Frame& frame, const MeshStore& meshes) {
-  DrawOrder order;
-  order.opaque = sorted_by_distance(frame, meshes, [](float opacity) { return opacity >= 1.0f; });
-  order.glass = sorted_by_distance(frame, meshes, [](float opacity) { return opacity < 1.0f; });
-  std::ranges::reverse(order.glass);
-  return order;
+// In the order in which they are drawn.
+TiledMeshes::Instances opaque_nearest_first(const Frame& frame, const MeshStore& meshes) {
+  return sorted_by_distance(frame, meshes, [](float opacity) { return opacity >= 1.0f; });
+}
+TiledMeshes::Instances glass_farthest_first(const Frame& frame, const MeshStore& meshes) {
+  auto sorted = sorted_by_distance(frame, meshes, [](float opacity) { return opacity < 1.0f; });
+  std::ranges::reverse(sorted);
+  return sorted;
 }
 
 }  // namespace
@@ -104,7 +100,6 @@ Result<ScenePass> ScenePass::create(bool fast, bool compute, const std::vector<s
 
 void ScenePass::draw_opaque(const Frame& frame, const MeshStore& meshes, const TextureStore& textures,
                             const Targets& targets, bool background, bool occlusion_follows) {
-  const auto sorted = sorted_by_distance(frame, meshes, [](float opacity) { return opacity >= 1.0f; });
   if (choose_tiles(frame, meshes, textures)) {
     upload_looks(frame, meshes, lists_);
     start_lists(frame, meshes, lists_);
@@ -112,6 +107,7 @@ void ScenePass::draw_opaque(const Frame& frame, const MeshStore& meshes, const T
     start_opaque(frame, lists_, targets, background, occlusion_follows);
     return gl::finish_compute();
   }
+  const auto sorted = opaque_nearest_first(frame, meshes);
   const gl::Framebuffer& target = occlusion_follows ? targets.mesh_target : targets.plain_mesh_target;
   const glm::vec4 black(0.0f);
   const glm::vec4 nothing(kNoFluidDepth);
@@ -159,13 +155,11 @@ bool ScenePass::choose_tiles(const Frame& frame, const MeshStore& meshes, const 
 }
 
 void ScenePass::upload_looks(const Frame& frame, const MeshStore& meshes, TiledMeshes::Lists& lists) {
-  const DrawOrder order = draw_order(frame, meshes);
-  TiledMeshes::upload_looks(order.opaque, order.glass, lists);
+  TiledMeshes::upload_looks(opaque_nearest_first(frame, meshes), glass_farthest_first(frame, meshes), lists);
 }
 
 void ScenePass::start_lists(const Frame& frame, const MeshStore& meshes, TiledMeshes::Lists& lists) const {
-  const DrawOrder order = draw_order(frame, meshes);
-  tiled_->start_lists(order.opaque, order.glass, frame.view, meshes, lists);
+  tiled_->start_lists(frame.view, meshes, lists);
 }
 
 void ScenePass::start_opaque(const Frame& frame, const TiledMeshes::Lists& lists, const Targets& targets,
@@ -201,14 +195,14 @@ void ScenePass::resolve_occlusion(const Targets& targets) {
 
 bool ScenePass::draw_translucent(const Frame& frame, const MeshStore& meshes, const TextureStore& textures,
                                  const Targets& targets, const gl::Texture* fluid, bool behind) {
-  auto sorted = sorted_by_distance(frame, meshes, [](float opacity) { return opacity < 1.0f; });
-  if (sorted.empty()) return false;
-  std::ranges::reverse(sorted);  // far before near
   if (by_tiles_) {
+    if (lists_.glass.drawn.empty()) return false;
     start_translucent(frame, lists_, targets, fluid, behind ? GlassPart::kBehind : GlassPart::kBefore);
     gl::finish_compute();
     return behind;
   }
+  const auto sorted = glass_farthest_first(frame, meshes);
+  if (sorted.empty()) return false;
   Programs& programs = behind ? translucent_behind_ : translucent_front_;
   if (fluid) gl::bind_textures({fluid});
   glBindFramebuffer(GL_FRAMEBUFFER, targets.blend_target.name());

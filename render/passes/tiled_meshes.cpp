@@ -79,10 +79,10 @@ bool TiledMeshes::suit(const Frame& frame, const MeshStore& meshes, const Textur
   return triangles <= kMostTriangles;
 }
 
-void TiledMeshes::fill(List& list, Instances instances, std::span<const Sides> passes, const View& view,
+void TiledMeshes::fill(List& list, std::span<const Sides> passes, const View& view,
                        const MeshStore& meshes) const {
   std::size_t groups = 0;
-  for (const MeshInstance* instance : instances)
+  for (const MeshInstance* instance : list.drawn)
     groups += passes.size() * groups_of(meshes.triangle_count(instance->mesh));
   list.groups = static_cast<int>(groups);
   if (groups == 0) return;
@@ -94,8 +94,8 @@ void TiledMeshes::fill(List& list, Instances instances, std::span<const Sides> p
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 5, list.group_boxes.name());
   triangles_.set("near_plane", view.near_plane);
   int first = 0;
-  for (std::size_t i = 0; i < instances.size(); ++i) {
-    const MeshInstance& instance = *instances[i];
+  for (std::size_t i = 0; i < list.drawn.size(); ++i) {
+    const MeshInstance& instance = *list.drawn[i];
     const auto own = meshes.triangle_count(instance.mesh);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, meshes.vertices(instance.mesh));
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, meshes.indices(instance.mesh));
@@ -126,10 +126,11 @@ void TiledMeshes::start(const gl::Program& program, const List& list, const View
 }
 
 void TiledMeshes::upload_looks(Instances opaque_nearest_first, Instances glass_farthest_first, Lists& lists) {
-  for (const auto& [list, instances] :
-       {std::pair{&lists.opaque, opaque_nearest_first}, std::pair{&lists.glass, glass_farthest_first}}) {
+  lists.opaque.drawn = std::move(opaque_nearest_first);
+  lists.glass.drawn = std::move(glass_farthest_first);
+  for (List* list : {&lists.opaque, &lists.glass}) {
     std::vector<Item> items;
-    for (const MeshInstance* instance : instances) {
+    for (const MeshInstance* instance : list->drawn) {
       const MeshLook& look = instance->look;
       items.push_back({{look.base_color, glm::clamp(look.opacity, 0.0f, 1.0f)},
                        {look.metallic, look.roughness, 0.0f, 0.0f},
@@ -139,12 +140,11 @@ void TiledMeshes::upload_looks(Instances opaque_nearest_first, Instances glass_f
   }
 }
 
-void TiledMeshes::start_lists(Instances opaque_nearest_first, Instances glass_farthest_first,
-                              const View& view, const MeshStore& meshes, Lists& lists) const {
+void TiledMeshes::start_lists(const View& view, const MeshStore& meshes, Lists& lists) const {
   constexpr Sides kEitherSide[] = {Sides::kBoth};
   constexpr Sides kFarSideFirst[] = {Sides::kInside, Sides::kOutside};
-  fill(lists.opaque, opaque_nearest_first, kEitherSide, view, meshes);
-  fill(lists.glass, glass_farthest_first, std::span(kFarSideFirst).subspan(fast_ ? 1 : 0), view, meshes);
+  fill(lists.opaque, kEitherSide, view, meshes);
+  fill(lists.glass, std::span(kFarSideFirst).subspan(fast_ ? 1 : 0), view, meshes);
 }
 
 void TiledMeshes::start_opaque(const Lists& lists, const View& view, const Targets& targets, bool background,

@@ -42,7 +42,7 @@ struct PanesBefore {
 
 class TiledMeshes {
  public:
-  using Instances = std::span<const MeshInstance* const>;
+  using Instances = std::vector<const MeshInstance*>;
 
   /// Errors carry the driver's log.
   static Result<TiledMeshes> create(bool fast, const std::vector<std::string>& far_light);
@@ -51,8 +51,9 @@ class TiledMeshes {
   /// them.
   static bool suit(const Frame& frame, const MeshStore& meshes, const TextureStore& textures);
 
-  /// Of one kind, in the order in which they are drawn.
+  /// Of one kind.
   struct List {
+    Instances drawn;  ///< in the order in which they are drawn; the frame's, so only until it is drawn
     gl::StreamBuffer triangles;
     gl::StreamBuffer boxes;        ///< of pixels
     gl::StreamBuffer group_boxes;  ///< of 64 triangles each
@@ -66,12 +67,11 @@ class TiledMeshes {
     PanesBefore panes;  ///< of GlassPart::kAll
   };
 
-  /// Uploads what a view's meshes look like. For all views before the first start_lists(): an upload between
-  /// two views' dispatches holds the second one up.
+  /// Takes a view's meshes and uploads what they look like. For all views before the first start_lists(): an
+  /// upload between two views' dispatches holds the second one up.
   static void upload_looks(Instances opaque_nearest_first, Instances glass_farthest_first, Lists& lists);
-  /// Fills a view's lists. Of this and what follows nobody reads before gl::finish_compute().
-  void start_lists(Instances opaque_nearest_first, Instances glass_farthest_first, const View& view,
-                   const MeshStore& meshes, Lists& lists) const;
+  /// Fills a view's lists with these. Of this and what follows nobody reads before gl::finish_compute().
+  void start_lists(const View& view, const MeshStore& meshes, Lists& lists) const;
   /// Opaque ones: writes S_d and the colour (mesh_color if occlusion follows, else color).
   void start_opaque(const Lists& lists, const View& view, const Targets& targets, bool background,
                     bool occlusion_follows) const;
@@ -85,8 +85,7 @@ class TiledMeshes {
   /// What is seen of a mesh.
   enum class Sides : int { kInside = -1, kBoth = 0, kOutside = 1 };
 
-  void fill(List& list, Instances instances, std::span<const Sides> passes, const View& view,
-            const MeshStore& meshes) const;
+  void fill(List& list, std::span<const Sides> passes, const View& view, const MeshStore& meshes) const;
   static void start(const gl::Program& program, const List& list, const View& view, glm::ivec2 size);
 
   bool fast_ = false;  ///< glass: only the sides that face the eye
