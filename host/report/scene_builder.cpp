@@ -75,6 +75,10 @@ int SceneBuilder::add_grip(int body, double stiffness, double damping, double ro
   return static_cast<int>(scene.grips.size()) - 1;
 }
 
+int SceneBuilder::add_stiff_grip(int body) {
+  return add_grip(body, 1e5, 1e3, 1e4, 1e3);
+}
+
 void SceneBuilder::set_viscosity(std::initializer_list<int> bodies, double viscosity) {
   for (const int body : bodies) scene.bodies[static_cast<std::size_t>(body)].dynamic_viscosity = viscosity;
 }

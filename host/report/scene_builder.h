@@ -22,6 +22,9 @@ struct SceneBuilder {
   /// A grip at the origin of the body's mesh frame unless a pose is given.
   int add_grip(int body, double stiffness, double damping, double rotational_stiffness = 0.0,
                double rotational_damping = 0.0, const Pose& pose = {});
+  /// One so stiff, about its axes as well, that the body is where the hand is: its own inertia does not
+  /// count.
+  int add_stiff_grip(int body);
   /// Pa·s of these bodies' walls: the fluid's own, where Eq 9's mean is to be the fluid's and they stick.
   void set_viscosity(std::initializer_list<int> bodies, double viscosity);
   void set_domain(const glm::dvec3& lower, const glm::dvec3& upper);

@@ -30,7 +30,8 @@ Trial::Trial(const Scene& scene, const Setting& setting, Cost& cost)
   start(with_setting(scene, setting), setting);
 }
 
-Trial::Trial(const Scene& scene, const SampledScene& sampled, const Setting& setting, Cost& cost, bool settled)
+Trial::Trial(const Scene& scene, const SampledScene& sampled, const Setting& setting, Cost& cost,
+             bool settled)
     : sampled_(sampled), stopped_(setting.stopped), cost_(cost) {
   start(with_setting(scene, setting), setting, settled);
 }
@@ -83,6 +84,18 @@ void Trial::settle(double seconds, bool held) {
                  stopped_);
   end_if_stopped();
   world_->fill(now_);
+}
+
+void Trial::turn(int body, double turning, double seconds,
+                 const std::function<void(double time, double torque)>& each) {
+  HandleInput& hand = handles_.front();
+  hand.twist.angular.y = turning;
+  const double start = world_->time();
+  run(seconds, [&] {
+    const double time = world_->time() - start;
+    hand.pose.orientation = glm::angleAxis(turning * time, kUp);
+    each(time, -now_.bodies[static_cast<std::size_t>(body)].fluid.torque.y);
+  });
 }
 
 Snapshot Trial::picture() const {

@@ -73,6 +73,11 @@ class Trial {
   void run(double seconds, const std::function<void()>& each = {});
   /// World::settle for `seconds`, with the handles as they are where `held`.
   void settle(double seconds, bool held = false);
+  /// The first handle's body, held still until now, is turned about the vertical at `turning` rad/s for
+  /// `seconds`. After every step `each` is told the time since, s, and the torque against the fluid, N·m: a
+  /// step's is that at its start.
+  void turn(int body, double turning, double seconds,
+            const std::function<void(double time, double torque)>& each);
   Snapshot picture() const;
 
  private:

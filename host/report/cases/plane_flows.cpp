@@ -36,18 +36,12 @@ struct SuddenRod {
     b.add_volume(make::lathe({{kInner, kGap}, {kOuter, kGap}, {kOuter, height}, {kInner, height}}, 96));
     b.scene.stiffness =
         kGravity * height / 0.04;  // the plan's rule for the whole depth, not for one volume's
-    b.add_grip(rod, 1e5, 1e3, 1e4, 1e3);
+    b.add_stiff_grip(rod);
     b.set_domain({-0.2, -0.1, -0.2}, {0.2, 0.3, 0.2});
     Trial e(b.scene, setting, cost);
     e.handle(0).engaged = true;
     e.settle(0.5, true);
-    e.handle(0).twist.angular.y = kTurning;
-    const double start = e.world().time();
-    e.run(lasts, [&] {
-      const double time = e.world().time() - start;
-      e.handle(0).pose.orientation = glm::angleAxis(kTurning * time, kUp);
-      moments.push_back({time, -e.bodies().bodies[static_cast<std::size_t>(rod)].fluid.torque.y});
-    });
+    e.turn(rod, kTurning, lasts, [&](double time, double torque) { moments.push_back({time, torque}); });
   }
 };
 
@@ -116,7 +110,7 @@ std::vector<Reading> poiseuille(const Setting& setting, Cost& cost) {
   const int trough = b.add_free("trough", ring, 0.5);
   b.set_viscosity({trough}, kViscosity);
   b.add_volume(make::lathe({{kInner, 0.0}, {kOuter, 0.0}, {kOuter, kHeight}, {kInner, kHeight}}, 96));
-  b.add_grip(trough, 1e5, 1e3, 1e4, 1e3);
+  b.add_stiff_grip(trough);
   b.set_domain({-0.2, -0.1, -0.2}, {0.2, 0.3, 0.2});
   Trial e(b.scene, setting, cost);
   e.handle(0).engaged = true;

@@ -144,7 +144,7 @@ std::vector<Reading> paraboloid(const Setting& setting, Cost& cost) {
   b.set_viscosity({glass}, 0.5);
   b.scene.bodies[static_cast<std::size_t>(glass)].twist.angular = {0.0, kTurning, 0.0};
   b.add_volume(filling_of(kRadius, kDepth));
-  b.add_grip(glass, 1e5, 1e3, 1e4, 1e3);
+  b.add_stiff_grip(glass);
   b.set_domain({-0.2, -0.1, -0.2}, {0.2, 0.3, 0.2});
   Result<SampledScene> sampled = sample_scene(b.scene, setting.spacing);
   if (!sampled) throw Refused(sampled.error());

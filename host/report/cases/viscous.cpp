@@ -18,29 +18,23 @@ struct Spin {
   double impulse = 0.0;
 
   // A glass filled to `height` with fluid of `viscosity` Pa·s that suddenly turns at `turning` rad/s until τ
-  // is `until`, held by a coupling so stiff that its inertia does not count.
+  // is `until`.
   Spin(double height, double viscosity, double turning, double until, const Setting& setting, Cost& cost) {
     SceneBuilder b;
     b.add_fluid(1000.0, viscosity);
     const int glass = b.add_free("glass", glass_of(kRadius, height + 0.02, 0.02), 0.5);
-    const auto at = static_cast<std::size_t>(glass);
     b.set_viscosity({glass}, viscosity);
     b.add_volume(filling_of(kRadius, height));
-    b.add_grip(glass, 1e5, 1e3, 1e4, 1e3);
+    b.add_stiff_grip(glass);
     b.set_domain({-0.2, -0.1, -0.2}, {0.2, 0.3, 0.2});
     Trial e(b.scene, setting, cost);
     e.handle(0).engaged = true;
     e.settle(0.3);
     e.run(0.1);
-    const double start = e.world().time(), scale = kRadius * kRadius * 1000.0 / viscosity;
-    const double dt = e.world().plan().time_step;
-    e.handle(0).twist.angular.y = turning;
+    const double scale = kRadius * kRadius * 1000.0 / viscosity, dt = e.world().plan().time_step;
     std::size_t next = 0;
     double last = 0.0, last_tau = 0.0;
-    e.run(until * scale, [&] {
-      const double time = e.world().time() - start;
-      e.handle(0).pose.orientation = glm::angleAxis(turning * time, kUp);
-      const double now = -e.bodies().bodies[at].fluid.torque.y;
+    e.turn(glass, turning, until * scale, [&](double time, double now) {
       // The force of a step is that at its start: the glass has turned for one step less.
       const double tau = (time - dt) / scale;
       impulse += dt * now;
@@ -132,8 +126,8 @@ std::vector<Reading> stokes(const Setting& setting, Cost& cost) {
 }
 
 // That ball is turned about the tube's axis: 8πμa³Ω times the wall's factor. As light as a hundredth of the
-// fluid and 20 times as heavy, in fluid that is stepped and, where the model has that, in fluid that is solved
-// for: 1000 Pa·s by steps are a hundred times as many.
+// fluid and 20 times as heavy, in fluid that is stepped and, where the model has that, in fluid that is
+// solved for: 1000 Pa·s by steps are a hundred times as many.
 std::vector<Reading> turned_ball(const Setting& setting, Cost& cost) {
   constexpr double kBall = 0.012, kTube = 0.04, kFill = 0.096, kTurning = 2.0;
   constexpr double kWallFactor = 1.0 + 0.7968 * 0.027;  // at a radius ratio of 0.3 (Brenner & Sonshine 1964)
@@ -145,22 +139,17 @@ std::vector<Reading> turned_ball(const Setting& setting, Cost& cost) {
     SceneBuilder b;
     b.add_fluid(1000.0, viscosity);
     const int tube = b.add_fixed("tube", glass_of(kTube, kFill + 0.03, 0.02));
-    const int ball =
-        b.add_free("ball", solid, density * volume_of(solid), {{0.0, 0.048, 0.0}, {1, 0, 0, 0}});
+    const int ball = b.add_free("ball", solid, density * volume_of(solid), {{0.0, 0.048, 0.0}, {1, 0, 0, 0}});
     b.set_viscosity({tube, ball}, kFluidsViscosity);
     b.add_volume(filling_of(kTube, kFill));
-    b.add_grip(ball, 1e5, 1e3, 1e4, 1e3);
+    b.add_stiff_grip(ball);
     b.set_domain({-0.2, -0.1, -0.2}, {0.2, 0.3, 0.2});
     Trial e(b.scene, setting, cost);
     e.handle(0).engaged = true;
     e.settle(0.5, true);
-    e.handle(0).twist.angular.y = kTurning;
-    const double start = e.world().time();
     Average torque;
-    e.run(0.4, [&] {
-      const double time = e.world().time() - start;
-      e.handle(0).pose.orientation = glm::angleAxis(kTurning * time, kUp);
-      if (time > 0.1) torque.add(-e.bodies().bodies[static_cast<std::size_t>(ball)].fluid.torque.y);
+    e.turn(ball, kTurning, 0.4, [&](double time, double now) {
+      if (time > 0.1) torque.add(now);
     });
     return torque.mean();
   };
