@@ -142,13 +142,14 @@ int patch_apart(const Image& both, const glm::dvec2& pixel) {
   return best;
 }
 
-// Light that a wavy surface gathers is seen where it was asked for, at the quality that has it, and nowhere else.
+// Light that a wavy surface gathers is seen where it was asked for, at the quality that has it, and nowhere
+// else.
 TEST_F(PlayTest, CausticsAreThereWhereTheyAreAskedFor) {
   std::string said;
   const auto drawn = [&](const std::string& folder, std::vector<std::string> looks) {
-    std::vector<std::string> command{"play",      "pool",   "--headless", "--seconds",  "0.3",   "--spacing",
-                                     "0.05",      "--size", "640x480",    "--unpaced",  "--out", folder,
-                                     "--fps",     "10"};
+    std::vector<std::string> command{"play",      "pool", "--headless", "--seconds", "0.3",
+                                     "--spacing", "0.05", "--size",     "640x480",   "--unpaced",
+                                     "--out",     folder, "--fps",      "10"};
     command.insert(command.end(), looks.begin(), looks.end());
     const Outcome outcome = test::slosh(command);
     EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -210,8 +211,8 @@ TEST_F(PlayTest, AFilmInBothEyesDiffersAsFarAsEyesAreApart) {
 TEST_F(PlayTest, WithoutGnuplotTheSheetIsMissedInWordsAndNothingElse) {
   const std::vector<std::string> without{"env", "PATH=" + test::test_folder().string(), test::program()};
   std::vector<std::string> play = without;
-  play.insert(play.end(), {"play", "probe", "--headless", "--no-render", "--unpaced", "--seconds", "0.2", "--spacing",
-                           "0.0135", "--out", "out"});
+  play.insert(play.end(), {"play", "probe", "--headless", "--no-render", "--unpaced", "--seconds", "0.2",
+                           "--spacing", "0.0135", "--out", "out"});
   Outcome outcome = test::Process(play, test::test_folder()).wait();
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.err.find("gnuplot is not installed"), std::string::npos) << outcome.err;
@@ -241,8 +242,8 @@ TEST_F(PlayTest, HandsAreRecordedAtTheDeviceLoopsOwnRateWhereThatIsAskedFor) {
   EXPECT_EQ(test::slosh({"play", "probe", "--headless", "--rows", "5000"}).code, 2);
 }
 
-/// To feel what a slower host is like: the world meets the hand 100 times a second in place of 344, in as many
-/// sub-steps as its own steps ask for. No force is asserted: it goes by the wall's clock.
+/// To feel what a slower host is like: the world meets the hand 100 times a second in place of 344, in as
+/// many sub-steps as its own steps ask for. No force is asserted: it goes by the wall's clock.
 TEST_F(PlayTest, AWorldStepsAsSeldomAsAskedFor) {
   const Outcome outcome =
       test::slosh({"play", "spoon", "--headless", "--no-render", "--spacing", "0.012", "--threads", "1",
@@ -323,16 +324,24 @@ TEST_F(PlayTest, AimsAtANumberOfParticles) {
   EXPECT_NEAR(fluid, 4000.0, 1000.0);
 }
 
-TEST_F(PlayTest, AnInterruptedRunLeavesValidFiles) {
-  test::Process run({test::program(), "play", "probe", "--headless", "--seconds", "3600", "--spacing",
-                     "0.012", "--size", "160x120", "--fps", "10", "--out", "out"},
-                    test::test_folder());
-  // As soon as something was recorded and drawn.
+/// Arguments of a run that does not end by itself.
+std::vector<std::string> an_hour() {
+  return {test::program(), "play",   "probe",   "--headless", "--seconds", "3600",  "--spacing",
+          "0.012",         "--size", "160x120", "--fps",      "10",        "--out", "out"};
+}
+
+/// Until something was recorded and drawn, or it ended.
+void wait_for_records(test::Process& run, const std::filesystem::path& out) {
   while (run.running()) {
-    const Result<std::vector<WrenchSeries>> felt = read_wrenches(out() / "wrenches.csv");
-    if (felt && !felt.value().empty() && felt.value()[0].time.back() > 0.3) break;
+    const Result<std::vector<WrenchSeries>> felt = read_wrenches(out / "wrenches.csv");
+    if (felt && !felt.value().empty() && felt.value()[0].time.back() > 0.3) return;
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
+}
+
+TEST_F(PlayTest, AnInterruptedRunLeavesValidFiles) {
+  test::Process run(an_hour(), test::test_folder());
+  wait_for_records(run, out());
   ASSERT_TRUE(run.running());
   run.signal(SIGINT);
   const Outcome outcome = run.wait();
@@ -347,14 +356,8 @@ TEST_F(PlayTest, AnInterruptedRunLeavesValidFiles) {
 }
 
 TEST_F(PlayTest, AKilledRunKeepsWhatWasWritten) {
-  test::Process run({test::program(), "play", "probe", "--headless", "--seconds", "3600", "--spacing",
-                     "0.012", "--size", "160x120", "--fps", "10", "--out", "out"},
-                    test::test_folder());
-  while (run.running()) {
-    const Result<std::vector<WrenchSeries>> felt = read_wrenches(out() / "wrenches.csv");
-    if (felt && !felt.value().empty() && felt.value()[0].time.back() > 0.3) break;
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  }
+  test::Process run(an_hour(), test::test_folder());
+  wait_for_records(run, out());
   run.signal(SIGKILL);
   EXPECT_EQ(run.wait().code, 128 + SIGKILL);
   std::string text = read_text(out() / "wrenches.csv");
