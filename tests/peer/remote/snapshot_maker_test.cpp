@@ -79,6 +79,13 @@ void expect_drift(const Snapshot& snapshot, const Drift& drift, float tolerance)
   EXPECT_LT(glm::length(mean - truth) / count, tolerance);
 }
 
+SnapshotMakerOptions film(double frames_per_second) {
+  SnapshotMakerOptions options;
+  options.film = true;
+  options.frames_per_second = frames_per_second;
+  return options;
+}
+
 std::vector<SnapshotPointer> all(SnapshotQueue& queue) {
   std::vector<SnapshotPointer> snapshots;
   while (SnapshotPointer snapshot = queue.pop(std::chrono::milliseconds(0))) snapshots.push_back(snapshot);
@@ -88,10 +95,7 @@ std::vector<SnapshotPointer> all(SnapshotQueue& queue) {
 TEST(SnapshotMaker, AFilmHasEachMomentOnceAndExactly) {
   const Drift drift;
   SnapshotQueue queue(std::size_t{1} << 30);
-  SnapshotMakerOptions options;
-  options.film = true;
-  options.frames_per_second = 25.0;  // no multiple of the snapshots' rate
-  SnapshotMaker maker(options, queue);
+  SnapshotMaker maker(film(25.0), queue);  // no multiple of the snapshots' rate
   CodecOptions codec;
   codec.epoch_seconds = 0.5;  // several epochs
   SnapshotEncoder encoder(codec);
@@ -113,10 +117,7 @@ TEST(SnapshotMaker, AFilmHasEachMomentOnceAndExactly) {
 TEST(SnapshotMaker, LostSnapshotsLeaveNoGapInTheFilm) {
   const Drift drift;
   SnapshotQueue queue(std::size_t{1} << 30);
-  SnapshotMakerOptions options;
-  options.film = true;
-  options.frames_per_second = 30.0;
-  SnapshotMaker maker(options, queue);
+  SnapshotMaker maker(film(30.0), queue);
   CodecOptions codec;
   codec.epoch_seconds = 0.5;
   SnapshotEncoder encoder(codec);
@@ -143,10 +144,7 @@ TEST(SnapshotMaker, WhatWaitsToBeDecodedIsNotMissingInTheFilm) {
     }
   }
   SnapshotQueue queue(std::size_t{1} << 30);
-  SnapshotMakerOptions options;
-  options.film = true;
-  options.frames_per_second = 30.0;
-  SnapshotMaker maker(options, queue);
+  SnapshotMaker maker(film(30.0), queue);
   const auto come = [&](int first, int end) {
     for (int k = first; k < end; ++k) {
       maker.note_bodies(bodies(kFrame * k));
@@ -165,10 +163,7 @@ TEST(SnapshotMaker, WhatWaitsToBeDecodedIsNotMissingInTheFilm) {
 TEST(SnapshotMaker, ParticlesThatDoNotComeAreNotWaitedForLongerThanASecond) {
   const Drift drift;
   SnapshotQueue queue(std::size_t{1} << 30);
-  SnapshotMakerOptions options;
-  options.film = true;
-  options.frames_per_second = 30.0;
-  SnapshotMaker maker(options, queue);
+  SnapshotMaker maker(film(30.0), queue);
   SnapshotEncoder encoder(CodecOptions{});
   play(maker, encoder, drift, 0, 60, [](int) { return false; });
   for (int k = 61; k <= 180; ++k) maker.note_bodies(bodies(kFrame * k));
@@ -183,10 +178,7 @@ TEST(SnapshotMaker, AnotherStreamTakesOverWhenItHasAFrame) {
   Drift fewer;
   fewer.side = 8;
   SnapshotQueue queue(std::size_t{1} << 30);
-  SnapshotMakerOptions options;
-  options.film = true;
-  options.frames_per_second = 30.0;
-  SnapshotMaker maker(options, queue);
+  SnapshotMaker maker(film(30.0), queue);
   CodecOptions fine;
   fine.stream = 1;
   CodecOptions coarse;
@@ -206,10 +198,7 @@ TEST(SnapshotMaker, AnotherStreamTakesOverWhenItHasAFrame) {
 TEST(SnapshotMaker, AResetStartsTheFilmsTimeAnew) {
   const Drift drift;
   SnapshotQueue queue(std::size_t{1} << 30);
-  SnapshotMakerOptions options;
-  options.film = true;
-  options.frames_per_second = 30.0;
-  SnapshotMaker maker(options, queue);
+  SnapshotMaker maker(film(30.0), queue);
   SnapshotEncoder encoder(CodecOptions{});
   play(maker, encoder, drift, 0, 60, [](int) { return false; });
   while (queue.waiting() < 20) std::this_thread::sleep_for(std::chrono::milliseconds(1));
