@@ -118,6 +118,13 @@ class LinkForces : public ::testing::TestWithParam<Hands> {
     carried = 0.0;
     for (const auto& person : people) person->peak = person->leap = 0.0;
   }
+  /// Whom the host gave up: over a connection of its own, with nothing of the last one.
+  void connect_anew(Person& person) {
+    person.inbox.restart();
+    person.connected = true;
+    person.number = 0;
+    host->hands.taken(person.grip, clock);
+  }
   void run(double seconds) {
     for (int left = static_cast<int>(seconds / 0.001 + 0.5); left > 0; --left) {
       clock += 1'000'000;
@@ -259,10 +266,7 @@ TEST_P(LinkForces, APersonWhoIsStoppedComesBackWithoutABlow) {
   forget();
   one.stopped = false;
   run(0.3);
-  one.inbox.restart();
-  one.connected = true;
-  one.number = 0;
-  host->hands.taken(one.grip, clock);
+  connect_anew(one);
   run(8.0);
   const Numbers back = numbers();
   std::printf("back after 10 s: %.1f N felt, %.1f N from row to row, %.1f N on the body\n", back.peak,
@@ -282,10 +286,7 @@ TEST_P(LinkForces, APersonWhoIsBackDuringTheHandOverFeelsNoBlow) {
     host->hands.lose(one.grip, clock);
     run(away);
     one.stopped = false;
-    one.inbox.restart();
-    one.connected = true;
-    one.number = 0;
-    host->hands.taken(one.grip, clock);
+    connect_anew(one);
     run(8.0);
     const Numbers back = numbers();
     std::printf(
@@ -335,10 +336,7 @@ TEST_P(LinkForces, BothHandsThatTheHostGaveUpFindWhatTheyHeldWhereItWas) {
   run(3.0);
   for (const auto& person : people) {
     person->down.flow = person->up.flow = Flow::kOpen;
-    person->inbox.restart();
-    person->connected = true;
-    person->number = 0;
-    host->hands.taken(person->grip, clock);
+    connect_anew(*person);
     run(0.1);
   }
   run(9.0);
