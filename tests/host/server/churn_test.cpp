@@ -4,16 +4,10 @@
 #include <cstring>
 
 #include "net/clock.h"
-#include "tests/host/server/scripted_peer.h"
+#include "tests/host/server/server_kit.h"
 
 namespace slosh {
 namespace {
-
-ServerOptions running() {
-  ServerOptions options;
-  options.hands_to_start = 0;
-  return options;
-}
 
 class Churn : public ServedTest {
  protected:

@@ -7,16 +7,10 @@
 #include <map>
 
 #include "net/clock.h"
-#include "tests/host/server/scripted_peer.h"
+#include "tests/host/server/server_kit.h"
 
 namespace slosh {
 namespace {
-
-ServerOptions running() {
-  ServerOptions options;
-  options.hands_to_start = 0;
-  return options;
-}
 
 /// A block of fluid that sways.
 Snapshot snapshot_at(std::uint64_t tick) {
