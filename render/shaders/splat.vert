@@ -13,15 +13,23 @@ void main() {
   int corner = gl_VertexID % 3;
   vec2 at = corner == 0 ? vec2(0.0, 2.0) : vec2(corner == 1 ? -1.7320508 : 1.7320508, -1.0);
   SplatPlace place = splat_place(splat_in.xyz);
-  disc = at;
   center_depth = place.depth;
   fluid = uint(splat_in.w);
 #ifdef SHAPED
   Shape shape = shapes[index];
   tilt = vec3(shape.tilt.xy, shape.outline_depth.w);
-  vec2 off = off_of_disc(shape.outline_depth.xyz, at);
+  vec3 outline = shape.outline_depth.xyz;
 #else
-  vec2 off = at * splat.x;
+  vec3 outline = vec3(splat.x, 0.0, splat.x);
 #endif
-  gl_Position = vec4(place.center + off * place.scale, 0.0, 1.0);
+  // A chip puts corners on 256ths of a pixel, and what it lays between them with them: near a disc's rim, where depths fall off steeply,
+  // that showed. So they are put there first, and the disc is asked where they lie.
+#ifdef FRONT
+  vec2 steps = 128.0 * picture.xy;
+#else
+  vec2 steps = 128.0 * floor(0.5 * (picture.xy + 1.0));  // at half size
+#endif
+  vec2 corner_at = round((place.center + off_of_disc(outline, at) * place.scale) * steps) / steps;
+  disc = disc_of_off(outline, (corner_at - place.center) / place.scale);
+  gl_Position = vec4(corner_at, 0.0, 1.0);
 }

@@ -86,10 +86,9 @@ struct Apart {
 /// in whole numbers, but where the surface is nearer to the back: by the quick ways that is so in 76 of 24
 /// 759 pixels that are half a millimetre apart.
 constexpr Apart kBySoftware{1e-4, 1e-4, 1e-4, 3.5e-3, kPictures};
-/// A chip has a triangle's corners on 256ths of a pixel, and a splat's disc with them, which shows near its
-/// rim, where depths fall off steeply: with the corners put there compute shaders differ from an H200's
-/// fragments in no pixel of the front and one in 7000 of the back. All of what thickness differs by is the
-/// sum of chords, in half floats there, in whole numbers here, and so is most of what the pictures do.
+/// What an H200 was allowed when it put splats' corners on 256ths of a pixel and their discs with them; since
+/// splat.vert puts them there, it may have less. All of what thickness differs by is the sum of chords, in
+/// half floats there, in whole numbers here, and so is most of what the pictures do.
 constexpr Apart kByChip{6e-3, 2.6e-2, 2.5e-3, 7e-2, {0.07, 3e-3}};
 /// Without the sum of chords (RenderOptions::layers).
 constexpr Apart kByChipWithoutChords{6e-3, 2.6e-2, 2.5e-3, 1.5e-3, kPictures};
