@@ -88,7 +88,10 @@ void say_warnings_cleanly() {
 /// What a configuration or the library says, fit to be shown.
 Error refused(const std::string& where, const std::string& what, const char* mend) {
   constexpr std::size_t kMost = 4000;
-  return {clean_text(where, kMost), clean_text(what, kMost), mend};
+  // A mend is put behind it, with a stop between: the library has one of its own.
+  const std::size_t end = what.find_last_not_of(". \n");
+  return {clean_text(where, kMost), clean_text(what.substr(0, end == std::string::npos ? 0 : end + 1), kMost),
+          mend};
 }
 
 constexpr const char* kMend =

@@ -68,6 +68,7 @@ TEST(ColorConfigs, WhatIsNotThereIsNamedWithWhatIs) {
   EXPECT_NE(error({file.path(), "Projector", "Film"}).find("'Half', 'Raw'"), std::string::npos);
   EXPECT_NE(error({file.path(), "Phone", ""}).find("'Projector', 'Monitor'"), std::string::npos);
   EXPECT_NE(error({"/nowhere/studio.ocio", "", ""}).find("/nowhere/studio.ocio"), std::string::npos);
+  EXPECT_EQ(error({"/nowhere/studio.ocio", "", ""}).find(".. "), std::string::npos) << "one stop is enough";
   const File cut(std::string(kConfig).substr(0, 200));
   EXPECT_NE(error({cut.path(), "", ""}), "");
   std::string no_role = kConfig;
