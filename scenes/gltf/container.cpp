@@ -52,6 +52,14 @@ Result<std::string> read_bytes(const std::filesystem::path& file) {
   return bytes;
 }
 
+/// What the JSON library says, without the name that it has for it.
+std::string words_of(const std::exception& problem) {
+  std::string words = problem.what();
+  if (const std::size_t end = words.find("] "); words.starts_with('[') && end != std::string::npos)
+    words.erase(0, end + 2);
+  return clean_text(words, kMostTextBytes);
+}
+
 /// Splits a .glb; `text` receives the JSON chunk.
 std::string split_glb(const std::string& bytes, std::string& text, std::string& binary) {
   if (bytes.size() < 20) return "the header is cut off";
@@ -121,7 +129,8 @@ bool is_two(const nlohmann::json& version) {
          text.find_first_not_of("0123456789", 2) == std::string::npos;
 }
 
-/// What is not glTF 2 is not ours to guess at: names and units may mean something else there. Empty: all is well.
+/// What is not glTF 2 is not ours to guess at: names and units may mean something else there. Empty: all is
+/// well.
 std::string version_problem(const nlohmann::json& json) {
   const auto asset = json.find("asset");
   if (asset == json.end() || !asset->is_object() || !asset->contains("version"))
@@ -140,6 +149,7 @@ Result<Container> read_container(const std::filesystem::path& file) {
   Result<std::string> read = read_bytes(file);
   if (!read) return read.error();
   std::string& bytes = read.value();
+  if (bytes.empty()) return Error{file.string(), "the file is empty", "Export the file again"};
   Container out;
   std::string text;
   if (bytes.size() >= 4 && read_u32(bytes, 0) == kMagic) {
@@ -157,7 +167,9 @@ Result<Container> read_container(const std::filesystem::path& file) {
   try {
     out.json = nlohmann::json::parse(text, watch_depth);
   } catch (const std::exception& problem) {
-    return Error{file.string(), "unreadable JSON: " + clean_text(problem.what(), kMostTextBytes),
+    if (!out.is_binary && file.extension() == ".glb")
+      return Error{file.string(), "is no .glb: it does not begin with glTF", "Export the file again"};
+    return Error{file.string(), "unreadable JSON: " + words_of(problem),
                  "Export the file again; glTF has no NaN, no comments and no trailing commas"};
   }
   if (deepest > kDeepestJson) {

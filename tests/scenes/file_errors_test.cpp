@@ -44,6 +44,21 @@ TEST(FileErrors, Text) {
   }
 }
 
+TEST(FileErrors, WhatIsNoSceneAtAllIsSaidInWords) {
+  const TempFolder folder;
+  const auto error = [&](const char* name, const std::string& bytes) {
+    test::write_text(folder / name, bytes);
+    const auto read = load_scene(folder / name);
+    return read ? std::string() : read.error().text();
+  };
+  for (const char* name : {"x.gltf", "x.glb"})
+    EXPECT_NE(error(name, "").find("the file is empty"), std::string::npos) << error(name, "");
+  EXPECT_NE(error("x.glb", "hello").find("it does not begin with glTF"), std::string::npos);
+  const std::string text = error("x.gltf", "hello");
+  EXPECT_NE(text.find("unreadable JSON: parse error at line 1, column 1"), std::string::npos) << text;
+  EXPECT_EQ(text.find("exception"), std::string::npos) << text;
+}
+
 TEST(FileErrors, OtherVersionsOfGltf) {
   const auto with = [](const nlohmann::json& version) {
     return test::load_edited([&](nlohmann::json& j) { j["asset"]["version"] = version; });
