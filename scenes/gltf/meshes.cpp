@@ -122,7 +122,7 @@ Result<TriangleMesh> read_mesh(const Document& document, int mesh, const glm::dm
   if (out.triangles.empty()) return Error{who, "has no triangles", "Give it faces, or take the node out"};
   bake(rest, out);
   for (const glm::vec3& p : out.positions) {
-    if (glm::any(glm::greaterThan(glm::abs(p), glm::vec3(1e4f)))) {
+    if (glm::any(glm::greaterThan(glm::abs(p), glm::vec3(kFarthest)))) {
       return Error{who, "reaches further than 10 km", "Work in metres"};
     }
   }

@@ -8,6 +8,8 @@ namespace slosh::gltf {
 
 /// All triangles of one scene file together, at most.
 inline constexpr std::size_t kMostTriangles = 2'000'000;
+/// m, of places along each axis: particles are kept in floats, which are a millimetre apart there.
+inline constexpr double kFarthest = 1e4;
 
 /// All primitives of glTF mesh `mesh` joined, with `rest` (scale, shear, mirror) baked in. Missing normals
 /// are made, texture coordinates are read where the mesh's material has textures. `where` is "file: node

@@ -134,6 +134,9 @@ Problem check_animated(Reading& reading, int node) {
 Problem read_pose(const Reading& reading, int node, Pose& pose, glm::dmat3& rest) {
   const glm::dmat4& world = reading.document.world[node];
   pose.position = glm::dvec3(world[3]);
+  if (glm::any(glm::greaterThan(glm::abs(pose.position), glm::dvec3(gltf::kFarthest))))
+    return Error{reading.document.owner(node) + ": translation",
+                 "puts it further than 10 km from the scene's origin", "Work in metres, near the origin"};
   if (gltf::split_rotation(glm::dmat3(world), pose.orientation, rest)) return std::nullopt;
   return Error{reading.document.owner(node) + ": scale", "is zero along some axis, or far too large",
                "Give it a scale other than 0"};

@@ -210,6 +210,8 @@ TEST(FieldErrors, EmptyScene) {
 TEST(FieldErrors, Transforms) {
   expect_edit_error([](json& j) { node_named(j, "cup")["scale"] = {1, 0, 1}; }, {"'cup'", "scale"});
   expect_edit_error([](json& j) { node_named(j, "cup")["rotation"] = {0, 0, 0, 0}; }, {"'cup'", "transform"});
+  expect_edit_error([](json& j) { node_named(j, "cup")["translation"] = {0, -1e30, 0}; },
+                    {"'cup'", "translation", "10 km"});
   expect_edit_error(
       [](json& j) {
         const auto hand = j["nodes"].size() - 1;
