@@ -22,10 +22,8 @@ TEST(InputGate, AGripThatIsTakenFarFromTheBodyIsLetInSlowly) {
   InputGate gate(scene);
   Channel channel(2, BodyMessage{}, 1 << 20);
   BodySnapshot now = snapshot_with_grips(2);
-  channel.pose(0).back() = message(0, 0.001);  // on the grip
-  channel.pose(0).publish();
-  channel.pose(1).back() = message(1, 0.30);  // 300 N away from it
-  channel.pose(1).publish();
+  tell(channel, message(0, 0.001));  // on the grip
+  tell(channel, message(1, 0.30));   // 300 N away from it
   std::span<const HandleInput> input = gate.take(channel, now);
   EXPECT_EQ(input[0].pose.position.x, 0.001);
   EXPECT_NEAR(pull(input[1], now.grips[1], scene.grips[1]), 0.0, 1e-9);
@@ -54,8 +52,7 @@ struct MovedHand {
   void say(double x, std::uint32_t hold = 0) {
     PoseMessage m = message(0, x, clock);
     m.hold = hold;
-    channel.pose(0).back() = m;
-    channel.pose(0).publish();
+    tell(channel, m);
   }
   double step() {
     now.time += 0.001;
@@ -91,8 +88,7 @@ TEST(InputGate, AHandThatIsSuddenlyElsewhereTakesHoldAnew) {
   hand.step();
   hand.clock += 1'000'000;
   PoseMessage m = message(0, 0.2, hand.clock + 800'000'000);
-  hand.channel.pose(0).back() = m;
-  hand.channel.pose(0).publish();
+  tell(hand.channel, m);
   EXPECT_LT(hand.step(), 2.0);
   EXPECT_EQ(hand.gate.rejected(), 0u);
 }
@@ -120,8 +116,7 @@ TEST(InputGate, ABodyThatAlreadyHangsInTheHandIsNotLetDrop) {
   now.grips.resize(1);
   now.grips[0].pose.position.y = -0.013;  // 13 mm below the hand,
   now.grips[0].on_hand.force.y = -13.0;   // and the coupling carries it already
-  channel.pose(0).back() = message(0);
-  channel.pose(0).publish();
+  tell(channel, message(0));
   const HandleInput input = gate.take(channel, now)[0];
   EXPECT_EQ(input.scale, 1.0);
   EXPECT_EQ(input.pose.position, glm::dvec3(0.0));
@@ -225,8 +220,7 @@ struct TwoHands {
     clock += 1'000'000;
     for (const std::uint32_t i : {0u, 1u}) {
       if (!(i == 0 ? first_speaks : second_speaks)) continue;
-      channel.pose(i).back() = message(i, 0.0, clock);
-      channel.pose(i).publish();
+      tell(channel, message(i, 0.0, clock));
     }
     silent = gate.take(channel, now, clock)[0];
   }

@@ -27,6 +27,12 @@ inline PoseMessage message(std::uint32_t device, double x = 0.0, std::int64_t st
   return m;
 }
 
+/// What its device says now.
+inline void tell(Channel& channel, const PoseMessage& m) {
+  channel.pose(m.device).back() = m;
+  channel.pose(m.device).publish();
+}
+
 inline BodySnapshot snapshot_with_grips(std::size_t count) {
   BodySnapshot snapshot;
   snapshot.grips.resize(count);

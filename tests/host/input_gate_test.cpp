@@ -55,13 +55,11 @@ TEST(InputGate, KeepsTheLastGoodPoseStandingStill) {
 
   PoseMessage m = message(0, 0.25);
   m.twist.linear.x = 1.0;
-  channel.pose(0).back() = m;
-  channel.pose(0).publish();
+  tell(channel, m);
   EXPECT_EQ(gate.take(channel, now)[0].twist.linear.x, 1.0);
 
   m.pose.position.x = kNaN;
-  channel.pose(0).back() = m;
-  channel.pose(0).publish();
+  tell(channel, m);
   const HandleInput held = gate.take(channel, now)[0];
   EXPECT_EQ(held.pose.position.x, 0.25);
   EXPECT_EQ(held.twist.linear.x, 0.0);
@@ -85,8 +83,7 @@ TEST(InputGate, NormalisesASlightlyOffQuaternion) {
   now.grips.resize(1);
   PoseMessage m = message(0);
   m.pose.orientation = glm::dquat(1.005, 0, 0, 0);
-  channel.pose(0).back() = m;
-  channel.pose(0).publish();
+  tell(channel, m);
   EXPECT_DOUBLE_EQ(glm::length(gate.take(channel, now)[0].pose.orientation), 1.0);
 }
 
@@ -97,8 +94,7 @@ TEST(InputGate, EachDeviceKeepsItsPlace) {
   BodySnapshot now;
   now.grips.resize(3);
   now.grips[2].pose.position.x = 0.5;
-  channel.pose(2).back() = message(2, 0.5);
-  channel.pose(2).publish();
+  tell(channel, message(2, 0.5));
   const std::span<const HandleInput> input = gate.take(channel, now);
   ASSERT_EQ(input.size(), 3u);
   EXPECT_FALSE(input[0].engaged);
