@@ -37,16 +37,7 @@ Bytes server_state_of(const path& file) {
   return secrets && secrets.value() ? secrets.value()->server_state : Bytes{};
 }
 
-std::vector<Chunk> chunks_of(const path& file) {
-  const Bytes bytes = read_all(file);
-  const MemoryFile memory(bytes);
-  std::fseek(memory.get(), 8, SEEK_SET);
-  ChunkReader reader(memory.get());
-  std::vector<Chunk> all;
-  Chunk chunk;
-  while (reader.next(chunk) == ChunkOutcome::kChunk) all.push_back(chunk);
-  return all;
-}
+constexpr long kHead = 8;  // bytes before the first chunk
 
 TEST(Checkpoint, ResumedIsTheRunThatWasNeverStopped) {
   const CheckpointOptions options = checkpoint_options(fresh_folder());
@@ -230,7 +221,7 @@ TEST(Checkpoint, HoldsNoSecretAndTheSecretsBesideItAreTheOwnersAlone) {
   EXPECT_EQ(read.value().place.addresses, options.place.addresses);
   EXPECT_EQ(server_state_of(options.file), options.server_state);
   EXPECT_EQ(server_state_of(previous_of(options.file)), options.server_state) << "of the one before it too";
-  const std::vector<Chunk> chunks = chunks_of(options.file);
+  const std::vector<Chunk> chunks = chunks_of(options.file, kHead);
   ASSERT_GE(chunks.size(), 5u);
   for (const Chunk& chunk : chunks) {
     const auto found = std::search(chunk.content.begin(), chunk.content.end(), options.server_state.begin(),
@@ -266,7 +257,7 @@ TEST(Checkpoint, OfAnEarlierFormatIsNamedAndSecretsThatAreDamagedFallBack) {
   EXPECT_FALSE(missing.value().has_value());
 
   Bytes old;
-  for (Chunk chunk : chunks_of(options.file)) {
+  for (Chunk chunk : chunks_of(options.file, kHead)) {
     if (chunk.type == 3) chunk.content.front() = 1;  // the head begins with the format
     append_chunk(chunk.type, chunk.content, old);
   }

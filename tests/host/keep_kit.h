@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "host/keep/checkpoint.h"
+#include "host/keep/chunk.h"
 #include "host/keep/recording.h"
 #include "tests/host/world_kit.h"
 
@@ -45,5 +46,17 @@ class MemoryFile {
   Bytes bytes_;
   std::FILE* file_;
 };
+
+/// All whole ones of a file behind its first `head` bytes.
+inline std::vector<Chunk> chunks_of(const path& file, long head) {
+  const Bytes bytes = read_all(file);
+  const MemoryFile memory(bytes);
+  std::fseek(memory.get(), head, SEEK_SET);
+  ChunkReader reader(memory.get());
+  std::vector<Chunk> all;
+  Chunk chunk;
+  while (reader.next(chunk) == ChunkOutcome::kChunk) all.push_back(chunk);
+  return all;
+}
 
 }  // namespace slosh::keep

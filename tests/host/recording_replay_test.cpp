@@ -34,17 +34,10 @@ TEST(Replay, SaysThatAllHashesAgreeOrWhichDoesNot) {
   // The last hash, which ends the last events, is made another.
   const Bytes bytes = read_all(recorded.file);
   Bytes other(bytes.begin(), bytes.begin() + 12);
-  {
-    const MemoryFile file(bytes);
-    std::fseek(file.get(), 12, SEEK_SET);
-    ChunkReader chunks(file.get());
-    std::vector<Chunk> all_chunks;
-    Chunk chunk;
-    while (chunks.next(chunk) == ChunkOutcome::kChunk) all_chunks.push_back(chunk);
-    ASSERT_GT(all_chunks.size(), 5u);
-    all_chunks[all_chunks.size() - 2].content.back() ^= 1;
-    for (const Chunk& each : all_chunks) append_chunk(each.type, each.content, other);
-  }
+  std::vector<Chunk> chunks = chunks_of(recorded.file, 12);
+  ASSERT_GT(chunks.size(), 5u);
+  chunks[chunks.size() - 2].content.back() ^= 1;
+  for (const Chunk& each : chunks) append_chunk(each.type, each.content, other);
   const path changed = recorded.file.parent_path() / "changed";
   std::ofstream(changed, std::ios::binary)
       .write(reinterpret_cast<const char*>(other.data()), static_cast<std::streamsize>(other.size()));

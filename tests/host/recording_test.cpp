@@ -138,20 +138,14 @@ TEST(Recording, OfAHostThatWroteNoParametersIsReadToo) {
   const Recorded recorded = record(recording_options(fresh_folder() / "run"), 0.05, false);
   const Bytes bytes = read_all(recorded.file);
   Bytes old(bytes.begin(), bytes.begin() + 12);
-  {
-    const MemoryFile file(bytes);
-    std::fseek(file.get(), 12, SEEK_SET);
-    ChunkReader chunks(file.get());
-    Chunk chunk;
-    while (chunks.next(chunk) == ChunkOutcome::kChunk) {
-      if (chunk.type == 1) {  // the head ends with how many there are, and them
-        ASSERT_EQ(small_world().scene.fluids.size(), 1u);
-        chunk.content.resize(chunk.content.size() - 8);
-        ASSERT_EQ(chunk.content.back(), 1u);
-        chunk.content.back() = 0;
-      }
-      append_chunk(chunk.type, chunk.content, old);
+  for (Chunk chunk : chunks_of(recorded.file, 12)) {
+    if (chunk.type == 1) {  // the head ends with how many there are, and them
+      ASSERT_EQ(small_world().scene.fluids.size(), 1u);
+      chunk.content.resize(chunk.content.size() - 8);
+      ASSERT_EQ(chunk.content.back(), 1u);
+      chunk.content.back() = 0;
     }
+    append_chunk(chunk.type, chunk.content, old);
   }
   const MemoryFile file(old);
   auto reader = RecordingReader::open(file.get(), "old");
