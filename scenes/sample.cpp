@@ -12,6 +12,7 @@
 #include "scenes/mesh/tree.h"
 #include "scenes/sampling/distance.h"
 #include "scenes/sampling/fill.h"
+#include "scenes/sampling/place.h"
 #include "scenes/sampling/surface.h"
 #include "scenes/sampling/thickness.h"
 
@@ -43,7 +44,7 @@ Result<SampledMesh> sample_mesh(const Scene& scene, const Body& body, double spa
   const mesh::MeshTree tree(triangles);
   const double thickness = sampling::wall_thickness(triangles, tree);
   if (thickness < kThinnest * spacing) {
-    return Error{scene.source_file + ": node '" + body.name + "'",
+    return Error{sampling::place_of(scene, "node '" + body.name + "'"),
                  "its walls are " + short_number(1000.0 * thickness) + " mm thick, the particles are " +
                      short_number(1000.0 * spacing) + " mm apart: fluid on one side would feel the other",
                  "Lower the scene's spacing_max_m (or the spacing asked for) to " +
@@ -61,7 +62,7 @@ std::optional<Error> check_size(const Scene& scene, double spacing) {
   const ParticleEstimate estimate = estimate_particles(scene, spacing);
   const bool fluid = estimate.fluid > kMostFluid;
   if (!fluid && estimate.surface <= kMostSurface) return std::nullopt;
-  return Error{scene.source_file + ": spacing",
+  return Error{sampling::place_of(scene, "spacing"),
                "is " + short_number(1000.0 * spacing) + " mm: about " +
                    short_number(fluid ? estimate.fluid : estimate.surface) + (fluid ? " fluid" : " surface") +
                    " particles, more than " + short_number(fluid ? kMostFluid : kMostSurface),
@@ -110,7 +111,7 @@ class Work {
 Result<SampledScene> sample(const Scene& scene, double spacing, SampleReport* report,
                             const std::function<void(double)>& tell) {
   if (!(spacing >= 1e-5 && spacing <= 10.0)) {
-    return Error{scene.source_file + ": spacing", "is " + short_number(spacing) + " m",
+    return Error{sampling::place_of(scene, "spacing"), "is " + short_number(spacing) + " m",
                  "Give 0.00001 to 10 m"};
   }
   if (const auto problem = check_size(scene, spacing)) return *problem;
@@ -139,8 +140,7 @@ Result<SampledScene> sample(const Scene& scene, double spacing, SampleReport* re
   }
   for (const Region& region : scene.regions) {
     const TriangleMesh& triangles = scene.meshes[static_cast<std::size_t>(region.mesh)];
-    out.region_fields.push_back(
-        sampling::make_distance_field(triangles, mesh::MeshTree(triangles), spacing));
+    out.region_fields.push_back(sampling::make_distance_field(triangles, mesh::MeshTree(triangles), spacing));
   }
   if (const auto problem = sampling::fill_fluids(scene, out, report)) return *problem;
   return out;

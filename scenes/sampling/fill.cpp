@@ -12,6 +12,7 @@
 #include "scenes/mesh/closed.h"
 #include "scenes/mesh/tree.h"
 #include "scenes/mesh/winding.h"
+#include "scenes/sampling/place.h"
 #include "scenes/sampling/point_grid.h"
 
 namespace slosh::sampling {
@@ -294,7 +295,7 @@ std::optional<Error> fill_fluids(const Scene& scene, SampledScene& sampled, Samp
   const double clear = kClear * spacing;
   std::vector<Obstacle> obstacles = find_obstacles(scene, sampled, clear);
   for (const FluidVolume& volume : scene.fluid_volumes) {
-    const std::string where = scene.source_file + ": node '" + volume.name + "'";
+    const std::string where = place_of(scene, "node '" + volume.name + "'");
     const TriangleMesh& mesh = scene.meshes[volume.mesh];
     const Up up = up_of(scene.gravity, volume.pose);
     const mesh::Grid grid = lattice(mesh, spacing, up);

@@ -49,6 +49,15 @@ TEST(SampleErrors, TooFine) {
                      {"cup.gltf", "spacing", "0.2 mm", "fluid particles"});
 }
 
+TEST(SampleErrors, OfASceneThatIsInNoFileNameNone) {
+  Scene scene = load_cup(nullptr, nullptr);
+  scene.source_file.clear();
+  const std::string spacing = sample_scene(scene, 0.0002).error().text();
+  EXPECT_TRUE(spacing.starts_with("spacing: is 0.2 mm")) << spacing;
+  const std::string wall = sample_scene(scene, 0.05).error().text();
+  EXPECT_TRUE(wall.starts_with("node 'cup': its walls")) << wall;
+}
+
 TEST(Sampling, TellsHowFarItIsAndHowLongItTakes) {
   const Scene scene = load_cup(nullptr, nullptr);
   std::vector<double> told;
