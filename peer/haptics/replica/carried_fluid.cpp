@@ -42,9 +42,12 @@ void CarriedFluid::restart() noexcept {
 void CarriedFluid::hear(const Acting& acting) noexcept {
   if (acting.elapsed > 0.0) {
     const glm::dvec3 force = acting.tells_fluid ? acting.fluid : acting.force;
-    for (int i = 0; i < 3; ++i)
-      finders_[static_cast<std::size_t>(i)].hear(acting.elapsed, acting.before[i], acting.now[i],
-                                                 force[i] - lifts_share_ * lifts_ * down_[i]);
+    for (int i = 0; i < 3; ++i) {
+      SloshFinder& finder = finders_[static_cast<std::size_t>(i)];
+      finder.tell(acting.told_mass[i], acting.told_drag[i]);
+      finder.hear(acting.elapsed, acting.before[i], acting.now[i],
+                  force[i] - lifts_share_ * lifts_ * down_[i]);
+    }
     const double keep = std::exp(-acting.elapsed / kLiftMemory);
     lifts_square_ = keep * lifts_square_ + acting.elapsed * lifts_ * lifts_;
     lifts_answer_ = keep * lifts_answer_ + acting.elapsed * lifts_ * glm::dot(passing_, down_);

@@ -18,6 +18,8 @@ struct Acting {
   glm::dvec3 force{0.0};     ///< N: all that acts, the mean
   bool tells_fluid = false;  ///< the host says what of that is the fluid's:
   glm::dvec3 fluid{0.0};     ///< N, the mean
+  glm::dvec3 told_mass{0.0};  ///< kg that go along, by the host's own line; 0: it says nothing …
+  glm::dvec3 told_drag{0.0};  ///< … and N·s/m
 };
 
 /// Three slosh modes along the world's axes, the bowl in which what swings rises, and how far the replica

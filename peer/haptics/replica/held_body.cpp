@@ -127,6 +127,11 @@ FluidLoad HeldBody::load_of(const HostWord& word) noexcept {
   load.reference = {now.position, now.orientation};
   load.twist = now.twist;
   load.wrench = {force.x, force.y, force.z, torque.x, torque.y, torque.z};
+  for (int i = 0; i < 3; ++i) {
+    const auto row = static_cast<std::size_t>(i);
+    acting.told_mass[i] = fluid_.added_mass[row][row];
+    acting.told_drag[i] = -fluid_.d_velocity[row][row];
+  }
   if (follows_slosh_) carried_.hear(acting);
   // What others do within the delay is not known, and a mode that went by it would be driven by it.
   const double alone = follows_slosh_ && !(replica_.shared() > 0.0) ? 1.0 : 0.0;

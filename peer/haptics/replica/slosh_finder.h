@@ -6,6 +6,8 @@
 #include <cstddef>
 
 #include "peer/haptics/replica/slosh_mode.h"
+#include "peer/haptics/replica/slosh_record.h"
+#include "peer/haptics/replica/slosh_search.h"
 
 namespace slosh {
 
@@ -13,18 +15,22 @@ namespace slosh {
 ///   F = F₀ − rigid·a − drag·v + (the mode's force),
 /// rigid, drag and the mode's mass ≥ 0: passive whatever is found. A bank of modes over pace and damping is
 /// moved by the body's motion; for each the other numbers are least squares with forgetting, of both sides
-/// through one low-pass; the best of the bank, between its neighbours, is the mode. Its state is an
-/// observer's: drawn to what the force says. Neither allocates nor reads a clock; one thread.
+/// through one low-pass. From the best of the bank a search goes on between its modes; in a vessel it is
+/// between the best and its neighbours by a parabola. The mode's state is an observer's: drawn to what the
+/// force says. Neither allocates nor reads a clock; one thread.
 class SloshFinder {
  public:
   /// `most`: kg that a mode may have.
-  void restart(double most) noexcept {
-    *this = SloshFinder{};
-    most_ = most;
-  }
+  void restart(double most) noexcept;
   /// What is taken to be so before anything has moved: kg that go with the body, kg that swing, rad/s.
   /// Followed at once.
   void expect(double rigid, double mass, double pace) noexcept;
+  /// What the host's own line says: kg that go along, slowly moved, and N·s/m; 0: nothing. It is what is
+  /// taken to be so where nothing else is expected.
+  void tell(double mass, double drag) noexcept {
+    prior_.told_mass = mass;
+    prior_.told_drag = drag;
+  }
   /// What is carried is `share` times what it was, > 0: so are all masses, and what was told is taken to have
   /// been of that.
   void lighten(double share) noexcept;
@@ -43,7 +49,6 @@ class SloshFinder {
  private:
   static constexpr std::size_t kPaces = 32;
   static constexpr std::size_t kDampings = 5;
-  static constexpr std::size_t kCommon = 3;  // 1, −a, −v
 
   struct LowPass {
     double once = 0.0, twice = 0.0;
@@ -54,39 +59,41 @@ class SloshFinder {
   };
   struct Candidate {
     SloshStep step;
-    double pace = 1.0;  // rad/s
     SloshState state;
     LowPass low;
-    std::array<double, kCommon> with{};  // Σ φ·(1, −a, −v)
-    double square = 0.0, answer = 0.0;   // Σ φ², Σ φ·F
+    ModeSums sums;
   };
-  struct Fit {
-    std::array<double, kCommon + 1> x{};  // F₀, rigid, drag, mass
-    double rest = 0.0;                    // Σ of squares that is left
+  struct Cell {
+    std::size_t pace = 0, damping = 0;
+  };
+  struct Found {
+    SloshMode mode;  // its mass is the fit's
+    SloshFit with, without;
+    bool at_an_end = false;  // of the paces: it is something else that is so slow or so quick
   };
   static double pace_of(double i);
   static double damping_of(double j);
-  /// Null: no mode, the rest alone.
-  Fit fit(const Candidate* candidate) const;
+  void observe(double dt, double before, double now, double force) noexcept;
   void look_on(double dt) noexcept;
+  Cell best_cell() const noexcept;
+  Found between_neighbours(Cell best) const noexcept;
   void choose(double seconds) noexcept;
+  void adopt(const Found& found, Cell best, double seconds) noexcept;
 
   std::array<double, kPaces> paces_{};  // rad/s
   std::array<std::array<Candidate, kDampings>, kPaces> bank_{};
-  std::array<std::array<double, kCommon>, kCommon> common_{};
-  std::array<double, kCommon> common_answer_{};
-  double force_square_ = 0.0;
-  double weight_ = 0.0;
+  SloshSums sums_;
   LowPass a_, f_, v_;
   double bank_step_ = 0.0;  // s that the bank's steps are for
   bool known_ = false;
-  std::array<std::array<Fit, kDampings>, kPaces> fits_{};  // each sweep's, row by row
+  std::array<std::array<SloshFit, kDampings>, kPaces> fits_{};  // each sweep's, row by row
   std::size_t row_ = 0;
   double swept_ = 0.0;  // s that this sweep has taken
+  SloshRecord record_;
+  SloshSearch search_;
 
   double most_ = 0.0;
-  bool expects_ = false;
-  double expected_rigid_ = 0.0, expected_mass_ = 0.0, expected_pace_ = 0.0;
+  SloshPrior prior_;
   SloshMode mode_;
   SloshState state_;
   double rigid_ = 0.0, drag_ = 0.0, constant_ = 0.0, share_ = 0.0;
