@@ -150,14 +150,14 @@ bool HandTable::sample(const wire::PoseSample& sample, std::int64_t now_ns, bool
   if (sample.number == 0 || !count(hand, sample.number)) return false;
   hand.held = true;
   hand.known[sample.number % kRemembered] = {sample.number, sample.stamp_ns};
-
-  PoseMessage message;
-  message.device = sample.grip;
-  message.stamp_ns = on_our_clock(hand, sample.stamp_ns, now_ns);
+  const std::int64_t stamp_ns = on_our_clock(hand, sample.stamp_ns, now_ns);
   if (sample.engaged == wire::HoldsOn::kUnfelt) {
     hand.answered = sample.number;
     return true;
   }
+  PoseMessage message;
+  message.device = sample.grip;
+  message.stamp_ns = stamp_ns;
   message.tick_ack = sample.tick_ack;
   message.time = sample.time;
   message.pose = sample.pose;
