@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace slosh {
 namespace {
 
@@ -54,6 +56,32 @@ TEST_F(LetIn, IsNothingOfAHandThatHoldsWhereItIsOrNotAtAll) {
   EXPECT_EQ(run(0.1, hand), 0.0);
   hand.engaged = true;
   EXPECT_EQ(run(0.001, hand), 0.0) << "nor as it takes hold";
+}
+
+/// A guard (HeldBody) is before the limits: where it cuts a force at once, and lets it through again, the device sees no more
+/// than its rate. What has no such limit sees all of it: a simulated person by default, 4.9 N in 2 ms where one is lowered.
+TEST(FeltHand, AGuardThatCutsIsNoStepAtTheDevice) {
+  DeviceLimits limits = limits_without_a_hand();
+  for (const double rate : {2000.0, 2.0e5}) {
+    limits.max_force_rate = rate;
+    FeltHand felt{kSprings};
+    felt.restart(kSprings, limits, true);
+    DeviceReport hand;
+    hand.pose.position.y = kCarried / kSprings.stiffness;
+    GripState grip;
+    grip.on_hand.force = {0.0, -kCarried, 0.0};
+    glm::dvec3 before(0.0);
+    double most = 0.0;
+    for (int i = 0; i < 3000; ++i) {
+      const bool cuts = i >= 1000 && i / 7 % 3 == 0;
+      const auto guard = [&](const Wrench& wanted) { return cuts ? Wrench{} : wanted; };
+      const glm::dvec3 force =
+          felt.feel({1.0, true, false, false}, hand, grip, {0.001 * i}, guard).wrench.force;
+      if (i > 100) most = std::max(most, glm::length(force - before));
+      before = force;
+    }
+    EXPECT_NEAR(most, std::min(0.001 * rate, kCarried), 1e-6) << rate << " N/s";
+  }
 }
 
 }  // namespace
