@@ -29,6 +29,7 @@ HandTable::HandTable(const Scene& scene, Channel& channel) : channel_(channel) {
 void HandTable::publish(std::size_t grip, const PoseMessage& message) {
   grips_[grip].last = message.pose;
   grips_[grip].engaged = message.engaged;
+  grips_[grip].energy = message.energy;
   PoseMessage& up = channel_.pose(grip).back();
   up = message;
   up.hold = grips_[grip].hold;
@@ -45,7 +46,10 @@ void HandTable::put_on_stand(std::size_t grip, const Pose& pose, std::int64_t no
   message.stamp_ns = now_ns;
   message.pose = pose;
   message.engaged = true;
-  message.counted = true;  // what stands still puts nothing in
+  // What stands still puts nothing in; what whom it stands for put in stays. Without it the balance that
+  // others share (HeldBody) went by all of that, and came back by it with the hand.
+  message.counted = true;
+  message.energy = hand.energy;
   message.number = hand.base + hand.newest;
   publish(grip, message);
 }
@@ -73,6 +77,7 @@ void HandTable::taken(std::size_t grip, std::int64_t now_ns) {
   hand.base += hand.newest + 1;
   hand.newest = hand.first = hand.seen = hand.answered = 0;
   hand.delivery = {};
+  hand.begun = false;
   hand.heard_ns = now_ns;
   if (!hand.stand) hand.hold += 1;
 }
@@ -88,6 +93,7 @@ void HandTable::let_go(std::size_t grip, std::int64_t now_ns, bool also_stand) {
   message.stamp_ns = now_ns;
   message.pose = hand.last;
   message.lost = true;
+  message.energy = hand.energy;
   message.number = hand.base + hand.newest;
   publish(grip, message);
 }
@@ -150,6 +156,9 @@ bool HandTable::sample(const wire::PoseSample& sample, std::int64_t now_ns, bool
   if (sample.number == 0 || !count(hand, sample.number)) return false;
   hand.held = true;
   hand.known[sample.number % kRemembered] = {sample.number, sample.stamp_ns};
+  // Each holder's count begins somewhere; the grip's goes on.
+  if (!hand.begun) hand.before = hand.energy - sample.energy;
+  hand.begun = true;
   const std::int64_t stamp_ns = on_our_clock(hand, sample.stamp_ns, now_ns);
   if (sample.engaged == wire::HoldsOn::kUnfelt) {
     hand.answered = sample.number;
@@ -165,7 +174,7 @@ bool HandTable::sample(const wire::PoseSample& sample, std::int64_t now_ns, bool
   message.engaged = sample.engaged == wire::HoldsOn::kYes;
   message.number = hand.base + sample.number;
   message.counted = counted;
-  message.energy = sample.energy;
+  message.energy = std::clamp(hand.before + sample.energy, -wire::kMaxEnergy, wire::kMaxEnergy);
   if (hand.stand) {
     if (!message.engaged) return true;
     hand.stand = false;

@@ -73,8 +73,11 @@ class HandTable {
     std::int64_t clock_offset_ns = 0;  // host's clock − holder's, by the quickest sample
     std::int64_t heard_ns = 0;
     Delivery delivery;
-    Pose last;                // of what was published last,
-    bool engaged = false;     // and whether it held on
+    Pose last;             // of what was published last,
+    bool engaged = false;  // whether it held on,
+    double energy = 0.0;   // and J that all who held it put in
+    double before = 0.0;   // J of that before this holder's count began …
+    bool begun = false;    // … as it did
     std::vector<Used> known;  // a ring by number
   };
   bool count(GripHand& hand, std::uint64_t number);

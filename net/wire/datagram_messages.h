@@ -139,7 +139,7 @@ struct GripEntry {
   // Behind kCouplings, of the sample that the step used:
   std::uint64_t pose_number = 0;  ///< its holder's number of it; 0 = none of the holder's
   bool counted = false;  ///< its holder's site tells it; a hand that the host holds still counts as one
-  double energy = 0.0;   ///< J, PoseSample::energy
+  double energy = 0.0;   ///< J, PoseSample::energy, counted on over all who held the grip
 };
 template <class V>
 void visit(V& v, GripEntry& m) {

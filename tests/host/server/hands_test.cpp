@@ -162,6 +162,40 @@ TEST_F(Hands, ALostHandLetsGoToOneThatIsHeardAndElseStays) {
   EXPECT_FALSE(newest(0).engaged) << "who leaves is not waited for";
 }
 
+/// What persons put in is counted for the grip, whoever holds it: others count on the sum. It was none on a stand, and the
+/// whole again with the hand.
+TEST_F(Hands, WhatWasPutInIsCountedOnOverStandsAndHolders) {
+  const auto put_in = [&](std::uint64_t number, double energy, wire::HoldsOn engaged = wire::HoldsOn::kYes) {
+    wire::PoseSample s;
+    s.number = number;
+    s.engaged = engaged;
+    s.energy = energy;
+    return hands.sample(s, now, true);
+  };
+  hands.stand_all(now);
+  hands.taken(0, now);
+  ASSERT_TRUE(put_in(1, 0.0));
+  ASSERT_TRUE(put_in(2, 0.4));
+  EXPECT_DOUBLE_EQ(newest(0).energy, 0.4);
+  now += to_nanoseconds(0.5);
+  hands.lose(0, now);
+  ASSERT_TRUE(hands.on_stand(0));
+  EXPECT_DOUBLE_EQ(newest(0).energy, 0.4) << "on the stand";
+  ASSERT_TRUE(put_in(3, 0.4, wire::HoldsOn::kUnfelt));
+  ASSERT_TRUE(put_in(4, 0.5));
+  EXPECT_DOUBLE_EQ(newest(0).energy, 0.5) << "back";
+  now += to_nanoseconds(0.5);
+  hands.lose(0, now);
+  for (const double begins_at : {0.0, 7.0}) {
+    const double before = newest(0).energy;
+    hands.taken(0, now);
+    ASSERT_TRUE(put_in(1, begins_at, wire::HoldsOn::kUnfelt));
+    ASSERT_TRUE(put_in(2, begins_at - 0.1));
+    EXPECT_NEAR(newest(0).energy, before - 0.1, 1e-12) << "another holder, whose count begins at " << begins_at;
+    hands.let_go(0, now);
+  }
+}
+
 TEST_F(Hands, AHandThatHeldNothingLeavesNothingBehind) {
   hands.let_go(0, now, true);
   hands.taken(0, now);
