@@ -76,16 +76,16 @@ TEST(CouplingAtADistance, AloneOnTheBodyTheDelayIsNotFelt) {
 }
 
 /// 1.5 kg that swing at 1.5 Hz, the hand at 0.9: by the host's linear model alone it is off by 36 % at 50 ms, 64 at 200.
-/// 10 % are asked for: reached to 400 ms, and to 300 where the host says nothing of the fluid. Before modes between those
+/// 10 % are asked for: 8.1 at 400 ms, 10.0 where the host says nothing of the fluid. Before modes between those
 /// of the bank were searched for it was 8, 18, 38 % at 200, 300, 400 ms.
 TEST(CouplingAtADistance, AloneOnABodyWhoseFluidSwingsTheDelayIsHardlyFelt) {
   for (const Load load : {Load::kFluid, Load::kFluidUntold}) {
     Case c = alone();
     c.load = load;
     const Outcome reference = run(c, Scheme::kZeroDelay);
-    const double at_400 = load == Load::kFluid ? 0.10 : 0.15;
+    const double at_400 = load == Load::kFluid ? 0.10 : 0.12;
     for (const auto& [round_trip, most] :
-         {std::pair{0.0, 0.02}, {0.05, 0.02}, {0.1, 0.03}, {0.2, 0.05}, {0.3, 0.08}, {0.4, at_400}}) {
+         {std::pair{0.0, 0.02}, {0.05, 0.02}, {0.1, 0.03}, {0.2, 0.07}, {0.3, 0.10}, {0.4, at_400}}) {
       c.round_trip = round_trip;
       ReplicaTuning without;
       without.follows_slosh = false;

@@ -15,7 +15,7 @@ constexpr double kSureOfPace = 0.2;  // the same, of its logarithm
 constexpr double kUsualAcceleration = 0.02;  // m/s²
 constexpr double kUsualSpeed = 0.01;         // m/s
 // … where this much and more is not explained, N; and its square's least share, where nearly all is.
-constexpr double kUsuallyUnexplained = 0.05;
+constexpr double kUsuallyUnexplained = 0.02;
 constexpr double kLeastDoubt = 1e-5;
 // What the host's line says, by the same: N²·s a square of its own size.
 constexpr double kTold = 0.1;
@@ -98,6 +98,7 @@ SloshFit fit_slosh(const SloshSums& sums, const ModeSums* mode, double pace,
     n.a[kMass][kMass] = mode->square;
     n.b[kMass] = mode->answer;
   }
+  const Normal told = n;  // without what is taken to be so
   n.a[0][0] += 1e-9;
   n.square = sums.force_square;
   take_as_so(n, prior, mode != nullptr, pace, std::min(sums.weight, kSloshMemory));
@@ -111,8 +112,12 @@ SloshFit fit_slosh(const SloshSums& sums, const ModeSums* mode, double pace,
     if (worst == 0) break;
     out[worst] = true;
   }
-  SloshFit fit{x[0], x[kRigid], x[kDrag], x[kMass], n.square};
-  for (std::size_t p = 0; p < kAll; ++p) fit.rest -= x[p] * n.b[p];
+  SloshFit fit{x[0], x[kRigid], x[kDrag], x[kMass], n.square, sums.force_square};
+  for (std::size_t p = 0; p < kAll; ++p) {
+    fit.rest -= x[p] * n.b[p];
+    fit.unexplained -= 2.0 * x[p] * told.b[p];
+    for (std::size_t q = 0; q < kAll; ++q) fit.unexplained += x[p] * told.a[p][q] * x[q];
+  }
   return fit;
 }
 

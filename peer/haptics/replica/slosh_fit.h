@@ -60,7 +60,8 @@ struct SloshPrior {
 /// F = F₀ − rigid·a − drag·v + mass·φ, rigid, drag, mass ≥ 0.
 struct SloshFit {
   double constant = 0.0, rigid = 0.0, drag = 0.0, mass = 0.0;
-  double rest = 0.0;  ///< N²·s: squares that are left, with what it is off what was taken to be so
+  double rest = 0.0;  ///< N²·s: squares that are left, with what it is off what was taken to be so …
+  double unexplained = 0.0;  ///< … and without
 };
 
 /// `mode` null: none; `pace`: its, rad/s.

@@ -81,7 +81,7 @@ void SloshSearch::end_round() noexcept {
   mode_ = best_;
   fit_ = best_fit_;
   without_ = looked_without_;
-  unexplained_ = weight_ > 0.0 ? std::max(fit_.rest, 0.0) / weight_ : 1.0;
+  unexplained_ = weight_ > 0.0 ? std::max(fit_.unexplained, 0.0) / weight_ : 1.0;
 }
 
 bool SloshSearch::at_an_end() const noexcept {
