@@ -78,10 +78,11 @@ SLOSH_HD inline float corrected_share(float compression) {
 
 /// What V² P is multiplied by, from a moment that is 1 on the rest lattice: `share` of its inverse, `virial`
 /// times as strong, and for the rest 1, the gradient of an energy as the consistent model has it. Where
-/// neighbours are missing (a free surface, spray) they are taken to lie evenly, and the share goes with them.
+/// neighbours are missing (a free surface, spray) they are taken to lie evenly, and the share goes with them;
+/// none are from `whole_from` of the moment on.
 SLOSH_HD inline Symmetric<float> pressure_directions(const Symmetric<float>& moment, float share,
-                                                     float virial) {
-  const float missing = RealOps<float>::positive_part(1.0f - trace(moment) / 3.0f);
+                                                     float virial, float whole_from = 1.0f) {
+  const float missing = RealOps<float>::positive_part(1.0f - trace(moment) / (3.0f * whole_from));
   Symmetric<float> whole = scaled_and_shifted(moment, 1.0f, missing);
   const float flat = determinant(whole) / kFlattest;
   if (flat < 1.0f) {

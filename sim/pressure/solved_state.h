@@ -34,7 +34,7 @@ SLOSH_HD inline SolvedState solved_state(const Neighborhood<float>& n, const Cor
   const float dense = RealOps<float>::positive_part(state.compression);
   state.volume = c.rest_volume / (1.0f + dense);
   state.expansion = state.compression > 0.0f ? kUndoneShare * state.compression : state.compression;
-  state.push = scaled_and_shifted(directions_of(n, c, state.volume, state.compression),
+  state.push = scaled_and_shifted(directions_of(n, c, state.volume, state.compression, viscosity),
                                   state.volume * state.volume, 0.0f);
   set_drag(n, c, viscosity, in_u, v, state.u);
   return state;

@@ -38,6 +38,11 @@ LayerDrag layer_drag(double height, double ratio) {
   return sum;
 }
 
+// The share of the fluid at a wall that lies evenly; the rest lies in layers. Chosen by the report's means
+// over five close spacings: at 0.5 the drag on a ball in a tube is 5 to 7 % too low, at 1 Poiseuille's flow
+// is, by 4 to 6 %, and a turned ball's torque 12 % too high.
+constexpr double kLiesEvenly = 0.85;
+
 template <class Kernel>
 WallDrag computed(double ratio, DragSheet sheet) {
   const int reach = static_cast<int>(std::ceil(ratio));
@@ -57,7 +62,7 @@ WallDrag computed(double ratio, DragSheet sheet) {
     const double layered = passed(kFirstLayer + n);
     double even = 0.0;
     for (int k = 0; k < kHeights; ++k) even += passed(n + (k + 0.5) / kHeights) / kHeights;
-    wall += sheet == DragSheet::kBehind ? layered : 0.5 * (layered + even);
+    wall += sheet == DragSheet::kBehind ? layered : (1.0 - kLiesEvenly) * layered + kLiesEvenly * even;
   }
   WallDrag drag;
   if (wall > 0.0) drag.factor = stress / wall;

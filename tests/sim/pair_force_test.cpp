@@ -202,6 +202,23 @@ TEST(PairForce, NothingIsCorrectedInAnImpactOrInSpray) {
   EXPECT_LT(flat.zz, 20.0f);
 }
 
+// Who has nine tenths of the settled moment is whole where the fluid needs no drag on jostling, and in part a
+// surface where it lives by that; who has none is a surface everywhere.
+TEST(PairForce, AViscousFluidIsWholeFromNineTenthsOn) {
+  CorrectionConstants c;
+  c.noise_viscosity = 0.6f;
+  EXPECT_EQ(whole_from(c, 0.001f), 1.0f) << "thin fluid as ever, to the bit";
+  EXPECT_EQ(whole_from(c, 0.6f * 0.75f), 1.0f);
+  EXPECT_NEAR(whole_from(c, 0.6f), 0.95f, 1e-6f);
+  EXPECT_FLOAT_EQ(whole_from(c, 1.0f), 0.9f);
+  EXPECT_FLOAT_EQ(whole_from(c, 1000.0f), 0.9f);
+  const Symmetric<float> nine_tenths{0.9f, 0.0f, 0.0f, 0.9f, 0.0f, 0.9f};
+  const auto along = [&](float whole) { return pressure_directions(nine_tenths, 1.0f, 1.0f, whole).xx; };
+  EXPECT_NEAR(along(0.9f), 1.0f / 0.9f, 1e-6f) << "L, all of it";
+  EXPECT_NEAR(along(1.0f), 1.0f, 1e-6f) << "0.1 is missing and taken to lie evenly";
+  EXPECT_FLOAT_EQ(pressure_directions({0, 0, 0, 0, 0, 0}, 1.0f, 1.3f, 0.9f).xx, 1.0f);
+}
+
 // The drag of noise sees no flow that neighbours share, and nothing where there is no neighbour.
 TEST(Noise, IsWhatAParticleDoesNotShareWithItsNeighbours) {
   Neighborhood<float> n{};

@@ -16,7 +16,7 @@
 namespace slosh::report {
 namespace {
 
-constexpr const char* kReport = "tests/bench/results/2026-11-report-error-four-xeon.csv";
+constexpr const char* kReport = "tests/bench/results/2026-11-25-report-error-four-xeon.csv";
 
 /// Wall seconds a simulated second of one core: what two have in real time.
 constexpr double kRealTime = 2.0;
