@@ -28,6 +28,28 @@ SloshFinder led(double seconds, const std::function<double(double, double, doubl
   return finder;
 }
 
+/// What swings in a body, as it is in truth.
+struct Swinging {
+  SloshMode mode;
+  SloshState state;
+
+  /// N, the mean of a step in which the body's velocity goes from `before` to `now`.
+  double force(double before, double now) {
+    const SloshState was = state;
+    state = SloshStep(mode.pace, mode.damping, kStep)(state, now - before);
+    return 0.5 * (slosh_force(mode, was) + slosh_force(mode, state));
+  }
+};
+
+/// It is followed, and at its pace.
+void expect_followed(const SloshFinder& found, const SloshMode& truth) {
+  const SloshMode& mode = found.mode();
+  std::printf("%.3f kg at %.3f Hz, damping %.3f, beside %.3f kg and %.2f N s/m; share %.2f\n", mode.mass,
+              mode.pace / (2.0 * std::numbers::pi), mode.damping, found.rigid(), found.drag(), found.share());
+  EXPECT_GT(found.share(), 0.95);
+  EXPECT_NEAR(mode.pace, truth.pace, 0.02 * truth.pace);
+}
+
 TEST(SloshMode, GivesNoMoreThanItWasGiven) {
   const SloshMode mode{1.5, 2.0 * std::numbers::pi * 1.5, 0.02};
   SloshState state;
@@ -46,24 +68,19 @@ TEST(SloshMode, GivesNoMoreThanItWasGiven) {
 
 TEST(SloshFinder, FindsAMassOnASpring) {
   const SloshMode truth{1.5, 2.0 * std::numbers::pi * 1.53, 0.05};
-  SloshState state;
+  Swinging fluid{truth, {}};
   double last = 0.0, peak = 0.0;
   const SloshFinder found = led(4.0, [&](double v, double a, double) {
-    const SloshState was = state;
-    state = SloshStep(truth.pace, truth.damping, kStep)(state, v - last);
-    const double middle = 0.5 * (v + last);
+    const double middle = 0.5 * (v + last), swings = fluid.force(last, v);
     last = v;
-    peak = std::max(peak, std::abs(slosh_force(truth, state)));
-    return kWeight - 0.8 * a - 3.0 * middle + 0.5 * (slosh_force(truth, was) + slosh_force(truth, state));
+    peak = std::max(peak, std::abs(slosh_force(truth, fluid.state)));
+    return kWeight - 0.8 * a - 3.0 * middle + swings;
   });
+  expect_followed(found, truth);
   const SloshMode& mode = found.mode();
-  std::printf("%.3f kg at %.3f Hz, damping %.3f, beside %.3f kg and %.2f N s/m; share %.2f\n", mode.mass,
-              mode.pace / (2.0 * std::numbers::pi), mode.damping, found.rigid(), found.drag(), found.share());
-  EXPECT_GT(found.share(), 0.95);
-  EXPECT_NEAR(mode.pace, truth.pace, 0.02 * truth.pace);
   EXPECT_NEAR(mode.mass, truth.mass, 0.15 * truth.mass);
   EXPECT_NEAR(found.rigid(), 0.8, 0.25);
-  const double off = std::abs(slosh_force(mode, found.state()) - slosh_force(truth, state));
+  const double off = std::abs(slosh_force(mode, found.state()) - slosh_force(truth, fluid.state));
   std::printf("its force off by %.2f N, at most it was %.1f N\n", off, peak);
   EXPECT_LT(off, 0.15 * peak);
 }
@@ -74,25 +91,18 @@ TEST(SloshFinder, KnowsAMassOnASpringByTheBeginOfOnePace) {
   const SloshMode truth{1.5, 2.0 * std::numbers::pi * 1.5, 0.035};
   SloshFinder found;
   found.restart(10.0);
-  SloshState state;
+  Swinging fluid{truth, {}};
   double last = 0.0;
   const auto at = [](double t) {
     return t < 0.5 ? 0.0 : 0.2 * (1.0 - std::cos(0.5 * std::numbers::pi * (t - 0.5))) * std::sin(5.65 * (t - 0.5));
   };
   for (double t = kStep; t < 1.5; t += kStep) {
     const double v = at(t), middle = 0.5 * (v + last);
-    const SloshState was = state;
-    state = SloshStep(truth.pace, truth.damping, kStep)(state, v - last);
-    found.hear(kStep, last, v,
-               -4.0 * middle + 0.5 * (slosh_force(truth, was) + slosh_force(truth, state)));
+    found.hear(kStep, last, v, -4.0 * middle + fluid.force(last, v));
     last = v;
   }
-  const SloshMode& mode = found.mode();
-  std::printf("%.3f kg at %.3f Hz, damping %.3f, beside %.3f kg and %.2f N s/m; share %.2f\n", mode.mass,
-              mode.pace / (2.0 * std::numbers::pi), mode.damping, found.rigid(), found.drag(), found.share());
-  EXPECT_GT(found.share(), 0.95);
-  EXPECT_NEAR(mode.pace, truth.pace, 0.02 * truth.pace);
-  EXPECT_NEAR(mode.mass, truth.mass, 0.05 * truth.mass);
+  expect_followed(found, truth);
+  EXPECT_NEAR(found.mode().mass, truth.mass, 0.05 * truth.mass);
   EXPECT_NEAR(found.drag(), 4.0, 0.6);
 }
 
@@ -101,14 +111,11 @@ TEST(SloshFinder, KnowsAMassOnASpringAfterALongRest) {
   const SloshMode truth{1.5, 2.0 * std::numbers::pi * 1.5, 0.035};
   SloshFinder found;
   found.restart(10.0);
-  SloshState state;
+  Swinging fluid{truth, {}};
   double last = 0.0;
   for (double t = kStep; t < 40.0; t += kStep) {
     const double v = t < 15.0 ? 0.0 : 0.15 * std::min(t - 15.0, 1.0) * (std::sin(5.65 * t) + std::sin(11.9 * t));
-    const SloshState was = state;
-    state = SloshStep(truth.pace, truth.damping, kStep)(state, v - last);
-    found.hear(kStep, last, v,
-               -2.0 * (v + last) + 0.5 * (slosh_force(truth, was) + slosh_force(truth, state)));
+    found.hear(kStep, last, v, -2.0 * (v + last) + fluid.force(last, v));
     last = v;
     if (t < 17.0) continue;
     ASSERT_NEAR(found.mode().mass, 1.5, 0.15) << t;
@@ -138,21 +145,17 @@ TEST(SloshFinder, FollowsNothingWhereNothingSwings) {
 
 /// Half of what swings is poured out: found anew it would take as long as at first.
 TEST(SloshFinder, WhatIsPouredOutNeedNotBeFoundAgain) {
-  const SloshMode truth{1.5, 2.0 * std::numbers::pi * 1.53, 0.05};
   for (const bool said : {true, false}) {
     SloshFinder finder;
     finder.restart(10.0);
-    SloshState state;
+    Swinging fluid{{1.5, 2.0 * std::numbers::pi * 1.53, 0.05}, {}};
     double before = 0.0, off = 0.0;
     for (double t = 0.0; t < 4.5; t += kStep) {
       const double angle = 2.0 * std::numbers::pi * t, left = t < 4.0 ? 1.0 : 0.5;
       const double now = 0.15 * std::min(t, 1.0) * (std::sin(0.9 * angle) + std::sin(1.9 * angle));
-      const SloshState was = state;
-      state = SloshStep(truth.pace, truth.damping, kStep)(state, now - before);
+      const double swings = fluid.force(before, now);
       if (said && t >= 4.0 && t < 4.0 + kStep) finder.lighten(0.5);
-      finder.hear(kStep, before, now,
-                  left * (kWeight - 0.8 * (now - before) / kStep +
-                          0.5 * (slosh_force(truth, was) + slosh_force(truth, state))));
+      finder.hear(kStep, before, now, left * (kWeight - 0.8 * (now - before) / kStep + swings));
       before = now;
       if (t > 4.1) off = std::max(off, std::abs(finder.mode().mass - 0.75));
     }

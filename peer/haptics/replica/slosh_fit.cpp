@@ -68,11 +68,13 @@ void take_as_so(Normal& n, const SloshPrior& prior, bool mode, double pace, doub
   if (!prior.vessel) {
     if (prior.told_drag > 0.0)
       n.expect({kDrag}, prior.told_drag, doubt * kTold / (prior.told_drag * prior.told_drag));
-    const double weight = doubt * kTold / (prior.told_mass * prior.told_mass);
-    if (prior.told_mass > 0.0 && mode)
-      n.expect({kRigid, kMass}, prior.told_mass, weight);
-    else if (prior.told_mass > 0.0)
-      n.expect({kRigid}, prior.told_mass, weight);
+    if (prior.told_mass > 0.0) {
+      const double weight = doubt * kTold / (prior.told_mass * prior.told_mass);
+      if (mode)
+        n.expect({kRigid, kMass}, prior.told_mass, weight);
+      else
+        n.expect({kRigid}, prior.told_mass, weight);
+    }
     return;
   }
   const double sure = kSureOfMass * (prior.rigid + prior.mass), noise = kNoise * kNoise * kNoiseLasts;
