@@ -83,7 +83,7 @@ Result<bool> FalconDevice::bring_up() {
   runs_ = true;
   answered_ = false;
   if (!send({0, 0, 0}))  // the first reading is its answer
-    return Error{"Falcon", "it takes no packets", "Unplug it, plug it in and try again"};
+    return Error{link_->where(), "it takes no packets", "Unplug it, plug it in and try again"};
   set_trouble("the Falcon does not know where it is yet: pull its grip out and push it in once");
   return true;
 }
@@ -118,7 +118,7 @@ Result<bool> FalconDevice::start(const std::filesystem::path& firmware) {
   }
   if (const Result<bool> sent = send_falcon_firmware(*link_, bytes); !sent) return sent;
   if (begin_falcon_packets(*link_) && answers()) return true;
-  return Error{"Falcon", "it took the firmware and does not answer",
+  return Error{link_->where(), "it took the firmware and does not answer",
                "Is " + firmware.string() + " its firmware?"};
 }
 

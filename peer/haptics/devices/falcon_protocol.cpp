@@ -39,17 +39,17 @@ std::string hex(const std::vector<std::uint8_t>& bytes) {
   return text.empty() ? std::string("nothing") : text.substr(0, text.size() - 1);
 }
 
-Error refused(const std::string& what) {
-  return {"Falcon", what, "Unplug it and its power, wait for some seconds, plug both in and try again"};
+Error refused(const FalconLink& link, const std::string& what) {
+  return {link.where(), what, "Unplug it and its power, wait for some seconds, plug both in and try again"};
 }
 
 Result<bool> expect(FalconLink& link, const std::vector<std::uint8_t>& sent,
                     const std::vector<std::uint8_t>& wanted, const char* step) {
   if (!link.write(sent.data(), sent.size(), kPatience))
-    return refused(std::string("it takes no bytes (") + step + ")");
+    return refused(link, std::string("it takes no bytes (") + step + ")");
   const std::vector<std::uint8_t> got = read_all(link, wanted.size());
   if (got == wanted) return true;
-  return refused(std::string(step) + ": it answers " + hex(got) + " in place of " + hex(wanted));
+  return refused(link, std::string(step) + ": it answers " + hex(got) + " in place of " + hex(wanted));
 }
 
 bool all(FalconLink& link, std::initializer_list<std::pair<std::uint8_t, std::uint16_t>> requests) {
@@ -84,11 +84,11 @@ Result<bool> send_falcon_firmware(FalconLink& link, const std::vector<std::uint8
                                   {kModem, kRtsLow},
                                   {kModem, kDtrLow},
                                   {kModem, kDtrHigh}});
-  if (!greeted) return refused("its USB chip refuses a request before the greeting");
+  if (!greeted) return refused(link, "its USB chip refuses a request before the greeting");
   Result<bool> step = expect(link, {0x0a, 0x43, 0x0d}, {0x0a, 0x44, 0x2c, 0x0d}, "greeting");
   if (!step) return step;
   if (!all(link, {{kModem, kDtrLow}, {kBaud, kBaud140000}}))
-    return refused("its USB chip refuses the firmware's speed");
+    return refused(link, "its USB chip refuses the firmware's speed");
   step = expect(link, {0x41}, {0x41}, "the loader's sign");
   if (!step) return step;
   for (std::size_t at = 0; at < firmware.size(); at += kPiece) {
@@ -96,14 +96,16 @@ Result<bool> send_falcon_firmware(FalconLink& link, const std::vector<std::uint8
     const std::vector<std::uint8_t> piece(firmware.begin() + static_cast<std::ptrdiff_t>(at),
                                           firmware.begin() + static_cast<std::ptrdiff_t>(end));
     if (!link.write(piece.data(), piece.size(), kPatience))
-      return refused("it takes no firmware at byte " + std::to_string(at));
+      return refused(link, "it takes no firmware at byte " + std::to_string(at));
     const std::vector<std::uint8_t> echo = read_all(link, piece.size());
     if (echo == piece) continue;
-    const auto differs = std::mismatch(piece.begin(), piece.end(), echo.begin(), echo.end()).first;
-    return refused("the firmware came back otherwise at byte " +
-                   std::to_string(at + static_cast<std::size_t>(differs - piece.begin())) + " of " +
-                   std::to_string(firmware.size()) + " (" + std::to_string(echo.size()) + " of " +
-                   std::to_string(piece.size()) + " bytes of that piece)");
+    const auto [sent, came] = std::mismatch(piece.begin(), piece.end(), echo.begin(), echo.end());
+    const auto byte = static_cast<std::size_t>(sent - piece.begin());
+    Error error = refused(link, "the firmware came back otherwise at byte " + std::to_string(at + byte) + " of " +
+                                    std::to_string(firmware.size()) + ": " + hex({*sent}) + " was sent, " +
+                                    (came == echo.end() ? "nothing" : hex({*came})) + " came");
+    error.mend += "; where that byte changes from time to time, by another cable or port";
+    return error;
   }
   return true;
 }

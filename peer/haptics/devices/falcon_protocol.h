@@ -24,10 +24,12 @@ class FalconLink {
   /// From bulk IN, without the two modem bytes that begin each of its packets: how many, 0 when nothing came
   /// in time, −1 when the device is gone.
   virtual int read(std::uint8_t* bytes, std::size_t most, int most_ms) = 0;
+  /// Which device it is of, for errors.
+  virtual std::string where() const = 0;
 };
 
 /// Restarts the device's processor, greets it and sends it its firmware, checking that every piece comes back
-/// as it went. Errors: which step, and what came instead.
+/// as it went. Errors: of which device, which step, and what came instead.
 Result<bool> send_falcon_firmware(FalconLink& link, const std::vector<std::uint8_t>& firmware);
 
 /// Sets the link to the pace of packets: 1 ms. False when the chip refuses.

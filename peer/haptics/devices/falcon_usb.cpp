@@ -53,8 +53,8 @@ std::string serial_of(libusb_device_handle* handle, std::uint8_t index) {
 
 class UsbLink final : public FalconLink {
  public:
-  UsbLink(std::shared_ptr<Context> context, libusb_device_handle* handle)
-      : context_(std::move(context)), handle_(handle) {}
+  UsbLink(std::shared_ptr<Context> context, libusb_device_handle* handle, std::string where)
+      : context_(std::move(context)), handle_(handle), where_(std::move(where)) {}
   ~UsbLink() override {
     libusb_release_interface(handle_, kInterface);
     libusb_close(handle_);
@@ -87,10 +87,12 @@ class UsbLink final : public FalconLink {
     begin_ += take;
     return take;
   }
+  std::string where() const override { return where_; }
 
  private:
   std::shared_ptr<Context> context_;
   libusb_device_handle* handle_;
+  const std::string where_;
   std::array<std::uint8_t, kInPacket> packet_{};
   int begin_ = 0;
   int end_ = 0;
@@ -151,7 +153,8 @@ Result<std::unique_ptr<FalconLink>> open_falcon(const std::string& which) {
     if (wanted) {
       (void)libusb_set_auto_detach_kernel_driver(handle, 1);  // ftdi_sio takes every chip of FTDI's
       if (libusb_claim_interface(handle, kInterface) == 0) {
-        link = std::make_unique<UsbLink>(context, handle);
+        link = std::make_unique<UsbLink>(context, handle,
+                                         "Falcon (" + path_of(device) + ", " + node_of(device) + ")");
         return true;
       }
       why = {node_of(device), "another program or hand has it", "End that program"};

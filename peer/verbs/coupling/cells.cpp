@@ -113,31 +113,39 @@ std::vector<Case> map_cases(bool quick) {
   }
   for (const Case& c : known_breakers()) cases.push_back(c);
   if (quick) return cases;
+  // Poses and states may come at a screen's rate, and jitter and loss are tried apart where fluid is carried.
   struct Link {
     const char* name;
     double jitter, loss, poses, host;
   };
-  constexpr Link kLinks[] = {{"good link", 0.0, 0.0, 500.0, 500.0},
+  constexpr Link kRigid[] = {{"good link", 0.0, 0.0, 500.0, 500.0},
                              {"40 ms, 20 %", 0.04, 0.2, 500.0, 500.0},
                              {"40 ms, 20 %, 60 Hz", 0.04, 0.2, 60.0, 70.0}};
-  for (const int hands : {2, 4, 8}) {
-    for (const double stiffness : {200.0, 700.0, 2000.0}) {
-      for (const char* grip : {"tight", "loose"}) {
-        for (const Link& link : kLinks) {
-          Case& c = cases.emplace_back();
-          c.hands = hands;
-          c.stiffness = stiffness;
-          c.grip = grip;
-          c.motion = Motion::kOpposing;
-          c.jitter = link.jitter;
-          c.loss = link.loss;
-          c.pose_rate = link.poses;
-          c.host_rate = link.host;
-          c.name = format("%d hands, %g N/m, %s, %s", hands, stiffness, grip, link.name);
-        }
-      }
-    }
-  }
+  constexpr Link kBucket[] = {{"40 ms", 0.04, 0.0, 500.0, 500.0},
+                              {"20 %", 0.0, 0.2, 500.0, 500.0},
+                              {"40 ms, 20 %", 0.04, 0.2, 500.0, 500.0}};
+  const auto add = [&](int hands, double stiffness, const char* grip, Load load, const Link& link) {
+    Case& c = cases.emplace_back();
+    c.hands = hands;
+    c.stiffness = stiffness;
+    c.grip = grip;
+    c.motion = Motion::kOpposing;
+    c.load = load;
+    c.jitter = link.jitter;
+    c.loss = link.loss;
+    c.pose_rate = link.poses;
+    c.host_rate = link.host;
+    c.name = format("%d hands, %g N/m, %s, %s%s", hands, stiffness, grip,
+                    load == Load::kCarried ? "bucket of fluid, " : "", link.name);
+  };
+  for (const int hands : {2, 4, 8})
+    for (const double stiffness : {200.0, 700.0, 2000.0})
+      for (const char* grip : {"tight", "loose"})
+        for (const Link& link : kRigid) add(hands, stiffness, grip, Load::kNone, link);
+  for (const int hands : {2, 4, 8})
+    for (const double stiffness : {200.0, 2000.0})
+      for (const char* grip : {"tight", "loose"})
+        for (const Link& link : kBucket) add(hands, stiffness, grip, Load::kCarried, link);
   return cases;
 }
 

@@ -1,6 +1,5 @@
 // `slosh devices` on a machine that umockdev makes: what it lists, and what it says of what it may not open.
 #include <gtest/gtest.h>
-#include <umockdev.h>
 
 #include <csignal>
 #include <filesystem>
@@ -8,7 +7,7 @@
 #include "peer/haptics/devices/falcon_usb.h"
 #include "peer/haptics/devices/hardware.h"
 #include "peer/haptics/devices/spacemouse_models.h"
-#include "tests/peer/devices/falcon_node.h"
+#include "tests/peer/devices/mocked_falcon.h"
 #include "tests/peer/devices/mocked_spacemouse.h"
 #include "tests/peer/devices/own_folder.h"
 #include "tests/support/comes.h"
@@ -75,14 +74,15 @@ TEST(DevicesVerb, TheRuleHasEveryVendorAndGoesWhereItIsTold) {
 
 TEST(DevicesVerb, FindsAFalconByItsUsbNumbers) {
   MockedMachine machine;
-  GError* error = nullptr;
-  ASSERT_TRUE(umockdev_testbed_add_from_string(machine.testbed(), test::kFalconNode, &error));
+  test::FakeFalcon falcon;
+  const test::MockedFalcon plugged(machine, falcon, 4);
   const std::vector<FalconFound> found = find_falcons();
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].node, "/dev/bus/usb/001/004");
   EXPECT_EQ(found[0].path, "usb 1-4");
-  const Result<std::unique_ptr<FalconLink>> other = open_falcon("another");
-  ASSERT_FALSE(other);
+  EXPECT_EQ(found[0].serial, test::kFalconSerial);
+  EXPECT_FALSE(open_falcon("another"));
+  EXPECT_TRUE(open_falcon(test::kFalconSerial));
 }
 
 }  // namespace

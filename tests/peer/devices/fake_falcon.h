@@ -2,6 +2,8 @@
 // own.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <deque>
 #include <string>
@@ -24,6 +26,7 @@ struct FakeFalcon {
   glm::dvec3 grip{0.0, 0.0, kFalconMiddle};
   glm::dvec3 velocity{0.0};  ///< m/s
   std::uint8_t buttons = 0;
+  bool counts = false;    ///< its buttons count its reports, so that one that is missing or comes twice is seen
   std::size_t chop = 62;  ///< bytes an IN packet brings at most
 
   // What happened.
@@ -86,6 +89,7 @@ class FakeFalconLink final : public FalconLink {
     f_.out.erase(f_.out.begin(), f_.out.begin() + static_cast<std::ptrdiff_t>(count));
     return static_cast<int>(count);
   }
+  std::string where() const override { return "Falcon (a fake)"; }
 
  private:
   void answer(const std::vector<std::uint8_t>& bytes) {
@@ -101,6 +105,7 @@ class FakeFalconLink final : public FalconLink {
     // A millisecond from the command to its answer.
     f_.now_ns += 1'000'000;
     f_.grip += 0.001 * f_.velocity;
+    if (f_.counts) f_.buttons = static_cast<std::uint8_t>((f_.buttons + 1) & 0x0f);
     bool reachable = false;
     const FalconAngles angles = falcon_angles(f_.grip, reachable);
     std::vector<std::uint8_t> report{'<'};

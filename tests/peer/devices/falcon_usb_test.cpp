@@ -1,169 +1,211 @@
-// The Falcon's driver, unmodified down to libusb, on a USB device that umockdev makes: transfers are the
-// kernel's own requests, answered by the fake of the other tests.
+// The Falcon's driver, unmodified down to libusb, on a USB device that umockdev makes.
 #include "peer/haptics/devices/falcon_usb.h"
 
 #include <gtest/gtest.h>
-#include <linux/usbdevice_fs.h>
-#include <sys/ioctl.h>
-#include <umockdev.h>
 
-#include <array>
-#include <cerrno>
-#include <cstddef>
-#include <cstring>
-#include <deque>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <fstream>
+#include <thread>
 
+#include "net/clock.h"
+#include "net/histogram.h"
 #include "peer/haptics/devices/falcon_device.h"
-#include "tests/peer/devices/fake_falcon.h"
-#include "tests/peer/devices/falcon_node.h"
-#include "tests/peer/devices/mocked_spacemouse.h"
+#include "tests/peer/devices/mocked_falcon.h"
 #include "tests/peer/devices/own_folder.h"
+#include "tests/peer/servo_kit.h"
+#include "tests/support/process.h"
 
 namespace slosh {
 namespace {
 
-constexpr std::size_t kSetup = 8;  // bytes before what a control transfer carries
+using test::FakeFalcon;
+using test::MockedFalcon;
 
-/// The kernel's side of the device's node. Called on umockdev's thread.
-class UsbNode {
- public:
-  explicit UsbNode(test::FakeFalcon& falcon) : link_(falcon) {}
-
-  bool answer(UMockdevIoctlClient* client) {
-    switch (umockdev_ioctl_client_get_request(client)) {
-      case USBDEVFS_GET_CAPABILITIES: {
-        GError* error = nullptr;
-        UMockdevIoctlData* caps = umockdev_ioctl_data_resolve(umockdev_ioctl_client_get_arg(client), 0,
-                                                              sizeof(std::uint32_t), &error);
-        std::uint32_t none = 0;
-        umockdev_ioctl_data_update(caps, 0, reinterpret_cast<guint8*>(&none), sizeof none);
-        umockdev_ioctl_data_unref(caps);
-        umockdev_ioctl_client_complete(client, 0, 0);
-        return true;
-      }
-      case USBDEVFS_IOCTL:  // the kernel's own driver comes back
-      case USBDEVFS_DISCONNECT_CLAIM:
-      case USBDEVFS_CLAIMINTERFACE:
-      case USBDEVFS_RELEASEINTERFACE:
-        umockdev_ioctl_client_complete(client, 0, 0);
-        return true;
-      case USBDEVFS_GETDRIVER:
-        umockdev_ioctl_client_complete(client, -1, ENODATA);
-        return true;
-      case USBDEVFS_SUBMITURB:
-        return submit(client);
-      case USBDEVFS_REAPURBNDELAY:
-      case USBDEVFS_REAPURB:
-        return reap(client);
-      case USBDEVFS_DISCARDURB:
-        umockdev_ioctl_client_complete(client, -1, EINVAL);
-        return true;
-      default:
-        return false;
-    }
+class FalconUsb : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::filesystem::create_directories(folder_.path() / "slosh" / "devices");
+    setenv("XDG_CONFIG_HOME", folder_.path().c_str(), 1);
+    falcon_ = fresh();
+    std::ofstream(folder_.path() / "firmware.bin", std::ios::binary)
+        .write(reinterpret_cast<const char*>(falcon_.firmware.data()), 7357);
+    std::ofstream(folder_.path() / "slosh" / "devices" / "falcon.conf")
+        << "firmware = " << (folder_.path() / "firmware.bin").string() << "\nscale = 1\nrelative_to = world\n";
   }
-
- private:
-  bool submit(UMockdevIoctlClient* client) {
-    GError* error = nullptr;
-    UMockdevIoctlData* request =
-        umockdev_ioctl_data_resolve(umockdev_ioctl_client_get_arg(client), 0, sizeof(usbdevfs_urb), &error);
-    usbdevfs_urb urb{};
-    std::memcpy(&urb, request->data, sizeof urb);
-    UMockdevIoctlData* buffer = umockdev_ioctl_data_resolve(request, offsetof(usbdevfs_urb, buffer),
-                                                            static_cast<gsize>(urb.buffer_length), &error);
-    int length = 0;
-    if (urb.type == USBDEVFS_URB_TYPE_CONTROL) {
-      const guint8* s = buffer->data;
-      EXPECT_EQ(s[0], 0x40);
-      EXPECT_EQ(s[4] | s[5] << 8, 0) << "index";
-      EXPECT_EQ(static_cast<std::size_t>(urb.buffer_length), kSetup);
-      link_.control(s[1], static_cast<std::uint16_t>(s[2] | s[3] << 8));
-    } else if (urb.endpoint == 0x02) {
-      link_.write(buffer->data, static_cast<std::size_t>(urb.buffer_length), 0);
-      length = urb.buffer_length;
-    } else {
-      EXPECT_EQ(urb.endpoint, 0x81);
-      std::array<guint8, 64> packet{0x31, 0x60};  // the modem bytes
-      length = 2 + link_.read(packet.data() + 2, 62, 0);
-      umockdev_ioctl_data_update(buffer, 0, packet.data(), static_cast<gsize>(length));
-    }
-    umockdev_ioctl_data_unref(buffer);
-    urb.status = 0;
-    urb.actual_length = length;
-    umockdev_ioctl_data_update(request, offsetof(usbdevfs_urb, status),
-                               reinterpret_cast<guint8*>(&urb.status), sizeof urb.status);
-    umockdev_ioctl_data_update(request, offsetof(usbdevfs_urb, actual_length),
-                               reinterpret_cast<guint8*>(&urb.actual_length), sizeof urb.actual_length);
-    done_.push_back(request);
-    umockdev_ioctl_client_complete(client, 0, 0);
-    return true;
+  /// As after power-up.
+  static FakeFalcon fresh() {
+    FakeFalcon falcon;
+    for (int i = 0; i < 7357; ++i) falcon.firmware.push_back(static_cast<std::uint8_t>(i * 31 + i / 251));
+    falcon.homed = false;
+    return falcon;
   }
+  static std::array<int, 3> motors_of(const FalconPacket& packet) { return parse_falcon(packet)->counts; }
 
-  bool reap(UMockdevIoctlClient* client) {
-    if (done_.empty()) {
-      umockdev_ioctl_client_complete(client, -1, EAGAIN);
-      return true;
-    }
-    GError* error = nullptr;
-    UMockdevIoctlData* where =
-        umockdev_ioctl_data_resolve(umockdev_ioctl_client_get_arg(client), 0, sizeof(void*), &error);
-    umockdev_ioctl_data_set_ptr(where, 0, done_.front());
-    umockdev_ioctl_data_unref(where);
-    umockdev_ioctl_data_unref(done_.front());
-    done_.pop_front();
-    umockdev_ioctl_client_complete(client, 0, 0);
-    return true;
-  }
-
-  test::FakeFalconLink link_;
-  std::deque<UMockdevIoctlData*> done_;
+  test::OwnFolder folder_;
+  test::MockedMachine machine_;
+  FakeFalcon falcon_;
 };
 
-gboolean on_ioctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer node) {
-  return static_cast<UsbNode*>(node)->answer(client) ? TRUE : FALSE;
-}
+constexpr std::array<int, 3> kNoForce{0, 0, 0};
 
-TEST(FalconUsb, FirmwareHomingAndThreeThousandReportsByLibusb) {
-  test::OwnFolder folder;
-  std::filesystem::create_directories(folder.path() / "slosh" / "devices");
-  setenv("XDG_CONFIG_HOME", folder.path().c_str(), 1);
-  test::FakeFalcon falcon;
-  for (int i = 0; i < 7357; ++i) falcon.firmware.push_back(static_cast<std::uint8_t>(i * 31 + i / 251));
-  falcon.homed = false;
-  std::ofstream(folder.path() / "firmware.bin", std::ios::binary)
-      .write(reinterpret_cast<const char*>(falcon.firmware.data()), 7357);
-  std::ofstream(folder.path() / "slosh" / "devices" / "falcon.conf")
-      << "firmware = " << (folder.path() / "firmware.bin").string() << "\nscale = 1\nrelative_to = world\n";
-
-  test::MockedMachine machine;
-  GError* error = nullptr;
-  ASSERT_TRUE(umockdev_testbed_add_from_string(machine.testbed(), test::kFalconNode, &error));
-  UsbNode node(falcon);
-  UMockdevIoctlBase* handler = umockdev_ioctl_base_new();
-  g_signal_connect(handler, "handle-ioctl", reinterpret_cast<GCallback>(+on_ioctl), &node);
-  ASSERT_TRUE(umockdev_testbed_attach_ioctl(machine.testbed(), "/dev/bus/usb/001/004", handler, &error));
-
+TEST_F(FalconUsb, GetsItsFirmwareAndNoForceUntilItKnowsItsPlace) {
+  MockedFalcon plugged(machine_, falcon_, 4);
   FalconDevice device([] { return open_falcon(""); }, HandPlace{});
   const Result<bool> opened = open_device(device);
   ASSERT_TRUE(opened) << opened.error().text();
-  EXPECT_EQ(falcon.received, falcon.firmware);
+  EXPECT_EQ(falcon_.received, falcon_.firmware);
   for (int i = 0; i < 10; ++i) {
     EXPECT_FALSE(device.read({}).heard);
     device.write({{3.0, 0.0, 0.0}, {}});
+    EXPECT_EQ(motors_of(falcon_.commands.back()), kNoForce);
   }
-  falcon.homed = true;
-  std::size_t heard = 0;
-  const std::size_t commands = falcon.commands.size();
-  for (int i = 0; i < 3001; ++i) {
-    if (device.read({}).heard) ++heard;
+  plugged.with([](FakeFalcon& f) { f.homed = true; });
+  while (!device.read({}).heard) device.write({{3.0, 0.0, 0.0}, {}});
+  device.write({{3.0, 0.0, 0.0}, {}});
+  EXPECT_NE(motors_of(falcon_.commands.back()), kNoForce);
+  device.close();
+  EXPECT_EQ(motors_of(falcon_.commands.back()), kNoForce);
+}
+
+/// With the frames of the bus, by the clock: how quick it is is told, as the machine may have other work; that no
+/// report is missing, none comes twice and each has its answer is no matter of time.
+TEST_F(FalconUsb, ThreeThousandReportsAtAKilohertzWithoutAGap) {
+  falcon_.homed = true;
+  falcon_.counts = true;
+  MockedFalcon plugged(machine_, falcon_, 4, MockedFalcon::Pace::kFrames);
+  FalconDevice device([] { return open_falcon(""); }, HandPlace{});
+  const Result<bool> opened = open_device(device);
+  ASSERT_TRUE(opened) << opened.error().text();
+  constexpr int kReports = 3000;
+  Histogram apart;
+  std::size_t commands = 0;
+  std::int64_t begin_ns = 0, last_ns = 0;
+  std::uint32_t last_number = 0;
+  int heard = 0;
+  for (int i = 0; i < kReports; ++i) {
+    const DeviceReport report = device.read({});
+    const std::int64_t now_ns = steady_now_ns();
+    heard += report.heard ? 1 : 0;
+    if (i == 0) {
+      begin_ns = now_ns;
+      commands = plugged.with([](FakeFalcon& f) { return f.commands.size(); });
+    } else {
+      apart.add(to_seconds(now_ns - last_ns));
+      EXPECT_EQ(report.buttons, (last_number + 1) % 16) << "report " << i;
+    }
+    last_ns = now_ns;
+    last_number = report.buttons;
     device.write({{1.0, 0.0, 0.0}, {}});
   }
-  EXPECT_GE(heard, 3000u) << "every reading but that of a packet from before it knew its place";
-  EXPECT_EQ(falcon.commands.size() - commands, 3001u) << "one packet a reading";
-  device.close();
-  EXPECT_EQ(parse_falcon(falcon.commands.back())->counts, (std::array<int, 3>{0, 0, 0}));
+  EXPECT_EQ(heard, kReports);
+  EXPECT_EQ(plugged.with([](FakeFalcon& f) { return f.commands.size(); }) - commands,
+            static_cast<std::size_t>(kReports))
+      << "one packet of motor values a report";
+  const double khz = 1e-3 * (kReports - 1) / to_seconds(last_ns - begin_ns);
+  std::printf("%d reports by libusb at %.3f kHz; apart by %.3f ms in the middle, p99 %.3f, longest %.3f\n",
+              heard, khz, 1e3 * apart.percentile(0.5), 1e3 * apart.percentile(0.99), 1e3 * apart.max());
+  RecordProperty("khz", std::to_string(khz));
+  EXPECT_LE(khz, 1.001) << "no quicker than the bus";
+}
+
+/// By the program, as a person meets it.
+TEST_F(FalconUsb, AFirmwareThatComesBackOtherwiseStopsItAndSaysWhatWhereAndHowToMendIt) {
+  falcon_.corrupt_at = 700;
+  const MockedFalcon plugged(machine_, falcon_, 4);
+  const test::Outcome outcome =
+      test::Process({SLOSH_PROGRAM, "devices", "--live", "--device", "falcon"}, folder_.path()).wait();
+  EXPECT_EQ(outcome.code, 1);
+  // 700·31 + 700/251, and its bit 4 the other way.
+  for (const char* words : {"usb 1-4, /dev/bus/usb/001/004", "byte 700 of 7357: c6 was sent, d6 came",
+                            "Unplug it and its power", "another cable"})
+    EXPECT_NE(outcome.err.find(words), std::string::npos) << words << "\n" << outcome.err;
+  EXPECT_EQ(falcon_.received.size(), 744u) << "nothing more than the piece that came back otherwise";
+  EXPECT_TRUE(falcon_.commands.empty() ||
+              std::all_of(falcon_.commands.begin(), falcon_.commands.end(),
+                          [](const FalconPacket& c) { return motors_of(c) == kNoForce; }));
+}
+
+/// Through everything that runs in a session: port, servo, limits. The world pulls by 5 N all the time.
+TEST_F(FalconUsb, UnpluggedInTheMiddleItsForceEndsAndComesBackWithIt) {
+  falcon_.homed = true;
+  auto plugged = std::make_unique<MockedFalcon>(machine_, falcon_, 4);
+  auto made = std::make_unique<FalconDevice>([] { return open_falcon(""); }, HandPlace{});
+  ASSERT_TRUE(open_device(*made));
+  test::ServoKit kit;
+  ASSERT_TRUE(kit.servo->set_device(0, std::move(made)));
+  double time = 0.0, felt = 0.0;  // N, of the newest row
+  const auto tick = [&] {
+    time += 0.001;
+    BodyMessage& message = kit.channel.bodies().back();
+    message = test::ServoKit::first();
+    message.rate = 1.0;
+    message.bodies.time = time;
+    message.bodies.tick = static_cast<std::uint64_t>(1e3 * time);
+    message.stamp_ns = steady_now_ns() + to_nanoseconds(10.0);
+    message.bodies.grips[0].pose.position = {0.005, 0.0, 0.0};
+    kit.channel.bodies().publish();
+    kit.servo->tick(steady_now_ns());
+    ServoSample sample;
+    while (kit.servo->samples().pop(sample)) felt = glm::length(sample.on_hand.force);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  };
+  /// N that the motors put on the hand by the last packet.
+  const auto given = [&](MockedFalcon& of) {
+    return of.with([](FakeFalcon& f) {
+      const std::array<int, 3> motors = f.commands.empty() ? kNoForce : motors_of(f.commands.back());
+      bool reachable = false;
+      const FalconAngles angles = falcon_angles(f.grip, reachable);
+      const glm::dvec3 torques(motors[0] / -1e4, motors[1] / -1e4, motors[2] / -1e4);
+      return (glm::transpose(falcon_jacobian(f.grip, angles)) * torques).x;
+    });
+  };
+  const auto until = [&](const char* what, auto&& there) {
+    for (int i = 0; i < 60000; ++i) {
+      if (there()) return true;
+      tick();
+    }
+    ADD_FAILURE() << "never: " << what << "; " << kit.servo->failure(0) << ", felt " << felt << " N";
+    return false;
+  };
+  // 5 mm of a spring of 950 N/m, which is what its damping holds.
+  ASSERT_TRUE(until("its force", [&] { return std::abs(given(*plugged) - 4.75) < 0.1; }));
+  EXPECT_EQ(kit.servo->failure(0), "");
+
+  plugged->unplug();
+  ASSERT_TRUE(until("said", [&] { return kit.servo->failure(0).find("cable") != std::string::npos; }));
+  ASSERT_TRUE(until("no force", [&] { return felt == 0.0; }));
+  for (int i = 0; i < 100; ++i) {
+    tick();
+    EXPECT_EQ(felt, 0.0) << "and none as long as it is out";
+  }
+
+  // Its power was out, too: without firmware and without its place.
+  FakeFalcon back = fresh();
+  MockedFalcon again(machine_, back, 5);
+  ASSERT_TRUE(
+      until("found", [&] { return kit.servo->failure(0).find("pull its grip out") != std::string::npos &&
+                                  again.with([](FakeFalcon& f) { return !f.commands.empty(); }); }));
+  EXPECT_EQ(again.with([](FakeFalcon& f) { return f.received; }), back.firmware);
+  for (int i = 0; i < 100; ++i) tick();
+  again.with([](FakeFalcon& f) {
+    for (const FalconPacket& command : f.commands) EXPECT_EQ(motors_of(command), kNoForce);
+    f.homed = true;
+  });
+  ASSERT_TRUE(until("its force again", [&] { return std::abs(given(again) - 4.75) < 0.1; }));
+  EXPECT_EQ(kit.servo->failure(0), "");
+  // No step: the motors' force from packet to packet. It came over two seconds.
+  const double steepest = again.with([](FakeFalcon& f) {
+    int most = 0;
+    for (std::size_t i = 1; i < f.commands.size(); ++i)
+      for (std::size_t m = 0; m < 3; ++m)
+        most = std::max(most, std::abs(motors_of(f.commands[i])[m] - motors_of(f.commands[i - 1])[m]));
+    return 1e-4 * most;
+  });
+  EXPECT_LT(steepest, 0.02) << "N·m in a packet, of 0.2 or so at 4.75 N";
+  kit.servo->close_devices();
+  EXPECT_EQ(motors_of(back.commands.back()), kNoForce) << "zero last";
 }
 
 }  // namespace
