@@ -1,9 +1,9 @@
 // The verb `devices`: what is plugged in, what is wrong with it, what it says, and a slow push along its
 // axes.
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -12,9 +12,9 @@
 #include "net/text/clean.h"
 #include "peer/haptics/devices/device_file.h"
 #include "peer/haptics/devices/hardware.h"
-#include "peer/output/whole_file.h"
 #include "peer/verbs/common_options.h"
 #include "peer/verbs/devices_calibrate.h"
+#include "peer/verbs/devices_rule.h"
 #include "peer/verbs/devices_test.h"
 #include "peer/verbs/interrupt.h"
 #include "peer/verbs/verbs.h"
@@ -26,9 +26,10 @@ namespace {
 constexpr const char* kFooter =
     "Lists SpaceMice, gamepads and Falcons that are plugged in, each with what to give to --device, and what "
     "is wrong\n"
-    "with it. Mostly that is a permission: --install-udev-rule puts a rule in place that lets whoever sits "
-    "at\n"
-    "the machine open them (needs root; without it the rule and the command are printed).\n"
+    "with it. Mostly that is a permission: then the rule that lets whoever sits at the machine open them is\n"
+    "printed, with the command that puts it in place, and at a terminal it is asked whether to run that now;\n"
+    "nothing is done, and sudo not started, without a yes. --install-udev-rule puts it in place without a\n"
+    "question (needs root).\n"
     "\n"
     "--live shows what devices say, ten times a second, until Ctrl-C: hold it, move every axis, press every\n"
     "button. `slosh devices test NAME` pushes slowly along each axis and tells stiffness and damping of "
@@ -68,16 +69,14 @@ struct DevicesOptions {
   std::string rule_file = kUdevRuleFile;
 };
 
-int list_devices() {
-  const std::vector<FoundDevice> all = find_hardware();
+std::vector<FoundDevice> show_devices() {
+  std::vector<FoundDevice> all = find_hardware();
   if (all.empty())
     std::printf(
         "No SpaceMouse, no gamepad and no Falcon is plugged in. script, mouse, replay, operator and plugin need none.\n");
-  bool well = true;
   for (const FoundDevice& each : all) {
     std::printf("%s (%s)\n    --device %s\n", each.name.c_str(), each.where.c_str(), each.spec.c_str());
     if (each.problem.empty()) continue;
-    well = false;
     std::printf("    cannot be used: %s. %s.\n", each.problem.c_str(), each.mend.c_str());
   }
   // None is no trouble: most who ask here have none.
@@ -89,26 +88,24 @@ int list_devices() {
     std::printf("No headset: %s. %s.\n", clean_text(headset.error().what, kMostTextBytes).c_str(),
                 headset.error().mend.c_str());
   std::printf("Settings: %s\n", clean_text(device_settings_folder().string(), kMostTextBytes).c_str());
-  if (well) return kExitOk;
-  std::printf("\nThe rule that lets whoever sits here open them (%s):\n%s", kUdevRuleFile,
-              udev_rule().c_str());
-  return kExitFailed;
+  return all;
 }
 
-int install_rule(const std::string& file) {
-  const Result<bool> written = write_whole(file, udev_rule());
-  if (!written) {
-    std::printf("%s", udev_rule().c_str());
-    return fail({file, "the rule above cannot be written there",
-                 "As root, save it there and run `udevadm control --reload && udevadm trigger`; for example: "
-                 "sudo build/release/bin/slosh devices --install-udev-rule"});
+int list_devices(const std::string& rule_file) {
+  const auto every = [](const std::vector<FoundDevice>& all) {
+    return std::all_of(all.begin(), all.end(), [](const FoundDevice& each) { return each.problem.empty(); });
+  };
+  const std::vector<FoundDevice> all = show_devices();
+  if (every(all)) return kExitOk;
+  const bool denied =
+      std::any_of(all.begin(), all.end(), [](const FoundDevice& each) { return each.denied; });
+  if (!denied || !offer_rule(rule_file)) return kExitFailed;
+  if (every(find_hardware())) {
+    std::printf("They can be used now.\n");
+    return kExitOk;
   }
-  (void)chmod(file.c_str(), S_IRUSR | S_IWUSR | S_IRGRP | S_IROTH);
-  std::printf("Written: %s\n", file.c_str());
-  if (file == kUdevRuleFile) {
-    std::printf("Run `udevadm control --reload && udevadm trigger`, or plug the devices in again.\n");
-  }
-  return kExitOk;
+  std::printf("Plug them in again: then they can be used.\n");
+  return kExitFailed;
 }
 
 /// One open device and the words before its line.
@@ -189,7 +186,7 @@ int show_live(const DevicesOptions& options) {
 
 int devices(const DevicesOptions& options) {
   if (options.install) return install_rule(options.rule_file);
-  return options.live ? show_live(options) : list_devices();
+  return options.live ? show_live(options) : list_devices(options.rule_file);
 }
 
 }  // namespace
@@ -214,9 +211,8 @@ void add_devices(CLI::App& app, VerbRun& chosen) {
       ->allow_extra_args(false)
       ->needs(live);
   verb->add_option("--seconds", o->seconds, "Show for that long")->check(in_range(0.01, 1e6))->needs(live);
-  CLI::Option* install =
-      verb->add_flag("--install-udev-rule", o->install, "Let whoever sits at this machine open them");
-  verb->add_option("--rule-file", o->rule_file, "Where the rule goes")->capture_default_str()->needs(install);
+  verb->add_flag("--install-udev-rule", o->install, "Let whoever sits at this machine open them");
+  verb->add_option("--rule-file", o->rule_file, "Where the rule goes")->capture_default_str();
   verb->footer(kFooter);
   verb->callback([&chosen, o, verb] {
     if (verb->get_subcommands().empty()) chosen = [o] { return devices(*o); };

@@ -1,5 +1,5 @@
 // What a person types while the program keeps a line up to date, at the host and at a peer.
-#include "terminal.h"
+#include "tests/support/terminal.h"
 
 #include <gtest/gtest.h>
 

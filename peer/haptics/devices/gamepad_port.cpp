@@ -15,6 +15,8 @@
 #include <set>
 #include <sstream>
 
+#include "peer/haptics/devices/node_access.h"
+
 namespace slosh {
 namespace {
 
@@ -95,16 +97,6 @@ std::vector<GamepadFound> find_gamepads() {
   return found;
 }
 
-Result<bool> check_gamepad_access(const std::string& path) {
-  if (access(path.c_str(), R_OK) == 0) return true;
-  const int why = errno;
-  const bool denied = why == EACCES || why == EPERM;
-  return Error{path, denied ? "this user may not open it" : std::strerror(why),
-               denied ? "Install the udev rule once (`./slosh devices --install-udev-rule`) and plug the "
-                        "device in again"
-                      : "Plug the device in again"};
-}
-
 bool GamepadPort::claimed(const std::string& path) {
   const std::lock_guard lock(claims_mutex());
   return claims().count(path) > 0;
@@ -129,7 +121,7 @@ GamepadPort::~GamepadPort() {
 }
 
 Result<GamepadPort> GamepadPort::open(const std::string& path) {
-  const Result<bool> may = check_gamepad_access(path);
+  const Result<bool> may = check_node_access(path, R_OK);
   if (!may) return may.error();
   const std::lock_guard lock(claims_mutex());
   if (claims().count(path) > 0)

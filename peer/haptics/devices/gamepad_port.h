@@ -23,9 +23,6 @@ struct GamepadFound {
 /// All of them, in the order of their nodes' numbers. Any thread.
 std::vector<GamepadFound> find_gamepads();
 
-/// Whether this process may read the node; else why not, and what to do about it.
-Result<bool> check_gamepad_access(const std::string& path);
-
 /// One open gamepad, claimed: two hands of this process never share one. One thread but for claimed().
 ///
 /// Its state is told as a SpaceMouse's, so that the same motion follows it: x and y the left stick (right,

@@ -1,5 +1,7 @@
 #include "peer/haptics/devices/hardware.h"
 
+#include <unistd.h>
+
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -8,6 +10,7 @@
 #include "peer/haptics/devices/falcon_device.h"
 #include "peer/haptics/devices/falcon_usb.h"
 #include "peer/haptics/devices/gamepad_device.h"
+#include "peer/haptics/devices/node_access.h"
 #include "peer/haptics/devices/operator_device.h"
 #include "peer/haptics/devices/plugin_device.h"
 #include "peer/haptics/devices/plugin_library.h"
@@ -61,6 +64,14 @@ Made make_tracker(const std::string& options, const HandPlace& place) {
                "Give --device plugin:FILE[:OPTIONS] with the path where it is"};
 }
 
+void note_access(FoundDevice& device, const std::string& node, int wanted) {
+  const Result<bool> may = check_node_access(node, wanted);
+  if (may) return;
+  device.problem = may.error().what;
+  device.mend = may.error().mend;
+  device.denied = node_denied(node, wanted);
+}
+
 std::string hex(std::uint16_t number) {
   char text[8];
   std::snprintf(text, sizeof text, "%04x", number);
@@ -106,10 +117,7 @@ std::vector<FoundDevice> find_hardware() {
     device.where = found.hid.path;
     if (!found.hid.serial.empty()) device.where += ", serial " + found.hid.serial;
     device.spec = "spacemouse:" + (found.hid.serial.empty() ? found.hid.path : found.hid.serial);
-    if (const Result<bool> may = check_hid_access(found.hid.path); !may) {
-      device.problem = may.error().what;
-      device.mend = may.error().mend;
-    }
+    note_access(device, found.hid.path, R_OK | W_OK);
     all.push_back(std::move(device));
   }
   for (const GamepadFound& found : find_gamepads()) {
@@ -118,10 +126,7 @@ std::vector<FoundDevice> find_hardware() {
     device.where = found.path;
     if (!found.serial.empty()) device.where += ", serial " + found.serial;
     device.spec = "gamepad:" + (found.serial.empty() ? found.path : found.serial);
-    if (const Result<bool> may = check_gamepad_access(found.path); !may) {
-      device.problem = may.error().what;
-      device.mend = may.error().mend;
-    }
+    note_access(device, found.path, R_OK);
     all.push_back(std::move(device));
   }
   for (const FalconFound& found : find_falcons()) {
@@ -129,10 +134,7 @@ std::vector<FoundDevice> find_hardware() {
     device.name = "Novint Falcon";
     device.where = found.path + ", " + found.node;
     device.spec = "falcon:" + (found.serial.empty() ? found.path : found.serial);
-    if (const Result<bool> may = check_hid_access(found.node); !may) {
-      device.problem = may.error().what;
-      device.mend = may.error().mend;
-    }
+    note_access(device, found.node, R_OK | W_OK);
     all.push_back(std::move(device));
   }
   return all;

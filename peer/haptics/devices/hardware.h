@@ -43,6 +43,7 @@ struct FoundDevice {
   std::string where;    ///< "/dev/hidraw3, serial 12345"
   std::string problem;  ///< empty: it can be used
   std::string mend;
+  bool denied = false;  ///< it is there and this user may not open it: what udev_rule() mends
 };
 std::vector<FoundDevice> find_hardware();
 

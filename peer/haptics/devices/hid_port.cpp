@@ -4,10 +4,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <mutex>
 #include <set>
+#include <utility>
+
+#include "peer/haptics/devices/node_access.h"
 
 namespace slosh {
 namespace {
@@ -51,23 +52,13 @@ std::vector<HidInfo> list_hid() {
   return found;
 }
 
-Result<bool> check_hid_access(const std::string& path) {
-  if (access(path.c_str(), R_OK | W_OK) == 0) return true;
-  const int why = errno;
-  const bool denied = why == EACCES || why == EPERM;
-  return Error{path, denied ? "this user may not open it" : std::strerror(why),
-               denied ? "Install the udev rule once (`./slosh devices --install-udev-rule`) and plug the "
-                        "device in again"
-                      : "Plug the device in again"};
-}
-
 bool HidPort::claimed(const std::string& path) {
   const std::lock_guard lock(hid_mutex());
   return claims().count(path) > 0;
 }
 
 Result<HidPort> HidPort::open(const std::string& path) {
-  const Result<bool> may = check_hid_access(path);
+  const Result<bool> may = check_node_access(path, R_OK | W_OK);
   if (!may) return may.error();
   const std::lock_guard lock(hid_mutex());
   if (claims().count(path) > 0) {

@@ -25,9 +25,6 @@ struct HidInfo {
 /// All of them, in the order of their paths. Any thread.
 std::vector<HidInfo> list_hid();
 
-/// Whether this process may read and write the node; else why not, and what to do about it.
-Result<bool> check_hid_access(const std::string& path);
-
 /// One open HID device, claimed: two hands of this process never share one. One thread but for claimed().
 class HidPort {
  public:

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "peer/haptics/devices/hid_port.h"
+#include "peer/haptics/devices/node_access.h"
 #include "peer/haptics/devices/spacemouse_models.h"
 #include "peer/haptics/devices/spacemouse_motion.h"
 #include "tests/peer/devices/own_folder.h"
@@ -40,7 +40,7 @@ TEST(SpaceMouseModels, AreAllThatHaveSixAxes) {
   EXPECT_EQ(spacemouse_model(0x1234, 0xc626), nullptr);
 }
 
-TEST(HidAccess, NamesTheRuleWhereAUserMayNotOpenADevice) {
+TEST(NodeAccess, NamesTheRuleWhereAUserMayNotOpenADevice) {
   const test::OwnFolder folder;
   chmod(folder.path().c_str(), 0755);
   const std::filesystem::path node = folder.path() / "node";
@@ -49,7 +49,7 @@ TEST(HidAccess, NamesTheRuleWhereAUserMayNotOpenADevice) {
   EXPECT_EXIT(
       {
         if (geteuid() == 0 && setuid(65534) != 0) _exit(3);
-        const Result<bool> may = check_hid_access(node.string());
+        const Result<bool> may = check_node_access(node.string(), R_OK | W_OK);
         std::fprintf(stderr, "%s\n", may ? "it may" : may.error().text().c_str());
         _exit(may ? 1 : 0);
       },

@@ -1,4 +1,4 @@
-#include "terminal.h"
+#include "tests/support/terminal.h"
 
 #include <poll.h>
 #include <pty.h>
