@@ -44,42 +44,6 @@ TEST(Report, OfErrorsWritesRowsATableAndPictures) {
   EXPECT_EQ(text_of(first / "errors.csv"), rows);
 }
 
-TEST(Report, OfTheCouplingOverTheRealLinkHasTwoPeoplesRowsACase) {
-  empty_folder();
-  const Outcome ran = test::slosh({"report", "coupling", "--link", "--quick", "--out", "link"});
-  if (ran.err.find("network namespaces: cannot be made here") != std::string::npos) GTEST_SKIP() << ran.err;
-  ASSERT_EQ(ran.code, 0) << ran.err;
-  std::istringstream table(text_of(test::test_folder() / "link" / "coupling_link.csv"));
-  std::string line;
-  std::getline(table, line);
-  EXPECT_EQ(line.find("scheme,round_trip_ms,"), 0u) << line;
-  int rows = 0;
-  for (; std::getline(table, line); ++rows) {
-    std::vector<std::string> fields;
-    std::istringstream words(line);
-    for (std::string word; std::getline(words, word, ',');) fields.push_back(word);
-    ASSERT_EQ(fields.size(), 14u) << line;
-    EXPECT_EQ(fields[0], "replica");
-    EXPECT_EQ(fields[7], "stable") << line;
-    EXPECT_GE(std::stod(fields[5]), std::stod(fields[1])) << "the delay was there: " << line;
-    EXPECT_LT(std::stod(fields[10]), 62.4) << "N, twice what the bucket weighs: " << line;
-  }
-  EXPECT_EQ(rows, 4) << "two people, at no round trip and at 200 ms";
-  EXPECT_GT(text_of(test::test_folder() / "link" / "coupling_link.png").size(), 5000u);
-  EXPECT_TRUE(std::filesystem::exists(test::test_folder() / "link" / "link_1" / "ana" / "wrenches.csv"));
-}
-
-TEST(Report, OfTheCouplingOverTheRealLinkRefusesWhatIsOfVirtualTime) {
-  empty_folder();
-  const Outcome resumed = test::slosh({"report", "coupling", "--link", "--resume", "--out", "link"});
-  EXPECT_EQ(resumed.code, 1);
-  EXPECT_NE(resumed.err.find("--resume: is not for --link"), std::string::npos) << resumed.err;
-  const Outcome at_once = test::slosh({"report", "coupling", "--link", "--jobs", "2", "--out", "link"});
-  EXPECT_EQ(at_once.code, 1);
-  EXPECT_NE(at_once.err.find("--jobs: is not for --link"), std::string::npos) << at_once.err;
-  EXPECT_FALSE(std::filesystem::exists(test::test_folder() / "link")) << "nothing was begun";
-}
-
 TEST(Report, OfErrorsDrawsEarlierRowsAgain) {
   empty_folder();
   ASSERT_EQ(test::slosh({"report", "error", "--quick", "--case", "bounce", "--out", "one"}).code, 0);
