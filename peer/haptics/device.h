@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,12 @@ struct DeviceReport {
   /// False: the device said nothing (its cable is out). The rest counts for nothing then, and the hand is taken
   /// for silent: its force fades, and it takes hold anew when it is back.
   bool heard = true;
+  /// The handle as the device itself has it, in its own frame, before scale, clutch and camera. Nothing where
+  /// `pose` is that, or the device has no place of its own.
+  std::optional<Pose> at_device = std::nullopt;
+  /// What its last write() made of the wrench that it was handed, at the device and in its own frame, after scale and
+  /// filter. Nothing before there was one, and where that is what it was handed.
+  std::optional<Wrench> rendered = std::nullopt;
 };
 
 /// The moment a device is read at.

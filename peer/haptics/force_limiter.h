@@ -26,6 +26,7 @@ class ForceLimiter {
 
   struct Outcome {
     Wrench wrench;
+    Wrench wanted;         ///< as it was asked for
     bool limited = false;  ///< by size or rate; the jerk alone is not told
     bool non_finite = false;
     double asked_force = 0.0;   ///< N that was wanted, whatever was given
@@ -34,6 +35,7 @@ class ForceLimiter {
   /// `period` in s since the wrench before.
   Outcome limit(const Wrench& wanted, double period) noexcept {
     Outcome outcome;
+    outcome.wanted = wanted;
     const double sum = wanted.force.x + wanted.force.y + wanted.force.z + wanted.torque.x + wanted.torque.y +
                        wanted.torque.z;
     if (!std::isfinite(sum)) {

@@ -32,7 +32,8 @@ Servo::Servo(const Scene& scene, std::vector<std::unique_ptr<Device>> devices, C
       hearing_(options.period),
       held_(scene, options.coupling),
       line_(scene.grips.size()),
-      samples_(options.sample_capacity) {
+      samples_(options.sample_capacity),
+      signals_(options.signals ? options.sample_capacity : 0) {
   channel_.bodies().update();
   const BodyMessage& first = channel_.bodies().front();
   run_ = first.run;
@@ -157,6 +158,7 @@ void Servo::follow_run(const BodyMessage& message) noexcept {
   time_ = message.bodies.time;
   ticked_ns_ = 0;
   next_sample_ = time_;
+  sampled_ = time_ - options_.sample_interval;
 }
 
 /// What the host says of its pace, smoothed: a damper takes it times a velocity.
@@ -277,6 +279,32 @@ bool Servo::another_holds(const BodySnapshot& bodies, std::size_t i) const noexc
   return false;
 }
 
+/// Where a row is asked for each period, each tick has one whose time is another: a loop is early or late by parts of a
+/// period, and on a grid of whole periods it would miss one row and have two ticks for the next. Else on the grid.
+bool Servo::sample_due(bool stopped) const noexcept {
+  if (stopped) return false;
+  if (options_.sample_interval > options_.period + kRounding) return time_ + kRounding >= next_sample_;
+  return time_ > sampled_ + kRounding;
+}
+
+void Servo::note_signals(std::size_t i, SignalSample& signals, std::int64_t now_ns) noexcept {
+  const Hand& hand = hands_[i];
+  signals.time = sample_offset_ + time_;
+  signals.tick = ticks_;
+  signals.wall = to_seconds(now_ns - first_tick_ns_);
+  signals.period = to_seconds(now_ns - tick_before_ns_);
+  signals.device = static_cast<std::uint32_t>(i);
+  signals.reading = hand.readings;
+  signals.age = hand.readings == 0 ? 0.0 : to_seconds(now_ns - hand.read_ns);
+  signals.engaged = hand.good.engaged;
+  signals.at_device = hand.good.at_device;
+  signals.hand = hand.good.pose;
+  signals.hand_twist = hand.good.twist;
+  signals.sent = hand.given;
+  signals.rendered = hand.good.rendered;
+  if (!signals_.push(signals)) lost_.fetch_add(1, std::memory_order_relaxed);
+}
+
 void Servo::tick(std::int64_t now_ns) noexcept {
   tick(now_ns, channel_.bodies().update());
 }
@@ -312,7 +340,8 @@ void Servo::tick(std::int64_t now_ns, bool fresh) noexcept {
   const double ahead = std::clamp(time_ - bodies.time, -longest, longest);
 
   const bool stopped = message.rate <= 0.0 && bodies.tick > 0;
-  const bool sample_due = !stopped && time_ + kRounding >= next_sample_;
+  const bool samples = sample_due(stopped);
+  if (ticks_ == 0) first_tick_ns_ = tick_before_ns_ = now_ns;
   for (std::size_t i = 0; i < hands_.size(); ++i) {
     Hand& hand = hands_[i];
     DevicePort* const wanted = claim_device(hand);
@@ -337,6 +366,7 @@ void Servo::tick(std::int64_t now_ns, bool fresh) noexcept {
         hand.readings == 0 ? 0.0 : freshness(to_seconds(now_ns - hand.read_ns), options_.period);
 
     ForceLimiter::Outcome felt;
+    SignalSample signals;
     if (i < bodies.grips.size()) {
       GripState grip = bodies.grips[i];
       grip.pose = extrapolate(grip.pose, grip.twist, ahead);
@@ -349,7 +379,9 @@ void Servo::tick(std::int64_t now_ns, bool fresh) noexcept {
                               const Wrench safe =
                                   held_.guard(i, wanted, hand.good.pose, hand.good.twist, elapses,
                                               hand.limits.max_damping, pace_of(hand));
-                              return port->device().gives_way() ? safe : wanted;
+                              signals.coupled = wanted;
+                              signals.guarded = port->device().gives_way() ? safe : wanted;
+                              return signals.guarded;
                             });
       held_.sent(i, felt.wrench, hand.felt.holds(), hand.felt.held().pose, hand.felt.held().twist,
                  hand.felt.let_in(), hand.with_world);
@@ -364,14 +396,21 @@ void Servo::tick(std::int64_t now_ns, bool fresh) noexcept {
     const bool waits_for_a_step = message.heard_pose_ns == kPoseNotTold && !port->device().gives_way();
     if (device_share >= 1.0 && (hearing_.speaks() || waits_for_a_step)) post_pose(i, hand, bodies.tick);
 
-    if (!sample_due) continue;
+    if (options_.signals) {
+      signals.wanted = felt.wanted;
+      note_signals(i, signals, now_ns);
+    }
+    if (!samples) continue;
     if (line_.full()) pass_on(true);
     line_.add({sample_offset_ + time_, static_cast<std::uint32_t>(i), felt.wrench, hand.good.pose}, time_,
               hand.felt.follows_world());
   }
   held_.advance(now_ns + to_nanoseconds(options_.period), pace_, time_ - before);
   pass_on(false);
-  if (sample_due) {
+  ticks_ += 1;
+  tick_before_ns_ = now_ns;
+  if (samples) {
+    sampled_ = time_;
     // On the grid of intervals, whatever the tick that met it: rows stay evenly spread over the run.
     const double interval = options_.sample_interval;
     next_sample_ = interval * (std::floor((time_ + kRounding) / interval) + 1.0);

@@ -15,6 +15,7 @@
 #include "peer/haptics/force_budget.h"
 #include "peer/haptics/held_bodies.h"
 #include "peer/haptics/sample_line.h"
+#include "peer/haptics/signal_sample.h"
 #include "scenes/scene.h"
 
 namespace slosh {
@@ -27,6 +28,7 @@ struct ServoOptions {
   /// What every step put on the hands, in order, where the world is in this process; must outlive the servo.
   /// Null: what body states say, of which a busy loop misses some.
   Ring<StepWrench>* steps = nullptr;
+  bool signals = false;  ///< each hand's signals in each tick are kept for signals()
 };
 
 /// tick() and let_go() belong to the device loop's thread and neither allocate, lock nor log. samples() has
@@ -84,6 +86,9 @@ class Servo {
   /// Sends every device zero and closes it. After the device loop has stopped; may be called again.
   void close_devices();
   Ring<ServoSample>& samples() { return samples_; }  ///< device loop → recorder
+  /// As samples(), of a loop that was asked for them (ServoOptions::signals).
+  Ring<SignalSample>& signals() { return signals_; }
+  bool keeps_signals() const { return options_.signals; }
   std::uint64_t samples_lost() const { return lost_.load(std::memory_order_relaxed); }
   std::uint64_t reports_rejected() const { return rejected_.load(std::memory_order_relaxed); }
   /// StatusBits that were ever set here.
@@ -137,6 +142,8 @@ class Servo {
   Wrench within_limits(std::size_t grip, const Wrench& wrench) const noexcept;
   void note_steps(const BodyMessage& message) noexcept;
   void pass_on(bool all) noexcept;
+  bool sample_due(bool stopped) const noexcept;
+  void note_signals(std::size_t i, SignalSample& signals, std::int64_t now_ns) noexcept;
   void note(std::uint32_t bits) { status_.fetch_or(bits, std::memory_order_relaxed); }
 
   Channel& channel_;
@@ -154,8 +161,12 @@ class Servo {
   bool states_apart_ = false;  // Channel::newest() is written
   bool let_go_ = false;
   double next_sample_ = 0.0;
+  double sampled_ = -1.0;        // simulated s of the newest sample
+  std::uint64_t ticks_ = 0;
+  std::int64_t first_tick_ns_ = 0, tick_before_ns_ = 0;
   SampleLine line_;
   Ring<ServoSample> samples_;
+  Ring<SignalSample> signals_;
   std::atomic<std::uint64_t> lost_{0};
   std::atomic<std::uint64_t> rejected_{0};
   std::atomic<std::uint32_t> status_{0};

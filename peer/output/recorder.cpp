@@ -6,31 +6,33 @@
 #include <tuple>
 
 #include "peer/haptics/script_device.h"
+#include "peer/output/signal_table.h"
 
 namespace slosh {
 
 Result<std::unique_ptr<Recorder>> Recorder::start(Servo& servo, const std::filesystem::path& folder) {
-  std::unique_ptr<Table> wrenches;
-  std::unique_ptr<Table> poses;
+  std::unique_ptr<Recorder> recorder(new Recorder(servo));
   if (!folder.empty()) {
-    for (const auto& [table, name, header] : {std::tuple{&wrenches, "wrenches.csv", kWrenchesHeader},
-                                              std::tuple{&poses, "poses.csv", kPosesHeader}}) {
+    const std::string signals = signals_header();
+    for (const auto& [table, name, header] :
+         {std::tuple{&recorder->wrenches_, "wrenches.csv", kWrenchesHeader},
+          std::tuple{&recorder->poses_, "poses.csv", kPosesHeader},
+          std::tuple{&recorder->signals_, "signals.csv", signals.c_str()}}) {
+      if (table == &recorder->signals_ && !servo.keeps_signals()) continue;
       Result<std::unique_ptr<Table>> created = Table::create(folder / name, header);
       if (!created) return created.error();
       *table = std::move(created.value());
     }
   }
-  return std::unique_ptr<Recorder>(new Recorder(servo, std::move(wrenches), std::move(poses)));
+  recorder->thread_ = std::thread([own = recorder.get()] { own->run(); });
+  return recorder;
 }
 
-Recorder::Recorder(Servo& servo, std::unique_ptr<Table> wrenches, std::unique_ptr<Table> poses)
-    : servo_(servo), wrenches_(std::move(wrenches)), poses_(std::move(poses)), peaks_(servo.devices()) {
-  thread_ = std::thread([this] {
-    while (!stop_.load(std::memory_order_relaxed)) {
-      drain();
-      std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    }
-  });
+void Recorder::run() {
+  while (!stop_.load(std::memory_order_relaxed)) {
+    drain();
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
 }
 
 Recorder::~Recorder() {
@@ -44,6 +46,7 @@ void Recorder::stop() {
   drain();
   wrenches_.reset();
   poses_.reset();
+  signals_.reset();
 }
 
 std::string Recorder::problem() const {
@@ -73,13 +76,28 @@ void Recorder::drain() {
                   p.z, q.w, q.x, q.y, q.z);
     poses_->add(row);
   }
+  drain_signals();
   if (!any || !wrenches_) return;
   const bool wrenches_whole = wrenches_->flush();
   const bool poses_whole = poses_->flush();
-  if (wrenches_whole && poses_whole) return;
+  if (!wrenches_whole || !poses_whole) note_problems();
+}
+
+void Recorder::drain_signals() {
+  SignalSample s;
+  bool any = false;
+  while (servo_.signals().pop(s)) {
+    any = true;
+    if (signals_) signals_->add(signals_row(s));
+  }
+  if (any && signals_ && !signals_->flush()) note_problems();
+}
+
+void Recorder::note_problems() {
   const std::lock_guard lock(problem_mutex_);
-  problem_ = wrenches_->problem();
-  if (!poses_->problem().empty()) problem_ += (problem_.empty() ? "" : "; ") + poses_->problem();
+  problem_.clear();
+  for (const Table* table : {wrenches_.get(), poses_.get(), signals_.get()})
+    if (table != nullptr && !table->problem().empty()) problem_ += (problem_.empty() ? "" : "; ") + table->problem();
 }
 
 }  // namespace slosh

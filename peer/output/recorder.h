@@ -1,4 +1,4 @@
-// What the hands did and felt, on its way from the device loop to wrenches.csv and poses.csv.
+// What the hands did and felt, on its way from the device loop to wrenches.csv, poses.csv and signals.csv.
 #pragma once
 
 #include <atomic>
@@ -27,7 +27,8 @@ struct Peak {
 /// stays written whatever happens next. Without a folder it only keeps the peaks.
 class Recorder {
  public:
-  /// `folder` may be empty; else it must exist. Errors: a file cannot be written.
+  /// `folder` may be empty; else it must exist. signals.csv is written where the servo keeps signals. Errors: a file
+  /// cannot be written.
   static Result<std::unique_ptr<Recorder>> start(Servo& servo, const std::filesystem::path& folder);
   ~Recorder();
   Recorder(const Recorder&) = delete;
@@ -41,12 +42,16 @@ class Recorder {
   std::string problem() const;
 
  private:
-  Recorder(Servo& servo, std::unique_ptr<Table> wrenches, std::unique_ptr<Table> poses);
+  explicit Recorder(Servo& servo) : servo_(servo), peaks_(servo.devices()) {}
+  void run();
   void drain();
+  void drain_signals();
+  void note_problems();
 
   Servo& servo_;
   std::unique_ptr<Table> wrenches_;  // null without a folder, as the other
   std::unique_ptr<Table> poses_;
+  std::unique_ptr<Table> signals_;  // and where the servo keeps none
   std::vector<Peak> peaks_;
   std::uint64_t rows_ = 0;
   mutable std::mutex problem_mutex_;

@@ -82,9 +82,12 @@ void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window) {
       ->capture_default_str();
   if (has_window) {
     verb.add_option("--rows", options.row_rate,
-                    "Rows a simulated second of poses.csv and wrenches.csv; 1000 is each tick of the device loop")
+                    "Rows a simulated second of poses.csv and wrenches.csv; 1000: one each tick of the device loop")
         ->check(in_range(1.0, 1000.0))
         ->capture_default_str();
+    verb.add_flag("--signals", options.signals,
+                  "Write signals.csv, too: each tick of the device loop with its period, the device's own pose, the "
+                  "hand's, and the force by stages: coupled, guarded, wanted, sent, rendered");
     verb.add_option("--keys", options.keys,
                     "Keys of the window by your choice, ACTION=KEY, with commas between; ACTION=A+B for two keys,\n"
                     "ACTION= for none. `slosh settings` lists the actions")

@@ -96,6 +96,7 @@ Result<std::unique_ptr<LocalRun>> LocalRun::create(const Prepared& prepared, Dev
   ServoOptions servo;
   servo.steps = &run->wrenches_->steps();
   servo.sample_interval = 1.0 / prepared.row_rate;
+  servo.signals = prepared.signals;
   run->servo_ = std::make_unique<Servo>(scene, std::move(devices.devices), *run->channel_, servo);
   run->loop_ = std::make_unique<DeviceLoop>(*run->servo_);
   if (prepared.measure > 0.0) {

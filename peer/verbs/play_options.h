@@ -42,6 +42,7 @@ struct ShowOptions {
   std::vector<std::string> exports;  ///< of kExportNames
   double export_rate = 30.0;         ///< frames a simulated second
   double row_rate = 500.0;           ///< of hands' files, rows a simulated second
+  bool signals = false;              ///< signals.csv, too
 };
 
 struct PlayOptions : ShowOptions {

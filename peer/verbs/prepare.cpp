@@ -144,6 +144,7 @@ Result<Backend> choose_backend(const std::string& text) {
 
 Result<bool> set_stage(const ShowOptions& options, bool headless, Stage& stage) {
   stage.row_rate = options.row_rate;
+  stage.signals = options.signals;
   const Result<std::pair<int, int>> size = parse_size(!options.size.empty() ? options.size
                                                       : headless            ? "640x480"
                                                                             : "1280x720");

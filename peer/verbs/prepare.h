@@ -29,6 +29,7 @@ struct Stage {
   std::vector<ExportKind> exports;  ///< what is written for other programs; empty = nothing
   double export_rate = 30.0;        ///< frames a simulated second
   double row_rate = 500.0;          ///< of hands, rows a simulated second
+  bool signals = false;             ///< of hands, each tick of the device loop
 };
 
 struct Prepared : Stage {

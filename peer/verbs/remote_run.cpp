@@ -29,6 +29,7 @@ Result<std::unique_ptr<RemoteRun>> RemoteRun::create(const Stage& stage, RemoteV
   ServoOptions servo;
   servo.coupling = run->options_.coupling;
   servo.sample_interval = 1.0 / stage.row_rate;
+  servo.signals = stage.signals;
   run->servo_ = std::make_unique<Servo>(stage.scene, std::vector<std::unique_ptr<Device>>{},
                                         *visit.world().channel, servo);
   run->loop_ = std::make_unique<DeviceLoop>(*run->servo_);

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <thread>
 
 #include "peer/haptics/script_device.h"
@@ -240,6 +241,35 @@ TEST_F(PlayTest, HandsAreRecordedAtTheDeviceLoopsOwnRateWhereThatIsAskedFor) {
   for (std::size_t i = 1; i < time.size(); ++i) nearest = std::min(nearest, time[i] - time[i - 1]);
   EXPECT_LT(nearest, 0.0015);
   EXPECT_EQ(test::slosh({"play", "probe", "--headless", "--rows", "5000"}).code, 2);
+}
+
+/// Each tick of the loop has its rows, whatever the machine: ticks are numbered, and the periods between them add up
+/// to the time on the wall.
+TEST_F(PlayTest, SignalsAreOfEachTickOfTheDeviceLoop) {
+  const Outcome outcome =
+      test::slosh({"play", "spoon", "--headless", "--no-render", "--spacing", "0.012", "--seconds", "1",
+                   "--device", "operator:tight", "--signals", "--out", "out"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const json summary = json::parse(read_text(out() / "summary.json"));
+  EXPECT_EQ(summary["samples_lost"], 0);
+  std::ifstream in(out() / "signals.csv");
+  std::string line, word;
+  std::getline(in, line);
+  EXPECT_EQ(line.find("time_s,tick,device,wall_s,period_ms,reading,age_ms,engaged,device_x_m,"), 0u) << line;
+  std::uint64_t ticks = 0;
+  double passed = 0.0, wall = 0.0, most = 0.0;
+  for (; std::getline(in, line); ++ticks) {
+    std::vector<double> fields;
+    for (std::istringstream words(line); std::getline(words, word, ',');) fields.push_back(std::stod(word));
+    ASSERT_EQ(fields.size(), 58u) << line;
+    EXPECT_EQ(fields[1], static_cast<double>(ticks)) << "none is missing";
+    wall = fields[3];
+    passed += 1e-3 * fields[4];
+    most = std::max(most, std::hypot(fields[46], fields[47], fields[48]));
+  }
+  EXPECT_NEAR(passed, wall, 1e-4);
+  EXPECT_EQ(ticks, summary["device_loop_us"]["ticks"].get<std::uint64_t>() + 1) << "and the first, before it is timed";
+  EXPECT_GT(most, 0.1) << "N that were sent";
 }
 
 /// To feel what a slower host is like: the world meets the hand 100 times a second in place of 344, in as

@@ -111,6 +111,8 @@ DeviceReport HandMap::to_world(const DeviceReport& at_device) noexcept {
   }
   device_ = at_device.pose;
   DeviceReport report = at_device;
+  report.at_device = at_device.pose;
+  report.rendered = rendered_;
   report.engaged = at_device.engaged &&
                    (settings_.deadman_button == 0 || held(at_device.buttons, settings_.deadman_button));
   const bool clutched = held(at_device.buttons, settings_.clutch_button);

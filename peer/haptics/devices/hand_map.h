@@ -52,7 +52,10 @@ class HandMap {
   void look_from(const glm::dquat& axes) noexcept;
   Wrench to_device(const Wrench& in_world) const noexcept;
   /// What is written: that, within its band.
-  Wrench filtered(const Wrench& in_world) noexcept { return low_pass_.pass(to_device(in_world)); }
+  Wrench filtered(const Wrench& in_world) noexcept {
+    rendered_ = low_pass_.pass(to_device(in_world));
+    return *rendered_;
+  }
   /// What the servo may ask of the hand in the world's measure.
   DeviceLimits to_world(const DeviceLimits& at_device) const;
 
@@ -66,6 +69,7 @@ class HandMap {
   Pose device_;  // as it last was
   Pose origin_;  // of the device, where the hand is at its start
   Pose held_;    // in the world, while clutched
+  std::optional<Wrench> rendered_;  // at the device, last
   bool begun_ = false;
   bool clutched_ = false;
 };

@@ -179,5 +179,30 @@ TEST(VelocityWindow, IsTheMeanOfItsWindowAndNothingAfterAGap) {
   EXPECT_EQ(window.add(far, to_nanoseconds(0.5)).linear.x, 0.0);
 }
 
+/// For who records: the device's own place whatever the hand is taken to do, and what was made of the force.
+TEST(HandMap, TellsWhatTheDeviceItselfHadAndWasGiven) {
+  HandMapSettings settings;
+  settings.scale = 3.0;
+  settings.force_scale = 0.5;
+  settings.clutch_button = 1;
+  settings.by_camera = false;
+  settings.low_pass_hz = 50.0;
+  HandMap map(settings, HandPlace{});
+  DeviceReport at_device;
+  at_device.pose.position = {0.01, 0.0, 0.0};
+  EXPECT_FALSE(map.to_world(at_device).rendered) << "nothing was written yet";
+  at_device.buttons = 1;  // the clutch
+  (void)map.to_world(at_device);
+  at_device.pose.position = {0.02, 0.0, 0.0};
+  const Wrench written = map.filtered({{2.0, 0.0, 0.0}, {}});
+  const DeviceReport in_world = map.to_world(at_device);
+  EXPECT_EQ(in_world.pose.position.x, 0.0) << "the hand stays";
+  ASSERT_TRUE(in_world.at_device && in_world.rendered);
+  EXPECT_EQ(in_world.at_device->position.x, 0.02);
+  EXPECT_EQ(in_world.rendered->force.x, written.force.x);
+  EXPECT_GT(written.force.x, 0.0);
+  EXPECT_LT(written.force.x, 0.5 * 2.0) << "held back by its band";
+}
+
 }  // namespace
 }  // namespace slosh
