@@ -6,6 +6,7 @@
 
 #include "peer/output/chart.h"
 #include "peer/output/progress.h"
+#include "peer/verbs/coupling/cells.h"
 #include "peer/verbs/report.h"
 
 namespace slosh {
@@ -17,6 +18,10 @@ int report_coupling_link(const ReportOptions& options);
 /// what chance between two runs and the best models leave: coupling_water.csv and .png.
 int report_coupling_water(const ReportOptions& options);
 
+/// coupling::bucket_cases() by the replica: bucket.csv, and `map` for its picture. `run` as for the other cells; interrupted
+/// it has those that are there. Errors: the shipped scene is not there, the file cannot be written.
+Result<bool> report_bucket(const std::filesystem::path& folder, const coupling::CellRun& run, const std::string& machine,
+                           TileMap& map);
 /// Rendered against commanded impedance, 0.1 to 30 Hz, by scheme and round trip: transparency.csv, and
 /// `panels` for its picture. On options.threads threads; interrupted it writes nothing and gives no panels.
 /// Errors: the file cannot be written.

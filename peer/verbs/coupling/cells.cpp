@@ -86,6 +86,47 @@ Result<std::map<std::string, report::Fields>> kept_lines(const std::filesystem::
   return kept;
 }
 
+struct Link {
+  const char* name;
+  double jitter, loss, poses, host;
+};
+
+Case opposing(int hands, double stiffness, const char* grip, const char* load, const Link& link) {
+  Case c;
+  c.hands = hands;
+  c.stiffness = stiffness;
+  c.grip = grip;
+  c.motion = Motion::kOpposing;
+  c.jitter = link.jitter;
+  c.loss = link.loss;
+  c.pose_rate = link.poses;
+  c.host_rate = link.host;
+  c.name = format("%d hands, %g N/m, %s, %s%s", hands, stiffness, grip, load, link.name);
+  return c;
+}
+
+/// With jitter and loss apart and together.
+std::vector<Case> fluid_grid(const char* load) {
+  constexpr Link kLinks[] = {{"40 ms", 0.04, 0.0, 500.0, 500.0},
+                             {"20 %", 0.0, 0.2, 500.0, 500.0},
+                             {"40 ms, 20 %", 0.04, 0.2, 500.0, 500.0}};
+  std::vector<Case> cases;
+  for (const int hands : {2, 4, 8})
+    for (const double stiffness : {200.0, 2000.0})
+      for (const char* grip : {"tight", "loose"})
+        for (const Link& link : kLinks) cases.push_back(opposing(hands, stiffness, grip, load, link));
+  return cases;
+}
+
+/// What a run at no delay goes by: cases that differ by their links alone share one.
+std::string without_link(const Case& c) {
+  std::string key =
+      format("%d,%.17g,%d,%d,", c.hands, c.stiffness, static_cast<int>(c.motion), static_cast<int>(c.load)) +
+      c.grip + format(",%.17g,%.17g", c.seconds, c.body_mass);
+  for (const double tone : c.tones) key += format(",%.17g", tone);
+  return key;
+}
+
 }  // namespace
 
 const char* const kCellHeader =
@@ -113,39 +154,27 @@ std::vector<Case> map_cases(bool quick) {
   }
   for (const Case& c : known_breakers()) cases.push_back(c);
   if (quick) return cases;
-  // Poses and states may come at a screen's rate, and jitter and loss are tried apart where fluid is carried.
-  struct Link {
-    const char* name;
-    double jitter, loss, poses, host;
-  };
+  // Where nothing swings words may also come at a screen's rate.
   constexpr Link kRigid[] = {{"good link", 0.0, 0.0, 500.0, 500.0},
                              {"40 ms, 20 %", 0.04, 0.2, 500.0, 500.0},
                              {"40 ms, 20 %, 60 Hz", 0.04, 0.2, 60.0, 70.0}};
-  constexpr Link kBucket[] = {{"40 ms", 0.04, 0.0, 500.0, 500.0},
-                              {"20 %", 0.0, 0.2, 500.0, 500.0},
-                              {"40 ms, 20 %", 0.04, 0.2, 500.0, 500.0}};
-  const auto add = [&](int hands, double stiffness, const char* grip, Load load, const Link& link) {
-    Case& c = cases.emplace_back();
-    c.hands = hands;
-    c.stiffness = stiffness;
-    c.grip = grip;
-    c.motion = Motion::kOpposing;
-    c.load = load;
-    c.jitter = link.jitter;
-    c.loss = link.loss;
-    c.pose_rate = link.poses;
-    c.host_rate = link.host;
-    c.name = format("%d hands, %g N/m, %s, %s%s", hands, stiffness, grip,
-                    load == Load::kCarried ? "bucket of fluid, " : "", link.name);
-  };
   for (const int hands : {2, 4, 8})
     for (const double stiffness : {200.0, 700.0, 2000.0})
       for (const char* grip : {"tight", "loose"})
-        for (const Link& link : kRigid) add(hands, stiffness, grip, Load::kNone, link);
-  for (const int hands : {2, 4, 8})
-    for (const double stiffness : {200.0, 2000.0})
-      for (const char* grip : {"tight", "loose"})
-        for (const Link& link : kBucket) add(hands, stiffness, grip, Load::kCarried, link);
+        for (const Link& link : kRigid) cases.push_back(opposing(hands, stiffness, grip, "", link));
+  for (Case& c : fluid_grid("fluid carried, ")) {
+    c.load = Load::kCarried;
+    cases.push_back(std::move(c));
+  }
+  return cases;
+}
+
+std::vector<Case> bucket_cases(const std::shared_ptr<const Bucket>& bucket) {
+  std::vector<Case> cases = fluid_grid("");
+  for (Case& c : cases) {
+    c.load = Load::kBucket;
+    c.bucket = bucket;
+  }
   return cases;
 }
 
@@ -153,7 +182,7 @@ Result<std::vector<Row>> measure_cells(const std::vector<Case>& cases, const std
                                        const std::filesystem::path& table, const CellRun& run) {
   std::vector<Cell> cells;
   for (std::size_t i = 0; i < cases.size(); ++i) {
-    for (const Scheme scheme : kMapped) {
+    for (const Scheme scheme : run.schemes) {
       for (const double round_trip : round_trips) {
         cells.push_back({cases[i], scheme, i});
         cells.back().c.round_trip = round_trip;
@@ -193,21 +222,26 @@ Result<std::vector<Row>> measure_cells(const std::vector<Case>& cases, const std
   std::stable_sort(left.begin(), left.end(),
                    [&](std::size_t a, std::size_t b) { return work_of(cells[a].c) > work_of(cells[b].c); });
 
-  // First what they are measured against, a run a case.
-  std::vector<std::size_t> needed;
+  // First what they are measured against.
+  std::vector<std::size_t> needed;               // the first case of each
+  std::vector<std::size_t> shared(cases.size());  // of `needed`
+  std::map<std::string, std::size_t> known;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const bool is =
         std::any_of(left.begin(), left.end(), [&](std::size_t cell) { return cells[cell].of == i; }) ||
         (again < cells.size() && cells[again].of == i);
-    if (is) needed.push_back(i);
+    if (!is) continue;
+    const auto [entry, fresh] = known.try_emplace(without_link(cases[i]), needed.size());
+    if (fresh) needed.push_back(i);
+    shared[i] = entry->second;
   }
   double whole = 0.0, done = 0.0;
   for (const std::size_t i : needed) whole += work_of(cases[i]);
   for (const std::size_t i : left) whole += work_of(cells[i].c);
-  std::vector<Outcome> references(cases.size());
+  std::vector<Outcome> references(needed.size());
   bool went = run_on_cores(
       needed.size(), run.jobs,
-      [&](std::size_t i) { references[needed[i]] = coupling::run(cases[needed[i]], Scheme::kZeroDelay); },
+      [&](std::size_t i) { references[i] = coupling::run(cases[needed[i]], Scheme::kZeroDelay); },
       [&](std::size_t i) {
         done += work_of(cases[needed[i]]);
         run.told(done / whole, cases[needed[i]].name + ", at no delay");
@@ -215,7 +249,7 @@ Result<std::vector<Row>> measure_cells(const std::vector<Case>& cases, const std
       run.stop);
   if (went && again < cells.size()) {
     const Cell& cell = cells[again];
-    const std::string now = csv_line(row_of(cell, coupling::run(cell.c, cell.scheme), references[cell.of]));
+    const std::string now = csv_line(row_of(cell, coupling::run(cell.c, cell.scheme), references[shared[cell.of]]));
     if (now != csv_line(rows[again])) {
       return Error{table.string(), "is of another version of this program: " + cell.c.name + " is now " + now,
                    "Begin anew with --overwrite, or go on with the program that began it"};
@@ -230,7 +264,7 @@ Result<std::vector<Row>> measure_cells(const std::vector<Case>& cases, const std
              left.size(), run.jobs,
              [&](std::size_t i) {
                const Cell& cell = cells[left[i]];
-               rows[left[i]] = row_of(cell, coupling::run(cell.c, cell.scheme), references[cell.of]);
+               rows[left[i]] = row_of(cell, coupling::run(cell.c, cell.scheme), references[shared[cell.of]]);
              },
              [&](std::size_t i) {
                const Cell& cell = cells[left[i]];

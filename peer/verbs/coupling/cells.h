@@ -4,6 +4,8 @@
 
 #include <filesystem>
 #include <functional>
+#include <iterator>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -33,6 +35,11 @@ struct Row {
 extern const char* const kCellHeader;
 std::string csv_line(const Row& row);
 
+/// The bucket of water held by 2, 4 and 8 at 300 ms, by stiffness, grip and link: six axes, every other hand the other
+/// way. For the replica alone; a cell takes some ten seconds of a core.
+std::vector<Case> bucket_cases(const std::shared_ptr<const Bucket>& bucket);
+constexpr double kBucketRoundTrip = 0.3;  // s
+
 /// s
 std::vector<double> map_round_trips(bool quick);
 /// Alone, what broke schemes, and in a full report every number of hands, stiffness, grip and link.
@@ -41,6 +48,7 @@ std::vector<Case> map_cases(bool quick);
 struct CellRun {
   int jobs = 0;                ///< threads; 0: one a core
   bool resume = false;         ///< keep the rows of `table` that are there
+  std::vector<Scheme> schemes{std::begin(kMapped), std::end(kMapped)};
   std::function<bool()> stop;  ///< asked from any thread
   /// On the caller's thread: the share of the work that is done, and in words which.
   std::function<void(double, const std::string&)> told;

@@ -10,6 +10,7 @@
 #include "net/clock.h"
 #include "peer/haptics/devices/operator_device.h"
 #include "peer/haptics/replica/held_body.h"
+#include "peer/verbs/coupling/particle_host.h"
 #include "peer/verbs/coupling/virtual_host.h"
 
 namespace slosh::coupling {
@@ -35,6 +36,7 @@ struct StateWord {
   RigidMotion motion;
   std::vector<HandWord> hands;
   std::vector<Wrench> on_hand;
+  bool has_load = false;
   FluidLoad load;
   Wrench fluid;
 };
@@ -126,6 +128,11 @@ double share_of(Motion motion, int hand) {
   return 0.0;
 }
 
+std::unique_ptr<StudyHost> host_of(const Case& c, double time_step) {
+  if (c.load == Load::kBucket) return std::make_unique<ParticleHost>(c, time_step);
+  return std::make_unique<VirtualHost>(c, time_step);
+}
+
 /// A person, their device and their end of the link.
 struct Site {
   std::unique_ptr<OperatorDevice> person;
@@ -152,15 +159,18 @@ class Study {
         scheme_(scheme),
         perfect_(scheme == Scheme::kZeroDelay),
         time_step_(perfect_ ? kPeriod : 1.0 / c.host_rate),
-        host_(c, time_step_),
+        made_(host_of(c, time_step_)),
+        host_(*made_),
         known_(static_cast<std::size_t>(c.hands)) {
     std::vector<ReplicaGrip> grips;
     for (const Pose& grip : host_.grips()) grips.push_back({grip, host_.gains()});
-    const ReplicaBody body{
-        c.replica_mass * host_.body().mass, c.replica_mass * host_.body().inertia, {}, false};
+    ReplicaBody body = host_.body();
+    body.mass *= c.replica_mass;
+    body.inertia *= c.replica_mass;
+    const Pose at{host_.motion().position, host_.motion().orientation};
     for (int i = 0; i < c.hands; ++i) {
       const auto g = static_cast<std::size_t>(i);
-      const Pose& start = host_.grips()[g];
+      const Pose start = compose(at, host_.grips()[g]);
       known_[g].pose = start;
       Site& site = *sites_.emplace_back(std::make_unique<Site>(Site{nullptr,
                                                                     Way<HandWord>(c, perfect_),
@@ -244,7 +254,8 @@ class Study {
       next_step_ += time_step_;
       for (std::size_t g = 0; g < sites_.size(); ++g) sites_[g]->up.receive(now_, known_[g]);
       host_.step(known_);
-      const StateWord word{now_, host_.motion(), known_, host_.on_hand(), host_.load(), host_.fluid()};
+      const StateWord word{now_,         host_.motion(), known_,        host_.on_hand(),
+                           host_.has_load(), host_.load(),   host_.fluid()};
       for (const auto& site : sites_) site->down.send(word, now_, random_);
     }
   }
@@ -316,8 +327,7 @@ class Study {
       // The step's end answers to the reading and its whole length.
       if (j == g && hand.stamp >= 0.0) said_[j].ack_ns = to_nanoseconds(hand.stamp + time_step_) + 1;
     }
-    if (c_.load == Load::kFluid || c_.load == Load::kSyrup || c_.load == Load::kCarried)
-      site.held->set_fluid(site.state.load);
+    if (site.state.has_load) site.held->set_fluid(site.state.load);
     site.held->hear({to_nanoseconds(now_) + 1, site.state.stamp, time_step_, site.state.motion, said_, 1.0, true,
                      site.state.fluid});
   }
@@ -334,7 +344,8 @@ class Study {
   Scheme scheme_;
   bool perfect_;
   double time_step_;
-  VirtualHost host_;
+  std::unique_ptr<StudyHost> made_;
+  StudyHost& host_;
   std::vector<HandWord> known_;
   std::vector<std::unique_ptr<Site>> sites_;
   std::vector<HostHand> said_;

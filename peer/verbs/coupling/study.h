@@ -1,6 +1,7 @@
 // Hands at several sites on one body, in virtual time: how a coupling fares over a delay.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -22,8 +23,10 @@ enum class Motion { kTogether, kOneMoves, kOpposing, kRelease };
 /// What acts on the body besides hands: nothing; drag and 1.5 kg of fluid that swings at 1.5 Hz, of which the
 /// host says a model as added mass and drag; the same, and it says none; its weight, and a table that it
 /// starts on; a syrup that drags by 40 N·s/m, of which the host says a model, or none; its weight and the
-/// fluid that swings, with its model.
-enum class Load { kNone, kFluid, kFluidUntold, kTable, kSyrup, kSyrupUntold, kCarried };
+/// fluid that swings, with its model; or the body is the shipped bucket with its water, particles and all.
+enum class Load { kNone, kFluid, kFluidUntold, kTable, kSyrup, kSyrupUntold, kCarried, kBucket };
+
+struct Bucket;
 
 struct Case {
   std::string name;
@@ -40,7 +43,8 @@ struct Case {
   double replica_mass = 1.0;    ///< times the body's: how wrong the replica is
   double most_damping = 100.0;  ///< N·s/m that the devices hold
   double seconds = 12.0;        ///< the hands move for 4 of them, from 0.5 on
-  double body_mass = 2.5;       ///< kg
+  double body_mass = 2.5;       ///< kg, where it is no bucket
+  std::shared_ptr<const Bucket> bucket = nullptr;  ///< load_bucket()'s, where it is
   /// Hz: not empty, and the first hand moves along x by a sum of these from the start to the end, each at
   /// 0.03 m/s but at most 8 mm; the others stand.
   std::vector<double> tones;
@@ -65,7 +69,8 @@ struct Outcome {
   std::vector<Pose> handles;  ///< each tick's, of the first hand
 };
 
-/// Runs `c`: the same numbers on every machine of a kind. About 0.01 s a hand and second of 1 kHz.
+/// Runs `c`: the same numbers on every machine of a kind. About 0.01 s a hand and second of 1 kHz, and half a
+/// second more a second of a bucket.
 Outcome run(const Case& c, Scheme scheme, const ReplicaTuning& tuning = {});
 
 /// RMS of the forces' difference over the RMS of the reference's, both over all hands; 1 = 100 %.
