@@ -181,11 +181,16 @@ Json to_json(const RunSummary& s) {
 
 std::string in_words(const RunSummary& s) {
   constexpr std::size_t kMost = 20'000;
+  constexpr std::uint64_t kTolerated = 1000;  // ticks of which one may be missed
   std::string text = s.network ? network_words(s, *s.network) : world_words(s);
   if (!s.devices.empty() && s.device_ticks > 0) {
     text += format("The device loop ran every %.0f µs (p99 %.0f, longest %.0f, %s missed, %s).\n",
                    s.device_loop_us.p50, s.device_loop_us.p99, s.device_loop_us.max,
                    grouped(s.device_missed).c_str(), s.device_scheduler.c_str());
+    // Where it was quick enough without, nobody need do anything.
+    if (s.device_scheduler == "SCHED_OTHER" && kTolerated * s.device_missed > s.device_ticks)
+      text += "The kernel granted it no real-time priority: `YOUR_NAME - rtprio 20` in "
+              "/etc/security/limits.d/slosh.conf lets it, from the next login on.\n";
   }
   if (!s.devices.empty()) {
     for (const DeviceSummary& d : s.devices) {

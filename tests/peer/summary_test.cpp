@@ -64,6 +64,18 @@ TEST(Summary, InWordsSaysTheNumbers) {
   EXPECT_EQ(text.find("interrupted"), std::string::npos);
 }
 
+TEST(Summary, ALoopThatWasLateForWantOfPriorityIsToldHowToGetIt) {
+  RunSummary s = example();
+  s.device_ticks = 10000;
+  const auto hinted = [&] { return in_words(s).find("rtprio 20") != std::string::npos; };
+  s.device_missed = 10;
+  EXPECT_FALSE(hinted()) << "one in a thousand";
+  s.device_missed = 11;
+  EXPECT_TRUE(hinted());
+  s.device_scheduler = "SCHED_FIFO";
+  EXPECT_FALSE(hinted()) << "it has it";
+}
+
 TEST(Summary, FileIsWholeOrAnError) {
   const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "slosh_summary.json";
   ASSERT_TRUE(write_summary(file, example()));
