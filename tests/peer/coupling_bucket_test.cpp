@@ -30,5 +30,22 @@ TEST(BucketAtADistance, IsSteadyInSeveralHandsOverABadLink) {
   EXPECT_EQ(tried, 4);
 }
 
+/// The same cells do break a spring at the peer, so they say something.
+TEST(BucketAtADistance, ASpringAtThePeerIsNotSteadyThere) {
+  const std::shared_ptr<const Bucket> bucket = load_bucket().value();
+  int tried = 0;
+  for (Case c : bucket_cases(bucket)) {
+    if (c.hands != 2 || c.stiffness != 2000.0 || c.loss == 0.0 || c.jitter == 0.0) continue;
+    c.round_trip = kBucketRoundTrip;
+    const Outcome r = run(c, Scheme::kPeerSpring);
+    std::printf("%-34s by a spring: %s, %.2g J generated, peak %.1f N\n", c.name.c_str(), word(r.verdict), r.generated,
+                r.peak);
+    EXPECT_NE(r.verdict, Verdict::kStable) << c.name;
+    EXPECT_GT(r.generated, 0.1) << c.name;
+    ++tried;
+  }
+  EXPECT_EQ(tried, 2);
+}
+
 }  // namespace
 }  // namespace slosh::coupling
