@@ -16,6 +16,8 @@
 #include <thread>
 #include <vector>
 
+#include "peer/haptics/real_time.h"
+
 namespace slosh::test {
 namespace {
 
@@ -91,6 +93,11 @@ void MockedFalcon::unplug() {
 }
 
 bool MockedFalcon::answer(UMockdevIoctlClient* client) {
+  // Hardware waits for no other program: where the kernel grants it, neither does what stands for it.
+  if (pace_ == Pace::kFrames) {
+    thread_local const bool first = (become_device_thread("falcon"), true);
+    (void)first;
+  }
   switch (umockdev_ioctl_client_get_request(client)) {
     case USBDEVFS_GET_CAPABILITIES: {
       GError* error = nullptr;
