@@ -29,14 +29,20 @@ DragSheet drag_sheet(const Scene& scene, const Plan& plan);
 /// Of a flat wall at the spacing against a lattice of fluid, in units of the damping rate that a particle has
 /// among the still neighbours of a whole lattice.
 struct WallDrag {
-  double factor = 1.0;  ///< what the volume of a dragging particle, its area times the spacing, counts
-  double rate = 0.0;    ///< of a particle of the first layer by the wall: across and along it together
+  double layered = 1.0;  ///< factor() where all fluid at the wall lies in layers
+  double even = 1.0;     ///< and where all of it lies evenly
+  double rate = 0.0;     ///< of a particle of the first layer by the wall: across and along it together
+
+  /// What the volume of a dragging particle, its area times the spacing, counts. `convexity`: the surface's
+  /// mean curvature times the spacing, 0 (flat or concave) and above.
+  double factor(double convexity) const;
 };
 
-/// `factor` is such that in a linear shear, u = γ · (distance from the surface), the fluid within reach of
-/// the sheet passes on the stress that layers of fluid pass on to each other. Fluid at a wall lies half in
-/// layers, half evenly: on the surface the mean of both counts; from behind it layers alone. Nothing but the
-/// support ratio and the kernel decide it. Models other than kCorrected keep 1.
+/// Factors are such that in a linear shear, u = γ · (distance from the surface), the fluid within reach of
+/// the sheet passes on the stress that layers of fluid pass on to each other. Fluid at a flat wall lies half
+/// in layers, half evenly, at a ball of a few spacings evenly; from behind the surface layers alone count.
+/// Nothing but the support ratio, the kernel and the surface decide it. Models that do not correct gradients
+/// keep 1.
 WallDrag wall_drag(ParticleModel model, double support_ratio, DragSheet sheet);
 
 }  // namespace slosh

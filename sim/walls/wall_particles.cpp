@@ -76,6 +76,14 @@ float convexity(const DistanceFieldView& field, const glm::vec3& p, const glm::v
   return bent < kLeastBent ? 0.0f : std::min(bent, kMostBent);
 }
 
+// The same along the field's gradient.
+float convexity(const DistanceFieldView& field, const glm::vec3& p, float spacing) {
+  if (!field.distance) return 0.0f;
+  const glm::vec3 out = sample_distance(field, p).gradient;
+  const float slope = glm::length(out);
+  return slope > 0.5f ? convexity(field, p, out / slope, spacing) : 0.0f;
+}
+
 // In a concave edge the sheets of the two faces part as they move back. Adds particles where the level set at
 // that depth has none within kLargestHole, walking the nodes of the distance field.
 void close_gaps(const DistanceFieldView& field, float depth, float spacing, std::vector<glm::vec3>& sheet) {
@@ -211,7 +219,8 @@ std::vector<SurfaceParticle> surface_particles(const Scene& scene, const Sampled
   const DragSheet sheet = drag_sheet(scene, plan);
   const bool apart = sheet == DragSheet::kSurface;  // what presses and what drags
   const float lattice_volume = static_cast<float>(std::pow(plan.spacing, 3));
-  const float drag = static_cast<float>(wall_drag(plan.model, scene.support_ratio, sheet).factor);
+  const WallDrag drag = wall_drag(plan.model, scene.support_ratio, sheet);
+  const auto flat_drag = static_cast<float>(drag.factor(0.0));
   JoinedWalls joined;
   if (motion == BodyMotion::kFixed) joined = joined_walls(scene, sampled, plan);
   std::vector<std::vector<glm::vec3>> dragging;
@@ -236,11 +245,14 @@ std::vector<SurfaceParticle> surface_particles(const Scene& scene, const Sampled
     for (std::size_t i = 0; i < positions.size(); ++i) {
       const float volume = plan.model == ParticleModel::kPaper
                                ? sampled.surfaces[b].particle_volume
-                               : pressures[i] / kWallShare * lattice_volume * drag;
+                               : pressures[i] / kWallShare * lattice_volume * flat_drag;
       add(positions[i], pressures[i], apart ? 0.0f : volume);
     }
     if (!apart) continue;
-    for (const glm::vec3& p : dragging[b]) add(p, 0.0f, drag * sampled.surfaces[b].particle_volume);
+    for (const glm::vec3& p : dragging[b]) {
+      const float bent = convexity(sampled.distance_fields[b].view(), p, static_cast<float>(plan.spacing));
+      add(p, 0.0f, static_cast<float>(drag.factor(bent)) * sampled.surfaces[b].particle_volume);
+    }
   }
   return particles;
 }
