@@ -66,6 +66,11 @@ class HeldBodies {
   /// 0 = the host's body is used, 1 = the replica.
   double share(std::size_t i) const noexcept;
   LoopDelay delay(std::size_t i) const noexcept;
+  /// The body of grip `i`; null for one that is fixed.
+  const HeldBody* held(std::size_t i) const noexcept {
+    const int body = places_[i].body;
+    return body < 0 ? nullptr : &bodies_[static_cast<std::size_t>(body)].held;
+  }
 
  private:
   struct Place {
