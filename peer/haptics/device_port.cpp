@@ -8,6 +8,7 @@
 
 #include "net/clock.h"
 #include "net/triple_buffer.h"
+#include "peer/haptics/force_limiter.h"
 #include "peer/haptics/freshness.h"
 #include "peer/haptics/let_go.h"
 #include "peer/haptics/real_time.h"
@@ -44,6 +45,31 @@ std::int64_t next_reading_ns(const Order& order, std::int64_t now_ns) {
 Wrench scaled(double scale, const Wrench& w) {
   return {scale * w.force, scale * w.torque};
 }
+
+/// What a device was sent last and when: no thread that stood still, and none that it waits for, makes it jump.
+class Slew {
+ public:
+  explicit Slew(const DeviceLimits& limits) : limits_(limits) {}
+  /// As far towards `wanted` as the limits let it go in the shorter of this turn and the one before, a period at
+  /// least: what was missed is not made up for at once.
+  Wrench toward(const Wrench& wanted, std::int64_t now_ns) {
+    const std::int64_t turn_ns = now_ns - now_ns_;
+    const double most = std::max(to_seconds(std::min(turn_ns, turn_ns_)), kPeriod);
+    turn_ns_ = turn_ns;
+    now_ns_ = now_ns;
+    bool cut = false;
+    at_.force += limit_length(wanted.force - at_.force, most * limits_.max_force_rate, cut);
+    at_.torque += limit_length(wanted.torque - at_.torque, most * limits_.max_torque_rate, cut);
+    if (!cut) at_ = wanted;  // to the bit
+    return at_;
+  }
+
+ private:
+  DeviceLimits limits_;
+  Wrench at_;
+  std::int64_t now_ns_ = 0;
+  std::int64_t turn_ns_ = 0;
+};
 
 /// The words of the exception that is being handled.
 std::string words_of_exception() {
@@ -110,6 +136,7 @@ DevicePort::~DevicePort() {
 void DevicePort::run(const std::shared_ptr<Own>& own) {
   become_device_thread("slosh-hand");
   Device& device = *own->device;
+  Slew slew(device.limits());
   {
     const WrenchWriter writer(write_zero_to, &device);
     try {
@@ -136,9 +163,10 @@ void DevicePort::run(const std::shared_ptr<Own>& own) {
         own->orders.update();
         const Order& order = own->orders.front();
         const std::int64_t now_ns = steady_now_ns();
-        const double believed =
-            order.stamp_ns == 0 ? 0.0 : freshness(to_seconds(now_ns - order.stamp_ns), kPeriod);
-        device.write(scaled(believed, order.on_hand));
+        // It stands until the next: what is left of the force by then.
+        const double age = to_seconds(now_ns - order.stamp_ns) + kPeriod;
+        const double believed = order.stamp_ns == 0 ? 0.0 : freshness(age, kPeriod);
+        device.write(slew.toward(scaled(believed, order.on_hand), now_ns));
         deadline_ns = std::max(deadline_ns + to_nanoseconds(kPeriod), now_ns - to_nanoseconds(kPeriod));
         if (!own_pace && loop_ticks) deadline_ns = next_reading_ns(order, now_ns);
         sleep_until_ns(deadline_ns);
@@ -192,8 +220,11 @@ const DeviceReading& DevicePort::read(const DeviceMoment& moment, std::int64_t n
 void DevicePort::write(const Wrench& on_hand) noexcept {
   if (own_) {
     Order& order = own_->orders.back();
-    order.on_hand = on_hand;
-    order.stamp_ns = steady_now_ns();  // its thread compares it with the same clock
+    const std::int64_t now_ns = steady_now_ns();  // its thread compares it with the same clock
+    left_ = written_ns_ == 0 ? 1.0 : freshness(to_seconds(now_ns - written_ns_), kPeriod);
+    written_ns_ = now_ns;
+    order.on_hand = scaled(left_, on_hand);
+    order.stamp_ns = now_ns;
     own_->orders.publish();
     return;
   }

@@ -57,6 +57,13 @@ class FeltHand {
     gains_ = within(of_world, limits);
   }
 
+  /// Nobody called feel() for so long that the device has only that share (0–1) of its wrench left: what comes back
+  /// begins there.
+  void faded(double share) noexcept {
+    limiter_.faded(share);
+    last_ = {share * last_.force, share * last_.torque};
+  }
+
   struct Moment {
     double time = 0.0;          ///< simulated s, never falling but when the world was reset
     double period = 0.001;      ///< s since the call before

@@ -32,6 +32,11 @@ class ForceLimiter {
     double asked_force = 0.0;   ///< N that was wanted, whatever was given
     double asked_torque = 0.0;  ///< N·m
   };
+  /// The device has only that share (0–1) of the wrench before left: somebody else took the rest.
+  void faded(double share) noexcept {
+    last_ = wanted_ = {share * last_.force, share * last_.torque};
+    rate_ = Wrench{};
+  }
   /// `period` in s since the wrench before.
   Outcome limit(const Wrench& wanted, double period) noexcept {
     Outcome outcome;

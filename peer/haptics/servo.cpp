@@ -302,8 +302,12 @@ void Servo::tick(std::int64_t now_ns, bool fresh) noexcept {
     Hand& hand = hands_[i];
     DevicePort* const port = hand.port;
     if (port == nullptr) continue;
-    const double device_share =
+    double device_share =
         hand.readings == 0 ? 0.0 : freshness(to_seconds(now_ns - hand.read_ns), options_.period);
+    if (const double left = port->left(); left < 1.0) {
+      hand.felt.faded(left);
+      device_share = std::min(device_share, left);
+    }
 
     ForceLimiter::Outcome felt;
     SignalSample signals;
