@@ -14,7 +14,7 @@ DeviceLoop::~DeviceLoop() {
 
 void DeviceLoop::start() {
   if (thread_.joinable()) return;
-  let_go_before_terminate();
+  let_go_before_the_end();
   report_.memory_locked = lock_memory();
   thread_ = std::thread([this] { run(); });
   primed_.wait(false);

@@ -125,7 +125,7 @@ DevicePort::DevicePort(std::unique_ptr<Device> device)
   if (device_->immediate()) return;
   own_ = std::make_shared<Own>();
   own_->device = device_;
-  let_go_before_terminate();
+  let_go_before_the_end();
   thread_ = std::thread([own = own_] { run(own); });
 }
 

@@ -66,6 +66,8 @@ class SeenDevice final : public Device {
   throw std::runtime_error("promised not to");
 }
 
+int* volatile nowhere = nullptr;
+
 /// Promises not to throw and does.
 class LyingDevice final : public Device {
  public:
@@ -196,6 +198,32 @@ TEST_P(LettingGo, AnExceptionThatNobodyCatchesEndsTheProcessWithoutAForce) {
   EXPECT_EQ(WTERMSIG(status), SIGABRT);
   EXPECT_GT(felt->writes, 0);
   EXPECT_EQ(felt->last, 0.0);
+}
+
+/// A fault in a thread that has nothing to do with hands, or in a library of someone else's that gives up.
+TEST_P(LettingGo, ACrashEndsTheProcessWithoutAForce) {
+#ifdef SLOSH_SANITIZED
+  const std::vector<int> signals{SIGABRT};  // it handles faults itself
+#else
+  const std::vector<int> signals{SIGSEGV, SIGABRT};
+#endif
+  for (const int signal_number : signals) {
+    felt->last = 0.0;
+    const int status = process(
+        [&] {
+          HeldRun run(device());
+          run.go_on_while([&] { return felt->last != kFull; });
+          std::thread([&] {
+            if (signal_number == SIGABRT) std::abort();
+            *const_cast<int volatile*>(nowhere) = 1;
+          }).join();
+        },
+        {});
+    ASSERT_TRUE(WIFSIGNALED(status));
+    EXPECT_EQ(WTERMSIG(status), signal_number) << "it dies of what it would have died of";
+    EXPECT_GT(felt->writes, 0);
+    EXPECT_EQ(felt->last, 0.0) << "signal " << signal_number;
+  }
 }
 
 TEST_P(LettingGo, WhoDestroysTheLoopLetsGo) {

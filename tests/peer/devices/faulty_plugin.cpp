@@ -1,5 +1,9 @@
-// A plug-in with one fault, by what it is compiled with.
+// A plug-in with one fault, by what it is compiled with. What it does while it is held it does from when it is told to
+// (faulty_now), and says when that was and what it was sent.
+#include <time.h>
 #include <unistd.h>
+
+#include <atomic>
 
 #include <cmath>
 #include <cstdio>
@@ -10,9 +14,27 @@
 
 namespace {
 [[maybe_unused]] int reads = 0;
-[[maybe_unused]] int writes = 0;
 [[maybe_unused]] void never_return() {
   for (;;) pause();
+}
+}  // namespace
+
+extern "C" {
+
+std::atomic<bool> faulty_now{false};
+std::atomic<std::int64_t> faulty_since_ns{0};  // steady clock; 0 = not yet
+std::atomic<double> faulty_force{0.0};         // N, along x, of the newest write
+}
+
+namespace {
+/// Whether it goes wrong in this call.
+[[maybe_unused]] bool goes_wrong() {
+  if (!faulty_now) return false;
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  std::int64_t none = 0;
+  faulty_since_ns.compare_exchange_strong(none, std::int64_t{1'000'000'000} * now.tv_sec + now.tv_nsec);
+  return true;
 }
 }  // namespace
 
@@ -36,13 +58,22 @@ int slosh_device_open(const char*, void** device, char* error, size_t size) {
   never_return();
 #endif
   std::snprintf(error, size, "%s", "");
-  reads = writes = 0;
+  reads = 0;
+  faulty_now = false;
+  faulty_since_ns = 0;
+  faulty_force = 0.0;
   static int one = 0;
   *device = &one;
   return 0;
 }
 
 int slosh_device_get_capabilities(void*, slosh_device_capabilities* c) {
+#ifdef THROWS_IN_CAPABILITIES
+  throw std::runtime_error("no data sheet");
+#endif
+#ifdef BLOCKS_IN_CAPABILITIES
+  never_return();
+#endif
   std::memset(c, 0, sizeof *c);
   std::snprintf(c->name, sizeof c->name, "faulty");
   c->period_s = 0.001;
@@ -76,33 +107,36 @@ int slosh_device_read(void*, slosh_device_reading* reading) {
   ++reads;
   // In place at first, so that the hand takes hold, then off by 10 mm, so that it feels a force.
   reading->position_m[0] = reads > 20 ? 0.01 : 0.0;
-  [[maybe_unused]] const bool late = reads > 400;
 #ifdef THROWS_IN_READ
-  if (late) throw std::runtime_error("the cable is out");
+  if (goes_wrong()) throw std::runtime_error("the cable is out");
 #endif
 #ifdef ADMITTANCE
   reading->flags = SLOSH_READING_HAS_WRENCH;
 #endif
 #ifdef NAN_FORCE
-  if (late) reading->force_n[2] = std::nan("");
+  if (goes_wrong()) reading->force_n[2] = std::nan("");
 #endif
 #ifdef BLOCKS_IN_READ
-  if (late) never_return();
+  if (goes_wrong()) never_return();
 #endif
 #ifdef NAN_READING
-  if (late) reading->position_m[1] = std::nan("");
+  if (goes_wrong()) reading->position_m[1] = std::nan("");
 #endif
 #ifdef GONE
-  if (late) return -1;
+  if (goes_wrong()) return -1;
 #endif
   return 0;
 }
 
 #ifndef LACKS_WRITE
-int slosh_device_write(void*, const double[3], const double[3]) {
+int slosh_device_write(void*, const double force_n[3], const double[3]) {
 #ifdef THROWS_IN_WRITE
-  if (++writes > 400) throw 7;
+  if (goes_wrong()) throw 7;
 #endif
+#ifdef BLOCKS_IN_WRITE
+  if (goes_wrong()) never_return();
+#endif
+  faulty_force = force_n[0];
   return 0;
 }
 #endif
@@ -110,11 +144,21 @@ int slosh_device_write(void*, const double[3], const double[3]) {
 #if defined(ADMITTANCE) && !defined(LACKS_MOVE)
 int slosh_device_move(void*, const slosh_device_motion*) {
 #ifdef THROWS_IN_MOVE
-  if (++writes > 400) throw 7;
+  if (goes_wrong()) throw 7;
+#endif
+#ifdef BLOCKS_IN_MOVE
+  if (goes_wrong()) never_return();
 #endif
   return 0;
 }
 #endif
 
-void slosh_device_close(void*) {}
+void slosh_device_close(void*) {
+#ifdef THROWS_IN_CLOSE
+  throw std::runtime_error("it is in use");
+#endif
+#ifdef BLOCKS_IN_CLOSE
+  never_return();
+#endif
+}
 }

@@ -1,4 +1,4 @@
-// Plug-ins, real libraries: the example works, faulty ones are contained and named.
+// Plug-ins that work, real libraries.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -9,29 +9,15 @@
 
 #include "peer/haptics/device_loop.h"
 #include "peer/haptics/devices/plugin_device.h"
-#include "tests/peer/devices/own_folder.h"
+#include "plugin_kit.h"
 #include "tests/peer/servo_kit.h"
-#include "tests/support/places.h"
 
 namespace slosh {
 namespace {
 
+using test::plugin;
+using test::Plugins;
 using test::ServoKit;
-
-std::string library(const std::string& name) {
-  return (test::build_dir() / "lib" / (name + ".so")).string();
-}
-
-std::unique_ptr<PluginDevice> plugin(const std::string& name, const std::string& options = "") {
-  return std::make_unique<PluginDevice>(library(name), options, HandPlace{});
-}
-
-class Plugins : public ::testing::Test {
- protected:
-  // No settings of who runs the tests.
-  void SetUp() override { setenv("XDG_CONFIG_HOME", folder_.path().c_str(), 1); }
-  test::OwnFolder folder_;
-};
 
 TEST_F(Plugins, TheExampleGivesWayToAForceAndComesBack) {
   auto device = plugin("slosh_example_device", "100");
@@ -173,118 +159,6 @@ TEST_F(Plugins, TheExampleRefusesAnOptionInItsOwnWords) {
   ASSERT_FALSE(opened);
   EXPECT_NE(opened.error().text().find("'stiff' is no stiffness"), std::string::npos)
       << opened.error().text();
-}
-
-TEST_F(Plugins, WhatCannotBeOpenedIsNamed) {
-  struct Case {
-    const char* name;
-    const char* words;
-  };
-  for (const Case& c : {Case{"slosh_plugin_other_version", "version 4"},
-                        Case{"slosh_plugin_lacks_move", "lacks the function slosh_device_move"},
-                        Case{"slosh_plugin_no_speed", "max_speed_m_s is not a number above 0"},
-                        Case{"slosh_plugin_lacks_write", "lacks the function slosh_device_write"},
-                        Case{"slosh_plugin_throws_in_open", "threw: no licence"},
-                        Case{"slosh_plugin_nan_capability", "max_force"},
-                        Case{"slosh_plugin_blocks_in_open", "did not return within 5 s"},
-                        Case{"no_such_library", "cannot be loaded"}}) {
-    auto device = plugin(c.name);
-    const Result<bool> opened = open_device(*device);
-    ASSERT_FALSE(opened) << c.name;
-    EXPECT_NE(opened.error().text().find(c.words), std::string::npos) << opened.error().text();
-    EXPECT_FALSE(opened.error().mend.empty());
-  }
-}
-
-/// Another hand, on the loop itself: what it felt last, and how often.
-struct Other {
-  std::atomic<std::uint64_t> writes{0};
-  std::atomic<double> felt{0.0};
-};
-class OtherDevice final : public Device {
- public:
-  OtherDevice(std::shared_ptr<Other> seen, Channel& channel) : seen_(std::move(seen)), channel_(channel) {}
-  DeviceReport read(const DeviceMoment&) override {
-    reads_ += 1;
-    test::publish_ahead(channel_, reads_);
-    DeviceReport report;
-    report.pose.position.x = reads_ > 20 ? 0.01 : 0.0;
-    return report;
-  }
-  void write(const Wrench& on_hand) override {
-    seen_->felt = on_hand.force.x;
-    seen_->writes += 1;
-  }
-  DeviceLimits limits() const override { return limits_without_a_hand(); }
-  bool immediate() const override { return true; }
-  std::string kind() const override { return "other"; }
-
- private:
-  std::shared_ptr<Other> seen_;
-  Channel& channel_;
-  int reads_ = 0;
-};
-
-TEST_F(Plugins, WhatGoesWrongWhileItIsHeldEndsThatHandAloneAndIsNamed) {
-  struct Case {
-    const char* name;
-    const char* words;  // null: nothing can be said of a device that does not answer
-  };
-  for (const Case& c :
-       {Case{"slosh_plugin_throws_in_read", "threw from read: the cable is out"},
-        Case{"slosh_plugin_throws_in_write", "threw from write"},
-        Case{"slosh_plugin_throws_in_move", "threw from move"},
-        Case{"slosh_plugin_nan_force", "no force of the hand"},
-        Case{"slosh_plugin_gone", "its device is gone"}, Case{"slosh_plugin_nan_reading", "no number"},
-        Case{"slosh_plugin_blocks_in_read", nullptr}}) {
-    SCOPED_TRACE(c.name);
-    Scene scene = test::one_grip_scene();
-    scene.grips.push_back(scene.grips[0]);
-    BodyMessage first = ServoKit::first();
-    first.bodies.grips.resize(2);
-    Channel channel(2, first, 1000);
-    auto other = std::make_shared<Other>();
-    std::vector<std::unique_ptr<Device>> devices;
-    devices.push_back(plugin(c.name));
-    const Result<bool> opened = open_device(*devices[0]);
-    ASSERT_TRUE(opened) << opened.error().text();
-    devices.push_back(std::make_unique<OtherDevice>(other, channel));
-    Servo servo(scene, std::move(devices), channel, ServoOptions{});
-    DeviceLoop loop(servo);
-    loop.start();
-    const auto wait = [&](auto&& condition) {
-      while (!condition()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    };
-    // Zero: what the loop sends the hand, as the recorder gets it.
-    double last_felt = 1.0;
-    bool felt = false;
-    const auto take_samples = [&] {
-      ServoSample sample;
-      while (servo.samples().pop(sample)) {
-        if (sample.device != 0) continue;
-        last_felt = glm::length(sample.on_hand.force);
-        felt = felt || last_felt > 0.1;  // it comes over two seconds
-      }
-    };
-    wait([&] {
-      take_samples();
-      return felt;
-    });
-    if (c.words != nullptr) {
-      wait([&] { return !servo.failure(0).empty(); });
-      EXPECT_NE(servo.failure(0).find(c.words), std::string::npos) << servo.failure(0);
-    }
-    wait([&] {
-      take_samples();
-      return last_felt == 0.0;
-    });
-    const std::uint64_t writes = other->writes;
-    wait([&] { return other->writes > writes + 100; });
-    EXPECT_NEAR(other->felt, -10.0, 1e-6) << "the other hand holds on";
-    EXPECT_TRUE(servo.failure(1).empty());
-    loop.stop();
-    servo.close_devices();
-  }
 }
 
 }  // namespace
