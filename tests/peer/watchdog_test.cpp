@@ -17,7 +17,7 @@ namespace {
 using test::comes;
 using test::NotedWrites;
 using test::NotingDevice;
-using test::Write;
+using test::WrittenForce;
 
 /// A device that the loop reads itself, and the world: while `hangs`, its read() does not return.
 struct Hang {
@@ -86,13 +86,13 @@ TEST_F(Watchdog, ALoopThatHangsLeavesNoDeviceWithAForce) {
   const std::int64_t hung_ns = hang();
   ASSERT_TRUE(comes([&] { return noted_->last() == 0.0; }));
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  const std::vector<Write> writes = noted_->since(hung_ns - to_nanoseconds(0.01));
+  const std::vector<WrittenForce> writes = noted_->since(hung_ns - to_nanoseconds(0.01));
   std::printf("zero %.0f ms after the loop hung; %.3f of what the device may be given at once\n",
               1e3 * test::zero_after(writes, hung_ns), test::steepest(writes, test::quick_arm().max_force_rate));
   // Whatever the machine does: what is written then is none, and as little as is left at its moment.
-  for (const Write& write : writes) {
+  for (const WrittenForce& write : writes) {
     const double age = to_seconds(write.ns - hung_ns);
-    EXPECT_LE(std::abs(write.force), 10.01 * freshness(age - 0.02, 0.001)) << age << " s after";
+    EXPECT_LE(glm::length(write.force), 10.01 * freshness(age - 0.02, 0.001)) << age << " s after";
   }
   EXPECT_LE(test::steepest(writes, test::quick_arm().max_force_rate), 1.0);
 }
@@ -105,12 +105,12 @@ TEST_F(Watchdog, ALoopThatGoesOnAgainStrikesNoHand) {
     const std::int64_t on_ns = steady_now_ns();
     hang_->hangs = false;
     ASSERT_TRUE(comes([&] { return noted_->last() < -9.99 && steady_now_ns() > on_ns + to_nanoseconds(0.5); }));
-    const std::vector<Write> writes = noted_->since(hung_ns - to_nanoseconds(0.01));
+    const std::vector<WrittenForce> writes = noted_->since(hung_ns - to_nanoseconds(0.01));
     double least = 10.0, soon = 0.0;
-    for (const Write& write : writes) {
+    for (const WrittenForce& write : writes) {
       const bool on = write.ns > on_ns;
-      if (!on) least = std::min(least, std::abs(write.force));
-      if (on && write.ns < on_ns + to_nanoseconds(0.02)) soon = std::max(soon, std::abs(write.force));
+      if (!on) least = std::min(least, glm::length(write.force));
+      if (on && write.ns < on_ns + to_nanoseconds(0.02)) soon = std::max(soon, glm::length(write.force));
     }
     const double steepest = test::steepest(writes, test::quick_arm().max_force_rate);
     std::printf("hung for %.2f s: down to %.1f N, %.1f N within 20 ms of its going on; %.3f of what the device may be given at once\n",
