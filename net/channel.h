@@ -15,7 +15,6 @@ namespace slosh {
 /// Up: where one handle is.
 struct PoseMessage {
   std::int64_t stamp_ns = 0;   ///< the peer's steady clock when the device was read
-  std::uint64_t tick_ack = 0;  ///< tick of the newest body state that the peer had
   double time = 0.0;           ///< simulated s that the pose belongs to, by the peer's reckoning
   std::uint32_t device = 0;    ///< index into Scene::grips
   Pose pose;                   ///< handle, world

@@ -167,7 +167,6 @@ bool HandTable::sample(const wire::PoseSample& sample, std::int64_t now_ns, bool
   PoseMessage message;
   message.device = sample.grip;
   message.stamp_ns = stamp_ns;
-  message.tick_ack = sample.tick_ack;
   message.time = sample.time;
   message.pose = sample.pose;
   message.twist = sample.twist;

@@ -29,9 +29,12 @@ constexpr Capabilities kGripStiffnesses = 1u << 3;
 /// host goes on holding.
 constexpr Capabilities kFeltHands = 1u << 4;
 
+/// PoseSample has no `tick_ack`: nothing ever read it.
+constexpr Capabilities kNoTickAcks = 1u << 5;
+
 /// What this program understands; a peer's Hello asks for all of it.
 constexpr Capabilities kOurCapabilities =
-    kRosterChanges | kFluidWrenches | kCouplings | kGripStiffnesses | kFeltHands;
+    kRosterChanges | kFluidWrenches | kCouplings | kGripStiffnesses | kFeltHands | kNoTickAcks;
 /// For what has no other side: pages, tests of single messages, files.
 constexpr Capabilities kAllCapabilities = ~Capabilities{0};
 

@@ -55,7 +55,6 @@ struct PoseSample {
   std::uint32_t grip = 0;
   std::uint64_t number = 0;    ///< of this grip's samples, rising by one; repeats have the same number
   std::int64_t stamp_ns = 0;   ///< the peer's steady clock when the device was read
-  std::uint64_t tick_ack = 0;  ///< newest body state that the peer had
   double time = 0.0;           ///< simulated s that it belongs to
   Pose pose;
   Twist twist;
@@ -69,7 +68,10 @@ void visit(V& v, PoseSample& m) {
   v.natural("grip", m.grip, 0, kMaxGrips - 1);
   v.natural("number", m.number, 0, kMaxTick);
   v.stamp("stamp_ns", m.stamp_ns);
-  v.natural("tick_ack", m.tick_ack, 0, kMaxTick);
+  if (!v.agreed(kNoTickAcks)) {
+    std::uint64_t unread = 0;  // the newest body state that an older peer had
+    v.natural("tick_ack", unread, 0, kMaxTick);
+  }
   v.real64("time", m.time, -1.0, kMaxTime);
   visit(v, m.pose);
   visit(v, m.twist);

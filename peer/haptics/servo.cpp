@@ -209,10 +209,9 @@ bool Servo::read_device(Hand& hand, std::int64_t now_ns) noexcept {
   return !first && leapt(before.pose.position, hand.good.pose.position, speed, elapsed);
 }
 
-void Servo::post_pose(std::size_t i, const Hand& hand, std::uint64_t tick) noexcept {
+void Servo::post_pose(std::size_t i, const Hand& hand) noexcept {
   PoseMessage& up = channel_.pose(i).back();
   up.stamp_ns = hand.read_ns;
-  up.tick_ack = tick;
   up.time = hand.read_time;
   up.device = static_cast<std::uint32_t>(i);
   up.pose = hand.good.pose;
@@ -304,7 +303,7 @@ void Servo::tick(std::int64_t now_ns, bool fresh) noexcept {
     if (port == nullptr) continue;
     double device_share =
         hand.readings == 0 ? 0.0 : freshness(to_seconds(now_ns - hand.read_ns), options_.period);
-    if (const double left = port->left(); left < 1.0) {
+    if (const double left = port->left(); left < 1.0 && port->device().gives_way()) {
       hand.felt.faded(left);
       device_share = std::min(device_share, left);
     }
@@ -338,7 +337,7 @@ void Servo::tick(std::int64_t now_ns, bool fresh) noexcept {
     // A device that does not answer is not spoken for: the host takes its hand for silent, as it is.
     // In one process only a slow world is silent: a hand that does not give way goes on as its script has it.
     const bool waits_for_a_step = message.heard_pose_ns == kPoseNotTold && !port->device().gives_way();
-    if (device_share >= 1.0 && (hearing_.speaks() || waits_for_a_step)) post_pose(i, hand, bodies.tick);
+    if (device_share >= 1.0 && (hearing_.speaks() || waits_for_a_step)) post_pose(i, hand);
 
     if (options_.signals) {
       signals.wanted = felt.wanted;

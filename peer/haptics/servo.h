@@ -138,7 +138,7 @@ class Servo {
   /// Takes in what the device says; true when the hand leapt.
   bool read_device(Hand& hand, std::int64_t now_ns) noexcept;
   bool another_holds(const BodySnapshot& bodies, std::size_t i) const noexcept;
-  void post_pose(std::size_t i, const Hand& hand, std::uint64_t tick) noexcept;
+  void post_pose(std::size_t i, const Hand& hand) noexcept;
   Wrench within_limits(std::size_t grip, const Wrench& wrench) const noexcept;
   void note_steps(const BodyMessage& message) noexcept;
   void pass_on(bool all) noexcept;

@@ -17,7 +17,6 @@ wire::PoseSample sample_of(const PoseMessage& message, std::uint32_t grip, std::
   sample.grip = grip;
   sample.number = number;
   sample.stamp_ns = message.stamp_ns;
-  sample.tick_ack = message.tick_ack;
   sample.time = message.time;
   sample.pose = message.pose;
   sample.twist = message.twist;
@@ -33,7 +32,7 @@ bool can_be_sent(const wire::PoseSample& s) {
   };
   return within(s.pose.position, wire::kMaxPosition) && within(s.twist.linear, wire::kMaxSpeed) &&
          within(s.twist.angular, wire::kMaxSpeed) && s.time >= -1.0 && s.time <= wire::kMaxTime &&
-         s.tick_ack <= wire::kMaxTick && std::abs(s.energy) <= wire::kMaxEnergy;
+         std::abs(s.energy) <= wire::kMaxEnergy;
 }
 
 }  // namespace

@@ -49,7 +49,6 @@ class HonestPeer::Line final : public EndpointEvents {
     sample.number = ++poses_sent;
     sample.stamp_ns = steady_now_ns();
     sample.time = time_;
-    sample.tick_ack = tick_;
     sample.pose = handle_;
     sample.engaged = wire::HoldsOn::kYes;
     wire::Poses poses;
@@ -96,7 +95,6 @@ class HonestPeer::Line final : public EndpointEvents {
     state_ns = steady_now_ns();
     poses_used = std::max(poses_used, m.pose_number);
     time_ = m.time;
-    tick_ = m.tick;
     for (const wire::GripEntry& grip : m.grips) {
       if (grip.grip == 0 && poses_used == 0) handle_ = grip.handle;  // where it is taken hold of
     }
@@ -160,7 +158,6 @@ class HonestPeer::Line final : public EndpointEvents {
   std::int64_t pose_due_ = 0;
   std::int64_t ask_due_ = 0;
   double time_ = 0.0;
-  std::uint64_t tick_ = 0;
   Pose handle_;
 };
 

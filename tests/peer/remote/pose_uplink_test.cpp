@@ -110,6 +110,31 @@ TEST(PoseUplink, AHostThatKnowsOfItIsToldThatAHandIsNotFeltYet) {
   }
 }
 
+/// An older host is sent a field that it never read, and reads all others as they are; so does a host of now from an older
+/// peer, who counts in it.
+TEST(PoseUplink, AnOlderHostIsSentWhatNobodyReads) {
+  Uplink kit(1);
+  kit.post(0, 1000, 0.25, true, true);
+  const wire::Capabilities older = ~wire::kNoTickAcks;
+  const wire::Poses poses = Uplink::read(kit.uplink.make({true}));
+  ASSERT_EQ(poses.samples.size(), 1u);
+  const wire::Bytes now = wire::datagram(poses), before = wire::datagram(poses, nullptr, older);
+  EXPECT_EQ(before.size(), now.size() + 1);
+  wire::Poses read;
+  EXPECT_FALSE(wire::decode(wire::ByteView(before).subspan(1), read, older));
+  ASSERT_EQ(read.samples.size(), 1u);
+  EXPECT_EQ(read.samples[0].pose.position, poses.samples[0].pose.position);
+  EXPECT_EQ(read.samples[0].time, poses.samples[0].time);
+  // Type, count, grip, number and stamp_ns come before it; 300 takes two bytes.
+  wire::Bytes counted = before;
+  const std::size_t at = 1 + 1 + 1 + 1 + 8;
+  ASSERT_EQ(counted[at], 0);
+  counted[at] = 0xAC;
+  counted.insert(counted.begin() + at + 1, 0x02);
+  EXPECT_FALSE(wire::decode(wire::ByteView(counted).subspan(1), read, older));
+  EXPECT_EQ(read.samples[0].time, poses.samples[0].time);
+}
+
 TEST(PoseUplink, WhatTheWireCannotCarryIsNotSent) {
   Uplink kit(1);
   kit.post(0, 1000, 1e9);
