@@ -9,8 +9,8 @@
 namespace slosh {
 namespace {
 
-constexpr unsigned kAtHost = 1, kAtPeer = 2, kAtPlay = 4;
-constexpr unsigned kAtBoth = kAtHost | kAtPeer, kAtAll = kAtBoth | kAtPlay;
+constexpr unsigned kAtHost = 1, kAtPeer = 2, kAtPlay = 4, kAtWatch = 8;
+constexpr unsigned kAtPeers = kAtPeer | kAtWatch, kAtBoth = kAtHost | kAtPeer, kAtAll = kAtBoth | kAtPlay;
 constexpr std::size_t kAny = 1000;  // words: the command's own rules say more
 constexpr std::size_t kHelpColumn = 31;
 
@@ -25,8 +25,8 @@ struct Command {
 };
 
 constexpr Command kCommands[] = {
-    {ConsoleVerb::kHelp, "help", kAtAll, 0, 0, nullptr, nullptr, nullptr},
-    {ConsoleVerb::kWho, "who", kAtBoth, 0, 0, nullptr, "who", "who is here and holds what"},
+    {ConsoleVerb::kHelp, "help", kAtAll | kAtWatch, 0, 0, nullptr, nullptr, nullptr},
+    {ConsoleVerb::kWho, "who", kAtBoth | kAtWatch, 0, 0, nullptr, "who", "who is here and holds what"},
     {ConsoleVerb::kLinks, "links", kAtHost, 0, 0, nullptr, "links",
      "every link: id, for whom, until when, used by"},
     {ConsoleVerb::kLink, "link", kAtHost, 0, kAny, nullptr, "link [NAME] [watch] [for 30m]",
@@ -56,11 +56,11 @@ constexpr Command kCommands[] = {
     {ConsoleVerb::kSet, "set", kAtAll, 0, kAny, nullptr, "set stiffness [GRIP] X",
      "of the hold on it: times the scene's, 0.05 to 4"},
     {ConsoleVerb::kStatus, "status", kAtHost, 0, 0, nullptr, "status", "how the world and the links do"},
-    {ConsoleVerb::kStatus, "status", kAtPeer, 0, 0, nullptr, "status", "how the network and the world do"},
+    {ConsoleVerb::kStatus, "status", kAtPeers, 0, 0, nullptr, "status", "how the network and the world do"},
     {ConsoleVerb::kStatus, "status", kAtPlay, 0, 0, nullptr, "status", "how the world does"},
     {ConsoleVerb::kQuit, "quit", kAtPlay, 0, 0, nullptr, "quit", "end the run"},
     {ConsoleVerb::kQuit, "quit", kAtHost, 0, 0, nullptr, "quit", "end the run for everybody"},
-    {ConsoleVerb::kQuit, "quit", kAtPeer, 0, 0, nullptr, "quit", "leave"},
+    {ConsoleVerb::kQuit, "quit", kAtPeers, 0, 0, nullptr, "quit", "leave"},
 };
 
 bool is_at(const Command& command, Console console) {
@@ -69,6 +69,8 @@ bool is_at(const Command& command, Console console) {
       return (command.where & kAtHost) != 0;
     case Console::kPeer:
       return (command.where & kAtPeer) != 0;
+    case Console::kWatch:
+      return (command.where & kAtWatch) != 0;
     case Console::kPlay:
       return (command.where & kAtPlay) != 0;
   }

@@ -33,6 +33,7 @@ enum class ConsoleVerb : std::uint8_t {
 enum class Console : std::uint8_t {
   kHost,
   kPeer,
+  kWatch,  ///< who looks on: a peer's commands but for what the host refuses them
   kPlay,  ///< a world in this process, with nobody else in it
 };
 

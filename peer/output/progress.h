@@ -18,6 +18,8 @@ class Progress {
   void phase(const std::string& name, const std::string& detail = {});
   /// `fraction` 0–1, or negative when it is not known.
   void update(double fraction, const std::string& text);
+  /// Ends the line that is kept up to date, where there is one: what follows is somebody else's.
+  void end() { end_line(); }
   /// A line of its own that stays, e.g. a choice that was made.
   void note(const std::string& text);
 

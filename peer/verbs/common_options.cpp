@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <cstdio>
+#include <filesystem>
 
 #include "peer/export/export_options.h"
 #include "peer/output/plot.h"
@@ -76,7 +77,14 @@ void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window) {
   verb.add_option("--view", options.view, "View of that display, by name (its first)");
   verb.add_option(
       "--environment", options.environment,
-      "Room that lights the scene and is mirrored: a Radiance picture (.hdr), or studio (one of our own with soft boxes)");
+      "Room that lights the scene and is mirrored: a Radiance picture (.hdr), or studio (one of our own with soft boxes)")
+      ->check(CLI::Validator(
+          [](std::string& room) {
+            std::error_code code;
+            const bool there = room.empty() || room == "studio" || std::filesystem::is_regular_file(room, code);
+            return there ? std::string() : "there is no file '" + room + "'";
+          },
+          ""));
   verb.add_option("--font-scale", options.font_scale, "Letters of the HUD, times their size")
       ->check(in_range(0.5, 4.0))
       ->capture_default_str();
@@ -113,11 +121,12 @@ void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window) {
   verb.add_flag("!--no-render", options.render, "No picture at all");
 }
 
-void add_headset_options(CLI::App& verb, ShowOptions& options) {
+void add_headset_options(CLI::App& verb, ShowOptions& options, bool has_hands) {
   CLI::Option* vr = verb.add_flag(
       "--vr", options.vr,
-      "In a headset, by OpenXR; beside it a window, where there is a display, shows the left eye.\n"
-      "Its controllers: --device xr-left --device xr-right");
+      std::string("In a headset, by OpenXR; beside it a window, where there is a display, shows the left eye") +
+          (has_hands ? ".\nIts controllers: --device xr-left --device xr-right" : ""));
+  vr->excludes("--no-render");
   verb.add_option("--vr-scale", options.headset.scale, "How many times as large as it is the world looks")
       ->check(in_range(0.1, 10.0))
       ->capture_default_str()

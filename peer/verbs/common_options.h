@@ -26,7 +26,7 @@ void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window);
 
 /// --measure, for a run that writes files.
 /// `--vr` and what goes with it.
-void add_headset_options(CLI::App& verb, ShowOptions& options);
+void add_headset_options(CLI::App& verb, ShowOptions& options, bool has_hands = true);
 CLI::Option* add_measure_option(CLI::App& verb, ShowOptions& options);
 
 /// --export and --export-rate, for a run that writes files.

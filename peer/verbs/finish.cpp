@@ -70,7 +70,7 @@ int finish_run(const Stage& stage, const ShowOptions& options, Progress& progres
       summary.problems.push_back(written.error().text());
     }
   }
-  progress.note("");
+  progress.end();
   std::printf("%s", in_words(summary).c_str());
   std::fflush(stdout);
   for (const std::string& problem : summary.problems) fail({"", problem, ""});

@@ -167,13 +167,13 @@ int run_host(const HostVerbOptions& options, HostReins* reins) {
   Progress progress;
   Result<HostedWorld> hosted = make_hosted_world(options, progress);
   if (!hosted) {
-    progress.note("");
+    progress.end();
     return fail(hosted.error());
   }
   catch_interrupts();
   Result<std::unique_ptr<HostedRun>> created = HostedRun::create(hosted.value(), options, reins);
   if (!created) {
-    progress.note("");
+    progress.end();
     return fail(created.error());
   }
   HostedRun& run = *created.value();

@@ -1,6 +1,7 @@
 // The verbs `scenes` and `plan`, and how every verb fails.
 #include <cstdio>
 #include <memory>
+#include <string_view>
 
 #include "net/text/clean.h"
 #include "peer/verbs/common_options.h"
@@ -36,7 +37,9 @@ int print_plan(const std::string& name, double spacing) {
   std::printf("%s%s\nThe numbers behind it\n%s", describe(plan).c_str(), picture_in_words(scene).c_str(),
               plan_numbers(scene, plan, count.fluid, count.surface).c_str());
   std::fflush(stdout);
-  std::printf("%s", step_cost_in_words(scene, plan, count.fluid + count.surface).c_str());
+  const Result<std::string> cost = step_cost_in_words(scene, plan, count.fluid + count.surface);
+  if (!cost) return fail({"a step", "cannot be taken: " + cost.error().text(), ""});
+  std::printf("%s", cost.value().c_str());
   return kExitOk;
 }
 
@@ -63,7 +66,7 @@ void add_plan(CLI::App& app, VerbRun& chosen) {
 int fail(const Error& error) {
   constexpr std::size_t kMost = 4000;
   std::string text = clean_lines(error.text(), kMost);
-  if (!text.empty() && text.back() != '.') text += '.';
+  if (!text.empty() && std::string_view(".?!").find(text.back()) == std::string_view::npos) text += '.';
   std::fprintf(stderr, "slosh: %s\n", text.c_str());
   return kExitFailed;
 }

@@ -50,7 +50,7 @@ constexpr const char* kJoinFiles =
     "place\n"
     "and your grips back, also after this program was ended and started again, within a minute.\n"
     "\n"
-    "While it runs, type in the terminal (who looks on is refused what changes the world):\n";
+    "While it runs, type in the terminal:\n";
 
 constexpr const char* kJoinEnd =
     "\n\n"
@@ -70,7 +70,7 @@ constexpr const char* kWatchFiles =
     "\n"
     "LINK is all that is needed: the host prints one for those who only look on.\n"
     "\n"
-    "While it runs, type in the terminal (who looks on is refused what changes the world):\n";
+    "While it runs, type in the terminal:\n";
 
 constexpr const char* kWatchEnd =
     "\n\n"
@@ -142,7 +142,7 @@ int join(JoinOptions options) {
   RemoteVisit visit(remote, connect_by(link.value(), key.value().identity));
   const Result<bool> came = wait_for_world(visit, progress);
   if (!came) {
-    progress.note("");
+    progress.end();
     const int signal_number = interrupted_by();
     if (signal_number == 0) return fail(came.error());
     fail(came.error());
@@ -214,9 +214,9 @@ void add(CLI::App& app, VerbRun& chosen, bool watch) {
   add_out_options(*verb, *o,
                   "Folder for the results (headless: out/<scene>-<name>, numbered; a window: none)");
   add_show_options(*verb, *o, true);
-  add_headset_options(*verb, *o);
+  add_headset_options(*verb, *o, !watch);
   verb->add_option("--key", o->key, "File with your key, made on first use (one for each person)");
-  verb->footer(std::string(kFiles) + (watch ? kWatchFiles : kJoinFiles) + console_help(Console::kPeer) +
+  verb->footer(std::string(kFiles) + (watch ? kWatchFiles : kJoinFiles) + console_help(watch ? Console::kWatch : Console::kPeer) +
                (watch ? kWatchEnd : kJoinEnd));
   verb->callback([&chosen, o] { chosen = [o] { return join(*o); }; });
 }

@@ -74,16 +74,16 @@ std::string plan_numbers(const Scene& scene, const Plan& plan, double fluid, dou
   return text;
 }
 
-std::string step_cost_in_words(const Scene& scene, const Plan& plan, double particles) {
+Result<std::string> step_cost_in_words(const Scene& scene, const Plan& plan, double particles) {
   const auto line = [&](double seconds, const char* how) {
     return format("a step          about %.3g ms %s, real time × %.2g\n", 1e3 * seconds, how,
                   plan.time_step / seconds);
   };
   if (particles <= kMostToStep) {
     const Result<SampledScene> sampled = sample_scene(scene, plan.spacing);
-    if (!sampled) return "a step          cannot be taken: " + sampled.error().text() + "\n";
+    if (!sampled) return sampled.error();
     Result<World> world = make_world(scene, sampled.value(), plan, {0, Backend::kCpu});
-    if (!world) return "a step          cannot be taken: " + world.error().text() + "\n";
+    if (!world) return world.error();
     return line(measure_step(world.value(), {}), "on this machine's cores, as the scene starts");
   }
   return line(particles * kStatedStepCost, "on one core of an ordinary machine, not measured");

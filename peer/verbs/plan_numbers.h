@@ -4,6 +4,7 @@
 #include <string>
 
 #include "scenes/scene.h"
+#include "sim/math/result.h"
 #include "sim/plan.h"
 
 namespace slosh {
@@ -24,7 +25,7 @@ std::string picture_in_words(const Scene& scene);
 constexpr double kMostToStep = 150000.0;
 
 /// What a step costs on this machine: of the scene as it starts, its hands where they are, all cores, no GPU.
-/// Above kMostToStep a stated rate. One line.
-std::string step_cost_in_words(const Scene& scene, const Plan& plan, double particles);
+/// Above kMostToStep a stated rate. One line. Errors: those of sampling it and of making its world.
+Result<std::string> step_cost_in_words(const Scene& scene, const Plan& plan, double particles);
 
 }  // namespace slosh

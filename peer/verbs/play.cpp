@@ -54,7 +54,7 @@ int play(PlayOptions options) {
   const bool headless = is_film(options, headset != nullptr, progress);
   Result<Prepared> prepared = prepare(options, headless, progress);
   if (!prepared) {
-    progress.note("");
+    progress.end();
     return fail(prepared.error());
   }
   RunSummary summary;

@@ -48,7 +48,7 @@ int replay(ReplayVerbOptions options) {
   Result<std::unique_ptr<keep::Replayer>> opened =
       keep::Replayer::open(options.file, {options.threads, *backend});
   if (!opened) {
-    progress.note("");
+    progress.end();
     return fail(opened.error());
   }
   keep::Replayer& replayer = *opened.value();

@@ -241,14 +241,14 @@ int report_error(const ReportOptions& options) {
   if (options.from.empty()) {
     if (const std::optional<Error> missing = no_backend(options)) return fail(*missing);
   }
-  const Result<std::filesystem::path> folder = report_folder(options, "error", kTable);
-  if (!folder) return fail(folder.error());
   std::vector<ErrorRow> rows;
   for (const std::string& file : options.from) {
     const Result<std::vector<ErrorRow>> read = report::read_errors(file);
     if (!read) return fail(read.error());
     rows.insert(rows.end(), read.value().begin(), read.value().end());
   }
+  const Result<std::filesystem::path> folder = report_folder(options, "error", kTable);
+  if (!folder) return fail(folder.error());
   catch_interrupts();
   const std::filesystem::path table = folder.value() / kTable;
   std::ofstream out(table);
@@ -269,7 +269,10 @@ int report_error(const ReportOptions& options) {
     }
   }
   if (const Result<bool> ran = run_jobs(jobs, out, table, progress); !ran) return fail(ran.error());
-  return write_up(rows, folder.value(), origin_line(options));
+  const int written = write_up(rows, folder.value(), origin_line(options));
+  const bool any = std::any_of(rows.begin(), rows.end(), [](const ErrorRow& row) { return row.refused.empty(); });
+  if (written != kExitOk || rows.empty() || any) return written;
+  return fail({"report error", "every run was refused", "Each line above says why"});
 }
 
 }  // namespace slosh

@@ -116,7 +116,7 @@ int report_figure(const ReportOptions& options, const FigureOptions& figure) {
                                                figure.plot, origin),
                                   folder.value() / (stem + "." + figure.plot));
   if (!drawn) return fail(drawn.error());
-  progress.note("");
+  progress.end();
   std::printf("%s\n%s.%s, .md and .csv are in %s\n", text.c_str(), stem.c_str(), figure.plot.c_str(),
               folder.value().c_str());
   return kExitOk;

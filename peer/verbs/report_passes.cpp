@@ -1,5 +1,6 @@
 // `slosh report passes SCENE`: what a scene's step costs, and what it would cost with what the plan left out.
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 
 #include "host/report/passes.h"
@@ -30,6 +31,17 @@ int report_passes(const ReportOptions& options, const std::string& scene_name, d
   if (spacing <= 0.0) spacing = scene.spacing > 0.0 ? scene.spacing : scene.spacing_max;
   const Result<SampledScene> sampled = sample_scene(scene, spacing);
   if (!sampled) return fail(sampled.error());
+  // Before anything is measured: what cannot be written in the end would have been measured for nothing.
+  std::error_code code;
+  const bool was_there = std::filesystem::exists(options.out, code);
+  if (!options.out.empty()) {
+    const Result<std::filesystem::path> folder = report_folder(options, "passes", kTable, Draws::kNoPlots);
+    if (!folder) return fail(folder.error());
+  }
+  const auto end_without = [&](int with) {
+    if (!was_there) std::filesystem::remove(options.out, code);  // it is empty
+    return with;
+  };
   std::printf("%s at %.3g mm, %s fluid particles; %s\n\n", scene.name.c_str(), 1e3 * spacing,
               grouped(sampled.value().fluid_positions.size()).c_str(), machine_line(options).c_str());
   std::string csv = "backend,what,step_ms,slower,bytes_a_particle,same_bits,off_m\n";
@@ -43,9 +55,9 @@ int report_passes(const ReportOptions& options, const std::string& scene_name, d
     try {
       rows = report::measure_passes(scene, sampled.value(), how);
     } catch (const report::Refused& refused) {
-      return fail(refused.error);
+      return end_without(fail(refused.error));
     } catch (const report::Stopped&) {
-      return kExitFailed;
+      return end_without(kExitFailed);
     }
     std::printf("%-32s %10s %10s %16s   after %d steps\n", backend_name(backend), "step, ms", "slower",
                 "bytes a particle", report::kComparedSteps);
@@ -58,12 +70,10 @@ int report_passes(const ReportOptions& options, const std::string& scene_name, d
     std::printf("\n");
   }
   if (options.out.empty()) return kExitOk;
-  const Result<std::filesystem::path> folder = report_folder(options, "passes", kTable, Draws::kNoPlots);
-  if (!folder) return fail(folder.error());
-  std::ofstream out(folder.value() / kTable);
+  const std::filesystem::path table = std::filesystem::path(options.out) / kTable;
+  std::ofstream out(table);
   out << csv;
-  if (!out.flush())
-    return fail({(folder.value() / kTable).string(), "cannot be written", "Is the disk full?"});
+  if (!out.flush()) return fail({table.string(), "cannot be written", "Is the disk full?"});
   return kExitOk;
 }
 

@@ -87,14 +87,14 @@ int report_stability(const ReportOptions& options) {
   if (options.from.empty()) {
     if (const std::optional<Error> missing = no_backend(options)) return fail(*missing);
   }
-  const Result<std::filesystem::path> folder = report_folder(options, "stability", kTable);
-  if (!folder) return fail(folder.error());
   std::vector<StressRow> rows;
   for (const std::string& file : options.from) {
     const Result<std::vector<StressRow>> read = report::read_stresses(file);
     if (!read) return fail(read.error());
     rows.insert(rows.end(), read.value().begin(), read.value().end());
   }
+  const Result<std::filesystem::path> folder = report_folder(options, "stability", kTable);
+  if (!folder) return fail(folder.error());
   catch_interrupts();
   const std::filesystem::path table = folder.value() / kTable;
   std::ofstream out(table);

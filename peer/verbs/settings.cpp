@@ -142,7 +142,8 @@ void add_settings(CLI::App& app, const SettingsFile& file, VerbRun& chosen) {
   CLI::App* verb =
       app.add_subcommand("settings", "Show what is set once for all, where it comes from, and where it goes");
   auto anew = std::make_shared<bool>(false);
-  verb->add_flag("--new", *anew, "Make the file, with every key in it behind a #, where there is none");
+  verb->add_flag("--new", *anew, "Make the file, with every key in it behind a #, where there is none")
+      ->disable_flag_override();
   verb->footer(kFooter);
   verb->callback(
       [&chosen, &file, anew] { chosen = [&file, anew] { return *anew ? make_new(file) : show(file); }; });
