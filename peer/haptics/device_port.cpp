@@ -46,12 +46,13 @@ Wrench scaled(double scale, const Wrench& w) {
   return {scale * w.force, scale * w.torque};
 }
 
-/// What a device was sent last and when: no thread that stood still, and none that it waits for, makes it jump.
+/// What a device was sent last and when: no thread that stood still, and none that it waits for, makes it
+/// jump.
 class Slew {
  public:
   explicit Slew(const DeviceLimits& limits) : limits_(limits) {}
-  /// As far towards `wanted` as the limits let it go in the shorter of this turn and the one before, a period at
-  /// least: what was missed is not made up for at once.
+  /// As far towards `wanted` as the limits let it go in the shorter of this turn and the one before, a period
+  /// at least: what was missed is not made up for at once.
   Wrench toward(const Wrench& wanted, std::int64_t now_ns) {
     const std::int64_t turn_ns = now_ns - now_ns_;
     const double most = std::max(to_seconds(std::min(turn_ns, turn_ns_)), kPeriod);

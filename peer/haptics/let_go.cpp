@@ -34,7 +34,8 @@ void wait_for_others(double seconds) noexcept {
   }
 }
 
-/// The default is back when this runs, and comes with the return: the fault happens again, or abort() goes on.
+/// The default is back when this runs, and comes with the return: the fault happens again, or abort() goes
+/// on.
 extern "C" void crash_without_force(int) {
   // This thread last: what it writes with may be what is broken, and a second fault ends the process.
   wait_for_others(kLetGoWithin);

@@ -1,4 +1,5 @@
-// A deadman button through the whole servo: no hold before it is pressed, no force once it is let go of, and no blow.
+// A deadman button through the whole servo: no hold before it is pressed, no force once it is let go of, and
+// no blow.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -94,7 +95,8 @@ TEST_F(Deadman, HoldsOnlyWhileItIsPressedAndStrikesNobody) {
     press(false);
     const double released = now_;
     run(1.0);
-    std::printf("zero %.0f ms after it was let go of, %.2f N at most from ms to ms\n", 1e3 * (last_felt_ + 0.001 - released), steepest_);
+    std::printf("zero %.0f ms after it was let go of, %.2f N at most from ms to ms\n",
+                1e3 * (last_felt_ + 0.001 - released), steepest_);
     EXPECT_LT(last_felt_ - released, 0.02) << "10 N at 2000 N/s, and a jerk";
     EXPECT_LE(steepest_, 1.001e-3 * kRate);
     EXPECT_FALSE(said_to_hold());

@@ -1,5 +1,5 @@
-// The device loop's tick asks nothing of the heap and takes no lock, whatever is in its hands: every call of this
-// program is counted (tests/support/thread_calls.h).
+// The device loop's tick asks nothing of the heap and takes no lock, whatever is in its hands: every call of
+// this program is counted (tests/support/thread_calls.h).
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -28,7 +28,8 @@ constexpr std::int64_t ns(int ms) {
   return std::int64_t{1'000'000} * ms;
 }
 
-/// What `ticks` ticks of the loop, a ms apart, ask for. `before`: of the rest of the world before each, uncounted.
+/// What `ticks` ticks of the loop, a ms apart, ask for. `before`: of the rest of the world before each,
+/// uncounted.
 ThreadCalls asked_for(Servo& servo, int ticks, const std::function<void(int)>& before) {
   ThreadCalls sum;
   for (int i = 0; i < ticks; ++i) {
@@ -103,12 +104,36 @@ TEST(NoAllocation, ALapseInOneTickIsFound) {
     std::function<void()> act;
     std::size_t allocations, frees, locks;
   };
-  for (const Lapse& lapse : {Lapse{[] { kept = new int(3); delete static_cast<int*>(kept); }, 1, 1, 0},
-                             Lapse{[] { kept = std::malloc(8); std::free(kept); }, 1, 1, 0},
-                             Lapse{[] { kept = std::calloc(1, 8); std::free(kept); }, 1, 1, 0},
-                             Lapse{[] { kept = std::realloc(nullptr, 8); std::free(kept); }, 1, 1, 0},
-                             Lapse{[] { kept = ::operator new(64, std::align_val_t(64)); ::operator delete(kept, std::align_val_t(64)); }, 1, 1, 0},
-                             Lapse{[] { kept = strdup("said"); std::free(kept); }, 1, 1, 0},
+  for (const Lapse& lapse : {Lapse{[] {
+                                     kept = new int(3);
+                                     delete static_cast<int*>(kept);
+                                   },
+                                   1, 1, 0},
+                             Lapse{[] {
+                                     kept = std::malloc(8);
+                                     std::free(kept);
+                                   },
+                                   1, 1, 0},
+                             Lapse{[] {
+                                     kept = std::calloc(1, 8);
+                                     std::free(kept);
+                                   },
+                                   1, 1, 0},
+                             Lapse{[] {
+                                     kept = std::realloc(nullptr, 8);
+                                     std::free(kept);
+                                   },
+                                   1, 1, 0},
+                             Lapse{[] {
+                                     kept = ::operator new(64, std::align_val_t(64));
+                                     ::operator delete(kept, std::align_val_t(64));
+                                   },
+                                   1, 1, 0},
+                             Lapse{[] {
+                                     kept = strdup("said");
+                                     std::free(kept);
+                                   },
+                                   1, 1, 0},
                              Lapse{[] { const std::lock_guard lock(mutex); }, 0, 0, 1}}) {
     test::ServoKit kit;
     ASSERT_TRUE(kit.servo->set_device(0, std::make_unique<LapsingDevice>(lapse.act)));
@@ -125,7 +150,8 @@ TEST(NoAllocation, ATickOfEveryKindThatTheLoopReadsItself) {
   std::vector<std::unique_ptr<Device>> devices;
   devices.push_back(script());
   devices.push_back(std::make_unique<MouseDevice>(std::make_shared<MouseTarget>(Pose{}), Pose{}));
-  devices.push_back(std::make_unique<OperatorDevice>(PoseTrack(a_way(), Pose{}), parse_operator("tight,tremor=0.0002").value()));
+  devices.push_back(std::make_unique<OperatorDevice>(PoseTrack(a_way(), Pose{}),
+                                                     parse_operator("tight,tremor=0.0002").value()));
   auto lent = std::make_shared<LentHand>(Pose{});
   devices.push_back(std::make_unique<LentDevice>(script(), lent));
   auto weak = std::make_unique<test::FakeDevice>();
@@ -155,7 +181,8 @@ TEST(NoAllocation, ATickOfEveryKindThatTheLoopReadsItself) {
   EXPECT_GT(arm.last_time, 0.9);
 }
 
-/// What does not happen in every tick: silence, a reset, a world that stands, another stiffness, a device let go of.
+/// What does not happen in every tick: silence, a reset, a world that stands, another stiffness, a device let
+/// go of.
 TEST(NoAllocation, ATickInWhichTheWorldIsSilentIsResetOrStands) {
   DeviceLimits limits = limits_without_a_hand();
   limits.engagement_time = 0.1;
@@ -164,7 +191,8 @@ TEST(NoAllocation, ATickInWhichTheWorldIsSilentIsResetOrStands) {
   kit.device->next.pose.position.x = 0.005;
   double most = 0.0, least = 1e9;
   const ThreadCalls calls = asked_for(*kit.servo, 3000, [&](int i) {
-    const double force = i > 2400 ? 0.0 : glm::length(kit.device->last.force);  // it is there until it is let go of
+    const double force =
+        i > 2400 ? 0.0 : glm::length(kit.device->last.force);  // it is there until it is let go of
     most = std::max(most, force);
     if (i > 1000 && i < 1500) least = std::min(least, force);
     if (i == 2000) kit.servo->set_stiffness(0, 0.5);
@@ -231,7 +259,8 @@ class CountedDevice final : public Device {
     std::atomic<std::size_t> reads{0};
     std::atomic<std::size_t> calls{0};
   };
-  CountedDevice(std::unique_ptr<Device> within, std::shared_ptr<Seen> seen) : within_(std::move(within)), seen_(std::move(seen)) {}
+  CountedDevice(std::unique_ptr<Device> within, std::shared_ptr<Seen> seen)
+      : within_(std::move(within)), seen_(std::move(seen)) {}
   DeviceReport read(const DeviceMoment& moment) override {
     if (++seen_->reads == 100) begin_ = thread_calls();
     if (seen_->reads > 100) seen_->calls = (thread_calls() - begin_).all();

@@ -16,7 +16,7 @@ namespace slosh::test {
 /// What the test and the device's thread share.
 class NotedWrites {
  public:
-  std::atomic<double> place{0.0};         ///< m, along x, that the device reads
+  std::atomic<double> place{0.0};  ///< m, along x, that the device reads
   std::atomic<std::uint32_t> buttons{0};
   std::atomic<bool> engaged{true};
 

@@ -84,7 +84,7 @@ class SwingingHost {
   }
 
  private:
-  static constexpr double kWord = 0.002;  // s
+  static constexpr double kWord = 0.002;              // s
   static constexpr double kBody = 0.8, kFluid = 2.0;  // kg
   static constexpr SloshMode kMode{0.86, kPace, 0.03};
 
@@ -94,7 +94,8 @@ class SwingingHost {
   }
   static double place(double t) {
     const double full = 2.0 * std::numbers::pi;
-    return 0.1 * ((1.0 - std::cos(0.9 * full * t)) / (0.9 * full) + (1.0 - std::cos(1.9 * full * t)) / (1.9 * full));
+    return 0.1 * ((1.0 - std::cos(0.9 * full * t)) / (0.9 * full) +
+                  (1.0 - std::cos(1.9 * full * t)) / (1.9 * full));
   }
 
   SloshState swings_;

@@ -1,4 +1,5 @@
-// A device loop that hangs: each device's own thread takes its force away, and nothing strikes the hand when it goes on.
+// A device loop that hangs: each device's own thread takes its force away, and nothing strikes the hand when
+// it goes on.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -88,7 +89,8 @@ TEST_F(Watchdog, ALoopThatHangsLeavesNoDeviceWithAForce) {
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
   const std::vector<WrittenForce> writes = noted_->since(hung_ns - to_nanoseconds(0.01));
   std::printf("zero %.0f ms after the loop hung; %.3f of what the device may be given at once\n",
-              1e3 * test::zero_after(writes, hung_ns), test::steepest(writes, test::quick_arm().max_force_rate));
+              1e3 * test::zero_after(writes, hung_ns),
+              test::steepest(writes, test::quick_arm().max_force_rate));
   // Whatever the machine does: what is written then is none, and as little as is left at its moment.
   for (const WrittenForce& write : writes) {
     const double age = to_seconds(write.ns - hung_ns);
@@ -97,14 +99,16 @@ TEST_F(Watchdog, ALoopThatHangsLeavesNoDeviceWithAForce) {
   EXPECT_LE(test::steepest(writes, test::quick_arm().max_force_rate), 1.0);
 }
 
-/// It hangs for as long as takes a half of the force, or for a second: what comes back begins with what is left.
+/// It hangs for as long as takes a half of the force, or for a second: what comes back begins with what is
+/// left.
 TEST_F(Watchdog, ALoopThatGoesOnAgainStrikesNoHand) {
   for (const double seconds : {0.05, 0.25, 1.0}) {
     const std::int64_t hung_ns = hang();
     std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
     const std::int64_t on_ns = steady_now_ns();
     hang_->hangs = false;
-    ASSERT_TRUE(comes([&] { return noted_->last() < -9.99 && steady_now_ns() > on_ns + to_nanoseconds(0.5); }));
+    ASSERT_TRUE(
+        comes([&] { return noted_->last() < -9.99 && steady_now_ns() > on_ns + to_nanoseconds(0.5); }));
     const std::vector<WrittenForce> writes = noted_->since(hung_ns - to_nanoseconds(0.01));
     double least = 10.0, soon = 0.0;
     for (const WrittenForce& write : writes) {
@@ -113,8 +117,10 @@ TEST_F(Watchdog, ALoopThatGoesOnAgainStrikesNoHand) {
       if (on && write.ns < on_ns + to_nanoseconds(0.02)) soon = std::max(soon, glm::length(write.force));
     }
     const double steepest = test::steepest(writes, test::quick_arm().max_force_rate);
-    std::printf("hung for %.2f s: down to %.1f N, %.1f N within 20 ms of its going on; %.3f of what the device may be given at once\n",
-                seconds, least, soon, steepest);
+    std::printf(
+        "hung for %.2f s: down to %.1f N, %.1f N within 20 ms of its going on; %.3f of what the device may "
+        "be given at once\n",
+        seconds, least, soon, steepest);
     EXPECT_LE(steepest, 1.0) << seconds;
     EXPECT_LT(soon, least + 1.0) << seconds << " s: it comes over 0.2 s";
   }

@@ -82,7 +82,8 @@ int pthread_cond_wait(pthread_cond_t* condition, pthread_mutex_t* mutex) {
   calls.locks += 1;
   return real(condition, mutex);
 }
-int pthread_cond_clockwait(pthread_cond_t* condition, pthread_mutex_t* mutex, clockid_t clock, const timespec* until) {
+int pthread_cond_clockwait(pthread_cond_t* condition, pthread_mutex_t* mutex, clockid_t clock,
+                           const timespec* until) {
   static auto* const real = next<decltype(pthread_cond_clockwait)>("pthread_cond_clockwait");
   calls.locks += 1;
   return real(condition, mutex, clock, until);

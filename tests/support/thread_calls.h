@@ -1,5 +1,6 @@
-// What the calling thread asks of the heap and of locks, counted: for a program that links slosh_test_thread_calls,
-// malloc and its kin (so operator new, strdup, what libraries do) and the locks of pthread are this room's.
+// What the calling thread asks of the heap and of locks, counted: for a program that links
+// slosh_test_thread_calls, malloc and its kin (so operator new, strdup, what libraries do) and the locks of
+// pthread are this room's.
 #pragma once
 
 #include <cstddef>

@@ -22,9 +22,9 @@ inline std::vector<WrittenForce> written_since(const std::vector<WrittenForce>& 
   return found;
 }
 
-/// The largest change from a write to the next over what a device of `rate` N/s and 1 kHz may be given at once: in the
-/// shorter of the times that it and the write before it took, a ms at least. A thread that stood still has no more to
-/// give for it.
+/// The largest change from a write to the next over what a device of `rate` N/s and 1 kHz may be given at
+/// once: in the shorter of the times that it and the write before it took, a ms at least. A thread that stood
+/// still has no more to give for it.
 inline double steepest(const std::vector<WrittenForce>& writes, double rate) {
   double most = 0.0;
   for (std::size_t i = 1; i < writes.size(); ++i) {

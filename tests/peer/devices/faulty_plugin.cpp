@@ -1,10 +1,9 @@
-// A plug-in with one fault, by what it is compiled with. What it does while it is held it does from when it is told to
-// (faulty_now), and says when that was and what it was sent.
+// A plug-in with one fault, by what it is compiled with. What it does while it is held it does from when it
+// is told to (faulty_now), and says when that was and what it was sent.
 #include <time.h>
 #include <unistd.h>
 
 #include <atomic>
-
 #include <cmath>
 #include <cstdio>
 #include <cstring>

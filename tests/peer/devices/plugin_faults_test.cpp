@@ -1,5 +1,5 @@
-// Plug-ins that go wrong, real libraries: each is contained and named, its hand is asked for no force after 400 ms, and
-// the other hand on the same loop goes on.
+// Plug-ins that go wrong, real libraries: each is contained and named, its hand is asked for no force after
+// 400 ms, and the other hand on the same loop goes on.
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 
@@ -149,7 +149,8 @@ TEST_P(FaultyWhileHeld, IsAskedForNoForceAfter400msAndStopsNoOtherHand) {
   // 1 kHz is what it has; half of that on a machine with other work.
   std::this_thread::sleep_for(std::chrono::milliseconds(600));
   const double rate = static_cast<double>(other_->writes - before) / to_seconds(steady_now_ns() - since_ns);
-  std::printf("asked for none %.0f ms after; %.2f N at most from ms to ms; the other hand at %.0f Hz\n", 1e3 * took, steepest_, rate);
+  std::printf("asked for none %.0f ms after; %.2f N at most from ms to ms; the other hand at %.0f Hz\n",
+              1e3 * took, steepest_, rate);
   // This thread looks each 2 ms, and the device had said its last up to a period and a turn before.
   EXPECT_LT(took, kSilent + 0.05);
   EXPECT_LE(steepest_, 1.001e-3 * limits_.max_force_rate);
@@ -166,20 +167,23 @@ TEST_P(FaultyWhileHeld, IsAskedForNoForceAfter400msAndStopsNoOtherHand) {
   loop_->stop();
   servo_->close_devices();  // returns
 }
-INSTANTIATE_TEST_SUITE_P(
-    , FaultyWhileHeld,
-    ::testing::Values(Case{"slosh_plugin_throws_in_read", "threw from read: the cable is out"},
-                      Case{"slosh_plugin_throws_in_write", "threw from write"},
-                      Case{"slosh_plugin_throws_in_move", "threw from move"},
-                      Case{"slosh_plugin_nan_force", "no force of the hand"},
-                      Case{"slosh_plugin_gone", "its device is gone"},
-                      Case{"slosh_plugin_nan_reading", "no number"}, Case{"slosh_plugin_blocks_in_read", nullptr},
-                      Case{"slosh_plugin_blocks_in_write", nullptr}, Case{"slosh_plugin_blocks_in_move", nullptr}),
-    short_name);
+INSTANTIATE_TEST_SUITE_P(, FaultyWhileHeld,
+                         ::testing::Values(Case{"slosh_plugin_throws_in_read",
+                                                "threw from read: the cable is out"},
+                                           Case{"slosh_plugin_throws_in_write", "threw from write"},
+                                           Case{"slosh_plugin_throws_in_move", "threw from move"},
+                                           Case{"slosh_plugin_nan_force", "no force of the hand"},
+                                           Case{"slosh_plugin_gone", "its device is gone"},
+                                           Case{"slosh_plugin_nan_reading", "no number"},
+                                           Case{"slosh_plugin_blocks_in_read", nullptr},
+                                           Case{"slosh_plugin_blocks_in_write", nullptr},
+                                           Case{"slosh_plugin_blocks_in_move", nullptr}),
+                         short_name);
 
 class FaultyAtItsEnd : public HeldPlugins, public ::testing::WithParamInterface<Case> {};
 
-/// Taken away while the loop runs: its hand has been given zero, the other hand goes on, and nobody waits for ever.
+/// Taken away while the loop runs: its hand has been given zero, the other hand goes on, and nobody waits for
+/// ever.
 TEST_P(FaultyAtItsEnd, IsGivenZeroAndStopsNoOtherHand) {
   const std::string name = GetParam().name;
   ASSERT_NO_FATAL_FAILURE(begin(name));
