@@ -155,8 +155,8 @@ TEST_F(Abuse, PosesThatAreNotFiniteOrHugeAreDropped) {
     sample.engaged = wire::HoldsOn::kYes;
     wire::Bytes bytes = wire::datagram(wire::Poses{{sample}});
     const auto value = static_cast<float>(x);
-    // The position follows type, count, grip, number, stamp, tick and time.
-    const std::size_t at = 2 + 1 + 1 + 8 + 1 + 8;
+    // The position follows type, count, grip, number, stamp and time.
+    const std::size_t at = 2 + 1 + 1 + 8 + 8;
     std::memcpy(&bytes[at], &value, sizeof value);
     good.raw_datagram(bytes);
   }
