@@ -119,15 +119,15 @@ INSTANTIATE_TEST_SUITE_P(
         // Thin and slow fluid yields (sim/README.md), and five spacings across the radius see that alone. The
         // report's own 7.1 mm, where 5 Pa·s is within a percent, take 17 s.
         std::vector<Known>{{"spin_up_all", 0.01, "torque, 2.0 Pa·s at 0.5 rad/s", 0.23},
-                           {"spin_up_all", 0.01, "torque, 5.0 Pa·s at 0.5 rad/s", 0.10},
-                           {"spin_up_all", 0.01, "torque, 2.0 Pa·s at 5.0 rad/s", 0.16},
-                           {"spin_up_all", 0.01, "torque, 5.0 Pa·s at 5.0 rad/s", 0.10}},
+                           {"spin_up_all", 0.01, "torque, 5.0 Pa·s at 0.5 rad/s", 0.12},
+                           {"spin_up_all", 0.01, "torque, 2.0 Pa·s at 5.0 rad/s", 0.18},
+                           {"spin_up_all", 0.01, "torque, 5.0 Pa·s at 5.0 rad/s", 0.12}},
         std::vector<Known>{{"couette", 0.00667, "torque", 0.06}},
-        std::vector<Known>{{"couette", 0.006, "torque", 0.05}},
-        std::vector<Known>{{"couette_start", 0.005, "torque at 20 ms", 0.095},
-                           {"couette_start", 0.005, "torque at 40 ms", 0.06},
-                           {"couette_start", 0.005, "torque at 80 ms", 0.06}},
-        std::vector<Known>{{"poiseuille", 0.005, "flow", 0.055}, {"poiseuille", 0.005, "flow at 40 ms", 0.03}},
+        std::vector<Known>{{"couette", 0.006, "torque", 0.04}},
+        std::vector<Known>{{"couette_start", 0.005, "torque at 20 ms", 0.08},
+                           {"couette_start", 0.005, "torque at 40 ms", 0.03},
+                           {"couette_start", 0.005, "torque at 80 ms", 0.03}},
+        std::vector<Known>{{"poiseuille", 0.005, "flow", 0.025}, {"poiseuille", 0.005, "flow at 40 ms", 0.03}},
         // What is slow yields (sim/README.md): 42 % too little is left of it, and walls have bumps.
         std::vector<Known>{{"taylor_green", 0.005, "rate of decay", 0.14},
                            {"taylor_green", 0.005, "left of 2 cm/s after a decay's time", 0.32}},
@@ -135,19 +135,19 @@ INSTANTIATE_TEST_SUITE_P(
                            {"smooth_glass", 0.005, "kept, 2 cm/s at the rim", 0.40}},
         // A ball of 1.5 and 2 spacings. It meets particle by particle what drags it now, so a stroke's halves
         // differ more (0.03 held where it slid through).
-        std::vector<Known>{{"stokes", 0.008, "drag", 0.05}, {"stokes", 0.008, "drift over a stroke", 0.02}},
-        std::vector<Known>{{"stokes", 0.006, "drag", 0.06}, {"stokes", 0.006, "drift over a stroke", 0.02}},
+        std::vector<Known>{{"stokes", 0.008, "drag", 0.06}, {"stokes", 0.008, "drift over a stroke", 0.02}},
+        std::vector<Known>{{"stokes", 0.006, "drag", 0.055}, {"stokes", 0.006, "drift over a stroke", 0.02}},
         // -4.7 % was of honey that had not settled yet: it still sagged around the ball.
         std::vector<Known>{{"stokes_honey", 0.008, "drag", 0.09},
                            {"stokes_honey", 0.008, "drift over a stroke", 0.135}},
         std::vector<Known>{{"stokes_honey", 0.006, "drag", 0.075}},
         // +1 to +5 %. Before thick fluid settled as thin fluid does, -4 % at 50 and -31 % at 1000 Pa·s.
-        std::vector<Known>{{"turned_ball", 0.008, "torque, 5 Pa·s, 0.01 of the density", 0.09},
-                           {"turned_ball", 0.008, "torque, 5 Pa·s, 20 of the density", 0.09},
-                           {"turned_ball", 0.008, "torque, 50 Pa·s, 0.01 of the density", 0.065},
-                           {"turned_ball", 0.008, "torque, 50 Pa·s, 20 of the density", 0.065},
-                           {"turned_ball", 0.008, "torque, 1000 Pa·s, 0.01 of the density", 0.055},
-                           {"turned_ball", 0.008, "torque, 1000 Pa·s, 20 of the density", 0.055}},
+        std::vector<Known>{{"turned_ball", 0.008, "torque, 5 Pa·s, 0.01 of the density", 0.075},
+                           {"turned_ball", 0.008, "torque, 5 Pa·s, 20 of the density", 0.075},
+                           {"turned_ball", 0.008, "torque, 50 Pa·s, 0.01 of the density", 0.055},
+                           {"turned_ball", 0.008, "torque, 50 Pa·s, 20 of the density", 0.055},
+                           {"turned_ball", 0.008, "torque, 1000 Pa·s, 0.01 of the density", 0.045},
+                           {"turned_ball", 0.008, "torque, 1000 Pa·s, 20 of the density", 0.045}},
         std::vector<Known>{{"slow_ball", 0.006, "force, moving", 0.02},
                            {"slow_ball", 0.006, "force left 0.9 s after", 0.006}},
         // Films are behind potential flow by as much as they are behind these.
