@@ -86,12 +86,12 @@ struct Apart {
 /// in whole numbers, but where the surface is nearer to the back: by the quick ways that is so in 76 of 24
 /// 759 pixels that are half a millimetre apart.
 constexpr Apart kBySoftware{1e-4, 1e-4, 1e-4, 3.5e-3, kPictures};
-/// What an H200 was allowed when it put splats' corners on 256ths of a pixel and their discs with them; since
-/// splat.vert puts them there, it may have less. All of what thickness differs by is the sum of chords, in
-/// half floats there, in whole numbers here, and so is most of what the pictures do.
-constexpr Apart kByChip{6e-3, 2.6e-2, 2.5e-3, 7e-2, {0.07, 3e-3}};
+/// A chip puts corners on 256ths of a pixel; splat.vert puts them there first, so that disc and corners
+/// agree. All of what thickness differs by is the sum of chords, in half floats there, in whole numbers here,
+/// and so is most of what the pictures do.
+constexpr Apart kByChip{3e-4, 6e-4, 3e-4, 7e-2, {0.07, 3e-3}};
 /// Without the sum of chords (RenderOptions::layers).
-constexpr Apart kByChipWithoutChords{6e-3, 2.6e-2, 2.5e-3, 1.5e-3, kPictures};
+constexpr Apart kByChipWithoutChords{3e-4, 6e-4, 3e-4, 1.5e-3, kPictures};
 
 void expect_same(const RenderOptions& options, Context& context, const Apart& most) {
   const Drawn by_fragments = draw(context, options, PixelPasses::kFragments);
