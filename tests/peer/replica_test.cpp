@@ -274,7 +274,7 @@ TEST(FluidLoad, ANumberThatIsNoneInAnyFieldLeavesNothing) {
     FluidLoad load;
     load.wrench[1] = -3.0;
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-    std::memcpy(&(load.*row.field), &kNone, sizeof kNone);
+    std::memcpy(static_cast<void*>(&(load.*row.field)), &kNone, sizeof kNone);
     EXPECT_EQ(made_safe(load).wrench[1], 0.0) << fields;
     fields += 1;
   });
