@@ -109,6 +109,25 @@ class ContactLost : public test::HostedTest {
     EXPECT_LE(steep, 1.0 + kRounding) << name;
     EXPECT_GT(to_seconds(writes[full].ns - from_ns), 0.2) << name << ": it comes over two seconds";
   }
+  /// Neither hand is left with a force by that.
+  void kill(Process& part) const {
+    const std::int64_t fault_ns = steady_now_ns();
+    part.signal(SIGKILL);
+    std::this_thread::sleep_for(std::chrono::seconds(2));
+    for (const char* name : {"ana", "ben"}) expect_silenced(name, fault_ns, steady_now_ns());
+  }
+  /// Nor by that, and both carry again when it goes on.
+  void stop_for(Process& part, double seconds) const {
+    const std::int64_t fault_ns = steady_now_ns();
+    part.signal(SIGSTOP);
+    std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+    const std::int64_t on_ns = steady_now_ns();
+    part.signal(SIGCONT);
+    for (const char* name : {"ana", "ben"}) {
+      expect_silenced(name, fault_ns, on_ns);
+      expect_back(name, on_ns);
+    }
+  }
 
   std::unique_ptr<Process> host_, wire_;
   std::vector<std::unique_ptr<Process>> people_;
@@ -116,48 +135,23 @@ class ContactLost : public test::HostedTest {
 
 TEST_F(ContactLost, AHostThatIsKilled) {
   begin();
-  if (HasFatalFailure()) return;
-  const std::int64_t fault_ns = steady_now_ns();
-  host_->signal(SIGKILL);
-  std::this_thread::sleep_for(std::chrono::seconds(2));
-  for (const char* name : {"ana", "ben"}) expect_silenced(name, fault_ns, steady_now_ns());
+  if (!HasFatalFailure()) kill(*host_);
 }
 
 TEST_F(ContactLost, ALinkThatIsCutForGood) {
   begin();
-  if (HasFatalFailure()) return;
-  const std::int64_t fault_ns = steady_now_ns();
-  wire_->signal(SIGKILL);  // its port is closed: what peers send is refused
-  std::this_thread::sleep_for(std::chrono::seconds(2));
-  for (const char* name : {"ana", "ben"}) expect_silenced(name, fault_ns, steady_now_ns());
+  if (!HasFatalFailure()) kill(*wire_);  // its port is closed: what peers send is refused
 }
 
 TEST_F(ContactLost, AHostThatStandsStillForTenSeconds) {
   begin();
-  if (HasFatalFailure()) return;
-  const std::int64_t fault_ns = steady_now_ns();
-  host_->signal(SIGSTOP);
-  std::this_thread::sleep_for(std::chrono::duration<double>(kStopped));
-  const std::int64_t on_ns = steady_now_ns();
-  host_->signal(SIGCONT);
-  for (const char* name : {"ana", "ben"}) {
-    expect_silenced(name, fault_ns, on_ns);
-    expect_back(name, on_ns);
-  }
+  if (!HasFatalFailure()) stop_for(*host_, kStopped);
 }
 
 TEST_F(ContactLost, ALinkThatIsCutAndMended) {
   begin();
-  if (HasFatalFailure()) return;
-  const std::int64_t fault_ns = steady_now_ns();
-  wire_->signal(SIGSTOP);  // nothing passes, and what waits in it comes at once when it goes on
-  std::this_thread::sleep_for(std::chrono::seconds(4));
-  const std::int64_t on_ns = steady_now_ns();
-  wire_->signal(SIGCONT);
-  for (const char* name : {"ana", "ben"}) {
-    expect_silenced(name, fault_ns, on_ns);
-    expect_back(name, on_ns);
-  }
+  // Nothing passes, and what waits in it comes at once when it goes on.
+  if (!HasFatalFailure()) stop_for(*wire_, 4.0);
 }
 
 /// Nobody can command the device of a process that does not run: it keeps what it was sent until its

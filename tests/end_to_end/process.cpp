@@ -16,6 +16,10 @@ std::filesystem::path test_folder() {
          (std::string(info->test_suite_name()) + "." + info->name());
 }
 
+void empty_folder() {
+  std::filesystem::remove_all(test_folder());
+}
+
 Outcome slosh(const std::vector<std::string>& arguments) {
   std::vector<std::string> all{program()};
   all.insert(all.end(), arguments.begin(), arguments.end());

@@ -13,6 +13,8 @@ namespace slosh::test {
 Outcome slosh(const std::vector<std::string>& arguments);
 /// That folder.
 std::filesystem::path test_folder();
+/// Removes it: what an earlier run of the same test left there would be refused, as it should be.
+void empty_folder();
 /// A copy of this process's build of the program.
 std::string program();
 

@@ -1,12 +1,10 @@
-// `slosh report coupling`: every table can be read and has the answers that are known beforehand, every picture
-// is one; and over the real link.
+// `slosh report coupling`: every table can be read and has the answers that are known beforehand, every
+// picture is one; and over the real link.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <numbers>
 #include <set>
@@ -20,19 +18,9 @@ namespace {
 
 using test::Outcome;
 
-std::string text_of(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-/// What an earlier run of the same test left there would be refused, as it should be.
-void empty_folder() {
-  std::filesystem::remove_all(test::test_folder());
-}
-
 /// Rows by the names over them; every row has as many fields.
 std::vector<std::map<std::string, std::string>> rows_of(const std::filesystem::path& file) {
-  std::istringstream lines(text_of(file));
+  std::istringstream lines(test::read_text(file));
   std::string line;
   const auto split = [](const std::string& text) {
     std::vector<std::string> fields;
@@ -71,8 +59,8 @@ void check_cells(const Table& cells) {
       EXPECT_LE(number(row, "generated_mj"), 1.0) << what;
     }
     if (row.at("case").rfind("alone", 0) != 0) continue;
-    // The published scheme beside its host is steady, and what it feels is right; over the network a spring of
-    // 1000 N/m in a hand of 30 N·s/m is not.
+    // The published scheme beside its host is steady, and what it feels is right; over the network a spring
+    // of 1000 N/m in a hand of 30 N·s/m is not.
     if (row.at("scheme") == "host force" && row.at("case") == "alone; tight") {
       EXPECT_EQ(row.at("verdict"), trip == 0.0 ? "stable" : "diverged") << what;
       if (trip == 0.0) {
@@ -97,7 +85,8 @@ void check_bounds(const Table& bounds) {
     const double own = row.at("grip") == "tight" ? 30.0 : 6.0;
     const double theory = 1e3 * ((own + 0.03 * stiffness) / stiffness - 0.0005);
     EXPECT_NEAR(number(row, "gil_hulin_ms"), theory, 0.1);
-    // Theory's is a bound below what is steady for a spring at the peer; the replica is beyond what is looked at.
+    // Theory's is a bound below what is steady for a spring at the peer; the replica is beyond what is looked
+    // at.
     if (row.at("scheme") == "peer spring") {
       EXPECT_GE(number(row, "steady_round_trip_ms"), theory);
     }
@@ -107,8 +96,9 @@ void check_bounds(const Table& bounds) {
   }
 }
 
-/// What one hand is rendered of a rigid body: spring and damper in line with the mass, and with how the body turns
-/// about its own middle, 5 cm under the grip. Between 0.3 and 10 Hz the arm turns with it, which this has not.
+/// What one hand is rendered of a rigid body: spring and damper in line with the mass, and with how the body
+/// turns about its own middle, 5 cm under the grip. Between 0.3 and 10 Hz the arm turns with it, which this
+/// has not.
 void check_transparency(const Table& rows) {
   using Complex = std::complex<double>;
   constexpr double kStiffness = 1000.0, kDamping = 30.0, kTurning = 10.0, kTurningDamping = 0.3, kMass = 2.5,
@@ -122,8 +112,9 @@ void check_transparency(const Table& rows) {
     const Complex z = 1.0 / (s / (kStiffness + kDamping * s) + 1.0 / (kMass * s) +
                              kArm * kArm * s / (kInertia * s * s + kTurning + kTurningDamping * s));
     for (const char* which : {"commanded", "rendered"}) {
-      const Complex is = std::polar(number(row, (std::string(which) + "_n_s_m").c_str()),
-                                    std::numbers::pi / 180.0 * number(row, (std::string(which) + "_phase_deg").c_str()));
+      const Complex is =
+          std::polar(number(row, (std::string(which) + "_n_s_m").c_str()),
+                     std::numbers::pi / 180.0 * number(row, (std::string(which) + "_phase_deg").c_str()));
       EXPECT_LE(std::abs(is - z) / std::abs(z), 0.03) << which << " at " << frequency << " Hz";
     }
     ++looked_at;
@@ -131,7 +122,8 @@ void check_transparency(const Table& rows) {
   EXPECT_EQ(looked_at, 2 * 7) << "tones at two round trips";
 }
 
-/// A syrup that the host steps 60 times a second: its force held has a tone at 60 Hz, a replica with its model has none.
+/// A syrup that the host steps 60 times a second: its force held has a tone at 60 Hz, a replica with its
+/// model has none.
 void check_spectrum(const Table& rows) {
   std::map<std::string, double> most, tone;
   for (const auto& row : rows) {
@@ -148,7 +140,7 @@ void check_spectrum(const Table& rows) {
 }
 
 TEST(CouplingReport, ItsTablesHaveTheAnswersThatAreKnownAndItsPicturesCanBeLookedAt) {
-  empty_folder();
+  test::empty_folder();
   const Outcome ran = test::slosh({"report", "coupling", "--quick", "--out", "c"});
   ASSERT_EQ(ran.code, 0) << ran.err;
   const std::filesystem::path folder = test::test_folder() / "c";
@@ -175,7 +167,10 @@ TEST(CouplingReport, ItsTablesHaveTheAnswersThatAreKnownAndItsPicturesCanBeLooke
     const Image map = read_png(folder / name).value();
     std::size_t pixels = 0;
     for (std::size_t i = 0; i + 3 < map.rgba.size(); i += 4)
-      pixels += static_cast<std::uint32_t>(map.rgba[i] << 16 | map.rgba[i + 1] << 8 | map.rgba[i + 2]) == colour ? 1 : 0;
+      pixels +=
+          static_cast<std::uint32_t>(map.rgba[i] << 16 | map.rgba[i + 1] << 8 | map.rgba[i + 2]) == colour
+              ? 1
+              : 0;
     return pixels;
   };
   constexpr std::uint32_t kStable = 0x3a9d5d, kDiverged = 0xc8322b;
@@ -184,11 +179,11 @@ TEST(CouplingReport, ItsTablesHaveTheAnswersThatAreKnownAndItsPicturesCanBeLooke
 }
 
 TEST(CouplingReportOverTheLink, HasTwoPeoplesRowsACase) {
-  empty_folder();
+  test::empty_folder();
   const Outcome ran = test::slosh({"report", "coupling", "--link", "--quick", "--out", "link"});
   if (ran.err.find("network namespaces: cannot be made here") != std::string::npos) GTEST_SKIP() << ran.err;
   ASSERT_EQ(ran.code, 0) << ran.err;
-  std::istringstream table(text_of(test::test_folder() / "link" / "coupling_link.csv"));
+  std::istringstream table(test::read_text(test::test_folder() / "link" / "coupling_link.csv"));
   std::string line;
   std::getline(table, line);
   EXPECT_EQ(line.find("scheme,round_trip_ms,"), 0u) << line;
@@ -204,12 +199,12 @@ TEST(CouplingReportOverTheLink, HasTwoPeoplesRowsACase) {
     EXPECT_LT(std::stod(fields[10]), 62.4) << "N, twice what the bucket weighs: " << line;
   }
   EXPECT_EQ(rows, 4) << "two people, at no round trip and at 200 ms";
-  EXPECT_GT(text_of(test::test_folder() / "link" / "coupling_link.png").size(), 5000u);
+  EXPECT_GT(test::read_text(test::test_folder() / "link" / "coupling_link.png").size(), 5000u);
   EXPECT_TRUE(std::filesystem::exists(test::test_folder() / "link" / "link_1" / "ana" / "wrenches.csv"));
 }
 
 TEST(CouplingReportOverTheLink, RefusesWhatIsOfVirtualTime) {
-  empty_folder();
+  test::empty_folder();
   const Outcome resumed = test::slosh({"report", "coupling", "--link", "--resume", "--out", "link"});
   EXPECT_EQ(resumed.code, 1);
   EXPECT_NE(resumed.err.find("--resume: is not for --link"), std::string::npos) << resumed.err;

@@ -2,8 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <set>
 #include <sstream>
 
@@ -15,40 +13,30 @@ namespace {
 
 using test::Outcome;
 
-std::string text_of(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-/// What an earlier run of the same test left there would be refused, as it should be.
-void empty_folder() {
-  std::filesystem::remove_all(test::test_folder());
-}
-
 TEST(Report, OfErrorsWritesRowsATableAndPictures) {
-  empty_folder();
+  test::empty_folder();
   const Outcome ran = test::slosh({"report", "error", "--quick", "--case", "bounce", "--case", "slope",
                                    "--model", "corrected", "--out", "first"});
   ASSERT_EQ(ran.code, 0) << ran.err;
   const std::filesystem::path first = test::test_folder() / "first";
-  const std::string rows = text_of(first / "errors.csv");
+  const std::string rows = test::read_text(first / "errors.csv");
   EXPECT_NE(rows.find("\nbounce,rebound,m,1,corrected,cpu"), std::string::npos) << rows;
   EXPECT_NE(rows.find("\nslope,slope,"), std::string::npos) << rows;
   for (const char* file : {"errors.md", "errors.png", "bounce-rebound.png", "slope-slope.png"})
-    EXPECT_GT(text_of(first / file).size(), 100u) << file;
+    EXPECT_GT(test::read_text(first / file).size(), 100u) << file;
   // A report that is there is not lost, and an earlier one's rows can be drawn again.
   const Outcome again =
       test::slosh({"report", "error", "--quick", "--case", "bounce", "--out", first.string()});
   EXPECT_EQ(again.code, 1);
   EXPECT_NE(again.err.find("--overwrite"), std::string::npos) << again.err;
-  EXPECT_EQ(text_of(first / "errors.csv"), rows);
+  EXPECT_EQ(test::read_text(first / "errors.csv"), rows);
 }
 
 TEST(Report, OfErrorsDrawsEarlierRowsAgain) {
-  empty_folder();
+  test::empty_folder();
   ASSERT_EQ(test::slosh({"report", "error", "--quick", "--case", "bounce", "--out", "one"}).code, 0);
   const std::filesystem::path folder = test::test_folder();
-  const std::string one = text_of(folder / "one" / "errors.csv");
+  const std::string one = test::read_text(folder / "one" / "errors.csv");
   std::filesystem::copy_file(folder / "one" / "errors.csv", folder.parent_path() / "one-errors.csv",
                              std::filesystem::copy_options::overwrite_existing);
   const std::string from = (folder.parent_path() / "one-errors.csv").string();
@@ -61,7 +49,8 @@ TEST(Report, OfErrorsDrawsEarlierRowsAgain) {
     for (std::string line; std::getline(lines, line);) rows.insert(line.substr(0, line.find(",0.")));
     return rows;
   };
-  const auto before = rows_of(one), after = rows_of(text_of(test::test_folder() / "both" / "errors.csv"));
+  const auto before = rows_of(one),
+             after = rows_of(test::read_text(test::test_folder() / "both" / "errors.csv"));
   ASSERT_FALSE(before.empty());
   EXPECT_EQ(after.size(), 2 * before.size());
   EXPECT_EQ(both.err.find("measuring"), std::string::npos) << both.err;
@@ -69,16 +58,16 @@ TEST(Report, OfErrorsDrawsEarlierRowsAgain) {
 }
 
 TEST(Report, OfStabilityWritesVerdictsAndAMap) {
-  empty_folder();
+  test::empty_folder();
   const Outcome ran =
       test::slosh({"report", "stability", "--case", "viscosity_100000", "--case", "bullet", "--out", "s"});
   ASSERT_EQ(ran.code, 0) << ran.err;
   const std::filesystem::path folder = test::test_folder() / "s";
-  const std::string rows = text_of(folder / "stability.csv");
+  const std::string rows = test::read_text(folder / "stability.csv");
   EXPECT_NE(rows.find("viscosity_100000,corrected,cpu,ran true"), std::string::npos) << rows;
   EXPECT_NE(rows.find("viscosity_100000,paper,cpu,refused"), std::string::npos) << rows;
   EXPECT_NE(rows.find("bullet,corrected,cpu,ran true"), std::string::npos) << rows;
-  EXPECT_GT(text_of(folder / "stability.png").size(), 1000u);
+  EXPECT_GT(test::read_text(folder / "stability.png").size(), 1000u);
   // An earlier one's rows are drawn again, and nothing runs.
   const std::string from = (folder.parent_path() / "s-rows.csv").string();
   std::filesystem::copy_file(folder / "stability.csv", from,
@@ -87,28 +76,29 @@ TEST(Report, OfStabilityWritesVerdictsAndAMap) {
       test::slosh({"report", "stability", "--from", from, "--from", from, "--out", "again"});
   ASSERT_EQ(again.code, 0) << again.err;
   EXPECT_EQ(again.err.find("measuring"), std::string::npos) << again.err;
-  EXPECT_EQ(text_of(test::test_folder() / "again" / "stability.csv"),
+  EXPECT_EQ(test::read_text(test::test_folder() / "again" / "stability.csv"),
             rows + rows.substr(rows.find('\n') + 1));
-  EXPECT_GT(text_of(test::test_folder() / "again" / "stability.png").size(), 1000u);
+  EXPECT_GT(test::read_text(test::test_folder() / "again" / "stability.png").size(), 1000u);
   const Outcome wrong = test::slosh({"report", "error", "--from", from, "--out", "wrong"});
   EXPECT_EQ(wrong.code, 1);
   EXPECT_NE(wrong.err.find("slosh report error"), std::string::npos) << wrong.err;
 }
 
 TEST(Report, OfPassesNamesWhatWasLeftOut) {
-  empty_folder();
+  test::empty_folder();
   const Outcome ran = test::slosh({"report", "passes", "pool", "--quick", "--out", "p"});
   ASSERT_EQ(ran.code, 0) << ran.err;
   EXPECT_NE(ran.out.find("as planned"), std::string::npos) << ran.out;
   EXPECT_NE(ran.out.find("with pair_viscosity"), std::string::npos) << ran.out;
-  EXPECT_NE(text_of(test::test_folder() / "p" / "passes.csv").find("\ncpu,as planned,"), std::string::npos);
+  EXPECT_NE(test::read_text(test::test_folder() / "p" / "passes.csv").find("\ncpu,as planned,"),
+            std::string::npos);
 }
 
 TEST(Report, OfPicturesComparesSurfaces) {
-  empty_folder();
+  test::empty_folder();
   const Outcome ran = test::slosh({"report", "picture", "--quick", "--out", "p"});
   ASSERT_EQ(ran.code, 0) << ran.err;
-  const std::string table = text_of(test::test_folder() / "p" / "picture.md");
+  const std::string table = test::read_text(test::test_folder() / "p" / "picture.md");
   // A row a surface: its name, then the mean error of its normals on the pool, degrees.
   const auto degrees = [&](const std::string& name) {
     const std::size_t at = table.find("| " + name + " | ");
@@ -149,19 +139,22 @@ TEST(Report, BadRequestsSayWhatThereIs) {
 }
 
 TEST(Report, AFigureOfThePaperIsDrawnAndJudgedByThePapersWords) {
-  empty_folder();
+  test::empty_folder();
   const Outcome ran = test::slosh({"report", "figure", "9", "--out", "nine"});
   ASSERT_EQ(ran.code, 0) << ran.err;
   const std::filesystem::path nine = test::test_folder() / "nine";
-  const std::string words = text_of(nine / "figure-9.md");
+  const std::string words = test::read_text(nine / "figure-9.md");
   EXPECT_EQ(words, ran.out.substr(0, words.size()));
   EXPECT_NE(words.find("slosh report figure 9 --spacing 0.012"), std::string::npos) << "to be run again";
-  EXPECT_NE(words.find("**holds**: \u201Cweight shifts from the bowl to the pan"), std::string::npos) << words;
-  EXPECT_NE(words.find("**holds**: \u201Cthe bowl is first tilted (torque peak)"), std::string::npos) << words;
+  EXPECT_NE(words.find("**holds**: \u201Cweight shifts from the bowl to the pan"), std::string::npos)
+      << words;
+  EXPECT_NE(words.find("**holds**: \u201Cthe bowl is first tilted (torque peak)"), std::string::npos)
+      << words;
   EXPECT_EQ(words.find("does not hold"), std::string::npos) << words;
-  EXPECT_GT(text_of(nine / "figure-9.png").size(), 10000u);
-  EXPECT_GT(text_of(nine / "figure-9.csv").size(), 100000u);
-  EXPECT_EQ(test::slosh({"report", "figure", "9", "--out", "nine"}).code, 1) << "a figure that is there is not lost";
+  EXPECT_GT(test::read_text(nine / "figure-9.png").size(), 10000u);
+  EXPECT_GT(test::read_text(nine / "figure-9.csv").size(), 100000u);
+  EXPECT_EQ(test::slosh({"report", "figure", "9", "--out", "nine"}).code, 1)
+      << "a figure that is there is not lost";
   EXPECT_EQ(test::slosh({"report", "figure", "7"}).code, 2);
 }
 

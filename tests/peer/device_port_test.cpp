@@ -13,16 +13,18 @@
 
 #include "peer/haptics/device_loop.h"
 #include "peer/verbs/hand_trouble.h"
-#include "servo_kit.h"
+#include "other_hand.h"
 
 namespace slosh {
 namespace {
 
+using test::kForce;
+using test::kOff;
+using test::OtherDevice;
+using test::OtherHand;
 using test::ServoKit;
 
-constexpr double kOff = 0.01;     // m that every hand is from its grip,
-constexpr double kForce = -10.0;  // N for that
-constexpr int kOnTheGrip = 300;   // readings for which it is there, so that it takes hold
+constexpr int kOnTheGrip = 300;  // readings for which it is there, so that it takes hold
 
 /// What the test and a device's thread share.
 struct Gate {
@@ -78,38 +80,6 @@ class WaitingDevice final : public Device {
   int reads_ = 0;
 };
 
-/// Another hand, on the loop itself, and the world that both hold.
-struct OtherHand {
-  std::atomic<std::uint64_t> writes{0};
-  std::atomic<double> least{0.0};
-  std::atomic<double> most{-1e9};
-};
-class OtherDevice final : public Device {
- public:
-  OtherDevice(std::shared_ptr<OtherHand> seen, Channel& channel)
-      : seen_(std::move(seen)), channel_(channel) {}
-  DeviceReport read(const DeviceMoment&) override {
-    reads_ += 1;
-    test::publish_ahead(channel_, reads_);
-    DeviceReport report;
-    report.pose.position.x = reads_ > kOnTheGrip ? kOff : 0.0;
-    return report;
-  }
-  void write(const Wrench& on_hand) override {
-    seen_->least = std::min(seen_->least.load(), on_hand.force.x);
-    seen_->most = std::max(seen_->most.load(), on_hand.force.x);
-    seen_->writes += 1;
-  }
-  DeviceLimits limits() const override { return limits_without_a_hand(); }
-  bool immediate() const override { return true; }
-  std::string kind() const override { return "other"; }
-
- private:
-  std::shared_ptr<OtherHand> seen_;
-  Channel& channel_;
-  int reads_ = 0;
-};
-
 /// Two hands on a running device loop.
 struct TwoHands {
   Scene scene = test::one_grip_scene();
@@ -120,13 +90,10 @@ struct TwoHands {
   std::unique_ptr<DeviceLoop> loop;
 
   TwoHands() {
-    scene.grips.push_back(scene.grips[0]);
-    BodyMessage first = ServoKit::first();
-    first.bodies.grips.resize(2);
-    channel = std::make_unique<Channel>(2, first, 1000);
+    channel = test::channel_of_two(scene);
     std::vector<std::unique_ptr<Device>> devices;
     devices.push_back(std::make_unique<WaitingDevice>(gate));
-    devices.push_back(std::make_unique<OtherDevice>(other, *channel));
+    devices.push_back(std::make_unique<OtherDevice>(other, *channel, kOnTheGrip));
     servo = std::make_unique<Servo>(scene, std::move(devices), *channel, ServoOptions{});
     loop = std::make_unique<DeviceLoop>(*servo);
     loop->start();

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "net/clock.h"
@@ -97,17 +98,26 @@ struct ServoKit {
   void tick(double wall) { servo->tick(to_nanoseconds(wall)); }
 };
 
-/// The world of two grips that stands still, as its `tick`-th state, a state a millisecond: stamped ahead, so
-/// that none is ever old however late the machine is.
-inline void publish_ahead(Channel& channel, int tick) {
+/// A world that stands still, as its `tick`-th state, a state a millisecond: stamped ahead, so that none is
+/// ever old however late the machine is.
+inline void publish_ahead(Channel& channel, int tick,
+                          std::vector<GripState> grips = std::vector<GripState>(2)) {
   BodyMessage& message = channel.bodies().back();
   message = ServoKit::first();
-  message.bodies.grips.resize(2);
+  message.bodies.grips = std::move(grips);
   message.rate = 1.0;
   message.bodies.tick = static_cast<std::uint64_t>(tick);
   message.bodies.time = 0.001 * tick;
   message.stamp_ns = steady_now_ns() + to_nanoseconds(10.0);
   channel.bodies().publish();
+}
+
+/// A channel for two hands; from then on `scene` has its grip twice.
+inline std::unique_ptr<Channel> channel_of_two(Scene& scene) {
+  scene.grips.push_back(scene.grips[0]);
+  BodyMessage first = ServoKit::first();
+  first.bodies.grips.resize(2);
+  return std::make_unique<Channel>(2, first, 1000);
 }
 
 }  // namespace slosh::test

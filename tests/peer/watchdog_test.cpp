@@ -48,10 +48,7 @@ class HangingDevice final : public Device {
 class Watchdog : public ::testing::Test {
  protected:
   void SetUp() override {
-    scene_.grips.push_back(scene_.grips[0]);
-    BodyMessage first = test::ServoKit::first();
-    first.bodies.grips.resize(2);
-    channel_ = std::make_unique<Channel>(2, first, 1000);
+    channel_ = test::channel_of_two(scene_);
     std::vector<std::unique_ptr<Device>> devices;
     devices.push_back(std::make_unique<NotingDevice>(noted_));
     devices.push_back(std::make_unique<HangingDevice>(hang_, *channel_));

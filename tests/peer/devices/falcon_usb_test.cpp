@@ -141,17 +141,12 @@ TEST_F(FalconUsb, UnpluggedInTheMiddleItsForceEndsAndComesBackWithIt) {
   ASSERT_TRUE(open_device(*made));
   test::ServoKit kit;
   ASSERT_TRUE(kit.servo->set_device(0, std::move(made)));
-  double time = 0.0, felt = 0.0;  // N, of the newest row
+  double felt = 0.0;  // N, of the newest row
+  int states = 0;
+  GripState grip;
+  grip.pose.position = {0.005, 0.0, 0.0};
   const auto tick = [&] {
-    time += 0.001;
-    BodyMessage& message = kit.channel.bodies().back();
-    message = test::ServoKit::first();
-    message.rate = 1.0;
-    message.bodies.time = time;
-    message.bodies.tick = static_cast<std::uint64_t>(1e3 * time);
-    message.stamp_ns = steady_now_ns() + to_nanoseconds(10.0);
-    message.bodies.grips[0].pose.position = {0.005, 0.0, 0.0};
-    kit.channel.bodies().publish();
+    test::publish_ahead(kit.channel, ++states, {grip});
     kit.servo->tick(steady_now_ns());
     ServoSample sample;
     while (kit.servo->samples().pop(sample)) felt = glm::length(sample.on_hand.force);

@@ -10,7 +10,7 @@
 
 #include "peer/haptics/device_loop.h"
 #include "plugin_kit.h"
-#include "tests/peer/servo_kit.h"
+#include "tests/peer/other_hand.h"
 #include "tests/support/comes.h"
 
 namespace slosh {
@@ -19,7 +19,6 @@ namespace {
 using test::comes;
 using test::plugin;
 using test::Plugins;
-using test::ServoKit;
 
 struct Case {
   const char* name;
@@ -55,35 +54,6 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"slosh_plugin_no_such_library", "cannot be loaded"}),
     short_name);
 
-/// Another hand, on the loop itself: what it felt last, and how often.
-struct Other {
-  std::atomic<std::uint64_t> writes{0};
-  std::atomic<double> felt{0.0};
-};
-class OtherDevice final : public Device {
- public:
-  OtherDevice(std::shared_ptr<Other> seen, Channel& channel) : seen_(std::move(seen)), channel_(channel) {}
-  DeviceReport read(const DeviceMoment&) override {
-    reads_ += 1;
-    test::publish_ahead(channel_, reads_);
-    DeviceReport report;
-    report.pose.position.x = reads_ > 20 ? 0.01 : 0.0;
-    return report;
-  }
-  void write(const Wrench& on_hand) override {
-    seen_->felt = on_hand.force.x;
-    seen_->writes += 1;
-  }
-  DeviceLimits limits() const override { return limits_without_a_hand(); }
-  bool immediate() const override { return true; }
-  std::string kind() const override { return "other"; }
-
- private:
-  std::shared_ptr<Other> seen_;
-  Channel& channel_;
-  int reads_ = 0;
-};
-
 /// What a faulty library says of itself (faulty_plugin.cpp).
 template <class T>
 std::atomic<T>& said_by(const std::string& name, const char* what) {
@@ -95,16 +65,13 @@ std::atomic<T>& said_by(const std::string& name, const char* what) {
 class HeldPlugins : public Plugins {
  protected:
   void begin(const std::string& name) {
-    scene_.grips.push_back(scene_.grips[0]);
-    BodyMessage first = ServoKit::first();
-    first.bodies.grips.resize(2);
-    channel_ = std::make_unique<Channel>(2, first, 1000);
+    channel_ = test::channel_of_two(scene_);
     std::vector<std::unique_ptr<Device>> devices;
     devices.push_back(plugin(name));
     const Result<bool> opened = open_device(*devices[0]);
     ASSERT_TRUE(opened) << opened.error().text();
     limits_ = devices[0]->limits();
-    devices.push_back(std::make_unique<OtherDevice>(other_, *channel_));
+    devices.push_back(std::make_unique<test::OtherDevice>(other_, *channel_, 20));
     ServoOptions options;
     options.sample_interval = 0.001;
     options.sample_capacity = 1 << 16;
@@ -124,7 +91,7 @@ class HeldPlugins : public Plugins {
   }
 
   Scene scene_ = test::one_grip_scene();
-  std::shared_ptr<Other> other_ = std::make_shared<Other>();
+  std::shared_ptr<test::OtherHand> other_ = std::make_shared<test::OtherHand>();
   std::unique_ptr<Channel> channel_;
   std::unique_ptr<Servo> servo_;
   std::unique_ptr<DeviceLoop> loop_;

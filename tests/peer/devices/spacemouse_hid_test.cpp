@@ -176,18 +176,11 @@ TEST_F(SpaceMouseHid, UnpluggedInTheMiddleTheHandFadesToZeroAndComesBackWithIt) 
   test::ServoKit kit;
   auto sent = std::make_shared<Sent>();
   ASSERT_TRUE(kit.servo->set_device(0, std::make_unique<Watched>(std::move(made), sent)));
-  double time = 0.0;
-  // The world puts 5 N on the hand all the time; a state a tick, stamped ahead.
+  int states = 0;
+  GripState grip;
+  grip.on_hand.force.x = 5.0;  // all the time
   const auto tick = [&] {
-    time += 0.001;
-    BodyMessage& message = kit.channel.bodies().back();
-    message = test::ServoKit::first();
-    message.rate = 1.0;
-    message.bodies.time = time;
-    message.bodies.tick = static_cast<std::uint64_t>(1e3 * time);
-    message.stamp_ns = steady_now_ns() + to_nanoseconds(10.0);
-    message.bodies.grips[0].on_hand.force.x = 5.0;
-    kit.channel.bodies().publish();
+    test::publish_ahead(kit.channel, ++states, {grip});
     kit.servo->tick(steady_now_ns());
     ServoSample sample;
     while (kit.servo->samples().pop(sample)) {
