@@ -10,11 +10,11 @@ namespace slosh {
 /// Adds one neighbour's (or one batch of neighbours') part of the pressure force and, with `viscous`, of Eq 9
 /// to `sum`. The force on p is Kernel::scale(h) times the sum. The pair (p, i) and the pair (i, p) give
 /// opposite forces to rounding: every factor is symmetric but d and dv. Coincident particles (and p itself)
-/// add nothing. `weight` is 1 where the neighbour counts, else 0. `Sum`: ForceSum, or SurfaceSum where p is a
-/// wall's.
+/// add nothing. `shape`: of all that drags. `weight` is 1 where the neighbour counts, else 0. `Sum`:
+/// ForceSum, or SurfaceSum where p is a wall's.
 template <class Kernel, PairRule rule, DragRule drag_rule, bool viscous, class Real, class Sum>
-SLOSH_HD void add_pair_force(const ParticleView<Real>& p, const ParticleView<Real>& i, Real h, Real weight,
-                             Sum& sum) {
+SLOSH_HD void add_pair_force(const ParticleView<Real>& p, const ParticleView<Real>& i, Real h,
+                             const DragShape<Real>& shape, Real weight, Sum& sum) {
   const Real dx = p.x - i.x;
   const Real dy = p.y - i.y;
   const Real dz = p.z - i.z;
@@ -43,14 +43,14 @@ SLOSH_HD void add_pair_force(const ParticleView<Real>& p, const ParticleView<Rea
   }
   if constexpr (is_corrected_fluid(rule)) {
     const Real dragged = (i.ux - p.ux) * dx + (i.uy - p.uy) * dy + (i.uz - p.uz) * dz;
-    along += (Real(kCentralDrag) * (p.volume * i.volume) * kernel.laplacian) *
+    along += (Real(kCentralDrag) * (p.volume * i.volume) * shape(kernel.laplacian)) *
              (dragged * (kernel.inverse_r * kernel.inverse_r));
   }
   if constexpr (viscous) {
     const Real dvx = i.vx - p.vx;
     const Real dvy = i.vy - p.vy;
     const Real dvz = i.vz - p.vz;
-    const Real drag = drag_coefficient(p, i, kernel.laplacian);
+    const Real drag = drag_coefficient(p, i, shape(kernel.laplacian));
     if constexpr (drag_rule == DragRule::kAlongVelocity) {
       sum.x += drag * dvx;
       sum.y += drag * dvy;

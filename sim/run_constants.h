@@ -19,23 +19,25 @@ namespace slosh {
 
 /// What all particles of one fluid (or one probe) share.
 struct ParticleKind {
-  float rest_density = 1000.0f;  ///< kg/m³
-  float viscosity = 0.0f;        ///< Pa·s
-  float mass = 0.0f;             ///< kg
+  float rest_density = 1000.0f;      ///< kg/m³
+  float viscosity = 0.0f;            ///< Pa·s
+  float mass = 0.0f;                 ///< kg
   float pressing_density = 1000.0f;  ///< kg/m³ that Eq 7 takes for it (step_limits.h, pressing_density)
-  bool probe = false;            ///< moved by its body, not by the fluid integrator
+  bool probe = false;                ///< moved by its body, not by the fluid integrator
 };
 
 struct RunConstants {
   Plan plan;
   CellGrid grid;
-  float support_radius = 0.0f;  ///< m
-  float force_scale = 0.0f;     ///< the force kernel's constant, m⁻⁶
+  float support_radius = 0.0f;              ///< m
+  float force_scale = 0.0f;                 ///< the force kernel's constant, m⁻⁶
+  DragShape<float> drag_shape{1.0f, 0.0f};  ///< of all pairs
   float rest_number_density =
       0.0f;  ///< Σ of the kernel's shape over the rest lattice: density is measured against it
-  float rest_volume = 0.0f;        ///< m³ of a particle at rest density
-  CorrectionConstants correction;  ///< ParticleModel::kCorrected's, of the lattice (pressure/settled_packing.h)
-  double load_compression = 0.0;   ///< ρ/ρ⁰ − 1 of the fluid under its own weight, mean over its depth
+  float rest_volume = 0.0f;  ///< m³ of a particle at rest density
+  CorrectionConstants
+      correction;  ///< ParticleModel::kCorrected's, of the lattice (pressure/settled_packing.h)
+  double load_compression = 0.0;  ///< ρ/ρ⁰ − 1 of the fluid under its own weight, mean over its depth
   glm::vec3 gravity{0.0f};
   std::vector<ParticleKind> kinds;
   ImpulseUnits impulse_units;  ///< of what walls take from particles

@@ -32,7 +32,7 @@ GroupForces write_fluid_pairs(const DragWalk& w, const PairRows::Walk& walk, Pai
   const Sixteen volume = fourths(walk.of_group<8>(own)), viscosity = fourths(walk.of_group<8>(own + 4));
   PairRows::Pair* to = writer.take(walk);
   return walk_forces<presses, jostles, false>(
-      w.press, walk, w.context.support_radius,
+      w.press, walk, w.context.support_radius, w.context.drag_shape,
       [&](const PairRows::Pair* four, const Sixteen& shape, const Sixteen& even, const Sixteen& odd) {
         // As drag_pairs(): both sides of a pair find the same to the bit.
         const Sixteen of_both = (0.5f * (viscosity + fourths(odd))) * (volume * fourths(even));
@@ -47,13 +47,14 @@ GroupForces write_fluid_pairs(const DragWalk& w, const PairRows::Walk& walk, Pai
 void write_body_pairs(const DragWalk& w, std::uint32_t p, const RowList& fixed_rows,
                       const RowList& moving_rows, PairRows::Writer& writer) {
   const FloatBatch h(w.context.support_radius), factor(w.factor), one(1.0f);
+  const DragShape<FloatBatch> shape = in_all_lanes(w.context.drag_shape);
   const ParticleView<FloatBatch> self =
       broadcast(columns(w.fluid), p, w.context.kinds[w.fluid.kind[p]].viscosity);
   Symmetric<FloatBatch> by_walls = no_rate();
   const NeighborColumns fixed = columns(w.fixed), moving = columns(w.moving);
   for_each_batch(fixed_rows, [&](std::uint32_t j, FloatBatch weight) {
-    const PairBatch found =
-        drag_pairs<Parts, Viscosity::kPair, Neighbours::kWalls>(self, fixed, j, weight, h, factor, one);
+    const PairBatch found = drag_pairs<Parts, Viscosity::kPair, Neighbours::kWalls>(self, fixed, j, weight, h,
+                                                                                    shape, factor, one);
     const FloatBatch x = found.q * found.x, y = found.q * found.y;
     by_walls.xx += x * found.x;
     by_walls.xy += x * found.y;
@@ -64,8 +65,8 @@ void write_body_pairs(const DragWalk& w, std::uint32_t p, const RowList& fixed_r
   });
   const auto behind = static_cast<std::uint32_t>(w.fluid.index.particles());
   for_each_batch(moving_rows, [&](std::uint32_t j, FloatBatch weight) {
-    const PairBatch found =
-        drag_pairs<Parts, Viscosity::kPair, Neighbours::kWalls>(self, moving, j, weight, h, factor, one);
+    const PairBatch found = drag_pairs<Parts, Viscosity::kPair, Neighbours::kWalls>(self, moving, j, weight,
+                                                                                    h, shape, factor, one);
     writer.add(behind + j, found.q, lanes_less(FloatBatch(0.0f), found.q * found.r_squared));
   });
   w.drag.by_walls[p] = summed(by_walls);

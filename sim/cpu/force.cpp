@@ -24,12 +24,13 @@ struct FluidWalk {
 // Of one body particle, N·s/m.
 template <class Parts, Viscosity viscosity>
 Symmetric<float> drag_rate(const ParticleView<FloatBatch>& self, const NeighborColumns& fluid,
-                           const RowList& rows, FloatBatch h, float scale, float of_fluid) {
+                           const RowList& rows, FloatBatch h, const DragShape<FloatBatch>& shape, float scale,
+                           float of_fluid) {
   const FloatBatch none(0.0f);
   Symmetric<FloatBatch> sum{none, none, none, none, none, none};
   for_each_dragged<viscosity, Neighbours::kFluid>(
       self, fluid, rows, FloatBatch(of_fluid), [&](const ParticleView<FloatBatch>& i, FloatBatch weight) {
-        add_pair_drag_rate<typename Parts::ForceKernel, Parts::kDrag>(self, i, h, weight, sum);
+        add_pair_drag_rate<typename Parts::ForceKernel, Parts::kDrag>(self, i, h, shape, weight, sum);
       });
   return {scale * lane_sum(sum.xx), scale * lane_sum(sum.xy), scale * lane_sum(sum.xz),
           scale * lane_sum(sum.yy), scale * lane_sum(sum.yz), scale * lane_sum(sum.zz)};
@@ -49,6 +50,7 @@ __attribute__((flatten)) void find_forces_of(const FluidWalk& walk, std::size_t 
   const NeighborColumns fixed_columns = columns(walk.fixed);
   const NeighborColumns moving_columns = columns(walk.moving);
   const FloatBatch h(context.support_radius);
+  const DragShape<FloatBatch> shape = in_all_lanes(context.drag_shape);
   for (std::size_t r = begin; r < end; ++r) {
     const RowList fixed_rows = walk.fixed.index.rows(context.grid, runs[r].cell);
     const RowList moving_rows = walk.moving.index.rows(context.grid, runs[r].cell);
@@ -63,17 +65,15 @@ __attribute__((flatten)) void find_forces_of(const FluidWalk& walk, std::size_t 
           broadcast(fluid_columns, p, context.kinds[fluid.kind[p]].viscosity);
       ForceSum<FloatBatch> sum{FloatBatch(0.0f), FloatBatch(0.0f), FloatBatch(0.0f)};
       if constexpr (!Parts::kCorrected)
-        add_row_forces<Parts, Parts::kFluids, viscosity>(self, fluid_columns, fluid_rows, h, sum);
+        add_row_forces<Parts, Parts::kFluids, viscosity>(self, fluid_columns, fluid_rows, h, shape, sum);
       if (fixed_rows.count)
         add_row_forces<Parts, kWalls, kAgainstBodies, Neighbours::kWalls>(self, fixed_columns, fixed_rows, h,
-                                                                          sum);
+                                                                          shape, sum);
       if (moving_rows.count)
         add_row_forces<Parts, kWalls, kAgainstBodies, Neighbours::kWalls>(self, moving_columns, moving_rows,
-                                                                          h, sum);
+                                                                          h, shape, sum);
       const float scale = context.force_scale;
-      const auto put = [](float& force, float found) {
-        force = Parts::kCorrected ? force + found : found;
-      };
+      const auto put = [](float& force, float found) { force = Parts::kCorrected ? force + found : found; };
       put(fluid.fx[p], scale * lane_sum(sum.x));
       put(fluid.fy[p], scale * lane_sum(sum.y));
       put(fluid.fz[p], scale * lane_sum(sum.z));
@@ -99,7 +99,7 @@ void forces_by_rows(const FluidWalk& walk, const FluidPress& press) {
     for (std::size_t chunk = begin; chunk < end; ++chunk) {
       press.rows.for_each_group(chunk, [&](const PairRows::Walk& rows) {
         const GroupForces forces = walk_forces<kPresses, true, viscosity == Viscosity::kPair>(
-            press, rows, h, [](const auto&...) {});
+            press, rows, h, walk.context.drag_shape, [](const auto&...) {});
         float pressed[16], dragged[16];
         std::memcpy(pressed, &forces.pressed, sizeof pressed);
         std::memcpy(dragged, &forces.dragged, sizeof dragged);
@@ -147,6 +147,7 @@ void sum_body_wrenches(PassContext& context, ThreadTeam& team, const FluidPartic
   const NeighborColumns fluid_columns = columns(fluid);
   const NeighborColumns own = columns(boundary);
   const FloatBatch h(context.support_radius);
+  const DragShape<FloatBatch> shape = in_all_lanes(context.drag_shape);
   with_physics(context.plan, [&]<class Parts, Viscosity viscosity>() {
     team.run(runs.size(), kRunsPerChunk, [&](std::size_t begin, std::size_t end) {
       for (std::size_t r = begin; r < end; ++r) {
@@ -160,7 +161,7 @@ void sum_body_wrenches(PassContext& context, ThreadTeam& team, const FluidPartic
           const WallViscosity wall = wall_viscosity(boundary.viscosity[i]);
           const ParticleView<FloatBatch> self =
               broadcast(own, i, own_viscosity<viscosity>(wall, context.kinds.front().viscosity));
-          add_row_forces<Parts, Parts::kOnBodies, viscosity>(self, fluid_columns, rows, h, sum,
+          add_row_forces<Parts, Parts::kOnBodies, viscosity>(self, fluid_columns, rows, h, shape, sum,
                                                              FloatBatch(wall.of_fluid));
           const float scale = context.force_scale;
           scratch.force[i] = scale * glm::vec3(lane_sum(sum.x), lane_sum(sum.y), lane_sum(sum.z));
@@ -168,7 +169,7 @@ void sum_body_wrenches(PassContext& context, ThreadTeam& team, const FluidPartic
           if constexpr (viscosity != Viscosity::kNone) {
             if (!drags.empty())
               scratch.drag_rate[i] =
-                  drag_rate<Parts, viscosity>(self, fluid_columns, rows, h, scale, wall.of_fluid);
+                  drag_rate<Parts, viscosity>(self, fluid_columns, rows, h, shape, scale, wall.of_fluid);
           }
         }
       }
@@ -194,6 +195,7 @@ void drag_fluid(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
   const NeighborColumns fluid_columns = columns(fluid);
   const NeighborColumns moving_columns = columns(moving);
   const FloatBatch h(context.support_radius);
+  const DragShape<FloatBatch> shape = in_all_lanes(context.drag_shape);
   with_model(context.plan.model, [&]<class Parts>() {
     team.run(runs.size(), kRunsPerChunk, [&](std::size_t begin, std::size_t end) {
       for (std::size_t r = begin; r < end; ++r) {
@@ -206,7 +208,7 @@ void drag_fluid(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
           for_each_dragged<Viscosity::kPair, Neighbours::kWalls>(
               self, moving_columns, rows, FloatBatch(1.0f),
               [&](const ParticleView<FloatBatch>& i, FloatBatch weight) {
-                add_pair_drag<typename Parts::ForceKernel, Parts::kDrag>(self, i, h, weight, sum);
+                add_pair_drag<typename Parts::ForceKernel, Parts::kDrag>(self, i, h, shape, weight, sum);
               });
           const float scale = context.force_scale;
           fluid.fx[p] += scale * lane_sum(sum.x);

@@ -178,10 +178,11 @@ class PairRows {
       });
       return sum;
     }
-    /// reach/r² of pairs at `d` from each other, m.
-    static Sixteen drag_shape(Sixteen d, float h) {
+    /// What `shape` gives over r² for pairs at `d` from each other, m. Below 0 from h on.
+    static Sixteen drag_shape(Sixteen d, float h, const DragShape<float>& shape) {
       const Sixteen r_squared = sums(d * d) + h * h * 1e-12f, inverse_r = inverse_roots(r_squared);
-      return (h - r_squared * inverse_r) * (inverse_r * inverse_r);
+      const Sixteen reach = h - r_squared * inverse_r;
+      return (reach * (shape.growth * reach + shape.level)) * (inverse_r * inverse_r);
     }
     /// The sum of q d (d · (v − one's own)), v each other's of `velocities`, in rows of who drags whom.
     Sixteen dragged(const Vector4* places, const Vector4* velocities) const {

@@ -9,14 +9,15 @@ namespace slosh {
 struct GroupForces {
   Sixteen pressed = {};  ///< N, by what others press with
   Sixteen dragged =
-      {};  ///< Σ V reach/r² d (d · what others drag by, less one's own), without Eq 9's constants
+      {};  ///< Σ V shape/r² d (d · what others drag by, less one's own), without Eq 9's constants
 };
 
 /// `presses`: by the tensors; `jostles`: by `drags`, Pa·m; `drags`: besides by Eq 9 of each one's own
-/// viscosity. Calls also(four, shape, even, odd) for a pair of each: reach/r² (0 where it fills a row up) and
-/// the others' tensors. `h`: the support radius, m.
+/// viscosity, all as `drag` falls off. Calls also(four, shape, even, odd) for a pair of each: drag's shape/r²
+/// (0 where it fills a row up) and the others' tensors. `h`: the support radius, m.
 template <bool presses, bool jostles, bool drags, class Also>
-GroupForces walk_forces(const FluidPress& press, const PairRows::Walk& walk, float h, Also&& also) {
+GroupForces walk_forces(const FluidPress& press, const PairRows::Walk& walk, float h,
+                        const DragShape<float>& drag, Also&& also) {
   const float *const tensors = &press.tensors[0].xx, *const us = &press.drags[0].x;
   const float* const velocities = &press.velocities[0].x;
   const Sixteen own_u = walk.of_group<4>(us + std::size_t{4} * walk.first);
@@ -32,7 +33,7 @@ GroupForces walk_forces(const FluidPress& press, const PairRows::Walk& walk, flo
       turning += odd * turned(g);
       back += odd * g;
     }
-    const Sixteen shape = where_above_zero(slope, at_least_zero(PairRows::Walk::drag_shape(d, h)));
+    const Sixteen shape = where_above_zero(slope, at_least_zero(PairRows::Walk::drag_shape(d, h, drag)));
     if constexpr (jostles || drags) {
       Sixteen by = {};
       if constexpr (jostles) by += walk.of_others<4>(us, four) - own_u;

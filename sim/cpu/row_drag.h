@@ -68,7 +68,8 @@ void with_solved_viscosity(const Plan& plan, F&& f) {
 /// drag acts for.
 template <class Parts, Viscosity viscosity, Neighbours neighbours>
 PairBatch drag_pairs(const ParticleView<FloatBatch>& p, const NeighborColumns& n, std::uint32_t j,
-                     FloatBatch weight, FloatBatch h, FloatBatch factor, FloatBatch of_fluid) {
+                     FloatBatch weight, FloatBatch h, const DragShape<FloatBatch>& shape, FloatBatch factor,
+                     FloatBatch of_fluid) {
   ParticleView<FloatBatch> i;
   i.volume = FloatBatch::load_unaligned(n.volume + j);
   i.viscosity = viscosity_of<viscosity, neighbours>(p, n, j, of_fluid);
@@ -80,7 +81,7 @@ PairBatch drag_pairs(const ParticleView<FloatBatch>& p, const NeighborColumns& n
   const auto kernel = Parts::ForceKernel::pair(pairs.r_squared, h, weight);
   // Eq 9's factor, so that both sides of a pair find the same to the bit.
   const FloatBatch of_both = (FloatBatch(0.5f) * (p.viscosity + i.viscosity)) * (p.volume * i.volume);
-  pairs.q = of_both * (factor * (kernel.laplacian * (kernel.inverse_r * kernel.inverse_r)));
+  pairs.q = of_both * (factor * (shape(kernel.laplacian) * (kernel.inverse_r * kernel.inverse_r)));
   return pairs;
 }
 

@@ -36,8 +36,8 @@ inline NeighborColumns columns(const BoundaryParticles& b) {
 
 enum class Neighbours { kFluid, kWalls };
 
-/// A wall's particle's own side of Eq 9. Where the fluid has one viscosity its column is not filled: the mean of the
-/// two is known up front.
+/// A wall's particle's own side of Eq 9. Where the fluid has one viscosity its column is not filled: the mean
+/// of the two is known up front.
 template <Viscosity viscosity>
 float own_viscosity(const WallViscosity& wall, float of_the_fluid) {
   return viscosity == Viscosity::kOne ? 0.5f * (wall.own + wall.of_fluid * of_the_fluid) : wall.own;
@@ -63,7 +63,8 @@ FloatBatch viscosity_of(const ParticleView<FloatBatch>& p, const NeighborColumns
 template <class Parts, PairRule rule, Viscosity viscosity, Neighbours neighbours = Neighbours::kFluid,
           class Sum = ForceSum<FloatBatch>>
 void add_row_forces(const ParticleView<FloatBatch>& p, const NeighborColumns& n, const RowList& rows,
-                    FloatBatch h, Sum& sum, FloatBatch of_fluid = FloatBatch(1.0f)) {
+                    FloatBatch h, const DragShape<FloatBatch>& shape, Sum& sum,
+                    FloatBatch of_fluid = FloatBatch(1.0f)) {
   // What pairs of one viscosity drag by is in u already.
   constexpr bool kViscous =
       is_corrected_fluid(rule) ? viscosity == Viscosity::kPair : viscosity != Viscosity::kNone;
@@ -92,7 +93,7 @@ void add_row_forces(const ParticleView<FloatBatch>& p, const NeighborColumns& n,
       i.vz = FloatBatch::load_unaligned(n.vz + j);
       i.viscosity = viscosity_of<viscosity, neighbours>(p, n, j, of_fluid);
     }
-    add_pair_force<typename Parts::ForceKernel, rule, Parts::kDrag, kViscous>(p, i, h, weight, sum);
+    add_pair_force<typename Parts::ForceKernel, rule, Parts::kDrag, kViscous>(p, i, h, shape, weight, sum);
   };
   for_each_batch(rows, add);
 }

@@ -30,6 +30,10 @@ struct RealOps<FloatBatch> {
   }
 };
 
+inline DragShape<FloatBatch> in_all_lanes(const DragShape<float>& shape) {
+  return {FloatBatch(shape.level), FloatBatch(shape.growth)};
+}
+
 /// The sum of all lanes. xsimd called it hadd (8.1, Debian 12) and calls it reduce_add (13, Debian 13).
 template <class Batch>
 float lane_sum(const Batch& x) {

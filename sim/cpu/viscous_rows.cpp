@@ -22,6 +22,7 @@ void ViscousSolver::write_body_rows(const Work& work) {
   const std::vector<CellRun>& runs = moving.index.runs();
   const NeighborColumns fluids = columns(fluid), own = columns(moving);
   const FloatBatch h(context.support_radius), factor(kCentralDrag * work.dt * context.force_scale);
+  const DragShape<FloatBatch> shape = in_all_lanes(context.drag_shape);
   body_rows_.clear(chunk_count(runs.size(), kRunsPerChunk));
   rate_.assign(work.surface, Symmetric<float>{});
   with_solved_viscosity(context.plan, [&]<Viscosity viscosity>() {
@@ -40,7 +41,7 @@ void ViscousSolver::write_body_rows(const Work& work) {
               broadcast(own, i, own_viscosity<viscosity>(wall, context.kinds.front().viscosity));
           for_each_batch(rows, [&](std::uint32_t j, FloatBatch weight) {
             const PairBatch found = drag_pairs<Parts, viscosity, Neighbours::kFluid>(
-                self, fluids, j, weight, h, factor, FloatBatch(wall.of_fluid));
+                self, fluids, j, weight, h, shape, factor, FloatBatch(wall.of_fluid));
             writer.add(j, found.q, lanes_less(FloatBatch(0.0f), found.q * found.r_squared));
           });
           writer.end();
@@ -95,6 +96,7 @@ void ViscousSolver::add_fixed(const Work& work, std::span<Wrench> wrenches) {
   const std::vector<CellRun>& runs = fixed.index.runs();
   const NeighborColumns fluids = columns(fluid), own = columns(fixed);
   const FloatBatch h(context.support_radius), factor(kCentralDrag * context.force_scale), zero(0.0f);
+  const DragShape<FloatBatch> shape = in_all_lanes(context.drag_shape);
   std::vector<glm::vec3> forces(fixed.index.particles(), glm::vec3(0.0f));
   with_solved_viscosity(context.plan, [&]<Viscosity viscosity>() {
     work.team.run(runs.size(), kRunsPerChunk, [&](std::size_t begin, std::size_t end) {
@@ -109,7 +111,7 @@ void ViscousSolver::add_fixed(const Work& work, std::span<Wrench> wrenches) {
           ForceSum<FloatBatch> force{zero, zero, zero};
           for_each_batch(rows, [&](std::uint32_t j, FloatBatch weight) {
             const PairBatch d = drag_pairs<Parts, viscosity, Neighbours::kFluid>(
-                self, fluids, j, weight, h, factor, FloatBatch(wall.of_fluid));
+                self, fluids, j, weight, h, shape, factor, FloatBatch(wall.of_fluid));
             const FloatBatch along = d.q * (d.x * FloatBatch::load_unaligned(end_x_.data() + j) +
                                             d.y * FloatBatch::load_unaligned(end_y_.data() + j) +
                                             d.z * FloatBatch::load_unaligned(end_z_.data() + j));

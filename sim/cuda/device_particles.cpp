@@ -8,6 +8,7 @@ StepConstants step_constants(const RunConstants& c) {
   return {c.grid,
           c.support_radius,
           c.force_scale,
+          c.drag_shape,
           c.rest_number_density,
           c.rest_volume,
           static_cast<float>(c.plan.stiffness),
@@ -62,7 +63,8 @@ void FluidBuffers::allocate(std::size_t count, const RunConstants& constants, Ca
   for (MovingPacks<DeviceBuffer>& packs : packs_)
     for_each_pack(
         [&](auto pack, auto& buffer) {
-          if (pack != Pack::kSolved || needs(constants.plan, ColumnNeed::kSolved)) buffer.allocate(count, check);
+          if (pack != Pack::kSolved || needs(constants.plan, ColumnNeed::kSolved))
+            buffer.allocate(count, check);
         },
         packs);
   pressed_.allocate(count, check);

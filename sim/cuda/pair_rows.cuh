@@ -20,8 +20,8 @@ struct NeighborColumns {
 };
 
 __device__ inline NeighborColumns columns(const SortedFluid& fluid) {
-  return {fluid.pressed, fluid.state.v, fluid.viscosity, fluid.push_a, fluid.push_b,
-          fluid.drag_z,  fluid.state.solved};
+  return {fluid.pressed, fluid.state.v, fluid.viscosity,   fluid.push_a,
+          fluid.push_b,  fluid.drag_z,  fluid.state.solved};
 }
 __device__ inline NeighborColumns columns(const SortedSurface& surface) {
   return {surface.x, surface.v, surface.viscosity};
@@ -91,8 +91,8 @@ __device__ inline void add_forces(const StepConstants& c, const ParticleView<flo
       i.volume = v.w;
     }
     if constexpr (kViscous) i.viscosity = viscosity_of<viscosity, neighbours>(p, n, j, of_fluid);
-    add_pair_force<typename Parts::ForceKernel, rule, Parts::kDrag, kViscous>(p, i, c.support_radius, 1.0f,
-                                                                              sum);
+    add_pair_force<typename Parts::ForceKernel, rule, Parts::kDrag, kViscous>(p, i, c.support_radius,
+                                                                              c.drag_shape, 1.0f, sum);
   });
 }
 

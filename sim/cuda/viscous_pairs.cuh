@@ -50,7 +50,7 @@ __device__ inline void for_each_pair(const StepConstants& c, const ParticleView<
     i.volume = neighbours == Neighbours::kFluid ? x.w : __ldg(reinterpret_cast<const float*>(n.v + j) + 3);
     i.viscosity = viscosity_of<viscosity, neighbours>(p, n, j, of_fluid);
     const PairKernel<float> kernel = SolvedParts::ForceKernel::pair(r_squared, h, 1.0f);
-    const float drag = factor * drag_coefficient(p, i, kernel.laplacian);
+    const float drag = factor * drag_coefficient(p, i, c.drag_shape(kernel.laplacian));
     if (!(drag > 0.0f)) return;
     const float w = sqrtf(drag) * kernel.inverse_r;
     f(j, make_float3(w * dx, w * dy, w * dz));

@@ -29,8 +29,8 @@ __global__ __launch_bounds__(kThreads) void surface_force_kernel(StepConstants c
     if constexpr (with_drag) {
       for_each_dragged<Team, viscosity, Neighbours::kFluid>(
           c, self, columns(fluid), fluid.cells, cell, wall.of_fluid, [&](const ParticleView<float>& p) {
-            add_pair_drag_rate<typename Parts::ForceKernel, Parts::kDrag>(self, p, c.support_radius, 1.0f,
-                                                                          rate);
+            add_pair_drag_rate<typename Parts::ForceKernel, Parts::kDrag>(self, p, c.support_radius,
+                                                                          c.drag_shape, 1.0f, rate);
           });
     }
   }
@@ -88,8 +88,8 @@ __global__ __launch_bounds__(kSumThreads) void chunk_kernel(LocalSurface fixed, 
     force += part;
     torque += glm::cross(glm::dvec3(x.x, x.y, x.z) - center, part) + glm::dvec3(c.x, c.y, c.z);
   }
-  const DeviceWrench sum = sum_block<kSumThreads>(
-      DeviceWrench{{force.x, force.y, force.z}, {torque.x, torque.y, torque.z}});
+  const DeviceWrench sum =
+      sum_block<kSumThreads>(DeviceWrench{{force.x, force.y, force.z}, {torque.x, torque.y, torque.z}});
   if (threadIdx.x == 0) partial[blockIdx.x] = sum;
 }
 

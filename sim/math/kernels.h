@@ -62,6 +62,17 @@ struct PairKernel {
   Real laplacian;
 };
 
+/// How a pair's drag falls off within the support radius h, in place of the kernel's ∇²W (h − r, without its
+/// constant): (h − r) (level + growth (h − r)). {1, 0} is ∇²W itself, to the bit.
+template <class Real>
+struct DragShape {
+  Real level;
+  Real growth;  ///< 1/m
+
+  /// `reach`: h − r, m; 0 from h on.
+  SLOSH_HD Real operator()(Real reach) const { return reach * (level + growth * reach); }
+};
+
 /// For densities alone.
 struct Poly6 {
   template <class Real>

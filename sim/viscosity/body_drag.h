@@ -18,12 +18,12 @@ namespace slosh {
 /// constant. It is add_pair_force's viscous part, differentiated by i's velocity.
 template <class Kernel, DragRule rule, class Real>
 SLOSH_HD void add_pair_drag_rate(const ParticleView<Real>& p, const ParticleView<Real>& i, Real h,
-                                 Real weight, Symmetric<Real>& sum) {
+                                 const DragShape<Real>& shape, Real weight, Symmetric<Real>& sum) {
   const Real dx = p.x - i.x;
   const Real dy = p.y - i.y;
   const Real dz = p.z - i.z;
   const PairKernel<Real> kernel = Kernel::pair(dx * dx + dy * dy + dz * dz, h, weight);
-  const Real drag = drag_coefficient(p, i, kernel.laplacian);
+  const Real drag = drag_coefficient(p, i, shape(kernel.laplacian));
   if constexpr (rule == DragRule::kAlongVelocity) {
     sum.xx += drag;
     sum.yy += drag;
@@ -41,10 +41,10 @@ SLOSH_HD void add_pair_drag_rate(const ParticleView<Real>& p, const ParticleView
 
 /// Adds the drag on p of a neighbour that moves by (i.vx, i.vy, i.vz) m/s more than it did.
 template <class Kernel, DragRule rule, class Real>
-SLOSH_HD void add_pair_drag(const ParticleView<Real>& p, const ParticleView<Real>& i, Real h, Real weight,
-                            ForceSum<Real>& sum) {
+SLOSH_HD void add_pair_drag(const ParticleView<Real>& p, const ParticleView<Real>& i, Real h,
+                            const DragShape<Real>& shape, Real weight, ForceSum<Real>& sum) {
   Symmetric<Real> rate{Real(0.0f), Real(0.0f), Real(0.0f), Real(0.0f), Real(0.0f), Real(0.0f)};
-  add_pair_drag_rate<Kernel, rule>(p, i, h, weight, rate);
+  add_pair_drag_rate<Kernel, rule>(p, i, h, shape, weight, rate);
   sum.x += rate.xx * i.vx + rate.xy * i.vy + rate.xz * i.vz;
   sum.y += rate.xy * i.vx + rate.yy * i.vy + rate.yz * i.vz;
   sum.z += rate.xz * i.vx + rate.yz * i.vy + rate.zz * i.vz;

@@ -33,10 +33,10 @@ SLOSH_HD inline float side_of_wall(float own, float fluid) {
 }
 
 /// Eq 9's factor of the velocity difference, without the kernel's constant. What p alone decides comes first,
-/// so that it leaves the loop where all share one viscosity.
+/// so that it leaves the loop where all share one viscosity. `shape`: DragShape's of the two.
 template <class Real>
-SLOSH_HD Real drag_coefficient(const ParticleView<Real>& p, const ParticleView<Real>& i, Real laplacian) {
-  return (Real(0.5f) * (p.viscosity + i.viscosity) * p.volume) * (i.volume * laplacian);
+SLOSH_HD Real drag_coefficient(const ParticleView<Real>& p, const ParticleView<Real>& i, Real shape) {
+  return (Real(0.5f) * (p.viscosity + i.viscosity) * p.volume) * (i.volume * shape);
 }
 
 }  // namespace slosh

@@ -34,13 +34,17 @@ __host__ __device__ PairOutput evaluate(const PairInput& in, float h) {
   const float r_squared = dx * dx + dy * dy + dz * dz;
   out.poly6 = poly6_shape(r_squared, h * h);
   out.spiky = spiky_shape(r_squared, h);
-  add_pair_force<Spiky, PairRule::kPaper, DragRule::kAlongVelocity, true>(in.p, in.i, h, 1.0f, out.paper);
-  add_pair_force<Spiky, PairRule::kConsistent, DragRule::kCentral, true>(in.p, in.i, h, 1.0f, out.consistent);
-  add_pair_force<Spiky, PairRule::kWall, DragRule::kCentral, true>(in.p, in.i, h, 1.0f, out.wall);
-  add_pair_force<Spiky, PairRule::kCorrected, DragRule::kCentral, true>(in.p, in.i, h, 1.0f, out.corrected);
-  add_pair_force<Spiky, PairRule::kCorrectedWall, DragRule::kCentral, true>(in.p, in.i, h, 1.0f,
+  const DragShape<float> shape{0.8f, 1.1f / h};
+  add_pair_force<Spiky, PairRule::kPaper, DragRule::kAlongVelocity, true>(in.p, in.i, h, shape, 1.0f,
+                                                                          out.paper);
+  add_pair_force<Spiky, PairRule::kConsistent, DragRule::kCentral, true>(in.p, in.i, h, shape, 1.0f,
+                                                                         out.consistent);
+  add_pair_force<Spiky, PairRule::kWall, DragRule::kCentral, true>(in.p, in.i, h, shape, 1.0f, out.wall);
+  add_pair_force<Spiky, PairRule::kCorrected, DragRule::kCentral, true>(in.p, in.i, h, shape, 1.0f,
+                                                                        out.corrected);
+  add_pair_force<Spiky, PairRule::kCorrectedWall, DragRule::kCentral, true>(in.p, in.i, h, shape, 1.0f,
                                                                             out.corrected_wall);
-  add_pair_force<Spiky, PairRule::kCorrectedBody, DragRule::kCentral, true>(in.p, in.i, h, 1.0f,
+  add_pair_force<Spiky, PairRule::kCorrectedBody, DragRule::kCentral, true>(in.p, in.i, h, shape, 1.0f,
                                                                             out.corrected_body);
   out.directions = pressure_directions(scaled_and_shifted(in.p.push, 0.3f, 0.8f), corrected_share(dx), 1.3f);
   Pose handle, grip;

@@ -13,6 +13,7 @@ namespace slosh {
 namespace {
 
 constexpr double kSupport = 0.02;
+constexpr DragShape<double> kLaplacian{1.0, 0.0};
 
 using View = ParticleView<double>;
 
@@ -37,7 +38,7 @@ template <PairRule rule>
 glm::dvec3 force(const View& p, const View& i) {
   ForceSum<double> sum{0.0, 0.0, 0.0};
   constexpr DragRule kDrag = rule == PairRule::kPaper ? DragRule::kAlongVelocity : DragRule::kCentral;
-  add_pair_force<Spiky, rule, kDrag, true>(p, i, kSupport, 1.0, sum);
+  add_pair_force<Spiky, rule, kDrag, true>(p, i, kSupport, kLaplacian, 1.0, sum);
   return {sum.x, sum.y, sum.z};
 }
 
@@ -174,8 +175,8 @@ TEST(PairForce, FluidAtAWallExertsNoTorque) {
       View wall = place(at);
       wall.pressure = 2.0;
       SurfaceSum<double> on_wall{{0.0, 0.0, 0.0}, 0.0, 0.0, 0.0};
-      add_pair_force<Spiky, PairRule::kCorrectedBody, DragRule::kCentral, true>(wall, self, kSupport, 1.0,
-                                                                                on_wall);
+      add_pair_force<Spiky, PairRule::kCorrectedBody, DragRule::kCentral, true>(wall, self, kSupport,
+                                                                                kLaplacian, 1.0, on_wall);
       const glm::dvec3 turned = glm::cross(at, {on_wall.x, on_wall.y, on_wall.z});
       torque += turned;
       couple += glm::dvec3(on_wall.cx, on_wall.cy, on_wall.cz);

@@ -300,6 +300,11 @@ TEST_P(PairRowsOf, SquaresAndRatesAsADoubleLoop) {
       [&](std::size_t i, double weight) { return weight * weight * static_cast<double>(press.drags[i].w); });
 }
 
+constexpr DragShape<float> kShape{0.7f, 0.9f / kReach};
+double drags_by(double reach) {
+  return reach * (static_cast<double>(kShape.level) + static_cast<double>(kShape.growth) * reach);
+}
+
 // What the force pass finds over rows: pressure, the drag on jostling, Eq 9 of each one's own viscosity.
 TEST_P(PairRowsOf, ForcesAsADoubleLoop) {
   Crowd crowd(GetParam());
@@ -309,7 +314,8 @@ TEST_P(PairRowsOf, ForcesAsADoubleLoop) {
   for_each_result(
       press.rows,
       [&](const PairRows::Walk& w) {
-        const GroupForces forces = walk_forces<true, true, true>(press, w, kReach, [](const auto&...) {});
+        const GroupForces forces =
+            walk_forces<true, true, true>(press, w, kReach, kShape, [](const auto&...) {});
         return forces.pressed + forces.dragged;
       },
       [&](std::size_t p, const glm::dvec3& found) {
@@ -324,7 +330,7 @@ TEST_P(PairRowsOf, ForcesAsADoubleLoop) {
           const glm::dvec3 by = u + 0.5 * static_cast<double>(own.viscosity + other.viscosity) * v;
           const glm::dvec3 part =
               matrix(other) * (static_cast<double>(weight) * d) +
-              (static_cast<double>(other.volume) * (kReach - r) / (r * r) * glm::dot(d, by)) * d;
+              (static_cast<double>(other.volume) * drags_by(kReach - r) / (r * r) * glm::dot(d, by)) * d;
           sum += part;
           size += glm::length(part) + 3.0 * (kReach - r);
         }
