@@ -8,6 +8,7 @@
 #include "sim/model.h"
 #include "sim/snapshot.h"
 #include "sim/step_limits.h"
+#include "sim/viscosity/drag_shape.h"
 #include "sim/viscosity/noise.h"
 #include "sim/viscosity/stability.h"
 
@@ -122,6 +123,8 @@ RunConstants make_run_constants(const Scene& scene, const SampledScene& sampled,
     c.rest_number_density =
         static_cast<float>(rest_number_density<typename Parts::DensityKernel>(spacing, h));
   });
+  const DragShape<double> shape = drag_shape(c.plan.model, drag_sheet(scene, c.plan), h);
+  c.drag_shape = {static_cast<float>(shape.level), static_cast<float>(shape.growth)};
   const double volume = std::pow(spacing, 3);
   c.rest_volume = static_cast<float>(volume);
   if (corrects_gradients(c.plan.model)) {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "sim/model.h"
+#include "sim/viscosity/drag_shape.h"
 #include "sim/viscosity/implicit.h"
 #include "sim/viscosity/noise.h"
 
@@ -24,17 +25,17 @@ constexpr double kOneLayer = 0.85;
 constexpr double kQuarterLattice = 0.25;
 constexpr double kOfAnEdge = 0.7;
 
-// Σ V ∇²W over the neighbours of a rest lattice, times spacing²: the damping rate of one particle among still
-// neighbours is μ/ρ · this / spacing².
+// Σ V shape over the neighbours of a rest lattice, times spacing²: the damping rate of one particle among
+// still neighbours is μ/ρ · this / spacing².
 template <class Kernel>
-double lattice_viscosity_sum(double ratio) {
+double lattice_viscosity_sum(double ratio, const DragShape<double>& shape) {
   const int reach = static_cast<int>(std::ceil(ratio));
   double sum = 0.0;
   for (int x = -reach; x <= reach; ++x) {
     for (int y = -reach; y <= reach; ++y) {
       for (int z = -reach; z <= reach; ++z) {
         const double r = std::sqrt(static_cast<double>(x * x + y * y + z * z));
-        if (r > 0.0 && r < ratio) sum += Kernel::laplacian(r, ratio);
+        if (r > 0.0 && r < ratio) sum += shape(Kernel::laplacian(r, ratio));
       }
     }
   }
@@ -42,10 +43,11 @@ double lattice_viscosity_sum(double ratio) {
 }
 
 // 1/(Pa·s · s): the explicit viscosity's damping rate for each Pa·s.
-double viscous_rate(const Scene& scene, const Plan& plan, const FluidExtremes& fluids) {
+double viscous_rate(const Scene& scene, const Plan& plan, const FluidExtremes& fluids, DragSheet sheet) {
   const double central = plan.model == ParticleModel::kPaper ? 1.0 : kCentralDrag / 3.0;
+  const DragShape<double> shape = drag_shape(plan.model, sheet, scene.support_ratio);
   const double lattice = with_model(plan.model, [&]<class Parts>() {
-    return lattice_viscosity_sum<typename Parts::ForceKernel>(scene.support_ratio);
+    return lattice_viscosity_sum<typename Parts::ForceKernel>(scene.support_ratio, shape);
   });
   return central / fluids.lightest * lattice / (plan.spacing * plan.spacing);
 }
@@ -67,6 +69,12 @@ double jostling(const Plan& plan, const FluidExtremes& fluids) {
   return corrects_gradients(plan.model) ? noise_viscosity(plan, fluids.lightest) : 0.0;
 }
 
+double most_explicit_drag(const Scene& scene, const Plan& plan, DragSheet sheet) {
+  if (!plan.has_fluid()) return std::numeric_limits<double>::infinity();
+  const double step = plan.time_step / plan.sub_steps;
+  return kViscousFactor / (step * viscous_rate(scene, plan, fluid_extremes(scene), sheet));
+}
+
 }  // namespace
 
 double most_viscous_body(const Scene& scene, double most_viscous_fluid) {
@@ -80,28 +88,28 @@ double most_viscous_body(const Scene& scene, double most_viscous_fluid) {
 
 double viscous_step(const Scene& scene, const Plan& plan, const FluidExtremes& fluids) {
   const double mean = 0.5 * (fluids.most_viscous + most_viscous_body(scene, fluids.most_viscous));
-  const double by_wall = wall_part(scene, plan, drag_sheet(scene, plan)) * mean;
+  const DragSheet sheet = drag_sheet(scene, plan);
+  const double by_wall = wall_part(scene, plan, sheet) * mean;
   const double at_walls =
       std::max(kHalfLattice * fluids.most_viscous + by_wall,
                of_an_edge(plan) * (kQuarterLattice * fluids.most_viscous + 2.0 * by_wall));
   const double viscosity = jostling(plan, fluids) + std::max(fluids.most_viscous, at_walls);
-  return kViscousFactor / (viscosity * viscous_rate(scene, plan, fluids));
+  return kViscousFactor / (viscosity * viscous_rate(scene, plan, fluids, sheet));
 }
 
 double jostling_step(const Scene& scene, const Plan& plan, const FluidExtremes& fluids) {
-  return kViscousFactor / (jostling(plan, fluids) * viscous_rate(scene, plan, fluids));
+  const double rate = viscous_rate(scene, plan, fluids, drag_sheet(scene, plan));
+  return kViscousFactor / (jostling(plan, fluids) * rate);
 }
 
 double most_explicit_drag(const Scene& scene, const Plan& plan) {
-  if (!plan.has_fluid()) return std::numeric_limits<double>::infinity();
-  const double step = plan.time_step / plan.sub_steps;
-  return kViscousFactor / (step * viscous_rate(scene, plan, fluid_extremes(scene)));
+  return most_explicit_drag(scene, plan, drag_sheet(scene, plan));
 }
 
 double most_viscous_allowed(const Scene& scene, const Plan& plan, DragSheet sheet) {
   const FluidExtremes fluids = fluid_extremes(scene);
-  const double whole =
-      most_explicit_drag(scene, plan) * (plan.solves_drag ? kMostImplicit : 1.0) - jostling(plan, fluids);
+  const double whole = most_explicit_drag(scene, plan, sheet) * (plan.solves_drag ? kMostImplicit : 1.0) -
+                       jostling(plan, fluids);
   const double part = wall_part(scene, plan, sheet);
   const double of_bodies = most_viscous_body(scene, 0.0);
   const double at_walls = (whole - 0.5 * part * of_bodies) / (kHalfLattice + 0.5 * part);

@@ -5,20 +5,21 @@
 
 #include "sim/fluid_extremes.h"
 #include "sim/model.h"
+#include "sim/viscosity/drag_shape.h"
 #include "sim/viscosity/noise.h"
 #include "sim/viscosity/stability.h"
 
 namespace slosh {
 namespace {
 
-// Σ ∇²W d̂ d̂ᵀ of a plane square lattice `height` spacings away: along it (one direction) and across it, mean
+// Σ shape d̂ d̂ᵀ of a plane square lattice `height` spacings away: along it (one direction) and across it, mean
 // over where the particle stands over the lattice.
 struct LayerDrag {
   double along = 0.0, across = 0.0;
 };
 
 template <class Kernel>
-LayerDrag layer_drag(double height, double ratio) {
+LayerDrag layer_drag(double height, double ratio, const DragShape<double>& shape) {
   constexpr int kPlaces = 10;
   const int reach = static_cast<int>(std::ceil(ratio)) + 1;
   LayerDrag sum;
@@ -29,7 +30,7 @@ LayerDrag layer_drag(double height, double ratio) {
       for (int k = -reach; k <= reach; ++k) {
         const double x = i + x0, z = k + z0, r = std::sqrt(x * x + z * z + height * height);
         if (r <= 0.0 || r >= ratio) continue;
-        const double pull = Kernel::laplacian(r, ratio) / (r * r * kPlaces * kPlaces);
+        const double pull = shape(Kernel::laplacian(r, ratio)) / (r * r * kPlaces * kPlaces);
         sum.along += pull * x * x;
         sum.across += pull * height * height;
       }
@@ -39,26 +40,26 @@ LayerDrag layer_drag(double height, double ratio) {
 }
 
 // The share of the fluid at a flat wall that lies evenly; the rest lies in layers. Chosen by the report's
-// means over five close spacings: at 0.85 Poiseuille's flow is 4 % too low, at 0.2 3 % too high.
-constexpr double kLiesEvenly = 0.5;
-// At a ball of 2.5 spacings and less all of it does. With half there, too, a ball that is turned meets what
-// it should to 1 %, but one that goes along a tube 7 % too little; with all 4 and 5 % too much and too
-// little.
+// means over five close spacings, at 5 and 4 mm: with half Poiseuille's flow is 3 % too low.
+constexpr double kLiesEvenly = 0.3;
+// At a ball of 2.5 spacings and less nearly all of it does: between a ball that is turned, which meets 7 %
+// too much (8 mm), and one that goes along a tube, which meets 3 % too little.
+constexpr double kLiesEvenlyAtBalls = 0.9;
 constexpr double kBall = 0.4;  // the convexity from which on it is so
 
 template <class Kernel>
-WallDrag computed(double ratio, DragSheet sheet) {
+WallDrag computed(double ratio, DragSheet sheet, const DragShape<double>& shape) {
   const int reach = static_cast<int>(std::ceil(ratio));
   const double behind = sheet == DragSheet::kBehind ? kWallInset : 0.0;
-  double stress = 0.0, by_layers = 0.0, evenly = 0.0, whole = layer_drag<Kernel>(0.0, ratio).along;
+  double stress = 0.0, by_layers = 0.0, evenly = 0.0, whole = layer_drag<Kernel>(0.0, ratio, shape).along;
   for (int n = 1; n <= reach; ++n) {
-    const LayerDrag layer = layer_drag<Kernel>(n, ratio);
+    const LayerDrag layer = layer_drag<Kernel>(n, ratio, shape);
     stress +=
         n * n * layer.along;  // n pairs of layers that far apart lie across a plane, n spacings of shear each
     whole += 2.0 * layer.along;
   }
   const auto passed = [&](double height) {
-    return height * layer_drag<Kernel>(behind + height, ratio).along;
+    return height * layer_drag<Kernel>(behind + height, ratio, shape).along;
   };
   constexpr int kHeights = 20;  // of evenly lying fluid, a layer
   for (int n = 0; n < reach; ++n) {
@@ -70,7 +71,7 @@ WallDrag computed(double ratio, DragSheet sheet) {
   }
   WallDrag drag;
   if (by_layers > 0.0 && evenly > 0.0) drag = {stress / by_layers, stress / evenly};
-  const LayerDrag first = layer_drag<Kernel>(behind + kFirstLayer, ratio);
+  const LayerDrag first = layer_drag<Kernel>(behind + kFirstLayer, ratio, shape);
   drag.rate = drag.factor(kBall) * (first.along + first.across) / whole;
   return drag;
 }
@@ -78,7 +79,7 @@ WallDrag computed(double ratio, DragSheet sheet) {
 }  // namespace
 
 double WallDrag::factor(double convexity) const {
-  const double evenly = std::lerp(kLiesEvenly, 1.0, std::clamp(convexity / kBall, 0.0, 1.0));
+  const double evenly = std::lerp(kLiesEvenly, kLiesEvenlyAtBalls, std::clamp(convexity / kBall, 0.0, 1.0));
   return 1.0 / ((1.0 - evenly) / layered + evenly / even);
 }
 
@@ -91,7 +92,8 @@ DragSheet drag_sheet(const Scene& scene, const Plan& plan) {
 
 WallDrag wall_drag(ParticleModel model, double support_ratio, DragSheet sheet) {
   if (!corrects_gradients(model)) return {};
-  return computed<ModelParts<ParticleModel::kCorrected>::ForceKernel>(support_ratio, sheet);
+  return computed<ModelParts<ParticleModel::kCorrected>::ForceKernel>(
+      support_ratio, sheet, drag_shape(model, sheet, support_ratio));
 }
 
 }  // namespace slosh

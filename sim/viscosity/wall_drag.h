@@ -39,10 +39,10 @@ struct WallDrag {
 };
 
 /// Factors are such that in a linear shear, u = γ · (distance from the surface), the fluid within reach of
-/// the sheet passes on the stress that layers of fluid pass on to each other. Fluid at a flat wall lies half
-/// in layers, half evenly, at a ball of a few spacings evenly; from behind the surface layers alone count.
-/// Nothing but the support ratio, the kernel and the surface decide it. Models that do not correct gradients
-/// keep 1.
+/// the sheet passes on the stress that layers of fluid pass on to each other. Fluid at a flat wall lies
+/// mostly in layers, at a ball of a few spacings mostly evenly; from behind the surface layers alone count.
+/// Nothing but the support ratio, drag_shape() and the surface decide it. Models that do not correct
+/// gradients keep 1.
 WallDrag wall_drag(ParticleModel model, double support_ratio, DragSheet sheet);
 
 }  // namespace slosh

@@ -213,9 +213,10 @@ std::vector<Reading> slow_ball(const Setting& setting, Cost& cost) {
 
 // A free slab without weight, kHeight thick, moves along itself as cos(ky), k = π/kHeight: its faces bear no
 // stress and neither does the wave at them, so it dies as exp(−νk²t) and nothing but the viscosity has a part
-// in it. Its ends bear none either and the wave does there; the middle third does not feel them.
+// in it. Its ends bear none either and the wave does there; the middle third does not feel them (half as long
+// a slab reads 1.7 to 2.6 % less, one half as long again the same).
 std::vector<Reading> shear_wave(const Setting& setting, Cost& cost) {
-  constexpr double kHeight = 0.08, kLength = 0.32, kWidth = 0.08, kViscosity = 5.0, kSpeed = 0.02;
+  constexpr double kHeight = 0.08, kLength = 0.64, kWidth = 0.08, kViscosity = 5.0, kSpeed = 0.02;
   constexpr double kWave = kPi / kHeight, kRate = kViscosity / 1000.0 * kWave * kWave;
   SceneBuilder b;
   b.add_fluid(1000.0, kViscosity);
