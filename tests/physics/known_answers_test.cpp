@@ -113,35 +113,36 @@ INSTANTIATE_TEST_SUITE_P(
         // Until walls gave the whole of their torque (Honey below loses none now) 0.04, 0.04 and 0.05 held: 5
         // % that was lost made up for as much that fluid at walls is too stiff by.
         std::vector<Known>{{"spin_up", 0.005, "torque at tau 0.02", 0.04},
-                           {"spin_up", 0.005, "torque at tau 0.05", 0.04},
+                           {"spin_up", 0.005, "torque at tau 0.05", 0.045},
                            {"spin_up", 0.005, "torque at tau 0.10", 0.05},
                            {"spin_up", 0.005, "impulse", 0.025}},
         // Thin and slow fluid yields (sim/README.md), and five spacings across the radius see that alone. The
         // report's own 7.1 mm, where 5 Pa·s is within a percent, take 17 s.
-        std::vector<Known>{{"spin_up_all", 0.01, "torque, 2.0 Pa·s at 0.5 rad/s", 0.23},
-                           {"spin_up_all", 0.01, "torque, 5.0 Pa·s at 0.5 rad/s", 0.12},
-                           {"spin_up_all", 0.01, "torque, 2.0 Pa·s at 5.0 rad/s", 0.18},
-                           {"spin_up_all", 0.01, "torque, 5.0 Pa·s at 5.0 rad/s", 0.12}},
-        std::vector<Known>{{"couette", 0.00667, "torque", 0.06}},
-        std::vector<Known>{{"couette", 0.006, "torque", 0.04}},
-        std::vector<Known>{{"couette_start", 0.005, "torque at 20 ms", 0.08},
-                           {"couette_start", 0.005, "torque at 40 ms", 0.03},
-                           {"couette_start", 0.005, "torque at 80 ms", 0.03}},
-        std::vector<Known>{{"poiseuille", 0.005, "flow", 0.025}, {"poiseuille", 0.005, "flow at 40 ms", 0.03}},
+        std::vector<Known>{{"spin_up_all", 0.01, "torque, 2.0 Pa·s at 0.5 rad/s", 0.16},
+                           {"spin_up_all", 0.01, "torque, 5.0 Pa·s at 0.5 rad/s", 0.09},
+                           {"spin_up_all", 0.01, "torque, 2.0 Pa·s at 5.0 rad/s", 0.16},
+                           {"spin_up_all", 0.01, "torque, 5.0 Pa·s at 5.0 rad/s", 0.085}},
+        std::vector<Known>{{"couette", 0.00667, "torque", 0.04}},
+        std::vector<Known>{{"couette", 0.006, "torque", 0.03}},
+        std::vector<Known>{{"couette_start", 0.005, "torque at 20 ms", 0.075},
+                           {"couette_start", 0.005, "torque at 40 ms", 0.035},
+                           {"couette_start", 0.005, "torque at 80 ms", 0.045}},
+        std::vector<Known>{{"poiseuille", 0.005, "flow", 0.025},
+                           {"poiseuille", 0.005, "flow at 40 ms", 0.025}},
         // What is slow yields (sim/README.md): 42 % too little is left of it, and walls have bumps.
-        std::vector<Known>{{"taylor_green", 0.005, "rate of decay", 0.14},
-                           {"taylor_green", 0.005, "left of 2 cm/s after a decay's time", 0.32}},
+        std::vector<Known>{{"taylor_green", 0.005, "rate of decay", 0.10},
+                           {"taylor_green", 0.005, "left of 2 cm/s after a decay's time", 0.38}},
         std::vector<Known>{{"smooth_glass", 0.005, "kept, 10 cm/s at the rim", 0.06},
-                           {"smooth_glass", 0.005, "kept, 2 cm/s at the rim", 0.40}},
+                           {"smooth_glass", 0.005, "kept, 2 cm/s at the rim", 0.32}},
         // A ball of 1.5 and 2 spacings. It meets particle by particle what drags it now, so a stroke's halves
         // differ more (0.03 held where it slid through).
-        std::vector<Known>{{"stokes", 0.008, "drag", 0.06}, {"stokes", 0.008, "drift over a stroke", 0.02}},
-        std::vector<Known>{{"stokes", 0.006, "drag", 0.055}, {"stokes", 0.006, "drift over a stroke", 0.02}},
+        std::vector<Known>{{"stokes", 0.008, "drag", 0.045}, {"stokes", 0.008, "drift over a stroke", 0.02}},
+        std::vector<Known>{{"stokes", 0.006, "drag", 0.04}, {"stokes", 0.006, "drift over a stroke", 0.02}},
         // -4.7 % was of honey that had not settled yet: it still sagged around the ball.
         std::vector<Known>{{"stokes_honey", 0.008, "drag", 0.09},
                            {"stokes_honey", 0.008, "drift over a stroke", 0.135}},
-        std::vector<Known>{{"stokes_honey", 0.006, "drag", 0.075}},
-        // +1 to +5 %. Before thick fluid settled as thin fluid does, -4 % at 50 and -31 % at 1000 Pa·s.
+        std::vector<Known>{{"stokes_honey", 0.006, "drag", 0.06}},
+        // +3 to +6 %. Before thick fluid settled as thin fluid does, -4 % at 50 and -31 % at 1000 Pa·s.
         std::vector<Known>{{"turned_ball", 0.008, "torque, 5 Pa·s, 0.01 of the density", 0.075},
                            {"turned_ball", 0.008, "torque, 5 Pa·s, 20 of the density", 0.075},
                            {"turned_ball", 0.008, "torque, 50 Pa·s, 0.01 of the density", 0.055},
@@ -156,8 +157,8 @@ INSTANTIATE_TEST_SUITE_P(
         std::vector<Known>{{"dam_break_long", 0.05715 / 10, "front against potential flow, worst", 0.036},
                            {"dam_break_long", 0.05715 / 10, "speed of the front", 0.05},
                            {"dam_break_long", 0.05715 / 10, "front, worst", 0.19}},
-        std::vector<Known>{{"shear_wave", 0.01, "rate of decay", 0.02}},
-        std::vector<Known>{{"shear_wave", 0.008, "rate of decay", 0.01}},
+        std::vector<Known>{{"shear_wave", 0.01, "rate of decay", 0.012}},
+        std::vector<Known>{{"shear_wave", 0.008, "rate of decay", 0.007}},
         std::vector<Known>{{"bounce", 0.015, "rebound", 1e-3}}),
     named);
 
@@ -173,7 +174,7 @@ INSTANTIATE_TEST_SUITE_P(
         // that.
         std::vector<Known>{{"couette", 0.00667, "torque", 0.14, ParticleModel::kCorrected, 2.5}},
         // Its faces lack neighbours as deep as the kernel is wide.
-        std::vector<Known>{{"shear_wave", 0.01, "rate of decay", 0.14, ParticleModel::kCorrected, 2.5}},
+        std::vector<Known>{{"shear_wave", 0.01, "rate of decay", 0.10, ParticleModel::kCorrected, 2.5}},
         std::vector<Known>{{"sloshing", 0.016, "swing kept a period", 0.09, ParticleModel::kCorrected, 2.5},
                            {"sloshing", 0.016, "period", 0.004}}),
     named);
