@@ -129,7 +129,7 @@ INSTANTIATE_TEST_SUITE_P(
                            {"couette_start", 0.005, "torque at 80 ms", 0.045}},
         std::vector<Known>{{"poiseuille", 0.005, "flow", 0.025},
                            {"poiseuille", 0.005, "flow at 40 ms", 0.025}},
-        // What is slow yields (sim/README.md): 42 % too little is left of it, and walls have bumps.
+        // What is slow yields (sim/README.md): 35 % too little is left of it, and walls have bumps.
         std::vector<Known>{{"taylor_green", 0.005, "rate of decay", 0.10},
                            {"taylor_green", 0.005, "left of 2 cm/s after a decay's time", 0.38}},
         std::vector<Known>{{"smooth_glass", 0.005, "kept, 10 cm/s at the rim", 0.06},
