@@ -26,7 +26,7 @@ Scene with_setting(Scene scene, const Setting& setting) {
 }
 
 Trial::Trial(const Scene& scene, const Setting& setting, Cost& cost)
-    : sampled_(sampled_or_refused(scene, setting.spacing)), stopped_(setting.stopped), cost_(cost) {
+    : sampled_(sampled_or_refused(with_setting(scene, setting), setting.spacing)), stopped_(setting.stopped), cost_(cost) {
   start(with_setting(scene, setting), setting);
 }
 

@@ -146,7 +146,7 @@ std::vector<Reading> paraboloid(const Setting& setting, Cost& cost) {
   b.add_volume(filling_of(kRadius, kDepth));
   b.add_stiff_grip(glass);
   b.set_domain({-0.2, -0.1, -0.2}, {0.2, 0.3, 0.2});
-  Result<SampledScene> sampled = sample_scene(b.scene, setting.spacing);
+  Result<SampledScene> sampled = sample_scene(with_setting(b.scene, setting), setting.spacing);
   if (!sampled) throw Refused(sampled.error());
   for (std::size_t i = 0; i < sampled.value().fluid_positions.size(); ++i) {
     sampled.value().fluid_velocities[i] =

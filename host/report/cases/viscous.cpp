@@ -223,7 +223,7 @@ std::vector<Reading> shear_wave(const Setting& setting, Cost& cost) {
   b.add_volume(make::box({-0.5 * kLength, 0.0, -0.5 * kWidth}, {0.5 * kLength, kHeight, 0.5 * kWidth}));
   b.scene.gravity = glm::dvec3(0.0);
   b.set_domain({-0.4, -0.2, -0.3}, {0.4, 0.3, 0.3});
-  Result<SampledScene> sampled = sample_scene(b.scene, setting.spacing);
+  Result<SampledScene> sampled = sample_scene(with_setting(b.scene, setting), setting.spacing);
   if (!sampled) throw Refused(sampled.error());
   std::vector<double> shape;  // cos(ky) of each particle
   for (std::size_t i = 0; i < sampled.value().fluid_positions.size(); ++i) {

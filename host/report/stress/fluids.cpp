@@ -124,7 +124,7 @@ Stress layers(const Setting& setting, Cost& cost) {
 template <class Change>
 Stress started(Change change, const Setting& setting, Cost& cost, double most_lost) {
   const Scene scene = tank_of(0.01, kGravity, 1000.0);
-  Result<SampledScene> sampled = sample_scene(scene, setting.spacing);
+  Result<SampledScene> sampled = sample_scene(with_setting(scene, setting), setting.spacing);
   if (!sampled) throw Refused(sampled.error());
   change(sampled.value());
   auto& fluid = sampled.value();
