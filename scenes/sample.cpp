@@ -32,6 +32,9 @@ constexpr double kSecondsAFluidParticle = 2e-6;
 constexpr double kMostFluid = 2e7;
 constexpr double kMostSurface = 2e6;
 
+/// Of the spacing, where fluid slides along a wall. At 0.8 half of what the bumps brake is left.
+constexpr double kSmoothSheet = 0.7;
+
 /// What one mesh gives every body that has it.
 struct SampledMesh {
   SurfaceSamples surface;
@@ -52,8 +55,10 @@ Result<SampledMesh> sample_mesh(const Scene& scene, const Body& body, double spa
   }
   mesh::Components parts;
   mesh::find_defects(mesh::weld(triangles), &parts);
-  return SampledMesh{sampling::sample_surface(triangles, tree, parts.count, spacing, tell),
-                     sampling::make_distance_field(triangles, tree, spacing)};
+  const double apart = sheet_spacing(scene, body, spacing);
+  SurfaceSamples surface = sampling::sample_surface(triangles, tree, parts.count, apart, tell);
+  surface.particle_volume *= static_cast<float>(spacing / apart);  // area · spacing / count
+  return SampledMesh{std::move(surface), sampling::make_distance_field(triangles, tree, spacing)};
 }
 
 /// A spacing that is far too small must not look like a
@@ -71,7 +76,7 @@ std::optional<Error> check_size(const Scene& scene, double spacing) {
 
 SurfaceSamples sample_probe(double spacing) {
   const auto volume = static_cast<float>(spacing * spacing * spacing);
-  return {{glm::vec3(0.0f)}, {glm::vec3(0.0f, 1.0f, 0.0f)}, volume};
+  return {{glm::vec3(0.0f)}, {glm::vec3(0.0f, 1.0f, 0.0f)}, volume, static_cast<float>(spacing)};
 }
 
 // The share of the work that the surfaces are, each mesh counted once.
@@ -117,7 +122,7 @@ Result<SampledScene> sample(const Scene& scene, double spacing, SampleReport* re
   if (const auto problem = check_size(scene, spacing)) return *problem;
   SampledScene out;
   out.spacing = spacing;
-  std::map<int, std::size_t> first_with_mesh;
+  std::map<std::pair<int, double>, std::size_t> first_sampled;
   Work work(scene, spacing, tell);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
@@ -126,7 +131,8 @@ Result<SampledScene> sample(const Scene& scene, double spacing, SampleReport* re
       out.distance_fields.emplace_back();
       continue;
     }
-    const auto [known, is_new] = first_with_mesh.try_emplace(body.mesh, b);
+    const auto [known, is_new] =
+        first_sampled.try_emplace({body.mesh, sheet_spacing(scene, body, spacing)}, b);
     if (is_new) {
       Result<SampledMesh> sampled = sample_mesh(scene, body, spacing, work.within(body));
       if (!sampled) return sampled.error();
@@ -148,6 +154,12 @@ Result<SampledScene> sample(const Scene& scene, double spacing, SampleReport* re
 
 }  // namespace
 
+double sheet_spacing(const Scene& scene, const Body& body, double spacing) {
+  const bool smooth = body.motion == BodyMotion::kFixed && body.dynamic_viscosity == kFreeSlip &&
+                      corrects_gradients(scene.model);
+  return smooth ? kSmoothSheet * spacing : spacing;
+}
+
 Result<SampledScene> sample_scene(const Scene& scene, double spacing, SampleReport* report,
                                   const std::function<void(double)>& tell) {
   try {
@@ -167,8 +179,9 @@ ParticleEstimate estimate_particles(const Scene& scene, double spacing) {
     estimate.fluid += mesh::integrate_volume(welded, parts).volume / (spacing * spacing * spacing);
   }
   for (const Body& body : scene.bodies) {
+    const double apart = sheet_spacing(scene, body, spacing);
     estimate.surface +=
-        body.point_probe ? 1.0 : mesh::surface_area(scene.meshes[body.mesh]) / (spacing * spacing);
+        body.point_probe ? 1.0 : mesh::surface_area(scene.meshes[body.mesh]) / (apart * apart);
   }
   return estimate;
 }

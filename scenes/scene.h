@@ -239,6 +239,7 @@ struct SurfaceSamples {
   std::vector<glm::vec3> positions;  ///< m
   std::vector<glm::vec3> normals;    ///< unit, outward
   float particle_volume = 0.0f;      ///< m³, the same for every particle (area · spacing / count)
+  float apart = 0.0f;                ///< m, between neighbours (sheet_spacing)
 };
 
 struct DistanceField {

@@ -270,6 +270,7 @@ SurfaceSamples sample_surface(const TriangleMesh& mesh, const mesh::MeshTree& tr
   SurfaceSamples out;
   out.positions = std::move(points.at);
   out.normals = std::move(points.normal);
+  out.apart = static_cast<float>(spacing);
   out.particle_volume =
       static_cast<float>(exposed_area * spacing / static_cast<double>(out.positions.size()));
   return out;

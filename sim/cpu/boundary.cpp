@@ -1,4 +1,6 @@
 // Body particles placed with their bodies (Eq 14) and sorted.
+#include <algorithm>
+
 #include "sim/cpu/passes.h"
 #include "sim/walls/surface_motion.h"
 
@@ -9,6 +11,10 @@ BodySurface::BodySurface(std::vector<SurfaceParticle> particles) : local_(std::m
   placed_.resize(local_.size());
   velocity_.resize(local_.size());
   sorted_.resize(local_.size());
+  const bool mirrors = std::any_of(local_.begin(), local_.end(), [](const SurfaceParticle& p) {
+    return p.mirror.normal != glm::vec3(0.0f);
+  });
+  if (mirrors) sorted_.mirror.resize(local_.size());
 }
 
 void BodySurface::place(const PassContext& context, std::span<const RigidBody> bodies) {
@@ -40,6 +46,7 @@ void BodySurface::place(const PassContext& context, std::span<const RigidBody> b
     sorted_.volume[i] = local_[from].volume;
     sorted_.viscosity[i] = local_[from].viscosity;
     sorted_.body[i] = local_[from].body;
+    if (!sorted_.mirror.empty()) sorted_.mirror.set(i, local_[from].mirror);
   }
   sorted_.index.rebuild(context.grid, keys_.data(), keys_.size());
 }

@@ -6,6 +6,7 @@
 #include "sim/cpu/passes.h"
 #include "sim/cpu/press_walk.h"
 #include "sim/cpu/row_drag.h"
+#include "sim/cpu/row_mirror.h"
 #include "sim/viscosity/noise.h"
 
 namespace slosh {
@@ -63,6 +64,11 @@ void write_body_pairs(const DragWalk& w, std::uint32_t p, const RowList& fixed_r
     by_walls.yz += y * found.z;
     by_walls.zz += found.q * found.z * found.z;
   });
+  if (!w.fixed.mirror.empty()) {
+    // Wall particles stand still, so that what they drag by is of the fluid's own velocity alone.
+    const FloatBatch each(w.factor / kCentralDrag);
+    add_mirror_rates<Parts>(self, w.fixed, fixed_rows, h, shape, by_walls, each);
+  }
   const auto behind = static_cast<std::uint32_t>(w.fluid.index.particles());
   for_each_batch(moving_rows, [&](std::uint32_t j, FloatBatch weight) {
     const PairBatch found = drag_pairs<Parts, Viscosity::kPair, Neighbours::kWalls>(self, moving, j, weight,

@@ -5,6 +5,7 @@
 #include "sim/cpu/passes.h"
 #include "sim/cpu/press_walk.h"
 #include "sim/cpu/row_force.h"
+#include "sim/cpu/row_mirror.h"
 
 namespace slosh {
 
@@ -72,6 +73,10 @@ __attribute__((flatten)) void find_forces_of(const FluidWalk& walk, std::size_t 
       if (moving_rows.count)
         add_row_forces<Parts, kWalls, kAgainstBodies, Neighbours::kWalls>(self, moving_columns, moving_rows,
                                                                           h, shape, sum);
+      if constexpr (viscosity != Viscosity::kNone) {
+        if (!walk.fixed.mirror.empty() && fixed_rows.count)
+          add_mirror_forces<Parts>(self, walk.fixed, fixed_rows, h, shape, sum);
+      }
       const float scale = context.force_scale;
       const auto put = [](float& force, float found) { force = Parts::kCorrected ? force + found : found; };
       put(fluid.fx[p], scale * lane_sum(sum.x));
@@ -163,6 +168,11 @@ void sum_body_wrenches(PassContext& context, ThreadTeam& team, const FluidPartic
               broadcast(own, i, own_viscosity<viscosity>(wall, context.kinds.front().viscosity));
           add_row_forces<Parts, Parts::kOnBodies, viscosity>(self, fluid_columns, rows, h, shape, sum,
                                                              FloatBatch(wall.of_fluid));
+          if constexpr (viscosity != Viscosity::kNone) {
+            if (!boundary.mirror.empty())
+              add_forces_on_mirror<Parts, viscosity>(boundary, i, context.kinds.front().viscosity,
+                                                     fluid_columns, rows, h, shape, sum);
+          }
           const float scale = context.force_scale;
           scratch.force[i] = scale * glm::vec3(lane_sum(sum.x), lane_sum(sum.y), lane_sum(sum.z));
           scratch.couple[i] = scale * glm::vec3(lane_sum(sum.cx), lane_sum(sum.cy), lane_sum(sum.cz));

@@ -28,6 +28,23 @@ void GatheredColumns::provide(const Plan& plan, std::size_t count) {
       *this);
 }
 
+void MirrorColumns::resize(std::size_t count) {
+  for (Column<float>* column : {&nx, &ny, &nz, &xx, &xy, &xz, &yy, &yz, &zz})
+    column->assign(count + kLanes, 0.0f);
+}
+
+void MirrorColumns::set(std::size_t i, const MirrorPlane& plane) {
+  nx[i] = plane.normal.x;
+  ny[i] = plane.normal.y;
+  nz[i] = plane.normal.z;
+  xx[i] = plane.bend.xx;
+  xy[i] = plane.bend.xy;
+  xz[i] = plane.bend.xz;
+  yy[i] = plane.bend.yy;
+  yz[i] = plane.bend.yz;
+  zz[i] = plane.bend.zz;
+}
+
 void BoundaryParticles::resize(std::size_t count) {
   const std::size_t padded = count + kLanes;
   for (Column<float>* column : {&x, &y, &z, &vx, &vy, &vz, &pressure, &volume, &viscosity}) {

@@ -8,6 +8,7 @@
 #include "sim/cpu/cell_grid.h"
 #include "sim/cpu/simd.h"
 #include "sim/plan.h"
+#include "sim/walls/mirror_planes.h"
 
 namespace slosh {
 
@@ -26,6 +27,15 @@ struct GatheredColumns : FluidColumns<Column> {
   void provide(const Plan& plan, std::size_t count);
 };
 
+/// A MirrorPlane a particle (walls/mirror_planes.h), world axes. Empty where no body of a set mirrors.
+struct MirrorColumns {
+  Column<float> nx, ny, nz, xx, xy, xz, yy, yz, zz;
+
+  bool empty() const { return nx.empty(); }
+  void resize(std::size_t count);
+  void set(std::size_t i, const MirrorPlane& plane);
+};
+
 /// Particles of rigid bodies with constant density (section 4.1). One set for the fixed bodies, sorted once,
 /// and one for the free ones, placed and sorted every step.
 struct BoundaryParticles {
@@ -36,6 +46,7 @@ struct BoundaryParticles {
   Column<float> volume;    ///< m³
   Column<float> viscosity;     ///< Pa·s
   Column<std::uint16_t> body;  ///< index into Scene::bodies
+  MirrorColumns mirror;
   CellIndex index;
 
   void resize(std::size_t count);

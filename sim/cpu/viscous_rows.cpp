@@ -1,5 +1,6 @@
 // Which pairs drag, as conjugate gradients ask for them (viscous_solve.h).
 #include "sim/cpu/row_drag.h"
+#include "sim/cpu/row_mirror.h"
 #include "sim/cpu/viscous_solve.h"
 
 namespace slosh {
@@ -95,9 +96,13 @@ void ViscousSolver::add_fixed(const Work& work, std::span<Wrench> wrenches) {
   }
   const std::vector<CellRun>& runs = fixed.index.runs();
   const NeighborColumns fluids = columns(fluid), own = columns(fixed);
+  NeighborColumns ended = fluids;
+  ended.vx = end_x_.data();
+  ended.vy = end_y_.data();
+  ended.vz = end_z_.data();
   const FloatBatch h(context.support_radius), factor(kCentralDrag * context.force_scale), zero(0.0f);
   const DragShape<FloatBatch> shape = in_all_lanes(context.drag_shape);
-  std::vector<glm::vec3> forces(fixed.index.particles(), glm::vec3(0.0f));
+  std::vector<glm::vec3> forces(fixed.index.particles(), glm::vec3(0.0f)), couples = forces;
   with_solved_viscosity(context.plan, [&]<Viscosity viscosity>() {
     work.team.run(runs.size(), kRunsPerChunk, [&](std::size_t begin, std::size_t end) {
       for (std::size_t r = begin; r < end; ++r) {
@@ -108,18 +113,31 @@ void ViscousSolver::add_fixed(const Work& work, std::span<Wrench> wrenches) {
           const WallViscosity wall = wall_viscosity(fixed.viscosity[i]);
           const ParticleView<FloatBatch> self =
               broadcast(own, i, own_viscosity<viscosity>(wall, context.kinds.front().viscosity));
-          ForceSum<FloatBatch> force{zero, zero, zero};
+          SurfaceSum<FloatBatch> force{{zero, zero, zero}, zero, zero, zero};
           for_each_batch(rows, [&](std::uint32_t j, FloatBatch weight) {
             const PairBatch d = drag_pairs<Parts, viscosity, Neighbours::kFluid>(
                 self, fluids, j, weight, h, shape, factor, FloatBatch(wall.of_fluid));
-            const FloatBatch along = d.q * (d.x * FloatBatch::load_unaligned(end_x_.data() + j) +
-                                            d.y * FloatBatch::load_unaligned(end_y_.data() + j) +
-                                            d.z * FloatBatch::load_unaligned(end_z_.data() + j));
+            const FloatBatch along = d.q * (d.x * FloatBatch::load_unaligned(ended.vx + j) +
+                                            d.y * FloatBatch::load_unaligned(ended.vy + j) +
+                                            d.z * FloatBatch::load_unaligned(ended.vz + j));
             force.x += d.x * along;
             force.y += d.y * along;
             force.z += d.z * along;
           });
+          if (!fixed.mirror.empty()) {
+            SurfaceSum<FloatBatch> mirrored{{zero, zero, zero}, zero, zero, zero};
+            add_forces_on_mirror<Parts, viscosity>(fixed, i, context.kinds.front().viscosity, ended, rows, h,
+                                                   shape, mirrored);
+            const FloatBatch scale(context.force_scale);
+            force.x += scale * mirrored.x;
+            force.y += scale * mirrored.y;
+            force.z += scale * mirrored.z;
+            force.cx += scale * mirrored.cx;
+            force.cy += scale * mirrored.cy;
+            force.cz += scale * mirrored.cz;
+          }
           forces[i] = {lane_sum(force.x), lane_sum(force.y), lane_sum(force.z)};
+          couples[i] = {lane_sum(force.cx), lane_sum(force.cy), lane_sum(force.cz)};
         }
       }
     });
@@ -130,7 +148,8 @@ void ViscousSolver::add_fixed(const Work& work, std::span<Wrench> wrenches) {
     const glm::dvec3 force(forces[i]);
     wrenches[body].force += force;
     wrenches[body].torque +=
-        glm::cross(glm::dvec3(fixed.x[i], fixed.y[i], fixed.z[i]) - work.sides.bodies[body].position, force);
+        glm::cross(glm::dvec3(fixed.x[i], fixed.y[i], fixed.z[i]) - work.sides.bodies[body].position, force) +
+        glm::dvec3(couples[i]);
   }
 }
 

@@ -148,7 +148,26 @@ void SurfaceBuffers::allocate(const std::vector<SurfaceParticle>& particles, con
                   sorted_body_.data(),
                   sorted_key_.data(),
                   order_.data(),
-                  cells_.view()};
+                  cells_.view(),
+                  upload_mirrors(particles, check)};
+}
+
+MirrorPlanes SurfaceBuffers::upload_mirrors(const std::vector<SurfaceParticle>& particles, CallCheck& check) {
+  std::vector<float4> normal, bend_a;
+  std::vector<float2> bend_b;
+  bool any = false;
+  for (const SurfaceParticle& p : particles) {
+    const auto& [n, b] = p.mirror;
+    any |= n != glm::vec3(0.0f);
+    normal.push_back({n.x, n.y, n.z, 0.0f});
+    bend_a.push_back({b.xx, b.xy, b.xz, b.yy});
+    bend_b.push_back({b.yz, b.zz});
+  }
+  if (!any) return {};
+  mirror_normal_.upload(normal, check);
+  mirror_bend_a_.upload(bend_a, check);
+  mirror_bend_b_.upload(bend_b, check);
+  return {mirror_normal_.data(), mirror_bend_a_.data(), mirror_bend_b_.data()};
 }
 
 void SurfaceBuffers::place(const StepConstants& constants, const DeviceBody* bodies, SortSpace& space,

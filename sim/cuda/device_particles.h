@@ -74,10 +74,14 @@ class SurfaceBuffers {
   const SortedSurface& sorted() const { return sorted_view_; }
 
  private:
+  MirrorPlanes upload_mirrors(const std::vector<SurfaceParticle>& particles, CallCheck& check);
+
   DeviceBuffer<float4> position_, placed_, velocity_, force_, couple_, sorted_x_, sorted_v_;
   DeviceBuffer<float2> material_;
   DeviceBuffer<float4> drag_a_;  // kBodyDrag
   DeviceBuffer<float2> drag_b_;
+  DeviceBuffer<float4> mirror_normal_, mirror_bend_a_;  // where a body mirrors
+  DeviceBuffer<float2> mirror_bend_b_;
   DeviceBuffer<float> viscosity_;
   DeviceBuffer<std::uint16_t> body_, sorted_body_;
   DeviceBuffer<std::uint32_t> key_, sorted_key_, order_;

@@ -1,5 +1,5 @@
 // Eq 5, 6 and 9 on fluid particles.
-#include "sim/cuda/pair_rows.cuh"
+#include "sim/cuda/pair_mirrors.cuh"
 
 namespace slosh::cuda {
 
@@ -26,6 +26,9 @@ __global__ __launch_bounds__(kThreads) void force_kernel(StepConstants c, const 
   if (moving.count) {
     add_forces<Team, Parts, Parts::kWalls, kAgainstBodies, Neighbours::kWalls>(c, self, columns(moving),
                                                                                moving.cells, cell, sum);
+  }
+  if constexpr (Parts::kCorrected && viscosity != Viscosity::kNone) {
+    if (fixed.mirror.normal) add_mirror_forces<Team, Parts>(c, self, fixed, cell, sum);
   }
   Team::sum(sum.x, sum.y, sum.z);
   if (Team::lane() != 0) return;

@@ -113,6 +113,13 @@ struct LocalSurface {
   float2* drag_b = nullptr;      ///< yz, zz of it
 };
 
+/// A MirrorPlane a particle (walls/mirror_planes.h), in local order; null where no body of a set mirrors.
+struct MirrorPlanes {
+  const float4* normal = nullptr;  ///< w is not used
+  const float4* bend_a = nullptr;  ///< xx, xy, xz, yy
+  const float2* bend_b = nullptr;  ///< yz, zz
+};
+
 /// Body particles sorted by cell.
 struct SortedSurface {
   std::uint32_t count = 0;
@@ -123,6 +130,7 @@ struct SortedSurface {
   std::uint32_t* key = nullptr;
   std::uint32_t* order = nullptr;  ///< local index of each
   CellTable cells;
+  MirrorPlanes mirror;
 };
 
 /// A body's motion for a step.

@@ -1,4 +1,5 @@
 // Writing down who drags whom, and the drag on bodies that stand still.
+#include "sim/cuda/pair_mirrors.cuh"
 #include "sim/cuda/viscous_pairs.cuh"
 
 namespace slosh::cuda {
@@ -41,6 +42,12 @@ __global__ __launch_bounds__(kThreads) void rows_kernel(StepConstants c, const P
       for_each_pair<Viscosity::kPair, Neighbours::kWalls>(
           c, dragged(fluid, kinds, e), columns(fixed), fixed.cells, fluid.state.key[e], factor, 1.0f,
           [&](std::uint32_t, const float3& w) { add_outer(w, by_walls); });
+      if (fixed.mirror.normal) {
+        Symmetric<float> mirrored{};
+        add_mirror_rates<Alone, SolvedParts>(c, dragged(fluid, kinds, e), fixed, fluid.state.key[e],
+                                             mirrored);
+        add_scaled(mirrored, dt * c.force_scale, by_walls);
+      }
     }
     const float mass = kinds[fluid.state.kind[e]].mass;
     block = inverse_block(mass, 1.0f,
@@ -59,7 +66,7 @@ __global__ __launch_bounds__(kThreads) void fixed_kernel(StepConstants c, float 
   const std::uint32_t i = thread_index();
   if (i >= fixed.count || !wanted[fixed.body[i]]) return;
   const std::uint32_t cell = fixed.key[i];
-  float3 force = make_float3(0.0f, 0.0f, 0.0f);
+  float3 force = make_float3(0.0f, 0.0f, 0.0f), couple = force;
   if (cell < c.grid.retired_key()) {
     const WallViscosity wall = wall_viscosity(fixed.viscosity[i]);
     const ParticleView<float> self = dragged<viscosity>(fixed, i, wall, first_viscosity);
@@ -73,9 +80,22 @@ __global__ __launch_bounds__(kThreads) void fixed_kernel(StepConstants c, float 
           force.y += w.y * along;
           force.z += w.z * along;
         });
+    if (fixed.mirror.normal) {
+      SurfaceSum<float> on{};
+      const auto ended = [&](std::uint32_t j, const float4& v) {
+        const float4 u = __ldg(solved.change + j);
+        return make_float3(v.x + u.x, v.y + u.y, v.z + u.z);
+      };
+      add_forces_on_mirror<Alone, SolvedParts, viscosity>(c, fixed, i, cell, first_viscosity, fluid, ended,
+                                                          on);
+      force.x += c.force_scale * on.x;
+      force.y += c.force_scale * on.y;
+      force.z += c.force_scale * on.z;
+      couple = make_float3(c.force_scale * on.cx, c.force_scale * on.cy, c.force_scale * on.cz);
+    }
   }
   local.force[fixed.order[i]] = make_float4(force.x, force.y, force.z, 0.0f);
-  local.couple[fixed.order[i]] = make_float4(0.0f, 0.0f, 0.0f, 0.0f);
+  local.couple[fixed.order[i]] = make_float4(couple.x, couple.y, couple.z, 0.0f);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // Eq 10–12: the fluid's forces on body particles, and their sums about the bodies' centres of mass.
-#include "sim/cuda/pair_rows.cuh"
+#include "sim/cuda/pair_mirrors.cuh"
 
 namespace slosh::cuda {
 
@@ -26,6 +26,12 @@ __global__ __launch_bounds__(kThreads) void surface_force_kernel(StepConstants c
     const ParticleView<float> self = view(surface.x[i], surface.v[i], used);
     add_forces<Team, Parts, Parts::kOnBodies, viscosity>(c, self, columns(fluid), fluid.cells, cell, sum,
                                                          wall.of_fluid);
+    if constexpr (Parts::kCorrected && viscosity != Viscosity::kNone) {
+      const auto as_it_is = [](std::uint32_t, const float4& v) { return make_float3(v.x, v.y, v.z); };
+      if (surface.mirror.normal)
+        add_forces_on_mirror<Team, Parts, viscosity>(c, surface, i, cell, first_viscosity, fluid, as_it_is,
+                                                     sum);
+    }
     if constexpr (with_drag) {
       for_each_dragged<Team, viscosity, Neighbours::kFluid>(
           c, self, columns(fluid), fluid.cells, cell, wall.of_fluid, [&](const ParticleView<float>& p) {

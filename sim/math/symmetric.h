@@ -36,6 +36,17 @@ SLOSH_HD Symmetric<Real> scaled_and_shifted(const Symmetric<Real>& t, Real a, Re
   return {a * t.xx + b, a * t.xy, a * t.xz, a * t.yy + b, a * t.yz, a * t.zz + b};
 }
 
+/// sum += a · t.
+template <class Real>
+SLOSH_HD void add_scaled(const Symmetric<Real>& t, Real a, Symmetric<Real>& sum) {
+  sum.xx += a * t.xx;
+  sum.xy += a * t.xy;
+  sum.xz += a * t.xz;
+  sum.yy += a * t.yy;
+  sum.yz += a * t.yz;
+  sum.zz += a * t.zz;
+}
+
 /// The inverse of a tensor whose determinant is not zero.
 template <class Real>
 SLOSH_HD Symmetric<Real> inverse(const Symmetric<Real>& t) {

@@ -12,6 +12,25 @@
 namespace slosh {
 namespace {
 
+constexpr int kPlaces = 10;  // along each axis, where a particle stands over a layer
+
+// Calls f(x, z, r) for the neighbours of a plane square lattice `height` spacings away, at each of those
+// places.
+template <class F>
+void for_each_in_layer(double height, double ratio, F&& f) {
+  const int reach = static_cast<int>(std::ceil(ratio)) + 1;
+  for (int place = 0; place < kPlaces * kPlaces; ++place) {
+    const double x0 = static_cast<double>(place / kPlaces) / kPlaces;
+    const double z0 = static_cast<double>(place % kPlaces) / kPlaces;
+    for (int i = -reach; i <= reach; ++i) {
+      for (int k = -reach; k <= reach; ++k) {
+        const double x = i + x0, z = k + z0, r = std::sqrt(x * x + z * z + height * height);
+        if (r > 0.0 && r < ratio) f(x, z, r);
+      }
+    }
+  }
+}
+
 // Σ shape d̂ d̂ᵀ of a plane square lattice `height` spacings away: along it (one direction) and across it, mean
 // over where the particle stands over the lattice.
 struct LayerDrag {
@@ -20,22 +39,12 @@ struct LayerDrag {
 
 template <class Kernel>
 LayerDrag layer_drag(double height, double ratio, const DragShape<double>& shape) {
-  constexpr int kPlaces = 10;
-  const int reach = static_cast<int>(std::ceil(ratio)) + 1;
   LayerDrag sum;
-  for (int place = 0; place < kPlaces * kPlaces; ++place) {
-    const double x0 = static_cast<double>(place / kPlaces) / kPlaces;
-    const double z0 = static_cast<double>(place % kPlaces) / kPlaces;
-    for (int i = -reach; i <= reach; ++i) {
-      for (int k = -reach; k <= reach; ++k) {
-        const double x = i + x0, z = k + z0, r = std::sqrt(x * x + z * z + height * height);
-        if (r <= 0.0 || r >= ratio) continue;
-        const double pull = shape(Kernel::laplacian(r, ratio)) / (r * r * kPlaces * kPlaces);
-        sum.along += pull * x * x;
-        sum.across += pull * height * height;
-      }
-    }
-  }
+  for_each_in_layer(height, ratio, [&](double x, double, double r) {
+    const double pull = shape(Kernel::laplacian(r, ratio)) / (r * r * kPlaces * kPlaces);
+    sum.along += pull * x * x;
+    sum.across += pull * height * height;
+  });
   return sum;
 }
 
@@ -76,6 +85,44 @@ WallDrag computed(double ratio, DragSheet sheet, const DragShape<double>& shape)
   return drag;
 }
 
+// What a particle and those of a mirrored layer take from each other, of which its height over the wall and
+// the layer's behind it are `height` together: Σ shape (d̂ · Δv)², the flow being a unit stretch along the
+// wall and as much pressing together across it.
+template <class Kernel>
+double mirrored_power(double height, double ratio, const DragShape<double>& shape) {
+  double sum = 0.0;
+  for_each_in_layer(height, ratio, [&](double x, double, double r) {
+    const double along = x * x - height * height;
+    sum += shape(Kernel::laplacian(r, ratio)) * along * along / (r * r * kPlaces * kPlaces);
+  });
+  return sum;
+}
+
+// What a wall's particles, which drag across it alone, take from one at `height`, for each (m/s)² that it has
+// there.
+template <class Kernel>
+double held(double height, double ratio, const DragShape<double>& shape) {
+  double sum = 0.0;
+  for_each_in_layer(height, ratio, [&](double, double, double r) {
+    sum += shape(Kernel::laplacian(r, ratio)) / (kPlaces * kPlaces);
+  });
+  return sum;
+}
+
+template <class Kernel>
+double computed_mirror(double ratio, const DragShape<double>& shape) {
+  constexpr int kHeights = 20;  // a spacing
+  const int heights = static_cast<int>(std::ceil(ratio)) * kHeights;
+  double mirrored = 0.0, by_wall = 0.0;
+  for (int n = 0; n < heights; ++n) {
+    const double z = (n + 0.5) / kHeights;
+    by_wall += held<Kernel>(z, ratio, shape) * z * z;
+    // Of two particles, one on either side, so many pairs of heights come to (n + 1) / kHeights together.
+    mirrored += (n + 1.0) / kHeights * mirrored_power<Kernel>((n + 1.0) / kHeights, ratio, shape);
+  }
+  return 0.5 * mirrored / by_wall;
+}
+
 }  // namespace
 
 double WallDrag::factor(double convexity) const {
@@ -88,6 +135,12 @@ DragSheet drag_sheet(const Scene& scene, const Plan& plan) {
   const FluidExtremes fluids = fluid_extremes(scene);
   const double most = std::max(fluids.most_viscous, most_viscous_body(scene, fluids.most_viscous));
   return most > kThin * noise_viscosity(plan, fluids.lightest) ? DragSheet::kSurface : DragSheet::kBehind;
+}
+
+double mirror_factor(ParticleModel model, double support_ratio, DragSheet sheet) {
+  if (sheet != DragSheet::kSurface) return 0.0;
+  return computed_mirror<ModelParts<ParticleModel::kCorrected>::ForceKernel>(
+      support_ratio, drag_shape(model, sheet, support_ratio));
 }
 
 WallDrag wall_drag(ParticleModel model, double support_ratio, DragSheet sheet) {

@@ -45,4 +45,12 @@ struct WallDrag {
 /// gradients keep 1.
 WallDrag wall_drag(ParticleModel model, double support_ratio, DragSheet sheet);
 
+/// What the volume of a particle on a surface along which fluid slides counts (mirror_drag.h): such that
+/// evenly lying fluid which stretches along a flat wall and is pressed together across it loses by the wall
+/// the power that it and its mirror image would take from each other, half of it for either (in layers that
+/// would be six tenths as much). At a support ratio of 2 a particle of the first layer then has 0.36 of the
+/// damping rate of a whole lattice by it, less than the half of that lattice that it lacks: no step is
+/// shortened. 0 where walls do not drag from the surface.
+double mirror_factor(ParticleModel model, double support_ratio, DragSheet sheet);
+
 }  // namespace slosh

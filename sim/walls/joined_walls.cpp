@@ -9,7 +9,7 @@ namespace slosh {
 namespace {
 
 constexpr float kTouching = 0.25f;  // of a spacing: no fluid gets into a gap of that
-constexpr float kDisc = 0.5f;       // of a spacing: the radius of the surface around one sample
+constexpr float kDisc = 0.5f;  // of the way to its neighbours: the radius of the surface around one sample
 
 glm::vec3 to_world(const Pose& pose, const glm::vec3& p) {
   return glm::vec3(transform_point(pose, glm::dvec3(p)));
@@ -24,10 +24,12 @@ struct Depth {
 // The surface that is left of all bodies together, as discs around their samples. World frame.
 class ExposedSurface {
  public:
-  explicit ExposedSurface(float spacing) : radius_(kDisc * spacing), near_(2.0f * spacing) {}
+  explicit ExposedSurface(float spacing) : near_(2.0f * spacing) {}
 
-  void add(std::size_t body, const glm::vec3& p, const glm::vec3& normal) {
+  /// `apart`: m, from the sample to its neighbours.
+  void add(std::size_t body, const glm::vec3& p, const glm::vec3& normal, float apart) {
     near_.add(p);
+    radii_.push_back(kDisc * apart);
     normals_.push_back(normal);
     bodies_.push_back(body);
   }
@@ -38,24 +40,25 @@ class ExposedSurface {
     float least = best.depth;
     near_.around(p, [&](const glm::vec3& q, std::uint32_t n) {
       const glm::vec3& normal = normals_[n];
+      const float radius = radii_[n];
       const float above = glm::dot(p - q, normal);
       const glm::vec3 beside = p - q - above * normal;
       const float off = glm::length(beside);
-      const glm::vec3 away = p - q - (off > radius_ ? beside * (radius_ / off) : beside);
+      const glm::vec3 away = p - q - (off > radius ? beside * (radius / off) : beside);
       const float distance = glm::length(away);
       if (distance >= least) return;
       least = distance;
-      const bool outside = above > 0.0f && off <= radius_;
+      const bool outside = above > 0.0f && off <= radius;
       best.depth = outside ? -distance : distance;
       best.body = bodies_[n];
-      best.inward = outside || distance < 1e-6f * radius_ ? -normal : away / distance;
+      best.inward = outside || distance < 1e-6f * radius ? -normal : away / distance;
     });
     return best;
   }
 
  private:
-  float radius_;
   PointBuckets near_;
+  std::vector<float> radii_;
   std::vector<glm::vec3> normals_;
   std::vector<std::size_t> bodies_;
 };
@@ -103,20 +106,19 @@ std::vector<Sample> samples_of(std::span<const FixedSolid> solids, std::size_t b
 // The particles of all joined bodies, one by one, none in another's place.
 class Sheets {
  public:
-  Sheets(std::size_t bodies, float spacing) : spacing_(spacing), near_(spacing), of_body_(bodies) {}
+  Sheets(std::size_t bodies, float spacing) : near_(spacing), of_body_(bodies) {}
 
   void add(std::size_t body, const glm::vec3& p) {
     near_.add(p);
     of_body_[body].push_back(p);
   }
-  /// Adds p unless it would be crowded.
-  void fill(std::size_t body, const glm::vec3& p) {
-    if (!near_.any_within(p, kLargestHole * spacing_)) add(body, p);
+  /// Adds p unless it would be crowded in a sheet of which neighbours are `apart` m from each other.
+  void fill(std::size_t body, const glm::vec3& p, float apart) {
+    if (!near_.any_within(p, kLargestHole * apart)) add(body, p);
   }
   std::vector<std::vector<glm::vec3>>& of_body() { return of_body_; }
 
  private:
-  float spacing_;
   PointBuckets near_;
   std::vector<std::vector<glm::vec3>> of_body_;
 };
@@ -147,7 +149,7 @@ std::vector<std::vector<glm::vec3>> joined_sheets(std::span<const FixedSolid> so
   for (std::size_t b = 0; b < solids.size(); ++b) {
     samples.push_back(samples_of(solids, b, spacing, joined));
     for (const Sample& s : samples[b])
-      if (!s.hidden) surface.add(b, s.position, s.normal);
+      if (!s.hidden) surface.add(b, s.position, s.normal, solids[b].surface->apart);
   }
 
   Sheets sheets(solids.size(), spacing);
@@ -171,7 +173,9 @@ std::vector<std::vector<glm::vec3>> joined_sheets(std::span<const FixedSolid> so
   for (std::size_t b = 0; b < solids.size(); ++b) {
     if (!joined[b]) continue;
     const auto fill = [&](glm::vec3 p) {
-      if (settle(surface, depth, p) && inside(b, p)) sheets.fill(surface.depth_at(p).body, p);
+      if (!settle(surface, depth, p) || !inside(b, p)) return;
+      const std::size_t body = surface.depth_at(p).body;
+      sheets.fill(body, p, solids[body].surface->apart);
     };
     for (const Sample& s : samples[b])
       if (s.hidden) fill(s.position);
@@ -182,13 +186,13 @@ std::vector<std::vector<glm::vec3>> joined_sheets(std::span<const FixedSolid> so
   return std::move(sheets.of_body());
 }
 
-std::vector<std::vector<glm::vec3>> exposed_samples(std::span<const FixedSolid> solids, float spacing) {
-  std::vector<std::vector<glm::vec3>> exposed(solids.size());
+std::vector<std::vector<std::uint32_t>> exposed_samples(std::span<const FixedSolid> solids, float spacing) {
+  std::vector<std::vector<std::uint32_t>> exposed(solids.size());
   std::vector<bool> joined(solids.size(), false);
   for (std::size_t b = 0; b < solids.size(); ++b) {
     const std::vector<Sample> samples = samples_of(solids, b, spacing, joined);
     for (std::size_t i = 0; i < samples.size(); ++i)
-      if (!samples[i].hidden) exposed[b].push_back(solids[b].surface->positions[i]);
+      if (!samples[i].hidden) exposed[b].push_back(static_cast<std::uint32_t>(i));
   }
   return exposed;
 }

@@ -7,6 +7,7 @@
 // tank_faces`).
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -24,13 +25,13 @@ struct FixedSolid {
 };
 
 /// Particle positions, m, in each body's mesh frame: `depth` (m) behind the surface of all that touch
-/// together, at about `spacing` (m). Empty for a body that touches none, which has its own
-/// (wall_particles.cpp). What fills an edge between two is of the one whose face is nearer. A face is hidden
-/// where there is another body within a quarter of a spacing in front of it.
+/// together, as far apart as its surface's samples; `spacing` (m) is the fluid's. Empty for a body that
+/// touches none, which has its own (wall_particles.cpp). What fills an edge between two is of the one whose
+/// face is nearer. A face is hidden where there is another body within a quarter of a spacing in front of it.
 std::vector<std::vector<glm::vec3>> joined_sheets(std::span<const FixedSolid> solids, float depth,
                                                   float spacing);
 
-/// The samples of each solid's surface that no other hides, m, in each body's mesh frame.
-std::vector<std::vector<glm::vec3>> exposed_samples(std::span<const FixedSolid> solids, float spacing);
+/// Which samples of each solid's surface no other hides, in order.
+std::vector<std::vector<std::uint32_t>> exposed_samples(std::span<const FixedSolid> solids, float spacing);
 
 }  // namespace slosh

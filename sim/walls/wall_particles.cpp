@@ -85,8 +85,10 @@ float convexity(const DistanceFieldView& field, const glm::vec3& p, float spacin
 }
 
 // In a concave edge the sheets of the two faces part as they move back. Adds particles where the level set at
-// that depth has none within kLargestHole, walking the nodes of the distance field.
-void close_gaps(const DistanceFieldView& field, float depth, float spacing, std::vector<glm::vec3>& sheet) {
+// that depth has none within kLargestHole of the way between its particles, walking the nodes of the distance
+// field.
+void close_gaps(const DistanceFieldView& field, float depth, float spacing, float apart,
+                std::vector<glm::vec3>& sheet) {
   PointBuckets near(spacing);
   for (const glm::vec3& p : sheet) near.add(p);
   for (int z = 0; z < field.size.z; ++z) {
@@ -101,7 +103,7 @@ void close_gaps(const DistanceFieldView& field, float depth, float spacing, std:
           if (slope > 0.25f) p -= s.gradient * ((s.distance + depth) / slope);
         }
         if (std::abs(sample_distance(field, p).distance + depth) > 0.1f * spacing) continue;
-        if (near.any_within(p, kLargestHole * spacing)) continue;
+        if (near.any_within(p, kLargestHole * apart)) continue;
         sheet.push_back(p);
         near.add(p);
       }
@@ -122,7 +124,8 @@ std::vector<glm::vec3> sheet_positions(const SurfaceSamples& surface, const Dist
     const float depth = static_cast<float>(kWallInset) - kLessDeep * bent;
     positions[i] = (level ? on_level_set : inset)(positions[i], normal, depth * spacing, field);
   }
-  if (field.distance) close_gaps(field, static_cast<float>(kWallInset) * spacing, spacing, positions);
+  if (field.distance)
+    close_gaps(field, static_cast<float>(kWallInset) * spacing, spacing, surface.apart, positions);
   return positions;
 }
 
@@ -190,24 +193,51 @@ JoinedWalls joined_walls(const Scene& scene, const SampledScene& sampled, const 
   return walls;
 }
 
-// Where the bodies whose motion is `motion` drag, body by body, in their mesh frames: the samples of their
-// surfaces but for those that another fixed body hides.
-std::vector<std::vector<glm::vec3>> dragging_sheets(const Scene& scene, const SampledScene& sampled,
-                                                    const Plan& plan, BodyMotion motion) {
-  std::vector<std::vector<glm::vec3>> sheets(scene.bodies.size());
+// Samples of a body's surface, in its mesh frame.
+struct DraggingSheet {
+  std::vector<glm::vec3> positions, normals;
+};
+
+// Where the bodies whose motion is `motion` drag, body by body: the samples of their surfaces but for those
+// that another fixed body hides.
+std::vector<DraggingSheet> dragging_sheets(const Scene& scene, const SampledScene& sampled, const Plan& plan,
+                                           BodyMotion motion) {
+  std::vector<DraggingSheet> sheets(scene.bodies.size());
   std::vector<FixedSolid> solids;
   std::vector<std::size_t> body_of;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
     if (body.motion != motion || body.point_probe) continue;
-    sheets[b] = sampled.surfaces[b].positions;
+    sheets[b] = {sampled.surfaces[b].positions, sampled.surfaces[b].normals};
     if (motion == BodyMotion::kFree || sampled.distance_fields[b].distance.empty()) continue;
     solids.push_back({&sampled.surfaces[b], sampled.distance_fields[b].view(), body.pose});
     body_of.push_back(b);
   }
-  std::vector<std::vector<glm::vec3>> exposed = exposed_samples(solids, static_cast<float>(plan.spacing));
-  for (std::size_t n = 0; n < exposed.size(); ++n) sheets[body_of[n]] = std::move(exposed[n]);
+  const std::vector<std::vector<std::uint32_t>> exposed =
+      exposed_samples(solids, static_cast<float>(plan.spacing));
+  for (std::size_t n = 0; n < exposed.size(); ++n) {
+    const SurfaceSamples& all = *solids[n].surface;
+    DraggingSheet& sheet = sheets[body_of[n]] = {};
+    for (const std::uint32_t i : exposed[n]) {
+      sheet.positions.push_back(all.positions[i]);
+      sheet.normals.push_back(all.normals[i]);
+    }
+  }
   return sheets;
+}
+
+// The planes in which a body mirrors the fluid, one a particle of its sheet: where it is fixed and slips. A
+// moving one only lets fluid slide.
+std::vector<MirrorPlane> mirrors_of(const Body& body, const DraggingSheet& sheet, const Plan& plan) {
+  if (body.motion != BodyMotion::kFixed || body.dynamic_viscosity != kFreeSlip) return {};
+  const glm::mat3 turn(glm::mat3_cast(body.pose.orientation));
+  std::vector<glm::vec3> normals;
+  normals.reserve(sheet.normals.size());
+  std::vector<glm::vec3> positions;
+  positions.reserve(sheet.positions.size());
+  for (const glm::vec3& n : sheet.normals) normals.push_back(turn * n);
+  for (const glm::vec3& p : sheet.positions) positions.push_back(turn * p);
+  return mirror_planes(positions, normals, static_cast<float>(plan.support_radius));
 }
 
 }  // namespace
@@ -223,7 +253,7 @@ std::vector<SurfaceParticle> surface_particles(const Scene& scene, const Sampled
   const auto flat_drag = static_cast<float>(drag.factor(0.0));
   JoinedWalls joined;
   if (motion == BodyMotion::kFixed) joined = joined_walls(scene, sampled, plan);
-  std::vector<std::vector<glm::vec3>> dragging;
+  std::vector<DraggingSheet> dragging;
   if (apart) dragging = dragging_sheets(scene, sampled, plan, motion);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
@@ -238,9 +268,9 @@ std::vector<SurfaceParticle> surface_particles(const Scene& scene, const Sampled
       pressures.assign(positions.size(), static_cast<float>(plan.body_pressure[b]));
       if (plan.model != ParticleModel::kPaper) pressures = crowding_shares(positions, plan);
     }
-    const auto add = [&](const glm::vec3& at, float pressure, float volume) {
-      particles.push_back(
-          {at, static_cast<std::uint16_t>(b), pressure, volume, static_cast<float>(body.dynamic_viscosity)});
+    const auto add = [&](const glm::vec3& at, float pressure, float volume, const MirrorPlane& mirror = {}) {
+      particles.push_back({at, static_cast<std::uint16_t>(b), pressure, volume,
+                           static_cast<float>(body.dynamic_viscosity), mirror});
     };
     for (std::size_t i = 0; i < positions.size(); ++i) {
       const float volume = plan.model == ParticleModel::kPaper
@@ -249,9 +279,18 @@ std::vector<SurfaceParticle> surface_particles(const Scene& scene, const Sampled
       add(positions[i], pressures[i], apart ? 0.0f : volume);
     }
     if (!apart) continue;
-    for (const glm::vec3& p : dragging[b]) {
+    const float surface_volume = sampled.surfaces[b].particle_volume;
+    const std::vector<MirrorPlane> mirrors = mirrors_of(body, dragging[b], plan);
+    if (!mirrors.empty()) {
+      const double factor = mirror_factor(plan.model, scene.support_ratio, sheet);
+      const float volume = static_cast<float>(factor) * surface_volume;
+      for (std::size_t i = 0; i < mirrors.size(); ++i)
+        add(dragging[b].positions[i], 0.0f, volume, mirrors[i]);
+      continue;
+    }
+    for (const glm::vec3& p : dragging[b].positions) {
       const float bent = convexity(sampled.distance_fields[b].view(), p, static_cast<float>(plan.spacing));
-      add(p, 0.0f, static_cast<float>(drag.factor(bent)) * sampled.surfaces[b].particle_volume);
+      add(p, 0.0f, static_cast<float>(drag.factor(bent)) * surface_volume);
     }
   }
   return particles;

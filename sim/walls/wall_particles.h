@@ -7,6 +7,7 @@
 #include "scenes/scene.h"
 #include "sim/plan.h"
 #include "sim/pressure/pair_pressure.h"
+#include "sim/walls/mirror_planes.h"
 
 namespace slosh {
 
@@ -18,6 +19,7 @@ struct SurfaceParticle {
                        ///< particles it stands for, about two
   float volume;        ///< m³, what it drags with (WallDrag::factor is in it)
   float viscosity;     ///< Pa·s
+  MirrorPlane mirror;  ///< world axes: of a fixed body that slips, where surfaces drag (viscosity/mirror_drag.h)
 };
 
 /// The particles of the bodies whose motion is `motion`, body by body; none when the plan has no boundary

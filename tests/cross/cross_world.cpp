@@ -236,9 +236,10 @@ int main(int argc, char** argv) {
   const bool quick = part == "quick", whole = part == "all";
   if (quick) compare_viscous_step();
   if (quick) compare_pressed_steps();
+  if (quick || whole || part == "slipping") compare_slipping();
   if (whole || part == "viscous") compare_viscous();
   if (whole || part == "pressed") compare_pressed();
-  if (part == "viscous" || part == "pressed") return conclude();
+  if (part == "viscous" || part == "pressed" || part == "slipping") return conclude();
   compare_single_steps();
   if (quick) return conclude();
   // Large enough to fill the GPU: blocks come and go in another order each time.

@@ -129,11 +129,12 @@ INSTANTIATE_TEST_SUITE_P(
                            {"couette_start", 0.005, "torque at 80 ms", 0.045}},
         std::vector<Known>{{"poiseuille", 0.005, "flow", 0.025},
                            {"poiseuille", 0.005, "flow at 40 ms", 0.025}},
-        // What is slow yields (sim/README.md): 35 % too little is left of it, and walls have bumps.
-        std::vector<Known>{{"taylor_green", 0.005, "rate of decay", 0.10},
-                           {"taylor_green", 0.005, "left of 2 cm/s after a decay's time", 0.38}},
-        std::vector<Known>{{"smooth_glass", 0.005, "kept, 10 cm/s at the rim", 0.06},
-                           {"smooth_glass", 0.005, "kept, 2 cm/s at the rim", 0.32}},
+        // While walls that slip held nothing across them, and had the bumps of a sheet at the spacing, the second was
+        // 24 to 37 % too little, and of a slow turn 70 % were kept.
+        std::vector<Known>{{"taylor_green", 0.005, "rate of decay", 0.075},
+                           {"taylor_green", 0.005, "left of 2 cm/s after a decay's time", 0.15}},
+        std::vector<Known>{{"smooth_glass", 0.005, "kept, 10 cm/s at the rim", 0.02},
+                           {"smooth_glass", 0.005, "kept, 2 cm/s at the rim", 0.06}},
         // A ball of 1.5 and 2 spacings. It meets particle by particle what drags it now, so a stroke's halves
         // differ more (0.03 held where it slid through).
         std::vector<Known>{{"stokes", 0.008, "drag", 0.045}, {"stokes", 0.008, "drift over a stroke", 0.02}},

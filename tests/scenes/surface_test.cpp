@@ -124,6 +124,42 @@ TEST(SurfaceSampling, BucketWithHandles) {
   expect_even(mesh, samples, 0.01, exposed);
 }
 
+// Bumps brake what slides: along a fixed body that slips the samples lie nearer to each other.
+TEST(SurfaceSampling, AreFinerWhereBumpsWouldBrake) {
+  Scene scene;
+  Body body;
+  EXPECT_DOUBLE_EQ(sheet_spacing(scene, body, 0.01), 0.01) << "at which fluid stands still";
+  body.dynamic_viscosity = kFreeSlip;
+  EXPECT_DOUBLE_EQ(sheet_spacing(scene, body, 0.01), 0.007) << "along which it slides";
+  body.motion = BodyMotion::kFree;
+  EXPECT_DOUBLE_EQ(sheet_spacing(scene, body, 0.01), 0.01) << "what moves";
+  body.motion = BodyMotion::kFixed;
+  scene.model = ParticleModel::kConsistent;
+  EXPECT_DOUBLE_EQ(sheet_spacing(scene, body, 0.01), 0.01) << "a model whose walls are as they were";
+}
+
+// The area that they stand for is the surface's, whatever their distance. Two bodies of one mesh may differ.
+TEST(SurfaceSampling, FinerSamplesStandForTheSameArea) {
+  const test::TempFolder folder;
+  ASSERT_TRUE(make::make_bucket().write(folder / "bucket.gltf"));
+  Scene scene = load_scene(folder / "bucket.gltf").value();
+  scene.bodies.push_back(scene.bodies[1]);
+  scene.bodies.back().name = "smooth";
+  scene.bodies.back().motion = BodyMotion::kFixed;
+  scene.bodies.back().dynamic_viscosity = kFreeSlip;
+  scene.bodies.back().pose.position.x += 1.0;
+  const SampledScene sampled = sample_scene(scene, 0.01).value();
+  const SurfaceSamples &plain = sampled.surfaces[1], &fine = sampled.surfaces.back();
+  EXPECT_FLOAT_EQ(plain.apart, 0.01f);
+  EXPECT_FLOAT_EQ(fine.apart, 0.007f);
+  const auto volume = [](const SurfaceSamples& s) {
+    return s.particle_volume * static_cast<float>(s.positions.size());
+  };
+  EXPECT_NEAR(volume(fine) / volume(plain), 1.0, 0.01);
+  EXPECT_NEAR(static_cast<double>(fine.positions.size()) / static_cast<double>(plain.positions.size()),
+              1.0 / 0.49, 0.06);
+}
+
 TEST(SurfaceSampling, BuriedSurfaceGetsNone) {
   const make::Solid rod = make::capsule(0.03, -0.3, 0.3, 8, 24);
   const TriangleMesh mesh = make::with_normals(make::merged(make::sphere(0.1, 24, 48), rod));

@@ -14,16 +14,17 @@ namespace {
 constexpr float kSpacing = 0.01f;
 constexpr float kDepth = 0.7f * kSpacing;
 
-/// A box with its exact distance and a particle a square of its surface.
+/// A box with its exact distance and a particle a square of its surface, each `apart` m wide or nearly so.
 struct Box {
   SurfaceSamples surface;
   std::vector<float> values;
   DistanceFieldView field;
 
-  Box(const glm::vec3& low, const glm::vec3& high) {
+  Box(const glm::vec3& low, const glm::vec3& high, float apart = kSpacing) {
+    surface.apart = apart;
     for (int axis = 0; axis < 3; ++axis) {
       const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-      const glm::ivec3 many = glm::max(glm::ivec3(glm::round((high - low) / kSpacing)), 1);
+      const glm::ivec3 many = glm::max(glm::ivec3(glm::round((high - low) / apart)), 1);
       const glm::vec3 pitch = (high - low) / glm::vec3(many);
       for (int i = 0; i < many[u] * many[v]; ++i) {
         for (const float side : {-1.0f, 1.0f}) {
@@ -85,7 +86,7 @@ std::vector<glm::vec3> in_the_middle(const std::vector<std::vector<glm::vec3>>& 
   return all;
 }
 
-void expect_one_sheet(const std::vector<glm::vec3>& particles) {
+void expect_one_sheet(const std::vector<glm::vec3>& particles, float apart = kSpacing) {
   ASSERT_FALSE(particles.empty());
   for (const glm::vec3& p : particles) {
     const float depth = distance_to_outline({p.x, p.y}) / kSpacing;
@@ -100,7 +101,7 @@ void expect_one_sheet(const std::vector<glm::vec3>& particles) {
       float nearest = 1.0f;
       for (const glm::vec3& p : particles)
         nearest = std::min(nearest, glm::distance(p, glm::vec3(x, y, 0.0f)));
-      EXPECT_LT(nearest / kSpacing, 0.9f) << "hole at " << x << ", " << y;
+      EXPECT_LT(nearest / apart, 0.9f) << "hole at " << x << ", " << y;
     }
   }
 }
@@ -109,6 +110,17 @@ TEST(JoinedWalls, AWallOnAFloorIsOneSolid) {
   Box floor(kFloorLow, kFloorHigh), wall(kWallLow, kWallHigh);
   const std::vector<FixedSolid> solids = {floor.solid(), wall.solid()};
   expect_one_sheet(in_the_middle(joined_sheets(solids, kDepth, kSpacing), {Pose{}, Pose{}}));
+}
+
+// Along walls that slip sheets are finer (sheet_spacing), and so is what fills their edges. With a floor
+// along which fluid slides and a wall at which it stands each has its own.
+TEST(JoinedWalls, FinerSheetsMeetAsWell) {
+  constexpr float kFine = 0.7f * kSpacing;
+  for (const float of_wall : {kFine, kSpacing}) {
+    Box floor(kFloorLow, kFloorHigh, kFine), wall(kWallLow, kWallHigh, of_wall);
+    const std::vector<FixedSolid> solids = {floor.solid(), wall.solid()};
+    expect_one_sheet(in_the_middle(joined_sheets(solids, kDepth, kSpacing), {Pose{}, Pose{}}), of_wall);
+  }
 }
 
 TEST(JoinedWalls, EachHasItsOwnFrame) {
@@ -144,15 +156,15 @@ TEST(JoinedWalls, ThoseThatStandApartAreLeftAlone) {
 TEST(JoinedWalls, WhatAnotherHidesIsNotExposed) {
   Box floor(kFloorLow, kFloorHigh), wall(kWallLow, kWallHigh);
   const std::vector<FixedSolid> solids = {floor.solid(), wall.solid()};
-  const std::vector<std::vector<glm::vec3>> exposed = exposed_samples(solids, kSpacing);
+  const std::vector<std::vector<std::uint32_t>> exposed = exposed_samples(solids, kSpacing);
   for (std::size_t b = 0; b < solids.size(); ++b) {
     const std::vector<glm::vec3>& all = solids[b].surface->positions;
     EXPECT_LT(exposed[b].size(), all.size());
     std::size_t open = 0;
     for (const glm::vec3& p : all) open += sample_distance(solids[1 - b].field, p).distance > 0.5f * kSpacing;
     EXPECT_GE(exposed[b].size(), open);
-    for (const glm::vec3& p : exposed[b])
-      EXPECT_GT(sample_distance(solids[1 - b].field, p).distance, -0.3f * kSpacing);
+    for (const std::uint32_t i : exposed[b])
+      EXPECT_GT(sample_distance(solids[1 - b].field, all[i]).distance, -0.3f * kSpacing);
   }
   const std::vector<FixedSolid> alone = {floor.solid()};
   EXPECT_EQ(exposed_samples(alone, kSpacing)[0].size(), alone[0].surface->positions.size());

@@ -54,6 +54,17 @@ TEST(WallDragTest, FromBehindTheSurfaceAllSurfacesDragAlike) {
   EXPECT_DOUBLE_EQ(drag.factor(0.0), drag.factor(1.0));
 }
 
+// A mirror is the stiffer the more of it is within reach. Where walls drag from behind their surface there is
+// none.
+TEST(WallDragTest, AWallThatSlipsMakesUpForWhatAMirrorWouldTake) {
+  const auto of = [](double ratio) {
+    return mirror_factor(ParticleModel::kCorrected, ratio, DragSheet::kSurface);
+  };
+  EXPECT_NEAR(of(2.0), 0.302, 0.001);
+  EXPECT_LT(of(2.0), of(2.5));
+  EXPECT_EQ(mirror_factor(ParticleModel::kCorrected, 2.0, DragSheet::kBehind), 0.0);
+}
+
 TEST(WallDragTest, ABoxDragsAsItsFacesDoAndABallMore) {
   const WallDrag drag = wall_drag(ParticleModel::kCorrected, 2.0, DragSheet::kSurface);
   const Volumes box = volumes(make::box(glm::dvec3(-0.02), glm::dvec3(0.02)));
