@@ -74,20 +74,33 @@ std::optional<Error> check_size(const Scene& scene, double spacing) {
                "Choose a larger spacing"};
 }
 
+// About how many, of a body that has a mesh.
+double surface_particles(const Scene& scene, const Body& body, double spacing) {
+  const double apart = sheet_spacing(scene, body, spacing);
+  return mesh::surface_area(scene.meshes[body.mesh]) / (apart * apart);
+}
+
 SurfaceSamples sample_probe(double spacing) {
   const auto volume = static_cast<float>(spacing * spacing * spacing);
   return {{glm::vec3(0.0f)}, {glm::vec3(0.0f, 1.0f, 0.0f)}, volume, static_cast<float>(spacing)};
 }
 
-// The share of the work that the surfaces are, each mesh counted once.
+// What bodies that share their samples have in common: the mesh, and how far apart the samples are.
+using SheetKey = std::pair<int, double>;
+SheetKey sheet_key(const Scene& scene, const Body& body, double spacing) {
+  return {body.mesh, sheet_spacing(scene, body, spacing)};
+}
+
+// The share of the work that the surfaces are, each sheet counted once.
 class Work {
  public:
   Work(const Scene& scene, double spacing, const std::function<void(double)>& tell)
       : scene_(scene), spacing_(spacing), tell_(tell) {
     if (!tell) return;
-    std::set<int> meshes;
+    std::set<SheetKey> sheets;
     for (const Body& body : scene.bodies) {
-      if (!body.point_probe && meshes.insert(body.mesh).second) whole_ += seconds_of(body);
+      if (!body.point_probe && sheets.insert(sheet_key(scene, body, spacing)).second)
+        whole_ += seconds_of(body);
     }
     whole_ += estimate_sampling({estimate_particles(scene, spacing).fluid, 0.0});
   }
@@ -104,7 +117,7 @@ class Work {
 
  private:
   double seconds_of(const Body& body) const {
-    return estimate_sampling({0.0, mesh::surface_area(scene_.meshes[body.mesh]) / (spacing_ * spacing_)});
+    return estimate_sampling({0.0, surface_particles(scene_, body, spacing_)});
   }
 
   const Scene& scene_;
@@ -122,7 +135,7 @@ Result<SampledScene> sample(const Scene& scene, double spacing, SampleReport* re
   if (const auto problem = check_size(scene, spacing)) return *problem;
   SampledScene out;
   out.spacing = spacing;
-  std::map<std::pair<int, double>, std::size_t> first_sampled;
+  std::map<SheetKey, std::size_t> first_sampled;
   Work work(scene, spacing, tell);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
@@ -131,8 +144,7 @@ Result<SampledScene> sample(const Scene& scene, double spacing, SampleReport* re
       out.distance_fields.emplace_back();
       continue;
     }
-    const auto [known, is_new] =
-        first_sampled.try_emplace({body.mesh, sheet_spacing(scene, body, spacing)}, b);
+    const auto [known, is_new] = first_sampled.try_emplace(sheet_key(scene, body, spacing), b);
     if (is_new) {
       Result<SampledMesh> sampled = sample_mesh(scene, body, spacing, work.within(body));
       if (!sampled) return sampled.error();
@@ -179,9 +191,7 @@ ParticleEstimate estimate_particles(const Scene& scene, double spacing) {
     estimate.fluid += mesh::integrate_volume(welded, parts).volume / (spacing * spacing * spacing);
   }
   for (const Body& body : scene.bodies) {
-    const double apart = sheet_spacing(scene, body, spacing);
-    estimate.surface +=
-        body.point_probe ? 1.0 : mesh::surface_area(scene.meshes[body.mesh]) / (apart * apart);
+    estimate.surface += body.point_probe ? 1.0 : surface_particles(scene, body, spacing);
   }
   return estimate;
 }

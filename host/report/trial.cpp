@@ -11,12 +11,6 @@ bool finite(const glm::dvec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-SampledScene sampled_or_refused(const Scene& scene, double spacing) {
-  Result<SampledScene> sampled = sample_scene(scene, spacing);
-  if (!sampled) throw Refused(sampled.error());
-  return std::move(sampled.value());
-}
-
 }  // namespace
 
 Scene with_setting(Scene scene, const Setting& setting) {
@@ -25,8 +19,14 @@ Scene with_setting(Scene scene, const Setting& setting) {
   return scene;
 }
 
+SampledScene sampled_for(const Scene& scene, const Setting& setting) {
+  Result<SampledScene> found = sample_scene(with_setting(scene, setting), setting.spacing);
+  if (!found) throw Refused(found.error());
+  return std::move(found.value());
+}
+
 Trial::Trial(const Scene& scene, const Setting& setting, Cost& cost)
-    : sampled_(sampled_or_refused(with_setting(scene, setting), setting.spacing)), stopped_(setting.stopped), cost_(cost) {
+    : sampled_(sampled_for(scene, setting)), stopped_(setting.stopped), cost_(cost) {
   start(with_setting(scene, setting), setting);
 }
 

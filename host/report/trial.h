@@ -96,6 +96,8 @@ class Trial {
 
 /// The scene as a setting has it: its model and its support ratio.
 Scene with_setting(Scene scene, const Setting& setting);
+/// It sampled as it is run. Throws Refused.
+SampledScene sampled_for(const Scene& scene, const Setting& setting);
 
 /// Readings of one scalar over time.
 class Average {

@@ -73,7 +73,7 @@ __attribute__((flatten)) void find_forces_of(const FluidWalk& walk, std::size_t 
       if (moving_rows.count)
         add_row_forces<Parts, kWalls, kAgainstBodies, Neighbours::kWalls>(self, moving_columns, moving_rows,
                                                                           h, shape, sum);
-      if constexpr (viscosity != Viscosity::kNone) {
+      if constexpr (Parts::kCorrected && viscosity != Viscosity::kNone) {
         if (!walk.fixed.mirror.empty() && fixed_rows.count)
           add_mirror_forces<Parts>(self, walk.fixed, fixed_rows, h, shape, sum);
       }
@@ -168,7 +168,7 @@ void sum_body_wrenches(PassContext& context, ThreadTeam& team, const FluidPartic
               broadcast(own, i, own_viscosity<viscosity>(wall, context.kinds.front().viscosity));
           add_row_forces<Parts, Parts::kOnBodies, viscosity>(self, fluid_columns, rows, h, shape, sum,
                                                              FloatBatch(wall.of_fluid));
-          if constexpr (viscosity != Viscosity::kNone) {
+          if constexpr (Parts::kCorrected && viscosity != Viscosity::kNone) {
             if (!boundary.mirror.empty())
               add_forces_on_mirror<Parts, viscosity>(boundary, i, context.kinds.front().viscosity,
                                                      fluid_columns, rows, h, shape, sum);

@@ -40,11 +40,12 @@ void add_mirror_forces(const ParticleView<FloatBatch>& p, const BoundaryParticle
 }
 
 /// Adds the force on the i-th particle of `walls` by the fluid that it mirrors, N without the kernel's
-/// constant. `first_viscosity`: the fluid's where all have one.
+/// constant, times `each`. `first_viscosity`: the fluid's where all have one.
 template <class Parts, Viscosity viscosity>
 void add_forces_on_mirror(const BoundaryParticles& walls, std::uint32_t i, float first_viscosity,
                           const NeighborColumns& fluid, const RowList& rows, FloatBatch h,
-                          const DragShape<FloatBatch>& shape, SurfaceSum<FloatBatch>& sum) {
+                          const DragShape<FloatBatch>& shape, SurfaceSum<FloatBatch>& sum,
+                          FloatBatch each = FloatBatch(1.0f)) {
   const MirrorColumns& m = walls.mirror;
   if (m.nx[i] == 0.0f && m.ny[i] == 0.0f && m.nz[i] == 0.0f) return;
   const MirrorView<FloatBatch> mirror{FloatBatch(m.nx[i]),
@@ -56,7 +57,7 @@ void add_forces_on_mirror(const BoundaryParticles& walls, std::uint32_t i, float
   self.x = FloatBatch(walls.x[i]);
   self.y = FloatBatch(walls.y[i]);
   self.z = FloatBatch(walls.z[i]);
-  self.volume = FloatBatch(walls.volume[i]);
+  self.volume = each * FloatBatch(walls.volume[i]);
   self.viscosity = FloatBatch(first_viscosity);
   for_each_dragged<viscosity, Neighbours::kFluid>(
       self, fluid, rows, FloatBatch(1.0f), [&](const ParticleView<FloatBatch>& p, FloatBatch weight) {

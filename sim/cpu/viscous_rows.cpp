@@ -124,18 +124,9 @@ void ViscousSolver::add_fixed(const Work& work, std::span<Wrench> wrenches) {
             force.y += d.y * along;
             force.z += d.z * along;
           });
-          if (!fixed.mirror.empty()) {
-            SurfaceSum<FloatBatch> mirrored{{zero, zero, zero}, zero, zero, zero};
+          if (!fixed.mirror.empty())
             add_forces_on_mirror<Parts, viscosity>(fixed, i, context.kinds.front().viscosity, ended, rows, h,
-                                                   shape, mirrored);
-            const FloatBatch scale(context.force_scale);
-            force.x += scale * mirrored.x;
-            force.y += scale * mirrored.y;
-            force.z += scale * mirrored.z;
-            force.cx += scale * mirrored.cx;
-            force.cy += scale * mirrored.cy;
-            force.cz += scale * mirrored.cz;
-          }
+                                                   shape, force, FloatBatch(context.force_scale));
           forces[i] = {lane_sum(force.x), lane_sum(force.y), lane_sum(force.z)};
           couples[i] = {lane_sum(force.cx), lane_sum(force.cy), lane_sum(force.cz)};
         }

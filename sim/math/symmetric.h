@@ -36,6 +36,17 @@ SLOSH_HD Symmetric<Real> scaled_and_shifted(const Symmetric<Real>& t, Real a, Re
   return {a * t.xx + b, a * t.xy, a * t.xz, a * t.yy + b, a * t.yz, a * t.zz + b};
 }
 
+/// sum += a · v vᵀ, v = (x, y, z).
+template <class Real>
+SLOSH_HD void add_outer(Real a, Real x, Real y, Real z, Symmetric<Real>& sum) {
+  sum.xx += a * (x * x);
+  sum.xy += a * (x * y);
+  sum.xz += a * (x * z);
+  sum.yy += a * (y * y);
+  sum.yz += a * (y * z);
+  sum.zz += a * (z * z);
+}
+
 /// sum += a · t.
 template <class Real>
 SLOSH_HD void add_scaled(const Symmetric<Real>& t, Real a, Symmetric<Real>& sum) {

@@ -30,12 +30,7 @@ SLOSH_HD void add_pair_drag_rate(const ParticleView<Real>& p, const ParticleView
     sum.zz += drag;
   } else {
     const Real along = Real(kCentralDrag) * drag * (kernel.inverse_r * kernel.inverse_r);
-    sum.xx += along * (dx * dx);
-    sum.xy += along * (dx * dy);
-    sum.xz += along * (dx * dz);
-    sum.yy += along * (dy * dy);
-    sum.yz += along * (dy * dz);
-    sum.zz += along * (dz * dz);
+    add_outer(along, dx, dy, dz, sum);
   }
 }
 

@@ -35,12 +35,7 @@ SLOSH_HD void add_mirror_rate(const ParticleView<Real>& fluid, const ParticleVie
   const Real squared = nx * nx + ny * ny + nz * nz + Real(1e-12f);
   const Real drag = (Real(kCentralDrag) * fluid.viscosity * fluid.volume) *
                     (wall.volume * shape(kernel.laplacian)) / squared;
-  sum.xx += drag * (nx * nx);
-  sum.xy += drag * (nx * ny);
-  sum.xz += drag * (nx * nz);
-  sum.yy += drag * (ny * ny);
-  sum.yz += drag * (ny * nz);
-  sum.zz += drag * (nz * nz);
+  add_outer(drag, nx, ny, nz, sum);
 }
 
 /// Adds what the wall's particle feels, N without the kernel's constant, of a pair whose fluid moves by its

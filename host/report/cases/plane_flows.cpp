@@ -156,14 +156,11 @@ Still at_rest(const make::Solid& vessel, const make::Solid& filling, const Setti
   b.set_viscosity({b.add_fixed("tank", vessel)}, kFreeSlip);
   b.add_volume(filling);
   b.set_domain({-0.15, -0.1, -0.15}, {0.15, 0.2, 0.15});
-  Result<SampledScene> sampled = sample_scene(with_setting(b.scene, setting), setting.spacing);
-  if (!sampled) throw Refused(sampled.error());
-  {
-    Trial settling(b.scene, sampled.value(), setting, cost);
-    settling.settle(1.0);
-    sampled.value().fluid_positions = settling.picture().positions;
-  }
-  return {std::move(b.scene), std::move(sampled.value())};
+  SampledScene start = sampled_for(b.scene, setting);
+  Trial settling(b.scene, start, setting, cost);
+  settling.settle(1.0);
+  start.fluid_positions = settling.picture().positions;
+  return {std::move(b.scene), std::move(start)};
 }
 
 // It is given a horizontal flow that goes with `shape` (of x and z, at most 1): what is left of that at each

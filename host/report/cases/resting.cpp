@@ -146,13 +146,12 @@ std::vector<Reading> paraboloid(const Setting& setting, Cost& cost) {
   b.add_volume(filling_of(kRadius, kDepth));
   b.add_stiff_grip(glass);
   b.set_domain({-0.2, -0.1, -0.2}, {0.2, 0.3, 0.2});
-  Result<SampledScene> sampled = sample_scene(with_setting(b.scene, setting), setting.spacing);
-  if (!sampled) throw Refused(sampled.error());
-  for (std::size_t i = 0; i < sampled.value().fluid_positions.size(); ++i) {
-    sampled.value().fluid_velocities[i] =
-        glm::cross(glm::vec3(0.0f, static_cast<float>(kTurning), 0.0f), sampled.value().fluid_positions[i]);
+  SampledScene start = sampled_for(b.scene, setting);
+  for (std::size_t i = 0; i < start.fluid_positions.size(); ++i) {
+    start.fluid_velocities[i] =
+        glm::cross(glm::vec3(0.0f, static_cast<float>(kTurning), 0.0f), start.fluid_positions[i]);
   }
-  Trial e(b.scene, sampled.value(), setting, cost);
+  Trial e(b.scene, start, setting, cost);
   e.handle(0).engaged = true;
   e.handle(0).twist.angular.y = kTurning;
   const auto turn = [&] { e.handle(0).pose.orientation = glm::angleAxis(kTurning * e.world().time(), kUp); };

@@ -223,14 +223,13 @@ std::vector<Reading> shear_wave(const Setting& setting, Cost& cost) {
   b.add_volume(make::box({-0.5 * kLength, 0.0, -0.5 * kWidth}, {0.5 * kLength, kHeight, 0.5 * kWidth}));
   b.scene.gravity = glm::dvec3(0.0);
   b.set_domain({-0.4, -0.2, -0.3}, {0.4, 0.3, 0.3});
-  Result<SampledScene> sampled = sample_scene(with_setting(b.scene, setting), setting.spacing);
-  if (!sampled) throw Refused(sampled.error());
+  SampledScene start = sampled_for(b.scene, setting);
   std::vector<double> shape;  // cos(ky) of each particle
-  for (std::size_t i = 0; i < sampled.value().fluid_positions.size(); ++i) {
-    shape.push_back(std::cos(kWave * static_cast<double>(sampled.value().fluid_positions[i].y)));
-    sampled.value().fluid_velocities[i] = {static_cast<float>(kSpeed * shape.back()), 0.0f, 0.0f};
+  for (std::size_t i = 0; i < start.fluid_positions.size(); ++i) {
+    shape.push_back(std::cos(kWave * static_cast<double>(start.fluid_positions[i].y)));
+    start.fluid_velocities[i] = {static_cast<float>(kSpeed * shape.back()), 0.0f, 0.0f};
   }
-  Trial e(b.scene, sampled.value(), setting, cost);
+  Trial e(b.scene, start, setting, cost);
   Snapshot before = e.picture();
   std::vector<glm::dvec2> logs;
   const double dt = e.world().plan().time_step;

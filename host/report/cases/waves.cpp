@@ -62,9 +62,7 @@ std::vector<Reading> sloshing(const Setting& setting, Cost& cost) {
   b.add_volume(
       make::box({-0.5 * kLength, 0.0, -0.5 * kWidth}, {0.5 * kLength, kDepth + kAmplitude, 0.5 * kWidth}));
   b.set_domain({-0.4, -0.2, -0.4}, {0.4, 0.5, 0.4});
-  const Result<SampledScene> sampled = sample_scene(with_setting(b.scene, setting), setting.spacing);
-  if (!sampled) throw Refused(sampled.error());
-  SampledScene cut = sampled.value();
+  SampledScene cut = sampled_for(b.scene, setting);
   std::erase_if(cut.fluid_positions, [&](const glm::vec3& p) {
     return p.y >= kDepth - kAmplitude * std::sin(kPi * p.x / kLength);
   });

@@ -124,10 +124,8 @@ Stress layers(const Setting& setting, Cost& cost) {
 template <class Change>
 Stress started(Change change, const Setting& setting, Cost& cost, double most_lost) {
   const Scene scene = tank_of(0.01, kGravity, 1000.0);
-  Result<SampledScene> sampled = sample_scene(with_setting(scene, setting), setting.spacing);
-  if (!sampled) throw Refused(sampled.error());
-  change(sampled.value());
-  auto& fluid = sampled.value();
+  SampledScene fluid = sampled_for(scene, setting);
+  change(fluid);
   fluid.fluid_velocities.resize(fluid.fluid_positions.size(), glm::vec3(0.0f));
   fluid.fluid_index.resize(fluid.fluid_positions.size(), 0);
   Trial t(scene, fluid, setting, cost);
