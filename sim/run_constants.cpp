@@ -123,7 +123,7 @@ RunConstants make_run_constants(const Scene& scene, const SampledScene& sampled,
     c.rest_number_density =
         static_cast<float>(rest_number_density<typename Parts::DensityKernel>(spacing, h));
   });
-  const DragShape<double> shape = drag_shape(c.plan.model, drag_sheet(scene, c.plan), h);
+  const DragShape<double> shape = drag_shape(drag_sheet(scene, c.plan), h);
   c.drag_shape = {static_cast<float>(shape.level), static_cast<float>(shape.growth)};
   const double volume = std::pow(spacing, 3);
   c.rest_volume = static_cast<float>(volume);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "sim/math/kernels.h"
-#include "sim/plan.h"
 #include "sim/viscosity/wall_drag.h"
 
 namespace slosh {
@@ -19,6 +18,6 @@ namespace slosh {
 ///   mean over where one lies over the next. It drags the more by that.
 ///
 /// `support_radius`: m.
-DragShape<double> drag_shape(ParticleModel model, DragSheet sheet, double support_radius);
+DragShape<double> drag_shape(DragSheet sheet, double support_radius);
 
 }  // namespace slosh

@@ -45,7 +45,7 @@ double lattice_viscosity_sum(double ratio, const DragShape<double>& shape) {
 // 1/(Pa·s · s): the explicit viscosity's damping rate for each Pa·s.
 double viscous_rate(const Scene& scene, const Plan& plan, const FluidExtremes& fluids, DragSheet sheet) {
   const double central = plan.model == ParticleModel::kPaper ? 1.0 : kCentralDrag / 3.0;
-  const DragShape<double> shape = drag_shape(plan.model, sheet, scene.support_ratio);
+  const DragShape<double> shape = drag_shape(sheet, scene.support_ratio);
   const double lattice = with_model(plan.model, [&]<class Parts>() {
     return lattice_viscosity_sum<typename Parts::ForceKernel>(scene.support_ratio, shape);
   });

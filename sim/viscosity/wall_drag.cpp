@@ -48,16 +48,18 @@ LayerDrag layer_drag(double height, double ratio, const DragShape<double>& shape
   return sum;
 }
 
-// The share of the fluid at a flat wall that lies evenly; the rest lies in layers. Chosen by the report's
-// means over five close spacings, at 5 and 4 mm: with half Poiseuille's flow is 3 % too low.
-constexpr double kLiesEvenly = 0.3;
-// At a ball of 2.5 spacings and less nearly all of it does: between a ball that is turned, which meets 7 %
-// too much (8 mm), and one that goes along a tube, which meets 3 % too little.
-constexpr double kLiesEvenlyAtBalls = 0.9;
-constexpr double kBall = 0.4;  // the convexity from which on it is so
+// Which share of the fluid at a wall lies evenly; the rest lies in layers. Chosen by the report's means over
+// close spacings: at a flat wall so that Poiseuille's flow is right at 5 and 4 mm (the default's is 3 % too low
+// with half), at a ball of 2.5 spacings and less between one that is turned, which meets 5 to 7 % too much (8
+// mm), and one that goes along a tube, which meets 1 to 4 % too little.
+struct LiesEvenly {
+  double flat, at_balls;
+};
+constexpr LiesEvenly kCompressible{0.3, 0.9}, kSolved{0.0, 0.5};
+constexpr double kBall = 0.4;  // the convexity from which on it is a ball
 
 template <class Kernel>
-WallDrag computed(double ratio, DragSheet sheet, const DragShape<double>& shape) {
+WallDrag computed(double ratio, DragSheet sheet, const LiesEvenly& lies, const DragShape<double>& shape) {
   const int reach = static_cast<int>(std::ceil(ratio));
   const double behind = sheet == DragSheet::kBehind ? kWallInset : 0.0;
   double stress = 0.0, by_layers = 0.0, evenly = 0.0, whole = layer_drag<Kernel>(0.0, ratio, shape).along;
@@ -78,8 +80,11 @@ WallDrag computed(double ratio, DragSheet sheet, const DragShape<double>& shape)
     by_layers += layered;
     evenly += sheet == DragSheet::kBehind ? layered : even;
   }
-  WallDrag drag;
-  if (by_layers > 0.0 && evenly > 0.0) drag = {stress / by_layers, stress / evenly};
+  WallDrag drag{.evenly_flat = lies.flat, .evenly_at_balls = lies.at_balls};
+  if (by_layers > 0.0 && evenly > 0.0) {
+    drag.layered = stress / by_layers;
+    drag.even = stress / evenly;
+  }
   const LayerDrag first = layer_drag<Kernel>(behind + kFirstLayer, ratio, shape);
   drag.rate = drag.factor(kBall) * (first.along + first.across) / whole;
   return drag;
@@ -126,7 +131,7 @@ double computed_mirror(double ratio, const DragShape<double>& shape) {
 }  // namespace
 
 double WallDrag::factor(double convexity) const {
-  const double evenly = std::lerp(kLiesEvenly, kLiesEvenlyAtBalls, std::clamp(convexity / kBall, 0.0, 1.0));
+  const double evenly = std::lerp(evenly_flat, evenly_at_balls, std::clamp(convexity / kBall, 0.0, 1.0));
   return 1.0 / ((1.0 - evenly) / layered + evenly / even);
 }
 
@@ -137,16 +142,17 @@ DragSheet drag_sheet(const Scene& scene, const Plan& plan) {
   return most > kThin * noise_viscosity(plan, fluids.lightest) ? DragSheet::kSurface : DragSheet::kBehind;
 }
 
-double mirror_factor(ParticleModel model, double support_ratio, DragSheet sheet) {
+double mirror_factor(double support_ratio, DragSheet sheet) {
   if (sheet != DragSheet::kSurface) return 0.0;
   return computed_mirror<ModelParts<ParticleModel::kCorrected>::ForceKernel>(
-      support_ratio, drag_shape(model, sheet, support_ratio));
+      support_ratio, drag_shape(sheet, support_ratio));
 }
 
 WallDrag wall_drag(ParticleModel model, double support_ratio, DragSheet sheet) {
   if (!corrects_gradients(model)) return {};
   return computed<ModelParts<ParticleModel::kCorrected>::ForceKernel>(
-      support_ratio, sheet, drag_shape(model, sheet, support_ratio));
+      support_ratio, sheet, model == ParticleModel::kIncompressible ? kSolved : kCompressible,
+      drag_shape(sheet, support_ratio));
 }
 
 }  // namespace slosh

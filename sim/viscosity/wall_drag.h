@@ -32,6 +32,8 @@ struct WallDrag {
   double layered = 1.0;  ///< factor() where all fluid at the wall lies in layers
   double even = 1.0;     ///< and where all of it lies evenly
   double rate = 0.0;     ///< of a particle of the first layer by the wall: across and along it together
+  /// The share of the fluid that lies evenly at a flat wall and at a ball of a few spacings, 0 to 1.
+  double evenly_flat = 0.0, evenly_at_balls = 0.0;
 
   /// What the volume of a dragging particle, its area times the spacing, counts. `convexity`: the surface's
   /// mean curvature times the spacing, 0 (flat or concave) and above.
@@ -40,7 +42,7 @@ struct WallDrag {
 
 /// Factors are such that in a linear shear, u = γ · (distance from the surface), the fluid within reach of
 /// the sheet passes on the stress that layers of fluid pass on to each other. Fluid at a flat wall lies
-/// mostly in layers, at a ball of a few spacings mostly evenly; from behind the surface layers alone count.
+/// mostly in layers, at a ball of a few spacings more of it evenly; from behind the surface layers alone count.
 /// Nothing but the support ratio, drag_shape() and the surface decide it. Models that do not correct
 /// gradients keep 1.
 WallDrag wall_drag(ParticleModel model, double support_ratio, DragSheet sheet);
@@ -51,6 +53,6 @@ WallDrag wall_drag(ParticleModel model, double support_ratio, DragSheet sheet);
 /// would be six tenths as much). At a support ratio of 2 a particle of the first layer then has 0.36 of the
 /// damping rate of a whole lattice by it, less than the half of that lattice that it lacks: no step is
 /// shortened. 0 where walls do not drag from the surface.
-double mirror_factor(ParticleModel model, double support_ratio, DragSheet sheet);
+double mirror_factor(double support_ratio, DragSheet sheet);
 
 }  // namespace slosh

@@ -282,7 +282,7 @@ std::vector<SurfaceParticle> surface_particles(const Scene& scene, const Sampled
     const float surface_volume = sampled.surfaces[b].particle_volume;
     const std::vector<MirrorPlane> mirrors = mirrors_of(body, dragging[b], plan);
     if (!mirrors.empty()) {
-      const double factor = mirror_factor(plan.model, scene.support_ratio, sheet);
+      const double factor = mirror_factor(scene.support_ratio, sheet);
       const float volume = static_cast<float>(factor) * surface_volume;
       for (std::size_t i = 0; i < mirrors.size(); ++i)
         add(dragging[b].positions[i], 0.0f, volume, mirrors[i]);

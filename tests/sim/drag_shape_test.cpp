@@ -56,14 +56,14 @@ double sliding_layers_pass_on(const DragShape<double>& shape, double ratio) {
 }
 
 const DragShape<double> kLaplacian{1.0, 0.0};
-constexpr double kSlides = 1.04;  // by how much the corrected model drags more
+constexpr double kSlides = 1.04;  // by how much thick fluid drags more
 
 DragShape<double> scaled(const DragShape<double>& shape, double by) {
   return {by * shape.level, by * shape.growth};
 }
 
 TEST(DragShapeTest, ALatticePassesOnAStrainAsItDoesAShear) {
-  const DragShape<double> shape = drag_shape(ParticleModel::kCorrected, DragSheet::kSurface, 2.0);
+  const DragShape<double> shape = drag_shape(DragSheet::kSurface, 2.0);
   const PassedOn now = passed_on(scaled(shape, 1.0 / kSlides), 2.0);
   EXPECT_NEAR(now.strain, 1.0, 0.005);
   EXPECT_NEAR(now.shear, 1.0, 0.005);
@@ -72,8 +72,7 @@ TEST(DragShapeTest, ALatticePassesOnAStrainAsItDoesAShear) {
 }
 
 TEST(DragShapeTest, LayersThatSlideOverEachOtherPassOnNewtons) {
-  EXPECT_NEAR(sliding_layers_pass_on(drag_shape(ParticleModel::kCorrected, DragSheet::kSurface, 2.0), 2.0),
-              1.0, 0.005);
+  EXPECT_NEAR(sliding_layers_pass_on(drag_shape(DragSheet::kSurface, 2.0), 2.0), 1.0, 0.005);
   EXPECT_NEAR(sliding_layers_pass_on(kLaplacian, 2.0), 0.986, 0.001);
 }
 
@@ -89,18 +88,15 @@ TEST(DragShapeTest, EvenlyLyingFluidPassesOnAsMuchAsByTheLaplacianAndWhatLayersL
     return sum;
   };
   for (const double h : {0.01, 2.0}) {
-    const DragShape<double> shape = drag_shape(ParticleModel::kCorrected, DragSheet::kSurface, h);
+    const DragShape<double> shape = drag_shape(DragSheet::kSurface, h);
     EXPECT_NEAR(whole(shape, h) / whole(kLaplacian, h), kSlides, 1e-6);
   }
 }
 
 TEST(DragShapeTest, ThinFluidKeepsTheLaplacian) {
-  for (const ParticleModel model : {ParticleModel::kPaper, ParticleModel::kConsistent,
-                                    ParticleModel::kCorrected, ParticleModel::kIncompressible}) {
-    const DragShape<double> shape = drag_shape(model, DragSheet::kBehind, 0.01);
-    EXPECT_EQ(shape.level, 1.0);
-    EXPECT_EQ(shape.growth, 0.0);
-  }
+  const DragShape<double> shape = drag_shape(DragSheet::kBehind, 0.01);
+  EXPECT_EQ(shape.level, 1.0);
+  EXPECT_EQ(shape.growth, 0.0);
 }
 
 }  // namespace

@@ -49,6 +49,13 @@ TEST(WallDragTest, FluidAtAFlatWallLiesMostlyInLayersAtABallMostlyEvenly) {
   EXPECT_LT(drag.factor(0.2), drag.factor(0.4));
 }
 
+TEST(WallDragTest, WherePressuresAreSolvedForItLiesInLayersAtABallHalfOfItEvenly) {
+  const WallDrag drag = wall_drag(ParticleModel::kIncompressible, 2.0, DragSheet::kSurface);
+  EXPECT_DOUBLE_EQ(drag.factor(0.0), drag.layered);
+  EXPECT_NEAR(1.0 / drag.factor(0.4), 0.5 / drag.layered + 0.5 / drag.even, 1e-12);
+  EXPECT_DOUBLE_EQ(drag.factor(0.7), drag.factor(0.4));
+}
+
 TEST(WallDragTest, FromBehindTheSurfaceAllSurfacesDragAlike) {
   const WallDrag drag = wall_drag(ParticleModel::kCorrected, 2.0, DragSheet::kBehind);
   EXPECT_DOUBLE_EQ(drag.factor(0.0), drag.factor(1.0));
@@ -57,12 +64,10 @@ TEST(WallDragTest, FromBehindTheSurfaceAllSurfacesDragAlike) {
 // A mirror is the stiffer the more of it is within reach. Where walls drag from behind their surface there is
 // none.
 TEST(WallDragTest, AWallThatSlipsMakesUpForWhatAMirrorWouldTake) {
-  const auto of = [](double ratio) {
-    return mirror_factor(ParticleModel::kCorrected, ratio, DragSheet::kSurface);
-  };
+  const auto of = [](double ratio) { return mirror_factor(ratio, DragSheet::kSurface); };
   EXPECT_NEAR(of(2.0), 0.302, 0.001);
   EXPECT_LT(of(2.0), of(2.5));
-  EXPECT_EQ(mirror_factor(ParticleModel::kCorrected, 2.0, DragSheet::kBehind), 0.0);
+  EXPECT_EQ(mirror_factor(2.0, DragSheet::kBehind), 0.0);
 }
 
 TEST(WallDragTest, ABoxDragsAsItsFacesDoAndABallMore) {
