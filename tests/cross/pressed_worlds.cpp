@@ -32,8 +32,8 @@ void compare_steps(const char* name, const Tank& tank, int steps, double toleran
   compare_steps(name, tank, pressing_plan(tank), steps, tolerance);
 }
 
-// What a hand feels over a second's tenth, and where a free box comes to be.
-void compare_held(const char* name, const Tank& tank, int steps) {
+// What a hand feels over a second's tenth, and where a free box comes to be: at most `apart` m away.
+void compare_held(const char* name, const Tank& tank, int steps, double apart) {
   std::printf("%s, held paddle, %d steps\n", name, steps);
   const Plan plan = pressing_plan(tank);
   glm::dvec3 mean[2]{}, at[2]{};
@@ -55,9 +55,7 @@ void compare_held(const char* name, const Tank& tank, int steps) {
               mean[0].z, mean[1].x, mean[1].y, mean[1].z);
   expect_true("the fluid presses on it", glm::length(mean[0]) > 0.01 * weight);
   expect_at_most("mean force on the paddle", glm::distance(mean[0], mean[1]) / glm::length(mean[0]), 0.02);
-  // In 0.1 Pa·s the free box goes one of two ways: of twelve CPU runs whose particles start a rounding
-  // elsewhere ten end 0.55 to 0.57 mm from the unmoved one, two within 0.02.
-  expect_at_most("where the last body is, m", glm::distance(at[0], at[1]), 7e-4);
+  expect_at_most("where the last body is, m", glm::distance(at[0], at[1]), apart);
   expect_at_most("kinetic energy", std::abs(kinetic[1] / kinetic[0] - 1.0), 0.03);
 }
 
@@ -78,16 +76,20 @@ void compare_pressed() {
   struct Case {
     const char* name;
     Tank tank;
+    double apart = 3e-4;  // m, compare_held's
   };
+  // In 0.1 Pa·s the free box goes one of two ways: of twelve CPU runs whose particles start a rounding
+  // elsewhere ten end 0.55 to 0.57 mm from the unmoved one, two within 0.02.
+  constexpr double kTwoWays = 7e-4;
   for (const Case& c :
        {Case{"pressures solved for, two fluids, paddle", pressed(stirred_tank(ParticleModel::kCorrected))},
         Case{"pressures solved for, light paddle in honey", pressed(paddle_in_honey(ParticleModel::kCorrected))},
-        Case{"pressures solved for, held paddle and free box", pressed(thick_tank(0.1, 0.1))},
+        Case{"pressures solved for, held paddle and free box", pressed(thick_tank(0.1, 0.1)), kTwoWays},
         Case{"pressures and drag solved for, held paddle and free box", pressed(thick_tank(50.0, 500.0))}}) {
     const Tank tank = shaken(c.tank);
     compare_steps(c.name, tank, 1, kOneStep);
     compare_steps(c.name, tank, 10, kTenSteps);
-    compare_held(c.name, c.tank, 100);
+    compare_held(c.name, c.tank, 100, c.apart);
     compare_momenta(tank, pressing_plan(tank), 50, 2e-6);
     repeat(c.name, c.tank, kPaddleHeight, 100);
   }

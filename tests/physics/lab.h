@@ -46,6 +46,9 @@ class Experiment : private report::Cost, public report::Trial {
   }
 };
 
+/// A tank 16 cm each way, full of a fluid of `density` kg/m³ and `viscosity` Pa·s, its floor at y = 0.
+SceneBuilder full_tank(ParticleModel model, double density, double viscosity);
+
 /// Prints "name: measured x, predicted y, error z %" and records it; returns (measured −
 /// predicted)/predicted.
 double report(const std::string& name, double measured, double predicted, const char* unit);

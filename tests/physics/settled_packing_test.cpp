@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
-#include "scenes/make/solid.h"
 #include "sim/run_constants.h"
 #include "sim/saved_state.h"
 #include "tests/physics/lab.h"
@@ -15,21 +15,9 @@ namespace slosh::lab {
 namespace {
 
 constexpr double kSpacing = 0.008;
-constexpr double kTank = 0.16;  // m, each way
-
-SceneBuilder tank_of_syrup(ParticleModel model) {
-  SceneBuilder b;
-  b.scene.model = model;
-  b.add_fluid(1400.0, 5.0);
-  b.add_fixed("tank", tank_at_floor({kTank, kTank + 0.08, kTank}, 0.04));
-  b.add_volume(make::box({-0.5 * kTank, 0.0, -0.5 * kTank}, {0.5 * kTank, kTank, 0.5 * kTank}));
-  b.set_domain({-0.4, -0.3, -0.4}, {0.4, 0.6, 0.4});
-  return b;
-}
 
 // The particles of a world, with the volumes that its density pass gave them.
-ParticleState particles_of(Experiment& e, const Scene& scene) {
-  const RunConstants constants = make_run_constants(scene, e.sampled(), e.world().plan());
+ParticleState particles_of(Experiment& e, const Scene& scene, const RunConstants& constants) {
   SavedState state;
   state.bodies = std::vector<RigidBody>(scene.bodies.size());
   const ParticleStart start = make_particle_start(scene, e.sampled(), constants, state.bodies);
@@ -38,12 +26,6 @@ ParticleState particles_of(Experiment& e, const Scene& scene) {
   const auto read = read_state(bytes, state_frame(scene, e.world().plan(), start), constants, state);
   EXPECT_TRUE(read) << read.error().text();
   return std::move(state.particles);
-}
-
-// By how much less than the lattice's the rest is against which settled fluid is measured.
-double thinner_rest(Experiment& e, const Scene& scene) {
-  const RunConstants c = make_run_constants(scene, e.sampled(), e.world().plan());
-  return settled(c.correction, c.load_compression, kSettlingTime).rest_number / c.correction.rest_number;
 }
 
 struct Volumes {
@@ -72,16 +54,26 @@ Volumes volumes_inside(const ParticleState& p) {
   return {kBoxes * 8.0 * half.x * half.y * half.z / count, volume / count};
 }
 
-// Under its own weight it lies as densely as the lattice that it starts from, and against a rest that is
-// thinner by 2 % a particle counts less than its room, by as much.
-TEST(SettledPacking, a_particle_counts_less_than_the_room_that_it_takes) {
-  const SceneBuilder b = tank_of_syrup(ParticleModel::kCorrected);
+struct Settled {
+  double rest;  // against which settled fluid is measured, over the lattice's
+  Volumes volumes;
+};
+
+Settled settled_syrup(ParticleModel model) {
+  const SceneBuilder b = full_tank(model, 1400.0, 5.0);
   Experiment e(b.scene, kSpacing);
   e.settle(1.0);
   e.run(0.1);
-  const double rest = thinner_rest(e, b.scene);
+  const RunConstants c = make_run_constants(b.scene, e.sampled(), e.world().plan());
+  const float rest = settled(c.correction, c.load_compression, kSettlingTime).rest_number;
+  return {rest / c.correction.rest_number, volumes_inside(particles_of(e, b.scene, c))};
+}
+
+// Under its own weight it lies as densely as the lattice that it starts from, and against a rest that is
+// thinner by 2 % a particle counts less than its room, by as much.
+TEST(SettledPacking, a_particle_counts_less_than_the_room_that_it_takes) {
+  const auto [rest, v] = settled_syrup(ParticleModel::kCorrected);
   ASSERT_NEAR(rest, 0.98, 1e-6);
-  const Volumes v = volumes_inside(particles_of(e, b.scene));
   const double lattice = std::pow(kSpacing, 3);
   EXPECT_LT(std::abs(report("room of a settled particle", v.taken, lattice, "m3")), 0.01);
   EXPECT_LT(std::abs(report("what is counted of it", v.counted, rest * v.taken, "m3")), 0.01);
@@ -89,12 +81,8 @@ TEST(SettledPacking, a_particle_counts_less_than_the_room_that_it_takes) {
 
 // Where pressures are solved for there is no such rest.
 TEST(SettledPacking, where_pressures_are_solved_for_all_of_it_counts) {
-  const SceneBuilder b = tank_of_syrup(ParticleModel::kIncompressible);
-  Experiment e(b.scene, kSpacing);
-  e.settle(1.0);
-  e.run(0.1);
-  EXPECT_EQ(thinner_rest(e, b.scene), 1.0);
-  const Volumes v = volumes_inside(particles_of(e, b.scene));
+  const auto [rest, v] = settled_syrup(ParticleModel::kIncompressible);
+  EXPECT_EQ(rest, 1.0);
   EXPECT_LT(std::abs(report("the same, incompressible", v.counted, v.taken, "m3")), 0.01);
 }
 

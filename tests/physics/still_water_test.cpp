@@ -11,16 +11,8 @@
 namespace slosh::lab {
 namespace {
 
-constexpr double kTank = 0.16;  // m, each way
-
 SceneBuilder tank_of_water(ParticleModel model) {
-  SceneBuilder b;
-  b.scene.model = model;
-  b.add_fluid(1000.0, 0.001);
-  b.add_fixed("tank", tank_at_floor({kTank, kTank + 0.08, kTank}, 0.04));
-  b.add_volume(make::box({-0.5 * kTank, 0.0, -0.5 * kTank}, {0.5 * kTank, kTank, 0.5 * kTank}));
-  b.set_domain({-0.4, -0.3, -0.4}, {0.4, 0.6, 0.4});
-  return b;
+  return full_tank(model, 1000.0, 0.001);
 }
 
 struct Turnover {
