@@ -107,7 +107,7 @@ struct MassProperties {
   glm::dmat3 inertia{0.0};         ///< kg·m², about the centre of mass, mesh axes
 };
 
-/// Which particle model a scene runs. sim/README.md compares them in numbers.
+/// Which particle model a scene runs. sim/pressure/README.md compares them in numbers.
 enum class ParticleModel : std::uint8_t {
   kConsistent,      ///< density and pressure from one kernel, walls counted in both
   kPaper,           ///< Eq 2 with poly6 and without body particles, Eq 5 as printed, constant body pressure
@@ -226,7 +226,7 @@ struct Scene {
   double support_ratio = 2.0;           ///< support radius (W = 0, the paper's h) over spacing, 1.5–2.6
   ParticleModel model = ParticleModel::kCorrected;
   double stiffness = 0.0;      ///< Eq 7's k = c², m²/s²; 0 = chosen by the plan from depth and gravity
-  double tension = 0.0;        ///< share of Eq 7's negative pressure that is kept, 0–1 (sim/README.md)
+  double tension = 0.0;        ///< share of Eq 7's negative pressure that is kept, 0–1 (sim/pressure/README.md)
   double duration = 10.0;      ///< s, of the scripted motion
   double settle =
       0.0;  ///< s of damped rest before the run (World::settle), 0–60; 0 = it starts as it is here

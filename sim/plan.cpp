@@ -68,8 +68,8 @@ void decide_body_drag(const Scene& scene, Plan& plan) {
   plan.runs.set(PassId::kBodyDrag, plan.viscous() && plan.waits_for_bodies);
 }
 
-// What a step with the solve takes is two to four times a step without (sim/README.md): below this many times
-// the explicit step it is not worth it.
+// What a step with the solve takes is two to four times a step without (sim/cpu/README.md): below this many
+// times the explicit step it is not worth it.
 constexpr double kWorthSolving = 4.0;
 
 // A probe's velocity is its body's, which is solved for later. The other models stay as they are, to compare with.

@@ -34,7 +34,8 @@ void add_case_options(CLI::App& verb, ReportOptions& options, const std::string&
   verb.add_option(
           "--model", options.models,
           "Only this particle model; may be given more than once (paper: the published one but for what\n"
-          "sim/README.md lists: neighbours counted, no negative pressure, body particles' volumes from "
+          "sim/pressure/README.md lists: neighbours counted, no negative pressure, body particles' volumes "
+          "from "
           "areas)")
       ->check(CLI::IsMember({"paper", "consistent", "corrected", "incompressible"}));
   verb.add_option(

@@ -39,9 +39,9 @@ Problem read_scene_fields(Reading& reading) {
   const std::string model = extras.text("model", name(scene.model));
   const auto known = std::find(kParticleModelNames.begin(), kParticleModelNames.end(), model);
   if (known == kParticleModelNames.end()) {
-    extras.fail(
-        "model", "is '" + model + "'",
-        "Give \"corrected\", \"incompressible\", \"consistent\" or \"paper\" (sim/README.md compares them)");
+    extras.fail("model", "is '" + model + "'",
+                "Give \"corrected\", \"incompressible\", \"consistent\" or \"paper\" (sim/pressure/README.md "
+                "compares them)");
   } else {
     scene.model = static_cast<ParticleModel>(known - kParticleModelNames.begin());
   }

@@ -21,7 +21,7 @@ namespace slosh {
 ///
 /// d_pose and d_velocity are symmetric and negative semidefinite: the spring and the damper that the model
 /// adds can store and take energy, not make any. `wrench` and `rate` are what the world's fluid does by
-/// itself, and may. sim/README.md says where each comes from.
+/// itself, and may. sim/bodies/README.md says where each comes from.
 struct FluidWrenchModel {
   std::uint32_t body = 0;  ///< index into Scene::bodies
   std::uint64_t tick = 0;  ///< BodySnapshot::tick that it goes with

@@ -116,8 +116,8 @@ INSTANTIATE_TEST_SUITE_P(
                            {"spin_up", 0.005, "torque at tau 0.05", 0.045},
                            {"spin_up", 0.005, "torque at tau 0.10", 0.05},
                            {"spin_up", 0.005, "impulse", 0.025}},
-        // Thin and slow fluid yields (sim/README.md), and five spacings across the radius see that alone. The
-        // report's own 7.1 mm, where 5 Pa·s is within a percent, take 17 s.
+        // Thin and slow fluid yields, and creeps by itself (sim/pressure/README.md), and five spacings across
+        // the radius see that alone. The report's own 7.1 mm, where 5 Pa·s is within a percent, take 17 s.
         std::vector<Known>{{"spin_up_all", 0.01, "torque, 2.0 Pa·s at 0.5 rad/s", 0.16},
                            {"spin_up_all", 0.01, "torque, 5.0 Pa·s at 0.5 rad/s", 0.09},
                            {"spin_up_all", 0.01, "torque, 2.0 Pa·s at 5.0 rad/s", 0.16},
@@ -129,8 +129,8 @@ INSTANTIATE_TEST_SUITE_P(
                            {"couette_start", 0.005, "torque at 80 ms", 0.045}},
         std::vector<Known>{{"poiseuille", 0.005, "flow", 0.025},
                            {"poiseuille", 0.005, "flow at 40 ms", 0.025}},
-        // While walls that slip held nothing across them, and had the bumps of a sheet at the spacing, the second was
-        // 24 to 37 % too little, and of a slow turn 70 % were kept.
+        // While walls that slip held nothing across them, and had the bumps of a sheet at the spacing, the
+        // second was 24 to 37 % too little, and of a slow turn 70 % were kept.
         std::vector<Known>{{"taylor_green", 0.005, "rate of decay", 0.075},
                            {"taylor_green", 0.005, "left of 2 cm/s after a decay's time", 0.15}},
         std::vector<Known>{{"smooth_glass", 0.005, "kept, 10 cm/s at the rim", 0.02},

@@ -1,5 +1,5 @@
 // What the published model's own walls hold: they are not in the density, and push by a constant pressure.
-// The departures from the paper that the model has, and why, are in sim/README.md.
+// The departures from the paper that the model has, and why, are in sim/pressure/README.md.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Water that nobody moves, and a ball that is moved in it: how it turns over by itself, and whether the
+// Fluid that nobody moves, and a ball that is moved in it: how it turns over by itself, and whether the
 // water that a body takes along weighs what it should.
 #include <gtest/gtest.h>
 
@@ -20,8 +20,7 @@ struct Turnover {
   double axis;  // m/s, upwards, the mean within 5 cm of the axis
 };
 
-Turnover turnover(ParticleModel model) {
-  const SceneBuilder b = tank_of_water(model);
+Turnover turnover(const SceneBuilder& b) {
   Experiment e(b.scene, 0.01);
   e.settle(1.0);
   e.run(0.3);
@@ -42,18 +41,27 @@ Turnover turnover(ParticleModel model) {
 }
 
 // The corrected model's water rises along the axis and sinks near the walls, whose first layer bears more
-// than its weight and whose second less; jostling does the rest (sim/README.md, *Still water turns over*). 16
-// and 15 mm/s are reached.
+// than its weight and whose second less; jostling does the rest (sim/pressure/README.md, *Still water turns
+// over*). 16 and 15 mm/s are reached.
 TEST(StillWater, turns_over_by_itself) {
-  const Turnover corrected = turnover(ParticleModel::kCorrected);
+  const Turnover corrected = turnover(tank_of_water(ParticleModel::kCorrected));
   report_value("still water moves, corrected", corrected.all, "m/s");
   report_value("still water rises along the axis, corrected", corrected.axis, "m/s");
   EXPECT_LT(corrected.all, 0.020);
   EXPECT_LT(std::abs(corrected.axis), 0.019);
-  const Turnover consistent = turnover(ParticleModel::kConsistent);
+  const Turnover consistent = turnover(tank_of_water(ParticleModel::kConsistent));
   report_value("still water moves, consistent", consistent.all, "m/s");
   EXPECT_LT(consistent.all, 0.008);  // 6.3 mm/s
   EXPECT_LT(std::abs(consistent.axis), 0.001);
+}
+
+// Thick fluid is turned over, too, as slowly as its viscosity lets it (*Still syrup creeps*, the same page).
+TEST(StillSyrup, creeps_by_itself) {
+  const Turnover syrup = turnover(full_tank(ParticleModel::kCorrected, 1000.0, 2.0));
+  report_value("still syrup moves", syrup.all, "m/s");
+  report_value("still syrup rises along the axis", syrup.axis, "m/s");
+  EXPECT_LT(syrup.all, 0.008);
+  EXPECT_LT(std::abs(syrup.axis), 0.008);
 }
 
 // A ball that a stiff hand sets in motion at 4.905 m/s²: half of the water that it displaces goes along.

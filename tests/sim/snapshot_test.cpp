@@ -11,7 +11,8 @@ TEST(StatusText, SaysEveryBitInWords) {
     EXPECT_FALSE(status_text(bit).empty()) << bit;
   const std::string both = status_text(kStatusEscaped | kStatusTimeSlipped);
   EXPECT_NE(both.find("left the domain"), std::string::npos);
-  EXPECT_NE(status_text(kStatusCompressed).find("100 to 400"), std::string::npos) << "what sim/README.md measured";
+  EXPECT_NE(status_text(kStatusCompressed).find("100 to 400"), std::string::npos)
+      << "what sim/walls/README.md measured";
   EXPECT_NE(both.find("; "), std::string::npos);
 }
 
