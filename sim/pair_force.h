@@ -29,14 +29,13 @@ SLOSH_HD void add_pair_force(const ParticleView<Real>& p, const ParticleView<Rea
     sum.x += tx;
     sum.y += ty;
     sum.z += tz;
-    // Fluid presses without a torque on all that its moment counts, and that has a wall as one layer: what
-    // the layers beyond it bear has its reaction on the body where the fluid is, not where the wall's
-    // particle is. A body takes a force anywhere, so the pair turns nothing.
+    // Fluid presses without a torque on all that its moment counts, and of a wall that is less than presses:
+    // what is beyond it has its reaction on the body where the fluid is, not where the wall's particle is. A
+    // body takes a force anywhere, so the pair turns nothing.
     if constexpr (is_corrected_body(rule) && requires { sum.cx; }) {
-      const Real beyond(1.0f - 1.0f / kWallShare);
-      sum.cx += beyond * (ty * dz - tz * dy);
-      sum.cy += beyond * (tz * dx - tx * dz);
-      sum.cz += beyond * (tx * dy - ty * dx);
+      sum.cx += sum.beyond * (ty * dz - tz * dy);
+      sum.cy += sum.beyond * (tz * dx - tx * dz);
+      sum.cz += sum.beyond * (tx * dy - ty * dx);
     }
   } else if constexpr (presses(rule)) {
     along = pressure_coefficient<rule>(p, i) * kernel.slope_over_r;

@@ -28,6 +28,7 @@ struct ForceSum {
 template <class Real>
 struct SurfaceSum : ForceSum<Real> {
   Real cx, cy, cz;
+  Real beyond;  ///< the share of what it bears that bears where the fluid is (pair_force.h)
 };
 
 }  // namespace slosh

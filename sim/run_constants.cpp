@@ -84,6 +84,16 @@ ParticleKind make_kind(const Scene& scene, double rest_density, double viscosity
           static_cast<float>(pressing_density(scene, rest_density)), probe};
 }
 
+// By the thinnest fluid that there is. The finer sheets of walls that slip are right with one layer.
+float wall_layer_of(const Scene& scene, const Plan& plan) {
+  const bool slips = std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                                 [](const Body& body) { return body.dynamic_viscosity == kFreeSlip; });
+  if (slips) return 1.0f / kWallShare;
+  const FluidExtremes fluids = fluid_extremes(scene);
+  return wall_layer(static_cast<float>(noise_viscosity(plan, fluids.lightest)),
+                    static_cast<float>(fluids.least_viscous));
+}
+
 }  // namespace
 
 std::vector<ParticleKind> particle_kinds(const Scene& scene, double spacing) {
@@ -138,7 +148,8 @@ RunConstants make_run_constants(const Scene& scene, const SampledScene& sampled,
                     static_cast<float>(c.plan.stiffness),
                     static_cast<float>(c.plan.tension),
                     static_cast<float>(impact_growth(c.plan)),
-                    static_cast<float>(most_explicit_drag(scene, c.plan))};
+                    static_cast<float>(most_explicit_drag(scene, c.plan)),
+                    wall_layer_of(scene, c.plan)};
   }
   c.gravity = glm::vec3(scene.gravity);
   if (c.plan.model != ParticleModel::kIncompressible)

@@ -110,10 +110,11 @@ void add_walls(const Work& w, std::uint32_t p, const BoundaryParticles& walls, c
   using Kernel = ModelParts<ParticleModel::kCorrected>::DensityKernel;
   const FluidParticles& fluid = w.fluid;
   const FloatBatch x(fluid.x[p]), y(fluid.y[p]), z(fluid.z[p]), h(w.context.support_radius);
+  const FloatBatch layer(w.context.correction.wall_layer);
   for_each_batch(rows, [&](std::uint32_t j, FloatBatch weight) {
     const FloatBatch share = load(walls.pressure, j);
     const FloatBatch dx = x - load(walls.x, j), dy = y - load(walls.y, j), dz = z - load(walls.z, j);
-    add_wall_neighbor<Kernel>(dx, dy, dz, share, FloatBatch(1.0f / kWallShare) * share, h, weight, sums.sum);
+    add_wall_neighbor<Kernel>(dx, dy, dz, share, layer * share, h, weight, sums.sum);
     const FloatBatch slope = share * Kernel::pair(dx * dx + dy * dy + dz * dz, h, weight).slope_over_r;
     sums.slope.x += slope * dx;
     sums.slope.y += slope * dy;

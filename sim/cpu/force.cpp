@@ -153,6 +153,7 @@ void sum_body_wrenches(PassContext& context, ThreadTeam& team, const FluidPartic
   const NeighborColumns own = columns(boundary);
   const FloatBatch h(context.support_radius);
   const DragShape<FloatBatch> shape = in_all_lanes(context.drag_shape);
+  const FloatBatch beyond(1.0f - context.correction.wall_layer);
   with_physics(context.plan, [&]<class Parts, Viscosity viscosity>() {
     team.run(runs.size(), kRunsPerChunk, [&](std::size_t begin, std::size_t end) {
       for (std::size_t r = begin; r < end; ++r) {
@@ -162,7 +163,7 @@ void sum_body_wrenches(PassContext& context, ThreadTeam& team, const FluidPartic
           if (!drags.empty()) scratch.drag_rate[i] = {};
           if (rows.count == 0 || !wanted[boundary.body[i]]) continue;
           const FloatBatch none(0.0f);
-          SurfaceSum<FloatBatch> sum{{none, none, none}, none, none, none};
+          SurfaceSum<FloatBatch> sum{{none, none, none}, none, none, none, beyond};
           const WallViscosity wall = wall_viscosity(boundary.viscosity[i]);
           const ParticleView<FloatBatch> self =
               broadcast(own, i, own_viscosity<viscosity>(wall, context.kinds.front().viscosity));

@@ -47,7 +47,8 @@ void PressureSolver::find_touches(const Work& work) {
             if (at == found.size()) found.push_back({p, body, {}});
             const glm::dvec3 force(-on_fluid);
             const glm::dvec3 arm = glm::dvec3(surface) - work.sides.bodies[body].position;
-            const glm::dvec3 torque = glm::cross(arm + (1.0 - 1.0 / kWallShare) * glm::dvec3(d), force);
+            const double beyond = 1.0 - work.context.correction.wall_layer;
+            const glm::dvec3 torque = glm::cross(arm + beyond * glm::dvec3(d), force);
             for (int k = 0; k < 3; ++k) {
               found[at].push[k] += force[k];
               found[at].push[k + 3] += torque[k];

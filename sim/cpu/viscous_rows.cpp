@@ -113,7 +113,7 @@ void ViscousSolver::add_fixed(const Work& work, std::span<Wrench> wrenches) {
           const WallViscosity wall = wall_viscosity(fixed.viscosity[i]);
           const ParticleView<FloatBatch> self =
               broadcast(own, i, own_viscosity<viscosity>(wall, context.kinds.front().viscosity));
-          SurfaceSum<FloatBatch> force{{zero, zero, zero}, zero, zero, zero};
+          SurfaceSum<FloatBatch> force{{zero, zero, zero}, zero, zero, zero, zero};
           for_each_batch(rows, [&](std::uint32_t j, FloatBatch weight) {
             const PairBatch d = drag_pairs<Parts, viscosity, Neighbours::kFluid>(
                 self, fluids, j, weight, h, shape, factor, FloatBatch(wall.of_fluid));

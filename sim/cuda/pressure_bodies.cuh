@@ -46,11 +46,11 @@ __device__ inline float3 push_on_fluid(const Press& s, std::uint32_t p) {
   return sum;
 }
 
-/// From a body's particle at x to where its share of a fluid particle's push acts: what the second layer bears has
-/// its reaction where the fluid is (pair_force.h).
-__device__ inline float3 beyond(const float4& x, const float4& fluid) {
-  constexpr float kBeyond = 1.0f - 1.0f / kWallShare;
-  return make_float3(kBeyond * (fluid.x - x.x), kBeyond * (fluid.y - x.y), kBeyond * (fluid.z - x.z));
+/// From a body's particle at x to where its share of a fluid particle's push acts: what is beyond the moment's layer
+/// has its reaction where the fluid is (pair_force.h).
+__device__ inline float3 beyond(const StepConstants& c, const float4& x, const float4& fluid) {
+  const float share = 1.0f - c.correction.wall_layer;
+  return make_float3(share * (fluid.x - x.x), share * (fluid.y - x.y), share * (fluid.z - x.z));
 }
 
 __device__ inline float3 cross(const float3& a, const float3& b) {
@@ -67,7 +67,7 @@ __device__ inline void push_on_surface(const Press& s, std::uint32_t e) {
     const float pressure = view.direction[j];
     const float3 f = make_float3(pressure * by_own.x, pressure * by_own.y, pressure * by_own.z);
     add(f, 1.0f, force);
-    add(cross(beyond(x, s.fluid.pressed[j]), f), 1.0f, couple);
+    add(cross(beyond(s.c, x, s.fluid.pressed[j]), f), 1.0f, couple);
   };
   const std::uint32_t count = view.rows.counts[e];
   if (count > view.rows.room) {
@@ -104,7 +104,7 @@ __device__ inline void for_each_touch(const Press& s, std::uint32_t p, F&& f) {
 /// What 1 Pa of p puts on the body of particle i, in that pair, on its six components.
 __device__ inline Vector6 touch(const Press& s, std::uint32_t p, std::uint32_t i, const float3& on_fluid) {
   const float4 x = s.moving.x[i];
-  const float3 further = beyond(x, s.fluid.pressed[p]);
+  const float3 further = beyond(s.c, x, s.fluid.pressed[p]);
   const glm::dvec3 arm =
       glm::dvec3(x.x, x.y, x.z) - s.view.body[s.moving.body[i]].center + glm::dvec3(further.x, further.y, further.z);
   const glm::dvec3 force(-on_fluid.x, -on_fluid.y, -on_fluid.z);

@@ -17,6 +17,7 @@ __global__ __launch_bounds__(kThreads) void surface_force_kernel(StepConstants c
   if (i >= surface.count || !wanted[surface.body[i]]) return;
   const std::uint32_t cell = surface.key[i];
   SurfaceSum<float> sum{};
+  sum.beyond = 1.0f - c.correction.wall_layer;
   Symmetric<float> rate{};
   if (cell < c.grid.retired_key()) {
     // Where the fluid has one viscosity its column is not filled: Eq 9's mean is known up front.

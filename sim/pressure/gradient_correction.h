@@ -28,7 +28,7 @@ inline constexpr float kFlattest = 0.1f;
 template <class Real>
 struct Neighborhood {
   Real number;             ///< Σ W, walls with their share
-  Symmetric<Real> moment;  ///< Σ d ⊗ d (−W'/r), walls as one layer
+  Symmetric<Real> moment;  ///< Σ d ⊗ d (−W'/r), walls as one layer (CorrectionConstants::wall_layer)
   Real fluid_number;       ///< Σ W over fluid
   Real vx, vy, vz;         ///< Σ W v over fluid
 };
@@ -61,7 +61,7 @@ SLOSH_HD void add_fluid_neighbor(Real dx, Real dy, Real dz, Real vx, Real vy, Re
 }
 
 /// One wall particle. `share`: how many lattice particles it stands for. It presses and counts as so many,
-/// but in the moment as one layer: as two it has the first layer of fluid pushed off to the side.
+/// but in the moment as `layer`: with all of it the first layer of fluid is pushed off to the side.
 template <class Kernel, class Real>
 SLOSH_HD void add_wall_neighbor(Real dx, Real dy, Real dz, Real share, Real layer, Real h, Real weight,
                                 Neighborhood<Real>& sum) {

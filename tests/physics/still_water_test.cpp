@@ -55,13 +55,14 @@ TEST(StillWater, turns_over_by_itself) {
   EXPECT_LT(std::abs(consistent.axis), 0.001);
 }
 
-// Thick fluid is turned over, too, as slowly as its viscosity lets it (*Still syrup creeps*, the same page).
-TEST(StillSyrup, creeps_by_itself) {
+// Thick fluid was turned over, too, at 7.6 mm/s, until walls were more than one layer in its moment; what is
+// left is how particles creep (*Still syrup creeps*, the same page).
+TEST(StillSyrup, creeps_and_does_not_turn_over) {
   const Turnover syrup = turnover(full_tank(ParticleModel::kCorrected, 1000.0, 2.0));
   report_value("still syrup moves", syrup.all, "m/s");
   report_value("still syrup rises along the axis", syrup.axis, "m/s");
-  EXPECT_LT(syrup.all, 0.008);
-  EXPECT_LT(std::abs(syrup.axis), 0.008);
+  EXPECT_LT(syrup.all, 0.007);
+  EXPECT_LT(std::abs(syrup.axis), 0.0015);
 }
 
 // A ball that a stiff hand sets in motion at 4.905 m/s²: half of the water that it displaces goes along.

@@ -123,13 +123,14 @@ TEST(PairForce, TheCorrectedVirialIsThePressureWhateverTheNeighbours) {
 }
 
 // A particle over a wall, among fluid and wall particles at random: what it does to all of them together
-// turns nothing, though a wall counts in its moment as one layer and is pressed on as more.
+// turns nothing, though a wall counts in its moment as one layer, or 1.1, and is pressed on as more.
 TEST(PairForce, FluidAtAWallExertsNoTorque) {
   std::mt19937 random(16);
   std::uniform_real_distribution<double> jitter(-0.3, 0.3);
   constexpr double kSpacing = 0.5 * kSupport;
   double worst = 0.0, worst_without = 0.0;
   for (int repeat = 0; repeat < 100; ++repeat) {
+    const double layer = repeat % 2 == 0 ? 1.0 : 1.1;
     std::vector<glm::dvec3> fluids, walls;
     for (int x = -2; x <= 2; ++x)
       for (int y = -2; y <= 2; ++y)
@@ -152,7 +153,7 @@ TEST(PairForce, FluidAtAWallExertsNoTorque) {
     for (const glm::dvec3& at : fluids)
       add_fluid_neighbor<Spiky>(-at.x, -at.y, -at.z, 0.0, 0.0, 0.0, kSupport, 1.0, sum);
     for (const glm::dvec3& at : walls)
-      add_wall_neighbor<Spiky>(-at.x, -at.y, -at.z, 2.0, 1.0, kSupport, 1.0, sum);
+      add_wall_neighbor<Spiky>(-at.x, -at.y, -at.z, 2.0, layer, kSupport, 1.0, sum);
     const auto share = [&](double sum_of) { return static_cast<float>(sum_of / rest); };
     const Symmetric<double>& m = sum.moment;
     const Symmetric<float> push = pressure_directions(
@@ -174,7 +175,7 @@ TEST(PairForce, FluidAtAWallExertsNoTorque) {
     for (const glm::dvec3& at : walls) {
       View wall = place(at);
       wall.pressure = 2.0;
-      SurfaceSum<double> on_wall{{0.0, 0.0, 0.0}, 0.0, 0.0, 0.0};
+      SurfaceSum<double> on_wall{{0.0, 0.0, 0.0}, 0.0, 0.0, 0.0, 1.0 - layer / 2.0};
       add_pair_force<Spiky, PairRule::kCorrectedBody, DragRule::kCentral, true>(wall, self, kSupport,
                                                                                 kLaplacian, 1.0, on_wall);
       const glm::dvec3 turned = glm::cross(at, {on_wall.x, on_wall.y, on_wall.z});
@@ -218,6 +219,17 @@ TEST(PairForce, AViscousFluidIsWholeFromNineTenthsOn) {
   EXPECT_NEAR(along(0.9f), 1.0f / 0.9f, 1e-6f) << "L, all of it";
   EXPECT_NEAR(along(1.0f), 1.0f, 1e-6f) << "0.1 is missing and taken to lie evenly";
   EXPECT_FLOAT_EQ(pressure_directions({0, 0, 0, 0, 0, 0}, 1.0f, 1.3f, 0.9f).xx, 1.0f);
+}
+
+// A wall's particle counts in the moment of thin fluid as half of what it presses with, to the bit, and in
+// that of fluid that needs no drag on jostling as a tenth more.
+TEST(PairForce, AWallIsMoreThanALayerToThickFluid) {
+  EXPECT_EQ(wall_layer(0.6f, 0.0f), 0.5f);
+  EXPECT_EQ(wall_layer(0.6f, 0.6f * 0.75f), 0.5f);
+  EXPECT_NEAR(wall_layer(0.6f, 0.6f), 0.525f, 1e-6f);
+  EXPECT_FLOAT_EQ(wall_layer(0.6f, 1.0f), 0.55f);
+  EXPECT_FLOAT_EQ(wall_layer(0.6f, 1000.0f), 0.55f);
+  EXPECT_EQ(CorrectionConstants{}.wall_layer, 0.5f);
 }
 
 // The drag of noise sees no flow that neighbours share, and nothing where there is no neighbour.
