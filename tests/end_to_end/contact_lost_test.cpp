@@ -30,6 +30,9 @@ constexpr double kZeroWithin = 0.4;  // s
 constexpr double kLate = 0.1;
 constexpr double kStopped = 10.0;  // s
 constexpr double kRounding = 1e-3;
+// Of a millisecond, by which a write's time is noted later than the loop took its own: 6 and 7 µs were seen
+// where a program had just gone on.
+constexpr double kNotedLate = 0.02;
 
 class ContactLost : public test::HostedTest {
  protected:
@@ -178,7 +181,7 @@ TEST_F(ContactLost, APeerThatStandsStillForTenSeconds) {
       "may be given at once\n",
       held, kStopped, most_after, test::steepest(ana, kRate));
   EXPECT_LT(most_after, 0.5);
-  EXPECT_LE(test::steepest(ana, kRate), 1.0 + kRounding);
+  EXPECT_LE(test::steepest(ana, kRate), 1.0 + kNotedLate);
   const std::vector<WrittenForce> ben = test::written_since(sent("ben"), fault_ns - to_nanoseconds(0.05));
   double most = 0.0;
   for (const WrittenForce& write : ben) most = std::max(most, glm::length(write.force));

@@ -118,7 +118,7 @@ INSTANTIATE_TEST_SUITE_P(
                            {"spin_up", 0.005, "impulse", 0.025}},
         // Thin and slow fluid yields, and creeps by itself (sim/pressure/README.md), and five spacings across
         // the radius see that alone. The report's own 7.1 mm, where 5 Pa·s is within a percent, take 17 s.
-        std::vector<Known>{{"spin_up_all", 0.01, "torque, 2.0 Pa·s at 0.5 rad/s", 0.16},
+        std::vector<Known>{{"spin_up_all", 0.01, "torque, 2.0 Pa·s at 0.5 rad/s", 0.23},
                            {"spin_up_all", 0.01, "torque, 5.0 Pa·s at 0.5 rad/s", 0.09},
                            {"spin_up_all", 0.01, "torque, 2.0 Pa·s at 5.0 rad/s", 0.16},
                            {"spin_up_all", 0.01, "torque, 5.0 Pa·s at 5.0 rad/s", 0.085}},
@@ -137,8 +137,8 @@ INSTANTIATE_TEST_SUITE_P(
                            {"smooth_glass", 0.005, "kept, 2 cm/s at the rim", 0.06}},
         // A ball of 1.5 and 2 spacings. It meets particle by particle what drags it now, so a stroke's halves
         // differ more (0.03 held where it slid through).
-        std::vector<Known>{{"stokes", 0.008, "drag", 0.045}, {"stokes", 0.008, "drift over a stroke", 0.02}},
-        std::vector<Known>{{"stokes", 0.006, "drag", 0.04}, {"stokes", 0.006, "drift over a stroke", 0.02}},
+        std::vector<Known>{{"stokes", 0.008, "drag", 0.03}, {"stokes", 0.008, "drift over a stroke", 0.028}},
+        std::vector<Known>{{"stokes", 0.006, "drag", 0.03}, {"stokes", 0.006, "drift over a stroke", 0.01}},
         // -4.7 % was of honey that had not settled yet: it still sagged around the ball.
         std::vector<Known>{{"stokes_honey", 0.008, "drag", 0.09},
                            {"stokes_honey", 0.008, "drift over a stroke", 0.135}},
