@@ -84,14 +84,12 @@ ParticleKind make_kind(const Scene& scene, double rest_density, double viscosity
           static_cast<float>(pressing_density(scene, rest_density)), probe};
 }
 
-// By the thinnest fluid that there is. The finer sheets of walls that slip are right with one layer.
-float wall_layer_of(const Scene& scene, const Plan& plan) {
+// `noise`: Pa·s, what jostling would need; `thinnest`: Pa·s, of the fluids that there are. The finer sheets
+// of walls that slip are right with one layer.
+float wall_layer_of(const Scene& scene, float noise, double thinnest) {
   const bool slips = std::any_of(scene.bodies.begin(), scene.bodies.end(),
                                  [](const Body& body) { return body.dynamic_viscosity == kFreeSlip; });
-  if (slips) return 1.0f / kWallShare;
-  const FluidExtremes fluids = fluid_extremes(scene);
-  return wall_layer(static_cast<float>(noise_viscosity(plan, fluids.lightest)),
-                    static_cast<float>(fluids.least_viscous));
+  return slips ? 1.0f / kWallShare : wall_layer(noise, static_cast<float>(thinnest));
 }
 
 }  // namespace
@@ -139,17 +137,19 @@ RunConstants make_run_constants(const Scene& scene, const SampledScene& sampled,
   c.rest_volume = static_cast<float>(volume);
   if (corrects_gradients(c.plan.model)) {
     const double moment = rest_moment<Spiky>(spacing, h);
+    const FluidExtremes fluids = fluid_extremes(scene);
+    const auto noise = static_cast<float>(noise_viscosity(c.plan, fluids.lightest));
     c.correction = {c.rest_number_density,
                     static_cast<float>(moment),
                     static_cast<float>(1.0 / (volume * moment * Spiky::scale(h))),
                     static_cast<float>(std::pow(h, 3)),
-                    static_cast<float>(noise_viscosity(c.plan, fluid_extremes(scene).lightest)),
+                    noise,
                     c.rest_volume,
                     static_cast<float>(c.plan.stiffness),
                     static_cast<float>(c.plan.tension),
                     static_cast<float>(impact_growth(c.plan)),
                     static_cast<float>(most_explicit_drag(scene, c.plan)),
-                    wall_layer_of(scene, c.plan)};
+                    wall_layer_of(scene, noise, fluids.least_viscous)};
   }
   c.gravity = glm::vec3(scene.gravity);
   if (c.plan.model != ParticleModel::kIncompressible)

@@ -35,8 +35,7 @@ void add_case_options(CLI::App& verb, ReportOptions& options, const std::string&
           "--model", options.models,
           "Only this particle model; may be given more than once (paper: the published one but for what\n"
           "sim/pressure/README.md lists: neighbours counted, no negative pressure, body particles' volumes "
-          "from "
-          "areas)")
+          "from areas)")
       ->check(CLI::IsMember({"paper", "consistent", "corrected", "incompressible"}));
   verb.add_option(
           "--from", options.from,

@@ -19,6 +19,7 @@ void PressureSolver::find_touches(const Work& work) {
   const BoundaryParticles& moving = work.sides.moving;
   const std::vector<CellRun>& runs = fluid.index.runs();
   const float h = work.context.support_radius;
+  const double beyond = 1.0 - work.context.correction.wall_layer;
   found_touches_.resize(chunk_count(runs.size(), kRunsPerChunk));
   const bool any = moving.index.particles() > 0;
   work.team.run(any ? runs.size() : 0, kRunsPerChunk, [&](std::size_t begin, std::size_t end) {
@@ -47,7 +48,6 @@ void PressureSolver::find_touches(const Work& work) {
             if (at == found.size()) found.push_back({p, body, {}});
             const glm::dvec3 force(-on_fluid);
             const glm::dvec3 arm = glm::dvec3(surface) - work.sides.bodies[body].position;
-            const double beyond = 1.0 - work.context.correction.wall_layer;
             const glm::dvec3 torque = glm::cross(arm + beyond * glm::dvec3(d), force);
             for (int k = 0; k < 3; ++k) {
               found[at].push[k] += force[k];

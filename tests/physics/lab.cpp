@@ -4,20 +4,7 @@
 
 #include <cstdio>
 
-#include "scenes/make/solid.h"
-
 namespace slosh::lab {
-
-SceneBuilder full_tank(ParticleModel model, double density, double viscosity) {
-  constexpr double kTank = 0.16;
-  SceneBuilder b;
-  b.scene.model = model;
-  b.add_fluid(density, viscosity);
-  b.add_fixed("tank", tank_at_floor({kTank, kTank + 0.08, kTank}, 0.04));
-  b.add_volume(make::box({-0.5 * kTank, 0.0, -0.5 * kTank}, {0.5 * kTank, kTank, 0.5 * kTank}));
-  b.set_domain({-0.4, -0.3, -0.4}, {0.4, 0.6, 0.4});
-  return b;
-}
 
 double report(const std::string& name, double measured, double predicted, const char* unit) {
   const double error = (measured - predicted) / predicted;

@@ -5,12 +5,14 @@
 
 #include "host/report/error_case.h"
 #include "host/report/scene_builder.h"
+#include "host/report/still_fluid.h"
 #include "host/report/trial.h"
 
 namespace slosh::lab {
 
 using report::all_finite;
 using report::Average;
+using report::full_tank;
 using report::kGravity;
 using report::kPi;
 using report::SceneBuilder;
@@ -45,9 +47,6 @@ class Experiment : private report::Cost, public report::Trial {
     return setting;
   }
 };
-
-/// A tank 16 cm each way, full of a fluid of `density` kg/m³ and `viscosity` Pa·s, its floor at y = 0.
-SceneBuilder full_tank(ParticleModel model, double density, double viscosity);
 
 /// Prints "name: measured x, predicted y, error z %" and records it; returns (measured −
 /// predicted)/predicted.

@@ -11,33 +11,15 @@
 namespace slosh::lab {
 namespace {
 
+using report::Turnover;
+
 SceneBuilder tank_of_water(ParticleModel model) {
   return full_tank(model, 1000.0, 0.001);
 }
 
-struct Turnover {
-  double all;   // m/s, rms over the particles of what each moves by in a tenth of a second
-  double axis;  // m/s, upwards, the mean within 5 cm of the axis
-};
-
 Turnover turnover(const SceneBuilder& b) {
   Experiment e(b.scene, 0.01);
-  e.settle(1.0);
-  e.run(0.3);
-  const Snapshot before = e.picture();
-  const double begin = e.world().time();
-  e.run(0.1);
-  const Snapshot after = e.picture();
-  const double time = e.world().time() - begin;
-  double squares = 0.0;
-  Average up;
-  for (std::size_t i = 0; i < after.positions.size(); ++i) {
-    const glm::dvec3 p(after.positions[i]);
-    const glm::dvec3 v = (p - glm::dvec3(before.positions[i])) / time;
-    squares += glm::dot(v, v);
-    if (std::hypot(p.x, p.z) < 0.05 && p.y > 0.03 && p.y < 0.13) up.add(v.y);
-  }
-  return {std::sqrt(squares / static_cast<double>(after.positions.size())), up.mean()};
+  return report::turnover(e);
 }
 
 // The corrected model's water rises along the axis and sinks near the walls, whose first layer bears more

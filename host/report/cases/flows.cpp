@@ -7,6 +7,7 @@
 #include "host/report/error_case.h"
 #include "host/report/reference/potential_dam.h"
 #include "host/report/scene_builder.h"
+#include "host/report/surface.h"
 
 namespace slosh::report {
 namespace {
@@ -179,11 +180,11 @@ std::vector<Reading> torricelli(const Setting& setting, Cost& cost) {
     const Snapshot now = e.picture();
     double above = 0.0;
     for (std::size_t i = 0; i < now.positions.size(); ++i)
-      above += now.fluid_index[i] != 255 && now.positions[i].y > 0.0f;
+      above += now.fluid_index[i] != kRetired && now.positions[i].y > 0.0f;
     const double depth = above * std::pow(setting.spacing, 3) / (kPi * kRadius * kRadius);
     const double plane = -kFloor - kBelow;
     for (std::size_t i = 0; i < now.positions.size(); ++i) {
-      if (now.fluid_index[i] == 255 || std::abs(now.positions[i].y - plane) > setting.spacing) continue;
+      if (now.fluid_index[i] == kRetired || std::abs(now.positions[i].y - plane) > setting.spacing) continue;
       const glm::dvec3 way = glm::dvec3(now.positions[i]) - glm::dvec3(before.positions[i]);
       const double speed = glm::length(way) / e.world().plan().time_step;
       share.add(speed / std::sqrt(2.0 * kGravity * (depth - now.positions[i].y)));

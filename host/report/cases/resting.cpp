@@ -5,6 +5,7 @@
 
 #include "host/report/error_case.h"
 #include "host/report/scene_builder.h"
+#include "host/report/still_fluid.h"
 #include "host/report/surface.h"
 #include "sim/instruments.h"
 
@@ -70,31 +71,13 @@ std::vector<Reading> still_tank(const Setting& setting, Cost& cost) {
 // Nothing moves syrup that stands: what goes up along a tank's axis comes down at its walls, and what all
 // move by besides is what particles creep by.
 std::vector<Reading> still_syrup(const Setting& setting, Cost& cost) {
-  constexpr double kTank = 0.16, kViscosity = 2.0, kSlow = 0.01;  // m, Pa·s, m/s
-  constexpr double kAxis = 0.05, kFrom = 0.03, kTo = 0.13;        // m, what counts as the axis
-  SceneBuilder b;
-  b.add_fluid(1000.0, kViscosity);
-  const int tank = b.add_fixed("tank", tank_at_floor({kTank, kTank + 0.08, kTank}, 0.04));
-  b.set_viscosity({tank}, kViscosity);
-  b.add_volume(make::box({-0.5 * kTank, 0.0, -0.5 * kTank}, {0.5 * kTank, kTank, 0.5 * kTank}));
-  b.set_domain({-0.4, -0.3, -0.4}, {0.4, 0.6, 0.4});
+  constexpr double kViscosity = 2.0, kSlow = 0.01;  // Pa·s, m/s
+  SceneBuilder b = full_tank(setting.model, 1000.0, kViscosity);
+  b.set_viscosity({0}, kViscosity);
   Trial t(b.scene, setting, cost);
-  t.settle(1.0);
-  t.run(0.3);
-  const Snapshot before = t.picture();
-  const double start = t.world().time();
-  t.run(0.1);
-  const Snapshot after = t.picture();
-  const double time = t.world().time() - start;
-  Average up, squares;
-  for (std::size_t i = 0; i < after.positions.size(); ++i) {
-    if (after.fluid_index[i] == 255) continue;  // retired
-    const glm::dvec3 at(after.positions[i]), went = (at - glm::dvec3(before.positions[i])) / time;
-    squares.add(glm::dot(went, went));
-    if (std::hypot(at.x, at.z) < kAxis && at.y > kFrom && at.y < kTo) up.add(went.y);
-  }
-  return {{"rise along the axis", "m/s", up.mean(), 0.0, kSlow, true},
-          {"all of it, rms", "m/s", std::sqrt(squares.mean()), 0.0, kSlow, false}};
+  const Turnover moves = turnover(t);
+  return {{"rise along the axis", "m/s", moves.axis, 0.0, kSlow, true},
+          {"all of it, rms", "m/s", moves.all, 0.0, kSlow, false}};
 }
 
 // A tank of five bodies: each side carries ½ρgh²w, at a third of the depth above the floor.
