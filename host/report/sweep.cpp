@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "host/report/close_spacings.h"
 #include "host/report/csv.h"
 #include "sim/backend.h"
 #include "sim/math/format.h"
@@ -64,16 +65,18 @@ std::vector<Setting> settings_of(const ErrorCase& which, const SweepOptions& opt
       spacings = which.spacings;
       if (options.quick) spacings.resize(which.quick);
     }
-    for (const double spacing : spacings) {
-      Setting setting = base;
-      setting.spacing = spacing;
-      settings.push_back(setting);
-      if (options.quick) continue;
-      setting.support_ratio = kWideSupport;
-      settings.push_back(setting);
-      setting.support_ratio = base.support_ratio;
-      setting.step_share = kShortStep;
-      settings.push_back(setting);
+    for (const double middle : spacings) {
+      for (const double spacing : close_spacings(middle, options.close)) {
+        Setting setting = base;
+        setting.spacing = spacing;
+        settings.push_back(setting);
+        if (options.quick) continue;
+        setting.support_ratio = kWideSupport;
+        settings.push_back(setting);
+        setting.support_ratio = base.support_ratio;
+        setting.step_share = kShortStep;
+        settings.push_back(setting);
+      }
     }
   }
   return settings;

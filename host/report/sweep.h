@@ -16,6 +16,7 @@ struct SweepOptions {
   std::vector<std::string> cases;   ///< ids; empty: all
   std::vector<std::string> models;  ///< names; empty: all
   std::vector<double> spacings;     ///< m, in place of each case's own; empty: those
+  int close = 1;                    ///< runs at each spacing, close by (close_spacings.h); odd
   std::vector<Backend> backends{Backend::kCpu};
   int threads = 0;
   bool (*stopped)() = nullptr;  ///< Setting::stopped
@@ -48,6 +49,8 @@ struct ErrorRow {
   double retired = 0.0;
   std::uint32_t status = 0;
   std::string refused;  ///< empty when it ran
+  int readings = 1;     ///< more: this is their mean (close_spacings.h)
+  double scatter = 0.0;  ///< root mean square of what their errors differ by from the mean
 
   double error() const { return (measured - expected) / scale; }
   double wall_per_simulated() const { return simulated_s > 0.0 ? wall_s / simulated_s : 0.0; }
@@ -60,8 +63,8 @@ struct ErrorRow {
 /// Every backend with each model.
 std::vector<Setting> base_settings(const SweepOptions& options);
 
-/// The settings of one case: every spacing with each model; in a full report also at a support ratio of 2.5
-/// and at half the time step.
+/// The settings of one case: every spacing, and those close by, with each model; in a full report also at a
+/// support ratio of 2.5 and at half the time step.
 std::vector<Setting> settings_of(const ErrorCase& which, const SweepOptions& options);
 
 /// Runs one case at one setting; a refusal is a row of its own. Throws Stopped.

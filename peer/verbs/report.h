@@ -22,6 +22,7 @@ struct ReportOptions {
   bool resume = false;  ///< keep what the folder has, measure the rest
   std::vector<std::string> cases, models;
   std::vector<double> spacings;  ///< m, of report error; empty: each case's own
+  int close = 1;                 ///< of report error: runs at each spacing, close by
   std::string backend = "cpu";
   int threads = 0;
   std::vector<std::string> from;  ///< CSVs of earlier reports, drawn instead of running anything

@@ -6,7 +6,9 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <utility>
 
+#include "host/report/close_spacings.h"
 #include "host/report/frontier.h"
 #include "net/text/clean.h"
 #include "peer/output/chart.h"
@@ -69,6 +71,20 @@ std::vector<glm::dvec2> frontier_of(const std::vector<ErrorRow>& rows) {
   return best;
 }
 
+// How far the readings of a mean scatter, as an upright line through where it is drawn. On a logarithmic axis
+// nothing is at zero: the line ends at a third of the mean then.
+void add_scatter(const ErrorRow& row, const glm::dvec2& at, ChartPanel& panel) {
+  if (row.readings < 2) return;
+  const double scatter = 100.0 * row.scatter;
+  panel.series.push_back({"",
+                          color_of_model(row.model),
+                          {{at.x, std::max(at.y - scatter, at.y / 3.0)}, {at.x, at.y + scatter}},
+                          0,
+                          1.0,
+                          1.2,
+                          false});
+}
+
 ChartPanel against_time(const Group& group) {
   ChartPanel panel{group.title, "wall s per simulated s", "|error|, %", true, true, {}};
   panel.series.push_back({"frontier", "#909090", frontier_of(group.rows), 0, 1.0, 1.5, true});
@@ -83,6 +99,7 @@ ChartPanel against_time(const Group& group) {
         if (row.model != model || (row.backend == "cuda") != cuda) continue;
         auto& to = row.is_base() ? base : row.support_ratio != 2.0 ? variants : shorter;
         to.points.push_back(time_and_error(row));
+        add_scatter(row, time_and_error(row), panel);
       }
       for (ChartSeries& series : {std::ref(base), std::ref(variants), std::ref(shorter)})
         panel.series.push_back(series);
@@ -101,22 +118,27 @@ ChartPanel against_time(const Group& group) {
 }
 
 // From coarse to fine. The backends agree to rounding; a GPU's rows go on where a CPU's take too long.
-std::vector<glm::dvec2> by_spacing(const Group& group, const std::string& model) {
+std::vector<std::pair<glm::dvec2, const ErrorRow*>> by_spacing(const Group& group, const std::string& model) {
   std::map<double, const ErrorRow*, std::greater<>> rows;
   for (const ErrorRow& row : group.rows) {
     if (row.model != model || !row.is_base()) continue;
     const auto [at, is_new] = rows.emplace(row.spacing, &row);
     if (!is_new && row.backend == "cpu") at->second = &row;
   }
-  std::vector<glm::dvec2> points;
-  for (const auto& [spacing, row] : rows) points.emplace_back(1e3 * spacing, 100.0 * std::abs(row->error()));
+  std::vector<std::pair<glm::dvec2, const ErrorRow*>> points;
+  for (const auto& [spacing, row] : rows)
+    points.emplace_back(glm::dvec2(1e3 * spacing, 100.0 * std::abs(row->error())), row);
   return points;
 }
 
 ChartPanel against_spacing(const Group& group) {
   ChartPanel panel{"convergence", "spacing, mm", "|error|, %", true, true, {}};
   for (const std::string model : kModels) {
-    const std::vector<glm::dvec2> points = by_spacing(group, model);
+    std::vector<glm::dvec2> points;
+    for (const auto& [at, row] : by_spacing(group, model)) {
+      points.push_back(at);
+      add_scatter(*row, at, panel);
+    }
     const std::optional<double> order = report::order_of(points);
     panel.series.push_back({model + (order ? format(", order %.1f", *order) : std::string()),
                             color_of_model(model), points, 7, 0.9, 1.2, false});
@@ -133,7 +155,9 @@ std::string markdown(const std::vector<Group>& groups, const std::string& machin
   std::string text =
       "# Error against run time\n\n" + machine +
       "\n\nError in % and, after the slash, wall seconds a simulated second; support ratio 2, the "
-      "plan's time step. Bold: nothing in the report has less error for as little time.\n\n"
+      "plan's time step. Bold: nothing in the report has less error for as little time. \"+1.1 ± 1.9 (5)\" "
+      "is the "
+      "mean of five spacings close by, and the root mean square of what they differ by from it.\n\n"
       "| case | reads | spacing, mm | paper | consistent | corrected | incompressible | CUDA, corrected | "
       "CUDA, "
       "incompressible |\n"
@@ -161,7 +185,9 @@ std::string markdown(const std::vector<Group>& groups, const std::string& machin
           continue;
         }
         const bool front = std::find(best.begin(), best.end(), time_and_error(*row)) != best.end();
-        std::string cell = format("%+.3g / %.2g", 100.0 * row->error(), row->wall_per_simulated());
+        std::string cell = format("%+.3g", 100.0 * row->error());
+        if (row->readings > 1) cell += format(" ± %.2g (%d)", 100.0 * row->scatter, row->readings);
+        cell += format(" / %.2g", row->wall_per_simulated());
         if (row->retired > 0.0)
           cell += format(" (%.0f %% lost)", 100.0 * row->retired / std::max(row->particles, 1.0));
         text += (front ? " **" + cell + "** |" : " " + cell + " |");
@@ -186,8 +212,9 @@ ChartPanel key_of(const std::vector<ChartPanel>& panels) {
   return key;
 }
 
-int write_up(const std::vector<ErrorRow>& rows, const std::filesystem::path& folder,
+int write_up(const std::vector<ErrorRow>& all_rows, const std::filesystem::path& folder,
              const std::string& machine) {
+  const std::vector<ErrorRow> rows = report::means_of_close(all_rows);
   const std::vector<Group> groups = groups_of(rows);
   const Result<bool> table = write_whole(folder / "errors.md", markdown(groups, machine) + scene_table(rows));
   if (!table) return fail(table.error());

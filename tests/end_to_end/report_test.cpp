@@ -57,6 +57,29 @@ TEST(Report, OfErrorsDrawsEarlierRowsAgain) {
   for (const std::string& row : before) EXPECT_EQ(after.count(row), 2 * before.count(row)) << row;
 }
 
+// Three spacings close by are three rows, and one line and one point with their scatter; drawn again, too.
+TEST(Report, OfErrorsTakesCloseSpacingsTogether) {
+  test::empty_folder();
+  const Outcome ran = test::slosh({"report", "error", "--quick", "--case", "bounce", "--model", "corrected",
+                                   "--spacing", "0.02", "--close", "3", "--out", "close"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const std::filesystem::path close = test::test_folder() / "close";
+  const std::string rows = test::read_text(close / "errors.csv");
+  for (const char* spacing : {",0.01972,", ",0.02,", ",0.02028,"})
+    EXPECT_NE(rows.find(spacing), std::string::npos) << rows;
+  const std::string table = test::read_text(close / "errors.md");
+  EXPECT_NE(table.find("| rebound | 20 |"), std::string::npos) << table;
+  EXPECT_NE(table.find(" (3) / "), std::string::npos) << table;
+  EXPECT_EQ(table.find("19.7"), std::string::npos) << table;
+  const std::string from = (close / "errors.csv").string();
+  ASSERT_EQ(test::slosh({"report", "error", "--from", from, "--out", "again"}).code, 0);
+  const std::string again = test::read_text(test::test_folder() / "again" / "errors.md");
+  EXPECT_EQ(again.substr(again.find("| rebound")), table.substr(table.find("| rebound")));
+  const Outcome four = test::slosh({"report", "error", "--close", "4", "--quick"});
+  EXPECT_EQ(four.code, 2);
+  EXPECT_NE(four.err.find("3,5,7"), std::string::npos) << four.err;
+}
+
 TEST(Report, OfStabilityWritesVerdictsAndAMap) {
   test::empty_folder();
   const Outcome ran =
