@@ -6,6 +6,7 @@
 
 #include "sim/fluid_extremes.h"
 #include "sim/model.h"
+#include "sim/pressure/wall_layers.h"
 #include "sim/snapshot.h"
 #include "sim/step_limits.h"
 #include "sim/viscosity/drag_shape.h"
@@ -89,7 +90,7 @@ ParticleKind make_kind(const Scene& scene, double rest_density, double viscosity
 float wall_layer_of(const Scene& scene, float noise, double thinnest) {
   const bool slips = std::any_of(scene.bodies.begin(), scene.bodies.end(),
                                  [](const Body& body) { return body.dynamic_viscosity == kFreeSlip; });
-  return slips ? 1.0f / kWallShare : wall_layer(noise, static_cast<float>(thinnest));
+  return slips ? 1.0f / kWallShare : wall_layer(noise, static_cast<float>(thinnest), scene.support_ratio);
 }
 
 }  // namespace

@@ -23,21 +23,8 @@ struct CorrectionConstants {
   float tension = 0.0f;
   float impact_growth = 0.0f;  ///< s/m (viscosity/noise.h)
   float most_drag = 0.0f;      ///< Pa·s (viscosity/stability.h, most_explicit_drag)
-  float wall_layer = 1.0f / kWallShare;  ///< the share of a wall's particle that the moment counts
+  float wall_layer = 1.0f / kWallShare;  ///< share of a wall's particle in the moment (wall_layers.h)
 };
-
-/// How many layers a wall is in the moment of thick fluid, where that of thin fluid has one. With one each
-/// layer of fluid beside a wall that holds bears another share of its weight, and still syrup went round at 7
-/// mm/s for 0 (2 Pa·s, 16 cm deep, 10 mm). Thin fluid's readings are better with one (sim/pressure/README.md,
-/// *Still syrup creeps*).
-inline constexpr float kThickLayers = 1.1f;
-
-/// CorrectionConstants::wall_layer for a run whose fluids have at least `viscosity`, Pa·s. `noise`: Pa·s,
-/// what jostling would need.
-inline float wall_layer(float noise, float viscosity) {
-  const float thick = 1.0f - jostling_viscosity(noise, viscosity) / noise;
-  return (1.0f + (kThickLayers - 1.0f) * thick) / kWallShare;
-}
 
 struct CorrectedState {
   float pressure;         ///< V² P, N·m⁴

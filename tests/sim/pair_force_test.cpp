@@ -8,6 +8,7 @@
 #include <random>
 
 #include "sim/pressure/corrected_state.h"
+#include "sim/pressure/wall_layers.h"
 
 namespace slosh {
 namespace {
@@ -222,13 +223,20 @@ TEST(PairForce, AViscousFluidIsWholeFromNineTenthsOn) {
 }
 
 // A wall's particle counts in the moment of thin fluid as half of what it presses with, to the bit, and in
-// that of fluid that needs no drag on jostling as a tenth more.
+// that of fluid that needs no drag on jostling as a tenth more, the more the wider the support.
 TEST(PairForce, AWallIsMoreThanALayerToThickFluid) {
-  EXPECT_EQ(wall_layer(0.6f, 0.0f), 0.5f);
-  EXPECT_EQ(wall_layer(0.6f, 0.6f * 0.75f), 0.5f);
-  EXPECT_NEAR(wall_layer(0.6f, 0.6f), 0.525f, 1e-6f);
-  EXPECT_FLOAT_EQ(wall_layer(0.6f, 1.0f), 0.55f);
-  EXPECT_FLOAT_EQ(wall_layer(0.6f, 1000.0f), 0.55f);
+  for (const double ratio : {1.5, 2.0, 2.6}) {
+    EXPECT_EQ(wall_layer(0.6f, 0.0f, ratio), 0.5f);
+    EXPECT_EQ(wall_layer(0.6f, 0.6f * 0.75f, ratio), 0.5f);
+  }
+  EXPECT_NEAR(wall_layer(0.6f, 0.6f, 2.0), 0.525f, 1e-6f);
+  EXPECT_FLOAT_EQ(wall_layer(0.6f, 1.0f, 2.0), 0.55f);
+  EXPECT_FLOAT_EQ(wall_layer(0.6f, 1000.0f, 2.0), 0.55f);
+  EXPECT_FLOAT_EQ(wall_layer(0.6f, 1000.0f, 2.5), 0.585f);
+  EXPECT_EQ(thick_layers(2.0), 1.1);
+  EXPECT_NEAR(thick_layers(2.125), 1.115, 1e-12) << "halfway between two that were read";
+  EXPECT_EQ(thick_layers(1.0), thick_layers(1.5));
+  EXPECT_EQ(thick_layers(3.0), thick_layers(2.6));
   EXPECT_EQ(CorrectionConstants{}.wall_layer, 0.5f);
 }
 
