@@ -14,7 +14,7 @@ struct Read {
 };
 
 // Of both models, at 8, 10 and 12.5 mm: each by itself asks for up to 0.03 more or less.
-constexpr Read kRead[] = {{1.5, 1.03}, {1.75, 1.02}, {2.0, 1.1}, {2.25, 1.13}, {2.5, 1.17}, {2.6, 1.2}};
+constexpr Read kRead[] = {{1.5, 1.03}, {1.75, 1.05}, {2.0, 1.1}, {2.25, 1.13}, {2.5, 1.17}, {2.6, 1.2}};
 
 }  // namespace
 

@@ -8,6 +8,7 @@
 #include "sim/viscosity/drag_shape.h"
 #include "sim/viscosity/noise.h"
 #include "sim/viscosity/stability.h"
+#include "sim/walls/wall_inset.h"
 
 namespace slosh {
 namespace {
@@ -59,9 +60,11 @@ constexpr LiesEvenly kCompressible{0.3, 0.9}, kSolved{0.0, 0.5};
 constexpr double kBall = 0.4;  // the convexity from which on it is a ball
 
 template <class Kernel>
-WallDrag computed(double ratio, DragSheet sheet, const LiesEvenly& lies, const DragShape<double>& shape) {
+WallDrag computed(ParticleModel model, double ratio, DragSheet sheet) {
+  const DragShape<double> shape = drag_shape(sheet, ratio);
+  const LiesEvenly& lies = model == ParticleModel::kIncompressible ? kSolved : kCompressible;
   const int reach = static_cast<int>(std::ceil(ratio));
-  const double behind = sheet == DragSheet::kBehind ? kWallInset : 0.0;
+  const double behind = sheet == DragSheet::kBehind ? wall_inset(model, ratio) : 0.0;
   double stress = 0.0, by_layers = 0.0, evenly = 0.0, whole = layer_drag<Kernel>(0.0, ratio, shape).along;
   for (int n = 1; n <= reach; ++n) {
     const LayerDrag layer = layer_drag<Kernel>(n, ratio, shape);
@@ -150,9 +153,7 @@ double mirror_factor(double support_ratio, DragSheet sheet) {
 
 WallDrag wall_drag(ParticleModel model, double support_ratio, DragSheet sheet) {
   if (!corrects_gradients(model)) return {};
-  return computed<ModelParts<ParticleModel::kCorrected>::ForceKernel>(
-      support_ratio, sheet, model == ParticleModel::kIncompressible ? kSolved : kCompressible,
-      drag_shape(sheet, support_ratio));
+  return computed<ModelParts<ParticleModel::kCorrected>::ForceKernel>(model, support_ratio, sheet);
 }
 
 }  // namespace slosh

@@ -6,20 +6,17 @@
 
 namespace slosh {
 
-/// Where the particles by which a wall presses sit behind the surface, in spacings
-/// (walls/wall_particles.cpp).
-inline constexpr double kWallInset = 0.7;
 /// Where the fluid's first layer stands off it.
 inline constexpr double kFirstLayer = 0.5;
 
 /// Which of a wall's particles drag.
 enum class DragSheet {
-  kBehind,   ///< those that press, kWallInset behind the surface
+  kBehind,   ///< those that press, behind the surface (walls/wall_inset.h)
   kSurface,  ///< others, on the surface itself
 };
 
 /// The corrected model's walls drag from the surface itself: drag goes along the line between two particles,
-/// and from behind the surface that line is mostly across it. (One sheet kWallInset behind has to drag six
+/// and from behind the surface that line is mostly across it. (One sheet behind it has to drag six
 /// times as strongly to hold flat fluid, damps four times as fast across the surface as along it, and lets go
 /// of strongly curved ones: a ball of 1.5 spacings lost 31 to 41 % of its drag.) Where all fluids and bodies
 /// are thin (noise.h), drag on jostling is more than theirs and the second sheet not worth its time; so too

@@ -8,6 +8,7 @@
 #include "sim/viscosity/wall_drag.h"
 #include "sim/walls/joined_walls.h"
 #include "sim/walls/point_buckets.h"
+#include "sim/walls/wall_inset.h"
 
 namespace slosh {
 
@@ -17,13 +18,13 @@ namespace {
 // particle acts once (V_p² P_p). One lattice layer then yields under the pressure of a fluid, which acts
 // twice (P_p and P_i), so a wall particle stands for two, and sits so far behind the surface that the fluid's
 // first layer rests half a spacing off the mesh. Measured on a tank: share 1 leaks, 1.5 to 3 hold;
-// tests/physics checks level and weight. It sits kWallInset behind the surface (viscosity/wall_drag.h).
+// tests/physics checks level and weight. It sits wall_inset() behind the surface.
 
 float solid_depth(const DistanceFieldView& field, const glm::vec3& p) {
   return field.distance ? -sample_distance(field, p).distance : std::numeric_limits<float>::infinity();
 }
 
-// Moves a surface particle into the solid by kWallInset, or to the middle of a wall that is thinner than that
+// Moves a surface particle into the solid by `depth`, m, or to the middle of a wall that is thinner than that
 // twice.
 glm::vec3 inset(const glm::vec3& surface, const glm::vec3& normal, float depth,
                 const DistanceFieldView& field) {
@@ -111,9 +112,9 @@ void close_gaps(const DistanceFieldView& field, float depth, float spacing, floa
   }
 }
 
-// Positions of one body's particles in its mesh frame.
+// Positions of one body's particles in its mesh frame. `behind`: spacings, flat walls' depth.
 std::vector<glm::vec3> sheet_positions(const SurfaceSamples& surface, const DistanceFieldView& field,
-                                       const Plan& plan) {
+                                       const Plan& plan, float behind) {
   std::vector<glm::vec3> positions = surface.positions;
   if (plan.model == ParticleModel::kPaper) return positions;
   const float spacing = static_cast<float>(plan.spacing);
@@ -121,11 +122,10 @@ std::vector<glm::vec3> sheet_positions(const SurfaceSamples& surface, const Dist
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const glm::vec3& normal = surface.normals[i];
     const float bent = level ? convexity(field, positions[i], normal, spacing) : 0.0f;
-    const float depth = static_cast<float>(kWallInset) - kLessDeep * bent;
+    const float depth = behind - kLessDeep * bent;
     positions[i] = (level ? on_level_set : inset)(positions[i], normal, depth * spacing, field);
   }
-  if (field.distance)
-    close_gaps(field, static_cast<float>(kWallInset) * spacing, spacing, surface.apart, positions);
+  if (field.distance) close_gaps(field, behind * spacing, spacing, surface.apart, positions);
   return positions;
 }
 
@@ -161,7 +161,7 @@ struct JoinedWalls {
   std::vector<std::vector<float>> shares;
 };
 
-JoinedWalls joined_walls(const Scene& scene, const SampledScene& sampled, const Plan& plan) {
+JoinedWalls joined_walls(const Scene& scene, const SampledScene& sampled, const Plan& plan, float behind) {
   JoinedWalls walls{std::vector<std::vector<glm::vec3>>(scene.bodies.size()),
                     std::vector<std::vector<float>>(scene.bodies.size())};
   if (!corrects_gradients(plan.model)) return walls;
@@ -176,8 +176,7 @@ JoinedWalls joined_walls(const Scene& scene, const SampledScene& sampled, const 
     body_of.push_back(b);
   }
   const float spacing = static_cast<float>(plan.spacing);
-  std::vector<std::vector<glm::vec3>> sheets =
-      joined_sheets(solids, static_cast<float>(kWallInset) * spacing, spacing);
+  std::vector<std::vector<glm::vec3>> sheets = joined_sheets(solids, behind * spacing, spacing);
   std::vector<glm::vec3> all;
   for (std::size_t n = 0; n < sheets.size(); ++n)
     for (const glm::vec3& p : sheets[n])
@@ -251,8 +250,9 @@ std::vector<SurfaceParticle> surface_particles(const Scene& scene, const Sampled
   const float lattice_volume = static_cast<float>(std::pow(plan.spacing, 3));
   const WallDrag drag = wall_drag(plan.model, scene.support_ratio, sheet);
   const auto flat_drag = static_cast<float>(drag.factor(0.0));
+  const auto behind = static_cast<float>(wall_inset(plan.model, scene.support_ratio));
   JoinedWalls joined;
-  if (motion == BodyMotion::kFixed) joined = joined_walls(scene, sampled, plan);
+  if (motion == BodyMotion::kFixed) joined = joined_walls(scene, sampled, plan, behind);
   std::vector<DraggingSheet> dragging;
   if (apart) dragging = dragging_sheets(scene, sampled, plan, motion);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
@@ -264,7 +264,7 @@ std::vector<SurfaceParticle> surface_particles(const Scene& scene, const Sampled
       positions = std::move(joined.positions[b]);
       pressures = std::move(joined.shares[b]);
     } else {
-      positions = sheet_positions(sampled.surfaces[b], sampled.distance_fields[b].view(), plan);
+      positions = sheet_positions(sampled.surfaces[b], sampled.distance_fields[b].view(), plan, behind);
       pressures.assign(positions.size(), static_cast<float>(plan.body_pressure[b]));
       if (plan.model != ParticleModel::kPaper) pressures = crowding_shares(positions, plan);
     }

@@ -163,21 +163,26 @@ INSTANTIATE_TEST_SUITE_P(
         std::vector<Known>{{"bounce", 0.015, "rebound", 1e-3}}),
     named);
 
-// A wider kernel, which a scene may have.
+// A wider kernel, which a scene may have. Its walls' sheets lie deeper (walls/wall_inset.h): as deep as at a
+// ratio of 2 a ball was lifted by 12 % too much, and a slab floated 15 % too high. The level is lower for it.
 INSTANTIATE_TEST_SUITE_P(
     wide, KnownAnswer,
     ::testing::Values(
-        std::vector<Known>{{"still_tank", 0.0125, "level", 0.01, ParticleModel::kCorrected, 2.5},
-                           {"still_tank", 0.0125, "pressure at 70 mm", 0.055},
-                           {"still_tank", 0.0125, "pressure gained from 30 to 70 mm", 0.06}},
+        std::vector<Known>{{"still_tank", 0.0125, "level", 0.035, ParticleModel::kCorrected, 2.5},
+                           {"still_tank", 0.0125, "pressure at 70 mm", 0.03},
+                           {"still_tank", 0.0125, "pressure gained from 30 to 70 mm", 0.03}},
+        std::vector<Known>{{"buoyancy_sphere", 0.01, "buoyancy", 0.015, ParticleModel::kCorrected, 2.5}},
+        std::vector<Known>{{"buoyancy_box", 0.01014, "buoyancy", 0.03, ParticleModel::kCorrected, 2.5},
+                           {"buoyancy_box", 0.01014, "noise, rms", 0.003}},
+        std::vector<Known>{{"draft", 0.01, "draft", 0.035, ParticleModel::kCorrected, 2.5}},
         // A gap of three spacings is little for a kernel of 2.5: 0.04 held where walls dragged from 0.7
         // spacings behind. By g++ 0.107, by clang, which rounds otherwise, 0.129: the torque is no surer than
         // that.
         std::vector<Known>{{"couette", 0.00667, "torque", 0.14, ParticleModel::kCorrected, 2.5}},
         // Its faces lack neighbours as deep as the kernel is wide.
         std::vector<Known>{{"shear_wave", 0.01, "rate of decay", 0.10, ParticleModel::kCorrected, 2.5}},
-        std::vector<Known>{{"sloshing", 0.016, "swing kept a period", 0.09, ParticleModel::kCorrected, 2.5},
-                           {"sloshing", 0.016, "period", 0.004}}),
+        std::vector<Known>{{"sloshing", 0.016, "swing kept a period", 0.08, ParticleModel::kCorrected, 2.5},
+                           {"sloshing", 0.016, "period", 0.02}}),
     named);
 
 // Where pressures are solved for: closer than the default in calm fluid. Its runs differ more from build to
