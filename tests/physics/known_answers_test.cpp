@@ -174,7 +174,8 @@ INSTANTIATE_TEST_SUITE_P(
         std::vector<Known>{{"buoyancy_sphere", 0.01, "buoyancy", 0.015, ParticleModel::kCorrected, 2.5}},
         std::vector<Known>{{"buoyancy_box", 0.01014, "buoyancy", 0.03, ParticleModel::kCorrected, 2.5},
                            {"buoyancy_box", 0.01014, "noise, rms", 0.003}},
-        std::vector<Known>{{"draft", 0.01, "draft", 0.035, ParticleModel::kCorrected, 2.5}},
+        // One reading: a GPU's, rounded otherwise, is 3 % off a CPU's.
+        std::vector<Known>{{"draft", 0.01, "draft", 0.05, ParticleModel::kCorrected, 2.5}},
         // A gap of three spacings is little for a kernel of 2.5: 0.04 held where walls dragged from 0.7
         // spacings behind. By g++ 0.107, by clang, which rounds otherwise, 0.129: the torque is no surer than
         // that.
