@@ -119,6 +119,12 @@ std::vector<ParticleKind> particle_kinds(const Scene& scene, double spacing) {
   return kinds;
 }
 
+bool any_jostles(std::span<const ParticleKind> kinds, float noise) {
+  return std::any_of(kinds.begin(), kinds.end(), [&](const ParticleKind& kind) {
+    return jostling_viscosity(noise, kind.viscosity) > 0.0f;
+  });
+}
+
 RunConstants make_run_constants(const Scene& scene, const SampledScene& sampled, Plan plan) {
   RunConstants c;
   c.plan = std::move(plan);

@@ -66,6 +66,10 @@ struct ParticleStart {
 /// One entry a fluid of the scene, and one a probe behind those.
 std::vector<ParticleKind> particle_kinds(const Scene& scene, double spacing);
 
+/// Whether any of them needs drag on jostling (viscosity/noise.h) beside its own. `noise`: Pa·s, what one
+/// without viscosity needs.
+bool any_jostles(std::span<const ParticleKind> kinds, float noise);
+
 /// Everything of a run's constants; kinds has one entry a fluid, and one a probe behind those.
 RunConstants make_run_constants(const Scene& scene, const SampledScene& sampled, Plan plan);
 

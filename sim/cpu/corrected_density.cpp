@@ -9,6 +9,7 @@
 #include "sim/model.h"
 #include "sim/pressure/solved_state.h"
 #include "sim/snapshot.h"
+#include "sim/viscosity/neighbour_flow.h"
 #include "sim/walls/wall_particles.h"
 
 namespace slosh {
@@ -76,12 +77,17 @@ struct GroupSums {
   Sixteen even = {}, odd = {};  // Σ d ⊗ d (−W'/r): xx, yy, zz; xy, yz, xz
   Sixteen slope = {};           // Σ d (−W'/r)
   Sixteen velocity = {};        // Σ W v, and in the fourth Σ W
+  // Where `flows`, of v ⊗ d (−W'/r): xx, yy, zz; yx, zy, xz; zx, xy, yz.
+  Sixteen offset = {};  // Σ W d
+  Sixteen carried = {}, carried_odd = {}, carried_back = {};
 };
+template <bool flows>
 PairRows::Walk weigh(const Work& w, PairRows::Writer& writer, GroupSums& sum) {
   const float h = w.context.support_radius, floor = h * h * 1e-12f;
   const float* const places = &w.press.places[0].x;
   const float* const velocities = &w.press.velocities[0].x;
   Sixteen even = {}, odd = {}, slopes = {}, velocity = {};
+  Sixteen offset = {}, carried = {}, carried_odd = {}, carried_back = {};
   const auto nobody = static_cast<std::uint32_t>(w.fluid.index.particles());
   const PairRows::Walk group =
       writer.put_weighed(nobody, [&](std::uint32_t first, const PairRows::Others& others) {
@@ -93,10 +99,17 @@ PairRows::Walk weigh(const Work& w, PairRows::Writer& writer, GroupSums& sum) {
         even += weighed * d;
         odd += weighed * turned(d);
         slopes += weighed;
-        velocity += (squared * reach) * PairRows::Walk::of_others<4>(velocities, others);
+        const Sixteen near = squared * reach, v = PairRows::Walk::of_others<4>(velocities, others);
+        velocity += near * v;
+        if constexpr (flows) {
+          offset += near * d;
+          carried += weighed * v;
+          carried_odd += weighed * turned(v);
+          carried_back += weighed * turned_back(v);
+        }
         return slope;
       });
-  sum = {even, odd, slopes, velocity};
+  sum = {even, odd, slopes, velocity, offset, carried, carried_odd, carried_back};
   return group;
 }
 
@@ -122,25 +135,42 @@ void add_walls(const Work& w, std::uint32_t p, const BoundaryParticles& walls, c
   });
 }
 
-// From what one particle's neighbours add up to (each four floats of its group's sums) to what it presses and
-// drags by.
+// One particle's four floats of each of its group's sums.
+struct OwnSums {
+  const float *even, *odd, *slope, *velocity, *offset, *carried, *carried_odd, *carried_back;
+};
+
+// From what one particle's neighbours add up to to what it presses and drags by.
+template <bool flows>
 class Finish {
  public:
   explicit Finish(const Work& work) : w_(work) {}
 
   // Returns the compression.
-  float operator()(std::uint32_t p, const float* even, const float* odd, const float* slope,
-                   const float* velocity, const RowList& fixed_rows, const RowList& moving_rows) const {
+  float operator()(std::uint32_t p, const OwnSums& s, const RowList& fixed_rows,
+                   const RowList& moving_rows) const {
     const FluidParticles& fluid = w_.fluid;
     const float own = own_;
     const float v[3] = {fluid.vx[p], fluid.vy[p], fluid.vz[p]};
-    Neighborhood<float> n{velocity[3] + own,        {even[0], odd[0], odd[2], even[1], odd[1], even[2]},
-                          velocity[3] + own,        velocity[0] + own * v[0],
-                          velocity[1] + own * v[1], velocity[2] + own * v[2]};
-    Vector3<float> pushed{slope[0], slope[1], slope[2]};
+    Neighborhood<float> n{};
+    n.number = n.fluid_number = s.velocity[3] + own;
+    n.moment = {s.even[0], s.odd[0], s.odd[2], s.even[1], s.odd[1], s.even[2]};
+    n.vx = s.velocity[0] + own * v[0];
+    n.vy = s.velocity[1] + own * v[1];
+    n.vz = s.velocity[2] + own * v[2];
+    if constexpr (flows) {
+      const FlowSums<float> flow{{s.offset[0], s.offset[1], s.offset[2]},
+                                 {s.slope[0], s.slope[1], s.slope[2]},
+                                 {{s.carried[0], s.carried_back[1], s.carried_odd[2]},
+                                  {s.carried_odd[0], s.carried[1], s.carried_back[2]},
+                                  {s.carried_back[0], s.carried_odd[1], s.carried[2]}}};
+      const float rest = w_.context.correction.rest_moment;
+      follow_flow(flow, scaled_and_shifted(n.moment, 1.0f / rest, 0.0f), rest, v, n);
+    }
+    Vector3<float> pushed{s.slope[0], s.slope[1], s.slope[2]};
     if (fixed_rows.count + moving_rows.count > 0) {
       const FloatBatch z(0.0f);
-      WallSums walls{{z, {z, z, z, z, z, z}, z, z, z, z}, {z, z, z}};
+      WallSums walls{{z, {z, z, z, z, z, z}, z, z, z, z, z, z, z}, {z, z, z}};
       add_walls(w_, p, w_.fixed, fixed_rows, walls);
       add_walls(w_, p, w_.moving, moving_rows, walls);
       n.number += lane_sum(walls.sum.number);
@@ -202,22 +232,20 @@ class Finish {
 
 // One chunk of runs; returns the largest compression. All of it in one loop: left to itself the compiler
 // calls functions where rows are written, and hands batches over in memory.
+template <bool flows>
 __attribute__((flatten)) float find_chunk(const Work& w, std::size_t begin, std::size_t end) {
   const std::vector<CellRun>& runs = w.fluid.index.runs();
   const CellGrid& grid = w.context.grid;
-  const Finish finish(w);
+  const Finish<flows> finish(w);
   PairRows::Writer writer(w.press.rows, begin / kRunsPerChunk);
   float densest = 0.0f;
   std::uint32_t cell = grid.retired_key();
   RowList fixed_rows, moving_rows;
   const auto put = [&] {
     GroupSums sums;
-    const PairRows::Walk group = weigh(w, writer, sums);
-    float even[16], odd[16], slope[16], velocity[16];
-    std::memcpy(even, &sums.even, sizeof even);
-    std::memcpy(odd, &sums.odd, sizeof odd);
-    std::memcpy(slope, &sums.slope, sizeof slope);
-    std::memcpy(velocity, &sums.velocity, sizeof velocity);
+    const PairRows::Walk group = weigh<flows>(w, writer, sums);
+    float floats[sizeof sums / sizeof(Sixteen)][16];
+    std::memcpy(floats, &sums, sizeof sums);
     for (std::uint32_t a = 0; a < group.count; ++a) {
       const std::uint32_t p = group.first + a;
       if (w.fluid.key[p] != cell) {
@@ -225,7 +253,8 @@ __attribute__((flatten)) float find_chunk(const Work& w, std::size_t begin, std:
         fixed_rows = w.fixed.index.rows(grid, cell);
         moving_rows = w.moving.index.rows(grid, cell);
       }
-      densest = std::max(densest, finish(p, even + 4 * a, odd + 4 * a, slope + 4 * a, velocity + 4 * a,
+      const auto own = [&](int sum) { return floats[sum] + 4 * a; };
+      densest = std::max(densest, finish(p, {own(0), own(1), own(2), own(3), own(4), own(5), own(6), own(7)},
                                          fixed_rows, moving_rows));
     }
   };
@@ -248,8 +277,9 @@ void compute_corrected_density(PassContext& context, ThreadTeam& team, FluidPart
   const std::size_t runs = fluid.index.runs().size();
   press.clear(fluid.index.particles(), chunk_count(runs, kRunsPerChunk));
   place(work, team);
+  const bool flows = any_jostles(context.kinds, context.correction.noise_viscosity);
   team.run(runs, kRunsPerChunk, [&](std::size_t begin, std::size_t end) {
-    if (find_chunk(work, begin, end) > kTooCompressed)
+    if ((flows ? find_chunk<true> : find_chunk<false>)(work, begin, end) > kTooCompressed)
       context.status.fetch_or(kStatusCompressed, std::memory_order_relaxed);
   });
 }

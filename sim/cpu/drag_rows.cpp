@@ -123,9 +123,7 @@ void compute_forces_by_rows(PassContext& context, ThreadTeam& team, FluidParticl
   const DragWalk walk{context, fluid, fixed, moving, press, drag, factor};
   // Where pressures are solved for they push later (PressureSolver::push_by_last).
   const bool presses = !context.plan.has(PassId::kPressureSolve);
-  const bool jostles = std::any_of(context.kinds.begin(), context.kinds.end(), [&](const ParticleKind& kind) {
-    return jostling_viscosity(context.correction.noise_viscosity, kind.viscosity) > 0.0f;
-  });
+  const bool jostles = any_jostles(context.kinds, context.correction.noise_viscosity);
   const auto run = [&]<bool pressing, bool jostling>() {
     team.run(press.rows.chunks(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t chunk = begin; chunk < end; ++chunk) find_chunk<pressing, jostling>(walk, chunk);

@@ -246,8 +246,9 @@ class CudaEngine final : public ParticleEngine {
 
   void find_density(double) {
     if (check_.failed()) return;
-    launch_density(step_, constants_.plan, kinds_.data(), fluid_.sorted(), fixed_.sorted(), moving_.sorted(),
-                   report_.status(), stream_);
+    launch_density(step_, constants_.plan, kinds_.data(),
+                   any_jostles(constants_.kinds, constants_.correction.noise_viscosity), fluid_.sorted(),
+                   fixed_.sorted(), moving_.sorted(), report_.status(), stream_);
     check_.launched("density");
     clock_.mark(PassClock::kDensity, check_, stream_);
   }

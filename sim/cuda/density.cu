@@ -3,6 +3,7 @@
 #include "sim/model.h"
 #include "sim/pressure/solved_state.h"
 #include "sim/snapshot.h"
+#include "sim/viscosity/neighbour_flow.h"
 #include "sim/walls/wall_particles.h"
 
 namespace slosh::cuda {
@@ -53,8 +54,16 @@ __global__ __launch_bounds__(kThreads) void density_kernel(StepConstants c, cons
   if (state.compression > kTooCompressed) atomicOr(status, kStatusCompressed);
 }
 
-// The corrected model's and, `solved`, the incompressible one's: sim/cpu/corrected_density.cpp.
-template <class Team, bool solved>
+template <class Team>
+__device__ void sum_over_team(Symmetric<float>& moment, FlowSums<float>& s) {
+  Team::sum(moment, s.offset[0], s.offset[1], s.offset[2], s.slope[0], s.slope[1], s.slope[2]);
+  Team::sum(s.carried[0][0], s.carried[0][1], s.carried[0][2], s.carried[1][0], s.carried[1][1],
+            s.carried[1][2], s.carried[2][0], s.carried[2][1], s.carried[2][2]);
+}
+
+// The corrected model's and, `solved`, the incompressible one's: sim/cpu/corrected_density.cpp. `flows`: drag on
+// jostling is needed.
+template <class Team, bool solved, bool flows>
 __global__ __launch_bounds__(kThreads) void corrected_density_kernel(
     StepConstants c, const ParticleKind* kinds, SortedFluid fluid, SortedSurface fixed, SortedSurface moving,
     bool one_viscosity, bool viscosities, std::uint32_t* status) {
@@ -66,6 +75,7 @@ __global__ __launch_bounds__(kThreads) void corrected_density_kernel(
   const float4 x = fluid.state.x[p];
   const float h = c.support_radius;
   Neighborhood<float> sum{};
+  FlowSums<float> flow{};
   for_neighbors<Team>(c.grid, fluid.cells, cell, [&](std::uint32_t j) {
     const float4 y = __ldg(fluid.state.x + j);
     const float dx = x.x - y.x;
@@ -75,7 +85,9 @@ __global__ __launch_bounds__(kThreads) void corrected_density_kernel(
     if (dx * dx + dy * dy + dz * dz >= h * h) return;
     const float* v = reinterpret_cast<const float*>(fluid.state.v + j);
     add_fluid_neighbor<Kernel>(dx, dy, dz, v[0], v[1], v[2], h, 1.0f, sum);
+    if constexpr (flows) add_flow<Kernel>({dx, dy, dz}, {v[0], v[1], v[2]}, h, flow);
   });
+  Symmetric<float> by_fluid = sum.moment;
   const auto add_walls = [&](const SortedSurface& walls) {
     if (walls.count == 0) return;
     for_neighbors<Team>(c.grid, walls.cells, cell, [&](std::uint32_t j) {
@@ -87,11 +99,16 @@ __global__ __launch_bounds__(kThreads) void corrected_density_kernel(
   add_walls(fixed);
   add_walls(moving);
   Team::sum(sum.moment, sum.number, sum.fluid_number, sum.vx, sum.vy, sum.vz);
+  if constexpr (flows) sum_over_team<Team>(by_fluid, flow);
   if (Team::lane() != 0) return;
   const ParticleKind kind = kinds[fluid.state.kind[p]];
   const float4 motion = fluid.state.v[p];
   const float in_u = one_viscosity ? kind.viscosity : 0.0f;
   const float velocity[3] = {motion.x, motion.y, motion.z};
+  if constexpr (flows) {
+    const float rest = c.correction.rest_moment;
+    follow_flow(flow, scaled_and_shifted(by_fluid, 1.0f / rest, 0.0f), rest, velocity, sum);
+  }
   const auto state = [&] {
     if constexpr (solved) {
       return solved_state(sum, c.correction, kind.viscosity, in_u, velocity);
@@ -112,7 +129,7 @@ __global__ __launch_bounds__(kThreads) void corrected_density_kernel(
 
 }  // namespace
 
-void launch_density(const StepConstants& constants, const Plan& plan, const ParticleKind* kinds,
+void launch_density(const StepConstants& constants, const Plan& plan, const ParticleKind* kinds, bool jostles,
                     const SortedFluid& fluid, const SortedSurface& fixed, const SortedSurface& moving,
                     std::uint32_t* status, cudaStream_t stream) {
   const bool viscosities = plan.has(PassId::kPairViscosity);
@@ -120,9 +137,10 @@ void launch_density(const StepConstants& constants, const Plan& plan, const Part
   with_model(plan.model, [&]<class Parts>() {
     if constexpr (Parts::kCorrected) {
       with_team<kTensorTeams>(fluid.count, [&]<class Team>() {
-        corrected_density_kernel<Team, Parts::kSolved>
-            <<<blocks_for(fluid.count * Team::kLanes), kThreads, 0, stream>>>(
-                constants, kinds, fluid, fixed, moving, one_viscosity, viscosities, status);
+        const auto kernel = jostles ? corrected_density_kernel<Team, Parts::kSolved, true>
+                                    : corrected_density_kernel<Team, Parts::kSolved, false>;
+        kernel<<<blocks_for(fluid.count * Team::kLanes), kThreads, 0, stream>>>(
+            constants, kinds, fluid, fixed, moving, one_viscosity, viscosities, status);
       });
     } else {
       with_team<kDensityTeams>(fluid.count, [&]<class Team>() {

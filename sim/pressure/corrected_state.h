@@ -55,18 +55,20 @@ SLOSH_HD inline Symmetric<float> directions_of(const Neighborhood<float>& n, con
   return pressure_directions(moment, corrected_share(compression), virial, whole_from(c, viscosity));
 }
 
-/// What it drags by, Pa·m.
+/// What it drags by, Pa·m. What an impact adds goes by the mean: fluid that meets a wall flows linearly, too.
 SLOSH_HD inline void set_drag(const Neighborhood<float>& n, const CorrectionConstants& c, float viscosity,
                               float in_u, const float (&v)[3], float (&u)[3]) {
   for (int k = 0; k < 3; ++k) u[k] = in_u * v[k];
-  float jostling = jostling_viscosity(c.noise_viscosity, viscosity);
+  const float calm = jostling_viscosity(c.noise_viscosity, viscosity);
+  float jostling = calm;
   if (c.impact_growth > 0.0f) {
     float d[3] = {};
     add_noise(n, c.own_number, 1.0f, v, d);
     const float speed = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-    jostling = viscosity_in_impact(jostling, c.impact_growth, speed, viscosity, c.most_drag);
+    jostling = viscosity_in_impact(calm, c.impact_growth, speed, viscosity, c.most_drag);
   }
   add_noise(n, c.own_number, jostling, v, u);
+  follow_noise(n, c.own_number, calm, u);
 }
 
 /// `viscosity`: the fluid's own, Pa·s. `in_u`: the same where u is to carry it (all fluids share it and drag

@@ -31,6 +31,7 @@ struct Neighborhood {
   Symmetric<Real> moment;  ///< Σ d ⊗ d (−W'/r), walls as one layer (CorrectionConstants::wall_layer)
   Real fluid_number;       ///< Σ W over fluid
   Real vx, vy, vz;         ///< Σ W v over fluid
+  Real fx, fy, fz;         ///< what their flow adds to that on the way to the particle (neighbour_flow.h)
 };
 
 template <class Real>
@@ -70,6 +71,16 @@ SLOSH_HD void add_wall_neighbor(Real dx, Real dy, Real dz, Real share, Real laye
   add_moment(dx, dy, dz, {kernel.inverse_r, layer * kernel.slope_over_r, kernel.laplacian}, sum.moment);
 }
 
+/// Where a moment is too flat to be turned round, as much of 1 goes in as that takes. Returns the share of it
+/// that is left.
+SLOSH_HD inline float unflattened(Symmetric<float>& moment) {
+  const float flat = determinant(moment) / kFlattest;
+  if (flat >= 1.0f) return 1.0f;
+  const float keep = RealOps<float>::positive_part(flat);
+  moment = scaled_and_shifted(moment, keep, 1.0f - keep);
+  return keep;
+}
+
 /// How much of the correction a particle gets at a compression ρ/ρ⁰ − 1: 0–1.
 SLOSH_HD inline float corrected_share(float compression) {
   const float left = RealOps<float>::positive_part(kImpact - compression) / (kImpact - kCalm);
@@ -84,11 +95,7 @@ SLOSH_HD inline Symmetric<float> pressure_directions(const Symmetric<float>& mom
                                                      float virial, float whole_from = 1.0f) {
   const float missing = RealOps<float>::positive_part(1.0f - trace(moment) / (3.0f * whole_from));
   Symmetric<float> whole = scaled_and_shifted(moment, 1.0f, missing);
-  const float flat = determinant(whole) / kFlattest;
-  if (flat < 1.0f) {
-    const float keep = RealOps<float>::positive_part(flat);
-    whole = scaled_and_shifted(whole, keep, 1.0f - keep);
-  }
+  unflattened(whole);
   const float made = share * RealOps<float>::positive_part(1.0f - missing);
   return scaled_and_shifted(inverse(whole), made * virial, 1.0f - made);
 }

@@ -1,5 +1,5 @@
 // What takes the noise of particles out and leaves the flow: drag on what a velocity differs from its
-// neighbours' mean.
+// neighbours' mean, carried to where the particle is along their flow (neighbour_flow.h).
 //
 // The corrected pressure keeps no energy: particles that jostle gain some. Plain viscosity that would hold it
 // would also be a hundred times water's. Against the mean of the neighbours, a flow that is smooth over a
@@ -36,10 +36,9 @@ inline constexpr double kAllOfIt = 0.75;
 inline constexpr double kNoneOfIt = 1.25;
 
 /// What is left to damp in a fluid of `viscosity`, Pa·s, of the `noise` that one without needs: nothing where
-/// its own drag is stronger. At walls and surfaces, where neighbours lie on one side, the flow does feel the
-/// drag on jostling (torque between cylinders of 1 Pa·s, three spacings apart: +13 % with all of 0.66 Pa·s).
-/// With less than all, jostling lowers the surface of a turning glass: 0.5 Pa·s beside a third of 0.75 rises
-/// 12 % too little, 8 % beside all of it.
+/// its own drag is stronger. The two shares were chosen while, at walls and surfaces, the flow felt it
+/// (neighbour_flow.h): torque between cylinders of 1 Pa·s, three spacings apart, had +13 % with all of 0.66
+/// Pa·s.
 SLOSH_HD inline float jostling_viscosity(float noise, float viscosity) {
   constexpr auto kNone = static_cast<float>(kNoneOfIt);
   constexpr auto kWay = static_cast<float>(kNoneOfIt - kAllOfIt);
@@ -81,6 +80,16 @@ SLOSH_HD inline void add_noise(const Neighborhood<float>& n, float own, float fa
   u[0] += f * (n.fluid_number * v[0] - n.vx);
   u[1] += f * (n.fluid_number * v[1] - n.vy);
   u[2] += f * (n.fluid_number * v[2] - n.vz);
+}
+
+/// Takes out of that what the neighbours' flow makes a particle differ from their mean by (neighbour_flow.h).
+SLOSH_HD inline void follow_noise(const Neighborhood<float>& n, float own, float factor, float (&u)[3]) {
+  const float others = n.fluid_number - own;
+  if (others < 1e-3f * own) return;
+  const float f = factor / others;
+  u[0] -= f * n.fx;
+  u[1] -= f * n.fy;
+  u[2] -= f * n.fz;
 }
 
 }  // namespace slosh

@@ -84,10 +84,12 @@ INSTANTIATE_TEST_SUITE_P(
     error, KnownAnswer,
     ::testing::Values(
         // Without pressure/settled_packing.h the level is 9, 5, 4.5 and 4.3 % too low.
-        still_tank(0.02, 0.07, 0.11, 0.09), still_tank(0.0125, 0.027, 0.027, 0.05),
-        still_tank(0.01, 0.02, 0.01, 0.025), still_tank(0.008, 0.02, 0.01, 0.015),
-        // 0.09 held while all fluids had the whole drag on jostling (viscosity/noise.h).
-        std::vector<Known>{{"paraboloid", 0.0075, "rise over r²", 0.10}},
+        still_tank(0.02, 0.07, 0.11, 0.105), still_tank(0.0125, 0.027, 0.027, 0.05),
+        still_tank(0.01, 0.02, 0.01, 0.03), still_tank(0.008, 0.02, 0.01, 0.015),
+        // 0.10 held while drag on jostling turned the fluid by 4 % faster than its glass
+        // (viscosity/neighbour_flow.h); fluid of 2 Pa·s, which has none of it, lacks 12 to 14 %, too: it
+        // stands low where its surface meets the wall steeply, by 6 % at 4 mm and 2 % at 2 mm.
+        std::vector<Known>{{"paraboloid", 0.0075, "rise over r²", 0.15}},
         // Five slabs: as one solid they lose nothing; each for itself 46 particles, its floor +30 %.
         std::vector<Known>{{"tank_faces", 0.02, "floor", 0.04}},
         std::vector<Known>{{"tank_faces", 0.01, "floor", 0.022},
@@ -96,9 +98,9 @@ INSTANTIATE_TEST_SUITE_P(
         std::vector<Known>{{"slope", 0.0125, "slope", 0.02}, {"slope", 0.0125, "force along the tank", 1e-3}},
         // -1.9 %; of sums in another order, and from 9.8 to 10.1 mm, -1.1 to -2.8.
         std::vector<Known>{{"slope", 0.01, "slope", 0.03}, {"slope", 0.01, "force along the tank", 1e-3}},
-        std::vector<Known>{{"slope_gentle", 0.01, "slope", 0.05},  // -1.3 %; by clang -4.2
+        std::vector<Known>{{"slope_gentle", 0.01, "slope", 0.065},  // -6.0 %; close spacings by gcc -10 to -2
                            {"slope_gentle", 0.01, "force along the tank", 1e-3}},
-        std::vector<Known>{{"buoyancy_box", 0.016, "buoyancy", 0.09}},
+        std::vector<Known>{{"buoyancy_box", 0.016, "buoyancy", 0.095}},  // +9.1 %; close spacings -6 to +7
         std::vector<Known>{{"buoyancy_box", 0.01, "buoyancy", 0.02}},
         std::vector<Known>{{"buoyancy_box", 0.008, "buoyancy", 0.015}},
         // A ball of 2.5 spacings was −3.7 % while its sheet lay as deep as a flat one's.
@@ -150,12 +152,13 @@ INSTANTIATE_TEST_SUITE_P(
                            {"turned_ball", 0.008, "torque, 50 Pa·s, 20 of the density", 0.055},
                            {"turned_ball", 0.008, "torque, 1000 Pa·s, 0.01 of the density", 0.045},
                            {"turned_ball", 0.008, "torque, 1000 Pa·s, 20 of the density", 0.045}},
+        // Of the ball's lift, 71 mN: 0.6 % are left; of close spacings 0.4 in the mean.
         std::vector<Known>{{"slow_ball", 0.006, "force, moving", 0.02},
-                           {"slow_ball", 0.006, "force left 0.9 s after", 0.006}},
+                           {"slow_ball", 0.006, "force left 0.9 s after", 0.007}},
         // Films are behind potential flow by as much as they are behind these.
-        std::vector<Known>{{"dam_break", 0.146 / 16, "front against potential flow, worst", 0.03},
+        std::vector<Known>{{"dam_break", 0.146 / 16, "front against potential flow, worst", 0.034},
                            {"dam_break", 0.146 / 16, "front, worst", 0.245}},
-        std::vector<Known>{{"dam_break_long", 0.05715 / 10, "front against potential flow, worst", 0.036},
+        std::vector<Known>{{"dam_break_long", 0.05715 / 10, "front against potential flow, worst", 0.045},
                            {"dam_break_long", 0.05715 / 10, "speed of the front", 0.05},
                            {"dam_break_long", 0.05715 / 10, "front, worst", 0.19}},
         std::vector<Known>{{"shear_wave", 0.01, "rate of decay", 0.012}},
