@@ -35,7 +35,7 @@ SLOSH_HD void add_flow(const Real (&d)[3], const Real (&v)[3], Real h, FlowSums<
 /// What Σ W v over the neighbours gains on the way from their middle to the particle, along G = Σ (v_p − v_i)
 /// ⊗ d (−W'/r) M⁻¹, M the moment by fluid alone: exact where they flow linearly. Where M is too flat to be
 /// turned round (a layer, a thread, a drop of a few) it is as much less. `moment`: M over the rest lattice's,
-/// `rest_moment`; `v`: the particle's, m/s.
+/// `rest_moment`; `v`: the particle's, m/s. To n.fx, fy, fz.
 SLOSH_HD inline void follow_flow(const FlowSums<float>& sum, Symmetric<float> moment, float rest_moment,
                                  const float (&v)[3], Neighborhood<float>& n) {
   const float kept = unflattened(moment);
