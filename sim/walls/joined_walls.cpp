@@ -108,19 +108,19 @@ class Sheets {
  public:
   Sheets(std::size_t bodies, float spacing) : near_(spacing), of_body_(bodies) {}
 
-  void add(std::size_t body, const glm::vec3& p) {
-    near_.add(p);
+  void add(std::size_t body, const SheetParticle& p) {
+    near_.add(p.position);
     of_body_[body].push_back(p);
   }
   /// Adds p unless it would be crowded in a sheet of which neighbours are `apart` m from each other.
   void fill(std::size_t body, const glm::vec3& p, float apart) {
-    if (!near_.any_within(p, kLargestHole * apart)) add(body, p);
+    if (!near_.any_within(p, kLargestHole * apart)) add(body, {.position = p});
   }
-  std::vector<std::vector<glm::vec3>>& of_body() { return of_body_; }
+  std::vector<std::vector<SheetParticle>>& of_body() { return of_body_; }
 
  private:
   PointBuckets near_;
-  std::vector<std::vector<glm::vec3>> of_body_;
+  std::vector<std::vector<SheetParticle>> of_body_;
 };
 
 // Walks the nodes of a body's distance field that may lie at `depth`.
@@ -141,8 +141,8 @@ void near_level_set(const FixedSolid& solid, float depth, F&& visit) {
 
 }  // namespace
 
-std::vector<std::vector<glm::vec3>> joined_sheets(std::span<const FixedSolid> solids, float depth,
-                                                  float spacing) {
+std::vector<std::vector<SheetParticle>> joined_sheets(std::span<const FixedSolid> solids, float depth,
+                                                      float spacing) {
   std::vector<std::vector<Sample>> samples;
   std::vector<bool> joined(solids.size(), false);
   ExposedSurface surface(spacing);
@@ -164,7 +164,7 @@ std::vector<std::vector<glm::vec3>> joined_sheets(std::span<const FixedSolid> so
       // A wall that is too thin has its particles in its middle.
       for (float less = depth; !settle(surface, less, p) && less > 0.3f * depth; less *= 0.8f)
         p = s.position - 0.8f * less * s.normal;
-      sheets.add(b, p);
+      sheets.add(b, {p, s.position, s.normal, depth});
     }
   }
   // What is left open: where faces of two bodies meet in a concave edge, and their sheets part as they move
@@ -182,7 +182,7 @@ std::vector<std::vector<glm::vec3>> joined_sheets(std::span<const FixedSolid> so
     near_level_set(solids[b], depth, fill);
   }
   for (std::size_t b = 0; b < solids.size(); ++b)
-    for (glm::vec3& p : sheets.of_body()[b]) p = to_world(inverse(solids[b].pose), p);
+    for (SheetParticle& p : sheets.of_body()[b]) p = moved(inverse(solids[b].pose), p);
   return std::move(sheets.of_body());
 }
 

@@ -14,6 +14,7 @@
 #include "scenes/scene.h"
 #include "sim/math/distance_field.h"
 #include "sim/math/pose.h"
+#include "sim/walls/sheet.h"
 
 namespace slosh {
 
@@ -24,12 +25,12 @@ struct FixedSolid {
   Pose pose;  ///< mesh to world
 };
 
-/// Particle positions, m, in each body's mesh frame: `depth` (m) behind the surface of all that touch
+/// Particles in each body's mesh frame: `depth` (m) behind the surface of all that touch
 /// together, as far apart as its surface's samples; `spacing` (m) is the fluid's. Empty for a body that
 /// touches none, which has its own (wall_particles.cpp). What fills an edge between two is of the one whose
 /// face is nearer. A face is hidden where there is another body within a quarter of a spacing in front of it.
-std::vector<std::vector<glm::vec3>> joined_sheets(std::span<const FixedSolid> solids, float depth,
-                                                  float spacing);
+std::vector<std::vector<SheetParticle>> joined_sheets(std::span<const FixedSolid> solids, float depth,
+                                                      float spacing);
 
 /// Which samples of each solid's surface no other hides, in order.
 std::vector<std::vector<std::uint32_t>> exposed_samples(std::span<const FixedSolid> solids, float spacing);

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "sim/math/kernels.h"
 #include "sim/viscosity/wall_drag.h"
 #include "sim/walls/joined_walls.h"
 #include "sim/walls/point_buckets.h"
+#include "sim/walls/sheet.h"
 #include "sim/walls/wall_inset.h"
 
 namespace slosh {
@@ -89,9 +89,9 @@ float convexity(const DistanceFieldView& field, const glm::vec3& p, float spacin
 // that depth has none within kLargestHole of the way between its particles, walking the nodes of the distance
 // field.
 void close_gaps(const DistanceFieldView& field, float depth, float spacing, float apart,
-                std::vector<glm::vec3>& sheet) {
+                std::vector<SheetParticle>& sheet) {
   PointBuckets near(spacing);
-  for (const glm::vec3& p : sheet) near.add(p);
+  for (const SheetParticle& p : sheet) near.add(p.position);
   for (int z = 0; z < field.size.z; ++z) {
     for (int y = 0; y < field.size.y; ++y) {
       for (int x = 0; x < field.size.x; ++x) {
@@ -105,64 +105,45 @@ void close_gaps(const DistanceFieldView& field, float depth, float spacing, floa
         }
         if (std::abs(sample_distance(field, p).distance + depth) > 0.1f * spacing) continue;
         if (near.any_within(p, kLargestHole * apart)) continue;
-        sheet.push_back(p);
+        sheet.push_back({.position = p});
         near.add(p);
       }
     }
   }
 }
 
-// Positions of one body's particles in its mesh frame. `behind`: spacings, flat walls' depth.
-std::vector<glm::vec3> sheet_positions(const SurfaceSamples& surface, const DistanceFieldView& field,
-                                       const Plan& plan, float behind) {
-  std::vector<glm::vec3> positions = surface.positions;
-  if (plan.model == ParticleModel::kPaper) return positions;
+// One body's particles in its mesh frame. `behind`: spacings, flat walls' depth.
+std::vector<SheetParticle> own_sheet(const SurfaceSamples& surface, const DistanceFieldView& field,
+                                     const Plan& plan, float behind) {
+  std::vector<SheetParticle> sheet;
+  sheet.reserve(surface.positions.size());
   const float spacing = static_cast<float>(plan.spacing);
   const bool level = corrects_gradients(plan.model) && field.distance;
-  for (std::size_t i = 0; i < positions.size(); ++i) {
+  for (std::size_t i = 0; i < surface.positions.size(); ++i) {
+    const glm::vec3& at = surface.positions[i];
     const glm::vec3& normal = surface.normals[i];
-    const float bent = level ? convexity(field, positions[i], normal, spacing) : 0.0f;
-    const float depth = behind - kLessDeep * bent;
-    positions[i] = (level ? on_level_set : inset)(positions[i], normal, depth * spacing, field);
-  }
-  if (field.distance) close_gaps(field, behind * spacing, spacing, surface.apart, positions);
-  return positions;
-}
-
-// How many lattice particles each particle stands for (Akinci 2012's volume correction): kWallShare on a flat
-// sheet at the spacing; where sheets crowd or cross (corners, thin walls) the particles share what one sheet
-// would be.
-std::vector<float> crowding_shares(const std::vector<glm::vec3>& positions, const Plan& plan) {
-  const float h = static_cast<float>(plan.support_radius);
-  double sheet = 0.0;
-  const int reach = static_cast<int>(std::ceil(plan.support_radius / plan.spacing));
-  for (int x = -reach; x <= reach; ++x) {
-    for (int y = -reach; y <= reach; ++y) {
-      sheet += spiky_shape<double>(plan.spacing * plan.spacing * (x * x + y * y), h);
+    if (plan.model == ParticleModel::kPaper) {
+      sheet.push_back({at, at, normal, 0.0f});
+      continue;
     }
+    const float bent = level ? convexity(field, at, normal, spacing) : 0.0f;
+    const float depth = (behind - kLessDeep * bent) * spacing;
+    sheet.push_back({(level ? on_level_set : inset)(at, normal, depth, field), at, normal, depth});
   }
-  PointBuckets near(h);
-  for (const glm::vec3& p : positions) near.add(p);
-  std::vector<float> shares;
-  shares.reserve(positions.size());
-  for (const glm::vec3& p : positions) {
-    double sum = 0.0;
-    near.around(
-        p, [&](const glm::vec3& q, std::uint32_t) { sum += spiky_shape<double>(glm::dot(p - q, p - q), h); });
-    shares.push_back(static_cast<float>(kWallShare * sheet / sum));
-  }
-  return shares;
+  if (field.distance && plan.model != ParticleModel::kPaper)
+    close_gaps(field, behind * spacing, spacing, surface.apart, sheet);
+  return sheet;
 }
 
 // The particles of the fixed bodies that touch others, and what each stands for, body by body; empty for all
 // other bodies.
 struct JoinedWalls {
-  std::vector<std::vector<glm::vec3>> positions;  // mesh frame
+  std::vector<std::vector<SheetParticle>> sheets;  // mesh frame
   std::vector<std::vector<float>> shares;
 };
 
 JoinedWalls joined_walls(const Scene& scene, const SampledScene& sampled, const Plan& plan, float behind) {
-  JoinedWalls walls{std::vector<std::vector<glm::vec3>>(scene.bodies.size()),
+  JoinedWalls walls{std::vector<std::vector<SheetParticle>>(scene.bodies.size()),
                     std::vector<std::vector<float>>(scene.bodies.size())};
   if (!corrects_gradients(plan.model)) return walls;
   std::vector<FixedSolid> solids;
@@ -176,17 +157,16 @@ JoinedWalls joined_walls(const Scene& scene, const SampledScene& sampled, const 
     body_of.push_back(b);
   }
   const float spacing = static_cast<float>(plan.spacing);
-  std::vector<std::vector<glm::vec3>> sheets = joined_sheets(solids, behind * spacing, spacing);
-  std::vector<glm::vec3> all;
+  std::vector<std::vector<SheetParticle>> sheets = joined_sheets(solids, behind * spacing, spacing);
+  std::vector<SheetParticle> all;
   for (std::size_t n = 0; n < sheets.size(); ++n)
-    for (const glm::vec3& p : sheets[n])
-      all.push_back(glm::vec3(transform_point(solids[n].pose, glm::dvec3(p))));
-  const std::vector<float> shares = crowding_shares(all, plan);
+    for (const SheetParticle& p : sheets[n]) all.push_back(moved(solids[n].pose, p));
+  const std::vector<float> shares = sheet_shares(all, plan);
   auto next = shares.begin();
   for (std::size_t n = 0; n < sheets.size(); ++n) {
     const auto end = next + static_cast<std::ptrdiff_t>(sheets[n].size());
     walls.shares[body_of[n]].assign(next, end);
-    walls.positions[body_of[n]] = std::move(sheets[n]);
+    walls.sheets[body_of[n]] = std::move(sheets[n]);
     next = end;
   }
   return walls;
@@ -258,25 +238,25 @@ std::vector<SurfaceParticle> surface_particles(const Scene& scene, const Sampled
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
     if (body.motion != motion || body.point_probe) continue;
-    std::vector<glm::vec3> positions;
+    std::vector<SheetParticle> pressing;
     std::vector<float> pressures;
-    if (motion == BodyMotion::kFixed && !joined.positions[b].empty()) {
-      positions = std::move(joined.positions[b]);
+    if (motion == BodyMotion::kFixed && !joined.sheets[b].empty()) {
+      pressing = std::move(joined.sheets[b]);
       pressures = std::move(joined.shares[b]);
     } else {
-      positions = sheet_positions(sampled.surfaces[b], sampled.distance_fields[b].view(), plan, behind);
-      pressures.assign(positions.size(), static_cast<float>(plan.body_pressure[b]));
-      if (plan.model != ParticleModel::kPaper) pressures = crowding_shares(positions, plan);
+      pressing = own_sheet(sampled.surfaces[b], sampled.distance_fields[b].view(), plan, behind);
+      pressures.assign(pressing.size(), static_cast<float>(plan.body_pressure[b]));
+      if (plan.model != ParticleModel::kPaper) pressures = sheet_shares(pressing, plan);
     }
     const auto add = [&](const glm::vec3& at, float pressure, float volume, const MirrorPlane& mirror = {}) {
       particles.push_back({at, static_cast<std::uint16_t>(b), pressure, volume,
                            static_cast<float>(body.dynamic_viscosity), mirror});
     };
-    for (std::size_t i = 0; i < positions.size(); ++i) {
+    for (std::size_t i = 0; i < pressing.size(); ++i) {
       const float volume = plan.model == ParticleModel::kPaper
                                ? sampled.surfaces[b].particle_volume
                                : pressures[i] / kWallShare * lattice_volume * flat_drag;
-      add(positions[i], pressures[i], apart ? 0.0f : volume);
+      add(pressing[i].position, pressures[i], apart ? 0.0f : volume);
     }
     if (!apart) continue;
     const float surface_volume = sampled.surfaces[b].particle_volume;

@@ -74,12 +74,12 @@ float distance_to_outline(const glm::vec2& p) {
 }
 
 // Both bodies' particles in the world, those near the ends in z left out.
-std::vector<glm::vec3> in_the_middle(const std::vector<std::vector<glm::vec3>>& sheets,
+std::vector<glm::vec3> in_the_middle(const std::vector<std::vector<SheetParticle>>& sheets,
                                      const std::vector<Pose>& poses) {
   std::vector<glm::vec3> all;
   for (std::size_t b = 0; b < sheets.size(); ++b) {
-    for (const glm::vec3& p : sheets[b]) {
-      const glm::vec3 world(transform_point(poses[b], glm::dvec3(p)));
+    for (const SheetParticle& p : sheets[b]) {
+      const glm::vec3 world = moved(poses[b], p).position;
       if (std::abs(world.z) < 0.04f) all.push_back(world);
     }
   }
@@ -146,7 +146,7 @@ TEST(JoinedWalls, ThoseThatStandApartAreLeftAlone) {
     const glm::vec3 up(0.0f, gap * kSpacing, 0.0f);
     Box wall(kWallLow + up, kWallHigh + up);
     const std::vector<FixedSolid> solids = {floor.solid(), table.solid(), wall.solid()};
-    const std::vector<std::vector<glm::vec3>> sheets = joined_sheets(solids, kDepth, kSpacing);
+    const std::vector<std::vector<SheetParticle>> sheets = joined_sheets(solids, kDepth, kSpacing);
     EXPECT_TRUE(sheets[1].empty());
     for (const std::size_t b : {0u, 2u}) EXPECT_EQ(sheets[b].empty(), gap > 0.25f) << gap << ", body " << b;
   }
@@ -175,10 +175,11 @@ TEST(JoinedWalls, WhatAnotherHidesIsNotExposed) {
 TEST(JoinedWalls, AThinPlateHasItsOuterFace) {
   Box block(kFloorLow, kFloorHigh), plate({-0.06f, 0.0f, -0.06f}, {0.06f, kSpacing, 0.06f});
   const std::vector<FixedSolid> solids = {block.solid(), plate.solid()};
-  const std::vector<std::vector<glm::vec3>> sheets = joined_sheets(solids, kDepth, kSpacing);
+  const std::vector<std::vector<SheetParticle>> sheets = joined_sheets(solids, kDepth, kSpacing);
   int top = 0;
-  for (const std::vector<glm::vec3>& sheet : sheets) {
-    for (const glm::vec3& p : sheet) {
+  for (const std::vector<SheetParticle>& sheet : sheets) {
+    for (const SheetParticle& particle : sheet) {
+      const glm::vec3& p = particle.position;
       if (glm::max(std::abs(p.x), std::abs(p.z)) > 0.04f || p.y < -0.02f) continue;
       EXPECT_NEAR(p.y / kSpacing, 1.0f - 0.7f, 0.06f);
       ++top;

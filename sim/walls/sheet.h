@@ -1,0 +1,27 @@
+// The sheet of particles that a wall presses with, and what each of them stands for.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "sim/math/pose.h"
+#include "sim/plan.h"
+
+namespace slosh {
+
+/// One of the particles that a wall presses with.
+struct SheetParticle {
+  glm::vec3 position{0.0f};  ///< m
+  glm::vec3 surface{0.0f};   ///< m, where on the mesh it belongs
+  glm::vec3 normal{0.0f};    ///< unit, out of the solid there; 0: it fills an edge, and belongs to no face
+  float depth = 0.0f;        ///< m, how far behind the surface it was to lie
+};
+
+/// The same in another frame.
+SheetParticle moved(const Pose& pose, const SheetParticle& p);
+
+/// How many lattice particles each of a sheet stands for, one by one.
+std::vector<float> sheet_shares(std::span<const SheetParticle> sheet, const Plan& plan);
+
+}  // namespace slosh
