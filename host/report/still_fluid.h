@@ -10,6 +10,25 @@ namespace slosh::report {
 /// walls, body 0, have no viscosity of their own.
 SceneBuilder full_tank(ParticleModel model, double density, double viscosity);
 
+/// 0.5 Pa·s, 8 cm deep in a glass of 12 cm, body 0, that a hand turns by a stiff grip; all of it turns from
+/// the start.
+class TurningGlass {
+ public:
+  static constexpr double kRadius = 0.06, kDepth = 0.08;  ///< m
+  static constexpr double kTurning = 16.0;                ///< rad/s
+
+  TurningGlass(const Setting& setting, Cost& cost);
+
+  Trial& trial() { return trial_; }
+  /// Before each step: where the hand is.
+  void turn();
+
+ private:
+  explicit TurningGlass(const SceneBuilder& b, const Setting& setting, Cost& cost);
+
+  Trial trial_;
+};
+
 struct Turnover {
   double all;   ///< m/s, rms over the particles of what each moves by in a tenth of a second
   double axis;  ///< m/s, upwards, the mean within 5 cm of the axis

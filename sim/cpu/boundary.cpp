@@ -45,6 +45,7 @@ void BodySurface::place(const PassContext& context, std::span<const RigidBody> b
     sorted_.pressure[i] = local_[from].pressure;
     sorted_.volume[i] = local_[from].volume;
     sorted_.viscosity[i] = local_[from].viscosity;
+    sorted_.reach[i] = local_[from].reach;
     sorted_.body[i] = local_[from].body;
     if (!sorted_.mirror.empty()) sorted_.mirror.set(i, local_[from].mirror);
   }

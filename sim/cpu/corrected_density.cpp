@@ -122,10 +122,10 @@ void add_walls(const Work& w, std::uint32_t p, const BoundaryParticles& walls, c
                WallSums& sums) {
   using Kernel = ModelParts<ParticleModel::kCorrected>::DensityKernel;
   const FluidParticles& fluid = w.fluid;
-  const FloatBatch x(fluid.x[p]), y(fluid.y[p]), z(fluid.z[p]), h(w.context.support_radius);
+  const FloatBatch x(fluid.x[p]), y(fluid.y[p]), z(fluid.z[p]);
   const FloatBatch layer(w.context.correction.wall_layer);
   for_each_batch(rows, [&](std::uint32_t j, FloatBatch weight) {
-    const FloatBatch share = load(walls.pressure, j);
+    const FloatBatch share = load(walls.pressure, j), h = load(walls.reach, j);
     const FloatBatch dx = x - load(walls.x, j), dy = y - load(walls.y, j), dz = z - load(walls.z, j);
     add_wall_neighbor<Kernel>(dx, dy, dz, share, layer * share, h, weight, sums.sum);
     const FloatBatch slope = share * Kernel::pair(dx * dx + dy * dy + dz * dz, h, weight).slope_over_r;

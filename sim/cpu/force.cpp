@@ -30,8 +30,9 @@ Symmetric<float> drag_rate(const ParticleView<FloatBatch>& self, const NeighborC
   const FloatBatch none(0.0f);
   Symmetric<FloatBatch> sum{none, none, none, none, none, none};
   for_each_dragged<viscosity, Neighbours::kFluid>(
-      self, fluid, rows, FloatBatch(of_fluid), [&](const ParticleView<FloatBatch>& i, FloatBatch weight) {
-        add_pair_drag_rate<typename Parts::ForceKernel, Parts::kDrag>(self, i, h, shape, weight, sum);
+      self, fluid, rows, h, FloatBatch(of_fluid),
+      [&](const ParticleView<FloatBatch>& i, FloatBatch reach, FloatBatch weight) {
+        add_pair_drag_rate<typename Parts::ForceKernel, Parts::kDrag>(self, i, reach, shape, weight, sum);
       });
   return {scale * lane_sum(sum.xx), scale * lane_sum(sum.xy), scale * lane_sum(sum.xz),
           scale * lane_sum(sum.yy), scale * lane_sum(sum.yz), scale * lane_sum(sum.zz)};
@@ -151,7 +152,6 @@ void sum_body_wrenches(PassContext& context, ThreadTeam& team, const FluidPartic
   if (!drags.empty()) scratch.drag_rate.resize(count);
   const NeighborColumns fluid_columns = columns(fluid);
   const NeighborColumns own = columns(boundary);
-  const FloatBatch h(context.support_radius);
   const DragShape<FloatBatch> shape = in_all_lanes(context.drag_shape);
   const FloatBatch beyond(1.0f - context.correction.wall_layer);
   with_physics(context.plan, [&]<class Parts, Viscosity viscosity>() {
@@ -162,7 +162,7 @@ void sum_body_wrenches(PassContext& context, ThreadTeam& team, const FluidPartic
           scratch.force[i] = scratch.couple[i] = glm::vec3(0.0f);
           if (!drags.empty()) scratch.drag_rate[i] = {};
           if (rows.count == 0 || !wanted[boundary.body[i]]) continue;
-          const FloatBatch none(0.0f);
+          const FloatBatch none(0.0f), h(boundary.reach[i]);
           SurfaceSum<FloatBatch> sum{{none, none, none}, none, none, none, beyond};
           const WallViscosity wall = wall_viscosity(boundary.viscosity[i]);
           const ParticleView<FloatBatch> self =
@@ -217,9 +217,9 @@ void drag_fluid(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
               broadcast(fluid_columns, p, context.kinds[fluid.kind[p]].viscosity);
           ForceSum<FloatBatch> sum{FloatBatch(0.0f), FloatBatch(0.0f), FloatBatch(0.0f)};
           for_each_dragged<Viscosity::kPair, Neighbours::kWalls>(
-              self, moving_columns, rows, FloatBatch(1.0f),
-              [&](const ParticleView<FloatBatch>& i, FloatBatch weight) {
-                add_pair_drag<typename Parts::ForceKernel, Parts::kDrag>(self, i, h, shape, weight, sum);
+              self, moving_columns, rows, h, FloatBatch(1.0f),
+              [&](const ParticleView<FloatBatch>& i, FloatBatch reach, FloatBatch weight) {
+                add_pair_drag<typename Parts::ForceKernel, Parts::kDrag>(self, i, reach, shape, weight, sum);
               });
           const float scale = context.force_scale;
           fluid.fx[p] += scale * lane_sum(sum.x);

@@ -47,7 +47,7 @@ void MirrorColumns::set(std::size_t i, const MirrorPlane& plane) {
 
 void BoundaryParticles::resize(std::size_t count) {
   const std::size_t padded = count + kLanes;
-  for (Column<float>* column : {&x, &y, &z, &vx, &vy, &vz, &pressure, &volume, &viscosity}) {
+  for (Column<float>* column : {&x, &y, &z, &vx, &vy, &vz, &pressure, &volume, &viscosity, &reach}) {
     column->assign(padded, 0.0f);
   }
   body.assign(padded, 0);

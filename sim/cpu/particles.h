@@ -45,6 +45,7 @@ struct BoundaryParticles {
                            ///< particles it stands for, about kWallShare
   Column<float> volume;    ///< m³
   Column<float> viscosity;     ///< Pa·s
+  Column<float> reach;         ///< m, SurfaceParticle::reach
   Column<std::uint16_t> body;  ///< index into Scene::bodies
   MirrorColumns mirror;
   CellIndex index;

@@ -18,7 +18,6 @@ void PressureSolver::find_touches(const Work& work) {
   const FluidParticles& fluid = work.sides.fluid;
   const BoundaryParticles& moving = work.sides.moving;
   const std::vector<CellRun>& runs = fluid.index.runs();
-  const float h = work.context.support_radius;
   const double beyond = 1.0 - work.context.correction.wall_layer;
   found_touches_.resize(chunk_count(runs.size(), kRunsPerChunk));
   const bool any = moving.index.particles() > 0;
@@ -36,7 +35,7 @@ void PressureSolver::find_touches(const Work& work) {
           for (std::uint32_t i = rows.rows[row].begin; i < rows.rows[row].end; ++i) {
             const glm::vec3 surface(moving.x[i], moving.y[i], moving.z[i]);
             const glm::vec3 d = x - surface;
-            const float r_squared = glm::dot(d, d);
+            const float r_squared = glm::dot(d, d), h = moving.reach[i];
             if (r_squared >= h * h || moving.pressure[i] == 0.0f) continue;
             const float slope = Kernel::pair(r_squared, h, 1.0f).slope_over_r;
             const Vector3<float> pushed = times(push, slope * d.x, slope * d.y, slope * d.z);

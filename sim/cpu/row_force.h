@@ -15,6 +15,7 @@ struct NeighborColumns {
   // The corrected model's, of fluid:
   const float *pxx, *pxy, *pxz, *pyy, *pyz, *pzz;
   const float *ux, *uy, *uz;
+  const float* reach = nullptr;  // of bodies
 };
 
 // The corrected model's are null where the plan has them not, and for bodies.
@@ -31,7 +32,8 @@ inline NeighborColumns columns(const BoundaryParticles& b) {
           b.pressure.data(), b.volume.data(), b.viscosity.data(),
           nullptr,           nullptr,         nullptr,
           nullptr,           nullptr,         nullptr,
-          nullptr,           nullptr,         nullptr};
+          nullptr,           nullptr,         nullptr,
+          b.reach.data()};
 }
 
 enum class Neighbours { kFluid, kWalls };
@@ -60,6 +62,14 @@ FloatBatch viscosity_of(const ParticleView<FloatBatch>& p, const NeighborColumns
   }
 }
 
+/// Within which p and its neighbours j meet: what walls' particles have, of fluid `h`, m.
+template <Neighbours neighbours>
+FloatBatch reach_of(const NeighborColumns& n, std::uint32_t j, FloatBatch h) {
+  if constexpr (neighbours == Neighbours::kWalls) return FloatBatch::load_unaligned(n.reach + j);
+  return h;
+}
+
+/// `h`: within which p meets fluid, m.
 template <class Parts, PairRule rule, Viscosity viscosity, Neighbours neighbours = Neighbours::kFluid,
           class Sum = ForceSum<FloatBatch>>
 void add_row_forces(const ParticleView<FloatBatch>& p, const NeighborColumns& n, const RowList& rows,
@@ -93,15 +103,17 @@ void add_row_forces(const ParticleView<FloatBatch>& p, const NeighborColumns& n,
       i.vz = FloatBatch::load_unaligned(n.vz + j);
       i.viscosity = viscosity_of<viscosity, neighbours>(p, n, j, of_fluid);
     }
-    add_pair_force<typename Parts::ForceKernel, rule, Parts::kDrag, kViscous>(p, i, h, shape, weight, sum);
+    add_pair_force<typename Parts::ForceKernel, rule, Parts::kDrag, kViscous>(
+        p, i, reach_of<neighbours>(n, j, h), shape, weight, sum);
   };
   for_each_batch(rows, add);
 }
 
-/// Calls f(i, weight) for the batches of neighbours of p as drag between them sees them.
+/// Calls f(i, reach, weight) for the batches of neighbours of p as drag between them sees them. `h`: within
+/// which p meets fluid, m.
 template <Viscosity viscosity, Neighbours neighbours, class F>
 void for_each_dragged(const ParticleView<FloatBatch>& p, const NeighborColumns& n, const RowList& rows,
-                      FloatBatch of_fluid, F&& f) {
+                      FloatBatch h, FloatBatch of_fluid, F&& f) {
   for_each_batch(rows, [&](std::uint32_t j, FloatBatch weight) {
     ParticleView<FloatBatch> i;
     i.x = FloatBatch::load_unaligned(n.x + j);
@@ -112,7 +124,7 @@ void for_each_dragged(const ParticleView<FloatBatch>& p, const NeighborColumns& 
     i.vz = FloatBatch::load_unaligned(n.vz + j);
     i.volume = FloatBatch::load_unaligned(n.volume + j);
     i.viscosity = viscosity_of<viscosity, neighbours>(p, n, j, of_fluid);
-    f(i, weight);
+    f(i, reach_of<neighbours>(n, j, h), weight);
   });
 }
 

@@ -60,8 +60,9 @@ void add_forces_on_mirror(const BoundaryParticles& walls, std::uint32_t i, float
   self.volume = each * FloatBatch(walls.volume[i]);
   self.viscosity = FloatBatch(first_viscosity);
   for_each_dragged<viscosity, Neighbours::kFluid>(
-      self, fluid, rows, FloatBatch(1.0f), [&](const ParticleView<FloatBatch>& p, FloatBatch weight) {
-        add_mirror_force<typename Parts::ForceKernel>(p, self, mirror, h, shape, weight, sum);
+      self, fluid, rows, h, FloatBatch(1.0f),
+      [&](const ParticleView<FloatBatch>& p, FloatBatch reach, FloatBatch weight) {
+        add_mirror_force<typename Parts::ForceKernel>(p, self, mirror, reach, shape, weight, sum);
       });
 }
 

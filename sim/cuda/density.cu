@@ -93,7 +93,7 @@ __global__ __launch_bounds__(kThreads) void corrected_density_kernel(
     for_neighbors<Team>(c.grid, walls.cells, cell, [&](std::uint32_t j) {
       const float4 wall = __ldg(walls.x + j);
       add_wall_neighbor<Kernel>(x.x - wall.x, x.y - wall.y, x.z - wall.z, wall.w,
-                                c.correction.wall_layer * wall.w, h, 1.0f, sum);
+                                c.correction.wall_layer * wall.w, __ldg(walls.reach + j), 1.0f, sum);
     });
   };
   add_walls(fixed);

@@ -120,14 +120,17 @@ void SurfaceBuffers::allocate(const std::vector<SurfaceParticle>& particles, con
   if (count == 0) return;
   std::vector<float4> position;
   std::vector<float2> material;
+  std::vector<float> reach;
   std::vector<std::uint16_t> body;
   for (const SurfaceParticle& p : particles) {
     position.push_back({p.position.x, p.position.y, p.position.z, p.pressure});
     material.push_back({p.volume, p.viscosity});
+    reach.push_back(p.reach);
     body.push_back(p.body);
   }
   position_.upload(position, check);
   material_.upload(material, check);
+  reach_.upload(reach, check);
   body_.upload(body, check);
   for (DeviceBuffer<float4>* buffer : {&placed_, &velocity_, &force_, &couple_, &sorted_x_, &sorted_v_}) {
     buffer->allocate(count, check);
@@ -136,15 +139,17 @@ void SurfaceBuffers::allocate(const std::vector<SurfaceParticle>& particles, con
   drag_a_.allocate(count, check);
   drag_b_.allocate(count, check);
   viscosity_.allocate(count, check);
+  sorted_reach_.allocate(count, check);
   sorted_body_.allocate(count, check);
   cells_.allocate(constants.grid.cell_count(), check);
-  local_view_ = {count,          position_.data(), material_.data(), body_.data(),
-                 placed_.data(), velocity_.data(), key_.data(),      force_.data(),
-                 couple_.data(), drag_a_.data(),   drag_b_.data()};
+  local_view_ = {count,         position_.data(), material_.data(), reach_.data(),
+                 body_.data(),  placed_.data(),   velocity_.data(), key_.data(),
+                 force_.data(), couple_.data(),   drag_a_.data(),   drag_b_.data()};
   sorted_view_ = {count,
                   sorted_x_.data(),
                   sorted_v_.data(),
                   viscosity_.data(),
+                  sorted_reach_.data(),
                   sorted_body_.data(),
                   sorted_key_.data(),
                   order_.data(),

@@ -82,7 +82,7 @@ class SurfaceBuffers {
   DeviceBuffer<float2> drag_b_;
   DeviceBuffer<float4> mirror_normal_, mirror_bend_a_;  // where a body mirrors
   DeviceBuffer<float2> mirror_bend_b_;
-  DeviceBuffer<float> viscosity_;
+  DeviceBuffer<float> viscosity_, reach_, sorted_reach_;
   DeviceBuffer<std::uint16_t> body_, sorted_body_;
   DeviceBuffer<std::uint32_t> key_, sorted_key_, order_;
   CellTableBuffers cells_;

@@ -24,9 +24,9 @@ __global__ __launch_bounds__(kThreads) void drag_kernel(StepConstants c, const P
       view(fluid.state.x[p], fluid.state.v[p], kinds[fluid.state.kind[p]].viscosity);
   ForceSum<float> sum{0.0f, 0.0f, 0.0f};
   for_each_dragged<Alone, Viscosity::kPair, Neighbours::kWalls>(
-      c, self, columns(moving), moving.cells, cell, 1.0f, [&](const ParticleView<float>& i) {
-        add_pair_drag<typename Parts::ForceKernel, Parts::kDrag>(self, i, c.support_radius, c.drag_shape,
-                                                                 1.0f, sum);
+      c, self, columns(moving), moving.cells, cell, c.support_radius, 1.0f,
+      [&](const ParticleView<float>& i, float reach) {
+        add_pair_drag<typename Parts::ForceKernel, Parts::kDrag>(self, i, reach, c.drag_shape, 1.0f, sum);
       });
   float4 force = fluid.force[p];
   force.x += c.force_scale * sum.x;

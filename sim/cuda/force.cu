@@ -18,14 +18,14 @@ __global__ __launch_bounds__(kThreads) void force_kernel(StepConstants c, const 
   ParticleView<float> self = view(fluid.pressed[p], fluid.state.v[p], kinds[fluid.state.kind[p]].viscosity);
   if constexpr (Parts::kCorrected) read_corrected(columns(fluid), p, self);
   ForceSum<float> sum{0.0f, 0.0f, 0.0f};
-  add_forces<Team, Parts, Parts::kFluids, viscosity>(c, self, columns(fluid), fluid.cells, cell, sum);
+  add_forces<Team, Parts, Parts::kFluids, viscosity>(c, self, columns(fluid), fluid.cells, cell, c.support_radius, sum);
   if (fixed.count) {
-    add_forces<Team, Parts, Parts::kWalls, kAgainstBodies, Neighbours::kWalls>(c, self, columns(fixed),
-                                                                               fixed.cells, cell, sum);
+    add_forces<Team, Parts, Parts::kWalls, kAgainstBodies, Neighbours::kWalls>(
+        c, self, columns(fixed), fixed.cells, cell, c.support_radius, sum);
   }
   if (moving.count) {
-    add_forces<Team, Parts, Parts::kWalls, kAgainstBodies, Neighbours::kWalls>(c, self, columns(moving),
-                                                                               moving.cells, cell, sum);
+    add_forces<Team, Parts, Parts::kWalls, kAgainstBodies, Neighbours::kWalls>(
+        c, self, columns(moving), moving.cells, cell, c.support_radius, sum);
   }
   if constexpr (Parts::kCorrected && viscosity != Viscosity::kNone) {
     if (fixed.mirror.normal) add_mirror_forces<Team, Parts>(c, self, fixed, cell, sum);

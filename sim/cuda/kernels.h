@@ -103,6 +103,7 @@ struct LocalSurface {
   std::uint32_t count = 0;
   const float4* position = nullptr;  ///< mesh frame, m; w: pressure or share
   const float2* material = nullptr;  ///< volume m³, viscosity Pa·s
+  const float* reach = nullptr;      ///< m, SurfaceParticle::reach
   const std::uint16_t* body = nullptr;
   float4* placed = nullptr;      ///< world, m, local order; w as in `position`
   float4* velocity = nullptr;    ///< world, m/s, local order; w: volume
@@ -126,6 +127,7 @@ struct SortedSurface {
   float4* x = nullptr;  ///< world; w: pressure or share
   float4* v = nullptr;  ///< w: volume
   float* viscosity = nullptr;
+  float* reach = nullptr;  ///< m
   std::uint16_t* body = nullptr;
   std::uint32_t* key = nullptr;
   std::uint32_t* order = nullptr;  ///< local index of each

@@ -56,6 +56,7 @@ __global__ void gather_surface_kernel(StepConstants c, LocalSurface from, Sorted
   to.x[i] = from.placed[source];
   to.v[i] = from.velocity[source];
   to.viscosity[i] = from.material[source].y;
+  to.reach[i] = from.reach[source];
   to.body[i] = from.body[source];
   mark_cell(to.key, i, to.count, c.grid.retired_key(), to.cells);
 }

@@ -17,6 +17,7 @@ struct NeighborColumns {
   const float4* push_b = nullptr;
   const float* drag_z = nullptr;
   const float* solved = nullptr;
+  const float* reach = nullptr;  // of bodies
 };
 
 __device__ inline NeighborColumns columns(const SortedFluid& fluid) {
@@ -24,7 +25,7 @@ __device__ inline NeighborColumns columns(const SortedFluid& fluid) {
           fluid.push_b,  fluid.drag_z,  fluid.state.solved};
 }
 __device__ inline NeighborColumns columns(const SortedSurface& surface) {
-  return {surface.x, surface.v, surface.viscosity};
+  return {surface.x, surface.v, surface.viscosity, nullptr, nullptr, nullptr, nullptr, surface.reach};
 }
 
 /// What the corrected model's fluid presses and drags by.
@@ -52,12 +53,19 @@ __device__ inline float viscosity_of(const ParticleView<float>& p, const Neighbo
   }
 }
 
-/// Adds the forces of the neighbours, or of the thread's share of them.
+/// Within which p and its neighbour j meet: what walls' particles have, of fluid `h`, m.
+template <Neighbours neighbours>
+__device__ inline float reach_of(const NeighborColumns& n, std::uint32_t j, float h) {
+  if constexpr (neighbours == Neighbours::kWalls) return __ldg(n.reach + j);
+  return h;
+}
+
+/// Adds the forces of the neighbours, or of the thread's share of them. `h`: within which p meets fluid, m.
 template <class Team, class Parts, PairRule rule, Viscosity viscosity,
           Neighbours neighbours = Neighbours::kFluid, class Sum = ForceSum<float>>
 __device__ inline void add_forces(const StepConstants& c, const ParticleView<float>& p,
                                   const NeighborColumns& n, const CellTable& cells, std::uint32_t cell,
-                                  Sum& sum, float of_fluid = 1.0f) {
+                                  float h, Sum& sum, float of_fluid = 1.0f) {
   constexpr bool kOfFluid = is_corrected_fluid(rule) || is_corrected_body(rule);
   // What pairs of one viscosity drag by is in u already.
   constexpr bool kViscous =
@@ -91,8 +99,8 @@ __device__ inline void add_forces(const StepConstants& c, const ParticleView<flo
       i.volume = v.w;
     }
     if constexpr (kViscous) i.viscosity = viscosity_of<viscosity, neighbours>(p, n, j, of_fluid);
-    add_pair_force<typename Parts::ForceKernel, rule, Parts::kDrag, kViscous>(p, i, c.support_radius,
-                                                                              c.drag_shape, 1.0f, sum);
+    add_pair_force<typename Parts::ForceKernel, rule, Parts::kDrag, kViscous>(
+        p, i, reach_of<neighbours>(n, j, h), c.drag_shape, 1.0f, sum);
   });
 }
 
@@ -100,13 +108,15 @@ __device__ inline ParticleView<float> view(const float4& x, const float4& v, flo
   return {x.x, x.y, x.z, v.x, v.y, v.z, x.w, v.w, viscosity, {}, 0.0f, 0.0f, 0.0f};
 }
 
-/// Calls f(i) for the neighbours of p as drag between them sees them, or the thread's share of them.
+/// Calls f(i, reach) for the neighbours of p as drag between them sees them, or the thread's share of them. `h`:
+/// within which p meets fluid, m.
 template <class Team, Viscosity viscosity, Neighbours neighbours, class F>
 __device__ inline void for_each_dragged(const StepConstants& c, const ParticleView<float>& p,
                                         const NeighborColumns& n, const CellTable& cells, std::uint32_t cell,
-                                        float of_fluid, F&& f) {
+                                        float h, float of_fluid, F&& f) {
   for_neighbors<Team>(c.grid, cells, cell, [&](std::uint32_t j) {
-    f(view(__ldg(n.x + j), __ldg(n.v + j), viscosity_of<viscosity, neighbours>(p, n, j, of_fluid)));
+    f(view(__ldg(n.x + j), __ldg(n.v + j), viscosity_of<viscosity, neighbours>(p, n, j, of_fluid)),
+      reach_of<neighbours>(n, j, h));
   });
 }
 

@@ -29,16 +29,17 @@ __device__ inline float3 pushed_by(const Symmetric<float>& k, const float3& w) {
                      k.xz * w.x + k.yz * w.y + k.zz * w.z);
 }
 
-/// Calls f(j, w), w = (−W'/r) (x − x_j) without the kernel's constant, for those of `others` within reach of x.
-/// Walls' particles have it times their share.
+/// Calls f(j, w), w = (−W'/r) (x − x_j) without the kernel's constant, for those of `others` within reach of x:
+/// `reach`, m, or what each wall's particle has, for whom w is times its share.
 template <Neighbours neighbours, class F>
 __device__ inline void for_each_pressed(const StepConstants& c, const float4& x, const float4* others,
-                                        const CellTable& cells, std::uint32_t cell, F&& f) {
-  const float h = c.support_radius;
+                                        const CellTable& cells, std::uint32_t cell, float reach,
+                                        const float* reaches, F&& f) {
   for_neighbors(c.grid, cells, cell, [&](std::uint32_t j) {
     const float4 y = __ldg(others + j);
     const float dx = x.x - y.x, dy = x.y - y.y, dz = x.z - y.z;
     const float r_squared = dx * dx + dy * dy + dz * dz;
+    const float h = neighbours == Neighbours::kWalls ? __ldg(reaches + j) : reach;
     if (r_squared >= h * h) return;
     float by = PressedParts::ForceKernel::pair(r_squared, h, 1.0f).slope_over_r;
     if (!(r_squared * by > 0.0f)) return;
@@ -61,11 +62,11 @@ __device__ inline void for_each_press(const StepConstants& c, const SortedFluid&
     const Symmetric<float> own = push_tensor(c, fluid, e);
     const float4 x = fluid.pressed[e];
     for_each_pressed<Neighbours::kFluid>(
-        c, x, fluid.pressed, fluid.cells, cell, [&](std::uint32_t j, const float3& w) {
+        c, x, fluid.pressed, fluid.cells, cell, c.support_radius, nullptr, [&](std::uint32_t j, const float3& w) {
           f(j, pushed_by(own, w), pushed_by(push_tensor(c, fluid, j), w));
         });
     if (moving.count == 0) return;
-    for_each_pressed<Neighbours::kWalls>(c, x, moving.x, moving.cells, cell,
+    for_each_pressed<Neighbours::kWalls>(c, x, moving.x, moving.cells, cell, c.support_radius, moving.reach,
                                          [&](std::uint32_t j, const float3& w) {
                                            f(fluid.count + j, pushed_by(own, w), make_float3(0.0f, 0.0f, 0.0f));
                                          });
@@ -76,7 +77,7 @@ __device__ inline void for_each_press(const StepConstants& c, const SortedFluid&
   if (cell >= c.grid.retired_key()) return;
   const float4 x = moving.x[i];
   if (x.w == 0.0f) return;
-  for_each_pressed<Neighbours::kFluid>(c, x, fluid.pressed, fluid.cells, cell,
+  for_each_pressed<Neighbours::kFluid>(c, x, fluid.pressed, fluid.cells, cell, moving.reach[i], nullptr,
                                        [&](std::uint32_t j, const float3& w) {
                                          const float3 share = make_float3(x.w * w.x, x.w * w.y, x.w * w.z);
                                          f(j, pushed_by(push_tensor(c, fluid, j), share),

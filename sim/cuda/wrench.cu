@@ -25,7 +25,8 @@ __global__ __launch_bounds__(kThreads) void surface_force_kernel(StepConstants c
     const float used =
         viscosity == Viscosity::kOne ? 0.5f * (wall.own + wall.of_fluid * first_viscosity) : wall.own;
     const ParticleView<float> self = view(surface.x[i], surface.v[i], used);
-    add_forces<Team, Parts, Parts::kOnBodies, viscosity>(c, self, columns(fluid), fluid.cells, cell, sum,
+    const float h = surface.reach[i];
+    add_forces<Team, Parts, Parts::kOnBodies, viscosity>(c, self, columns(fluid), fluid.cells, cell, h, sum,
                                                          wall.of_fluid);
     if constexpr (Parts::kCorrected && viscosity != Viscosity::kNone) {
       const auto as_it_is = [](std::uint32_t, const float4& v) { return make_float3(v.x, v.y, v.z); };
@@ -35,9 +36,10 @@ __global__ __launch_bounds__(kThreads) void surface_force_kernel(StepConstants c
     }
     if constexpr (with_drag) {
       for_each_dragged<Team, viscosity, Neighbours::kFluid>(
-          c, self, columns(fluid), fluid.cells, cell, wall.of_fluid, [&](const ParticleView<float>& p) {
-            add_pair_drag_rate<typename Parts::ForceKernel, Parts::kDrag>(self, p, c.support_radius,
-                                                                          c.drag_shape, 1.0f, rate);
+          c, self, columns(fluid), fluid.cells, cell, h, wall.of_fluid,
+          [&](const ParticleView<float>& p, float reach) {
+            add_pair_drag_rate<typename Parts::ForceKernel, Parts::kDrag>(self, p, reach, c.drag_shape, 1.0f,
+                                                                          rate);
           });
     }
   }

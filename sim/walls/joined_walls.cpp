@@ -153,18 +153,21 @@ std::vector<std::vector<SheetParticle>> joined_sheets(std::span<const FixedSolid
   }
 
   Sheets sheets(solids.size(), spacing);
-  const auto inside = [&](std::size_t b, const glm::vec3& p) {
-    return sample_distance(solids[b].field, to_world(inverse(solids[b].pose), p)).distance < 0.0f;
+  const auto distance = [&](std::size_t b, const glm::vec3& p) {
+    return sample_distance(solids[b].field, to_world(inverse(solids[b].pose), p)).distance;
   };
   for (std::size_t b = 0; b < solids.size(); ++b) {
     if (!joined[b]) continue;
     for (const Sample& s : samples[b]) {
       if (s.hidden) continue;
       glm::vec3 p = s.position - depth * s.normal;
+      float less = depth;
       // A wall that is too thin has its particles in its middle.
-      for (float less = depth; !settle(surface, less, p) && less > 0.3f * depth; less *= 0.8f)
+      for (; !settle(surface, less, p) && less > 0.3f * depth; less *= 0.8f)
         p = s.position - 0.8f * less * s.normal;
-      sheets.add(b, {p, s.position, s.normal, depth});
+      // Behind a thin wall one is well outside, along an edge nowhere.
+      const bool thin = distance(b, p - 2.5f * depth * s.normal) > 0.5f * depth;
+      sheets.add(b, {p, s.position, s.normal, depth, thin ? depth - less : 0.0f});
     }
   }
   // What is left open: where faces of two bodies meet in a concave edge, and their sheets part as they move
@@ -173,7 +176,7 @@ std::vector<std::vector<SheetParticle>> joined_sheets(std::span<const FixedSolid
   for (std::size_t b = 0; b < solids.size(); ++b) {
     if (!joined[b]) continue;
     const auto fill = [&](glm::vec3 p) {
-      if (!settle(surface, depth, p) || !inside(b, p)) return;
+      if (!settle(surface, depth, p) || distance(b, p) >= 0.0f) return;
       const std::size_t body = surface.depth_at(p).body;
       sheets.fill(body, p, solids[body].surface->apart);
     };

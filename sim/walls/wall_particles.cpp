@@ -35,21 +35,80 @@ glm::vec3 inset(const glm::vec3& surface, const glm::vec3& normal, float depth,
   return surface - normal * depth;
 }
 
+constexpr float kTwoSides = 3.0f;  // depths: in a thinner wall the field, which is coarse, is round
+
+// m, how thick the solid is behind a point of its surface; `most` where it is more than that. Behind a wall one is
+// soon well outside; along an edge, just within the other face, one is nowhere.
+float thickness(const glm::vec3& surface, const glm::vec3& normal, float most, const DistanceFieldView& field) {
+  constexpr int kLooks = 30, kFirst = 4, kBeyond = 5;
+  const float stride = most / kLooks;
+  const auto depth_at = [&](int look) {
+    return solid_depth(field, surface - static_cast<float>(look) * stride * normal);
+  };
+  float before = depth_at(kFirst - 1);
+  for (int look = kFirst; look <= kLooks; ++look) {
+    const float depth = depth_at(look);
+    if (depth >= 0.0f) {
+      before = depth;
+      continue;
+    }
+    const bool through = before > 0.0f && depth_at(look + kBeyond) < -0.5f * kBeyond * stride;
+    return through ? stride * (static_cast<float>(look) - depth / (depth - before)) : most;
+  }
+  return most;
+}
+
+// Moves a surface particle straight into a wall whose two sides are near, and from its edges sideways: where
+// the two meet the field, which is coarse, is round.
+glm::vec3 in_thin_wall(const glm::vec3& surface, const glm::vec3& normal, float depth,
+                       const DistanceFieldView& field) {
+  constexpr float kSideways = 0.7f;
+  const glm::vec3 p = surface - depth * normal;
+  const DistanceSample s = sample_distance(field, p);
+  const glm::vec3 along = s.gradient - glm::dot(s.gradient, normal) * normal;
+  const float slope = glm::length(along);
+  return slope > kSideways ? p - along / slope * std::max(depth + s.distance, 0.0f) : p;
+}
+
+// A place in the solid.
+struct Place {
+  glm::vec3 at;
+  float lacks;  // m, of the depth that was asked for
+};
+
 // Moves a surface particle to the level set at `depth` inside the solid: along a convex edge, where going
 // back along one face's normal comes out beside the other, that is the edge of a smaller body. Buoyancy of a
-// box of 5 and 8 spacings with the edges left proud: +49 and +21 %, so -4 and +1 %.
-glm::vec3 on_level_set(const glm::vec3& surface, const glm::vec3& normal, float depth,
-                       const DistanceFieldView& field) {
-  glm::vec3 p = surface - normal * depth;
+// box of 5 and 8 spacings with the edges left proud: +49 and +21 %, so -4 and +1 %. A wall that has none is
+// entered to its middle.
+// `thick`: m, of the solid there; `thin_near`: close by the wall has no such level set.
+Place on_level_set(const glm::vec3& surface, const glm::vec3& normal, float depth, float thick, bool thin_near,
+                   const DistanceFieldView& field) {
+  constexpr float kThere = 0.8f;    // of the depth
+  constexpr float kAstray = 1.5f;   // depths from the surface
+  constexpr float kOnRidge = 0.9f;  // of the depth in a wall's middle that the field shows
+  if (thick < kTwoSides * depth) {
+    const float straight = std::min(depth, 0.5f * thick);
+    return {in_thin_wall(surface, normal, straight, field), depth - straight};
+  }
+  glm::vec3 p = surface - normal * depth, deepest = p;
+  float most = -std::numeric_limits<float>::infinity();
   for (int newton = 0; newton < 6; ++newton) {
     const DistanceSample s = sample_distance(field, p);
     const float slope = glm::dot(s.gradient, s.gradient);
     const float missing = depth + s.distance;
-    if (missing < 0.02f * depth) return p;
+    if (missing < 0.02f * depth) return {p, 0.0f};
+    if (-s.distance > most && glm::distance(p, surface) < kAstray * depth) {
+      most = -s.distance;
+      deepest = p;
+    }
     if (slope < 0.1f) break;
     p -= s.gradient * (missing / slope);
   }
-  return solid_depth(field, p) > 0.8f * depth ? p : inset(surface, normal, depth, field);
+  if (solid_depth(field, p) > kThere * depth) return {p, 0.0f};
+  p = inset(surface, normal, depth, field);
+  if (!thin_near || solid_depth(field, p) >= most) return {p, 0.0f};
+  // The edge of a plate.
+  return {deepest, std::max(kOnRidge * depth - most, 0.0f)};
 }
 
 // Behind a bent surface a sheet is smaller than the surface that it stands for: a ball of 1.5, 2.5 and 3.6
@@ -119,6 +178,17 @@ std::vector<SheetParticle> own_sheet(const SurfaceSamples& surface, const Distan
   sheet.reserve(surface.positions.size());
   const float spacing = static_cast<float>(plan.spacing);
   const bool level = corrects_gradients(plan.model) && field.distance;
+  const auto deep = [&](std::size_t i) {
+    const float bent = level ? convexity(field, surface.positions[i], surface.normals[i], spacing) : 0.0f;
+    return (behind - kLessDeep * bent) * spacing;
+  };
+  std::vector<float> thick;
+  PointBuckets thin(2.0f * spacing);
+  for (std::size_t i = 0; level && i < surface.positions.size(); ++i) {
+    const float depth = deep(i);
+    thick.push_back(thickness(surface.positions[i], surface.normals[i], kTwoSides * depth, field));
+    if (thick.back() < kTwoSides * depth) thin.add(surface.positions[i]);
+  }
   for (std::size_t i = 0; i < surface.positions.size(); ++i) {
     const glm::vec3& at = surface.positions[i];
     const glm::vec3& normal = surface.normals[i];
@@ -126,9 +196,14 @@ std::vector<SheetParticle> own_sheet(const SurfaceSamples& surface, const Distan
       sheet.push_back({at, at, normal, 0.0f});
       continue;
     }
-    const float bent = level ? convexity(field, at, normal, spacing) : 0.0f;
-    const float depth = (behind - kLessDeep * bent) * spacing;
-    sheet.push_back({(level ? on_level_set : inset)(at, normal, depth, field), at, normal, depth});
+    const float depth = deep(i);
+    if (!level) {
+      sheet.push_back({inset(at, normal, depth, field), at, normal, depth});
+      continue;
+    }
+    const Place place =
+        on_level_set(at, normal, depth, thick[i], thin.any_within(at, 2.0f * spacing), field);
+    sheet.push_back({place.at, at, normal, depth, place.lacks});
   }
   if (field.distance && plan.model != ParticleModel::kPaper)
     close_gaps(field, behind * spacing, spacing, surface.apart, sheet);
@@ -230,6 +305,7 @@ std::vector<SurfaceParticle> surface_particles(const Scene& scene, const Sampled
   const float lattice_volume = static_cast<float>(std::pow(plan.spacing, 3));
   const WallDrag drag = wall_drag(plan.model, scene.support_ratio, sheet);
   const auto flat_drag = static_cast<float>(drag.factor(0.0));
+  const auto support = static_cast<float>(plan.support_radius);
   const auto behind = static_cast<float>(wall_inset(plan.model, scene.support_ratio));
   JoinedWalls joined;
   if (motion == BodyMotion::kFixed) joined = joined_walls(scene, sampled, plan, behind);
@@ -248,15 +324,16 @@ std::vector<SurfaceParticle> surface_particles(const Scene& scene, const Sampled
       pressures.assign(pressing.size(), static_cast<float>(plan.body_pressure[b]));
       if (plan.model != ParticleModel::kPaper) pressures = sheet_shares(pressing, plan);
     }
-    const auto add = [&](const glm::vec3& at, float pressure, float volume, const MirrorPlane& mirror = {}) {
+    const auto add = [&](const glm::vec3& at, float pressure, float volume, float lacks = 0.0f,
+                         const MirrorPlane& mirror = {}) {
       particles.push_back({at, static_cast<std::uint16_t>(b), pressure, volume,
-                           static_cast<float>(body.dynamic_viscosity), mirror});
+                           static_cast<float>(body.dynamic_viscosity), support - lacks, mirror});
     };
     for (std::size_t i = 0; i < pressing.size(); ++i) {
       const float volume = plan.model == ParticleModel::kPaper
                                ? sampled.surfaces[b].particle_volume
                                : pressures[i] / kWallShare * lattice_volume * flat_drag;
-      add(pressing[i].position, pressures[i], apart ? 0.0f : volume);
+      add(pressing[i].position, pressures[i], apart ? 0.0f : volume, pressing[i].lacks);
     }
     if (!apart) continue;
     const float surface_volume = sampled.surfaces[b].particle_volume;
@@ -265,7 +342,7 @@ std::vector<SurfaceParticle> surface_particles(const Scene& scene, const Sampled
       const double factor = mirror_factor(scene.support_ratio, sheet);
       const float volume = static_cast<float>(factor) * surface_volume;
       for (std::size_t i = 0; i < mirrors.size(); ++i)
-        add(dragging[b].positions[i], 0.0f, volume, mirrors[i]);
+        add(dragging[b].positions[i], 0.0f, volume, 0.0f, mirrors[i]);
       continue;
     }
     for (const glm::vec3& p : dragging[b].positions) {

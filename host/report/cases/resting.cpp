@@ -148,33 +148,18 @@ std::vector<Reading> gentle_slope(const Setting& setting, Cost& cost) {
   return leaning(1.0, setting, cost);
 }
 
-// A glass of fluid that turns as one from the start: the surface rises as ω²r²/(2g).
+// The surface of a glass of fluid that turns rises as ω²r²/(2g).
 std::vector<Reading> paraboloid(const Setting& setting, Cost& cost) {
-  constexpr double kRadius = 0.06, kDepth = 0.08, kTurning = 16.0, kThick = 0.02;
-  SceneBuilder b;
-  b.add_fluid(1000.0, 0.5);
-  const int glass = b.add_free("glass", glass_of(kRadius, kDepth + 0.06, kThick), 0.5);
-  b.set_viscosity({glass}, 0.5);
-  b.scene.bodies[static_cast<std::size_t>(glass)].twist.angular = {0.0, kTurning, 0.0};
-  b.add_volume(filling_of(kRadius, kDepth));
-  b.add_stiff_grip(glass);
-  b.set_domain({-0.2, -0.1, -0.2}, {0.2, 0.3, 0.2});
-  SampledScene start = sampled_for(b.scene, setting);
-  for (std::size_t i = 0; i < start.fluid_positions.size(); ++i) {
-    start.fluid_velocities[i] =
-        glm::cross(glm::vec3(0.0f, static_cast<float>(kTurning), 0.0f), start.fluid_positions[i]);
-  }
-  Trial e(b.scene, start, setting, cost);
-  e.handle(0).engaged = true;
-  e.handle(0).twist.angular.y = kTurning;
-  const auto turn = [&] { e.handle(0).pose.orientation = glm::angleAxis(kTurning * e.world().time(), kUp); };
-  e.run(1.5, turn);
+  constexpr double kRadius = TurningGlass::kRadius, kTurning = TurningGlass::kTurning;
+  TurningGlass glass(setting, cost);
+  Trial& e = glass.trial();
+  e.run(1.5, [&] { glass.turn(); });
   // The surface over circles around the axis; the outermost stands one and a half spacings off the wall.
   constexpr int kCircles = 5, kAngles = 8;
   std::vector<Average> level(kCircles);
   const double widest = kRadius - 1.5 * setting.spacing;
   e.run(0.5, [&] {
-    turn();
+    glass.turn();
     if (e.bodies().tick % 10) return;
     const Snapshot picture = e.picture();
     for (int i = 0; i < kCircles * kAngles; ++i) {
