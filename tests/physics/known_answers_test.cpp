@@ -84,12 +84,19 @@ INSTANTIATE_TEST_SUITE_P(
     error, KnownAnswer,
     ::testing::Values(
         // Without pressure/settled_packing.h the level is 9, 5, 4.5 and 4.3 % too low.
-        still_tank(0.02, 0.07, 0.11, 0.105), still_tank(0.0125, 0.027, 0.027, 0.05),
+        still_tank(0.02, 0.06, 0.09, 0.135), still_tank(0.0125, 0.027, 0.027, 0.05),
         still_tank(0.01, 0.02, 0.01, 0.03), still_tank(0.008, 0.02, 0.01, 0.015),
         // 0.10 held while drag on jostling turned the fluid by 4 % faster than its glass
         // (viscosity/neighbour_flow.h); fluid of 2 Pa·s, which has none of it, lacks 12 to 14 %, too: it
         // stands low where its surface meets the wall steeply, by 6 % at 4 mm and 2 % at 2 mm.
         std::vector<Known>{{"paraboloid", 0.0075, "rise over r²", 0.15}},
+        // Walls of 1.4 and 1.75 spacings. While what is behind them crowded theirs, and where there is no
+        // room for it they counted as thick ones, the plate was lifted by +60 to +70 % at 10 mm and -14 at 8,
+        // and the level was -1 and -6 % (sim/walls/README.md, *Thin walls*).
+        std::vector<Known>{{"thin_walls", 0.01, "level in a glass", 0.03},
+                           {"thin_walls", 0.01, "lift of a plate", 0.09}},
+        std::vector<Known>{{"thin_walls", 0.008, "level in a glass", 0.03},
+                           {"thin_walls", 0.008, "lift of a plate", 0.06}},
         // Five slabs: as one solid they lose nothing; each for itself 46 particles, its floor +30 %.
         std::vector<Known>{{"tank_faces", 0.02, "floor", 0.04}},
         std::vector<Known>{{"tank_faces", 0.01, "floor", 0.022},
@@ -121,9 +128,9 @@ INSTANTIATE_TEST_SUITE_P(
         // Thin and slow fluid yields, and creeps by itself (sim/pressure/README.md), and five spacings across
         // the radius see that alone. The report's own 7.1 mm, where 5 Pa·s is within a percent, take 17 s.
         std::vector<Known>{{"spin_up_all", 0.01, "torque, 2.0 Pa·s at 0.5 rad/s", 0.23},
-                           {"spin_up_all", 0.01, "torque, 5.0 Pa·s at 0.5 rad/s", 0.09},
-                           {"spin_up_all", 0.01, "torque, 2.0 Pa·s at 5.0 rad/s", 0.16},
-                           {"spin_up_all", 0.01, "torque, 5.0 Pa·s at 5.0 rad/s", 0.085}},
+                           {"spin_up_all", 0.01, "torque, 5.0 Pa·s at 0.5 rad/s", 0.095},
+                           {"spin_up_all", 0.01, "torque, 2.0 Pa·s at 5.0 rad/s", 0.18},
+                           {"spin_up_all", 0.01, "torque, 5.0 Pa·s at 5.0 rad/s", 0.09}},
         std::vector<Known>{{"couette", 0.00667, "torque", 0.04}},
         std::vector<Known>{{"couette", 0.006, "torque", 0.03}},
         std::vector<Known>{{"couette_start", 0.005, "torque at 20 ms", 0.075},
