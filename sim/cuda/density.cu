@@ -92,7 +92,11 @@ __global__ __launch_bounds__(kThreads) void corrected_density_kernel(
     if (walls.count == 0) return;
     for_neighbors<Team>(c.grid, walls.cells, cell, [&](std::uint32_t j) {
       const float4 wall = __ldg(walls.x + j);
-      add_wall_neighbor<Kernel>(x.x - wall.x, x.y - wall.y, x.z - wall.z, wall.w,
+      const float dx = x.x - wall.x;
+      const float dy = x.y - wall.y;
+      const float dz = x.z - wall.z;
+      if (dx * dx + dy * dy + dz * dz >= h * h) return;
+      add_wall_neighbor<Kernel>(dx, dy, dz, wall.w,
                                 c.correction.wall_layer * wall.w, __ldg(walls.reach + j), 1.0f, sum);
     });
   };
