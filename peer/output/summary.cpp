@@ -218,8 +218,9 @@ std::string in_words(const RunSummary& s) {
     // Measured: tests/peer/python/first_scene_test.py.
     if (s.fluid_mass_start - s.fluid_mass_end > kMuch * s.fluid_mass_start)
       text +=
-          "  (If it bounced off what it fell on: of a mug that lost 4 %, \"support_ratio\": 2.5 on the scene kept all but 0.3 %,\n"
-          "  \"model\": \"incompressible\" 0.7 %, and viscosity_pa_s 2 on those bodies all.)\n";
+          "  (If it bounced off what it fell on: of a mug that lost 4 %, \"model\": \"incompressible\" on "
+          "the scene kept all but\n"
+          "  0.9 %, and viscosity_pa_s 2 on those bodies all.)\n";
   }
   if (s.particles_in_solids > 0)
     text += s.particles_in_solids == 1

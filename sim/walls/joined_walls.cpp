@@ -8,6 +8,8 @@
 namespace slosh {
 namespace {
 
+// Of the depth: a wall that has less than twice that is one sheet (kThinnest in wall_particles.cpp).
+constexpr float kThinnest = 0.75f;
 constexpr float kTouching = 0.25f;  // of a spacing: no fluid gets into a gap of that
 constexpr float kDisc = 0.5f;  // of the way to its neighbours: the radius of the surface around one sample
 
@@ -167,7 +169,10 @@ std::vector<std::vector<SheetParticle>> joined_sheets(std::span<const FixedSolid
         p = s.position - 0.8f * less * s.normal;
       // Behind a thin wall one is well outside, along an edge nowhere.
       const bool thin = distance(b, p - 2.5f * depth * s.normal) > 0.5f * depth;
-      sheets.add(b, {p, s.position, s.normal, depth, thin ? depth - less : 0.0f});
+      if (thin && less < kThinnest * depth)
+        sheets.add(b, {.position = p});
+      else
+        sheets.add(b, {p, s.position, s.normal, depth, thin ? depth - less : 0.0f});
     }
   }
   // What is left open: where faces of two bodies meet in a concave edge, and their sheets part as they move

@@ -14,7 +14,8 @@ namespace slosh {
 struct SheetParticle {
   glm::vec3 position{0.0f};  ///< m
   glm::vec3 surface{0.0f};   ///< m, where on the mesh it belongs
-  glm::vec3 normal{0.0f};    ///< unit, out of the solid there; 0: it fills an edge, and belongs to no face
+  glm::vec3 normal{0.0f};    ///< unit, out of the solid there; 0: it fills an edge or is a very thin wall's,
+                             ///< and belongs to no face
   float depth = 0.0f;        ///< m, how far behind the surface it is to count as lying
   float lacks = 0.0f;        ///< m, by how much it lies less deep, in the middle of a wall of less than two depths
 };
@@ -22,7 +23,10 @@ struct SheetParticle {
 /// The same in another frame.
 SheetParticle moved(const Pose& pose, const SheetParticle& p);
 
-/// How many lattice particles each of a sheet stands for, one by one.
+/// How many lattice particles each of a sheet stands for, one by one (after Akinci 2012's volume correction):
+/// kWallShare on a flat sheet at the spacing. Where sheets crowd or cross (corners) the particles share what
+/// one sheet would be; the two sides of a thin wall share by what each adds to the density where fluid is to
+/// stand.
 std::vector<float> sheet_shares(std::span<const SheetParticle> sheet, const Plan& plan);
 
 }  // namespace slosh

@@ -36,6 +36,10 @@ glm::vec3 inset(const glm::vec3& surface, const glm::vec3& normal, float depth,
 }
 
 constexpr float kTwoSides = 3.0f;  // depths: in a thinner wall the field, which is coarse, is round
+// Spacings. A thinner wall's sheets are one, as strong as a thick one's and as near as they are: with less,
+// fluid got into the edge between floor and wall of a glass of 1.03 spacings and stayed there
+// (sim/walls/README.md).
+constexpr float kThinnest = 1.15f;
 
 // m, how thick the solid is behind a point of its surface; `most` where it is more than that. Behind a wall one is
 // soon well outside; along an edge, just within the other face, one is nowhere.
@@ -187,7 +191,8 @@ std::vector<SheetParticle> own_sheet(const SurfaceSamples& surface, const Distan
   for (std::size_t i = 0; level && i < surface.positions.size(); ++i) {
     const float depth = deep(i);
     thick.push_back(thickness(surface.positions[i], surface.normals[i], kTwoSides * depth, field));
-    if (thick.back() < kTwoSides * depth) thin.add(surface.positions[i]);
+    if (thick.back() < kTwoSides * depth && thick.back() >= kThinnest * spacing)
+      thin.add(surface.positions[i]);
   }
   for (std::size_t i = 0; i < surface.positions.size(); ++i) {
     const glm::vec3& at = surface.positions[i];
@@ -201,9 +206,10 @@ std::vector<SheetParticle> own_sheet(const SurfaceSamples& surface, const Distan
       sheet.push_back({inset(at, normal, depth, field), at, normal, depth});
       continue;
     }
-    const Place place =
-        on_level_set(at, normal, depth, thick[i], thin.any_within(at, 2.0f * spacing), field);
-    sheet.push_back({place.at, at, normal, depth, place.lacks});
+    const bool two_sided = thick[i] >= kThinnest * spacing;
+    const Place place = on_level_set(at, normal, depth, two_sided ? thick[i] : kTwoSides * depth,
+                                     two_sided && thin.any_within(at, 2.0f * spacing), field);
+    sheet.push_back({place.at, at, two_sided ? normal : glm::vec3(0.0f), depth, place.lacks});
   }
   if (field.distance && plan.model != ParticleModel::kPaper)
     close_gaps(field, behind * spacing, spacing, surface.apart, sheet);

@@ -53,6 +53,8 @@ TEST_P(FluidWrenchIsPassive, InAnyStateOfTheScene) {
   world.fill(now);
   std::vector<HandleInput> hands;
   for (const GripState& grip : now.grips) hands.push_back({grip.pose, {}, true, 1.0});
+  // The probe's waits over the water; by chance alone it need not meet it.
+  if (std::string(GetParam()) == "probe") hands.front().pose.position.y -= 0.05;
   const std::vector<HandleInput> start = hands;
   std::mt19937 random(static_cast<unsigned>(scene.name.size()));
   std::vector<FluidWrenchModel> out;

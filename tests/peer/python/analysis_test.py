@@ -61,7 +61,8 @@ class Fields(unittest.TestCase):
         w = world(hands={"finger": None})
         w.settle(1.0)
         w.run(0.1)
-        edges = np.linspace(0.025, 0.065, 5)
+        # From the second layer on: the first, at a wall, has a pressure of its own (sim/pressure/README.md).
+        edges = np.linspace(0.03, 0.065, 5)
         mean, count = analysis.profile(w.positions[:, 1], w.pressures, edges)
         self.assertTrue((count > 10).all())
         slope = np.polyfit(0.5 * (edges[1:] + edges[:-1]), mean, 1)[0]
