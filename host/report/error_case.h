@@ -37,7 +37,7 @@ const ErrorCase* find_error_case(const std::string& id);
 
 // Each file of cases/ gives its own.
 std::vector<ErrorCase> resting_cases();   ///< tanks at rest, accelerated, turning
-std::vector<ErrorCase> thin_wall_cases();
+std::vector<ErrorCase> thin_wall_cases();  ///< vessels and plates of one to three spacings
 std::vector<ErrorCase> buoyancy_cases();  ///< what is lifted, floats and rises
 std::vector<ErrorCase> wave_cases();
 std::vector<ErrorCase> viscous_cases();     ///< torques and drags

@@ -24,7 +24,7 @@ class TurningGlass {
   void turn();
 
  private:
-  explicit TurningGlass(const SceneBuilder& b, const Setting& setting, Cost& cost);
+  TurningGlass(const SceneBuilder& b, const Setting& setting, Cost& cost);
 
   Trial trial_;
 };

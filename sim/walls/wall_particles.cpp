@@ -182,14 +182,12 @@ std::vector<SheetParticle> own_sheet(const SurfaceSamples& surface, const Distan
   sheet.reserve(surface.positions.size());
   const float spacing = static_cast<float>(plan.spacing);
   const bool level = corrects_gradients(plan.model) && field.distance;
-  const auto deep = [&](std::size_t i) {
-    const float bent = level ? convexity(field, surface.positions[i], surface.normals[i], spacing) : 0.0f;
-    return (behind - kLessDeep * bent) * spacing;
-  };
-  std::vector<float> thick;
+  std::vector<float> depths, thick;
   PointBuckets thin(2.0f * spacing);
   for (std::size_t i = 0; level && i < surface.positions.size(); ++i) {
-    const float depth = deep(i);
+    const float bent = convexity(field, surface.positions[i], surface.normals[i], spacing);
+    const float depth = (behind - kLessDeep * bent) * spacing;
+    depths.push_back(depth);
     thick.push_back(thickness(surface.positions[i], surface.normals[i], kTwoSides * depth, field));
     if (thick.back() < kTwoSides * depth && thick.back() >= kThinnest * spacing)
       thin.add(surface.positions[i]);
@@ -201,7 +199,7 @@ std::vector<SheetParticle> own_sheet(const SurfaceSamples& surface, const Distan
       sheet.push_back({at, at, normal, 0.0f});
       continue;
     }
-    const float depth = deep(i);
+    const float depth = level ? depths[i] : behind * spacing;
     if (!level) {
       sheet.push_back({inset(at, normal, depth, field), at, normal, depth});
       continue;
