@@ -143,8 +143,7 @@ void near_level_set(const FixedSolid& solid, float depth, F&& visit) {
 
 }  // namespace
 
-std::vector<std::vector<SheetParticle>> joined_sheets(std::span<const FixedSolid> solids, float depth,
-                                                      float spacing) {
+std::vector<std::vector<SheetParticle>> joined_sheets(std::span<const FixedSolid> solids, float spacing) {
   std::vector<std::vector<Sample>> samples;
   std::vector<bool> joined(solids.size(), false);
   ExposedSurface surface(spacing);
@@ -160,6 +159,7 @@ std::vector<std::vector<SheetParticle>> joined_sheets(std::span<const FixedSolid
   };
   for (std::size_t b = 0; b < solids.size(); ++b) {
     if (!joined[b]) continue;
+    const float depth = solids[b].depth;
     for (const Sample& s : samples[b]) {
       if (s.hidden) continue;
       glm::vec3 p = s.position - depth * s.normal;
@@ -180,6 +180,7 @@ std::vector<std::vector<SheetParticle>> joined_sheets(std::span<const FixedSolid
   // what a floor is pressed by is not to depend on whether it ends at the walls or goes on below them.
   for (std::size_t b = 0; b < solids.size(); ++b) {
     if (!joined[b]) continue;
+    const float depth = solids[b].depth;
     const auto fill = [&](glm::vec3 p) {
       if (!settle(surface, depth, p) || distance(b, p) >= 0.0f) return;
       const std::size_t body = surface.depth_at(p).body;

@@ -22,15 +22,15 @@ namespace slosh {
 struct FixedSolid {
   const SurfaceSamples* surface;
   DistanceFieldView field;
-  Pose pose;  ///< mesh to world
+  Pose pose;           ///< mesh to world
+  float depth = 0.0f;  ///< m, how far behind its surface it presses from
 };
 
-/// Particles in each body's mesh frame: `depth` (m) behind the surface of all that touch
-/// together, as far apart as its surface's samples; `spacing` (m) is the fluid's. Empty for a body that
+/// Particles in each body's mesh frame: its depth behind the surface of all that touch together, as far apart
+/// as its surface's samples; `spacing` (m) is the fluid's. Empty for a body that
 /// touches none, which has its own (wall_particles.cpp). What fills an edge between two is of the one whose
 /// face is nearer. A face is hidden where there is another body within a quarter of a spacing in front of it.
-std::vector<std::vector<SheetParticle>> joined_sheets(std::span<const FixedSolid> solids, float depth,
-                                                      float spacing);
+std::vector<std::vector<SheetParticle>> joined_sheets(std::span<const FixedSolid> solids, float spacing);
 
 /// Which samples of each solid's surface no other hides, in order.
 std::vector<std::vector<std::uint32_t>> exposed_samples(std::span<const FixedSolid> solids, float spacing);

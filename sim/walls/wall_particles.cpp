@@ -124,10 +124,11 @@ constexpr float kLeastBent = 0.02f;  // a ball of 50 spacings; flat walls are no
 constexpr float kMostBent = 0.7f;    // a ball of 1.4 spacings
 constexpr float kSolidFrom = 0.9f;   // of a spacing
 
-// The surface's mean curvature times the spacing at p, by the distance half a spacing off: from 0 (flat, or
-// concave) to kMostBent. 0 where there is no spacing of solid behind, at edges and on thin walls: with theirs
-// less deep a box of 5 spacings was lifted by 3.1 % too much for 0.9, and a bucket's water swung otherwise.
-float convexity(const DistanceFieldView& field, const glm::vec3& p, const glm::vec3& normal, float spacing) {
+// The surface's mean curvature times the spacing at p, by the distance half a spacing off: from -kMostBent
+// (concave) to kMostBent. 0 where there is no spacing of solid behind, at edges and on thin walls: with
+// theirs less deep a box of 5 spacings was lifted by 3.1 % too much for 0.9, and a bucket's water swung
+// otherwise.
+float bend(const DistanceFieldView& field, const glm::vec3& p, const glm::vec3& normal, float spacing) {
   if (solid_depth(field, p - spacing * normal) < kSolidFrom * spacing) return 0.0f;
   const float off = 0.5f * spacing;
   float sum = -6.0f * sample_distance(field, p).distance;
@@ -137,15 +138,39 @@ float convexity(const DistanceFieldView& field, const glm::vec3& p, const glm::v
     sum += sample_distance(field, p + step).distance + sample_distance(field, p - step).distance;
   }
   const float bent = 0.5f * sum / (off * off) * spacing;
-  return bent < kLeastBent ? 0.0f : std::min(bent, kMostBent);
+  return std::abs(bent) < kLeastBent ? 0.0f : std::clamp(bent, -kMostBent, kMostBent);
 }
 
 // The same along the field's gradient.
-float convexity(const DistanceFieldView& field, const glm::vec3& p, float spacing) {
+float bend(const DistanceFieldView& field, const glm::vec3& p, float spacing) {
   if (!field.distance) return 0.0f;
   const glm::vec3 out = sample_distance(field, p).gradient;
   const float slope = glm::length(out);
-  return slope > 0.5f ? convexity(field, p, out / slope, spacing) : 0.0f;
+  return slope > 0.5f ? bend(field, p, out / slope, spacing) : 0.0f;
+}
+
+// How deep a body's sheet lies, spacings.
+struct Depths {
+  float flat, concave, convex;  // convex: before it is less by kLessDeep
+
+  float at(float bent) const {
+    if (bent == 0.0f) return flat;
+    return bent < 0.0f ? concave : convex - kLessDeep * bent;
+  }
+};
+
+// Of samples that are `apart` m from each other. In thick fluid concave walls are as deep as they were when
+// what drags was chosen: less deep a cylinder of 1 Pa·s that suddenly turns takes 6 % too much for 3. So are
+// all where drag and pressures are solved for: a dam of 100 000 Pa·s had its momentum off by 3.6e-5 a step
+// for 8e-6.
+Depths depths_of(const Scene& scene, const Plan& plan, float apart, DragSheet sheet) {
+  constexpr double kWhole = 0.99;  // of a spacing
+  const double behind = wall_inset(plan.model, scene.support_ratio);
+  const bool both_solved = plan.solves_drag && plan.model == ParticleModel::kIncompressible;
+  const bool hollow = corrects_gradients(plan.model) && apart > kWhole * plan.spacing && !both_solved;
+  const double flat = hollow ? behind - kOverHollows : behind;
+  const double concave = sheet == DragSheet::kBehind ? flat : behind;
+  return {static_cast<float>(flat), static_cast<float>(concave), static_cast<float>(behind)};
 }
 
 // In a concave edge the sheets of the two faces part as they move back. Adds particles where the level set at
@@ -175,9 +200,9 @@ void close_gaps(const DistanceFieldView& field, float depth, float spacing, floa
   }
 }
 
-// One body's particles in its mesh frame. `behind`: spacings, flat walls' depth.
+// One body's particles in its mesh frame.
 std::vector<SheetParticle> own_sheet(const SurfaceSamples& surface, const DistanceFieldView& field,
-                                     const Plan& plan, float behind) {
+                                     const Plan& plan, const Depths& deep) {
   std::vector<SheetParticle> sheet;
   sheet.reserve(surface.positions.size());
   const float spacing = static_cast<float>(plan.spacing);
@@ -185,8 +210,7 @@ std::vector<SheetParticle> own_sheet(const SurfaceSamples& surface, const Distan
   std::vector<float> depths, thick;
   PointBuckets thin(2.0f * spacing);
   for (std::size_t i = 0; level && i < surface.positions.size(); ++i) {
-    const float bent = convexity(field, surface.positions[i], surface.normals[i], spacing);
-    const float depth = (behind - kLessDeep * bent) * spacing;
+    const float depth = deep.at(bend(field, surface.positions[i], surface.normals[i], spacing)) * spacing;
     depths.push_back(depth);
     thick.push_back(thickness(surface.positions[i], surface.normals[i], kTwoSides * depth, field));
     if (thick.back() < kTwoSides * depth && thick.back() >= kThinnest * spacing)
@@ -199,7 +223,7 @@ std::vector<SheetParticle> own_sheet(const SurfaceSamples& surface, const Distan
       sheet.push_back({at, at, normal, 0.0f});
       continue;
     }
-    const float depth = level ? depths[i] : behind * spacing;
+    const float depth = level ? depths[i] : deep.flat * spacing;
     if (!level) {
       sheet.push_back({inset(at, normal, depth, field), at, normal, depth});
       continue;
@@ -210,7 +234,7 @@ std::vector<SheetParticle> own_sheet(const SurfaceSamples& surface, const Distan
     sheet.push_back({place.at, at, two_sided ? normal : glm::vec3(0.0f), depth, place.lacks});
   }
   if (field.distance && plan.model != ParticleModel::kPaper)
-    close_gaps(field, behind * spacing, spacing, surface.apart, sheet);
+    close_gaps(field, deep.flat * spacing, spacing, surface.apart, sheet);
   return sheet;
 }
 
@@ -221,10 +245,11 @@ struct JoinedWalls {
   std::vector<std::vector<float>> shares;
 };
 
-JoinedWalls joined_walls(const Scene& scene, const SampledScene& sampled, const Plan& plan, float behind) {
+JoinedWalls joined_walls(const Scene& scene, const SampledScene& sampled, const Plan& plan, DragSheet drags) {
   JoinedWalls walls{std::vector<std::vector<SheetParticle>>(scene.bodies.size()),
                     std::vector<std::vector<float>>(scene.bodies.size())};
   if (!corrects_gradients(plan.model)) return walls;
+  const float spacing = static_cast<float>(plan.spacing);
   std::vector<FixedSolid> solids;
   std::vector<std::size_t> body_of;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
@@ -232,11 +257,11 @@ JoinedWalls joined_walls(const Scene& scene, const SampledScene& sampled, const 
     const DistanceFieldView field = sampled.distance_fields[b].view();
     if (body.motion != BodyMotion::kFixed || body.point_probe || sampled.distance_fields[b].distance.empty())
       continue;
-    solids.push_back({&sampled.surfaces[b], field, body.pose});
+    solids.push_back({&sampled.surfaces[b], field, body.pose,
+                      depths_of(scene, plan, sampled.surfaces[b].apart, drags).flat * spacing});
     body_of.push_back(b);
   }
-  const float spacing = static_cast<float>(plan.spacing);
-  std::vector<std::vector<SheetParticle>> sheets = joined_sheets(solids, behind * spacing, spacing);
+  std::vector<std::vector<SheetParticle>> sheets = joined_sheets(solids, spacing);
   std::vector<SheetParticle> all;
   for (std::size_t n = 0; n < sheets.size(); ++n)
     for (const SheetParticle& p : sheets[n]) all.push_back(moved(solids[n].pose, p));
@@ -310,9 +335,8 @@ std::vector<SurfaceParticle> surface_particles(const Scene& scene, const Sampled
   const WallDrag drag = wall_drag(plan.model, scene.support_ratio, sheet);
   const auto flat_drag = static_cast<float>(drag.factor(0.0));
   const auto support = static_cast<float>(plan.support_radius);
-  const auto behind = static_cast<float>(wall_inset(plan.model, scene.support_ratio));
   JoinedWalls joined;
-  if (motion == BodyMotion::kFixed) joined = joined_walls(scene, sampled, plan, behind);
+  if (motion == BodyMotion::kFixed) joined = joined_walls(scene, sampled, plan, sheet);
   std::vector<DraggingSheet> dragging;
   if (apart) dragging = dragging_sheets(scene, sampled, plan, motion);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
@@ -324,7 +348,9 @@ std::vector<SurfaceParticle> surface_particles(const Scene& scene, const Sampled
       pressing = std::move(joined.sheets[b]);
       pressures = std::move(joined.shares[b]);
     } else {
-      pressing = own_sheet(sampled.surfaces[b], sampled.distance_fields[b].view(), plan, behind);
+      const SurfaceSamples& surface = sampled.surfaces[b];
+      pressing = own_sheet(surface, sampled.distance_fields[b].view(), plan,
+                           depths_of(scene, plan, surface.apart, sheet));
       pressures.assign(pressing.size(), static_cast<float>(plan.body_pressure[b]));
       if (plan.model != ParticleModel::kPaper) pressures = sheet_shares(pressing, plan);
     }
@@ -350,7 +376,7 @@ std::vector<SurfaceParticle> surface_particles(const Scene& scene, const Sampled
       continue;
     }
     for (const glm::vec3& p : dragging[b].positions) {
-      const float bent = convexity(sampled.distance_fields[b].view(), p, static_cast<float>(plan.spacing));
+      const float bent = bend(sampled.distance_fields[b].view(), p, static_cast<float>(plan.spacing));
       add(p, 0.0f, static_cast<float>(drag.factor(bent)) * surface_volume);
     }
   }

@@ -73,8 +73,9 @@ void compare_pressed_steps() {
   const Tank thick = shaken(pressed(in_two_honeys()));
   compare_steps("pressures and drag solved for, held paddle and free box", thick, 1, kOneStep);
   compare_momenta(thick, pressing_plan(thick), 3, 2e-6);
-  const Tank probed = pressed(probed_tank());
-  // In its second step one of the two takes a turn more (what is left is 0.3 % above or below what ends it).
+  // Shaken: as it is one of the two takes a turn more in the first step, and they end 7e-4 spacings apart;
+  // with a tenth of the pressures' tolerance they agree.
+  const Tank probed = shaken(pressed(probed_tank()));
   compare_steps("pressures solved for, probe", probed, 1, kOneStep);
 }
 
@@ -100,8 +101,9 @@ void compare_pressed() {
     compare_momenta(tank, pressing_plan(tank), 50, 2e-6);
     repeat(c.name, c.tank, kPaddleHeight, 100);
   }
-  const Tank probed = pressed(probed_tank());
-  // In its second step one of the two takes a turn more (what is left is 0.3 % above or below what ends it).
+  // Shaken: as it is one of the two takes a turn more in the first step, and they end 7e-4 spacings apart;
+  // with a tenth of the pressures' tolerance they agree.
+  const Tank probed = shaken(pressed(probed_tank()));
   compare_steps("pressures solved for, probe", probed, 1, kOneStep);
   repeat("pressures solved for, probe", probed, 0.05, 100);
   compare_restored("pressures solved for, two fluids, paddle", pressed(stirred_tank(ParticleModel::kCorrected)),

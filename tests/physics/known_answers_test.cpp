@@ -84,8 +84,8 @@ INSTANTIATE_TEST_SUITE_P(
     error, KnownAnswer,
     ::testing::Values(
         // Without pressure/settled_packing.h the level is 9, 5, 4.5 and 4.3 % too low.
-        still_tank(0.02, 0.06, 0.09, 0.135), still_tank(0.0125, 0.027, 0.027, 0.05),
-        still_tank(0.01, 0.02, 0.01, 0.03), still_tank(0.008, 0.02, 0.01, 0.015),
+        still_tank(0.02, 0.045, 0.06, 0.155), still_tank(0.0125, 0.016, 0.02, 0.06),
+        still_tank(0.01, 0.012, 0.022, 0.035), still_tank(0.008, 0.014, 0.017, 0.015),
         // 0.10 held while drag on jostling turned the fluid by 4 % faster than its glass
         // (viscosity/neighbour_flow.h); fluid of 2 Pa·s, which has none of it, lacks 12 to 14 %, too: it
         // stands low where its surface meets the wall steeply, by 6 % at 4 mm and 2 % at 2 mm.
@@ -93,19 +93,19 @@ INSTANTIATE_TEST_SUITE_P(
         // Walls of 1.4 and 1.75 spacings. While what is behind them crowded theirs, and where there is no
         // room for it they counted as thick ones, the plate was lifted by +60 to +70 % at 10 mm and -14 at 8,
         // and the level was -1 and -6 % (sim/walls/README.md, *Thin walls*).
-        std::vector<Known>{{"thin_walls", 0.01, "level in a glass", 0.03},
-                           {"thin_walls", 0.01, "lift of a plate", 0.09}},
-        std::vector<Known>{{"thin_walls", 0.008, "level in a glass", 0.03},
-                           {"thin_walls", 0.008, "lift of a plate", 0.06}},
+        std::vector<Known>{{"thin_walls", 0.01, "level in a glass", 0.016},
+                           {"thin_walls", 0.01, "lift of a plate", 0.025}},
+        std::vector<Known>{{"thin_walls", 0.008, "level in a glass", 0.017},
+                           {"thin_walls", 0.008, "lift of a plate", 0.015}},
         // Five slabs: as one solid they lose nothing; each for itself 46 particles, its floor +30 %.
-        std::vector<Known>{{"tank_faces", 0.02, "floor", 0.04}},
+        std::vector<Known>{{"tank_faces", 0.02, "floor", 0.055}},
         std::vector<Known>{{"tank_faces", 0.01, "floor", 0.022},
-                           {"tank_faces", 0.01, "side walls, mean", 0.03},
+                           {"tank_faces", 0.01, "side walls, mean", 0.015},
                            {"tank_faces", 0.01, "centre of pressure above the floor", 0.02}},
-        std::vector<Known>{{"slope", 0.0125, "slope", 0.02}, {"slope", 0.0125, "force along the tank", 1e-3}},
+        std::vector<Known>{{"slope", 0.0125, "slope", 0.04}, {"slope", 0.0125, "force along the tank", 1e-3}},
         // -1.9 %; of sums in another order, and from 9.8 to 10.1 mm, -1.1 to -2.8.
         std::vector<Known>{{"slope", 0.01, "slope", 0.03}, {"slope", 0.01, "force along the tank", 1e-3}},
-        std::vector<Known>{{"slope_gentle", 0.01, "slope", 0.065},  // -6.0 %; close spacings by gcc -10 to -2
+        std::vector<Known>{{"slope_gentle", 0.01, "slope", 0.03},  // close spacings -12 to -1 %
                            {"slope_gentle", 0.01, "force along the tank", 1e-3}},
         std::vector<Known>{{"buoyancy_box", 0.016, "buoyancy", 0.095}},  // +9.1 %; close spacings -6 to +7
         std::vector<Known>{{"buoyancy_box", 0.01, "buoyancy", 0.02}},
@@ -113,25 +113,25 @@ INSTANTIATE_TEST_SUITE_P(
         // A ball of 2.5 spacings was −3.7 % while its sheet lay as deep as a flat one's.
         std::vector<Known>{{"buoyancy_sphere", 0.01, "buoyancy", 0.01}},
         std::vector<Known>{{"buoyancy_sphere", 0.00714, "buoyancy", 0.015}},
-        std::vector<Known>{{"draft", 0.013, "draft", 0.06}},
-        std::vector<Known>{{"draft", 0.01, "draft", 0.03}},
+        std::vector<Known>{{"draft", 0.013, "draft", 0.04}},
+        std::vector<Known>{{"draft", 0.01, "draft", 0.055}},  // -5.0 %; close spacings -1.0 ± 2.4
         std::vector<Known>{{"sloshing", 0.016, "period", 0.006},
                            {"sloshing", 0.016, "swing kept a period", 0.105}},
-        std::vector<Known>{{"sloshing", 0.01, "period", 0.005},
-                           {"sloshing", 0.01, "swing kept a period", 0.045}},
+        std::vector<Known>{{"sloshing", 0.01, "period", 0.003},
+                           {"sloshing", 0.01, "swing kept a period", 0.03}},
         // Until walls gave the whole of their torque (Honey below loses none now) 0.04, 0.04 and 0.05 held: 5
         // % that was lost made up for as much that fluid at walls is too stiff by.
         std::vector<Known>{{"spin_up", 0.005, "torque at tau 0.02", 0.04},
                            {"spin_up", 0.005, "torque at tau 0.05", 0.045},
-                           {"spin_up", 0.005, "torque at tau 0.10", 0.05},
+                           {"spin_up", 0.005, "torque at tau 0.10", 0.06},
                            {"spin_up", 0.005, "impulse", 0.025}},
         // Thin and slow fluid yields, and creeps by itself (sim/pressure/README.md), and five spacings across
         // the radius see that alone. The report's own 7.1 mm, where 5 Pa·s is within a percent, take 17 s.
-        std::vector<Known>{{"spin_up_all", 0.01, "torque, 2.0 Pa·s at 0.5 rad/s", 0.23},
-                           {"spin_up_all", 0.01, "torque, 5.0 Pa·s at 0.5 rad/s", 0.095},
+        std::vector<Known>{{"spin_up_all", 0.01, "torque, 2.0 Pa·s at 0.5 rad/s", 0.28},
+                           {"spin_up_all", 0.01, "torque, 5.0 Pa·s at 0.5 rad/s", 0.11},
                            {"spin_up_all", 0.01, "torque, 2.0 Pa·s at 5.0 rad/s", 0.18},
-                           {"spin_up_all", 0.01, "torque, 5.0 Pa·s at 5.0 rad/s", 0.09}},
-        std::vector<Known>{{"couette", 0.00667, "torque", 0.04}},
+                           {"spin_up_all", 0.01, "torque, 5.0 Pa·s at 5.0 rad/s", 0.097}},
+        std::vector<Known>{{"couette", 0.00667, "torque", 0.02}},
         std::vector<Known>{{"couette", 0.006, "torque", 0.03}},
         std::vector<Known>{{"couette_start", 0.005, "torque at 20 ms", 0.075},
                            {"couette_start", 0.005, "torque at 40 ms", 0.035},
@@ -178,11 +178,11 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     wide, KnownAnswer,
     ::testing::Values(
-        std::vector<Known>{{"still_tank", 0.0125, "level", 0.035, ParticleModel::kCorrected, 2.5},
+        std::vector<Known>{{"still_tank", 0.0125, "level", 0.025, ParticleModel::kCorrected, 2.5},
                            {"still_tank", 0.0125, "pressure at 70 mm", 0.03},
                            {"still_tank", 0.0125, "pressure gained from 30 to 70 mm", 0.03}},
         std::vector<Known>{{"buoyancy_sphere", 0.01, "buoyancy", 0.015, ParticleModel::kCorrected, 2.5}},
-        std::vector<Known>{{"buoyancy_box", 0.01014, "buoyancy", 0.03, ParticleModel::kCorrected, 2.5},
+        std::vector<Known>{{"buoyancy_box", 0.01014, "buoyancy", 0.045, ParticleModel::kCorrected, 2.5},
                            {"buoyancy_box", 0.01014, "noise, rms", 0.003}},
         // One reading: a GPU's, rounded otherwise, is 3 % off a CPU's.
         std::vector<Known>{{"draft", 0.01, "draft", 0.05, ParticleModel::kCorrected, 2.5}},
@@ -201,14 +201,14 @@ INSTANTIATE_TEST_SUITE_P(
 constexpr ParticleModel kSolved = ParticleModel::kIncompressible;
 INSTANTIATE_TEST_SUITE_P(
     incompressible, KnownAnswer,
-    ::testing::Values(std::vector<Known>{{"still_tank", 0.0125, "level", 0.025, kSolved},
+    ::testing::Values(std::vector<Known>{{"still_tank", 0.0125, "level", 0.012, kSolved},
                                          {"still_tank", 0.0125, "weight on the walls", 3e-4},
                                          {"still_tank", 0.0125, "noise of the weight, rms", 2e-3},
-                                         {"still_tank", 0.0125, "pressure at 70 mm", 0.045}},
-                      std::vector<Known>{{"buoyancy_box", 0.016, "buoyancy", 0.035, kSolved}},
+                                         {"still_tank", 0.0125, "pressure at 70 mm", 0.02}},
+                      std::vector<Known>{{"buoyancy_box", 0.016, "buoyancy", 0.08, kSolved}},
                       std::vector<Known>{{"buoyancy_sphere", 0.01, "buoyancy", 0.03, kSolved}},
                       std::vector<Known>{{"draft", 0.013, "draft", 0.06, kSolved}},
-                      std::vector<Known>{{"sloshing", 0.016, "period", 0.006, kSolved},
+                      std::vector<Known>{{"sloshing", 0.016, "period", 0.01, kSolved},
                                          {"sloshing", 0.016, "swing kept a period", 0.10}}),
     named);
 

@@ -53,7 +53,7 @@ struct Box {
   }
   FixedSolid solid(const Pose& pose = {}) {
     field.distance = values.data();
-    return {&surface, field, pose};
+    return {&surface, field, pose, kDepth};
   }
 };
 
@@ -109,7 +109,7 @@ void expect_one_sheet(const std::vector<glm::vec3>& particles, float apart = kSp
 TEST(JoinedWalls, AWallOnAFloorIsOneSolid) {
   Box floor(kFloorLow, kFloorHigh), wall(kWallLow, kWallHigh);
   const std::vector<FixedSolid> solids = {floor.solid(), wall.solid()};
-  expect_one_sheet(in_the_middle(joined_sheets(solids, kDepth, kSpacing), {Pose{}, Pose{}}));
+  expect_one_sheet(in_the_middle(joined_sheets(solids, kSpacing), {Pose{}, Pose{}}));
 }
 
 // Along walls that slip sheets are finer (sheet_spacing), and so is what fills their edges. With a floor
@@ -119,7 +119,7 @@ TEST(JoinedWalls, FinerSheetsMeetAsWell) {
   for (const float of_wall : {kFine, kSpacing}) {
     Box floor(kFloorLow, kFloorHigh, kFine), wall(kWallLow, kWallHigh, of_wall);
     const std::vector<FixedSolid> solids = {floor.solid(), wall.solid()};
-    expect_one_sheet(in_the_middle(joined_sheets(solids, kDepth, kSpacing), {Pose{}, Pose{}}), of_wall);
+    expect_one_sheet(in_the_middle(joined_sheets(solids, kSpacing), {Pose{}, Pose{}}), of_wall);
   }
 }
 
@@ -131,13 +131,13 @@ TEST(JoinedWalls, EachHasItsOwnFrame) {
   const glm::vec3 a = local(kWallLow), b = local(kWallHigh);
   Box floor(kFloorLow, kFloorHigh), wall(glm::min(a, b), glm::max(a, b));
   const std::vector<FixedSolid> solids = {floor.solid(), wall.solid(turned)};
-  expect_one_sheet(in_the_middle(joined_sheets(solids, kDepth, kSpacing), {Pose{}, turned}));
+  expect_one_sheet(in_the_middle(joined_sheets(solids, kSpacing), {Pose{}, turned}));
 }
 
 TEST(JoinedWalls, OverlappingOnesToo) {
   Box floor(kFloorLow, kFloorHigh), wall({kWallLow.x, -0.021f, kWallLow.z}, kWallHigh);
   const std::vector<FixedSolid> solids = {floor.solid(), wall.solid()};
-  expect_one_sheet(in_the_middle(joined_sheets(solids, kDepth, kSpacing), {Pose{}, Pose{}}));
+  expect_one_sheet(in_the_middle(joined_sheets(solids, kSpacing), {Pose{}, Pose{}}));
 }
 
 TEST(JoinedWalls, ThoseThatStandApartAreLeftAlone) {
@@ -146,7 +146,7 @@ TEST(JoinedWalls, ThoseThatStandApartAreLeftAlone) {
     const glm::vec3 up(0.0f, gap * kSpacing, 0.0f);
     Box wall(kWallLow + up, kWallHigh + up);
     const std::vector<FixedSolid> solids = {floor.solid(), table.solid(), wall.solid()};
-    const std::vector<std::vector<SheetParticle>> sheets = joined_sheets(solids, kDepth, kSpacing);
+    const std::vector<std::vector<SheetParticle>> sheets = joined_sheets(solids, kSpacing);
     EXPECT_TRUE(sheets[1].empty());
     for (const std::size_t b : {0u, 2u}) EXPECT_EQ(sheets[b].empty(), gap > 0.25f) << gap << ", body " << b;
   }
@@ -175,7 +175,7 @@ TEST(JoinedWalls, WhatAnotherHidesIsNotExposed) {
 TEST(JoinedWalls, AThinPlateHasItsOuterFace) {
   Box block(kFloorLow, kFloorHigh), plate({-0.06f, 0.0f, -0.06f}, {0.06f, kSpacing, 0.06f});
   const std::vector<FixedSolid> solids = {block.solid(), plate.solid()};
-  const std::vector<std::vector<SheetParticle>> sheets = joined_sheets(solids, kDepth, kSpacing);
+  const std::vector<std::vector<SheetParticle>> sheets = joined_sheets(solids, kSpacing);
   int top = 0;
   for (const std::vector<SheetParticle>& sheet : sheets) {
     for (const SheetParticle& particle : sheet) {
