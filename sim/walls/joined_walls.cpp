@@ -1,5 +1,6 @@
 #include "sim/walls/joined_walls.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -20,7 +21,13 @@ glm::vec3 to_world(const Pose& pose, const glm::vec3& p) {
 struct Depth {
   float depth;       // m below the surface, negative outside
   glm::vec3 inward;  // unit
-  std::size_t body;  // whose surface that is
+};
+
+// How a point lies to the surface around one sample.
+struct Bearing {
+  float behind;    // m, behind the plane through it; negative before it
+  bool beside;     // is it beside the sample's disc
+  glm::vec3 away;  // m, from the nearest point of the disc
 };
 
 // The surface that is left of all bodies together, as discs around their samples. World frame.
@@ -38,27 +45,57 @@ class ExposedSurface {
 
   /// Of a point within two spacings of the surface; farther inside, infinity.
   Depth depth_at(const glm::vec3& p) const {
-    Depth best{std::numeric_limits<float>::infinity(), {0.0f, 0.0f, 0.0f}, 0};
+    Depth best{std::numeric_limits<float>::infinity(), {0.0f, 0.0f, 0.0f}};
     float least = best.depth;
     near_.around(p, [&](const glm::vec3& q, std::uint32_t n) {
-      const glm::vec3& normal = normals_[n];
-      const float radius = radii_[n];
-      const float above = glm::dot(p - q, normal);
-      const glm::vec3 beside = p - q - above * normal;
-      const float off = glm::length(beside);
-      const glm::vec3 away = p - q - (off > radius ? beside * (radius / off) : beside);
-      const float distance = glm::length(away);
+      const Bearing bearing = bearing_of(p, q, n);
+      const float distance = glm::length(bearing.away);
       if (distance >= least) return;
       least = distance;
-      const bool outside = above > 0.0f && off <= radius;
+      const bool outside = bearing.behind < 0.0f && !bearing.beside;
       best.depth = outside ? -distance : distance;
-      best.body = bodies_[n];
-      best.inward = outside || distance < 1e-6f * radius ? -normal : away / distance;
+      best.inward = outside || distance < 1e-6f * radii_[n] ? -normals_[n] : bearing.away / distance;
     });
     return best;
   }
 
+  /// Whose a point within two spacings of the surface is: of the body straight behind whose face it is, and
+  /// beyond the edge where two faces meet of the one that it is farther behind. There both are as near, but
+  /// for what discs leave uncovered of a face at its edge (0.2 of the way between samples).
+  std::size_t body_at(const glm::vec3& p) const {
+    constexpr float kUncovered = 0.5f, kStraight = 0.98f;
+    struct Face {
+      std::size_t body;
+      float distance, behind, apart;
+    };
+    std::vector<Face> faces;  // the nearest disc of each body
+    near_.around(p, [&](const glm::vec3& q, std::uint32_t n) {
+      const Bearing bearing = bearing_of(p, q, n);
+      const Face face{bodies_[n], glm::length(bearing.away), bearing.behind, radii_[n] / kDisc};
+      const auto known = std::ranges::find(faces, face.body, &Face::body);
+      if (known == faces.end())
+        faces.push_back(face);
+      else if (face.distance < known->distance)
+        *known = face;
+    });
+    const Face nearest = *std::ranges::min_element(faces, {}, &Face::distance);
+    if (nearest.behind > kStraight * nearest.distance) return nearest.body;
+    std::erase_if(
+        faces, [&](const Face& face) { return face.distance > nearest.distance + kUncovered * face.apart; });
+    return std::ranges::max_element(faces, {}, &Face::behind)->body;
+  }
+
  private:
+  // Of p to the n-th sample, which is at q.
+  Bearing bearing_of(const glm::vec3& p, const glm::vec3& q, std::uint32_t n) const {
+    const glm::vec3& normal = normals_[n];
+    const float radius = radii_[n];
+    const float above = glm::dot(p - q, normal);
+    const glm::vec3 beside = p - q - above * normal;
+    const float off = glm::length(beside);
+    return {-above, off > radius, p - q - (off > radius ? beside * (radius / off) : beside)};
+  }
+
   PointBuckets near_;
   std::vector<float> radii_;
   std::vector<glm::vec3> normals_;
@@ -176,14 +213,14 @@ std::vector<std::vector<SheetParticle>> joined_sheets(std::span<const FixedSolid
     }
   }
   // What is left open: where faces of two bodies meet in a concave edge, and their sheets part as they move
-  // back. Each particle there is of the body whose face it is nearer to, whichever body's mesh it lies in:
-  // what a floor is pressed by is not to depend on whether it ends at the walls or goes on below them.
+  // back. Each particle there is of the body whose face it is farther behind, whichever body's mesh it lies
+  // in: what a floor is pressed by is not to depend on whether it ends at the walls or goes on below them.
   for (std::size_t b = 0; b < solids.size(); ++b) {
     if (!joined[b]) continue;
     const float depth = solids[b].depth;
     const auto fill = [&](glm::vec3 p) {
       if (!settle(surface, depth, p) || distance(b, p) >= 0.0f) return;
-      const std::size_t body = surface.depth_at(p).body;
+      const std::size_t body = surface.body_at(p);
       sheets.fill(body, p, solids[body].surface->apart);
     };
     for (const Sample& s : samples[b])

@@ -28,8 +28,8 @@ struct FixedSolid {
 
 /// Particles in each body's mesh frame: its depth behind the surface of all that touch together, as far apart
 /// as its surface's samples; `spacing` (m) is the fluid's. Empty for a body that touches none, which has its
-/// own (wall_particles.cpp). What fills an edge between two is of the one whose face is nearer. A face is
-/// hidden where there is another body within a quarter of a spacing in front of it.
+/// own (wall_particles.cpp). What fills an edge between two is of the one whose face it is farther behind. A
+/// face is hidden where there is another body within a quarter of a spacing in front of it.
 std::vector<std::vector<SheetParticle>> joined_sheets(std::span<const FixedSolid> solids, float spacing);
 
 /// Which samples of each solid's surface no other hides, in order.

@@ -140,6 +140,30 @@ TEST(JoinedWalls, OverlappingOnesToo) {
   expect_one_sheet(in_the_middle(joined_sheets(solids, kSpacing), {Pose{}, Pose{}}));
 }
 
+// Round the edge between floor and wall each place is as near to the one face as to the other. As that was
+// told by discs around samples, chance decided whose a whole edge was: side walls read 3 % more or less.
+TEST(JoinedWalls, WhatFillsAnEdgeIsOfTheFaceItIsFartherBehind) {
+  int found[2] = {};
+  for (const float apart : {1.0f, 0.97f, 0.93f, 0.9f, 0.83f}) {
+    Box floor(kFloorLow, kFloorHigh, apart * kSpacing), wall(kWallLow, kWallHigh, kSpacing);
+    const std::vector<FixedSolid> solids = {floor.solid(), wall.solid()};
+    const std::vector<std::vector<SheetParticle>> sheets = joined_sheets(solids, kSpacing);
+    for (std::size_t b = 0; b < 2; ++b) {
+      for (const SheetParticle& particle : sheets[b]) {
+        const glm::vec3& p = particle.position;
+        const float below = kFloorHigh.y - p.y, behind = kWallHigh.x - p.x;
+        const bool in_edge =
+            below > 0.0f && behind > 0.0f && glm::length(glm::vec2(below, behind)) < 1.2f * kDepth;
+        if (!in_edge || std::abs(p.z) > 0.04f || std::abs(below - behind) < 0.02f * kDepth) continue;
+        EXPECT_EQ(b, below > behind ? 0u : 1u) << apart << ": " << below << " below, " << behind << " behind";
+        ++found[b];
+      }
+    }
+  }
+  EXPECT_GT(found[0], 20);
+  EXPECT_GT(found[1], 20);
+}
+
 TEST(JoinedWalls, ThoseThatStandApartAreLeftAlone) {
   for (const float gap : {0.2f, 0.4f}) {
     Box floor(kFloorLow, kFloorHigh), table({0.1f, -0.05f, -0.06f}, {0.2f, 0.0f, 0.06f});
