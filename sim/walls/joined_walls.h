@@ -11,20 +11,10 @@
 #include <span>
 #include <vector>
 
-#include "scenes/scene.h"
-#include "sim/math/distance_field.h"
-#include "sim/math/pose.h"
+#include "sim/walls/exposed_surface.h"
 #include "sim/walls/sheet.h"
 
 namespace slosh {
-
-/// A fixed body that has a distance field.
-struct FixedSolid {
-  const SurfaceSamples* surface;
-  DistanceFieldView field;
-  Pose pose;           ///< mesh to world
-  float depth = 0.0f;  ///< m, how far behind its surface it presses from
-};
 
 /// Particles in each body's mesh frame: its depth behind the surface of all that touch together, as far apart
 /// as its surface's samples; `spacing` (m) is the fluid's. Empty for a body that touches none, which has its

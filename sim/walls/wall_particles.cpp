@@ -250,17 +250,9 @@ JoinedWalls joined_walls(const Scene& scene, const SampledScene& sampled, const 
                     std::vector<std::vector<float>>(scene.bodies.size())};
   if (!corrects_gradients(plan.model)) return walls;
   const float spacing = static_cast<float>(plan.spacing);
-  std::vector<FixedSolid> solids;
-  std::vector<std::size_t> body_of;
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    const Body& body = scene.bodies[b];
-    const DistanceFieldView field = sampled.distance_fields[b].view();
-    if (body.motion != BodyMotion::kFixed || body.point_probe || sampled.distance_fields[b].distance.empty())
-      continue;
-    solids.push_back({&sampled.surfaces[b], field, body.pose,
-                      depths_of(scene, plan, sampled.surfaces[b].apart, drags).flat * spacing});
-    body_of.push_back(b);
-  }
+  auto [solids, body_of] = fixed_solids(scene, sampled);
+  for (FixedSolid& solid : solids)
+    solid.depth = depths_of(scene, plan, solid.surface->apart, drags).flat * spacing;
   std::vector<std::vector<SheetParticle>> sheets = joined_sheets(solids, spacing);
   std::vector<SheetParticle> all;
   for (std::size_t n = 0; n < sheets.size(); ++n)
