@@ -7,14 +7,22 @@ namespace slosh {
 namespace {
 
 constexpr float kTouching = 0.25f;  // of a spacing: no fluid gets into a gap of that
+// Of a cell: by how much less than the solid its field reaches at an edge, where it is round; of a spacing,
+// at most that, since a face's samples begin half a spacing off a wall that stands on it. Where three bodies
+// meet the ends of hidden faces were taken for open ones without: sheets bent round them, and a tank of slabs
+// lost 0.1 to 0.3 % of its water through its lower corners (4.6 to 3 mm).
+constexpr float kRounded = 0.25f, kMostRounded = 0.2f;
 constexpr float kDisc = 0.5f;  // of the way to its neighbours: the radius of the surface around one sample
 
-// Calls f(b) for each solid but `own` that p is inside of.
+// Calls f(b) for each solid but `own` that p is inside of, or as near to as a field may be off.
 template <class F>
-void for_each_around(std::span<const FixedSolid> solids, std::size_t own, const glm::vec3& p, F&& f) {
+void for_each_around(std::span<const FixedSolid> solids, std::size_t own, const glm::vec3& p, float spacing,
+                     F&& f) {
   for (std::size_t b = 0; b < solids.size(); ++b) {
     if (b == own) continue;
-    if (sample_distance(solids[b].field, to_world(inverse(solids[b].pose), p)).distance < 0.0f) f(b);
+    const DistanceFieldView& field = solids[b].field;
+    const float near = std::min(kRounded * field.cell, kMostRounded * spacing);
+    if (sample_distance(field, to_world(inverse(solids[b].pose), p)).distance < near) f(b);
   }
 }
 
@@ -26,7 +34,7 @@ std::vector<SolidSample> samples_of(std::span<const FixedSolid> solids, std::siz
     const glm::vec3 p = to_world(solids[own].pose, surface.positions[i]);
     const glm::vec3 normal(solids[own].pose.orientation * glm::dvec3(surface.normals[i]));
     bool hidden = false;
-    for_each_around(solids, own, p + kTouching * spacing * normal,
+    for_each_around(solids, own, p + kTouching * spacing * normal, spacing,
                     [&](std::size_t b) { hidden = joined[b] = joined[own] = true; });
     samples.push_back({p, normal, hidden});
   }
@@ -100,9 +108,9 @@ TouchingSolids touching(std::span<const FixedSolid> solids, float spacing) {
   return found;
 }
 
-bool covered(std::span<const FixedSolid> solids, std::size_t own, const glm::vec3& p) {
+bool covered(std::span<const FixedSolid> solids, std::size_t own, const glm::vec3& p, float spacing) {
   bool found = false;
-  for_each_around(solids, own, p, [&](std::size_t) { found = true; });
+  for_each_around(solids, own, p, spacing, [&](std::size_t) { found = true; });
   return found;
 }
 

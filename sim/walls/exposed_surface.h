@@ -74,7 +74,8 @@ struct TouchingSolids {
 TouchingSolids touching(std::span<const FixedSolid> solids, float spacing);
 
 /// Whether p, m, right in front of a face of `own`, is inside another of the solids: no fluid is there.
-bool covered(std::span<const FixedSolid> solids, std::size_t own, const glm::vec3& p);
+/// `spacing`: m, of the fluid.
+bool covered(std::span<const FixedSolid> solids, std::size_t own, const glm::vec3& p, float spacing);
 
 /// From a solid's mesh frame to the world's.
 inline glm::vec3 to_world(const Pose& pose, const glm::vec3& p) {

@@ -3,11 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/walls/joined_fields.h"
+
 namespace slosh {
 
-std::vector<DistanceField> guarded_fields(const SampledScene& sampled, const Plan& plan) {
-  std::vector<DistanceField> fields(sampled.distance_fields.size());
-  if (plan.guards_walls()) fields = sampled.distance_fields;
+std::vector<DistanceField> guarded_fields(const Scene& scene, const SampledScene& sampled, const Plan& plan) {
+  if (!plan.guards_walls()) return std::vector<DistanceField>(sampled.distance_fields.size());
+  std::vector<DistanceField> fields = sampled.distance_fields;
+  const FixedSolids fixed = fixed_solids(scene, sampled);
+  std::vector<DistanceField*> of_fixed;
+  for (const std::size_t b : fixed.body_of) of_fixed.push_back(&fields[b]);
+  close_joints(fixed.solids, static_cast<float>(plan.spacing), of_fixed);
   return fields;
 }
 

@@ -19,8 +19,8 @@ inline constexpr double kGuardDepth = 0.35;
 inline constexpr double kMostGuardDepth = 0.6;
 
 /// The fields of the bodies that particles are guarded against, one a body; empty for those that have none,
-/// and for all where the plan guards nothing.
-std::vector<DistanceField> guarded_fields(const SampledScene& sampled, const Plan& plan);
+/// and for all where the plan guards nothing. Fixed bodies that touch have them as one solid (close_joints).
+std::vector<DistanceField> guarded_fields(const Scene& scene, const SampledScene& sampled, const Plan& plan);
 
 /// The bodies on their way from `before` to `after` (one a body each), with the views of `fields`. One entry
 /// a body; those without a field have a reach of 0.

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <vector>
 
+#include "sim/walls/joined_fields.h"
+
 namespace slosh {
 namespace {
 
@@ -16,11 +18,13 @@ constexpr float kDepth = 0.7f * kSpacing;
 
 /// A box with its exact distance and a particle a square of its surface, each `apart` m wide or nearly so.
 struct Box {
+  glm::vec3 low, high;
   SurfaceSamples surface;
   std::vector<float> values;
   DistanceFieldView field;
 
-  Box(const glm::vec3& low, const glm::vec3& high, float apart = kSpacing) {
+  Box(const glm::vec3& low, const glm::vec3& high, float apart = kSpacing, float cell = 0.5f * kSpacing)
+      : low(low), high(high) {
     surface.apart = apart;
     for (int axis = 0; axis < 3; ++axis) {
       const int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -38,7 +42,7 @@ struct Box {
         }
       }
     }
-    field.cell = 0.5f * kSpacing;
+    field.cell = cell;
     field.origin = low - 3.0f * kSpacing - 0.17f * field.cell;
     field.size = glm::ivec3(glm::ceil((high - low + 6.0f * kSpacing) / field.cell)) + 2;
     for (int k = 0; k < field.size.z; ++k) {
@@ -176,6 +180,43 @@ TEST(JoinedWalls, ThoseThatStandApartAreLeftAlone) {
   }
 }
 
+// Where three bodies meet, the end of a hidden face lies at the edges of both others, where a field is round:
+// sheets bent round what was taken for open there, and still water left through it. On the other hand no
+// sample of what is open may be hidden.
+TEST(JoinedWalls, FacesAreHiddenUpToTheirEnds) {
+  for (const float cell : {0.3f, 0.5f, 0.76f}) {
+    for (const float off : {0.0f, 0.13f, 0.31f, 0.5f}) {
+      const glm::vec3 by = off * kSpacing * glm::vec3(1.0f, 0.0f, 0.4f);
+      const std::vector<std::pair<glm::vec3, glm::vec3>> sides = {
+          {glm::vec3(-0.11f, -0.05f, -0.11f), glm::vec3(0.06f, 0.0f, 0.06f)},        // floor
+          {glm::vec3(-0.11f, 0.0f, -0.11f) - by, glm::vec3(-0.06f, 0.08f, 0.06f)},   // left
+          {glm::vec3(-0.06f, 0.0f, -0.11f), glm::vec3(0.06f, 0.08f, -0.06f) + by}};  // back
+      std::vector<Box> boxes;
+      boxes.reserve(sides.size());
+      std::vector<FixedSolid> solids;
+      for (const auto& [low, high] : sides) {
+        boxes.emplace_back(low, high, kSpacing, cell * kSpacing);
+        solids.push_back(boxes.back().solid());
+      }
+      const auto beyond = [&](std::size_t b, const glm::vec3& p) {
+        const glm::vec3 q = glm::max(boxes[b].low - p, p - boxes[b].high);
+        return std::max({q.x, q.y, q.z});
+      };
+      const TouchingSolids touch = touching(solids, kSpacing);
+      for (std::size_t b = 0; b < solids.size(); ++b) {
+        for (const SolidSample& s : touch.samples[b]) {
+          const glm::vec3 before = s.position + 0.25f * kSpacing * s.normal;
+          float least = 1.0f;
+          for (std::size_t o = 0; o < solids.size(); ++o)
+            if (o != b) least = std::min(least, beyond(o, before));
+          if (least < -1e-6f) EXPECT_TRUE(s.hidden) << b << " of cells of " << cell << ", off by " << off;
+          if (least > 0.21f * kSpacing) EXPECT_FALSE(s.hidden) << b << " of cells of " << cell;
+        }
+      }
+    }
+  }
+}
+
 // What drags stands on the surface: where a wall stands on a floor, neither's face under it does.
 TEST(JoinedWalls, WhatAnotherHidesIsNotExposed) {
   Box floor(kFloorLow, kFloorHigh), wall(kWallLow, kWallHigh);
@@ -192,6 +233,42 @@ TEST(JoinedWalls, WhatAnotherHidesIsNotExposed) {
   }
   const std::vector<FixedSolid> alone = {floor.solid()};
   EXPECT_EQ(exposed_samples(alone, kSpacing)[0].size(), alone[0].surface->positions.size());
+}
+
+// What the guard reads between two that touch is as deep as in one piece; where fluid is, and within open
+// faces, it reads what it did.
+TEST(JoinedWalls, AJointIsAsDeepAsOnePiece) {
+  for (const float cell : {0.5f, 0.76f}) {
+    Box floor(kFloorLow, kFloorHigh, kSpacing, cell * kSpacing);
+    Box wall(kWallLow, kWallHigh, kSpacing, cell * kSpacing);
+    const std::vector<FixedSolid> solids = {floor.solid(), wall.solid()};
+    std::vector<DistanceField> own, closed;
+    for (const FixedSolid& s : solids) {
+      const std::size_t nodes = static_cast<std::size_t>(s.field.size.x) * s.field.size.y * s.field.size.z;
+      own.push_back(
+          {s.field.origin, s.field.cell, s.field.size, {s.field.distance, s.field.distance + nodes}});
+    }
+    closed = own;
+    close_joints(solids, kSpacing, std::vector<DistanceField*>{&closed[0], &closed[1]});
+    for (float y = -0.4f; y < 0.45f; y += 0.1f) {
+      for (float behind = 0.6f; behind < 2.8f; behind += 0.1f) {
+        const glm::vec3 p(kWallHigh.x - behind * kSpacing, y * kSpacing, 0.0f);
+        const float depth = std::min(glm::length(glm::vec2(behind, std::min(y, 0.0f))), 2.0f) * kSpacing;
+        for (const DistanceField& field : closed)
+          EXPECT_LT(sample_distance(field.view(), p).distance, -0.75f * depth)
+              << y << ", " << behind << " behind";
+      }
+    }
+    for (std::size_t b = 0; b < 2; ++b) {
+      for (float x = 0.02f; x < 0.055f; x += 0.1f * kSpacing) {
+        for (float y = -0.6f * kSpacing; y < 2.0f * kSpacing; y += 0.1f * kSpacing) {
+          const glm::vec3 p(x, y, 0.0f);
+          EXPECT_EQ(sample_distance(closed[b].view(), p).distance, sample_distance(own[b].view(), p).distance)
+              << x << ", " << y;
+        }
+      }
+    }
+  }
 }
 
 // A plate of a spacing on a block: nothing of it is inside the block, all of what it covers is

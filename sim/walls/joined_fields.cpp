@@ -1,0 +1,52 @@
+#include "sim/walls/joined_fields.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace slosh {
+namespace {
+
+constexpr float kDeepest = 2.0f;    // spacings: a guard holds what is less deep than one
+constexpr float kBefore = 2.0f;     // cells: whatever is within one of a face is read from nodes within this
+constexpr float kTouching = 0.25f;  // of a spacing, as in exposed_surface.cpp
+
+// Whether a node at p of the solid's mesh, where its field is d, m, lies between it and another.
+bool in_joint(std::span<const FixedSolid> solids, std::size_t own, const glm::vec3& p, float d,
+              float spacing) {
+  const FixedSolid& solid = solids[own];
+  if (d > 0.0f) return covered(solids, own, to_world(solid.pose, p), spacing);
+  const glm::vec3 out = sample_distance(solid.field, p).gradient;
+  const float slope = glm::length(out);
+  if (slope < 0.5f) return false;
+  const glm::vec3 before_face = p + (kTouching * spacing - d) / slope * out;
+  return covered(solids, own, to_world(solid.pose, before_face), spacing);
+}
+
+void close_joints_of(std::span<const FixedSolid> solids, std::size_t own, const ExposedSurface& surface,
+                     float spacing, DistanceField& field) {
+  const float deepest = kDeepest * spacing;
+  const FixedSolid& solid = solids[own];
+  std::size_t n = 0;
+  for (int z = 0; z < field.size.z; ++z) {
+    for (int y = 0; y < field.size.y; ++y) {
+      for (int x = 0; x < field.size.x; ++x, ++n) {
+        const float d = field.distance[n];
+        if (d < -deepest || d > kBefore * field.cell) continue;
+        const glm::vec3 p = field.origin + field.cell * glm::vec3(x, y, z);
+        if (!in_joint(solids, own, p, d, spacing)) continue;
+        const float depth = surface.depth_at(to_world(solid.pose, p)).depth;
+        field.distance[n] = std::min(d, -std::min(depth, deepest));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void close_joints(std::span<const FixedSolid> solids, float spacing, std::span<DistanceField* const> fields) {
+  const TouchingSolids touch = touching(solids, spacing);
+  for (std::size_t b = 0; b < solids.size(); ++b)
+    if (touch.joined[b]) close_joints_of(solids, b, touch.surface, spacing, *fields[b]);
+}
+
+}  // namespace slosh
