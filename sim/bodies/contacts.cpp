@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <optional>
 
 namespace slosh {
 
@@ -152,58 +153,49 @@ Meeting meet(const DistanceFieldView& field, const glm::vec3& start, const glm::
   return meeting;
 }
 
-// Within a cell of an edge the interpolated distance is bent: too small inside, where its gradient dwindles,
-// and round the edge outside. Where the flat face that the point is of lies on one of the solid's, the face
-// knows the direction, and a cell further out the distance is straight. `out` is the face's normal turned
-// round.
-bool face_to_face(const DistanceFieldView& field, const glm::vec3& at, const glm::vec3& out,
-                  glm::vec3& normal, float& distance) {
-  constexpr float kFacing = 0.8f;  // cosine: round a corner the other way is 0.86 at most
-  const DistanceSample further = sample_distance(field, at + out * field.cell);
-  const float length = glm::length(further.gradient);
-  if (!(glm::dot(further.gradient, out) > kFacing * length) || !(length > 0.5f)) return false;
-  normal = out;
-  distance = further.distance - field.cell;
-  return true;
-}
-
-// Where two flat faces lie on each other, the gap between their planes. At an edge, within a cell of it and a
-// cell above it, the interpolated distance is bent by some ten-thousandths of a cell. Unless the edge lay on
-// the field's nodes, a stack of ten cubes of 2 cm then leaned by 0.1 to 0.5 mm, or fell (at 9.9 and 7.5 mm).
-// So it is read a cell above the face, further and further in from the edge, until it rises straight off it.
-bool flush(const DistanceFieldView& field, const glm::vec3& at, const DistanceSample& there,
-           const glm::vec3& out, glm::vec3& normal, float& distance) {
+// The gap between two flat faces that lie on each other, along `out`, the normal, turned round, of the one
+// that the point at `at` is of; `there` is what the other's field says at it. Within a cell of an edge, and a
+// cell above it, the interpolated distance is bent: too small inside, where its gradient dwindles, and round
+// the edge outside. So it is read a cell above the face, where it is straight unless the edge is near, and
+// from there further and further in from the edge until it rises straight off the face: bent by
+// ten-thousandths of a cell a stack of ten cubes of 2 cm leaned by 0.1 to 0.5 mm, or fell (at 9.9 and 7.5 mm,
+// where its edges do not lie on the field's nodes). Where no place is straight the first look still knows
+// better than a field that is clearly bent at the point itself. Nothing where faces do not face each other.
+std::optional<float> gap_between_faces(const DistanceFieldView& field, const glm::vec3& at,
+                                       const DistanceSample& there, const glm::vec3& out) {
   constexpr float kParallel = 1e-3f;  // rad
   constexpr float kStraight = 1e-5f;  // rad: rounding
   constexpr float kStride = 0.7f;     // cells
   constexpr int kStrides = 4;
+  constexpr float kFacing = 0.8f;  // cosine: round a corner the other way is 0.86 at most
   const auto along_face = [&](const DistanceSample& s) {
     return s.gradient - glm::dot(s.gradient, out) * out;
   };
-  if (glm::length(along_face(there)) < kStraight) return false;  // as it is
-  float least = kParallel;
-  bool found = false;
   glm::vec3 above = at + out * field.cell;
-  for (int n = 0; n <= kStrides; ++n) {
-    const DistanceSample s = sample_distance(field, above);
-    const glm::vec3 along = along_face(s);
-    const float slope = glm::length(along);
-    if (!(glm::dot(s.gradient, out) > 0.5f)) break;
-    if (slope < least) {
-      least = slope;
-      found = true;
-      normal = out;
-      distance = s.distance - glm::dot(above - at, out);
+  const DistanceSample first = sample_distance(field, above);
+  if (glm::length(along_face(there)) >= kStraight) {
+    float least = kParallel;
+    std::optional<float> gap;
+    DistanceSample s = first;
+    for (int n = 0;; ++n) {
+      const glm::vec3 along = along_face(s);
+      const float slope = glm::length(along);
+      if (!(glm::dot(s.gradient, out) > 0.5f)) break;
+      if (slope < least) {
+        least = slope;
+        gap = s.distance - glm::dot(above - at, out);
+      }
+      if (slope < kStraight || n == kStrides) break;
+      above -= along * (kStride * field.cell / slope);
+      s = sample_distance(field, above);
     }
-    if (slope < kStraight) break;
-    above -= along * (kStride * field.cell / slope);
+    if (gap) return gap;
   }
-  return found;
+  if (std::abs(glm::length(there.gradient) - 1.0f) <= kBentField) return {};
+  const float length = glm::length(first.gradient);
+  if (!(glm::dot(first.gradient, out) > kFacing * length) || !(length > 0.5f)) return {};
+  return first.distance - field.cell;
 }
-
-}  // namespace
-
-namespace {
 
 // Gaps are differences of floats. Within this share of a spacing two surfaces touch; left as it is, the
 // rounding would make bodies at rest tremble, and stacks wander.
@@ -244,11 +236,14 @@ void ContactFinder::points_against_field(const Motion& motion, int points_of, in
     glm::vec3 normal = length > 0.0f ? met.sample.gradient / length : glm::vec3(0.0f);
     float distance = met.sample.distance;
     const glm::vec3 out = -(turn * points.normals[i]);
-    const bool faces =
-        points.flat[i] &&
-        (flush(field, met.at, met.sample, out, normal, distance) ||
-         (std::abs(length - 1.0f) > kBentField && face_to_face(field, met.at, out, normal, distance)));
-    if (!faces && !(length > 1e-3f)) continue;  // the middle of a solid: other points have the direction
+    const std::optional<float> faces =
+        points.flat[i] ? gap_between_faces(field, met.at, met.sample, out) : std::nullopt;
+    if (faces) {
+      normal = out;
+      distance = *faces;
+    } else if (!(length > 1e-3f)) {
+      continue;  // the middle of a solid: other points have the direction
+    }
     // From where the point is now to the plane that it meets.
     const double gap = distance + glm::dot(p - met.at, normal);
     found_.push_back({points_of, field_of, where, solid_pose.orientation * glm::dvec3(normal),
