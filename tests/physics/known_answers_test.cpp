@@ -97,11 +97,15 @@ INSTANTIATE_TEST_SUITE_P(
                            {"thin_walls", 0.01, "lift of a plate", 0.025}},
         std::vector<Known>{{"thin_walls", 0.008, "level in a glass", 0.017},
                            {"thin_walls", 0.008, "lift of a plate", 0.015}},
-        // Five slabs: as one solid they lose nothing; each for itself 46 particles, its floor +30 %.
-        std::vector<Known>{{"tank_faces", 0.02, "floor", 0.055}},
-        std::vector<Known>{{"tank_faces", 0.01, "floor", 0.022},
-                           {"tank_faces", 0.01, "side walls, mean", 0.015},
-                           {"tank_faces", 0.01, "centre of pressure above the floor", 0.02}},
+        // Five slabs: as one solid they lose nothing; each for itself 46 particles, its floor +30 %. While
+        // chance decided whose the particles in an edge are, and sheets bent round the ends of hidden faces,
+        // the floor had +2 to +6 %, walls -6 to +2 and the centre -1 to +6, by the spacing.
+        std::vector<Known>{{"tank_faces", 0.02, "floor", 0.018},
+                           {"tank_faces", 0.02, "side walls, mean", 0.005},
+                           {"tank_faces", 0.02, "centre of pressure above the floor", 0.03}},
+        std::vector<Known>{{"tank_faces", 0.01, "floor", 0.004},
+                           {"tank_faces", 0.01, "side walls, mean", 0.024},
+                           {"tank_faces", 0.01, "centre of pressure above the floor", 0.01}},
         std::vector<Known>{{"slope", 0.0125, "slope", 0.04}, {"slope", 0.0125, "force along the tank", 1e-3}},
         // -1.9 %; of sums in another order, and from 9.8 to 10.1 mm, -1.1 to -2.8.
         std::vector<Known>{{"slope", 0.01, "slope", 0.03}, {"slope", 0.01, "force along the tank", 1e-3}},
