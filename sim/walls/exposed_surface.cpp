@@ -6,7 +6,6 @@
 namespace slosh {
 namespace {
 
-constexpr float kTouching = 0.25f;  // of a spacing: no fluid gets into a gap of that
 // Of a cell: by how much less than the solid its field reaches at an edge, where it is round; of a spacing,
 // at most that, since a face's samples begin half a spacing off a wall that stands on it. Where three bodies
 // meet the ends of hidden faces were taken for open ones without: sheets bent round them, and a tank of slabs

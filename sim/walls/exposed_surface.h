@@ -13,6 +13,9 @@
 
 namespace slosh {
 
+/// Of a spacing: bodies with a narrower gap between them touch, since no fluid gets into that.
+inline constexpr float kTouching = 0.25f;
+
 /// A fixed body that has a distance field.
 struct FixedSolid {
   const SurfaceSamples* surface;
@@ -21,8 +24,7 @@ struct FixedSolid {
   float depth = 0.0f;  ///< m, how far behind its surface it presses from
 };
 
-/// A sample of a solid's surface, in the world. `hidden`: another body is within a quarter of a spacing in
-/// front of it.
+/// A sample of a solid's surface, in the world. `hidden`: another body is within kTouching of it.
 struct SolidSample {
   glm::vec3 position, normal;
   bool hidden;

@@ -8,7 +8,6 @@ namespace {
 
 constexpr float kDeepest = 2.0f;    // spacings: a guard holds what is less deep than one
 constexpr float kBefore = 2.0f;     // cells: whatever is within one of a face is read from nodes within this
-constexpr float kTouching = 0.25f;  // of a spacing, as in exposed_surface.cpp
 
 // Whether a node at p of the solid's mesh, where its field is d, m, lies between it and another.
 bool in_joint(std::span<const FixedSolid> solids, std::size_t own, const glm::vec3& p, float d,
