@@ -13,28 +13,29 @@ namespace {
 constexpr float kRounded = 0.25f, kMostRounded = 0.2f;
 constexpr float kDisc = 0.5f;  // of the way to its neighbours: the radius of the surface around one sample
 
-// Calls f(b) for each solid but `own` that p is inside of, or as near to as a field may be off.
-template <class F>
-void for_each_around(std::span<const FixedSolid> solids, std::size_t own, const glm::vec3& p, float spacing,
-                     F&& f) {
-  for (std::size_t b = 0; b < solids.size(); ++b) {
-    if (b == own) continue;
-    const DistanceFieldView& field = solids[b].field;
-    const float near = std::min(kRounded * field.cell, kMostRounded * spacing);
-    if (sample_distance(field, to_world(inverse(solids[b].pose), p)).distance < near) f(b);
-  }
+bool covers(const FixedSolid& solid, const glm::vec3& p, float spacing) {
+  const float near = std::min(kRounded * solid.field.cell, kMostRounded * spacing);
+  return sample_distance(solid.field, to_world(inverse(solid.pose), p)).distance < near;
+}
+
+void note(std::vector<std::size_t>& numbers, std::size_t number) {
+  if (std::ranges::find(numbers, number) == numbers.end()) numbers.push_back(number);
 }
 
 std::vector<SolidSample> samples_of(std::span<const FixedSolid> solids, std::size_t own, float spacing,
-                                    std::vector<bool>& joined) {
+                                    std::vector<std::vector<std::size_t>>& touched) {
   std::vector<SolidSample> samples;
   const SurfaceSamples& surface = *solids[own].surface;
   for (std::size_t i = 0; i < surface.positions.size(); ++i) {
     const glm::vec3 p = to_world(solids[own].pose, surface.positions[i]);
     const glm::vec3 normal(solids[own].pose.orientation * glm::dvec3(surface.normals[i]));
     bool hidden = false;
-    for_each_around(solids, own, p + kTouching * spacing * normal, spacing,
-                    [&](std::size_t b) { hidden = joined[b] = joined[own] = true; });
+    for (std::size_t b = 0; b < solids.size(); ++b) {
+      if (b == own || !covers(solids[b], p + kTouching * spacing * normal, spacing)) continue;
+      hidden = true;
+      note(touched[own], b);
+      note(touched[b], own);
+    }
     samples.push_back({p, normal, hidden});
   }
   return samples;
@@ -98,19 +99,18 @@ std::size_t ExposedSurface::solid_at(const glm::vec3& p) const {
 }
 
 TouchingSolids touching(std::span<const FixedSolid> solids, float spacing) {
-  TouchingSolids found{{}, std::vector<bool>(solids.size(), false), ExposedSurface(spacing)};
+  TouchingSolids found{{}, std::vector<std::vector<std::size_t>>(solids.size()), ExposedSurface(spacing)};
   for (std::size_t b = 0; b < solids.size(); ++b) {
-    found.samples.push_back(samples_of(solids, b, spacing, found.joined));
+    found.samples.push_back(samples_of(solids, b, spacing, found.touched));
     for (const SolidSample& s : found.samples[b])
       if (!s.hidden) found.surface.add(b, s.position, s.normal, solids[b].surface->apart);
   }
   return found;
 }
 
-bool covered(std::span<const FixedSolid> solids, std::size_t own, const glm::vec3& p, float spacing) {
-  bool found = false;
-  for_each_around(solids, own, p, spacing, [&](std::size_t) { found = true; });
-  return found;
+bool covered(std::span<const FixedSolid> solids, std::span<const std::size_t> numbers, const glm::vec3& p,
+             float spacing) {
+  return std::ranges::any_of(numbers, [&](std::size_t b) { return covers(solids[b], p, spacing); });
 }
 
 FixedSolids fixed_solids(const Scene& scene, const SampledScene& sampled) {

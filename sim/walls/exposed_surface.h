@@ -68,16 +68,17 @@ class ExposedSurface {
 /// Solids, and how they touch.
 struct TouchingSolids {
   std::vector<std::vector<SolidSample>> samples;  ///< a list a solid
-  std::vector<bool> joined;                       ///< one a solid: it touches another
+  std::vector<std::vector<std::size_t>> touched;  ///< by each: the solids that it touches
   ExposedSurface surface;
 };
 
 /// `spacing`: m, of the fluid.
 TouchingSolids touching(std::span<const FixedSolid> solids, float spacing);
 
-/// Whether p, m, right in front of a face of `own`, is inside another of the solids: no fluid is there.
-/// `spacing`: m, of the fluid.
-bool covered(std::span<const FixedSolid> solids, std::size_t own, const glm::vec3& p, float spacing);
+/// Whether p, m, is inside one of those solids that `numbers` says, or as near to it as its field may be off:
+/// no fluid is there. `spacing`: m, of the fluid.
+bool covered(std::span<const FixedSolid> solids, std::span<const std::size_t> numbers, const glm::vec3& p,
+             float spacing);
 
 /// From a solid's mesh frame to the world's.
 inline glm::vec3 to_world(const Pose& pose, const glm::vec3& p) {

@@ -6,22 +6,22 @@
 namespace slosh {
 namespace {
 
-constexpr float kDeepest = 2.0f;    // spacings: a guard holds what is less deep than one
-constexpr float kBefore = 2.0f;     // cells: whatever is within one of a face is read from nodes within this
+constexpr float kDeepest = 2.0f;  // spacings: a guard holds what is less deep than one
+constexpr float kBefore = 2.0f;   // cells: whatever is within one of a face is read from nodes within this
 
-// Whether a node at p of the solid's mesh, where its field is d, m, lies between it and another.
-bool in_joint(std::span<const FixedSolid> solids, std::size_t own, const glm::vec3& p, float d,
-              float spacing) {
-  const FixedSolid& solid = solids[own];
-  if (d > 0.0f) return covered(solids, own, to_world(solid.pose, p), spacing);
+// Whether a node at p of the solid's mesh, where its field is d, m, lies between it and one of those that it
+// touches.
+bool in_joint(std::span<const FixedSolid> solids, const FixedSolid& solid,
+              std::span<const std::size_t> touched, const glm::vec3& p, float d, float spacing) {
+  if (d > 0.0f) return covered(solids, touched, to_world(solid.pose, p), spacing);
   const glm::vec3 out = sample_distance(solid.field, p).gradient;
   const float slope = glm::length(out);
   if (slope < 0.5f) return false;
   const glm::vec3 before_face = p + (kTouching * spacing - d) / slope * out;
-  return covered(solids, own, to_world(solid.pose, before_face), spacing);
+  return covered(solids, touched, to_world(solid.pose, before_face), spacing);
 }
 
-void close_joints_of(std::span<const FixedSolid> solids, std::size_t own, const ExposedSurface& surface,
+void close_joints_of(std::span<const FixedSolid> solids, std::size_t own, const TouchingSolids& touch,
                      float spacing, DistanceField& field) {
   const float deepest = kDeepest * spacing;
   const FixedSolid& solid = solids[own];
@@ -32,8 +32,8 @@ void close_joints_of(std::span<const FixedSolid> solids, std::size_t own, const 
         const float d = field.distance[n];
         if (d < -deepest || d > kBefore * field.cell) continue;
         const glm::vec3 p = field.origin + field.cell * glm::vec3(x, y, z);
-        if (!in_joint(solids, own, p, d, spacing)) continue;
-        const float depth = surface.depth_at(to_world(solid.pose, p)).depth;
+        if (!in_joint(solids, solid, touch.touched[own], p, d, spacing)) continue;
+        const float depth = touch.surface.depth_at(to_world(solid.pose, p)).depth;
         field.distance[n] = std::min(d, -std::min(depth, deepest));
       }
     }
@@ -45,7 +45,7 @@ void close_joints_of(std::span<const FixedSolid> solids, std::size_t own, const 
 void close_joints(std::span<const FixedSolid> solids, float spacing, std::span<DistanceField* const> fields) {
   const TouchingSolids touch = touching(solids, spacing);
   for (std::size_t b = 0; b < solids.size(); ++b)
-    if (touch.joined[b]) close_joints_of(solids, b, touch.surface, spacing, *fields[b]);
+    if (!touch.touched[b].empty()) close_joints_of(solids, b, touch, spacing, *fields[b]);
 }
 
 }  // namespace slosh

@@ -61,13 +61,13 @@ void near_level_set(const FixedSolid& solid, float depth, F&& visit) {
 }  // namespace
 
 std::vector<std::vector<SheetParticle>> joined_sheets(std::span<const FixedSolid> solids, float spacing) {
-  const auto [samples, joined, surface] = touching(solids, spacing);
+  const auto [samples, touched, surface] = touching(solids, spacing);
   Sheets sheets(solids.size(), spacing);
   const auto distance = [&](std::size_t b, const glm::vec3& p) {
     return sample_distance(solids[b].field, to_world(inverse(solids[b].pose), p)).distance;
   };
   for (std::size_t b = 0; b < solids.size(); ++b) {
-    if (!joined[b]) continue;
+    if (touched[b].empty()) continue;
     const float depth = solids[b].depth;
     for (const SolidSample& s : samples[b]) {
       if (s.hidden) continue;
@@ -88,7 +88,7 @@ std::vector<std::vector<SheetParticle>> joined_sheets(std::span<const FixedSolid
   // back. Each particle there is of the body whose face it is farther behind, whichever body's mesh it lies
   // in: what a floor is pressed by is not to depend on whether it ends at the walls or goes on below them.
   for (std::size_t b = 0; b < solids.size(); ++b) {
-    if (!joined[b]) continue;
+    if (touched[b].empty()) continue;
     const float depth = solids[b].depth;
     const auto fill = [&](glm::vec3 p) {
       if (!settle(surface, depth, p) || distance(b, p) >= 0.0f) return;
