@@ -5,16 +5,11 @@
 namespace slosh::python {
 namespace {
 
-using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
-
 /// Empty where that is no list of numbers.
 std::vector<double> to_numbers(const py::handle& object) {
-  const Numbers array = Numbers::ensure(object);
-  if (!array) {
-    PyErr_Clear();
-    return {};
-  }
-  return {array.data(), array.data() + array.size()};
+  const std::optional<Numbers> array = numbers_of(object);
+  if (!array) return {};
+  return {array->data(), array->data() + array->size()};
 }
 
 std::string shown(const py::handle& object) {
@@ -35,6 +30,15 @@ glm::dquat checked_rotation(double w, double x, double y, double z, const char* 
 }
 
 }  // namespace
+
+std::optional<Numbers> numbers_of(const py::handle& object) {
+  try {  // Numbers::ensure would swallow all that is raised
+    return Numbers(py::reinterpret_borrow<py::object>(object));
+  } catch (py::error_already_set& error) {
+    if (!error.matches(PyExc_Exception)) throw;
+    return {};
+  }
+}
 
 glm::dvec3 to_vector(const py::handle& object, const char* what) {
   const std::vector<double> n = to_numbers(object);

@@ -22,6 +22,11 @@ struct HandPose {
   std::optional<glm::dvec3> angular_velocity;  ///< rad/s, world
 };
 
+using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// What can be read as numbers, else nothing. Raises only what is no error of the object's: Ctrl-C may come
+/// in the middle of it, and must not end as a complaint about what was being read.
+std::optional<Numbers> numbers_of(const py::handle& object);
 /// Three finite numbers. Raises ValueError that begins with `what`.
 glm::dvec3 to_vector(const py::handle& object, const char* what);
 /// w, x, y, z, within 1 % of unit length; normalised.

@@ -20,7 +20,6 @@ namespace {
 
 using make::Solid;
 using nlohmann::json;
-using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Indices = py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>;
 
 json to_json(const std::string& name, const py::handle& value) {
@@ -32,13 +31,10 @@ json to_json(const std::string& name, const py::handle& value) {
       object[key.cast<std::string>()] = to_json(name, each);
     return object;
   }
-  const Numbers numbers = Numbers::ensure(value);
-  if (!numbers) {
-    PyErr_Clear();
-    throw py::type_error(name + ": wants a number, a text, True or False, or a list of numbers");
-  }
-  if (numbers.ndim() == 0) return *numbers.data();
-  return std::vector<double>(numbers.data(), numbers.data() + numbers.size());
+  const std::optional<Numbers> numbers = numbers_of(value);
+  if (!numbers) throw py::type_error(name + ": wants a number, a text, True or False, or a list of numbers");
+  if (numbers->ndim() == 0) return *numbers->data();
+  return std::vector<double>(numbers->data(), numbers->data() + numbers->size());
 }
 
 json to_fields(const py::kwargs& fields) {

@@ -20,8 +20,6 @@ HandPose make_pose(const py::object& position, const py::object& orientation, co
   return pose;
 }
 
-using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
-
 Keys make_keys(const Numbers& times, const Numbers& positions, const py::object& orientations) {
   const py::ssize_t count = times.size();
   if (times.ndim() != 1 || count < 1) throw py::value_error("times: (n,) seconds, n at least 1");
@@ -29,9 +27,8 @@ Keys make_keys(const Numbers& times, const Numbers& positions, const py::object&
     throw py::value_error("positions: (n, 3) metres, a row a time");
   std::optional<Numbers> turns;
   if (!orientations.is_none()) {
-    turns = Numbers::ensure(orientations);
-    if (!*turns) throw py::error_already_set();
-    if (turns->ndim() != 2 || turns->shape(0) != count || turns->shape(1) != 4)
+    turns = numbers_of(orientations);
+    if (!turns || turns->ndim() != 2 || turns->shape(0) != count || turns->shape(1) != 4)
       throw py::value_error("orientations: (n, 4) unit quaternions w, x, y, z, a row a time");
   }
   Keys keys;

@@ -238,6 +238,21 @@ class Threads(unittest.TestCase):
                      "w.hold(0, lambda t: (0, 0.07, 0)) or w.run(1e5)"):
             self.assertIn("interrupted at", self.interrupted(work), work)
 
+    def test_ctrl_c_while_a_pose_is_read_is_no_complaint_about_the_pose(self):
+        class Interrupted:
+            def __array__(self, *_, **__):
+                raise KeyboardInterrupt
+
+        w = world()
+        with self.assertRaises(KeyboardInterrupt):
+            w.hold(0, Interrupted())
+        with self.assertRaises(KeyboardInterrupt):
+            w.hold(0, (Interrupted(), (1, 0, 0, 0)))
+        with self.assertRaises(KeyboardInterrupt):
+            slosh.Keys((0, 1), ((0, 0, 0), (0, 0, 0)), Interrupted())
+        w.hold(0, (0, 0.07, 0))
+        w.step()
+
 
 class Recordings(unittest.TestCase):
     def test_what_is_recorded_is_replayed_the_same_and_by_the_program_too(self):
