@@ -171,9 +171,12 @@ std::optional<float> gap_between_faces(const DistanceFieldView& field, const glm
   const auto along_face = [&](const DistanceSample& s) {
     return s.gradient - glm::dot(s.gradient, out) * out;
   };
+  const bool straight = glm::length(along_face(there)) < kStraight;
+  const bool bent = std::abs(glm::length(there.gradient) - 1.0f) > kBentField;
+  if (straight && !bent) return {};  // as it is
   glm::vec3 above = at + out * field.cell;
   const DistanceSample first = sample_distance(field, above);
-  if (glm::length(along_face(there)) >= kStraight) {
+  if (!straight) {
     float least = kParallel;
     std::optional<float> gap;
     DistanceSample s = first;
@@ -191,7 +194,7 @@ std::optional<float> gap_between_faces(const DistanceFieldView& field, const glm
     }
     if (gap) return gap;
   }
-  if (std::abs(glm::length(there.gradient) - 1.0f) <= kBentField) return {};
+  if (!bent) return {};
   const float length = glm::length(first.gradient);
   if (!(glm::dot(first.gradient, out) > kFacing * length) || !(length > 0.5f)) return {};
   return first.distance - field.cell;
