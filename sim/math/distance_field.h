@@ -16,6 +16,18 @@ struct DistanceFieldView {
   const float* distance = nullptr;
 };
 
+/// Calls f(d, p, n) for each node in the order in which they lie: its distance, m, its place and its index.
+template <class F>
+void for_each_node(const DistanceFieldView& field, F&& f) {
+  int n = 0;
+  for (int z = 0; z < field.size.z; ++z) {
+    for (int y = 0; y < field.size.y; ++y) {
+      for (int x = 0; x < field.size.x; ++x, ++n)
+        f(field.distance[n], field.origin + field.cell * glm::vec3(x, y, z), n);
+    }
+  }
+}
+
 struct DistanceSample {
   float distance = 0.0f;     ///< m, negative inside
   glm::vec3 gradient{0.0f};  ///< not normalised; points away from the solid

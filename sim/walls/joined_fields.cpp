@@ -25,19 +25,12 @@ void close_joints_of(std::span<const FixedSolid> solids, std::size_t own, const 
                      float spacing, DistanceField& field) {
   const float deepest = kDeepest * spacing;
   const FixedSolid& solid = solids[own];
-  std::size_t n = 0;
-  for (int z = 0; z < field.size.z; ++z) {
-    for (int y = 0; y < field.size.y; ++y) {
-      for (int x = 0; x < field.size.x; ++x, ++n) {
-        const float d = field.distance[n];
-        if (d < -deepest || d > kBefore * field.cell) continue;
-        const glm::vec3 p = field.origin + field.cell * glm::vec3(x, y, z);
-        if (!in_joint(solids, solid, touch.touched[own], p, d, spacing)) continue;
-        const float depth = touch.surface.depth_at(to_world(solid.pose, p)).depth;
-        field.distance[n] = std::min(d, -std::min(depth, deepest));
-      }
-    }
-  }
+  for_each_node(field.view(), [&](float d, const glm::vec3& p, int n) {
+    if (d < -deepest || d > kBefore * field.cell) return;
+    if (!in_joint(solids, solid, touch.touched[own], p, d, spacing)) return;
+    const float depth = touch.surface.depth_at(to_world(solid.pose, p)).depth;
+    field.distance[static_cast<std::size_t>(n)] = std::min(d, -std::min(depth, deepest));
+  });
 }
 
 }  // namespace

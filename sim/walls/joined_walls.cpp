@@ -45,17 +45,10 @@ class Sheets {
 // Walks the nodes of a body's distance field that may lie at `depth`.
 template <class F>
 void near_level_set(const FixedSolid& solid, float depth, F&& visit) {
-  const DistanceFieldView& field = solid.field;
-  for (int z = 0; z < field.size.z; ++z) {
-    for (int y = 0; y < field.size.y; ++y) {
-      for (int x = 0; x < field.size.x; ++x) {
-        const float d = field.distance[x + field.size.x * (y + field.size.y * z)];
-        // The surface of all is nowhere nearer than the body's own.
-        if (d > 0.0f || -d > depth + field.cell) continue;
-        visit(to_world(solid.pose, field.origin + field.cell * glm::vec3(x, y, z)));
-      }
-    }
-  }
+  for_each_node(solid.field, [&](float d, const glm::vec3& p, int) {
+    // The surface of all is nowhere nearer than the body's own.
+    if (d <= 0.0f && -d <= depth + solid.field.cell) visit(to_world(solid.pose, p));
+  });
 }
 
 }  // namespace

@@ -180,24 +180,18 @@ void close_gaps(const DistanceFieldView& field, float depth, float spacing, floa
                 std::vector<SheetParticle>& sheet) {
   PointBuckets near(spacing);
   for (const SheetParticle& p : sheet) near.add(p.position);
-  for (int z = 0; z < field.size.z; ++z) {
-    for (int y = 0; y < field.size.y; ++y) {
-      for (int x = 0; x < field.size.x; ++x) {
-        const float d = field.distance[x + field.size.x * (y + field.size.y * z)];
-        if (std::abs(d + depth) > field.cell) continue;
-        glm::vec3 p = field.origin + field.cell * glm::vec3(x, y, z);
-        for (int newton = 0; newton < 2; ++newton) {
-          const DistanceSample s = sample_distance(field, p);
-          const float slope = glm::dot(s.gradient, s.gradient);
-          if (slope > 0.25f) p -= s.gradient * ((s.distance + depth) / slope);
-        }
-        if (std::abs(sample_distance(field, p).distance + depth) > 0.1f * spacing) continue;
-        if (near.any_within(p, kLargestHole * apart)) continue;
-        sheet.push_back({.position = p});
-        near.add(p);
-      }
+  for_each_node(field, [&](float d, glm::vec3 p, int) {
+    if (std::abs(d + depth) > field.cell) return;
+    for (int newton = 0; newton < 2; ++newton) {
+      const DistanceSample s = sample_distance(field, p);
+      const float slope = glm::dot(s.gradient, s.gradient);
+      if (slope > 0.25f) p -= s.gradient * ((s.distance + depth) / slope);
     }
-  }
+    if (std::abs(sample_distance(field, p).distance + depth) > 0.1f * spacing) return;
+    if (near.any_within(p, kLargestHole * apart)) return;
+    sheet.push_back({.position = p});
+    near.add(p);
+  });
 }
 
 // One body's particles in its mesh frame.
@@ -278,16 +272,13 @@ struct DraggingSheet {
 std::vector<DraggingSheet> dragging_sheets(const Scene& scene, const SampledScene& sampled, const Plan& plan,
                                            BodyMotion motion) {
   std::vector<DraggingSheet> sheets(scene.bodies.size());
-  std::vector<FixedSolid> solids;
-  std::vector<std::size_t> body_of;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
-    if (body.motion != motion || body.point_probe) continue;
-    sheets[b] = {sampled.surfaces[b].positions, sampled.surfaces[b].normals};
-    if (motion == BodyMotion::kFree || sampled.distance_fields[b].distance.empty()) continue;
-    solids.push_back({&sampled.surfaces[b], sampled.distance_fields[b].view(), body.pose});
-    body_of.push_back(b);
+    if (body.motion == motion && !body.point_probe)
+      sheets[b] = {sampled.surfaces[b].positions, sampled.surfaces[b].normals};
   }
+  if (motion == BodyMotion::kFree) return sheets;
+  const auto [solids, body_of] = fixed_solids(scene, sampled);
   const std::vector<std::vector<std::uint32_t>> exposed =
       exposed_samples(solids, static_cast<float>(plan.spacing));
   for (std::size_t n = 0; n < exposed.size(); ++n) {
