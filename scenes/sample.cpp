@@ -9,7 +9,6 @@
 
 #include "scenes/gltf/extras.h"
 #include "scenes/mesh/closed.h"
-#include "scenes/mesh/mesh_solid.h"
 #include "scenes/mesh/tree.h"
 #include "scenes/sampling/distance.h"
 #include "scenes/sampling/fill.h"
@@ -40,13 +39,12 @@ constexpr double kSmoothSheet = 0.7;
 struct SampledMesh {
   SurfaceSamples surface;
   DistanceField field;
-  std::shared_ptr<const SolidShape> solid;
 };
 
 Result<SampledMesh> sample_mesh(const Scene& scene, const Body& body, double spacing,
                                 const std::function<void(double)>& tell) {
   const TriangleMesh& triangles = scene.meshes[body.mesh];
-  mesh::MeshTree tree(triangles);
+  const mesh::MeshTree tree(triangles);
   const double thickness = sampling::wall_thickness(triangles, tree);
   if (thickness < kThinnest * spacing) {
     return Error{sampling::place_of(scene, "node '" + body.name + "'"),
@@ -56,14 +54,11 @@ Result<SampledMesh> sample_mesh(const Scene& scene, const Body& body, double spa
                      short_number(0.001 * std::floor(1e4 * thickness) * 0.1) + ", or thicken the wall"};
   }
   mesh::Components parts;
-  const mesh::WeldedMesh welded = mesh::weld(triangles);
-  mesh::find_defects(welded, &parts);
+  mesh::find_defects(mesh::weld(triangles), &parts);
   const double apart = sheet_spacing(scene, body, spacing);
   SurfaceSamples surface = sampling::sample_surface(triangles, tree, parts.count, apart, tell);
   surface.particle_volume *= static_cast<float>(spacing / apart);  // area · spacing / count
-  DistanceField field = sampling::make_distance_field(triangles, tree, spacing);
-  return SampledMesh{std::move(surface), std::move(field),
-                     std::make_shared<const mesh::MeshSolid>(welded, std::move(tree), parts)};
+  return SampledMesh{std::move(surface), sampling::make_distance_field(triangles, tree, spacing)};
 }
 
 /// A spacing that is far too small must not look like a
@@ -147,7 +142,6 @@ Result<SampledScene> sample(const Scene& scene, double spacing, SampleReport* re
     if (body.point_probe) {
       out.surfaces.push_back(sample_probe(spacing));
       out.distance_fields.emplace_back();
-      out.solids.emplace_back();
       continue;
     }
     const auto [known, is_new] = first_sampled.try_emplace(sheet_key(scene, body, spacing), b);
@@ -157,11 +151,9 @@ Result<SampledScene> sample(const Scene& scene, double spacing, SampleReport* re
       work.end(body);
       out.surfaces.push_back(std::move(sampled.value().surface));
       out.distance_fields.push_back(std::move(sampled.value().field));
-      out.solids.push_back(std::move(sampled.value().solid));
     } else {
       out.surfaces.push_back(SurfaceSamples(out.surfaces[known->second]));
       out.distance_fields.push_back(DistanceField(out.distance_fields[known->second]));
-      out.solids.push_back(std::shared_ptr(out.solids[known->second]));
     }
   }
   for (const Region& region : scene.regions) {

@@ -6,11 +6,9 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <memory>
 #include <string>
 #include <vector>
 
-#include "scenes/solid_shape.h"
 #include "sim/math/distance_field.h"
 #include "sim/math/pose.h"
 #include "sim/math/result.h"
@@ -258,8 +256,6 @@ struct SampledScene {
   double spacing = 0.0;                        ///< m
   std::vector<SurfaceSamples> surfaces;        ///< one a body
   std::vector<DistanceField> distance_fields;  ///< one a body; empty (size 0) for a point probe
-  /// One a body, shared by bodies of one mesh; null for a point probe.
-  std::vector<std::shared_ptr<const SolidShape>> solids;
   std::vector<DistanceField> region_fields;    ///< one a region
   std::vector<glm::vec3> fluid_positions;      ///< m, world
   std::vector<glm::vec3> fluid_velocities;     ///< m/s

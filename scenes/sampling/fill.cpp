@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <memory>
 #include <set>
 #include <utility>
 
@@ -26,9 +28,9 @@ constexpr double kFieldError = 0.75;
 /// A body as an obstacle for a fluid.
 struct Obstacle {
   DistanceFieldView field;
-  const SolidShape* solid;
-  Pose to_body;    ///< world to mesh frame
-  glm::dvec3 low;  ///< world bounds, `clear` around it
+  std::shared_ptr<const mesh::MeshTree> tree;  ///< shared by bodies of one mesh
+  Pose to_body;                                ///< world to mesh frame
+  glm::dvec3 low;                              ///< world bounds, `clear` around it
   glm::dvec3 high;
   std::size_t body;
   std::size_t overlaps = 0;  ///< lattice points inside it
@@ -36,11 +38,14 @@ struct Obstacle {
 
 std::vector<Obstacle> find_obstacles(const Scene& scene, const SampledScene& sampled, double clear) {
   std::vector<Obstacle> out;
+  std::map<int, std::shared_ptr<const mesh::MeshTree>> trees;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
     if (body.point_probe || sampled.distance_fields[b].size.x == 0) continue;
+    std::shared_ptr<const mesh::MeshTree>& tree = trees[body.mesh];
+    if (!tree) tree = std::make_shared<const mesh::MeshTree>(scene.meshes[body.mesh]);
     Obstacle o{sampled.distance_fields[b].view(),
-               sampled.solids[b].get(),
+               tree,
                inverse(body.pose),
                glm::dvec3(INFINITY),
                glm::dvec3(-INFINITY),
@@ -106,7 +111,9 @@ double distance_to(const Obstacle& o, const glm::vec3& local, double clear) {
   const double distance = sample_distance(o.field, local).distance;
   const double error = kFieldError * o.field.cell;
   if (distance > clear + error || distance < -error) return distance;
-  return o.solid->at(local).distance;
+  const double exact = o.tree->nearest(local).distance;
+  const bool inside = distance < error ? o.tree->inside(local) : false;
+  return inside ? -exact : exact;
 }
 
 bool clear_of(std::vector<Obstacle>& obstacles, const glm::dvec3& point, double clear) {

@@ -49,7 +49,6 @@ void add_paddle(testing::Tank& tank, const FlowOptions& o) {
   samples.particle_volume = static_cast<float>(std::pow(o.spacing, 3));
   tank.sampled.surfaces.push_back(samples);
   tank.sampled.distance_fields.emplace_back();
-  tank.sampled.solids.emplace_back();
   testing::clear_box(tank.sampled, glm::vec3(paddle.pose.position), glm::vec3(half + 0.8 * o.spacing));
   Grip grip;
   grip.name = "hand";

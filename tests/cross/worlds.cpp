@@ -52,7 +52,6 @@ Tank thick_tank(double viscosity, double above) {
   samples.particle_volume = 1e-6f;
   tank.sampled.surfaces.push_back(samples);
   tank.sampled.distance_fields.emplace_back();
-  tank.sampled.solids.emplace_back();
   clear_box(tank.sampled, glm::vec3(box.pose.position), glm::vec3(0.021f));
   return tank;
 }

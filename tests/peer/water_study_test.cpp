@@ -17,7 +17,7 @@ TEST(WaterAtADistance, AHandThatSwingsItFeelsItAsIfItWereHere) {
   std::printf("%.1f N; of it a rigid mass leaves %.0f %%, modes %.1f %%, with their lift %.1f %%\n", water_force(run),
               1e2 * split.rigid, 1e2 * split.modes, 1e2 * split.lifts);
   EXPECT_GT(split.rigid, 0.25);
-  EXPECT_LT(split.lifts, 0.07);  // 0.05 until sheets were laid by the mesh
+  EXPECT_LT(split.lifts, 0.05);
   ReplicaTuning by_line;
   by_line.follows_slosh = false;
   for (const auto& [round_trip, most] : {std::pair{0.05, 0.08}, {0.1, 0.1}, {0.2, 0.1}, {0.4, 0.11}}) {

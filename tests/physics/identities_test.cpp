@@ -71,7 +71,6 @@ TEST_P(Corrected, momentum_of_fluid_and_free_body_together) {
   ASSERT_TRUE(sampled) << sampled.error().text();
   tank.sampled.surfaces.push_back(sampled.value().surfaces[0]);
   tank.sampled.distance_fields.push_back(sampled.value().distance_fields[0]);
-  tank.sampled.solids.push_back(sampled.value().solids[0]);
   b.scene.domain_max.y += 0.2;
   Experiment e(b.scene, tank.sampled);
   const double dt = e.world().plan().time_step, box_mass = b.scene.bodies[box].mass.mass;

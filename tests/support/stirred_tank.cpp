@@ -34,7 +34,6 @@ int add_probe(Tank& tank, const glm::dvec3& position) {
   tank.scene.bodies.push_back(probe);
   tank.sampled.surfaces.emplace_back();
   tank.sampled.distance_fields.emplace_back();
-  tank.sampled.solids.emplace_back();
   return static_cast<int>(tank.scene.bodies.size()) - 1;
 }
 
@@ -83,7 +82,6 @@ Tank stirred_tank(double wall_viscosity) {
   samples.particle_volume = 1e-6f;
   tank.sampled.surfaces.push_back(samples);
   tank.sampled.distance_fields.emplace_back();
-  tank.sampled.solids.emplace_back();
   clear_box(tank.sampled, glm::vec3(paddle.pose.position), {0.012f, 0.047f, 0.037f});
   add_grip(tank, 1);
   return tank;

@@ -90,7 +90,6 @@ Tank make_tank(const TankOptions& o) {
   samples.particle_volume = static_cast<float>(std::pow(o.spacing, 3));
   tank.sampled.surfaces.push_back(samples);
   tank.sampled.distance_fields.emplace_back();
-  tank.sampled.solids.emplace_back();
   tank.scene.domain_min = -half - 0.2;
   tank.scene.domain_max = glm::dvec3(half.x, o.inner.y, half.z) + 0.2;
   return tank;
