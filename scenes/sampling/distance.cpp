@@ -23,18 +23,13 @@ DistanceField make_distance_field(const TriangleMesh& mesh, const mesh::MeshTree
   const mesh::Grid grid{glm::dvec3(field.origin), static_cast<double>(field.cell), field.size};
   const std::vector<std::int8_t> winding = mesh::winding_numbers(mesh, grid);
   field.distance.resize(grid.count());
-  std::size_t index = 0;
   int hint = -1;
-  for (int k = 0; k < field.size.z; ++k) {
-    for (int j = 0; j < field.size.y; ++j) {
-      for (int i = 0; i < field.size.x; ++i, ++index) {
-        const glm::vec3 point = field.origin + field.cell * glm::vec3(i, j, k);
-        const mesh::NearestPoint near = tree.nearest(point, INFINITY, hint);
-        hint = near.triangle;
-        field.distance[index] = winding[index] > 0 ? -near.distance : near.distance;
-      }
-    }
-  }
+  for_each_node(field.view(), [&](float, const glm::vec3& point, int n) {
+    const auto index = static_cast<std::size_t>(n);
+    const mesh::NearestPoint near = tree.nearest(point, INFINITY, hint);
+    hint = near.triangle;
+    field.distance[index] = winding[index] > 0 ? -near.distance : near.distance;
+  });
   return field;
 }
 
