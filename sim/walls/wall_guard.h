@@ -28,6 +28,7 @@ inline constexpr float kStride = 0.7f;      ///< of the depth, between two looks
 inline constexpr int kMostLooks = 64;       ///< along one way
 inline constexpr int kMostTurns = 4;        ///< by walls of one body in one sub-step
 inline constexpr float kNoSlope = 0.3f;     ///< a gradient shorter than this is that of the middle of a wall
+inline constexpr float kShallow = 0.35f;    ///< of the depth: at edges there may be no slope above
 inline constexpr float kMostLifted = 3.0f;  ///< depths from which a particle is still put back
 
 /// A place on the way, as the field has it.
@@ -44,9 +45,12 @@ SLOSH_HD inline Look look(const DistanceFieldView& field, const glm::vec3& at) {
   return {at, slope > 0.0f ? s.gradient / slope : glm::vec3(0.0f), s.distance, slope};
 }
 
-/// In a solid whose way out has turned round since the look before: past the middle of a wall.
-SLOSH_HD inline bool past_middle(const Look& before, const Look& now) {
-  return now.slope < kNoSlope || (before.distance < 0.0f && glm::dot(before.normal, now.normal) < -kNoSlope);
+/// In a solid whose way out has turned round since the look before: past the middle of a wall. Just within a
+/// convex edge the field, which is coarse, has no slope either, but is not deep; nor is anybody kept who is
+/// less deep than before.
+SLOSH_HD inline bool past_middle(const Look& before, const Look& now, float depth) {
+  if (before.distance < 0.0f && glm::dot(before.normal, now.normal) < -kNoSlope) return true;
+  return now.slope < kNoSlope && now.distance < -kShallow * depth && now.distance <= before.distance;
 }
 
 /// Follows the straight way from `good` to `end`. True when it gets there; then, and else too, `good` is the
@@ -59,11 +63,14 @@ SLOSH_HD inline bool follow(const DistanceFieldView& field, float depth, const g
   const int count = looks < kMostLooks - 1 ? static_cast<int>(looks) + 1 : kMostLooks;
   for (int i = 1; i <= count; ++i) {
     const Look now = look(field, start + way * (static_cast<float>(i) / static_cast<float>(count)));
-    if (now.distance < -depth || (now.distance < 0.0f && past_middle(good, now))) {
+    if (now.distance < -depth || (now.distance < 0.0f && past_middle(good, now, depth))) {
       bad = now;
       return false;
     }
+    // The way out from where there was a slope is known better than where there is none.
+    const glm::vec3 out = now.slope < kNoSlope && now.distance < 0.0f ? good.normal : now.normal;
     good = now;
+    good.normal = out;
   }
   return true;
 }
@@ -98,7 +105,7 @@ SLOSH_HD inline bool guard_particle(const GuardedBody& body, const glm::vec3& fr
     if (follow(body.field, body.depth, end, good, bad)) break;
     caught = true;
     // The wall that it met, or past its middle the side that it came from.
-    const Look& wall = bad.slope < kNoSlope || past_middle(good, bad) ? good : bad;
+    const Look& wall = bad.slope < kNoSlope || past_middle(good, bad, body.depth) ? good : bad;
     const float lacks = rest - (wall.distance + glm::dot(end - wall.at, wall.normal));
     end = lacks > 0.0f ? end + wall.normal * lacks : wall.at + wall.normal * (rest - wall.distance);
     if (turn + 1 == kMostTurns) end = good.at;
