@@ -5,7 +5,8 @@
 // otherwise than on the cubic lattice that they start from: at the same density their moment is 5 % smaller,
 // and measured against the lattice's they are taken for a surface, where less of the correction is made. So
 // pressure is none at a smaller sum, and the moment that directions of pressure are measured against is that
-// of settled particles. At the lattice's sum they lie half a percent closer than it, too.
+// of settled particles. A tank 10 cm deep at 10 mm, before and with it: level −4.5, −1.6 %; pressure 3 and
+// 7 cm down −12, −3.5 and −2.9, −0.1 %; a wave keeps 91.7 and 93.6 % of its swing each period.
 //
 // A lattice let go is then under pressure, as much as half its depth makes: let go at once it throws its
 // surfaces off (the front of a dam break 20 % ahead of the reading instead of 14). So it expands over
@@ -21,9 +22,6 @@ namespace slosh {
 /// The share of the lattice's moment that settled particles lack. At 0, 3, 5 % (expansion alone is 2) a wave
 /// keeps 89, 93, 94 % of its swing, a ball of 1.5 spacings in a tube is dragged by 24, 29, 31 % too little.
 inline constexpr double kPackedMoment = 0.05;
-/// The share of the lattice's room that settled particles lack where their sum is the lattice's, in both
-/// models that correct gradients (tests/physics/settled_packing_test.cpp, 8 mm).
-inline constexpr double kPackedRoom = 0.005;
 /// Of the compression under the fluid's weight, at most: a softer fluid is one that shall give.
 inline constexpr double kMostLoad = 0.02;
 inline constexpr double kSettlingTime = 0.2;  ///< s, settling before the run counted
@@ -32,7 +30,7 @@ inline constexpr double kSettlingTime = 0.2;  ///< s, settling before the run co
 /// depth.
 inline CorrectionConstants settled(const CorrectionConstants& lattice, double load, double age) {
   const double share = std::clamp(age / kSettlingTime, 0.0, 1.0);
-  const double thinner = std::min(load, kMostLoad) + kPackedRoom;
+  const double thinner = std::min(load, kMostLoad);
   const double moment = 1.0 - share * (kPackedMoment + thinner);
   CorrectionConstants c = lattice;
   c.rest_number = static_cast<float>((1.0 - share * thinner) * lattice.rest_number);

@@ -84,8 +84,8 @@ INSTANTIATE_TEST_SUITE_P(
     error, KnownAnswer,
     ::testing::Values(
         // Without pressure/settled_packing.h the level is 9, 5, 4.5 and 4.3 % too low.
-        still_tank(0.02, 0.045, 0.06, 0.155), still_tank(0.0125, 0.01, 0.02, 0.065),
-        still_tank(0.01, 0.006, 0.028, 0.035), still_tank(0.008, 0.006, 0.026, 0.025),
+        still_tank(0.02, 0.045, 0.06, 0.155), still_tank(0.0125, 0.016, 0.02, 0.06),
+        still_tank(0.01, 0.012, 0.022, 0.035), still_tank(0.008, 0.014, 0.017, 0.015),
         // 0.10 held while drag on jostling turned the fluid by 4 % faster than its glass
         // (viscosity/neighbour_flow.h); fluid of 2 Pa·s, which has none of it, lacks 12 to 14 %, too: it
         // stands low where its surface meets the wall steeply, by 6 % at 4 mm and 2 % at 2 mm.
@@ -93,32 +93,32 @@ INSTANTIATE_TEST_SUITE_P(
         // Walls of 1.4 and 1.75 spacings. While what is behind them crowded theirs, and where there is no
         // room for it they counted as thick ones, the plate was lifted by +60 to +70 % at 10 mm and -14 at 8,
         // and the level was -1 and -6 % (sim/walls/README.md, *Thin walls*).
-        std::vector<Known>{{"thin_walls", 0.01, "level in a glass", 0.01},
-                           {"thin_walls", 0.01, "lift of a plate", 0.04}},
-        std::vector<Known>{{"thin_walls", 0.008, "level in a glass", 0.01},
-                           {"thin_walls", 0.008, "lift of a plate", 0.02}},
+        std::vector<Known>{{"thin_walls", 0.01, "level in a glass", 0.016},
+                           {"thin_walls", 0.01, "lift of a plate", 0.025}},
+        std::vector<Known>{{"thin_walls", 0.008, "level in a glass", 0.017},
+                           {"thin_walls", 0.008, "lift of a plate", 0.015}},
         // Five slabs: as one solid they lose nothing; each for itself 46 particles, its floor +30 %. While
         // chance decided whose the particles in an edge are, and sheets bent round the ends of hidden faces,
         // the floor had +2 to +6 %, walls -6 to +2 and the centre -1 to +6, by the spacing.
         std::vector<Known>{{"tank_faces", 0.02, "floor", 0.018},
-                           {"tank_faces", 0.02, "side walls, mean", 0.008},
+                           {"tank_faces", 0.02, "side walls, mean", 0.005},
                            {"tank_faces", 0.02, "centre of pressure above the floor", 0.03}},
         std::vector<Known>{{"tank_faces", 0.01, "floor", 0.004},
                            {"tank_faces", 0.01, "side walls, mean", 0.024},
                            {"tank_faces", 0.01, "centre of pressure above the floor", 0.01}},
         std::vector<Known>{{"slope", 0.0125, "slope", 0.04}, {"slope", 0.0125, "force along the tank", 1e-3}},
-        // -3.4 %; close spacings -2.7 ± 1.4.
-        std::vector<Known>{{"slope", 0.01, "slope", 0.04}, {"slope", 0.01, "force along the tank", 1e-3}},
-        std::vector<Known>{{"slope_gentle", 0.01, "slope", 0.15},  // -13 %; close spacings -13 to +4
+        // -1.9 %; of sums in another order, and from 9.8 to 10.1 mm, -1.1 to -2.8.
+        std::vector<Known>{{"slope", 0.01, "slope", 0.03}, {"slope", 0.01, "force along the tank", 1e-3}},
+        std::vector<Known>{{"slope_gentle", 0.01, "slope", 0.03},  // close spacings -12 to -1 %
                            {"slope_gentle", 0.01, "force along the tank", 1e-3}},
-        std::vector<Known>{{"buoyancy_box", 0.016, "buoyancy", 0.03}},
-        std::vector<Known>{{"buoyancy_box", 0.01, "buoyancy", 0.005}},
-        std::vector<Known>{{"buoyancy_box", 0.008, "buoyancy", 0.005}},
+        std::vector<Known>{{"buoyancy_box", 0.016, "buoyancy", 0.095}},  // +9.1 %; close spacings -6 to +7
+        std::vector<Known>{{"buoyancy_box", 0.01, "buoyancy", 0.02}},
+        std::vector<Known>{{"buoyancy_box", 0.008, "buoyancy", 0.015}},
         // A ball of 2.5 spacings was −3.7 % while its sheet lay as deep as a flat one's.
         std::vector<Known>{{"buoyancy_sphere", 0.01, "buoyancy", 0.01}},
         std::vector<Known>{{"buoyancy_sphere", 0.00714, "buoyancy", 0.015}},
         std::vector<Known>{{"draft", 0.013, "draft", 0.04}},
-        std::vector<Known>{{"draft", 0.01, "draft", 0.025}},
+        std::vector<Known>{{"draft", 0.01, "draft", 0.055}},  // -5.0 %; close spacings -1.0 ± 2.4
         std::vector<Known>{{"sloshing", 0.016, "period", 0.006},
                            {"sloshing", 0.016, "swing kept a period", 0.105}},
         std::vector<Known>{{"sloshing", 0.01, "period", 0.003},
@@ -127,7 +127,7 @@ INSTANTIATE_TEST_SUITE_P(
         // % that was lost made up for as much that fluid at walls is too stiff by.
         std::vector<Known>{{"spin_up", 0.005, "torque at tau 0.02", 0.04},
                            {"spin_up", 0.005, "torque at tau 0.05", 0.045},
-                           {"spin_up", 0.005, "torque at tau 0.10", 0.075},
+                           {"spin_up", 0.005, "torque at tau 0.10", 0.06},
                            {"spin_up", 0.005, "impulse", 0.025}},
         // Thin and slow fluid yields, and creeps by itself (sim/pressure/README.md), and five spacings across
         // the radius see that alone. The report's own 7.1 mm, where 5 Pa·s is within a percent, take 17 s.
@@ -150,12 +150,12 @@ INSTANTIATE_TEST_SUITE_P(
                            {"smooth_glass", 0.005, "kept, 2 cm/s at the rim", 0.06}},
         // A ball of 1.5 and 2 spacings. It meets particle by particle what drags it now, so a stroke's halves
         // differ more (0.03 held where it slid through).
-        std::vector<Known>{{"stokes", 0.008, "drag", 0.065}, {"stokes", 0.008, "drift over a stroke", 0.028}},
-        std::vector<Known>{{"stokes", 0.006, "drag", 0.032}, {"stokes", 0.006, "drift over a stroke", 0.01}},
+        std::vector<Known>{{"stokes", 0.008, "drag", 0.03}, {"stokes", 0.008, "drift over a stroke", 0.028}},
+        std::vector<Known>{{"stokes", 0.006, "drag", 0.03}, {"stokes", 0.006, "drift over a stroke", 0.01}},
         // -4.7 % was of honey that had not settled yet: it still sagged around the ball.
-        std::vector<Known>{{"stokes_honey", 0.008, "drag", 0.11},
+        std::vector<Known>{{"stokes_honey", 0.008, "drag", 0.09},
                            {"stokes_honey", 0.008, "drift over a stroke", 0.135}},
-        std::vector<Known>{{"stokes_honey", 0.006, "drag", 0.068}},
+        std::vector<Known>{{"stokes_honey", 0.006, "drag", 0.06}},
         // +3 to +6 %. Before thick fluid settled as thin fluid does, -4 % at 50 and -31 % at 1000 Pa·s.
         std::vector<Known>{{"turned_ball", 0.008, "torque, 5 Pa·s, 0.01 of the density", 0.075},
                            {"turned_ball", 0.008, "torque, 5 Pa·s, 20 of the density", 0.075},
@@ -165,14 +165,14 @@ INSTANTIATE_TEST_SUITE_P(
                            {"turned_ball", 0.008, "torque, 1000 Pa·s, 20 of the density", 0.045}},
         // Of the ball's lift, 71 mN: 0.6 % are left; of close spacings 0.4 in the mean.
         std::vector<Known>{{"slow_ball", 0.006, "force, moving", 0.02},
-                           {"slow_ball", 0.006, "force left 0.9 s after", 0.011}},
+                           {"slow_ball", 0.006, "force left 0.9 s after", 0.007}},
         // Films are behind potential flow by as much as they are behind these.
         std::vector<Known>{{"dam_break", 0.146 / 16, "front against potential flow, worst", 0.034},
                            {"dam_break", 0.146 / 16, "front, worst", 0.245}},
         std::vector<Known>{{"dam_break_long", 0.05715 / 10, "front against potential flow, worst", 0.045},
                            {"dam_break_long", 0.05715 / 10, "speed of the front", 0.05},
                            {"dam_break_long", 0.05715 / 10, "front, worst", 0.19}},
-        std::vector<Known>{{"shear_wave", 0.01, "rate of decay", 0.016}},
+        std::vector<Known>{{"shear_wave", 0.01, "rate of decay", 0.012}},
         std::vector<Known>{{"shear_wave", 0.008, "rate of decay", 0.007}},
         std::vector<Known>{{"bounce", 0.015, "rebound", 1e-3}}),
     named);

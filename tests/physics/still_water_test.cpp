@@ -47,7 +47,7 @@ TEST(StillSyrup, creeps_and_does_not_turn_over) {
   EXPECT_LT(std::abs(syrup.axis), 0.0015);
 }
 
-// With a wider support a wall is more layers (pressure/wall_layers.h): 2.0 mm/s here, 0.7 in the report's
+// With a wider support a wall is more layers (pressure/wall_layers.h): 1.1 mm/s here, 0.7 in the report's
 // tank, whose walls drag; there those of a ratio of 2 left 3.8, one layer 10.2.
 TEST(StillSyrup, nor_with_a_wider_support) {
   SceneBuilder b = full_tank(ParticleModel::kCorrected, 1000.0, 2.0);
@@ -56,7 +56,7 @@ TEST(StillSyrup, nor_with_a_wider_support) {
   report_value("still syrup moves, support ratio 2.5", syrup.all, "m/s");
   report_value("still syrup rises along the axis, support ratio 2.5", syrup.axis, "m/s");
   EXPECT_LT(syrup.all, 0.007);
-  EXPECT_LT(std::abs(syrup.axis), 0.0025);
+  EXPECT_LT(std::abs(syrup.axis), 0.002);
 }
 
 // A ball that a stiff hand sets in motion at 4.905 m/s²: half of the water that it displaces goes along.
