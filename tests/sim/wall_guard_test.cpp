@@ -60,6 +60,15 @@ Solid plate(float thickness) {
   return box({0.0f, -0.06f, -0.06f}, {thickness * kSpacing, 0.06f, 0.06f});
 }
 
+/// From -1 to 1, the same in each run.
+struct Noise {
+  unsigned state;
+  float operator()() {
+    state = state * 1664525u + 1013904223u;
+    return static_cast<float>(state >> 8) / 8388608.0f - 1.0f;
+  }
+};
+
 TEST(WallGuard, leaves_alone_what_stays_outside) {
   const Solid wall = plate(1.5f);
   const glm::vec3 from(-0.5f * kSpacing, 0.0f, 0.0f);
@@ -138,11 +147,7 @@ TEST(WallGuard, corner_of_a_vessel_holds) {
   const Solid vessel(-half - wall, half + wall, [&](const glm::vec3& p) {
     return std::max(box_distance(p, -half - wall, half + wall), -box_distance(p, -half, half));
   });
-  unsigned state = 3;
-  const auto noise = [&] {
-    state = state * 1664525u + 1013904223u;
-    return static_cast<float>(state >> 8) / 8388608.0f - 1.0f;
-  };
+  Noise noise{3};
   for (int particle = 0; particle < 200; ++particle) {
     glm::vec3 x = 0.035f * glm::vec3(noise(), noise(), noise()), v(0.0f);
     glm::vec3 way = glm::normalize(glm::vec3(noise(), noise(), noise())) * kSpacing;
@@ -188,11 +193,7 @@ TEST_P(ConvexCorner, lets_pass_whoever_grazes_it) {
   const float half = 0.02f + GetParam() * 0.5f * kSpacing;
   const glm::vec3 corner(half);
   const Solid cube = box(-corner, corner);
-  unsigned state = 7;
-  const auto noise = [&] {
-    state = state * 1664525u + 1013904223u;
-    return static_cast<float>(state >> 8) / 8388608.0f - 1.0f;
-  };
+  Noise noise{7};
   int grazing = 0;
   for (int n = 0; n < 20000; ++n) {
     const glm::vec3 from = corner + 0.5f * kSpacing * glm::vec3(noise(), noise(), noise());
