@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <set>
 #include <vector>
 
 #include "host/report/stress/scenes.h"
@@ -167,22 +168,33 @@ TEST(Walls, press_crushes_fluid) {
   Experiment e(report::press_scene(), kSpacing);
   const std::size_t count = e.world().fluid_count();
   e.handle(0).engaged = true;
+  // What spurts past the lid may come over the rim, and lie on it or fall; of all else nothing is outside.
+  const double off = 0.8 * kSpacing, rim = 0.2 - off, half = 0.06 + off;
+  std::set<std::size_t> over, passed;
+  const auto look = [&] {
+    const Snapshot now = e.picture();
+    for (std::size_t i = 0; i < now.positions.size(); ++i) {
+      const glm::vec3& p = now.positions[i];
+      if (now.fluid_index[i] == report::kRetired) continue;
+      if (p.y > rim)
+        over.insert(i);
+      else if ((std::abs(p.x) > half || std::abs(p.z) > half || p.y < -off) && !over.contains(i))
+        passed.insert(i);
+    }
+  };
   const auto lid_to = [&](double y, double seconds) {
     const double from = e.handle(0).pose.position.y, start = e.world().time();
     e.run(seconds, [&] {
+      look();
       e.handle(0).pose.position.y = glm::mix(from, y, std::min(1.0, (e.world().time() - start) / seconds));
       e.handle(0).twist.linear.y = (y - from) / seconds;
     });
     e.handle(0).twist = {};
   };
   lid_to(0.02, 0.5);
-  e.run(0.5);
+  e.run(0.5, look);
   ASSERT_TRUE(all_finite(e.world()));
-  const double off = 0.8 * kSpacing;
-  EXPECT_EQ(report::count_outside(e.picture(), Pose{},
-                                  {{-0.06 - off, -off, -0.06 - off}, {0.06 + off, 0.2, 0.06 + off}, true}),
-            0u)
-      << "nothing passes a wall";
+  EXPECT_TRUE(passed.empty()) << passed.size() << " passed a wall";
   report_value("press, largest compression", e.world().diagnostics().max_compression, "");
   const std::uint32_t status = e.world().take_status();
   EXPECT_EQ(status & kStatusNonFinite, 0u);
