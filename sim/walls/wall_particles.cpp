@@ -197,9 +197,9 @@ void close_gaps(const DistanceFieldView& field, float depth, float spacing, floa
 }
 
 constexpr float kNearEdges = 0.6f;  // of the depth behind faces that meet: as much a field has at least of it
-// Spacings that the faces of a convex edge lie deeper near it. Without, boxes of 5 and 6 spacings are lifted
-// by 1.1 and 0.9 % too much; a half of that is fluid that lies half a percent too closely
-// (pressure/README.md).
+// Spacings that the faces of a convex edge lie deeper near it. Without, boxes of 8 and 10 spacings are lifted
+// by 1.1 and 0.9 % too much; a half of that is fluid that lies half a percent too closely (README.md,
+// *Edges*).
 constexpr float kDeeperNearEdges = 0.012f;
 
 // One body's particles in its mesh frame.
@@ -212,7 +212,8 @@ std::vector<SheetParticle> own_sheet(const SurfaceSamples& surface, const Distan
   std::vector<float> depths, thick;
   std::vector<bool> flat;
   PointBuckets thin(2.0f * spacing);
-  const ConvexEdges edges(surface, spacing);
+  std::optional<ConvexEdges> edges;
+  if (level) edges.emplace(surface, spacing);
   for (std::size_t i = 0; level && i < surface.positions.size(); ++i) {
     const float bent = bend(field, surface.positions[i], surface.normals[i], spacing);
     const float depth = deep.at(bent) * spacing;
@@ -238,7 +239,7 @@ std::vector<SheetParticle> own_sheet(const SurfaceSamples& surface, const Distan
     const bool thin_near = two_sided && thin.any_within(at, 2.0f * spacing);
     if (flat[i] && !thin_near && thick[i] >= kTwoSides * depth) {
       const float deeper = depth + kDeeperNearEdges * spacing;
-      const std::optional<glm::vec3> p = edges.behind(i, deeper);
+      const std::optional<glm::vec3> p = edges->behind(i, deeper);
       if (p && solid_depth(field, *p) > kNearEdges * depth) {
         sheet.push_back({*p, at, normal, deeper});
         continue;
