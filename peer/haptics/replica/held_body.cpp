@@ -36,6 +36,9 @@ constexpr double kKept = 2e-3;
 constexpr double kLoadRoundTrips = 2.0;  // after which a table that is met counts as told of
 constexpr double kForesees = 2.0;
 constexpr double kDoubt = 3.0;
+/// N that words' forces may be off by for what a word rounds: no contact. Whatever is doubted is a friction,
+/// however little of it (README, *What rounding is not*).
+constexpr double kRounding = 0.1;
 constexpr double kForgets = 1.0;
 constexpr double kForgetsRoundTrips = 4.0;
 constexpr double kForgives = 1.0;  // s, in which a debt that others made is let go of
@@ -213,7 +216,7 @@ void HeldBody::note_unrest(const FluidLoad& load, double elapsed) noexcept {
   const double now = std::min(unforeseen / kUnrest, 1.0);
   const double forget = 1.0 - std::exp(-std::clamp(elapsed, 0.0, 1.0) / kUnrestMemory);
   unrest_ = now > unrest_ ? now : unrest_ + forget * (now - unrest_);
-  const double doubt = std::min(doubtful / kDoubt, 1.0);
+  const double doubt = std::clamp((doubtful - kRounding) / (kDoubt - kRounding), 0.0, 1.0);
   doubt_ = doubt > doubt_ ? doubt : doubt_ + forget * (doubt - doubt_);
   calm_load_ += elapsed;
   // A weight that is carried down gives; one that rests on something does not.
