@@ -237,8 +237,8 @@ std::vector<double> swung_with(double rounds) {
   const CouplingGains gains{1000.0, 30.0, 10.0, 0.3};
   constexpr double kRoundTrip = 0.4, kLoad = 10.0, kSwing = 0.044;
   const double turn = 2.0 * std::numbers::pi * 0.9;
-  const auto place = [&](double t) { return t > 0.0 ? kSwing * (1.0 - std::cos(turn * t)) : 0.0; };
-  const auto speed = [&](double t) { return t > 0.0 ? kSwing * turn * std::sin(turn * t) : 0.0; };
+  const auto place = [&](double t) { return kSwing * (1.0 - std::cos(turn * t)); };
+  const auto speed = [&](double t) { return kSwing * turn * std::sin(turn * t); };
   const auto pace = [&](double t) { return t > 0.0 ? kSwing * turn * turn * std::cos(turn * t) : 0.0; };
   HeldBody held(body(), {{Pose{}, gains}});
   std::vector<OwnHand> own(1);
@@ -271,7 +271,7 @@ std::vector<double> swung_with(double rounds) {
 }
 
 /// What is doubted of a load is taken out of the motion, however little is: 3 mN for the 3 N of a contact
-/// were a friction of a newton.
+/// were felt as up to 2.8 N.
 TEST(HeldBody, WhatWordsRoundIsNoContact) {
   const std::vector<double> right = swung_with(0.0);
   for (const double rounds : {0.003, 0.02}) {
