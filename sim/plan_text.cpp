@@ -32,6 +32,7 @@ const PassNames& names(PassId id) {
       {"contacts", "contacts"},
       {"move_bodies", "move bodies"},
   }};
+  static_assert(kNames.back().id != nullptr, "every pass has a name");
   return kNames[static_cast<std::size_t>(id)];
 }
 
