@@ -38,10 +38,10 @@ void run_passes(Engine& engine, std::span<const PassRow<Engine>> table, SubStepP
 /// Every pass of the particles is carried out by one row and no more.
 template <class Engine, std::size_t count>
 constexpr bool covers_all_particle_passes(const PassRow<Engine> (&table)[count]) {
-  for (const PassId id :
-       {PassId::kSortFluid, PassId::kPlaceBodies, PassId::kDensity, PassId::kPressureForce,
-        PassId::kOneViscosity, PassId::kPairViscosity, PassId::kWalls, PassId::kWrenches, PassId::kBodyDrag,
-        PassId::kImplicitDrag, PassId::kPressureSolve, PassId::kIntegrateFluid}) {
+  for (const PassId id : {PassId::kSortFluid, PassId::kPlaceBodies, PassId::kDensity, PassId::kFluidStress,
+                          PassId::kPressureForce, PassId::kOneViscosity, PassId::kPairViscosity,
+                          PassId::kWalls, PassId::kWrenches, PassId::kBodyDrag, PassId::kImplicitDrag,
+                          PassId::kPressureSolve, PassId::kIntegrateFluid}) {
     int rows = 0;
     for (const PassRow<Engine>& row : table) rows += row.covers.has(id);
     if (rows != 1) return false;

@@ -8,6 +8,7 @@
 #include "sim/math/format.h"
 #include "sim/pressure/pressure_solve.h"
 #include "sim/step_limits.h"
+#include "sim/viscosity/noise.h"
 #include "sim/viscosity/stability.h"
 
 namespace slosh {
@@ -82,6 +83,17 @@ void decide_drag_solve(Plan& plan) {
   if (plan.has(PassId::kImplicitDrag)) plan.runs.set(PassId::kBodyDrag, false);
 }
 
+// Beside drag on jostling a thin fluid's own is next to nothing. As thick as the corrected model asks for in
+// the incompressible one too, so that both are one fluid.
+bool suits_stress(const FluidExtremes& fluids, const Plan& plan) {
+  return plan.viscous() && corrects_gradients(plan.model) && !plan.solves_drag &&
+         fluids.most_viscous > kThin * unsolved_noise(plan, fluids.lightest);
+}
+
+void decide_stress(Plan& plan) {
+  plan.runs.set(PassId::kFluidStress, plan.passes_stress && plan.drags_explicitly());
+}
+
 struct Reasons {
   std::string there, not_there;
 };
@@ -102,6 +114,16 @@ Reasons reasons_for(PassId id, const Scene& scene, const FluidExtremes& fluids, 
     case PassId::kDensity:
       return {paper ? "Eq 2 and 7, fluid particles only (section 4.1)" : "Eq 2 and 7, body particles counted",
               "no fluid"};
+    case PassId::kFluidStress:
+      return {
+          format(
+              "far from walls that hold fluid of up to %.3g Pa·s passes on the stress of its own flow, and "
+              "Eq 9 is what is left beside them",
+              fluids.most_viscous),
+          !plan.viscous()                   ? "nothing is viscous"
+          : !corrects_gradients(plan.model) ? "the corrected and the incompressible model's"
+          : plan.has(PassId::kImplicitDrag) ? "what is solved for is Eq 9's drag"
+                                            : "thin fluid: drag on jostling is stronger than its own"};
     case PassId::kPressureForce:
       return {paper                              ? "Eq 5"
               : plan.has(PassId::kPressureSolve) ? "Eq 5 by corrected gradients and the last step's pressures"
@@ -213,6 +235,8 @@ Plan make_plan(const Scene& scene, double spacing, bool may_solve_drag) {
       limit = longer;
     }
   }
+  plan.passes_stress = suits_stress(fluid_extremes(scene), plan);
+  decide_stress(plan);
   plan.time_step = limit.step;
   plan.time_step_reason = limit.reason;
   plan.max_speed = speed_limit(plan, plan.time_step);
@@ -224,6 +248,7 @@ void plan_viscosity(const Scene& scene, Plan& plan) {
   decide_viscosity(scene, plan);
   decide_body_drag(scene, plan);
   decide_drag_solve(plan);
+  decide_stress(plan);
   list_passes(scene, plan);
 }
 

@@ -16,6 +16,7 @@ enum class PassId : std::uint8_t {
   kSortFluid,
   kPlaceBodies,    ///< Eq 14
   kDensity,        ///< Eq 2 and 7
+  kFluidStress,    ///< what takes the place of Eq 6 and 9 in thick fluid (viscosity/fluid_stress.h)
   kPressureForce,  ///< Eq 5
   kOneViscosity,   ///< Eq 6: every fluid has the same μ, and no particle its own
   kPairViscosity,  ///< Eq 9: a μ a particle
@@ -73,6 +74,7 @@ struct Plan {
   std::vector<double> body_pressure;  ///< Pa, Eq 7 at that density
 
   bool solves_drag = false;  ///< kImplicitDrag runs whenever anything is viscous
+  bool passes_stress = false;     ///< kFluidStress runs whenever anything is viscous; no wall mirrors
   bool waits_for_bodies = false;  ///< walls move, and nothing keeps the fluid from waiting for them
   int sub_steps = 1;  ///< that a step is made of, each time_step / sub_steps long
 

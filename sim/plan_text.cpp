@@ -19,6 +19,7 @@ const PassNames& names(PassId id) {
       {"sort_fluid", "sort fluid"},
       {"place_bodies", "place body particles"},
       {"density", "density"},
+      {"fluid_stress", "stresses in the fluid"},
       {"pressure_force", "pressure force"},
       {"one_viscosity", "viscous force, one viscosity"},
       {"pair_viscosity", "viscous force, a viscosity a particle"},

@@ -9,7 +9,7 @@
 #include "sim/model.h"
 #include "sim/pressure/solved_state.h"
 #include "sim/snapshot.h"
-#include "sim/viscosity/neighbour_flow.h"
+#include "sim/viscosity/fluid_stress.h"
 #include "sim/walls/wall_particles.h"
 
 namespace slosh {
@@ -117,7 +117,9 @@ PairRows::Walk weigh(const Work& w, PairRows::Writer& writer, GroupSums& sum) {
 struct WallSums {
   Neighborhood<FloatBatch> sum;
   Vector3<FloatBatch> slope;  // Σ d (−W'/r), walls with their share
+  FloatBatch held;            // Σ d² (−W'/r) V of those that hold
 };
+template <bool stresses>
 void add_walls(const Work& w, std::uint32_t p, const BoundaryParticles& walls, const RowList& rows,
                WallSums& sums) {
   using Kernel = ModelParts<ParticleModel::kCorrected>::DensityKernel;
@@ -128,7 +130,15 @@ void add_walls(const Work& w, std::uint32_t p, const BoundaryParticles& walls, c
     const FloatBatch share = load(walls.pressure, j), h = load(walls.reach, j);
     const FloatBatch dx = x - load(walls.x, j), dy = y - load(walls.y, j), dz = z - load(walls.z, j);
     add_wall_neighbor<Kernel>(dx, dy, dz, share, layer * share, h, weight, sums.sum);
-    const FloatBatch slope = share * Kernel::pair(dx * dx + dy * dy + dz * dz, h, weight).slope_over_r;
+    const FloatBatch r_squared = dx * dx + dy * dy + dz * dz;
+    const FloatBatch single = Kernel::pair(r_squared, h, weight).slope_over_r;
+    if constexpr (stresses) {
+      const FloatBatch slips(static_cast<float>(kFreeSlip));
+      const FloatBatch volume =
+          xsimd::select(load(walls.viscosity, j) == slips, FloatBatch(0.0f), load(walls.volume, j));
+      sums.held += volume * r_squared * single;
+    }
+    const FloatBatch slope = share * single;
     sums.slope.x += slope * dx;
     sums.slope.y += slope * dy;
     sums.slope.z += slope * dz;
@@ -141,7 +151,7 @@ struct OwnSums {
 };
 
 // From what one particle's neighbours add up to to what it presses and drags by.
-template <bool flows>
+template <bool flows, bool stresses>
 class Finish {
  public:
   explicit Finish(const Work& work) : w_(work) {}
@@ -153,6 +163,7 @@ class Finish {
     const float own = own_;
     const float v[3] = {fluid.vx[p], fluid.vy[p], fluid.vz[p]};
     Neighborhood<float> n{};
+    StressSums around;
     n.number = n.fluid_number = s.velocity[3] + own;
     n.moment = {s.even[0], s.odd[0], s.odd[2], s.even[1], s.odd[1], s.even[2]};
     n.vx = s.velocity[0] + own * v[0];
@@ -166,13 +177,18 @@ class Finish {
                                   {s.carried_back[0], s.carried_odd[1], s.carried[2]}}};
       const float rest = w_.context.correction.rest_moment;
       follow_flow(flow, scaled_and_shifted(n.moment, 1.0f / rest, 0.0f), rest, v, n);
+      if constexpr (stresses)
+        around = stress_sums(flow, n.moment, s.velocity[3], {s.velocity[0], s.velocity[1], s.velocity[2]}, v);
     }
+    float held = 0.0f;
+    const Vector3<float> by_fluid{s.slope[0], s.slope[1], s.slope[2]};
     Vector3<float> pushed{s.slope[0], s.slope[1], s.slope[2]};
     if (fixed_rows.count + moving_rows.count > 0) {
       const FloatBatch z(0.0f);
-      WallSums walls{{z, {z, z, z, z, z, z}, z, z, z, z, z, z, z}, {z, z, z}};
-      add_walls(w_, p, w_.fixed, fixed_rows, walls);
-      add_walls(w_, p, w_.moving, moving_rows, walls);
+      WallSums walls{{z, {z, z, z, z, z, z}, z, z, z, z, z, z, z}, {z, z, z}, z};
+      add_walls<stresses>(w_, p, w_.fixed, fixed_rows, walls);
+      add_walls<stresses>(w_, p, w_.moving, moving_rows, walls);
+      if constexpr (stresses) held = lane_sum(walls.held) / w_.context.rest_volume;
       n.number += lane_sum(walls.sum.number);
       const auto& m = walls.sum.moment;
       n.moment.xx += lane_sum(m.xx);
@@ -189,18 +205,22 @@ class Finish {
     const float in_u = one_explicit_ ? kind.viscosity : 0.0f;
     if (w_.context.plan.has(PassId::kPressureSolve)) {
       const SolvedState state = solved_state(n, w_.context.correction, kind.viscosity, in_u, v);
-      return keep(p, kind, state, state.expansion, pushed);
+      keep(p, kind, state, state.expansion, pushed);
+      if constexpr (stresses) pass_on(p, kind, around, held, by_fluid);
+      return state.compression;
     }
     const CorrectedState state = corrected_state(n, w_.context.correction, kind.pressing_density,
                                                  kind.viscosity, in_u, fluid.volume[p], v);
-    return keep(p, kind, state, state.pressure, pushed);
+    keep(p, kind, state, state.pressure, pushed);
+    if constexpr (stresses) pass_on(p, kind, around, held, by_fluid);
+    return state.compression;
   }
 
  private:
   // What the two models find alike.
   template <class State>
-  float keep(std::uint32_t p, const ParticleKind& kind, const State& state, float pressure,
-             const Vector3<float>& pushed) const {
+  void keep(std::uint32_t p, const ParticleKind& kind, const State& state, float pressure,
+            const Vector3<float>& pushed) const {
     FluidParticles& fluid = w_.fluid;
     fluid.pressure[p] = pressure;
     fluid.volume[p] = state.volume;
@@ -219,7 +239,23 @@ class Finish {
     w_.press.tensors[p] = {t.xx, t.yy, t.zz, state.volume, t.xy, t.yz, t.xz, kind.viscosity};
     w_.press.own[p] = {by_own.x, by_own.y, by_own.z, 0.0f};
     w_.press.drags[p] = {state.u[0], state.u[1], state.u[2], state.volume};
-    return state.compression;
+  }
+
+  // What it passes on of a stress, behind keep(). `by_fluid`: Σ d (−W'/r) over fluid.
+  void pass_on(std::uint32_t p, const ParticleKind& kind, const StressSums& around, float held,
+               const Vector3<float>& by_fluid) const {
+    const float rest = w_.context.correction.rest_moment;
+    const FluidStress found =
+        fluid_stress(around, share_of_stress(held, rest), rest, w_.fluid.volume[p], kind.viscosity);
+    const Rows<float>& t = found.push;
+    const Vector3<float> own = times(t, by_fluid.x, by_fluid.y, by_fluid.z);
+    w_.press.stresses[p] = {{t.x.x, t.y.y, t.z.z, 0.0f},
+                            {t.x.y, t.y.z, t.z.x, 0.0f},
+                            {t.x.z, t.y.x, t.z.y, 0.0f},
+                            {own.x, own.y, own.z, 0.0f}};
+    w_.press.tensors[p].viscosity = found.left;
+    Vector4& u = w_.press.drags[p];
+    u = {u.x + found.rest.x, u.y + found.rest.y, u.z + found.rest.z, u.w};
   }
 
   using Kernel = ModelParts<ParticleModel::kCorrected>::DensityKernel;
@@ -227,16 +263,18 @@ class Finish {
   const Work& w_;
   // W(0) as pairs have it, with their floor: the pressure of a calm fluid hangs on the density's sixth digit.
   const float own_ = Kernel::shape_of(Kernel::pair(0.0f, w_.context.support_radius, 1.0f));
-  const bool one_explicit_ = w_.context.plan.drags_explicitly() && w_.context.plan.has(PassId::kOneViscosity);
+  const bool one_explicit_ = w_.context.plan.drags_explicitly() &&
+                             w_.context.plan.has(PassId::kOneViscosity) &&
+                             !w_.context.plan.has(PassId::kFluidStress);
 };
 
 // One chunk of runs; returns the largest compression. All of it in one loop: left to itself the compiler
 // calls functions where rows are written, and hands batches over in memory.
-template <bool flows>
+template <bool flows, bool stresses>
 __attribute__((flatten)) float find_chunk(const Work& w, std::size_t begin, std::size_t end) {
   const std::vector<CellRun>& runs = w.fluid.index.runs();
   const CellGrid& grid = w.context.grid;
-  const Finish<flows> finish(w);
+  const Finish<flows, stresses> finish(w);
   PairRows::Writer writer(w.press.rows, begin / kRunsPerChunk);
   float densest = 0.0f;
   std::uint32_t cell = grid.retired_key();
@@ -278,8 +316,13 @@ void compute_corrected_density(PassContext& context, ThreadTeam& team, FluidPart
   press.clear(fluid.index.particles(), chunk_count(runs, kRunsPerChunk));
   place(work, team);
   const bool flows = any_jostles(context.kinds, context.correction.noise_viscosity);
+  const bool stresses = context.plan.has(PassId::kFluidStress);
+  if (stresses) press.make_stresses(fluid.index.particles());
+  const auto find = stresses ? find_chunk<true, true>
+                    : flows  ? find_chunk<true, false>
+                             : find_chunk<false, false>;
   team.run(runs, kRunsPerChunk, [&](std::size_t begin, std::size_t end) {
-    if ((flows ? find_chunk<true> : find_chunk<false>)(work, begin, end) > kTooCompressed)
+    if (find(work, begin, end) > kTooCompressed)
       context.status.fetch_or(kStatusCompressed, std::memory_order_relaxed);
   });
 }

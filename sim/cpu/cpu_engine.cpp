@@ -162,7 +162,7 @@ class CpuEngine final : public ParticleEngine {
     static constexpr PassRow<CpuEngine> kTable[] = {
         {SubStepPart::kPrepare, {kSortFluid}, &CpuEngine::sort, &StepTimes::sort},
         {SubStepPart::kPrepare, {kPlaceBodies}, &CpuEngine::place_bodies, &StepTimes::sort},
-        {SubStepPart::kForces, {kDensity}, &CpuEngine::find_density, &StepTimes::density},
+        {SubStepPart::kForces, {kDensity, kFluidStress}, &CpuEngine::find_density, &StepTimes::density},
         {SubStepPart::kForces,
          {kPressureForce, kOneViscosity, kPairViscosity, kWalls},
          &CpuEngine::find_forces,

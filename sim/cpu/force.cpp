@@ -95,8 +95,8 @@ void find_forces(const FluidWalk& walk) {
 }
 
 // By fluid, and what one's own pressure pushes by, walls among those that bear it. Where pressures are solved
-// for they push later. Pairs of one viscosity drag by u alone.
-template <class Parts, Viscosity viscosity>
+// for they push later. Pairs of one viscosity drag by u alone, but where fluid passes on stresses of its own.
+template <class Parts, Viscosity viscosity, bool stresses>
 void forces_by_rows(const FluidWalk& walk, const FluidPress& press) {
   constexpr bool kPresses = !Parts::kSolved;
   FluidParticles& fluid = walk.fluid;
@@ -104,8 +104,8 @@ void forces_by_rows(const FluidWalk& walk, const FluidPress& press) {
   walk.team.run(press.rows.chunks(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t chunk = begin; chunk < end; ++chunk) {
       press.rows.for_each_group(chunk, [&](const PairRows::Walk& rows) {
-        const GroupForces forces = walk_forces<kPresses, true, viscosity == Viscosity::kPair>(
-            press, rows, h, walk.context.drag_shape, [](const auto&...) {});
+        const GroupForces forces = walk_forces < kPresses, true, viscosity == Viscosity::kPair || stresses,
+                          stresses > (press, rows, h, walk.context.drag_shape, [](const auto&...) {});
         float pressed[16], dragged[16];
         std::memcpy(pressed, &forces.pressed, sizeof pressed);
         std::memcpy(dragged, &forces.dragged, sizeof dragged);
@@ -113,11 +113,16 @@ void forces_by_rows(const FluidWalk& walk, const FluidPress& press) {
           const std::uint32_t p = rows.first + a;
           const float factor = scale * fluid.volume[p];
           const auto force = [&](float own, std::uint32_t k) {
-            return (kPresses ? own + pressed[4 * a + k] : 0.0f) + factor * dragged[4 * a + k];
+            return (kPresses || stresses ? own + pressed[4 * a + k] : 0.0f) + factor * dragged[4 * a + k];
           };
-          fluid.fx[p] = force(press.own[p].x, 0);
-          fluid.fy[p] = force(press.own[p].y, 1);
-          fluid.fz[p] = force(press.own[p].z, 2);
+          Vector4 own = kPresses ? press.own[p] : Vector4{};
+          if constexpr (stresses) {
+            const Vector4& by_stress = press.stresses[p].own;
+            own = {own.x + by_stress.x, own.y + by_stress.y, own.z + by_stress.z, 0.0f};
+          }
+          fluid.fx[p] = force(own.x, 0);
+          fluid.fy[p] = force(own.y, 1);
+          fluid.fz[p] = force(own.z, 2);
         }
       });
     }
@@ -135,7 +140,13 @@ void compute_fluid_forces(PassContext& context, ThreadTeam& team, FluidParticles
   }
   const FluidWalk walk{context, team, fluid, fixed, moving};
   with_physics(context.plan, [&]<class Parts, Viscosity viscosity>() {
-    if constexpr (Parts::kCorrected) forces_by_rows<Parts, viscosity>(walk, press);
+    if constexpr (Parts::kCorrected) {
+      if (context.plan.has(PassId::kFluidStress)) {
+        forces_by_rows<Parts, viscosity, true>(walk, press);
+      } else {
+        forces_by_rows<Parts, viscosity, false>(walk, press);
+      }
+    }
     find_forces<Parts, viscosity>(walk);
   });
 }

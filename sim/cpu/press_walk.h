@@ -7,19 +7,20 @@ namespace slosh {
 
 /// Of up to four particles.
 struct GroupForces {
-  Sixteen pressed = {};  ///< N, by what others press with
+  Sixteen pressed = {};  ///< N, by what others press with and by their stresses
   Sixteen dragged =
       {};  ///< Σ V shape/r² d (d · what others drag by, less one's own), without Eq 9's constants
 };
 
-/// `presses`: by the tensors; `jostles`: by `drags`, Pa·m; `drags`: besides by Eq 9 of each one's own
-/// viscosity, all as `drag` falls off. Calls also(four, shape, even, odd) for a pair of each: drag's shape/r²
-/// (0 where it fills a row up) and the others' tensors. `h`: the support radius, m.
-template <bool presses, bool jostles, bool drags, class Also>
+/// `presses`: by the tensors; `stresses`: by the stresses; `jostles`: by `drags`, Pa·m; `drags`: besides by
+/// Eq 9 of each one's own viscosity, all as `drag` falls off. Calls also(four, shape, even, odd) for a pair
+/// of each: drag's shape/r² (0 where it fills a row up) and the others' tensors. `h`: the support radius, m.
+template <bool presses, bool jostles, bool drags, bool stresses, class Also>
 GroupForces walk_forces(const FluidPress& press, const PairRows::Walk& walk, float h,
                         const DragShape<float>& drag, Also&& also) {
   const float *const tensors = &press.tensors[0].xx, *const us = &press.drags[0].x;
   const float* const velocities = &press.velocities[0].x;
+  const float* const passed = stresses ? &press.stresses[0].straight.x : nullptr;
   const Sixteen own_u = walk.of_group<4>(us + std::size_t{4} * walk.first);
   const Sixteen own_v = walk.of_group<4>(velocities + std::size_t{4} * walk.first);
   const Sixteen viscosity = fourths(walk.of_group<8>(tensors + std::size_t{8} * walk.first + 4));
@@ -32,6 +33,11 @@ GroupForces walk_forces(const FluidPress& press, const PairRows::Walk& walk, flo
       straight += even * g;
       turning += odd * turned(g);
       back += odd * g;
+    }
+    if constexpr (stresses) {
+      const Sixteen g = slope * d;
+      straight += walk.of_others<16>(passed, four) * g + walk.of_others<16>(passed + 4, four) * turned(g) +
+                  walk.of_others<16>(passed + 8, four) * turned_back(g);
     }
     const Sixteen shape = where_above_zero(slope, at_least_zero(PairRows::Walk::drag_shape(d, h, drag)));
     if constexpr (jostles || drags) {

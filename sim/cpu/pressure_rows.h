@@ -7,6 +7,12 @@
 
 namespace slosh {
 
+/// What a particle's own stress pushes with, without the kernel's constant: a tensor as a walk over rows
+/// takes it, xx, yy, zz; xy, yz, zx; xz, yx, zy; and `own` by what it pushes itself, N.
+struct alignas(64) PassedStress {
+  Vector4 straight, turning, back, own;
+};
+
 /// What the density pass of the corrected and of the incompressible model writes down of fluid particles, four
 /// entries more than there are particles.
 struct FluidPress {
@@ -20,6 +26,8 @@ struct FluidPress {
   /// fourth: by fluid, walls and bodies.
   std::vector<Vector4> own;
   std::vector<Vector4> drags;  ///< what each drags by, Pa·m, and in the fourth its volume, m³
+  /// There with kFluidStress. `tensors` then have the viscosity that is left for Eq 9.
+  std::vector<PassedStress> stresses;
 
   void clear(std::size_t particles, std::size_t chunks) {
     rows.clear(chunks);
@@ -28,6 +36,10 @@ struct FluidPress {
     tensors.resize(particles + 4);
     own.resize(particles + 4);
     drags.resize(particles + 4);
+  }
+  void make_stresses(std::size_t particles) {
+    stresses.resize(particles + 4);
+    stresses[particles] = {};  // nobody's, who fills rows up
   }
 };
 

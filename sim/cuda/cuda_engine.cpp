@@ -218,7 +218,7 @@ class CudaEngine final : public ParticleEngine {
     static constexpr PassRow<CudaEngine> kTable[] = {
         {SubStepPart::kPrepare, {kSortFluid}, &CudaEngine::sort, nullptr},
         {SubStepPart::kPrepare, {kPlaceBodies}, &CudaEngine::place_bodies, nullptr},
-        {SubStepPart::kForces, {kDensity}, &CudaEngine::find_density, nullptr},
+        {SubStepPart::kForces, {kDensity, kFluidStress}, &CudaEngine::find_density, nullptr},
         {SubStepPart::kForces, {kWrenches}, &CudaEngine::sum_wrenches, nullptr},
         {SubStepPart::kForces,
          {kPressureForce, kOneViscosity, kPairViscosity, kWalls},

@@ -3,7 +3,7 @@
 #include "sim/model.h"
 #include "sim/pressure/solved_state.h"
 #include "sim/snapshot.h"
-#include "sim/viscosity/neighbour_flow.h"
+#include "sim/viscosity/fluid_stress.h"
 #include "sim/walls/wall_particles.h"
 
 namespace slosh::cuda {
@@ -61,9 +61,17 @@ __device__ void sum_over_team(Symmetric<float>& moment, FlowSums<float>& s) {
             s.carried[1][2], s.carried[2][0], s.carried[2][1], s.carried[2][2]);
 }
 
+// What a particle passes on of a stress.
+__device__ void keep_stress(const SortedFluid& fluid, std::uint32_t p, const FluidStress& found) {
+  const Rows<float>& t = found.push;
+  fluid.stress_x[p] = make_float4(t.x.x, t.x.y, t.x.z, found.left);
+  fluid.stress_y[p] = make_float4(t.y.x, t.y.y, t.y.z, 0.0f);
+  fluid.stress_z[p] = make_float4(t.z.x, t.z.y, t.z.z, 0.0f);
+}
+
 // The corrected model's and, `solved`, the incompressible one's: sim/cpu/corrected_density.cpp. `flows`: drag on
-// jostling is needed.
-template <class Team, bool solved, bool flows>
+// jostling is needed, or `stresses` are passed on.
+template <class Team, bool solved, bool flows, bool stresses>
 __global__ __launch_bounds__(kThreads) void corrected_density_kernel(
     StepConstants c, const ParticleKind* kinds, SortedFluid fluid, SortedSurface fixed, SortedSurface moving,
     bool one_viscosity, bool viscosities, std::uint32_t* status) {
@@ -88,6 +96,7 @@ __global__ __launch_bounds__(kThreads) void corrected_density_kernel(
     if constexpr (flows) add_flow<Kernel>({dx, dy, dz}, {v[0], v[1], v[2]}, h, flow);
   });
   Symmetric<float> by_fluid = sum.moment;
+  float held = 0.0f;  // Σ d² (−W'/r) V of walls that hold
   const auto add_walls = [&](const SortedSurface& walls) {
     if (walls.count == 0) return;
     for_neighbors<Team>(c.grid, walls.cells, cell, [&](std::uint32_t j) {
@@ -96,14 +105,20 @@ __global__ __launch_bounds__(kThreads) void corrected_density_kernel(
       const float dy = x.y - wall.y;
       const float dz = x.z - wall.z;
       if (dx * dx + dy * dy + dz * dz >= h * h) return;
-      add_wall_neighbor<Kernel>(dx, dy, dz, wall.w,
-                                c.correction.wall_layer * wall.w, __ldg(walls.reach + j), 1.0f, sum);
+      const float reach = __ldg(walls.reach + j);
+      add_wall_neighbor<Kernel>(dx, dy, dz, wall.w, c.correction.wall_layer * wall.w, reach, 1.0f, sum);
+      if constexpr (stresses) {
+        if (__ldg(walls.viscosity + j) == static_cast<float>(kFreeSlip)) return;
+        const float r_squared = dx * dx + dy * dy + dz * dz;
+        held += __ldg(walls.v + j).w * r_squared * Kernel::pair(r_squared, reach, 1.0f).slope_over_r;
+      }
     });
   };
   add_walls(fixed);
   add_walls(moving);
   Team::sum(sum.moment, sum.number, sum.fluid_number, sum.vx, sum.vy, sum.vz);
   if constexpr (flows) sum_over_team<Team>(by_fluid, flow);
+  if constexpr (stresses) Team::sum(held);
   if (Team::lane() != 0) return;
   const ParticleKind kind = kinds[fluid.state.kind[p]];
   const float4 motion = fluid.state.v[p];
@@ -113,7 +128,7 @@ __global__ __launch_bounds__(kThreads) void corrected_density_kernel(
     const float rest = c.correction.rest_moment;
     follow_flow(flow, scaled_and_shifted(by_fluid, 1.0f / rest, 0.0f), rest, velocity, sum);
   }
-  const auto state = [&] {
+  auto state = [&] {
     if constexpr (solved) {
       return solved_state(sum, c.correction, kind.viscosity, in_u, velocity);
     } else {
@@ -121,6 +136,18 @@ __global__ __launch_bounds__(kThreads) void corrected_density_kernel(
                              velocity);
     }
   }();
+  if constexpr (stresses) {
+    const float own = c.correction.own_number, rest = c.correction.rest_moment;
+    const StressSums around = stress_sums(
+        flow, by_fluid, sum.fluid_number - own,
+        {sum.vx - own * motion.x, sum.vy - own * motion.y, sum.vz - own * motion.z}, velocity);
+    const FluidStress found = fluid_stress(around, share_of_stress(held / c.rest_volume, rest), rest, state.volume,
+                                           kind.viscosity);
+    keep_stress(fluid, p, found);
+    state.u[0] += found.rest.x;
+    state.u[1] += found.rest.y;
+    state.u[2] += found.rest.z;
+  }
   if constexpr (solved) fluid.expansion[p] = state.expansion;
   fluid.pressed[p] = make_float4(x.x, x.y, x.z, state.volume);
   fluid.push_a[p] = make_float4(state.push.xx, state.push.xy, state.push.xz, state.push.yy);
@@ -137,12 +164,15 @@ void launch_density(const StepConstants& constants, const Plan& plan, const Part
                     const SortedFluid& fluid, const SortedSurface& fixed, const SortedSurface& moving,
                     std::uint32_t* status, cudaStream_t stream) {
   const bool viscosities = plan.has(PassId::kPairViscosity);
-  const bool one_viscosity = plan.has(PassId::kOneViscosity) && plan.drags_explicitly();
+  const bool one_viscosity =
+      plan.has(PassId::kOneViscosity) && plan.drags_explicitly() && !plan.has(PassId::kFluidStress);
   with_model(plan.model, [&]<class Parts>() {
     if constexpr (Parts::kCorrected) {
       with_team<kTensorTeams>(fluid.count, [&]<class Team>() {
-        const auto kernel = jostles ? corrected_density_kernel<Team, Parts::kSolved, true>
-                                    : corrected_density_kernel<Team, Parts::kSolved, false>;
+        const auto kernel = plan.has(PassId::kFluidStress)
+                                ? corrected_density_kernel<Team, Parts::kSolved, true, true>
+                            : jostles ? corrected_density_kernel<Team, Parts::kSolved, true, false>
+                                      : corrected_density_kernel<Team, Parts::kSolved, false, false>;
         kernel<<<blocks_for(fluid.count * Team::kLanes), kThreads, 0, stream>>>(
             constants, kinds, fluid, fixed, moving, one_viscosity, viscosities, status);
       });

@@ -76,6 +76,9 @@ void FluidBuffers::allocate(std::size_t count, const RunConstants& constants, Ca
     drag_z_.allocate(count, check);
   }
   if (needs(constants.plan, ColumnNeed::kSolved)) expansion_.allocate(count, check);
+  if (constants.plan.passes_stress) {
+    for (DeviceBuffer<float4>* rows : {&stress_x_, &stress_y_, &stress_z_}) rows->allocate(count, check);
+  }
   view_.count = static_cast<std::uint32_t>(count);
   view_.state = view_of(packs_[current_]);
   view_.pressed = pressed_.data();
@@ -83,6 +86,9 @@ void FluidBuffers::allocate(std::size_t count, const RunConstants& constants, Ca
   view_.push_b = push_b_.data();
   view_.drag_z = drag_z_.data();
   view_.expansion = expansion_.data();
+  view_.stress_x = stress_x_.data();
+  view_.stress_y = stress_y_.data();
+  view_.stress_z = stress_z_.data();
   view_.force = force_.data();
   view_.cells = cells_.view();
   allow_viscosities(constants, check);

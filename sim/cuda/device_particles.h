@@ -57,6 +57,7 @@ class FluidBuffers {
   DeviceBuffer<float> viscosity_;
   DeviceBuffer<float4> push_a_, push_b_;
   DeviceBuffer<float> drag_z_, expansion_;
+  DeviceBuffer<float4> stress_x_, stress_y_, stress_z_;  // kFluidStress
   CellTableBuffers cells_;
   SortedFluid view_;
 };

@@ -5,7 +5,35 @@ namespace slosh::cuda {
 
 namespace {
 
-template <class Team, class Parts, Viscosity viscosity>
+// Of thick fluid by fluid: as add_forces(), with stresses, and with Eq 9 by what viscosity those leave. `pushed`
+// gets what they push, N.
+template <class Team, class Parts>
+__device__ void add_stressed_forces(const StepConstants& c, ParticleView<float> p, std::uint32_t self,
+                                    const NeighborColumns& n, const CellTable& cells, std::uint32_t cell,
+                                    ForceSum<float>& sum, ForceSum<float>& pushed) {
+  const float h = c.support_radius;
+  const Rows<float> own = read_stress(n, self, p.viscosity);
+  for_neighbors<Team>(c.grid, cells, cell, [&](std::uint32_t j) {
+    const float4 x = __ldg(n.x + j);
+    const float dx = p.x - x.x, dy = p.y - x.y, dz = p.z - x.z;
+    const float r_squared = dx * dx + dy * dy + dz * dz;
+    if (r_squared >= h * h) return;
+    float left = 0.0f;
+    const Rows<float> by = read_stress(n, j, left);
+    ParticleView<float> i = view(x, __ldg(n.v + j), left);
+    i.volume = x.w;
+    read_corrected(n, j, i);
+    add_pair_force<typename Parts::ForceKernel, Parts::kFluids, Parts::kDrag, true>(p, i, h, c.drag_shape, 1.0f,
+                                                                                   sum);
+    const float slope = Parts::ForceKernel::pair(r_squared, h, 1.0f).slope_over_r;
+    const Vector3<float> a = times(own, dx, dy, dz), b = times(by, dx, dy, dz);
+    pushed.x += slope * (a.x + b.x);
+    pushed.y += slope * (a.y + b.y);
+    pushed.z += slope * (a.z + b.z);
+  });
+}
+
+template <class Team, class Parts, Viscosity viscosity, bool stresses>
 __global__ __launch_bounds__(kThreads) void force_kernel(StepConstants c, const ParticleKind* kinds,
                                                          SortedFluid fluid, SortedSurface fixed,
                                                          SortedSurface moving) {
@@ -17,8 +45,13 @@ __global__ __launch_bounds__(kThreads) void force_kernel(StepConstants c, const 
   constexpr Viscosity kAgainstBodies = viscosity == Viscosity::kNone ? Viscosity::kNone : Viscosity::kPair;
   ParticleView<float> self = view(fluid.pressed[p], fluid.state.v[p], kinds[fluid.state.kind[p]].viscosity);
   if constexpr (Parts::kCorrected) read_corrected(columns(fluid), p, self);
-  ForceSum<float> sum{0.0f, 0.0f, 0.0f};
-  add_forces<Team, Parts, Parts::kFluids, viscosity>(c, self, columns(fluid), fluid.cells, cell, c.support_radius, sum);
+  ForceSum<float> sum{0.0f, 0.0f, 0.0f}, pushed{0.0f, 0.0f, 0.0f};
+  if constexpr (stresses) {
+    add_stressed_forces<Team, Parts>(c, self, p, columns(fluid), fluid.cells, cell, sum, pushed);
+  } else {
+    add_forces<Team, Parts, Parts::kFluids, viscosity>(c, self, columns(fluid), fluid.cells, cell,
+                                                       c.support_radius, sum);
+  }
   if (fixed.count) {
     add_forces<Team, Parts, Parts::kWalls, kAgainstBodies, Neighbours::kWalls>(
         c, self, columns(fixed), fixed.cells, cell, c.support_radius, sum);
@@ -31,11 +64,13 @@ __global__ __launch_bounds__(kThreads) void force_kernel(StepConstants c, const 
     if (fixed.mirror.normal) add_mirror_forces<Team, Parts>(c, self, fixed, cell, sum);
   }
   Team::sum(sum.x, sum.y, sum.z);
+  if constexpr (stresses) Team::sum(pushed.x, pushed.y, pushed.z);
   if (Team::lane() != 0) return;
   const bool near_wall = (fixed.count && any_near(c.grid, fixed.cells, cell)) ||
                          (moving.count && any_near(c.grid, moving.cells, cell));
-  fluid.force[p] = make_float4(c.force_scale * sum.x, c.force_scale * sum.y, c.force_scale * sum.z,
-                               near_wall ? 1.0f : 0.0f);
+  fluid.force[p] =
+      make_float4(c.force_scale * sum.x + pushed.x, c.force_scale * sum.y + pushed.y,
+                  c.force_scale * sum.z + pushed.z, near_wall ? 1.0f : 0.0f);
 }
 
 }  // namespace
@@ -45,8 +80,12 @@ void launch_force(const StepConstants& constants, const Plan& plan, const Partic
                   cudaStream_t stream) {
   with_physics(plan, [&]<class Parts, Viscosity viscosity>() {
     with_team<Parts::kCorrected ? kTensorTeams : kForceTeams>(fluid.count, [&]<class Team>() {
-      force_kernel<Team, Parts, viscosity><<<blocks_for(fluid.count * Team::kLanes), kThreads, 0, stream>>>(
-          constants, kinds, fluid, fixed, moving);
+      auto kernel = force_kernel<Team, Parts, viscosity, false>;
+      if constexpr (Parts::kCorrected && viscosity != Viscosity::kNone) {
+        if (plan.has(PassId::kFluidStress)) kernel = force_kernel<Team, Parts, viscosity, true>;
+      }
+      kernel<<<blocks_for(fluid.count * Team::kLanes), kThreads, 0, stream>>>(constants, kinds, fluid, fixed,
+                                                                              moving);
     });
   });
 }

@@ -94,6 +94,9 @@ struct SortedFluid {
   float* drag_z = nullptr;    ///< kCorrected: z of that
   float* expansion = nullptr;  ///< kIncompressible: wanted ρ⁰/ρ − 1
   float* viscosity = nullptr;  ///< Pa·s; there and written only where pairs differ
+  float4* stress_x = nullptr;  ///< kFluidStress: the rows of T, without the force kernel's constant; in w the
+  float4* stress_y = nullptr;  ///< viscosity that is left for Eq 9 with fluid, Pa·s
+  float4* stress_z = nullptr;
   float4* force = nullptr;     ///< N; w: 1 where bodies are in the cells around, else 0
   CellTable cells;
 };

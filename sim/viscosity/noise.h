@@ -20,10 +20,14 @@ inline constexpr double kNoiseViscosity = 0.01;
 /// The share of it that is enough where pressures are solved for: a projection feeds jostling less.
 inline constexpr double kSolvedJostling = 1.0 / 3.0;
 
+/// Pa·s, what a fluid without viscosity needs whose pressures are not solved for.
+inline double unsolved_noise(const Plan& plan, double density) {
+  return kNoiseViscosity * density * plan.support_radius * std::sqrt(plan.stiffness);
+}
 /// Pa·s, what a fluid without viscosity needs.
 inline double noise_viscosity(const Plan& plan, double density) {
   const double share = plan.model == ParticleModel::kIncompressible ? kSolvedJostling : 1.0;
-  return share * kNoiseViscosity * density * plan.support_radius * std::sqrt(plan.stiffness);
+  return share * unsolved_noise(plan, density);
 }
 
 /// Fluid of less than this share of that is thin: its own drag is next to nothing beside the drag on

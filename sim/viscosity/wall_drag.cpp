@@ -57,7 +57,7 @@ struct LiesEvenly {
   double flat, at_balls;
 };
 constexpr LiesEvenly kCompressible{0.3, 0.9}, kSolved{0.0, 0.5};
-constexpr double kBall = 0.4;  // the convexity from which on it is a ball
+constexpr double kBall = 0.25;  // the convexity from which on it is a ball
 
 template <class Kernel>
 WallDrag computed(ParticleModel model, double ratio, DragSheet sheet) {

@@ -315,9 +315,11 @@ std::vector<DraggingSheet> dragging_sheets(const Scene& scene, const SampledScen
 }
 
 // The planes in which a body mirrors the fluid, one a particle of its sheet: where it is fixed and slips. A
-// moving one only lets fluid slide.
+// moving one only lets fluid slide. None where fluid passes on stresses of its own: one that nobody takes up
+// beyond a wall that slips is the wall's, as it is a free surface's.
 std::vector<MirrorPlane> mirrors_of(const Body& body, const DraggingSheet& sheet, const Plan& plan) {
-  if (body.motion != BodyMotion::kFixed || body.dynamic_viscosity != kFreeSlip) return {};
+  if (plan.passes_stress || body.motion != BodyMotion::kFixed || body.dynamic_viscosity != kFreeSlip)
+    return {};
   const glm::mat3 turn(glm::mat3_cast(body.pose.orientation));
   std::vector<glm::vec3> normals;
   normals.reserve(sheet.normals.size());

@@ -141,7 +141,7 @@ void compare_momenta(const Tank& tank, const Plan& plan, int steps, double toler
   expect_true("no solve was cut short", (gpu.take_status() & kStatusViscosityCut) == 0);
 }
 
-void compare_restored(const char* name, const Tank& tank, double hand_height) {
+void compare_restored(const char* name, const Tank& tank, double hand_height, double tolerance) {
   std::printf("%s, saved after 100 steps and restored\n", name);
   World whole = world_on(Backend::kCuda, tank);
   for (int i = 0; i < 100; ++i) step(whole, hand_height);
@@ -159,12 +159,12 @@ void compare_restored(const char* name, const Tank& tank, double hand_height) {
   restore_into(cpu, whole);
   step(cpu, hand_height);
   step(whole, hand_height);
-  compare_worlds(cpu, whole, 1e-5);
+  compare_worlds(cpu, whole, tolerance);
   World gpu = world_on(Backend::kCuda, tank);
   restore_into(gpu, cpu);
   step(cpu, hand_height);
   step(gpu, hand_height);
-  compare_worlds(cpu, gpu, 1e-5);
+  compare_worlds(cpu, gpu, tolerance);
 }
 
 void repeat(const char* name, const Tank& tank, double hand_height, int steps) {

@@ -39,8 +39,9 @@ void compare_momenta(const Tank& tank, const Plan& plan, int steps, double toler
 /// The same hash each time on the GPU, whatever else is going on.
 void repeat(const char* name, const Tank& tank, double hand_height, int steps = 300);
 
-/// Saved after 100 steps and restored on the GPU, and from one backend to the other, both ways.
-void compare_restored(const char* name, const Tank& tank, double hand_height);
+/// Saved after 100 steps and restored on the GPU, and from one backend to the other, both ways: one step each
+/// to `tolerance`.
+void compare_restored(const char* name, const Tank& tank, double hand_height, double tolerance = 1e-5);
 
 /// viscous_worlds.cpp: implicit viscosity; one step of it.
 void compare_viscous();

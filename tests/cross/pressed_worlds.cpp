@@ -16,6 +16,9 @@ namespace {
 // tolerance leaves.
 constexpr double kOneStep = 1e-5;
 constexpr double kTenSteps = 1e-3;
+// Of 150 steps behind one another of the stirred tank, each taken over from an H100 by a CPU, one parts them
+// by 2.9e-5 spacings, by such a turn as we guess, and the others by 8e-7 to 1.1e-6.
+constexpr double kOneStepOfMany = 1e-4;
 
 // Of 50 and 500 Pa·s one of the two ends its drag a turn sooner in the first step, and they end 3e-4 spacings
 // apart; with a thousandth of the drag's tolerance 8e-7, as 40, 45, 55, 60, 70 and 80 Pa·s with this one.
@@ -106,8 +109,8 @@ void compare_pressed() {
   const Tank probed = shaken(pressed(probed_tank()));
   compare_steps("pressures solved for, probe", probed, 1, kOneStep);
   repeat("pressures solved for, probe", probed, 0.05, 100);
-  compare_restored("pressures solved for, two fluids, paddle", pressed(stirred_tank(ParticleModel::kCorrected)),
-                   kPaddleHeight);
+  compare_restored("pressures solved for, two fluids, paddle",
+                   pressed(stirred_tank(ParticleModel::kCorrected)), kPaddleHeight, kOneStepOfMany);
   Tank squeezed = pressed(thick_tank(0.1, 0.1));
   for (glm::vec3& x : squeezed.sampled.fluid_positions) x = x * 0.7f;
   compare_steps("pressures solved for, more neighbours than a row has room for", squeezed, 1, kOneStep);

@@ -136,24 +136,26 @@ INSTANTIATE_TEST_SUITE_P(
                            {"spin_up_all", 0.01, "torque, 5.0 Pa·s at 0.5 rad/s", 0.11},
                            {"spin_up_all", 0.01, "torque, 2.0 Pa·s at 5.0 rad/s", 0.18},
                            {"spin_up_all", 0.01, "torque, 5.0 Pa·s at 5.0 rad/s", 0.097}},
-        std::vector<Known>{{"couette", 0.00667, "torque", 0.02}},
+        std::vector<Known>{{"couette", 0.00667, "torque", 0.06}},
+        // Of close spacings +2.1 ± 2.0.
         std::vector<Known>{{"couette", 0.006, "torque", 0.03}},
-        std::vector<Known>{{"couette_start", 0.005, "torque at 20 ms", 0.075},
-                           {"couette_start", 0.005, "torque at 40 ms", 0.035},
-                           {"couette_start", 0.005, "torque at 80 ms", 0.045}},
+        std::vector<Known>{{"couette_start", 0.005, "torque at 20 ms", 0.085},
+                           {"couette_start", 0.005, "torque at 40 ms", 0.04},
+                           {"couette_start", 0.005, "torque at 80 ms", 0.055}},
         std::vector<Known>{{"poiseuille", 0.005, "flow", 0.025},
                            {"poiseuille", 0.005, "flow at 40 ms", 0.025}},
         // While walls that slip held nothing across them, and had the bumps of a sheet at the spacing, the
-        // second was 24 to 37 % too little, and of a slow turn 70 % were kept.
-        std::vector<Known>{{"taylor_green", 0.005, "rate of decay", 0.075},
+        // second was 24 to 37 % too little, and of a slow turn 70 % were kept. Of close spacings +5.4 ± 2.9,
+        // +1 ± 8.
+        std::vector<Known>{{"taylor_green", 0.005, "rate of decay", 0.09},
                            {"taylor_green", 0.005, "left of 2 cm/s after a decay's time", 0.15}},
         std::vector<Known>{{"smooth_glass", 0.005, "kept, 10 cm/s at the rim", 0.02},
-                           {"smooth_glass", 0.005, "kept, 2 cm/s at the rim", 0.06}},
+                           {"smooth_glass", 0.005, "kept, 2 cm/s at the rim", 0.08}},
         // A ball of 1.5 and 2 spacings. It meets particle by particle what drags it now, so a stroke's halves
         // differ more (0.03 held where it slid through).
-        std::vector<Known>{{"stokes", 0.008, "drag", 0.04},  // -3.1 ± 0.7 of close spacings
+        std::vector<Known>{{"stokes", 0.008, "drag", 0.05},  // -4.2 ± 0.9 of close spacings
                            {"stokes", 0.008, "drift over a stroke", 0.028}},
-        std::vector<Known>{{"stokes", 0.006, "drag", 0.03}, {"stokes", 0.006, "drift over a stroke", 0.01}},
+        std::vector<Known>{{"stokes", 0.006, "drag", 0.05}, {"stokes", 0.006, "drift over a stroke", 0.02}},
         // -4.7 % was of honey that had not settled yet: it still sagged around the ball.
         std::vector<Known>{{"stokes_honey", 0.008, "drag", 0.095},
                            {"stokes_honey", 0.008, "drift over a stroke", 0.135}},
@@ -174,8 +176,8 @@ INSTANTIATE_TEST_SUITE_P(
         std::vector<Known>{{"dam_break_long", 0.05715 / 10, "front against potential flow, worst", 0.045},
                            {"dam_break_long", 0.05715 / 10, "speed of the front", 0.05},
                            {"dam_break_long", 0.05715 / 10, "front, worst", 0.19}},
-        std::vector<Known>{{"shear_wave", 0.01, "rate of decay", 0.012}},
-        std::vector<Known>{{"shear_wave", 0.008, "rate of decay", 0.007}},
+        std::vector<Known>{{"shear_wave", 0.01, "rate of decay", 0.014}},
+        std::vector<Known>{{"shear_wave", 0.008, "rate of decay", 0.012}},
         std::vector<Known>{{"bounce", 0.015, "rebound", 1e-3}}),
     named);
 
@@ -196,8 +198,8 @@ INSTANTIATE_TEST_SUITE_P(
         // spacings behind. By g++ 0.107, by clang, which rounds otherwise, 0.129: the torque is no surer than
         // that.
         std::vector<Known>{{"couette", 0.00667, "torque", 0.14, ParticleModel::kCorrected, 2.5}},
-        // Its faces lack neighbours as deep as the kernel is wide.
-        std::vector<Known>{{"shear_wave", 0.01, "rate of decay", 0.10, ParticleModel::kCorrected, 2.5}},
+        // 8.5 % while pairs dragged: its faces lack neighbours as deep as the kernel is wide.
+        std::vector<Known>{{"shear_wave", 0.01, "rate of decay", 0.014, ParticleModel::kCorrected, 2.5}},
         std::vector<Known>{{"sloshing", 0.016, "swing kept a period", 0.08, ParticleModel::kCorrected, 2.5},
                            {"sloshing", 0.016, "period", 0.02}}),
     named);

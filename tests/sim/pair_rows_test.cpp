@@ -37,7 +37,10 @@ struct Crowd {
       press.drags[p] = {small(random), small(random), small(random), 1.0f + 0.1f * small(random)};
       press.tensors[p] = {small(random), small(random), small(random), press.drags[p].w,
                           small(random), small(random), small(random), 2.0f + small(random)};
+      const auto some = [&] { return Vector4{small(random), small(random), small(random), 0.0f}; };
+      press.stresses.push_back({some(), some(), some(), {}});
     }
+    press.stresses.resize(count + 4);
     // Nobody.
     press.places[count] = {1e9f, 1e9f, 1e9f, 0.0f};
   }
@@ -305,7 +308,14 @@ double drags_by(double reach) {
   return reach * (static_cast<double>(kShape.level) + static_cast<double>(kShape.growth) * reach);
 }
 
-// What the force pass finds over rows: pressure, the drag on jostling, Eq 9 of each one's own viscosity.
+// T d by its own nine numbers.
+glm::dvec3 pushed(const PassedStress& t, const glm::dvec3& d) {
+  return vec3(t.straight) * d + vec3(t.turning) * glm::dvec3(d.y, d.z, d.x) +
+         vec3(t.back) * glm::dvec3(d.z, d.x, d.y);
+}
+
+// What the force pass finds over rows: pressure, stresses, the drag on jostling, Eq 9 of each one's own
+// viscosity.
 TEST_P(PairRowsOf, ForcesAsADoubleLoop) {
   Crowd crowd(GetParam());
   write_weighed(crowd, crowd.press.rows);
@@ -315,7 +325,7 @@ TEST_P(PairRowsOf, ForcesAsADoubleLoop) {
       press.rows,
       [&](const PairRows::Walk& w) {
         const GroupForces forces =
-            walk_forces<true, true, true>(press, w, kReach, kShape, [](const auto&...) {});
+            walk_forces<true, true, true, true>(press, w, kReach, kShape, [](const auto&...) {});
         return forces.pressed + forces.dragged;
       },
       [&](std::size_t p, const glm::dvec3& found) {
@@ -330,6 +340,7 @@ TEST_P(PairRowsOf, ForcesAsADoubleLoop) {
           const glm::dvec3 by = u + 0.5 * static_cast<double>(own.viscosity + other.viscosity) * v;
           const glm::dvec3 part =
               matrix(other) * (static_cast<double>(weight) * d) +
+              static_cast<double>(weight) * pushed(press.stresses[i], d) +
               (static_cast<double>(other.volume) * drags_by(kReach - r) / (r * r) * glm::dot(d, by)) * d;
           sum += part;
           size += glm::length(part) + 3.0 * (kReach - r);

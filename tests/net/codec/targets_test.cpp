@@ -23,7 +23,7 @@ constexpr bool kJudged = kSide == 32;
 
 constexpr double kKeyFrameBytes = 45000.0;
 // 39.5 % of a dam break that moves like jelly; one that moves like water has more surface: 41.5 %.
-constexpr double kShellShare = 0.42;
+constexpr double kShellShare = 0.425;
 
 struct Cost {
   double bytes = 0.0, key_bytes = 0.0;
