@@ -182,7 +182,7 @@ class Finish {
     }
     float held = 0.0f;
     const Vector3<float> by_fluid{s.slope[0], s.slope[1], s.slope[2]};
-    Vector3<float> pushed{s.slope[0], s.slope[1], s.slope[2]};
+    Vector3<float> pushed = by_fluid;
     if (fixed_rows.count + moving_rows.count > 0) {
       const FloatBatch z(0.0f);
       WallSums walls{{z, {z, z, z, z, z, z}, z, z, z, z, z, z, z}, {z, z, z}, z};

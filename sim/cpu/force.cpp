@@ -98,14 +98,14 @@ void find_forces(const FluidWalk& walk) {
 // for they push later. Pairs of one viscosity drag by u alone, but where fluid passes on stresses of its own.
 template <class Parts, Viscosity viscosity, bool stresses>
 void forces_by_rows(const FluidWalk& walk, const FluidPress& press) {
-  constexpr bool kPresses = !Parts::kSolved;
+  constexpr bool kPresses = !Parts::kSolved, kDrags = viscosity == Viscosity::kPair || stresses;
   FluidParticles& fluid = walk.fluid;
   const float h = walk.context.support_radius, scale = kCentralDrag * walk.context.force_scale;
   walk.team.run(press.rows.chunks(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t chunk = begin; chunk < end; ++chunk) {
       press.rows.for_each_group(chunk, [&](const PairRows::Walk& rows) {
-        const GroupForces forces = walk_forces < kPresses, true, viscosity == Viscosity::kPair || stresses,
-                          stresses > (press, rows, h, walk.context.drag_shape, [](const auto&...) {});
+        const GroupForces forces = walk_forces<kPresses, true, kDrags, stresses>(
+            press, rows, h, walk.context.drag_shape, [](const auto&...) {});
         float pressed[16], dragged[16];
         std::memcpy(pressed, &forces.pressed, sizeof pressed);
         std::memcpy(dragged, &forces.dragged, sizeof dragged);
