@@ -164,6 +164,7 @@ class Finish {
     const float v[3] = {fluid.vx[p], fluid.vy[p], fluid.vz[p]};
     Neighborhood<float> n{};
     StressSums around;
+    TurnedMoment moment;
     n.number = n.fluid_number = s.velocity[3] + own;
     n.moment = {s.even[0], s.odd[0], s.odd[2], s.even[1], s.odd[1], s.even[2]};
     n.vx = s.velocity[0] + own * v[0];
@@ -176,9 +177,9 @@ class Finish {
                                   {s.carried_odd[0], s.carried[1], s.carried_back[2]},
                                   {s.carried_back[0], s.carried_odd[1], s.carried[2]}}};
       const float rest = w_.context.correction.rest_moment;
-      follow_flow(flow, scaled_and_shifted(n.moment, 1.0f / rest, 0.0f), rest, v, n);
-      if constexpr (stresses)
-        around = stress_sums(flow, n.moment, s.velocity[3], {s.velocity[0], s.velocity[1], s.velocity[2]}, v);
+      around = {flow_around(flow, v), s.velocity[3], apart(s, v)};
+      moment = turned_moment(n.moment, rest);
+      follow_flow(around.flow, moment, rest, n);
     }
     float held = 0.0f;
     const Vector3<float> by_fluid{s.slope[0], s.slope[1], s.slope[2]};
@@ -206,17 +207,23 @@ class Finish {
     if (w_.context.plan.has(PassId::kPressureSolve)) {
       const SolvedState state = solved_state(n, w_.context.correction, kind.viscosity, in_u, v);
       keep(p, kind, state, state.expansion, pushed);
-      if constexpr (stresses) pass_on(p, kind, around, held, by_fluid);
+      if constexpr (stresses) pass_on(p, kind, around, moment, held, by_fluid);
       return state.compression;
     }
     const CorrectedState state = corrected_state(n, w_.context.correction, kind.pressing_density,
                                                  kind.viscosity, in_u, fluid.volume[p], v);
     keep(p, kind, state, state.pressure, pushed);
-    if constexpr (stresses) pass_on(p, kind, around, held, by_fluid);
+    if constexpr (stresses) pass_on(p, kind, around, moment, held, by_fluid);
     return state.compression;
   }
 
  private:
+  // Σ W (v_p − v_i) over fluid.
+  static Vector3<float> apart(const OwnSums& s, const float (&v)[3]) {
+    return {s.velocity[3] * v[0] - s.velocity[0], s.velocity[3] * v[1] - s.velocity[1],
+            s.velocity[3] * v[2] - s.velocity[2]};
+  }
+
   // What the two models find alike.
   template <class State>
   void keep(std::uint32_t p, const ParticleKind& kind, const State& state, float pressure,
@@ -242,11 +249,11 @@ class Finish {
   }
 
   // What it passes on of a stress, behind keep(). `by_fluid`: Σ d (−W'/r) over fluid.
-  void pass_on(std::uint32_t p, const ParticleKind& kind, const StressSums& around, float held,
-               const Vector3<float>& by_fluid) const {
+  void pass_on(std::uint32_t p, const ParticleKind& kind, const StressSums& around,
+               const TurnedMoment& moment, float held, const Vector3<float>& by_fluid) const {
     const float rest = w_.context.correction.rest_moment;
     const FluidStress found =
-        fluid_stress(around, share_of_stress(held, rest), rest, w_.fluid.volume[p], kind.viscosity);
+        fluid_stress(around, moment, share_of_stress(held, rest), rest, w_.fluid.volume[p], kind.viscosity);
     const Rows<float>& t = found.push;
     const Vector3<float> own = times(t, by_fluid.x, by_fluid.y, by_fluid.z);
     w_.press.stresses[p] = {{t.x.x, t.y.y, t.z.z, 0.0f},

@@ -124,9 +124,13 @@ __global__ __launch_bounds__(kThreads) void corrected_density_kernel(
   const float4 motion = fluid.state.v[p];
   const float in_u = one_viscosity ? kind.viscosity : 0.0f;
   const float velocity[3] = {motion.x, motion.y, motion.z};
+  const float rest = c.correction.rest_moment;
+  FlowAround around;
+  TurnedMoment moment;
   if constexpr (flows) {
-    const float rest = c.correction.rest_moment;
-    follow_flow(flow, scaled_and_shifted(by_fluid, 1.0f / rest, 0.0f), rest, velocity, sum);
+    around = flow_around(flow, velocity);
+    moment = turned_moment(by_fluid, rest);
+    follow_flow(around, moment, rest, sum);
   }
   auto state = [&] {
     if constexpr (solved) {
@@ -137,12 +141,14 @@ __global__ __launch_bounds__(kThreads) void corrected_density_kernel(
     }
   }();
   if constexpr (stresses) {
-    const float own = c.correction.own_number, rest = c.correction.rest_moment;
-    const StressSums around = stress_sums(
-        flow, by_fluid, sum.fluid_number - own,
-        {sum.vx - own * motion.x, sum.vy - own * motion.y, sum.vz - own * motion.z}, velocity);
-    const FluidStress found = fluid_stress(around, share_of_stress(held / c.rest_volume, rest), rest, state.volume,
-                                           kind.viscosity);
+    const float number = sum.fluid_number - c.correction.own_number;
+    const auto apart = [&](float v, float carried) {
+      return number * v - (carried - c.correction.own_number * v);
+    };
+    const StressSums sums{
+        around, number, {apart(motion.x, sum.vx), apart(motion.y, sum.vy), apart(motion.z, sum.vz)}};
+    const FluidStress found = fluid_stress(sums, moment, share_of_stress(held / c.rest_volume, rest), rest,
+                                           state.volume, kind.viscosity);
     keep_stress(fluid, p, found);
     state.u[0] += found.rest.x;
     state.u[1] += found.rest.y;

@@ -1,4 +1,4 @@
-// Symmetric 3×3 tensors as six numbers, or six batches of them.
+// Symmetric 3×3 tensors as six numbers, or six batches of them, and others by their rows.
 #pragma once
 
 #include "sim/math/host_device.h"
@@ -56,6 +56,32 @@ SLOSH_HD void add_scaled(const Symmetric<Real>& t, Real a, Symmetric<Real>& sum)
   sum.yy += a * t.yy;
   sum.yz += a * t.yz;
   sum.zz += a * t.zz;
+}
+
+/// A tensor that need not be symmetric.
+template <class Real>
+struct Rows {
+  Vector3<Real> x, y, z;
+};
+template <class Real>
+SLOSH_HD Vector3<Real> times(const Rows<Real>& t, Real x, Real y, Real z) {
+  return {t.x.x * x + t.x.y * y + t.x.z * z, t.y.x * x + t.y.y * y + t.y.z * z,
+          t.z.x * x + t.z.y * y + t.z.z * z};
+}
+template <class Real>
+SLOSH_HD Vector3<Real> times(const Vector3<Real>& row, const Symmetric<Real>& t) {
+  return times(t, row.x, row.y, row.z);
+}
+template <class Real>
+SLOSH_HD Rows<Real> times(const Rows<Real>& a, const Symmetric<Real>& t) {
+  return {times(a.x, t), times(a.y, t), times(a.z, t)};
+}
+/// t · a.
+template <class Real>
+SLOSH_HD Rows<Real> times(const Symmetric<Real>& t, const Rows<Real>& a) {
+  const Vector3<Real> x = times(t, a.x.x, a.y.x, a.z.x), y = times(t, a.x.y, a.y.y, a.z.y),
+                      z = times(t, a.x.z, a.y.z, a.z.z);  // columns
+  return {{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}};
 }
 
 /// The inverse of a tensor whose determinant is not zero.

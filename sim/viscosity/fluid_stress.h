@@ -31,56 +31,12 @@ inline constexpr float kBesideWalls = 1.03f;
 /// passes on no stress of its own: up to nearly two spacings off.
 inline constexpr float kHeld = 0.02f;
 
-/// A tensor by its rows.
-template <class Real>
-struct Rows {
-  Vector3<Real> x, y, z;
-};
-template <class Real>
-SLOSH_HD Vector3<Real> times(const Rows<Real>& t, Real x, Real y, Real z) {
-  return {t.x.x * x + t.x.y * y + t.x.z * z, t.y.x * x + t.y.y * y + t.y.z * z,
-          t.z.x * x + t.z.y * y + t.z.z * z};
-}
-template <class Real>
-SLOSH_HD Vector3<Real> times(const Vector3<Real>& row, const Symmetric<Real>& t) {
-  return times(t, row.x, row.y, row.z);
-}
-template <class Real>
-SLOSH_HD Rows<Real> times(const Rows<Real>& a, const Symmetric<Real>& t) {
-  return {times(a.x, t), times(a.y, t), times(a.z, t)};
-}
-/// t · a.
-template <class Real>
-SLOSH_HD Rows<Real> times(const Symmetric<Real>& t, const Rows<Real>& a) {
-  const Vector3<Real> x = times(t, a.x.x, a.y.x, a.z.x), y = times(t, a.x.y, a.y.y, a.z.y),
-                      z = times(t, a.x.z, a.y.z, a.z.z);  // columns
-  return {{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}};
-}
-
 /// Sums over the fluid neighbours at x_i = x_p − d, without the kernels' constants.
 struct StressSums {
-  Symmetric<float> moment;  ///< Σ d ⊗ d (−W'/r)
-  Rows<float> carried;      ///< Σ (v_p − v_i) ⊗ d (−W'/r)
-  float number;             ///< Σ W
-  Vector3<float> offset;    ///< Σ W d, m
-  Vector3<float> apart;     ///< Σ W (v_p − v_i), m/s
+  FlowAround flow;
+  float number;          ///< Σ W
+  Vector3<float> apart;  ///< Σ W (v_p − v_i), m/s
 };
-
-/// From what the density pass sums up over fluid neighbours. `moment`: by fluid alone; `number`: Σ W and
-/// `carried`: Σ W v, without the particle itself; `v`: its own, m/s.
-SLOSH_HD inline StressSums stress_sums(const FlowSums<float>& flow, const Symmetric<float>& moment,
-                                       float number, const Vector3<float>& carried, const float (&v)[3]) {
-  const auto row = [&](int j) {
-    return Vector3<float>{v[j] * flow.slope[0] - flow.carried[j][0],
-                          v[j] * flow.slope[1] - flow.carried[j][1],
-                          v[j] * flow.slope[2] - flow.carried[j][2]};
-  };
-  return {moment,
-          {row(0), row(1), row(2)},
-          number,
-          {flow.offset[0], flow.offset[1], flow.offset[2]},
-          {number * v[0] - carried.x, number * v[1] - carried.y, number * v[2] - carried.z}};
-}
 
 struct FluidStress {
   Rows<float> push;     ///< T, without the kernel's constant: T d (−W'/r) of the same kernel is N
@@ -94,29 +50,27 @@ SLOSH_HD inline float share_of_stress(float held, float rest_moment) {
   return RealOps<float>::positive_part(1.0f - held / (kHeld * rest_moment));
 }
 
-/// `by_walls`: share_of_stress(). `rest_moment`: Σ x² (−W'/r) over the rest lattice. `volume`: m³;
-/// `viscosity`: the fluid's own, Pa·s. Where the moment M is too flat to be turned round (a layer, a thread,
-/// drops) Eq 9 takes over by as much; M_u is taken for M and both G and T lose K = M_u⁻¹ M besides, so that
-/// each is the other's adjoint and T M symmetric still.
-SLOSH_HD inline FluidStress fluid_stress(const StressSums& sums, float by_walls, float rest_moment,
-                                         float volume, float viscosity) {
-  const Symmetric<float> moment = scaled_and_shifted(sums.moment, 1.0f / rest_moment, 0.0f);
-  Symmetric<float> upright = moment;
-  const float upright_share = unflattened(upright), share = by_walls * upright_share;
-  const bool flat = upright_share < 1.0f;
+/// `moment`: M by fluid alone; `by_walls`: share_of_stress(). `rest_moment`: Σ x² (−W'/r) over the rest
+/// lattice. `volume`: m³; `viscosity`: the fluid's own, Pa·s. Where M is too flat to be turned round (a
+/// layer, a thread, drops) Eq 9 takes over by as much; M_u is taken for M and both G and T lose K = M_u⁻¹ M
+/// besides, so that each is the other's adjoint and T M symmetric still.
+SLOSH_HD inline FluidStress fluid_stress(const StressSums& sums, const TurnedMoment& moment, float by_walls,
+                                         float rest_moment, float volume, float viscosity) {
+  const float share = by_walls * moment.kept;
+  const bool flat = moment.kept < 1.0f;
   FluidStress found{{}, kBesideWalls * (1.0f - share) * viscosity, {}};
   if (share <= 0.0f) return found;
-  const Symmetric<float> turned = scaled_and_shifted(inverse(upright), 1.0f / rest_moment, 0.0f);
+  const Symmetric<float> turned = scaled_and_shifted(moment.inverse, 1.0f / rest_moment, 0.0f);
   const auto kept = [&](const Rows<float>& t) {  // K t; M_u and M commute
-    return flat ? times(turned, times(scaled_and_shifted(moment, rest_moment, 0.0f), t)) : t;
+    return flat ? times(turned, times(scaled_and_shifted(moment.whole, rest_moment, 0.0f), t)) : t;
   };
-  const Rows<float> g = kept(times(sums.carried, turned));
+  const Rows<float> g = kept(times(sums.flow.carried, turned));
   const Rows<float> stress{{2.0f * g.x.x, g.x.y + g.y.x, g.x.z + g.z.x},
                            {g.x.y + g.y.x, 2.0f * g.y.y, g.y.z + g.z.y},
                            {g.x.z + g.z.x, g.y.z + g.z.y, 2.0f * g.z.z}};
   const float scale = -share * volume * viscosity;
   found.push = times(kept(stress), scaled_and_shifted(turned, scale, 0.0f));
-  const Vector3<float> flow = times(g, sums.offset.x, sums.offset.y, sums.offset.z);
+  const Vector3<float> flow = times(g, sums.flow.offset.x, sums.flow.offset.y, sums.flow.offset.z);
   const float brake = kBrakesTheRest * share * viscosity / sums.number;
   found.rest = {brake * (sums.apart.x - flow.x), brake * (sums.apart.y - flow.y),
                 brake * (sums.apart.z - flow.z)};

@@ -32,26 +32,48 @@ SLOSH_HD void add_flow(const Real (&d)[3], const Real (&v)[3], Real h, FlowSums<
   }
 }
 
-/// What Σ W v over the neighbours gains on the way from their middle to the particle, along G = Σ (v_p − v_i)
-/// ⊗ d (−W'/r) M⁻¹, M the moment by fluid alone: exact where they flow linearly. Where M is too flat to be
-/// turned round (a layer, a thread, a drop of a few) it is as much less. `moment`: M over the rest lattice's,
-/// `rest_moment`; `v`: the particle's, m/s. To n.fx, fy, fz.
-SLOSH_HD inline void follow_flow(const FlowSums<float>& sum, Symmetric<float> moment, float rest_moment,
-                                 const float (&v)[3], Neighborhood<float>& n) {
-  const float kept = unflattened(moment);
-  const float scale = kept / rest_moment;
-  const Symmetric<float> turned = inverse(moment);
-  const Vector3<float> to =
-      times(turned, scale * sum.offset[0], scale * sum.offset[1], scale * sum.offset[2]);
-  const auto along = [&](int j) {
-    const float by_x = v[j] * sum.slope[0] - sum.carried[j][0];
-    const float by_y = v[j] * sum.slope[1] - sum.carried[j][1];
-    const float by_z = v[j] * sum.slope[2] - sum.carried[j][2];
-    return by_x * to.x + by_y * to.y + by_z * to.z;
+/// What those are for one particle.
+struct FlowAround {
+  Vector3<float> offset;  ///< Σ W d, m
+  Rows<float> carried;    ///< Σ (v_p − v_i) ⊗ d (−W'/r)
+};
+
+/// `v`: the particle's, m/s.
+SLOSH_HD inline FlowAround flow_around(const FlowSums<float>& sum, const float (&v)[3]) {
+  const auto row = [&](int j) {
+    return Vector3<float>{v[j] * sum.slope[0] - sum.carried[j][0], v[j] * sum.slope[1] - sum.carried[j][1],
+                          v[j] * sum.slope[2] - sum.carried[j][2]};
   };
-  n.fx = along(0);
-  n.fy = along(1);
-  n.fz = along(2);
+  return {{sum.offset[0], sum.offset[1], sum.offset[2]}, {row(0), row(1), row(2)}};
+}
+
+/// Σ d ⊗ d (−W'/r) by fluid alone, over the rest lattice's, turned round.
+struct TurnedMoment {
+  Symmetric<float> whole;    ///< the moment itself
+  Symmetric<float> inverse;  ///< of what unflattened() makes of it
+  float kept;                ///< by how much it was flat enough for that to be itself, 0 to 1
+};
+SLOSH_HD inline TurnedMoment turned_moment(const Symmetric<float>& moment, float rest_moment) {
+  TurnedMoment found;
+  Symmetric<float> upright = found.whole = scaled_and_shifted(moment, 1.0f / rest_moment, 0.0f);
+  found.kept = unflattened(upright);
+  found.inverse = inverse(upright);
+  return found;
+}
+
+/// What Σ W v over the neighbours gains on the way from their middle to the particle, along G = Σ (v_p − v_i)
+/// ⊗ d (−W'/r) M⁻¹: exact where they flow linearly. Where M is too flat to be turned round (a layer, a
+/// thread, a drop of a few) it is as much less. `rest_moment`: Σ x² (−W'/r) over the rest lattice. To n.fx,
+/// fy, fz.
+SLOSH_HD inline void follow_flow(const FlowAround& flow, const TurnedMoment& moment, float rest_moment,
+                                 Neighborhood<float>& n) {
+  const float scale = moment.kept / rest_moment;
+  const Vector3<float> to =
+      times(moment.inverse, scale * flow.offset.x, scale * flow.offset.y, scale * flow.offset.z);
+  const Vector3<float> found = times(flow.carried, to.x, to.y, to.z);
+  n.fx = found.x;
+  n.fy = found.y;
+  n.fz = found.z;
 }
 
 }  // namespace slosh

@@ -40,22 +40,24 @@ struct Around {
   }
   FluidStress stress(float held = 0.0f) {
     StressSums s{};
+    Symmetric<float> by_fluid{};
     moment = glm::dmat3(0.0);
     for (std::size_t i = 0; i < places.size(); ++i) {
       const glm::vec3 d = -places[i], v = -velocities[i], w = glm::vec3(g(i));
       if (glm::dot(d, d) >= kSupport * kSupport) continue;
       const PairKernel<float> kernel = Spiky::pair(glm::dot(d, d), kSupport, 1.0f);
-      add_moment(d.x, d.y, d.z, kernel, s.moment);
+      add_moment(d.x, d.y, d.z, kernel, by_fluid);
       moment += glm::outerProduct(glm::dvec3(d), g(i));
       const float near = Spiky::shape_of(kernel);
-      s.carried.x = {s.carried.x.x + v.x * w.x, s.carried.x.y + v.x * w.y, s.carried.x.z + v.x * w.z};
-      s.carried.y = {s.carried.y.x + v.y * w.x, s.carried.y.y + v.y * w.y, s.carried.y.z + v.y * w.z};
-      s.carried.z = {s.carried.z.x + v.z * w.x, s.carried.z.y + v.z * w.y, s.carried.z.z + v.z * w.z};
+      const auto add = [](Vector3<float>& sum, float factor, const glm::vec3& to) {
+        sum = {sum.x + factor * to.x, sum.y + factor * to.y, sum.z + factor * to.z};
+      };
+      add(s.flow.carried.x, v.x, w), add(s.flow.carried.y, v.y, w), add(s.flow.carried.z, v.z, w);
       s.number += near;
-      s.offset = {s.offset.x + near * d.x, s.offset.y + near * d.y, s.offset.z + near * d.z};
-      s.apart = {s.apart.x + near * v.x, s.apart.y + near * v.y, s.apart.z + near * v.z};
+      add(s.flow.offset, near, d), add(s.apart, near, v);
     }
-    return fluid_stress(s, share_of_stress(held, rest_moment()), rest_moment(), kVolume, kViscosity);
+    return fluid_stress(s, turned_moment(by_fluid, rest_moment()), share_of_stress(held, rest_moment()),
+                        rest_moment(), kVolume, kViscosity);
   }
 };
 

@@ -46,8 +46,7 @@ Sums sums_of(const glm::vec3& v, const std::vector<glm::vec3>& places,
 }
 
 void follow(Sums& s, const glm::vec3& v) {
-  follow_flow(s.flow, scaled_and_shifted(s.around.moment, 1.0f / s.rest, 0.0f), s.rest, {v.x, v.y, v.z},
-              s.around);
+  follow_flow(flow_around(s.flow, {v.x, v.y, v.z}), turned_moment(s.around.moment, s.rest), s.rest, s.around);
 }
 
 // m/s that it differs from its neighbours by.
