@@ -204,7 +204,7 @@ class Finish {
     }
     const ParticleKind& kind = w_.context.kinds[fluid.kind[p]];
     const float in_u = one_explicit_ ? kind.viscosity : 0.0f;
-    if (w_.context.plan.has(PassId::kPressureSolve)) {
+    if (solved_) {
       const SolvedState state = solved_state(n, w_.context.correction, kind.viscosity, in_u, v);
       keep(p, kind, state, state.expansion, pushed);
       if constexpr (stresses) pass_on(p, kind, around, moment, held, by_fluid);
@@ -256,13 +256,14 @@ class Finish {
         fluid_stress(around, moment, share_of_stress(held, rest), rest, w_.fluid.volume[p], kind.viscosity);
     const Rows<float>& t = found.push;
     const Vector3<float> own = times(t, by_fluid.x, by_fluid.y, by_fluid.z);
-    w_.press.stresses[p] = {{t.x.x, t.y.y, t.z.z, 0.0f},
-                            {t.x.y, t.y.z, t.z.x, 0.0f},
-                            {t.x.z, t.y.x, t.z.y, 0.0f},
-                            {own.x, own.y, own.z, 0.0f}};
-    w_.press.tensors[p].viscosity = found.left;
+    w_.press.own_stress[p] = {own.x, own.y, own.z, 0.0f};
     Vector4& u = w_.press.drags[p];
     u = {u.x + found.rest.x, u.y + found.rest.y, u.z + found.rest.z, u.w};
+    const PressTensor k = solved_ ? PressTensor{} : w_.press.tensors[p];
+    w_.press.passed[p] = {{k.xx + t.x.x, k.yy + t.y.y, k.zz + t.z.z, u.w},
+                          {k.xy + t.x.y, k.yz + t.y.z, k.xz + t.z.x, found.left},
+                          {k.xz + t.x.z, k.xy + t.y.x, k.yz + t.z.y, 0.0f},
+                          u};
   }
 
   using Kernel = ModelParts<ParticleModel::kCorrected>::DensityKernel;
@@ -270,6 +271,7 @@ class Finish {
   const Work& w_;
   // W(0) as pairs have it, with their floor: the pressure of a calm fluid hangs on the density's sixth digit.
   const float own_ = Kernel::shape_of(Kernel::pair(0.0f, w_.context.support_radius, 1.0f));
+  const bool solved_ = w_.context.plan.has(PassId::kPressureSolve);
   const bool one_explicit_ = w_.context.plan.drags_explicitly() &&
                              w_.context.plan.has(PassId::kOneViscosity) &&
                              !w_.context.plan.has(PassId::kFluidStress);
@@ -324,7 +326,7 @@ void compute_corrected_density(PassContext& context, ThreadTeam& team, FluidPart
   place(work, team);
   const bool flows = any_jostles(context.kinds, context.correction.noise_viscosity);
   const bool stresses = context.plan.has(PassId::kFluidStress);
-  if (stresses) press.make_stresses(fluid.index.particles());
+  if (stresses) press.make_passed(fluid.index.particles());
   const auto find = stresses ? find_chunk<true, true>
                     : flows  ? find_chunk<true, false>
                              : find_chunk<false, false>;

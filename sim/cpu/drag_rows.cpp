@@ -32,7 +32,7 @@ GroupForces write_fluid_pairs(const DragWalk& w, const PairRows::Walk& walk, Pai
   const float* const own = &w.press.tensors[walk.first].xx;
   const Sixteen volume = fourths(walk.of_group<8>(own)), viscosity = fourths(walk.of_group<8>(own + 4));
   PairRows::Pair* to = writer.take(walk);
-  return walk_forces<presses, jostles, false, false>(
+  return walk_forces<presses, jostles, false>(
       w.press, walk, w.context.support_radius, w.context.drag_shape,
       [&](const PairRows::Pair* four, const Sixteen& shape, const Sixteen& even, const Sixteen& odd) {
         // As drag_pairs(): both sides of a pair find the same to the bit.

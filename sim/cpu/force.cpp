@@ -98,14 +98,20 @@ void find_forces(const FluidWalk& walk) {
 // for they push later. Pairs of one viscosity drag by u alone, but where fluid passes on stresses of its own.
 template <class Parts, Viscosity viscosity, bool stresses>
 void forces_by_rows(const FluidWalk& walk, const FluidPress& press) {
-  constexpr bool kPresses = !Parts::kSolved, kDrags = viscosity == Viscosity::kPair || stresses;
+  constexpr bool kPresses = !Parts::kSolved;
   FluidParticles& fluid = walk.fluid;
   const float h = walk.context.support_radius, scale = kCentralDrag * walk.context.force_scale;
   walk.team.run(press.rows.chunks(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t chunk = begin; chunk < end; ++chunk) {
       press.rows.for_each_group(chunk, [&](const PairRows::Walk& rows) {
-        const GroupForces forces = walk_forces<kPresses, true, kDrags, stresses>(
-            press, rows, h, walk.context.drag_shape, [](const auto&...) {});
+        const DragShape<float>& drag = walk.context.drag_shape;
+        GroupForces forces;
+        if constexpr (stresses) {
+          forces = walk_passed(press, rows, h, drag);
+        } else {
+          forces = walk_forces<kPresses, true, viscosity == Viscosity::kPair>(press, rows, h, drag,
+                                                                              [](const auto&...) {});
+        }
         float pressed[16], dragged[16];
         std::memcpy(pressed, &forces.pressed, sizeof pressed);
         std::memcpy(dragged, &forces.dragged, sizeof dragged);
@@ -117,7 +123,7 @@ void forces_by_rows(const FluidWalk& walk, const FluidPress& press) {
           };
           Vector4 own = kPresses ? press.own[p] : Vector4{};
           if constexpr (stresses) {
-            const Vector4& by_stress = press.stresses[p].own;
+            const Vector4& by_stress = press.own_stress[p];
             own = {own.x + by_stress.x, own.y + by_stress.y, own.z + by_stress.z, 0.0f};
           }
           fluid.fx[p] = force(own.x, 0);
@@ -141,11 +147,11 @@ void compute_fluid_forces(PassContext& context, ThreadTeam& team, FluidParticles
   const FluidWalk walk{context, team, fluid, fixed, moving};
   with_physics(context.plan, [&]<class Parts, Viscosity viscosity>() {
     if constexpr (Parts::kCorrected) {
-      if (context.plan.has(PassId::kFluidStress)) {
-        forces_by_rows<Parts, viscosity, true>(walk, press);
-      } else {
-        forces_by_rows<Parts, viscosity, false>(walk, press);
+      auto forces = forces_by_rows<Parts, viscosity, false>;
+      if constexpr (viscosity != Viscosity::kNone) {
+        if (context.plan.has(PassId::kFluidStress)) forces = forces_by_rows<Parts, viscosity, true>;
       }
+      forces(walk, press);
     }
     find_forces<Parts, viscosity>(walk);
   });

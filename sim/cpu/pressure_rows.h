@@ -7,10 +7,14 @@
 
 namespace slosh {
 
-/// What a particle's own stress pushes with, without the kernel's constant: a tensor as a walk over rows
-/// takes it, xx, yy, zz; xy, yz, zx; xz, yx, zy; and `own` by what it pushes itself, N.
-struct alignas(64) PassedStress {
-  Vector4 straight, turning, back, own;
+/// What pairs take of a particle that passes on a stress, all in one line of the cache. What it pushes with
+/// (its stress, and its pressure where that is not solved for) is a tensor as a walk over rows takes it, with
+/// the kernel's constant.
+struct alignas(64) Passed {
+  Vector4 straight;  ///< xx, yy, zz; volume, m³
+  Vector4 turning;   ///< xy, yz, zx; viscosity that is left for Eq 9, Pa·s
+  Vector4 back;      ///< xz, yx, zy; 0
+  Vector4 drags;     ///< as FluidPress::drags
 };
 
 /// What the density pass of the corrected and of the incompressible model writes down of fluid particles, four
@@ -26,8 +30,9 @@ struct FluidPress {
   /// fourth: by fluid, walls and bodies.
   std::vector<Vector4> own;
   std::vector<Vector4> drags;  ///< what each drags by, Pa·m, and in the fourth its volume, m³
-  /// There with kFluidStress. `tensors` then have the viscosity that is left for Eq 9.
-  std::vector<PassedStress> stresses;
+  // There with kFluidStress:
+  std::vector<Passed> passed;
+  std::vector<Vector4> own_stress;  ///< what its own stress pushes each by, N, with 0 for a fourth
 
   void clear(std::size_t particles, std::size_t chunks) {
     rows.clear(chunks);
@@ -37,9 +42,10 @@ struct FluidPress {
     own.resize(particles + 4);
     drags.resize(particles + 4);
   }
-  void make_stresses(std::size_t particles) {
-    stresses.resize(particles + 4);
-    stresses[particles] = {};  // nobody's, who fills rows up
+  void make_passed(std::size_t particles) {
+    passed.resize(particles + 4);
+    passed[particles] = {};  // nobody's, who fills rows up
+    own_stress.resize(particles + 4);
   }
 };
 

@@ -61,18 +61,22 @@ __device__ void sum_over_team(Symmetric<float>& moment, FlowSums<float>& s) {
             s.carried[1][2], s.carried[2][0], s.carried[2][1], s.carried[2][2]);
 }
 
-// What a particle passes on of a stress.
-__device__ void keep_stress(const SortedFluid& fluid, std::uint32_t p, const FluidStress& found) {
+// What a particle passes on where that is a stress, too. `pressed`: what it presses with, N·m⁴; `u`: what it drags
+// by, Pa·m; `scale`: the force kernel's constant.
+__device__ void keep_passed(const SortedFluid& fluid, std::uint32_t p, const Symmetric<float>& pressed,
+                            const FluidStress& found, const float (&u)[3], float scale) {
   const Rows<float>& t = found.push;
-  fluid.stress_x[p] = make_float4(t.x.x, t.x.y, t.x.z, found.left);
-  fluid.stress_y[p] = make_float4(t.y.x, t.y.y, t.y.z, 0.0f);
-  fluid.stress_z[p] = make_float4(t.z.x, t.z.y, t.z.z, 0.0f);
+  const float f = 1.0f / scale;
+  fluid.passed_x[p] = make_float4(pressed.xx + f * t.x.x, pressed.xy + f * t.x.y, pressed.xz + f * t.x.z, u[0]);
+  fluid.passed_y[p] = make_float4(pressed.xy + f * t.y.x, pressed.yy + f * t.y.y, pressed.yz + f * t.y.z, u[1]);
+  fluid.passed_z[p] = make_float4(pressed.xz + f * t.z.x, pressed.yz + f * t.z.y, pressed.zz + f * t.z.z, u[2]);
+  fluid.left[p] = found.left;
 }
 
 // The corrected model's and, `solved`, the incompressible one's: sim/cpu/corrected_density.cpp. `flows`: drag on
 // jostling is needed, or `stresses` are passed on.
 template <class Team, bool solved, bool flows, bool stresses>
-__global__ __launch_bounds__(kThreads) void corrected_density_kernel(
+__global__ __launch_bounds__(kThreads, stresses ? kBlocksWithStress : 0) void corrected_density_kernel(
     StepConstants c, const ParticleKind* kinds, SortedFluid fluid, SortedSurface fixed, SortedSurface moving,
     bool one_viscosity, bool viscosities, std::uint32_t* status) {
   using Kernel = ModelParts<ParticleModel::kCorrected>::DensityKernel;
@@ -149,10 +153,10 @@ __global__ __launch_bounds__(kThreads) void corrected_density_kernel(
         around, number, {apart(motion.x, sum.vx), apart(motion.y, sum.vy), apart(motion.z, sum.vz)}};
     const FluidStress found = fluid_stress(sums, moment, share_of_stress(held / c.rest_volume, rest), rest,
                                            state.volume, kind.viscosity);
-    keep_stress(fluid, p, found);
     state.u[0] += found.rest.x;
     state.u[1] += found.rest.y;
     state.u[2] += found.rest.z;
+    keep_passed(fluid, p, solved ? Symmetric<float>{} : state.push, found, state.u, c.force_scale);
   }
   if constexpr (solved) fluid.expansion[p] = state.expansion;
   fluid.pressed[p] = make_float4(x.x, x.y, x.z, state.volume);

@@ -77,7 +77,8 @@ void FluidBuffers::allocate(std::size_t count, const RunConstants& constants, Ca
   }
   if (needs(constants.plan, ColumnNeed::kSolved)) expansion_.allocate(count, check);
   if (constants.plan.passes_stress) {
-    for (DeviceBuffer<float4>* rows : {&stress_x_, &stress_y_, &stress_z_}) rows->allocate(count, check);
+    for (DeviceBuffer<float4>* rows : {&passed_x_, &passed_y_, &passed_z_}) rows->allocate(count, check);
+    left_.allocate(count, check);
   }
   view_.count = static_cast<std::uint32_t>(count);
   view_.state = view_of(packs_[current_]);
@@ -86,9 +87,10 @@ void FluidBuffers::allocate(std::size_t count, const RunConstants& constants, Ca
   view_.push_b = push_b_.data();
   view_.drag_z = drag_z_.data();
   view_.expansion = expansion_.data();
-  view_.stress_x = stress_x_.data();
-  view_.stress_y = stress_y_.data();
-  view_.stress_z = stress_z_.data();
+  view_.passed_x = passed_x_.data();
+  view_.passed_y = passed_y_.data();
+  view_.passed_z = passed_z_.data();
+  view_.left = left_.data();
   view_.force = force_.data();
   view_.cells = cells_.view();
   allow_viscosities(constants, check);

@@ -57,7 +57,8 @@ class FluidBuffers {
   DeviceBuffer<float> viscosity_;
   DeviceBuffer<float4> push_a_, push_b_;
   DeviceBuffer<float> drag_z_, expansion_;
-  DeviceBuffer<float4> stress_x_, stress_y_, stress_z_;  // kFluidStress
+  DeviceBuffer<float4> passed_x_, passed_y_, passed_z_;  // kFluidStress
+  DeviceBuffer<float> left_;                             // kFluidStress
   CellTableBuffers cells_;
   SortedFluid view_;
 };

@@ -5,38 +5,59 @@ namespace slosh::cuda {
 
 namespace {
 
-// Of thick fluid by fluid: as add_forces(), with stresses, and with Eq 9 by what viscosity those leave. `pushed`
-// gets what they push, N.
+// Of fluid by fluid where that passes on stresses: as add_forces(), with what presses and stresses as one tensor,
+// and Eq 9 by what viscosity is left.
 template <class Team, class Parts>
-__device__ void add_stressed_forces(const StepConstants& c, ParticleView<float> p, std::uint32_t self,
-                                    const NeighborColumns& n, const CellTable& cells, std::uint32_t cell,
-                                    ForceSum<float>& sum, ForceSum<float>& pushed) {
+__device__ void add_passed_forces(const StepConstants& c, ParticleView<float> p, std::uint32_t self,
+                                  const NeighborColumns& n, const CellTable& cells, std::uint32_t cell,
+                                  ForceSum<float>& sum) {
+  using Kernel = typename Parts::ForceKernel;
   const float h = c.support_radius;
-  const Rows<float> own = read_stress(n, self, p.viscosity);
+  const Rows<float> own = read_passed(n, self, p);
+  const Vector3<float> own_u{p.ux, p.uy, p.uz};
+  p.ux = p.uy = p.uz = 0.0f;  // pairs drag by what the other has more
+  Vector3<float> slope{};       // Σ d (−W'/r)
   for_neighbors<Team>(c.grid, cells, cell, [&](std::uint32_t j) {
     const float4 x = __ldg(n.x + j);
     const float dx = p.x - x.x, dy = p.y - x.y, dz = p.z - x.z;
     const float r_squared = dx * dx + dy * dy + dz * dz;
     if (r_squared >= h * h) return;
-    float left = 0.0f;
-    const Rows<float> by = read_stress(n, j, left);
-    ParticleView<float> i = view(x, __ldg(n.v + j), left);
+    ParticleView<float> i;
+    const Rows<float> by = read_passed(n, j, i);
+    i.x = x.x;
+    i.y = x.y;
+    i.z = x.z;
     i.volume = x.w;
-    read_corrected(n, j, i);
-    add_pair_force<typename Parts::ForceKernel, Parts::kFluids, Parts::kDrag, true>(p, i, h, c.drag_shape, 1.0f,
-                                                                                   sum);
-    const float slope = Parts::ForceKernel::pair(r_squared, h, 1.0f).slope_over_r;
-    const Vector3<float> a = times(own, dx, dy, dz), b = times(by, dx, dy, dz);
-    pushed.x += slope * (a.x + b.x);
-    pushed.y += slope * (a.y + b.y);
-    pushed.z += slope * (a.z + b.z);
+    i.ux -= own_u.x;
+    i.uy -= own_u.y;
+    i.uz -= own_u.z;
+    const float left = 0.5f * (p.viscosity + i.viscosity);
+    if (left > 0.0f) {  // not far from walls, where velocities are not fetched
+      const float4 v = __ldg(n.v + j);
+      i.ux += left * (v.x - p.vx);
+      i.uy += left * (v.y - p.vy);
+      i.uz += left * (v.z - p.vz);
+    }
+    add_pair_force<Kernel, PairRule::kSolved, Parts::kDrag, false>(p, i, h, c.drag_shape, 1.0f, sum);
+    const float weight = Kernel::pair(r_squared, h, 1.0f).slope_over_r;
+    const float gx = weight * dx, gy = weight * dy, gz = weight * dz;
+    const Vector3<float> pushed = times(by, gx, gy, gz);
+    sum.x += pushed.x;
+    sum.y += pushed.y;
+    sum.z += pushed.z;
+    slope.x += gx;
+    slope.y += gy;
+    slope.z += gz;
   });
+  const Vector3<float> pushed = times(own, slope.x, slope.y, slope.z);  // by the thread's share of them
+  sum.x += pushed.x;
+  sum.y += pushed.y;
+  sum.z += pushed.z;
 }
 
 template <class Team, class Parts, Viscosity viscosity, bool stresses>
-__global__ __launch_bounds__(kThreads) void force_kernel(StepConstants c, const ParticleKind* kinds,
-                                                         SortedFluid fluid, SortedSurface fixed,
-                                                         SortedSurface moving) {
+__global__ __launch_bounds__(kThreads, stresses ? kBlocksWithStress : 0) void force_kernel(
+    StepConstants c, const ParticleKind* kinds, SortedFluid fluid, SortedSurface fixed, SortedSurface moving) {
   const std::uint32_t p = Team::particle();
   if (p >= fluid.count) return;
   const std::uint32_t cell = fluid.state.key[p];
@@ -45,9 +66,9 @@ __global__ __launch_bounds__(kThreads) void force_kernel(StepConstants c, const 
   constexpr Viscosity kAgainstBodies = viscosity == Viscosity::kNone ? Viscosity::kNone : Viscosity::kPair;
   ParticleView<float> self = view(fluid.pressed[p], fluid.state.v[p], kinds[fluid.state.kind[p]].viscosity);
   if constexpr (Parts::kCorrected) read_corrected(columns(fluid), p, self);
-  ForceSum<float> sum{0.0f, 0.0f, 0.0f}, pushed{0.0f, 0.0f, 0.0f};
+  ForceSum<float> sum{0.0f, 0.0f, 0.0f};
   if constexpr (stresses) {
-    add_stressed_forces<Team, Parts>(c, self, p, columns(fluid), fluid.cells, cell, sum, pushed);
+    add_passed_forces<Team, Parts>(c, self, p, columns(fluid), fluid.cells, cell, sum);
   } else {
     add_forces<Team, Parts, Parts::kFluids, viscosity>(c, self, columns(fluid), fluid.cells, cell,
                                                        c.support_radius, sum);
@@ -64,13 +85,11 @@ __global__ __launch_bounds__(kThreads) void force_kernel(StepConstants c, const 
     if (fixed.mirror.normal) add_mirror_forces<Team, Parts>(c, self, fixed, cell, sum);
   }
   Team::sum(sum.x, sum.y, sum.z);
-  if constexpr (stresses) Team::sum(pushed.x, pushed.y, pushed.z);
   if (Team::lane() != 0) return;
   const bool near_wall = (fixed.count && any_near(c.grid, fixed.cells, cell)) ||
                          (moving.count && any_near(c.grid, moving.cells, cell));
-  fluid.force[p] =
-      make_float4(c.force_scale * sum.x + pushed.x, c.force_scale * sum.y + pushed.y,
-                  c.force_scale * sum.z + pushed.z, near_wall ? 1.0f : 0.0f);
+  fluid.force[p] = make_float4(c.force_scale * sum.x, c.force_scale * sum.y, c.force_scale * sum.z,
+                               near_wall ? 1.0f : 0.0f);
 }
 
 }  // namespace

@@ -94,9 +94,12 @@ struct SortedFluid {
   float* drag_z = nullptr;    ///< kCorrected: z of that
   float* expansion = nullptr;  ///< kIncompressible: wanted ρ⁰/ρ − 1
   float* viscosity = nullptr;  ///< Pa·s; there and written only where pairs differ
-  float4* stress_x = nullptr;  ///< kFluidStress: the rows of T, without the force kernel's constant; in w the
-  float4* stress_y = nullptr;  ///< viscosity that is left for Eq 9 with fluid, Pa·s
-  float4* stress_z = nullptr;
+  // kFluidStress:
+  float4* passed_x =
+      nullptr;  ///< the rows of what each presses (kCorrected) and stresses others with, N·m⁴; in
+  float4* passed_y = nullptr;  ///< w what pairs drag by, Pa·m
+  float4* passed_z = nullptr;
+  float* left = nullptr;       ///< viscosity for Eq 9 with fluid, Pa·s
   float4* force = nullptr;     ///< N; w: 1 where bodies are in the cells around, else 0
   CellTable cells;
 };

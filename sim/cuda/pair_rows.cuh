@@ -4,7 +4,6 @@
 
 #include "sim/cuda/rows.cuh"
 #include "sim/model.h"
-#include "sim/viscosity/fluid_stress.h"
 
 namespace slosh::cuda {
 
@@ -20,14 +19,15 @@ struct NeighborColumns {
   const float* solved = nullptr;
   const float* reach = nullptr;  // of bodies
   // kFluidStress, of fluid:
-  const float4* stress_x = nullptr;
-  const float4* stress_y = nullptr;
-  const float4* stress_z = nullptr;
+  const float4* passed_x = nullptr;
+  const float4* passed_y = nullptr;
+  const float4* passed_z = nullptr;
+  const float* left = nullptr;
 };
 
 __device__ inline NeighborColumns columns(const SortedFluid& fluid) {
   return {fluid.pressed,      fluid.state.v, fluid.viscosity, fluid.push_a,   fluid.push_b,   fluid.drag_z,
-          fluid.state.solved, nullptr,       fluid.stress_x,  fluid.stress_y, fluid.stress_z};
+          fluid.state.solved, nullptr,       fluid.passed_x,  fluid.passed_y, fluid.passed_z, fluid.left};
 }
 __device__ inline NeighborColumns columns(const SortedSurface& surface) {
   return {surface.x, surface.v, surface.viscosity, nullptr, nullptr, nullptr, nullptr, surface.reach};
@@ -43,10 +43,13 @@ __device__ inline void read_corrected(const NeighborColumns& n, std::uint32_t j,
   p.uz = __ldg(n.drag_z + j);
 }
 
-/// What j's own stress pushes with; to `left` the viscosity that is left for Eq 9, Pa·s.
-__device__ inline Rows<float> read_stress(const NeighborColumns& n, std::uint32_t j, float& left) {
-  const float4 x = __ldg(n.stress_x + j), y = __ldg(n.stress_y + j), z = __ldg(n.stress_z + j);
-  left = x.w;
+/// Where fluid passes on stresses: what j presses and stresses others with; to `p` what it drags by.
+__device__ inline Rows<float> read_passed(const NeighborColumns& n, std::uint32_t j, ParticleView<float>& p) {
+  const float4 x = __ldg(n.passed_x + j), y = __ldg(n.passed_y + j), z = __ldg(n.passed_z + j);
+  p.ux = x.w;
+  p.uy = y.w;
+  p.uz = z.w;
+  p.viscosity = __ldg(n.left + j);
   return {{x.x, x.y, x.z}, {y.x, y.y, y.z}, {z.x, z.y, z.z}};
 }
 

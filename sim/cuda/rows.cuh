@@ -7,6 +7,10 @@
 namespace slosh::cuda {
 
 inline constexpr int kThreads = 128;
+/// How many blocks a multiprocessor holds at least of kernels that pass on stresses: 64 registers a thread. By
+/// itself the compiler takes 71 to 80, and a step of a million particles a fifth longer
+/// (tests/bench/results/2026-11-27-passed-steps-h100.csv).
+inline constexpr int kBlocksWithStress = 8;
 
 inline unsigned blocks_for(std::uint32_t count, int threads = kThreads) {
   return (count + static_cast<unsigned>(threads) - 1) / static_cast<unsigned>(threads);

@@ -37,10 +37,13 @@ struct Crowd {
       press.drags[p] = {small(random), small(random), small(random), 1.0f + 0.1f * small(random)};
       press.tensors[p] = {small(random), small(random), small(random), press.drags[p].w,
                           small(random), small(random), small(random), 2.0f + small(random)};
-      const auto some = [&] { return Vector4{small(random), small(random), small(random), 0.0f}; };
-      press.stresses.push_back({some(), some(), some(), {}});
+      const auto some = [&](float fourth) {
+        return Vector4{small(random), small(random), small(random), fourth};
+      };
+      press.passed.push_back(
+          {some(press.drags[p].w), some(2.0f + small(random)), some(0.0f), press.drags[p]});
     }
-    press.stresses.resize(count + 4);
+    press.passed.resize(count + 4);
     // Nobody.
     press.places[count] = {1e9f, 1e9f, 1e9f, 0.0f};
   }
@@ -309,24 +312,22 @@ double drags_by(double reach) {
 }
 
 // T d by its own nine numbers.
-glm::dvec3 pushed(const PassedStress& t, const glm::dvec3& d) {
+glm::dvec3 pushed(const Passed& t, const glm::dvec3& d) {
   return vec3(t.straight) * d + vec3(t.turning) * glm::dvec3(d.y, d.z, d.x) +
          vec3(t.back) * glm::dvec3(d.z, d.x, d.y);
 }
 
-// What the force pass finds over rows: pressure, stresses, the drag on jostling, Eq 9 of each one's own
-// viscosity.
-TEST_P(PairRowsOf, ForcesAsADoubleLoop) {
-  Crowd crowd(GetParam());
-  write_weighed(crowd, crowd.press.rows);
+// What a force pass finds over rows: `forces` against a double loop over what others push with, `push(i, d)`,
+// the drag on jostling and Eq 9 of each one's own viscosity.
+template <class Forces, class Push, class Viscosity>
+void expect_forces(const Crowd& crowd, Forces&& forces, Push&& push, Viscosity&& viscosity) {
   const FluidPress& press = crowd.press;
   const Rows expected = expected_rows(crowd);
   for_each_result(
       press.rows,
       [&](const PairRows::Walk& w) {
-        const GroupForces forces =
-            walk_forces<true, true, true, true>(press, w, kReach, kShape, [](const auto&...) {});
-        return forces.pressed + forces.dragged;
+        const GroupForces found = forces(w);
+        return found.pressed + found.dragged;
       },
       [&](std::size_t p, const glm::dvec3& found) {
         glm::dvec3 sum(0.0);
@@ -334,19 +335,40 @@ TEST_P(PairRowsOf, ForcesAsADoubleLoop) {
         for (const auto& [i, weight] : expected[p]) {
           const glm::dvec3 d = crowd.way(p, i);
           const double r = glm::length(d);
-          const PressTensor &own = press.tensors[p], &other = press.tensors[i];
           const glm::dvec3 u = vec3(press.drags[i]) - vec3(press.drags[p]);
           const glm::dvec3 v = vec3(press.velocities[i]) - vec3(press.velocities[p]);
-          const glm::dvec3 by = u + 0.5 * static_cast<double>(own.viscosity + other.viscosity) * v;
+          const glm::dvec3 by = u + 0.5 * (viscosity(p) + viscosity(i)) * v;
           const glm::dvec3 part =
-              matrix(other) * (static_cast<double>(weight) * d) +
-              static_cast<double>(weight) * pushed(press.stresses[i], d) +
-              (static_cast<double>(other.volume) * drags_by(kReach - r) / (r * r) * glm::dot(d, by)) * d;
+              push(i, static_cast<double>(weight) * d) +
+              (static_cast<double>(press.drags[i].w) * drags_by(kReach - r) / (r * r) * glm::dot(d, by)) * d;
           sum += part;
           size += glm::length(part) + 3.0 * (kReach - r);
         }
         EXPECT_LE(glm::length(found - sum), 3e-6 * size);
       });
+}
+
+TEST_P(PairRowsOf, ForcesAsADoubleLoop) {
+  Crowd crowd(GetParam());
+  write_weighed(crowd, crowd.press.rows);
+  const FluidPress& press = crowd.press;
+  expect_forces(
+      crowd,
+      [&](const PairRows::Walk& w) {
+        return walk_forces<true, true, true>(press, w, kReach, kShape, [](const auto&...) {});
+      },
+      [&](std::size_t i, const glm::dvec3& g) { return matrix(press.tensors[i]) * g; },
+      [&](std::size_t i) { return static_cast<double>(press.tensors[i].viscosity); });
+}
+
+TEST_P(PairRowsOf, ForcesByWhatIsPassedOnAsADoubleLoop) {
+  Crowd crowd(GetParam());
+  write_weighed(crowd, crowd.press.rows);
+  const FluidPress& press = crowd.press;
+  expect_forces(
+      crowd, [&](const PairRows::Walk& w) { return walk_passed(press, w, kReach, kShape); },
+      [&](std::size_t i, const glm::dvec3& g) { return pushed(press.passed[i], g); },
+      [&](std::size_t i) { return static_cast<double>(press.passed[i].turning.w); });
 }
 
 }  // namespace
