@@ -10,6 +10,9 @@ namespace slosh {
 namespace {
 
 constexpr int kPanelWidth = 620, kPanelHeight = 420, kTitleHeight = 46;  // pixels
+// A legend of longer names stands below the axes: beside them it would leave the curves no room.
+constexpr std::size_t kLongestBeside = 28;            // bytes of a name
+constexpr int kLetter = 6, kSample = 50, kLine = 15;  // pixels of a legend's
 
 const char* const kStyle =
     "set encoding utf8\n"
@@ -58,6 +61,21 @@ bool begins_at_zero(const ChartPanel& panel) {
   return !panel.log_y && least >= 0.0 && least < 0.1 * most;
 }
 
+std::size_t longest_name(const ChartPanel& panel) {
+  std::size_t longest = 0;
+  for (const ChartSeries& series : panel.series) longest = std::max(longest, series.name.size());
+  return longest;
+}
+bool has_legend_below(const ChartPanel& panel) {
+  return panel.legend && !panel.key_alone && longest_name(panel) > kLongestBeside;
+}
+/// Pixels that a legend below the axes takes; 0 beside them.
+int height_below(const ChartPanel& panel) {
+  if (!has_legend_below(panel)) return 0;
+  const int columns = std::max(1, kPanelWidth / (kSample + kLetter * static_cast<int>(longest_name(panel))));
+  return kLine * ((static_cast<int>(panel.series.size()) + columns - 1) / columns);
+}
+
 std::string look_of(const ChartSeries& series) {
   std::string look = series.width > 0.0 ? (series.mark > 0 ? "linespoints" : "lines") : "points";
   if (series.width > 0.0) look += format(" lw %.2g dt %s", series.width, series.dashed ? "2" : "1");
@@ -95,8 +113,10 @@ std::string panel_script(const ChartPanel& panel, std::size_t number) {
     plot += series.name.empty() ? "notitle" : "title " + gnuplot_text(series.name);
   }
   std::string script = data + "unset logscale\n" + spans_script(panel);
-  script += panel.legend ? "set key outside right top reverse Left samplen 2 font \"DejaVu Sans,9\"\n"
-                         : "unset key\n";
+  script += !panel.legend ? "unset key\n"
+                          : std::string("set key outside ") +
+                                (has_legend_below(panel) ? "below center" : "right top vertical") +
+                                " reverse Left samplen 2 font \"DejaVu Sans,9\"\n";
   if (panel.log_x) script += "set logscale x\n";
   if (panel.log_y) script += "set logscale y\n";
   script += begins_at_zero(panel) ? "set yrange [0:*]\n" : "set yrange [*:*]\n";
@@ -116,8 +136,10 @@ std::string panel_script(const ChartPanel& panel, std::size_t number) {
 std::string chart_script(const std::vector<ChartPanel>& panels, int columns, const std::string& title,
                          const std::string& picture, const std::string& corner) {
   const int rows = (static_cast<int>(panels.size()) + columns - 1) / columns;
+  int height = kPanelHeight;
+  for (const ChartPanel& panel : panels) height = std::max(height, kPanelHeight + height_below(panel));
   std::string script =
-      kStyle + gnuplot_terminal(picture, columns * kPanelWidth, rows * kPanelHeight + kTitleHeight, 11);
+      kStyle + gnuplot_terminal(picture, columns * kPanelWidth, rows * height + kTitleHeight, 11);
   script +=
       "set format x \"%g\"\nset format y \"%g\"\nset offsets graph 0.05, graph 0.05, graph 0.08, graph "
       "0.08\n";

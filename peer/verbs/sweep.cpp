@@ -43,12 +43,25 @@ struct SweepVerbOptions {
 struct Member {
   std::vector<FieldEdit> edits;  // one a --set
   Scene scene;
-  std::string name() const {
+  /// Those of the edits that `chosen` says.
+  std::string name(const std::vector<bool>& chosen) const {
     std::string text;
-    for (const FieldEdit& edit : edits) text += (text.empty() ? "" : ", ") + edit.field + " = " + edit.value;
+    for (std::size_t i = 0; i < edits.size(); ++i) {
+      if (chosen[i]) text += (text.empty() ? "" : ", ") + edits[i].field + " = " + edits[i].value;
+    }
     return text;
   }
 };
+
+/// Which of the edits are not the same in all members; all of them of one member alone.
+std::vector<bool> varied(const std::vector<Member>& family) {
+  std::vector<bool> varies(family.front().edits.size(), family.size() == 1);
+  for (const Member& member : family) {
+    for (std::size_t i = 0; i < varies.size(); ++i)
+      varies[i] = varies[i] || member.edits[i].value != family.front().edits[i].value;
+  }
+  return varies;
+}
 
 /// Every combination, the last --set changing fastest; each loaded, so that what is wrong is said before
 /// anything runs.
@@ -192,17 +205,18 @@ int sweep(const SweepVerbOptions& options) {
   catch_interrupts();
   Progress progress;
   std::vector<ChartPanel> panels = panels_of(first);
+  const std::vector<bool> varies = varied(family.value());
   std::vector<ReportJob> jobs;
   std::size_t done = 0;
   std::optional<Error> refusal;
   for (std::size_t n = 0; n < family.value().size(); ++n) {
     const Member& member = family.value()[n];
-    jobs.push_back({member.name(), 1.0, [&, n] {
+    jobs.push_back({member.name(varies), 1.0, [&, n] {
                       const Scene& scene = family.value()[n].scene;
                       report::Setting one = setting;
                       one.spacing = spacing_of(options, scene);
                       const double seconds = options.seconds > 0.0 ? options.seconds : scene.duration;
-                      const std::string name = family.value()[n].name();
+                      const std::string name = family.value()[n].name(varies);
                       try {
                         const ScriptedRun run = run_scripted(scene, one, seconds, [&](double share) {
                           progress.update((static_cast<double>(n) + share) / static_cast<double>(jobs.size()),
@@ -223,7 +237,10 @@ int sweep(const SweepVerbOptions& options) {
   const Result<bool> ran = run_jobs(jobs, out, table, progress);
   if (!ran) return fail(ran.error());
   if (done > 0) {
-    const std::string title = first.title + "\n" + machine_line(machine);
+    std::vector<bool> alike = varies;
+    alike.flip();
+    const std::string same = family.value().front().name(alike);
+    const std::string title = first.title + (same.empty() ? "" : "; " + same) + "\n" + machine_line(machine);
     const Result<bool> drawn = draw(chart_script(panels, 2, title), folder.value() / "sweep.png");
     if (!drawn) return fail(drawn.error());
   }

@@ -41,6 +41,21 @@ TEST(Chart, DrawsWhateverItIsGiven) {
   expect_picture(chart_script({panel, empty, panel}, 2, kHostile), "chart_test.png");
 }
 
+// What is left for curves is told by gnuplot itself: the axes' width and height on the picture.
+TEST(Chart, ALegendOfLongNamesLeavesRoomForCurves) {
+  for (const std::size_t names : {1u, 4u, 12u}) {
+    ChartPanel panel{"t", "x", "y", false, false, {}};
+    for (std::size_t i = 0; i < names; ++i)
+      panel.series.push_back({std::string(60, 'n'), "#000000", {{0.0, 1.0}, {1.0, 2.0}}, 0, 1.0, 1.0, false});
+    std::string script = chart_script({panel, panel}, 2, "t");
+    const std::size_t end = script.rfind("unset multiplot");
+    script.insert(end,
+                  "if (GPVAL_TERM_XMAX - GPVAL_TERM_XMIN < 450) exit status 1\n"
+                  "if (GPVAL_TERM_YMAX - GPVAL_TERM_YMIN < 250) exit status 1\n");
+    expect_picture(script, "legend_test.png");
+  }
+}
+
 TEST(Chart, LeavesOutWhatHasNoLogarithm) {
   ChartPanel panel{"t", "x", "y", true, true, {}};
   panel.series.push_back({"s", "#000000", {{-5.0, 1.0}, {4.25, 1.0}}, 7, 1.0, 0.0, false});
