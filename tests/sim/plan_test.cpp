@@ -139,6 +139,27 @@ TEST(Plan, SolvesDragWhereExplicitStepsWouldBeManyTimesShorter) {
   EXPECT_TRUE(can_solve_drag(Backend::kCpu));
 }
 
+// From twice the step on, and not before; at a wide support from four times.
+TEST(Plan, SolvesDragFromTwiceTheStepOn) {
+  for (const auto& [support_ratio, from] : {std::pair{2.0, 2.0}, {2.5, 4.0}}) {
+    auto tank = make_tank({});
+    tank.scene.support_ratio = support_ratio;
+    const double longest = make_plan(tank.scene, 0.01).time_step;
+    int stepped = 0, solved = 0;
+    for (double viscosity = 1.0; viscosity < 200.0; viscosity *= 1.05) {
+      tank.scene.fluids[0].dynamic_viscosity = viscosity;
+      const double times = longest / make_plan(tank.scene, 0.01, false).time_step;
+      if (std::abs(times - from) < 0.02) continue;
+      EXPECT_EQ(make_plan(tank.scene, 0.01).solves_drag, times > from)
+          << viscosity << " Pa·s, " << times << " times";
+      stepped += times > 0.75 * from && times < from;
+      solved += times > from && times < 1.25 * from;
+    }
+    EXPECT_GT(stepped, 2);
+    EXPECT_GT(solved, 2);
+  }
+}
+
 // 10⁶ Pa·s at 1 cm is an explicit step of some 10 ns: refused with what would do; 1000 Pa·s runs.
 TEST(Plan, ThatWouldNotComeToAnEndIsRefused) {
   auto tank = make_tank({});
