@@ -65,7 +65,7 @@ SLOSH_HD inline void set_drag(const Neighborhood<float>& n, const CorrectionCons
     float d[3] = {};
     add_noise(n, c.own_number, 1.0f, v, d);
     const float speed = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-    jostling = viscosity_in_impact(calm, c.impact_growth, speed, viscosity, c.most_drag);
+    jostling = viscosity_in_impact(calm, c.noise_viscosity, c.impact_growth, speed, viscosity, c.most_drag);
   }
   add_noise(n, c.own_number, jostling, v, u);
   follow_noise(n, c.own_number, calm, u);

@@ -64,12 +64,15 @@ inline double impact_growth(const Plan& plan) {
   return plan.model == ParticleModel::kIncompressible ? 0.0 : kImpactGrowth / std::sqrt(plan.stiffness);
 }
 
-/// The viscosity that jostling feels at `speed` m/s, Pa·s. `growth`: s/m; `most`: what a step holds of all
-/// that drags a particle explicitly, of which the fluid's own `viscosity` is a part.
-SLOSH_HD inline float viscosity_in_impact(float jostling, float growth, float speed, float viscosity,
-                                          float most) {
+/// The viscosity that jostling feels at `speed` m/s, Pa·s, of a fluid whose jostling feels `jostling` while
+/// it is calm: `noise` where it is thin, nothing where it is thick, which meets as hard. `growth`: s/m;
+/// `most`: what a step holds of all that drags a particle explicitly, of which the fluid's own `viscosity` is
+/// a part.
+SLOSH_HD inline float viscosity_in_impact(float jostling, float noise, float growth, float speed,
+                                          float viscosity, float most) {
   constexpr auto kCalmPart = static_cast<float>(kImpactGrowth * kImpactSpeed);
-  const float grown = jostling * (1.0f + RealOps<float>::positive_part(growth * speed - kCalmPart));
+  const float more = RealOps<float>::positive_part(growth * speed - kCalmPart);
+  const float grown = jostling * (1.0f + more) + (noise - jostling) * more;
   const float left = most - viscosity;
   return grown <= left ? grown : left > jostling ? left : jostling;
 }

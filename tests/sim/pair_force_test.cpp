@@ -265,7 +265,7 @@ TEST(Noise, GrowsWithTheSpeedOfAnImpactUpToWhatTheStepHolds) {
   constexpr float kJostling = 0.8f, kSound = 5.0f, kMost = 6.0f;
   constexpr auto kGrowth = static_cast<float>(kImpactGrowth) / kSound;
   const auto at = [&](float speed, float viscosity) {
-    return viscosity_in_impact(kJostling, kGrowth, speed, viscosity, kMost);
+    return viscosity_in_impact(kJostling, kJostling, kGrowth, speed, viscosity, kMost);
   };
   EXPECT_EQ(at(0.0f, 0.0f), kJostling);
   EXPECT_EQ(at(0.99f * static_cast<float>(kImpactSpeed) * kSound, 0.0f), kJostling);
@@ -275,6 +275,12 @@ TEST(Noise, GrowsWithTheSpeedOfAnImpactUpToWhatTheStepHolds) {
   EXPECT_FLOAT_EQ(at(kSound, 2.0f), kMost - 2.0f);
   // Where the fluid's own drag is all that the step holds it is what it would be in calm.
   EXPECT_EQ(at(kSound, kMost), kJostling);
+  // Thick fluid, whose jostling feels nothing or less in calm, gains as much as thin.
+  for (const float calm : {0.0f, 0.3f}) {
+    EXPECT_EQ(viscosity_in_impact(calm, kJostling, kGrowth, 0.04f * kSound, 1.0f, kMost), calm);
+    EXPECT_FLOAT_EQ(viscosity_in_impact(calm, kJostling, kGrowth, 0.1f * kSound, 1.0f, kMost),
+                    calm + kJostling * 2.5f);
+  }
 }
 
 TEST(PairForce, ConsistentPairsConserveAngularMomentum) {
