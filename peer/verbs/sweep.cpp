@@ -211,12 +211,12 @@ int sweep(const SweepVerbOptions& options) {
   std::optional<Error> refusal;
   for (std::size_t n = 0; n < family.value().size(); ++n) {
     const Member& member = family.value()[n];
-    jobs.push_back({member.name(varies), 1.0, [&, n] {
+    const std::string name = member.name(varies);
+    jobs.push_back({name, 1.0, [&, n, name] {
                       const Scene& scene = family.value()[n].scene;
                       report::Setting one = setting;
                       one.spacing = spacing_of(options, scene);
                       const double seconds = options.seconds > 0.0 ? options.seconds : scene.duration;
-                      const std::string name = family.value()[n].name(varies);
                       try {
                         const ScriptedRun run = run_scripted(scene, one, seconds, [&](double share) {
                           progress.update((static_cast<double>(n) + share) / static_cast<double>(jobs.size()),

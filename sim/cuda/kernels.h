@@ -95,9 +95,8 @@ struct SortedFluid {
   float* expansion = nullptr;  ///< kIncompressible: wanted ρ⁰/ρ − 1
   float* viscosity = nullptr;  ///< Pa·s; there and written only where pairs differ
   // kFluidStress:
-  float4* passed_x =
-      nullptr;  ///< the rows of what each presses (kCorrected) and stresses others with, N·m⁴; in
-  float4* passed_y = nullptr;  ///< w what pairs drag by, Pa·m
+  float4* passed_x = nullptr;  ///< the rows of what each presses others with (kCorrected) and stresses
+  float4* passed_y = nullptr;  ///< them with, N·m⁴; in w what pairs drag by, Pa·m
   float4* passed_z = nullptr;
   float* left = nullptr;       ///< viscosity for Eq 9 with fluid, Pa·s
   float4* force = nullptr;     ///< N; w: 1 where bodies are in the cells around, else 0
