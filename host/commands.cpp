@@ -78,7 +78,6 @@ Result<bool> Host::carry_out(const HostCommand& command) {
       return world_.set_gravity_scale(command.value);
     case HostAction::kGripStiffness: {
       const Result<bool> set = world_.set_grip_stiffness(command.index, command.value);
-      if (set) gate_.set_stiffness(command.index, command.value);
       return set;
     }
   }
@@ -88,7 +87,6 @@ Result<bool> Host::carry_out(const HostCommand& command) {
 Result<bool> Host::reset() {
   const Result<bool> restored = keep::reset_world(world_, fluids_, start_state_);
   if (!restored) return restored;
-  for (std::size_t g = 0; g < world_.grip_stiffness().size(); ++g) gate_.set_stiffness(g, world_.grip_stiffness()[g]);
   run_ += 1;
   for (double& until : status_until_) until = 0.0;
   world_.fill(latest_);

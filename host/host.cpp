@@ -64,7 +64,6 @@ Host::Host(World world, const Scene& scene, Channel& channel, HostOptions option
       fluid_models_(scene) {
   for (const Grip& grip : scene.grips) grip_bodies_.push_back(grip.body);
   for (const Body& body : scene.bodies) body_names_.push_back(body.name);
-  for (std::size_t g = 0; g < world_.grip_stiffness().size(); ++g) gate_.set_stiffness(g, world_.grip_stiffness()[g]);
   modelled_.resize(scene.bodies.size());
   fluids_ = scene.fluids.size();
   start_state_ = std::move(options_.start_state);
@@ -157,7 +156,7 @@ void Host::publish_bodies(double rate, std::int64_t stamp_ns) {
   for (std::size_t i = 0; i < used.size(); ++i) {
     const PoseMessage& pose = used[i];
     message.pose_numbers[i] = pose.number;
-    message.hands[i] = {pose.number, pose.stamp_ns, pose.time, pose.counted, pose.energy};
+    message.hands[i] = {pose.number, pose.stamp_ns, pose.time, pose.counted, pose.energy, pose.stand};
   }
   message.rate = rate;
   message.time_step = world_.plan().time_step;

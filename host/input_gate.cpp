@@ -30,8 +30,7 @@ InputGate::InputGate(const Scene& scene)
   for (const Grip& grip : scene.grips) {
     Hand hand;
     hand.body = grip.body;
-    hand.gains =
-        hand.of_scene = {grip.stiffness, grip.damping, grip.rotational_stiffness, grip.rotational_damping};
+    hand.gains = {grip.stiffness, grip.damping, grip.rotational_stiffness, grip.rotational_damping};
     hands_.push_back(hand);
   }
   inputs_.resize(hands_.size());
@@ -81,7 +80,7 @@ bool InputGate::accept(const PoseMessage& message, std::int64_t clock_ns) {
     if (hand.has_good && hand.good.engaged) {
       hand.lost_at = time_;
       hand.lost_scale = hand.scale;
-      hand.lost_fade = shared(hand) ? kHandOver : kLostFade;
+      hand.lost_fade = hand.good.stand || company(hand, clock_ns) != Company::kAlone ? kHandOver : kLostFade;
     }
   } else {
     hand.lost_scale = 0.0;
@@ -94,7 +93,8 @@ bool InputGate::accept(const PoseMessage& message, std::int64_t clock_ns) {
       to_seconds(std::min(message.stamp_ns - hand.good.stamp_ns, clock_ns - hand.received_ns));
   const double speed = std::max(glm::length(message.twist.linear), glm::length(hand.good.twist.linear));
   const bool leap = hand.has_good && leapt(hand.good.pose.position, message.pose.position, speed, elapsed);
-  if (hand.anew || hand.silent || leap || hand.good.hold != message.hold) hand.engagement = Engagement{};
+  const bool anew = hand.anew || hand.silent || leap || hand.good.hold != message.hold;
+  if (anew && !message.lost) hand.engagement.take_hold_anew();
   hand.anew = hand.silent = false;
   hand.good = message;
   hand.good.pose.orientation = glm::normalize(message.pose.orientation);
@@ -122,100 +122,63 @@ void InputGate::reset(const BodySnapshot& now, std::int64_t clock_ns) {
 }
 
 void InputGate::stood_still() {
-  for (Hand& hand : hands_) hand.engagement = Engagement{};
+  for (Hand& hand : hands_) hand.engagement.take_hold_anew();
 }
 
-// The coupling weakens where the hand was last, at rest; whoever is heard does not pull against it.
-void InputGate::fade(Hand& hand, HandleInput& input, const GripState& grip, double time,
-                     std::int64_t clock_ns) {
-  const double left = 1.0 - (time - hand.lost_at) / hand.lost_fade;
-  input.engaged = left > 0.0;
-  input.scale = input.engaged ? hand.lost_scale * left : 0.0;
-  input.pose = hand.last_held;
-  input.twist = Twist{};
-  if (!input.engaged) {
-    hand.lost_scale = 0.0;
-  } else if (another_holds(hand, clock_ns)) {
-    give_way(hand, input, grip);
-    hand.last_held = input.pose;
+/// Who else holds the body of a hand that holds on. A stand is nobody.
+Company InputGate::company(const Hand& hand, std::int64_t clock_ns) const {
+  const auto heard = [&](const Hand& of) {
+    return of.good.engaged && clock_ns - of.received_ns <= to_nanoseconds(kYieldAfter);
+  };
+  Company found = Company::kAlone;
+  for (const Hand& other : hands_) {
+    if (&other == &hand || other.body != hand.body || !other.has_good || !other.good.engaged || other.good.stand)
+      continue;
+    if (heard(other) && !heard(hand)) return Company::kSilent;
+    found = Company::kShared;
   }
+  return found;
 }
 
-/// Whether somebody who is heard holds the same body.
-bool InputGate::another_holds(const Hand& hand, std::int64_t clock_ns) const {
-  return std::any_of(hands_.begin(), hands_.end(), [&](const Hand& other) {
-    return &other != &hand && other.body == hand.body && other.has_good && other.good.engaged &&
-           clock_ns - other.received_ns <= to_nanoseconds(kYieldAfter);
-  });
-}
-
-/// Whether somebody else holds the same body, heard or not.
-bool InputGate::shared(const Hand& hand) const {
-  return std::any_of(hands_.begin(), hands_.end(), [&](const Hand& other) {
-    return &other != &hand && other.body == hand.body && other.has_good && other.good.engaged;
-  });
-}
-
-/// Moves the place where a silent hand holds, with the grip and so far that the springs give no more than
-/// kYield… besides what the hand carried.
-void InputGate::give_way(Hand& hand, HandleInput& input, const GripState& grip) const {
-  const CouplingGains& gains = hand.gains;
-  input.twist = grip.twist;  // the dampers drag at nobody
-  if (gains.stiffness > 0.0) {
-    const glm::dvec3 more = gains.stiffness * (grip.pose.position - input.pose.position) - hand.carried.force;
-    const double length = glm::length(more);
-    if (length > kYieldForce) {
-      const glm::dvec3 way = more * ((length - kYieldForce) / (length * gains.stiffness));
-      input.pose.position += way;
-      hand.good.pose.position += way;
-    }
-  }
-  if (gains.rotational_stiffness > 0.0) {
-    const glm::dvec3 more =
-        gains.rotational_stiffness * rotation_between(input.pose.orientation, grip.pose.orientation) -
-        hand.carried.torque;
-    const double length = glm::length(more);
-    if (length > kYieldTorque) {
-      const glm::dvec3 way = more * ((length - kYieldTorque) / (length * gains.rotational_stiffness));
-      input.pose.orientation = rotate_by(input.pose.orientation, way);
-      hand.good.pose.orientation = rotate_by(hand.good.pose.orientation, way);
-    }
-  }
+/// Simulated s that a hand which was lost goes on holding, as a share of what it has for that.
+double InputGate::left_to_fade(const Hand& hand) const {
+  if (hand.good.engaged || hand.lost_scale <= 0.0) return 0.0;
+  return std::max(1.0 - (time_ - hand.lost_at) / hand.lost_fade, 0.0);
 }
 
 void InputGate::fill_input(Hand& hand, std::size_t grip, const BodySnapshot& now, std::int64_t clock_ns) {
   HandleInput& input = inputs_[grip];
   // The pose was read a little before or after the moment that this step starts from.
   const double late = std::clamp(now.time - hand.good.time, -kMostCarried, kMostCarried);
-  input.pose = extrapolate(hand.good.pose, hand.good.twist, late);
-  if (clock_ns - hand.received_ns > to_nanoseconds(kStaleTwist)) {
+  Pose pose = extrapolate(hand.good.pose, hand.good.twist, late);
+  const double since = to_seconds(clock_ns - hand.received_ns);
+  if (since > kStaleTwist) {
     // From here on it goes with the world's time. At once at rest, it would stop a body that swings with a
     // blow.
-    hand.good.pose = input.pose;
+    hand.good.pose = pose;
     hand.good.time = now.time;
     const double left = std::exp(-step_ / kRunOut);
     hand.good.twist = {left * hand.good.twist.linear, left * hand.good.twist.angular};
   }
-  input.engaged = hand.has_good && hand.good.engaged;
-  const GripState nowhere{input.pose, hand.good.twist, input.pose, {}};
-  const Engagement::Held held =
-      hand.engagement.update(input.engaged, now.time, input.pose, hand.good.twist, hand.gains,
-                             grip < now.grips.size() ? now.grips[grip] : nowhere, shared(hand));
-  input.pose = held.pose;
-  input.twist = held.twist;
-  input.scale = input.engaged ? 1.0 : 0.0;
-  if (grip < now.grips.size() && input.engaged) {
-    const double since = to_seconds(clock_ns - hand.received_ns);
-    if (since <= kCarriedAfter) hand.carried = now.grips[grip].on_hand;
-    if (since > kYieldAfter && another_holds(hand, clock_ns)) {
-      give_way(hand, input, now.grips[grip]);
-    }
+  const double fading = left_to_fade(hand);
+  const bool engaged = hand.has_good && hand.good.engaged;
+  if (fading > 0.0) {
+    // The coupling weakens where the hand was last, at rest; whoever is heard does not pull against it.
+    pose = hand.last_pose;
+    hand.good.twist = Twist{};
   }
-  if (input.engaged) hand.last_held = input.pose;
-  if (!input.engaged && hand.lost_scale > 0.0) {
-    fade(hand, input, grip < now.grips.size() ? now.grips[grip] : nowhere, now.time, clock_ns);
-  }
-  hand.scale = input.scale;
+  const GripState nowhere{pose, hand.good.twist, pose, {}, 0.0};
+  const GripState& state = grip < now.grips.size() ? now.grips[grip] : nowhere;
+  if (engaged && since <= kCarriedAfter) hand.engagement.carries(state.on_hand);
+  const CouplingGains gains = state.stiffness > 0.0 ? stiffened(hand.gains, state.stiffness) : hand.gains;
+  const Company others = company(hand, clock_ns);
+  Engagement::Held held{hand.last_held, {}};
+  if (fading <= 0.0 || others == Company::kSilent)
+    held = hand.engagement.update(engaged || fading > 0.0, now.time, pose, hand.good.twist, gains, state, others);
+  input = {held.pose, held.twist, engaged || fading > 0.0, engaged ? 1.0 : fading * hand.lost_scale};
+  if (input.engaged) hand.last_held = held.pose;
+  if (engaged) hand.last_pose = pose;
+  if (engaged || fading <= 0.0) hand.scale = input.scale;
 }
 
 std::span<const HandleInput> InputGate::take(Channel& channel, const BodySnapshot& now,

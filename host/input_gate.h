@@ -25,12 +25,10 @@ constexpr double kHandOver = 2.0;
 constexpr double kStaleTwist = 0.015;
 /// ... and the time constant of that, s of simulated time.
 constexpr double kRunOut = 0.1;
-/// A hand that was not heard for this long, s of wall time, gives way where another hand of the body is not
-/// silent: its coupling goes on giving what it gave when the hand was last heard, and so much more at most.
-/// So whoever is left carries their own share, and does not pull against a hand that hangs in the air.
+/// A hand that was not heard for this long, s of wall time, gives way where another person's hand on the body is not
+/// silent (Company::kSilent). So whoever is left carries their own share, and does not pull against a hand that hangs in
+/// the air.
 constexpr double kYieldAfter = 0.02;
-constexpr double kYieldForce = 2.0;   ///< N
-constexpr double kYieldTorque = 0.1;  ///< N·m
 /// s of wall time after a reset in which messages of the run before may still come.
 constexpr double kOldRun = 1.0;
 
@@ -55,9 +53,6 @@ class InputGate {
   /// hand that was not heard for kHoldAnew s of wall time (net/engagement.h), when it is heard again.
   void stood_still();
 
-  /// The world's springs of that grip are so many times the scene's from now on.
-  void set_stiffness(std::size_t grip, double scale) { hands_[grip].gains = stiffened(hands_[grip].of_scene, scale); }
-
   /// The newest message of each grip that was used; valid until the next call of anything here.
   std::span<const PoseMessage> poses() const { return used_; }
 
@@ -69,10 +64,8 @@ class InputGate {
  private:
   struct Hand {
     int body = 0;
-    CouplingGains of_scene;
-    CouplingGains gains;  // as the world has them
+    CouplingGains gains;  // the scene's
     Engagement engagement;
-    Wrench carried;  // on the hand, in the last step that it was heard for
     PoseMessage good;
     bool has_good = false;
     std::int64_t received_ns = 0;  // when `good` came
@@ -82,13 +75,12 @@ class InputGate {
     double lost_at = 0.0;          // simulated s
     double lost_scale = 0.0;       // what is left to fade; 0 = nothing
     double lost_fade = kLostFade;  // s, simulated, over which it does
-    Pose last_held;                // the pose that the last engaged step used
+    Pose last_pose;                // of the hand, in the last step that it was engaged for,
+    Pose last_held;                // and where it held
   };
   void fill_input(Hand& hand, std::size_t grip, const BodySnapshot& now, std::int64_t clock_ns);
-  void fade(Hand& hand, HandleInput& input, const GripState& grip, double time, std::int64_t clock_ns);
-  bool another_holds(const Hand& hand, std::int64_t clock_ns) const;
-  bool shared(const Hand& hand) const;
-  void give_way(Hand& hand, HandleInput& input, const GripState& grip) const;
+  double left_to_fade(const Hand& hand) const;
+  Company company(const Hand& hand, std::int64_t clock_ns) const;
   PoseFault check(const PoseMessage& message, const Hand& hand) const;
 
   glm::dvec3 reach_min_;

@@ -25,6 +25,7 @@ struct PoseMessage {
   /// (BodyMessage::stands_until_felt).
   bool felt = true;
   bool lost = false;         ///< not engaged because contact was lost: the host lets go gently
+  bool stand = false;        ///< engaged for the host itself, until a person takes hold: nobody's hand
   std::uint32_t hold = 0;    ///< another one than in the message before: another hand, which may be anywhere
   std::uint64_t number = 0;  ///< of the sender's samples, rising; comes back in BodyMessage::pose_numbers
   bool counted = false;      ///< somebody counts …
@@ -39,6 +40,7 @@ struct HandWord {
   double time = 0.0;     ///< simulated s that it was said to belong to
   bool counted = false;  ///< PoseMessage::counted
   double energy = 0.0;   ///< J, PoseMessage::energy
+  bool stand = false;    ///< PoseMessage::stand
 };
 
 /// BodyMessage::heard_pose_ns in one process, where no pose is lost.

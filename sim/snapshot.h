@@ -44,6 +44,9 @@ struct GripState {
   Twist twist;     ///< of the grip point
   Pose handle;     ///< the pose that the step used
   Wrench on_hand;  ///< reaction that the host computed, on the hand, about the handle
+  /// Times the scene's springs that the next step begins with, on its way to what was asked for
+  /// (World::set_grip_stiffness); 0 = not told.
+  double stiffness = 0.0;
 };
 
 /// Body and grip states: what the 1 kHz loops need, small and often.

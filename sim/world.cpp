@@ -109,6 +109,7 @@ void World::fill(BodySnapshot& out) const {
     const RigidBody& body = bodies[grip.body];
     out.grips[g].pose = compose(body.mesh_pose(), grip.pose);
     out.grips[g].twist = {body.velocity_at(out.grips[g].pose.position), body.angular_velocity};
+    out.grips[g].stiffness = impl_->bodies.grip_stiffness().acting[g];
   }
 }
 

@@ -9,7 +9,7 @@ namespace {
 constexpr std::size_t kHead = 70;
 constexpr std::size_t kRoom = wire::kMaxDatagram - kHead;
 constexpr std::size_t kBodyEntry = 2 + 28 + 24 + 12 + 24;
-constexpr std::size_t kGripEntry = 1 + 28 + 24 + 7 + 1 + 4;
+constexpr std::size_t kGripEntry = 1 + 28 + 24 + 7 + 1 + 4 + 1 + 4;
 
 /// A head ends with the counts of two empty lists; the entries take their place.
 constexpr std::size_t kEmptyLists = 2;
@@ -63,10 +63,12 @@ void BodyParts::set(const BodyMessage& message, const std::vector<std::uint64_t>
     entry.grip = static_cast<std::uint32_t>(i);
     entry.handle = bodies.grips[i].handle;
     entry.on_hand = bodies.grips[i].on_hand;
+    entry.stiffness = bodies.grips[i].stiffness;
     if (i < numbers.size()) entry.pose_number = numbers[i];
     if (i >= message.hands.size()) continue;
     entry.counted = message.hands[i].counted;
     entry.energy = message.hands[i].energy;
+    entry.stand = message.hands[i].stand;
   }
   close_part();
 }

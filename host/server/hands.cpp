@@ -36,16 +36,17 @@ void HandTable::publish(std::size_t grip, const PoseMessage& message) {
   channel_.pose(grip).publish();
 }
 
-void HandTable::put_on_stand(std::size_t grip, const Pose& pose, std::int64_t now_ns) {
+void HandTable::put_on_stand(std::size_t grip, const Pose& pose, std::int64_t now_ns, bool kept) {
   GripHand& hand = grips_[grip];
   hand.stand = true;
-  hand.kept = false;
+  hand.kept = kept;
   hand.hold += 1;
   PoseMessage message;
   message.device = static_cast<std::uint32_t>(grip);
   message.stamp_ns = now_ns;
   message.pose = pose;
   message.engaged = true;
+  message.stand = true;
   // What stands still puts nothing in; what whom it stands for put in stays. Without it the balance that
   // others share (HeldBody) went by all of that, and came back by it with the hand.
   message.counted = true;
@@ -56,16 +57,16 @@ void HandTable::put_on_stand(std::size_t grip, const Pose& pose, std::int64_t no
 
 void HandTable::stand_all(std::int64_t now_ns) {
   for (std::size_t i = 0; i < grips_.size(); ++i) {
-    if (!grips_[i].held) put_on_stand(i, grips_[i].start, now_ns);
+    if (!grips_[i].held) put_on_stand(i, grips_[i].start, now_ns, false);
   }
 }
 
-void HandTable::carry_on(const BodySnapshot& bodies, std::int64_t now_ns) {
+void HandTable::carry_on(const BodySnapshot& bodies, std::int64_t now_ns, const std::vector<bool>& awaited) {
   for (std::size_t i = 0; i < grips_.size() && i < bodies.grips.size(); ++i) {
     const GripState& grip = bodies.grips[i];
     const bool was_held = glm::length(grip.on_hand.force) + glm::length(grip.on_hand.torque) > 0.0;
     if (was_held)
-      put_on_stand(i, grip.handle, now_ns);
+      put_on_stand(i, grip.handle, now_ns, i >= awaited.size() || awaited[i]);
     else
       let_go(i, now_ns, true);
   }
@@ -115,8 +116,7 @@ void HandTable::lose(std::size_t grip, std::int64_t now_ns) {
   if (hand.stand) return;
   if (!hand.engaged || another_is_heard(grip, now_ns)) return let_go(grip, now_ns);
   hand.held = false;
-  put_on_stand(grip, hand.last, now_ns);
-  hand.kept = true;
+  put_on_stand(grip, hand.last, now_ns, true);
 }
 
 bool HandTable::count(GripHand& hand, std::uint64_t number) {
@@ -180,7 +180,18 @@ bool HandTable::sample(const wire::PoseSample& sample, std::int64_t now_ns, bool
     hand.hold += 1;
   }
   publish(sample.grip, message);
+  if (message.engaged) end_stands_beside(sample.grip, now_ns);
   return true;
+}
+
+/// Whoever holds the body carries it: a stand beside them is a hand that never lets go. Who has taken a grip there and
+/// is not felt yet keeps theirs, and so does who may come back.
+void HandTable::end_stands_beside(std::size_t grip, std::int64_t now_ns) {
+  for (std::size_t i = 0; i < grips_.size(); ++i) {
+    const GripHand& other = grips_[i];
+    if (i != grip && other.body == grips_[grip].body && other.stand && !other.held && !other.kept)
+      let_go(i, now_ns, true);
+  }
 }
 
 HandTable::Used HandTable::used(std::size_t grip, std::uint64_t pose_number) const {

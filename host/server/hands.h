@@ -18,8 +18,9 @@ struct Delivery {
 };
 
 /// The writer of every channel.pose(i). A grip that nobody has held since the start (or a reset) is held by
-/// the host where it starts, so that nothing falls before people come. One thread; `now_ns` is the steady
-/// clock.
+/// the host where it starts, so that nothing falls before people come: it is on a stand, which counts as nobody
+/// (PoseMessage::stand). The first person's hand that is felt on a body ends the stands of its other grips that
+/// nobody has taken; from then on only hands hold it. One thread; `now_ns` is the steady clock.
 class HandTable {
  public:
   HandTable(const Scene& scene, Channel& channel);
@@ -35,8 +36,9 @@ class HandTable {
   /// Contact with the holder is lost. Where another hand of the same body is heard, it carries on alone: as
   /// let_go(). Else the host holds the grip where the hand was, since nobody would catch what falls.
   void lose(std::size_t grip, std::int64_t now_ns);
-  /// After a restart of the host: what was held stands where the hand was, until its holder is back.
-  void carry_on(const BodySnapshot& bodies, std::int64_t now_ns);
+  /// After a restart of the host: what was held stands where the hand was, until its holder is back. `awaited`: whether
+  /// somebody may come back to it, one a grip; who is missing there may.
+  void carry_on(const BodySnapshot& bodies, std::int64_t now_ns, const std::vector<bool>& awaited = {});
 
   /// Takes in a sample of the holder's. True when it is the newest. It goes to the world, but where it holds
   /// on and is not felt: it is answered then (used()), and what the world has of the grip stays: the stand,
@@ -62,7 +64,7 @@ class HandTable {
     Pose start;  // as the scene has it
     int body = 0;
     bool stand = false;
-    bool kept = false;  // the stand is for who lost contact
+    bool kept = false;  // the stand is for who lost contact, and may come back to it
     bool held = false;
     std::uint32_t hold = 0;    // PoseMessage::hold
     std::uint64_t base = 0;    // added to the holder's numbers, so that they rise over all holders
@@ -82,7 +84,8 @@ class HandTable {
   };
   bool count(GripHand& hand, std::uint64_t number);
   std::int64_t on_our_clock(GripHand& hand, std::int64_t stamp_ns, std::int64_t now_ns);
-  void put_on_stand(std::size_t grip, const Pose& pose, std::int64_t now_ns);
+  void put_on_stand(std::size_t grip, const Pose& pose, std::int64_t now_ns, bool kept);
+  void end_stands_beside(std::size_t grip, std::int64_t now_ns);
   void publish(std::size_t grip, const PoseMessage& message);
   bool another_is_heard(std::size_t grip, std::int64_t now_ns) const;
 

@@ -15,10 +15,9 @@ constexpr std::int64_t kStandingEvery = 100'000'000;  // ns between two sendings
 
 void StateSender::send_bodies(SeatTable& seats, std::int64_t now_ns) {
   const bool fresh = channel_.bodies().update();
-  stale_ = stale_ || fresh;
+  for (Coded& coded : coded_) coded.stale = coded.stale || fresh;
   if (fresh) fluid_coded_.assign(channel_.bodies().front().fluid_models.size(), nullptr);
   ask_for_fluid(seats);
-  plain_stale_ = plain_stale_ || fresh;
   if (peers_.nobody_sits()) return;
   const BodyMessage& message = channel_.bodies().front();
   const bool standing = !fresh && now_ns - bodies_sent_ns_ >= kStandingEvery;
@@ -73,20 +72,18 @@ void StateSender::send_fluid(const Peer& peer, const Seat& seat, const BodyMessa
 
 /// Coded for a peer's capabilities, when the first such peer is due.
 BodyParts& StateSender::parts_for(const Peer& peer) {
-  const BodyMessage& message = channel_.bodies().front();
-  if (!(peer.agreed & wire::kCouplings)) {
-    if (plain_stale_) plain_parts_.set(message);
-    plain_stale_ = false;
-    return plain_parts_;
-  }
-  if (stale_) {
+  const wire::Capabilities agreed = peer.agreed & (wire::kCouplings | wire::kHolds);
+  auto coded = std::find_if(coded_.begin(), coded_.end(), [&](const Coded& c) { return c.agreed == agreed; });
+  if (coded == coded_.end()) coded = coded_.insert(coded_.end(), {agreed, BodyParts(scene_, agreed), true});
+  if (coded->stale) {
+    const BodyMessage& message = channel_.bodies().front();
     std::vector<std::uint64_t> numbers(message.pose_numbers.size());
     for (std::size_t g = 0; g < numbers.size() && g < hands_.size(); ++g)
       numbers[g] = hands_.used(g, message.pose_numbers[g]).number;
-    parts_.set(message, numbers);
+    coded->parts.set(message, numbers);
   }
-  stale_ = false;
-  return parts_;
+  coded->stale = false;
+  return coded->parts;
 }
 
 void StateSender::forward(const Peer& from, const wire::PoseSample& sample, std::int64_t now_ns) {

@@ -1,6 +1,7 @@
 // Bodies to everybody, hands to everybody else who has hands: as datagrams, at each peer's own pace.
 #pragma once
 
+#include <deque>
 #include <vector>
 
 #include "host/fluid_demand.h"
@@ -20,7 +21,7 @@ struct BodyRates {
 /// One thread, the network's.
 class StateSender {
  public:
-  /// All but `scene` must outlive it.
+  /// All must outlive it.
   StateSender(const Scene& scene, Channel& channel, const HandTable& hands, const PeerTable& peers,
               BodyRates rates, FluidDemand* fluid_demand)
       : channel_(channel),
@@ -28,8 +29,7 @@ class StateSender {
         peers_(peers),
         rates_(rates),
         fluid_demand_(fluid_demand),
-        parts_(scene),
-        plain_parts_(scene, 0) {
+        scene_(scene) {
     next_hands_ns_.resize(scene.grips.size());
     for (const Grip& grip : scene.grips) grip_bodies_.push_back(grip.body);
   }
@@ -55,16 +55,20 @@ class StateSender {
   const PeerTable& peers_;
   BodyRates rates_;
   FluidDemand* fluid_demand_;
-  BodyParts parts_;
-  BodyParts plain_parts_;                 // for peers that have not agreed to kCouplings
+  /// The newest state, coded for whoever agreed to the same.
+  struct Coded {
+    wire::Capabilities agreed;
+    BodyParts parts;
+    bool stale;
+  };
+  const Scene& scene_;
+  std::deque<Coded> coded_;
   std::vector<int> grip_bodies_;          // one a grip
   std::vector<SharedBytes> fluid_coded_;  // one a model of the channel's state; empty = not coded yet
   std::uint64_t fluid_models_sent_ = 0;
   Endpoint* endpoint_ = nullptr;
   std::vector<std::int64_t> next_hands_ns_;  // one a grip: when it may be passed on again
   std::int64_t bodies_sent_ns_ = 0;
-  bool stale_ = true;        // the parts are of an older state than the channel's,
-  bool plain_stale_ = true;  // and the plain ones
 };
 
 }  // namespace slosh

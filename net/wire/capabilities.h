@@ -32,9 +32,12 @@ constexpr Capabilities kFeltHands = 1u << 4;
 /// PoseSample has no `tick_ack`: nothing ever read it.
 constexpr Capabilities kNoTickAcks = 1u << 5;
 
+/// GripEntry has whether a stand holds the grip, and the stiffness that acts.
+constexpr Capabilities kHolds = 1u << 6;
+
 /// What this program understands; a peer's Hello asks for all of it.
 constexpr Capabilities kOurCapabilities =
-    kRosterChanges | kFluidWrenches | kCouplings | kGripStiffnesses | kFeltHands | kNoTickAcks;
+    kRosterChanges | kFluidWrenches | kCouplings | kGripStiffnesses | kFeltHands | kNoTickAcks | kHolds;
 /// For what has no other side: pages, tests of single messages, files.
 constexpr Capabilities kAllCapabilities = ~Capabilities{0};
 

@@ -142,6 +142,9 @@ struct GripEntry {
   std::uint64_t pose_number = 0;  ///< its holder's number of it; 0 = none of the holder's
   bool counted = false;  ///< its holder's site tells it; a hand that the host holds still counts as one
   double energy = 0.0;   ///< J, PoseSample::energy, counted on over all who held the grip
+  // Behind kHolds:
+  bool stand = false;      ///< the host holds it: nobody's hand
+  double stiffness = 0.0;  ///< times the scene's springs, as the next step begins with them; 0 = not told
 };
 template <class V>
 void visit(V& v, GripEntry& m) {
@@ -152,6 +155,10 @@ void visit(V& v, GripEntry& m) {
     v.natural("pose_number", m.pose_number, 0, kMaxTick);
     v.flag("counted", m.counted);
     v.real32("energy", m.energy, -kMaxEnergy, kMaxEnergy);
+  }
+  if (v.agreed(kHolds)) {
+    v.flag("stand", m.stand);
+    v.real32("stiffness", m.stiffness, 0.0, kMaxGripStiffness);
   }
 }
 

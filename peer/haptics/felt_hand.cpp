@@ -29,19 +29,6 @@ Wrench FeltHand::capped(const Wrench& full, bool current) noexcept {
   return {limit_length(full.force, most_force_, limited), limit_length(full.torque, most_torque_, limited)};
 }
 
-void FeltHand::note_let_in(const Pose& hand, const GripState& grip) noexcept {
-  const glm::dvec3 ahead = hand.position - held_.pose.position;
-  const glm::dvec3 turn = rotation_between(held_.pose.orientation, hand.orientation);
-  const bool went_on = engagement_.engaged() && !engagement_.took_hold();
-  let_in_ = 0.0;
-  if (went_on && (ahead != ahead_ || turn != ahead_turn_)) {
-    const Wrench on_hand = coupling_wrench_on_hand(of_world_, held_.pose, held_.twist, grip.pose, grip.twist);
-    let_in_ = glm::dot(on_hand.force, ahead - ahead_) + glm::dot(on_hand.torque, turn - ahead_turn_);
-  }
-  ahead_ = ahead;
-  ahead_turn_ = turn;
-}
-
 Wrench FeltHand::couple(const WorldBelief& world, const DeviceReport& hand, const GripState& grip,
                         const Moment& now) noexcept {
   double believed = std::min(world.share, now.device_share);
@@ -55,11 +42,11 @@ Wrench FeltHand::couple(const WorldBelief& world, const DeviceReport& hand, cons
   jumps_ = world.anew || world.resumed || believed < believed_ - kSudden || (current && !current_);
   current_ = current;
   if (world.anew || now.leapt || (believed >= 1.0 && hold_anew_)) {
-    engagement_ = Engagement{};
+    engagement_.take_hold_anew();
     jumps_ = true;
   }
   // A host that keeps its stand takes the hand as it is from here on, and the grip as it is then.
-  if (now.stands && !(reaches && felt_)) engagement_ = Engagement{};
+  if (now.stands && !(reaches && felt_)) engagement_.take_hold_anew();
   felt_ = reaches;
   // Who takes hold begins without force; a silence took as much of it as it lasted.
   const bool begins = world.anew || now.leapt || (hand.engaged && !held_on_);
@@ -75,11 +62,11 @@ Wrench FeltHand::couple(const WorldBelief& world, const DeviceReport& hand, cons
   gains.rotational_damping = std::min(gains.rotational_damping, now.pace * most_turning_);
   const Twist twist = sped_up(hand.twist, now.pace);
   // As the world takes hold of it, whatever the device holds: else one slips where the other does not.
-  held_ = engagement_.update(hand.engaged, now.time, hand.pose, twist, of_world_, grip, now.shared);
+  held_ = engagement_.update(hand.engaged, now.time, hand.pose, twist, of_world_, grip,
+                             now.shared ? Company::kShared : Company::kAlone);
   const Wrench full = gives_way_
                           ? coupling_wrench_on_hand(gains, held_.pose, held_.twist, grip.pose, grip.twist)
                           : grip.on_hand;
-  note_let_in(hand.pose, grip);
   const double felt = gives_way_ || !engagement_.engaged() ? engagement_.felt() : 1.0;
   return {felt * full.force, felt * full.torque};
 }

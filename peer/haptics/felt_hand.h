@@ -95,7 +95,7 @@ class FeltHand {
   /// J that the last feel() gave the world's coupling because the hold was let in, towards the hand that
   /// stays; less than 0 where it slipped: it is no motion of the hand's, and a body is lifted by it all the
   /// same.
-  double let_in() const { return let_in_; }
+  double let_in() const { return engagement_.given(); }
 
   /// Whether what the hand does is felt by its person, as of the last feel(): their force has begun and no
   /// silence has taken it, or there is nobody who would feel it (PoseMessage::felt).
@@ -116,16 +116,12 @@ class FeltHand {
                 const Moment& now) noexcept;
   ForceLimiter::Outcome finish(Wrench wanted, const Twist& twist, const Moment& now) noexcept;
   Wrench capped(const Wrench& full, bool current) noexcept;
-  void note_let_in(const Pose& hand, const GripState& grip) noexcept;
 
   CouplingGains gains_;                   // as it is felt
   CouplingGains of_world_;                // as the hold goes by it
   ForceLimiter limiter_{DeviceLimits{}};  // lets nothing through before restart()
   Engagement engagement_;
   Engagement::Held held_;
-  double let_in_ = 0.0;    // J
-  glm::dvec3 ahead_{0.0};  // hand less what it holds with, m and rad, at the call before
-  glm::dvec3 ahead_turn_{0.0};
   bool jumps_ = false;  // in this call
   bool gives_way_ = true;
   bool follows_world_ = false;

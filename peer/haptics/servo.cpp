@@ -136,11 +136,16 @@ void Servo::change_device(Hand& hand, DevicePort* port) noexcept {
   hand.in_use.store(port);
 }
 
-/// Here as in the world, so that no hand is thrown; the device's limits go last.
-void Servo::follow_stiffness(std::size_t i, Hand& hand) noexcept {
+/// Here as in the world, so that no hand is thrown; the device's limits go last. A host that does not tell what acts is
+/// followed on the way to what was asked for, by the world's time.
+void Servo::follow_stiffness(std::size_t i, Hand& hand, const BodySnapshot& bodies, double elapsed) noexcept {
+  const double told = i < bodies.grips.size() ? bodies.grips[i].stiffness : 0.0;
   const double wanted = hand.stiffness_wanted.load(std::memory_order_relaxed);
-  if (hand.stiffness == wanted || !(wanted > 0.0)) return;
-  hand.stiffness = toward_stiffness(hand.stiffness, wanted, options_.period);
+  const double now = told > 0.0     ? told
+                     : wanted > 0.0 ? toward_stiffness(hand.stiffness, wanted, elapsed)
+                                    : hand.stiffness;
+  if (now == hand.stiffness) return;
+  hand.stiffness = now;
   const CouplingGains gains = stiffened(hand.gains, hand.stiffness);
   held_.set_gains(i, gains);
   hand.felt.set_gains(gains, hand.limits);
@@ -234,10 +239,12 @@ bool Servo::is_gone(const BodySnapshot& bodies, int body) const noexcept {
 }
 
 /// Whether a hand but that of grip `i` holds the body, as far as the world says.
-bool Servo::another_holds(const BodySnapshot& bodies, std::size_t i) const noexcept {
+bool Servo::another_holds(const BodyMessage& message, std::size_t i) const noexcept {
+  const BodySnapshot& bodies = message.bodies;
   for (std::size_t j = 0; j < bodies.grips.size() && j < hands_.size(); ++j) {
     const Wrench& felt = bodies.grips[j].on_hand;
-    if (j != i && hands_[j].body == hands_[i].body &&
+    const bool stand = j < message.hands.size() && message.hands[j].stand;
+    if (j != i && hands_[j].body == hands_[i].body && !stand &&
         (felt.force != glm::dvec3(0.0) || felt.torque != glm::dvec3(0.0)))
       return true;
   }
@@ -286,7 +293,7 @@ void Servo::tick(std::int64_t now_ns, bool fresh) noexcept {
     DevicePort* const wanted = claim_device(hand);
     const bool parting = parts(hand, wanted);
     if (wanted != hand.port && !parting) change_device(hand, wanted);
-    follow_stiffness(i, hand);
+    follow_stiffness(i, hand, bodies, time_ - before);
     if (hand.port == nullptr) {
       held_.not_here(i);
       continue;
@@ -315,7 +322,7 @@ void Servo::tick(std::int64_t now_ns, bool fresh) noexcept {
       grip.pose = extrapolate(grip.pose, grip.twist, ahead);
       if (port->device().gives_way()) grip = held_.grip(i, grip);
       felt = hand.felt.feel(belief, hand.good, grip,
-                            {time_, options_.period, device_share, hand.leapt, another_holds(bodies, i),
+                            {time_, options_.period, device_share, hand.leapt, another_holds(message, i),
                              message.stands_until_felt, pace_of(hand)},
                             [&](const Wrench& wanted) {
                               const double elapses = options_.period * (hand.with_world ? pace_ : 1.0);

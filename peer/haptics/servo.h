@@ -128,7 +128,7 @@ class Servo {
   bool parts(const Hand& hand, const DevicePort* wanted) const noexcept;
   bool is_gone(const BodySnapshot& bodies, int body) const noexcept;
   void free_unused(Hand& hand);
-  void follow_stiffness(std::size_t i, Hand& hand) noexcept;
+  void follow_stiffness(std::size_t i, Hand& hand, const BodySnapshot& bodies, double elapsed) noexcept;
   void follow_run(const BodyMessage& message) noexcept;
   void follow_pace(const BodyMessage& message) noexcept;
   void follow_time(double now, double most, std::int64_t now_ns) noexcept;
@@ -137,7 +137,7 @@ class Servo {
   void tick(std::int64_t now_ns, bool fresh) noexcept;
   /// Takes in what the device says; true when the hand leapt.
   bool read_device(Hand& hand, std::int64_t now_ns) noexcept;
-  bool another_holds(const BodySnapshot& bodies, std::size_t i) const noexcept;
+  bool another_holds(const BodyMessage& message, std::size_t i) const noexcept;
   void post_pose(std::size_t i, const Hand& hand) noexcept;
   Wrench within_limits(std::size_t grip, const Wrench& wrench) const noexcept;
   void note_steps(const BodyMessage& message) noexcept;

@@ -243,7 +243,8 @@ void BodyInbox::lay_out(const Pending& pending, BodyMessage& state) const {
   for (const wire::GripEntry& entry : pending.grips) {
     bodies.grips[entry.grip].handle = entry.handle;
     bodies.grips[entry.grip].on_hand = entry.on_hand;
-    state.hands[entry.grip] = {entry.pose_number, 0, 0.0, entry.counted, entry.energy};
+    bodies.grips[entry.grip].stiffness = entry.stiffness;
+    state.hands[entry.grip] = {entry.pose_number, 0, 0.0, entry.counted, entry.energy, entry.stand};
   }
   place_grips(bodies);
 }

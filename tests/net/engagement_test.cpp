@@ -152,7 +152,7 @@ TEST(Engagement, WhereAnotherHandHoldsTooItSlipsAndBearsMoreEachSecond) {
       Twist twist;
       twist.linear.x = 0.3 * std::cos(3.0 * t);
       hand.position.x = 0.3 + 0.1 * std::sin(3.0 * t);
-      const Wrench wrench = wrench_of(e.update(true, t, hand, twist, kGains, grip, shared), grip);
+      const Wrench wrench = wrench_of(e.update(true, t, hand, twist, kGains, grip, shared ? Company::kShared : Company::kAlone), grip);
       const double more = glm::length(wrench.force - grip.on_hand.force);
       const double twisting = glm::length(wrench.torque - grip.on_hand.torque);
       const double firmness = std::exp2(t / kHoldDoubles);
