@@ -12,6 +12,11 @@ namespace {
 constexpr double kMostCarried = kYieldAfter;
 // s of wall time for which what a hand carries is what it carried in its last step: poses come each 2 ms.
 constexpr double kCarriedAfter = 0.005;
+// A step that comes so much later than steps usually do, s of wall time and times the usual interval, finds hands
+// elsewhere though no time has passed in the world: they take hold anew.
+constexpr double kStoodStill = 0.02;
+constexpr double kStoodIntervals = 3.0;
+constexpr double kIntervalShare = 0.1;  // of a new interval in the usual one
 
 bool finite(const glm::dvec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
@@ -77,11 +82,15 @@ bool InputGate::accept(const PoseMessage& message, std::int64_t clock_ns) {
   constexpr double kAhead = 0.1;
   if (clock_ns < old_run_until_ns_ && message.time > time_ + kAhead) return false;
   if (message.lost && !message.engaged) {
-    if (hand.has_good && hand.good.engaged) {
+    const bool held = hand.has_good && hand.good.engaged;
+    // A stand that ended before a step has seen it, as in a world that waits, held all the same.
+    const bool stood = message.stand && !(hand.has_good && hand.good.lost);
+    if (held || stood) {
       hand.lost_at = time_;
-      hand.lost_scale = hand.scale;
-      hand.lost_fade = hand.good.stand || company(hand, clock_ns) != Company::kAlone ? kHandOver : kLostFade;
+      hand.lost_scale = held ? hand.scale : 1.0;
+      hand.lost_fade = stood || company(hand, clock_ns) != Company::kAlone ? kHandOver : kLostFade;
     }
+    if (stood && !held) hand.last_pose = hand.last_held = message.pose;
   } else {
     hand.lost_scale = 0.0;
   }
@@ -93,7 +102,9 @@ bool InputGate::accept(const PoseMessage& message, std::int64_t clock_ns) {
       to_seconds(std::min(message.stamp_ns - hand.good.stamp_ns, clock_ns - hand.received_ns));
   const double speed = std::max(glm::length(message.twist.linear), glm::length(hand.good.twist.linear));
   const bool leap = hand.has_good && leapt(hand.good.pose.position, message.pose.position, speed, elapsed);
-  const bool anew = hand.anew || hand.silent || leap || hand.good.hold != message.hold;
+  // A host that stood still itself has not seen the silence.
+  const bool silent = hand.silent || clock_ns - hand.received_ns > to_nanoseconds(kHoldAnew);
+  const bool anew = hand.anew || silent || leap || hand.good.hold != message.hold;
   if (anew && !message.lost) hand.engagement.take_hold_anew();
   hand.anew = hand.silent = false;
   hand.good = message;
@@ -169,9 +180,10 @@ void InputGate::fill_input(Hand& hand, std::size_t grip, const BodySnapshot& now
   }
   const GripState nowhere{pose, hand.good.twist, pose, {}, 0.0};
   const GripState& state = grip < now.grips.size() ? now.grips[grip] : nowhere;
-  if (engaged && since <= kCarriedAfter) hand.engagement.carries(state.on_hand);
-  const CouplingGains gains = state.stiffness > 0.0 ? stiffened(hand.gains, state.stiffness) : hand.gains;
   const Company others = company(hand, clock_ns);
+  if (engaged && (since <= kCarriedAfter || (since > kYieldAfter && others != Company::kSilent)))
+    hand.engagement.carries(state.on_hand);
+  const CouplingGains gains = state.stiffness > 0.0 ? stiffened(hand.gains, state.stiffness) : hand.gains;
   Engagement::Held held{hand.last_held, {}};
   if (fading <= 0.0 || others == Company::kSilent)
     held = hand.engagement.update(engaged || fading > 0.0, now.time, pose, hand.good.twist, gains, state, others);
@@ -181,11 +193,21 @@ void InputGate::fill_input(Hand& hand, std::size_t grip, const BodySnapshot& now
   if (engaged || fading <= 0.0) hand.scale = input.scale;
 }
 
+void InputGate::note_interval(std::int64_t clock_ns) {
+  const double interval = to_seconds(clock_ns - taken_ns_);
+  const bool first = taken_ns_ == 0;
+  taken_ns_ = clock_ns;
+  if (first) return;
+  if (usual_interval_ > 0.0 && interval > kStoodStill + kStoodIntervals * usual_interval_) return stood_still();
+  usual_interval_ += (usual_interval_ > 0.0 ? kIntervalShare : 1.0) * (interval - usual_interval_);
+}
+
 std::span<const HandleInput> InputGate::take(Channel& channel, const BodySnapshot& now,
                                              std::int64_t clock_ns) {
   step_ = std::clamp(now.time - time_, 0.0, kMostCarried);
   time_ = now.time;
   std::fill(refused_.begin(), refused_.end(), PoseFault::kNone);
+  note_interval(clock_ns);
   for (std::size_t i = 0; i < hands_.size(); ++i) {
     if (i < channel.devices() && channel.pose(i).update())
       accept(channel.pose(i).front(), clock_ns);

@@ -80,6 +80,7 @@ class InputGate {
   };
   void fill_input(Hand& hand, std::size_t grip, const BodySnapshot& now, std::int64_t clock_ns);
   double left_to_fade(const Hand& hand) const;
+  void note_interval(std::int64_t clock_ns);
   Company company(const Hand& hand, std::int64_t clock_ns) const;
   PoseFault check(const PoseMessage& message, const Hand& hand) const;
 
@@ -91,6 +92,8 @@ class InputGate {
   std::vector<PoseFault> refused_;     // by the last take()
   double time_ = 0.0;                  // simulated s of the last step
   double step_ = 0.0;                  // s from the one before to that
+  std::int64_t taken_ns_ = 0;          // when it was taken
+  double usual_interval_ = 0.0;        // s of wall time between steps
   std::int64_t old_run_until_ns_ = 0;  // messages of the run before may come until then
   std::uint64_t rejected_ = 0;
   PoseFault last_fault_ = PoseFault::kNone;

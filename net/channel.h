@@ -25,7 +25,7 @@ struct PoseMessage {
   /// (BodyMessage::stands_until_felt).
   bool felt = true;
   bool lost = false;         ///< not engaged because contact was lost: the host lets go gently
-  bool stand = false;        ///< engaged for the host itself, until a person takes hold: nobody's hand
+  bool stand = false;        ///< engaged, or lost, for the host itself: nobody's hand
   std::uint32_t hold = 0;    ///< another one than in the message before: another hand, which may be anywhere
   std::uint64_t number = 0;  ///< of the sender's samples, rising; comes back in BodyMessage::pose_numbers
   bool counted = false;      ///< somebody counts …

@@ -29,25 +29,19 @@ glm::dvec3 give_up(const glm::dvec3& left, double most, double elapsed) {
   return left * (length - step < kNothing ? 1.0 : step / length);
 }
 
-/// What bound_pull() does to one of the coupling's two springs.
-struct Bound {
-  double stiffness, damping;
-  glm::dvec3 centre;    // force on the hand that it may differ from ...
-  double most;          // ... by so much
+/// One of the coupling's two springs, held so that its force on the hand differs from `centre` by no more than `most`.
+struct Slipping {
   glm::dvec3 stretch;   // grip less where it holds
-  glm::dvec3 grip_velocity;
   glm::dvec3 velocity;  // of where it holds
 
-  /// False where it is in bounds as it is.
-  bool apply() {
-    if (stiffness <= 0.0) return false;
+  void bound(double stiffness, double damping, const glm::dvec3& grip_velocity, const glm::dvec3& centre, double most) {
+    if (stiffness <= 0.0) return;
     const glm::dvec3 pull = stiffness * stretch + damping * (grip_velocity - velocity) - centre;
     const double length = glm::length(pull);
-    if (length <= most) return false;
+    if (length <= most) return;
     const double share = most / length;
     velocity = grip_velocity + share * (velocity - grip_velocity);
     stretch = (centre + share * pull - damping * (grip_velocity - velocity)) / stiffness;
-    return true;
   }
 };
 
@@ -129,8 +123,7 @@ Engagement::Held Engagement::update(bool engaged, double time, const Pose& hand,
   Work work{took_hold_ ? 0.0 : elapsed, gains, grip, before, before, twist.linear, twist.angular};
   slip(work, time);
   let_in(work, hand);
-  bound_pull(work, began_, most_pull(), most_twist());
-  spare_energy(work, twist);
+  bound_pull(work, twist);
   return settle(work, hand, twist);
 }
 
@@ -239,69 +232,48 @@ void Engagement::let_in(Work& work, const Pose& hand) {
   work.turning += turning_;
 }
 
-/// Where the force is bounded at all.
-bool Engagement::bounded() const {
-  return company_ == Company::kSilent || (company_ == Company::kShared && !quiet_);
-}
-
-/// Slips until the force on the hand differs from `centre` by no more than that.
-void Engagement::bound_pull(Work& work, const Wrench& centre, double most_force, double most_torque) const {
-  if (!bounded()) return;
+/// Slips until what the hold changes of the force that it began with is in bounds. What that puts into the spring comes
+/// out of the allowance; the less there is, the more it holds where it is in place of that, and slips as friction does.
+void Engagement::bound_pull(Work& work, const Twist& hand) {
   const Pose& grip = work.grip.pose;
-  Bound force{work.gains.stiffness,
-              work.gains.damping,
-              centre.force,
-              most_force,
-              grip.position - work.now.position,
-              work.grip.twist.linear,
-              work.velocity};
-  if (force.apply()) work.now.position = grip.position - force.stretch;
-  work.velocity = force.velocity;
-  Bound torque{work.gains.rotational_stiffness,
-               work.gains.rotational_damping,
-               centre.torque,
-               most_torque,
-               rotation_between(work.now.orientation, grip.orientation),
-               work.grip.twist.angular,
-               work.turning};
-  if (torque.apply()) work.now.orientation = rotate_by(grip.orientation, -torque.stretch);
-  work.turning = torque.velocity;
-}
-
-/// What slips may put into the springs what is left of the allowance, ever less of it, and then nothing: it goes along
-/// with the body only as far as that takes energy from it. What pulls harder than the bound then slips towards the grip.
-void Engagement::spare_energy(Work& work, const Twist& hand) {
-  // `strain`: where it held from the grip. `way`: what it was moved by but for `let_in`.
-  const auto spare = [&](double& share, double whole, double stiffness, const glm::dvec3& strain,
-                         const glm::dvec3& let_in, const glm::dvec3& still, glm::dvec3 way, glm::dvec3& velocity) {
+  const auto slip = [&](double& share, double whole, double stiffness, double damping, const glm::dvec3& grip_velocity,
+                        const glm::dvec3& began, double most, Slipping& law, const Slipping& before,
+                        const glm::dvec3& let_in, const glm::dvec3& still) {
+    if (company_ == Company::kSilent || (company_ == Company::kShared && !quiet_))
+      law.bound(stiffness, damping, grip_velocity, began, most);
     const double ease = std::min(share / kHoldEases, 1.0);
     const double free = ease * ease * (3.0 - 2.0 * ease);
-    const glm::dvec3 mean = stiffness * (strain + 0.5 * way);  // on the body, while it is moved
-    if (free < 1.0 && glm::dot(mean, way) > 0.0) {
-      const glm::dvec3 along = glm::normalize(mean);
-      way -= (1.0 - free) * glm::dot(way, along) * along;
-      velocity -= (1.0 - free) * glm::dot(velocity - still, along) * along;
+    if (free < 1.0) {
+      Slipping friction{before.stretch - let_in, still};
+      friction.bound(stiffness, damping, grip_velocity, {}, glm::length(began) + most);
+      law.stretch = free * law.stretch + (1.0 - free) * friction.stretch;
+      law.velocity = free * law.velocity + (1.0 - free) * friction.velocity;
     }
-    const double slipped = work_of(stiffness * strain, way, stiffness);
-    const double in_all = work_of(stiffness * strain, way + let_in, stiffness);
+    const glm::dvec3 force = -stiffness * before.stretch;  // on the body
+    const glm::dvec3 in_all = before.stretch - law.stretch, slipped = in_all - let_in;
+    const double work_in_all = work_of(force, in_all, stiffness), work_slipped = work_of(force, slipped, stiffness);
     // What comes back as the hold goes back to the hand was lent.
-    share = std::clamp(share - (slipped + std::min(in_all - slipped, 0.0)) / whole, 0.0, 1.0);
-    given_ += in_all;
-    return way;
+    const double spent = work_slipped + std::min(work_in_all - work_slipped, 0.0);
+    share = std::clamp(share - spent / whole, 0.0, 1.0);
+    given_ += work_in_all;
   };
-  const Pose& grip = work.grip.pose;
-  const glm::dvec3 way = work.now.position - work.before.position - work.let_in;
-  const glm::dvec3 less =
-      spare(share_, allowance(), work.gains.stiffness, work.before.position - grip.position, work.let_in,
-            hand.linear + speed_, way, work.velocity);
-  if (less != way) work.now.position = work.before.position + less + work.let_in;
-  const glm::dvec3 turn = rotation_between(work.before.orientation, work.now.orientation) - work.let_in_turn;
-  const glm::dvec3 turn_less =
-      spare(turning_share_, turning_allowance(), work.gains.rotational_stiffness,
-            rotation_between(grip.orientation, work.before.orientation), work.let_in_turn, hand.angular + turning_, turn, work.turning);
-  if (turn_less != turn) work.now.orientation = rotate_by(work.before.orientation, turn_less + work.let_in_turn);
-  if (less != way || turn_less != turn)
-    bound_pull(work, {}, glm::length(began_.force) + most_pull(), glm::length(began_.torque) + most_twist());
+  if (work.gains.stiffness > 0.0) {
+    Slipping law{grip.position - work.now.position, work.velocity};
+    const glm::dvec3 found = law.stretch;
+    slip(share_, allowance(), work.gains.stiffness, work.gains.damping, work.grip.twist.linear, began_.force,
+         most_pull(), law, {grip.position - work.before.position, {}}, work.let_in, hand.linear + speed_);
+    if (law.stretch != found) work.now.position = grip.position - law.stretch;
+    work.velocity = law.velocity;
+  }
+  if (work.gains.rotational_stiffness > 0.0) {
+    Slipping law{rotation_between(work.now.orientation, grip.orientation), work.turning};
+    const glm::dvec3 found = law.stretch;
+    slip(turning_share_, turning_allowance(), work.gains.rotational_stiffness, work.gains.rotational_damping,
+         work.grip.twist.angular, began_.torque, most_twist(), law,
+         {rotation_between(work.before.orientation, grip.orientation), {}}, work.let_in_turn, hand.angular + turning_);
+    if (law.stretch != found) work.now.orientation = rotate_by(grip.orientation, -law.stretch);
+    work.turning = law.velocity;
+  }
 }
 
 Engagement::Held Engagement::settle(const Work& work, const Pose& hand, const Twist& twist) {

@@ -47,7 +47,7 @@ constexpr double kHoldWay = 0.2;    ///< m
 constexpr double kHoldAngle = 0.3;  ///< rad
 /// s after which what was given may be given again ...
 constexpr double kHoldRecovers = 20.0;
-/// ... and the share of it, below which a slip follows the body ever less.
+/// ... and the share of it, below which a hold that slips follows the body ever less, and holds by friction.
 constexpr double kHoldEases = 0.4;
 
 /// Who else holds the body.
@@ -111,11 +111,9 @@ class Engagement {
   void meet(Company company, double time);
   void slip(Work& work, double time);
   void let_in(Work& work, const Pose& hand);
-  void bound_pull(Work& work, const Wrench& centre, double most_force, double most_torque) const;
-  void spare_energy(Work& work, const Twist& hand);
+  void bound_pull(Work& work, const Twist& hand);
   Held settle(const Work& work, const Pose& hand, const Twist& twist);
   Pose place(const Pose& hand) const;
-  bool bounded() const;
   double allowance() const;          // J that may be given in all ...
   double turning_allowance() const;  // ... by forces, and by torques
   double most_pull() const;  // N and

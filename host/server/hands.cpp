@@ -88,12 +88,13 @@ void HandTable::let_go(std::size_t grip, std::int64_t now_ns, bool also_stand) {
   hand.held = false;
   hand.answered = 0;
   if (hand.stand && !hand.kept && !also_stand) return;
-  hand.stand = false;
   PoseMessage message;
   message.device = static_cast<std::uint32_t>(grip);
   message.stamp_ns = now_ns;
   message.pose = hand.last;
   message.lost = true;
+  message.stand = hand.stand;
+  hand.stand = false;
   message.energy = hand.energy;
   message.number = hand.base + hand.newest;
   publish(grip, message);

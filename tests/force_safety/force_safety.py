@@ -105,6 +105,7 @@ def measure(folder, people):
     for i in range(len(people)):
         if people[i] not in ("script", "operator"):
             continue  # what a broken partner feels is theirs
+        felt = people[i] == "operator"  # nobody feels a script's, which has no limit of its change
         before = None
         for row in table(os.path.join(folder, f"peer{i}", "out", "wrenches.csv")):
             force = [float(row[a]) for a in ("fx_n", "fy_n", "fz_n")]
@@ -112,7 +113,7 @@ def measure(folder, people):
             at = float(row["time_s"])
             worst["force_n"] = max(worst["force_n"], math.hypot(*force))
             worst["torque_nm"] = max(worst["torque_nm"], math.hypot(*torque))
-            if before:
+            if before and felt:
                 ms = max(1e3 * (at - before[0]), 1.0)
                 worst["change_n"] = max(worst["change_n"], math.dist(force, before[1]) / ms)
             before = (at, force)
@@ -171,9 +172,13 @@ def run(slosh, people, events, folder):
     return measure(folder, people)
 
 
-def bounds(control):
+def bounds(kind, control, alone):
     found = {name: max(FACTOR * control[name], LEAST[name]) for name in LEAST}
+    if kind.alone:
+        found = {name: max(found[name], 1.1 * alone[name]) for name in LEAST}
     found["change_n"] = max(found["change_n"], SLEW)
+    found["way_m"] += kind.sags
+    found["speed_m_s"] += math.sqrt(2.0 * 9.81 * 0.25 * kind.sags)  # half of the way down and a spring's share of that
     return found
 
 
@@ -205,9 +210,12 @@ def main(arguments):
         try:
             if kind.control not in controls:
                 controls[kind.control] = run(slosh, kind.people, kind.steady, os.path.join(folder, "control"))
+            lone = (kind.people[:1], ())
+            if kind.alone and lone not in controls:
+                controls[lone] = run(slosh, lone[0], [], os.path.join(folder, "alone"))
             events = sorted(kind.disturb(random.Random(seed)) + kind.steady)
             worst = run(slosh, kind.people, events, os.path.join(folder, "trial"))
-            most = bounds(controls[kind.control])
+            most = bounds(kind, controls[kind.control], controls.get(lone))
             broken = [name for name in LEAST if not worst[name] <= most[name]]
             beyond += bool(broken)
             rows.append({"kind": kind.name, "seed": seed, "beyond": " ".join(broken),

@@ -9,10 +9,12 @@ LENGTH = 6.0  # s of a trial after the world started
 class Kind:
     """One way to disturb. `people`: a device a grip. `disturb(random)`: [(s, what, who, ...)], sorted by time.
 
-    Its control is the run of the same people and `steady` commands without `disturb`."""
+    Its control is the run of the same people and `steady` commands without `disturb`. `sags`: m that what is held may
+    hang lower, on a spring that was softened. `alone`: one hand may come to carry all, as in a run without the other."""
 
-    def __init__(self, name, people, disturb, steady=()):
+    def __init__(self, name, people, disturb, steady=(), sags=0.0, alone=False):
         self.name, self.people, self.disturb, self.steady = name, people, disturb, list(steady)
+        self.sags, self.alone = sags, alone
 
     @property
     def control(self):
@@ -111,19 +113,19 @@ def kinds():
             Kind(f"{name}: everything stops", people, stops("host", *peers, count=(3, 6))),
             Kind(f"{name}: host at a quota", people, quota("host")),
             Kind(f"{name}: peer at a quota", people, quota(*peers)),
-            Kind(f"{name}: stiffness", people, stiffness("left_hand")),
+            Kind(f"{name}: stiffness", people, stiffness("left_hand"), sags=0.4, alone=True),
             Kind(f"{name}: pauses", people, lambda rng: pauses(rng)),
             Kind(f"{name}: resets", people, lambda rng: resets(rng)),
         ]
     for name, people in (("pair", PAIR), ("arms", ARMS)):
         found += [
-            Kind(f"{name}: let go and taken again", people, release("peer0", "left_hand")),
-            Kind(f"{name}: let go, taken, and stops", people, both(release("peer0", "left_hand"), stops("host", "peer1"))),
-            Kind(f"{name}: a partner falls silent", people, stops("peer1", count=(1, 1), seconds=(1.5, 2.5))),
+            Kind(f"{name}: let go and taken again", people, release("peer0", "left_hand"), alone=True),
+            Kind(f"{name}: let go, taken, and stops", people, both(release("peer0", "left_hand"), stops("host", "peer1")), alone=True),
+            Kind(f"{name}: a partner falls silent", people, stops("peer1", count=(1, 1), seconds=(1.5, 2.5)), alone=True),
         ]
     for motion in MOTIONS:
-        found += [Kind(f"pair: {motion} partner, stops", ("script", motion), stops("host", "peer0", "peer1")),
-                  Kind(f"arms: {motion} partner, stops", ("operator", motion), stops("host", "peer0", "peer1"))]
+        for name, person in (("pair", "script"), ("arms", "operator")):
+            found.append(Kind(f"{name}: {motion} partner, stops", (person, motion), stops("host", "peer0", "peer1")))
     found += [Kind("pair: gravity 0 and 2, stops", PAIR, stops("host", "peer0", "peer1"), GRAVITY),
               Kind("pair: viscosity, stops", PAIR, stops("host", "peer0", "peer1"), VISCOSITY)]
     return found

@@ -172,6 +172,108 @@ TEST(Engagement, WhereAnotherHandHoldsTooItSlipsAndBearsMoreEachSecond) {
   }
 }
 
+/// A body that a hold drives on: it would be a rocket where the hold followed it with what pulled when it began.
+TEST(Engagement, AHoldThatSlipsGivesTheBodyNoMoreThanItsAllowance) {
+  for (const Company company : {Company::kShared, Company::kSilent}) {
+    for (const bool turning : {false, true}) {
+      Engagement e;
+      GripState grip;
+      grip.pose = at(-0.01);
+      grip.on_hand = {{-10.0, 0.0, 0.0}, {0.0, 0.0, -1.0}};
+      Twist moving;
+      (turning ? moving.angular.z : moving.linear.x) = 0.1;  // no quiet hold
+      e.carries(grip.on_hand);
+      e.update(true, 0.0, at(0.0), moving, kGains, grip, Company::kShared);
+      double gave = 0.0, off = 0.0;
+      Wrench before = grip.on_hand;
+      for (double t = kTick; t < 4.0; t += kTick) {
+        // On and on, the way it is pulled: 3 m and 60 rad.
+        if (turning)
+          grip.pose.orientation = rotate_by(grip.pose.orientation, {0.0, 0.0, 15.0 * kTick}), grip.twist.angular.z = 15.0;
+        else
+          grip.pose.position.x += 0.75 * kTick, grip.twist.linear.x = 0.75;
+        const Wrench wrench = wrench_of(e.update(true, t, at(0.0), {}, kGains, grip, company), grip);
+        gave -= kTick * (glm::dot(wrench.force, grip.twist.linear) + glm::dot(wrench.torque, grip.twist.angular));
+        const double change = turning ? 10.0 * glm::length(wrench.torque - before.torque)
+                                      : glm::length(wrench.force - before.force);
+        off = std::max(off, change);
+        before = wrench;
+      }
+      // In the end it only takes: friction.
+      EXPECT_LT(gave, 0.0);
+      EXPECT_LT(off, kHoldForce + 0.01) << "and never jumps, though the grip does in the first tick";
+    }
+  }
+}
+
+/// Given at most over any part of the way, with what the spring held when it began.
+TEST(Engagement, WhatAHoldGivesIsBoundedOnEveryWay) {
+  Engagement e;
+  GripState grip;
+  grip.pose = at(-0.01);
+  grip.on_hand.force.x = -10.0;
+  e.carries(grip.on_hand);
+  e.update(true, 0.0, at(0.0), {}, kGains, grip, Company::kShared);
+  double gave = 0.0, most = 0.0, counted = 0.0;
+  for (double t = kTick; t < 3.0; t += kTick) {
+    grip.twist.linear.x = 0.4 + 0.3 * std::sin(9.0 * t);
+    grip.pose.position.x += kTick * grip.twist.linear.x;
+    const Wrench wrench = wrench_of(e.update(true, t, at(0.0), {}, kGains, grip, Company::kSilent), grip);
+    gave -= kTick * wrench.force.x * grip.twist.linear.x;
+    most = std::max(most, gave);
+    counted += e.given();
+  }
+  const double spring = 0.5 * 10.0 * 10.0 / kGains.stiffness;
+  EXPECT_LT(most, (1.1 + 3.0 / kHoldRecovers) * (kHoldWay * (10.0 + kHoldForce) + spring));
+  EXPECT_GT(most, 0.5 * kHoldWay * 10.0) << "it helps to carry over some way";
+  EXPECT_GT(counted, most - spring - 0.1) << "and says what it gave";
+}
+
+/// Live stiffness: what is strained when it is stiffened would be thrown.
+TEST(Engagement, AStiffenedSpringKeepsItsForceAndPutsNothingIn) {
+  Engagement e;
+  GripState grip;
+  grip.pose = at(-0.02);
+  grip.pose.orientation = rotate_by(grip.pose.orientation, {0.0, 0.0, -0.1});
+  grip.on_hand = {{-20.0, 0.0, 0.0}, {0.0, 0.0, -1.0}};
+  double t = 0.0, scale = 1.0;
+  const auto turn = [&] {
+    const CouplingGains gains = stiffened(kGains, scale);
+    const Engagement::Held held = e.update(true, t += kTick, at(0.0), {}, gains, grip);
+    return coupling_wrench_on_hand(gains, held.pose, {}, grip.pose, grip.twist);
+  };
+  turn();
+  for (int i = 0; i < 10; ++i) turn();
+  scale = 4.0;
+  const Wrench wrench = turn();
+  EXPECT_NEAR(-wrench.force.x, 20.0, 0.6) << "80 by the stretch; what it is let in by";
+  EXPECT_NEAR(-wrench.torque.z, 1.0, 0.1);
+  EXPECT_LT(e.given(), 0.0) << "a stiffer spring holds less of the same force";
+  Wrench last = wrench;
+  for (int i = 0; i < 8000; ++i) {
+    const Wrench now = turn();
+    EXPECT_LT(glm::length(now.force - last.force), 4.0 * kGains.stiffness * kLetInSpeed * kTick + 0.5);
+    last = now;
+  }
+  EXPECT_EQ(e.distance(), 0.0) << "in the end the hand holds where it is";
+  // Softened, it keeps its stretch.
+  scale = 1.0;
+  EXPECT_NEAR(-turn().force.x, 20.0, 1e-9);
+  EXPECT_EQ(e.given(), 0.0);
+}
+
+TEST(Engagement, WhatTurnsWithTheHandTurnsAsTheHandDoes) {
+  Engagement e;
+  const GripState grip;
+  Pose hand;
+  hand.orientation = rotate_by(hand.orientation, {1.2, 0.0, 0.0});
+  const glm::dquat before = e.update(true, 0.0, hand, {}, kGains, grip).pose.orientation;
+  const glm::dvec3 turn{0.0, 0.02, 0.0};
+  hand.orientation = rotate_by(hand.orientation, turn);
+  const glm::dquat after = e.update(true, 1e-9, hand, {}, kGains, grip).pose.orientation;
+  EXPECT_LT(glm::length(rotation_between(before, after) - turn), 1e-6);
+}
+
 TEST(Engagement, AQuietHoldIsTheHandItself) {
   Engagement e;
   GripState grip;

@@ -37,6 +37,7 @@ class Hands : public ::testing::Test {
   Channel channel{scene.grips.size(), BodyMessage{}, 1000};
   HandTable hands{scene, channel};
   std::int64_t now = to_nanoseconds(100.0);
+  std::uint64_t number_ = 0;
 };
 
 TEST_F(Hands, TheHostHoldsWhatNobodyHasTaken) {
@@ -51,6 +52,42 @@ TEST_F(Hands, TheHostHoldsWhatNobodyHasTaken) {
   hands.let_go(0, now, true);
   EXPECT_FALSE(newest(0).engaged);
   EXPECT_TRUE(newest(0).lost);
+}
+
+/// A stand beside a person is a hand that never lets go.
+TEST_F(Hands, TheFirstPersonsHandEndsTheStandsOfItsBodyThatNobodyHasTaken) {
+  scene.grips.push_back(scene.grips[0]);
+  scene.grips.push_back(scene.grips[0]);
+  Channel wide{scene.grips.size(), BodyMessage{}, 1000};
+  HandTable table{scene, wide};
+  const auto told = [&](std::size_t grip) {
+    wide.pose(grip).update();
+    return wide.pose(grip).front();
+  };
+  const auto say = [&](std::uint32_t grip, wire::HoldsOn holds) {
+    wire::PoseSample s;
+    s.grip = grip;
+    s.number = ++number_;
+    s.engaged = holds;
+    table.sample(s, now);
+  };
+  const auto last = static_cast<std::uint32_t>(scene.grips.size() - 1), taken = last - 1;
+  table.stand_all(now);
+  EXPECT_TRUE(told(last).stand);
+  table.taken(0, now);
+  table.taken(taken, now);
+  say(0, wire::HoldsOn::kUnfelt);
+  EXPECT_TRUE(told(last).engaged) << "it is not felt yet";
+  say(0, wire::HoldsOn::kYes);
+  EXPECT_FALSE(told(0).stand);
+  EXPECT_FALSE(told(last).engaged);
+  EXPECT_TRUE(told(last).lost) << "gently";
+  EXPECT_TRUE(told(taken).engaged) << "whoever has taken it is on their way";
+  for (std::size_t i = 1; i < taken; ++i)
+    EXPECT_EQ(told(i).engaged, scene.grips[i].body != scene.grips[0].body) << "other bodies keep theirs";
+  table.stand_all(now);
+  say(taken, wire::HoldsOn::kYes);
+  EXPECT_FALSE(told(last).engaged) << "after a reset as well";
 }
 
 TEST_F(Hands, AStandHoldsOnUntilTheHandDoesAndTheWorldIsToldThatItIsAnother) {
