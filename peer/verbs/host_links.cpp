@@ -74,7 +74,7 @@ std::string links_for_scripts(const std::vector<LinkRecord>& links,
   std::string lines;
   for (const LinkRecord& link : links) {
     if (link.revoked) continue;
-    lines.append(link.role == wire::Role::kParticipant ? "hold " : "watch ").append(text(link));
+    lines.append(kLinkRoleNames[static_cast<std::size_t>(link.role)]).append(" ").append(text(link));
     if (!link.name.empty()) lines.append(" ").append(link.name);
     lines.append("\n");
   }

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 
 #include "net/clock.h"
@@ -27,10 +28,11 @@ constexpr std::int64_t kLineEvery = 500'000'000;  // ns
 void print_links(const HostedRun& run) {
   for (const LinkRecord& link : run.first_links()) {
     if (link.revoked) continue;
-    const bool hold = link.role == wire::Role::kParticipant;
+    constexpr std::array kMay{"take hold", "watch", "take hold and run the world"};
     const std::string whom = link.name.empty() ? std::string("Whoever has this link") : link.name;
-    std::printf("%s may %s (link %s):\n  ./slosh %s %s\n\n", whom.c_str(), hold ? "take hold" : "watch",
-                link.id.c_str(), hold ? "join" : "watch", run.text_of(link).c_str());
+    std::printf("%s may %s (link %s):\n  ./slosh %s %s\n\n", whom.c_str(),
+                kMay[static_cast<std::size_t>(link.role)], link.id.c_str(), may_hold(link.role) ? "join" : "watch",
+                run.text_of(link).c_str());
   }
   std::fflush(stdout);
 }
