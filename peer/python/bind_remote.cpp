@@ -7,14 +7,18 @@
 #include "peer/python/remote_program.h"
 #include "peer/python/words.h"
 #include "peer/python/world_program.h"
+#include "peer/remote/link_source.h"
 
 namespace slosh::python {
 namespace {
 
-std::unique_ptr<RemoteProgram> join(const std::string& link, const std::string& name,
-                                    const std::vector<std::string>& grips, bool watch, bool particles,
-                                    const std::filesystem::path& key, double timeout) {
-  return std::make_unique<RemoteProgram>(link,
+std::unique_ptr<RemoteProgram> join(const std::string& link, const std::filesystem::path& link_file,
+                                    const std::string& name, const std::vector<std::string>& grips, bool watch,
+                                    bool particles, const std::filesystem::path& key, double timeout) {
+  if (link.empty() && link_file.empty()) throw py::value_error("link or link_file: one of them");
+  const wire::Role role = watch ? wire::Role::kSpectator : wire::Role::kParticipant;
+  const std::string text = link_file.empty() ? link : take(read_link_text(link, link_file.string(), role, name));
+  return std::make_unique<RemoteProgram>(text,
                                          RemoteProgramOptions{name, grips, watch, particles, key, timeout});
 }
 
@@ -238,13 +242,14 @@ void bind_remote(py::module_& m) {
       .def("__exit__", [](RemoteProgram& r, const py::args&) { r.leave(); });
   bind_states(c);
   bind_asking(c);
-  m.def("join", &join, py::arg("link"), py::kw_only(), py::arg("name") = "",
+  m.def("join", &join, py::arg("link") = "", py::kw_only(), py::arg("link_file") = "", py::arg("name") = "",
         py::arg("grips") = std::vector<std::string>{}, py::arg("watch") = false, py::arg("particles") = true,
         py::arg("key") = "", py::arg("timeout") = 10.0,
         "Joins a host by what it printed (slosh://...) and returns a Remote once the world is there, and a "
         "grip held\n"
         "where one is free.\n\n"
-        "name: how the others see us ('': the host chooses). grips: names of those to take (none: the first "
+        "link_file: a file that holds the link, or what slosh host --links wrote, in place of link: for programs,\n"
+        "whose arguments everybody on a machine can read. name: how the others see us ('': the host chooses). grips: names of those to take (none: the first "
         "free one).\n"
         "watch: only look on. particles: False leaves them out of what is sent. key: a file with our key, "
         "made there on\n"

@@ -14,11 +14,11 @@ namespace {
 
 std::string footer() {
   return "Two links are printed: who joins by the first may take hold, who comes by the second may watch.\n"
-         "A link is all that a newcomer needs:\n"
-         "  slosh join LINK        slosh watch LINK\n"
+         "A link is all that a newcomer needs: they start slosh join or slosh watch, and paste it when asked.\n"
          "It carries this machine's addresses, the key by which the host is known, and a secret. Give it "
          "only\n"
-         "to those you mean. Across the internet the port (UDP) must reach this machine.\n"
+         "to those you mean. A log of the host's does not hold it, --links FILE does, for your eyes alone.\n"
+         "Across the internet the port (UDP) must reach this machine.\n"
          "\n"
          "Until a grip is taken the host itself holds it where the scene has it, and the world stands still\n"
          "until the first hand takes hold (--wait 2: the second; --wait 0: it starts at once).\n"
@@ -77,6 +77,8 @@ void add_host(CLI::App& app, VerbRun& chosen) {
           },
           "TIME"));
   verb->add_option("--links", o->links_file, "File for the links, one a line: hold LINK, watch LINK, run LINK NAME");
+  verb->add_flag("--show-links", o->show_links,
+                 "Print links whole also where standard output is no terminal but a log (else without their secret)");
   verb->add_option("--max-watchers", o->watchers, "People who may watch at a time")
       ->check(CLI::Range(0, 900))
       ->capture_default_str();

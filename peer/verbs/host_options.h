@@ -15,6 +15,7 @@ struct HostVerbOptions : PlayOptions {
   std::vector<std::string> runners;    ///< a personal link to run the world each
   std::string expires;                 ///< of all links made at the start; empty = never
   std::string links_file;
+  bool show_links = false;  ///< whole, also where standard output is no terminal
   std::string record;
   std::string checkpoint;           ///< file, "none", or empty = chosen
   double checkpoint_seconds = 0.5;  ///< wall s between two checkpoints

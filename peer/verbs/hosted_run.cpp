@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "host/server/console.h"
+#include "net/fresh_file.h"
 #include "net/link.h"
 #include "net/text/name.h"
 #include "net/wire/scene_package.h"
@@ -178,8 +179,7 @@ std::string HostedRun::choose_checkpoint() const {
   // Two hosts of one scene must not write over each other.
   const std::uint16_t port = port_of(address_);
   const std::string name = hosted_.prepared.scene.name + (port == kPort ? "" : "-" + std::to_string(port));
-  std::error_code code;
-  std::filesystem::create_directories(state_folder(), code);
+  make_own_folder(state_folder());
   return state_folder() + "/" + name + ".checkpoint";
 }
 

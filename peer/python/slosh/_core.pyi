@@ -436,8 +436,9 @@ def check(file: Path) -> List[Finding]: ...
 def make_plan(scene: Scene, spacing: float = 0.0) -> Plan: ...
 def replay(file: Path, *, backend: str = "auto", threads: int = 0, every: int = 1) -> Replay: ...
 def join(
-    link: str,
+    link: str = "",
     *,
+    link_file: Path = ...,
     name: str = "",
     grips: Sequence[str] = ...,
     watch: bool = False,
