@@ -438,7 +438,7 @@ def replay(file: Path, *, backend: str = "auto", threads: int = 0, every: int = 
 def join(
     link: str = "",
     *,
-    link_file: Path = ...,
+    link_file: Path = "",
     name: str = "",
     grips: Sequence[str] = ...,
     watch: bool = False,
