@@ -78,13 +78,13 @@ std::string from_terminal() {
   std::fputs("Paste or type the link that the host printed (it is not shown here): ", stderr);
   const Unseen unseen;
   std::string text;
-  while (read_line(text) && !parse_link(text)) {
-    pollfd more{STDIN_FILENO, POLLIN, 0};
-    if (text.size() > kMaxLinkText || poll(&more, 1, kMorePasted) <= 0) break;
+  bool more = read_line(text);
+  while (more && text.size() <= kMaxLinkText && !parse_link(text)) {
+    pollfd waiting{STDIN_FILENO, POLLIN, 0};
+    if (poll(&waiting, 1, kMorePasted) <= 0) break;
     std::string line;
-    const bool whole = read_line(line);
+    more = read_line(line);
     text += "\n" + line;
-    if (!whole) break;
   }
   return text;
 }
