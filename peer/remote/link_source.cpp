@@ -75,8 +75,8 @@ bool read_line(std::string& line) {
 
 /// Mail breaks links, and a terminal gives what is pasted line by line.
 std::string from_terminal() {
-  std::fputs("Paste or type the link that the host printed (it is not shown here): ", stderr);
   const Unseen unseen;
+  std::fputs("Paste or type the link that the host printed (it is not shown here): ", stderr);
   std::string text;
   bool more = read_line(text);
   while (more && text.size() <= kMaxLinkText && !parse_link(text)) {
