@@ -51,7 +51,8 @@ Result<ConsoleCommand> parse_expire(const std::vector<std::string>& words) {
 
 Result<ConsoleCommand> parse_role(const std::vector<std::string>& words) {
   const auto role = words.size() == 3 ? link_role_named(words[2]) : std::nullopt;
-  if (!role || !may_hold(*role)) return usage("role needs a link, and hold or run", "For example: role bako run");
+  if (!role || !may_hold(*role))
+    return usage("role needs a link, and hold or run", "For example: role bako run");
   ConsoleCommand command;
   command.verb = ConsoleVerb::kRole;
   command.text = words[1];

@@ -18,18 +18,18 @@ struct Kind {
   double least;  // what the smallest change counts
 };
 
-// Two jumps of gravity between its ends, or of a stiffness, then one each 10 and each 6 s. In units of a pause, a reset,
-// the scene's gravity, a factor of ten of viscosity, a doubling of stiffness.
+// Two jumps of gravity between its ends, or of a stiffness, then one each 10 and each 6 s. In units of a
+// pause, a reset, the scene's gravity, a factor of ten of viscosity, a doubling of stiffness.
 constexpr Kind kKindTable[] = {{"paused the world or let it go on as often", 0.5, 6.0, 2.0, 1.0},
-                            {"set the world back as often", 0.1, 2.0, 2.0, 1.0},
-                            {"changed gravity as much", 0.2, 4.0, 2.0, 0.05},
-                            {"changed viscosities as much", 1.0, 12.0, 2.0, 0.05},
-                            {"changed the stiffness of grips as much", 1.0, 13.0, 4.0, 0.05}};
-constexpr double kSettled = 1.0;              // s until the world has what it was asked for
-constexpr double kLeastViscosity = 1e-4;      // Pa·s: thinner fluids feel alike
-constexpr double kMostOfViscosity = 4.0;      // what one change counts at most: the world may refuse it
-constexpr std::size_t kMostAtEase = 64;       // guests before those whose budgets are full are forgotten
-constexpr double kFullAgain = 60.0;           // s
+                               {"set the world back as often", 0.1, 2.0, 2.0, 1.0},
+                               {"changed gravity as much", 0.2, 4.0, 2.0, 0.05},
+                               {"changed viscosities as much", 1.0, 12.0, 2.0, 0.05},
+                               {"changed the stiffness of grips as much", 1.0, 13.0, 4.0, 0.05}};
+constexpr double kSettled = 1.0;          // s until the world has what it was asked for
+constexpr double kLeastViscosity = 1e-4;  // Pa·s: thinner fluids feel alike
+constexpr double kMostOfViscosity = 4.0;  // what one change counts at most: the world may refuse it
+constexpr std::size_t kMostAtEase = 64;   // guests before those whose budgets are full are forgotten
+constexpr double kFullAgain = 60.0;       // s
 
 std::size_t kind_of(HostAction action) {
   switch (action) {
@@ -53,7 +53,8 @@ double distance(HostAction action, double from, double to) {
     case HostAction::kGravityScale:
       return std::abs(to - from);
     case HostAction::kViscosity:
-      return std::min(kMostOfViscosity, std::abs(std::log10(std::max(to, kLeastViscosity) / std::max(from, kLeastViscosity))));
+      return std::min(kMostOfViscosity,
+                      std::abs(std::log10(std::max(to, kLeastViscosity) / std::max(from, kLeastViscosity))));
     case HostAction::kGripStiffness:
       return std::abs(std::log2(std::clamp(to, wire::kMinGripStiffness, wire::kMaxGripStiffness) /
                                 std::clamp(from, wire::kMinGripStiffness, wire::kMaxGripStiffness)));

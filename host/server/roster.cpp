@@ -52,7 +52,7 @@ std::size_t SeatTable::taken(LinkRole role, const Seat* but) const {
 std::string SeatTable::full(const KeyFingerprint& key, LinkRole role) {
   if (taken(role, by_key(key)) < limit_of(role)) return {};
   return may_hold(role) ? "this world is full: no more hands find room. Try the link for watching"
-             : "this world is full: too many are watching. Try again later";
+                        : "this world is full: too many are watching. Try again later";
 }
 
 // Seats of people who are away must not keep others out: the one away longest goes, of hands only who left.
@@ -124,8 +124,7 @@ void SeatTable::remove(std::uint32_t number) {
 }
 
 Outcome SeatTable::take(Seat& seat, std::uint32_t grip) {
-  if (!may_hold(seat.role))
-    return {false, "this link is for watching; taking hold needs the other one"};
+  if (!may_hold(seat.role)) return {false, "this link is for watching; taking hold needs the other one"};
   if (grip >= grip_names_.size()) return {false, no_grip_text(std::to_string(grip), grip_names_)};
   if (has(seat.grips, grip)) return {true, {}};
   if (const Seat* other = holder(grip)) {
@@ -211,8 +210,7 @@ void SeatTable::restore(const std::vector<SeatRecord>& records, std::int64_t now
     seat.connected = false;
     seat.away_since_ns = now_ns;
     for (const std::uint32_t grip : record.grips) {
-      if (may_hold(record.role) && grip < grip_names_.size() && !holder(grip) &&
-          !has(seat.grips, grip)) {
+      if (may_hold(record.role) && grip < grip_names_.size() && !holder(grip) && !has(seat.grips, grip)) {
         seat.grips.push_back(grip);
       }
     }

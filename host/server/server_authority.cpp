@@ -35,7 +35,8 @@ std::string words_of(const HostCommand& command, bool done, const Scene& scene) 
 }
 
 bool is_parameter(HostAction action) {
-  return action == HostAction::kGravityScale || action == HostAction::kViscosity || action == HostAction::kGripStiffness;
+  return action == HostAction::kGravityScale || action == HostAction::kViscosity ||
+         action == HostAction::kGripStiffness;
 }
 
 }  // namespace
@@ -53,15 +54,18 @@ void Server::send_rights(Peer& peer, const Seat& seat) {
 std::string Server::not_theirs(const Seat& seat, const HostCommand& command) const {
   const std::string own_link = "link '" + seat.name + "' run";
   if (!may_hold(seat.role))
-    return "this link is for watching; who changes the world comes by one with the role run. Whoever hosts makes one "
-           "by typing: " + own_link;
+    return "this link is for watching; who changes the world comes by one with the role run. Whoever hosts "
+           "makes one "
+           "by typing: " +
+           own_link;
   if (options_.lock_parameters && is_parameter(command.action))
     return "here only the host sets viscosity, gravity and stiffness";
   if (command.action != HostAction::kGripStiffness) {
     if (seat.role == LinkRole::kRun) return {};
-    return "what everybody feels (pause, continue, reset, gravity, viscosity) is for the host, and for links with the "
-           "role run; yours is to hold. Whoever hosts gives the role by typing: role " + seat.link +
-           " run, or makes a link of your own: " + own_link;
+    return "what everybody feels (pause, continue, reset, gravity, viscosity) is for the host, and for links "
+           "with the "
+           "role run; yours is to hold. Whoever hosts gives the role by typing: role " +
+           seat.link + " run, or makes a link of your own: " + own_link;
   }
   const Seat* holder = seats_.holder(command.index);
   if (holder == &seat || (!holder && seat.role == LinkRole::kRun)) return {};
@@ -70,7 +74,8 @@ std::string Server::not_theirs(const Seat& seat, const HostCommand& command) con
                 : "take hold of " + grip + " first: its stiffness is its holder's to set, and the host's";
 }
 
-void Server::refuse_wish(Peer& peer, std::uint32_t request, const HostCommand& command, const std::string& why) {
+void Server::refuse_wish(Peer& peer, std::uint32_t request, const HostCommand& command,
+                         const std::string& why) {
   answer(peer, request, false, why);
   const std::string line = name_of(peer) + " may not " + words_of(command, false, *world_.scene);
   deeds_.note(line, unix_now());
@@ -145,7 +150,8 @@ Outcome Server::give_role(const std::string& id, LinkRole role) {
     return {false, id + " is a link to watch, and stays one. `link NAME run` makes another"};
   links_.set_role(id, role);
   state_dirty_ = true;
-  const std::string may = role == LinkRole::kRun ? " may run the world" : " may hold, and no longer run the world";
+  const std::string may =
+      role == LinkRole::kRun ? " may run the world" : " may hold, and no longer run the world";
   for (const auto& [number, one] : seats_.seats()) {
     if (one.link != id || one.role == role) continue;
     Seat& seat = *seats_.by_number(number);

@@ -66,7 +66,8 @@ Outcome Server::run(const ConsoleCommand& command) {
       state_dirty_ = true;
       return {true, command.text + " may come in again"};
     case ConsoleVerb::kSet: {
-      if (command.what == SetWish::What::kGravity) return tell_world({HostAction::kGravityScale, 0, command.value});
+      if (command.what == SetWish::What::kGravity)
+        return tell_world({HostAction::kGravityScale, 0, command.value});
       if (command.what == SetWish::What::kStiffness) {
         const std::optional<std::size_t> grip = one_meant(world_.scene->grips, command.text);
         if (!grip) return {false, "say which grip: " + names_of(world_.scene->grips)};

@@ -128,7 +128,9 @@ void Server::welcome(Peer& peer, Seat& seat, bool restored) {
   send_scene(peer);
   if (peer.gone) return;
   snapshots_.watch(peer.id, now());
-  notice_all(seat.name + (restored ? " is back" : may_hold(seat.role) ? " is here" : " is watching"),
+  notice_all(seat.name + (restored              ? " is back"
+                          : may_hold(seat.role) ? " is here"
+                                                : " is watching"),
              !may_hold(seat.role), &peer);
   roster_changed();
   start_if_held();
@@ -160,7 +162,8 @@ wire::Fault Server::handle(Peer& peer, const wire::GripRequest& request) {
   const Outcome outcome = request.take ? seats_.take(seat, request.grip) : seats_.release(seat, request.grip);
   answer(peer, request.request, outcome.granted, outcome.text);
   if (!outcome.granted || held || peer.gone) return {};
-  deeds_.note(seat.name + (request.take ? " took " : " let go of ") + seats_.grip_name(request.grip), unix_now());
+  deeds_.note(seat.name + (request.take ? " took " : " let go of ") + seats_.grip_name(request.grip),
+              unix_now());
   if (request.take) {
     peer.heard_ns = now();
     hands_.taken(request.grip, now());

@@ -13,11 +13,13 @@ namespace slosh::python {
 namespace {
 
 std::unique_ptr<RemoteProgram> join(const std::string& link, const std::filesystem::path& link_file,
-                                    const std::string& name, const std::vector<std::string>& grips, bool watch,
-                                    bool particles, const std::filesystem::path& key, double timeout) {
+                                    const std::string& name, const std::vector<std::string>& grips,
+                                    bool watch, bool particles, const std::filesystem::path& key,
+                                    double timeout) {
   if (link.empty() && link_file.empty()) throw py::value_error("link or link_file: one of them");
   const wire::Role role = watch ? wire::Role::kSpectator : wire::Role::kParticipant;
-  const std::string text = link_file.empty() ? link : take(read_link_text(link, link_file.string(), role, name));
+  const std::string text =
+      link_file.empty() ? link : take(read_link_text(link, link_file.string(), role, name));
   return std::make_unique<RemoteProgram>(text,
                                          RemoteProgramOptions{name, grips, watch, particles, key, timeout});
 }
@@ -96,7 +98,8 @@ py::object positions(RemoteProgram& r) {
   return view(picture, reinterpret_cast<const float*>(picture->positions.data()), {rows, 3});
 }
 
-/// Raises at once where the host has said that this link does not let us; what else it refuses is in notices().
+/// Raises at once where the host has said that this link does not let us; what else it refuses is in
+/// notices().
 void must_be_ours(bool ours, const char* what, const char* mend) {
   if (!ours) throw Raised({"slosh.Remote", what, mend});
 }
@@ -113,7 +116,8 @@ void do_world(RemoteProgram& r, wire::WorldAction action) {
 void set(RemoteProgram& r, wire::Parameter parameter, std::size_t index, double value) {
   const RemoteStatus now = r.status();
   if (parameter == wire::Parameter::kGripStiffness)
-    must_be_ours(may_set_stiffness(now, index), "the stiffness of this grip is not ours to set", "take() it first");
+    must_be_ours(may_set_stiffness(now, index), "the stiffness of this grip is not ours to set",
+                 "take() it first");
   else
     must_be_ours(now.rights.parameters, "this link does not let us set gravity and viscosity", kRunLink);
   RemoteCommand command;
@@ -143,7 +147,8 @@ void bind_asking(py::class_<RemoteProgram>& c) {
          do_world(r, paused ? wire::WorldAction::kPause : wire::WorldAction::kContinue);
        },
        py::arg("paused") = true,
-       "Asks for the world to stand, or (False) go on, for everybody. Raises slosh.Error where runs_world is False.")
+       "Asks for the world to stand, or (False) go on, for everybody. Raises slosh.Error where runs_world is "
+       "False.")
       .def(
           "reset", [](RemoteProgram& r) { do_world(r, wire::WorldAction::kReset); },
           "Asks for the world to start again, for everybody. Raises as pause() does.")
@@ -164,7 +169,8 @@ void bind_asking(py::class_<RemoteProgram>& c) {
             set(r, wire::Parameter::kGripStiffness, r.grip(which), scale);
           },
           py::arg("grip"), py::arg("scale"),
-          "Asks for the springs of a grip of ours, times the scene's, 0.05 to 4. Raises slosh.Error for another's.")
+          "Asks for the springs of a grip of ours, times the scene's, 0.05 to 4. Raises slosh.Error for "
+          "another's.")
       .def("notices", &RemoteProgram::notices,
            "What a person should read, oldest first, each once: list[str].");
 }
@@ -248,8 +254,10 @@ void bind_remote(py::module_& m) {
         "Joins a host by what it printed (slosh://...) and returns a Remote once the world is there, and a "
         "grip held\n"
         "where one is free.\n\n"
-        "link_file: a file that holds the link, or what slosh host --links wrote, in place of link: for programs,\n"
-        "whose arguments everybody on a machine can read. name: how the others see us ('': the host chooses). grips: names of those to take (none: the first "
+        "link_file: a file that holds the link, or what slosh host --links wrote, in place of link: for "
+        "programs,\n"
+        "whose arguments everybody on a machine can read. name: how the others see us ('': the host "
+        "chooses). grips: names of those to take (none: the first "
         "free one).\n"
         "watch: only look on. particles: False leaves them out of what is sent. key: a file with our key, "
         "made there on\n"

@@ -30,7 +30,8 @@ extern "C" void note_signal_at_prompt(int signal_number) {
   signalled = signal_number;
 }
 
-/// A terminal that shows nothing of what is typed. A signal ends the reading, and acts when the terminal is as it was.
+/// A terminal that shows nothing of what is typed. A signal ends the reading, and acts when the terminal is
+/// as it was.
 class Unseen {
  public:
   Unseen() {
@@ -137,7 +138,10 @@ Result<std::string> from_file(const std::string& file_name, wire::Role role, con
     const std::optional<LinkLine> one = parse_line(line);
     listed = listed || one;
     if (!one || (one->role == "watch") == holds) continue;
-    const int rank = !name.empty() && one->name == name ? 4 : !one->name.empty() ? 1 : one->role == "run" ? 2 : 3;
+    const int rank = !name.empty() && one->name == name ? 4
+                     : !one->name.empty()               ? 1
+                     : one->role == "run"               ? 2
+                                                        : 3;
     if (rank <= best_rank) continue;
     best_rank = rank;
     best = one->link;

@@ -14,7 +14,8 @@ namespace {
 
 std::string footer() {
   return "Two links are printed: who joins by the first may take hold, who comes by the second may watch.\n"
-         "A link is all that a newcomer needs: they start slosh join or slosh watch, and paste it when asked.\n"
+         "A link is all that a newcomer needs: they start slosh join or slosh watch, and paste it when "
+         "asked.\n"
          "It carries this machine's addresses, the key by which the host is known, and a secret. Give it "
          "only\n"
          "to those you mean. A log of the host's does not hold it, --links FILE does, for your eyes alone.\n"
@@ -23,9 +24,12 @@ std::string footer() {
          "Until a grip is taken the host itself holds it where the scene has it, and the world stands still\n"
          "until the first hand takes hold (--wait 2: the second; --wait 0: it starts at once).\n"
          "\n"
-         "Who holds a grip sets how stiff it is. What everybody feels (pause, continue, reset, gravity, viscosity)\n"
-         "is yours, and theirs to whom you give it: --run NAME, or `slosh links new NAME --role run`, or the\n"
-         "console's `role`. Nobody but you may do that as often and as much as they like; `log` says who did what.\n"
+         "Who holds a grip sets how stiff it is. What everybody feels (pause, continue, reset, gravity, "
+         "viscosity)\n"
+         "is yours, and theirs to whom you give it: --run NAME, or `slosh links new NAME --role run`, or "
+         "the\n"
+         "console's `role`. Nobody but you may do that as often and as much as they like; `log` says who did "
+         "what.\n"
          "\n"
          "While it runs, type (or use `slosh links` from elsewhere):\n" +
          console_help(Console::kHost) +
@@ -76,9 +80,11 @@ void add_host(CLI::App& app, VerbRun& chosen) {
             return time ? std::string() : time.error().text();
           },
           "TIME"));
-  verb->add_option("--links", o->links_file, "File for the links, one a line: hold LINK, watch LINK, run LINK NAME");
-  verb->add_flag("--show-links", o->show_links,
-                 "Print links whole also where standard output is no terminal but a log (else without their secret)");
+  verb->add_option("--links", o->links_file,
+                   "File for the links, one a line: hold LINK, watch LINK, run LINK NAME");
+  verb->add_flag(
+      "--show-links", o->show_links,
+      "Print links whole also where standard output is no terminal but a log (else without their secret)");
   verb->add_option("--max-watchers", o->watchers, "People who may watch at a time")
       ->check(CLI::Range(0, 900))
       ->capture_default_str();
@@ -86,7 +92,8 @@ void add_host(CLI::App& app, VerbRun& chosen) {
       ->check(CLI::Range(0, 64))
       ->capture_default_str();
   verb->add_flag("--lock-parameters", o->lock_parameters,
-                 "Only the host sets viscosity, gravity and stiffness (else the first two who may run the world, too, and "
+                 "Only the host sets viscosity, gravity and stiffness (else the first two who may run the "
+                 "world, too, and "
                  "of a grip its holder)");
   add_seconds_option(*verb, o->seconds, 0.01, "Simulated seconds (until it is ended)");
   add_world_options(*verb, *o, "all but one");

@@ -37,12 +37,14 @@ void print_links(const HostedRun& run, const HostVerbOptions& options) {
     constexpr std::array kMay{"take hold", "watch", "take hold and run the world"};
     const std::string whom = link.name.empty() ? std::string("Whoever has this link") : link.name;
     std::printf("%s may %s (link %s): start ./slosh %s, and when asked paste\n  %s\n\n", whom.c_str(),
-                kMay[static_cast<std::size_t>(link.role)], link.id.c_str(), may_hold(link.role) ? "join" : "watch",
-                shown(run.text_of(link), options).c_str());
+                kMay[static_cast<std::size_t>(link.role)], link.id.c_str(),
+                may_hold(link.role) ? "join" : "watch", shown(run.text_of(link), options).c_str());
   }
   if (!options.show_links && isatty(STDOUT_FILENO) == 0)
-    std::printf("Links are cut off here, for this is no terminal. `./slosh links` shows them, --links FILE keeps them in a "
-                "file for your eyes alone, --show-links prints them.\n\n");
+    std::printf(
+        "Links are cut off here, for this is no terminal. `./slosh links` shows them, --links FILE keeps "
+        "them in a "
+        "file for your eyes alone, --show-links prints them.\n\n");
   std::fflush(stdout);
 }
 
@@ -133,7 +135,8 @@ void print_summary(const HostedRun& run, const HostReport& report, const ServerF
 }
 
 // Until somebody or something ends it; tells why.
-std::string run_until_ended(HostedRun& run, const HostVerbOptions& options, Progress& progress, HostReins* reins) {
+std::string run_until_ended(HostedRun& run, const HostVerbOptions& options, Progress& progress,
+                            HostReins* reins) {
   RateOf rate;
   std::int64_t next_line_ns = 0;
   LineInput input(progress.terminal());

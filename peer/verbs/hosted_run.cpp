@@ -163,8 +163,10 @@ void HostedRun::make_links() {
       if (parsed) lifetime = parsed.value();
     }
     LinkRegistry& links = server_->links();
-    for (const std::string& name : options_.runners) links.create(LinkRole::kRun, clean_name(name), now, lifetime);
-    for (const std::string& name : options_.names) links.create(LinkRole::kHold, clean_name(name), now, lifetime);
+    for (const std::string& name : options_.runners)
+      links.create(LinkRole::kRun, clean_name(name), now, lifetime);
+    for (const std::string& name : options_.names)
+      links.create(LinkRole::kHold, clean_name(name), now, lifetime);
     links.create(LinkRole::kHold, {}, now, lifetime);
     links.create(LinkRole::kWatch, {}, now, lifetime);
   }

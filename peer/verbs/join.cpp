@@ -9,11 +9,11 @@
 #include "net/console_verbs.h"
 #include "net/link.h"
 #include "peer/haptics/make_device.h"
+#include "peer/remote/link_source.h"
 #include "peer/remote/peer_key.h"
 #include "peer/verbs/common_options.h"
 #include "peer/verbs/find_headset.h"
 #include "peer/verbs/interrupt.h"
-#include "peer/remote/link_source.h"
 #include "peer/verbs/play_modes.h"
 #include "peer/verbs/remote_run.h"
 #include "peer/verbs/verbs.h"
@@ -41,9 +41,12 @@ constexpr const char* kJoinFiles =
     "; and of the hands that were yours wrenches.csv,\n"
     "poses.csv and wrenches.png.\n"
     "\n"
-    "The link is all that is needed: the host prints it, and the scene comes over the network. It is a secret:\n"
-    "without LINK it is asked for, and not shown while it is pasted. Breaks that a mail program put in do no\n"
-    "harm. --link-file FILE, or standard input, does for programs. A LINK in the command line works too, and is\n"
+    "The link is all that is needed: the host prints it, and the scene comes over the network. It is a "
+    "secret:\n"
+    "without LINK it is asked for, and not shown while it is pasted. Breaks that a mail program put in do "
+    "no\n"
+    "harm. --link-file FILE, or standard input, does for programs. A LINK in the command line works too, and "
+    "is\n"
     "taken out of what `ps` shows at once, but a shell remembers it.\n"
     "\n"
     "You are one person by the key in $XDG_DATA_HOME/slosh/peer_key: when contact is lost, you get your "
@@ -67,7 +70,8 @@ constexpr const char* kJoinEnd =
 constexpr const char* kWatchFiles =
     ".\n"
     "\n"
-    "The link is all that is needed: the host prints one for those who only look on. It is asked for, and not\n"
+    "The link is all that is needed: the host prints one for those who only look on. It is asked for, and "
+    "not\n"
     "shown while it is pasted; --link-file FILE, or standard input, does for programs.\n"
     "\n"
     "While it runs, type in the terminal:\n";
@@ -192,8 +196,9 @@ void add(CLI::App& app, VerbRun& chosen, bool watch) {
                          : app.add_subcommand("join", "Take hold of something in somebody's world");
   auto o = std::make_shared<JoinOptions>();
   o->watch = watch;
-  verb->add_option("LINK", o->link,
-                   "What the host printed: slosh://… (asked for); - reads it from standard input, @FILE from a file");
+  verb->add_option(
+      "LINK", o->link,
+      "What the host printed: slosh://… (asked for); - reads it from standard input, @FILE from a file");
   verb->add_option("--link-file", o->link_file, "A file that holds the link, or what `host --links` wrote");
   verb->add_option("--name", o->name, "How the others see you (the host chooses)");
   if (!watch) {

@@ -85,9 +85,10 @@ void add_links(CLI::App& app, VerbRun& chosen) {
 
   CLI::App* make = verb->add_subcommand("new", "A new link, for anybody or for one person");
   make->add_option("NAME", o->name, "Whom it is for; it then works for one machine");
-  CLI::Option* role = make->add_option("--role", o->role,
-                                       "hold: to take grips; watch: to look on; run: to hold, and to run the world for "
-                                       "everybody (pause, continue, reset, gravity, viscosity)");
+  CLI::Option* role =
+      make->add_option("--role", o->role,
+                       "hold: to take grips; watch: to look on; run: to hold, and to run the world for "
+                       "everybody (pause, continue, reset, gravity, viscosity)");
   role->check(CLI::IsMember({"hold", "watch", "run"}))->capture_default_str();
   make->add_flag("--watch", o->watch, "The same as --role watch")->excludes(role);
   make->add_option("--expires", o->expires, "When it ends, e.g. 30m (never)")->check(time);
@@ -109,7 +110,8 @@ void add_links(CLI::App& app, VerbRun& chosen) {
   CLI::App* give = verb->add_subcommand("role", "Say whether those who come by a link may run the world");
   give->add_option("ID", o->id, "As the list shows it")->required();
   give->add_option("ROLE", o->role, "hold or run")->required()->check(CLI::IsMember({"hold", "run"}));
-  give->callback([&chosen, o] { chosen = [o] { return ask(*o, "role " + in_quotes(o->id) + " " + o->role); }; });
+  give->callback(
+      [&chosen, o] { chosen = [o] { return ask(*o, "role " + in_quotes(o->id) + " " + o->role); }; });
 
   CLI::App* expire = verb->add_subcommand("expire", "Let a link end later; who is in stays in");
   expire->add_option("ID", o->id, "As the list shows it")->required();

@@ -189,7 +189,8 @@ LiveValues RemoteRun::live_values() const {
   values.gravity_scale = status_.world.gravity_scale;
   values.viscosities = status_.world.viscosities;
   values.grips = live_grips(stage_.scene, status_.world.grip_stiffness, *servo_);
-  for (std::size_t i = 0; i < values.grips.size(); ++i) values.grips[i].may_set = may_set_stiffness(status_, i);
+  for (std::size_t i = 0; i < values.grips.size(); ++i)
+    values.grips[i].may_set = may_set_stiffness(status_, i);
   return values;
 }
 

@@ -226,8 +226,9 @@ TEST_F(LoopbackTest, LinksAreMadeAndRevokedWhileTheHostRuns) {
 
 TEST_F(LoopbackTest, ALinkStandsInNoListOfProcessesAndInNoLog) {
   const auto secret_of = [](const std::string& text) { return text.substr(text.rfind('/') + 1); };
-  const std::vector<std::string> hosts{"host", "probe", "--spacing", "0.01", "--threads", "1", "--listen",
-                                       "127.0.0.1:0", "--links", "links.txt", "--wait", "0", "--checkpoint", "none"};
+  const std::vector<std::string> hosts{"host",   "probe",    "--spacing",    "0.01",    "--threads",
+                                       "1",      "--listen", "127.0.0.1:0",  "--links", "links.txt",
+                                       "--wait", "0",        "--checkpoint", "none"};
   const auto host = run("host", hosts);
   ASSERT_TRUE(hosting(*host)) << host->wait().err;
   const std::string text = link("hold");

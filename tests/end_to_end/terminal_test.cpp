@@ -124,8 +124,10 @@ TEST_F(TerminalTest, TheLinkIsAskedForAndNotShown) {
   ASSERT_TRUE(host->shows("nobody here yet")) << host->screen();
   const std::string text = link("hold");
   EXPECT_NE(host->screen().find(text), std::string::npos) << "a terminal shows it whole";
-  EXPECT_EQ(host->screen().find("join slosh://"), std::string::npos) << "and leads nobody to their command line";
-  const std::vector<std::string> asks{"join", "--headless", "--no-render", "--out", "out", "--key", "../Ana.key"};
+  EXPECT_EQ(host->screen().find("join slosh://"), std::string::npos)
+      << "and leads nobody to their command line";
+  const std::vector<std::string> asks{"join", "--headless", "--no-render", "--out",
+                                      "out",  "--key",      "../Ana.key"};
   const auto left = at_terminal("left", asks);
   ASSERT_TRUE(left->shows("Paste or type the link")) << left->screen();
   left->type("\x03");

@@ -1,4 +1,5 @@
-// A scene's file from anywhere: .gltf, .glb, and a .glb whose lengths fit whatever its JSON and its buffer have become.
+// A scene's file from anywhere: .gltf, .glb, and a .glb whose lengths fit whatever its JSON and its buffer
+// have become.
 #include <unistd.h>
 
 #include <algorithm>
@@ -57,8 +58,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto mode = static_cast<Mode>(data[0] % kModes);
   const Bytes bytes = mode == kParts ? joined(rest) : rest;
   const std::filesystem::path file = folder / (mode == kText ? "input.gltf" : "input.glb");
-  std::ofstream(file, std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()),
-                                              static_cast<std::streamsize>(bytes.size()));
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   const Result<Scene> scene = load_scene(file);
   if (!scene) {
     test::must(clean_lines(scene.error().text(), 8000) == scene.error().text(), "an error can be told");

@@ -114,7 +114,8 @@ std::vector<std::vector<std::uint8_t>> slosh_fuzz_seeds() {
       test::append_stored(chunk.type, chunk.content, stored);
   }
   test::fix_chunks(stored, kHeadBytes);
-  std::vector<Bytes> seeds{file, events, wire::encoded(PlaceRecord{}), wire::encoded(RecordingTotals{}), stored};
+  std::vector<Bytes> seeds{file, events, wire::encoded(PlaceRecord{}), wire::encoded(RecordingTotals{}),
+                           stored};
   for (std::uint8_t mode = 0; mode < kModes; ++mode) seeds[mode].insert(seeds[mode].begin(), mode);
   return seeds;
 }

@@ -38,7 +38,8 @@ void carry_on(ByteView bytes) {
   seats.restore(state.seats, 1);
   for (const auto& [number, seat] : seats.seats()) {
     test::must(seat.grips.empty() || may_hold(seat.role), "who looks on holds nothing");
-    for (const std::uint32_t grip : seat.grips) test::must(seats.holder(grip) == &seat, "a grip has one holder");
+    for (const std::uint32_t grip : seat.grips)
+      test::must(seats.holder(grip) == &seat, "a grip has one holder");
   }
 }
 
@@ -75,7 +76,8 @@ std::vector<std::vector<std::uint8_t>> slosh_fuzz_seeds() {
     link.token.fill(static_cast<std::uint8_t>(role));
     state.links.push_back(link);
   }
-  state.seats = {{0, key, "Ana", LinkRole::kRun, {0, 1}, "bak0"}, {1, {}, "Ben", LinkRole::kWatch, {}, "bak1"}};
+  state.seats = {{0, key, "Ana", LinkRole::kRun, {0, 1}, "bak0"},
+                 {1, {}, "Ben", LinkRole::kWatch, {}, "bak1"}};
   state.bans = {{key, "Eve", 100}};
   const Bytes server = wire::encoded(state);
   Bytes file{'S', 'L', 'O', 'S', 'H', 'K', 'E', 'Y'};

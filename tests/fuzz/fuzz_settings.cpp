@@ -31,7 +31,8 @@ std::vector<std::vector<std::uint8_t>> slosh_fuzz_seeds() {
   for (std::size_t at = 0; at < example.size();) {
     const std::size_t end = std::min(example.find('\n', at), example.size());
     std::string line = example.substr(at, end - at);
-    if (line.find(" = ") != std::string::npos && line.starts_with('#')) line.erase(0, line.find_first_not_of("# "));
+    if (line.find(" = ") != std::string::npos && line.starts_with('#'))
+      line.erase(0, line.find_first_not_of("# "));
     used += line + "\n";
     at = end + 1;
   }

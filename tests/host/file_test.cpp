@@ -32,7 +32,8 @@ TEST(KeptFiles, NothingIsWrittenThroughALinkThatSomebodyLaidThere) {
     for (const bool hard : {false, true}) {
       write(file, "old");
       fs::remove(file.string() + ending);
-      hard ? fs::create_hard_link(theirs, file.string() + ending) : fs::create_symlink(theirs, file.string() + ending);
+      hard ? fs::create_hard_link(theirs, file.string() + ending)
+           : fs::create_symlink(theirs, file.string() + ending);
       const Result<bool> replaced = replace_file(file, kContent);
       ASSERT_TRUE(replaced) << replaced.error().text();
       EXPECT_EQ(read_text(file), "new");

@@ -65,7 +65,8 @@ TEST(LinkSource, TheLineForTheRoleIsTakenOfWhatAHostWrote) {
   const std::string file = write_file("links", "hold slosh://h Ana Maria\nwatch slosh://w\n");
   EXPECT_EQ(got(read_link_text("", file, kHold)), "slosh://h");
   EXPECT_EQ(got(read_link_text("", file, kWatch)), "slosh://w");
-  const std::string own = write_file("own", "run slosh://r Cem\nhold slosh://a Ana\nhold slosh://h\nwatch slosh://w\n");
+  const std::string own =
+      write_file("own", "run slosh://r Cem\nhold slosh://a Ana\nhold slosh://h\nwatch slosh://w\n");
   EXPECT_EQ(got(read_link_text("", own, kHold)), "slosh://h") << "the one for anybody";
   EXPECT_EQ(got(read_link_text("", own, kHold, "Ana")), "slosh://a");
   EXPECT_EQ(got(read_link_text("", own, kHold, "Cem")), "slosh://r");

@@ -38,13 +38,15 @@ TEST_F(AuthorityTest, WhoMayHoldMovesNobodyElse) {
   for (const WorldAction action : {WorldAction::kPause, WorldAction::kContinue, WorldAction::kReset}) {
     const wire::Answer& answer = ask(ana, WorldRequest{9, action});
     EXPECT_FALSE(answer.granted);
-    EXPECT_NE(answer.text.find("role " + hold_id + " run"), std::string::npos) << "how to get the right: " << answer.text;
+    EXPECT_NE(answer.text.find("role " + hold_id + " run"), std::string::npos)
+        << "how to get the right: " << answer.text;
     EXPECT_NE(answer.text.find("link 'Ana' run"), std::string::npos) << answer.text;
   }
   EXPECT_FALSE(ask(ana, ParameterRequest{9, Parameter::kGravityScale, 0, 0.5}).granted);
   EXPECT_FALSE(ask(ana, ParameterRequest{9, Parameter::kFluidViscosity, 0, 0.5}).granted);
   EXPECT_TRUE(commands.empty());
-  EXPECT_NE(server->command("log").text.find("Ana may not set the world back to its start"), std::string::npos);
+  EXPECT_NE(server->command("log").text.find("Ana may not set the world back to its start"),
+            std::string::npos);
 }
 
 TEST_F(AuthorityTest, AGripsStiffnessIsItsHoldersAndTheHosts) {
@@ -65,7 +67,8 @@ TEST_F(AuthorityTest, AGripsStiffnessIsItsHoldersAndTheHosts) {
   ASSERT_EQ(commands.size(), 3u);
   EXPECT_EQ(commands[2].index, 0u);
   go(0.1);
-  EXPECT_TRUE(ana.noticed("the host set the hold on 'left' to 0.5 times the scene's stiffness")) << "told to everybody";
+  EXPECT_TRUE(ana.noticed("the host set the hold on 'left' to 0.5 times the scene's stiffness"))
+      << "told to everybody";
   // What is let go of is hers no longer.
   ana.release(0);
   go(0.1);
@@ -146,7 +149,8 @@ TEST_F(AuthorityTest, OldLinksToHoldComeBackWithTheLesserRight) {
   state.world = 7;
   wire::Token token{};
   token.fill(5);
-  state.links.push_back({"bako", token, static_cast<LinkRole>(wire::Role::kParticipant), {}, 1, 0, false, {}});
+  state.links.push_back(
+      {"bako", token, static_cast<LinkRole>(wire::Role::kParticipant), {}, 1, 0, false, {}});
   const wire::Bytes bytes = wire::encoded(state);
   ServerState back;
   ASSERT_FALSE(wire::decode(bytes, back));

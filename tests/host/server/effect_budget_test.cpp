@@ -20,17 +20,19 @@ class EffectBudgetTest : public ::testing::Test {
   std::string ask(std::uint8_t who, const HostCommand& command) {
     std::string why = budget.spend(key(who), command, state, now_ns);
     if (!why.empty()) return why;
-    double* const value = command.action == HostAction::kGravityScale    ? &state.gravity_scale
-                          : command.action == HostAction::kViscosity     ? &state.viscosities[command.index]
-                          : command.action == HostAction::kGripStiffness ? &state.grip_stiffness[command.index]
-                                                                         : nullptr;
+    double* const value = command.action == HostAction::kGravityScale ? &state.gravity_scale
+                          : command.action == HostAction::kViscosity  ? &state.viscosities[command.index]
+                          : command.action == HostAction::kGripStiffness
+                              ? &state.grip_stiffness[command.index]
+                              : nullptr;
     changes += value == nullptr || *value != command.value ? 1 : 0;
     if (value) *value = command.value;
     return {};
   }
   void wait(double seconds) { now_ns += to_nanoseconds(seconds); }
   /// Asks for one and the other in turns, for so long; how often that changed something.
-  int toggle(std::uint8_t who, const HostCommand& one, const HostCommand& other, double every, double seconds) {
+  int toggle(std::uint8_t who, const HostCommand& one, const HostCommand& other, double every,
+             double seconds) {
     changes = 0;
     for (int i = 0; i < static_cast<int>(seconds / every); ++i) {
       ask(who, i % 2 ? one : other);
@@ -95,7 +97,8 @@ TEST_F(EffectBudgetTest, WhatTheWorldHasNotYetCarriedOutCountsAsItWill) {
 }
 
 TEST_F(EffectBudgetTest, StiffnessAndViscosityCountByRatio) {
-  EXPECT_LE(toggle(1, {HostAction::kGripStiffness, 0, 0.05}, {HostAction::kGripStiffness, 0, 4.0}, 0.1, 10.0), 5);
+  EXPECT_LE(toggle(1, {HostAction::kGripStiffness, 0, 0.05}, {HostAction::kGripStiffness, 0, 4.0}, 0.1, 10.0),
+            5);
   EXPECT_EQ(ask(2, {HostAction::kGripStiffness, 1, 2.0}), "") << "another's budget is their own";
   EXPECT_LE(toggle(1, {HostAction::kViscosity, 0, 0.001}, {HostAction::kViscosity, 0, 10.0}, 0.05, 10.0), 8);
   EXPECT_LE(toggle(1, {HostAction::kPause}, {HostAction::kContinue}, 0.05, 10.0), 11);
