@@ -12,7 +12,7 @@ namespace {
 constexpr unsigned kAtHost = 1, kAtPeer = 2, kAtPlay = 4, kAtWatch = 8;
 constexpr unsigned kAtPeers = kAtPeer | kAtWatch, kAtBoth = kAtHost | kAtPeer, kAtAll = kAtBoth | kAtPlay;
 constexpr std::size_t kAny = 1000;  // words: the command's own rules say more
-constexpr std::size_t kHelpColumn = 31;
+constexpr std::size_t kHelpColumn = 34;
 
 struct Command {
   ConsoleVerb verb;
@@ -29,12 +29,14 @@ constexpr Command kCommands[] = {
     {ConsoleVerb::kWho, "who", kAtBoth | kAtWatch, 0, 0, nullptr, "who", "who is here and holds what"},
     {ConsoleVerb::kLinks, "links", kAtHost, 0, 0, nullptr, "links",
      "every link: id, for whom, until when, used by"},
-    {ConsoleVerb::kLink, "link", kAtHost, 0, kAny, nullptr, "link [NAME] [watch] [for 30m]",
-     "a new link: for anybody or one person, to hold or to watch"},
+    {ConsoleVerb::kLink, "link", kAtHost, 0, kAny, nullptr, "link [NAME] [watch|run] [for 30m]",
+     "a new link, to hold, to watch, or to run the world too"},
     {ConsoleVerb::kRevoke, "revoke", kAtHost, 1, 1, "needs the id of a link, as `links` shows it",
      "revoke ID", "end a link and whoever came in by it"},
     {ConsoleVerb::kExpire, "expire", kAtHost, 0, kAny, nullptr, "expire ID 10m|never",
      "from then on it admits nobody new; who is in stays in"},
+    {ConsoleVerb::kRole, "role", kAtHost, 0, kAny, nullptr, "role ID hold|run",
+     "whether those who come by a link may run the world"},
     {ConsoleVerb::kTake, "take", kAtPeer, 0, 1, "needs one grip or none", "take [GRIP]",
      "take hold of a grip, or of the first free one"},
     {ConsoleVerb::kRelease, "release", kAtHost, 1, 1, "needs a grip's name or number", "release GRIP",
@@ -47,15 +49,18 @@ constexpr Command kCommands[] = {
      "let somebody in again before that time is over"},
     {ConsoleVerb::kPause, "pause", kAtHost | kAtPlay, 0, 0, nullptr, "pause, continue, reset", "the world"},
     {ConsoleVerb::kPause, "pause", kAtPeer, 0, 0, nullptr, "pause, continue, reset",
-     "the world, for everybody"},
+     "the world, for everybody; this, viscosity and gravity by a link to run it"},
     {ConsoleVerb::kContinue, "continue", kAtAll, 0, 0, nullptr, nullptr, nullptr},
     {ConsoleVerb::kReset, "reset", kAtAll, 0, 0, nullptr, nullptr, nullptr},
     {ConsoleVerb::kSet, "set", kAtAll, 0, kAny, nullptr, "set viscosity [FLUID] X",
      "Pa·s, while the world runs"},
     {ConsoleVerb::kSet, "set", kAtAll, 0, kAny, nullptr, "set gravity X", "times the scene's, 0 to 2"},
-    {ConsoleVerb::kSet, "set", kAtAll, 0, kAny, nullptr, "set stiffness [GRIP] X",
+    {ConsoleVerb::kSet, "set", kAtHost | kAtPlay, 0, kAny, nullptr, "set stiffness [GRIP] X",
      "of the hold on it: times the scene's, 0.05 to 4"},
+    {ConsoleVerb::kSet, "set", kAtPeer, 0, kAny, nullptr, "set stiffness [GRIP] X",
+     "of your hold on it: times the scene's, 0.05 to 4"},
     {ConsoleVerb::kStatus, "status", kAtHost, 0, 0, nullptr, "status", "how the world and the links do"},
+    {ConsoleVerb::kLog, "log", kAtHost, 0, 0, nullptr, "log", "who did what lately, and when"},
     {ConsoleVerb::kStatus, "status", kAtPeers, 0, 0, nullptr, "status", "how the network and the world do"},
     {ConsoleVerb::kStatus, "status", kAtPlay, 0, 0, nullptr, "status", "how the world does"},
     {ConsoleVerb::kQuit, "quit", kAtPlay, 0, 0, nullptr, "quit", "end the run"},

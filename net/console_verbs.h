@@ -18,6 +18,7 @@ enum class ConsoleVerb : std::uint8_t {
   kLink,
   kRevoke,
   kExpire,
+  kRole,
   kTake,
   kRelease,
   kKick,
@@ -27,6 +28,7 @@ enum class ConsoleVerb : std::uint8_t {
   kReset,
   kSet,
   kStatus,
+  kLog,
   kQuit,
 };
 

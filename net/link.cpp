@@ -194,6 +194,23 @@ Result<std::string> format_link(const JoinLink& link) {
   return out + "/" + to_base32(link.host) + "/" + to_base32(token);
 }
 
+std::string shorten_links(std::string_view text) {
+  std::string out;
+  while (true) {
+    const auto found = std::search(text.begin(), text.end(), kScheme.begin(), kScheme.end(),
+                                   [](char a, char b) { return lower(a) == b; });
+    const auto at = static_cast<std::size_t>(found - text.begin());
+    if (at == text.size()) return out.append(text);
+    const std::size_t end = std::min(text.find_first_of(" \t\r\n\"'<>", at), text.size());
+    const std::string_view link = text.substr(at, end - at);
+    const std::size_t version = link.find('/', kScheme.size());
+    const std::size_t addresses = version == std::string_view::npos ? version : link.find('/', version + 1);
+    const std::size_t kept = addresses == std::string_view::npos ? kScheme.size() : addresses + 1;
+    out.append(text.substr(0, at)).append(link.substr(0, kept)).append("…");
+    text.remove_prefix(end);
+  }
+}
+
 Result<JoinLink> parse_link(std::string_view text) {
   if (text.size() > kMaxLinkText) return bad_link("it is too long for a link");
   const std::string link = bare(text);

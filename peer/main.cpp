@@ -12,10 +12,13 @@
 #include <exception>
 #include <initializer_list>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "net/text/clean.h"
 #include "net/text/nearest.h"
 #include "peer/install/version.h"
+#include "peer/remote/link_source.h"
 #include "peer/verbs/settings_in_force.h"
 #include "peer/verbs/uncaught.h"
 #include "peer/verbs/verbs.h"
@@ -90,7 +93,13 @@ int with_all_printed(int code) {
   return code == kExitOk ? kExitFailed : code;
 }
 
-int run(int argc, char** argv) {
+int run(int argc, char** shown) {
+  // Before anything takes time: everybody on this machine can read what a program was started with.
+  std::vector<std::string> words(shown, shown + argc);
+  hide_links(argc, shown);
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
   CLI::App app("Touch simulated fluids together.", "slosh");
   app.set_version_flag("--version", version_text);
   app.require_subcommand(1);
@@ -117,7 +126,7 @@ int run(int argc, char** argv) {
       app.get_subcommands([&](const CLI::App* sub) { return sub->check_name(argv[1]); }).empty())
     return no_such_verb(app, argv[1]);
   try {
-    app.parse(argc, argv);
+    app.parse(argc, argv.data());
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return with_all_printed(app.exit(error));  // --help, --version
     return wrong_words(app, error);

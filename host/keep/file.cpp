@@ -7,12 +7,22 @@
 #include <cerrno>
 #include <cstring>
 
+#include "net/fresh_file.h"
+
 namespace slosh::keep {
 namespace {
 
 Error failed(const std::filesystem::path& path, const char* what) {
   return {path.string(), std::string(what) + ": " + std::strerror(errno),
           "See that the folder is there, may be written and has room"};
+}
+
+Result<File> as_file(int handle, const std::filesystem::path& path) {
+  File file(::fdopen(handle, "wb"));
+  if (file) return file;
+  const Error error = failed(path, "cannot be written");
+  ::close(handle);
+  return error;
 }
 
 bool sync_folder(const std::filesystem::path& path) {
@@ -36,16 +46,22 @@ Result<File> open_to_read(const std::filesystem::path& path) {
 }
 
 Result<File> open_to_write(const std::filesystem::path& path) {
-  const int handle = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+  const int handle = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
   if (handle < 0) return failed(path, "cannot be written");
-  // One that was there keeps its mode on opening.
-  ::fchmod(handle, 0600);
-  File file(::fdopen(handle, "wb"));
-  if (!file) {
+  struct stat facts {};
+  // One that was there keeps its mode on opening, and its owner could go on reading it.
+  if (::fstat(handle, &facts) == 0 && S_ISREG(facts.st_mode) &&
+      (::fchmod(handle, 0600) != 0 || ::ftruncate(handle, 0) != 0)) {
+    const Error error = failed(path, "cannot be made yours alone");
     ::close(handle);
-    return failed(path, "cannot be written");
+    return error;
   }
-  return file;
+  return as_file(handle, path);
+}
+
+Result<File> open_fresh_file(const std::filesystem::path& path) {
+  const int handle = open_fresh(path.c_str(), 0600);
+  return handle < 0 ? Result<File>(failed(path, "cannot be made anew")) : as_file(handle, path);
 }
 
 bool bring_to_disk(std::FILE* file) {
@@ -59,7 +75,7 @@ std::filesystem::path previous_of(const std::filesystem::path& path) {
 
 Result<bool> replace_file(const std::filesystem::path& path, ByteView content, Replaced old) {
   const std::filesystem::path fresh = path.string() + ".new";
-  Result<File> opened = open_to_write(fresh);
+  Result<File> opened = open_fresh_file(fresh);
   if (!opened) return opened.error();
   std::FILE* file = opened.value().get();
   const bool written =

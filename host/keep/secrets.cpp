@@ -27,9 +27,14 @@ void visit(V& v, FileHead& m) {
 Result<Secrets> read_one(const std::filesystem::path& path) {
   const Result<File> opened = open_to_read(path);
   if (!opened) return opened.error();
-  std::FILE* file = opened.value().get();
+  return read_secrets_file(opened.value().get(), path.string());
+}
+
+}  // namespace
+
+Result<Secrets> read_secrets_file(std::FILE* file, const std::string& name) {
   const auto damaged = [&](const std::string& what) {
-    return Error{path.string(), "these secrets of a host are damaged: " + what, ""};
+    return Error{name, "these secrets of a host are damaged: " + what, ""};
   };
   char magic[sizeof kMagic];
   if (std::fread(magic, 1, sizeof magic, file) != sizeof magic ||
@@ -53,8 +58,6 @@ Result<Secrets> read_one(const std::filesystem::path& path) {
   }
   return secrets;
 }
-
-}  // namespace
 
 std::filesystem::path secrets_of(const std::filesystem::path& checkpoint) {
   const std::string previous = previous_of({}).string();

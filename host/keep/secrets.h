@@ -5,6 +5,7 @@
 // as the checkpoint is, the one before it stays as previous_of().
 #pragma once
 
+#include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -24,6 +25,9 @@ std::filesystem::path secrets_of(const std::filesystem::path& checkpoint);
 
 /// Errors: the system's.
 Result<bool> write_secrets(const std::filesystem::path& checkpoint, std::uint64_t run, ByteView server_state);
+
+/// From a file's current place; `name` is for errors. Errors: it is damaged.
+Result<Secrets> read_secrets_file(std::FILE* file, const std::string& name);
 
 /// Nothing when there is no such file. Errors: it and the one before it are damaged.
 Result<std::optional<Secrets>> read_secrets(const std::filesystem::path& checkpoint);

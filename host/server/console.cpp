@@ -19,8 +19,8 @@ Result<ConsoleCommand> parse_link_command(const std::vector<std::string>& words)
   ConsoleCommand command;
   command.verb = ConsoleVerb::kLink;
   for (std::size_t i = 1; i < words.size(); ++i) {
-    if (words[i] == "watch") {
-      command.watch = true;
+    if (const auto role = link_role_named(words[i])) {
+      command.role = *role;
     } else if (words[i] == "for") {
       if (i + 1 >= words.size()) return usage("'for' needs a time", "For example: link Ana for 30m");
       const Result<std::int64_t> lifetime = parse_duration(words[++i]);
@@ -29,7 +29,7 @@ Result<ConsoleCommand> parse_link_command(const std::vector<std::string>& words)
     } else if (command.text.empty()) {
       command.text = words[i];
     } else {
-      return usage("'" + words[i] + "' is too much", "As in: link [NAME] [watch] [for 30m]");
+      return usage("'" + words[i] + "' is too much", "As in: link [NAME] [watch|run] [for 30m]");
     }
   }
   if (command.text.size() > wire::kMaxName)
@@ -46,6 +46,17 @@ Result<ConsoleCommand> parse_expire(const std::vector<std::string>& words) {
   const Result<std::int64_t> lifetime = parse_duration(words[2]);
   if (!lifetime) return lifetime.error();
   command.lifetime_ns = lifetime.value();
+  return command;
+}
+
+Result<ConsoleCommand> parse_role(const std::vector<std::string>& words) {
+  const auto role = words.size() == 3 ? link_role_named(words[2]) : std::nullopt;
+  if (!role || !may_hold(*role))
+    return usage("role needs a link, and hold or run", "For example: role bako run");
+  ConsoleCommand command;
+  command.verb = ConsoleVerb::kRole;
+  command.text = words[1];
+  command.role = *role;
   return command;
 }
 
@@ -127,6 +138,8 @@ Result<ConsoleCommand> parse_console(std::string_view typed) {
       return parse_link_command(words);
     case ConsoleVerb::kExpire:
       return parse_expire(words);
+    case ConsoleVerb::kRole:
+      return parse_role(words);
     case ConsoleVerb::kKick:
       return parse_kick(words);
     case ConsoleVerb::kSet:

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "host/server/link_role.h"
 #include "net/console_verbs.h"
 #include "net/console_words.h"
 #include "sim/math/result.h"
@@ -15,7 +16,7 @@ namespace slosh {
 struct ConsoleCommand {
   ConsoleVerb verb = ConsoleVerb::kNothing;
   std::string text;              ///< a person's name, a link's id, a grip's or fluid's name or number
-  bool watch = false;            ///< kLink
+  LinkRole role = LinkRole::kHold;  ///< kLink, kRole
   std::int64_t lifetime_ns = 0;  ///< kLink, kExpire: 0 = for ever; kKick: 0 = may come again at once
   SetWish::What what = SetWish::What::kViscosity;  ///< kSet
   double value = 0.0;            ///< kSet: Pa·s, or times the scene's

@@ -36,7 +36,7 @@ std::string random_id() {
 
 }  // namespace
 
-const LinkRecord* LinkRegistry::create(wire::Role role, const std::string& name, std::int64_t unix_ns,
+const LinkRecord* LinkRegistry::create(LinkRole role, const std::string& name, std::int64_t unix_ns,
                                        std::int64_t lifetime_ns,
                                        const std::function<bool(const std::string&)>& in_use) {
   if (links_.size() >= kMaxLinks) {
@@ -114,6 +114,12 @@ bool LinkRegistry::revoke(std::string_view id) {
 bool LinkRegistry::set_expiry(std::string_view id, std::int64_t expires_ns) {
   LinkRecord* link = find_mutable(id);
   if (link) link->expires_ns = expires_ns;
+  return link != nullptr;
+}
+
+bool LinkRegistry::set_role(std::string_view id, LinkRole role) {
+  LinkRecord* link = find_mutable(id);
+  if (link) link->role = role;
   return link != nullptr;
 }
 

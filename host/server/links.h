@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "host/server/link_role.h"
 #include "net/quic/endpoint.h"
 #include "net/wire/messages.h"
 
@@ -23,7 +24,7 @@ constexpr std::size_t kMaxLinkUsers = 1024;  ///< keys that a link remembers
 struct LinkRecord {
   std::string id;  ///< short, to be spoken: "bako"
   wire::Token token{};
-  wire::Role role = wire::Role::kSpectator;
+  LinkRole role = LinkRole::kWatch;
   std::string name;  ///< whom it is for; empty = anybody, any number
   std::int64_t created_ns = 0;
   std::int64_t expires_ns = 0;
@@ -41,7 +42,7 @@ template <class V>
 void visit(V& v, LinkRecord& m) {
   v.text("id", m.id, 16);
   v.array("token", m.token);
-  v.choice("role", m.role, wire::kRoleNames);
+  v.choice("role", m.role, kLinkRoleNames);
   v.text("name", m.name, wire::kMaxName);
   v.stamp("created_ns", m.created_ns);
   v.stamp("expires_ns", m.expires_ns);
@@ -63,7 +64,7 @@ class LinkRegistry {
   /// A new link with a token from the kernel's random source. `lifetime_ns` 0 = for ever. Null when there are
   /// kMaxLinks; revoked and expired ones make room, but for those that somebody here came by (`in_use`, by
   /// id).
-  const LinkRecord* create(wire::Role role, const std::string& name, std::int64_t unix_ns,
+  const LinkRecord* create(LinkRole role, const std::string& name, std::int64_t unix_ns,
                            std::int64_t lifetime_ns = 0,
                            const std::function<bool(const std::string&)>& in_use = {});
 
@@ -77,6 +78,7 @@ class LinkRegistry {
   /// False when there is no link of that id.
   bool revoke(std::string_view id);
   bool set_expiry(std::string_view id, std::int64_t expires_ns);
+  bool set_role(std::string_view id, LinkRole role);
 
   /// What the names look like (name_skeleton) that other links than `id`, which still work, were made for:
   /// nobody who comes by another may have one of them.

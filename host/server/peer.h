@@ -39,6 +39,7 @@ struct Peer {
   bool silent = false;  ///< holds a grip and has sent nothing for a while: the others were told
   bool warned_claim = false;
   bool warned_requests = false;
+  std::int64_t refusal_line_due_ns = 0;  ///< when the terminal is told again of a wish that was refused
   std::int64_t next_bodies_ns = 0;
 };
 

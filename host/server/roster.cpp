@@ -36,33 +36,32 @@ std::string SeatTable::free_name(const std::string& wish, const std::vector<std:
   }
 }
 
-std::size_t SeatTable::limit_of(wire::Role role) const {
-  return role == wire::Role::kParticipant ? limits_.participants : limits_.spectators;
+std::size_t SeatTable::limit_of(LinkRole role) const {
+  return may_hold(role) ? limits_.participants : limits_.spectators;
 }
 
-std::size_t SeatTable::taken(wire::Role role, const Seat* but) const {
+std::size_t SeatTable::taken(LinkRole role, const Seat* but) const {
   std::size_t taken = 0;
   for (const auto& [number, seat] : seats_) {
-    const bool kept = role == wire::Role::kParticipant && !seat.left;
-    taken += &seat != but && seat.role == role && (seat.connected || kept) ? 1 : 0;
+    const bool kept = may_hold(role) && !seat.left;
+    taken += &seat != but && may_hold(seat.role) == may_hold(role) && (seat.connected || kept) ? 1 : 0;
   }
   return taken;
 }
 
-std::string SeatTable::full(const KeyFingerprint& key, wire::Role role) {
+std::string SeatTable::full(const KeyFingerprint& key, LinkRole role) {
   if (taken(role, by_key(key)) < limit_of(role)) return {};
-  return role == wire::Role::kParticipant
-             ? "this world is full: no more hands find room. Try the link for watching"
-             : "this world is full: too many are watching. Try again later";
+  return may_hold(role) ? "this world is full: no more hands find room. Try the link for watching"
+                        : "this world is full: too many are watching. Try again later";
 }
 
 // Seats of people who are away must not keep others out: the one away longest goes, of hands only who left.
-bool SeatTable::make_room(wire::Role role) {
+bool SeatTable::make_room(LinkRole role) {
   std::size_t of_role = 0;
   const Seat* oldest = nullptr;
   for (const auto& [number, seat] : seats_) {
-    of_role += seat.role == role ? 1 : 0;
-    if (seat.connected || (seat.role == wire::Role::kParticipant && !seat.left)) continue;
+    of_role += may_hold(seat.role) == may_hold(role) ? 1 : 0;
+    if (seat.connected || (may_hold(seat.role) && !seat.left)) continue;
     if (!oldest || seat.away_since_ns < oldest->away_since_ns) oldest = &seat;
   }
   const std::size_t away_limit = limit_of(role) + 32;
@@ -73,17 +72,15 @@ bool SeatTable::make_room(wire::Role role) {
   return of_role < away_limit && seats_.size() < wire::kMaxPeers;
 }
 
-SeatTable::Arrival SeatTable::arrive(const KeyFingerprint& key, wire::Role role, const std::string& wish,
+SeatTable::Arrival SeatTable::arrive(const KeyFingerprint& key, LinkRole role, const std::string& wish,
                                      const std::string& link, const std::vector<std::string>& reserved) {
   if (std::string problem = full(key, role); !problem.empty()) return {nullptr, false, std::move(problem)};
   if (Seat* seat = by_key(key)) {
     seat->link = link;
     seat->connected = true;
     seat->left = false;
-    if (seat->role != role) {
-      seat->role = role;
-      seat->grips.clear();
-    }
+    seat->role = role;
+    if (!may_hold(role)) seat->grips.clear();
     return {seat, true, {}};
   }
   if (!make_room(role)) return {nullptr, false, "this world is full: too many come and go. Try again later"};
@@ -127,8 +124,7 @@ void SeatTable::remove(std::uint32_t number) {
 }
 
 Outcome SeatTable::take(Seat& seat, std::uint32_t grip) {
-  if (seat.role != wire::Role::kParticipant)
-    return {false, "this link is for watching; taking hold needs the other one"};
+  if (!may_hold(seat.role)) return {false, "this link is for watching; taking hold needs the other one"};
   if (grip >= grip_names_.size()) return {false, no_grip_text(std::to_string(grip), grip_names_)};
   if (has(seat.grips, grip)) return {true, {}};
   if (const Seat* other = holder(grip)) {
@@ -186,7 +182,7 @@ wire::Roster SeatTable::message() const {
   roster.peers.reserve(seats_.size());
   for (const auto& [number, seat] : seats_) {
     if (seat.left) continue;
-    roster.peers.push_back({number, seat.name, seat.role, seat.connected, seat.grips});
+    roster.peers.push_back({number, seat.name, wire_role(seat.role), seat.connected, seat.grips});
   }
   return roster;
 }
@@ -214,8 +210,7 @@ void SeatTable::restore(const std::vector<SeatRecord>& records, std::int64_t now
     seat.connected = false;
     seat.away_since_ns = now_ns;
     for (const std::uint32_t grip : record.grips) {
-      if (record.role == wire::Role::kParticipant && grip < grip_names_.size() && !holder(grip) &&
-          !has(seat.grips, grip)) {
+      if (may_hold(record.role) && grip < grip_names_.size() && !holder(grip) && !has(seat.grips, grip)) {
         seat.grips.push_back(grip);
       }
     }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "host/server/link_role.h"
 #include "host/server/outcome.h"
 #include "net/quic/endpoint.h"
 #include "net/wire/messages.h"
@@ -21,7 +22,7 @@ struct Seat {
   KeyFingerprint key{};
   std::string name;   ///< no two look alike
   std::string looks;  ///< name_skeleton(name)
-  wire::Role role = wire::Role::kSpectator;
+  LinkRole role = LinkRole::kWatch;
   std::vector<std::uint32_t> grips;  ///< held, or waiting for the person to come back
   std::string link;                  ///< id of the link that it came by
   bool connected = true;
@@ -34,7 +35,7 @@ struct SeatRecord {
   std::uint32_t number = 0;
   KeyFingerprint key{};
   std::string name;
-  wire::Role role = wire::Role::kSpectator;
+  LinkRole role = LinkRole::kWatch;
   std::vector<std::uint32_t> grips;
   std::string link;
 };
@@ -43,7 +44,7 @@ void visit(V& v, SeatRecord& m) {
   v.natural("number", m.number, 0, wire::kMaxPeers - 1);
   v.array("key", m.key);
   v.text("name", m.name, wire::kMaxName);
-  v.choice("role", m.role, wire::kRoleNames);
+  v.choice("role", m.role, kLinkRoleNames);
   v.list("grips", m.grips, wire::kMaxGrips,
          [](auto& each, std::uint32_t& grip) { each.natural("grip", grip, 0, wire::kMaxGrips - 1); });
   v.text("link", m.link, 16);
@@ -68,11 +69,11 @@ class SeatTable {
   /// Would arrive() let this key in? Empty, or why not, in words. The limits hold for a key that has a seat
   /// too: it finds room while its seat in that role is taken or kept, and else when there is room for
   /// anybody.
-  std::string full(const KeyFingerprint& key, wire::Role role);
+  std::string full(const KeyFingerprint& key, LinkRole role);
   /// Somebody comes in. `wish` is the name they would like, empty = one is found; it is cleaned, and numbered
   /// where it looks like another's or like one of `reserved` (skeletons). A key that has a seat gets it back,
   /// its grips too unless its role no longer allows any or, after a Bye, another took them.
-  Arrival arrive(const KeyFingerprint& key, wire::Role role, const std::string& wish, const std::string& link,
+  Arrival arrive(const KeyFingerprint& key, LinkRole role, const std::string& wish, const std::string& link,
                  const std::vector<std::string>& reserved = {});
   void lose(Seat& seat, std::int64_t now_ns);   ///< contact is lost: all is kept for kSeatKept
   void leave(Seat& seat, std::int64_t now_ns);  ///< said Bye
@@ -99,10 +100,10 @@ class SeatTable {
 
  private:
   std::string free_name(const std::string& wish, const std::vector<std::string>& reserved) const;
-  std::size_t limit_of(wire::Role role) const;
-  /// Seats of this role that are taken, or kept for who lost contact with hands.
-  std::size_t taken(wire::Role role, const Seat* but) const;
-  bool make_room(wire::Role role);
+  std::size_t limit_of(LinkRole role) const;
+  /// Seats of those who may hold, as this role may, or else may not, that are taken, or kept for who lost contact with hands.
+  std::size_t taken(LinkRole role, const Seat* but) const;
+  bool make_room(LinkRole role);
 
   std::vector<std::string> grip_names_;
   RosterLimits limits_;

@@ -209,7 +209,7 @@ void Server::lose(Peer& peer, Parting parting) {
     seats_.leave(*seat, now());
     text += parting == Parting::kLeft ? " has left" : " was put out";
   }
-  notice_all(text, seat->role == wire::Role::kSpectator);
+  notice_all(text, !may_hold(seat->role));
   roster_changed();
 }
 
@@ -279,7 +279,7 @@ void Server::check_patience() {
       if (!seats_.holder(grip)) hands_.let_go(grip, now(), true);
     }
     if (!seat.left) {
-      notice_all(seat.name + " did not come back; the seat is free", seat.role == wire::Role::kSpectator);
+      notice_all(seat.name + " did not come back; the seat is free", !may_hold(seat.role));
     }
     roster_changed();
   }
@@ -354,7 +354,7 @@ ServerFigures Server::figures() const {
   std::string watching;
   for (const auto& [number, seat] : seats_.seats()) {
     if (!seat.connected) continue;
-    if (seat.role == wire::Role::kSpectator) {
+    if (!may_hold(seat.role)) {
       figures.spectators += 1;
       continue;
     }

@@ -18,6 +18,8 @@
 #include "host/server/admission.h"
 #include "host/server/bans.h"
 #include "host/server/console.h"
+#include "host/server/deed_log.h"
+#include "host/server/effect_budget.h"
 #include "host/server/hands.h"
 #include "host/server/lasting_clock.h"
 #include "host/server/links.h"
@@ -39,7 +41,7 @@ struct ServerOptions {
   AdmissionLimits admission;
   double silence = 0.5;  ///< s without a datagram after which others are told so
   BodyRates bodies;
-  bool lock_parameters = false;         ///< only the console sets viscosity and gravity
+  bool lock_parameters = false;         ///< only the console sets viscosity, gravity and stiffness, whatever a link says
   std::size_t hands_to_start = 1;       ///< grips that must be taken before the world starts; 0 = it runs
   LastingClock::Source unix_clock;      ///< Unix time; empty = `clock` where that is given, else the system's
   LastingClock::Source elapsed_clock;   ///< goes on while suspended; empty = likewise
@@ -136,6 +138,7 @@ class Server final : public EndpointEvents, public HostTap {
   std::int64_t now() const { return options_.clock(); }
   const std::string& name_of(const Peer& peer) { return seats_.by_number(peer.seat)->name; }
   void say(const std::string& line) {
+    deeds_.note(line, unix_now());
     if (options_.tell) options_.tell(line);
   }
   template <class M>
@@ -162,17 +165,27 @@ class Server final : public EndpointEvents, public HostTap {
   wire::Fault control_message(Peer& peer, std::uint64_t type, wire::ByteView payload);
   wire::Fault handle(Peer& peer, const wire::Hello& hello);
   wire::Fault handle(Peer& peer, const wire::GripRequest& request);
-  wire::Fault handle(Peer& peer, const wire::WorldRequest& request);
-  wire::Fault handle(Peer& peer, const wire::ParameterRequest& request);
   wire::Fault handle(Peer& peer, const wire::Bye& bye);
   void welcome(Peer& peer, Seat& seat, bool restored);
   void send_scene(Peer& peer);
-  void ask_world(Peer& peer, std::uint32_t request, const HostCommand& command, const std::string& did);
   void answer(Peer& peer, std::uint32_t request, bool granted, const std::string& text);
   void world_changed(const HostCommand& change, const HostState& state);
   void start_if_held();
   void body_gone(std::size_t body, const std::string& words);
   bool is_gone(std::uint32_t grip) const;
+
+  // server_authority.cpp
+  wire::Fault handle(Peer& peer, const wire::WorldRequest& request);
+  wire::Fault handle(Peer& peer, const wire::ParameterRequest& request);
+  wire::Rights rights_of(const Seat& seat) const;
+  void send_rights(Peer& peer, const Seat& seat);
+  std::string not_theirs(const Seat& seat, const HostCommand& command) const;
+  void refuse_wish(Peer& peer, std::uint32_t request, const HostCommand& command, const std::string& why);
+  /// A guest's wish: granted by role and budget, carried out, answered, told.
+  void ask_world(Peer& peer, std::uint32_t request, const HostCommand& command);
+  /// The console's.
+  Outcome tell_world(const HostCommand& command);
+  Outcome give_role(const std::string& id, LinkRole role);
 
   // server_traffic.cpp
   void handle(Peer& peer, const wire::Poses& poses);
@@ -210,6 +223,8 @@ class Server final : public EndpointEvents, public HostTap {
   StateSender states_;
   SnapshotSender snapshots_;
   WorldSwitches switches_;
+  EffectBudget budget_;
+  DeedLog deeds_;
   Mailbox mailbox_;
   /// One a grip, bits by PoseFault: kinds that its holder was told of. The host's thread sets them, ours
   /// clears.

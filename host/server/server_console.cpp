@@ -1,5 +1,6 @@
 // What the console's commands do.
 #include <algorithm>
+#include <array>
 
 #include "host/server/server.h"
 #include "host/server/server_send.h"
@@ -14,15 +15,6 @@ Outcome Server::command(const std::string& line) {
 }
 
 Outcome Server::run(const ConsoleCommand& command) {
-  const auto world = [&](HostCommand what) {
-    switches_.note_wish(what);
-    world_.command(what, [this](const Result<bool>& done) {
-      if (done) return;
-      const std::string problem = done.error().text();
-      mailbox_.post([this, problem] { say(problem); });
-    });
-    return Outcome{true, "asked for"};
-  };
   const Outcome no_link{false, "there is no link '" + command.text + "'. `links` lists them"};
   switch (command.verb) {
     case ConsoleVerb::kNothing:
@@ -36,12 +28,16 @@ Outcome Server::run(const ConsoleCommand& command) {
       return {true, links_text()};
     case ConsoleVerb::kStatus:
       return {true, status_text()};
+    case ConsoleVerb::kLog:
+      return {true, deeds_.text()};
+    case ConsoleVerb::kRole:
+      return give_role(command.text, command.role);
     case ConsoleVerb::kPause:
-      return world({HostAction::kPause});
+      return tell_world({HostAction::kPause});
     case ConsoleVerb::kContinue:
-      return world({HostAction::kContinue});
+      return tell_world({HostAction::kContinue});
     case ConsoleVerb::kReset:
-      return world({HostAction::kReset});
+      return tell_world({HostAction::kReset});
     case ConsoleVerb::kQuit:
       quit_asked_ = true;
       return {true, "the run ends"};
@@ -70,23 +66,23 @@ Outcome Server::run(const ConsoleCommand& command) {
       state_dirty_ = true;
       return {true, command.text + " may come in again"};
     case ConsoleVerb::kSet: {
-      if (command.what == SetWish::What::kGravity) return world({HostAction::kGravityScale, 0, command.value});
+      if (command.what == SetWish::What::kGravity)
+        return tell_world({HostAction::kGravityScale, 0, command.value});
       if (command.what == SetWish::What::kStiffness) {
         const std::optional<std::size_t> grip = one_meant(world_.scene->grips, command.text);
         if (!grip) return {false, "say which grip: " + names_of(world_.scene->grips)};
-        return world({HostAction::kGripStiffness, static_cast<std::uint32_t>(*grip), command.value});
+        return tell_world({HostAction::kGripStiffness, static_cast<std::uint32_t>(*grip), command.value});
       }
       const auto& fluids = world_.scene->fluids;
       const std::optional<std::size_t> fluid = one_meant(fluids, command.text);
       if (!fluid) return {false, "say which fluid: " + names_of(fluids)};
-      return world({HostAction::kViscosity, static_cast<std::uint32_t>(*fluid), command.value});
+      return tell_world({HostAction::kViscosity, static_cast<std::uint32_t>(*fluid), command.value});
     }
   }
   return {};
 }
 
 Outcome Server::make_link(const ConsoleCommand& command) {
-  const wire::Role role = command.watch ? wire::Role::kSpectator : wire::Role::kParticipant;
   const auto in_use = [this](const std::string& id) {
     return std::any_of(seats_.seats().begin(), seats_.seats().end(),
                        [&](const auto& entry) { return entry.second.link == id; });
@@ -95,7 +91,7 @@ Outcome Server::make_link(const ConsoleCommand& command) {
   if (name.empty() && !command.text.empty())
     return {false,
             "'" + command.text + "' is no name that can be told from others. Letters and digits make one"};
-  const LinkRecord* link = links_.create(role, name, unix_now(), command.lifetime_ns, in_use);
+  const LinkRecord* link = links_.create(command.role, name, unix_now(), command.lifetime_ns, in_use);
   if (!link) return {false, "there are " + std::to_string(kMaxLinks) + " links already. Revoke some first"};
   state_dirty_ = true;
   return {true, line_of(*link)};
@@ -149,7 +145,8 @@ void Server::close_link(const std::string& id) {
 }
 
 std::string Server::line_of(const LinkRecord& link) const {
-  std::string line = link.id + "  " + (link.role == wire::Role::kParticipant ? "to hold " : "to watch");
+  constexpr std::array kTo{"to hold ", "to watch", "to run  "};
+  std::string line = link.id + "  " + kTo[static_cast<std::size_t>(link.role)];
   line += "  for " + (link.name.empty() ? std::string("anybody") : link.name);
   if (link.revoked)
     line += ", revoked";
@@ -180,7 +177,8 @@ std::string Server::who_text() const {
   std::string text;
   for (const auto& [number, seat] : seats_.seats()) {
     if (seat.left) continue;
-    std::string line = seat.name + ", " + wire::kRoleNames[static_cast<std::size_t>(seat.role)];
+    std::string line = seat.name + ", " + wire::kRoleNames[static_cast<std::size_t>(wire_role(seat.role))];
+    if (seat.role == LinkRole::kRun) line += ", may run the world";
     for (const std::uint32_t grip : seat.grips) line += ", " + seats_.grip_name(grip);
     if (!seat.connected) line += ", away for " + duration_text(now() - seat.away_since_ns);
     const Peer* peer = peers_.of_seat(number);

@@ -74,7 +74,7 @@ wire::Fault Server::handle(Peer& peer, const wire::Hello& hello) {
   }
   links_.note_use(id, peer.key);
   state_dirty_ = true;
-  snapshots_.add(peer.id, link->role, hello.snapshots);
+  snapshots_.add(peer.id, wire_role(link->role), hello.snapshots);
   peer.agreed = hello.capabilities & wire::kOurCapabilities;
   welcome(peer, *arrival.seat, arrival.restored);
   return {};
@@ -97,7 +97,7 @@ void Server::welcome(Peer& peer, Seat& seat, bool restored) {
   endpoint_->admit(peer.id);
   peer.in = true;
   peers_.sit(peer, seat.number);
-  peer.participant = seat.role == wire::Role::kParticipant;
+  peer.participant = may_hold(seat.role);
   peer.heard_ns = now();
   past_.joins += 1;
   // A program that was started anew numbers its samples anew.
@@ -108,7 +108,7 @@ void Server::welcome(Peer& peer, Seat& seat, bool restored) {
 
   wire::Welcome message;
   message.peer = seat.number;
-  message.role = seat.role;
+  message.role = wire_role(seat.role);
   message.name = seat.name;
   message.world = world_number_;
   message.scene_bytes = package_->size();
@@ -123,14 +123,15 @@ void Server::welcome(Peer& peer, Seat& seat, bool restored) {
   roster_told_.whole(roster);
   send(peer, roster);
   send(peer, switches_.message());
+  send_rights(peer, seat);
   if (switches_.waits_for_hands() && !peer.gone) send(peer, wire::Notice{switches_.waiting_text()});
   send_scene(peer);
   if (peer.gone) return;
   snapshots_.watch(peer.id, now());
-  notice_all(seat.name + (restored                              ? " is back"
-                          : seat.role == wire::Role::kSpectator ? " is watching"
-                                                                : " is here"),
-             seat.role == wire::Role::kSpectator, &peer);
+  notice_all(seat.name + (restored              ? " is back"
+                          : may_hold(seat.role) ? " is here"
+                                                : " is watching"),
+             !may_hold(seat.role), &peer);
   roster_changed();
   start_if_held();
 }
@@ -161,6 +162,8 @@ wire::Fault Server::handle(Peer& peer, const wire::GripRequest& request) {
   const Outcome outcome = request.take ? seats_.take(seat, request.grip) : seats_.release(seat, request.grip);
   answer(peer, request.request, outcome.granted, outcome.text);
   if (!outcome.granted || held || peer.gone) return {};
+  deeds_.note(seat.name + (request.take ? " took " : " let go of ") + seats_.grip_name(request.grip),
+              unix_now());
   if (request.take) {
     peer.heard_ns = now();
     hands_.taken(request.grip, now());
@@ -198,66 +201,6 @@ void Server::start_if_held() {
   if (!switches_.starts_with(held, hands_.size())) return;
   world_.command({HostAction::kContinue}, {});
   notice_all("the world starts");
-}
-
-void Server::ask_world(Peer& peer, std::uint32_t request, const HostCommand& command,
-                       const std::string& did) {
-  if (!peer.participant)
-    return answer(peer, request, false,
-                  "this link is for watching; only those with hands may change the world");
-  switches_.note_wish(command);
-  const ConnectionId connection = peer.id;
-  const std::string name = name_of(peer);
-  world_.command(command, [this, connection, request, name, did](const Result<bool>& done) {
-    const std::string problem = done ? std::string() : done.error().text();
-    mailbox_.post([this, connection, request, name, did, problem] {
-      Peer* asker = peers_.find(connection);
-      if (asker) answer(*asker, request, problem.empty(), problem);
-      if (problem.empty()) notice_all(name + " " + did, false, asker);
-    });
-  });
-}
-
-wire::Fault Server::handle(Peer& peer, const wire::WorldRequest& request) {
-  constexpr std::array kDone{"paused the world", "lets the world go on", "set the world back to its start"};
-  constexpr std::array kActions{HostAction::kPause, HostAction::kContinue, HostAction::kReset};
-  const auto i = static_cast<std::size_t>(request.action);
-  ask_world(peer, request.request, {kActions[i]}, kDone[i]);
-  return {};
-}
-
-wire::Fault Server::handle(Peer& peer, const wire::ParameterRequest& request) {
-  if (options_.lock_parameters && peer.participant) {
-    answer(peer, request.request, false, "here only the host sets viscosity, gravity and stiffness");
-    return {};
-  }
-  char did[120];
-  if (request.parameter == wire::Parameter::kGravityScale) {
-    std::snprintf(did, sizeof did, "set gravity to %.3g times the scene's", request.value);
-    ask_world(peer, request.request, {HostAction::kGravityScale, 0, request.value}, did);
-    return {};
-  }
-  if (request.parameter == wire::Parameter::kGripStiffness) {
-    const auto& grips = world_.scene->grips;
-    if (request.index >= grips.size()) {
-      answer(peer, request.request, false, no_grip_text(std::to_string(request.index), grips));
-      return {};
-    }
-    std::snprintf(did, sizeof did, "set the hold on '%.40s' to %.3g times the scene's stiffness",
-                  grips[request.index].name.c_str(), request.value);
-    ask_world(peer, request.request, {HostAction::kGripStiffness, request.index, request.value}, did);
-    return {};
-  }
-  if (request.index >= world_.scene->fluids.size()) {
-    answer(peer, request.request, false,
-           "there is no fluid " + std::to_string(request.index) + "; this scene has " +
-               std::to_string(world_.scene->fluids.size()));
-    return {};
-  }
-  std::snprintf(did, sizeof did, "set the viscosity of '%.40s' to %.4g Pa·s",
-                world_.scene->fluids[request.index].name.c_str(), request.value);
-  ask_world(peer, request.request, {HostAction::kViscosity, request.index, request.value}, did);
-  return {};
 }
 
 wire::Fault Server::handle(Peer& peer, const wire::Bye& bye) {

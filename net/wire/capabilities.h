@@ -32,12 +32,16 @@ constexpr Capabilities kFeltHands = 1u << 4;
 /// PoseSample has no `tick_ack`: nothing ever read it.
 constexpr Capabilities kNoTickAcks = 1u << 5;
 
+/// Rights follows WorldInfo: what the peer's link lets it ask of the world. Where this is not agreed nothing is said
+/// of it, and what is refused is refused in an Answer.
+constexpr Capabilities kLinkRights = 1u << 6;
+
 /// GripEntry has whether a stand holds the grip, and the stiffness that acts.
-constexpr Capabilities kHolds = 1u << 6;
+constexpr Capabilities kHolds = 1u << 7;
 
 /// What this program understands; a peer's Hello asks for all of it.
-constexpr Capabilities kOurCapabilities =
-    kRosterChanges | kFluidWrenches | kCouplings | kGripStiffnesses | kFeltHands | kNoTickAcks | kHolds;
+constexpr Capabilities kOurCapabilities = kRosterChanges | kFluidWrenches | kCouplings | kGripStiffnesses |
+                                          kFeltHands | kNoTickAcks | kLinkRights | kHolds;
 /// For what has no other side: pages, tests of single messages, files.
 constexpr Capabilities kAllCapabilities = ~Capabilities{0};
 

@@ -28,6 +28,7 @@ enum class ControlType : std::uint8_t {
   kWorldInfo = 20,
   kNotice = 21,
   kRosterChange = 22,
+  kRights = 23,
 };
 
 enum class Role : std::uint8_t { kParticipant, kSpectator };
@@ -266,6 +267,22 @@ void visit(V& v, WorldInfo& m) {
       each.real64("grip_stiffness", value, kMinGripStiffness, kMaxGripStiffness);
     });
   }
+}
+
+/// What this peer may ask of the world: after the first WorldInfo, and whenever it is another. Behind kLinkRights.
+struct Rights {
+  static constexpr ControlType kType = ControlType::kRights;
+  bool run = false;         ///< to pause it, let it go on and set it back
+  bool parameters = false;  ///< to set gravity and viscosities
+  bool stiffness = false;   ///< to set the stiffness of the grips that it holds
+
+  bool operator==(const Rights&) const = default;
+};
+template <class V>
+void visit(V& v, Rights& m) {
+  v.flag("run", m.run);
+  v.flag("parameters", m.parameters);
+  v.flag("stiffness", m.stiffness);
 }
 
 /// Something to tell a person: who came, who went, what was refused.

@@ -43,6 +43,7 @@ std::vector<Table> tables() {
           message<RosterChange>("RosterChange"),
           message<Answer>("Answer"),
           message<WorldInfo>("WorldInfo"),
+          message<Rights>("Rights"),
           message<Notice>("Notice"),
           message<Poses>("Poses"),
           message<ClockPing>("ClockPing"),

@@ -14,7 +14,7 @@ constexpr std::size_t kMostWaiting = 64 * 1024;  // bytes
 }  // namespace
 
 Result<std::unique_ptr<Table>> Table::create(const std::filesystem::path& file, std::string_view header) {
-  const int opened = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  const int opened = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
   const Error cannot{file.string(), "cannot be written: " + std::generic_category().message(errno),
                      "Choose another folder with --out"};
   if (opened < 0) return cannot;

@@ -1,10 +1,11 @@
 #include "peer/output/whole_file.h"
 
-#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <system_error>
+
+#include "net/fresh_file.h"
 
 namespace slosh {
 namespace {
@@ -29,7 +30,7 @@ Error cannot(const std::filesystem::path& file, const std::string& why) {
 
 Result<bool> write_whole(const std::filesystem::path& file, std::string_view bytes) {
   const std::filesystem::path part = file.string() + ".part";
-  const int out = open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  const int out = open_fresh(part.c_str(), 0666);
   if (out < 0) return cannot(file, std::generic_category().message(errno));
   int problem = write_all(out, bytes);
   // Some file systems find only now that there is no room.

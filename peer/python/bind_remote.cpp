@@ -7,14 +7,20 @@
 #include "peer/python/remote_program.h"
 #include "peer/python/words.h"
 #include "peer/python/world_program.h"
+#include "peer/remote/link_source.h"
 
 namespace slosh::python {
 namespace {
 
-std::unique_ptr<RemoteProgram> join(const std::string& link, const std::string& name,
-                                    const std::vector<std::string>& grips, bool watch, bool particles,
-                                    const std::filesystem::path& key, double timeout) {
-  return std::make_unique<RemoteProgram>(link,
+std::unique_ptr<RemoteProgram> join(const std::string& link, const std::filesystem::path& link_file,
+                                    const std::string& name, const std::vector<std::string>& grips,
+                                    bool watch, bool particles, const std::filesystem::path& key,
+                                    double timeout) {
+  if (link.empty() && link_file.empty()) throw py::value_error("link or link_file: one of them");
+  const wire::Role role = watch ? wire::Role::kSpectator : wire::Role::kParticipant;
+  const std::string text =
+      link_file.empty() ? link : take(read_link_text(link, link_file.string(), role, name));
+  return std::make_unique<RemoteProgram>(text,
                                          RemoteProgramOptions{name, grips, watch, particles, key, timeout});
 }
 
@@ -92,7 +98,15 @@ py::object positions(RemoteProgram& r) {
   return view(picture, reinterpret_cast<const float*>(picture->positions.data()), {rows, 3});
 }
 
+/// Raises at once where the host has said that this link does not let us; what else it refuses is in
+/// notices().
+void must_be_ours(bool ours, const char* what, const char* mend) {
+  if (!ours) throw Raised({"slosh.Remote", what, mend});
+}
+constexpr char kRunLink[] = "Ask the host for a link with the role run (`slosh links new --role run`)";
+
 void do_world(RemoteProgram& r, wire::WorldAction action) {
+  must_be_ours(r.status().rights.run, "this link does not let us run the world for everybody", kRunLink);
   RemoteCommand command;
   command.kind = RemoteCommand::Kind::kWorld;
   command.action = action;
@@ -100,6 +114,12 @@ void do_world(RemoteProgram& r, wire::WorldAction action) {
 }
 
 void set(RemoteProgram& r, wire::Parameter parameter, std::size_t index, double value) {
+  const RemoteStatus now = r.status();
+  if (parameter == wire::Parameter::kGripStiffness)
+    must_be_ours(may_set_stiffness(now, index), "the stiffness of this grip is not ours to set",
+                 "take() it first");
+  else
+    must_be_ours(now.rights.parameters, "this link does not let us set gravity and viscosity", kRunLink);
   RemoteCommand command;
   command.kind = RemoteCommand::Kind::kParameter;
   command.parameter = parameter;
@@ -126,26 +146,31 @@ void bind_asking(py::class_<RemoteProgram>& c) {
        [](RemoteProgram& r, bool paused) {
          do_world(r, paused ? wire::WorldAction::kPause : wire::WorldAction::kContinue);
        },
-       py::arg("paused") = true, "Asks for the world to stand, or (False) go on, for everybody.")
+       py::arg("paused") = true,
+       "Asks for the world to stand, or (False) go on, for everybody. Raises slosh.Error where runs_world is "
+       "False.")
       .def(
           "reset", [](RemoteProgram& r) { do_world(r, wire::WorldAction::kReset); },
-          "Asks for the world to start again, for everybody.")
+          "Asks for the world to start again, for everybody. Raises as pause() does.")
       .def(
           "set_viscosity",
           [](RemoteProgram& r, const py::object& which, double value) {
             set(r, wire::Parameter::kFluidViscosity, fluid(r, which), value);
           },
-          py::arg("fluid"), py::arg("pascal_seconds"), "Asks for a fluid's viscosity, >= 0 Pa·s.")
+          py::arg("fluid"), py::arg("pascal_seconds"),
+          "Asks for a fluid's viscosity, >= 0 Pa·s. Raises as pause() does.")
       .def(
           "set_gravity_scale",
           [](RemoteProgram& r, double scale) { set(r, wire::Parameter::kGravityScale, 0, scale); },
-          py::arg("scale"), "Asks for gravity, times the scene's, 0 to 2.")
+          py::arg("scale"), "Asks for gravity, times the scene's, 0 to 2. Raises as pause() does.")
       .def(
           "set_grip_stiffness",
           [](RemoteProgram& r, const py::object& which, double scale) {
             set(r, wire::Parameter::kGripStiffness, r.grip(which), scale);
           },
-          py::arg("grip"), py::arg("scale"), "Asks for the springs of a grip, times the scene's, 0.05 to 4.")
+          py::arg("grip"), py::arg("scale"),
+          "Asks for the springs of a grip of ours, times the scene's, 0.05 to 4. Raises slosh.Error for "
+          "another's.")
       .def("notices", &RemoteProgram::notices,
            "What a person should read, oldest first, each once: list[str].");
 }
@@ -195,6 +220,9 @@ void bind_remote(py::module_& m) {
           "state", [](RemoteProgram& r) { return state_name(r.status().state); },
           "'live', 'reconnecting' or 'ended'. Raises slosh.Error where it ended by a fault.")
       .def_property_readonly("held", &held, "names of the grips that are ours: list[str]")
+      .def_property_readonly(
+          "runs_world", [](RemoteProgram& r) { return r.status().rights.run; },
+          "whether our link lets us pause, reset and set gravity and viscosity for everybody")
       .def_property_readonly("people", &people, "who is here: [(name, connected, [grips])]")
       .def_property_readonly("network", &network, "dict of round trip, losses, delays and bytes")
       .def("hold", &RemoteProgram::hold, py::arg("grip"), py::arg("source"),
@@ -220,13 +248,16 @@ void bind_remote(py::module_& m) {
       .def("__exit__", [](RemoteProgram& r, const py::args&) { r.leave(); });
   bind_states(c);
   bind_asking(c);
-  m.def("join", &join, py::arg("link"), py::kw_only(), py::arg("name") = "",
+  m.def("join", &join, py::arg("link") = "", py::kw_only(), py::arg("link_file") = "", py::arg("name") = "",
         py::arg("grips") = std::vector<std::string>{}, py::arg("watch") = false, py::arg("particles") = true,
         py::arg("key") = "", py::arg("timeout") = 10.0,
         "Joins a host by what it printed (slosh://...) and returns a Remote once the world is there, and a "
         "grip held\n"
         "where one is free.\n\n"
-        "name: how the others see us ('': the host chooses). grips: names of those to take (none: the first "
+        "link_file: a file that holds the link, or what slosh host --links wrote, in place of link: for "
+        "programs,\n"
+        "whose arguments everybody on a machine can read. name: how the others see us ('': the host "
+        "chooses). grips: names of those to take (none: the first "
         "free one).\n"
         "watch: only look on. particles: False leaves them out of what is sent. key: a file with our key, "
         "made there on\n"

@@ -10,6 +10,8 @@
 #include <cstring>
 #include <vector>
 
+#include "net/fresh_file.h"
+
 namespace slosh {
 namespace {
 
@@ -55,8 +57,7 @@ std::vector<std::uint8_t> read_all(int file) {
 
 /// The file stays open, and so locked, until the process ends.
 Result<Identity> open_locked(const std::filesystem::path& path) {
-  std::error_code code;
-  if (!path.parent_path().empty()) std::filesystem::create_directories(path.parent_path(), code);
+  make_own_folder(path.parent_path());
   const int file = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, S_IRUSR | S_IWUSR);
   if (file < 0) return trouble(path, std::string("cannot be opened: ") + std::strerror(errno));
   const auto give_up = [&](const std::string& what) {
@@ -69,7 +70,10 @@ Result<Identity> open_locked(const std::filesystem::path& path) {
   }
   struct stat facts{};
   if (fstat(file, &facts) != 0 || !S_ISREG(facts.st_mode)) return give_up("is not a file");
-  if ((facts.st_mode & (S_IRWXG | S_IRWXO)) != 0) fchmod(file, S_IRUSR | S_IWUSR);
+  // Whoever made it has what it says: they would be this person.
+  if (facts.st_uid != geteuid() && geteuid() != 0) return give_up("is another user's file");
+  if ((facts.st_mode & (S_IRWXG | S_IRWXO)) != 0 && fchmod(file, S_IRUSR | S_IWUSR) != 0)
+    return give_up("can be read by others, and its mode cannot be changed");
   if (facts.st_size == 0) {
     const Identity made = Identity::generate();
     if (!write_all(file, made.private_key())) {

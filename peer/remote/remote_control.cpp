@@ -70,6 +70,8 @@ wire::Fault RemoteLink::heard(std::uint64_t type, wire::ByteView payload) {
       return on_answer(payload);
     case wire::ControlType::kWorldInfo:
       return on_world_info(payload);
+    case wire::ControlType::kRights:
+      return on_rights(payload);
     case wire::ControlType::kNotice:
       return on_notice(payload);
     case wire::ControlType::kBye: {
@@ -95,6 +97,8 @@ wire::Fault RemoteLink::on_welcome(wire::ByteView payload) {
   greeting_.welcome = true;
   status_.welcome = welcome;
   agreed_ = welcome.capabilities & wire::kOurCapabilities;
+  const bool all = !(agreed_ & wire::kLinkRights) && welcome.role == wire::Role::kParticipant;
+  status_.rights = {all, all, all};
   if (inbox_) inbox_->set_stands_until_felt((agreed_ & wire::kFeltHands) != 0);
   publish(now());
   return {};
@@ -174,6 +178,14 @@ wire::Fault RemoteLink::on_world_info(wire::ByteView payload) {
   if (wire::Fault fault = wire::decode(payload, info, agreed_)) return fault;
   status_.world = info;
   if (inbox_) inbox_->set_paused(info.paused);
+  publish(now());
+  return {};
+}
+
+wire::Fault RemoteLink::on_rights(wire::ByteView payload) {
+  wire::Rights rights;
+  if (wire::Fault fault = wire::decode(payload, rights)) return fault;
+  status_.rights = rights;
   publish(now());
   return {};
 }

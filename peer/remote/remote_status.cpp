@@ -31,6 +31,16 @@ std::string done_text(const RemoteCommand& command, const Scene& scene) {
   return text;
 }
 
+bool may_set_stiffness(const RemoteStatus& status, std::size_t grip) {
+  if (!status.rights.stiffness) return false;
+  if (grip < status.held.size() && status.held[grip]) return true;
+  const bool taken =
+      std::any_of(status.peers.begin(), status.peers.end(), [&](const wire::RosterEntry& entry) {
+        return std::find(entry.grips.begin(), entry.grips.end(), grip) != entry.grips.end();
+      });
+  return status.rights.run && !taken;
+}
+
 std::string connection_text(const RemoteStatus& status, double picture_delay, std::int64_t now_ns) {
   char text[160] = "";
   switch (status.state) {

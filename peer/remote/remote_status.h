@@ -44,6 +44,7 @@ struct RemoteStatus {
   std::vector<wire::RosterEntry> peers;  ///< who is here
   std::vector<bool> held;                ///< our grips, one a grip of the scene
   wire::WorldInfo world;
+  wire::Rights rights;      ///< what we may ask of it; of a host that does not say: all, where we may take hold
   WorldMoment moment;       ///< where the host's world stands
   double world_time = 0.0;  ///< simulated s of the host's world now
   LinkNumbers numbers;
@@ -80,6 +81,9 @@ struct RemoteShared {
 
 /// What to tell the person once a command of kind kWorld or kParameter was carried out.
 std::string done_text(const RemoteCommand& command, const Scene& scene);
+
+/// A grip's stiffness is its holder's to set, and that of a free one theirs who run the world.
+bool may_set_stiffness(const RemoteStatus& status, std::size_t grip);
 
 /// "reconnecting for 3 s", "rtt 61 ms, delay 12 ms".
 std::string connection_text(const RemoteStatus& status, double picture_delay, std::int64_t now_ns);

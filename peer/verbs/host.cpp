@@ -14,14 +14,22 @@ namespace {
 
 std::string footer() {
   return "Two links are printed: who joins by the first may take hold, who comes by the second may watch.\n"
-         "A link is all that a newcomer needs:\n"
-         "  slosh join LINK        slosh watch LINK\n"
+         "A link is all that a newcomer needs: they start slosh join or slosh watch, and paste it when "
+         "asked.\n"
          "It carries this machine's addresses, the key by which the host is known, and a secret. Give it "
          "only\n"
-         "to those you mean. Across the internet the port (UDP) must reach this machine.\n"
+         "to those you mean. A log of the host's does not hold it, --links FILE does, for your eyes alone.\n"
+         "Across the internet the port (UDP) must reach this machine.\n"
          "\n"
          "Until a grip is taken the host itself holds it where the scene has it, and the world stands still\n"
          "until the first hand takes hold (--wait 2: the second; --wait 0: it starts at once).\n"
+         "\n"
+         "Who holds a grip sets how stiff it is. What everybody feels (pause, continue, reset, gravity, "
+         "viscosity)\n"
+         "is yours, and theirs to whom you give it: --run NAME, or `slosh links new NAME --role run`, or "
+         "the\n"
+         "console's `role`. Nobody but you may do that as often and as much as they like; `log` says who did "
+         "what.\n"
          "\n"
          "While it runs, type (or use `slosh links` from elsewhere):\n" +
          console_help(Console::kHost) +
@@ -36,6 +44,7 @@ std::string footer() {
          "Examples:\n"
          "  slosh host bucket\n"
          "  slosh host bucket --for Ana --for Ben --wait 2 --expires 2h\n"
+         "  slosh host bucket --run Ana\n"
          "  slosh host pour --listen 192.168.1.20:5000 --record pour.rec\n"
          "  slosh host --resume ~/.local/state/slosh/bucket.checkpoint";
 }
@@ -45,6 +54,12 @@ std::string footer() {
 void add_host(CLI::App& app, VerbRun& chosen) {
   CLI::App* verb = app.add_subcommand("host", "Let others in: print links to join by and to watch by");
   auto o = std::make_shared<HostVerbOptions>();
+  const CLI::Validator name(
+      [](std::string& text) {
+        if (text.empty() || text.size() > wire::kMaxName) return std::string("a name has 1 to 32 bytes");
+        return std::string(clean_name(text).empty() ? "letters and digits make a name" : "");
+      },
+      "NAME");
   verb->add_option("SCENE", o->scene, "A shipped scene's name, or a .gltf or .glb file")
       ->capture_default_str();
   verb->add_option("--listen", o->listen, "ADDR:PORT, e.g. 0.0.0.0:4433 or [::1]:0 ([::]:4433: everywhere)");
@@ -53,12 +68,10 @@ void add_host(CLI::App& app, VerbRun& chosen) {
           "ADDR:PORT to put into links, again for more: a router's that passes it on (this machine's)")
       ->allow_extra_args(false);
   verb->add_option("--for", o->names, "A link of their own for these people; it works for one machine each")
-      ->check(CLI::Validator(
-          [](std::string& name) {
-            if (name.empty() || name.size() > wire::kMaxName) return std::string("a name has 1 to 32 bytes");
-            return std::string(clean_name(name).empty() ? "letters and digits make a name" : "");
-          },
-          "NAME"));
+      ->check(name);
+  verb->add_option("--run", o->runners,
+                   "The same with the right to run the world: pause, continue, reset, gravity, viscosity")
+      ->check(name);
   verb->add_option("--expires", o->expires,
                    "When the links admit nobody new any more, e.g. 90m or 2h (never); who is in stays in")
       ->check(CLI::Validator(
@@ -67,7 +80,11 @@ void add_host(CLI::App& app, VerbRun& chosen) {
             return time ? std::string() : time.error().text();
           },
           "TIME"));
-  verb->add_option("--links", o->links_file, "File for the links, one a line: hold LINK, watch LINK");
+  verb->add_option("--links", o->links_file,
+                   "File for the links, one a line: hold LINK, watch LINK, run LINK NAME");
+  verb->add_flag(
+      "--show-links", o->show_links,
+      "Print links whole also where standard output is no terminal but a log (else without their secret)");
   verb->add_option("--max-watchers", o->watchers, "People who may watch at a time")
       ->check(CLI::Range(0, 900))
       ->capture_default_str();
@@ -75,7 +92,9 @@ void add_host(CLI::App& app, VerbRun& chosen) {
       ->check(CLI::Range(0, 64))
       ->capture_default_str();
   verb->add_flag("--lock-parameters", o->lock_parameters,
-                 "Only the host sets viscosity, gravity and stiffness (else everybody who may take hold, too)");
+                 "Only the host sets viscosity, gravity and stiffness (else the first two who may run the "
+                 "world, too, and "
+                 "of a grip its holder)");
   add_seconds_option(*verb, o->seconds, 0.01, "Simulated seconds (until it is ended)");
   add_world_options(*verb, *o, "all but one");
   verb->add_option("--record", o->record, "File to record the run in; slosh replay plays it again");

@@ -74,7 +74,7 @@ std::string links_for_scripts(const std::vector<LinkRecord>& links,
   std::string lines;
   for (const LinkRecord& link : links) {
     if (link.revoked) continue;
-    lines.append(link.role == wire::Role::kParticipant ? "hold " : "watch ").append(text(link));
+    lines.append(kLinkRoleNames[static_cast<std::size_t>(link.role)]).append(" ").append(text(link));
     if (!link.name.empty()) lines.append(" ").append(link.name);
     lines.append("\n");
   }
@@ -83,7 +83,7 @@ std::string links_for_scripts(const std::vector<LinkRecord>& links,
 
 Result<bool> write_private(const std::string& file, const std::string& text) {
   const std::string whole = file + ".new";
-  Result<keep::File> opened = keep::open_to_write(whole);
+  Result<keep::File> opened = keep::open_fresh_file(whole);
   if (!opened) return opened.error();
   const bool written = std::fwrite(text.data(), 1, text.size(), opened.value().get()) == text.size() &&
                        std::fflush(opened.value().get()) == 0;

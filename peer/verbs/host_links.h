@@ -18,7 +18,7 @@ std::vector<std::string> reachable_addresses(const std::string& local);
 /// The port of "HOST:PORT"; 0 when there is none.
 std::uint16_t port_of(const std::string& address);
 
-/// One link a line for scripts: "hold LINK", "watch LINK", "hold LINK NAME".
+/// One link a line for scripts: "hold LINK", "watch LINK", "hold LINK NAME", "run LINK NAME".
 std::string links_for_scripts(const std::vector<LinkRecord>& links,
                               const std::function<std::string(const LinkRecord&)>& text);
 

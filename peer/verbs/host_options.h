@@ -11,9 +11,11 @@ namespace slosh {
 struct HostVerbOptions : PlayOptions {
   std::string listen;                  ///< ADDR:PORT; empty = every address, port 4433 (or the resumed run's)
   std::vector<std::string> addresses;  ///< ADDR:PORT that links carry in place of this machine's own
-  std::vector<std::string> names;      ///< a personal link each
+  std::vector<std::string> names;      ///< a personal link to hold each
+  std::vector<std::string> runners;    ///< a personal link to run the world each
   std::string expires;                 ///< of all links made at the start; empty = never
   std::string links_file;
+  bool show_links = false;  ///< whole, also where standard output is no terminal
   std::string record;
   std::string checkpoint;           ///< file, "none", or empty = chosen
   double checkpoint_seconds = 0.5;  ///< wall s between two checkpoints

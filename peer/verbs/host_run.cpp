@@ -4,9 +4,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 
 #include "net/clock.h"
+#include "net/link.h"
 #include "net/text/clean.h"
 #include "net/wire/scene_package.h"
 #include "peer/output/line_input.h"
@@ -24,14 +26,25 @@ namespace {
 constexpr int kTurn_ms = 100;
 constexpr std::int64_t kLineEvery = 500'000'000;  // ns
 
-void print_links(const HostedRun& run) {
+/// As people see it who may read standard output: a log keeps no secrets unless it is asked to.
+std::string shown(const std::string& text, const HostVerbOptions& options) {
+  return options.show_links || isatty(STDOUT_FILENO) != 0 ? text : shorten_links(text);
+}
+
+void print_links(const HostedRun& run, const HostVerbOptions& options) {
   for (const LinkRecord& link : run.first_links()) {
     if (link.revoked) continue;
-    const bool hold = link.role == wire::Role::kParticipant;
+    constexpr std::array kMay{"take hold", "watch", "take hold and run the world"};
     const std::string whom = link.name.empty() ? std::string("Whoever has this link") : link.name;
-    std::printf("%s may %s (link %s):\n  ./slosh %s %s\n\n", whom.c_str(), hold ? "take hold" : "watch",
-                link.id.c_str(), hold ? "join" : "watch", run.text_of(link).c_str());
+    std::printf("%s may %s (link %s): start ./slosh %s, and when asked paste\n  %s\n\n", whom.c_str(),
+                kMay[static_cast<std::size_t>(link.role)], link.id.c_str(),
+                may_hold(link.role) ? "join" : "watch", shown(run.text_of(link), options).c_str());
   }
+  if (!options.show_links && isatty(STDOUT_FILENO) == 0)
+    std::printf(
+        "Links are cut off here, for this is no terminal. `./slosh links` shows them, --links FILE keeps "
+        "them in a "
+        "file for your eyes alone, --show-links prints them.\n\n");
   std::fflush(stdout);
 }
 
@@ -122,7 +135,8 @@ void print_summary(const HostedRun& run, const HostReport& report, const ServerF
 }
 
 // Until somebody or something ends it; tells why.
-std::string run_until_ended(HostedRun& run, Progress& progress, HostReins* reins) {
+std::string run_until_ended(HostedRun& run, const HostVerbOptions& options, Progress& progress,
+                            HostReins* reins) {
   RateOf rate;
   std::int64_t next_line_ns = 0;
   LineInput input(progress.terminal());
@@ -135,7 +149,8 @@ std::string run_until_ended(HostedRun& run, Progress& progress, HostReins* reins
   };
   while (run.host().running()) {
     run.door().serve(kTurn_ms, input.fd(), ask);
-    for (const std::string& line : input.read()) progress.answer(input.edits() ? line : "", ask(line).text);
+    for (const std::string& line : input.read())
+      progress.answer(input.edits() ? line : "", shown(ask(line).text, options));
     progress.typed(input.typed());
     for (const std::string& line : run.news()) progress.note(line);
     run.save_server_state();
@@ -186,7 +201,7 @@ int run_host(const HostVerbOptions& options, HostReins* reins) {
   if (!run.checkpoint_file().empty())
     progress.note("saved " + every(options.checkpoint_seconds) + " in " + run.checkpoint_file());
   if (reins) reins->can_carry_on_from(run.checkpoint_file());
-  if (options.restarts == 0) print_links(run);
+  if (options.restarts == 0) print_links(run, options);
   if (run.waits()) {
     progress.note(format("the world stands still until %s; type continue to start it now (--wait 0: at once)",
                          options.wait == 1 ? "the first hand takes hold"
@@ -200,7 +215,7 @@ int run_host(const HostVerbOptions& options, HostReins* reins) {
   }
   progress.phase("hosting");
   run.start();
-  const std::string why = run_until_ended(run, progress, reins);
+  const std::string why = run_until_ended(run, options, progress, reins);
   progress.typed("");
   const ServerFigures figures = run.net().figures();
   const double net_seconds = run.net().cpu_seconds();

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "host/server/console.h"
+#include "net/fresh_file.h"
 #include "net/link.h"
 #include "net/text/name.h"
 #include "net/wire/scene_package.h"
@@ -162,10 +163,12 @@ void HostedRun::make_links() {
       if (parsed) lifetime = parsed.value();
     }
     LinkRegistry& links = server_->links();
+    for (const std::string& name : options_.runners)
+      links.create(LinkRole::kRun, clean_name(name), now, lifetime);
     for (const std::string& name : options_.names)
-      links.create(wire::Role::kParticipant, clean_name(name), now, lifetime);
-    links.create(wire::Role::kParticipant, {}, now, lifetime);
-    links.create(wire::Role::kSpectator, {}, now, lifetime);
+      links.create(LinkRole::kHold, clean_name(name), now, lifetime);
+    links.create(LinkRole::kHold, {}, now, lifetime);
+    links.create(LinkRole::kWatch, {}, now, lifetime);
   }
   first_links_ = server_->links().links();
 }
@@ -178,8 +181,7 @@ std::string HostedRun::choose_checkpoint() const {
   // Two hosts of one scene must not write over each other.
   const std::uint16_t port = port_of(address_);
   const std::string name = hosted_.prepared.scene.name + (port == kPort ? "" : "-" + std::to_string(port));
-  std::error_code code;
-  std::filesystem::create_directories(state_folder(), code);
+  make_own_folder(state_folder());
   return state_folder() + "/" + name + ".checkpoint";
 }
 

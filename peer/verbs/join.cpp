@@ -9,11 +9,11 @@
 #include "net/console_verbs.h"
 #include "net/link.h"
 #include "peer/haptics/make_device.h"
+#include "peer/remote/link_source.h"
 #include "peer/remote/peer_key.h"
 #include "peer/verbs/common_options.h"
 #include "peer/verbs/find_headset.h"
 #include "peer/verbs/interrupt.h"
-#include "peer/verbs/link_source.h"
 #include "peer/verbs/play_modes.h"
 #include "peer/verbs/remote_run.h"
 #include "peer/verbs/verbs.h"
@@ -41,10 +41,13 @@ constexpr const char* kJoinFiles =
     "; and of the hands that were yours wrenches.csv,\n"
     "poses.csv and wrenches.png.\n"
     "\n"
-    "LINK is all that is needed: the host prints it, and the scene comes over the network. Put it in quotes\n"
-    "or not; breaks that a mail program put in do no harm. What stands in a command line everybody on this\n"
-    "machine can read: give it as - (then it is the first line of standard input) or @FILE where that "
-    "matters.\n"
+    "The link is all that is needed: the host prints it, and the scene comes over the network. It is a "
+    "secret:\n"
+    "without LINK it is asked for, and not shown while it is pasted. Breaks that a mail program put in do "
+    "no\n"
+    "harm. --link-file FILE, or standard input, does for programs. A LINK in the command line works too, and "
+    "is\n"
+    "taken out of what `ps` shows at once, but a shell remembers it.\n"
     "\n"
     "You are one person by the key in $XDG_DATA_HOME/slosh/peer_key: when contact is lost, you get your "
     "place\n"
@@ -59,24 +62,25 @@ constexpr const char* kJoinEnd =
     "elsewhere turns the camera, the wheel zooms, Esc ends. Ctrl-C ends in order.\n"
     "\n"
     "Examples:\n"
-    "  slosh join LINK\n"
-    "  slosh join - < link.txt\n"
-    "  slosh join LINK --name Ana --grip left_hand --device mouse\n"
-    "  slosh join LINK --name Ben --vr --device xr-right\n"
-    "  slosh join LINK --headless --seconds 10 --out out/ana";
+    "  slosh join\n"
+    "  slosh join --name Ana --grip left_hand --device mouse\n"
+    "  slosh join --name Ben --vr --device xr-right\n"
+    "  slosh join --link-file links.txt --headless --seconds 10 --out out/ana";
 
 constexpr const char* kWatchFiles =
     ".\n"
     "\n"
-    "LINK is all that is needed: the host prints one for those who only look on.\n"
+    "The link is all that is needed: the host prints one for those who only look on. It is asked for, and "
+    "not\n"
+    "shown while it is pasted; --link-file FILE, or standard input, does for programs.\n"
     "\n"
     "While it runs, type in the terminal:\n";
 
 constexpr const char* kWatchEnd =
     "\n\n"
     "Examples:\n"
-    "  slosh watch LINK\n"
-    "  slosh watch LINK --headless --seconds 10 --out out/film";
+    "  slosh watch\n"
+    "  slosh watch --link-file links.txt --headless --seconds 10 --out out/film";
 
 /// Waits for the scene and the first state. Errors: no answer, refused, a bad host, Ctrl-C.
 Result<bool> wait_for_world(RemoteVisit& visit, Progress& progress) {
@@ -104,12 +108,14 @@ std::string welcome_text(const RemoteStatus& status) {
 }
 
 int join(JoinOptions options) {
+  // Before signals are caught: at the prompt they end the program.
+  const Result<std::string> link_text =
+      read_link_text(options.link, options.link_file,
+                     options.watch ? wire::Role::kSpectator : wire::Role::kParticipant, options.name);
+  if (!link_text) return fail(link_text.error());
   const std::int64_t begin_ns = steady_now_ns();
   catch_interrupts();
   Progress progress;
-  const Result<std::string> link_text = read_link_text(
-      options.link, options.link_file, options.watch ? wire::Role::kSpectator : wire::Role::kParticipant);
-  if (!link_text) return fail(link_text.error());
   const Result<JoinLink> link = parse_link(link_text.value());
   if (!link) return fail(link.error());
   if (const Result<std::pair<int, int>> size = parse_size(options.size); !options.size.empty() && !size) {
@@ -190,8 +196,9 @@ void add(CLI::App& app, VerbRun& chosen, bool watch) {
                          : app.add_subcommand("join", "Take hold of something in somebody's world");
   auto o = std::make_shared<JoinOptions>();
   o->watch = watch;
-  verb->add_option("LINK", o->link,
-                   "What the host printed: slosh://…; - reads it from standard input, @FILE from a file");
+  verb->add_option(
+      "LINK", o->link,
+      "What the host printed: slosh://… (asked for); - reads it from standard input, @FILE from a file");
   verb->add_option("--link-file", o->link_file, "A file that holds the link, or what `host --links` wrote");
   verb->add_option("--name", o->name, "How the others see you (the host chooses)");
   if (!watch) {

@@ -16,7 +16,9 @@ constexpr const char* kFooter =
     "Examples:\n"
     "  slosh links\n"
     "  slosh links new Ana --expires 30m\n"
-    "  slosh links new --watch\n"
+    "  slosh links new --role watch\n"
+    "  slosh links new Ben --role run               he may pause, reset and set gravity and viscosity, too\n"
+    "  slosh links role bako run                    likewise whoever comes by this link\n"
     "  slosh links revoke bako\n"
     "  slosh links expire bako 10m\n"
     "\n"
@@ -29,6 +31,7 @@ struct LinksOptions {
   std::string id;
   std::string when;
   std::string expires;
+  std::string role = "hold";
   bool watch = false;
 };
 
@@ -82,13 +85,19 @@ void add_links(CLI::App& app, VerbRun& chosen) {
 
   CLI::App* make = verb->add_subcommand("new", "A new link, for anybody or for one person");
   make->add_option("NAME", o->name, "Whom it is for; it then works for one machine");
-  make->add_flag("--watch", o->watch, "For watching only");
+  CLI::Option* role =
+      make->add_option("--role", o->role,
+                       "hold: to take grips; watch: to look on; run: to hold, and to run the world for "
+                       "everybody (pause, continue, reset, gravity, viscosity)");
+  role->check(CLI::IsMember({"hold", "watch", "run"}))->capture_default_str();
+  make->add_flag("--watch", o->watch, "The same as --role watch")->excludes(role);
   make->add_option("--expires", o->expires, "When it ends, e.g. 30m (never)")->check(time);
   make->callback([&chosen, o] {
     chosen = [o] {
       std::string line = "link";
       if (!o->name.empty()) line += " " + in_quotes(o->name);
-      if (o->watch) line += " watch";
+      const std::string role = o->watch ? "watch" : o->role;
+      if (role != "hold") line += " " + role;
       if (!o->expires.empty() && o->expires != "never") line += " for " + o->expires;
       return ask(*o, line);
     };
@@ -97,6 +106,12 @@ void add_links(CLI::App& app, VerbRun& chosen) {
   CLI::App* revoke = verb->add_subcommand("revoke", "End a link and close who came in by it");
   revoke->add_option("ID", o->id, "As the list shows it")->required();
   revoke->callback([&chosen, o] { chosen = [o] { return ask(*o, "revoke " + in_quotes(o->id)); }; });
+
+  CLI::App* give = verb->add_subcommand("role", "Say whether those who come by a link may run the world");
+  give->add_option("ID", o->id, "As the list shows it")->required();
+  give->add_option("ROLE", o->role, "hold or run")->required()->check(CLI::IsMember({"hold", "run"}));
+  give->callback(
+      [&chosen, o] { chosen = [o] { return ask(*o, "role " + in_quotes(o->id) + " " + o->role); }; });
 
   CLI::App* expire = verb->add_subcommand("expire", "Let a link end later; who is in stays in");
   expire->add_option("ID", o->id, "As the list shows it")->required();

@@ -78,7 +78,8 @@ HudFacts RemoteRun::facts(double picture_rate) const {
   facts.title = stage_.scene.name;
   facts.spacing = visit_.world().spacing;
   facts.fluid_particles = status_.welcome.particles;
-  facts.shared = facts.may_change = status_.welcome.role == wire::Role::kParticipant;
+  facts.shared = status_.welcome.role == wire::Role::kParticipant;
+  facts.may_change = status_.rights.run;
   facts.picture_rate = picture_rate;
   return facts;
 }
@@ -184,10 +185,12 @@ void RemoteRun::change_grip() {
 
 LiveValues RemoteRun::live_values() const {
   LiveValues values;
-  values.may_change = status_.welcome.role == wire::Role::kParticipant;
+  values.may_change = status_.rights.parameters;
   values.gravity_scale = status_.world.gravity_scale;
   values.viscosities = status_.world.viscosities;
   values.grips = live_grips(stage_.scene, status_.world.grip_stiffness, *servo_);
+  for (std::size_t i = 0; i < values.grips.size(); ++i)
+    values.grips[i].may_set = may_set_stiffness(status_, i);
   return values;
 }
 

@@ -215,7 +215,11 @@ Result<std::filesystem::path> report_folder(const ReportOptions& options, const 
     return Error{"gnuplot", "is not installed, and draws what is measured", "apt-get install gnuplot-nox"};
   const std::filesystem::path folder = options.out.empty() ? "slosh-report-" + kind : options.out;
   std::error_code code;
-  if (!options.overwrite && std::filesystem::exists(folder / main_file, code)) {
+  // A link leads elsewhere, perhaps to what is not there yet: never written through.
+  const std::filesystem::file_status there = std::filesystem::symlink_status(folder / main_file, code);
+  if (options.overwrite && std::filesystem::is_symlink(there))
+    std::filesystem::remove(folder / main_file, code);
+  if (!options.overwrite && std::filesystem::exists(there)) {
     return Error{folder.string(), std::string("holds an earlier report's ") + main_file,
                  "Choose another folder with --out, or give --overwrite to lose that report"};
   }

@@ -76,11 +76,12 @@ void LivePanel::draw(const LiveValues& now, double wall_seconds, std::span<const
         slider(3 + i, label.c_str(), "%.4g Pa\xC2\xB7s", kLeastViscosity, kMostViscosity, true,
                now.viscosities[i], wall_seconds, {LiveWish::Kind::kViscosity, i, 0.0});
       }
-      for (std::size_t i = 0; i < now.grips.size() && i < grip_names_.size(); ++i) {
-        const std::string label = "stiffness of " + grip_names_[i] + " " + grip_text(now.grips[i]);
-        slider(3 + fluid_names_.size() + i, label.c_str(), "\xC3\x97 %.2f", kSoftest, kStiffest, true,
-               now.grips[i].stiffness, wall_seconds, {LiveWish::Kind::kGripStiffness, i, 0.0});
-      }
+    }
+    for (std::size_t i = 0; i < now.grips.size() && i < grip_names_.size(); ++i) {
+      if (!now.grips[i].may_set) continue;
+      const std::string label = "stiffness of " + grip_names_[i] + " " + grip_text(now.grips[i]);
+      slider(3 + fluid_names_.size() + i, label.c_str(), "\xC3\x97 %.2f", kSoftest, kStiffest, true,
+             now.grips[i].stiffness, wall_seconds, {LiveWish::Kind::kGripStiffness, i, 0.0});
     }
   }
   ImGui::End();

@@ -16,6 +16,7 @@ struct LiveGrip {
   double stiffness = 1.0;   ///< times the scene's, 0.05–4
   double of_scene = 0.0;    ///< N/m
   double of_device = 0.0;   ///< N/m that the device holds at most; 0: no hand of this person's feels it
+  bool may_set = true;      ///< its stiffness is this person's to change
 };
 
 /// What can be changed live, as it is.

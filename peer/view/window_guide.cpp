@@ -88,10 +88,8 @@ std::string WindowGuide::all_keys(const GuideFacts& facts, const KeyBindings& ke
     bound({Action::kStep});
     bound({Action::kSlower, Action::kFaster}, "slower, faster");
   }
-  if (facts.may_change) {
-    bound({Action::kAgain});
-    bound({Action::kSliders});
-  }
+  if (facts.may_change) bound({Action::kAgain});
+  if (facts.may_change || facts.shared) bound({Action::kSliders});
   bound({Action::kPicture});
   bound({Action::kHelp}, "these keys");
   bound({Action::kEnd});

@@ -1,6 +1,7 @@
 #include "scenes/gltf/meshes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <optional>
 
@@ -86,12 +87,14 @@ void mend_normals(TriangleMesh& mesh) {
     for (int i = 0; i < 3; ++i) sums[t[i]] += face;
   }
   for (std::size_t i = 0; i < mesh.normals.size(); ++i) {
-    const float length = glm::length(mesh.normals[i]);
-    if (length > 1e-6f) {
-      mesh.normals[i] /= length;
+    // A file may hold any number: the length of one that fits a float does not always.
+    const glm::dvec3 given(mesh.normals[i]);
+    const double length = glm::length(given);
+    if (length > 1e-6 && std::isfinite(length)) {
+      mesh.normals[i] = glm::vec3(given / length);
     } else {
       const double sum = glm::length(sums[i]);
-      mesh.normals[i] = sum > 0.0 ? glm::vec3(sums[i] / sum) : glm::vec3(0.0f, 1.0f, 0.0f);
+      mesh.normals[i] = sum > 1e-30 ? glm::vec3(sums[i] / sum) : glm::vec3(0.0f, 1.0f, 0.0f);
     }
   }
 }

@@ -129,8 +129,8 @@ class BenchHost {
     if (!listening) throw std::runtime_error(listening.error().text());
     endpoint_ = std::move(listening.value());
     server_->use(*endpoint_);
-    hold = server_->links().create(wire::Role::kParticipant, {}, 1)->token;
-    watch = server_->links().create(wire::Role::kSpectator, {}, 1)->token;
+    hold = server_->links().create(LinkRole::kHold, {}, 1)->token;
+    watch = server_->links().create(LinkRole::kWatch, {}, 1)->token;
     loop_ = std::make_unique<NetLoop>(*server_, *endpoint_);
     snapshots_ = std::make_unique<SnapshotThread>(channel_.snapshots(), desk_, demand_, 0.01, 0,
                                                   [this] { server_->mailbox().wake(); });

@@ -224,5 +224,38 @@ TEST_F(LoopbackTest, LinksAreMadeAndRevokedWhileTheHostRuns) {
   EXPECT_EQ(host->wait().code, 128 + SIGINT);
 }
 
+TEST_F(LoopbackTest, ALinkStandsInNoListOfProcessesAndInNoLog) {
+  const auto secret_of = [](const std::string& text) { return text.substr(text.rfind('/') + 1); };
+  const std::vector<std::string> hosts{"host",   "probe",    "--spacing",    "0.01",    "--threads",
+                                       "1",      "--listen", "127.0.0.1:0",  "--links", "links.txt",
+                                       "--wait", "0",        "--checkpoint", "none"};
+  const auto host = run("host", hosts);
+  ASSERT_TRUE(hosting(*host)) << host->wait().err;
+  const std::string text = link("hold");
+  const auto ana = run("ana", {"join", text, "--name", "Ana", "--headless", "--no-render", "--out", "out"});
+  ASSERT_TRUE(comes([&] { return last_time(folder("ana") / "out") > 0.0 || !ana->running(); }));
+  const std::string words = read_text("/proc/" + std::to_string(ana->pid()) + "/cmdline");
+  EXPECT_NE(words.find("join"), std::string::npos) << words;
+  EXPECT_NE(words.find("slosh://***"), std::string::npos) << words;
+  EXPECT_EQ(words.find(secret_of(text)), std::string::npos) << words;
+  ana->signal(SIGINT);
+  EXPECT_EQ(ana->wait().code, 128 + SIGINT);
+  const auto mode = std::filesystem::status(folder("host") / "links.txt").permissions();
+  EXPECT_EQ(mode, std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+  host->signal(SIGINT);
+  const Outcome log = host->wait();
+  EXPECT_EQ((log.out + log.err).find(secret_of(text)), std::string::npos) << log.out;
+  EXPECT_NE(log.out.find("--show-links"), std::string::npos) << log.out;
+
+  std::filesystem::remove(folder("host") / "links.txt");
+  std::vector<std::string> asked = hosts;
+  asked.push_back("--show-links");
+  const auto open = run("host", asked);
+  ASSERT_TRUE(hosting(*open)) << open->wait().err;
+  const std::string whole = link("hold");
+  open->signal(SIGINT);
+  EXPECT_NE(open->wait().out.find(secret_of(whole)), std::string::npos) << "who asks for it gets it";
+}
+
 }  // namespace
 }  // namespace slosh

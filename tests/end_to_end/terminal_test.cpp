@@ -29,7 +29,7 @@ class TerminalTest : public test::HostedTest {
     return at_terminal("host", arguments);
   }
   std::unique_ptr<Terminal> join(const std::string& verb, const std::string& name) const {
-    return at_terminal(name, {verb, link(verb == "join" ? "hold" : "watch"), "--name", name, "--headless",
+    return at_terminal(name, {verb, "--link-file", "../host/links.txt", "--name", name, "--headless",
                               "--no-render", "--out", "out", "--key", "../" + name + ".key"});
   }
 };
@@ -59,7 +59,7 @@ TEST_F(TerminalTest, WhatIsTypedIsNotPaintedOver) {
 }
 
 TEST_F(TerminalTest, APeerSetsParametersAndPausesFromItsTerminal) {
-  const auto host = this->host();
+  const auto host = this->host({"--run", "Ana"});
   ASSERT_TRUE(host->shows("nobody here yet")) << host->screen();
   const auto ana = join("join", "Ana");
   ASSERT_TRUE(ana->shows("you hold grip")) << ana->screen();
@@ -93,6 +93,57 @@ TEST_F(TerminalTest, APeerSetsParametersAndPausesFromItsTerminal) {
     EXPECT_EQ((*one)->wait(), 0) << (*one)->screen();
     EXPECT_TRUE((*one)->echoes());
   }
+}
+
+TEST_F(TerminalTest, WhoMayOnlyHoldIsToldHowToRunTheWorldAndByWhom) {
+  const auto host = this->host();
+  ASSERT_TRUE(host->shows("nobody here yet")) << host->screen();
+  const auto ana = join("join", "Ana");
+  ASSERT_TRUE(ana->shows("you hold grip")) << ana->screen();
+  ana->type("set gravity 0\rreset\r");
+  ASSERT_TRUE(ana->shows("Whoever hosts gives the role by typing: role ")) << ana->screen();
+  EXPECT_TRUE(host->shows("Ana may not set gravity to 0 times the scene's")) << host->screen();
+  ana->type("set stiffness 0.5\r");
+  EXPECT_TRUE(ana->shows("the hold on 'probe_hand' is 0.5 times as stiff")) << "her own: " << ana->screen();
+  const std::string& screen = ana->screen();
+  const std::string id = screen.substr(screen.find("by typing: role ") + 16, 4);
+  host->type("role " + id + " run\r");
+  EXPECT_TRUE(host->shows("whoever comes by " + id + " may run the world")) << host->screen();
+  EXPECT_TRUE(ana->shows("Ana may run the world now")) << ana->screen();
+  ana->type("set gravity 0.5\r");
+  EXPECT_TRUE(ana->shows("gravity is 0.5 times the scene's now")) << ana->screen();
+  const std::size_t before = ana->screen().size();
+  ana->type("reset\rreset\rreset\r");
+  EXPECT_TRUE(ana->shows("as one guest may for now: again in ", before)) << ana->screen();
+  host->type("log\r");
+  EXPECT_TRUE(host->shows("  Ana set gravity to 0.5 times the scene's")) << host->screen();
+}
+
+TEST_F(TerminalTest, TheLinkIsAskedForAndNotShown) {
+  const auto host = this->host();
+  ASSERT_TRUE(host->shows("nobody here yet")) << host->screen();
+  const std::string text = link("hold");
+  EXPECT_NE(host->screen().find(text), std::string::npos) << "a terminal shows it whole";
+  EXPECT_EQ(host->screen().find("join slosh://"), std::string::npos)
+      << "and leads nobody to their command line";
+  const std::vector<std::string> asks{"join", "--headless", "--no-render", "--out",
+                                      "out",  "--key",      "../Ana.key"};
+  const auto left = at_terminal("left", asks);
+  ASSERT_TRUE(left->shows("Paste or type the link")) << left->screen();
+  left->type("\x03");
+  EXPECT_EQ(left->wait(), 130) << left->screen();
+  EXPECT_TRUE(left->echoes()) << "the terminal is as it was";
+
+  const auto ana = at_terminal("Ana", asks);
+  ASSERT_TRUE(ana->shows("Paste or type the link")) << ana->screen();
+  EXPECT_FALSE(ana->echoes());
+  // As a mail program broke it.
+  ana->type(text.substr(0, 40) + "\r> " + text.substr(40) + "\r");
+  EXPECT_TRUE(ana->shows("you hold grip")) << ana->screen();
+  EXPECT_EQ(ana->screen().find(text.substr(text.size() - 20)), std::string::npos) << ana->screen();
+  ana->type("quit\r");
+  EXPECT_EQ(ana->wait(), 0) << ana->screen();
+  EXPECT_TRUE(ana->echoes());
 }
 
 TEST_F(TerminalTest, AWorldOfOnesOwnHearsTheSameLines) {
@@ -150,7 +201,7 @@ TEST_F(TerminalTest, ASlowPlanSaysItsEstimateAndAsks) {
 }
 
 TEST_F(TerminalTest, AHostMayKeepTheParametersToItself) {
-  const auto host = this->host({"--lock-parameters"});
+  const auto host = this->host({"--lock-parameters", "--run", "Ana"});
   ASSERT_TRUE(host->shows("nobody here yet")) << host->screen();
   const auto ana = join("join", "Ana");
   ASSERT_TRUE(ana->shows("you hold grip")) << ana->screen();

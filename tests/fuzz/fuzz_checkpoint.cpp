@@ -1,4 +1,4 @@
-// A checkpoint: as a file, and the saved world in it behind the checksum that keeps damage from it.
+// A checkpoint: as a file, behind its checksums, and the saved world in it.
 #include <unistd.h>
 
 #include <cstdio>
@@ -7,6 +7,7 @@
 
 #include "host/keep/checkpoint.h"
 #include "host/keep/file.h"
+#include "tests/fuzz/fixed_chunks.h"
 #include "tests/fuzz/must.h"
 #include "tests/fuzz/seeds.h"
 #include "tests/support/stirred_tank.h"
@@ -16,7 +17,8 @@ using namespace slosh::keep;
 
 namespace {
 
-enum Mode : std::uint8_t { kFile, kWorld, kModes };
+enum Mode : std::uint8_t { kFile, kWorld, kFixed, kModes };
+constexpr std::size_t kMagicBytes = 8;
 
 // Few particles: what is tried is the reading.
 testing::Tank small_tank() {
@@ -37,7 +39,9 @@ World small_world() {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size < 2) return 0;
   Bytes bytes(data + 1, data + size);
-  if (data[0] % kModes == kFile) {
+  const auto mode = static_cast<Mode>(data[0] % kModes);
+  if (mode == kFixed) test::fix_chunks(bytes, kMagicBytes);
+  if (mode != kWorld) {
     const File file(fmemopen(bytes.data(), bytes.size(), "rb"));
     const Result<Checkpoint> read = read_checkpoint_file(file.get(), "input");
     test::must(read || !read.error().what.empty(), "an error has words");
@@ -75,6 +79,15 @@ std::vector<std::vector<std::uint8_t>> slosh_fuzz_seeds() {
   }
   std::filesystem::remove(options.file);
   std::filesystem::remove(previous_of(options.file));
+  // Every chunk of it as it is, so that damage reaches the head, the scene and the states.
+  seeds.emplace_back(seeds[0].begin(), seeds[0].begin() + kMagicBytes);
+  if (const File file{fmemopen(seeds[0].data(), seeds[0].size(), "rb")}) {
+    std::fseek(file.get(), kMagicBytes, SEEK_SET);
+    ChunkReader reader(file.get());
+    for (Chunk chunk; reader.next(chunk) == ChunkOutcome::kChunk;)
+      test::append_stored(chunk.type, chunk.content, seeds[2]);
+  }
+  test::fix_chunks(seeds[2], kMagicBytes);
   for (std::uint8_t mode = 0; mode < kModes; ++mode) seeds[mode].insert(seeds[mode].begin(), mode);
   return seeds;
 }

@@ -1,8 +1,9 @@
-// A recording: as a file, and its events behind the checksum that keeps damage from them.
+// A recording: as a file, behind its checksums, and its events, states and end.
 #include <cstdio>
 
 #include "host/keep/recording_format.h"
 #include "net/wire/scene_package.h"
+#include "tests/fuzz/fixed_chunks.h"
 #include "tests/fuzz/must.h"
 #include "tests/fuzz/seeds.h"
 #include "tests/support/small_scene.h"
@@ -13,7 +14,9 @@ using namespace slosh::keep;
 namespace {
 
 // The first byte of an input says what the rest is.
-enum Mode : std::uint8_t { kFile, kEvents, kState, kEnd, kModes };
+enum Mode : std::uint8_t { kFile, kEvents, kState, kEnd, kFixed, kModes };
+
+constexpr std::size_t kHeadBytes = 12;  // the magic and the format, before the first chunk
 
 Bytes beginning() {
   const Scene scene = test::small_scene();
@@ -63,6 +66,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     case kFile:
       bytes.assign(rest.begin(), rest.end());
       break;
+    case kFixed:
+      bytes.assign(rest.begin(), rest.end());
+      test::fix_chunks(bytes, kHeadBytes);
+      break;
     case kEvents:
       bytes = kBeginning;
       append_chunk(kEventsChunk, rest, bytes);
@@ -98,7 +105,17 @@ std::vector<std::vector<std::uint8_t>> slosh_fuzz_seeds() {
   Bytes file = beginning();
   append_chunk(kEventsChunk, events, file);
   append_chunk(kEndChunk, wire::encoded(RecordingTotals{10, 1, 1, 0, ""}), file);
-  std::vector<Bytes> seeds{file, events, wire::encoded(PlaceRecord{}), wire::encoded(RecordingTotals{})};
+  Bytes stored(file.begin(), file.begin() + kHeadBytes);
+  {
+    const File packed(fmemopen(file.data(), file.size(), "rb"));
+    std::fseek(packed.get(), kHeadBytes, SEEK_SET);
+    ChunkReader reader(packed.get());
+    for (Chunk chunk; reader.next(chunk) == ChunkOutcome::kChunk;)
+      test::append_stored(chunk.type, chunk.content, stored);
+  }
+  test::fix_chunks(stored, kHeadBytes);
+  std::vector<Bytes> seeds{file, events, wire::encoded(PlaceRecord{}), wire::encoded(RecordingTotals{}),
+                           stored};
   for (std::uint8_t mode = 0; mode < kModes; ++mode) seeds[mode].insert(seeds[mode].begin(), mode);
   return seeds;
 }

@@ -107,5 +107,24 @@ TEST_F(TableTest, ASmallFileIsWholeOrAsItWas) {
   EXPECT_EQ(text(), "after");
 }
 
+TEST_F(TableTest, NothingIsWrittenThroughALinkThatSomebodyLaidThere) {
+  const fs::path theirs = file_.string() + ".theirs";
+  std::ofstream(theirs) << "precious";
+  fs::remove(file_);
+  fs::create_symlink(theirs, file_.string() + ".part");
+  ASSERT_TRUE(write_whole(file_, "ours"));
+  EXPECT_EQ(text(), "ours");
+  EXPECT_FALSE(fs::is_symlink(file_));
+  fs::remove(file_);
+  fs::create_symlink(theirs, file_);
+  EXPECT_FALSE(Table::create(file_, "a,b"));
+  fs::remove(file_);
+  std::ifstream in(theirs);
+  std::string left;
+  std::getline(in, left);
+  EXPECT_EQ(left, "precious");
+  fs::remove(theirs);
+}
+
 }  // namespace
 }  // namespace slosh

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <system_error>
 
 #include "peer/haptics/devices/device_file.h"
+#include "peer/output/whole_file.h"
 
 namespace slosh {
 namespace {
@@ -155,13 +155,8 @@ Result<bool> keep_shared_space(const std::filesystem::path& file, const SharedSp
       "# Where this device stands in the headset's room, by ./slosh devices calibrate.\n"
       "x_m = %.6f\ny_m = %.6f\nz_m = %.6f\nqw = %.9f\nqx = %.9f\nqy = %.9f\nqz = %.9f\nresidual_m = %.6f\n",
       p.x, p.y, p.z, q.w, q.x, q.y, q.z, space.residual);
-  const std::filesystem::path beside = file.string() + ".new";
-  std::ofstream out(beside, std::ios::trunc);
-  out << text;
-  out.close();
-  if (!out) return Error{file.string(), "cannot be written", mend};
-  std::filesystem::rename(beside, file, code);
-  if (code) return Error{file.string(), "cannot be written: " + code.message(), mend};
+  if (const Result<bool> written = write_whole(file, text); !written)
+    return Error{written.error().where, written.error().what, mend};
   return true;
 }
 

@@ -1,6 +1,6 @@
 """Join a host, take hold of a grip, lift it a little, and read what comes back.
 
-Usage: join_a_host.py [LINK]     without a link a host is started here, on this machine's loopback
+Usage: join_a_host.py [FILE]     FILE holds the link; without it a host is started here, on this machine's loopback
 """
 
 import os
@@ -9,27 +9,24 @@ import subprocess
 import sys
 import tempfile
 import time
-from typing import Tuple
+from typing import Sequence, Tuple
 
 import slosh
 
 
-def start_host(folder: str) -> Tuple["subprocess.Popen[bytes]", str]:
-    """`slosh host` as a process of its own, and the link that it wrote."""
+def start_host(folder: str, more: Sequence[str] = ()) -> Tuple["subprocess.Popen[bytes]", str]:
+    """`slosh host` as a process of its own, and the file with the links that it wrote."""
     program = os.environ.get("SLOSH_PROGRAM") or shutil.which("slosh")
     if not program:
-        sys.exit("there is no program slosh: give its place in SLOSH_PROGRAM, or a link")
+        sys.exit("there is no program slosh: give its place in SLOSH_PROGRAM, or a file with a link")
     links = os.path.join(folder, "links.txt")
     command = [program, "host", "bucket", "--spacing", "0.0135", "--listen", "127.0.0.1:0", "--links", links]
-    command += ["--checkpoint", "none", "--no-supervisor", "--threads", "1", "--wait", "1"]
+    command += ["--checkpoint", "none", "--no-supervisor", "--threads", "1", "--wait", "1", *more]
     with open(os.path.join(folder, "host.log"), "wb") as log:
         host = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log)
     for _ in range(1200):
         if os.path.exists(links):
-            with open(links) as written:
-                for line in written:
-                    if line.startswith("hold "):
-                        return host, line.split()[-1]
+            return host, links
         if host.poll() is not None:
             break
         time.sleep(0.05)
@@ -37,8 +34,8 @@ def start_host(folder: str) -> Tuple["subprocess.Popen[bytes]", str]:
         sys.exit("the host did not start:\n" + said.read())
 
 
-def visit(link: str) -> None:
-    with slosh.join(link, name="Python", timeout=60.0) as remote:
+def visit(link_file: str) -> None:
+    with slosh.join(link_file=link_file, name="Python", timeout=60.0) as remote:
         grip = remote.held[0] if remote.held else remote.scene.grips[0].name
         print(f"joined '{remote.scene.name}' as {remote.name}, holding {remote.held}, at {1e3 * remote.spacing:.0f} mm")
         weight = sum(body.mass for body in remote.scene.bodies if body.free) * 9.81
@@ -69,9 +66,9 @@ def main() -> None:
         visit(sys.argv[1])
         return
     folder = tempfile.mkdtemp()
-    host, link = start_host(folder)
+    host, links = start_host(folder)
     try:
-        visit(link)
+        visit(links)
     finally:
         host.terminate()
         host.wait()

@@ -24,6 +24,7 @@ TEST(Console, EveryCommandOfTheHelpIsUnderstood) {
   EXPECT_EQ(good("pause").verb, ConsoleVerb::kPause);
   EXPECT_EQ(good("continue").verb, ConsoleVerb::kContinue);
   EXPECT_EQ(good("reset").verb, ConsoleVerb::kReset);
+  EXPECT_EQ(good("log").verb, ConsoleVerb::kLog);
   EXPECT_EQ(good("status").verb, ConsoleVerb::kStatus);
   EXPECT_EQ(good("quit").verb, ConsoleVerb::kQuit);
   EXPECT_EQ(good("revoke bako").text, "bako");
@@ -38,12 +39,15 @@ TEST(Console, EveryCommandOfTheHelpIsUnderstood) {
 TEST(Console, LinksTakeANameARoleAndATime) {
   const ConsoleCommand open = good("link");
   EXPECT_TRUE(open.text.empty());
-  EXPECT_FALSE(open.watch);
+  EXPECT_EQ(open.role, LinkRole::kHold);
   EXPECT_EQ(open.lifetime_ns, 0);
   const ConsoleCommand full = good("link \"Ana Maria\" watch for 1h30m");
   EXPECT_EQ(full.text, "Ana Maria");
-  EXPECT_TRUE(full.watch);
+  EXPECT_EQ(full.role, LinkRole::kWatch);
   EXPECT_EQ(full.lifetime_ns, 5400 * kSecond);
+  EXPECT_EQ(good("link Ana run").role, LinkRole::kRun);
+  EXPECT_EQ(good("role bako run").role, LinkRole::kRun);
+  EXPECT_EQ(good("role bako hold").text, "bako");
   EXPECT_EQ(good("expire bako 10m").lifetime_ns, 600 * kSecond);
   EXPECT_EQ(good("expire bako never").lifetime_ns, 0);
 }
@@ -66,6 +70,11 @@ TEST(Console, WhatIsWrongIsSaidInWords) {
                            "expire bako",
                            "expire bako soon",
                            "link a b",
+                           "role",
+                           "role bako",
+                           "role bako watch",
+                           "role bako king",
+                           "log now",
                            "link for",
                            "link for 0s",
                            "set",

@@ -43,7 +43,7 @@ class RealServer {
     link.handshake_timeout = 30.0;
     endpoint = std::move(listen_quic("127.0.0.1:0", identity, *server, link).value());
     server->use(*endpoint);
-    hold = server->links().create(wire::Role::kParticipant, {}, 1)->token;
+    hold = server->links().create(LinkRole::kHold, {}, 1)->token;
   }
   ~RealServer() { server->end("the test ends"); }
 

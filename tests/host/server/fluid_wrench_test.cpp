@@ -98,7 +98,7 @@ class StirredHost : public HostTap {
     server_ = std::make_unique<Server>(std::move(served), options);
     endpoint_ = network_.listen(*server_);
     server_->use(*endpoint_);
-    const LinkRecord* link = server_->links().create(wire::Role::kParticipant, {}, 1);
+    const LinkRecord* link = server_->links().create(LinkRole::kHold, {}, 1);
     peer_ = std::make_unique<ScriptedPeer>(network_, 1);
     peer_->hello(link->token, "Ana");
     turn(0.1);

@@ -20,18 +20,18 @@ KeyFingerprint key(std::uint8_t value) {
 
 TEST(Links, AnOpenLinkAdmitsAnybody) {
   LinkRegistry links;
-  const LinkRecord link = *links.create(wire::Role::kSpectator, {}, kNow);
+  const LinkRecord link = *links.create(LinkRole::kWatch, {}, kNow);
   for (std::uint8_t i = 1; i < 100; ++i) {
     const LinkVerdict verdict = links.check(link.token, key(i), kNow);
     ASSERT_NE(verdict.link, nullptr);
-    EXPECT_EQ(verdict.link->role, wire::Role::kSpectator);
+    EXPECT_EQ(verdict.link->role, LinkRole::kWatch);
     links.note_use(link.id, key(i));
   }
 }
 
 TEST(Links, APersonalLinkBelongsToTheFirstKey) {
   LinkRegistry links;
-  const LinkRecord link = *links.create(wire::Role::kParticipant, "Ana", kNow);
+  const LinkRecord link = *links.create(LinkRole::kHold, "Ana", kNow);
   ASSERT_NE(links.check(link.token, key(1), kNow).link, nullptr);
   links.note_use(link.id, key(1));
   EXPECT_NE(links.check(link.token, key(1), kNow).link, nullptr);
@@ -43,7 +43,7 @@ TEST(Links, APersonalLinkBelongsToTheFirstKey) {
 
 TEST(Links, EveryWrongTokenIsRefused) {
   LinkRegistry links;
-  const LinkRecord link = *links.create(wire::Role::kParticipant, {}, kNow);
+  const LinkRecord link = *links.create(LinkRole::kHold, {}, kNow);
   for (std::size_t byte = 0; byte < link.token.size(); ++byte) {
     wire::Token wrong = link.token;
     wrong[byte] ^= 1;
@@ -54,7 +54,7 @@ TEST(Links, EveryWrongTokenIsRefused) {
 
 TEST(Links, OnlyWhoWasInLearnsThatALinkWasRevokedOrHasExpired) {
   LinkRegistry links;
-  const LinkRecord link = *links.create(wire::Role::kParticipant, {}, kNow, kMinute);
+  const LinkRecord link = *links.create(LinkRole::kHold, {}, kNow, kMinute);
   links.note_use(link.id, key(1));
   EXPECT_NE(links.check(link.token, key(1), kNow + kMinute - 1).link, nullptr);
   EXPECT_EQ(links.check(link.token, key(1), kNow + kMinute).code, wire::RefusalCode::kExpired);
@@ -73,7 +73,7 @@ TEST(Links, IdsAndTokensDifferAndRoomIsBounded) {
   std::set<std::string> ids;
   std::set<wire::Token> tokens;
   for (std::size_t i = 0; i < kMaxLinks; ++i) {
-    const LinkRecord* link = links.create(wire::Role::kSpectator, {}, kNow);
+    const LinkRecord* link = links.create(LinkRole::kWatch, {}, kNow);
     ASSERT_NE(link, nullptr);
     EXPECT_EQ(link->id.size(), 4u);
     ids.insert(link->id);
@@ -81,9 +81,9 @@ TEST(Links, IdsAndTokensDifferAndRoomIsBounded) {
   }
   EXPECT_EQ(ids.size(), kMaxLinks);
   EXPECT_EQ(tokens.size(), kMaxLinks);
-  EXPECT_EQ(links.create(wire::Role::kSpectator, {}, kNow), nullptr);
+  EXPECT_EQ(links.create(LinkRole::kWatch, {}, kNow), nullptr);
   links.revoke(*ids.begin());
-  EXPECT_NE(links.create(wire::Role::kSpectator, {}, kNow), nullptr) << "a revoked one makes room";
+  EXPECT_NE(links.create(LinkRole::kWatch, {}, kNow), nullptr) << "a revoked one makes room";
 }
 
 TEST(Links, TheServersStateComesBackAsItWas) {
@@ -92,10 +92,10 @@ TEST(Links, TheServersStateComesBackAsItWas) {
   state.world = 0x1234567890abcdef;
   state.port = 4433;
   LinkRegistry links;
-  const LinkRecord made = *links.create(wire::Role::kParticipant, "Ana", kNow, kMinute);
+  const LinkRecord made = *links.create(LinkRole::kHold, "Ana", kNow, kMinute);
   links.note_use(made.id, key(9));
   state.links = links.links();
-  state.seats.push_back({3, key(9), "Ana", wire::Role::kParticipant, {0, 2}, made.id});
+  state.seats.push_back({3, key(9), "Ana", LinkRole::kHold, {0, 2}, made.id});
 
   const wire::Bytes bytes = wire::encoded(state);
   ServerState back;

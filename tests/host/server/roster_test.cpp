@@ -7,8 +7,8 @@
 namespace slosh {
 namespace {
 
-constexpr auto kHold = wire::Role::kParticipant;
-constexpr auto kWatch = wire::Role::kSpectator;
+constexpr auto kHold = LinkRole::kHold;
+constexpr auto kWatch = LinkRole::kWatch;
 
 KeyFingerprint key(std::uint32_t value) {
   KeyFingerprint fingerprint{};

@@ -109,6 +109,7 @@ void ScriptedPeer::on_stream(ConnectionId, std::int64_t stream, std::span<const 
       }
       if constexpr (std::is_same_v<M, wire::Answer>) keep(answers, message);
       if constexpr (std::is_same_v<M, wire::WorldInfo>) keep(worlds, message);
+      if constexpr (std::is_same_v<M, wire::Rights>) keep(rights, message);
       if constexpr (std::is_same_v<M, wire::Notice>) keep(notices, message.text);
     };
     return wire::dispatch(wire::HostControl{}, type, payload, take, capabilities & wire::kOurCapabilities);
@@ -158,10 +159,11 @@ ServedTest::ServedTest(const ServerOptions& given)
   server = std::make_unique<Server>(std::move(world), options);
   endpoint = network.listen(*server);
   server->use(*endpoint);
-  const LinkRecord* link = server->links().create(wire::Role::kParticipant, {}, 1);
+  const LinkRecord* link = server->links().create(LinkRole::kHold, {}, 1);
   hold = link->token;
   hold_id = link->id;
-  watch = server->links().create(wire::Role::kSpectator, {}, 1)->token;
+  watch = server->links().create(LinkRole::kWatch, {}, 1)->token;
+  rule = server->links().create(LinkRole::kRun, {}, 1)->token;
 }
 
 ScriptedPeer& ServedTest::join(std::uint8_t key, const wire::Token& token, const std::string& name,

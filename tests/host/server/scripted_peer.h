@@ -63,6 +63,7 @@ class ScriptedPeer final : public EndpointEvents {
   std::vector<wire::RosterChange> roster_changes;  ///< which `rosters` has applied
   std::vector<wire::Answer> answers;
   std::vector<wire::WorldInfo> worlds;
+  std::vector<wire::Rights> rights;
   std::vector<std::string> notices;
   std::vector<wire::ClockPong> pongs;
   std::vector<wire::Bodies> bodies;
@@ -120,6 +121,7 @@ class ServedTest : public ::testing::Test {
   std::vector<std::string> told;
   wire::Token hold{};
   wire::Token watch{};
+  wire::Token rule{};  ///< to hold, and to run the world
   std::string hold_id;
   std::string refuse_commands;  ///< the world's answer to all that is asked, empty = granted
 };

@@ -119,8 +119,7 @@ TEST_F(ClockServerTest, AnExpiredLinkStaysExpiredWhateverTheClocksDo) {
   again.not_before(state.seen_ns);
   EXPECT_GE(again.now(), state.seen_ns);
   // Set back while a link has time left, it does not get more of it.
-  const LinkRecord* link =
-      server->links().create(wire::Role::kParticipant, {}, server->unix_now(), 10 * kMinute);
+  const LinkRecord* link = server->links().create(LinkRole::kHold, {}, server->unix_now(), 10 * kMinute);
   const wire::Token token = link->token;
   system_ns -= 600 * kMinute;
   elapsed_ns += 11 * kMinute;

@@ -214,8 +214,8 @@ TEST_F(ServerTest, AStandingWorldIsShownToWhoComesLate) {
   EXPECT_EQ(ana.bodies.back().tick, 3u);
 }
 
-TEST_F(ServerTest, TheWorldObeysThoseWithHands) {
-  ScriptedPeer& ana = join(1, "Ana");
+TEST_F(ServerTest, TheWorldObeysThoseWhoMayRunIt) {
+  ScriptedPeer& ana = join(1, rule, "Ana");
   ScriptedPeer& eve = join(2, watch, "Eve");
   ana.say(wire::WorldRequest{1, wire::WorldAction::kPause});
   ana.say(wire::ParameterRequest{2, wire::Parameter::kFluidViscosity, 0, 0.5});
@@ -254,7 +254,7 @@ TEST_F(ServerTest, TheWorldObeysThoseWithHands) {
 }
 
 TEST_F(WaitingServerTest, ParametersSetBeforehandDoNotKeepTheWorldFromStarting) {
-  ScriptedPeer& ana = join(1, "Ana");
+  ScriptedPeer& ana = join(1, rule, "Ana");
   ana.say(wire::ParameterRequest{1, wire::Parameter::kGravityScale, 0, 0.5});
   go(0.1);
   server->command("set gravity 1");
@@ -275,7 +275,7 @@ class LockedServerTest : public ServedTest {
 };
 
 TEST_F(LockedServerTest, OnlyTheHostSetsParameters) {
-  ScriptedPeer& ana = join(1, "Ana");
+  ScriptedPeer& ana = join(1, rule, "Ana");
   ana.say(wire::ParameterRequest{1, wire::Parameter::kFluidViscosity, 0, 0.5});
   ana.say(wire::ParameterRequest{2, wire::Parameter::kGravityScale, 0, 0.5});
   ana.say(wire::WorldRequest{3, wire::WorldAction::kPause});

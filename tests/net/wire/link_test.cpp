@@ -49,6 +49,19 @@ TEST(Link, ComesBack) {
     expect_same(parse_link(text_of(example(seed))), example(seed));
 }
 
+TEST(Link, IsShownWithoutWhatOpensAWorld) {
+  const std::string text = text_of(example());
+  const std::string token = text.substr(text.rfind('/') + 1);
+  const std::string shown = shorten_links("bako  to hold\n  " + text + "\n<" + text + "> again");
+  EXPECT_EQ(shown.find(token), std::string::npos) << shown;
+  EXPECT_EQ(shown.find(text.substr(text.find("443/") + 4, 20)), std::string::npos) << shown;
+  EXPECT_TRUE(shown.starts_with("bako  to hold\n  slosh://v2/192.0.2.7:4433,")) << shown;
+  EXPECT_TRUE(shown.ends_with("/…> again")) << shown;
+  EXPECT_EQ(shorten_links("no link"), "no link");
+  EXPECT_EQ(shorten_links("slosh://secret"), "slosh://…") << "of what is no link nothing is shown";
+  EXPECT_EQ(shorten_links("SLOSH://v2/a:1"), "SLOSH://…");
+}
+
 TEST(Link, SurvivesMailAndShells) {
   const JoinLink link = example();
   const std::string text = text_of(link);

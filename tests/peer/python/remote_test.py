@@ -25,7 +25,7 @@ def until(remote, holds, seconds=60.0):
 class Visits(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.mkdtemp()
-        self.host, self.link = start_host(self.folder)
+        self.host, self.links = start_host(self.folder, ["--run", "Ben"])
 
     def tearDown(self):
         self.host.terminate()
@@ -33,12 +33,19 @@ class Visits(unittest.TestCase):
         shutil.rmtree(self.folder)
 
     def test_a_visit_from_its_link_to_its_end(self):
+        self.assertEqual(os.stat(self.links).st_mode & 0o777, 0o600)
+        with open(self.links) as written:
+            link = {line.split()[0]: line.split()[1] for line in written}
+        with open(os.path.join(self.folder, "host.log")) as log:
+            self.assertNotIn(link["hold"], log.read(), "a log keeps no secrets")
         with self.assertRaises(slosh.Error) as raised:
-            slosh.join(self.link[:-3] + "aaa")
+            slosh.join(link["hold"][:-3] + "aaa")
         self.assertIn("link", str(raised.exception))
-        with slosh.join(self.link, name="Ana", grips=["left_hand"], timeout=60.0) as ana:
+        with self.assertRaises(ValueError):
+            slosh.join()
+        with slosh.join(link["hold"], name="Ana", grips=["left_hand"], timeout=60.0) as ana:
             self.assertEqual((ana.name, ana.state, ana.held), ("Ana", "live", ["left_hand"]))
-            with slosh.join(self.link, name="Ben", grips=["right_hand"], particles=False, timeout=60.0) as ben:
+            with slosh.join(link_file=self.links, name="Ben", grips=["right_hand"], particles=False, timeout=60.0) as ben:
                 self.assertEqual(ben.held, ["right_hand"])
                 until(ben, lambda: len(ben.people) == 2)
                 self.assertEqual(sorted(name for name, _, _ in ben.people), ["Ana", "Ben"])
@@ -64,6 +71,15 @@ class Visits(unittest.TestCase):
                 self.assertEqual(ben.held, ["right_hand"])
                 with self.assertRaises(slosh.Error):
                     ben.take("left_hand")
+                # Ana holds; Ben, by a link of his own, also runs the world.
+                self.assertEqual((ana.runs_world, ben.runs_world), (False, True))
+                for asked in (ana.pause, ana.reset, lambda: ana.set_viscosity(0, 0.2), lambda: ana.set_gravity_scale(0.5)):
+                    with self.assertRaises(slosh.Error) as raised:
+                        asked()
+                    self.assertIn("role run", str(raised.exception))
+                with self.assertRaises(slosh.Error):
+                    ben.set_grip_stiffness("left_hand", 2.0)
+                ana.set_grip_stiffness("left_hand", 0.9)
                 ben.pause()
                 until(ben, lambda: ben.rate == 0.0)
                 ben.pause(False)
@@ -83,7 +99,7 @@ class Visits(unittest.TestCase):
             kept = picture.copy()
             ana.wait(0.2)
             np.testing.assert_array_equal(picture, kept)
-            with slosh.join(self.link, watch=True, timeout=60.0) as cyd:
+            with slosh.join(link_file=self.links, watch=True, timeout=60.0) as cyd:
                 self.assertEqual(cyd.held, [])
                 until(cyd, lambda: cyd.time > 0.3)
             # The host ends: who waits is told.

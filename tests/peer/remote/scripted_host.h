@@ -125,6 +125,7 @@ class ScriptedHost final : public EndpointEvents {
     wire::WorldInfo info;
     info.run = run;
     say(info);
+    say(wire::Rights{true, true, true});
   }
   void send_scene() {
     const std::int64_t stream = endpoint_->open_stream(connection, false);
