@@ -5,13 +5,18 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <deque>
 #include <exception>
+#include <filesystem>
 #include <initializer_list>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "net/text/clean.h"
 #include "net/text/nearest.h"
@@ -90,7 +95,32 @@ int with_all_printed(int code) {
   return code == kExitOk ? kExitFailed : code;
 }
 
-int run(int argc, char** argv) {
+/// A file whose name begins with a dash is a file all the same: "-cup.glb" is read as "./-cup.glb". The words that stay
+/// as they are stay where they are.
+class Words {
+ public:
+  Words(int argc, char** argv) : all_(argv, argv + argc) {
+    for (std::size_t i = 1; i < all_.size(); ++i)
+      if (is_scene_file(all_[i])) all_[i] = changed_.emplace_back(std::string("./") + all_[i]).data();
+  }
+  char** data() { return all_.data(); }
+
+ private:
+  static bool is_scene_file(const std::string& word) {
+    if (!word.starts_with('-') || word.find('=') != std::string::npos) return false;
+    std::string end = std::filesystem::path(word).extension().string();
+    for (char& c : end) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    std::error_code code;
+    return (end == ".glb" || end == ".gltf") && std::filesystem::exists(word, code);
+  }
+
+  std::deque<std::string> changed_;
+  std::vector<char*> all_;
+};
+
+int run(int argc, char** given) {
+  Words words(argc, given);
+  char** const argv = words.data();
   CLI::App app("Touch simulated fluids together.", "slosh");
   app.set_version_flag("--version", version_text);
   app.require_subcommand(1);

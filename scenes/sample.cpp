@@ -8,8 +8,8 @@
 #include <set>
 
 #include "scenes/gltf/extras.h"
-#include "scenes/mesh/closed.h"
 #include "scenes/mesh/tree.h"
+#include "scenes/mesh/united.h"
 #include "scenes/sampling/distance.h"
 #include "scenes/sampling/fill.h"
 #include "scenes/sampling/place.h"
@@ -188,7 +188,7 @@ ParticleEstimate estimate_particles(const Scene& scene, double spacing) {
     const mesh::WeldedMesh welded = mesh::weld(scene.meshes[volume.mesh]);
     mesh::Components parts;
     mesh::find_defects(welded, &parts);
-    estimate.fluid += mesh::integrate_volume(welded, parts).volume / (spacing * spacing * spacing);
+    estimate.fluid += mesh::integrate_union(welded, parts).solid.volume / (spacing * spacing * spacing);
   }
   for (const Body& body : scene.bodies) {
     estimate.surface += body.point_probe ? 1.0 : surface_particles(scene, body, spacing);

@@ -12,7 +12,7 @@
 namespace slosh::gltf {
 
 /// Reads an accessor's numbers, `components` an element (1 scalar, 2 VEC2, 3 VEC3, 4 VEC4), normalised
-/// integers turned into [−1, 1] or [0, 1] when `allow_normalized`. `where` begins the error ("file: mesh 'x':
+/// integers turned into [−1, 1] or [0, 1] when `allow_normalized`; what is sparse is filled in. `where` begins the error ("file: mesh 'x':
 /// POSITION"). Errors: index out of range, wrong type, buffer view or buffer exceeded, a number that is not
 /// finite.
 Result<std::vector<double>> read_numbers(const tinygltf::Model& model, int accessor, int components,

@@ -111,12 +111,7 @@ std::vector<double> key_times(const std::optional<Curve>& a, const std::optional
 }  // namespace
 
 bool is_animated(const Document& document, int node) {
-  for (const tinygltf::Animation& animation : document.model.animations) {
-    for (const tinygltf::AnimationChannel& channel : animation.channels) {
-      if (channel.target_node == node) return true;
-    }
-  }
-  return false;
+  return document.animated[static_cast<std::size_t>(node)];
 }
 
 Result<std::vector<PoseKey>> read_motion(const Document& document, int node) {

@@ -1,5 +1,6 @@
 #include "scenes/gltf/container.h"
 
+#include <cctype>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
@@ -145,11 +146,21 @@ std::string version_problem(const nlohmann::json& json) {
 
 }  // namespace
 
+bool has_extension(const std::filesystem::path& file, const char* extension) {
+  std::string own = file.extension().string();
+  for (char& c : own) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return own == extension;
+}
+
 Result<Container> read_container(const std::filesystem::path& file) {
   Result<std::string> read = read_bytes(file);
   if (!read) return read.error();
   std::string& bytes = read.value();
   if (bytes.empty()) return Error{file.string(), "the file is empty", "Export the file again"};
+  if (bytes.starts_with("version https://git-lfs.github.com/spec/")) {
+    return Error{file.string(), "is a pointer of Git LFS, which stands in the file's place: the file is not here yet",
+                 "Run 'git lfs pull' in its folder"};
+  }
   Container out;
   std::string text;
   if (bytes.size() >= 4 && read_u32(bytes, 0) == kMagic) {
@@ -167,7 +178,7 @@ Result<Container> read_container(const std::filesystem::path& file) {
   try {
     out.json = nlohmann::json::parse(text, watch_depth);
   } catch (const std::exception& problem) {
-    if (!out.is_binary && file.extension() == ".glb")
+    if (!out.is_binary && has_extension(file, ".glb"))
       return Error{file.string(), "is no .glb: it does not begin with glTF", "Export the file again"};
     return Error{file.string(), "unreadable JSON: " + words_of(problem),
                  "Export the file again; glTF has no NaN, no comments and no trailing commas"};
