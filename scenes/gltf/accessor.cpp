@@ -145,6 +145,21 @@ double load_normalized(const unsigned char* from, int type) {
   }
 }
 
+double load_integer(const unsigned char* from, int type) {
+  switch (type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+      return load<std::int8_t>(from);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      return load<std::uint8_t>(from);
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+      return load<std::int16_t>(from);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      return load<std::uint16_t>(from);
+    default:
+      return std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
 std::optional<std::uint32_t> load_index(const unsigned char* from, int type) {
   switch (type) {
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
@@ -209,14 +224,15 @@ Result<Replaced> find_replaced(const tinygltf::Model& model, int index, int comp
 }  // namespace
 
 Result<std::vector<double>> read_numbers(const tinygltf::Model& model, int accessor, int components,
-                                         bool allow_normalized, const std::string& where) {
+                                         Integers integers, const std::string& where) {
   const bool sparse_alone = is_sparse_alone(model, accessor);
   const Result<Span> found = sparse_alone ? Result<Span>(zeros(model, accessor))
                                           : find_span(model, accessor, components, where);
   if (!found) return found.error();
   const Span& span = found.value();
   const bool is_float = span.component_type == TINYGLTF_COMPONENT_TYPE_FLOAT;
-  if (!is_float && !(allow_normalized && model.accessors[accessor].normalized)) {
+  const bool normalized = model.accessors[accessor].normalized;
+  if (!is_float && integers != Integers::kAny && !(integers == Integers::kNormalized && normalized)) {
     return Error{where + ": accessor " + std::to_string(accessor), "does not hold 32-bit floats",
                  "Export without quantisation"};
   }
@@ -224,7 +240,9 @@ Result<std::vector<double>> read_numbers(const tinygltf::Model& model, int acces
   std::vector<double> out;
   const auto read = [&](const Span& from, std::size_t i, int c) {
     const unsigned char* at = from.first + i * from.stride + static_cast<std::size_t>(c) * size;
-    return is_float ? load<float>(at) : load_normalized(at, from.component_type);
+    return is_float     ? load<float>(at)
+           : normalized ? load_normalized(at, from.component_type)
+                        : load_integer(at, from.component_type);
   };
   if (sparse_alone) {
     out.assign(span.count * components, 0.0);

@@ -1,5 +1,6 @@
 #include "scenes/gltf/document.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <optional>
@@ -172,6 +173,8 @@ Result<Document> read_document(const std::filesystem::path& file) {
   }
   document.looks = take_looks(json);
   document.looks["images"] = std::move(container.value().images);
+  const nlohmann::json used = json.value("extensionsUsed", nlohmann::json::array());
+  document.quantized = std::find(used.begin(), used.end(), "KHR_mesh_quantization") != used.end();
   drop_unused(json);
   Result<tinygltf::Model> model = to_model(file, container.value());
   if (!model) return model.error();

@@ -34,9 +34,10 @@ std::optional<Error> append_primitive(const Document& document, const tinygltf::
     return Error{where, "is not made of triangles (primitive mode " + std::to_string(primitive.mode) + ")",
                  "In Blender, convert to a mesh with faces and export again"};
   }
+  const Integers integers = document.quantized ? Integers::kAny : Integers::kNone;
   const auto position = primitive.attributes.find("POSITION");
   if (position == primitive.attributes.end()) return Error{where, "has no POSITION", "Export the file again"};
-  const auto positions = read_numbers(document.model, position->second, 3, false, where + ": POSITION");
+  const auto positions = read_numbers(document.model, position->second, 3, integers, where + ": POSITION");
   if (!positions) return positions.error();
   const std::size_t count = positions.value().size() / 3;
   std::vector<std::uint32_t> indices(count);
@@ -64,7 +65,7 @@ std::optional<Error> append_primitive(const Document& document, const tinygltf::
   out.normals.resize(out.positions.size(), glm::vec3(0.0f));
   const auto normal = primitive.attributes.find("NORMAL");
   if (normal != primitive.attributes.end()) {
-    const auto normals = read_numbers(document.model, normal->second, 3, false, where + ": NORMAL");
+    const auto normals = read_numbers(document.model, normal->second, 3, integers, where + ": NORMAL");
     if (!normals) return normals.error();
     if (normals.value().size() / 3 != count) {
       return Error{where + ": NORMAL", "has another count than POSITION", "Export the file again"};
@@ -86,7 +87,7 @@ void append_texcoords(const Document& document, const tinygltf::Primitive& primi
   out.texcoords.resize(out.positions.size(), glm::vec2(0.0f));
   const auto attribute = primitive.attributes.find("TEXCOORD_" + std::to_string(use.set));
   if (attribute == primitive.attributes.end()) return;
-  const auto read = read_numbers(document.model, attribute->second, 2, true, "TEXCOORD");
+  const auto read = read_numbers(document.model, attribute->second, 2, document.quantized ? Integers::kAny : Integers::kNormalized, "TEXCOORD");
   if (!read || read.value().size() / 2 != out.positions.size() - base) return;
   for (std::size_t i = base; i < out.texcoords.size(); ++i) {
     const double* t = read.value().data() + 2 * (i - base);

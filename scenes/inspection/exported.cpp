@@ -143,7 +143,7 @@ void look_at_motion(const gltf::Document& document, std::vector<Finding>& warnin
       for (const tinygltf::AnimationChannel& channel : animation.channels) {
         if (channel.target_node != node || channel.target_path != "translation") continue;
         const tinygltf::AnimationSampler& sampler = animation.samplers[channel.sampler];
-        const auto times = gltf::read_numbers(document.model, sampler.input, 1, false, "");
+        const auto times = gltf::read_numbers(document.model, sampler.input, 1, gltf::Integers::kNone, "");
         if (!times || times.value().size() < 8 || sampler.interpolation != "LINEAR") continue;
         std::vector<double> steps;
         for (std::size_t i = 1; i < times.value().size(); ++i)

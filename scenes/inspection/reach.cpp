@@ -27,8 +27,8 @@ void look_at_hands(const gltf::Document& document, const Scene& scene, std::vect
     const auto& keys = grip.hand_motion;
     const auto out = std::ranges::find_if(keys, [&](const PoseKey& key) {
       const glm::dvec3& p = key.pose.position;
-      return glm::any(glm::lessThan(p, scene.domain_min - kHandleReach)) ||
-             glm::any(glm::greaterThan(p, scene.domain_max + kHandleReach));
+      return glm::any(glm::lessThan(p, lowest_handle(scene.domain_min))) ||
+             glm::any(glm::greaterThan(p, highest_handle(scene.domain_max)));
     });
     if (out != keys.end())
       warnings.push_back({"hand-out-of-reach",

@@ -8,6 +8,9 @@
 namespace slosh::reading {
 namespace {
 
+/// More is one mistake that was made often, and nobody reads on.
+constexpr std::size_t kMostProblems = 100;
+
 /// s, where nothing is said: what the shipped scenes take.
 constexpr double kUsualSettle = 1.0;
 
@@ -87,7 +90,7 @@ class Stages {
     problems_.push_back(problem);
     problems_.insert(problems_.end(), reading_.further.begin(), reading_.further.end());
   }
-  bool over() const { return !all_ && !problems_.empty(); }
+  bool over() const { return !problems_.empty() && (!all_ || problems_.size() >= kMostProblems); }
 
   Reading& reading_;
   std::vector<Error>& problems_;
@@ -144,6 +147,8 @@ std::optional<Scene> read_stages(const gltf::Document& document, std::vector<Err
   stages.whole(read_domain, true);
   stages.whole(fit_spacing, true);
   tell_what_is_left_out(reading, notes);
+  if (problems.size() >= kMostProblems)
+    problems.push_back({document.file, "there are more errors than these", "Mend these first, then check again"});
   if (!problems.empty() || !reading.failed.empty()) return std::nullopt;
   return std::move(reading.scene);
 }
