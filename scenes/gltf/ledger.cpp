@@ -10,8 +10,8 @@ namespace {
 
 using nlohmann::json;
 
-/// Material extensions that are read.
-const std::set<std::string> kShown{"KHR_materials_emissive_strength"};
+/// Material extensions that are read, and those that Blender writes by itself and nobody misses.
+const std::set<std::string> kNotMissed{"KHR_materials_emissive_strength", "KHR_materials_specular", "KHR_materials_ior"};
 
 const json& member(const json& object, const char* name) {
   static const json kNothing;
@@ -73,7 +73,7 @@ class Ledger {
 
   std::string named(const char* what, const json& object, std::size_t index) const {
     const std::string name = text_of(object, "name");
-    return std::string(what) + " '" + (name.empty() ? "#" + std::to_string(index) : name) + "'";
+    return std::string(what) + " '" + (name.empty() ? std::string("#").append(std::to_string(index)) : name) + "'";
   }
 
   void look_at_node(const json& node, std::size_t index) {
@@ -87,6 +87,7 @@ class Ledger {
           "In Blender: Object > Apply > Make Instances Real, or export without GPU instancing");
     if (!member(node, "mesh").is_number_unsigned()) return;
     const json& mesh = root_["meshes"][node["mesh"].get<std::size_t>()];
+    several_materials_ += materials_of(mesh).size() > 1;
     if (node.contains("skin"))
       add("skin", who, "is bent by bones (a skin), and is read in its rest shape",
           "In Blender: apply the Armature modifier in the pose that is meant");
@@ -104,14 +105,9 @@ class Ledger {
       add("shape-key", who, "its shape key " + key + " has the weight " + weight + ", and its shape is read without",
           "In Blender: Object Data > Shape Keys > New Shape from Mix, delete the others, then Apply all Shape Keys");
     }
-    const json& materials = materials_of(mesh);
-    several_materials_ += materials.size() > 1;
-    coloured_ += std::ranges::any_of(member(mesh, "primitives"), [](const json& primitive) {
-      return member(primitive, "attributes").contains("COLOR_0");
-    });
   }
 
-  static json materials_of(const json& mesh) {
+  static std::set<std::size_t> materials_of(const json& mesh) {
     std::set<std::size_t> used;
     for (const json& primitive : member(mesh, "primitives"))
       if (member(primitive, "material").is_number_unsigned()) used.insert(primitive["material"].get<std::size_t>());
@@ -152,16 +148,13 @@ class Ledger {
       add("materials", "", plural(several_materials_, "mesh has", "meshes have") +
                                " several materials, and each is shown with its first",
           "Separate them: Edit Mode, Mesh > Separate > By Material, where it is only looked at");
-    if (coloured_ > 0)
-      add("vertex-colors", "", "vertex colours (of " + plural(coloured_, "mesh", "meshes") + ") are not shown",
-          "Bake them into a base colour texture");
     std::map<std::string, std::size_t> extensions;
     const json& materials = member(root_, "materials");
     if (!materials.is_array()) return;
     for (const json& material : materials) {
       const json& own = member(material, "extensions");
       if (!own.is_object()) continue;
-      for (const auto& [name, value] : own.items()) extensions[name] += kShown.contains(name) ? 0 : 1;
+      for (const auto& [name, value] : own.items()) extensions[name] += kNotMissed.contains(name) ? 0 : 1;
     }
     std::string names;
     for (const auto& [name, count] : extensions)
@@ -193,7 +186,7 @@ class Ledger {
   const json& root_;
   std::vector<std::size_t> nodes_;
   std::vector<Note> notes_;
-  std::size_t several_materials_ = 0, coloured_ = 0;
+  std::size_t several_materials_ = 0;
 };
 
 }  // namespace

@@ -156,15 +156,19 @@ void bake(const glm::dmat3& rest, TriangleMesh& mesh) {
 }  // namespace
 
 std::size_t work_of_mesh(const Document& document, int mesh) {
-  const auto count = [&](int accessor) {
-    const bool there = accessor >= 0 && static_cast<std::size_t>(accessor) < document.model.accessors.size();
-    return there ? document.model.accessors[static_cast<std::size_t>(accessor)].count : std::size_t{0};
+  // One that says more than its view has bytes is not read at all.
+  const auto count = [&model = document.model](int index) {
+    if (index < 0 || static_cast<std::size_t>(index) >= model.accessors.size()) return std::size_t{0};
+    const tinygltf::Accessor& accessor = model.accessors[static_cast<std::size_t>(index)];
+    if (accessor.bufferView < 0) return accessor.count;
+    if (static_cast<std::size_t>(accessor.bufferView) >= model.bufferViews.size()) return std::size_t{0};
+    return std::min(accessor.count, model.bufferViews[static_cast<std::size_t>(accessor.bufferView)].byteLength);
   };
   std::size_t work = 0;
   for (const tinygltf::Primitive& primitive : document.model.meshes[static_cast<std::size_t>(mesh)].primitives) {
     const auto position = primitive.attributes.find("POSITION");
     for (const int accessor : {primitive.indices, position == primitive.attributes.end() ? -1 : position->second})
-      work += std::min(count(accessor), kMostNumbersRead);
+      work += std::min(count(accessor), kMostNumbersRead + 1);
   }
   return work;
 }

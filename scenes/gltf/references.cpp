@@ -1,5 +1,7 @@
 #include "scenes/gltf/references.h"
 
+#include "scenes/gltf/roles.h"
+
 namespace slosh::gltf {
 namespace {
 
@@ -89,6 +91,7 @@ class ReferenceCheck {
   }
 
   void primitives(const json& mesh, const std::string& who) {
+    if (mesh.contains(kLeftOut)) return;
     if (!mesh.contains("primitives") || !mesh["primitives"].is_array() || mesh["primitives"].empty()) {
       return fail(who, "has no primitives");
     }

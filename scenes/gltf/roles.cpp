@@ -30,7 +30,7 @@ std::string kind_of(const json& node) {
 
 std::string named(const std::string& file, const char* what, const json& object, std::size_t index) {
   const bool has = object.is_object() && object.contains("name") && object["name"].is_string();
-  return file + ": " + what + " '" + (has ? object["name"].get<std::string>() : "#" + std::to_string(index)) + "'";
+  return file + ": " + what + " '" + (has ? object["name"].get<std::string>() : std::string("#").append(std::to_string(index))) + "'";
 }
 
 class Looks {
@@ -39,11 +39,17 @@ class Looks {
 
   std::vector<Note> drop() {
     if (!list(root_, "meshes").empty()) {
+      for (json& mesh : root_["meshes"])
+        if (mesh.is_object()) mesh.erase(kLeftOut);  // it is ours to say
       for (std::size_t m = 0; m < root_["meshes"].size(); ++m) drop_of_mesh(root_["meshes"][m], m);
       leave_out_empty_meshes();
       need_no_compression();
     }
     drop_animations();
+    if (coloured_ > 0)
+      notes_.push_back({"vertex-colors",
+                        {file_, "vertex colours are not shown, of " + std::to_string(coloured_) + " meshes or parts of them",
+                         "Bake them into a base colour texture"}});
     return std::move(notes_);
   }
 
@@ -60,10 +66,11 @@ class Looks {
   }
 
   /// Colours, tangents, joints and whatever exporters add are read by nobody.
-  void drop_unread(json& primitive, bool decorates) const {
+  void drop_unread(json& primitive, bool decorates) {
     json& attributes = primitive["attributes"];
     for (auto entry = attributes.begin(); entry != attributes.end();) {
       const std::string& name = entry.key();
+      coloured_ += name == "COLOR_0" && has_data(entry.value());
       const bool looks = name.starts_with("TEXCOORD_") || (decorates && name == "NORMAL");
       const bool read = name == "POSITION" || name == "NORMAL" || name.starts_with("TEXCOORD_");
       entry = read && !(looks && !has_data(entry.value())) ? std::next(entry) : attributes.erase(entry);
@@ -116,7 +123,7 @@ class Looks {
     }
     // Nobody has them any more; their places stay, since nodes name meshes by number.
     for (std::size_t m = 0; m < meshes.size(); ++m)
-      if (is_empty(m)) meshes[m] = {{"name", "left out"}, {"primitives", json::array()}};
+      if (is_empty(m)) meshes[m] = {{kLeftOut, true}, {"primitives", json::array()}};
   }
 
   static bool is_compressed(const json& primitive) {
@@ -183,6 +190,7 @@ class Looks {
   json& root_;
   std::vector<bool> physical_;
   bool compressed_ = false;  // something that was left out
+  std::size_t coloured_ = 0;
   std::vector<Note> notes_;
 };
 

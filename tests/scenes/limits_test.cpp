@@ -54,7 +54,7 @@ TEST(Limits, ADomainMayBeLargerThanWhatHandsReach) {
 TEST(Limits, AHandThatGoesOutOfReachOrTooFastIsTold) {
   const auto with_hand = [](double speed) {
     const test::TempFolder folder;
-    make::SceneWriter writer({{"title", "reach"}});
+    make::SceneWriter writer({{"title", "reach"}, {"duration_s", 2.0}});
     const int paint = writer.add_material("paint", {});
     const int cup = writer.add_node("cup", writer.add_mesh("m", make::box({-0.05, 0, -0.05}, {0.05, 0.1, 0.05}), paint), {},
                                     {{"slosh", "body"}, {"motion", "free"}, {"mass_kg", 0.5}});
