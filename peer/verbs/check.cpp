@@ -81,12 +81,19 @@ std::string object_of(const std::string& where) {
   return where.substr(from + begin.size(), to == std::string::npos ? to : to - from - begin.size());
 }
 
-void print_warnings(const std::vector<Finding>& warnings) {
+/// A sentence has one end.
+const char* end_of(const std::string& text) {
+  return text.ends_with('.') || text.ends_with('?') || text.ends_with('!') ? "" : ".";
+}
+
+void print_warnings(const std::vector<Finding>& warnings, bool plays) {
   if (warnings.empty()) return;
-  std::printf("%zu warning%s: it plays, but\n", warnings.size(), warnings.size() == 1 ? "" : "s");
+  std::printf("%zu warning%s: %s\n", warnings.size(), warnings.size() == 1 ? "" : "s",
+              plays ? "it plays, but" : "beside what keeps it from playing");
   for (const Finding& warning : warnings) {
-    std::printf("  %s: %s.\n", warning.text.where.c_str(), warning.text.what.c_str());
-    if (!warning.text.mend.empty()) std::printf("    %s.\n", warning.text.mend.c_str());
+    const Error& text = warning.text;
+    std::printf("  %s: %s%s\n", text.where.c_str(), text.what.c_str(), end_of(text.what));
+    if (!text.mend.empty()) std::printf("    %s%s\n", text.mend.c_str(), end_of(text.mend));
   }
 }
 
@@ -217,7 +224,7 @@ int check(const CheckOptions& options) {
     print_json(file.value().string(), found, counted);
   } else {
     if (counted && found.errors.empty()) print_scene(*found.scene, *counted);
-    print_warnings(found.warnings);
+    print_warnings(found.warnings, found.errors.empty());
     std::fflush(stdout);
     for (const Finding& finding : found.errors) fail(finding.text);
     if (found.errors.size() > 1)

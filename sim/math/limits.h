@@ -6,15 +6,15 @@
 namespace slosh {
 
 /// m from the scene's origin along each axis, of whatever takes part: particles are kept in floats, which are
-/// 0.03 mm apart there.
-constexpr double kFarthestPlace = 500.0;
+/// 0.06 mm apart there.
+constexpr double kFarthestPlace = 1000.0;
 
 constexpr double kHandleReach = 5.0;           ///< m beyond the scene's domain
 constexpr double kHandleSpeed = 20.0;          ///< m/s
 constexpr double kHandleAngularSpeed = 100.0;  ///< rad/s
 
 /// m from the origin: what is farther is a broken device, no hand.
-constexpr double kFarthestHandle = 1.0e3;
+constexpr double kFarthestHandle = 2.0e3;
 static_assert(kFarthestHandle > 1.74 * (kFarthestPlace + kHandleReach),
               "a hand can be wherever a scene and its domain may be (the diagonal of a cube is 1.733 of its edge)");
 

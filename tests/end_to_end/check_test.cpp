@@ -197,7 +197,7 @@ TEST_F(CheckTest, AKilometreFromTheOriginIsRefusedByCheckAndByARun) {
   far.write("far.gltf");
   const Said said = check("far.gltf");
   EXPECT_EQ(said.code, 1) << said.text;
-  EXPECT_TRUE(contains(said.text, "500 m from the scene's origin")) << said.text;
+  EXPECT_TRUE(contains(said.text, "1000 m from the scene's origin")) << said.text;
   EXPECT_EQ(test::slosh({"play", "far.gltf", "--no-render", "--unpaced", "--out", "out"}).code, 1);
 }
 

@@ -22,10 +22,10 @@ test::Edit moved(double x) {
 }
 
 TEST(Limits, ASceneFarFromItsOriginIsRefusedWithItsPlace) {
-  const Inspection far = inspect_foreign(moved(1000.0));
+  const Inspection far = inspect_foreign(moved(1000.1));
   ASSERT_FALSE(far.scene);
   const std::string all = test::all_text(far.errors);
-  for (const char* word : {"'cup'", "'water'", "500 m from the scene's origin", "Move everything near"})
+  for (const char* word : {"'cup'", "'water'", "1000 m from the scene's origin", "Move everything near"})
     EXPECT_NE(all.find(word), std::string::npos) << word << " in " << all;
 }
 
@@ -54,7 +54,8 @@ TEST(Limits, ADomainMayBeLargerThanWhatHandsReach) {
 TEST(Limits, AHandThatGoesOutOfReachOrTooFastIsTold) {
   const auto with_hand = [](double speed) {
     const test::TempFolder folder;
-    make::SceneWriter writer({{"title", "reach"}, {"duration_s", 2.0}});
+    const json title{{"title", "reach"}, {"duration_s", 2.0}};
+    make::SceneWriter writer(title);
     const int paint = writer.add_material("paint", {});
     const int cup = writer.add_node("cup", writer.add_mesh("m", make::box({-0.05, 0, -0.05}, {0.05, 0.1, 0.05}), paint), {},
                                     {{"slosh", "body"}, {"motion", "free"}, {"mass_kg", 0.5}});
