@@ -95,8 +95,8 @@ int with_all_printed(int code) {
   return code == kExitOk ? kExitFailed : code;
 }
 
-/// A file whose name begins with a dash is a file all the same: "-cup.glb" is read as "./-cup.glb". The words that stay
-/// as they are stay where they are.
+/// A file whose name begins with a dash is a file all the same: "-cup.glb" is read as "./-cup.glb". The words
+/// that stay as they are stay where they are.
 class Words {
  public:
   Words(int argc, char** argv) : all_(argv, argv + argc) {

@@ -124,8 +124,12 @@ void print_json(const std::string& file, const Inspection& found, const std::opt
       const CheckRun& run = *counted->run;
       nlohmann::json hands = nlohmann::json::array();
       for (const CheckRun::Felt& hand : run.hands)
-        hands.push_back({{"grip", hand.grip}, {"force_n", hand.force}, {"swing_n", hand.swing}, {"steady", hand.steady()}});
-      out["rest"] = {{"settled_s", run.settled}, {"left", run.left}, {"falling", run.falling}, {"hands", hands}};
+        hands.push_back({{"grip", hand.grip},
+                         {"force_n", hand.force},
+                         {"swing_n", hand.swing},
+                         {"steady", hand.steady()}});
+      out["rest"] = {
+          {"settled_s", run.settled}, {"left", run.left}, {"falling", run.falling}, {"hands", hands}};
     }
   }
   std::printf("%s\n", out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
@@ -182,15 +186,18 @@ void judge_filling(const Scene& scene, const SampleReport& filling, Inspection& 
     const FilledVolume& f = filling.volumes[v];
     const std::string where = scene.source_file + ": node '" + scene.fluid_volumes[v].name + "'";
     if (f.in_others > kMuch * f.mesh)
-      found.warnings.push_back({"shared-place",
-                                {where,
-                                 format("shares its place with volumes before it: %.3g of its %.3g litres are left out",
-                                        1e3 * f.in_others, 1e3 * f.mesh),
-                                 "Cut the volumes so that they touch, or move one"}});
+      found.warnings.push_back(
+          {"shared-place",
+           {where,
+            format("shares its place with volumes before it: %.3g of its %.3g litres are left out",
+                   1e3 * f.in_others, 1e3 * f.mesh),
+            "Cut the volumes so that they touch, or move one"}});
     if (f.no_place > kMuch * f.mesh)
-      found.warnings.push_back({"no-place",
-                                {where, format("%.3g of its %.3g litres find no place at this spacing", 1e3 * f.no_place, 1e3 * f.mesh),
-                                 "Give finer particles (--spacing), or leave the fluid room to rise above its mesh"}});
+      found.warnings.push_back(
+          {"no-place",
+           {where,
+            format("%.3g of its %.3g litres find no place at this spacing", 1e3 * f.no_place, 1e3 * f.mesh),
+            "Give finer particles (--spacing), or leave the fluid room to rise above its mesh"}});
   }
 }
 
@@ -198,7 +205,11 @@ void judge_filling(const Scene& scene, const SampleReport& filling, Inspection& 
 void judge_network(const Scene& scene, double spacing, Inspection& found) {
   const Result<wire::Bytes> packed = pack_scene(scene, spacing, SceneParts::kSeen);
   if (!packed)
-    found.warnings.push_back({"network", {scene.source_file, "plays here and cannot be hosted: " + packed.error().where + " " + packed.error().what, packed.error().mend}});
+    found.warnings.push_back(
+        {"network",
+         {scene.source_file,
+          "plays here and cannot be hosted: " + packed.error().where + " " + packed.error().what,
+          packed.error().mend}});
 }
 
 int check(const CheckOptions& options) {
@@ -245,14 +256,18 @@ void add_check(CLI::App& app, VerbRun& chosen) {
   verb->add_flag("--static", o->still, "Look at the file alone: do not let the scene run for a moment");
   verb->add_flag("--json", o->json, "The same for programs, as JSON on standard output");
   verb->footer(
-      "Loads the scene, checks every value and mesh, samples it, and lets it run for a moment: it settles, then "
+      "Loads the scene, checks every value and mesh, samples it, and lets it run for a moment: it settles, "
+      "then "
       "the hands\n"
-      "stand still and what they feel is watched, in 10 s at most (--static leaves that out). Errors keep it from\n"
+      "stand still and what they feel is watched, in 10 s at most (--static leaves that out). Errors keep it "
+      "from\n"
       "playing; warnings are what will surprise: what exports from Blender are known to lose (a camera, the "
       "animation,\n"
-      "modifiers, +Y up, …), what the file says and slosh does not do (shape keys, skins, hidden objects), fluid "
+      "modifiers, +Y up, …), what the file says and slosh does not do (shape keys, skins, hidden objects), "
+      "fluid "
       "that lies in\n"
-      "no vessel or leaves it, layers thinner than particles, hands out of reach, sizes in other units, a start "
+      "no vessel or leaves it, layers thinner than particles, hands out of reach, sizes in other units, a "
+      "start "
       "that is not at\n"
       "rest. Each with the number, and the mend in Blender's words.\n"
       "Exit code 1 where there is an error, 0 with warnings alone.\n\n"

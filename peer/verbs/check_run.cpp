@@ -15,8 +15,8 @@
 namespace slosh {
 namespace {
 
-constexpr double kMuchLeft = 0.005;       // of the fluid
-constexpr double kThinLayer = 1.5;        // spacings: one layer of particles, and what lies on it here and there
+constexpr double kMuchLeft = 0.005;  // of the fluid
+constexpr double kThinLayer = 1.5;   // spacings: one layer of particles, and what lies on it here and there
 constexpr double kMuchCompressed = 0.25;  // ρ/ρ⁰ − 1: a settled head is a few per cent
 
 /// World::settle asks a plain function.
@@ -28,7 +28,8 @@ struct Settling {
 Settling settling;
 
 bool settled_enough() {
-  settling.progress->update(settling.done / settling.steps, "settling, then watching the hands (--static leaves it out)");
+  settling.progress->update(settling.done / settling.steps,
+                            "settling, then watching the hands (--static leaves it out)");
   settling.done += 1.0;
   return steady_now_ns() > settling.until_ns;
 }
@@ -150,16 +151,24 @@ Result<CheckRun> run_for_check(const Scene& scene, const SampledScene& sampled, 
 }
 
 std::string rest_in_words(const CheckRun& run) {
-  if (run.watched <= 0.0) return "not tried: it would take longer than the " + format("%.0f s", kCheckBudget) + " that check has for it";
-  std::string text = run.settled < run.wanted ? format("settled %.2g of %.2g s in the time that check has; ", run.settled, run.wanted) : "";
+  if (run.watched <= 0.0)
+    return "not tried: it would take longer than the " + format("%.0f s", kCheckBudget) +
+           " that check has for it";
+  std::string text = run.settled < run.wanted ? format("settled %.2g of %.2g s in the time that check has; ",
+                                                       run.settled, run.wanted)
+                                              : "";
   for (const CheckRun::Felt& hand : run.hands)
     text += hand.grip + format(" feels %.3g N, within %.2g; ", hand.force, hand.swing);
-  text += format("%.3g %% of the fluid stays", run.fluid > 0 ? 100.0 * static_cast<double>(run.fluid - run.left - run.falling) / static_cast<double>(run.fluid) : 100.0);
+  text += format("%.3g %% of the fluid stays",
+                 run.fluid > 0 ? 100.0 * static_cast<double>(run.fluid - run.left - run.falling) /
+                                     static_cast<double>(run.fluid)
+                               : 100.0);
   return text;
 }
 
 void judge_run(const Scene& scene, const CheckRun& run, double spacing, Inspection& found) {
-  const auto warn = [&](const char* kind, const std::string& where, const std::string& what, const std::string& mend) {
+  const auto warn = [&](const char* kind, const std::string& where, const std::string& what,
+                        const std::string& mend) {
     found.warnings.push_back({kind, {scene.source_file + where, what, mend}});
   };
   if (run.fluid > 0 && run.settling >= run.fluid) {
@@ -171,29 +180,47 @@ void judge_run(const Scene& scene, const CheckRun& run, double spacing, Inspecti
   if (static_cast<double>(lost) > kMuchLeft * static_cast<double>(run.fluid)) {
     const bool nowhere = lost >= run.fluid;
     warn("spills", "",
-         nowhere ? "its fluid lies in no vessel: all of it has left, or falls past every body, after " + format("%.2g s", run.settled + run.watched)
-                 : grouped(lost) + " of " + grouped(run.fluid) + format(" fluid particles (%.2g %%)", 100.0 * static_cast<double>(lost) / static_cast<double>(run.fluid)) +
-                       " leave what holds them before a hand has moved: they run off an edge or through a gap",
-         "Look where with 'slosh play'; put the fluid into a vessel with a floor and walls higher than it, and close the vessel's mesh");
+         nowhere
+             ? "its fluid lies in no vessel: all of it has left, or falls past every body, after " +
+                   format("%.2g s", run.settled + run.watched)
+             : grouped(lost) + " of " + grouped(run.fluid) +
+                   format(" fluid particles (%.2g %%)",
+                          100.0 * static_cast<double>(lost) / static_cast<double>(run.fluid)) +
+                   " leave what holds them before a hand has moved: they run off an edge or through a gap",
+         "Look where with 'slosh play'; put the fluid into a vessel with a floor and walls higher than it, "
+         "and close the vessel's mesh");
   }
   for (const CheckRun::Layer& layer : run.layers) {
     if (layer.depth >= kThinLayer * spacing) continue;
-    warn("thin-layer", ": fluid '" + layer.fluid + "'",
-         format("lies %.2g mm deep at particles of %.3g mm: a layer thinner than two particles flows as beads do", 1e3 * layer.depth, 1e3 * spacing),
-         format("Give finer particles (--spacing %.2g, the scene's spacing_max_m), more fluid, or a narrower vessel", 0.5 * layer.depth));
+    warn(
+        "thin-layer", ": fluid '" + layer.fluid + "'",
+        format(
+            "lies %.2g mm deep at particles of %.3g mm: a layer thinner than two particles flows as beads do",
+            1e3 * layer.depth, 1e3 * spacing),
+        format("Give finer particles (--spacing %.2g, the scene's spacing_max_m), more fluid, or a narrower "
+               "vessel",
+               0.5 * layer.depth));
   }
   if (run.compression > kMuchCompressed)
-    warn("squeezed", "", format("fluid is squeezed to %.2g times its density somewhere", 1.0 + run.compression),
-         "Look for volumes of fluid, or bodies, that share one place, and for a space that is too narrow for its fluid");
-  const auto thrown = [](const Body& body) { return body.twist.linear != glm::dvec3(0.0) || body.twist.angular != glm::dvec3(0.0); };
+    warn("squeezed", "",
+         format("fluid is squeezed to %.2g times its density somewhere", 1.0 + run.compression),
+         "Look for volumes of fluid, or bodies, that share one place, and for a space that is too narrow for "
+         "its fluid");
+  const auto thrown = [](const Body& body) {
+    return body.twist.linear != glm::dvec3(0.0) || body.twist.angular != glm::dvec3(0.0);
+  };
   const bool starts_moving = std::ranges::any_of(scene.bodies, thrown) ||
-                             std::ranges::any_of(scene.fluid_volumes, [](const FluidVolume& volume) { return volume.velocity != glm::dvec3(0.0); });
+                             std::ranges::any_of(scene.fluid_volumes, [](const FluidVolume& volume) {
+                               return volume.velocity != glm::dvec3(0.0);
+                             });
   for (const CheckRun::Felt& hand : run.hands) {
     if (hand.steady() || starts_moving) continue;
     warn("restless", ": node '" + hand.grip + "'",
          format("does not start at rest: the hand feels %.3g N, give or take %.2g", hand.force, hand.swing),
-         run.wanted > 0.0 ? format("Give the scene settle_s = %.2g", 2.0 * run.wanted)
-                          : std::string("Leave the scene's settle_s out, or give it 1 s: the world comes to rest before the run"));
+         run.wanted > 0.0
+             ? format("Give the scene settle_s = %.2g", 2.0 * run.wanted)
+             : std::string(
+                   "Leave the scene's settle_s out, or give it 1 s: the world comes to rest before the run"));
   }
 }
 

@@ -1,4 +1,5 @@
-// What `check` learns of a scene by letting it run for a moment: settled, then watched while the hands stand still.
+// What `check` learns of a scene by letting it run for a moment: settled, then watched while the hands stand
+// still.
 #pragma once
 
 #include <string>
@@ -19,10 +20,10 @@ constexpr double kWatched = 0.4;
 constexpr double kSteadyShare = 0.02;
 
 struct CheckRun {
-  double wanted = 0.0;   ///< simulated s of settling that the scene asks for
-  double settled = 0.0;  ///< of these, what the budget had room for
-  double watched = 0.0;  ///< simulated s after it; 0: there was no room
-  std::size_t fluid = 0;    ///< particles at the start
+  double wanted = 0.0;       ///< simulated s of settling that the scene asks for
+  double settled = 0.0;      ///< of these, what the budget had room for
+  double watched = 0.0;      ///< simulated s after it; 0: there was no room
+  std::size_t fluid = 0;     ///< particles at the start
   std::size_t settling = 0;  ///< of these left the domain while it settled ...
   std::size_t left = 0;      ///< ... in all by the end ...
   std::size_t falling = 0;   ///< ... and are below all bodies, on their way out
@@ -43,9 +44,10 @@ struct CheckRun {
   std::vector<Layer> layers;
 };
 
-/// Runs the scene on the CPU, all cores, each hand where its script or its grip begins. Errors: no world can be made.
-/// What does not fit into kCheckBudget is left out, and that is in the result.
-Result<CheckRun> run_for_check(const Scene& scene, const SampledScene& sampled, const Plan& plan, Progress& progress);
+/// Runs the scene on the CPU, all cores, each hand where its script or its grip begins. Errors: no world can
+/// be made. What does not fit into kCheckBudget is left out, and that is in the result.
+Result<CheckRun> run_for_check(const Scene& scene, const SampledScene& sampled, const Plan& plan,
+                               Progress& progress);
 
 /// What is not as it will have been meant; errors are what a run would end with.
 void judge_run(const Scene& scene, const CheckRun& run, double spacing, Inspection& found);

@@ -196,7 +196,8 @@ void add_world_options(CLI::App& verb, PlayOptions& options, const std::string& 
   add_backend_option(verb, options.backend, "What the simulation runs on");
   verb.add_option("--spacing", options.spacing,
                   "Metres between particles, or auto: measures the finest in real time (kept once it was)");
-  verb.add_option("--particles", options.particles, "Fluid particles to aim at, in place of a spacing: 20000, or 1e6")
+  verb.add_option("--particles", options.particles,
+                  "Fluid particles to aim at, in place of a spacing: 20000, or 1e6")
       ->transform(whole_number())
       ->check(CLI::Range(1, 20000000))
       ->excludes("--spacing");

@@ -27,8 +27,9 @@ class HandsTap final : public HostTap {
     std::vector<std::string> all;
     for (std::size_t g = 0; g < acted_.size() && g < scene.grips.size(); ++g) {
       if (acted_[g] || refused_[g] == PoseFault::kNone) continue;
-      all.push_back("nothing was held by '" + scene.grips[g].name + "' in all of the run: its poses are not used, " +
-                    words_of(refused_[g]) + ". 'slosh check' says where the scene's hands go");
+      all.push_back("nothing was held by '" + scene.grips[g].name +
+                    "' in all of the run: its poses are not used, " + words_of(refused_[g]) +
+                    ". 'slosh check' says where the scene's hands go");
     }
     return all;
   }

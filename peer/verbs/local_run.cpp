@@ -272,7 +272,8 @@ void LocalRun::report(RunSummary& s) const {
   if (!prepared_.folder.empty()) s.files = {"wrenches.csv", "poses.csv"};
   report_instruments(measurer_.get(), prepared_.scene, prepared_.sampled, host_->world(), s);
   report_export(exporter_.get(), s);
-  for (std::string& sentence : hands_->never_acted(prepared_.scene)) s.problems.push_back(std::move(sentence));
+  for (std::string& sentence : hands_->never_acted(prepared_.scene))
+    s.problems.push_back(std::move(sentence));
 }
 
 }  // namespace slosh

@@ -64,9 +64,9 @@ struct Data {
 Result<Span> find_data(const tinygltf::Model& model, const Data& data, const std::string& who) {
   const char* const again = "Export the file again";
   if (data.view < 0 || static_cast<std::size_t>(data.view) >= model.bufferViews.size()) {
-    return Error{who,
-                 "points at bufferView " + std::to_string(data.view) + " of " + number(model.bufferViews.size()),
-                 again};
+    return Error{
+        who, "points at bufferView " + std::to_string(data.view) + " of " + number(model.bufferViews.size()),
+        again};
   }
   const tinygltf::BufferView& view = model.bufferViews[static_cast<std::size_t>(data.view)];
   if (view.buffer < 0 || static_cast<std::size_t>(view.buffer) >= model.buffers.size()) {
@@ -89,17 +89,15 @@ Result<Span> find_data(const tinygltf::Model& model, const Data& data, const std
     return Error{who, "has the byteStride " + number(stride), again};
   if (data.count == 0) return Error{who, "is empty", again};
   // In this order nothing can overflow: element <= view, then how many strides fit.
-  const bool starts_inside =
-      data.offset <= view.byteLength && view.byteLength - data.offset >= element;
+  const bool starts_inside = data.offset <= view.byteLength && view.byteLength - data.offset >= element;
   if (!starts_inside || data.count - 1 > (view.byteLength - data.offset - element) / stride) {
     return Error{who,
                  "has " + number(data.count) + " elements of " + number(element) + " bytes from byte " +
-                     number(data.offset) + ", its bufferView has " + number(view.byteLength) +
-                     " bytes",
+                     number(data.offset) + ", its bufferView has " + number(view.byteLength) + " bytes",
                  again};
   }
-  return Span{model.buffers[view.buffer].data.data() + view.byteOffset + data.offset, stride,
-              data.count, data.component_type};
+  return Span{model.buffers[view.buffer].data.data() + view.byteOffset + data.offset, stride, data.count,
+              data.component_type};
 }
 
 Result<Span> find_span(const tinygltf::Model& model, int index, int components, const std::string& where) {
@@ -118,8 +116,9 @@ Result<Span> find_span(const tinygltf::Model& model, int index, int components, 
   const int size = component_size(accessor.componentType);
   if (size == 0)
     return Error{who, "has the unknown component type " + std::to_string(accessor.componentType), again};
-  return find_data(model, {accessor.bufferView, accessor.byteOffset, accessor.count, accessor.componentType,
-                           static_cast<std::size_t>(size) * static_cast<std::size_t>(components)},
+  return find_data(model,
+                   {accessor.bufferView, accessor.byteOffset, accessor.count, accessor.componentType,
+                    static_cast<std::size_t>(size) * static_cast<std::size_t>(components)},
                    who);
 }
 template <class T>
@@ -173,7 +172,8 @@ std::optional<std::uint32_t> load_index(const unsigned char* from, int type) {
   }
 }
 
-/// A sparse accessor need not have data to begin with: it is zeros, and these are bounded here, since no buffer does.
+/// A sparse accessor need not have data to begin with: it is zeros, and these are bounded here, since no
+/// buffer does.
 constexpr std::size_t kMostZeros = 6'000'000;
 
 bool is_sparse_alone(const tinygltf::Model& model, int index) {
@@ -193,29 +193,35 @@ struct Replaced {
   Span values;
 };
 
-Result<Replaced> find_replaced(const tinygltf::Model& model, int index, int components, const std::string& where) {
+Result<Replaced> find_replaced(const tinygltf::Model& model, int index, int components,
+                               const std::string& where) {
   const tinygltf::Accessor& accessor = model.accessors[index];
   const auto& sparse = accessor.sparse;
   const std::string who = where + ": accessor " + std::to_string(index);
   const char* const again = "Export the file again";
-  if (sparse.count <= 0 || static_cast<std::size_t>(sparse.count) > accessor.count || sparse.indices.byteOffset < 0 ||
-      sparse.values.byteOffset < 0 || accessor.type != gltf_type(components))
+  if (sparse.count <= 0 || static_cast<std::size_t>(sparse.count) > accessor.count ||
+      sparse.indices.byteOffset < 0 || sparse.values.byteOffset < 0 || accessor.type != gltf_type(components))
     return Error{who, "its sparse part fits nothing", again};
   const auto count = static_cast<std::size_t>(sparse.count);
   const auto size = static_cast<std::size_t>(component_size(accessor.componentType));
   const Result<Span> where_to = find_data(
-      model, {sparse.indices.bufferView, static_cast<std::size_t>(sparse.indices.byteOffset), count,
-              sparse.indices.componentType, static_cast<std::size_t>(component_size(sparse.indices.componentType))},
+      model,
+      {sparse.indices.bufferView, static_cast<std::size_t>(sparse.indices.byteOffset), count,
+       sparse.indices.componentType, static_cast<std::size_t>(component_size(sparse.indices.componentType))},
       who + ": sparse indices");
   if (!where_to) return where_to.error();
-  const Result<Span> values = find_data(model, {sparse.values.bufferView, static_cast<std::size_t>(sparse.values.byteOffset),
-                                                count, accessor.componentType, size * components},
-                                        who + ": sparse values");
+  const Result<Span> values =
+      find_data(model,
+                {sparse.values.bufferView, static_cast<std::size_t>(sparse.values.byteOffset), count,
+                 accessor.componentType, size * components},
+                who + ": sparse values");
   if (!values) return values.error();
   Replaced out{{}, values.value()};
   for (std::size_t i = 0; i < count; ++i) {
-    const auto at = load_index(where_to.value().first + i * where_to.value().stride, sparse.indices.componentType);
-    if (!at || *at >= accessor.count) return Error{who, "its sparse part names an element that is not there", again};
+    const auto at =
+        load_index(where_to.value().first + i * where_to.value().stride, sparse.indices.componentType);
+    if (!at || *at >= accessor.count)
+      return Error{who, "its sparse part names an element that is not there", again};
     out.at.push_back(*at);
   }
   return out;
@@ -226,8 +232,8 @@ Result<Replaced> find_replaced(const tinygltf::Model& model, int index, int comp
 Result<std::vector<double>> read_numbers(const tinygltf::Model& model, int accessor, int components,
                                          Integers integers, const std::string& where) {
   const bool sparse_alone = is_sparse_alone(model, accessor);
-  const Result<Span> found = sparse_alone ? Result<Span>(zeros(model, accessor))
-                                          : find_span(model, accessor, components, where);
+  const Result<Span> found =
+      sparse_alone ? Result<Span>(zeros(model, accessor)) : find_span(model, accessor, components, where);
   if (!found) return found.error();
   const Span& span = found.value();
   const bool is_float = span.component_type == TINYGLTF_COMPONENT_TYPE_FLOAT;

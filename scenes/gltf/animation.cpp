@@ -27,7 +27,8 @@ Result<Curve> read_curve(const Document& document, const tinygltf::AnimationSamp
                          const std::string& where) {
   auto times = read_numbers(document.model, sampler.input, 1, Integers::kNone, where + ": input");
   if (!times) return times.error();
-  auto values = read_numbers(document.model, sampler.output, width, width == 4 ? Integers::kNormalized : Integers::kNone, where + ": output");
+  auto values = read_numbers(document.model, sampler.output, width,
+                             width == 4 ? Integers::kNormalized : Integers::kNone, where + ": output");
   if (!values) return values.error();
   Curve curve{std::move(times.value()), std::move(values.value()), width, false, false};
   curve.step = sampler.interpolation == "STEP";

@@ -54,8 +54,8 @@ Result<std::string> read_bytes(const std::filesystem::path& file) {
   return bytes;
 }
 
-/// How deep brackets go in a JSON text. (The library's own callback would tell, and looks through all of a list at the end
-/// of each of its objects: of 80 000 nodes that is half a minute.)
+/// How deep brackets go in a JSON text. (The library's own callback would tell, and looks through all of a
+/// list at the end of each of its objects: of 80 000 nodes that is half a minute.)
 int deepest_nesting(const std::string& text) {
   int depth = 0, deepest = 0;
   bool in_string = false;
@@ -180,7 +180,8 @@ Result<Container> read_container(const std::filesystem::path& file) {
   std::string& bytes = read.value();
   if (bytes.empty()) return Error{file.string(), "the file is empty", "Export the file again"};
   if (bytes.starts_with("version https://git-lfs.github.com/spec/")) {
-    return Error{file.string(), "is a pointer of Git LFS, which stands in the file's place: the file is not here yet",
+    return Error{file.string(),
+                 "is a pointer of Git LFS, which stands in the file's place: the file is not here yet",
                  "Run 'git lfs pull' in its folder"};
   }
   Container out;

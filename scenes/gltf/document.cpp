@@ -131,7 +131,8 @@ std::optional<Error> walk(Document& document) {
       document.parent[*child] = index;
       depth[*child] = depth[index] + 1;
       if (depth[*child] > kDeepestNodes) {
-        return Error{document.owner(*child), "lies below more than " + std::to_string(kDeepestNodes) + " nodes",
+        return Error{document.owner(*child),
+                     "lies below more than " + std::to_string(kDeepestNodes) + " nodes",
                      "In Blender: Object > Parent > Clear and Keep Transformation"};
       }
       todo.push_back(*child);

@@ -28,9 +28,9 @@ struct Document {
   nlohmann::json scene_extras;         ///< of the default scene; an object
   nlohmann::json looks;  ///< "materials" (a list of objects, where there), "textures", "samplers", "images":
                          ///< as they stand
-  std::vector<Note> notes;              ///< what the file says and is left out (roles.h, ledger.h)
-  bool quantized = false;               ///< meshes may have whole numbers (KHR_mesh_quantization)
-  std::vector<bool> animated;           ///< by node: some channel of some animation moves it
+  std::vector<Note> notes;     ///< what the file says and is left out (roles.h, ledger.h)
+  bool quantized = false;      ///< meshes may have whole numbers (KHR_mesh_quantization)
+  std::vector<bool> animated;  ///< by node: some channel of some animation moves it
 
   /// "file: node 'name'", as errors begin.
   std::string owner(int node) const;

@@ -20,15 +20,17 @@ std::string shown(const nlohmann::json& value) {
 
 /// Words that are units at a field's end.
 bool is_unit(const std::string& word) {
-  constexpr const char* kUnits[] = {"m",  "s",  "s2", "m2", "m3",   "kg",  "kg2", "g",   "cm",  "cm3", "mm", "n",
-                                    "nm", "pa", "mpa", "rad", "per", "deg", "l",  "ml",  "mpas", "cp"};
+  constexpr const char* kUnits[] = {"m", "s",  "s2", "m2",  "m3",  "kg",  "kg2", "g", "cm", "cm3",  "mm",
+                                    "n", "nm", "pa", "mpa", "rad", "per", "deg", "l", "ml", "mpas", "cp"};
   return std::find(std::begin(kUnits), std::end(kUnits), word) != std::end(kUnits);
 }
 
-/// A field without its units, in small letters: "mass" of "mass_kg", "angular_velocity" of "angular_velocity_rad_s".
+/// A field without its units, in small letters: "mass" of "mass_kg", "angular_velocity" of
+/// "angular_velocity_rad_s".
 std::string stem_of(const std::string& key) {
   std::string stem;
-  for (const char c : key) stem += static_cast<char>(c == '-' || c == ' ' ? '_' : std::tolower(static_cast<unsigned char>(c)));
+  for (const char c : key)
+    stem += static_cast<char>(c == '-' || c == ' ' ? '_' : std::tolower(static_cast<unsigned char>(c)));
   for (std::size_t at = stem.rfind('_'); at != std::string::npos && at > 0; at = stem.rfind('_')) {
     if (!is_unit(stem.substr(at + 1))) break;
     stem.erase(at);
@@ -36,8 +38,8 @@ std::string stem_of(const std::string& key) {
   return stem;
 }
 
-/// The field that was meant by a word that is none: near to one, or one with other units or none. Empty: somebody
-/// else's word.
+/// The field that was meant by a word that is none: near to one, or one with other units or none. Empty:
+/// somebody else's word.
 std::string meant_field(const std::string& key, const std::vector<std::string>& known) {
   const std::string near = nearest_word(key, known);
   if (!near.empty()) return near;
@@ -188,7 +190,8 @@ std::vector<Error> Extras::foreign() const {
   std::vector<Error> all;
   for (const std::string& key : unknown()) {
     if (!meant_field(key, known_).empty()) continue;
-    all.push_back({owner_ + ": extras." + key, "is a custom property that slosh does not know, and is not read",
+    all.push_back({owner_ + ": extras." + key,
+                   "is a custom property that slosh does not know, and is not read",
                    "Begin its name with _ if it is yours; scenes/README.md lists the known ones"});
   }
   return all;

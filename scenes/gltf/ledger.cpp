@@ -11,7 +11,8 @@ namespace {
 using nlohmann::json;
 
 /// Material extensions that are read, and those that Blender writes by itself and nobody misses.
-const std::set<std::string> kNotMissed{"KHR_materials_emissive_strength", "KHR_materials_specular", "KHR_materials_ior"};
+const std::set<std::string> kNotMissed{"KHR_materials_emissive_strength", "KHR_materials_specular",
+                                       "KHR_materials_ior"};
 
 const json& member(const json& object, const char* name) {
   static const json kNothing;
@@ -73,7 +74,8 @@ class Ledger {
 
   std::string named(const char* what, const json& object, std::size_t index) const {
     const std::string name = text_of(object, "name");
-    return std::string(what) + " '" + (name.empty() ? std::string("#").append(std::to_string(index)) : name) + "'";
+    return std::string(what) + " '" + (name.empty() ? std::string("#").append(std::to_string(index)) : name) +
+           "'";
   }
 
   void look_at_node(const json& node, std::size_t index) {
@@ -102,15 +104,18 @@ class Ledger {
                                   : std::to_string(i + 1);
       char weight[32];
       std::snprintf(weight, sizeof weight, "%.3g", weights[i].get<double>());
-      add("shape-key", who, "its shape key " + key + " has the weight " + weight + ", and its shape is read without",
-          "In Blender: Object Data > Shape Keys > New Shape from Mix, delete the others, then Apply all Shape Keys");
+      add("shape-key", who,
+          "its shape key " + key + " has the weight " + weight + ", and its shape is read without",
+          "In Blender: Object Data > Shape Keys > New Shape from Mix, delete the others, then Apply all "
+          "Shape Keys");
     }
   }
 
   static std::set<std::size_t> materials_of(const json& mesh) {
     std::set<std::size_t> used;
     for (const json& primitive : member(mesh, "primitives"))
-      if (member(primitive, "material").is_number_unsigned()) used.insert(primitive["material"].get<std::size_t>());
+      if (member(primitive, "material").is_number_unsigned())
+        used.insert(primitive["material"].get<std::size_t>());
     return used;
   }
 
@@ -127,7 +132,8 @@ class Ledger {
         const json& node = member(target, "node");
         const bool there = node.is_number_unsigned();
         const std::string kind =
-            there ? text_of(member(root_["nodes"][node.get<std::size_t>()], "extras"), "slosh") : std::string();
+            there ? text_of(member(root_["nodes"][node.get<std::size_t>()], "extras"), "slosh")
+                  : std::string();
         // Of what the physics moves keys are an error of their own.
         if (!kind.empty() && kind != "picture") continue;
         ++unused;
@@ -145,8 +151,9 @@ class Ledger {
 
   void look_at_materials() {
     if (several_materials_ > 0)
-      add("materials", "", plural(several_materials_, "mesh has", "meshes have") +
-                               " several materials, and each is shown with its first",
+      add("materials", "",
+          plural(several_materials_, "mesh has", "meshes have") +
+              " several materials, and each is shown with its first",
           "Separate them: Edit Mode, Mesh > Separate > By Material, where it is only looked at");
     std::map<std::string, std::size_t> extensions;
     const json& materials = member(root_, "materials");
@@ -177,8 +184,9 @@ class Ledger {
     const json& scenes = member(root_, "scenes");
     if (!scenes.is_array() || scenes.size() < 2) return;
     const std::size_t read = root_.value("scene", std::size_t{0});
-    add("other-scenes", "", "holds " + std::to_string(scenes.size()) + " scenes, and " +
-                                named("scene", scenes[read], read) + " alone is read",
+    add("other-scenes", "",
+        "holds " + std::to_string(scenes.size()) + " scenes, and " + named("scene", scenes[read], read) +
+            " alone is read",
         "In Blender's glTF export: Include > Active Scene, with the one that is meant");
   }
 

@@ -30,7 +30,8 @@ std::vector<glm::uvec3> triangles_of(const std::vector<std::uint32_t>& indices, 
 std::optional<Error> append_primitive(const Document& document, const tinygltf::Primitive& primitive,
                                       const std::string& where, TriangleMesh& out, std::vector<bool>& flat) {
   const bool is_list = primitive.mode == TINYGLTF_MODE_TRIANGLES || primitive.mode == -1;
-  if (!is_list && primitive.mode != TINYGLTF_MODE_TRIANGLE_STRIP && primitive.mode != TINYGLTF_MODE_TRIANGLE_FAN) {
+  if (!is_list && primitive.mode != TINYGLTF_MODE_TRIANGLE_STRIP &&
+      primitive.mode != TINYGLTF_MODE_TRIANGLE_FAN) {
     return Error{where, "is not made of triangles (primitive mode " + std::to_string(primitive.mode) + ")",
                  "In Blender, convert to a mesh with faces and export again"};
   }
@@ -87,7 +88,8 @@ void append_texcoords(const Document& document, const tinygltf::Primitive& primi
   out.texcoords.resize(out.positions.size(), glm::vec2(0.0f));
   const auto attribute = primitive.attributes.find("TEXCOORD_" + std::to_string(use.set));
   if (attribute == primitive.attributes.end()) return;
-  const auto read = read_numbers(document.model, attribute->second, 2, document.quantized ? Integers::kAny : Integers::kNormalized, "TEXCOORD");
+  const auto read = read_numbers(document.model, attribute->second, 2,
+                                 document.quantized ? Integers::kAny : Integers::kNormalized, "TEXCOORD");
   if (!read || read.value().size() / 2 != out.positions.size() - base) return;
   for (std::size_t i = base; i < out.texcoords.size(); ++i) {
     const double* t = read.value().data() + 2 * (i - base);
@@ -117,13 +119,14 @@ void mend_normals(TriangleMesh& mesh) {
 
 /// Gives faces without normals their own, and vertices of their own where neighbours face another way.
 void shade_flat(TriangleMesh& mesh, const std::vector<bool>& flat) {
-  constexpr float kSame = 1.0f - 1e-6f;  // cosine
+  constexpr float kSame = 1.0f - 1e-6f;                       // cosine
   std::vector<std::uint32_t> next(mesh.positions.size(), 0);  // further vertices of the same place; 0 = none
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     if (!flat[i]) continue;
     glm::uvec3& t = mesh.triangles[i];
     const glm::dvec3 a(mesh.positions[t.x]);
-    const glm::dvec3 face = glm::cross(glm::dvec3(mesh.positions[t.y]) - a, glm::dvec3(mesh.positions[t.z]) - a);
+    const glm::dvec3 face =
+        glm::cross(glm::dvec3(mesh.positions[t.y]) - a, glm::dvec3(mesh.positions[t.z]) - a);
     if (!(glm::length(face) > 0.0)) continue;
     const glm::vec3 normal(glm::normalize(face));
     for (int corner = 0; corner < 3; ++corner) {
@@ -162,12 +165,15 @@ std::size_t work_of_mesh(const Document& document, int mesh) {
     const tinygltf::Accessor& accessor = model.accessors[static_cast<std::size_t>(index)];
     if (accessor.bufferView < 0) return accessor.count;
     if (static_cast<std::size_t>(accessor.bufferView) >= model.bufferViews.size()) return std::size_t{0};
-    return std::min(accessor.count, model.bufferViews[static_cast<std::size_t>(accessor.bufferView)].byteLength);
+    return std::min(accessor.count,
+                    model.bufferViews[static_cast<std::size_t>(accessor.bufferView)].byteLength);
   };
   std::size_t work = 0;
-  for (const tinygltf::Primitive& primitive : document.model.meshes[static_cast<std::size_t>(mesh)].primitives) {
+  for (const tinygltf::Primitive& primitive :
+       document.model.meshes[static_cast<std::size_t>(mesh)].primitives) {
     const auto position = primitive.attributes.find("POSITION");
-    for (const int accessor : {primitive.indices, position == primitive.attributes.end() ? -1 : position->second})
+    for (const int accessor :
+         {primitive.indices, position == primitive.attributes.end() ? -1 : position->second})
       work += std::min(count(accessor), kMostNumbersRead + 1);
   }
   return work;

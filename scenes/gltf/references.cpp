@@ -87,7 +87,8 @@ class ReferenceCheck {
     if (error_) return;
     const json& accessor = root_["accessors"][object[field].get<std::size_t>()];
     const bool needs_view = !accessor.contains("sparse") || label == "indices";
-    if (needs_view && !accessor.contains("bufferView")) fail(who + ": " + label, "its accessor has no bufferView");
+    if (needs_view && !accessor.contains("bufferView"))
+      fail(who + ": " + label, "its accessor has no bufferView");
   }
 
   void primitives(const json& mesh, const std::string& who) {

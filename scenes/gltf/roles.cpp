@@ -30,7 +30,8 @@ std::string kind_of(const json& node) {
 
 std::string named(const std::string& file, const char* what, const json& object, std::size_t index) {
   const bool has = object.is_object() && object.contains("name") && object["name"].is_string();
-  return file + ": " + what + " '" + (has ? object["name"].get<std::string>() : std::string("#").append(std::to_string(index))) + "'";
+  return file + ": " + what + " '" +
+         (has ? object["name"].get<std::string>() : std::string("#").append(std::to_string(index))) + "'";
 }
 
 class Looks {
@@ -47,9 +48,11 @@ class Looks {
     }
     drop_animations();
     if (coloured_ > 0)
-      notes_.push_back({"vertex-colors",
-                        {file_, "vertex colours are not shown, of " + std::to_string(coloured_) + " meshes or parts of them",
-                         "Bake them into a base colour texture"}});
+      notes_.push_back(
+          {"vertex-colors",
+           {file_,
+            "vertex colours are not shown, of " + std::to_string(coloured_) + " meshes or parts of them",
+            "Bake them into a base colour texture"}});
     return std::move(notes_);
   }
 
@@ -80,7 +83,8 @@ class Looks {
   bool can_be_drawn(const json& primitive) const {
     if (!primitive.is_object() || !primitive.contains("attributes") || !primitive["attributes"].is_object())
       return false;
-    if (primitive.contains("mode") && !(primitive["mode"].is_number_integer() && primitive["mode"] >= kTriangles))
+    if (primitive.contains("mode") &&
+        !(primitive["mode"].is_number_integer() && primitive["mode"] >= kTriangles))
       return false;
     if (is_compressed(primitive)) return false;
     const json& attributes = primitive["attributes"];
@@ -105,18 +109,21 @@ class Looks {
       if (primitive.is_object() && primitive.contains("attributes") && primitive["attributes"].is_object())
         drop_unread(primitive, decorates);
     if (primitives.size() == before) return;
-    notes_.push_back({"picture-part",
-                      {named(file_, "mesh", mesh, index),
-                       std::to_string(before - primitives.size()) + " of its " + std::to_string(before) +
-                           " parts cannot be drawn: loose edges or points, compressed, or without data",
-                       "In Blender: Edit Mode, Select > All by Trait > Loose Geometry, delete it; export without "
-                       "compression"}});
+    notes_.push_back(
+        {"picture-part",
+         {named(file_, "mesh", mesh, index),
+          std::to_string(before - primitives.size()) + " of its " + std::to_string(before) +
+              " parts cannot be drawn: loose edges or points, compressed, or without data",
+          "In Blender: Edit Mode, Select > All by Trait > Loose Geometry, delete it; export without "
+          "compression"}});
   }
 
   void leave_out_empty_meshes() {
     if (list(root_, "nodes").empty()) return;
     json& meshes = root_["meshes"];
-    const auto is_empty = [&](std::size_t m) { return !physical_[m] && list(meshes[m], "primitives").empty(); };
+    const auto is_empty = [&](std::size_t m) {
+      return !physical_[m] && list(meshes[m], "primitives").empty();
+    };
     for (json& node : root_["nodes"]) {
       if (!node.is_object() || !node.contains("mesh") || !names_one_of(node["mesh"], meshes.size())) continue;
       if (is_empty(node["mesh"].get<std::size_t>())) node.erase("mesh");
@@ -155,18 +162,14 @@ class Looks {
   bool can_be_followed(const json& animation) const {
     const json& samplers = list(animation, "samplers");
     const json& channels = list(animation, "channels");
-    return !samplers.empty() && !channels.empty() &&
-           std::ranges::all_of(samplers,
-                               [&](const json& sampler) {
-                                 return sampler.is_object() && sampler.contains("input") &&
-                                        sampler.contains("output") && has_data(sampler["input"]) &&
-                                        has_data(sampler["output"]);
-                               }) &&
-           std::ranges::all_of(channels, [&](const json& channel) {
-             return channel.is_object() && channel.contains("sampler") &&
-                    names_one_of(channel["sampler"], samplers.size()) && channel.contains("target") &&
-                    channel["target"].is_object();
-           });
+    return !samplers.empty() && !channels.empty() && std::ranges::all_of(samplers, [&](const json& sampler) {
+      return sampler.is_object() && sampler.contains("input") && sampler.contains("output") &&
+             has_data(sampler["input"]) && has_data(sampler["output"]);
+    }) && std::ranges::all_of(channels, [&](const json& channel) {
+      return channel.is_object() && channel.contains("sampler") &&
+             names_one_of(channel["sampler"], samplers.size()) && channel.contains("target") &&
+             channel["target"].is_object();
+    });
   }
 
   void drop_animations() {
@@ -179,9 +182,10 @@ class Looks {
         kept.push_back(std::move(animation));
         continue;
       }
-      notes_.push_back({"animation",
-                        {named(file_, "animation", animation, at), "leads nowhere and moves nothing of the scene",
-                         "Nothing has to be done; an export without it is smaller"}});
+      notes_.push_back(
+          {"animation",
+           {named(file_, "animation", animation, at), "leads nowhere and moves nothing of the scene",
+            "Nothing has to be done; an export without it is smaller"}});
     }
     root_["animations"] = std::move(kept);
   }

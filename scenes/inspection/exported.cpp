@@ -77,8 +77,8 @@ void look_at_mesh_data(const json& file, const gltf::Document& document, std::ve
     if (known->second.empty()) continue;
     warnings.push_back({"on-mesh-data",
                         {document.owner(node),
-                         "its properties (" + known->second + ") are on the mesh data '" + text_of(mesh, "name") +
-                             "', where they are not read",
+                         "its properties (" + known->second + ") are on the mesh data '" +
+                             text_of(mesh, "name") + "', where they are not read",
                          "In Blender: put them under Object Properties (the orange square) > Custom "
                          "Properties, not under Object "
                          "Data (the green triangle)"}});

@@ -71,10 +71,11 @@ VolumeMesh to_open_mesh(const WeldedMesh& mesh, const Components& components, in
   return out;
 }
 
-/// Pairs of triangles around an edge of more than two that have solid between them; none where they do not come out
-/// even. Going round the edge from low to high counter-clockwise, a triangle that runs from high to low has its solid
-/// ahead, the other kind behind it.
-std::vector<std::pair<std::uint32_t, std::uint32_t>> wedges(const WeldedMesh& mesh, std::span<const EdgeUse> uses) {
+/// Pairs of triangles around an edge of more than two that have solid between them; none where they do not
+/// come out even. Going round the edge from low to high counter-clockwise, a triangle that runs from high to
+/// low has its solid ahead, the other kind behind it.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> wedges(const WeldedMesh& mesh,
+                                                            std::span<const EdgeUse> uses) {
   const auto opens = static_cast<std::size_t>(
       std::count_if(uses.begin(), uses.end(), [](const EdgeUse& use) { return !use.forward; }));
   if (2 * opens != uses.size()) return {};
@@ -91,7 +92,9 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> wedges(const WeldedMesh& me
   std::vector<Side> sides;
   for (const EdgeUse& use : uses) {
     const glm::uvec3& t = mesh.triangles[use.triangle];
-    const std::uint32_t third = t.x != use.low && t.x != use.high ? t.x : t.y != use.low && t.y != use.high ? t.y : t.z;
+    const std::uint32_t third = t.x != use.low && t.x != use.high   ? t.x
+                                : t.y != use.low && t.y != use.high ? t.y
+                                                                    : t.z;
     const glm::dvec3 way = mesh.points[third] - from;
     // Rounded: faces that lie on each other are at one angle, and there solids end before others begin.
     const double angle = std::round(std::atan2(glm::dot(way, v), glm::dot(way, u)) * 1e7) * 1e-7;
@@ -232,7 +235,8 @@ VolumeIntegrals integrate_volume(const WeldedMesh& mesh, const Components& compo
     for (const auto face : surface.faces()) {
       std::array<glm::dvec3, 3> corner{};
       std::size_t i = 0;
-      for (const auto vertex : surface.fv_range(face)) corner[i++] = to_glm(surface.point(vertex)) - reference;
+      for (const auto vertex : surface.fv_range(face))
+        corner[i++] = to_glm(surface.point(vertex)) - reference;
       add(corner);
     }
   }

@@ -20,8 +20,8 @@ struct Defects {
   bool any() const { return open_edges + crowded_edges + flipped_edges > 0; }
 };
 
-/// Triangles of a mesh that hang together by edges. Where solids touch along an edge each goes its own way: the
-/// triangles around it are paired by the wedges of solid between them.
+/// Triangles of a mesh that hang together by edges. Where solids touch along an edge each goes its own way:
+/// the triangles around it are paired by the wedges of solid between them.
 struct Components {
   int count = 0;
   bool touching = false;         ///< some edge is shared by more than two triangles
@@ -38,8 +38,9 @@ struct VolumeIntegrals {
   glm::dmat3 inertia{0.0};   ///< of density 1 kg/m³ about the centroid, kg·m²
 };
 
-/// Takes out pairs of triangles that cover each other and face opposite ways: what two solids that touch have between
-/// them bounds nothing. Returns whether there were any; then `welded`, which is of `mesh`, is of it no more.
+/// Takes out pairs of triangles that cover each other and face opposite ways: what two solids that touch have
+/// between them bounds nothing. Returns whether there were any; then `welded`, which is of `mesh`, is of it
+/// no more.
 bool drop_inner_faces(TriangleMesh& mesh, const WeldedMesh& welded);
 
 /// Walks the faces of an OpenMesh surface. `component` −1 takes all. Precondition: no defects.

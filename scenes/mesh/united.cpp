@@ -52,8 +52,8 @@ void add_piece(Moments& sums, const glm::dvec3& from, double to, double area) {
   const double y = from.y, z = from.z;
   sums.volume += length;
   sums.first += glm::dvec3(x1, length * y, length * z);
-  sums.second += glm::dmat3(x2, x1 * y, x1 * z, x1 * y, length * y * y, length * y * z, x1 * z, length * y * z,
-                            length * z * z);
+  sums.second += glm::dmat3(x2, x1 * y, x1 * z, x1 * y, length * y * y, length * y * z, x1 * z,
+                            length * y * z, length * z * z);
 }
 
 /// What the sum over the parts has too much, about `about`.
@@ -71,7 +71,8 @@ Moments counted_again(const WeldedMesh& mesh, const glm::dvec3& about) {
   grid.cell = std::max(std::max(size.y, size.z), 1e-9) / kLines;
   grid.origin = box.low + 0.5 * grid.cell;
   grid.origin.x = box.low.x;
-  grid.size = {1, std::max(1, static_cast<int>(size.y / grid.cell)), std::max(1, static_cast<int>(size.z / grid.cell))};
+  grid.size = {1, std::max(1, static_cast<int>(size.y / grid.cell)),
+               std::max(1, static_cast<int>(size.z / grid.cell))};
   Moments sums;
   int winding = 0;
   const std::vector<Crossing> crossings = line_crossings(all, grid);

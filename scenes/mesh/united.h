@@ -14,8 +14,8 @@ struct United {
 /// Of the sum of the parts' volumes: less counts as none, so that a handle's root in a wall changes nothing.
 inline constexpr double kLeastOverlap = 0.02;
 
-/// As integrate_volume of all parts, less what lies in several of them, which is measured along 256² lines: to about a
-/// thousandth of the overlap. Precondition: no defects.
+/// As integrate_volume of all parts, less what lies in several of them, which is measured along 256² lines:
+/// to about a thousandth of the overlap. Precondition: no defects.
 United integrate_union(const WeldedMesh& mesh, const Components& components);
 
 }  // namespace slosh::mesh

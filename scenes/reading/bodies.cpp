@@ -77,11 +77,14 @@ void read_mass(Extras& extras, const mesh::VolumeIntegrals& volume, Body& body) 
 /// Parts that lie in each other are one solid, also where a hollow was meant.
 void note_overlap(Reading& reading, int node, const mesh::United& united) {
   if (united.overlap <= 0.0) return;
-  reading.notes.push_back({"parts-overlap",
-                           {reading.document.owner(node),
-                            "its parts overlap: " + gltf::short_number(1e3 * united.overlap) + " litres lie in several of "
-                            "them and count once, of " + gltf::short_number(1e3 * united.solid.volume) + " together",
-                            "Where a part was to be a hollow, turn its faces inward: Mesh > Normals > Flip"}});
+  reading.notes.push_back(
+      {"parts-overlap",
+       {reading.document.owner(node),
+        "its parts overlap: " + gltf::short_number(1e3 * united.overlap) +
+            " litres lie in several of "
+            "them and count once, of " +
+            gltf::short_number(1e3 * united.solid.volume) + " together",
+        "Where a part was to be a hollow, turn its faces inward: Mesh > Normals > Flip"}});
 }
 
 }  // namespace

@@ -29,15 +29,17 @@ void note_late_keys(Reading& reading, int node, const std::vector<PoseKey>& keys
     return a.pose.position == b.pose.position && a.pose.orientation == b.pose.orientation;
   };
   // Reading begins every motion at 0: until its own first key a hand stands still.
-  const auto moves = std::adjacent_find(keys.begin(), keys.end(), [&](const PoseKey& a, const PoseKey& b) { return !same(a, b); });
+  const auto moves = std::adjacent_find(keys.begin(), keys.end(),
+                                        [&](const PoseKey& a, const PoseKey& b) { return !same(a, b); });
   if (keys.size() < 2 || moves == keys.end() || keys.back().time <= duration + kWorthTelling) return;
   const std::string lasts = "its keys go on to " + gltf::short_number(keys.back().time) + " s";
   reading.notes.push_back(
       {"late-keys",
        {reading.document.owner(node),
-        moves->time >= duration ? "it begins to move at " + gltf::short_number(moves->time) + " s, and the run lasts " +
-                                      gltf::short_number(duration) + " s: it stands still"
-                                : lasts + ", and the run lasts " + gltf::short_number(duration) + " s",
+        moves->time >= duration
+            ? "it begins to move at " + gltf::short_number(moves->time) + " s, and the run lasts " +
+                  gltf::short_number(duration) + " s: it stands still"
+            : lasts + ", and the run lasts " + gltf::short_number(duration) + " s",
         "Give the scene duration_s = " + gltf::short_number(std::ceil(keys.back().time)) +
             ", or move the keys: in Blender they count from frame 0"}});
 }

@@ -103,8 +103,9 @@ Problem read_kind(Reading& reading, int node) {
   if (reading.kinds[node] == NodeKind::kNone) return extras.error();
   if (kind == "picture" && !has_mesh) {
     reading.kinds[node] = NodeKind::kNone;
-    reading.notes.push_back({"picture", {document.owner(node), "is to be looked at, and has no mesh that can be drawn",
-                                         "Put the property on a mesh object, or take it out"}});
+    reading.notes.push_back({"picture",
+                             {document.owner(node), "is to be looked at, and has no mesh that can be drawn",
+                              "Put the property on a mesh object, or take it out"}});
     return std::nullopt;
   }
   const bool needs_mesh = kind == "body" || kind == "fluid" || kind == "region";
@@ -180,7 +181,8 @@ Problem read_node_mesh(Reading& reading, int node, const glm::dmat3& rest, bool 
     reading.work += gltf::work_of_mesh(document, source);
     if (reading.work > gltf::kMostNumbersRead) {
       return Error{where,
-                   "the meshes up to here have more than " + std::to_string(gltf::kMostNumbersRead / 1'000'000) +
+                   "the meshes up to here have more than " +
+                       std::to_string(gltf::kMostNumbersRead / 1'000'000) +
                        " million vertices and indices, each counted as often as a mesh asks for it",
                    "Use fewer meshes, or reduce them, in Blender with the Decimate modifier"};
     }

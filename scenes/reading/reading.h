@@ -45,14 +45,15 @@ struct Reading {
   std::size_t work = 0;               ///< of all meshes that were read (gltf::work_of_mesh)
 };
 
-/// All stages in order. The first problem ends the reading; with `all` every one is put there instead, but for those
-/// that only follow from another (a grip on a body that could not be read). A scene only where there was none.
-/// `notes`, where there is one, receives what is in Scene::left_out with its kinds, also of a file with problems.
+/// All stages in order. The first problem ends the reading; with `all` every one is put there instead, but
+/// for those that only follow from another (a grip on a body that could not be read). A scene only where
+/// there was none. `notes`, where there is one, receives what is in Scene::left_out with its kinds, also of a
+/// file with problems.
 std::optional<Scene> read_stages(const gltf::Document& document, std::vector<Error>& problems, bool all,
                                  std::vector<gltf::Note>* notes = nullptr);
 
-/// What is wrong with a node: `first`, where there is one, then all that `extras` has. The first of these is returned,
-/// the others go to Reading::further; properties that are somebody else's to Reading::notes.
+/// What is wrong with a node: `first`, where there is one, then all that `extras` has. The first of these is
+/// returned, the others go to Reading::further; properties that are somebody else's to Reading::notes.
 Problem all_of(Reading& reading, Problem first, const gltf::Extras& extras);
 
 /// Sets a node's kind. Errors: unknown `slosh`, a name used twice, a mesh missing.
@@ -73,7 +74,7 @@ Problem order_grips(Reading& reading);          ///< after all grips: by `device
 Problem read_hand(Reading& reading, int node);  ///< after all grips
 Problem read_gauge(Reading& reading, int node);   ///< after all bodies
 Problem read_region(Reading& reading, int node);  ///< after all bodies
-Problem read_camera(Reading& reading);          ///< after everything with a size; no error, as of pictures
+Problem read_camera(Reading& reading);            ///< after everything with a size; no error, as of pictures
 Problem read_domain(Reading& reading);          ///< likewise
 Problem fit_spacing(Reading& reading);          ///< likewise: a coarsest spacing that was not given fits the walls
 

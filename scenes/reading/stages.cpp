@@ -29,7 +29,9 @@ Problem settle_as_usual(Reading& reading) {
   Scene& scene = reading.scene;
   if (reading.document.scene_extras.contains("settle_s")) return std::nullopt;
   const auto moves = [](const auto& part) { return part.velocity != glm::dvec3(0.0); };
-  const auto thrown = [](const Body& body) { return body.twist.linear != glm::dvec3(0.0) || body.twist.angular != glm::dvec3(0.0); };
+  const auto thrown = [](const Body& body) {
+    return body.twist.linear != glm::dvec3(0.0) || body.twist.angular != glm::dvec3(0.0);
+  };
   if (std::ranges::none_of(scene.fluid_volumes, moves) && std::ranges::none_of(scene.bodies, thrown))
     scene.settle = kUsualSettle;
   return std::nullopt;
@@ -148,7 +150,8 @@ std::optional<Scene> read_stages(const gltf::Document& document, std::vector<Err
   stages.whole(fit_spacing, true);
   tell_what_is_left_out(reading, notes);
   if (problems.size() >= kMostProblems)
-    problems.push_back({document.file, "there are more errors than these", "Mend these first, then check again"});
+    problems.push_back(
+        {document.file, "there are more errors than these", "Mend these first, then check again"});
   if (!problems.empty() || !reading.failed.empty()) return std::nullopt;
   return std::move(reading.scene);
 }

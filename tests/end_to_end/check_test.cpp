@@ -1,4 +1,5 @@
-// `slosh check` is a doctor that runs: it says ok only of what works, and a run with nothing to feel does not end well.
+// `slosh check` is a doctor that runs: it says ok only of what works, and a run with nothing to feel does not
+// end well.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -35,13 +36,16 @@ struct Cup {
     make::SceneWriter writer(scene);
     const int paint = writer.add_material("paint", {});
     const Pose pose{at, {1.0, 0.0, 0.0, 0.0}};
-    const int node = writer.add_node("cup", writer.add_mesh("cup", make::transformed(vessel, scale), paint), pose, body);
+    const int node =
+        writer.add_node("cup", writer.add_mesh("cup", make::transformed(vessel, scale), paint), pose, body);
     if (!water.triangles.empty())
-      writer.add_node("water", writer.add_mesh("water", make::transformed(water, scale), paint), pose, {{"slosh", "fluid"}});
+      writer.add_node("water", writer.add_mesh("water", make::transformed(water, scale), paint), pose,
+                      {{"slosh", "fluid"}});
     const Pose grip{{0.0, 0.1 * size, 0.0}, {1.0, 0.0, 0.0, 0.0}};
     if (held) {
       writer.add_node("handle", -1, grip, {{"slosh", "grip"}, {"stiffness_n_m", 3000.0}}, node);
-      writer.add_hand("hand", "handle", [=](double) { return compose(pose, grip); }, 0.3);
+      writer.add_hand(
+          "hand", "handle", [=](double) { return compose(pose, grip); }, 0.3);
     }
     writer.add_camera({0.3, 0.4, 0.5}, {0.0, 0.05, 0.0}, 40.0);
     std::filesystem::create_directories(test::test_folder());
@@ -208,7 +212,8 @@ TEST_F(CheckTest, ARunWhoseHandsCouldNeverActDoesNotEndWell) {
   elsewhere.scene["domain_max_m"] = {101.0, 1.0, 1.0};
   elsewhere.write("elsewhere.gltf");
   EXPECT_TRUE(check("elsewhere.gltf").kinds.contains("hand-out-of-reach"));
-  const Outcome run = test::slosh({"play", "elsewhere.gltf", "--no-render", "--unpaced", "--spacing", "0.012", "--device", "script", "--out", "out"});
+  const Outcome run = test::slosh({"play", "elsewhere.gltf", "--no-render", "--unpaced", "--spacing", "0.012",
+                                   "--device", "script", "--out", "out"});
   EXPECT_EQ(run.code, 1) << run.out << run.err;
   EXPECT_TRUE(contains(run.err, "nothing was held by 'handle'")) << run.err;
   EXPECT_TRUE(contains(run.err, "more than 5 m outside the scene")) << run.err;
@@ -219,7 +224,8 @@ TEST_F(CheckTest, TheLedgerIsSaidAtTheTopOfARunToo) {
   json j = json::parse(test::read_text(test::test_folder() / "cup.gltf"));
   for (json& mesh : j["meshes"]) {
     if (mesh["name"] != "cup") continue;
-    for (json& primitive : mesh["primitives"]) primitive["targets"] = {{{"POSITION", primitive["attributes"]["POSITION"]}}};
+    for (json& primitive : mesh["primitives"])
+      primitive["targets"] = {{{"POSITION", primitive["attributes"]["POSITION"]}}};
     mesh["weights"] = {1.0};
   }
   std::ofstream(test::test_folder() / "keyed.gltf") << j.dump();
@@ -240,7 +246,8 @@ TEST_F(CheckTest, NamesThatBeginWithADashOrAreInCapitals) {
 
 TEST_F(CheckTest, ParticlesAreCountedInPowersOfTenToo) {
   Cup().write("cup.gltf");
-  const Outcome run = test::slosh({"play", "cup.gltf", "--no-render", "--unpaced", "--seconds", "0.01", "--particles", "5e2", "--out", "out"});
+  const Outcome run = test::slosh({"play", "cup.gltf", "--no-render", "--unpaced", "--seconds", "0.01",
+                                   "--particles", "5e2", "--out", "out"});
   EXPECT_EQ(run.code, 0) << run.err;
   EXPECT_TRUE(contains(run.err, "asked for 500 fluid particles")) << run.err;
   for (const char* wrong : {"5.5", "many", "1e99", "-3", "0"})

@@ -186,7 +186,8 @@ TEST_F(MeasureTest, CheckSaysWhatIsMeasuredAtAnySpacing) {
   EXPECT_NE(fine.out.find("at 6.0 mm"), std::string::npos) << fine.out;
 }
 
-// What the fluid starts with is there at t = 0 where the scene asks for no settling; else it has come to rest.
+// What the fluid starts with is there at t = 0 where the scene asks for no settling; else it has come to
+// rest.
 class StartsTest : public ::testing::Test {
  protected:
   using Columns = std::map<std::string, std::vector<double>>;

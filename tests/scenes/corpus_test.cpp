@@ -1,86 +1,25 @@
-// A corpus of one scene as real exporters would write it: whatever the file looks like, the same cup of water is read.
+// A corpus of one scene as real exporters would write it: whatever the file looks like, the same cup of water
+// is read.
 #include <cmath>
-#include <cstring>
 
-#include "foreign_kit.h"
+#include "corpus_kit.h"
 #include "scenes/sample.h"
 
 namespace slosh {
 namespace {
 
 using nlohmann::json;
+using test::add_accessor;
 using test::accessor_of;
+using test::indices_of;
 using test::mesh_of;
 using test::node_named;
+using test::positions_of;
 
 std::size_t index_of(const json& j, const std::string& name) {
   for (std::size_t i = 0; i < j["nodes"].size(); ++i)
     if (j["nodes"][i].value("name", "") == name) return i;
   throw std::runtime_error("no node " + name);
-}
-
-constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-
-std::string decoded(const std::string& uri) {
-  std::string out;
-  std::uint32_t bits = 0;
-  int count = 0;
-  for (std::size_t i = uri.find(',') + 1; i < uri.size() && uri[i] != '='; ++i) {
-    bits = bits << 6 | static_cast<std::uint32_t>(std::strchr(kDigits, uri[i]) - kDigits);
-    if ((count += 6) < 8) continue;
-    out += static_cast<char>(bits >> (count -= 8) & 0xff);
-  }
-  return out;
-}
-
-std::string encoded(const std::string& bytes) {
-  std::string out = "data:application/octet-stream;base64,";
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t bits = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      bits = bits << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k) out += i + k > bytes.size() ? '=' : kDigits[bits >> (18 - 6 * k) & 63];
-  }
-  return out;
-}
-
-/// New bytes of a file: a buffer of their own, with a view and an accessor on them.
-template <class T>
-std::size_t add_accessor(json& j, const std::vector<T>& numbers, int component_type, const char* type, std::size_t count) {
-  std::string bytes(numbers.size() * sizeof(T), '\0');
-  std::memcpy(bytes.data(), numbers.data(), bytes.size());
-  j["buffers"].push_back({{"byteLength", bytes.size()}, {"uri", encoded(bytes)}});
-  j["bufferViews"].push_back({{"buffer", j["buffers"].size() - 1}, {"byteLength", bytes.size()}});
-  j["accessors"].push_back({{"bufferView", j["bufferViews"].size() - 1}, {"componentType", component_type}, {"count", count}, {"type", type}});
-  return j["accessors"].size() - 1;
-}
-
-std::string bytes_of(const json& j, const json& accessor) {
-  const json& view = j["bufferViews"][accessor["bufferView"].get<std::size_t>()];
-  const std::size_t from = view.value("byteOffset", std::size_t{0}) + accessor.value("byteOffset", std::size_t{0});
-  return decoded(j["buffers"][view["buffer"].get<std::size_t>()]["uri"].get<std::string>()).substr(from);
-}
-
-std::vector<float> positions_of(json& j, const std::string& node) {
-  const json& accessor = accessor_of(j, node, "POSITION");
-  std::vector<float> out(3 * accessor["count"].get<std::size_t>());
-  std::memcpy(out.data(), bytes_of(j, accessor).data(), 4 * out.size());
-  return out;
-}
-
-std::vector<std::uint32_t> indices_of(json& j, const std::string& node) {
-  const json& accessor = accessor_of(j, node, "indices");
-  const std::string bytes = bytes_of(j, accessor);
-  std::vector<std::uint32_t> out(accessor["count"].get<std::size_t>());
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    if (accessor["componentType"] == 5125)
-      std::memcpy(&out[i], bytes.data() + 4 * i, 4);
-    else if (accessor["componentType"] == 5123)
-      out[i] = static_cast<unsigned char>(bytes[2 * i]) | static_cast<unsigned char>(bytes[2 * i + 1]) << 8;
-    else
-      out[i] = static_cast<unsigned char>(bytes[i]);
-  }
-  return out;
 }
 
 const char* const kOurs[] = {"cup", "water"};
@@ -96,15 +35,18 @@ void blenders_usual(json& j) {
   j["extensionsUsed"] = {"KHR_materials_specular", "KHR_materials_ior", "KHR_lights_punctual"};
   for (json& material : j["materials"]) {
     material["doubleSided"] = true;
-    material["extensions"] = {{"KHR_materials_specular", {{"specularFactor", 0.5}}}, {"KHR_materials_ior", {{"ior", 1.45}}}};
+    material["extensions"] = {{"KHR_materials_specular", {{"specularFactor", 0.5}}},
+                              {"KHR_materials_ior", {{"ior", 1.45}}}};
   }
-  j["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"intensity", 54.0}, {"name", "Light"}}};
+  j["extensions"]["KHR_lights_punctual"]["lights"] = {
+      {{"type", "point"}, {"intensity", 54.0}, {"name", "Light"}}};
   j["nodes"].push_back({{"name", "Light"}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
   j["scenes"][0]["nodes"].push_back(j["nodes"].size() - 1);
   for (const char* node : kOurs) {
     json& primitive = mesh_of(j, node)["primitives"][0];
     // A second UV map, and colours that were never painted.
-    j["accessors"].push_back({{"componentType", 5126}, {"count", accessor_of(j, node, "POSITION")["count"]}, {"type", "VEC2"}});
+    j["accessors"].push_back(
+        {{"componentType", 5126}, {"count", accessor_of(j, node, "POSITION")["count"]}, {"type", "VEC2"}});
     primitive["attributes"]["TEXCOORD_1"] = j["accessors"].size() - 1;
     primitive["attributes"]["COLOR_0"] = primitive["attributes"]["POSITION"];
     mesh_of(j, node)["extras"]["targetNames"] = json::array();
@@ -135,15 +77,19 @@ void matrices_for_transforms(json& j) {
 
 /// Millimetres below a parent that scales them away, twice: as CAD and some game engines have it.
 void a_hierarchy_of_scales(json& j) {
-  j["nodes"].push_back({{"name", "root"}, {"scale", {0.001, 0.001, 0.001}}, {"children", j["scenes"][0]["nodes"]}});
-  j["nodes"].push_back({{"name", "world"}, {"scale", {1000.0, 1000.0, 1000.0}}, {"children", {j["nodes"].size() - 1}}});
+  j["nodes"].push_back(
+      {{"name", "root"}, {"scale", {0.001, 0.001, 0.001}}, {"children", j["scenes"][0]["nodes"]}});
+  j["nodes"].push_back(
+      {{"name", "world"}, {"scale", {1000.0, 1000.0, 1000.0}}, {"children", {j["nodes"].size() - 1}}});
   j["scenes"][0]["nodes"] = {j["nodes"].size() - 1};
 }
 
 void a_quarter_turn_and_back(json& j) {
   const double s = std::sqrt(0.5);
-  j["nodes"].push_back({{"name", "turned"}, {"rotation", {s, 0, 0, s}}, {"children", j["scenes"][0]["nodes"]}});
-  j["nodes"].push_back({{"name", "back"}, {"rotation", {-s, 0, 0, s}}, {"children", {j["nodes"].size() - 1}}});
+  j["nodes"].push_back(
+      {{"name", "turned"}, {"rotation", {s, 0, 0, s}}, {"children", j["scenes"][0]["nodes"]}});
+  j["nodes"].push_back(
+      {{"name", "back"}, {"rotation", {-s, 0, 0, s}}, {"children", {j["nodes"].size() - 1}}});
   j["scenes"][0]["nodes"] = {j["nodes"].size() - 1};
 }
 
@@ -170,9 +116,10 @@ void sparse_positions(json& j) {
     const std::size_t base = add_accessor(j, all, 5126, "VEC3", all.size() / 3);
     const std::size_t at = add_accessor(j, std::vector<std::uint16_t>{1, 2}, 5123, "SCALAR", 2);
     const std::size_t values = add_accessor(j, right, 5126, "VEC3", 2);
-    j["accessors"][base]["sparse"] = {{"count", 2},
-                                      {"indices", {{"bufferView", j["accessors"][at]["bufferView"]}, {"componentType", 5123}}},
-                                      {"values", {{"bufferView", j["accessors"][values]["bufferView"]}}}};
+    j["accessors"][base]["sparse"] = {
+        {"count", 2},
+        {"indices", {{"bufferView", j["accessors"][at]["bufferView"]}, {"componentType", 5123}}},
+        {"values", {{"bufferView", j["accessors"][values]["bufferView"]}}}};
     mesh_of(j, node)["primitives"][0]["attributes"]["POSITION"] = base;
   }
 }
@@ -185,13 +132,14 @@ void sparse_alone(json& j) {
     for (std::size_t i = 0; i < every.size(); ++i) every[i] = static_cast<std::uint32_t>(i);
     const std::size_t at = add_accessor(j, every, 5125, "SCALAR", every.size());
     const std::size_t values = add_accessor(j, all, 5126, "VEC3", every.size());
-    j["accessors"].push_back({{"componentType", 5126},
-                              {"count", every.size()},
-                              {"type", "VEC3"},
-                              {"sparse",
-                               {{"count", every.size()},
-                                {"indices", {{"bufferView", j["accessors"][at]["bufferView"]}, {"componentType", 5125}}},
-                                {"values", {{"bufferView", j["accessors"][values]["bufferView"]}}}}}});
+    j["accessors"].push_back(
+        {{"componentType", 5126},
+         {"count", every.size()},
+         {"type", "VEC3"},
+         {"sparse",
+          {{"count", every.size()},
+           {"indices", {{"bufferView", j["accessors"][at]["bufferView"]}, {"componentType", 5125}}},
+           {"values", {{"bufferView", j["accessors"][values]["bufferView"]}}}}}});
     mesh_of(j, node)["primitives"][0]["attributes"]["POSITION"] = j["accessors"].size() - 1;
   }
 }
@@ -200,7 +148,8 @@ void no_indices_and_no_normals(json& j) {
   for (const char* node : kOurs) {
     const std::vector<float> points = positions_of(j, node);
     std::vector<float> soup;
-    for (const std::uint32_t i : indices_of(j, node)) soup.insert(soup.end(), points.begin() + 3 * i, points.begin() + 3 * i + 3);
+    for (const std::uint32_t i : indices_of(j, node))
+      soup.insert(soup.end(), points.begin() + 3 * i, points.begin() + 3 * i + 3);
     json& primitive = mesh_of(j, node)["primitives"][0];
     primitive["attributes"] = {{"POSITION", add_accessor(j, soup, 5126, "VEC3", soup.size() / 3)}};
     mesh_of(j, node)["primitives"][0].erase("indices");
@@ -218,7 +167,8 @@ void strips(json& j) {
         strip.push_back(list[i]);
         if (strip.size() % 2 != 0) strip.push_back(list[i]);
       }
-      strip.insert(strip.end(), list.begin() + static_cast<std::ptrdiff_t>(i), list.begin() + static_cast<std::ptrdiff_t>(i) + 3);
+      strip.insert(strip.end(), list.begin() + static_cast<std::ptrdiff_t>(i),
+                   list.begin() + static_cast<std::ptrdiff_t>(i) + 3);
     }
     json& primitive = mesh_of(j, node)["primitives"][0];
     primitive["mode"] = 5;
@@ -235,7 +185,11 @@ void a_primitive_a_face(json& j) {
     json primitives = json::array();
     for (std::size_t i = 0; i < list.size(); i += 3) {
       json one = source;
-      one["indices"] = add_accessor(j, std::vector<std::uint32_t>(list.begin() + static_cast<std::ptrdiff_t>(i), list.begin() + static_cast<std::ptrdiff_t>(i) + 3), 5125, "SCALAR", 3);
+      one["indices"] =
+          add_accessor(j,
+                       std::vector<std::uint32_t>(list.begin() + static_cast<std::ptrdiff_t>(i),
+                                                  list.begin() + static_cast<std::ptrdiff_t>(i) + 3),
+                       5125, "SCALAR", 3);
       one["mode"] = i % 2 == 0 ? 4 : 6;
       primitives.push_back(one);
     }
@@ -261,7 +215,8 @@ void quantised(json& j) {
   // The handle hangs on the cup, whose scale it does not want.
   json& cup = node_named(j, "cup");
   cup.erase("children");
-  j["nodes"].push_back({{"name", "holder"}, {"scale", {1e5, 1e5, 1e5}}, {"children", {index_of(j, "handle")}}});
+  j["nodes"].push_back(
+      {{"name", "holder"}, {"scale", {1e5, 1e5, 1e5}}, {"children", {index_of(j, "handle")}}});
   node_named(j, "cup")["children"] = {j["nodes"].size() - 1};
 }
 
@@ -273,7 +228,8 @@ void a_scan_as_decoration(json& j) {
   for (std::uint32_t y = 0; y <= n; ++y)
     for (std::uint32_t x = 0; x <= n; ++x) {
       const auto ripple = static_cast<float>(0.01 * std::sin(7.3 * x) * std::cos(5.1 * y));
-      points.insert(points.end(), {0.02f * static_cast<float>(x) - 0.4f, -0.05f + ripple, 0.02f * static_cast<float>(y) - 0.4f});
+      points.insert(points.end(), {0.02f * static_cast<float>(x) - 0.4f, -0.05f + ripple,
+                                   0.02f * static_cast<float>(y) - 0.4f});
     }
   for (std::uint32_t y = 0; y < n; ++y)
     for (std::uint32_t x = 0; x < n; ++x) {
@@ -342,7 +298,8 @@ TEST_P(Corpus, TheSameCupOfWaterIsRead) {
   EXPECT_EQ(is.bodies[0].mass.mass, was.bodies[0].mass.mass);
   EXPECT_LT(glm::distance(is.bodies[0].mass.center_of_mass, was.bodies[0].mass.center_of_mass), 1e-5);
   for (int i = 0; i < 3; ++i)
-    EXPECT_NEAR(is.bodies[0].mass.inertia[i][i], was.bodies[0].mass.inertia[i][i], 1e-3 * was.bodies[0].mass.inertia[i][i]);
+    EXPECT_NEAR(is.bodies[0].mass.inertia[i][i], was.bodies[0].mass.inertia[i][i],
+                1e-3 * was.bodies[0].mass.inertia[i][i]);
   const glm::dvec3 grip = compose(is.bodies[0].pose, is.grips[0].pose).position;
   EXPECT_LT(glm::distance(grip, compose(was.bodies[0].pose, was.grips[0].pose).position), 1e-6);
   EXPECT_EQ(is.grips[0].hand_motion.size(), was.grips[0].hand_motion.size());
@@ -358,7 +315,8 @@ TEST_P(Corpus, TheSameCupOfWaterIsRead) {
   EXPECT_EQ(sampled.value().fluid_positions.size(), sample_scene(was, 0.012).value().fluid_positions.size());
 }
 
-INSTANTIATE_TEST_SUITE_P(Files, Corpus, ::testing::ValuesIn(kCorpus), [](const auto& tried) { return std::string(tried.param.name); });
+INSTANTIATE_TEST_SUITE_P(Files, Corpus, ::testing::ValuesIn(kCorpus),
+                         [](const auto& tried) { return std::string(tried.param.name); });
 
 TEST(Foreign, FacesWithoutNormalsAreShadedFlat) {
   const Inspection found = test::inspect_foreign([](json& j) {
@@ -368,7 +326,8 @@ TEST(Foreign, FacesWithoutNormalsAreShadedFlat) {
   for (const int mesh : {found.scene->bodies[0].mesh, found.scene->pictures[0].mesh}) {
     const TriangleMesh& m = found.scene->meshes[static_cast<std::size_t>(mesh)];
     for (const glm::uvec3& t : m.triangles) {
-      const glm::vec3 face = glm::normalize(glm::cross(m.positions[t.y] - m.positions[t.x], m.positions[t.z] - m.positions[t.x]));
+      const glm::vec3 face = glm::normalize(
+          glm::cross(m.positions[t.y] - m.positions[t.x], m.positions[t.z] - m.positions[t.x]));
       for (int i = 0; i < 3; ++i) EXPECT_GT(glm::dot(face, m.normals[t[i]]), 0.9999f);
     }
   }
@@ -386,7 +345,8 @@ TEST(Foreign, NamesInCapitalsAreNames) {
 TEST(Foreign, APointerOfGitLfsIsNamed) {
   const test::TempFolder folder;
   test::write_text(folder / "cup.glb",
-                   "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a214614ab2935c943f9e0ff69d22eadbb8f32b1258daaa5e2ca24d17e2393\nsize 12345\n");
+                   "version https://git-lfs.github.com/spec/v1\noid "
+                   "sha256:4d7a214614ab2935c943f9e0ff69d22eadbb8f32b1258daaa5e2ca24d17e2393\nsize 12345\n");
   test::expect_error(load_scene(folder / "cup.glb"), {"cup.glb", "Git LFS", "git lfs pull"});
 }
 

@@ -256,7 +256,9 @@ TEST(FieldValues, SettlesWhereNothingIsSaidAndNothingMoves) {
   ASSERT_TRUE(not_at_all) << not_at_all.error().text();
   EXPECT_EQ(not_at_all.value().settle, 0.0);
   for (const char* node : {"cup", "water"}) {
-    const auto moving = test::load_edited([node](json& j) { node_named(j, node)["extras"]["velocity_m_s"] = {0.5, 0.0, 0.0}; });
+    const auto moving = test::load_edited([node](json& j) {
+      node_named(j, node)["extras"]["velocity_m_s"] = {0.5, 0.0, 0.0};
+    });
     ASSERT_TRUE(moving) << moving.error().text();
     EXPECT_EQ(moving.value().settle, 0.0) << "what moves is not brought to rest";
   }

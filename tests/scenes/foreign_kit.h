@@ -1,5 +1,5 @@
-// The cup as somebody else's program might have written it: with a table that is only looked at, a camera, and
-// whatever an edit of the JSON makes of that.
+// The cup as somebody else's program might have written it: with a table that is only looked at, a camera,
+// and whatever an edit of the JSON makes of that.
 #pragma once
 
 #include <set>
@@ -13,7 +13,8 @@ inline Inspection inspect_foreign(const Edit& edit) {
   const TempFolder folder;
   make::SceneWriter writer = make_cup();
   const int paint = writer.add_material("wood", {});
-  writer.add_node("table", writer.add_mesh("table_mesh", make::box({-0.3, -0.05, -0.3}, {0.3, -0.03, 0.3}), paint), {},
+  writer.add_node("table",
+                  writer.add_mesh("table_mesh", make::box({-0.3, -0.05, -0.3}, {0.3, -0.03, 0.3}), paint), {},
                   nlohmann::json::object());
   writer.add_camera({0.3, 0.4, 0.5}, {0.0, 0.05, 0.0}, 40.0);
   EXPECT_TRUE(writer.write(folder / "cup.gltf"));
@@ -33,9 +34,11 @@ inline nlohmann::json& mesh_of(nlohmann::json& json, const std::string& node) {
   return json["meshes"][node_named(json, node)["mesh"].get<std::size_t>()];
 }
 
-inline nlohmann::json& accessor_of(nlohmann::json& json, const std::string& node, const std::string& attribute) {
+inline nlohmann::json& accessor_of(nlohmann::json& json, const std::string& node,
+                                   const std::string& attribute) {
   nlohmann::json& primitive = mesh_of(json, node)["primitives"][0];
-  const nlohmann::json& index = attribute == "indices" ? primitive["indices"] : primitive["attributes"][attribute];
+  const nlohmann::json& index =
+      attribute == "indices" ? primitive["indices"] : primitive["attributes"][attribute];
   return json["accessors"][index.get<std::size_t>()];
 }
 
@@ -46,7 +49,8 @@ inline std::string all_text(const std::vector<Finding>& findings) {
 }
 
 /// It plays, and says that much of it in words of that kind.
-inline Scene expect_note(const std::string& kind, const Edit& edit, std::initializer_list<const char*> words) {
+inline Scene expect_note(const std::string& kind, const Edit& edit,
+                         std::initializer_list<const char*> words) {
   SCOPED_TRACE(kind);
   const Inspection found = inspect_foreign(edit);
   EXPECT_TRUE(found.errors.empty()) << all_text(found.errors);
@@ -56,7 +60,8 @@ inline Scene expect_note(const std::string& kind, const Edit& edit, std::initial
     there = true;
     EXPECT_FALSE(finding.text.mend.empty()) << finding.text.text();
     for (const char* word : words)
-      EXPECT_NE(finding.text.text().find(word), std::string::npos) << "no '" << word << "' in: " << finding.text.text();
+      EXPECT_NE(finding.text.text().find(word), std::string::npos)
+          << "no '" << word << "' in: " << finding.text.text();
     break;
   }
   EXPECT_TRUE(there) << "no " << kind << " in\n" << all_text(found.warnings);

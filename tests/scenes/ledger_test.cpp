@@ -16,14 +16,16 @@ std::size_t index_of(json& j, const char* node) {
 /// A target that lays the mesh's own positions on top of them: its double at weight 1.
 void add_shape_key(json& j, const char* node, double weight, bool on_node) {
   json& mesh = mesh_of(j, node);
-  for (json& primitive : mesh["primitives"]) primitive["targets"] = {{{"POSITION", primitive["attributes"]["POSITION"]}}};
+  for (json& primitive : mesh["primitives"])
+    primitive["targets"] = {{{"POSITION", primitive["attributes"]["POSITION"]}}};
   mesh["extras"]["targetNames"] = {"double"};
   (on_node ? node_named(j, node) : mesh)["weights"] = {weight};
 }
 
 TEST(Ledger, ShapeKeysWithAWeight) {
   for (const bool on_node : {false, true}) {
-    expect_note("shape-key", [&](json& j) { add_shape_key(j, "cup", 1.0, on_node); }, {"'cup'", "'double'", "weight 1"});
+    expect_note("shape-key", [&](json& j) { add_shape_key(j, "cup", 1.0, on_node); },
+                {"'cup'", "'double'", "weight 1"});
     const Inspection none = test::inspect_foreign([&](json& j) { add_shape_key(j, "cup", 0.0, on_node); });
     EXPECT_TRUE(test::kinds_of(none).empty()) << test::all_text(none.warnings);
   }
@@ -39,9 +41,10 @@ TEST(Ledger, SkinsHiddenNodesAndInstances) {
   expect_note("hidden",
               [](json& j) { node_named(j, "table")["extensions"]["KHR_node_visibility"]["visible"] = false; },
               {"'table'", "hidden"});
-  expect_note("instances",
-              [](json& j) { node_named(j, "table")["extensions"]["EXT_mesh_gpu_instancing"] = json::object(); },
-              {"'table'", "read once"});
+  expect_note(
+      "instances",
+      [](json& j) { node_named(j, "table")["extensions"]["EXT_mesh_gpu_instancing"] = json::object(); },
+      {"'table'", "read once"});
 }
 
 TEST(Ledger, ChannelsThatMoveNothing) {
@@ -59,11 +62,16 @@ TEST(Ledger, KeysThatTheRunDoesNotComeTo) {
   const test::TempFolder folder;
   make::SceneWriter writer({{"title", "late"}, {"duration_s", 2.0}});
   const int paint = writer.add_material("paint", {});
-  const int cup = writer.add_node("cup", writer.add_mesh("m", make::box({-0.05, 0, -0.05}, {0.05, 0.1, 0.05}), paint), {},
-                                  {{"slosh", "body"}, {"motion", "free"}, {"mass_kg", 0.5}});
+  const int cup =
+      writer.add_node("cup", writer.add_mesh("m", make::box({-0.05, 0, -0.05}, {0.05, 0.1, 0.05}), paint), {},
+                      {{"slosh", "body"}, {"motion", "free"}, {"mass_kg", 0.5}});
   writer.add_node("handle", -1, {{0.0, 0.1, 0.0}, {1.0, 0.0, 0.0, 0.0}}, {{"slosh", "grip"}}, cup);
-  writer.add_hand("hand", "handle",
-                  [](double t) { return Pose{{0.1 * std::max(0.0, t - 4.0), 0.1, 0.0}, {1.0, 0.0, 0.0, 0.0}}; }, 6.0);
+  writer.add_hand(
+      "hand", "handle",
+      [](double t) {
+        return Pose{{0.1 * std::max(0.0, t - 4.0), 0.1, 0.0}, {1.0, 0.0, 0.0, 0.0}};
+      },
+      6.0);
   ASSERT_TRUE(writer.write(folder / "late.gltf"));
   const Inspection found = inspect_scene(folder / "late.gltf");
   ASSERT_TRUE(found.scene) << test::all_text(found.errors);
@@ -82,7 +90,9 @@ TEST(Ledger, LooksThatAreNotShown) {
               },
               {"1 light is not used", "light_direction"});
   expect_note("material-extensions",
-              [](json& j) { j["materials"][0]["extensions"]["KHR_materials_transmission"]["transmissionFactor"] = 1.0; },
+              [](json& j) {
+                j["materials"][0]["extensions"]["KHR_materials_transmission"]["transmissionFactor"] = 1.0;
+              },
               {"KHR_materials_transmission"});
   expect_note("materials",
               [](json& j) {
@@ -91,7 +101,10 @@ TEST(Ledger, LooksThatAreNotShown) {
                 mesh_of(j, "table")["primitives"].push_back(second);
               },
               {"several materials"});
-  expect_note("other-scenes", [](json& j) { j["scenes"].push_back({{"name", "Draft"}, {"nodes", json::array()}}); },
+  expect_note("other-scenes",
+              [](json& j) {
+                j["scenes"].push_back({{"name", "Draft"}, {"nodes", json::array()}});
+              },
               {"2 scenes", "alone is read"});
 }
 
@@ -107,7 +120,8 @@ TEST(Ledger, WhatComesOftenIsCounted) {
   });
   ASSERT_TRUE(found.scene);
   EXPECT_LT(found.warnings.size(), 20u);
-  EXPECT_NE(test::all_text(found.warnings).find("(as 92 more)"), std::string::npos) << test::all_text(found.warnings);
+  EXPECT_NE(test::all_text(found.warnings).find("(as 92 more)"), std::string::npos)
+      << test::all_text(found.warnings);
 }
 
 }  // namespace

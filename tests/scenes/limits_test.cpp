@@ -1,6 +1,7 @@
 // Where a scene may be, and how much work a file may make.
-#include "foreign_kit.h"
 #include "net/wire/limits.h"
+
+#include "foreign_kit.h"
 #include "host/pose_fault.h"
 #include "sim/math/limits.h"
 
@@ -57,10 +58,16 @@ TEST(Limits, AHandThatGoesOutOfReachOrTooFastIsTold) {
     const json title{{"title", "reach"}, {"duration_s", 2.0}};
     make::SceneWriter writer(title);
     const int paint = writer.add_material("paint", {});
-    const int cup = writer.add_node("cup", writer.add_mesh("m", make::box({-0.05, 0, -0.05}, {0.05, 0.1, 0.05}), paint), {},
-                                    {{"slosh", "body"}, {"motion", "free"}, {"mass_kg", 0.5}});
+    const int cup =
+        writer.add_node("cup", writer.add_mesh("m", make::box({-0.05, 0, -0.05}, {0.05, 0.1, 0.05}), paint),
+                        {}, {{"slosh", "body"}, {"motion", "free"}, {"mass_kg", 0.5}});
     writer.add_node("handle", -1, {{0.0, 0.1, 0.0}, {1.0, 0.0, 0.0, 0.0}}, {{"slosh", "grip"}}, cup);
-    writer.add_hand("hand", "handle", [=](double t) { return Pose{{speed * t, 0.1, 0.0}, {1.0, 0.0, 0.0, 0.0}}; }, 2.0);
+    writer.add_hand(
+        "hand", "handle",
+        [=](double t) {
+          return Pose{{speed * t, 0.1, 0.0}, {1.0, 0.0, 0.0, 0.0}};
+        },
+        2.0);
     EXPECT_TRUE(writer.write(folder / "reach.gltf"));
     return test::kinds_of(inspect_scene(folder / "reach.gltf"));
   };
@@ -85,7 +92,8 @@ TEST(Limits, AChainOfNodesEndsSomewhere) {
   const Inspection deep = inspect_foreign(chain(100'000));
   ASSERT_FALSE(deep.scene);
   ASSERT_EQ(deep.errors.size(), 1u);
-  EXPECT_NE(deep.errors[0].text.text().find("more than 1000 nodes"), std::string::npos) << deep.errors[0].text.text();
+  EXPECT_NE(deep.errors[0].text.text().find("more than 1000 nodes"), std::string::npos)
+      << deep.errors[0].text.text();
   EXPECT_TRUE(inspect_foreign(chain(900)).scene);
 }
 
@@ -119,8 +127,10 @@ TEST(Limits, ManyMeshesOfOneLargeAccessorAreRefusedBeforeTheyAreRead) {
   const test::TempFolder folder;
   make::SceneWriter writer = test::make_cup();
   const int paint = writer.add_material("paint", {});
-  writer.add_node("ball", writer.add_mesh("ball", make::transformed(make::sphere(0.05, 100, 200), glm::dmat4(1.0)), paint),
-                  {{0.5, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}}, {{"slosh", "body"}});
+  writer.add_node(
+      "ball",
+      writer.add_mesh("ball", make::transformed(make::sphere(0.05, 100, 200), glm::dmat4(1.0)), paint),
+      {{0.5, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}}, {{"slosh", "body"}});
   ASSERT_TRUE(writer.write(folder / "many.gltf"));
   json j = test::read_json(folder / "many.gltf");
   // One triangle of each, so that triangles alone would be few.
@@ -152,7 +162,8 @@ TEST(Limits, AThousandMistakesAreNotAThousandErrors) {
     }
   });
   EXPECT_LE(found.errors.size(), 101u);
-  EXPECT_NE(found.errors.back().text.text().find("more"), std::string::npos) << found.errors.back().text.text();
+  EXPECT_NE(found.errors.back().text.text().find("more"), std::string::npos)
+      << found.errors.back().text.text();
 }
 
 }  // namespace

@@ -130,13 +130,17 @@ TEST(AccessorErrors, WrongKinds) {
                                               {"values", {{"bufferView", view}, {"byteOffset", 4}}}};
     };
   };
-  for (const auto& edit : {sparse(1, 99, 5123), sparse(-1, 0, 5123), sparse(0, 0, 5123), sparse(1'000'000'000, 0, 5123),
-                           sparse(1, -1, 5123), sparse(1, 0, 7), sparse(3, 0, 5126), sparse(4, 0, 5125)})
+  for (const auto& edit :
+       {sparse(1, 99, 5123), sparse(-1, 0, 5123), sparse(0, 0, 5123), sparse(1'000'000'000, 0, 5123),
+        sparse(1, -1, 5123), sparse(1, 0, 7), sparse(3, 0, 5126), sparse(4, 0, 5125)})
     expect_edit_error(edit, {"POSITION", "sparse"});
-  expect_edit_error([](json& j) { accessor_of(j, "indices")["sparse"] = {{"count", 1},
-                                                                         {"indices", {{"bufferView", 0}, {"componentType", 5123}}},
-                                                                         {"values", {{"bufferView", 0}}}}; },
-                    {"indices", "sparse"});
+  expect_edit_error(
+      [](json& j) {
+        accessor_of(j, "indices")["sparse"] = {{"count", 1},
+                                               {"indices", {{"bufferView", 0}, {"componentType", 5123}}},
+                                               {"values", {{"bufferView", 0}}}};
+      },
+      {"indices", "sparse"});
 }
 
 TEST(AccessorErrors, IndexPastTheVertices) {

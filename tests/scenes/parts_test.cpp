@@ -25,7 +25,9 @@ Parts take(TriangleMesh triangles) {
   out.united = mesh::integrate_union(welded, out.components);
   return out;
 }
-Parts take(const Solid& solid) { return take(make::with_normals(solid)); }
+Parts take(const Solid& solid) {
+  return take(make::with_normals(solid));
+}
 
 /// The same box with each face cut along its other diagonal.
 Solid other_diagonals(Solid box) {
@@ -50,7 +52,8 @@ void expect_loads(const Solid& cup, double litres) {
   const Solid water = make::box({-0.05, 0.5, -0.05}, {0.05, 0.6, 0.05});
   make::SceneWriter writer({{"title", "parts"}, {"domain_min_m", {-2, -2, -2}}, {"domain_max_m", {2, 2, 2}}});
   const int paint = writer.add_material("paint", {});
-  writer.add_node("thing", writer.add_mesh("thing", cup, paint), {}, {{"slosh", "body"}, {"motion", "free"}, {"density_kg_m3", 1000.0}});
+  writer.add_node("thing", writer.add_mesh("thing", cup, paint), {},
+                  {{"slosh", "body"}, {"motion", "free"}, {"density_kg_m3", 1000.0}});
   writer.add_node("water", writer.add_mesh("water", water, paint), {}, {{"slosh", "fluid"}});
   ASSERT_TRUE(writer.write(folder / "parts.gltf"));
   const Result<Scene> scene = load_scene(folder / "parts.gltf");
@@ -114,7 +117,8 @@ TEST(Parts, ASolidThatTouchesItselfAlongAnEdge) {
 }
 
 TEST(Parts, WhatOverlapsCountsOnce) {
-  const Parts two = take(make::merged(make::box({-0.1, 0.0, 0.0}, {0.02, 0.1, 0.1}), make::box({-0.02, 0.0, 0.0}, {0.1, 0.1, 0.1})));
+  const Parts two = take(make::merged(make::box({-0.1, 0.0, 0.0}, {0.02, 0.1, 0.1}),
+                                      make::box({-0.02, 0.0, 0.0}, {0.1, 0.1, 0.1})));
   EXPECT_FALSE(two.defects.any());
   const double volume = 2e-3;  // together a box of 0.2 x 0.1 x 0.1
   EXPECT_NEAR(two.united.solid.volume, volume, 2e-3 * volume);
@@ -138,16 +142,19 @@ TEST(Parts, OneInsideTheOtherIsOneSolidOrACavityByItsFaces) {
 }
 
 TEST(Parts, ASmallOverlapChangesNoDigit) {
-  const Solid both = make::merged(make::box({-0.1, 0.0, 0.0}, {0.0005, 0.1, 0.1}), make::box({0.0, 0.0, 0.0}, {0.1, 0.1, 0.1}));
+  const Solid both = make::merged(make::box({-0.1, 0.0, 0.0}, {0.0005, 0.1, 0.1}),
+                                  make::box({0.0, 0.0, 0.0}, {0.1, 0.1, 0.1}));
   const TriangleMesh triangles = make::with_normals(both);
   const mesh::WeldedMesh welded = mesh::weld(triangles);
   mesh::Components components;
   mesh::find_defects(welded, &components);
-  EXPECT_EQ(mesh::integrate_union(welded, components).solid.volume, mesh::integrate_volume(welded, components).volume);
+  EXPECT_EQ(mesh::integrate_union(welded, components).solid.volume,
+            mesh::integrate_volume(welded, components).volume);
 }
 
 TEST(Parts, TheOverlapIsTold) {
-  const Solid cup = make::merged(make::tank({0.1, 0.1, 0.1}, 0.02), make::box({-0.07, 0.0, -0.07}, {0.07, 0.02, 0.07}));
+  const Solid cup =
+      make::merged(make::tank({0.1, 0.1, 0.1}, 0.02), make::box({-0.07, 0.0, -0.07}, {0.07, 0.02, 0.07}));
   const test::TempFolder folder;
   ASSERT_TRUE(test::make_cup({{"title", "x"}}, &cup).write(folder / "cup.gltf"));
   const Inspection found = inspect_scene(folder / "cup.gltf");
