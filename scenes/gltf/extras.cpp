@@ -38,17 +38,21 @@ std::string stem_of(const std::string& key) {
   return stem;
 }
 
-/// The field that was meant by a word that is none: near to one, or one with other units or none. Empty:
-/// somebody else's word.
+/// The field that was meant by a word that is none: near to one, or one with other units or none. Who misspells begins
+/// right: "uuid" is no "fluid". Empty: somebody else's word.
 std::string meant_field(const std::string& key, const std::vector<std::string>& known) {
-  const std::string near = nearest_word(key, known);
-  if (!near.empty()) return near;
   const std::string stem = stem_of(key);
-  std::vector<std::string> stems;
-  for (const std::string& field : known) stems.push_back(stem_of(field));
+  std::vector<std::string> fields, stems;
+  for (const std::string& field : known) {
+    if (field[0] != stem[0]) continue;
+    fields.push_back(field);
+    stems.push_back(stem_of(field));
+  }
+  const std::string near = nearest_word(key, fields);
+  if (!near.empty()) return near;
   const std::string meant = nearest_word(stem, stems);
   const auto found = std::find(stems.begin(), stems.end(), meant);
-  return meant.empty() ? meant : known[static_cast<std::size_t>(found - stems.begin())];
+  return meant.empty() ? meant : fields[static_cast<std::size_t>(found - stems.begin())];
 }
 
 std::string range_text(const Range& range) {

@@ -93,7 +93,9 @@ Moments counted_again(const WeldedMesh& mesh, const glm::dvec3& about) {
 
 United integrate_union(const WeldedMesh& mesh, const Components& components) {
   United out{integrate_volume(mesh, components), 0.0};
-  if (components.count < 2 || !(out.solid.volume > 0.0) || !some_boxes_meet(mesh, components)) return out;
+  // Parts that touch may hang together where they also cover each other.
+  const bool may_overlap = components.touching || (components.count > 1 && some_boxes_meet(mesh, components));
+  if (!may_overlap || !(out.solid.volume > 0.0)) return out;
   VolumeIntegrals& solid = out.solid;
   const Moments again = counted_again(mesh, solid.centroid);
   if (again.volume <= kLeastOverlap * solid.volume || again.volume >= solid.volume) return out;
