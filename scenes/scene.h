@@ -208,7 +208,7 @@ struct Scene {
   std::string source_file;  ///< where it was read from, for errors
   std::vector<TriangleMesh> meshes;
   std::vector<SceneImage> images;  ///< of textures
-  std::vector<Error> left_out;     ///< what the file says and is not done, its looks above all
+  std::vector<Error> left_out;     ///< what of the file's looks cannot be shown; the scene runs without it
   std::vector<Fluid> fluids;
   std::vector<FluidVolume> fluid_volumes;
   std::vector<Body> bodies;

@@ -25,7 +25,9 @@ inline Inspection inspect_foreign(const Edit& edit) {
   const Result<Scene> run = load_scene(folder / "cup.gltf");
   Inspection found = inspect_scene(folder / "cup.gltf");
   EXPECT_EQ(static_cast<bool>(run), found.scene.has_value());
-  if (run && found.scene) EXPECT_EQ(run.value().left_out.size(), found.scene->left_out.size());
+  if (run && found.scene) {
+    EXPECT_EQ(run.value().left_out.size(), found.scene->left_out.size());
+  }
   return found;
 }
 

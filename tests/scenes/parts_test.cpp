@@ -66,7 +66,9 @@ void expect_loads(const Solid& cup, double litres) {
   const mesh::MeshTree tree(scene.value().meshes[static_cast<std::size_t>(scene.value().bodies[0].mesh)]);
   const SurfaceSamples& surface = sampled.value().surfaces[0];
   for (std::size_t i = 0; i < surface.positions.size(); ++i)
-    EXPECT_FALSE(tree.inside(surface.positions[i] + 1e-4f * surface.normals[i])) << i;
+    EXPECT_FALSE(tree.inside(surface.positions[i] + 1e-4f * surface.normals[i]))
+        << surface.positions[i].x << " " << surface.positions[i].y << " " << surface.positions[i].z << ", normal "
+        << surface.normals[i].x << " " << surface.normals[i].y << " " << surface.normals[i].z;
 }
 
 TEST(Parts, BoxesThatShareAFaceAreOneSolid) {
