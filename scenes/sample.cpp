@@ -1,5 +1,6 @@
 #include "scenes/sample.h"
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <limits>
@@ -56,7 +57,9 @@ Result<SampledMesh> sample_mesh(const Scene& scene, const Body& body, double spa
   mesh::Components parts;
   mesh::find_defects(mesh::weld(triangles), &parts);
   const double apart = sheet_spacing(scene, body, spacing);
-  SurfaceSamples surface = sampling::sample_surface(triangles, tree, parts.count, apart, tell);
+  // Solids that touch may have faces between them, also where they hang together.
+  const int solids = parts.touching ? std::max(parts.count, 2) : parts.count;
+  SurfaceSamples surface = sampling::sample_surface(triangles, tree, solids, apart, tell);
   surface.particle_volume *= static_cast<float>(spacing / apart);  // area · spacing / count
   return SampledMesh{std::move(surface), sampling::make_distance_field(triangles, tree, spacing)};
 }

@@ -23,15 +23,17 @@ constexpr double kMuchCompressed = 0.25;  // ρ/ρ⁰ − 1: a settled head is a
 struct Settling {
   Progress* progress = nullptr;
   double steps = 1.0, done = 0.0;
-  std::int64_t until_ns = 0;
+  std::int64_t tell_from_ns = 0, until_ns = 0;
 };
 Settling settling;
 
 bool settled_enough() {
-  settling.progress->update(settling.done / settling.steps,
-                            "settling, then watching the hands (--static leaves it out)");
+  const std::int64_t now_ns = steady_now_ns();
+  if (now_ns > settling.tell_from_ns)
+    settling.progress->update(settling.done / settling.steps,
+                              "the scene settles, then its hands are watched (--static leaves that out)");
   settling.done += 1.0;
-  return steady_now_ns() > settling.until_ns;
+  return now_ns > settling.until_ns;
 }
 
 std::vector<HandleInput> still_hands(const Scene& scene) {
@@ -119,7 +121,8 @@ Result<CheckRun> run_for_check(const Scene& scene, const SampledScene& sampled, 
   // The watching gets its share first: settling is what may be cut short.
   const double watch_cost = cost * std::ceil(kWatched / step);
   if (watch_cost > 0.5 * kCheckBudget) return run;
-  settling = {&progress, std::max(1.0, scene.settle / step), 0.0,
+  constexpr double kQuiet = 1.5;  // s: what is shorter needs no words
+  settling = {&progress, std::max(1.0, scene.settle / step), 0.0, begin_ns + to_nanoseconds(kQuiet),
               begin_ns + to_nanoseconds(kCheckBudget - watch_cost)};
   world.settle(scene.settle, hands, settled_enough);
   run.settled = std::min(scene.settle, settling.done * step);
