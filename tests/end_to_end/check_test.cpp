@@ -32,7 +32,7 @@ struct Cup {
   glm::dvec3 at{0.0};
 
   void write(const std::string& name) const {
-    const glm::dmat4 scale(glm::dmat3(size));
+    const glm::dmat4 scale{glm::dmat3(size)};
     make::SceneWriter writer(scene);
     const int paint = writer.add_material("paint", {});
     const Pose pose{at, {1.0, 0.0, 0.0, 0.0}};

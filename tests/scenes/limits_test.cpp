@@ -2,7 +2,6 @@
 #include "net/wire/limits.h"
 
 #include "foreign_kit.h"
-#include "host/pose_fault.h"
 #include "sim/math/limits.h"
 
 namespace slosh {
