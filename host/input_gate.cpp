@@ -31,7 +31,7 @@ bool finite(const PoseMessage& m) {
 }  // namespace
 
 InputGate::InputGate(const Scene& scene)
-    : reach_min_(scene.domain_min - kHandleReach), reach_max_(scene.domain_max + kHandleReach) {
+    : reach_min_(lowest_handle(scene.domain_min)), reach_max_(highest_handle(scene.domain_max)) {
   for (const Grip& grip : scene.grips) {
     Hand hand;
     hand.body = grip.body;

@@ -3,11 +3,9 @@
 
 #include <cstdint>
 
-namespace slosh {
+#include "sim/math/limits.h"
 
-constexpr double kHandleReach = 5.0;           ///< m beyond the scene's domain
-constexpr double kHandleSpeed = 20.0;          ///< m/s
-constexpr double kHandleAngularSpeed = 100.0;  ///< rad/s
+namespace slosh {
 
 enum class PoseFault : std::uint8_t {
   kNone,

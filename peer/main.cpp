@@ -5,11 +5,13 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 #include <initializer_list>
 #include <memory>
 #include <string>
@@ -93,12 +95,24 @@ int with_all_printed(int code) {
   return code == kExitOk ? kExitFailed : code;
 }
 
+/// A file whose name begins with a dash is a file all the same: "-cup.glb" is read as "./-cup.glb".
+bool is_scene_file(const std::string& word) {
+  if (!word.starts_with('-') || word.find('=') != std::string::npos) return false;
+  std::string end = std::filesystem::path(word).extension().string();
+  for (char& c : end) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  std::error_code code;
+  return (end == ".glb" || end == ".gltf") && std::filesystem::exists(word, code);
+}
+
 int run(int argc, char** shown) {
   // Before anything takes time: everybody on this machine can read what a program was started with.
   std::vector<std::string> words(shown, shown + argc);
   hide_links(argc, shown);
   std::vector<char*> argv;
-  for (std::string& word : words) argv.push_back(word.data());
+  for (std::string& word : words) {
+    if (!argv.empty() && is_scene_file(word)) word.insert(0, "./");
+    argv.push_back(word.data());
+  }
   argv.push_back(nullptr);
   CLI::App app("Touch simulated fluids together.", "slosh");
   app.set_version_flag("--version", version_text);

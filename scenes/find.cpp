@@ -41,7 +41,7 @@ fs::path scenes_folder() {
 }
 
 bool is_gltf(const fs::path& file) {
-  return file.extension() == ".gltf" || file.extension() == ".glb";
+  return gltf::has_extension(file, ".gltf") || gltf::has_extension(file, ".glb");
 }
 
 std::string read_title(const fs::path& file) {

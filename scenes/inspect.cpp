@@ -24,7 +24,9 @@ Inspection look(const std::filesystem::path& file) {
     return found;
   }
   std::vector<Error> problems;
-  found.scene = reading::read_stages(document.value(), problems, true);
+  std::vector<gltf::Note> notes;
+  found.scene = reading::read_stages(document.value(), problems, true, &notes);
+  for (gltf::Note& note : notes) found.warnings.push_back({std::move(note.kind), std::move(note.text)});
   for (const Error& problem : problems) fails(problem);
   inspection::look_at_export(raw.value().json, document.value(), found.warnings);
   inspection::look_at_motion(document.value(), found.warnings);

@@ -1,5 +1,6 @@
 #include "scenes/sample.h"
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <limits>
@@ -8,8 +9,8 @@
 #include <set>
 
 #include "scenes/gltf/extras.h"
-#include "scenes/mesh/closed.h"
 #include "scenes/mesh/tree.h"
+#include "scenes/mesh/united.h"
 #include "scenes/sampling/distance.h"
 #include "scenes/sampling/fill.h"
 #include "scenes/sampling/place.h"
@@ -56,7 +57,9 @@ Result<SampledMesh> sample_mesh(const Scene& scene, const Body& body, double spa
   mesh::Components parts;
   mesh::find_defects(mesh::weld(triangles), &parts);
   const double apart = sheet_spacing(scene, body, spacing);
-  SurfaceSamples surface = sampling::sample_surface(triangles, tree, parts.count, apart, tell);
+  // Solids that touch may have faces between them, also where they hang together.
+  const int solids = parts.touching ? std::max(parts.count, 2) : parts.count;
+  SurfaceSamples surface = sampling::sample_surface(triangles, tree, solids, apart, tell);
   surface.particle_volume *= static_cast<float>(spacing / apart);  // area · spacing / count
   return SampledMesh{std::move(surface), sampling::make_distance_field(triangles, tree, spacing)};
 }
@@ -188,7 +191,7 @@ ParticleEstimate estimate_particles(const Scene& scene, double spacing) {
     const mesh::WeldedMesh welded = mesh::weld(scene.meshes[volume.mesh]);
     mesh::Components parts;
     mesh::find_defects(welded, &parts);
-    estimate.fluid += mesh::integrate_volume(welded, parts).volume / (spacing * spacing * spacing);
+    estimate.fluid += mesh::integrate_union(welded, parts).solid.volume / (spacing * spacing * spacing);
   }
   for (const Body& body : scene.bodies) {
     estimate.surface += body.point_probe ? 1.0 : surface_particles(scene, body, spacing);

@@ -115,8 +115,15 @@ Result<Scene> load_scene_with(const std::filesystem::path& file, const std::vect
       if (const std::optional<Error> problem = make_edit(document.value(), edit)) return cleaned(*problem);
     }
     std::vector<Error> problems;
-    std::optional<Scene> scene = reading::read_stages(document.value(), problems, false);
+    std::vector<gltf::Note> notes;
+    std::optional<Scene> scene = reading::read_stages(document.value(), problems, false, &notes);
     if (!scene) return cleaned(problems.front());
+    // In a file a stranger's property is nobody's business; here somebody asked for it by name.
+    for (const gltf::Note& note : notes) {
+      for (const FieldEdit& edit : edits)
+        if (note.kind == "foreign-property" && note.text.where.ends_with("extras." + edit.field))
+          return cleaned({note.text.where, "is not a property that is known here", note.text.mend});
+    }
     return std::move(*scene);
   } catch (const std::exception& problem) {  // out of memory, a library's own
     return cleaned(

@@ -7,7 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "net/text/clean.h"
+#include "net/wire/scene_package.h"
 #include "peer/output/summary.h"
+#include "peer/verbs/check_run.h"
 #include "peer/verbs/common_options.h"
 #include "peer/verbs/plan_numbers.h"
 #include "peer/verbs/prepare.h"
@@ -16,6 +18,7 @@
 #include "scenes/load.h"
 #include "scenes/sample.h"
 #include "sim/backend.h"
+#include "sim/math/format.h"
 #include "sim/plan.h"
 #include "sim/step_limits.h"
 
@@ -26,6 +29,7 @@ struct CheckOptions {
   std::string scene;
   double spacing = 0.0;  // m; 0: the scene's own, else its coarsest
   bool json = false;
+  bool still = false;  // --static: nothing is stepped
 };
 
 /// A scene that loads, at one spacing.
@@ -35,14 +39,17 @@ struct Counted {
   std::size_t surface = 0;
   double mass = 0.0;  // kg of fluid, as sampled
   SampleReport filling;
+  std::optional<CheckRun> run;
 };
 
-Result<Counted> count(const Scene& scene, double asked, Progress& progress) {
+constexpr std::size_t kMostToRun = 400'000;  // particles: more do not get anywhere in the time that check has
+
+Result<Counted> count(const Scene& scene, const CheckOptions& options, Progress& progress) {
   Counted counted;
+  const double asked = options.spacing;
   counted.spacing = asked > 0.0 ? asked : scene.spacing > 0.0 ? scene.spacing : scene.spacing_max;
-  if (const std::optional<Error> endless =
-          refuse_endless(scene, make_plan(scene, counted.spacing, can_solve_drag(Backend::kAuto))))
-    return *endless;
+  const Plan plan = make_plan(scene, counted.spacing, can_solve_drag(Backend::kAuto));
+  if (const std::optional<Error> endless = refuse_endless(scene, plan)) return *endless;
   const Result<SampledScene> sampled = sample_told(scene, counted.spacing, progress, &counted.filling);
   if (!sampled) return sampled.error();
   counted.fluid = sampled.value().fluid_positions.size();
@@ -50,6 +57,14 @@ Result<Counted> count(const Scene& scene, double asked, Progress& progress) {
   const double volume = std::pow(counted.spacing, 3);
   for (const std::uint8_t fluid : sampled.value().fluid_index)
     counted.mass += volume * scene.fluids[fluid].rest_density;
+  if (options.still || counted.fluid == 0) return counted;
+  if (counted.fluid + counted.surface > kMostToRun) {
+    counted.run.emplace();
+    return counted;
+  }
+  Result<CheckRun> run = run_for_check(scene, sampled.value(), plan, progress);
+  if (!run) return run.error();
+  counted.run = std::move(run.value());
   return counted;
 }
 
@@ -66,12 +81,19 @@ std::string object_of(const std::string& where) {
   return where.substr(from + begin.size(), to == std::string::npos ? to : to - from - begin.size());
 }
 
-void print_warnings(const std::vector<Finding>& warnings) {
+/// A sentence has one end.
+const char* end_of(const std::string& text) {
+  return text.ends_with('.') || text.ends_with('?') || text.ends_with('!') ? "" : ".";
+}
+
+void print_warnings(const std::vector<Finding>& warnings, bool plays) {
   if (warnings.empty()) return;
-  std::printf("%zu warning%s: it plays, but\n", warnings.size(), warnings.size() == 1 ? "" : "s");
+  std::printf("%zu warning%s: %s\n", warnings.size(), warnings.size() == 1 ? "" : "s",
+              plays ? "it plays, but" : "beside what keeps it from playing");
   for (const Finding& warning : warnings) {
-    std::printf("  %s: %s.\n", warning.text.where.c_str(), warning.text.what.c_str());
-    if (!warning.text.mend.empty()) std::printf("    %s.\n", warning.text.mend.c_str());
+    const Error& text = warning.text;
+    std::printf("  %s: %s%s\n", text.where.c_str(), text.what.c_str(), end_of(text.what));
+    if (!text.mend.empty()) std::printf("    %s%s\n", text.mend.c_str(), end_of(text.mend));
   }
 }
 
@@ -98,6 +120,17 @@ void print_json(const std::string& file, const Inspection& found, const std::opt
                     {"fluid_litres", litres(*found.scene)}, {"fluid_kg", counted->mass},
                     {"spacing_m", counted->spacing},        {"fluid_particles", counted->fluid},
                     {"body_particles", counted->surface}};
+    if (counted->run && counted->run->watched > 0.0) {
+      const CheckRun& run = *counted->run;
+      nlohmann::json hands = nlohmann::json::array();
+      for (const CheckRun::Felt& hand : run.hands)
+        hands.push_back({{"grip", hand.grip},
+                         {"force_n", hand.force},
+                         {"swing_n", hand.swing},
+                         {"steady", hand.steady()}});
+      out["rest"] = {
+          {"settled_s", run.settled}, {"left", run.left}, {"falling", run.falling}, {"hands", hands}};
+    }
   }
   std::printf("%s\n", out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
 }
@@ -129,6 +162,7 @@ void print_scene(const Scene& scene, const Counted& counted) {
         1e3 * f.in_bodies, 1e3 * f.in_others, 1e3 * f.no_place);
   }
   std::printf("  start       %s\n", start_in_words(scene).c_str());
+  if (counted.run) std::printf("  rest        %s\n", rest_in_words(*counted.run).c_str());
   const auto measured =
       std::count_if(scene.bodies.begin(), scene.bodies.end(), [](const Body& body) { return body.measured; });
   if (measured > 0 || !scene.gauges.empty() || !scene.regions.empty()) {
@@ -145,25 +179,63 @@ void print_scene(const Scene& scene, const Counted& counted) {
               1e3 * scene.spacing_min, 1e3 * scene.spacing_max);
 }
 
+/// What of the volumes' fluid is not there, as sampled.
+void judge_filling(const Scene& scene, const SampleReport& filling, Inspection& found) {
+  constexpr double kMuch = 0.02;  // of a volume
+  for (std::size_t v = 0; v < filling.volumes.size(); ++v) {
+    const FilledVolume& f = filling.volumes[v];
+    const std::string where = scene.source_file + ": node '" + scene.fluid_volumes[v].name + "'";
+    if (f.in_others > kMuch * f.mesh)
+      found.warnings.push_back(
+          {"shared-place",
+           {where,
+            format("shares its place with volumes before it: %.3g of its %.3g litres are left out",
+                   1e3 * f.in_others, 1e3 * f.mesh),
+            "Cut the volumes so that they touch, or move one"}});
+    if (f.no_place > kMuch * f.mesh)
+      found.warnings.push_back(
+          {"no-place",
+           {where,
+            format("%.3g of its %.3g litres find no place at this spacing", 1e3 * f.no_place, 1e3 * f.mesh),
+            "Give finer particles (--spacing), or leave the fluid room to rise above its mesh"}});
+  }
+}
+
+/// What plays here and could not be sent to guests.
+void judge_network(const Scene& scene, double spacing, Inspection& found) {
+  const Result<wire::Bytes> packed = pack_scene(scene, spacing, SceneParts::kSeen);
+  if (!packed)
+    found.warnings.push_back(
+        {"network",
+         {scene.source_file,
+          "plays here and cannot be hosted: " + packed.error().where + " " + packed.error().what,
+          packed.error().mend}});
+}
+
 int check(const CheckOptions& options) {
   const Result<std::filesystem::path> file = find_scene(options.scene);
   if (!file) return fail(file.error());
+  Progress progress;
+  if (progress.terminal()) progress.phase("reading", options.scene);
   Inspection found = inspect_scene(file.value());
   std::optional<Counted> counted;
   if (found.scene) {
-    Progress progress;
-    Result<Counted> result = count(*found.scene, options.spacing, progress);
+    Result<Counted> result = count(*found.scene, options, progress);
     if (result) {
       counted = std::move(result.value());
+      judge_filling(*found.scene, counted->filling, found);
+      judge_network(*found.scene, counted->spacing, found);
+      if (counted->run) judge_run(*found.scene, *counted->run, counted->spacing, found);
     } else {
       found.errors.push_back({"error", result.error()});
     }
   }
+  progress.end();
   if (options.json) {
     print_json(file.value().string(), found, counted);
   } else {
-    if (counted) print_scene(*found.scene, *counted);
-    print_warnings(found.warnings);
+    if (counted && found.errors.empty()) print_scene(*found.scene, *counted);
+    print_warnings(found.warnings, found.errors.empty());
     std::fflush(stdout);
     for (const Finding& finding : found.errors) fail(finding.text);
     if (found.errors.size() > 1)
@@ -181,13 +253,23 @@ void add_check(CLI::App& app, VerbRun& chosen) {
   verb->add_option("FILE", o->scene, "A .gltf or .glb file, or a shipped scene's name")->required();
   verb->add_option("--spacing", o->spacing, "Metres between particles (the scene's own, else its coarsest)")
       ->check(in_range(1e-4, 1.0));
+  verb->add_flag("--static", o->still, "Look at the file alone: do not let the scene run for a moment");
   verb->add_flag("--json", o->json, "The same for programs, as JSON on standard output");
   verb->footer(
-      "Loads the scene, checks every value and mesh, and samples it. Errors keep it from playing; warnings "
-      "are what\n"
-      "exports from Blender are known to lose (a camera, the animation, modifiers, +Y up, …), each with the "
-      "mend in\n"
-      "Blender's words. All at once; of each object the first error.\n"
+      "Loads the scene, checks every value and mesh, samples it, and lets it run for a moment: it settles, "
+      "then "
+      "the hands\n"
+      "stand still and what they feel is watched, in 10 s at most (--static leaves that out). Errors keep it "
+      "from\n"
+      "playing; warnings are what will surprise: what exports from Blender are known to lose (a camera, the "
+      "animation,\n"
+      "modifiers, +Y up, …), what the file says and slosh does not do (shape keys, skins, hidden objects), "
+      "fluid "
+      "that lies in\n"
+      "no vessel or leaves it, layers thinner than particles, hands out of reach, sizes in other units, a "
+      "start "
+      "that is not at\n"
+      "rest. Each with the number, and the mend in Blender's words.\n"
       "Exit code 1 where there is an error, 0 with warnings alone.\n\n"
       "Examples:\n  slosh check bucket\n  slosh check my_scene.glb --spacing 0.005\n"
       "  slosh check my_scene.glb --json");

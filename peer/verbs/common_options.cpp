@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 
@@ -27,6 +28,20 @@ CLI::Validator in_range(double least, double most) {
         return fine ? std::string() : "'" + text + "' is not a number from " + range;
       },
       "from " + range);
+}
+
+CLI::Validator whole_number() {
+  return CLI::Validator(
+      [](std::string& text) {
+        double value = 0.0;
+        const char* end = text.data() + text.size();
+        const auto [at, code] = std::from_chars(text.data(), end, value);
+        if (code != std::errc() || at != end || value != std::floor(value) || std::abs(value) > 1e15)
+          return "'" + text + "' is not a whole number, as 20000 or 1e6";
+        text = std::to_string(static_cast<long long>(value));
+        return std::string();
+      },
+      "");
 }
 
 void add_seconds_option(CLI::App& verb, double& seconds, double least, const std::string& text) {
@@ -181,7 +196,9 @@ void add_world_options(CLI::App& verb, PlayOptions& options, const std::string& 
   add_backend_option(verb, options.backend, "What the simulation runs on");
   verb.add_option("--spacing", options.spacing,
                   "Metres between particles, or auto: measures the finest in real time (kept once it was)");
-  verb.add_option("--particles", options.particles, "Fluid particles to aim at, in place of a spacing")
+  verb.add_option("--particles", options.particles,
+                  "Fluid particles to aim at, in place of a spacing: 20000, or 1e6")
+      ->transform(whole_number())
       ->check(CLI::Range(1, 20000000))
       ->excludes("--spacing");
   verb.add_option("--threads", options.threads, "Cores for the simulation (" + all_cores + ")")

@@ -12,6 +12,9 @@ namespace slosh {
 /// A number from `least` to `most`: "nan" and "inf", which CLI::Range lets through, are none.
 CLI::Validator in_range(double least, double most);
 
+/// For a whole number, also as 1e6 (CLI::Option::transform).
+CLI::Validator whole_number();
+
 /// --seconds with `text`, from `least` up.
 void add_seconds_option(CLI::App& verb, double& seconds, double least, const std::string& text);
 

@@ -8,6 +8,7 @@
 #include "host/keep/secrets.h"
 #include "net/grip_start.h"
 #include "peer/output/summary.h"
+#include "peer/verbs/all_left.h"
 #include "peer/verbs/time_estimate.h"
 
 namespace slosh {
@@ -32,6 +33,7 @@ Result<HostedWorld> start_anew(const HostVerbOptions& options, Progress& progres
       progress);
   if (!agreed) return agreed.error();
   hosted.world->settle(p.scene.settle, hands);
+  if (const std::optional<Error> nothing = all_left(*hosted.world, p.scene)) return *nothing;
   const Result<bool> saved = hosted.world->save(hosted.start);
   if (!saved) return saved.error();
   hosted.waits = options.wait > 0 && !p.scene.grips.empty();

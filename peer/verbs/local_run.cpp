@@ -4,6 +4,7 @@
 #include <array>
 
 #include "peer/remote/peer_console.h"
+#include "peer/verbs/all_left.h"
 #include "peer/verbs/hand_trouble.h"
 #include "peer/verbs/interrupt.h"
 #include "peer/verbs/live_grips.h"
@@ -59,6 +60,7 @@ Result<std::unique_ptr<LocalRun>> LocalRun::create(const Prepared& prepared, Dev
   // Where a run begins again the first signal is not to wait for this.
   const auto stopped = [] { return interrupted_by() != 0; };
   world.settle(scene.settle, hands, stopped);
+  if (const std::optional<Error> nothing = all_left(world, scene)) return *nothing;
   if (snapshot_rate > 0.0) {
     // A GPU that also draws reads them where they are; the picture's side says where it does not.
     const Result<bool> shared = world.share_particles();
@@ -91,6 +93,8 @@ Result<std::unique_ptr<LocalRun>> LocalRun::create(const Prepared& prepared, Dev
   run->wrenches_ = std::make_unique<WrenchTap>(scene.grips.size());
   run->host_->add_tap(*run->wrenches_);
   run->host_->add_tap(run->switches_);
+  run->hands_ = std::make_unique<HandsTap>(scene.grips.size());
+  run->host_->add_tap(*run->hands_);
   run->mouse_targets_ = std::move(devices.mouse_targets);
   run->lent_ = std::move(devices.lent);
   ServoOptions servo;
@@ -268,6 +272,8 @@ void LocalRun::report(RunSummary& s) const {
   if (!prepared_.folder.empty()) s.files = {"wrenches.csv", "poses.csv"};
   report_instruments(measurer_.get(), prepared_.scene, prepared_.sampled, host_->world(), s);
   report_export(exporter_.get(), s);
+  for (std::string& sentence : hands_->never_acted(prepared_.scene))
+    s.problems.push_back(std::move(sentence));
 }
 
 }  // namespace slosh

@@ -11,6 +11,7 @@
 #include "peer/output/recorder.h"
 #include "peer/remote/remote_status.h"
 #include "peer/verbs/export_source.h"
+#include "peer/verbs/hands_tap.h"
 #include "peer/verbs/live_run.h"
 #include "peer/verbs/lockstep.h"
 #include "peer/verbs/measure_tap.h"
@@ -78,6 +79,7 @@ class LocalRun final : public LiveRun {
   std::unique_ptr<keep::RecordingWriter> recording_;  // null where none was asked for; the host tells it
   std::unique_ptr<WrenchTap> wrenches_;
   SwitchTap switches_;
+  std::unique_ptr<HandsTap> hands_;
   std::unique_ptr<Measurer> measurer_;  // null where nothing is measured, as its tap
   std::unique_ptr<MeasureTap> measure_tap_;
   std::unique_ptr<Exporter> exporter_;  // null where nothing is exported, as its tap

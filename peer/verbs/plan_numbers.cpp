@@ -50,8 +50,10 @@ std::string share_lines(const Scene& scene, const Plan& plan) {
 
 std::string start_in_words(const Scene& scene) {
   if (scene.settle > 0.0)
-    return format("settles %.3g s before the run, as the scene asks: what its fluid starts with is lost",
-                  scene.settle);
+    return format(
+        "settles %.3g s before the run: a head or a layering that its fluid starts with is lost (settle_s 0 "
+        "keeps it)",
+        scene.settle);
   return "starts as the scene has it: nothing settles before the run";
 }
 

@@ -11,12 +11,19 @@
 
 namespace slosh::gltf {
 
+/// Which whole numbers may stand for numbers.
+enum class Integers {
+  kNone,
+  kNormalized,  ///< of [−1, 1] or [0, 1], where the accessor says that they are
+  kAny,         ///< these, and others as they are (KHR_mesh_quantization)
+};
+
 /// Reads an accessor's numbers, `components` an element (1 scalar, 2 VEC2, 3 VEC3, 4 VEC4), normalised
-/// integers turned into [−1, 1] or [0, 1] when `allow_normalized`. `where` begins the error ("file: mesh 'x':
+/// integers as `integers` has it; what is sparse is filled in. `where` begins the error ("file: mesh 'x':
 /// POSITION"). Errors: index out of range, wrong type, buffer view or buffer exceeded, a number that is not
 /// finite.
 Result<std::vector<double>> read_numbers(const tinygltf::Model& model, int accessor, int components,
-                                         bool allow_normalized, const std::string& where);
+                                         Integers integers, const std::string& where);
 
 /// Reads scalar indices (unsigned 8, 16 or 32 bits), each below `limit`.
 Result<std::vector<std::uint32_t>> read_indices(const tinygltf::Model& model, int accessor, std::size_t limit,

@@ -25,9 +25,10 @@ struct Curve {
 
 Result<Curve> read_curve(const Document& document, const tinygltf::AnimationSampler& sampler, int width,
                          const std::string& where) {
-  auto times = read_numbers(document.model, sampler.input, 1, false, where + ": input");
+  auto times = read_numbers(document.model, sampler.input, 1, Integers::kNone, where + ": input");
   if (!times) return times.error();
-  auto values = read_numbers(document.model, sampler.output, width, width == 4, where + ": output");
+  auto values = read_numbers(document.model, sampler.output, width,
+                             width == 4 ? Integers::kNormalized : Integers::kNone, where + ": output");
   if (!values) return values.error();
   Curve curve{std::move(times.value()), std::move(values.value()), width, false, false};
   curve.step = sampler.interpolation == "STEP";
@@ -111,12 +112,7 @@ std::vector<double> key_times(const std::optional<Curve>& a, const std::optional
 }  // namespace
 
 bool is_animated(const Document& document, int node) {
-  for (const tinygltf::Animation& animation : document.model.animations) {
-    for (const tinygltf::AnimationChannel& channel : animation.channels) {
-      if (channel.target_node == node) return true;
-    }
-  }
-  return false;
+  return document.animated[static_cast<std::size_t>(node)];
 }
 
 Result<std::vector<PoseKey>> read_motion(const Document& document, int node) {

@@ -1,5 +1,7 @@
 #include "scenes/gltf/container.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
@@ -50,6 +52,27 @@ Result<std::string> read_bytes(const std::filesystem::path& file) {
     return Error{where, "cannot be read", "Check its permissions"};
   }
   return bytes;
+}
+
+/// How deep brackets go in a JSON text. (The library's own callback would tell, and looks through all of a
+/// list at the end of each of its objects: of 80 000 nodes that is half a minute.)
+int deepest_nesting(const std::string& text) {
+  int depth = 0, deepest = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (in_string) {
+      if (c == '\\') ++i;
+      if (c == '"') in_string = false;
+    } else if (c == '"') {
+      in_string = true;
+    } else if (c == '{' || c == '[') {
+      deepest = std::max(deepest, ++depth);
+    } else if (c == '}' || c == ']') {
+      --depth;
+    }
+  }
+  return deepest;
 }
 
 /// What the JSON library says, without the name that it has for it.
@@ -145,11 +168,22 @@ std::string version_problem(const nlohmann::json& json) {
 
 }  // namespace
 
+bool has_extension(const std::filesystem::path& file, const char* extension) {
+  std::string own = file.extension().string();
+  for (char& c : own) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return own == extension;
+}
+
 Result<Container> read_container(const std::filesystem::path& file) {
   Result<std::string> read = read_bytes(file);
   if (!read) return read.error();
   std::string& bytes = read.value();
   if (bytes.empty()) return Error{file.string(), "the file is empty", "Export the file again"};
+  if (bytes.starts_with("version https://git-lfs.github.com/spec/")) {
+    return Error{file.string(),
+                 "is a pointer of Git LFS, which stands in the file's place: the file is not here yet",
+                 "Run 'git lfs pull' in its folder"};
+  }
   Container out;
   std::string text;
   if (bytes.size() >= 4 && read_u32(bytes, 0) == kMagic) {
@@ -159,20 +193,16 @@ Result<Container> read_container(const std::filesystem::path& file) {
   } else {
     text = std::move(bytes);
   }
-  int deepest = 0;
-  const auto watch_depth = [&](int depth, nlohmann::json::parse_event_t, nlohmann::json&) {
-    deepest = std::max(deepest, depth);
-    return depth <= kDeepestJson;
-  };
+  const bool too_deep = deepest_nesting(text) > kDeepestJson;
   try {
-    out.json = nlohmann::json::parse(text, watch_depth);
+    if (!too_deep) out.json = nlohmann::json::parse(text);
   } catch (const std::exception& problem) {
-    if (!out.is_binary && file.extension() == ".glb")
+    if (!out.is_binary && has_extension(file, ".glb"))
       return Error{file.string(), "is no .glb: it does not begin with glTF", "Export the file again"};
     return Error{file.string(), "unreadable JSON: " + words_of(problem),
                  "Export the file again; glTF has no NaN, no comments and no trailing commas"};
   }
-  if (deepest > kDeepestJson) {
+  if (too_deep) {
     return Error{file.string(), "JSON nested deeper than " + std::to_string(kDeepestJson) + " levels",
                  "Remove the nested custom properties"};
   }

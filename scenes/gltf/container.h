@@ -19,6 +19,9 @@ struct Container {
 /// Reads a file of at most 512 MB. Errors: missing, empty, too large, truncated .glb, text that is not JSON.
 Result<Container> read_container(const std::filesystem::path& file);
 
+/// Whether a file's name ends so; capitals count for nothing. `extension` in small letters, ".glb".
+bool has_extension(const std::filesystem::path& file, const char* extension);
+
 /// The container as the bytes of a .glb (is_binary) or of a .gltf.
 std::string to_bytes(const Container& container);
 

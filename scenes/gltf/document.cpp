@@ -1,5 +1,6 @@
 #include "scenes/gltf/document.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <optional>
@@ -7,7 +8,9 @@
 #include "net/text/clean.h"
 #include "scenes/gltf/buffers.h"
 #include "scenes/gltf/container.h"
+#include "scenes/gltf/ledger.h"
 #include "scenes/gltf/references.h"
+#include "scenes/gltf/roles.h"
 
 namespace slosh::gltf {
 namespace {
@@ -89,6 +92,7 @@ std::optional<Error> walk(Document& document) {
   document.parent.assign(count, -1);
   document.world.assign(count, glm::dmat4(1.0));
   std::vector<bool> seen(count, false);
+  std::vector<int> depth(count, 0);
   std::vector<int> todo;
   if (document.model.scenes.empty()) {
     std::vector<bool> is_child(count, false);
@@ -125,6 +129,12 @@ std::optional<Error> walk(Document& document) {
         return Error{document.owner(*child), "hangs on more than one node", "Export the file again"};
       }
       document.parent[*child] = index;
+      depth[*child] = depth[index] + 1;
+      if (depth[*child] > kDeepestNodes) {
+        return Error{document.owner(*child),
+                     "lies below more than " + std::to_string(kDeepestNodes) + " nodes",
+                     "In Blender: Object > Parent > Clear and Keep Transformation"};
+      }
       todo.push_back(*child);
     }
   }
@@ -148,7 +158,9 @@ Result<Document> read_document(const std::filesystem::path& file) {
   nlohmann::json& json = container.value().json;
   Document document;
   document.file = file.string();
+  document.notes = drop_broken_looks(document.file, json);
   if (const auto problem = check_references(document.file, json)) return *problem;
+  for (Note& note : ledger(document.file, json)) document.notes.push_back(std::move(note));
 
   document.extras.assign(json.contains("nodes") ? json["nodes"].size() : 0, nlohmann::json::object());
   for (std::size_t i = 0; i < document.extras.size(); ++i) {
@@ -162,6 +174,8 @@ Result<Document> read_document(const std::filesystem::path& file) {
   }
   document.looks = take_looks(json);
   document.looks["images"] = std::move(container.value().images);
+  const nlohmann::json used = json.value("extensionsUsed", nlohmann::json::array());
+  document.quantized = std::find(used.begin(), used.end(), "KHR_mesh_quantization") != used.end();
   drop_unused(json);
   Result<tinygltf::Model> model = to_model(file, container.value());
   if (!model) return model.error();
@@ -171,6 +185,11 @@ Result<Document> read_document(const std::filesystem::path& file) {
   }
   document.model.defaultScene = std::max(document.model.defaultScene, 0);
   if (const auto problem = walk(document)) return *problem;
+  document.animated.assign(document.model.nodes.size(), false);
+  for (const tinygltf::Animation& animation : document.model.animations) {
+    for (const tinygltf::AnimationChannel& channel : animation.channels)
+      if (channel.target_node >= 0) document.animated[static_cast<std::size_t>(channel.target_node)] = true;
+  }
   return document;
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "scenes/gltf/note.h"
 #include "sim/math/pose.h"
 #include "sim/math/result.h"
 
@@ -27,6 +28,9 @@ struct Document {
   nlohmann::json scene_extras;         ///< of the default scene; an object
   nlohmann::json looks;  ///< "materials" (a list of objects, where there), "textures", "samplers", "images":
                          ///< as they stand
+  std::vector<Note> notes;     ///< what the file says and is left out (roles.h, ledger.h)
+  bool quantized = false;      ///< meshes may have whole numbers (KHR_mesh_quantization)
+  std::vector<bool> animated;  ///< by node: some channel of some animation moves it
 
   /// "file: node 'name'", as errors begin.
   std::string owner(int node) const;
@@ -34,8 +38,11 @@ struct Document {
   std::string name(int node) const;
 };
 
+/// Nodes below each other, at most: whoever looks up from each for what carries it walks as far.
+inline constexpr int kDeepestNodes = 1000;
+
 /// Reads a .gltf or .glb. Errors: unreadable, not JSON, not glTF 2.0, a reference out of range, a loop of
-/// nodes, a transform that is not finite, compressed geometry.
+/// nodes, nodes below more than kDeepestNodes others, a transform that is not finite, compressed geometry.
 Result<Document> read_document(const std::filesystem::path& file);
 
 /// Splits an affine matrix's linear part into a rotation and what is left of it (scale, shear, mirror), so

@@ -18,6 +18,43 @@ std::string shown(const nlohmann::json& value) {
   return text;
 }
 
+/// Words that are units at a field's end.
+bool is_unit(const std::string& word) {
+  constexpr const char* kUnits[] = {"m", "s",  "s2", "m2",  "m3",  "kg",  "kg2", "g", "cm", "cm3",  "mm",
+                                    "n", "nm", "pa", "mpa", "rad", "per", "deg", "l", "ml", "mpas", "cp"};
+  return std::find(std::begin(kUnits), std::end(kUnits), word) != std::end(kUnits);
+}
+
+/// A field without its units, in small letters: "mass" of "mass_kg", "angular_velocity" of
+/// "angular_velocity_rad_s".
+std::string stem_of(const std::string& key) {
+  std::string stem;
+  for (const char c : key)
+    stem += static_cast<char>(c == '-' || c == ' ' ? '_' : std::tolower(static_cast<unsigned char>(c)));
+  for (std::size_t at = stem.rfind('_'); at != std::string::npos && at > 0; at = stem.rfind('_')) {
+    if (!is_unit(stem.substr(at + 1))) break;
+    stem.erase(at);
+  }
+  return stem;
+}
+
+/// The field that was meant by a word that is none: near to one, or one with other units or none. Who misspells begins
+/// right: "uuid" is no "fluid". Empty: somebody else's word.
+std::string meant_field(const std::string& key, const std::vector<std::string>& known) {
+  const std::string stem = stem_of(key);
+  std::vector<std::string> fields, stems;
+  for (const std::string& field : known) {
+    if (field[0] != stem[0]) continue;
+    fields.push_back(field);
+    stems.push_back(stem_of(field));
+  }
+  const std::string near = nearest_word(key, fields);
+  if (!near.empty()) return near;
+  const std::string meant = nearest_word(stem, stems);
+  const auto found = std::find(stems.begin(), stems.end(), meant);
+  return meant.empty() ? meant : fields[static_cast<std::size_t>(found - stems.begin())];
+}
+
 std::string range_text(const Range& range) {
   const std::string high = short_number(range.high);
   if (range.low == 0.0 && range.above_low) return "a number above 0, at most " + high;
@@ -128,18 +165,38 @@ const nlohmann::json* Extras::object(const char* key) {
   return nullptr;
 }
 
-std::vector<Error> Extras::errors() const {
-  std::vector<Error> all = errors_;
-  std::string list;
-  for (const std::string& known : known_) list += (list.empty() ? "" : ", ") + known;
+std::vector<std::string> Extras::unknown() const {
+  std::vector<std::string> keys;
   for (const auto& [key, value] : object_.items()) {
     if (key.empty() || key[0] == '_' || std::isupper(static_cast<unsigned char>(key[0]))) continue;
     if (std::find(std::begin(kExporterKeys), std::end(kExporterKeys), key) != std::end(kExporterKeys))
       continue;
-    if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
+    if (std::find(known_.begin(), known_.end(), key) == known_.end()) keys.push_back(key);
+  }
+  return keys;
+}
+
+std::vector<Error> Extras::errors() const {
+  std::vector<Error> all = errors_;
+  std::string list;
+  for (const std::string& known : known_) list += (list.empty() ? "" : ", ") + known;
+  for (const std::string& key : unknown()) {
+    const std::string meant = meant_field(key, known_);
+    if (meant.empty()) continue;
     all.push_back({owner_ + ": extras." + key, "is not a property that is known here",
-                   did_you_mean(key, known_) + "Use one of: " + list +
+                   "Did you mean " + meant + "? Use one of: " + list +
                        "; or begin the name with _ to have it ignored"});
+  }
+  return all;
+}
+
+std::vector<Error> Extras::foreign() const {
+  std::vector<Error> all;
+  for (const std::string& key : unknown()) {
+    if (!meant_field(key, known_).empty()) continue;
+    all.push_back({owner_ + ": extras." + key,
+                   "is a custom property that slosh does not know, and is not read",
+                   "Begin its name with _ if it is yours; scenes/README.md lists the known ones"});
   }
   return all;
 }

@@ -43,14 +43,18 @@ class Extras {
   /// Notes an error about `key` unless one about it is noted already: a second one would only follow from it.
   void fail(const std::string& key, std::string what, std::string mend);
 
-  /// Everything that is wrong, unknown keys last. Keys that begin with "_" or a capital letter, and those that
-  /// exporters are known to leave, are nobody's.
+  /// Everything that is wrong, last the unknown keys that look like a known one misspelt, or without its
+  /// unit.
   std::vector<Error> errors() const;
+  /// The other unknown keys: somebody else's. Those that begin with "_" or a capital letter, and those that
+  /// exporters are known to leave, are not even told.
+  std::vector<Error> foreign() const;
   /// The first of these.
   std::optional<Error> error() const;
 
  private:
   const nlohmann::json* find(const char* key);
+  std::vector<std::string> unknown() const;
 
   const nlohmann::json& object_;
   std::string owner_;

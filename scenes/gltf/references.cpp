@@ -1,5 +1,7 @@
 #include "scenes/gltf/references.h"
 
+#include "scenes/gltf/roles.h"
+
 namespace slosh::gltf {
 namespace {
 
@@ -21,7 +23,6 @@ class ReferenceCheck {
       }
     }
     if (error_) return error_;
-    extensions();
     each("bufferViews",
          [&](const json& view, const std::string& who) { need(view, "buffer", "buffers", who); });
     each("accessors", [&](const json& accessor, const std::string& who) {
@@ -36,6 +37,7 @@ class ReferenceCheck {
     each("scenes", [&](const json& scene, const std::string& who) { list(scene, "nodes", "nodes", who); });
     optional(root_, "scene", "scenes", "file");
     each("animations", [&](const json& animation, const std::string& who) { channels(animation, who); });
+    extensions();
     return error_;
   }
 
@@ -84,11 +86,13 @@ class ReferenceCheck {
     index(object[field], "accessors", who, label);
     if (error_) return;
     const json& accessor = root_["accessors"][object[field].get<std::size_t>()];
-    if (!accessor.contains("bufferView")) fail(who + ": " + label, "its accessor has no bufferView");
-    if (accessor.contains("sparse")) fail(who + ": " + label, "its accessor is sparse, which is not read");
+    const bool needs_view = !accessor.contains("sparse") || label == "indices";
+    if (needs_view && !accessor.contains("bufferView"))
+      fail(who + ": " + label, "its accessor has no bufferView");
   }
 
   void primitives(const json& mesh, const std::string& who) {
+    if (mesh.contains(kLeftOut)) return;
     if (!mesh.contains("primitives") || !mesh["primitives"].is_array() || mesh["primitives"].empty()) {
       return fail(who, "has no primitives");
     }
@@ -141,9 +145,10 @@ class ReferenceCheck {
       const std::string name = entry.is_string() ? entry.get<std::string>() : "?";
       const bool looks_only = name.starts_with("KHR_materials_") || name.starts_with("KHR_texture_") ||
                               name.starts_with("KHR_lights_") || name.starts_with("EXT_texture_");
-      if (!looks_only) {
+      const bool in_the_ledger = name == "KHR_node_visibility" || name == "EXT_mesh_gpu_instancing";
+      if (!looks_only && !in_the_ledger && name != "KHR_mesh_quantization") {
         fail("extensionsRequired", "needs the glTF extension '" + name + "', which is not read",
-             "Export without compression or quantisation");
+             "Export without compression");
       }
     }
   }

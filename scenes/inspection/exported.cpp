@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -65,33 +66,26 @@ void look_at_capitals(const gltf::Document& document, std::vector<Finding>& warn
 
 void look_at_mesh_data(const json& file, const gltf::Document& document, std::vector<Finding>& warnings) {
   if (!file.contains("meshes") || !file["meshes"].is_array()) return;
-  for (std::size_t m = 0; m < file["meshes"].size(); ++m) {
-    const std::string keys = our_keys(file["meshes"][m]);
-    if (keys.empty()) continue;
-    for (const int node : document.nodes) {
-      if (document.model.nodes[node].mesh != static_cast<int>(m)) continue;
-      // A linked copy of a thing that is right has the same mesh data; what counts is on the object.
-      if (document.extras[node].contains("slosh")) continue;
-      warnings.push_back({"on-mesh-data",
-                          {document.owner(node),
-                           "its properties (" + keys + ") are on the mesh data '" +
-                               text_of(file["meshes"][m], "name") + "', where they are not read",
-                           "In Blender: put them under Object Properties (the orange square) > Custom "
-                           "Properties, not under Object "
-                           "Data (the green triangle)"}});
-    }
+  std::map<int, std::string> keys_of_mesh;
+  for (const int node : document.nodes) {
+    const int m = document.model.nodes[node].mesh;
+    // A linked copy of a thing that is right has the same mesh data; what counts is on the object.
+    if (m < 0 || document.extras[node].contains("slosh")) continue;
+    const json& mesh = file["meshes"][static_cast<std::size_t>(m)];
+    const auto [known, is_new] = keys_of_mesh.try_emplace(m);
+    if (is_new) known->second = our_keys(mesh);
+    if (known->second.empty()) continue;
+    warnings.push_back({"on-mesh-data",
+                        {document.owner(node),
+                         "its properties (" + known->second + ") are on the mesh data '" +
+                             text_of(mesh, "name") + "', where they are not read",
+                         "In Blender: put them under Object Properties (the orange square) > Custom "
+                         "Properties, not under Object "
+                         "Data (the green triangle)"}});
   }
 }
 
-void look_for_instances(const json& file, const gltf::Document& document, std::vector<Finding>& warnings) {
-  for (const int node : document.nodes) {
-    const json& raw = file["nodes"][static_cast<std::size_t>(node)];
-    if (!raw.contains("extensions") || !raw["extensions"].contains("EXT_mesh_gpu_instancing")) continue;
-    warnings.push_back(
-        {"instances",
-         {document.owner(node), "is drawn many times by the exporter's instancing, and read once",
-          "In Blender: Object > Apply > Make Instances Real, or export without GPU instancing"}});
-  }
+void look_for_instances(const gltf::Document& document, std::vector<Finding>& warnings) {
   // A collection instance becomes an empty with copies of what the collection holds: things of ours under an
   // empty that is nobody's, which stand there too.
   for (const int node : document.nodes) {
@@ -128,7 +122,7 @@ void look_at_export(const json& file, const gltf::Document& document, std::vecto
   }
   look_at_capitals(document, warnings);
   look_at_mesh_data(file, document, warnings);
-  look_for_instances(file, document, warnings);
+  look_for_instances(document, warnings);
 }
 
 void look_at_motion(const gltf::Document& document, std::vector<Finding>& warnings) {
@@ -149,7 +143,7 @@ void look_at_motion(const gltf::Document& document, std::vector<Finding>& warnin
       for (const tinygltf::AnimationChannel& channel : animation.channels) {
         if (channel.target_node != node || channel.target_path != "translation") continue;
         const tinygltf::AnimationSampler& sampler = animation.samplers[channel.sampler];
-        const auto times = gltf::read_numbers(document.model, sampler.input, 1, false, "");
+        const auto times = gltf::read_numbers(document.model, sampler.input, 1, gltf::Integers::kNone, "");
         if (!times || times.value().size() < 8 || sampler.interpolation != "LINEAR") continue;
         std::vector<double> steps;
         for (std::size_t i = 1; i < times.value().size(); ++i)

@@ -6,8 +6,8 @@
 #include <glm/gtc/constants.hpp>
 
 #include "scenes/images/decode.h"
+#include "scenes/inspection/around.h"
 #include "scenes/inspection/inspection.h"
-#include "scenes/mesh/tree.h"
 #include "scenes/reading/reading.h"
 #include "scenes/sample.h"
 
@@ -18,7 +18,6 @@ constexpr double kMostParticles = 150'000.0;  // at the coarsest spacing: a tent
 constexpr double kFewParticles = 100.0;  // of fluid, at the finest: a spoonful that is felt as single blows
 constexpr std::size_t kCoarse = 300;     // triangles
 constexpr double kRound = 0.44;  // rad, 25°: more between a face and its corners' normals is no facet
-constexpr std::size_t kMostLookedAt = 32;  // places of a fluid from which is looked around
 
 std::string number(const char* pattern, double value) {
   char text[64];
@@ -43,46 +42,6 @@ void look_at_gravity(const gltf::Document& document, const Scene& scene, std::ve
             ": not down. Vectors in custom properties are not turned by the exporter; here y is up",
         "Give (0, -9.81, 0) for Blender's (0, 0, -9.81), or leave it out"}});
 }
-
-/// Of places inside a fluid volume, the share that sees a body in a direction.
-class Around {
- public:
-  explicit Around(const Scene& scene) : scene_(scene) {
-    for (const Body& body : scene.bodies)
-      trees_.push_back(body.mesh >= 0 ? mesh::MeshTree(scene.meshes[static_cast<std::size_t>(body.mesh)])
-                                      : mesh::MeshTree(TriangleMesh{}));
-  }
-  double closed(const FluidVolume& volume, const glm::dvec3& way) const {
-    const TriangleMesh& mesh = scene_.meshes[static_cast<std::size_t>(volume.mesh)];
-    glm::dvec3 middle(0.0);
-    for (const glm::vec3& p : mesh.positions) middle += glm::dvec3(p);
-    middle /= static_cast<double>(std::max<std::size_t>(mesh.positions.size(), 1));
-    const std::size_t every = std::max<std::size_t>(1, mesh.positions.size() / kMostLookedAt);
-    int seen = 0;
-    int all = 0;
-    for (std::size_t i = 0; i < mesh.positions.size(); i += every) {
-      const glm::dvec3 local = 0.5 * (middle + glm::dvec3(mesh.positions[i]));
-      seen += meets(transform_point(volume.pose, local), way) ? 1 : 0;
-      all += 1;
-    }
-    return all > 0 ? static_cast<double>(seen) / all : 0.0;
-  }
-
- private:
-  bool meets(const glm::dvec3& from, const glm::dvec3& way) const {
-    for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
-      if (trees_[b].triangle_count() == 0) continue;
-      const Pose to_mesh = inverse(scene_.bodies[b].pose);
-      bool met = false;
-      trees_[b].each_hit(glm::vec3(transform_point(to_mesh, from)), glm::vec3(to_mesh.orientation * way),
-                         [&](float, int) { met = true; });
-      if (met) return true;
-    }
-    return false;
-  }
-  const Scene& scene_;
-  std::vector<mesh::MeshTree> trees_;
-};
 
 /// Blender's up is our +z where the exporter did not turn it: a vessel is open there, and closed where we
 /// have up.
@@ -192,7 +151,6 @@ glm::dvec3 in_blender(const glm::dvec3& place) {
 namespace {
 
 void look_at_textures(const gltf::Document& document, const Scene& scene, std::vector<Finding>& warnings) {
-  for (const Error& what : scene.left_out) warnings.push_back({"texture", what});
   for (const SceneImage& image : scene.images) {
     const auto unpacked = images::decode(image.bytes, document.file + ": image '" + image.name + "'");
     if (!unpacked) warnings.push_back({"texture", unpacked.error()});
@@ -206,6 +164,7 @@ void look_at_scene(const gltf::Document& document, const Scene& scene, std::vect
   look_at_up(document, scene, warnings);
   look_at_size(document, scene, warnings);
   look_at_modifiers(document, scene, warnings);
+  look_at_reach(document, scene, warnings);
   look_at_textures(document, scene, warnings);
 }
 

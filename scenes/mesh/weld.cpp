@@ -67,9 +67,12 @@ WeldedMesh weld(const TriangleMesh& mesh) {
     welded[i] = static_cast<std::uint32_t>(index);
   }
   out.triangles.reserve(mesh.triangles.size());
-  for (const glm::uvec3& t : mesh.triangles) {
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const glm::uvec3& t = mesh.triangles[i];
     const glm::uvec3 w(welded[t.x], welded[t.y], welded[t.z]);
-    if (w.x != w.y && w.y != w.z && w.z != w.x) out.triangles.push_back(w);
+    if (w.x == w.y || w.y == w.z || w.z == w.x) continue;
+    out.triangles.push_back(w);
+    out.sources.push_back(static_cast<std::uint32_t>(i));
   }
   return out;
 }

@@ -13,6 +13,7 @@ namespace slosh::mesh {
 struct WeldedMesh {
   std::vector<glm::dvec3> points;     ///< m
   std::vector<glm::uvec3> triangles;  ///< counter-clockwise seen from outside; none degenerate
+  std::vector<std::uint32_t> sources;  ///< one a triangle: which of the source mesh's it is
 };
 
 /// Welds points closer than 1e-6 of the bounding box's diagonal. Triangles that collapse are left out.

@@ -6,12 +6,6 @@
 namespace slosh::mesh {
 namespace {
 
-struct Crossing {
-  std::int32_t row;
-  float x;
-  std::int8_t sign;  ///< +1 entering along +x
-};
-
 /// Twice the signed area of (a, b, p) in the y–z plane. The end points are put in a fixed order first, so
 /// that the two triangles of an edge get results of equal size and opposite sign.
 double edge_side(const glm::dvec3& a, const glm::dvec3& b, double y, double z) {
@@ -24,7 +18,7 @@ double edge_side(const glm::dvec3& a, const glm::dvec3& b, double y, double z) {
 
 }  // namespace
 
-std::vector<std::int8_t> winding_numbers(const TriangleMesh& mesh, const Grid& grid) {
+std::vector<Crossing> line_crossings(const TriangleMesh& mesh, const Grid& grid) {
   // Lines are moved a little off the nodes, in an odd direction: nodes love to lie exactly on edges.
   const double shift_y = grid.cell * 1.3717e-5;
   const double shift_z = grid.cell * 2.1931e-5;
@@ -60,6 +54,11 @@ std::vector<std::int8_t> winding_numbers(const TriangleMesh& mesh, const Grid& g
     if (p.x != q.x) return p.x < q.x;
     return p.sign > q.sign;
   });
+  return crossings;
+}
+
+std::vector<std::int8_t> winding_numbers(const TriangleMesh& mesh, const Grid& grid) {
+  const std::vector<Crossing> crossings = line_crossings(mesh, grid);
   std::vector<std::int8_t> winding(grid.count(), 0);
   for (std::size_t begin = 0; begin < crossings.size();) {
     std::size_t end = begin;

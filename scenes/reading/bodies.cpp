@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "scenes/gltf/meshes.h"
-#include "scenes/mesh/closed.h"
+#include "scenes/mesh/united.h"
 #include "scenes/reading/reading.h"
 
 namespace slosh::reading {
@@ -15,6 +15,7 @@ using gltf::Range;
 constexpr double kProbeRadius = 0.005;
 constexpr double kProbeMass = 0.05;
 constexpr std::size_t kMostBodies = 10'000;
+constexpr std::size_t kMostPictures = 4096;  // as a network carries
 
 /// Symmetric positive definite, and no moment above the sum of the other two.
 bool is_inertia(const glm::dmat3& m) {
@@ -73,6 +74,19 @@ void read_mass(Extras& extras, const mesh::VolumeIntegrals& volume, Body& body) 
   }
 }
 
+/// Parts that lie in each other are one solid, also where a hollow was meant.
+void note_overlap(Reading& reading, int node, const mesh::United& united) {
+  if (united.overlap <= 0.0) return;
+  reading.notes.push_back(
+      {"parts-overlap",
+       {reading.document.owner(node),
+        "its parts overlap: " + gltf::short_number(1e3 * united.overlap) +
+            " litres lie in several of "
+            "them and count once, of " +
+            gltf::short_number(1e3 * united.solid.volume) + " together",
+        "Where a part was to be a hollow, turn its faces inward: Mesh > Normals > Flip"}});
+}
+
 }  // namespace
 
 Problem read_body(Reading& reading, int node) {
@@ -91,7 +105,9 @@ Problem read_body(Reading& reading, int node) {
     const mesh::WeldedMesh welded = mesh::weld(reading.scene.meshes[body.mesh]);
     mesh::Components parts;
     mesh::find_defects(welded, &parts);
-    volume = mesh::integrate_volume(welded, parts);
+    const mesh::United united = mesh::integrate_union(welded, parts);
+    volume = united.solid;
+    note_overlap(reading, node, united);
   }
   read_mass(extras, volume, body);
   read_common(extras, body);
@@ -100,6 +116,7 @@ Problem read_body(Reading& reading, int node) {
   body.twist.angular = extras.vector("angular_velocity_rad_s", glm::dvec3(0.0), Range{-1e3, 1e3});
   body.material = read_material(reading, reading.document.model.nodes[node].mesh);
   if (Problem problem = all_of(reading, mesh_problem, extras)) return problem;
+  if (Problem problem = check_place(reading, node, body.mesh, body.pose)) return problem;
   if (reading.scene.bodies.size() >= kMostBodies) {
     return Error{reading.document.owner(node), "more than " + std::to_string(kMostBodies) + " bodies",
                  "Use fewer"};
@@ -123,10 +140,13 @@ Problem read_probe(Reading& reading, int node) {
   read_common(extras, body);
   body.dynamic_viscosity = extras.number("viscosity_pa_s", 0.0, Range{0.0, 1e7});
   if (Problem problem = all_of(reading, std::nullopt, extras)) return problem;
+  if (Problem problem = check_place(reading, node, -1, body.pose)) return problem;
   const int look = reading.document.model.nodes[node].mesh;
   if (look >= 0) {
-    if (Problem problem = read_node_mesh(reading, node, rest, false, body.mesh)) return problem;
-    body.material = read_material(reading, look);
+    if (const Problem problem = read_node_mesh(reading, node, rest, false, body.mesh))
+      reading.notes.push_back({"picture", *problem});
+    else
+      body.material = read_material(reading, look);
   }
   reading.body_of_node[node] = static_cast<int>(reading.scene.bodies.size());
   reading.scene.bodies.push_back(std::move(body));
@@ -175,17 +195,31 @@ Problem read_fluid_volume(Reading& reading, int node) {
   if (scene.fluids.size() > 250) extras.fail("fluid", "is one of more than 250 fluids", "Use fewer");
   const Problem mesh_problem = read_node_mesh(reading, node, rest, true, volume.mesh);
   if (Problem problem = all_of(reading, mesh_problem, extras)) return problem;
+  if (Problem problem = check_place(reading, node, volume.mesh, volume.pose)) return problem;
   scene.fluid_volumes.push_back(std::move(volume));
   return std::nullopt;
 }
 
 Problem read_picture(Reading& reading, int node) {
+  if (reading.scene.pictures.size() >= kMostPictures) {
+    reading.notes.push_back({"picture",
+                             {reading.document.owner(node),
+                              "is one of more than " + std::to_string(kMostPictures) +
+                                  " things that are only looked at, and is not shown",
+                              "In Blender: join them (Ctrl J)"}});
+    return std::nullopt;
+  }
   Picture picture;
   picture.name = reading.document.name(node);
   glm::dmat3 rest;
-  if (Problem problem = read_pose(reading, node, picture.pose, rest)) return problem;
   // A node without the key is only looked at: its properties, if any, are somebody else's.
-  if (Problem problem = read_node_mesh(reading, node, rest, false, picture.mesh)) return problem;
+  Problem problem = read_pose(reading, node, picture.pose, rest);
+  if (!problem) problem = read_node_mesh(reading, node, rest, false, picture.mesh);
+  if (problem) {
+    problem->what += "; it is not shown";
+    reading.notes.push_back({"picture", *problem});
+    return std::nullopt;
+  }
   picture.material = read_material(reading, reading.document.model.nodes[node].mesh);
   reading.scene.pictures.push_back(std::move(picture));
   return std::nullopt;

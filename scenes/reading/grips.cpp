@@ -1,5 +1,6 @@
 // Grips, the hands that hold them, and the camera.
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "scenes/gltf/animation.h"
@@ -18,6 +19,29 @@ std::string grip_names(const Scene& scene) {
   std::string list;
   for (const Grip& grip : scene.grips) list += (list.empty() ? "" : ", ") + grip.name;
   return list.empty() ? "none" : list;
+}
+
+/// Keys that the run does not come to. A hand of one key stands still on purpose.
+void note_late_keys(Reading& reading, int node, const std::vector<PoseKey>& keys) {
+  constexpr double kWorthTelling = 0.5;  // s
+  const double duration = reading.scene.duration;
+  const auto same = [](const PoseKey& a, const PoseKey& b) {
+    return a.pose.position == b.pose.position && a.pose.orientation == b.pose.orientation;
+  };
+  // Reading begins every motion at 0: until its own first key a hand stands still.
+  const auto moves = std::adjacent_find(keys.begin(), keys.end(),
+                                        [&](const PoseKey& a, const PoseKey& b) { return !same(a, b); });
+  if (keys.size() < 2 || moves == keys.end() || keys.back().time <= duration + kWorthTelling) return;
+  const std::string lasts = "its keys go on to " + gltf::short_number(keys.back().time) + " s";
+  reading.notes.push_back(
+      {"late-keys",
+       {reading.document.owner(node),
+        moves->time >= duration
+            ? "it begins to move at " + gltf::short_number(moves->time) + " s, and the run lasts " +
+                  gltf::short_number(duration) + " s: it stands still"
+            : lasts + ", and the run lasts " + gltf::short_number(duration) + " s",
+        "Give the scene duration_s = " + gltf::short_number(std::ceil(keys.back().time)) +
+            ", or move the keys: in Blender they count from frame 0"}});
 }
 
 }  // namespace
@@ -118,6 +142,7 @@ Problem read_hand(Reading& reading, int node) {
                  "Put the hand where the grip is at time 0 (at most 50 mm off)"};
   }
   grip->hand_motion = std::move(motion.value());
+  note_late_keys(reading, node, grip->hand_motion);
   return std::nullopt;
 }
 
@@ -127,21 +152,30 @@ Problem read_camera(Reading& reading) {
   const glm::dvec3 center = 0.5 * (bounds.low + bounds.high);
   const double radius = std::max(0.5 * glm::length(bounds.high - bounds.low), 0.05);
   Camera& camera = reading.scene.camera;
+  const auto leave_out = [&](Error problem) {
+    problem.what += "; the view is chosen for you";
+    reading.notes.push_back({"camera", std::move(problem)});
+  };
   for (const int node : document.nodes) {
     const int index = document.model.nodes[node].camera;
     if (index < 0) continue;
     const tinygltf::Camera& source = document.model.cameras[index];
     if (source.type != "perspective") {
-      return Error{document.owner(node), "the camera is orthographic", "Use a perspective camera"};
+      leave_out({document.owner(node), "the camera is orthographic", "Use a perspective camera"});
+      continue;
     }
     const double fov = glm::degrees(source.perspective.yfov);
     if (!(fov >= 1.0 && fov <= 150.0)) {
-      return Error{document.owner(node) + ": yfov", "is " + gltf::short_number(fov) + " degrees",
-                   "Give 1 to 150 degrees"};
+      leave_out({document.owner(node) + ": yfov", "is " + gltf::short_number(fov) + " degrees",
+                 "Give 1 to 150 degrees"});
+      continue;
     }
     Pose pose;
     glm::dmat3 rest;
-    if (Problem problem = read_pose(reading, node, pose, rest)) return problem;
+    if (const Problem problem = read_pose(reading, node, pose, rest)) {
+      leave_out(*problem);
+      continue;
+    }
     const glm::dvec3 forward = pose.orientation * glm::dvec3(0.0, 0.0, -1.0);
     camera.vertical_fov_deg = fov;
     camera.eye = pose.position;

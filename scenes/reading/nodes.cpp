@@ -6,6 +6,7 @@
 #include "scenes/mesh/closed.h"
 #include "scenes/mesh/tree.h"
 #include "scenes/reading/reading.h"
+#include "sim/math/limits.h"
 
 namespace slosh::reading {
 namespace {
@@ -65,8 +66,9 @@ Problem check_parts(const mesh::WeldedMesh& welded, const mesh::Components& part
   return std::nullopt;
 }
 
-Problem check_closed(const TriangleMesh& triangles, const std::string& where, const Pose& pose) {
-  const mesh::WeldedMesh welded = mesh::weld(triangles);
+Problem check_closed(TriangleMesh& triangles, const std::string& where, const Pose& pose) {
+  mesh::WeldedMesh welded = mesh::weld(triangles);
+  if (mesh::drop_inner_faces(triangles, welded)) welded = mesh::weld(triangles);
   mesh::Components parts;
   const mesh::Defects defects = mesh::find_defects(welded, &parts);
   if (defects.any()) {
@@ -99,14 +101,21 @@ Problem read_kind(Reading& reading, int node) {
     if (kind == kKinds[i]) reading.kinds[node] = kOrder[i];
   }
   if (reading.kinds[node] == NodeKind::kNone) return extras.error();
-  const bool needs_mesh = kind == "body" || kind == "fluid" || kind == "picture" || kind == "region";
+  if (kind == "picture" && !has_mesh) {
+    reading.kinds[node] = NodeKind::kNone;
+    reading.notes.push_back({"picture",
+                             {document.owner(node), "is to be looked at, and has no mesh that can be drawn",
+                              "Put the property on a mesh object, or take it out"}});
+    return std::nullopt;
+  }
+  const bool needs_mesh = kind == "body" || kind == "fluid" || kind == "region";
   if (needs_mesh && !has_mesh) {
     reading.kinds[node] = NodeKind::kNone;
     extras.fail("slosh", "is \"" + kind + "\", but the node has no mesh",
                 "Put the property on the mesh object");
     return extras.error();
   }
-  if (!reading.names.emplace(document.name(node), node).second) {
+  if (kind != "picture" && !reading.names.emplace(document.name(node), node).second) {
     reading.kinds[node] = NodeKind::kNone;
     return Error{
         document.owner(node), "another node has this name too",
@@ -119,6 +128,7 @@ Problem read_kind(Reading& reading, int node) {
 Problem check_animated(Reading& reading, int node) {
   const NodeKind kind = reading.kinds[node];
   if (kind == NodeKind::kNone || kind == NodeKind::kPicture || kind == NodeKind::kHand) return std::nullopt;
+  if (!reading.document.animated[static_cast<std::size_t>(node)]) return std::nullopt;
   for (const tinygltf::Animation& animation : reading.document.model.animations) {
     for (const tinygltf::AnimationChannel& channel : animation.channels) {
       if (channel.target_node != node) continue;
@@ -142,6 +152,20 @@ Problem read_pose(const Reading& reading, int node, Pose& pose, glm::dmat3& rest
                "Give it a scale other than 0"};
 }
 
+Problem check_place(const Reading& reading, int node, int mesh, const Pose& pose) {
+  const auto check = [&](const glm::dvec3& place) -> Problem {
+    if (!glm::any(glm::greaterThan(glm::abs(place), glm::dvec3(kFarthestPlace)))) return std::nullopt;
+    return Error{reading.document.owner(node),
+                 "reaches to " + point_text(place) + ", farther than " + gltf::short_number(kFarthestPlace) +
+                     " m from the scene's origin: places there are too coarse to simulate",
+                 "Move everything near the origin; sizes are in metres (is the file in millimetres?)"};
+  };
+  if (mesh < 0) return check(pose.position);
+  for (const glm::vec3& p : reading.scene.meshes[static_cast<std::size_t>(mesh)].positions)
+    if (Problem problem = check(transform_point(pose, glm::dvec3(p)))) return problem;
+  return std::nullopt;
+}
+
 Problem read_node_mesh(Reading& reading, int node, const glm::dmat3& rest, bool closed, int& mesh) {
   const gltf::Document& document = reading.document;
   const int source = document.model.nodes[node].mesh;
@@ -154,6 +178,14 @@ Problem read_node_mesh(Reading& reading, int node, const glm::dmat3& rest, bool 
   const auto key = std::make_tuple(source, matrix);
   auto found = reading.shared.find(key);
   if (found == reading.shared.end()) {
+    reading.work += gltf::work_of_mesh(document, source);
+    if (reading.work > gltf::kMostNumbersRead) {
+      return Error{where,
+                   "the meshes up to here have more than " +
+                       std::to_string(gltf::kMostNumbersRead / 1'000'000) +
+                       " million vertices and indices, each counted as often as a mesh asks for it",
+                   "Use fewer meshes, or reduce them, in Blender with the Decimate modifier"};
+    }
     Result<TriangleMesh> read = gltf::read_mesh(document, source, rest, where);
     if (!read) return read.error();
     reading.triangles += read.value().triangles.size();
@@ -168,7 +200,7 @@ Problem read_node_mesh(Reading& reading, int node, const glm::dmat3& rest, bool 
   }
   mesh = found->second.mesh;
   if (closed && !found->second.checked) {
-    const TriangleMesh& triangles = reading.scene.meshes[mesh];
+    TriangleMesh& triangles = reading.scene.meshes[mesh];
     Pose pose;
     glm::dmat3 unused;
     if (Problem problem = read_pose(reading, node, pose, unused)) return problem;

@@ -41,14 +41,19 @@ struct Reading {
   std::map<int, Material> materials;  ///< glTF material → what came of it
   std::map<int, int> images;          ///< glTF image → Scene::images, −1 where it could not be read
   std::size_t image_pixels = 0;       ///< of all of these
+  std::vector<gltf::Note> notes;      ///< what is said and not done
+  std::size_t work = 0;               ///< of all meshes that were read (gltf::work_of_mesh)
 };
 
-/// All stages in order. The first problem ends the reading; with `all` every one is put there instead, but for those
-/// that only follow from another (a grip on a body that could not be read). A scene only where there was none.
-std::optional<Scene> read_stages(const gltf::Document& document, std::vector<Error>& problems, bool all);
+/// All stages in order. The first problem ends the reading; with `all` every one is put there instead, but
+/// for those that only follow from another (a grip on a body that could not be read). A scene only where
+/// there was none. `notes`, where there is one, receives what is in Scene::left_out with its kinds, also of a
+/// file with problems.
+std::optional<Scene> read_stages(const gltf::Document& document, std::vector<Error>& problems, bool all,
+                                 std::vector<gltf::Note>* notes = nullptr);
 
-/// What is wrong with a node: `first`, where there is one, then all that `extras` has. The first of these is returned,
-/// the others go to Reading::further.
+/// What is wrong with a node: `first`, where there is one, then all that `extras` has. The first of these is
+/// returned, the others go to Reading::further; properties that are somebody else's to Reading::notes.
 Problem all_of(Reading& reading, Problem first, const gltf::Extras& extras);
 
 /// Sets a node's kind. Errors: unknown `slosh`, a name used twice, a mesh missing.
@@ -62,13 +67,14 @@ Problem read_scene_fields(Reading& reading);
 Problem read_fluid_volume(Reading& reading, int node);
 Problem read_body(Reading& reading, int node);
 Problem read_probe(Reading& reading, int node);
+/// No error: a picture that cannot be shown is left out, and told in Reading::notes.
 Problem read_picture(Reading& reading, int node);
 Problem read_grip(Reading& reading, int node);  ///< after all bodies
 Problem order_grips(Reading& reading);          ///< after all grips: by `device`, the others behind
 Problem read_hand(Reading& reading, int node);  ///< after all grips
 Problem read_gauge(Reading& reading, int node);   ///< after all bodies
 Problem read_region(Reading& reading, int node);  ///< after all bodies
-Problem read_camera(Reading& reading);          ///< after everything with a size
+Problem read_camera(Reading& reading);            ///< after everything with a size; no error, as of pictures
 Problem read_domain(Reading& reading);          ///< likewise
 Problem fit_spacing(Reading& reading);          ///< likewise: a coarsest spacing that was not given fits the walls
 
@@ -78,6 +84,9 @@ Material read_material(Reading& reading, int mesh);
 
 /// Rigid pose of a node, and what the pose leaves of its transform.
 Problem read_pose(const Reading& reading, int node, Pose& pose, glm::dmat3& rest);
+
+/// Errors: some corner of a mesh that takes part is farther than kFarthestPlace from the scene's origin.
+Problem check_place(const Reading& reading, int node, int mesh, const Pose& pose);
 
 /// The node's mesh as an index into Scene::meshes, shared between nodes that bake to the same triangles.
 /// With `closed`, an open, non-manifold or inward-facing mesh is an error that says how to mend it.

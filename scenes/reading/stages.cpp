@@ -1,9 +1,18 @@
 // The stages of reading a scene, in order: to the first problem, or through all of them.
+#include <algorithm>
+
 #include "net/text/clean.h"
+#include "scenes/gltf/ledger.h"
 #include "scenes/reading/reading.h"
 
 namespace slosh::reading {
 namespace {
+
+/// More is one mistake that was made often, and nobody reads on.
+constexpr std::size_t kMostProblems = 100;
+
+/// s, where nothing is said: what the shipped scenes take.
+constexpr double kUsualSettle = 1.0;
 
 using ReadNode = Problem (*)(Reading&, int);
 
@@ -13,6 +22,19 @@ Problem something_to_simulate(Reading& reading) {
       reading.document.file, "the scene has neither a body nor a fluid",
       "Give at least one object the custom property slosh = \"body\" or \"fluid\", and export with custom "
       "properties on"};
+}
+
+/// What starts with a velocity is not to be brought to rest, what is written is done as it is written.
+Problem settle_as_usual(Reading& reading) {
+  Scene& scene = reading.scene;
+  if (reading.document.scene_extras.contains("settle_s")) return std::nullopt;
+  const auto moves = [](const auto& part) { return part.velocity != glm::dvec3(0.0); };
+  const auto thrown = [](const Body& body) {
+    return body.twist.linear != glm::dvec3(0.0) || body.twist.angular != glm::dvec3(0.0);
+  };
+  if (std::ranges::none_of(scene.fluid_volumes, moves) && std::ranges::none_of(scene.bodies, thrown))
+    scene.settle = kUsualSettle;
+  return std::nullopt;
 }
 
 Problem nothing_that_settling_would_undo(Reading& reading) {
@@ -70,16 +92,27 @@ class Stages {
     problems_.push_back(problem);
     problems_.insert(problems_.end(), reading_.further.begin(), reading_.further.end());
   }
-  bool over() const { return !all_ && !problems_.empty(); }
+  bool over() const { return !problems_.empty() && (!all_ || problems_.size() >= kMostProblems); }
 
   Reading& reading_;
   std::vector<Error>& problems_;
   bool all_;
 };
 
+/// One list: looks first, which were told as they were met.
+void tell_what_is_left_out(Reading& reading, std::vector<gltf::Note>* notes) {
+  std::vector<gltf::Note> all;
+  for (const Error& look : reading.scene.left_out) all.push_back({"texture", look});
+  for (gltf::Note& note : gltf::shortened(std::move(reading.notes))) all.push_back(std::move(note));
+  reading.scene.left_out.clear();
+  for (const gltf::Note& note : all) reading.scene.left_out.push_back(note.text);
+  if (notes) *notes = std::move(all);
+}
+
 }  // namespace
 
 Problem all_of(Reading& reading, Problem first, const gltf::Extras& extras) {
+  for (Error& error : extras.foreign()) reading.notes.push_back({"foreign-property", std::move(error)});
   for (Error& error : extras.errors()) {
     if (first)
       reading.further.push_back(std::move(error));
@@ -89,8 +122,9 @@ Problem all_of(Reading& reading, Problem first, const gltf::Extras& extras) {
   return first;
 }
 
-std::optional<Scene> read_stages(const gltf::Document& document, std::vector<Error>& problems, bool all) {
-  Reading reading{document, {}, {}, {}, {}, {}, {}, 0, {}, {}, {}, {}, {}, {}};
+std::optional<Scene> read_stages(const gltf::Document& document, std::vector<Error>& problems, bool all,
+                                 std::vector<gltf::Note>* notes) {
+  Reading reading{document, {}, {}, {}, {}, {}, {}, 0, {}, {}, {}, {}, {}, {}, 0, document.notes, 0};
   const std::filesystem::path file = document.file;
   reading.scene.name = clean_text(file.stem().string(), kMostTextBytes);
   reading.scene.source_file = document.file;
@@ -104,6 +138,7 @@ std::optional<Scene> read_stages(const gltf::Document& document, std::vector<Err
   stages.nodes(read_probe, NodeKind::kProbe);
   stages.nodes(read_picture, NodeKind::kPicture);
   stages.whole(something_to_simulate, true);
+  stages.whole(settle_as_usual);
   stages.whole(nothing_that_settling_would_undo);
   stages.nodes(read_grip, NodeKind::kGrip);
   stages.whole(order_grips);
@@ -113,6 +148,10 @@ std::optional<Scene> read_stages(const gltf::Document& document, std::vector<Err
   stages.whole(read_camera, true);
   stages.whole(read_domain, true);
   stages.whole(fit_spacing, true);
+  tell_what_is_left_out(reading, notes);
+  if (problems.size() >= kMostProblems)
+    problems.push_back(
+        {document.file, "there are more errors than these", "Mend these first, then check again"});
   if (!problems.empty() || !reading.failed.empty()) return std::nullopt;
   return std::move(reading.scene);
 }

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "scenes/gltf/extras.h"
-#include "scenes/mesh/closed.h"
 #include "scenes/mesh/tree.h"
+#include "scenes/mesh/united.h"
 #include "scenes/mesh/winding.h"
 #include "scenes/sampling/place.h"
 #include "scenes/sampling/point_grid.h"
@@ -148,7 +148,7 @@ double closed_volume(const TriangleMesh& mesh) {
   const mesh::WeldedMesh welded = mesh::weld(mesh);
   mesh::Components parts;
   mesh::find_defects(welded, &parts);
-  return mesh::integrate_volume(welded, parts).volume;
+  return mesh::integrate_union(welded, parts).solid.volume;
 }
 
 /// How much of the cells inside a mesh is inside bodies, in cells. Points of the lattice alone would say it

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/math/limits.h"
+
 namespace slosh {
 
 namespace {
 
 // Handles beyond these are broken devices, not hands.
-constexpr double kFarthestHandle = 1.0e3;     // m
 constexpr double kFastestHandle = 1.0e3;      // m/s
 constexpr double kFastestHandleTurn = 1.0e4;  // rad/s
 

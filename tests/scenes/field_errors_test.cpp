@@ -248,10 +248,20 @@ TEST(FieldValues, ModelIsOneOfTwo) {
   EXPECT_NE(unknown.error().text().find("model"), std::string::npos);
 }
 
-TEST(FieldValues, SettlesOnlyWhatIsAskedForAndNothingThatMoves) {
+TEST(FieldValues, SettlesWhereNothingIsSaidAndNothingMoves) {
   const auto plain = test::load_edited([](json&) {});
   ASSERT_TRUE(plain) << plain.error().text();
-  EXPECT_EQ(plain.value().settle, 0.0);
+  EXPECT_EQ(plain.value().settle, 1.0);
+  const auto not_at_all = test::load_edited([](json& j) { j["scenes"][0]["extras"]["settle_s"] = 0; });
+  ASSERT_TRUE(not_at_all) << not_at_all.error().text();
+  EXPECT_EQ(not_at_all.value().settle, 0.0);
+  for (const char* node : {"cup", "water"}) {
+    const auto moving = test::load_edited([node](json& j) {
+      node_named(j, node)["extras"]["velocity_m_s"] = {0.5, 0.0, 0.0};
+    });
+    ASSERT_TRUE(moving) << moving.error().text();
+    EXPECT_EQ(moving.value().settle, 0.0) << "what moves is not brought to rest";
+  }
   const auto asked = test::load_edited([](json& j) { j["scenes"][0]["extras"]["settle_s"] = 0.75; });
   ASSERT_TRUE(asked) << asked.error().text();
   EXPECT_EQ(asked.value().settle, 0.75);

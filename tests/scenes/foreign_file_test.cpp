@@ -260,7 +260,7 @@ TEST(ForeignFile, ErrorsCanBeShown) {
     EXPECT_EQ(text_problem(scene.error().text()), "") << clean_text(scene.error().text(), 1000);
   }
   const Result<Scene> unknown = test::load_edited(
-      [](nlohmann::json& json) { test::node_named(json, "cup")["extras"]["ma\x1b[31mss"] = 1; });
+      [](nlohmann::json& json) { test::node_named(json, "cup")["extras"]["mas\x1b_kg"] = 1; });
   ASSERT_FALSE(unknown);
   EXPECT_EQ(text_problem(unknown.error().text()), "");
 }

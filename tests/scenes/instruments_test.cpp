@@ -68,10 +68,10 @@ TEST(InstrumentNodes, MistakesNameFileNodeAndField) {
       {"cup.gltf", "handle", "slosh", "no mesh"});
   expect_edit_error(
       [](json& j) {
-        node_named(j, "handle")["extras"] = {{"slosh", "gauge"}, {"radius_m", 1.0}};
+        node_named(j, "handle")["extras"] = {{"slosh", "gauge"}, {"sloosh", 1.0}};
         without_hand(j);
       },
-      {"cup.gltf", "handle", "radius_m", "not a property"});
+      {"cup.gltf", "handle", "sloosh", "not a property"});
   expect_edit_error(
       [](json& j) {
         node_named(j, "handle")["extras"] = {{"slosh", "gauge"}};

@@ -122,8 +122,25 @@ TEST(AccessorErrors, WrongKinds) {
   expect_edit_error([](json& j) { accessor_of(j, "indices")["componentType"] = 5126; },
                     {"indices", "unsigned integers"});
   expect_edit_error([](json& j) { accessor_of(j, "indices")["type"] = "VEC3"; }, {"indices", "1 are needed"});
-  expect_edit_error([](json& j) { accessor_of(j, "POSITION")["sparse"] = {{"count", 1}}; },
-                    {"POSITION", "sparse"});
+  expect_edit_error([](json& j) { accessor_of(j, "POSITION")["sparse"] = {{"count", 1}}; }, {"sparse"});
+  const auto sparse = [](std::int64_t count, std::int64_t view, int type) {
+    return [=](json& j) {
+      accessor_of(j, "POSITION")["sparse"] = {{"count", count},
+                                              {"indices", {{"bufferView", view}, {"componentType", type}}},
+                                              {"values", {{"bufferView", view}, {"byteOffset", 4}}}};
+    };
+  };
+  for (const auto& edit :
+       {sparse(1, 99, 5123), sparse(-1, 0, 5123), sparse(0, 0, 5123), sparse(1'000'000'000, 0, 5123),
+        sparse(1, -1, 5123), sparse(1, 0, 7), sparse(3, 0, 5126), sparse(4, 0, 5125)})
+    expect_edit_error(edit, {"POSITION", "sparse"});
+  expect_edit_error(
+      [](json& j) {
+        accessor_of(j, "indices")["sparse"] = {{"count", 1},
+                                               {"indices", {{"bufferView", 0}, {"componentType", 5123}}},
+                                               {"values", {{"bufferView", 0}}}};
+      },
+      {"indices", "sparse"});
 }
 
 TEST(AccessorErrors, IndexPastTheVertices) {
@@ -158,8 +175,8 @@ TEST(ReferenceErrors, PointAtNothing) {
   expect_edit_error([](json& j) { j["scene"] = 4; }, {"scene", "4"});
   expect_edit_error([](json& j) { j["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 500; },
                     {"cup_mesh", "POSITION", "500"});
-  expect_edit_error([](json& j) { j["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = 500; },
-                    {"cup_mesh", "COLOR_0"});
+  expect_edit_error([](json& j) { j["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = 500; },
+                    {"cup_mesh", "NORMAL"});
   expect_edit_error([](json& j) { j["meshes"][0]["primitives"][0]["indices"] = 500; },
                     {"cup_mesh", "indices", "500"});
   expect_edit_error([](json& j) { j["meshes"][0]["primitives"][0]["material"] = 500; },

@@ -18,7 +18,7 @@ def pour(time: float) -> slosh.Pose:
 
 def mug_over_funnel(model: str = "corrected", support_ratio: float = 2.0, **walls: float) -> slosh.SceneBuilder:
     builder = slosh.SceneBuilder(
-        title="A mug over a funnel over a tray", duration_s=SECONDS, model=model, support_ratio=support_ratio
+        title="A mug over a funnel over a tray", duration_s=SECONDS, settle_s=0.0, model=model, support_ratio=support_ratio
     )
     builder.body("tray", slosh.tank((0.36, 0.05, 0.36), 0.02), pose=(0, -0.02, 0), **walls)
     funnel = [(0.037, 0.10), (0.037, 0.15), (0.12, 0.225), (0.11, 0.24), (0.025, 0.16), (0.025, 0.10)]
