@@ -91,6 +91,7 @@ Result<bool> Host::reset() {
   for (std::size_t g = 0; g < world_.grip_stiffness().size(); ++g) gate_.set_stiffness(g, world_.grip_stiffness()[g]);
   run_ += 1;
   for (double& until : status_until_) until = 0.0;
+  show_lost();
   world_.fill(latest_);
   gone_.update(latest_);
   gate_.reset(latest_, clock_ns());
