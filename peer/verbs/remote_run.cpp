@@ -80,6 +80,7 @@ HudFacts RemoteRun::facts(double picture_rate) const {
   facts.fluid_particles = status_.welcome.particles;
   facts.shared = facts.may_change = status_.welcome.role == wire::Role::kParticipant;
   facts.picture_rate = picture_rate;
+  facts.walls_hold = stage_.scene.model != ParticleModel::kPaper;
   return facts;
 }
 
