@@ -239,13 +239,28 @@ class Threads(unittest.TestCase):
             self.assertIn("interrupted at", self.interrupted(work), work)
 
     def test_ctrl_c_ends_reading_a_file_too(self):
-        # A pipe that nobody writes into: reading it would never end.
+        # A file that takes seconds to read: it is still read, on the thread that was left behind.
         with tempfile.TemporaryDirectory() as folder:
-            file = os.path.join(folder, "endless.glb")
-            os.mkfifo(file)
+            file = os.path.join(folder, "heavy.glb")
+            builder = slosh.SceneBuilder()
+            builder.body("ball", slosh.sphere(0.1, rings=700, segments=700))
+            builder.write(file)
             for call in ("load_scene", "check"):
-                said = self.interrupted(f"import slosh; slosh.{call}({file!r})")
-                self.assertIn("interrupted at", said, call)
+                program = (
+                    "import os, slosh\n"
+                    "threads = lambda: len(os.listdir('/proc/self/task'))\n"
+                    "before = threads()\n"
+                    "print('ready', flush=True)\n"
+                    f"try:\n    slosh.{call}({file!r})\n"
+                    "except KeyboardInterrupt:\n    print(threads() - before, 'left behind')\n"
+                )
+                child = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True)
+                self.assertEqual(child.stdout.readline(), "ready\n")
+                time.sleep(0.3)
+                child.send_signal(signal.SIGINT)
+                said, _ = child.communicate(timeout=120)
+                self.assertEqual(child.returncode, 0, call)
+                self.assertEqual(said, "1 left behind\n", call)
 
     def test_ctrl_c_while_a_pose_is_read_is_no_complaint_about_the_pose(self):
         class Interrupted:
