@@ -121,9 +121,11 @@ void Renderer::draw_hud(std::size_t view) {
   const Targets& drawn = p.pictures[std::min<std::size_t>(view, 1)].targets;
   if (drawn.size != p.targets.size) return;
   p.is_stretched = false;
+  if (p.stretched_to != glm::ivec2(0) && p.stretched_to != drawn.size) {
+    p.run("stretch", [&] { p.stretch(drawn); });
+  }
+  if (!p.frame.hud) return;
   p.run("hud", [&] {
-    if (p.stretched_to != glm::ivec2(0) && p.stretched_to != drawn.size) p.stretch(drawn);
-    if (!p.frame.hud) return;
     if (p.is_stretched) return p.hud_pass->draw(p.frame.hud, p.stretched_target, p.stretched_size);
     p.hud_pass->draw(p.frame.hud, drawn.display_target, drawn.size);
   });
