@@ -89,6 +89,7 @@ Result<bool> Host::reset() {
   if (!restored) return restored;
   run_ += 1;
   for (double& until : status_until_) until = 0.0;
+  show_lost();
   world_.fill(latest_);
   gone_.update(latest_);
   gate_.reset(latest_, clock_ns());

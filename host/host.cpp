@@ -73,9 +73,8 @@ Host::Host(World world, const Scene& scene, Channel& channel, HostOptions option
   show_state();
   world_.fill(latest_);
   gone_.update(latest_);  // of a world that was restored: told then
-  const Diagnostics start = world_.diagnostics();
-  report_.start_mass = start.mass;
-  report_.start_retired = start.retired;
+  report_.start = world_.diagnostics();
+  show_lost();
 }
 
 Host::~Host() {
@@ -105,6 +104,7 @@ HostProgress Host::progress() const {
   progress.status = shown_status_.load(std::memory_order_relaxed);
   for (std::size_t bit = 0; bit < progress.status_steps.size(); ++bit)
     progress.status_steps[bit] = shown_status_steps_[bit].load(std::memory_order_relaxed);
+  progress.lost = shown_lost_.load(std::memory_order_relaxed);
   return progress;
 }
 
@@ -201,6 +201,11 @@ void Host::tell_gone() {
   }
 }
 
+// Sums over the fluid: asked for only when a particle can have been lost.
+void Host::show_lost() {
+  shown_lost_.store(world_.diagnostics().lost, std::memory_order_relaxed);
+}
+
 void Host::show_state() {
   shown_time_.store(world_.time(), std::memory_order_relaxed);
   shown_tick_.store(world_.tick(), std::memory_order_relaxed);
@@ -264,7 +269,9 @@ void Host::run() {
     const std::int64_t step_end_ns = steady_now_ns();
     simulated_ns_ += to_nanoseconds(time_step);
 
-    note_status(world_.take_status());
+    const std::uint32_t status = world_.take_status();
+    note_status(status);
+    if ((status & kStatusNonFinite) != 0) show_lost();
     world_.fill(latest_);
     tell_gone();
     model_fluid(input);

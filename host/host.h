@@ -59,6 +59,7 @@ struct HostProgress {
   bool paused = false;
   std::uint32_t status = 0;                      ///< StatusBits of about the last half second
   std::array<std::uint64_t, 32> status_steps{};  ///< in how many steps so far, one a bit
+  std::uint64_t lost = 0;                        ///< as Diagnostics::lost, where walls hold
 };
 
 /// What a run amounted to; complete after it has ended.
@@ -77,8 +78,7 @@ struct HostReport {
   std::array<std::uint64_t, 32> status_steps{};  ///< in how many steps, one a bit
   std::vector<std::string> gone;                 ///< bodies that left for good, in words; kMostGone at most
   Diagnostics diagnostics;                       ///< of the last state
-  double start_mass = 0.0;                       ///< kg of fluid at the start
-  std::uint64_t start_retired = 0;               ///< particles lost before it, while the world settled
+  Diagnostics start;                             ///< of the first: what had left by then did so while it settled
 };
 
 /// Of HostReport::gone.
@@ -145,6 +145,7 @@ class Host {
   Result<bool> carry_out(const HostCommand& command);
   Result<bool> reset();
   void show_state();
+  void show_lost();
   void model_fluid(std::span<const HandleInput> input);
   void publish_bodies(double rate, std::int64_t stamp_ns);
   void publish_snapshot();
@@ -197,6 +198,7 @@ class Host {
   std::atomic<bool> shown_paused_{false};
   std::atomic<std::uint32_t> shown_status_{0};
   std::array<std::atomic<std::uint64_t>, 32> shown_status_steps_{};
+  std::atomic<std::uint64_t> shown_lost_{0};
 };
 
 /// The message a channel starts with: the world before its first step, standing still.

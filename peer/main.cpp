@@ -43,6 +43,24 @@ std::string options_near(const CLI::App& app, const std::vector<std::string>& wo
   return all;
 }
 
+/// Of words that `verb` did not know, what other verbs take them: "--headless is an option of play, join and watch. ".
+std::string options_elsewhere(const CLI::App& app, const CLI::App& verb, const std::vector<std::string>& words) {
+  std::string all;
+  for (const std::string& word : words) {
+    if (!word.starts_with("--")) continue;
+    const std::string name = word.substr(0, word.find('='));
+    std::string verbs;
+    std::size_t count = 0;
+    for (const CLI::App* other : app.get_subcommands({})) {
+      if (other == &verb || other->get_option_no_throw(name) == nullptr) continue;
+      verbs += (count++ == 0 ? "" : ", ") + other->get_name();
+    }
+    if (const std::size_t last = verbs.rfind(", "); last != std::string::npos) verbs.replace(last, 2, " and ");
+    if (count > 0) all += clean_text(name, kMostTextBytes) + " is an option of " + verbs + ". ";
+  }
+  return all;
+}
+
 int no_such_verb(const CLI::App& app, const char* word) {
   std::vector<std::string> verbs;
   for (const CLI::App* verb : app.get_subcommands({})) verbs.push_back(verb->get_name());
@@ -73,8 +91,9 @@ int wrong_words(const CLI::App& app, const CLI::ParseError& error) {
     const std::string shown = clean_text(words[0], kMostTextBytes);
     what = verb + "knows no '" + shown + "'";
     near = did_you_mean(shown, below);
-  } else if (near = options_near(*at, words); !near.empty()) {
-    near = "Did you mean " + near + "? ";
+  } else if (near = options_elsewhere(app, *at, words); near.empty()) {
+    const std::string alike = options_near(*at, words);
+    if (!alike.empty()) near = "Did you mean " + alike + "? ";
   }
   std::fprintf(stderr, "slosh: %s. %sSee `slosh %s--help`.\n", what.c_str(), near.c_str(), verb.c_str());
   return kExitUsage;

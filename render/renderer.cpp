@@ -73,6 +73,7 @@ void Renderer::prepare(const Frame& frame, std::span<const View> views) {
   p.frame = frame;
   p.offered_on_gpu = p.offered_on_gpu || frame.on_gpu;
   p.shadow = {};
+  p.is_stretched = false;
   if (p.shadow_pass && !views.empty()) {
     p.run("shadow map", [&] { p.shadow = p.shadow_pass->draw(p.frame, p.meshes, views); });
   }
@@ -110,11 +111,24 @@ void Renderer::draw(std::span<const View> views, std::span<const PictureTarget> 
   }
 }
 
+void Renderer::stretch_to(glm::ivec2 size) {
+  const bool none = size.x < 1 || size.y < 1;
+  parts_->stretched_to = none ? glm::ivec2(0) : glm::min(size, glm::ivec2(kMaxSide));
+}
+
 void Renderer::draw_hud(std::size_t view) {
   Parts& p = *parts_;
   const Targets& drawn = p.pictures[std::min<std::size_t>(view, 1)].targets;
-  if (!p.frame.hud || drawn.size != p.targets.size) return;
-  p.run("hud", [&] { p.hud_pass->draw(p.frame.hud, drawn.display_target, drawn.size); });
+  if (drawn.size != p.targets.size) return;
+  p.is_stretched = false;
+  if (p.stretched_to != glm::ivec2(0) && p.stretched_to != drawn.size) {
+    p.run("stretch", [&] { p.stretch(drawn); });
+  }
+  if (!p.frame.hud) return;
+  p.run("hud", [&] {
+    if (p.is_stretched) return p.hud_pass->draw(p.frame.hud, p.stretched_target, p.stretched_size);
+    p.hud_pass->draw(p.frame.hud, drawn.display_target, drawn.size);
+  });
 }
 
 void Renderer::draw_panel(glm::ivec2 size, const PictureTarget& target) {
@@ -150,6 +164,7 @@ void Renderer::draw(const Frame& frame) {
 }
 
 Image Renderer::read_back(std::size_t view) {
+  if (parts_->is_stretched) return read_image(parts_->stretched_target, parts_->stretched_size);
   const Targets& drawn = parts_->pictures[std::min<std::size_t>(view, 1)].targets;
   return read_image((drawn.size == glm::ivec2(0) ? parts_->targets : drawn).display_target, parts_->targets.size);
 }

@@ -164,6 +164,10 @@ class Renderer : public MeshSink {
   /// Two pictures of it, as both eyes have them, each the same as by itself: side by side where compute shaders
   /// draw, which takes less time than one after the other. More than two are left out.
   void draw(std::span<const View> views, std::span<const PictureTarget> targets = {});
+  /// From now on draw_hud() stretches the picture to `size` pixels before the HUD goes over it, so that the HUD's
+  /// letters are sharp however few pixels the picture has; read_back() and present() then have that. {0, 0}: the
+  /// picture as it is. Sizes are clamped to 16384.
+  void stretch_to(glm::ivec2 size);
   /// Runs Frame::hud once, over the picture drawn last (of two, the first, or `view` 1).
   void draw_hud(std::size_t view = 0);
   /// Runs Frame::hud once, by itself, into `target` of `size` pixels: sRGB, transparent where nothing is,
@@ -176,7 +180,7 @@ class Renderer : public MeshSink {
   /// All of this for one picture: of Frame::view, with the HUD over it.
   void draw(const Frame& frame);
 
-  /// The picture drawn last; of two that were drawn together, `view` 0 or 1.
+  /// The picture drawn last, as stretched where it was; of two that were drawn together, `view` 0 or 1.
   Image read_back(std::size_t view = 0);
   FloatImage read_buffer(Buffer buffer);
 

@@ -115,17 +115,29 @@ Result<bool> Renderer::Parts::fit_to_options() {
   return true;
 }
 
+void Renderer::Parts::stretch(const Targets& from) {
+  if (stretched_size != stretched_to) {
+    stretched = gl::make_texture(stretched_to, GL_RGBA8, GL_LINEAR);
+    stretched_target = gl::make_framebuffer({&stretched});
+    stretched_size = stretched_to;
+  }
+  glBlitNamedFramebuffer(from.display_target.name(), stretched_target.name(), 0, 0, from.size.x, from.size.y,
+                         0, 0, stretched_size.x, stretched_size.y, GL_COLOR_BUFFER_BIT, GL_LINEAR);
+  is_stretched = true;
+}
+
 void Renderer::Parts::show_in_window() {
   const glm::ivec2 window = context.framebuffer_size();
   if (window.x < 1 || window.y < 1) return;
-  const PixelBox part = window_part(targets.size, window);
+  const gl::Framebuffer& from = is_stretched ? stretched_target : targets.display_target;
+  const glm::ivec2 size = is_stretched ? stretched_size : targets.size;
+  const PixelBox part = window_part(size, window);
   if (part.size() != window) {
     constexpr float kBlack[] = {0.0f, 0.0f, 0.0f, 1.0f};
     glClearNamedFramebufferfv(0, GL_COLOR, 0, kBlack);
   }
-  glBlitNamedFramebuffer(targets.display_target.name(), 0, 0, 0, targets.size.x, targets.size.y, part.low.x,
-                         part.low.y, part.high.x, part.high.y, GL_COLOR_BUFFER_BIT,
-                         window == targets.size ? GL_NEAREST : GL_LINEAR);
+  glBlitNamedFramebuffer(from.name(), 0, 0, 0, size.x, size.y, part.low.x, part.low.y, part.high.x,
+                         part.high.y, GL_COLOR_BUFFER_BIT, window == size ? GL_NEAREST : GL_LINEAR);
 }
 
 std::optional<PixelBox> Renderer::Parts::part_to_draw() {

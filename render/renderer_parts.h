@@ -82,6 +82,11 @@ struct Renderer::Parts {
   gl::Texture panel;            ///< RGBA8, made when first asked for
   gl::Framebuffer panel_target;
   glm::ivec2 panel_size{0};
+  glm::ivec2 stretched_to{0};     ///< 0: pictures are shown as they are
+  gl::Texture stretched;          ///< RGBA8, made when first needed
+  gl::Framebuffer stretched_target;
+  glm::ivec2 stretched_size{0};
+  bool is_stretched = false;      ///< what is shown of this frame
   bool drew_fluid = false;        ///< in the last picture
   bool fast = false;              ///< Quality, resolved
   bool made_fast = false;         ///< that of the targets
@@ -134,6 +139,8 @@ struct Renderer::Parts {
   /// What has to be drawn of this picture; nothing where that is all of it.
   std::optional<PixelBox> part_to_draw();
   static void copy(const gl::Texture& from, glm::ivec2 size, const PictureTarget& target);
+  /// The picture in the size that it is shown in, to draw a HUD over.
+  void stretch(const Targets& from);
   void show_in_window();
 
   /// Runs one pass, timed if asked.

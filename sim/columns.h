@@ -148,6 +148,8 @@ struct ParticleState : FluidColumns<PlainColumn> {
         *this);
   }
   std::size_t size() const { return id.size(); }
+
+  std::uint64_t broken = 0;  ///< fluid particles put out of the world so far because they were not finite
 };
 
 }  // namespace slosh

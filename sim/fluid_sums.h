@@ -37,11 +37,13 @@ class FluidSums {
     if (!impulses.empty()) sums_.guarded = static_cast<std::uint64_t>(impulses.back());
   }
 
-  /// `started`: fluid particles at the start.
-  Diagnostics finish(std::size_t started) const {
+  /// `started`: fluid particles at the start; `broken`: ParticleState's.
+  Diagnostics finish(std::size_t started, std::uint64_t broken) const {
     Diagnostics d = sums_;
     if (d.mass > 0.0) d.center /= d.mass;
     d.retired = started - d.particles;
+    d.lost = constants_.plan.walls_hold() ? std::min(broken, d.retired) : d.retired;
+    d.spilled = d.retired - d.lost;
     return d;
   }
 

@@ -12,7 +12,7 @@ namespace slosh {
 /// The world at one moment.
 struct Measurement {
   double time = 0.0;            ///< simulated s
-  Diagnostics fluid;            ///< sums; `retired` are the particles that were lost
+  Diagnostics fluid;            ///< sums, with what was spilled and lost
   std::uint64_t in_solids = 0;  ///< particles whose centre is inside a body, deeper than a twentieth of a
                                 ///< spacing (a drop alone lies on the surface), each counted once
   std::vector<std::uint64_t> in_body;  ///< the same, one a body

@@ -87,6 +87,8 @@ struct Plan {
   bool has_fluid() const { return runs.has(PassId::kSortFluid); }
   /// Particles are kept from passing walls (walls/wall_guard.h). The paper has no such thing.
   bool guards_walls() const { return has(PassId::kWalls) && model != ParticleModel::kPaper; }
+  /// Nothing passes a wall: what leaves the domain went over an edge.
+  bool walls_hold() const { return !has(PassId::kWalls) || guards_walls(); }
   bool fluid_waits() const {  ///< it moves on after the bodies only
     return runs.has_any_of({PassId::kBodyDrag, PassId::kImplicitDrag, PassId::kPressureSolve}) ||
            (guards_walls() && waits_for_bodies);

@@ -200,6 +200,7 @@ ParticleStart make_particle_start(const Scene& scene, const SampledScene& sample
     const bool inside = whole && constants.grid.contains(x.x, x.y, x.z);
     p.key[i] = inside ? constants.grid.cell_of(x.x, x.y, x.z) : constants.grid.retired_key();
     if (!inside) start.status |= whole ? kStatusEscaped : kStatusNonFinite;
+    if (!whole) p.broken += 1;
   }
   start.fixed = surface_particles(scene, sampled, constants.plan, BodyMotion::kFixed);
   start.moving = surface_particles(scene, sampled, constants.plan, BodyMotion::kFree);

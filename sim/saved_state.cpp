@@ -14,7 +14,8 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::uint32_t kMagic = 0x54535753;  // "SWST"
-constexpr std::uint32_t kVersion = 5;
+constexpr std::uint32_t kVersion = 6;
+constexpr std::uint32_t kBeforeBroken = 5;  // without ParticleState::broken, and read as well: none was
 constexpr std::uint32_t kBeforeGone = 4;  // without RigidBody::gone, and read as well: no body was
 constexpr std::uint32_t kBeforeStiffness = 3;  // without grip_stiffness, and read as well: it was the scene's
 constexpr double kLargest = 1.0e9;  // beyond this no position, speed or force of a body is one
@@ -254,6 +255,7 @@ void write_state(const StateFrame& frame, const RunConstants& constants, const S
   s.raw(state.status);
   s.real(state.gravity_scale);
   s.real(state.age);
+  s.raw(state.particles.broken);
   for (const double viscosity : state.viscosities) s.real(viscosity);
   for (const RigidBody& body : state.bodies) {
     body_state(s, body);
@@ -287,7 +289,7 @@ Result<bool> read_state(std::span<const std::uint8_t> bytes, const StateFrame& f
   s.raw(magic);
   s.raw(version);
   if (magic != kMagic) s.fail("these are not the bytes of a saved world");
-  if (version != kVersion && version != kBeforeGone && version != kBeforeStiffness) {
+  if (version > kVersion || version < kBeforeStiffness) {
     s.fail("it has version " + std::to_string(version) + ", and this program reads version " +
            std::to_string(kVersion));
   }
@@ -300,6 +302,9 @@ Result<bool> read_state(std::span<const std::uint8_t> bytes, const StateFrame& f
     s.fail("its gravity is beyond all bounds");
   s.real(state.age);
   if (!(state.age >= 0.0)) s.fail("its age is negative");
+  if (version > kBeforeBroken) s.raw(state.particles.broken);
+  if (state.particles.broken > frame.fluid_particles)
+    s.fail("more particles of it were broken than there are");
   state.viscosities.resize(frame.fluids);
   for (double& viscosity : state.viscosities) {
     s.real(viscosity);
@@ -309,7 +314,7 @@ Result<bool> read_state(std::span<const std::uint8_t> bytes, const StateFrame& f
     RigidBody read = body;
     body_state(s, read);
     std::uint8_t gone = 0;
-    if (version == kVersion) s.raw(gone);
+    if (version > kBeforeGone) s.raw(gone);
     if (gone > (body.free ? 1 : 0)) s.fail("a body in it is neither in the world nor out of it");
     read.gone = gone != 0;
     if (body.free) body = read;

@@ -8,7 +8,7 @@ namespace slosh {
 std::string status_text(std::uint32_t status) {
   static constexpr std::array<std::pair<StatusBit, const char*>, 11> kWords{{
       {kStatusNonFinite, "a particle or body became non-finite and was put out of the world"},
-      {kStatusEscaped, "particles left the domain and were retired"},
+      {kStatusEscaped, "fluid left the domain and is out of the world"},
       {kStatusSpeedLimited, "particles were too fast and were slowed"},
       {kStatusInputRejected, "a handle's pose was not usable and the last good one was kept"},
       {kStatusForceLimited, "a device's force met its limit"},

@@ -15,7 +15,7 @@ namespace slosh {
 /// What the step had to report. Several may be set; they stay set until read (World::take_status).
 enum StatusBit : std::uint32_t {
   kStatusNonFinite = 1u << 0,      ///< a particle or body went non-finite and was put out of the world
-  kStatusEscaped = 1u << 1,        ///< particles left the domain and were retired
+  kStatusEscaped = 1u << 1,        ///< particles left the domain and are out of the world
   kStatusSpeedLimited = 1u << 2,   ///< a particle was faster than a support radius a step and was slowed
   kStatusInputRejected = 1u << 3,  ///< a handle's pose was non-finite or out of range and was not used
   kStatusForceLimited = 1u << 4,   ///< a device's force met its limit

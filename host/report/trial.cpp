@@ -41,6 +41,7 @@ Trial::~Trial() {
   cost_.status |= world_->take_status();
   const Diagnostics fluid = world_->diagnostics();
   cost_.retired += fluid.retired;
+  cost_.lost += fluid.lost;
   cost_.particles = std::max<std::uint64_t>(cost_.particles, world_->fluid_count());
 }
 

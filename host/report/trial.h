@@ -36,7 +36,8 @@ struct Setting {
 /// Summed over all worlds that a case ran.
 struct Cost {
   std::uint64_t particles = 0;  ///< of the largest of them, fluid only
-  std::uint64_t retired = 0;
+  std::uint64_t retired = 0;  ///< out of the world, spilled or lost
+  std::uint64_t lost = 0;     ///< of these, as Diagnostics::lost
   std::uint64_t steps = 0;
   double time_step = 0.0;    ///< s, of the last
   double simulated_s = 0.0;  ///< settling is not in it

@@ -14,12 +14,6 @@ namespace {
 
 constexpr double kChartSeconds = 5.0;
 constexpr double kStatusSeconds = 1.5;  // simulated: a status of one step is shown long enough to be read
-// In letters "0" wide and lines high: panels grow with the font, and the font with the picture.
-constexpr float kPanelLetters = 27.0f;   // leaves 640 × 480 mostly to the picture
-constexpr float kNarrowLetters = 18.5f;  // a hand's, where they stand beside each other
-constexpr float kChartLines = 1.7f;
-constexpr float kMargin = 8.0f;
-constexpr float kLeastHeight = 400.0f;  // px: a smaller picture gets the time and what is wrong, no more
 constexpr float kLeastForce = 1.0f;     // N, that a chart's height is at least
 constexpr float kLeastTorque = 0.05f;   // N·m
 
@@ -40,18 +34,27 @@ PanelRow labelled(const char* label, const char* pattern, Numbers... numbers) {
   return {PanelRow::Kind::kLabelled, label, text};
 }
 
-glm::vec2 panel_size(float height, float width) {
-  const ImVec2 padding = ImGui::GetStyle().WindowPadding;
-  return {width + 2.0f * padding.x, height + 2.0f * padding.y};
-}
-
 std::vector<Rect> clear_of(std::vector<Rect> shares, const glm::vec2& picture) {
   for (Rect& rect : shares) rect = {rect.low * picture, rect.high * picture};
   return shares;
 }
 
-float panel_width() {
-  return kPanelLetters * ImGui::CalcTextSize("0").x;
+/// As panels are drawn in, at their full size.
+LetterSize letter_size() {
+  const ImVec2 padding = ImGui::GetStyle().WindowPadding;
+  return {ImGui::CalcTextSize("0").x,
+          ImGui::GetTextLineHeight() + ImGui::GetStyle().ItemSpacing.y,
+          {padding.x, padding.y}};
+}
+
+/// Begins a panel there, with letters of `letters` times their size; End() whatever it returns.
+bool begin_panel(const char* name, const Rect& rect, float letters) {
+  ImGui::SetNextWindowPos(ImVec2(rect.low.x, rect.low.y));
+  ImGui::SetNextWindowSize(ImVec2(rect.high.x - rect.low.x, rect.high.y - rect.low.y));
+  ImGui::SetNextWindowBgAlpha(0.55f);
+  const bool shown = ImGui::Begin(name, nullptr, kPanel);
+  ImGui::SetWindowFontScale(letters);
+  return shown;
 }
 
 /// A number's last seconds, beside it the number itself.
@@ -101,6 +104,8 @@ void Hud::record(const Snapshot& snapshot) {
   for (std::size_t bit = 0; bit < status_until_.size(); ++bit) {
     if (snapshot.rigid.status & (1u << bit)) status_until_[bit] = time_ + kStatusSeconds;
   }
+  const auto left = std::count(snapshot.fluid_index.begin(), snapshot.fluid_index.end(), std::uint8_t{255});
+  left_ = static_cast<std::uint64_t>(left);
   for (std::size_t i = 0; i < hands_.size() && i < snapshot.rigid.grips.size(); ++i) {
     Hand& hand = hands_[i];
     hand.now = snapshot.rigid.grips[i].on_hand;
@@ -116,30 +121,56 @@ std::uint32_t Hud::status() const {
   }
   // That walls held something back is how they hold; alone it asks for nothing (README.md, Warnings).
   if (!(status & kStatusCompressed)) status &= ~static_cast<std::uint32_t>(kStatusGuarded);
+  // Spilling is what many scenes are for, and stands in a row of its own.
+  if (facts_.walls_hold) status &= ~static_cast<std::uint32_t>(kStatusEscaped);
   return status;
 }
 
-std::vector<PanelRow> Hud::run_rows(const Rates& rates, bool brief) const {
+void Hud::add_what_left(const Rates& rates, std::vector<PanelRow>& rows) const {
+  if (!facts_.counts_fluid) {
+    if (facts_.walls_hold && status_until_[1] >= time_)
+      rows.push_back({PanelRow::Kind::kLabelled, "spilled", "some fluid"});
+    return;
+  }
+  const std::uint64_t lost = facts_.walls_hold ? std::min(rates.lost, left_) : left_;
+  if (left_ > lost) rows.push_back({PanelRow::Kind::kLabelled, "spilled", grouped(left_ - lost)});
+  if (lost > 0) rows.push_back({PanelRow::Kind::kLabelled, "lost", grouped(lost)});
+}
+
+std::string Hud::warnings(const Rates& rates) const {
+  std::string lines = status_lines(status() | rates.device_status, rates.status_steps);
+  if (!rates.budgets.empty()) lines += (lines.empty() ? "" : "\n") + rates.budgets;
+  return lines;
+}
+
+std::vector<PanelRow> Hud::run_rows(const Rates& rates) const {
   using Kind = PanelRow::Kind;
-  std::vector<PanelRow> rows{{Kind::kTitle, facts_.title, {}}, {Kind::kLine, {}, {}}};
+  using Detail = HudLayout::Detail;
+  std::vector<PanelRow> rows;
+  const Detail detail = layout_->detail;
+  if (detail != Detail::kLeast) rows = {{Kind::kTitle, facts_.title, {}}, {Kind::kLine, {}, {}}};
   rows.push_back(labelled("time", "%.2f s%s", time_, paused ? "  paused" : ""));
-  if (!brief) {
-    if (rates.real_time > 0.0) rows.push_back(labelled("real time", "\xC3\x97 %.2f", rates.real_time));
+  if (detail != Detail::kLeast && rates.real_time > 0.0)
+    rows.push_back(labelled("real time", "\xC3\x97 %.2f", rates.real_time));
+  if (detail == Detail::kFull) {
     if (rates.step_rate > 0.0)
       rows.push_back(labelled("steps", "%.0f Hz  %.2f ms", rates.step_rate, rates.step_ms));
     if (rates.device_rate > 0.0) rows.push_back(labelled("devices", "%.0f Hz", rates.device_rate));
-    rows.push_back(labelled("fluid", "%zu", facts_.fluid_particles));
-    if (facts_.boundary_particles > 0) rows.push_back(labelled("bodies", "%zu", facts_.boundary_particles));
+    rows.push_back(labelled("fluid", "%s", grouped(facts_.fluid_particles).c_str()));
+    if (facts_.boundary_particles > 0)
+      rows.push_back(labelled("bodies", "%s", grouped(facts_.boundary_particles).c_str()));
     rows.push_back(labelled("spacing", "%.1f mm", 1e3 * facts_.spacing));
+  }
+  if (detail != Detail::kLeast) add_what_left(rates, rows);
+  if (detail == Detail::kFull) {
     for (const std::string* lines : {&rates.people, &rates.connection}) {
       if (lines->empty()) continue;
       rows.push_back({Kind::kLine, {}, {}});
       rows.push_back({Kind::kText, *lines, {}});
     }
   }
-  const std::string warning = status_lines(status() | rates.device_status, rates.status_steps);
-  for (const std::string& lines : {warning, rates.budgets})
-    if (!lines.empty()) rows.push_back({Kind::kWarning, lines, {}});
+  const std::string warning = warnings(rates);
+  if (!warning.empty()) rows.push_back({Kind::kWarning, warning, {}});
   return rows;
 }
 
@@ -151,54 +182,54 @@ void Hud::draw_hand(std::size_t device, float width) const {
   draw_strip(hand.torque, width, color, "%7.3f Nm", glm::length(hand.now.torque));
 }
 
-void Hud::draw_run(const Rates& rates, const glm::vec2& picture, bool brief) {
-  const std::vector<PanelRow> rows = run_rows(rates, brief);
-  const glm::vec2 size = panel_size(rows_height(rows, panel_width()), panel_width());
-  const std::array<glm::vec2, 2> places{glm::vec2(kMargin), glm::vec2(picture.x - kMargin - size.x, kMargin)};
-  run_panel_.low = place_panel(size, places, clear_of(keep_clear, picture), run_panel_.low);
-  run_panel_.high = run_panel_.low + size;
-  ImGui::SetNextWindowPos(ImVec2(run_panel_.low.x, run_panel_.low.y));
-  ImGui::SetNextWindowSize(ImVec2(size.x, size.y));
-  ImGui::SetNextWindowBgAlpha(0.55f);
-  if (ImGui::Begin("run", nullptr, kPanel)) draw_rows(rows, panel_width());
+void Hud::draw_short_hand(std::size_t device, float width) const {
+  const Hand& hand = hands_[device];
+  char numbers[48];
+  std::snprintf(numbers, sizeof numbers, "%6.1f N %5.2f Nm", glm::length(hand.now.force),
+                glm::length(hand.now.torque));
+  const float before = width - ImGui::CalcTextSize(numbers).x;
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  ImGui::PushClipRect(at, ImVec2(at.x + before, at.y + ImGui::GetTextLineHeight()), true);
+  ImGui::TextColored(bright(device_color(device)), "%s", hand.grip.c_str());
+  ImGui::PopClipRect();
+  ImGui::SameLine(before);  // from where the hand's group begins
+  ImGui::TextUnformatted(numbers);
+}
+
+// Once, not as the hands move: panels that change corners are worse than one that hides a hand for a moment.
+void Hud::lay_out(const glm::vec2& picture) {
+  const LetterSize letter = letter_size();
+  if (layout_ && laid_out_for_ == picture && laid_out_in_ == letter) return;
+  layout_ = make_hud_layout(picture, letter, hands_.size(), clear_of(keep_clear, picture));
+  laid_out_for_ = picture;
+  laid_out_in_ = letter;
+}
+
+void Hud::draw_run(const Rates& rates, const glm::vec2& picture) {
+  std::vector<PanelRow> rows = run_rows(rates);
+  const ImVec2 padding = ImGui::GetStyle().WindowPadding;
+  const float width = layout_->run_width - 2.0f * padding.x;
+  cut_rows(rows, width, layout_->most_run_height - 2.0f * padding.y, layout_->letters);
+  const float height = rows_height(rows, width, layout_->letters) + 2.0f * padding.y;
+  run_panel_ = run_rect(*layout_, picture, height);
+  if (begin_panel("run", run_panel_, layout_->letters)) draw_rows(rows, width);
   ImGui::End();
 }
 
 void Hud::draw_hands(const glm::vec2& picture) {
-  const float hand =
-      (1.0f + 2.0f * kChartLines) * ImGui::GetTextLineHeight() + 3.0f * ImGui::GetStyle().ItemSpacing.y;
-  const auto count = static_cast<float>(hands_.size());
-  const float narrow = kNarrowLetters * ImGui::CalcTextSize("0").x;
-  const glm::vec2 column = panel_size(count * hand, panel_width());
-  const glm::vec2 row = panel_size(hand, count * narrow);
-  // The run's panel must stay free too, and first of all.
-  std::vector<Rect> clear = clear_of(keep_clear, picture);
-  clear.insert(clear.end(), 4, run_panel_);
-  const auto place = [&](const glm::vec2& size) {
-    const glm::vec2 far = picture - size - kMargin;
-    const std::array<glm::vec2, 4> places{glm::vec2(kMargin, far.y), far, glm::vec2(far.x, kMargin),
-                                          glm::vec2(kMargin)};
-    return place_panel(size, places, clear, hands_panel_.low);
-  };
-  // Many hands below each other may hide one: then beside each other, if that hides less.
-  const glm::vec2 column_at = place(column);
-  const glm::vec2 row_at = place(row);
-  const float by_column = covered_area(column_at, column, clear);
-  const float by_row = covered_area(row_at, row, clear);
-  const bool fits = hands_.size() > 1 && row.x + 2.0f * kMargin < picture.x;
-  in_a_row_ = fits && (in_a_row_ ? by_row <= by_column : by_row < 0.5f * by_column);
-  const glm::vec2& size = in_a_row_ ? row : column;
-  hands_panel_.low = in_a_row_ ? row_at : column_at;
-  hands_panel_.high = hands_panel_.low + size;
-  ImGui::SetNextWindowPos(ImVec2(hands_panel_.low.x, hands_panel_.low.y));
-  ImGui::SetNextWindowSize(ImVec2(size.x, size.y));
-  ImGui::SetNextWindowBgAlpha(0.55f);
-  if (ImGui::Begin("forces", nullptr, kPanel)) {
+  hands_panel_ = hands_rect(*layout_, picture);
+  const float inner = layout_->hands_size.x - 2.0f * ImGui::GetStyle().WindowPadding.x;
+  const float width = layout_->in_a_row ? inner / static_cast<float>(hands_.size()) : inner;
+  if (begin_panel("forces", hands_panel_, layout_->letters)) {
     const ImVec2 corner = ImGui::GetCursorPos();
     for (std::size_t i = 0; i < hands_.size(); ++i) {
-      if (in_a_row_) ImGui::SetCursorPos(ImVec2(corner.x + narrow * static_cast<float>(i), corner.y));
+      if (layout_->in_a_row) ImGui::SetCursorPos(ImVec2(corner.x + width * static_cast<float>(i), corner.y));
       ImGui::BeginGroup();
-      draw_hand(i, in_a_row_ ? narrow : panel_width());
+      if (layout_->detail == HudLayout::Detail::kFull) {
+        draw_hand(i, width);
+      } else {
+        draw_short_hand(i, width);
+      }
       ImGui::EndGroup();
     }
   }
@@ -211,9 +242,10 @@ void Hud::draw(const Rates& rates) {
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(6.0f, 2.0f));
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   const glm::vec2 picture(size.x, size.y);
-  const bool brief = size.y < kLeastHeight;
-  draw_run(rates, picture, brief);
-  if (!hands_.empty() && !brief) draw_hands(picture);
+  lay_out(picture);
+  draw_run(rates, picture);
+  hands_panel_ = {};
+  if (layout_->hands_size.y > 0.0f) draw_hands(picture);
   ImGui::PopStyleVar(3);
 }
 

@@ -4,9 +4,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "peer/hud/hud_layout.h"
 #include "peer/hud/panels.h"
 #include "peer/hud/rates.h"
 #include "peer/hud/strip_chart.h"
@@ -21,6 +23,10 @@ struct HudFacts {
   double spacing = 0.0;  ///< m
   std::size_t fluid_particles = 0;
   std::size_t boundary_particles = 0;
+  /// Snapshots hold all of the fluid, so that what is not in them has left the world: not over a network,
+  /// where what nobody sees is left out.
+  bool counts_fluid = false;
+  bool walls_hold = true;      ///< Plan::walls_hold
   bool shared = false;         ///< others may hold grips too
   bool may_change = true;      ///< pausing and starting again are this person's to do
   double picture_rate = 30.0;  ///< snapshots a simulated second, spaces the strip charts
@@ -40,8 +46,12 @@ class Hud {
   /// Where the panels lie in what draw() drew last, in Dear ImGui's pixels.
   std::array<Rect, 2> panels() const { return {run_panel_, hands_panel_}; }
 
+  /// Whether the panels have their places: from the first picture on, anew where its size changes.
+  bool placed() const { return layout_.has_value(); }
+
   bool paused = false;
-  /// What the panels leave free where they can: what hands hold, in shares of the picture, y down.
+  /// What the panels leave free where they can when they get their places: what hands hold and are going
+  /// to, in shares of the picture, y down.
   std::vector<Rect> keep_clear;
 
  private:
@@ -52,22 +62,29 @@ class Hud {
     Wrench now;
   };
   std::uint32_t status() const;
-  std::vector<PanelRow> run_rows(const Rates& rates, bool brief) const;
-  void draw_run(const Rates& rates, const glm::vec2& picture, bool brief);
+  std::vector<PanelRow> run_rows(const Rates& rates) const;
+  void add_what_left(const Rates& rates, std::vector<PanelRow>& rows) const;
+  std::string warnings(const Rates& rates) const;
+  void lay_out(const glm::vec2& picture);
+  void draw_run(const Rates& rates, const glm::vec2& picture);
   void draw_hands(const glm::vec2& picture);
   void draw_hand(std::size_t device, float width) const;
+  void draw_short_hand(std::size_t device, float width) const;
 
   HudFacts facts_;
   std::vector<Hand> hands_;
   double time_ = 0.0;
+  std::uint64_t left_ = 0;  // fluid particles, by the newest snapshot
   std::array<double, 32> status_until_ = [] {
     std::array<double, 32> never{};
     never.fill(-1.0);
     return never;
   }();  // simulated s, a StatusBit each
   Rect run_panel_;
-  Rect hands_panel_{glm::vec2(-1.0f), glm::vec2(-1.0f)};
-  bool in_a_row_ = false;  ///< the hands' panel
+  Rect hands_panel_;
+  std::optional<HudLayout> layout_;
+  glm::vec2 laid_out_for_{0.0f};  // px
+  LetterSize laid_out_in_;
 };
 
 }  // namespace slosh

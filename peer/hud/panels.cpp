@@ -2,24 +2,40 @@
 
 #include <imgui.h>
 
+#include <algorithm>
+
 namespace slosh {
 namespace {
 
 /// Where values stand, in widths of a letter "0".
 constexpr float kValueColumn = 10.0f;
 
-float row_height(const PanelRow& row, float width) {
+float row_height(const PanelRow& row, float width, float letters) {
   switch (row.kind) {
     case PanelRow::Kind::kLine:
       return 1.0f;
+    case PanelRow::Kind::kTitle:
     case PanelRow::Kind::kText:
     case PanelRow::Kind::kWarning:
-      return ImGui::CalcTextSize(row.text.c_str(), nullptr, false, width).y;
-    case PanelRow::Kind::kTitle:
+      return letters * ImGui::CalcTextSize(row.text.c_str(), nullptr, false, width / letters).y;
     case PanelRow::Kind::kLabelled:
       break;
   }
-  return ImGui::GetTextLineHeight();
+  return letters * ImGui::GetTextLineHeight();
+}
+
+/// Where a text of UTF-8 may end, `at` or before it.
+std::size_t letter_end(const std::string& text, std::size_t at) {
+  while (at > 0 && (static_cast<unsigned char>(text[at]) & 0xC0u) == 0x80u) --at;
+  return at;
+}
+
+/// As ImGui::Separator, no wider than the rows.
+void line(float width) {
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  ImGui::GetWindowDrawList()->AddRectFilled(at, ImVec2(at.x + width, at.y + 1.0f),
+                                            ImGui::GetColorU32(ImGuiCol_Separator));
+  ImGui::Dummy(ImVec2(width, 1.0f));
 }
 
 void wrapped(const std::string& text, float width) {
@@ -36,26 +52,50 @@ float covered_area(const glm::vec2& at, const glm::vec2& size, std::span<const R
   return area;
 }
 
-float rows_height(std::span<const PanelRow> rows, float width) {
+float rows_height(std::span<const PanelRow> rows, float width, float letters) {
   float height = 0.0f;
-  for (const PanelRow& row : rows) height += row_height(row, width) + ImGui::GetStyle().ItemSpacing.y;
+  for (const PanelRow& row : rows)
+    height += row_height(row, width, letters) + ImGui::GetStyle().ItemSpacing.y;
   return height;
+}
+
+void cut_rows(std::vector<PanelRow>& rows, float width, float height, float letters) {
+  // People and connection give way before warnings, and of these the last ones.
+  for (const PanelRow::Kind kind : {PanelRow::Kind::kText, PanelRow::Kind::kWarning}) {
+    for (std::size_t i = rows.size(); i-- > 0;) {
+      if (rows[i].kind != kind || rows_height(rows, width, letters) <= height) continue;
+      const std::string whole = rows[i].text;
+      std::size_t fits = 0;
+      for (std::size_t step = std::size_t{1} << 14; step > 0; step /= 2) {
+        if (fits + step >= whole.size()) continue;
+        rows[i].text = whole.substr(0, letter_end(whole, fits + step)) + "...";
+        if (rows_height(rows, width, letters) <= height) fits += step;
+      }
+      rows[i].text = whole.substr(0, letter_end(whole, fits)) + "...";
+      if (fits == 0) rows.erase(rows.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+  }
+  // A line that nothing stands below any more.
+  while (!rows.empty() && rows.back().kind == PanelRow::Kind::kLine) rows.pop_back();
+}
+
+float letters_that_fit(const glm::vec2& size, const glm::vec2& room) {
+  const glm::vec2 share = glm::max(room, glm::vec2(1.0f)) / glm::max(size, glm::vec2(1.0f));
+  return std::min({share.x, share.y, 1.0f});
 }
 
 void draw_rows(std::span<const PanelRow> rows, float width) {
   for (const PanelRow& row : rows) {
     switch (row.kind) {
       case PanelRow::Kind::kLine:
-        ImGui::Separator();
-        break;
-      case PanelRow::Kind::kTitle:
-        ImGui::TextUnformatted(row.text.c_str());
+        line(width);
         break;
       case PanelRow::Kind::kLabelled:
         ImGui::TextColored(ImVec4(0.72f, 0.76f, 0.80f, 1.0f), "%s", row.text.c_str());
         ImGui::SameLine(kValueColumn * ImGui::CalcTextSize("0").x + ImGui::GetStyle().WindowPadding.x);
         ImGui::TextUnformatted(row.value.c_str());
         break;
+      case PanelRow::Kind::kTitle:
       case PanelRow::Kind::kText:
         wrapped(row.text, width);
         break;

@@ -25,10 +25,26 @@ bool shown(const ChartPanel& panel, const glm::dvec2& p) {
          (!panel.log_y || p.y > 0.0);
 }
 
+/// The horizontal axis of curves begins and ends where they do; marks at its ends need room around them.
+std::string range_script(const ChartPanel& panel) {
+  double least = INFINITY, most = -INFINITY;
+  bool marks = false;
+  for (const ChartSeries& series : panel.series) {
+    marks = marks || series.mark > 0;
+    for (const glm::dvec2& p : series.points) {
+      if (!shown(panel, p)) continue;
+      least = std::min(least, p.x);
+      most = std::max(most, p.x);
+    }
+  }
+  if (marks || !(least < most)) return "set xrange [*:*]\n";
+  return format("set xrange [%.8g:%.8g]\n", least, most);
+}
+
 /// Stretches of the axis, every second one shaded, their names above the curves.
 std::string spans_script(const ChartPanel& panel) {
   std::string script = "unset object\nunset label\n";
-  if (panel.spans.empty()) return script + "set xrange [*:*]\nset tmargin\nset bmargin\n";
+  if (panel.spans.empty()) return script + range_script(panel) + "set tmargin\nset bmargin\n";
   // Room above for the names, below for what stands in the corner.
   script += format("set xrange [%.8g:%.8g]\nset tmargin 4.5\nset bmargin 5\n", panel.spans.front().from,
                    panel.spans.back().to);

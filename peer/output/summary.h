@@ -66,8 +66,11 @@ struct RunSummary {
   std::string spacing_reason;
   std::size_t fluid_particles = 0;
   std::size_t boundary_particles = 0;
-  std::uint64_t retired_particles = 0;    ///< lost: outside the domain, or not finite
-  std::uint64_t retired_settling = 0;     ///< of these, before the run: while the world settled
+  std::uint64_t retired_particles = 0;    ///< out of the world: spilled over the domain's edge, or lost
+  std::uint64_t lost_particles = 0;       ///< of these, as Diagnostics::lost
+  std::uint64_t retired_settling = 0;     ///< as retired_particles, before the run: while the world settled
+  std::uint64_t lost_settling = 0;        ///< of these, as Diagnostics::lost
+  bool walls_hold = true;                 ///< Plan::walls_hold
   std::uint64_t particles_in_solids = 0;  ///< at the end
   std::uint64_t steps = 0;
   double time_step = 0.0;         ///< s
@@ -124,8 +127,8 @@ Result<bool> write_summary(const std::filesystem::path& file, const RunSummary& 
 
 /// The status as a list of words, e.g. {"time slipped"}.
 std::vector<std::string> status_words(std::uint32_t status);
-/// The same with the numbers that the run has of each, e.g. {"particles left the domain and were retired (264
-/// of 344, in 12 of 1 714 steps)"}.
+/// The same with the numbers that the run has of each, e.g. {"fluid left the domain and is out of the world (264 of
+/// 344, in 12 of 1 714 steps)"}.
 std::vector<std::string> status_words(const RunSummary& summary);
 /// 12345 → "12 345".
 std::string grouped(std::uint64_t number);

@@ -9,6 +9,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "net/text/nearest.h"
 #include "peer/python/bindings.h"
 #include "peer/python/hand.h"
 #include "peer/python/words.h"
@@ -97,7 +98,12 @@ class SceneBuilder {
     int on = -1;
     if (!parent.empty()) {
       const auto found = nodes_.find(parent);
-      if (found == nodes_.end()) throw py::key_error("there is no part '" + parent + "' yet: add it first");
+      if (found == nodes_.end()) {
+        std::vector<std::string> parts;
+        for (const auto& [part, node] : nodes_) parts.push_back(part);
+        throw py::key_error("there is no part '" + parent + "' yet. " + did_you_mean(parent, parts) +
+                            "Add it first");
+      }
       on = found->second;
     }
     int mesh = -1;

@@ -34,8 +34,9 @@ std::shared_ptr<Scene> load(const std::filesystem::path& name_or_path, const std
   std::vector<FieldEdit> list;
   if (edits)
     for (const auto& [where, value] : *edits) list.push_back(to_edit(where.cast<std::string>(), value));
-  const py::gil_scoped_release released;
-  return std::make_shared<Scene>(take(list.empty() ? load_scene(file) : load_scene_with(file, list)));
+  return on_a_thread_left_behind([file, list] {
+    return std::make_shared<Scene>(take(list.empty() ? load_scene(file) : load_scene_with(file, list)));
+  });
 }
 
 struct PlainFinding {
@@ -45,8 +46,7 @@ struct PlainFinding {
 };
 
 std::vector<PlainFinding> check(const std::filesystem::path& file) {
-  const py::gil_scoped_release released;
-  const Inspection inspection = inspect_scene(file);
+  const Inspection inspection = on_a_thread_left_behind([file] { return inspect_scene(file); });
   std::vector<PlainFinding> all;
   for (const Finding& each : inspection.errors) all.push_back({true, each.kind, each.text});
   for (const Finding& each : inspection.warnings) all.push_back({false, each.kind, each.text});
@@ -148,7 +148,7 @@ void bind_scene(py::module_& m) {
       .def_property_readonly(
           "domain",
           [](const Scene& s) { return py::make_tuple(from_vector(s.domain_min), from_vector(s.domain_max)); },
-          "its corners, ((3,), (3,)) m: what leaves it is lost")
+          "its corners, ((3,), (3,)) m: what leaves it over its edge is spilled")
       .def(
           "grip_start",
           [](const std::shared_ptr<Scene>& s, const py::object& which) {

@@ -203,7 +203,12 @@ void bind_values(py::module_& m) {
       .def_property_readonly(
           "particles", [](const Measurement& x) { return x.fluid.particles; }, "still in the world")
       .def_property_readonly(
-          "lost", [](const Measurement& x) { return x.fluid.retired; }, "particles that left it")
+          "spilled", [](const Measurement& x) { return x.fluid.spilled; },
+          "particles that left the domain over its edge")
+      .def_property_readonly(
+          "lost", [](const Measurement& x) { return x.fluid.lost; },
+          "particles that were not finite any more; by the published model, whose walls do not hold, all that "
+          "left")
       .def_property_readonly(
           "mass", [](const Measurement& x) { return x.fluid.mass; }, "kg of fluid")
       .def_property_readonly(

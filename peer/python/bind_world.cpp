@@ -114,7 +114,9 @@ void bind_changes(py::class_<WorldProgram>& c) {
           "Times the scene's gravity, 0 to 2; from the next step on.")
       .def(
           "grip_stiffness",
-          [](const WorldProgram& w, const py::object& which) { return w.world().grip_stiffness()[w.grip(which)]; },
+          [](const WorldProgram& w, const py::object& which) {
+            return w.world().grip_stiffness()[w.grip(which)];
+          },
           py::arg("grip"), "Springs of a grip's coupling (name or number), times the scene's.")
       .def(
           "set_grip_stiffness",
@@ -122,7 +124,12 @@ void bind_changes(py::class_<WorldProgram>& c) {
             w.change({HostAction::kGripStiffness, static_cast<std::uint32_t>(w.grip(which)), scale});
           },
           py::arg("grip"), py::arg("scale"),
-          "Times the scene's springs, 0.05 to 4; gone over to from the next step on, in 0.3 s from 1 to 4. The dampers stay.")
+          "Times the scene's springs, 0.05 to 4; gone over to from the next step on, in 0.3 s from 1 to 4. "
+          "The dampers stay.")
+      .def("reset", &WorldProgram::reset,
+           "Puts the world back to where it began, at time 0: as it was made, or as settle() left it last. "
+           "Hands, and\n"
+           "viscosities, gravity and stiffness that were changed, stay. A recording goes on through it.")
       .def("save", &save,
            "bytes from which a world of the same scene and spacing goes on, on the CPU to the bit.")
       .def(

@@ -1,5 +1,7 @@
 #include "peer/python/hand.h"
 
+#include "net/text/nearest.h"
+
 namespace slosh::python {
 
 Hand::Hand(const Pose& rest, const Grip& grip) : rest_(rest), script_(grip.hand_motion) {
@@ -12,8 +14,9 @@ void Hand::hold(const py::object& source) {
     motion_ = std::monostate{};
   } else if (py::isinstance<py::str>(source)) {
     if (source.cast<std::string>() != "script") {
-      throw py::value_error("hand: '" + source.cast<std::string>() +
-                            "' is unknown: None lets go, \"script\" is the scene's own motion");
+      throw py::value_error("hand: '" + source.cast<std::string>() + "' is unknown. " +
+                            did_you_mean(source.cast<std::string>(), {"script"}) +
+                            "None lets go, \"script\" is the scene's own motion");
     }
     motion_ = PoseTrack(script_, rest_);
   } else if (py::isinstance<Keys>(source)) {

@@ -3,8 +3,12 @@
 
 #include <pybind11/pybind11.h>
 
+#include <chrono>
 #include <cstdint>
 #include <exception>
+#include <future>
+#include <memory>
+#include <thread>
 
 #include "net/clock.h"
 
@@ -50,6 +54,20 @@ auto without_lock(Interrupts& interrupts, Work&& work) {
     interrupts.rethrow();
     throw;  // not reached: Stop is thrown only where there is something to raise
   }
+}
+
+/// Runs `work`, which cannot be asked to stop, on a thread of its own that Ctrl-C leaves behind. So `work` must own all
+/// that it looks at, and touch nothing of Python's.
+template <class Work>
+auto on_a_thread_left_behind(Work work) -> decltype(work()) {
+  auto task = std::make_shared<std::packaged_task<decltype(work())()>>(std::move(work));
+  std::future<decltype(work())> answer = task->get_future();
+  std::thread([task] { (*task)(); }).detach();
+  Interrupts interrupts;
+  return without_lock(interrupts, [&] {
+    while (answer.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready) interrupts.check();
+    return answer.get();
+  });
 }
 
 }  // namespace slosh::python

@@ -6,8 +6,10 @@
 #include <ctime>
 
 #include "host/auto_spacing.h"
+#include "host/keep/rebuild.h"
 #include "host/pacer.h"
 #include "net/grip_start.h"
+#include "net/text/nearest.h"
 #include "peer/python/words.h"
 #include "sim/backend.h"
 
@@ -42,9 +44,11 @@ std::size_t index_of(const py::object& name_or_number, const std::vector<std::st
   }
   std::string known;
   for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
+  const std::string meant =
+      py::isinstance<py::str>(name_or_number) ? did_you_mean(name_or_number.cast<std::string>(), names) : "";
   throw py::key_error("there is no " + std::string(what) + " " +
                       py::repr(name_or_number).cast<std::string>() +
-                      (names.empty() ? ": the scene has none" : ". There are: " + known));
+                      (names.empty() ? ": the scene has none" : ". " + meant + "There are: " + known));
 }
 
 /// While it lives no other call moves the world; while released() does, no other call reads it.
@@ -247,6 +251,15 @@ void WorldProgram::settle(std::optional<double> seconds) {
   if (const Result<bool> saved = (start_.clear(), world_->save(start_)); !saved) throw Raised(saved.error());
 }
 
+void WorldProgram::reset() {
+  const Moving moving(*this);
+  const std::size_t fluids = scene_->fluids.size();
+  take(keep::reset_world(*world_, fluids, start_));
+  resets_ += 1;
+  if (recording_)
+    recording_->after_change(*world_, {HostAction::kReset}, state_of(*world_, fluids, false, resets_));
+}
+
 void WorldProgram::restore(const std::string& saved) {
   refuse_while_recorded("restore");
   const Moving moving(*this);
@@ -278,7 +291,7 @@ void WorldProgram::change(const HostCommand& command) {
   }
   moments_.outdated();
   if (recording_)
-    recording_->after_change(*world_, command, state_of(*world_, scene_->fluids.size(), false, 0));
+    recording_->after_change(*world_, command, state_of(*world_, scene_->fluids.size(), false, resets_));
 }
 
 void WorldProgram::refuse_while_recorded(const char* what) const {
@@ -296,7 +309,7 @@ void WorldProgram::record(const std::filesystem::path& file) {
   options.backend = backend_name(backend_);
   recording_ =
       take(keep::RecordingWriter::start(*scene_, sampled_.spacing, start_, *world_,
-                                        state_of(*world_, scene_->fluids.size(), false, 0), options));
+                                        state_of(*world_, scene_->fluids.size(), false, resets_), options));
 }
 
 void WorldProgram::stop_recording() {

@@ -43,6 +43,8 @@ class WorldProgram {
   void step(long steps);
   Run run(double seconds, bool real_time, long every, const py::object& on_step);
   void settle(std::optional<double> seconds);
+  /// Back to where it began, at time 0: as it was made, or settled last. Hands and changed parameters stay.
+  void reset();
 
   /// For reading; not while another thread steps.
   const World& world() const {
@@ -92,11 +94,12 @@ class WorldProgram {
   BodySnapshot bodies_;
   bool bodies_known_ = false;
   std::uint32_t status_ = 0;  // of the steps since the run began
+  std::uint32_t resets_ = 0;
   bool in_call_ = false;      // step, run or settle is under way
   bool moving_ = false;       // and has let go of Python's lock
 };
 
-/// The index that a name or a number stands for. Raises KeyError that lists the names.
+/// The index that a name or a number stands for. Raises KeyError with the nearest name and all of them.
 std::size_t index_of(const py::object& name_or_number, const std::vector<std::string>& names,
                      const char* what);
 

@@ -54,6 +54,10 @@ void add_out_options(CLI::App& verb, ShowOptions& options, const std::string& te
       ->needs(out);
 }
 
+void add_never_a_window_option(CLI::App& verb, const std::string& text) {
+  verb.add_flag("--headless", text);
+}
+
 void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window) {
   if (has_window) verb.add_flag("--headless", options.headless, "No window, even with a display");
   verb.add_option("--size", options.size,

@@ -95,6 +95,7 @@ void add_host(CLI::App& app, VerbRun& chosen) {
                  "Only the host sets viscosity, gravity and stiffness (else the first two who may run the "
                  "world, too, and "
                  "of a grip its holder)");
+  add_never_a_window_option(*verb, "No window: a host has none anyway; `slosh watch LINK` shows its world");
   add_seconds_option(*verb, o->seconds, 0.01, "Simulated seconds (until it is ended)");
   add_world_options(*verb, *o, "all but one");
   verb->add_option("--record", o->record, "File to record the run in; slosh replay plays it again");

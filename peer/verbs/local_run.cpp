@@ -222,6 +222,8 @@ HudFacts LocalRun::facts(double picture_rate) const {
     facts.boundary_particles += surface.positions.size();
   }
   facts.picture_rate = picture_rate;
+  facts.counts_fluid = true;
+  facts.walls_hold = prepared_.plan.walls_hold();
   return facts;
 }
 
@@ -234,6 +236,7 @@ Rates LocalRun::note_rates() {
   rates.step_rate = progress.step_rate;
   rates.step_ms = progress.step_ms;
   rates.status_steps = progress.status_steps;
+  rates.lost = progress.lost;
   rates.device_rate = servo_->devices() == 0 ? 0.0 : loop_->rate();
   rates.device_status = servo_->status();
   rates.budgets = budget_lines(*servo_, prepared_.scene);
@@ -251,8 +254,7 @@ void LocalRun::report(RunSummary& s) const {
   s.spacing_reason = prepared_.spacing_reason;
   s.fluid_particles = host_->world().fluid_count();
   s.boundary_particles = host_->world().boundary_count();
-  s.retired_particles = host.diagnostics.retired;
-  s.retired_settling = host.start_retired;
+  report_left(host.diagnostics, host.start, prepared_.plan, s);
   s.steps = host.steps;
   s.time_step = prepared_.plan.time_step;
   s.status |= host.status;
@@ -261,8 +263,6 @@ void LocalRun::report(RunSummary& s) const {
   s.slips = host.slips;
   s.slipped = host.slipped;
   s.rejected_poses += host.rejected_poses;
-  s.fluid_mass_start = host.start_mass;
-  s.fluid_mass_end = host.diagnostics.mass;
   s.backend = backend_name(prepared_.backend);
   s.threads = prepared_.threads;
   if (recording_) {

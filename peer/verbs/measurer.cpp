@@ -132,7 +132,8 @@ void Measurer::write_rows(const World& world, double elapsed) {
   }
   Row row(elapsed);
   row.count(m.fluid.particles);
-  row.count(m.fluid.retired);
+  row.count(m.fluid.spilled);
+  row.count(m.fluid.lost);
   row.count(m.in_solids);
   row.number(m.fluid.mass);
   row.vector(m.fluid.center);

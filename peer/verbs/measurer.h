@@ -21,7 +21,7 @@ constexpr const char* kBodiesHeader =
 /// What probes.csv begins with, before the columns of each gauge (NAME_level_m, NAME_pressure_pa) and
 /// region (NAME_mass_kg).
 constexpr const char* kProbesHeader =
-    "time_s,particles,lost,in_solids,mass_kg,cx_m,cy_m,cz_m,px_kg_m_s,py_kg_m_s,pz_kg_m_s,kinetic_j";
+    "time_s,particles,spilled,lost,in_solids,mass_kg,cx_m,cy_m,cz_m,px_kg_m_s,py_kg_m_s,pz_kg_m_s,kinetic_j";
 
 /// True where the scene has a measured body, a gauge or a region.
 bool asks_to_be_measured(const Scene& scene);

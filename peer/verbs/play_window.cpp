@@ -84,13 +84,7 @@ class WindowRun {
         input.scroll = glm::vec2(0.0f);
       }
       if (context_.should_close() || interrupted_by() != 0) return Outcome::kEnd;
-      const glm::ivec2 picture(renderer_.options().width, renderer_.options().height);
-      if (const glm::ivec2 window = context_.framebuffer_size(); window.x > 0 && window.y > 0) {
-        const glm::vec2 share =
-            glm::vec2(picture) / glm::vec2(window);  // the picture is stretched to the window
-        input.mouse *= share;
-        input.mouse_delta *= share;
-      }
+      const glm::ivec2 picture = glm::max(context_.framebuffer_size(), glm::ivec2(1));
       const WindowControls::Wish wish =
           controls_.follow(input, picture, snapshot ? &snapshot->rigid : nullptr);
       if (wish == WindowControls::Wish::kEnd) return Outcome::kEnd;
@@ -138,6 +132,7 @@ class WindowRun {
       if (drawn.x != renderer_.options().width || drawn.y != renderer_.options().height) {
         renderer_.resize(drawn.x, drawn.y);
       }
+      renderer_.stretch_to(size);
       const std::int64_t begin_ns = steady_now_ns();
       painter_.draw(*snapshot, rates, [&] { controls_.draw(*snapshot, size, painter_.hud().panels()); });
       if (const std::optional<std::string> table = controls_.take_forces()) keep_forces(*table);
@@ -162,7 +157,8 @@ class WindowRun {
 
   static constexpr double kBudget = 33.0;  // ms of a picture where a CPU draws
 
-  /// Of a window of that many pixels. A film's pictures are all of one size.
+  /// Of the 3-D picture in a window of that many pixels, which it is stretched to; the HUD has all of them. A
+  /// film's pictures are never drawn smaller.
   glm::ivec2 drawn_size(const glm::ivec2& window) const {
     const double scale = film_.wanted() ? 1.0 : pixels_.scale();
     return glm::max(glm::ivec2(glm::round(scale * glm::dvec2(window))), glm::ivec2(16));
@@ -255,8 +251,10 @@ Result<bool> show_in_window(const Stage& stage, const MakeRun& make_run, const S
     run.report(summary);
     summary.rendered = true;
     summary.renderer = context.value()->description() + where_particles_are_read(*renderer.value());
-    summary.width = renderer.value()->options().width;
-    summary.height = renderer.value()->options().height;
+    const RenderOptions& last = renderer.value()->options();
+    const glm::ivec2 shown = headset ? glm::ivec2(last.width, last.height) : context.value()->framebuffer_size();
+    summary.width = shown.x;
+    summary.height = shown.y;
     summary.frame_ms = {1e3 * frame_time.percentile(0.5), 1e3 * frame_time.percentile(0.99),
                         1e3 * frame_time.max()};
   }

@@ -81,6 +81,7 @@ HudFacts RemoteRun::facts(double picture_rate) const {
   facts.shared = status_.welcome.role == wire::Role::kParticipant;
   facts.may_change = status_.rights.run;
   facts.picture_rate = picture_rate;
+  facts.walls_hold = stage_.scene.model != ParticleModel::kPaper;
   return facts;
 }
 

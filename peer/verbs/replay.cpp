@@ -81,6 +81,7 @@ void add_replay(CLI::App& app, VerbRun& chosen) {
   CLI::App* verb = app.add_subcommand("replay", "Simulate a recording again, compare it and film it");
   auto o = std::make_shared<ReplayVerbOptions>();
   verb->add_option("FILE", o->file, "What --record wrote")->required();
+  add_never_a_window_option(*verb, "No window: a replay has none anyway, its film goes into --out");
   add_out_options(*verb, *o, "Folder for the film, the plot and the tables; without it only compares");
   add_seconds_option(*verb, o->seconds, 0.001, "Simulated seconds from its start (all)");
   add_backend_option(*verb, o->backend, "What to simulate on; auto: where it was recorded, if that is here");

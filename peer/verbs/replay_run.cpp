@@ -70,6 +70,8 @@ void ReplayRun::show() {
   auto snapshot = std::make_shared<Snapshot>();
   replayer_.world().fill(*snapshot);
   snapshots_.push(std::move(snapshot));
+  if ((replayer_.status() & kStatusNonFinite) != 0)
+    shown_lost_.store(replayer_.world().diagnostics().lost, std::memory_order_relaxed);
   next_snapshot_ += 1.0 / snapshot_rate_;
 }
 
@@ -135,6 +137,8 @@ HudFacts ReplayRun::facts(double picture_rate) const {
   facts.fluid_particles = replayer_.world().fluid_count();
   facts.boundary_particles = replayer_.world().boundary_count();
   facts.picture_rate = picture_rate;
+  facts.counts_fluid = true;
+  facts.walls_hold = replayer_.world().plan().walls_hold();
   return facts;
 }
 
@@ -142,6 +146,7 @@ Rates ReplayRun::note_rates() {
   Rates rates;
   rates.time = shown_time_.load(std::memory_order_relaxed);
   rates.real_time = shown_rate_.load(std::memory_order_relaxed);
+  rates.lost = shown_lost_.load(std::memory_order_relaxed);
   rates_.add(rates);
   return rates;
 }
@@ -157,13 +162,10 @@ void ReplayRun::report(RunSummary& s) const {
   s.spacing_reason = "as it was recorded";
   s.fluid_particles = world.fluid_count();
   s.boundary_particles = world.boundary_count();
-  s.retired_particles = end.retired;
-  s.retired_settling = start_.retired;
+  report_left(end, start_, world.plan(), s);
   s.steps = verdict.steps;
   s.time_step = world.plan().time_step;
   s.status = replayer_.status();
-  s.fluid_mass_start = start_.mass;
-  s.fluid_mass_end = end.mass;
   s.devices = peaks_;
   s.backend = backend_name(replayer_.backend());
   s.verdict = verdict.text(replayer_.head().spacing);

@@ -69,6 +69,7 @@ class ReplayRun final : public LiveRun {
   std::atomic<bool> running_{false};
   std::atomic<double> shown_time_{0.0};
   std::atomic<double> shown_rate_{0.0};
+  std::atomic<std::uint64_t> shown_lost_{0};
 };
 
 }  // namespace slosh

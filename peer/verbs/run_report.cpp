@@ -44,6 +44,16 @@ void report_steps(const StepTimes& total, const Histogram& step_time, RunSummary
   s.share_body = total.body / all;
 }
 
+void report_left(const Diagnostics& end, const Diagnostics& start, const Plan& plan, RunSummary& s) {
+  s.retired_particles = end.retired;
+  s.lost_particles = end.lost;
+  s.retired_settling = start.retired;
+  s.lost_settling = start.lost;
+  s.walls_hold = plan.walls_hold();
+  s.fluid_mass_start = start.mass;
+  s.fluid_mass_end = end.mass;
+}
+
 void report_hands(const DeviceLoop& loop, const Servo& servo, const Recorder& recorder, const Scene& scene,
                   RunSummary& s) {
   const DeviceLoopReport& ran = loop.report();

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
+#include <map>
 #include <memory>
 
 #include "peer/output/chart.h"
+#include "peer/output/field_words.h"
 #include "peer/output/gnuplot.h"
 #include "peer/output/later_table.h"
 #include "peer/palette.h"
@@ -13,6 +15,7 @@
 #include "peer/verbs/interrupt.h"
 #include "peer/verbs/prepare.h"
 #include "peer/verbs/report.h"
+#include "peer/verbs/rest_forces.h"
 #include "peer/verbs/scripted_run.h"
 #include "peer/verbs/verbs.h"
 #include "scenes/load.h"
@@ -47,7 +50,7 @@ struct Member {
   std::string name(const std::vector<bool>& chosen) const {
     std::string text;
     for (std::size_t i = 0; i < edits.size(); ++i) {
-      if (chosen[i]) text += (text.empty() ? "" : ", ") + edits[i].field + " = " + edits[i].value;
+      if (chosen[i]) text += (text.empty() ? "" : ", ") + field_in_words(edits[i].field, edits[i].value);
     }
     return text;
   }
@@ -140,9 +143,10 @@ std::string row_of(std::size_t number, const Member& member, std::size_t grip, c
   std::string row = std::to_string(number);
   for (const FieldEdit& edit : member.edits) (row += ',') += csv_cell(edit.value);
   const Felt f = felt(run.hands[grip]);
-  return row + format(",%zu,%.6g,%.6g,%.6g,%.6g,%llu,%llu,%.4g\n", grip, f.mean_force, f.peak_force,
+  return row + format(",%zu,%.6g,%.6g,%.6g,%.6g,%llu,%llu,%llu,%.4g\n", grip, f.mean_force, f.peak_force,
                       f.mean_torque, f.peak_torque, static_cast<unsigned long long>(run.cost.particles),
-                      static_cast<unsigned long long>(run.cost.retired), run.cost.wall_s);
+                      static_cast<unsigned long long>(run.cost.retired - run.cost.lost),
+                      static_cast<unsigned long long>(run.cost.lost), run.cost.wall_s);
 }
 
 /// A panel a hand and quantity, a curve a run.
@@ -179,6 +183,35 @@ void add_curves(std::vector<ChartPanel>& panels, const std::string& name, std::s
   }
 }
 
+/// What hands feel at rest, by what else than viscosity is the same in their runs: those ought to agree.
+class RestsByViscosity {
+ public:
+  explicit RestsByViscosity(const Scene& scene) : scene_(scene) {}
+
+  void add(const Member& member, const ScriptedRun& run) {
+    std::string others;
+    for (const FieldEdit& edit : member.edits)
+      if (edit.field != "viscosity_pa_s") others += edit.object + "." + edit.field + "=" + edit.value + "\n";
+    for (std::size_t i = 0; i < run.hands.size(); ++i)
+      rests_[{i, others}].push_back(rest_forces(run.hands[i], run.poses[i]));
+  }
+  /// A line for each hand that has not settled.
+  std::vector<std::string> unsettled() const {
+    std::map<std::size_t, std::string> lines;
+    for (const auto& [of, runs] : rests_) {
+      const std::string text = unsettled_text(scene_.grips[of.first].name, runs);
+      if (!text.empty()) lines.try_emplace(of.first, text);
+    }
+    std::vector<std::string> all;
+    for (const auto& [hand, text] : lines) all.push_back(text);
+    return all;
+  }
+
+ private:
+  const Scene& scene_;
+  std::map<std::pair<std::size_t, std::string>, std::vector<std::vector<RestForce>>> rests_;
+};
+
 int sweep(const SweepVerbOptions& options) {
   const Result<std::vector<Member>> family = members(options);
   if (!family) return fail(family.error());
@@ -201,11 +234,13 @@ int sweep(const SweepVerbOptions& options) {
   out << "run";
   for (const FieldEdit& edit : family.value().front().edits)
     out << "," << csv_cell(edit.object + "." + edit.field);
-  out << ",device,mean_force_n,peak_force_n,mean_torque_nm,peak_torque_nm,fluid_particles,lost,wall_s\n";
+  out << ",device,mean_force_n,peak_force_n,mean_torque_nm,peak_torque_nm,fluid_particles,spilled,lost,wall_"
+         "s\n";
   catch_interrupts();
   Progress progress;
   std::vector<ChartPanel> panels = panels_of(first);
   const std::vector<bool> varies = varied(family.value());
+  RestsByViscosity rests(first);
   std::vector<ReportJob> jobs;
   std::size_t done = 0;
   std::optional<Error> refusal;
@@ -227,6 +262,7 @@ int sweep(const SweepVerbOptions& options) {
                         if (!write_wrenches(folder.value() / format("run-%zu-wrenches.csv", n + 1), run))
                           refusal = Error{folder.value().string(), "cannot be written", "Is the disk full?"};
                         add_curves(panels, name, n, run);
+                        rests.add(family.value()[n], run);
                         done += 1;
                       } catch (const report::Refused& refused) {
                         refusal = refused.error;
@@ -240,10 +276,14 @@ int sweep(const SweepVerbOptions& options) {
     std::vector<bool> alike = varies;
     alike.flip();
     const std::string same = family.value().front().name(alike);
-    const std::string title = first.title + (same.empty() ? "" : "; " + same) + "\n" + machine_line(machine);
+    const std::vector<std::string> unsettled = rests.unsettled();
+    const std::string title = first.title + (same.empty() ? "" : "; " + same) +
+                              (unsettled.empty() ? "" : "; forces at rest differ by viscosity") + "\n" +
+                              machine_line(machine);
     const Result<bool> drawn = draw(chart_script(panels, 2, title), folder.value() / "sweep.png");
     if (!drawn) return fail(drawn.error());
   }
+  for (const std::string& line : rests.unsettled()) std::printf("%s.\n", line.c_str());
   std::printf("%zu of %zu runs are in %s%s\n", done, jobs.size(), table.c_str(),
               done > 0 ? " and sweep.png" : "");
   std::fflush(stdout);
@@ -264,8 +304,9 @@ void add_sweep(CLI::App& app, VerbRun& chosen) {
           "scene; a field of scenes/README.md. Again for every combination with others")
       ->required()
       ->allow_extra_args(false);
+  add_never_a_window_option(*verb, "No window: a sweep has none anyway, its plot goes into --out");
   verb->add_option("--out", o->out, "Folder for the results")->required();
-  verb->add_flag("--overwrite", o->overwrite, "Lose the sweep that is in that folder");
+  verb->add_flag("--overwrite", o->overwrite, "What an earlier sweep left in --out may be lost");
   verb->add_option("--spacing", o->spacing, "Metres between particles (the scene's own, else its coarsest)")
       ->check(in_range(1e-4, 1.0));
   add_seconds_option(*verb, o->seconds, 0.01, "Simulated seconds of each run (the scene's duration)");
@@ -278,6 +319,9 @@ void add_sweep(CLI::App& app, VerbRun& chosen) {
       "  sweep.csv               a row a run and hand: the values, mean and peak of what the hand felt\n"
       "  sweep.png               force and torque of each hand over time, a colour a run\n"
       "  run-N-wrenches.csv      as play's wrenches.csv, a row a step\n"
+      "A hand that stands still and feels another force by viscosity alone is named, as rest knows none: its "
+      "fluid\n"
+      "has not settled, or the spacing is too coarse for it.\n"
       "Every value is checked before anything runs. Ctrl-C keeps what is done, with its plot.\n\n"
       "Examples:\n"
       "  slosh sweep spoon --set fluid.viscosity_pa_s=0.5,2,8 --out thick\n"

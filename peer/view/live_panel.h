@@ -50,6 +50,8 @@ class LivePanel {
 
   /// At the top on the right, or on the left where a panel of `taken` lies there.
   void draw(const LiveValues& now, double wall_seconds, std::span<const Rect> taken);
+  /// Where it lies in what draw() drew last, in Dear ImGui's pixels.
+  const Rect& panel() const { return panel_; }
   /// What was asked for since the last call; of each value the newest, at most ten times a second while it is
   /// dragged.
   std::vector<LiveWish> take_wishes();
@@ -60,11 +62,28 @@ class LivePanel {
     bool active = false;
     double sent_at = -1.0;  // wall s
   };
-  void slider(std::size_t id, const char* label, const char* pattern, float least, float most,
-              bool logarithmic, double now, double wall_seconds, const LiveWish& wish);
+  struct Row {
+    std::size_t id;
+    std::string label;
+    const char* pattern;
+    float least, most;
+    bool logarithmic;
+    double now;
+    LiveWish wish;
+  };
+  struct Size {
+    float letters = 1.0f;  // times their size
+    float slider = 0.0f;   // px wide
+    glm::vec2 panel{0.0f};
+  };
+  std::vector<Row> rows_of(const LiveValues& now) const;
+  /// Letters as large as leave the panel within a third of the picture.
+  static Size size_of(const std::vector<Row>& rows, const glm::vec2& picture);
+  void slider(const Row& row, float width, double wall_seconds);
 
   std::vector<std::string> fluid_names_;
   std::vector<std::string> grip_names_;
+  Rect panel_;
   std::vector<Slider> sliders_;
   std::vector<LiveWish> wishes_;
 };

@@ -45,7 +45,7 @@ class Painter {
     frame.foam = foam_.points();
     const RenderOptions& size = renderer_.options();
     frame.view = camera_.view(static_cast<double>(size.width) / size.height);
-    hud_.keep_clear = held_.of(snapshot, frame.view);
+    if (!hud_.placed()) hud_.keep_clear = held_.through_run(snapshot, frame.view);
     frame.hud = [this, &rates, &over] {
       hud_.draw(rates);
       if (over) over();
@@ -61,10 +61,9 @@ class Painter {
     frame.foam = foam_.points();
     for (const Pose& pose : controllers) builder_.add_controller(pose, scale, frame);
     // The panel stands behind the scene and would be drawn over what is lifted before it.
-    hud_.keep_clear.clear();
     for (const View& eye : pictures.panel_views) {
-      if (pictures.panel.texture == 0) break;
-      for (const Rect& rect : held_.of(snapshot, eye)) hud_.keep_clear.push_back(rect);
+      if (pictures.panel.texture == 0 || hud_.placed()) break;
+      for (const Rect& rect : held_.through_run(snapshot, eye)) hud_.keep_clear.push_back(rect);
     }
     frame.hud = [this, &rates] { hud_.draw(rates); };
     const RenderOptions& size = renderer_.options();
@@ -82,7 +81,7 @@ class Painter {
     frame.foam = foam_.points();
     const RenderOptions& size = renderer_.options();
     frame.view = camera_.view(static_cast<double>(size.width) / size.height);
-    hud_.keep_clear = held_.of(snapshot, frame.view);
+    if (!hud_.placed()) hud_.keep_clear = held_.through_run(snapshot, frame.view);
     frame.hud = [this, &rates] { hud_.draw(rates); };
     const std::array<View, 2> eyes =
         stereo_views(frame.view, kEyesApart, static_cast<float>(camera_.distance()));

@@ -12,18 +12,36 @@ namespace {
 
 constexpr double kSaidSeconds = 5.0;
 constexpr float kMargin = 8.0f;
+constexpr float kHintHeight = 0.25f;  // of the picture, at most
 constexpr float kRing = 20.0f;  // px, as far as a press reaches (mouse_grab.cpp)
 constexpr ImGuiWindowFlags kPanel = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
-                                    ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoInputs |
-                                    ImGuiWindowFlags_AlwaysAutoResize;
+                                    ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoInputs;
 
-void panel(const char* name, const std::string& text, ImVec2 at, ImVec2 pivot, float opacity = 0.7f) {
-  ImGui::SetNextWindowPos(at, ImGuiCond_Always, pivot);
-  ImGui::SetNextWindowBgAlpha(opacity);
-  if (ImGui::Begin(name, nullptr, kPanel)) ImGui::TextUnformatted(text.c_str());
-  ImGui::End();
-}
+/// A text's panel: its letters are smaller where it would not fit into `room`.
+struct TextPanel {
+  TextPanel(const std::string& what, const glm::vec2& room) : text(what) {
+    const ImVec2 wide = ImGui::CalcTextSize(text.c_str());
+    const ImVec2 padding = ImGui::GetStyle().WindowPadding;
+    const glm::vec2 around(2.0f * padding.x, 2.0f * padding.y);
+    letters = letters_that_fit({wide.x, wide.y}, room - around);
+    size = glm::ceil(letters * glm::vec2(wide.x, wide.y)) + around;
+  }
+  void draw(const char* name, const glm::vec2& at, float opacity) const {
+    ImGui::SetNextWindowPos(ImVec2(at.x, at.y));
+    ImGui::SetNextWindowSize(ImVec2(size.x, size.y));
+    ImGui::SetNextWindowBgAlpha(opacity);
+    if (ImGui::Begin(name, nullptr, kPanel)) {
+      ImGui::SetWindowFontScale(letters);
+      ImGui::TextUnformatted(text.c_str());
+    }
+    ImGui::End();
+  }
+
+  const std::string& text;
+  float letters = 1.0f;
+  glm::vec2 size{0.0f};
+};
 
 /// Where a line of `size` lies: at the bottom in the middle, else in a corner there, else above what is there.
 glm::vec2 hint_place(const glm::vec2& size, const glm::vec2& picture, std::span<const Rect> taken, const glm::vec2& now) {
@@ -123,15 +141,18 @@ void WindowGuide::say(std::string text, double wall_seconds) {
 
 void WindowGuide::draw(const GuideFacts& facts, double wall_seconds, std::span<const Rect> taken) {
   const ImGuiIO& io = ImGui::GetIO();
-  const ImVec2 size = io.DisplaySize;
+  const glm::vec2 picture(io.DisplaySize.x, io.DisplaySize.y);
   if (facts.mark) {
     const ImVec2 at(facts.mark->x / io.DisplayFramebufferScale.x,
                     facts.mark->y / io.DisplayFramebufferScale.y);
     const ImU32 color = facts.holding ? IM_COL32(255, 220, 120, 255) : IM_COL32(255, 255, 255, 190);
     ImGui::GetBackgroundDrawList()->AddCircle(at, kRing, color, 0, facts.holding ? 3.0f : 2.0f);
   }
-  if (show_all)
-    panel("keys", all_keys(facts, keys_), ImVec2(0.5f * size.x, 0.5f * size.y), ImVec2(0.5f, 0.5f), 0.92f);
+  if (show_all) {
+    const std::string keys = all_keys(facts, keys_);
+    const TextPanel panel(keys, picture - 2.0f * kMargin);
+    panel.draw("keys", 0.5f * (picture - panel.size), 0.92f);
+  }
   std::string line = hint(facts);
   if (facts.may_pace && facts.pace < 0.999) {
     char text[48];
@@ -140,10 +161,9 @@ void WindowGuide::draw(const GuideFacts& facts, double wall_seconds, std::span<c
   }
   if (wall_seconds < until_) line = line.empty() ? said_ : said_ + "\n" + line;
   if (line.empty() || show_all) return;
-  const ImVec2 text = ImGui::CalcTextSize(line.c_str());
-  const ImVec2 padding = ImGui::GetStyle().WindowPadding;
-  hint_at_ = hint_place({text.x + 2.0f * padding.x, text.y + 2.0f * padding.y}, {size.x, size.y}, taken, hint_at_);
-  panel("hint", line, ImVec2(hint_at_.x, hint_at_.y), ImVec2(0.0f, 0.0f));
+  const TextPanel panel(line, {picture.x - 2.0f * kMargin, kHintHeight * picture.y});
+  hint_at_ = hint_place(panel.size, picture, taken, hint_at_);
+  panel.draw("hint", hint_at_, 0.7f);
 }
 
 }  // namespace slosh

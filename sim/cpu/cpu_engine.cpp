@@ -90,6 +90,7 @@ class CpuEngine final : public ParticleEngine {
 
   bool save(ParticleState& out, ImpulseSums& impulses) const override {
     impulses = impulses_;
+    out.broken = context_.broken;
     out.resize(fluid_.active);
     for_each_column(
         [&](auto column, const auto& from, auto& to) {
@@ -113,6 +114,7 @@ class CpuEngine final : public ParticleEngine {
     for (std::size_t p = 0; p < state.size(); ++p) fluid_.kind[p] = kinds_[state.id[p]];
     fluid_.active = state.size();
     context_.status = 0;
+    context_.broken = state.broken;
   }
 
   std::uint32_t status() const override { return context_.status.load(std::memory_order_relaxed); }
@@ -147,7 +149,7 @@ class CpuEngine final : public ParticleEngine {
                {fluid_.vx[p], fluid_.vy[p], fluid_.vz[p]}, fluid_.volume[p]);
     }
     sums.add(impulses_);
-    return sums.finish(fluid_count_);
+    return sums.finish(fluid_count_, context_.broken);
   }
 
   StepTimes times() const override { return times_; }

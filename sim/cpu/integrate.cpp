@@ -73,6 +73,7 @@ void integrate_fluid(PassContext& context, ThreadTeam& team, FluidParticles& flu
         const bool finite =
             std::isfinite(fluid.x[p]) && std::isfinite(fluid.y[p]) && std::isfinite(fluid.z[p]);
         status |= finite ? kStatusEscaped : kStatusNonFinite;
+        if (!finite) context.broken.fetch_add(1, std::memory_order_relaxed);
       }
     }
     if (status) context.status.fetch_or(status, std::memory_order_relaxed);

@@ -13,9 +13,10 @@
 
 namespace slosh {
 
-/// What the passes of one run share. Constant but for `status`.
+/// What the passes of one run share. Constant but for the two counts.
 struct PassContext : RunConstants {
   std::atomic<std::uint32_t> status{0};
+  std::atomic<std::uint64_t> broken{0};  ///< ParticleState's
 };
 
 struct FluidDrag;

@@ -143,6 +143,7 @@ class CudaEngine final : public ParticleEngine {
     impulses = fetch_impulses(guards_, check_, stream_);
     if (check_.failed()) return false;
     to_state(packs, constants_.grid, out);
+    out.broken = broken_before_ + broken(packs, constants_.grid);
     return true;
   }
 
@@ -154,6 +155,8 @@ class CudaEngine final : public ParticleEngine {
       if (id >= fluid_count_) slots[id - fluid_count_] = static_cast<std::uint32_t>(p);
     }
     const HostPacks packs = from_state(state, constants_.grid, constants_.rest_volume, kinds_by_id_);
+    const std::uint64_t among_them = broken(packs, constants_.grid);  // that the sort has not taken out yet
+    broken_before_ = state.broken - std::min(state.broken, among_them);
     check_.ok(cudaStreamSynchronize(stream_), "waiting for the step");
     fluid_.write(packs, check_, stream_);
     sent_probes_.write_slots(slots, check_, stream_);
@@ -203,7 +206,7 @@ class CudaEngine final : public ParticleEngine {
       sums.add(packs.kind[p], {x.x, x.y, x.z}, {v.x, v.y, v.z}, v.w);
     });
     sums.add(fetch_impulses(guards_, check_, stream_));
-    return sums.finish(fluid_count_);
+    return sums.finish(fluid_count_, broken_before_ + broken(packs, constants_.grid));
   }
 
   StepTimes times() const override { return clock_.times(); }
@@ -350,6 +353,7 @@ class CudaEngine final : public ParticleEngine {
   std::vector<std::uint8_t> kinds_by_id_;
   std::size_t fluid_count_;  // without probes
   std::uint32_t status_ = 0;
+  std::uint64_t broken_before_ = 0;  // of ParticleState's, those that restore() took over and dropped
   mutable CallCheck check_;
   cudaStream_t stream_ = nullptr;
   PassClock clock_;

@@ -1,8 +1,19 @@
 #include "sim/cuda/host_particles.h"
 
+#include <cmath>
 #include <vector>
 
 namespace slosh::cuda {
+
+std::uint64_t broken(const HostPacks& packs, const CellGrid& grid) {
+  std::uint64_t count = 0;
+  for (std::size_t p = 0; p < packs.id.size(); ++p) {
+    const float4 x = packs.x[p];
+    const bool finite = std::isfinite(x.x) && std::isfinite(x.y) && std::isfinite(x.z);
+    count += packs.key[p] >= grid.retired_key() && !finite;
+  }
+  return count;
+}
 
 void to_state(const HostPacks& packs, const CellGrid& grid, ParticleState& out) {
   out.resize(packs.id.size());

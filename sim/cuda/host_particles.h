@@ -41,6 +41,9 @@ void for_each_present(const HostPacks& packs, const CellGrid& grid, F&& f) {
   }
 }
 
+/// Of those that are not, how many stopped where nothing is finite. Where a particle left is kept with it.
+std::uint64_t broken(const HostPacks& packs, const CellGrid& grid);
+
 /// The columns that a saved world holds, of the particles that are still in it.
 void to_state(const HostPacks& packs, const CellGrid& grid, ParticleState& out);
 /// The reverse: those that `state` lacks come last, retired, at `rest_volume`. `kinds_by_id` has one entry a

@@ -42,6 +42,35 @@ std::string probe(const std::filesystem::path& film, const std::string& entry) {
   return outcome.out.substr(0, outcome.out.find_first_of("\n,"));
 }
 
+/// The shipped bucket is there to be spilled: nothing of it is called lost, in the film's tables, the words
+/// or a replay.
+TEST_F(PlayTest, WhatTheBucketSpillsIsNotLost) {
+  const Outcome outcome = test::slosh({"play", "bucket", "--headless", "--no-render", "--unpaced",
+                                       "--spacing", "0.0139", "--threads", "1", "--seconds", "4", "--measure",
+                                       "0.5", "--record", "b.rec", "--out", "out"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const json particles = json::parse(read_text(out() / "summary.json"))["particles"];
+  EXPECT_GT(particles["spilled"].get<int>(), 50);
+  EXPECT_EQ(particles["lost"], 0);
+  EXPECT_EQ(particles["retired"], particles["spilled"]);
+  EXPECT_NE(outcome.out.find("fluid particles were spilled over the edge of the domain"), std::string::npos);
+  for (const char* word : {"lost", "mug"})
+    EXPECT_EQ(outcome.out.find(word), std::string::npos) << outcome.out;
+  const std::string rows = read_text(out() / "probes.csv");
+  EXPECT_TRUE(rows.starts_with("time_s,particles,spilled,lost,in_solids,")) << rows.substr(0, 60);
+  std::stringstream last(rows.substr(rows.rfind('\n', rows.size() - 2) + 1));
+  std::vector<std::string> fields;
+  for (std::string field; std::getline(last, field, ',');) fields.push_back(field);
+  ASSERT_GT(fields.size(), 4u);
+  EXPECT_GT(std::stoi(fields[2]), 50);
+  EXPECT_EQ(std::stoi(fields[1]) + std::stoi(fields[2]), particles["fluid"].get<int>());
+  EXPECT_EQ(fields[3], "0");
+  const Outcome again = test::slosh({"replay", "b.rec", "--headless", "--no-render", "--threads", "1"});
+  EXPECT_EQ(again.code, 0) << again.err;
+  EXPECT_NE(again.out.find(std::to_string(particles["spilled"].get<int>()) + " of "), std::string::npos)
+      << again.out;
+}
+
 void expect_rows(const std::filesystem::path& folder, std::size_t devices, double seconds) {
   const Result<std::vector<WrenchSeries>> series = read_wrenches(folder / "wrenches.csv");
   ASSERT_TRUE(series) << series.error().text();

@@ -72,10 +72,10 @@ TEST_F(WindowTest, AMousePoursTheDefaultBucket) {
   const auto height = [](const std::string& row) {
     std::stringstream in(row);
     std::string field;
-    for (int i = 0; i < 7; ++i) std::getline(in, field, ',');
+    for (int i = 0; i < 8; ++i) std::getline(in, field, ',');
     return std::stod(field);
   };
-  ASSERT_NE(header.find("time_s,particles,lost,in_solids,mass_kg,cx_m,cy_m"), std::string::npos) << header;
+  ASSERT_NE(header.find("time_s,particles,spilled,lost,in_solids,mass_kg,cx_m,cy_m"), std::string::npos) << header;
   EXPECT_GT(height(first), 0.33);
   EXPECT_LT(height(last), 0.2);
 }

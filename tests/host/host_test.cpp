@@ -71,7 +71,7 @@ TEST_F(HostTest, RunsForTheTimeAskedAndReportsIt) {
   EXPECT_GT(report.total.total, 0.0);
   EXPECT_EQ(report.rejected_poses, 0u);
   EXPECT_EQ(report.status & kStatusInputRejected, 0u);
-  EXPECT_NEAR(report.diagnostics.mass, report.start_mass, 1e-6 * report.start_mass);
+  EXPECT_NEAR(report.diagnostics.mass, report.start.mass, 1e-6 * report.start.mass);
 }
 
 TEST_F(HostTest, PublishesSnapshotsAtTheRateOfSimulatedTime) {

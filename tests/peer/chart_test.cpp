@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "peer/output/field_words.h"
 #include "peer/output/gnuplot.h"
 
 namespace slosh {
@@ -54,6 +55,29 @@ TEST(Chart, ALegendOfLongNamesLeavesRoomForCurves) {
                   "if (GPVAL_TERM_YMAX - GPVAL_TERM_YMIN < 250) exit status 1\n");
     expect_picture(script, "legend_test.png");
   }
+}
+
+// Curves of a run: nothing is before its first moment.
+TEST(Chart, CurvesBeginAtTheAxis) {
+  ChartPanel panel{"t", "time, s", "force, N", false, false, {}};
+  panel.series.push_back({"a", "#000000", {{0.25, 10.0}, {4.5, 12.0}}, 0, 1.0, 1.6, false});
+  panel.series.push_back({"b", "#000000", {{0.5, 11.0}, {4.0, 12.0}}, 0, 1.0, 1.6, false});
+  std::string script = chart_script({panel}, 1, "t");
+  script.insert(script.rfind("unset multiplot"),
+                "if (GPVAL_X_MIN != 0.25) exit status 1\nif (GPVAL_X_MAX != 4.5) exit status 1\n");
+  expect_picture(script, "range_test.png");
+}
+
+TEST(FieldWords, UnitsStandBehindTheNumber) {
+  EXPECT_EQ(field_in_words("viscosity_pa_s", "0.5"), "viscosity = 0.5 Pa\xC2\xB7s");
+  EXPECT_EQ(field_in_words("stiffness_n_m", "500"), "stiffness = 500 N/m");
+  EXPECT_EQ(field_in_words("density_kg_m3", "998"), "density = 998 kg/m\xC2\xB3");
+  EXPECT_EQ(field_in_words("rotational_stiffness_nm_rad", "2"), "rotational stiffness = 2 N\xC2\xB7m/rad");
+  EXPECT_EQ(field_in_words("angular_velocity_rad_s", "2"), "angular velocity = 2 rad/s");
+  EXPECT_EQ(field_in_words("stiffness_m2_s2", "400"), "stiffness = 400 m\xC2\xB2/s\xC2\xB2");
+  EXPECT_EQ(field_in_words("mass_kg", "2"), "mass = 2 kg");
+  EXPECT_EQ(field_in_words("model", "paper"), "model = paper");
+  EXPECT_EQ(field_in_words("support_ratio", "2"), "support_ratio = 2");
 }
 
 TEST(Chart, LeavesOutWhatHasNoLogarithm) {

@@ -7,6 +7,7 @@
 #include <array>
 #include <string>
 
+#include "hud_kit.h"
 #include "render/passes/hud_pass.h"
 
 namespace slosh {
@@ -49,19 +50,8 @@ TEST(HudFont, GrowsWithThePicture) {
   EXPECT_EQ(hud_font_pixels(1e6f), 96);
 }
 
-class HudTest : public ::testing::Test {
+class HudTest : public test::PanelTest {
  protected:
-  void SetUp() override {
-    ImGui::CreateContext();
-    ImGuiIO& io = ImGui::GetIO();
-    io.IniFilename = nullptr;
-    io.DisplaySize = ImVec2(640, 480);
-    unsigned char* pixels = nullptr;
-    int width = 0, height = 0;
-    io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
-  }
-  void TearDown() override { ImGui::DestroyContext(); }
-
   static void draw(Hud& hud, const Rates& rates = {}) {
     ImGui::NewFrame();
     hud.draw(rates);
@@ -76,22 +66,7 @@ class HudTest : public ::testing::Test {
     draw(hud);
     return ImGui::GetDrawData()->TotalVtxCount;
   }
-  /// How far below (px) what a command may draw on some of its vertices lie, at worst.
-  static float cut_off() {
-    float most = 0.0f;
-    const ImDrawData* data = ImGui::GetDrawData();
-    for (int i = 0; i < data->CmdListsCount; ++i) {
-      const ImDrawList* list = data->CmdLists[i];
-      for (const ImDrawCmd& command : list->CmdBuffer) {
-        for (unsigned k = 0; k < command.ElemCount; ++k) {
-          const ImDrawIdx index = list->IdxBuffer[static_cast<int>(command.IdxOffset + k)];
-          const ImDrawVert& vertex = list->VtxBuffer[static_cast<int>(command.VtxOffset + index)];
-          most = std::max(most, vertex.pos.y - command.ClipRect.w);
-        }
-      }
-    }
-    return most;
-  }
+  static float cut_off() { return cut_off_below(); }
   static Scene scene() {
     Scene scene;
     scene.grips.resize(2);
@@ -160,6 +135,39 @@ TEST_F(HudTest, WallsThatHoldAreNoWarningUnlessTheyCrush) {
   const int crushed = vertices(3.0, kStatusCompressed);
   EXPECT_GT(crushed, without);
   EXPECT_GT(vertices(3.1, kStatusGuarded | kStatusCompressed), crushed) << "then both are said";
+}
+
+/// What left the world is counted in the snapshot and named by how; spilling is no warning.
+TEST_F(HudTest, SpillingIsARowAndNoWarning) {
+  const Scene bare = scene();
+  HudFacts counted = facts();
+  counted.counts_fluid = true;
+  const auto colours = [&](const HudFacts& of, std::uint64_t lost) {
+    Hud hud(bare, of);
+    Snapshot snapshot;
+    snapshot.rigid.status = kStatusEscaped;
+    snapshot.fluid_index.assign(100, 0);
+    std::fill_n(snapshot.fluid_index.begin(), 37, std::uint8_t{255});
+    hud.record(snapshot);
+    Rates rates;
+    rates.lost = lost;
+    draw(hud, rates);
+    int orange = 0;
+    const ImDrawData* data = ImGui::GetDrawData();
+    for (int i = 0; i < data->CmdListsCount; ++i)
+      for (const ImDrawVert& vertex : data->CmdLists[i]->VtxBuffer)
+        orange +=
+            (vertex.col & 0xffffffu) == (ImGui::GetColorU32(ImVec4(1.0f, 0.78f, 0.35f, 1.0f)) & 0xffffffu);
+    return std::pair(orange, data->TotalVtxCount);
+  };
+  const auto [orange, spilled] = colours(counted, 0);
+  EXPECT_EQ(orange, 0);
+  EXPECT_GT(colours(counted, 3).second, spilled) << "lost has its own row";
+  HudFacts leaky = counted;
+  leaky.walls_hold = false;
+  EXPECT_GT(colours(leaky, 0).first, 0) << "where walls do not hold, it may have gone through one";
+  EXPECT_GT(colours(facts(), 0).second, 0);
+  EXPECT_EQ(colours(facts(), 0).first, 0) << "over a network too";
 }
 
 TEST_F(HudTest, FourHandsHideNoneOfTheirGlasses) {

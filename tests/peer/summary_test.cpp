@@ -118,22 +118,63 @@ TEST(Summary, StatusesHaveTheirNumbers) {
   EXPECT_NE(in_words(s).find("264 of 344"), std::string::npos);
 }
 
-/// Kilogrammes are of the run; particles that settling lost are none of it.
+/// A scene that is made to spill ends without a word of loss; drops that bounced get the advice.
+TEST(Summary, WhatWasSpilledIsNoLoss) {
+  RunSummary s;
+  s.fluid_particles = 1376;
+  s.retired_particles = 504;
+  s.fluid_mass_start = 3.7;
+  s.fluid_mass_end = 2.34;
+  s.status = kStatusEscaped;
+  std::string words = in_words(s);
+  EXPECT_NE(
+      words.find("504 of 1 376 fluid particles were spilled over the edge of the domain, 1.36 of 3.7 kg."),
+      std::string::npos)
+      << words;
+  EXPECT_EQ(words.find("lost"), std::string::npos) << words;
+  EXPECT_EQ(words.find("mug"), std::string::npos) << words;
+  EXPECT_NE(words.find("fluid left the domain and is out of the world (504 of 1 376)"), std::string::npos)
+      << words;
+  s.retired_particles = 55;
+  s.fluid_mass_end = 3.55;
+  EXPECT_NE(in_words(s).find("mug"), std::string::npos) << "4 %: it bounced";
+  s.walls_hold = false;
+  s.lost_particles = 55;
+  words = in_words(s);
+  EXPECT_NE(
+      words.find(
+          "55 of 1 376 fluid particles were lost: they left the domain, over its edge or through a wall"),
+      std::string::npos)
+      << words;
+}
+
+/// Kilogrammes are of the run; particles that left while it settled are none of it.
 TEST(Summary, WhatSettlingLostIsToldApart) {
   RunSummary s;
   s.fluid_particles = 1240;
   s.retired_particles = 1000;
+  s.lost_particles = 20;
   s.retired_settling = 840;
+  s.lost_settling = 15;
   s.fluid_mass_start = 0.4;
   s.fluid_mass_end = 0.24;
   s.particles_in_solids = 1;
   const std::string words = in_words(s);
-  EXPECT_NE(words.find("840 of 1 240 fluid particles were lost while the world settled"), std::string::npos)
-      << words;
-  EXPECT_NE(words.find("160 of 400 fluid particles were lost, 0.16 of 0.4 kg"), std::string::npos) << words;
+  for (const char* told :
+       {"825 of 1 240 fluid particles were spilled over the edge of the domain, while the world settled, "
+        "before the run",
+        "15 of 1 240 fluid particles were lost: not finite any more, while the world settled",
+        "155 of 400 fluid particles were spilled over the edge of the domain.",
+        "5 of 400 fluid particles were lost: not finite any more; with what was spilled, 0.16 of 0.4 kg"})
+    EXPECT_NE(words.find(told), std::string::npos) << told << " is not in: " << words;
   EXPECT_NE(words.find("1 fluid particle is inside a solid"), std::string::npos) << words;
   EXPECT_EQ(to_json(s)["particles"]["retired_settling"], 840);
+  EXPECT_EQ(to_json(s)["particles"]["spilled"], 980);
+  EXPECT_EQ(to_json(s)["particles"]["lost"], 20);
+  EXPECT_EQ(to_json(s)["particles"]["spilled_settling"], 825);
+  EXPECT_EQ(to_json(s)["particles"]["lost_settling"], 15);
   s.retired_particles = 840;
+  s.lost_particles = 15;
   s.fluid_mass_end = 0.4;
   EXPECT_EQ(in_words(s).find(" kg"), std::string::npos) << "the run itself lost nothing";
 }

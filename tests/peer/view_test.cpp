@@ -1,11 +1,13 @@
 // Camera, mouse hand and rates: no renderer needed.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "peer/hud/hud.h"
 #include "peer/hud/rates.h"
 #include "peer/view/frame_builder.h"
+#include "peer/view/held_rects.h"
 #include "peer/view/mouse_hand.h"
 #include "peer/view/orbit_camera.h"
 #include "peer/view/picture_scale.h"
@@ -32,6 +34,33 @@ TEST(OrbitCamera, StartsAsTheSceneSays) {
   const glm::vec3 middle = clip(orbit.view(1.5), camera().target);
   EXPECT_NEAR(middle.x, 0.0f, 1e-5f);
   EXPECT_NEAR(middle.y, 0.0f, 1e-5f);
+}
+
+/// Panels get their corners once: so what they keep clear of is the whole way of a script, not where it begins.
+TEST(HeldRects, AScriptsWholeWayIsKnownBeforeItBegins) {
+  Scene scene;
+  scene.camera = camera();
+  scene.meshes.resize(1);
+  scene.meshes[0].positions = {{-0.05f, -0.05f, -0.05f}, {0.05f, 0.05f, 0.05f}};
+  scene.bodies.resize(1);
+  scene.bodies[0].mesh = 0;
+  scene.grips.resize(1);
+  scene.grips[0].body = 0;
+  scene.grips[0].pose.position = {0.05, 0.0, 0.0};
+  scene.grips[0].hand_motion = {{0.0, {{-0.25, 0.1, 0.0}, {1, 0, 0, 0}}}, {2.0, {{0.35, 0.1, 0.0}, {1, 0, 0, 0}}}};
+  const View view = OrbitCamera(scene.camera).view(1.5);
+  Snapshot snapshot;
+  snapshot.rigid.bodies.resize(1);
+  snapshot.rigid.bodies[0].pose.position = {-0.3, 0.1, 0.0};
+  snapshot.rigid.grips.resize(1);
+  snapshot.rigid.grips[0].handle.position = {-0.25, 0.1, 0.0};
+  const HeldRects held(scene);
+  float right_now = 0.0f, right = 0.0f;
+  for (const Rect& rect : held.of(snapshot, view)) right_now = std::max(right_now, rect.high.x);
+  for (const Rect& rect : held.through_run(snapshot, view)) right = std::max(right, rect.high.x);
+  EXPECT_LT(right_now, 0.5f);
+  // Where the script ends the body is at 0.3, as far right of the middle as it begins to the left.
+  EXPECT_NEAR(right, 0.5 + 0.5 * clip(view, {0.35, 0.15, 0.05}).x, 1e-3);
 }
 
 TEST(OrbitCamera, TurningKeepsTheDistanceAndTheTarget) {

@@ -68,6 +68,63 @@ TEST_F(RendererTest, WorksOnAThreadOfItsOwn) {
   EXPECT_EQ(picture(*context_).rgba, here.rgba);  // this thread's context is still current here
 }
 
+/// Few pixels of picture under a HUD that has all of a window's: its letters are the same to the bit.
+TEST_F(RendererTest, AStretchedPicturesHudIsAsSharpAsTheWindow) {
+  const glm::ivec2 window(640, 480);
+  const auto hud = [] {
+    ImGui::SetNextWindowPos(ImVec2(20, 20));
+    ImGui::SetNextWindowSize(ImVec2(300, 100));
+    ImGui::SetNextWindowBgAlpha(1.0f);
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0.0f);
+    ImGui::Begin("rates", nullptr, ImGuiWindowFlags_NoDecoration);
+    ImGui::Text("1000 Hz, as sharp as the window");
+    ImGui::End();
+    ImGui::PopStyleVar();
+  };
+  const auto drawn = [&](glm::ivec2 picture) {
+    RenderOptions options = small();
+    options.width = picture.x;
+    options.height = picture.y;
+    auto renderer = make(options);
+    kit::DamBreak scene(*renderer, 500, picture.x, picture.y);
+    scene.frame.hud = hud;
+    renderer->stretch_to(window);
+    renderer->draw(scene.frame);
+    return renderer->read_back();
+  };
+  const Image whole = drawn(window);
+  const Image half = drawn(window / 2);
+  ASSERT_EQ(half.width, window.x);
+  ASSERT_EQ(half.height, window.y);
+  std::size_t letters = 0, outside = 0;
+  for (int y = 0; y < window.y; ++y) {
+    for (int x = 0; x < window.x; ++x) {
+      const std::size_t at = 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(window.x) +
+                                  static_cast<std::size_t>(x));
+      const bool in_panel = x >= 20 && x < 320 && y >= 20 && y < 120;
+      const bool same = std::equal(&whole.rgba[at], &whole.rgba[at] + 3, &half.rgba[at]);
+      if (in_panel) {
+        EXPECT_TRUE(same) << x << ", " << y;
+        letters += whole.rgba[at] > 200;
+      } else {
+        outside += !same;
+      }
+    }
+  }
+  EXPECT_GT(letters, 100u) << "white pixels";
+  EXPECT_GT(outside, 1000u) << "the picture itself has fewer pixels";
+}
+
+TEST_F(RendererTest, AFrameWithoutAHudIsStretchedToo) {
+  auto renderer = make(small());
+  renderer->stretch_to({3 * kWidth, 2 * kHeight});
+  renderer->draw(empty_frame(kWidth, kHeight));
+  EXPECT_EQ(renderer->read_back().width, 3 * kWidth);
+  renderer->stretch_to({0, 0});
+  renderer->draw(empty_frame(kWidth, kHeight));
+  EXPECT_EQ(renderer->read_back().width, kWidth);
+}
+
 TEST_F(RendererTest, ReadsBackThePictureItsSize) {
   auto renderer = make(small());
   for (const glm::ivec2 size : {glm::ivec2(kWidth, kHeight), glm::ivec2(33, 17), glm::ivec2(1, 1)}) {

@@ -109,7 +109,28 @@ TEST(SavedWorld, KeepsRetiredParticlesOutAndTheOrderOfTheOthers) {
     run(again, 120);
     EXPECT_EQ(again.hash(), whole.hash());
     EXPECT_EQ(again.diagnostics().retired, whole.diagnostics().retired);
+    EXPECT_EQ(again.diagnostics().lost, 1u);
+    EXPECT_EQ(again.diagnostics().spilled, whole.diagnostics().spilled);
   }
+}
+
+TEST(SavedWorld, OfTheVersionBeforeGoesOnToTheBit) {
+  const Tank tank = stirred_tank();
+  World whole = world_of(tank);
+  run(whole, 60);
+  Bytes bytes = saved(whole);
+  run(whole, 120);
+  // Without the count of lost particles, behind tick, status, gravity and age.
+  constexpr std::uint32_t kEarlier = 5;
+  constexpr std::ptrdiff_t kCount = 2 * 4 + 10 * 8 + 8 + 4 + 8 + 8;
+  std::memcpy(bytes.data() + 4, &kEarlier, 4);
+  bytes.erase(bytes.begin() + kCount, bytes.begin() + kCount + 8);
+  World again = world_of(tank);
+  const Result<bool> restored = again.restore(bytes);
+  ASSERT_TRUE(restored) << restored.error().text();
+  run(again, 120);
+  EXPECT_EQ(again.hash(), whole.hash());
+  EXPECT_EQ(again.diagnostics().lost, 0u);
 }
 
 TEST(SavedWorld, OfAProbeGoesOnToTheBit) {

@@ -274,10 +274,36 @@ TEST(World, ParticlesThatLeaveAreRetiredAndSaid) {
   world.step({});
   EXPECT_TRUE(world.take_status() & kStatusEscaped);
   EXPECT_EQ(world.diagnostics().retired, 2u);
+  EXPECT_EQ(world.diagnostics().spilled, 1u);
+  EXPECT_EQ(world.diagnostics().lost, 1u) << "what is not a number went over no edge";
   Snapshot snapshot;
   world.fill(snapshot);
   EXPECT_EQ(snapshot.fluid_index[0], 255);
   EXPECT_EQ(snapshot.fluid_index[2], 0);
+}
+
+TEST(World, SpilledAndLostAreCountedApartWhileItRuns) {
+  Tank tank = make_tank({});
+  tank.scene.domain_max.y = 0.14;
+  for (int i = 0; i < 20; ++i) tank.sampled.fluid_velocities[static_cast<std::size_t>(40 * i)] = {0.0f, 1e3f, 0.0f};
+  tank.sampled.fluid_velocities[7].x = std::numeric_limits<float>::infinity();
+  World world = world_of(tank);
+  for (int i = 0; i < 100; ++i) world.step({});
+  const Diagnostics fluid = world.diagnostics();
+  EXPECT_EQ(fluid.lost, 1u);
+  EXPECT_GT(fluid.spilled, 0u) << "over the low lid";
+  EXPECT_EQ(fluid.spilled + fluid.lost, fluid.retired);
+}
+
+// The published model's walls let fluid through: what left the domain may have passed one.
+TEST(World, WhereWallsDoNotHoldNothingCountsAsSpilled) {
+  Tank tank = make_tank({});
+  tank.scene.model = ParticleModel::kPaper;
+  tank.sampled.fluid_positions[0] = {100.0f, 0.0f, 0.0f};
+  World world = world_of(tank);
+  EXPECT_FALSE(world.plan().walls_hold());
+  EXPECT_EQ(world.diagnostics().spilled, 0u);
+  EXPECT_EQ(world.diagnostics().lost, 1u);
 }
 
 TEST(World, RunsOnNoneOneAndTwoParticles) {

@@ -238,6 +238,30 @@ class Threads(unittest.TestCase):
                      "w.hold(0, lambda t: (0, 0.07, 0)) or w.run(1e5)"):
             self.assertIn("interrupted at", self.interrupted(work), work)
 
+    def test_ctrl_c_ends_reading_a_file_too(self):
+        # A file that takes seconds to read: it is still read, on the thread that was left behind.
+        with tempfile.TemporaryDirectory() as folder:
+            file = os.path.join(folder, "heavy.glb")
+            builder = slosh.SceneBuilder()
+            builder.body("ball", slosh.sphere(0.1, rings=700, segments=700))
+            builder.write(file)
+            for call in ("load_scene", "check"):
+                program = (
+                    "import os, slosh\n"
+                    "threads = lambda: len(os.listdir('/proc/self/task'))\n"
+                    "before = threads()\n"
+                    "print('ready', flush=True)\n"
+                    f"try:\n    slosh.{call}({file!r})\n"
+                    "except KeyboardInterrupt:\n    print(threads() - before, 'left behind')\n"
+                )
+                child = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True)
+                self.assertEqual(child.stdout.readline(), "ready\n")
+                time.sleep(0.3)
+                child.send_signal(signal.SIGINT)
+                said, _ = child.communicate(timeout=120)
+                self.assertEqual(child.returncode, 0, call)
+                self.assertEqual(said, "1 left behind\n", call)
+
     def test_ctrl_c_while_a_pose_is_read_is_no_complaint_about_the_pose(self):
         class Interrupted:
             def __array__(self, *_, **__):
@@ -252,6 +276,64 @@ class Threads(unittest.TestCase):
             slosh.Keys((0, 1), ((0, 0, 0), (0, 0, 0)), Interrupted())
         w.hold(0, (0, 0.07, 0))
         w.step()
+
+
+class Resets(unittest.TestCase):
+    def test_a_world_that_was_reset_runs_again_to_the_bit(self):
+        w = world()
+        first = w.run(0.1)
+        at = w.hash
+        w.reset()
+        self.assertEqual(w.time, 0.0)
+        self.assertEqual(w.tick, 0)
+        again = w.run(0.1)
+        self.assertEqual(w.hash, at)
+        np.testing.assert_array_equal(first.wrenches, again.wrenches)
+
+    def test_what_was_set_stays_set(self):
+        w = world()
+        w.set_viscosity(0, 0.3)
+        w.gravity_scale = 0.5
+        w.step(10)
+        w.reset()
+        self.assertEqual((w.viscosity(0), w.gravity_scale, w.tick), (0.3, 0.5, 0))
+
+    def test_a_recording_goes_on_through_it(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = os.path.join(folder, "run.rec")
+            w = world()
+            w.record(file)
+            w.run(0.2)
+            w.reset()
+            w.run(0.1)
+            w.stop_recording()
+            self.assertTrue(slosh.replay(file).same)
+
+
+class Names(unittest.TestCase):
+    def test_a_misspelt_name_is_answered_with_the_nearest(self):
+        w = world()
+        name = w.scene.grips[0].name
+        with self.assertRaises(KeyError) as raised:
+            w.hold(name + "x", None)
+        self.assertIn(f"Did you mean {name}?", str(raised.exception))
+        with self.assertRaises(KeyError) as raised:
+            slosh.World(w.scene, hands={name[:-1] + "x": None})
+        self.assertIn(f"Did you mean {name}?", str(raised.exception))
+        with self.assertRaises(ValueError) as raised:
+            w.hold(name, "scirpt")
+        self.assertIn("Did you mean script?", str(raised.exception))
+        with self.assertRaises(slosh.Error) as raised:
+            slosh.load_scene("spoon", {"fluid.viscosty_pa_s": 2.0})
+        self.assertIn("Did you mean viscosity_pa_s?", str(raised.exception))
+        with self.assertRaises(slosh.Error) as raised:
+            slosh.load_scene("spoon", {"spon.friction": 0.5})
+        self.assertIn("Did you mean spoon?", str(raised.exception))
+        builder = slosh.SceneBuilder()
+        builder.body("bowl", slosh.box((0, 0, 0), (0.1, 0.1, 0.1)), motion="free", mass_kg=1.0)
+        with self.assertRaises(KeyError) as raised:
+            builder.grip("rim", on="bowll")
+        self.assertIn("Did you mean bowl?", str(raised.exception))
 
 
 class Recordings(unittest.TestCase):
