@@ -35,7 +35,8 @@ constexpr double kSlipRise = 0.15;
 /// pull against one another. A weight that shifts is carried in the end.
 constexpr double kHoldForce = 2.0;    ///< N
 constexpr double kHoldTorque = 0.1;   ///< N·m
-constexpr double kHoldDoubles = 1.0;  ///< s, simulated
+/// s, simulated. Two who come back to a beam that tilts pull against one another until their distances are given up.
+constexpr double kHoldDoubles = 1.3;  ///< s, simulated
 /// A hand that is silent while another of the body is heard gives way: it goes on giving what it gave when it was last
 /// heard, and so much more at most.
 constexpr double kYieldForce = 2.0;   ///< N
