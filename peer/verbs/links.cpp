@@ -96,8 +96,8 @@ void add_links(CLI::App& app, VerbRun& chosen) {
     chosen = [o] {
       std::string line = "link";
       if (!o->name.empty()) line += " " + in_quotes(o->name);
-      const std::string role = o->watch ? "watch" : o->role;
-      if (role != "hold") line += " " + role;
+      const std::string wanted = o->watch ? "watch" : o->role;
+      if (wanted != "hold") line += " " + wanted;
       if (!o->expires.empty() && o->expires != "never") line += " for " + o->expires;
       return ask(*o, line);
     };
