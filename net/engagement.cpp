@@ -61,6 +61,11 @@ double Engagement::slip_pace() const {
   return std::clamp((last_ - since_) / kSlipRise, 0.0, 1.0);
 }
 
+/// Nothing is to be given up any more: it holds as the hand does.
+bool Engagement::firm() const {
+  return quiet_ || (offset_ == glm::dvec3(0.0) && turn_ == kAligned && slip_pace() >= 1.0);
+}
+
 double Engagement::pace() const {
   return std::clamp((last_ - since_) / kLetInRise, 0.0, 1.0);
 }
@@ -239,7 +244,7 @@ void Engagement::bound_pull(Work& work, const Twist& hand) {
   const auto slip = [&](double& share, double whole, double stiffness, double damping, const glm::dvec3& grip_velocity,
                         const glm::dvec3& began, double most, Slipping& law, const Slipping& before,
                         const glm::dvec3& let_in, const glm::dvec3& still) {
-    if (company_ == Company::kSilent || (company_ == Company::kShared && !quiet_))
+    if (company_ == Company::kSilent || (company_ == Company::kShared && !firm()))
       law.bound(stiffness, damping, grip_velocity, began, most);
     const double ease = std::min(share / kHoldEases, 1.0);
     const double free = ease * ease * (3.0 - 2.0 * ease);

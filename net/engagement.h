@@ -35,8 +35,7 @@ constexpr double kSlipRise = 0.15;
 /// pull against one another. A weight that shifts is carried in the end.
 constexpr double kHoldForce = 2.0;    ///< N
 constexpr double kHoldTorque = 0.1;   ///< N·m
-/// s, simulated. Two who come back to a beam that tilts pull against one another until their distances are given up.
-constexpr double kHoldDoubles = 1.3;  ///< s, simulated
+constexpr double kHoldDoubles = 1.0;  ///< s, simulated
 /// A hand that is silent while another of the body is heard gives way: it goes on giving what it gave when it was last
 /// heard, and so much more at most.
 constexpr double kYieldForce = 2.0;   ///< N
@@ -115,6 +114,7 @@ class Engagement {
   void bound_pull(Work& work, const Twist& hand);
   Held settle(const Work& work, const Pose& hand, const Twist& twist);
   Pose place(const Pose& hand) const;
+  bool firm() const;
   double allowance() const;          // J that may be given in all ...
   double turning_allowance() const;  // ... by forces, and by torques
   double most_pull() const;  // N and
