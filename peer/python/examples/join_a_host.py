@@ -39,7 +39,8 @@ def visit(link_file: str) -> None:
         grip = remote.held[0] if remote.held else remote.scene.grips[0].name
         print(f"joined '{remote.scene.name}' as {remote.name}, holding {remote.held}, at {1e3 * remote.spacing:.0f} mm")
         weight = sum(body.mass for body in remote.scene.bodies if body.free) * 9.81
-        while remote.time < 0.5 or not remote.held:  # the first hand that takes hold starts the world
+        # The first hand that takes hold starts the world; over 2 s it gets all of the weight, as nobody holds the rest.
+        while remote.time < 3.0 or not remote.held:
             remote.wait(0.05)
         start = remote.handle(grip)
         x, y, z = start.position

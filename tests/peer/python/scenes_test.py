@@ -114,7 +114,7 @@ class Building(unittest.TestCase):
         self.assertAlmostEqual(scene.grips[0].hand.at(1.0).position[0], 0.01, delta=1e-6)
 
     def test_what_is_wrong_is_said_as_for_a_file(self):
-        for fields, word in [({"density_kg_m3": -1.0}, "density_kg_m3"), ({"frobnication": 1.0}, "frobnication")]:
+        for fields, word in [({"density_kg_m3": -1.0}, "density_kg_m3"), ({"desnity_kg_m3": 1.0}, "desnity_kg_m3")]:
             builder, water = self.tank()
             builder.fluid("oil", water.moved((5, 0, 0)), **fields)
             with self.assertRaises(slosh.Error) as raised:
