@@ -128,6 +128,27 @@ glm::dvec3 to_glm(const OpenMesh::Vec3d& v) {
   return {v[0], v[1], v[2]};
 }
 
+/// The triangles of a part, as OpenMesh walks them where it can: it has no edge of more than two faces.
+std::vector<std::array<glm::dvec3, 3>> faces_of(const WeldedMesh& mesh, const Components& components,
+                                                int component) {
+  std::vector<std::array<glm::dvec3, 3>> faces;
+  if (components.touching) {
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      if (component >= 0 && components.of_triangle[t] != component) continue;
+      const glm::uvec3& c = mesh.triangles[t];
+      faces.push_back({mesh.points[c.x], mesh.points[c.y], mesh.points[c.z]});
+    }
+    return faces;
+  }
+  const VolumeMesh surface = to_open_mesh(mesh, components, component);
+  for (const auto face : surface.faces()) {
+    std::size_t i = 0;
+    faces.emplace_back();
+    for (const auto vertex : surface.fv_range(face)) faces.back()[i++] = to_glm(surface.point(vertex));
+  }
+  return faces;
+}
+
 }  // namespace
 
 Defects find_defects(const WeldedMesh& mesh, Components* components) {
@@ -213,7 +234,10 @@ VolumeIntegrals integrate_volume(const WeldedMesh& mesh, const Components& compo
   const glm::dvec3 reference = mesh.points[0];  // near the mesh, so that little cancels
   glm::dvec3 first(0.0);
   glm::dmat3 second(0.0);
-  const auto add = [&](const std::array<glm::dvec3, 3>& corner) {
+  for (const auto& face : faces_of(mesh, components, component)) {
+    glm::dvec3 corner[3];
+    int i = 0;
+    for (const glm::dvec3& point : face) corner[i++] = point - reference;
     // The tetrahedron from the reference to the face: V = a·(b×c)/6, ∫x = V(a+b+c)/4,
     // ∫xxᵀ = V/20 (aaᵀ + bbᵀ + ccᵀ + ssᵀ) with s = a + b + c.
     const double v = glm::dot(corner[0], glm::cross(corner[1], corner[2])) / 6.0;
@@ -223,22 +247,6 @@ VolumeIntegrals integrate_volume(const WeldedMesh& mesh, const Components& compo
     glm::dmat3 outer = glm::outerProduct(s, s);
     for (const glm::dvec3& c : corner) outer += glm::outerProduct(c, c);
     second += v / 20.0 * outer;
-  };
-  if (components.touching) {  // OpenMesh has no edge of more than two faces
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-      if (component >= 0 && components.of_triangle[t] != component) continue;
-      const glm::uvec3& c = mesh.triangles[t];
-      add({mesh.points[c.x] - reference, mesh.points[c.y] - reference, mesh.points[c.z] - reference});
-    }
-  } else {
-    const VolumeMesh surface = to_open_mesh(mesh, components, component);
-    for (const auto face : surface.faces()) {
-      std::array<glm::dvec3, 3> corner{};
-      std::size_t i = 0;
-      for (const auto vertex : surface.fv_range(face))
-        corner[i++] = to_glm(surface.point(vertex)) - reference;
-      add(corner);
-    }
   }
   if (sums.volume == 0.0) return sums;
   const glm::dvec3 center = first / sums.volume;
