@@ -62,9 +62,9 @@ struct MaterialMaps {
 /// How a surface looks (linear sRGB primaries, glTF metallic-roughness).
 struct Material {
   glm::vec3 base_color{0.7f};
-  float metallic = 0.0f;   ///< 0–1
-  float roughness = 0.6f;  ///< 0–1
-  float opacity = 1.0f;    ///< 1 opaque; below 1 drawn blended (a glass)
+  float metallic = 0.0f;      ///< 0–1
+  float roughness = 0.6f;     ///< 0–1
+  float opacity = 1.0f;       ///< 1 opaque; below 1 drawn blended (a glass)
   glm::vec3 emissive{0.0f};   ///< 0–100, scene-linear: light that it gives off
   float alpha_cutoff = 0.0f;  ///< 0–1: where the base colour map's alpha is below it there is nothing
   MaterialMaps maps{};
@@ -126,11 +126,11 @@ inline const char* name(ParticleModel model) {
   return kParticleModelNames[static_cast<std::size_t>(model)];
 }
 
-/// A body's viscosity where it is that of whatever fluid touches it, so that Eq 9's mean is the fluid's own and the
-/// fluid sticks to the body.
+/// A body's viscosity where it is that of whatever fluid touches it, so that Eq 9's mean is the fluid's own
+/// and the fluid sticks to the body.
 inline constexpr double kFluidsViscosity = -1.0;
-/// A body's viscosity where nothing drags at it: fluid slides along it freely, in every model. (0 is one side of
-/// Eq 9's mean, and halves the shear.)
+/// A body's viscosity where nothing drags at it: fluid slides along it freely, in every model. (0 is one side
+/// of Eq 9's mean, and halves the shear.)
 inline constexpr double kFreeSlip = -2.0;
 
 enum class BodyMotion : std::uint8_t { kFixed, kFree };
@@ -149,9 +149,9 @@ struct Body {
       0.0;  ///< kg/m³: the constant density of its particles (section 4.1); 0 = chosen by the plan
   double dynamic_viscosity =
       0.0;  ///< Pa·s, >= 0: its side of Eq 9's (μᵢ + μⱼ)/2; or kFluidsViscosity, or kFreeSlip
-  double friction = 0.4;           ///< Coulomb, with the smaller of two touching bodies' values used
-  double restitution = 0.0;        ///< 0–1
-  bool measured = false;           ///< report the fluid's wrench on it even though it is fixed
+  double friction = 0.4;     ///< Coulomb, with the smaller of two touching bodies' values used
+  double restitution = 0.0;  ///< 0–1
+  bool measured = false;     ///< report the fluid's wrench on it even though it is fixed
   Material material;
 };
 
@@ -166,7 +166,7 @@ struct Picture {
 /// A point at which the fluid's level is read.
 struct Gauge {
   std::string name;
-  int body = -1;              ///< index into Scene::bodies: it moves with that; −1 = it stands still
+  int body = -1;             ///< index into Scene::bodies: it moves with that; −1 = it stands still
   glm::dvec3 position{0.0};  ///< m, in the body's mesh frame, else world
 };
 
@@ -214,7 +214,7 @@ struct Scene {
   std::vector<Body> bodies;
   std::vector<Picture> pictures;
   std::vector<Grip> grips;
-  std::vector<Gauge> gauges;    ///< these two change nothing that moves
+  std::vector<Gauge> gauges;  ///< these two change nothing that moves
   std::vector<Region> regions;
   Camera camera;
   glm::vec3 light_direction{-0.4f, -1.0f, -0.35f};  ///< the way the light travels
@@ -225,11 +225,14 @@ struct Scene {
   double spacing_max = 0.02;            ///< m; below the thinnest wall
   double support_ratio = 2.0;           ///< support radius (W = 0, the paper's h) over spacing, 1.5–2.6
   ParticleModel model = ParticleModel::kCorrected;
-  double stiffness = 0.0;      ///< Eq 7's k = c², m²/s²; 0 = chosen by the plan from depth and gravity
-  double tension = 0.0;        ///< share of Eq 7's negative pressure that is kept, 0–1 (sim/pressure/README.md)
-  double duration = 10.0;      ///< s, of the scripted motion
-  double settle =
-      0.0;  ///< s of damped rest before the run (World::settle), 0–60; 0 = it starts as it is here
+  double stiffness = 0.0;  ///< Eq 7's k = c², m²/s²; 0 = chosen by the plan from depth and gravity
+  double tension = 0.0;    ///< share of Eq 7's negative pressure that is kept, 0–1 (sim/pressure/README.md)
+  double duration = 10.0;  ///< s, of the scripted motion
+  /// s of damped rest before the run (World::settle), 0–60; 0 = it starts as it is here.
+  double settle = 0.0;
+  /// s: above `settle` it goes on at most so long, until what hands feel is steady. Not sent: peers settle
+  /// nothing.
+  double settle_longest = 0.0;
   glm::dvec3 domain_min{0.0};  ///< m; particles that leave the domain are retired
   glm::dvec3 domain_max{0.0};
 };

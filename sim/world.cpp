@@ -9,6 +9,7 @@
 
 #include "sim/hash.h"
 #include "sim/shell.h"
+#include "sim/steadiness.h"
 #include "sim/step_limits.h"
 #include "sim/stopwatch.h"
 #include "sim/world_parts.h"
@@ -43,23 +44,29 @@ void World::step(std::span<const HandleInput> handles) {
   ++w.tick;
 }
 
-void World::settle(double seconds, std::span<const HandleInput> handles, bool (*stopped)()) {
+double World::settle(double seconds, std::span<const HandleInput> handles, bool (*stopped)(),
+                     double longest) {
   // Where fluid comes to rest does not hang on its viscosity, only when.
   const std::vector<Fluid> fluids = impl_->scene.fluids;
   const bool thick = impl_->thin_fluids(kSettlesAs);
-  impl_->come_to_rest(seconds, handles, stopped);
-  if (!thick) return;
+  const double done = impl_->come_to_rest(seconds, handles, stopped, longest);
+  if (!thick) return done;
   impl_->scene.fluids = fluids;
   impl_->take_parameters();
+  return done;
 }
 
-void World::Impl::come_to_rest(double seconds, std::span<const HandleInput> handles, bool (*stopped)()) {
+double World::Impl::come_to_rest(double seconds, std::span<const HandleInput> handles, bool (*stopped)(),
+                                 double longest) {
   Impl& w = *this;
   constexpr double kDampingTime =
       0.05;  // s: past critical for a hand-sized vessel's slosh, so it creeps to its level
   const double keep = std::exp(-w.sub_step(0).dt / kDampingTime);
-  for (double done = 0.0; done < seconds; done += w.plan().time_step) {
-    if (stopped && stopped()) return;
+  Steadiness felt;
+  double done = 0.0;
+  for (; done < seconds || (done < longest && !handles.empty() && !felt.steady());
+       done += w.plan().time_step) {
+    if (stopped && stopped()) return done;
     const bool with_bodies = !handles.empty() && done >= 0.5 * seconds;
     w.begin_step();
     if (with_bodies) w.status |= w.bodies.begin_step(handles, w.plan().time_step);
@@ -70,7 +77,9 @@ void World::Impl::come_to_rest(double seconds, std::span<const HandleInput> hand
       w.engine->damp(static_cast<float>(keep));
       if (with_bodies) w.bodies.damp_held(keep);
     }
+    if (with_bodies) felt.feel(w.bodies.grips(), w.plan().time_step);
   }
+  return done;
 }
 
 const Plan& World::plan() const {
@@ -100,8 +109,11 @@ void World::fill(BodySnapshot& out) const {
   out.bodies.resize(bodies.size());
   for (std::size_t b = 0; b < out.bodies.size(); ++b) {
     const RigidBody& body = bodies[b];
-    out.bodies[b] = {
-        body.mesh_pose(), {body.velocity, body.angular_velocity}, body.position, impl_->wrenches[b], body.gone};
+    out.bodies[b] = {body.mesh_pose(),
+                     {body.velocity, body.angular_velocity},
+                     body.position,
+                     impl_->wrenches[b],
+                     body.gone};
   }
   out.grips = impl_->bodies.grips();
   for (std::size_t g = 0; g < out.grips.size(); ++g) {
@@ -205,7 +217,7 @@ Result<bool> World::restore(std::span<const std::uint8_t> saved) {
   w.take_parameters();
   w.wrenches = std::move(state.wrenches);
   w.bodies.restore(std::move(state.bodies), std::move(state.grips), std::move(state.last_input),
-                   std::move(state.grip_stiffness),                   std::move(state.impulses));
+                   std::move(state.grip_stiffness), std::move(state.impulses));
   w.engine->restore(state.particles, state.walls);
   std::fill(w.found.begin(), w.found.end(), Wrench{});
   std::fill(w.drag_matrices.begin(), w.drag_matrices.end(), Matrix6{});

@@ -42,8 +42,8 @@ struct StepTimes {
 struct WorldOptions {
   int threads = 0;  ///< of the CPU backend; 0 = all cores
   Backend backend = Backend::kAuto;
-  /// The fluid lies as an earlier world's came to rest, not in the lattice that volumes are filled with: it has
-  /// expanded already (pressure/settled_packing.h). As a lattice it would sag and bounce for 0.2 s.
+  /// The fluid lies as an earlier world's came to rest, not in the lattice that volumes are filled with: it
+  /// has expanded already (pressure/settled_packing.h). As a lattice it would sag and bounce for 0.2 s.
   bool settled = false;
 };
 
@@ -52,22 +52,22 @@ struct Diagnostics {
   std::uint64_t particles = 0;  ///< still in the world
   std::uint64_t retired = 0;    ///< out of the world since the start: spilled and lost
   std::uint64_t spilled = 0;    ///< left the domain over its edge
-  std::uint64_t lost = 0;  ///< not finite; where walls do not hold (Plan::walls_hold) all that left the domain too:
-                           ///< it may have gone through one
-  double mass = 0.0;             ///< kg
-  glm::dvec3 momentum{0.0};      ///< kg·m/s
-  glm::dvec3 center{0.0};        ///< m, centre of mass
-  double kinetic_energy = 0.0;   ///< J
-  double max_speed = 0.0;        ///< m/s
-  double max_compression = 0.0;  ///< largest ρ/ρ⁰ − 1
-  std::uint64_t guarded = 0;     ///< how often particles were kept from passing a wall, since the start
+  std::uint64_t lost = 0;       ///< not finite; where walls do not hold (Plan::walls_hold) all that left the
+                           ///< domain too: it may have gone through one
+  double mass = 0.0;                ///< kg
+  glm::dvec3 momentum{0.0};         ///< kg·m/s
+  glm::dvec3 center{0.0};           ///< m, centre of mass
+  double kinetic_energy = 0.0;      ///< J
+  double max_speed = 0.0;           ///< m/s
+  double max_compression = 0.0;     ///< largest ρ/ρ⁰ − 1
+  std::uint64_t guarded = 0;        ///< how often particles were kept from passing a wall, since the start
   glm::dvec3 guarded_impulse{0.0};  ///< kg·m/s, what that took from the fluid in the last step and bodies get
                                     ///< in the next
 };
 
 /// Pa·s (World::settle). Half a second after it was let go from its lattice, half a spacing off every wall,
-/// fluid of 50, 200 and 1000 Pa·s had not closed that gap around a ball of 1.5 spacings, and a hand that turned
-/// the ball felt 4, 20 and 31 % too little.
+/// fluid of 50, 200 and 1000 Pa·s had not closed that gap around a ball of 1.5 spacings, and a hand that
+/// turned the ball felt 4, 20 and 31 % too little.
 inline constexpr double kSettlesAs = 5.0;
 
 /// The simulated world. One thread calls it; it uses `threads` cores inside. The same inputs give the same
@@ -90,8 +90,10 @@ class World {
   /// body moves. Neither time() nor tick() advances. What the fluid starts with, a velocity, a head, an
   /// unstable layering, is lost. 0 does nothing. `stopped` is asked each step: where it says true the world
   /// is left as it is by then, for who ends anyway. Fluid thicker than kSettlesAs settles as if it had that:
-  /// it finds the same place sooner.
-  void settle(double seconds, std::span<const HandleInput> handles = {}, bool (*stopped)() = nullptr);
+  /// it finds the same place sooner. With a `longest` above `seconds` it goes on until what hands feel is
+  /// steady (Steadiness), at most to `longest`. Returns how long it took, s.
+  double settle(double seconds, std::span<const HandleInput> handles = {}, bool (*stopped)() = nullptr,
+                double longest = 0.0);
 
   const Plan& plan() const;
   double time() const;  ///< s
@@ -129,9 +131,10 @@ class World {
   Result<bool> set_viscosity(std::size_t fluid, double pascal_seconds);
   /// Times the scene's gravity, 0 to kMostGravityScale. Errors as above.
   Result<bool> set_gravity_scale(double scale);
-  /// Springs of a grip's coupling, straight and turning, times the scene's: kLeastGripStiffness to kMostGripStiffness. The
-  /// dampers stay. It is gone over to from the next step on, by kGripStiffnessPace, so that what hangs there is not thrown.
-  /// Errors: no such grip, beyond these, or a spring of more than a scene may have (10⁶ N/m, 10⁴ N·m/rad).
+  /// Springs of a grip's coupling, straight and turning, times the scene's: kLeastGripStiffness to
+  /// kMostGripStiffness. The dampers stay. It is gone over to from the next step on, by kGripStiffnessPace,
+  /// so that what hangs there is not thrown. Errors: no such grip, beyond these, or a spring of more than a
+  /// scene may have (10⁶ N/m, 10⁴ N·m/rad).
   Result<bool> set_grip_stiffness(std::size_t grip, double scale);
   /// As it was set, one a grip.
   std::span<const double> grip_stiffness() const;
@@ -160,7 +163,8 @@ class World {
   std::unique_ptr<Impl> impl_;
 };
 
-/// A world on the backend that `options` names. Errors: no GPU, or too little memory, for kCuda; an endless plan.
+/// A world on the backend that `options` names. Errors: no GPU, or too little memory, for kCuda; an endless
+/// plan.
 Result<World> make_world(const Scene& scene, const SampledScene& sampled, Plan plan,
                          WorldOptions options = {});
 

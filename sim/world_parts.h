@@ -27,7 +27,8 @@ struct World::Impl {
   /// No fluid is thicker than `most`, Pa·s, from now on; whether one was.
   bool thin_fluids(double most);
   /// World::settle, with fluids as they are.
-  void come_to_rest(double seconds, std::span<const HandleInput> handles, bool (*stopped)());
+  double come_to_rest(double seconds, std::span<const HandleInput> handles, bool (*stopped)(),
+                      double longest);
   /// The fluid's age, and what it presses by at it.
   void grow_older(double dt);
   SubStep sub_step(int index) const;
@@ -55,9 +56,9 @@ struct World::Impl {
   std::vector<BodyDrag> drags;   // with kBodyDrag, one a body
   std::vector<Matrix6> drag_matrices;
   std::vector<ViscousBody> viscous_bodies;  // with kImplicitDrag, one a body
-  std::vector<Wrench> wrenches;  // their means over the last step
-  std::size_t fluid_count = 0;   // without probes
-  std::vector<std::uint8_t> fluid_of;  // index into scene.fluids, by id
+  std::vector<Wrench> wrenches;             // their means over the last step
+  std::size_t fluid_count = 0;              // without probes
+  std::vector<std::uint8_t> fluid_of;       // index into scene.fluids, by id
   std::size_t boundary_count = 0;
   std::uint32_t status = 0;  // of bodies and inputs; the engine has its own
   std::uint64_t tick = 0;

@@ -24,6 +24,7 @@ struct Settling {
   Progress* progress = nullptr;
   double steps = 1.0, done = 0.0;
   std::int64_t tell_from_ns = 0, until_ns = 0;
+  bool cut_short = false;
 };
 Settling settling;
 
@@ -33,7 +34,8 @@ bool settled_enough() {
     settling.progress->update(settling.done / settling.steps,
                               "the scene settles, then its hands are watched (--static leaves that out)");
   settling.done += 1.0;
-  return now_ns > settling.until_ns;
+  settling.cut_short = now_ns > settling.until_ns;
+  return settling.cut_short;
 }
 
 std::vector<HandleInput> still_hands(const Scene& scene) {
@@ -109,7 +111,6 @@ struct Trace {
 Result<CheckRun> run_for_check(const Scene& scene, const SampledScene& sampled, const Plan& plan,
                                Progress& progress) {
   CheckRun run;
-  run.wanted = scene.settle;
   const std::int64_t begin_ns = steady_now_ns();
   Result<World> made = make_world(scene, sampled, plan, WorldOptions{0, Backend::kCpu});
   if (!made) return made.error();
@@ -122,10 +123,14 @@ Result<CheckRun> run_for_check(const Scene& scene, const SampledScene& sampled, 
   const double watch_cost = cost * std::ceil(kWatched / step);
   if (watch_cost > 0.5 * kCheckBudget) return run;
   constexpr double kQuiet = 1.5;  // s: what is shorter needs no words
-  settling = {&progress, std::max(1.0, scene.settle / step), 0.0, begin_ns + to_nanoseconds(kQuiet),
-              begin_ns + to_nanoseconds(kCheckBudget - watch_cost)};
-  world.settle(scene.settle, hands, settled_enough);
-  run.settled = std::min(scene.settle, settling.done * step);
+  settling = {&progress,
+              std::max(1.0, scene.settle / step),
+              0.0,
+              begin_ns + to_nanoseconds(kQuiet),
+              begin_ns + to_nanoseconds(kCheckBudget - watch_cost),
+              false};
+  run.settled = world.settle(scene.settle, hands, settled_enough, scene.settle_longest);
+  run.cut_short = settling.cut_short;
   run.settling = world.diagnostics().retired;
   std::vector<Trace> traces(scene.grips.size());
   BodySnapshot now;
@@ -157,9 +162,8 @@ std::string rest_in_words(const CheckRun& run) {
   if (run.watched <= 0.0)
     return "not tried: it would take longer than the " + format("%.0f s", kCheckBudget) +
            " that check has for it";
-  std::string text = run.settled < run.wanted ? format("settled %.2g of %.2g s in the time that check has; ",
-                                                       run.settled, run.wanted)
-                                              : "";
+  std::string text =
+      run.cut_short ? format("settled only %.2g s in the time that check has; ", run.settled) : "";
   for (const CheckRun::Felt& hand : run.hands)
     text += hand.grip + format(" feels %.3g N, within %.2g; ", hand.force, hand.swing);
   text += format("%.3g %% of the fluid stays",
@@ -212,20 +216,18 @@ void judge_run(const Scene& scene, const CheckRun& run, double spacing, Inspecti
   const auto thrown = [](const Body& body) {
     return body.twist.linear != glm::dvec3(0.0) || body.twist.angular != glm::dvec3(0.0);
   };
-  // What had no time to settle here has it in a run.
-  const bool cut_short = run.settled < 0.95 * run.wanted;
   const bool starts_moving = std::ranges::any_of(scene.bodies, thrown) ||
                              std::ranges::any_of(scene.fluid_volumes, [](const FluidVolume& volume) {
                                return volume.velocity != glm::dvec3(0.0);
                              });
   for (const CheckRun::Felt& hand : run.hands) {
-    if (hand.steady() || starts_moving || cut_short) continue;
+    // What had no time to settle here has it in a run.
+    if (hand.steady() || starts_moving || run.cut_short) continue;
     warn("restless", ": node '" + hand.grip + "'",
          format("does not start at rest: the hand feels %.3g N, give or take %.2g", hand.force, hand.swing),
-         run.wanted > 0.0
-             ? format("Give the scene settle_s = %.2g", 2.0 * run.wanted)
-             : std::string(
-                   "Leave the scene's settle_s out, or give it 1 s: the world comes to rest before the run"));
+         run.settled > 0.0
+             ? format("Give the scene settle_s = %.2g", std::min(2.0 * run.settled, 60.0))
+             : std::string("Leave the scene's settle_s out: the world comes to rest before the run"));
   }
 }
 

@@ -20,8 +20,8 @@ constexpr double kWatched = 0.4;
 constexpr double kSteadyShare = 0.02;
 
 struct CheckRun {
-  double wanted = 0.0;       ///< simulated s of settling that the scene asks for
-  double settled = 0.0;      ///< of these, what the budget had room for
+  double settled = 0.0;      ///< simulated s of settling ...
+  bool cut_short = false;    ///< ... which the budget ended
   double watched = 0.0;      ///< simulated s after it; 0: there was no room
   std::size_t fluid = 0;     ///< particles at the start
   std::size_t settling = 0;  ///< of these left the domain while it settled ...

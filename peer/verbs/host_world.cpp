@@ -32,7 +32,7 @@ Result<HostedWorld> start_anew(const HostVerbOptions& options, Progress& progres
       *hosted.world, hands, {p.scene.settle, std::numeric_limits<double>::infinity(), true, options.agreed},
       progress);
   if (!agreed) return agreed.error();
-  hosted.world->settle(p.scene.settle, hands);
+  hosted.world->settle(p.scene.settle, hands, nullptr, p.scene.settle_longest);
   if (const std::optional<Error> nothing = all_left(*hosted.world, p.scene)) return *nothing;
   const Result<bool> saved = hosted.world->save(hosted.start);
   if (!saved) return saved.error();

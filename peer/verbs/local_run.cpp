@@ -59,7 +59,7 @@ Result<std::unique_ptr<LocalRun>> LocalRun::create(const Prepared& prepared, Dev
   }
   // Where a run begins again the first signal is not to wait for this.
   const auto stopped = [] { return interrupted_by() != 0; };
-  world.settle(scene.settle, hands, stopped);
+  world.settle(scene.settle, hands, stopped, scene.settle_longest);
   if (const std::optional<Error> nothing = all_left(world, scene)) return *nothing;
   if (snapshot_rate > 0.0) {
     // A GPU that also draws reads them where they are; the picture's side says where it does not.
@@ -192,7 +192,8 @@ void LocalRun::change(const LiveWish& wish) {
 std::string LocalRun::hear(const std::string& line) {
   const HostState state = switches_.state();
   const PeerLine heard = own_world_line(
-      line, {state.paused, state.run, state.gravity_scale, state.viscosities, state.grip_stiffness}, host_->progress().time, prepared_.scene);
+      line, {state.paused, state.run, state.gravity_scale, state.viscosities, state.grip_stiffness},
+      host_->progress().time, prepared_.scene);
   for (const RemoteCommand& command : heard.commands) carry_out(command);
   if (heard.quit) request_stop();
   return heard.text;

@@ -5,6 +5,7 @@
 
 #include "scenes/gltf/animation.h"
 #include "scenes/reading/reading.h"
+#include "sim/math/limits.h"
 
 namespace slosh::reading {
 namespace {
@@ -140,6 +141,14 @@ Problem read_hand(Reading& reading, int node) {
     return Error{document.owner(node),
                  "starts " + gltf::short_number(1000.0 * apart) + " mm from its grip '" + name + "'",
                  "Put the hand where the grip is at time 0 (at most 50 mm off)"};
+  }
+  for (const PoseKey& key : motion.value()) {
+    if (glm::length(key.pose.position) <= kFarthestHandle) continue;
+    return Error{document.owner(node),
+                 "is " + gltf::short_number(glm::length(key.pose.position)) +
+                     " m from the scene's origin at " + gltf::short_number(key.time) +
+                     " s: no hand is farther than " + gltf::short_number(kFarthestHandle) + " m",
+                 "Mend the key; sizes are in metres"};
   }
   grip->hand_motion = std::move(motion.value());
   note_late_keys(reading, node, grip->hand_motion);

@@ -13,6 +13,7 @@ constexpr std::size_t kMostProblems = 100;
 
 /// s, where nothing is said: what the shipped scenes take.
 constexpr double kUsualSettle = 1.0;
+constexpr double kLongestSettle = 4.0;  // s, where what hands feel is not steady before
 
 using ReadNode = Problem (*)(Reading&, int);
 
@@ -33,7 +34,7 @@ Problem settle_as_usual(Reading& reading) {
     return body.twist.linear != glm::dvec3(0.0) || body.twist.angular != glm::dvec3(0.0);
   };
   if (std::ranges::none_of(scene.fluid_volumes, moves) && std::ranges::none_of(scene.bodies, thrown))
-    scene.settle = kUsualSettle;
+    scene.settle = kUsualSettle, scene.settle_longest = kLongestSettle;
   return std::nullopt;
 }
 

@@ -287,6 +287,25 @@ void trim(Filling& filling, const mesh::MeshTree& volume, std::size_t excess) {
   }
 }
 
+/// Why a volume holds not one particle. `in_others`: m³ that earlier fluids have.
+Error no_particle(const std::string& where, const TriangleMesh& mesh, double volume, double in_others,
+                  double spacing) {
+  using gltf::short_number;
+  const std::string what = "holds no particle at a spacing of " + short_number(1000.0 * spacing) + " mm: ";
+  if (in_others > 0.5 * volume)
+    return {where, what + "another fluid is where it would be",
+            "Move one of the two fluids' meshes out of the other"};
+  // Of a flat box twice its volume over its surface is its thickness.
+  const double thick = 2.0 * volume / std::max(mesh::surface_area(mesh), 1e-12);
+  if (thick < spacing)
+    return {where,
+            what + "it is about " + short_number(1000.0 * thick) + " mm thick, thinner than a particle",
+            "Make the fluid's mesh thicker, or the scene's spacing_max_m smaller (here --spacing " +
+                short_number(0.25 * thick) + ")"};
+  return {where, what + "bodies leave no room for it",
+          "Make the fluid's mesh larger, or the scene's spacing_max_m smaller"};
+}
+
 }  // namespace
 
 std::optional<Error> fill_fluids(const Scene& scene, SampledScene& sampled, SampleReport* report) {
@@ -360,10 +379,7 @@ std::optional<Error> fill_fluids(const Scene& scene, SampledScene& sampled, Samp
     filled.sampled = cell * static_cast<double>(filling.nodes.size());
     if (report) report->volumes.push_back(filled);
     const std::vector<glm::vec3>& kept = filling.positions;
-    if (kept.empty()) {
-      return Error{where, "holds no particle at a spacing of " + short_number(1000.0 * spacing) + " mm",
-                   "Make the fluid's mesh larger, or the scene's spacing_max_m smaller"};
-    }
+    if (kept.empty()) return no_particle(where, mesh, filled.mesh, filled.in_others, spacing);
     sampled.fluid_positions.insert(sampled.fluid_positions.end(), kept.begin(), kept.end());
     sampled.fluid_velocities.resize(sampled.fluid_positions.size(), glm::vec3(volume.velocity));
     sampled.fluid_index.resize(sampled.fluid_positions.size(), static_cast<std::uint8_t>(volume.fluid));

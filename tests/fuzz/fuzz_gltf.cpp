@@ -66,10 +66,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return 0;
   }
   const Result<wire::Bytes> package = pack_scene(scene.value(), 0.01, SceneParts::kAll);
-  if (!package) {  // beyond the limits of what is sent: the host says so before it begins
-    test::must(!package.error().what.empty() && !package.error().mend.empty(), "a refusal has words");
-    return 0;
-  }
+  test::must(static_cast<bool>(package), "what is read can be sent");
   const Result<UnpackedScene> again = unpack_scene(package.value());
   test::must(static_cast<bool>(again), "and read again");
   return 0;

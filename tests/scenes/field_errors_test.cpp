@@ -252,6 +252,7 @@ TEST(FieldValues, SettlesWhereNothingIsSaidAndNothingMoves) {
   const auto plain = test::load_edited([](json&) {});
   ASSERT_TRUE(plain) << plain.error().text();
   EXPECT_EQ(plain.value().settle, 1.0);
+  EXPECT_EQ(plain.value().settle_longest, 4.0);
   const auto not_at_all = test::load_edited([](json& j) { j["scenes"][0]["extras"]["settle_s"] = 0; });
   ASSERT_TRUE(not_at_all) << not_at_all.error().text();
   EXPECT_EQ(not_at_all.value().settle, 0.0);
@@ -265,6 +266,7 @@ TEST(FieldValues, SettlesWhereNothingIsSaidAndNothingMoves) {
   const auto asked = test::load_edited([](json& j) { j["scenes"][0]["extras"]["settle_s"] = 0.75; });
   ASSERT_TRUE(asked) << asked.error().text();
   EXPECT_EQ(asked.value().settle, 0.75);
+  EXPECT_EQ(asked.value().settle_longest, 0.0) << "what is written is done as it is written";
   expect_scene_error("settle_s", -1.0, {"-1", "0 to 60"});
   expect_scene_error("settle_s", 61.0, {"61", "0 to 60"});
   test::expect_edit_error(

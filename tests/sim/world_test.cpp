@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/steadiness.h"
 #include "tests/support/stirred_tank.h"
 
 namespace slosh {
@@ -215,6 +216,46 @@ TEST(World, AGripIsAsStiffAsItIsSetLive) {
   EXPECT_TRUE(stiff.set_grip_stiffness(0, 2.0));
 }
 
+TEST(World, SettlesUntilWhatHandsFeelIsSteady) {
+  const Tank tank = stirred_tank();
+  HandleInput hand;
+  hand.engaged = true;
+  hand.pose.position = {-0.05, 0.09, 0.0};
+  World world = world_of(tank);
+  EXPECT_NEAR(world.settle(0.1, {&hand, 1}), 0.1, 0.01) << "no longer than it is told";
+  World steady = world_of(tank);
+  const double took = steady.settle(0.1, {&hand, 1}, nullptr, 4.0);
+  EXPECT_GT(took, 2.0 * Steadiness::kWindow) << "there are two windows to compare";
+  EXPECT_LT(took, 3.9);
+  Steadiness felt;
+  BodySnapshot now;
+  for (int i = 0; i < 1000 && !felt.steady(); ++i) {
+    steady.step({&hand, 1});
+    steady.fill(now);
+    felt.feel(now.grips, steady.plan().time_step);
+  }
+  EXPECT_LT(steady.time(), 3.0 * Steadiness::kWindow) << "and it was";
+  EXPECT_NEAR(steady.settle(0.1, {}, nullptr, 4.0), 0.1, 0.01) << "nobody feels anything";
+}
+
+TEST(Steadiness, SeesABounceAndAnOddDrift) {
+  std::vector<GripState> grips(1);
+  const auto feel = [&](double seconds, auto&& force) {
+    Steadiness felt;
+    for (double t = 0.0; t < seconds; t += 0.002) {
+      grips[0].on_hand.force = {0.0, force(t), 0.0};
+      felt.feel(grips, 0.002);
+    }
+    return felt.steady();
+  };
+  EXPECT_TRUE(feel(1.0, [](double) { return -10.0; }));
+  EXPECT_FALSE(feel(0.3, [](double) { return -10.0; })) << "one window is compared with nothing";
+  EXPECT_FALSE(feel(1.0, [](double t) { return -10.0 + 0.1 * std::sin(50.0 * t); }));
+  EXPECT_FALSE(feel(1.0, [](double t) { return -10.0 + 0.5 * t; }));
+  EXPECT_TRUE(feel(1.0, [](double t) { return 0.004 * std::sin(50.0 * t); }))
+      << "below what a device can give";
+}
+
 TEST(World, SettlesAsLongAsItIsToldAndAsksNotWhatMoves) {
   Tank tank = make_tank({});
   for (glm::vec3& v : tank.sampled.fluid_velocities) v = {0.3f, 0.0f, 0.0f};
@@ -285,7 +326,8 @@ TEST(World, ParticlesThatLeaveAreRetiredAndSaid) {
 TEST(World, SpilledAndLostAreCountedApartWhileItRuns) {
   Tank tank = make_tank({});
   tank.scene.domain_max.y = 0.14;
-  for (int i = 0; i < 20; ++i) tank.sampled.fluid_velocities[static_cast<std::size_t>(40 * i)] = {0.0f, 1e3f, 0.0f};
+  for (int i = 0; i < 20; ++i)
+    tank.sampled.fluid_velocities[static_cast<std::size_t>(40 * i)] = {0.0f, 1e3f, 0.0f};
   tank.sampled.fluid_velocities[7].x = std::numeric_limits<float>::infinity();
   World world = world_of(tank);
   for (int i = 0; i < 100; ++i) world.step({});
