@@ -8,19 +8,19 @@
 namespace slosh::keep {
 namespace {
 
-constexpr char kMagic[8] = {'S', 'L', 'O', 'S', 'H', 'K', 'E', 'Y'};
-constexpr std::uint32_t kVersion = 1;
+constexpr char kSecretsMagic[8] = {'S', 'L', 'O', 'S', 'H', 'K', 'E', 'Y'};
+constexpr std::uint32_t kSecretsVersion = 1;
 
 // In this order, each once.
-enum Part : std::uint8_t { kHead = 1, kServerState, kEnd };
+enum SecretsPart : std::uint8_t { kSecretsHead = 1, kServerState, kSecretsEnd };
 
-struct FileHead {
-  std::uint32_t version = kVersion;
+struct SecretsHead {
+  std::uint32_t version = kSecretsVersion;
   std::uint64_t run = 0;
 };
 template <class V>
-void visit(V& v, FileHead& m) {
-  v.natural("version", m.version, kVersion, kVersion);
+void visit(V& v, SecretsHead& m) {
+  v.natural("version", m.version, kSecretsVersion, kSecretsVersion);
   v.bits64("run", m.run);
 }
 
@@ -36,20 +36,20 @@ Result<Secrets> read_secrets_file(std::FILE* file, const std::string& name) {
   const auto damaged = [&](const std::string& what) {
     return Error{name, "these secrets of a host are damaged: " + what, ""};
   };
-  char magic[sizeof kMagic];
+  char magic[sizeof kSecretsMagic];
   if (std::fread(magic, 1, sizeof magic, file) != sizeof magic ||
-      std::memcmp(magic, kMagic, sizeof magic) != 0)
+      std::memcmp(magic, kSecretsMagic, sizeof magic) != 0)
     return damaged("they do not begin as such");
   Secrets secrets;
   ChunkReader reader(file);
   Chunk chunk;
-  for (std::uint8_t part = kHead; part <= kEnd; ++part) {
+  for (std::uint8_t part = kSecretsHead; part <= kSecretsEnd; ++part) {
     const ChunkOutcome outcome = reader.next(chunk);
     if (outcome == ChunkOutcome::kDamaged) return damaged(reader.problem());
     if (outcome != ChunkOutcome::kChunk) return damaged("they are cut off");
     if (chunk.type != part) return damaged("their parts are in disorder");
-    if (part == kHead) {
-      FileHead head;
+    if (part == kSecretsHead) {
+      SecretsHead head;
       if (const wire::Fault fault = wire::decode(chunk.content, head)) return damaged(fault.text());
       secrets.run = head.run;
     } else if (part == kServerState) {
@@ -68,10 +68,10 @@ std::filesystem::path secrets_of(const std::filesystem::path& checkpoint) {
 
 Result<bool> write_secrets(const std::filesystem::path& checkpoint, std::uint64_t run,
                            ByteView server_state) {
-  Bytes out(std::begin(kMagic), std::end(kMagic));
-  append_chunk(kHead, wire::encoded(FileHead{kVersion, run}), out);
+  Bytes out(std::begin(kSecretsMagic), std::end(kSecretsMagic));
+  append_chunk(kSecretsHead, wire::encoded(SecretsHead{kSecretsVersion, run}), out);
   append_chunk(kServerState, server_state, out);
-  append_chunk(kEnd, {}, out);
+  append_chunk(kSecretsEnd, {}, out);
   const std::filesystem::path file = secrets_of(checkpoint);
   // What is damaged must not push out the one before it, which is whole.
   return replace_file(file, out, read_one(file) ? Replaced::kKept : Replaced::kDropped);

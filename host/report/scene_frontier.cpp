@@ -44,7 +44,7 @@ std::optional<double> allowed_error(const ErrorRow& row) {
   return std::nullopt;
 }
 
-using Key = std::tuple<std::string, std::string, double, double>;
+using PointKey = std::tuple<std::string, std::string, double, double>;
 using Spacings = std::map<double, std::vector<const ErrorRow*>>;  // fine to coarse, of one case
 
 }  // namespace
@@ -61,7 +61,7 @@ const std::vector<SceneCases>& scene_cases() {
 }
 
 std::vector<ScenePoint> points_of(const SceneCases& scene, const std::vector<ErrorRow>& rows) {
-  std::map<Key, std::map<std::string, Spacings>> settings;
+  std::map<PointKey, std::map<std::string, Spacings>> settings;
   for (const ErrorRow& row : rows) {
     if (!row.refused.empty() || !allowed_error(row)) continue;
     settings[{row.model, row.backend, row.support_ratio, row.step_share}][row.case_id][row.spacing].push_back(

@@ -13,6 +13,8 @@
 
 namespace slosh::codec {
 
+constexpr int kFirstClass = 5;  ///< what a piece's first block is compared with
+
 /// Who is in a block.
 struct BlockMembers {
   std::uint8_t slot[kBlock];   ///< their places in the block at the epoch's start, ascending

@@ -6,7 +6,6 @@ namespace slosh::codec {
 
 namespace {
 
-constexpr int kFirstClass = 5;
 constexpr char kOutside[] = "a particle is outside the lattice";
 constexpr char kTooShort[] = "ends too early";
 

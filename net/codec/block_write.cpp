@@ -7,8 +7,6 @@ namespace slosh::codec {
 
 namespace {
 
-constexpr int kFirstClass = 5;  // what a piece's first block is compared with
-
 int bit_count(std::uint64_t value) {
   return std::bit_width(value);
 }

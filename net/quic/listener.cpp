@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::int64_t kGraveTime = kNanosecondsPerSecond;
 constexpr std::size_t kGraves = 1024;
-constexpr std::int64_t kHousekeeping = kNanosecondsPerSecond / 4;
+constexpr std::int64_t kListenerHousekeeping = kNanosecondsPerSecond / 4;
 
 std::string text_of(const ngtcp2_cid& id) {
   return {reinterpret_cast<const char*>(id.data), id.datalen};
@@ -112,7 +112,7 @@ std::int64_t Listener::housekeeping(std::int64_t now) {
     used_by_age_.pop_front();
   }
   const bool idle = graves_by_age_.empty() && used_by_age_.empty();
-  return idle ? now + 4 * kHousekeeping : now + kHousekeeping;
+  return idle ? now + 4 * kListenerHousekeeping : now + kListenerHousekeeping;
 }
 
 void Listener::id_issued(Connection& connection, const ngtcp2_cid& id) {

@@ -68,7 +68,7 @@ int check_client_hello(gnutls_session_t session, unsigned, unsigned when, unsign
   return GNUTLS_E_MISSING_EXTENSION;
 }
 
-void check(int code, const char* what) {
+void check_tls(int code, const char* what) {
   if (code < 0) throw std::runtime_error(std::string("TLS ") + what + ": " + gnutls_strerror(code));
 }
 
@@ -76,13 +76,13 @@ void check(int code, const char* what) {
 
 TlsContext::TlsContext(const Identity& identity, TlsOddity oddity)
     : alpn_(oddity.alpn.empty() ? wire::kAlpn : oddity.alpn), identity_(identity) {
-  check(gnutls_certificate_allocate_credentials(&credentials_), "credentials");
+  check_tls(gnutls_certificate_allocate_credentials(&credentials_), "credentials");
   if (!oddity.no_certificate) {
     gnutls_x509_crt_t certificate = identity_.impl().certificate;
-    check(gnutls_certificate_set_x509_key(credentials_, &certificate, 1, identity_.impl().key), "key");
+    check_tls(gnutls_certificate_set_x509_key(credentials_, &certificate, 1, identity_.impl().key), "key");
   }
   gnutls_certificate_set_verify_function(credentials_, verify);
-  check(gnutls_priority_init(
+  check_tls(gnutls_priority_init(
             &priority_,
             "NORMAL:-VERS-ALL:+VERS-TLS1.3:%DISABLE_TLS13_COMPAT_MODE:-CIPHER-ALL:+AES-128-GCM:"
             "+AES-256-GCM:+CHACHA20-POLY1305:-GROUP-ALL:+GROUP-X25519:+GROUP-SECP256R1:"

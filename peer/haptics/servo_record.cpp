@@ -7,7 +7,7 @@
 namespace slosh {
 namespace {
 
-constexpr double kRounding = 1e-9;  // s: sums of time steps miss a multiple by less than this
+constexpr double kRowRounding = 1e-9;  // s: sums of time steps miss a multiple by less than this
 constexpr double kStatesApart =
     4.0;  // ticks: a loop that missed states knows what was between two that it has
 
@@ -49,8 +49,8 @@ void Servo::pass_on(bool all) noexcept {
 /// period, and on a grid of whole periods it would miss one row and have two ticks for the next. Else on the grid.
 bool Servo::sample_due(bool stopped) const noexcept {
   if (stopped) return false;
-  if (options_.sample_interval > options_.period + kRounding) return time_ + kRounding >= next_sample_;
-  return time_ > sampled_ + kRounding;
+  if (options_.sample_interval > options_.period + kRowRounding) return time_ + kRowRounding >= next_sample_;
+  return time_ > sampled_ + kRowRounding;
 }
 
 void Servo::note_signals(std::size_t i, SignalSample& signals, std::int64_t now_ns) noexcept {

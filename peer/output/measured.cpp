@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "sim/math/format.h"
+
 namespace slosh {
 namespace {
 
@@ -28,13 +30,6 @@ Json places(const std::vector<MeasuredPlace>& all) {
                     {"most", number(place.most)}});
   }
   return json;
-}
-
-template <class... Values>
-std::string format(const char* pattern, Values... values) {
-  char text[1000];
-  std::snprintf(text, sizeof text, pattern, values...);
-  return text;
 }
 
 }  // namespace

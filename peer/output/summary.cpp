@@ -5,6 +5,7 @@
 
 #include "net/text/clean.h"
 #include "peer/output/whole_file.h"
+#include "sim/math/format.h"
 #include "sim/snapshot.h"
 
 namespace slosh {
@@ -17,13 +18,6 @@ constexpr double kBounced = 0.02, kPoured = 0.1;
 
 Json spread(const Spread& s) {
   return {{"p50", s.p50}, {"p99", s.p99}, {"max", s.max}};
-}
-
-template <class... Numbers>
-std::string format(const char* pattern, Numbers... numbers) {
-  char text[2000];
-  std::snprintf(text, sizeof text, pattern, numbers...);
-  return text;
 }
 
 Json network_json(const NetworkSummary& n) {

@@ -5,7 +5,7 @@
 namespace slosh {
 namespace {
 
-constexpr std::size_t kMostBytes = std::size_t{256} << 20;
+constexpr std::size_t kMostHistoryBytes = std::size_t{256} << 20;
 constexpr std::size_t kFewestFrames = 4;  // whatever their size
 constexpr std::size_t kMostBodies = 2048;
 constexpr std::size_t kMostHands = 1024;   // samples of one hand
@@ -149,7 +149,7 @@ void SnapshotHistory::restart() {
 }
 
 void SnapshotHistory::bound() {
-  while (bytes_ > kMostBytes && frames_.size() > kFewestFrames) {
+  while (bytes_ > kMostHistoryBytes && frames_.size() > kFewestFrames) {
     bytes_ -= size_of(*frames_.front());
     frames_.pop_front();
   }

@@ -23,7 +23,7 @@
 namespace slosh {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kDevicesFooter =
     "Lists SpaceMice, gamepads and Falcons that are plugged in, each with what to give to --device, and what "
     "is wrong\n"
     "with it. Mostly that is a permission: then the rule that lets whoever sits at the machine open them is\n"
@@ -213,7 +213,7 @@ void add_devices(CLI::App& app, VerbRun& chosen) {
   verb->add_option("--seconds", o->seconds, "Show for that long")->check(in_range(0.01, 1e6))->needs(live);
   verb->add_flag("--install-udev-rule", o->install, "Let whoever sits at this machine open them");
   verb->add_option("--rule-file", o->rule_file, "Where the rule goes")->capture_default_str();
-  verb->footer(kFooter);
+  verb->footer(kDevicesFooter);
   verb->callback([&chosen, o, verb] {
     if (verb->get_subcommands().empty()) chosen = [o] { return devices(*o); };
   });

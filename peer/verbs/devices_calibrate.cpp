@@ -26,7 +26,7 @@
 namespace slosh {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kDevicesCalibrateFooter =
     "Put the headset on and take one controller. Hold its grip to the device's tip, both still, and squeeze\n"
     "the grip button or the trigger: three times, at three corners of a triangle of at least 10 cm, the\n"
     "controller held the same way each time. Where the device stands in the room is then known, and kept\n"
@@ -76,9 +76,9 @@ class Reading {
 };
 
 /// What is seen meanwhile: the controllers, and where places were touched.
-class Stage {
+class Step {
  public:
-  explicit Stage(Renderer& renderer) : renderer_(renderer) {
+  explicit Step(Renderer& renderer) : renderer_(renderer) {
     const TriangleMesh ball = unit_ball();
     ball_ = renderer.add_mesh(ball.positions, ball.normals, ball.triangles);
   }
@@ -171,7 +171,7 @@ int calibrate(const CalibrateOptions& options) {
     return fail(started.error());
 
   catch_interrupts();
-  Stage stage(*renderer.value());
+  Step stage(*renderer.value());
   TouchPlaces touched;
   std::string words = next_words(touched);
   say(words);
@@ -243,7 +243,7 @@ void add_devices_calibrate(CLI::App& devices, VerbRun& chosen) {
   verb->add_option("--seconds", o->seconds, "Give up after")
       ->check(in_range(1.0, 1e6))
       ->capture_default_str();
-  verb->footer(kFooter);
+  verb->footer(kDevicesCalibrateFooter);
   verb->callback([&chosen, o] { chosen = [o] { return calibrate(*o); }; });
 }
 

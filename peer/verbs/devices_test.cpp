@@ -19,7 +19,7 @@
 namespace slosh {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kDevicesTestFooter =
     "Take the handle as you would to work with it, and hold it still. Along one axis after another the "
     "force\n"
     "rises slowly to at most --force (turning: --torque), there and back. From how the handle gives way the\n"
@@ -180,7 +180,7 @@ void add_devices_test(CLI::App& devices, VerbRun& chosen) {
       ->check(in_range(3.0, 60.0))
       ->capture_default_str();
   verb->add_option("--out", o->out, "Folder for device_test.csv and device_test.png");
-  verb->footer(kFooter);
+  verb->footer(kDevicesTestFooter);
   verb->callback([&chosen, o] { chosen = [o] { return run_test(*o); }; });
 }
 

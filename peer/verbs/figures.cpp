@@ -126,7 +126,7 @@ FigureParts judge_pour(const ScriptedRun& run) {
   const WrenchSeries inside = about_centers(run, 0);
   const WrenchSeries pan_inside = about_centers(run, 1);
   const double at_rest = mean(inside, phases[0], torque_size);
-  const Peak top = peak(inside, {"", tilt, back}, torque_size);
+  const figure::Peak top = peak(inside, {"", tilt, back}, torque_size);
   const double emptied = mean(inside, last, torque_size);
 
   FigureParts parts;

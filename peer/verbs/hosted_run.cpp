@@ -17,7 +17,7 @@
 namespace slosh {
 namespace {
 
-constexpr std::size_t kSnapshotBytes = std::size_t{256} << 20;
+constexpr std::size_t kHostedBytes = std::size_t{256} << 20;
 constexpr std::uint16_t kPort = 4433;
 constexpr std::size_t kSpareHands = 4;   // participants beyond one a grip
 constexpr std::size_t kStrangers = 128;  // connections that nobody was let in by
@@ -56,7 +56,7 @@ Result<std::unique_ptr<HostedRun>> HostedRun::create(HostedWorld& hosted, const 
     s.identity_ = std::move(kept.value());
   }
   s.channel_ = std::make_unique<Channel>(scene.grips.size(), initial_message(*hosted.world, hosted.state.run),
-                                         kSnapshotBytes);
+                                         kHostedBytes);
   const Result<bool> network = s.open_network(reins);
   if (!network) return network.error();
   s.make_links();

@@ -10,7 +10,7 @@
 namespace slosh {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kLinksFooter =
     "Without an action the links are listed: id, what it allows, for whom, until when, who used it.\n"
     "\n"
     "Examples:\n"
@@ -75,7 +75,7 @@ void add_links(CLI::App& app, VerbRun& chosen) {
   verb->add_option("--port", o->port, "The host's port, where several run")->check(CLI::Range(1, 65535));
   verb->require_subcommand(0, 1);
   verb->fallthrough();
-  verb->footer(kFooter);
+  verb->footer(kLinksFooter);
   verb->callback([&chosen, o, verb] {
     if (verb->get_subcommands().empty()) chosen = [o] { return ask(*o, "links"); };
   });

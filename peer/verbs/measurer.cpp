@@ -10,9 +10,9 @@ namespace {
 constexpr double kRounding = 1e-9;  // s
 
 /// Numbers of a row, each after a comma.
-class Row {
+class MeasuredRow {
  public:
-  explicit Row(double time) { add("%.6f", time); }
+  explicit MeasuredRow(double time) { add("%.6f", time); }
   template <class Value>
   void add(const char* pattern, Value value) {
     char cell[64];
@@ -117,7 +117,7 @@ void Measurer::write_rows(const World& world, double elapsed) {
     body.so_far.position = state.pose.position;
     body.so_far.peak_force = std::max(body.so_far.peak_force, glm::length(mean.force));
     body.so_far.fluid_inside = m.in_body[static_cast<std::size_t>(body.index)];
-    Row row(elapsed);
+    MeasuredRow row(elapsed);
     row.cell(body.so_far.name);
     row.vector(state.pose.position);
     const glm::dquat& q = state.pose.orientation;
@@ -130,7 +130,7 @@ void Measurer::write_rows(const World& world, double elapsed) {
     row.count(body.so_far.fluid_inside);
     body_table_->add(row.line());
   }
-  Row row(elapsed);
+  MeasuredRow row(elapsed);
   row.count(m.fluid.particles);
   row.count(m.fluid.spilled);
   row.count(m.fluid.lost);

@@ -14,7 +14,7 @@
 namespace slosh {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kPlayFooter =
     "Without a display, or with --headless, the run becomes a film. DIR gets\n"
     "  wrenches.csv   time_s,device,fx_n,fy_n,fz_n,tx_nm,ty_nm,tz_nm: simulated time, device from 0, and "
     "the\n"
@@ -98,7 +98,7 @@ void add_play(CLI::App& app, VerbRun& chosen) {
       ->excludes("--unpaced");
   add_measure_option(*verb, *o);
   add_export_options(*verb, *o);
-  verb->footer(kFooter + console_help(Console::kPlay) + kExamples);
+  verb->footer(kPlayFooter + console_help(Console::kPlay) + kExamples);
   verb->callback([&chosen, o] { chosen = [o] { return play(*o); }; });
 }
 

@@ -20,7 +20,7 @@ struct ReplayVerbOptions : ShowOptions {
   int threads = 0;
 };
 
-constexpr const char* kFooter =
+constexpr const char* kReplayFooter =
     "The world is simulated again from the recorded inputs, as fast as it goes. On the backend that it was\n"
     "recorded on, every hash is compared: \"84 of 84 hashes agree\", or the first tick that differs and "
     "exit\n"
@@ -90,7 +90,7 @@ void add_replay(CLI::App& app, VerbRun& chosen) {
   add_show_options(*verb, *o, false);
   add_measure_option(*verb, *o);
   add_export_options(*verb, *o);
-  verb->footer(kFooter);
+  verb->footer(kReplayFooter);
   verb->callback([&chosen, o] { chosen = [o] { return replay(*o); }; });
 }
 

@@ -12,14 +12,14 @@
 namespace slosh {
 namespace {
 
-constexpr std::size_t kSnapshotBytes = std::size_t{256} << 20;
+constexpr std::size_t kReplayBytes = std::size_t{256} << 20;
 constexpr std::size_t kSnapshotsAhead = 30;  // then the simulation waits for who draws
 constexpr double kSampleInterval = 0.002;   // simulated s, as a live run's
 
 }  // namespace
 
 ReplayRun::ReplayRun(keep::Replayer& replayer, const Stage& stage, double snapshot_rate)
-    : replayer_(replayer), stage_(stage), snapshot_rate_(snapshot_rate), snapshots_(kSnapshotBytes) {
+    : replayer_(replayer), stage_(stage), snapshot_rate_(snapshot_rate), snapshots_(kReplayBytes) {
   for (const Grip& grip : stage.scene.grips) peaks_.push_back({grip.name, "recorded", 0.0, 0.0});
   start_ = replayer.world().diagnostics();
 }

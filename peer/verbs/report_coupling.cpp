@@ -25,7 +25,7 @@ namespace {
 using coupling::Case;
 using coupling::Scheme;
 
-constexpr const char* kTable = "coupling.csv";
+constexpr const char* kCouplingTable = "coupling.csv";
 using coupling::kMapped;
 using coupling::Row;
 
@@ -192,7 +192,7 @@ void print_summary(const std::vector<Row>& rows) {
 int report_coupling(const ReportOptions& options) {
   ReportOptions here = options;
   here.overwrite = options.overwrite || options.resume;
-  const Result<std::filesystem::path> folder = report_folder(here, "coupling", kTable);
+  const Result<std::filesystem::path> folder = report_folder(here, "coupling", kCouplingTable);
   if (!folder) return fail(folder.error());
   catch_interrupts();
   Progress progress;
@@ -211,7 +211,7 @@ int report_coupling(const ReportOptions& options) {
     const double left = share > 0.0 ? passed * (1.0 - share) / share : 0.0;
     progress.update(share, which + format(", about %.0f min left", std::ceil(left / 60.0)));
   };
-  const Result<std::vector<Row>> measured = measure_cells(cases, round_trips, folder.value() / kTable, run);
+  const Result<std::vector<Row>> measured = measure_cells(cases, round_trips, folder.value() / kCouplingTable, run);
   if (!measured) return fail(measured.error());
   const std::vector<Row>& rows = measured.value();
   print_summary(rows);

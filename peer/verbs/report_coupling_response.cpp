@@ -25,7 +25,7 @@ using coupling::Scheme;
 constexpr double kDegrees = 57.29577951308232;
 constexpr double kSettles = 10.0;  // s, before an impedance is taken
 constexpr double kTaken = 20.0;    // s
-constexpr const char* kColors[] = {"#2a6fb0", "#3a9d5d", "#e0893c", "#c8322b", "#7b4fa6"};
+constexpr const char* kResponseColors[] = {"#2a6fb0", "#3a9d5d", "#e0893c", "#c8322b", "#7b4fa6"};
 
 struct Site {
   const char* name;
@@ -141,7 +141,7 @@ Result<bool> report_transparency(const ReportOptions& options, const std::filesy
       continue;
     }
     const std::string name = format("%s, %g ms", coupling::word(part.scheme), trip_ms);
-    ChartSeries series = curve(name, kColors[part.trip]), turn = curve("", kColors[part.trip]);
+    ChartSeries series = curve(name, kResponseColors[part.trip]), turn = curve("", kResponseColors[part.trip]);
     series.dashed = turn.dashed = part.scheme == Scheme::kPeerSpring;
     for (std::size_t k = 0; k < part.z.size(); ++k) {
       const Impedance& z = part.z[k];

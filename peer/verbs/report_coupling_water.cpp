@@ -20,12 +20,12 @@ namespace {
 
 using namespace coupling;
 
-constexpr const char* kTable = "coupling_water.csv";
+constexpr const char* kCouplingWaterTable = "coupling_water.csv";
 constexpr double kNudge = 1e-6;  // m: nobody could tell
 constexpr const char* kPerson = "tight,correction=0";
 constexpr const char* kLoosePerson = "loose,correction=0";  // whose bucket tips, and pours
 
-struct Felt {
+struct WaterFelt {
   double round_trip = 0.0;  // s
   double error = 0.0, learning = 0.0, moving = 0.0, after = 0.0, line = 0.0;
   /// Of a person, who goes elsewhere by what they feel: off what is right where they went, and m rms that is
@@ -37,7 +37,7 @@ struct WaterRow {
   double force = 0.0;  // N
   double chaos = 0.0;
   WaterSplit split;
-  std::vector<Felt> felt;
+  std::vector<WaterFelt> felt;
   std::string problem;
 };
 
@@ -71,7 +71,7 @@ Result<bool> measure(const std::vector<double>& round_trips, WaterRow& row) {
     std::vector<DeviceReport> went;
     const Result<std::vector<Wrench>> ours = feel_water(run.value(), round_trip, {}, &went);
     if (!ours) return ours.error();
-    Felt& f = row.felt.emplace_back();
+    WaterFelt& f = row.felt.emplace_back();
     f.round_trip = round_trip;
     f.error = water_error(ours.value(), run.value());
     f.learning = water_error(ours.value(), run.value(), kWaterBegins, kWaterLearnt);
@@ -115,7 +115,7 @@ ChartPanel panel_of(const std::vector<WaterRow>& rows, bool person) {
     series.name = name_of(row) + format(" (%.1f N; chance %.0f %%)", row.force, 1e2 * row.chaos);
     series.color = kColors[color++ % std::size(kColors)];
     series.width = 1.5;
-    for (const Felt& f : row.felt)
+    for (const WaterFelt& f : row.felt)
       series.points.push_back({1e3 * f.round_trip, 1e2 * (person ? f.same : f.error)});
     panel.series.push_back(series);
     if (!person) continue;
@@ -134,7 +134,7 @@ int report_coupling_water(const ReportOptions& options) {
     return fail({"--resume", "is not for --water, which takes some minutes",
                  "Leave it out; --overwrite measures again into "
                  "the same folder"});
-  const Result<std::filesystem::path> folder = report_folder(options, "coupling", kTable);
+  const Result<std::filesystem::path> folder = report_folder(options, "coupling", kCouplingWaterTable);
   if (!folder) return fail(folder.error());
   catch_interrupts();
   Progress progress;
@@ -170,7 +170,7 @@ int report_coupling_water(const ReportOptions& options) {
     const WaterWay way = way_of(row.c);
     std::printf("%-30s %4.1f N  %5.1f %%  %21.0f %% %4.0f %% %4.0f %%              ", name_of(row).c_str(), row.force, 1e2 * row.chaos,
                 1e2 * row.split.rigid, 1e2 * row.split.modes, 1e2 * row.split.lifts);
-    for (const Felt& f : row.felt) {
+    for (const WaterFelt& f : row.felt) {
       std::printf(" %.0f", 1e2 * f.error);
       text +=
           format("%d,%.3g,%.3g,%s,%.4g,%.4g,%.4g,%.4g,%.4g,%g,%.4g,%.4g,%.4g,%.4g,", row.c.way,
@@ -183,14 +183,14 @@ int report_coupling_water(const ReportOptions& options) {
     std::printf(" %%\n");
     if (row.c.grip.empty() || row.felt.empty()) continue;
     std::printf("%-91s", "  for the same motion at no delay (the rest is where the person went by it)");
-    for (const Felt& f : row.felt) std::printf(" %.1f", 1e2 * f.same);
+    for (const WaterFelt& f : row.felt) std::printf(" %.1f", 1e2 * f.same);
     std::printf(" %%; elsewhere by");
-    for (const Felt& f : row.felt) std::printf(" %.1f", 1e3 * f.elsewhere);
+    for (const WaterFelt& f : row.felt) std::printf(" %.1f", 1e3 * f.elsewhere);
     std::printf(" mm; known a round trip late");
-    for (const Felt& f : row.felt) std::printf(" %.1f", 1e2 * f.late);
+    for (const WaterFelt& f : row.felt) std::printf(" %.1f", 1e2 * f.late);
     std::printf(" %%\n");
   }
-  if (const Result<bool> written = write_whole(folder.value() / kTable, text); !written) return fail(written.error());
+  if (const Result<bool> written = write_whole(folder.value() / kCouplingWaterTable, text); !written) return fail(written.error());
   std::vector<ChartPanel> panels{panel_of(rows, false), panel_of(rows, true)};
   // The ways' names are long: beside the curves, not over them.
   ChartPanel key;

@@ -28,7 +28,7 @@ using report::ErrorCase;
 using report::ErrorRow;
 using report::Setting;
 
-constexpr const char* kTable = "errors.csv";
+constexpr const char* kErrorTable = "errors.csv";
 
 constexpr const char* kModels[] = {"paper", "consistent", "corrected", "incompressible"};
 
@@ -274,10 +274,10 @@ int report_error(const ReportOptions& options) {
     if (!read) return fail(read.error());
     rows.insert(rows.end(), read.value().begin(), read.value().end());
   }
-  const Result<std::filesystem::path> folder = report_folder(options, "error", kTable);
+  const Result<std::filesystem::path> folder = report_folder(options, "error", kErrorTable);
   if (!folder) return fail(folder.error());
   catch_interrupts();
-  const std::filesystem::path table = folder.value() / kTable;
+  const std::filesystem::path table = folder.value() / kErrorTable;
   std::ofstream out(table);
   out << report::kErrorHeader << '\n';
   for (const ErrorRow& row : rows) out << report::csv_line(row) << '\n';

@@ -15,7 +15,7 @@
 namespace slosh {
 namespace {
 
-constexpr const char* kTable = "passes.csv";
+constexpr const char* kPassesTable = "passes.csv";
 
 std::string agrees(const report::PassRow& row) {
   return row.same_bits ? "the same to the bit" : format("%.2g mm apart", 1e3 * row.off);
@@ -35,7 +35,7 @@ int report_passes(const ReportOptions& options, const std::string& scene_name, d
   std::error_code code;
   const bool was_there = std::filesystem::exists(options.out, code);
   if (!options.out.empty()) {
-    const Result<std::filesystem::path> folder = report_folder(options, "passes", kTable, Draws::kNoPlots);
+    const Result<std::filesystem::path> folder = report_folder(options, "passes", kPassesTable, Draws::kNoPlots);
     if (!folder) return fail(folder.error());
   }
   const auto end_without = [&](int with) {
@@ -70,7 +70,7 @@ int report_passes(const ReportOptions& options, const std::string& scene_name, d
     std::printf("\n");
   }
   if (options.out.empty()) return kExitOk;
-  const std::filesystem::path table = std::filesystem::path(options.out) / kTable;
+  const std::filesystem::path table = std::filesystem::path(options.out) / kPassesTable;
   std::ofstream out(table);
   out << csv;
   if (!out.flush()) return fail({table.string(), "cannot be written", "Is the disk full?"});

@@ -27,7 +27,7 @@
 namespace slosh {
 namespace {
 
-constexpr const char* kTable = "picture.md";
+constexpr const char* kPictureTable = "picture.md";
 constexpr const char* kSheet = "picture.png";
 struct Method {
   const char* name;
@@ -41,7 +41,7 @@ constexpr Method kMethods[] = {{"paper, section 5", Surface::kPaper},
 constexpr int kSamples = 96;
 constexpr int kQuickSamples = 24;
 
-struct Row {
+struct PictureRow {
   score::SurfaceScore at5;
   score::SurfaceScore at15;
   double still_normal = 0.0;  ///< degrees
@@ -142,7 +142,7 @@ Image beside(const std::vector<Image>& images) {
   return sheet;
 }
 
-std::string table_of(const std::vector<Row>& rows) {
+std::string table_of(const std::vector<PictureRow>& rows) {
   std::string text =
       "| surface | normal error at 5 px: mean, p95, edge band | at 15 px | outline off, at 5 px | still "
       "water: normal "
@@ -150,7 +150,7 @@ std::string table_of(const std::vector<Row>& rows) {
       "edges | filter, ms | frame, ms "
       "|\n|---|---|---|---|---|---|---|---|---|---|\n";
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const Row& row = rows[i];
+    const PictureRow& row = rows[i];
     text += format(
         "| %s | %.1f°, %.1f°, %.1f° | %.1f°, %.1f°, %.1f° | %.1f px | %.1f° | %.2f/255 | %.2f of %.2f/255 | "
         "%s | %.1f | %.1f "
@@ -173,14 +173,14 @@ int report_picture(const ReportOptions& options) {
   headless.software_threads = options.threads > 0 ? options.threads : 1;
   auto context = make_headless_context(headless);
   if (!context) return fail(context.error());
-  const Result<std::filesystem::path> folder = report_folder(options, "picture", kTable, Draws::kNoPlots);
+  const Result<std::filesystem::path> folder = report_folder(options, "picture", kPictureTable, Draws::kNoPlots);
   if (!folder) return fail(folder.error());
   const double spacing = options.quick ? 0.012 : 0.008;
   report::Setting setting;
   setting.spacing = spacing;
   setting.stopped = [] { return interrupted_by() != 0; };
 
-  std::vector<Row> rows(std::size(kMethods));
+  std::vector<PictureRow> rows(std::size(kMethods));
   std::vector<Image> pictures;
   FloatImage fluid_depth;  ///< of ours
   double reference_seconds = 0.0;
@@ -300,7 +300,7 @@ int report_picture(const ReportOptions& options) {
       bucket.whole.wall, bucket.kept.wall);
   std::printf("\n%s%s%s", table.c_str(), of_bucket.c_str(), drawn_by.c_str());
   const Result<bool> written = write_whole(
-      folder.value() / kTable,
+      folder.value() / kPictureTable,
       about + table + of_bucket + drawn_by + "\nThe pictures, left to right: paper, curvature flow, ours" +
           (no_reference.empty() ? ", the reference" : "") + ".\n\n![](picture.png)\n");
   if (!written) return fail(written.error());

@@ -19,9 +19,8 @@ namespace {
 using report::Setting;
 using report::StressCase;
 using report::StressRow;
-using report::Verdict;
 
-constexpr const char* kTable = "stability.csv";
+constexpr const char* kStabilityTable = "stability.csv";
 
 std::string column_of(const StressRow& row) {
   return row.backend == "cuda" ? row.model + ", CUDA" : row.model;
@@ -71,7 +70,7 @@ void print_summary(const std::vector<StressRow>& rows) {
     std::string line = format("%-18s", column.c_str());
     for (std::size_t v = 0; v < report::kVerdictNames.size(); ++v) {
       const auto count = std::count_if(rows.begin(), rows.end(), [&](const StressRow& row) {
-        return column_of(row) == column && row.verdict == static_cast<Verdict>(v);
+        return column_of(row) == column && row.verdict == static_cast<report::Verdict>(v);
       });
       line += format("  %s %ld", report::kVerdictNames[v], static_cast<long>(count));
     }
@@ -93,10 +92,10 @@ int report_stability(const ReportOptions& options) {
     if (!read) return fail(read.error());
     rows.insert(rows.end(), read.value().begin(), read.value().end());
   }
-  const Result<std::filesystem::path> folder = report_folder(options, "stability", kTable);
+  const Result<std::filesystem::path> folder = report_folder(options, "stability", kStabilityTable);
   if (!folder) return fail(folder.error());
   catch_interrupts();
-  const std::filesystem::path table = folder.value() / kTable;
+  const std::filesystem::path table = folder.value() / kStabilityTable;
   std::ofstream out(table);
   out << report::kStressHeader << '\n';
   for (const StressRow& row : rows) out << report::csv_line(row) << '\n';
@@ -109,7 +108,7 @@ int report_stability(const ReportOptions& options) {
       jobs.push_back({std::string(which->title) + ", " + name(setting.model), 1.0, [&, which, setting] {
                         rows.push_back(report::run_stress(*which, setting));
                         out << report::csv_line(rows.back()) << '\n';
-                        if (rows.back().verdict == Verdict::kFailed)
+                        if (rows.back().verdict == report::Verdict::kFailed)
                           progress.note(
                               format("failed: %s, %s: ", which->id, column_of(rows.back()).c_str()) +
                               rows.back().why);

@@ -16,7 +16,7 @@
 namespace slosh {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kSettingsFooter =
     "A key of the file is an option's name, with _ for -; its value is that option's default from then on, "
     "and the\n"
     "command line wins:\n"
@@ -144,7 +144,7 @@ void add_settings(CLI::App& app, const SettingsFile& file, VerbRun& chosen) {
   auto anew = std::make_shared<bool>(false);
   verb->add_flag("--new", *anew, "Make the file, with every key in it behind a #, where there is none")
       ->disable_flag_override();
-  verb->footer(kFooter);
+  verb->footer(kSettingsFooter);
   verb->callback(
       [&chosen, &file, anew] { chosen = [&file, anew] { return *anew ? make_new(file) : show(file); }; });
 }

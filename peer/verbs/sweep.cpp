@@ -29,7 +29,7 @@ namespace slosh {
 namespace {
 
 constexpr std::size_t kMostRuns = 1000;
-constexpr const char* kTable = "sweep.csv";
+constexpr const char* kSweepTable = "sweep.csv";
 
 struct SweepVerbOptions {
   std::string scene;
@@ -227,9 +227,9 @@ int sweep(const SweepVerbOptions& options) {
   setting.threads = options.threads;
   setting.stopped = [] { return interrupted_by() != 0; };
   if (const std::optional<Error> wrong = refused(options, family.value(), setting.backend)) return fail(*wrong);
-  const Result<std::filesystem::path> folder = report_folder(machine, "sweep", kTable);
+  const Result<std::filesystem::path> folder = report_folder(machine, "sweep", kSweepTable);
   if (!folder) return fail(folder.error());
-  const std::filesystem::path table = folder.value() / kTable;
+  const std::filesystem::path table = folder.value() / kSweepTable;
   std::ofstream out(table);
   out << "run";
   for (const FieldEdit& edit : family.value().front().edits)

@@ -9,7 +9,7 @@ namespace slosh {
 namespace {
 
 constexpr double kThinnest = 0.02;  // Pa·s: thicker than this, air does not stay in it as foam
-constexpr float kReach = 2.5f;      // spacings: some 60 neighbours inside
+constexpr float kFoamReach = 2.5f;      // spacings: some 60 neighbours inside
 
 // Between which values a potential goes from 0 to 1. The paper's sums over neighbours are means here, so that
 // the same motion foams alike at every spacing; and its numbers are a harbour's, ours a bucket's.
@@ -67,7 +67,7 @@ Foam::Foam(const Scene& scene, double spacing)
     : scene_(scene),
       plan_(plan_foam(scene)),
       spacing_(static_cast<float>(spacing)),
-      reach_(kReach * static_cast<float>(spacing)) {}
+      reach_(kFoamReach * static_cast<float>(spacing)) {}
 
 float Foam::random() {  // PCG (O'Neill 2014)
   state_ = state_ * 6364136223846793005ull + 1442695040888963407ull;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr float kWidth = 150.0f;   // px, at least
 constexpr float kLetters = 19.0f;  // of a slider: as wide as those
-constexpr float kMargin = 8.0f;
+constexpr float kPanelMargin = 8.0f;
 constexpr float kSmallest = 0.35f;        // letters, times their size
 constexpr double kSendEvery = 0.1;        // s, while a slider is dragged
 constexpr float kLeastViscosity = 1e-3f;  // Pa·s: water's
@@ -87,7 +87,7 @@ LivePanel::Size LivePanel::size_of(const std::vector<Row>& rows, const glm::vec2
     size.panel =
         glm::vec2(width, static_cast<float>(rows.size()) * each - size.letters * style.ItemSpacing.y) +
         2.0f * glm::vec2(style.WindowPadding.x, style.WindowPadding.y);
-    const bool fits = glm::all(glm::lessThan(size.panel, picture - 2.0f * kMargin));
+    const bool fits = glm::all(glm::lessThan(size.panel, picture - 2.0f * kPanelMargin));
     if (fits && size.panel.x * size.panel.y <= kMostCovered * picture.x * picture.y) break;
   }
   return size;
@@ -98,10 +98,10 @@ void LivePanel::draw(const LiveValues& now, double wall_seconds, std::span<const
   const glm::vec2 picture(ImGui::GetIO().DisplaySize.x, ImGui::GetIO().DisplaySize.y);
   const std::vector<Row> rows = rows_of(now);
   const Size size = size_of(rows, picture);
-  const glm::vec2 right(picture.x - kMargin - size.panel.x, kMargin);
+  const glm::vec2 right(picture.x - kPanelMargin - size.panel.x, kPanelMargin);
   const bool left =
-      covered_area(right, size.panel, taken) > covered_area({kMargin, kMargin}, size.panel, taken);
-  panel_.low = left ? glm::vec2(kMargin) : right;
+      covered_area(right, size.panel, taken) > covered_area({kPanelMargin, kPanelMargin}, size.panel, taken);
+  panel_.low = left ? glm::vec2(kPanelMargin) : right;
   panel_.high = panel_.low + size.panel;
   ImGui::SetNextWindowPos(ImVec2(panel_.low.x, panel_.low.y));
   ImGui::SetNextWindowSize(ImVec2(size.panel.x, size.panel.y));

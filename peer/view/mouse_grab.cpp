@@ -10,7 +10,7 @@
 namespace slosh {
 namespace {
 
-constexpr double kReach = 22.0;           // px about a handle's middle that count as on it
+constexpr double kGrabReach = 22.0;           // px about a handle's middle that count as on it
 constexpr double kTiltPerNotch = 0.07;    // rad: 4°
 constexpr double kTiltPerPixel = 0.008;   // rad
 constexpr double kDepthPerNotch = 0.015;  // of the eye's distance
@@ -65,7 +65,7 @@ std::optional<Grabbed> MouseGrab::look(const glm::dvec2& pixel, const OrbitCamer
                                        const glm::ivec2& picture, const BodySnapshot& world,
                                        const std::vector<LentHand*>& lent) const {
   std::optional<Grabbed> found;
-  double nearest = kReach;
+  double nearest = kGrabReach;
   for (std::size_t i = 0; i < lent.size() && i < world.grips.size(); ++i) {
     if (lent[i] == nullptr) continue;
     const glm::dvec3 place = world.grips[i].handle.position;

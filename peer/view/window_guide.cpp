@@ -11,7 +11,7 @@ namespace slosh {
 namespace {
 
 constexpr double kSaidSeconds = 5.0;
-constexpr float kMargin = 8.0f;
+constexpr float kGuideMargin = 8.0f;
 constexpr float kHintHeight = 0.25f;  // of the picture, at most
 constexpr float kRing = 20.0f;  // px, as far as a press reaches (mouse_grab.cpp)
 constexpr ImGuiWindowFlags kPanel = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
@@ -45,12 +45,12 @@ struct TextPanel {
 
 /// Where a line of `size` lies: at the bottom in the middle, else in a corner there, else above what is there.
 glm::vec2 hint_place(const glm::vec2& size, const glm::vec2& picture, std::span<const Rect> taken, const glm::vec2& now) {
-  const glm::vec2 low(0.5f * (picture.x - size.x), picture.y - size.y - kMargin);
+  const glm::vec2 low(0.5f * (picture.x - size.x), picture.y - size.y - kGuideMargin);
   float above = low.y;
   for (const Rect& rect : taken)
-    if (rect.high.y > low.y) above = std::min(above, rect.low.y - size.y - kMargin);
-  const std::array places{low, glm::vec2(picture.x - size.x - kMargin, low.y), glm::vec2(kMargin, low.y),
-                          glm::vec2(low.x, std::max(above, kMargin))};
+    if (rect.high.y > low.y) above = std::min(above, rect.low.y - size.y - kGuideMargin);
+  const std::array places{low, glm::vec2(picture.x - size.x - kGuideMargin, low.y), glm::vec2(kGuideMargin, low.y),
+                          glm::vec2(low.x, std::max(above, kGuideMargin))};
   return place_panel(size, places, taken, now);
 }
 
@@ -150,7 +150,7 @@ void WindowGuide::draw(const GuideFacts& facts, double wall_seconds, std::span<c
   }
   if (show_all) {
     const std::string keys = all_keys(facts, keys_);
-    const TextPanel panel(keys, picture - 2.0f * kMargin);
+    const TextPanel panel(keys, picture - 2.0f * kGuideMargin);
     panel.draw("keys", 0.5f * (picture - panel.size), 0.92f);
   }
   std::string line = hint(facts);
@@ -161,7 +161,7 @@ void WindowGuide::draw(const GuideFacts& facts, double wall_seconds, std::span<c
   }
   if (wall_seconds < until_) line = line.empty() ? said_ : said_ + "\n" + line;
   if (line.empty() || show_all) return;
-  const TextPanel panel(line, {picture.x - 2.0f * kMargin, kHintHeight * picture.y});
+  const TextPanel panel(line, {picture.x - 2.0f * kGuideMargin, kHintHeight * picture.y});
   hint_at_ = hint_place(panel.size, picture, taken, hint_at_);
   panel.draw("hint", hint_at_, 0.7f);
 }

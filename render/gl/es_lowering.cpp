@@ -10,7 +10,7 @@
 namespace slosh {
 namespace {
 
-bool is_word(char c) {
+bool is_name_sign(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
 }
 
@@ -31,7 +31,7 @@ void replace_indexed(std::string& text, std::string_view before, std::string_vie
                      const std::function<std::optional<std::string>(std::string_view)>& made) {
   const std::string wanted = std::string(before) + std::string(name) + "[";
   for (std::size_t at = text.find(wanted); at != std::string::npos; at = text.find(wanted, at + 1)) {
-    if (at > 0 && is_word(text[at - 1])) continue;
+    if (at > 0 && is_name_sign(text[at - 1])) continue;
     const std::size_t open = at + wanted.size() - 1;
     const std::size_t close = closing(text, open);
     if (close == std::string::npos || text.compare(close + 1, after.size(), after) != 0) continue;

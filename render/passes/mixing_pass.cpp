@@ -9,7 +9,7 @@ namespace slosh {
 namespace {
 
 /// How far a particle counts, particle radii: some two particles to each side of a boundary.
-constexpr float kReach = 3.6f;
+constexpr float kMixingReach = 3.6f;
 /// First texture unit of fluid_look.frag's shares.
 constexpr GLuint kSharesUnit = 12;
 
@@ -67,7 +67,7 @@ void MixingPass::draw(const Frame& frame, const Targets& targets, const gl::Text
   make_shares(size, layers);
   const gl::Program& program = sum_.on_compute() ? rows_.of(count) : program_;
   program.set("pixels", size == targets.half_size ? 2 : 4);
-  program.set("radius", kReach * frame.particle_radius);
+  program.set("radius", kMixingReach * frame.particle_radius);
   gl::bind_textures({&smoothed});
   for (std::size_t i = 0; i < static_cast<std::size_t>(layers); ++i) {
     program.set("first", 4 * static_cast<int>(i));

@@ -14,35 +14,35 @@ namespace {
 
 constexpr std::size_t kWorthAThread = 4000;  // particles: some 2 ms of work
 
-constexpr int kWide =
+constexpr int kTileWide =
     16;  // neighbours side by side: loops over them are plain, so that the compiler makes them wide
-using Lanes = std::array<float, kWide>;
+using TileLanes = std::array<float, kTileWide>;
 
 /// Particles that lie one after the other in memory.
 struct Run {
   std::uint32_t first, end;
 };
 
-float total(Lanes lanes) {
-  for (int half = kWide / 2; half > 0; half /= 2) {
+float total(TileLanes lanes) {
+  for (int half = kTileWide / 2; half > 0; half /= 2) {
     for (int i = 0; i < half; ++i) lanes[i] += lanes[i + half];
   }
   return lanes[0];
 }
 
-/// Of all in `runs` that lie within reach of `at`. Up to kWide - 1 places behind a run are read.
+/// Of all in `runs` that lie within reach of `at`. Up to kTileWide - 1 places behind a run are read.
 shader::Neighbourhood neighbourhood_of(const std::array<std::vector<float>, 3>& places,
                                        std::span<const Run> runs, const glm::vec3& at, float reach) {
   const float inverse = 1.0f / reach;
   const float squared_reach = reach * reach;
-  Lanes w{}, x{}, y{}, z{}, xx{}, yy{}, zz{}, xy{}, yz{}, zx{};
+  TileLanes w{}, x{}, y{}, z{}, xx{}, yy{}, zz{}, xy{}, yz{}, zx{};
   for (const Run& run : runs) {
-    for (std::uint32_t k = run.first; k < run.end; k += kWide) {
+    for (std::uint32_t k = run.first; k < run.end; k += kTileWide) {
       const float* px = &places[0][k];
       const float* py = &places[1][k];
       const float* pz = &places[2][k];
       const int here = static_cast<int>(run.end - k);
-      for (int i = 0; i < kWide; ++i) {
+      for (int i = 0; i < kTileWide; ++i) {
         const float dx = px[i] - at.x;
         const float dy = py[i] - at.y;
         const float dz = pz[i] - at.z;
@@ -136,7 +136,7 @@ void SmoothCenters::sort(const Frame& frame) {
     ++kept;
   }
   std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
-  for (auto& column : at_) column.assign(kept + kWide, 0.0f);
+  for (auto& column : at_) column.assign(kept + kTileWide, 0.0f);
   // Filled from each cell's end downwards; afterwards begin_[c + 1] is where c begins.
   for (std::size_t i = count; i-- > 0;) {
     if (cell_[i] == kNone) continue;

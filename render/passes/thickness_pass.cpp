@@ -6,7 +6,7 @@ namespace slosh {
 namespace {
 
 /// Radius of a summed sphere over a particle's: wide enough that the sum of a few layers is even.
-constexpr float kWide = 1.5f;
+constexpr float kChordWide = 1.5f;
 /// Optical depth of four particle radii above which a channel shows nothing of what is behind.
 constexpr float kOpaque = 5.0f;
 
@@ -39,7 +39,7 @@ Result<ThicknessPass> ThicknessPass::create(bool compute) {
 }
 
 void ThicknessPass::set_up(const gl::Program& program, const Frame& frame, const Targets& targets) {
-  program.set("sphere", glm::vec2(kWide * frame.particle_radius, frame.particle_radius));
+  program.set("sphere", glm::vec2(kChordWide * frame.particle_radius, frame.particle_radius));
   // Of the picture's pixels in one of its own, along a side.
   program.set("pixels", targets.chord_size == targets.half_size ? 2 : 4);
   gl::bind_textures({&targets.scene_depth});

@@ -19,7 +19,7 @@
 namespace slosh::reference {
 namespace {
 
-constexpr int kMostTurns = 96;       // of one path
+constexpr int kMostPathTurns = 96;       // of one path
 constexpr float kLightSize = 0.99f;  // cosine of the light's half angle as a mirror shows it
 
 /// Single-scattering albedo of a medium whose deep layers send `back` of the light back (Chiang, Kutz &
@@ -50,7 +50,7 @@ class Tracer {
     int fluid = -1;            // that the path is in
     bool scattered = false;    // in it
     bool mirror_chain = true;  // from the eye on: the light itself is to be seen
-    for (int turn = 0; turn < kMostTurns; ++turn) {
+    for (int turn = 0; turn < kMostPathTurns; ++turn) {
       const Hit hit = scene_.nearest(from, way);
       if (fluid >= 0) {
         const float distance = walk(fluid, hit.distance, share, random);

@@ -12,7 +12,7 @@
 namespace slosh::report {
 namespace {
 
-const glm::dvec3 kInner(0.2, 0.16, 0.2);
+const glm::dvec3 kTankInner(0.2, 0.16, 0.2);
 constexpr double kFill = 0.1;
 constexpr double kWall = 0.05;
 
@@ -21,7 +21,7 @@ constexpr double kWall = 0.05;
 struct Depths {
   static constexpr double kShallow = 0.03, kDeep = 0.07;  // m under the level of its mass at rest density
 
-  Depths(Scene scene, const Trial& trial) : level(trial.fluid_mass() / (1000.0 * kInner.x * kInner.z)) {
+  Depths(Scene scene, const Trial& trial) : level(trial.fluid_mass() / (1000.0 * kTankInner.x * kTankInner.z)) {
     for (const double depth : {kShallow, kDeep}) scene.gauges.push_back({"", -1, {0.0, level - depth, 0.0}});
     instruments = std::make_unique<Instruments>(scene, trial.sampled());
   }
@@ -42,8 +42,8 @@ struct Depths {
 std::vector<Reading> still_tank(const Setting& setting, Cost& cost) {
   SceneBuilder b;
   b.add_fluid(1000.0, 0.05);
-  const int tank = b.add_fixed("tank", tank_at_floor(kInner, kWall));
-  b.add_volume(make::box({-0.5 * kInner.x, 0.0, -0.5 * kInner.z}, {0.5 * kInner.x, kFill, 0.5 * kInner.z}));
+  const int tank = b.add_fixed("tank", tank_at_floor(kTankInner, kWall));
+  b.add_volume(make::box({-0.5 * kTankInner.x, 0.0, -0.5 * kTankInner.z}, {0.5 * kTankInner.x, kFill, 0.5 * kTankInner.z}));
   b.set_domain({-0.3, -0.2, -0.3}, {0.3, 0.4, 0.3});
   Trial t(b.scene, setting, cost);
   t.settle(0.6);
@@ -55,9 +55,9 @@ std::vector<Reading> still_tank(const Setting& setting, Cost& cost) {
     if (t.bodies().tick % 10 == 0) depths.look(t.world());
   });
   // The sampler fills whole layers only: the level to expect is that of the mass there is.
-  const double expected = t.fluid_mass() / (1000.0 * kInner.x * kInner.z);
-  const double level = surface_level(t.picture(), {-0.5 * kInner.x, -0.5 * kInner.z},
-                                     {0.5 * kInner.x, 0.5 * kInner.z}, setting.spacing);
+  const double expected = t.fluid_mass() / (1000.0 * kTankInner.x * kTankInner.z);
+  const double level = surface_level(t.picture(), {-0.5 * kTankInner.x, -0.5 * kTankInner.z},
+                                     {0.5 * kTankInner.x, 0.5 * kTankInner.z}, setting.spacing);
   const double shallow = Depths::at(Depths::kShallow), deep = Depths::at(Depths::kDeep);
   return {{"level", "m", level, expected, 0.0, true},
           {"pressure at 70 mm", "Pa", depths.deep.mean(), deep, 0.0, true},
@@ -82,14 +82,14 @@ std::vector<Reading> still_syrup(const Setting& setting, Cost& cost) {
 
 // A tank of five bodies: each side carries ½ρgh²w, at a third of the depth above the floor.
 std::vector<Reading> tank_faces(const Setting& setting, Cost& cost) {
-  const double x = 0.5 * kInner.x, z = 0.5 * kInner.z, t = kWall;
+  const double x = 0.5 * kTankInner.x, z = 0.5 * kTankInner.z, t = kWall;
   SceneBuilder b;
   b.add_fluid(1000.0, 0.05);
   b.add_fixed("floor", make::box({-x - t, -t, -z - t}, {x + t, 0.0, z + t}));
-  b.add_fixed("left", make::box({-x - t, 0.0, -z - t}, {-x, kInner.y, z + t}));
-  b.add_fixed("right", make::box({0.0, 0.0, -z - t}, {t, kInner.y, z + t}), {{x, 0.0, 0.0}, {1, 0, 0, 0}});
-  b.add_fixed("back", make::box({-x, 0.0, -z - t}, {x, kInner.y, -z}));
-  b.add_fixed("front", make::box({-x, 0.0, z}, {x, kInner.y, z + t}));
+  b.add_fixed("left", make::box({-x - t, 0.0, -z - t}, {-x, kTankInner.y, z + t}));
+  b.add_fixed("right", make::box({0.0, 0.0, -z - t}, {t, kTankInner.y, z + t}), {{x, 0.0, 0.0}, {1, 0, 0, 0}});
+  b.add_fixed("back", make::box({-x, 0.0, -z - t}, {x, kTankInner.y, -z}));
+  b.add_fixed("front", make::box({-x, 0.0, z}, {x, kTankInner.y, z + t}));
   b.add_volume(make::box({-x, 0.0, -z}, {x, kFill, z}));
   b.set_domain({-0.3, -0.2, -0.3}, {0.3, 0.4, 0.3});
   Trial e(b.scene, setting, cost);
@@ -102,8 +102,8 @@ std::vector<Reading> tank_faces(const Setting& setting, Cost& cost) {
     right.add(bodies[2].fluid.force.x);
     moment.add(-bodies[2].fluid.torque.z);  // about the wall's lower edge
   });
-  const double depth = e.fluid_mass() / (1000.0 * kInner.x * kInner.z);
-  const double side = 0.5 * 1000.0 * kGravity * depth * depth * kInner.z;
+  const double depth = e.fluid_mass() / (1000.0 * kTankInner.x * kTankInner.z);
+  const double side = 0.5 * 1000.0 * kGravity * depth * depth * kTankInner.z;
   return {{"floor", "N", down.mean(), e.fluid_mass() * kGravity, 0.0, true},
           {"side walls, mean", "N", 0.5 * (left.mean() + right.mean()), side, 0.0, false},
           {"centre of pressure above the floor", "m", moment.mean() / right.mean(), depth / 3.0, 0.0, false}};

@@ -7,14 +7,14 @@
 namespace slosh::report {
 namespace {
 
-constexpr double kWall = 0.014;  // the shipped vessels'
+constexpr double kThinWall = 0.014;  // the shipped vessels'
 
 // Where the surface stands in a glass says how wide the glass is for the fluid.
 Reading level_in_glass(const Setting& setting, Cost& cost) {
   constexpr double kRadius = 0.06, kDepth = 0.08, kSquare = 0.03;
   SceneBuilder b;
   b.add_fluid(1000.0, 0.05);
-  b.add_fixed("glass", glass_of(kRadius, kDepth + 0.04, kWall));
+  b.add_fixed("glass", glass_of(kRadius, kDepth + 0.04, kThinWall));
   b.add_volume(filling_of(kRadius, kDepth));
   b.set_domain({-0.2, -0.2, -0.2}, {0.2, 0.5, 0.2});
   Trial t(b.scene, setting, cost);
@@ -37,7 +37,7 @@ Reading lift_of_plate(const Setting& setting, Cost& cost) {
   b.add_fluid(1000.0, 0.1);
   b.add_fixed("tank", tank_at_floor({kTank, 0.25, kTank}, 0.05));
   const make::Solid solid =
-      make::box({-0.5 * kPlate, -0.5 * kWall, -0.5 * kPlate}, {0.5 * kPlate, 0.5 * kWall, 0.5 * kPlate});
+      make::box({-0.5 * kPlate, -0.5 * kThinWall, -0.5 * kPlate}, {0.5 * kPlate, 0.5 * kThinWall, 0.5 * kPlate});
   const int plate = b.add_fixed("plate", solid, {{0.0, 0.06, 0.0}, {1, 0, 0, 0}});
   b.add_volume(make::box({-0.5 * kTank, 0.0, -0.5 * kTank}, {0.5 * kTank, kFill, 0.5 * kTank}));
   b.set_domain({-0.3, -0.2, -0.3}, {0.3, 0.5, 0.3});

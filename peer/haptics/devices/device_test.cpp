@@ -12,8 +12,8 @@
 namespace slosh {
 namespace {
 
-constexpr double kPeriod = 0.001;  // s
-constexpr double kTwoPi = 6.283185307179586;
+constexpr double kTestPeriod = 0.001;  // s
+constexpr double kFullTurn = 6.283185307179586;
 constexpr double kRest = 0.3;  // s without a push between two axes
 constexpr double kRamp = 1.0;  // s
 constexpr double kLeastTravel = 1e-6;
@@ -24,7 +24,7 @@ double push_at(double time, double seconds) {
   const double ramp = std::min({time / kRamp, (seconds - time) / kRamp, 1.0});
   if (ramp <= 0.0) return 0.0;
   const double gentle = ramp * ramp * (3.0 - 2.0 * ramp);
-  return gentle * (0.6 * std::sin(kTwoPi * 0.5 * time) + 0.4 * std::sin(kTwoPi * 2.3 * time));
+  return gentle * (0.6 * std::sin(kFullTurn * 0.5 * time) + 0.4 * std::sin(kFullTurn * 2.3 * time));
 }
 
 double along(const glm::dvec3& v, std::size_t axis) {
@@ -62,7 +62,7 @@ class Run {
   /// Reads; false when the test is to end or there is nothing new.
   bool read(DeviceReport& report) {
     if (over_()) return stop("it was interrupted");
-    report = device_.read({time_, kPeriod});
+    report = device_.read({time_, kTestPeriod});
     const std::int64_t now_ns = steady_now_ns();
     if (!report.heard || !is_sound(report)) {
       if (to_seconds(now_ns - heard_ns_) > kTestSilence) return stop("the device says nothing");
@@ -83,11 +83,11 @@ class Run {
   }
   void pass() {
     if (!paced_) {
-      time_ += kPeriod;
+      time_ += kTestPeriod;
       return;
     }
     const std::int64_t now_ns = steady_now_ns();
-    next_ns_ = std::max(next_ns_ + to_nanoseconds(kPeriod), now_ns - to_nanoseconds(kPeriod));
+    next_ns_ = std::max(next_ns_ + to_nanoseconds(kTestPeriod), now_ns - to_nanoseconds(kTestPeriod));
     sleep_until_ns(next_ns_);
     time_ = to_seconds(steady_now_ns() - began_ns_);
   }

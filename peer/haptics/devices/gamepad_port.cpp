@@ -31,7 +31,7 @@ std::mutex& claims_mutex() {
   static std::mutex mutex;
   return mutex;
 }
-std::set<std::string>& claims() {
+std::set<std::string>& gamepad_claims() {
   static std::set<std::string> all;
   return all;
 }
@@ -99,7 +99,7 @@ std::vector<GamepadFound> find_gamepads() {
 
 bool GamepadPort::claimed(const std::string& path) {
   const std::lock_guard lock(claims_mutex());
-  return claims().count(path) > 0;
+  return gamepad_claims().count(path) > 0;
 }
 
 GamepadPort::GamepadPort(int node, libevdev* device, std::string path)
@@ -113,18 +113,18 @@ GamepadPort::GamepadPort(GamepadPort&& other) noexcept
 }
 
 GamepadPort::~GamepadPort() {
-  if (node_ < 0) return;  // moved from: open() still holds the claims then
+  if (node_ < 0) return;  // moved from: open() still holds the gamepad_claims then
   libevdev_free(device_);
   ::close(node_);
   const std::lock_guard lock(claims_mutex());
-  claims().erase(path_);
+  gamepad_claims().erase(path_);
 }
 
 Result<GamepadPort> GamepadPort::open(const std::string& path) {
   const Result<bool> may = check_node_access(path, R_OK);
   if (!may) return may.error();
   const std::lock_guard lock(claims_mutex());
-  if (claims().count(path) > 0)
+  if (gamepad_claims().count(path) > 0)
     return Error{path, "another hand has it already", "Give each hand its own device, or none by name"};
   const int node = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   if (node < 0) return Error{path, std::strerror(errno), "Plug the device in again"};
@@ -140,7 +140,7 @@ Result<GamepadPort> GamepadPort::open(const std::string& path) {
     ::close(node);
     return Error{path, "it is no gamepad", "`./slosh devices` lists those that are"};
   }
-  claims().insert(path);
+  gamepad_claims().insert(path);
   return GamepadPort(node, device, path);
 }
 

@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kStill = 0.15;         // s for which both have been where they are
 constexpr double kStillWithin = 0.004;  // m
-constexpr double kCloses = 0.6;         // of the button's way; opens below kOpens
-constexpr double kOpens = 0.4;
+constexpr double kGraspCloses = 0.6;         // of the button's way; opens below kGraspOpens
+constexpr double kGraspOpens = 0.4;
 
 using Matrix4 = std::array<std::array<double, 4>, 4>;
 
@@ -196,7 +196,7 @@ TouchPlaces::Heard TouchPlaces::follow(double time, const std::optional<glm::dve
     const HandReading& hand = *hands[side];
     const bool was = closed_[side];
     const double pulled = static_cast<double>(std::max(hand.squeeze, hand.trigger));
-    closed_[side] = hand.tracked ? pulled > (was ? kOpens : kCloses) : was;
+    closed_[side] = hand.tracked ? pulled > (was ? kGraspOpens : kGraspCloses) : was;
     if (was || !closed_[side] || complete() || heard != Heard::kNothing) continue;
     const bool still =
         tip && time - seen_.front().time >= kStill && std::ranges::all_of(seen_, [&](const Seen& before) {

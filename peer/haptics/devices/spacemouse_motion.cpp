@@ -6,10 +6,10 @@
 namespace slosh {
 namespace {
 
-constexpr double kMostElapsed = 0.05;  // s: a machine that stood still does not throw the hand
+constexpr double kMostMouseElapsed = 0.05;  // s: a machine that stood still does not throw the hand
 constexpr double kStep = 0.001;        // s, of the filters
 
-bool held(std::uint32_t buttons, int number) {
+bool button_down(std::uint32_t buttons, int number) {
   return number > 0 && (buttons >> (number - 1) & 1u) != 0;
 }
 
@@ -57,8 +57,8 @@ void SpaceMouseMotion::follow_place(const Twist& deflection, double dt) noexcept
 }
 
 void SpaceMouseMotion::advance(const SpaceMouseState& state, double seconds) noexcept {
-  const bool clutched = held(state.buttons, settings_.clutch_button);
-  engaged_ = settings_.deadman_button == 0 || held(state.buttons, settings_.deadman_button);
+  const bool clutched = button_down(state.buttons, settings_.clutch_button);
+  engaged_ = settings_.deadman_button == 0 || button_down(state.buttons, settings_.deadman_button);
   const Twist wanted = clutched ? Twist{} : deflection(state);
   if (clutched_ && !clutched) {
     // The place that the cap stands for by now is where the hand is.
@@ -66,7 +66,7 @@ void SpaceMouseMotion::advance(const SpaceMouseState& state, double seconds) noe
     center_.orientation = rotate_by(pose_.orientation, -settings_.turn * wanted.angular);
   }
   clutched_ = clutched;
-  double left = std::clamp(seconds, 0.0, kMostElapsed);
+  double left = std::clamp(seconds, 0.0, kMostMouseElapsed);
   while (left > 0.0) {
     const double dt = std::min(left, kStep);
     left -= dt;

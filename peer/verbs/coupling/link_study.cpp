@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kSeconds = 9.0;        // simulated; the bucket is tilted to both sides in it
-constexpr double kBroken = 999.0;       // N: a simulated person's device gives 1000
+constexpr double kBrokenLink = 999.0;       // N: a simulated person's device gives 1000
 constexpr double kHums = 0.3;           // N from row to row: more is no carrying
 constexpr double kLinks = 60.0;          // s that the host has for its links
 constexpr double kGoodbye = 10.0;        // s that a person has once the host has ended
@@ -75,7 +75,7 @@ void note_felt(const Felt& felt, LinkRow& row) {
   }
   row.carried /= std::max(carried, 1);
   row.row_step /= std::max(last, 1);
-  row.verdict = row.peak > kBroken     ? Verdict::kDiverged
+  row.verdict = row.peak > kBrokenLink     ? Verdict::kDiverged
                 : row.row_step > kHums ? Verdict::kLimitCycle
                                        : Verdict::kStable;
 }

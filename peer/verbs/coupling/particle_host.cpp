@@ -9,7 +9,7 @@ namespace slosh::coupling {
 namespace {
 
 constexpr double kSettles = 2.0;  // s
-constexpr double kRounding = 1e-9;
+constexpr double kHostRounding = 1e-9;
 
 Scene held_by(const Case& c) {
   Scene scene = c.bucket->scene;
@@ -34,7 +34,7 @@ Plan plan_of(const Scene& scene, double spacing, double time_step) {
   Plan plan = make_plan(scene, spacing);
   const double own = plan.time_step / plan.sub_steps;
   plan.time_step = time_step;
-  plan.sub_steps = std::max(1, static_cast<int>(std::ceil(time_step / own - kRounding)));
+  plan.sub_steps = std::max(1, static_cast<int>(std::ceil(time_step / own - kHostRounding)));
   plan.max_speed = speed_limit(plan, time_step / plan.sub_steps);
   return plan;
 }

@@ -8,7 +8,7 @@
 namespace slosh::coupling {
 namespace {
 
-constexpr double kPeriod = 0.001;  // s, of the device loop
+constexpr double kResponsePeriod = 0.001;  // s, of the device loop
 constexpr double kNear = 1.5;      // Hz
 
 using Phasor = std::complex<double>;
@@ -16,8 +16,8 @@ using Phasor = std::complex<double>;
 /// Σ value(i)·e^(−2πi·f·t) over `count` ticks from `first` on, by a turning phasor.
 template <class Value>
 Phasor turned_sum(double frequency, std::size_t first, std::size_t count, Value&& value) {
-  const Phasor step = std::polar(1.0, -2.0 * std::numbers::pi * frequency * kPeriod);
-  Phasor turn = std::polar(1.0, -2.0 * std::numbers::pi * frequency * kPeriod * static_cast<double>(first));
+  const Phasor step = std::polar(1.0, -2.0 * std::numbers::pi * frequency * kResponsePeriod);
+  Phasor turn = std::polar(1.0, -2.0 * std::numbers::pi * frequency * kResponsePeriod * static_cast<double>(first));
   Phasor sum = 0.0;
   for (std::size_t i = first; i < first + count; ++i, turn *= step) sum += value(i) * turn;
   return sum;
@@ -37,7 +37,7 @@ std::vector<Impedance> impedance(const Outcome& run, int hands, const std::vecto
                                  double seconds) {
   const auto n = static_cast<std::size_t>(hands);
   const std::size_t ticks = std::min(run.handles.size(), run.felt.size() / n);
-  const auto count = std::min(static_cast<std::size_t>(std::lround(seconds / kPeriod)), ticks);
+  const auto count = std::min(static_cast<std::size_t>(std::lround(seconds / kResponsePeriod)), ticks);
   const std::size_t first = ticks - count;
   std::vector<Impedance> out;
   for (const double f : tones) {
@@ -62,8 +62,8 @@ double farthest_off(const std::vector<Impedance>& rendered, const std::vector<Im
 
 std::vector<Line> force_spectrum(const Outcome& run, int hands, double from, double to) {
   const auto n = static_cast<std::size_t>(hands);
-  const auto first = static_cast<std::size_t>(std::lround(from / kPeriod));
-  const std::size_t last = std::min(static_cast<std::size_t>(std::lround(to / kPeriod)), run.felt.size() / n);
+  const auto first = static_cast<std::size_t>(std::lround(from / kResponsePeriod));
+  const std::size_t last = std::min(static_cast<std::size_t>(std::lround(to / kResponsePeriod)), run.felt.size() / n);
   std::vector<Line> lines;
   if (last <= first) return lines;
   const std::size_t count = last - first;
@@ -77,8 +77,8 @@ std::vector<Line> force_spectrum(const Outcome& run, int hands, double from, dou
     windowed[i] = w * (run.felt[(first + i) * n].force.x - mean);
     weight += w;
   }
-  const double finest = 1.0 / (kPeriod * static_cast<double>(count));
-  for (double f = std::max(finest, 1.0); f < 0.5 / kPeriod; f += finest) {
+  const double finest = 1.0 / (kResponsePeriod * static_cast<double>(count));
+  for (double f = std::max(finest, 1.0); f < 0.5 / kResponsePeriod; f += finest) {
     const Phasor sum = turned_sum(f, 0, count, [&](std::size_t i) { return windowed[i]; });
     lines.push_back({f, 2.0 * std::abs(sum) / weight});
   }

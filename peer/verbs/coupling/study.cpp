@@ -134,7 +134,7 @@ std::unique_ptr<StudyHost> host_of(const Case& c, double time_step) {
 }
 
 /// A person, their device and their end of the link.
-struct Site {
+struct StudySite {
   std::unique_ptr<OperatorDevice> person;
   Way<HandWord> up;
   Way<StateWord> down;
@@ -172,7 +172,7 @@ class Study {
       const auto g = static_cast<std::size_t>(i);
       const Pose start = compose(at, host_.grips()[g]);
       known_[g].pose = start;
-      Site& site = *sites_.emplace_back(std::make_unique<Site>(Site{nullptr,
+      StudySite& site = *sites_.emplace_back(std::make_unique<StudySite>(StudySite{nullptr,
                                                                     Way<HandWord>(c, perfect_),
                                                                     Way<StateWord>(c, perfect_),
                                                                     {},
@@ -230,7 +230,7 @@ class Study {
     run_.generated = std::max(run_.generated, -put_in - std::max(host_.given(), 0.0));
   }
 
-  void read(Site& site) {
+  void read(StudySite& site) {
     const DeviceReport report = site.person->read({now_, kPeriod});
     site.put_in -=
         glm::dot(site.felt.force, report.pose.position - site.before.position) +
@@ -260,7 +260,7 @@ class Study {
     }
   }
 
-  void turn(Site& site, std::size_t g) {
+  void turn(StudySite& site, std::size_t g) {
     const bool fresh = site.down.receive(now_, site.state);
     if (fresh) {
       site.heard = now_;
@@ -285,7 +285,7 @@ class Study {
     site.person->write(felt);
   }
 
-  Wrench by_host(const Site& site, std::size_t g) const {
+  Wrench by_host(const StudySite& site, std::size_t g) const {
     if (scheme_ == Scheme::kHostForce) return site.state.on_hand[g];
     const double on = perfect_ ? 0.0 : std::min(now_ - site.heard, 2.0 * time_step_);
     const RigidMotion& body = site.state.motion;
@@ -296,7 +296,7 @@ class Study {
     return coupling_wrench_on_hand(host_.gains(), site.hand.pose, site.hand.twist, grip, twist);
   }
 
-  Wrench by_replica(Site& site, std::size_t g, bool fresh) {
+  Wrench by_replica(StudySite& site, std::size_t g, bool fresh) {
     HeldBody& held = *site.held;
     if (fresh) tell(site, g);
     OwnHand& own = site.own[g];
@@ -319,7 +319,7 @@ class Study {
     return felt;
   }
 
-  void tell(Site& site, std::size_t g) {
+  void tell(StudySite& site, std::size_t g) {
     said_.assign(site.state.hands.size(), {});
     for (std::size_t j = 0; j < said_.size(); ++j) {
       const HandWord& hand = site.state.hands[j];
@@ -347,7 +347,7 @@ class Study {
   std::unique_ptr<StudyHost> made_;
   StudyHost& host_;
   std::vector<HandWord> known_;
-  std::vector<std::unique_ptr<Site>> sites_;
+  std::vector<std::unique_ptr<StudySite>> sites_;
   std::vector<HostHand> said_;
   std::mt19937_64 random_{7};
   double now_ = 0.0;

@@ -8,7 +8,7 @@
 namespace slosh::coupling {
 namespace {
 
-constexpr double kPeriod = 0.001;  // s, of a step
+constexpr double kSplitPeriod = 0.001;  // s, of a step
 constexpr double kAbout = 0.01;    // s over which a velocity's change is taken
 constexpr double kLittle = 1e-9;
 
@@ -46,14 +46,14 @@ struct Axis {
 
 Axis axis_of(const WaterRun& run, int axis) {
   Axis a;
-  const auto about = static_cast<std::ptrdiff_t>(std::lround(0.5 * kAbout / kPeriod));
+  const auto about = static_cast<std::ptrdiff_t>(std::lround(0.5 * kAbout / kSplitPeriod));
   const auto count = static_cast<std::ptrdiff_t>(run.steps.size());
   const auto speed = [&](std::ptrdiff_t i) {
     return run.steps[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(i, 0, count - 1))].motion.twist.linear[axis];
   };
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     a.speed.push_back(speed(i));
-    a.pace.push_back((speed(i + about) - speed(i - about)) / (2.0 * static_cast<double>(about) * kPeriod));
+    a.pace.push_back((speed(i + about) - speed(i - about)) / (2.0 * static_cast<double>(about) * kSplitPeriod));
     a.force.push_back(run.steps[static_cast<std::size_t>(i)].fluid.force[axis]);
   }
   return a;
@@ -62,7 +62,7 @@ Axis axis_of(const WaterRun& run, int axis) {
 /// What a mode does on a body that goes as `a` does: its force and what it lifts, a kg.
 void swing(const Axis& a, const SloshMode& mode, std::vector<double>& force, std::vector<double>& lift) {
   SloshState s;
-  const SloshStep step(mode.pace, mode.damping, kPeriod);
+  const SloshStep step(mode.pace, mode.damping, kSplitPeriod);
   force.assign(a.speed.size(), 0.0);
   lift.assign(a.speed.size(), 0.0);
   for (std::size_t i = 1; i < a.speed.size(); ++i) {
@@ -75,7 +75,7 @@ void swing(const Axis& a, const SloshMode& mode, std::vector<double>& force, std
 }  // namespace
 
 WaterSplit split_water(const WaterRun& run) {
-  const auto begin = static_cast<std::size_t>(kWaterBegins / kPeriod);
+  const auto begin = static_cast<std::size_t>(kWaterBegins / kSplitPeriod);
   double rigid = 0.0, modes = 0.0, level = 0.0, lifts = 0.0;
   std::vector<double> force, lift, lift_x, lift_z, best_force, best_lift, up_force;
   for (const int axis : {0, 2, 1}) {

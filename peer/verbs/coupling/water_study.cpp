@@ -18,16 +18,16 @@
 namespace slosh::coupling {
 namespace {
 
-constexpr double kPeriod = 0.001;      // s, of a device's tick and of a step
-constexpr double kMoves = kWaterStops - kWaterBegins;
+constexpr double kWaterPeriod = 0.001;      // s, of a device's tick and of a step
+constexpr double kWaterMoves = kWaterStops - kWaterBegins;
 constexpr double kSwells = 0.5;        // s, at the begin and the end of the way
 constexpr double kMostDamping = 100.0;  // N·s/m that the device holds
 
 std::vector<PoseKey> keys_of(const WaterCase& c, const Pose& start) {
   const WaterWay way = way_of(c);
   std::vector<PoseKey> keys;
-  for (double u = 0.0; u <= kMoves + 1e-9; u += 0.005) {
-    const double in = std::clamp(std::min(u, kMoves - u) / kSwells, 0.0, 1.0);
+  for (double u = 0.0; u <= kWaterMoves + 1e-9; u += 0.005) {
+    const double in = std::clamp(std::min(u, kWaterMoves - u) / kSwells, 0.0, 1.0);
     const double place = (way.reach + c.nudge) * in * in * (3.0 - 2.0 * in) * std::sin(2.0 * std::numbers::pi * way.pace * u);
     PoseKey& key = keys.emplace_back();
     key.time = kWaterBegins + u;
@@ -90,8 +90,8 @@ class Host {
   static Plan plan_of(const Scene& scene, double spacing) {
     Plan plan = make_plan(scene, spacing);
     plan.sub_steps = 1;
-    plan.time_step = kPeriod;
-    plan.max_speed = speed_limit(plan, kPeriod);
+    plan.time_step = kWaterPeriod;
+    plan.max_speed = speed_limit(plan, kWaterPeriod);
     return plan;
   }
   const Scene& scene_;
@@ -120,8 +120,8 @@ class Site {
       load.trust_angle = step.model.trust_angle;
       held_.set_fluid(load);
     }
-    const HostHand said{true, step.handle, step.on_hand, to_nanoseconds(step.time + kPeriod) + 1, true, 0.0};
-    held_.hear({to_nanoseconds(now) + 1, step.time + kPeriod, kPeriod, step.motion, {&said, 1}, 1.0, true, step.fluid});
+    const HostHand said{true, step.handle, step.on_hand, to_nanoseconds(step.time + kWaterPeriod) + 1, true, 0.0};
+    held_.hear({to_nanoseconds(now) + 1, step.time + kWaterPeriod, kWaterPeriod, step.motion, {&said, 1}, 1.0, true, step.fluid});
   }
   Wrench tick(const DeviceReport& hand, double now) {
     own_[0].engaged = true;
@@ -131,10 +131,10 @@ class Site {
     if (held_.started()) {
       const GripState grip = held_.grip(0);
       felt = held_.guard(0, coupling_wrench_on_hand(gains_, hand.pose, hand.twist, grip.pose, grip.twist), hand.pose,
-                         hand.twist, kPeriod, kMostDamping);
+                         hand.twist, kWaterPeriod, kMostDamping);
     }
     held_.sent(0, felt);
-    held_.advance(own_, kPeriod, to_nanoseconds(now + kPeriod) + 1);
+    held_.advance(own_, kWaterPeriod, to_nanoseconds(now + kWaterPeriod) + 1);
     return felt;
   }
   const HeldBody& held() const { return held_; }
@@ -151,7 +151,7 @@ class WentDevice final : public Device {
  public:
   explicit WentDevice(const std::vector<DeviceReport>& went) : went_(went) {}
   DeviceReport read(const DeviceMoment& moment) override {
-    return went_.at(static_cast<std::size_t>(std::lround(moment.time / kPeriod)));
+    return went_.at(static_cast<std::size_t>(std::lround(moment.time / kWaterPeriod)));
   }
   DeviceLimits limits() const override { return limits_without_a_hand(); }
   bool gives_way() const override { return false; }
@@ -207,8 +207,8 @@ Result<WaterRun> run_hand(const WaterCase& c, const MakeHand& make_hand, std::si
   run.steps.resize(ticks);
   for (std::size_t i = 0; i < run.steps.size(); ++i) {
     WaterStep& step = run.steps[i];
-    step.time = kPeriod * static_cast<double>(i);
-    const DeviceReport report = hand.value()->read({step.time, kPeriod});
+    step.time = kWaterPeriod * static_cast<double>(i);
+    const DeviceReport report = hand.value()->read({step.time, kWaterPeriod});
     step.hand = report.pose;
     step.hand_twist = report.twist;
     step.felt = host.felt(report);
@@ -223,7 +223,7 @@ Result<WaterRun> run_hand(const WaterCase& c, const MakeHand& make_hand, std::si
 Result<WaterRun> run_water(const WaterCase& c) {
   return run_hand(
       c, [&](const Pose& start) { return hand_of(c, start); },
-      static_cast<std::size_t>(std::lround(kWaterEnds / kPeriod)));
+      static_cast<std::size_t>(std::lround(kWaterEnds / kWaterPeriod)));
 }
 
 Result<WaterRun> run_water_again(const WaterCase& c, const std::vector<DeviceReport>& went) {
@@ -234,12 +234,12 @@ Result<WaterRun> run_water_again(const WaterCase& c, const std::vector<DeviceRep
 
 Result<std::vector<Wrench>> feel_water(const WaterRun& reference, double round_trip,
                                        const ReplicaTuning& tuning, std::vector<DeviceReport>* went) {
-  const auto way = static_cast<std::size_t>(std::lround(0.5 * round_trip / kPeriod));
+  const auto way = static_cast<std::size_t>(std::lround(0.5 * round_trip / kWaterPeriod));
   std::vector<Wrench> felt(reference.steps.size());
   Site site(reference, tuning);
   if (reference.c.grip.empty()) {
     for (std::size_t i = 0; i < felt.size(); ++i) {
-      const double now = kPeriod * static_cast<double>(i);
+      const double now = kWaterPeriod * static_cast<double>(i);
       if (i >= 2 * way) site.hear(reference.steps[i - 2 * way], now);
       DeviceReport hand;
       hand.pose = reference.steps[i].hand;
@@ -258,11 +258,11 @@ Result<std::vector<Wrench>> feel_water(const WaterRun& reference, double round_t
   std::vector<DeviceReport> hands(felt.size());
   std::vector<WaterStep> steps(felt.size());
   for (std::size_t i = 0; i < felt.size(); ++i) {
-    const double now = kPeriod * static_cast<double>(i);
-    hands[i] = hand.value()->read({now, kPeriod});
+    const double now = kWaterPeriod * static_cast<double>(i);
+    hands[i] = hand.value()->read({now, kWaterPeriod});
     // The host hears of it a way later, and is heard of a way later again.
     if (i >= way) {
-      steps[i].time = kPeriod * static_cast<double>(i - way);
+      steps[i].time = kWaterPeriod * static_cast<double>(i - way);
       host.step(hands[i - way], steps[i]);
     }
     if (i >= 2 * way) site.hear(steps[i - way], now);
@@ -297,7 +297,7 @@ double water_error(const std::vector<Wrench>& felt, const WaterRun& reference, d
 }
 
 double late_error(const WaterRun& reference, double round_trip) {
-  const auto late = static_cast<std::size_t>(std::lround(round_trip / kPeriod));
+  const auto late = static_cast<std::size_t>(std::lround(round_trip / kWaterPeriod));
   std::vector<Wrench> felt;
   for (std::size_t i = 0; i < reference.steps.size(); ++i) felt.push_back(reference.steps[i - std::min(i, late)].felt);
   return water_error(felt, reference);
