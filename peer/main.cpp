@@ -1,191 +1,43 @@
-// The program `slosh`: reads the command line and runs one verb.
-#include <sys/stat.h>
+// The program `slosh`.
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <cerrno>
-#include <csignal>
 #include <cstdio>
-#include <cstring>
-#include <exception>
 #include <filesystem>
-#include <initializer_list>
-#include <memory>
 #include <string>
-#include <vector>
+#include <string_view>
 
-#include "net/text/clean.h"
-#include "net/text/nearest.h"
-#include "peer/install/version.h"
-#include "peer/remote/link_source.h"
-#include "peer/verbs/settings_in_force.h"
-#include "peer/verbs/uncaught.h"
-#include "peer/verbs/verbs.h"
-#include "peer/verbs/wrapped_help.h"
+#include "peer/verbs/program.h"
 
 namespace slosh {
 namespace {
 
-/// Options of `app` whose names are near to words that it did not know: "--headless, --seconds".
-std::string options_near(const CLI::App& app, const std::vector<std::string>& words) {
-  std::vector<std::string> known;
-  for (const CLI::Option* option : app.get_options())
-    for (const std::string& name : option->get_lnames()) known.push_back(name);
-  std::string all;
-  for (const std::string& word : words) {
-    if (!word.starts_with("--")) continue;
-    const std::string near = nearest_word(word.substr(2, word.find('=') - 2), known);
-    if (!near.empty()) all += (all.empty() ? "--" : ", --") + near;
-  }
-  return all;
-}
+constexpr std::array<std::string_view, 2> kLabVerbs{"report", "sweep"};
 
-/// Of words that `verb` did not know, what other verbs take them: "--headless is an option of play, join and watch. ".
-std::string options_elsewhere(const CLI::App& app, const CLI::App& verb, const std::vector<std::string>& words) {
-  std::string all;
-  for (const std::string& word : words) {
-    if (!word.starts_with("--")) continue;
-    const std::string name = word.substr(0, word.find('='));
-    std::string verbs;
-    std::size_t count = 0;
-    for (const CLI::App* other : app.get_subcommands({})) {
-      if (other == &verb || other->get_option_no_throw(name) == nullptr) continue;
-      verbs += (count++ == 0 ? "" : ", ") + other->get_name();
-    }
-    if (const std::size_t last = verbs.rfind(", "); last != std::string::npos) verbs.replace(last, 2, " and ");
-    if (count > 0) all += clean_text(name, kMostTextBytes) + " is an option of " + verbs + ". ";
-  }
-  return all;
-}
-
-int no_such_verb(const CLI::App& app, const char* word) {
-  std::vector<std::string> verbs;
-  for (const CLI::App* verb : app.get_subcommands({})) verbs.push_back(verb->get_name());
-  const std::string shown = clean_text(word, kMostTextBytes);
-  // Those that the launcher of a source tree does by itself.
-  constexpr std::array kLaunchers{"test", "bench", "python", "package", "format"};
-  if (std::find(kLaunchers.begin(), kLaunchers.end(), shown) != kLaunchers.end())
-    std::fprintf(stderr, "slosh: %s is done by the launcher ./slosh in the sources, not by the program. See `slosh --help`.\n",
-                 shown.c_str());
-  else
-    std::fprintf(stderr, "slosh: there is no verb '%s'. %sSee `slosh --help`.\n", shown.c_str(),
-                 did_you_mean(shown, verbs).c_str());
-  return kExitUsage;
-}
-
-/// Says what is wrong with the words behind a verb, or behind one of its own ("report error").
-int wrong_words(const CLI::App& app, const CLI::ParseError& error) {
-  const CLI::App* at = &app;
-  std::string verb;
-  for (; !at->get_subcommands().empty(); at = at->get_subcommands().front())
-    verb += at->get_subcommands().front()->get_name() + " ";
-  std::string what = clean_lines(error.what(), kMostTextBytes);
-  std::string near;
-  const std::vector<std::string> words = app.remaining(true);
-  std::vector<std::string> below;
-  for (const CLI::App* sub : at->get_subcommands({})) below.push_back(sub->get_name());
-  if (at != &app && !below.empty() && !words.empty() && !words[0].starts_with('-')) {
-    const std::string shown = clean_text(words[0], kMostTextBytes);
-    what = verb + "knows no '" + shown + "'";
-    near = did_you_mean(shown, below);
-  } else if (near = options_elsewhere(app, *at, words); near.empty()) {
-    const std::string alike = options_near(*at, words);
-    if (!alike.empty()) near = "Did you mean " + alike + "? ";
-  }
-  std::fprintf(stderr, "slosh: %s. %sSee `slosh %s--help`.\n", what.c_str(), near.c_str(), verb.c_str());
-  return kExitUsage;
-}
-
-/// What is printed may be what was asked for: where it could not be written the run has failed. Who reads no
-/// further (| head) has what they want.
-int with_all_printed(int code) {
-  const bool before = std::ferror(stdout) != 0;
-  errno = 0;
-  if (std::fflush(stdout) == 0 && !before) return code;
-  struct stat out {};
-  if (fstat(STDOUT_FILENO, &out) != 0 || S_ISFIFO(out.st_mode) || S_ISSOCK(out.st_mode)) return code;
-  std::fprintf(
-      stderr,
-      "slosh: standard output: not all could be written%s%s. Free some space, or write it elsewhere.\n",
-      errno != 0 ? ": " : "", errno != 0 ? std::strerror(errno) : "");
-  return code == kExitOk ? kExitFailed : code;
-}
-
-/// A file whose name begins with a dash is a file all the same: "-cup.glb" is read as "./-cup.glb".
-bool is_scene_file(const std::string& word) {
-  if (!word.starts_with('-') || word.find('=') != std::string::npos) return false;
-  std::string end = std::filesystem::path(word).extension().string();
-  for (char& c : end) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+/// The laboratory's verbs are slosh-lab's, which lies beside this program. Returns only where it does not.
+int run_lab(char** argv) {
   std::error_code code;
-  return (end == ".glb" || end == ".gltf") && std::filesystem::exists(word, code);
+  const auto lab = std::filesystem::read_symlink("/proc/self/exe", code).parent_path() / "slosh-lab";
+  execv(lab.c_str(), argv);
+  return fail({argv[1], "is done by the program slosh-lab, which is not at " + lab.string(),
+               "In the sources: ./slosh " + std::string(argv[1]) + " builds it"});
 }
 
-int run(int argc, char** shown) {
-  // Before anything takes time: everybody on this machine can read what a program was started with.
-  std::vector<std::string> words(shown, shown + argc);
-  hide_links(argc, shown);
-  std::vector<char*> argv;
-  for (std::string& word : words) {
-    if (!argv.empty() && is_scene_file(word)) word.insert(0, "./");
-    argv.push_back(word.data());
-  }
-  argv.push_back(nullptr);
-  CLI::App app("Touch simulated fluids together.", "slosh");
-  app.set_version_flag("--version", version_text);
-  app.require_subcommand(1);
-  app.formatter(std::make_shared<WrappedHelp>());
-  app.get_formatter()->column_width(34);
-  VerbRun chosen;
-  const bool names_a_verb = argc > 1 && argv[1][0] != '-';
-  add_play(app, chosen);
-  add_host(app, chosen);
-  add_join(app, chosen);
-  add_watch(app, chosen);
-  add_replay(app, chosen);
-  add_links(app, chosen);
-  add_devices(app, chosen);
-  add_scenes(app, chosen);
-  add_check(app, chosen);
-  add_plan(app, chosen);
-  add_sweep(app, chosen);
-  add_report(app, chosen);
-  SettingsFile settings = read_settings(settings_path());
-  add_settings(app, settings, chosen);
-  put_in_force(settings, app);
-  if (names_a_verb &&
-      app.get_subcommands([&](const CLI::App* sub) { return sub->check_name(argv[1]); }).empty())
-    return no_such_verb(app, argv[1]);
-  try {
-    app.parse(argc, argv.data());
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return with_all_printed(app.exit(error));  // --help, --version
-    return wrong_words(app, error);
-  }
-  // Wrong settings are said before anything is begun, and nothing is begun with half of them.
-  if (!settings.errors.empty() && !app.got_subcommand("settings")) {
-    for (const Error& error : settings.errors) fail(error);
-    std::fprintf(
-        stderr,
-        "slosh: nothing was begun. `slosh settings` shows them all; SLOSH_SETTINGS=none goes without.\n");
-    return kExitUsage;
-  }
-  return with_all_printed(chosen());
+/// So that --help lists them.
+void add_lab(CLI::App& app, VerbRun&) {
+  app.add_subcommand("sweep", kSweepAbout);
+  app.add_subcommand("report", kReportAbout);
 }
 
 }  // namespace
 }  // namespace slosh
 
 int main(int argc, char** argv) {
-  slosh::say_uncaught_cleanly();
-  // A child (ffmpeg) that dies must be an error to report, not the end of this program; so must a file that
-  // may grow no further (ulimit -f).
-  for (const int signal_number : {SIGPIPE, SIGXFSZ}) std::signal(signal_number, SIG_IGN);
-  try {
-    return slosh::run(argc, argv);
-  } catch (const std::exception& error) {
-    return slosh::fail_uncaught(error);
-  }
+  using namespace slosh;
+  if (argc > 1 && std::ranges::find(kLabVerbs, argv[1]) != kLabVerbs.end()) return run_lab(argv);
+  constexpr AddVerb kVerbs[] = {add_play,    add_host,   add_join,  add_watch, add_replay, add_links,
+                                add_devices, add_scenes, add_check, add_plan,  add_lab};
+  return run_program(kVerbs, argc, argv);
 }

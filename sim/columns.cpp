@@ -18,4 +18,12 @@ bool needs(const Plan& plan, ColumnNeed need) {
   return true;
 }
 
+double column_bytes(const Plan& plan) {
+  double bytes = 0.0;
+  for (const ColumnInfo& column : kFluidColumns) {
+    if (needs(plan, column.need)) bytes += static_cast<double>(column.bytes);
+  }
+  return plan.has_fluid() ? bytes : 0.0;
+}
+
 }  // namespace slosh

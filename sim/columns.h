@@ -100,6 +100,8 @@ inline constexpr std::array kFluidColumns{
 struct Plan;
 /// Whether a plan has such columns.
 bool needs(const Plan& plan, ColumnNeed need);
+/// Bytes that the fluid's columns take for a particle under a plan.
+double column_bytes(const Plan& plan);
 
 constexpr const ColumnInfo& info(FluidColumn column) {
   return kFluidColumns[static_cast<std::size_t>(column)];

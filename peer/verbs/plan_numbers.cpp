@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/report/passes.h"
 #include "peer/output/summary.h"
 #include "peer/verbs/time_estimate.h"
 #include "peer/view/foam.h"
 #include "scenes/sample.h"
+#include "sim/columns.h"
 #include "sim/fluid_extremes.h"
 #include "sim/math/format.h"
 #include "sim/step_limits.h"
@@ -39,9 +39,10 @@ std::string share_lines(const Scene& scene, const Plan& plan) {
                    std::sqrt(plan.stiffness) * step / plan.support_radius);
   if (plan.viscous() || corrects_gradients(plan.model)) {
     const FluidExtremes fluids = fluid_extremes(scene);
-    text += format("viscous number  %.2g (ν · step / spacing²), %.0f %% of the step that explicit viscosity allows\n",
-                   fluids.most_viscous / fluids.lightest * step / (plan.spacing * plan.spacing),
-                   100.0 * step / viscous_step(scene, plan, fluids));
+    text += format(
+        "viscous number  %.2g (ν · step / spacing²), %.0f %% of the step that explicit viscosity allows\n",
+        fluids.most_viscous / fluids.lightest * step / (plan.spacing * plan.spacing),
+        100.0 * step / viscous_step(scene, plan, fluids));
   }
   return text;
 }
@@ -71,7 +72,7 @@ std::string plan_numbers(const Scene& scene, const Plan& plan, double fluid, dou
   text += format("particles       about %s of fluid and %s of bodies\n",
                  grouped(static_cast<std::uint64_t>(fluid)).c_str(),
                  grouped(static_cast<std::uint64_t>(surface)).c_str());
-  const double bytes = report::bytes_a_particle(plan) * fluid + kSurfaceBytes * surface;
+  const double bytes = column_bytes(plan) * fluid + kSurfaceBytes * surface;
   text += format("memory          about %.3g MB for them\n", 1e-6 * bytes);
   return text;
 }

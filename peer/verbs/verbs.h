@@ -28,8 +28,12 @@ void add_devices(CLI::App& app, VerbRun& chosen);
 void add_scenes(CLI::App& app, VerbRun& chosen);
 void add_check(CLI::App& app, VerbRun& chosen);
 void add_plan(CLI::App& app, VerbRun& chosen);
+/// The laboratory's, in the program slosh-lab (tests/lab), with what --help says of them here and there.
 void add_sweep(CLI::App& app, VerbRun& chosen);
 void add_report(CLI::App& app, VerbRun& chosen);
+inline constexpr const char* kSweepAbout = "Run a scene with other values of its fields: one table, one plot";
+inline constexpr const char* kReportAbout =
+    "Measure: error against run time, stability, delays, passes, pictures, figures";
 /// `file` must outlive `chosen`.
 void add_settings(CLI::App& app, const SettingsFile& file, VerbRun& chosen);
 

@@ -50,7 +50,7 @@ class CurvatureFlow : public SurfaceFilter {
   gl::PixelProgram program_;
 };
 
-// Of Truong & Yuksel's, in splat radii; the best of those tried on analytic pools (render/score).
+// Of Truong & Yuksel's, in splat radii; the best of those tried on analytic pools (tests/lab/picture/score).
 constexpr float kReach = 3.8f;
 constexpr float kRange = 5.0f;
 

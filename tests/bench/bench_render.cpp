@@ -15,11 +15,11 @@
 #include <vector>
 
 #include "render/color/display_transform.h"
-#include "render/reference/path_tracer.h"
 #include "render/renderer.h"
 #include "tests/bench/render_stereo.h"
 #include "tests/bench/render_wishes.h"
 #include "tests/cross/on_gpu.h"
+#include "tests/lab/picture/reference/path_tracer.h"
 #include "tests/render/scene_kit.h"
 
 namespace {

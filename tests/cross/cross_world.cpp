@@ -1,7 +1,7 @@
 // The same worlds on the CPU and on the GPU (tests/cross/README.md). Prints every comparison with its
 // tolerance; exits 1 when one fails, 77 where there is no GPU.
-// Usage: cross_world [viscous|pressed|others|quick]: implicit viscosity alone, or pressures that are solved for, or
-// all but these, or single steps of each
+// Usage: cross_world [viscous|pressed|others|quick]: implicit viscosity alone, or pressures that are solved
+// for, or all but these, or single steps of each
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -9,8 +9,8 @@
 #include <optional>
 #include <string>
 
-#include "host/report/surface.h"
 #include "tests/cross/compare.h"
+#include "tests/lab/report/surface.h"
 
 namespace {
 
@@ -135,9 +135,9 @@ void compare_retired() {
               views[1]->sums.retired > 2 && views[1]->snapshot.fluid_index[0] == 255 &&
                   views[1]->snapshot.fluid_index[1] == 255 && views[1]->snapshot.fluid_index[2] == 0);
   expect_true("as many on both", views[0]->sums.retired == views[1]->sums.retired);
-  expect_true("as many spilled, as many lost",
-              views[0]->sums.spilled == views[1]->sums.spilled && views[0]->sums.lost == views[1]->sums.lost &&
-                  views[1]->sums.lost >= 1 && views[1]->sums.spilled > 1);
+  expect_true("as many spilled, as many lost", views[0]->sums.spilled == views[1]->sums.spilled &&
+                                                   views[0]->sums.lost == views[1]->sums.lost &&
+                                                   views[1]->sums.lost >= 1 && views[1]->sums.spilled > 1);
   expect_true("the same status", status[0] == status[1]);
   expect_true("energy stays finite", std::isfinite(views[1]->sums.kinetic_energy));
 }

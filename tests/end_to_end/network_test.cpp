@@ -13,8 +13,8 @@
 
 #include "hosted_test.h"
 #include "peer/output/plot.h"
-#include "peer/verbs/coupling/network_sites.h"
 #include "render/image.h"
+#include "tests/lab/coupling/network_sites.h"
 #include "tests/support/comes.h"
 #include "tests/support/network_here.h"
 

@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
-#include "peer/verbs/coupling/network_sites.h"
 #include "process.h"
+#include "tests/lab/coupling/network_sites.h"
 
 namespace slosh {
 namespace {

@@ -10,7 +10,7 @@
 #include "hosted_test.h"
 #include "net/clock.h"
 #include "net/impair/relay.h"
-#include "peer/verbs/coupling/network_sites.h"
+#include "tests/lab/coupling/network_sites.h"
 #include "tests/support/comes.h"
 
 namespace slosh {

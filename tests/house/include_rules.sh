@@ -38,7 +38,7 @@ toolkits='
 ^<unicode/                    | net/text | ICU only behind net/text
 ^"net/impair/                 | net/impair tests | a bad network is for tests and for the program slosh-impair
 ^"peer/verbs/                 | peer/verbs peer/main.cpp tests | only the program joins host and peer
-^"tests/                      | tests | nothing that ships needs a test'"'"'s kit
+^"tests/                      | tests | nothing that ships needs a test'"'"'s kit or the laboratory
 '
 
 find . \( -path './.*' -o -path ./build -o -path ./out \) -prune -o -type f \

@@ -6,8 +6,8 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "peer/verbs/coupling/cells.h"
-#include "peer/verbs/on_cores.h"
+#include "tests/lab/coupling/cells.h"
+#include "tests/lab/verbs/on_cores.h"
 #include "tests/peer/devices/own_folder.h"
 
 namespace slosh::coupling {

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <numbers>
 
-#include "peer/verbs/coupling/response.h"
+#include "tests/lab/coupling/response.h"
 
 namespace slosh::coupling {
 namespace {

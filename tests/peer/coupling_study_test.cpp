@@ -4,8 +4,8 @@
 
 #include <cstdio>
 
-#include "peer/verbs/coupling/cells.h"
-#include "peer/verbs/coupling/study.h"
+#include "tests/lab/coupling/cells.h"
+#include "tests/lab/coupling/study.h"
 
 namespace slosh::coupling {
 namespace {
@@ -35,17 +35,18 @@ TEST(CouplingAtADistance, EveryKnownBreakerIsSteady) {
   }
 }
 
-/// A body with fluid that swings, carried by 2, 4 and 8 at 300 ms: with 40 ms of jitter, with 20 % lost, and with both,
-/// soft and hard, tight and loose; 12 s each in the report, less here.
+/// A body with fluid that swings, carried by 2, 4 and 8 at 300 ms: with 40 ms of jitter, with 20 % lost, and
+/// with both, soft and hard, tight and loose; 12 s each in the report, less here.
 TEST(CouplingAtADistance, FluidCarriedByManyIsSteadyWithJitterAndLossApartAndTogether) {
   int tried = 0;
   for (Case c : map_cases(false)) {
-    if (c.load != Load::kCarried || c.pose_rate != 500.0 || c.name.find("fluid carried") == std::string::npos) continue;
+    if (c.load != Load::kCarried || c.pose_rate != 500.0 || c.name.find("fluid carried") == std::string::npos)
+      continue;
     c.round_trip = 0.3;
     c.seconds = 8.0;
     const Outcome r = run(c, Scheme::kReplica);
-    std::printf("%-48s %s, %.2g mJ generated, peak %.1f N, swing %.2f mm/s\n", c.name.c_str(), word(r.verdict),
-                1e3 * r.generated, r.peak, 1e3 * r.swing);
+    std::printf("%-48s %s, %.2g mJ generated, peak %.1f N, swing %.2f mm/s\n", c.name.c_str(),
+                word(r.verdict), 1e3 * r.generated, r.peak, 1e3 * r.swing);
     EXPECT_EQ(r.verdict, Verdict::kStable) << c.name;
     EXPECT_LE(r.generated, kMostGenerated) << c.name;
     ++tried;
@@ -94,9 +95,9 @@ TEST(CouplingAtADistance, AloneOnTheBodyTheDelayIsNotFelt) {
   }
 }
 
-/// 1.5 kg that swing at 1.5 Hz, the hand at 0.9: by the host's linear model alone it is off by 36 % at 50 ms, 64 at 200.
-/// 10 % are asked for: 8.1 at 400 ms, 10.0 where the host says nothing of the fluid. Before modes between those
-/// of the bank were searched for it was 8, 18, 38 % at 200, 300, 400 ms.
+/// 1.5 kg that swing at 1.5 Hz, the hand at 0.9: by the host's linear model alone it is off by 36 % at 50 ms,
+/// 64 at 200. 10 % are asked for: 8.1 at 400 ms, 10.0 where the host says nothing of the fluid. Before modes
+/// between those of the bank were searched for it was 8, 18, 38 % at 200, 300, 400 ms.
 TEST(CouplingAtADistance, AloneOnABodyWhoseFluidSwingsTheDelayIsHardlyFelt) {
   for (const Load load : {Load::kFluid, Load::kFluidUntold}) {
     Case c = alone();

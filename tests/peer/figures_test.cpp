@@ -1,5 +1,5 @@
 // What the paper says of its figures, against runs that are made up: each sentence can hold and can fail.
-#include "peer/verbs/figures.h"
+#include "tests/lab/verbs/figures.h"
 
 #include <gtest/gtest.h>
 
@@ -103,7 +103,8 @@ TEST(Figures, ElevenWantsTheLowerHandToCarryMore) {
   FigureParts parts = judge_bucket(run);
   EXPECT_TRUE(parts.claims[0].holds) << parts.claims[0].measured;
   EXPECT_TRUE(parts.claims[1].holds) << parts.claims[1].measured;
-  EXPECT_TRUE(parts.claims[2].holds) << "about the middle a hand's force has an arm: " << parts.claims[2].measured;
+  EXPECT_TRUE(parts.claims[2].holds) << "about the middle a hand's force has an arm: "
+                                     << parts.claims[2].measured;
   EXPECT_TRUE(parts.claims[3].holds) << parts.claims[3].measured;
   ASSERT_EQ(parts.panels.size(), 3u);
   EXPECT_EQ(parts.panels[2].series.size(), 1u) << "of two curves on each other one is drawn";

@@ -1,5 +1,5 @@
 // What of the energy that comes out of two hands on the bucket counts as made by nobody.
-#include "peer/verbs/coupling/link_count.h"
+#include "tests/lab/coupling/link_count.h"
 
 #include <gtest/gtest.h>
 

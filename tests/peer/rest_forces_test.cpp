@@ -1,5 +1,5 @@
 // Hands at rest in a sweep over viscosities: told where they have not settled, silent where they have.
-#include "peer/verbs/rest_forces.h"
+#include "tests/lab/verbs/rest_forces.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "host/report/error_case.h"
+#include "tests/lab/report/error_case.h"
 #include "tests/physics/lab.h"
 
 namespace slosh::lab {

@@ -3,10 +3,10 @@
 
 #include <string>
 
-#include "host/report/error_case.h"
-#include "host/report/scene_builder.h"
-#include "host/report/still_fluid.h"
-#include "host/report/trial.h"
+#include "tests/lab/report/error_case.h"
+#include "tests/lab/report/scene_builder.h"
+#include "tests/lab/report/still_fluid.h"
+#include "tests/lab/report/trial.h"
 
 namespace slosh::lab {
 

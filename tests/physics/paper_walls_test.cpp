@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "host/report/surface.h"
+#include "tests/lab/report/surface.h"
 #include "tests/physics/lab.h"
 
 namespace slosh::lab {

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "host/report/reference/released_ball.h"
 #include "scenes/make/solid.h"
+#include "tests/lab/report/reference/released_ball.h"
 #include "tests/physics/lab.h"
 
 namespace slosh::lab {

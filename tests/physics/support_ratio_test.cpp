@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "host/report/surface.h"
+#include "tests/lab/report/surface.h"
 #include "tests/physics/lab.h"
 
 namespace slosh::lab {

@@ -4,8 +4,8 @@
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "render/reference/fluid_mesh.h"
-#include "render/reference/focused_light.h"
+#include "tests/lab/picture/reference/fluid_mesh.h"
+#include "tests/lab/picture/reference/focused_light.h"
 #include "tests/render/render_test.h"
 
 namespace slosh {

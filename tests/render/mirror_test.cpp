@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "render/passes/frame_block.h"
-#include "render/reference/path_tracer.h"
 #include "render/shader_math.h"
+#include "tests/lab/picture/reference/path_tracer.h"
 #include "tests/render/render_test.h"
 
 namespace slosh {

@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "render/passes/frame_block.h"
-#include "render/reference/fluid_mesh.h"
-#include "render/reference/focused_light.h"
-#include "render/reference/path_tracer.h"
 #include "render/shader_math.h"
+#include "tests/lab/picture/reference/fluid_mesh.h"
+#include "tests/lab/picture/reference/focused_light.h"
+#include "tests/lab/picture/reference/path_tracer.h"
 #include "tests/render/scene_kit.h"
 
 namespace slosh {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "render/renderer.h"
-#include "render/score/particles.h"
+#include "tests/lab/picture/score/particles.h"
 
 namespace slosh::kit {
 

@@ -1,5 +1,5 @@
 // The surface against a pool of which depths and normals are known, and the filters' maths.
-#include "render/score/score.h"
+#include "tests/lab/picture/score/score.h"
 
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>

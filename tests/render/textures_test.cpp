@@ -2,8 +2,8 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
-#include "render/reference/path_tracer.h"
 #include "render/shader_math.h"
+#include "tests/lab/picture/reference/path_tracer.h"
 #include "tests/render/render_test.h"
 
 namespace slosh {

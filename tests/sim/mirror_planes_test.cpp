@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "host/report/scene_builder.h"
 #include "scenes/make/solid.h"
 #include "scenes/sample.h"
+#include "tests/lab/report/scene_builder.h"
 #include "tests/physics/lab.h"
 
 namespace slosh {

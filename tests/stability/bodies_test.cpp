@@ -7,8 +7,8 @@
 #include <set>
 #include <vector>
 
-#include "host/report/stress/scenes.h"
-#include "host/report/surface.h"
+#include "tests/lab/report/stress/scenes.h"
+#include "tests/lab/report/surface.h"
 #include "tests/physics/lab.h"
 
 namespace slosh::lab {

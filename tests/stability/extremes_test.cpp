@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/report/surface.h"
+#include "tests/lab/report/surface.h"
 #include "tests/physics/lab.h"
 #include "tests/support/tank.h"
 
@@ -189,8 +189,8 @@ INSTANTIATE_TEST_SUITE_P(metres, SpacingRange, ::testing::Values(0.001, 0.01, 0.
 constexpr double kOfTheDepth = 24.525;
 
 // Against a wall at 2 m/s. At the depth's stiffness this is an impact at Mach 0.4 and more: the fluid is
-// crushed, and the status says so. (Until impacts were damped the walls' guard had to hold it back besides.) The
-// plan counts the start velocity, and it is not crushed. Nothing passes a wall.
+// crushed, and the status says so. (Until impacts were damped the walls' guard had to hold it back besides.)
+// The plan counts the start velocity, and it is not crushed. Nothing passes a wall.
 TEST(Extremes, fluid_thrown_at_a_wall) {
   for (const double stiffness : {kOfTheDepth, 0.0, 400.0}) {
     Experiment e = dam(0.05, 0.5, 2.0, stiffness);

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "host/report/stress/scenes.h"
 #include "scenes/load.h"
+#include "tests/lab/report/stress/scenes.h"
 #include "tests/physics/lab.h"
 
 namespace slosh::lab {
@@ -215,8 +215,8 @@ TEST(Hands, long_stir_loses_nothing) {
   EXPECT_LT(fluid.max_speed, 1.0);
 }
 
-// Where two walls meet, what they drag by adds up: with the flat walls' step alone the glass of 40 Pa·s around its syrup
-// of 2 hummed by 0.4 N from step to step before anything had moved.
+// Where two walls meet, what they drag by adds up: with the flat walls' step alone the glass of 40 Pa·s
+// around its syrup of 2 hummed by 0.4 N from step to step before anything had moved.
 TEST(Hands, feel_no_hum_of_glasses_more_viscous_than_their_syrup) {
   const Scene scene = load_scene(find_scene("spin").value()).value();
   Experiment e(scene, scene.spacing_max, Experiment::Explicit{});

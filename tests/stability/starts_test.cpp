@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "host/report/surface.h"
+#include "tests/lab/report/surface.h"
 #include "tests/physics/lab.h"
 #include "tests/support/tank.h"
 

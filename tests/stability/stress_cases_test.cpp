@@ -6,8 +6,8 @@
 #include <span>
 #include <string>
 
-#include "host/report/stress_case.h"
 #include "sim/snapshot.h"
+#include "tests/lab/report/stress_case.h"
 
 namespace slosh::report {
 

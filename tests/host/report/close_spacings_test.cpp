@@ -1,5 +1,5 @@
 // Means over spacings close by: what becomes one, and what of it is the mean.
-#include "host/report/close_spacings.h"
+#include "tests/lab/report/close_spacings.h"
 
 #include <gtest/gtest.h>
 

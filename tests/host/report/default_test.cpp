@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "host/report/sweep.h"
+#include "tests/lab/report/sweep.h"
 #include "tests/support/places.h"
 
 namespace slosh::report {

@@ -1,4 +1,4 @@
-#include "host/report/frontier.h"
+#include "tests/lab/report/frontier.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // What is forced in changes nothing that matters, and the planned step is the first row.
-#include "host/report/passes.h"
+#include "tests/lab/report/passes.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "host/report/scene_builder.h"
+#include "tests/lab/report/scene_builder.h"
 
 namespace slosh::report {
 namespace {

@@ -1,6 +1,6 @@
 // The reference of a dam's front, against what is known of it in closed form, its own volume and energy, and
 // a finer one.
-#include "host/report/reference/potential_dam.h"
+#include "tests/lab/report/reference/potential_dam.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "host/report/refused.h"
+#include "tests/lab/report/refused.h"
 
 namespace slosh::report {
 namespace {

@@ -1,5 +1,5 @@
 // The reference of a ball that is let go, against closed forms of its parts.
-#include "host/report/reference/released_ball.h"
+#include "tests/lab/report/reference/released_ball.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The reference of a gap's flow, against closed forms.
-#include "host/report/reference/ring_flow.h"
+#include "tests/lab/report/reference/ring_flow.h"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "host/report/stress_case.h"
-#include "host/report/sweep.h"
+#include "tests/lab/report/stress_case.h"
+#include "tests/lab/report/sweep.h"
 
 namespace slosh::report {
 namespace {

@@ -1,7 +1,7 @@
 // Whether each shipped scene has the setting that its cases speak for: by the committed report, nothing that
 // a simulated second takes as little time for misses its targets by less, at a budget that two cores keep
 // real time with.
-#include "host/report/scene_frontier.h"
+#include "tests/lab/report/scene_frontier.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <set>
 #include <string>
 
-#include "host/report/close_spacings.h"
 #include "scenes/load.h"
+#include "tests/lab/report/close_spacings.h"
 #include "tests/support/places.h"
 
 namespace slosh::report {

@@ -1,5 +1,5 @@
 // What is read from pictures, where the answer is known.
-#include "host/report/surface.h"
+#include "tests/lab/report/surface.h"
 
 #include <gtest/gtest.h>
 

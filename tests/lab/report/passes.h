@@ -1,0 +1,33 @@
+// What it saves to leave out of a step what a scene does not need, and that nothing changes by it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tests/lab/report/trial.h"
+
+namespace slosh::report {
+
+struct PassRow {
+  std::string what;               ///< "as planned", "with pair_viscosity", "and a picture with its shell"
+  double step_ms = 0.0;           ///< median
+  double slower = 1.0;            ///< than as planned: the median of the ratios of steps taken in turns
+  double bytes_a_particle = 0.0;  ///< of the fluid's columns, without what sorting needs besides
+  bool same_bits = true;          ///< the world's hash is that of the planned one's
+  double off = 0.0;               ///< m, the largest difference of a particle's position after kComparedSteps
+};
+inline constexpr int kComparedSteps = 20;
+
+struct PassOptions {
+  int steps = 100;  ///< timed, of each variant, in turns
+  Backend backend = Backend::kCpu;
+  int threads = 0;
+  bool (*stopped)() = nullptr;
+};
+
+/// The scene as planned first, then with each pass forced in that the plan left out and that can run, then
+/// with what only a viewer or a recording needs. Throws Refused, Stopped.
+std::vector<PassRow> measure_passes(const Scene& scene, const SampledScene& sampled,
+                                    const PassOptions& options);
+
+}  // namespace slosh::report

@@ -1,0 +1,100 @@
+#include "tests/lab/verbs/report_picture_stand.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <ctime>
+
+#include "scenes/load.h"
+
+namespace slosh {
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
+  return values[values.size() / 2];
+}
+
+RenderOptions report_options(Surface surface, int width, int height) {
+  RenderOptions options;
+  if (surface == Surface::kPaper) options = section_five(options);
+  options.surface = surface;
+  options.width = width;
+  options.height = height;
+  options.keep_still = false;  // a picture's time is that of all of it
+  return options;
+}
+
+Stand::Stand(std::unique_ptr<Renderer> renderer, const Scene& scene, double spacing)
+    : renderer_(std::move(renderer)), builder_(scene, spacing, *renderer_), camera_(scene.camera) {}
+
+Result<std::unique_ptr<Stand>> Stand::create(Context& context, Surface surface, const Scene& scene,
+                                             double spacing, bool keep_still) {
+  RenderOptions options = report_options(surface, kReportWidth, kReportHeight);
+  options.keep_still = keep_still;
+  auto made = Renderer::create(context, options);
+  if (!made) return made.error();
+  return std::unique_ptr<Stand>(new Stand(std::move(made.value()), scene, spacing));
+}
+
+const Image& Stand::draw(const Snapshot& snapshot) {
+  frame_ = builder_.build(snapshot, camera_.distance());
+  frame_.view = camera_.view(static_cast<double>(kReportWidth) / kReportHeight);
+  renderer_->draw(frame_);
+  return image_ = renderer_->read_back();
+}
+
+std::pair<double, double> Stand::times(int frames) {
+  std::vector<double> filter, whole;
+  renderer_->set_timing(true);
+  for (int i = 0; i < frames + 2; ++i) {
+    renderer_->draw(frame_);
+    if (i < 2) continue;  // shaders are compiled at their first use
+    double sum = 0.0;
+    for (const PassTime& pass : renderer_->pass_times()) {
+      sum += pass.milliseconds;
+      // By compute shaders with the thickness beside it.
+      if (pass.pass.starts_with("surface filter")) filter.push_back(pass.milliseconds);
+    }
+    whole.push_back(sum);
+  }
+  renderer_->set_timing(false);
+  return {median(filter), median(whole)};
+}
+
+Result<BucketTimes> bucket_times(Context& context, report::Setting setting, int pictures) {
+  const auto file = find_scene("bucket");
+  if (!file) return file.error();
+  const auto scene = load_scene(file.value());
+  if (!scene) return scene.error();
+  setting.spacing = kBucketSpacing;
+  report::Cost cost;
+  report::Trial trial(scene.value(), setting, cost);
+  std::array<std::unique_ptr<Stand>, 2> stands;
+  for (std::size_t way = 0; way < 2; ++way) {
+    auto made = Stand::create(context, Surface::kOurs, scene.value(), setting.spacing, way == 1);
+    if (!made) return made.error();
+    stands[way] = std::move(made.value());
+  }
+  std::array<std::vector<double>, 2> processor;
+  std::array<std::vector<double>, 2> wall;
+  for (int i = 0; i < pictures + 2; ++i) {
+    trial.run(1.0 / 30.0);
+    const Snapshot now = trial.picture();
+    for (std::size_t way = 0; way < 2; ++way) {
+      const auto began = std::chrono::steady_clock::now();
+      const std::clock_t start = std::clock();
+      stands[way]->draw(now);
+      if (i < 2) continue;  // shaders are compiled at their first use
+      processor[way].push_back(1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
+      const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - began;
+      wall[way].push_back(took.count());
+    }
+  }
+  const auto time_of = [&](std::size_t way) {
+    return PictureTime{median(processor[way]), std::ranges::min(wall[way])};
+  };
+  return BucketTimes{time_of(0), time_of(1)};
+}
+
+}  // namespace slosh

@@ -1,0 +1,62 @@
+// What `slosh report picture` draws by one way to make a surface: a scene's snapshots, and the shipped bucket
+// with the time it takes.
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "peer/view/frame_builder.h"
+#include "peer/view/orbit_camera.h"
+#include "render/renderer.h"
+#include "tests/lab/report/trial.h"
+
+namespace slosh {
+
+/// Of its pictures, pixels.
+inline constexpr int kReportWidth = 640;
+inline constexpr int kReportHeight = 480;
+inline constexpr double kBucketSpacing = 0.012;  ///< m, the scene's coarsest
+
+double median(std::vector<double> values);
+
+/// As play has it, or all of section 5; nothing is kept from picture to picture.
+RenderOptions report_options(Surface surface, int width, int height);
+
+/// A scene's snapshots, drawn by one way.
+class Stand {
+ public:
+  /// Errors: as Renderer::create().
+  static Result<std::unique_ptr<Stand>> create(Context& context, Surface surface, const Scene& scene,
+                                               double spacing, bool keep_still = false);
+  const Image& draw(const Snapshot& snapshot);
+  /// Of the filter, and of the whole frame, ms: medians over `frames` of what was drawn last.
+  std::pair<double, double> times(int frames);
+  Renderer& renderer() { return *renderer_; }
+  const View& view() const { return frame_.view; }
+
+ private:
+  Stand(std::unique_ptr<Renderer> renderer, const Scene& scene, double spacing);
+  std::unique_ptr<Renderer> renderer_;
+  FrameBuilder builder_;
+  OrbitCamera camera_;
+  Frame frame_;
+  Image image_;
+};
+
+/// Of a picture of the shipped bucket with its read-back, ms: processor time, and by the clock.
+struct PictureTime {
+  double processor = 0.0;  ///< median
+  double wall = 0.0;       ///< fastest: what else the machine does makes the others longer
+};
+
+/// Drawn whole, and with what stands still kept, by turns, over pictures 1/30 s apart.
+struct BucketTimes {
+  PictureTime whole;
+  PictureTime kept;
+};
+
+/// Errors: the scene is not there, or cannot be drawn.
+Result<BucketTimes> bucket_times(Context& context, report::Setting setting, int pictures);
+
+}  // namespace slosh
