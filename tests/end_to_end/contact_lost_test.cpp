@@ -24,7 +24,7 @@ using test::Process;
 using test::WrittenForce;
 
 constexpr double kRate = 2000.0;     // N/s, noting_device.c
-constexpr double kCarries = 8.0;     // N: of the 15.6 that each of two carries
+constexpr double kCarriesOn = 8.0;     // N: of the 15.6 that each of two carries
 constexpr double kZeroWithin = 0.4;  // s
 /// s by which the machine may be late with a write: this test's own clock stands beside other work.
 constexpr double kLate = 0.1;
@@ -58,7 +58,7 @@ class ContactLost : public test::HostedTest {
   bool carries(const std::string& name) const {
     return comes([&] {
       std::this_thread::sleep_for(std::chrono::milliseconds(100));
-      return force(name) > kCarries;
+      return force(name) > kCarriesOn;
     });
   }
   void join(const std::string& name) {
@@ -93,7 +93,7 @@ class ContactLost : public test::HostedTest {
     const std::vector<WrittenForce> writes =
         test::written_since(sent(name), fault_ns - to_nanoseconds(0.05), until_ns);
     ASSERT_GT(writes.size(), 200u);
-    EXPECT_GT(glm::length(writes.front().force), 0.5 * kCarries) << name << " carries when it happens";
+    EXPECT_GT(glm::length(writes.front().force), 0.5 * kCarriesOn) << name << " carries when it happens";
     const double zero = test::zero_after(writes, fault_ns), steep = test::steepest(writes, kRate);
     std::printf("%s: zero %.0f ms after, at most %.3f of what it may be given at once\n", name.c_str(),
                 1e3 * zero, steep);
@@ -106,9 +106,9 @@ class ContactLost : public test::HostedTest {
     const std::vector<WrittenForce> writes = test::written_since(sent(name), from_ns);
     const double steep = test::steepest(writes, kRate);
     std::size_t full = 0;
-    while (full + 1 < writes.size() && glm::length(writes[full].force) < kCarries) full += 1;
+    while (full + 1 < writes.size() && glm::length(writes[full].force) < kCarriesOn) full += 1;
     std::printf("%s: %.1f N again after %.1f s, at most %.3f of what it may be given at once\n", name.c_str(),
-                kCarries, to_seconds(writes[full].ns - from_ns), steep);
+                kCarriesOn, to_seconds(writes[full].ns - from_ns), steep);
     EXPECT_LE(steep, 1.0 + kRounding) << name;
     EXPECT_GT(to_seconds(writes[full].ns - from_ns), 0.2) << name << ": it comes over two seconds";
   }
@@ -189,7 +189,7 @@ TEST_F(ContactLost, APeerThatStandsStillForTenSeconds) {
               test::steepest(ben, kRate));
   EXPECT_LE(test::steepest(ben, kRate), 1.0 + kRounding);
   EXPECT_LT(most, 40.0);
-  EXPECT_GT(glm::length(ben.back().force), 0.5 * kCarries) << "ben holds on";
+  EXPECT_GT(glm::length(ben.back().force), 0.5 * kCarriesOn) << "ben holds on";
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ class VrTest : public test::HostedTest {
 };
 
 /// Rows of a hand without a gap, from begin to end.
-void expect_rows(const std::filesystem::path& folder, int device, double seconds) {
+void expect_headset_rows(const std::filesystem::path& folder, int device, double seconds) {
   const Result<std::vector<PoseKey>> keys = read_poses(folder / "poses.csv", device);
   ASSERT_TRUE(keys) << keys.error().text();
   ASSERT_GT(keys.value().size(), 100u);
@@ -67,7 +67,7 @@ TEST_F(VrTest, TwoControllersCarryTheBucket) {
   EXPECT_GT(xr.count("vibrate left"), 0) << "the water's weight comes and goes";
   EXPECT_GT(xr.count("vibrate right"), 0);
   for (int hand = 0; hand < 2; ++hand) {
-    expect_rows(out, hand, 2.0);
+    expect_headset_rows(out, hand, 2.0);
     const Result<std::vector<PoseKey>> keys = read_poses(out / "poses.csv", hand);
     const auto [low, high] =
         std::ranges::minmax(keys.value(), {}, [](const PoseKey& k) { return k.pose.position.y; });
@@ -104,7 +104,7 @@ TEST_F(VrTest, WhatTheRuntimeRefusesDoesNotReachTheHands) {
   EXPECT_NE(played.err.find("controller is not seen"), std::string::npos) << played.err;
   EXPECT_NE(played.err.find("slosh: what was out of order is in use again"), std::string::npos) << played.err;
   EXPECT_EQ(xr.wrong(), "");
-  for (int hand = 0; hand < 2; ++hand) expect_rows(out, hand, 4.0);
+  for (int hand = 0; hand < 2; ++hand) expect_headset_rows(out, hand, 4.0);
 }
 
 TEST_F(VrTest, WithoutARuntimeOrAHeadsetItSaysSoAndGoesOn) {

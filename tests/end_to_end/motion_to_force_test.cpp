@@ -21,7 +21,7 @@ using test::read_text;
 
 constexpr double kWays = 40.0;      // at least, in the seconds that follow
 constexpr int kMostWrites = 3;      // 1 where the machine keeps up: the first write after the reading
-const char* const kSeconds = "13";  // 6 of them until the plug-in begins
+const char* const kMotionSeconds = "13";  // 6 of them until the plug-in begins
 
 /// "plugin:FILE:ANSWERS"
 std::string handle() {
@@ -55,7 +55,7 @@ class MotionToForce : public test::HostedTest {
 TEST_F(MotionToForce, WhereTheWorldIsInTheSameProcess) {
   const Outcome outcome =
       run("play", {"play", "spoon", "--headless", "--no-render", "--spacing", "0.012", "--threads", "1",
-                   "--seconds", kSeconds, "--device", handle(), "--out", "out"})
+                   "--seconds", kMotionSeconds, "--device", handle(), "--out", "out"})
           ->wait();
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   answered_at_once("play", outcome.err);
@@ -69,7 +69,7 @@ TEST_F(MotionToForce, WhereTheHostIs100And300MillisecondsAway) {
     const std::unique_ptr<Process> host =
         run("host",
             {"host", "spoon", "--spacing", "0.012", "--threads", "1", "--wait", "1", "--listen", host_at,
-             "--address", wire_at, "--links", "links.txt", "--seconds", kSeconds, "--checkpoint", "none"});
+             "--address", wire_at, "--links", "links.txt", "--seconds", kMotionSeconds, "--checkpoint", "none"});
     ASSERT_TRUE(hosting(*host));
     const path impair = path(test::program()).parent_path() / "slosh-impair";
     const Process wire(

@@ -14,7 +14,7 @@ namespace {
 
 using test::Outcome;
 using test::read_text;
-using Arguments = std::vector<std::string>;
+using SweepArguments = std::vector<std::string>;
 
 std::vector<std::vector<std::string>> rows(const std::filesystem::path& table) {
   std::vector<std::vector<std::string>> all;
@@ -52,7 +52,7 @@ TEST_F(Sweep, AHeavierProbeIsFeltHeavier) {
 }
 
 TEST_F(Sweep, WhatIsWrongIsSaidBeforeAnythingRuns) {
-  const std::vector<std::pair<std::string, Arguments>> wrongs{
+  const std::vector<std::pair<std::string, SweepArguments>> wrongs{
       {"probe.mass_kg=0.05,-1", {"mass_kg", "-1", "above 0"}},
       {"probe.mass=1", {"mass", "not a property", "mass_kg"}},
       {"boddy.mass_kg=1", {"boddy", "scene, body, fluid", "probe"}},
@@ -70,11 +70,11 @@ TEST_F(Sweep, WhatIsWrongIsSaidBeforeAnythingRuns) {
 
 TEST_F(Sweep, WhatCannotBeRunIsSaidBeforeAnythingRuns) {
   // The second value alone: a step beside a probe is explicit, and 10⁷ Pa·s ask for one without end.
-  const std::vector<std::pair<Arguments, Arguments>> wrongs{
+  const std::vector<std::pair<SweepArguments, SweepArguments>> wrongs{
       {{"--set", "probe.mass_kg=0.05,0.1", "--spacing", "0.05"}, {"thick", "spacing_max_m"}},
       {{"--set", "fluid.viscosity_pa_s=1,1e7"}, {"viscosity of 1e+07", "steps for each simulated second"}}};
   for (const auto& [options, words] : wrongs) {
-    Arguments arguments{"sweep", "probe", "--out", "out"};
+    SweepArguments arguments{"sweep", "probe", "--out", "out"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     const Outcome outcome = test::slosh(arguments);
     EXPECT_EQ(outcome.code, 1) << options[1];

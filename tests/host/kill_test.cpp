@@ -104,7 +104,7 @@ void write_one(Rig& rig, const CheckpointOptions& options) {
                                 rig.host.world(), rig.host.state(), options);
 }
 
-Bytes server_state_of(const path& file) {
+Bytes state_in(const path& file) {
   const Result<std::optional<Secrets>> read = read_secrets(file);
   EXPECT_TRUE(read && read.value()) << file;
   return read && read.value() ? read.value()->server_state : Bytes{};
@@ -134,7 +134,7 @@ TEST_F(Killed, BetweenAnyTwoStepsOfACheckpointItCanBeCarriedOn) {
         ASSERT_TRUE(read) << "step " << step << ": " << read.error().text();
         EXPECT_EQ(read.value().note, "") << "step " << step;
         EXPECT_EQ(read.value().tick, rig_.host.world().tick()) << "step " << step;
-        EXPECT_GE(server_state_of(here / "world"), Bytes{2}) << "step " << step;
+        EXPECT_GE(state_in(here / "world"), Bytes{2}) << "step " << step;
       });
   EXPECT_GE(steps, 12) << "two files, each written, synced, linked and renamed";
 }
@@ -149,7 +149,7 @@ TEST_F(Killed, WhileTheNewestIsDamagedTheOneBeforeItStaysUntilThereIsABetterOne)
         const Result<Checkpoint> read = read_checkpoint(here / "world");
         ASSERT_TRUE(read) << "step " << step << ": " << read.error().text();
         (read.value().note.empty() ? new_one : old_one) = true;
-        EXPECT_NE(server_state_of(here / "world"), Bytes{2}) << "step " << step;
+        EXPECT_NE(state_in(here / "world"), Bytes{2}) << "step " << step;
       });
   EXPECT_TRUE(old_one);
   EXPECT_TRUE(new_one);

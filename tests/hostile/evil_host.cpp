@@ -10,7 +10,7 @@
 namespace slosh::hostile {
 namespace {
 
-constexpr std::array<const char*, kTricks> kNames{
+constexpr std::array<const char*, kTricks> kHostNames{
     "states",        "everything", "snapshots", "texts",   "stiff",   "bad welcome", "bad scene",
     "endless scene", "noise",      "streams",   "silence", "refusal", "close"};
 constexpr double kSpacing = 0.01;
@@ -22,7 +22,7 @@ std::uint64_t guest_seed(std::uint64_t seed, std::uint64_t guest) {
 }  // namespace
 
 const char* name_of(Trick trick) {
-  return kNames[static_cast<std::size_t>(trick)];
+  return kHostNames[static_cast<std::size_t>(trick)];
 }
 
 EvilHost::EvilHost(const Scene& scene, std::uint64_t seed)

@@ -19,7 +19,7 @@
 namespace slosh::hostile {
 namespace {
 
-constexpr std::size_t kAtOnce = 12;  // attackers
+constexpr std::size_t kPeersAtOnce = 12;  // attackers
 // A seat is kept for a minute: with a key of its own each, attackers would soon find no seat and be turned
 // away.
 constexpr std::size_t kKeys = 10;
@@ -27,9 +27,9 @@ constexpr std::size_t kKeys = 10;
 constexpr double kLongestGap = 10.0;   // s without a state
 constexpr double kLongestAway = 30.0;  // s that coming back may take
 
-class Run {
+class PeersRun {
  public:
-  explicit Run(const RunOptions& options)
+  explicit PeersRun(const RunOptions& options)
       : options_(options),
         log_(options.folder / "attacks.log"),
         mischief_(options.seed),
@@ -38,7 +38,7 @@ class Run {
     for (std::size_t i = 0; i < kKeys; ++i) keys_.push_back(Identity::generate());
   }
 
-  ~Run() {
+  ~PeersRun() {
     if (home_ != "/tmp") std::filesystem::remove_all(home_);
   }
 
@@ -138,7 +138,7 @@ class Run {
   }
 
   void attack(HonestPeer& honest) {
-    std::array<std::unique_ptr<Attacker>, kAtOnce> attackers;
+    std::array<std::unique_ptr<Attacker>, kPeersAtOnce> attackers;
     Stranger stranger(target_.hold.addresses.front());
     std::int64_t check_ns = 0;
     const std::int64_t end_ns = begin_ns_ + to_nanoseconds(options_.seconds);
@@ -242,6 +242,6 @@ class Run {
 
 int main(int count, char** arguments) {
   using namespace slosh::hostile;
-  Run run(run_options(count, arguments, "Hostile peers against a real host, an honest peer among them."));
+  PeersRun run(run_options(count, arguments, "Hostile peers against a real host, an honest peer among them."));
   return run.go();
 }

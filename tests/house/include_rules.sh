@@ -27,7 +27,7 @@ tests      | scenes/ sim/ net/ host/ peer/ render/
 toolkits='
 ^<(cuda|cub/|thrust/)         | sim/cuda tests/cross | CUDA only in sim/cuda, and where the backends are compared
 ^"sim/cuda/                   | sim/cuda sim/particle_engine.cpp tests/cross | only the factory in sim/particle_engine.cpp knows the CUDA engine
-^<(epoxy|GL|EGL|GLFW)/        | render tests/xr tests/render/es | GL only in render, in the runtime that tests show pictures to, and where shaders are tried in another dialect
+^<(epoxy|GL|EGL|GLFW)/        | render tests/xr | GL only in render and in the runtime that tests show pictures to
 ^<(openxr|X11)/               | render/xr tests/xr | OpenXR only behind render/headset.h
 ^<(ngtcp2|gnutls)/            | net/quic | QUIC and TLS only behind net/quic/endpoint.h
 ^<(hidapi|libusb|libevdev)    | peer/haptics/devices | HID, USB and input events only in the drivers

@@ -17,7 +17,7 @@
 namespace slosh {
 namespace {
 
-constexpr double kTick = 0.001;
+constexpr double kHeldTick = 0.001;
 
 ReplicaBody body() {
   ReplicaBody b;
@@ -45,8 +45,8 @@ Outcome held_by(double pace, bool guarded) {
   Outcome outcome;
   double in = 0.0, place = 0.0;
   for (int i = 0; i < 6000; ++i) {
-    const double now = kTick * i;
-    const ArmState next = arm_after(arm, at, felt.force, i == 0 ? 0.0 : kTick);
+    const double now = kHeldTick * i;
+    const ArmState next = arm_after(arm, at, felt.force, i == 0 ? 0.0 : kHeldTick);
     in -= glm::dot(felt.force, next.place - at.place);
     at = next;
     outcome.out = std::max(outcome.out, -in);
@@ -61,11 +61,11 @@ Outcome held_by(double pace, bool guarded) {
       word.now_ns = to_nanoseconds(now) + 1;
       word.time = now;
       // So that force times way is the kinetic energy's change to the last digit.
-      place += kTick * (speed(now) + speed(now - 2.0 * kTick));
+      place += kHeldTick * (speed(now) + speed(now - 2.0 * kHeldTick));
       word.motion.position.x = place;
       word.motion.twist.linear.x = speed(now);
       // All of the body's acceleration comes from the other hand.
-      const double force = body().mass * (speed(now) - speed(now - 2.0 * kTick)) / (2.0 * kTick);
+      const double force = body().mass * (speed(now) - speed(now - 2.0 * kHeldTick)) / (2.0 * kHeldTick);
       std::array<HostHand, 2> said;
       said[0] = {true, own[0].handle, {}, i < 110 ? 0 : to_nanoseconds(now - 0.1) + 1, true, 0.0};
       said[1] = {true, {word.motion.position, {1, 0, 0, 0}}, {{-force, 0.0, 0.0}, {}}, 0, true, 0.0};
@@ -74,10 +74,10 @@ Outcome held_by(double pace, bool guarded) {
     }
     const GripState grip = held.grip(0);
     const Wrench wanted = coupling_wrench_on_hand(gains, own[0].handle, own[0].twist, grip.pose, grip.twist);
-    felt = held.guard(0, wanted, own[0].handle, own[0].twist, kTick, 500.0);
+    felt = held.guard(0, wanted, own[0].handle, own[0].twist, kHeldTick, 500.0);
     if (!guarded) felt = wanted;
     held.sent(0, felt);
-    held.advance(own, kTick, to_nanoseconds(now + kTick) + 1);
+    held.advance(own, kHeldTick, to_nanoseconds(now + kHeldTick) + 1);
     outcome.peak = std::max(outcome.peak, glm::length(felt.force));
     outcome.fell_back = outcome.fell_back || held.fallen_back();
   }
@@ -116,7 +116,7 @@ TEST(HeldBody, TheSpringToALateWordIsNotStretchedByTheDelay) {
     glm::dvec3 last{0.0};
     int fallen = 0;
     for (int i = 0; i < 3500; ++i) {
-      const double now = kTick * i, then = std::max(now - kRoundTrip, 0.0);
+      const double now = kHeldTick * i, then = std::max(now - kRoundTrip, 0.0);
       own[0] = {true, true, {{place(now), 0.0, 0.0}, {1, 0, 0, 0}}, {{speed(now), 0.0, 0.0}, {}}};
       HostWord word;
       word.now_ns = to_nanoseconds(now) + 1;
@@ -136,9 +136,9 @@ TEST(HeldBody, TheSpringToALateWordIsNotStretchedByTheDelay) {
       const GripState grip = held.grip(0);
       const Wrench wanted =
           coupling_wrench_on_hand(gains, own[0].handle, own[0].twist, grip.pose, grip.twist);
-      const Wrench felt = held.guard(0, wanted, own[0].handle, own[0].twist, kTick, kHolds);
+      const Wrench felt = held.guard(0, wanted, own[0].handle, own[0].twist, kHeldTick, kHolds);
       held.sent(0, felt);
-      held.advance(own, kTick, to_nanoseconds(now + kTick) + 1);
+      held.advance(own, kHeldTick, to_nanoseconds(now + kHeldTick) + 1);
       last = felt.force;
       if (now < 1.6) continue;
       fallen += held.fallen_back() ? 1 : 0;
@@ -165,7 +165,7 @@ TEST(HeldBody, WhatDampersUsedUpIsForgotten) {
   double balance = 0.0;
   double x = 0.0;
   for (int i = 0; i < 9000; ++i) {
-    const double now = kTick * i;
+    const double now = kHeldTick * i;
     const double turn = 2.0 * std::numbers::pi;
     // To and fro on a body that stands: some J a second into the coupling's damper, then nothing.
     const bool moves = now < 3.0;
@@ -182,8 +182,8 @@ TEST(HeldBody, WhatDampersUsedUpIsForgotten) {
     held.hear(word);
     const GripState grip = held.grip(0);
     const Wrench wanted = coupling_wrench_on_hand(gains, own[0].handle, own[0].twist, grip.pose, grip.twist);
-    held.sent(0, held.guard(0, wanted, own[0].handle, own[0].twist, kTick, 500.0));
-    held.advance(own, kTick, to_nanoseconds(now + kTick) + 1);
+    held.sent(0, held.guard(0, wanted, own[0].handle, own[0].twist, kHeldTick, 500.0));
+    held.advance(own, kHeldTick, to_nanoseconds(now + kHeldTick) + 1);
     if (i == 2999) {
       EXPECT_GT(held.energy(0), 0.1);
       balance = held.balance();
@@ -206,7 +206,7 @@ TEST(HeldBody, WhatTheHostsStepTookBeyondAllThereWasIsLentAndPaidBack) {
   std::vector<OwnHand> own(1);
   const auto run = [&](int from, int to, double force) {
     for (int i = from; i < to; ++i) {
-      const double now = kTick * i;
+      const double now = kHeldTick * i;
       HostWord word;
       word.now_ns = to_nanoseconds(now) + 1;
       word.time = now;
@@ -217,9 +217,9 @@ TEST(HeldBody, WhatTheHostsStepTookBeyondAllThereWasIsLentAndPaidBack) {
       const HostHand said{true, own[0].handle, {{-force, 0.0, 0.0}, {}}, word.now_ns, true, 0.0};
       word.hands = {&said, 1};
       held.hear(word);
-      (void)held.guard(0, {}, own[0].handle, own[0].twist, kTick, 500.0);
+      (void)held.guard(0, {}, own[0].handle, own[0].twist, kHeldTick, 500.0);
       held.sent(0, {});  // its device gives nothing, so that its person puts nothing in
-      held.advance(own, kTick, to_nanoseconds(now + kTick) + 1);
+      held.advance(own, kHeldTick, to_nanoseconds(now + kHeldTick) + 1);
     }
     return held.balance();
   };
@@ -244,13 +244,13 @@ std::vector<double> swung_with(double rounds) {
   std::vector<OwnHand> own(1);
   std::vector<double> felt;
   for (int i = 0; i < 9000; ++i) {
-    const double now = kTick * i, then = std::max(now - kRoundTrip, 0.0);
+    const double now = kHeldTick * i, then = std::max(now - kRoundTrip, 0.0);
     own[0] = {true, true, {{place(now), 0.0, 0.0}, {1, 0, 0, 0}}, {{speed(now), 0.0, 0.0}, {}}};
     const double on_hand = -kLoad - body().mass * pace(then);
     HostWord word;
     word.now_ns = to_nanoseconds(now) + 1;
     word.time = now;
-    word.time_step = kTick;
+    word.time_step = kHeldTick;
     word.tells_fluid = true;
     word.fluid.force.x = -kLoad;
     word.motion.position.x = place(then) + on_hand / gains.stiffness;
@@ -265,7 +265,7 @@ std::vector<double> swung_with(double rounds) {
     const GripState grip = held.grip(0);
     felt.push_back(
         coupling_wrench_on_hand(gains, own[0].handle, own[0].twist, grip.pose, grip.twist).force.x);
-    held.advance(own, kTick, to_nanoseconds(now + kTick) + 1);
+    held.advance(own, kHeldTick, to_nanoseconds(now + kHeldTick) + 1);
   }
   return {felt.end() - 1000, felt.end()};
 }

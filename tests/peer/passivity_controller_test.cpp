@@ -13,7 +13,7 @@
 namespace slosh {
 namespace {
 
-constexpr double kTick = 0.001;
+constexpr double kControllerTick = 0.001;
 
 TEST(HeldBody, CountsWhatThePersonPutIn) {
   PassivityController guard;
@@ -25,7 +25,7 @@ TEST(HeldBody, CountsWhatThePersonPutIn) {
     x += 1e-4;
     hand.position.x = x;
     const Wrench wanted{{-100.0 * x, 0.0, 0.0}, {}};
-    guard.sent(guard.guard(wanted, hand, {{0.1, 0.0, 0.0}, {}}, kTick, 0.0, 100.0));
+    guard.sent(guard.guard(wanted, hand, {{0.1, 0.0, 0.0}, {}}, kControllerTick, 0.0, 100.0));
     EXPECT_FALSE(guard.fires());
   }
   EXPECT_NEAR(guard.energy(), 0.5, 1e-3);
@@ -41,11 +41,11 @@ TEST(HeldBody, NoMoreComesOutThanThereIs) {
     Wrench felt;
     double out = 0.0;
     for (int i = 0; i < 3000; ++i) {
-      const ArmState next = arm_after(arm, at, felt.force, kTick);
+      const ArmState next = arm_after(arm, at, felt.force, kControllerTick);
       out += glm::dot(felt.force, next.place - at.place);
       at = next;
       const Wrench wanted{{2.0 * std::sin(0.01 * i), 0.0, 0.0}, {}};
-      felt = guard.guard(wanted, {at.place, {1, 0, 0, 0}}, {at.velocity, {}}, kTick, credit, 500.0);
+      felt = guard.guard(wanted, {at.place, {1, 0, 0, 0}}, {at.velocity, {}}, kControllerTick, credit, 500.0);
       guard.sent(felt);
       EXPECT_LE(out, credit + 1e-3) << i;
     }
@@ -61,12 +61,12 @@ TEST(HeldBody, ATurningHandIsGuardedToo) {
   Wrench felt;
   double out = 0.0;
   for (int i = 0; i < 2000; ++i) {
-    const ArmState next = arm_after(wrist, at, felt.torque, kTick);
+    const ArmState next = arm_after(wrist, at, felt.torque, kControllerTick);
     out += glm::dot(felt.torque, next.place - at.place);
     at = next;
     const Pose hand{glm::dvec3(0.0), rotate_by({1, 0, 0, 0}, at.place)};
     felt =
-        guard.guard({{}, {0.0, 0.05 * std::sin(0.02 * i), 0.0}}, hand, {{}, at.velocity}, kTick, 0.0, 500.0);
+        guard.guard({{}, {0.0, 0.05 * std::sin(0.02 * i), 0.0}}, hand, {{}, at.velocity}, kControllerTick, 0.0, 500.0);
     guard.sent(felt);
     EXPECT_LE(out, 1e-3) << i;
   }
@@ -80,27 +80,27 @@ TEST(HeldBody, WhoHasNothingLeftFeelsWhatTheyDoAtOnce) {
   guard.restart({});
   constexpr double kCredit = -0.05, kMost = 10.0, kSpeed = 0.2;  // J, N·s/m, m/s
   for (int i = 0; i < 100; ++i)
-    guard.sent(guard.guard({{-5.0, 0.0, 0.0}, {}}, {}, {}, kTick, kCredit, kMost));
+    guard.sent(guard.guard({{-5.0, 0.0, 0.0}, {}}, {}, {}, kControllerTick, kCredit, kMost));
   EXPECT_TRUE(guard.fires());
   Pose hand;
   double paid = 0.0;
   for (int i = 1; i <= 10; ++i) {
-    hand.position.x += kSpeed * kTick;
+    hand.position.x += kSpeed * kControllerTick;
     const Wrench felt =
-        guard.guard({{-5.0, 0.0, 0.0}, {}}, hand, {{kSpeed, 0.0, 0.0}, {}}, kTick, kCredit, kMost);
+        guard.guard({{-5.0, 0.0, 0.0}, {}}, hand, {{kSpeed, 0.0, 0.0}, {}}, kControllerTick, kCredit, kMost);
     EXPECT_NEAR(felt.force.x, -kMost * kSpeed, 0.2) << i << ": as hard as the device may be damped";
     EXPECT_LE(std::abs(felt.force.x), 5.0);
     guard.sent(felt);
-    paid -= felt.force.x * kSpeed * kTick;
+    paid -= felt.force.x * kSpeed * kControllerTick;
   }
   EXPECT_NEAR(paid, 2.0 * 0.002, 5e-4);
   // A force that gives is none, whatever it is.
   const Wrench gives =
-      guard.guard({{5.0, 0.0, 0.0}, {}}, hand, {{kSpeed, 0.0, 0.0}, {}}, kTick, kCredit, kMost);
+      guard.guard({{5.0, 0.0, 0.0}, {}}, hand, {{kSpeed, 0.0, 0.0}, {}}, kControllerTick, kCredit, kMost);
   EXPECT_LE(gives.force.x, 0.0);
   // No damper takes more than the force it stands for.
   const Wrench little =
-      guard.guard({{-0.1, 0.0, 0.0}, {}}, hand, {{kSpeed, 0.0, 0.0}, {}}, kTick, 1.0, kMost);
+      guard.guard({{-0.1, 0.0, 0.0}, {}}, hand, {{kSpeed, 0.0, 0.0}, {}}, kControllerTick, 1.0, kMost);
   EXPECT_NEAR(little.force.x, -0.1, 0.01);
 }
 
@@ -115,11 +115,11 @@ TEST(HeldBody, AHandAtRestIsNotPushedOff) {
     Wrench felt;
     double out = 0.0, most = 0.0;
     for (int i = 0; i < 20000; ++i) {
-      const ArmState next = arm_after(arm, at, felt.force, kTick);
+      const ArmState next = arm_after(arm, at, felt.force, kControllerTick);
       out += glm::dot(felt.force, next.place - at.place);
       at = next;
       felt =
-          guard.guard({{10.0, 0.0, 0.0}, {}}, {at.place, {1, 0, 0, 0}}, {at.velocity, {}}, kTick, 0.0, 100.0);
+          guard.guard({{10.0, 0.0, 0.0}, {}}, {at.place, {1, 0, 0, 0}}, {at.velocity, {}}, kControllerTick, 0.0, 100.0);
       guard.sent(felt);
       most = std::max(most, out);
     }
@@ -141,10 +141,10 @@ TEST(HeldBody, WhereTheBalanceIsOutTheForceDoesNotRattle) {
   int steps = 0;
   for (int i = 0; i < 3000; ++i) {
     if (i % 10 == 0) credit += 2e-3;
-    const ArmState next = arm_after(arm, at, felt.force, kTick);
+    const ArmState next = arm_after(arm, at, felt.force, kControllerTick);
     out += glm::dot(felt.force, next.place - at.place);
     at = next;
-    felt = guard.guard({{10.0, 0.0, 0.0}, {}}, {at.place, {1, 0, 0, 0}}, {at.velocity, {}}, kTick, credit,
+    felt = guard.guard({{10.0, 0.0, 0.0}, {}}, {at.place, {1, 0, 0, 0}}, {at.velocity, {}}, kControllerTick, credit,
                        100.0);
     guard.sent(felt);
     EXPECT_LE(out, credit + 1e-3) << i;
@@ -178,16 +178,16 @@ TEST(HeldBody, BeforeTheBalanceIsOutTheForceGoesGently) {
       Pose hand;
       double out = 0.0, credit = 0.1, step = 0.0, least = kHeld;
       for (int i = 0; i < 4000; ++i) {
-        const double goes = speed * std::min(kTick * i / 0.3, 1.0);
+        const double goes = speed * std::min(kControllerTick * i / 0.3, 1.0);
         // The arm is wanted where it held the force at first, and from there on further.
-        const ArmState next = arm_after(arm, at, felt.force - glm::dvec3(kHeld, 0.0, 0.0), kTick);
-        const double way = next.place.x - at.place.x + goes * kTick;
+        const ArmState next = arm_after(arm, at, felt.force - glm::dvec3(kHeld, 0.0, 0.0), kControllerTick);
+        const double way = next.place.x - at.place.x + goes * kControllerTick;
         out += felt.force.x * way;
         hand.position.x += way;
         at = next;
-        credit -= drained * kTick;
+        credit -= drained * kControllerTick;
         const double before = felt.force.x;
-        felt = guard.guard({{kHeld, 0.0, 0.0}, {}}, hand, {{at.velocity.x + goes, 0.0, 0.0}, {}}, kTick,
+        felt = guard.guard({{kHeld, 0.0, 0.0}, {}}, hand, {{at.velocity.x + goes, 0.0, 0.0}, {}}, kControllerTick,
                            credit, 100.0);
         guard.sent(felt);
         step = std::max(step, std::abs(felt.force.x - before));

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kTick = 0.001;
 
-ReplicaBody bucket() {
+ReplicaBody replica_bucket() {
   ReplicaBody body;
   body.mass = 2.5;
   body.inertia = glm::dmat3(0.0);
@@ -27,7 +27,7 @@ ReplicaBody bucket() {
   return body;
 }
 
-std::vector<ReplicaGrip> two_grips() {
+std::vector<ReplicaGrip> replica_grips() {
   const CouplingGains gains{2000.0, 60.0, 20.0, 0.6};
   return {{{{0.15, 0.1, 0.0}, {1, 0, 0, 0}}, gains},
           {{{-0.15, 0.1, 0.02}, glm::normalize(glm::dquat(0.9, 0.1, 0.2, 0.0))}, gains}};
@@ -59,8 +59,8 @@ RigidBody on_the_host(const ReplicaBody& body) {
 
 /// With hands of this site alone, it is the host's own solve at the device loop's step.
 TEST(Replica, MovesAsTheHostsSolveDoes) {
-  const ReplicaBody body = bucket();
-  const std::vector<ReplicaGrip> grips = two_grips();
+  const ReplicaBody body = replica_bucket();
+  const std::vector<ReplicaGrip> grips = replica_grips();
   BodyReplica replica(body, grips);
   RigidBody host = on_the_host(body);
   replica.restart({host.position, host.orientation, {}});
@@ -100,8 +100,8 @@ TEST(Replica, MovesAsTheHostsSolveDoes) {
 /// Weight and a drag on a body that a hand swings and turns: what they gave is told by the body's motion and
 /// by what its couplings were given, also where most words are lost.
 TEST(LoadWork, IsWhatActsBesidesGave) {
-  const ReplicaBody body = bucket();
-  const std::vector<ReplicaGrip> grips = two_grips();
+  const ReplicaBody body = replica_bucket();
+  const std::vector<ReplicaGrip> grips = replica_grips();
   for (const int each : {1, 3, 5}) {
     LoadWork work(body, grips);
     RigidBody host = on_the_host(body);
@@ -159,7 +159,7 @@ TEST(LoadWork, IsWhatActsBesidesGave) {
 /// A load that is not believed gives nothing: what it drove is taken out of the motion.
 TEST(Replica, ALoadThatIsNotBelievedDrivesNothing) {
   for (const double believed : {1.0, 0.0}) {
-    BodyReplica replica(bucket(), two_grips());
+    BodyReplica replica(replica_bucket(), replica_grips());
     replica.restart({});
     replica.believe_load(believed);
     FluidLoad push;
@@ -182,7 +182,7 @@ TEST(Replica, ALoadThatIsNotBelievedDrivesNothing) {
 }
 
 TEST(Replica, TakesTheHostsWordOverByItsTimeConstant) {
-  BodyReplica replica(bucket(), {});
+  BodyReplica replica(replica_bucket(), {});
   replica.restart({});
   replica.set_delay({0.1, 0.0});
   EXPECT_NEAR(replica.time_constant(), 0.2, 1e-12);
@@ -201,7 +201,7 @@ TEST(Replica, TakesTheHostsWordOverByItsTimeConstant) {
 }
 
 TEST(Replica, AWordOfAMomentThatIsStillToComeWaitsForIt) {
-  BodyReplica replica(bucket(), {});
+  BodyReplica replica(replica_bucket(), {});
   RigidMotion moving;
   moving.twist.linear = {1.0, 0.0, 0.0};
   replica.restart(moving);
@@ -215,7 +215,7 @@ TEST(Replica, AWordOfAMomentThatIsStillToComeWaitsForIt) {
 }
 
 TEST(Replica, OthersPullLessTheLaterTheyAreHeard) {
-  BodyReplica replica(bucket(), two_grips());
+  BodyReplica replica(replica_bucket(), replica_grips());
   replica.restart({});
   std::vector<ReplicaHand> hands{hand_at(0.0, 0), hand_at(0.0, 1)};
   hands[1].own = false;
@@ -235,8 +235,8 @@ TEST(Replica, OthersPullLessTheLaterTheyAreHeard) {
 /// Somebody elsewhere whose own count says that they gave nothing cannot drive the body here.
 TEST(Replica, AHandThatPutNothingInGivesNothing) {
   const auto speed_after = [](bool counted) {
-    BodyReplica replica(bucket(), two_grips());
-    replica.restart({bucket().center, {1, 0, 0, 0}, {}});
+    BodyReplica replica(replica_bucket(), replica_grips());
+    replica.restart({replica_bucket().center, {1, 0, 0, 0}, {}});
     std::vector<ReplicaHand> hands(2);
     double fastest = 0.0;
     for (int i = 0; i < 2000; ++i) {
@@ -282,7 +282,7 @@ TEST(FluidLoad, ANumberThatIsNoneInAnyFieldLeavesNothing) {
 }
 
 TEST(Replica, NoLoadMakesItLeaveTheWorld) {
-  BodyReplica replica(bucket(), {});
+  BodyReplica replica(replica_bucket(), {});
   replica.restart({});
   FluidLoad load;
   load.wrench[0] = std::numeric_limits<double>::infinity();

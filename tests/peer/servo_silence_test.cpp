@@ -114,13 +114,13 @@ TEST(Servo, TakesHoldWhereTheHandIsWhenItsForceBegins) {
   }
 }
 
-/// Nobody feels what a script or a mouse holds, and in one process the answer is there at once.
+/// Nobody feels what a silent_script or a mouse holds, and in one process the answer is there at once.
 TEST(Servo, NobodyWaitsForWhoFeelsNothing) {
   ServoKit kit;
   kit.stands = true;
-  auto script = std::make_unique<test::FakeDevice>();
-  script->feels = false;
-  ASSERT_TRUE(kit.servo->set_device(0, std::move(script)));
+  auto silent_script = std::make_unique<test::FakeDevice>();
+  silent_script->feels = false;
+  ASSERT_TRUE(kit.servo->set_device(0, std::move(silent_script)));
   kit.publish(0.0, {}, {}, 1.0, 0.0);
   kit.tick(0.0);
   ASSERT_TRUE(kit.channel.pose(0).update());

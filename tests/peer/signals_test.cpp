@@ -13,7 +13,7 @@
 namespace slosh {
 namespace {
 
-std::filesystem::path folder(const std::string& name) {
+std::filesystem::path signals_folder(const std::string& name) {
   const std::filesystem::path path = std::filesystem::path(::testing::TempDir()) / ("signals_" + name);
   std::filesystem::create_directories(path);
   return path;
@@ -70,7 +70,7 @@ TEST(Signals, ARowATickIsAskedForAndEachTickHasOne) {
 }
 
 TEST(Signals, AreAsTheHandHadThemStageByStage) {
-  const std::filesystem::path out = folder("stages");
+  const std::filesystem::path out = signals_folder("stages");
   DeviceLimits limits = limits_without_a_hand();
   limits.max_force = 3.0;
   limits.max_force_rate = 100.0;
@@ -117,7 +117,7 @@ TEST(Signals, AreAsTheHandHadThemStageByStage) {
 }
 
 TEST(Signals, AreNotKeptWhereNobodyAsksForThem) {
-  const std::filesystem::path out = folder("none");
+  const std::filesystem::path out = signals_folder("none");
   std::filesystem::remove(out / "signals.csv");
   test::ServoKit kit;
   Result<std::unique_ptr<Recorder>> recorder = Recorder::start(*kit.servo, out);

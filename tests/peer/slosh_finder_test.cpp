@@ -12,10 +12,10 @@ namespace slosh {
 namespace {
 
 constexpr double kStep = 0.002;  // s
-constexpr double kWeight = -20.0;  // N
+constexpr double kFinderWeight = -20.0;  // N
 
 /// A body led by swelling sines at 0.9 and 1.9 Hz for `seconds` (by one alone, masses could not be told apart); `force`: of its velocity, acceleration and time.
-SloshFinder led(double seconds, const std::function<double(double, double, double)>& force) {
+SloshFinder led_finder(double seconds, const std::function<double(double, double, double)>& force) {
   SloshFinder finder;
   finder.restart(10.0);
   double before = 0.0;
@@ -70,11 +70,11 @@ TEST(SloshFinder, FindsAMassOnASpring) {
   const SloshMode truth{1.5, 2.0 * std::numbers::pi * 1.53, 0.05};
   Swinging fluid{truth, {}};
   double last = 0.0, peak = 0.0;
-  const SloshFinder found = led(4.0, [&](double v, double a, double) {
+  const SloshFinder found = led_finder(4.0, [&](double v, double a, double) {
     const double middle = 0.5 * (v + last), swings = fluid.force(last, v);
     last = v;
     peak = std::max(peak, std::abs(slosh_force(truth, fluid.state)));
-    return kWeight - 0.8 * a - 3.0 * middle + swings;
+    return kFinderWeight - 0.8 * a - 3.0 * middle + swings;
   });
   expect_followed(found, truth);
   const SloshMode& mode = found.mode();
@@ -127,18 +127,18 @@ TEST(SloshFinder, KnowsAMassOnASpringAfterALongRest) {
 TEST(SloshFinder, NoiseIsNoMode) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> noise(-0.02, 0.02);
-  const double share = led(5.0, [&](double v, double a, double) {
-                         return kWeight - 1.5 * a - 3.0 * v + noise(random);
+  const double share = led_finder(5.0, [&](double v, double a, double) {
+                         return kFinderWeight - 1.5 * a - 3.0 * v + noise(random);
                        }).share();
   EXPECT_LT(share, 0.05);
 }
 
 TEST(SloshFinder, FollowsNothingWhereNothingSwings) {
-  EXPECT_LT(led(4.0, [](double v, double a, double) { return kWeight - 1.5 * a - 3.0 * v; }).share(), 0.05);
-  EXPECT_EQ(led(4.0, [](double, double, double) { return kWeight; }).share(), 0.0);
+  EXPECT_LT(led_finder(4.0, [](double v, double a, double) { return kFinderWeight - 1.5 * a - 3.0 * v; }).share(), 0.05);
+  EXPECT_EQ(led_finder(4.0, [](double, double, double) { return kFinderWeight; }).share(), 0.0);
   // A table that is met now and then, and does not hang on how the body moves.
   const double share =
-      led(6.0, [](double, double, double t) { return std::fmod(t, 1.7) < 0.4 ? 12.0 : kWeight; }).share();
+      led_finder(6.0, [](double, double, double t) { return std::fmod(t, 1.7) < 0.4 ? 12.0 : kFinderWeight; }).share();
   std::printf("a table met every 1.7 s: share %.3f\n", share);
   EXPECT_LT(share, 0.05);
 }
@@ -155,7 +155,7 @@ TEST(SloshFinder, WhatIsPouredOutNeedNotBeFoundAgain) {
       const double now = 0.15 * std::min(t, 1.0) * (std::sin(0.9 * angle) + std::sin(1.9 * angle));
       const double swings = fluid.force(before, now);
       if (said && t >= 4.0 && t < 4.0 + kStep) finder.lighten(0.5);
-      finder.hear(kStep, before, now, left * (kWeight - 0.8 * (now - before) / kStep + swings));
+      finder.hear(kStep, before, now, left * (kFinderWeight - 0.8 * (now - before) / kStep + swings));
       before = now;
       if (t > 4.1) off = std::max(off, std::abs(finder.mode().mass - 0.75));
     }

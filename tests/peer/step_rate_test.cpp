@@ -17,7 +17,7 @@ using test::FeltTick;
 using test::HandRig;
 using test::RigOptions;
 
-constexpr double kSeconds = 4.0;
+constexpr double kRateSeconds = 4.0;
 
 struct Felt {
   double peak = 0.0;    // N
@@ -43,7 +43,7 @@ Felt stir(double step_rate, const std::function<double(int)>& takes, double gap 
               std::make_unique<OperatorDevice>(PoseTrack(scene.grips[0].hand_motion, grip_start(scene, 0)),
                                                parse_operator("tight").value()),
               options);
-  rig.run(kSeconds);
+  rig.run(kRateSeconds);
   Felt felt;
   const FeltTick* before = nullptr;
   for (const FeltTick& tick : rig.ticks()) {

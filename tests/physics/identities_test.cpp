@@ -97,7 +97,7 @@ TEST_P(Corrected, momentum_of_fluid_and_free_body_together) {
 
 // Angular momentum about the origin. Velocities are differences of positions (the snapshot has no others):
 // float positions of 0.1 m over a step of 2 ms resolve 4e-6 m/s.
-glm::dvec3 angular_momentum(const Snapshot& before, const Snapshot& after, double dt, double particle_mass) {
+glm::dvec3 whole_angular_momentum(const Snapshot& before, const Snapshot& after, double dt, double particle_mass) {
   glm::dvec3 sum(0.0);
   for (std::size_t i = 0; i < after.positions.size(); ++i) {
     const glm::dvec3 x(after.positions[i]);
@@ -135,12 +135,12 @@ double angular_momentum_drift(ParticleModel model) {
   Snapshot before = e.picture();
   e.step();
   Snapshot after = e.picture();
-  const glm::dvec3 start = angular_momentum(before, after, dt, mass);
+  const glm::dvec3 start = whole_angular_momentum(before, after, dt, mass);
   for (int i = 0; i < 100; ++i) e.step();
   before = e.picture();
   e.step();
   after = e.picture();
-  return glm::length(angular_momentum(before, after, dt, mass) - start) / glm::length(start);
+  return glm::length(whole_angular_momentum(before, after, dt, mass) - start) / glm::length(start);
 }
 
 // Central forces keep angular momentum. Eq 9 drags along the velocity difference, off the line between the
@@ -180,7 +180,7 @@ TEST_P(Corrected, closed_container_takes_the_angular_momentum_that_the_fluid_los
   Snapshot before = e.picture();
   e.step();
   Snapshot after = e.picture();
-  const glm::dvec3 start = angular_momentum(before, after, dt, mass);
+  const glm::dvec3 start = whole_angular_momentum(before, after, dt, mass);
   glm::dvec3 given(0.0);
   for (int i = 0; i < 150; ++i) {
     before = after;
@@ -188,7 +188,7 @@ TEST_P(Corrected, closed_container_takes_the_angular_momentum_that_the_fluid_los
     after = e.picture();
     given -= dt * (e.bodies().bodies[tank].fluid.torque + e.bodies().bodies[lid].fluid.torque);
   }
-  const glm::dvec3 change = angular_momentum(before, after, dt, mass) - start;
+  const glm::dvec3 change = whole_angular_momentum(before, after, dt, mass) - start;
   EXPECT_EQ(e.world().diagnostics().retired, 0u);
   EXPECT_LT(change.y, -0.3 * start.y) << "the walls hardly braked the fluid: the test tests little";
   EXPECT_LT(std::abs(report("angular impulse of the walls", given.y, change.y, "N·m·s")), 1e-5);

@@ -19,7 +19,7 @@ struct Moved {
 
 // Of the fluid, 10 cm deep in a tank of 16 x 16 cm, after half a second of settling and three of moving.
 double share_lost(const Moved& moved) {
-  constexpr double kSpacing = 0.01, kHalf = 0.08, kDepth = 0.1, kSeconds = 3.0;
+  constexpr double kPaperSpacing = 0.01, kHalf = 0.08, kDepth = 0.1, kSeconds = 3.0;
   SceneBuilder b;
   b.add_fluid(1000.0, moved.viscosity);
   const int tank = b.add_free("tank", tank_at_floor({2.0 * kHalf, 0.3, 2.0 * kHalf}, 0.05), 5.0);
@@ -29,7 +29,7 @@ double share_lost(const Moved& moved) {
   b.set_domain({-0.8, -0.6, -0.8}, {0.8, 0.8, 0.8});
   b.scene.model = ParticleModel::kPaper;
   b.scene.tension = moved.tension;
-  Experiment e(b.scene, kSpacing);
+  Experiment e(b.scene, kPaperSpacing);
   e.handle(0).engaged = true;
   e.settle(0.5, true);
   const double rate = 2.0 * kPi, start = e.world().time();
@@ -38,7 +38,7 @@ double share_lost(const Moved& moved) {
     e.handle(0).pose.position.x = moved.speed / rate * (1.0 - std::cos(angle));
     e.handle(0).twist.linear.x = moved.speed * std::sin(angle);
   });
-  const double off = 0.8 * kSpacing;
+  const double off = 0.8 * kPaperSpacing;
   return report::share_outside(e.picture(), e.bodies().bodies[static_cast<std::size_t>(tank)].pose,
                                {{-kHalf - off, -off, -kHalf - off}, {kHalf + off, 0.3, kHalf + off}, true});
 }

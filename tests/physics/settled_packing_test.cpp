@@ -14,7 +14,7 @@
 namespace slosh::lab {
 namespace {
 
-constexpr double kSpacing = 0.008;
+constexpr double kPackingSpacing = 0.008;
 
 // The particles of a world, with the volumes that its density pass gave them.
 ParticleState particles_of(Experiment& e, const Scene& scene, const RunConstants& constants) {
@@ -39,7 +39,7 @@ Volumes volumes_inside(const ParticleState& p) {
   constexpr int kBoxes = 2000;
   const glm::dvec3 half(0.03, 0.02, 0.03), middle(0.0, 0.08, 0.0);
   std::mt19937 random(1);
-  std::uniform_real_distribution<double> move(-kSpacing, kSpacing);
+  std::uniform_real_distribution<double> move(-kPackingSpacing, kPackingSpacing);
   double count = 0.0, volume = 0.0;
   for (int k = 0; k < kBoxes; ++k) {
     const double x = move(random), y = move(random), z = move(random);
@@ -61,7 +61,7 @@ struct Settled {
 
 Settled settled_syrup(ParticleModel model) {
   const SceneBuilder b = full_tank(model, 1400.0, 5.0);
-  Experiment e(b.scene, kSpacing);
+  Experiment e(b.scene, kPackingSpacing);
   e.settle(1.0);
   e.run(0.1);
   const RunConstants c = make_run_constants(b.scene, e.sampled(), e.world().plan());
@@ -74,7 +74,7 @@ Settled settled_syrup(ParticleModel model) {
 TEST(SettledPacking, a_particle_counts_less_than_the_room_that_it_takes) {
   const auto [rest, v] = settled_syrup(ParticleModel::kCorrected);
   ASSERT_NEAR(rest, 0.98, 1e-6);
-  const double lattice = std::pow(kSpacing, 3);
+  const double lattice = std::pow(kPackingSpacing, 3);
   EXPECT_LT(std::abs(report("room of a settled particle", v.taken, lattice, "m3")), 0.01);
   EXPECT_LT(std::abs(report("what is counted of it", v.counted, rest * v.taken, "m3")), 0.01);
 }

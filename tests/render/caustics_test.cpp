@@ -12,7 +12,7 @@ namespace slosh {
 namespace {
 
 using CausticsTest = RenderTest;
-constexpr float kSpacing = 0.012f;
+constexpr float kCausticSpacing = 0.012f;
 constexpr float kWave = 0.24f;   // m, its length along x
 constexpr float kDepth = 0.10f;  // m, of the level water
 
@@ -25,8 +25,8 @@ struct Waves {
   Waves(MeshSink& meshes, float height) {
     const glm::vec3 low(-0.36f, 0.0f, -0.36f);
     const glm::vec3 high(0.36f, 0.2f, 0.36f);
-    particles = score::make_fluid(low, high, kSpacing, [&](float x, float) {
-      return kDepth - 0.5f * kSpacing + height * std::cos(glm::two_pi<float>() * x / kWave);
+    particles = score::make_fluid(low, high, kCausticSpacing, [&](float x, float) {
+      return kDepth - 0.5f * kCausticSpacing + height * std::cos(glm::two_pi<float>() * x / kWave);
     });
     fluids.assign(particles.size(), 0);
     const kit::Shape floor = kit::make_box({-1.0f, -0.02f, -1.0f}, {1.0f, 0.0f, 1.0f});
@@ -41,7 +41,7 @@ struct Waves {
     frame.particles = particles;
     frame.particle_fluid = fluids;
     frame.fluids = {kit::water()};
-    frame.particle_radius = 0.62f * kSpacing;
+    frame.particle_radius = 0.62f * kCausticSpacing;
   }
 };
 

@@ -12,7 +12,7 @@ namespace {
 
 using MirrorTest = RenderTest;
 using kit::StillBasin;
-constexpr float kSpacing = 0.015f;
+constexpr float kMirrorSpacing = 0.015f;
 
 /// A line of sight, mirrored in the water's level surface.
 struct Mirrored {
@@ -59,7 +59,7 @@ TEST_F(MirrorTest, APostStandsInTheWaterUpsideDown) {
   options.height = 240;
   options.quality = Quality::kFull;
   auto renderer = make(options);
-  StillBasin basin(*renderer, kSpacing, options.width, options.height);
+  StillBasin basin(*renderer, kMirrorSpacing, options.width, options.height);
   renderer->draw(basin.frame);
   const FloatImage with = renderer->read_buffer(Buffer::kFinalColor);
   const FloatImage scene = renderer->read_buffer(Buffer::kSceneColor);
@@ -121,7 +121,7 @@ TEST_F(MirrorTest, WhatPathsFindIsNearerWithTheBodies) {
   slow.height = options.height;
   slow.samples = 24;
   slow.threads = 2;
-  StillBasin traced(*tracer.value(), kSpacing, kWidth, kHeight);
+  StillBasin traced(*tracer.value(), kMirrorSpacing, kWidth, kHeight);
   const FloatImage truth = tracer.value()->draw(traced.frame, slow);
   // In the post's mirror image, on the mean: how red the water is.
   const auto redness = [&](const FloatImage& light) {
@@ -140,7 +140,7 @@ TEST_F(MirrorTest, WhatPathsFindIsNearerWithTheBodies) {
     return sum / count;
   };
   auto renderer = make(options);
-  StillBasin basin(*renderer, kSpacing, kWidth, kHeight);
+  StillBasin basin(*renderer, kMirrorSpacing, kWidth, kHeight);
   renderer->draw(basin.frame);
   const double with = redness(renderer->read_buffer(Buffer::kFinalColor));
   options.body_reflections = false;

@@ -11,7 +11,7 @@ namespace {
 
 using LooksTest = RenderTest;
 
-float luma(const FloatImage& image, int x, int y) {
+float pool_luma(const FloatImage& image, int x, int y) {
   return 0.2126f * image.at(x, y, 0) + 0.7152f * image.at(x, y, 1) + 0.0722f * image.at(x, y, 2);
 }
 
@@ -96,7 +96,7 @@ TEST_F(LooksTest, SprayHasNoPatchesOfTheRoom) {
     for (int x = 0; x < options.width; ++x) {
       if (fluid.at(x, y) < 0.0f) continue;
       ++pixels;
-      pale += luma(light, x, y) > 0.35f ? 1 : 0;
+      pale += pool_luma(light, x, y) > 0.35f ? 1 : 0;
     }
   }
   ASSERT_GT(pixels, 3000);
@@ -164,10 +164,10 @@ TEST_F(LooksTest, JuiceAtATanksFootHasNoCrumbs) {
           inside = inside && fluid.at(x + d, y) >= 0.0f && fluid.at(x, y + d) >= 0.0f;
         if (!inside || y + 30 >= options.height || fluid.at(x, y + 30) >= 0.0f) continue;
         ++pixels;
-        const float here = luma(light, x, y);
+        const float here = pool_luma(light, x, y);
         const auto stands_out = [&](int dx, int dy) {
-          const float one = luma(light, x + dx, y + dy) - here;
-          const float other = luma(light, x - dx, y - dy) - here;
+          const float one = pool_luma(light, x + dx, y + dy) - here;
+          const float other = pool_luma(light, x - dx, y - dy) - here;
           return one * other > 0.0f && std::min(std::abs(one), std::abs(other)) > 0.08f * here;
         };
         crumbs += stands_out(2, 0) || stands_out(0, 2) ? 1 : 0;
@@ -198,15 +198,15 @@ TEST_F(LooksTest, WaterAtABallsFootHasNoPaleRim) {
     int last = 0;  // the lowest of the ball in the water
     for (int y = 380; y < 440; ++y) {
       if (scene.at(x, y) > 0.95f || thickness.at(x, y) <= 0.0f) continue;
-      foot += luma(light, x, y);
+      foot += pool_luma(light, x, y);
       foot_red += light.at(x, y, 0);
       ++count;
       last = y;
     }
     ASSERT_GT(last, 0) << x;
-    for (int y = last + 6; y < last + 16; ++y) below += 0.1 * luma(light, x, y) / 36.0;
+    for (int y = last + 6; y < last + 16; ++y) below += 0.1 * pool_luma(light, x, y) / 36.0;
     for (int y = last - 8; y < last; ++y) {  // to the right, out of the ball's reach
-      beside += luma(light, x + 90, y) / (8.0 * 36.0);
+      beside += pool_luma(light, x + 90, y) / (8.0 * 36.0);
       beside_red += light.at(x + 90, y, 0) / (8.0 * 36.0);
     }
   }
@@ -290,10 +290,10 @@ TEST_F(LooksTest, AGlassStandsOnATableWithoutStripes) {
           const glm::vec4 at = clip * glm::vec4(x, 0.0f, z, 1.0f);
           const int px = static_cast<int>((0.5f + 0.5f * at.x / at.w) * static_cast<float>(options.width));
           const int py = static_cast<int>((0.5f - 0.5f * at.y / at.w) * static_cast<float>(options.height));
-          const float here = luma(light, px, py);
+          const float here = pool_luma(light, px, py);
           const auto jumps = [&](int dx, int dy) {
-            const float one = luma(light, px + dx, py + dy) - here;
-            const float other = luma(light, px - dx, py - dy) - here;
+            const float one = pool_luma(light, px + dx, py + dy) - here;
+            const float other = pool_luma(light, px - dx, py - dy) - here;
             return one * other > 0.0f && std::min(std::abs(one), std::abs(other)) > 0.02f * here;
           };
           ++seen;

@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using test::TempFolder;
 
-std::string read_bytes(const fs::path& file) {
+std::string bytes_of_file(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }
@@ -178,7 +178,7 @@ TEST(ForeignFile, APictureIsHeldToTheSame) {
   }
   // It would be seen.
   const Openings openings({outer / "secret.png"});
-  read_bytes(outer / "secret.png");
+  bytes_of_file(outer / "secret.png");
   EXPECT_TRUE(openings.any());
 }
 
@@ -206,7 +206,7 @@ TEST(ForeignFile, TheWorkingFolderIsNotSearched) {
 TEST(ForeignFile, ABinaryFileIsHeldToTheSame) {
   const TempFolder folder;
   ASSERT_TRUE(test::make_cup().write(folder / "cup.glb"));
-  const std::string bytes = read_bytes(folder / "cup.glb");
+  const std::string bytes = bytes_of_file(folder / "cup.glb");
   const auto word = [&](std::size_t at) {
     std::uint32_t value = 0;
     std::memcpy(&value, bytes.data() + at, 4);

@@ -9,7 +9,7 @@ using test::expect_note;
 using test::mesh_of;
 using test::node_named;
 
-std::size_t index_of(json& j, const char* node) {
+std::size_t place_of_node(json& j, const char* node) {
   return static_cast<std::size_t>(&node_named(j, node) - &j["nodes"][0]);
 }
 
@@ -34,7 +34,7 @@ TEST(Ledger, ShapeKeysWithAWeight) {
 TEST(Ledger, SkinsHiddenNodesAndInstances) {
   expect_note("skin",
               [](json& j) {
-                j["skins"] = {{{"joints", {index_of(j, "hand")}}}};
+                j["skins"] = {{{"joints", {place_of_node(j, "hand")}}}};
                 node_named(j, "water")["skin"] = 0;
               },
               {"'water'", "rest shape"});
@@ -52,7 +52,7 @@ TEST(Ledger, ChannelsThatMoveNothing) {
               [](json& j) {
                 json more = j["animations"][0];
                 more["name"] = "turntable";
-                for (json& channel : more["channels"]) channel["target"]["node"] = index_of(j, "table");
+                for (json& channel : more["channels"]) channel["target"]["node"] = place_of_node(j, "table");
                 j["animations"].push_back(more);
               },
               {"'turntable'", "'table'", "only hands"});

@@ -29,7 +29,7 @@ make::SceneWriter textured_cup(make::Paint paint = {}) {
   return writer;
 }
 
-Result<Scene> load(make::SceneWriter writer, const char* name = "cup.glb") {
+Result<Scene> load_textured(make::SceneWriter writer, const char* name = "cup.glb") {
   const TempFolder folder;
   EXPECT_TRUE(writer.write(folder / name));
   return load_scene(folder / name);
@@ -70,7 +70,7 @@ TEST(SceneTextures, ComeFromTheFilesBuffer) {
   paint.emissive_map.image = 1;
   paint.metallic_roughness_map.image = 1;
   for (const char* name : {"cup.glb", "cup.gltf"}) {
-    const Result<Scene> read = load(textured_cup(paint), name);
+    const Result<Scene> read = load_textured(textured_cup(paint), name);
     ASSERT_TRUE(read) << read.error().text();
     const Scene& scene = read.value();
     EXPECT_TRUE(scene.left_out.empty()) << scene.left_out[0].text();

@@ -10,7 +10,7 @@ namespace {
 
 using codec_kit::swirl;
 
-constexpr double kTolerance = 0.001;
+constexpr double kLostTolerance = 0.001;
 constexpr std::size_t kParticles = 20000;  // several pieces a frame
 constexpr double kTurn = 0.02;             // rad a frame, and up to 15 % more
 // Of a particle of the swirl: a circle of at most 0.15·√2 m at 1.15 · kTurn.
@@ -79,7 +79,7 @@ std::size_t not_drawn(const DecodedFrame& frame) {
 /// A block that moves on by its last motion for n frames misses its change of velocity, n (n + 1) / 2 times
 /// a frame's; rounding of the two frames that it goes by, and of the truth, comes to it.
 double carried_off(double frames) {
-  return 0.5 * frames * (frames + 1.0) * kAcceleration + (2.0 + 2.0 * frames) * kTolerance + 1e-6;
+  return 0.5 * frames * (frames + 1.0) * kAcceleration + (2.0 + 2.0 * frames) * kLostTolerance + 1e-6;
 }
 
 TEST(LostPiece, its_blocks_move_on_until_mended_and_the_rest_is_exact) {
@@ -165,7 +165,7 @@ TEST(LostPiece, of_a_key_frame_is_not_drawn_until_mended) {
     link.send_mending(kDelay);
     // What shares a temporal piece with them and comes behind stands where it was.
     const auto n = static_cast<double>(link.shown.back().frame);
-    count_off(link.shown.back(), link.exact.back(), n * kSpeed + 2.0 * kTolerance);
+    count_off(link.shown.back(), link.exact.back(), n * kSpeed + 2.0 * kLostTolerance);
     EXPECT_LE(not_drawn(link.shown.back()), lost.blocks * codec::kBlock);
     // The first frame's loss is told with the second frame, and mended a delay after that at the latest.
     ASSERT_LE(link.shown.back().frame, 1 + kDelay + 1);

@@ -11,7 +11,7 @@ namespace slosh::testing {
 namespace {
 
 constexpr std::size_t kPoseBytes = 450;   // four samples of a hand
-constexpr std::size_t kStateBytes = 300;  // two bodies
+constexpr std::size_t kPoseStateBytes = 300;  // two bodies
 
 /// What arrived of one kind.
 struct Arrivals {
@@ -21,14 +21,14 @@ struct Arrivals {
   double age_p99 = 0.0;           ///< s
 };
 
-Bytes stamped(std::int64_t now_ns, std::size_t size) {
+Bytes stamped_pose(std::int64_t now_ns, std::size_t size) {
   Bytes bytes(size, 1);
   std::memcpy(bytes.data(), &now_ns, sizeof(now_ns));
   return bytes;
 }
 
 /// Poses up and states down, 500 a second each, for `seconds` after two of warming up.
-void flow(VirtualLink& link, double seconds, Arrivals& poses, Arrivals& states) {
+void pose_flow(VirtualLink& link, double seconds, Arrivals& poses, Arrivals& states) {
   std::vector<double> ages[2];
   std::size_t window[2] = {};
   const auto collect = [&](Recorder& events, Arrivals& into, int kind, bool counts) {
@@ -46,8 +46,8 @@ void flow(VirtualLink& link, double seconds, Arrivals& poses, Arrivals& states) 
   for (int i = 0; i < steps; ++i) {
     const bool counts = i >= 4000;
     if (i % 4 == 0) {
-      link.peer->send_datagram(link.at_peer(), Priority::kPose, shared(stamped(link.now_ns, kPoseBytes)));
-      link.host->send_datagram(link.at_host(), Priority::kState, shared(stamped(link.now_ns, kStateBytes)));
+      link.peer->send_datagram(link.at_peer(), Priority::kPose, shared(stamped_pose(link.now_ns, kPoseBytes)));
+      link.host->send_datagram(link.at_host(), Priority::kState, shared(stamped_pose(link.now_ns, kPoseStateBytes)));
       poses.sent += counts ? 1 : 0;
       states.sent += counts ? 1 : 0;
     }
@@ -84,7 +84,7 @@ TEST(Poses, AreNotHeldBackWhileTheRoundTripIsProbed) {
     VirtualLink link(far, far);
     ASSERT_TRUE(link.connect());
     Arrivals poses, states;
-    flow(link, 40.0, poses, states);
+    pose_flow(link, 40.0, poses, states);
     tell(("round trip " + std::to_string(static_cast<int>(1e3 * round_trip)) + " ms").c_str(), poses, states);
     for (const Arrivals& each : {poses, states}) {
       EXPECT_GE(share(each), 0.999);
@@ -104,7 +104,7 @@ TEST(Poses, FlowOverALinkThatLosesRepeatsAndReorders) {
   VirtualLink link(bad, bad);
   ASSERT_TRUE(link.connect());
   Arrivals poses, states;
-  flow(link, 30.0, poses, states);
+  pose_flow(link, 30.0, poses, states);
   tell("300 ms, 20 % loss", poses, states);
   for (const Arrivals& each : {poses, states}) {
     EXPECT_GE(share(each), 0.78) << "a fifth is the link's";
@@ -123,7 +123,7 @@ TEST(Poses, DoNotFillTheQueueOfAThinLink) {
   VirtualLink link(thin, wide);
   ASSERT_TRUE(link.connect());
   Arrivals poses, states;
-  flow(link, 20.0, poses, states);
+  pose_flow(link, 20.0, poses, states);
   tell("100 kB/s up", poses, states);
   EXPECT_GE(share(poses), 0.3);
   EXPECT_LE(poses.age_p99, 0.4) << "2.6 s is what the queue holds";
@@ -140,7 +140,7 @@ TEST(States, DoNotFillTheQueueOfAThinLink) {
   VirtualLink link(wide, thin);
   ASSERT_TRUE(link.connect());
   Arrivals poses, states;
-  flow(link, 20.0, poses, states);
+  pose_flow(link, 20.0, poses, states);
   tell("75 kB/s down", poses, states);
   EXPECT_GE(share(states), 0.3);
   EXPECT_LE(states.age_p99, 1.3) << "2.7 s is what the queue holds";
@@ -154,8 +154,8 @@ std::pair<std::size_t, std::size_t> pump(VirtualLink& link, double seconds) {
   const int steps = static_cast<int>(seconds * 2000.0);
   for (int i = 0; i < steps; ++i) {
     if (i % 4 == 0) {
-      link.peer->send_datagram(link.at_peer(), Priority::kPose, shared(stamped(link.now_ns, kPoseBytes)));
-      link.host->send_datagram(link.at_host(), Priority::kState, shared(stamped(link.now_ns, kStateBytes)));
+      link.peer->send_datagram(link.at_peer(), Priority::kPose, shared(stamped_pose(link.now_ns, kPoseBytes)));
+      link.host->send_datagram(link.at_host(), Priority::kState, shared(stamped_pose(link.now_ns, kPoseStateBytes)));
     }
     link.step();
     for (const auto& [events, count] :
@@ -207,7 +207,7 @@ TEST(Losses, AreNotWhatComesLate) {
     VirtualLink link(link_way, link_way);
     ASSERT_TRUE(link.connect());
     Arrivals poses, states;
-    flow(link, 20.0, poses, states);
+    pose_flow(link, 20.0, poses, states);
     const ConnectionStats stats = link.peer->stats(link.at_peer());
     const ConnectionStats down = link.host->stats(link.at_host());
     tell("reordered", poses, states);

@@ -13,8 +13,8 @@ namespace {
 
 using namespace wire;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+constexpr double kEndless = std::numeric_limits<double>::infinity();
 
 // BᵀB of random rows: positive semidefinite, of this rank.
 Matrix6 random_matrix(std::mt19937_64& random, int rank, double size) {
@@ -55,11 +55,11 @@ TEST(SemidefiniteCode, ComesBackWithinItsGrain) {
 TEST(SemidefiniteCode, WhatIsNoneIsBroughtNear) {
   Matrix6 bad{};
   for (std::size_t i = 0; i < 6; ++i) bad[i][i] = 1.0;
-  bad[0][0] = kNan;
+  bad[0][0] = kNoNumber;
   bad[1][1] = -3.0;
-  bad[2][2] = kInfinite;
+  bad[2][2] = kEndless;
   bad[3][4] = bad[4][3] = 50.0;  // no correlation
-  bad[4][5] = kNan;
+  bad[4][5] = kNoNumber;
   const SemidefiniteCode code = to_code(bad);
   ASSERT_TRUE(is_semidefinite(code));
   const Matrix6 back = to_matrix(code);

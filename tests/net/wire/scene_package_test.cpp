@@ -31,7 +31,7 @@ Bytes stored(const Bytes& content) {
   return package;
 }
 
-std::string error_of(ByteView package) {
+std::string package_error(ByteView package) {
   const Result<UnpackedScene> scene = unpack_scene(package);
   return scene ? "" : scene.error().text();
 }
@@ -267,7 +267,7 @@ TEST(ScenePackage, RulesBetweenFieldsHold) {
     EXPECT_EQ(wire::encode(scene, content).field, each.field);
     // A Writer mends a normal by itself; the rest is written as it is.
     if (std::string(each.field) != "meshes.normals.normal") {
-      EXPECT_NE(error_of(stored(content)), "") << each.field;
+      EXPECT_NE(package_error(stored(content)), "") << each.field;
     }
   }
 }
@@ -300,26 +300,26 @@ TEST(ScenePackage, EveryCutAndEveryFlippedBitOfTheCompressedIsStood) {
   const Bytes whole = packed(test::small_scene());
   ASSERT_EQ(whole[1], 1) << "compressed";
   for (std::size_t size = 0; size < whole.size(); ++size)
-    EXPECT_NE(error_of(ByteView(whole).first(size)), "");
+    EXPECT_NE(package_error(ByteView(whole).first(size)), "");
   std::size_t refused = 0;
   for (std::size_t bit = 0; bit < 8 * whole.size(); ++bit) {
     Bytes damaged = whole;
     damaged[bit / 8] ^= static_cast<std::uint8_t>(1u << (bit % 8));
-    refused += !error_of(damaged).empty();
+    refused += !package_error(damaged).empty();
   }
   EXPECT_GT(refused, whole.size());  // a flipped bit of a position is a position
   Bytes longer = whole;
   longer.push_back(0);
-  EXPECT_NE(error_of(longer), "");
+  EXPECT_NE(package_error(longer), "");
 }
 
 TEST(ScenePackage, ALyingSizeIsNotBelieved) {
   // A zstd frame of one byte that claims 60 MB.
   const Bytes liar{1, 1, 0x28, 0xb5, 0x2f, 0xfd, 0xa0, 0x00, 0x00, 0xc0, 0x03, 0x03, 0x00, 0x00, 0x00};
-  EXPECT_NE(error_of(liar).find("claims to be 62914560 bytes"), std::string::npos) << error_of(liar);
-  EXPECT_NE(error_of(Bytes{1, 1, 'x', 'y'}).find("does not begin as zstd does"), std::string::npos);
-  EXPECT_NE(error_of(Bytes{6, 0}).find("its version is 6"), std::string::npos);
-  EXPECT_NE(error_of(Bytes{1, 7}).find("its coding is 7"), std::string::npos);
+  EXPECT_NE(package_error(liar).find("claims to be 62914560 bytes"), std::string::npos) << package_error(liar);
+  EXPECT_NE(package_error(Bytes{1, 1, 'x', 'y'}).find("does not begin as zstd does"), std::string::npos);
+  EXPECT_NE(package_error(Bytes{6, 0}).find("its version is 6"), std::string::npos);
+  EXPECT_NE(package_error(Bytes{1, 7}).find("its coding is 7"), std::string::npos);
 }
 
 TEST(ScenePackage, WhatPacksTooWellIsStored) {

@@ -55,7 +55,7 @@ std::vector<std::uint8_t> answer_of(unsigned number, std::size_t size, const cha
   return bytes;
 }
 
-gboolean answer(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer name) {
+gboolean pad_answer(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer name) {
   const gulong request = umockdev_ioctl_client_get_request(client);
   if (_IOC_TYPE(request) != 'E') return FALSE;
   const std::size_t size = _IOC_SIZE(request);
@@ -71,7 +71,7 @@ gboolean answer(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer name) 
   return TRUE;
 }
 
-void must(gboolean done, GError* error) {
+void pad_must(gboolean done, GError* error) {
   if (done) return;
   throw std::runtime_error(error != nullptr ? error->message : "umockdev would not");
 }
@@ -90,10 +90,10 @@ MockedGamepad::MockedGamepad(MockedMachine& machine, int number, const std::stri
       "P: " + path_ + "/event" + n + "\nN: input/event" + n + "\nE: SUBSYSTEM=input\nE: DEVNAME=" + node() +
       "\nE: MAJOR=13\nE: MINOR=" + std::to_string(64 + number) + "\n\n";
   GError* error = nullptr;
-  must(umockdev_testbed_add_from_string(machine.testbed(), made.c_str(), &error), error);
+  pad_must(umockdev_testbed_add_from_string(machine.testbed(), made.c_str(), &error), error);
   UMockdevIoctlBase* handler = umockdev_ioctl_base_new();
-  g_signal_connect(handler, "handle-ioctl", G_CALLBACK(answer), name_.data());
-  must(umockdev_testbed_attach_ioctl(machine.testbed(), node().c_str(), handler, &error), error);
+  g_signal_connect(handler, "handle-ioctl", G_CALLBACK(pad_answer), name_.data());
+  pad_must(umockdev_testbed_attach_ioctl(machine.testbed(), node().c_str(), handler, &error), error);
   end_ = umockdev_testbed_get_dev_fd(machine.testbed(), node().c_str());
 }
 

@@ -20,7 +20,7 @@ std::string usb_path(int number) {
 }
 
 /// hidapi asks a node for the size of its report descriptor to know a hidraw node.
-gboolean answer(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer) {
+gboolean mouse_answer(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer) {
   if (umockdev_ioctl_client_get_request(client) != HIDIOCGRDESCSIZE) return FALSE;
   UMockdevIoctlData* argument = umockdev_ioctl_client_get_arg(client);
   GError* error = nullptr;
@@ -33,7 +33,7 @@ gboolean answer(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer) {
   return TRUE;
 }
 
-void must(gboolean done, GError* error) {
+void mouse_must(gboolean done, GError* error) {
   if (done) return;
   throw std::runtime_error(error != nullptr ? error->message : "umockdev would not");
 }
@@ -68,10 +68,10 @@ MockedSpaceMouse::MockedSpaceMouse(MockedMachine& machine, int number, std::uint
       "\nH: report_descriptor=05010908A101C0\n\n" + "P: " + hid_ + "/hidraw/hidraw" + n + "\nN: hidraw" + n +
       "\nE: SUBSYSTEM=hidraw\nE: DEVNAME=" + node() + "\nE: MAJOR=240\nE: MINOR=" + n + "\n\n";
   GError* error = nullptr;
-  must(umockdev_testbed_add_from_string(machine.testbed(), made.c_str(), &error), error);
+  mouse_must(umockdev_testbed_add_from_string(machine.testbed(), made.c_str(), &error), error);
   UMockdevIoctlBase* handler = umockdev_ioctl_base_new();
-  g_signal_connect(handler, "handle-ioctl", G_CALLBACK(answer), nullptr);
-  must(umockdev_testbed_attach_ioctl(machine.testbed(), node().c_str(), handler, &error), error);
+  g_signal_connect(handler, "handle-ioctl", G_CALLBACK(mouse_answer), nullptr);
+  mouse_must(umockdev_testbed_attach_ioctl(machine.testbed(), node().c_str(), handler, &error), error);
   end_ = umockdev_testbed_get_dev_fd(machine.testbed(), node().c_str());
 }
 

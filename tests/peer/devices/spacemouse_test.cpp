@@ -22,7 +22,7 @@ SpaceMouseState deflected(const SpaceMouseAxes& axes, std::uint32_t buttons = 0)
   return state;
 }
 
-void run(SpaceMouseMotion& motion, const SpaceMouseState& state, double seconds) {
+void run_mouse(SpaceMouseMotion& motion, const SpaceMouseState& state, double seconds) {
   for (int i = 0; i < static_cast<int>(1000.0 * seconds); ++i) motion.advance(state, 0.001);
 }
 
@@ -85,11 +85,11 @@ TEST(SpaceMouseMotion, RateModeMovesAtTheStatedSpeedInTheUsersDirections) {
         Case{{0, 0, 350, 0, 0, 0}, {0, -0.25, 0}, {}}, Case{{0, 0, 0, 350, 0, 0}, {}, {-1.5, 0, 0}},
         Case{{0, 0, 0, 0, 350, 0}, {}, {0, 0, -1.5}}, Case{{0, 0, 0, 0, 0, 350}, {}, {0, 1.5, 0}}}) {
     SpaceMouseMotion motion(settings, Pose{}, {1, 0, 0, 0});
-    run(motion, deflected(c.axes), 1.0);
+    run_mouse(motion, deflected(c.axes), 1.0);
     EXPECT_NEAR(glm::distance(motion.twist().linear, c.linear), 0.0, 1e-9);
     EXPECT_NEAR(glm::distance(motion.twist().angular, c.angular), 0.0, 1e-9);
     const glm::dvec3 before = motion.pose().position;
-    run(motion, deflected(c.axes), 1.0);
+    run_mouse(motion, deflected(c.axes), 1.0);
     EXPECT_NEAR(glm::distance(motion.pose().position - before, c.linear), 0.0, 1e-6);
   }
 }
@@ -98,11 +98,11 @@ TEST(SpaceMouseMotion, TheDeadZoneIsStillAndItsEdgeIsNoStep) {
   SpaceMouseSettings settings;
   settings.deadzone = 10;
   SpaceMouseMotion still(settings, Pose{}, {1, 0, 0, 0});
-  run(still, deflected({10, -10, 10, -10, 10, -10}), 1.0);
+  run_mouse(still, deflected({10, -10, 10, -10, 10, -10}), 1.0);
   EXPECT_EQ(still.pose().position, glm::dvec3(0.0));
   EXPECT_EQ(still.twist().angular, glm::dvec3(0.0));
   SpaceMouseMotion slow(settings, Pose{}, {1, 0, 0, 0});
-  run(slow, deflected({11, 0, 0, 0, 0, 0}), 1.0);
+  run_mouse(slow, deflected({11, 0, 0, 0, 0, 0}), 1.0);
   EXPECT_NEAR(slow.twist().linear.x, 0.25 / 340.0, 1e-9);
 }
 
@@ -110,14 +110,14 @@ TEST(SpaceMouseMotion, MovesByTheCameraUnlessToldOtherwise) {
   const glm::dquat quarter = glm::angleAxis(glm::radians(90.0), glm::dvec3(0, 1, 0));
   SpaceMouseSettings settings;
   SpaceMouseMotion by_camera(settings, Pose{}, quarter);
-  run(by_camera, deflected({350, 0, 0, 0, 0, 0}), 1.0);
+  run_mouse(by_camera, deflected({350, 0, 0, 0, 0, 0}), 1.0);
   EXPECT_NEAR(by_camera.twist().linear.z, -0.25, 1e-9);
   by_camera.look_from({1, 0, 0, 0});
-  run(by_camera, deflected({350, 0, 0, 0, 0, 0}), 1.0);
+  run_mouse(by_camera, deflected({350, 0, 0, 0, 0, 0}), 1.0);
   EXPECT_NEAR(by_camera.twist().linear.x, 0.25, 1e-9) << "the camera turned";
   settings.by_camera = false;
   SpaceMouseMotion by_world(settings, Pose{}, quarter);
-  run(by_world, deflected({350, 0, 0, 0, 0, 0}), 1.0);
+  run_mouse(by_world, deflected({350, 0, 0, 0, 0, 0}), 1.0);
   EXPECT_NEAR(by_world.twist().linear.x, 0.25, 1e-9);
 }
 
@@ -127,10 +127,10 @@ TEST(SpaceMouseMotion, PositionModeGoesWhereTheCapPointsAndBack) {
   Pose start;
   start.position = {1, 1, 1};
   SpaceMouseMotion motion(settings, start, {1, 0, 0, 0});
-  run(motion, deflected({350, 0, 0, 0, 0, 350}), 1.0);
+  run_mouse(motion, deflected({350, 0, 0, 0, 0, 350}), 1.0);
   EXPECT_NEAR(motion.pose().position.x, 1.1, 1e-6);
   EXPECT_NEAR(rotation_between(start.orientation, motion.pose().orientation).y, 0.8, 1e-6);
-  run(motion, deflected({}), 1.0);
+  run_mouse(motion, deflected({}), 1.0);
   EXPECT_NEAR(glm::distance(motion.pose().position, start.position), 0.0, 1e-6);
   EXPECT_NEAR(glm::length(rotation_between(start.orientation, motion.pose().orientation)), 0.0, 1e-6);
 }
@@ -139,14 +139,14 @@ TEST(SpaceMouseMotion, TheClutchKeepsTheHandWhereItIs) {
   SpaceMouseSettings settings;
   settings.rate = false;
   SpaceMouseMotion motion(settings, Pose{}, {1, 0, 0, 0});
-  run(motion, deflected({350, 0, 0, 0, 0, 0}), 1.0);
-  run(motion, deflected({350, 0, 0, 0, 0, 0}, 1), 0.5);
+  run_mouse(motion, deflected({350, 0, 0, 0, 0, 0}), 1.0);
+  run_mouse(motion, deflected({350, 0, 0, 0, 0, 0}, 1), 0.5);
   const double kept = motion.pose().position.x;
-  run(motion, deflected({0, 0, 0, 0, 0, 0}, 1), 1.0);
+  run_mouse(motion, deflected({0, 0, 0, 0, 0, 0}, 1), 1.0);
   EXPECT_NEAR(motion.pose().position.x, kept, 1e-9);
-  run(motion, deflected({0, 0, 0, 0, 0, 0}), 1.0);
+  run_mouse(motion, deflected({0, 0, 0, 0, 0, 0}), 1.0);
   EXPECT_NEAR(motion.pose().position.x, kept, 1e-6) << "what the cap stands for moved with it";
-  run(motion, deflected({350, 0, 0, 0, 0, 0}), 1.0);
+  run_mouse(motion, deflected({350, 0, 0, 0, 0, 0}), 1.0);
   EXPECT_NEAR(motion.pose().position.x, kept + 0.1, 1e-6);
 }
 

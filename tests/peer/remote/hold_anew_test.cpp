@@ -27,7 +27,7 @@ using test::world_of;
 constexpr double kLetIn = 2.0 * 0.5 * kMass * 2.0 * kLetInSpeed / kLetInEnd;
 
 /// One person at a grip of their own, with what reaches them.
-struct Person {
+struct HoldPerson {
   std::uint32_t grip;
   Channel channel;
   test::FakeDevice* device = nullptr;
@@ -35,7 +35,7 @@ struct Person {
   std::uint64_t number = 0;
   bool in_contact = true;
 
-  Person(const Scene& scene, std::uint32_t at, const BodyMessage& first)
+  HoldPerson(const Scene& scene, std::uint32_t at, const BodyMessage& first)
       : grip(at), channel(scene.grips.size(), first, 1000) {
     std::vector<std::unique_ptr<Device>> devices(scene.grips.size());
     auto made = std::make_unique<test::FakeDevice>();
@@ -50,7 +50,7 @@ class HoldAnew : public ::testing::Test {
  protected:
   Scene scene = held_beam();
   std::unique_ptr<HostEnd> host;
-  std::vector<std::unique_ptr<Person>> people;
+  std::vector<std::unique_ptr<HoldPerson>> people;
   std::int64_t clock = to_nanoseconds(1000.0);
   double dt = 0.0;
   double felt = 0.0;     // N, the most that anybody felt
@@ -61,7 +61,7 @@ class HoldAnew : public ::testing::Test {
     dt = host->world.plan().time_step;
     host->hands.stand_all(clock);
     for (std::uint32_t i = 0; i < 2; ++i) {
-      people.push_back(std::make_unique<Person>(scene, i, message()));
+      people.push_back(std::make_unique<HoldPerson>(scene, i, message()));
       host->hands.taken(i, clock);
     }
     run(2.0);
@@ -101,7 +101,7 @@ class HoldAnew : public ::testing::Test {
       }
     }
   }
-  void send(Person& person) {
+  void send(HoldPerson& person) {
     if (!person.channel.pose(person.grip).update()) return;  // PoseUplink sends what is new
     const PoseMessage& pose = person.channel.pose(person.grip).front();
     host->hands.sample(sample_of(pose, person.grip, ++person.number), clock);
@@ -152,7 +152,7 @@ TEST_F(HoldAnew, AfterACrashAndAResumeHandsThatMovedArePulledNoHarderThanTheyCar
 }
 
 TEST_F(HoldAnew, AHandThatComesBackWithinAMinuteIsPulledNoHarderThanItCarries) {
-  Person& back = *people[0];
+  HoldPerson& back = *people[0];
   back.in_contact = false;
   run(0.5);
   host->hands.let_go(back.grip, clock);
@@ -196,7 +196,7 @@ TEST_F(HoldAnew, WhoIsLeftAloneBeforeTheirHoldIsFirmCarriesItAll) {
   move_hands({0.0, 0.1, 0.0});
   for (const auto& person : people) person->in_contact = true;
   run(0.3);
-  Person& gone = *people[0];
+  HoldPerson& gone = *people[0];
   gone.device->next.engaged = false;  // lets go, of its own accord
   const double height = host->now.grips[1].pose.position.y;
   double lowest = height;

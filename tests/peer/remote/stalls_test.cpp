@@ -29,7 +29,7 @@ struct Worst {
   double speed = 0.0, spin = 0.0;                  // m/s, rad/s
 };
 
-struct Person {
+struct StalledPerson {
   std::uint32_t grip;
   Channel channel;
   test::FakeDevice* device = nullptr;
@@ -39,7 +39,7 @@ struct Person {
   bool holds = true;
   Wrench before;
 
-  Person(const Scene& scene, std::uint32_t at, const BodyMessage& first, bool feels)
+  StalledPerson(const Scene& scene, std::uint32_t at, const BodyMessage& first, bool feels)
       : grip(at), channel(scene.grips.size(), first, 1000) {
     std::vector<std::unique_ptr<Device>> devices(scene.grips.size());
     auto made = std::make_unique<test::FakeDevice>();
@@ -57,7 +57,7 @@ class Carrying {
   Carrying(std::size_t people, bool feels) {
     host_.hands.stand_all(clock_);
     for (std::uint32_t i = 0; i < people; ++i) {
-      people_.push_back(std::make_unique<Person>(scene_, i, message(), feels));
+      people_.push_back(std::make_unique<StalledPerson>(scene_, i, message(), feels));
       host_.hands.taken(i, clock_);
     }
     start_ = host_.now.bodies[kBeam];
@@ -130,7 +130,7 @@ class Carrying {
     worst_.speed = std::max(worst_.speed, glm::length(beam.twist.linear));
     worst_.spin = std::max(worst_.spin, glm::length(beam.twist.angular));
   }
-  void note(Person& person, double t) {
+  void note(StalledPerson& person, double t) {
     const Wrench now = person.device->last;
     worst_.force = std::max(worst_.force, glm::length(now.force));
     worst_.torque = std::max(worst_.torque, glm::length(now.torque));
@@ -142,7 +142,7 @@ class Carrying {
   HostEnd host_{world_at_rest(scene_), scene_};
   std::int64_t clock_ = to_nanoseconds(1000.0);
   std::int64_t step_ns_ = clock_;
-  std::vector<std::unique_ptr<Person>> people_;
+  std::vector<std::unique_ptr<StalledPerson>> people_;
   std::vector<std::pair<std::uint32_t, wire::PoseSample>> sent_;
   BodyState start_;
   Worst worst_;
@@ -163,12 +163,12 @@ void expect_within(const Worst& run, const Worst& control, const std::string& wh
   EXPECT_LT(run.spin, kFactor * (control.spin + kLetInTurn)) << what;
 }
 
-struct Hands {
+struct StalledHands {
   std::size_t people;
   bool feels;  // else a script's: it is told what the world put on it
 };
 
-class Stalls : public ::testing::TestWithParam<Hands> {
+class Stalls : public ::testing::TestWithParam<StalledHands> {
  protected:
   static Worst of(double seconds, const std::function<void(Carrying&, double)>& disturb) {
     Carrying world(GetParam().people, GetParam().feels);
@@ -232,8 +232,8 @@ TEST_P(Stalls, SpringsThatAreChangedWhileStrainedThrowNothing) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Hands, Stalls,
-                         ::testing::Values(Hands{1, false}, Hands{1, true}, Hands{2, false}, Hands{2, true}));
+INSTANTIATE_TEST_SUITE_P(StalledHands, Stalls,
+                         ::testing::Values(StalledHands{1, false}, StalledHands{1, true}, StalledHands{2, false}, StalledHands{2, true}));
 
 }  // namespace
 }  // namespace slosh
