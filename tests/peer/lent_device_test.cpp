@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kLentTick = 0.001;
 
-/// A lent_script that goes 0.2 m/s along z for two seconds.
+/// A script that goes 0.2 m/s along z for two seconds.
 std::unique_ptr<Device> lent_script() {
   std::vector<PoseKey> keys(2);
   keys[1].time = 2.0;

@@ -21,7 +21,7 @@ std::filesystem::path temporary(const std::string& name) {
   return std::filesystem::path(::testing::TempDir()) / ("plot_test_" + name);
 }
 
-/// As a plot_script of gnuplot's has text.
+/// As a script of gnuplot's has text.
 std::string in_octal(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -39,7 +39,7 @@ std::string in_xml(const std::string& text) {
   return out;
 }
 
-/// What gnuplot draws by a plot_script of ours, as text in place of pixels.
+/// What gnuplot draws by a script of ours, as text in place of pixels.
 std::string drawn_as_svg(std::string plot_script) {
   std::signal(SIGPIPE, SIG_IGN);
   const std::size_t at = plot_script.find("pngcairo");
@@ -154,7 +154,7 @@ TEST(PlotScript, WhatNamesAreMadeOfIsNeverParsed) {
     const std::string plot_script = plot_script(series, sheet_of({name, "other"}, name, {name}));
     EXPECT_EQ(plot_script.find('`'), std::string::npos) << name;
     EXPECT_EQ(plot_script.find("touch"), std::string::npos) << name;
-    // The same plot_script, but drawn as text that can be read.
+    // The same script, but drawn as text that can be read.
     const std::string drawn = drawn_as_svg(plot_script);
     EXPECT_FALSE(std::filesystem::exists(marker)) << name;
     const std::string first = clean_text(name, 12);

@@ -114,7 +114,7 @@ TEST(Servo, TakesHoldWhereTheHandIsWhenItsForceBegins) {
   }
 }
 
-/// Nobody feels what a silent_script or a mouse holds, and in one process the answer is there at once.
+/// Nobody feels what a script or a mouse holds, and in one process the answer is there at once.
 TEST(Servo, NobodyWaitsForWhoFeelsNothing) {
   ServoKit kit;
   kit.stands = true;
