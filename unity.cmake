@@ -32,7 +32,7 @@ function(slosh_unity target)
 endfunction()
 
 function(slosh_unity_below folder)
-  if(folder STREQUAL "${PROJECT_SOURCE_DIR}/sim" OR folder STREQUAL "${PROJECT_SOURCE_DIR}/tests/sim")
+  if(folder STREQUAL "${PROJECT_SOURCE_DIR}/sim" OR folder MATCHES "^${PROJECT_SOURCE_DIR}/tests/(sim|cross|fuzz)$")
     return()
   endif()
   get_property(targets DIRECTORY "${folder}" PROPERTY BUILDSYSTEM_TARGETS)

@@ -40,14 +40,14 @@ std::string in_xml(const std::string& text) {
 }
 
 /// What gnuplot draws by a script of ours, as text in place of pixels.
-std::string drawn_as_svg(std::string plot_script) {
+std::string drawn_as_svg(std::string script) {
   std::signal(SIGPIPE, SIG_IGN);
-  const std::size_t at = plot_script.find("pngcairo");
+  const std::size_t at = script.find("pngcairo");
   EXPECT_NE(at, std::string::npos);
-  plot_script.replace(at, plot_script.find(" size", at) - at, "svg");
+  script.replace(at, script.find(" size", at) - at, "svg");
   Result<std::unique_ptr<ChildProcess>> gnuplot = ChildProcess::start({"gnuplot", "--default-settings", "-"});
   EXPECT_TRUE(gnuplot);
-  gnuplot.value()->write(plot_script.data(), plot_script.size());
+  gnuplot.value()->write(script.data(), script.size());
   const Result<bool> drawn = gnuplot.value()->finish();
   EXPECT_TRUE(drawn) << drawn.error().text();
   return gnuplot.value()->output();
@@ -107,16 +107,16 @@ TEST(Thinned, KeepsEveryPeak) {
 }
 
 TEST(PlotScript, ForceAboveTorqueBelowOneColourADevice) {
-  const std::filesystem::path file = temporary("plot_script.csv");
+  const std::filesystem::path file = temporary("script.csv");
   write_rows(file, 100);
-  const std::string plot_script = plot_script(read_wrenches(file).value(), sheet_of({"left", "right"}, "a title"));
-  EXPECT_LT(plot_script.find("force on the hand, N"), plot_script.find("torque on the hand, N·m"));
-  EXPECT_NE(plot_script.find(device_color(0).hex), std::string::npos);
-  EXPECT_NE(plot_script.find(device_color(1).hex), std::string::npos);
-  EXPECT_NE(plot_script.find(in_octal("left")), std::string::npos);
-  EXPECT_NE(plot_script.find("force along y, N"), std::string::npos) << "the force varies most along y";
-  EXPECT_EQ(plot_script.find("force along x, N"), std::string::npos);
-  EXPECT_EQ(plot_script.find("set output"), std::string::npos) << "a path may begin with | and be run";
+  const std::string script = plot_script(read_wrenches(file).value(), sheet_of({"left", "right"}, "a title"));
+  EXPECT_LT(script.find("force on the hand, N"), script.find("torque on the hand, N·m"));
+  EXPECT_NE(script.find(device_color(0).hex), std::string::npos);
+  EXPECT_NE(script.find(device_color(1).hex), std::string::npos);
+  EXPECT_NE(script.find(in_octal("left")), std::string::npos);
+  EXPECT_NE(script.find("force along y, N"), std::string::npos) << "the force varies most along y";
+  EXPECT_EQ(script.find("force along x, N"), std::string::npos);
+  EXPECT_EQ(script.find("set output"), std::string::npos) << "a path may begin with | and be run";
 }
 
 /// What a stranger may call a grip or a scene, each of which would make `marker` if any of it were obeyed.
@@ -151,11 +151,11 @@ TEST(PlotScript, WhatNamesAreMadeOfIsNeverParsed) {
   write_rows(file, 10);
   const std::vector<WrenchSeries> series = read_wrenches(file).value();
   for (const std::string& name : hostile_names(marker.string())) {
-    const std::string plot_script = plot_script(series, sheet_of({name, "other"}, name, {name}));
-    EXPECT_EQ(plot_script.find('`'), std::string::npos) << name;
-    EXPECT_EQ(plot_script.find("touch"), std::string::npos) << name;
+    const std::string script = plot_script(series, sheet_of({name, "other"}, name, {name}));
+    EXPECT_EQ(script.find('`'), std::string::npos) << name;
+    EXPECT_EQ(script.find("touch"), std::string::npos) << name;
     // The same script, but drawn as text that can be read.
-    const std::string drawn = drawn_as_svg(plot_script);
+    const std::string drawn = drawn_as_svg(script);
     EXPECT_FALSE(std::filesystem::exists(marker)) << name;
     const std::string first = clean_text(name, 12);
     EXPECT_NE(drawn.find(in_xml(first)), std::string::npos) << "the name is shown as it is: " << name;
@@ -190,8 +190,8 @@ TEST(PlotWrenches, NamesAreTextInEveryFormat) {
   write_rows(file, 10);
   std::vector<std::string> names = hostile_names(marker.string());
   const std::size_t of_shells = names.size();
-  for (const char* markup : {"<plot_script>alert(1)</plot_script>", "</text></svg><plot_script>alert(1)</plot_script>",
-                             "]]><plot_script/>", "&#60;plot_script&#62;", "<!-- ", "\" onload=\"alert(1)", "<![CDATA[",
+  for (const char* markup : {"<script>alert(1)</script>", "</text></svg><script>alert(1)</script>",
+                             "]]><script/>", "&#60;script&#62;", "<!-- ", "\" onload=\"alert(1)", "<![CDATA[",
                              "<span foreground='red'>", "%PDF-1.7 endobj"})
     names.emplace_back(markup);
   for (const char* format : {"svg", "pdf", "png"}) {
@@ -207,7 +207,7 @@ TEST(PlotWrenches, NamesAreTextInEveryFormat) {
       EXPECT_GT(bytes.size(), 1000u) << format;
       if (std::string(format) != "svg") continue;
       EXPECT_EQ(strange_markup(bytes), "");
-      EXPECT_NE(bytes.find("&lt;plot_script>alert(1)&lt;/plot_script>"), std::string::npos) << "it is shown as it is";
+      EXPECT_NE(bytes.find("&lt;script>alert(1)&lt;/script>"), std::string::npos) << "it is shown as it is";
       EXPECT_NE(bytes.find("]]&gt;"), std::string::npos);
     }
   }

@@ -11,7 +11,7 @@
 namespace slosh {
 namespace {
 
-ServerOptions running() {
+ServerOptions abused() {
   ServerOptions options;
   options.hands_to_start = 0;
   options.admission.a_site = 40;
@@ -21,7 +21,7 @@ ServerOptions running() {
 
 class Abuse : public ServedTest {
  protected:
-  Abuse() : ServedTest(running()), good(join(1, hold, "Ana", "203.0.113.1:1")) {
+  Abuse() : ServedTest(abused()), good(join(1, hold, "Ana", "203.0.113.1:1")) {
     good.take(0);
     go(0.1);
   }

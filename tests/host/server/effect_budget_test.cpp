@@ -8,7 +8,7 @@
 namespace slosh {
 namespace {
 
-KeyFingerprint key(std::uint8_t value) {
+KeyFingerprint budget_key(std::uint8_t value) {
   KeyFingerprint made{};
   made.fill(value);
   return made;
@@ -18,7 +18,7 @@ class EffectBudgetTest : public ::testing::Test {
  protected:
   /// Asked for, and carried out at once where it is granted.
   std::string ask(std::uint8_t who, const HostCommand& command) {
-    std::string why = budget.spend(key(who), command, state, now_ns);
+    std::string why = budget.spend(budget_key(who), command, state, now_ns);
     if (!why.empty()) return why;
     double* const value = command.action == HostAction::kGravityScale ? &state.gravity_scale
                           : command.action == HostAction::kViscosity  ? &state.viscosities[command.index]
@@ -91,7 +91,7 @@ TEST_F(EffectBudgetTest, WhatTheWorldHasNotYetCarriedOutCountsAsItWill) {
   int through = 0;
   for (int i = 0; i < 40; ++i) {
     const HostCommand command{HostAction::kGravityScale, 0, i % 2 ? 0.0 : 2.0};
-    through += budget.spend(key(1), command, before, now_ns).empty() ? 1 : 0;
+    through += budget.spend(budget_key(1), command, before, now_ns).empty() ? 1 : 0;
   }
   EXPECT_LE(through, 3) << "1, then 2, then no more than 1";
 }

@@ -12,7 +12,7 @@ namespace {
 constexpr std::int64_t kNow = 1'700'000'000'000'000'000;
 constexpr std::int64_t kMinute = 60'000'000'000;
 
-KeyFingerprint key(std::uint8_t value) {
+KeyFingerprint link_key(std::uint8_t value) {
   KeyFingerprint fingerprint{};
   fingerprint.fill(value);
   return fingerprint;
@@ -22,20 +22,20 @@ TEST(Links, AnOpenLinkAdmitsAnybody) {
   LinkRegistry links;
   const LinkRecord link = *links.create(LinkRole::kWatch, {}, kNow);
   for (std::uint8_t i = 1; i < 100; ++i) {
-    const LinkVerdict verdict = links.check(link.token, key(i), kNow);
+    const LinkVerdict verdict = links.check(link.token, link_key(i), kNow);
     ASSERT_NE(verdict.link, nullptr);
     EXPECT_EQ(verdict.link->role, LinkRole::kWatch);
-    links.note_use(link.id, key(i));
+    links.note_use(link.id, link_key(i));
   }
 }
 
 TEST(Links, APersonalLinkBelongsToTheFirstKey) {
   LinkRegistry links;
   const LinkRecord link = *links.create(LinkRole::kHold, "Ana", kNow);
-  ASSERT_NE(links.check(link.token, key(1), kNow).link, nullptr);
-  links.note_use(link.id, key(1));
-  EXPECT_NE(links.check(link.token, key(1), kNow).link, nullptr);
-  const LinkVerdict other = links.check(link.token, key(2), kNow);
+  ASSERT_NE(links.check(link.token, link_key(1), kNow).link, nullptr);
+  links.note_use(link.id, link_key(1));
+  EXPECT_NE(links.check(link.token, link_key(1), kNow).link, nullptr);
+  const LinkVerdict other = links.check(link.token, link_key(2), kNow);
   EXPECT_EQ(other.link, nullptr);
   EXPECT_EQ(other.code, wire::RefusalCode::kBadToken);
   EXPECT_NE(other.text.find("one person"), std::string::npos);
@@ -47,23 +47,23 @@ TEST(Links, EveryWrongTokenIsRefused) {
   for (std::size_t byte = 0; byte < link.token.size(); ++byte) {
     wire::Token wrong = link.token;
     wrong[byte] ^= 1;
-    EXPECT_EQ(links.check(wrong, key(1), kNow).link, nullptr);
+    EXPECT_EQ(links.check(wrong, link_key(1), kNow).link, nullptr);
   }
-  EXPECT_EQ(links.check({}, key(1), kNow).code, wire::RefusalCode::kBadToken);
+  EXPECT_EQ(links.check({}, link_key(1), kNow).code, wire::RefusalCode::kBadToken);
 }
 
 TEST(Links, OnlyWhoWasInLearnsThatALinkWasRevokedOrHasExpired) {
   LinkRegistry links;
   const LinkRecord link = *links.create(LinkRole::kHold, {}, kNow, kMinute);
-  links.note_use(link.id, key(1));
-  EXPECT_NE(links.check(link.token, key(1), kNow + kMinute - 1).link, nullptr);
-  EXPECT_EQ(links.check(link.token, key(1), kNow + kMinute).code, wire::RefusalCode::kExpired);
-  EXPECT_EQ(links.check(link.token, key(2), kNow + kMinute).code, wire::RefusalCode::kBadToken);
+  links.note_use(link.id, link_key(1));
+  EXPECT_NE(links.check(link.token, link_key(1), kNow + kMinute - 1).link, nullptr);
+  EXPECT_EQ(links.check(link.token, link_key(1), kNow + kMinute).code, wire::RefusalCode::kExpired);
+  EXPECT_EQ(links.check(link.token, link_key(2), kNow + kMinute).code, wire::RefusalCode::kBadToken);
   EXPECT_TRUE(links.set_expiry(link.id, 0));
-  EXPECT_NE(links.check(link.token, key(2), kNow + 100 * kMinute).link, nullptr);
+  EXPECT_NE(links.check(link.token, link_key(2), kNow + 100 * kMinute).link, nullptr);
   EXPECT_TRUE(links.revoke(link.id));
-  EXPECT_EQ(links.check(link.token, key(1), kNow).code, wire::RefusalCode::kRevoked);
-  EXPECT_EQ(links.check(link.token, key(2), kNow).code, wire::RefusalCode::kBadToken);
+  EXPECT_EQ(links.check(link.token, link_key(1), kNow).code, wire::RefusalCode::kRevoked);
+  EXPECT_EQ(links.check(link.token, link_key(2), kNow).code, wire::RefusalCode::kBadToken);
   EXPECT_FALSE(links.revoke("nosuch"));
   EXPECT_FALSE(links.set_expiry("nosuch", 0));
 }
@@ -93,9 +93,9 @@ TEST(Links, TheServersStateComesBackAsItWas) {
   state.port = 4433;
   LinkRegistry links;
   const LinkRecord made = *links.create(LinkRole::kHold, "Ana", kNow, kMinute);
-  links.note_use(made.id, key(9));
+  links.note_use(made.id, link_key(9));
   state.links = links.links();
-  state.seats.push_back({3, key(9), "Ana", LinkRole::kHold, {0, 2}, made.id});
+  state.seats.push_back({3, link_key(9), "Ana", LinkRole::kHold, {0, 2}, made.id});
 
   const wire::Bytes bytes = wire::encoded(state);
   ServerState back;
@@ -104,8 +104,8 @@ TEST(Links, TheServersStateComesBackAsItWas) {
   EXPECT_EQ(wire::encoded(back), bytes);
   LinkRegistry again;
   again.restore(back.links);
-  EXPECT_NE(again.check(made.token, key(9), kNow).link, nullptr);
-  EXPECT_EQ(again.check(made.token, key(8), kNow).link, nullptr);
+  EXPECT_NE(again.check(made.token, link_key(9), kNow).link, nullptr);
+  EXPECT_EQ(again.check(made.token, link_key(8), kNow).link, nullptr);
   EXPECT_EQ(back.seats[0].grips, (std::vector<std::uint32_t>{0, 2}));
   for (std::size_t cut = 0; cut < bytes.size(); ++cut)
     EXPECT_TRUE(wire::decode(wire::ByteView(bytes).first(cut), back));

@@ -6,7 +6,7 @@
 namespace slosh {
 namespace {
 
-constexpr std::size_t kCount = 100;
+constexpr std::size_t kHistoryCount = 100;
 
 /// Particle i of the world at `time`: it moves evenly.
 glm::vec3 truth(std::size_t i, double time) {
@@ -22,8 +22,8 @@ DecodedFrame frame(std::uint64_t number, double time, std::uint32_t epoch, std::
   f.epoch = epoch;
   f.run = run;
   f.complete = 1.0;
-  for (std::size_t i = 0; i < kCount; ++i) {
-    f.positions.push_back(truth((i + epoch * 7) % kCount, time));
+  for (std::size_t i = 0; i < kHistoryCount; ++i) {
+    f.positions.push_back(truth((i + epoch * 7) % kHistoryCount, time));
     f.fluid_index.push_back(0);
   }
   return f;
@@ -42,13 +42,13 @@ BodySnapshot bodies(double time) {
 
 void expect_truth(const SnapshotPointer& snapshot, double time) {
   ASSERT_NE(snapshot, nullptr);
-  ASSERT_EQ(snapshot->positions.size(), kCount);
+  ASSERT_EQ(snapshot->positions.size(), kHistoryCount);
   EXPECT_NEAR(snapshot->rigid.time, time, 1e-12);
   // Whatever the order, each particle of the world is there once.
-  std::vector<bool> seen(kCount, false);
+  std::vector<bool> seen(kHistoryCount, false);
   for (const glm::vec3& p : snapshot->positions) {
     const auto i = static_cast<std::size_t>(p.y / 0.02f + 0.5f);
-    ASSERT_LT(i, kCount);
+    ASSERT_LT(i, kHistoryCount);
     EXPECT_FALSE(seen[i]);
     seen[i] = true;
     EXPECT_LT(glm::distance(p, truth(i, time)), 1e-6f) << time;
