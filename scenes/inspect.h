@@ -24,7 +24,7 @@ struct Inspection {
 };
 
 /// Reads a file as load_scene does, but to its end: everything that is wrong with each object, without what only
-/// follows from another error; and looks for what exports from Blender are known to lose (scenes/README.md lists
+/// follows from another error; and looks for what exports from Blender are known to lose (scenes/CHECK.md lists
 /// it). What it cannot see: a modifier that was not applied leaves no trace but a mesh that is open or
 /// coarse; a scene on its side is told by vessels that are open to where Blender's up went, or by a camera
 /// that lies.

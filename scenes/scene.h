@@ -1,5 +1,5 @@
 // The immutable description of a world, and its discretisation at one particle spacing.
-// Plain data: no parsing, no simulation. SI units, right-handed, y up (as glTF). scenes/README.md has the
+// Plain data: no parsing, no simulation. SI units, right-handed, y up (as glTF). scenes/FIELDS.md has the
 // glTF fields each of these comes from.
 #pragma once
 

@@ -14,7 +14,7 @@ namespace slosh {
 struct FieldEdit {
   std::string
       object;  ///< a node's name; a kind (body, fluid, grip, hand, probe): all of that kind; or "scene"
-  std::string field;  ///< of scenes/README.md
+  std::string field;  ///< of scenes/FIELDS.md
   std::string value;  ///< a number, true, false, else a text
 };
 

@@ -19,7 +19,7 @@ Error too_much(const std::string& where, double value, double most, const char* 
 }  // namespace
 
 Result<bool> allow_grip_stiffness(const Scene& scene, std::size_t grip, double scale) {
-  // What a scene may have (scenes/README.md).
+  // What a scene may have (scenes/FIELDS.md).
   constexpr double kMostSpring = 1e6;   // N/m
   constexpr double kMostTurning = 1e4;  // N·m/rad
   if (grip >= scene.grips.size())

@@ -1,5 +1,5 @@
 // The field lists of a scene. Numbers keep every bit: a host that carries on from a recording must step the
-// same world. The limits are those of scenes/README.md, or a network's (limits.h) where these are tighter.
+// same world. The limits are those of scenes/FIELDS.md, or a network's (limits.h) where these are tighter.
 #pragma once
 
 #include "net/wire/messages.h"

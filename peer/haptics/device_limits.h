@@ -37,7 +37,7 @@ struct DeviceLimits {
 Result<bool> check_limits(const DeviceLimits& limits, const std::string& device);
 
 /// The limits of a hand that nobody feels: a script, a recording, a mouse. The gains are the largest that a
-/// scene may ask for (scenes/README.md), so that what such a hand "felt" is the coupling of the scene itself.
+/// scene may ask for (scenes/FIELDS.md), so that what such a hand "felt" is the coupling of the scene itself.
 /// The force limits only keep a world that has blown up out of the tables and plots.
 DeviceLimits limits_without_a_hand();
 

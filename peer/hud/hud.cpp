@@ -119,7 +119,7 @@ std::uint32_t Hud::status() const {
   for (std::size_t bit = 0; bit < status_until_.size(); ++bit) {
     if (status_until_[bit] >= time_) status |= 1u << bit;
   }
-  // That walls held something back is how they hold; alone it asks for nothing (README.md, Warnings).
+  // The clamp at walls acts in most steps of a sound run: alone it asks for nothing (peer/view/README.md).
   if (!(status & kStatusCompressed)) status &= ~static_cast<std::uint32_t>(kStatusGuarded);
   // Spilling is what many scenes are for, and stands in a row of its own.
   if (facts_.walls_hold) status &= ~static_cast<std::uint32_t>(kStatusEscaped);

@@ -283,7 +283,7 @@ void bind_builder(py::module_& m) {
   bind_shapes(m);
   py::class_<SceneBuilder>(m, "SceneBuilder",
                            "A scene from nothing. Keywords are the scene's own custom properties "
-                           "(scenes/README.md): title, spacing_m,\n"
+                           "(scenes/FIELDS.md): title, spacing_m,\n"
                            "duration_s, settle_s, domain_min_m, ... Those of the parts likewise. What they "
                            "may be is checked by scene(), with\n"
                            "the same words as for a file.")

@@ -172,7 +172,7 @@ void bind_scene(py::module_& m) {
 
   m.def("load_scene", &load, py::arg("name_or_path"), py::arg("edits") = py::none(),
         "Reads a shipped scene by its name, or a .gltf or .glb file.\n\n"
-        "edits: {'OBJECT.FIELD': value} with the custom properties of scenes/README.md, made before anything "
+        "edits: {'OBJECT.FIELD': value} with the custom properties of scenes/FIELDS.md, made before anything "
         "is\n"
         "checked; OBJECT is a node's name, a kind (body, fluid, grip, hand, probe) or 'scene'.\n"
         "Raises slosh.Error that names file, node and field.\n\n"

@@ -52,7 +52,7 @@ constexpr const char* kDevicesFooter =
     "says so; a file that asks for more gets it, with a warning.\n"
     "\n"
     "Settings of a device (axes, gains, scale, buttons) are in $XDG_CONFIG_HOME/slosh/devices/;\n"
-    "peer/haptics/devices/README.md has every key.\n"
+    "peer/haptics/devices/PROTOCOLS.md has every key.\n"
     "\n"
     "Examples:\n"
     "  slosh devices\n"

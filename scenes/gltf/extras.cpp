@@ -196,7 +196,7 @@ std::vector<Error> Extras::foreign() const {
     if (!meant_field(key, known_).empty()) continue;
     all.push_back({owner_ + ": extras." + key,
                    "is a custom property that slosh does not know, and is not read",
-                   "Begin its name with _ if it is yours; scenes/README.md lists the known ones"});
+                   "Begin its name with _ if it is yours; scenes/FIELDS.md lists the known ones"});
   }
   return all;
 }

@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Those of scenes/README.md that nobody would give a thing for another purpose.
+/// Those of scenes/FIELDS.md that nobody would give a thing for another purpose.
 constexpr std::array kOurs{"slosh",
                            "motion",
                            "mass_kg",

@@ -34,7 +34,7 @@ struct Paint {
 
 class SceneWriter {
  public:
-  /// Properties of the whole scene (scenes/README.md).
+  /// Properties of the whole scene (scenes/FIELDS.md).
   explicit SceneWriter(const nlohmann::json& scene_extras);
 
   /// `bytes`: a PNG or a JPEG; it goes into the file's buffer.

@@ -1,4 +1,4 @@
-# The add-on's fields are those of the tables in scenes/README.md, with their ranges. No Blender in here.
+# The add-on's fields are those of the tables in scenes/FIELDS.md, with their ranges. No Blender in here.
 # Usage: fields_test.py SOURCE
 import re
 import sys
@@ -9,7 +9,7 @@ sys.path.insert(0, str(source / "scenes" / "blender" / "slosh_addon"))
 sys.dont_write_bytecode = True
 from fields import FIELDS, KINDS  # noqa: E402
 
-text = (source / "scenes" / "README.md").read_text()
+text = (source / "scenes" / "FIELDS.md").read_text()
 wrong = []
 
 
@@ -45,11 +45,11 @@ for kind, title in (("body", "body"), ("fluid", "fluid"), ("grip", "grip"), ("sc
     if len(said) < 4:
         wrong.append(f"the table of {kind} was not found")
     for name in sorted(said.keys() ^ known.keys()):
-        wrong.append(f"{kind}.{name} is only in {'scenes/README.md' if name in said else 'the add-on'}")
+        wrong.append(f"{kind}.{name} is only in {'scenes/FIELDS.md' if name in said else 'the add-on'}")
     for name in sorted(said.keys() & known.keys()):
         most = most_in(said[name])
         if most is not None and known[name][4] is not None and most != known[name][4]:
-            wrong.append(f"{kind}.{name}: at most {most:g} by scenes/README.md, {known[name][4]:g} by the add-on")
+            wrong.append(f"{kind}.{name}: at most {most:g} by scenes/FIELDS.md, {known[name][4]:g} by the add-on")
 kinds = set(re.findall(r"^\| `([a-z]+)`[^|]*\| (?:a closed mesh|an empty|a mesh)", text, flags=re.M))
 if kinds != {name for name, _, _ in KINDS}:
     wrong.append(f"kinds: {kinds ^ {name for name, _, _ in KINDS}}")

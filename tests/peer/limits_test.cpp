@@ -155,7 +155,7 @@ TEST(DeviceLimits, ScriptsAndMiceStateTheirsAndChangeNoScene) {
     const DeviceLimits limits = hand.value().device->limits();
     EXPECT_TRUE(check_limits(limits, spec));
     EXPECT_TRUE(hand.value().device->immediate());
-    const CouplingGains most{1e6, 1e4, 1e4, 1e3};  // scenes/README.md
+    const CouplingGains most{1e6, 1e4, 1e4, 1e3};  // scenes/FIELDS.md
     const CouplingGains held = within(most, limits);
     EXPECT_EQ(held.stiffness, most.stiffness);
     EXPECT_EQ(held.damping, most.damping);

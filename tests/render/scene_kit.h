@@ -57,7 +57,7 @@ struct StillBasin {
 
 FluidLook water();
 FluidLook batter();
-/// As scenes/README.md has it: clear enough to be seen through, and scattering.
+/// As scenes/FIELDS.md has it: clear enough to be seen through, and scattering.
 FluidLook cloudy_juice();
 
 }  // namespace slosh::kit

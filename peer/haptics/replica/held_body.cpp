@@ -37,7 +37,7 @@ constexpr double kLoadRoundTrips = 2.0;  // after which a table that is met coun
 constexpr double kForesees = 2.0;
 constexpr double kDoubt = 3.0;
 /// N that words' forces may be off by for what a word rounds: no contact. Whatever is doubted is a friction,
-/// however little of it (README, *What rounding is not*).
+/// however little of it (tests/notebook/2026-11-27-rounding-is-no-contact.md).
 constexpr double kRounding = 0.1;
 constexpr double kForgets = 1.0;
 constexpr double kForgetsRoundTrips = 4.0;

@@ -1,6 +1,6 @@
 """What an object may be to slosh, and the fields of each kind: unit, first value, range, words. No Blender in here.
 
-The ranges are slosh's own (scenes/README.md has the tables); a test holds both against each other.
+The ranges are slosh's own (scenes/FIELDS.md has the tables); a test holds both against each other.
 """
 
 # What an object may be: name, what it becomes, the types of object that can be it.

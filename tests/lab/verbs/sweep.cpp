@@ -303,7 +303,7 @@ void add_sweep(CLI::App& app, VerbRun& chosen) {
   verb->add_option(
           "--set", o->sets,
           "OBJECT.FIELD=VALUE,VALUE,…: an object by its name, body, fluid or grip for all of that kind, or\n"
-          "scene; a field of scenes/README.md. Again for every combination with others")
+          "scene; a field of scenes/FIELDS.md. Again for every combination with others")
       ->required()
       ->allow_extra_args(false);
   add_never_a_window_option(*verb, "No window: a sweep has none anyway, its plot goes into --out");

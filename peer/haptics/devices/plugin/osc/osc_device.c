@@ -1,5 +1,5 @@
 /* A tracker that is told of over Open Sound Control (UDP): a position device of no force. OPTIONS are in
- * peer/haptics/devices/README.md. Trackers of one port share it: one sender tells of both hands. */
+ * peer/haptics/devices/PROTOCOLS.md. Trackers of one port share it: one sender tells of both hands. */
 #define _POSIX_C_SOURCE 200809L
 #include <arpa/inet.h>
 #include <errno.h>

@@ -27,7 +27,7 @@ typedef struct osc_pose {
   double orientation[4];
 } osc_pose;
 
-/* OPTIONS as peer/haptics/devices/README.md has them. 0, or a sentence in `error`. */
+/* OPTIONS as peer/haptics/devices/PROTOCOLS.md has them. 0, or a sentence in `error`. */
 int osc_form_parse(const char* options, osc_form* form, char* error, size_t size);
 
 /* 0: the message is not of this tracker. 1: what it tells is in `pose`. 2: the same, and it tells where the
