@@ -57,8 +57,9 @@ std::string sentence(const SpacingChoice& c, double margin) {
 Result<StepTiming> time_steps(const Scene& scene, double spacing, const SpacingOptions& options) {
   Result<SampledScene> sampled = sample_scene(scene, spacing);
   if (!sampled) return sampled.error();
-  Result<World> made = make_world(scene, sampled.value(), make_plan(scene, spacing, can_solve_drag(options.backend)),
-                                  WorldOptions{options.threads, options.backend});
+  Result<World> made =
+      make_world(scene, sampled.value(), make_plan(scene, spacing, can_solve_drag(options.backend)),
+                 WorldOptions{options.threads, options.backend});
   if (!made) return made.error();
   World& world = made.value();
 
@@ -111,8 +112,8 @@ std::vector<SpacingCandidate> spacing_candidates(const Scene& scene, bool may_so
   std::vector<SpacingCandidate> candidates;
   const auto add = [&](double spacing) {
     const ParticleEstimate estimate = estimate_particles(scene, spacing);
-    candidates.push_back({spacing, estimate.fluid + estimate.surface,
-                          make_plan(scene, spacing, may_solve_drag).time_step});
+    candidates.push_back(
+        {spacing, estimate.fluid + estimate.surface, make_plan(scene, spacing, may_solve_drag).time_step});
   };
   add(scene.spacing_max);
   for (double spacing = scene.spacing_max / 1.04; spacing >= scene.spacing_min; spacing /= 1.04) {

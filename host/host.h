@@ -78,7 +78,7 @@ struct HostReport {
   std::array<std::uint64_t, 32> status_steps{};  ///< in how many steps, one a bit
   std::vector<std::string> gone;                 ///< bodies that left for good, in words; kMostGone at most
   Diagnostics diagnostics;                       ///< of the last state
-  Diagnostics start;                             ///< of the first: what had left by then did so while it settled
+  Diagnostics start;  ///< of the first: what had left by then did so while it settled
 };
 
 /// Of HostReport::gone.
@@ -163,7 +163,7 @@ class Host {
   HostReport report_;
   BodySnapshot latest_;  // what the gate compares new hands with
   FluidModels fluid_models_;
-  std::vector<int> grip_bodies_;          // one a grip
+  std::vector<int> grip_bodies_;  // one a grip
   std::vector<std::string> body_names_;
   GoneBodies gone_;
   std::vector<char> modelled_;            // one a body

@@ -12,8 +12,8 @@ namespace {
 constexpr double kMostCarried = kYieldAfter;
 // s of wall time for which what a hand carries is what it carried in its last step: poses come each 2 ms.
 constexpr double kCarriedAfter = 0.005;
-// A step that comes so much later than steps usually do, s of wall time and times the usual interval, finds hands
-// elsewhere though no time has passed in the world: they take hold anew.
+// A step that comes so much later than steps usually do, s of wall time and times the usual interval, finds
+// hands elsewhere though no time has passed in the world: they take hold anew.
 constexpr double kStoodStill = 0.02;
 constexpr double kStoodIntervals = 3.0;
 constexpr double kIntervalShare = 0.1;  // of a new interval in the usual one
@@ -143,7 +143,8 @@ Company InputGate::company(const Hand& hand, std::int64_t clock_ns) const {
   };
   Company found = Company::kAlone;
   for (const Hand& other : hands_) {
-    if (&other == &hand || other.body != hand.body || !other.has_good || !other.good.engaged || other.good.stand)
+    if (&other == &hand || other.body != hand.body || !other.has_good || !other.good.engaged ||
+        other.good.stand)
       continue;
     if (heard(other) && !heard(hand)) return Company::kSilent;
     found = Company::kShared;
@@ -186,7 +187,8 @@ void InputGate::fill_input(Hand& hand, std::size_t grip, const BodySnapshot& now
   const CouplingGains gains = state.stiffness > 0.0 ? stiffened(hand.gains, state.stiffness) : hand.gains;
   Engagement::Held held{hand.last_held, {}};
   if (fading <= 0.0 || others == Company::kSilent)
-    held = hand.engagement.update(engaged || fading > 0.0, now.time, pose, hand.good.twist, gains, state, others);
+    held = hand.engagement.update(engaged || fading > 0.0, now.time, pose, hand.good.twist, gains, state,
+                                  others);
   input = {held.pose, held.twist, engaged || fading > 0.0, engaged ? 1.0 : fading * hand.lost_scale};
   if (input.engaged) hand.last_held = held.pose;
   if (engaged) hand.last_pose = pose;
@@ -198,7 +200,8 @@ void InputGate::note_interval(std::int64_t clock_ns) {
   const bool first = taken_ns_ == 0;
   taken_ns_ = clock_ns;
   if (first) return;
-  if (usual_interval_ > 0.0 && interval > kStoodStill + kStoodIntervals * usual_interval_) return stood_still();
+  if (usual_interval_ > 0.0 && interval > kStoodStill + kStoodIntervals * usual_interval_)
+    return stood_still();
   usual_interval_ += (usual_interval_ > 0.0 ? kIntervalShare : 1.0) * (interval - usual_interval_);
 }
 

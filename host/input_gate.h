@@ -25,9 +25,9 @@ constexpr double kHandOver = 2.0;
 constexpr double kStaleTwist = 0.015;
 /// ... and the time constant of that, s of simulated time.
 constexpr double kRunOut = 0.1;
-/// A hand that was not heard for this long, s of wall time, gives way where another person's hand on the body is not
-/// silent (Company::kSilent). So whoever is left carries their own share, and does not pull against a hand that hangs in
-/// the air.
+/// A hand that was not heard for this long, s of wall time, gives way where another person's hand on the body
+/// is not silent (Company::kSilent). So whoever is left carries their own share, and does not pull against a
+/// hand that hangs in the air.
 constexpr double kYieldAfter = 0.02;
 /// s of wall time after a reset in which messages of the run before may still come.
 constexpr double kOldRun = 1.0;

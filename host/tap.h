@@ -16,9 +16,9 @@ namespace slosh {
 enum class HostAction : std::uint8_t {
   kPause,
   kContinue,
-  kReset,         ///< back to the start; live parameters stay
-  kViscosity,     ///< index: fluid; value: Pa·s
-  kGravityScale,  ///< value: times the scene's, 0–2
+  kReset,          ///< back to the start; live parameters stay
+  kViscosity,      ///< index: fluid; value: Pa·s
+  kGravityScale,   ///< value: times the scene's, 0–2
   kGripStiffness,  ///< index: grip; value: times the scene's (World::set_grip_stiffness)
 };
 
@@ -33,7 +33,7 @@ struct HostState {
   bool paused = false;
   std::uint32_t run = 0;  ///< rises by one with every reset
   double gravity_scale = 1.0;
-  std::vector<double> viscosities;  ///< Pa·s, one a fluid
+  std::vector<double> viscosities;     ///< Pa·s, one a fluid
   std::vector<double> grip_stiffness;  ///< times the scene's, one a grip
 };
 
@@ -61,7 +61,8 @@ class HostTap {
   virtual void while_standing(const World& world) { (void)world; }
   /// A pose of this grip was not used. As often as poses come: whoever tells people, tells them once.
   virtual void on_refused_pose(std::uint32_t grip, PoseFault fault) { (void)grip, (void)fault; }
-  /// A body has left the world for good; `words` say which, when and where. Once, until the world is set back.
+  /// A body has left the world for good; `words` say which, when and where. Once, until the world is set
+  /// back.
   virtual void on_gone_body(std::size_t body, const std::string& words) { (void)body, (void)words; }
   /// Body states, and a snapshot where one was due, are in the channel: wake whoever sends them.
   virtual void after_publish() {}

@@ -14,11 +14,11 @@ namespace slosh {
 
 /// Up: where one handle is.
 struct PoseMessage {
-  std::int64_t stamp_ns = 0;   ///< the peer's steady clock when the device was read
-  double time = 0.0;           ///< simulated s that the pose belongs to, by the peer's reckoning
-  std::uint32_t device = 0;    ///< index into Scene::grips
-  Pose pose;                   ///< handle, world
-  Twist twist;                 ///< handle, world, m and rad a simulated s: as fast as the world sees it
+  std::int64_t stamp_ns = 0;  ///< the peer's steady clock when the device was read
+  double time = 0.0;          ///< simulated s that the pose belongs to, by the peer's reckoning
+  std::uint32_t device = 0;   ///< index into Scene::grips
+  Pose pose;                  ///< handle, world
+  Twist twist;                ///< handle, world, m and rad a simulated s: as fast as the world sees it
   bool engaged = false;
   /// The person feels what the hand holds, or is nobody who does. False while their force has not begun,
   /// because the host has not answered yet: one far away keeps its stand until then

@@ -1,5 +1,5 @@
-// Every command that may be typed at a host, at a peer or at a world of one's own: one table, for all consoles and their
-// help.
+// Every command that may be typed at a host, at a peer or at a world of one's own: one table, for all
+// consoles and their help.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +36,7 @@ enum class Console : std::uint8_t {
   kHost,
   kPeer,
   kWatch,  ///< who looks on: a peer's commands but for what the host refuses them
-  kPlay,  ///< a world in this process, with nobody else in it
+  kPlay,   ///< a world in this process, with nobody else in it
 };
 
 /// Which command the words are: the first one's, once there are as many words after it as it takes. What

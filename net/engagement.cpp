@@ -29,12 +29,14 @@ glm::dvec3 give_up(const glm::dvec3& left, double most, double elapsed) {
   return left * (length - step < kNothing ? 1.0 : step / length);
 }
 
-/// One of the coupling's two springs, held so that its force on the hand differs from `centre` by no more than `most`.
+/// One of the coupling's two springs, held so that its force on the hand differs from `centre` by no more
+/// than `most`.
 struct Slipping {
   glm::dvec3 stretch;   // grip less where it holds
   glm::dvec3 velocity;  // of where it holds
 
-  void bound(double stiffness, double damping, const glm::dvec3& grip_velocity, const glm::dvec3& centre, double most) {
+  void bound(double stiffness, double damping, const glm::dvec3& grip_velocity, const glm::dvec3& centre,
+             double most) {
     if (stiffness <= 0.0) return;
     const glm::dvec3 pull = stiffness * stretch + damping * (grip_velocity - velocity) - centre;
     const double length = glm::length(pull);
@@ -75,7 +77,8 @@ double Engagement::most_pull() const {
 }
 
 double Engagement::most_twist() const {
-  return company_ == Company::kSilent ? kYieldTorque : kHoldTorque * std::exp2((last_ - since_) / kHoldDoubles);
+  return company_ == Company::kSilent ? kYieldTorque
+                                      : kHoldTorque * std::exp2((last_ - since_) / kHoldDoubles);
 }
 
 double Engagement::allowance() const {
@@ -87,7 +90,8 @@ double Engagement::turning_allowance() const {
 }
 
 Pose Engagement::place(const Pose& hand) const {
-  return {hand.position - offset_, turn_ == kAligned ? hand.orientation : glm::normalize(hand.orientation * turn_)};
+  return {hand.position - offset_,
+          turn_ == kAligned ? hand.orientation : glm::normalize(hand.orientation * turn_)};
 }
 
 void Engagement::take_hold_anew() {
@@ -150,7 +154,8 @@ void Engagement::take_hold(double time, const Pose& hand, const Twist& twist, co
   if (glm::length(jolt) <= kQuietForce && glm::length(jerk) <= kQuietTorque) return;
   quiet_ = false;
   // The springs take over what the dampers gave as well, as far as the allowances bear it.
-  const auto strained = [&](const glm::dvec3& force, double stiffness, double stored, double& share, double whole) {
+  const auto strained = [&](const glm::dvec3& force, double stiffness, double stored, double& share,
+                            double whole) {
     const double wanted = stored_in(force, stiffness);
     if (!anew_ || wanted <= stored) return 1.0;
     const double more = std::min(wanted - stored, share * whole);
@@ -174,8 +179,8 @@ void Engagement::take_hold(double time, const Pose& hand, const Twist& twist, co
   turn_ = glm::conjugate(hand.orientation) * rotate_by(grip.pose.orientation, -strain);
 }
 
-/// A spring that gets stiffer while it is stretched would put energy in: it keeps its force, and where the hand
-/// holds moves up to the grip for it. One that gets softer keeps its stretch.
+/// A spring that gets stiffer while it is stretched would put energy in: it keeps its force, and where the
+/// hand holds moves up to the grip for it. One that gets softer keeps its stretch.
 void Engagement::keep_force(const Pose& hand, const CouplingGains& gains, const GripState& grip) {
   const Pose held = place(hand);
   if (gains.stiffness > gains_.stiffness && gains_.stiffness > 0.0) {
@@ -192,8 +197,8 @@ void Engagement::keep_force(const Pose& hand, const CouplingGains& gains, const 
   }
 }
 
-/// Who falls silent goes on from what they carried; who is heard again and has given way meanwhile takes hold anew, from
-/// where they hold.
+/// Who falls silent goes on from what they carried; who is heard again and has given way meanwhile takes hold
+/// anew, from where they hold.
 void Engagement::meet(Company company, double time) {
   const bool was_silent = company_ == Company::kSilent;
   if (company == Company::kSilent && !was_silent) began_ = carried_;
@@ -212,7 +217,8 @@ void Engagement::slip(Work& work, double time) {
   if (quiet_) return;
   const double slipped = (1.0 - 0.5 * (before + slip_pace())) * work.elapsed;
   work.now.position -= slipped * slip_;
-  if (slip_turn_ != glm::dvec3(0.0)) work.now.orientation = rotate_by(work.now.orientation, -slipped * slip_turn_);
+  if (slip_turn_ != glm::dvec3(0.0))
+    work.now.orientation = rotate_by(work.now.orientation, -slipped * slip_turn_);
   work.velocity -= (1.0 - slip_pace()) * slip_;
   work.turning -= (1.0 - slip_pace()) * slip_turn_;
 }
@@ -237,13 +243,14 @@ void Engagement::let_in(Work& work, const Pose& hand) {
   work.turning += turning_;
 }
 
-/// Slips until what the hold changes of the force that it began with is in bounds. What that puts into the spring comes
-/// out of the allowance; the less there is, the more it holds where it is in place of that, and slips as friction does.
+/// Slips until what the hold changes of the force that it began with is in bounds. What that puts into the
+/// spring comes out of the allowance; the less there is, the more it holds where it is in place of that, and
+/// slips as friction does.
 void Engagement::bound_pull(Work& work, const Twist& hand) {
   const Pose& grip = work.grip.pose;
-  const auto slip = [&](double& share, double whole, double stiffness, double damping, const glm::dvec3& grip_velocity,
-                        const glm::dvec3& began, double most, Slipping& law, const Slipping& before,
-                        const glm::dvec3& let_in, const glm::dvec3& still) {
+  const auto slip = [&](double& share, double whole, double stiffness, double damping,
+                        const glm::dvec3& grip_velocity, const glm::dvec3& began, double most, Slipping& law,
+                        const Slipping& before, const glm::dvec3& let_in, const glm::dvec3& still) {
     if (company_ == Company::kSilent || (company_ == Company::kShared && !firm()))
       law.bound(stiffness, damping, grip_velocity, began, most);
     const double ease = std::min(share / kHoldEases, 1.0);
@@ -256,7 +263,8 @@ void Engagement::bound_pull(Work& work, const Twist& hand) {
     }
     const glm::dvec3 force = -stiffness * before.stretch;  // on the body
     const glm::dvec3 in_all = before.stretch - law.stretch, slipped = in_all - let_in;
-    const double work_in_all = work_of(force, in_all, stiffness), work_slipped = work_of(force, slipped, stiffness);
+    const double work_in_all = work_of(force, in_all, stiffness),
+                 work_slipped = work_of(force, slipped, stiffness);
     // What comes back as the hold goes back to the hand was lent.
     const double spent = work_slipped + std::min(work_in_all - work_slipped, 0.0);
     share = std::clamp(share - spent / whole, 0.0, 1.0);
@@ -275,7 +283,8 @@ void Engagement::bound_pull(Work& work, const Twist& hand) {
     const glm::dvec3 found = law.stretch;
     slip(turning_share_, turning_allowance(), work.gains.rotational_stiffness, work.gains.rotational_damping,
          work.grip.twist.angular, began_.torque, most_twist(), law,
-         {rotation_between(work.before.orientation, grip.orientation), {}}, work.let_in_turn, hand.angular + turning_);
+         {rotation_between(work.before.orientation, grip.orientation), {}}, work.let_in_turn,
+         hand.angular + turning_);
     if (law.stretch != found) work.now.orientation = rotate_by(grip.orientation, -law.stretch);
     work.turning = law.velocity;
   }

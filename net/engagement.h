@@ -1,5 +1,6 @@
-// How a hand takes hold of what may be elsewhere, heavy or moving, without a blow and without energy of its own. Run by
-// the host and by each device loop, on the same input, so that both ends of a coupling hold alike.
+// How a hand takes hold of what may be elsewhere, heavy or moving, without a blow and without energy of its
+// own. Run by the host and by each device loop, on the same input, so that both ends of a coupling hold
+// alike.
 #pragma once
 
 #include <cstdint>
@@ -25,8 +26,8 @@ constexpr double kLetInEnd = 0.25;
 /// may be anywhere by then.
 constexpr double kHoldAnew = 0.1;
 
-/// s over which a hand that takes hold of something that moves gives up that motion: before a bucket that hangs in one
-/// hand swings back.
+/// s over which a hand that takes hold of something that moves gives up that motion: before a bucket that
+/// hangs in one hand swings back.
 constexpr double kSlipRise = 0.15;
 
 /// Where another hand holds the same body, a hold that was taken anew changes the force that acted when it
@@ -36,13 +37,14 @@ constexpr double kSlipRise = 0.15;
 constexpr double kHoldForce = 2.0;    ///< N
 constexpr double kHoldTorque = 0.1;   ///< N·m
 constexpr double kHoldDoubles = 1.0;  ///< s, simulated
-/// A hand that is silent while another of the body is heard gives way: it goes on giving what it gave when it was last
-/// heard, and so much more at most.
+/// A hand that is silent while another of the body is heard gives way: it goes on giving what it gave when it
+/// was last heard, and so much more at most.
 constexpr double kYieldForce = 2.0;   ///< N
 constexpr double kYieldTorque = 0.1;  ///< N·m
 
-/// What a hold that slips may give the body that its hand did not: the force that acted when it began, and kHoldForce,
-/// over this way. So a body that a silent hand helps to carry can be lifted a little, and no hold drives one on.
+/// What a hold that slips may give the body that its hand did not: the force that acted when it began, and
+/// kHoldForce, over this way. So a body that a silent hand helps to carry can be lifted a little, and no hold
+/// drives one on.
 constexpr double kHoldWay = 0.2;    ///< m
 constexpr double kHoldAngle = 0.3;  ///< rad
 /// s after which what was given may be given again ...
@@ -64,10 +66,10 @@ enum class Company : std::uint8_t {
 /// never pulls harder than what moving the body at kLetInSpeed takes, however far away the hand is, and a
 /// hand that passes by does not snatch the body away.
 ///
-/// Passive but for two stated allowances. What the offset's change gives the spring is counted (given()): giving
-/// it up towards the hand gives the force times the distance, at kLetInSpeed at most; any other change gives
-/// kHoldWay of the force at most, and then only takes. A spring that is stiffened keeps its force, not its
-/// stretch (live stiffness). Owned by one thread; no allocation.
+/// Passive but for two stated allowances. What the offset's change gives the spring is counted (given()):
+/// giving it up towards the hand gives the force times the distance, at kLetInSpeed at most; any other change
+/// gives kHoldWay of the force at most, and then only takes. A spring that is stiffened keeps its force, not
+/// its stretch (live stiffness). Owned by one thread; no allocation.
 class Engagement {
  public:
   /// What the coupling uses in place of the hand.
@@ -76,9 +78,9 @@ class Engagement {
     Twist twist;
   };
 
-  /// Call once a tick. `time` in simulated s, never falling; `hand`, `twist`: the hand as it is; `gains` as the world
-  /// has them now; `grip` as it is, with the force that acts on the hand already (0 when none does). While not engaged
-  /// the hand itself comes back.
+  /// Call once a tick. `time` in simulated s, never falling; `hand`, `twist`: the hand as it is; `gains` as
+  /// the world has them now; `grip` as it is, with the force that acts on the hand already (0 when none
+  /// does). While not engaged the hand itself comes back.
   Held update(bool engaged, double time, const Pose& hand, const Twist& twist, const CouplingGains& gains,
               const GripState& grip, Company company = Company::kAlone);
 
@@ -94,8 +96,8 @@ class Engagement {
   /// one: the body goes on being carried as it was, but a hand that takes over a weight must not be struck by
   /// it.
   double felt() const { return !engaged_ ? 0.0 : quiet_ ? 1.0 : pace(); }
-  /// J that the last update() put into the spring by moving where the hand holds, by no motion of the hand's; < 0 where
-  /// it took some out.
+  /// J that the last update() put into the spring by moving where the hand holds, by no motion of the hand's;
+  /// < 0 where it took some out.
   double given() const { return given_; }
   /// m and rad by which the hand is ahead of where it holds.
   double distance() const { return glm::length(offset_); }
@@ -117,10 +119,10 @@ class Engagement {
   bool firm() const;
   double allowance() const;          // J that may be given in all ...
   double turning_allowance() const;  // ... by forces, and by torques
-  double most_pull() const;  // N and
-  double most_twist() const; // N·m by which the force may differ from began_
-  double slip_pace() const;  // 0–1 over kSlipRise
-  double pace() const;       // 0–1 over kLetInRise
+  double most_pull() const;          // N and
+  double most_twist() const;         // N·m by which the force may differ from began_
+  double slip_pace() const;          // 0–1 over kSlipRise
+  double pace() const;               // 0–1 over kLetInRise
 
   bool engaged_ = false;
   bool took_hold_ = false;
@@ -132,17 +134,17 @@ class Engagement {
   Wrench carried_;  // what acts on it while it is heard
   double since_ = 0.0;
   double last_ = 0.0;
-  double share_ = 1.0;   // of the allowances, left
+  double share_ = 1.0;  // of the allowances, left
   double turning_share_ = 1.0;
   double given_ = 0.0;   // J
   double stored_ = 0.0;  // J in the springs
   double turning_stored_ = 0.0;
-  glm::dvec3 offset_{0.0};           // hand less what it holds with, m
+  glm::dvec3 offset_{0.0};               // hand less what it holds with, m
   glm::dquat turn_{1.0, 0.0, 0.0, 0.0};  // what it holds with in the hand's frame, so that both turn alike
-  glm::dvec3 slip_{0.0};             // of the hand against the grip when it took hold, m/s
-  glm::dvec3 slip_turn_{0.0};        // rad/s
-  glm::dvec3 speed_{0.0};            // of what it holds with, towards the hand, m/s
-  glm::dvec3 turning_{0.0};          // rad/s
+  glm::dvec3 slip_{0.0};                 // of the hand against the grip when it took hold, m/s
+  glm::dvec3 slip_turn_{0.0};            // rad/s
+  glm::dvec3 speed_{0.0};                // of what it holds with, towards the hand, m/s
+  glm::dvec3 turning_{0.0};              // rad/s
 };
 
 }  // namespace slosh

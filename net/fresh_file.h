@@ -1,4 +1,5 @@
-// A new file where others may have been before: of a name that they could foresee, in a folder where they may write.
+// A new file where others may have been before: of a name that they could foresee, in a folder where they may
+// write.
 #pragma once
 
 #include <fcntl.h>
@@ -11,9 +12,9 @@
 
 namespace slosh {
 
-/// Makes a file that was not there, for writing, and returns its descriptor; −1 with errno. A file or link of that name,
-/// left by a crash or laid there by somebody else, is taken away first and never written through; what is neither, and
-/// what is another's to remove, stays: then it is an error.
+/// Makes a file that was not there, for writing, and returns its descriptor; −1 with errno. A file or link of
+/// that name, left by a crash or laid there by somebody else, is taken away first and never written through;
+/// what is neither, and what is another's to remove, stays: then it is an error.
 inline int open_fresh(const char* path, mode_t mode) {
   constexpr int kTries = 8;
   for (int i = 0; i < kTries; ++i) {
@@ -28,8 +29,8 @@ inline int open_fresh(const char* path, mode_t mode) {
   return -1;
 }
 
-/// Makes a folder that is not there yet, and those above it, for its owner alone whatever the umask. Whether it can be
-/// written in is for the first file to say.
+/// Makes a folder that is not there yet, and those above it, for its owner alone whatever the umask. Whether
+/// it can be written in is for the first file to say.
 inline void make_own_folder(const std::filesystem::path& folder) {
   std::error_code code;
   if (folder.empty() || std::filesystem::exists(folder, code)) return;

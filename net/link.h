@@ -36,7 +36,8 @@ Result<std::string> format_link(const JoinLink& link);
 /// older or newer slosh; a changed or missing character is always found.
 Result<JoinLink> parse_link(std::string_view text);
 
-/// `text` with each link in it cut off behind its addresses, so that it opens nothing: "slosh://v2/192.0.2.7:4433/…".
+/// `text` with each link in it cut off behind its addresses, so that it opens nothing:
+/// "slosh://v2/192.0.2.7:4433/…".
 std::string shorten_links(std::string_view text);
 
 /// The lower-case base32 of the link: 8 characters for 5 bytes, no padding.

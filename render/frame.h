@@ -47,7 +47,7 @@ struct MeshLook {
   glm::vec3 base_color{0.7f};
   float metallic = 0.0f;
   float roughness = 0.6f;
-  float opacity = 1.0f;  ///< below 1 drawn blended after the fluid's background, a glass
+  float opacity = 1.0f;       ///< below 1 drawn blended after the fluid's background, a glass
   glm::vec3 emissive{0.0f};   ///< scene-linear light that it gives off, not to others
   float alpha_cutoff = 0.0f;  ///< an opaque surface has holes where the base colour map's alpha is below it
   MeshMaps maps{};            ///< of a glass only base_color is read

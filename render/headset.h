@@ -53,8 +53,8 @@ struct HeadsetPictures {
   glm::ivec2 size{0};
   PictureTarget panel;  ///< for Renderer::draw_panel; texture 0: not now
   glm::ivec2 panel_size{0};
-  /// The panel as each eye sees it (panel_view()): it has no depth, so it is to be left clear where something is
-  /// before it.
+  /// The panel as each eye sees it (panel_view()): it has no depth, so it is to be left clear where something
+  /// is before it.
   std::array<View, 2> panel_views;
 };
 

@@ -3,8 +3,8 @@
 
 namespace slosh {
 
-/// Of every HUD of this process, times what fits the picture (1). A property of whoever looks on, not of a picture; from
-/// the next picture on. `scale` from 0.5 to 4; any thread.
+/// Of every HUD of this process, times what fits the picture (1). A property of whoever looks on, not of a
+/// picture; from the next picture on. `scale` from 0.5 to 4; any thread.
 void set_hud_scale(float scale);
 
 }  // namespace slosh

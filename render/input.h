@@ -95,7 +95,8 @@ struct InputState {
   glm::vec2 scroll{0.0f};  ///< wheel notches since the poll before, +y away from the user
   std::array<bool, static_cast<std::size_t>(MouseButton::kCount)> buttons{};  ///< held
   std::array<bool, static_cast<std::size_t>(Key::kCount)> keys{};             ///< held
-  /// What went down since the poll before, in that order: on a slow picture that may be several, and twice the same.
+  /// What went down since the poll before, in that order: on a slow picture that may be several, and twice
+  /// the same.
   std::vector<KeyPress> presses;
   bool hud_wants_mouse = false;     ///< the pointer is over a HUD panel: leave the camera alone
   bool hud_wants_keyboard = false;  ///< a HUD field is being typed into

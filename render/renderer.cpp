@@ -166,7 +166,8 @@ void Renderer::draw(const Frame& frame) {
 Image Renderer::read_back(std::size_t view) {
   if (parts_->is_stretched) return read_image(parts_->stretched_target, parts_->stretched_size);
   const Targets& drawn = parts_->pictures[std::min<std::size_t>(view, 1)].targets;
-  return read_image((drawn.size == glm::ivec2(0) ? parts_->targets : drawn).display_target, parts_->targets.size);
+  return read_image((drawn.size == glm::ivec2(0) ? parts_->targets : drawn).display_target,
+                    parts_->targets.size);
 }
 
 FloatImage Renderer::read_buffer(Buffer buffer) {

@@ -90,7 +90,7 @@ struct RenderOptions {
   bool fluid_shadow = true;  ///< beyond the paper: fluid dims the light that passes it; needs shadow_size > 0
   bool antialias = true;     ///< beyond the paper: smooth edges in the picture as shown (not in its buffers)
   bool keep_still = true;    ///< where a CPU draws with antialias: what cannot have changed since the picture
-                           ///< before is kept while the eye stands still
+                             ///< before is kept while the eye stands still
   bool draw_background = true;  ///< false: black behind everything
   Quality quality = Quality::kAuto;
   PixelPasses pixel_passes = PixelPasses::kMeasured;
@@ -161,12 +161,12 @@ class Renderer : public MeshSink {
   /// One picture of what was prepared, without a HUD: into the renderer's own, which read_back() reads, and
   /// from there to `target` as the bytes are.
   void draw(const View& view, const PictureTarget& target = {});
-  /// Two pictures of it, as both eyes have them, each the same as by itself: side by side where compute shaders
-  /// draw, which takes less time than one after the other. More than two are left out.
+  /// Two pictures of it, as both eyes have them, each the same as by itself: side by side where compute
+  /// shaders draw, which takes less time than one after the other. More than two are left out.
   void draw(std::span<const View> views, std::span<const PictureTarget> targets = {});
-  /// From now on draw_hud() stretches the picture to `size` pixels before the HUD goes over it, so that the HUD's
-  /// letters are sharp however few pixels the picture has; read_back() and present() then have that. {0, 0}: the
-  /// picture as it is. Sizes are clamped to 16384.
+  /// From now on draw_hud() stretches the picture to `size` pixels before the HUD goes over it, so that the
+  /// HUD's letters are sharp however few pixels the picture has; read_back() and present() then have that.
+  /// {0, 0}: the picture as it is. Sizes are clamped to 16384.
   void stretch_to(glm::ivec2 size);
   /// Runs Frame::hud once, over the picture drawn last (of two, the first, or `view` 1).
   void draw_hud(std::size_t view = 0);

@@ -156,9 +156,8 @@ int Renderer::Parts::draw_mixing(const Targets& into, const SplatBuffers& of) {
     if (!made) return 0;  // a driver that refuses it: the front-most particle brings its look
     mixing_pass = std::move(made.value());
   }
-  run("mixing", [&] {
-    mixing_pass->draw(frame, into, fluid_passes->smoothed(into), of.spheres, of.count, layers);
-  });
+  run("mixing",
+      [&] { mixing_pass->draw(frame, into, fluid_passes->smoothed(into), of.spheres, of.count, layers); });
   mixing_pass->bind();
   return layers;
 }

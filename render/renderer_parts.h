@@ -82,8 +82,8 @@ struct Renderer::Parts {
   gl::Texture panel;            ///< RGBA8, made when first asked for
   gl::Framebuffer panel_target;
   glm::ivec2 panel_size{0};
-  glm::ivec2 stretched_to{0};     ///< 0: pictures are shown as they are
-  gl::Texture stretched;          ///< RGBA8, made when first needed
+  glm::ivec2 stretched_to{0};  ///< 0: pictures are shown as they are
+  gl::Texture stretched;       ///< RGBA8, made when first needed
   gl::Framebuffer stretched_target;
   glm::ivec2 stretched_size{0};
   bool is_stretched = false;      ///< what is shown of this frame

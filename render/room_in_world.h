@@ -31,8 +31,9 @@ struct EyeInRoom {
 /// The eye in the world. Planes in m of the world.
 View eye_view(const EyeInRoom& eye, const RoomInWorld& room, double near_plane, double far_plane);
 
-/// An upright rectangle (its middle, facing its +z, and its size, m of the room) as an eye at `eye` sees it, with nothing round it:
-/// what is seen before it hides that part of it. What is behind it is beyond the far plane.
+/// An upright rectangle (its middle, facing its +z, and its size, m of the room) as an eye at `eye` sees it,
+/// with nothing round it: what is seen before it hides that part of it. What is behind it is beyond the far
+/// plane.
 View panel_view(const Pose& panel, const glm::dvec2& size, const glm::dvec3& eye, const RoomInWorld& room,
                 double near_plane);
 

@@ -28,8 +28,8 @@ fs::path folder_of_this_code() {
   return fs::canonical(library ? fs::path(map->l_name) : fs::path("/proc/self/exe"), code).parent_path();
 }
 
-/// As named; else beside what holds this code (a Python package), or where an installation has them from there;
-/// else where the build made them.
+/// As named; else beside what holds this code (a Python package), or where an installation has them from
+/// there; else where the build made them.
 fs::path scenes_folder() {
   const char* given = std::getenv("SLOSH_SCENES");
   if (given && *given) return given;
@@ -62,7 +62,8 @@ std::vector<std::string> scene_files_beside(const fs::path& path) {
   std::vector<std::string> names;
   std::error_code code;
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  for (fs::directory_iterator it(folder, code), end; !code && it != end && names.size() < kMost; it.increment(code)) {
+  for (fs::directory_iterator it(folder, code), end; !code && it != end && names.size() < kMost;
+       it.increment(code)) {
     if (is_gltf(it->path())) names.push_back(it->path().filename().string());
   }
   return names;

@@ -23,11 +23,11 @@ struct Inspection {
   std::optional<Scene> scene;     ///< where there is no error
 };
 
-/// Reads a file as load_scene does, but to its end: everything that is wrong with each object, without what only
-/// follows from another error; and looks for what exports from Blender are known to lose (scenes/CHECK.md lists
-/// it). What it cannot see: a modifier that was not applied leaves no trace but a mesh that is open or
-/// coarse; a scene on its side is told by vessels that are open to where Blender's up went, or by a camera
-/// that lies.
+/// Reads a file as load_scene does, but to its end: everything that is wrong with each object, without what
+/// only follows from another error; and looks for what exports from Blender are known to lose
+/// (scenes/CHECK.md lists it). What it cannot see: a modifier that was not applied leaves no trace but a mesh
+/// that is open or coarse; a scene on its side is told by vessels that are open to where Blender's up went,
+/// or by a camera that lies.
 Inspection inspect_scene(const std::filesystem::path& file);
 
 }  // namespace slosh

@@ -27,10 +27,13 @@ Result<bool> allow_grip_stiffness(const Scene& scene, std::size_t grip, double s
   const Grip& of = scene.grips[grip];
   const std::string where = "stiffness of " + of.name;
   if (!(scale >= kLeastGripStiffness && scale <= kMostGripStiffness))
-    return Error{where, format("it can be %g to %g times the scene's", kLeastGripStiffness, kMostGripStiffness), ""};
+    return Error{where,
+                 format("it can be %g to %g times the scene's", kLeastGripStiffness, kMostGripStiffness), ""};
   // The scene's own is let be, whatever it has.
   if (scale > 1.0 && (scale * of.stiffness > kMostSpring || scale * of.rotational_stiffness > kMostTurning))
-    return Error{where, format("%.4g N/m and %.4g N·m/rad are too much", scale * of.stiffness, scale * of.rotational_stiffness),
+    return Error{where,
+                 format("%.4g N/m and %.4g N·m/rad are too much", scale * of.stiffness,
+                        scale * of.rotational_stiffness),
                  "At most a million N/m and ten thousand N·m/rad"};
   return true;
 }

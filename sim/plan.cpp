@@ -79,7 +79,8 @@ double worth_solving(const Plan& plan) {
   return plan.support_radius > kWide * plan.spacing ? kWorthSolvingWide : kWorthSolving;
 }
 
-// A probe's velocity is its body's, which is solved for later. The other models stay as they are, to compare with.
+// A probe's velocity is its body's, which is solved for later. The other models stay as they are, to compare
+// with.
 bool suits_drag_solve(const Scene& scene, const Plan& plan) {
   return plan.viscous() && corrects_gradients(plan.model) && !any_probe(scene);
 }

@@ -63,8 +63,8 @@ struct Plan {
   std::string time_step_reason;  ///< which limit decided it
   double stiffness = 0.0;        ///< Eq 7's k of the heaviest fluid, m²/s² (= its sound speed²)
   ParticleModel model = ParticleModel::kCorrected;
-  double fluid_depth = 0.0;  ///< m, the deepest column that volumes of fluid make, one on the other
-  double fluid_drop = 0.0;   ///< m, from the highest fluid to the floor of the domain
+  double fluid_depth = 0.0;   ///< m, the deepest column that volumes of fluid make, one on the other
+  double fluid_drop = 0.0;    ///< m, from the highest fluid to the floor of the domain
   double driven_speed = 0.0;  ///< m/s, the fastest that a start velocity or a scripted hand makes anything
   double sound_share =
       1.0;                 ///< of sound's own limit on the step, what density contrast and light bodies leave
@@ -73,10 +73,10 @@ struct Plan {
   std::vector<double> body_density;   ///< kg/m³, the constant density of each body's particles (section 4.1)
   std::vector<double> body_pressure;  ///< Pa, Eq 7 at that density
 
-  bool solves_drag = false;  ///< kImplicitDrag runs whenever anything is viscous
+  bool solves_drag = false;       ///< kImplicitDrag runs whenever anything is viscous
   bool passes_stress = false;     ///< kFluidStress runs whenever anything is viscous; no wall mirrors
   bool waits_for_bodies = false;  ///< walls move, and nothing keeps the fluid from waiting for them
-  int sub_steps = 1;  ///< that a step is made of, each time_step / sub_steps long
+  int sub_steps = 1;              ///< that a step is made of, each time_step / sub_steps long
 
   PassSet runs;
   std::vector<int> wrench_bodies;  ///< bodies whose wrench is summed: free or measured
@@ -103,8 +103,8 @@ inline double speed_limit(const Plan& plan, double time_step) {
   return 0.5 * plan.support_radius / time_step;
 }
 
-/// Works out the plan for particles at `spacing` (m, > 0). `may_solve_drag`: whether whoever carries it out has
-/// implicit viscosity (can_solve_drag); without, steps are shorter where a fluid is very viscous.
+/// Works out the plan for particles at `spacing` (m, > 0). `may_solve_drag`: whether whoever carries it out
+/// has implicit viscosity (can_solve_drag); without, steps are shorter where a fluid is very viscous.
 Plan make_plan(const Scene& scene, double spacing, bool may_solve_drag = true);
 
 /// Takes over changed viscosities of the scene's fluids: which viscous passes run. The time step stays. Needs

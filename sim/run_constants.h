@@ -35,8 +35,9 @@ struct RunConstants {
   float rest_number_density =
       0.0f;  ///< Σ of the kernel's shape over the rest lattice: density is measured against it
   float rest_volume = 0.0f;  ///< m³ of a particle at rest density
-  CorrectionConstants correction;  ///< ParticleModel::kCorrected's, of the lattice (pressure/settled_packing.h)
-  double load_compression = 0.0;   ///< ρ/ρ⁰ − 1 of the fluid under its own weight, mean over its depth
+  CorrectionConstants
+      correction;  ///< ParticleModel::kCorrected's, of the lattice (pressure/settled_packing.h)
+  double load_compression = 0.0;  ///< ρ/ρ⁰ − 1 of the fluid under its own weight, mean over its depth
   glm::vec3 gravity{0.0f};
   std::vector<ParticleKind> kinds;
   ImpulseUnits impulse_units;  ///< of what walls take from particles

@@ -15,10 +15,10 @@ static_assert(std::endian::native == std::endian::little);
 
 constexpr std::uint32_t kMagic = 0x54535753;  // "SWST"
 constexpr std::uint32_t kVersion = 6;
-constexpr std::uint32_t kBeforeBroken = 5;  // without ParticleState::broken, and read as well: none was
-constexpr std::uint32_t kBeforeGone = 4;  // without RigidBody::gone, and read as well: no body was
+constexpr std::uint32_t kBeforeBroken = 5;     // without ParticleState::broken, and read as well: none was
+constexpr std::uint32_t kBeforeGone = 4;       // without RigidBody::gone, and read as well: no body was
 constexpr std::uint32_t kBeforeStiffness = 3;  // without grip_stiffness, and read as well: it was the scene's
-constexpr double kLargest = 1.0e9;  // beyond this no position, speed or force of a body is one
+constexpr double kLargest = 1.0e9;             // beyond this no position, speed or force of a body is one
 constexpr std::int64_t kMostOfImpulse = std::int64_t{1} << 62;
 const char kWhere[] = "saved world";
 

@@ -49,18 +49,18 @@ struct WorldOptions {
 
 /// Sums over the fluid, for checks and the summary (double precision).
 struct Diagnostics {
-  std::uint64_t particles = 0;  ///< still in the world
-  std::uint64_t retired = 0;    ///< out of the world since the start: spilled and lost
-  std::uint64_t spilled = 0;    ///< left the domain over its edge
-  std::uint64_t lost = 0;       ///< not finite; where walls do not hold (Plan::walls_hold) all that left the
-                           ///< domain too: it may have gone through one
-  double mass = 0.0;                ///< kg
-  glm::dvec3 momentum{0.0};         ///< kg·m/s
-  glm::dvec3 center{0.0};           ///< m, centre of mass
-  double kinetic_energy = 0.0;      ///< J
-  double max_speed = 0.0;           ///< m/s
-  double max_compression = 0.0;     ///< largest ρ/ρ⁰ − 1
-  std::uint64_t guarded = 0;        ///< how often particles were kept from passing a wall, since the start
+  std::uint64_t particles = 0;   ///< still in the world
+  std::uint64_t retired = 0;     ///< out of the world since the start: spilled and lost
+  std::uint64_t spilled = 0;     ///< left the domain over its edge
+  std::uint64_t lost = 0;        ///< not finite; where walls do not hold (Plan::walls_hold) all that left the
+                                 ///< domain too: it may have gone through one
+  double mass = 0.0;             ///< kg
+  glm::dvec3 momentum{0.0};      ///< kg·m/s
+  glm::dvec3 center{0.0};        ///< m, centre of mass
+  double kinetic_energy = 0.0;   ///< J
+  double max_speed = 0.0;        ///< m/s
+  double max_compression = 0.0;  ///< largest ρ/ρ⁰ − 1
+  std::uint64_t guarded = 0;     ///< how often particles were kept from passing a wall, since the start
   glm::dvec3 guarded_impulse{0.0};  ///< kg·m/s, what that took from the fluid in the last step and bodies get
                                     ///< in the next
 };

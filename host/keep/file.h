@@ -18,9 +18,11 @@ using File = std::unique_ptr<std::FILE, CloseFile>;
 
 /// Errors: it cannot be opened, with the system's reason.
 Result<File> open_to_read(const std::filesystem::path& path);
-/// The file that somebody named, emptied, for its owner alone (mode 0600). Errors: the system's; it is another's.
+/// The file that somebody named, emptied, for its owner alone (mode 0600). Errors: the system's; it is
+/// another's.
 Result<File> open_to_write(const std::filesystem::path& path);
-/// A new file of a name that others can foresee (net/fresh_file.h), for its owner alone. Errors: the system's.
+/// A new file of a name that others can foresee (net/fresh_file.h), for its owner alone. Errors: the
+/// system's.
 Result<File> open_fresh_file(const std::filesystem::path& path);
 
 /// Writes out what is buffered, and brings it to the disk where the file is on one; false with errno.

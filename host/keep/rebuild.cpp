@@ -14,10 +14,10 @@ Result<RebuiltWorld> rebuild_world(const Scene& scene, double spacing, std::span
   return rebuild_world(scene, std::move(sampled.value()), state, options);
 }
 
-Result<RebuiltWorld> rebuild_world(const Scene& scene, SampledScene sampled, std::span<const std::uint8_t> state,
-                                   const WorldOptions& options) {
-  // Where a GPU's plan and the CPU's differ, what was saved fits the one that it was made by; the CPU can go on
-  // from both.
+Result<RebuiltWorld> rebuild_world(const Scene& scene, SampledScene sampled,
+                                   std::span<const std::uint8_t> state, const WorldOptions& options) {
+  // Where a GPU's plan and the CPU's differ, what was saved fits the one that it was made by; the CPU can go
+  // on from both.
   std::optional<Error> refused;
   for (const bool may_solve_drag : {can_solve_drag(options.backend), false}) {
     Result<World> world =

@@ -18,8 +18,8 @@ Result<RebuiltWorld> rebuild_world(const Scene& scene, double spacing, std::span
                                    const WorldOptions& options);
 
 /// The same of a scene that is sampled already, at the spacing that it has.
-Result<RebuiltWorld> rebuild_world(const Scene& scene, SampledScene sampled, std::span<const std::uint8_t> state,
-                                   const WorldOptions& options);
+Result<RebuiltWorld> rebuild_world(const Scene& scene, SampledScene sampled,
+                                   std::span<const std::uint8_t> state, const WorldOptions& options);
 
 /// Back to `start` with the live parameters as they are: what a host's reset does, and a replay's. Error: the
 /// state does not fit.

@@ -14,7 +14,7 @@ namespace slosh {
 
 struct AdmissionLimits {
   std::size_t a_site = 256;     ///< connections of one site, in or not
-  std::size_t strangers = 128;   ///< connections that have not said Hello, of keys that have no seat
+  std::size_t strangers = 128;  ///< connections that have not said Hello, of keys that have no seat
   double hello_patience = 3.0;  ///< s until a connection must have said Hello
 };
 

@@ -15,11 +15,11 @@ namespace slosh {
 
 struct ConsoleCommand {
   ConsoleVerb verb = ConsoleVerb::kNothing;
-  std::string text;              ///< a person's name, a link's id, a grip's or fluid's name or number
+  std::string text;                 ///< a person's name, a link's id, a grip's or fluid's name or number
   LinkRole role = LinkRole::kHold;  ///< kLink, kRole
-  std::int64_t lifetime_ns = 0;  ///< kLink, kExpire: 0 = for ever; kKick: 0 = may come again at once
+  std::int64_t lifetime_ns = 0;     ///< kLink, kExpire: 0 = for ever; kKick: 0 = may come again at once
   SetWish::What what = SetWish::What::kViscosity;  ///< kSet
-  double value = 0.0;            ///< kSet: Pa·s, or times the scene's
+  double value = 0.0;                              ///< kSet: Pa·s, or times the scene's
 };
 
 /// Errors say what was expected. Any bytes may come.

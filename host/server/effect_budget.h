@@ -16,15 +16,16 @@
 
 namespace slosh {
 
-/// A change counts by its size: gravity from 0 to 2 counts twice what it does from 0 to 1, a slider that is dragged
-/// there in a hundred steps as much as one step. Whoever comes again by the same key finds the same budget. One thread;
-/// reads no clock.
+/// A change counts by its size: gravity from 0 to 2 counts twice what it does from 0 to 1, a slider that is
+/// dragged there in a hundred steps as much as one step. Whoever comes again by the same key finds the same
+/// budget. One thread; reads no clock.
 class EffectBudget {
  public:
   EffectBudget();
 
-  /// Takes what `command` comes to, in a world that is `now`, from the budget of `who` and from that of all guests.
-  /// Empty; or, where one of the two has not enough, why not and when again, in words: then nothing is taken.
+  /// Takes what `command` comes to, in a world that is `now`, from the budget of `who` and from that of all
+  /// guests. Empty; or, where one of the two has not enough, why not and when again, in words: then nothing
+  /// is taken.
   std::string spend(const KeyFingerprint& who, const HostCommand& command, const HostState& now,
                     std::int64_t now_ns);
 
@@ -45,7 +46,8 @@ class EffectBudget {
 
   std::vector<TokenBucket> all_;
   std::map<KeyFingerprint, Guest> guests_;
-  std::map<std::pair<HostAction, std::uint32_t>, Asked> asked_;  // the newest value, which the world may not have yet
+  std::map<std::pair<HostAction, std::uint32_t>, Asked>
+      asked_;  // the newest value, which the world may not have yet
 };
 
 }  // namespace slosh

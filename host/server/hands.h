@@ -18,9 +18,9 @@ struct Delivery {
 };
 
 /// The writer of every channel.pose(i). A grip that nobody has held since the start (or a reset) is held by
-/// the host where it starts, so that nothing falls before people come: it is on a stand, which counts as nobody
-/// (PoseMessage::stand). The first person's hand that is felt on a body ends the stands of its other grips that
-/// nobody has taken; from then on only hands hold it. One thread; `now_ns` is the steady clock.
+/// the host where it starts, so that nothing falls before people come: it is on a stand, which counts as
+/// nobody (PoseMessage::stand). The first person's hand that is felt on a body ends the stands of its other
+/// grips that nobody has taken; from then on only hands hold it. One thread; `now_ns` is the steady clock.
 class HandTable {
  public:
   HandTable(const Scene& scene, Channel& channel);
@@ -36,8 +36,8 @@ class HandTable {
   /// Contact with the holder is lost. Where another hand of the same body is heard, it carries on alone: as
   /// let_go(). Else the host holds the grip where the hand was, since nobody would catch what falls.
   void lose(std::size_t grip, std::int64_t now_ns);
-  /// After a restart of the host: what was held stands where the hand was, until its holder is back. `awaited`: whether
-  /// somebody may come back to it, one a grip; who is missing there may.
+  /// After a restart of the host: what was held stands where the hand was, until its holder is back.
+  /// `awaited`: whether somebody may come back to it, one a grip; who is missing there may.
   void carry_on(const BodySnapshot& bodies, std::int64_t now_ns, const std::vector<bool>& awaited = {});
 
   /// Takes in a sample of the holder's. True when it is the newest. It goes to the world, but where it holds
@@ -75,11 +75,11 @@ class HandTable {
     std::int64_t clock_offset_ns = 0;  // host's clock − holder's, by the quickest sample
     std::int64_t heard_ns = 0;
     Delivery delivery;
-    Pose last;             // of what was published last,
-    bool engaged = false;  // whether it held on,
-    double energy = 0.0;   // and J that all who held it put in
-    double before = 0.0;   // J of that before this holder's count began …
-    bool begun = false;    // … as it did
+    Pose last;                // of what was published last,
+    bool engaged = false;     // whether it held on,
+    double energy = 0.0;      // and J that all who held it put in
+    double before = 0.0;      // J of that before this holder's count began …
+    bool begun = false;       // … as it did
     std::vector<Used> known;  // a ring by number
   };
   bool count(GripHand& hand, std::uint64_t number);

@@ -10,8 +10,8 @@
 
 namespace slosh {
 
-/// The numbers are kept in files: the first two are wire::Role's, as all links had before `run` was there. So an old link
-/// to hold has the lesser right.
+/// The numbers are kept in files: the first two are wire::Role's, as all links had before `run` was there. So
+/// an old link to hold has the lesser right.
 enum class LinkRole : std::uint8_t {
   kHold,   ///< takes grips, lets go, sets the stiffness of those that it holds
   kWatch,  ///< looks on

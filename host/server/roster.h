@@ -101,7 +101,8 @@ class SeatTable {
  private:
   std::string free_name(const std::string& wish, const std::vector<std::string>& reserved) const;
   std::size_t limit_of(LinkRole role) const;
-  /// Seats of those who may hold, as this role may, or else may not, that are taken, or kept for who lost contact with hands.
+  /// Seats of those who may hold, as this role may, or else may not, that are taken, or kept for who lost
+  /// contact with hands.
   std::size_t taken(LinkRole role, const Seat* but) const;
   bool make_room(LinkRole role);
 

@@ -83,7 +83,8 @@ void Server::restore(const ServerState& state) {
   bans_.restore(state.bans);
   seats_.restore(state.seats, now());
   std::vector<bool> awaited;
-  for (std::uint32_t grip = 0; grip < hands_.size(); ++grip) awaited.push_back(seats_.holder(grip) != nullptr);
+  for (std::uint32_t grip = 0; grip < hands_.size(); ++grip)
+    awaited.push_back(seats_.holder(grip) != nullptr);
   hands_.carry_on(world_.channel->bodies().front().bodies, now(), awaited);
   state_dirty_ = true;
 }

@@ -41,7 +41,8 @@ struct ServerOptions {
   AdmissionLimits admission;
   double silence = 0.5;  ///< s without a datagram after which others are told so
   BodyRates bodies;
-  bool lock_parameters = false;         ///< only the console sets viscosity, gravity and stiffness, whatever a link says
+  bool lock_parameters =
+      false;  ///< only the console sets viscosity, gravity and stiffness, whatever a link says
   std::size_t hands_to_start = 1;       ///< grips that must be taken before the world starts; 0 = it runs
   LastingClock::Source unix_clock;      ///< Unix time; empty = `clock` where that is given, else the system's
   LastingClock::Source elapsed_clock;   ///< goes on while suspended; empty = likewise

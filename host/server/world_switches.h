@@ -43,7 +43,8 @@ class WorldSwitches {
   }
 
   wire::WorldInfo message() const {
-    wire::WorldInfo info{state_.paused, state_.run, state_.gravity_scale, state_.viscosities, state_.grip_stiffness};
+    wire::WorldInfo info{state_.paused, state_.run, state_.gravity_scale, state_.viscosities,
+                         state_.grip_stiffness};
     if (info.viscosities.size() > wire::kMaxFluids) info.viscosities.resize(wire::kMaxFluids);
     if (info.grip_stiffness.size() > wire::kMaxGrips) info.grip_stiffness.resize(wire::kMaxGrips);
     return info;

@@ -167,17 +167,17 @@ class Connection {
   SnapshotRoom snapshot_room_;
   PoseRoom pose_room_;
   LossLedger ledger_;
-  std::int64_t packet_number_ = 0;  // of the last packet with a short header
-  bool short_packet_ = false;       // one was written
-  unsigned packed_datagrams_ = 0;   // in it
-  bool held_back_ = false;          // the link shows a queue
-  bool bulk_packet_ = false;        // the last packet had a snapshot's piece or a stream's bytes in it
-  bool bulk_waits_ = false;         // for bulk_due_, and nothing else
-  std::int64_t bulk_due_ = 0;       // when such a packet may leave again
+  std::int64_t packet_number_ = 0;   // of the last packet with a short header
+  bool short_packet_ = false;        // one was written
+  unsigned packed_datagrams_ = 0;    // in it
+  bool held_back_ = false;           // the link shows a queue
+  bool bulk_packet_ = false;         // the last packet had a snapshot's piece or a stream's bytes in it
+  bool bulk_waits_ = false;          // for bulk_due_, and nothing else
+  std::int64_t bulk_due_ = 0;        // when such a packet may leave again
   std::int64_t datagrams_left_ = 0;  // when the last packet of datagrams did
   std::int64_t idle_until_ = 0;      // up to then nothing was under way
-  std::size_t room_ = 0;            // bytes of snapshots that this flush may still send
-  bool probe_stream_due_ = false;   // a client's: the host knows it by its first byte
+  std::size_t room_ = 0;             // bytes of snapshots that this flush may still send
+  bool probe_stream_due_ = false;    // a client's: the host knows it by its first byte
   std::uint64_t bytes_sent_ = 0;
   std::uint64_t bytes_received_ = 0;
   std::uint64_t packets_received_ = 0;

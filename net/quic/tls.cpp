@@ -83,12 +83,12 @@ TlsContext::TlsContext(const Identity& identity, TlsOddity oddity)
   }
   gnutls_certificate_set_verify_function(credentials_, verify);
   check_tls(gnutls_priority_init(
-            &priority_,
-            "NORMAL:-VERS-ALL:+VERS-TLS1.3:%DISABLE_TLS13_COMPAT_MODE:-CIPHER-ALL:+AES-128-GCM:"
-            "+AES-256-GCM:+CHACHA20-POLY1305:-GROUP-ALL:+GROUP-X25519:+GROUP-SECP256R1:"
-            "-SIGN-ALL:+SIGN-EDDSA-ED25519",
-            nullptr),
-        "settings");
+                &priority_,
+                "NORMAL:-VERS-ALL:+VERS-TLS1.3:%DISABLE_TLS13_COMPAT_MODE:-CIPHER-ALL:+AES-128-GCM:"
+                "+AES-256-GCM:+CHACHA20-POLY1305:-GROUP-ALL:+GROUP-X25519:+GROUP-SECP256R1:"
+                "-SIGN-ALL:+SIGN-EDDSA-ED25519",
+                nullptr),
+            "settings");
 }
 
 TlsContext::~TlsContext() {

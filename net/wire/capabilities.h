@@ -32,8 +32,8 @@ constexpr Capabilities kFeltHands = 1u << 4;
 /// PoseSample has no `tick_ack`: nothing ever read it.
 constexpr Capabilities kNoTickAcks = 1u << 5;
 
-/// Rights follows WorldInfo: what the peer's link lets it ask of the world. Where this is not agreed nothing is said
-/// of it, and what is refused is refused in an Answer.
+/// Rights follows WorldInfo: what the peer's link lets it ask of the world. Where this is not agreed nothing
+/// is said of it, and what is refused is refused in an Answer.
 constexpr Capabilities kLinkRights = 1u << 6;
 
 /// GripEntry has whether a stand holds the grip, and the stiffness that acts.

@@ -253,7 +253,8 @@ struct WorldInfo {
   std::uint32_t run = 0;  ///< rises by one with every reset
   double gravity_scale = 1.0;
   std::vector<double> viscosities;  ///< Pa·s, one a fluid
-  std::vector<double> grip_stiffness;  ///< times the scene's, one a grip; none where kGripStiffnesses is not agreed
+  std::vector<double>
+      grip_stiffness;  ///< times the scene's, one a grip; none where kGripStiffnesses is not agreed
 };
 template <class V>
 void visit(V& v, WorldInfo& m) {
@@ -269,7 +270,8 @@ void visit(V& v, WorldInfo& m) {
   }
 }
 
-/// What this peer may ask of the world: after the first WorldInfo, and whenever it is another. Behind kLinkRights.
+/// What this peer may ask of the world: after the first WorldInfo, and whenever it is another. Behind
+/// kLinkRights.
 struct Rights {
   static constexpr ControlType kType = ControlType::kRights;
   bool run = false;         ///< to pause it, let it go on and set it back

@@ -53,9 +53,9 @@ constexpr std::array kHoldsOnNames{"no", "yes", "yes, but not felt yet"};
 /// One reading of one device.
 struct PoseSample {
   std::uint32_t grip = 0;
-  std::uint64_t number = 0;    ///< of this grip's samples, rising by one; repeats have the same number
-  std::int64_t stamp_ns = 0;   ///< the peer's steady clock when the device was read
-  double time = 0.0;           ///< simulated s that it belongs to
+  std::uint64_t number = 0;   ///< of this grip's samples, rising by one; repeats have the same number
+  std::int64_t stamp_ns = 0;  ///< the peer's steady clock when the device was read
+  double time = 0.0;          ///< simulated s that it belongs to
   Pose pose;
   Twist twist;
   HoldsOn engaged = HoldsOn::kNo;

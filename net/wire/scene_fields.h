@@ -16,10 +16,10 @@ constexpr std::size_t kMaxInstruments = 1000;  // of each kind
 constexpr std::size_t kMaxPoseKeys = 1'000'000;
 constexpr std::size_t kMaxSentImages = 16u
                                        << 20;  ///< bytes of all that travel; pack_scene leaves others behind
-constexpr double kMaxDomain = 1e9;    ///< m
-constexpr double kMaxInertia = 1e18;  ///< kg·m²
-constexpr double kMaxMass = 1e9;      ///< kg
-constexpr double kMaxSettle = 60.0;   ///< s
+constexpr double kMaxDomain = 1e9;             ///< m
+constexpr double kMaxInertia = 1e18;           ///< kg·m²
+constexpr double kMaxMass = 1e9;               ///< kg
+constexpr double kMaxSettle = 60.0;            ///< s
 
 constexpr std::array kBodyMotionNames{"fixed", "free"};
 

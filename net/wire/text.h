@@ -12,8 +12,8 @@ namespace slosh::wire {
 /// there. net/text/clean.h has the rules; net/text/name.h has what a person's name may be besides.
 std::string text_problem(std::string_view text);
 
-/// The text with what would be refused replaced by "?" or, where it shows nothing, left out; cut at a character
-/// to at most `most` bytes. What is fine comes back as it is.
+/// The text with what would be refused replaced by "?" or, where it shows nothing, left out; cut at a
+/// character to at most `most` bytes. What is fine comes back as it is.
 std::string clean_text(std::string_view text, std::size_t most);
 
 }  // namespace slosh::wire

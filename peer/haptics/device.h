@@ -19,14 +19,14 @@ struct DeviceReport {
   Twist twist;  ///< handle, world
   std::uint32_t buttons = 0;
   bool engaged = true;  ///< the hand holds on
-  /// False: the device said nothing (its cable is out). The rest counts for nothing then, and the hand is taken
-  /// for silent: its force fades, and it takes hold anew when it is back.
+  /// False: the device said nothing (its cable is out). The rest counts for nothing then, and the hand is
+  /// taken for silent: its force fades, and it takes hold anew when it is back.
   bool heard = true;
   /// The handle as the device itself has it, in its own frame, before scale, clutch and camera. Nothing where
   /// `pose` is that, or the device has no place of its own.
   std::optional<Pose> at_device = std::nullopt;
-  /// What its last write() made of the wrench that it was handed, at the device and in its own frame, after scale and
-  /// filter. Nothing before there was one, and where that is what it was handed.
+  /// What its last write() made of the wrench that it was handed, at the device and in its own frame, after
+  /// scale and filter. Nothing before there was one, and where that is what it was handed.
   std::optional<Wrench> rendered = std::nullopt;
 };
 
@@ -52,8 +52,8 @@ class Device {
   virtual void rest() { write(Wrench{}); }
   /// Constant while the device is open. Checked by check_limits before anything is written.
   virtual DeviceLimits limits() const = 0;
-  /// The viewer's camera turned: `axes` takes its right, up and towards-the-eye to the world's. For devices whose
-  /// motion goes by the picture; one thread, any but the device's, and without waiting for it.
+  /// The viewer's camera turned: `axes` takes its right, up and towards-the-eye to the world's. For devices
+  /// whose motion goes by the picture; one thread, any but the device's, and without waiting for it.
   virtual void look_from(const glm::dquat& axes) { (void)axes; }
   /// True when read() and write() only look at memory: they neither wait, allocate, lock nor log, and are
   /// called from the device loop itself. All others get a thread of their own (DevicePort), so that hardware
@@ -64,19 +64,19 @@ class Device {
   /// this end.
   virtual bool gives_way() const { return true; }
   /// True when it moves by simulated time (DeviceMoment::time): its velocities are m per simulated s. False
-  /// for all that goes by the clock on the wall, as hardware and who holds it do: what passes between it and a
-  /// world that is slower is converted.
+  /// for all that goes by the clock on the wall, as hardware and who holds it do: what passes between it and
+  /// a world that is slower is converted.
   virtual bool goes_with_world() const { return false; }
   /// May be called more than once.
   virtual void close() {}
   virtual std::string kind() const = 0;
-  /// What keeps it from working for now, in words for who holds it; empty while it works. Any thread; not from
-  /// the device loop.
+  /// What keeps it from working for now, in words for who holds it; empty while it works. Any thread; not
+  /// from the device loop.
   virtual std::string trouble() const { return {}; }
   /// What its user should know before holding it: gains beyond what it holds safely. Once it is open.
   virtual std::vector<std::string> warnings() const { return {}; }
-  /// A line for people about what it says lately: raw values, battery. Empty where there is nothing to say. As
-  /// trouble().
+  /// A line for people about what it says lately: raw values, battery. Empty where there is nothing to say.
+  /// As trouble().
   virtual std::string status() const { return {}; }
 };
 

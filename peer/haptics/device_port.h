@@ -21,11 +21,11 @@ struct DeviceReading {
 };
 
 /// Owns an open device with sound limits. An immediate one is read and written by whoever calls, which is the
-/// device loop. Any other has a thread, which reads it just before the loop's tick and writes just after that what
-/// the loop makes of it, or goes at the pace at which its read() returns, a reading and the newest wrench in turn;
-/// newest readings and wrenches are exchanged without a lock, so that a device that does not answer is late
-/// alone. The thread writes a wrench that the loop has not renewed only as long as freshness() has it, never
-/// changes it faster than the device's limits, and writes zero last.
+/// device loop. Any other has a thread, which reads it just before the loop's tick and writes just after that
+/// what the loop makes of it, or goes at the pace at which its read() returns, a reading and the newest
+/// wrench in turn; newest readings and wrenches are exchanged without a lock, so that a device that does not
+/// answer is late alone. The thread writes a wrench that the loop has not renewed only as long as freshness()
+/// has it, never changes it faster than the device's limits, and writes zero last.
 class DevicePort {
  public:
   explicit DevicePort(std::unique_ptr<Device> device);
@@ -47,9 +47,9 @@ class DevicePort {
   /// ever. By the thread that owns the port, once the loop has let go of it.
   void stop() noexcept;
 
-  /// The share (0–1) of its wrench that the device had left when it was written to last: less than 1 after the loop
-  /// stood still, and the last write() counts by that share. 1 without a thread of its own, where nobody takes it
-  /// away. Loop only.
+  /// The share (0–1) of its wrench that the device had left when it was written to last: less than 1 after
+  /// the loop stood still, and the last write() counts by that share. 1 without a thread of its own, where
+  /// nobody takes it away. Loop only.
   double left() const noexcept { return left_; }
 
   const Device& device() const { return *device_; }

@@ -57,8 +57,8 @@ class FeltHand {
     gains_ = within(of_world, limits);
   }
 
-  /// Nobody called feel() for so long that the device has only that share (0–1) of its wrench left: what comes back
-  /// begins there.
+  /// Nobody called feel() for so long that the device has only that share (0–1) of its wrench left: what
+  /// comes back begins there.
   void faded(double share) noexcept {
     limiter_.faded(share);
     last_ = {share * last_.force, share * last_.torque};

@@ -31,8 +31,8 @@ void let_go_of_all_hands(double seconds) noexcept;
 /// s that a dying process waits for its hands: some hundred periods of the device loop.
 constexpr double kLetGoWithin = 0.2;
 
-/// From now on std::terminate lets go of all hands first, and so does a crash (a fault in any thread, abort): the
-/// process dies of it all the same. Called by whoever starts the first writer.
+/// From now on std::terminate lets go of all hands first, and so does a crash (a fault in any thread, abort):
+/// the process dies of it all the same. Called by whoever starts the first writer.
 void let_go_before_the_end() noexcept;
 
 }  // namespace slosh

@@ -44,7 +44,8 @@ Result<HandDevice> make_device(const Scene& scene, std::size_t grip, const std::
   } else if (spec.rfind(kReplay, 0) == 0) {
     const std::string file = spec.substr(std::char_traits<char>::length(kReplay));
     if (file.empty())
-      return Error{"--device", "'replay:' names no file", "Give the path of a poses.csv that `play --out` wrote"};
+      return Error{"--device", "'replay:' names no file",
+                   "Give the path of a poses.csv that `play --out` wrote"};
     Result<std::vector<PoseKey>> keys = read_poses(file, static_cast<int>(grip));
     if (!keys) return keys.error();
     hand.device = std::make_unique<TrackDevice>(PoseTrack(keys.value(), start), "replay");

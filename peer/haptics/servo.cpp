@@ -136,8 +136,8 @@ void Servo::change_device(Hand& hand, DevicePort* port) noexcept {
   hand.in_use.store(port);
 }
 
-/// Here as in the world, so that no hand is thrown; the device's limits go last. A host that does not tell what acts is
-/// followed on the way to what was asked for, by the world's time.
+/// Here as in the world, so that no hand is thrown; the device's limits go last. A host that does not tell
+/// what acts is followed on the way to what was asked for, by the world's time.
 void Servo::follow_stiffness(std::size_t i, Hand& hand, const BodySnapshot& bodies, double elapsed) noexcept {
   const double told = i < bodies.grips.size() ? bodies.grips[i].stiffness : 0.0;
   const double wanted = hand.stiffness_wanted.load(std::memory_order_relaxed);

@@ -61,9 +61,12 @@ class Servo {
   /// limits that are not sound (check_limits); then nothing changes.
   Result<bool> set_device(std::size_t i, std::unique_ptr<Device> device);
 
-  /// The springs of grip `i` are so many times the scene's (World::set_grip_stiffness): the loop goes over to it by
-  /// kGripStiffnessPace, as the world does, and no device is asked for more than it holds. > 0; the control thread's.
-  void set_stiffness(std::size_t i, double scale) { hands_[i].stiffness_wanted.store(scale, std::memory_order_relaxed); }
+  /// The springs of grip `i` are so many times the scene's (World::set_grip_stiffness): the loop goes over to
+  /// it by kGripStiffnessPace, as the world does, and no device is asked for more than it holds. > 0; the
+  /// control thread's.
+  void set_stiffness(std::size_t i, double scale) {
+    hands_[i].stiffness_wanted.store(scale, std::memory_order_relaxed);
+  }
 
   std::size_t devices() const { return hands_.size(); }  ///< grips, whoever holds them
   /// The grip's device, or the last one that it had; null when there never was one.
@@ -108,7 +111,7 @@ class Servo {
     // The loop's.
     DevicePort* port = nullptr;
     DeviceLimits limits;
-    CouplingGains gains;  // the scene's
+    CouplingGains gains;     // the scene's
     double stiffness = 1.0;  // times that, now
     Pose start;
     int body = 0;
@@ -151,7 +154,7 @@ class Servo {
   std::deque<Hand> hands_;  // a hand never moves: the loop and the control thread share it
   std::uint32_t run_ = 0;
   double time_ = 0.0;
-  double pace_ = 1.0;  // simulated s a s on the wall, smoothed
+  double pace_ = 1.0;      // simulated s a s on the wall, smoothed
   bool lockstep_ = false;  // tick_in_lockstep(): a run whose clock is the world's
   bool moving_ = false;
   std::int64_t ticked_ns_ = 0;
@@ -161,7 +164,7 @@ class Servo {
   bool states_apart_ = false;  // Channel::newest() is written
   bool let_go_ = false;
   double next_sample_ = 0.0;
-  double sampled_ = -1.0;        // simulated s of the newest sample
+  double sampled_ = -1.0;  // simulated s of the newest sample
   std::uint64_t ticks_ = 0;
   std::int64_t first_tick_ns_ = 0, tick_before_ns_ = 0;
   SampleLine line_;

@@ -45,8 +45,9 @@ void Servo::pass_on(bool all) noexcept {
   }
 }
 
-/// Where a row is asked for each period, each tick has one whose time is another: a loop is early or late by parts of a
-/// period, and on a grid of whole periods it would miss one row and have two ticks for the next. Else on the grid.
+/// Where a row is asked for each period, each tick has one whose time is another: a loop is early or late by
+/// parts of a period, and on a grid of whole periods it would miss one row and have two ticks for the next.
+/// Else on the grid.
 bool Servo::sample_due(bool stopped) const noexcept {
   if (stopped) return false;
   if (options_.sample_interval > options_.period + kRowRounding) return time_ + kRowRounding >= next_sample_;

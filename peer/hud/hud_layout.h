@@ -12,8 +12,8 @@ namespace slosh {
 
 /// What panels are measured by, in pixels.
 struct LetterSize {
-  float width = 0.0f;   ///< of "0"
-  float line = 0.0f;    ///< from one row to the next
+  float width = 0.0f;       ///< of "0"
+  float line = 0.0f;        ///< from one row to the next
   glm::vec2 padding{0.0f};  ///< of a panel, on either side
   bool operator==(const LetterSize&) const = default;
 };
@@ -25,11 +25,11 @@ struct HudLayout {
     kLeast,  ///< the time and what is wrong
   };
   Detail detail = Detail::kFull;
-  float letters = 1.0f;      ///< times the size that the letters have
-  bool in_a_row = false;     ///< the hands beside each other
+  float letters = 1.0f;       ///< times the size that the letters have
+  bool in_a_row = false;      ///< the hands beside each other
   bool run_at_right = false;  ///< the run's panel is in the upper left corner, or in the upper right one
   bool hands_at_right = false, hands_on_top = false;
-  float run_width = 0.0f;     ///< px, padding included
+  float run_width = 0.0f;        ///< px, padding included
   float most_run_height = 0.0f;  ///< px, that warnings may let it grow to
   glm::vec2 hands_size{0.0f};    ///< px; 0 without a panel
 };

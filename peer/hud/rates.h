@@ -18,11 +18,11 @@ struct Rates {
   std::uint32_t device_status = 0;  ///< StatusBits that the device loop ever set
   std::string budgets;              ///< a line for each hand whose device clips; empty where none does
   std::array<std::uint64_t, 32>
-      status_steps{};               ///< in how many steps each was set; 0 where that is not known
-  std::uint64_t lost = 0;           ///< fluid particles, as Diagnostics::lost where walls hold; local runs say it
-  double start = 0.0;               ///< simulated s when this person's run began
-  std::string connection;           ///< the network in a few words; empty without one
-  std::string people;               ///< who is here, a line each; empty when alone
+      status_steps{};      ///< in how many steps each was set; 0 where that is not known
+  std::uint64_t lost = 0;  ///< fluid particles, as Diagnostics::lost where walls hold; local runs say it
+  double start = 0.0;      ///< simulated s when this person's run began
+  std::string connection;  ///< the network in a few words; empty without one
+  std::string people;      ///< who is here, a line each; empty when alone
 };
 
 /// Written by the thread that watches the run, read by the one that draws. Neither is the device loop.

@@ -101,7 +101,8 @@ std::string look_of(const ChartSeries& series) {
 
 std::string key_script(const ChartPanel& panel) {
   std::string script =
-      "unset logscale\nunset object\nunset label\nset xrange [0:1]\nset yrange [0:1]\nunset border\nunset tics\n"
+      "unset logscale\nunset object\nunset label\nset xrange [0:1]\nset yrange [0:1]\nunset border\nunset "
+      "tics\n"
       "unset title\nunset xlabel\nunset ylabel\n"
       "set key inside left top reverse Left samplen 2 font \"DejaVu Sans,10\"\n";
   std::string plot;

@@ -32,11 +32,11 @@ struct ChartPanel {
   std::vector<ChartSeries> series;
   bool legend = true;
   std::vector<ChartSpan> spans = {};  ///< in order; every second one is shaded
-  bool key_alone = false;             ///< no axes: the series' names and looks alone, their points do not matter
+  bool key_alone = false;  ///< no axes: the series' names and looks alone, their points do not matter
 };
 
-/// A complete gnuplot script, data included, that writes a picture ("png", "svg" or "pdf"): panels in rows of `columns`,
-/// under one title; `corner` small at the bottom right.
+/// A complete gnuplot script, data included, that writes a picture ("png", "svg" or "pdf"): panels in rows of
+/// `columns`, under one title; `corner` small at the bottom right.
 std::string chart_script(const std::vector<ChartPanel>& panels, int columns, const std::string& title,
                          const std::string& picture = "png", const std::string& corner = "");
 

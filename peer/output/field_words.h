@@ -5,7 +5,8 @@
 
 namespace slosh {
 
-/// "viscosity_pa_s", "0.5" → "viscosity = 0.5 Pa·s"; a field without a unit in its name as it is, "model = paper".
+/// "viscosity_pa_s", "0.5" → "viscosity = 0.5 Pa·s"; a field without a unit in its name as it is, "model =
+/// paper".
 std::string field_in_words(const std::string& field, const std::string& value);
 
 }  // namespace slosh

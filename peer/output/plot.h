@@ -21,8 +21,8 @@ struct WrenchSeries {
 /// Reads a wrenches.csv, one series a device. Errors: it cannot be read, a row that is not eight numbers.
 Result<std::vector<WrenchSeries>> read_wrenches(const std::filesystem::path& file);
 
-/// The same curve (s, value) in about `points` points: of each stretch the least and the largest sample, so that no peak
-/// is lost. One that has no more points stays as it is.
+/// The same curve (s, value) in about `points` points: of each stretch the least and the largest sample, so
+/// that no peak is lost. One that has no more points stays as it is.
 std::vector<glm::dvec2> thinned(const std::vector<glm::dvec2>& curve, std::size_t points);
 
 /// What a sheet of curves says and shows beside the data.

@@ -97,7 +97,8 @@ void Recorder::note_problems() {
   const std::lock_guard lock(problem_mutex_);
   problem_.clear();
   for (const Table* table : {wrenches_.get(), poses_.get(), signals_.get()})
-    if (table != nullptr && !table->problem().empty()) problem_ += (problem_.empty() ? "" : "; ") + table->problem();
+    if (table != nullptr && !table->problem().empty())
+      problem_ += (problem_.empty() ? "" : "; ") + table->problem();
 }
 
 }  // namespace slosh

@@ -27,8 +27,8 @@ struct Peak {
 /// stays written whatever happens next. Without a folder it only keeps the peaks.
 class Recorder {
  public:
-  /// `folder` may be empty; else it must exist. signals.csv is written where the servo keeps signals. Errors: a file
-  /// cannot be written.
+  /// `folder` may be empty; else it must exist. signals.csv is written where the servo keeps signals. Errors:
+  /// a file cannot be written.
   static Result<std::unique_ptr<Recorder>> start(Servo& servo, const std::filesystem::path& folder);
   ~Recorder();
   Recorder(const Recorder&) = delete;

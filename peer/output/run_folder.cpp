@@ -15,8 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kRunFiles[] = {"summary.json", "wrenches.csv", "poses.csv",    "bodies.csv",
-                                     "probes.csv",   "wrenches.png", "wrenches.svg", "wrenches.pdf",
+constexpr const char* kRunFiles[] = {"summary.json", "wrenches.csv", "poses.csv",        "bodies.csv",
+                                     "probes.csv",   "wrenches.png", "wrenches.svg",     "wrenches.pdf",
                                      "view.mp4",     "final.png",    "frames/frames.csv"};
 constexpr int kMostFolders = 10'000;
 constexpr const char* kAnother = "Choose another folder with --out";
@@ -32,10 +32,12 @@ std::string earlier_file(const fs::path& folder) {
 
 /// Whether a name is one that an exporter gives (peer/export).
 bool is_frame(const std::string& name) {
-  return name == "frames.csv" || name == "particles.pvd" || name.starts_with("particles_") || name.starts_with("surface_");
+  return name == "frames.csv" || name == "particles.pvd" || name.starts_with("particles_") ||
+         name.starts_with("surface_");
 }
 
-/// Removes what an earlier run exported, and the folder where nothing else is in it. The error that there was, if any.
+/// Removes what an earlier run exported, and the folder where nothing else is in it. The error that there
+/// was, if any.
 std::error_code remove_frames(const fs::path& folder) {
   std::error_code code;
   std::vector<fs::path> frames;
@@ -58,8 +60,8 @@ struct Locked {
 
 /// Where a file system knows no locks, runs are not kept apart: that is no reason not to run.
 ///
-/// Folders of `made` that are still empty go with the last copy, the deepest first: a run that was refused, or that wrote
-/// nothing, leaves none behind.
+/// Folders of `made` that are still empty go with the last copy, the deepest first: a run that was refused,
+/// or that wrote nothing, leaves none behind.
 Locked lock_folder(const fs::path& folder, std::vector<fs::path> made) {
   const int file = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (file < 0) return {};

@@ -10,8 +10,8 @@
 
 namespace slosh {
 
-/// While a copy of this lives, no other run on this machine takes the folder. Made when it is not there; what was made
-/// and is empty when the last copy goes is removed again.
+/// While a copy of this lives, no other run on this machine takes the folder. Made when it is not there; what
+/// was made and is empty when the last copy goes is removed again.
 class RunFolder {
  public:
   /// Nowhere: path() is empty.

@@ -37,9 +37,9 @@ std::string signals_header() {
 std::string signals_row(const SignalSample& s) {
   const Pose no_pose{glm::dvec3(kNan), glm::dquat(kNan, kNan, kNan, kNan)};
   const Wrench no_wrench{glm::dvec3(kNan), glm::dvec3(kNan)};
-  std::string row = format("%.6f,%llu,%u,%.6f,%.4f,%llu,%.4f,%d", s.time, static_cast<unsigned long long>(s.tick),
-                           s.device, s.wall, 1e3 * s.period, static_cast<unsigned long long>(s.reading), 1e3 * s.age,
-                           s.engaged ? 1 : 0);
+  std::string row = format("%.6f,%llu,%u,%.6f,%.4f,%llu,%.4f,%d", s.time,
+                           static_cast<unsigned long long>(s.tick), s.device, s.wall, 1e3 * s.period,
+                           static_cast<unsigned long long>(s.reading), 1e3 * s.age, s.engaged ? 1 : 0);
   row += fields_of(s.at_device.value_or(no_pose)) + fields_of(s.hand);
   row += fields_of(Wrench{s.hand_twist.linear, s.hand_twist.angular});
   for (const Wrench& w : {s.coupled, s.guarded, s.wanted, s.sent, s.rendered.value_or(no_wrench)})

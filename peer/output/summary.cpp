@@ -213,7 +213,8 @@ Json to_json(const RunSummary& s) {
   if (!s.verdict.empty()) json["verdict"] = s.verdict;
   if (!s.recording.empty()) json["recording"] = {{"file", s.recording}, {"problem", s.recording_problem}};
   if (s.export_frames + s.export_left_out > 0) {
-    json["export"] = {{"frames", s.export_frames}, {"left_out", s.export_left_out}, {"seconds", s.export_seconds}};
+    json["export"] = {
+        {"frames", s.export_frames}, {"left_out", s.export_left_out}, {"seconds", s.export_seconds}};
   }
   if (s.network) json["network"] = network_json(*s.network);
   json["files"] = s.files;
@@ -231,8 +232,9 @@ std::string in_words(const RunSummary& s) {
                    grouped(s.device_missed).c_str(), s.device_scheduler.c_str());
     // Where it was quick enough without, nobody need do anything.
     if (s.device_scheduler == "SCHED_OTHER" && kTolerated * s.device_missed > s.device_ticks)
-      text += "The kernel granted it no real-time priority: `YOUR_NAME - rtprio 20` in "
-              "/etc/security/limits.d/slosh.conf lets it, from the next login on.\n";
+      text +=
+          "The kernel granted it no real-time priority: `YOUR_NAME - rtprio 20` in "
+          "/etc/security/limits.d/slosh.conf lets it, from the next login on.\n";
   }
   if (!s.devices.empty()) {
     for (const DeviceSummary& d : s.devices) {

@@ -92,7 +92,7 @@ struct RunSummary {
   Spread frame_ms;
   std::uint32_t status = 0;  ///< StatusBits
   std::array<std::uint64_t, 32>
-      status_steps{};  ///< in how many steps each was set; 0 where that is not known
+      status_steps{};             ///< in how many steps each was set; 0 where that is not known
   std::vector<std::string> gone;  ///< bodies that left the world for good, in words
   std::uint64_t slips = 0;
   double slipped = 0.0;  ///< s
@@ -127,8 +127,8 @@ Result<bool> write_summary(const std::filesystem::path& file, const RunSummary& 
 
 /// The status as a list of words, e.g. {"time slipped"}.
 std::vector<std::string> status_words(std::uint32_t status);
-/// The same with the numbers that the run has of each, e.g. {"fluid left the domain and is out of the world (264 of
-/// 344, in 12 of 1 714 steps)"}.
+/// The same with the numbers that the run has of each, e.g. {"fluid left the domain and is out of the world
+/// (264 of 344, in 12 of 1 714 steps)"}.
 std::vector<std::string> status_words(const RunSummary& summary);
 /// 12345 → "12 345".
 std::string grouped(std::uint64_t number);

@@ -87,8 +87,9 @@ void bind_parts(py::module_& m) {
       .def_property_readonly(
           "center_of_mass", [](const Body& b) { return from_vector(b.mass.center_of_mass); },
           "(3,) m, mesh frame")
-      .def_readonly("viscosity", &Body::dynamic_viscosity,
-                    "Pa·s of its surface; -1: that of the fluid that touches it, -2: the fluid slides along it")
+      .def_readonly(
+          "viscosity", &Body::dynamic_viscosity,
+          "Pa·s of its surface; -1: that of the fluid that touches it, -2: the fluid slides along it")
       .def_readonly("friction", &Body::friction, "coefficient against other bodies, 0 to 10")
       .def_readonly("restitution", &Body::restitution, "share of the speed that a bounce gives back, 0 to 1")
       .def_readonly("measured", &Body::measured, "True: its pose and the fluid's wrench on it are written");
@@ -191,7 +192,8 @@ void bind_scene(py::module_& m) {
                     "True: the scene does not load; False: it will surprise")
       .def_readonly("kind", &PlainFinding::kind, "stays the same over versions: 'error', 'no-camera', ...")
       .def_property_readonly(
-          "where", [](const PlainFinding& f) { return f.text.where; }, "file, object and field that it is about")
+          "where", [](const PlainFinding& f) { return f.text.where; },
+          "file, object and field that it is about")
       .def_property_readonly(
           "what", [](const PlainFinding& f) { return f.text.what; }, "what is wrong or will surprise")
       .def_property_readonly(

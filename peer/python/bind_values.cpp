@@ -207,7 +207,8 @@ void bind_values(py::module_& m) {
           "particles that left the domain over its edge")
       .def_property_readonly(
           "lost", [](const Measurement& x) { return x.fluid.lost; },
-          "particles that were not finite any more; by the published model, whose walls do not hold, all that "
+          "particles that were not finite any more; by the published model, whose walls do not hold, all "
+          "that "
           "left")
       .def_property_readonly(
           "mass", [](const Measurement& x) { return x.fluid.mass; }, "kg of fluid")
@@ -223,7 +224,8 @@ void bind_values(py::module_& m) {
       .def_property_readonly(
           "max_compression", [](const Measurement& x) { return x.fluid.max_compression; },
           "largest density over rest density, less 1")
-      .def_readonly("in_solids", &Measurement::in_solids, "particles whose centre is deeper than a twentieth of a spacing inside a body")
+      .def_readonly("in_solids", &Measurement::in_solids,
+                    "particles whose centre is deeper than a twentieth of a spacing inside a body")
       .def_property_readonly(
           "in_bodies", [](const Measurement& x) { return x.in_body; }, "the same, a body each: list[int]")
       .def_property_readonly(

@@ -56,8 +56,8 @@ auto without_lock(Interrupts& interrupts, Work&& work) {
   }
 }
 
-/// Runs `work`, which cannot be asked to stop, on a thread of its own that Ctrl-C leaves behind. So `work` must own all
-/// that it looks at, and touch nothing of Python's.
+/// Runs `work`, which cannot be asked to stop, on a thread of its own that Ctrl-C leaves behind. So `work`
+/// must own all that it looks at, and touch nothing of Python's.
 template <class Work>
 auto on_a_thread_left_behind(Work work) -> decltype(work()) {
   auto task = std::make_shared<std::packaged_task<decltype(work())()>>(std::move(work));

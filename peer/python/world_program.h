@@ -95,8 +95,8 @@ class WorldProgram {
   bool bodies_known_ = false;
   std::uint32_t status_ = 0;  // of the steps since the run began
   std::uint32_t resets_ = 0;
-  bool in_call_ = false;      // step, run or settle is under way
-  bool moving_ = false;       // and has let go of Python's lock
+  bool in_call_ = false;  // step, run or settle is under way
+  bool moving_ = false;   // and has let go of Python's lock
 };
 
 /// The index that a name or a number stands for. Raises KeyError with the nearest name and all of them.

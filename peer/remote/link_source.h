@@ -1,5 +1,6 @@
-// Where the link of `join` and `watch` comes from. A link is a secret, and what stands in a command line everybody on the
-// machine can read (`ps`), and a shell remembers: it comes by a prompt, by standard input or by a file.
+// Where the link of `join` and `watch` comes from. A link is a secret, and what stands in a command line
+// everybody on the machine can read (`ps`), and a shell remembers: it comes by a prompt, by standard input or
+// by a file.
 #pragma once
 
 #include <string>
@@ -9,10 +10,11 @@
 
 namespace slosh {
 
-/// The text of a link: `given` itself; where that is empty or "-" what standard input says, which is one line, or, at a
-/// terminal, what is typed or pasted there, unseen; the file FILE where it is "@FILE", or `file` where that is not empty. A
-/// file may be what `slosh host --links` wrote: then a line for `role` is taken, that of `name` where there is one, else the
-/// one for anybody. Errors: both given, a file that cannot be read, is too large or has no such line, no input.
+/// The text of a link: `given` itself; where that is empty or "-" what standard input says, which is one
+/// line, or, at a terminal, what is typed or pasted there, unseen; the file FILE where it is "@FILE", or
+/// `file` where that is not empty. A file may be what `slosh host --links` wrote: then a line for `role` is
+/// taken, that of `name` where there is one, else the one for anybody. Errors: both given, a file that cannot
+/// be read, is too large or has no such line, no input.
 Result<std::string> read_link_text(const std::string& given, const std::string& file, wire::Role role,
                                    const std::string& name = {});
 

@@ -176,7 +176,8 @@ PeerLine peer_line(std::string_view typed, const RemoteStatus& status, const Sce
   return line_of(Console::kPeer, typed, status, scene, connection_text(status, picture_delay, now_ns));
 }
 
-PeerLine own_world_line(std::string_view typed, const wire::WorldInfo& world, double time, const Scene& scene) {
+PeerLine own_world_line(std::string_view typed, const wire::WorldInfo& world, double time,
+                        const Scene& scene) {
   RemoteStatus status;
   status.world = world;
   status.world_time = time;

@@ -23,8 +23,9 @@ struct PeerLine {
 PeerLine peer_line(std::string_view typed, const RemoteStatus& status, const Scene& scene,
                    double picture_delay, std::int64_t now_ns);
 
-/// The same at a world in this process: nobody else is in it, and every grip has its hand. `world` and `time` (simulated
-/// s) as they are. The commands are only of kinds kWorld and kParameter.
-PeerLine own_world_line(std::string_view typed, const wire::WorldInfo& world, double time, const Scene& scene);
+/// The same at a world in this process: nobody else is in it, and every grip has its hand. `world` and `time`
+/// (simulated s) as they are. The commands are only of kinds kWorld and kParameter.
+PeerLine own_world_line(std::string_view typed, const wire::WorldInfo& world, double time,
+                        const Scene& scene);
 
 }  // namespace slosh

@@ -68,7 +68,7 @@ Result<Identity> open_locked(const std::filesystem::path& path) {
     return give_up(errno == EWOULDBLOCK ? "is in use by another running peer"
                                         : std::string("cannot be locked: ") + std::strerror(errno));
   }
-  struct stat facts{};
+  struct stat facts {};
   if (fstat(file, &facts) != 0 || !S_ISREG(facts.st_mode)) return give_up("is not a file");
   // Whoever made it has what it says: they would be this person.
   if (facts.st_uid != geteuid() && geteuid() != 0) return give_up("is another user's file");

@@ -28,7 +28,8 @@ class PoseUplink {
   /// `agreed`: with the host.
   SharedBytes make(const std::vector<bool>& held, wire::Capabilities agreed = wire::kOurCapabilities);
 
-  /// Fills in when the readings were read that `state` answers to, of the hands `held` (HandWord::read_ns and time).
+  /// Fills in when the readings were read that `state` answers to, of the hands `held` (HandWord::read_ns and
+  /// time).
   void resolve(BodyMessage& state, const std::vector<bool>& held) const;
 
   std::uint64_t numbered() const { return numbered_; }  ///< distinct samples sent so far

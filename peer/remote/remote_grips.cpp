@@ -65,8 +65,8 @@ void RemoteLink::request_grip(std::uint32_t grip, bool take, bool any) {
 void RemoteLink::request_world(const RemoteCommand& command) {
   if (requests_.size() > kMostRequests) return;
   wire::WorldRequest request;
-  request.request = remember(
-      {0, wire::ControlType::kWorldRequest, 0, false, false, done_text(command, world_.scene)});
+  request.request =
+      remember({0, wire::ControlType::kWorldRequest, 0, false, false, done_text(command, world_.scene)});
   request.action = command.action;
   say(request);
 }
@@ -78,7 +78,8 @@ void RemoteLink::request_parameter(const RemoteCommand& command) {
     return;
   }
   wire::ParameterRequest request;
-  request.request = remember({0, wire::ControlType::kParameterRequest, 0, false, false, done_text(command, world_.scene)});
+  request.request =
+      remember({0, wire::ControlType::kParameterRequest, 0, false, false, done_text(command, world_.scene)});
   request.parameter = command.parameter;
   request.index = command.index;
   request.value = command.value;

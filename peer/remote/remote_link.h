@@ -36,8 +36,8 @@ struct RemoteOptions {
   std::string address;             ///< for messages: where the host is
   bool wants_grip = true;          ///< false: only looks on
   std::vector<std::string> grips;  ///< names or numbers; empty = the first free one
-  /// False: the host is not asked for models of the fluid's wrench (100 kB/s a held body), as nothing here uses
-  /// them.
+  /// False: the host is not asked for models of the fluid's wrench (100 kB/s a held body), as nothing here
+  /// uses them.
   bool fluid_models = true;
   SnapshotMakerOptions snapshots;
   std::size_t snapshot_bytes = std::size_t{512} << 20;

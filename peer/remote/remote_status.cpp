@@ -19,14 +19,14 @@ std::string done_text(const RemoteCommand& command, const Scene& scene) {
     return text;
   }
   if (command.parameter == wire::Parameter::kGripStiffness) {
-    const std::string grip = command.index < scene.grips.size() ? scene.grips[command.index].name
-                                                                : std::to_string(command.index);
-    std::snprintf(text, sizeof text, "the hold on '%.60s' is %.3g times as stiff as the scene has it now", grip.c_str(),
-                  command.value);
+    const std::string grip =
+        command.index < scene.grips.size() ? scene.grips[command.index].name : std::to_string(command.index);
+    std::snprintf(text, sizeof text, "the hold on '%.60s' is %.3g times as stiff as the scene has it now",
+                  grip.c_str(), command.value);
     return text;
   }
-  const std::string name = command.index < scene.fluids.size() ? scene.fluids[command.index].name
-                                                               : std::to_string(command.index);
+  const std::string name =
+      command.index < scene.fluids.size() ? scene.fluids[command.index].name : std::to_string(command.index);
   std::snprintf(text, sizeof text, "the viscosity of '%.60s' is %.4g Pa·s now", name.c_str(), command.value);
   return text;
 }

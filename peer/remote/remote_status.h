@@ -44,8 +44,8 @@ struct RemoteStatus {
   std::vector<wire::RosterEntry> peers;  ///< who is here
   std::vector<bool> held;                ///< our grips, one a grip of the scene
   wire::WorldInfo world;
-  wire::Rights rights;      ///< what we may ask of it; of a host that does not say: all, where we may take hold
-  WorldMoment moment;       ///< where the host's world stands
+  wire::Rights rights;  ///< what we may ask of it; of a host that does not say: all, where we may take hold
+  WorldMoment moment;   ///< where the host's world stands
   double world_time = 0.0;  ///< simulated s of the host's world now
   LinkNumbers numbers;
   std::int64_t lost_ns = 0;    ///< when contact was lost, while reconnecting

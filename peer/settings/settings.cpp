@@ -90,8 +90,9 @@ void read_keys(const toml::table& table, const SettingKey& key, int line, Settin
     }
     const Result<KeyChoice> parsed =
         texts ? parse_key_choice(choice)
-              : Result<KeyChoice>(Error{"", "keys." + clean_text(std::string(name.str()), kMostTextBytes) +
-                                                " is a key in quotes, or several in brackets",
+              : Result<KeyChoice>(Error{"",
+                                        "keys." + clean_text(std::string(name.str()), kMostTextBytes) +
+                                            " is a key in quotes, or several in brackets",
                                         "For example pause = \"Space\""});
     if (!parsed) {
       wrong = true;
@@ -130,7 +131,8 @@ void read_entry(const std::string& name, const toml::node& node, SettingsFile& f
                                              : "The nearest is " + near + "; `slosh settings` lists all"));
     return;
   }
-  if (found->kind == SettingKind::kKeys && node.is_table()) return read_keys(*node.as_table(), *found, line, file);
+  if (found->kind == SettingKind::kKeys && node.is_table())
+    return read_keys(*node.as_table(), *found, line, file);
   std::optional<std::vector<std::string>> words = words_of(node, found->kind);
   if (!words) {
     file.errors.push_back(settings_error(file.path, line, shown + " is " + in_words(found->kind),

@@ -94,13 +94,14 @@ void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window) {
       "OpenColorIO configuration that makes the picture of the light ($OCIO; none: the built-in ACES)");
   verb.add_option("--display", options.display, "Display of that configuration, by name (its first)");
   verb.add_option("--view", options.view, "View of that display, by name (its first)");
-  verb.add_option(
-      "--environment", options.environment,
-      "Room that lights the scene and is mirrored: a Radiance picture (.hdr), or studio (one of our own with soft boxes)")
+  verb.add_option("--environment", options.environment,
+                  "Room that lights the scene and is mirrored: a Radiance picture (.hdr), or studio (one of "
+                  "our own with soft boxes)")
       ->check(CLI::Validator(
           [](std::string& room) {
             std::error_code code;
-            const bool there = room.empty() || room == "studio" || std::filesystem::is_regular_file(room, code);
+            const bool there =
+                room.empty() || room == "studio" || std::filesystem::is_regular_file(room, code);
             return there ? std::string() : "there is no file '" + room + "'";
           },
           ""));
@@ -108,16 +109,19 @@ void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window) {
       ->check(in_range(0.5, 4.0))
       ->capture_default_str();
   if (has_window) {
-    verb.add_option("--rows", options.row_rate,
-                    "Rows a simulated second of poses.csv and wrenches.csv; 1000: one each tick of the device loop")
+    verb.add_option(
+            "--rows", options.row_rate,
+            "Rows a simulated second of poses.csv and wrenches.csv; 1000: one each tick of the device loop")
         ->check(in_range(1.0, 1000.0))
         ->capture_default_str();
-    verb.add_flag("--signals", options.signals,
-                  "Write signals.csv, too: each tick of the device loop with its period, the device's own pose, the "
-                  "hand's, and the force by stages: coupled, guarded, wanted, sent, rendered");
-    verb.add_option("--keys", options.keys,
-                    "Keys of the window by your choice, ACTION=KEY, with commas between; ACTION=A+B for two keys,\n"
-                    "ACTION= for none. `slosh settings` lists the actions")
+    verb.add_flag(
+        "--signals", options.signals,
+        "Write signals.csv, too: each tick of the device loop with its period, the device's own pose, the "
+        "hand's, and the force by stages: coupled, guarded, wanted, sent, rendered");
+    verb.add_option(
+            "--keys", options.keys,
+            "Keys of the window by your choice, ACTION=KEY, with commas between; ACTION=A+B for two keys,\n"
+            "ACTION= for none. `slosh settings` lists the actions")
         ->delimiter(',')
         ->check(CLI::Validator(
             [](std::string& word) {
@@ -125,7 +129,8 @@ void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window) {
               return choice ? std::string() : choice.error().what + ". " + choice.error().mend;
             },
             "ACTION=KEY"));
-    verb.add_option("--runs", options.runs, "Folder in which runs get numbered folders where --out is not given")
+    verb.add_option("--runs", options.runs,
+                    "Folder in which runs get numbered folders where --out is not given")
         ->capture_default_str();
   }
   verb.add_option("--plot", options.plot, "Format of the sheet of forces: png, svg or pdf")
@@ -143,7 +148,8 @@ void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window) {
 void add_headset_options(CLI::App& verb, ShowOptions& options, bool has_hands) {
   CLI::Option* vr = verb.add_flag(
       "--vr", options.vr,
-      std::string("In a headset, by OpenXR; beside it a window, where there is a display, shows the left eye") +
+      std::string(
+          "In a headset, by OpenXR; beside it a window, where there is a display, shows the left eye") +
           (has_hands ? ".\nIts controllers: --device xr-left --device xr-right" : ""));
   vr->excludes("--no-render");
   verb.add_option("--vr-scale", options.headset.scale, "How many times as large as it is the world looks")

@@ -21,8 +21,8 @@ void add_seconds_option(CLI::App& verb, double& seconds, double least, const std
 /// Where the files of a run go: --out with `text`, --overwrite.
 void add_out_options(CLI::App& verb, ShowOptions& options, const std::string& text);
 
-/// --headless of a verb that opens no window whatever is said: so that one command line serves all verbs that run a
-/// world. `text`: that, and who opens one.
+/// --headless of a verb that opens no window whatever is said: so that one command line serves all verbs that
+/// run a world. `text`: that, and who opens one.
 void add_never_a_window_option(CLI::App& verb, const std::string& text);
 
 /// How a run is drawn: --size, --fps, --surface, --bilateral, --ocio, --display, --view, --environment,

@@ -27,7 +27,8 @@ constexpr const char* kDevicesFooter =
     "Lists SpaceMice, gamepads and Falcons that are plugged in, each with what to give to --device, and what "
     "is wrong\n"
     "with it. Mostly that is a permission: then the rule that lets whoever sits at the machine open them is\n"
-    "printed, with the command that puts it in place, and at a terminal it is asked whether to run that now;\n"
+    "printed, with the command that puts it in place, and at a terminal it is asked whether to run that "
+    "now;\n"
     "nothing is done, and sudo not started, without a yes. --install-udev-rule puts it in place without a\n"
     "question (needs root).\n"
     "\n"
@@ -73,7 +74,8 @@ std::vector<FoundDevice> show_devices() {
   std::vector<FoundDevice> all = find_hardware();
   if (all.empty())
     std::printf(
-        "No SpaceMouse, no gamepad and no Falcon is plugged in. script, mouse, replay, operator and plugin need none.\n");
+        "No SpaceMouse, no gamepad and no Falcon is plugged in. script, mouse, replay, operator and plugin "
+        "need none.\n");
   for (const FoundDevice& each : all) {
     std::printf("%s (%s)\n    --device %s\n", each.name.c_str(), each.where.c_str(), each.spec.c_str());
     if (each.problem.empty()) continue;

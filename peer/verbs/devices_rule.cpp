@@ -39,8 +39,8 @@ std::string in_one_line(const std::vector<std::string>& words) {
   return clean_text(line, 4000);
 }
 
-/// At this terminal, which a password may be asked on: sudo's own words are seen as they are. Its exit code, or
-/// 128 and the signal; −1: it cannot be started.
+/// At this terminal, which a password may be asked on: sudo's own words are seen as they are. Its exit code,
+/// or 128 and the signal; −1: it cannot be started.
 int run_at_terminal(const std::vector<std::string>& words) {
   std::vector<char*> argv;
   for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
@@ -84,13 +84,15 @@ int install_rule(const std::string& file) {
     std::printf("%s", udev_rule().c_str());
     return fail({file, "the rule above cannot be written there",
                  "As root, save it there and run `udevadm control --reload && udevadm trigger`; for example: "
-                 "sudo " + in_one_line(install_command(file))});
+                 "sudo " +
+                     in_one_line(install_command(file))});
   }
   (void)chmod(file.c_str(), S_IRUSR | S_IWUSR | S_IRGRP | S_IROTH);
   std::printf("Written: %s\n", clean_text(file, kMostTextBytes).c_str());
   if (file != kUdevRuleFile) return kExitOk;
-  std::printf(udev_took_it() ? "udev has taken it up.\n"
-                             : "Run `udevadm control --reload && udevadm trigger`, or plug the devices in again.\n");
+  std::printf(udev_took_it()
+                  ? "udev has taken it up.\n"
+                  : "Run `udevadm control --reload && udevadm trigger`, or plug the devices in again.\n");
   return kExitOk;
 }
 
@@ -106,10 +108,13 @@ bool offer_rule(const std::string& file) {
     std::printf("That needs root, and there is no sudo here: as root, run what follows the word.\n");
     return false;
   }
-  if (!someone_says_yes(writes ? "Do that now?" : "Do that now? sudo may ask for your password.")) return false;
+  if (!someone_says_yes(writes ? "Do that now?" : "Do that now? sudo may ask for your password."))
+    return false;
   const int code = run_at_terminal(command);
   if (code == 0) return true;
-  (void)fail({"sudo", code < 0 ? "cannot be started" : "it ended with " + std::to_string(code) + ", and the rule is not in place",
+  (void)fail({"sudo",
+              code < 0 ? "cannot be started"
+                       : "it ended with " + std::to_string(code) + ", and the rule is not in place",
               "As root, save the rule above as " + clean_text(file, kMostTextBytes) +
                   " and run `udevadm control --reload && udevadm trigger`"});
   return false;

@@ -99,8 +99,9 @@ void add_host(CLI::App& app, VerbRun& chosen) {
   add_seconds_option(*verb, o->seconds, 0.01, "Simulated seconds (until it is ended)");
   add_world_options(*verb, *o, "all but one");
   verb->add_option("--record", o->record, "File to record the run in; slosh replay plays it again");
-  add_out_options(*verb, *o,
-                  "Folder for bodies.csv and probes.csv, what the instruments read, and for frames (nothing is written)");
+  add_out_options(
+      *verb, *o,
+      "Folder for bodies.csv and probes.csv, what the instruments read, and for frames (nothing is written)");
   add_measure_option(*verb, *o)->needs(verb->get_option("--out"));
   add_export_options(*verb, *o);
   verb->get_option("--export")->needs(verb->get_option("--out"));

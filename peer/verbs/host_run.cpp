@@ -124,7 +124,8 @@ void print_summary(const HostedRun& run, const HostReport& report, const ServerF
     std::printf("measured   %s: probes.csv, and bodies.csv where there are bodies to follow\n",
                 clean_text(run.measured().string(), kMostTextBytes).c_str());
   if (run.exporter() != nullptr)
-    std::printf("exported   %s frames for other programs\n", grouped(run.exporter()->report().frames).c_str());
+    std::printf("exported   %s frames for other programs\n",
+                grouped(run.exporter()->report().frames).c_str());
   const keep::RecordingReport& recorded = run.recording();
   if (recorded.bytes > 0) {
     const std::string& why = recorded.problem.empty() ? recorded.totals.ended_early : recorded.problem;
@@ -203,9 +204,9 @@ int run_host(const HostVerbOptions& options, HostReins* reins) {
   if (reins) reins->can_carry_on_from(run.checkpoint_file());
   if (options.restarts == 0) print_links(run, options);
   if (run.waits()) {
-    progress.note(format("the world stands still until %s; type continue to start it now (--wait 0: at once)",
-                         options.wait == 1 ? "the first hand takes hold"
-                                           : format("%d grips are held", options.wait).c_str()));
+    progress.note(format(
+        "the world stands still until %s; type continue to start it now (--wait 0: at once)",
+        options.wait == 1 ? "the first hand takes hold" : format("%d grips are held", options.wait).c_str()));
   }
   if (!options.links_file.empty()) {
     const Result<bool> written = write_private(

@@ -16,10 +16,10 @@ struct HostedWorld {
   std::optional<World> world;  ///< moved into the host
   std::size_t particles = 0;
   HostState state;
-  bool waits = false;                   ///< it has not begun: it waits for hands
-  std::vector<std::uint8_t> start;      ///< World::save of what a reset goes back to
+  bool waits = false;                       ///< it has not begun: it waits for hands
+  std::vector<std::uint8_t> start;          ///< World::save of what a reset goes back to
   std::optional<ServerState> server_state;  ///< of a checkpoint that has its secrets
-  keep::HostPlace place;                ///< of a checkpoint: where its host was reached
+  keep::HostPlace place;                    ///< of a checkpoint: where its host was reached
 };
 
 /// Loads a scene, settles it where it asks for that, or reads a checkpoint. Errors: anything of these.

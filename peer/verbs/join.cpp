@@ -223,8 +223,8 @@ void add(CLI::App& app, VerbRun& chosen, bool watch) {
   add_show_options(*verb, *o, true);
   add_headset_options(*verb, *o, !watch);
   verb->add_option("--key", o->key, "File with your key, made on first use (one for each person)");
-  verb->footer(std::string(kFiles) + (watch ? kWatchFiles : kJoinFiles) + console_help(watch ? Console::kWatch : Console::kPeer) +
-               (watch ? kWatchEnd : kJoinEnd));
+  verb->footer(std::string(kFiles) + (watch ? kWatchFiles : kJoinFiles) +
+               console_help(watch ? Console::kWatch : Console::kPeer) + (watch ? kWatchEnd : kJoinEnd));
   verb->callback([&chosen, o] { chosen = [o] { return join(*o); }; });
 }
 

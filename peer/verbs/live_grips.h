@@ -29,7 +29,8 @@ inline std::optional<wire::Parameter> parameter_of(LiveWish::Kind kind) {
 }
 
 /// `stiffness`: the world's, one a grip, or none.
-inline std::vector<LiveGrip> live_grips(const Scene& scene, const std::vector<double>& stiffness, const Servo& servo) {
+inline std::vector<LiveGrip> live_grips(const Scene& scene, const std::vector<double>& stiffness,
+                                        const Servo& servo) {
   std::vector<LiveGrip> grips;
   for (std::size_t i = 0; i < std::min(stiffness.size(), scene.grips.size()); ++i) {
     LiveGrip grip{stiffness[i], scene.grips[i].stiffness, 0.0};
@@ -41,7 +42,8 @@ inline std::vector<LiveGrip> live_grips(const Scene& scene, const std::vector<do
 }
 
 inline void follow_stiffness(const std::vector<double>& stiffness, Servo& servo) {
-  for (std::size_t i = 0; i < std::min(stiffness.size(), servo.devices()); ++i) servo.set_stiffness(i, stiffness[i]);
+  for (std::size_t i = 0; i < std::min(stiffness.size(), servo.devices()); ++i)
+    servo.set_stiffness(i, stiffness[i]);
 }
 
 }  // namespace slosh

@@ -62,11 +62,12 @@ class LiveRun {
   virtual void change(const LiveWish& wish) { (void)wish; }
   /// So many steps of a world that stands, where LiveValues::may_pace.
   virtual void step_standing(int steps) { (void)steps; }
-  /// Lines about what was done and what was not granted since the last call, where nobody else tells the person.
+  /// Lines about what was done and what was not granted since the last call, where nobody else tells the
+  /// person.
   virtual std::vector<std::string> take_notices() { return {}; }
 
-  /// Pa, one a particle, as new as they are at hand, where the world is in this process; null else and before there are
-  /// any. `wanted`: they are looked at from now on.
+  /// Pa, one a particle, as new as they are at hand, where the world is in this process; null else and before
+  /// there are any. `wanted`: they are looked at from now on.
   virtual std::shared_ptr<const std::vector<float>> pressures(bool wanted) {
     (void)wanted;
     return nullptr;

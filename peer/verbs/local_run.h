@@ -62,7 +62,9 @@ class LocalRun final : public LiveRun {
   void look_from(const glm::dquat& axes) override { servo_->look_from(axes); }
   /// In place, so that the files of the run, its film and its recording go on.
   bool start_again() override;
-  std::shared_ptr<const std::vector<float>> pressures(bool wanted) override { return pressure_tap_.look(wanted); }
+  std::shared_ptr<const std::vector<float>> pressures(bool wanted) override {
+    return pressure_tap_.look(wanted);
+  }
   std::string trouble() const override;
   std::size_t exports_waiting() const override { return exporter_ ? exporter_->waiting() : 0; }
   void report(RunSummary& summary) const override;

@@ -89,10 +89,11 @@ void add_play(CLI::App& app, VerbRun& chosen) {
   verb->add_option("--record", o->record, "Keep the run's inputs and states in a file, for `slosh replay`");
   verb->add_flag("--unpaced", o->unpaced,
                  "As fast as the machine goes, the same again to the bit; headless, for measuring");
-  verb->add_option("--step-rate", o->step_rate,
-                   "Steps a simulated second in which hands and world meet, each of as many of the scene's own as it\n"
-                   "takes: to feel what a slower host is like. A recording keeps the scene's own steps alone, and\n"
-                   "--unpaced has no loop of the hands that is faster")
+  verb->add_option(
+          "--step-rate", o->step_rate,
+          "Steps a simulated second in which hands and world meet, each of as many of the scene's own as it\n"
+          "takes: to feel what a slower host is like. A recording keeps the scene's own steps alone, and\n"
+          "--unpaced has no loop of the hands that is faster")
       ->check(in_range(10.0, 10000.0))
       ->excludes("--record")
       ->excludes("--unpaced");

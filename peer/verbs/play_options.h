@@ -22,15 +22,15 @@ struct ShowOptions {
   bool stereo = false;               ///< a film without a display has both eyes
   double frames_per_second = 30.0;
   int bilateral = 4;
-  std::string surface = "ours";  ///< how particles become a surface: ours, paper, flow
-  std::string quality = "auto";  ///< of looks: auto, fast, full
-  bool caustics = false;         ///< at full quality
-  std::string ocio;              ///< file of an OpenColorIO configuration; empty = $OCIO; "none" = ours
-  std::string display;           ///< of that configuration, by name; empty = its first
-  std::string view;              ///< of that display, by name; empty = its first
-  std::string environment;       ///< a Radiance picture of a room, or "studio"; empty = the formula's room
-  std::vector<std::string> keys; ///< of the window: "ACTION=KEY" (KeyBindings::make)
-  double font_scale = 1.0;       ///< of the HUD's letters
+  std::string surface = "ours";   ///< how particles become a surface: ours, paper, flow
+  std::string quality = "auto";   ///< of looks: auto, fast, full
+  bool caustics = false;          ///< at full quality
+  std::string ocio;               ///< file of an OpenColorIO configuration; empty = $OCIO; "none" = ours
+  std::string display;            ///< of that configuration, by name; empty = its first
+  std::string view;               ///< of that display, by name; empty = its first
+  std::string environment;        ///< a Radiance picture of a room, or "studio"; empty = the formula's room
+  std::vector<std::string> keys;  ///< of the window: "ACTION=KEY" (KeyBindings::make)
+  double font_scale = 1.0;        ///< of the HUD's letters
   bool render = true;
   bool vr = false;  ///< a headset is asked for
   HeadsetWish headset;
@@ -53,8 +53,8 @@ struct PlayOptions : ShowOptions {
   int threads = 0;               ///< 0 = chosen
   std::string record;            ///< file for a recording; empty = none
   bool agreed = false;           ///< --yes: a run may take as long as it takes
-  double step_rate = 0.0;        ///< steps a simulated s that hands meet, of as many of the plan's; 0 = the plan's
-  bool unpaced = false;          ///< as fast as it goes, the same again to the bit
+  double step_rate = 0.0;  ///< steps a simulated s that hands meet, of as many of the plan's; 0 = the plan's
+  bool unpaced = false;    ///< as fast as it goes, the same again to the bit
 };
 
 }  // namespace slosh

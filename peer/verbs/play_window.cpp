@@ -252,7 +252,8 @@ Result<bool> show_in_window(const Stage& stage, const MakeRun& make_run, const S
     summary.rendered = true;
     summary.renderer = context.value()->description() + where_particles_are_read(*renderer.value());
     const RenderOptions& last = renderer.value()->options();
-    const glm::ivec2 shown = headset ? glm::ivec2(last.width, last.height) : context.value()->framebuffer_size();
+    const glm::ivec2 shown =
+        headset ? glm::ivec2(last.width, last.height) : context.value()->framebuffer_size();
     summary.width = shown.x;
     summary.height = shown.y;
     summary.frame_ms = {1e3 * frame_time.percentile(0.5), 1e3 * frame_time.percentile(0.99),

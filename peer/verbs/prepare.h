@@ -25,7 +25,7 @@ struct Stage {
   RunFolder claim;               ///< on `folder`, while the run lasts
   int width = 0;
   int height = 0;
-  double measure = 0.0;  ///< simulated s between rows of the instruments; 0 = none
+  double measure = 0.0;             ///< simulated s between rows of the instruments; 0 = none
   std::vector<ExportKind> exports;  ///< what is written for other programs; empty = nothing
   double export_rate = 30.0;        ///< frames a simulated second
   double row_rate = 500.0;          ///< of hands, rows a simulated second
@@ -65,7 +65,8 @@ void set_measure(const ShowOptions& options, Stage& stage);
 Result<bool> set_exports(const ShowOptions& options, Stage& stage);
 
 /// Fills `stage` but for its scene, which must be there: size, seconds, folder (made, and this run's own).
-/// Errors: a size that is none, a folder that cannot be made or that holds another run, none for what is exported.
+/// Errors: a size that is none, a folder that cannot be made or that holds another run, none for what is
+/// exported.
 Result<bool> set_stage(const ShowOptions& options, bool headless, Stage& stage);
 
 /// Loads, makes the folder, measures, samples, plans; whatever was asked for is looked at before the

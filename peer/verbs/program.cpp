@@ -45,8 +45,10 @@ std::string options_near(const CLI::App& app, const std::vector<std::string>& wo
   return all;
 }
 
-/// Of words that `verb` did not know, what other verbs take them: "--headless is an option of play, join and watch. ".
-std::string options_elsewhere(const CLI::App& app, const CLI::App& verb, const std::vector<std::string>& words) {
+/// Of words that `verb` did not know, what other verbs take them: "--headless is an option of play, join and
+/// watch. ".
+std::string options_elsewhere(const CLI::App& app, const CLI::App& verb,
+                              const std::vector<std::string>& words) {
   std::string all;
   for (const std::string& word : words) {
     if (!word.starts_with("--")) continue;
@@ -57,7 +59,8 @@ std::string options_elsewhere(const CLI::App& app, const CLI::App& verb, const s
       if (other == &verb || other->get_option_no_throw(name) == nullptr) continue;
       verbs += (count++ == 0 ? "" : ", ") + other->get_name();
     }
-    if (const std::size_t last = verbs.rfind(", "); last != std::string::npos) verbs.replace(last, 2, " and ");
+    if (const std::size_t last = verbs.rfind(", "); last != std::string::npos)
+      verbs.replace(last, 2, " and ");
     if (count > 0) all += clean_text(name, kMostTextBytes) + " is an option of " + verbs + ". ";
   }
   return all;
@@ -70,8 +73,10 @@ int no_such_verb(const CLI::App& app, const char* word) {
   // Those that the launcher of a source tree does by itself.
   constexpr std::array kLaunchers{"test", "bench", "python", "package", "format"};
   if (std::find(kLaunchers.begin(), kLaunchers.end(), shown) != kLaunchers.end())
-    std::fprintf(stderr, "slosh: %s is done by the launcher ./slosh in the sources, not by the program. See `slosh --help`.\n",
-                 shown.c_str());
+    std::fprintf(
+        stderr,
+        "slosh: %s is done by the launcher ./slosh in the sources, not by the program. See `slosh --help`.\n",
+        shown.c_str());
   else
     std::fprintf(stderr, "slosh: there is no verb '%s'. %sSee `slosh --help`.\n", shown.c_str(),
                  did_you_mean(shown, verbs).c_str());

@@ -20,7 +20,7 @@ struct RemoteRunOptions {
   std::vector<std::string> devices;  ///< none (script), one for all, or one for each grip in order of taking
   Coupling coupling = Coupling::kReplica;
   bool has_window = false;
-  std::shared_ptr<HeadsetLink> controllers;  ///< null without a headset
+  std::shared_ptr<HeadsetLink> controllers;      ///< null without a headset
   std::string host;                              ///< address, for the summary
   std::int64_t begin_ns = 0;                     ///< when the program began
   std::function<void(const std::string&)> tell;  ///< a line for the person

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kReplayBytes = std::size_t{256} << 20;
 constexpr std::size_t kSnapshotsAhead = 30;  // then the simulation waits for who draws
-constexpr double kSampleInterval = 0.002;   // simulated s, as a live run's
+constexpr double kSampleInterval = 0.002;    // simulated s, as a live run's
 
 }  // namespace
 

@@ -117,7 +117,8 @@ void put_in_force(SettingsFile& file, CLI::App& app) {
   for (const SettingKey& key : setting_keys()) verbs.insert(key.verbs.begin(), key.verbs.end());
   for (const std::string_view verb : verbs) {
     CLI::App* const found = app.get_subcommand(std::string(verb));
-    found->footer(found->get_footer() + "\n\n{name}: this can be set once for all, see slosh settings --help.");
+    found->footer(found->get_footer() +
+                  "\n\n{name}: this can be set once for all, see slosh settings --help.");
   }
   for (const Setting& setting : file.values) {
     bool refused = false;

@@ -19,8 +19,8 @@ void WindowFilm::add(Image image) {
   const std::int64_t now = steady_now_ns();
   const std::int64_t period = to_nanoseconds(1.0 / frames_per_second_);
   if (frames_ == 0) next_ns_ = now;
-  // Where pictures come slower than the film runs, each stands in it for as long as it was on show. A longer gap, a
-  // headset taken off, is left out.
+  // Where pictures come slower than the film runs, each stands in it for as long as it was on show. A longer
+  // gap, a headset taken off, is left out.
   std::int64_t missed = std::max<std::int64_t>((now - next_ns_) / period, 0);
   if (missed * period > kLongestGap) {
     missed = 0;

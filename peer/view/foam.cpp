@@ -9,7 +9,7 @@ namespace slosh {
 namespace {
 
 constexpr double kThinnest = 0.02;  // Pa·s: thicker than this, air does not stay in it as foam
-constexpr float kFoamReach = 2.5f;      // spacings: some 60 neighbours inside
+constexpr float kFoamReach = 2.5f;  // spacings: some 60 neighbours inside
 
 // Between which values a potential goes from 0 to 1. The paper's sums over neighbours are means here, so that
 // the same motion foams alike at every spacing; and its numbers are a harbour's, ours a bucket's.

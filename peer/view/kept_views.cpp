@@ -43,8 +43,8 @@ std::optional<OrbitCamera::Look> look_of(const json& from) {
 }
 
 json json_of(const OrbitCamera::Look& look) {
-  return {{"target_x_m", look.target.x},   {"target_y_m", look.target.y},   {"target_z_m", look.target.z},
-          {"distance_m", look.distance},   {"azimuth_rad", look.azimuth}, {"elevation_rad", look.elevation}};
+  return {{"target_x_m", look.target.x}, {"target_y_m", look.target.y}, {"target_z_m", look.target.z},
+          {"distance_m", look.distance}, {"azimuth_rad", look.azimuth}, {"elevation_rad", look.elevation}};
 }
 
 /// What is wrong with `file`; empty where nothing is. A file that is not there holds nothing.
@@ -54,7 +54,8 @@ std::string read(const std::filesystem::path& file, KeptViews::Places& places) {
   std::ifstream in(file);
   if (!in) return "cannot be opened";
   const json all = json::parse(in, nullptr, false);
-  if (!all.is_object() || all.value("format", json()) != kFormat || !all.contains("views") || !all["views"].is_object())
+  if (!all.is_object() || all.value("format", json()) != kFormat || !all.contains("views") ||
+      !all["views"].is_object())
     return "is not a file of views";
   KeptViews::Places found;
   for (const auto& [name, view] : all["views"].items()) {

@@ -20,8 +20,8 @@ class KeptViews {
 
   /// For this run only.
   KeptViews() = default;
-  /// Reads `file`, which need not exist. What is in it but cannot be read is problem(), and then nothing is written
-  /// there: what somebody has stays.
+  /// Reads `file`, which need not exist. What is in it but cannot be read is problem(), and then nothing is
+  /// written there: what somebody has stays.
   explicit KeptViews(std::filesystem::path file);
 
   /// In words, with what to do; empty where all is well.

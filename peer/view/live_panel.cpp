@@ -19,7 +19,8 @@ constexpr float kLeastViscosity = 1e-3f;  // Pa·s: water's
 constexpr float kMostViscosity = 100.0f;  // above it the host may say by itself what it cannot do
 constexpr float kSlowest = 0.05f;
 constexpr float kMostFilter = 16.0f;
-constexpr float kSoftest = 0.05f, kStiffest = 4.0f;  // of a grip, times the scene's: what World::set_grip_stiffness takes
+constexpr float kSoftest = 0.05f,
+                kStiffest = 4.0f;  // of a grip, times the scene's: what World::set_grip_stiffness takes
 
 }  // namespace
 

@@ -13,10 +13,10 @@ namespace slosh {
 
 /// The springs of a grip.
 struct LiveGrip {
-  double stiffness = 1.0;   ///< times the scene's, 0.05–4
-  double of_scene = 0.0;    ///< N/m
-  double of_device = 0.0;   ///< N/m that the device holds at most; 0: no hand of this person's feels it
-  bool may_set = true;      ///< its stiffness is this person's to change
+  double stiffness = 1.0;  ///< times the scene's, 0.05–4
+  double of_scene = 0.0;   ///< N/m
+  double of_device = 0.0;  ///< N/m that the device holds at most; 0: no hand of this person's feels it
+  bool may_set = true;     ///< its stiffness is this person's to change
 };
 
 /// What can be changed live, as it is.
@@ -32,12 +32,19 @@ struct LiveValues {
 
 /// One value that somebody wants.
 struct LiveWish {
-  enum class Kind : std::uint8_t { kPace, kGravityScale, kViscosity, kGripStiffness, kFilter } kind = Kind::kPace;
+  enum class Kind : std::uint8_t {
+    kPace,
+    kGravityScale,
+    kViscosity,
+    kGripStiffness,
+    kFilter
+  } kind = Kind::kPace;
   std::size_t index = 0;  ///< fluid or grip
   double value = 0.0;
 };
 
-/// What a slider for it shows beside its value: "= 500 N/m", and what the device makes of it where that is less.
+/// What a slider for it shows beside its value: "= 500 N/m", and what the device makes of it where that is
+/// less.
 std::string grip_text(const LiveGrip& grip);
 
 /// On the drawing thread, inside Frame::hud.

@@ -10,7 +10,7 @@
 namespace slosh {
 namespace {
 
-constexpr double kGrabReach = 22.0;           // px about a handle's middle that count as on it
+constexpr double kGrabReach = 22.0;       // px about a handle's middle that count as on it
 constexpr double kTiltPerNotch = 0.07;    // rad: 4°
 constexpr double kTiltPerPixel = 0.008;   // rad
 constexpr double kDepthPerNotch = 0.015;  // of the eye's distance

@@ -11,7 +11,8 @@ class OrbitCamera {
  public:
   explicit OrbitCamera(const Camera& camera);
 
-  static constexpr double kSteepest = 1.55;  ///< rad above or below the horizon: the up direction stays defined
+  static constexpr double kSteepest =
+      1.55;  ///< rad above or below the horizon: the up direction stays defined
 
   /// Angles in rad; the height is kept short of straight up and down.
   void turn(double about_y, double up);

@@ -1,5 +1,5 @@
-// Pixels that a slow machine can draw: a window's 3-D picture is drawn smaller and stretched where it takes too
-// long. What is written over it is not.
+// Pixels that a slow machine can draw: a window's 3-D picture is drawn smaller and stretched where it takes
+// too long. What is written over it is not.
 #pragma once
 
 #include <algorithm>

@@ -13,7 +13,7 @@ namespace {
 constexpr double kSaidSeconds = 5.0;
 constexpr float kGuideMargin = 8.0f;
 constexpr float kHintHeight = 0.25f;  // of the picture, at most
-constexpr float kRing = 20.0f;  // px, as far as a press reaches (mouse_grab.cpp)
+constexpr float kRing = 20.0f;        // px, as far as a press reaches (mouse_grab.cpp)
 constexpr ImGuiWindowFlags kPanel = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
                                     ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoInputs;
@@ -43,14 +43,16 @@ struct TextPanel {
   glm::vec2 size{0.0f};
 };
 
-/// Where a line of `size` lies: at the bottom in the middle, else in a corner there, else above what is there.
-glm::vec2 hint_place(const glm::vec2& size, const glm::vec2& picture, std::span<const Rect> taken, const glm::vec2& now) {
+/// Where a line of `size` lies: at the bottom in the middle, else in a corner there, else above what is
+/// there.
+glm::vec2 hint_place(const glm::vec2& size, const glm::vec2& picture, std::span<const Rect> taken,
+                     const glm::vec2& now) {
   const glm::vec2 low(0.5f * (picture.x - size.x), picture.y - size.y - kGuideMargin);
   float above = low.y;
   for (const Rect& rect : taken)
     if (rect.high.y > low.y) above = std::min(above, rect.low.y - size.y - kGuideMargin);
-  const std::array places{low, glm::vec2(picture.x - size.x - kGuideMargin, low.y), glm::vec2(kGuideMargin, low.y),
-                          glm::vec2(low.x, std::max(above, kGuideMargin))};
+  const std::array places{low, glm::vec2(picture.x - size.x - kGuideMargin, low.y),
+                          glm::vec2(kGuideMargin, low.y), glm::vec2(low.x, std::max(above, kGuideMargin))};
   return place_panel(size, places, taken, now);
 }
 

@@ -18,7 +18,8 @@ std::optional<gl::PixelProgram> by_its_text(const DisplayPass::Wish& wish) {
   const auto text = display_shader(wish.display, wish.color);
   if (!text || !text.value()) return std::nullopt;
   if (wish.by == DisplayBy::kSmaller && text.value()->size() > kMostText) return std::nullopt;
-  auto program = gl::PixelProgram::create("display.frag", wish.compute, false, {"BY_TEXT", "EACH 4"}, *text.value());
+  auto program =
+      gl::PixelProgram::create("display.frag", wish.compute, false, {"BY_TEXT", "EACH 4"}, *text.value());
   if (!program) return std::nullopt;
   return std::move(program.value());
 }
@@ -69,7 +70,8 @@ void DisplayPass::start(const Targets& targets, float exposure, bool dither, boo
   program_.program().set("exposure", exposure);
   program_.program().set("dither", dither ? 1.0f / 255.0f : 0.0f);
   const gl::Texture& into = edges_follow ? targets.sharp : targets.display;
-  program_.start({into, edges_follow ? targets.sharp_target : targets.display_target, targets.size, GL_RGBA8});
+  program_.start(
+      {into, edges_follow ? targets.sharp_target : targets.display_target, targets.size, GL_RGBA8});
 }
 
 void DisplayPass::smooth_edges(const Targets& targets, bool on_cpu, const std::optional<PixelBox>& part) {

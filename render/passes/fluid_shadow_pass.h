@@ -20,7 +20,8 @@ class FluidShadowPass {
   /// Reads all particles of the frame; writes the map and binds it. The map is empty without a shadow view.
   void draw(const Frame& frame, const RenderOptions& options, const ShadowView& shadow);
   /// The same by compute shaders, of particles that are on the GPU, in two steps of which nobody reads before
-  /// gl::finish_compute(): sums, and the map of them. False: there is nothing to sum up, and the map is empty.
+  /// gl::finish_compute(): sums, and the map of them. False: there is nothing to sum up, and the map is
+  /// empty.
   bool start_sums(const Frame& frame, const RenderOptions& options, const ShadowView& shadow,
                   const ParticlesOnGpu& particles);
   void start_map();

@@ -65,7 +65,8 @@ void HudPass::fit_font() {
   const float scale = io.DisplayFramebufferScale.y > 0.0f ? io.DisplayFramebufferScale.y : 1.0f;
   const float wanted = hud_scale.load(std::memory_order_relaxed);
   const int fitting = hud_font_pixels(io.DisplaySize.y * scale);
-  const int pixels = std::min(static_cast<int>(std::lround(wanted * static_cast<float>(fitting))), kMostPixels);
+  const int pixels =
+      std::min(static_cast<int>(std::lround(wanted * static_cast<float>(fitting))), kMostPixels);
   io.FontGlobalScale = 1.0f / scale;
   if (pixels == font_pixels_) return;
   font_pixels_ = pixels;

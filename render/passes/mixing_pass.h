@@ -29,8 +29,8 @@ class MixingPass {
   void make_shares(glm::ivec2 size, int layers);
 
   gl::Program program_;
-  gl::RowProgram rows_;   ///< for compute
-  gl::PixelProgram sum_;  ///< for compute
+  gl::RowProgram rows_;    ///< for compute
+  gl::PixelProgram sum_;   ///< for compute
   gl::StreamBuffer sums_;  ///< four whole numbers a texel (shaders/sums.glsl)
   gl::VertexArray no_vertices_;
   std::vector<gl::Texture> shares_;  ///< RGBA16F

@@ -26,8 +26,8 @@ class ScenePass {
   void draw_opaque(const Frame& frame, const MeshStore& meshes, const TextureStore& textures,
                    const Targets& targets, bool background, bool occlusion_follows);
   /// Whether this frame's meshes go by tiles: then all of them, for each of its views, by what follows;
-  /// nobody reads any of it before gl::finish_compute(). All views' looks first, which sorts each one's meshes,
-  /// then a view's lists.
+  /// nobody reads any of it before gl::finish_compute(). All views' looks first, which sorts each one's
+  /// meshes, then a view's lists.
   bool choose_tiles(const Frame& frame, const MeshStore& meshes, const TextureStore& textures);
   static void upload_looks(const Frame& frame, const MeshStore& meshes, TiledMeshes::Lists& lists);
   void start_lists(const Frame& frame, const MeshStore& meshes, TiledMeshes::Lists& lists) const;

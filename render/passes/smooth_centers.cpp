@@ -77,7 +77,8 @@ bool counts(const Frame& frame, std::size_t i) {
   return frame.particle_fluid[i] < frame.fluids.size() && std::isfinite(at.x + at.y + at.z);
 }
 
-/// Kept small enough for an integer; what is no number (the greater of a limit and it is the limit) at the lower limit.
+/// Kept small enough for an integer; what is no number (the greater of a limit and it is the limit) at the
+/// lower limit.
 glm::vec3 in_cells(const glm::vec3& at, float reach) {
   return glm::floor(glm::min(glm::max(glm::vec3(-1e8f), at / reach), glm::vec3(1e8f)));
 }

@@ -32,7 +32,7 @@ struct Targets {
   gl::Framebuffer plain_mesh_target;  ///< color + scene_depth + depth: meshes without occlusion
   gl::Framebuffer color_target;       ///< color
   gl::Framebuffer scene_color_target;
-  gl::Framebuffer blend_target;       ///< color + depth: translucent meshes, arrows
+  gl::Framebuffer blend_target;  ///< color + depth: translucent meshes, arrows
   gl::Framebuffer front_target;
   std::array<gl::Framebuffer, 2> smooth_target;
   gl::Framebuffer back_target;

@@ -48,7 +48,8 @@ class Hands final : public HeadsetHands {
   XrTime predicted_ = 0;
   std::int64_t synced_ns_ = 0;
   bool focused_ = false;
-  bool gone_ = false;  // the runtime said so: it is not asked a thousand times a second until the next attach()
+  bool gone_ =
+      false;  // the runtime said so: it is not asked a thousand times a second until the next attach()
 };
 
 }  // namespace slosh::xr

@@ -236,8 +236,8 @@ bool Session::frame(const std::function<HeadsetPlaces(const Pose& head)>& places
                                       tangent(fov.angleDown), tangent(fov.angleUp)},
                                      at.room, options_.near_plane, options_.far_plane);
         if (panel.size.x <= 0.0) continue;
-        pictures.panel_views[i] = panel_view(panel.pose, panel.size, to_pose(eyes[i].pose).position, at.room,
-                                             options_.near_plane);
+        pictures.panel_views[i] =
+            panel_view(panel.pose, panel.size, to_pose(eyes[i].pose).position, at.room, options_.near_plane);
       }
       draw(pictures);
     }

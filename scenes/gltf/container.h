@@ -10,9 +10,9 @@
 namespace slosh::gltf {
 
 struct Container {
-  nlohmann::json json;  ///< an object; every text in it cleaned (clean_text), but for the uris of buffers
+  nlohmann::json json;    ///< an object; every text in it cleaned (clean_text), but for the uris of buffers
   nlohmann::json images;  ///< the file's "images", of any kind: as they stand, out of `json`
-  std::string binary;   ///< a .glb's second chunk; empty for .gltf
+  std::string binary;     ///< a .glb's second chunk; empty for .gltf
   bool is_binary = false;
 };
 

@@ -38,8 +38,8 @@ std::string stem_of(const std::string& key) {
   return stem;
 }
 
-/// The field that was meant by a word that is none: near to one, or one with other units or none. Who misspells begins
-/// right: "uuid" is no "fluid". Empty: somebody else's word.
+/// The field that was meant by a word that is none: near to one, or one with other units or none. Who
+/// misspells begins right: "uuid" is no "fluid". Empty: somebody else's word.
 std::string meant_field(const std::string& key, const std::vector<std::string>& known) {
   const std::string stem = stem_of(key);
   std::vector<std::string> fields, stems;

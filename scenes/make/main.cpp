@@ -32,7 +32,8 @@ int main(int argc, char** argv) {
   for (const Shipped& scene : kShipped) {
     const std::filesystem::path file = folder / (std::string(scene.name) + (binary ? ".glb" : ".gltf"));
     if (!scene.make().write(file)) {
-      std::fprintf(stderr, "%s: cannot be written: is there room, and may you write there?\n", file.string().c_str());
+      std::fprintf(stderr, "%s: cannot be written: is there room, and may you write there?\n",
+                   file.string().c_str());
       return 1;
     }
   }

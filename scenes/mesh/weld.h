@@ -11,8 +11,8 @@ namespace slosh::mesh {
 
 /// Triangles that share vertices by position alone. Double precision, the frame of the source mesh.
 struct WeldedMesh {
-  std::vector<glm::dvec3> points;     ///< m
-  std::vector<glm::uvec3> triangles;  ///< counter-clockwise seen from outside; none degenerate
+  std::vector<glm::dvec3> points;      ///< m
+  std::vector<glm::uvec3> triangles;   ///< counter-clockwise seen from outside; none degenerate
   std::vector<std::uint32_t> sources;  ///< one a triangle: which of the source mesh's it is
 };
 

@@ -35,9 +35,9 @@ struct Reading {
     bool checked;
   };
   std::map<std::tuple<int, std::vector<double>>, SharedMesh> shared;
-  std::map<std::string, int> names;  ///< of nodes with a `slosh` property
-  std::set<int> failed;              ///< nodes that could not be read
-  std::vector<Error> further;        ///< of what is being read, beside the problem that is returned
+  std::map<std::string, int> names;   ///< of nodes with a `slosh` property
+  std::set<int> failed;               ///< nodes that could not be read
+  std::vector<Error> further;         ///< of what is being read, beside the problem that is returned
   std::map<int, Material> materials;  ///< glTF material → what came of it
   std::map<int, int> images;          ///< glTF image → Scene::images, −1 where it could not be read
   std::size_t image_pixels = 0;       ///< of all of these
@@ -69,14 +69,14 @@ Problem read_body(Reading& reading, int node);
 Problem read_probe(Reading& reading, int node);
 /// No error: a picture that cannot be shown is left out, and told in Reading::notes.
 Problem read_picture(Reading& reading, int node);
-Problem read_grip(Reading& reading, int node);  ///< after all bodies
-Problem order_grips(Reading& reading);          ///< after all grips: by `device`, the others behind
-Problem read_hand(Reading& reading, int node);  ///< after all grips
+Problem read_grip(Reading& reading, int node);    ///< after all bodies
+Problem order_grips(Reading& reading);            ///< after all grips: by `device`, the others behind
+Problem read_hand(Reading& reading, int node);    ///< after all grips
 Problem read_gauge(Reading& reading, int node);   ///< after all bodies
 Problem read_region(Reading& reading, int node);  ///< after all bodies
 Problem read_camera(Reading& reading);            ///< after everything with a size; no error, as of pictures
-Problem read_domain(Reading& reading);          ///< likewise
-Problem fit_spacing(Reading& reading);          ///< likewise: a coarsest spacing that was not given fits the walls
+Problem read_domain(Reading& reading);            ///< likewise
+Problem fit_spacing(Reading& reading);  ///< likewise: a coarsest spacing that was not given fits the walls
 
 /// What the mesh is shown with: the material of its first primitive that has one. Images go to Scene::images;
 /// what of them cannot be read is left out, and told in Scene::left_out.

@@ -83,10 +83,13 @@ SLOSH_HD inline glm::dvec3 angular_part(const Vector6& v) {
 }  // namespace body_solve
 
 /// The system of one step, matrix · (v⁺, ω⁺) = rhs, for solve_body().
-// Always inline: what the compiler fuses in it must not depend on how many callers it has, or a run's hash would.
-SLOSH_HD __attribute__((always_inline)) inline void assemble_body(const RigidBody& body, const Wrench& external,
-                                   std::span<const ActiveCoupling> couplings, double dt, Matrix6& matrix,
-                                   Vector6& rhs, const Matrix6* drag = nullptr) {
+// Always inline: what the compiler fuses in it must not depend on how many callers it has, or a run's hash
+// would.
+SLOSH_HD __attribute__((always_inline)) inline void assemble_body(const RigidBody& body,
+                                                                  const Wrench& external,
+                                                                  std::span<const ActiveCoupling> couplings,
+                                                                  double dt, Matrix6& matrix, Vector6& rhs,
+                                                                  const Matrix6* drag = nullptr) {
   body_solve::add_block(matrix, 0, 0, glm::dmat3(body.mass));
   body_solve::add_block(matrix, 3, 3, body.world_inertia());
   body_solve::add_vector(rhs, 0, body.mass * body.velocity + dt * external.force);

@@ -17,7 +17,7 @@ namespace slosh {
 struct BodyForces {
   std::span<const Wrench> fluid;   ///< one a body, about its centre of mass
   std::span<const Matrix6> drags;  ///< one a body: what `fluid` loses for each unit of twist; or none at all
-  glm::dvec3 gravity{0.0};        ///< m/s²
+  glm::dvec3 gravity{0.0};         ///< m/s²
 };
 
 /// A sub-step of a step.
@@ -38,16 +38,16 @@ class BodySystem {
   /// The velocities that the bodies end the sub-step with, by couplings and contacts as far as the plan has
   /// them. With `held_only` the other bodies stand still. Returns StatusBits.
   std::uint32_t solve(const Plan& plan, const BodyForces& forces, const SubStep& step, bool held_only);
-  /// Every body as implicit drag has to know it, one a body: as solve() will find it under the same forces, with
-  /// what contacts gave in the last sub-step for what they will give now. With `part` false none moves.
+  /// Every body as implicit drag has to know it, one a body: as solve() will find it under the same forces,
+  /// with what contacts gave in the last sub-step for what they will give now. With `part` false none moves.
   void predict(const Plan& plan, const BodyForces& forces, const SubStep& step, bool part, bool held_only,
                std::span<ViscousBody> out);
   /// By how much they differ from those that it began with, one a body.
   std::span<const Twist> changes() const { return changes_; }
   /// Moves the bodies on by the sub-step that was solved.
   void move(const Plan& plan, const SubStep& step);
-  /// Takes what left for good (BodyRoom) and is held by nobody out of the motion: it stands still from then on.
-  /// After move(). Returns StatusBits.
+  /// Takes what left for good (BodyRoom) and is held by nobody out of the motion: it stands still from then
+  /// on. After move(). Returns StatusBits.
   std::uint32_t part_with_lost(const glm::dvec3& gravity);
 
   /// Multiplies the velocities of the bodies that a hand holds by `keep`.

@@ -10,8 +10,8 @@
 
 namespace slosh {
 
-/// Finds contacts between bodies of which at least one is free and none gone. A pair gets at most kMaxContactsPerPair,
-/// spread over the touching patch. Deterministic.
+/// Finds contacts between bodies of which at least one is free and none gone. A pair gets at most
+/// kMaxContactsPerPair, spread over the touching patch. Deterministic.
 class ContactFinder {
  public:
   static constexpr int kMaxContactsPerPair = 16;

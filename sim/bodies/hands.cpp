@@ -32,7 +32,8 @@ bool usable(const HandleInput& input) {
 Hands::Hands(const Scene& scene)
     : grips_(scene.grips),
       last_(scene.grips.size()),
-      stiffness_{std::vector<double>(scene.grips.size(), 1.0), std::vector<double>(scene.grips.size(), 1.0)} {}
+      stiffness_{std::vector<double>(scene.grips.size(), 1.0), std::vector<double>(scene.grips.size(), 1.0)} {
+}
 
 std::uint32_t Hands::take(std::span<const HandleInput> handles, double time_step) {
   std::uint32_t status = 0;

@@ -10,9 +10,10 @@ namespace slosh {
 /// exactly.
 struct RigidBody {
   bool free = false;
-  bool point = false;       ///< translation only (a probe)
-  bool gone = false;        ///< it left for good (body_room.h): it stands where it was then, and nothing touches or holds it
-  double mass = 0.0;        ///< kg
+  bool point = false;  ///< translation only (a probe)
+  bool gone = false;  ///< it left for good (body_room.h): it stands where it was then, and nothing touches or
+                      ///< holds it
+  double mass = 0.0;  ///< kg
   glm::dmat3 inertia{1.0};  ///< kg·m², about the centre of mass, body axes
   glm::dmat3 inverse_inertia{1.0};
   glm::dvec3 local_center{0.0};  ///< centre of mass in the mesh frame, m

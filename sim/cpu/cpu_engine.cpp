@@ -34,7 +34,8 @@ class CpuEngine final : public ParticleEngine {
                                   [&](int b) { return !bodies[b].free; });
     fluid_.provide(context_.plan, kinds_.size());
     scratch_.provide(context_.plan, kinds_.size());
-    for (const DistanceField& field : fields_) views_.push_back(field.distance.empty() ? DistanceFieldView{} : field.view());
+    for (const DistanceField& field : fields_)
+      views_.push_back(field.distance.empty() ? DistanceFieldView{} : field.view());
     restore(start.particles, impulses_);
     context_.status = start.status;
     fixed_.place(context_, bodies);
@@ -208,8 +209,9 @@ class CpuEngine final : public ParticleEngine {
   }
   void drag_on_fluid(double) { drag_fluid(context_, team_, fluid_, moving_.sorted()); }
   void solve_implicit_drag(double dt) {
-    const ViscousReport report = solver_.solve(context_, team_, {fluid_, fixed_.sorted(), moving_, bodies_, fluid_drag_}, dt,
-                                               viscous_.bodies, wanted_, viscous_.wrenches);
+    const ViscousReport report =
+        solver_.solve(context_, team_, {fluid_, fixed_.sorted(), moving_, bodies_, fluid_drag_}, dt,
+                      viscous_.bodies, wanted_, viscous_.wrenches);
     drags_ = solver_.drags();
     if (!report.converged) context_.status.fetch_or(kStatusViscosityCut, std::memory_order_relaxed);
   }
@@ -283,7 +285,7 @@ class CpuEngine final : public ParticleEngine {
   ImpulseSums impulses_;
   std::vector<RigidBody> bodies_;  // as they were in prepare()
   std::vector<glm::dvec3> centers_;
-  std::vector<Wrench> found_;  // one a body, by the last forces()
+  std::vector<Wrench> found_;    // one a body, by the last forces()
   std::vector<BodyDrag> drags_;  // one a body, by the same
   SurfaceSums body_scratch_;
   FluidDrag fluid_drag_;

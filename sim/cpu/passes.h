@@ -48,7 +48,8 @@ class BodySurface {
 };
 
 /// Eq 2 and 7: density (kPaper: from fluid particles only, section 4.1), then pressure and volume. With
-/// kPressureSolve or kImplicitDrag `press` gets who presses on whom: the same walk over the neighbours finds it.
+/// kPressureSolve or kImplicitDrag `press` gets who presses on whom: the same walk over the neighbours finds
+/// it.
 void compute_density(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
                      const BoundaryParticles& fixed, const BoundaryParticles& moving, FluidPress& press);
 

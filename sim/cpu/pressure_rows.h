@@ -17,14 +17,14 @@ struct alignas(64) Passed {
   Vector4 drags;     ///< as FluidPress::drags
 };
 
-/// What the density pass of the corrected and of the incompressible model writes down of fluid particles, four
-/// entries more than there are particles.
+/// What the density pass of the corrected and of the incompressible model writes down of fluid particles,
+/// four entries more than there are particles.
 struct FluidPress {
   PairRows rows;
-  std::vector<Vector4> places;       ///< m, with 0 for a fourth
-  std::vector<Vector4> velocities;   ///< m/s, with 1 for a fourth
-  /// What each presses by, with the kernel's constant: at 1 Pa where pressures are solved for; and its volume,
-  /// m³, and viscosity, Pa·s.
+  std::vector<Vector4> places;      ///< m, with 0 for a fourth
+  std::vector<Vector4> velocities;  ///< m/s, with 1 for a fourth
+  /// What each presses by, with the kernel's constant: at 1 Pa where pressures are solved for; and its
+  /// volume, m³, and viscosity, Pa·s.
   std::vector<PressTensor> tensors;
   /// What its own pressure pushes each by, N (where pressures are solved for, of 1 Pa, m²), with 0 for a
   /// fourth: by fluid, walls and bodies.

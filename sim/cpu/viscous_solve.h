@@ -76,13 +76,13 @@ class ViscousSolver {
   std::vector<Vector4> places_;                       // m, as direction_
   std::vector<Symmetric<float>> block_;  // the inverse of its own block, one a particle of the fluid
   PairRows body_rows_;                   // of the moving bodies' particles, numbered as direction_
-  std::vector<Symmetric<float>> rate_;  // of the moving bodies' particles, N·s for each m/s
-  std::vector<Unknown> unknowns_;       // one a body
-  std::vector<glm::vec3> on_surface_;   // N·s, one a particle of the moving bodies
-  std::vector<BodyDrag> drags_;         // one a body
-  std::vector<Wrench> on_bodies_;       // N·s, one a body
-  std::vector<double> parts_;           // of a sum, in a fixed order
-  std::vector<Sums> sums_;              // likewise
+  std::vector<Symmetric<float>> rate_;   // of the moving bodies' particles, N·s for each m/s
+  std::vector<Unknown> unknowns_;        // one a body
+  std::vector<glm::vec3> on_surface_;    // N·s, one a particle of the moving bodies
+  std::vector<BodyDrag> drags_;          // one a body
+  std::vector<Wrench> on_bodies_;        // N·s, one a body
+  std::vector<double> parts_;            // of a sum, in a fixed order
+  std::vector<Sums> sums_;               // likewise
   std::vector<Twist> twists_;
 };
 

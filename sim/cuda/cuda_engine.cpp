@@ -237,8 +237,8 @@ class CudaEngine final : public ParticleEngine {
   }
   void run(SubStepPart part, double dt) { run_passes(*this, table(), part, constants_.plan, dt, nullptr); }
 
-  // A probe's force comes out of the last pass, and the report waits for it; not where the pressures' solve fetches
-  // it.
+  // A probe's force comes out of the last pass, and the report waits for it; not where the pressures' solve
+  // fetches it.
   bool probes_report() const { return !probes_.empty() && !constants_.plan.has(PassId::kPressureSolve); }
   bool idle() const { return check_.failed() || fluid_.count() == 0; }
 

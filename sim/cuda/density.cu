@@ -29,8 +29,9 @@ __global__ __launch_bounds__(kThreads) void density_kernel(StepConstants c, cons
     return dx * dx + dy * dy + dz * dz;
   };
   float sum = 0.0f;
-  for_neighbors<Team>(c.grid, fluid.cells, cell,
-                [&](std::uint32_t j) { sum += Kernel::shape(r_squared(__ldg(fluid.state.x + j)), support); });
+  for_neighbors<Team>(c.grid, fluid.cells, cell, [&](std::uint32_t j) {
+    sum += Kernel::shape(r_squared(__ldg(fluid.state.x + j)), support);
+  });
   if constexpr (Parts::kWallsCount) {
     const auto add_walls = [&](const SortedSurface& walls) {
       if (walls.count == 0) return;
@@ -61,20 +62,23 @@ __device__ void sum_over_team(Symmetric<float>& moment, FlowSums<float>& s) {
             s.carried[1][2], s.carried[2][0], s.carried[2][1], s.carried[2][2]);
 }
 
-// What a particle passes on where that is a stress, too. `pressed`: what it presses with, N·m⁴; `u`: what it drags
-// by, Pa·m; `scale`: the force kernel's constant.
+// What a particle passes on where that is a stress, too. `pressed`: what it presses with, N·m⁴; `u`: what it
+// drags by, Pa·m; `scale`: the force kernel's constant.
 __device__ void keep_passed(const SortedFluid& fluid, std::uint32_t p, const Symmetric<float>& pressed,
                             const FluidStress& found, const float (&u)[3], float scale) {
   const Rows<float>& t = found.push;
   const float f = 1.0f / scale;
-  fluid.passed_x[p] = make_float4(pressed.xx + f * t.x.x, pressed.xy + f * t.x.y, pressed.xz + f * t.x.z, u[0]);
-  fluid.passed_y[p] = make_float4(pressed.xy + f * t.y.x, pressed.yy + f * t.y.y, pressed.yz + f * t.y.z, u[1]);
-  fluid.passed_z[p] = make_float4(pressed.xz + f * t.z.x, pressed.yz + f * t.z.y, pressed.zz + f * t.z.z, u[2]);
+  fluid.passed_x[p] =
+      make_float4(pressed.xx + f * t.x.x, pressed.xy + f * t.x.y, pressed.xz + f * t.x.z, u[0]);
+  fluid.passed_y[p] =
+      make_float4(pressed.xy + f * t.y.x, pressed.yy + f * t.y.y, pressed.yz + f * t.y.z, u[1]);
+  fluid.passed_z[p] =
+      make_float4(pressed.xz + f * t.z.x, pressed.yz + f * t.z.y, pressed.zz + f * t.z.z, u[2]);
   fluid.left[p] = found.left;
 }
 
-// The corrected model's and, `solved`, the incompressible one's: sim/cpu/corrected_density.cpp. `flows`: drag on
-// jostling is needed, or `stresses` are passed on.
+// The corrected model's and, `solved`, the incompressible one's: sim/cpu/corrected_density.cpp. `flows`: drag
+// on jostling is needed, or `stresses` are passed on.
 template <class Team, bool solved, bool flows, bool stresses>
 __global__ __launch_bounds__(kThreads, stresses ? kBlocksWithStress : 0) void corrected_density_kernel(
     StepConstants c, const ParticleKind* kinds, SortedFluid fluid, SortedSurface fixed, SortedSurface moving,

@@ -5,8 +5,8 @@ namespace slosh::cuda {
 
 namespace {
 
-// Of fluid by fluid where that passes on stresses: as add_forces(), with what presses and stresses as one tensor,
-// and Eq 9 by what viscosity is left.
+// Of fluid by fluid where that passes on stresses: as add_forces(), with what presses and stresses as one
+// tensor, and Eq 9 by what viscosity is left.
 template <class Team, class Parts>
 __device__ void add_passed_forces(const StepConstants& c, ParticleView<float> p, std::uint32_t self,
                                   const NeighborColumns& n, const CellTable& cells, std::uint32_t cell,
@@ -16,7 +16,7 @@ __device__ void add_passed_forces(const StepConstants& c, ParticleView<float> p,
   const Rows<float> own = read_passed(n, self, p);
   const Vector3<float> own_u{p.ux, p.uy, p.uz};
   p.ux = p.uy = p.uz = 0.0f;  // pairs drag by what the other has more
-  Vector3<float> slope{};       // Σ d (−W'/r)
+  Vector3<float> slope{};     // Σ d (−W'/r)
   for_neighbors<Team>(c.grid, cells, cell, [&](std::uint32_t j) {
     const float4 x = __ldg(n.x + j);
     const float dx = p.x - x.x, dy = p.y - x.y, dz = p.z - x.z;
@@ -56,8 +56,11 @@ __device__ void add_passed_forces(const StepConstants& c, ParticleView<float> p,
 }
 
 template <class Team, class Parts, Viscosity viscosity, bool stresses>
-__global__ __launch_bounds__(kThreads, stresses ? kBlocksWithStress : 0) void force_kernel(
-    StepConstants c, const ParticleKind* kinds, SortedFluid fluid, SortedSurface fixed, SortedSurface moving) {
+__global__ __launch_bounds__(kThreads, stresses ? kBlocksWithStress
+                                                : 0) void force_kernel(StepConstants c,
+                                                                       const ParticleKind* kinds,
+                                                                       SortedFluid fluid, SortedSurface fixed,
+                                                                       SortedSurface moving) {
   const std::uint32_t p = Team::particle();
   if (p >= fluid.count) return;
   const std::uint32_t cell = fluid.state.key[p];

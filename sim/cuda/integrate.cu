@@ -7,8 +7,8 @@ namespace slosh::cuda {
 
 namespace {
 
-// Integers, so that the sums do not depend on who comes first. True as on the CPU: when it would have been past
-// the wall's own particles.
+// Integers, so that the sums do not depend on who comes first. True as on the CPU: when it would have been
+// past the wall's own particles.
 __device__ bool keep_from_walls(const GuardView& guard, float mass, bool near, const glm::vec3& from,
                                 glm::vec3& x, glm::vec3& v) {
   const auto body = [&](std::uint32_t b) -> const GuardedBody& { return guard.bodies[b].body; };

@@ -88,18 +88,20 @@ using FluidView = MovingPacks<DevicePointer>;
 struct SortedFluid {
   std::uint32_t count = 0;  ///< retired ones, at the end, included
   FluidView state;
-  float4* pressed = nullptr;  ///< position, and in w the pressure (kConsistent: V²P; corrects_gradients(): the volume)
-  float4* push_a = nullptr;   ///< kCorrected: xx, xy, xz, yy of the pressure tensor, N·m⁴; kIncompressible: of 1 Pa's
-  float4* push_b = nullptr;   ///< kCorrected: yz, zz of it; x, y of what pairs drag by, Pa·m
-  float* drag_z = nullptr;    ///< kCorrected: z of that
+  float4* pressed =
+      nullptr;  ///< position, and in w the pressure (kConsistent: V²P; corrects_gradients(): the volume)
+  float4* push_a =
+      nullptr;  ///< kCorrected: xx, xy, xz, yy of the pressure tensor, N·m⁴; kIncompressible: of 1 Pa's
+  float4* push_b = nullptr;    ///< kCorrected: yz, zz of it; x, y of what pairs drag by, Pa·m
+  float* drag_z = nullptr;     ///< kCorrected: z of that
   float* expansion = nullptr;  ///< kIncompressible: wanted ρ⁰/ρ − 1
   float* viscosity = nullptr;  ///< Pa·s; there and written only where pairs differ
   // kFluidStress:
   float4* passed_x = nullptr;  ///< the rows of what each presses others with (kCorrected) and stresses
   float4* passed_y = nullptr;  ///< them with, N·m⁴; in w what pairs drag by, Pa·m
   float4* passed_z = nullptr;
-  float* left = nullptr;       ///< viscosity for Eq 9 with fluid, Pa·s
-  float4* force = nullptr;     ///< N; w: 1 where bodies are in the cells around, else 0
+  float* left = nullptr;    ///< viscosity for Eq 9 with fluid, Pa·s
+  float4* force = nullptr;  ///< N; w: 1 where bodies are in the cells around, else 0
   CellTable cells;
 };
 

@@ -123,8 +123,8 @@ __device__ inline ParticleView<float> view(const float4& x, const float4& v, flo
   return {x.x, x.y, x.z, v.x, v.y, v.z, x.w, v.w, viscosity, {}, 0.0f, 0.0f, 0.0f};
 }
 
-/// Calls f(i, reach) for the neighbours of p as drag between them sees them, or the thread's share of them. `h`:
-/// within which p meets fluid, m.
+/// Calls f(i, reach) for the neighbours of p as drag between them sees them, or the thread's share of them.
+/// `h`: within which p meets fluid, m.
 template <class Team, Viscosity viscosity, Neighbours neighbours, class F>
 __device__ inline void for_each_dragged(const StepConstants& c, const ParticleView<float>& p,
                                         const NeighborColumns& n, const CellTable& cells, std::uint32_t cell,

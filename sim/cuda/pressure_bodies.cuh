@@ -1,5 +1,5 @@
-// What a solve for pressures asks of the pairs turn after turn, and the bodies' share of it: one block sums what was
-// found for a body's particles, its first thread does the body's 6×6 in double.
+// What a solve for pressures asks of the pairs turn after turn, and the bodies' share of it: one block sums
+// what was found for a body's particles, its first thread does the body's 6×6 in double.
 #pragma once
 
 #include "sim/cuda/pressure_pairs.cuh"
@@ -46,8 +46,8 @@ __device__ inline float3 push_on_fluid(const Press& s, std::uint32_t p) {
   return sum;
 }
 
-/// From a body's particle at x to where its share of a fluid particle's push acts: what is beyond the moment's layer
-/// has its reaction where the fluid is (pair_force.h).
+/// From a body's particle at x to where its share of a fluid particle's push acts: what is beyond the
+/// moment's layer has its reaction where the fluid is (pair_force.h).
 __device__ inline float3 beyond(const StepConstants& c, const float4& x, const float4& fluid) {
   const float share = 1.0f - c.correction.wall_layer;
   return make_float3(share * (fluid.x - x.x), share * (fluid.y - x.y), share * (fluid.z - x.z));
@@ -105,8 +105,8 @@ __device__ inline void for_each_touch(const Press& s, std::uint32_t p, F&& f) {
 __device__ inline Vector6 touch(const Press& s, std::uint32_t p, std::uint32_t i, const float3& on_fluid) {
   const float4 x = s.moving.x[i];
   const float3 further = beyond(s.c, x, s.fluid.pressed[p]);
-  const glm::dvec3 arm =
-      glm::dvec3(x.x, x.y, x.z) - s.view.body[s.moving.body[i]].center + glm::dvec3(further.x, further.y, further.z);
+  const glm::dvec3 arm = glm::dvec3(x.x, x.y, x.z) - s.view.body[s.moving.body[i]].center +
+                         glm::dvec3(further.x, further.y, further.z);
   const glm::dvec3 force(-on_fluid.x, -on_fluid.y, -on_fluid.z);
   const glm::dvec3 torque = glm::cross(arm, force);
   return {force.x, force.y, force.z, torque.x, torque.y, torque.z};
@@ -160,8 +160,8 @@ __device__ __noinline__ inline double diagonal_by_bodies(const Press& s, std::ui
   }
 }
 
-/// Calls f(b, on_body) for each body that is this block's, in its first thread: N and N·m on it by what was found
-/// for its particles.
+/// Calls f(b, on_body) for each body that is this block's, in its first thread: N and N·m on it by what was
+/// found for its particles.
 template <class F>
 __device__ inline void for_each_pressed_body(const Press& s, F&& f) {
   for (std::uint32_t b = blockIdx.x; b < s.view.bodies; b += gridDim.x) {

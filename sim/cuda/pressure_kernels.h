@@ -1,9 +1,10 @@
-// Pressures that are solved for, on the GPU (pressure/solved_state.h has the system): who presses on whom, written
-// down once a sub-step, and the conjugate gradients that ask for it turn after turn, all turns in one launch.
+// Pressures that are solved for, on the GPU (pressure/solved_state.h has the system): who presses on whom,
+// written down once a sub-step, and the conjugate gradients that ask for it turn after turn, all turns in one
+// launch.
 //
 // The unknowns are the fluid's pressures. Entries are the fluid's particles in the order of their cells,
-// [0, fluid), and behind them the particles of the bodies that may move, in theirs: those have rows too, by which
-// pressures push their bodies.
+// [0, fluid), and behind them the particles of the bodies that may move, in theirs: those have rows too, by
+// which pressures push their bodies.
 #pragma once
 
 #include "sim/cuda/solve_rows.h"
@@ -39,14 +40,14 @@ inline constexpr int kPressureParts = 6;
 /// All that the solve works on, in device memory.
 struct PressureView {
   std::uint32_t fluid = 0, surface = 0;  ///< entries
-  /// Of the fluid: what 1 Pa of its own pushes it by, m², by fluid and, behind those, by bodies that may move. Of a
-  /// body's particle: what 1 Pa of a fluid particle pushes it by.
+  /// Of the fluid: what 1 Pa of its own pushes it by, m², by fluid and, behind those, by bodies that may
+  /// move. Of a body's particle: what 1 Pa of a fluid particle pushes it by.
   PairRows rows;
   std::uint32_t* with_fluid = nullptr;  ///< how many of an entry's pairs are with fluid
   float4* by_other = nullptr;           ///< what 1 Pa of the other pushes it by, m²: of pairs of fluid alone
-  float4* own = nullptr;  ///< of the fluid: what 1 Pa of its own pushes it by, m², by fluid, walls and bodies; w: the sum
-                          ///< of its square by fluid over each neighbour's mass, m⁴/kg
-  float* flow = nullptr;  ///< Q v − V⁰ e/dt, m³/s: wanted 0 where it presses, not below 0 elsewhere
+  float4* own = nullptr;  ///< of the fluid: what 1 Pa of its own pushes it by, m², by fluid, walls and
+                          ///< bodies; w: the sum of its square by fluid over each neighbour's mass, m⁴/kg
+  float* flow = nullptr;       ///< Q v − V⁰ e/dt, m³/s: wanted 0 where it presses, not below 0 elsewhere
   float* inverse = nullptr;    ///< of the system's diagonal
   float* pressure = nullptr;   ///< Pa
   float* residual = nullptr;   ///< −flow of those that press
@@ -69,13 +70,13 @@ void launch_pressure_rows(const StepConstants& constants, const ParticleKind* ki
                           const SortedSurface& fixed, const SortedSurface& moving, const PressureView& view,
                           cudaStream_t stream);
 /// pressure_turns.cu: adds to fluid.force what the last step's pressures push each by.
-void launch_push_by_last(const StepConstants& constants, const SortedFluid& fluid, const SortedSurface& moving,
-                         const PressureView& view, cudaStream_t stream);
+void launch_push_by_last(const StepConstants& constants, const SortedFluid& fluid,
+                         const SortedSurface& moving, const PressureView& view, cudaStream_t stream);
 
 /// How many blocks of the solve can be on the GPU at a time, > 0, or an error.
 cudaError_t most_pressure_blocks(int& blocks);
-/// The solve: adds to fluid.force what the pressures found over `dt` s differ by from the last ones, replaces those,
-/// fills view.wrenches and view.probes. `density_time`: s (step_limits.h). `blocks`: at most
+/// The solve: adds to fluid.force what the pressures found over `dt` s differ by from the last ones, replaces
+/// those, fills view.wrenches and view.probes. `density_time`: s (step_limits.h). `blocks`: at most
 /// most_pressure_blocks(); the result does not depend on it.
 cudaError_t launch_pressure_solve(const StepConstants& constants, const ParticleKind* kinds, float dt,
                                   float density_time, const SortedFluid& fluid, const SortedSurface& moving,

@@ -29,8 +29,8 @@ __device__ inline float3 pushed_by(const Symmetric<float>& k, const float3& w) {
                      k.xz * w.x + k.yz * w.y + k.zz * w.z);
 }
 
-/// Calls f(j, w), w = (−W'/r) (x − x_j) without the kernel's constant, for those of `others` within reach of x:
-/// `reach`, m, or what each wall's particle has, for whom w is times its share.
+/// Calls f(j, w), w = (−W'/r) (x − x_j) without the kernel's constant, for those of `others` within reach of
+/// x: `reach`, m, or what each wall's particle has, for whom w is times its share.
 template <Neighbours neighbours, class F>
 __device__ inline void for_each_pressed(const StepConstants& c, const float4& x, const float4* others,
                                         const CellTable& cells, std::uint32_t cell, float reach,
@@ -61,14 +61,15 @@ __device__ inline void for_each_press(const StepConstants& c, const SortedFluid&
     if (cell >= c.grid.retired_key()) return;
     const Symmetric<float> own = push_tensor(c, fluid, e);
     const float4 x = fluid.pressed[e];
-    for_each_pressed<Neighbours::kFluid>(
-        c, x, fluid.pressed, fluid.cells, cell, c.support_radius, nullptr, [&](std::uint32_t j, const float3& w) {
-          f(j, pushed_by(own, w), pushed_by(push_tensor(c, fluid, j), w));
-        });
+    for_each_pressed<Neighbours::kFluid>(c, x, fluid.pressed, fluid.cells, cell, c.support_radius, nullptr,
+                                         [&](std::uint32_t j, const float3& w) {
+                                           f(j, pushed_by(own, w), pushed_by(push_tensor(c, fluid, j), w));
+                                         });
     if (moving.count == 0) return;
     for_each_pressed<Neighbours::kWalls>(c, x, moving.x, moving.cells, cell, c.support_radius, moving.reach,
                                          [&](std::uint32_t j, const float3& w) {
-                                           f(fluid.count + j, pushed_by(own, w), make_float3(0.0f, 0.0f, 0.0f));
+                                           f(fluid.count + j, pushed_by(own, w),
+                                             make_float3(0.0f, 0.0f, 0.0f));
                                          });
     return;
   }

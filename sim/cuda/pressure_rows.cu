@@ -34,8 +34,8 @@ __global__ __launch_bounds__(kThreads) void press_rows_kernel(StepConstants c, c
   const std::uint32_t cell = fluid.state.key[e];
   if (fixed.count && cell < c.grid.retired_key()) {
     float3 walls = make_float3(0.0f, 0.0f, 0.0f);
-    for_each_pressed<Neighbours::kWalls>(c, fluid.pressed[e], fixed.x, fixed.cells, cell, c.support_radius, fixed.reach,
-                                         [&](std::uint32_t, const float3& w) {
+    for_each_pressed<Neighbours::kWalls>(c, fluid.pressed[e], fixed.x, fixed.cells, cell, c.support_radius,
+                                         fixed.reach, [&](std::uint32_t, const float3& w) {
                                            walls.x += w.x;
                                            walls.y += w.y;
                                            walls.z += w.z;
@@ -54,7 +54,7 @@ void launch_pressure_rows(const StepConstants& constants, const ParticleKind* ki
                           const SortedSurface& fixed, const SortedSurface& moving, const PressureView& view,
                           cudaStream_t stream) {
   press_rows_kernel<<<blocks_for(view.fluid + view.surface), kThreads, 0, stream>>>(constants, kinds, fluid,
-                                                                                   fixed, moving, view);
+                                                                                    fixed, moving, view);
 }
 
 }  // namespace slosh::cuda

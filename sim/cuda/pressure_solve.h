@@ -24,9 +24,10 @@ class PressureSolver {
 
   /// After the force pass: writes down who presses on whom, and adds what the last step's pressures push by.
   void push_by_last(const SolveSides& sides, CallCheck& check, cudaStream_t stream);
-  /// After push_by_last(): adds to the forces on the fluid what the pressures over `dt` s differ by from the last
-  /// step's, and to `wrenches` that on bodies in `moving`, all of it on the fixed ones that are measured, and the forces
-  /// on `probes`: where there are such, it waits for the GPU. `before`: the bodies as they were placed.
+  /// After push_by_last(): adds to the forces on the fluid what the pressures over `dt` s differ by from the
+  /// last step's, and to `wrenches` that on bodies in `moving`, all of it on the fixed ones that are
+  /// measured, and the forces on `probes`: where there are such, it waits for the GPU. `before`: the bodies
+  /// as they were placed.
   void solve(const SolveSides& sides, double dt, std::span<const ViscousBody> bodies,
              std::span<const RigidBody> before, const std::vector<Probe>& probes, std::span<Wrench> wrenches,
              CallCheck& check, cudaStream_t stream);

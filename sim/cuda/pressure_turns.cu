@@ -1,5 +1,5 @@
-// Conjugate gradients over the particles that press, in one launch, as sim/cpu/pressure_solve.cpp; how blocks wait for
-// each other and decide alike is in viscous_turns.cu.
+// Conjugate gradients over the particles that press, in one launch, as sim/cpu/pressure_solve.cpp; how blocks
+// wait for each other and decide alike is in viscous_turns.cu.
 #include <cooperative_groups.h>
 
 #include "sim/cuda/pressure_bodies.cuh"
@@ -284,8 +284,8 @@ __global__ __launch_bounds__(kThreads) void push_by_last_kernel(Press s) {
 
 }  // namespace
 
-void launch_push_by_last(const StepConstants& constants, const SortedFluid& fluid, const SortedSurface& moving,
-                         const PressureView& view, cudaStream_t stream) {
+void launch_push_by_last(const StepConstants& constants, const SortedFluid& fluid,
+                         const SortedSurface& moving, const PressureView& view, cudaStream_t stream) {
   Press press{constants, nullptr, 0.0f, 0.0f, fluid, moving, {}, view};
   press.view.direction = fluid.state.solved;
   push_by_last_kernel<<<blocks_for(view.fluid), kThreads, 0, stream>>>(press);

@@ -26,8 +26,8 @@ struct PairRows {
   }
 };
 
-/// Pairs that an entry's row has room for: half again as many as particles of a lattice within reach, in whole
-/// eights. Few have more.
+/// Pairs that an entry's row has room for: half again as many as particles of a lattice within reach, in
+/// whole eights. Few have more.
 std::uint32_t row_room(const Plan& plan);
 
 /// A body's particles in local order; none where it does not move.

@@ -1,5 +1,5 @@
-// Sums over a block and over all of them, in one fixed shape, and the bodies' six-vectors: what the solves of one
-// launch share.
+// Sums over a block and over all of them, in one fixed shape, and the bodies' six-vectors: what the solves of
+// one launch share.
 #pragma once
 
 #include "sim/cuda/solve_rows.h"

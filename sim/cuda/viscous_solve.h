@@ -47,9 +47,9 @@ class ViscousSolver {
   const WrenchSums* sums_ = nullptr;
   ViscousView view_;
   int blocks_ = 0;
-  std::vector<BodyRange> placed_;       // one a body
+  std::vector<BodyRange> placed_;      // one a body
   std::vector<std::int32_t> drag_of_;  // likewise: its place among the drags, below 0: none
-  std::vector<char> moved_;     // one a body, in the last solve()
+  std::vector<char> moved_;            // one a body, in the last solve()
   cudaEvent_t ready_ = nullptr;
 
   DeviceBuffer<float4> pairs_, change_, residual_, product_, direction_, on_surface_;

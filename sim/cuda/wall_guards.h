@@ -42,7 +42,7 @@ class WallGuards {
   };
   bool goes_as_sent(std::span<const RigidBody> before, std::span<const RigidBody> after);
 
-  std::vector<Place> places_;  // before and after, of each
+  std::vector<Place> places_;   // before and after, of each
   DeviceBuffer<float> fields_;  // one after the other
   std::vector<DistanceFieldView> views_;
   std::vector<GuardedBody> guarded_;

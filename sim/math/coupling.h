@@ -36,8 +36,8 @@ inline CouplingGains stiffened(CouplingGains gains, double scale) {
   return gains;
 }
 
-/// 1/s: by how much the logarithm of a stiffness that is changed live goes on. From the scene's to four times that takes
-/// 0.3 s.
+/// 1/s: by how much the logarithm of a stiffness that is changed live goes on. From the scene's to four times
+/// that takes 0.3 s.
 constexpr double kGripStiffnessPace = 5.0;
 
 /// What acts `seconds` after `acting` did, on the way to `wanted`; both > 0.

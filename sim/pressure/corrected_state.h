@@ -21,8 +21,8 @@ struct CorrectionConstants {
   float rest_volume = 0.0f;      ///< m³
   float stiffness = 0.0f;        ///< m²/s²
   float tension = 0.0f;
-  float impact_growth = 0.0f;  ///< s/m (viscosity/noise.h)
-  float most_drag = 0.0f;      ///< Pa·s (viscosity/stability.h, most_explicit_drag)
+  float impact_growth = 0.0f;            ///< s/m (viscosity/noise.h)
+  float most_drag = 0.0f;                ///< Pa·s (viscosity/stability.h, most_explicit_drag)
   float wall_layer = 1.0f / kWallShare;  ///< share of a wall's particle in the moment (wall_layers.h)
 };
 

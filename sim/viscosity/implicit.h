@@ -42,8 +42,8 @@ struct ViscousReport {
 
 /// The turns end when what is left would change the velocities by less than this share of what drag changed.
 inline constexpr double kViscousTolerance = 0.01;
-/// Or by less than this share of gravity's own change in a sub-step: what a hand feels then varies from step to
-/// step by a fiftieth more than after an exact solve.
+/// Or by less than this share of gravity's own change in a sub-step: what a hand feels then varies from step
+/// to step by a fiftieth more than after an exact solve.
 inline constexpr double kViscousFloor = 3e-3;
 /// And here whatever is left (kStatusViscosityCut).
 inline constexpr int kMostViscousTurns = 100;

@@ -50,9 +50,9 @@ LayerDrag layer_drag(double height, double ratio, const DragShape<double>& shape
 }
 
 // Which share of the fluid at a wall lies evenly; the rest lies in layers. Chosen by the report's means over
-// close spacings: at a flat wall so that Poiseuille's flow is right at 5 and 4 mm (the default's is 3 % too low
-// with half), at a ball of four spacings and less between one that is turned, which meets 4 to 7 % too much, and
-// one that goes along a tube, which meets 4 to 5 % too little.
+// close spacings: at a flat wall so that Poiseuille's flow is right at 5 and 4 mm (the default's is 3 % too
+// low with half), at a ball of four spacings and less between one that is turned, which meets 4 to 7 % too
+// much, and one that goes along a tube, which meets 4 to 5 % too little.
 struct LiesEvenly {
   double flat, at_balls;
 };

@@ -39,9 +39,9 @@ struct WallDrag {
 
 /// Factors are such that in a linear shear, u = γ · (distance from the surface), the fluid within reach of
 /// the sheet passes on the stress that layers of fluid pass on to each other. Fluid at a flat wall lies
-/// mostly in layers, at a ball of a few spacings more of it evenly; from behind the surface layers alone count.
-/// Nothing but the support ratio, drag_shape(), the surface and whether pressures are solved for decide it.
-/// Models that do not correct gradients keep 1.
+/// mostly in layers, at a ball of a few spacings more of it evenly; from behind the surface layers alone
+/// count. Nothing but the support ratio, drag_shape(), the surface and whether pressures are solved for
+/// decide it. Models that do not correct gradients keep 1.
 WallDrag wall_drag(ParticleModel model, double support_ratio, DragSheet sheet);
 
 /// What the volume of a particle on a surface along which fluid slides counts (mirror_drag.h): such that

@@ -12,8 +12,8 @@ namespace slosh {
 
 SheetParticle moved(const Pose& pose, const SheetParticle& p) {
   const auto place = [&](const glm::vec3& at) { return glm::vec3(transform_point(pose, glm::dvec3(at))); };
-  return {place(p.position), place(p.surface), glm::vec3(pose.orientation * glm::dvec3(p.normal)),
-          p.depth, p.lacks};
+  return {place(p.position), place(p.surface), glm::vec3(pose.orientation * glm::dvec3(p.normal)), p.depth,
+          p.lacks};
 }
 
 namespace {

@@ -17,7 +17,7 @@ struct SheetParticle {
   glm::vec3 normal{0.0f};    ///< unit, out of the solid there; 0: it fills an edge or is a very thin wall's,
                              ///< and belongs to no face
   float depth = 0.0f;        ///< m, how far behind the surface it is to count as lying
-  float lacks = 0.0f;        ///< m, by how much it lies less deep, in the middle of a wall of less than two depths
+  float lacks = 0.0f;  ///< m, by how much it lies less deep, in the middle of a wall of less than two depths
 };
 
 /// The same in another frame.

@@ -43,9 +43,10 @@ constexpr float kTwoSides = 3.0f;  // depths: in a thinner wall the field, which
 // (sim/walls/README.md).
 constexpr float kThinnest = 1.15f;
 
-// m, how thick the solid is behind a point of its surface; `most` where it is more than that. Behind a wall one is
-// soon well outside; along an edge, just within the other face, one is nowhere.
-float thickness(const glm::vec3& surface, const glm::vec3& normal, float most, const DistanceFieldView& field) {
+// m, how thick the solid is behind a point of its surface; `most` where it is more than that. Behind a wall
+// one is soon well outside; along an edge, just within the other face, one is nowhere.
+float thickness(const glm::vec3& surface, const glm::vec3& normal, float most,
+                const DistanceFieldView& field) {
   constexpr int kLooks = 30, kFirst = 4, kBeyond = 5;
   const float stride = most / kLooks;
   const auto depth_at = [&](int look) {
@@ -87,8 +88,8 @@ struct Place {
 // box of 5 and 8 spacings with the edges left proud: +49 and +21 %, so -4 and +1 %. A wall that has none is
 // entered to its middle.
 // `thick`: m, of the solid there; `thin_near`: close by the wall has no such level set.
-Place on_level_set(const glm::vec3& surface, const glm::vec3& normal, float depth, float thick, bool thin_near,
-                   const DistanceFieldView& field) {
+Place on_level_set(const glm::vec3& surface, const glm::vec3& normal, float depth, float thick,
+                   bool thin_near, const DistanceFieldView& field) {
   constexpr float kThere = 0.8f;    // of the depth
   constexpr float kAstray = 1.5f;   // depths from the surface
   constexpr float kOnRidge = 0.9f;  // of the depth in a wall's middle that the field shows

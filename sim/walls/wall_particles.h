@@ -20,7 +20,8 @@ struct SurfaceParticle {
   float volume;        ///< m³, what it drags with (WallDrag::factor is in it)
   float viscosity;     ///< Pa·s
   float reach;         ///< m, within which it meets fluid: the support radius, less SheetParticle::lacks
-  MirrorPlane mirror;  ///< world axes: of a fixed body that slips, where surfaces drag (viscosity/mirror_drag.h)
+  MirrorPlane
+      mirror;  ///< world axes: of a fixed body that slips, where surfaces drag (viscosity/mirror_drag.h)
 };
 
 /// The particles of the bodies whose motion is `motion`, body by body; none when the plan has no boundary

@@ -33,8 +33,8 @@ testing::Tank make_flow(const FlowOptions& options);
 /// Where the hand that stirs is at a time: a circle, 0.28 m/s in the tank of 32³ particles at 1 cm.
 Pose stirring_hand(const FlowOptions& options, double time);
 
-/// Simulates, or reads `cache` where it holds these options' frames; writes it after simulating. An empty path: no
-/// cache. Errors: a cache that cannot be written.
+/// Simulates, or reads `cache` where it holds these options' frames; writes it after simulating. An empty
+/// path: no cache. Errors: a cache that cannot be written.
 Result<Recorded> record_flow(const FlowOptions& options, const std::filesystem::path& cache);
 /// Simulates without keeping anything.
 Recorded run_flow(const FlowOptions& options);

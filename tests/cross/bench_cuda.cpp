@@ -1,7 +1,7 @@
 // A pool of fluid at growing counts, step after step: CSV on standard output.
 // Usage: bench_cuda [drag] [MODEL] [cuda|cpu] [particles…]
-// MODEL: paper, consistent, corrected or incompressible; the default one unless named. At rest; or with `drag` turning, without viscosity, at
-// 50 Pa·s by explicit steps and at 50 Pa·s solved.
+// MODEL: paper, consistent, corrected or incompressible; the default one unless named. At rest; or with
+// `drag` turning, without viscosity, at 50 Pa·s by explicit steps and at 50 Pa·s solved.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -84,8 +84,8 @@ bool measure(Backend backend, ParticleModel model, Drag drag, double particles, 
     return solved ? mean(times) : median(times);
   };
   std::printf("\"%s\",%s,\"%s\",%zu,%zu,%.3f,%.4f,%.4f,%.4f,%.4f,%.3f,%.1f,%llu\n", world.backend().c_str(),
-              name(model), name(drag), world.fluid_count(), world.boundary_count(), 1e3 * world.plan().time_step,
-              1e3 * seconds, 1e3 * of(sort), 1e3 * of(density), 1e3 * of(force),
+              name(model), name(drag), world.fluid_count(), world.boundary_count(),
+              1e3 * world.plan().time_step, 1e3 * seconds, 1e3 * of(sort), 1e3 * of(density), 1e3 * of(force),
               1e9 * seconds / count, 1.0 / seconds, static_cast<unsigned long long>(after.retired));
   std::fflush(stdout);
   return true;
@@ -109,14 +109,17 @@ int main(int argc, char** argv) {
     } else if (std::atof(word.c_str()) >= 1.0) {
       sizes.push_back(std::atof(word.c_str()));
     } else {
-      std::fprintf(stderr, "bench_cuda: '%s' is neither drag, nor a model, nor cuda or cpu, nor a count of particles\n",
-                   word.c_str());
+      std::fprintf(
+          stderr,
+          "bench_cuda: '%s' is neither drag, nor a model, nor cuda or cpu, nor a count of particles\n",
+          word.c_str());
       return 2;
     }
   }
   if (sizes.empty()) sizes = {32768, 131072, 524288, 1048576, 2097152};
   std::puts(
-      "backend,model,drag,fluid_particles,body_particles,time_step_ms,step_ms,sort_ms,density_ms,force_ms,ns_per_"
+      "backend,model,drag,fluid_particles,body_particles,time_step_ms,step_ms,sort_ms,density_ms,force_ms,ns_"
+      "per_"
       "particle,steps_per_s,retired");
   const Length length = backend == Backend::kCuda ? Length{100, 200} : Length{5, 20};
   const std::vector<Drag> ways =

@@ -33,8 +33,8 @@ void compare_worlds(const World& cpu, const World& gpu, double tolerance);
 /// After one step from the same start the two differ by rounding alone; velocities show in momentum and
 /// energy.
 void compare_steps(const char* name, const Tank& tank, const Plan& plan, int steps, double tolerance);
-/// On the GPU, after each step: what the fluid's momentum changed by is what bodies and gravity gave. The worst step,
-/// over weight · dt. No solve may be cut short.
+/// On the GPU, after each step: what the fluid's momentum changed by is what bodies and gravity gave. The
+/// worst step, over weight · dt. No solve may be cut short.
 void compare_momenta(const Tank& tank, const Plan& plan, int steps, double tolerance);
 /// The same hash each time on the GPU, whatever else is going on.
 void repeat(const char* name, const Tank& tank, double hand_height, int steps = 300);

@@ -1,5 +1,5 @@
-// Pressures that are solved for, on both backends: with a body that a hand holds and one that nobody does, drag
-// stepped and solved for beside them, a probe, more neighbours than a row has room for.
+// Pressures that are solved for, on both backends: with a body that a hand holds and one that nobody does,
+// drag stepped and solved for beside them, a probe, more neighbours than a row has room for.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -12,8 +12,8 @@ namespace slosh::testing {
 
 namespace {
 
-// A solve ends by its tolerance: rounding may give one of the two a turn more, and then they differ by what the
-// tolerance leaves.
+// A solve ends by its tolerance: rounding may give one of the two a turn more, and then they differ by what
+// the tolerance leaves.
 constexpr double kOneStep = 1e-5;
 constexpr double kTenSteps = 1e-3;
 // Of 150 steps behind one another of the stirred tank, each taken over from an H100 by a CPU, one parts them
@@ -60,8 +60,8 @@ void compare_held(const char* name, const Tank& tank, int steps, double apart) {
     at[n] = bodies.bodies.back().pose.position;
     kinetic[n++] = world.diagnostics().kinetic_energy;
   }
-  std::printf("  mean force on the paddle: CPU %.5f %.5f %.5f N, GPU %.5f %.5f %.5f N\n", mean[0].x, mean[0].y,
-              mean[0].z, mean[1].x, mean[1].y, mean[1].z);
+  std::printf("  mean force on the paddle: CPU %.5f %.5f %.5f N, GPU %.5f %.5f %.5f N\n", mean[0].x,
+              mean[0].y, mean[0].z, mean[1].x, mean[1].y, mean[1].z);
   expect_true("the fluid presses on it", glm::length(mean[0]) > 0.01 * weight);
   expect_at_most("mean force on the paddle", glm::distance(mean[0], mean[1]) / glm::length(mean[0]), 0.02);
   expect_at_most("where the last body is, m", glm::distance(at[0], at[1]), apart);
@@ -71,8 +71,8 @@ void compare_held(const char* name, const Tank& tank, int steps, double apart) {
 }  // namespace
 
 void compare_pressed_steps() {
-  compare_steps("pressures solved for, two fluids, paddle", shaken(pressed(stirred_tank(ParticleModel::kCorrected))), 1,
-                kOneStep);
+  compare_steps("pressures solved for, two fluids, paddle",
+                shaken(pressed(stirred_tank(ParticleModel::kCorrected))), 1, kOneStep);
   const Tank thick = shaken(pressed(in_two_honeys()));
   compare_steps("pressures and drag solved for, held paddle and free box", thick, 1, kOneStep);
   compare_momenta(thick, pressing_plan(thick), 3, 2e-6);

@@ -24,7 +24,7 @@ using test::Process;
 using test::WrittenForce;
 
 constexpr double kRate = 2000.0;     // N/s, noting_device.c
-constexpr double kCarriesOn = 8.0;     // N: of the 15.6 that each of two carries
+constexpr double kCarriesOn = 8.0;   // N: of the 15.6 that each of two carries
 constexpr double kZeroWithin = 0.4;  // s
 /// s by which the machine may be late with a write: this test's own clock stands beside other work.
 constexpr double kLate = 0.1;

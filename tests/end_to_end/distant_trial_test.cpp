@@ -117,15 +117,15 @@ TEST_F(DistantTrial, TwoSimulatedPeopleCarryTheBucketOver200Milliseconds) {
   EXPECT_GT(put_in, -0.2 * kWeight) << "no more than the bucket gives by sinking 0.2 m";
 }
 
-/// A world six times slower than real time at a host of one thread, a person in another process who stirs in it
-/// over 100 ms: what is felt is what `play` gives there, up to 1.05 N in 99 % of the rows and 1.1 N in all (7 mm).
-/// Where the pace was not told and velocities were not converted it was 4 to 18 N.
+/// A world six times slower than real time at a host of one thread, a person in another process who stirs in
+/// it over 100 ms: what is felt is what `play` gives there, up to 1.05 N in 99 % of the rows and 1.1 N in all
+/// (7 mm). Where the pace was not told and velocities were not converted it was 4 to 18 N.
 TEST_F(DistantTrial, WhoStirsInASlowWorldFarAwayFeelsWhatTheyWouldThere) {
   const std::string host_at = "127.0.0.1:" + std::to_string(test::free_port());
   const std::string wire_at = "127.0.0.1:" + std::to_string(test::free_port());
-  const std::unique_ptr<Process> host =
-      run("host", {"host", "spoon", "--spacing", "0.007", "--threads", "1", "--wait", "1", "--listen", host_at,
-                   "--address", wire_at, "--links", "links.txt", "--seconds", "3", "--checkpoint", "none"});
+  const std::unique_ptr<Process> host = run(
+      "host", {"host", "spoon", "--spacing", "0.007", "--threads", "1", "--wait", "1", "--listen", host_at,
+               "--address", wire_at, "--links", "links.txt", "--seconds", "3", "--checkpoint", "none"});
   ASSERT_TRUE(hosting(*host));
   const std::filesystem::path impair = std::filesystem::path(test::program()).parent_path() / "slosh-impair";
   const Process wire({impair.string(), "--listen", wire_at, "--to", host_at, "--delay-ms", "50"},

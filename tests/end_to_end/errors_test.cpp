@@ -47,11 +47,14 @@ TEST(Errors, MisspeltWordsAreAnsweredWithTheNearest) {
   expect_error({"play", "--headles"}, 2, {"--headles", "Did you mean --headless?", "slosh play --help"});
   expect_error({"play", "--secnds=3"}, 2, {"Did you mean --seconds?"});
   // An option of other verbs: which.
-  expect_error({"check", "bucket", "--overwrite"}, 2,
-               {"--overwrite is an option of play, host, join, watch, replay and sweep", "slosh check --help"});
+  expect_error(
+      {"check", "bucket", "--overwrite"}, 2,
+      {"--overwrite is an option of play, host, join, watch, replay and sweep", "slosh check --help"});
   expect_error({"watch", "slosh://x", "--particles=100"}, 2, {"--particles is an option of play and host"});
-  expect_error({"sweep", "spoon", "--set", "fluid.viscosity_pas=1,2", "--out", "swept"}, 1, {"Did you mean viscosity_pa_s?"});
-  expect_error({"sweep", "spoon", "--set", "spon.friction=1", "--out", "swept"}, 1, {"'spon'", "Did you mean spoon?"});
+  expect_error({"sweep", "spoon", "--set", "fluid.viscosity_pas=1,2", "--out", "swept"}, 1,
+               {"Did you mean viscosity_pa_s?"});
+  expect_error({"sweep", "spoon", "--set", "spon.friction=1", "--out", "swept"}, 1,
+               {"'spon'", "Did you mean spoon?"});
   std::filesystem::create_directories(test::test_folder());
   std::ofstream(test::test_folder() / "kitchen.gltf") << "{}";
   expect_error({"check", "kichen.gltf"}, 1, {"there is no such file", "Did you mean kitchen.gltf?"});
@@ -126,7 +129,8 @@ TEST(Errors, WhatWasRefusedLeavesNoFolder) {
   std::filesystem::remove_all(folder);
   expect_error({"play", "bucket", "--no-render", "--spacing", "0.05", "--out", "refused/deep"}, 1, {"50 mm"});
   EXPECT_FALSE(std::filesystem::exists(folder));
-  expect_error({"host", "bucket", "--spacing", "0.05", "--out", "refused", "--listen", "127.0.0.1:0"}, 1, {"50 mm"});
+  expect_error({"host", "bucket", "--spacing", "0.05", "--out", "refused", "--listen", "127.0.0.1:0"}, 1,
+               {"50 mm"});
   EXPECT_FALSE(std::filesystem::exists(folder));
 }
 
@@ -228,7 +232,8 @@ TEST(Verbs, PlayTellsApartWhatSettlingLost) {
   EXPECT_GT(settling, 0.0);
   EXPECT_NEAR(summary["fluid_mass_kg"]["start"].get<double>(), (all - settling) * 1000.0 * std::pow(0.012, 3),
               1e-6);
-  EXPECT_TRUE(has_text(outcome.out, "spilled over the edge of the domain, while the world settled")) << outcome.out;
+  EXPECT_TRUE(has_text(outcome.out, "spilled over the edge of the domain, while the world settled"))
+      << outcome.out;
 }
 
 TEST(Verbs, ScenesListsEveryShippedScene) {
@@ -267,8 +272,8 @@ TEST(Verbs, HelpExplainsWithExamples) {
   // No line runs on: what options are for is wrapped, the rest written so.
   std::istringstream verbs(all.out);
   for (std::string line; std::getline(verbs, line);) EXPECT_LE(line.size(), 120u) << line;
-  for (const char* verb : {"play", "host", "join", "watch", "replay", "links", "devices", "scenes", "check", "plan", "sweep",
-                           "report", "settings"}) {
+  for (const char* verb : {"play", "host", "join", "watch", "replay", "links", "devices", "scenes", "check",
+                           "plan", "sweep", "report", "settings"}) {
     std::istringstream lines(test::slosh({verb, "--help"}).out);
     for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 120u) << verb << ": " << line;
   }

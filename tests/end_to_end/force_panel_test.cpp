@@ -19,8 +19,8 @@ using test::read_text;
 
 using ForcePanelTest = WindowTest;
 
-/// Of the panel of forces, where it is first shown in a window of kWidth × kHeight: the middles of the blue boxes of its first
-/// row, which are hold's and save's; pixels.
+/// Of the panel of forces, where it is first shown in a window of kWidth × kHeight: the middles of the blue
+/// boxes of its first row, which are hold's and save's; pixels.
 std::vector<glm::ivec2> boxes_of_forces(const Image& picture) {
   constexpr int kRow = 238;
   std::vector<glm::ivec2> boxes;
@@ -68,8 +68,8 @@ double apart(const std::vector<bool>& a, const std::vector<bool>& b) {
   return differ / any;
 }
 
-/// The plot of forces by clicks: held while the world goes on, dragged back in time, zoomed, saved, let go. The right hand is
-/// behind it: no drag in the panel takes hold of that.
+/// The plot of forces by clicks: held while the world goes on, dragged back in time, zoomed, saved, let go.
+/// The right hand is behind it: no drag in the panel takes hold of that.
 TEST_F(ForcePanelTest, ClicksHoldAndSaveThePlot) {
   Process slosh(display->on({test::program(), "play", "bucket", "--spacing", "0.0135", "--size",
                              std::to_string(kWidth) + "x" + std::to_string(kHeight), "--out", "out"}),
@@ -88,7 +88,8 @@ TEST_F(ForcePanelTest, ClicksHoldAndSaveThePlot) {
     const std::size_t before = rows();
     EXPECT_TRUE(comes([&] { return rows() > before + milliseconds; }));
   };
-  // A click that is over before a picture was drawn is none for Dear ImGui 1.86; a machine that does other things draws few.
+  // A click that is over before a picture was drawn is none for Dear ImGui 1.86; a machine that does other
+  // things draws few.
   const auto click = [&](glm::ivec2 at) {
     point(at);
     display->act({"sleep", "0.4", "mousedown", "1", "sleep", "0.4", "mouseup", "1", "sleep", "0.4"});
@@ -142,7 +143,8 @@ TEST_F(ForcePanelTest, ClicksHoldAndSaveThePlot) {
   std::istringstream table(read_text(out / "forces-1.csv"));
   std::string line;
   std::getline(table, line);
-  EXPECT_TRUE(line.starts_with("time_s,left_hand_fx_n,left_hand_fy_n,left_hand_fz_n,left_hand_tx_nm")) << line;
+  EXPECT_TRUE(line.starts_with("time_s,left_hand_fx_n,left_hand_fy_n,left_hand_fz_n,left_hand_tx_nm"))
+      << line;
   int at_rest = 0;
   double last = 0.0;
   while (std::getline(table, line)) {

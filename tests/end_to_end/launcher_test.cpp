@@ -29,7 +29,8 @@ TEST(Launcher, HelpListsTheVerbs) {
   for (const std::vector<std::string>& arguments : {std::vector<std::string>{}, {"help"}, {"--help"}}) {
     const Outcome outcome = launcher(arguments);
     EXPECT_EQ(outcome.code, 0) << outcome.err;
-    for (const char* verb : {"play", "devices", "scenes", "check", "plan", "report", "python", "package", "test", "bench", "format", "help"}) {
+    for (const char* verb : {"play", "devices", "scenes", "check", "plan", "report", "python", "package",
+                             "test", "bench", "format", "help"}) {
       EXPECT_NE(outcome.out.find(std::string("./slosh ") + verb), std::string::npos) << verb;
     }
   }

@@ -19,8 +19,8 @@ using test::Outcome;
 using test::Process;
 using test::read_text;
 
-constexpr double kWays = 40.0;      // at least, in the seconds that follow
-constexpr int kMostWrites = 3;      // 1 where the machine keeps up: the first write after the reading
+constexpr double kWays = 40.0;            // at least, in the seconds that follow
+constexpr int kMostWrites = 3;            // 1 where the machine keeps up: the first write after the reading
 const char* const kMotionSeconds = "13";  // 6 of them until the plug-in begins
 
 /// "plugin:FILE:ANSWERS"
@@ -67,9 +67,9 @@ TEST_F(MotionToForce, WhereTheHostIs100And300MillisecondsAway) {
     const std::string host_at = "127.0.0.1:" + std::to_string(test::free_port());
     const std::string wire_at = "127.0.0.1:" + std::to_string(test::free_port());
     const std::unique_ptr<Process> host =
-        run("host",
-            {"host", "spoon", "--spacing", "0.012", "--threads", "1", "--wait", "1", "--listen", host_at,
-             "--address", wire_at, "--links", "links.txt", "--seconds", kMotionSeconds, "--checkpoint", "none"});
+        run("host", {"host", "spoon", "--spacing", "0.012", "--threads", "1", "--wait", "1", "--listen",
+                     host_at, "--address", wire_at, "--links", "links.txt", "--seconds", kMotionSeconds,
+                     "--checkpoint", "none"});
     ASSERT_TRUE(hosting(*host));
     const path impair = path(test::program()).parent_path() / "slosh-impair";
     const Process wire(

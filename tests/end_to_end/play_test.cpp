@@ -272,8 +272,8 @@ TEST_F(PlayTest, HandsAreRecordedAtTheDeviceLoopsOwnRateWhereThatIsAskedFor) {
   EXPECT_EQ(test::slosh({"play", "probe", "--headless", "--rows", "5000"}).code, 2);
 }
 
-/// Each tick of the loop has its rows, whatever the machine: ticks are numbered, and the periods between them add up
-/// to the time on the wall.
+/// Each tick of the loop has its rows, whatever the machine: ticks are numbered, and the periods between them
+/// add up to the time on the wall.
 TEST_F(PlayTest, SignalsAreOfEachTickOfTheDeviceLoop) {
   const Outcome outcome =
       test::slosh({"play", "spoon", "--headless", "--no-render", "--spacing", "0.012", "--seconds", "1",
@@ -297,7 +297,8 @@ TEST_F(PlayTest, SignalsAreOfEachTickOfTheDeviceLoop) {
     most = std::max(most, std::hypot(fields[46], fields[47], fields[48]));
   }
   EXPECT_NEAR(passed, wall, 1e-4);
-  EXPECT_EQ(ticks, summary["device_loop_us"]["ticks"].get<std::uint64_t>() + 1) << "and the first, before it is timed";
+  EXPECT_EQ(ticks, summary["device_loop_us"]["ticks"].get<std::uint64_t>() + 1)
+      << "and the first, before it is timed";
   EXPECT_GT(most, 0.1) << "N that were sent";
 }
 

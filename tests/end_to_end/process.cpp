@@ -12,8 +12,7 @@ std::string program() {
 
 std::filesystem::path test_folder() {
   const ::testing::TestInfo* info = ::testing::UnitTest::GetInstance()->current_test_info();
-  return build_dir() / "end_to_end" /
-         (std::string(info->test_suite_name()) + "." + info->name());
+  return build_dir() / "end_to_end" / (std::string(info->test_suite_name()) + "." + info->name());
 }
 
 void empty_folder() {

@@ -53,7 +53,8 @@ TEST_F(SettingsTest, AKeyThatWouldDoTwoThingsIsRefusedBeforeAnythingIsBegun) {
   write("[keys]\npause = \"P\"\n");
   Outcome outcome = slosh({"play", "probe", "--headless"});
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_NE(outcome.err.find("settings.toml:2: keys.pause: P does 'picture' already"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("settings.toml:2: keys.pause: P does 'picture' already"), std::string::npos)
+      << outcome.err;
   write("[keys]\npause = \"K\"\n");
   outcome = slosh({"settings"});
   EXPECT_NE(outcome.out.find("pause        K  "), std::string::npos) << outcome.out;

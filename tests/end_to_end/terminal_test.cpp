@@ -73,8 +73,10 @@ TEST_F(TerminalTest, APeerSetsParametersAndPausesFromItsTerminal) {
   ana->type("set viscosity 1e6\r");
   EXPECT_TRUE(ana->shows("too much for the time step")) << ana->screen();
   ana->type("set stiffness 0.5\r");
-  EXPECT_TRUE(ana->shows("the hold on 'probe_hand' is 0.5 times as stiff as the scene has it now")) << ana->screen();
-  EXPECT_TRUE(eve->shows("Ana set the hold on 'probe_hand' to 0.5 times the scene's stiffness")) << eve->screen();
+  EXPECT_TRUE(ana->shows("the hold on 'probe_hand' is 0.5 times as stiff as the scene has it now"))
+      << ana->screen();
+  EXPECT_TRUE(eve->shows("Ana set the hold on 'probe_hand' to 0.5 times the scene's stiffness"))
+      << eve->screen();
   ana->type("pause\r");
   EXPECT_TRUE(host->shows("Ana paused the world")) << host->screen();
   ana->type("status\r");
@@ -147,8 +149,9 @@ TEST_F(TerminalTest, TheLinkIsAskedForAndNotShown) {
 }
 
 TEST_F(TerminalTest, AWorldOfOnesOwnHearsTheSameLines) {
-  const auto play = at_terminal("play", {"play", "probe", "--spacing", "0.01", "--threads", "1", "--no-render", "--seconds",
-                                         "600", "--out", "out", "--record", "typed.rec"});
+  const auto play =
+      at_terminal("play", {"play", "probe", "--spacing", "0.01", "--threads", "1", "--no-render", "--seconds",
+                           "600", "--out", "out", "--record", "typed.rec"});
   ASSERT_TRUE(play->shows("real time")) << play->screen();
   play->type("set gravity 0.5\rset viscosity 1e6\rset stiffness 2\rpause\r");
   EXPECT_TRUE(play->shows("gravity is 0.5 times the scene's now")) << play->screen();
@@ -174,8 +177,8 @@ TEST_F(TerminalTest, AWorldOfOnesOwnHearsTheSameLines) {
 
 TEST_F(TerminalTest, ASlowPlanSaysItsEstimateAndAsks) {
   // From minutes to a day is asked for: this takes 50 minutes of one core, and where others have it 13 hours.
-  const std::vector<std::string> slow{"play", "pool", "--particles", "40000", "--seconds", "600", "--threads", "1",
-                                      "--no-render", "--unpaced", "--out", "out"};
+  const std::vector<std::string> slow{"play",      "pool", "--particles", "40000",     "--seconds", "600",
+                                      "--threads", "1",    "--no-render", "--unpaced", "--out",     "out"};
   const auto declined = at_terminal("declined", slow);
   ASSERT_TRUE(declined->shows("Go on?")) << declined->screen();
   for (const char* part : {"slow: ", "steps of", "for the run", "real time"})

@@ -34,8 +34,8 @@ TEST(Tutorial, CommandsDoWhatThePageSays) {
   EXPECT_GE(page.size(), 5u);
   for (std::string command : page) {
     SCOPED_TRACE(command);
-    // A tenth of a second of each run is enough to see that it runs; without a wish for a spacing the machine would be
-    // measured.
+    // A tenth of a second of each run is enough to see that it runs; without a wish for a spacing the machine
+    // would be measured.
     if (command.starts_with("./slosh play")) command += " --seconds 0.1 --yes";
     if (command.find("--spacing") == std::string::npos && command.starts_with("./slosh play"))
       command += " --spacing 0.012";

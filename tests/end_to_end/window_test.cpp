@@ -1,5 +1,7 @@
 // `slosh play` in a window on a virtual display, with real events of mouse and keys: GLFW, ImGui and all
 // below them.
+#include "window.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +14,6 @@
 
 #include "process.h"
 #include "render/image.h"
-#include "window.h"
 
 namespace slosh {
 namespace {
@@ -75,7 +76,8 @@ TEST_F(WindowTest, AMousePoursTheDefaultBucket) {
     for (int i = 0; i < 8; ++i) std::getline(in, field, ',');
     return std::stod(field);
   };
-  ASSERT_NE(header.find("time_s,particles,spilled,lost,in_solids,mass_kg,cx_m,cy_m"), std::string::npos) << header;
+  ASSERT_NE(header.find("time_s,particles,spilled,lost,in_solids,mass_kg,cx_m,cy_m"), std::string::npos)
+      << header;
   EXPECT_GT(height(first), 0.33);
   EXPECT_LT(height(last), 0.2);
 }
@@ -108,7 +110,8 @@ TEST_F(WindowTest, KeysPauseStepAndSlowTheWorld) {
   ASSERT_TRUE(later) << later.error().text();
   for (std::size_t i = 0; i < earlier.value().size(); i += 10)
     EXPECT_EQ(later.value()[i].time, earlier.value()[i].time);
-  for (std::size_t i = 1; i < later.value().size(); ++i) EXPECT_LT(later.value()[i - 1].time, later.value()[i].time);
+  for (std::size_t i = 1; i < later.value().size(); ++i)
+    EXPECT_LT(later.value()[i - 1].time, later.value()[i].time);
   display->act({"key", "h"});
   display->act({"key", "Tab"});
   display->act({"key", "p"});
@@ -136,7 +139,8 @@ std::vector<glm::ivec2> slider_knobs(const Image& picture) {
 
 /// A slider is dragged, and the hands feel it: without gravity they carry nothing.
 TEST_F(WindowTest, ASliderChangesTheWorldThatRuns) {
-  Process slosh(display->on({test::program(), "play", "bucket", "--spacing", "0.0135", "--size", "640x480", "--out", "out"}),
+  Process slosh(display->on({test::program(), "play", "bucket", "--spacing", "0.0135", "--size", "640x480",
+                             "--out", "out"}),
                 test::test_folder());
   ASSERT_TRUE(comes([&] { return !slosh.running() || rows() > 50; }));
   ASSERT_TRUE(slosh.running()) << read_text(test::test_folder() / "stderr.txt");
@@ -168,20 +172,24 @@ TEST_F(WindowTest, ASliderChangesTheWorldThatRuns) {
   EXPECT_TRUE(comes([&] {
     if (moved < 150) point(gravity - glm::ivec2(moved += 10, 0));
     return std::abs(weight()) < 1.0;
-  })) << weight() << " N";
+  })) << weight()
+      << " N";
   display->act({"mouseup", "1"});
   display->act({"key", "q"});
   EXPECT_EQ(slosh.wait().code, 0);
 }
 
-/// R begins the world again and takes nothing from what is being written: tables, frames, a recording, and the film of it.
+/// R begins the world again and takes nothing from what is being written: tables, frames, a recording, and
+/// the film of it.
 TEST_F(WindowTest, BeginningAgainKeepsTheTimeBeforeIt) {
-  Process slosh(display->on({test::program(), "play", "bucket", "--spacing", "0.0135", "--size", "320x240", "--out", "out",
-                             "--record", "r.rec", "--measure", "0.05", "--export", "particles:ply", "--export-rate", "5"}),
+  Process slosh(display->on({test::program(), "play", "bucket", "--spacing", "0.0135", "--size", "320x240",
+                             "--out", "out", "--record", "r.rec", "--measure", "0.05", "--export",
+                             "particles:ply", "--export-rate", "5"}),
                 test::test_folder());
   ASSERT_TRUE(comes([&] { return !slosh.running() || rows() > 1000; }));
   ASSERT_TRUE(slosh.running()) << read_text(test::test_folder() / "stderr.txt");
-  const std::vector<std::string> tables{"poses.csv", "wrenches.csv", "probes.csv", "bodies.csv", "frames/frames.csv"};
+  const std::vector<std::string> tables{"poses.csv", "wrenches.csv", "probes.csv", "bodies.csv",
+                                        "frames/frames.csv"};
   std::vector<std::string> before;
   for (const std::string& table : tables) {
     const std::string text = read_text(out / table);
@@ -203,23 +211,28 @@ TEST_F(WindowTest, BeginningAgainKeepsTheTimeBeforeIt) {
     const std::string after = read_text(out / tables[i]);
     EXPECT_GT(before[i].size(), 20u) << tables[i];
     EXPECT_GT(after.size(), before[i].size()) << tables[i];
-    EXPECT_TRUE(after.starts_with(before[i])) << tables[i] << ": what stood there before R is not there any more";
+    EXPECT_TRUE(after.starts_with(before[i]))
+        << tables[i] << ": what stood there before R is not there any more";
   }
   EXPECT_EQ(read_text(out / "frames/particles_00000.ply"), frame);
   const Result<std::vector<PoseKey>> keys = read_poses(out / "poses.csv", 0);
   ASSERT_TRUE(keys) << keys.error().text();
   const double seconds = keys.value().back().time;
   EXPECT_GT(seconds, 2.4) << "s: 1 before the first R, 1 between them, half a second after";
-  // The window's own film runs by the clock on the wall: no shorter than the world's time, but for gaps in the drawing.
-  const Outcome film = Process({"ffprobe", "-v", "error", "-show_entries", "format=duration", "-of", "csv=p=0", "view.mp4"}, out)
-                           .wait();
+  // The window's own film runs by the clock on the wall: no shorter than the world's time, but for gaps in
+  // the drawing.
+  const Outcome film =
+      Process({"ffprobe", "-v", "error", "-show_entries", "format=duration", "-of", "csv=p=0", "view.mp4"},
+              out)
+          .wait();
   ASSERT_EQ(film.code, 0) << film.err;
   EXPECT_GT(std::stod(film.out), 0.7 * seconds);
 
   // The recording has all of it, both beginnings too, and the film of it is as long as the whole.
-  const Outcome again = Process({test::program(), "replay", "../r.rec", "--out", "film", "--size", "160x120", "--fps", "10"},
-                                test::test_folder() / "again")
-                            .wait();
+  const Outcome again =
+      Process({test::program(), "replay", "../r.rec", "--out", "film", "--size", "160x120", "--fps", "10"},
+              test::test_folder() / "again")
+          .wait();
   EXPECT_EQ(again.code, 0) << again.err;
   EXPECT_NE(again.out.find("hashes agree"), std::string::npos) << again.out;
   std::smatch pictures;
@@ -227,12 +240,14 @@ TEST_F(WindowTest, BeginningAgainKeepsTheTimeBeforeIt) {
   EXPECT_NEAR(std::stod(pictures[1]), 10.0 * seconds, 3.0) << "pictures, 10 a second";
 }
 
-/// Keys of the settings file, particles by speed, axes and the plot of forces; the pictures are there to be looked at.
+/// Keys of the settings file, particles by speed, axes and the plot of forces; the pictures are there to be
+/// looked at.
 TEST_F(WindowTest, KeysOfTheSettingsShowWhatIsMeasured) {
   std::ofstream(test::test_folder() / "settings.toml")
       << "[keys]\npause = \"K\"\nparticles = \"M\"\nend = \"F10\"\n";
-  std::vector<std::string> words = display->on({"SLOSH_SETTINGS=settings.toml", test::program(), "play", "bucket",
-                                                "--spacing", "0.012", "--size", "640x480", "--out", "out"});
+  std::vector<std::string> words =
+      display->on({"SLOSH_SETTINGS=settings.toml", test::program(), "play", "bucket", "--spacing", "0.012",
+                   "--size", "640x480", "--out", "out"});
   Process slosh(words, test::test_folder());
   ASSERT_TRUE(comes([&] { return !slosh.running() || rows() > 50; }));
   ASSERT_TRUE(slosh.running()) << read_text(test::test_folder() / "stderr.txt");

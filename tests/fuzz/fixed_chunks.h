@@ -1,5 +1,5 @@
-// Files of chunks (host/keep/chunk.h) whose damage is behind their checksums: each chunk is made to say of itself what is
-// there, so that what is wrong in it reaches whoever decodes it.
+// Files of chunks (host/keep/chunk.h) whose damage is behind their checksums: each chunk is made to say of
+// itself what is there, so that what is wrong in it reaches whoever decodes it.
 #pragma once
 
 #include <zlib.h>

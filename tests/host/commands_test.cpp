@@ -83,9 +83,8 @@ TEST(HostCommands, KeepTheirOrderAndAnswer) {
   EXPECT_TRUE(rig.host.progress().paused);
   EXPECT_TRUE(rig.host.ask({HostAction::kContinue}).get());
   rig.host.wait();
-  EXPECT_EQ(log.changes,
-            (std::vector<HostAction>{HostAction::kGravityScale, HostAction::kGripStiffness, HostAction::kReset,
-                                     HostAction::kContinue}));
+  EXPECT_EQ(log.changes, (std::vector<HostAction>{HostAction::kGravityScale, HostAction::kGripStiffness,
+                                                  HostAction::kReset, HostAction::kContinue}));
   EXPECT_EQ(log.state.grip_stiffness, std::vector<double>{0.5}) << "a reset leaves it";
   EXPECT_EQ(log.state.gravity_scale, 0.5) << "a reset leaves the parameters";
   EXPECT_EQ(rig.host.world().gravity_scale(), 0.5);

@@ -239,7 +239,8 @@ TEST(InputGate, ASilentHandGivesWayToOneThatIsHeard) {
   for (int i = 0; i < 200; ++i) hands.step(false, true);
   EXPECT_NEAR(hands.force().y, share, 1e-9) << "nothing moves: it carries on";
   for (int i = 0; i < 500; ++i) {
-    hands.now.grips[0].pose.position += glm::dvec3(0.0005, 0.0, 0.0002);  // the other one carries the body away
+    hands.now.grips[0].pose.position +=
+        glm::dvec3(0.0005, 0.0, 0.0002);  // the other one carries the body away
     hands.now.grips[0].pose.orientation =
         rotate_by(hands.now.grips[0].pose.orientation, glm::dvec3(0.0, 0.0, 0.001));
     hands.step(false, true);
@@ -265,10 +266,12 @@ TEST(InputGate, ASilentHandLiftsNothingForEver) {
     gave -= 0.0003 * hands.force().y;
     EXPECT_GT(hands.force().y, share - kYieldForce - 1e-9) << "never more than it carried";
   }
-  EXPECT_LT(gave, 1.05 * (1.0 + 4.0 / kHoldRecovers) * kHoldWay * (std::abs(share) + kYieldForce) + 0.5 * share * share / hands.scene.grips[0].stiffness);
+  EXPECT_LT(gave, 1.05 * (1.0 + 4.0 / kHoldRecovers) * kHoldWay * (std::abs(share) + kYieldForce) +
+                      0.5 * share * share / hands.scene.grips[0].stiffness);
 }
 
-/// The host's own stand is nobody: whoever holds the other grip is alone, and their hold is not bounded by it.
+/// The host's own stand is nobody: whoever holds the other grip is alone, and their hold is not bounded by
+/// it.
 TEST(InputGate, AStandIsNobody) {
   for (const bool stand : {true, false}) {
     TwoHands hands;
@@ -341,7 +344,8 @@ TEST(InputGate, ALostHandsShareGoesToTheOtherSlowly) {
   ASSERT_TRUE(hands.gate.accept(lost, hands.clock));
   double before = hands.force().y;
   for (int i = 0; i < 1990; ++i) {
-    hands.now.grips[0].pose.position += glm::dvec3(0.0005, 0.0, 0.0002);  // the other one carries the body away
+    hands.now.grips[0].pose.position +=
+        glm::dvec3(0.0005, 0.0, 0.0002);  // the other one carries the body away
     hands.step(false, true);
     ASSERT_TRUE(hands.silent.engaged) << i;
     const double left = 1.0 - 0.001 * i / kHandOver;

@@ -106,8 +106,8 @@ class AtTick : public HostTap {
 /// An empty folder named after the current test.
 inline std::filesystem::path fresh_folder() {
   const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-  const std::filesystem::path folder = test::build_dir() / "test_files" / "keep" /
-                                       (std::string(test->test_suite_name()) + "." + test->name());
+  const std::filesystem::path folder =
+      test::build_dir() / "test_files" / "keep" / (std::string(test->test_suite_name()) + "." + test->name());
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   return folder;

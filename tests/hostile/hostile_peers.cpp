@@ -242,6 +242,7 @@ class PeersRun {
 
 int main(int count, char** arguments) {
   using namespace slosh::hostile;
-  PeersRun run(run_options(count, arguments, "Hostile peers against a real host, an honest peer among them."));
+  PeersRun run(
+      run_options(count, arguments, "Hostile peers against a real host, an honest peer among them."));
   return run.go();
 }

@@ -9,7 +9,7 @@ namespace slosh::hostile {
 namespace {
 
 /// Under AddressSanitizer what was freed stays for a while, and every byte has its shadow.
-#ifdef SLOSH_SANITIZED  // the hostile runs have a build with AddressSanitizer only
+#ifdef SLOSH_SANITIZED                   // the hostile runs have a build with AddressSanitizer only
 constexpr long kMostMemory = 3'000'000;  // kB
 #else
 constexpr long kMostMemory = 1'000'000;  // kB

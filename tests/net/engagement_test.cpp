@@ -152,7 +152,8 @@ TEST(Engagement, WhereAnotherHandHoldsTooItSlipsAndBearsMoreEachSecond) {
       Twist twist;
       twist.linear.x = 0.3 * std::cos(3.0 * t);
       hand.position.x = 0.3 + 0.1 * std::sin(3.0 * t);
-      const Wrench wrench = wrench_of(e.update(true, t, hand, twist, kGains, grip, shared ? Company::kShared : Company::kAlone), grip);
+      const Wrench wrench = wrench_of(
+          e.update(true, t, hand, twist, kGains, grip, shared ? Company::kShared : Company::kAlone), grip);
       const double more = glm::length(wrench.force - grip.on_hand.force);
       const double twisting = glm::length(wrench.torque - grip.on_hand.torque);
       const double firmness = std::exp2(t / kHoldDoubles);
@@ -172,7 +173,8 @@ TEST(Engagement, WhereAnotherHandHoldsTooItSlipsAndBearsMoreEachSecond) {
   }
 }
 
-/// A body that a hold drives on: it would be a rocket where the hold followed it with what pulled when it began.
+/// A body that a hold drives on: it would be a rocket where the hold followed it with what pulled when it
+/// began.
 TEST(Engagement, AHoldThatSlipsGivesTheBodyNoMoreThanItsAllowance) {
   for (const Company company : {Company::kShared, Company::kSilent}) {
     for (const bool turning : {false, true}) {
@@ -189,11 +191,13 @@ TEST(Engagement, AHoldThatSlipsGivesTheBodyNoMoreThanItsAllowance) {
       for (double t = kTick; t < 4.0; t += kTick) {
         // On and on, the way it is pulled: 3 m and 60 rad.
         if (turning)
-          grip.pose.orientation = rotate_by(grip.pose.orientation, {0.0, 0.0, 15.0 * kTick}), grip.twist.angular.z = 15.0;
+          grip.pose.orientation = rotate_by(grip.pose.orientation, {0.0, 0.0, 15.0 * kTick}),
+          grip.twist.angular.z = 15.0;
         else
           grip.pose.position.x += 0.75 * kTick, grip.twist.linear.x = 0.75;
         const Wrench wrench = wrench_of(e.update(true, t, at(0.0), {}, kGains, grip, company), grip);
-        gave -= kTick * (glm::dot(wrench.force, grip.twist.linear) + glm::dot(wrench.torque, grip.twist.angular));
+        gave -=
+            kTick * (glm::dot(wrench.force, grip.twist.linear) + glm::dot(wrench.torque, grip.twist.angular));
         const double change = turning ? 10.0 * glm::length(wrench.torque - before.torque)
                                       : glm::length(wrench.force - before.force);
         off = std::max(off, change);

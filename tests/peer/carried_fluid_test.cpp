@@ -17,7 +17,8 @@ ReplicaBody bucket() {
   return body;
 }
 
-/// 2.4 kg of water in a round bucket of 87 mm: theory says 0.88 kg at 2.27 Hz; by its weight alone 1.03 at 2.17.
+/// 2.4 kg of water in a round bucket of 87 mm: theory says 0.88 kg at 2.27 Hz; by its weight alone 1.03
+/// at 2.17.
 TEST(CarriedFluid, AVesselsSwingIsKnownByItsWeight) {
   CarriedFluid fluid(bucket());
   fluid.hear({0.0, {}, {}, {0.0, -3.2 * 9.81, 0.0}, true, {0.0, -2.4 * 9.81, 0.0}});
@@ -40,8 +41,8 @@ TEST(CarriedFluid, WhatIsLiftedOrNotToldIsNoVessel) {
   }
 }
 
-/// Of what weighs on a body that stands still, as words 0.2 s old tell of it: half of 24 N is poured out within a second;
-/// or 3 N go to and fro at 1.5 Hz.
+/// Of what weighs on a body that stands still, as words 0.2 s old tell of it: half of 24 N is poured out
+/// within a second; or 3 N go to and fro at 1.5 Hz.
 TEST(CarriedFluid, WhatIsPouredOutIsFollowedWhatGoesToAndFroIsNot) {
   constexpr double kWord = 0.002, kOwn = -0.8 * 9.81;
   const auto off_by = [&](auto&& weight, double from, double to) {
@@ -61,8 +62,12 @@ TEST(CarriedFluid, WhatIsPouredOutIsFollowedWhatGoesToAndFroIsNot) {
   };
   const auto poured = [](double t) { return 24.0 - 12.0 * std::clamp(t - 1.0, 0.0, 1.0); };
   const double last = off_by(poured, 1.8, 2.0), after = off_by(poured, 2.5, 3.0);
-  const double swings = off_by([](double t) { return 24.0 + 3.0 * std::sin(2.0 * std::numbers::pi * 2.5 * t); }, 3.0, 5.0);
-  std::printf("off by %.2f N of what was told as the last is poured, %.2f N 0.5 s later (by a memory of a second 7.6 and 4.6); a swing of 3 N by %.2f\n", last, after, swings);
+  const double swings =
+      off_by([](double t) { return 24.0 + 3.0 * std::sin(2.0 * std::numbers::pi * 2.5 * t); }, 3.0, 5.0);
+  std::printf(
+      "off by %.2f N of what was told as the last is poured, %.2f N 0.5 s later (by a memory of a second 7.6 "
+      "and 4.6); a swing of 3 N by %.2f\n",
+      last, after, swings);
   EXPECT_LT(last, 1.5);
   EXPECT_LT(after, 0.4);
   EXPECT_NEAR(swings, 3.0, 0.3) << "followed late it would be worse";
@@ -74,7 +79,8 @@ TEST(CarriedFluid, WhatIsPouredOutNoLongerSwings) {
   constexpr double kWord = 0.002;
   const auto weighs = [](double t) { return 2.4 * 9.81 * (1.0 - 0.5 * std::clamp(t - 1.0, 0.0, 1.0)); };
   for (double t = 0.0; t < 3.0; t += kWord) {
-    const Acting acting{t > 0.0 ? kWord : 0.0, {}, {}, {0.0, -weighs(t) - 7.85, 0.0}, true, {0.0, -weighs(t), 0.0}};
+    const Acting acting{t > 0.0 ? kWord : 0.0,         {},   {},
+                        {0.0, -weighs(t) - 7.85, 0.0}, true, {0.0, -weighs(t), 0.0}};
     fluid.hear(acting);
     FluidLoad load;
     Vector6 rest{0.0, acting.force.y, 0.0, 0.0, 0.0, 0.0};
@@ -91,9 +97,15 @@ TEST(CarriedFluid, WhatIsShakenUpAndDownWeighsWhatItDid) {
   constexpr double kWord = 0.002;
   double before = 0.0;
   for (double t = 0.0; t < 4.0; t += kWord) {
-    const double now = 0.4 * std::min(t, 1.0) * std::sin(2.0 * std::numbers::pi * 2.5 * t), pace = (now - before) / kWord;
+    const double now = 0.4 * std::min(t, 1.0) * std::sin(2.0 * std::numbers::pi * 2.5 * t),
+                 pace = (now - before) / kWord;
     const glm::dvec3 told{0.0, -2.4 * (9.81 + pace), 0.0};
-    const Acting acting{t > 0.0 ? kWord : 0.0, {0.0, before, 0.0}, {0.0, now, 0.0}, told - glm::dvec3(0.0, 7.85, 0.0), true, told};
+    const Acting acting{t > 0.0 ? kWord : 0.0,
+                        {0.0, before, 0.0},
+                        {0.0, now, 0.0},
+                        told - glm::dvec3(0.0, 7.85, 0.0),
+                        true,
+                        told};
     fluid.hear(acting);
     FluidLoad load;
     Vector6 rest{0.0, acting.force.y, 0.0, 0.0, 0.0, 0.0};
@@ -105,9 +117,9 @@ TEST(CarriedFluid, WhatIsShakenUpAndDownWeighsWhatItDid) {
   }
 }
 
-/// A mode that rises as it swings, on a body that is led to and fro and up and down, gives no more than it was given. At
-/// twice its pace up and down by more than its damper takes it would grow for ever, as Faraday's waves do until they
-/// break; a replica's is drawn to the host's each word.
+/// A mode that rises as it swings, on a body that is led to and fro and up and down, gives no more than it
+/// was given. At twice its pace up and down by more than its damper takes it would grow for ever, as
+/// Faraday's waves do until they break; a replica's is drawn to the host's each word.
 TEST(SloshMode, InABowlGivesNoMoreThanItWasGiven) {
   constexpr double kDt = 2e-4, kG = 9.81;
   const SloshMode mode{0.9, 13.6, 0.02};
@@ -118,7 +130,8 @@ TEST(SloshMode, InABowlGivesNoMoreThanItWasGiven) {
     glm::dvec2 speed(0.0), pace(0.0);
     for (double t = 0.0; t < 20.0; t += kDt) {
       const double in = std::min(t, 1.0);
-      const glm::dvec2 next = in * glm::dvec2(0.15 * std::sin(9.0 * t), (up > 1.0 ? 0.02 : 0.1 * up) * std::sin(up * 13.5 * t + 0.4));
+      const glm::dvec2 next = in * glm::dvec2(0.15 * std::sin(9.0 * t),
+                                              (up > 1.0 ? 0.02 : 0.1 * up) * std::sin(up * 13.5 * t + 0.4));
       const glm::dvec2 change = next - speed;
       // Level along r, and up.
       const double level = slosh_force(mode, s), lifted = -bowl_force(mode, s, pace.x) / kG;

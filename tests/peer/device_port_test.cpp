@@ -11,9 +11,9 @@
 #include <thread>
 #include <vector>
 
+#include "other_hand.h"
 #include "peer/haptics/device_loop.h"
 #include "peer/verbs/hand_trouble.h"
-#include "other_hand.h"
 
 namespace slosh {
 namespace {
@@ -260,8 +260,9 @@ class CountingDevice final : public Device {
   std::uint64_t reads_ = 0;
 };
 
-/// A device that does not wait itself is written what the loop makes of the reading just before, and not of the one
-/// before that. On a busy machine the loop here may miss many turns; where nobody waited for it, it would all.
+/// A device that does not wait itself is written what the loop makes of the reading just before, and not of
+/// the one before that. On a busy machine the loop here may miss many turns; where nobody waited for it, it
+/// would all.
 TEST(DevicePort, AReadingIsAnsweredByTheWriteThatFollows) {
   const auto turns = std::make_shared<Turns>();
   DevicePort port(std::make_unique<CountingDevice>(turns));

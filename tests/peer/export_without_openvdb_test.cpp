@@ -1,4 +1,5 @@
-// What stands in for OpenVDB where slosh was built without it (-DSLOSH_OPENVDB=OFF), compiled into this test alone.
+// What stands in for OpenVDB where slosh was built without it (-DSLOSH_OPENVDB=OFF), compiled into this test
+// alone.
 #include <gtest/gtest.h>
 
 #include "peer/export/export_options.h"

@@ -58,8 +58,9 @@ TEST_F(LetIn, IsNothingOfAHandThatHoldsWhereItIsOrNotAtAll) {
   EXPECT_EQ(run(0.001, hand), 0.0) << "nor as it takes hold";
 }
 
-/// A guard (HeldBody) is before the limits: where it cuts a force at once, and lets it through again, the device sees no more
-/// than its rate. What has no such limit sees all of it: a simulated person by default, 4.9 N in 2 ms where one is lowered.
+/// A guard (HeldBody) is before the limits: where it cuts a force at once, and lets it through again, the
+/// device sees no more than its rate. What has no such limit sees all of it: a simulated person by
+/// default, 4.9 N in 2 ms where one is lowered.
 TEST(FeltHand, AGuardThatCutsIsNoStepAtTheDevice) {
   DeviceLimits limits = limits_without_a_hand();
   for (const double rate : {2000.0, 2.0e5}) {

@@ -51,9 +51,8 @@ std::string with_input(const std::string& text, Call&& call) {
 
 TEST(LinkSource, IsTheArgumentALineOfInputOrAFile) {
   EXPECT_EQ(got(read_link_text("slosh://x", "", kHold)), "slosh://x");
-  const std::string rest = with_input("slosh://secret\nwho\n", [] {
-    EXPECT_EQ(got(read_link_text("-", "", kHold)), "slosh://secret");
-  });
+  const std::string rest = with_input(
+      "slosh://secret\nwho\n", [] { EXPECT_EQ(got(read_link_text("-", "", kHold)), "slosh://secret"); });
   EXPECT_EQ(rest, "who\n") << "the next line is for the console";
   with_input("slosh://secret\n", [] { EXPECT_EQ(got(read_link_text("", "", kHold)), "slosh://secret"); });
   const std::string file = write_file("one", "slosh://from\n  a_file\n");
@@ -73,12 +72,14 @@ TEST(LinkSource, TheLineForTheRoleIsTakenOfWhatAHostWrote) {
   EXPECT_EQ(got(read_link_text("", own, kWatch, "Cem")), "slosh://w");
   EXPECT_EQ(got(read_link_text("", write_file("run_only", "run slosh://r\n"), kHold)), "slosh://r");
   const std::string one = write_file("hold_only", "hold slosh://h\n");
-  EXPECT_NE(got(read_link_text("", one, kWatch)).find("has no link to watch. Use `slosh join`"), std::string::npos);
+  EXPECT_NE(got(read_link_text("", one, kWatch)).find("has no link to watch. Use `slosh join`"),
+            std::string::npos);
 }
 
 TEST(LinkSource, WhatIsMissingOrTooMuchIsSaid) {
   EXPECT_NE(got(read_link_text("slosh://x", "file", kHold)).find("there are two"), std::string::npos);
-  EXPECT_NE(got(read_link_text("@/nowhere/link", "", kHold)).find("/nowhere/link: No such file"), std::string::npos);
+  EXPECT_NE(got(read_link_text("@/nowhere/link", "", kHold)).find("/nowhere/link: No such file"),
+            std::string::npos);
   EXPECT_NE(got(read_link_text("", write_file("huge", std::string(2 << 20, 'x')), kHold)).find("too large"),
             std::string::npos);
   with_input("", [] {

@@ -65,8 +65,8 @@ TEST(HeldBody, ATurningHandIsGuardedToo) {
     out += glm::dot(felt.torque, next.place - at.place);
     at = next;
     const Pose hand{glm::dvec3(0.0), rotate_by({1, 0, 0, 0}, at.place)};
-    felt =
-        guard.guard({{}, {0.0, 0.05 * std::sin(0.02 * i), 0.0}}, hand, {{}, at.velocity}, kControllerTick, 0.0, 500.0);
+    felt = guard.guard({{}, {0.0, 0.05 * std::sin(0.02 * i), 0.0}}, hand, {{}, at.velocity}, kControllerTick,
+                       0.0, 500.0);
     guard.sent(felt);
     EXPECT_LE(out, 1e-3) << i;
   }
@@ -118,8 +118,8 @@ TEST(HeldBody, AHandAtRestIsNotPushedOff) {
       const ArmState next = arm_after(arm, at, felt.force, kControllerTick);
       out += glm::dot(felt.force, next.place - at.place);
       at = next;
-      felt =
-          guard.guard({{10.0, 0.0, 0.0}, {}}, {at.place, {1, 0, 0, 0}}, {at.velocity, {}}, kControllerTick, 0.0, 100.0);
+      felt = guard.guard({{10.0, 0.0, 0.0}, {}}, {at.place, {1, 0, 0, 0}}, {at.velocity, {}}, kControllerTick,
+                         0.0, 100.0);
       guard.sent(felt);
       most = std::max(most, out);
     }
@@ -144,8 +144,8 @@ TEST(HeldBody, WhereTheBalanceIsOutTheForceDoesNotRattle) {
     const ArmState next = arm_after(arm, at, felt.force, kControllerTick);
     out += glm::dot(felt.force, next.place - at.place);
     at = next;
-    felt = guard.guard({{10.0, 0.0, 0.0}, {}}, {at.place, {1, 0, 0, 0}}, {at.velocity, {}}, kControllerTick, credit,
-                       100.0);
+    felt = guard.guard({{10.0, 0.0, 0.0}, {}}, {at.place, {1, 0, 0, 0}}, {at.velocity, {}}, kControllerTick,
+                       credit, 100.0);
     guard.sent(felt);
     EXPECT_LE(out, credit + 1e-3) << i;
     if (i % 2 != 0) continue;
@@ -187,8 +187,8 @@ TEST(HeldBody, BeforeTheBalanceIsOutTheForceGoesGently) {
         at = next;
         credit -= drained * kControllerTick;
         const double before = felt.force.x;
-        felt = guard.guard({{kHeld, 0.0, 0.0}, {}}, hand, {{at.velocity.x + goes, 0.0, 0.0}, {}}, kControllerTick,
-                           credit, 100.0);
+        felt = guard.guard({{kHeld, 0.0, 0.0}, {}}, hand, {{at.velocity.x + goes, 0.0, 0.0}, {}},
+                           kControllerTick, credit, 100.0);
         guard.sent(felt);
         step = std::max(step, std::abs(felt.force.x - before));
         least = std::min(least, felt.force.x);

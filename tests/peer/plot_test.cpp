@@ -166,9 +166,8 @@ TEST(PlotScript, WhatNamesAreMadeOfIsNeverParsed) {
 /// What is wrong with the markup, empty when nothing is: an element that no drawing of gnuplot's has, or what
 /// XML does not allow in text.
 std::string strange_markup(const std::string& svg) {
-  const std::vector<std::string> known{"?xml", "svg",    "desc",    "title",       "defs",
-                                       "g",    "filter", "feFlood", "feComposite", "circle",
-                                       "path", "rect",   "text",    "use"};
+  const std::vector<std::string> known{"?xml",    "svg",         "desc",   "title", "defs", "g",    "filter",
+                                       "feFlood", "feComposite", "circle", "path",  "rect", "text", "use"};
   if (svg.find("]]>") != std::string::npos) return "]]>";
   for (std::size_t at = svg.find('<'); at != std::string::npos; at = svg.find('<', at + 1)) {
     const std::size_t begin = svg[at + 1] == '/' ? at + 2 : at + 1;

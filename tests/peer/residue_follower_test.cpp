@@ -30,13 +30,16 @@ double off_by(const std::function<double(double)>& force, double delay, double f
 }
 
 /// 12 N in a second, from the third second on.
-double poured(double t) { return 24.0 - 12.0 * std::clamp(t - 3.0, 0.0, 1.0); }
+double poured(double t) {
+  return 24.0 - 12.0 * std::clamp(t - 3.0, 0.0, 1.0);
+}
 
 TEST(ResidueFollower, WhatIsPouredOutIsFollowedAsLateAsItIsTold) {
   for (const double delay : {0.05, 0.1, 0.2}) {
     const double all = off_by(poured, delay, 3.0, 5.0), late = 12.0 * delay * std::sqrt(0.5),
                  last = off_by(poured, delay, 3.8, 4.0);
-    std::printf("%.0f ms: off by %.2f N, at the end of the pouring by %.2f; late alone %.2f\n", 1e3 * delay, all, last, late);
+    std::printf("%.0f ms: off by %.2f N, at the end of the pouring by %.2f; late alone %.2f\n", 1e3 * delay,
+                all, last, late);
     EXPECT_LT(all, 1.25 * late);
     EXPECT_LT(last, 0.7 * 12.0 * delay) << "as it goes on";
   }
@@ -48,7 +51,8 @@ TEST(ResidueFollower, WhatGoesToAndFroAsQuickAsTheWayHereIsLeftOut) {
     const double hertz = 0.5 / delay;
     const auto swings = [&](double t) { return 20.0 + 3.0 * std::sin(2.0 * std::numbers::pi * hertz * t); };
     const double off = off_by(swings, delay, 4.0, 8.0);
-    std::printf("%.2f Hz over %.0f ms: off by %.2f N rms of %.2f\n", hertz, 1e3 * delay, off, 3.0 / std::sqrt(2.0));
+    std::printf("%.2f Hz over %.0f ms: off by %.2f N rms of %.2f\n", hertz, 1e3 * delay, off,
+                3.0 / std::sqrt(2.0));
     EXPECT_LT(off, 1.05 * 3.0 / std::sqrt(2.0));
   }
 }

@@ -100,7 +100,8 @@ TEST(Servo, DevicesAreExchangedUnderARunningLoop) {
   EXPECT_GE(closed, 300) << "none is forgotten";
 }
 
-/// A grip that is made stiffer or softer while it is held: gone over to, and never beyond what the device holds.
+/// A grip that is made stiffer or softer while it is held: gone over to, and never beyond what the device
+/// holds.
 TEST(Servo, AGripsStiffnessChangesLiveWithinTheDevicesLimits) {
   DeviceLimits limits = limits_without_a_hand();
   limits.max_stiffness = 1500.0;

@@ -1,6 +1,4 @@
 // What is recorded of a hand at the device loop's own rate: a row each tick, and its signals stage by stage.
-#include "peer/output/signal_table.h"
-
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -8,6 +6,7 @@
 #include <sstream>
 
 #include "peer/output/recorder.h"
+#include "peer/output/signal_table.h"
 #include "servo_kit.h"
 
 namespace slosh {
@@ -29,7 +28,8 @@ std::vector<std::map<std::string, double>> rows_of(const std::filesystem::path& 
   while (std::getline(in, line)) {
     auto& row = rows.emplace_back();
     std::size_t i = 0;
-    for (std::istringstream words(line); std::getline(words, word, ','); ++i) row[names.at(i)] = std::stod(word);
+    for (std::istringstream words(line); std::getline(words, word, ','); ++i)
+      row[names.at(i)] = std::stod(word);
     EXPECT_EQ(i, names.size()) << line;
   }
   return rows;
@@ -40,7 +40,8 @@ double jitter(int tick) {
   return 1e-3 * 0.4 * std::sin(1.7 * tick) * std::cos(0.3 * tick);
 }
 
-/// A loop that wakes now early, now late has no gap in its rows and none twice, whatever the phase of simulated time.
+/// A loop that wakes now early, now late has no gap in its rows and none twice, whatever the phase of
+/// simulated time.
 TEST(Signals, ARowATickIsAskedForAndEachTickHasOne) {
   for (const double phase : {0.0, 0.0002, 0.0005, 0.00099}) {
     ServoOptions options;
@@ -81,7 +82,8 @@ TEST(Signals, AreAsTheHandHadThemStageByStage) {
   ASSERT_TRUE(recorder) << recorder.error().text();
   Pose at_device;
   at_device.position = {0.1, 0.2, 0.3};
-  // It stands at its grip at first, and is 4 mm off it from 0.1 s on: 4 N by 1000 N/m, of which the device gives 3.
+  // It stands at its grip at first, and is 4 mm off it from 0.1 s on: 4 N by 1000 N/m, of which the device
+  // gives 3.
   constexpr int kTicks = 600;
   for (int i = 0; i < kTicks; ++i) {
     const double wall = 0.01 + 0.001 * i;

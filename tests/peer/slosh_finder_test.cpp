@@ -11,10 +11,11 @@
 namespace slosh {
 namespace {
 
-constexpr double kStep = 0.002;  // s
+constexpr double kStep = 0.002;          // s
 constexpr double kFinderWeight = -20.0;  // N
 
-/// A body led by swelling sines at 0.9 and 1.9 Hz for `seconds` (by one alone, masses could not be told apart); `force`: of its velocity, acceleration and time.
+/// A body led by swelling sines at 0.9 and 1.9 Hz for `seconds` (by one alone, masses could not be told
+/// apart); `force`: of its velocity, acceleration and time.
 SloshFinder led_finder(double seconds, const std::function<double(double, double, double)>& force) {
   SloshFinder finder;
   finder.restart(10.0);
@@ -85,8 +86,8 @@ TEST(SloshFinder, FindsAMassOnASpring) {
   EXPECT_LT(off, 0.15 * peak);
 }
 
-/// By one pace alone, from rest: in its first second what swings hardly differs from what goes along and is dragged.
-/// From the bank and by parabolas it was 1.72 kg at 1.45 Hz with 1.1 N s/m then, wholly followed.
+/// By one pace alone, from rest: in its first second what swings hardly differs from what goes along and is
+/// dragged. From the bank and by parabolas it was 1.72 kg at 1.45 Hz with 1.1 N s/m then, wholly followed.
 TEST(SloshFinder, KnowsAMassOnASpringByTheBeginOfOnePace) {
   const SloshMode truth{1.5, 2.0 * std::numbers::pi * 1.5, 0.035};
   SloshFinder found;
@@ -94,7 +95,8 @@ TEST(SloshFinder, KnowsAMassOnASpringByTheBeginOfOnePace) {
   Swinging fluid{truth, {}};
   double last = 0.0;
   const auto at = [](double t) {
-    return t < 0.5 ? 0.0 : 0.2 * (1.0 - std::cos(0.5 * std::numbers::pi * (t - 0.5))) * std::sin(5.65 * (t - 0.5));
+    return t < 0.5 ? 0.0
+                   : 0.2 * (1.0 - std::cos(0.5 * std::numbers::pi * (t - 0.5))) * std::sin(5.65 * (t - 0.5));
   };
   for (double t = kStep; t < 1.5; t += kStep) {
     const double v = at(t), middle = 0.5 * (v + last);
@@ -106,7 +108,8 @@ TEST(SloshFinder, KnowsAMassOnASpringByTheBeginOfOnePace) {
   EXPECT_NEAR(found.drag(), 4.0, 0.6);
 }
 
-/// A record is some 10 s long: what stood still for longer is known as well when it begins to move, and after as long again.
+/// A record is some 10 s long: what stood still for longer is known as well when it begins to move, and after
+/// as long again.
 TEST(SloshFinder, KnowsAMassOnASpringAfterALongRest) {
   const SloshMode truth{1.5, 2.0 * std::numbers::pi * 1.5, 0.035};
   SloshFinder found;
@@ -114,7 +117,8 @@ TEST(SloshFinder, KnowsAMassOnASpringAfterALongRest) {
   Swinging fluid{truth, {}};
   double last = 0.0;
   for (double t = kStep; t < 40.0; t += kStep) {
-    const double v = t < 15.0 ? 0.0 : 0.15 * std::min(t - 15.0, 1.0) * (std::sin(5.65 * t) + std::sin(11.9 * t));
+    const double v =
+        t < 15.0 ? 0.0 : 0.15 * std::min(t - 15.0, 1.0) * (std::sin(5.65 * t) + std::sin(11.9 * t));
     found.hear(kStep, last, v, -2.0 * (v + last) + fluid.force(last, v));
     last = v;
     if (t < 17.0) continue;
@@ -134,11 +138,14 @@ TEST(SloshFinder, NoiseIsNoMode) {
 }
 
 TEST(SloshFinder, FollowsNothingWhereNothingSwings) {
-  EXPECT_LT(led_finder(4.0, [](double v, double a, double) { return kFinderWeight - 1.5 * a - 3.0 * v; }).share(), 0.05);
+  EXPECT_LT(
+      led_finder(4.0, [](double v, double a, double) { return kFinderWeight - 1.5 * a - 3.0 * v; }).share(),
+      0.05);
   EXPECT_EQ(led_finder(4.0, [](double, double, double) { return kFinderWeight; }).share(), 0.0);
   // A table that is met now and then, and does not hang on how the body moves.
-  const double share =
-      led_finder(6.0, [](double, double, double t) { return std::fmod(t, 1.7) < 0.4 ? 12.0 : kFinderWeight; }).share();
+  const double share = led_finder(6.0, [](double, double, double t) {
+                         return std::fmod(t, 1.7) < 0.4 ? 12.0 : kFinderWeight;
+                       }).share();
   std::printf("a table met every 1.7 s: share %.3f\n", share);
   EXPECT_LT(share, 0.05);
 }

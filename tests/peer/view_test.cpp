@@ -36,7 +36,8 @@ TEST(OrbitCamera, StartsAsTheSceneSays) {
   EXPECT_NEAR(middle.y, 0.0f, 1e-5f);
 }
 
-/// Panels get their corners once: so what they keep clear of is the whole way of a script, not where it begins.
+/// Panels get their corners once: so what they keep clear of is the whole way of a script, not where it
+/// begins.
 TEST(HeldRects, AScriptsWholeWayIsKnownBeforeItBegins) {
   Scene scene;
   scene.camera = camera();
@@ -47,7 +48,8 @@ TEST(HeldRects, AScriptsWholeWayIsKnownBeforeItBegins) {
   scene.grips.resize(1);
   scene.grips[0].body = 0;
   scene.grips[0].pose.position = {0.05, 0.0, 0.0};
-  scene.grips[0].hand_motion = {{0.0, {{-0.25, 0.1, 0.0}, {1, 0, 0, 0}}}, {2.0, {{0.35, 0.1, 0.0}, {1, 0, 0, 0}}}};
+  scene.grips[0].hand_motion = {{0.0, {{-0.25, 0.1, 0.0}, {1, 0, 0, 0}}},
+                                {2.0, {{0.35, 0.1, 0.0}, {1, 0, 0, 0}}}};
   const View view = OrbitCamera(scene.camera).view(1.5);
   Snapshot snapshot;
   snapshot.rigid.bodies.resize(1);

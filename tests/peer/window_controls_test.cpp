@@ -53,8 +53,13 @@ class NotedRun : public LiveRun {
 
 class WindowControlsTest : public ::testing::Test {
  protected:
-  WindowControls controls(const std::vector<std::string>& keys = {}, const std::filesystem::path& views = {}) {
-    return {scene, run, camera, KeyBindings::make(keys).value(), KeptViews(views),
+  WindowControls controls(const std::vector<std::string>& keys = {},
+                          const std::filesystem::path& views = {}) {
+    return {scene,
+            run,
+            camera,
+            KeyBindings::make(keys).value(),
+            KeptViews(views),
             [this](const std::string& line) { told += line + "\n"; }};
   }
   static InputState pressed(std::vector<KeyPress> presses) {
@@ -147,8 +152,9 @@ TEST_F(WindowControlsTest, ViewsAreThereInTheNextRun) {
   EXPECT_EQ(told, "");
 
   // What cannot be read is said, and nobody writes over it.
-  for (const char* bytes : {"", "not json", "{\"format\": \"slosh views 1\", \"views\": {\"2\": {\"distance_m\": -1}}}",
-                            "{\"format\": \"slosh views 1\", \"views\": {\"9\": {}}}", "[1, 2]"}) {
+  for (const char* bytes :
+       {"", "not json", "{\"format\": \"slosh views 1\", \"views\": {\"2\": {\"distance_m\": -1}}}",
+        "{\"format\": \"slosh views 1\", \"views\": {\"9\": {}}}", "[1, 2]"}) {
     std::ofstream(file) << bytes;
     told.clear();
     WindowControls window = controls({}, file);

@@ -97,7 +97,8 @@ TEST_P(Corrected, momentum_of_fluid_and_free_body_together) {
 
 // Angular momentum about the origin. Velocities are differences of positions (the snapshot has no others):
 // float positions of 0.1 m over a step of 2 ms resolve 4e-6 m/s.
-glm::dvec3 whole_angular_momentum(const Snapshot& before, const Snapshot& after, double dt, double particle_mass) {
+glm::dvec3 whole_angular_momentum(const Snapshot& before, const Snapshot& after, double dt,
+                                  double particle_mass) {
   glm::dvec3 sum(0.0);
   for (std::size_t i = 0; i < after.positions.size(); ++i) {
     const glm::dvec3 x(after.positions[i]);

@@ -76,7 +76,8 @@ TEST(ImplicitViscosity, GivesTheDragMatrixOfExplicitSteps) {
 }
 
 // Chunks of work are handed out as threads come free; what they sum is not. How rows lie by fours decides a
-// last bit once in some hundred steps, so it takes many steps to see a thread alone that parts them otherwise.
+// last bit once in some hundred steps, so it takes many steps to see a thread alone that parts them
+// otherwise.
 TEST(ImplicitViscosity, IsTheSameToTheBitWhateverTheThreadsAndFromASavedWorldOn) {
   const Stirred s(50.0);
   const SampledScene sampled = sample_scene(s.b.scene, 0.01).value();

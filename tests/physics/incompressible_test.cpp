@@ -26,15 +26,18 @@ double number_at(const glm::vec3& x, const Points& points, double h) {
 // Fluid at rest, further from walls and surface than they reach: its density is the rest lattice's. The
 // corrected model's is off by 1 and 3 %. At one moment the largest error is 0.2 to 0.5 %, by chance.
 TEST(Incompressible, keeps_its_density_inside_a_tank_at_rest) {
-  constexpr double kIncompressibleSpacing = 0.01, kHalf = 0.1, kFill = 0.1, kSupport = 2.0 * kIncompressibleSpacing, kOff = 0.025;
-  testing::Tank tank =
-      testing::make_tank({.inner = {2.0 * kHalf, 0.2, 2.0 * kHalf}, .fill = kFill, .spacing = kIncompressibleSpacing});
+  constexpr double kIncompressibleSpacing = 0.01, kHalf = 0.1, kFill = 0.1,
+                   kSupport = 2.0 * kIncompressibleSpacing, kOff = 0.025;
+  testing::Tank tank = testing::make_tank(
+      {.inner = {2.0 * kHalf, 0.2, 2.0 * kHalf}, .fill = kFill, .spacing = kIncompressibleSpacing});
   tank.scene.model = ParticleModel::kIncompressible;
   World world(tank.scene, tank.sampled, make_plan(tank.scene, kIncompressibleSpacing), {1, Backend::kCpu});
   std::vector<glm::vec3> lattice;
   for (int x = -2; x <= 2; ++x) {
     for (int y = -2; y <= 2; ++y) {
-      for (int z = -2; z <= 2; ++z) lattice.emplace_back(kIncompressibleSpacing * x, kIncompressibleSpacing * y, kIncompressibleSpacing * z);
+      for (int z = -2; z <= 2; ++z)
+        lattice.emplace_back(kIncompressibleSpacing * x, kIncompressibleSpacing * y,
+                             kIncompressibleSpacing * z);
     }
   }
   const double rest = number_at(glm::vec3(0.0f), lattice, kSupport);

@@ -22,8 +22,9 @@ double sharing(const glm::ivec3& low, const glm::ivec3& size, int entries) {
   return static_cast<double>(shared) / (static_cast<double>(size.x) * size.y * size.z);
 }
 
-// What is deep in the fluid is told by one cell an entry: a cell whose entry another has counts as not filled, and so all round it are
-// drawn. By a hash the 2632 cells of a dam had 1632 entries, and of its 36 thousand particles 97 % were drawn for 54 %.
+// What is deep in the fluid is told by one cell an entry: a cell whose entry another has counts as not
+// filled, and so all round it are drawn. By a hash the 2632 cells of a dam had 1632 entries, and of its 36
+// thousand particles 97 % were drawn for 54 %.
 TEST(CellTable, CellsOfOnePieceOfFluidHardlyShareAnEntry) {
   for (const glm::ivec3& low : {glm::ivec3(-11, 0, -6), glm::ivec3(0), glm::ivec3(-1000, 700, -300)}) {
     // Twelve entries a cell, as the table of 33 thousand particles has.
@@ -39,7 +40,8 @@ TEST(CellTable, CellsOfOnePieceOfFluidHardlyShareAnEntry) {
 
 TEST(CellTable, CellsAlongXFollowEachOther) {
   const auto first = shader::entry_of(glm::ivec3(-3, 5, -7), 1024);
-  for (int x = 0; x < 8; ++x) EXPECT_EQ(shader::entry_of(glm::ivec3(x - 3, 5, -7), 1024), (first + x) & 1023u);
+  for (int x = 0; x < 8; ++x)
+    EXPECT_EQ(shader::entry_of(glm::ivec3(x - 3, 5, -7), 1024), (first + x) & 1023u);
 }
 
 }  // namespace

@@ -210,7 +210,8 @@ TEST_F(LooksTest, AClearPaneIsSeenThrough) {
     options.quality = panes == 1 ? Quality::kFast : Quality::kFull;
     auto renderer = make(options);
     Frame frame = frame_of({}, {}, 0.01f);
-    const MeshInstance wall = place(*renderer, kit::make_box({-0.5f, -0.4f, -0.3f}, {0.5f, 0.4f, -0.2f}), grey);
+    const MeshInstance wall =
+        place(*renderer, kit::make_box({-0.5f, -0.4f, -0.3f}, {0.5f, 0.4f, -0.2f}), grey);
     frame.meshes = {wall};
     renderer->draw(frame);
     const FloatImage bare = renderer->read_buffer(Buffer::kFinalColor);

@@ -37,7 +37,8 @@ TEST(ShaderSource, NamesAMissingFile) {
 }
 
 TEST(WindowPart, IsInThePicturesShape) {
-  // An eye that is higher than wide, in a wide window: full height, 538 · 720/605 = 640 columns in the middle.
+  // An eye that is higher than wide, in a wide window: full height, 538 · 720/605 = 640 columns in the
+  // middle.
   const PixelBox eye = window_part({538, 605}, {1280, 720});
   EXPECT_EQ(eye.low, glm::ivec2(320, 0));
   EXPECT_EQ(eye.size(), glm::ivec2(640, 720));

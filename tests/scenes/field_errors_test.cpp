@@ -119,8 +119,11 @@ TEST(FieldErrors, GripsAndHands) {
                     {"'hand'", "grip", "missing"});
   expect_edit_error([](json& j) { node_named(j, "cup")["extras"]["motion"] = "fixed"; },
                     {"'handle'", "'cup'", "fixed"});
-  expect_edit_error([](json& j) { node_named(j, "water")["extras"] = {{"slosh", "grip"}}; },
-                    {"'water'", "child of a body"});
+  expect_edit_error(
+      [](json& j) {
+        node_named(j, "water")["extras"] = {{"slosh", "grip"}};
+      },
+      {"'water'", "child of a body"});
   expect_edit_error(
       [](json& j) {
         json again = node_named(j, "hand");
@@ -194,8 +197,11 @@ TEST(FieldErrors, Scene) {
   expect_scene_error("light_direction", {0, 0, 0}, {"no length"});
   expect_scene_error("title", 3, {"text"});
   expect_scene_error("domain_min_m", {9, 9, 9}, {"domain_max_m"});
-  expect_edit_error([](json& j) { j["scenes"][0]["extras"]["domain_max_m"] = {0.0, 1.0, 1.0}; },
-                    {"'water'", "outside the domain"});
+  expect_edit_error(
+      [](json& j) {
+        j["scenes"][0]["extras"]["domain_max_m"] = {0.0, 1.0, 1.0};
+      },
+      {"'water'", "outside the domain"});
 }
 
 TEST(FieldErrors, EmptyScene) {
@@ -210,8 +216,11 @@ TEST(FieldErrors, EmptyScene) {
 TEST(FieldErrors, Transforms) {
   expect_edit_error([](json& j) { node_named(j, "cup")["scale"] = {1, 0, 1}; }, {"'cup'", "scale"});
   expect_edit_error([](json& j) { node_named(j, "cup")["rotation"] = {0, 0, 0, 0}; }, {"'cup'", "transform"});
-  expect_edit_error([](json& j) { node_named(j, "cup")["translation"] = {0, -1e30, 0}; },
-                    {"'cup'", "translation", "10 km"});
+  expect_edit_error(
+      [](json& j) {
+        node_named(j, "cup")["translation"] = {0, -1e30, 0};
+      },
+      {"'cup'", "translation", "10 km"});
   expect_edit_error(
       [](json& j) {
         const auto hand = j["nodes"].size() - 1;

@@ -219,8 +219,10 @@ TEST(Inspect, EverythingThatIsWrongWithOneObjectIsSaid) {
   const Inspection found = inspect_edited([](json& j) {
     // The cup: three fields, a word that is misspelt, and a mesh that is open.
     json& cup = node_named(j, "cup");
-    cup["extras"] = {{"slosh", "body"}, {"motion", "loose"}, {"friction", -1}, {"mass_kg", 0.2}, {"restituton", 0.5}};
-    json& accessor = j["accessors"][j["meshes"][cup["mesh"].get<int>()]["primitives"][0]["indices"].get<int>()];
+    cup["extras"] = {
+        {"slosh", "body"}, {"motion", "loose"}, {"friction", -1}, {"mass_kg", 0.2}, {"restituton", 0.5}};
+    json& accessor =
+        j["accessors"][j["meshes"][cup["mesh"].get<int>()]["primitives"][0]["indices"].get<int>()];
     accessor["count"] = accessor["count"].get<int>() - 3;
     // The fluid and the scene: two each.
     node_named(j, "water")["extras"]["density_kg_m3"] = 0;
@@ -231,9 +233,9 @@ TEST(Inspect, EverythingThatIsWrongWithOneObjectIsSaid) {
   std::string all;
   for (const Finding& f : found.errors) all += f.text.text() + "\n";
   for (const char* words :
-       {"'cup'", "extras.motion: is \"loose\"", "extras.friction: is -1", "extras.restituton: is not a property",
-        "Did you mean restitution?", "extras.density_kg_m3: is 0", "extras.viscosity_pa_s: is -1",
-        "extras.duration_s: is -1", "extras.support_ratio: is 9"})
+       {"'cup'", "extras.motion: is \"loose\"", "extras.friction: is -1",
+        "extras.restituton: is not a property", "Did you mean restitution?", "extras.density_kg_m3: is 0",
+        "extras.viscosity_pa_s: is -1", "extras.duration_s: is -1", "extras.support_ratio: is 9"})
     EXPECT_NE(all.find(words), std::string::npos) << "no " << words << " in\n" << all;
   EXPECT_EQ(found.errors.size(), 8u) << "and the open mesh, but not what hangs on the cup:\n" << all;
   EXPECT_FALSE(found.scene);

@@ -53,7 +53,8 @@ inline make::SceneWriter make_cup(const nlohmann::json& scene_extras = {{"title"
   writer.add_node("water", writer.add_mesh("water_mesh", water, paint), {}, {{"slosh", "fluid"}});
   const Pose grip{{0.0, 0.1, 0.0}, {1.0, 0.0, 0.0, 0.0}};
   writer.add_node("handle", -1, grip, {{"slosh", "grip"}}, node);
-  writer.add_hand("hand", "handle", [=](double) { return grip; }, 1.0);
+  writer.add_hand(
+      "hand", "handle", [=](double) { return grip; }, 1.0);
   return writer;
 }
 

@@ -49,12 +49,12 @@ TEST(Backend, AskingForCudaGivesCudaOrAnError) {
 
 // No model is one backend's alone.
 TEST(Backend, AutoTakesTheSameForEveryModel) {
-  for (const ParticleModel model : {ParticleModel::kPaper, ParticleModel::kConsistent, ParticleModel::kCorrected,
-                                    ParticleModel::kIncompressible}) {
+  for (const ParticleModel model : {ParticleModel::kPaper, ParticleModel::kConsistent,
+                                    ParticleModel::kCorrected, ParticleModel::kIncompressible}) {
     Tank tank = make_tank({});
     tank.scene.model = model;
-    Result<World> world =
-        make_world(tank.scene, tank.sampled, make_plan(tank.scene, tank.sampled.spacing), {1, Backend::kAuto});
+    Result<World> world = make_world(tank.scene, tank.sampled, make_plan(tank.scene, tank.sampled.spacing),
+                                     {1, Backend::kAuto});
     ASSERT_TRUE(world) << name(model);
     EXPECT_EQ(world.value().backend().rfind(cuda_available() ? "CUDA, " : "CPU, ", 0), 0u) << name(model);
     for (int i = 0; i < 3; ++i) world.value().step({});

@@ -33,7 +33,7 @@ TEST(Shell, a_cubes_faces_are_shell_and_its_core_is_not) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const glm::vec3 p = points[i] / static_cast<float>(kSpacing);
     const float depth = std::min({p.x, p.y, p.z, kN - 1 - p.x, kN - 1 - p.y, kN - 1 - p.z});
-    const bool outermost = depth < 0.5f, deep = depth > 3.5f;
+    const bool outermost = depth<0.5f, deep = depth> 3.5f;
     EXPECT_TRUE(!outermost || shell[i] == 1) << i;
     EXPECT_TRUE(!deep || shell[i] == 0) << i;
     marked += shell[i];

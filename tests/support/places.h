@@ -1,5 +1,5 @@
-// Where the sources and the build of this run are. In one file, so that no other test's object depends on a path and a
-// compiler cache serves every checkout.
+// Where the sources and the build of this run are. In one file, so that no other test's object depends on a
+// path and a compiler cache serves every checkout.
 #pragma once
 
 #include <filesystem>

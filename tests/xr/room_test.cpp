@@ -140,7 +140,8 @@ TEST(PanelView, HasThePanelAndWhatIsBeforeIt) {
   };
   for (const double x : {-1.0, 1.0}) {
     for (const double y : {-1.0, 1.0}) {
-      const glm::dvec3 corner = panel.pose.position + panel.pose.orientation * glm::dvec3(0.45 * x, 0.3 * y, 0.0);
+      const glm::dvec3 corner =
+          panel.pose.position + panel.pose.orientation * glm::dvec3(0.45 * x, 0.3 * y, 0.0);
       const glm::vec4 clip = place(corner);
       EXPECT_NEAR(clip.x / clip.w, x, 1e-4);
       EXPECT_NEAR(clip.y / clip.w, y, 1e-4);

@@ -101,9 +101,10 @@ Result<bool> send_falcon_firmware(FalconLink& link, const std::vector<std::uint8
     if (echo == piece) continue;
     const auto [sent, came] = std::mismatch(piece.begin(), piece.end(), echo.begin(), echo.end());
     const auto byte = static_cast<std::size_t>(sent - piece.begin());
-    Error error = refused(link, "the firmware came back otherwise at byte " + std::to_string(at + byte) + " of " +
-                                    std::to_string(firmware.size()) + ": " + hex({*sent}) + " was sent, " +
-                                    (came == echo.end() ? "nothing" : hex({*came})) + " came");
+    Error error =
+        refused(link, "the firmware came back otherwise at byte " + std::to_string(at + byte) + " of " +
+                          std::to_string(firmware.size()) + ": " + hex({*sent}) + " was sent, " +
+                          (came == echo.end() ? "nothing" : hex({*came})) + " came");
     error.mend += "; where that byte changes from time to time, by another cable or port";
     return error;
   }

@@ -66,9 +66,9 @@ class HandMap {
   LowPass low_pass_;
   glm::dquat axes_;  // device's to the world's
   Pose start_;
-  Pose device_;  // as it last was
-  Pose origin_;  // of the device, where the hand is at its start
-  Pose held_;    // in the world, while clutched
+  Pose device_;                     // as it last was
+  Pose origin_;                     // of the device, where the hand is at its start
+  Pose held_;                       // in the world, while clutched
   std::optional<Wrench> rendered_;  // at the device, last
   bool begun_ = false;
   bool clutched_ = false;

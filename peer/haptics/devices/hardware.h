@@ -34,7 +34,8 @@ bool is_tied(const std::string& spec);
 
 /// How a spec of these kinds is written, for errors and help.
 constexpr const char* kHardwareSpecs =
-    "spacemouse[:SERIAL|PATH], gamepad[:SERIAL|NAME|PATH], falcon[:SERIAL], osc[:[HOST:]PORT][,...], plugin:FILE[:OPTIONS] or operator[:tight|loose,...]";
+    "spacemouse[:SERIAL|PATH], gamepad[:SERIAL|NAME|PATH], falcon[:SERIAL], osc[:[HOST:]PORT][,...], "
+    "plugin:FILE[:OPTIONS] or operator[:tight|loose,...]";
 
 /// Something that is plugged in, or why it cannot be used.
 struct FoundDevice {

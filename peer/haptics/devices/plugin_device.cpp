@@ -153,8 +153,9 @@ Result<bool> PluginDevice::settle(const slosh_device_capabilities& said) {
   if (only_tells_) {
     limits_ = limits_without_a_hand();
   } else {
-    ChosenGains gains = choose_gains(sheet_of(said), said.own_damping_n_s_m, said.own_rotational_damping_nm_s_rad,
-                                     period, settings, clean_text(name.data(), 64));
+    ChosenGains gains =
+        choose_gains(sheet_of(said), said.own_damping_n_s_m, said.own_rotational_damping_nm_s_rad, period,
+                     settings, clean_text(name.data(), 64));
     warnings_.insert(warnings_.end(), gains.warnings.begin(), gains.warnings.end());
     limits_ = map_->to_world(gains.limits);
   }

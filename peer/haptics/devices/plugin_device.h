@@ -19,8 +19,8 @@ namespace slosh {
 /// (DevicePort); numbers that are not finite silence it; opening and closing are given kPatience. open()
 /// reads once, so that a plug-in that never answers is known before a world waits for it. One that measures
 /// force (SLOSH_DEVICE_ADMITTANCE) is moved by AdmittanceMotion: its hand is where it is told to be. A force
-/// that is not known for kForceHolds, or that is no number, moves nothing: it is told to stand. One that gives
-/// none (SLOSH_DEVICE_POSITION) is a hand as a gamepad's.
+/// that is not known for kForceHolds, or that is no number, moves nothing: it is told to stand. One that
+/// gives none (SLOSH_DEVICE_POSITION) is a hand as a gamepad's.
 class PluginDevice final : public Device {
  public:
   PluginDevice(std::string file, std::string options, HandPlace place);
@@ -41,8 +41,8 @@ class PluginDevice final : public Device {
   std::string status() const override;
   std::vector<std::string> warnings() const override { return warnings_; }
 
-  static constexpr double kPatience = 5.0;   ///< s for open
-  static constexpr double kCloseWait = 1.0;  ///< s
+  static constexpr double kPatience = 5.0;     ///< s for open
+  static constexpr double kCloseWait = 1.0;    ///< s
   static constexpr double kForceHolds = 0.01;  ///< s
   static constexpr double kAskedAgain = 0.1;   ///< s between two sentences of it
 

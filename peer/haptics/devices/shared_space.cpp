@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kStill = 0.15;         // s for which both have been where they are
 constexpr double kStillWithin = 0.004;  // m
-constexpr double kGraspCloses = 0.6;         // of the button's way; opens below kGraspOpens
+constexpr double kGraspCloses = 0.6;    // of the button's way; opens below kGraspOpens
 constexpr double kGraspOpens = 0.4;
 
 using Matrix4 = std::array<std::array<double, 4>, 4>;

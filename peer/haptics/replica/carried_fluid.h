@@ -12,12 +12,12 @@ namespace slosh {
 
 /// What acts on the body besides couplings, over the time between two words of the host.
 struct Acting {
-  double elapsed = 0.0;      ///< s; 0: nothing came before, and there is no acceleration
-  glm::dvec3 before{0.0};    ///< m/s, of the centre of mass, at the word before
-  glm::dvec3 now{0.0};       ///< at this
-  glm::dvec3 force{0.0};     ///< N: all that acts, the mean
-  bool tells_fluid = false;  ///< the host says what of that is the fluid's:
-  glm::dvec3 fluid{0.0};     ///< N, the mean
+  double elapsed = 0.0;       ///< s; 0: nothing came before, and there is no acceleration
+  glm::dvec3 before{0.0};     ///< m/s, of the centre of mass, at the word before
+  glm::dvec3 now{0.0};        ///< at this
+  glm::dvec3 force{0.0};      ///< N: all that acts, the mean
+  bool tells_fluid = false;   ///< the host says what of that is the fluid's:
+  glm::dvec3 fluid{0.0};      ///< N, the mean
   glm::dvec3 told_mass{0.0};  ///< kg that go along, by the host's own line; 0: it says nothing …
   glm::dvec3 told_drag{0.0};  ///< … and N·s/m
 };

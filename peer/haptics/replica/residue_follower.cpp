@@ -7,10 +7,10 @@ namespace slosh {
 namespace {
 
 constexpr std::array<double, 4> kLags{1.0, 0.3, 0.1, 0.03};  // s, of low-passes
-constexpr double kGoes = 0.1;       // s, of each of two by which is known how it goes
+constexpr double kGoes = 0.1;              // s, of each of two by which is known how it goes
 constexpr double kResidueCarriedOn = 0.2;  // s for which it goes on so at most
-constexpr double kMemory = 0.7;     // s of what was foreseen and told
-constexpr double kUsual = 0.1;      // N: a step that was smaller says nothing
+constexpr double kMemory = 0.7;            // s of what was foreseen and told
+constexpr double kUsual = 0.1;             // N: a step that was smaller says nothing
 constexpr int kSweeps = 3;
 
 double taken(double elapsed, double lag) {
@@ -74,7 +74,8 @@ void ResidueFollower::hear(double elapsed, double told, double horizon, double m
   gone_ += taken(elapsed, goes) * (going_ - gone_);
   Said now{time_, low_[0], {}};
   for (std::size_t i = 0; i + 1 < kLows; ++i) now.steps[i] = low_[i + 1] - low_[i];
-  now.steps[kLows - 1] = std::clamp(std::min(horizon, kResidueCarriedOn) * (going_ - gone_) / goes, -most, most);
+  now.steps[kLows - 1] =
+      std::clamp(std::min(horizon, kResidueCarriedOn) * (going_ - gone_) / goes, -most, most);
   foreseen_ = now.lasting;
   for (std::size_t i = 0; i < kSteps; ++i) foreseen_ += shares_[i] * now.steps[i];
   newest_ = (newest_ + 1) % kRemembered;

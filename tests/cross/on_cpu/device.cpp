@@ -46,8 +46,8 @@ void begin() {
   _longjmp(scheduler, 1);
 }
 
-// From one stack to another and back, tens of millions of times. swapcontext() asks the kernel for the signal mask
-// each time: with it the quick comparisons took 410 s for 21.
+// From one stack to another and back, tens of millions of times. swapcontext() asks the kernel for the signal
+// mask each time: with it the quick comparisons took 410 s for 21.
 void go_on(Fiber& fiber) {
   if (_setjmp(scheduler)) return;
   if (fiber.begun) _longjmp(fiber.place, 1);
@@ -113,7 +113,8 @@ void run_block(Fiber* block, unsigned threads) {
     }
     if (at_grid == threads || done == threads) return;
     bool released = false;
-    for (unsigned t = 0; t < threads; t += 32) released |= release_warp(block + t, std::min(32u, threads - t));
+    for (unsigned t = 0; t < threads; t += 32)
+      released |= release_warp(block + t, std::min(32u, threads - t));
     if (released) continue;
     if (at_block != threads) give_up("not all of a block's or a team's threads come to the same barrier");
     for (unsigned t = 0; t < threads; ++t) block[t].state = State::kRuns;

@@ -199,8 +199,8 @@ TEST_F(Hands, ALostHandLetsGoToOneThatIsHeardAndElseStays) {
   EXPECT_FALSE(newest(0).engaged) << "who leaves is not waited for";
 }
 
-/// What persons put in is counted for the grip, whoever holds it: others count on the sum. It was none on a stand, and the
-/// whole again with the hand.
+/// What persons put in is counted for the grip, whoever holds it: others count on the sum. It was none on a
+/// stand, and the whole again with the hand.
 TEST_F(Hands, WhatWasPutInIsCountedOnOverStandsAndHolders) {
   const auto put_in = [&](std::uint64_t number, double energy, wire::HoldsOn engaged = wire::HoldsOn::kYes) {
     wire::PoseSample s;
@@ -228,7 +228,8 @@ TEST_F(Hands, WhatWasPutInIsCountedOnOverStandsAndHolders) {
     hands.taken(0, now);
     ASSERT_TRUE(put_in(1, begins_at, wire::HoldsOn::kUnfelt));
     ASSERT_TRUE(put_in(2, begins_at - 0.1));
-    EXPECT_NEAR(newest(0).energy, before - 0.1, 1e-12) << "another holder, whose count begins at " << begins_at;
+    EXPECT_NEAR(newest(0).energy, before - 0.1, 1e-12)
+        << "another holder, whose count begins at " << begins_at;
     hands.let_go(0, now);
   }
 }

@@ -63,7 +63,8 @@ inline bool run_until(const std::vector<Endpoint*>& ends, const std::function<bo
 /// Runs the ends for a time.
 inline void run_for(const std::vector<Endpoint*>& ends, double seconds) {
   const std::int64_t until = steady_now_ns() + to_nanoseconds(seconds);
-  run_until(ends, [&] { return steady_now_ns() >= until; }, seconds + 20.0);
+  run_until(
+      ends, [&] { return steady_now_ns() >= until; }, seconds + 20.0);
 }
 
 inline SharedBytes shared(Bytes bytes) {

@@ -10,7 +10,7 @@
 namespace slosh::testing {
 namespace {
 
-constexpr std::size_t kPoseBytes = 450;   // four samples of a hand
+constexpr std::size_t kPoseBytes = 450;       // four samples of a hand
 constexpr std::size_t kPoseStateBytes = 300;  // two bodies
 
 /// What arrived of one kind.
@@ -46,8 +46,10 @@ void pose_flow(VirtualLink& link, double seconds, Arrivals& poses, Arrivals& sta
   for (int i = 0; i < steps; ++i) {
     const bool counts = i >= 4000;
     if (i % 4 == 0) {
-      link.peer->send_datagram(link.at_peer(), Priority::kPose, shared(stamped_pose(link.now_ns, kPoseBytes)));
-      link.host->send_datagram(link.at_host(), Priority::kState, shared(stamped_pose(link.now_ns, kPoseStateBytes)));
+      link.peer->send_datagram(link.at_peer(), Priority::kPose,
+                               shared(stamped_pose(link.now_ns, kPoseBytes)));
+      link.host->send_datagram(link.at_host(), Priority::kState,
+                               shared(stamped_pose(link.now_ns, kPoseStateBytes)));
       poses.sent += counts ? 1 : 0;
       states.sent += counts ? 1 : 0;
     }
@@ -154,8 +156,10 @@ std::pair<std::size_t, std::size_t> pump(VirtualLink& link, double seconds) {
   const int steps = static_cast<int>(seconds * 2000.0);
   for (int i = 0; i < steps; ++i) {
     if (i % 4 == 0) {
-      link.peer->send_datagram(link.at_peer(), Priority::kPose, shared(stamped_pose(link.now_ns, kPoseBytes)));
-      link.host->send_datagram(link.at_host(), Priority::kState, shared(stamped_pose(link.now_ns, kPoseStateBytes)));
+      link.peer->send_datagram(link.at_peer(), Priority::kPose,
+                               shared(stamped_pose(link.now_ns, kPoseBytes)));
+      link.host->send_datagram(link.at_host(), Priority::kState,
+                               shared(stamped_pose(link.now_ns, kPoseStateBytes)));
     }
     link.step();
     for (const auto& [events, count] :

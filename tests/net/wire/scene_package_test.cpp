@@ -316,7 +316,8 @@ TEST(ScenePackage, EveryCutAndEveryFlippedBitOfTheCompressedIsStood) {
 TEST(ScenePackage, ALyingSizeIsNotBelieved) {
   // A zstd frame of one byte that claims 60 MB.
   const Bytes liar{1, 1, 0x28, 0xb5, 0x2f, 0xfd, 0xa0, 0x00, 0x00, 0xc0, 0x03, 0x03, 0x00, 0x00, 0x00};
-  EXPECT_NE(package_error(liar).find("claims to be 62914560 bytes"), std::string::npos) << package_error(liar);
+  EXPECT_NE(package_error(liar).find("claims to be 62914560 bytes"), std::string::npos)
+      << package_error(liar);
   EXPECT_NE(package_error(Bytes{1, 1, 'x', 'y'}).find("does not begin as zstd does"), std::string::npos);
   EXPECT_NE(package_error(Bytes{6, 0}).find("its version is 6"), std::string::npos);
   EXPECT_NE(package_error(Bytes{1, 7}).find("its coding is 7"), std::string::npos);

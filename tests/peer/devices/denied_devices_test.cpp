@@ -1,5 +1,5 @@
-// `slosh devices` where devices are there and this user may not open them: what is said, and the udev rule that is
-// offered, never put in place without a yes.
+// `slosh devices` where devices are there and this user may not open them: what is said, and the udev rule
+// that is offered, never put in place without a yes.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <umockdev.h>
@@ -71,7 +71,8 @@ class DeniedDevices : public ::testing::Test {
     const test::Outcome outcome = test::Process(unprivileged({"devices"}), folder_.path() / "o").wait();
     EXPECT_EQ(outcome.code, 1) << outcome.err;
     EXPECT_TRUE(contains(outcome.out, name)) << outcome.out;
-    EXPECT_TRUE(contains(outcome.out, "cannot be used: this user may not open it. Install the udev rule once"));
+    EXPECT_TRUE(
+        contains(outcome.out, "cannot be used: this user may not open it. Install the udev rule once"));
     EXPECT_TRUE(contains(outcome.out, kUdevRuleFile)) << outcome.out;
     EXPECT_TRUE(contains(outcome.out, udev_rule())) << outcome.out;
     EXPECT_TRUE(contains(outcome.out, SLOSH_PROGRAM " devices --install-udev-rule\n")) << outcome.out;
@@ -147,7 +148,8 @@ TEST_F(DeniedDevices, AYesPutsItInPlaceThroughSudo) {
   ASSERT_TRUE(terminal.shows("[y/N]")) << terminal.screen();
   terminal.type("y\n");
   EXPECT_EQ(terminal.wait(), 0) << terminal.screen();
-  EXPECT_EQ(asked_of_sudo(), SLOSH_PROGRAM " devices --install-udev-rule --rule-file " + rule_.string() + "\n");
+  EXPECT_EQ(asked_of_sudo(),
+            SLOSH_PROGRAM " devices --install-udev-rule --rule-file " + rule_.string() + "\n");
   EXPECT_EQ(test::read_text(rule_), udev_rule());
   EXPECT_TRUE(contains(terminal.screen(), "They can be used now.")) << terminal.screen();
 }
@@ -174,7 +176,8 @@ TEST_F(DeniedDevices, ASudoThatRefusesIsSaidWithTheWayByHand) {
   ASSERT_TRUE(terminal.shows("[y/N]")) << terminal.screen();
   terminal.type("y\n");
   EXPECT_EQ(terminal.wait(), 1);
-  EXPECT_TRUE(contains(terminal.screen(), "it ended with 1, and the rule is not in place")) << terminal.screen();
+  EXPECT_TRUE(contains(terminal.screen(), "it ended with 1, and the rule is not in place"))
+      << terminal.screen();
   EXPECT_TRUE(contains(terminal.screen(), "As root, save the rule above as " + rule_.string()));
   EXPECT_FALSE(std::filesystem::exists(rule_));
 }

@@ -26,7 +26,7 @@ struct FakeFalcon {
   glm::dvec3 grip{0.0, 0.0, kFalconMiddle};
   glm::dvec3 velocity{0.0};  ///< m/s
   std::uint8_t buttons = 0;
-  bool counts = false;    ///< its buttons count its reports, so that one that is missing or comes twice is seen
+  bool counts = false;  ///< its buttons count its reports, so that one that is missing or comes twice is seen
   std::size_t chop = 62;  ///< bytes an IN packet brings at most
 
   // What happened.

@@ -34,7 +34,8 @@ class FalconUsb : public ::testing::Test {
     std::ofstream(folder_.path() / "firmware.bin", std::ios::binary)
         .write(reinterpret_cast<const char*>(falcon_.firmware.data()), 7357);
     std::ofstream(folder_.path() / "slosh" / "devices" / "falcon.conf")
-        << "firmware = " << (folder_.path() / "firmware.bin").string() << "\nscale = 1\nrelative_to = world\n";
+        << "firmware = " << (folder_.path() / "firmware.bin").string()
+        << "\nscale = 1\nrelative_to = world\n";
   }
   /// As after power-up.
   static FakeFalcon fresh() {
@@ -71,8 +72,8 @@ TEST_F(FalconUsb, GetsItsFirmwareAndNoForceUntilItKnowsItsPlace) {
   EXPECT_EQ(motors_of(falcon_.commands.back()), kNoForce);
 }
 
-/// With the frames of the bus, by the clock: how quick it is is told, as the machine may have other work; that no
-/// report is missing, none comes twice and each has its answer is no matter of time.
+/// With the frames of the bus, by the clock: how quick it is is told, as the machine may have other work;
+/// that no report is missing, none comes twice and each has its answer is no matter of time.
 TEST_F(FalconUsb, ThreeThousandReportsAtAKilohertzWithoutAGap) {
   falcon_.homed = true;
   falcon_.counts = true;
@@ -185,9 +186,10 @@ TEST_F(FalconUsb, UnpluggedInTheMiddleItsForceEndsAndComesBackWithIt) {
   // Its power was out, too: without firmware and without its place.
   FakeFalcon back = fresh();
   MockedFalcon again(machine_, back, 5);
-  ASSERT_TRUE(
-      until("found", [&] { return kit.servo->failure(0).find("pull its grip out") != std::string::npos &&
-                                  again.with([](FakeFalcon& f) { return !f.commands.empty(); }); }));
+  ASSERT_TRUE(until("found", [&] {
+    return kit.servo->failure(0).find("pull its grip out") != std::string::npos &&
+           again.with([](FakeFalcon& f) { return !f.commands.empty(); });
+  }));
   EXPECT_EQ(again.with([](FakeFalcon& f) { return f.received; }), back.firmware);
   for (int i = 0; i < 100; ++i) tick();
   again.with([](FakeFalcon& f) {

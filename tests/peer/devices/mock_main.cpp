@@ -33,7 +33,8 @@ int main(int argc, char** argv) {
   constexpr const char* kMark = "SLOSH_UNDER_UMOCKDEV";
   if (std::getenv(kMark) == nullptr) {
     setenv(kMark, "1", 1);
-#ifdef __SANITIZE_ADDRESS__  // g++: its runtime is a library that insists on being the first; clang's is in the program
+#ifdef __SANITIZE_ADDRESS__  // g++: its runtime is a library that insists on being the first; clang's is in
+                             // the program
     setenv("LD_PRELOAD", "libasan.so.8:libumockdev-preload.so.0", 1);
 #else
     setenv("LD_PRELOAD", "libumockdev-preload.so.0", 1);

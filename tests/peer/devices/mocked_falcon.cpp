@@ -61,8 +61,8 @@ MockedFalcon::MockedFalcon(MockedMachine& machine, FakeFalcon& falcon, int numbe
   // Device descriptor, then one configuration with one interface and two bulk ends.
   const std::string made =
       std::string("P: ") + kPath + "\nN: bus/usb/001/" + three +
-      "\nE: SUBSYSTEM=usb\nE: DEVTYPE=usb_device\nE: DEVNAME=" + node() + "\nE: BUSNUM=001\nE: DEVNUM=" +
-      three + "\nA: busnum=1\\n\nA: devnum=" + n +
+      "\nE: SUBSYSTEM=usb\nE: DEVTYPE=usb_device\nE: DEVNAME=" + node() +
+      "\nE: BUSNUM=001\nE: DEVNUM=" + three + "\nA: busnum=1\\n\nA: devnum=" + n +
       "\\n\nA: speed=12\\n\nA: bConfigurationValue=1\\n\nA: idVendor=0403\\n\nA: idProduct=cb48\\n\n"
       "H: descriptors="
       "1201000200000040030448cb0006010203010902200001010080320904000002ffffff00070502024000000705810240000000"
@@ -171,8 +171,8 @@ bool MockedFalcon::submit(UMockdevIoctlClient* client) {
   umockdev_ioctl_data_unref(buffer);
   urb.status = 0;
   urb.actual_length = length;
-  umockdev_ioctl_data_update(request, offsetof(usbdevfs_urb, status),
-                             reinterpret_cast<guint8*>(&urb.status), sizeof urb.status);
+  umockdev_ioctl_data_update(request, offsetof(usbdevfs_urb, status), reinterpret_cast<guint8*>(&urb.status),
+                             sizeof urb.status);
   umockdev_ioctl_data_update(request, offsetof(usbdevfs_urb, actual_length),
                              reinterpret_cast<guint8*>(&urb.actual_length), sizeof urb.actual_length);
   done_.push_back({request, in});

@@ -193,8 +193,8 @@ class LinkForces : public ::testing::TestWithParam<Hands> {
     const Numbers n = numbers();
     std::printf("%-44s %6.1f N felt (%.1f by the other), %5.1f N from row to row, %5.1f N on the body\n",
                 what, n.peak, people[1]->peak, n.leap, n.carried);
-    // A hold that was taken anew bears kHoldForce less than its share at first, and what sinks is caught: 21.2 N of 14.7
-    // where a beam that tilts is given back to both hands.
+    // A hold that was taken anew bears kHoldForce less than its share at first, and what sinks is
+    // caught: 21.2 N of 14.7 where a beam that tilts is given back to both hands.
     EXPECT_LT(n.peak, 1.2 * steady.peak + 2.0 * kHoldForce) << what;
     EXPECT_LT(n.leap, steady.leap + 2.5) << what;  // 1.5; with another compiler's rounding 2.1
     EXPECT_LT(n.carried, 1.2 * steady.carried + 2.0 * kHoldForce) << what;

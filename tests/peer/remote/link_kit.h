@@ -14,10 +14,10 @@
 
 namespace slosh::test {
 
-constexpr double kSwing = 0.25;                // m from end to end,
-constexpr double kSwingTime = 3.0;             // s to and fro: 0.26 m/s and 0.55 m/s² at most
-constexpr double kTilt = 1.6;                  // rad from one side to the other,
-constexpr double kTiltTime = 7.0;              // s to and fro: as the hands that spill the bucket
+constexpr double kSwing = 0.25;     // m from end to end,
+constexpr double kSwingTime = 3.0;  // s to and fro: 0.26 m/s and 0.55 m/s² at most
+constexpr double kTilt = 1.6;       // rad from one side to the other,
+constexpr double kTiltTime = 7.0;   // s to and fro: as the hands that spill the bucket
 
 enum class Motion { kToAndFro, kTurning };
 

@@ -110,8 +110,8 @@ TEST(PoseUplink, AHostThatKnowsOfItIsToldThatAHandIsNotFeltYet) {
   }
 }
 
-/// An older host is sent a field that it never read, and reads all others as they are; so does a host of now from an older
-/// peer, who counts in it.
+/// An older host is sent a field that it never read, and reads all others as they are; so does a host of now
+/// from an older peer, who counts in it.
 TEST(PoseUplink, AnOlderHostIsSentWhatNobodyReads) {
   Uplink kit(1);
   kit.post(0, 1000, 0.25, true, true);

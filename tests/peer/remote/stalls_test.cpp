@@ -1,5 +1,6 @@
-// Processes that stand still while hands carry a beam: what hands feel and how the beam moves, beside the same people
-// undisturbed. The host's own hands, gate and world, and a device loop a person, on a clock that the test moves.
+// Processes that stand still while hands carry a beam: what hands feel and how the beam moves, beside the
+// same people undisturbed. The host's own hands, gate and world, and a device loop a person, on a clock that
+// the test moves.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -111,7 +112,8 @@ class Carrying {
     m.rate = 1.0;
     m.time_step = host_.world.plan().time_step;
     m.bodies = host_.now;
-    for (std::size_t i = 0; i < scene_.grips.size(); ++i) m.hands.push_back({.stand = host_.gate.poses()[i].stand});
+    for (std::size_t i = 0; i < scene_.grips.size(); ++i)
+      m.hands.push_back({.stand = host_.gate.poses()[i].stand});
     return m;
   }
   void step() {
@@ -149,10 +151,11 @@ class Carrying {
 };
 
 void expect_within(const Worst& run, const Worst& control, const std::string& what) {
-  std::printf("%-40s %5.1f (%.1f) N, %.2f (%.2f) N·m, %.1f N/ms; %.2f (%.2f) m up, %.2f (%.2f) m, %.2f (%.2f) m/s, "
-              "%.2f (%.2f) rad/s\n",
-              what.c_str(), run.force, control.force, run.torque, control.torque, run.change, run.rise, control.rise,
-              run.way, control.way, run.speed, control.speed, run.spin, control.spin);
+  std::printf(
+      "%-40s %5.1f (%.1f) N, %.2f (%.2f) N·m, %.1f N/ms; %.2f (%.2f) m up, %.2f (%.2f) m, %.2f (%.2f) m/s, "
+      "%.2f (%.2f) rad/s\n",
+      what.c_str(), run.force, control.force, run.torque, control.torque, run.change, run.rise, control.rise,
+      run.way, control.way, run.speed, control.speed, run.spin, control.spin);
   EXPECT_LT(run.force, kFactor * control.force) << what;
   EXPECT_LT(run.torque, kFactor * control.torque + 1.0) << what;
   EXPECT_LT(run.change, 20.0) << what;
@@ -233,7 +236,8 @@ TEST_P(Stalls, SpringsThatAreChangedWhileStrainedThrowNothing) {
 }
 
 INSTANTIATE_TEST_SUITE_P(StalledHands, Stalls,
-                         ::testing::Values(StalledHands{1, false}, StalledHands{1, true}, StalledHands{2, false}, StalledHands{2, true}));
+                         ::testing::Values(StalledHands{1, false}, StalledHands{1, true},
+                                           StalledHands{2, false}, StalledHands{2, true}));
 
 }  // namespace
 }  // namespace slosh

@@ -1,7 +1,8 @@
 /* A haptic device for slosh, as a shared library: implement these six functions, give its path to
  *     slosh play spoon --device plugin:/path/to/libmydevice.so:OPTIONS
  * C only, no library needed. An example: plugin/example.c. A device that measures force and is told where to
- * go (admittance) has a seventh: plugin/admittance.c. One that only tells where it is (a tracker): plugin/osc.
+ * go (admittance) has a seventh: plugin/admittance.c. One that only tells where it is (a tracker):
+ * plugin/osc.
  *
  * Units are SI. The device's frame is right-handed as its user sees it: x to the right, y up, z towards the
  * user; slosh turns it into the world's. Calls come one at a time, though not all from one thread: open and
@@ -40,17 +41,17 @@ extern "C" {
 /* What the device can hold, by its data sheet. Every number above 0 and finite, or it is refused; a device
  * without torque says what it likes there and passes over what it is sent. */
 typedef struct slosh_device_capabilities {
-  char name[64];                         /* of the model, for messages and its settings file; ends in '\0' */
-  double period_s;                       /* between two readings, e.g. 0.001 */
+  char name[64];   /* of the model, for messages and its settings file; ends in '\0' */
+  double period_s; /* between two readings, e.g. 0.001 */
   double max_force_n;
   double max_torque_nm;
   double max_force_rate_n_s;
   double max_torque_rate_nm_s;
-  double max_stiffness_n_m;              /* the hardest spring that it renders without humming */
+  double max_stiffness_n_m; /* the hardest spring that it renders without humming */
   double max_damping_n_s_m;
   double max_rotational_stiffness_nm_rad;
   double max_rotational_damping_nm_s_rad;
-  double own_damping_n_s_m;              /* of its mechanics, switched off: what springs it holds depends on it */
+  double own_damping_n_s_m; /* of its mechanics, switched off: what springs it holds depends on it */
   double own_rotational_damping_nm_s_rad;
   double workspace_radius_m;
   /* Since version 2. The rest is for SLOSH_DEVICE_ADMITTANCE alone, every number above 0: slosh moves it as a
@@ -65,8 +66,8 @@ typedef struct slosh_device_capabilities {
   double following_s; /* by which its motion is behind what it is told */
 } slosh_device_capabilities;
 
-#define SLOSH_READING_HAS_TWIST 1u /* velocities are measured; else slosh estimates them */
-#define SLOSH_READING_LET_GO 2u    /* the hand is not on the device */
+#define SLOSH_READING_HAS_TWIST 1u  /* velocities are measured; else slosh estimates them */
+#define SLOSH_READING_LET_GO 2u     /* the hand is not on the device */
 #define SLOSH_READING_HAS_WRENCH 4u /* force and torque are measured; asked of every admittance device */
 
 typedef struct slosh_device_reading {
@@ -111,9 +112,9 @@ SLOSH_DEVICE_EXPORT int slosh_device_write(void* device, const double force_n[3]
  * as at its last, which has no velocity. */
 SLOSH_DEVICE_EXPORT int slosh_device_move(void* device, const slosh_device_motion* motion);
 
-/* Since version 3, may be missing: a sentence about it now, of at most `size` bytes with its '\0', after a read, some
- * ten times a second. 0: how it does ("60 readings a second"). 1: what keeps it from working ("the battery is
- * empty"), in place of what `read` does not say. */
+/* Since version 3, may be missing: a sentence about it now, of at most `size` bytes with its '\0', after a
+ * read, some ten times a second. 0: how it does ("60 readings a second"). 1: what keeps it from working ("the
+ * battery is empty"), in place of what `read` does not say. */
 SLOSH_DEVICE_EXPORT int slosh_device_say(void* device, char* words, size_t size);
 
 /* Last; a force of zero was written before, where the device still answered. */
