@@ -82,7 +82,7 @@ def check_links(root, page, lines):
             if re.match(r"[a-z][a-z0-9+.-]*:", target):
                 continue
             path, _, part = target.partition("#")
-            at = os.path.normpath(os.path.join(root, os.path.dirname(page), path)) if path else os.path.join(root, page)
+            at = os.path.join(root, os.path.dirname(page), path) if path else os.path.join(root, page)
             if not os.path.exists(at):
                 fault(page, number, f"the link to {target} is dead. Point it at where that is now, or take it out.")
             elif part and at.endswith(".md"):
@@ -93,8 +93,8 @@ def check_links(root, page, lines):
 
 def check_limits(page, lines):
     if len(lines) > MAX_LINES:
-        fault(page, MAX_LINES + 1, f"{len(lines)} lines; {MAX_LINES} are allowed. Move experiments to {NOTEBOOK}, lists "
-              "of fields and formats to a page of their own.")
+        fault(page, MAX_LINES + 1, f"{len(lines)} lines; {MAX_LINES} are allowed. Move experiments to {NOTEBOOK}, "
+              "lists of fields and formats to a page of their own.")
     for number, line in enumerate(lines, 1):
         if len(line) > MAX_COLUMNS and not line.startswith("|") and not LINK.search(line):
             fault(page, number, f"{len(line)} columns; {MAX_COLUMNS} are allowed. Break the line.")

@@ -130,9 +130,9 @@ INSTANTIATE_TEST_SUITE_P(
                            {"spin_up", 0.005, "torque at tau 0.05", 0.045},
                            {"spin_up", 0.005, "torque at tau 0.10", 0.06},
                            {"spin_up", 0.005, "impulse", 0.025}},
-        // Thin and slow fluid yields, and creeps by itself (tests/notebook/2026-11-25-slow-flow-yields.md), and
-        // five spacings across the radius see that alone. The report's own 7.1 mm, where 5 Pa·s is within a
-        // percent, take 17 s.
+        // Thin and slow fluid yields, and creeps by itself (tests/notebook/2026-11-25-slow-flow-yields.md),
+        // and five spacings across the radius see that alone. The report's own 7.1 mm, where 5 Pa·s is within
+        // a percent, take 17 s.
         std::vector<Known>{{"spin_up_all", 0.01, "torque, 2.0 Pa·s at 0.5 rad/s", 0.28},
                            {"spin_up_all", 0.01, "torque, 5.0 Pa·s at 0.5 rad/s", 0.11},
                            {"spin_up_all", 0.01, "torque, 2.0 Pa·s at 5.0 rad/s", 0.18},
