@@ -34,8 +34,9 @@ Result<SampledScene> sample_scene(const Scene& scene, double spacing, SampleRepo
 
 /// How far apart the samples of a body's surface are, m. Sheets of particles have bumps, which brake what
 /// slides along them: fluid that turns slowly in a glass without friction loses a quarter of that in 0.4 s.
-/// Of fixed bodies that slip they are finer than `spacing`, and the bumps are gone (sim/walls/README.md,
-/// *Walls that slip*). Bodies that move keep the spacing, as do models that do not correct gradients.
+/// Of fixed bodies that slip they are finer than `spacing`, and the bumps are gone
+/// (tests/notebook/2026-11-25-free-slip-walls.md). Bodies that move keep the spacing, as do models that
+/// do not correct gradients.
 double sheet_spacing(const Scene& scene, const Body& body, double spacing);
 
 /// A quick estimate for choosing a spacing, without sampling: fluid volume / spacing³ and area / spacing².

@@ -107,7 +107,7 @@ struct MassProperties {
   glm::dmat3 inertia{0.0};         ///< kg·m², about the centre of mass, mesh axes
 };
 
-/// Which particle model a scene runs. sim/pressure/README.md compares them in numbers.
+/// Which particle model a scene runs. sim/pressure/README.md compares them.
 enum class ParticleModel : std::uint8_t {
   kConsistent,      ///< density and pressure from one kernel, walls counted in both
   kPaper,           ///< Eq 2 with poly6 and without body particles, Eq 5 as printed, constant body pressure

@@ -70,7 +70,7 @@ void decide_body_drag(const Scene& scene, Plan& plan) {
 }
 
 // From this many times the explicit step on a solve is worth it: a step with one takes 1.05 to 1.8 times as
-// long there, up to four times in honey (sim/viscosity/README.md, *When drag is solved for*). At a wider
+// long there, up to four times in honey (tests/notebook/2026-11-27-implicit-viscosity.md). At a wider
 // support Eq 9, which is what is solved for, passes on 6 % too little in a lattice, and stresses, which are
 // stepped, do not.
 constexpr double kWorthSolving = 2.0, kWorthSolvingWide = 4.0;

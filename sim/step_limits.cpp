@@ -25,7 +25,8 @@ constexpr double kLiveCourant = 1.0;
 constexpr double kSolvedCourant = 0.4;
 constexpr double kFarShorter = 0.25;  // of the step that the flow asks for: density_time()
 // Free bodies above this share of the fluid layer around them need no shorter step. With 0.05 a ball let go
-// in water rattled from there on (bodies/README.md, *Light bodies*); in a hand or in honey it was calm.
+// in water rattled from there on (tests/notebook/2026-11-26-light-bodies-and-stacks.md); in a hand
+// or in honey it was calm.
 constexpr double kLightBody = 0.1;
 
 // m/s in the lightest fluid.

@@ -38,8 +38,8 @@ struct CorrectedState {
 /// where they lie unevenly or beside a wall, which is one layer in it; who is taken for a surface presses in
 /// part as the consistent model does, and yields. A fluid that needs no drag on jostling lets nine tenths
 /// pass for all. One that lives by that drag asks for all: with nine tenths water turned over by itself at 22
-/// mm/s for 16, and the surface of a turning glass stood 3 % lower (sim/pressure/README.md, *A viscous fluid
-/// does not yield*). `viscosity`: Pa·s.
+/// mm/s for 16, and the surface of a turning glass stood 3 % lower
+/// (tests/notebook/2026-11-25-slow-flow-yields.md). `viscosity`: Pa·s.
 inline constexpr float kPassedOver = 0.1f;
 SLOSH_HD inline float whole_from(const CorrectionConstants& c, float viscosity) {
   const float jostling = jostling_viscosity(c.noise_viscosity, viscosity) / c.noise_viscosity;

@@ -8,7 +8,7 @@ namespace slosh {
 
 /// Eq 9 has the viscosity kernel's ∇²W, and so have the models that do not correct gradients and thin fluid
 /// (DragSheet::kBehind), where the drag on jostling is what counts. Thick fluid has a shape of its own, for
-/// two reasons (sim/viscosity/README.md, *What thick fluid passes on*):
+/// two reasons (tests/notebook/2026-11-25-shape-of-the-viscous-pair-force.md):
 ///
 /// - Fluid at rest lies in a lattice, and at a support ratio of 2 ∇²W passes on 0.89 of a strain along the
 ///   lattice's axes and 1.055 of a shear. What is nearer counts more here, so that both are 1.00; where

@@ -1,6 +1,6 @@
 // What thick fluid passes on far from walls that hold: each particle the stress of its own neighbourhood's
-// flow, in place of Eq 9 between pairs, which passes on what the packing lets it (README.md, *Stresses far
-// from walls*).
+// flow, in place of Eq 9 between pairs, which passes on what the packing lets it
+// (tests/notebook/2026-11-27-particle-stress.md).
 //
 // G is the least-squares gradient of the velocity by fluid neighbours alone, τ = μ (G + Gᵀ), g = d (−W'/r)
 // and

@@ -3,7 +3,7 @@
 //
 // Free slip is symmetry: the same fluid behind the wall, mirrored. Pressures have the wall's particles for
 // it, but drag had nobody, and fluid that stretches or is pressed together across a wall met half as much
-// resistance there as it should (sim/viscosity/README.md, *Where a vortex is too thin*). A particle of the
+// resistance there as it should (tests/notebook/2026-11-26-convergence-of-a-vortex.md). A particle of the
 // wall's surface drags fluid along the normal at the fluid's own foot, against what that has across the wall.
 // So nothing brakes what slides, along a bent wall neither.
 #pragma once

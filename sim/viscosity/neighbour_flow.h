@@ -4,7 +4,7 @@
 // There all neighbours lie on one side, and their mean velocity is that of a place some tenths of a spacing
 // off. Drag against that mean was drag on the flow: a fluid of 0.5 Pa·s in a glass that turned at 16 rad/s
 // turned by 4 % faster than the glass (10 mm), and a cylinder that suddenly turned in it was braked by 6 %
-// too much (README.md, *Jostling, and the flow*).
+// too much (tests/notebook/2026-11-26-artificial-viscosity-follows-the-flow.md).
 #pragma once
 
 #include "sim/math/symmetric.h"

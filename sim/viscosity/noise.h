@@ -54,8 +54,8 @@ SLOSH_HD inline float jostling_viscosity(float noise, float viscosity) {
 /// sound is damped the more the faster it is, by this factor more for each speed of sound beyond it, as Von
 /// Neumann and Richtmyer's viscosity (1950) grows with the speed at which fluid meets. Calm fluid is slower
 /// than that and the same to the bit. Without it water that fell on a shallow layer sprang back from
-/// it particle by particle (sim/pressure/README.md, *In all but the paper's*). Not where pressures are solved
-/// for: little springs back there.
+/// it particle by particle (tests/notebook/2026-11-23-impacts-and-boundary-share.md). Not where
+/// pressures are solved for: little springs back there.
 inline constexpr double kImpactSpeed = 0.05;
 inline constexpr double kImpactGrowth = 50.0;
 

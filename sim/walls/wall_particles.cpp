@@ -40,7 +40,7 @@ glm::vec3 inset(const glm::vec3& surface, const glm::vec3& normal, float depth,
 constexpr float kTwoSides = 3.0f;  // depths: in a thinner wall the field, which is coarse, is round
 // Spacings. A thinner wall's sheets are one, as strong as a thick one's and as near as they are: with less,
 // fluid got into the edge between floor and wall of a glass of 1.03 spacings and stayed there
-// (sim/walls/README.md).
+// (tests/notebook/2026-11-26-thin-walls.md).
 constexpr float kThinnest = 1.15f;
 
 // m, how thick the solid is behind a point of its surface; `most` where it is more than that. Behind a wall
@@ -199,8 +199,8 @@ void close_gaps(const DistanceFieldView& field, float depth, float spacing, floa
 
 constexpr float kNearEdges = 0.6f;  // of the depth behind faces that meet: as much a field has at least of it
 // Spacings that the faces of a convex edge lie deeper near it. Without, boxes of 8 and 10 spacings are lifted
-// by 1.1 and 0.9 % too much; a half of that is fluid that lies half a percent too closely (README.md,
-// *Edges*).
+// by 1.1 and 0.9 % too much; a half of that is fluid that lies half a percent too closely
+// (tests/notebook/2026-11-27-convex-edges.md).
 constexpr float kDeeperNearEdges = 0.012f;
 
 // One body's particles in its mesh frame.

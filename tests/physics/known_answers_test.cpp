@@ -92,7 +92,7 @@ INSTANTIATE_TEST_SUITE_P(
         std::vector<Known>{{"paraboloid", 0.0075, "rise over r²", 0.15}},
         // Walls of 1.4 and 1.75 spacings. While what is behind them crowded theirs, and where there is no
         // room for it they counted as thick ones, the plate was lifted by +60 to +70 % at 10 mm and -14 at 8,
-        // and the level was -1 and -6 % (sim/walls/README.md, *Thin walls*).
+        // and the level was -1 and -6 % (tests/notebook/2026-11-26-thin-walls.md).
         std::vector<Known>{{"thin_walls", 0.01, "level in a glass", 0.016},
                            {"thin_walls", 0.01, "lift of a plate", 0.025}},
         std::vector<Known>{{"thin_walls", 0.008, "level in a glass", 0.017},
@@ -130,8 +130,9 @@ INSTANTIATE_TEST_SUITE_P(
                            {"spin_up", 0.005, "torque at tau 0.05", 0.045},
                            {"spin_up", 0.005, "torque at tau 0.10", 0.06},
                            {"spin_up", 0.005, "impulse", 0.025}},
-        // Thin and slow fluid yields, and creeps by itself (sim/pressure/README.md), and five spacings across
-        // the radius see that alone. The report's own 7.1 mm, where 5 Pa·s is within a percent, take 17 s.
+        // Thin and slow fluid yields, and creeps by itself (tests/notebook/2026-11-25-slow-flow-yields.md),
+        // and five spacings across the radius see that alone. The report's own 7.1 mm, where 5 Pa·s is within
+        // a percent, take 17 s.
         std::vector<Known>{{"spin_up_all", 0.01, "torque, 2.0 Pa·s at 0.5 rad/s", 0.28},
                            {"spin_up_all", 0.01, "torque, 5.0 Pa·s at 0.5 rad/s", 0.11},
                            {"spin_up_all", 0.01, "torque, 2.0 Pa·s at 5.0 rad/s", 0.18},

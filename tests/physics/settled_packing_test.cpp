@@ -1,5 +1,5 @@
 // What room a settled particle takes, and what the model counts of it (pressure/settled_packing.h): pairs
-// drag by that (sim/viscosity/README.md, *Whole volumes*).
+// drag by that (tests/notebook/2026-11-25-particle-volume-in-viscous-force.md).
 #include "sim/pressure/settled_packing.h"
 
 #include <gtest/gtest.h>

@@ -23,8 +23,8 @@ Turnover turnover(const SceneBuilder& b) {
 }
 
 // The corrected model's water rises along the axis and sinks near the walls, whose first layer bears more
-// than its weight and whose second less; jostling does the rest (sim/pressure/README.md, *Still water turns
-// over*). 16 and 15 mm/s are reached.
+// than its weight and whose second less; jostling does the rest
+// (tests/notebook/2026-11-23-still-water-turns-over.md). 16 and 15 mm/s are reached.
 TEST(StillWater, turns_over_by_itself) {
   const Turnover corrected = turnover(tank_of_water(ParticleModel::kCorrected));
   report_value("still water moves, corrected", corrected.all, "m/s");

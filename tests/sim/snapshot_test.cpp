@@ -12,7 +12,7 @@ TEST(StatusText, SaysEveryBitInWords) {
   const std::string both = status_text(kStatusEscaped | kStatusTimeSlipped);
   EXPECT_NE(both.find("left the domain"), std::string::npos);
   EXPECT_NE(status_text(kStatusCompressed).find("100 to 400"), std::string::npos)
-      << "what sim/walls/README.md measured";
+      << "what tests/notebook/2026-11-27-penetration-clamp.md measured";
   EXPECT_NE(both.find("; "), std::string::npos);
 }
 

@@ -12,8 +12,8 @@
 namespace slosh::report {
 namespace {
 
-// What a reading may be off by (sim/README.md, *What meets a target*). Of a still ball's force: 1 and 0.2 mN
-// of its 71. Those that name no target, or that any kernel gets right, are not judged.
+// What a reading may be off by (tests/notebook/2026-11-27-what-meets-a-target.md). Of a still ball's
+// force: 1 and 0.2 mN of its 71. Those that name no target, or that any kernel gets right, are not judged.
 struct Allowed {
   const char* case_id;
   const char* quantity;

@@ -61,7 +61,8 @@ class Fields(unittest.TestCase):
         w = world(hands={"finger": None})
         w.settle(1.0)
         w.run(0.1)
-        # From the second layer on: the first, at a wall, has a pressure of its own (sim/pressure/README.md).
+        # From the second layer on: the first, at a wall, has a pressure of its own
+        # (tests/notebook/2026-11-23-still-water-turns-over.md).
         edges = np.linspace(0.03, 0.065, 5)
         mean, count = analysis.profile(w.positions[:, 1], w.pressures, edges)
         self.assertTrue((count > 10).all())

@@ -55,7 +55,7 @@ class FirstScene(unittest.TestCase):
 
     def test_a_wider_support_keeps_no_more_on_a_thin_tray(self):
         # Reached: 0.037 kg; at 6 and 10 mm 0.010 and 0.041. On a tray of 5 cm, and on this one while its walls counted
-        # for less than their thickness (sim/walls/README.md, Thin walls), next to nothing.
+        # for less than their thickness (tests/notebook/2026-11-26-thin-walls.md), next to nothing.
         self.assertLess(lost(mug_over_funnel(support_ratio=2.5)), 0.05)
 
     def test_pressures_that_are_solved_for_keep_it(self):
