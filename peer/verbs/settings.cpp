@@ -107,23 +107,34 @@ int show(const SettingsFile& file) {
 }  // namespace
 
 void put_in_force(SettingsFile& file, CLI::App& app) {
+  // slosh-lab has none of the verbs that settings are for.
+  const auto verb_of = [&app](std::string_view verb) -> CLI::App* {
+    const auto found =
+        app.get_subcommands([&](const CLI::App* sub) { return sub->check_name(std::string(verb)); });
+    return found.empty() ? nullptr : found.front();
+  };
   for (const SettingKey& key : setting_keys()) {
     for (const std::string_view verb : key.verbs) {
-      CLI::Option* const option = app.get_subcommand(std::string(verb))->get_option(option_of(key));
+      CLI::App* const found = verb_of(verb);
+      if (found == nullptr) continue;
+      CLI::Option* const option = found->get_option(option_of(key));
       option->description(option->get_description() + " {" + key.key + "}");
     }
   }
   std::set<std::string_view> verbs;
   for (const SettingKey& key : setting_keys()) verbs.insert(key.verbs.begin(), key.verbs.end());
   for (const std::string_view verb : verbs) {
-    CLI::App* const found = app.get_subcommand(std::string(verb));
+    CLI::App* const found = verb_of(verb);
+    if (found == nullptr) continue;
     found->footer(found->get_footer() +
                   "\n\n{name}: this can be set once for all, see slosh settings --help.");
   }
   for (const Setting& setting : file.values) {
     bool refused = false;
     for (const std::string_view verb : setting.key->verbs) {
-      CLI::Option* const option = app.get_subcommand(std::string(verb))->get_option(option_of(*setting.key));
+      CLI::App* const found = verb_of(verb);
+      if (found == nullptr) continue;
+      CLI::Option* const option = found->get_option(option_of(*setting.key));
       try {
         option->run_callback_for_default()->default_val(value_of(setting));
       } catch (const CLI::Error& error) {
