@@ -18,7 +18,7 @@ std::unique_ptr<Device> lent_script() {
   std::vector<PoseKey> keys(2);
   keys[1].time = 2.0;
   keys[1].pose.position.z = 0.4;
-  return std::make_unique<TrackDevice>(PoseTrack(keys, Pose{}), "lent_script");
+  return std::make_unique<TrackDevice>(PoseTrack(keys, Pose{}), "script");
 }
 
 struct Lent {
@@ -42,7 +42,7 @@ TEST(LentDevice, IsItsScriptToTheBitUntilSomebodyTakesIt) {
     ASSERT_EQ(report.pose.position, expected.pose.position);
     ASSERT_EQ(report.twist.linear, expected.twist.linear);
   }
-  EXPECT_EQ(lent.device.kind(), "lent_script");
+  EXPECT_EQ(lent.device.kind(), "script");
 }
 
 TEST(LentDevice, GoesWhereItIsWantedWithoutAJumpAndNoFasterThanACarefulHand) {
@@ -63,7 +63,7 @@ TEST(LentDevice, GoesWhereItIsWantedWithoutAJumpAndNoFasterThanACarefulHand) {
   }
   EXPECT_LT(fastest, 1.25) << "m/s: it is drawn by 80 mm at most";
   EXPECT_GT(fastest, 0.9);
-  EXPECT_LT(hardest, 80.0) << "m/s²: 30²/s² · 80 mm = 72, and what the lent_script's own speed adds";
+  EXPECT_LT(hardest, 80.0) << "m/s²: 30²/s² · 80 mm = 72, and what the script's own speed adds";
   EXPECT_NEAR(glm::distance(last, glm::dvec3(1.0, 0.5, 0.0)), 0.0, 1e-6);
 }
 
@@ -103,7 +103,7 @@ TEST(LentDevice, GoesHomeToItsScriptWhenGivenBack) {
     fastest = std::max(fastest, glm::distance(pose.position, last.position) / kLentTick);
     last = pose;
   }
-  EXPECT_LT(fastest, 0.65) << "m/s: half a metre in two seconds or more, and the lent_script's 0.2";
+  EXPECT_LT(fastest, 0.65) << "m/s: half a metre in two seconds or more, and the script's 0.2";
   const DeviceReport home = lent.read();
   EXPECT_EQ(home.pose.position, lent_script()->read({lent.time, kLentTick}).pose.position);
   EXPECT_GT(lent.time, begin + 2.0);
@@ -131,7 +131,7 @@ TEST(MakeDevices, LendsScriptsToAWindowAndNothingElse) {
   scene.bodies.resize(1);
   scene.grips.resize(2);
   scene.grips[0].body = scene.grips[1].body = 0;
-  Result<DeviceSet> set = make_devices(scene, {"lent_script", "mouse"}, true);
+  Result<DeviceSet> set = make_devices(scene, {"script", "mouse"}, true);
   ASSERT_TRUE(set) << set.error().text();
   EXPECT_NE(set.value().lent[0], nullptr);
   EXPECT_EQ(set.value().lent[1], nullptr);

@@ -113,7 +113,7 @@ GamepadPort::GamepadPort(GamepadPort&& other) noexcept
 }
 
 GamepadPort::~GamepadPort() {
-  if (node_ < 0) return;  // moved from: open() still holds the gamepad_claims then
+  if (node_ < 0) return;  // moved from: open() still holds the claims then
   libevdev_free(device_);
   ::close(node_);
   const std::lock_guard lock(claims_mutex());
