@@ -49,7 +49,7 @@ TEST(Errors, MisspeltWordsAreAnsweredWithTheNearest) {
   // An option of other verbs: which.
   expect_error(
       {"check", "bucket", "--overwrite"}, 2,
-      {"--overwrite is an option of play, host, join, watch, replay and sweep", "slosh check --help"});
+      {"--overwrite is an option of play, host, join, watch and replay", "slosh check --help"});
   expect_error({"watch", "slosh://x", "--particles=100"}, 2, {"--particles is an option of play and host"});
   expect_error({"sweep", "spoon", "--set", "fluid.viscosity_pas=1,2", "--out", "swept"}, 1,
                {"Did you mean viscosity_pa_s?"});
