@@ -1,6 +1,7 @@
 // Settings of one device: a file of `key = value` lines in the user's configuration folder.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <initializer_list>
 #include <optional>
@@ -10,6 +11,12 @@
 #include "sim/math/result.h"
 
 namespace slosh {
+
+constexpr int kMostButtons = 32;
+/// Whether button `number`, from 1, is down; none is 0.
+inline bool button_down(std::uint32_t buttons, int number) {
+  return number > 0 && (buttons >> (number - 1) & 1u) != 0;
+}
 
 /// What stands in a file or on a command line, for an error: cleaned, cut and in quotes.
 std::string in_quotes(const std::string& foreign);

@@ -7,12 +7,7 @@
 namespace slosh {
 namespace {
 
-constexpr int kMostButtons = 32;
 constexpr double kAnywhere = 10.0;  // m: the reach of a hand that may clutch
-
-bool held(std::uint32_t buttons, int number) {
-  return number > 0 && (buttons >> (number - 1) & 1u) != 0;
-}
 
 std::optional<double> optional_number(DeviceFile& file, const std::string& key, double least, double most) {
   if (!file.has(key)) {
@@ -113,9 +108,9 @@ DeviceReport HandMap::to_world(const DeviceReport& at_device) noexcept {
   DeviceReport report = at_device;
   report.at_device = at_device.pose;
   report.rendered = rendered_;
-  report.engaged = at_device.engaged &&
-                   (settings_.deadman_button == 0 || held(at_device.buttons, settings_.deadman_button));
-  const bool clutched = held(at_device.buttons, settings_.clutch_button);
+  report.engaged = at_device.engaged && (settings_.deadman_button == 0 ||
+                                         button_down(at_device.buttons, settings_.deadman_button));
+  const bool clutched = button_down(at_device.buttons, settings_.clutch_button);
   if (clutched && !clutched_) held_ = mapped(at_device.pose);
   if (clutched_ && !clutched) {  // the hand goes on from where it stayed
     start_ = held_;

@@ -9,10 +9,6 @@ namespace {
 constexpr double kMostMouseElapsed = 0.05;  // s: a machine that stood still does not throw the hand
 constexpr double kStep = 0.001;             // s, of the filters
 
-bool button_down(std::uint32_t buttons, int number) {
-  return number > 0 && (buttons >> (number - 1) & 1u) != 0;
-}
-
 }  // namespace
 
 SpaceMouseMotion::SpaceMouseMotion(const SpaceMouseSettings& settings, const Pose& start,
