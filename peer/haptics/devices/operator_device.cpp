@@ -41,10 +41,10 @@ struct Option {
   double least, most;
 };
 
-Result<bool> set_option(const std::string& word, const std::array<Option, 6>& options) {
+Result<bool> set_option(const std::string& word, const std::array<Option, 7>& options) {
   constexpr const char* kMend =
       "Give tight or loose, then any of mass=0.05..20, damping=0.1..500, stiffness=1..10000, "
-      "tremor=0..0.005, delay=0..0.5, correction=0..5";
+      "wrist=0.1..200, tremor=0..0.005, delay=0..0.5, correction=0..5";
   const std::size_t equals = word.find('=');
   const std::string name = word.substr(0, equals);
   const std::string text = equals == std::string::npos ? "" : word.substr(equals + 1);
@@ -64,9 +64,11 @@ Result<bool> set_option(const std::string& word, const std::array<Option, 6>& op
 
 Result<OperatorSettings> parse_operator(const std::string& options) {
   OperatorSettings s;
-  const std::array<Option, 6> known{{{"mass", &s.arm.mass, 0.05, 20.0},
+  double wrist = 0.0;
+  const std::array<Option, 7> known{{{"mass", &s.arm.mass, 0.05, 20.0},
                                      {"damping", &s.arm.damping, 0.1, 500.0},
                                      {"stiffness", &s.arm.stiffness, 1.0, 1e4},
+                                     {"wrist", &wrist, 0.1, 200.0},
                                      {"tremor", &s.tremor, 0.0, 0.005},
                                      {"delay", &s.delay, 0.0, 0.5},
                                      {"correction", &s.correction, 0.0, 5.0}}};
@@ -81,6 +83,10 @@ Result<OperatorSettings> parse_operator(const std::string& options) {
     } else if (const Result<bool> set = set_option(word, known); !set) {
       return set.error();
     }
+  }
+  if (wrist > 0.0) {  // as well damped as it was
+    s.wrist.damping *= std::sqrt(wrist / s.wrist.stiffness);
+    s.wrist.stiffness = wrist;
   }
   return s;
 }
