@@ -108,12 +108,12 @@ SpacingChoice choose_spacing(std::span<const StepTiming> timings,
   return best;
 }
 
-std::vector<SpacingCandidate> spacing_candidates(const Scene& scene, bool may_solve_drag) {
+std::vector<SpacingCandidate> spacing_candidates(const Scene& scene, bool may_be_implicit) {
   std::vector<SpacingCandidate> candidates;
   const auto add = [&](double spacing) {
     const ParticleEstimate estimate = estimate_particles(scene, spacing);
     candidates.push_back(
-        {spacing, estimate.fluid + estimate.surface, make_plan(scene, spacing, may_solve_drag).time_step});
+        {spacing, estimate.fluid + estimate.surface, make_plan(scene, spacing, may_be_implicit).time_step});
   };
   add(scene.spacing_max);
   for (double spacing = scene.spacing_max / 1.04; spacing >= scene.spacing_min; spacing /= 1.04) {
@@ -124,7 +124,7 @@ std::vector<SpacingCandidate> spacing_candidates(const Scene& scene, bool may_so
 }
 
 Result<SpacingChoice> measure_spacing(const Scene& scene, const SpacingOptions& options) {
-  const bool may_solve_drag = can_solve_drag(options.backend);
+  const bool may_be_implicit = can_solve_drag(options.backend);
   std::vector<StepTiming> timings;
   const double coarse = scene.spacing_max;
   const double finer = std::max(scene.spacing_min, 0.75 * scene.spacing_max);
@@ -142,10 +142,10 @@ Result<SpacingChoice> measure_spacing(const Scene& scene, const SpacingOptions& 
     }
     if (finer >= coarse) break;
     // When the coarsest is hopeless already, a finer measurement would only cost time.
-    if (timing && timing.value().step > 4.0 * make_plan(scene, spacing, may_solve_drag).time_step) break;
+    if (timing && timing.value().step > 4.0 * make_plan(scene, spacing, may_be_implicit).time_step) break;
   }
   // The estimate misses what sampling leaves out near walls; the measured count puts it right.
-  std::vector<SpacingCandidate> candidates = spacing_candidates(scene, may_solve_drag);
+  std::vector<SpacingCandidate> candidates = spacing_candidates(scene, may_be_implicit);
   const double estimated = candidates.front().particles;
   const double correction = estimated > 0.0 ? timings.front().particles / estimated : 1.0;
   for (SpacingCandidate& candidate : candidates) candidate.particles *= correction;

@@ -10,7 +10,7 @@ namespace slosh {
 /// Any thread; nobody waits. At first nobody asks.
 class FluidDemand {
  public:
-  static constexpr std::uint32_t kMostGrips = 64;  ///< wire::kMaxGrips
+  static constexpr std::uint32_t kMaxGrips = 64;  ///< wire::kMaxGrips
 
   /// Bit g: models of the body that grip g is on are wanted while it is held.
   void want(std::uint64_t grips) { grips_.store(grips, std::memory_order_relaxed); }

@@ -137,7 +137,7 @@ void Host::model_fluid(std::span<const HandleInput> input) {
   models_.clear();
   if (wanted == 0) return fluid_models_.restart();
   std::fill(modelled_.begin(), modelled_.end(), char{0});
-  for (std::size_t g = 0; g < input.size() && g < FluidDemand::kMostGrips; ++g) {
+  for (std::size_t g = 0; g < input.size() && g < FluidDemand::kMaxGrips; ++g) {
     if ((wanted >> g & 1) != 0 && input[g].engaged) modelled_[static_cast<std::size_t>(grip_bodies_[g])] = 1;
   }
   fluid_models_.after_step(world_, latest_, modelled_, models_);
@@ -196,7 +196,7 @@ void Host::tell_gone() {
   for (const GoneBody& gone : gone_.update(latest_)) {
     const auto body = static_cast<std::size_t>(gone.body);
     const std::string words = gone_text(body_names_[body], gone);
-    if (report_.gone.size() < kMostGone) report_.gone.push_back(words);
+    if (report_.gone.size() < kMaxGone) report_.gone.push_back(words);
     for (HostTap* tap : taps_) tap->on_gone_body(body, words);
   }
 }

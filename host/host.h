@@ -76,18 +76,18 @@ struct HostReport {
   std::uint64_t fluid_models = 0;                ///< made, over all bodies
   std::uint32_t status = 0;                      ///< every StatusBit that was ever set
   std::array<std::uint64_t, 32> status_steps{};  ///< in how many steps, one a bit
-  std::vector<std::string> gone;                 ///< bodies that left for good, in words; kMostGone at most
+  std::vector<std::string> gone;                 ///< bodies that left for good, in words; kMaxGone at most
   Diagnostics diagnostics;                       ///< of the last state
   Diagnostics start;  ///< of the first: what had left by then did so while it settled
 };
 
 /// Of HostReport::gone.
-constexpr std::size_t kMostGone = 100;
+constexpr std::size_t kMaxGone = 100;
 
 /// Called on the host's thread with what came of a command.
 using HostAnswer = std::function<void(const Result<bool>&)>;
 
-/// Slower, steps would come so rarely that hands took the world for silent (peer/haptics/hearing.h).
+/// Slower, steps would come so rarely that hands took the world for silent (peer/haptics/link_freshness.h).
 constexpr double kSlowestPace = 0.05;
 
 /// Owns the world and steps it on a thread of its own. Made, started and ended by one thread.

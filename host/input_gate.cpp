@@ -9,7 +9,7 @@ namespace slosh {
 namespace {
 
 // s of simulated time over which a pose is carried on by its own twist to the start of a step.
-constexpr double kMostCarried = kYieldAfter;
+constexpr double kMaxCarried = kYieldAfter;
 // s of wall time for which what a hand carries is what it carried in its last step: poses come each 2 ms.
 constexpr double kCarriedAfter = 0.005;
 // A step that comes so much later than steps usually do, s of wall time and times the usual interval, finds
@@ -161,7 +161,7 @@ double InputGate::left_to_fade(const Hand& hand) const {
 void InputGate::fill_input(Hand& hand, std::size_t grip, const BodySnapshot& now, std::int64_t clock_ns) {
   HandleInput& input = inputs_[grip];
   // The pose was read a little before or after the moment that this step starts from.
-  const double late = std::clamp(now.time - hand.good.time, -kMostCarried, kMostCarried);
+  const double late = std::clamp(now.time - hand.good.time, -kMaxCarried, kMaxCarried);
   Pose pose = extrapolate(hand.good.pose, hand.good.twist, late);
   const double since = to_seconds(clock_ns - hand.received_ns);
   if (since > kStaleTwist) {
@@ -207,7 +207,7 @@ void InputGate::note_interval(std::int64_t clock_ns) {
 
 std::span<const HandleInput> InputGate::take(Channel& channel, const BodySnapshot& now,
                                              std::int64_t clock_ns) {
-  step_ = std::clamp(now.time - time_, 0.0, kMostCarried);
+  step_ = std::clamp(now.time - time_, 0.0, kMaxCarried);
   time_ = now.time;
   std::fill(refused_.begin(), refused_.end(), PoseFault::kNone);
   note_interval(clock_ns);

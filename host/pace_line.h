@@ -20,7 +20,7 @@ class PaceLine {
   /// Steps behind the schedule, and s at least, from which on it counts as lost: as far as a device loop
   /// carries a state on. A pacer hopes on for longer.
   static constexpr double kLost = 2.0;
-  static constexpr double kLeastLost = 0.002;
+  static constexpr double kMinLost = 0.002;
   /// s without such a step after which the schedule counts as kept again.
   static constexpr double kKept = 1.0;
   /// s over which the pace is averaged, and over which stamps are drawn to when states are ready.
@@ -52,7 +52,7 @@ class PaceLine {
     measured_ +=
         std::max(1.0 - std::exp(-elapsed / kMemory), elapsed / measured_for_) * (achieved - measured_);
     const std::int64_t scheduled_ns = turn.deadline_ns + to_nanoseconds(time_step / pace);
-    const bool lost = turn.slipped || turn.behind > std::max(kLost * time_step / pace, kLeastLost);
+    const bool lost = turn.slipped || turn.behind > std::max(kLost * time_step / pace, kMinLost);
     kept_ = lost ? 0.0 : kept_ + elapsed;
     slow_ = lost || (slow_ && kept_ <= kKept);
     const double rate = slow_ ? std::min(measured_, pace) : pace;

@@ -25,7 +25,7 @@ double work_of(const glm::dvec3& force, const glm::dvec3& way, double stiffness)
 glm::dvec3 give_up(const glm::dvec3& left, double most, double elapsed) {
   const double length = glm::length(left);
   if (length == 0.0) return glm::dvec3(0.0);
-  const double step = std::min(most * elapsed, length * (1.0 - std::exp(-elapsed / kLetInEnd)));
+  const double step = std::min(most * elapsed, length * (1.0 - std::exp(-elapsed / kRampEnd)));
   return left * (length - step < kNothing ? 1.0 : step / length);
 }
 
@@ -53,10 +53,10 @@ struct Engagement::Work {
   double elapsed;
   const CouplingGains& gains;
   const GripState& grip;
-  Pose before;                               // where it held, carried along by the hand,
-  Pose now;                                  // and where it holds
-  glm::dvec3 velocity, turning;              // of that
-  glm::dvec3 let_in{0.0}, let_in_turn{0.0};  // what it was moved towards the hand by, m and rad
+  Pose before;                                // where it held, carried along by the hand,
+  Pose now;                                   // and where it holds
+  glm::dvec3 velocity, turning;               // of that
+  glm::dvec3 ramp_work{0.0}, ramp_turn{0.0};  // what it was moved towards the hand by, m and rad
 };
 
 double Engagement::slip_pace() const {
@@ -69,7 +69,7 @@ bool Engagement::firm() const {
 }
 
 double Engagement::pace() const {
-  return std::clamp((last_ - since_) / kLetInRise, 0.0, 1.0);
+  return std::clamp((last_ - since_) / kRampRise, 0.0, 1.0);
 }
 
 double Engagement::most_pull() const {
@@ -131,7 +131,7 @@ Engagement::Held Engagement::update(bool engaged, double time, const Pose& hand,
   const Pose before = place(hand);
   Work work{took_hold_ ? 0.0 : elapsed, gains, grip, before, before, twist.linear, twist.angular};
   slip(work, time);
-  let_in(work, hand);
+  ramp_work(work, hand);
   bound_pull(work, twist);
   return settle(work, hand, twist);
 }
@@ -223,21 +223,21 @@ void Engagement::slip(Work& work, double time) {
   work.turning -= (1.0 - slip_pace()) * slip_turn_;
 }
 
-void Engagement::let_in(Work& work, const Pose& hand) {
+void Engagement::ramp_work(Work& work, const Pose& hand) {
   if (company_ == Company::kSilent) {
     speed_ = turning_ = glm::dvec3(0.0);
     return;
   }
   if (work.elapsed > 0.0) {
-    work.let_in = give_up(hand.position - work.now.position, pace() * kLetInSpeed, work.elapsed);
-    work.now.position += work.let_in;
-    speed_ = work.let_in / work.elapsed;
+    work.ramp_work = give_up(hand.position - work.now.position, pace() * kRampSpeed, work.elapsed);
+    work.now.position += work.ramp_work;
+    speed_ = work.ramp_work / work.elapsed;
     if (work.now.orientation != hand.orientation) {
       const glm::dvec3 left = rotation_between(work.now.orientation, hand.orientation);
-      work.let_in_turn = give_up(left, pace() * kLetInTurn, work.elapsed);
-      work.now.orientation = rotate_by(work.now.orientation, work.let_in_turn);
+      work.ramp_turn = give_up(left, pace() * kRampTurn, work.elapsed);
+      work.now.orientation = rotate_by(work.now.orientation, work.ramp_turn);
     }
-    turning_ = work.let_in_turn / work.elapsed;
+    turning_ = work.ramp_turn / work.elapsed;
   }
   work.velocity += speed_;
   work.turning += turning_;
@@ -250,19 +250,19 @@ void Engagement::bound_pull(Work& work, const Twist& hand) {
   const Pose& grip = work.grip.pose;
   const auto slip = [&](double& share, double whole, double stiffness, double damping,
                         const glm::dvec3& grip_velocity, const glm::dvec3& began, double most, Slipping& law,
-                        const Slipping& before, const glm::dvec3& let_in, const glm::dvec3& still) {
+                        const Slipping& before, const glm::dvec3& ramp_work, const glm::dvec3& still) {
     if (company_ == Company::kSilent || (company_ == Company::kShared && !firm()))
       law.bound(stiffness, damping, grip_velocity, began, most);
     const double ease = std::min(share / kHoldEases, 1.0);
     const double free = ease * ease * (3.0 - 2.0 * ease);
     if (free < 1.0) {
-      Slipping friction{before.stretch - let_in, still};
+      Slipping friction{before.stretch - ramp_work, still};
       friction.bound(stiffness, damping, grip_velocity, {}, glm::length(began) + most);
       law.stretch = free * law.stretch + (1.0 - free) * friction.stretch;
       law.velocity = free * law.velocity + (1.0 - free) * friction.velocity;
     }
     const glm::dvec3 force = -stiffness * before.stretch;  // on the body
-    const glm::dvec3 in_all = before.stretch - law.stretch, slipped = in_all - let_in;
+    const glm::dvec3 in_all = before.stretch - law.stretch, slipped = in_all - ramp_work;
     const double work_in_all = work_of(force, in_all, stiffness),
                  work_slipped = work_of(force, slipped, stiffness);
     // What comes back as the hold goes back to the hand was lent.
@@ -274,7 +274,7 @@ void Engagement::bound_pull(Work& work, const Twist& hand) {
     Slipping law{grip.position - work.now.position, work.velocity};
     const glm::dvec3 found = law.stretch;
     slip(share_, allowance(), work.gains.stiffness, work.gains.damping, work.grip.twist.linear, began_.force,
-         most_pull(), law, {grip.position - work.before.position, {}}, work.let_in, hand.linear + speed_);
+         most_pull(), law, {grip.position - work.before.position, {}}, work.ramp_work, hand.linear + speed_);
     if (law.stretch != found) work.now.position = grip.position - law.stretch;
     work.velocity = law.velocity;
   }
@@ -283,7 +283,7 @@ void Engagement::bound_pull(Work& work, const Twist& hand) {
     const glm::dvec3 found = law.stretch;
     slip(turning_share_, turning_allowance(), work.gains.rotational_stiffness, work.gains.rotational_damping,
          work.grip.twist.angular, began_.torque, most_twist(), law,
-         {rotation_between(work.before.orientation, grip.orientation), {}}, work.let_in_turn,
+         {rotation_between(work.before.orientation, grip.orientation), {}}, work.ramp_turn,
          hand.angular + turning_);
     if (law.stretch != found) work.now.orientation = rotate_by(grip.orientation, -law.stretch);
     work.turning = law.velocity;

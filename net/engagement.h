@@ -16,12 +16,12 @@ namespace slosh {
 constexpr double kQuietForce = 2.0;    ///< N
 constexpr double kQuietTorque = 0.05;  ///< N·m
 /// The distance between a hand and where it holds is given up at no more than this speed.
-constexpr double kLetInSpeed = 0.15;  ///< m/s
-constexpr double kLetInTurn = 1.0;    ///< rad/s
+constexpr double kRampSpeed = 0.15;  ///< m/s
+constexpr double kRampTurn = 1.0;    ///< rad/s
 /// s over which that speed rises from 0 ...
-constexpr double kLetInRise = 0.5;
+constexpr double kRampRise = 0.5;
 /// ... and the time constant, s, with which the last of the distance goes.
-constexpr double kLetInEnd = 0.25;
+constexpr double kRampEnd = 0.25;
 /// s of silence (of a hand, or of body states) after which holding on counts as taking hold anew: the hand
 /// may be anywhere by then.
 constexpr double kHoldAnew = 0.1;
@@ -63,11 +63,11 @@ enum class Company : std::uint8_t {
 /// grip goes: with the pose that it has, less an offset, and with its velocity, less its slip against the
 /// grip. The slip is given up over kSlipRise (the offset grows by it meanwhile), the offset slowly after
 /// that, until the hand holds where it is; where the hold slips it grows again (kHoldForce). So taking hold
-/// never pulls harder than what moving the body at kLetInSpeed takes, however far away the hand is, and a
+/// never pulls harder than what moving the body at kRampSpeed takes, however far away the hand is, and a
 /// hand that passes by does not snatch the body away.
 ///
 /// Passive but for two stated allowances. What the offset's change gives the spring is counted (given()):
-/// giving it up towards the hand gives the force times the distance, at kLetInSpeed at most; any other change
+/// giving it up towards the hand gives the force times the distance, at kRampSpeed at most; any other change
 /// gives kHoldWay of the force at most, and then only takes. A spring that is stiffened keeps its force, not
 /// its stretch (live stiffness). Owned by one thread; no allocation.
 class Engagement {
@@ -92,7 +92,7 @@ class Engagement {
 
   bool engaged() const { return engaged_; }
   bool took_hold() const { return took_hold_; }  ///< in the last update()
-  /// Share of the force that the hand is given, 0–1, rising over kLetInRise where the hold was not a quiet
+  /// Share of the force that the hand is given, 0–1, rising over kRampRise where the hold was not a quiet
   /// one: the body goes on being carried as it was, but a hand that takes over a weight must not be struck by
   /// it.
   double felt() const { return !engaged_ ? 0.0 : quiet_ ? 1.0 : pace(); }
@@ -112,7 +112,7 @@ class Engagement {
   void keep_force(const Pose& hand, const CouplingGains& gains, const GripState& grip);
   void meet(Company company, double time);
   void slip(Work& work, double time);
-  void let_in(Work& work, const Pose& hand);
+  void ramp_work(Work& work, const Pose& hand);
   void bound_pull(Work& work, const Twist& hand);
   Held settle(const Work& work, const Pose& hand, const Twist& twist);
   Pose place(const Pose& hand) const;
@@ -122,7 +122,7 @@ class Engagement {
   double most_pull() const;          // N and
   double most_twist() const;         // N·m by which the force may differ from began_
   double slip_pace() const;          // 0–1 over kSlipRise
-  double pace() const;               // 0–1 over kLetInRise
+  double pace() const;               // 0–1 over kRampRise
 
   bool engaged_ = false;
   bool took_hold_ = false;

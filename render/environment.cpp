@@ -217,7 +217,7 @@ Result<std::shared_ptr<const Environment>> read_environment(const std::filesyste
   long width = 0;
   if (std::sscanf(line.c_str(), "-Y %9ld +X %9ld", &height, &width) != 2 || height < 1 || width < 2)
     return wrong("its size is not told as \"-Y height +X width\"", want);
-  if (width > 32767 || height * width > kMostEnvironmentPixels)
+  if (width > 32767 || height * width > kMaxEnvironmentPixels)
     return wrong("it is " + std::to_string(width) + " x " + std::to_string(height) + " pixels",
                  "Give one of 8192 x 4096 or less");
   auto made = std::make_shared<Environment>();

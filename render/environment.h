@@ -26,12 +26,12 @@ struct Environment {
 };
 
 /// Most pixels of a file, and the largest width that is kept: a wider one is averaged down.
-inline constexpr long kMostEnvironmentPixels = 1L << 26;
+inline constexpr long kMaxEnvironmentPixels = 1L << 26;
 inline constexpr int kKeptEnvironmentWidth = 1024;
 
 /// A Radiance picture (.hdr: RGBE, "32-bit_rle_rgbe", rows from the top), of any brightness: it is scaled so
 /// that its mean is that of the renderer's own studio, and a scene stays exposed. Errors: a file that is
-/// missing, cut off, damaged or no such picture, or one of more than kMostEnvironmentPixels.
+/// missing, cut off, damaged or no such picture, or one of more than kMaxEnvironmentPixels.
 Result<std::shared_ptr<const Environment>> read_environment(const std::filesystem::path& file);
 
 /// A photographer's studio with soft boxes and a window, made by this function.

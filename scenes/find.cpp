@@ -58,11 +58,11 @@ std::string read_title(const fs::path& file) {
 
 /// Names of the scene files in the folder that `path` names.
 std::vector<std::string> scene_files_beside(const fs::path& path) {
-  constexpr std::size_t kMost = 1000;
+  constexpr std::size_t kMax = 1000;
   std::vector<std::string> names;
   std::error_code code;
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  for (fs::directory_iterator it(folder, code), end; !code && it != end && names.size() < kMost;
+  for (fs::directory_iterator it(folder, code), end; !code && it != end && names.size() < kMax;
        it.increment(code)) {
     if (is_gltf(it->path())) names.push_back(it->path().filename().string());
   }

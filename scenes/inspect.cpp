@@ -36,10 +36,10 @@ Inspection look(const std::filesystem::path& file) {
 
 /// As load_scene has it.
 void clean(std::vector<Finding>& findings) {
-  constexpr std::size_t kMost = 2000;
+  constexpr std::size_t kMax = 2000;
   for (Finding& finding : findings) {
-    finding.text = {clean_text(finding.text.where, kMost), clean_text(finding.text.what, kMost),
-                    clean_text(finding.text.mend, kMost)};
+    finding.text = {clean_text(finding.text.where, kMax), clean_text(finding.text.what, kMax),
+                    clean_text(finding.text.mend, kMax)};
   }
 }
 

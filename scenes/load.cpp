@@ -11,8 +11,8 @@ namespace {
 
 /// Files have names by which a terminal could be told to do something, too.
 Error shown(const Error& error) {
-  constexpr std::size_t kMost = 2000;
-  return {clean_text(error.where, kMost), clean_text(error.what, kMost), clean_text(error.mend, kMost)};
+  constexpr std::size_t kMax = 2000;
+  return {clean_text(error.where, kMax), clean_text(error.what, kMax), clean_text(error.mend, kMax)};
 }
 
 Result<Scene> read_scene(const std::filesystem::path& file) {

@@ -30,8 +30,8 @@ constexpr double kThinnest = 0.95;
 constexpr double kSecondsASurfaceParticle = 6e-5;
 constexpr double kSecondsAFluidParticle = 2e-6;
 
-constexpr double kMostFluid = 2e7;
-constexpr double kMostSurface = 2e6;
+constexpr double kMaxFluid = 2e7;
+constexpr double kMaxSurface = 2e6;
 
 /// Of the spacing, where fluid slides along a wall. At 0.8 half of what the bumps brake is left.
 constexpr double kSmoothSheet = 0.7;
@@ -56,7 +56,7 @@ Result<SampledMesh> sample_mesh(const Scene& scene, const Body& body, double spa
   }
   mesh::Components parts;
   mesh::find_defects(mesh::weld(triangles), &parts);
-  const double apart = sheet_spacing(scene, body, spacing);
+  const double apart = boundary_spacing(scene, body, spacing);
   // Solids that touch may have faces between them, also where they hang together.
   const int solids = parts.touching ? std::max(parts.count, 2) : parts.count;
   SurfaceSamples surface = sampling::sample_surface(triangles, tree, solids, apart, tell);
@@ -68,18 +68,18 @@ Result<SampledMesh> sample_mesh(const Scene& scene, const Body& body, double spa
 /// hang.
 std::optional<Error> check_size(const Scene& scene, double spacing) {
   const ParticleEstimate estimate = estimate_particles(scene, spacing);
-  const bool fluid = estimate.fluid > kMostFluid;
-  if (!fluid && estimate.surface <= kMostSurface) return std::nullopt;
+  const bool fluid = estimate.fluid > kMaxFluid;
+  if (!fluid && estimate.surface <= kMaxSurface) return std::nullopt;
   return Error{sampling::place_of(scene, "spacing"),
                "is " + short_number(1000.0 * spacing) + " mm: about " +
                    short_number(fluid ? estimate.fluid : estimate.surface) + (fluid ? " fluid" : " surface") +
-                   " particles, more than " + short_number(fluid ? kMostFluid : kMostSurface),
+                   " particles, more than " + short_number(fluid ? kMaxFluid : kMaxSurface),
                "Choose a larger spacing"};
 }
 
 // About how many, of a body that has a mesh.
 double surface_particles(const Scene& scene, const Body& body, double spacing) {
-  const double apart = sheet_spacing(scene, body, spacing);
+  const double apart = boundary_spacing(scene, body, spacing);
   return mesh::surface_area(scene.meshes[body.mesh]) / (apart * apart);
 }
 
@@ -91,7 +91,7 @@ SurfaceSamples sample_probe(double spacing) {
 // What bodies that share their samples have in common: the mesh, and how far apart the samples are.
 using SheetKey = std::pair<int, double>;
 SheetKey sheet_key(const Scene& scene, const Body& body, double spacing) {
-  return {body.mesh, sheet_spacing(scene, body, spacing)};
+  return {body.mesh, boundary_spacing(scene, body, spacing)};
 }
 
 // The share of the work that the surfaces are, each sheet counted once.
@@ -169,7 +169,7 @@ Result<SampledScene> sample(const Scene& scene, double spacing, SampleReport* re
 
 }  // namespace
 
-double sheet_spacing(const Scene& scene, const Body& body, double spacing) {
+double boundary_spacing(const Scene& scene, const Body& body, double spacing) {
   const bool smooth = body.motion == BodyMotion::kFixed && body.dynamic_viscosity == kFreeSlip &&
                       corrects_gradients(scene.model);
   return smooth ? kSmoothSheet * spacing : spacing;

@@ -37,7 +37,7 @@ Result<SampledScene> sample_scene(const Scene& scene, double spacing, SampleRepo
 /// Of fixed bodies that slip they are finer than `spacing`, and the bumps are gone
 /// (tests/notebook/2026-11-25-free-slip-walls.md). Bodies that move keep the spacing, as do models that
 /// do not correct gradients.
-double sheet_spacing(const Scene& scene, const Body& body, double spacing);
+double boundary_spacing(const Scene& scene, const Body& body, double spacing);
 
 /// A quick estimate for choosing a spacing, without sampling: fluid volume / spacing³ and area / spacing².
 struct ParticleEstimate {

@@ -28,11 +28,11 @@ struct TriangleMesh {
 /// A picture for textures as its file has it: a PNG or a JPEG (images/decode.h unpacks it).
 struct SceneImage {
   std::string name;
-  std::vector<std::uint8_t> bytes;  ///< at most kMostImageBytes
+  std::vector<std::uint8_t> bytes;  ///< at most kMaxImageBytes
 };
 
-inline constexpr std::size_t kMostImageBytes = 64u << 20;  ///< of one image, packed
-inline constexpr std::size_t kMostImages = 256;            ///< of one scene
+inline constexpr std::size_t kMaxImageBytes = 64u << 20;  ///< of one image, packed
+inline constexpr std::size_t kMaxImages = 256;            ///< of one scene
 
 /// A picture laid over a surface.
 struct TextureMap {
@@ -148,8 +148,8 @@ struct Body {
   double particle_density =
       0.0;  ///< kg/m³: the constant density of its particles (section 4.1); 0 = chosen by the plan
   double dynamic_viscosity =
-      0.0;  ///< Pa·s, >= 0: its side of Eq 9's (μᵢ + μⱼ)/2; or kFluidsViscosity, or kFreeSlip
-  double friction = 0.4;     ///< Coulomb, with the smaller of two touching bodies' values used
+      0.0;                ///< Pa·s, >= 0: its side of Eq 9's (μᵢ + μⱼ)/2; or kFluidsViscosity, or kFreeSlip
+  double friction = 0.4;  ///< Coulomb, with the smaller of two touching bodies' values used
   double restitution = 0.0;  ///< 0–1
   bool measured = false;     ///< report the fluid's wrench on it even though it is fixed
   Material material;
@@ -242,7 +242,7 @@ struct SurfaceSamples {
   std::vector<glm::vec3> positions;  ///< m
   std::vector<glm::vec3> normals;    ///< unit, outward
   float particle_volume = 0.0f;      ///< m³, the same for every particle (area · spacing / count)
-  float apart = 0.0f;                ///< m, between neighbours (sheet_spacing)
+  float apart = 0.0f;                ///< m, between neighbours (boundary_spacing)
 };
 
 struct DistanceField {

@@ -80,8 +80,8 @@ std::optional<Error> make_edit(gltf::Document& document, const FieldEdit& edit) 
 }
 
 Error cleaned(const Error& error) {
-  constexpr std::size_t kMost = 2000;
-  return {clean_text(error.where, kMost), clean_text(error.what, kMost), clean_text(error.mend, kMost)};
+  constexpr std::size_t kMax = 2000;
+  return {clean_text(error.where, kMax), clean_text(error.what, kMax), clean_text(error.mend, kMax)};
 }
 
 }  // namespace
@@ -91,7 +91,7 @@ Result<std::vector<FieldEdit>> parse_field_edits(const std::string& text) {
   const std::size_t dot = equals == std::string::npos ? std::string::npos : text.rfind('.', equals);
   // Piece by piece: g++ 12 warns of its own library where a sum begins with a literal.
   std::string said("'");
-  said += clean_text(text, kMostTextBytes);
+  said += clean_text(text, kMaxTextBytes);
   said += "' is not OBJECT.FIELD=VALUE,VALUE,…";
   const Error wrong{"--set", said, "For example body.viscosity_pa_s=2,10,20,40"};
   if (dot == std::string::npos || dot == 0 || dot + 1 == equals) return wrong;

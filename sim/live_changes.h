@@ -28,7 +28,7 @@ class LiveChanges {
 
  private:
   std::vector<double> first_viscosities_;
-  DragSheet sheet_;
+  DragLayer layer_;
 };
 
 }  // namespace slosh

@@ -70,7 +70,7 @@ auto with_model(ParticleModel model, F&& f) {
 template <class F>
 void with_physics(const Plan& plan, F&& f) {
   with_model(plan.model, [&]<class Parts>() {
-    if (!plan.drags_explicitly()) {
+    if (!plan.explicit_viscosity()) {
       f.template operator()<Parts, Viscosity::kNone>();
     } else if (plan.has(PassId::kPairViscosity)) {
       f.template operator()<Parts, Viscosity::kPair>();

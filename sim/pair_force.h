@@ -3,7 +3,7 @@
 #pragma once
 
 #include "sim/pressure/pair_pressure.h"
-#include "sim/viscosity/pair_drag.h"
+#include "sim/viscosity/pair_viscosity.h"
 
 namespace slosh {
 

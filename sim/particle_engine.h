@@ -19,9 +19,9 @@
 namespace slosh {
 
 /// A sub-step is prepare(), forces(), advance(), in this order; wrenches() may be asked for after forces(). A
-/// plan with kBodyDrag has drag() between forces() and advance(), after wrenches(); one with kImplicitDrag
-/// has solve_drag() there. Each runs those of the plan's passes that are its own, by the backend's table. A
-/// GPU is only told what to do: it is waited for in wrenches() alone.
+/// plan with kBodyDrag has drag() between forces() and advance(), after wrenches(); one with
+/// kImplicitViscosity has solve_viscosity() there. Each runs those of the plan's passes that are its own, by
+/// the backend's table. A GPU is only told what to do: it is waited for in wrenches() alone.
 class ParticleEngine {
  public:
   virtual ~ParticleEngine() = default;
@@ -37,18 +37,19 @@ class ParticleEngine {
   /// prepare(), with what its walls took from particles in the advance() before; the others get zero. One
   /// entry a body.
   virtual void wrenches(std::span<Wrench> out) = 0;
-  /// With kBodyDrag after wrenches(), with kImplicitDrag after solve_drag(): the drag on each free body by
-  /// the same forces(); the others get none.
+  /// With kBodyDrag after wrenches(), with kImplicitViscosity after solve_viscosity(): the drag on each free
+  /// body by the same forces(); the others get none.
   virtual void body_drags(std::span<BodyDrag> out) const = 0;
   /// Adds to the forces on the fluid what they lack when bodies drag by a twist that differs by `changes`
   /// (one a body, about its centre of mass) from the one that they had in prepare().
   virtual void drag(std::span<const Twist> changes) = 0;
-  /// With kImplicitDrag, after wrenches(), one entry a body: adds to the forces on the fluid the drag over
-  /// `dt` s by the velocities that this ends with (viscosity/implicit.h), and to `wrenches` that on the
+  /// With kImplicitViscosity, after wrenches(), one entry a body: adds to the forces on the fluid the drag
+  /// over `dt` s by the velocities that this ends with (viscosity/implicit.h), and to `wrenches` that on the
   /// bodies that move or are measured.
-  virtual void solve_drag(double dt, std::span<const ViscousBody> bodies, std::span<Wrench> wrenches) = 0;
-  /// With kPressureSolve, after wrenches() and solve_drag(), one entry a body: solves for the pressures over
-  /// `dt` s (pressure/solved_state.h), adds to the forces on the fluid what they differ by from the last
+  virtual void solve_viscosity(double dt, std::span<const ViscousBody> bodies,
+                               std::span<Wrench> wrenches) = 0;
+  /// With kPressureSolve, after wrenches() and solve_viscosity(), one entry a body: solves for the pressures
+  /// over `dt` s (pressure/solved_state.h), adds to the forces on the fluid what they differ by from the last
   /// step's, and to `wrenches` that on the bodies that move, and all of it on the fixed ones that are
   /// measured.
   virtual void solve_pressure(double dt, std::span<const ViscousBody> bodies, std::span<Wrench> wrenches) = 0;

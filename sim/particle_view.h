@@ -16,7 +16,8 @@ struct ParticleView {
   Real viscosity;   ///< Pa·s (its side of Eq 9)
   // The corrected model's:
   Symmetric<Real> push;  ///< what it presses with, N·m⁴ (pressure/gradient_correction.h)
-  Real ux, uy, uz;       ///< what it drags by, Pa·m: viscosity times velocity, and noise (viscosity/noise.h)
+  Real ux, uy,
+      uz;  ///< what it drags by, Pa·m: viscosity times velocity, and noise (viscosity/artificial_viscosity.h)
 };
 
 template <class Real>

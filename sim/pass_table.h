@@ -10,7 +10,7 @@
 namespace slosh {
 
 /// The part of a sub-step that a pass belongs to: ParticleEngine's calls.
-enum class SubStepPart { kPrepare, kForces, kSolve, kPress, kDrag, kAdvance };
+enum class SubStepPart { kPrepare, kForces, kViscosity, kPressure, kDrag, kAdvance };
 
 /// One row. `covers` has several passes where the backend does them in one loop over the neighbours; the loop
 /// then leaves out those that the plan has not.
@@ -19,7 +19,7 @@ struct PassRow {
   SubStepPart part;
   PassSet covers;
   void (Engine::*run)(double dt);
-  double StepTimes::*time;
+  double StepTimes::* time;
 };
 
 /// Runs the rows of one part that the plan has, in the table's order. `time` receives what each took, unless
@@ -40,7 +40,7 @@ template <class Engine, std::size_t count>
 constexpr bool covers_all_particle_passes(const PassRow<Engine> (&table)[count]) {
   for (const PassId id : {PassId::kSortFluid, PassId::kPlaceBodies, PassId::kDensity, PassId::kFluidStress,
                           PassId::kPressureForce, PassId::kOneViscosity, PassId::kPairViscosity,
-                          PassId::kWalls, PassId::kWrenches, PassId::kBodyDrag, PassId::kImplicitDrag,
+                          PassId::kWalls, PassId::kWrenches, PassId::kBodyDrag, PassId::kImplicitViscosity,
                           PassId::kPressureSolve, PassId::kIntegrateFluid}) {
     int rows = 0;
     for (const PassRow<Engine>& row : table) rows += row.covers.has(id);

@@ -8,7 +8,7 @@
 #include "sim/math/format.h"
 #include "sim/pressure/pressure_solve.h"
 #include "sim/step_limits.h"
-#include "sim/viscosity/noise.h"
+#include "sim/viscosity/artificial_viscosity.h"
 #include "sim/viscosity/stability.h"
 
 namespace slosh {
@@ -81,24 +81,24 @@ double worth_solving(const Plan& plan) {
 
 // A probe's velocity is its body's, which is solved for later. The other models stay as they are, to compare
 // with.
-bool suits_drag_solve(const Scene& scene, const Plan& plan) {
+bool suits_implicit_viscosity(const Scene& scene, const Plan& plan) {
   return plan.viscous() && corrects_gradients(plan.model) && !any_probe(scene);
 }
 
-void decide_drag_solve(Plan& plan) {
-  plan.runs.set(PassId::kImplicitDrag, plan.solves_drag && plan.viscous());
-  if (plan.has(PassId::kImplicitDrag)) plan.runs.set(PassId::kBodyDrag, false);
+void decide_implicit_viscosity(Plan& plan) {
+  plan.runs.set(PassId::kImplicitViscosity, plan.implicit_viscosity && plan.viscous());
+  if (plan.has(PassId::kImplicitViscosity)) plan.runs.set(PassId::kBodyDrag, false);
 }
 
 // Beside drag on jostling a thin fluid's own is next to nothing. As thick as the corrected model asks for in
 // the incompressible one too, so that both are one fluid.
 bool suits_stress(const FluidExtremes& fluids, const Plan& plan) {
-  return plan.viscous() && corrects_gradients(plan.model) && !plan.solves_drag &&
-         fluids.most_viscous > kThin * unsolved_noise(plan, fluids.lightest);
+  return plan.viscous() && corrects_gradients(plan.model) && !plan.implicit_viscosity &&
+         fluids.most_viscous > kThin * weakly_compressible_artificial_viscosity(plan, fluids.lightest);
 }
 
 void decide_stress(Plan& plan) {
-  plan.runs.set(PassId::kFluidStress, plan.passes_stress && plan.drags_explicitly());
+  plan.runs.set(PassId::kFluidStress, plan.passes_stress && plan.explicit_viscosity());
 }
 
 struct Reasons {
@@ -127,10 +127,10 @@ Reasons reasons_for(PassId id, const Scene& scene, const FluidExtremes& fluids, 
               "far from walls that hold fluid of up to %.3g Pa·s passes on the stress of its own flow, and "
               "Eq 9 is what is left beside them",
               fluids.most_viscous),
-          !plan.viscous()                   ? "nothing is viscous"
-          : !corrects_gradients(plan.model) ? "the corrected and the incompressible model's"
-          : plan.has(PassId::kImplicitDrag) ? "what is solved for is Eq 9's drag"
-                                            : "thin fluid: drag on jostling is stronger than its own"};
+          !plan.viscous()                        ? "nothing is viscous"
+          : !corrects_gradients(plan.model)      ? "the corrected and the incompressible model's"
+          : plan.has(PassId::kImplicitViscosity) ? "what is solved for is Eq 9's drag"
+                                                 : "thin fluid: drag on jostling is stronger than its own"};
     case PassId::kPressureForce:
       return {paper                              ? "Eq 5"
               : plan.has(PassId::kPressureSolve) ? "Eq 5 by corrected gradients and the last step's pressures"
@@ -153,11 +153,11 @@ Reasons reasons_for(PassId id, const Scene& scene, const FluidExtremes& fluids, 
     case PassId::kBodyDrag:
       return {
           "free bodies in viscous fluid: drag by the velocity at the step's end, in the bodies' own solve",
-          !plan.viscous()                   ? "nothing is viscous"
-          : plan.has(PassId::kImplicitDrag) ? "bodies are in the solve of the whole drag"
-          : !plan.has(PassId::kPlaceBodies) ? "no free body with a surface meets fluid"
-                                            : "beside a probe drag stays explicit"};
-    case PassId::kImplicitDrag:
+          !plan.viscous()                        ? "nothing is viscous"
+          : plan.has(PassId::kImplicitViscosity) ? "bodies are in the solve of the whole drag"
+          : !plan.has(PassId::kPlaceBodies)      ? "no free body with a surface meets fluid"
+                                                 : "beside a probe drag stays explicit"};
+    case PassId::kImplicitViscosity:
       return {format("drag by the velocities at the step's end, all solved together: explicit it would need "
                      "steps of %.3g ms",
                      1e3 * viscous_step(scene, plan, fluids)),
@@ -167,7 +167,7 @@ Reasons reasons_for(PassId id, const Scene& scene, const FluidExtremes& fluids, 
                                                 : "explicit drag costs less here"};
     case PassId::kPressureSolve:
       return {format("in place of Eq 7: pressures that keep fluid from being compressed, %d turns at most",
-                     kMostPressureTurns),
+                     kMaxPressureIterations),
               plan.has_fluid() ? "Eq 7 gives the pressures: the incompressible model solves for them"
                                : "no fluid"};
     case PassId::kIntegrateFluid:
@@ -216,7 +216,7 @@ void decide_viscosity(const Scene& scene, Plan& plan) {
 
 }  // namespace
 
-Plan make_plan(const Scene& scene, double spacing, bool may_solve_drag) {
+Plan make_plan(const Scene& scene, double spacing, bool may_be_implicit) {
   Plan plan;
   plan.spacing = spacing;
   plan.support_radius = scene.support_ratio * spacing;
@@ -232,10 +232,10 @@ Plan make_plan(const Scene& scene, double spacing, bool may_solve_drag) {
   decide_bodies(scene, fluid_extremes(scene), plan);
   decide_body_drag(scene, plan);
   StepLimit limit = step_limit(scene, plan);
-  if (may_solve_drag && suits_drag_solve(scene, plan)) {
+  if (may_be_implicit && suits_implicit_viscosity(scene, plan)) {
     Plan implicit = plan;
-    implicit.solves_drag = true;
-    decide_drag_solve(implicit);
+    implicit.implicit_viscosity = true;
+    decide_implicit_viscosity(implicit);
     const StepLimit longer = step_limit(scene, implicit);
     if (longer.step > worth_solving(plan) * limit.step) {
       plan = implicit;
@@ -254,7 +254,7 @@ Plan make_plan(const Scene& scene, double spacing, bool may_solve_drag) {
 void plan_viscosity(const Scene& scene, Plan& plan) {
   decide_viscosity(scene, plan);
   decide_body_drag(scene, plan);
-  decide_drag_solve(plan);
+  decide_implicit_viscosity(plan);
   decide_stress(plan);
   list_passes(scene, plan);
 }

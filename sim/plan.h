@@ -14,17 +14,18 @@ namespace slosh {
 /// out those that a plan has (sim/README.md).
 enum class PassId : std::uint8_t {
   kSortFluid,
-  kPlaceBodies,    ///< Eq 14
-  kDensity,        ///< Eq 2 and 7
-  kFluidStress,    ///< what takes the place of Eq 6 and 9 in thick fluid (viscosity/fluid_stress.h)
-  kPressureForce,  ///< Eq 5
-  kOneViscosity,   ///< Eq 6: every fluid has the same μ, and no particle its own
-  kPairViscosity,  ///< Eq 9: a μ a particle
-  kWalls,          ///< Eq 5 and 9 on fluid by body particles
-  kWrenches,       ///< Eq 10–12 for the bodies in Plan::wrench_bodies
-  kBodyDrag,       ///< Eq 9 between fluid and free bodies by the velocities that bodies end a step with
-  kImplicitDrag,   ///< Eq 6 or 9 by the velocities that fluid and bodies end a sub-step with, in one solve
-  kPressureSolve,  ///< pressures that keep fluid from being compressed, in one solve with the bodies
+  kPlaceBodies,        ///< Eq 14
+  kDensity,            ///< Eq 2 and 7
+  kFluidStress,        ///< what takes the place of Eq 6 and 9 in thick fluid (viscosity/fluid_stress.h)
+  kPressureForce,      ///< Eq 5
+  kOneViscosity,       ///< Eq 6: every fluid has the same μ, and no particle its own
+  kPairViscosity,      ///< Eq 9: a μ a particle
+  kWalls,              ///< Eq 5 and 9 on fluid by body particles
+  kWrenches,           ///< Eq 10–12 for the bodies in Plan::wrench_bodies
+  kBodyDrag,           ///< Eq 9 between fluid and free bodies by the velocities that bodies end a step with
+  kImplicitViscosity,  ///< Eq 6 or 9 by the velocities that fluid and bodies end a sub-step with, in one
+                       ///< solve
+  kPressureSolve,      ///< pressures that keep fluid from being compressed, in one solve with the bodies
   kIntegrateFluid,
   kCouplings,
   kContacts,
@@ -73,10 +74,10 @@ struct Plan {
   std::vector<double> body_density;   ///< kg/m³, the constant density of each body's particles (section 4.1)
   std::vector<double> body_pressure;  ///< Pa, Eq 7 at that density
 
-  bool solves_drag = false;       ///< kImplicitDrag runs whenever anything is viscous
-  bool passes_stress = false;     ///< kFluidStress runs whenever anything is viscous; no wall mirrors
-  bool waits_for_bodies = false;  ///< walls move, and nothing keeps the fluid from waiting for them
-  int sub_steps = 1;              ///< that a step is made of, each time_step / sub_steps long
+  bool implicit_viscosity = false;  ///< kImplicitViscosity runs whenever anything is viscous
+  bool passes_stress = false;       ///< kFluidStress runs whenever anything is viscous; no wall mirrors
+  bool waits_for_bodies = false;    ///< walls move, and nothing keeps the fluid from waiting for them
+  int sub_steps = 1;                ///< that a step is made of, each time_step / sub_steps long
 
   PassSet runs;
   std::vector<int> wrench_bodies;  ///< bodies whose wrench is summed: free or measured
@@ -90,12 +91,12 @@ struct Plan {
   /// Nothing passes a wall: what leaves the domain went over an edge.
   bool walls_hold() const { return !has(PassId::kWalls) || guards_walls(); }
   bool fluid_waits() const {  ///< it moves on after the bodies only
-    return runs.has_any_of({PassId::kBodyDrag, PassId::kImplicitDrag, PassId::kPressureSolve}) ||
+    return runs.has_any_of({PassId::kBodyDrag, PassId::kImplicitViscosity, PassId::kPressureSolve}) ||
            (guards_walls() && waits_for_bodies);
   }
   bool viscous() const { return runs.has_any_of({PassId::kOneViscosity, PassId::kPairViscosity}); }
   /// Drag is among the forces that a sub-step begins with.
-  bool drags_explicitly() const { return viscous() && !has(PassId::kImplicitDrag); }
+  bool explicit_viscosity() const { return viscous() && !has(PassId::kImplicitViscosity); }
 };
 
 /// m/s: half a support radius in a sub-step of `time_step` s.
@@ -103,9 +104,9 @@ inline double speed_limit(const Plan& plan, double time_step) {
   return 0.5 * plan.support_radius / time_step;
 }
 
-/// Works out the plan for particles at `spacing` (m, > 0). `may_solve_drag`: whether whoever carries it out
+/// Works out the plan for particles at `spacing` (m, > 0). `may_be_implicit`: whether whoever carries it out
 /// has implicit viscosity (can_solve_drag); without, steps are shorter where a fluid is very viscous.
-Plan make_plan(const Scene& scene, double spacing, bool may_solve_drag = true);
+Plan make_plan(const Scene& scene, double spacing, bool may_be_implicit = true);
 
 /// Takes over changed viscosities of the scene's fluids: which viscous passes run. The time step stays. Needs
 /// no mesh.

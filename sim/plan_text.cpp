@@ -26,7 +26,7 @@ const PassNames& names(PassId id) {
       {"walls", "body particles on fluid"},
       {"wrenches", "wrench on bodies"},
       {"body_drag", "implicit drag on free bodies"},
-      {"implicit_drag", "implicit viscosity"},
+      {"implicit_viscosity", "implicit viscosity"},
       {"pressure_solve", "solve for pressures"},
       {"integrate_fluid", "integrate fluid"},
       {"couplings", "virtual couplings"},

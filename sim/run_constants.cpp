@@ -9,8 +9,8 @@
 #include "sim/pressure/wall_layers.h"
 #include "sim/snapshot.h"
 #include "sim/step_limits.h"
+#include "sim/viscosity/artificial_viscosity.h"
 #include "sim/viscosity/drag_shape.h"
-#include "sim/viscosity/noise.h"
 #include "sim/viscosity/stability.h"
 
 namespace slosh {
@@ -85,7 +85,7 @@ ParticleKind make_kind(const Scene& scene, double rest_density, double viscosity
           static_cast<float>(pressing_density(scene, rest_density)), probe};
 }
 
-// `noise`: Pa·s, what jostling would need; `thinnest`: Pa·s, of the fluids that there are. The finer sheets
+// `noise`: Pa·s, what jostling would need; `thinnest`: Pa·s, of the fluids that there are. The finer layers
 // of walls that slip are right with one layer.
 float wall_layer_of(const Scene& scene, float noise, double thinnest) {
   const bool slips = std::any_of(scene.bodies.begin(), scene.bodies.end(),
@@ -119,9 +119,9 @@ std::vector<ParticleKind> particle_kinds(const Scene& scene, double spacing) {
   return kinds;
 }
 
-bool any_jostles(std::span<const ParticleKind> kinds, float noise) {
+bool any_artificial_viscosity(std::span<const ParticleKind> kinds, float noise) {
   return std::any_of(kinds.begin(), kinds.end(), [&](const ParticleKind& kind) {
-    return jostling_viscosity(noise, kind.viscosity) > 0.0f;
+    return artificial_viscosity_left(noise, kind.viscosity) > 0.0f;
   });
 }
 
@@ -138,14 +138,14 @@ RunConstants make_run_constants(const Scene& scene, const SampledScene& sampled,
     c.rest_number_density =
         static_cast<float>(rest_number_density<typename Parts::DensityKernel>(spacing, h));
   });
-  const DragShape<double> shape = drag_shape(drag_sheet(scene, c.plan), h);
+  const DragShape<double> shape = drag_shape(drag_layer(scene, c.plan), h);
   c.drag_shape = {static_cast<float>(shape.level), static_cast<float>(shape.growth)};
   const double volume = std::pow(spacing, 3);
   c.rest_volume = static_cast<float>(volume);
   if (corrects_gradients(c.plan.model)) {
     const double moment = rest_moment<Spiky>(spacing, h);
     const FluidExtremes fluids = fluid_extremes(scene);
-    const auto noise = static_cast<float>(noise_viscosity(c.plan, fluids.lightest));
+    const auto noise = static_cast<float>(artificial_viscosity(c.plan, fluids.lightest));
     c.correction = {c.rest_number_density,
                     static_cast<float>(moment),
                     static_cast<float>(1.0 / (volume * moment * Spiky::scale(h))),
@@ -155,7 +155,7 @@ RunConstants make_run_constants(const Scene& scene, const SampledScene& sampled,
                     static_cast<float>(c.plan.stiffness),
                     static_cast<float>(c.plan.tension),
                     static_cast<float>(impact_growth(c.plan)),
-                    static_cast<float>(most_explicit_drag(scene, c.plan)),
+                    static_cast<float>(max_explicit_viscosity(scene, c.plan)),
                     wall_layer_of(scene, noise, fluids.least_viscous)};
   }
   c.gravity = glm::vec3(scene.gravity);

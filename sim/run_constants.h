@@ -34,10 +34,9 @@ struct RunConstants {
   DragShape<float> drag_shape{1.0f, 0.0f};  ///< of all pairs
   float rest_number_density =
       0.0f;  ///< Σ of the kernel's shape over the rest lattice: density is measured against it
-  float rest_volume = 0.0f;  ///< m³ of a particle at rest density
-  CorrectionConstants
-      correction;  ///< ParticleModel::kCorrected's, of the lattice (pressure/settled_packing.h)
-  double load_compression = 0.0;  ///< ρ/ρ⁰ − 1 of the fluid under its own weight, mean over its depth
+  float rest_volume = 0.0f;        ///< m³ of a particle at rest density
+  CorrectionConstants correction;  ///< ParticleModel::kCorrected's, of the lattice (pressure/rest_density.h)
+  double load_compression = 0.0;   ///< ρ/ρ⁰ − 1 of the fluid under its own weight, mean over its depth
   glm::vec3 gravity{0.0f};
   std::vector<ParticleKind> kinds;
   ImpulseUnits impulse_units;  ///< of what walls take from particles
@@ -67,9 +66,9 @@ struct ParticleStart {
 /// One entry a fluid of the scene, and one a probe behind those.
 std::vector<ParticleKind> particle_kinds(const Scene& scene, double spacing);
 
-/// Whether any of them needs drag on jostling (viscosity/noise.h) beside its own. `noise`: Pa·s, what one
-/// without viscosity needs.
-bool any_jostles(std::span<const ParticleKind> kinds, float noise);
+/// Whether any of them needs drag on jostling (viscosity/artificial_viscosity.h) beside its own. `noise`:
+/// Pa·s, what one without viscosity needs.
+bool any_artificial_viscosity(std::span<const ParticleKind> kinds, float noise);
 
 /// Everything of a run's constants; kinds has one entry a fluid, and one a probe behind those.
 RunConstants make_run_constants(const Scene& scene, const SampledScene& sampled, Plan plan);

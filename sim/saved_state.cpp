@@ -19,7 +19,7 @@ constexpr std::uint32_t kBeforeBroken = 5;     // without ParticleState::broken,
 constexpr std::uint32_t kBeforeGone = 4;       // without RigidBody::gone, and read as well: no body was
 constexpr std::uint32_t kBeforeStiffness = 3;  // without grip_stiffness, and read as well: it was the scene's
 constexpr double kLargest = 1.0e9;             // beyond this no position, speed or force of a body is one
-constexpr std::int64_t kMostOfImpulse = std::int64_t{1} << 62;
+constexpr std::int64_t kMaxOfImpulse = std::int64_t{1} << 62;
 const char kWhere[] = "saved world";
 
 class Sink {
@@ -295,10 +295,10 @@ Result<bool> read_state(std::span<const std::uint8_t> bytes, const StateFrame& f
   }
   if (s.ok()) read_frame(s, frame);
   s.raw(state.tick);
-  if (state.tick > kMostTicks) s.fail("its tick is beyond all bounds");
+  if (state.tick > kMaxTicks) s.fail("its tick is beyond all bounds");
   s.raw(state.status);
   s.real(state.gravity_scale);
-  if (!(state.gravity_scale >= 0.0 && state.gravity_scale <= kMostGravityScale))
+  if (!(state.gravity_scale >= 0.0 && state.gravity_scale <= kMaxGravityScale))
     s.fail("its gravity is beyond all bounds");
   s.real(state.age);
   if (!(state.age >= 0.0)) s.fail("its age is negative");
@@ -340,7 +340,7 @@ Result<bool> read_state(std::span<const std::uint8_t> bytes, const StateFrame& f
   state.walls = no_impulses(frame.bodies);
   s.column(std::span(state.walls));
   for (const std::int64_t word : state.walls) {
-    if (word > kMostOfImpulse || word < -kMostOfImpulse) s.fail("an impulse in it is beyond all bounds");
+    if (word > kMaxOfImpulse || word < -kMaxOfImpulse) s.fail("an impulse in it is beyond all bounds");
   }
   std::uint32_t count = 0;
   s.raw(count);

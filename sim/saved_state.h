@@ -35,7 +35,7 @@ struct SavedState {
   std::uint64_t tick = 0;
   std::uint32_t status = 0;
   double gravity_scale = 1.0;
-  double age = 0.0;                     ///< s, settling counted (pressure/settled_packing.h)
+  double age = 0.0;                     ///< s, settling counted (pressure/rest_density.h)
   std::vector<double> viscosities;      ///< Pa·s, one a fluid
   std::vector<RigidBody> bodies;        ///< only what moves is read back
   std::vector<Wrench> wrenches;         ///< by the fluid, one a body
@@ -47,7 +47,7 @@ struct SavedState {
   ParticleState particles;  ///< in the order that the engine has them: sums over neighbours depend on it
 };
 
-constexpr std::uint64_t kMostTicks = std::uint64_t{1} << 48;
+constexpr std::uint64_t kMaxTicks = std::uint64_t{1} << 48;
 
 /// Appends to `out`.
 void write_state(const StateFrame& frame, const RunConstants& constants, const SavedState& state,

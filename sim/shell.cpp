@@ -9,7 +9,7 @@ namespace slosh {
 namespace {
 
 constexpr double kCellWidth = 1.4;  // spacings
-constexpr std::int64_t kMostCells = std::int64_t{1} << 24;
+constexpr std::int64_t kMaxCells = std::int64_t{1} << 24;
 constexpr std::uint8_t kEmpty = 0, kFluid = 1, kOutside = 2;
 constexpr std::uint32_t kNowhere = ~0u;
 
@@ -33,7 +33,7 @@ void find_shell(std::span<const glm::vec3> positions, std::span<const std::uint8
   const double per_cell = 1.0 / (kCellWidth * spacing);
   // A rim of empty cells, so that every filled one has all its neighbours.
   const glm::dvec3 cells = glm::floor(glm::dvec3(upper - lower) * per_cell) + 3.0;
-  if (!(cells.x * cells.y * cells.z <= static_cast<double>(kMostCells))) {
+  if (!(cells.x * cells.y * cells.z <= static_cast<double>(kMaxCells))) {
     for (std::size_t i = 0; i < count; ++i) shell[i] = counts(positions[i], fluid_index[i]);
     return;
   }

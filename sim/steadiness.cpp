@@ -21,7 +21,7 @@ void Steadiness::feel(const std::vector<GripState>& grips, double seconds) {
     const glm::dvec3 mean = now_[g].sum / static_cast<double>(samples_);
     const double apart =
         std::max(glm::length(mean - before_[g]), 0.5 * glm::length(now_[g].high - now_[g].low));
-    steady_ = steady_ && apart <= std::max(kShare * glm::length(mean), kLeast);
+    steady_ = steady_ && apart <= std::max(kShare * glm::length(mean), kMin);
     before_[g] = mean;
   }
   now_.assign(now_.size(), Window{});

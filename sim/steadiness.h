@@ -14,7 +14,7 @@ class Steadiness {
  public:
   static constexpr double kWindow = 0.2;   ///< s
   static constexpr double kShare = 0.005;  ///< of the force: what may lie between two windows, and within one
-  static constexpr double kLeast = 0.005;  ///< N: a device's own noise
+  static constexpr double kMin = 0.005;    ///< N: a device's own noise
 
   /// What hands felt over another `seconds` (> 0).
   void feel(const std::vector<GripState>& grips, double seconds);

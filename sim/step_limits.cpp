@@ -126,12 +126,13 @@ double reach_of(const Scene& scene, const Grip& grip) {
 }
 
 void limit_by_drag(const Scene& scene, const Plan& plan, const FluidExtremes& fluids, StepLimit& limit) {
-  if (plan.has(PassId::kImplicitDrag)) {
+  if (plan.has(PassId::kImplicitViscosity)) {
     if (corrects_gradients(plan.model))
-      limit.lower_to(jostling_step(scene, plan, fluids), "what drags on jostling particles, explicit");
-    limit.lower_to(kMostImplicit * viscous_step(scene, plan, fluids),
+      limit.lower_to(artificial_viscosity_step(scene, plan, fluids),
+                     "what drags on jostling particles, explicit");
+    limit.lower_to(kMaxImplicit * viscous_step(scene, plan, fluids),
                    format("implicit viscosity of %.3g Pa·s: %g explicit steps in one", fluids.most_viscous,
-                          kMostImplicit));
+                          kMaxImplicit));
   } else if (plan.viscous() || corrects_gradients(plan.model)) {
     const double of_bodies = most_viscous_body(scene, fluids.most_viscous);
     limit.lower_to(viscous_step(scene, plan, fluids),
@@ -251,7 +252,7 @@ std::optional<Error> refuse_endless(const Scene& scene, const Plan& plan) {
   Plan shortest = plan;
   shortest.time_step = kShortestStep;  // of a sub-step
   shortest.sub_steps = 1;
-  const double most = most_viscous_allowed(scene, shortest, drag_sheet(scene, plan));
+  const double most = max_viscosity_allowed(scene, shortest, drag_layer(scene, plan));
   if (most > 0.0 && most < fluid_extremes(scene).most_viscous)
     error.mend = format("Up to %.3g Pa·s run at this spacing; coarser particles allow more", most);
   return error;

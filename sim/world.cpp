@@ -48,7 +48,7 @@ double World::settle(double seconds, std::span<const HandleInput> handles, bool 
                      double longest) {
   // Where fluid comes to rest does not hang on its viscosity, only when.
   const std::vector<Fluid> fluids = impl_->scene.fluids;
-  const bool thick = impl_->thin_fluids(kSettlesAs);
+  const bool thick = impl_->thin_fluids(kMaxSettlingViscosity);
   const double done = impl_->come_to_rest(seconds, handles, stopped, longest);
   if (!thick) return done;
   impl_->scene.fluids = fluids;
@@ -267,7 +267,7 @@ std::span<const Wrench> World::fluid_wrenches() const {
   return impl_->found;
 }
 std::span<const Matrix6> World::drags() const {
-  if (!impl_->plan().runs.has_any_of({PassId::kBodyDrag, PassId::kImplicitDrag})) return {};
+  if (!impl_->plan().runs.has_any_of({PassId::kBodyDrag, PassId::kImplicitViscosity})) return {};
   return impl_->drag_matrices;
 }
 

@@ -16,10 +16,10 @@
 
 namespace slosh {
 
-constexpr double kMostGravityScale = 2.0;
+constexpr double kMaxGravityScale = 2.0;
 /// World::set_grip_stiffness: times the scene's.
-constexpr double kLeastGripStiffness = 0.05;
-constexpr double kMostGripStiffness = 4.0;
+constexpr double kMinGripStiffness = 0.05;
+constexpr double kMaxGripStiffness = 4.0;
 
 /// One handle's input for one step, in the order of Scene::grips.
 struct HandleInput {
@@ -43,7 +43,7 @@ struct WorldOptions {
   int threads = 0;  ///< of the CPU backend; 0 = all cores
   Backend backend = Backend::kAuto;
   /// The fluid lies as an earlier world's came to rest, not in the lattice that volumes are filled with: it
-  /// has expanded already (pressure/settled_packing.h). As a lattice it would sag and bounce for 0.2 s.
+  /// has expanded already (pressure/rest_density.h). As a lattice it would sag and bounce for 0.2 s.
   bool settled = false;
 };
 
@@ -68,10 +68,10 @@ struct Diagnostics {
 /// Pa·s (World::settle). Half a second after it was let go from its lattice, half a spacing off every wall,
 /// fluid of 50, 200 and 1000 Pa·s had not closed that gap around a ball of 1.5 spacings, and a hand that
 /// turned the ball felt 4, 20 and 31 % too little.
-inline constexpr double kSettlesAs = 5.0;
+inline constexpr double kMaxSettlingViscosity = 5.0;
 
 /// The simulated world. One thread calls it; it uses `threads` cores inside. The same inputs give the same
-/// state to the bit whatever the thread count; a GPU's differ from the CPU's by rounding.
+/// state bitwise whatever the thread count; a GPU's differ from the CPU's by rounding.
 class World {
  public:
   /// `scene` and `sampled` are copied as needed; neither must outlive the call. kCuda counts as kAuto here:
@@ -89,9 +89,9 @@ class World {
   /// of it with the bodies where the scene has them). `handles` as for step, standing still; without any, no
   /// body moves. Neither time() nor tick() advances. What the fluid starts with, a velocity, a head, an
   /// unstable layering, is lost. 0 does nothing. `stopped` is asked each step: where it says true the world
-  /// is left as it is by then, for who ends anyway. Fluid thicker than kSettlesAs settles as if it had that:
-  /// it finds the same place sooner. With a `longest` above `seconds` it goes on until what hands feel is
-  /// steady (Steadiness), at most to `longest`. Returns how long it took, s.
+  /// is left as it is by then, for who ends anyway. Fluid thicker than kMaxSettlingViscosity settles as if it
+  /// had that: it finds the same place sooner. With a `longest` above `seconds` it goes on until what hands
+  /// feel is steady (Steadiness), at most to `longest`. Returns how long it took, s.
   double settle(double seconds, std::span<const HandleInput> handles = {}, bool (*stopped)() = nullptr,
                 double longest = 0.0);
 
@@ -119,7 +119,7 @@ class World {
   void fill_velocities(std::vector<glm::vec3>& out) const;
 
   /// Appends everything that moves or can be changed, so that a world of the same scene, spacing and plan
-  /// goes on from it: on the CPU to the bit. About 33 bytes a particle; 0.5 ms for 32 768. Error: the GPU
+  /// goes on from it: on the CPU bitwise. About 33 bytes a particle; 0.5 ms for 32 768. Error: the GPU
   /// failed.
   Result<bool> save(std::vector<std::uint8_t>& out) const;
   /// Takes over what save() wrote, on either backend. Errors, with the world as it was: other bytes, cut off,
@@ -129,10 +129,10 @@ class World {
   /// From the next step on. Errors: no such fluid in the world, or the time step would not be stable with it
   /// (then with the largest value that is). `pascal_seconds` >= 0.
   Result<bool> set_viscosity(std::size_t fluid, double pascal_seconds);
-  /// Times the scene's gravity, 0 to kMostGravityScale. Errors as above.
+  /// Times the scene's gravity, 0 to kMaxGravityScale. Errors as above.
   Result<bool> set_gravity_scale(double scale);
-  /// Springs of a grip's coupling, straight and turning, times the scene's: kLeastGripStiffness to
-  /// kMostGripStiffness. The dampers stay. It is gone over to from the next step on, by kGripStiffnessPace,
+  /// Springs of a grip's coupling, straight and turning, times the scene's: kMinGripStiffness to
+  /// kMaxGripStiffness. The dampers stay. It is gone over to from the next step on, by kGripStiffnessPace,
   /// so that what hangs there is not thrown. Errors: no such grip, beyond these, or a spring of more than a
   /// scene may have (10⁶ N/m, 10⁴ N·m/rad).
   Result<bool> set_grip_stiffness(std::size_t grip, double scale);
@@ -146,7 +146,7 @@ class World {
   std::span<const Wrench> fluid_wrenches() const;
   /// What that loses for each unit of the body's twist with the fluid held as it is, linear first, angular
   /// after, about the centre of mass: N·s/m, N·s, N·m·s. Symmetric, positive semidefinite, one a body; empty
-  /// where the plan has neither kBodyDrag nor kImplicitDrag.
+  /// where the plan has neither kBodyDrag nor kImplicitViscosity.
   std::span<const Matrix6> drags() const;
 
   std::uint32_t take_status();  ///< StatusBits since the last call, then cleared

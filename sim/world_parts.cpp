@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "sim/pressure/settled_packing.h"
+#include "sim/pressure/rest_density.h"
 #include "sim/stopwatch.h"
 
 namespace slosh {
@@ -54,7 +54,7 @@ bool World::Impl::thin_fluids(double most) {
   return thick;
 }
 
-void World::Impl::grow_older(double dt) {
+void World::Impl::calibrate_rest_density(double dt) {
   if (packed) return;
   if (corrects_gradients(plan().model))
     engine->set_correction(settled(constants.correction, constants.load_compression, age));
@@ -76,17 +76,17 @@ void World::Impl::begin_step() {
 void World::Impl::run(const SubStep& step, TakePart part) {
   const bool fluid = plan().has_fluid();
   const bool moving = part != TakePart::kFluid;
-  const bool implicit = fluid && plan().has(PassId::kImplicitDrag);
+  const bool implicit = fluid && plan().has(PassId::kImplicitViscosity);
   const bool pressed = fluid && plan().has(PassId::kPressureSolve);
   const bool fluid_waits = implicit || pressed || (moving && plan().fluid_waits());
   if (fluid) {
-    grow_older(step.dt);
+    calibrate_rest_density(step.dt);
     engine->prepare(bodies.bodies());
     engine->forces(step.dt);
     if (!fluid_waits) engine->advance(step.dt, expected(step, moving));
     engine->wrenches(found);
   }
-  if (implicit) drag_implicitly(step, moving, part == TakePart::kHeld);
+  if (implicit) solve_viscosity(step, moving, part == TakePart::kHeld);
   const bool with_drag = moving && plan().has(PassId::kBodyDrag);
   if (pressed) solve_pressure(step, moving, part == TakePart::kHeld, with_drag);
   if (moving) solve_bodies(step, part == TakePart::kHeld, with_drag);
@@ -101,9 +101,9 @@ void World::Impl::run(const SubStep& step, TakePart part) {
   if (fluid) report(step);
 }
 
-void World::Impl::drag_implicitly(const SubStep& step, bool moving, bool held_only) {
+void World::Impl::solve_viscosity(const SubStep& step, bool moving, bool held_only) {
   bodies.predict(plan(), {found, {}, gravity_scale * scene.gravity}, step, moving, held_only, viscous_bodies);
-  engine->solve_drag(step.dt, viscous_bodies, found);
+  engine->solve_viscosity(step.dt, viscous_bodies, found);
   take_drags();
 }
 

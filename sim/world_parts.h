@@ -30,14 +30,14 @@ struct World::Impl {
   double come_to_rest(double seconds, std::span<const HandleInput> handles, bool (*stopped)(),
                       double longest);
   /// The fluid's age, and what it presses by at it.
-  void grow_older(double dt);
+  void calibrate_rest_density(double dt);
   SubStep sub_step(int index) const;
   void begin_step();
   /// The fluid, and the bodies as far as they take part. Where the fluid is dragged by what the bodies' solve
   /// finds, or must not pass walls that move, it waits for it; else it goes on while they are solved (on a
   /// GPU).
   void run(const SubStep& step, TakePart part);
-  void drag_implicitly(const SubStep& step, bool moving, bool held_only);
+  void solve_viscosity(const SubStep& step, bool moving, bool held_only);
   void solve_pressure(const SubStep& step, bool moving, bool held_only, bool with_drag);
   void take_drags();
   /// Where the bodies will be, as far as that is known before their solve.
@@ -55,7 +55,7 @@ struct World::Impl {
   std::vector<Wrench> found;     // by the fluid in the last sub-step, one a body
   std::vector<BodyDrag> drags;   // with kBodyDrag, one a body
   std::vector<Matrix6> drag_matrices;
-  std::vector<ViscousBody> viscous_bodies;  // with kImplicitDrag, one a body
+  std::vector<ViscousBody> viscous_bodies;  // with kImplicitViscosity, one a body
   std::vector<Wrench> wrenches;             // their means over the last step
   std::size_t fluid_count = 0;              // without probes
   std::vector<std::uint8_t> fluid_of;       // index into scene.fluids, by id
@@ -64,7 +64,7 @@ struct World::Impl {
   std::uint64_t tick = 0;
   StepTimes times;
   double gravity_scale = 1.0;
-  double age;           // s, as pressure/settled_packing.h counts it; no further than kSettlingTime
+  double age;           // s, as pressure/rest_density.h counts it; no further than kSettlingTime
   bool packed = false;  // the engine has what that age needs, and it needs nothing else any more
   StateFrame frame;
 };

@@ -16,7 +16,7 @@ namespace {
 constexpr char kMagic[8] = {'S', 'L', 'O', 'S', 'H', 'C', 'P', '\n'};
 // 1 had the secrets in it.
 constexpr std::uint32_t kVersion = 2;
-constexpr std::size_t kMostAddresses = 64;
+constexpr std::size_t kMaxAddresses = 64;
 constexpr std::size_t kLongestAddress = 256;
 
 // In this order, each once.
@@ -50,7 +50,7 @@ void visit(V& v, FileHead& m) {
   v.text("program", m.program, 64);
   v.bits64("host_run", m.run);
   v.text("listen", m.place.listen, kLongestAddress);
-  v.list("addresses", m.place.addresses, kMostAddresses,
+  v.list("addresses", m.place.addresses, kMaxAddresses,
          [](auto& each, std::string& address) { each.text("address", address, kLongestAddress); });
 }
 

@@ -41,7 +41,7 @@ void append_chunk(std::uint8_t type, ByteView content, Bytes& out) {
   const std::size_t packed = ZSTD_compress(out.data() + begin + kChunkHead, out.size() - begin - kChunkHead,
                                            content.data(), content.size(), kZstdLevel);
   const bool smaller = !ZSTD_isError(packed) && packed < content.size();
-  if (smaller && content.size() <= kMostExpansion * packed) {
+  if (smaller && content.size() <= kMaxExpansion * packed) {
     head.packed = static_cast<std::uint32_t>(packed);
   } else {
     head.coding = kStored;
@@ -78,7 +78,7 @@ ChunkOutcome ChunkReader::next(Chunk& chunk) {
   if (head.coding > kZstd || head.zero != 0 || head.packed > kLargestChunk || head.unpacked > kLargestChunk)
     return damaged("there is no chunk");
   if (head.coding == kStored ? head.unpacked != head.packed
-                             : head.unpacked > kMostExpansion * std::size_t{head.packed}) {
+                             : head.unpacked > kMaxExpansion * std::size_t{head.packed}) {
     return damaged("a chunk's sizes contradict each other");
   }
   if (size_ - at_ - kChunkHead < head.packed) return ChunkOutcome::kCutOff;

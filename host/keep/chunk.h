@@ -22,7 +22,7 @@ constexpr std::size_t kChunkHead = 16;
 /// Bytes of one chunk, packed or not: a state of eight million particles.
 constexpr std::size_t kLargestChunk = std::size_t{1} << 28;
 /// A chunk that unpacks to more times its size is not written packed and not believed.
-constexpr std::size_t kMostExpansion = 64;
+constexpr std::size_t kMaxExpansion = 64;
 
 /// Appends one chunk. `content` is at most kLargestChunk.
 void append_chunk(std::uint8_t type, ByteView content, Bytes& out);

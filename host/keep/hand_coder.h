@@ -1,4 +1,4 @@
-// Hands' inputs, tick by tick, to the bit in few bytes: each number is carried on by its last change, taken
+// Hands' inputs, tick by tick, bitwise in few bytes: each number is carried on by its last change, taken
 // as an integer, and what is off is written without its leading zeros. A hand that rests costs nothing.
 #pragma once
 

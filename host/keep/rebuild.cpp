@@ -19,14 +19,14 @@ Result<RebuiltWorld> rebuild_world(const Scene& scene, SampledScene sampled,
   // Where a GPU's plan and the CPU's differ, what was saved fits the one that it was made by; the CPU can go
   // on from both.
   std::optional<Error> refused;
-  for (const bool may_solve_drag : {can_solve_drag(options.backend), false}) {
+  for (const bool may_be_implicit : {can_solve_drag(options.backend), false}) {
     Result<World> world =
-        make_world(scene, sampled, make_plan(scene, sampled.spacing, may_solve_drag), options);
+        make_world(scene, sampled, make_plan(scene, sampled.spacing, may_be_implicit), options);
     if (!world) return world.error();
     const Result<bool> restored = world.value().restore(state);
     if (restored) return RebuiltWorld{std::move(sampled), std::move(world.value())};
     if (!refused) refused = restored.error();
-    if (!world.value().plan().solves_drag) break;
+    if (!world.value().plan().implicit_viscosity) break;
   }
   return *refused;
 }

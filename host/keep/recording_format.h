@@ -40,7 +40,7 @@ void visit(V& v, HeadRecord& m) {
   v.text("backend", m.backend, 64);
   v.flag("paused", m.state.paused);
   v.natural("run", m.state.run, 0, 0xffffffff);
-  v.real64("gravity_scale", m.state.gravity_scale, 0.0, kMostGravityScale);
+  v.real64("gravity_scale", m.state.gravity_scale, 0.0, kMaxGravityScale);
   v.list("viscosities", m.state.viscosities, 255,
          [](auto& each, double& value) { each.real64("viscosity", value, 0.0, 1e9); });
 }

@@ -23,7 +23,7 @@ namespace {
 constexpr std::string_view kGranted = "done\n";
 constexpr std::string_view kNotGranted = "not done\n";
 
-constexpr std::size_t kMostCallers = 8;
+constexpr std::size_t kMaxCallers = 8;
 constexpr int kPatience_ms = 8000;
 
 std::string system_words() {
@@ -171,7 +171,7 @@ void ConsoleDoor::serve(int wait_ms, int also, const Answer& answer) {
   }
   if (waiting[0].revents == 0) return;
   const int fd = accept4(listening_, nullptr, nullptr, SOCK_CLOEXEC);
-  if (fd >= 0 && callers_.size() < kMostCallers)
+  if (fd >= 0 && callers_.size() < kMaxCallers)
     callers_.push_back({fd, {}});
   else if (fd >= 0)
     ::close(fd);

@@ -21,7 +21,7 @@ void DeedLog::note(const std::string& words, std::int64_t unix_ns) {
     deeds_.erase(same);
   }
   deeds_.push_back(std::move(deed));
-  if (deeds_.size() > kMostDeeds) deeds_.pop_front();
+  if (deeds_.size() > kMaxDeeds) deeds_.pop_front();
 }
 
 std::string DeedLog::text() const {

@@ -8,7 +8,7 @@
 
 namespace slosh {
 
-constexpr std::size_t kMostDeeds = 200;
+constexpr std::size_t kMaxDeeds = 200;
 
 /// One thread; knows no clock.
 class DeedLog {

@@ -25,11 +25,11 @@ constexpr Kind kKindTable[] = {{"paused the world or let it go on as often", 0.5
                                {"changed gravity as much", 0.2, 4.0, 2.0, 0.05},
                                {"changed viscosities as much", 1.0, 12.0, 2.0, 0.05},
                                {"changed the stiffness of grips as much", 1.0, 13.0, 4.0, 0.05}};
-constexpr double kSettled = 1.0;          // s until the world has what it was asked for
-constexpr double kLeastViscosity = 1e-4;  // Pa·s: thinner fluids feel alike
-constexpr double kMostOfViscosity = 4.0;  // what one change counts at most: the world may refuse it
-constexpr std::size_t kMostAtEase = 64;   // guests before those whose budgets are full are forgotten
-constexpr double kFullAgain = 60.0;       // s
+constexpr double kSettled = 1.0;         // s until the world has what it was asked for
+constexpr double kMinViscosity = 1e-4;   // Pa·s: thinner fluids feel alike
+constexpr double kMaxOfViscosity = 4.0;  // what one change counts at most: the world may refuse it
+constexpr std::size_t kMaxAtEase = 64;   // guests before those whose budgets are full are forgotten
+constexpr double kFullAgain = 60.0;      // s
 
 std::size_t kind_of(HostAction action) {
   switch (action) {
@@ -53,8 +53,8 @@ double distance(HostAction action, double from, double to) {
     case HostAction::kGravityScale:
       return std::abs(to - from);
     case HostAction::kViscosity:
-      return std::min(kMostOfViscosity,
-                      std::abs(std::log10(std::max(to, kLeastViscosity) / std::max(from, kLeastViscosity))));
+      return std::min(kMaxOfViscosity,
+                      std::abs(std::log10(std::max(to, kMinViscosity) / std::max(from, kMinViscosity))));
     case HostAction::kGripStiffness:
       return std::abs(std::log2(std::clamp(to, wire::kMinGripStiffness, wire::kMaxGripStiffness) /
                                 std::clamp(from, wire::kMinGripStiffness, wire::kMaxGripStiffness)));
@@ -106,7 +106,7 @@ double EffectBudget::size_of(const HostCommand& command, const HostState& now, s
 }
 
 EffectBudget::Guest& EffectBudget::guest(const KeyFingerprint& who, std::int64_t now_ns) {
-  if (guests_.size() > kMostAtEase) {
+  if (guests_.size() > kMaxAtEase) {
     std::erase_if(guests_, [&](const auto& each) {
       return to_seconds(now_ns - each.second.used_ns) > kFullAgain && each.first != who;
     });

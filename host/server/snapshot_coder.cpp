@@ -10,8 +10,8 @@ namespace slosh {
 namespace {
 
 // Blocks mended for one peer in one frame at most; what is left is asked for again.
-constexpr std::uint32_t kMostMended = 4096;
-constexpr std::size_t kMostMendingPeers = 256;
+constexpr std::uint32_t kMaxMended = 4096;
+constexpr std::size_t kMaxMendingPeers = 256;
 constexpr double kFreshEnough = 0.3;  // simulated s: an epoch as young as this need not be followed
 constexpr std::size_t kBehind = 2;    // snapshots that may wait before one is left out
 constexpr double kStanding = 0.25;    // s without a new snapshot after which the world stands
@@ -34,7 +34,7 @@ void SnapshotCoder::code(const Snapshot& snapshot, SnapshotOrder order, std::vec
   const std::int64_t begin = steady_now_ns();
   for (MendOrder& wish : order.mends) {
     const std::pair key{wish.peer, wish.tier};
-    if (mending_.size() < kMostMendingPeers || mending_.contains(key)) mending_[key] = {std::move(wish), 2};
+    if (mending_.size() < kMaxMendingPeers || mending_.contains(key)) mending_[key] = {std::move(wish), 2};
   }
   for (int tier = 0; tier < kTierCount; ++tier) {
     const auto i = static_cast<std::size_t>(tier);
@@ -75,7 +75,7 @@ void SnapshotCoder::mend(int tier, const EncodedFrame& frame, CodedSnapshot& out
     mending.frames_left = passed ? 0 : mending.frames_left - 1;
     if (passed) continue;
     std::vector<wire::BlockRange> blocks;
-    std::uint32_t room = kMostMended;
+    std::uint32_t room = kMaxMended;
     const auto add = [&](std::uint32_t first, std::uint32_t count) {
       if (first >= frame.blocks || room == 0) return;
       count = std::min({count, frame.blocks - first, room});

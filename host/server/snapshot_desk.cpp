@@ -6,7 +6,7 @@
 namespace slosh {
 namespace {
 
-constexpr std::size_t kMostWaiting = 24;  // coded snapshots that nobody collected
+constexpr std::size_t kMaxWaiting = 24;  // coded snapshots that nobody collected
 
 }  // namespace
 
@@ -38,8 +38,8 @@ bool SnapshotDesk::watched() const {
 void SnapshotDesk::deliver(std::vector<CodedSnapshot> snapshots) {
   const std::lock_guard lock(mutex_);
   std::move(snapshots.begin(), snapshots.end(), std::back_inserter(coded_));
-  if (coded_.size() > kMostWaiting)
-    coded_.erase(coded_.begin(), coded_.end() - static_cast<std::ptrdiff_t>(kMostWaiting));
+  if (coded_.size() > kMaxWaiting)
+    coded_.erase(coded_.begin(), coded_.end() - static_cast<std::ptrdiff_t>(kMaxWaiting));
 }
 
 }  // namespace slosh

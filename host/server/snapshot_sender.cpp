@@ -11,8 +11,8 @@ namespace {
 constexpr std::int64_t kJudgeEvery = 100'000'000;  // ns between two looks at a link
 constexpr double kFeedbackPatience = 1.5;  // s without feedback after which a watcher counts as silent
 constexpr std::size_t kPiecesATurn = 32;   // before the network is looked at again
-constexpr std::size_t kMostLeaving = 12;   // frames on their way; the oldest go when we cannot keep up
-constexpr std::size_t kLeastRoom = 8;      // pieces that may wait in a queue, however small a frame is
+constexpr std::size_t kMaxLeaving = 12;    // frames on their way; the oldest go when we cannot keep up
+constexpr std::size_t kMinRoom = 8;        // pieces that may wait in a queue, however small a frame is
 
 }  // namespace
 
@@ -58,7 +58,7 @@ bool SnapshotSender::has_room(ConnectionId connection, Sink& sink, std::size_t p
   if (stats.datagrams_dropped[kLane] > sink.dropped) sink.seen.datagrams_dropped = true;
   sink.dropped = stats.datagrams_dropped[kLane];
   const std::uint64_t waiting = sink.offered > done ? sink.offered - done : 0;
-  return waiting <= std::max<std::size_t>(pieces, kLeastRoom);
+  return waiting <= std::max<std::size_t>(pieces, kMinRoom);
 }
 
 void SnapshotSender::send_piece(ConnectionId connection, Sink& sink, const Piece& piece) {
@@ -69,7 +69,7 @@ void SnapshotSender::send_piece(ConnectionId connection, Sink& sink, const Piece
 // do not wait for all of them.
 void SnapshotSender::send(std::int64_t now_ns) {
   for (CodedSnapshot& snapshot : desk_->collect()) leaving_.push_back({std::move(snapshot), 0});
-  while (leaving_.size() > kMostLeaving) leaving_.pop_front();
+  while (leaving_.size() > kMaxLeaving) leaving_.pop_front();
   std::size_t room = kPiecesATurn;
   while (!leaving_.empty() && room > 0) {
     Leaving& leaving = leaving_.front();

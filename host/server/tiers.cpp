@@ -7,11 +7,11 @@
 namespace slosh {
 namespace {
 
-constexpr double kHeavyLoss = 0.15;     // share of pieces; beyond, it is the link's fullness
-constexpr double kFullFor = 0.25;       // s of a full link before a step down
-constexpr double kAftermath = 0.5;      // s after a change in which the old tier's datagrams still count
-constexpr double kFailedClimb = 6.0;    // s: a fall so soon after a climb makes the next climb wait longer
-constexpr double kMostPatience = 60.0;  // s
+constexpr double kHeavyLoss = 0.15;    // share of pieces; beyond, it is the link's fullness
+constexpr double kFullFor = 0.25;      // s of a full link before a step down
+constexpr double kAftermath = 0.5;     // s after a change in which the old tier's datagrams still count
+constexpr double kFailedClimb = 6.0;   // s: a fall so soon after a climb makes the next climb wait longer
+constexpr double kMaxPatience = 60.0;  // s
 
 }  // namespace
 
@@ -37,7 +37,7 @@ bool TierControl::note(const LinkEvidence& seen, std::int64_t now_ns) {
     if (full_since_ns_ == 0) full_since_ns_ = now_ns;
     if (now_ns - full_since_ns_ < to_nanoseconds(kFullFor) || tier_ == kTierCount - 1) return false;
     if (climbed_ && now_ns - changed_ns_ < to_nanoseconds(kFailedClimb))
-      patience_ = std::min(2.0 * patience_, kMostPatience);
+      patience_ = std::min(2.0 * patience_, kMaxPatience);
     // Far too full: two steps at once.
     const int steps = seen.frames > 0 && seen.frames_withheld * 2 > seen.frames ? 2 : 1;
     tier_ = std::min(tier_ + steps, kTierCount - 1);

@@ -178,7 +178,7 @@ const char* BlockReader::key(Block& block, int size, const std::int32_t origin[3
     if (const char* fault = points(block)) return fault;
     return fluids(block);
   }
-  constexpr std::uint64_t kMostCode = std::uint64_t{1} << 3 * kCoordinateBits;
+  constexpr std::uint64_t kMaxCode = std::uint64_t{1} << 3 * kCoordinateBits;
   const int first = static_cast<int>(in_.bits(6));
   std::uint64_t code = in_.bits(std::min(first, 60));
   const int typical = static_cast<int>(in_.bits(6));
@@ -190,7 +190,7 @@ const char* BlockReader::key(Block& block, int size, const std::int32_t origin[3
       if (length < 0 || length > 3 * kCoordinateBits) return kOutside;
       if (length > 0) code += std::uint64_t{1} << (length - 1) | in_.bits(length - 1);
     }
-    if (code >= kMostCode) return kOutside;
+    if (code >= kMaxCode) return kOutside;
     for (int a = 0; a < 3; ++a) {
       const std::int64_t at = origin[a] + static_cast<std::int64_t>(gather_bits(code >> a));
       if (!inside(at)) return kOutside;

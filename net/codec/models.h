@@ -1,4 +1,4 @@
-// The fixed tables of the entropy coder. Made once, from integers alone: both ends have the same to the bit.
+// The fixed tables of the entropy coder. Made once, from integers alone: both ends have bitwise identical.
 #pragma once
 
 #include <array>

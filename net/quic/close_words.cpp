@@ -54,7 +54,7 @@ std::string transport_words(const CloseFrame& frame, bool to_server) {
 }
 
 std::string printable(const std::string& text) {
-  return clean_text(text, kMostTextBytes);
+  return clean_text(text, kMaxTextBytes);
 }
 
 }  // namespace slosh::quic

@@ -15,7 +15,7 @@ constexpr std::size_t kRoom = kMaxPacket - 1 - 20 - 4 - 16 - (kDatagramsAreProbe
 constexpr std::size_t kSnapshotsAStream = 15;
 // ns: so often a packet of poses or states leaves however full the link looks (30 kB/s at most). The queue
 // may be the other way's.
-constexpr std::int64_t kLeastEvery = 40'000'000;
+constexpr std::int64_t kMinEvery = 40'000'000;
 // Who hears nothing for two round trips and kDeaf, s, sends a packet each kDeafEvery, ns: what goes into the
 // dark counts as under way until something later is acknowledged, and would fill the window of a path that is
 // new.
@@ -59,7 +59,7 @@ void Connection::flush(std::int64_t now) {
     short_packet_ = bulk_packet_ = false;
     packed_datagrams_ = 0;
     const bool crowded = deaf || ledger_.under_way() >= wide;
-    const bool full = crowded && now - datagrams_left_ < (deaf ? kDeafEvery : kLeastEvery);
+    const bool full = crowded && now - datagrams_left_ < (deaf ? kDeafEvery : kMinEvery);
     const ngtcp2_ssize size = full ? ngtcp2_conn_write_pkt(conn_, &path.path, nullptr, out.data(), out.size(),
                                                            static_cast<ngtcp2_tstamp>(now))
                                    : write_packet(out, &path.path, now);

@@ -15,7 +15,7 @@ class DeliveredRate {
   /// known yet.
   double note(std::uint64_t delivered, std::int64_t now, double span) {
     const double passed = 1e-9 * static_cast<double>(now - began_);
-    if (began_ == 0 || passed >= std::max(span, kLeastSpan)) {
+    if (began_ == 0 || passed >= std::max(span, kMinSpan)) {
       if (began_ != 0 && delivered > delivered_)
         this_ = std::max(this_, static_cast<double>(delivered - delivered_) / passed);
       began_ = now;
@@ -30,7 +30,7 @@ class DeliveredRate {
   }
 
  private:
-  static constexpr double kLeastSpan = 0.05;  // s: acknowledgements may be late by half of that
+  static constexpr double kMinSpan = 0.05;  // s: acknowledgements may be late by half of that
   static constexpr std::int64_t kTurn =
       2'000'000'000;  // ns: a link that got slower is known after twice that
 

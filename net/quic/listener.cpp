@@ -9,8 +9,8 @@
 namespace slosh::quic {
 namespace {
 
-constexpr std::int64_t kGraveTime = kNanosecondsPerSecond;
-constexpr std::size_t kGraves = 1024;
+constexpr std::int64_t kTombstoneTime = kNanosecondsPerSecond;
+constexpr std::size_t kTombstones = 1024;
 constexpr std::int64_t kListenerHousekeeping = kNanosecondsPerSecond / 4;
 
 std::string text_of(const ngtcp2_cid& id) {
@@ -51,9 +51,9 @@ void Listener::packet_arrived(UdpSocket& socket, const Arrival& packet, std::int
 
 void Listener::unknown_packet(UdpSocket& socket, const Arrival& packet, const ngtcp2_version_cid& ids,
                               std::int64_t now) {
-  const auto grave = graves_.find(std::string(reinterpret_cast<const char*>(ids.dcid), ids.dcidlen));
-  if (grave != graves_.end()) {
-    Grave& found = *grave->second;
+  const auto grave = tombstones_.find(std::string(reinterpret_cast<const char*>(ids.dcid), ids.dcidlen));
+  if (grave != tombstones_.end()) {
+    Tombstone& found = *grave->second;
     if (found.answers_left > 0 && found.remote == packet.from && !found.packet.empty()) {
       --found.answers_left;
       const auto out = socket.space();
@@ -80,7 +80,7 @@ void Listener::confirmed(Connection& connection) {
 }
 
 void Listener::connection_over(Connection& connection, std::int64_t now) {
-  auto grave = std::make_shared<Grave>();
+  auto grave = std::make_shared<Tombstone>();
   for (const ngtcp2_cid& id : connection.ids()) {
     const std::string text = text_of(id);
     const auto route = routes_.find(text);
@@ -91,10 +91,10 @@ void Listener::connection_over(Connection& connection, std::int64_t now) {
   // Late packets of a connection that is over get its last word again, or silence: not a new start.
   grave->packet = connection.close_packet();
   grave->remote = connection.remote();
-  grave->until = now + kGraveTime;
+  grave->until = now + kTombstoneTime;
   grave->answers_left = 4;
-  for (const std::string& id : grave->ids) graves_[id] = grave;
-  graves_by_age_.push_back(std::move(grave));
+  for (const std::string& id : grave->ids) tombstones_[id] = grave;
+  tombstones_by_age_.push_back(std::move(grave));
   if (connection.announced())
     events_.on_closed(connection.id, connection.reason());
   else
@@ -102,16 +102,16 @@ void Listener::connection_over(Connection& connection, std::int64_t now) {
 }
 
 std::int64_t Listener::housekeeping(std::int64_t now) {
-  while (!graves_by_age_.empty() &&
-         (graves_by_age_.front()->until <= now || graves_by_age_.size() > kGraves)) {
-    for (const std::string& id : graves_by_age_.front()->ids) graves_.erase(id);
-    graves_by_age_.pop_front();
+  while (!tombstones_by_age_.empty() &&
+         (tombstones_by_age_.front()->until <= now || tombstones_by_age_.size() > kTombstones)) {
+    for (const std::string& id : tombstones_by_age_.front()->ids) tombstones_.erase(id);
+    tombstones_by_age_.pop_front();
   }
   while (!used_by_age_.empty() && used_by_age_.front().first <= now) {
     used_tokens_.erase(used_by_age_.front().second);
     used_by_age_.pop_front();
   }
-  const bool idle = graves_by_age_.empty() && used_by_age_.empty();
+  const bool idle = tombstones_by_age_.empty() && used_by_age_.empty();
   return idle ? now + 4 * kListenerHousekeeping : now + kListenerHousekeeping;
 }
 

@@ -23,7 +23,7 @@ class Listener final : public EndpointBase {
 
  private:
   /// A connection that is over: what to answer to those who have not heard.
-  struct Grave {
+  struct Tombstone {
     std::vector<std::uint8_t> packet;
     Address remote;
     std::vector<std::string> ids;
@@ -56,8 +56,8 @@ class Listener final : public EndpointBase {
 
   std::array<std::uint8_t, 32> token_secret_;
   std::unordered_map<std::string, Connection*> routes_;
-  std::unordered_map<std::string, std::shared_ptr<Grave>> graves_;
-  std::deque<std::shared_ptr<Grave>> graves_by_age_;
+  std::unordered_map<std::string, std::shared_ptr<Tombstone>> tombstones_;
+  std::deque<std::shared_ptr<Tombstone>> tombstones_by_age_;
   std::unordered_set<std::string> used_tokens_;  // by the id that came with each
   std::deque<std::pair<std::int64_t, std::string>> used_by_age_;
   HandshakeBudget budget_;

@@ -20,7 +20,7 @@ class LossLedger {
       entries_.push_back({now, 0, 0, false});
     entries_.push_back({now, bytes, datagrams, false});
     under_way_ += bytes;
-    if (entries_.size() > kMost) drop_first();
+    if (entries_.size() > kMax) drop_first();
   }
   /// Both ends count. What was not sent is left alone.
   void acknowledged(std::int64_t from, std::int64_t to) {
@@ -45,7 +45,7 @@ class LossLedger {
   std::size_t size() const { return entries_.size(); }
 
  private:
-  static constexpr std::size_t kMost = 16384;  // packets
+  static constexpr std::size_t kMax = 16384;  // packets
   struct Entry {
     std::int64_t sent_ns;
     std::size_t bytes;

@@ -17,7 +17,7 @@ namespace slosh::quic {
 /// knows better: a link with room answers as fast as it ever did.
 class PaceGain {
  public:
-  static constexpr double kMost = 4.0;
+  static constexpr double kMax = 4.0;
 
   double factor() const { return factor_; }
 
@@ -37,7 +37,7 @@ class PaceGain {
     if (queueing || lossy_)
       factor_ = std::max(1.0, kDown * factor_);
     else if (waited_)
-      factor_ = std::min(kMost, kUp * factor_);
+      factor_ = std::min(kMax, kUp * factor_);
     waited_ = false;
   }
 

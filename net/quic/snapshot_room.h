@@ -25,7 +25,7 @@ class SnapshotRoom {
   /// Bytes in flight up to which snapshots may be sent.
   std::size_t limit(const PathFigures& path, std::int64_t now) {
     const double shortest = shortest_.note(path.latest_rtt, now);
-    const double recent = recent_.note(path.latest_rtt, now, std::max(path.smoothed_rtt, kLeastSpan));
+    const double recent = recent_.note(path.latest_rtt, now, std::max(path.smoothed_rtt, kMinSpan));
     if (path.delivery_rate <= 0.0 || shortest >= ShortestRoundTrip::kNever) return kAtFirst * kMaxPacket;
     const double queue = std::max(0.0, recent - shortest);
     if (drain_.due(queue > kShows * shortest + kShowsSlack, path, shortest, now)) {
@@ -37,16 +37,16 @@ class SnapshotRoom {
     // Only so fast, or it would swing: what is let out shows a round trip later.
     const double passed = 1e-9 * static_cast<double>(now - then_);
     then_ = now;
-    more_ += (wish - more_) * std::min(1.0, passed / (kRoundTrips * std::max(path.smoothed_rtt, kLeastSpan)));
+    more_ += (wish - more_) * std::min(1.0, passed / (kRoundTrips * std::max(path.smoothed_rtt, kMinSpan)));
     return static_cast<std::size_t>((1.0 + kGain * more_) * path.delivery_rate * shortest +
-                                    (kFew + (kMost - kFew) * more_) * kMaxPacket);
+                                    (kFew + (kMax - kFew) * more_) * kMaxPacket);
   }
 
  private:
   static constexpr std::size_t kAtFirst = 16;  // packets while nothing is known
   static constexpr double kGain = 0.25;        // of what fills the way, beyond it, while no queue shows
   static constexpr double kFew = 4;            // packets beyond it: short ways, and a start from little
-  static constexpr double kMost = 12;          // likewise while no queue shows
+  static constexpr double kMax = 12;           // likewise while no queue shows
 
   // A queue of so much, of the shortest round trip and s beyond that, leaves nothing but kFew.
   static constexpr double kQueueing = 0.1;
@@ -55,7 +55,7 @@ class SnapshotRoom {
   static constexpr double kShows = 0.05;
   static constexpr double kShowsSlack = 2e-3;
 
-  static constexpr double kLeastSpan = 0.02;  // s
+  static constexpr double kMinSpan = 0.02;    // s
   static constexpr double kRoundTrips = 4.0;  // in which it follows
 
   ShortestRoundTrip shortest_;

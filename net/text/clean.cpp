@@ -61,14 +61,14 @@ void each_character(std::string_view text, Visit&& visit) {
 
 std::string text_problem(std::string_view text) {
   std::string problem;
-  std::size_t marks = kMostMarks;  // nothing to stand on yet
+  std::size_t marks = kMaxMarks;  // nothing to stand on yet
   each_character(text, [&](std::size_t at, std::string_view, Fate fate) {
     marks = fate == Fate::kMark ? marks + 1 : 0;
     const char* what = nullptr;
     if (fate == Fate::kNotUtf8) what = "is not UTF-8";
     if (fate == Fate::kReplaced) what = "has a control character";
     if (fate == Fate::kDropped) what = "has an invisible character";
-    if (marks > kMostMarks) what = at == 0 ? "has a mark on nothing" : "has too many marks on a character";
+    if (marks > kMaxMarks) what = at == 0 ? "has a mark on nothing" : "has too many marks on a character";
     if (what) problem = std::string(what) + " at byte " + std::to_string(at);
     return !what;
   });
@@ -77,13 +77,13 @@ std::string text_problem(std::string_view text) {
 
 std::string clean_text(std::string_view foreign, std::size_t most_bytes) {
   std::string out;
-  std::size_t marks = kMostMarks;
+  std::size_t marks = kMaxMarks;
   // No character needs more than this many bytes of what is left out for one that is kept: nobody may make
   // this walk through megabytes that show nothing.
   const std::string_view looked_at = foreign.substr(0, 64 + 16 * std::min(most_bytes, foreign.size()));
   each_character(looked_at, [&](std::size_t, std::string_view bytes, Fate fate) {
     if (fate == Fate::kDropped) return true;
-    if (fate == Fate::kMark && marks >= kMostMarks) return true;
+    if (fate == Fate::kMark && marks >= kMaxMarks) return true;
     const bool kept = fate == Fate::kKept || fate == Fate::kMark;
     const std::string_view piece = kept ? bytes : std::string_view("?");
     if (out.size() + piece.size() > most_bytes) return false;

@@ -7,17 +7,17 @@
 
 namespace slosh {
 
-constexpr std::size_t kMostTextBytes = 400;  ///< of a name in a file or of a sentence, as on the wire
+constexpr std::size_t kMaxTextBytes = 400;  ///< of a name in a file or of a sentence, as on the wire
 
 /// Marks (accents) that one character may carry. Scripts stack two or three; more is made to cover other
 /// lines.
-constexpr std::size_t kMostMarks = 3;
+constexpr std::size_t kMaxMarks = 3;
 
 /// What is wrong with a text, empty when nothing is. Refused are bytes that are not UTF-8 (overlong forms and
 /// surrogates among them), control characters (C0, DEL, C1: an 0x9b begins a terminal's sequence), line and
 /// paragraph separators, characters that nobody sees (of zero width, turning the direction of writing, tags,
 /// variation selectors, fillers), private use, code points that are no characters, a mark with nothing to
-/// stand on, and more than kMostMarks on one character. Whether a code point is assigned yet depends on the
+/// stand on, and more than kMaxMarks on one character. Whether a code point is assigned yet depends on the
 /// version of Unicode that a machine has, so it is no problem here: two ends of a connection may differ.
 std::string text_problem(std::string_view text);
 

@@ -15,7 +15,7 @@ namespace slosh {
 namespace {
 
 // Far above a name: what is longer is cut before any work is done on it.
-constexpr std::size_t kMostForeign = 256;
+constexpr std::size_t kMaxForeign = 256;
 
 std::u16string to_utf16(std::string_view text) {
   std::u16string out(text.size(), u'\0');  // never more units than bytes
@@ -174,13 +174,13 @@ bool is_letter_or_digit(const std::string& word) {
 
 std::string clean_name(std::string_view foreign) {
   const std::u16string composed =
-      normalized(to_utf16(clean_text(foreign, kMostForeign)), unorm2_getNFKCInstance);
+      normalized(to_utf16(clean_text(foreign, kMaxForeign)), unorm2_getNFKCInstance);
   std::string name;
-  for (const std::string& word : words_of(to_utf16(clean_text(to_utf8(composed), kMostForeign)))) {
+  for (const std::string& word : words_of(to_utf16(clean_text(to_utf8(composed), kMaxForeign)))) {
     if (name.empty() && (is_notice_word(word) || !is_letter_or_digit(word))) continue;  // begins no name
     if (is_notice_word(word)) break;
     const std::size_t space = name.empty() ? 0 : 1;
-    const std::string cut = clean_text(word, kMostNameBytes - std::min(kMostNameBytes, name.size() + space));
+    const std::string cut = clean_text(word, kMaxNameBytes - std::min(kMaxNameBytes, name.size() + space));
     if (cut.empty()) break;
     // What is left of a cut word may be a word of notices where the whole was none.
     if (cut != word && is_notice_word(cut)) break;
@@ -191,7 +191,7 @@ std::string clean_name(std::string_view foreign) {
 }
 
 std::string name_skeleton(std::string_view name) {
-  std::u16string look = normalized(to_utf16(clean_text(name, 4 * kMostForeign)), unorm2_getNFKCInstance);
+  std::u16string look = normalized(to_utf16(clean_text(name, 4 * kMaxForeign)), unorm2_getNFKCInstance);
   // Folding case makes new look-alikes and the other way round: until nothing changes.
   for (int round = 0; round < 4; ++round) {
     const std::u16string next = normalized(confusables_folded(look), unorm2_getNFKCCasefoldInstance);

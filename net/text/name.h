@@ -7,13 +7,13 @@
 
 namespace slosh {
 
-constexpr std::size_t kMostNameBytes = 32;  ///< of a person's name, UTF-8
+constexpr std::size_t kMaxNameBytes = 32;  ///< of a person's name, UTF-8
 
 /// The nearest name to what was asked for that others may be shown: letters, digits and marks of any script,
 /// and between them single spaces, "-", "'", "." and "_"; pictographs too. Compatibility forms (full
 /// width, mathematical) become plain letters (NFKC), so that what is shown can be typed. It ends before the
 /// first word that notices are made of ("is", "has", "left" …, also disguised), so that no name reads like
-/// one: "Ana has left" becomes "Ana". At most kMostNameBytes. Empty when nothing is left: then choose one.
+/// one: "Ana has left" becomes "Ana". At most kMaxNameBytes. Empty when nothing is left: then choose one.
 /// A cleaned name comes back as it is.
 std::string clean_name(std::string_view foreign);
 

@@ -6,8 +6,8 @@
 namespace slosh {
 namespace {
 
-constexpr std::size_t kMostLetters = 64;  // a longer word is none of ours
-constexpr std::size_t kShort = 5;         // letters, below which two of them wrong are another word
+constexpr std::size_t kMaxLetters = 64;  // a longer word is none of ours
+constexpr std::size_t kShort = 5;        // letters, below which two of them wrong are another word
 
 std::string plain(std::string_view word) {
   std::string out(word);
@@ -40,7 +40,7 @@ std::size_t edits(const std::string& a, const std::string& b) {
 }  // namespace
 
 std::string nearest_word(std::string_view word, const std::vector<std::string>& known) {
-  if (word.empty() || word.size() > kMostLetters) return {};
+  if (word.empty() || word.size() > kMaxLetters) return {};
   std::string best;
   std::size_t fewest = 0;
   for (const std::string& each : known) {

@@ -270,7 +270,7 @@ template <class V>
 void visit(V& v, TexturedScene& m) {
   visit(v, m.looked);
   Scene& scene = m.looked.settled.measured.packed.scene;
-  v.list("images", scene.images, kMostImages, [](auto& each, SceneImage& image) {
+  v.list("images", scene.images, kMaxImages, [](auto& each, SceneImage& image) {
     each.text("name", image.name, kMaxText);
     each.bytes("bytes", image.bytes, 0, kMaxSentImages);
   });

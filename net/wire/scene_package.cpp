@@ -121,7 +121,7 @@ constexpr std::size_t kHead = 2;
 constexpr int kZstdLevel = 9;
 /// More than this is not believed: a few bytes must not make a reader fill its memory. What packs better is
 /// stored as it is.
-constexpr std::size_t kMostExpansion = 32;
+constexpr std::size_t kMaxExpansion = 32;
 
 /// Leaves what a peer shows and holds.
 void keep_seen(Scene& scene) {
@@ -155,7 +155,7 @@ Result<Bytes> decompressed(ByteView packed) {
   const unsigned long long size = ZSTD_getFrameContentSize(packed.data(), packed.size());
   if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN)
     return damaged("it does not begin as zstd does, or does not tell its size");
-  if (size > wire::kMaxSceneBytes || size > kMostExpansion * packed.size())
+  if (size > wire::kMaxSceneBytes || size > kMaxExpansion * packed.size())
     return damaged("it claims to be " + std::to_string(size) + " bytes unpacked");
   const std::size_t frame = ZSTD_findFrameCompressedSize(packed.data(), packed.size());
   if (ZSTD_isError(frame) || frame != packed.size()) return damaged("it ends too early or too late");
@@ -204,7 +204,7 @@ Result<Bytes> pack_scene(const Scene& scene, double spacing, SceneParts parts) {
   out[1] = kZstd;
   const std::size_t size =
       ZSTD_compress(out.data() + kHead, out.size() - kHead, content.data(), content.size(), kZstdLevel);
-  if (ZSTD_isError(size) || size >= content.size() || content.size() > kMostExpansion * size) {
+  if (ZSTD_isError(size) || size >= content.size() || content.size() > kMaxExpansion * size) {
     out.resize(kHead);
     out[1] = kStored;
     out.insert(out.end(), content.begin(), content.end());

@@ -13,7 +13,7 @@ enum class SceneParts {
   kAll,   ///< what a host needs to carry on: all
 };
 
-/// The scene and its particle spacing (m). Every number comes back to the bit. Names are cleaned and cut
+/// The scene and its particle spacing (m). Every number comes back bitwise. Names are cleaned and cut
 /// (wire::clean_text). Errors: something that a peer could not take, named by its field: more than
 /// wire::kMaxBodies bodies, a mesh that reaches further than 10 km, above wire::kMaxSceneBytes in all.
 Result<wire::Bytes> pack_scene(const Scene& scene, double spacing, SceneParts parts);

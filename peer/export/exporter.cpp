@@ -13,7 +13,7 @@
 namespace slosh {
 namespace {
 
-constexpr std::size_t kMostWaitingBytes = std::size_t{512} << 20;
+constexpr std::size_t kMaxWaitingBytes = std::size_t{512} << 20;
 constexpr double kRounding = 1e-9;  // s
 
 std::size_t bytes_of(const ParticleFrame& frame) {
@@ -50,7 +50,7 @@ void Exporter::add(ParticleFrame frame) {
   next_ = frame.number + 1;
   const std::size_t bytes = bytes_of(frame);
   std::unique_lock lock(mutex_);
-  const auto room = [&] { return queue_.empty() || queued_bytes_ + bytes <= kMostWaitingBytes; };
+  const auto room = [&] { return queue_.empty() || queued_bytes_ + bytes <= kMaxWaitingBytes; };
   if (options_.waits) changed_.wait(lock, [&] { return stopping_ || room(); });
   if (stopping_ || !problem_.empty()) return;
   if (!room()) {

@@ -28,11 +28,11 @@ namespace vdb = openvdb;
 
 constexpr double kBand = 3.0;       // voxels on each side of a level set, as every tool expects
 constexpr double kInnerBand = 6.0;  // voxels: the surface is set back by at most two of them
-constexpr double kLeastSetBack = -0.1,
-                 kMostSetBack = 0.6;  // spacings; a ball of 1 spacing set back by 0.38 has its own volume
+constexpr double kMinSetBack = -0.1,
+                 kMaxSetBack = 0.6;  // spacings; a ball of 1 spacing set back by 0.38 has its own volume
 constexpr double kUsualSetBack = 0.39;
 constexpr double kCloseEnough = 5e-4;  // of the volume
-constexpr int kMostTries = 14;
+constexpr int kMaxTries = 14;
 constexpr double kReach = 1.5;  // spacings: whose velocity and pressure a place of the surface has
 
 vdb::Vec3s to_vdb(const glm::vec3& v) {
@@ -96,10 +96,10 @@ double volume_of(const Polygons& mesh) {
 
 /// The level at which the surface encloses `volume`, within what is sensible for balls of particles.
 double level_of_volume(const vdb::FloatGrid& grid, double volume, double spacing) {
-  double low = -kMostSetBack * spacing;
-  double high = -kLeastSetBack * spacing;
+  double low = -kMaxSetBack * spacing;
+  double high = -kMinSetBack * spacing;
   double level = -kUsualSetBack * spacing;
-  for (int tries = 0; tries < kMostTries; ++tries) {
+  for (int tries = 0; tries < kMaxTries; ++tries) {
     const double now = volume_of(polygons_at(grid, level));
     if (std::abs(now - volume) <= kCloseEnough * volume) break;
     (now > volume ? high : low) = level;

@@ -29,7 +29,7 @@ struct DeviceLimits {
   /// millisecond and reach 1000 N/s after five, and passes 5 N at 30 Hz as it is.
   double max_force_jerk = 2.0e5;
   double max_torque_jerk = 4.0e3;  ///< N·m/s²: the same for a handle of 0.02 m
-  /// s, ≥ 0: over which a hand gets force that had none (FeltHand); 0 for what nobody feels.
+  /// s, ≥ 0: over which a hand gets force that had none (ForceRendering); 0 for what nobody feels.
   double engagement_time = 2.0;
 };
 

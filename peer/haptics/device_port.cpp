@@ -61,7 +61,7 @@ class Slew {
     bool cut = false;
     at_.force += limit_length(wanted.force - at_.force, most * limits_.max_force_rate, cut);
     at_.torque += limit_length(wanted.torque - at_.torque, most * limits_.max_torque_rate, cut);
-    if (!cut) at_ = wanted;  // to the bit
+    if (!cut) at_ = wanted;  // bitwise
     return at_;
   }
 

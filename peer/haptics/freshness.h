@@ -17,14 +17,14 @@ constexpr double kFadeStale = 0.3;
 constexpr double kSilent = kHoldStale + kFadeStale;
 
 /// s over which a force fades at least, however much of kSilent is over before a silence can be known of.
-constexpr double kLeastFade = 0.1;
+constexpr double kMinFade = 0.1;
 
 /// Share of the force, 0–1, when the newest word is `age` s old and one comes every `interval` s. A slow
 /// sender is waited for twice as long and no longer. `way`: s that a word is usually on its way, by which a
 /// silence is older than it shows: that comes off the time in which the force fades.
 inline double freshness(double age, double interval, double way = 0.0) {
   const double hold = std::clamp(4.0 * interval, kHoldStale, 2.0 * kHoldStale);
-  const double silent = std::clamp(kSilent - way, hold + kLeastFade, kSilent);
+  const double silent = std::clamp(kSilent - way, hold + kMinFade, kSilent);
   return std::clamp((silent - age) / (silent - hold), 0.0, 1.0);
 }
 

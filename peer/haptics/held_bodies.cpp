@@ -12,14 +12,14 @@ namespace {
 
 constexpr double kShareRise = 0.5;  // s over which the replica comes in, or goes
 /// N·s/m: more would shake a hand of 1 kg that is felt each ms, whatever its device holds.
-constexpr double kMostDamping = 100.0;
+constexpr double kMaxDamping = 100.0;
 constexpr double kLongestTick = 0.02;  // s: a loop that was stopped goes on from where it was
 /// s of missed ticks that are caught up with, at most: who was gone for longer takes hold anew, as after any
 /// silence. A quick host's words would be stale by then; one of few steps is waited for longer than this
 /// (freshness()).
-constexpr double kMostCaughtUp = kHoldAnew;
+constexpr double kMaxCaughtUp = kHoldAnew;
 /// s of simulated time by which a host carries a pose on at most (host/input_gate.h).
-constexpr double kMostCarried = 0.02;
+constexpr double kMaxCarried = 0.02;
 
 FluidLoad load_of(const FluidWrenchModel& model) {
   FluidLoad load;
@@ -61,7 +61,7 @@ void HeldBodies::hear(const BodyMessage& newest, bool fresh, std::int64_t now_ns
   began_ = false;
   for (Entry& entry : bodies_) entry.anew = false;
   const bool stands = newest.rate <= 0.0;
-  const bool gone = advanced_ns_ != 0 && to_seconds(now_ns - advanced_ns_) > kMostCaughtUp;
+  const bool gone = advanced_ns_ != 0 && to_seconds(now_ns - advanced_ns_) > kMaxCaughtUp;
   if (!fresh || stands) {
     if (stands || gone) rate_ = 0.0;
     if (gone) {
@@ -115,11 +115,11 @@ void HeldBodies::tell(Entry& entry, const BodyMessage& newest, std::int64_t now_
     said.energy = word.energy;
     if (word.read_ns == 0) continue;
     // The step began with the reading carried on to its beginning, and goes on to its end.
-    const double late = std::clamp(bodies.time - newest.time_step - word.time, -kMostCarried, kMostCarried);
+    const double late = std::clamp(bodies.time - newest.time_step - word.time, -kMaxCarried, kMaxCarried);
     said.ack_ns = word.read_ns + to_nanoseconds((newest.time_step + late) / std::max(newest.rate, 0.1));
   }
   const BodyState& body = bodies.bodies[entry.body];
-  HostWord word;
+  HostUpdate word;
   word.now_ns = now_ns;
   word.time = bodies.time;
   word.time_step = newest.time_step;
@@ -165,7 +165,7 @@ Wrench HeldBodies::guard(std::size_t i, const Wrench& wanted, const Pose& hand, 
   if (place.body < 0) return wanted;
   Entry& entry = bodies_[static_cast<std::size_t>(place.body)];
   const Wrench guarded =
-      entry.held.guard(place.grip, wanted, hand, twist, dt, std::min(most_damping, kMostDamping), pace);
+      entry.held.guard(place.grip, wanted, hand, twist, dt, std::min(most_damping, kMaxDamping), pace);
   if (entry.share <= 0.0) return wanted;
   return {wanted.force + entry.share * (guarded.force - wanted.force),
           wanted.torque + entry.share * (guarded.torque - wanted.torque)};
@@ -183,7 +183,7 @@ void HeldBodies::catch_up(std::int64_t now_ns, double period, double pace, doubl
   caught_up_ = 0.0;
   const double missed = advanced_ns_ == 0 ? 0.0 : to_seconds(now_ns - advanced_ns_);
   // A replica that began with the newest word is where it should be.
-  const bool late = missed > 0.5 * period && missed <= kMostCaughtUp && !began_;
+  const bool late = missed > 0.5 * period && missed <= kMaxCaughtUp && !began_;
   if (late) {
     caught_up_ = std::clamp(elapsed - pace * period, 0.0, pace * missed);
     for (Entry& entry : bodies_) {
@@ -212,11 +212,11 @@ void HeldBodies::catch_up(std::int64_t now_ns, double period, double pace, doubl
 }
 
 void HeldBodies::sent(std::size_t i, const Wrench& wrench, bool engaged, const Pose& held, const Twist& twist,
-                      double let_in, bool with_world) noexcept {
+                      double ramp_work, bool with_world) noexcept {
   const Place& place = places_[i];
   if (place.body < 0) return;
   Entry& entry = bodies_[static_cast<std::size_t>(place.body)];
-  entry.held.sent(place.grip, wrench, let_in);
+  entry.held.sent(place.grip, wrench, ramp_work);
   entry.own[place.grip] = {true, engaged, held, twist};
   entry.on_the_wall = entry.on_the_wall || !with_world;
 }

@@ -47,10 +47,10 @@ class HeldBodies {
   Wrench guard(std::size_t i, const Wrench& wanted, const Pose& hand, const Twist& twist, double dt,
                double most_damping, double pace) noexcept;
   /// What the device of grip `i` was sent, and what its coupling used of the hand, by the world's time;
-  /// `let_in`: J that its hold gave by being let in (FeltHand::let_in). `with_world`: the hand itself goes by
-  /// that (Device::goes_with_world).
+  /// `ramp_work`: J that its hold gave by being let in (ForceRendering::ramp_work). `with_world`: the hand
+  /// itself goes by that (Device::goes_with_world).
   void sent(std::size_t i, const Wrench& wrench, bool engaged, const Pose& held, const Twist& twist,
-            double let_in, bool with_world) noexcept;
+            double ramp_work, bool with_world) noexcept;
   /// The coupling of grip `i` is that from now on, at the host and here.
   void set_gains(std::size_t i, const CouplingGains& gains) noexcept;
   /// Nobody here moves grip `i`.

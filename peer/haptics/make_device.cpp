@@ -24,8 +24,8 @@ Result<HandDevice> make_device(const Scene& scene, std::size_t grip, const std::
   if (spec == "script") {
     hand.device = std::make_unique<TrackDevice>(PoseTrack(scene.grips[grip].hand_motion, start), spec);
     if (has_window) {
-      hand.lent = std::make_shared<LentHand>(start);
-      hand.device = std::make_unique<LentDevice>(std::move(hand.device), hand.lent);
+      hand.lent = std::make_shared<SharedHandle>(start);
+      hand.device = std::make_unique<SharedHandleDevice>(std::move(hand.device), hand.lent);
     }
   } else if (spec == "mouse") {
     if (!has_window) {

@@ -7,8 +7,8 @@
 
 #include "peer/haptics/device.h"
 #include "peer/haptics/devices/headset_link.h"
-#include "peer/haptics/lent_device.h"
 #include "peer/haptics/mouse_device.h"
+#include "peer/haptics/shared_handle.h"
 #include "scenes/scene.h"
 
 namespace slosh {
@@ -16,14 +16,14 @@ namespace slosh {
 struct DeviceSet {
   std::vector<std::unique_ptr<Device>> devices;             ///< one a grip
   std::vector<std::shared_ptr<MouseTarget>> mouse_targets;  ///< one a grip, null where it is not a mouse
-  std::vector<std::shared_ptr<LentHand>> lent;              ///< one a grip, null where no window may take it
+  std::vector<std::shared_ptr<SharedHandle>> lent;          ///< one a grip, null where no window may take it
 };
 
 /// One hand's device; `mouse` where it is one, `lent` where it is a script that a window may take over.
 struct HandDevice {
   std::unique_ptr<Device> device;
   std::shared_ptr<MouseTarget> mouse;
-  std::shared_ptr<LentHand> lent;
+  std::shared_ptr<SharedHandle> lent;
 };
 /// The device that `spec` asks for, for grip `grip`; a mouse starts at `start`, and so does a script without
 /// a motion. With a window a script is lent. `headset` is what a controller needs, null without one. Errors:

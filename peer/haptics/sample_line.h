@@ -45,18 +45,19 @@ class SampleLine {
     history.put({time, on_hand});
     longest_ = longest;
     for (std::size_t i = 0; i < count_; ++i) {
-      Waiting& waiting = line_[(first_ + i) % kMost];
+      Waiting& waiting = line_[(first_ + i) % kMax];
       if (waiting.sample.device == grip && waiting.awaits) settle(waiting, history);
     }
   }
   /// The world went back to its start: what is known of it is of another run.
   void forget() noexcept { std::fill(histories_.begin(), histories_.end(), History{}); }
 
-  bool full() const { return count_ == kMost; }
+  bool full() const { return count_ == kMax; }
   bool empty() const { return count_ == 0; }
-  /// `world_time`: the sample's time as the world has it. `follows_world` as FeltHand has it. Not when full.
+  /// `world_time`: the sample's time as the world has it. `follows_world` as ForceRendering has it. Not when
+  /// full.
   void add(const ServoSample& sample, double world_time, bool follows_world) noexcept {
-    Waiting& waiting = line_[(first_ + count_) % kMost];
+    Waiting& waiting = line_[(first_ + count_) % kMax];
     waiting = {sample, world_time, follows_world};
     count_ += 1;
     if (follows_world) settle(waiting, histories_[sample.device]);
@@ -67,7 +68,7 @@ class SampleLine {
   /// Takes the oldest, as it is known by now. Not when empty.
   ServoSample take() noexcept {
     const ServoSample sample = line_[first_].sample;
-    first_ = (first_ + 1) % kMost;
+    first_ = (first_ + 1) % kMax;
     count_ -= 1;
     return sample;
   }
@@ -118,10 +119,10 @@ class SampleLine {
     }
   }
 
-  static constexpr std::size_t kMost = 256;
+  static constexpr std::size_t kMax = 256;
   static constexpr double kRounding = 1e-9;  // s: sums of time steps miss a multiple by less than this
 
-  std::array<Waiting, kMost> line_{};
+  std::array<Waiting, kMax> line_{};
   std::size_t first_ = 0;
   std::size_t count_ = 0;
   double longest_ = 0.0;

@@ -14,12 +14,12 @@ namespace {
 constexpr double kRounding = 1e-9;  // s: sums of time steps miss a multiple by less than this
 /// Times the world's pace that simulated time goes at least and at most while it goes on, and s by which it
 /// may be behind before it leaps.
-constexpr double kLeastOn = 0.5;
-constexpr double kMostOn = 1.5;
+constexpr double kMinOn = 0.5;
+constexpr double kMaxOn = 1.5;
 constexpr double kFarBehind = 0.03;
-constexpr double kPaceMemory = 0.1;    // s over which the world's pace is smoothed
-constexpr double kMostSpeed = 18.0;    // m/s that a hand is said to have: a host refuses 20
-constexpr double kMostTurning = 90.0;  // rad/s, the same of 100
+constexpr double kPaceMemory = 0.1;   // s over which the world's pace is smoothed
+constexpr double kMaxSpeed = 18.0;    // m/s that a hand is said to have: a host refuses 20
+constexpr double kMaxTurning = 90.0;  // rad/s, the same of 100
 
 }  // namespace
 
@@ -27,7 +27,7 @@ Servo::Servo(const Scene& scene, std::vector<std::unique_ptr<Device>> devices, C
              ServoOptions options)
     : channel_(channel),
       options_(options),
-      hearing_(options.period),
+      link_freshness_(options.period),
       held_(scene, options.coupling),
       line_(scene.grips.size()),
       samples_(options.sample_capacity),
@@ -167,7 +167,7 @@ void Servo::follow_run(const BodyMessage& message) noexcept {
 /// What the host says of its pace, smoothed: a damper takes it times a velocity.
 void Servo::follow_pace(const BodyMessage& message) noexcept {
   const bool moving = message.rate > 0.0;
-  // A tick a step: the hands' time is the world's, however long a step takes, and runs repeat to the bit.
+  // A tick a step: the hands' time is the world's, however long a step takes, and runs repeat bitwise.
   const double said = lockstep_ ? 1.0 : std::clamp(message.rate, kSlowestFelt, 1.0);
   if (moving) pace_ = moving_ ? pace_ + options_.period / kPaceMemory * (said - pace_) : said;
   moving_ = moving;
@@ -180,11 +180,11 @@ void Servo::follow_time(double now, double most, std::int64_t now_ns) noexcept {
   ticked_ns_ = now_ns;
   const double on = now - time_;
   if (lockstep_ || !moving_ || even <= 0.0 || on > kFarBehind ||
-      (on >= kLeastOn * even && on <= kMostOn * even)) {
+      (on >= kMinOn * even && on <= kMaxOn * even)) {
     time_ = std::max(time_, now);
     return;
   }
-  const double step = std::clamp(on, kLeastOn * even, kMostOn * even);
+  const double step = std::clamp(on, kMinOn * even, kMaxOn * even);
   time_ = std::max(time_, std::min(time_ + step, most));
 }
 
@@ -223,8 +223,8 @@ void Servo::post_pose(std::size_t i, const Hand& hand) noexcept {
   // By the world's time, in which a hand is faster the slower the world is; no faster than hosts take.
   up.twist = sped_up(hand.good.twist, pace_of(hand));
   bool limited = false;
-  up.twist.linear = limit_length(up.twist.linear, kMostSpeed, limited);
-  up.twist.angular = limit_length(up.twist.angular, kMostTurning, limited);
+  up.twist.linear = limit_length(up.twist.linear, kMaxSpeed, limited);
+  up.twist.angular = limit_length(up.twist.angular, kMaxTurning, limited);
   up.engaged = hand.good.engaged;
   up.felt = hand.felt.felt();
   up.counted = held_.counted(i);
@@ -266,7 +266,7 @@ void Servo::tick(std::int64_t now_ns, bool fresh) noexcept {
   const BodySnapshot& bodies = message.bodies;
   const double age = to_seconds(now_ns - message.stamp_ns);  // negative while the state is still to come
 
-  const WorldBelief belief = hearing_.hear(message, fresh, now_ns);
+  const StateFreshness belief = link_freshness_.hear(message, fresh, now_ns);
   const bool fresh_newest = channel_.newest().update();
   states_apart_ = states_apart_ || fresh_newest;
   if (states_apart_)
@@ -334,7 +334,7 @@ void Servo::tick(std::int64_t now_ns, bool fresh) noexcept {
                               return signals.guarded;
                             });
       held_.sent(i, felt.wrench, hand.felt.holds(), hand.felt.held().pose, hand.felt.held().twist,
-                 hand.felt.let_in(), hand.with_world);
+                 hand.felt.ramp_work(), hand.with_world);
     }
     hand.given = felt.wrench;
     if (felt.limited) note(kStatusForceLimited);
@@ -344,7 +344,7 @@ void Servo::tick(std::int64_t now_ns, bool fresh) noexcept {
     // A device that does not answer is not spoken for: the host takes its hand for silent, as it is.
     // In one process only a slow world is silent: a hand that does not give way goes on as its script has it.
     const bool waits_for_a_step = message.heard_pose_ns == kPoseNotTold && !port->device().gives_way();
-    if (device_share >= 1.0 && (hearing_.speaks() || waits_for_a_step)) post_pose(i, hand);
+    if (device_share >= 1.0 && (link_freshness_.speaks() || waits_for_a_step)) post_pose(i, hand);
 
     if (options_.signals) {
       signals.wanted = felt.wanted;

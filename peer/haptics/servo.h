@@ -11,8 +11,8 @@
 #include "net/channel.h"
 #include "net/ring.h"
 #include "peer/haptics/device_port.h"
-#include "peer/haptics/felt_hand.h"
 #include "peer/haptics/force_budget.h"
+#include "peer/haptics/force_rendering.h"
 #include "peer/haptics/held_bodies.h"
 #include "peer/haptics/sample_line.h"
 #include "peer/haptics/signal_sample.h"
@@ -115,7 +115,7 @@ class Servo {
     double stiffness = 1.0;  // times that, now
     Pose start;
     int body = 0;
-    FeltHand felt;
+    ForceRendering felt;
     ForceBudgetNote budget;
     DeviceReport good;
     Wrench given;                // in the last tick
@@ -159,7 +159,7 @@ class Servo {
   bool moving_ = false;
   std::int64_t ticked_ns_ = 0;
   double sample_offset_ = 0.0;  // s that samples' time is ahead of the world's, after resets
-  Hearing hearing_;
+  LinkFreshness link_freshness_;
   HeldBodies held_;
   bool states_apart_ = false;  // Channel::newest() is written
   bool let_go_ = false;

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kChartSeconds = 5.0;
 constexpr double kStatusSeconds = 1.5;  // simulated: a status of one step is shown long enough to be read
-constexpr float kLeastForce = 1.0f;     // N, that a chart's height is at least
-constexpr float kLeastTorque = 0.05f;   // N·m
+constexpr float kMinForce = 1.0f;       // N, that a chart's height is at least
+constexpr float kMinTorque = 0.05f;     // N·m
 
 constexpr ImGuiWindowFlags kPanel = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
@@ -94,7 +94,7 @@ std::string status_lines(std::uint32_t status, const std::array<std::uint64_t, 3
 Hud::Hud(const Scene& scene, HudFacts facts) : facts_(std::move(facts)) {
   const auto samples = static_cast<std::size_t>(std::max(2.0, kChartSeconds * facts_.picture_rate));
   for (const Grip& grip : scene.grips)
-    hands_.push_back({grip.name, StripChart(samples, kLeastForce), StripChart(samples, kLeastTorque), {}});
+    hands_.push_back({grip.name, StripChart(samples, kMinForce), StripChart(samples, kMinTorque), {}});
 }
 
 void Hud::record(const Snapshot& snapshot) {
@@ -148,9 +148,9 @@ std::vector<PanelRow> Hud::run_rows(const Rates& rates) const {
   using Detail = HudLayout::Detail;
   std::vector<PanelRow> rows;
   const Detail detail = layout_->detail;
-  if (detail != Detail::kLeast) rows = {{Kind::kTitle, facts_.title, {}}, {Kind::kLine, {}, {}}};
+  if (detail != Detail::kMin) rows = {{Kind::kTitle, facts_.title, {}}, {Kind::kLine, {}, {}}};
   rows.push_back(labelled("time", "%.2f s%s", time_, paused ? "  paused" : ""));
-  if (detail != Detail::kLeast && rates.real_time > 0.0)
+  if (detail != Detail::kMin && rates.real_time > 0.0)
     rows.push_back(labelled("real time", "\xC3\x97 %.2f", rates.real_time));
   if (detail == Detail::kFull) {
     if (rates.step_rate > 0.0)
@@ -161,7 +161,7 @@ std::vector<PanelRow> Hud::run_rows(const Rates& rates) const {
       rows.push_back(labelled("bodies", "%s", grouped(facts_.boundary_particles).c_str()));
     rows.push_back(labelled("spacing", "%.1f mm", 1e3 * facts_.spacing));
   }
-  if (detail != Detail::kLeast) add_what_left(rates, rows);
+  if (detail != Detail::kMin) add_what_left(rates, rows);
   if (detail == Detail::kFull) {
     for (const std::string* lines : {&rates.people, &rates.connection}) {
       if (lines->empty()) continue;

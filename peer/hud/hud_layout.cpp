@@ -27,8 +27,8 @@ HudLayout sized(Detail detail, bool in_a_row, float letters, const LetterSize& f
   layout.in_a_row = in_a_row;
   const glm::vec2 around = 2.0f * full.padding;
   const float letter = letters * full.width;
-  layout.run_width = (detail == Detail::kLeast ? kNarrowWidth : kPanelWidth) * letter + around.x;
-  if (detail == Detail::kLeast || hands == 0) return layout;
+  layout.run_width = (detail == Detail::kMin ? kNarrowWidth : kPanelWidth) * letter + around.x;
+  if (detail == Detail::kMin || hands == 0) return layout;
   const auto count = static_cast<float>(hands);
   const float hand = detail == Detail::kFull ? 1.0f + 2.0f * kChartLines : 1.0f;  // lines
   const float columns = in_a_row ? count : 1.0f;
@@ -45,10 +45,10 @@ std::optional<HudLayout> placed(HudLayout layout, const glm::vec2& picture, cons
   const float line = layout.letters * full.line;
   const int rows = layout.detail == Detail::kFull    ? kFullRows
                    : layout.detail == Detail::kShort ? kShortRows
-                                                     : kLeastRows;
+                                                     : kMinRows;
   const float height = static_cast<float>(rows) * line + 2.0f * full.padding.y;
   const float wanted = height + kWarningRows * line;
-  const float left = kMostCovered * area(picture) - area(layout.hands_size);
+  const float left = kMaxCovered * area(picture) - area(layout.hands_size);
   const glm::vec2 inner = picture - 2.0f * kHudMargin;
   if (layout.run_width > inner.x || layout.hands_size.x > inner.x || layout.hands_size.y > inner.y)
     return std::nullopt;
@@ -106,12 +106,12 @@ HudLayout make_hud_layout(const glm::vec2& picture, const LetterSize& letter, st
   }
   float covered = 0.0f;
   for (const float smaller : kSmaller) {
-    const HudLayout least = sized(Detail::kLeast, false, smaller, letter, hands);
+    const HudLayout least = sized(Detail::kMin, false, smaller, letter, hands);
     if (const auto fits = placed(least, picture, letter, clear, &covered)) return *fits;
   }
-  HudLayout tiny = sized(Detail::kLeast, false, kSmaller.back(), letter, hands);
+  HudLayout tiny = sized(Detail::kMin, false, kSmaller.back(), letter, hands);
   tiny.run_width = std::min(tiny.run_width, picture.x - 2.0f * kHudMargin);
-  tiny.most_run_height = kMostCovered * area(picture) / std::max(tiny.run_width, 1.0f);
+  tiny.most_run_height = kMaxCovered * area(picture) / std::max(tiny.run_width, 1.0f);
   return tiny;
 }
 

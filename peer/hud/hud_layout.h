@@ -22,7 +22,7 @@ struct HudLayout {
   enum class Detail {
     kFull,   ///< all rows, a chart a hand and quantity
     kShort,  ///< time, pace, what left the world and what is wrong; hands as a line of numbers each
-    kLeast,  ///< the time and what is wrong
+    kMin,    ///< the time and what is wrong
   };
   Detail detail = Detail::kFull;
   float letters = 1.0f;       ///< times the size that the letters have
@@ -35,12 +35,12 @@ struct HudLayout {
 };
 
 /// Of all panels together, of the picture.
-inline constexpr float kMostCovered = 1.0f / 3.0f;
+inline constexpr float kMaxCovered = 1.0f / 3.0f;
 inline constexpr float kHudMargin = 8.0f;   ///< px, of panels from the picture's edges and from each other
 inline constexpr float kChartLines = 1.7f;  ///< height of a hand's chart
-inline constexpr int kFullRows = 10, kShortRows = 5, kLeastRows = 1;  ///< of the run's panel, unwarned
+inline constexpr int kFullRows = 10, kShortRows = 5, kMinRows = 1;  ///< of the run's panel, unwarned
 
-/// The most detail at which both panels cover no more than kMostCovered, with room for a warning. `clear`:
+/// The most detail at which both panels cover no more than kMaxCovered, with room for a warning. `clear`:
 /// what they hide as little of as they can, px.
 HudLayout make_hud_layout(const glm::vec2& picture, const LetterSize& letter, std::size_t hands,
                           std::span<const Rect> clear);

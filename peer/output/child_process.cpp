@@ -19,7 +19,7 @@
 namespace slosh {
 namespace {
 
-constexpr std::size_t kMostSaid = 400;  // bytes of what a child said that an error repeats
+constexpr std::size_t kMaxSaid = 400;  // bytes of what a child said that an error repeats
 
 /// A file in memory rather than a pipe: nobody has to read along for the child not to stop.
 int memory_file(const char* name) {
@@ -142,7 +142,7 @@ Result<bool> ChildProcess::finish() {
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return true;
   std::string what = "failed";
   if (WIFSIGNALED(status)) what = std::string("was ended by a signal (") + strsignal(WTERMSIG(status)) + ")";
-  if (!said.empty()) what += ": " + clean_text(said, kMostSaid);
+  if (!said.empty()) what += ": " + clean_text(said, kMaxSaid);
   return Error{name_, what, "Check the disk's free space and the folder"};
 }
 

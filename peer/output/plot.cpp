@@ -19,9 +19,9 @@ namespace {
 constexpr std::size_t kPlotPoints = 3000;
 
 // What there is room for.
-constexpr std::size_t kMostHandBytes = 24;   // of a hand's name in the legend
-constexpr std::size_t kMostTitleBytes = 90;  // of the sheet's title
-constexpr std::size_t kMostLineBytes = 180;  // of a line under it
+constexpr std::size_t kMaxHandBytes = 24;   // of a hand's name in the legend
+constexpr std::size_t kMaxTitleBytes = 90;  // of the sheet's title
+constexpr std::size_t kMaxLineBytes = 180;  // of a line under it
 constexpr int kSheetWidth = 1200;
 
 /// A text from elsewhere, cut to its place.
@@ -125,7 +125,7 @@ std::string curves_of(const std::vector<WrenchSeries>& series, const PlotSheet& 
   for (std::size_t order = 0; order < shown.size(); ++order) {
     const std::size_t i = shown[order];
     const std::string name =
-        i < sheet.names.size() ? shortened(sheet.names[i], kMostHandBytes) : "device " + std::to_string(i);
+        i < sheet.names.size() ? shortened(sheet.names[i], kMaxHandBytes) : "device " + std::to_string(i);
     script += (order == 0 ? "plot \\\n  " : ", \\\n  ") + format("$q%zud%zu", quantity, i) +
               " using 1:2 with lines " + line_of(order, i) +
               (legend ? " title " + gnuplot_text(name) : std::string(" notitle"));
@@ -221,11 +221,11 @@ std::string plot_script(const std::vector<WrenchSeries>& series, const PlotSheet
       "set autoscale xfix\n"
       "set offsets 0,0,graph 0.06,graph 0.06\n"
       "set ylabel offset 0.5,0\n";
-  script += "set label 1 " + gnuplot_text(shortened(sheet.title, kMostTitleBytes)) + " at screen 0.085," +
+  script += "set label 1 " + gnuplot_text(shortened(sheet.title, kMaxTitleBytes)) + " at screen 0.085," +
             from_top(22) + " font \"DejaVu Sans,14\"\n";
   for (std::size_t i = 0; i < sheet.parameters.size(); ++i) {
     script += "set label " + std::to_string(i + 2) + " " +
-              gnuplot_text(shortened(sheet.parameters[i], kMostLineBytes)) + " at screen 0.085," +
+              gnuplot_text(shortened(sheet.parameters[i], kMaxLineBytes)) + " at screen 0.085," +
               from_top(44 + 18 * static_cast<int>(i)) +
               " font \"DejaVu Sans,10\" textcolor rgb \"#505050\"\n";
   }

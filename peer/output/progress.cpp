@@ -48,8 +48,8 @@ std::string cut(const std::string& text, std::size_t most) {
 /// What is shown may have come from anywhere, a host's words or something pasted: a terminal obeys none of
 /// it.
 std::string fit(const std::string& text) {
-  constexpr std::size_t kMost = 100'000;
-  return clean_lines(text, kMost);
+  constexpr std::size_t kMax = 100'000;
+  return clean_lines(text, kMax);
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 constexpr const char* kRunFiles[] = {"summary.json", "wrenches.csv", "poses.csv",        "bodies.csv",
                                      "probes.csv",   "wrenches.png", "wrenches.svg",     "wrenches.pdf",
                                      "view.mp4",     "final.png",    "frames/frames.csv"};
-constexpr int kMostFolders = 10'000;
+constexpr int kMaxFolders = 10'000;
 constexpr const char* kAnother = "Choose another folder with --out";
 
 /// A file of an earlier run's in a folder; empty when there is none.
@@ -122,7 +122,7 @@ Result<RunFolder> RunFolder::take(const fs::path& wanted, bool overwrite) {
 }
 
 Result<RunFolder> RunFolder::take_free(const fs::path& wanted) {
-  for (int i = 1; i <= kMostFolders; ++i) {
+  for (int i = 1; i <= kMaxFolders; ++i) {
     const fs::path one = i == 1 ? wanted : fs::path(wanted.string() + "-" + std::to_string(i));
     std::vector<fs::path> made;
     if (const std::optional<Error> problem = make(one, made)) return *problem;
@@ -133,15 +133,15 @@ Result<RunFolder> RunFolder::take_free(const fs::path& wanted) {
     folder.lock_ = locked.lock;
     return folder;
   }
-  return Error{wanted.string(), "has " + std::to_string(kMostFolders) + " runs beside it",
+  return Error{wanted.string(), "has " + std::to_string(kMaxFolders) + " runs beside it",
                "Remove some, or choose another folder with --out"};
 }
 
 std::string folder_name(std::string_view name, const char* otherwise) {
-  constexpr std::size_t kMost = 40;
+  constexpr std::size_t kMax = 40;
   std::string out;
   bool any = false;
-  for (const char c : name.substr(0, kMost)) {
+  for (const char c : name.substr(0, kMax)) {
     const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
     any = any || plain;
     out += plain || c == '_' ? c : '-';

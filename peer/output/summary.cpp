@@ -223,7 +223,7 @@ Json to_json(const RunSummary& s) {
 }
 
 std::string in_words(const RunSummary& s) {
-  constexpr std::size_t kMost = 20'000;
+  constexpr std::size_t kMax = 20'000;
   constexpr std::uint64_t kTolerated = 1000;  // ticks of which one may be missed
   std::string text = s.network ? network_words(s, *s.network) : world_words(s);
   if (!s.devices.empty() && s.device_ticks > 0) {
@@ -273,7 +273,7 @@ std::string in_words(const RunSummary& s) {
     for (std::size_t i = 0; i < s.files.size(); ++i) text += (i == 0 ? " " : ", ") + s.files[i];
     text += ".\n";
   }
-  return clean_lines(text, kMost);
+  return clean_lines(text, kMax);
 }
 
 Result<bool> write_summary(const std::filesystem::path& file, const RunSummary& summary) {

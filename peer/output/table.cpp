@@ -9,7 +9,7 @@
 namespace slosh {
 namespace {
 
-constexpr std::size_t kMostWaiting = 64 * 1024;  // bytes
+constexpr std::size_t kMaxWaiting = 64 * 1024;  // bytes
 
 }  // namespace
 
@@ -30,7 +30,7 @@ Table::~Table() {
 
 void Table::add(std::string_view row) {
   if (problem_.empty()) waiting_ += row;
-  if (waiting_.size() >= kMostWaiting) flush();
+  if (waiting_.size() >= kMaxWaiting) flush();
 }
 
 bool Table::flush() {

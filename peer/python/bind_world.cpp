@@ -108,9 +108,7 @@ void bind_changes(py::class_<WorldProgram>& c) {
           "be stable with it.")
       .def_property(
           "gravity_scale", [](const WorldProgram& w) { return w.world().gravity_scale(); },
-          [](WorldProgram& w, double scale) {
-            w.change({HostAction::kGravityScale, 0, scale});
-          },
+          [](WorldProgram& w, double scale) { w.change({HostAction::kGravityScale, 0, scale}); },
           "Times the scene's gravity, 0 to 2; from the next step on.")
       .def(
           "grip_stiffness",
@@ -131,7 +129,7 @@ void bind_changes(py::class_<WorldProgram>& c) {
            "Hands, and\n"
            "viscosities, gravity and stiffness that were changed, stay. A recording goes on through it.")
       .def("save", &save,
-           "bytes from which a world of the same scene and spacing goes on, on the CPU to the bit.")
+           "bytes from which a world of the same scene and spacing goes on, on the CPU bitwise.")
       .def(
           "restore", [](WorldProgram& w, const py::bytes& saved) { w.restore(saved); }, py::arg("saved"),
           "Takes over what save() gave. Raises slosh.Error, with the world as it was, where it does not fit.")
@@ -155,7 +153,7 @@ void bind_world(py::module_& m) {
       "the CPU, 0: all\n"
       "cores. hands: {grip: what hold() takes}; grips that are not in it follow the scene's script. settle: "
       "rest first\n"
-      "where the scene asks for it. The same inputs give the same state to the bit whatever the threads.\n\n"
+      "where the scene asks for it. The same inputs give the same state bitwise whatever the threads.\n\n"
       "One thread at a time: step, run and settle let other Python threads go on meanwhile, and those that "
       "touch this\n"
       "world then get slosh.Error. Functions that run calls may read the world and change parameters.\n"

@@ -122,9 +122,9 @@ void RemoteProgram::run() {
 
 std::unique_ptr<Device> RemoteProgram::make_hand(std::size_t grip) {
   const Pose start = grip_start(*scene_, grip);
-  if (!lent_[grip]) lent_[grip] = std::make_shared<LentHand>(start);
+  if (!lent_[grip]) lent_[grip] = std::make_shared<SharedHandle>(start);
   auto script = std::make_unique<TrackDevice>(PoseTrack(keys_[grip], start), "program");
-  return std::make_unique<LentDevice>(std::move(script), lent_[grip]);
+  return std::make_unique<SharedHandleDevice>(std::move(script), lent_[grip]);
 }
 
 /// A device on each grip that is ours, none on the others.
@@ -178,7 +178,7 @@ void RemoteProgram::hold(const py::object& which, const py::object& source) {
     (void)servo_->set_device(i, make_hand(i));
     return;
   }
-  LentHand::Wish& wish = lent_[i]->wish.back();
+  SharedHandle::Wish& wish = lent_[i]->wish.back();
   wish.taken = true;
   wish.pose = to_hand_pose(source, grip_start(*scene_, i)).pose;
   lent_[i]->wish.publish();

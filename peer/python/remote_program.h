@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "net/channel.h"
-#include "peer/haptics/lent_device.h"
 #include "peer/haptics/servo.h"
+#include "peer/haptics/shared_handle.h"
 #include "peer/python/arrays.h"
 #include "peer/python/interrupts.h"
 #include "peer/remote/kept_state.h"
@@ -77,8 +77,8 @@ class RemoteProgram {
 
   std::mutex mutex_;  // what follows, and the servo's devices
   KeptState newest_;
-  std::vector<std::shared_ptr<LentHand>> lent_;  // one a grip
-  std::vector<std::vector<PoseKey>> keys_;       // what each hand plays where it is not moved
+  std::vector<std::shared_ptr<SharedHandle>> lent_;  // one a grip
+  std::vector<std::vector<PoseKey>> keys_;           // what each hand plays where it is not moved
   std::vector<bool> has_device_;
 
   std::thread loop_;

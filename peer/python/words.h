@@ -12,8 +12,8 @@ namespace slosh::python {
 
 /// Whoever catches nothing has it in a terminal: fit for one, as what the program says is.
 inline Error cleaned(const Error& e) {
-  constexpr std::size_t kMost = 4000;
-  return {clean_lines(e.where, kMost), clean_lines(e.what, kMost), clean_lines(e.mend, kMost)};
+  constexpr std::size_t kMax = 4000;
+  return {clean_lines(e.where, kMax), clean_lines(e.what, kMax), clean_lines(e.mend, kMax)};
 }
 
 /// Becomes slosh.Error, with its three parts as attributes.

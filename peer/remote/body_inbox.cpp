@@ -10,7 +10,7 @@
 namespace slosh {
 namespace {
 
-constexpr std::size_t kMostPending = 256;
+constexpr std::size_t kMaxPending = 256;
 constexpr double kCarryOn = 0.5;          // s
 constexpr double kIntervalShare = 0.05;   // of a new interval in the smoothed one
 constexpr double kLongestInterval = 0.1;  // s
@@ -113,7 +113,7 @@ void BodyInbox::take(const wire::Bodies& part, std::int64_t now_ns, const ClockS
   const auto place = std::lower_bound(pending_.begin(), pending_.end(), part.tick,
                                       [](const Pending& p, std::uint64_t tick) { return p.tick < tick; });
   const bool fresh = place == pending_.end() || place->tick != part.tick;
-  if (fresh && pending_.size() >= kMostPending) {
+  if (fresh && pending_.size() >= kMaxPending) {
     counts_.late += 1;  // nobody takes them, or the host sends the future: not worth more memory
     return;
   }

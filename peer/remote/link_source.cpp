@@ -21,8 +21,8 @@
 namespace slosh {
 namespace {
 
-constexpr std::size_t kMostFile = 256 * kMaxLinkText;  // bytes: a host has at most 256 links
-constexpr int kMorePasted = 100;                       // ms in which the next line of something pasted comes
+constexpr std::size_t kMaxFile = 256 * kMaxLinkText;  // bytes: a host has at most 256 links
+constexpr int kMorePasted = 100;                      // ms in which the next line of something pasted comes
 
 volatile sig_atomic_t signalled = 0;
 
@@ -36,7 +36,7 @@ class Unseen {
  public:
   Unseen() {
     signalled = 0;
-    struct sigaction action {};
+    struct sigaction action{};
     action.sa_handler = note_signal_at_prompt;
     sigemptyset(&action.sa_mask);
     for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &action, &actions_[i]);
@@ -126,7 +126,7 @@ Result<std::string> from_file(const std::string& file_name, wire::Role role, con
   std::array<char, 4096> buffer{};
   while (file.read(buffer.data(), buffer.size()) || file.gcount() > 0) {
     text.append(buffer.data(), static_cast<std::size_t>(file.gcount()));
-    if (text.size() > kMostFile)
+    if (text.size() > kMaxFile)
       return Error{file_name, "is too large to be a link", "Give the file that holds the link"};
   }
   const bool holds = role == wire::Role::kParticipant;

@@ -15,7 +15,7 @@
 namespace slosh {
 namespace {
 
-constexpr std::size_t kMostBytes = 4096;
+constexpr std::size_t kMaxBytes = 4096;
 
 std::filesystem::path usual_file() {
   if (const char* data = std::getenv("XDG_DATA_HOME"); data != nullptr && data[0] == '/') {
@@ -43,7 +43,7 @@ bool write_all(int file, const std::vector<std::uint8_t>& bytes) {
 }
 
 std::vector<std::uint8_t> read_all(int file) {
-  std::vector<std::uint8_t> bytes(kMostBytes + 1);
+  std::vector<std::uint8_t> bytes(kMaxBytes + 1);
   std::size_t done = 0;
   while (done < bytes.size()) {
     const ssize_t got = read(file, bytes.data() + done, bytes.size() - done);
@@ -68,7 +68,7 @@ Result<Identity> open_locked(const std::filesystem::path& path) {
     return give_up(errno == EWOULDBLOCK ? "is in use by another running peer"
                                         : std::string("cannot be locked: ") + std::strerror(errno));
   }
-  struct stat facts {};
+  struct stat facts{};
   if (fstat(file, &facts) != 0 || !S_ISREG(facts.st_mode)) return give_up("is not a file");
   // Whoever made it has what it says: they would be this person.
   if (facts.st_uid != geteuid() && geteuid() != 0) return give_up("is another user's file");
@@ -82,7 +82,7 @@ Result<Identity> open_locked(const std::filesystem::path& path) {
     return made;
   }
   const std::vector<std::uint8_t> bytes = read_all(file);
-  if (bytes.size() > kMostBytes) return give_up("is not a key: it is too long");
+  if (bytes.size() > kMaxBytes) return give_up("is not a key: it is too long");
   Result<Identity> read = Identity::from_private_key(bytes);
   if (!read) return give_up("is not a key: " + read.error().what);
   return read.value();

@@ -10,7 +10,7 @@ namespace slosh {
 namespace {
 
 constexpr double kFirstStateWithin = 1.0;  // s that a world without a moving body is waited for
-constexpr std::size_t kMostNotices = 64;   // that nobody has read
+constexpr std::size_t kMaxNotices = 64;    // that nobody has read
 
 /// What to do about a refusal.
 std::string mend_of(wire::RefusalCode code) {
@@ -256,7 +256,7 @@ void RemoteLink::bad_host(const wire::Fault& fault, const std::string& what) {
 void RemoteLink::notice(const std::string& text) {
   {
     const std::lock_guard lock(shared_.mutex);
-    if (shared_.notices.size() < kMostNotices) shared_.notices.push_back(text);
+    if (shared_.notices.size() < kMaxNotices) shared_.notices.push_back(text);
   }
   shared_.changed.notify_all();
 }

@@ -9,7 +9,7 @@
 namespace slosh {
 namespace {
 
-constexpr std::size_t kMostRequests = 64;  // that a host left without an answer
+constexpr std::size_t kMaxRequests = 64;  // that a host left without an answer
 
 }  // namespace
 
@@ -52,7 +52,7 @@ void RemoteLink::ask_for_grips() {
 }
 
 void RemoteLink::request_grip(std::uint32_t grip, bool take, bool any) {
-  if (requests_.size() > kMostRequests) return;
+  if (requests_.size() > kMaxRequests) return;
   const std::string what =
       std::string(take ? "you hold grip '" : "you let go of grip '") + grip_name(grip) + "'";
   wire::GripRequest request;
@@ -63,7 +63,7 @@ void RemoteLink::request_grip(std::uint32_t grip, bool take, bool any) {
 }
 
 void RemoteLink::request_world(const RemoteCommand& command) {
-  if (requests_.size() > kMostRequests) return;
+  if (requests_.size() > kMaxRequests) return;
   wire::WorldRequest request;
   request.request =
       remember({0, wire::ControlType::kWorldRequest, 0, false, false, done_text(command, world_.scene)});
@@ -72,7 +72,7 @@ void RemoteLink::request_world(const RemoteCommand& command) {
 }
 
 void RemoteLink::request_parameter(const RemoteCommand& command) {
-  if (requests_.size() > kMostRequests) return;
+  if (requests_.size() > kMaxRequests) return;
   if (command.parameter == wire::Parameter::kGripStiffness && !(agreed_ & wire::kGripStiffnesses)) {
     notice("this host is of an earlier version, and its grips are as stiff as the scene has them");
     return;

@@ -5,11 +5,11 @@
 namespace slosh {
 namespace {
 
-constexpr std::size_t kMostHistoryBytes = std::size_t{256} << 20;
+constexpr std::size_t kMaxHistoryBytes = std::size_t{256} << 20;
 constexpr std::size_t kFewestFrames = 4;  // whatever their size
-constexpr std::size_t kMostBodies = 2048;
-constexpr std::size_t kMostHands = 1024;   // samples of one hand
-constexpr std::size_t kMostGrips = 64;     // as the wire has it
+constexpr std::size_t kMaxBodies = 2048;
+constexpr std::size_t kMaxHands = 1024;    // samples of one hand
+constexpr std::size_t kMaxGrips = 64;      // as the wire has it
 constexpr double kHandBelieved = 0.2;      // s for which a hand that says no more is where it was
 constexpr double kSameTime = 1e-9;         // s
 constexpr double kBetweenBodies = 0.0035;  // s: denser states tell a snapshot nothing
@@ -114,18 +114,18 @@ void SnapshotHistory::add(std::uint32_t run, const BodySnapshot& bodies) {
   const std::size_t n = bodies_.size();
   if (n >= 2 && bodies.time - bodies_[n - 2].time < kBetweenBodies) bodies_.pop_back();
   bodies_.push_back(bodies);
-  if (bodies_.size() > kMostBodies) bodies_.pop_front();
+  if (bodies_.size() > kMaxBodies) bodies_.pop_front();
 }
 
 void SnapshotHistory::add_hand(std::uint32_t run, std::size_t grip, double time, const Pose& pose,
                                bool engaged) {
-  if (any_run_ || run != run_ || grip >= kMostGrips) return;
+  if (any_run_ || run != run_ || grip >= kMaxGrips) return;
   if (grip >= hands_.size()) hands_.resize(grip + 1);
   std::deque<HandSample>& samples = hands_[grip];
   // While the world stands still its time does too, and the newest counts.
   while (!samples.empty() && samples.back().time >= time - kSameTime) samples.pop_back();
   samples.push_back({time, pose, engaged});
-  if (samples.size() > kMostHands) samples.pop_front();
+  if (samples.size() > kMaxHands) samples.pop_front();
 }
 
 void SnapshotHistory::place_hands(BodySnapshot& rigid) const {
@@ -149,7 +149,7 @@ void SnapshotHistory::restart() {
 }
 
 void SnapshotHistory::bound() {
-  while (bytes_ > kMostHistoryBytes && frames_.size() > kFewestFrames) {
+  while (bytes_ > kMaxHistoryBytes && frames_.size() > kFewestFrames) {
     bytes_ -= size_of(*frames_.front());
     frames_.pop_front();
   }

@@ -11,7 +11,7 @@
 namespace slosh {
 namespace {
 
-constexpr std::size_t kMostInbox = std::size_t{16} << 20;  // bytes of pieces that wait
+constexpr std::size_t kMaxInbox = std::size_t{16} << 20;  // bytes of pieces that wait
 constexpr std::int64_t kFeedbackGap_ns = 100'000'000;
 constexpr auto kTurn = std::chrono::milliseconds(10);
 // Frames that a missing piece is waited for. A film is in no hurry.
@@ -35,7 +35,7 @@ SnapshotMaker::~SnapshotMaker() {
 void SnapshotMaker::offer(std::span<const std::uint8_t> datagram) {
   {
     const std::lock_guard lock(inbox_mutex_);
-    if (inbox_bytes_ + datagram.size() > kMostInbox) {
+    if (inbox_bytes_ + datagram.size() > kMaxInbox) {
       overrun_ += 1;
       return;
     }

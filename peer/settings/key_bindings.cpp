@@ -72,7 +72,7 @@ std::vector<std::string> key_names() {
 }
 
 std::string clean(const std::string& text) {
-  return clean_text(text, kMostTextBytes);
+  return clean_text(text, kMaxTextBytes);
 }
 
 /// "The nearest is …" where one is near, else all of them.

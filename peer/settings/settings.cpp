@@ -15,7 +15,7 @@
 namespace slosh {
 namespace {
 
-constexpr std::size_t kMostBytes = 1 << 20;
+constexpr std::size_t kMaxBytes = 1 << 20;
 constexpr const char* kMendFile = "Mend that line, or move the file away; it is only read, never written";
 
 const char* in_words(SettingKind kind) {
@@ -59,14 +59,14 @@ std::optional<std::vector<std::string>> words_of(const toml::node& node, Setting
     return std::nullopt;
   }
   if (const auto* text = node.as_string()) {
-    const std::string clean = clean_text(text->get(), kMostTextBytes);
+    const std::string clean = clean_text(text->get(), kMaxTextBytes);
     return std::vector{kind == SettingKind::kPath ? with_home(clean) : clean};
   }
   if (kind != SettingKind::kTexts || !node.is_array() || node.as_array()->empty()) return std::nullopt;
   std::vector<std::string> words;
   for (const toml::node& each : *node.as_array()) {
     if (!each.is_string()) return std::nullopt;
-    words.push_back(clean_text(each.as_string()->get(), kMostTextBytes));
+    words.push_back(clean_text(each.as_string()->get(), kMaxTextBytes));
   }
   return words;
 }
@@ -91,7 +91,7 @@ void read_keys(const toml::table& table, const SettingKey& key, int line, Settin
     const Result<KeyChoice> parsed =
         texts ? parse_key_choice(choice)
               : Result<KeyChoice>(Error{"",
-                                        "keys." + clean_text(std::string(name.str()), kMostTextBytes) +
+                                        "keys." + clean_text(std::string(name.str()), kMaxTextBytes) +
                                             " is a key in quotes, or several in brackets",
                                         "For example pause = \"Space\""});
     if (!parsed) {
@@ -122,7 +122,7 @@ void read_entry(const std::string& name, const toml::node& node, SettingsFile& f
     if (name == key.key) found = &key;
     names.emplace_back(key.key);
   }
-  const std::string shown = clean_text(name, kMostTextBytes);
+  const std::string shown = clean_text(name, kMaxTextBytes);
   if (found == nullptr) {
     const std::string near = nearest_word(name, names);
     file.errors.push_back(settings_error(file.path, line, "there is no setting '" + shown + "'",
@@ -225,7 +225,7 @@ std::filesystem::path settings_path() {
 
 Error settings_error(const std::filesystem::path& path, int line, const std::string& what,
                      const std::string& mend) {
-  return {clean_text(path.string(), kMostTextBytes) + ":" + std::to_string(line), what, mend};
+  return {clean_text(path.string(), kMaxTextBytes) + ":" + std::to_string(line), what, mend};
 }
 
 SettingsFile parse_settings(std::string_view text, const std::filesystem::path& path) {
@@ -238,7 +238,7 @@ SettingsFile parse_settings(std::string_view text, const std::filesystem::path& 
   } catch (const toml::parse_error& error) {
     file.values.clear();
     file.errors.push_back(settings_error(path, static_cast<int>(error.source().begin.line),
-                                         clean_text(error.description(), kMostTextBytes), kMendFile));
+                                         clean_text(error.description(), kMaxTextBytes), kMendFile));
   }
   // A table of toml++ is sorted by name.
   const auto by_line = [](const Setting& a, const Setting& b) { return a.line < b.line; };
@@ -252,7 +252,7 @@ SettingsFile read_settings(const std::filesystem::path& path) {
   std::error_code code;
   if (path.empty() || !std::filesystem::exists(path, code)) return file;
   std::ifstream in(path, std::ios::binary);
-  std::string text(kMostBytes + 1, '\0');
+  std::string text(kMaxBytes + 1, '\0');
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(std::max<std::streamsize>(in.gcount(), 0)));
   if (!in.is_open() || in.bad() || std::filesystem::is_directory(path, code)) {
@@ -261,7 +261,7 @@ SettingsFile read_settings(const std::filesystem::path& path) {
         {path.string(), "cannot be read", "Let yourself read it, or set SLOSH_SETTINGS=none"});
     return file;
   }
-  if (text.size() > kMostBytes) {
+  if (text.size() > kMaxBytes) {
     file.there = true;
     file.errors.push_back({path.string(), "is larger than any settings are", "Move it away"});
     return file;

@@ -42,7 +42,7 @@ struct Counted {
   std::optional<CheckRun> run;
 };
 
-constexpr std::size_t kMostToRun = 400'000;  // particles: more do not get anywhere in the time that check has
+constexpr std::size_t kMaxToRun = 400'000;  // particles: more do not get anywhere in the time that check has
 
 Result<Counted> count(const Scene& scene, const CheckOptions& options, Progress& progress) {
   Counted counted;
@@ -58,7 +58,7 @@ Result<Counted> count(const Scene& scene, const CheckOptions& options, Progress&
   for (const std::uint8_t fluid : sampled.value().fluid_index)
     counted.mass += volume * scene.fluids[fluid].rest_density;
   if (options.still || counted.fluid == 0) return counted;
-  if (counted.fluid + counted.surface > kMostToRun) {
+  if (counted.fluid + counted.surface > kMaxToRun) {
     counted.run.emplace();
     return counted;
   }
@@ -158,7 +158,7 @@ void print_scene(const Scene& scene, const Counted& counted) {
     std::printf(
         "    %-10s %.3f of %.3f litres: %.3f lie inside bodies, %.3f in volumes before it, %.3f find no "
         "place\n",
-        clean_text(scene.fluid_volumes[v].name, kMostTextBytes).c_str(), 1e3 * f.sampled, 1e3 * f.mesh,
+        clean_text(scene.fluid_volumes[v].name, kMaxTextBytes).c_str(), 1e3 * f.sampled, 1e3 * f.mesh,
         1e3 * f.in_bodies, 1e3 * f.in_others, 1e3 * f.no_place);
   }
   std::printf("  start       %s\n", start_in_words(scene).c_str());

@@ -85,11 +85,11 @@ std::vector<FoundDevice> show_devices() {
   const Result<std::unique_ptr<Headset>> headset = Headset::find({});
   if (headset)
     std::printf("%s\n    --vr --device xr-left --device xr-right\n",
-                clean_text(headset.value()->description(), kMostTextBytes).c_str());
+                clean_text(headset.value()->description(), kMaxTextBytes).c_str());
   else
-    std::printf("No headset: %s. %s.\n", clean_text(headset.error().what, kMostTextBytes).c_str(),
+    std::printf("No headset: %s. %s.\n", clean_text(headset.error().what, kMaxTextBytes).c_str(),
                 headset.error().mend.c_str());
-  std::printf("Settings: %s\n", clean_text(device_settings_folder().string(), kMostTextBytes).c_str());
+  std::printf("Settings: %s\n", clean_text(device_settings_folder().string(), kMaxTextBytes).c_str());
   return all;
 }
 
@@ -130,7 +130,7 @@ Result<std::vector<Shown>> open_shown(const DevicesOptions& options) {
     Result<std::unique_ptr<Device>> opened = open_named_device(spec);
     if (!opened) return opened.error();
     for (const std::string& warning : opened.value()->warnings())
-      std::fprintf(stderr, "slosh: %s\n", clean_text(warning, kMostTextBytes).c_str());
+      std::fprintf(stderr, "slosh: %s\n", clean_text(warning, kMaxTextBytes).c_str());
     shown.push_back({spec, std::move(opened.value())});
   }
   return shown;

@@ -145,7 +145,7 @@ int finish(const SharedSpace& space, const std::string& name, bool floor_known) 
   }
   const std::filesystem::path file = shared_space_file(name);
   if (const Result<bool> kept = keep_shared_space(file, space); !kept) return fail(kept.error());
-  say("Kept: " + clean_text(file.string(), kMostTextBytes));
+  say("Kept: " + clean_text(file.string(), kMaxTextBytes));
   return kExitOk;
 }
 
@@ -186,7 +186,7 @@ int calibrate(const CalibrateOptions& options) {
       context.value()->poll();
       const HeadsetState state = headset.value()->poll();
       if (const std::string problem = headset.value()->take_problem(); !problem.empty())
-        std::fprintf(stderr, "slosh: %s\n", clean_text(problem, kMostTextBytes).c_str());
+        std::fprintf(stderr, "slosh: %s\n", clean_text(problem, kMaxTextBytes).c_str());
       if (state == HeadsetState::kLost || state == HeadsetState::kEnded) break;
       if (state == HeadsetState::kAway) {
         std::this_thread::sleep_for(std::chrono::milliseconds(10));

@@ -88,7 +88,7 @@ int install_rule(const std::string& file) {
                      in_one_line(install_command(file))});
   }
   (void)chmod(file.c_str(), S_IRUSR | S_IWUSR | S_IRGRP | S_IROTH);
-  std::printf("Written: %s\n", clean_text(file, kMostTextBytes).c_str());
+  std::printf("Written: %s\n", clean_text(file, kMaxTextBytes).c_str());
   if (file != kUdevRuleFile) return kExitOk;
   std::printf(udev_took_it()
                   ? "udev has taken it up.\n"
@@ -102,7 +102,7 @@ bool offer_rule(const std::string& file) {
   if (!writes) command.insert(command.begin(), "sudo");
   const std::string line = in_one_line(command);
   std::printf("\nThe rule that lets whoever sits here open them (%s):\n%s\nPut it there, once, by:\n    %s\n",
-              clean_text(file, kMostTextBytes).c_str(), udev_rule().c_str(), line.c_str());
+              clean_text(file, kMaxTextBytes).c_str(), udev_rule().c_str(), line.c_str());
   if (isatty(STDIN_FILENO) == 0 || isatty(STDOUT_FILENO) == 0) return false;
   if (!writes && !program_there("sudo")) {
     std::printf("That needs root, and there is no sudo here: as root, run what follows the word.\n");
@@ -115,7 +115,7 @@ bool offer_rule(const std::string& file) {
   (void)fail({"sudo",
               code < 0 ? "cannot be started"
                        : "it ended with " + std::to_string(code) + ", and the rule is not in place",
-              "As root, save the rule above as " + clean_text(file, kMostTextBytes) +
+              "As root, save the rule above as " + clean_text(file, kMaxTextBytes) +
                   " and run `udevadm control --reload && udevadm trigger`"});
   return false;
 }

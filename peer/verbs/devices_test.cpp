@@ -136,7 +136,7 @@ int run_test(const TestOptions& options) {
   if (!opened) return fail(opened.error());
   Device& device = *opened.value();
   for (const std::string& warning : device.warnings())
-    std::fprintf(stderr, "slosh: %s\n", clean_text(warning, kMostTextBytes).c_str());
+    std::fprintf(stderr, "slosh: %s\n", clean_text(warning, kMaxTextBytes).c_str());
   if (!device.gives_way()) {
     return fail({options.spec, "it gives no force, so there is nothing to push with",
                  "`slosh devices --live` shows what it says"});
@@ -162,7 +162,7 @@ int run_test(const TestOptions& options) {
     std::printf("Written to %s: device_test.csv, device_test.png.\n", options.out.c_str());
   }
   if (report.stopped.empty()) return kExitOk;
-  return fail({options.spec, "the test ended early: " + clean_text(report.stopped, kMostTextBytes),
+  return fail({options.spec, "the test ended early: " + clean_text(report.stopped, kMaxTextBytes),
                "Hold the handle still and try a smaller --force"});
 }
 

@@ -122,7 +122,7 @@ void print_summary(const HostedRun& run, const HostReport& report, const ServerF
   }
   if (!run.measured().empty())
     std::printf("measured   %s: probes.csv, and bodies.csv where there are bodies to follow\n",
-                clean_text(run.measured().string(), kMostTextBytes).c_str());
+                clean_text(run.measured().string(), kMaxTextBytes).c_str());
   if (run.exporter() != nullptr)
     std::printf("exported   %s frames for other programs\n",
                 grouped(run.exporter()->report().frames).c_str());
@@ -137,7 +137,7 @@ void print_summary(const HostedRun& run, const HostReport& report, const ServerF
 
 // Until somebody or something ends it; tells why.
 std::string run_until_ended(HostedRun& run, const HostVerbOptions& options, Progress& progress,
-                            HostReins* reins) {
+                            SupervisorControl* supervision) {
   RateOf rate;
   std::int64_t next_line_ns = 0;
   LineInput input(progress.terminal());
@@ -160,7 +160,7 @@ std::string run_until_ended(HostedRun& run, const HostVerbOptions& options, Prog
       progress.note("slosh: " + (trouble.empty() ? "the world is saved again" : trouble));
     }
     if (interrupted_by() != 0) {
-      if (reins) reins->ends();
+      if (supervision) supervision->ends();
       return "the host was stopped";
     }
     if (run.net().quit_asked()) return "the host has ended the run";
@@ -176,7 +176,7 @@ std::string run_until_ended(HostedRun& run, const HostVerbOptions& options, Prog
   return "the world has come to its end";
 }
 
-int run_host(const HostVerbOptions& options, HostReins* reins) {
+int run_host(const HostVerbOptions& options, SupervisorControl* supervision) {
   end_at_interrupts();
   signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error like a full disk, and no reason to die
   if (const Result<bool> there = can_host_there(options); !there) return fail(there.error());
@@ -187,7 +187,7 @@ int run_host(const HostVerbOptions& options, HostReins* reins) {
     return fail(hosted.error());
   }
   catch_interrupts();
-  Result<std::unique_ptr<HostedRun>> created = HostedRun::create(hosted.value(), options, reins);
+  Result<std::unique_ptr<HostedRun>> created = HostedRun::create(hosted.value(), options, supervision);
   if (!created) {
     progress.end();
     return fail(created.error());
@@ -201,7 +201,7 @@ int run_host(const HostVerbOptions& options, HostReins* reins) {
                   run.set_aside());
   if (!run.checkpoint_file().empty())
     progress.note("saved " + every(options.checkpoint_seconds) + " in " + run.checkpoint_file());
-  if (reins) reins->can_carry_on_from(run.checkpoint_file());
+  if (supervision) supervision->can_carry_on_from(run.checkpoint_file());
   if (options.restarts == 0) print_links(run, options);
   if (run.waits()) {
     progress.note(format(
@@ -216,7 +216,7 @@ int run_host(const HostVerbOptions& options, HostReins* reins) {
   }
   progress.phase("hosting");
   run.start();
-  const std::string why = run_until_ended(run, options, progress, reins);
+  const std::string why = run_until_ended(run, options, progress, supervision);
   progress.typed("");
   const ServerFigures figures = run.net().figures();
   const double net_seconds = run.net().cpu_seconds();
@@ -230,7 +230,8 @@ int run_host(const HostVerbOptions& options, HostReins* reins) {
 }  // namespace
 
 int host_world(const HostVerbOptions& options) {
-  if (const auto reins = inherited_reins()) return run_host(reins->to_run(options), reins.get());
+  if (const auto supervision = inherited_supervisor_control())
+    return run_host(supervision->to_run(options), supervision.get());
   // Without a checkpoint another process would have nothing to carry on from.
   if (!options.supervised || options.checkpoint == "none") return run_host(options, nullptr);
   return supervise_host(options, again_from_the_start());

@@ -28,7 +28,7 @@ constexpr std::int64_t kHeardWithin =
     300'000'000;  // ns in which a child that was signalled says that it ends
 
 // The descriptor of the page that both see, for the process that is started.
-constexpr const char* kReinsVariable = "SLOSH_REINS";
+constexpr const char* kSupervisorVariable = "SLOSH_REINS";
 
 void keep_path(const std::string& path, char* room, std::size_t longest) {
   // Longer ones no file can have.
@@ -37,38 +37,38 @@ void keep_path(const std::string& path, char* room, std::size_t longest) {
   room[length] = '\0';
 }
 
-HostReins* map_reins(int descriptor) {
-  void* page = mmap(nullptr, sizeof(HostReins), PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0);
-  return page == MAP_FAILED ? nullptr : static_cast<HostReins*>(page);
+SupervisorControl* map_supervisor_control(int descriptor) {
+  void* page = mmap(nullptr, sizeof(SupervisorControl), PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0);
+  return page == MAP_FAILED ? nullptr : static_cast<SupervisorControl*>(page);
 }
 
-void unmap_reins(HostReins* reins) {
-  munmap(reins, sizeof(HostReins));
+void unmap_supervisor_control(SupervisorControl* supervision) {
+  munmap(supervision, sizeof(SupervisorControl));
 }
 
 /// The page, and the word of it that a child inherits.
-class SharedReins {
+class SharedSupervisorControl {
  public:
-  SharedReins() : descriptor_(memfd_create("slosh-host", 0)) {
-    if (descriptor_ < 0 || ftruncate(descriptor_, sizeof(HostReins)) != 0) return;
-    void* page = map_reins(descriptor_);
+  SharedSupervisorControl() : descriptor_(memfd_create("slosh-host", 0)) {
+    if (descriptor_ < 0 || ftruncate(descriptor_, sizeof(SupervisorControl)) != 0) return;
+    void* page = map_supervisor_control(descriptor_);
     if (!page) return;
-    reins_ = new (page) HostReins;
+    supervision_ = new (page) SupervisorControl;
     // Now and not in the child, which a fork leaves with one thread and perhaps somebody else's locks.
-    setenv(kReinsVariable, std::to_string(descriptor_).c_str(), 1);
+    setenv(kSupervisorVariable, std::to_string(descriptor_).c_str(), 1);
   }
-  ~SharedReins() {
-    if (reins_) unmap_reins(reins_);
+  ~SharedSupervisorControl() {
+    if (supervision_) unmap_supervisor_control(supervision_);
     if (descriptor_ >= 0) close(descriptor_);
-    unsetenv(kReinsVariable);
+    unsetenv(kSupervisorVariable);
   }
-  SharedReins(const SharedReins&) = delete;
-  SharedReins& operator=(const SharedReins&) = delete;
-  HostReins* get() const { return reins_; }
+  SharedSupervisorControl(const SharedSupervisorControl&) = delete;
+  SharedSupervisorControl& operator=(const SharedSupervisorControl&) = delete;
+  SupervisorControl* get() const { return supervision_; }
 
  private:
   int descriptor_;
-  HostReins* reins_ = nullptr;
+  SupervisorControl* supervision_ = nullptr;
 };
 
 /// What this process was started with.
@@ -120,12 +120,12 @@ class HeldSignals {
 };
 
 /// Passes on what somebody sent to this process; who signalled all of them has reached the child already.
-void pass_on(const siginfo_t& info, pid_t child, const HostReins& reins) {
+void pass_on(const siginfo_t& info, pid_t child, const SupervisorControl& supervision) {
   if (info.si_code == SI_KERNEL) return;  // the terminal's, which goes to both
   const std::int64_t until = steady_now_ns() + kHeardWithin;
-  const bool again = reins.ending();
+  const bool again = supervision.ending();
   while (!again && steady_now_ns() < until) {
-    if (reins.ending()) return;
+    if (supervision.ending()) return;
     sleep_until_ns(steady_now_ns() + 10'000'000);
   }
   kill(child, info.si_signo);
@@ -136,7 +136,8 @@ struct End {
   std::string hung;  // what hung, when it was ended for that
 };
 
-End outlive(pid_t child, const HeldSignals& signals, const HostReins& reins, const HangLimits& limits) {
+End outlive(pid_t child, const HeldSignals& signals, const SupervisorControl& supervision,
+            const HangLimits& limits) {
   End end;
   HangWatch world(limits.world);
   HangWatch network(limits.network);
@@ -146,7 +147,7 @@ End outlive(pid_t child, const HeldSignals& signals, const HostReins& reins, con
     const siginfo_t info = signals.wait();
     const bool asked = info.si_signo != SIGCHLD && info.si_signo != 0;
     // timeout(1) and its like signal a program and then its group: that is one wish, not two.
-    if (asked && (heard_ns == 0 || steady_now_ns() - heard_ns > kOneWish)) pass_on(info, child, reins);
+    if (asked && (heard_ns == 0 || steady_now_ns() - heard_ns > kOneWish)) pass_on(info, child, supervision);
     if (asked) heard_ns = steady_now_ns();
     int status = 0;
     while (waitpid(child, &status, WNOHANG | WUNTRACED | WCONTINUED) == child) {
@@ -161,8 +162,8 @@ End outlive(pid_t child, const HeldSignals& signals, const HostReins& reins, con
       network.pass_over();
     }
     if (info.si_signo != 0 || stopped || !end.hung.empty()) continue;
-    const bool world_hangs = world.look(reins.pulse());
-    const bool network_hangs = network.look(reins.network_pulse());
+    const bool world_hangs = world.look(supervision.pulse());
+    const bool network_hangs = network.look(supervision.network_pulse());
     if (world_hangs) end.hung = "its world hung for " + std::to_string(limits.world) + " s";
     if (network_hangs) end.hung = "its network hung for " + std::to_string(limits.network) + " s";
     if (!end.hung.empty()) kill(child, SIGKILL);
@@ -181,17 +182,17 @@ void say(const std::string& line) {
 
 }  // namespace
 
-void HostReins::can_carry_on_from(const std::string& checkpoint) {
+void SupervisorControl::can_carry_on_from(const std::string& checkpoint) {
   if (checkpoint.empty() || checkpoint.size() > kLongestPath) return;
   std::memcpy(checkpoint_, checkpoint.c_str(), checkpoint.size() + 1);
   ready_.store(true, std::memory_order_release);
 }
 
-std::string HostReins::checkpoint() const {
+std::string SupervisorControl::checkpoint() const {
   return ready_.load(std::memory_order_acquire) ? checkpoint_ : std::string();
 }
 
-void HostReins::restart(const HostVerbOptions& next) {
+void SupervisorControl::restart(const HostVerbOptions& next) {
   ready_.store(false, std::memory_order_relaxed);
   pulse_.store(0, std::memory_order_relaxed);
   network_pulse_.store(0, std::memory_order_relaxed);
@@ -201,35 +202,36 @@ void HostReins::restart(const HostVerbOptions& next) {
   keep_path(next.record, record_, kLongestPath);
 }
 
-HostVerbOptions HostReins::to_run(const HostVerbOptions& typed) const {
+HostVerbOptions SupervisorControl::to_run(const HostVerbOptions& typed) const {
   if (restarts_ == 0) return typed;
   HostVerbOptions next = restarted(typed, resume_, restarts_);
   next.record = record_;  // the name that the supervisor has said
   return next;
 }
 
-std::unique_ptr<HostReins, void (*)(HostReins*)> inherited_reins() {
-  std::unique_ptr<HostReins, void (*)(HostReins*)> reins(nullptr, unmap_reins);
-  const char* said = std::getenv(kReinsVariable);
-  if (!said) return reins;
+std::unique_ptr<SupervisorControl, void (*)(SupervisorControl*)> inherited_supervisor_control() {
+  std::unique_ptr<SupervisorControl, void (*)(SupervisorControl*)> supervision(nullptr,
+                                                                               unmap_supervisor_control);
+  const char* said = std::getenv(kSupervisorVariable);
+  if (!said) return supervision;
   int descriptor = -1;
   const char* end = said + std::strlen(said);
   const auto [rest, failure] = std::from_chars(said, end, descriptor);
-  unsetenv(kReinsVariable);
-  struct stat page {};
+  unsetenv(kSupervisorVariable);
+  struct stat page{};
   // Somebody's own variable of that name is none of ours.
   const bool ours = failure == std::errc() && rest == end && descriptor > STDERR_FILENO &&
                     fstat(descriptor, &page) == 0 && S_ISREG(page.st_mode) && page.st_nlink == 0 &&
-                    page.st_size == sizeof(HostReins);
-  if (!ours) return reins;
-  reins.reset(map_reins(descriptor));
+                    page.st_size == sizeof(SupervisorControl);
+  if (!ours) return supervision;
+  supervision.reset(map_supervisor_control(descriptor));
   close(descriptor);
-  return reins;
+  return supervision;
 }
 
 bool RestartBudget::take(std::int64_t now_ns) {
   while (!taken_.empty() && now_ns - taken_.front() >= kWithin_ns) taken_.pop_front();
-  if (taken() >= kMost) return false;
+  if (taken() >= kMax) return false;
   taken_.push_back(now_ns);
   return true;
 }
@@ -260,7 +262,7 @@ HostBody again_from_the_start() {
   const auto command = std::make_shared<Command>();
   for (std::string& word : command->words) command->arguments.push_back(word.data());
   command->arguments.push_back(nullptr);
-  return [command](const HostVerbOptions&, HostReins*) -> int {
+  return [command](const HostVerbOptions&, SupervisorControl*) -> int {
     execv("/proc/self/exe", command->arguments.data());
     say(std::string("the host's own process cannot be started: ") + std::strerror(errno) +
         ". Run it in this one with --no-supervisor");
@@ -269,19 +271,19 @@ HostBody again_from_the_start() {
 }
 
 int supervise_host(const HostVerbOptions& options, const HostBody& body, const HangLimits& limits) {
-  const SharedReins shared;
+  const SharedSupervisorControl shared;
   if (!shared.get()) {
     say(std::string("no memory to look after the host with: ") + std::strerror(errno) +
         ". Run it in this process with --no-supervisor");
     return kExitFailed;
   }
-  HostReins& reins = *shared.get();
+  SupervisorControl& supervision = *shared.get();
   const TerminalKeeper terminal;
   const pid_t parent = getpid();
   RestartBudget budget;
   HostVerbOptions now = options;
   while (true) {
-    reins.restart(now);
+    supervision.restart(now);
     std::fflush(nullptr);  // else the child would say it once more
     const HeldSignals signals;
     const pid_t child = fork();
@@ -289,7 +291,7 @@ int supervise_host(const HostVerbOptions& options, const HostBody& body, const H
       signals.release();
       // Nobody can stop a child whose supervisor was killed, and its port would stay taken.
       prctl(PR_SET_PDEATHSIG, SIGKILL);
-      const int code = getppid() == parent ? body(now, &reins) : kExitFailed;
+      const int code = getppid() == parent ? body(now, &supervision) : kExitFailed;
       std::fflush(nullptr);
       _exit(code);  // not exit(): the parent's handlers are not the child's
     }
@@ -299,24 +301,24 @@ int supervise_host(const HostVerbOptions& options, const HostBody& body, const H
           ". Run it in this one with --no-supervisor");
       return kExitFailed;
     }
-    const End end = outlive(child, signals, reins, limits);
+    const End end = outlive(child, signals, supervision, limits);
     const int status = end.status;
     terminal.restore();
     if (WIFEXITED(status)) return WEXITSTATUS(status);
     const int ended_by = WTERMSIG(status);
     if (asks_for_the_end(ended_by)) return 128 + ended_by;
     const std::string fault = !end.hung.empty() ? end.hung : std::string(strsignal(ended_by));
-    const std::string checkpoint = reins.checkpoint();
+    const std::string checkpoint = supervision.checkpoint();
     if (checkpoint.empty()) {
       say("the host died (" + fault + ") before its world was saved");
       return 128 + ended_by;
     }
-    if (reins.ending()) {
+    if (supervision.ending()) {
       say("the host died (" + fault + ") while it ended. Carry on with ./slosh host --resume " + checkpoint);
       return 128 + ended_by;
     }
     if (!budget.take(steady_now_ns())) {
-      say("the host died (" + fault + ") once more after " + std::to_string(RestartBudget::kMost) +
+      say("the host died (" + fault + ") once more after " + std::to_string(RestartBudget::kMax) +
           " restarts within a minute, and is not started again. Its world is in " + checkpoint +
           ": ./slosh host --resume " + checkpoint);
       return 128 + ended_by;

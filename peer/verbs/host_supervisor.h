@@ -14,7 +14,7 @@
 namespace slosh {
 
 /// What a host's process and its supervisor tell each other, in a page that both see.
-class HostReins {
+class SupervisorControl {
  public:
   /// Another is about to run: it has told nothing yet, and is to do what `next` asks for.
   void restart(const HostVerbOptions& next);
@@ -51,7 +51,7 @@ class HostReins {
 
 /// The page that the process which started this one keeps, where it is supervised; else empty. For once: it
 /// is not passed on to what this process starts.
-std::unique_ptr<HostReins, void (*)(HostReins*)> inherited_reins();
+std::unique_ptr<SupervisorControl, void (*)(SupervisorControl*)> inherited_supervisor_control();
 
 /// A thread that lives and does nothing: its pulse stood for so many looks, one a second. Looks are counted
 /// in place of a clock, so that whoever was stopped together with it, or slept with the machine, blames
@@ -84,9 +84,9 @@ struct HangLimits {
 /// Pure.
 class RestartBudget {
  public:
-  static constexpr int kMost = 5;
+  static constexpr int kMax = 5;
   static constexpr std::int64_t kWithin_ns = 60'000'000'000;
-  /// False when there were kMost within the last minute.
+  /// False when there were kMax within the last minute.
   bool take(std::int64_t now_ns);
   int taken() const { return static_cast<int>(taken_.size()); }
 
@@ -98,7 +98,7 @@ class RestartBudget {
 /// there), a recording of its own ("pour.rec", "pour-2.rec", …; the next that is not there yet).
 HostVerbOptions restarted(const HostVerbOptions& options, const std::string& checkpoint, int restarts);
 
-using HostBody = std::function<int(const HostVerbOptions&, HostReins*)>;
+using HostBody = std::function<int(const HostVerbOptions&, SupervisorControl*)>;
 
 /// Runs `body` in a child process, again and again where a fault ends it, or where its world or its network
 /// hangs. Returns what the last child came to (128 + signal where one ended it); a child ends with what
@@ -109,8 +109,8 @@ using HostBody = std::function<int(const HostVerbOptions&, HostReins*)>;
 /// again_from_the_start().
 int supervise_host(const HostVerbOptions& options, const HostBody& body, const HangLimits& limits = {});
 
-/// A body that begins this very program anew with the command line that it has: it finds inherited_reins().
-/// Returns only where that fails, with words on stderr.
+/// A body that begins this very program anew with the command line that it has: it finds
+/// inherited_supervisor_control(). Returns only where that fails, with words on stderr.
 HostBody again_from_the_start();
 
 }  // namespace slosh

@@ -46,7 +46,7 @@ Result<bool> can_host_there(const HostVerbOptions& options) {
 }
 
 Result<std::unique_ptr<HostedRun>> HostedRun::create(HostedWorld& hosted, const HostVerbOptions& options,
-                                                     HostReins* reins) {
+                                                     SupervisorControl* supervision) {
   std::unique_ptr<HostedRun> run(new HostedRun(hosted, options));
   HostedRun& s = *run;
   const Scene& scene = hosted.prepared.scene;
@@ -57,7 +57,7 @@ Result<std::unique_ptr<HostedRun>> HostedRun::create(HostedWorld& hosted, const 
   }
   s.channel_ = std::make_unique<Channel>(scene.grips.size(), initial_message(*hosted.world, hosted.state.run),
                                          kHostedBytes);
-  const Result<bool> network = s.open_network(reins);
+  const Result<bool> network = s.open_network(supervision);
   if (!network) return network.error();
   s.make_links();
   const Result<bool> files = s.open_files();
@@ -72,7 +72,7 @@ Result<std::unique_ptr<HostedRun>> HostedRun::create(HostedWorld& hosted, const 
   host.paused = hosted.state.paused;
   host.run = hosted.state.run;
   host.start_state = hosted.start;
-  if (reins != nullptr) host.pulse = &reins->pulse();
+  if (supervision != nullptr) host.pulse = &supervision->pulse();
   s.host_ = std::make_unique<Host>(std::move(*hosted.world), scene, *s.channel_, host);
   s.host_->add_tap(*s.server_);
   if (s.checkpoint_) s.host_->add_tap(*s.checkpoint_);
@@ -82,7 +82,7 @@ Result<std::unique_ptr<HostedRun>> HostedRun::create(HostedWorld& hosted, const 
   return run;
 }
 
-Result<bool> HostedRun::open_network(HostReins* reins) {
+Result<bool> HostedRun::open_network(SupervisorControl* supervision) {
   const Prepared& p = hosted_.prepared;
   ServedWorld world;
   world.scene = &p.scene;
@@ -142,8 +142,8 @@ Result<bool> HostedRun::open_network(HostReins* reins) {
   Result<std::unique_ptr<ConsoleDoor>> door = ConsoleDoor::open(port_of(address_));
   if (!door) return door.error();
   door_ = std::move(door.value());
-  net_ =
-      std::make_unique<NetLoop>(*server_, *endpoint_, reins != nullptr ? &reins->network_pulse() : nullptr);
+  net_ = std::make_unique<NetLoop>(*server_, *endpoint_,
+                                   supervision != nullptr ? &supervision->network_pulse() : nullptr);
   return true;
 }
 

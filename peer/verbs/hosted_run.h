@@ -21,7 +21,7 @@
 
 namespace slosh {
 
-class HostReins;
+class SupervisorControl;
 
 /// Whether the place that the options ask for, or the usual one, can be listened at now: else it would be
 /// said when all is measured and settled. Where an earlier host listened is its checkpoint's to say.
@@ -31,9 +31,9 @@ Result<bool> can_host_there(const HostVerbOptions& options);
 class HostedRun {
  public:
   /// `hosted` must outlive it; its world is taken. Errors: the address cannot be listened at, a file cannot
-  /// be written, the scene does not fit into a message. `reins`: who looks after its pulses.
+  /// be written, the scene does not fit into a message. `supervision`: who looks after its pulses.
   static Result<std::unique_ptr<HostedRun>> create(HostedWorld& hosted, const HostVerbOptions& options,
-                                                   HostReins* reins = nullptr);
+                                                   SupervisorControl* supervision = nullptr);
   ~HostedRun();
   HostedRun(const HostedRun&) = delete;
   HostedRun& operator=(const HostedRun&) = delete;
@@ -70,7 +70,7 @@ class HostedRun {
 
  private:
   HostedRun(HostedWorld& hosted, const HostVerbOptions& options) : hosted_(hosted), options_(options) {}
-  Result<bool> open_network(HostReins* reins);
+  Result<bool> open_network(SupervisorControl* supervision);
   std::string choose_checkpoint() const;
   Result<bool> open_files();
   void make_links();

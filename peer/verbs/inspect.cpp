@@ -21,7 +21,7 @@ int list_scenes() {
     return fail({"scenes", "none were found", "Set SLOSH_SCENES to the folder that holds them"});
   }
   for (const SceneEntry& entry : entries) {
-    const std::string name = clean_text(entry.name, kMostTextBytes);
+    const std::string name = clean_text(entry.name, kMaxTextBytes);
     std::printf("%-10s %s\n", name.c_str(), entry.title.c_str());
   }
   return kExitOk;
@@ -64,8 +64,8 @@ void add_plan(CLI::App& app, VerbRun& chosen) {
 }
 
 int fail(const Error& error) {
-  constexpr std::size_t kMost = 4000;
-  std::string text = clean_lines(error.text(), kMost);
+  constexpr std::size_t kMax = 4000;
+  std::string text = clean_lines(error.text(), kMax);
   if (!text.empty() && std::string_view(".?!").find(text.back()) == std::string_view::npos) text += '.';
   std::fprintf(stderr, "slosh: %s\n", text.c_str());
   return kExitFailed;

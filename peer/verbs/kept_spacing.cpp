@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMostKept = 100;
+constexpr std::size_t kMaxKept = 100;
 
 std::filesystem::path file_of_spacings() {
   const std::string folder = state_folder();
@@ -67,7 +67,7 @@ void keep_spacing(const std::string& key, double spacing) {
   for (const json& entry : read_kept())
     if (!is_of(entry, key)) kept.push_back(entry);
   kept.push_back({{"key", key}, {"spacing_m", spacing}});
-  while (kept.size() > kMostKept) kept.erase(kept.begin());
+  while (kept.size() > kMaxKept) kept.erase(kept.begin());
   std::error_code code;
   std::filesystem::create_directories(file.parent_path(), code);
   (void)write_whole(file, kept.dump(2, ' ', false, json::error_handler_t::replace) + "\n");

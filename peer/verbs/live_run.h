@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "net/snapshot_queue.h"
-#include "peer/haptics/lent_device.h"
 #include "peer/haptics/mouse_device.h"
+#include "peer/haptics/shared_handle.h"
 #include "peer/hud/hud.h"
 #include "peer/hud/rates.h"
 #include "peer/output/summary.h"
@@ -51,7 +51,7 @@ class LiveRun {
   /// Where the mouse moves the handle of grip `i`; null when that hand is no mouse.
   virtual MouseTarget* mouse_target(std::size_t i) = 0;
   /// The hand of grip `i` where a script holds it that the window may take over; else null.
-  virtual LentHand* lent_hand(std::size_t i) {
+  virtual SharedHandle* lent_hand(std::size_t i) {
     (void)i;
     return nullptr;
   }

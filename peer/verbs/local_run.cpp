@@ -72,7 +72,7 @@ Result<std::unique_ptr<LocalRun>> LocalRun::create(const Prepared& prepared, Dev
   options.until = prepared.seconds;
   options.paced = !prepared.unpaced;
   std::uint64_t felt = 0;
-  for (std::size_t i = 0; i < devices.devices.size() && i < FluidDemand::kMostGrips; ++i) {
+  for (std::size_t i = 0; i < devices.devices.size() && i < FluidDemand::kMaxGrips; ++i) {
     if (devices.devices[i] && devices.devices[i]->gives_way()) felt |= std::uint64_t{1} << i;
   }
   run->fluid_demand_.want(felt);

@@ -52,7 +52,7 @@ class LocalRun final : public LiveRun {
   }
   bool paused() const override { return paused_; }
   MouseTarget* mouse_target(std::size_t i) override { return mouse_targets_[i].get(); }
-  LentHand* lent_hand(std::size_t i) override { return lent_[i].get(); }
+  SharedHandle* lent_hand(std::size_t i) override { return lent_[i].get(); }
   LiveValues live_values() const override;
   void change(const LiveWish& wish) override;
   void step_standing(int steps) override { host_->step_standing(steps); }
@@ -95,7 +95,7 @@ class LocalRun final : public LiveRun {
   std::unique_ptr<Recorder> recorder_;
   RateLog rates_;
   std::vector<std::shared_ptr<MouseTarget>> mouse_targets_;  // one a grip, null where it is not a mouse
-  std::vector<std::shared_ptr<LentHand>> lent_;              // one a grip, null where it is not lent
+  std::vector<std::shared_ptr<SharedHandle>> lent_;          // one a grip, null where it is not lent
   bool paused_ = false;
   keep::RecordingReport recorded_;
 };

@@ -82,7 +82,7 @@ Result<std::string> step_cost_in_words(const Scene& scene, const Plan& plan, dou
     return format("a step          about %.3g ms %s, real time × %.2g\n", 1e3 * seconds, how,
                   plan.time_step / seconds);
   };
-  if (particles <= kMostToStep) {
+  if (particles <= kMaxToStep) {
     const Result<SampledScene> sampled = sample_scene(scene, plan.spacing);
     if (!sampled) return sampled.error();
     Result<World> world = make_world(scene, sampled.value(), plan, {0, Backend::kCpu});

@@ -22,10 +22,10 @@ std::string plan_numbers(const Scene& scene, const Plan& plan, double fluid, dou
 std::string picture_in_words(const Scene& scene);
 
 /// Above so many particles (estimate_particles) `plan` does not sample the scene to take its steps.
-constexpr double kMostToStep = 150000.0;
+constexpr double kMaxToStep = 150000.0;
 
 /// What a step costs on this machine: of the scene as it starts, its hands where they are, all cores, no GPU.
-/// Above kMostToStep a stated rate. One line. Errors: those of sampling it and of making its world.
+/// Above kMaxToStep a stated rate. One line. Errors: those of sampling it and of making its world.
 Result<std::string> step_cost_in_words(const Scene& scene, const Plan& plan, double particles);
 
 }  // namespace slosh

@@ -61,7 +61,7 @@ std::string options_elsewhere(const CLI::App& app, const CLI::App& verb,
     }
     if (const std::size_t last = verbs.rfind(", "); last != std::string::npos)
       verbs.replace(last, 2, " and ");
-    if (count > 0) all += clean_text(name, kMostTextBytes) + " is an option of " + verbs + ". ";
+    if (count > 0) all += clean_text(name, kMaxTextBytes) + " is an option of " + verbs + ". ";
   }
   return all;
 }
@@ -69,7 +69,7 @@ std::string options_elsewhere(const CLI::App& app, const CLI::App& verb,
 int no_such_verb(const CLI::App& app, const char* word) {
   std::vector<std::string> verbs;
   for (const CLI::App* verb : app.get_subcommands({})) verbs.push_back(verb->get_name());
-  const std::string shown = clean_text(word, kMostTextBytes);
+  const std::string shown = clean_text(word, kMaxTextBytes);
   // Those that the launcher of a source tree does by itself.
   constexpr std::array kLaunchers{"test", "bench", "python", "package", "format"};
   if (std::find(kLaunchers.begin(), kLaunchers.end(), shown) != kLaunchers.end())
@@ -89,13 +89,13 @@ int wrong_words(const CLI::App& app, const CLI::ParseError& error) {
   std::string verb;
   for (; !at->get_subcommands().empty(); at = at->get_subcommands().front())
     verb += at->get_subcommands().front()->get_name() + " ";
-  std::string what = clean_lines(error.what(), kMostTextBytes);
+  std::string what = clean_lines(error.what(), kMaxTextBytes);
   std::string near;
   const std::vector<std::string> words = app.remaining(true);
   std::vector<std::string> below;
   for (const CLI::App* sub : at->get_subcommands({})) below.push_back(sub->get_name());
   if (at != &app && !below.empty() && !words.empty() && !words[0].starts_with('-')) {
-    const std::string shown = clean_text(words[0], kMostTextBytes);
+    const std::string shown = clean_text(words[0], kMaxTextBytes);
     what = verb + "knows no '" + shown + "'";
     near = did_you_mean(shown, below);
   } else if (near = options_elsewhere(app, *at, words); near.empty()) {
@@ -112,7 +112,7 @@ int with_all_printed(int code) {
   const bool before = std::ferror(stdout) != 0;
   errno = 0;
   if (std::fflush(stdout) == 0 && !before) return code;
-  struct stat out {};
+  struct stat out{};
   if (fstat(STDOUT_FILENO, &out) != 0 || S_ISFIFO(out.st_mode) || S_ISSOCK(out.st_mode)) return code;
   std::fprintf(
       stderr,

@@ -50,7 +50,7 @@ class RemoteRun final : public LiveRun {
   bool hears() const override { return true; }
   std::string hear(const std::string& line) override;
   MouseTarget* mouse_target(std::size_t i) override { return mice_[i].get(); }
-  LentHand* lent_hand(std::size_t i) override { return lent_[i].get(); }
+  SharedHandle* lent_hand(std::size_t i) override { return lent_[i].get(); }
   LiveValues live_values() const override;
   void change(const LiveWish& wish) override;
   void look_from(const glm::dquat& axes) override { servo_->look_from(axes); }
@@ -72,7 +72,7 @@ class RemoteRun final : public LiveRun {
   std::unique_ptr<Recorder> recorder_;
   RateLog rates_;
   std::vector<std::shared_ptr<MouseTarget>> mice_;
-  std::vector<std::shared_ptr<LentHand>> lent_;
+  std::vector<std::shared_ptr<SharedHandle>> lent_;
   std::vector<bool> device_on_;  // grips that have a device now
   std::size_t grips_taken_ = 0;  // ever
   SnapshotPointer last_snapshot_;

@@ -65,12 +65,12 @@ int make_new(const SettingsFile& file) {
     return fail(
         {written.error().where, written.error().what, "Free some space, or let yourself write there"});
   std::printf("made %s: take the # away from what you want\n",
-              clean_text(file.path.string(), kMostTextBytes).c_str());
+              clean_text(file.path.string(), kMaxTextBytes).c_str());
   return kExitOk;
 }
 
 int show(const SettingsFile& file) {
-  const std::string path = clean_text(file.path.string(), kMostTextBytes);
+  const std::string path = clean_text(file.path.string(), kMaxTextBytes);
   if (path.empty())
     std::printf("no settings file is read\n\n");
   else if (!file.there)
@@ -143,7 +143,7 @@ void put_in_force(SettingsFile& file, CLI::App& app) {
         file.errors.push_back(settings_error(
             file.path, setting.line,
             std::string(setting.key->key) + ": " +
-                without_option(clean_lines(error.what(), kMostTextBytes), option_of(*setting.key)),
+                without_option(clean_lines(error.what(), kMaxTextBytes), option_of(*setting.key)),
             std::string("For example ") + setting.key->key + " = " + setting.key->example));
       }
     }

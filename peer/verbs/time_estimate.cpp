@@ -15,7 +15,7 @@
 namespace slosh {
 namespace {
 
-constexpr std::size_t kMostSteps = 5;
+constexpr std::size_t kMaxSteps = 5;
 constexpr double kLongest = 3.0;  // s of measuring, and a step
 
 std::string format_step(double seconds) {
@@ -52,7 +52,7 @@ double measure_step(World& world, std::span<const HandleInput> hands) {
   const std::int64_t begin_ns = steady_now_ns();
   std::vector<double> costs;
   // The median: the first step touches memory that the others find warm.
-  while (costs.size() < kMostSteps && (costs.empty() || to_seconds(steady_now_ns() - begin_ns) < kLongest)) {
+  while (costs.size() < kMaxSteps && (costs.empty() || to_seconds(steady_now_ns() - begin_ns) < kLongest)) {
     const std::int64_t step_ns = steady_now_ns();
     world.step(hands);
     costs.push_back(to_seconds(steady_now_ns() - step_ns));

@@ -33,7 +33,7 @@ std::string duration(double seconds);
 /// s a particle and step, on one core: what the slowest machine tried takes twice of.
 constexpr double kStatedStepCost = 5e-7;
 
-/// s, the median of some steps; the world is put back to the bit. 0 where it cannot be saved.
+/// s, the median of some steps; the world is put back bitwise. 0 where it cannot be saved.
 double measure_step(World& world, std::span<const HandleInput> hands);
 
 /// From this on a run is told to be slow, s more than its simulated time ...
@@ -47,7 +47,7 @@ constexpr double kRefuse = 86400.0;
 /// it is.
 std::string in_words(const TimeEstimate& estimate, const PlannedTime& planned, const Plan& plan);
 
-/// Where a stated rate says that the run may be slow, takes some steps, puts the world back to the bit, and
+/// Where a stated rate says that the run may be slow, takes some steps, puts the world back bitwise, and
 /// tells what they say; on a terminal it asks before long runs. Errors: longer than kRefuse, or the answer
 /// was no.
 Result<bool> agree_on_time(World& world, std::span<const HandleInput> hands, const PlannedTime& planned,

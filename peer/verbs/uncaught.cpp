@@ -24,7 +24,7 @@ namespace {
 }  // namespace
 
 int fail_uncaught(const std::exception& error) {
-  std::fprintf(stderr, "slosh: %s\n", clean_lines(error.what(), kMostTextBytes).c_str());
+  std::fprintf(stderr, "slosh: %s\n", clean_lines(error.what(), kMaxTextBytes).c_str());
   return kExitFailed;
 }
 

@@ -209,7 +209,7 @@ void WindowControls::learn(const glm::ivec2& picture) {
   const LiveValues values = run_.live_values();
   const HudFacts run = run_.facts(1.0);
   facts_.can_grab =
-      std::any_of(lent_.begin(), lent_.end(), [](const LentHand* hand) { return hand != nullptr; });
+      std::any_of(lent_.begin(), lent_.end(), [](const SharedHandle* hand) { return hand != nullptr; });
   facts_.shared = run.shared;
   facts_.may_change = run.may_change;
   facts_.may_pace = values.may_pace;

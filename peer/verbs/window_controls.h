@@ -65,7 +65,7 @@ class WindowControls {
   KeptViews views_;
   LivePanel panel_;
   GuideFacts facts_;
-  std::vector<LentHand*> lent_;  // one a grip, as the run has them now
+  std::vector<SharedHandle*> lent_;  // one a grip, as the run has them now
   struct Hand {
     MouseTarget* target = nullptr;
     MouseHand mouse{Pose{}};

@@ -22,7 +22,7 @@ constexpr float kSurface = 0.12f;  // of the reach: how far a surface particle's
 constexpr float kMadeTrapped = 80.0f;  // a second, of a particle with all of it (k_ta)
 constexpr float kMadeCrest = 80.0f;    // (k_wc)
 constexpr float kFewest = 6.0f;        // neighbours: fewer is spray (their 4.3)
-constexpr float kMostOfFoam = 30.0f;   // more is a bubble; where all around is fluid there are some 60
+constexpr float kMaxOfFoam = 30.0f;    // more is a bubble; where all around is fluid there are some 60
 constexpr float kLives = 0.9f;         // s
 constexpr float kFlies = 1.5f;         // s
 constexpr float kRises = 1.2f;         // of gravity, a bubble (k_b)
@@ -214,7 +214,7 @@ void Foam::move(float passed, std::span<const glm::vec3> positions) {
       neighbours += 1.0f;
     });
     if (weights > 0.0f) flow /= weights;
-    drop.kind = neighbours < kFewest ? Kind::kSpray : neighbours <= kMostOfFoam ? Kind::kFoam : Kind::kBubble;
+    drop.kind = neighbours < kFewest ? Kind::kSpray : neighbours <= kMaxOfFoam ? Kind::kFoam : Kind::kBubble;
     if (drop.kind == Kind::kSpray) {
       drop.velocity += gravity * passed;
       drop.life -= passed * (kLives / kFlies);
@@ -245,10 +245,10 @@ void Foam::move(float passed, std::span<const glm::vec3> positions) {
 
 void Foam::make(float passed, std::span<const glm::vec3> positions) {
   // A bounded number of looks, in turn among all where there are more.
-  const std::size_t each = fast_.size() / kMostLooked + 1;
+  const std::size_t each = fast_.size() / kMaxLooked + 1;
   const std::size_t first = each > 1 ? static_cast<std::size_t>(random() * static_cast<float>(each)) : 0;
-  for (std::size_t k = std::min(first, each - 1); k < fast_.size() && looked_at_ < kMostLooked; k += each) {
-    if (drops_.size() >= kMost) return;
+  for (std::size_t k = std::min(first, each - 1); k < fast_.size() && looked_at_ < kMaxLooked; k += each) {
+    if (drops_.size() >= kMax) return;
     ++looked_at_;
     const std::uint32_t i = fast_[k];
     const FoamPotential p = look_around(i, positions, velocities_);
@@ -260,7 +260,7 @@ void Foam::make(float passed, std::span<const glm::vec3> positions) {
     const glm::vec3 other = std::abs(way.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
     const glm::vec3 u = glm::normalize(glm::cross(other, way));
     const glm::vec3 v = glm::cross(way, u);
-    for (; count > 0 && drops_.size() < kMost; --count) {
+    for (; count > 0 && drops_.size() < kMax; --count) {
       // Anywhere in the cylinder that the particle came through (their Fig 5).
       const float radius = 0.5f * spacing_ * std::sqrt(random());
       const float angle = glm::two_pi<float>() * random();

@@ -41,9 +41,9 @@ class Foam {
   /// A new snapshot. Velocities are ways between two of them, so there is foam from the third on; a world
   /// that started again starts without.
   void record(const Snapshot& snapshot);
-  /// Drops of spray, foam and bubbles as they are at the last snapshot: at most kMost.
+  /// Drops of spray, foam and bubbles as they are at the last snapshot: at most kMax.
   std::span<const FoamPoint> points() const { return points_; }
-  /// How many particles record() looked around at the last snapshot: at most kMostLooked, 0 where nothing is
+  /// How many particles record() looked around at the last snapshot: at most kMaxLooked, 0 where nothing is
   /// violent.
   std::size_t looked_at() const { return looked_at_; }
 
@@ -52,8 +52,8 @@ class Foam {
   FoamPotential potential(std::size_t i, std::span<const glm::vec3> positions,
                           std::span<const glm::vec3> velocities);
 
-  static constexpr std::size_t kMost = 4000;
-  static constexpr std::size_t kMostLooked =
+  static constexpr std::size_t kMax = 4000;
+  static constexpr std::size_t kMaxLooked =
       4000;  ///< fluid particles whose neighbours are looked at, a snapshot
 
  private:

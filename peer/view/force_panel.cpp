@@ -12,11 +12,11 @@
 namespace slosh {
 namespace {
 
-constexpr std::size_t kMostRows = 36'000;  // ten minutes at 60 pictures a second
-constexpr double kLeastSpan = 0.1;         // s
-constexpr double kMostSpan = 600.0;
-constexpr double kZoom = 1.25;                // a notch
-constexpr float kLeastTop[] = {0.5f, 0.02f};  // N, N·m: noise is not drawn large
+constexpr std::size_t kMaxRows = 36'000;  // ten minutes at 60 pictures a second
+constexpr double kMinSpan = 0.1;          // s
+constexpr double kMaxSpan = 600.0;
+constexpr double kZoom = 1.25;              // a notch
+constexpr float kMinTop[] = {0.5f, 0.02f};  // N, N·m: noise is not drawn large
 
 }  // namespace
 
@@ -34,11 +34,11 @@ void ForcePanel::record(const BodySnapshot& bodies) {
   for (const GripState& grip : bodies.grips) row.hands.push_back(grip.on_hand);
   row.hands.resize(names_.size());
   rows_.push_back(std::move(row));
-  if (rows_.size() > kMostRows) rows_.erase(rows_.begin(), rows_.begin() + kMostRows / 10);
+  if (rows_.size() > kMaxRows) rows_.erase(rows_.begin(), rows_.begin() + kMaxRows / 10);
 }
 
 void ForcePanel::zoom(double notches) {
-  span_ = std::clamp(span_ * std::pow(kZoom, -notches), kLeastSpan, kMostSpan);
+  span_ = std::clamp(span_ * std::pow(kZoom, -notches), kMinSpan, kMaxSpan);
 }
 
 std::string ForcePanel::table() const {
@@ -75,7 +75,7 @@ void ForcePanel::plot(const char* title, const char* unit, bool torque, float he
   const auto value = [&](const Row& row, std::size_t hand) {
     return static_cast<float>(glm::length(torque ? row.hands[hand].torque : row.hands[hand].force));
   };
-  float top = kLeastTop[torque ? 1 : 0];
+  float top = kMinTop[torque ? 1 : 0];
   for (auto row = first; row != last; ++row)
     for (std::size_t hand = 0; hand < names_.size(); ++hand) top = std::max(top, value(*row, hand));
   ImGui::Text("%s, 0 to %.3g %s", title, static_cast<double>(top), unit);

@@ -86,9 +86,9 @@ class FrameBuilder::Textures {
       const SceneImage& image = scene_.images[i];
       const std::string name = "image '" + clean_text(image.name, 100) + "'";
       const Result<images::Facts> facts = images::look_at(image.bytes, name);
-      if (facts && pixels + facts.value().pixels() > images::kMostPixels) {
+      if (facts && pixels + facts.value().pixels() > images::kMaxPixels) {
         left_out_.push_back({name,
-                             "would be more than " + std::to_string(images::kMostPixels >> 20) +
+                             "would be more than " + std::to_string(images::kMaxPixels >> 20) +
                                  " million pixels in one scene",
                              "Scale the pictures down"});
         continue;

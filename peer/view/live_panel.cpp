@@ -13,12 +13,12 @@ namespace {
 constexpr float kWidth = 150.0f;   // px, at least
 constexpr float kLetters = 19.0f;  // of a slider: as wide as those
 constexpr float kPanelMargin = 8.0f;
-constexpr float kSmallest = 0.35f;        // letters, times their size
-constexpr double kSendEvery = 0.1;        // s, while a slider is dragged
-constexpr float kLeastViscosity = 1e-3f;  // Pa·s: water's
-constexpr float kMostViscosity = 100.0f;  // above it the host may say by itself what it cannot do
+constexpr float kSmallest = 0.35f;       // letters, times their size
+constexpr double kSendEvery = 0.1;       // s, while a slider is dragged
+constexpr float kMinViscosity = 1e-3f;   // Pa·s: water's
+constexpr float kMaxViscosity = 100.0f;  // above it the host may say by itself what it cannot do
 constexpr float kSlowest = 0.05f;
-constexpr float kMostFilter = 16.0f;
+constexpr float kMaxFilter = 16.0f;
 constexpr float kSoftest = 0.05f,
                 kStiffest = 4.0f;  // of a grip, times the scene's: what World::set_grip_stiffness takes
 
@@ -60,11 +60,11 @@ std::vector<LivePanel::Row> LivePanel::rows_of(const LiveValues& now) const {
     rows.push_back({id, std::move(label), pattern, least, most, logarithmic, value, wish});
   };
   if (now.may_pace) add(0, "pace", "\xC3\x97 %.2f", kSlowest, 1.0f, true, now.pace, {Kind::kPace, 0, 0.0});
-  add(1, "surface filter", "%.0f turns", 0.0f, kMostFilter, false, now.filter, {Kind::kFilter, 0, 0.0});
+  add(1, "surface filter", "%.0f turns", 0.0f, kMaxFilter, false, now.filter, {Kind::kFilter, 0, 0.0});
   if (now.may_change) {
     add(2, "gravity", "\xC3\x97 %.2f", 0.0f, 2.0f, false, now.gravity_scale, {Kind::kGravityScale, 0, 0.0});
     for (std::size_t i = 0; i < now.viscosities.size() && i < fluid_names_.size(); ++i)
-      add(3 + i, "viscosity of " + fluid_names_[i], "%.4g Pa\xC2\xB7s", kLeastViscosity, kMostViscosity, true,
+      add(3 + i, "viscosity of " + fluid_names_[i], "%.4g Pa\xC2\xB7s", kMinViscosity, kMaxViscosity, true,
           now.viscosities[i], {Kind::kViscosity, i, 0.0});
   }
   for (std::size_t i = 0; i < now.grips.size() && i < grip_names_.size(); ++i) {
@@ -89,7 +89,7 @@ LivePanel::Size LivePanel::size_of(const std::vector<Row>& rows, const glm::vec2
         glm::vec2(width, static_cast<float>(rows.size()) * each - size.letters * style.ItemSpacing.y) +
         2.0f * glm::vec2(style.WindowPadding.x, style.WindowPadding.y);
     const bool fits = glm::all(glm::lessThan(size.panel, picture - 2.0f * kPanelMargin));
-    if (fits && size.panel.x * size.panel.y <= kMostCovered * picture.x * picture.y) break;
+    if (fits && size.panel.x * size.panel.y <= kMaxCovered * picture.x * picture.y) break;
   }
   return size;
 }

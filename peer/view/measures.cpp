@@ -12,8 +12,8 @@ namespace slosh {
 namespace {
 
 // Four corners each, and Dear ImGui counts corners of a list in 16 bits: of more particles each so many-th.
-constexpr std::size_t kMostDots = 12'000;
-constexpr std::size_t kMostArrows = 3'000;
+constexpr std::size_t kMaxDots = 12'000;
+constexpr std::size_t kMaxArrows = 3'000;
 constexpr float kArrowSeconds = 0.05f;  // an arrow is the way of so much time
 constexpr float kDot = 2.5f;            // px, half a side
 constexpr float kMargin = 16.0f;        // px
@@ -142,7 +142,7 @@ void Measures::draw_particles(const Snapshot& newest, const OrbitCamera& camera,
   const bool pressure = particles == ParticleView::kPressure;
   const bool by_fluid = particles == ParticleView::kFluid;
   const std::size_t count = newest.positions.size();
-  const std::size_t each = count / (arrows ? kMostArrows : kMostDots) + 1;
+  const std::size_t each = count / (arrows ? kMaxArrows : kMaxDots) + 1;
   const bool known = values_.size() == count;
   float top = 0.0f;
   for (std::size_t i = 0; known && i < count; i += each) {

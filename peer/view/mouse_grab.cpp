@@ -16,7 +16,7 @@ constexpr double kTiltPerPixel = 0.008;   // rad
 constexpr double kDepthPerNotch = 0.015;  // of the eye's distance
 // The least share of its length that an upright metre, or one away from the eye, may show in the picture:
 // seen from nearly above, a drag upward would throw the hand away.
-constexpr double kLeastShown = 0.35;
+constexpr double kMinShown = 0.35;
 
 glm::dvec3 level(const glm::dvec3& v, const glm::dvec3& otherwise) {
   const glm::dvec3 flat(v.x, 0.0, v.z);
@@ -32,7 +32,7 @@ bool MouseGrab::any_taken() const {
   return std::any_of(hands_.begin(), hands_.end(), [](const Hand& hand) { return hand.taken; });
 }
 
-bool MouseGrab::has_lent(int body, const std::vector<LentHand*>& lent) const {
+bool MouseGrab::has_lent(int body, const std::vector<SharedHandle*>& lent) const {
   for (std::size_t i = 0; i < lent.size() && i < scene_.grips.size(); ++i)
     if (lent[i] != nullptr && scene_.grips[i].body == body) return true;
   return false;
@@ -63,7 +63,7 @@ std::optional<double> MouseGrab::hit(int body, const Pose& pose, const glm::dvec
 
 std::optional<Grabbed> MouseGrab::look(const glm::dvec2& pixel, const OrbitCamera& camera,
                                        const glm::ivec2& picture, const BodySnapshot& world,
-                                       const std::vector<LentHand*>& lent) const {
+                                       const std::vector<SharedHandle*>& lent) const {
   std::optional<Grabbed> found;
   double nearest = kGrabReach;
   for (std::size_t i = 0; i < lent.size() && i < world.grips.size(); ++i) {
@@ -89,7 +89,7 @@ std::optional<Grabbed> MouseGrab::look(const glm::dvec2& pixel, const OrbitCamer
   return found;
 }
 
-void MouseGrab::take(const std::vector<LentHand*>& lent) {
+void MouseGrab::take(const std::vector<SharedHandle*>& lent) {
   glm::dvec3 others(0.0);
   int count = 0;
   for (std::size_t i = 0; i < lent.size() && i < hands_.size(); ++i) {
@@ -136,8 +136,8 @@ void MouseGrab::move(const InputState& input, const OrbitCamera& camera, const g
   const double notches = input.scroll.y;
   const glm::dvec3 away = level(camera.forward(), camera.up());
   const double metres = camera.metres_per_pixel(std::max(camera.depth_of(held_->place), 0.05), picture.y);
-  const double shown_up = std::max(glm::dot(camera.up(), glm::dvec3(0.0, 1.0, 0.0)), kLeastShown);
-  const double shown_away = std::max(std::abs(glm::dot(camera.up(), away)), kLeastShown);
+  const double shown_up = std::max(glm::dot(camera.up(), glm::dvec3(0.0, 1.0, 0.0)), kMinShown);
+  const double shown_away = std::max(std::abs(glm::dot(camera.up(), away)), kMinShown);
   glm::dvec3 by(0.0);
   glm::dvec3 tilt(0.0);
   if (input.held(Key::kControl)) {
@@ -178,10 +178,10 @@ void MouseGrab::tell() const {
 }
 
 bool MouseGrab::follow(const InputState& input, const OrbitCamera& camera, const glm::ivec2& picture,
-                       const BodySnapshot& world, const std::vector<LentHand*>& lent) {
+                       const BodySnapshot& world, const std::vector<SharedHandle*>& lent) {
   // Hands come and go over a network: one that is another now is not taken any more.
   for (std::size_t i = 0; i < hands_.size(); ++i) {
-    LentHand* const now = i < lent.size() ? lent[i] : nullptr;
+    SharedHandle* const now = i < lent.size() ? lent[i] : nullptr;
     if (hands_[i].of != nullptr && hands_[i].of != now) {
       hands_[i] = Hand{};
       if (held_ && scene_.grips[i].body == held_->body) held_.reset();
@@ -206,7 +206,7 @@ bool MouseGrab::follow(const InputState& input, const OrbitCamera& camera, const
   return true;
 }
 
-void MouseGrab::give_back(const std::vector<LentHand*>& lent) {
+void MouseGrab::give_back(const std::vector<SharedHandle*>& lent) {
   held_.reset();
   for (std::size_t i = 0; i < hands_.size(); ++i) {
     if (i < lent.size() && hands_[i].of == lent[i] && hands_[i].of != nullptr) {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "peer/haptics/lent_device.h"
+#include "peer/haptics/shared_handle.h"
 #include "peer/view/orbit_camera.h"
 #include "render/input.h"
 #include "scenes/scene.h"
@@ -33,9 +33,9 @@ class MouseGrab {
   /// `lent` has one entry a grip, null where that hand is not to be taken. `picture` in pixels. True while
   /// the mouse is busy with a thing, so that the camera leaves it alone.
   bool follow(const InputState& input, const OrbitCamera& camera, const glm::ivec2& picture,
-              const BodySnapshot& world, const std::vector<LentHand*>& lent);
+              const BodySnapshot& world, const std::vector<SharedHandle*>& lent);
   /// All hands go home to their scripts.
-  void give_back(const std::vector<LentHand*>& lent);
+  void give_back(const std::vector<SharedHandle*>& lent);
 
   const std::optional<Grabbed>& over() const { return over_; }  ///< what a press would take
   const std::optional<Grabbed>& held() const { return held_; }
@@ -48,13 +48,13 @@ class MouseGrab {
     bool taken = false;
     Pose wanted;  // world, while taken
     Pose in_rig;  // in the frame that moves them together
-    LentHand* of = nullptr;
+    SharedHandle* of = nullptr;
   };
   std::optional<Grabbed> look(const glm::dvec2& pixel, const OrbitCamera& camera, const glm::ivec2& picture,
-                              const BodySnapshot& world, const std::vector<LentHand*>& lent) const;
+                              const BodySnapshot& world, const std::vector<SharedHandle*>& lent) const;
   std::optional<double> hit(int body, const Pose& pose, const glm::dvec3& eye, const glm::dvec3& ray) const;
-  bool has_lent(int body, const std::vector<LentHand*>& lent) const;
-  void take(const std::vector<LentHand*>& lent);
+  bool has_lent(int body, const std::vector<SharedHandle*>& lent) const;
+  void take(const std::vector<SharedHandle*>& lent);
   void move(const InputState& input, const OrbitCamera& camera, const glm::ivec2& picture);
   void shift(const glm::dvec3& by);
   void tell() const;

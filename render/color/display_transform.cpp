@@ -82,15 +82,15 @@ ocio::ConstConfigRcPtr make_config() {
 /// What the library warns of by itself holds words of the file: an unknown key, say.
 void say_warnings_cleanly() {
   ocio::SetLoggingFunction(
-      [](const char* message) { std::fputs(clean_lines(message, kMostTextBytes).c_str(), stderr); });
+      [](const char* message) { std::fputs(clean_lines(message, kMaxTextBytes).c_str(), stderr); });
 }
 
 /// What a configuration or the library says, fit to be shown.
 Error refused(const std::string& where, const std::string& what, const char* mend) {
-  constexpr std::size_t kMost = 4000;
+  constexpr std::size_t kMax = 4000;
   // A mend is put behind it, with a stop between: the library has one of its own.
   const std::size_t end = what.find_last_not_of(". \n");
-  return {clean_text(where, kMost), clean_text(what.substr(0, end == std::string::npos ? 0 : end + 1), kMost),
+  return {clean_text(where, kMax), clean_text(what.substr(0, end == std::string::npos ? 0 : end + 1), kMax),
           mend};
 }
 

@@ -14,8 +14,8 @@ constexpr int kShortRow = 8;
 constexpr std::size_t kMany = 100000;  // splats
 constexpr std::size_t kPartsOfRows = 64;
 constexpr std::size_t kEachInGroup = 64;
-constexpr std::size_t kByTurns = 16384;     // groups
-constexpr std::size_t kMostGroups = 32768;  // on an axis; at least 65535 are allowed
+constexpr std::size_t kByTurns = 16384;    // groups
+constexpr std::size_t kMaxGroups = 32768;  // on an axis; at least 65535 are allowed
 
 }  // namespace
 
@@ -75,7 +75,7 @@ void start_groups(const Program& program, std::size_t count, std::size_t invocat
   if (count == 0) return;
   std::size_t groups = (invocations + in_group - 1) / in_group;
   if (by_turns) groups = std::min(groups, kByTurns);
-  const std::size_t across = std::min(groups, kMostGroups);
+  const std::size_t across = std::min(groups, kMaxGroups);
   program.use();
   program.set("count", static_cast<int>(count));
   glDispatchCompute(static_cast<GLuint>(across), static_cast<GLuint>((groups + across - 1) / across), 1);

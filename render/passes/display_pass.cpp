@@ -9,7 +9,7 @@ namespace {
 
 /// Of OpenColorIO's text: a pixel of the table takes as long (llvmpipe: 1048 characters 2.9 ms, 12 283 12.4
 /// ms, the table 4.3 ms).
-constexpr std::size_t kMostText = 2500;  // characters
+constexpr std::size_t kMaxText = 2500;  // characters
 
 /// The program with OpenColorIO's own text; none where the table is the smaller one, or a driver refuses the
 /// text.
@@ -17,7 +17,7 @@ std::optional<gl::PixelProgram> by_its_text(const DisplayPass::Wish& wish) {
   if (wish.by == DisplayBy::kTable) return std::nullopt;
   const auto text = display_shader(wish.display, wish.color);
   if (!text || !text.value()) return std::nullopt;
-  if (wish.by == DisplayBy::kSmaller && text.value()->size() > kMostText) return std::nullopt;
+  if (wish.by == DisplayBy::kSmaller && text.value()->size() > kMaxText) return std::nullopt;
   auto program =
       gl::PixelProgram::create("display.frag", wish.compute, false, {"BY_TEXT", "EACH 4"}, *text.value());
   if (!program) return std::nullopt;

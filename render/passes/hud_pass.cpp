@@ -16,14 +16,14 @@ namespace {
 
 /// Debian's fonts-dejavu-core; where it is not installed, Dear ImGui's own font is made larger.
 constexpr const char* kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSansMono.ttf";
-constexpr int kLeastPixels = 13;
-constexpr int kMostPixels = 96;
+constexpr int kMinPixels = 13;
+constexpr int kMaxPixels = 96;
 std::atomic<float> hud_scale{1.0f};
 
 }  // namespace
 
 int hud_font_pixels(float picture_height) {
-  return std::clamp(static_cast<int>(std::lround(0.0195f * picture_height)), kLeastPixels, kMostPixels);
+  return std::clamp(static_cast<int>(std::lround(0.0195f * picture_height)), kMinPixels, kMaxPixels);
 }
 
 void set_hud_scale(float scale) {
@@ -66,7 +66,7 @@ void HudPass::fit_font() {
   const float wanted = hud_scale.load(std::memory_order_relaxed);
   const int fitting = hud_font_pixels(io.DisplaySize.y * scale);
   const int pixels =
-      std::min(static_cast<int>(std::lround(wanted * static_cast<float>(fitting))), kMostPixels);
+      std::min(static_cast<int>(std::lround(wanted * static_cast<float>(fitting))), kMaxPixels);
   io.FontGlobalScale = 1.0f / scale;
   if (pixels == font_pixels_) return;
   font_pixels_ = pixels;

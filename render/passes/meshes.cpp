@@ -19,11 +19,11 @@ bool finite(const glm::vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-constexpr std::size_t kMostConvexWork = 4000000;  // triangles times corners
+constexpr std::size_t kMaxConvexWork = 4000000;  // triangles times corners
 
 bool is_convex(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles,
                const Bounds& bounds) {
-  if (triangles.size() * triangles.size() * 3 > kMostConvexWork) return false;
+  if (triangles.size() * triangles.size() * 3 > kMaxConvexWork) return false;
   const float slack = 1e-4f * glm::length(bounds.high - bounds.low);
   return std::ranges::all_of(triangles, [&](const glm::uvec3& side) {
     const glm::vec3& at = positions[side.x];
@@ -39,13 +39,13 @@ bool is_convex(std::span<const glm::vec3> positions, std::span<const glm::uvec3>
   });
 }
 
-constexpr std::size_t kMostClosedWork = 16000;  // triangles; more are drawn by fragments, which need not know
+constexpr std::size_t kMaxClosedWork = 16000;  // triangles; more are drawn by fragments, which need not know
 
 /// Corners at one place are one, to a hundred-thousandth of the mesh: those with several normals, and seams.
 bool is_closed(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles,
                const Bounds& bounds) {
   const float step = 1e-5f * glm::length(bounds.high - bounds.low);
-  if (!(step > 0.0f) || triangles.size() > kMostClosedWork) return false;
+  if (!(step > 0.0f) || triangles.size() > kMaxClosedWork) return false;
   using Place = std::array<std::int32_t, 3>;
   const auto place_of = [&](std::uint32_t corner) {
     const glm::vec3 at = glm::round((positions[corner] - bounds.low) / step);

@@ -7,7 +7,7 @@ namespace slosh {
 
 /// Times one of them, a surface filter over a made-up surface, both ways; once a process for each graphics
 /// driver. Fragments where the driver refuses either, and where the difference is small, so that pictures of
-/// one machine stay the same to the bit. The context must be current.
+/// one machine stay bitwise identical. The context must be current.
 bool compute_is_quicker(const Context& context);
 
 }  // namespace slosh

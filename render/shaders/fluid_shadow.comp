@@ -26,7 +26,7 @@ void draw_splat(int index) {
     vec4 here = dimming_at(optical, off);
     int first = 4 * (texel.y * size + texel.x);
     for (int channel = 0; channel < sums_a_texel; ++channel) {
-      uint steps = uint(min(here[channel], kMostDimming) * kDimmingSteps + 0.5);
+      uint steps = uint(min(here[channel], kMaxDimming) * kDimmingSteps + 0.5);
       if (steps > 0u) atomicAdd(sums[first + channel], steps);
     }
     atomicMax(sums[first + 3], floatBitsToUint(here.a));

@@ -63,7 +63,7 @@ SHARED float kernel_weight(float share) {
 SHARED float filter_reach(float reach, float inside) { return max(min(reach, inside), 1.0f); }
 
 // How far its taps are apart, pixels: by so many taps, by more where they would be farther apart than the 5 × 5 pixels after
-// them even out (a drop of large particles showed a net of lines), by kMostTaps at most.
+// them even out (a drop of large particles showed a net of lines), by kMaxTaps at most.
 const float kWidestStride = 5.0f;
-const float kMostTaps = 40.0f;
-SHARED float filter_stride(float reach, float taps) { return ceil(reach / clamp(reach / kWidestStride, taps, kMostTaps)); }
+const float kMaxTaps = 40.0f;
+SHARED float filter_stride(float reach, float taps) { return ceil(reach / clamp(reach / kWidestStride, taps, kMaxTaps)); }

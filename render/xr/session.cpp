@@ -10,7 +10,7 @@ namespace slosh::xr {
 namespace {
 
 constexpr XrViewConfigurationType kStereo = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
-constexpr int kMostRefused = 30;  // frames in a row
+constexpr int kMaxRefused = 30;  // frames in a row
 
 }  // namespace
 
@@ -155,7 +155,7 @@ void Session::enter(XrSessionState state) {
 bool Session::refused(const char* call, XrResult result) {
   const bool gone = result == XR_ERROR_SESSION_LOST || result == XR_ERROR_INSTANCE_LOST;
   if (refused_in_a_row_++ == 0 || gone) problem_ = failed(call, result).text();
-  if (gone || refused_in_a_row_ >= kMostRefused) state_ = HeadsetState::kLost;
+  if (gone || refused_in_a_row_ >= kMaxRefused) state_ = HeadsetState::kLost;
   return false;
 }
 

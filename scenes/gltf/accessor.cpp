@@ -174,13 +174,13 @@ std::optional<std::uint32_t> load_index(const unsigned char* from, int type) {
 
 /// A sparse accessor need not have data to begin with: it is zeros, and these are bounded here, since no
 /// buffer does.
-constexpr std::size_t kMostZeros = 6'000'000;
+constexpr std::size_t kMaxZeros = 6'000'000;
 
 bool is_sparse_alone(const tinygltf::Model& model, int index) {
   if (index < 0 || static_cast<std::size_t>(index) >= model.accessors.size()) return false;
   const tinygltf::Accessor& accessor = model.accessors[index];
   return accessor.sparse.isSparse && accessor.bufferView < 0 && accessor.count > 0 &&
-         accessor.count <= kMostZeros && component_size(accessor.componentType) > 0;
+         accessor.count <= kMaxZeros && component_size(accessor.componentType) > 0;
 }
 
 Span zeros(const tinygltf::Model& model, int index) {

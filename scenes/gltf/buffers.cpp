@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t kMostBytes = 512ull << 20;
+constexpr std::uintmax_t kMaxBytes = 512ull << 20;
 constexpr const char* kOwnFolder =
     "Keep what it names beside the scene or in a folder below it, or export one .glb that holds everything";
 
@@ -65,7 +65,7 @@ bool read_ours(std::vector<unsigned char>* out, std::string* problem, const std:
   std::error_code code;
   const std::uintmax_t size = fs::file_size(found->second, code);
   std::ifstream in(found->second, std::ios::binary);
-  if (code || size > kMostBytes || !in) {
+  if (code || size > kMaxBytes || !in) {
     *problem = "cannot be read";
     return false;
   }
@@ -130,7 +130,7 @@ Result<BufferFiles> BufferFiles::find(const fs::path& file, nlohmann::json& json
     if (!found) return found.error();
     std::error_code code;
     bytes += fs::file_size(found.value(), code);
-    if (code || bytes > kMostBytes) {
+    if (code || bytes > kMaxBytes) {
       return Error{file.string() + ": " + who, "the buffers have more than 512 MB, or cannot be read",
                    "Export with fewer triangles"};
     }

@@ -80,7 +80,7 @@ std::string words_of(const std::exception& problem) {
   std::string words = problem.what();
   if (const std::size_t end = words.find("] "); words.starts_with('[') && end != std::string::npos)
     words.erase(0, end + 2);
-  return clean_text(words, kMostTextBytes);
+  return clean_text(words, kMaxTextBytes);
 }
 
 /// Splits a .glb; `text` receives the JSON chunk.
@@ -113,14 +113,14 @@ std::string split_glb(const std::string& bytes, std::string& text, std::string& 
 void clean_texts(nlohmann::json& value) {
   if (value.is_string()) {
     auto& text = value.get_ref<std::string&>();
-    text = clean_text(text, kMostTextBytes);
+    text = clean_text(text, kMaxTextBytes);
   } else if (value.is_array()) {
     for (nlohmann::json& item : value) clean_texts(item);
   } else if (value.is_object()) {
     nlohmann::json cleaned = nlohmann::json::object();
     for (auto& [key, item] : value.items()) {
       clean_texts(item);
-      cleaned[clean_text(key, kMostTextBytes)] = std::move(item);
+      cleaned[clean_text(key, kMaxTextBytes)] = std::move(item);
     }
     value = std::move(cleaned);
   }

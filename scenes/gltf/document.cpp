@@ -26,7 +26,7 @@ std::string in_a_sentence(std::string words) {
   constexpr std::size_t kShown = 12;
   if (const std::size_t data = words.find(kData); data != std::string::npos && data + kShown < words.size())
     words = words.substr(0, data + sizeof kData - 1 + kShown) + "…";
-  words = clean_text(words, kMostTextBytes);
+  words = clean_text(words, kMaxTextBytes);
   while (!words.empty() && (words.back() == ' ' || words.back() == '.' || words.back() == '?'))
     words.pop_back();
   return words;

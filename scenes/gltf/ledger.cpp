@@ -210,9 +210,9 @@ std::vector<Note> shortened(std::vector<Note> notes) {
   std::vector<Note> kept;
   for (Note& note : notes) {
     const std::size_t nth = ++said[note.kind];
-    if (nth > kMostOfAKind) continue;
-    if (nth == kMostOfAKind && counts[note.kind] > kMostOfAKind)
-      note.text.what += " (as " + std::to_string(counts[note.kind] - kMostOfAKind) + " more)";
+    if (nth > kMaxOfAKind) continue;
+    if (nth == kMaxOfAKind && counts[note.kind] > kMaxOfAKind)
+      note.text.what += " (as " + std::to_string(counts[note.kind] - kMaxOfAKind) + " more)";
     kept.push_back(std::move(note));
   }
   return kept;

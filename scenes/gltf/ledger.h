@@ -15,8 +15,8 @@ namespace slosh::gltf {
 /// so many times, then counted.
 std::vector<Note> ledger(const std::string& file, const nlohmann::json& root);
 
-/// Of each kind the first kMostOfAKind; the last of these says how many there are.
+/// Of each kind the first kMaxOfAKind; the last of these says how many there are.
 std::vector<Note> shortened(std::vector<Note> notes);
-inline constexpr std::size_t kMostOfAKind = 8;
+inline constexpr std::size_t kMaxOfAKind = 8;
 
 }  // namespace slosh::gltf

@@ -55,8 +55,8 @@ std::optional<Error> append_primitive(const Document& document, const tinygltf::
                  "Export the file again"};
   }
   const std::vector<glm::uvec3> triangles = triangles_of(indices, primitive.mode);
-  if (out.triangles.size() + triangles.size() > kMostTriangles || count > 3 * kMostTriangles) {
-    return Error{where, "has more than " + std::to_string(kMostTriangles) + " triangles",
+  if (out.triangles.size() + triangles.size() > kMaxTriangles || count > 3 * kMaxTriangles) {
+    return Error{where, "has more than " + std::to_string(kMaxTriangles) + " triangles",
                  "Reduce it, in Blender with the Decimate modifier"};
   }
   const auto base = static_cast<std::uint32_t>(out.positions.size());
@@ -177,7 +177,7 @@ std::size_t work_of_mesh(const Document& document, int mesh) {
     const auto position = primitive.attributes.find("POSITION");
     for (const int accessor :
          {primitive.indices, position == primitive.attributes.end() ? -1 : position->second})
-      work += std::min(count(accessor), kMostNumbersRead + 1);
+      work += std::min(count(accessor), kMaxNumbersRead + 1);
   }
   return work;
 }

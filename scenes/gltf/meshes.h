@@ -9,10 +9,10 @@
 namespace slosh::gltf {
 
 /// All triangles of one scene file together, at most.
-inline constexpr std::size_t kMostTriangles = 2'000'000;
+inline constexpr std::size_t kMaxTriangles = 2'000'000;
 /// All vertices and indices that are read for one scene file, each as often as some mesh asks for it: many
 /// meshes may share one accessor.
-inline constexpr std::size_t kMostNumbersRead = 6 * kMostTriangles;
+inline constexpr std::size_t kMaxNumbersRead = 6 * kMaxTriangles;
 /// m, of places along each axis: particles are kept in floats, which are a millimetre apart there.
 inline constexpr double kFarthest = 1e4;
 

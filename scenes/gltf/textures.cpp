@@ -100,7 +100,7 @@ bool base64(const std::string& text, std::size_t from, std::vector<std::uint8_t>
 }
 
 Error too_large(const std::string& where) {
-  return {where, "has more than " + std::to_string(kMostImageBytes >> 20) + " MB", "Scale the picture down"};
+  return {where, "has more than " + std::to_string(kMaxImageBytes >> 20) + " MB", "Scale the picture down"};
 }
 
 }  // namespace
@@ -186,7 +186,7 @@ Result<SceneImage> read_image(const Document& document, int index) {
     const std::string& text = uri.get_ref<const std::string&>();
     if (text.starts_with("data:")) {
       const std::size_t comma = text.find(',');
-      if (text.size() / 4 * 3 > kMostImageBytes) return too_large(where);
+      if (text.size() / 4 * 3 > kMaxImageBytes) return too_large(where);
       if (comma == std::string::npos ||
           text.substr(0, std::min(comma, std::size_t{200})).find(";base64") == std::string::npos ||
           !base64(text, comma + 1, image.bytes))
@@ -198,7 +198,7 @@ Result<SceneImage> read_image(const Document& document, int index) {
     if (!found) return found.error();
     std::error_code code;
     const std::uintmax_t size = std::filesystem::file_size(found.value(), code);
-    if (!code && size > kMostImageBytes) return too_large(where);
+    if (!code && size > kMaxImageBytes) return too_large(where);
     image.bytes.resize(code ? 0 : static_cast<std::size_t>(size));
     std::ifstream in(found.value(), std::ios::binary);
     if (code || !in.read(reinterpret_cast<char*>(image.bytes.data()), static_cast<std::streamsize>(size)))
@@ -213,7 +213,7 @@ Result<SceneImage> read_image(const Document& document, int index) {
       document.model.buffers[static_cast<std::size_t>(view.buffer)].data;
   if (view.byteOffset > buffer.size() || view.byteLength > buffer.size() - view.byteOffset)
     return Error{where, "reaches beyond the file's data", "Export the file again"};
-  if (view.byteLength > kMostImageBytes) return too_large(where);
+  if (view.byteLength > kMaxImageBytes) return too_large(where);
   const auto begin = buffer.begin() + static_cast<std::ptrdiff_t>(view.byteOffset);
   image.bytes.assign(begin, begin + static_cast<std::ptrdiff_t>(view.byteLength));
   return image;

@@ -47,7 +47,7 @@ int material_of(const Document& document, int mesh);
 MaterialUse read_material_use(const Document& document, int material, std::vector<Error>* problems);
 
 /// The bytes of image `index` (in range), still packed: from a buffer view, a data URI, or a file in the
-/// scene's own folder or below it. Errors: none of these, cut off, more than kMostImageBytes.
+/// scene's own folder or below it. Errors: none of these, cut off, more than kMaxImageBytes.
 Result<SceneImage> read_image(const Document& document, int index);
 
 }  // namespace slosh::gltf

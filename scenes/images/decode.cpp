@@ -17,9 +17,9 @@ namespace {
 using Bytes = std::span<const std::uint8_t>;
 
 constexpr const char* kMend = "Save the picture again as PNG or JPEG, and export again";
-constexpr int kMostScans = 100;  // of a progressive JPEG: each costs as much as the whole picture
-constexpr std::size_t kMostPixelsAByte = 600;  // of a JPEG: an even grey one has 512, by a bit a block
-constexpr std::size_t kMostChunk = 1 << 20;    // bytes of a PNG's chunk beside its pixels
+constexpr int kMaxScans = 100;  // of a progressive JPEG: each costs as much as the whole picture
+constexpr std::size_t kMaxPixelsAByte = 600;  // of a JPEG: an even grey one has 512, by a bit a block
+constexpr std::size_t kMaxChunk = 1 << 20;    // bytes of a PNG's chunk beside its pixels
 
 bool begins_with(Bytes bytes, std::initializer_list<std::uint8_t> magic) {
   return bytes.size() >= magic.size() && std::equal(magic.begin(), magic.end(), bytes.begin());
@@ -82,7 +82,7 @@ bool unpack_png(PngSource& source, Pixels& pixels, std::uint8_t** rows, char* pr
     return false;
   }
   png_set_user_limits(png, kLargestSide, kLargestSide);
-  png_set_chunk_malloc_max(png, kMostChunk);
+  png_set_chunk_malloc_max(png, kMaxChunk);
   png_set_chunk_cache_max(png, 8);
   png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, nullptr, 0);
   png_set_read_fn(png, &source, read_png_bytes);
@@ -123,9 +123,9 @@ void stop_at_damage(j_common_ptr jpeg, int level) {
 
 void count_scans(j_common_ptr jpeg) {
   if (!jpeg->is_decompressor) return;
-  if (reinterpret_cast<j_decompress_ptr>(jpeg)->input_scan_number <= kMostScans) return;
+  if (reinterpret_cast<j_decompress_ptr>(jpeg)->input_scan_number <= kMaxScans) return;
   auto* trouble = reinterpret_cast<JpegTrouble*>(jpeg->err);
-  std::snprintf(trouble->problem, sizeof trouble->problem, "more than %d scans", kMostScans);
+  std::snprintf(trouble->problem, sizeof trouble->problem, "more than %d scans", kMaxScans);
   std::longjmp(trouble->back, 1);
 }
 
@@ -172,8 +172,7 @@ Result<Facts> look_at(Bytes bytes, const std::string& name) {
   if (!unpack_jpeg(bytes, facts, nullptr, problem))
     return Error{name, std::string("is a JPEG that cannot be read: ") + problem, kMend};
   // libjpeg makes room for all of a progressive picture before it reads on.
-  if (facts.pixels() / kMostPixelsAByte > bytes.size())
-    return Error{name, "is a JPEG that is cut off", kMend};
+  if (facts.pixels() / kMaxPixelsAByte > bytes.size()) return Error{name, "is a JPEG that is cut off", kMend};
   return fits(facts, name);
 }
 

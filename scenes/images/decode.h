@@ -11,8 +11,8 @@
 
 namespace slosh::images {
 
-inline constexpr int kLargestSide = 8192;              ///< pixels
-inline constexpr std::size_t kMostPixels = 64u << 20;  ///< of all images of one scene together
+inline constexpr int kLargestSide = 8192;             ///< pixels
+inline constexpr std::size_t kMaxPixels = 64u << 20;  ///< of all images of one scene together
 
 /// What a picture says of itself before it is unpacked.
 struct Facts {

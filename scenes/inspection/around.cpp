@@ -5,7 +5,7 @@
 namespace slosh::inspection {
 namespace {
 
-constexpr std::size_t kMostLookedAt = 32;  // places of a fluid from which is looked around
+constexpr std::size_t kMaxLookedAt = 32;  // places of a fluid from which is looked around
 
 }  // namespace
 
@@ -20,7 +20,7 @@ double Around::closed(const FluidVolume& volume, const glm::dvec3& way) const {
   glm::dvec3 middle(0.0);
   for (const glm::vec3& p : mesh.positions) middle += glm::dvec3(p);
   middle /= static_cast<double>(std::max<std::size_t>(mesh.positions.size(), 1));
-  const std::size_t every = std::max<std::size_t>(1, mesh.positions.size() / kMostLookedAt);
+  const std::size_t every = std::max<std::size_t>(1, mesh.positions.size() / kMaxLookedAt);
   int seen = 0;
   int all = 0;
   for (std::size_t i = 0; i < mesh.positions.size(); i += every) {

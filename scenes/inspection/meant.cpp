@@ -14,10 +14,10 @@
 namespace slosh::inspection {
 namespace {
 
-constexpr double kMostParticles = 150'000.0;  // at the coarsest spacing: a tenth of real time on two cores
+constexpr double kMaxParticles = 150'000.0;  // at the coarsest spacing: a tenth of real time on two cores
 constexpr double kFewParticles = 100.0;  // of fluid, at the finest: a spoonful that is felt as single blows
 constexpr std::size_t kCoarse = 300;     // triangles
-constexpr double kRound = 0.44;  // rad, 25°: more between a face and its corners' normals is no facet
+constexpr double kRound = 0.44;          // rad, 25°: more between a face and its corners' normals is no facet
 
 std::string number(const char* pattern, double value) {
   char text[64];
@@ -83,7 +83,7 @@ void look_at_size(const gltf::Document& document, const Scene& scene, std::vecto
   const std::string size_text = number("%.3g", size.x) + " x " + number("%.3g", size.z) + " x " +
                                 number("%.3g", size.y) + " m (Blender's x, y, z)";
   const ParticleEstimate count = estimate_particles(scene, coarsest);
-  if (count.fluid + count.surface > kMostParticles) {
+  if (count.fluid + count.surface > kMaxParticles) {
     warnings.push_back({"large",
                         {document.file,
                          "takes about " + number("%.0f", count.fluid + count.surface) +

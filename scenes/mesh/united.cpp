@@ -98,7 +98,7 @@ United integrate_union(const WeldedMesh& mesh, const Components& components) {
   if (!may_overlap || !(out.solid.volume > 0.0)) return out;
   VolumeIntegrals& solid = out.solid;
   const Moments again = counted_again(mesh, solid.centroid);
-  if (again.volume <= kLeastOverlap * solid.volume || again.volume >= solid.volume) return out;
+  if (again.volume <= kMinOverlap * solid.volume || again.volume >= solid.volume) return out;
   out.overlap = again.volume;
   // Back from inertia to ∫xxᵀ: I = tr(S) − S, so tr(I) = 2 tr(S).
   const double trace = 0.5 * (solid.inertia[0][0] + solid.inertia[1][1] + solid.inertia[2][2]);

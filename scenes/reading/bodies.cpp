@@ -14,8 +14,8 @@ using gltf::Range;
 /// A point probe turns with nothing; its inertia only has to be a number that divides.
 constexpr double kProbeRadius = 0.005;
 constexpr double kProbeMass = 0.05;
-constexpr std::size_t kMostBodies = 10'000;
-constexpr std::size_t kMostPictures = 4096;  // as a network carries
+constexpr std::size_t kMaxBodies = 10'000;
+constexpr std::size_t kMaxPictures = 4096;  // as a network carries
 
 /// Symmetric positive definite, and no moment above the sum of the other two.
 bool is_inertia(const glm::dmat3& m) {
@@ -117,8 +117,8 @@ Problem read_body(Reading& reading, int node) {
   body.material = read_material(reading, reading.document.model.nodes[node].mesh);
   if (Problem problem = all_of(reading, mesh_problem, extras)) return problem;
   if (Problem problem = check_place(reading, node, body.mesh, body.pose)) return problem;
-  if (reading.scene.bodies.size() >= kMostBodies) {
-    return Error{reading.document.owner(node), "more than " + std::to_string(kMostBodies) + " bodies",
+  if (reading.scene.bodies.size() >= kMaxBodies) {
+    return Error{reading.document.owner(node), "more than " + std::to_string(kMaxBodies) + " bodies",
                  "Use fewer"};
   }
   reading.body_of_node[node] = static_cast<int>(reading.scene.bodies.size());
@@ -201,10 +201,10 @@ Problem read_fluid_volume(Reading& reading, int node) {
 }
 
 Problem read_picture(Reading& reading, int node) {
-  if (reading.scene.pictures.size() >= kMostPictures) {
+  if (reading.scene.pictures.size() >= kMaxPictures) {
     reading.notes.push_back({"picture",
                              {reading.document.owner(node),
-                              "is one of more than " + std::to_string(kMostPictures) +
+                              "is one of more than " + std::to_string(kMaxPictures) +
                                   " things that are only looked at, and is not shown",
                               "In Blender: join them (Ctrl J)"}});
     return std::nullopt;

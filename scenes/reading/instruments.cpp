@@ -4,7 +4,7 @@
 namespace slosh::reading {
 namespace {
 
-constexpr std::size_t kMostOfEach = 1000;
+constexpr std::size_t kMaxOfEach = 1000;
 
 /// The body that carries a node; −1 when none does.
 int carrier(const Reading& reading, int node) {
@@ -21,8 +21,8 @@ Problem read_place(Reading& reading, int node, int& body, Pose& pose, glm::dmat3
 }
 
 Problem too_many(const Reading& reading, int node, const char* what) {
-  return Error{reading.document.owner(node),
-               "is one of more than " + std::to_string(kMostOfEach) + " " + what, "Use fewer"};
+  return Error{reading.document.owner(node), "is one of more than " + std::to_string(kMaxOfEach) + " " + what,
+               "Use fewer"};
 }
 
 }  // namespace
@@ -41,7 +41,7 @@ Problem read_gauge(Reading& reading, int node) {
     return Error{reading.document.owner(node), "reads the level of a fluid, and the scene has none",
                  "Give a closed mesh slosh = \"fluid\", or take the gauge out"};
   }
-  if (reading.scene.gauges.size() >= kMostOfEach) return too_many(reading, node, "gauges");
+  if (reading.scene.gauges.size() >= kMaxOfEach) return too_many(reading, node, "gauges");
   reading.scene.gauges.push_back(std::move(gauge));
   return std::nullopt;
 }
@@ -55,7 +55,7 @@ Problem read_region(Reading& reading, int node) {
   Problem place = read_place(reading, node, region.body, region.pose, rest);
   if (!place) place = read_node_mesh(reading, node, rest, true, region.mesh);
   if (Problem problem = all_of(reading, place, extras)) return problem;
-  if (reading.scene.regions.size() >= kMostOfEach) return too_many(reading, node, "regions");
+  if (reading.scene.regions.size() >= kMaxOfEach) return too_many(reading, node, "regions");
   reading.scene.regions.push_back(std::move(region));
   return std::nullopt;
 }

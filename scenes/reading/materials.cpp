@@ -23,11 +23,11 @@ int take_image(Reading& reading, int source) {
   const std::string where = reading.document.file + ": image '" + image.name + "'";
   const Result<images::Facts> facts = images::look_at(image.bytes, where);
   if (!facts) return leave_out(facts.error());
-  const bool fits = reading.image_pixels + facts.value().pixels() <= images::kMostPixels;
-  if (!fits || reading.scene.images.size() >= kMostImages)
+  const bool fits = reading.image_pixels + facts.value().pixels() <= images::kMaxPixels;
+  if (!fits || reading.scene.images.size() >= kMaxImages)
     return leave_out({where,
-                      "would be more than " + std::to_string(images::kMostPixels >> 20) +
-                          " million pixels or " + std::to_string(kMostImages) + " images in one scene",
+                      "would be more than " + std::to_string(images::kMaxPixels >> 20) +
+                          " million pixels or " + std::to_string(kMaxImages) + " images in one scene",
                       "Scale the pictures down"});
   reading.image_pixels += facts.value().pixels();
   index = static_cast<int>(reading.scene.images.size());

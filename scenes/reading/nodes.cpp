@@ -179,18 +179,18 @@ Problem read_node_mesh(Reading& reading, int node, const glm::dmat3& rest, bool 
   auto found = reading.shared.find(key);
   if (found == reading.shared.end()) {
     reading.work += gltf::work_of_mesh(document, source);
-    if (reading.work > gltf::kMostNumbersRead) {
+    if (reading.work > gltf::kMaxNumbersRead) {
       return Error{where,
                    "the meshes up to here have more than " +
-                       std::to_string(gltf::kMostNumbersRead / 1'000'000) +
+                       std::to_string(gltf::kMaxNumbersRead / 1'000'000) +
                        " million vertices and indices, each counted as often as a mesh asks for it",
                    "Use fewer meshes, or reduce them, in Blender with the Decimate modifier"};
     }
     Result<TriangleMesh> read = gltf::read_mesh(document, source, rest, where);
     if (!read) return read.error();
     reading.triangles += read.value().triangles.size();
-    if (reading.triangles > gltf::kMostTriangles) {
-      return Error{where, "the scene has more than " + std::to_string(gltf::kMostTriangles) + " triangles",
+    if (reading.triangles > gltf::kMaxTriangles) {
+      return Error{where, "the scene has more than " + std::to_string(gltf::kMaxTriangles) + " triangles",
                    "Reduce the meshes, in Blender with the Decimate modifier"};
     }
     reading.scene.meshes.push_back(std::move(read.value()));

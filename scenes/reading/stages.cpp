@@ -9,7 +9,7 @@ namespace slosh::reading {
 namespace {
 
 /// More is one mistake that was made often, and nobody reads on.
-constexpr std::size_t kMostProblems = 100;
+constexpr std::size_t kMaxProblems = 100;
 
 /// s, where nothing is said: what the shipped scenes take.
 constexpr double kUsualSettle = 1.0;
@@ -93,7 +93,7 @@ class Stages {
     problems_.push_back(problem);
     problems_.insert(problems_.end(), reading_.further.begin(), reading_.further.end());
   }
-  bool over() const { return !problems_.empty() && (!all_ || problems_.size() >= kMostProblems); }
+  bool over() const { return !problems_.empty() && (!all_ || problems_.size() >= kMaxProblems); }
 
   Reading& reading_;
   std::vector<Error>& problems_;
@@ -127,7 +127,7 @@ std::optional<Scene> read_stages(const gltf::Document& document, std::vector<Err
                                  std::vector<gltf::Note>* notes) {
   Reading reading{document, {}, {}, {}, {}, {}, {}, 0, {}, {}, {}, {}, {}, {}, 0, document.notes, 0};
   const std::filesystem::path file = document.file;
-  reading.scene.name = clean_text(file.stem().string(), kMostTextBytes);
+  reading.scene.name = clean_text(file.stem().string(), kMaxTextBytes);
   reading.scene.source_file = document.file;
   reading.kinds.assign(document.model.nodes.size(), NodeKind::kNone);
   Stages stages(reading, problems, all);
@@ -150,7 +150,7 @@ std::optional<Scene> read_stages(const gltf::Document& document, std::vector<Err
   stages.whole(read_domain, true);
   stages.whole(fit_spacing, true);
   tell_what_is_left_out(reading, notes);
-  if (problems.size() >= kMostProblems)
+  if (problems.size() >= kMaxProblems)
     problems.push_back(
         {document.file, "there are more errors than these", "Mend these first, then check again"});
   if (!problems.empty() || !reading.failed.empty()) return std::nullopt;

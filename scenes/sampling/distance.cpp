@@ -10,10 +10,10 @@ namespace slosh::sampling {
 DistanceField make_distance_field(const TriangleMesh& mesh, const mesh::MeshTree& tree, double spacing) {
   const glm::dvec3 extent = glm::dvec3(tree.high()) - glm::dvec3(tree.low());
   const double longest = std::max({extent.x, extent.y, extent.z});
-  // The margin counts in nodes too: longest + 2 · 3 spacings must fit kMostNodes − 1 cells, with one to
+  // The margin counts in nodes too: longest + 2 · 3 spacings must fit kMaxNodes − 1 cells, with one to
   // spare.
   const double pad = 3.0 * spacing;
-  const double cell = std::max(0.5 * spacing, (longest + 2.0 * pad) / (kMostNodes - 2));
+  const double cell = std::max(0.5 * spacing, (longest + 2.0 * pad) / (kMaxNodes - 2));
   DistanceField field;
   field.cell = static_cast<float>(cell);
   field.size = glm::ivec3(glm::ceil((extent + 2.0 * pad) / cell)) + 1;

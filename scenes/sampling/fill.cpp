@@ -18,8 +18,8 @@
 namespace slosh::sampling {
 namespace {
 
-constexpr double kMostOverlap = 0.05;
-constexpr double kMostPoints = 3e7;
+constexpr double kMaxOverlap = 0.05;
+constexpr double kMaxPoints = 3e7;
 // Lattice planes lie exactly half a spacing off a wall that the volume touches: a hair of slack for rounding.
 constexpr double kClear = 0.5 * 0.999;
 // How far a trilinear distance may be off, in cells: most beside a concave edge.
@@ -318,7 +318,7 @@ std::optional<Error> fill_fluids(const Scene& scene, SampledScene& sampled, Samp
     const TriangleMesh& mesh = scene.meshes[volume.mesh];
     const Up up = up_of(scene.gravity, volume.pose);
     const mesh::Grid grid = lattice(mesh, spacing, up);
-    if (static_cast<double>(grid.size.x) * grid.size.y * grid.size.z > kMostPoints) {
+    if (static_cast<double>(grid.size.x) * grid.size.y * grid.size.z > kMaxPoints) {
       return Error{where,
                    "would take more than 30 million lattice points at a spacing of " +
                        short_number(1000.0 * spacing) + " mm",
@@ -353,7 +353,7 @@ std::optional<Error> fill_fluids(const Scene& scene, SampledScene& sampled, Samp
     std::size_t overlapping = 0;
     for (const Obstacle& o : obstacles) {
       overlapping += o.overlaps;
-      if (static_cast<double>(o.overlaps) <= kMostOverlap * static_cast<double>(filling.inside)) continue;
+      if (static_cast<double>(o.overlaps) <= kMaxOverlap * static_cast<double>(filling.inside)) continue;
       return Error{
           where,
           "overlaps the body '" + scene.bodies[o.body].name + "': " +

@@ -23,7 +23,7 @@ class PointGrid {
     }
     for (;; cell_ *= 1.5f) {
       const glm::dvec3 cells = glm::dvec3(high - low_) / static_cast<double>(cell_) + 1.0;
-      if (cells.x * cells.y * cells.z > kMostCells) continue;
+      if (cells.x * cells.y * cells.z > kMaxCells) continue;
       size_ = glm::ivec3(cells) + 1;  // one to spare: the quotient may round up
       break;
     }
@@ -54,7 +54,7 @@ class PointGrid {
   }
 
  private:
-  static constexpr double kMostCells = 8e6;
+  static constexpr double kMaxCells = 8e6;
 
   glm::ivec3 cell_of(const glm::vec3& p) const {
     // Clamped before the conversion: a point may be far off the grid.

@@ -13,12 +13,12 @@ namespace {
 
 constexpr int kCandidatesEach = 5;  // Yuksel's advice
 constexpr int kRelaxations = 8;
-constexpr float kSameSheet = -0.3f;     // cosine between normals above which two samples feel each other
-constexpr double kLeastDistance = 0.6;  // between two samples, in spacings
-constexpr double kLargestGap = 0.75;    // from a point of the fine net to the nearest sample, in spacings
-constexpr double kNetEach = 16.0;       // points of the fine net a spacing²
+constexpr float kSameSheet = -0.3f;   // cosine between normals above which two samples feel each other
+constexpr double kMinDistance = 0.6;  // between two samples, in spacings
+constexpr double kLargestGap = 0.75;  // from a point of the fine net to the nearest sample, in spacings
+constexpr double kNetEach = 16.0;     // points of the fine net a spacing²
 constexpr double kFewestSamples = 6.0;
-constexpr double kMostSamples = 5e6;  // sample_scene refuses long before
+constexpr double kMaxSamples = 5e6;  // sample_scene refuses long before
 
 struct Points {
   std::vector<glm::vec3> at;
@@ -247,7 +247,7 @@ SurfaceSamples sample_surface(const TriangleMesh& mesh, const mesh::MeshTree& tr
     if (tell) tell(share);
   };
   const double area = mesh::surface_area(mesh);
-  const double wanted = std::clamp(area / (spacing * spacing), kFewestSamples, kMostSamples);
+  const double wanted = std::clamp(area / (spacing * spacing), kFewestSamples, kMaxSamples);
   const auto candidates = static_cast<std::size_t>(std::ceil(kCandidatesEach * wanted));
   Points points = scatter(mesh, tree, area, candidates);
   done(kScattered);
@@ -262,7 +262,7 @@ SurfaceSamples sample_surface(const TriangleMesh& mesh, const mesh::MeshTree& tr
   const double even = std::sqrt(2.0 / std::sqrt(3.0) * exposed_area / static_cast<double>(target));
   relax(points, tree, find_frozen(points, buried, static_cast<float>(spacing)), static_cast<float>(even));
   done(kRelaxed);
-  points = thin_out(points, static_cast<float>(kLeastDistance * spacing));
+  points = thin_out(points, static_cast<float>(kMinDistance * spacing));
   const auto gap = static_cast<float>(kLargestGap * spacing);
   plug_gaps(points, fine_net(mesh, tree, spacing), gap, [&](const glm::vec3& at, const glm::vec3& normal) {
     return parts > 1 && is_buried(tree, at, normal, static_cast<float>(spacing));

@@ -9,14 +9,14 @@ namespace {
 
 // Turns of Gauss–Seidel, there and back: until no impulse changes by more than a share of the largest, or the
 // most that a step may cost.
-constexpr int kMostTurns = 150;
+constexpr int kMaxTurns = 150;
 constexpr double kSettled = 1e-7;
 
 /// Projected Gauss–Seidel with each turn's steps made conjugate to the last one's (Silcowitz-Hansen 2010). A
 /// stack of n bodies bends like a beam: alone, Gauss–Seidel takes some n⁴ turns for that, with this some n².
 class Iteration {
  public:
-  Iteration(const std::vector<Contact>& contacts, double rows::Targets::*target, Vector6 BodySolve::*speed,
+  Iteration(const std::vector<Contact>& contacts, double rows::Targets::* target, Vector6 BodySolve::* speed,
             std::vector<rows::ContactRows>& all, std::vector<BodySolve>& solves)
       : contacts_(contacts), target_(target), speed_(speed), all_(all), solves_(solves) {}
 
@@ -29,7 +29,7 @@ class Iteration {
       for (std::size_t i = 0; i < all_.size(); ++i) before[i] = impulse(i);
       const bool settled = there_and_back();
       // The last is a whole turn: what is made conjugate may pull.
-      if (settled || turn == kMostTurns) return;
+      if (settled || turn == kMaxTurns) return;
       double square = 0.0;
       for (std::size_t i = 0; i < all_.size(); ++i) {
         before[i] = impulse(i) - before[i];
@@ -68,8 +68,8 @@ class Iteration {
   }
 
   const std::vector<Contact>& contacts_;
-  double rows::Targets::*target_;
-  Vector6 BodySolve::*speed_;
+  double rows::Targets::* target_;
+  Vector6 BodySolve::* speed_;
   std::vector<rows::ContactRows>& all_;
   std::vector<BodySolve>& solves_;
 };

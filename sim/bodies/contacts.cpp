@@ -138,11 +138,11 @@ struct Meeting {
 };
 
 Meeting meet(const DistanceFieldView& field, const glm::vec3& start, const glm::vec3& path, float margin) {
-  constexpr int kMostSteps = 32;
+  constexpr int kMaxSteps = 32;
   const float length = glm::length(path);
   float gone = 0.0f;
   Meeting meeting;
-  for (int i = 0; i < kMostSteps; ++i) {
+  for (int i = 0; i < kMaxSteps; ++i) {
     meeting.at = length > 0.0f ? start + path * (gone / length) : start;
     meeting.sample = sample_distance(field, meeting.at);
     meeting.found = meeting.sample.distance < margin;

@@ -117,7 +117,7 @@ PairRows::Walk weigh(const Work& w, PairRows::Writer& writer, GroupSums& sum) {
 struct WallSums {
   Neighborhood<FloatBatch> sum;
   Vector3<FloatBatch> slope;  // Σ d (−W'/r), walls with their share
-  FloatBatch held;            // Σ d² (−W'/r) V of those that hold
+  FloatBatch no_slip;         // Σ d² (−W'/r) V of those that hold
 };
 template <bool stresses>
 void add_walls(const Work& w, std::uint32_t p, const BoundaryParticles& walls, const RowList& rows,
@@ -136,7 +136,7 @@ void add_walls(const Work& w, std::uint32_t p, const BoundaryParticles& walls, c
       const FloatBatch slips(static_cast<float>(kFreeSlip));
       const FloatBatch volume =
           xsimd::select(load(walls.viscosity, j) == slips, FloatBatch(0.0f), load(walls.volume, j));
-      sums.held += volume * r_squared * single;
+      sums.no_slip += volume * r_squared * single;
     }
     const FloatBatch slope = share * single;
     sums.slope.x += slope * dx;
@@ -164,7 +164,7 @@ class Finish {
     const float v[3] = {fluid.vx[p], fluid.vy[p], fluid.vz[p]};
     Neighborhood<float> n{};
     StressSums around;
-    TurnedMoment moment;
+    InverseMoment moment;
     n.number = n.fluid_number = s.velocity[3] + own;
     n.moment = {s.even[0], s.odd[0], s.odd[2], s.even[1], s.odd[1], s.even[2]};
     n.vx = s.velocity[0] + own * v[0];
@@ -178,10 +178,10 @@ class Finish {
                                   {s.carried_back[0], s.carried_odd[1], s.carried[2]}}};
       const float rest = w_.context.correction.rest_moment;
       around = {flow_around(flow, v), s.velocity[3], apart(s, v)};
-      moment = turned_moment(n.moment, rest);
+      moment = inverse_moment(n.moment, rest);
       follow_flow(around.flow, moment, rest, n);
     }
-    float held = 0.0f;
+    float no_slip = 0.0f;
     const Vector3<float> by_fluid{s.slope[0], s.slope[1], s.slope[2]};
     Vector3<float> pushed = by_fluid;
     if (fixed_rows.count + moving_rows.count > 0) {
@@ -189,7 +189,7 @@ class Finish {
       WallSums walls{{z, {z, z, z, z, z, z}, z, z, z, z, z, z, z}, {z, z, z}, z};
       add_walls<stresses>(w_, p, w_.fixed, fixed_rows, walls);
       add_walls<stresses>(w_, p, w_.moving, moving_rows, walls);
-      if constexpr (stresses) held = lane_sum(walls.held) / w_.context.rest_volume;
+      if constexpr (stresses) no_slip = lane_sum(walls.no_slip) / w_.context.rest_volume;
       n.number += lane_sum(walls.sum.number);
       const auto& m = walls.sum.moment;
       n.moment.xx += lane_sum(m.xx);
@@ -207,13 +207,13 @@ class Finish {
     if (solved_) {
       const SolvedState state = solved_state(n, w_.context.correction, kind.viscosity, in_u, v);
       keep(p, kind, state, state.expansion, pushed);
-      if constexpr (stresses) pass_on(p, kind, around, moment, held, by_fluid);
+      if constexpr (stresses) pass_on(p, kind, around, moment, no_slip, by_fluid);
       return state.compression;
     }
     const CorrectedState state = corrected_state(n, w_.context.correction, kind.pressing_density,
                                                  kind.viscosity, in_u, fluid.volume[p], v);
     keep(p, kind, state, state.pressure, pushed);
-    if constexpr (stresses) pass_on(p, kind, around, moment, held, by_fluid);
+    if constexpr (stresses) pass_on(p, kind, around, moment, no_slip, by_fluid);
     return state.compression;
   }
 
@@ -250,16 +250,16 @@ class Finish {
 
   // What it passes on of a stress, behind keep(). `by_fluid`: Σ d (−W'/r) over fluid.
   void pass_on(std::uint32_t p, const ParticleKind& kind, const StressSums& around,
-               const TurnedMoment& moment, float held, const Vector3<float>& by_fluid) const {
+               const InverseMoment& moment, float no_slip, const Vector3<float>& by_fluid) const {
     const float rest = w_.context.correction.rest_moment;
-    const FluidStress found =
-        fluid_stress(around, moment, share_of_stress(held, rest), rest, w_.fluid.volume[p], kind.viscosity);
-    const Rows<float>& t = found.push;
+    const FluidStress found = fluid_stress(around, moment, share_of_stress(no_slip, rest), rest,
+                                           w_.fluid.volume[p], kind.viscosity);
+    const Matrix3<float>& t = found.push;
     const Vector3<float> own = times(t, by_fluid.x, by_fluid.y, by_fluid.z);
     w_.press.own_stress[p] = {own.x, own.y, own.z, 0.0f};
     Vector4& u = w_.press.drags[p];
     u = {u.x + found.rest.x, u.y + found.rest.y, u.z + found.rest.z, u.w};
-    const PressTensor k = solved_ ? PressTensor{} : w_.press.tensors[p];
+    const PressureTensor k = solved_ ? PressureTensor{} : w_.press.tensors[p];
     w_.press.passed[p] = {{k.xx + t.x.x, k.yy + t.y.y, k.zz + t.z.z, u.w},
                           {k.xy + t.x.y, k.yz + t.y.z, k.xz + t.z.x, found.left},
                           {k.xz + t.x.z, k.xy + t.y.x, k.yz + t.z.y, 0.0f},
@@ -272,7 +272,7 @@ class Finish {
   // W(0) as pairs have it, with their floor: the pressure of a calm fluid hangs on the density's sixth digit.
   const float own_ = Kernel::shape_of(Kernel::pair(0.0f, w_.context.support_radius, 1.0f));
   const bool solved_ = w_.context.plan.has(PassId::kPressureSolve);
-  const bool one_explicit_ = w_.context.plan.drags_explicitly() &&
+  const bool one_explicit_ = w_.context.plan.explicit_viscosity() &&
                              w_.context.plan.has(PassId::kOneViscosity) &&
                              !w_.context.plan.has(PassId::kFluidStress);
 };
@@ -324,7 +324,7 @@ void compute_corrected_density(PassContext& context, ThreadTeam& team, FluidPart
   const std::size_t runs = fluid.index.runs().size();
   press.clear(fluid.index.particles(), chunk_count(runs, kRunsPerChunk));
   place(work, team);
-  const bool flows = any_jostles(context.kinds, context.correction.noise_viscosity);
+  const bool flows = any_artificial_viscosity(context.kinds, context.correction.artificial_viscosity);
   const bool stresses = context.plan.has(PassId::kFluidStress);
   if (stresses) press.make_passed(fluid.index.particles());
   const auto find = stresses ? find_chunk<true, true>

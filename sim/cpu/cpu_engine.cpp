@@ -67,14 +67,14 @@ class CpuEngine final : public ParticleEngine {
     run(SubStepPart::kDrag, 0.0);
   }
 
-  void solve_drag(double dt, std::span<const ViscousBody> bodies, std::span<Wrench> wrenches) override {
+  void solve_viscosity(double dt, std::span<const ViscousBody> bodies, std::span<Wrench> wrenches) override {
     viscous_ = {bodies, wrenches};
-    run(SubStepPart::kSolve, dt);
+    run(SubStepPart::kViscosity, dt);
   }
 
   void solve_pressure(double dt, std::span<const ViscousBody> bodies, std::span<Wrench> wrenches) override {
     viscous_ = {bodies, wrenches};
-    run(SubStepPart::kPress, dt);
+    run(SubStepPart::kPressure, dt);
   }
 
   void damp(float keep) override {
@@ -171,8 +171,11 @@ class CpuEngine final : public ParticleEngine {
          &CpuEngine::find_forces,
          &StepTimes::force},
         {SubStepPart::kForces, {kWrenches}, &CpuEngine::sum_wrenches, &StepTimes::force},
-        {SubStepPart::kSolve, {kImplicitDrag}, &CpuEngine::solve_implicit_drag, &StepTimes::force},
-        {SubStepPart::kPress, {kPressureSolve}, &CpuEngine::solve_for_pressure, &StepTimes::force},
+        {SubStepPart::kViscosity,
+         {kImplicitViscosity},
+         &CpuEngine::find_implicit_viscosity,
+         &StepTimes::force},
+        {SubStepPart::kPressure, {kPressureSolve}, &CpuEngine::solve_for_pressure, &StepTimes::force},
         {SubStepPart::kDrag, {kBodyDrag}, &CpuEngine::drag_on_fluid, &StepTimes::force},
         {SubStepPart::kAdvance, {kIntegrateFluid}, &CpuEngine::integrate, &StepTimes::force},
     };
@@ -190,7 +193,7 @@ class CpuEngine final : public ParticleEngine {
     compute_density(context_, team_, fluid_, fixed_.sorted(), moving_.sorted(), pressure_rows_);
   }
   void find_forces(double dt) {
-    compute_fluid_forces(context_, team_, fluid_, fixed_.sorted(), moving_.sorted(), dt, fluid_drag_,
+    compute_fluid_forces(context_, team_, fluid_, fixed_.sorted(), moving_.sorted(), dt, fluid_viscosity_,
                          pressure_rows_);
     if (context_.plan.has(PassId::kPressureSolve))
       pressure_solver_.push_by_last(context_, team_, {fluid_, moving_.sorted(), bodies_, pressure_rows_});
@@ -208,9 +211,9 @@ class CpuEngine final : public ParticleEngine {
     if (!context_.plan.has(PassId::kPressureSolve)) carry_probe_forces_out(found_);
   }
   void drag_on_fluid(double) { drag_fluid(context_, team_, fluid_, moving_.sorted()); }
-  void solve_implicit_drag(double dt) {
+  void find_implicit_viscosity(double dt) {
     const ViscousReport report =
-        solver_.solve(context_, team_, {fluid_, fixed_.sorted(), moving_, bodies_, fluid_drag_}, dt,
+        solver_.solve(context_, team_, {fluid_, fixed_.sorted(), moving_, bodies_, fluid_viscosity_}, dt,
                       viscous_.bodies, wanted_, viscous_.wrenches);
     drags_ = solver_.drags();
     if (!report.converged) context_.status.fetch_or(kStatusViscosityCut, std::memory_order_relaxed);
@@ -262,7 +265,7 @@ class CpuEngine final : public ParticleEngine {
     }
   }
 
-  // What solve_drag() and solve_pressure() are called with.
+  // What solve_viscosity() and solve_pressure() are called with.
   struct Viscous {
     std::span<const ViscousBody> bodies;
     std::span<Wrench> wrenches;
@@ -288,7 +291,7 @@ class CpuEngine final : public ParticleEngine {
   std::vector<Wrench> found_;    // one a body, by the last forces()
   std::vector<BodyDrag> drags_;  // one a body, by the same
   SurfaceSums body_scratch_;
-  FluidDrag fluid_drag_;
+  FluidViscosity fluid_viscosity_;
   ViscousSolver solver_;
   FluidPress pressure_rows_;
   PressureSolver pressure_solver_;

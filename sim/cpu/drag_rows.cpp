@@ -4,16 +4,16 @@
 #include <cstring>
 
 #include "sim/cpu/passes.h"
-#include "sim/cpu/press_walk.h"
-#include "sim/cpu/row_drag.h"
+#include "sim/cpu/pressure_loop.h"
 #include "sim/cpu/row_mirror.h"
-#include "sim/viscosity/noise.h"
+#include "sim/cpu/row_viscosity.h"
+#include "sim/viscosity/artificial_viscosity.h"
 
 namespace slosh {
 
 namespace {
 
-// Drag is solved for in this model and the incompressible one, which drags alike (Plan::solves_drag).
+// Drag is solved for in this model and the incompressible one, which drags alike (Plan::implicit_viscosity).
 using Parts = ModelParts<ParticleModel::kCorrected>;
 
 // What all rows of a sub-step go through.
@@ -22,20 +22,20 @@ struct DragWalk {
   FluidParticles& fluid;
   const BoundaryParticles &fixed, &moving;
   const FluidPress& press;
-  FluidDrag& drag;
+  FluidViscosity& drag;
   float factor;  // kCentralDrag, the kernel's constant and the time, s, that drag acts for
 };
 
 // Writes a group's pairs with fluid down as drag has them.
-template <bool presses, bool jostles>
+template <bool presses, bool artificial>
 GroupForces write_fluid_pairs(const DragWalk& w, const PairRows::Walk& walk, PairRows::Writer& writer) {
   const float* const own = &w.press.tensors[walk.first].xx;
   const Sixteen volume = fourths(walk.of_group<8>(own)), viscosity = fourths(walk.of_group<8>(own + 4));
   PairRows::Pair* to = writer.take(walk);
-  return walk_forces<presses, jostles, false>(
+  return walk_forces<presses, artificial, false>(
       w.press, walk, w.context.support_radius, w.context.drag_shape,
       [&](const PairRows::Pair* four, const Sixteen& shape, const Sixteen& even, const Sixteen& odd) {
-        // As drag_pairs(): both sides of a pair find the same to the bit.
+        // As drag_pairs(): both sides of a pair find bitwise identical.
         const Sixteen of_both = (0.5f * (viscosity + fourths(odd))) * (volume * fourths(even));
         const PairRows::Others others{four[0].other, four[1].other, four[2].other, four[3].other};
         put_pairs(of_both * (w.factor * shape), others.data(), to);
@@ -79,22 +79,22 @@ void write_body_pairs(const DragWalk& w, std::uint32_t p, const RowList& fixed_r
 }
 
 // One chunk of rows. All of a pair in one loop, as in the density pass.
-template <bool presses, bool jostles>
+template <bool presses, bool artificial>
 __attribute__((flatten)) void find_chunk(const DragWalk& w, std::size_t chunk) {
   FluidParticles& fluid = w.fluid;
   PairRows::Writer writer(w.drag.rows, chunk);
   std::uint32_t cell = w.context.grid.retired_key();
   RowList fixed_rows, moving_rows;
   w.press.rows.for_each_group(chunk, [&](const PairRows::Walk& walk) {
-    const GroupForces forces = write_fluid_pairs<presses, jostles>(w, walk, writer);
-    float pressed[16], jostled[16];
+    const GroupForces forces = write_fluid_pairs<presses, artificial>(w, walk, writer);
+    float pressed[16], damped[16];
     std::memcpy(pressed, &forces.pressed, sizeof pressed);
-    std::memcpy(jostled, &forces.dragged, sizeof jostled);
+    std::memcpy(damped, &forces.dragged, sizeof damped);
     for (std::uint32_t a = 0; a < walk.count; ++a) {
       const std::uint32_t p = walk.first + a;
       const float factor = kCentralDrag * w.context.force_scale * fluid.volume[p];
       const auto force = [&](float own, int k) {
-        return (presses ? own + pressed[4 * a + k] : 0.0f) + (jostles ? factor * jostled[4 * a + k] : 0.0f);
+        return (presses ? own + pressed[4 * a + k] : 0.0f) + (artificial ? factor * damped[4 * a + k] : 0.0f);
       };
       fluid.fx[p] = force(w.press.own[p].x, 0);
       fluid.fy[p] = force(w.press.own[p].y, 1);
@@ -117,23 +117,23 @@ __attribute__((flatten)) void find_chunk(const DragWalk& w, std::size_t chunk) {
 
 void compute_forces_by_rows(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
                             const BoundaryParticles& fixed, const BoundaryParticles& moving, double dt,
-                            FluidDrag& drag, const FluidPress& press) {
+                            FluidViscosity& drag, const FluidPress& press) {
   drag.clear(fluid.index.particles(), press.rows.chunks());
   const float factor = kCentralDrag * static_cast<float>(dt) * context.force_scale;
   const DragWalk walk{context, fluid, fixed, moving, press, drag, factor};
   // Where pressures are solved for they push later (PressureSolver::push_by_last).
   const bool presses = !context.plan.has(PassId::kPressureSolve);
-  const bool jostles = any_jostles(context.kinds, context.correction.noise_viscosity);
-  const auto run = [&]<bool pressing, bool jostling>() {
+  const bool artificial = any_artificial_viscosity(context.kinds, context.correction.artificial_viscosity);
+  const auto run = [&]<bool pressing, bool artificial>() {
     team.run(press.rows.chunks(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t chunk = begin; chunk < end; ++chunk) find_chunk<pressing, jostling>(walk, chunk);
+      for (std::size_t chunk = begin; chunk < end; ++chunk) find_chunk<pressing, artificial>(walk, chunk);
     });
   };
-  if (presses && jostles) {
+  if (presses && artificial) {
     run.operator()<true, true>();
   } else if (presses) {
     run.operator()<true, false>();
-  } else if (jostles) {
+  } else if (artificial) {
     run.operator()<false, true>();
   } else {
     run.operator()<false, false>();

@@ -3,7 +3,7 @@
 #include <cstring>
 
 #include "sim/cpu/passes.h"
-#include "sim/cpu/press_walk.h"
+#include "sim/cpu/pressure_loop.h"
 #include "sim/cpu/row_force.h"
 #include "sim/cpu/row_mirror.h"
 
@@ -32,7 +32,8 @@ Symmetric<float> drag_rate(const ParticleView<FloatBatch>& self, const NeighborC
   for_each_dragged<viscosity, Neighbours::kFluid>(
       self, fluid, rows, h, FloatBatch(of_fluid),
       [&](const ParticleView<FloatBatch>& i, FloatBatch reach, FloatBatch weight) {
-        add_pair_drag_rate<typename Parts::ForceKernel, Parts::kDrag>(self, i, reach, shape, weight, sum);
+        add_pair_viscosity_rate<typename Parts::ForceKernel, Parts::kDrag>(self, i, reach, shape, weight,
+                                                                           sum);
       });
   return {scale * lane_sum(sum.xx), scale * lane_sum(sum.xy), scale * lane_sum(sum.xz),
           scale * lane_sum(sum.yy), scale * lane_sum(sum.yz), scale * lane_sum(sum.zz)};
@@ -109,8 +110,8 @@ void forces_by_rows(const FluidWalk& walk, const FluidPress& press) {
         if constexpr (stresses) {
           forces = walk_passed(press, rows, h, drag);
         } else {
-          forces = walk_forces<kPresses, true, viscosity == Viscosity::kPair>(press, rows, h, drag,
-                                                                              [](const auto&...) {});
+          forces = walk_forces < kPresses, true,
+          viscosity == Viscosity::kPair > (press, rows, h, drag, [](const auto&...) {});
         }
         float pressed[16], dragged[16];
         std::memcpy(pressed, &forces.pressed, sizeof pressed);
@@ -139,8 +140,8 @@ void forces_by_rows(const FluidWalk& walk, const FluidPress& press) {
 
 void compute_fluid_forces(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
                           const BoundaryParticles& fixed, const BoundaryParticles& moving, double dt,
-                          FluidDrag& drag, const FluidPress& press) {
-  if (context.plan.has(PassId::kImplicitDrag)) {
+                          FluidViscosity& drag, const FluidPress& press) {
+  if (context.plan.has(PassId::kImplicitViscosity)) {
     compute_forces_by_rows(context, team, fluid, fixed, moving, dt, drag, press);
     return;
   }
@@ -236,7 +237,8 @@ void drag_fluid(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
           for_each_dragged<Viscosity::kPair, Neighbours::kWalls>(
               self, moving_columns, rows, h, FloatBatch(1.0f),
               [&](const ParticleView<FloatBatch>& i, FloatBatch reach, FloatBatch weight) {
-                add_pair_drag<typename Parts::ForceKernel, Parts::kDrag>(self, i, reach, shape, weight, sum);
+                add_pair_viscosity<typename Parts::ForceKernel, Parts::kDrag>(self, i, reach, shape, weight,
+                                                                              sum);
               });
           const float scale = context.force_scale;
           fluid.fx[p] += scale * lane_sum(sum.x);

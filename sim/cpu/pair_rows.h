@@ -18,7 +18,7 @@ struct alignas(16) Vector4 {
 
 /// A symmetric tensor as a walk over rows takes it, and what else is asked for with it: the fourths go into
 /// no product.
-struct alignas(32) PressTensor {
+struct alignas(32) PressureTensor {
   float xx, yy, zz, volume;
   float xy, yz, xz, viscosity;
 };
@@ -89,9 +89,9 @@ class PairRows {
       row_->count = static_cast<std::size_t>(end - row_->other.data());
       return ++group_.count == kTogether;
     }
-    /// Rows are waiting for put_weighed().
+    /// Matrix3 are waiting for put_weighed().
     bool waits() const { return group_.count > 0; }
-    /// f(first, others), of a pair of each, gives their weights, each four times. Rows are filled up with
+    /// f(first, others), of a pair of each, gives their weights, each four times. Matrix3 are filled up with
     /// `nobody`, who must weigh nothing. Returns the group.
     template <class F>
     Walk put_weighed(std::uint32_t nobody, F&& f);
@@ -142,7 +142,7 @@ class PairRows {
 
     /// Of each of the group the sum of T g over its row, T each other's of `tensors`, with everybody at
     /// `places`; fourths mean nothing.
-    Sixteen push(const Vector4* places, const PressTensor* tensors) const {
+    Sixteen push(const Vector4* places, const PressureTensor* tensors) const {
       Sixteen straight = {}, turning = {}, back = {};
       for_each_pair(places, [&](Sixteen g, const Pair* four) {
         const Sixteen odd = of_others<8>(&tensors->xy, four);
@@ -154,7 +154,7 @@ class PairRows {
     }
     /// The sum of g · (T v), as the three parts of a sum, v each other's of `velocities`, T one's own of
     /// `tensors`.
-    Sixteen flow(const Vector4* places, const PressTensor* tensors, const Vector4* velocities) const {
+    Sixteen flow(const Vector4* places, const PressureTensor* tensors, const Vector4* velocities) const {
       Sixteen even = {}, odd = {}, other_odd = {};
       for_each_pair(places, [&](Sixteen g, const Pair* four) {
         const Sixteen v = of_others<4>(&velocities->x, four);
@@ -166,11 +166,11 @@ class PairRows {
     }
     /// The sum of g ⊗ g times the fourth of each other's of `velocities`: xx, yy, zz in `even`, xy, yz, xz in
     /// `odd`.
-    struct Squares {
+    struct SumOfSquares {
       Sixteen even = {}, odd = {};
     };
-    Squares squares(const Vector4* places, const Vector4* velocities) const {
-      Squares sum;
+    SumOfSquares squares(const Vector4* places, const Vector4* velocities) const {
+      SumOfSquares sum;
       for_each_pair(places, [&](Sixteen g, const Pair* four) {
         const Sixteen weighed = fourths(of_others<4>(&velocities->x, four)) * g;
         sum.even += weighed * g;
@@ -187,7 +187,7 @@ class PairRows {
     /// The sum of q d (d · (v − one's own)), v each other's of `velocities`, in rows of who drags whom.
     Sixteen dragged(const Vector4* places, const Vector4* velocities) const {
       const Sixteen own = of_group<4>(&velocities[first].x);
-      // A pair's two drags are opposite to the bit, so momentum is kept to what sums round: that is carried
+      // A pair's two drags are opposite bitwise, so momentum is kept to what sums round: that is carried
       // along.
       Sixteen sum = {}, lost = {};
       for_each_way(places, [&](Sixteen d, const Pair* four) {
@@ -200,8 +200,8 @@ class PairRows {
       return sum - lost;
     }
     /// The sum of q d ⊗ d over each row.
-    Squares rates(const Vector4* places) const {
-      Squares sum;
+    SumOfSquares rates(const Vector4* places) const {
+      SumOfSquares sum;
       for_each_way(places, [&](Sixteen d, const Pair* four) {
         const Sixteen weighed = each_even_four_times(&four->weight) * d;
         sum.even += weighed * d;

@@ -19,7 +19,7 @@ struct PassContext : RunConstants {
   std::atomic<std::uint64_t> broken{0};  ///< ParticleState's
 };
 
-struct FluidDrag;
+struct FluidViscosity;
 struct FluidPress;
 
 /// Sorts fluid particles by cell and reorders every column that lives on; forgets the retired ones.
@@ -48,8 +48,8 @@ class BodySurface {
 };
 
 /// Eq 2 and 7: density (kPaper: from fluid particles only, section 4.1), then pressure and volume. With
-/// kPressureSolve or kImplicitDrag `press` gets who presses on whom: the same walk over the neighbours finds
-/// it.
+/// kPressureSolve or kImplicitViscosity `press` gets who presses on whom: the same walk over the neighbours
+/// finds it.
 void compute_density(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
                      const BoundaryParticles& fixed, const BoundaryParticles& moving, FluidPress& press);
 
@@ -58,16 +58,17 @@ void compute_corrected_density(PassContext& context, ThreadTeam& team, FluidPart
                                const BoundaryParticles& fixed, const BoundaryParticles& moving,
                                FluidPress& press);
 
-/// Eq 5, 6 and 9 on fluid particles, by fluid and by body particles. With kImplicitDrag without drag, and
-/// `drag` gets who drags whom over `dt` s (drag_rows.cpp): both by `press`, which is from the density pass.
+/// Eq 5, 6 and 9 on fluid particles, by fluid and by body particles. With kImplicitViscosity without drag,
+/// and `drag` gets who drags whom over `dt` s (drag_rows.cpp): both by `press`, which is from the density
+/// pass.
 void compute_fluid_forces(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
                           const BoundaryParticles& fixed, const BoundaryParticles& moving, double dt,
-                          FluidDrag& drag, const FluidPress& press);
+                          FluidViscosity& drag, const FluidPress& press);
 
-/// The same with kImplicitDrag (force.cpp calls it).
+/// The same with kImplicitViscosity (force.cpp calls it).
 void compute_forces_by_rows(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
                             const BoundaryParticles& fixed, const BoundaryParticles& moving, double dt,
-                            FluidDrag& drag, const FluidPress& press);
+                            FluidViscosity& drag, const FluidPress& press);
 
 /// What each body particle feels, in the order of the cells.
 struct SurfaceSums {

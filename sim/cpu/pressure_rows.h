@@ -25,7 +25,7 @@ struct FluidPress {
   std::vector<Vector4> velocities;  ///< m/s, with 1 for a fourth
   /// What each presses by, with the kernel's constant: at 1 Pa where pressures are solved for; and its
   /// volume, m³, and viscosity, Pa·s.
-  std::vector<PressTensor> tensors;
+  std::vector<PressureTensor> tensors;
   /// What its own pressure pushes each by, N (where pressures are solved for, of 1 Pa, m²), with 0 for a
   /// fourth: by fluid, walls and bodies.
   std::vector<Vector4> own;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kParticlesPerChunk = 2048;
 // Pressures that are cut off below 0 are put right when they come to more than this share of what is left.
-constexpr double kMostClipped = 0.02;
+constexpr double kMaxClipped = 0.02;
 
 double dot(const Vector6& a, const Vector6& b) {
   double sum = 0.0;
@@ -141,7 +141,7 @@ void PressureSolver::find_diagonal(const Work& work) {
             return (x * x * e[0] + y * y * e[1] + z * z * e[2]) +
                    2.0f * (x * y * o[0] + y * z * o[1] + x * z * o[2]);
           };
-          const PressTensor& k = press.tensors[p];
+          const PressureTensor& k = press.tensors[p];
           const Four own = four_at(press.own[p]), squared = own * own;
           inverse_[p] = work.dt * (((squared[0] + squared[1]) + squared[2]) * velocity_[p].w +
                                    (by(k.xx, k.xy, k.xz) + by(k.xy, k.yy, k.yz) + by(k.xz, k.yz, k.zz)));
@@ -318,18 +318,18 @@ PressureReport PressureSolver::solve(const PassContext& context, ThreadTeam& tea
   const double enough = std::max(kPressureFloor, kPressureTolerance * left());
   PressureReport report;
   double keep = 0.0;
-  while (report.turns < kMostPressureTurns && sums.step > 0.0 && left() > enough) {
+  while (report.iterations < kMaxPressureIterations && sums.step > 0.0 && left() > enough) {
     const double before = sums.step;
     follow(work, keep);
     push(work);
     const double curvature = multiply(work);
-    ++report.turns;
+    ++report.iterations;
     if (!(curvature > 0.0)) break;
     sums = advance(work, before / curvature);
     keep = std::max(0.0, (sums.step - sums.turned) / before);
-    if (sums.clipped > kMostClipped * sums.step && report.turns + 1 < kMostPressureTurns) {
+    if (sums.clipped > kMaxClipped * sums.step && report.iterations + 1 < kMaxPressureIterations) {
       undo_clips(work);
-      ++report.turns;
+      ++report.iterations;
       sums = look(work);
       keep = 0.0;
     }

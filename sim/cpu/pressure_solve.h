@@ -26,7 +26,7 @@ class PressureSolver {
   void push_by_last(const PassContext& context, ThreadTeam& team, const PressedSides& sides);
   /// `fluid.fx…` hold all forces, N, without gravity, with those of push_by_last(), and get what the
   /// pressures found over `dt` s differ by; so do `fluid.solved` and `wrenches`, one a body, of the bodies in
-  /// `moving`, about their centres of mass. The same to the bit whatever the threads.
+  /// `moving`, about their centres of mass. The same bitwise whatever the threads.
   PressureReport solve(const PassContext& context, ThreadTeam& team, const PressedSides& sides, double dt,
                        std::span<const ViscousBody> bodies, std::span<Wrench> wrenches);
 
@@ -74,14 +74,14 @@ class PressureSolver {
   void finish(const Work& work, std::span<Wrench> wrenches);
   Sums total() const;
 
-  std::vector<float> flow_;      // Q v − V⁰ e/dt, m³/s: wanted 0 where it presses, not below 0 elsewhere
-  std::vector<float> inverse_;   // of the system's diagonal
-  std::vector<float> pressure_;  // Pa
-  std::vector<float> residual_;  // −flow_ of those that press
-  std::vector<float> product_;   // the system times the direction
-  std::vector<float> clipped_;   // Pa, what was cut off below 0 and flow_ does not know of
-  std::vector<float> direction_;                   // Pa
-  std::vector<PressTensor> pressing_;              // the direction times each one's tensor of 1 Pa
+  std::vector<float> flow_;       // Q v − V⁰ e/dt, m³/s: wanted 0 where it presses, not below 0 elsewhere
+  std::vector<float> inverse_;    // of the system's diagonal
+  std::vector<float> pressure_;   // Pa
+  std::vector<float> residual_;   // −flow_ of those that press
+  std::vector<float> product_;    // the system times the direction
+  std::vector<float> clipped_;    // Pa, what was cut off below 0 and flow_ does not know of
+  std::vector<float> direction_;  // Pa
+  std::vector<PressureTensor> pressing_;           // the direction times each one's tensor of 1 Pa
   std::vector<Vector4> velocity_;                  // m/s; in w 1/mass
   std::vector<Touch> touches_;                     // in the order of the particles
   std::vector<std::vector<Touch>> found_touches_;  // by chunk of runs

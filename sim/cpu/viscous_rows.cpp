@@ -1,6 +1,6 @@
 // Which pairs drag, as conjugate gradients ask for them (viscous_solve.h).
-#include "sim/cpu/row_drag.h"
 #include "sim/cpu/row_mirror.h"
+#include "sim/cpu/row_viscosity.h"
 #include "sim/cpu/viscous_solve.h"
 
 namespace slosh {
@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kRunsPerChunk = 16;
 
-// Drag is solved for in this model and the incompressible one, which drags alike (Plan::solves_drag).
+// Drag is solved for in this model and the incompressible one, which drags alike (Plan::implicit_viscosity).
 using Parts = ModelParts<ParticleModel::kCorrected>;
 static_assert(Parts::kDrag == DragRule::kCentral);
 
@@ -56,7 +56,7 @@ void ViscousSolver::write_body_rows(const Work& work) {
 void ViscousSolver::find_blocks(const Work& work) {
   const FluidParticles& fluid = work.sides.fluid;
   const BoundaryParticles& moving = work.sides.moving.sorted();
-  const FluidDrag& drag = work.sides.drag;
+  const FluidViscosity& drag = work.sides.drag;
   places_.resize(work.fluid + work.surface + 4);
   block_.resize(work.fluid);
   for (std::size_t p = 0; p < work.fluid; ++p) places_[p] = {fluid.x[p], fluid.y[p], fluid.z[p], 0.0f};

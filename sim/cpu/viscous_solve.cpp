@@ -108,7 +108,7 @@ double ViscousSolver::sum_over_dragged(const Work& work, F&& f) {
 // product.
 double ViscousSolver::begin(const Work& work) {
   FluidParticles& fluid = work.sides.fluid;
-  const FluidDrag& drag = work.sides.drag;
+  const FluidViscosity& drag = work.sides.drag;
   change_.resize(work.fluid);
   residual_.resize(work.fluid);
   product_.resize(work.fluid);
@@ -194,7 +194,7 @@ void ViscousSolver::follow(const Work& work, double keep) {
 // product = (M + dt D) direction; returns direction · product.
 double ViscousSolver::multiply(const Work& work) {
   const FluidParticles& fluid = work.sides.fluid;
-  const FluidDrag& drag = work.sides.drag;
+  const FluidViscosity& drag = work.sides.drag;
   double sum = sum_over_dragged(work, [&](std::uint32_t p, const glm::vec3& dragged) {
     const float mass = work.context.kinds[fluid.kind[p]].mass;
     const glm::vec3 d = vec3(direction_[p]);
@@ -297,7 +297,7 @@ ViscousReport ViscousSolver::solve(const PassContext& context, ThreadTeam& team,
   ViscousReport report;
   report.converged = false;
   double before = 0.0;
-  while (report.turns < kMostViscousTurns) {
+  while (report.iterations < kMaxViscosityIterations) {
     if (!(now > 0.0)) {
       report.converged = now == 0.0;
       break;
@@ -307,7 +307,7 @@ ViscousReport ViscousSolver::solve(const PassContext& context, ThreadTeam& team,
     const double curvature = multiply(work);
     if (!(curvature > 0.0)) break;
     const Sums sums = advance(work, now / curvature);
-    ++report.turns;
+    ++report.iterations;
     if (sums.left <= kViscousTolerance * kViscousTolerance * sums.changed + floor * floor * mass) {
       report.converged = true;
       break;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "sim/cpu/passes.h"
-#include "sim/cpu/row_drag.h"
+#include "sim/cpu/row_viscosity.h"
 #include "sim/viscosity/implicit.h"
 
 namespace slosh {
@@ -16,7 +16,7 @@ struct DragSides {
   const BoundaryParticles& fixed;
   BodySurface& moving;
   std::span<const RigidBody> bodies;  ///< as they were when `moving` was placed
-  const FluidDrag& drag;              ///< from the force pass
+  const FluidViscosity& drag;         ///< from the force pass
 };
 
 /// Conjugate gradients over the fluid and the bodies that move. Keeps its memory from one solve to the next.
@@ -24,7 +24,7 @@ class ViscousSolver {
  public:
   /// `fluid.fx…` hold all other forces, N, without gravity, and get what drag adds to them over `dt` s;
   /// `wrenches`, one a body, get the drag on those that move, about their centres of mass, and on the fixed
-  /// ones that `measured` marks. The same to the bit whatever the threads. For models with
+  /// ones that `measured` marks. The same bitwise whatever the threads. For models with
   /// DragRule::kCentral.
   ViscousReport solve(const PassContext& context, ThreadTeam& team, const DragSides& sides, double dt,
                       std::span<const ViscousBody> bodies, const std::vector<char>& measured,

@@ -103,7 +103,7 @@ class CudaEngine final : public ParticleEngine {
   void body_drags(std::span<BodyDrag> out) const override {
     std::fill(out.begin(), out.end(), BodyDrag{});
     if (idle()) return;
-    if (constants_.plan.has(PassId::kImplicitDrag)) return viscous_.drags(out);
+    if (constants_.plan.has(PassId::kImplicitViscosity)) return viscous_.drags(out);
     for (std::size_t i = 0; i < sums_.bodies().size(); ++i) out[sums_.bodies()[i]] = report_.got_drag(i);
   }
 
@@ -112,15 +112,15 @@ class CudaEngine final : public ParticleEngine {
     sent_.send_twists(changes, check_, stream_);
     run(SubStepPart::kDrag, 0.0);
   }
-  void solve_drag(double dt, std::span<const ViscousBody> bodies, std::span<Wrench> wrenches) override {
+  void solve_viscosity(double dt, std::span<const ViscousBody> bodies, std::span<Wrench> wrenches) override {
     if (idle()) return;
     asked_ = {bodies, wrenches};
-    run(SubStepPart::kSolve, dt);
+    run(SubStepPart::kViscosity, dt);
   }
   void solve_pressure(double dt, std::span<const ViscousBody> bodies, std::span<Wrench> wrenches) override {
     if (idle()) return;
     asked_ = {bodies, wrenches};
-    run(SubStepPart::kPress, dt);
+    run(SubStepPart::kPressure, dt);
   }
 
   void damp(float keep) override {
@@ -227,8 +227,8 @@ class CudaEngine final : public ParticleEngine {
          {kPressureForce, kOneViscosity, kPairViscosity, kWalls},
          &CudaEngine::find_forces,
          nullptr},
-        {SubStepPart::kSolve, {kImplicitDrag}, &CudaEngine::solve_implicit_drag, nullptr},
-        {SubStepPart::kPress, {kPressureSolve}, &CudaEngine::solve_for_pressure, nullptr},
+        {SubStepPart::kViscosity, {kImplicitViscosity}, &CudaEngine::find_implicit_viscosity, nullptr},
+        {SubStepPart::kPressure, {kPressureSolve}, &CudaEngine::solve_for_pressure, nullptr},
         {SubStepPart::kDrag, {kBodyDrag}, &CudaEngine::drag_on_fluid, nullptr},
         {SubStepPart::kAdvance, {kIntegrateFluid}, &CudaEngine::integrate, nullptr},
     };
@@ -250,8 +250,8 @@ class CudaEngine final : public ParticleEngine {
   void find_density(double) {
     if (check_.failed()) return;
     launch_density(step_, constants_.plan, kinds_.data(),
-                   any_jostles(constants_.kinds, constants_.correction.noise_viscosity), fluid_.sorted(),
-                   fixed_.sorted(), moving_.sorted(), report_.status(), stream_);
+                   any_artificial_viscosity(constants_.kinds, constants_.correction.artificial_viscosity),
+                   fluid_.sorted(), fixed_.sorted(), moving_.sorted(), report_.status(), stream_);
     check_.launched("density");
     clock_.mark(PassClock::kDensity, check_, stream_);
   }
@@ -264,7 +264,7 @@ class CudaEngine final : public ParticleEngine {
                  stream_);
     check_.launched("forces");
     // While the CPU sees where the bodies are going.
-    if (constants_.plan.has(PassId::kImplicitDrag))
+    if (constants_.plan.has(PassId::kImplicitViscosity))
       viscous_.write_rows(solve_sides(), static_cast<float>(dt), check_, stream_);
     if (constants_.plan.has(PassId::kPressureSolve)) pressure_.push_by_last(solve_sides(), check_, stream_);
   }
@@ -273,7 +273,7 @@ class CudaEngine final : public ParticleEngine {
     return {step_,           constants_.plan, kinds_,  constants_.kinds.front().viscosity,
             fluid_.sorted(), fixed_,          moving_, sent_.bodies()};
   }
-  void solve_implicit_drag(double dt) {
+  void find_implicit_viscosity(double dt) {
     viscous_.solve(solve_sides(), static_cast<float>(dt), asked_.bodies, prepared_, report_.status(),
                    asked_.wrenches, check_, stream_);
   }
@@ -341,7 +341,7 @@ class CudaEngine final : public ParticleEngine {
     }
   }
 
-  struct Asked {  // of solve_drag() and solve_pressure()
+  struct Asked {  // of solve_viscosity() and solve_pressure()
     std::span<const ViscousBody> bodies;
     std::span<Wrench> wrenches;
   };

@@ -66,7 +66,7 @@ __device__ void sum_over_team(Symmetric<float>& moment, FlowSums<float>& s) {
 // drags by, Pa·m; `scale`: the force kernel's constant.
 __device__ void keep_passed(const SortedFluid& fluid, std::uint32_t p, const Symmetric<float>& pressed,
                             const FluidStress& found, const float (&u)[3], float scale) {
-  const Rows<float>& t = found.push;
+  const Matrix3<float>& t = found.push;
   const float f = 1.0f / scale;
   fluid.passed_x[p] =
       make_float4(pressed.xx + f * t.x.x, pressed.xy + f * t.x.y, pressed.xz + f * t.x.z, u[0]);
@@ -104,7 +104,7 @@ __global__ __launch_bounds__(kThreads, stresses ? kBlocksWithStress : 0) void co
     if constexpr (flows) add_flow<Kernel>({dx, dy, dz}, {v[0], v[1], v[2]}, h, flow);
   });
   Symmetric<float> by_fluid = sum.moment;
-  float held = 0.0f;  // Σ d² (−W'/r) V of walls that hold
+  float no_slip = 0.0f;  // Σ d² (−W'/r) V of walls that hold
   const auto add_walls = [&](const SortedSurface& walls) {
     if (walls.count == 0) return;
     for_neighbors<Team>(c.grid, walls.cells, cell, [&](std::uint32_t j) {
@@ -118,7 +118,7 @@ __global__ __launch_bounds__(kThreads, stresses ? kBlocksWithStress : 0) void co
       if constexpr (stresses) {
         if (__ldg(walls.viscosity + j) == static_cast<float>(kFreeSlip)) return;
         const float r_squared = dx * dx + dy * dy + dz * dz;
-        held += __ldg(walls.v + j).w * r_squared * Kernel::pair(r_squared, reach, 1.0f).slope_over_r;
+        no_slip += __ldg(walls.v + j).w * r_squared * Kernel::pair(r_squared, reach, 1.0f).slope_over_r;
       }
     });
   };
@@ -126,7 +126,7 @@ __global__ __launch_bounds__(kThreads, stresses ? kBlocksWithStress : 0) void co
   add_walls(moving);
   Team::sum(sum.moment, sum.number, sum.fluid_number, sum.vx, sum.vy, sum.vz);
   if constexpr (flows) sum_over_team<Team>(by_fluid, flow);
-  if constexpr (stresses) Team::sum(held);
+  if constexpr (stresses) Team::sum(no_slip);
   if (Team::lane() != 0) return;
   const ParticleKind kind = kinds[fluid.state.kind[p]];
   const float4 motion = fluid.state.v[p];
@@ -134,10 +134,10 @@ __global__ __launch_bounds__(kThreads, stresses ? kBlocksWithStress : 0) void co
   const float velocity[3] = {motion.x, motion.y, motion.z};
   const float rest = c.correction.rest_moment;
   FlowAround around;
-  TurnedMoment moment;
+  InverseMoment moment;
   if constexpr (flows) {
     around = flow_around(flow, velocity);
-    moment = turned_moment(by_fluid, rest);
+    moment = inverse_moment(by_fluid, rest);
     follow_flow(around, moment, rest, sum);
   }
   auto state = [&] {
@@ -155,7 +155,7 @@ __global__ __launch_bounds__(kThreads, stresses ? kBlocksWithStress : 0) void co
     };
     const StressSums sums{
         around, number, {apart(motion.x, sum.vx), apart(motion.y, sum.vy), apart(motion.z, sum.vz)}};
-    const FluidStress found = fluid_stress(sums, moment, share_of_stress(held / c.rest_volume, rest), rest,
+    const FluidStress found = fluid_stress(sums, moment, share_of_stress(no_slip / c.rest_volume, rest), rest,
                                            state.volume, kind.viscosity);
     state.u[0] += found.rest.x;
     state.u[1] += found.rest.y;
@@ -174,19 +174,19 @@ __global__ __launch_bounds__(kThreads, stresses ? kBlocksWithStress : 0) void co
 
 }  // namespace
 
-void launch_density(const StepConstants& constants, const Plan& plan, const ParticleKind* kinds, bool jostles,
-                    const SortedFluid& fluid, const SortedSurface& fixed, const SortedSurface& moving,
-                    std::uint32_t* status, cudaStream_t stream) {
+void launch_density(const StepConstants& constants, const Plan& plan, const ParticleKind* kinds,
+                    bool artificial, const SortedFluid& fluid, const SortedSurface& fixed,
+                    const SortedSurface& moving, std::uint32_t* status, cudaStream_t stream) {
   const bool viscosities = plan.has(PassId::kPairViscosity);
   const bool one_viscosity =
-      plan.has(PassId::kOneViscosity) && plan.drags_explicitly() && !plan.has(PassId::kFluidStress);
+      plan.has(PassId::kOneViscosity) && plan.explicit_viscosity() && !plan.has(PassId::kFluidStress);
   with_model(plan.model, [&]<class Parts>() {
     if constexpr (Parts::kCorrected) {
       with_team<kTensorTeams>(fluid.count, [&]<class Team>() {
         const auto kernel = plan.has(PassId::kFluidStress)
                                 ? corrected_density_kernel<Team, Parts::kSolved, true, true>
-                            : jostles ? corrected_density_kernel<Team, Parts::kSolved, true, false>
-                                      : corrected_density_kernel<Team, Parts::kSolved, false, false>;
+                            : artificial ? corrected_density_kernel<Team, Parts::kSolved, true, false>
+                                         : corrected_density_kernel<Team, Parts::kSolved, false, false>;
         kernel<<<blocks_for(fluid.count * Team::kLanes), kThreads, 0, stream>>>(
             constants, kinds, fluid, fixed, moving, one_viscosity, viscosities, status);
       });

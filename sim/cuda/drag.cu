@@ -26,7 +26,8 @@ __global__ __launch_bounds__(kThreads) void drag_kernel(StepConstants c, const P
   for_each_dragged<Alone, Viscosity::kPair, Neighbours::kWalls>(
       c, self, columns(moving), moving.cells, cell, c.support_radius, 1.0f,
       [&](const ParticleView<float>& i, float reach) {
-        add_pair_drag<typename Parts::ForceKernel, Parts::kDrag>(self, i, reach, c.drag_shape, 1.0f, sum);
+        add_pair_viscosity<typename Parts::ForceKernel, Parts::kDrag>(self, i, reach, c.drag_shape, 1.0f,
+                                                                      sum);
       });
   float4 force = fluid.force[p];
   force.x += c.force_scale * sum.x;

@@ -13,7 +13,7 @@ __device__ void add_passed_forces(const StepConstants& c, ParticleView<float> p,
                                   ForceSum<float>& sum) {
   using Kernel = typename Parts::ForceKernel;
   const float h = c.support_radius;
-  const Rows<float> own = read_passed(n, self, p);
+  const Matrix3<float> own = read_passed(n, self, p);
   const Vector3<float> own_u{p.ux, p.uy, p.uz};
   p.ux = p.uy = p.uz = 0.0f;  // pairs drag by what the other has more
   Vector3<float> slope{};     // Σ d (−W'/r)
@@ -23,7 +23,7 @@ __device__ void add_passed_forces(const StepConstants& c, ParticleView<float> p,
     const float r_squared = dx * dx + dy * dy + dz * dz;
     if (r_squared >= h * h) return;
     ParticleView<float> i;
-    const Rows<float> by = read_passed(n, j, i);
+    const Matrix3<float> by = read_passed(n, j, i);
     i.x = x.x;
     i.y = x.y;
     i.z = x.z;

@@ -200,10 +200,10 @@ void launch_damp(float4* velocities, std::uint32_t count, float keep, cudaStream
 void launch_scatter(const StepConstants& constants, const FluidView& fluid, std::uint32_t count,
                     std::uint32_t visible, float* positions, std::uint8_t* kinds, cudaStream_t stream);
 
-/// density.cu: Eq 2 and 7. `jostles`: any_jostles.
-void launch_density(const StepConstants& constants, const Plan& plan, const ParticleKind* kinds, bool jostles,
-                    const SortedFluid& fluid, const SortedSurface& fixed, const SortedSurface& moving,
-                    std::uint32_t* status, cudaStream_t stream);
+/// density.cu: Eq 2 and 7. `artificial`: any_artificial_viscosity.
+void launch_density(const StepConstants& constants, const Plan& plan, const ParticleKind* kinds,
+                    bool artificial, const SortedFluid& fluid, const SortedSurface& fixed,
+                    const SortedSurface& moving, std::uint32_t* status, cudaStream_t stream);
 
 /// force.cu: Eq 5, 6 and 9 on fluid particles, to fluid.force.
 void launch_force(const StepConstants& constants, const Plan& plan, const ParticleKind* kinds,

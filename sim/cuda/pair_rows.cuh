@@ -44,7 +44,8 @@ __device__ inline void read_corrected(const NeighborColumns& n, std::uint32_t j,
 }
 
 /// Where fluid passes on stresses: what j presses and stresses others with; to `p` what it drags by.
-__device__ inline Rows<float> read_passed(const NeighborColumns& n, std::uint32_t j, ParticleView<float>& p) {
+__device__ inline Matrix3<float> read_passed(const NeighborColumns& n, std::uint32_t j,
+                                             ParticleView<float>& p) {
   const float4 x = __ldg(n.passed_x + j), y = __ldg(n.passed_y + j), z = __ldg(n.passed_z + j);
   p.ux = x.w;
   p.uy = y.w;

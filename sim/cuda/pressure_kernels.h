@@ -45,16 +45,16 @@ struct PressureView {
   PairRows rows;
   std::uint32_t* with_fluid = nullptr;  ///< how many of an entry's pairs are with fluid
   float4* by_other = nullptr;           ///< what 1 Pa of the other pushes it by, m²: of pairs of fluid alone
-  float4* own = nullptr;  ///< of the fluid: what 1 Pa of its own pushes it by, m², by fluid, walls and
-                          ///< bodies; w: the sum of its square by fluid over each neighbour's mass, m⁴/kg
-  float* flow = nullptr;       ///< Q v − V⁰ e/dt, m³/s: wanted 0 where it presses, not below 0 elsewhere
-  float* inverse = nullptr;    ///< of the system's diagonal
-  float* pressure = nullptr;   ///< Pa
-  float* residual = nullptr;   ///< −flow of those that press
-  float* product = nullptr;    ///< the system times the direction
-  float* clipped = nullptr;    ///< Pa, what was cut off below 0 and `flow` does not know of
-  float* direction = nullptr;  ///< Pa
-  float4* velocity = nullptr;  ///< m/s; in w 1/mass
+  float4* own = nullptr;      ///< of the fluid: what 1 Pa of its own pushes it by, m², by fluid, walls and
+                              ///< bodies; w: the sum of its square by fluid over each neighbour's mass, m⁴/kg
+  float* flow = nullptr;      ///< Q v − V⁰ e/dt, m³/s: wanted 0 where it presses, not below 0 elsewhere
+  float* inverse = nullptr;   ///< of the system's diagonal
+  float* pressure = nullptr;  ///< Pa
+  float* residual = nullptr;  ///< −flow of those that press
+  float* product = nullptr;   ///< the system times the direction
+  float* clipped = nullptr;   ///< Pa, what was cut off below 0 and `flow` does not know of
+  float* direction = nullptr;                        ///< Pa
+  float4* velocity = nullptr;                        ///< m/s; in w 1/mass
   float4 *on_surface = nullptr, *turning = nullptr;  ///< N and N·m on each body's particle, local order
   std::uint32_t bodies = 0;                          ///< 0 where none may move
   const DevicePressedBody* body = nullptr;
@@ -69,7 +69,7 @@ struct PressureView {
 void launch_pressure_rows(const StepConstants& constants, const ParticleKind* kinds, const SortedFluid& fluid,
                           const SortedSurface& fixed, const SortedSurface& moving, const PressureView& view,
                           cudaStream_t stream);
-/// pressure_turns.cu: adds to fluid.force what the last step's pressures push each by.
+/// pressure_iterations.cu: adds to fluid.force what the last step's pressures push each by.
 void launch_push_by_last(const StepConstants& constants, const SortedFluid& fluid,
                          const SortedSurface& moving, const PressureView& view, cudaStream_t stream);
 

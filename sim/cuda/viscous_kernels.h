@@ -33,7 +33,7 @@ struct ViscousUnknown {
 
 /// What one solve leaves behind for the host.
 struct ViscousOutcome {
-  std::uint32_t turns = 0;
+  std::uint32_t iterations = 0;
   std::uint32_t converged = 0;
 };
 
@@ -73,7 +73,7 @@ void launch_viscous_rows(const StepConstants& constants, const Plan& plan, const
                          const SortedSurface& fixed, const SortedSurface& moving, const LocalSurface& local,
                          const ViscousView& view, cudaStream_t stream);
 
-/// viscous_turns.cu: how many blocks of the solve can be on the GPU at a time, > 0, or an error.
+/// viscous_iterations.cu: how many blocks of the solve can be on the GPU at a time, > 0, or an error.
 cudaError_t most_solve_blocks(int& blocks);
 /// The solve: adds to fluid.force what drag gives over `dt` s, fills view.wrenches and view.outcome, sets
 /// kStatusViscosityCut. `blocks`: at most most_solve_blocks(); the result does not depend on it.

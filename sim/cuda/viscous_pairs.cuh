@@ -6,7 +6,7 @@
 
 namespace slosh::cuda {
 
-/// Drag is solved for in this model alone (Plan::solves_drag).
+/// Drag is solved for in this model alone (Plan::implicit_viscosity).
 using SolvedParts = ModelParts<ParticleModel::kCorrected>;
 static_assert(SolvedParts::kDrag == DragRule::kCentral);
 

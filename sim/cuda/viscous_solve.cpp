@@ -6,7 +6,7 @@ namespace slosh::cuda {
 
 void ViscousSolver::plan(const Plan& plan, const ParticleStart& start, std::size_t body_count,
                          const WrenchSums& sums, CallCheck& check) {
-  if (!plan.solves_drag) return;
+  if (!plan.implicit_viscosity) return;
   sums_ = &sums;
   check.ok(cudaEventCreateWithFlags(&ready_, cudaEventDisableTiming), "cudaEventCreate");
   if (check.failed()) return;

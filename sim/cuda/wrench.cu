@@ -38,8 +38,8 @@ __global__ __launch_bounds__(kThreads) void surface_force_kernel(StepConstants c
       for_each_dragged<Team, viscosity, Neighbours::kFluid>(
           c, self, columns(fluid), fluid.cells, cell, h, wall.of_fluid,
           [&](const ParticleView<float>& p, float reach) {
-            add_pair_drag_rate<typename Parts::ForceKernel, Parts::kDrag>(self, p, reach, c.drag_shape, 1.0f,
-                                                                          rate);
+            add_pair_viscosity_rate<typename Parts::ForceKernel, Parts::kDrag>(self, p, reach, c.drag_shape,
+                                                                               1.0f, rate);
           });
     }
   }

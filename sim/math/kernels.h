@@ -63,7 +63,7 @@ struct PairKernel {
 };
 
 /// How a pair's drag falls off within the support radius h, in place of the kernel's ∇²W (h − r, without its
-/// constant): (h − r) (level + growth (h − r)). {1, 0} is ∇²W itself, to the bit.
+/// constant): (h − r) (level + growth (h − r)). {1, 0} is ∇²W itself, bitwise.
 template <class Real>
 struct DragShape {
   Real level;

@@ -60,11 +60,11 @@ SLOSH_HD void add_scaled(const Symmetric<Real>& t, Real a, Symmetric<Real>& sum)
 
 /// A tensor that need not be symmetric.
 template <class Real>
-struct Rows {
+struct Matrix3 {
   Vector3<Real> x, y, z;
 };
 template <class Real>
-SLOSH_HD Vector3<Real> times(const Rows<Real>& t, Real x, Real y, Real z) {
+SLOSH_HD Vector3<Real> times(const Matrix3<Real>& t, Real x, Real y, Real z) {
   return {t.x.x * x + t.x.y * y + t.x.z * z, t.y.x * x + t.y.y * y + t.y.z * z,
           t.z.x * x + t.z.y * y + t.z.z * z};
 }
@@ -73,12 +73,12 @@ SLOSH_HD Vector3<Real> times(const Vector3<Real>& row, const Symmetric<Real>& t)
   return times(t, row.x, row.y, row.z);
 }
 template <class Real>
-SLOSH_HD Rows<Real> times(const Rows<Real>& a, const Symmetric<Real>& t) {
+SLOSH_HD Matrix3<Real> times(const Matrix3<Real>& a, const Symmetric<Real>& t) {
   return {times(a.x, t), times(a.y, t), times(a.z, t)};
 }
 /// t · a.
 template <class Real>
-SLOSH_HD Rows<Real> times(const Symmetric<Real>& t, const Rows<Real>& a) {
+SLOSH_HD Matrix3<Real> times(const Symmetric<Real>& t, const Matrix3<Real>& a) {
   const Vector3<Real> x = times(t, a.x.x, a.y.x, a.z.x), y = times(t, a.x.y, a.y.y, a.z.y),
                       z = times(t, a.x.z, a.y.z, a.z.z);  // columns
   return {{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}};

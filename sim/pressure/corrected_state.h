@@ -7,22 +7,22 @@
 #include "sim/pressure/equation_of_state.h"
 #include "sim/pressure/gradient_correction.h"
 #include "sim/pressure/pair_pressure.h"
-#include "sim/viscosity/noise.h"
+#include "sim/viscosity/artificial_viscosity.h"
 
 namespace slosh {
 
 /// What the particles of a run share, for the corrected model.
 struct CorrectionConstants {
-  float rest_number = 0.0f;      ///< Σ of the kernel's shape over the rest lattice
-  float rest_moment = 0.0f;      ///< Σ x² (−W'/r) over it, without the kernel's constant
-  float push_scale = 0.0f;       ///< 1/(V⁰ · rest_moment · the kernel's constant), near 1.3
-  float own_number = 0.0f;       ///< the kernel's shape at no distance
-  float noise_viscosity = 0.0f;  ///< Pa·s (viscosity/noise.h)
-  float rest_volume = 0.0f;      ///< m³
-  float stiffness = 0.0f;        ///< m²/s²
+  float rest_number = 0.0f;           ///< Σ of the kernel's shape over the rest lattice
+  float rest_moment = 0.0f;           ///< Σ x² (−W'/r) over it, without the kernel's constant
+  float push_scale = 0.0f;            ///< 1/(V⁰ · rest_moment · the kernel's constant), near 1.3
+  float own_number = 0.0f;            ///< the kernel's shape at no distance
+  float artificial_viscosity = 0.0f;  ///< Pa·s (viscosity/artificial_viscosity.h)
+  float rest_volume = 0.0f;           ///< m³
+  float stiffness = 0.0f;             ///< m²/s²
   float tension = 0.0f;
-  float impact_growth = 0.0f;            ///< s/m (viscosity/noise.h)
-  float most_drag = 0.0f;                ///< Pa·s (viscosity/stability.h, most_explicit_drag)
+  float impact_growth = 0.0f;            ///< s/m (viscosity/artificial_viscosity.h)
+  float most_drag = 0.0f;                ///< Pa·s (viscosity/stability.h, max_explicit_viscosity)
   float wall_layer = 1.0f / kWallShare;  ///< share of a wall's particle in the moment (wall_layers.h)
 };
 
@@ -36,14 +36,15 @@ struct CorrectedState {
 
 /// From which share of the settled moment on nobody is missing. Settled particles have 0.95 to 1.1 of it, 0.9
 /// where they lie unevenly or beside a wall, which is one layer in it; who is taken for a surface presses in
-/// part as the consistent model does, and yields. A fluid that needs no drag on jostling lets nine tenths
+/// part as the consistent model does, and yields. A fluid that needs no drag on artificial lets nine tenths
 /// pass for all. One that lives by that drag asks for all: with nine tenths water turned over by itself at 22
 /// mm/s for 16, and the surface of a turning glass stood 3 % lower
 /// (tests/notebook/2026-11-25-slow-flow-yields.md). `viscosity`: Pa·s.
 inline constexpr float kPassedOver = 0.1f;
 SLOSH_HD inline float whole_from(const CorrectionConstants& c, float viscosity) {
-  const float jostling = jostling_viscosity(c.noise_viscosity, viscosity) / c.noise_viscosity;
-  return 1.0f - kPassedOver * (1.0f - jostling);
+  const float artificial =
+      artificial_viscosity_left(c.artificial_viscosity, viscosity) / c.artificial_viscosity;
+  return 1.0f - kPassedOver * (1.0f - artificial);
 }
 
 /// What V² P is multiplied by. `volume`: m³; `compression`: ρ/ρ⁰ − 1; `viscosity`: the fluid's own, Pa·s.
@@ -59,16 +60,17 @@ SLOSH_HD inline Symmetric<float> directions_of(const Neighborhood<float>& n, con
 SLOSH_HD inline void set_drag(const Neighborhood<float>& n, const CorrectionConstants& c, float viscosity,
                               float in_u, const float (&v)[3], float (&u)[3]) {
   for (int k = 0; k < 3; ++k) u[k] = in_u * v[k];
-  const float calm = jostling_viscosity(c.noise_viscosity, viscosity);
-  float jostling = calm;
+  const float calm = artificial_viscosity_left(c.artificial_viscosity, viscosity);
+  float artificial = calm;
   if (c.impact_growth > 0.0f) {
     float d[3] = {};
-    add_noise(n, c.own_number, 1.0f, v, d);
+    add_fluctuation(n, c.own_number, 1.0f, v, d);
     const float speed = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-    jostling = viscosity_in_impact(calm, c.noise_viscosity, c.impact_growth, speed, viscosity, c.most_drag);
+    artificial = artificial_viscosity_in_impact(calm, c.artificial_viscosity, c.impact_growth, speed,
+                                                viscosity, c.most_drag);
   }
-  add_noise(n, c.own_number, jostling, v, u);
-  follow_noise(n, c.own_number, calm, u);
+  add_fluctuation(n, c.own_number, artificial, v, u);
+  follow_fluctuation(n, c.own_number, calm, u);
 }
 
 /// `viscosity`: the fluid's own, Pa·s. `in_u`: the same where u is to carry it (all fluids share it and drag

@@ -7,7 +7,8 @@
 // pressure settle into has a shear modulus of some tenths of P, and the fluid yields like sand. Forces are
 // equal and opposite; since L M = 1 is symmetric, they exert no torque together where all of it is made.
 //
-// The price: the force is no energy's gradient. viscosity/noise.h takes out what jostling gains by that.
+// The price: the force is no energy's gradient. viscosity/artificial_viscosity.h takes out what jostling
+// gains by that.
 #pragma once
 
 #include "sim/math/kernels.h"
@@ -19,7 +20,7 @@ namespace slosh {
 /// weight below a third of it. From there the correction goes away, and by the second there is none: in an
 /// impact the gradient of an energy gives back no more than it took. (Without this single drops rose to 12 cm
 /// of the 7 they fell, and fluid put into a wall threw itself out; tests/stability.)
-inline constexpr float kCalm = 0.1f;
+inline constexpr float kQuietTime = 0.1f;
 inline constexpr float kImpact = 0.2f;
 /// Below this determinant a neighbourhood is too flat to be turned round, and L goes to 1.
 inline constexpr float kFlattest = 0.1f;
@@ -83,7 +84,7 @@ SLOSH_HD inline float unflattened(Symmetric<float>& moment) {
 
 /// How much of the correction a particle gets at a compression ρ/ρ⁰ − 1: 0–1.
 SLOSH_HD inline float corrected_share(float compression) {
-  const float left = RealOps<float>::positive_part(kImpact - compression) / (kImpact - kCalm);
+  const float left = RealOps<float>::positive_part(kImpact - compression) / (kImpact - kQuietTime);
   return left < 1.0f ? left : 1.0f;
 }
 

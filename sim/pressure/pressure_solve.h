@@ -10,11 +10,11 @@ inline constexpr double kPressureTolerance = 0.03;
 inline constexpr double kPressureFloor = 3e-5;
 /// and here whatever is left: the next step begins with what this one found, and undoes a share of what is
 /// compressed. With 8 a column of 32 layers that is let go rings for a second.
-inline constexpr int kMostPressureTurns = 20;
+inline constexpr int kMaxPressureIterations = 20;
 
 /// How one solve went.
 struct PressureReport {
-  int turns = 0;
+  int iterations = 0;
   double left = 0.0;  ///< compression that the step leaves, root mean square over the particles that press
 };
 

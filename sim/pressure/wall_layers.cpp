@@ -29,7 +29,7 @@ double thick_layers(double support_ratio) {
 }
 
 float wall_layer(float noise, float viscosity, double support_ratio) {
-  const float thick = 1.0f - jostling_viscosity(noise, viscosity) / noise;
+  const float thick = 1.0f - artificial_viscosity_left(noise, viscosity) / noise;
   return (1.0f + (static_cast<float>(thick_layers(support_ratio)) - 1.0f) * thick) / kWallShare;
 }
 

@@ -3,22 +3,22 @@
 // Drag taken from the velocities that a step begins with throws a body about as soon as the step is longer
 // than twice its mass over its drag: a light box in honey. With the drag's derivative in the body's own solve
 // the velocity that the step ends with is what drags, and the fluid is then dragged by the same velocity
-// (add_pair_drag of the change), so that the pair goes on giving what it takes.
+// (add_pair_viscosity of the change), so that the pair goes on giving what it takes.
 #pragma once
 
 #include <glm/glm.hpp>
 
 #include "sim/math/dense.h"
 #include "sim/particle_view.h"
-#include "sim/viscosity/pair_drag.h"
+#include "sim/viscosity/pair_viscosity.h"
 
 namespace slosh {
 
 /// Adds how much force along each axis a pair gives for each m/s between its two, N·s/m, without the kernel's
 /// constant. It is add_pair_force's viscous part, differentiated by i's velocity.
 template <class Kernel, DragRule rule, class Real>
-SLOSH_HD void add_pair_drag_rate(const ParticleView<Real>& p, const ParticleView<Real>& i, Real h,
-                                 const DragShape<Real>& shape, Real weight, Symmetric<Real>& sum) {
+SLOSH_HD void add_pair_viscosity_rate(const ParticleView<Real>& p, const ParticleView<Real>& i, Real h,
+                                      const DragShape<Real>& shape, Real weight, Symmetric<Real>& sum) {
   const Real dx = p.x - i.x;
   const Real dy = p.y - i.y;
   const Real dz = p.z - i.z;
@@ -36,10 +36,10 @@ SLOSH_HD void add_pair_drag_rate(const ParticleView<Real>& p, const ParticleView
 
 /// Adds the drag on p of a neighbour that moves by (i.vx, i.vy, i.vz) m/s more than it did.
 template <class Kernel, DragRule rule, class Real>
-SLOSH_HD void add_pair_drag(const ParticleView<Real>& p, const ParticleView<Real>& i, Real h,
-                            const DragShape<Real>& shape, Real weight, ForceSum<Real>& sum) {
+SLOSH_HD void add_pair_viscosity(const ParticleView<Real>& p, const ParticleView<Real>& i, Real h,
+                                 const DragShape<Real>& shape, Real weight, ForceSum<Real>& sum) {
   Symmetric<Real> rate{Real(0.0f), Real(0.0f), Real(0.0f), Real(0.0f), Real(0.0f), Real(0.0f)};
-  add_pair_drag_rate<Kernel, rule>(p, i, h, shape, weight, rate);
+  add_pair_viscosity_rate<Kernel, rule>(p, i, h, shape, weight, rate);
   sum.x += rate.xx * i.vx + rate.xy * i.vy + rate.xz * i.vz;
   sum.y += rate.xy * i.vx + rate.yy * i.vy + rate.yz * i.vz;
   sum.z += rate.xz * i.vx + rate.yz * i.vy + rate.zz * i.vz;

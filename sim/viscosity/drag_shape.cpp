@@ -11,8 +11,8 @@ constexpr double kSlides = 1.04;  // what layers that slide over each other lack
 
 }  // namespace
 
-DragShape<double> drag_shape(DragSheet sheet, double support_radius) {
-  if (sheet == DragSheet::kBehind) return {1.0, 0.0};
+DragShape<double> drag_shape(DragLayer layer, double support_radius) {
+  if (layer == DragLayer::kBehind) return {1.0, 0.0};
   // ∫ shape r⁴ dr as without growth: evenly lying fluid passes on the same.
   const double level = 1.0 / (1.0 + 2.0 / 7.0 * kGrowth);
   return {kSlides * level, kSlides * level * kGrowth / support_radius};

@@ -7,7 +7,7 @@
 namespace slosh {
 
 /// Eq 9 has the viscosity kernel's ∇²W, and so have the models that do not correct gradients and thin fluid
-/// (DragSheet::kBehind), where the drag on jostling is what counts. Thick fluid has a shape of its own, for
+/// (DragLayer::kBehind), where the drag on jostling is what counts. Thick fluid has a shape of its own, for
 /// two reasons (tests/notebook/2026-11-25-shape-of-the-viscous-pair-force.md):
 ///
 /// - Fluid at rest lies in a lattice, and at a support ratio of 2 ∇²W passes on 0.89 of a strain along the
@@ -18,6 +18,6 @@ namespace slosh {
 ///   mean over where one lies over the next. It drags the more by that.
 ///
 /// `support_radius`: m.
-DragShape<double> drag_shape(DragSheet sheet, double support_radius);
+DragShape<double> drag_shape(DragLayer layer, double support_radius);
 
 }  // namespace slosh

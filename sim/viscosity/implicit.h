@@ -32,11 +32,11 @@ struct ViscousBody {
 
 /// A sub-step is at most so many times as long as the explicit one: beyond, single precision has too little
 /// left.
-inline constexpr double kMostImplicit = 2000.0;
+inline constexpr double kMaxImplicit = 2000.0;
 
 /// How one solve went.
 struct ViscousReport {
-  int turns = 0;
+  int iterations = 0;
   bool converged = true;
 };
 
@@ -46,7 +46,7 @@ inline constexpr double kViscousTolerance = 0.01;
 /// to step by a fiftieth more than after an exact solve.
 inline constexpr double kViscousFloor = 3e-3;
 /// And here whatever is left (kStatusViscosityCut).
-inline constexpr int kMostViscousTurns = 100;
+inline constexpr int kMaxViscosityIterations = 100;
 
 /// The inverse of mass · 1 + dt · rate: what a residual of a particle means as a velocity, were its
 /// neighbours to stand still. `rate`: N·s/m.

@@ -10,7 +10,7 @@
 
 #include "sim/math/kernels.h"
 #include "sim/math/symmetric.h"
-#include "sim/viscosity/pair_drag.h"
+#include "sim/viscosity/pair_viscosity.h"
 
 namespace slosh {
 

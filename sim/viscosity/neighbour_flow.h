@@ -1,5 +1,5 @@
 // How a particle's fluid neighbours flow, to first order: so that what it moves otherwise than they do
-// (noise.h) is nothing in a fluid that turns or shears as one, at a wall and at a surface too.
+// (artificial_viscosity.h) is nothing in a fluid that turns or shears as one, at a wall and at a surface too.
 //
 // There all neighbours lie on one side, and their mean velocity is that of a place some tenths of a spacing
 // off. Drag against that mean was drag on the flow: a fluid of 0.5 Pa·s in a glass that turned at 16 rad/s
@@ -34,8 +34,8 @@ SLOSH_HD void add_flow(const Real (&d)[3], const Real (&v)[3], Real h, FlowSums<
 
 /// What those are for one particle.
 struct FlowAround {
-  Vector3<float> offset;  ///< Σ W d, m
-  Rows<float> carried;    ///< Σ (v_p − v_i) ⊗ d (−W'/r)
+  Vector3<float> offset;   ///< Σ W d, m
+  Matrix3<float> carried;  ///< Σ (v_p − v_i) ⊗ d (−W'/r)
 };
 
 /// `v`: the particle's, m/s.
@@ -48,13 +48,13 @@ SLOSH_HD inline FlowAround flow_around(const FlowSums<float>& sum, const float (
 }
 
 /// Σ d ⊗ d (−W'/r) by fluid alone, over the rest lattice's, turned round.
-struct TurnedMoment {
+struct InverseMoment {
   Symmetric<float> whole;    ///< the moment itself
   Symmetric<float> inverse;  ///< of what unflattened() makes of it
   float kept;                ///< by how much it was flat enough for that to be itself, 0 to 1
 };
-SLOSH_HD inline TurnedMoment turned_moment(const Symmetric<float>& moment, float rest_moment) {
-  TurnedMoment found;
+SLOSH_HD inline InverseMoment inverse_moment(const Symmetric<float>& moment, float rest_moment) {
+  InverseMoment found;
   Symmetric<float> upright = found.whole = scaled_and_shifted(moment, 1.0f / rest_moment, 0.0f);
   found.kept = unflattened(upright);
   found.inverse = inverse(upright);
@@ -65,7 +65,7 @@ SLOSH_HD inline TurnedMoment turned_moment(const Symmetric<float>& moment, float
 /// ⊗ d (−W'/r) M⁻¹: exact where they flow linearly. Where M is too flat to be turned round (a layer, a
 /// thread, a drop of a few) it is as much less. `rest_moment`: Σ x² (−W'/r) over the rest lattice. To n.fx,
 /// fy, fz.
-SLOSH_HD inline void follow_flow(const FlowAround& flow, const TurnedMoment& moment, float rest_moment,
+SLOSH_HD inline void follow_flow(const FlowAround& flow, const InverseMoment& moment, float rest_moment,
                                  Neighborhood<float>& n) {
   const float scale = moment.kept / rest_moment;
   const Vector3<float> to =

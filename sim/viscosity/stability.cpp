@@ -5,9 +5,9 @@
 #include <limits>
 
 #include "sim/model.h"
+#include "sim/viscosity/artificial_viscosity.h"
 #include "sim/viscosity/drag_shape.h"
 #include "sim/viscosity/implicit.h"
-#include "sim/viscosity/noise.h"
 
 namespace slosh {
 
@@ -15,7 +15,7 @@ namespace {
 
 // Explicit viscosity is stable below 2/λ; λ of the roughest mode is about twice the lattice sum.
 constexpr double kViscousFactor = 0.8;
-// What is left of that sum for the fluid's first layer, and what a wall adds to it in the models whose sheet
+// What is left of that sum for the fluid's first layer, and what a wall adds to it in the models whose layer
 // drags as one lattice layer.
 constexpr double kHalfLattice = 0.5;
 constexpr double kOneLayer = 0.85;
@@ -43,9 +43,9 @@ double lattice_viscosity_sum(double ratio, const DragShape<double>& shape) {
 }
 
 // 1/(Pa·s · s): the explicit viscosity's damping rate for each Pa·s.
-double viscous_rate(const Scene& scene, const Plan& plan, const FluidExtremes& fluids, DragSheet sheet) {
+double viscous_rate(const Scene& scene, const Plan& plan, const FluidExtremes& fluids, DragLayer layer) {
   const double central = plan.model == ParticleModel::kPaper ? 1.0 : kCentralDrag / 3.0;
-  const DragShape<double> shape = drag_shape(sheet, scene.support_ratio);
+  const DragShape<double> shape = drag_shape(layer, scene.support_ratio);
   const double lattice = with_model(plan.model, [&]<class Parts>() {
     return lattice_viscosity_sum<typename Parts::ForceKernel>(scene.support_ratio, shape);
   });
@@ -54,8 +54,8 @@ double viscous_rate(const Scene& scene, const Plan& plan, const FluidExtremes& f
 
 // What a wall adds to the sum of the first layer: half of its rate, since it does not swing against the fluid
 // as the fluid's own layers do.
-double wall_part(const Scene& scene, const Plan& plan, DragSheet sheet) {
-  return corrects_gradients(plan.model) ? 0.5 * wall_drag(plan.model, scene.support_ratio, sheet).rate
+double wall_part(const Scene& scene, const Plan& plan, DragLayer layer) {
+  return corrects_gradients(plan.model) ? 0.5 * wall_drag(plan.model, scene.support_ratio, layer).rate
                                         : kOneLayer;
 }
 
@@ -65,14 +65,14 @@ double of_an_edge(const Plan& plan) {
 }
 
 // Pa·s that the roughest mode feels besides the fluid's own.
-double jostling(const Plan& plan, const FluidExtremes& fluids) {
-  return corrects_gradients(plan.model) ? noise_viscosity(plan, fluids.lightest) : 0.0;
+double artificial(const Plan& plan, const FluidExtremes& fluids) {
+  return corrects_gradients(plan.model) ? artificial_viscosity(plan, fluids.lightest) : 0.0;
 }
 
-double most_explicit_drag(const Scene& scene, const Plan& plan, DragSheet sheet) {
+double max_explicit_viscosity(const Scene& scene, const Plan& plan, DragLayer layer) {
   if (!plan.has_fluid()) return std::numeric_limits<double>::infinity();
   const double step = plan.time_step / plan.sub_steps;
-  return kViscousFactor / (step * viscous_rate(scene, plan, fluid_extremes(scene), sheet));
+  return kViscousFactor / (step * viscous_rate(scene, plan, fluid_extremes(scene), layer));
 }
 
 }  // namespace
@@ -88,29 +88,30 @@ double most_viscous_body(const Scene& scene, double most_viscous_fluid) {
 
 double viscous_step(const Scene& scene, const Plan& plan, const FluidExtremes& fluids) {
   const double mean = 0.5 * (fluids.most_viscous + most_viscous_body(scene, fluids.most_viscous));
-  const DragSheet sheet = drag_sheet(scene, plan);
-  const double by_wall = wall_part(scene, plan, sheet) * mean;
+  const DragLayer layer = drag_layer(scene, plan);
+  const double by_wall = wall_part(scene, plan, layer) * mean;
   const double at_walls =
       std::max(kHalfLattice * fluids.most_viscous + by_wall,
                of_an_edge(plan) * (kQuarterLattice * fluids.most_viscous + 2.0 * by_wall));
-  const double viscosity = jostling(plan, fluids) + std::max(fluids.most_viscous, at_walls);
-  return kViscousFactor / (viscosity * viscous_rate(scene, plan, fluids, sheet));
+  const double viscosity = artificial(plan, fluids) + std::max(fluids.most_viscous, at_walls);
+  return kViscousFactor / (viscosity * viscous_rate(scene, plan, fluids, layer));
 }
 
-double jostling_step(const Scene& scene, const Plan& plan, const FluidExtremes& fluids) {
-  const double rate = viscous_rate(scene, plan, fluids, drag_sheet(scene, plan));
-  return kViscousFactor / (jostling(plan, fluids) * rate);
+double artificial_viscosity_step(const Scene& scene, const Plan& plan, const FluidExtremes& fluids) {
+  const double rate = viscous_rate(scene, plan, fluids, drag_layer(scene, plan));
+  return kViscousFactor / (artificial(plan, fluids) * rate);
 }
 
-double most_explicit_drag(const Scene& scene, const Plan& plan) {
-  return most_explicit_drag(scene, plan, drag_sheet(scene, plan));
+double max_explicit_viscosity(const Scene& scene, const Plan& plan) {
+  return max_explicit_viscosity(scene, plan, drag_layer(scene, plan));
 }
 
-double most_viscous_allowed(const Scene& scene, const Plan& plan, DragSheet sheet) {
+double max_viscosity_allowed(const Scene& scene, const Plan& plan, DragLayer layer) {
   const FluidExtremes fluids = fluid_extremes(scene);
-  const double whole = most_explicit_drag(scene, plan, sheet) * (plan.solves_drag ? kMostImplicit : 1.0) -
-                       jostling(plan, fluids);
-  const double part = wall_part(scene, plan, sheet);
+  const double whole =
+      max_explicit_viscosity(scene, plan, layer) * (plan.implicit_viscosity ? kMaxImplicit : 1.0) -
+      artificial(plan, fluids);
+  const double part = wall_part(scene, plan, layer);
   const double of_bodies = most_viscous_body(scene, 0.0);
   const double at_walls = (whole - 0.5 * part * of_bodies) / (kHalfLattice + 0.5 * part);
   const double at_edges = (whole / of_an_edge(plan) - part * of_bodies) / (kQuarterLattice + part);

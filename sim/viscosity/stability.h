@@ -14,14 +14,14 @@ double most_viscous_body(const Scene& scene, double most_viscous_fluid);
 double viscous_step(const Scene& scene, const Plan& plan, const FluidExtremes& fluids);
 
 /// s, the longest step at which what drags on jostling stays stable where nothing else drags explicitly.
-double jostling_step(const Scene& scene, const Plan& plan, const FluidExtremes& fluids);
+double artificial_viscosity_step(const Scene& scene, const Plan& plan, const FluidExtremes& fluids);
 
 /// Pa·s of all that drags a particle explicitly, up to which the plan's step takes no more than 0.8 of its
 /// velocity among neighbours that stand still. Infinite without fluid.
-double most_explicit_drag(const Scene& scene, const Plan& plan);
+double max_explicit_viscosity(const Scene& scene, const Plan& plan);
 
-/// The largest viscosity of a fluid, Pa·s, at which the plan's step stays stable where walls drag by `sheet`.
+/// The largest viscosity of a fluid, Pa·s, at which the plan's step stays stable where walls drag by `layer`.
 /// Needs no mesh.
-double most_viscous_allowed(const Scene& scene, const Plan& plan, DragSheet sheet);
+double max_viscosity_allowed(const Scene& scene, const Plan& plan, DragLayer layer);
 
 }  // namespace slosh

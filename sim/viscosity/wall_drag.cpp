@@ -5,8 +5,8 @@
 
 #include "sim/fluid_extremes.h"
 #include "sim/model.h"
+#include "sim/viscosity/artificial_viscosity.h"
 #include "sim/viscosity/drag_shape.h"
-#include "sim/viscosity/noise.h"
 #include "sim/viscosity/stability.h"
 #include "sim/walls/wall_inset.h"
 
@@ -60,11 +60,11 @@ constexpr LiesEvenly kCompressible{0.3, 0.9}, kSolved{0.0, 0.5};
 constexpr double kBall = 0.25;  // the convexity from which on it is a ball
 
 template <class Kernel>
-WallDrag computed(ParticleModel model, double ratio, DragSheet sheet) {
-  const DragShape<double> shape = drag_shape(sheet, ratio);
+WallDrag computed(ParticleModel model, double ratio, DragLayer layer) {
+  const DragShape<double> shape = drag_shape(layer, ratio);
   const LiesEvenly& lies = model == ParticleModel::kIncompressible ? kSolved : kCompressible;
   const int reach = static_cast<int>(std::ceil(ratio));
-  const double behind = sheet == DragSheet::kBehind ? wall_inset(model, ratio) : 0.0;
+  const double behind = layer == DragLayer::kBehind ? wall_inset(model, ratio) : 0.0;
   double stress = 0.0, by_layers = 0.0, evenly = 0.0, whole = layer_drag<Kernel>(0.0, ratio, shape).along;
   for (int n = 1; n <= reach; ++n) {
     const LayerDrag layer = layer_drag<Kernel>(n, ratio, shape);
@@ -81,7 +81,7 @@ WallDrag computed(ParticleModel model, double ratio, DragSheet sheet) {
     double even = 0.0;
     for (int k = 0; k < kHeights; ++k) even += passed(n + (k + 0.5) / kHeights) / kHeights;
     by_layers += layered;
-    evenly += sheet == DragSheet::kBehind ? layered : even;
+    evenly += layer == DragLayer::kBehind ? layered : even;
   }
   WallDrag drag{.evenly_flat = lies.flat, .evenly_at_balls = lies.at_balls};
   if (by_layers > 0.0 && evenly > 0.0) {
@@ -109,7 +109,7 @@ double mirrored_power(double height, double ratio, const DragShape<double>& shap
 // What a wall's particles, which drag across it alone, take from one at `height`, for each (m/s)² that it has
 // there.
 template <class Kernel>
-double held(double height, double ratio, const DragShape<double>& shape) {
+double no_slip(double height, double ratio, const DragShape<double>& shape) {
   double sum = 0.0;
   for_each_in_layer(height, ratio, [&](double, double, double r) {
     sum += shape(Kernel::laplacian(r, ratio)) / (kPlaces * kPlaces);
@@ -124,7 +124,7 @@ double computed_mirror(double ratio, const DragShape<double>& shape) {
   double mirrored = 0.0, by_wall = 0.0;
   for (int n = 0; n < heights; ++n) {
     const double z = (n + 0.5) / kHeights;
-    by_wall += held<Kernel>(z, ratio, shape) * z * z;
+    by_wall += no_slip<Kernel>(z, ratio, shape) * z * z;
     // Of two particles, one on either side, so many pairs of heights come to (n + 1) / kHeights together.
     mirrored += (n + 1.0) / kHeights * mirrored_power<Kernel>((n + 1.0) / kHeights, ratio, shape);
   }
@@ -138,22 +138,23 @@ double WallDrag::factor(double convexity) const {
   return 1.0 / ((1.0 - evenly) / layered + evenly / even);
 }
 
-DragSheet drag_sheet(const Scene& scene, const Plan& plan) {
-  if (!corrects_gradients(plan.model)) return DragSheet::kBehind;
+DragLayer drag_layer(const Scene& scene, const Plan& plan) {
+  if (!corrects_gradients(plan.model)) return DragLayer::kBehind;
   const FluidExtremes fluids = fluid_extremes(scene);
   const double most = std::max(fluids.most_viscous, most_viscous_body(scene, fluids.most_viscous));
-  return most > kThin * noise_viscosity(plan, fluids.lightest) ? DragSheet::kSurface : DragSheet::kBehind;
+  return most > kThin * artificial_viscosity(plan, fluids.lightest) ? DragLayer::kSurface
+                                                                    : DragLayer::kBehind;
 }
 
-double mirror_factor(double support_ratio, DragSheet sheet) {
-  if (sheet != DragSheet::kSurface) return 0.0;
+double mirror_factor(double support_ratio, DragLayer layer) {
+  if (layer != DragLayer::kSurface) return 0.0;
   return computed_mirror<ModelParts<ParticleModel::kCorrected>::ForceKernel>(
-      support_ratio, drag_shape(sheet, support_ratio));
+      support_ratio, drag_shape(layer, support_ratio));
 }
 
-WallDrag wall_drag(ParticleModel model, double support_ratio, DragSheet sheet) {
+WallDrag wall_drag(ParticleModel model, double support_ratio, DragLayer layer) {
   if (!corrects_gradients(model)) return {};
-  return computed<ModelParts<ParticleModel::kCorrected>::ForceKernel>(model, support_ratio, sheet);
+  return computed<ModelParts<ParticleModel::kCorrected>::ForceKernel>(model, support_ratio, layer);
 }
 
 }  // namespace slosh

@@ -10,18 +10,18 @@ namespace slosh {
 inline constexpr double kFirstLayer = 0.5;
 
 /// Which of a wall's particles drag.
-enum class DragSheet {
+enum class DragLayer {
   kBehind,   ///< those that press, behind the surface (walls/wall_inset.h)
   kSurface,  ///< others, on the surface itself
 };
 
 /// The corrected model's walls drag from the surface itself: drag goes along the line between two particles,
-/// and from behind the surface that line is mostly across it. (One sheet behind it has to drag six
+/// and from behind the surface that line is mostly across it. (One layer behind it has to drag six
 /// times as strongly to hold flat fluid, damps four times as fast across the surface as along it, and lets go
 /// of strongly curved ones: a ball of 1.5 spacings lost 31 to 41 % of its drag.) Where all fluids and bodies
-/// are thin (noise.h), drag on jostling is more than theirs and the second sheet not worth its time; so too
-/// in the other models. `scene`: as it starts, since the sheets stay for the run.
-DragSheet drag_sheet(const Scene& scene, const Plan& plan);
+/// are thin (artificial_viscosity.h), drag on jostling is more than theirs and the second layer not worth its
+/// time; so too in the other models. `scene`: as it starts, since the sheets stay for the run.
+DragLayer drag_layer(const Scene& scene, const Plan& plan);
 
 /// Of a flat wall at the spacing against a lattice of fluid, in units of the damping rate that a particle has
 /// among the still neighbours of a whole lattice.
@@ -38,11 +38,11 @@ struct WallDrag {
 };
 
 /// Factors are such that in a linear shear, u = γ · (distance from the surface), the fluid within reach of
-/// the sheet passes on the stress that layers of fluid pass on to each other. Fluid at a flat wall lies
+/// the layer passes on the stress that layers of fluid pass on to each other. Fluid at a flat wall lies
 /// mostly in layers, at a ball of a few spacings more of it evenly; from behind the surface layers alone
 /// count. Nothing but the support ratio, drag_shape(), the surface and whether pressures are solved for
 /// decide it. Models that do not correct gradients keep 1.
-WallDrag wall_drag(ParticleModel model, double support_ratio, DragSheet sheet);
+WallDrag wall_drag(ParticleModel model, double support_ratio, DragLayer layer);
 
 /// What the volume of a particle on a surface along which fluid slides counts (mirror_drag.h): such that
 /// evenly lying fluid which stretches along a flat wall and is pressed together across it loses by the wall
@@ -50,6 +50,6 @@ WallDrag wall_drag(ParticleModel model, double support_ratio, DragSheet sheet);
 /// would be six tenths as much). At a support ratio of 2 a particle of the first layer then has 0.36 of the
 /// damping rate of a whole lattice by it, less than the half of that lattice that it lacks: no step is
 /// shortened. 0 where walls do not drag from the surface.
-double mirror_factor(double support_ratio, DragSheet sheet);
+double mirror_factor(double support_ratio, DragLayer layer);
 
 }  // namespace slosh

@@ -5,13 +5,13 @@
 namespace slosh {
 namespace {
 
-// Spacings: the sheet's depth, a sample's own distance from the edge, and how far apart those of the other
+// Spacings: the layer's depth, a sample's own distance from the edge, and how far apart those of the other
 // faces are. With 1.5 one of some 1500 of boxes' samples does not see a corner's third face.
 constexpr float kReach = 1.75f;
 // Of the reach. What is farther before a face than that belongs to a face that meets it in a concave edge.
 constexpr float kConcave = 0.033f;
 constexpr float kSameFace = 0.85f;   // cosine between normals
-constexpr int kMostTurns = 20;       // by all faces; two at right angles take one
+constexpr int kMaxTurns = 20;        // by all faces; two at right angles take one
 constexpr float kSatisfied = 0.02f;  // of the depth
 
 }  // namespace
@@ -36,7 +36,7 @@ std::optional<glm::vec3> ConvexEdges::behind(std::size_t i, float depth) const {
   });
   if (concave || faces.size() == 1) return std::nullopt;
   glm::vec3 p = own.at - depth * own.normal;
-  for (int turn = 0; turn < kMostTurns; ++turn) {
+  for (int turn = 0; turn < kMaxTurns; ++turn) {
     float most = 0.0f;
     for (const Face& f : faces) {
       const float missing = depth - glm::dot(f.normal, f.at - p);

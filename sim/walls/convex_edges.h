@@ -1,4 +1,4 @@
-// Where a sheet lies behind convex edges.
+// Where a layer lies behind convex edges.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -11,7 +11,7 @@
 namespace slosh {
 
 /// The faces that meet in convex edges, as samples of them show. A distance field, which is coarse, is round
-/// along edges: it moves a sheet there by up to an eighth of a spacing, as its nodes happen to lie, and leads
+/// along edges: it moves a layer there by up to an eighth of a spacing, as its nodes happen to lie, and leads
 /// some samples nowhere.
 class ConvexEdges {
  public:

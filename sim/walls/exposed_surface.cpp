@@ -8,13 +8,13 @@ namespace {
 
 // Of a cell: by how much less than the solid its field reaches at an edge, where it is round; of a spacing,
 // at most that, since a face's samples begin half a spacing off a wall that stands on it. Where three bodies
-// meet the ends of hidden faces were taken for open ones without: sheets bent round them, and a tank of slabs
+// meet the ends of hidden faces were taken for open ones without: layers bent round them, and a tank of slabs
 // lost 0.1 to 0.3 % of its water through its lower corners (4.6 to 3 mm).
-constexpr float kRounded = 0.25f, kMostRounded = 0.2f;
+constexpr float kRounded = 0.25f, kMaxRounded = 0.2f;
 constexpr float kDisc = 0.5f;  // of the way to its neighbours: the radius of the surface around one sample
 
 bool covers(const FixedSolid& solid, const glm::vec3& p, float spacing) {
-  const float near = std::min(kRounded * solid.field.cell, kMostRounded * spacing);
+  const float near = std::min(kRounded * solid.field.cell, kMaxRounded * spacing);
   return sample_distance(solid.field, to_world(inverse(solid.pose), p)).distance < near;
 }
 

@@ -44,11 +44,9 @@ struct PutBack {
 };
 
 SLOSH_HD inline std::int64_t in_units(double value, double unit) {
-  constexpr double kMost = 1e15;
+  constexpr double kMax = 1e15;
   const double count = value / unit;
-  return static_cast<std::int64_t>(std::floor(0.5 + (count > kMost    ? kMost
-                                                     : count < -kMost ? -kMost
-                                                                      : count)));
+  return static_cast<std::int64_t>(std::floor(0.5 + (count > kMax ? kMax : count < -kMax ? -kMax : count)));
 }
 
 /// Calls add(word, value) for each of the body's six words: all that the particle lost in momentum, and in

@@ -45,7 +45,7 @@ void guard_bodies(std::span<const DistanceFieldView> fields, const Plan& plan,
     const float spacing = static_cast<float>(plan.spacing);
     g.depth =
         std::clamp(static_cast<float>(kGuardDepth) * 2.0f * g.field.cell,
-                   static_cast<float>(kGuardDepth) * spacing, static_cast<float>(kMostGuardDepth) * spacing);
+                   static_cast<float>(kGuardDepth) * spacing, static_cast<float>(kMaxGuardDepth) * spacing);
     g.fast = travel > static_cast<float>(near);
   }
 }

@@ -16,7 +16,7 @@ namespace slosh {
 inline constexpr double kGuardDepth = 0.35;
 /// At most, where a field is coarser than a spacing: before the wall's own particles (0.7), which still push
 /// it out.
-inline constexpr double kMostGuardDepth = 0.6;
+inline constexpr double kMaxGuardDepth = 0.6;
 
 /// The fields of the bodies that particles are guarded against, one a body; empty for those that have none,
 /// and for all where the plan guards nothing. Fixed bodies that touch have them as one solid (close_joints).

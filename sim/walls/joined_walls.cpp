@@ -8,7 +8,7 @@
 namespace slosh {
 namespace {
 
-// Of the depth: a wall that has less than twice that is one sheet (kThinnest in wall_particles.cpp).
+// Of the depth: a wall that has less than twice that is one layer (kThinnest in wall_particles.cpp).
 constexpr float kThinnest = 0.75f;
 
 // Moves p to where it is `depth` below the surface. False where the solid is too thin for that.
@@ -23,23 +23,23 @@ bool settle(const ExposedSurface& surface, float depth, glm::vec3& p) {
 }
 
 // The particles of all joined bodies, one by one, none in another's place.
-class Sheets {
+class Layers {
  public:
-  Sheets(std::size_t bodies, float spacing) : near_(spacing), of_body_(bodies) {}
+  Layers(std::size_t bodies, float spacing) : near_(spacing), of_body_(bodies) {}
 
-  void add(std::size_t body, const SheetParticle& p) {
+  void add(std::size_t body, const LayerParticle& p) {
     near_.add(p.position);
     of_body_[body].push_back(p);
   }
-  /// Adds p unless it would be crowded in a sheet of which neighbours are `apart` m from each other.
+  /// Adds p unless it would be crowded in a layer of which neighbours are `apart` m from each other.
   void fill(std::size_t body, const glm::vec3& p, float apart) {
     if (!near_.any_within(p, kLargestHole * apart)) add(body, {.position = p});
   }
-  std::vector<std::vector<SheetParticle>>& of_body() { return of_body_; }
+  std::vector<std::vector<LayerParticle>>& of_body() { return of_body_; }
 
  private:
   PointBuckets near_;
-  std::vector<std::vector<SheetParticle>> of_body_;
+  std::vector<std::vector<LayerParticle>> of_body_;
 };
 
 // Walks the nodes of a body's distance field that may lie at `depth`.
@@ -53,9 +53,9 @@ void near_level_set(const FixedSolid& solid, float depth, F&& visit) {
 
 }  // namespace
 
-std::vector<std::vector<SheetParticle>> joined_sheets(std::span<const FixedSolid> solids, float spacing) {
+std::vector<std::vector<LayerParticle>> joined_layers(std::span<const FixedSolid> solids, float spacing) {
   const auto [samples, touched, surface] = touching(solids, spacing);
-  Sheets sheets(solids.size(), spacing);
+  Layers layers(solids.size(), spacing);
   const auto distance = [&](std::size_t b, const glm::vec3& p) {
     return sample_distance(solids[b].field, to_world(inverse(solids[b].pose), p)).distance;
   };
@@ -72,12 +72,12 @@ std::vector<std::vector<SheetParticle>> joined_sheets(std::span<const FixedSolid
       // Behind a thin wall one is well outside, along an edge nowhere.
       const bool thin = distance(b, p - 2.5f * depth * s.normal) > 0.5f * depth;
       if (thin && less < kThinnest * depth)
-        sheets.add(b, {.position = p});
+        layers.add(b, {.position = p});
       else
-        sheets.add(b, {p, s.position, s.normal, depth, thin ? depth - less : 0.0f});
+        layers.add(b, {p, s.position, s.normal, depth, thin ? depth - less : 0.0f});
     }
   }
-  // What is left open: where faces of two bodies meet in a concave edge, and their sheets part as they move
+  // What is left open: where faces of two bodies meet in a concave edge, and their layers part as they move
   // back. Each particle there is of the body whose face it is farther behind, whichever body's mesh it lies
   // in: what a floor is pressed by is not to depend on whether it ends at the walls or goes on below them.
   for (std::size_t b = 0; b < solids.size(); ++b) {
@@ -86,15 +86,15 @@ std::vector<std::vector<SheetParticle>> joined_sheets(std::span<const FixedSolid
     const auto fill = [&](glm::vec3 p) {
       if (!settle(surface, depth, p) || distance(b, p) >= 0.0f) return;
       const std::size_t body = surface.solid_at(p);
-      sheets.fill(body, p, solids[body].surface->apart);
+      layers.fill(body, p, solids[body].surface->apart);
     };
     for (const SolidSample& s : samples[b])
       if (s.hidden) fill(s.position);
     near_level_set(solids[b], depth, fill);
   }
   for (std::size_t b = 0; b < solids.size(); ++b)
-    for (SheetParticle& p : sheets.of_body()[b]) p = moved(inverse(solids[b].pose), p);
-  return std::move(sheets.of_body());
+    for (LayerParticle& p : layers.of_body()[b]) p = moved(inverse(solids[b].pose), p);
+  return std::move(layers.of_body());
 }
 
 std::vector<std::vector<std::uint32_t>> exposed_samples(std::span<const FixedSolid> solids, float spacing) {

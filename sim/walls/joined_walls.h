@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "sim/walls/exposed_surface.h"
-#include "sim/walls/sheet.h"
+#include "sim/walls/layer.h"
 
 namespace slosh {
 
@@ -20,7 +20,7 @@ namespace slosh {
 /// as its surface's samples; `spacing` (m) is the fluid's. Empty for a body that touches none, which has its
 /// own (wall_particles.cpp). What fills an edge between two is of the one whose face it is farther behind. A
 /// face is hidden where there is another body within a quarter of a spacing in front of it.
-std::vector<std::vector<SheetParticle>> joined_sheets(std::span<const FixedSolid> solids, float spacing);
+std::vector<std::vector<LayerParticle>> joined_layers(std::span<const FixedSolid> solids, float spacing);
 
 /// Which samples of each solid's surface no other hides, in order.
 std::vector<std::vector<std::uint32_t>> exposed_samples(std::span<const FixedSolid> solids, float spacing);

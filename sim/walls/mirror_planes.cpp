@@ -7,7 +7,7 @@
 namespace slosh {
 namespace {
 
-// Below this share of what an even sheet has the neighbours lie on a line, or there is none.
+// Below this share of what an even layer has the neighbours lie on a line, or there is none.
 constexpr double kTooFew = 1e-3;
 
 // The normals around as a linear function of the place along the surface, by weighted least squares.

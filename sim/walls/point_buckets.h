@@ -8,7 +8,7 @@
 
 namespace slosh {
 
-/// Of a spacing. Wider holes in a sheet of wall particles leak. The sampler's own are up to 0.8; at 0.9 a
+/// Of a spacing. Wider holes in a layer of wall particles leak. The sampler's own are up to 0.8; at 0.9 a
 /// tank of walls five spacings thick lost an eighth of its fluid through its edges in 3 s.
 inline constexpr float kLargestHole = 0.7f;
 

@@ -23,13 +23,13 @@ struct GuardedBody {
 
 namespace wall_guard {
 
-inline constexpr float kRest = 0.95f;       ///< of the depth: where a particle is put back to
-inline constexpr float kStride = 0.7f;      ///< of the depth, between two looks along the way
-inline constexpr int kMostLooks = 64;       ///< along one way
-inline constexpr int kMostTurns = 4;        ///< by walls of one body in one sub-step
-inline constexpr float kNoSlope = 0.3f;     ///< a gradient shorter than this is that of the middle of a wall
-inline constexpr float kShallow = 0.35f;    ///< of the depth: at edges there may be no slope above
-inline constexpr float kMostLifted = 3.0f;  ///< depths from which a particle is still put back
+inline constexpr float kRest = 0.95f;      ///< of the depth: where a particle is put back to
+inline constexpr float kStride = 0.7f;     ///< of the depth, between two looks along the way
+inline constexpr int kMaxLooks = 64;       ///< along one way
+inline constexpr int kMaxTurns = 4;        ///< by walls of one body in one sub-step
+inline constexpr float kNoSlope = 0.3f;    ///< a gradient shorter than this is that of the middle of a wall
+inline constexpr float kShallow = 0.35f;   ///< of the depth: at edges there may be no slope above
+inline constexpr float kMaxLifted = 3.0f;  ///< depths from which a particle is still put back
 
 /// A place on the way, as the field has it.
 struct Look {
@@ -60,7 +60,7 @@ SLOSH_HD inline bool follow(const DistanceFieldView& field, float depth, const g
   const glm::vec3 start = good.at;
   const glm::vec3 way = end - start;
   const float looks = glm::length(way) / (kStride * depth);
-  const int count = looks < kMostLooks - 1 ? static_cast<int>(looks) + 1 : kMostLooks;
+  const int count = looks < kMaxLooks - 1 ? static_cast<int>(looks) + 1 : kMaxLooks;
   for (int i = 1; i <= count; ++i) {
     const Look now = look(field, start + way * (static_cast<float>(i) / static_cast<float>(count)));
     if (now.distance < -depth || (now.distance < 0.0f && past_middle(good, now, depth))) {
@@ -97,18 +97,18 @@ SLOSH_HD inline bool guard_particle(const GuardedBody& body, const glm::vec3& fr
   const float rest = -kRest * body.depth;
   bool caught = false;
   if (good.distance < -body.depth) {
-    if (good.distance < -kMostLifted * body.depth || good.slope < kNoSlope) return false;
+    if (good.distance < -kMaxLifted * body.depth || good.slope < kNoSlope) return false;
     if (ahead >= good.distance) return false;  // on its way out
     good = look(body.field, good.at + good.normal * (rest - good.distance));
   }
-  for (int turn = 0; turn < kMostTurns; ++turn) {
+  for (int turn = 0; turn < kMaxTurns; ++turn) {
     if (follow(body.field, body.depth, end, good, bad)) break;
     caught = true;
     // The wall that it met, or past its middle the side that it came from.
     const Look& wall = bad.slope < kNoSlope || past_middle(good, bad, body.depth) ? good : bad;
     const float lacks = rest - (wall.distance + glm::dot(end - wall.at, wall.normal));
     end = lacks > 0.0f ? end + wall.normal * lacks : wall.at + wall.normal * (rest - wall.distance);
-    if (turn + 1 == kMostTurns) end = good.at;
+    if (turn + 1 == kMaxTurns) end = good.at;
     const glm::vec3 normal = body.after.turn * wall.normal;
     const float into = glm::dot(v - body.after.velocity_at(body.after.place(end)), normal);
     if (into < 0.0f) v -= into * normal;

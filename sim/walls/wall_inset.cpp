@@ -25,9 +25,9 @@ double plane_density(double height, double ratio) {
   return sum / (kPlaces * kPlaces);
 }
 
-// How far the sheet, which counts kWallShare times, is from the first of evenly spaced layers when it adds to
+// How far the layer, which counts kWallShare times, is from the first of evenly spaced layers when it adds to
 // that one's density what the layers in its place would.
-double sheet_to_layer(double ratio) {
+double boundary_to_fluid_layer(double ratio) {
   double missing = 0.0;
   for (int n = 1; n < ratio; ++n) missing += plane_density(n, ratio);
   double near = 0.5, far = ratio;
@@ -43,7 +43,7 @@ double sheet_to_layer(double ratio) {
 double wall_inset(ParticleModel model, double support_ratio) {
   constexpr double kReadAt = 2.0;
   if (!corrects_gradients(model) || support_ratio == kReadAt) return kWallInset;
-  return kWallInset + sheet_to_layer(support_ratio) - sheet_to_layer(kReadAt);
+  return kWallInset + boundary_to_fluid_layer(support_ratio) - boundary_to_fluid_layer(kReadAt);
 }
 
 }  // namespace slosh

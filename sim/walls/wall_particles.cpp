@@ -8,8 +8,8 @@
 #include "sim/viscosity/wall_drag.h"
 #include "sim/walls/convex_edges.h"
 #include "sim/walls/joined_walls.h"
+#include "sim/walls/layer.h"
 #include "sim/walls/point_buckets.h"
-#include "sim/walls/sheet.h"
 #include "sim/walls/wall_inset.h"
 
 namespace slosh {
@@ -38,7 +38,7 @@ glm::vec3 inset(const glm::vec3& surface, const glm::vec3& normal, float depth,
 }
 
 constexpr float kTwoSides = 3.0f;  // depths: in a thinner wall the field, which is coarse, is round
-// Spacings. A thinner wall's sheets are one, as strong as a thick one's and as near as they are: with less,
+// Spacings. A thinner wall's layers are one, as strong as a thick one's and as near as they are: with less,
 // fluid got into the edge between floor and wall of a glass of 1.03 spacings and stayed there
 // (tests/notebook/2026-11-26-thin-walls.md).
 constexpr float kThinnest = 1.15f;
@@ -118,17 +118,17 @@ Place on_level_set(const glm::vec3& surface, const glm::vec3& normal, float dept
   return {deepest, std::max(kOnRidge * depth - most, 0.0f)};
 }
 
-// Behind a bent surface a sheet is smaller than the surface that it stands for: a ball of 1.5, 2.5 and 3.6
+// Behind a bent surface a layer is smaller than the surface that it stands for: a ball of 1.5, 2.5 and 3.6
 // spacings was pushed up by 10, 3.7 and 1 % less than the water it displaces, as one smaller by 0.07 spacings
-// over its radius in spacings. So the sheet of a convex surface lies less deep by that (0.075, by those
+// over its radius in spacings. So the layer of a convex surface lies less deep by that (0.075, by those
 // balls). Vessels are bent the other way by a tenth and less, which is not seen.
 constexpr float kLessDeep = 0.075f;
-constexpr float kLeastBent = 0.02f;  // a ball of 50 spacings; flat walls are none, to the bit
-constexpr float kMostBent = 0.7f;    // a ball of 1.4 spacings
-constexpr float kSolidFrom = 0.9f;   // of a spacing
+constexpr float kMinBent = 0.02f;   // a ball of 50 spacings; flat walls are none, bitwise
+constexpr float kMaxBent = 0.7f;    // a ball of 1.4 spacings
+constexpr float kSolidFrom = 0.9f;  // of a spacing
 
-// The surface's mean curvature times the spacing at p, by the distance half a spacing off: from -kMostBent
-// (concave) to kMostBent. 0 where there is no spacing of solid behind, at edges and on thin walls: with
+// The surface's mean curvature times the spacing at p, by the distance half a spacing off: from -kMaxBent
+// (concave) to kMaxBent. 0 where there is no spacing of solid behind, at edges and on thin walls: with
 // theirs less deep a box of 5 spacings was lifted by 3.1 % too much for 0.9, and a bucket's water swung
 // otherwise.
 float bend(const DistanceFieldView& field, const glm::vec3& p, const glm::vec3& normal, float spacing) {
@@ -141,7 +141,7 @@ float bend(const DistanceFieldView& field, const glm::vec3& p, const glm::vec3& 
     sum += sample_distance(field, p + step).distance + sample_distance(field, p - step).distance;
   }
   const float bent = 0.5f * sum / (off * off) * spacing;
-  return std::abs(bent) < kLeastBent ? 0.0f : std::clamp(bent, -kMostBent, kMostBent);
+  return std::abs(bent) < kMinBent ? 0.0f : std::clamp(bent, -kMaxBent, kMaxBent);
 }
 
 // The same along the field's gradient.
@@ -152,7 +152,7 @@ float bend(const DistanceFieldView& field, const glm::vec3& p, float spacing) {
   return slope > 0.5f ? bend(field, p, out / slope, spacing) : 0.0f;
 }
 
-// How deep a body's sheet lies, spacings.
+// How deep a body's layer lies, spacings.
 struct Depths {
   float flat, concave, convex;  // convex: before it is less by kLessDeep
 
@@ -166,23 +166,23 @@ struct Depths {
 // what drags was chosen: less deep a cylinder of 1 Pa·s that suddenly turns takes 6 % too much for 3. So are
 // all where drag and pressures are solved for: a dam of 100 000 Pa·s had its momentum off by 3.6e-5 a step
 // for 8e-6.
-Depths depths_of(const Scene& scene, const Plan& plan, float apart, DragSheet sheet) {
+Depths depths_of(const Scene& scene, const Plan& plan, float apart, DragLayer layer) {
   constexpr double kWhole = 0.99;  // of a spacing
   const double behind = wall_inset(plan.model, scene.support_ratio);
-  const bool both_solved = plan.solves_drag && plan.model == ParticleModel::kIncompressible;
+  const bool both_solved = plan.implicit_viscosity && plan.model == ParticleModel::kIncompressible;
   const bool hollow = corrects_gradients(plan.model) && apart > kWhole * plan.spacing && !both_solved;
   const double flat = hollow ? behind - kOverHollows : behind;
-  const double concave = sheet == DragSheet::kBehind ? flat : behind;
+  const double concave = layer == DragLayer::kBehind ? flat : behind;
   return {static_cast<float>(flat), static_cast<float>(concave), static_cast<float>(behind)};
 }
 
-// In a concave edge the sheets of the two faces part as they move back. Adds particles where the level set at
+// In a concave edge the layers of the two faces part as they move back. Adds particles where the level set at
 // that depth has none within kLargestHole of the way between its particles, walking the nodes of the distance
 // field.
 void close_gaps(const DistanceFieldView& field, float depth, float spacing, float apart,
-                std::vector<SheetParticle>& sheet) {
+                std::vector<LayerParticle>& layer) {
   PointBuckets near(spacing);
-  for (const SheetParticle& p : sheet) near.add(p.position);
+  for (const LayerParticle& p : layer) near.add(p.position);
   for_each_node(field, [&](float d, glm::vec3 p, int) {
     if (std::abs(d + depth) > field.cell) return;
     for (int newton = 0; newton < 2; ++newton) {
@@ -192,7 +192,7 @@ void close_gaps(const DistanceFieldView& field, float depth, float spacing, floa
     }
     if (std::abs(sample_distance(field, p).distance + depth) > 0.1f * spacing) return;
     if (near.any_within(p, kLargestHole * apart)) return;
-    sheet.push_back({.position = p});
+    layer.push_back({.position = p});
     near.add(p);
   });
 }
@@ -204,10 +204,10 @@ constexpr float kNearEdges = 0.6f;  // of the depth behind faces that meet: as m
 constexpr float kDeeperNearEdges = 0.012f;
 
 // One body's particles in its mesh frame.
-std::vector<SheetParticle> own_sheet(const SurfaceSamples& surface, const DistanceFieldView& field,
+std::vector<LayerParticle> own_layer(const SurfaceSamples& surface, const DistanceFieldView& field,
                                      const Plan& plan, const Depths& deep) {
-  std::vector<SheetParticle> sheet;
-  sheet.reserve(surface.positions.size());
+  std::vector<LayerParticle> layer;
+  layer.reserve(surface.positions.size());
   const float spacing = static_cast<float>(plan.spacing);
   const bool level = corrects_gradients(plan.model) && field.distance;
   std::vector<float> depths, thick;
@@ -228,12 +228,12 @@ std::vector<SheetParticle> own_sheet(const SurfaceSamples& surface, const Distan
     const glm::vec3& at = surface.positions[i];
     const glm::vec3& normal = surface.normals[i];
     if (plan.model == ParticleModel::kPaper) {
-      sheet.push_back({at, at, normal, 0.0f});
+      layer.push_back({at, at, normal, 0.0f});
       continue;
     }
     const float depth = level ? depths[i] : deep.flat * spacing;
     if (!level) {
-      sheet.push_back({inset(at, normal, depth, field), at, normal, depth});
+      layer.push_back({inset(at, normal, depth, field), at, normal, depth});
       continue;
     }
     const bool two_sided = thick[i] >= kThinnest * spacing;
@@ -242,92 +242,92 @@ std::vector<SheetParticle> own_sheet(const SurfaceSamples& surface, const Distan
       const float deeper = depth + kDeeperNearEdges * spacing;
       const std::optional<glm::vec3> p = edges->behind(i, deeper);
       if (p && solid_depth(field, *p) > kNearEdges * depth) {
-        sheet.push_back({*p, at, normal, deeper});
+        layer.push_back({*p, at, normal, deeper});
         continue;
       }
     }
     const Place place =
         on_level_set(at, normal, depth, two_sided ? thick[i] : kTwoSides * depth, thin_near, field);
-    sheet.push_back({place.at, at, two_sided ? normal : glm::vec3(0.0f), depth, place.lacks});
+    layer.push_back({place.at, at, two_sided ? normal : glm::vec3(0.0f), depth, place.lacks});
   }
   if (field.distance && plan.model != ParticleModel::kPaper)
-    close_gaps(field, deep.flat * spacing, spacing, surface.apart, sheet);
-  return sheet;
+    close_gaps(field, deep.flat * spacing, spacing, surface.apart, layer);
+  return layer;
 }
 
 // The particles of the fixed bodies that touch others, and what each stands for, body by body; empty for all
 // other bodies.
 struct JoinedWalls {
-  std::vector<std::vector<SheetParticle>> sheets;  // mesh frame
+  std::vector<std::vector<LayerParticle>> layers;  // mesh frame
   std::vector<std::vector<float>> shares;
 };
 
-JoinedWalls joined_walls(const Scene& scene, const SampledScene& sampled, const Plan& plan, DragSheet drags) {
-  JoinedWalls walls{std::vector<std::vector<SheetParticle>>(scene.bodies.size()),
+JoinedWalls joined_walls(const Scene& scene, const SampledScene& sampled, const Plan& plan, DragLayer drags) {
+  JoinedWalls walls{std::vector<std::vector<LayerParticle>>(scene.bodies.size()),
                     std::vector<std::vector<float>>(scene.bodies.size())};
   if (!corrects_gradients(plan.model)) return walls;
   const float spacing = static_cast<float>(plan.spacing);
   auto [solids, body_of] = fixed_solids(scene, sampled);
   for (FixedSolid& solid : solids)
     solid.depth = depths_of(scene, plan, solid.surface->apart, drags).flat * spacing;
-  std::vector<std::vector<SheetParticle>> sheets = joined_sheets(solids, spacing);
-  std::vector<SheetParticle> all;
-  for (std::size_t n = 0; n < sheets.size(); ++n)
-    for (const SheetParticle& p : sheets[n]) all.push_back(moved(solids[n].pose, p));
-  const std::vector<float> shares = sheet_shares(all, plan);
+  std::vector<std::vector<LayerParticle>> layers = joined_layers(solids, spacing);
+  std::vector<LayerParticle> all;
+  for (std::size_t n = 0; n < layers.size(); ++n)
+    for (const LayerParticle& p : layers[n]) all.push_back(moved(solids[n].pose, p));
+  const std::vector<float> shares = layer_shares(all, plan);
   auto next = shares.begin();
-  for (std::size_t n = 0; n < sheets.size(); ++n) {
-    const auto end = next + static_cast<std::ptrdiff_t>(sheets[n].size());
+  for (std::size_t n = 0; n < layers.size(); ++n) {
+    const auto end = next + static_cast<std::ptrdiff_t>(layers[n].size());
     walls.shares[body_of[n]].assign(next, end);
-    walls.sheets[body_of[n]] = std::move(sheets[n]);
+    walls.layers[body_of[n]] = std::move(layers[n]);
     next = end;
   }
   return walls;
 }
 
 // Samples of a body's surface, in its mesh frame.
-struct DraggingSheet {
+struct DraggingLayer {
   std::vector<glm::vec3> positions, normals;
 };
 
 // Where the bodies whose motion is `motion` drag, body by body: the samples of their surfaces but for those
 // that another fixed body hides.
-std::vector<DraggingSheet> dragging_sheets(const Scene& scene, const SampledScene& sampled, const Plan& plan,
+std::vector<DraggingLayer> dragging_layers(const Scene& scene, const SampledScene& sampled, const Plan& plan,
                                            BodyMotion motion) {
-  std::vector<DraggingSheet> sheets(scene.bodies.size());
+  std::vector<DraggingLayer> layers(scene.bodies.size());
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
     if (body.motion == motion && !body.point_probe)
-      sheets[b] = {sampled.surfaces[b].positions, sampled.surfaces[b].normals};
+      layers[b] = {sampled.surfaces[b].positions, sampled.surfaces[b].normals};
   }
-  if (motion == BodyMotion::kFree) return sheets;
+  if (motion == BodyMotion::kFree) return layers;
   const auto [solids, body_of] = fixed_solids(scene, sampled);
   const std::vector<std::vector<std::uint32_t>> exposed =
       exposed_samples(solids, static_cast<float>(plan.spacing));
   for (std::size_t n = 0; n < exposed.size(); ++n) {
     const SurfaceSamples& all = *solids[n].surface;
-    DraggingSheet& sheet = sheets[body_of[n]] = {};
+    DraggingLayer& layer = layers[body_of[n]] = {};
     for (const std::uint32_t i : exposed[n]) {
-      sheet.positions.push_back(all.positions[i]);
-      sheet.normals.push_back(all.normals[i]);
+      layer.positions.push_back(all.positions[i]);
+      layer.normals.push_back(all.normals[i]);
     }
   }
-  return sheets;
+  return layers;
 }
 
-// The planes in which a body mirrors the fluid, one a particle of its sheet: where it is fixed and slips. A
+// The planes in which a body mirrors the fluid, one a particle of its layer: where it is fixed and slips. A
 // moving one only lets fluid slide. None where fluid passes on stresses of its own: one that nobody takes up
 // beyond a wall that slips is the wall's, as it is a free surface's.
-std::vector<MirrorPlane> mirrors_of(const Body& body, const DraggingSheet& sheet, const Plan& plan) {
+std::vector<MirrorPlane> mirrors_of(const Body& body, const DraggingLayer& layer, const Plan& plan) {
   if (plan.passes_stress || body.motion != BodyMotion::kFixed || body.dynamic_viscosity != kFreeSlip)
     return {};
   const glm::mat3 turn(glm::mat3_cast(body.pose.orientation));
   std::vector<glm::vec3> normals;
-  normals.reserve(sheet.normals.size());
+  normals.reserve(layer.normals.size());
   std::vector<glm::vec3> positions;
-  positions.reserve(sheet.positions.size());
-  for (const glm::vec3& n : sheet.normals) normals.push_back(turn * n);
-  for (const glm::vec3& p : sheet.positions) positions.push_back(turn * p);
+  positions.reserve(layer.positions.size());
+  for (const glm::vec3& n : layer.normals) normals.push_back(turn * n);
+  for (const glm::vec3& p : layer.positions) positions.push_back(turn * p);
   return mirror_planes(positions, normals, static_cast<float>(plan.support_radius));
 }
 
@@ -337,30 +337,30 @@ std::vector<SurfaceParticle> surface_particles(const Scene& scene, const Sampled
                                                const Plan& plan, BodyMotion motion) {
   std::vector<SurfaceParticle> particles;
   if (!plan.has(PassId::kWalls)) return particles;
-  const DragSheet sheet = drag_sheet(scene, plan);
-  const bool apart = sheet == DragSheet::kSurface;  // what presses and what drags
+  const DragLayer layer = drag_layer(scene, plan);
+  const bool apart = layer == DragLayer::kSurface;  // what presses and what drags
   const float lattice_volume = static_cast<float>(std::pow(plan.spacing, 3));
-  const WallDrag drag = wall_drag(plan.model, scene.support_ratio, sheet);
+  const WallDrag drag = wall_drag(plan.model, scene.support_ratio, layer);
   const auto flat_drag = static_cast<float>(drag.factor(0.0));
   const auto support = static_cast<float>(plan.support_radius);
   JoinedWalls joined;
-  if (motion == BodyMotion::kFixed) joined = joined_walls(scene, sampled, plan, sheet);
-  std::vector<DraggingSheet> dragging;
-  if (apart) dragging = dragging_sheets(scene, sampled, plan, motion);
+  if (motion == BodyMotion::kFixed) joined = joined_walls(scene, sampled, plan, layer);
+  std::vector<DraggingLayer> dragging;
+  if (apart) dragging = dragging_layers(scene, sampled, plan, motion);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
     if (body.motion != motion || body.point_probe) continue;
-    std::vector<SheetParticle> pressing;
+    std::vector<LayerParticle> pressing;
     std::vector<float> pressures;
-    if (motion == BodyMotion::kFixed && !joined.sheets[b].empty()) {
-      pressing = std::move(joined.sheets[b]);
+    if (motion == BodyMotion::kFixed && !joined.layers[b].empty()) {
+      pressing = std::move(joined.layers[b]);
       pressures = std::move(joined.shares[b]);
     } else {
       const SurfaceSamples& surface = sampled.surfaces[b];
-      pressing = own_sheet(surface, sampled.distance_fields[b].view(), plan,
-                           depths_of(scene, plan, surface.apart, sheet));
+      pressing = own_layer(surface, sampled.distance_fields[b].view(), plan,
+                           depths_of(scene, plan, surface.apart, layer));
       pressures.assign(pressing.size(), static_cast<float>(plan.body_pressure[b]));
-      if (plan.model != ParticleModel::kPaper) pressures = sheet_shares(pressing, plan);
+      if (plan.model != ParticleModel::kPaper) pressures = layer_shares(pressing, plan);
     }
     const auto add = [&](const glm::vec3& at, float pressure, float volume, float lacks = 0.0f,
                          const MirrorPlane& mirror = {}) {
@@ -377,7 +377,7 @@ std::vector<SurfaceParticle> surface_particles(const Scene& scene, const Sampled
     const float surface_volume = sampled.surfaces[b].particle_volume;
     const std::vector<MirrorPlane> mirrors = mirrors_of(body, dragging[b], plan);
     if (!mirrors.empty()) {
-      const double factor = mirror_factor(scene.support_ratio, sheet);
+      const double factor = mirror_factor(scene.support_ratio, layer);
       const float volume = static_cast<float>(factor) * surface_volume;
       for (std::size_t i = 0; i < mirrors.size(); ++i)
         add(dragging[b].positions[i], 0.0f, volume, 0.0f, mirrors[i]);

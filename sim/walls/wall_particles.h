@@ -19,7 +19,7 @@ struct SurfaceParticle {
                        ///< particles it stands for, about two
   float volume;        ///< m³, what it drags with (WallDrag::factor is in it)
   float viscosity;     ///< Pa·s
-  float reach;         ///< m, within which it meets fluid: the support radius, less SheetParticle::lacks
+  float reach;         ///< m, within which it meets fluid: the support radius, less LayerParticle::lacks
   MirrorPlane
       mirror;  ///< world axes: of a fixed body that slips, where surfaces drag (viscosity/mirror_drag.h)
 };

@@ -200,7 +200,7 @@ bool bench_drag(Table& table, const std::vector<std::size_t>& counts, int steps,
         testing::Tank tank = turning_column(count, viscosity);
         tank.scene.model = model;
         const Plan plan = make_plan(tank.scene, tank.sampled.spacing);
-        if (plan.has(PassId::kImplicitDrag) != (viscosity > 0.0))
+        if (plan.has(PassId::kImplicitViscosity) != (viscosity > 0.0))
           return std::fprintf(stderr, "the plan does not solve drag\n"), false;
         worlds.emplace_back(tank.scene, tank.sampled, plan, WorldOptions{1, Backend::kCpu});
       }

@@ -38,8 +38,8 @@ void compare_slipping() {
                         Case{"walls that slip, implicit viscosity, 50 Pa·s under 500", 50.0, 500.0, true}}) {
     const Tank tank = shaken(slipping_tank(c.below, c.above));
     const Plan plan = make_plan(tank.scene, tank.sampled.spacing, c.solved);
-    expect_true("walls mirror what is beside them", drag_sheet(tank.scene, plan) == DragSheet::kSurface);
-    expect_true("drag is solved for or not, as asked", plan.has(PassId::kImplicitDrag) == c.solved);
+    expect_true("walls mirror what is beside them", drag_layer(tank.scene, plan) == DragLayer::kSurface);
+    expect_true("drag is solved for or not, as asked", plan.has(PassId::kImplicitViscosity) == c.solved);
     compare_steps(c.name, tank, plan, 1, kOneStep);
     compare_steps(c.name, tank, plan, 10, kTenSteps);
   }

@@ -20,7 +20,7 @@ using test::Process;
 using test::read_text;
 
 constexpr double kWays = 40.0;            // at least, in the seconds that follow
-constexpr int kMostWrites = 3;            // 1 where the machine keeps up: the first write after the reading
+constexpr int kMaxWrites = 3;             // 1 where the machine keeps up: the first write after the reading
 const char* const kMotionSeconds = "13";  // 6 of them until the plug-in begins
 
 /// "plugin:FILE:ANSWERS"
@@ -48,7 +48,7 @@ class MotionToForce : public test::HostedTest {
     }
     ASSERT_GT(static_cast<double>(writes.size()), 0.5 * kWays) << "most are answered";
     std::nth_element(writes.begin(), writes.begin() + writes.size() / 2, writes.end());
-    EXPECT_LE(writes[writes.size() / 2], kMostWrites) << "median";
+    EXPECT_LE(writes[writes.size() / 2], kMaxWrites) << "median";
   }
 };
 

@@ -93,7 +93,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   while (true) {
     const Result<const RecordingEvent*> event = reader.value()->next();
     if (!event || event.value() == nullptr) break;
-    test::must(++events <= kMostExpansion * bytes.size(), "no more events than bytes");
+    test::must(++events <= kMaxExpansion * bytes.size(), "no more events than bytes");
     if (event.value()->kind != RecordingEvent::Kind::kStep) continue;
     test::must(event.value()->hands.size() == reader.value()->head().scene.grips.size(), "a hand a grip");
   }

@@ -1,4 +1,4 @@
-// Checkpoints: what is on the disk is the world, to the bit, or an error in words.
+// Checkpoints: what is on the disk is the world, bitwise, or an error in words.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -84,7 +84,7 @@ TEST(Checkpoint, ResumedIsTheRunThatWasNeverStopped) {
   const Result<Checkpoint> last = read_checkpoint(options.file);
   ASSERT_TRUE(last);
   EXPECT_EQ(last.value().tick, inputs.size()) << "the end is written too";
-  struct stat facts {};
+  struct stat facts{};
   ASSERT_EQ(::stat(options.file.c_str(), &facts), 0);
   EXPECT_EQ(facts.st_mode & 0777, 0600u);
 }
@@ -228,7 +228,7 @@ TEST(Checkpoint, HoldsNoSecretAndTheSecretsBesideItAreTheOwnersAlone) {
                                    options.server_state.begin() + 16);
     EXPECT_EQ(found, chunk.content.end()) << "in part " << int{chunk.type};
   }
-  struct stat facts {};
+  struct stat facts{};
   ASSERT_EQ(::stat(secrets_of(options.file).c_str(), &facts), 0);
   EXPECT_EQ(facts.st_mode & 0777, 0600u);
 }

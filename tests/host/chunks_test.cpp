@@ -1,4 +1,4 @@
-// The blocks and the hands of a file on disk: to the bit, or damage that is told.
+// The blocks and the hands of a file on disk: bitwise, or damage that is told.
 #include <gtest/gtest.h>
 
 #include <cstring>

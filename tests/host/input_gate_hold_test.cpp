@@ -31,7 +31,7 @@ TEST(InputGate, AGripThatIsTakenFarFromTheBodyIsLetInSlowly) {
   for (int i = 1; i < 10000; ++i) {
     now.time = 0.001 * i;
     input = gate.take(channel, now);
-    EXPECT_LE(input[1].pose.position.x - before, 0.001 * kLetInSpeed + 1e-9);
+    EXPECT_LE(input[1].pose.position.x - before, 0.001 * kRampSpeed + 1e-9);
     before = input[1].pose.position.x;
   }
   EXPECT_EQ(before, 0.30);

@@ -1,4 +1,4 @@
-// Recordings: what is on the disk runs again to the bit, or an error says where it does not.
+// Recordings: what is on the disk runs again bitwise, or an error says where it does not.
 #include <gtest/gtest.h>
 
 #include <cstring>

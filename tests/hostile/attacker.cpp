@@ -49,7 +49,7 @@ void Attacker::on_stream(ConnectionId, std::int64_t stream, std::span<const std:
   // out.
   if (stream == control_ && !bytes.empty() &&
       bytes[0] != static_cast<std::uint8_t>(wire::ControlType::kRefused))
-    let_in_ = true;
+    ramp_ = true;
 }
 
 void Attacker::turn() {

@@ -48,7 +48,7 @@ class Attacker final : public EndpointEvents {
   void turn();
   bool over() const { return end_ == nullptr; }
   Harm harm() const { return harm_; }
-  bool let_in() const { return let_in_; }
+  bool ramp_work() const { return ramp_; }
   std::uint64_t messages() const { return messages_; }     ///< control messages and datagrams sent
   const std::string& problem() const { return problem_; }  ///< why it could not even begin
 
@@ -81,7 +81,7 @@ class Attacker final : public EndpointEvents {
   std::uint64_t number_ = 0;
   std::uint64_t messages_ = 0;
   bool closed_ = false;
-  bool let_in_ = false;
+  bool ramp_ = false;
   std::string problem_;
 };
 

@@ -21,8 +21,8 @@ namespace {
 constexpr std::size_t kAtOnce = 2;          // peers
 constexpr std::uint64_t kHonestEvery = 12;  // visits, after which the same person joins an honest host
 constexpr double kVisit = 8.0;              // s, then the person ends it (Ctrl-C)
-constexpr double kPatience = 120.0;    // s until an end that was asked for; reached only when something hangs
-constexpr double kMostForce = 1000.0;  // N, N·m: no device that slosh knows takes more
+constexpr double kPatience = 120.0;   // s until an end that was asked for; reached only when something hangs
+constexpr double kMaxForce = 1000.0;  // N, N·m: no device that slosh knows takes more
 
 /// What is wrong with the forces that were felt; empty when nothing. `most` rises to the greatest.
 std::string bad_force(const std::filesystem::path& file, double& most) {
@@ -37,7 +37,7 @@ std::string bad_force(const std::filesystem::path& file, double& most) {
       const double value = std::strtod(field.c_str(), &end);
       const bool force = column >= 2 && column < 8;
       if (force && std::isfinite(value)) most = std::max(most, std::abs(value));
-      if (field.empty() || *end != '\0' || !std::isfinite(value) || (force && std::abs(value) > kMostForce))
+      if (field.empty() || *end != '\0' || !std::isfinite(value) || (force && std::abs(value) > kMaxForce))
         return "'" + field + "' in line " + std::to_string(row) + ", column " + std::to_string(column + 1);
     }
   }

@@ -72,7 +72,7 @@ class PeersRun {
         "(%llu of %llu poses used, %llu states, longest gap %.2f s, away %llu times, at most %.1f s); host "
         "at most "
         "%ld MB; %zu findings; seed %llu\n",
-        number(count_), number(let_in_), number(messages_), number(noise_), held, number(f.poses_used),
+        number(count_), number(ramp_), number(messages_), number(noise_), held, number(f.poses_used),
         number(f.poses_sent), number(f.states), f.longest_gap, number(f.came_back), f.longest_away,
         outcome.peak_kb / 1000, findings_, number(options_.seed));
     return findings_ == 0 ? 0 : 1;
@@ -177,7 +177,7 @@ class PeersRun {
 
   void account(const Attacker* attacker) {
     if (!attacker) return;
-    let_in_ += attacker->let_in() ? 1 : 0;
+    ramp_ += attacker->ramp_work() ? 1 : 0;
     messages_ += attacker->messages();
   }
 
@@ -212,8 +212,7 @@ class PeersRun {
     if (seconds_ % 10 == 0) {
       std::printf(
           "%4d s: %llu connections, %llu let in, %llu messages; honest peer: %llu poses used, %llu states\n",
-          seconds_, number(count_), number(let_in_), number(messages_), number(f.poses_used),
-          number(f.states));
+          seconds_, number(count_), number(ramp_), number(messages_), number(f.poses_used), number(f.states));
       std::fflush(stdout);
     }
     return true;
@@ -228,7 +227,7 @@ class PeersRun {
   std::vector<Identity> keys_;
   std::int64_t begin_ns_ = 0;
   std::uint64_t count_ = 0;
-  std::uint64_t let_in_ = 0;
+  std::uint64_t ramp_ = 0;
   std::uint64_t messages_ = 0;
   std::uint64_t noise_ = 0;
   std::uint64_t poses_used_ = 0;

@@ -9,10 +9,10 @@ namespace slosh::hostile {
 namespace {
 
 /// Under AddressSanitizer what was freed stays for a while, and every byte has its shadow.
-#ifdef SLOSH_SANITIZED                   // the hostile runs have a build with AddressSanitizer only
-constexpr long kMostMemory = 3'000'000;  // kB
+#ifdef SLOSH_SANITIZED                  // the hostile runs have a build with AddressSanitizer only
+constexpr long kMaxMemory = 3'000'000;  // kB
 #else
-constexpr long kMostMemory = 1'000'000;  // kB
+constexpr long kMaxMemory = 1'000'000;  // kB
 #endif
 
 bool is_unfit(std::uint32_t character) {
@@ -95,7 +95,7 @@ std::vector<std::string> faults_of(const test::Outcome& outcome, const std::vect
   }
   if (std::find(codes.begin(), codes.end(), outcome.code) == codes.end())
     faults.push_back("ended with " + std::to_string(outcome.code));
-  if (outcome.peak_kb > kMostMemory)
+  if (outcome.peak_kb > kMaxMemory)
     faults.push_back("held " + std::to_string(outcome.peak_kb / 1000) + " MB at its most");
   return faults;
 }

@@ -62,7 +62,7 @@ TEST(Engagement, TheDistanceIsGivenUpAtABoundedSpeedAndWholly) {
     const Engagement::Held held = e.update(true, t, hand, {}, kGains, grip);
     EXPECT_GE(held.pose.position.x, x);
     const double speed = (held.pose.position.x - x) / kTick;
-    EXPECT_LE(speed, kLetInSpeed * std::min(1.0, t / kLetInRise) + 1e-3);
+    EXPECT_LE(speed, kRampSpeed * std::min(1.0, t / kRampRise) + 1e-3);
     if (e.distance() > 0.0) {
       EXPECT_NEAR(held.twist.linear.x, speed, 1e-6) << "the damper is told of it";
     }
@@ -71,11 +71,11 @@ TEST(Engagement, TheDistanceIsGivenUpAtABoundedSpeedAndWholly) {
     x = held.pose.position.x;
     if (there == 0.0 && e.distance() == 0.0) there = t;
   }
-  EXPECT_NEAR(fastest, kLetInSpeed, 1e-3);
-  EXPECT_EQ(x, 0.3) << "in the end the hand holds where it is, to the bit";
+  EXPECT_NEAR(fastest, kRampSpeed, 1e-3);
+  EXPECT_EQ(x, 0.3) << "in the end the hand holds where it is, bitwise";
   EXPECT_EQ(told, 0.0);
-  EXPECT_GT(there, 0.3 / kLetInSpeed);
-  EXPECT_LT(there, 0.3 / kLetInSpeed + 5.0);
+  EXPECT_GT(there, 0.3 / kRampSpeed);
+  EXPECT_LT(there, 0.3 / kRampSpeed + 5.0);
   EXPECT_EQ(e.felt(), 1.0);
 }
 
@@ -87,7 +87,7 @@ TEST(Engagement, ATurnIsGivenUpTheSameWay) {
   double last = 3.0;
   for (double t = 0.0; t < 12.0; t += kTick) {
     e.update(true, t, hand, {}, kGains, grip);
-    EXPECT_LE((last - e.angle()) / kTick, kLetInTurn + 1e-3);
+    EXPECT_LE((last - e.angle()) / kTick, kRampTurn + 1e-3);
     last = e.angle();
   }
   EXPECT_EQ(last, 0.0);
@@ -125,9 +125,9 @@ TEST(Engagement, AHandThatPassesByDoesNotSnatchTheGripAway) {
   for (double t = kTick; t < 10.0; t += kTick) {
     held = e.update(true, t, hand_at(t), passing, kGains, grip);
     const double now = (held.pose.position.x - x) / kTick;
-    EXPECT_LT(std::abs(now - speed), kTick * (0.6 / kSlipRise + kLetInSpeed / kLetInRise) * 1.05 + 1e-9) << t;
+    EXPECT_LT(std::abs(now - speed), kTick * (0.6 / kSlipRise + kRampSpeed / kRampRise) * 1.05 + 1e-9) << t;
     // Within half a tick of the greatest acceleration: one is the end's velocity, the other the tick's mean.
-    EXPECT_NEAR(held.twist.linear.x, now, 0.5 * kTick * (0.6 / kSlipRise + kLetInSpeed / kLetInRise) + 1e-4)
+    EXPECT_NEAR(held.twist.linear.x, now, 0.5 * kTick * (0.6 / kSlipRise + kRampSpeed / kRampRise) + 1e-4)
         << "the damper is told";
     speed = now;
     x = held.pose.position.x;
@@ -256,7 +256,7 @@ TEST(Engagement, AStiffenedSpringKeepsItsForceAndPutsNothingIn) {
   Wrench last = wrench;
   for (int i = 0; i < 8000; ++i) {
     const Wrench now = turn();
-    EXPECT_LT(glm::length(now.force - last.force), 4.0 * kGains.stiffness * kLetInSpeed * kTick + 0.5);
+    EXPECT_LT(glm::length(now.force - last.force), 4.0 * kGains.stiffness * kRampSpeed * kTick + 0.5);
     last = now;
   }
   EXPECT_EQ(e.distance(), 0.0) << "in the end the hand holds where it is";

@@ -10,7 +10,7 @@
 namespace slosh::coupling {
 namespace {
 
-constexpr double kMostGenerated = 1e-3;  // J
+constexpr double kMaxGenerated = 1e-3;  // J
 
 Case alone() {
   Case c;
@@ -30,7 +30,7 @@ TEST(CouplingAtADistance, EveryKnownBreakerIsSteady) {
                   1e3 * round_trip, word(r.verdict), 1e3 * r.generated, r.peak, r.swing);
       const std::string what = c.name + " at " + std::to_string(round_trip);
       EXPECT_EQ(r.verdict, Verdict::kStable) << what;
-      EXPECT_LE(r.generated, kMostGenerated) << what;
+      EXPECT_LE(r.generated, kMaxGenerated) << what;
     }
   }
 }
@@ -48,7 +48,7 @@ TEST(CouplingAtADistance, FluidCarriedByManyIsSteadyWithJitterAndLossApartAndTog
     std::printf("%-48s %s, %.2g mJ generated, peak %.1f N, swing %.2f mm/s\n", c.name.c_str(),
                 word(r.verdict), 1e3 * r.generated, r.peak, 1e3 * r.swing);
     EXPECT_EQ(r.verdict, Verdict::kStable) << c.name;
-    EXPECT_LE(r.generated, kMostGenerated) << c.name;
+    EXPECT_LE(r.generated, kMaxGenerated) << c.name;
     ++tried;
   }
   EXPECT_EQ(tried, 36);
@@ -116,7 +116,7 @@ TEST(CouplingAtADistance, AloneOnABodyWhoseFluidSwingsTheDelayIsHardlyFelt) {
                   load == Load::kFluid ? "fluid" : "fluid untold", 1e3 * round_trip, 1e2 * off, 1e2 * line);
       EXPECT_LE(off, most);
       EXPECT_EQ(r.verdict, Verdict::kStable);
-      EXPECT_LE(r.generated, kMostGenerated);
+      EXPECT_LE(r.generated, kMaxGenerated);
       if (round_trip > 0.0) {
         EXPECT_GT(line, 0.3);
       }

@@ -237,9 +237,9 @@ TEST(FoamOnAPeer, CostsNoMoreThanItsBounds) {
   const Scene scene = water();
   Foam foam(scene, kSpacing);
   collide(foam, 3.0f, 12, 16);  // 35 937 particles, all fast
-  EXPECT_LE(foam.points().size(), Foam::kMost);
-  EXPECT_LE(foam.looked_at(), Foam::kMostLooked);
-  EXPECT_GT(foam.points().size(), Foam::kMost / 8);
+  EXPECT_LE(foam.points().size(), Foam::kMax);
+  EXPECT_LE(foam.looked_at(), Foam::kMaxLooked);
+  EXPECT_GT(foam.points().size(), Foam::kMax / 8);
 }
 
 TEST(FoamOnAPeer, RepeatsAndStartsAnewWithTheWorld) {

@@ -158,7 +158,7 @@ TEST_F(GentleForce, WhileItGetsForceItsMotionIsDamped) {
   on(0.1);
   const double damped = kit.device->last.force.y;
   EXPECT_LT(damped, -0.05);
-  EXPECT_GT(damped, -0.1 * FeltHand::kMostRampDamping);
+  EXPECT_GT(damped, -0.1 * ForceRendering::kMaxRampDamping);
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ Outcome held_by(double pace, bool guarded) {
       const auto swing = [turn](double t) { return 0.05 * (1.0 - std::exp(-t * t)) * std::sin(turn * t); };
       constexpr double kBit = 1e-4;
       const auto speed = [&](double t) { return (swing(t + kBit) - swing(t - kBit)) / (2.0 * kBit); };
-      HostWord word;
+      HostUpdate word;
       word.now_ns = to_nanoseconds(now) + 1;
       word.time = now;
       // So that force times way is the kinetic energy's change to the last digit.
@@ -118,7 +118,7 @@ TEST(HeldBody, TheSpringToALateWordIsNotStretchedByTheDelay) {
     for (int i = 0; i < 3500; ++i) {
       const double now = kHeldTick * i, then = std::max(now - kRoundTrip, 0.0);
       own[0] = {true, true, {{place(now), 0.0, 0.0}, {1, 0, 0, 0}}, {{speed(now), 0.0, 0.0}, {}}};
-      HostWord word;
+      HostUpdate word;
       word.now_ns = to_nanoseconds(now) + 1;
       word.time = now;
       word.motion.position = {place(then), -kWeight / gains.stiffness, 0.0};
@@ -174,7 +174,7 @@ TEST(HeldBody, WhatDampersUsedUpIsForgotten) {
               true,
               {{x, 0.0, 0.0}, {1, 0, 0, 0}},
               {{moves ? 0.02 * turn * std::cos(turn * now) : 0.0, 0, 0}, {}}};
-    HostWord word;
+    HostUpdate word;
     word.now_ns = to_nanoseconds(now) + 1;
     word.time = now;
     const HostHand said{true, own[0].handle, {{-1000.0 * x, 0.0, 0.0}, {}}, word.now_ns, true, 0.0};
@@ -207,7 +207,7 @@ TEST(HeldBody, WhatTheHostsStepTookBeyondAllThereWasIsLentAndPaidBack) {
   const auto run = [&](int from, int to, double force) {
     for (int i = from; i < to; ++i) {
       const double now = kHeldTick * i;
-      HostWord word;
+      HostUpdate word;
       word.now_ns = to_nanoseconds(now) + 1;
       word.time = now;
       word.motion.position.x = kSpeed * now;
@@ -247,7 +247,7 @@ std::vector<double> swung_with(double rounds) {
     const double now = kHeldTick * i, then = std::max(now - kRoundTrip, 0.0);
     own[0] = {true, true, {{place(now), 0.0, 0.0}, {1, 0, 0, 0}}, {{speed(now), 0.0, 0.0}, {}}};
     const double on_hand = -kLoad - body().mass * pace(then);
-    HostWord word;
+    HostUpdate word;
     word.now_ns = to_nanoseconds(now) + 1;
     word.time = now;
     word.time_step = kHeldTick;
@@ -285,7 +285,7 @@ TEST(HeldBody, WhatWordsRoundIsNoContact) {
 
 TEST(HeldBody, BeginsAnewAfterARestart) {
   HeldBody held(body(), {{Pose{}, {1000.0, 30.0, 10.0, 0.3}}});
-  HostWord word;
+  HostUpdate word;
   word.now_ns = 1;
   word.motion.position = {1.0, 2.0, 3.0};
   const HostHand said{true, {}, {}, 0, true, 0.0};

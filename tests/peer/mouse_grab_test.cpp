@@ -21,8 +21,8 @@ const glm::ivec2 kPicture(kWidth, kHeight);
 struct Rig {
   Scene scene;
   BodySnapshot world;
-  std::vector<std::unique_ptr<LentHand>> hands;
-  std::vector<LentHand*> lent;
+  std::vector<std::unique_ptr<SharedHandle>> hands;
+  std::vector<SharedHandle*> lent;
   std::unique_ptr<OrbitCamera> camera;
   std::unique_ptr<MouseGrab> grab;
   InputState input;
@@ -50,7 +50,7 @@ struct Rig {
       GripState state;
       state.handle.position = state.pose.position = {0.15 * side, 0.2, 0.0};
       world.grips.push_back(state);
-      hands.push_back(std::make_unique<LentHand>(state.handle));
+      hands.push_back(std::make_unique<SharedHandle>(state.handle));
       lent.push_back(hands.back().get());
     }
     camera = std::make_unique<OrbitCamera>(scene.camera);
@@ -80,7 +80,7 @@ struct Rig {
     input.scroll.y = 0.0f;
     return busy;
   }
-  LentHand::Wish wish(std::size_t i) {
+  SharedHandle::Wish wish(std::size_t i) {
     (void)hands[i]->wish.update();
     return hands[i]->wish.front();
   }

@@ -10,9 +10,9 @@
 
 #include "peer/haptics/devices/operator_device.h"
 #include "peer/haptics/devices/plugin_device.h"
-#include "peer/haptics/lent_device.h"
 #include "peer/haptics/mouse_device.h"
 #include "peer/haptics/script_device.h"
+#include "peer/haptics/shared_handle.h"
 #include "servo_kit.h"
 #include "swinging_host.h"
 #include "tests/peer/devices/own_folder.h"
@@ -152,8 +152,8 @@ TEST(NoAllocation, ATickOfEveryKindThatTheLoopReadsItself) {
   devices.push_back(std::make_unique<MouseDevice>(std::make_shared<MouseTarget>(Pose{}), Pose{}));
   devices.push_back(std::make_unique<OperatorDevice>(PoseTrack(a_way(), Pose{}),
                                                      parse_operator("tight,tremor=0.0002").value()));
-  auto lent = std::make_shared<LentHand>(Pose{});
-  devices.push_back(std::make_unique<LentDevice>(script(), lent));
+  auto lent = std::make_shared<SharedHandle>(Pose{});
+  devices.push_back(std::make_unique<SharedHandleDevice>(script(), lent));
   auto weak = std::make_unique<test::FakeDevice>();
   weak->limit.max_force = 2.0;
   test::FakeDevice& arm = *weak;
@@ -171,7 +171,7 @@ TEST(NoAllocation, ATickOfEveryKindThatTheLoopReadsItself) {
   expect_nothing(asked_for(servo, 1000, [&](int i) {
     publish(channel, word(i, hands));
     arm.next.pose.position.x = i > 50 ? 0.01 : 0.0;  // 10 N
-    LentHand::Wish& wish = lent->wish.back();
+    SharedHandle::Wish& wish = lent->wish.back();
     wish.taken = i > 200 && i < 500;
     wish.pose.position.y = 0.05;
     lent->wish.publish();

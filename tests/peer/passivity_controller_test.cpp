@@ -78,17 +78,17 @@ TEST(HeldBody, ATurningHandIsGuardedToo) {
 TEST(HeldBody, WhoHasNothingLeftFeelsWhatTheyDoAtOnce) {
   PassivityController guard;
   guard.restart({});
-  constexpr double kCredit = -0.05, kMost = 10.0, kSpeed = 0.2;  // J, N·s/m, m/s
+  constexpr double kCredit = -0.05, kMax = 10.0, kSpeed = 0.2;  // J, N·s/m, m/s
   for (int i = 0; i < 100; ++i)
-    guard.sent(guard.guard({{-5.0, 0.0, 0.0}, {}}, {}, {}, kControllerTick, kCredit, kMost));
+    guard.sent(guard.guard({{-5.0, 0.0, 0.0}, {}}, {}, {}, kControllerTick, kCredit, kMax));
   EXPECT_TRUE(guard.fires());
   Pose hand;
   double paid = 0.0;
   for (int i = 1; i <= 10; ++i) {
     hand.position.x += kSpeed * kControllerTick;
     const Wrench felt =
-        guard.guard({{-5.0, 0.0, 0.0}, {}}, hand, {{kSpeed, 0.0, 0.0}, {}}, kControllerTick, kCredit, kMost);
-    EXPECT_NEAR(felt.force.x, -kMost * kSpeed, 0.2) << i << ": as hard as the device may be damped";
+        guard.guard({{-5.0, 0.0, 0.0}, {}}, hand, {{kSpeed, 0.0, 0.0}, {}}, kControllerTick, kCredit, kMax);
+    EXPECT_NEAR(felt.force.x, -kMax * kSpeed, 0.2) << i << ": as hard as the device may be damped";
     EXPECT_LE(std::abs(felt.force.x), 5.0);
     guard.sent(felt);
     paid -= felt.force.x * kSpeed * kControllerTick;
@@ -96,11 +96,11 @@ TEST(HeldBody, WhoHasNothingLeftFeelsWhatTheyDoAtOnce) {
   EXPECT_NEAR(paid, 2.0 * 0.002, 5e-4);
   // A force that gives is none, whatever it is.
   const Wrench gives =
-      guard.guard({{5.0, 0.0, 0.0}, {}}, hand, {{kSpeed, 0.0, 0.0}, {}}, kControllerTick, kCredit, kMost);
+      guard.guard({{5.0, 0.0, 0.0}, {}}, hand, {{kSpeed, 0.0, 0.0}, {}}, kControllerTick, kCredit, kMax);
   EXPECT_LE(gives.force.x, 0.0);
   // No damper takes more than the force it stands for.
   const Wrench little =
-      guard.guard({{-0.1, 0.0, 0.0}, {}}, hand, {{kSpeed, 0.0, 0.0}, {}}, kControllerTick, 1.0, kMost);
+      guard.guard({{-0.1, 0.0, 0.0}, {}}, hand, {{kSpeed, 0.0, 0.0}, {}}, kControllerTick, 1.0, kMax);
   EXPECT_NEAR(little.force.x, -0.1, 0.01);
 }
 

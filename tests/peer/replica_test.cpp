@@ -138,7 +138,7 @@ TEST(LoadWork, IsWhatActsBesidesGave) {
         said[g].on_hand = {-on_body.force, -on_body.torque};
       }
       if (i % each != 0) continue;
-      HostWord word;
+      HostUpdate word;
       word.time = dt * i;
       word.time_step = dt;
       word.motion = {host.position, host.orientation, {host.velocity, host.angular_velocity}};

@@ -165,9 +165,9 @@ TEST(Servo, TakingHoldFarFromTheGripPullsAtABoundedPace) {
   for (int i = 1; i <= 6000; ++i) {
     kit.publish(0.001 * i);
     kit.tick(0.001 * i);
-    // The spring's end goes at no more than kLetInSpeed; over the first half second the share that is felt
+    // The spring's end goes at no more than kRampSpeed; over the first half second the share that is felt
     // rises too, by which time the spring is 37 N at most; and the damper adds its own.
-    EXPECT_GE(kit.device->last.force.x - last, -(1000.0 * kLetInSpeed + 37.0 / 0.5) * 0.001 - 0.05) << i;
+    EXPECT_GE(kit.device->last.force.x - last, -(1000.0 * kRampSpeed + 37.0 / 0.5) * 0.001 - 0.05) << i;
     last = kit.device->last.force.x;
     if (i == 100) {
       EXPECT_GT(last, -1.0) << "gently at first";

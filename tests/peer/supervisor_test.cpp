@@ -17,7 +17,7 @@ constexpr std::int64_t kSecond = 1'000'000'000;
 
 TEST(Supervisor, StartsAgainFiveTimesAMinuteAtMost) {
   RestartBudget budget;
-  for (int i = 0; i < RestartBudget::kMost; ++i) EXPECT_TRUE(budget.take(i * kSecond)) << i;
+  for (int i = 0; i < RestartBudget::kMax; ++i) EXPECT_TRUE(budget.take(i * kSecond)) << i;
   EXPECT_FALSE(budget.take(5 * kSecond));
   EXPECT_FALSE(budget.take(60 * kSecond - 1));
   EXPECT_TRUE(budget.take(60 * kSecond)) << "the first is a minute ago";
@@ -50,17 +50,17 @@ TEST(Supervisor, CarriesOnFromTheCheckpointAtItsAddressWithARecordingOfItsOwn) {
 }
 
 TEST(Supervisor, GivesOnWhatTheHostEndsWith) {
-  EXPECT_EQ(supervise_host({}, [](const HostVerbOptions&, HostReins*) -> int { _exit(7); }), 7);
+  EXPECT_EQ(supervise_host({}, [](const HostVerbOptions&, SupervisorControl*) -> int { _exit(7); }), 7);
 }
 
 TEST(Supervisor, StartsAgainWhatCanCarryOnAndNothingElse) {
   void* page = mmap(nullptr, sizeof(int), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   ASSERT_NE(page, MAP_FAILED);
   int& starts = *static_cast<int*>(page);
-  const auto dies = [&](const HostVerbOptions& options, HostReins* reins) -> int {
+  const auto dies = [&](const HostVerbOptions& options, SupervisorControl* supervision) -> int {
     starts += 1;
     if (options.restarts == 2) _exit(options.resume == "kept" ? 3 : 4);
-    reins->can_carry_on_from("kept");
+    supervision->can_carry_on_from("kept");
     ::signal(SIGSEGV, SIG_DFL);  // a sanitizer would take it
     ::kill(getpid(), options.restarts == 0 ? SIGSEGV : SIGKILL);
     _exit(5);
@@ -69,7 +69,7 @@ TEST(Supervisor, StartsAgainWhatCanCarryOnAndNothingElse) {
   EXPECT_EQ(starts, 3);
   starts = 0;
   EXPECT_EQ(supervise_host({},
-                           [&](const HostVerbOptions&, HostReins*) -> int {
+                           [&](const HostVerbOptions&, SupervisorControl*) -> int {
                              starts += 1;
                              ::kill(getpid(), SIGKILL);
                              _exit(5);
@@ -78,14 +78,14 @@ TEST(Supervisor, StartsAgainWhatCanCarryOnAndNothingElse) {
   EXPECT_EQ(starts, 1) << "before it has a checkpoint there is nothing to go on from";
   starts = 0;
   EXPECT_EQ(supervise_host({},
-                           [&](const HostVerbOptions&, HostReins* reins) -> int {
+                           [&](const HostVerbOptions&, SupervisorControl* supervision) -> int {
                              starts += 1;
-                             reins->can_carry_on_from("kept");
+                             supervision->can_carry_on_from("kept");
                              ::kill(getpid(), SIGKILL);
                              _exit(5);
                            }),
             128 + SIGKILL);
-  EXPECT_EQ(starts, 1 + RestartBudget::kMost);
+  EXPECT_EQ(starts, 1 + RestartBudget::kMax);
   munmap(page, sizeof(int));
 }
 
@@ -103,29 +103,29 @@ TEST(Supervisor, AWorldHangsWhosePulseStands) {
 
 TEST(Supervisor, StartsAgainAWorldThatHangsAndNoneThatIsStoppedOrEnds) {
   // Beats twice, then lives on without a pulse.
-  const auto hangs = [](const HostVerbOptions& options, HostReins* reins) -> int {
+  const auto hangs = [](const HostVerbOptions& options, SupervisorControl* supervision) -> int {
     if (options.restarts == 1) _exit(options.resume == "kept" ? 3 : 4);
-    reins->can_carry_on_from("kept");
-    reins->pulse() = 2;
+    supervision->can_carry_on_from("kept");
+    supervision->pulse() = 2;
     while (true) pause();
   };
   EXPECT_EQ(supervise_host({}, hangs, {2, 60}), 3);
   // Its world goes on, and nobody hears of it.
-  const auto mute = [](const HostVerbOptions& options, HostReins* reins) -> int {
+  const auto mute = [](const HostVerbOptions& options, SupervisorControl* supervision) -> int {
     if (options.restarts == 1) _exit(options.resume == "kept" ? 3 : 4);
-    reins->can_carry_on_from("kept");
-    reins->network_pulse() = 2;
+    supervision->can_carry_on_from("kept");
+    supervision->network_pulse() = 2;
     while (true) {
-      reins->pulse() += 1;
+      supervision->pulse() += 1;
       usleep(10'000);
     }
   };
   EXPECT_EQ(supervise_host({}, mute, {60, 2}), 3);
   // One that somebody stopped is let be, and so is one whose run is over.
-  const auto stopped = [](const HostVerbOptions& options, HostReins* reins) -> int {
+  const auto stopped = [](const HostVerbOptions& options, SupervisorControl* supervision) -> int {
     if (options.restarts == 1) _exit(4);
-    reins->can_carry_on_from("kept");
-    reins->pulse() = reins->network_pulse() = 2;
+    supervision->can_carry_on_from("kept");
+    supervision->pulse() = supervision->network_pulse() = 2;
     const pid_t self = getpid();
     if (fork() == 0) {
       usleep(3'500'000);
@@ -133,7 +133,7 @@ TEST(Supervisor, StartsAgainAWorldThatHangsAndNoneThatIsStoppedOrEnds) {
       _exit(0);
     }
     raise(SIGSTOP);
-    reins->pulse() = reins->network_pulse() = 0;
+    supervision->pulse() = supervision->network_pulse() = 0;
     usleep(3'500'000);
     _exit(7);
   };
@@ -143,8 +143,8 @@ TEST(Supervisor, StartsAgainAWorldThatHangsAndNoneThatIsStoppedOrEnds) {
 TEST(Supervisor, PassesOnWhoAsksForTheEndOnce) {
   // The child was not signalled itself: it gets what its supervisor got.
   EXPECT_EQ(supervise_host({},
-                           [](const HostVerbOptions&, HostReins* reins) -> int {
-                             reins->can_carry_on_from("kept");
+                           [](const HostVerbOptions&, SupervisorControl* supervision) -> int {
+                             supervision->can_carry_on_from("kept");
                              signal(SIGTERM, SIG_DFL);
                              ::kill(getppid(), SIGTERM);
                              while (true) pause();
@@ -152,12 +152,12 @@ TEST(Supervisor, PassesOnWhoAsksForTheEndOnce) {
             128 + SIGTERM);
   // It was, and says so: a second one would end it at once.
   EXPECT_EQ(supervise_host({},
-                           [](const HostVerbOptions&, HostReins* reins) -> int {
+                           [](const HostVerbOptions&, SupervisorControl* supervision) -> int {
                              signal(SIGTERM, SIG_DFL);
-                             reins->can_carry_on_from("kept");
+                             supervision->can_carry_on_from("kept");
                              ::kill(getppid(), SIGTERM);
                              usleep(50'000);
-                             reins->ends();
+                             supervision->ends();
                              usleep(700'000);
                              _exit(11);
                            }),

@@ -20,7 +20,7 @@ const std::runtime_error kHostile("\x1b]0;owned\x07\x1b[2J\u009b31m\u202e\xff a 
 void expect_clean(const std::string& said) {
   EXPECT_EQ(said.rfind("slosh: ?]0;owned??[2J?31m? a scene?slosh: all is well\n", 0), 0u)
       << said.substr(0, 80);
-  EXPECT_LT(said.size(), 2 * kMostTextBytes);
+  EXPECT_LT(said.size(), 2 * kMaxTextBytes);
   std::string_view lines = said;
   for (std::size_t end = 0; (end = lines.find('\n')) != std::string_view::npos; lines.remove_prefix(end + 1))
     EXPECT_EQ(text_problem(lines.substr(0, end)), "");

@@ -221,7 +221,7 @@ TEST(Contact, stacked_cubes_stand_at_any_spacing) {
   }
 }
 
-// What the contacts gave is part of a saved world: a stack that is restored goes on to the bit.
+// What the contacts gave is part of a saved world: a stack that is restored goes on bitwise.
 TEST(Contact, saved_stack_goes_on_to_the_bit) {
   const SceneBuilder b = stack_of(5);
   Experiment e(b.scene, kSpacing);

@@ -276,11 +276,11 @@ TEST_P(Honey, box_gives_what_the_fluid_takes) {
   setting.model = GetParam().model;
   setting.spacing = 0.01;
   setting.threads = 1;
-  setting.solve_drag = GetParam().solved;
+  setting.solve_viscosity = GetParam().solved;
   report::Cost cost;
   report::Trial e(b.scene, setting, cost);
   const Plan plan = e.world().plan();
-  ASSERT_TRUE(plan.has(GetParam().solved ? PassId::kImplicitDrag : PassId::kBodyDrag));
+  ASSERT_TRUE(plan.has(GetParam().solved ? PassId::kImplicitViscosity : PassId::kBodyDrag));
   const Totals totals(e, b.scene, plan);
   const Totals::Momenta start = totals.of(e.world());
   Totals::Momenta before = start;

@@ -1,4 +1,4 @@
-// Implicit viscosity: the same flow as by explicit steps, in a fraction of them; to the bit whatever the
+// Implicit viscosity: the same flow as by explicit steps, in a fraction of them; bitwise whatever the
 // threads; bodies inside the solve; bounded where explicit steps would not come to an end.
 #include <gtest/gtest.h>
 
@@ -45,8 +45,8 @@ glm::dvec3 force_on_plate(report::Trial& e, int plate, double speed, double seco
 TEST(ImplicitViscosity, DragsLikeExplicitStepsASixthAsLong) {
   const Stirred s(50.0);
   Experiment solved(s.b.scene, 0.01), stepped(s.b.scene, 0.01, Experiment::Explicit{});
-  ASSERT_TRUE(solved.world().plan().has(PassId::kImplicitDrag));
-  ASSERT_FALSE(stepped.world().plan().has(PassId::kImplicitDrag));
+  ASSERT_TRUE(solved.world().plan().has(PassId::kImplicitViscosity));
+  ASSERT_FALSE(stepped.world().plan().has(PassId::kImplicitViscosity));
   EXPECT_GT(solved.world().plan().time_step, 6.0 * stepped.world().plan().time_step);
   const glm::dvec3 a = force_on_plate(solved, s.plate, 0.05, 0.3);
   const glm::dvec3 b = force_on_plate(stepped, s.plate, 0.05, 0.3);
@@ -82,7 +82,7 @@ TEST(ImplicitViscosity, IsTheSameToTheBitWhateverTheThreadsAndFromASavedWorldOn)
   const Stirred s(50.0);
   const SampledScene sampled = sample_scene(s.b.scene, 0.01).value();
   const Plan plan = make_plan(s.b.scene, 0.01);
-  ASSERT_TRUE(plan.solves_drag);
+  ASSERT_TRUE(plan.implicit_viscosity);
   std::vector<HandleInput> hands(1);
   hands[0].engaged = true;
   hands[0].pose.position = {0.0, 0.05, 0.01};
@@ -115,7 +115,7 @@ TEST(ImplicitViscosity, ABoxLiesOnTheFloorUnderHoneyWithItsWeight) {
   b.add_volume(make::box({-0.06, kEdge + 0.002, -0.06}, {0.06, 0.08, 0.06}));
   b.set_domain({-0.1, -0.05, -0.1}, {0.1, 0.25, 0.1});
   Experiment e(b.scene, 0.01);
-  ASSERT_TRUE(e.world().plan().has(PassId::kImplicitDrag));
+  ASSERT_TRUE(e.world().plan().has(PassId::kImplicitViscosity));
   e.run(0.5);
   const glm::dvec3 start = e.bodies().bodies[static_cast<std::size_t>(box)].center_of_mass;
   double fastest = 0.0;
@@ -139,7 +139,7 @@ TEST(ImplicitViscosity, AColumnOfPitchHardlySagsAndStaysBounded) {
   b.add_volume(make::box({-0.03, 0.0, -0.03}, {0.03, 0.06, 0.03}));
   b.set_domain({-0.1, -0.05, -0.1}, {0.1, 0.2, 0.1});
   Experiment e(b.scene, 0.01);
-  ASSERT_TRUE(e.world().plan().has(PassId::kImplicitDrag));
+  ASSERT_TRUE(e.world().plan().has(PassId::kImplicitViscosity));
   const double high = e.world().diagnostics().center.y;
   double most = 0.0;
   e.run(0.2, [&] { most = std::max(most, e.world().diagnostics().kinetic_energy); });
@@ -158,15 +158,15 @@ TEST(ImplicitViscosity, AColumnOfPitchHardlySagsAndStaysBounded) {
 TEST(ImplicitViscosity, ViscosityChangesWhileItRuns) {
   const Stirred s(50.0);
   Experiment e(s.b.scene, 0.01);
-  ASSERT_TRUE(e.world().plan().solves_drag);
+  ASSERT_TRUE(e.world().plan().implicit_viscosity);
   const double thick = force_on_plate(e, s.plate, 0.05, 0.1).x;
   ASSERT_TRUE(e.world().set_viscosity(0, 5.0));
   const double thin = force_on_plate(e, s.plate, 0.05, 0.1).x;
   EXPECT_LT(std::abs(thin), 0.7 * std::abs(thick));
   ASSERT_TRUE(e.world().set_viscosity(0, 0.0));
-  EXPECT_TRUE(e.world().plan().solves_drag);
+  EXPECT_TRUE(e.world().plan().implicit_viscosity);
   ASSERT_TRUE(e.world().set_viscosity(0, 500.0));
-  EXPECT_TRUE(e.world().plan().has(PassId::kImplicitDrag));
+  EXPECT_TRUE(e.world().plan().has(PassId::kImplicitViscosity));
   e.run(0.02);
   EXPECT_TRUE(all_finite(e.world()));
   const Result<bool> refused = e.world().set_viscosity(0, 1e9);

@@ -43,7 +43,7 @@ class Experiment : private report::Cost, public report::Trial {
   }
   static report::Setting explicit_setting_of(const Scene& scene, double spacing) {
     report::Setting setting = setting_of(scene, spacing);
-    setting.solve_drag = false;
+    setting.solve_viscosity = false;
     return setting;
   }
 };

@@ -68,7 +68,7 @@ TEST_F(RendererTest, WorksOnAThreadOfItsOwn) {
   EXPECT_EQ(picture(*context_).rgba, here.rgba);  // this thread's context is still current here
 }
 
-/// Few pixels of picture under a HUD that has all of a window's: its letters are the same to the bit.
+/// Few pixels of picture under a HUD that has all of a window's: its letters are bitwise identical.
 TEST_F(RendererTest, AStretchedPicturesHudIsAsSharpAsTheWindow) {
   const glm::ivec2 window(640, 480);
   const auto hud = [] {

@@ -53,7 +53,7 @@ TEST(DistanceFields, SphereEverywhere) {
 
 TEST(DistanceFields, ReachesThreeSpacingsAndHasAtMost96Nodes) {
   const DistanceField field = field_of(make::box({-0.5, -0.02, -0.3}, {0.5, 0.02, 0.3}), 0.008);
-  for (int a = 0; a < 3; ++a) EXPECT_LE(field.size[a], sampling::kMostNodes);
+  for (int a = 0; a < 3; ++a) EXPECT_LE(field.size[a], sampling::kMaxNodes);
   const glm::vec3 high = field.origin + field.cell * glm::vec3(field.size - 1);
   EXPECT_GE(high.x, 0.5f + 0.0239f);
   EXPECT_LE(field.origin.y, -0.02f - 0.0239f);

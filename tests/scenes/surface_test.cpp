@@ -128,14 +128,14 @@ TEST(SurfaceSampling, BucketWithHandles) {
 TEST(SurfaceSampling, AreFinerWhereBumpsWouldBrake) {
   Scene scene;
   Body body;
-  EXPECT_DOUBLE_EQ(sheet_spacing(scene, body, 0.01), 0.01) << "at which fluid stands still";
+  EXPECT_DOUBLE_EQ(boundary_spacing(scene, body, 0.01), 0.01) << "at which fluid stands still";
   body.dynamic_viscosity = kFreeSlip;
-  EXPECT_DOUBLE_EQ(sheet_spacing(scene, body, 0.01), 0.007) << "along which it slides";
+  EXPECT_DOUBLE_EQ(boundary_spacing(scene, body, 0.01), 0.007) << "along which it slides";
   body.motion = BodyMotion::kFree;
-  EXPECT_DOUBLE_EQ(sheet_spacing(scene, body, 0.01), 0.01) << "what moves";
+  EXPECT_DOUBLE_EQ(boundary_spacing(scene, body, 0.01), 0.01) << "what moves";
   body.motion = BodyMotion::kFixed;
   scene.model = ParticleModel::kConsistent;
-  EXPECT_DOUBLE_EQ(sheet_spacing(scene, body, 0.01), 0.01) << "a model whose walls are as they were";
+  EXPECT_DOUBLE_EQ(boundary_spacing(scene, body, 0.01), 0.01) << "a model whose walls are as they were";
 }
 
 // The area that they stand for is the surface's, whatever their distance. Two bodies of one mesh may differ.

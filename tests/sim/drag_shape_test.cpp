@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "sim/viscosity/pair_drag.h"
+#include "sim/viscosity/pair_viscosity.h"
 
 namespace slosh {
 namespace {
@@ -63,7 +63,7 @@ DragShape<double> scaled(const DragShape<double>& shape, double by) {
 }
 
 TEST(DragShapeTest, ALatticePassesOnAStrainAsItDoesAShear) {
-  const DragShape<double> shape = drag_shape(DragSheet::kSurface, 2.0);
+  const DragShape<double> shape = drag_shape(DragLayer::kSurface, 2.0);
   const PassedOn now = passed_on(scaled(shape, 1.0 / kSlides), 2.0);
   EXPECT_NEAR(now.strain, 1.0, 0.005);
   EXPECT_NEAR(now.shear, 1.0, 0.005);
@@ -72,7 +72,7 @@ TEST(DragShapeTest, ALatticePassesOnAStrainAsItDoesAShear) {
 }
 
 TEST(DragShapeTest, LayersThatSlideOverEachOtherPassOnNewtons) {
-  EXPECT_NEAR(sliding_layers_pass_on(drag_shape(DragSheet::kSurface, 2.0), 2.0), 1.0, 0.005);
+  EXPECT_NEAR(sliding_layers_pass_on(drag_shape(DragLayer::kSurface, 2.0), 2.0), 1.0, 0.005);
   EXPECT_NEAR(sliding_layers_pass_on(kLaplacian, 2.0), 0.986, 0.001);
 }
 
@@ -88,13 +88,13 @@ TEST(DragShapeTest, EvenlyLyingFluidPassesOnAsMuchAsByTheLaplacianAndWhatLayersL
     return sum;
   };
   for (const double h : {0.01, 2.0}) {
-    const DragShape<double> shape = drag_shape(DragSheet::kSurface, h);
+    const DragShape<double> shape = drag_shape(DragLayer::kSurface, h);
     EXPECT_NEAR(whole(shape, h) / whole(kLaplacian, h), kSlides, 1e-6);
   }
 }
 
 TEST(DragShapeTest, ThinFluidKeepsTheLaplacian) {
-  const DragShape<double> shape = drag_shape(DragSheet::kBehind, 0.01);
+  const DragShape<double> shape = drag_shape(DragLayer::kBehind, 0.01);
   EXPECT_EQ(shape.level, 1.0);
   EXPECT_EQ(shape.growth, 0.0);
 }

@@ -56,7 +56,7 @@ struct Around {
       s.number += near;
       add(s.flow.offset, near, d), add(s.apart, near, v);
     }
-    return fluid_stress(s, turned_moment(by_fluid, rest_moment()), share_of_stress(held, rest_moment()),
+    return fluid_stress(s, inverse_moment(by_fluid, rest_moment()), share_of_stress(held, rest_moment()),
                         rest_moment(), kVolume, kViscosity);
   }
 };
@@ -65,7 +65,7 @@ glm::dvec3 vec3(const Vector3<float>& v) {
   return {v.x, v.y, v.z};
 }
 // T as GLM has it, by columns.
-glm::dmat3 matrix(const Rows<float>& t) {
+glm::dmat3 matrix(const Matrix3<float>& t) {
   return glm::transpose(glm::dmat3(vec3(t.x), vec3(t.y), vec3(t.z)));
 }
 
@@ -159,12 +159,12 @@ TEST(FluidStress, LeavesEq9ItsPlaceBesideWallsThatHold) {
   Around a = around(Where::kInside, random);
   const glm::dmat3 gradient = any_matrix(random);
   for (const glm::vec3& x : a.places) a.velocities.emplace_back(gradient * glm::dvec3(x));
-  const FluidStress whole = a.stress(), half = a.stress(0.5f * kHeld * rest_moment()),
-                    none = a.stress(kHeld * rest_moment());
+  const FluidStress whole = a.stress(), half = a.stress(0.5f * kNoSlipReach * rest_moment()),
+                    none = a.stress(kNoSlipReach * rest_moment());
   EXPECT_NEAR(size_of(matrix(half.push)) / size_of(matrix(whole.push)), 0.5, 1e-5);
-  EXPECT_FLOAT_EQ(half.left, 0.5f * kBesideWalls * kViscosity);
+  EXPECT_FLOAT_EQ(half.left, 0.5f * kNearNoSlipWalls * kViscosity);
   EXPECT_EQ(size_of(matrix(none.push)), 0.0);
-  EXPECT_FLOAT_EQ(none.left, kBesideWalls * kViscosity);
+  EXPECT_FLOAT_EQ(none.left, kNearNoSlipWalls * kViscosity);
 }
 
 // A pair far from all others drags as before: two drops of syrup that meet do not spring back.
@@ -172,11 +172,11 @@ TEST(FluidStress, LeavesEq9ItsPlaceWhereNobodyElseIs) {
   Around a;
   a.places = {kSpacing * glm::vec3(0.6f, 0.7f, 0.1f)};
   a.velocities = {glm::vec3(-1.0f, 0.0f, 0.0f)};
-  EXPECT_FLOAT_EQ(a.stress().left, kBesideWalls * kViscosity);
+  EXPECT_FLOAT_EQ(a.stress().left, kNearNoSlipWalls * kViscosity);
   std::mt19937 random(12);
   Around layer = around(Where::kLayer, random);
   layer.velocities.assign(layer.places.size(), glm::vec3(-1.0f, 0.0f, 0.0f));
-  EXPECT_GT(layer.stress().left, 0.7f * kBesideWalls * kViscosity);
+  EXPECT_GT(layer.stress().left, 0.7f * kNearNoSlipWalls * kViscosity);
 }
 
 // One that moves alone is braked by a quarter of the viscosity of what its velocity differs by; one without
@@ -186,7 +186,7 @@ TEST(FluidStress, BrakesWhatIsNoPartOfTheFlow) {
   Around a = around(Where::kInside, random);
   a.velocities.assign(a.places.size(), glm::vec3(-1.0f, 0.0f, 0.0f));
   const FluidStress alone = a.stress();
-  EXPECT_NEAR(alone.rest.x, kBrakesTheRest * kViscosity, 0.2f * kBrakesTheRest * kViscosity);
+  EXPECT_NEAR(alone.rest.x, kResidualDamping * kViscosity, 0.2f * kResidualDamping * kViscosity);
   const FluidStress nobody = Around{}.stress();
   EXPECT_EQ(size_of(matrix(nobody.push)), 0.0);
   EXPECT_EQ(nobody.rest.x, 0.0f);

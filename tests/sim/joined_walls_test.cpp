@@ -78,11 +78,11 @@ float distance_to_outline(const glm::vec2& p) {
 }
 
 // Both bodies' particles in the world, those near the ends in z left out.
-std::vector<glm::vec3> in_the_middle(const std::vector<std::vector<SheetParticle>>& sheets,
+std::vector<glm::vec3> in_the_middle(const std::vector<std::vector<LayerParticle>>& layers,
                                      const std::vector<Pose>& poses) {
   std::vector<glm::vec3> all;
-  for (std::size_t b = 0; b < sheets.size(); ++b) {
-    for (const SheetParticle& p : sheets[b]) {
+  for (std::size_t b = 0; b < layers.size(); ++b) {
+    for (const LayerParticle& p : layers[b]) {
       const glm::vec3 world = moved(poses[b], p).position;
       if (std::abs(world.z) < 0.04f) all.push_back(world);
     }
@@ -113,17 +113,17 @@ void expect_one_sheet(const std::vector<glm::vec3>& particles, float apart = kSp
 TEST(JoinedWalls, AWallOnAFloorIsOneSolid) {
   Box floor(kFloorLow, kFloorHigh), wall(kWallLow, kWallHigh);
   const std::vector<FixedSolid> solids = {floor.solid(), wall.solid()};
-  expect_one_sheet(in_the_middle(joined_sheets(solids, kSpacing), {Pose{}, Pose{}}));
+  expect_one_sheet(in_the_middle(joined_layers(solids, kSpacing), {Pose{}, Pose{}}));
 }
 
-// Along walls that slip sheets are finer (sheet_spacing), and so is what fills their edges. With a floor
+// Along walls that slip layers are finer (boundary_spacing), and so is what fills their edges. With a floor
 // along which fluid slides and a wall at which it stands each has its own.
 TEST(JoinedWalls, FinerSheetsMeetAsWell) {
   constexpr float kFine = 0.7f * kSpacing;
   for (const float of_wall : {kFine, kSpacing}) {
     Box floor(kFloorLow, kFloorHigh, kFine), wall(kWallLow, kWallHigh, of_wall);
     const std::vector<FixedSolid> solids = {floor.solid(), wall.solid()};
-    expect_one_sheet(in_the_middle(joined_sheets(solids, kSpacing), {Pose{}, Pose{}}), of_wall);
+    expect_one_sheet(in_the_middle(joined_layers(solids, kSpacing), {Pose{}, Pose{}}), of_wall);
   }
 }
 
@@ -135,13 +135,13 @@ TEST(JoinedWalls, EachHasItsOwnFrame) {
   const glm::vec3 a = local(kWallLow), b = local(kWallHigh);
   Box floor(kFloorLow, kFloorHigh), wall(glm::min(a, b), glm::max(a, b));
   const std::vector<FixedSolid> solids = {floor.solid(), wall.solid(turned)};
-  expect_one_sheet(in_the_middle(joined_sheets(solids, kSpacing), {Pose{}, turned}));
+  expect_one_sheet(in_the_middle(joined_layers(solids, kSpacing), {Pose{}, turned}));
 }
 
 TEST(JoinedWalls, OverlappingOnesToo) {
   Box floor(kFloorLow, kFloorHigh), wall({kWallLow.x, -0.021f, kWallLow.z}, kWallHigh);
   const std::vector<FixedSolid> solids = {floor.solid(), wall.solid()};
-  expect_one_sheet(in_the_middle(joined_sheets(solids, kSpacing), {Pose{}, Pose{}}));
+  expect_one_sheet(in_the_middle(joined_layers(solids, kSpacing), {Pose{}, Pose{}}));
 }
 
 // Round the edge between floor and wall each place is as near to the one face as to the other. As that was
@@ -151,9 +151,9 @@ TEST(JoinedWalls, WhatFillsAnEdgeIsOfTheFaceItIsFartherBehind) {
   for (const float apart : {1.0f, 0.97f, 0.93f, 0.9f, 0.83f}) {
     Box floor(kFloorLow, kFloorHigh, apart * kSpacing), wall(kWallLow, kWallHigh, kSpacing);
     const std::vector<FixedSolid> solids = {floor.solid(), wall.solid()};
-    const std::vector<std::vector<SheetParticle>> sheets = joined_sheets(solids, kSpacing);
+    const std::vector<std::vector<LayerParticle>> layers = joined_layers(solids, kSpacing);
     for (std::size_t b = 0; b < 2; ++b) {
-      for (const SheetParticle& particle : sheets[b]) {
+      for (const LayerParticle& particle : layers[b]) {
         const glm::vec3& p = particle.position;
         const float below = kFloorHigh.y - p.y, behind = kWallHigh.x - p.x;
         const bool in_edge =
@@ -174,14 +174,14 @@ TEST(JoinedWalls, ThoseThatStandApartAreLeftAlone) {
     const glm::vec3 up(0.0f, gap * kSpacing, 0.0f);
     Box wall(kWallLow + up, kWallHigh + up);
     const std::vector<FixedSolid> solids = {floor.solid(), table.solid(), wall.solid()};
-    const std::vector<std::vector<SheetParticle>> sheets = joined_sheets(solids, kSpacing);
-    EXPECT_TRUE(sheets[1].empty());
-    for (const std::size_t b : {0u, 2u}) EXPECT_EQ(sheets[b].empty(), gap > 0.25f) << gap << ", body " << b;
+    const std::vector<std::vector<LayerParticle>> layers = joined_layers(solids, kSpacing);
+    EXPECT_TRUE(layers[1].empty());
+    for (const std::size_t b : {0u, 2u}) EXPECT_EQ(layers[b].empty(), gap > 0.25f) << gap << ", body " << b;
   }
 }
 
 // Where three bodies meet, the end of a hidden face lies at the edges of both others, where a field is round:
-// sheets bent round what was taken for open there, and still water left through it. On the other hand no
+// layers bent round what was taken for open there, and still water left through it. On the other hand no
 // sample of what is open may be hidden.
 TEST(JoinedWalls, FacesAreHiddenUpToTheirEnds) {
   for (const float cell : {0.3f, 0.5f, 0.76f}) {
@@ -277,10 +277,10 @@ TEST(JoinedWalls, AJointIsAsDeepAsOnePiece) {
 TEST(JoinedWalls, AThinPlateHasItsOuterFace) {
   Box block(kFloorLow, kFloorHigh), plate({-0.06f, 0.0f, -0.06f}, {0.06f, kSpacing, 0.06f});
   const std::vector<FixedSolid> solids = {block.solid(), plate.solid()};
-  const std::vector<std::vector<SheetParticle>> sheets = joined_sheets(solids, kSpacing);
+  const std::vector<std::vector<LayerParticle>> layers = joined_layers(solids, kSpacing);
   int top = 0;
-  for (const std::vector<SheetParticle>& sheet : sheets) {
-    for (const SheetParticle& particle : sheet) {
+  for (const std::vector<LayerParticle>& sheet : layers) {
+    for (const LayerParticle& particle : sheet) {
       const glm::vec3& p = particle.position;
       if (glm::max(std::abs(p.x), std::abs(p.z)) > 0.04f || p.y < -0.02f) continue;
       EXPECT_NEAR(p.y / kSpacing, 1.0f - 0.7f, 0.06f);

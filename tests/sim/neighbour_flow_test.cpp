@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sim/math/kernels.h"
-#include "sim/viscosity/noise.h"
+#include "sim/viscosity/artificial_viscosity.h"
 
 namespace slosh {
 namespace {
@@ -46,14 +46,15 @@ Sums sums_of(const glm::vec3& v, const std::vector<glm::vec3>& places,
 }
 
 void follow(Sums& s, const glm::vec3& v) {
-  follow_flow(flow_around(s.flow, {v.x, v.y, v.z}), turned_moment(s.around.moment, s.rest), s.rest, s.around);
+  follow_flow(flow_around(s.flow, {v.x, v.y, v.z}), inverse_moment(s.around.moment, s.rest), s.rest,
+              s.around);
 }
 
 // m/s that it differs from its neighbours by.
 glm::vec3 jostling(const Sums& s, const glm::vec3& v) {
   float u[3] = {};
-  add_noise(s.around, s.own, 1.0f, {v.x, v.y, v.z}, u);
-  follow_noise(s.around, s.own, 1.0f, u);
+  add_fluctuation(s.around, s.own, 1.0f, {v.x, v.y, v.z}, u);
+  follow_fluctuation(s.around, s.own, 1.0f, u);
   return {u[0], u[1], u[2]};
 }
 

@@ -209,8 +209,8 @@ TEST(PairForce, NothingIsCorrectedInAnImpactOrInSpray) {
 // surface where it lives by that; who has none is a surface everywhere.
 TEST(PairForce, AViscousFluidIsWholeFromNineTenthsOn) {
   CorrectionConstants c;
-  c.noise_viscosity = 0.6f;
-  EXPECT_EQ(whole_from(c, 0.001f), 1.0f) << "thin fluid as ever, to the bit";
+  c.artificial_viscosity = 0.6f;
+  EXPECT_EQ(whole_from(c, 0.001f), 1.0f) << "thin fluid as ever, bitwise";
   EXPECT_EQ(whole_from(c, 0.6f * 0.75f), 1.0f);
   EXPECT_NEAR(whole_from(c, 0.6f), 0.95f, 1e-6f);
   EXPECT_FLOAT_EQ(whole_from(c, 1.0f), 0.9f);
@@ -222,7 +222,7 @@ TEST(PairForce, AViscousFluidIsWholeFromNineTenthsOn) {
   EXPECT_FLOAT_EQ(pressure_directions({0, 0, 0, 0, 0, 0}, 1.0f, 1.3f, 0.9f).xx, 1.0f);
 }
 
-// A wall's particle counts in the moment of thin fluid as half of what it presses with, to the bit, and in
+// A wall's particle counts in the moment of thin fluid as half of what it presses with, bitwise, and in
 // that of fluid that needs no drag on jostling as a tenth more, the more the wider the support.
 TEST(PairForce, AWallIsMoreThanALayerToThickFluid) {
   for (const double ratio : {1.5, 2.0, 2.6}) {
@@ -247,38 +247,38 @@ TEST(Noise, IsWhatAParticleDoesNotShareWithItsNeighbours) {
   n.vx = 4.0f * 0.5f;
   float u[3] = {0.0f, 0.0f, 0.0f};
   const float shared[3] = {0.5f, 0.0f, 0.0f};
-  add_noise(n, 1.0f, 2.0f, shared, u);
+  add_fluctuation(n, 1.0f, 2.0f, shared, u);
   EXPECT_FLOAT_EQ(u[0], 0.0f);
   // At 2 m/s among three that stand still: the whole of it, times the factor.
   n.vx = 2.0f;
   const float own[3] = {2.0f, 0.0f, 0.0f};
-  add_noise(n, 1.0f, 2.0f, own, u);
+  add_fluctuation(n, 1.0f, 2.0f, own, u);
   EXPECT_FLOAT_EQ(u[0], 4.0f);
   n.fluid_number = 1.0f;
   float alone[3] = {0.0f, 0.0f, 0.0f};
-  add_noise(n, 1.0f, 2.0f, own, alone);
+  add_fluctuation(n, 1.0f, 2.0f, own, alone);
   EXPECT_EQ(alone[0], 0.0f);
 }
 
-// In an impact it is damped by more, up to what the step holds; calm fluid by the same to the bit.
+// In an impact it is damped by more, up to what the step holds; calm fluid by bitwise identical.
 TEST(Noise, GrowsWithTheSpeedOfAnImpactUpToWhatTheStepHolds) {
-  constexpr float kJostling = 0.8f, kSound = 5.0f, kMost = 6.0f;
+  constexpr float kJostling = 0.8f, kSound = 5.0f, kMax = 6.0f;
   constexpr auto kGrowth = static_cast<float>(kImpactGrowth) / kSound;
   const auto at = [&](float speed, float viscosity) {
-    return viscosity_in_impact(kJostling, kJostling, kGrowth, speed, viscosity, kMost);
+    return artificial_viscosity_in_impact(kJostling, kJostling, kGrowth, speed, viscosity, kMax);
   };
   EXPECT_EQ(at(0.0f, 0.0f), kJostling);
   EXPECT_EQ(at(0.99f * static_cast<float>(kImpactSpeed) * kSound, 0.0f), kJostling);
   // A tenth of the speed of sound is 0.05 beyond: 50 · 0.05 times as much more.
   EXPECT_FLOAT_EQ(at(0.1f * kSound, 0.0f), kJostling * 3.5f);
-  EXPECT_FLOAT_EQ(at(kSound, 0.0f), kMost);
-  EXPECT_FLOAT_EQ(at(kSound, 2.0f), kMost - 2.0f);
+  EXPECT_FLOAT_EQ(at(kSound, 0.0f), kMax);
+  EXPECT_FLOAT_EQ(at(kSound, 2.0f), kMax - 2.0f);
   // Where the fluid's own drag is all that the step holds it is what it would be in calm.
-  EXPECT_EQ(at(kSound, kMost), kJostling);
+  EXPECT_EQ(at(kSound, kMax), kJostling);
   // Thick fluid, whose jostling feels nothing or less in calm, gains as much as thin.
   for (const float calm : {0.0f, 0.3f}) {
-    EXPECT_EQ(viscosity_in_impact(calm, kJostling, kGrowth, 0.04f * kSound, 1.0f, kMost), calm);
-    EXPECT_FLOAT_EQ(viscosity_in_impact(calm, kJostling, kGrowth, 0.1f * kSound, 1.0f, kMost),
+    EXPECT_EQ(artificial_viscosity_in_impact(calm, kJostling, kGrowth, 0.04f * kSound, 1.0f, kMax), calm);
+    EXPECT_FLOAT_EQ(artificial_viscosity_in_impact(calm, kJostling, kGrowth, 0.1f * kSound, 1.0f, kMax),
                     calm + kJostling * 2.5f);
   }
 }

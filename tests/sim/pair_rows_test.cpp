@@ -1,4 +1,4 @@
-// Rows of pairs against a plain double loop.
+// Matrix3 of pairs against a plain double loop.
 #include "sim/cpu/pair_rows.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <map>
 #include <random>
 
-#include "sim/cpu/press_walk.h"
+#include "sim/cpu/pressure_loop.h"
 
 namespace slosh {
 namespace {
@@ -59,7 +59,8 @@ float weight_of(std::size_t p, std::size_t i) {
   return 0.5f + 0.01f * static_cast<float>((p * i) % 37) + 0.1f * static_cast<float>(p + i);
 }
 
-// Rows of those within reach, candidates in batches that begin and end anywhere: [0, split), [split, count).
+// Matrix3 of those within reach, candidates in batches that begin and end anywhere: [0, split), [split,
+// count).
 void write(const Crowd& crowd, PairRows& rows) {
   rows.clear(1);
   PairRows::Writer writer(rows, 0);
@@ -109,11 +110,11 @@ void write_weighed(const Crowd& crowd, PairRows& rows) {
   if (writer.waits()) put();
 }
 
-using Rows = std::vector<std::map<std::size_t, float>>;
+using Matrix3 = std::vector<std::map<std::size_t, float>>;
 
 // Who is in whose row, with their weights; what fills rows up is left out.
-Rows read(const Crowd& crowd, const PairRows& rows) {
-  Rows found(crowd.count);
+Matrix3 read(const Crowd& crowd, const PairRows& rows) {
+  Matrix3 found(crowd.count);
   std::size_t next = 0;
   rows.for_each_group(0, [&](const PairRows::Walk& walk) {
     EXPECT_EQ(walk.first, next);
@@ -131,8 +132,8 @@ Rows read(const Crowd& crowd, const PairRows& rows) {
   return found;
 }
 
-Rows expected_rows(const Crowd& crowd) {
-  Rows rows(crowd.count);
+Matrix3 expected_rows(const Crowd& crowd) {
+  Matrix3 rows(crowd.count);
   for (std::size_t p = 0; p < crowd.count; ++p) {
     for (std::size_t i = 0; i < crowd.count; ++i) {
       if (crowd.near(p, i)) rows[p][i] = weight_of(p, i);
@@ -145,7 +146,7 @@ glm::dvec3 vec3(const Vector4& v) {
   return {v.x, v.y, v.z};
 }
 
-glm::dmat3 matrix(const PressTensor& t) {
+glm::dmat3 matrix(const PressureTensor& t) {
   return {{t.xx, t.xy, t.xz}, {t.xy, t.yy, t.yz}, {t.xz, t.yz, t.zz}};
 }
 
@@ -199,7 +200,7 @@ TEST_P(PairRowsOf, TakenAgainHaveTheirNewWeightsAndWhatGoesBehind) {
       }
     });
   }
-  Rows expected = expected_rows(crowd);
+  Matrix3 expected = expected_rows(crowd);
   for (std::size_t p = 0; p < crowd.count; ++p) {
     for (auto& [other, weight] : expected[p]) weight *= 2.0f;
     if (p % 3 == 0) expected[p][crowd.count] = expected[p][crowd.count + 2] = 9.0f;
@@ -215,7 +216,7 @@ TEST_P(PairRowsOf, PushAndFlowAsADoubleLoop) {
   PairRows rows;
   write(crowd, rows);
   const FluidPress& press = crowd.press;
-  const Rows expected = expected_rows(crowd);
+  const Matrix3 expected = expected_rows(crowd);
   for_each_result(
       rows, [&](const PairRows::Walk& w) { return w.push(press.places.data(), press.tensors.data()); },
       [&](std::size_t p, const glm::dvec3& found) {
@@ -252,7 +253,7 @@ TEST_P(PairRowsOf, DragAsADoubleLoopAndKeepMomentumToRounding) {
   const FluidPress& press = crowd.press;
   glm::dvec3 momentum(0.0);
   double all = 0.0;
-  const Rows expected = expected_rows(crowd);
+  const Matrix3 expected = expected_rows(crowd);
   for_each_result(
       rows, [&](const PairRows::Walk& w) { return w.dragged(press.places.data(), press.velocities.data()); },
       [&](std::size_t p, const glm::dvec3& found) {
@@ -277,7 +278,7 @@ TEST_P(PairRowsOf, SquaresAndRatesAsADoubleLoop) {
   PairRows rows;
   write(crowd, rows);
   const FluidPress& press = crowd.press;
-  const Rows expected = expected_rows(crowd);
+  const Matrix3 expected = expected_rows(crowd);
   const auto check = [&](auto&& walked, auto&& factor) {
     rows.for_each_group(0, [&](const PairRows::Walk& walk) {
       const PairRows::Walk::Squares found = walked(walk);
@@ -322,7 +323,7 @@ glm::dvec3 pushed(const Passed& t, const glm::dvec3& d) {
 template <class Forces, class Push, class Viscosity>
 void expect_forces(const Crowd& crowd, Forces&& forces, Push&& push, Viscosity&& viscosity) {
   const FluidPress& press = crowd.press;
-  const Rows expected = expected_rows(crowd);
+  const Matrix3 expected = expected_rows(crowd);
   for_each_result(
       press.rows,
       [&](const PairRows::Walk& w) {

@@ -124,17 +124,17 @@ TEST(Plan, ShortensTheStepWithSpacingViscosityAndStiffness) {
 TEST(Plan, SolvesDragWhereExplicitStepsWouldBeManyTimesShorter) {
   auto tank = make_tank({});
   const Plan thin = make_plan(tank.scene, 0.01);
-  EXPECT_FALSE(thin.solves_drag);
+  EXPECT_FALSE(thin.implicit_viscosity);
   tank.scene.fluids[0].dynamic_viscosity = 100.0;
   const Plan solved = make_plan(tank.scene, 0.01), without = make_plan(tank.scene, 0.01, false);
-  EXPECT_TRUE(solved.has(PassId::kImplicitDrag));
+  EXPECT_TRUE(solved.has(PassId::kImplicitViscosity));
   EXPECT_FALSE(solved.has(PassId::kBodyDrag));
-  EXPECT_FALSE(solved.drags_explicitly());
+  EXPECT_FALSE(solved.explicit_viscosity());
   EXPECT_NEAR(solved.time_step, thin.time_step, 1e-9) << solved.time_step_reason;
-  EXPECT_FALSE(without.has(PassId::kImplicitDrag));
+  EXPECT_FALSE(without.has(PassId::kImplicitViscosity));
   EXPECT_LT(without.time_step, 0.25 * solved.time_step);
   tank.scene.model = ParticleModel::kConsistent;
-  EXPECT_FALSE(make_plan(tank.scene, 0.01).solves_drag);
+  EXPECT_FALSE(make_plan(tank.scene, 0.01).implicit_viscosity);
   EXPECT_TRUE(can_solve_drag(Backend::kCuda));
   EXPECT_TRUE(can_solve_drag(Backend::kCpu));
 }
@@ -150,7 +150,7 @@ TEST(Plan, SolvesDragFromTwiceTheStepOn) {
       tank.scene.fluids[0].dynamic_viscosity = viscosity;
       const double times = longest / make_plan(tank.scene, 0.01, false).time_step;
       if (std::abs(times - from) < 0.02) continue;
-      EXPECT_EQ(make_plan(tank.scene, 0.01).solves_drag, times > from)
+      EXPECT_EQ(make_plan(tank.scene, 0.01).implicit_viscosity, times > from)
           << viscosity << " Pa·s, " << times << " times";
       stepped += times > 0.75 * from && times < from;
       solved += times > from && times < 1.25 * from;

@@ -1,4 +1,4 @@
-// A world that is saved, restored and changed while it runs: to the bit on the CPU; tests/cross has the GPU.
+// A world that is saved, restored and changed while it runs: bitwise on the CPU; tests/cross has the GPU.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -249,7 +249,7 @@ TEST(LiveViscosity, ThickensUpToWhatTheStepHolds) {
   const Result<bool> refused = world.set_viscosity(0, 1e4);
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().mend.find("Pa·s will do"), std::string::npos) << refused.error().text();
-  const double most = most_viscous_allowed(tank.scene, world.plan(), drag_sheet(tank.scene, world.plan()));
+  const double most = max_viscosity_allowed(tank.scene, world.plan(), drag_layer(tank.scene, world.plan()));
   EXPECT_GT(most, 0.1);
   EXPECT_FALSE(world.set_viscosity(0, 1.001 * most));
   EXPECT_FALSE(world.set_viscosity(0, -1.0));

@@ -39,7 +39,7 @@ Volumes volumes(const make::Solid& solid) {
 }
 
 TEST(WallDragTest, FluidAtAFlatWallLiesMostlyInLayersAtABallMostlyEvenly) {
-  const WallDrag drag = wall_drag(ParticleModel::kCorrected, 2.0, DragSheet::kSurface);
+  const WallDrag drag = wall_drag(ParticleModel::kCorrected, 2.0, DragLayer::kSurface);
   EXPECT_NEAR(drag.layered, 0.554, 0.005);
   EXPECT_NEAR(drag.even, 0.652, 0.005);
   EXPECT_NEAR(1.0 / drag.factor(0.0), 0.7 / drag.layered + 0.3 / drag.even, 1e-12);
@@ -50,28 +50,28 @@ TEST(WallDragTest, FluidAtAFlatWallLiesMostlyInLayersAtABallMostlyEvenly) {
 }
 
 TEST(WallDragTest, WherePressuresAreSolvedForItLiesInLayersAtABallHalfOfItEvenly) {
-  const WallDrag drag = wall_drag(ParticleModel::kIncompressible, 2.0, DragSheet::kSurface);
+  const WallDrag drag = wall_drag(ParticleModel::kIncompressible, 2.0, DragLayer::kSurface);
   EXPECT_DOUBLE_EQ(drag.factor(0.0), drag.layered);
   EXPECT_NEAR(1.0 / drag.factor(0.4), 0.5 / drag.layered + 0.5 / drag.even, 1e-12);
   EXPECT_DOUBLE_EQ(drag.factor(0.7), drag.factor(0.4));
 }
 
 TEST(WallDragTest, FromBehindTheSurfaceAllSurfacesDragAlike) {
-  const WallDrag drag = wall_drag(ParticleModel::kCorrected, 2.0, DragSheet::kBehind);
+  const WallDrag drag = wall_drag(ParticleModel::kCorrected, 2.0, DragLayer::kBehind);
   EXPECT_DOUBLE_EQ(drag.factor(0.0), drag.factor(1.0));
 }
 
 // A mirror is the stiffer the more of it is within reach. Where walls drag from behind their surface there is
 // none.
 TEST(WallDragTest, AWallThatSlipsMakesUpForWhatAMirrorWouldTake) {
-  const auto of = [](double ratio) { return mirror_factor(ratio, DragSheet::kSurface); };
+  const auto of = [](double ratio) { return mirror_factor(ratio, DragLayer::kSurface); };
   EXPECT_NEAR(of(2.0), 0.302, 0.001);
   EXPECT_LT(of(2.0), of(2.5));
-  EXPECT_EQ(mirror_factor(2.0, DragSheet::kBehind), 0.0);
+  EXPECT_EQ(mirror_factor(2.0, DragLayer::kBehind), 0.0);
 }
 
 TEST(WallDragTest, ABoxDragsAsItsFacesDoAndABallMore) {
-  const WallDrag drag = wall_drag(ParticleModel::kCorrected, 2.0, DragSheet::kSurface);
+  const WallDrag drag = wall_drag(ParticleModel::kCorrected, 2.0, DragLayer::kSurface);
   const Volumes box = volumes(make::box(glm::dvec3(-0.02), glm::dvec3(0.02)));
   EXPECT_FLOAT_EQ(box.least, static_cast<float>(drag.factor(0.0))) << "edges too";
   EXPECT_FLOAT_EQ(box.most, static_cast<float>(drag.factor(0.0)));

@@ -36,9 +36,9 @@ struct Pulled {
   std::uint64_t hash = 0;
 };
 
-Pulled pull(const Scene& scene, bool solves_drag = false) {
+Pulled pull(const Scene& scene, bool implicit_viscosity = false) {
   const SampledScene sampled = sample_scene(scene, kSpacing).value();
-  World world(scene, sampled, make_plan(scene, kSpacing, solves_drag), WorldOptions{1, Backend::kCpu});
+  World world(scene, sampled, make_plan(scene, kSpacing, implicit_viscosity), WorldOptions{1, Backend::kCpu});
   BodySnapshot now;
   world.fill(now);
   const glm::dvec3 centre = transform_point(now.bodies[0].pose, scene.bodies[0].mass.center_of_mass);
@@ -49,7 +49,7 @@ Pulled pull(const Scene& scene, bool solves_drag = false) {
   world.fill_velocities(to);
   world.fill(now);
   Pulled pulled;
-  pulled.solved = world.plan().has(PassId::kImplicitDrag);
+  pulled.solved = world.plan().has(PassId::kImplicitViscosity);
   pulled.shear = now.bodies[0].fluid.force.x;
   pulled.identity = (world.diagnostics().momentum.x - before) / world.plan().time_step + pulled.shear;
   // A step's forces act where the particles were as it began.

@@ -272,7 +272,7 @@ TEST(World, SettlesAsLongAsItIsToldAndAsksNotWhatMoves) {
 
 // Honey comes to its level in the time that water takes, and is honey again.
 TEST(World, ThickFluidSettlesAsAThinnerOne) {
-  for (const double viscosity : {kSettlesAs, 1000.0 * kSettlesAs}) {
+  for (const double viscosity : {kMaxSettlingViscosity, 1000.0 * kMaxSettlingViscosity}) {
     TankOptions options;
     options.spacing = 0.02;
     options.viscosity = options.wall_viscosity = viscosity;

@@ -12,7 +12,7 @@
 
 namespace slosh::wire {
 
-/// Every value is one that a Writer writes as it is and a Reader gives back to the bit; ends of ranges come
+/// Every value is one that a Writer writes as it is and a Reader gives back bitwise; ends of ranges come
 /// up often. Rules between fields are not seen to: a message that has some is put right by its caller, or
 /// drawn again.
 class Randomizer {

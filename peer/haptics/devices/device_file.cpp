@@ -13,7 +13,7 @@
 namespace slosh {
 namespace {
 
-constexpr std::size_t kMostBytes = 64 * 1024;
+constexpr std::size_t kMaxBytes = 64 * 1024;
 constexpr const char* kBlanks = " \t\r";
 
 std::string trimmed(const std::string& text) {
@@ -75,13 +75,13 @@ Result<DeviceFile> DeviceFile::read(const std::filesystem::path& file) {
   std::error_code code;
   if (file.empty() || !std::filesystem::exists(file, code)) return DeviceFile{};
   std::ifstream in(file, std::ios::binary);
-  std::string text(kMostBytes + 1, '\0');
+  std::string text(kMaxBytes + 1, '\0');
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(in.gcount()));
   if (in.bad() || (!in.eof() && in.fail()) || std::filesystem::is_directory(file, code)) {
     return Error{file.string(), "cannot be read", "Make it readable, or remove it to use the defaults"};
   }
-  if (text.size() > kMostBytes) {
+  if (text.size() > kMaxBytes) {
     return Error{file.string(), "is longer than 64 KiB, which no settings of a device are",
                  "Remove it to use the defaults"};
   }

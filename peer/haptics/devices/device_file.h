@@ -12,7 +12,7 @@
 
 namespace slosh {
 
-constexpr int kMostButtons = 32;
+constexpr int kMaxButtons = 32;
 /// Whether button `number`, from 1, is down; none is 0.
 inline bool button_down(std::uint32_t buttons, int number) {
   return number > 0 && (buttons >> (number - 1) & 1u) != 0;

@@ -16,7 +16,7 @@ constexpr double kTestPeriod = 0.001;  // s
 constexpr double kFullTurn = 6.283185307179586;
 constexpr double kRest = 0.3;  // s without a push between two axes
 constexpr double kRamp = 1.0;  // s
-constexpr double kLeastTravel = 1e-6;
+constexpr double kMinTravel = 1e-6;
 constexpr std::array<const char*, 6> kNames{"x", "y", "z", "rx", "ry", "rz"};
 
 /// −1 to 1: two slow tones, so that spring, damper and mass show apart, rising from nothing and ending in it.
@@ -160,7 +160,7 @@ void fit_axis(DeviceTestAxis& axis) {
       s.begin(), s.end(),
       [](const DeviceTestSample& a, const DeviceTestSample& b) { return a.place < b.place; });
   axis.travel = high->place - low->place;
-  axis.moved = axis.travel > kLeastTravel;
+  axis.moved = axis.travel > kMinTravel;
   if (!axis.moved) return;
   // Each column by its own size, so that metres and metres a second² weigh alike.
   double fastest = 1e-12, hardest = 1e-12, strongest = 1e-12;

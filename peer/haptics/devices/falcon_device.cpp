@@ -12,13 +12,13 @@ namespace {
 
 constexpr double kPeriod = 0.001;    // s
 constexpr double kOwnDamping = 1.0;  // N·s/m, taken as such: nobody states it (README)
-constexpr std::size_t kLeastFirmware = 4096, kMostFirmware = 65536;  // bytes; those known have 7.3 to 8.5 kB
-constexpr int kReadPatience = 5;                                     // ms
-constexpr int kWritePatience = 50;                                   // ms
+constexpr std::size_t kMinFirmware = 4096, kMaxFirmware = 65536;  // bytes; those known have 7.3 to 8.5 kB
+constexpr int kReadPatience = 5;                                  // ms
+constexpr int kWritePatience = 50;                                // ms
 constexpr double kAskAgain = 0.02;            // s without an answer after which it is asked again
 constexpr double kGone = 2.0;                 // s without one after which it is given up
 constexpr double kMotorPerTorque = -10000.0;  // of its units, a N·m
-constexpr int kMostMotor = 4096;
+constexpr int kMaxMotor = 4096;
 constexpr int kCentreButton = 3;
 
 DeviceLimits sheet() {
@@ -108,10 +108,10 @@ void FalconDevice::look_again(std::int64_t now_ns) {
 
 Result<bool> FalconDevice::start(const std::filesystem::path& firmware) {
   std::ifstream in(firmware, std::ios::binary);
-  std::vector<std::uint8_t> bytes(kMostFirmware + 1);
+  std::vector<std::uint8_t> bytes(kMaxFirmware + 1);
   in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   bytes.resize(static_cast<std::size_t>(in.gcount()));
-  if (bytes.size() < kLeastFirmware || bytes.size() > kMostFirmware) {
+  if (bytes.size() < kMinFirmware || bytes.size() > kMaxFirmware) {
     return Error{firmware.string(),
                  "is no firmware of a Falcon: " + std::to_string(bytes.size()) + " bytes could be read",
                  "Name the right file in falcon.conf"};
@@ -211,7 +211,7 @@ void FalconDevice::write(const Wrench& on_hand) {
       glm::dvec3 values = kMotorPerTorque * *torques;
       // Together: the direction stays.
       const double most = std::max({std::abs(values.x), std::abs(values.y), std::abs(values.z)});
-      if (most > kMostMotor) values *= kMostMotor / most;
+      if (most > kMaxMotor) values *= kMaxMotor / most;
       for (int i = 0; i < 3; ++i)
         motors[static_cast<std::size_t>(i)] = static_cast<int>(std::lround(values[i]));
     }

@@ -75,11 +75,11 @@ FalconAngles falcon_angles(const glm::dvec3& grip, bool& reachable) {
 }
 
 std::optional<glm::dvec3> falcon_grip(const FalconAngles& angles, const glm::dvec3& near) {
-  constexpr int kMostSteps = 30;
+  constexpr int kMaxSteps = 30;
   constexpr double kEnough = 1e-14;  // m
-  constexpr double kMostStep = 0.05;
+  constexpr double kMaxStep = 0.05;
   glm::dvec3 p = near;
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMaxSteps; ++step) {
     const Closure a = closure(p, angles[0], 0);
     const Closure b = closure(p, angles[1], 1);
     const Closure c = closure(p, angles[2], 2);
@@ -88,7 +88,7 @@ std::optional<glm::dvec3> falcon_grip(const FalconAngles& angles, const glm::dve
     glm::dvec3 move = -(glm::inverse(slope) * glm::dvec3(a.off, b.off, c.off));
     const double length = glm::length(move);
     if (!std::isfinite(length)) return std::nullopt;
-    if (length > kMostStep) move *= kMostStep / length;
+    if (length > kMaxStep) move *= kMaxStep / length;
     p += move;
     if (length < kEnough) break;
   }

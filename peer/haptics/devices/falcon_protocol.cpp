@@ -127,10 +127,10 @@ std::optional<FalconState> parse_falcon(const FalconPacket& packet) {
 }
 
 FalconPacket falcon_command(const std::array<int, 3>& motors, std::uint8_t lights) {
-  constexpr int kMost = 4096;
+  constexpr int kMax = 4096;
   FalconPacket packet{};
   packet[0] = kFirst;
-  for (std::size_t i = 0; i < 3; ++i) put(&packet[1 + 4 * i], std::clamp(motors[i], -kMost, kMost));
+  for (std::size_t i = 0; i < 3; ++i) put(&packet[1 + 4 * i], std::clamp(motors[i], -kMax, kMax));
   packet[13] = static_cast<std::uint8_t>(kNibble + lights);
   packet[14] = kNibble;
   packet[15] = kLast;

@@ -22,7 +22,7 @@ namespace {
 
 constexpr const char* kClass = "/sys/class/input";
 constexpr const char* kNode = "event";
-constexpr int kMostEvents = 512;  // at once: a device that never stops must not keep the thread
+constexpr int kMaxEvents = 512;  // at once: a device that never stops must not keep the thread
 constexpr std::array<unsigned, 13> kButtons{BTN_SOUTH, BTN_EAST,   BTN_NORTH, BTN_WEST,   BTN_TL,
                                             BTN_TR,    BTN_TL2,    BTN_TR2,   BTN_SELECT, BTN_START,
                                             BTN_MODE,  BTN_THUMBL, BTN_THUMBR};
@@ -149,7 +149,7 @@ bool GamepadPort::take(SpaceMouseState& state, std::uint64_t& events) {
   pollfd at{node_, POLLIN, 0};
   if (poll(&at, 1, 0) > 0 && (at.revents & (POLLHUP | POLLERR | POLLNVAL)) != 0) return false;
   unsigned mode = LIBEVDEV_READ_FLAG_NORMAL;
-  for (int i = 0; i < kMostEvents; ++i) {
+  for (int i = 0; i < kMaxEvents; ++i) {
     input_event event{};
     const int code = libevdev_next_event(device_, mode, &event);
     if (code == -EAGAIN) {

@@ -35,8 +35,8 @@ HandMapSettings read_hand_map(DeviceFile& file, HandMapSettings s) {
   s.force_scale = file.number("force_scale", s.force_scale, 0.001, 10.0);
   s.low_pass_hz = file.number("low_pass_hz", s.low_pass_hz, 0.0, 1000.0);
   s.by_camera = file.word("relative_to", s.by_camera ? "camera" : "world", {"camera", "world"}) == "camera";
-  s.clutch_button = file.whole("clutch_button", s.clutch_button, 0, kMostButtons);
-  s.deadman_button = file.whole("deadman_button", s.deadman_button, 0, kMostButtons);
+  s.clutch_button = file.whole("clutch_button", s.clutch_button, 0, kMaxButtons);
+  s.deadman_button = file.whole("deadman_button", s.deadman_button, 0, kMaxButtons);
   s.stiffness = optional_number(file, "stiffness_n_m", 1.0, 1e5);
   s.damping = optional_number(file, "damping_n_s_m", 0.001, 1e3);
   s.rotational_stiffness = optional_number(file, "rotational_stiffness_nm_rad", 1e-4, 1e3);

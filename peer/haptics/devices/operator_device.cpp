@@ -10,11 +10,11 @@
 namespace slosh {
 namespace {
 
-constexpr double kMostElapsed = 0.05;  // s
-constexpr double kSeenApart = 0.001;   // s
+constexpr double kMaxElapsed = 0.05;  // s
+constexpr double kSeenApart = 0.001;  // s
 // How far a person leans against a force: beyond that the arm just gives way.
-constexpr double kMostLift = 0.3;   // m
-constexpr double kMostBrace = 1.0;  // rad
+constexpr double kMaxLift = 0.3;   // m
+constexpr double kMaxBrace = 1.0;  // rad
 
 constexpr double kTwoPi = 6.283185307179586;
 
@@ -118,8 +118,8 @@ void OperatorDevice::correct(double time, double seconds) noexcept {
   for (std::size_t back = 0; back < count_; ++back) {
     const Seen& seen = seen_[(newest_ + kSeen - back) % kSeen];
     if (seen.time > time - settings_.delay) continue;
-    const glm::dvec3 lift = bounded(lift_ - settings_.correction * seconds * seen.place, kMostLift);
-    const glm::dvec3 brace = bounded(brace_ - settings_.correction * seconds * seen.turn, kMostBrace);
+    const glm::dvec3 lift = bounded(lift_ - settings_.correction * seconds * seen.place, kMaxLift);
+    const glm::dvec3 brace = bounded(brace_ - settings_.correction * seconds * seen.turn, kMaxBrace);
     // The hand stays where it is; what is wanted moves.
     arm_.place -= lift - lift_;
     wrist_.place -= brace - brace_;
@@ -131,7 +131,7 @@ void OperatorDevice::correct(double time, double seconds) noexcept {
 
 DeviceReport OperatorDevice::read(const DeviceMoment& moment) noexcept {
   if (!begun_ || moment.time < last_) begin(moment.time);
-  const double seconds = std::min(moment.time - last_, kMostElapsed);
+  const double seconds = std::min(moment.time - last_, kMaxElapsed);
   last_ = moment.time;
   if (seconds > 0.0) {
     goal_ = track_.at(moment.time);
@@ -155,8 +155,8 @@ void OperatorDevice::write(const Wrench& on_hand) noexcept {
   felt_ = on_hand;
   if (took_weight_ || (on_hand.force == glm::dvec3(0.0) && on_hand.torque == glm::dvec3(0.0))) return;
   took_weight_ = true;
-  lift_ = bounded(-on_hand.force / settings_.arm.stiffness, kMostLift);
-  brace_ = bounded(-on_hand.torque / settings_.wrist.stiffness, kMostBrace);
+  lift_ = bounded(-on_hand.force / settings_.arm.stiffness, kMaxLift);
+  brace_ = bounded(-on_hand.torque / settings_.wrist.stiffness, kMaxBrace);
   arm_.place -= lift_;
   wrist_.place -= brace_;
 }

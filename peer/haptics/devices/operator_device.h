@@ -24,7 +24,7 @@ Result<OperatorSettings> parse_operator(const std::string& options);
 
 /// Moves by simulated time along `track`, as far as the force lets it. What it carries when it takes hold it
 /// carries from then on, as who lifts a bucket does. No clock, no chance: the same forces give the same
-/// motion to the bit.
+/// motion bitwise.
 class OperatorDevice final : public Device {
  public:
   OperatorDevice(PoseTrack track, const OperatorSettings& settings);

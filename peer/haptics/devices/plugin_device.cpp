@@ -100,7 +100,7 @@ Result<bool> PluginDevice::open() {
     const int opened = handle->library.open(options.c_str(), &device, why.data(), why.size());
     if (opened != 0) {
       why.back() = '\0';
-      handle->error = "cannot open its device: " + clean_text(why.data(), kMostTextBytes);
+      handle->error = "cannot open its device: " + clean_text(why.data(), kMaxTextBytes);
       return;
     }
     handle->device = device;
@@ -276,7 +276,7 @@ void PluginDevice::ask_words() {
   const int code =
       asked("say", [&] { return handle_->library.say(handle_->device, words.data(), words.size()); });
   words.back() = '\0';
-  const std::string text = clean_text(words.data(), kMostTextBytes);
+  const std::string text = clean_text(words.data(), kMaxTextBytes);
   const std::lock_guard lock(mutex_);
   its_trouble_ = code == 0 ? "" : text;
   its_status_ = code == 0 ? text : "";

@@ -71,7 +71,7 @@ glm::dquat nearest_rotation(std::span<const TouchedPlace> places, const glm::dve
 }
 
 /// How far apart the farthest two are, and how far the others reach off the line through those.
-std::array<double, 2> spread(std::span<const TouchedPlace> places, glm::dvec3 TouchedPlace::*which) {
+std::array<double, 2> spread(std::span<const TouchedPlace> places, glm::dvec3 TouchedPlace::* which) {
   double length = 0.0;
   glm::dvec3 end(0.0), way(1.0, 0.0, 0.0);
   for (const TouchedPlace& a : places) {
@@ -104,9 +104,9 @@ Result<SharedSpace> fit_shared_space(std::span<const TouchedPlace> places) {
     return Error{where, std::to_string(places.size()) + " places were touched, three are needed", wide};
   for (const auto which : {&TouchedPlace::at_device, &TouchedPlace::in_room}) {
     const auto [length, off] = spread(places, which);
-    if (!(length >= kLeastReach))
+    if (!(length >= kMinReach))
       return Error{where, "the touched places are within " + millimetres(length) + " of each other", wide};
-    if (!(off >= kLeastReach))
+    if (!(off >= kMinReach))
       return Error{where, "the touched places lie on one line, but for " + millimetres(off), wide};
   }
   glm::dvec3 from(0.0), to(0.0);
@@ -124,11 +124,11 @@ Result<SharedSpace> fit_shared_space(std::span<const TouchedPlace> places) {
     sum += glm::dot(off, off);
   }
   space.residual = std::sqrt(sum / static_cast<double>(places.size()));
-  if (!(space.residual <= kMostResidual)) {
+  if (!(space.residual <= kMaxResidual)) {
     return Error{where,
                  "the places that the device touched and those of the controller do not fit: " +
                      millimetres(space.residual) + " off in the mean, the limit is " +
-                     millimetres(kMostResidual),
+                     millimetres(kMaxResidual),
                  "Hold the controller's grip to the tip the same way each time, both still"};
   }
   return space;
@@ -173,7 +173,7 @@ Result<std::optional<SharedSpace>> kept_shared_space(const std::filesystem::path
   p.z = lines.number("z_m", 0.0, -100.0, 100.0);
   glm::dquat q(lines.number("qw", 0.0, -1.0, 1.0), lines.number("qx", 0.0, -1.0, 1.0),
                lines.number("qy", 0.0, -1.0, 1.0), lines.number("qz", 0.0, -1.0, 1.0));
-  space.residual = lines.number("residual_m", 0.0, 0.0, kMostResidual);
+  space.residual = lines.number("residual_m", 0.0, 0.0, kMaxResidual);
   if (std::abs(glm::length(q) - 1.0) > 0.01)
     lines.refuse("qw", "qw, qx, qy, qz are no rotation", "Calibrate again: ./slosh devices calibrate");
   if (const Result<bool> fine = lines.check(); !fine) return fine.error();
@@ -207,9 +207,8 @@ TouchPlaces::Heard TouchPlaces::follow(double time, const std::optional<glm::dve
       heard = Heard::kMoved;
       continue;
     }
-    const bool near = std::ranges::any_of(places_, [&](const TouchedPlace& place) {
-      return glm::distance(place.at_device, *tip) < kLeastReach;
-    });
+    const bool near = std::ranges::any_of(
+        places_, [&](const TouchedPlace& place) { return glm::distance(place.at_device, *tip) < kMinReach; });
     heard = near ? Heard::kTooNear : Heard::kTaken;
     if (!near) places_.push_back({*tip, hand.pose.position});
   }

@@ -27,12 +27,12 @@ struct SharedSpace {
 };
 
 constexpr std::size_t kPlacesToTouch = 3;
-constexpr double kLeastReach =
+constexpr double kMinReach =
     0.04;  ///< m between the places that are farthest apart, and off the line between them
-constexpr double kMostResidual = 0.010;  ///< m
+constexpr double kMaxResidual = 0.010;  ///< m
 
 /// The rigid motion that brings the device's places nearest to the room's (Horn 1987). Errors: fewer than
-/// three places; nearer together or nearer to one line than kLeastReach; a residual above kMostResidual:
+/// three places; nearer together or nearer to one line than kMinReach; a residual above kMaxResidual:
 /// device and controller did not touch the same places.
 Result<SharedSpace> fit_shared_space(std::span<const TouchedPlace> places);
 
@@ -51,7 +51,7 @@ class TouchPlaces {
     kNothing,
     kTaken,
     kMoved,    ///< closed while device or controller moved
-    kTooNear,  ///< nearer to a place before than kLeastReach
+    kTooNear,  ///< nearer to a place before than kMinReach
   };
   /// `tip`: of the device in its own frame, absent while it is silent. `time` in s, rising.
   Heard follow(double time, const std::optional<glm::dvec3>& tip, const HandReading& left,

@@ -9,8 +9,8 @@
 namespace slosh {
 namespace {
 
-constexpr std::size_t kMostReport = 64;
-constexpr int kMostReports = 64;  // at once: a device that never stops must not keep the thread
+constexpr std::size_t kMaxReport = 64;
+constexpr int kMaxReports = 64;  // at once: a device that never stops must not keep the thread
 constexpr std::uint8_t kLight = 0x04;
 
 bool is_named(const SpaceMouseFound& found, const std::string& which) {
@@ -91,9 +91,9 @@ void SpaceMouseDevice::look_again(std::int64_t now_ns) {
 }
 
 bool SpaceMouseDevice::take_reports(std::int64_t now_ns) {
-  std::array<std::uint8_t, kMostReport> bytes{};
+  std::array<std::uint8_t, kMaxReport> bytes{};
   bool news = false;
-  for (int i = 0; i < kMostReports; ++i) {
+  for (int i = 0; i < kMaxReports; ++i) {
     const int size = port_->read(bytes.data(), bytes.size());
     if (size == 0) break;
     if (size < 0) return false;

@@ -6,8 +6,8 @@
 namespace slosh {
 namespace {
 
-constexpr double kMostMouseElapsed = 0.05;  // s: a machine that stood still does not throw the hand
-constexpr double kStep = 0.001;             // s, of the filters
+constexpr double kMaxMouseElapsed = 0.05;  // s: a machine that stood still does not throw the hand
+constexpr double kStep = 0.001;            // s, of the filters
 
 }  // namespace
 
@@ -62,7 +62,7 @@ void SpaceMouseMotion::advance(const SpaceMouseState& state, double seconds) noe
     center_.orientation = rotate_by(pose_.orientation, -settings_.turn * wanted.angular);
   }
   clutched_ = clutched;
-  double left = std::clamp(seconds, 0.0, kMostMouseElapsed);
+  double left = std::clamp(seconds, 0.0, kMaxMouseElapsed);
   while (left > 0.0) {
     const double dt = std::min(left, kStep);
     left -= dt;

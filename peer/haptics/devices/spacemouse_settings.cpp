@@ -45,8 +45,8 @@ Result<SpaceMouseSettings> read_spacemouse_settings(DeviceFile file, const Space
   read_axes(file, s);
   for (std::size_t i = 0; i < 6; ++i)
     s.gains[i] = file.number(std::string("gain_") + kAxisNames[i], s.gains[i], -10.0, 10.0);
-  s.clutch_button = file.whole("clutch_button", s.clutch_button, 0, kMostButtons);
-  s.deadman_button = file.whole("deadman_button", s.deadman_button, 0, kMostButtons);
+  s.clutch_button = file.whole("clutch_button", s.clutch_button, 0, kMaxButtons);
+  s.deadman_button = file.whole("deadman_button", s.deadman_button, 0, kMaxButtons);
   if (const Result<bool> fine = file.check(); !fine) return fine.error();
   return s;
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "peer/haptics/replica/sixes.h"
+#include "peer/haptics/replica/vector6.h"
 
 namespace slosh {
 namespace {
@@ -13,7 +13,7 @@ constexpr double kNoStiffness = 1e-6;      // N/m, N·m/rad
 constexpr double kSloshTaken = 0.03;       // s over which what swings is corrected
 constexpr double kRootTwo = 1.4142135623730951;
 
-using namespace sixes;
+using namespace vector6;
 
 }  // namespace
 

@@ -5,9 +5,9 @@
 namespace slosh {
 namespace {
 
-constexpr double kMostSlosh = 4.0;     // times the body's mass: no more of its fluid swings
-constexpr double kLeastCarried = 0.1;  // times the body's mass: less in it is not looked at
-constexpr double kWater = 1000.0;      // kg/m³: what is carried is taken to be about as dense
+constexpr double kMaxSlosh = 4.0;    // times the body's mass: no more of its fluid swings
+constexpr double kMinCarried = 0.1;  // times the body's mass: less in it is not looked at
+constexpr double kWater = 1000.0;    // kg/m³: what is carried is taken to be about as dense
 /// A round vessel filled as deep as half its width (Abramson 1966): the share of it that swings, and R·ω²/g.
 constexpr double kSwings = 0.43;
 constexpr double kQuick = 1.841 * 0.951;
@@ -15,14 +15,14 @@ constexpr double kQuick = 1.841 * 0.951;
 /// it swings.
 constexpr double kWeighed = 0.1;
 constexpr double kOff = 0.06;
-constexpr double kLeastWeighing = 1.0;  // m²/s⁴: what falls with its fluid does not weigh it
-constexpr double kPoured = 0.03;        // s, in which it changes by a factor of e at most
-constexpr double kVesselKnown = 0.2;    // s
+constexpr double kMinWeighing = 1.0;  // m²/s⁴: what falls with its fluid does not weigh it
+constexpr double kPoured = 0.03;      // s, in which it changes by a factor of e at most
+constexpr double kVesselKnown = 0.2;  // s
 /// s of round trip at which half of what does not last is followed of what acts on a body that carries
 /// nothing.
 constexpr double kLate = 0.03;
 /// Of its weight, what no model explains goes on by this much at most.
-constexpr double kMostGoesOn = 0.3;
+constexpr double kMaxGoesOn = 0.3;
 /// s and N²·s: over which, and against how much before anything was seen, it is found how far a bowl explains
 /// what the fluid does upwards. As steep as it gets a surface breaks.
 constexpr double kLiftMemory = 1.0;
@@ -31,7 +31,7 @@ constexpr double kSureOfLift = 1.0;
 }  // namespace
 
 void CarriedFluid::restart() noexcept {
-  for (SloshFinder& finder : finders_) finder.restart(kMostSlosh * body_.mass);
+  for (SloshFinder& finder : finders_) finder.restart(kMaxSlosh * body_.mass);
   for (ResidueFollower& residue : residue_) residue.restart();
   down_ = passing_ = dragged_ = glm::dvec3(0.0);
   mass_force_ = mass_square_ = carried_ = vessel_ = round_trip_ = 0.0;
@@ -66,8 +66,8 @@ void CarriedFluid::weigh(const Acting& acting) noexcept {
                           : 0.0;
   mass_force_ = keep * mass_force_ + (1.0 - keep) * glm::dot(acting.fluid - dragged_, weighs);
   mass_square_ = keep * mass_square_ + (1.0 - keep) * glm::dot(weighs, weighs);
-  const double mass = mass_force_ / std::max(mass_square_, kLeastWeighing);
-  const double least = kLeastCarried * body_.mass;
+  const double mass = mass_force_ / std::max(mass_square_, kMinWeighing);
+  const double least = kMinCarried * body_.mass;
   if (carried_ > 0.0) {
     const double most = std::exp(acting.elapsed / kPoured);
     const double before = carried_;
@@ -154,7 +154,7 @@ void CarriedFluid::put_into(FluidLoad& load, Vector6& rest, const Vector6& pace,
     load.late[i] = still;
     if (acting.elapsed > 0.0) {
       residue.hear(acting.elapsed, still, round_trip + kGoesOnTaken,
-                   kMostGoesOn * carried_ * glm::length(body_.gravity));
+                   kMaxGoesOn * carried_ * glm::length(body_.gravity));
       const double passing = still - residue.lasting();
       passing_[i] = passing + lifts_share_ * lifts_ * down_[i];
       load.late[i] -= left_out * passing;

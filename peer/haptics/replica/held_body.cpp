@@ -15,7 +15,7 @@ constexpr double kTwistForesees = 0.01;  // s for which a hand goes about as it 
 /// after which the replica is tried again.
 constexpr double kFiringMemory = 0.5;
 constexpr double kFiresTooOften = 0.5;
-constexpr double kCalm = 3.0;
+constexpr double kQuietTime = 3.0;
 constexpr double kChange = 0.5;  // s over which one goes over into the other
 /// s for which the fluid's model holds without a word, and over which it then goes.
 constexpr double kLoadHolds = 0.1;
@@ -23,11 +23,11 @@ constexpr double kLoadFades = 0.3;
 /// s of the body's time between two words beyond which they say nothing of its acceleration.
 constexpr double kLongestStep = 0.1;
 /// N of a change that is not foreseen at which the whole damping acts, and s for which that is remembered.
-constexpr double kUnrest = 15.0;
-constexpr double kUnrestMemory = 5.0;
+constexpr double kDisturbance = 15.0;
+constexpr double kDisturbanceMemory = 5.0;
 /// N and N·m by which the damped spring may be stretched by the delay alone, whatever the host has in it.
-constexpr double kLeastStretch = 1.0;
-constexpr double kLeastTwist = 0.1;
+constexpr double kMinStretch = 1.0;
+constexpr double kMinTwist = 0.1;
 /// J: where nobody counts for another hand, nothing that comes out is too much.
 constexpr double kUncounted = 1e9;
 /// J by which the balance may be more than the replica holds, and s, or round trips if that is longer, over
@@ -35,7 +35,7 @@ constexpr double kUncounted = 1e9;
 constexpr double kKept = 2e-3;
 constexpr double kLoadRoundTrips = 2.0;  // after which a table that is met counts as told of
 constexpr double kForesees = 2.0;
-constexpr double kDoubt = 3.0;
+constexpr double kFullUncertainty = 3.0;
 /// N that words' forces may be off by for what a word rounds: no contact. Whatever is doubted is a friction,
 /// however little of it (tests/notebook/2026-11-27-rounding-is-no-contact.md).
 constexpr double kRounding = 0.1;
@@ -86,14 +86,14 @@ void HeldBody::restart() noexcept {
   std::fill(on_hands_.begin(), on_hands_.end(), Wrench{});
   for (ReplicaHand& hand : hands_) hand.engaged = false;
   for (VelocityWindow& speed : speeds_) speed.forget();
-  firing_ = calm_ = unrest_ = doubt_ = calm_load_ = 0.0;
+  firing_ = quiet_ = disturbance_ = model_uncertainty_ = quiet_load_ = 0.0;
   fallen_back_ = false;
   spring_ = 0.0;
 }
 
 /// What acts on the body besides couplings and the fluid's answer to its acceleration: fluid, weight,
 /// contacts.
-FluidLoad HeldBody::load_of(const HostWord& word) noexcept {
+FluidLoad HeldBody::load_of(const HostUpdate& word) noexcept {
   const RigidMotion& now = word.motion;
   const double elapsed = word.time - heard_time_;
   Vector6 pace{};  // linear and angular acceleration
@@ -144,7 +144,7 @@ FluidLoad HeldBody::load_of(const HostWord& word) noexcept {
   return load;
 }
 
-void HeldBody::hear(const HostWord& word) noexcept {
+void HeldBody::hear(const HostUpdate& word) noexcept {
   const double elapsed = started_ ? to_seconds(word.now_ns - heard_ns_) : 0.0;
   const FluidLoad load = load_of(word);
   load_work_.hear(word);
@@ -185,7 +185,7 @@ void HeldBody::hear(const HostWord& word) noexcept {
     begin_count(word);
     return;
   }
-  note_unrest(load, elapsed);
+  note_disturbance(load, elapsed);
   replica_.set_load(load);
   if (ack_ns == 0) return;
   delay_.note(to_seconds(word.now_ns - ack_ns), elapsed);
@@ -199,7 +199,7 @@ void HeldBody::hear(const HostWord& word) noexcept {
 
 /// What acts changes by more than is told of it: a table that is met, a fluid that nobody models. That
 /// answers to this hand a round trip late, as another hand would.
-void HeldBody::note_unrest(const FluidLoad& load, double elapsed) noexcept {
+void HeldBody::note_disturbance(const FluidLoad& load, double elapsed) noexcept {
   // Alone, what a damper answers to the body's own speed is foreseen.
   const bool damped = replica_.shared() > 0.0;
   const glm::dvec3 off = still_force(load, damped) - still_force(replica_.load(), damped);
@@ -213,18 +213,19 @@ void HeldBody::note_unrest(const FluidLoad& load, double elapsed) noexcept {
     unforeseen = glm::length(met) + (1.0 - carried_.foreseen()) * glm::length(off - met);
     doubtful = glm::length(met);
   }
-  const double now = std::min(unforeseen / kUnrest, 1.0);
-  const double forget = 1.0 - std::exp(-std::clamp(elapsed, 0.0, 1.0) / kUnrestMemory);
-  unrest_ = now > unrest_ ? now : unrest_ + forget * (now - unrest_);
-  const double doubt = std::clamp((doubtful - kRounding) / (kDoubt - kRounding), 0.0, 1.0);
-  doubt_ = doubt > doubt_ ? doubt : doubt_ + forget * (doubt - doubt_);
-  calm_load_ += elapsed;
+  const double now = std::min(unforeseen / kDisturbance, 1.0);
+  const double forget = 1.0 - std::exp(-std::clamp(elapsed, 0.0, 1.0) / kDisturbanceMemory);
+  disturbance_ = now > disturbance_ ? now : disturbance_ + forget * (now - disturbance_);
+  const double doubt = std::clamp((doubtful - kRounding) / (kFullUncertainty - kRounding), 0.0, 1.0);
+  model_uncertainty_ =
+      doubt > model_uncertainty_ ? doubt : model_uncertainty_ + forget * (doubt - model_uncertainty_);
+  quiet_load_ += elapsed;
   // A weight that is carried down gives; one that rests on something does not.
-  replica_.believe_load(std::clamp(calm_load_ / kForesees, 0.0, 1.0) * (1.0 - doubt_));
+  replica_.believe_load(std::clamp(quiet_load_ / kForesees, 0.0, 1.0) * (1.0 - model_uncertainty_));
 }
 
 /// A body that moves and springs that are stretched already when this begins have energy to give.
-void HeldBody::begin_count(const HostWord& word) noexcept {
+void HeldBody::begin_count(const HostUpdate& word) noexcept {
   stored_ = load_work_.kinetic();
   forgotten_ = lent_ = 0.0;
   work_heard_ = replica_.work_heard();
@@ -271,9 +272,9 @@ GripState HeldBody::late_grip(std::size_t g) const noexcept {
   };
   const CouplingGains& k = gains_[g];
   const double goes_along =
-      left_out(k.stiffness * glm::length(since), std::max(glm::length(on_hands_[g].force), kLeastStretch));
+      left_out(k.stiffness * glm::length(since), std::max(glm::length(on_hands_[g].force), kMinStretch));
   const double turns_along = left_out(k.rotational_stiffness * glm::length(turned),
-                                      std::max(glm::length(on_hands_[g].torque), kLeastTwist));
+                                      std::max(glm::length(on_hands_[g].torque), kMinTwist));
   state.pose.position += goes_along * since;
   state.pose.orientation = rotate_by(state.pose.orientation, turns_along * turned);
   state.twist.linear += goes_along * (hand.twist.linear - state.twist.linear);
@@ -285,7 +286,7 @@ Wrench HeldBody::guard(std::size_t g, const Wrench& wanted, const Pose& hand, co
                        double most_damping, double pace) noexcept {
   const double credit = balance() - guards_[g].energy() + (counted_ ? 0.0 : kUncounted);
   // What others hold is felt across the delay; alone on the body nothing is.
-  const double share = std::max({replica_.shared(), unrest_, spring_});
+  const double share = std::max({replica_.shared(), disturbance_, spring_});
   const double damping = std::min(share / pace * replica_.damping(g), most_damping);
   const double turning = share / pace * replica_.rotational_damping(g);
   const Wrench damped{wanted.force - damping * twist.linear, wanted.torque - turning * twist.angular};
@@ -333,11 +334,11 @@ void HeldBody::lend() noexcept {
 /// A guard that fires all the time says that the replica is wrong about the body.
 void HeldBody::watch(double dt) noexcept {
   firing_ += (1.0 - std::exp(-dt / kFiringMemory)) * ((fires_ ? 1.0 : 0.0) - firing_);
-  calm_ = fires_ ? 0.0 : calm_ + dt;
+  quiet_ = fires_ ? 0.0 : quiet_ + dt;
   if (fires_) fired_ += 1;
   fires_ = false;
   if (!fallen_back_ && firing_ > kFiresTooOften) fallen_back_ = true;
-  if (fallen_back_ && calm_ > kCalm) fallen_back_ = false;
+  if (fallen_back_ && quiet_ > kQuietTime) fallen_back_ = false;
   spring_ = std::clamp(spring_ + (fallen_back_ ? dt : -dt) / kChange, 0.0, 1.0);
 }
 

@@ -8,7 +8,7 @@
 #include "peer/haptics/devices/velocity_window.h"
 #include "peer/haptics/replica/body_replica.h"
 #include "peer/haptics/replica/carried_fluid.h"
-#include "peer/haptics/replica/host_word.h"
+#include "peer/haptics/replica/host_update.h"
 #include "peer/haptics/replica/load_work.h"
 #include "peer/haptics/replica/passivity_controller.h"
 
@@ -42,7 +42,7 @@ class HeldBody {
   /// The next word is taken as it is: at first, after a reset, a pause, a silence.
   void restart() noexcept;
   bool started() const noexcept { return started_; }
-  void hear(const HostWord& word) noexcept;
+  void hear(const HostUpdate& word) noexcept;
   /// How the fluid answers to the body, before hear() of the same state or a newer one: its derivatives, its
   /// added mass and the trust in them count. What acts besides them is worked out from how the body moves.
   void set_fluid(const FluidLoad& model) noexcept { fluid_ = made_safe(model); }
@@ -60,8 +60,8 @@ class HeldBody {
     replica_.set_gains(g, gains);
   }
   /// What own hand `g` was sent, and J that its coupling was given besides the hand's motion.
-  void sent(std::size_t g, const Wrench& wrench, double let_in = 0.0) noexcept {
-    guards_[g].sent(wrench, let_in);
+  void sent(std::size_t g, const Wrench& wrench, double ramp_work = 0.0) noexcept {
+    guards_[g].sent(wrench, ramp_work);
   }
   /// On by `dt` s of the body's time, to `now_ns`.
   void advance(std::span<const OwnHand> own, double dt, std::int64_t now_ns) noexcept;
@@ -82,13 +82,13 @@ class HeldBody {
   void watch(double dt) noexcept;
   void forget_surplus(double dt) noexcept;
   void lend() noexcept;
-  void begin_count(const HostWord& word) noexcept;
-  void note_unrest(const FluidLoad& load, double elapsed) noexcept;
+  void begin_count(const HostUpdate& word) noexcept;
+  void note_disturbance(const FluidLoad& load, double elapsed) noexcept;
   /// Where the damped spring goes to.
   GripState late_grip(std::size_t g) const noexcept;
   /// What acts on the body besides couplings and the fluid's answer to its acceleration: fluid, weight,
   /// contacts.
-  FluidLoad load_of(const HostWord& word) noexcept;
+  FluidLoad load_of(const HostUpdate& word) noexcept;
 
   ReplicaBody body_;
   BodyReplica replica_;
@@ -103,17 +103,17 @@ class HeldBody {
   double heard_time_ = 0.0;
   bool counted_ = false;  // all who hold the body
   std::int64_t heard_ns_ = 0;
-  double pace_ = 1.0;         // HostWord::pace
+  double pace_ = 1.0;         // HostUpdate::pace
   double since_heard_ = 0.0;  // s
   double ahead_ =
       0.0;  // s until the moment that the word was of, when it came: a slow host's is of a step's end
   bool started_ = false;
-  double unrest_ = 0.0;     // 0–1
-  double doubt_ = 0.0;      // 0–1
-  double calm_load_ = 0.0;  // s since this began or something acted that was not foreseen
-  bool fires_ = false;      // in this tick
-  double firing_ = 0.0;     // share of ticks lately
-  double calm_ = 0.0;       // s since a guard fired
+  double disturbance_ = 0.0;        // 0–1
+  double model_uncertainty_ = 0.0;  // 0–1
+  double quiet_load_ = 0.0;         // s since this began or something acted that was not foreseen
+  bool fires_ = false;              // in this tick
+  double firing_ = 0.0;             // share of ticks lately
+  double quiet_ = 0.0;              // s since a guard fired
   bool fallen_back_ = false;
   double spring_ = 0.0;  // share of the damped spring, 0–1
   LoadWork load_work_;

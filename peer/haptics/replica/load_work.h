@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "peer/haptics/replica/body_replica.h"
-#include "peer/haptics/replica/host_word.h"
+#include "peer/haptics/replica/host_update.h"
 
 namespace slosh {
 
@@ -25,7 +25,7 @@ class LoadWork {
     known_ = false;
     work_ = 0.0;
   }
-  void hear(const HostWord& word) noexcept {
+  void hear(const HostUpdate& word) noexcept {
     const RigidMotion& now = word.motion;
     const double elapsed = word.time - time_;
     const double kinetic = kinetic_energy(now);

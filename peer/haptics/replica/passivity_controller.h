@@ -18,7 +18,7 @@ class PassivityController {
   /// m: a turning hand counts as one that moves on a circle of this radius.
   static constexpr double kArm = 0.1;
   /// kg that a hand on a device moves at least: with less, a tick's force gives more than it is counted for.
-  static constexpr double kLeastMass = 0.3;
+  static constexpr double kMinMass = 0.3;
   /// s for which what is left of the energy is made to last where it was out within the last kWary s: so the
   /// force goes down before it is out, and not all at once each time that a packet's worth is used up.
   static constexpr double kLasts = 0.1;
@@ -27,7 +27,7 @@ class PassivityController {
   static constexpr double kGently = 1000.0;
   /// s over which it is seen how fast others use up what there is: some of a host's words.
   static constexpr double kDrain = 0.02;
-  static constexpr double kMostDrain = 20.0;  ///< W: more at once is another way of counting
+  static constexpr double kMaxDrain = 20.0;  ///< W: more at once is another way of counting
   /// s over which a force that was cut comes back, and over which a damper for what is owed comes and goes.
   static constexpr double kReturns = 0.2;
   static constexpr double kDamps = 0.05;
@@ -58,7 +58,7 @@ class PassivityController {
     const double turned = kArm * kArm;
     const double gives = dt * (glm::dot(wanted.force, twist.linear) + glm::dot(wanted.torque, twist.angular));
     const double pushes =
-        0.5 * dt * dt / kLeastMass *
+        0.5 * dt * dt / kMinMass *
         (glm::dot(wanted.force, wanted.force) + glm::dot(wanted.torque, wanted.torque) / turned);
     fires_ = pushes > 0.0 && gives + pushes > left;
     double share = 1.0, damping = 0.0;
@@ -100,12 +100,12 @@ class PassivityController {
     return {open_ * wanted.force - resists * twist.linear,
             open_ * wanted.torque - resists_turning * twist.angular};
   }
-  /// What the device was really sent. `let_in`: J that the coupling was given on the hand's side by no motion
-  /// of the hand (FeltHand::let_in): the body has it, and without it what is left would be too little for
-  /// ever.
-  void sent(const Wrench& wrench, double let_in = 0.0) noexcept {
+  /// What the device was really sent. `ramp_work`: J that the coupling was given on the hand's side by no
+  /// motion of the hand (ForceRendering::ramp_work): the body has it, and without it what is left would be
+  /// too little for ever.
+  void sent(const Wrench& wrench, double ramp_work = 0.0) noexcept {
     sent_ = wrench;
-    energy_ += let_in;
+    energy_ += ramp_work;
   }
 
   double energy() const noexcept { return energy_; }  ///< J that the person and the hold put in so far
@@ -114,7 +114,7 @@ class PassivityController {
  private:
   /// What others put in and used up, on balance.
   void note_drain(double credit, double dt) noexcept {
-    const double used = counts_ ? std::clamp((credit_ - credit) / dt, -kMostDrain, kMostDrain) : 0.0;
+    const double used = counts_ ? std::clamp((credit_ - credit) / dt, -kMaxDrain, kMaxDrain) : 0.0;
     drain_ += (1.0 - std::exp(-dt / kDrain)) * (used - drain_);
     credit_ = credit;
     counts_ = true;

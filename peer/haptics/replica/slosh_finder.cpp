@@ -7,25 +7,25 @@ namespace {
 
 constexpr double kSlowest = 0.6, kFastest = 5.0;  // Hz
 constexpr std::array<double, 5> kDampingsOfBank{0.01, 0.03, 0.08, 0.16, 0.32};
-constexpr double kLeastKnown = 0.6;  // of the memory, s, before anything is followed
-constexpr double kLowPass = 0.02;    // s, each of two
-constexpr double kSweep = 0.05;      // s in which the whole bank is looked at, a few rows a word
-constexpr double kTry = 0.0005;      // s a try of the search, a few a word
-constexpr std::size_t kMostTries = 5;
+constexpr double kMinKnown = 0.6;  // of the memory, s, before anything is followed
+constexpr double kLowPass = 0.02;  // s, each of two
+constexpr double kSweep = 0.05;    // s in which the whole bank is looked at, a few rows a word
+constexpr double kTry = 0.0005;    // s a try of the search, a few a word
+constexpr std::size_t kMaxTries = 5;
 constexpr double kAdopted = 0.1;       // s over which what is found is taken over …
 constexpr double kSoonAdopted = 0.02;  // … and where it explains nearly all
 constexpr double kExpectedDamping = 0.03;
-constexpr double kLeastExpected = 1e-3;  // kg
-constexpr double kLeastObserved = 0.3;   // kg: of a lighter mode the force says less
-constexpr double kObserved = 0.25;       // s over which the state is drawn to what the force says
+constexpr double kMinExpected = 1e-3;  // kg
+constexpr double kMinObserved = 0.3;   // kg: of a lighter mode the force says less
+constexpr double kObserved = 0.25;     // s over which the state is drawn to what the force says
 /// N rms that neither rigid mass nor damper explains: less is not looked at, or, where nothing is expected,
 /// followed only where a mode explains all but little of it: a spoon's fluid leaves as much as that, and is
 /// none.
 constexpr double kFaint = 0.05, kFaintGain = 0.97;
-constexpr double kLeastForce = 1e-3;  // the same below which nothing is
+constexpr double kMinForce = 1e-3;  // the same below which nothing is
 /// Of what neither rigid mass nor damper explains, the share that a mode explains from which on it is
 /// followed, at which it is wholly, and from which on it is nearly all.
-constexpr double kLeastGain = 0.7, kWholeGain = 0.9, kNearlyAll = 0.99;
+constexpr double kMinGain = 0.7, kWholeGain = 0.9, kNearlyAll = 0.99;
 constexpr double kGainOfExpected = 0.1;  // the same where it is of what is carried in a vessel
 
 }  // namespace
@@ -113,7 +113,7 @@ void SloshFinder::observe(double dt, double before, double now, double force) no
   if (!(mode_.mass > 1e-6)) return;
   const double foreseen = constant_ - rigid_ * change / dt - drag_ * 0.5 * (before + now) +
                           0.5 * (slosh_force(mode_, was) + slosh_force(mode_, state_));
-  const double off = (force - foreseen) / (std::max(mode_.mass, kLeastObserved) * mode_.pace * mode_.pace);
+  const double off = (force - foreseen) / (std::max(mode_.mass, kMinObserved) * mode_.pace * mode_.pace);
   state_.place += std::min(2.0 * dt / kObserved, 0.5) * off;
 }
 
@@ -124,7 +124,7 @@ void SloshFinder::look_on(double dt) noexcept {
     return static_cast<std::size_t>(std::clamp(std::ceil(each), 1.0, static_cast<double>(most)));
   };
   if (!prior_.vessel)
-    for (std::size_t left = of(dt / kTry, kMostTries); left > 0; --left) search_.look_on(record_, prior_);
+    for (std::size_t left = of(dt / kTry, kMaxTries); left > 0; --left) search_.look_on(record_, prior_);
   swept_ += dt;
   for (std::size_t left = of(static_cast<double>(kPaces) * dt / kSweep, kPaces); left > 0; --left) {
     for (std::size_t j = 0; j < kDampings; ++j)
@@ -160,7 +160,7 @@ SloshFinder::Found SloshFinder::between_neighbours(Cell best) const noexcept {
   if (bj > 0 && bj + 1 < kDampings)
     dj = between(fits_[bi][bj - 1].rest, found.with.rest, fits_[bi][bj + 1].rest);
   const SloshFit& next = fits_[di > 0.0 ? bi + 1 : bi - 1][bj];
-  const auto to = [&](double SloshFit::*field) {
+  const auto to = [&](double SloshFit::* field) {
     found.with.*field += std::abs(di) * (next.*field - found.with.*field);
   };
   to(&SloshFit::constant);
@@ -174,8 +174,8 @@ SloshFinder::Found SloshFinder::between_neighbours(Cell best) const noexcept {
 
 void SloshFinder::choose(double seconds) noexcept {
   // Too little is known yet, or nothing swings: what was found holds on.
-  if (sums_.weight < kLeastKnown && !prior_.vessel) return;
-  const double least = prior_.vessel ? kFaint : kLeastForce;
+  if (sums_.weight < kMinKnown && !prior_.vessel) return;
+  const double least = prior_.vessel ? kFaint : kMinForce;
   if (fit_slosh(sums_, nullptr, 0.0, prior_).rest < least * least * sums_.weight) return;
   const Cell best = best_cell();
   // Real water is no mode to the last digit: by a search its force, smooth and 50 to 400 ms late, was off by
@@ -189,14 +189,14 @@ void SloshFinder::choose(double seconds) noexcept {
 void SloshFinder::adopt(const Found& f, Cell best, double seconds) noexcept {
   const double rigid = std::max(f.without.rest, 0.0);
   // In a vessel nothing swings up and down.
-  const bool swings = !(prior_.vessel && prior_.mass < kLeastExpected) && !f.at_an_end && f.with.mass > 0.0 &&
+  const bool swings = !(prior_.vessel && prior_.mass < kMinExpected) && !f.at_an_end && f.with.mass > 0.0 &&
                       f.with.mass < most_ &&
-                      f.with.rest < (1.0 - (prior_.vessel ? kGainOfExpected : kLeastGain)) * rigid;
+                      f.with.rest < (1.0 - (prior_.vessel ? kGainOfExpected : kMinGain)) * rigid;
   const SloshFit& found = swings ? f.with : f.without;
   const double gain = swings ? 1.0 - std::max(f.with.rest, 0.0) / rigid : 0.0;
   if (!prior_.vessel && gain < kFaintGain && rigid < kFaint * kFaint * sums_.weight) return;
   const double trust =
-      prior_.vessel ? 1.0 : std::clamp((gain - kLeastGain) / (kWholeGain - kLeastGain), 0.0, 1.0);
+      prior_.vessel ? 1.0 : std::clamp((gain - kMinGain) / (kWholeGain - kMinGain), 0.0, 1.0);
   const double sure =
       prior_.vessel ? 0.0 : std::clamp((gain - kWholeGain) / (kNearlyAll - kWholeGain), 0.0, 1.0);
   const double take = 1.0 - std::exp(-seconds / (kAdopted + sure * (kSoonAdopted - kAdopted)));

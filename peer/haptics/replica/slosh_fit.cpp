@@ -16,7 +16,7 @@ constexpr double kUsualAcceleration = 0.02;  // m/s²
 constexpr double kUsualSpeed = 0.01;         // m/s
 // … where this much and more is not explained, N; and its square's least share, where nearly all is.
 constexpr double kUsuallyUnexplained = 0.02;
-constexpr double kLeastDoubt = 1e-5;
+constexpr double kMinUncertainty = 1e-5;
 // What the host's line says, by the same: N²·s a square of its own size.
 constexpr double kTold = 0.1;
 
@@ -60,7 +60,7 @@ void take_as_so(Normal& n, const SloshPrior& prior, bool mode, double pace, doub
   const double doubt =
       prior.vessel
           ? 1.0
-          : std::clamp(prior.unexplained / (kUsuallyUnexplained * kUsuallyUnexplained), kLeastDoubt, 1.0);
+          : std::clamp(prior.unexplained / (kUsuallyUnexplained * kUsuallyUnexplained), kMinUncertainty, 1.0);
   const double no_mass = doubt * window * kUsualAcceleration * kUsualAcceleration;
   n.expect({kRigid}, 0.0, no_mass);
   n.expect({kDrag}, 0.0, doubt * window * kUsualSpeed * kUsualSpeed);

@@ -7,8 +7,8 @@ namespace slosh {
 namespace {
 
 // Of the logarithms of pace and damping.
-constexpr double kPaceStep = 0.07, kLeastPaceStep = 0.001;
-constexpr double kDampingStep = 0.5, kLeastDampingStep = 0.01;
+constexpr double kPaceStep = 0.07, kMinPaceStep = 0.001;
+constexpr double kDampingStep = 0.5, kMinDampingStep = 0.01;
 constexpr double kGrows = 2.0, kShrinks = 0.5;
 
 }  // namespace
@@ -44,7 +44,7 @@ SloshMode SloshSearch::neighbour(std::size_t which) const noexcept {
     damping = std::exp(which == 3 ? damping_step_ : -damping_step_);
   }
   return {1.0, std::clamp(mode_.pace * pace, slowest_, fastest_),
-          std::clamp(mode_.damping * damping, kLeastDamping, kMostDamping)};
+          std::clamp(mode_.damping * damping, kMinDamping, kMaxDamping)};
 }
 
 void SloshSearch::look_on(const SloshRecord& record, const SloshPrior& prior) noexcept {
@@ -74,8 +74,8 @@ void SloshSearch::end_round() noexcept {
   rounds_ += 1;
   const bool stays = best_.pace == mode_.pace && best_.damping == mode_.damping;
   const double by = stays ? kShrinks : kGrows;
-  pace_step_ = std::clamp(pace_step_ * by, kLeastPaceStep, kPaceStep);
-  damping_step_ = std::clamp(damping_step_ * by, kLeastDampingStep, kDampingStep);
+  pace_step_ = std::clamp(pace_step_ * by, kMinPaceStep, kPaceStep);
+  damping_step_ = std::clamp(damping_step_ * by, kMinDampingStep, kDampingStep);
   gone_pace_ = best_.pace / mode_.pace;
   gone_damping_ = best_.damping / mode_.damping;
   mode_ = best_;

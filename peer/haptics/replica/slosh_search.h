@@ -12,7 +12,7 @@ namespace slosh {
 /// that grow while it goes and shrink while it stays. One try a call. One thread.
 class SloshSearch {
  public:
-  static constexpr double kLeastDamping = 0.003, kMostDamping = 0.5;
+  static constexpr double kMinDamping = 0.003, kMaxDamping = 0.5;
 
   /// Between these, rad/s.
   void restart(double slowest, double fastest) noexcept;

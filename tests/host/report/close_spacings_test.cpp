@@ -28,7 +28,7 @@ ErrorRow reading(double spacing, double error, const char* model = "corrected") 
 TEST(CloseSpacings, AreEvenlyApartAroundTheOneInTheMiddle) {
   const std::vector<double> five = close_spacings(0.005, 5);
   ASSERT_EQ(five.size(), 5u);
-  EXPECT_EQ(five[2], 0.005) << "to the bit: it is the reading that the report has without";
+  EXPECT_EQ(five[2], 0.005) << "bitwise: it is the reading that the report has without";
   EXPECT_NEAR(five[0], 0.972 * 0.005, 1e-12);
   EXPECT_NEAR(five[4], 1.028 * 0.005, 1e-12);
   EXPECT_EQ(close_spacings(0.005, 1), std::vector<double>{0.005});

@@ -20,7 +20,7 @@ constexpr const char* kReport = "tests/bench/results/2026-11-25-report-error-fou
 /// Of a case's own scale: less than this is not told apart from what the machine's clock does to the order.
 constexpr double kAsGood = 0.01;
 /// Of its fluid: who loses so much more than the default answers another question.
-constexpr double kMostLost = 0.01;
+constexpr double kMaxLost = 0.01;
 
 struct Beaten {
   const char* case_id;
@@ -80,7 +80,7 @@ double most_beaten_by(const std::vector<ErrorRow>& rows) {
     double least = std::abs(usual.error());
     for (const ErrorRow& other : rows) {
       if (other.wall_per_simulated() <= usual.wall_per_simulated() &&
-          lost_share(other) <= lost_share(usual) + kMostLost)
+          lost_share(other) <= lost_share(usual) + kMaxLost)
         least = std::min(least, std::abs(other.error()));
     }
     most = std::max(most, std::abs(usual.error()) - least);

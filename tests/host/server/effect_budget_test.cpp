@@ -122,9 +122,9 @@ TEST(DeedLog, AFloodIsCountedAndPushesOutNothing) {
   const std::string text = log.text();
   EXPECT_NE(text.find("Ana took grip 'left'"), std::string::npos);
   EXPECT_NE(text.find("Ben may not pause the world (1000 times)"), std::string::npos) << text;
-  for (std::size_t i = 0; i < 2 * kMostDeeds; ++i) log.note("deed " + std::to_string(i), 4);
+  for (std::size_t i = 0; i < 2 * kMaxDeeds; ++i) log.note("deed " + std::to_string(i), 4);
   EXPECT_EQ(log.text().find("Ana"), std::string::npos) << "old ones go";
-  EXPECT_LT(log.text().size(), 40 * kMostDeeds);
+  EXPECT_LT(log.text().size(), 40 * kMaxDeeds);
 }
 
 }  // namespace

@@ -20,8 +20,8 @@ namespace {
 
 constexpr double kWaterPeriod = 0.001;  // s, of a device's tick and of a step
 constexpr double kWaterMoves = kWaterStops - kWaterBegins;
-constexpr double kSwells = 0.5;         // s, at the begin and the end of the way
-constexpr double kMostDamping = 100.0;  // N·s/m that the device holds
+constexpr double kSwells = 0.5;        // s, at the begin and the end of the way
+constexpr double kMaxDamping = 100.0;  // N·s/m that the device holds
 
 std::vector<PoseKey> keys_of(const WaterCase& c, const Pose& start) {
   const WaterWay way = way_of(c);
@@ -141,7 +141,7 @@ class Site {
     if (held_.started()) {
       const GripState grip = held_.grip(0);
       felt = held_.guard(0, coupling_wrench_on_hand(gains_, hand.pose, hand.twist, grip.pose, grip.twist),
-                         hand.pose, hand.twist, kWaterPeriod, kMostDamping);
+                         hand.pose, hand.twist, kWaterPeriod, kMaxDamping);
     }
     held_.sent(0, felt);
     held_.advance(own_, kWaterPeriod, to_nanoseconds(now + kWaterPeriod) + 1);

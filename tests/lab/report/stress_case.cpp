@@ -18,10 +18,10 @@ Verdict verdict_of(const Stress& found, std::uint32_t status, std::string& why) 
     say("not finite");
     return Verdict::kFailed;
   }
-  const bool bounded = !(found.energy_ratio > kMostEnergy);
+  const bool bounded = !(found.energy_ratio > kMaxEnergy);
   if (!bounded) say(format("%.3g times the energy there can be", found.energy_ratio));
   bool within = true;
-  if (found.momentum_error > kMostMomentumError) {
+  if (found.momentum_error > kMaxMomentumError) {
     say(format("momentum off by %.2g a step", found.momentum_error));
     within = false;
   }

@@ -63,8 +63,8 @@ std::string csv_line(const StressRow& row);
 Result<std::vector<StressRow>> read_stresses(const std::filesystem::path& file);
 
 /// The bounds that every case has.
-inline constexpr double kMostEnergy = 1.05;         ///< of Stress::energy_ratio
-inline constexpr double kMostMomentumError = 1e-5;  ///< of Stress::momentum_error
+inline constexpr double kMaxEnergy = 1.05;         ///< of Stress::energy_ratio
+inline constexpr double kMaxMomentumError = 1e-5;  ///< of Stress::momentum_error
 
 // Each file of stress/ gives its own.
 std::vector<StressCase> fluid_stress();  ///< materials, gravity, sizes, starts

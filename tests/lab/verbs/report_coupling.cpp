@@ -248,7 +248,7 @@ int report_coupling(const ReportOptions& options) {
   if (signal != 0)
     progress.note("interrupted: drawing what there is; `slosh report coupling" +
                   std::string(options.quick ? " --quick" : "") +
-                  (options.out.empty() ? "" : " --out " + clean_text(options.out, kMostTextBytes)) +
+                  (options.out.empty() ? "" : " --out " + clean_text(options.out, kMaxTextBytes)) +
                   " --resume` goes on");
   std::vector<ChartPanel> panels = error_panels(rows);
   if (!bounds.empty())
@@ -282,7 +282,7 @@ int report_coupling(const ReportOptions& options) {
   std::printf(
       "Written in %.0f s: %s/coupling.csv (%zu of %zu cells), a map_….png each scheme, force_error.png with "
       "bounds.csv, and transparency%s as csv and png\n",
-      to_seconds(steady_now_ns() - all_began_ns), clean_text(folder.value().string(), kMostTextBytes).c_str(),
+      to_seconds(steady_now_ns() - all_began_ns), clean_text(folder.value().string(), kMaxTextBytes).c_str(),
       rows.size(), cells, bucket.rows.empty() ? " and spectrum" : ", spectrum and bucket");
   return signal != 0 ? 128 + signal : kExitOk;
 }

@@ -139,7 +139,7 @@ int report_coupling_link(const ReportOptions& options) {
       return fail(drawn.error());
   }
   std::printf("Written to %s: coupling_link.csv and .png, and what each person felt in link_…/\n",
-              clean_text(folder.value().string(), kMostTextBytes).c_str());
+              clean_text(folder.value().string(), kMaxTextBytes).c_str());
   return signal != 0 ? 128 + signal : kExitOk;
 }
 

@@ -217,7 +217,7 @@ int report_coupling_water(const ReportOptions& options) {
   if (const Result<bool> drawn = draw(script, folder.value() / "coupling_water.png"); !drawn)
     return fail(drawn.error());
   std::printf("Written to %s: coupling_water.csv and .png\n",
-              clean_text(folder.value().string(), kMostTextBytes).c_str());
+              clean_text(folder.value().string(), kMaxTextBytes).c_str());
   const int signal = interrupted_by();
   return signal != 0 ? 128 + signal : kExitOk;
 }

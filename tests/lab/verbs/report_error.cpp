@@ -242,7 +242,7 @@ int write_up(const std::vector<ErrorRow>& all_rows, const std::filesystem::path&
     if (!by_scene) return fail(by_scene.error());
   }
   std::printf("Written: %s/errors.csv, errors.md, errors.png%s and a picture for each of %zu readings\n",
-              clean_text(folder.string(), kMostTextBytes).c_str(), scenes.empty() ? "" : ", scenes.png",
+              clean_text(folder.string(), kMaxTextBytes).c_str(), scenes.empty() ? "" : ", scenes.png",
               groups.size());
   return kExitOk;
 }

@@ -18,7 +18,7 @@ namespace {
 constexpr const char* kPassesTable = "passes.csv";
 
 std::string agrees(const report::PassRow& row) {
-  return row.same_bits ? "the same to the bit" : format("%.2g mm apart", 1e3 * row.off);
+  return row.same_bits ? "bitwise identical" : format("%.2g mm apart", 1e3 * row.off);
 }
 
 }  // namespace

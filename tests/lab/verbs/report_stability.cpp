@@ -122,7 +122,7 @@ int report_stability(const ReportOptions& options) {
       draw(tile_script(map_of(rows, origin_line(options))), folder.value() / "stability.png");
   if (!drawn) return fail(drawn.error());
   std::printf("Written: %s/stability.csv and stability.png\n",
-              clean_text(folder.value().string(), kMostTextBytes).c_str());
+              clean_text(folder.value().string(), kMaxTextBytes).c_str());
   return kExitOk;
 }
 

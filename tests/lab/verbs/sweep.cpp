@@ -28,7 +28,7 @@
 namespace slosh {
 namespace {
 
-constexpr std::size_t kMostRuns = 1000;
+constexpr std::size_t kMaxRuns = 1000;
 constexpr const char* kSweepTable = "sweep.csv";
 
 struct SweepVerbOptions {
@@ -83,8 +83,8 @@ Result<std::vector<Member>> members(const SweepVerbOptions& options) {
       }
     }
     family = std::move(wider);
-    if (family.size() > kMostRuns)
-      return Error{"--set", "makes more than " + std::to_string(kMostRuns) + " runs", "Give fewer values"};
+    if (family.size() > kMaxRuns)
+      return Error{"--set", "makes more than " + std::to_string(kMaxRuns) + " runs", "Give fewer values"};
   }
   std::vector<Member> all;
   for (std::vector<FieldEdit>& edits : family) {

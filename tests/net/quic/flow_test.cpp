@@ -96,9 +96,9 @@ TEST(PaceGain, RisesWhileSomethingWaitsAndTheLinkHasRoom) {
   for (int round = 0; round < 3; ++round) gain.note(path(0.04, 0.04), true, 0, 0, now += 41'000'000);
   EXPECT_NEAR(gain.factor(), 1.25 * 1.25 * 1.25, 1e-9);
   for (int round = 0; round < 50; ++round) gain.note(path(0.041, 0.04), true, 0, 0, now += 41'000'000);
-  EXPECT_EQ(gain.factor(), PaceGain::kMost);
+  EXPECT_EQ(gain.factor(), PaceGain::kMax);
   gain.note(path(0.041, 0.04), false, 0, 0, now += 41'000'000);
-  EXPECT_EQ(gain.factor(), PaceGain::kMost) << "nothing waited: nothing was learnt";
+  EXPECT_EQ(gain.factor(), PaceGain::kMax) << "nothing waited: nothing was learnt";
 }
 
 TEST(PaceGain, FallsBackWhenQueuesGrowOrMuchIsLost) {
@@ -108,7 +108,7 @@ TEST(PaceGain, FallsBackWhenQueuesGrowOrMuchIsLost) {
     std::uint64_t sent = 0, lost = 0;
     for (int round = 0; round < 9; ++round)
       gain.note(path(0.04, 0.04), true, sent += 50, lost, now += 41'000'000);
-    ASSERT_EQ(gain.factor(), PaceGain::kMost);
+    ASSERT_EQ(gain.factor(), PaceGain::kMax);
     for (int round = 0; round < 9; ++round)
       gain.note(path(lossy ? 0.04 : 0.08, 0.04), true, sent += 50, lost += lossy ? 10 : 0, now += 81'000'000);
     EXPECT_EQ(gain.factor(), 1.0);
@@ -121,7 +121,7 @@ TEST(PaceGain, TakesLittleLossForNoise) {
   std::uint64_t sent = 0, lost = 0;
   for (int round = 0; round < 9; ++round)
     gain.note(path(0.04, 0.04), true, sent += 50, lost += 5, now += 41'000'000);
-  EXPECT_EQ(gain.factor(), PaceGain::kMost);
+  EXPECT_EQ(gain.factor(), PaceGain::kMax);
 }
 
 TEST(PaceGain, ActsOnceARoundTrip) {

@@ -54,13 +54,13 @@ TEST(CleanName, IsCutAtItsLength) {
 TEST(CleanName, ACleanedNameComesBackAsItIs) {
   std::mt19937_64 random(1121);
   const char* const pieces[] = {"Ana",    " ",  "has",    "left",   "-", "'", ".",      "\u0301",
-                                "\u200b", "水", "\x80",   "🐙",      "İ", "ﷺ", "\u2800", "i",
+                                "\u200b", "水", "\x80",   "🐙",     "İ", "ﷺ", "\u2800", "i",
                                 "s",      "1",  "\u1ea0", "\u2126", "½", "ǅ", "\u3000"};
   for (int i = 0; i < 20'000; ++i) {
     std::string foreign;
     for (std::size_t n = random() % 20; n > 0; --n) foreign += pieces[random() % std::size(pieces)];
     const std::string name = clean_name(foreign);
-    ASSERT_LE(name.size(), kMostNameBytes);
+    ASSERT_LE(name.size(), kMaxNameBytes);
     ASSERT_EQ(text_problem(name), "") << foreign;
     ASSERT_EQ(clean_name(name), name) << foreign;
     ASSERT_EQ(name.empty(), name_skeleton(name).empty());
@@ -92,7 +92,7 @@ TEST(NameSkeleton, NamesThatLookAlikeHaveTheSame) {
 
 TEST(NameSkeleton, OtherNamesHaveAnother) {
   const char* const names[] = {"Ana", "Anna",  "Ben",     "Bea", "guest 1", "guest 2", "guest 12", "水",
-                               "火",  "Мария", "Χρήστος", "🐙",   "🦑",    "कु",       "का",       "Zoe 2"};
+                               "火",  "Мария", "Χρήστος", "🐙",  "🦑",      "कु",       "का",       "Zoe 2"};
   for (const char* a : names) {
     for (const char* b : names) {
       if (a != b) {

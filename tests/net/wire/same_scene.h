@@ -5,7 +5,7 @@
 
 namespace slosh::test {
 
-/// Every field equal to the bit; tells gtest where not.
+/// Every field equal bitwise; tells gtest where not.
 void expect_same_scene(const Scene& a, const Scene& b);
 
 }  // namespace slosh::test

@@ -49,7 +49,7 @@ class FirstScene(unittest.TestCase):
             self.assertEqual(slosh.check(file), [])
 
     def test_what_is_poured_stays(self):
-        # Reached: 0.025 kg, at 6 and 10 mm 0.020 and 0.045: 0.088 until impacts were damped (sim/viscosity/noise.h).
+        # Reached: 0.025 kg, at 6 and 10 mm 0.020 and 0.045: 0.088 until impacts were damped (sim/viscosity/artificial_viscosity.h).
         # By the published model 0.45 of 0.55 kg of such a mug were gone.
         self.assertLess(lost(mug_over_funnel()), 0.035)
 

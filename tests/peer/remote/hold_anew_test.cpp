@@ -21,10 +21,10 @@ using test::sample_of;
 using test::world_at_rest;
 using test::world_of;
 
-// The springs' ends go at kLetInSpeed at most, gained over kLetInRise and lost with the time constant
-// kLetInEnd: at most kLetInSpeed / kLetInEnd = 0.6 m/s² of the body, twice that when the springs swing with
+// The springs' ends go at kRampSpeed at most, gained over kRampRise and lost with the time constant
+// kRampEnd: at most kRampSpeed / kRampEnd = 0.6 m/s² of the body, twice that when the springs swing with
 // it. Half the body's mass hangs at each hand: 1.8 N. As much again for the hands' not being let in evenly.
-constexpr double kLetIn = 2.0 * 0.5 * kMass * 2.0 * kLetInSpeed / kLetInEnd;
+constexpr double kRamp = 2.0 * 0.5 * kMass * 2.0 * kRampSpeed / kRampEnd;
 
 /// One person at a grip of their own, with what reaches them.
 struct HoldPerson {
@@ -146,8 +146,8 @@ TEST_F(HoldAnew, AfterACrashAndAResumeHandsThatMovedArePulledNoHarderThanTheyCar
   }
   run(6.0);
   print("crash and resume, hands 0.3 m higher");
-  EXPECT_LT(carried, kShare + kLetIn);
-  EXPECT_LT(felt, kShare + kLetIn);
+  EXPECT_LT(carried, kShare + kRamp);
+  EXPECT_LT(felt, kShare + kRamp);
   EXPECT_LT(farthest(), 0.02) << "in the end they hold it where they are";
 }
 
@@ -171,8 +171,8 @@ TEST_F(HoldAnew, AHandThatComesBackWithinAMinuteIsPulledNoHarderThanItCarries) {
   run(8.0);
   print("one hand back after 40 s");
   std::printf("it was %.0f mm away, %.0f N for the spring\n", 1e3 * away, 2000.0 * away);
-  EXPECT_LT(carried, 2.0 * kShare + kLetIn) << "what the other one carried alone";
-  EXPECT_LT(felt, 2.0 * kShare + kLetIn);
+  EXPECT_LT(carried, 2.0 * kShare + kRamp) << "what the other one carried alone";
+  EXPECT_LT(felt, 2.0 * kShare + kRamp);
   EXPECT_LT(farthest(), 0.02);
 }
 
@@ -185,8 +185,8 @@ TEST_F(HoldAnew, ASilenceOfAFewTenthsOfASecondIsNoBlow) {
   forget();  // up to here a hand felt what was fading
   run(6.0);
   print("0.3 s of silence, hands 0.3 m higher");
-  EXPECT_LT(carried, kShare + kLetIn);
-  EXPECT_LT(felt, kShare + kLetIn);
+  EXPECT_LT(carried, kShare + kRamp);
+  EXPECT_LT(felt, kShare + kRamp);
   EXPECT_LT(farthest(), 0.02);
 }
 
@@ -230,8 +230,8 @@ TEST_F(HoldAnew, APauseIsNoBlowEither) {
   forget();
   run(6.0);
   print("a pause, hands 0.3 m higher");
-  EXPECT_LT(carried, kShare + kLetIn);
-  EXPECT_LT(felt, kShare + kLetIn);
+  EXPECT_LT(carried, kShare + kRamp);
+  EXPECT_LT(felt, kShare + kRamp);
   EXPECT_LT(farthest(), 0.02);
 }
 

@@ -163,7 +163,7 @@ void expect_within(const Worst& run, const Worst& control, const std::string& wh
   EXPECT_LT(run.rise, kFactor * control.rise + kSwing) << what;
   EXPECT_LT(run.way, kFactor * control.way + kSwing) << what;
   EXPECT_LT(run.speed, kFactor * control.speed + 0.2) << what;
-  EXPECT_LT(run.spin, kFactor * (control.spin + kLetInTurn)) << what;
+  EXPECT_LT(run.spin, kFactor * (control.spin + kRampTurn)) << what;
 }
 
 struct StalledHands {

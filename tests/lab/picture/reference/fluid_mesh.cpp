@@ -8,7 +8,7 @@ namespace {
 
 constexpr float kReach = 4.0f;    // particle radii
 constexpr float kLevel = 0.984f;  // likewise: half-space weights put the mean 0.246 reaches behind its face
-constexpr double kMostNodes = 50e6;
+constexpr double kMaxNodes = 50e6;
 
 /// The field on a lattice of nodes.
 class Grid {
@@ -23,7 +23,7 @@ class Grid {
     high += kReach * radius;
     cell_ = cell * radius;
     const glm::dvec3 span(high - low);
-    cell_ = std::max(cell_, static_cast<float>(std::cbrt(span.x * span.y * span.z / kMostNodes)));
+    cell_ = std::max(cell_, static_cast<float>(std::cbrt(span.x * span.y * span.z / kMaxNodes)));
     origin_ = low;
     count_ = glm::ivec3(glm::ceil((high - low) / cell_)) + 2;
     const std::size_t nodes = std::size_t(count_.x) * count_.y * count_.z;

@@ -19,7 +19,7 @@
 namespace slosh::reference {
 namespace {
 
-constexpr int kMostPathTurns = 96;   // of one path
+constexpr int kMaxPathTurns = 96;    // of one path
 constexpr float kLightSize = 0.99f;  // cosine of the light's half angle as a mirror shows it
 
 /// Single-scattering albedo of a medium whose deep layers send `back` of the light back (Chiang, Kutz &
@@ -50,7 +50,7 @@ class Tracer {
     int fluid = -1;            // that the path is in
     bool scattered = false;    // in it
     bool mirror_chain = true;  // from the eye on: the light itself is to be seen
-    for (int turn = 0; turn < kMostPathTurns; ++turn) {
+    for (int turn = 0; turn < kMaxPathTurns; ++turn) {
       const Hit hit = scene_.nearest(from, way);
       if (fluid >= 0) {
         const float distance = walk(fluid, hit.distance, share, random);
@@ -237,9 +237,8 @@ class EmbreeTracer : public PathTracer {
     Triangles& mesh = meshes_.back();
     if (mesh.texcoords.size() < mesh.positions.size()) mesh.texcoords.clear();
     mesh.normals.resize(mesh.positions.size(), glm::vec3(0.0f, 1.0f, 0.0f));
-    std::erase_if(mesh.triangles, [&](const glm::uvec3& t) {
-      return std::max({t.x, t.y, t.z}) >= mesh.positions.size();
-    });
+    std::erase_if(mesh.triangles,
+                  [&](const glm::uvec3& t) { return std::max({t.x, t.y, t.z}) >= mesh.positions.size(); });
     return static_cast<MeshHandle>(meshes_.size() - 1);
   }
 

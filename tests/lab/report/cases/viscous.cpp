@@ -134,7 +134,7 @@ std::vector<Reading> turned_ball(const Setting& setting, Cost& cost) {
   const make::Solid solid = make::sphere(kBall, 24, 48);
   constexpr double kStepped = 5.0;
   const bool solves =
-      setting.solve_drag && can_solve_drag(setting.backend) && corrects_gradients(setting.model);
+      setting.solve_viscosity && can_solve_drag(setting.backend) && corrects_gradients(setting.model);
   const auto torque_of = [&](double viscosity, double density) {
     SceneBuilder b;
     b.add_fluid(1000.0, viscosity);

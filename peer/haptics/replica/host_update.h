@@ -21,7 +21,7 @@ struct HostHand {
 };
 
 /// The host's word on the body after one step, as soon as it comes.
-struct HostWord {
+struct HostUpdate {
   std::int64_t now_ns = 0;  ///< when it came
   double time = 0.0;        ///< s, the body's time that the state belongs to
   double time_step = 0.0;   ///< s of one step of the host's; 0: not known, and each word is taken for one

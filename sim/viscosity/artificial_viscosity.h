@@ -4,7 +4,7 @@
 // The corrected pressure keeps no energy: particles that jostle gain some. Plain viscosity that would hold it
 // would also be a hundred times water's. Against the mean of the neighbours, a flow that is smooth over a
 // support radius is not seen (the drag goes with the fourth power of the wave number, not the second), and
-// the jostling is damped as by some Pa·s.
+// the artificial is damped as by some Pa·s.
 #pragma once
 
 #include <cmath>
@@ -14,27 +14,27 @@
 
 namespace slosh {
 
-/// The viscosity that jostling feels: this · density · support radius · speed of sound.
-inline constexpr double kNoiseViscosity = 0.01;
+/// The viscosity that artificial feels: this · density · support radius · speed of sound.
+inline constexpr double kArtificialViscosity = 0.01;
 
-/// The share of it that is enough where pressures are solved for: a projection feeds jostling less.
-inline constexpr double kSolvedJostling = 1.0 / 3.0;
+/// The share of it that is enough where pressures are solved for: a projection feeds artificial less.
+inline constexpr double kProjectedShare = 1.0 / 3.0;
 
 /// Pa·s, what a fluid without viscosity needs whose pressures are not solved for.
-inline double unsolved_noise(const Plan& plan, double density) {
-  return kNoiseViscosity * density * plan.support_radius * std::sqrt(plan.stiffness);
+inline double weakly_compressible_artificial_viscosity(const Plan& plan, double density) {
+  return kArtificialViscosity * density * plan.support_radius * std::sqrt(plan.stiffness);
 }
 /// Pa·s, what a fluid without viscosity needs.
-inline double noise_viscosity(const Plan& plan, double density) {
-  const double share = plan.model == ParticleModel::kIncompressible ? kSolvedJostling : 1.0;
-  return share * unsolved_noise(plan, density);
+inline double artificial_viscosity(const Plan& plan, double density) {
+  const double share = plan.model == ParticleModel::kIncompressible ? kProjectedShare : 1.0;
+  return share * weakly_compressible_artificial_viscosity(plan, density);
 }
 
 /// Fluid of less than this share of that is thin: its own drag is next to nothing beside the drag on
-/// jostling.
+/// artificial.
 inline constexpr double kThin = 0.25;
 
-/// Up to this share of it a fluid gets all of the drag on jostling beside its own, and from the second on
+/// Up to this share of it a fluid gets all of the drag on artificial beside its own, and from the second on
 /// none. A step's length counts all of it at any viscosity (viscosity/stability.cpp).
 inline constexpr double kAllOfIt = 0.75;
 inline constexpr double kNoneOfIt = 1.25;
@@ -43,7 +43,7 @@ inline constexpr double kNoneOfIt = 1.25;
 /// its own drag is stronger. The two shares were chosen while, at walls and surfaces, the flow felt it
 /// (neighbour_flow.h): torque between cylinders of 1 Pa·s, three spacings apart, had +13 % with all of 0.66
 /// Pa·s.
-SLOSH_HD inline float jostling_viscosity(float noise, float viscosity) {
+SLOSH_HD inline float artificial_viscosity_left(float noise, float viscosity) {
   constexpr auto kNone = static_cast<float>(kNoneOfIt);
   constexpr auto kWay = static_cast<float>(kNoneOfIt - kAllOfIt);
   const float left = (kNone * noise - viscosity) / kWay;
@@ -53,7 +53,7 @@ SLOSH_HD inline float jostling_viscosity(float noise, float viscosity) {
 /// In an impact it is more: what differs from its neighbours' mean by more than this share of the speed of
 /// sound is damped the more the faster it is, by this factor more for each speed of sound beyond it, as Von
 /// Neumann and Richtmyer's viscosity (1950) grows with the speed at which fluid meets. Calm fluid is slower
-/// than that and the same to the bit. Without it water that fell on a shallow layer sprang back from
+/// than that and bitwise identical. Without it water that fell on a shallow layer sprang back from
 /// it particle by particle (tests/notebook/2026-11-23-impacts-and-boundary-share.md). Not where
 /// pressures are solved for: little springs back there.
 inline constexpr double kImpactSpeed = 0.05;
@@ -64,23 +64,23 @@ inline double impact_growth(const Plan& plan) {
   return plan.model == ParticleModel::kIncompressible ? 0.0 : kImpactGrowth / std::sqrt(plan.stiffness);
 }
 
-/// The viscosity that jostling feels at `speed` m/s, Pa·s, of a fluid whose jostling feels `jostling` while
-/// it is calm: `noise` where it is thin, nothing where it is thick, which meets as hard. `growth`: s/m;
+/// The viscosity that artificial feels at `speed` m/s, Pa·s, of a fluid whose artificial feels `artificial`
+/// while it is calm: `noise` where it is thin, nothing where it is thick, which meets as hard. `growth`: s/m;
 /// `most`: what a step holds of all that drags a particle explicitly, of which the fluid's own `viscosity` is
 /// a part.
-SLOSH_HD inline float viscosity_in_impact(float jostling, float noise, float growth, float speed,
-                                          float viscosity, float most) {
-  constexpr auto kCalmPart = static_cast<float>(kImpactGrowth * kImpactSpeed);
-  const float more = RealOps<float>::positive_part(growth * speed - kCalmPart);
-  const float grown = jostling * (1.0f + more) + (noise - jostling) * more;
+SLOSH_HD inline float artificial_viscosity_in_impact(float artificial, float noise, float growth, float speed,
+                                                     float viscosity, float most) {
+  constexpr auto kQuietPart = static_cast<float>(kImpactGrowth * kImpactSpeed);
+  const float more = RealOps<float>::positive_part(growth * speed - kQuietPart);
+  const float grown = artificial * (1.0f + more) + (noise - artificial) * more;
   const float left = most - viscosity;
-  return grown <= left ? grown : left > jostling ? left : jostling;
+  return grown <= left ? grown : left > artificial ? left : artificial;
 }
 
 /// Adds factor · (v less the mean velocity of its fluid neighbours) to u. `own`: W(0) as the neighbourhood
 /// counted the particle itself. Nothing for one that is alone.
-SLOSH_HD inline void add_noise(const Neighborhood<float>& n, float own, float factor, const float (&v)[3],
-                               float (&u)[3]) {
+SLOSH_HD inline void add_fluctuation(const Neighborhood<float>& n, float own, float factor,
+                                     const float (&v)[3], float (&u)[3]) {
   const float others = n.fluid_number - own;
   if (others < 1e-3f * own) return;
   const float f = factor / others;
@@ -90,7 +90,8 @@ SLOSH_HD inline void add_noise(const Neighborhood<float>& n, float own, float fa
 }
 
 /// Takes out of that what the neighbours' flow makes a particle differ from their mean by (neighbour_flow.h).
-SLOSH_HD inline void follow_noise(const Neighborhood<float>& n, float own, float factor, float (&u)[3]) {
+SLOSH_HD inline void follow_fluctuation(const Neighborhood<float>& n, float own, float factor,
+                                        float (&u)[3]) {
   const float others = n.fluid_number - own;
   if (others < 1e-3f * own) return;
   const float f = factor / others;

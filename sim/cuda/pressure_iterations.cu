@@ -1,5 +1,5 @@
 // Conjugate gradients over the particles that press, in one launch, as sim/cpu/pressure_solve.cpp; how blocks
-// wait for each other and decide alike is in viscous_turns.cu.
+// wait for each other and decide alike is in viscous_iterations.cu.
 #include <cooperative_groups.h>
 
 #include "sim/cuda/pressure_bodies.cuh"
@@ -11,7 +11,7 @@ namespace {
 namespace cg = cooperative_groups;
 
 // Pressures that are cut off below 0 are put right when they come to more than this share of what is left.
-constexpr double kMostClipped = 0.02;
+constexpr double kMaxClipped = 0.02;
 
 __device__ std::uint32_t groups_of(std::uint32_t entries) {
   return (entries + kSolveThreads - 1) / kSolveThreads;
@@ -249,7 +249,8 @@ __global__ __launch_bounds__(kSolveThreads, 4) void press_kernel(const __grid_co
   const double share = kPressureTolerance * left(now);
   const double enough = share > kPressureFloor ? share : kPressureFloor;
   double keep = 0.0;
-  for (int turns = 0; turns < kMostPressureTurns && now.step > 0.0 && left(now) > enough; ++turns) {
+  for (int iterations = 0; iterations < kMaxPressureIterations && now.step > 0.0 && left(now) > enough;
+       ++iterations) {
     const double before = now.step;
     follow(view, static_cast<float>(keep));
     grid.sync();
@@ -264,9 +265,9 @@ __global__ __launch_bounds__(kSolveThreads, 4) void press_kernel(const __grid_co
     now = whole(view);
     keep = (now.step - now.turned) / before;
     if (!(keep > 0.0)) keep = 0.0;
-    if (now.clipped > kMostClipped * now.step && turns + 2 < kMostPressureTurns) {
+    if (now.clipped > kMaxClipped * now.step && iterations + 2 < kMaxPressureIterations) {
       undo_clips(s, grid);
-      ++turns;
+      ++iterations;
       look(s);
       grid.sync();
       now = whole(view);

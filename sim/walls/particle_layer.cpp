@@ -1,16 +1,15 @@
-#include "sim/walls/sheet.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "sim/math/kernels.h"
 #include "sim/model.h"
 #include "sim/pressure/pair_pressure.h"
+#include "sim/walls/layer.h"
 #include "sim/walls/point_buckets.h"
 
 namespace slosh {
 
-SheetParticle moved(const Pose& pose, const SheetParticle& p) {
+LayerParticle moved(const Pose& pose, const LayerParticle& p) {
   const auto place = [&](const glm::vec3& at) { return glm::vec3(transform_point(pose, glm::dvec3(at))); };
   return {place(p.position), place(p.surface), glm::vec3(pose.orientation * glm::dvec3(p.normal)), p.depth,
           p.lacks};
@@ -29,19 +28,19 @@ double plane_density(double within, double reach) {
   return std::pow(within, 4) * (reach / 4.0 - within / 5.0);
 }
 
-// What is around a sheet's particles.
-class Sheet {
+// What is around a layer's particles.
+class ParticleLayer {
  public:
-  Sheet(std::span<const SheetParticle> particles, const Plan& plan)
+  ParticleLayer(std::span<const LayerParticle> particles, const Plan& plan)
       : particles_(particles),
         spacing_(plan.spacing),
         h_(static_cast<float>(plan.support_radius)),
         by_sides_(corrects_gradients(plan.model)),
         near_(h_) {
-    for (const SheetParticle& p : particles) near_.add(p.position);
+    for (const LayerParticle& p : particles) near_.add(p.position);
   }
 
-  // The kernel's shape over a flat sheet at the spacing, at one of its particles.
+  // The kernel's shape over a flat layer at the spacing, at one of its particles.
   double flat() const {
     double sum = 0.0;
     const int reach = static_cast<int>(std::ceil(h_ / spacing_));
@@ -64,7 +63,7 @@ class Sheet {
 
   // What is left of p's share where another side is near.
   double behind_thin_wall(std::uint32_t p, std::span<const float> shares) const {
-    const SheetParticle& particle = particles_[p];
+    const LayerParticle& particle = particles_[p];
     const glm::vec3 layer = particle.surface + static_cast<float>(kFirstLayer * spacing_) * particle.normal;
     double own = 0.0, other = 0.0;
     around(layer, [&](std::uint32_t q, double shape) { (opposed(p, q) ? other : own) += shares[q] * shape; });
@@ -89,7 +88,7 @@ class Sheet {
     return by_sides_ && glm::dot(particles_[p].normal, particles_[q].normal) < kOpposed;
   }
 
-  std::span<const SheetParticle> particles_;
+  std::span<const LayerParticle> particles_;
   double spacing_;
   float h_;
   bool by_sides_;
@@ -98,17 +97,17 @@ class Sheet {
 
 }  // namespace
 
-std::vector<float> sheet_shares(std::span<const SheetParticle> particles, const Plan& plan) {
-  const Sheet sheet(particles, plan);
-  const double flat = sheet.flat();
+std::vector<float> layer_shares(std::span<const LayerParticle> particles, const Plan& plan) {
+  const ParticleLayer layer(particles, plan);
+  const double flat = layer.flat();
   std::vector<float> crowded;
   crowded.reserve(particles.size());
   for (std::uint32_t p = 0; p < particles.size(); ++p)
-    crowded.push_back(static_cast<float>(kWallShare * flat / sheet.own(p)));
-  if (!sheet.by_sides()) return crowded;
+    crowded.push_back(static_cast<float>(kWallShare * flat / layer.own(p)));
+  if (!layer.by_sides()) return crowded;
   std::vector<float> shares = crowded;
   for (std::uint32_t p = 0; p < particles.size(); ++p)
-    shares[p] *= static_cast<float>(sheet.behind_thin_wall(p, crowded));
+    shares[p] *= static_cast<float>(layer.behind_thin_wall(p, crowded));
   return shares;
 }
 

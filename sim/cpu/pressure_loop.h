@@ -12,10 +12,10 @@ struct GroupForces {
       {};  ///< Σ V shape/r² d (d · what others drag by, less one's own), without Eq 9's constants
 };
 
-/// `presses`: by the tensors; `jostles`: by `drags`, Pa·m; `drags`: besides by Eq 9 of each one's own
+/// `presses`: by the tensors; `artificial`: by `drags`, Pa·m; `drags`: besides by Eq 9 of each one's own
 /// viscosity, all as `drag` falls off. Calls also(four, shape, even, odd) for a pair of each: drag's shape/r²
 /// (0 where it fills a row up) and the others' tensors. `h`: the support radius, m.
-template <bool presses, bool jostles, bool drags, class Also>
+template <bool presses, bool artificial, bool drags, class Also>
 GroupForces walk_forces(const FluidPress& press, const PairRows::Walk& walk, float h,
                         const DragShape<float>& drag, Also&& also) {
   const float *const tensors = &press.tensors[0].xx, *const us = &press.drags[0].x;
@@ -34,9 +34,9 @@ GroupForces walk_forces(const FluidPress& press, const PairRows::Walk& walk, flo
       back += odd * g;
     }
     const Sixteen shape = where_above_zero(slope, at_least_zero(PairRows::Walk::drag_shape(d, h, drag)));
-    if constexpr (jostles || drags) {
+    if constexpr (artificial || drags) {
       Sixteen by = {};
-      if constexpr (jostles) by += walk.of_others<4>(us, four) - own_u;
+      if constexpr (artificial) by += walk.of_others<4>(us, four) - own_u;
       if constexpr (drags)
         by += (0.5f * (viscosity + fourths(odd))) * (walk.of_others<4>(velocities, four) - own_v);
       // The fourth of d is 0.

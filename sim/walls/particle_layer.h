@@ -1,4 +1,4 @@
-// The sheet of particles that a wall presses with, and what each of them stands for.
+// The layer of particles that a wall presses with, and what each of them stands for.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -11,7 +11,7 @@
 namespace slosh {
 
 /// One of the particles that a wall presses with.
-struct SheetParticle {
+struct LayerParticle {
   glm::vec3 position{0.0f};  ///< m
   glm::vec3 surface{0.0f};   ///< m, where on the mesh it belongs
   glm::vec3 normal{0.0f};    ///< unit, out of the solid there; 0: it fills an edge or is a very thin wall's,
@@ -21,12 +21,12 @@ struct SheetParticle {
 };
 
 /// The same in another frame.
-SheetParticle moved(const Pose& pose, const SheetParticle& p);
+LayerParticle moved(const Pose& pose, const LayerParticle& p);
 
-/// How many lattice particles each of a sheet stands for, one by one (after Akinci 2012's volume correction):
-/// kWallShare on a flat sheet at the spacing. Where sheets crowd or cross (corners) the particles share what
-/// one sheet would be; the two sides of a thin wall share by what each adds to the density where fluid is to
+/// How many lattice particles each of a layer stands for, one by one (after Akinci 2012's volume correction):
+/// kWallShare on a flat layer at the spacing. Where layers crowd or cross (corners) the particles share what
+/// one layer would be; the two sides of a thin wall share by what each adds to the density where fluid is to
 /// stand.
-std::vector<float> sheet_shares(std::span<const SheetParticle> sheet, const Plan& plan);
+std::vector<float> layer_shares(std::span<const LayerParticle> layer, const Plan& plan);
 
 }  // namespace slosh

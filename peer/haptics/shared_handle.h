@@ -9,12 +9,12 @@
 namespace slosh {
 
 /// What a window and a device loop say to each other of one hand that is lent.
-struct LentHand {
+struct SharedHandle {
   struct Wish {
     bool taken = false;  ///< false: the script has it
     Pose pose;           ///< where the person wants the handle, world; while taken
   };
-  explicit LentHand(const Pose& start) : now(start) {}
+  explicit SharedHandle(const Pose& start) : now(start) {}
 
   TripleBuffer<Wish> wish;  ///< the window writes, the device loop reads
   TripleBuffer<Pose> now;   ///< the other way: where the handle is
@@ -23,11 +23,11 @@ struct LentHand {
 /// Plays its script until somebody takes it. Taken, it follows where it is wanted as a critically damped
 /// second-order system in the world's own time, so that it is as fast for the fluid in slow motion as at full
 /// pace and stands in a world that stands; it is no faster than a careful hand. Given back, it goes home to
-/// the script's motion, in no less than a second. As long as nobody takes it, it is its script to the bit.
-class LentDevice final : public Device {
+/// the script's motion, in no less than a second. As long as nobody takes it, it is its script bitwise.
+class SharedHandleDevice final : public Device {
  public:
   /// `script` must be immediate().
-  LentDevice(std::unique_ptr<Device> script, std::shared_ptr<LentHand> lent);
+  SharedHandleDevice(std::unique_ptr<Device> script, std::shared_ptr<SharedHandle> lent);
 
   DeviceReport read(const DeviceMoment& moment) noexcept override;
   DeviceLimits limits() const override { return script_->limits(); }
@@ -42,8 +42,8 @@ class LentDevice final : public Device {
   DeviceReport on_the_way_home(DeviceReport script, double elapsed) noexcept;
 
   std::unique_ptr<Device> script_;
-  std::shared_ptr<LentHand> lent_;
-  LentHand::Wish wish_;
+  std::shared_ptr<SharedHandle> lent_;
+  SharedHandle::Wish wish_;
   Pose pose_;  // where the handle is, while it is not the script's
   Twist twist_;
   double time_ = -1.0;    // simulated s of the last reading

@@ -1,5 +1,5 @@
 // What a hold gives that is let in towards a hand which stays.
-#include "peer/haptics/felt_hand.h"
+#include "peer/haptics/force_rendering.h"
 
 #include <gtest/gtest.h>
 
@@ -11,9 +11,9 @@ namespace {
 constexpr CouplingGains kSprings{1000.0, 0.0, 10.0, 0.0};
 constexpr double kCarried = 15.0;  // N on the hand, as it takes hold
 
-class LetIn : public ::testing::Test {
+class EngagementRamp : public ::testing::Test {
  protected:
-  LetIn() { felt.restart(kSprings, limits_without_a_hand(), true); }
+  EngagementRamp() { felt.restart(kSprings, limits_without_a_hand(), true); }
   /// J over that time, with the grip where it is.
   double run(double seconds, const DeviceReport& hand) {
     GripState grip;
@@ -21,7 +21,7 @@ class LetIn : public ::testing::Test {
     double sum = 0.0;
     for (const double end = now + seconds; now < end; now += 0.001) {
       (void)felt.feel({1.0, true, false, false}, hand, grip, {now});
-      sum += felt.let_in();
+      sum += felt.ramp_work();
     }
     return sum;
   }
@@ -31,23 +31,23 @@ class LetIn : public ::testing::Test {
     hand.pose.orientation = rotate_by(hand.pose.orientation, {0.0, 0.0, turn});
     return hand;
   }
-  FeltHand felt{kSprings};
+  ForceRendering felt{kSprings};
   double now = 0.0;
 };
 
-TEST_F(LetIn, IsWhatTheSpringsHaveMoreInTheEnd) {
+TEST_F(EngagementRamp, IsWhatTheSpringsHaveMoreInTheEnd) {
   const double stretched = 0.5 * kSprings.stiffness * 0.1 * 0.1;
   const double before = 0.5 * kCarried * kCarried / kSprings.stiffness;
   EXPECT_NEAR(run(4.0, above(0.1, 0.0)), stretched - before, 0.01 * stretched);
   EXPECT_NEAR(run(1.0, above(0.1, 0.0)), 0.0, 1e-6) << "it is in";
 }
 
-TEST_F(LetIn, CountsTurnsToo) {
+TEST_F(EngagementRamp, CountsTurnsToo) {
   const double turned = 0.5 * kSprings.rotational_stiffness * 0.3 * 0.3;
   EXPECT_NEAR(run(4.0, above(kCarried / kSprings.stiffness, 0.3)), turned, 0.01 * turned);
 }
 
-TEST_F(LetIn, IsNothingOfAHandThatHoldsWhereItIsOrNotAtAll) {
+TEST_F(EngagementRamp, IsNothingOfAHandThatHoldsWhereItIsOrNotAtAll) {
   DeviceReport hand = above(kCarried / kSprings.stiffness, 0.0);
   EXPECT_EQ(run(0.1, hand), 0.0);
   hand.pose.position.y += 0.05;
@@ -61,11 +61,11 @@ TEST_F(LetIn, IsNothingOfAHandThatHoldsWhereItIsOrNotAtAll) {
 /// A guard (HeldBody) is before the limits: where it cuts a force at once, and lets it through again, the
 /// device sees no more than its rate. What has no such limit sees all of it: a simulated person by
 /// default, 4.9 N in 2 ms where one is lowered.
-TEST(FeltHand, AGuardThatCutsIsNoStepAtTheDevice) {
+TEST(ForceRendering, AGuardThatCutsIsNoStepAtTheDevice) {
   DeviceLimits limits = limits_without_a_hand();
   for (const double rate : {2000.0, 2.0e5}) {
     limits.max_force_rate = rate;
-    FeltHand felt{kSprings};
+    ForceRendering felt{kSprings};
     felt.restart(kSprings, limits, true);
     DeviceReport hand;
     hand.pose.position.y = kCarried / kSprings.stiffness;

@@ -247,7 +247,7 @@ __global__ __launch_bounds__(kSolveThreads, 4) void solve_kernel(const __grid_co
   double now = start[0], before = 0.0;
   int current = 0;  // of the bodies' two directions
   ViscousOutcome outcome;
-  while (outcome.turns < static_cast<std::uint32_t>(kMostViscousTurns)) {
+  while (outcome.iterations < static_cast<std::uint32_t>(kMaxViscosityIterations)) {
     if (!(now > 0.0)) {
       outcome.converged = now == 0.0;
       break;
@@ -271,7 +271,7 @@ __global__ __launch_bounds__(kSolveThreads, 4) void solve_kernel(const __grid_co
     advance(s, static_cast<float>(length));
     by_first_thread(view, [&](std::uint32_t b) { advance_body(s, b, length, current); });
     grid.sync();
-    ++outcome.turns;
+    ++outcome.iterations;
     double sums[3] = {part_of(view.parts.left, groups), part_of(view.parts.changed, groups),
                       whole(view.parts.step, view.parts.body_step)};
     sum_block(sums);

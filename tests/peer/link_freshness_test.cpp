@@ -1,5 +1,5 @@
 // What a device loop believes when states come late and poses are not followed, and when it speaks.
-#include "peer/haptics/hearing.h"
+#include "peer/haptics/link_freshness.h"
 
 #include <gtest/gtest.h>
 
@@ -14,9 +14,9 @@ constexpr double kLag = 0.02;  // s from a pose to a state that follows it
 
 /// A world at its pace over a link, ticked each millisecond.
 struct Link {
-  Hearing hearing{kPeriod};
+  LinkFreshness hearing{kPeriod};
   BodyMessage message;
-  WorldBelief belief;
+  StateFreshness belief;
   double lag = kLag;
   int up_ends_ms = 1 << 30;  // poses read after this are lost
   int ms = 1000;
@@ -47,7 +47,7 @@ struct Link {
   }
 };
 
-TEST(Hearing, BelievesAWorldAtItsPace) {
+TEST(LinkFreshness, BelievesAWorldAtItsPace) {
   Link link;
   link.run(500);
   EXPECT_EQ(link.belief.share, 1.0);
@@ -57,7 +57,7 @@ TEST(Hearing, BelievesAWorldAtItsPace) {
 
 /// Over a long link the first state that can follow us is a round trip away: until then there is nothing to
 /// feel, and so nothing to fade where none ever comes. From then on it is believed at once.
-TEST(Hearing, BelievesNothingBeforeTheFirstAnswer) {
+TEST(LinkFreshness, BelievesNothingBeforeTheFirstAnswer) {
   Link link;
   link.up = false;
   for (int ms = 0; ms < 2000; ++ms) {
@@ -72,7 +72,7 @@ TEST(Hearing, BelievesNothingBeforeTheFirstAnswer) {
 }
 
 /// A world far away that waits for its first step follows nobody: it may hear us or not.
-TEST(Hearing, AWorldFarAwayThatWaitsIsNotBelieved) {
+TEST(LinkFreshness, AWorldFarAwayThatWaitsIsNotBelieved) {
   Link link;
   link.message.rate = 0.0;
   link.run(500);
@@ -85,7 +85,7 @@ TEST(Hearing, AWorldFarAwayThatWaitsIsNotBelieved) {
 
 /// Where poses stop, nobody can know before an answer is due: the force is over 400 ms after the last pose
 /// that was heard, or where the link takes longer than 200 ms both ways, 200 ms after the answer to it.
-TEST(Hearing, PosesThatStopEndTheForceWithin400MillisecondsOfTheFault) {
+TEST(LinkFreshness, PosesThatStopEndTheForceWithin400MillisecondsOfTheFault) {
   for (const auto& [lag, after] : {std::pair{0.02, 400}, {0.1, 400}, {0.2, 400}, {0.3, 500}, {0.5, 700}}) {
     Link link;
     link.lag = lag;
@@ -105,7 +105,7 @@ TEST(Hearing, PosesThatStopEndTheForceWithin400MillisecondsOfTheFault) {
 }
 
 /// The same where states stop: what was on its way is half of that.
-TEST(Hearing, StatesThatStopEndTheForceWithin400MillisecondsOfTheFault) {
+TEST(LinkFreshness, StatesThatStopEndTheForceWithin400MillisecondsOfTheFault) {
   for (const auto& [lag, after] : {std::pair{0.02, 390}, {0.2, 300}, {0.4, 200}, {0.5, 200}}) {
     Link link;
     link.lag = lag;
@@ -118,7 +118,7 @@ TEST(Hearing, StatesThatStopEndTheForceWithin400MillisecondsOfTheFault) {
   }
 }
 
-TEST(Hearing, AStateThatDoesNotFollowOurPosesFadesAsALateOneDoes) {
+TEST(LinkFreshness, AStateThatDoesNotFollowOurPosesFadesAsALateOneDoes) {
   Link link;
   link.run(500);
   link.up = false;
@@ -134,7 +134,7 @@ TEST(Hearing, AStateThatDoesNotFollowOurPosesFadesAsALateOneDoes) {
   EXPECT_TRUE(link.belief.current);
 }
 
-TEST(Hearing, WhoHearsNothingSaysNothingAndIsBelievedWhenTheHostHasAnswered) {
+TEST(LinkFreshness, WhoHearsNothingSaysNothingAndIsBelievedWhenTheHostHasAnswered) {
   Link link;
   link.run(500);
   link.down = false;
@@ -162,7 +162,7 @@ TEST(Hearing, WhoHearsNothingSaysNothingAndIsBelievedWhenTheHostHasAnswered) {
   EXPECT_EQ(link.belief.share, 1.0);
 }
 
-TEST(Hearing, TellsOfTheStateThatEndsAGap) {
+TEST(LinkFreshness, TellsOfTheStateThatEndsAGap) {
   Link link;
   link.run(500);
   EXPECT_FALSE(link.belief.resumed);
@@ -176,7 +176,7 @@ TEST(Hearing, TellsOfTheStateThatEndsAGap) {
   EXPECT_FALSE(link.belief.resumed);
 }
 
-TEST(Hearing, InOneProcessNoPoseIsLost) {
+TEST(LinkFreshness, InOneProcessNoPoseIsLost) {
   Link link;
   link.up = false;
   link.message.heard_pose_ns = kPoseNotTold;
@@ -188,7 +188,7 @@ TEST(Hearing, InOneProcessNoPoseIsLost) {
   EXPECT_EQ(link.belief.share, 1.0);
 }
 
-TEST(Hearing, AStampFromTheFutureKeepsNoForceAlive) {
+TEST(LinkFreshness, AStampFromTheFutureKeepsNoForceAlive) {
   Link link;
   link.message.heard_pose_ns = kPoseNotTold;
   link.message.stamp_ns = link.now() + to_nanoseconds(3600.0);

@@ -1,4 +1,4 @@
-#include "peer/haptics/felt_hand.h"
+#include "peer/haptics/force_rendering.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,7 @@ bool is_finite(const Wrench& w) {
 
 /// While states are late a hand goes on moving and its grip does not: a spring that only silence stretches is
 /// not felt.
-Wrench FeltHand::capped(const Wrench& full, bool current) noexcept {
+Wrench ForceRendering::capped(const Wrench& full, bool current) noexcept {
   if (current) {
     most_force_ = glm::length(full.force);
     most_torque_ = glm::length(full.torque);
@@ -29,8 +29,8 @@ Wrench FeltHand::capped(const Wrench& full, bool current) noexcept {
   return {limit_length(full.force, most_force_, limited), limit_length(full.torque, most_torque_, limited)};
 }
 
-Wrench FeltHand::couple(const WorldBelief& world, const DeviceReport& hand, const GripState& grip,
-                        const Moment& now) noexcept {
+Wrench ForceRendering::couple(const StateFreshness& world, const DeviceReport& hand, const GripState& grip,
+                              const Moment& now) noexcept {
   double believed = std::min(world.share, now.device_share);
   bool current = world.current && now.device_share >= 1.0;
   if (world.anew) begun_ = false;
@@ -71,7 +71,7 @@ Wrench FeltHand::couple(const WorldBelief& world, const DeviceReport& hand, cons
   return {felt * full.force, felt * full.torque};
 }
 
-ForceLimiter::Outcome FeltHand::finish(Wrench wanted, const Twist& twist, const Moment& now) noexcept {
+ForceLimiter::Outcome ForceRendering::finish(Wrench wanted, const Twist& twist, const Moment& now) noexcept {
   if (is_finite(wanted)) {
     wanted = begun_ ? capped(wanted, current_) : Wrench{};
     const double share = gentle_ ? share_ * share_ * (3.0 - 2.0 * share_) : share_;

@@ -1,5 +1,5 @@
 // A wall of 1.2 spacings counts for fluid as one of ten does.
-#include "sim/walls/sheet.h"
+#include "sim/walls/particle_layer.h"
 
 #include <gtest/gtest.h>
 

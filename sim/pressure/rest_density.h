@@ -23,14 +23,14 @@ namespace slosh {
 /// keeps 89, 93, 94 % of its swing, a ball of 1.5 spacings in a tube is dragged by 24, 29, 31 % too little.
 inline constexpr double kPackedMoment = 0.05;
 /// Of the compression under the fluid's weight, at most: a softer fluid is one that shall give.
-inline constexpr double kMostLoad = 0.02;
+inline constexpr double kMaxLoad = 0.02;
 inline constexpr double kSettlingTime = 0.2;  ///< s, settling before the run counted
 
 /// `lattice` as a fluid needs it after `age` s. `load`: its compression by its own weight, mean over its
 /// depth.
 inline CorrectionConstants settled(const CorrectionConstants& lattice, double load, double age) {
   const double share = std::clamp(age / kSettlingTime, 0.0, 1.0);
-  const double thinner = std::min(load, kMostLoad);
+  const double thinner = std::min(load, kMaxLoad);
   const double moment = 1.0 - share * (kPackedMoment + thinner);
   CorrectionConstants c = lattice;
   c.rest_number = static_cast<float>((1.0 - share * thinner) * lattice.rest_number);

@@ -79,14 +79,14 @@ PairBatch drag_pairs(const ParticleView<FloatBatch>& p, const NeighborColumns& n
   pairs.z = p.z - FloatBatch::load_unaligned(n.z + j);
   pairs.r_squared = pairs.x * pairs.x + pairs.y * pairs.y + pairs.z * pairs.z;
   const auto kernel = Parts::ForceKernel::pair(pairs.r_squared, h, weight);
-  // Eq 9's factor, so that both sides of a pair find the same to the bit.
+  // Eq 9's factor, so that both sides of a pair find bitwise identical.
   const FloatBatch of_both = (FloatBatch(0.5f) * (p.viscosity + i.viscosity)) * (p.volume * i.volume);
   pairs.q = of_both * (factor * (shape(kernel.laplacian) * (kernel.inverse_r * kernel.inverse_r)));
   return pairs;
 }
 
 /// What the force pass (drag_rows.cpp) writes down of fluid particles where drag is solved for (implicit.h).
-struct FluidDrag {
+struct FluidViscosity {
   PairRows rows;  ///< with fluid, and behind it with moving bodies' particles
   std::vector<Symmetric<float>>
       by_walls;  ///< N·s for each m/s of its own that fixed bodies take, one a particle

@@ -1,5 +1,5 @@
 // A scripted hand that is taken with the mouse and given back.
-#include "peer/haptics/lent_device.h"
+#include "peer/haptics/shared_handle.h"
 
 #include <gtest/gtest.h>
 
@@ -22,8 +22,8 @@ std::unique_ptr<Device> lent_script() {
 }
 
 struct Lent {
-  std::shared_ptr<LentHand> hand = std::make_shared<LentHand>(Pose{});
-  LentDevice device{lent_script(), hand};
+  std::shared_ptr<SharedHandle> hand = std::make_shared<SharedHandle>(Pose{});
+  SharedHandleDevice device{lent_script(), hand};
   double time = 0.0;
 
   DeviceReport read(double elapsed = kLentTick) { return device.read({time += elapsed, kLentTick}); }
@@ -33,7 +33,7 @@ struct Lent {
   }
 };
 
-TEST(LentDevice, IsItsScriptToTheBitUntilSomebodyTakesIt) {
+TEST(SharedHandleDevice, IsItsScriptToTheBitUntilSomebodyTakesIt) {
   Lent lent;
   const std::unique_ptr<Device> alone = lent_script();
   for (int i = 0; i < 1500; ++i) {
@@ -45,7 +45,7 @@ TEST(LentDevice, IsItsScriptToTheBitUntilSomebodyTakesIt) {
   EXPECT_EQ(lent.device.kind(), "script");
 }
 
-TEST(LentDevice, GoesWhereItIsWantedWithoutAJumpAndNoFasterThanACarefulHand) {
+TEST(SharedHandleDevice, GoesWhereItIsWantedWithoutAJumpAndNoFasterThanACarefulHand) {
   Lent lent;
   for (int i = 0; i < 500; ++i) lent.read();
   glm::dvec3 last = lent.read().pose.position;
@@ -67,7 +67,7 @@ TEST(LentDevice, GoesWhereItIsWantedWithoutAJumpAndNoFasterThanACarefulHand) {
   EXPECT_NEAR(glm::distance(last, glm::dvec3(1.0, 0.5, 0.0)), 0.0, 1e-6);
 }
 
-TEST(LentDevice, ReportsTheVelocityThatItMovesWith) {
+TEST(SharedHandleDevice, ReportsTheVelocityThatItMovesWith) {
   Lent lent;
   lent.read();
   lent.want({0.05, 0.0, 0.0});
@@ -80,7 +80,7 @@ TEST(LentDevice, ReportsTheVelocityThatItMovesWith) {
   }
 }
 
-TEST(LentDevice, StandsInAWorldThatStandsAndIsSoundAfterALongGap) {
+TEST(SharedHandleDevice, StandsInAWorldThatStandsAndIsSoundAfterALongGap) {
   Lent lent;
   lent.read();
   lent.want({0.05, 0.0, 0.0});
@@ -89,7 +89,7 @@ TEST(LentDevice, StandsInAWorldThatStandsAndIsSoundAfterALongGap) {
   EXPECT_NEAR(lent.read(5.0).pose.position.x, 0.05, 1e-9) << "any time at once, without overshooting";
 }
 
-TEST(LentDevice, GoesHomeToItsScriptWhenGivenBack) {
+TEST(SharedHandleDevice, GoesHomeToItsScriptWhenGivenBack) {
   Lent lent;
   lent.read();
   lent.want({0.5, 0.0, 0.0});
@@ -109,7 +109,7 @@ TEST(LentDevice, GoesHomeToItsScriptWhenGivenBack) {
   EXPECT_GT(lent.time, begin + 2.0);
 }
 
-TEST(LentDevice, IsItsScriptAgainWhenTheWorldBeginsAgain) {
+TEST(SharedHandleDevice, IsItsScriptAgainWhenTheWorldBeginsAgain) {
   Lent lent;
   lent.read(1.0);
   lent.want({0.5, 0.0, 0.0});
@@ -119,7 +119,7 @@ TEST(LentDevice, IsItsScriptAgainWhenTheWorldBeginsAgain) {
   EXPECT_EQ(lent.read().pose.position, lent_script()->read({kLentTick, kLentTick}).pose.position);
 }
 
-TEST(LentDevice, SaysWhereTheHandleIs) {
+TEST(SharedHandleDevice, SaysWhereTheHandleIs) {
   Lent lent;
   const Pose pose = lent.read(0.5).pose;
   ASSERT_TRUE(lent.hand->now.update());

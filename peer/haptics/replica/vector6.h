@@ -1,10 +1,10 @@
-// Wrenches, twists and inertias in sixes, for the replica's solve: linear x, y, z first, then angular.
+// Wrenches, twists and inertias in vector6, for the replica's solve: linear x, y, z first, then angular.
 #pragma once
 
 #include "sim/math/dense.h"
 #include "sim/math/pose.h"
 
-namespace slosh::sixes {
+namespace slosh::vector6 {
 
 inline glm::dvec3 linear(const Vector6& v) {
   return {v[0], v[1], v[2]};
@@ -49,4 +49,4 @@ inline glm::dmat3 turned(const glm::dmat3& inertia, const glm::dquat& orientatio
   return r * inertia * glm::transpose(r);
 }
 
-}  // namespace slosh::sixes
+}  // namespace slosh::vector6

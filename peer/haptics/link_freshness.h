@@ -8,7 +8,7 @@
 namespace slosh {
 
 /// What the loop makes of the newest body state.
-struct WorldBelief {
+struct StateFreshness {
   double share = 0.0;    ///< 0–1, by how long ago it came; 0 while the world has stopped
   bool current = false;  ///< no later than a world at its pace would have it
   bool resumed = false;  ///< the state came after the one before had been late
@@ -25,12 +25,12 @@ struct WorldBelief {
 ///  - Who hears nothing says nothing. So the host takes the hand for silent too, and when contact is back
 ///    both ends take hold anew (net/engagement.h), the loop when the host has.
 /// Reads no clock; one thread; no allocation.
-class Hearing {
+class LinkFreshness {
  public:
-  explicit Hearing(double period) : period_(period) {}
+  explicit LinkFreshness(double period) : period_(period) {}
 
   /// Once a tick, with the newest state and whether it came since the tick before.
-  WorldBelief hear(const BodyMessage& message, bool fresh, std::int64_t now_ns) noexcept;
+  StateFreshness hear(const BodyMessage& message, bool fresh, std::int64_t now_ns) noexcept;
 
   /// Whether poses are to be sent in this tick. After hear().
   bool speaks() const { return speaks_; }

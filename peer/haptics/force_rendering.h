@@ -7,7 +7,7 @@
 #include "peer/haptics/device.h"
 #include "peer/haptics/force_limiter.h"
 #include "peer/haptics/freshness.h"
-#include "peer/haptics/hearing.h"
+#include "peer/haptics/link_freshness.h"
 #include "sim/math/coupling.h"
 #include "sim/snapshot.h"
 
@@ -30,14 +30,14 @@ namespace slosh {
 /// and grip are compared at one time. Here they are not, as the grip's newest velocity answers a handle of
 /// one or two steps ago: a stiff coupling would add its damping times what the hand gained in speed since.
 /// Pure; one thread; no allocation.
-class FeltHand {
+class ForceRendering {
  public:
-  explicit FeltHand(const CouplingGains& of_world) : gains_(of_world), of_world_(of_world) {}
+  explicit ForceRendering(const CouplingGains& of_world) : gains_(of_world), of_world_(of_world) {}
 
   /// Another device: its limits, and no hold yet. `of_world`: the coupling as the world has it, by which the
   /// hand takes hold, here as there; it is felt within the limits.
   void restart(const CouplingGains& of_world, const DeviceLimits& limits, bool gives_way) {
-    *this = FeltHand(of_world);
+    *this = ForceRendering(of_world);
     gains_ = within(of_world, limits);
     limiter_ = ForceLimiter(limits);
     gives_way_ = gives_way;
@@ -47,8 +47,8 @@ class FeltHand {
     rise_ = limits.engagement_time;
     gentle_ = true;
     share_ = 0.0;
-    damping_ = 0.5 * std::min(limits.max_damping, kMostRampDamping);
-    rotational_damping_ = 0.5 * std::min(limits.max_rotational_damping, kMostRampTurning);
+    damping_ = 0.5 * std::min(limits.max_damping, kMaxRampDamping);
+    rotational_damping_ = 0.5 * std::min(limits.max_rotational_damping, kMaxRampTurning);
   }
 
   /// The world's coupling as it is from now on; the hold stays.
@@ -76,14 +76,14 @@ class FeltHand {
   /// The wrench for the device. `hand` as the device has it, its velocities by the device's own time; `grip`
   /// as the world has it, carried on to `now.time`. Where the world is slower (`now.pace`), the coupling is
   /// the world's, with the hand as fast as the world sees it, and damps no harder than the device holds.
-  ForceLimiter::Outcome feel(const WorldBelief& world, const DeviceReport& hand, const GripState& grip,
+  ForceLimiter::Outcome feel(const StateFreshness& world, const DeviceReport& hand, const GripState& grip,
                              const Moment& now) noexcept {
     return feel(world, hand, grip, now, [](const Wrench& wanted) { return wanted; });
   }
   /// The same, with `guard` called once with the coupling's wrench; what it gives is capped, faded and
   /// limited in its place.
   template <class Guard>
-  ForceLimiter::Outcome feel(const WorldBelief& world, const DeviceReport& hand, const GripState& grip,
+  ForceLimiter::Outcome feel(const StateFreshness& world, const DeviceReport& hand, const GripState& grip,
                              const Moment& now, Guard&& guard) noexcept {
     const Wrench wanted = couple(world, hand, grip, now);
     return finish(guard(wanted), hand.twist, now);
@@ -95,7 +95,7 @@ class FeltHand {
   /// J that the last feel() gave the world's coupling because the hold was let in, towards the hand that
   /// stays; less than 0 where it slipped: it is no motion of the hand's, and a body is lifted by it all the
   /// same.
-  double let_in() const { return engagement_.given(); }
+  double ramp_work() const { return engagement_.given(); }
 
   /// Whether what the hand does is felt by its person, as of the last feel(): their force has begun and no
   /// silence has taken it, or there is nobody who would feel it (PoseMessage::felt).
@@ -106,13 +106,13 @@ class FeltHand {
   bool follows_world() const { return follows_world_; }
 
   /// N·s/m and N·m·s/rad, twice the most that damps a hand that is about to get force.
-  static constexpr double kMostRampDamping = 10.0;
-  static constexpr double kMostRampTurning = 0.02;
+  static constexpr double kMaxRampDamping = 10.0;
+  static constexpr double kMaxRampTurning = 0.02;
   /// s over which a jump is worked off: a hand of 15 N is let go of at 150 N/s.
   static constexpr double kBridge = 0.1;
 
  private:
-  Wrench couple(const WorldBelief& world, const DeviceReport& hand, const GripState& grip,
+  Wrench couple(const StateFreshness& world, const DeviceReport& hand, const GripState& grip,
                 const Moment& now) noexcept;
   ForceLimiter::Outcome finish(Wrench wanted, const Twist& twist, const Moment& now) noexcept;
   Wrench capped(const Wrench& full, bool current) noexcept;

@@ -1,4 +1,4 @@
-#include "peer/haptics/hearing.h"
+#include "peer/haptics/link_freshness.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,7 @@ constexpr double kSureSilence = 0.03;
 
 }  // namespace
 
-double Hearing::follow_poses(const BodyMessage& message, bool& current) noexcept {
+double LinkFreshness::follow_poses(const BodyMessage& message, bool& current) noexcept {
   if (message.heard_pose_ns == kPoseNotTold) return 1.0;
   if (resuming_) {
     if (message.heard_pose_ns < since_ns_) {
@@ -58,7 +58,7 @@ double Hearing::follow_poses(const BodyMessage& message, bool& current) noexcept
 }
 
 /// What we said before the silence may have been kept back with it: ours counts from when the link is back.
-void Hearing::turn_to_speak(bool heard, std::int64_t now_ns) noexcept {
+void LinkFreshness::turn_to_speak(bool heard, std::int64_t now_ns) noexcept {
   if (!heard) {
     speaks_ = false;
     again_ns_ = 0;
@@ -70,9 +70,9 @@ void Hearing::turn_to_speak(bool heard, std::int64_t now_ns) noexcept {
   }
 }
 
-WorldBelief Hearing::hear(const BodyMessage& message, bool fresh, std::int64_t now_ns) noexcept {
+StateFreshness LinkFreshness::hear(const BodyMessage& message, bool fresh, std::int64_t now_ns) noexcept {
   if (fresh || !ticked_) heard_ns_ = now_ns;
-  WorldBelief belief;
+  StateFreshness belief;
   belief.anew = ticked_ && message.run != run_;
   run_ = message.run;
   ticked_ = true;

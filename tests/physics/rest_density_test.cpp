@@ -1,6 +1,6 @@
-// What room a settled particle takes, and what the model counts of it (pressure/settled_packing.h): pairs
+// What room a settled particle takes, and what the model counts of it (pressure/rest_density.h): pairs
 // drag by that (tests/notebook/2026-11-25-particle-volume-in-viscous-force.md).
-#include "sim/pressure/settled_packing.h"
+#include "sim/pressure/rest_density.h"
 
 #include <gtest/gtest.h>
 
@@ -71,7 +71,7 @@ Settled settled_syrup(ParticleModel model) {
 
 // Under its own weight it lies as densely as the lattice that it starts from, and against a rest that is
 // thinner by 2 % a particle counts less than its room, by as much.
-TEST(SettledPacking, a_particle_counts_less_than_the_room_that_it_takes) {
+TEST(RestDensity, a_particle_counts_less_than_the_room_that_it_takes) {
   const auto [rest, v] = settled_syrup(ParticleModel::kCorrected);
   ASSERT_NEAR(rest, 0.98, 1e-6);
   const double lattice = std::pow(kPackingSpacing, 3);
@@ -80,7 +80,7 @@ TEST(SettledPacking, a_particle_counts_less_than_the_room_that_it_takes) {
 }
 
 // Where pressures are solved for there is no such rest.
-TEST(SettledPacking, where_pressures_are_solved_for_all_of_it_counts) {
+TEST(RestDensity, where_pressures_are_solved_for_all_of_it_counts) {
   const auto [rest, v] = settled_syrup(ParticleModel::kIncompressible);
   EXPECT_EQ(rest, 1.0);
   EXPECT_LT(std::abs(report("the same, incompressible", v.counted, v.taken, "m3")), 0.01);
