@@ -129,7 +129,7 @@ void PressureSolver::find_diagonal(const Work& work) {
   work.team.run(press.rows.chunks(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t chunk = begin; chunk < end; ++chunk) {
       press.rows.for_each_group(chunk, [&](const PairRows::Walk& walk) {
-        const PairRows::Walk::Squares sums = walk.squares(press.places.data(), velocity_.data());
+        const PairRows::Walk::SumOfSquares sums = walk.squares(press.places.data(), velocity_.data());
         float even[16], odd[16];
         std::memcpy(even, &sums.even, sizeof even);
         std::memcpy(odd, &sums.odd, sizeof odd);

@@ -43,7 +43,7 @@ void for_each_dragged_of(const PairRows& rows, std::size_t chunk, const Vector4*
 template <class F>
 void for_each_rate_of(const PairRows& rows, std::size_t chunk, const Vector4* places, F&& f) {
   rows.for_each_group(chunk, [&](const PairRows::Walk& walk) {
-    const PairRows::Walk::Squares rates = walk.rates(places);
+    const PairRows::Walk::SumOfSquares rates = walk.rates(places);
     float even[16], odd[16];
     std::memcpy(even, &rates.even, sizeof even);
     std::memcpy(odd, &rates.odd, sizeof odd);

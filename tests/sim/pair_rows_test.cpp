@@ -281,7 +281,7 @@ TEST_P(PairRowsOf, SquaresAndRatesAsADoubleLoop) {
   const Matrix3 expected = expected_rows(crowd);
   const auto check = [&](auto&& walked, auto&& factor) {
     rows.for_each_group(0, [&](const PairRows::Walk& walk) {
-      const PairRows::Walk::Squares found = walked(walk);
+      const PairRows::Walk::SumOfSquares found = walked(walk);
       float even[16], odd[16];
       std::memcpy(even, &found.even, sizeof even);
       std::memcpy(odd, &found.odd, sizeof odd);
