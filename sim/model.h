@@ -2,7 +2,7 @@
 #pragma once
 
 #include "scenes/scene.h"
-#include "sim/pair_force.h"
+#include "sim/passes/pressure_force/pair_force.h"
 #include "sim/plan.h"
 
 namespace slosh {

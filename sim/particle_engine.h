@@ -10,49 +10,33 @@
 #include "sim/backend.h"
 #include "sim/hash.h"
 #include "sim/math/result.h"
+#include "sim/passes/body_drag/body_drag.h"
+#include "sim/passes/implicit_viscosity/implicit.h"
+#include "sim/passes/pass.h"
 #include "sim/run_constants.h"
-#include "sim/viscosity/body_drag.h"
-#include "sim/viscosity/implicit.h"
 #include "sim/walls/guard_impulse.h"
 #include "sim/world.h"
 
 namespace slosh {
 
-/// A sub-step is prepare(), forces(), advance(), in this order; wrenches() may be asked for after forces(). A
-/// plan with kBodyDrag has drag() between forces() and advance(), after wrenches(); one with
-/// kImplicitViscosity has solve_viscosity() there. Each runs those of the plan's passes that are its own, by
-/// the backend's table. A GPU is only told what to do: it is waited for in wrenches() alone.
+/// A sub-step is begin(), then run() for each pass of the world's schedule that is an engine's. A GPU is only
+/// told what to do: it is waited for in wrenches() and in the two solves alone.
 class ParticleEngine {
  public:
   virtual ~ParticleEngine() = default;
 
-  /// Fluid and body particles in the order of their cells, under the bodies as they are now.
-  virtual void prepare(std::span<const RigidBody> bodies) = 0;
-  /// Pressure, and the forces on fluid and on bodies. `dt`: how long they will act, s.
-  virtual void forces(double dt) = 0;
-  /// The fluid moves on under those forces for `dt` s, while the bodies go from where they were in prepare()
-  /// to `after`, and no further than to their walls.
-  virtual void advance(double dt, std::span<const RigidBody> after) = 0;
-  /// What the last forces() put on each body that the plan measures, about its centre of mass as it was in
-  /// prepare(), with what its walls took from particles in the advance() before; the others get zero. One
-  /// entry a body.
+  /// A sub-step of `dt` s from the bodies as they are now.
+  virtual void begin(std::span<const RigidBody> bodies, double dt) = 0;
+  /// Carries out a pass that is the engine's own (passes/list.h), with what the plan has of those that are
+  /// fused into it.
+  virtual void run(PassId id, const PassInputs& inputs) = 0;
+  /// What kWrenches found on each body that the plan measures, about its centre of mass as the sub-step
+  /// began, with what its walls took from particles when they moved last; the others get zero. One entry a
+  /// body.
   virtual void wrenches(std::span<Wrench> out) = 0;
-  /// With kBodyDrag after wrenches(), with kImplicitViscosity after solve_viscosity(): the drag on each free
-  /// body by the same forces(); the others get none.
+  /// With kBodyDrag after wrenches(), with kImplicitViscosity after that: the drag on each free body, by the
+  /// same sub-step; the others get none.
   virtual void body_drags(std::span<BodyDrag> out) const = 0;
-  /// Adds to the forces on the fluid what they lack when bodies drag by a twist that differs by `changes`
-  /// (one a body, about its centre of mass) from the one that they had in prepare().
-  virtual void drag(std::span<const Twist> changes) = 0;
-  /// With kImplicitViscosity, after wrenches(), one entry a body: adds to the forces on the fluid the drag
-  /// over `dt` s by the velocities that this ends with (viscosity/implicit.h), and to `wrenches` that on the
-  /// bodies that move or are measured.
-  virtual void solve_viscosity(double dt, std::span<const ViscousBody> bodies,
-                               std::span<Wrench> wrenches) = 0;
-  /// With kPressureSolve, after wrenches() and solve_viscosity(), one entry a body: solves for the pressures
-  /// over `dt` s (pressure/solved_state.h), adds to the forces on the fluid what they differ by from the last
-  /// step's, and to `wrenches` that on the bodies that move, and all of it on the fixed ones that are
-  /// measured.
-  virtual void solve_pressure(double dt, std::span<const ViscousBody> bodies, std::span<Wrench> wrenches) = 0;
   /// Multiplies every fluid velocity by `keep` (0–1).
   virtual void damp(float keep) = 0;
 

@@ -15,7 +15,7 @@ struct ParticleView {
   Real volume;      ///< m³
   Real viscosity;   ///< Pa·s (its side of Eq 9)
   // The corrected model's:
-  Symmetric<Real> push;  ///< what it presses with, N·m⁴ (pressure/gradient_correction.h)
+  Symmetric<Real> push;  ///< what it presses with, N·m⁴ (passes/density/gradient_correction.h)
   Real ux, uy,
       uz;  ///< what it drags by, Pa·m: viscosity times velocity, and noise (viscosity/artificial_viscosity.h)
 };
@@ -29,7 +29,8 @@ struct ForceSum {
 template <class Real>
 struct SurfaceSum : ForceSum<Real> {
   Real cx, cy, cz;
-  Real beyond;  ///< the share of what it bears that bears where the fluid is (pair_force.h)
+  Real beyond;  ///< the share of what it bears that bears where the fluid is
+                ///< (passes/pressure_force/pair_force.h)
 };
 
 }  // namespace slosh

@@ -6,7 +6,7 @@
 
 #include "sim/fluid_extremes.h"
 #include "sim/math/format.h"
-#include "sim/pressure/pressure_solve.h"
+#include "sim/passes/pass.h"
 #include "sim/step_limits.h"
 #include "sim/viscosity/artificial_viscosity.h"
 #include "sim/viscosity/stability.h"
@@ -14,6 +14,10 @@
 namespace slosh {
 
 namespace {
+
+// Those that a fluid's viscosity decides, which may change while a world runs.
+constexpr PassSet kOfViscosity{PassId::kFluidStress,   PassId::kOneViscosity,      PassId::kPairViscosity,
+                               PassId::kPredictBodies, PassId::kImplicitViscosity, PassId::kBodyDrag};
 
 // Eq 7 is linear: under its own depth the fluid is denser by g·depth/k, and where it is met at a speed by
 // half the square of that over k (Bernoulli). This much is not seen and hardly felt.
@@ -29,44 +33,58 @@ double stiffness_for(const Scene& scene) {
 // the fluid itself is compressed, little enough not to push it far off the wall.
 constexpr double kBodyCompression = 0.3;
 
-bool any_free(const Scene& scene) {
-  return std::any_of(scene.bodies.begin(), scene.bodies.end(),
-                     [](const Body& b) { return b.motion == BodyMotion::kFree; });
-}
-
-void decide_bodies(const Scene& scene, const FluidExtremes& fluids, Plan& plan) {
-  int solid = 0;
-  int free_solid = 0;
-  int free_probes = 0;
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    const Body& body = scene.bodies[i];
-    const bool is_free = body.motion == BodyMotion::kFree;
-    solid += !body.point_probe;
-    free_solid += is_free && !body.point_probe;
-    free_probes += is_free && body.point_probe;
-    const double reference = plan.has_fluid() ? fluids.heaviest : 1000.0;
-    const double density =
-        body.particle_density > 0.0 ? body.particle_density : reference * (1.0 + kBodyCompression);
-    plan.body_density.push_back(density);
-    plan.body_pressure.push_back(plan.stiffness * (density - reference));
-    if (plan.has_fluid() && (is_free || body.measured)) plan.wrench_bodies.push_back(static_cast<int>(i));
-  }
-  plan.runs.set(PassId::kWalls, plan.has_fluid() && solid > 0);
-  plan.runs.set(PassId::kPlaceBodies, plan.has(PassId::kWalls) && free_solid > 0);
-  plan.runs.set(PassId::kWrenches, !plan.wrench_bodies.empty());
-  plan.runs.set(PassId::kCouplings, !scene.grips.empty());
-  plan.runs.set(PassId::kContacts, (free_solid > 0 && solid > 1) || (free_probes > 0 && solid > 0));
-  plan.runs.set(PassId::kMoveBodies, any_free(scene));
-}
-
 bool any_probe(const Scene& scene) {
   return std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& b) { return b.point_probe; });
 }
 
-// A probe's force is known when the fluid has moved only, and the body's solve would wait for it in vain.
-void decide_body_drag(const Scene& scene, Plan& plan) {
-  plan.waits_for_bodies = plan.has(PassId::kPlaceBodies) && !any_probe(scene);
-  plan.runs.set(PassId::kBodyDrag, plan.viscous() && plan.waits_for_bodies);
+bool has_particles(const Scene& scene) {
+  return !scene.fluid_volumes.empty() || any_probe(scene);
+}
+
+void weigh_bodies(const Scene& scene, Plan& plan) {
+  const bool fluid = has_particles(scene);
+  const double reference = fluid ? fluid_extremes(scene).heaviest : 1000.0;
+  bool any_free_solid = false;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Body& body = scene.bodies[i];
+    const bool is_free = body.motion == BodyMotion::kFree;
+    any_free_solid |= is_free && !body.point_probe;
+    const double density =
+        body.particle_density > 0.0 ? body.particle_density : reference * (1.0 + kBodyCompression);
+    plan.body_density.push_back(density);
+    plan.body_pressure.push_back(plan.stiffness * (density - reference));
+    if (fluid && (is_free || body.measured)) plan.wrench_bodies.push_back(static_cast<int>(i));
+  }
+  // A probe's force is known when the fluid has moved only, and the body's solve would wait for it in vain.
+  plan.waits_for_bodies = fluid && any_free_solid && !any_probe(scene);
+}
+
+SceneFacts facts_of(const Scene& scene, const Plan& plan) {
+  SceneFacts f{.scene = scene, .plan = plan, .fluids = fluid_extremes(scene), .fluid = has_particles(scene)};
+  bool viscous_body = false, probe_differs = false;
+  for (const Body& body : scene.bodies) {
+    const bool is_free = body.motion == BodyMotion::kFree;
+    f.solids += !body.point_probe;
+    f.free_solids += is_free && !body.point_probe;
+    f.probes += body.point_probe;
+    f.free_bodies += is_free;
+    viscous_body |= body.dynamic_viscosity > 0.0;
+    probe_differs |=
+        body.point_probe && body.dynamic_viscosity > 0.0 && body.dynamic_viscosity != f.fluids.most_viscous;
+  }
+  f.viscous = f.fluid && (f.fluids.most_viscous > 0.0 || viscous_body);
+  f.one = f.fluids.least_viscous == f.fluids.most_viscous && !probe_differs;
+  f.implicit = plan.implicit_viscosity && f.viscous;
+  return f;
+}
+
+// Which of the passes in `which` run, by what their folders say.
+void decide(const Scene& scene, Plan& plan, PassSet which) {
+  const SceneFacts facts = facts_of(scene, plan);
+  for (std::size_t i = 0; i < kPassCount; ++i) {
+    const PassId id = static_cast<PassId>(i);
+    if (which.has(id)) plan.runs.set(id, entry(id).need(facts).runs);
+  }
 }
 
 // From this many times the explicit step on a solve is worth it: a step with one takes 1.05 to 1.8 times as
@@ -85,133 +103,21 @@ bool suits_implicit_viscosity(const Scene& scene, const Plan& plan) {
   return plan.viscous() && corrects_gradients(plan.model) && !any_probe(scene);
 }
 
-void decide_implicit_viscosity(Plan& plan) {
-  plan.runs.set(PassId::kImplicitViscosity, plan.implicit_viscosity && plan.viscous());
-  if (plan.has(PassId::kImplicitViscosity)) plan.runs.set(PassId::kBodyDrag, false);
-}
-
-// Beside drag on jostling a thin fluid's own is next to nothing. As thick as the corrected model asks for in
-// the incompressible one too, so that both are one fluid.
+// A thin fluid's own viscosity is next to nothing beside the artificial one. As thick as the corrected model
+// asks for in the incompressible one too, so that both are one fluid.
 bool suits_stress(const FluidExtremes& fluids, const Plan& plan) {
   return plan.viscous() && corrects_gradients(plan.model) && !plan.implicit_viscosity &&
          fluids.most_viscous > kThin * weakly_compressible_artificial_viscosity(plan, fluids.lightest);
 }
 
-void decide_stress(Plan& plan) {
-  plan.runs.set(PassId::kFluidStress, plan.passes_stress && plan.explicit_viscosity());
-}
-
-struct Reasons {
-  std::string there, not_there;
-};
-
-// Why each pass is there, or why it is not.
-Reasons reasons_for(PassId id, const Scene& scene, const FluidExtremes& fluids, const Plan& plan) {
-  const auto count_free = [&](bool solid_only) {
-    return static_cast<std::size_t>(std::count_if(
-        scene.bodies.begin(), scene.bodies.end(),
-        [&](const Body& b) { return b.motion == BodyMotion::kFree && !(solid_only && b.point_probe); }));
-  };
-  const bool paper = plan.model == ParticleModel::kPaper;
-  switch (id) {
-    case PassId::kSortFluid:
-      return {"cells of the support radius, so that neighbour rows are contiguous", "no fluid"};
-    case PassId::kPlaceBodies:
-      return {"free bodies carry their particles (Eq 14)", "no free body with a surface meets fluid"};
-    case PassId::kDensity:
-      return {paper ? "Eq 2 and 7, fluid particles only (section 4.1)" : "Eq 2 and 7, body particles counted",
-              "no fluid"};
-    case PassId::kFluidStress:
-      return {
-          format(
-              "far from walls that hold fluid of up to %.3g Pa·s passes on the stress of its own flow, and "
-              "Eq 9 is what is left beside them",
-              fluids.most_viscous),
-          !plan.viscous()                        ? "nothing is viscous"
-          : !corrects_gradients(plan.model)      ? "the corrected and the incompressible model's"
-          : plan.has(PassId::kImplicitViscosity) ? "what is solved for is Eq 9's drag"
-                                                 : "thin fluid: drag on jostling is stronger than its own"};
-    case PassId::kPressureForce:
-      return {paper                              ? "Eq 5"
-              : plan.has(PassId::kPressureSolve) ? "Eq 5 by corrected gradients and the last step's pressures"
-                                                 : "Eq 5 as the gradient of an energy",
-              "no fluid"};
-    case PassId::kOneViscosity:
-      return {
-          format("Eq 6: every fluid has %.3g Pa·s", fluids.most_viscous),
-          plan.has(PassId::kPairViscosity) ? "fluids differ: Eq 9 takes its place" : "nothing is viscous"};
-    case PassId::kPairViscosity:
-      return {format("Eq 9 between fluids of %.3g to %.3g Pa·s", fluids.least_viscous, fluids.most_viscous),
-              plan.viscous() ? "one viscosity: Eq 6 is enough" : "nothing is viscous"};
-    case PassId::kWalls:
-      return {format("Eq 5%s against the particles of %zu bodies", plan.viscous() ? " and 9" : "",
-                     scene.bodies.size()),
-              plan.has_fluid() ? "no body with a surface" : "no fluid"};
-    case PassId::kWrenches:
-      return {format("Eq 10–12 for %zu bodies that are free or measured", plan.wrench_bodies.size()),
-              plan.has_fluid() ? "every body is fixed and none is measured" : "no fluid"};
-    case PassId::kBodyDrag:
-      return {
-          "free bodies in viscous fluid: drag by the velocity at the step's end, in the bodies' own solve",
-          !plan.viscous()                        ? "nothing is viscous"
-          : plan.has(PassId::kImplicitViscosity) ? "bodies are in the solve of the whole drag"
-          : !plan.has(PassId::kPlaceBodies)      ? "no free body with a surface meets fluid"
-                                                 : "beside a probe drag stays explicit"};
-    case PassId::kImplicitViscosity:
-      return {format("drag by the velocities at the step's end, all solved together: explicit it would need "
-                     "steps of %.3g ms",
-                     1e3 * viscous_step(scene, plan, fluids)),
-              !plan.viscous()                   ? "nothing is viscous"
-              : !corrects_gradients(plan.model) ? "the corrected and the incompressible model's"
-              : any_probe(scene)                ? "beside a probe drag stays explicit"
-                                                : "explicit drag costs less here"};
-    case PassId::kPressureSolve:
-      return {format("in place of Eq 7: pressures that keep fluid from being compressed, %d turns at most",
-                     kMaxPressureIterations),
-              plan.has_fluid() ? "Eq 7 gives the pressures: the incompressible model solves for them"
-                               : "no fluid"};
-    case PassId::kIntegrateFluid:
-      return {"leap-frog", "no fluid"};
-    case PassId::kCouplings:
-      return {format("%zu grips, implicit, all of a body in one 6×6 solve (section 4.4)", scene.grips.size()),
-              "no grip"};
-    case PassId::kContacts:
-      return {"a free body can touch another body",
-              count_free(false) > 0 ? "no other body with a surface" : "no free body"};
-    case PassId::kMoveBodies:
-      return {format("Eq 13 and leap-frog for %zu free bodies", count_free(false)), "every body is fixed"};
-  }
-  return {};
-}
-
 void list_passes(const Scene& scene, Plan& plan) {
-  const FluidExtremes fluids = fluid_extremes(scene);
+  const SceneFacts facts = facts_of(scene, plan);
   plan.passes.clear();
   plan.left_out.clear();
   for (std::size_t i = 0; i < kPassCount; ++i) {
     const PassId id = static_cast<PassId>(i);
-    Reasons reasons = reasons_for(id, scene, fluids, plan);
-    if (plan.has(id)) {
-      plan.passes.push_back({id, std::move(reasons.there)});
-    } else {
-      plan.left_out.push_back({id, std::move(reasons.not_there)});
-    }
+    (plan.has(id) ? plan.passes : plan.left_out).push_back({id, entry(id).need(facts).reason});
   }
-}
-
-void decide_viscosity(const Scene& scene, Plan& plan) {
-  const FluidExtremes fluids = fluid_extremes(scene);
-  bool viscous_body = false;
-  bool probe_differs = false;
-  for (const Body& body : scene.bodies) {
-    viscous_body |= body.dynamic_viscosity > 0.0;
-    probe_differs |=
-        body.point_probe && body.dynamic_viscosity > 0.0 && body.dynamic_viscosity != fluids.most_viscous;
-  }
-  const bool viscous = plan.has_fluid() && (fluids.most_viscous > 0.0 || viscous_body);
-  const bool one = fluids.least_viscous == fluids.most_viscous && !probe_differs;
-  plan.runs.set(PassId::kOneViscosity, viscous && one);
-  plan.runs.set(PassId::kPairViscosity, viscous && !one);
 }
 
 }  // namespace
@@ -222,20 +128,14 @@ Plan make_plan(const Scene& scene, double spacing, bool may_be_implicit) {
   plan.support_radius = scene.support_ratio * spacing;
   plan.model = scene.model;
   plan.tension = scene.tension;
-  const bool fluid = !scene.fluid_volumes.empty() || any_probe(scene);
-  for (const PassId id :
-       {PassId::kSortFluid, PassId::kDensity, PassId::kPressureForce, PassId::kIntegrateFluid})
-    plan.runs.set(id, fluid);
-  plan.runs.set(PassId::kPressureSolve, fluid && plan.model == ParticleModel::kIncompressible);
   plan.stiffness = scene.stiffness > 0.0 ? scene.stiffness : stiffness_for(scene);
-  decide_viscosity(scene, plan);
-  decide_bodies(scene, fluid_extremes(scene), plan);
-  decide_body_drag(scene, plan);
+  weigh_bodies(scene, plan);
+  decide(scene, plan, PassSet::all());
   StepLimit limit = step_limit(scene, plan);
   if (may_be_implicit && suits_implicit_viscosity(scene, plan)) {
     Plan implicit = plan;
     implicit.implicit_viscosity = true;
-    decide_implicit_viscosity(implicit);
+    decide(scene, implicit, kOfViscosity);
     const StepLimit longer = step_limit(scene, implicit);
     if (longer.step > worth_solving(plan) * limit.step) {
       plan = implicit;
@@ -243,7 +143,7 @@ Plan make_plan(const Scene& scene, double spacing, bool may_be_implicit) {
     }
   }
   plan.passes_stress = suits_stress(fluid_extremes(scene), plan);
-  decide_stress(plan);
+  decide(scene, plan, {PassId::kFluidStress});
   plan.time_step = limit.step;
   plan.time_step_reason = limit.reason;
   plan.max_speed = speed_limit(plan, plan.time_step);
@@ -252,10 +152,7 @@ Plan make_plan(const Scene& scene, double spacing, bool may_be_implicit) {
 }
 
 void plan_viscosity(const Scene& scene, Plan& plan) {
-  decide_viscosity(scene, plan);
-  decide_body_drag(scene, plan);
-  decide_implicit_viscosity(plan);
-  decide_stress(plan);
+  decide(scene, plan, kOfViscosity);
   list_passes(scene, plan);
 }
 

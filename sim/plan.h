@@ -7,33 +7,19 @@
 #include <vector>
 
 #include "scenes/scene.h"
+#include "sim/passes/list.h"
 
 namespace slosh {
 
-/// The passes that the method has, in the order in which they run. The backends' tables and the world's carry
-/// out those that a plan has (sim/README.md).
+/// A row of passes/list.h each, in the order in which they run.
 enum class PassId : std::uint8_t {
-  kSortFluid,
-  kPlaceBodies,        ///< Eq 14
-  kDensity,            ///< Eq 2 and 7
-  kFluidStress,        ///< what takes the place of Eq 6 and 9 in thick fluid (viscosity/fluid_stress.h)
-  kPressureForce,      ///< Eq 5
-  kOneViscosity,       ///< Eq 6: every fluid has the same μ, and no particle its own
-  kPairViscosity,      ///< Eq 9: a μ a particle
-  kWalls,              ///< Eq 5 and 9 on fluid by body particles
-  kWrenches,           ///< Eq 10–12 for the bodies in Plan::wrench_bodies
-  kBodyDrag,           ///< Eq 9 between fluid and free bodies by the velocities that bodies end a step with
-  kImplicitViscosity,  ///< Eq 6 or 9 by the velocities that fluid and bodies end a sub-step with, in one
-                       ///< solve
-  kPressureSolve,      ///< pressures that keep fluid from being compressed, in one solve with the bodies
-  kIntegrateFluid,
-  kCouplings,
-  kContacts,
-  kMoveBodies,  ///< Eq 13
+#define SLOSH_ROW(id, ...) id,
+  SLOSH_PASSES(SLOSH_ROW, SLOSH_ROW, SLOSH_ROW)
+#undef SLOSH_ROW
 };
-inline constexpr std::size_t kPassCount = static_cast<std::size_t>(PassId::kMoveBodies) + 1;
+inline constexpr std::size_t kPassCount = static_cast<std::size_t>(PassId::kDamp) + 1;
 
-/// The id as golden files have it, "sort_fluid".
+/// The id as golden files have it, "sort_fluid": the folder's name in sim/passes.
 const char* name(PassId id);
 
 class PassSet {
@@ -41,6 +27,11 @@ class PassSet {
   constexpr PassSet() = default;
   constexpr PassSet(std::initializer_list<PassId> ids) {
     for (const PassId id : ids) set(id, true);
+  }
+  static constexpr PassSet all() {
+    PassSet set;
+    set.bits_ = ~0u;
+    return set;
   }
   constexpr void set(PassId id, bool there) { bits_ = there ? bits_ | bit(id) : bits_ & ~bit(id); }
   constexpr bool has(PassId id) const { return bits_ & bit(id); }

@@ -1,47 +1,10 @@
 // The plan in words.
-#include <array>
 #include <cmath>
 
 #include "sim/math/format.h"
-#include "sim/plan.h"
+#include "sim/passes/pass.h"
 
 namespace slosh {
-
-namespace {
-
-struct PassNames {
-  const char* id;
-  const char* words;
-};
-
-const PassNames& names(PassId id) {
-  static constexpr std::array<PassNames, kPassCount> kNames{{
-      {"sort_fluid", "sort fluid"},
-      {"place_bodies", "place body particles"},
-      {"density", "density"},
-      {"fluid_stress", "stresses in the fluid"},
-      {"pressure_force", "pressure force"},
-      {"one_viscosity", "viscous force, one viscosity"},
-      {"pair_viscosity", "viscous force, a viscosity a particle"},
-      {"walls", "body particles on fluid"},
-      {"wrenches", "wrench on bodies"},
-      {"body_drag", "implicit drag on free bodies"},
-      {"implicit_viscosity", "implicit viscosity"},
-      {"pressure_solve", "solve for pressures"},
-      {"integrate_fluid", "integrate fluid"},
-      {"couplings", "virtual couplings"},
-      {"contacts", "contacts"},
-      {"move_bodies", "move bodies"},
-  }};
-  static_assert(kNames.back().id != nullptr, "every pass has a name");
-  return kNames[static_cast<std::size_t>(id)];
-}
-
-}  // namespace
-
-const char* name(PassId id) {
-  return names(id).id;
-}
 
 std::string describe(const Plan& plan) {
   std::string text;
@@ -63,7 +26,7 @@ std::string describe(const Plan& plan) {
   text += format("speed limit     %.3g m/s\n", plan.max_speed);
   text += "\nEach step\n";
   const auto list = [&](const std::vector<Pass>& passes) {
-    for (const Pass& pass : passes) text += format("  %-38s %s\n", names(pass.id).words, pass.reason.c_str());
+    for (const Pass& pass : passes) text += format("  %-38s %s\n", entry(pass.id).words, pass.reason.c_str());
   };
   list(plan.passes);
   if (!plan.left_out.empty()) text += "Left out\n";

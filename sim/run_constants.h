@@ -9,8 +9,8 @@
 #include "sim/bodies/rigid_body.h"
 #include "sim/columns.h"
 #include "sim/neighbours/cell_grid.h"
+#include "sim/passes/density/corrected_state.h"
 #include "sim/plan.h"
-#include "sim/pressure/corrected_state.h"
 #include "sim/walls/guard_impulse.h"
 #include "sim/walls/guarded_bodies.h"
 #include "sim/walls/wall_particles.h"
@@ -34,9 +34,10 @@ struct RunConstants {
   DragShape<float> drag_shape{1.0f, 0.0f};  ///< of all pairs
   float rest_number_density =
       0.0f;  ///< Σ of the kernel's shape over the rest lattice: density is measured against it
-  float rest_volume = 0.0f;        ///< m³ of a particle at rest density
-  CorrectionConstants correction;  ///< ParticleModel::kCorrected's, of the lattice (pressure/rest_density.h)
-  double load_compression = 0.0;   ///< ρ/ρ⁰ − 1 of the fluid under its own weight, mean over its depth
+  float rest_volume = 0.0f;  ///< m³ of a particle at rest density
+  CorrectionConstants
+      correction;  ///< ParticleModel::kCorrected's, of the lattice (passes/rest_density/rest_density.h)
+  double load_compression = 0.0;  ///< ρ/ρ⁰ − 1 of the fluid under its own weight, mean over its depth
   glm::vec3 gravity{0.0f};
   std::vector<ParticleKind> kinds;
   ImpulseUnits impulse_units;  ///< of what walls take from particles

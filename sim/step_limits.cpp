@@ -7,7 +7,7 @@
 
 #include "sim/fluid_extremes.h"
 #include "sim/math/format.h"
-#include "sim/viscosity/implicit.h"
+#include "sim/passes/implicit_viscosity/implicit.h"
 #include "sim/viscosity/stability.h"
 
 namespace slosh {

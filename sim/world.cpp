@@ -38,7 +38,7 @@ void World::step(std::span<const HandleInput> handles) {
   w.begin_step();
   w.status |= w.bodies.begin_step(handles, w.plan().time_step);
   for (int i = 0; i < w.plan().sub_steps; ++i) {
-    w.run(w.sub_step(i), TakePart::kAll);
+    w.run(w.sub_step(i));
   }
   w.times.total = whole.lap();
   ++w.tick;
@@ -59,9 +59,6 @@ double World::settle(double seconds, std::span<const HandleInput> handles, bool 
 double World::Impl::come_to_rest(double seconds, std::span<const HandleInput> handles, bool (*stopped)(),
                                  double longest) {
   Impl& w = *this;
-  constexpr double kDampingTime =
-      0.05;  // s: past critical for a hand-sized vessel's slosh, so it creeps to its level
-  const double keep = std::exp(-w.sub_step(0).dt / kDampingTime);
   Steadiness felt;
   double done = 0.0;
   for (; done < seconds || (done < longest && !handles.empty() && !felt.steady());
@@ -73,9 +70,8 @@ double World::Impl::come_to_rest(double seconds, std::span<const HandleInput> ha
     for (int i = 0; i < w.plan().sub_steps; ++i) {
       SubStep step = w.sub_step(i);
       step.elapsed = 0.0;  // the hands stand still
-      w.run(step, with_bodies ? TakePart::kHeld : TakePart::kFluid);
-      w.engine->damp(static_cast<float>(keep));
-      if (with_bodies) w.bodies.damp_held(keep);
+      step.part = with_bodies ? TakePart::kHeld : TakePart::kFluid;
+      w.run(step);
     }
     if (with_bodies) felt.feel(w.bodies.grips(), w.plan().time_step);
   }

@@ -43,7 +43,8 @@ struct WorldOptions {
   int threads = 0;  ///< of the CPU backend; 0 = all cores
   Backend backend = Backend::kAuto;
   /// The fluid lies as an earlier world's came to rest, not in the lattice that volumes are filled with: it
-  /// has expanded already (pressure/rest_density.h). As a lattice it would sag and bounce for 0.2 s.
+  /// has expanded already (passes/rest_density/rest_density.h). As a lattice it would sag and bounce for 0.2
+  /// s.
   bool settled = false;
 };
 
@@ -155,8 +156,9 @@ class World {
   std::string backend() const;  ///< where the particles live, in words: "CPU, 2 threads", "CUDA, NVIDIA H200"
   std::string failure() const;  ///< why kStatusDeviceLost was set, in CUDA's words; empty while all is well
 
+  struct Impl;  ///< world_parts.h; for the passes
+
  private:
-  struct Impl;
   explicit World(std::unique_ptr<Impl> impl);
   friend Result<World> make_world(const Scene& scene, const SampledScene& sampled, Plan plan,
                                   WorldOptions options);

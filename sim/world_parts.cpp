@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "sim/pressure/rest_density.h"
+#include "sim/passes/rest_density/rest_density.h"
 #include "sim/stopwatch.h"
 
 namespace slosh {
@@ -21,6 +21,7 @@ World::Impl::Impl(const Scene& scene_in, const SampledScene& sampled, Plan plan_
       wrenches(scene.bodies.size()),
       age(options.settled ? kSettlingTime : 0.0) {
   scene.meshes.clear();  // the surface particles stand for them from here on
+  make_schedules();
 }
 
 std::optional<Error> World::Impl::start(const SampledScene& sampled) {
@@ -38,6 +39,7 @@ std::optional<Error> World::Impl::start(const SampledScene& sampled) {
 
 void World::Impl::take_parameters() {
   plan_viscosity(scene, constants.plan);
+  make_schedules();
   constants.kinds = particle_kinds(scene, constants.plan.spacing);
   constants.gravity = glm::vec3(gravity_scale * scene.gravity);
   engine->set_constants(constants);
@@ -54,18 +56,15 @@ bool World::Impl::thin_fluids(double most) {
   return thick;
 }
 
-void World::Impl::calibrate_rest_density(double dt) {
-  if (packed) return;
-  if (corrects_gradients(plan().model))
-    engine->set_correction(settled(constants.correction, constants.load_compression, age));
-  packed = age >= kSettlingTime;
-  if (!packed) age += dt;
+void World::Impl::make_schedules() {
+  for (const TakePart part : {TakePart::kFluid, TakePart::kHeld, TakePart::kAll})
+    schedules[static_cast<std::size_t>(part)] = schedule_of(part);
 }
 
 SubStep World::Impl::sub_step(int index) const {
   const double share = 1.0 / plan().sub_steps;
   const double dt = plan().time_step * share;
-  return {dt, index * dt, share};
+  return {dt, index * dt, share, TakePart::kAll};
 }
 
 void World::Impl::begin_step() {
@@ -73,47 +72,49 @@ void World::Impl::begin_step() {
   times = StepTimes{};
 }
 
-void World::Impl::run(const SubStep& step, TakePart part) {
-  const bool fluid = plan().has_fluid();
-  const bool moving = part != TakePart::kFluid;
-  const bool implicit = fluid && plan().has(PassId::kImplicitViscosity);
-  const bool pressed = fluid && plan().has(PassId::kPressureSolve);
-  const bool fluid_waits = implicit || pressed || (moving && plan().fluid_waits());
-  if (fluid) {
-    calibrate_rest_density(step.dt);
-    engine->prepare(bodies.bodies());
-    engine->forces(step.dt);
-    if (!fluid_waits) engine->advance(step.dt, expected(step, moving));
-    engine->wrenches(found);
-  }
-  if (implicit) solve_viscosity(step, moving, part == TakePart::kHeld);
-  const bool with_drag = moving && plan().has(PassId::kBodyDrag);
-  if (pressed) solve_pressure(step, moving, part == TakePart::kHeld, with_drag);
-  if (moving) solve_bodies(step, part == TakePart::kHeld, with_drag);
-  if (with_drag) engine->drag(bodies.changes());
-  if (moving) {
+void World::Impl::run(const SubStep& step) {
+  if (plan().has_fluid()) engine->begin(bodies.bodies(), step.dt);
+  for (const PassId id : schedules[static_cast<std::size_t>(step.part)]) {
+    const PassEntry& pass = entry(id);
     Stopwatch watch;
-    bodies.move(plan(), step);
-    status |= bodies.part_with_lost(gravity_scale * scene.gravity);
-    times.body += watch.lap();
+    if (pass.run)
+      pass.run(*this, step);
+    else
+      run_on_engine(id, step);
+    if (pass.time == &StepTimes::body) times.body += watch.lap();
   }
-  if (fluid_waits) engine->advance(step.dt, bodies.bodies());
-  if (fluid) report(step);
+  if (plan().has_fluid()) report(step);
 }
 
-void World::Impl::solve_viscosity(const SubStep& step, bool moving, bool held_only) {
-  bodies.predict(plan(), {found, {}, gravity_scale * scene.gravity}, step, moving, held_only, viscous_bodies);
-  engine->solve_viscosity(step.dt, viscous_bodies, found);
-  take_drags();
+bool World::Impl::fluid_waits(TakePart part) const {
+  return plan().runs.has_any_of({PassId::kImplicitViscosity, PassId::kPressureSolve}) ||
+         (part != TakePart::kFluid && plan().fluid_waits());
 }
 
-void World::Impl::solve_pressure(const SubStep& step, bool moving, bool held_only, bool with_drag) {
-  if (with_drag) take_drags();
-  bodies.predict(plan(),
-                 {found, with_drag ? std::span<const Matrix6>(drag_matrices) : std::span<const Matrix6>(),
-                  gravity_scale * scene.gravity},
-                 step, moving, held_only, viscous_bodies);
-  engine->solve_pressure(step.dt, viscous_bodies, found);
+std::vector<PassId> World::Impl::schedule_of(TakePart part) const {
+  constexpr PassSet kOfBodies{PassId::kSolveBodies, PassId::kBodyDrag, PassId::kMoveBodies};
+  std::vector<PassId> schedule;
+  for (std::size_t i = 0; i < kPassCount; ++i) {
+    const PassId id = static_cast<PassId>(i);
+    const bool left_out = part == TakePart::kFluid && kOfBodies.has(id);
+    if (runs_in(id) == id && plan().has(id) && !left_out) schedule.push_back(id);
+  }
+  // Each solve finds the bodies under what the one before put on them.
+  if (plan().has(PassId::kImplicitViscosity) && plan().has(PassId::kPressureSolve))
+    schedule.insert(std::find(schedule.begin(), schedule.end(), PassId::kPressureSolve),
+                    PassId::kPredictBodies);
+  // Else the fluid goes on while the bodies are solved (on a GPU).
+  if (plan().has_fluid() && !fluid_waits(part)) {
+    std::erase(schedule, PassId::kIntegrateFluid);
+    schedule.insert(std::find(schedule.begin(), schedule.end(), PassId::kReadWrenches),
+                    PassId::kIntegrateFluid);
+  }
+  if (part != TakePart::kAll) schedule.push_back(PassId::kDamp);
+  return schedule;
+}
+
+void World::Impl::run_on_engine(PassId id, const SubStep& step, std::span<const RigidBody> after) {
+  engine->run(id, {step.dt, after, bodies.changes(), viscous_bodies, found});
 }
 
 void World::Impl::take_drags() {
@@ -121,8 +122,15 @@ void World::Impl::take_drags() {
   for (std::size_t b = 0; b < drags.size(); ++b) drag_matrices[b] = drags[b].matrix();
 }
 
-std::span<const RigidBody> World::Impl::expected(const SubStep& step, bool moving) {
-  if (!moving || !plan().guards_walls() || !plan().has(PassId::kPlaceBodies)) return bodies.bodies();
+BodyForces World::Impl::body_forces(const SubStep& step) const {
+  const bool with_drag = step.part != TakePart::kFluid && plan().has(PassId::kBodyDrag);
+  return {found, with_drag ? std::span<const Matrix6>(drag_matrices) : std::span<const Matrix6>(), gravity()};
+}
+
+std::span<const RigidBody> World::Impl::bodies_after(const SubStep& step) {
+  if (step.part == TakePart::kFluid || fluid_waits(step.part) || !plan().guards_walls() ||
+      !plan().has(PassId::kPlaceBodies))
+    return bodies.bodies();
   ahead = bodies.bodies();
   for (RigidBody& body : ahead) {
     if (!body.moves()) continue;
@@ -130,19 +138,6 @@ std::span<const RigidBody> World::Impl::expected(const SubStep& step, bool movin
     body.orientation = rotate_by(body.orientation, step.dt * body.angular_velocity);
   }
   return ahead;
-}
-
-void World::Impl::solve_bodies(const SubStep& step, bool held_only, bool with_drag) {
-  Stopwatch watch;
-  if (with_drag) take_drags();
-  const std::span<const Matrix6> drag =
-      with_drag ? std::span<const Matrix6>(drag_matrices) : std::span<const Matrix6>();
-  status |= bodies.solve(plan(), {found, drag, gravity_scale * scene.gravity}, step, held_only);
-  if (with_drag) {
-    for (std::size_t b = 0; b < found.size(); ++b)
-      found[b] = found[b] + drag_of(drag_matrices[b], bodies.changes()[b]);
-  }
-  times.body += watch.lap();
 }
 
 void World::Impl::report(const SubStep& step) {

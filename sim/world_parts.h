@@ -1,6 +1,7 @@
 // What a World is made of, and its sub-step.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -9,13 +10,11 @@
 #include "sim/bodies/body_system.h"
 #include "sim/live_changes.h"
 #include "sim/particle_engine.h"
+#include "sim/passes/pass.h"
 #include "sim/saved_state.h"
 #include "sim/world.h"
 
 namespace slosh {
-
-/// Who moves in a sub-step.
-enum class TakePart { kFluid, kHeld, kAll };
 
 struct World::Impl {
   Impl(const Scene& scene_in, const SampledScene& sampled, Plan plan_in, WorldOptions options_in);
@@ -29,20 +28,22 @@ struct World::Impl {
   /// World::settle, with fluids as they are.
   double come_to_rest(double seconds, std::span<const HandleInput> handles, bool (*stopped)(),
                       double longest);
-  /// The fluid's age, and what it presses by at it.
-  void calibrate_rest_density(double dt);
   SubStep sub_step(int index) const;
   void begin_step();
-  /// The fluid, and the bodies as far as they take part. Where the fluid is dragged by what the bodies' solve
-  /// finds, or must not pass walls that move, it waits for it; else it goes on while they are solved (on a
-  /// GPU).
-  void run(const SubStep& step, TakePart part);
-  void solve_viscosity(const SubStep& step, bool moving, bool held_only);
-  void solve_pressure(const SubStep& step, bool moving, bool held_only, bool with_drag);
+  /// The passes of a sub-step's schedule.
+  void run(const SubStep& step);
+  /// The fluid moves on after the bodies only.
+  bool fluid_waits(TakePart part) const;
+  std::vector<PassId> schedule_of(TakePart part) const;
+  void make_schedules();
+  /// The engine's part of a pass, `after`: where the bodies end the sub-step.
+  void run_on_engine(PassId id, const SubStep& step, std::span<const RigidBody> after);
+  void run_on_engine(PassId id, const SubStep& step) { run_on_engine(id, step, bodies.bodies()); }
+  /// Where the bodies will be, as far as that is known: where they are, once they moved.
+  std::span<const RigidBody> bodies_after(const SubStep& step);
+  BodyForces body_forces(const SubStep& step) const;
   void take_drags();
-  /// Where the bodies will be, as far as that is known before their solve.
-  std::span<const RigidBody> expected(const SubStep& step, bool moving);
-  void solve_bodies(const SubStep& step, bool held_only, bool with_drag);
+  glm::dvec3 gravity() const { return gravity_scale * scene.gravity; }
   void report(const SubStep& step);
 
   Scene scene;
@@ -51,9 +52,10 @@ struct World::Impl {
   BodySystem bodies;
   LiveChanges live;
   std::unique_ptr<ParticleEngine> engine;
-  std::vector<RigidBody> ahead;  // expected()
-  std::vector<Wrench> found;     // by the fluid in the last sub-step, one a body
-  std::vector<BodyDrag> drags;   // with kBodyDrag, one a body
+  std::array<std::vector<PassId>, 3> schedules;  // one a TakePart
+  std::vector<RigidBody> ahead;                  // bodies_after()
+  std::vector<Wrench> found;                     // by the fluid in the last sub-step, one a body
+  std::vector<BodyDrag> drags;                   // with kBodyDrag, one a body
   std::vector<Matrix6> drag_matrices;
   std::vector<ViscousBody> viscous_bodies;  // with kImplicitViscosity, one a body
   std::vector<Wrench> wrenches;             // their means over the last step
@@ -64,7 +66,7 @@ struct World::Impl {
   std::uint64_t tick = 0;
   StepTimes times;
   double gravity_scale = 1.0;
-  double age;           // s, as pressure/rest_density.h counts it; no further than kSettlingTime
+  double age;           // s, as passes/rest_density/rest_density.h counts it; no further than kSettlingTime
   bool packed = false;  // the engine has what that age needs, and it needs nothing else any more
   StateFrame frame;
 };

@@ -23,11 +23,10 @@ std::uint32_t BodySystem::begin_step(std::span<const HandleInput> handles, doubl
   return hands_.take(handles, time_step);
 }
 
-std::uint32_t BodySystem::solve(const Plan& plan, const BodyForces& forces, const SubStep& step,
-                                bool held_only) {
+std::uint32_t BodySystem::solve(const Plan& plan, const BodyForces& forces, const SubStep& step) {
   couplings_ = {};
   if (plan.has(PassId::kCouplings)) couplings_ = hands_.couple(bodies_, step.elapsed);
-  const std::uint32_t status = solve_alone(forces, step.dt, held_only);
+  const std::uint32_t status = solve_alone(forces, step);
   if (plan.has(PassId::kContacts)) {
     finder_.find(bodies_, solves_, 0.25 * plan.spacing, step.dt, memory_, contacts_);
     solve_contacts(contacts_, materials_, bodies_, step.dt, memory_, solves_);
@@ -37,8 +36,9 @@ std::uint32_t BodySystem::solve(const Plan& plan, const BodyForces& forces, cons
   return status;
 }
 
-void BodySystem::predict(const Plan& plan, const BodyForces& forces, const SubStep& step, bool part,
-                         bool held_only, std::span<ViscousBody> out) {
+void BodySystem::predict(const Plan& plan, const BodyForces& forces, const SubStep& step,
+                         std::span<ViscousBody> out) {
+  const bool part = step.part != TakePart::kFluid, held_only = step.part == TakePart::kHeld;
   couplings_ = {};
   if (part && plan.has(PassId::kCouplings)) couplings_ = hands_.couple(bodies_, step.elapsed);
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
@@ -65,8 +65,7 @@ void BodySystem::predict(const Plan& plan, const BodyForces& forces, const SubSt
   }
 }
 
-void BodySystem::move(const Plan& plan, const SubStep& step) {
-  if (!plan.has(PassId::kMoveBodies)) return;
+void BodySystem::move(const SubStep& step) {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     if (solves_[b].moves) advance_body(bodies_[b], solves_[b], step.dt);
   }
@@ -93,7 +92,8 @@ std::span<const ActiveCoupling> BodySystem::couplings_of(int body) const {
 }
 
 // A body that went non-finite is put back to rest where it last was, and the step goes on.
-std::uint32_t BodySystem::solve_alone(const BodyForces& forces, double dt, bool held_only) {
+std::uint32_t BodySystem::solve_alone(const BodyForces& forces, const SubStep& step) {
+  const bool held_only = step.part == TakePart::kHeld;
   std::uint32_t status = 0;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     RigidBody& body = bodies_[b];
@@ -105,10 +105,10 @@ std::uint32_t BodySystem::solve_alone(const BodyForces& forces, double dt, bool 
     Wrench external = forces.fluid[b];
     external.force += body.mass * forces.gravity;
     const Matrix6* drag = forces.drags.empty() ? nullptr : &forces.drags[b];
-    if (solve_body(body, external, held, dt, solves_[b], drag)) continue;
+    if (solve_body(body, external, held, step.dt, solves_[b], drag)) continue;
     status |= kStatusNonFinite;
     body.velocity = body.angular_momentum = body.angular_velocity = glm::dvec3(0.0);
-    if (!solve_body(body, {}, {}, dt, solves_[b])) solves_[b] = BodySolve{};
+    if (!solve_body(body, {}, {}, step.dt, solves_[b])) solves_[b] = BodySolve{};
   }
   return status;
 }

@@ -7,9 +7,9 @@
 #include "sim/bodies/body_room.h"
 #include "sim/bodies/contacts.h"
 #include "sim/bodies/hands.h"
+#include "sim/passes/implicit_viscosity/implicit.h"
 #include "sim/plan.h"
 #include "sim/snapshot.h"
-#include "sim/viscosity/implicit.h"
 
 namespace slosh {
 
@@ -20,11 +20,16 @@ struct BodyForces {
   glm::dvec3 gravity{0.0};         ///< m/s²
 };
 
+/// Who moves in a sub-step: all, or while a scene settles the fluid alone, then also the bodies that hands
+/// hold.
+enum class TakePart { kFluid, kHeld, kAll };
+
 /// A sub-step of a step.
 struct SubStep {
   double dt = 0.0;       ///< s
   double elapsed = 0.0;  ///< s since the step began
   double share = 1.0;    ///< dt over the step's length
+  TakePart part = TakePart::kAll;
 };
 
 class BodySystem {
@@ -36,16 +41,15 @@ class BodySystem {
   /// `time_step` in s.
   std::uint32_t begin_step(std::span<const HandleInput> handles, double time_step);
   /// The velocities that the bodies end the sub-step with, by couplings and contacts as far as the plan has
-  /// them. With `held_only` the other bodies stand still. Returns StatusBits.
-  std::uint32_t solve(const Plan& plan, const BodyForces& forces, const SubStep& step, bool held_only);
+  /// them. Returns StatusBits.
+  std::uint32_t solve(const Plan& plan, const BodyForces& forces, const SubStep& step);
   /// Every body as implicit drag has to know it, one a body: as solve() will find it under the same forces,
-  /// with what contacts gave in the last sub-step for what they will give now. With `part` false none moves.
-  void predict(const Plan& plan, const BodyForces& forces, const SubStep& step, bool part, bool held_only,
-               std::span<ViscousBody> out);
+  /// with what contacts gave in the last sub-step for what they will give now.
+  void predict(const Plan& plan, const BodyForces& forces, const SubStep& step, std::span<ViscousBody> out);
   /// By how much they differ from those that it began with, one a body.
   std::span<const Twist> changes() const { return changes_; }
   /// Moves the bodies on by the sub-step that was solved.
-  void move(const Plan& plan, const SubStep& step);
+  void move(const SubStep& step);
   /// Takes what left for good (BodyRoom) and is held by nobody out of the motion: it stands still from then
   /// on. After move(). Returns StatusBits.
   std::uint32_t part_with_lost(const glm::dvec3& gravity);
@@ -65,7 +69,7 @@ class BodySystem {
 
  private:
   std::span<const ActiveCoupling> couplings_of(int body) const;
-  std::uint32_t solve_alone(const BodyForces& forces, double dt, bool held_only);
+  std::uint32_t solve_alone(const BodyForces& forces, const SubStep& step);
   void report(const SubStep& step);
 
   std::vector<ContactMaterial> materials_;

@@ -14,7 +14,7 @@ constexpr double kUsualChange = 0.01;        // m/s
 constexpr double kUsualAcceleration = 0.15;  // m/s²
 constexpr double kUsualWay = 0.0001;         // m
 constexpr double kLongestCarry = 0.03;       // s
-constexpr double kQuietTime = 1.5;           // times the usual rest
+constexpr double kQuietFactor = 1.5;         // times the usual rest
 constexpr double kAlike = 0.5;               // share of change in the drag at which the line ends
 constexpr double kFarthest = 8.0;            // reaches
 
@@ -251,7 +251,7 @@ void WrenchIdentifier::fill(FluidWrenchModel& model) const {
     const auto calm = [&](std::size_t which, const glm::dvec3& rest) {
       const double usual = std::sqrt(rest_square_[which] / std::max(rests_, 1.0));
       const double size = glm::length(rest);
-      return size > kQuietTime * usual ? rest * (kQuietTime * usual / size) : rest;
+      return size > kQuietFactor * usual ? rest * (kQuietFactor * usual / size) : rest;
     };
     model.rate.force = part(0) * calm(0, {now.rest[0], now.rest[1], now.rest[2]});
     model.rate.torque = part(1) * calm(1, {now.rest[3], now.rest[4], now.rest[5]});

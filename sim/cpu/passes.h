@@ -8,8 +8,8 @@
 
 #include "sim/cpu/parallel.h"
 #include "sim/cpu/particles.h"
+#include "sim/passes/body_drag/body_drag.h"
 #include "sim/run_constants.h"
-#include "sim/viscosity/body_drag.h"
 
 namespace slosh {
 

@@ -1,172 +1,130 @@
 #include "sim/cuda/cuda_engine.h"
 
-#include <algorithm>
-#include <bit>
-
-#include "sim/cuda/body_exchange.h"
 #include "sim/cuda/downloads.h"
-#include "sim/cuda/pass_clock.h"
-#include "sim/cuda/pressure_solve.h"
 #include "sim/cuda/shared_slots.h"
-#include "sim/cuda/step_report.h"
-#include "sim/cuda/viscous_solve.h"
-#include "sim/cuda/wall_guards.h"
-#include "sim/cuda/wrench_sums.h"
+#include "sim/cuda/state.h"
 #include "sim/fluid_sums.h"
-#include "sim/pass_table.h"
 
 namespace slosh {
 
+namespace passes {
+#define SLOSH_OWN(id, name) void name##_on_cuda(cuda::CudaState& state, const PassInputs& inputs);
+#define SLOSH_NONE(...)
+SLOSH_PASSES(SLOSH_OWN, SLOSH_NONE, SLOSH_NONE)
+#undef SLOSH_OWN
+}  // namespace passes
+
 namespace cuda {
 namespace {
+
+using CudaPass = void (*)(CudaState&, const PassInputs&);
+
+CudaPass function_of(PassId id) {
+  switch (id) {
+#define SLOSH_OWN(id, name) \
+  case PassId::id:          \
+    return passes::name##_on_cuda;
+    SLOSH_PASSES(SLOSH_OWN, SLOSH_NONE, SLOSH_NONE)
+#undef SLOSH_OWN
+#undef SLOSH_NONE
+    default:
+      return nullptr;
+  }
+}
 
 class CudaEngine final : public ParticleEngine {
  public:
   CudaEngine(const RunConstants& constants, const ParticleStart& start, std::span<const RigidBody> bodies,
              std::string device)
-      : constants_(constants),
-        step_(step_constants(constants)),
-        device_(std::move(device)),
-        probes_(start.probes),
-        kinds_by_id_(start.particles.kind),
-        fluid_count_(start.fluid_count) {
-    check_.ok(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "cudaStreamCreate");
-    clock_.start(check_);
-    fluid_.allocate(kinds_by_id_.size(), constants_, check_);
-    fixed_.allocate(start.fixed, constants_, check_);
-    moving_.allocate(start.moving, constants_, check_);
-    const std::size_t largest = std::max({start.particles.size(), start.fixed.size(), start.moving.size()});
-    space_.allocate(static_cast<std::uint32_t>(largest), std::bit_width(constants_.grid.retired_key()),
-                    check_);
-    kinds_.upload(constants_.kinds, check_);
-    sums_.plan(constants_.plan, start, bodies.size(), check_);
-    guards_.plan(constants_, start, bodies.size(), check_);
-    viscous_.plan(constants_.plan, start, bodies.size(), sums_, check_);
-    pressure_.plan(constants_.plan, start, bodies.size(), sums_, check_);
-    report_.plan(sums_.bodies().size(), guards_.handed_bytes(), probes_.size(), check_);
-    sent_.allocate(bodies.size(), check_);
-    sent_probes_.allocate(probes_, check_);
-    by_id_.allocate(3 * fluid_count_, check_);
-    kind_by_id_.allocate(fluid_count_, check_);
-    check_.ok(cudaDeviceSynchronize(), "setting up");  // the stream does not wait for what filled the buffers
+      : s_(constants, start, bodies), device_(std::move(device)), kinds_by_id_(start.particles.kind) {
+    by_id_.allocate(3 * s_.fluid_count, s_.check);
+    kind_by_id_.allocate(s_.fluid_count, s_.check);
+    s_.check.ok(cudaDeviceSynchronize(),
+                "setting up");  // the stream does not wait for what filled the buffers
     restore(start.particles, no_impulses(bodies.size()));
     status_ = start.status;
-    if (fixed_.count() > 0) {
-      sent_.send(bodies, check_, stream_);
-      fixed_.place(step_, sent_.bodies(), space_, check_, stream_);
+    if (s_.fixed.count() > 0) {
+      s_.sent.send(bodies, s_.check, s_.stream);
+      s_.fixed.place(s_.step, s_.sent.bodies(), s_.space, s_.check, s_.stream);
     }
-    check_.ok(cudaDeviceSynchronize(), "setting up");
+    s_.check.ok(cudaDeviceSynchronize(), "setting up");
   }
 
-  ~CudaEngine() override {
-    if (!stream_) return;
-    cudaStreamSynchronize(stream_);
-    cudaStreamDestroy(stream_);
-  }
-
-  void prepare(std::span<const RigidBody> bodies) override {
-    if (idle()) return;
-    clock_.begin(check_, stream_);
-    sent_.send(bodies, check_, stream_);
-    sent_probes_.carry(step_, constants_.rest_volume, probes_, bodies, fluid_.state(), check_, stream_);
-    prepared_.assign(bodies.begin(), bodies.end());
-    run(SubStepPart::kPrepare, 0.0);
-    clock_.mark(PassClock::kSorted, check_, stream_);
-  }
-  void forces(double dt) override {
-    if (idle()) return;
-    forces_dt_ = dt;
+  void begin(std::span<const RigidBody> bodies, double dt) override {
+    if (s_.idle()) return;
+    s_.clock.begin(s_.check, s_.stream);
+    s_.sent.send(bodies, s_.check, s_.stream);
+    s_.sent_probes.carry(s_.step, s_.constants.rest_volume, s_.probes, bodies, s_.fluid.state(), s_.check,
+                         s_.stream);
+    s_.prepared.assign(bodies.begin(), bodies.end());
+    begun_dt_ = dt;
     // What walls took from particles when they moved last goes into this sub-step's report.
-    guards_.hand_over(report_.impulses(), check_, stream_);
-    run(SubStepPart::kForces, dt);
+    s_.guards.hand_over(s_.report.impulses(), s_.check, s_.stream);
   }
-  void advance(double dt, std::span<const RigidBody> after) override {
-    if (idle()) return;
-    guards_.send(constants_.plan, prepared_, after, check_, stream_);
-    run(SubStepPart::kAdvance, dt);
-    clock_.mark(PassClock::kForce, check_, stream_);
-    // A probe's place changes before the next sort.
-    sorted_ahead_ = probes_.empty();
-    if (sorted_ahead_) fluid_.sort(step_, space_, check_, stream_);
-    if (probes_report()) report_.fetch(check_, stream_);
-    clock_.mark(PassClock::kEnd, check_, stream_);
+  void run(PassId id, const PassInputs& inputs) override {
+    if (!s_.idle()) function_of(id)(s_, inputs);
   }
 
   void wrenches(std::span<Wrench> out) override {
     std::fill(out.begin(), out.end(), Wrench{});
-    if (idle()) return;
-    report_.wait(check_);
-    clock_.read(check_);
-    if (!check_.failed()) read_report(out);
+    if (s_.idle()) return;
+    s_.report.wait(s_.check);
+    s_.clock.read(s_.check);
+    if (!s_.check.failed()) read_report(out);
   }
 
   void body_drags(std::span<BodyDrag> out) const override {
     std::fill(out.begin(), out.end(), BodyDrag{});
-    if (idle()) return;
-    if (constants_.plan.has(PassId::kImplicitViscosity)) return viscous_.drags(out);
-    for (std::size_t i = 0; i < sums_.bodies().size(); ++i) out[sums_.bodies()[i]] = report_.got_drag(i);
-  }
-
-  void drag(std::span<const Twist> changes) override {
-    if (idle()) return;
-    sent_.send_twists(changes, check_, stream_);
-    run(SubStepPart::kDrag, 0.0);
-  }
-  void solve_viscosity(double dt, std::span<const ViscousBody> bodies, std::span<Wrench> wrenches) override {
-    if (idle()) return;
-    asked_ = {bodies, wrenches};
-    run(SubStepPart::kViscosity, dt);
-  }
-  void solve_pressure(double dt, std::span<const ViscousBody> bodies, std::span<Wrench> wrenches) override {
-    if (idle()) return;
-    asked_ = {bodies, wrenches};
-    run(SubStepPart::kPressure, dt);
+    if (s_.idle()) return;
+    if (s_.constants.plan.has(PassId::kImplicitViscosity)) return s_.viscous.drags(out);
+    for (std::size_t i = 0; i < s_.sums.bodies().size(); ++i)
+      out[s_.sums.bodies()[i]] = s_.report.got_drag(i);
   }
 
   void damp(float keep) override {
-    if (idle()) return;
-    launch_damp(fluid_.state().v, fluid_.count(), keep, stream_);
-    check_.launched("damping");
+    if (s_.idle()) return;
+    launch_damp(s_.fluid.state().v, s_.fluid.count(), keep, s_.stream);
+    s_.check.launched("damping");
   }
 
   void set_constants(const RunConstants& constants) override {
-    constants_ = constants;
-    step_ = step_constants(constants_);
-    if (check_.failed()) return;
-    kinds_.write(constants_.kinds, check_, stream_);
-    fluid_.allow_viscosities(constants_, check_);
+    s_.constants = constants;
+    s_.step = step_constants(s_.constants);
+    if (s_.check.failed()) return;
+    s_.kinds.write(s_.constants.kinds, s_.check, s_.stream);
+    s_.fluid.allow_viscosities(s_.constants, s_.check);
   }
-  void set_correction(const CorrectionConstants& correction) override { step_.correction = correction; }
+  void set_correction(const CorrectionConstants& correction) override { s_.step.correction = correction; }
 
   bool save(ParticleState& out, ImpulseSums& impulses) const override {
-    const HostPacks packs = fetch_packs(fluid_, check_, stream_);
-    impulses = fetch_impulses(guards_, check_, stream_);
-    if (check_.failed()) return false;
-    to_state(packs, constants_.grid, out);
-    out.broken = broken_before_ + broken(packs, constants_.grid);
+    const HostPacks packs = fetch_packs(s_.fluid, s_.check, s_.stream);
+    impulses = fetch_impulses(s_.guards, s_.check, s_.stream);
+    if (s_.check.failed()) return false;
+    to_state(packs, s_.constants.grid, out);
+    out.broken = broken_before_ + broken(packs, s_.constants.grid);
     return true;
   }
 
   void restore(const ParticleState& state, const ImpulseSums& impulses) override {
-    if (check_.failed()) return;
-    std::vector<std::uint32_t> slots(probes_.size());
+    if (s_.check.failed()) return;
+    std::vector<std::uint32_t> slots(s_.probes.size());
     for (std::size_t p = 0; p < state.size(); ++p) {
       const std::uint32_t id = state.id[p];
-      if (id >= fluid_count_) slots[id - fluid_count_] = static_cast<std::uint32_t>(p);
+      if (id >= s_.fluid_count) slots[id - s_.fluid_count] = static_cast<std::uint32_t>(p);
     }
-    const HostPacks packs = from_state(state, constants_.grid, constants_.rest_volume, kinds_by_id_);
-    const std::uint64_t among_them = broken(packs, constants_.grid);  // that the sort has not taken out yet
+    const HostPacks packs = from_state(state, s_.constants.grid, s_.constants.rest_volume, kinds_by_id_);
+    const std::uint64_t among_them = broken(packs, s_.constants.grid);  // that the sort has not taken out yet
     broken_before_ = state.broken - std::min(state.broken, among_them);
-    check_.ok(cudaStreamSynchronize(stream_), "waiting for the step");
-    fluid_.write(packs, check_, stream_);
-    sent_probes_.write_slots(slots, check_, stream_);
-    guards_.write(impulses, check_, stream_);
-    report_.clear_status(check_, stream_);
-    sorted_ahead_ = false;
+    s_.check.ok(cudaStreamSynchronize(s_.stream), "waiting for the step");
+    s_.fluid.write(packs, s_.check, s_.stream);
+    s_.sent_probes.write_slots(slots, s_.check, s_.stream);
+    s_.guards.write(impulses, s_.check, s_.stream);
+    s_.report.clear_status(s_.check, s_.stream);
+    s_.sorted_ahead = false;
     status_ = 0;
   }
 
-  std::uint32_t status() const override { return status_ | (check_.failed() ? kStatusDeviceLost : 0u); }
+  std::uint32_t status() const override { return status_ | (s_.check.failed() ? kStatusDeviceLost : 0u); }
   std::uint32_t take_status() override {
     const std::uint32_t seen = status();
     status_ = 0;
@@ -184,13 +142,13 @@ class CudaEngine final : public ParticleEngine {
       return nullptr;
     }
     fill_by(slot, positions, fluid_index);
-    return check_.failed() ? nullptr : slot.particles;
+    return s_.check.failed() ? nullptr : slot.particles;
   }
-  Result<bool> share() override { return shared_.start(fluid_count_); }
+  Result<bool> share() override { return shared_.start(s_.fluid_count); }
 
   void add_to(Fingerprint& print) const override {
-    const HostPacks packs = fetch_packs(fluid_, check_, stream_);
-    for_each_present(packs, constants_.grid, [&](std::size_t p) {
+    const HostPacks packs = fetch_packs(s_.fluid, s_.check, s_.stream);
+    for_each_present(packs, s_.constants.grid, [&](std::size_t p) {
       print.add(packs.id[p]);
       for_each_value(packs, p, [&](auto column, const auto& value) {
         if constexpr (info(column).hashed && column != FluidColumn::id) print.add(value);
@@ -199,181 +157,62 @@ class CudaEngine final : public ParticleEngine {
   }
 
   Diagnostics diagnostics() const override {
-    FluidSums sums(constants_);
-    const HostPacks packs = fetch_packs(fluid_, check_, stream_);
-    for_each_present(packs, constants_.grid, [&](std::size_t p) {
+    FluidSums sums(s_.constants);
+    const HostPacks packs = fetch_packs(s_.fluid, s_.check, s_.stream);
+    for_each_present(packs, s_.constants.grid, [&](std::size_t p) {
       const float4 x = packs.x[p], v = packs.v[p];
       sums.add(packs.kind[p], {x.x, x.y, x.z}, {v.x, v.y, v.z}, v.w);
     });
-    sums.add(fetch_impulses(guards_, check_, stream_));
-    return sums.finish(fluid_count_, broken_before_ + broken(packs, constants_.grid));
+    sums.add(fetch_impulses(s_.guards, s_.check, s_.stream));
+    return sums.finish(s_.fluid_count, broken_before_ + broken(packs, s_.constants.grid));
   }
 
-  StepTimes times() const override { return clock_.times(); }
-  std::string failure() const override { return check_.failure(); }
+  StepTimes times() const override { return s_.clock.times(); }
+  std::string failure() const override { return s_.check.failure(); }
   std::string name() const override { return "CUDA, " + device_; }
 
  private:
-  static std::span<const PassRow<CudaEngine>> table() {
-    using enum PassId;
-    // The wrenches come before the forces on the fluid: the bodies' solve on the CPU needs them alone, and
-    // runs while the GPU goes on.
-    static constexpr PassRow<CudaEngine> kTable[] = {
-        {SubStepPart::kPrepare, {kSortFluid}, &CudaEngine::sort, nullptr},
-        {SubStepPart::kPrepare, {kPlaceBodies}, &CudaEngine::place_bodies, nullptr},
-        {SubStepPart::kForces, {kDensity, kFluidStress}, &CudaEngine::find_density, nullptr},
-        {SubStepPart::kForces, {kWrenches}, &CudaEngine::sum_wrenches, nullptr},
-        {SubStepPart::kForces,
-         {kPressureForce, kOneViscosity, kPairViscosity, kWalls},
-         &CudaEngine::find_forces,
-         nullptr},
-        {SubStepPart::kViscosity, {kImplicitViscosity}, &CudaEngine::find_implicit_viscosity, nullptr},
-        {SubStepPart::kPressure, {kPressureSolve}, &CudaEngine::solve_for_pressure, nullptr},
-        {SubStepPart::kDrag, {kBodyDrag}, &CudaEngine::drag_on_fluid, nullptr},
-        {SubStepPart::kAdvance, {kIntegrateFluid}, &CudaEngine::integrate, nullptr},
-    };
-    static_assert(covers_all_particle_passes(kTable));
-    return kTable;
-  }
-  void run(SubStepPart part, double dt) { run_passes(*this, table(), part, constants_.plan, dt, nullptr); }
-
-  // A probe's force comes out of the last pass, and the report waits for it; not where the pressures' solve
-  // fetches it.
-  bool probes_report() const { return !probes_.empty() && !constants_.plan.has(PassId::kPressureSolve); }
-  bool idle() const { return check_.failed() || fluid_.count() == 0; }
-
-  void sort(double) {
-    if (!sorted_ahead_) fluid_.sort(step_, space_, check_, stream_);
-  }
-  void place_bodies(double) { moving_.place(step_, sent_.bodies(), space_, check_, stream_); }
-
-  void find_density(double) {
-    if (check_.failed()) return;
-    launch_density(step_, constants_.plan, kinds_.data(),
-                   any_artificial_viscosity(constants_.kinds, constants_.correction.artificial_viscosity),
-                   fluid_.sorted(), fixed_.sorted(), moving_.sorted(), report_.status(), stream_);
-    check_.launched("density");
-    clock_.mark(PassClock::kDensity, check_, stream_);
-  }
-
-  void find_forces(double dt) {
-    if (!probes_report()) report_.fetch(check_, stream_);
-    clock_.mark(PassClock::kWrench, check_, stream_);
-    if (check_.failed()) return;
-    launch_force(step_, constants_.plan, kinds_.data(), fluid_.sorted(), fixed_.sorted(), moving_.sorted(),
-                 stream_);
-    check_.launched("forces");
-    // While the CPU sees where the bodies are going.
-    if (constants_.plan.has(PassId::kImplicitViscosity))
-      viscous_.write_rows(solve_sides(), static_cast<float>(dt), check_, stream_);
-    if (constants_.plan.has(PassId::kPressureSolve)) pressure_.push_by_last(solve_sides(), check_, stream_);
-  }
-
-  SolveSides solve_sides() const {
-    return {step_,           constants_.plan, kinds_,  constants_.kinds.front().viscosity,
-            fluid_.sorted(), fixed_,          moving_, sent_.bodies()};
-  }
-  void find_implicit_viscosity(double dt) {
-    viscous_.solve(solve_sides(), static_cast<float>(dt), asked_.bodies, prepared_, report_.status(),
-                   asked_.wrenches, check_, stream_);
-  }
-  void solve_for_pressure(double dt) {
-    pressure_.solve(solve_sides(), dt, asked_.bodies, prepared_, probes_, asked_.wrenches, check_, stream_);
-  }
-
-  void drag_on_fluid(double) {
-    if (check_.failed()) return;
-    launch_drag(step_, constants_.plan, kinds_.data(), fluid_.sorted(), moving_.sorted(), sent_.twists(),
-                stream_);
-    check_.launched("drag");
-  }
-
-  void integrate(double dt) {
-    if (check_.failed()) return;
-    const ProbeOutput probes{static_cast<std::uint32_t>(fluid_count_), report_.probes(),
-                             sent_probes_.slots().data()};
-    launch_integrate(step_, kinds_.data(), fluid_.sorted(), static_cast<float>(dt),
-                     static_cast<float>(speed_limit(constants_.plan, dt)),
-                     guards_.view(constants_.impulse_units), probes, report_.status(), stream_);
-    check_.launched("integration");
-  }
-
   /// By way of a place on the GPU that is its own by the time this returns.
   void fill_by(const SharedSlots::Slot& way, std::span<glm::vec3> positions,
                std::span<std::uint8_t> fluid_index) const {
     std::fill(fluid_index.begin(), fluid_index.end(), std::uint8_t{255});
-    if (check_.failed() || positions.empty()) return;
-    launch_scatter(step_, fluid_.state(), fluid_.count(), static_cast<std::uint32_t>(fluid_count_),
-                   way.positions, way.kinds, stream_);
-    check_.launched("scattering");
-    fetch(way.positions, reinterpret_cast<float*>(positions.data()), 3 * positions.size(), check_, stream_);
-    fetch(way.kinds, fluid_index.data(), fluid_index.size(), check_, stream_);
-  }
-
-  void sum_wrenches(double) {
-    const bool with_drag = constants_.plan.has(PassId::kBodyDrag);
-    const SurfaceSides sides{fixed_, moving_};
-    sums_.find_forces(step_, constants_.plan, constants_.kinds.front().viscosity, fluid_.sorted(), sides,
-                      with_drag, check_, stream_);
-    sums_.sum_wrenches(sides, sent_.bodies(), report_.wrenches(), check_, stream_);
-    if (with_drag) sums_.sum_drags(sides, sent_.bodies(), report_.drags(), check_, stream_);
+    if (s_.check.failed() || positions.empty()) return;
+    launch_scatter(s_.step, s_.fluid.state(), s_.fluid.count(), static_cast<std::uint32_t>(s_.fluid_count),
+                   way.positions, way.kinds, s_.stream);
+    s_.check.launched("scattering");
+    fetch(way.positions, reinterpret_cast<float*>(positions.data()), 3 * positions.size(), s_.check,
+          s_.stream);
+    fetch(way.kinds, fluid_index.data(), fluid_index.size(), s_.check, s_.stream);
   }
 
   void read_report(std::span<Wrench> wrenches) {
-    status_ |= report_.got_status();
-    for (std::size_t i = 0; i < sums_.bodies().size(); ++i) {
-      const std::uint32_t b = sums_.bodies()[i];
+    status_ |= s_.report.got_status();
+    for (std::size_t i = 0; i < s_.sums.bodies().size(); ++i) {
+      const std::uint32_t b = s_.sums.bodies()[i];
       // Fixed ones are measured when all of the pressure is known.
-      if (constants_.plan.has(PassId::kPressureSolve) && !prepared_[b].free) continue;
-      wrenches[b] = wrenches[b] + report_.got_wrench(i).wrench();
+      if (s_.constants.plan.has(PassId::kPressureSolve) && !s_.prepared[b].free) continue;
+      wrenches[b] = wrenches[b] + s_.report.got_wrench(i).wrench();
     }
-    if (guards_.size() > 0) {
-      for (const std::uint32_t b : sums_.bodies()) {
+    if (s_.guards.size() > 0) {
+      for (const std::uint32_t b : s_.sums.bodies()) {
         std::int64_t words[kImpulseWords];
-        report_.got_impulses(b, words);
-        wrenches[b] = wrenches[b] + impulse_wrench(words, constants_.impulse_units, forces_dt_);
+        s_.report.got_impulses(b, words);
+        wrenches[b] = wrenches[b] + impulse_wrench(words, s_.constants.impulse_units, begun_dt_);
       }
     }
-    if (!constants_.plan.has(PassId::kWrenches) || !probes_report()) return;
-    for (std::size_t i = 0; i < probes_.size(); ++i) {
-      const float4 f = report_.got_probe(i);
-      wrenches[probes_[i].body].force += glm::dvec3(f.x, f.y, f.z);
+    if (!s_.constants.plan.has(PassId::kWrenches) || !s_.probes_report()) return;
+    for (std::size_t i = 0; i < s_.probes.size(); ++i) {
+      const float4 f = s_.report.got_probe(i);
+      wrenches[s_.probes[i].body].force += glm::dvec3(f.x, f.y, f.z);
     }
   }
 
-  struct Asked {  // of solve_viscosity() and solve_pressure()
-    std::span<const ViscousBody> bodies;
-    std::span<Wrench> wrenches;
-  };
-
-  RunConstants constants_;
-  StepConstants step_;
+  CudaState s_;
   std::string device_;
-  std::vector<Probe> probes_;
   std::vector<std::uint8_t> kinds_by_id_;
-  std::size_t fluid_count_;  // without probes
   std::uint32_t status_ = 0;
   std::uint64_t broken_before_ = 0;  // of ParticleState's, those that restore() took over and dropped
-  mutable CallCheck check_;
-  cudaStream_t stream_ = nullptr;
-  PassClock clock_;
-  bool sorted_ahead_ = false;  // the particles are in order for the next step's density
-
-  FluidBuffers fluid_;
-  SurfaceBuffers fixed_, moving_;
-  SortSpace space_;
-  DeviceBuffer<ParticleKind> kinds_;
-  WrenchSums sums_;
-  WallGuards guards_;
-  StepReport report_;
-  ViscousSolver viscous_;
-  PressureSolver pressure_;
-  Asked asked_;
-
-  SentBodies sent_;
-  SentProbes sent_probes_;
-  std::vector<RigidBody> prepared_;  // as they were in prepare()
-  double forces_dt_ = 0.0;           // s, of the last forces()
+  double begun_dt_ = 0.0;            // s, of the sub-step
   DeviceBuffer<float> by_id_;
   DeviceBuffer<std::uint8_t> kind_by_id_;
   SharedSlots shared_;

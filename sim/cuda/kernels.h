@@ -11,8 +11,8 @@
 #include <cstdint>
 
 #include "sim/columns.h"
+#include "sim/passes/body_drag/body_drag.h"
 #include "sim/run_constants.h"
-#include "sim/viscosity/body_drag.h"
 #include "sim/walls/surface_motion.h"
 #include "sim/walls/wall_guard.h"
 

@@ -1,5 +1,5 @@
 // The force of the neighbours of one kind on one particle: the inner loop of both force passes, as
-// sim/cpu/row_force.h.
+// sim/passes/pressure_force/row_force.h.
 #pragma once
 
 #include "sim/cuda/rows.cuh"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <iterator>
 
-#include "sim/pressure/corrected_state.h"
-#include "sim/pressure/pair_pressure.h"
+#include "sim/passes/density/corrected_state.h"
+#include "sim/passes/pressure_force/pair_pressure.h"
 
 namespace slosh {
 namespace {

@@ -9,8 +9,8 @@
 
 #include <cmath>
 
+#include "sim/passes/density/gradient_correction.h"
 #include "sim/plan.h"
-#include "sim/pressure/gradient_correction.h"
 
 namespace slosh {
 

@@ -8,7 +8,7 @@
 #pragma once
 
 #include "sim/math/symmetric.h"
-#include "sim/pressure/gradient_correction.h"
+#include "sim/passes/density/gradient_correction.h"
 
 namespace slosh {
 

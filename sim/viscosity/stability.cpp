@@ -5,9 +5,9 @@
 #include <limits>
 
 #include "sim/model.h"
+#include "sim/passes/implicit_viscosity/implicit.h"
 #include "sim/viscosity/artificial_viscosity.h"
 #include "sim/viscosity/drag_shape.h"
-#include "sim/viscosity/implicit.h"
 
 namespace slosh {
 

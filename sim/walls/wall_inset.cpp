@@ -4,7 +4,7 @@
 
 #include "sim/math/kernels.h"
 #include "sim/model.h"
-#include "sim/pressure/pair_pressure.h"
+#include "sim/passes/pressure_force/pair_pressure.h"
 
 namespace slosh {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "scenes/scene.h"
+#include "sim/passes/pressure_force/pair_pressure.h"
 #include "sim/plan.h"
-#include "sim/pressure/pair_pressure.h"
 #include "sim/walls/mirror_planes.h"
 
 namespace slosh {
@@ -21,7 +21,7 @@ struct SurfaceParticle {
   float viscosity;     ///< Pa·s
   float reach;         ///< m, within which it meets fluid: the support radius, less LayerParticle::lacks
   MirrorPlane
-      mirror;  ///< world axes: of a fixed body that slips, where surfaces drag (viscosity/mirror_drag.h)
+      mirror;  ///< world axes: of a fixed body that slips, where surfaces drag (passes/walls/mirror_drag.h)
 };
 
 /// The particles of the bodies whose motion is `motion`, body by body; none when the plan has no boundary

@@ -9,7 +9,7 @@
 #include "sim/math/kernels.h"
 #include "sim/math/pose.h"
 #include "sim/model.h"
-#include "sim/pressure/corrected_state.h"
+#include "sim/passes/density/corrected_state.h"
 
 namespace {
 

@@ -83,7 +83,7 @@ std::string named(const ::testing::TestParamInfo<std::vector<Known>>& p) {
 INSTANTIATE_TEST_SUITE_P(
     error, KnownAnswer,
     ::testing::Values(
-        // Without pressure/rest_density.h the level is 9, 5, 4.5 and 4.3 % too low.
+        // Without passes/rest_density/rest_density.h the level is 9, 5, 4.5 and 4.3 % too low.
         still_tank(0.02, 0.045, 0.06, 0.155), still_tank(0.0125, 0.016, 0.02, 0.06),
         still_tank(0.01, 0.012, 0.022, 0.035), still_tank(0.008, 0.014, 0.017, 0.015),
         // 0.10 held while drag on jostling turned the fluid by 4 % faster than its glass

@@ -1,6 +1,6 @@
-// What room a settled particle takes, and what the model counts of it (pressure/rest_density.h): pairs
-// drag by that (tests/notebook/2026-11-25-particle-volume-in-viscous-force.md).
-#include "sim/pressure/rest_density.h"
+// What room a settled particle takes, and what the model counts of it (passes/rest_density/rest_density.h):
+// pairs drag by that (tests/notebook/2026-11-25-particle-volume-in-viscous-force.md).
+#include "sim/passes/rest_density/rest_density.h"
 
 #include <gtest/gtest.h>
 

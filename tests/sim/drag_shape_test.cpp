@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "sim/viscosity/pair_viscosity.h"
+#include "sim/passes/pair_viscosity/pair_viscosity.h"
 
 namespace slosh {
 namespace {

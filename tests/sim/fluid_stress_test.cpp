@@ -1,6 +1,6 @@
 // What a particle's own stress pushes with: it is exact in a linear flow, turns nothing, gives no power, and
 // walls that hold leave Eq 9 in its place.
-#include "sim/viscosity/fluid_stress.h"
+#include "sim/passes/fluid_stress/fluid_stress.h"
 
 #include <gtest/gtest.h>
 

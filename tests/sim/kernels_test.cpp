@@ -6,7 +6,7 @@
 #include <random>
 
 #include "sim/cpu/simd.h"
-#include "sim/pressure/equation_of_state.h"
+#include "sim/passes/density/equation_of_state.h"
 
 namespace slosh {
 namespace {

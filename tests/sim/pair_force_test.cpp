@@ -1,4 +1,4 @@
-#include "sim/pair_force.h"
+#include "sim/passes/pressure_force/pair_force.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <glm/glm.hpp>
 #include <random>
 
-#include "sim/pressure/corrected_state.h"
+#include "sim/passes/density/corrected_state.h"
 #include "sim/pressure/wall_layers.h"
 
 namespace slosh {

@@ -10,7 +10,7 @@
 #include <map>
 #include <random>
 
-#include "sim/cpu/pressure_loop.h"
+#include "sim/passes/pressure_force/pressure_loop.h"
 
 namespace slosh {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "sim/math/kernels.h"
-#include "sim/pressure/pair_pressure.h"
+#include "sim/passes/pressure_force/pair_pressure.h"
 
 namespace slosh {
 namespace {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "sim/viscosity/body_drag.h"
+#include "sim/passes/body_drag/body_drag.h"
 
 namespace slosh {
 namespace {

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "sim/columns.h"
+#include "sim/passes/pass.h"
 
 namespace slosh::report {
 namespace {
@@ -44,6 +45,7 @@ bool can_be_forced(PassId id, const Plan& plan) {
 
 Plan with_pass(const Scene& scene, Plan plan, PassId id) {
   plan.runs.set(id, true);
+  plan.runs.set(runs_in(id), true);
   if (id == PassId::kPairViscosity) plan.runs.set(PassId::kOneViscosity, false);
   if (id == PassId::kWrenches) {
     plan.wrench_bodies.clear();

@@ -1,0 +1,37 @@
+#include "sim/cuda/state.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace slosh::cuda {
+
+CudaState::CudaState(const RunConstants& constants_in, const ParticleStart& start,
+                     std::span<const RigidBody> bodies)
+    : constants(constants_in),
+      step(step_constants(constants_in)),
+      probes(start.probes),
+      fluid_count(start.fluid_count) {
+  check.ok(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "cudaStreamCreate");
+  clock.start(check);
+  fluid.allocate(start.particles.kind.size(), constants, check);
+  fixed.allocate(start.fixed, constants, check);
+  moving.allocate(start.moving, constants, check);
+  const std::size_t largest = std::max({start.particles.size(), start.fixed.size(), start.moving.size()});
+  space.allocate(static_cast<std::uint32_t>(largest), std::bit_width(constants.grid.retired_key()), check);
+  kinds.upload(constants.kinds, check);
+  sums.plan(constants.plan, start, bodies.size(), check);
+  guards.plan(constants, start, bodies.size(), check);
+  viscous.plan(constants.plan, start, bodies.size(), sums, check);
+  pressure.plan(constants.plan, start, bodies.size(), sums, check);
+  report.plan(sums.bodies().size(), guards.handed_bytes(), probes.size(), check);
+  sent.allocate(bodies.size(), check);
+  sent_probes.allocate(probes, check);
+}
+
+CudaState::~CudaState() {
+  if (!stream) return;
+  cudaStreamSynchronize(stream);
+  cudaStreamDestroy(stream);
+}
+
+}  // namespace slosh::cuda

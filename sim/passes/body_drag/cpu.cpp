@@ -1,0 +1,49 @@
+// What the fluid lacks of bodies' drag once they are solved.
+#include "sim/cpu/passes.h"
+#include "sim/cpu/state.h"
+#include "sim/passes/pressure_force/row_force.h"
+
+namespace slosh {
+
+void drag_fluid(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
+                const BoundaryParticles& moving) {
+  const std::vector<CellRun>& runs = fluid.index.runs();
+  const NeighborColumns fluid_columns = columns(fluid);
+  const NeighborColumns moving_columns = columns(moving);
+  const FloatBatch h(context.support_radius);
+  const DragShape<FloatBatch> shape = in_all_lanes(context.drag_shape);
+  with_model(context.plan.model, [&]<class Parts>() {
+    team.run(runs.size(), kForceRunsPerChunk, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t r = begin; r < end; ++r) {
+        const RowList rows = moving.index.rows(context.grid, runs[r].cell);
+        if (!rows.count) continue;
+        for (std::uint32_t p = runs[r].particles.begin; p < runs[r].particles.end; ++p) {
+          const ParticleView<FloatBatch> self =
+              broadcast(fluid_columns, p, context.kinds[fluid.kind[p]].viscosity);
+          ForceSum<FloatBatch> sum{FloatBatch(0.0f), FloatBatch(0.0f), FloatBatch(0.0f)};
+          for_each_dragged<Viscosity::kPair, Neighbours::kWalls>(
+              self, moving_columns, rows, h, FloatBatch(1.0f),
+              [&](const ParticleView<FloatBatch>& i, FloatBatch reach, FloatBatch weight) {
+                add_pair_viscosity<typename Parts::ForceKernel, Parts::kDrag>(self, i, reach, shape, weight,
+                                                                              sum);
+              });
+          const float scale = context.force_scale;
+          fluid.fx[p] += scale * lane_sum(sum.x);
+          fluid.fy[p] += scale * lane_sum(sum.y);
+          fluid.fz[p] += scale * lane_sum(sum.z);
+        }
+      }
+    });
+  });
+}
+
+namespace passes {
+
+void body_drag_on_cpu(CpuState& s, const PassInputs& in) {
+  s.moving.set_velocities(s.bodies, in.changes);
+  drag_fluid(s.context, s.team, s.fluid, s.moving.sorted());
+}
+
+}  // namespace passes
+
+}  // namespace slosh

@@ -1,0 +1,76 @@
+// Body particles placed with their bodies (Eq 14) and sorted.
+#include <algorithm>
+
+#include "sim/cpu/passes.h"
+#include "sim/cpu/state.h"
+#include "sim/walls/surface_motion.h"
+
+namespace slosh {
+
+BodySurface::BodySurface(std::vector<SurfaceParticle> particles) : local_(std::move(particles)) {
+  keys_.resize(local_.size());
+  placed_.resize(local_.size());
+  velocity_.resize(local_.size());
+  sorted_.resize(local_.size());
+  const bool mirrors = std::any_of(local_.begin(), local_.end(), [](const SurfaceParticle& p) {
+    return p.mirror.normal != glm::vec3(0.0f);
+  });
+  if (mirrors) sorted_.mirror.resize(local_.size());
+}
+
+void BodySurface::place(const PassContext& context, std::span<const RigidBody> bodies) {
+  int current = -1;
+  SurfaceMotion motion;
+  for (std::size_t i = 0; i < local_.size(); ++i) {
+    if (local_[i].body != current) {
+      current = local_[i].body;
+      motion = surface_motion(bodies[current]);
+    }
+    const glm::vec3 p = motion.place(local_[i].position);
+    placed_[i] = p;
+    velocity_[i] = motion.velocity_at(p);
+    // Outside the domain there is no fluid to meet.
+    keys_[i] = context.grid.contains(p.x, p.y, p.z) ? context.grid.cell_of(p.x, p.y, p.z)
+                                                    : context.grid.retired_key();
+  }
+  sorter_.sort(keys_.data(), keys_.size(), context.grid.retired_key());
+  const std::uint32_t* order = sorter_.order();
+  for (std::size_t i = 0; i < local_.size(); ++i) {
+    const std::uint32_t from = order[i];
+    sorted_.x[i] = placed_[from].x;
+    sorted_.y[i] = placed_[from].y;
+    sorted_.z[i] = placed_[from].z;
+    sorted_.vx[i] = velocity_[from].x;
+    sorted_.vy[i] = velocity_[from].y;
+    sorted_.vz[i] = velocity_[from].z;
+    sorted_.pressure[i] = local_[from].pressure;
+    sorted_.volume[i] = local_[from].volume;
+    sorted_.viscosity[i] = local_[from].viscosity;
+    sorted_.reach[i] = local_[from].reach;
+    sorted_.body[i] = local_[from].body;
+    if (!sorted_.mirror.empty()) sorted_.mirror.set(i, local_[from].mirror);
+  }
+  sorted_.index.rebuild(context.grid, keys_.data(), keys_.size());
+}
+
+void BodySurface::set_velocities(std::span<const RigidBody> bodies, std::span<const Twist> twists) {
+  std::vector<SurfaceMotion> motions;
+  motions.reserve(bodies.size());
+  for (std::size_t b = 0; b < bodies.size(); ++b) motions.push_back(surface_motion(bodies[b], twists[b]));
+  for (std::size_t i = 0; i < sorted_.index.particles(); ++i) {
+    const glm::vec3 v = motions[sorted_.body[i]].velocity_at({sorted_.x[i], sorted_.y[i], sorted_.z[i]});
+    sorted_.vx[i] = v.x;
+    sorted_.vy[i] = v.y;
+    sorted_.vz[i] = v.z;
+  }
+}
+
+namespace passes {
+
+void place_bodies_on_cpu(CpuState& s, const PassInputs&) {
+  s.moving.place(s.context, s.bodies);
+}
+
+}  // namespace passes
+
+}  // namespace slosh

@@ -1,0 +1,77 @@
+#include "sim/passes/wrenches/cuda_sums.h"
+
+#include <algorithm>
+
+namespace slosh::cuda {
+
+namespace {
+
+constexpr std::uint32_t kChunk = 1024;  // body particles that one block sums
+
+}  // namespace
+
+void WrenchSums::plan(const Plan& plan, const ParticleStart& start, std::size_t body_count,
+                      CallCheck& check) {
+  std::vector<std::uint8_t> wanted(body_count, 0);
+  for (const int b : plan.wrench_bodies) wanted[b] = 1;
+  std::vector<WrenchChunk> chunks;
+  std::vector<WrenchRange> ranges;
+  const auto cut = [&](const std::vector<SurfaceParticle>& particles, bool moving) {
+    const std::uint32_t count = static_cast<std::uint32_t>(particles.size());
+    for (std::uint32_t begin = 0; begin < count;) {
+      const std::uint16_t body = particles[begin].body;
+      std::uint32_t end = begin;
+      while (end < count && particles[end].body == body) ++end;
+      if (wanted[body]) {
+        const std::uint32_t first = static_cast<std::uint32_t>(chunks.size());
+        for (std::uint32_t i = begin; i < end; i += kChunk) {
+          chunks.push_back({i, std::min(i + kChunk, end), body, moving ? 1u : 0u});
+        }
+        ranges.push_back({first, static_cast<std::uint32_t>(chunks.size()), body});
+        (moving ? moving_measured_ : fixed_measured_) = true;
+      }
+      begin = end;
+    }
+  };
+  if (plan.has(PassId::kWrenches)) {
+    cut(start.moving, true);
+    cut(start.fixed, false);
+  }
+  for (const WrenchRange& range : ranges) summed_.push_back(range.body);
+  wanted_.upload(wanted, check);
+  chunks_.upload(chunks, check);
+  ranges_.upload(ranges, check);
+  partial_.allocate(chunks.size(), check);
+  partial_drags_.allocate(chunks.size(), check);
+}
+
+void WrenchSums::find_forces(const StepConstants& constants, const Plan& plan, float first_viscosity,
+                             const SortedFluid& fluid, const SurfaceSides& sides, bool with_drag,
+                             CallCheck& check, cudaStream_t stream) const {
+  if (check.failed()) return;
+  const auto find = [&](const SurfaceBuffers& surface, bool drag) {
+    launch_surface_forces(constants, plan, first_viscosity, fluid, surface.sorted(), wanted_.data(),
+                          surface.local(), drag, stream);
+    check.launched("forces on bodies");
+  };
+  if (moving_measured_) find(sides.moving, with_drag);
+  if (fixed_measured_ && !plan.has(PassId::kPressureSolve)) find(sides.fixed, false);
+}
+
+void WrenchSums::sum_wrenches(const SurfaceSides& sides, const DeviceBody* bodies, DeviceWrench* wrenches,
+                              CallCheck& check, cudaStream_t stream) const {
+  if (summed_.empty() || check.failed()) return;
+  launch_wrenches(sides.fixed.local(), sides.moving.local(), bodies, chunks_.data(), chunk_count(),
+                  partial_.data(), ranges_.data(), range_count(), wrenches, stream);
+  check.launched("wrenches");
+}
+
+void WrenchSums::sum_drags(const SurfaceSides& sides, const DeviceBody* bodies, BodyDrag* drags,
+                           CallCheck& check, cudaStream_t stream) const {
+  if (summed_.empty() || check.failed()) return;
+  launch_body_drags(sides.moving.local(), bodies, chunks_.data(), chunk_count(), partial_drags_.data(),
+                    ranges_.data(), range_count(), drags, stream);
+  check.launched("drag on bodies");
+}
+
+}  // namespace slosh::cuda
