@@ -53,11 +53,11 @@ enum class Surface : std::uint8_t {
   kOurs,           ///< centres smoothed (Yu & Turk 2013), narrow-range filter (Truong & Yuksel 2018)
 };
 
-/// How passes over pixels, and splats, are drawn.
+/// Which of the two paths draws: a stage has one for GPUs and one for processors.
 enum class PixelPasses : std::uint8_t {
-  kMeasured,   ///< as is quicker on this machine: both are timed once, when the first renderer is made
-  kFragments,  ///< by the part of a chip that is made for pictures
-  kCompute,    ///< by compute shaders: all of a chip. The picture is the same to rounding
+  kOfMachine,  ///< kFragments where a CPU draws (llvmpipe), else kCompute
+  kFragments,  ///< fragments, and the CPU itself where it is quicker than its fragments
+  kCompute,    ///< compute shaders, particles on the GPU. The picture is the same to rounding
 };
 
 struct RenderOptions {
@@ -93,7 +93,7 @@ struct RenderOptions {
                              ///< before is kept while the eye stands still
   bool draw_background = true;  ///< false: black behind everything
   Quality quality = Quality::kAuto;
-  PixelPasses pixel_passes = PixelPasses::kMeasured;
+  PixelPasses pixel_passes = PixelPasses::kOfMachine;
   Display display = Display::kAces;
   DisplayBy display_by = DisplayBy::kSmaller;
   ColorConfig color;  ///< goes before `display` where it names a file

@@ -1,29 +1,13 @@
 #include "render/renderer_parts.h"
 
 #include <algorithm>
-#include <thread>
 #include <utility>
 
-#include "render/passes/pixel_choice.h"
 #include "render/passes/window_part.h"
 
 namespace slosh {
-namespace {
-
-/// A processor that draws, too, has its hands full; beside a GPU a quarter of its cores is free for this.
-int smoothing_threads(const Context& context) {
-  return context.is_software() ? 1
-                               : std::clamp(static_cast<int>(std::thread::hardware_concurrency()) / 4, 1, 4);
-}
-
-}  // namespace
-
 Renderer::Parts::Parts(Context& where, const RenderOptions& what)
-    : context(where),
-      options(what),
-      textures(!where.is_software()),
-      centers(smoothing_threads(where)),
-      timer(where.is_software()) {}
+    : context(where), options(what), textures(!where.is_software()), timer(where.is_software()) {}
 
 void Renderer::Parts::copy(const gl::Texture& from, glm::ivec2 size, const PictureTarget& target) {
   glCopyImageSubData(from.name(), GL_TEXTURE_2D, 0, 0, 0, 0, target.texture, GL_TEXTURE_2D, 0, 0, 0, 0,
@@ -37,7 +21,7 @@ void Renderer::Parts::draw_together(std::span<const View> views) {
     if (picture.targets.size != targets.size)
       picture.targets = make_targets(targets.size, options.half_resolution_back, fast);
   }
-  if (particles) return draw_stages(std::span(pictures).first(views.size()));
+  if (compute) return draw_stages(std::span(pictures).first(views.size()));
   // One after the other into the first one's, which the last stays in.
   for (std::size_t i = views.size(); i-- > 0;) {
     frame.view = views[i];
@@ -51,8 +35,8 @@ void Renderer::Parts::draw_together(std::span<const View> views) {
 Result<bool> Renderer::Parts::fit_to_options() {
   const bool want_fast =
       options.quality == Quality::kAuto ? context.is_software() : options.quality == Quality::kFast;
-  const bool want_compute = options.pixel_passes == PixelPasses::kMeasured
-                                ? compute_is_quicker(context)
+  const bool want_compute = options.pixel_passes == PixelPasses::kOfMachine
+                                ? !context.is_software()
                                 : options.pixel_passes == PixelPasses::kCompute;
   if (!scene_pass || want_fast != fast || want_compute != compute || !far_light.shows(options.environment)) {
     FarLight light;
@@ -67,15 +51,17 @@ Result<bool> Renderer::Parts::fit_to_options() {
     if (!fluid_shadow) return fluid_shadow.error();
     auto thickness = ThicknessPass::create(want_compute);
     if (!thickness) return thickness.error();
-    auto copying = gl::PixelProgram::create("copy.frag", want_compute, false, {"EACH 4"});
-    if (!copying) return copying.error();
-    particles.reset();
-    if (want_compute && !want_fast) {
+    std::optional<ParticlesOnGpu> on_gpu;
+    gl::PixelProgram copying;
+    if (want_compute) {
       auto taken = ParticlesOnGpu::create();
       if (!taken) return taken.error();
-      particles = std::move(taken.value());
+      on_gpu = std::move(taken.value());
+      auto made = gl::take(copying, gl::PixelProgram::create("copy.frag", true, false, {"EACH 4"}));
+      if (!made) return made.error();
     }
-    copy_program = std::move(copying.value());
+    particles = std::move(on_gpu);
+    copy_program = std::move(copying);
     thickness_pass = std::move(thickness.value());
     arrow_pass = std::move(arrows.value());
     foam_pass.reset();
@@ -142,14 +128,13 @@ void Renderer::Parts::show_in_window() {
 
 std::optional<PixelBox> Renderer::Parts::part_to_draw() {
   // Edges are smoothed in main memory then, which is where the picture is kept without a HUD.
-  if (!options.keep_still || !options.antialias || !fast || compute || !context.is_software())
-    return std::nullopt;
+  if (!options.keep_still || !options.antialias || !fast || !context.is_software()) return std::nullopt;
   return kept.changed(frame, meshes, targets.size, shadow.size > 0 ? shadow.texel : 0.0f);
 }
 
 int Renderer::Parts::draw_mixing(const Targets& into, const SplatBuffers& of) {
   if (!options.soft_mixing || !options.lit_fluid) return 0;
-  const int layers = particles ? mixing_layers(frame) : mixing_layers(frame, splats);
+  const int layers = compute ? mixing_layers(frame) : mixing_layers(frame, splats);
   if (layers == 0) return 0;
   if (!mixing_pass) {
     auto made = MixingPass::create(compute);
@@ -233,8 +218,8 @@ void Renderer::Parts::draw_scene() {
     if (chords) run("thickness", [&] { thickness_pass->draw(frame, targets, splats.all); });
   }
   if (occlusion) {
-    run("occlusion", [&] { scene_pass->draw_occlusion(targets, kOcclusionReach); });
-    run("resolve", [&] { scene_pass->resolve_occlusion(targets); });
+    run("occlusion", [&] { scene_pass->start_occlusion(targets, kOcclusionReach); });
+    run("resolve", [&] { scene_pass->start_resolve(targets); });
   }
   if (drew_fluid) {
     glFlush();
@@ -242,27 +227,21 @@ void Renderer::Parts::draw_scene() {
   }
   const bool translucent = has_translucent(frame);
   if (drew_fluid) {
-    bool copied = false;
     if (translucent && !fast) {
       run("translucent behind", [&] {
-        copied = scene_pass->draw_translucent(frame, meshes, textures, targets, fluid_depth(targets), true);
+        scene_pass->draw_translucent(frame, meshes, textures, targets, fluid_depth(targets), true);
       });
     }
-    const auto copy_scene = [&] {
-      if (compute) {
-        gl::bind_textures({&targets.color});
-        copy_program.run({targets.scene_color, targets.scene_color_target, targets.size, GL_RGBA16F});
-        return;
-      }
+    run("copy scene colour", [&] {
       const PixelBox box = part.value_or(PixelBox{glm::ivec2(0), targets.size});
       glCopyImageSubData(targets.color.name(), GL_TEXTURE_2D, 0, box.low.x, box.low.y, 0,
                          targets.scene_color.name(), GL_TEXTURE_2D, 0, box.low.x, box.low.y, 0, box.size().x,
                          box.size().y, 1);
-    };
-    if (!copied) run("copy scene colour", copy_scene);
+    });
     drew_caustics = draw_caustics(targets);
     const LitLook look{draw_mixing(targets, fluid_passes->splats()), mirrors_bodies(), drew_caustics};
-    run_in_part("composite", [&] { fluid_passes->composite(targets, options.lit_fluid ? &look : nullptr); });
+    run_in_part("composite",
+                [&] { fluid_passes->start_composite(targets, options.lit_fluid ? &look : nullptr); });
   }
   if (!frame.foam.empty()) run_in_part("foam", [&] { draw_foam(targets); });
   if (translucent) {
@@ -274,9 +253,9 @@ void Renderer::Parts::draw_scene() {
     run_in_part("arrows", [&] { arrow_pass->draw(frame, targets, fluid_depth(targets)); });
   }
   run_in_part("display",
-              [&] { display_pass->draw(targets, options.exposure, options.dither, options.antialias); });
+              [&] { display_pass->start(targets, options.exposure, options.dither, options.antialias); });
   if (options.antialias) {
-    run("edges", [&] { display_pass->smooth_edges(targets, context.is_software(), part); });
+    run("edges", [&] { display_pass->smooth_edges(targets, part); });
   }
 }
 

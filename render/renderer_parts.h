@@ -60,7 +60,7 @@ struct Renderer::Parts {
   Targets& targets = pictures[0].targets;
   Splats splats;
   SmoothCenters centers;
-  std::optional<ParticlesOnGpu> particles;  ///< for compute, but where hidden ones are left out on a CPU
+  std::optional<ParticlesOnGpu> particles;  ///< for compute
   FarLight far_light;
   std::optional<ShadowPass> shadow_pass;
   std::optional<FluidShadowPass> fluid_shadow_pass;
@@ -106,17 +106,15 @@ struct Renderer::Parts {
   bool mirrors_bodies() const;
   /// Draws views into as many pictures.
   void draw_together(std::span<const View> views);
+  /// By fragments and in main memory.
   void draw_scene();
-  /// draw_scene() of several views at once where particles are on the GPU: what does not wait for each other
-  /// runs side by side (renderer_stages.cpp).
+  /// The same by compute shaders, of several views at once: what does not wait for each other runs side by
+  /// side (renderer_stages.cpp).
   void draw_stages(std::span<Picture> drawn);
   void draw_stages_before_fluid(std::span<Picture> drawn, bool tiled);
-  void draw_stages_of_fluid(std::span<Picture> drawn, bool chords, bool tiled);
+  void draw_stages_of_fluid(std::span<Picture> drawn, bool chords);
   void draw_stages_of_look(std::span<Picture> drawn, bool tiled);
   void draw_stages_after(std::span<Picture> drawn, bool tiled);
-  /// One pass goes over all the glass and takes the occlusion off on the way, and the composite lays the
-  /// panes before the fluid over it: nothing comes between.
-  bool takes_all_glass(bool tiled);
   /// The composite has shares of several fluids or caustics, one after the other for each view.
   bool blends_or_focuses() const;
   /// Makes a picture the one that passes draw.

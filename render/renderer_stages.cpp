@@ -13,12 +13,6 @@ void Renderer::Parts::choose(const Picture& picture) {
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, picture.block.name());
 }
 
-bool Renderer::Parts::takes_all_glass(bool tiled) {
-  if (!occludes() || !drew_fluid || !tiled || !has_translucent(frame)) return false;
-  if (!frame.foam.empty() || !options.lit_fluid || blends_or_focuses()) return false;
-  return scene_pass->takes_all_glass() && fluid_passes->takes({0, mirrors_bodies(), false, true}, targets);
-}
-
 bool Renderer::Parts::blends_or_focuses() const {
   return (options.soft_mixing && options.lit_fluid && mixing_layers(frame) > 0) || options.caustics;
 }
@@ -33,9 +27,9 @@ void Renderer::Parts::draw_stages(std::span<Picture> drawn) {
   }
   drew_fluid = particles->count() > 0;
   drew_caustics = false;
-  const bool tiled = scene_pass->choose_tiles(frame, meshes, textures);
+  const bool tiled = scene_pass->takes_tiles(frame, meshes, textures);
   draw_stages_before_fluid(drawn, tiled);
-  if (drew_fluid || occludes()) draw_stages_of_fluid(drawn, chords, tiled);
+  if (drew_fluid || occludes()) draw_stages_of_fluid(drawn, chords);
   if (drew_fluid) draw_stages_of_look(drawn, tiled);
   draw_stages_after(drawn, tiled);
   choose(drawn.front());
@@ -65,33 +59,26 @@ void Renderer::Parts::draw_stages_before_fluid(std::span<Picture> drawn, bool ti
     particles->start_next();
     gl::finish_compute();
   });
-  const bool occlusion_now = occludes() && !takes_all_glass(tiled);
-  run(occlusion_now ? "occlusion, prepare splats" : "prepare splats", [&] {
+  run(occludes() ? "occlusion, prepare splats" : "prepare splats", [&] {
     const float reach = splat_reach(frame.particle_radius, options);
     each(drawn, [&](Picture& p) {
       if (drew_fluid) particles->start_placing(frame, reach, p.splats);
-      if (occlusion_now) scene_pass->start_occlusion(p.targets, kOcclusionReach);
+      if (occludes()) scene_pass->start_occlusion(p.targets, kOcclusionReach);
     });
     gl::finish_compute();
   });
 }
 
-void Renderer::Parts::draw_stages_of_fluid(std::span<Picture> drawn, bool chords, bool tiled) {
-  const bool resolves = occludes() && !takes_all_glass(tiled);
+void Renderer::Parts::draw_stages_of_fluid(std::span<Picture> drawn, bool chords) {
   const float reach = splat_reach(frame.particle_radius, options);
-  run(resolves     ? "splats, resolve"
-      : occludes() ? "splats, occlusion"
-                   : "splats",
-      [&] {
-        each(drawn, [&](Picture& p) {
-          if (drew_fluid) fluid_passes->start_splats(p.targets, p.splats);
-          if (drew_fluid && chords)
-            thickness_pass->start_sums(frame, p.targets, *particles, reach, p.chord_sums);
-          if (resolves) scene_pass->start_resolve(p.targets);
-          if (occludes() && !resolves) scene_pass->start_occlusion(p.targets, kOcclusionReach);
-        });
-        gl::finish_compute();
-      });
+  run(occludes() ? "splats, resolve" : "splats", [&] {
+    each(drawn, [&](Picture& p) {
+      if (drew_fluid) fluid_passes->start_splats(p.targets, p.splats);
+      if (drew_fluid && chords) thickness_pass->start_sums(frame, p.targets, *particles, reach, p.chord_sums);
+      if (occludes()) scene_pass->start_resolve(p.targets);
+    });
+    gl::finish_compute();
+  });
   if (!drew_fluid) return;
   run("surface filter, thickness", [&] {
     const int turns = fluid_passes->begin_filter(options);
@@ -106,45 +93,41 @@ void Renderer::Parts::draw_stages_of_fluid(std::span<Picture> drawn, bool chords
 }
 
 void Renderer::Parts::draw_stages_of_look(std::span<Picture> drawn, bool tiled) {
-  const bool panes = has_translucent(frame);
-  const bool all_at_once = takes_all_glass(tiled);
-  run(all_at_once ? "translucent"
-      : panes     ? "translucent behind"
-                  : "copy scene colour",
-      [&] {
-        each(drawn, [&](Picture& p) {
-          const gl::Texture* fluid = fluid_depth(p.targets);
-          const GlassPart part = all_at_once ? GlassPart::kAll : GlassPart::kBehind;
-          if (panes && tiled) return scene_pass->start_translucent(frame, p.meshes, p.targets, fluid, part);
-          if (panes) scene_pass->draw_translucent(frame, meshes, textures, p.targets, fluid, true);
-          gl::bind_textures({&p.targets.color});
-          copy_program.start(
-              {p.targets.scene_color, p.targets.scene_color_target, p.targets.size, GL_RGBA16F});
-        });
-        gl::finish_compute();
-      });
+  const bool panes = has_translucent(frame) && !fast;
+  run(panes ? "translucent behind" : "copy scene colour", [&] {
+    each(drawn, [&](Picture& p) {
+      const gl::Texture* fluid = fluid_depth(p.targets);
+      if (panes && tiled)
+        return scene_pass->start_translucent(frame, p.meshes, p.targets, fluid, GlassPart::kBehind);
+      if (panes) scene_pass->draw_translucent(frame, meshes, textures, p.targets, fluid, true);
+      gl::bind_textures({&p.targets.color});
+      copy_program.start({p.targets.scene_color, p.targets.scene_color_target, p.targets.size, GL_RGBA16F});
+    });
+    gl::finish_compute();
+  });
   // What these two write there is one of, not one for each view.
   if (blends_or_focuses()) {
     each(drawn, [&](Picture& p) {
       drew_caustics = draw_caustics(p.targets);
       const LitLook look{draw_mixing(p.targets, p.splats), mirrors_bodies(), drew_caustics};
-      run("composite", [&] { fluid_passes->composite(p.targets, options.lit_fluid ? &look : nullptr); });
+      run("composite", [&] {
+        fluid_passes->start_composite(p.targets, options.lit_fluid ? &look : nullptr);
+        gl::finish_compute();
+      });
     });
     return;
   }
   run("composite", [&] {
-    const LitLook look{0, mirrors_bodies(), false, all_at_once};
-    each(drawn, [&](Picture& p) {
-      fluid_passes->start_composite(p.targets, options.lit_fluid ? &look : nullptr,
-                                    all_at_once ? &p.meshes.panes : nullptr);
-    });
+    const LitLook look{0, mirrors_bodies(), false};
+    each(drawn,
+         [&](Picture& p) { fluid_passes->start_composite(p.targets, options.lit_fluid ? &look : nullptr); });
     gl::finish_compute();
   });
 }
 
 void Renderer::Parts::draw_stages_after(std::span<Picture> drawn, bool tiled) {
   if (!frame.foam.empty()) run("foam", [&] { each(drawn, [&](Picture& p) { draw_foam(p.targets); }); });
-  if (has_translucent(frame) && !takes_all_glass(tiled)) {
+  if (has_translucent(frame)) {
     run("translucent", [&] {
       each(drawn, [&](Picture& p) {
         const gl::Texture* fluid = fluid_depth(p.targets);

@@ -42,11 +42,6 @@ Result<PixelProgram> PixelProgram::create(const char* file, bool compute, bool t
   return out;
 }
 
-void PixelProgram::run(const PixelTarget& target, const TileDraw* tiles) const {
-  start(target, tiles);
-  if (compute_) finish_compute();
-}
-
 void PixelProgram::start(const PixelTarget& target, const TileDraw* tiles) const {
   program_.use();
   if (compute_) {
@@ -119,11 +114,6 @@ bool RowProgram::short_rows(std::size_t count) const {
 
 const Program& RowProgram::of(std::size_t count) const {
   return short_rows(count) ? many_ : few_;
-}
-
-void RowProgram::run(std::size_t count) const {
-  start(count);
-  finish_compute();
 }
 
 void RowProgram::start(std::size_t count) const {

@@ -28,18 +28,16 @@ struct PixelTarget {
 class PixelProgram {
  public:
   PixelProgram() = default;
-  /// `file` ends with pixel_main.glsl. `tiled`: fragments are drawn over the TileDraw given to run().
+  /// `file` ends with pixel_main.glsl. `tiled`: fragments are drawn over the TileDraw given to start().
   /// `prelude`: generated GLSL before the file's own. Where little is done for a pixel, `defines` may say
   /// "EACH n": a compute shader's invocation takes n of them. Errors carry the driver's log.
   static Result<PixelProgram> create(const char* file, bool compute, bool tiled = false,
                                      std::vector<std::string> defines = {}, const std::string& prelude = {});
 
-  /// Its textures and uniforms are set by the caller before. What it writes, whoever comes next may read.
-  void run(const PixelTarget& target, const TileDraw* tiles = nullptr) const;
-  /// The same, but nobody reads it before finish_compute().
+  /// Its textures and uniforms are set by the caller before. What a compute shader writes nobody reads before
+  /// finish_compute().
   void start(const PixelTarget& target, const TileDraw* tiles = nullptr) const;
 
-  bool on_compute() const { return compute_; }
   const Program& program() const { return program_; }
 
  private:
@@ -77,8 +75,7 @@ class RowProgram {
 
   /// What runs for so many: its uniforms are set by the caller, but for `count`.
   const Program& of(std::size_t count) const;
-  void run(std::size_t count) const;
-  /// The same without finish_compute().
+  /// Nobody reads what it writes before finish_compute().
   void start(std::size_t count) const;
 
  private:

@@ -29,9 +29,11 @@ std::optional<gl::PixelProgram> by_its_text(const DisplayPass::Wish& wish) {
 Result<DisplayPass> DisplayPass::create(const Wish& wish) {
   DisplayPass pass;
   pass.wish_ = wish;
-  auto edges = gl::PixelProgram::create("edges.frag", wish.compute);
-  if (!edges) return edges.error();
-  pass.edges_ = std::move(edges.value());
+  if (wish.compute) {
+    auto edges = gl::PixelProgram::create("edges.frag", true);
+    if (!edges) return edges.error();
+    pass.edges_ = std::move(edges.value());
+  }
   if (auto program = by_its_text(wish)) {
     // What a configuration lacks is told in either way.
     const glm::vec3 one(0.18f);
@@ -59,11 +61,6 @@ Result<DisplayPass> DisplayPass::create(const Wish& wish) {
   return pass;
 }
 
-void DisplayPass::draw(const Targets& targets, float exposure, bool dither, bool edges_follow) {
-  start(targets, exposure, dither, edges_follow);
-  if (program_.on_compute()) gl::finish_compute();
-}
-
 void DisplayPass::start(const Targets& targets, float exposure, bool dither, bool edges_follow) {
   gl::bind_textures({&targets.color});
   if (!by_text()) glBindTextureUnit(1, table_.name());
@@ -74,30 +71,25 @@ void DisplayPass::start(const Targets& targets, float exposure, bool dither, boo
       {into, edges_follow ? targets.sharp_target : targets.display_target, targets.size, GL_RGBA8});
 }
 
-void DisplayPass::smooth_edges(const Targets& targets, bool on_cpu, const std::optional<PixelBox>& part) {
-  if (on_cpu) {
-    const glm::ivec2 size = targets.size;
-    const std::size_t bytes =
-        std::size_t{4} * static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
-    PixelBox box{glm::ivec2(0), size};
-    if (part && sharp_.size() == bytes) box = *part;
-    sharp_.resize(bytes);
-    if (!box.empty()) {
-      const std::size_t first = 4 * (static_cast<std::size_t>(box.low.y) * size.x + box.low.x);
-      glPixelStorei(GL_PACK_ROW_LENGTH, size.x);
-      glGetTextureSubImage(targets.sharp.name(), 0, box.low.x, box.low.y, 0, box.size().x, box.size().y, 1,
-                           GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(bytes - first),
-                           sharp_.data() + first);
-      glPixelStorei(GL_PACK_ROW_LENGTH, 0);
-      slosh::smooth_edges(sharp_, size, box, brightness_, smooth_);
-    }
-    glTextureSubImage2D(targets.display.name(), 0, 0, 0, size.x, size.y, GL_RGBA, GL_UNSIGNED_BYTE,
-                        smooth_.data());
-    glBindFramebuffer(GL_FRAMEBUFFER, targets.display_target.name());
-    return;
+void DisplayPass::smooth_edges(const Targets& targets, const std::optional<PixelBox>& part) {
+  const glm::ivec2 size = targets.size;
+  const std::size_t bytes =
+      std::size_t{4} * static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
+  PixelBox box{glm::ivec2(0), size};
+  if (part && sharp_.size() == bytes) box = *part;
+  sharp_.resize(bytes);
+  if (!box.empty()) {
+    const std::size_t first = 4 * (static_cast<std::size_t>(box.low.y) * size.x + box.low.x);
+    glPixelStorei(GL_PACK_ROW_LENGTH, size.x);
+    glGetTextureSubImage(targets.sharp.name(), 0, box.low.x, box.low.y, 0, box.size().x, box.size().y, 1,
+                         GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(bytes - first),
+                         sharp_.data() + first);
+    glPixelStorei(GL_PACK_ROW_LENGTH, 0);
+    slosh::smooth_edges(sharp_, size, box, brightness_, smooth_);
   }
-  start_edges(targets);
-  if (edges_.on_compute()) gl::finish_compute();
+  glTextureSubImage2D(targets.display.name(), 0, 0, 0, size.x, size.y, GL_RGBA, GL_UNSIGNED_BYTE,
+                      smooth_.data());
+  glBindFramebuffer(GL_FRAMEBUFFER, targets.display_target.name());
 }
 
 void DisplayPass::start_edges(const Targets& targets) {

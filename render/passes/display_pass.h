@@ -20,21 +20,20 @@ class DisplayPass {
     bool operator==(const Wish&) const = default;
   };
   static Result<DisplayPass> create(const Wish& wish);
-  /// Reads color; writes display, or sharp where smooth_edges follows.
-  void draw(const Targets& targets, float exposure, bool dither, bool edges_follow);
-  /// The same, and edges by shaders, but nobody reads it before gl::finish_compute().
+  /// Reads color; writes display, or sharp where edges follow. By compute shaders nobody reads what this and
+  /// start_edges() write before gl::finish_compute().
   void start(const Targets& targets, float exposure, bool dither, bool edges_follow);
+  /// Reads sharp; writes display. For compute.
   void start_edges(const Targets& targets);
-  /// Reads sharp; writes display. `on_cpu`: where a CPU draws; then `part` may say what of sharp was written
-  /// since the call before.
-  void smooth_edges(const Targets& targets, bool on_cpu, const std::optional<PixelBox>& part = std::nullopt);
+  /// The same in main memory. `part`: what of sharp was written since the call before, where that is known.
+  void smooth_edges(const Targets& targets, const std::optional<PixelBox>& part);
   bool is(const Wish& wish) const { return wish == wish_; }
   /// Whether by OpenColorIO's own text, not by the table.
   bool by_text() const { return table_.name() == 0; }
 
  private:
   gl::PixelProgram program_;
-  gl::PixelProgram edges_;
+  gl::PixelProgram edges_;  ///< for compute
   gl::Texture table_;
   std::vector<std::uint8_t> sharp_;   ///< in main memory
   std::vector<std::uint8_t> smooth_;  ///< likewise, its edges smoothed

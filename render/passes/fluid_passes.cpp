@@ -6,10 +6,6 @@
 namespace slosh {
 namespace {
 
-// Of fluid_look.frag.
-constexpr GLuint kPaneAddedUnit = 7;
-constexpr GLuint kPaneThroughUnit = 21;
-
 void clear_to(const gl::Framebuffer& target, float depth) {
   const glm::vec4 value(depth);
   glClearNamedFramebufferfv(target.name(), GL_COLOR, 0, &value.x);
@@ -39,10 +35,14 @@ Result<FluidPasses> FluidPasses::create(bool fast, bool compute, const std::vect
         gl::take(passes.composite_program_,
                  gl::PixelProgram::create("composite.frag", compute, true, far_light)),
         gl::take(passes.look_program_, gl::PixelProgram::create("fluid_look.frag", compute, true, looks)),
-        gl::take(passes.fill_program_, gl::PixelProgram::create("fill.frag", compute, false, {"EACH 4"})),
         gl::take(passes.thickness_program_, gl::Program::create("tiles.vert", "thickness.frag")),
         gl::take(passes.normal_program_, gl::Program::create("tiles.vert", "normal.frag"))}) {
     if (!loaded) return loaded.error();
+  }
+  if (compute) {
+    auto filling = gl::PixelProgram::create("fill.frag", true, false, {"EACH 4"});
+    if (!filling) return filling.error();
+    passes.fill_program_ = std::move(filling.value());
   }
   passes.no_vertices_ = gl::make_vertex_array();
   passes.tile_vertices_ = gl::make_vertex_array();
@@ -83,22 +83,14 @@ void FluidPasses::use_whole_picture() {
   if (tile_corners_ != static_cast<GLsizei>(std::size(kPicture))) upload_tiles(kPicture);
 }
 
-void FluidPasses::splat(const SplatProgram& program, const gl::PixelTarget& target, GLenum blending,
-                        float cleared, const gl::StreamBuffer& buffer, std::size_t count) {
+void FluidPasses::splat(const gl::Program& program, const gl::Framebuffer& target, glm::ivec2 size,
+                        GLenum blending, float cleared, const gl::StreamBuffer& buffer, std::size_t count) {
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, buffer.name());
-  if (compute_) {
-    fill_program_.program().set("fill_with", glm::vec4(cleared));
-    fill_program_.run(target);
-    glBindImageTexture(0, target.texture.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_R32UI);
-    program.rows.of(count).set("seen_at", -1);
-    program.rows.run(count);
-    return;
-  }
-  clear_to(target.framebuffer, cleared);
-  draw_into(target.framebuffer, target.size);
+  clear_to(target, cleared);
+  draw_into(target, size);
   glEnable(GL_BLEND);
   glBlendEquation(blending);
-  program.triangles.use();
+  program.use();
   glBindVertexArray(no_vertices_.name());
   glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(3 * count));
   glBlendEquation(GL_FUNC_ADD);
@@ -140,14 +132,13 @@ void FluidPasses::start_turn(int i, const Targets& targets, const RenderOptions&
 
 void FluidPasses::splat_front(const Targets& targets) {
   if (splats_.shaped) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, splats_.shapes.name());
-  splat(splats_.shaped ? shaped_program_ : front_program_,
-        {targets.front, targets.front_target, targets.size, GL_R32F}, GL_MIN, kNoFluidDepth, splats_.spheres,
-        splats_.count);
+  splat((splats_.shaped ? shaped_program_ : front_program_).triangles, targets.front_target, targets.size,
+        GL_MIN, kNoFluidDepth, splats_.spheres, splats_.count);
 }
 
 void FluidPasses::splat_back(const Targets& targets) {
   const bool own = back_count_ > 0;
-  splat(back_program_, {targets.back, targets.back_target, targets.back_size, GL_R32F}, GL_MAX, 0.0f,
+  splat(back_program_.triangles, targets.back_target, targets.back_size, GL_MAX, 0.0f,
         own ? back_buffer_ : splats_.spheres, own ? back_count_ : splats_.count);
 }
 
@@ -179,7 +170,6 @@ const gl::PixelProgram& FluidPasses::program_of(const LitLook& look, const Targe
     if (look.mixed > 0) defines.push_back("MIXED " + std::to_string(look.mixed));
     if (look.bodies) defines.emplace_back("BODIES");
     if (look.caustics) defines.emplace_back("CAUSTICS");
-    if (look.panes) defines.emplace_back("PANES");
     auto made = gl::PixelProgram::create("fluid_look.frag", compute_, true, std::move(defines));
     if (made) at->second = std::move(made.value());
   }
@@ -189,20 +179,7 @@ const gl::PixelProgram& FluidPasses::program_of(const LitLook& look, const Targe
   return at->second;
 }
 
-bool FluidPasses::takes(const LitLook& look, const Targets& targets) {
-  return look == LitLook{} || &program_of(look, targets) != &look_program_;
-}
-
-void FluidPasses::composite(const Targets& targets, const LitLook* look) {
-  start_composite(targets, look);
-  if (compute_) gl::finish_compute();
-}
-
-void FluidPasses::start_composite(const Targets& targets, const LitLook* look, const PanesBefore* panes) {
-  if (panes) {
-    glBindTextureUnit(kPaneAddedUnit, panes->added.name());
-    glBindTextureUnit(kPaneThroughUnit, panes->through.name());
-  }
+void FluidPasses::start_composite(const Targets& targets, const LitLook* look) {
   gl::bind_textures({&targets.front, &smoothed(targets), &targets.back, &targets.scene_depth,
                      &targets.scene_color, &targets.chord});
   const gl::TileDraw where = tiles();

@@ -13,7 +13,6 @@
 #include "render/passes/splats.h"
 #include "render/passes/surface_filter.h"
 #include "render/passes/targets.h"
-#include "render/passes/tiled_meshes.h"
 #include "render/renderer.h"
 
 namespace slosh {
@@ -23,20 +22,19 @@ struct LitLook {
   int mixed = 0;          ///< textures that passes/mixing_pass.h bound, with the fluids' shares; 0: no mixing
   bool bodies = false;    ///< they are mirrored
   bool caustics = false;  ///< passes/caustics_pass.h bound them
-  bool panes = false;     ///< of glass before the fluid are laid over it
   auto operator<=>(const LitLook&) const = default;
 };
 
 class FluidPasses {
  public:
-  /// `compute`: by compute shaders where it can be.
+  /// `compute`: by compute shaders.
   static Result<FluidPasses> create(bool fast, bool compute, const std::vector<std::string>& far_light);
 
   /// Uploads this frame's splats and tiles.
   void upload(const Splats& splats);
   /// What upload() took.
   const SplatBuffers& splats() const { return splats_; }
-  /// 5.1. Reads the splats; writes front and back.
+  /// 5.1, by fragments. Reads the splats; writes front and back.
   void splat_front(const Targets& targets);
   void splat_back(const Targets& targets);
   /// The filter that smooth() runs. Errors: a shader that the driver refuses.
@@ -46,7 +44,7 @@ class FluidPasses {
   void fetch_front(const Targets& targets, const RenderOptions& options);
   /// Reads front; writes smooth by turns.
   void smooth(const Targets& targets, const RenderOptions& options, const Frame& frame);
-  /// The same by compute shaders, of splats that were placed there, in steps of which nobody reads before
+  /// All of this by compute shaders, of splats that were placed there, in steps of which nobody reads before
   /// gl::finish_compute(): front and back cleared; the splats; each turn of the filter, of which
   /// begin_filter() tells how many there are.
   void start_clear(const Targets& targets) const;
@@ -54,12 +52,9 @@ class FluidPasses {
   int begin_filter(const RenderOptions& options);
   void start_turn(int i, const Targets& targets, const RenderOptions& options, const Frame& frame);
   /// 5.2: Eq 15, or with `lit` fluid_look.glsl. Reads front, smooth, back, scene_depth, scene_color; writes
-  /// color where there is fluid. `look`: null for Eq 15.
-  void composite(const Targets& targets, const LitLook* look);
-  /// The same, but nobody reads it before gl::finish_compute().
-  void start_composite(const Targets& targets, const LitLook* look, const PanesBefore* panes = nullptr);
-  /// Whether the driver takes what a look has compiled in.
-  bool takes(const LitLook& look, const Targets& targets);
+  /// color where there is fluid. `look`: null for Eq 15. By compute shaders nobody reads it before
+  /// gl::finish_compute().
+  void start_composite(const Targets& targets, const LitLook* look);
   /// T for tests, into an R32F target of the picture's size; and n, into an RGBA32F one.
   void thickness(const Targets& targets, const gl::Framebuffer& target);
   void normals(const Targets& targets, const gl::Framebuffer& target);
@@ -74,9 +69,9 @@ class FluidPasses {
     gl::RowProgram rows;  ///< for compute
     static Result<SplatProgram> create(bool compute, const std::vector<std::string>& defines);
   };
-  /// Splats of `buffer` into a cleared texture of depths, by blending or atomics.
-  void splat(const SplatProgram& program, const gl::PixelTarget& target, GLenum blending, float cleared,
-             const gl::StreamBuffer& buffer, std::size_t count);
+  /// Splats of `buffer` into a cleared texture of depths, by blending.
+  void splat(const gl::Program& program, const gl::Framebuffer& target, glm::ivec2 size, GLenum blending,
+             float cleared, const gl::StreamBuffer& buffer, std::size_t count);
   /// Made when first asked for.
   const gl::PixelProgram& program_of(const LitLook& look, const Targets& targets);
   gl::TileDraw tiles() const { return {&tile_vertices_, tile_corners_}; }

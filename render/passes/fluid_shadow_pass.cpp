@@ -18,6 +18,7 @@ constexpr float kSoft = 1.25f;
 
 Result<FluidShadowPass> FluidShadowPass::create(bool fast, bool compute) {
   FluidShadowPass pass;
+  pass.compute_ = compute;
   if (compute) {
     for (const Result<bool>& loaded :
          {gl::take(pass.rows_, gl::RowProgram::create("fluid_shadow.comp", false)),
@@ -50,7 +51,7 @@ bool FluidShadowPass::begin(const Frame& frame, const RenderOptions& options, co
   glBindTextureUnit(kFluidShadowUnit, map_.name());
   const bool empty = !options.fluid_shadow || shadow.size == 0 || count == 0 || frame.fluids.empty();
   // What sums up writes every texel.
-  if (empty || !sum_.on_compute()) clear();
+  if (empty || !compute_) clear();
   return !empty;
 }
 
@@ -61,7 +62,7 @@ void FluidShadowPass::set_up(const gl::Program& program, const Frame& frame, con
     extinction[i] = frame.fluids[i].extinction;
   // Where all dim alike, one sum a texel does for the three channels.
   const float most = std::max({extinction[0].x, extinction[0].y, extinction[0].z});
-  const bool alike = sum_.on_compute() && frame.fluids.size() == 1 && most > 0.0f;
+  const bool alike = compute_ && frame.fluids.size() == 1 && most > 0.0f;
   program.set("sums_a_texel", alike ? 1 : 3);
   alike_ = alike ? extinction[0] / most : glm::vec3(0.0f);
   if (alike) extinction[0] = glm::vec3(most);
@@ -91,17 +92,13 @@ bool FluidShadowPass::start_sums(const Frame& frame, const RenderOptions& option
   const gl::Program& program = rows_.of(drawn);
   set_up(program, frame, options, shadow, step);
   program.set("stride", static_cast<int>(step));
-  start_rows(particles.particles(), drawn);
-  return true;
-}
-
-void FluidShadowPass::start_rows(const gl::StreamBuffer& particles, std::size_t count) {
   const auto side = static_cast<std::size_t>(size_);
   if (!std::exchange(sums_ready_, true)) sums_.zero(4 * sizeof(std::uint32_t) * side * side);
-  rows_.of(count).set("size", size_);
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, particles.name());
+  program.set("size", size_);
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, particles.particles().name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, sums_.name());
-  rows_.start(count);
+  rows_.start(drawn);
+  return true;
 }
 
 void FluidShadowPass::start_map() {
@@ -129,15 +126,7 @@ void FluidShadowPass::draw(const Frame& frame, const RenderOptions& options, con
     return;
   }
   buffer_.upload(std::span<const glm::vec4>(particles_));
-  const gl::Program& program = sum_.on_compute() ? rows_.of(particles_.size()) : program_;
-  set_up(program, frame, options, shadow, step);
-  if (sum_.on_compute()) {
-    program.set("stride", 1);
-    start_rows(buffer_, particles_.size());
-    gl::finish_compute();
-    start_map();
-    return gl::finish_compute();
-  }
+  set_up(program_, frame, options, shadow, step);
   glVertexArrayVertexBuffer(array_.name(), 0, buffer_.name(), 0, sizeof(glm::vec4));
   glBindFramebuffer(GL_FRAMEBUFFER, target_.name());
   glViewport(0, 0, size_, size_);

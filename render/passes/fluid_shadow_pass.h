@@ -17,7 +17,8 @@ class FluidShadowPass {
   /// `compute`: by compute shaders.
   static Result<FluidShadowPass> create(bool fast, bool compute);
 
-  /// Reads all particles of the frame; writes the map and binds it. The map is empty without a shadow view.
+  /// By fragments. Reads all particles of the frame; writes the map and binds it. The map is empty without a
+  /// shadow view.
   void draw(const Frame& frame, const RenderOptions& options, const ShadowView& shadow);
   /// The same by compute shaders, of particles that are on the GPU, in two steps of which nobody reads before
   /// gl::finish_compute(): sums, and the map of them. False: there is nothing to sum up, and the map is
@@ -33,7 +34,6 @@ class FluidShadowPass {
   /// Sets the program's uniforms, each particle drawn standing for `step`.
   void set_up(const gl::Program& program, const Frame& frame, const RenderOptions& options,
               const ShadowView& shadow, std::size_t step);
-  void start_rows(const gl::StreamBuffer& particles, std::size_t count);
 
   gl::Program program_;
   gl::RowProgram rows_;    ///< for compute
@@ -46,6 +46,7 @@ class FluidShadowPass {
   gl::VertexArray array_;
   gl::StreamBuffer buffer_;
   std::vector<glm::vec4> particles_;
+  bool compute_ = false;
   int size_ = 0;
   std::size_t most_ = 0;  ///< particles drawn at most; each then stands for several
 };

@@ -36,6 +36,7 @@ int mixing_layers(const Frame& frame) {
 
 Result<MixingPass> MixingPass::create(bool compute) {
   MixingPass pass;
+  pass.compute_ = compute;
   if (compute) {
     for (const Result<bool>& loaded :
          {gl::take(pass.rows_, gl::RowProgram::create("mixing.comp", false)),
@@ -65,21 +66,23 @@ void MixingPass::draw(const Frame& frame, const Targets& targets, const gl::Text
                       const gl::StreamBuffer& spheres, std::size_t count, int layers) {
   const glm::ivec2 size = targets.chord_size;
   make_shares(size, layers);
-  const gl::Program& program = sum_.on_compute() ? rows_.of(count) : program_;
+  const gl::Program& program = compute_ ? rows_.of(count) : program_;
   program.set("pixels", size == targets.half_size ? 2 : 4);
   program.set("radius", kMixingReach * frame.particle_radius);
   gl::bind_textures({&smoothed});
   for (std::size_t i = 0; i < static_cast<std::size_t>(layers); ++i) {
     program.set("first", 4 * static_cast<int>(i));
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, spheres.name());
-    if (sum_.on_compute()) {
+    if (compute_) {
       sums_.zero(4 * sizeof(std::uint32_t) * static_cast<std::size_t>(size.x) *
                  static_cast<std::size_t>(size.y));
       program.set("size", size);
       sum_.program().set("size", size);
       glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, sums_.name());
-      rows_.run(count);
-      sum_.run({shares_[i], share_targets_[i], size, GL_RGBA16F});
+      rows_.start(count);
+      gl::finish_compute();
+      sum_.start({shares_[i], share_targets_[i], size, GL_RGBA16F});
+      gl::finish_compute();
       continue;
     }
     const glm::vec4 none(0.0f);

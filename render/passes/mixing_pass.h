@@ -36,6 +36,7 @@ class MixingPass {
   std::vector<gl::Texture> shares_;  ///< RGBA16F
   std::vector<gl::Framebuffer> share_targets_;
   glm::ivec2 size_{0};
+  bool compute_ = false;
 };
 
 /// Textures that the shares of what is on screen take: 0 where it is all of one fluid.

@@ -207,7 +207,7 @@ std::span<const float> NarrowRangeOnCpu::run(std::span<const float> depths, std:
     // rows that end at it and then down the columns of what those rows have made.
     const bool beside =
         hides || (!lines.at_moves && any_hidden(at - reach, at + glm::ivec2(count - 1, 0) + reach, size));
-    const int taps = beside ? 2 * kernel.taps : kernel.taps;
+    const int taps = beside ? kernel.taps_beside : kernel.taps;
     (hides ? smooth_along<true> : smooth_along<false>)(lines, here, count, kernel, taps, out);
   };
   for_each_run([&](int x, int y, int count) {

@@ -14,6 +14,7 @@ class NarrowRangeOnCpu {
     float reach = 0.0f;             ///< m, to a side
     float range = 0.0f;             ///< m of depth
     int taps = 6;                   ///< to a side, more where the reach is many pixels (filter_stride)
+    int taps_beside = 12;           ///< where a body hides something within reach
     float pixels_per_metre = 0.0f;  ///< of a metre at one metre's depth
     float radius = 0.0f;            ///< m, of a splat: so far behind a body fluid is hidden by it
   };

@@ -100,13 +100,6 @@ Result<ScenePass> ScenePass::create(bool fast, bool compute, const std::vector<s
 
 void ScenePass::draw_opaque(const Frame& frame, const MeshStore& meshes, const TextureStore& textures,
                             const Targets& targets, bool background, bool occlusion_follows) {
-  if (choose_tiles(frame, meshes, textures)) {
-    upload_looks(frame, meshes, lists_);
-    start_lists(frame, meshes, lists_);
-    gl::finish_compute();
-    start_opaque(frame, lists_, targets, background, occlusion_follows);
-    return gl::finish_compute();
-  }
   const auto sorted = opaque_nearest_first(frame, meshes);
   const gl::Framebuffer& target = occlusion_follows ? targets.mesh_target : targets.plain_mesh_target;
   const glm::vec4 black(0.0f);
@@ -149,9 +142,8 @@ void ScenePass::draw_opaque(const Frame& frame, const MeshStore& meshes, const T
   glDisable(GL_DEPTH_TEST);
 }
 
-bool ScenePass::choose_tiles(const Frame& frame, const MeshStore& meshes, const TextureStore& textures) {
-  by_tiles_ = tiled_ && TiledMeshes::suit(frame, meshes, textures);
-  return by_tiles_;
+bool ScenePass::takes_tiles(const Frame& frame, const MeshStore& meshes, const TextureStore& textures) const {
+  return tiled_ && TiledMeshes::suit(frame, meshes, textures);
 }
 
 void ScenePass::upload_looks(const Frame& frame, const MeshStore& meshes, TiledMeshes::Lists& lists) {
@@ -167,7 +159,7 @@ void ScenePass::start_opaque(const Frame& frame, const TiledMeshes::Lists& lists
   tiled_->start_opaque(lists, frame.view, targets, background, occlusion_follows);
 }
 
-void ScenePass::start_translucent(const Frame& frame, TiledMeshes::Lists& lists, const Targets& targets,
+void ScenePass::start_translucent(const Frame& frame, const TiledMeshes::Lists& lists, const Targets& targets,
                                   const gl::Texture* fluid, GlassPart part) const {
   tiled_->start_glass(lists, frame.view, targets, fluid, part);
 }
@@ -183,26 +175,10 @@ void ScenePass::start_resolve(const Targets& targets) const {
   resolve_.start({targets.color, targets.color_target, targets.size, GL_RGBA16F});
 }
 
-void ScenePass::draw_occlusion(const Targets& targets, float reach) {
-  start_occlusion(targets, reach);
-  if (occlusion_.on_compute()) gl::finish_compute();
-}
-
-void ScenePass::resolve_occlusion(const Targets& targets) {
-  start_resolve(targets);
-  if (resolve_.on_compute()) gl::finish_compute();
-}
-
-bool ScenePass::draw_translucent(const Frame& frame, const MeshStore& meshes, const TextureStore& textures,
+void ScenePass::draw_translucent(const Frame& frame, const MeshStore& meshes, const TextureStore& textures,
                                  const Targets& targets, const gl::Texture* fluid, bool behind) {
-  if (by_tiles_) {
-    if (lists_.glass.drawn.empty()) return false;
-    start_translucent(frame, lists_, targets, fluid, behind ? GlassPart::kBehind : GlassPart::kBefore);
-    gl::finish_compute();
-    return behind;
-  }
   const auto sorted = glass_farthest_first(frame, meshes);
-  if (sorted.empty()) return false;
+  if (sorted.empty()) return;
   Programs& programs = behind ? translucent_behind_ : translucent_front_;
   if (fluid) gl::bind_textures({fluid});
   glBindFramebuffer(GL_FRAMEBUFFER, targets.blend_target.name());
@@ -236,7 +212,6 @@ bool ScenePass::draw_translucent(const Frame& frame, const MeshStore& meshes, co
   glBlendFunc(GL_ONE, GL_ZERO);
   glDepthMask(GL_TRUE);
   glDisable(GL_DEPTH_TEST);
-  return false;
 }
 
 }  // namespace slosh

@@ -21,30 +21,27 @@ class ScenePass {
   /// `compute`: occlusion by compute shaders, and meshes that suit them.
   static Result<ScenePass> create(bool fast, bool compute, const std::vector<std::string>& far_light);
 
-  /// Reads opaque meshes and the shadow map; writes S_d, the depth buffer and the colour (mesh_color if
-  /// occlusion follows, else color).
+  /// By fragments. Reads opaque meshes and the shadow map; writes S_d, the depth buffer and the colour
+  /// (mesh_color if occlusion follows, else color).
   void draw_opaque(const Frame& frame, const MeshStore& meshes, const TextureStore& textures,
                    const Targets& targets, bool background, bool occlusion_follows);
   /// Whether this frame's meshes go by tiles: then all of them, for each of its views, by what follows;
   /// nobody reads any of it before gl::finish_compute(). All views' looks first, which sorts each one's
   /// meshes, then a view's lists.
-  bool choose_tiles(const Frame& frame, const MeshStore& meshes, const TextureStore& textures);
+  bool takes_tiles(const Frame& frame, const MeshStore& meshes, const TextureStore& textures) const;
   static void upload_looks(const Frame& frame, const MeshStore& meshes, TiledMeshes::Lists& lists);
   void start_lists(const Frame& frame, const MeshStore& meshes, TiledMeshes::Lists& lists) const;
   void start_opaque(const Frame& frame, const TiledMeshes::Lists& lists, const Targets& targets,
                     bool background, bool occlusion_follows) const;
-  void start_translucent(const Frame& frame, TiledMeshes::Lists& lists, const Targets& targets,
+  void start_translucent(const Frame& frame, const TiledMeshes::Lists& lists, const Targets& targets,
                          const gl::Texture* fluid, GlassPart part) const;
-  bool takes_all_glass() { return tiled_ && tiled_->takes_all(); }
-  /// Occlusion by itself, likewise.
+  /// Reads S_d; writes occlusion. Reads it and mesh_color; writes color. By compute shaders nobody reads
+  /// either before gl::finish_compute().
   void start_occlusion(const Targets& targets, float reach) const;
   void start_resolve(const Targets& targets) const;
-  /// Reads S_d and mesh_color; writes occlusion, then color.
-  void draw_occlusion(const Targets& targets, float reach);
-  void resolve_occlusion(const Targets& targets);
-  /// Blends translucent meshes into color: those behind the fluid's surface, or those in front of it. `fluid`
-  /// is the smoothed F_fD, null without fluid. True: color was copied to scene_color on the way.
-  bool draw_translucent(const Frame& frame, const MeshStore& meshes, const TextureStore& textures,
+  /// By fragments. Blends translucent meshes into color: those behind the fluid's surface, or those in front
+  /// of it. `fluid` is the smoothed F_fD, null without fluid.
+  void draw_translucent(const Frame& frame, const MeshStore& meshes, const TextureStore& textures,
                         const Targets& targets, const gl::Texture* fluid, bool behind);
 
  private:
@@ -60,8 +57,6 @@ class ScenePass {
 
   bool fast_ = false;                 ///< glass: only the sides that face the eye
   std::optional<TiledMeshes> tiled_;  ///< where compute shaders draw
-  bool by_tiles_ = false;             ///< this picture's meshes
-  TiledMeshes::Lists lists_;          ///< of the view drawn by itself
   Programs opaque_;
   gl::Program background_;
   gl::PixelProgram occlusion_;

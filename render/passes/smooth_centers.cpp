@@ -5,14 +5,11 @@
 #include <cmath>
 #include <numeric>
 #include <span>
-#include <thread>
 
 #include "render/shader_math.h"
 
 namespace slosh {
 namespace {
-
-constexpr std::size_t kWorthAThread = 4000;  // particles: some 2 ms of work
 
 constexpr int kTileWide =
     16;  // neighbours side by side: loops over them are plain, so that the compiler makes them wide
@@ -168,18 +165,8 @@ SmoothCenters::Smoothed SmoothCenters::smooth(const glm::vec3& at, float radius)
 
 void SmoothCenters::move(const Frame& frame, Splats& splats) {
   splats.shapes.resize(splats.spheres.size());
-  const std::size_t count = splats.spheres.size();
-  const std::size_t parts = std::clamp<std::size_t>(count / kWorthAThread, 1, threads_);
-  std::vector<std::jthread> others;
-  for (std::size_t part = 1; part < parts; ++part) {
-    others.emplace_back([&, part] { move(frame, splats, count * part / parts, count * (part + 1) / parts); });
-  }
-  move(frame, splats, 0, count / parts);
-}
-
-void SmoothCenters::move(const Frame& frame, Splats& splats, std::size_t first, std::size_t end) {
   const glm::mat3 turn(frame.view.view);
-  for (std::size_t i = first; i < end; ++i) {
+  for (std::size_t i = 0; i < splats.spheres.size(); ++i) {
     const std::uint32_t particle = splats.particles[i];
     Smoothed& smoothed = smoothed_[particle];
     if (!known_[particle]) {

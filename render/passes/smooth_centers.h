@@ -3,7 +3,6 @@
 // CPU; no GL here.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -17,8 +16,6 @@ namespace slosh {
 
 class SmoothCenters {
  public:
-  /// By up to so many threads, the caller's among them; what comes out is the same.
-  explicit SmoothCenters(int threads = 1) : threads_(static_cast<std::size_t>(std::max(threads, 1))) {}
   /// Sorts the frame's particles into cells; those that are not finite or of no fluid of the frame are left
   /// out.
   void sort(const Frame& frame);
@@ -40,14 +37,11 @@ class SmoothCenters {
   void fit_cells(const Frame& frame, std::size_t count);
   glm::ivec3 cell_of(const glm::vec3& at) const;
   std::size_t row_of(int y, int z) const;
-  /// move() for the splats from `first` to before `end`.
-  void move(const Frame& frame, Splats& splats, std::size_t first, std::size_t end);
   Smoothed smooth(const glm::vec3& at, float radius) const;
 
   static constexpr float kReach =
       4.0f;  ///< particle radii, 2.5 spacings: some 60 neighbours inside the fluid
 
-  std::size_t threads_;
   float reach_ = 1.0f;
   glm::ivec3 lowest_{0};  // cells; who is outside counts as in the nearest
   glm::ivec3 cells_{1};

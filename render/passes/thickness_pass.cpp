@@ -24,7 +24,6 @@ Result<ThicknessPass> ThicknessPass::create(bool compute) {
   if (compute) {
     for (const Result<bool>& loaded :
          {gl::take(pass.rows_, gl::RowProgram::create("chord.comp", true)),
-          gl::take(pass.world_rows_, gl::RowProgram::create("chord.comp", true, {"WORLD"})),
           gl::take(pass.sum_, gl::PixelProgram::create("chord_sum.frag", true, false, {"EACH 4"}))}) {
       if (!loaded) return loaded.error();
     }
@@ -47,15 +46,9 @@ void ThicknessPass::set_up(const gl::Program& program, const Frame& frame, const
 
 void ThicknessPass::start_sums(const Frame& frame, const Targets& targets, const ParticlesOnGpu& particles,
                                float reach, Sums& sums) const {
-  const gl::Program& program = world_rows_.of(particles.count());
+  const gl::Program& program = rows_.of(particles.count());
   program.set("near_plane", frame.view.near_plane);
   program.set("reach", reach);
-  start_rows(world_rows_, frame, targets, particles.by_cell(), particles.count(), sums);
-}
-
-void ThicknessPass::start_rows(const gl::RowProgram& rows, const Frame& frame, const Targets& targets,
-                               const gl::StreamBuffer& spheres, std::size_t count, Sums& sums) {
-  const gl::Program& program = rows.of(count);
   set_up(program, frame, targets);
   const glm::ivec2 size = targets.chord_size;
   if (sums.size != size)
@@ -63,9 +56,9 @@ void ThicknessPass::start_rows(const gl::RowProgram& rows, const Frame& frame, c
                      static_cast<std::size_t>(size.y));
   sums.size = size;
   program.set("size", size);
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, spheres.name());
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, particles.by_cell().name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, sums.texels.name());
-  rows.start(count);
+  rows_.start(particles.count());
 }
 
 void ThicknessPass::start_chords(const Targets& targets, const Sums& sums) const {
@@ -76,12 +69,6 @@ void ThicknessPass::start_chords(const Targets& targets, const Sums& sums) const
 
 void ThicknessPass::draw(const Frame& frame, const Targets& targets, std::span<const glm::vec4> spheres) {
   buffer_.upload(spheres);
-  if (sum_.on_compute()) {
-    start_rows(rows_, frame, targets, buffer_, spheres.size(), sums_);
-    gl::finish_compute();
-    start_chords(targets, sums_);
-    return gl::finish_compute();
-  }
   set_up(program_, frame, targets);
   const glm::vec4 none(0.0f);
   glClearNamedFramebufferfv(targets.chord_target.name(), GL_COLOR, 0, &none.x);

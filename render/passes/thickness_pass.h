@@ -18,7 +18,8 @@ class ThicknessPass {
   /// `compute`: by compute shaders.
   static Result<ThicknessPass> create(bool compute);
 
-  /// Reads S_d and `spheres` (eye position m, fluid; all of them, hidden ones too); writes targets.chord.
+  /// By fragments. Reads S_d and `spheres` (eye position m, fluid; all of them, hidden ones too); writes
+  /// targets.chord.
   void draw(const Frame& frame, const Targets& targets, std::span<const glm::vec4> spheres);
   /// Where compute shaders add up.
   struct Sums {
@@ -34,14 +35,10 @@ class ThicknessPass {
 
  private:
   static void set_up(const gl::Program& program, const Frame& frame, const Targets& targets);
-  static void start_rows(const gl::RowProgram& rows, const Frame& frame, const Targets& targets,
-                         const gl::StreamBuffer& spheres, std::size_t count, Sums& sums);
 
   gl::Program program_;
-  gl::RowProgram rows_;        ///< for compute
-  gl::RowProgram world_rows_;  ///< for compute, of particles on the GPU
-  gl::PixelProgram sum_;       ///< for compute
-  Sums sums_;
+  gl::RowProgram rows_;   ///< for compute
+  gl::PixelProgram sum_;  ///< for compute
   gl::VertexArray array_;
   gl::StreamBuffer buffer_;
 };

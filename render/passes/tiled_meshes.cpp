@@ -55,8 +55,6 @@ Result<TiledMeshes> TiledMeshes::create(bool fast, const std::vector<std::string
   TiledMeshes out;
   out.fast_ = fast;
   const MeshDefines defines = mesh_defines(fast, far_light);
-  out.all_defines_ = defines.behind;
-  out.all_defines_.emplace_back("BOTH");
   for (const Result<bool>& loaded :
        {gl::take(out.triangles_, gl::Program::create_compute("mesh_triangles.comp")),
         gl::take(out.opaque_, gl::Program::create_compute("mesh_pixels.comp", defines.opaque)),
@@ -156,35 +154,14 @@ void TiledMeshes::start_opaque(const Lists& lists, const View& view, const Targe
   start(opaque_, lists.opaque, view, targets.size);
 }
 
-bool TiledMeshes::takes_all() {
-  if (!all_) {
-    auto made = gl::Program::create_compute("glass_pixels.comp", all_defines_);
-    all_ = made ? std::move(made.value()) : gl::Program();
-  }
-  return bool(*all_);
-}
-
-void TiledMeshes::start_glass(Lists& lists, const View& view, const Targets& targets,
+void TiledMeshes::start_glass(const Lists& lists, const View& view, const Targets& targets,
                               const gl::Texture* fluid, GlassPart part) const {
-  const gl::Program& program = part == GlassPart::kBefore   ? before_
-                               : part == GlassPart::kBehind ? behind_
-                                                            : *all_;
+  const gl::Program& program = part == GlassPart::kBefore ? before_ : behind_;
   program.set("has_fluid", fluid ? 1 : 0);
-  gl::bind_textures(
-      {fluid ? fluid : &targets.scene_depth, &targets.scene_depth, &targets.mesh_color, &targets.occlusion});
+  gl::bind_textures({fluid ? fluid : &targets.scene_depth, &targets.scene_depth});
   glBindImageTexture(0, targets.color.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA16F);
-  if (part != GlassPart::kBefore)
+  if (part == GlassPart::kBehind)
     glBindImageTexture(1, targets.scene_color.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA16F);
-  if (part == GlassPart::kAll) {
-    PanesBefore& panes = lists.panes;
-    if (panes.size != targets.size) {
-      panes.added = gl::make_texture(targets.size, GL_RGBA16F, GL_NEAREST);
-      panes.through = gl::make_texture(targets.size, GL_RGBA16F, GL_NEAREST);
-      panes.size = targets.size;
-    }
-    glBindImageTexture(2, panes.added.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA16F);
-    glBindImageTexture(3, panes.through.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA16F);
-  }
   start(program, lists.glass, view, targets.size);
 }
 

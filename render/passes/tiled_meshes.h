@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,16 +27,6 @@ MeshDefines mesh_defines(bool fast, const std::vector<std::string>& far_light);
 enum class GlassPart : std::uint8_t {
   kBehind,  ///< behind the fluid's surface; color is copied to scene_color, too
   kBefore,  ///< before it
-  kAll,  ///< both, over mesh_color less its occlusion (resolve.frag), which color becomes; those before the
-         ///< fluid over color where there is none, else for the composite to lay over it. After takes_all()
-};
-
-/// The panes before the fluid, where there is fluid: light = light · through + added. RGBA16F; made when
-/// first needed.
-struct PanesBefore {
-  gl::Texture added;
-  gl::Texture through;
-  glm::ivec2 size{0};
 };
 
 class TiledMeshes {
@@ -64,7 +53,6 @@ class TiledMeshes {
   struct Lists {
     List opaque;
     List glass;
-    PanesBefore panes;  ///< of GlassPart::kAll
   };
 
   /// Takes a view's meshes and uploads what they look like. For all views before the first start_lists(): an
@@ -75,10 +63,8 @@ class TiledMeshes {
   /// Opaque ones: writes S_d and the colour (mesh_color if occlusion follows, else color).
   void start_opaque(const Lists& lists, const View& view, const Targets& targets, bool background,
                     bool occlusion_follows) const;
-  /// Whether GlassPart::kAll can be drawn.
-  bool takes_all();
   /// Glass into color. `fluid` is the smoothed F_fD, null without fluid.
-  void start_glass(Lists& lists, const View& view, const Targets& targets, const gl::Texture* fluid,
+  void start_glass(const Lists& lists, const View& view, const Targets& targets, const gl::Texture* fluid,
                    GlassPart part) const;
 
  private:
@@ -92,8 +78,6 @@ class TiledMeshes {
   gl::Program triangles_;
   gl::Program opaque_;
   gl::Program behind_;
-  std::optional<gl::Program> all_;  ///< made when first asked for; none: the driver refuses it
-  std::vector<std::string> all_defines_;
   gl::Program before_;
 };
 

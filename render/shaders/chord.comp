@@ -1,22 +1,18 @@
-// chord.vert and chord.frag by atomics: a row of invocations goes over each point's texels. WORLD: of particles where they are in the
-// world, which nobody asked yet whether they are seen.
+// chord.vert and chord.frag by atomics: a row of invocations goes over each point's texels, of particles where they are in the world, which
+// nobody asked yet whether they are seen.
 #include "chord_point.glsl"
 #include "splat_place.glsl"
 #include "splat_rows.glsl"
 #include "sums.glsl"
-#ifdef WORLD
 #include "in_view.glsl"
-#endif
 layout(std430, binding = 2) buffer Sums { uint sums[]; };  // a texel each
 uniform ivec2 size;
 uniform int count;
 void draw_splat(int index) {
   vec4 ball = splats[index];
   if (ball.w < 0.0) return;
-#ifdef WORLD
   ball.xyz = eye_of(ball.xyz);
   if (!in_view(ball, ball.xyz)) return;
-#endif
   SplatPlace place = splat_place(ball.xyz);
   if (any(greaterThan(abs(place.center), vec2(1.0)))) return;  // as points are clipped
   ChordPoint point = chord_point(place.depth);

@@ -169,25 +169,10 @@ FluidMatter matter_here(uint own, ivec2 texel, float front) {
 FluidMatter matter_here(uint own, ivec2 texel, float front) { return matter_of_look(own); }
 #endif
 
-#ifdef PANES
-// The panes before the fluid where there is any (glass_pixels.comp).
-layout(binding = 7) uniform sampler2D pane_added;
-layout(binding = 21) uniform sampler2D pane_through;
-vec3 through_panes(vec3 seen, ivec2 texel) {
-  return seen * texelFetch(pane_through, texel, 0).rgb + texelFetch(pane_added, texel, 0).rgb;
-}
-#endif
-
 bool pixel(ivec2 texel, out vec4 value) {
   float raw = texelFetch(front_depth, texel, 0).r;
   float front = texelFetch(smooth_depth, texel, 0).r;
   float thickness = thickness_at(texel, raw, front);
-#ifdef PANES
-  if (thickness <= 0.0 && front <= kFluidDepthLimit) {
-    value = vec4(through_panes(texelFetch(scene_color, texel, 0).rgb, texel), 0.0);
-    return true;
-  }
-#endif
   if (thickness <= 0.0) return false;
 
   FluidMatter matter = matter_here(floatBitsToUint(raw) & 15u, texel, front);
@@ -223,9 +208,6 @@ bool pixel(ivec2 texel, out vec4 value) {
                               mix(seen_behind(behind.texel),
                                   studio(mat3(world_from_eye) * -to_eye * vec3(1.0, -1.0, 1.0)), far.by_floor));
   value = vec4(fluid_radiance(matter, point, lit, surface.whole), 0.0);
-#ifdef PANES
-  value.rgb = through_panes(value.rgb, texel);
-#endif
   return true;
 }
 #include "pixel_main.glsl"

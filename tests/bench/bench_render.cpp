@@ -164,10 +164,8 @@ slosh::Result<std::unique_ptr<Way>> make_way(const char* name, const Wishes& wis
   if (wishes.text) options.display_by = DisplayBy::kText;
   if (wishes.no_bodies) options.body_reflections = false;
   if (wishes.hard) options.soft_mixing = false;
-  if (name != std::string("compute") && name != std::string("measured"))
-    options.pixel_passes = PixelPasses::kFragments;
+  options.pixel_passes = name == std::string("compute") ? PixelPasses::kCompute : PixelPasses::kFragments;
   options.keep_still = name == std::string("kept");  // else two pictures of one moment would be one
-  if (name == std::string("compute")) options.pixel_passes = PixelPasses::kCompute;
   auto made = Renderer::create(context, options);
   if (!made) return made.error();
   auto way = std::make_unique<Way>();
@@ -230,10 +228,8 @@ void print_table(const std::vector<std::unique_ptr<Way>>& ways) {
         [&](Way& way) { return &way.cpu_times[pass]; });
   }
   using Values = const std::vector<double>*;
-  row(
-      "all passes", [](Way& way) { return &way.sums; }, [](Way& way) { return &way.cpu_sums; });
-  row(
-      "frame + read-back", [](Way& way) { return &way.whole; }, [](Way&) { return Values{nullptr}; });
+  row("all passes", [](Way& way) { return &way.sums; }, [](Way& way) { return &way.cpu_sums; });
+  row("frame + read-back", [](Way& way) { return &way.whole; }, [](Way&) { return Values{nullptr}; });
 }
 
 /// By how much the two ways' pictures differ.
@@ -282,7 +278,6 @@ int main(int argc, char** argv) {
   const std::map<std::string, std::vector<const char*>> named{{"both", {"fragments", "compute"}},
                                                               {"fragments", {"fragments"}},
                                                               {"compute", {"compute"}},
-                                                              {"measured", {"measured"}},
                                                               {"still", {"anew", "kept"}}};
   for (const char* name : named.at(wishes.pixels)) {
     auto way = make_way(name, wishes, *context.value());
@@ -295,8 +290,6 @@ int main(int argc, char** argv) {
   std::printf("%s, threads %d\n%d x %d, %zu particles, %d frames\n", context.value()->description().c_str(),
               wishes.threads, wishes.width, wishes.height, ways.front()->load.frame().particles.size(),
               wishes.frames);
-  if (wishes.pixels == "measured")
-    std::printf("measured: by %s\n", ways.front()->renderer->on_compute() ? "compute" : "fragments");
   if (wishes.on_gpu) {
     const slosh::Renderer& drew = *ways.back()->renderer;
     std::printf("particles are read %s\n",

@@ -38,10 +38,9 @@ void say_options(CLI::App& app, Wishes& wishes) {
       ->check(CLI::Range(0, 1000));
   app.add_flag("--stereo", wishes.stereo, "both eyes against one as well, each of that size, with the HUD");
   app.add_option("--pixels", wishes.pixels,
-                 "passes over pixels by fragments, compute, both in turn, or as measured; still: by "
-                 "fragments, all anew "
-                 "and with what stands still kept, in turn")
-      ->check(CLI::IsMember({"both", "fragments", "compute", "measured", "still"}))
+                 "a processor's path (fragments), a GPU's (compute), or both in turn; still: by fragments, "
+                 "all anew and with what stands still kept, in turn")
+      ->check(CLI::IsMember({"both", "fragments", "compute", "still"}))
       ->capture_default_str();
   app.add_option("--environment", wishes.environment, "the room: FILE.hdr or studio");
   app.add_option("--out", wishes.out, "the picture, FILE.png");
