@@ -70,16 +70,16 @@ void decide_body_drag(const Scene& scene, Plan& plan) {
 }
 
 // From this many times the explicit step on a solve is worth it: a step with one takes 1.05 to 1.8 times as
-// long there, up to four times in honey (tests/notebook/2026-11-27-implicit-viscosity.md). At a wider
-// support Eq 9, which is what is solved for, passes on 6 % too little in a lattice, and stresses, which are
-// stepped, do not.
+// long there, up to four times in honey (tests/notebook/2026-11-27-implicit-viscosity.md). At a wider support
+// the implicit solve's Eq 9 gives 6 % too little shear stress in a lattice; the explicit particle stress does
+// not.
 constexpr double kWorthSolving = 2.0, kWorthSolvingWide = 4.0;
 constexpr double kWide = 2.2;  // radius over spacing
 double worth_solving(const Plan& plan) {
   return plan.support_radius > kWide * plan.spacing ? kWorthSolvingWide : kWorthSolving;
 }
 
-// A probe's velocity is its body's, which is solved for later. The other models stay as they are, to compare
+// A probe's velocity is its body's, which is known only later. The other models stay as they are, to compare
 // with.
 bool suits_implicit_viscosity(const Scene& scene, const Plan& plan) {
   return plan.viscous() && corrects_gradients(plan.model) && !any_probe(scene);
@@ -90,8 +90,8 @@ void decide_implicit_viscosity(Plan& plan) {
   if (plan.has(PassId::kImplicitViscosity)) plan.runs.set(PassId::kBodyDrag, false);
 }
 
-// Beside drag on jostling a thin fluid's own is next to nothing. As thick as the corrected model asks for in
-// the incompressible one too, so that both are one fluid.
+// In thin fluid artificial viscosity far exceeds the fluid's own. The threshold is the corrected model's in
+// the incompressible one too, so that both treat a fluid alike.
 bool suits_stress(const FluidExtremes& fluids, const Plan& plan) {
   return plan.viscous() && corrects_gradients(plan.model) && !plan.implicit_viscosity &&
          fluids.most_viscous > kThin * weakly_compressible_artificial_viscosity(plan, fluids.lightest);
@@ -124,13 +124,13 @@ Reasons reasons_for(PassId id, const Scene& scene, const FluidExtremes& fluids, 
     case PassId::kFluidStress:
       return {
           format(
-              "far from walls that hold fluid of up to %.3g Pa·s passes on the stress of its own flow, and "
-              "Eq 9 is what is left beside them",
+              "viscous stress τ = μ(G + Gᵀ) for fluid of up to %.3g Pa·s; Eq 9 within about two spacings of "
+              "no-slip walls",
               fluids.most_viscous),
           !plan.viscous()                        ? "nothing is viscous"
           : !corrects_gradients(plan.model)      ? "the corrected and the incompressible model's"
-          : plan.has(PassId::kImplicitViscosity) ? "what is solved for is Eq 9's drag"
-                                                 : "thin fluid: drag on jostling is stronger than its own"};
+          : plan.has(PassId::kImplicitViscosity) ? "implicit viscosity uses Eq 9"
+                                                 : "thin fluid: artificial viscosity exceeds its own"};
     case PassId::kPressureForce:
       return {paper                              ? "Eq 5"
               : plan.has(PassId::kPressureSolve) ? "Eq 5 by corrected gradients and the last step's pressures"
@@ -152,21 +152,21 @@ Reasons reasons_for(PassId id, const Scene& scene, const FluidExtremes& fluids, 
               plan.has_fluid() ? "every body is fixed and none is measured" : "no fluid"};
     case PassId::kBodyDrag:
       return {
-          "free bodies in viscous fluid: drag by the velocity at the step's end, in the bodies' own solve",
+          "free bodies in viscous fluid: drag implicit in the body's velocity, as part of the bodies' solve",
           !plan.viscous()                        ? "nothing is viscous"
-          : plan.has(PassId::kImplicitViscosity) ? "bodies are in the solve of the whole drag"
+          : plan.has(PassId::kImplicitViscosity) ? "bodies are part of the implicit viscosity solve"
           : !plan.has(PassId::kPlaceBodies)      ? "no free body with a surface meets fluid"
-                                                 : "beside a probe drag stays explicit"};
+                                                 : "a probe needs explicit viscosity"};
     case PassId::kImplicitViscosity:
-      return {format("drag by the velocities at the step's end, all solved together: explicit it would need "
-                     "steps of %.3g ms",
+      return {format("viscous force by the velocities at the step's end (conjugate gradients): explicit viscosity "
+                     "would need steps of %.3g ms",
                      1e3 * viscous_step(scene, plan, fluids)),
               !plan.viscous()                   ? "nothing is viscous"
               : !corrects_gradients(plan.model) ? "the corrected and the incompressible model's"
-              : any_probe(scene)                ? "beside a probe drag stays explicit"
-                                                : "explicit drag costs less here"};
+              : any_probe(scene)                ? "a probe needs explicit viscosity"
+                                                : "explicit viscosity costs less here"};
     case PassId::kPressureSolve:
-      return {format("in place of Eq 7: pressures that keep fluid from being compressed, %d turns at most",
+      return {format("in place of Eq 7: pressure projection, %d iterations at most",
                      kMaxPressureIterations),
               plan.has_fluid() ? "Eq 7 gives the pressures: the incompressible model solves for them"
                                : "no fluid"};

@@ -19,7 +19,7 @@ const PassNames& names(PassId id) {
       {"sort_fluid", "sort fluid"},
       {"place_bodies", "place body particles"},
       {"density", "density"},
-      {"fluid_stress", "stresses in the fluid"},
+      {"fluid_stress", "viscous stress of particles"},
       {"pressure_force", "pressure force"},
       {"one_viscosity", "viscous force, one viscosity"},
       {"pair_viscosity", "viscous force, a viscosity a particle"},
@@ -27,7 +27,7 @@ const PassNames& names(PassId id) {
       {"wrenches", "wrench on bodies"},
       {"body_drag", "implicit drag on free bodies"},
       {"implicit_viscosity", "implicit viscosity"},
-      {"pressure_solve", "solve for pressures"},
+      {"pressure_solve", "pressure projection"},
       {"integrate_fluid", "integrate fluid"},
       {"couplings", "virtual couplings"},
       {"contacts", "contacts"},
@@ -49,7 +49,7 @@ std::string describe(const Plan& plan) {
   text += format("spacing         %.4g mm\n", plan.spacing * 1e3);
   text += format("support radius  %.4g mm\n", plan.support_radius * 1e3);
   if (plan.has(PassId::kPressureSolve)) {
-    text += format("stiffness       none: pressures are solved for (jostling is damped as by %.4g m²/s²)\n",
+    text += format("stiffness       none: pressure projection (artificial viscosity as of %.4g m²/s²)\n",
                    plan.stiffness);
   } else {
     text +=

@@ -29,13 +29,12 @@ struct World::Impl {
   /// World::settle, with fluids as they are.
   double come_to_rest(double seconds, std::span<const HandleInput> handles, bool (*stopped)(),
                       double longest);
-  /// The fluid's age, and what it presses by at it.
+  /// Relaxes the fluid's rest density (pressure/rest_density.h).
   void calibrate_rest_density(double dt);
   SubStep sub_step(int index) const;
   void begin_step();
-  /// The fluid, and the bodies as far as they take part. Where the fluid is dragged by what the bodies' solve
-  /// finds, or must not pass walls that move, it waits for it; else it goes on while they are solved (on a
-  /// GPU).
+  /// The fluid, and the bodies as far as they take part. Where the viscous force needs the velocities of the
+  /// bodies' solve, or walls move, it waits for it; else it goes on while they are solved (on a GPU).
   void run(const SubStep& step, TakePart part);
   void solve_viscosity(const SubStep& step, bool moving, bool held_only);
   void solve_pressure(const SubStep& step, bool moving, bool held_only, bool with_drag);
@@ -65,7 +64,7 @@ struct World::Impl {
   StepTimes times;
   double gravity_scale = 1.0;
   double age;           // s, as pressure/rest_density.h counts it; no further than kSettlingTime
-  bool packed = false;  // the engine has what that age needs, and it needs nothing else any more
+  bool packed = false;  // the engine has the relaxed rest density, which stays
   StateFrame frame;
 };
 

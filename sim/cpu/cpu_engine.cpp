@@ -282,7 +282,7 @@ class CpuEngine final : public ParticleEngine {
   std::size_t fluid_count_;          // without probes
   std::vector<char> wanted_;         // one a body: its wrench is summed
   bool fixed_measured_ = false;
-  std::vector<DistanceField> fields_;  // of the bodies that particles are guarded against
+  std::vector<DistanceField> fields_;  // of the bodies with a penetration clamp
   std::vector<DistanceFieldView> views_;
   std::vector<GuardedBody> guarded_;
   ImpulseSums impulses_;

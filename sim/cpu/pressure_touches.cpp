@@ -1,4 +1,4 @@
-// Where pressures that are solved for meet bodies.
+// Where the pressure projection meets bodies.
 #include "sim/cpu/pressure_solve.h"
 #include "sim/model.h"
 

@@ -1,4 +1,4 @@
-// Fluid and walls along which it slides, batch by batch (viscosity/mirror_drag.h).
+// Fluid and free-slip walls, batch by batch (viscosity/mirror_drag.h).
 #pragma once
 
 #include "sim/cpu/row_force.h"
