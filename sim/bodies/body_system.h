@@ -38,7 +38,7 @@ class BodySystem {
   /// The velocities that the bodies end the sub-step with, by couplings and contacts as far as the plan has
   /// them. With `held_only` the other bodies stand still. Returns StatusBits.
   std::uint32_t solve(const Plan& plan, const BodyForces& forces, const SubStep& step, bool held_only);
-  /// Every body as implicit drag has to know it, one a body: as solve() will find it under the same forces,
+  /// Every body as implicit viscosity needs it, one a body: as solve() will find it under the same forces,
   /// with what contacts gave in the last sub-step for what they will give now. With `part` false none moves.
   void predict(const Plan& plan, const BodyForces& forces, const SubStep& step, bool part, bool held_only,
                std::span<ViscousBody> out);

@@ -1,4 +1,4 @@
-// Fluid and walls along which it slides (viscosity/mirror_drag.h), as sim/cpu/row_mirror.h.
+// Fluid and free-slip walls (viscosity/mirror_drag.h), as sim/cpu/row_mirror.h.
 #pragma once
 
 #include "sim/cuda/pair_rows.cuh"

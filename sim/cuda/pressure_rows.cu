@@ -1,4 +1,4 @@
-// Writing down who presses on whom.
+// Writes the pressure pairs down.
 #include "sim/cuda/pressure_pairs.cuh"
 
 namespace slosh::cuda {

@@ -1,4 +1,4 @@
-// Writing down who drags whom, and the drag on bodies that stand still.
+// Writes the viscous pairs down; the drag on bodies that stand still.
 #include "sim/cuda/pair_mirrors.cuh"
 #include "sim/cuda/viscous_pairs.cuh"
 
