@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "sim/walls/exposed_surface.h"
-#include "sim/walls/layer.h"
+#include "sim/walls/particle_layer.h"
 
 namespace slosh {
 

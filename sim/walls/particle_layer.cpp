@@ -4,7 +4,7 @@
 #include "sim/math/kernels.h"
 #include "sim/model.h"
 #include "sim/pressure/pair_pressure.h"
-#include "sim/walls/layer.h"
+#include "sim/walls/particle_layer.h"
 #include "sim/walls/point_buckets.h"
 
 namespace slosh {

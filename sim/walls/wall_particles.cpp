@@ -8,7 +8,7 @@
 #include "sim/viscosity/wall_drag.h"
 #include "sim/walls/convex_edges.h"
 #include "sim/walls/joined_walls.h"
-#include "sim/walls/layer.h"
+#include "sim/walls/particle_layer.h"
 #include "sim/walls/point_buckets.h"
 #include "sim/walls/wall_inset.h"
 
