@@ -1,5 +1,5 @@
 // What somebody may send: messages that are valid and of any content, damaged ones, and bytes that are
-// nothing. All chances come from one seed.
+// nothing. All random numbers come from one seed.
 #pragma once
 
 #include <random>
