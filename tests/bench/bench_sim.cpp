@@ -201,7 +201,7 @@ bool bench_drag(Table& table, const std::vector<std::size_t>& counts, int steps,
         tank.scene.model = model;
         const Plan plan = make_plan(tank.scene, tank.sampled.spacing);
         if (plan.has(PassId::kImplicitViscosity) != (viscosity > 0.0))
-          return std::fprintf(stderr, "the plan does not solve drag\n"), false;
+          return std::fprintf(stderr, "the plan has no implicit viscosity\n"), false;
         worlds.emplace_back(tank.scene, tank.sampled, plan, WorldOptions{1, Backend::kCpu});
       }
       for (const bool first : {true, false}) {
