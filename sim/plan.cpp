@@ -158,16 +158,17 @@ Reasons reasons_for(PassId id, const Scene& scene, const FluidExtremes& fluids, 
           : !plan.has(PassId::kPlaceBodies)      ? "no free body with a surface meets fluid"
                                                  : "a probe needs explicit viscosity"};
     case PassId::kImplicitViscosity:
-      return {format("viscous force by the velocities at the step's end (conjugate gradients): explicit viscosity "
-                     "would need steps of %.3g ms",
-                     1e3 * viscous_step(scene, plan, fluids)),
-              !plan.viscous()                   ? "nothing is viscous"
-              : !corrects_gradients(plan.model) ? "the corrected and the incompressible model's"
-              : any_probe(scene)                ? "a probe needs explicit viscosity"
-                                                : "explicit viscosity costs less here"};
+      return {
+          format(
+              "viscous force by the velocities at the step's end (conjugate gradients): explicit viscosity "
+              "would need steps of %.3g ms",
+              1e3 * viscous_step(scene, plan, fluids)),
+          !plan.viscous()                   ? "nothing is viscous"
+          : !corrects_gradients(plan.model) ? "the corrected and the incompressible model's"
+          : any_probe(scene)                ? "a probe needs explicit viscosity"
+                                            : "explicit viscosity costs less here"};
     case PassId::kPressureSolve:
-      return {format("in place of Eq 7: pressure projection, %d iterations at most",
-                     kMaxPressureIterations),
+      return {format("in place of Eq 7: pressure projection, %d iterations at most", kMaxPressureIterations),
               plan.has_fluid() ? "Eq 7 gives the pressures: the incompressible model solves for them"
                                : "no fluid"};
     case PassId::kIntegrateFluid:

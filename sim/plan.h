@@ -86,7 +86,8 @@ struct Plan {
 
   bool has(PassId id) const { return runs.has(id); }
   bool has_fluid() const { return runs.has(PassId::kSortFluid); }
-  /// Penetration clamp: particles are kept from passing walls (walls/wall_guard.h). The paper has no such thing.
+  /// Penetration clamp: particles are kept from passing walls (walls/wall_guard.h). The paper has no such
+  /// thing.
   bool guards_walls() const { return has(PassId::kWalls) && model != ParticleModel::kPaper; }
   /// Nothing passes a wall: what leaves the domain went over an edge.
   bool walls_hold() const { return !has(PassId::kWalls) || guards_walls(); }

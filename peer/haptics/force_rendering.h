@@ -133,7 +133,7 @@ class ForceRendering {
   double most_turning_ = 0.0;
   double share_ = 1.0;
   double believed_ = 1.0;  // at the call before
-  bool begun_ = false;  // world and device were both fresh since the device came, or the world was reset
+  bool begun_ = false;     // world and device were both fresh since the device came, or the world was reset
   bool felt_ = false;
   bool hold_anew_ = false;   // updates had stopped
   bool held_on_ = false;     // the hand, at the call before

@@ -7,8 +7,8 @@ namespace slosh {
 
 namespace {
 
-// Iterations of Gauss–Seidel, there and back: until no impulse changes by more than a share of the largest, or the
-// most that a step may cost.
+// Iterations of Gauss–Seidel, there and back: until no impulse changes by more than a share of the largest,
+// or the most that a step may cost.
 constexpr int kMaxTurns = 150;
 constexpr double kSettled = 1e-7;
 

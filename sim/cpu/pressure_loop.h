@@ -8,8 +8,7 @@ namespace slosh {
 /// Of up to four particles.
 struct GroupForces {
   Sixteen pressed = {};  ///< N, by what others press with and by their stresses
-  Sixteen dragged =
-      {};  ///< Σ V shape/r² d (d · (u of others − one's own)), without Eq 9's constants
+  Sixteen dragged = {};  ///< Σ V shape/r² d (d · (u of others − one's own)), without Eq 9's constants
 };
 
 /// `presses`: by the tensors; `artificial`: by `drags`, Pa·m; `drags`: besides by Eq 9 of each one's own

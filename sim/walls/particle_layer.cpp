@@ -1,10 +1,11 @@
+#include "sim/walls/particle_layer.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "sim/math/kernels.h"
 #include "sim/model.h"
 #include "sim/pressure/pair_pressure.h"
-#include "sim/walls/particle_layer.h"
 #include "sim/walls/point_buckets.h"
 
 namespace slosh {

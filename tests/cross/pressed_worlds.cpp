@@ -77,8 +77,8 @@ void compare_pressed_steps() {
   const Tank thick = shaken(pressed(in_two_honeys()));
   compare_steps("pressure projection and implicit viscosity, held paddle and free box", thick, 1, kOneStep);
   compare_momenta(thick, pressing_plan(thick), 3, 2e-6);
-  // Shaken: as it is one of the two takes an iteration more in the first step, and they end 7e-4 spacings apart;
-  // with a tenth of the pressures' tolerance they agree.
+  // Shaken: as it is one of the two takes an iteration more in the first step, and they end 7e-4 spacings
+  // apart; with a tenth of the pressures' tolerance they agree.
   const Tank probed = shaken(pressed(probed_tank()));
   compare_steps("pressure projection, probe", probed, 1, kOneStep);
 }
@@ -97,7 +97,8 @@ void compare_pressed() {
         Case{"pressure projection, light paddle in honey",
              pressed(paddle_in_honey(ParticleModel::kCorrected))},
         Case{"pressure projection, held paddle and free box", pressed(thick_tank(0.1, 0.1)), kTwoWays},
-        Case{"pressure projection and implicit viscosity, held paddle and free box", pressed(in_two_honeys())}}) {
+        Case{"pressure projection and implicit viscosity, held paddle and free box",
+             pressed(in_two_honeys())}}) {
     const Tank tank = shaken(c.tank);
     compare_steps(c.name, tank, 1, kOneStep);
     compare_steps(c.name, tank, 10, kTenSteps);
@@ -105,8 +106,8 @@ void compare_pressed() {
     compare_momenta(tank, pressing_plan(tank), 50, 2e-6);
     repeat(c.name, c.tank, kPaddleHeight, 100);
   }
-  // Shaken: as it is one of the two takes an iteration more in the first step, and they end 7e-4 spacings apart;
-  // with a tenth of the pressures' tolerance they agree.
+  // Shaken: as it is one of the two takes an iteration more in the first step, and they end 7e-4 spacings
+  // apart; with a tenth of the pressures' tolerance they agree.
   const Tank probed = shaken(pressed(probed_tank()));
   compare_steps("pressure projection, probe", probed, 1, kOneStep);
   repeat("pressure projection, probe", probed, 0.05, 100);

@@ -32,7 +32,7 @@ TEST(DeviceLimits, ANumberThatIsMissingOrNoneIsRefusedWithItsName) {
   EXPECT_FALSE(check_limits(DeviceLimits{}, "forgetful")) << "a driver that says nothing gets nothing";
   struct Field {
     const char* name;
-    double DeviceLimits::*value;
+    double DeviceLimits::* value;
   };
   for (const Field& field :
        {Field{"max_force", &DeviceLimits::max_force}, Field{"max_torque", &DeviceLimits::max_torque},

@@ -85,8 +85,7 @@ TEST(StepRate, FewAndLateStepsAreNotFelt) {
 TEST(StepRate, MissedTicksAreNotFelt) {
   for (const double rate : {300.0, 15.0}) {
     for (const double gap : {0.012, 0.03}) {
-      const Felt felt = stir_thrice(
-          rate, [=](int) { return 0.3 / rate; }, gap);
+      const Felt felt = stir_thrice(rate, [=](int) { return 0.3 / rate; }, gap);
       EXPECT_LE(felt.peak, 0.92) << rate << " Hz, " << gap << " s";
       EXPECT_LE(felt.change, 0.77) << rate << " Hz, " << gap << " s";
     }
@@ -98,8 +97,7 @@ TEST(StepRate, MissedTicksAreNotFelt) {
 TEST(StepRate, AfterALongerGapTheHandTakesHoldAnew) {
   for (const auto& [rate, gap] : {std::pair{15.0, 0.12}, {15.0, 0.15}, {15.0, 0.18}, {8.0, 0.15}}) {
     const double takes = 0.3 / rate;
-    const Felt felt = stir(
-        rate, [=](int) { return takes; }, gap);
+    const Felt felt = stir(rate, [=](int) { return takes; }, gap);
     EXPECT_LE(felt.peak, 2.6) << rate << " Hz, " << gap << " s";
     EXPECT_LE(felt.change, 2.75) << rate << " Hz, " << gap << " s";
   }

@@ -184,8 +184,8 @@ TEST(Filling, StaysOutOfAMergedPartition) {
         const double wanted = (0.4 - 2.0 * half) * 0.06 * 0.1;
         const double have =
             static_cast<double>(sampled.value().fluid_positions.size()) * std::pow(spacing, 3);
-        std::printf("  partition of %.0f mm overlapping by %.0f at %.0f mm: volume off by %+.2f %%\n", 2e3 * half,
-                    1e3 * overlap, 1e3 * spacing, 100.0 * (have / wanted - 1.0));
+        std::printf("  partition of %.0f mm overlapping by %.0f at %.0f mm: volume off by %+.2f %%\n",
+                    2e3 * half, 1e3 * overlap, 1e3 * spacing, 100.0 * (have / wanted - 1.0));
         EXPECT_EQ(inside, 0u) << half << " overlapping by " << overlap << " at " << spacing;
         EXPECT_LT(std::abs(have / wanted - 1.0), 0.005)
             << half << " overlapping by " << overlap << " at " << spacing;

@@ -44,7 +44,9 @@ TEST_P(Few, particles_stay_in_the_tank) {
   e.run(1.0, [&] {
     for (const glm::vec3& p : e.picture().positions) {
       highest = std::max<double>(highest, p.y);
-      EXPECT_GT(p.y, -0.01f);  // between surface and boundary layer: a lone particle has little pressure to stand on
+      EXPECT_GT(
+          p.y,
+          -0.01f);  // between surface and boundary layer: a lone particle has little pressure to stand on
     }
   });
   report_value(std::to_string(GetParam()) + " particles dropped from 50 mm, highest after 3 s", 1e3 * highest,

@@ -134,9 +134,9 @@ class BodyReplica {
   RigidMotion now_;
   HostMotion word_;  // of the host, not compared yet
   bool has_word_ = false;
-  MotionError pending_;               // of the host's newest update, not taken over yet
-  std::array<SloshState, 3> swings_;  // of load_.swings
-  glm::dvec3 pace_{0.0};              // m/s² of the body in the last step, without what was corrected
+  MotionError pending_;                       // of the host's newest update, not taken over yet
+  std::array<SloshState, 3> swings_;          // of load_.swings
+  glm::dvec3 pace_{0.0};                      // m/s² of the body in the last step, without what was corrected
   std::array<SloshState, 3> swings_pending_;  // of the host's update of them, not taken over yet
   ReplicaHistory history_;
   struct Ledger {

@@ -106,8 +106,7 @@ class HeldBody {
   std::int64_t heard_ns_ = 0;
   double pace_ = 1.0;         // HostUpdate::pace
   double since_heard_ = 0.0;  // s
-  double ahead_ =
-      0.0;  // s until the moment of the update, when it came: a slow host's is of a step's end
+  double ahead_ = 0.0;  // s until the moment of the update, when it came: a slow host's is of a step's end
   bool started_ = false;
   double disturbance_ = 0.0;        // 0–1
   double model_uncertainty_ = 0.0;  // 0–1
