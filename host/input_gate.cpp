@@ -13,7 +13,7 @@ constexpr double kMaxCarried = kYieldAfter;
 // s of wall time for which what a hand carries is what it carried in its last step: poses come each 2 ms.
 constexpr double kCarriedAfter = 0.005;
 // A step that comes so much later than steps usually do, s of wall time and times the usual interval, finds
-// hands elsewhere though no time has passed in the world: they take hold anew.
+// hands elsewhere though no time has passed in the world: they re-engage.
 constexpr double kStoodStill = 0.02;
 constexpr double kStoodIntervals = 3.0;
 constexpr double kIntervalShare = 0.1;  // of a new interval in the usual one
@@ -175,7 +175,7 @@ void InputGate::fill_input(Hand& hand, std::size_t grip, const BodySnapshot& now
   const double fading = left_to_fade(hand);
   const bool engaged = hand.has_good && hand.good.engaged;
   if (fading > 0.0) {
-    // The coupling weakens where the hand was last, at rest; whoever is heard does not pull against it.
+    // The coupling weakens where the hand was last, at rest; hands whose updates come do not pull against it.
     pose = hand.last_pose;
     hand.good.twist = Twist{};
   }

@@ -18,15 +18,15 @@ namespace slosh {
 /// s of simulated time over which a coupling fades whose hand was lost (PoseMessage::lost).
 constexpr double kLostFade = 0.4;
 /// The same where somebody else holds the body too, who gets its weight from it: as long as a hand is let
-/// feel what it takes hold of (net/engagement.h). In 0.4 s a load that doubles lets the other arm drop.
+/// feel what it engages (net/engagement.h). In 0.4 s a load that doubles lets the other arm drop.
 constexpr double kHandOver = 2.0;
 /// s of wall time without a message after which a hand is taken to come to rest: a twist as old as that would
 /// drag the body along ...
 constexpr double kStaleTwist = 0.015;
 /// ... and the time constant of that, s of simulated time.
 constexpr double kRunOut = 0.1;
-/// A hand that was not heard for this long, s of wall time, gives way where another person's hand on the body
-/// is not silent (Company::kSilent). So whoever is left carries their own share, and does not pull against a
+/// A hand without updates for this long, s of wall time, gives way where another person's hand on the body is
+/// not silent (Company::kSilent). So whoever is left carries their own share, and does not pull against a
 /// hand that hangs in the air.
 constexpr double kYieldAfter = 0.02;
 /// s of wall time after a reset in which messages of the run before may still come.
@@ -49,8 +49,8 @@ class InputGate {
   /// The world went back to its start, as `now` has it: hands that hold on hold there until they report anew.
   void reset(const BodySnapshot& now, std::int64_t clock_ns);
 
-  /// The world stood still for a while, and hands may have moved: who holds on takes hold anew. So does a
-  /// hand that was not heard for kHoldAnew s of wall time (net/engagement.h), when it is heard again.
+  /// The world stood still for a while, and hands may have moved: who holds on re-engages. So does a hand
+  /// without updates for kHoldAnew s of wall time (net/engagement.h), when its updates come again.
   void stood_still();
 
   /// The newest message of each grip that was used; valid until the next call of anything here.

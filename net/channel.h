@@ -29,7 +29,7 @@ struct PoseMessage {
   std::uint32_t hold = 0;    ///< another one than in the message before: another hand, which may be anywhere
   std::uint64_t number = 0;  ///< of the sender's samples, rising; comes back in BodyMessage::pose_numbers
   bool counted = false;      ///< somebody counts …
-  double energy = 0.0;       ///< … the J that the person and the hold that was let in put in, cumulative
+  double energy = 0.0;       ///< … the J that the person and the engagement ramp put in, cumulative
 };
 
 /// What a state says of the hand on one grip, besides GripState.

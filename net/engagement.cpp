@@ -197,8 +197,8 @@ void Engagement::keep_force(const Pose& hand, const CouplingGains& gains, const 
   }
 }
 
-/// Who falls silent goes on from what they carried; who is heard again and has given way meanwhile takes hold
-/// anew, from where they hold.
+/// A hand that falls silent keeps what it carried; one whose updates resume after it gave way re-engages from
+/// where it holds.
 void Engagement::meet(Company company, double time) {
   const bool was_silent = company_ == Company::kSilent;
   if (company == Company::kSilent && !was_silent) began_ = carried_;
@@ -210,7 +210,7 @@ void Engagement::meet(Company company, double time) {
   company_ = company;
 }
 
-/// What is left of the grip's motion when the hand took hold.
+/// What is left of the grip's motion when the hand engaged.
 void Engagement::slip(Work& work, double time) {
   const double before = slip_pace();
   last_ = std::max(last_, time);
@@ -265,7 +265,7 @@ void Engagement::bound_pull(Work& work, const Twist& hand) {
     const glm::dvec3 in_all = before.stretch - law.stretch, slipped = in_all - ramp_work;
     const double work_in_all = work_of(force, in_all, stiffness),
                  work_slipped = work_of(force, slipped, stiffness);
-    // What comes back as the hold goes back to the hand was lent.
+    // What the spring gives back as the hold returns to the hand restores the allowance.
     const double spent = work_slipped + std::min(work_in_all - work_slipped, 0.0);
     share = std::clamp(share - spent / whole, 0.0, 1.0);
     given_ += work_in_all;

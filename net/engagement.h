@@ -1,6 +1,6 @@
-// How a hand takes hold of what may be elsewhere, heavy or moving, without a blow and without energy of its
-// own. Run by the host and by each device loop, on the same input, so that both ends of a coupling hold
-// alike.
+// Engagement: how a hand takes hold of what may be elsewhere, heavy or moving, without a jerk and without
+// adding energy. Run by the host and by each device loop, on the same input, so that both ends of a coupling
+// engage alike.
 #pragma once
 
 #include <cstdint>
@@ -11,40 +11,40 @@
 namespace slosh {
 
 /// A coupling whose force differs from the one that acts already by less than this when the hand takes hold
-/// is held as it is: there is nothing to let go of, and a body that was settled into a hand before the run
-/// neither sags nor creeps.
+/// engages as it is, without a ramp: a body that was settled into a hand before the run neither sags nor
+/// creeps.
 constexpr double kQuietForce = 2.0;    ///< N
 constexpr double kQuietTorque = 0.05;  ///< N·m
-/// The distance between a hand and where it holds is given up at no more than this speed.
+/// Engagement ramp: the offset between a hand and where it holds closes at no more than this speed.
 constexpr double kRampSpeed = 0.15;  ///< m/s
 constexpr double kRampTurn = 1.0;    ///< rad/s
 /// s over which that speed rises from 0 ...
 constexpr double kRampRise = 0.5;
-/// ... and the time constant, s, with which the last of the distance goes.
+/// ... and the time constant, s, with which the rest of the offset closes.
 constexpr double kRampEnd = 0.25;
-/// s of silence (of a hand, or of body states) after which holding on counts as taking hold anew: the hand
-/// may be anywhere by then.
+/// s of silence (of a hand, or of body states) after which a hand that holds on re-engages: it may be
+/// anywhere by then.
 constexpr double kHoldAnew = 0.1;
 
-/// s over which a hand that takes hold of something that moves gives up that motion: before a bucket that
-/// hangs in one hand swings back.
+/// s over which a hand that engages with a moving body loses its slip velocity: before a bucket that hangs in
+/// one hand swings back.
 constexpr double kSlipRise = 0.15;
 
-/// Where another hand holds the same body, a hold that was taken anew changes the force that acted when it
-/// began by no more than this, and by twice that each kHoldDoubles s later; beyond, it slips. Two hands that
-/// come back where the body was turned away from both give up their distances each on its own way, and would
-/// pull against one another. A weight that shifts is carried in the end.
+/// Where another hand holds the same body, a hand that re-engages changes the force that acted when it began
+/// by no more than this, and by twice that each kHoldDoubles s later; beyond, it slips. Two hands that come
+/// back to a body turned away from both close their offsets each on its own way, and would pull against one
+/// another. A weight that shifts is carried in the end.
 constexpr double kHoldForce = 2.0;    ///< N
 constexpr double kHoldTorque = 0.1;   ///< N·m
 constexpr double kHoldDoubles = 1.0;  ///< s, simulated
-/// A hand that is silent while another of the body is heard gives way: it goes on giving what it gave when it
-/// was last heard, and so much more at most.
+/// A silent hand gives way while updates of another hand of the body are received: it keeps the force of its
+/// last update, and so much more at most.
 constexpr double kYieldForce = 2.0;   ///< N
 constexpr double kYieldTorque = 0.1;  ///< N·m
 
-/// What a hold that slips may give the body that its hand did not: the force that acted when it began, and
-/// kHoldForce, over this way. So a body that a silent hand helps to carry can be lifted a little, and no hold
-/// drives one on.
+/// The energy that a slipping hold may give the body beyond its hand's work: the force that acted when it
+/// began, and kHoldForce, over this way. So a body that a silent hand helps to carry can be lifted a little,
+/// and no hold drives one on.
 constexpr double kHoldWay = 0.2;    ///< m
 constexpr double kHoldAngle = 0.3;  ///< rad
 /// s after which what was given may be given again ...
@@ -56,15 +56,15 @@ constexpr double kHoldEases = 0.4;
 enum class Company : std::uint8_t {
   kAlone,   ///< nobody
   kShared,  ///< another hand
-  kSilent,  ///< another hand that is heard, while this one is not
+  kSilent,  ///< another hand whose updates are received, while this one's are not
 };
 
-/// The state of one grip's hold. The hand takes hold where the force goes on as it is, and as fast as the
-/// grip goes: with the pose that it has, less an offset, and with its velocity, less its slip against the
-/// grip. The slip is given up over kSlipRise (the offset grows by it meanwhile), the offset slowly after
-/// that, until the hand holds where it is; where the hold slips it grows again (kHoldForce). So taking hold
-/// never pulls harder than what moving the body at kRampSpeed takes, however far away the hand is, and a
-/// hand that passes by does not snatch the body away.
+/// The state of one grip's hold. The hand engages where the force continues as it is, at the grip's velocity:
+/// with its own pose less an offset, and its own velocity less its slip against the grip. The slip is given
+/// up over kSlipRise (the offset grows by it meanwhile), the offset slowly after that, until the hand holds
+/// where it is; where the hold slips it grows again (kHoldForce). So engaging never pulls harder than what
+/// moving the body at kRampSpeed takes, however far away the hand is, and a hand that passes by does not
+/// snatch the body away.
 ///
 /// Passive but for two stated allowances. What the offset's change gives the spring is counted (given()):
 /// giving it up towards the hand gives the force times the distance, at kRampSpeed at most; any other change
@@ -84,10 +84,10 @@ class Engagement {
   Held update(bool engaged, double time, const Pose& hand, const Twist& twist, const CouplingGains& gains,
               const GripState& grip, Company company = Company::kAlone);
 
-  /// The force on the hand while it is heard: what it goes on giving when it falls silent.
+  /// The force on the hand while its updates are received: what it keeps when it falls silent.
   void carries(const Wrench& on_hand) { carried_ = on_hand; }
 
-  /// The next update() takes hold anew. What was given of the allowances stays given.
+  /// The next update() re-engages. What was given of the allowances stays given.
   void take_hold_anew();
 
   bool engaged() const { return engaged_; }
@@ -130,8 +130,8 @@ class Engagement {
   bool anew_ = false;  // stored_ is of the hold before
   Company company_ = Company::kAlone;
   CouplingGains gains_;
-  Wrench began_;    // what acted on the hand when it took hold, or when it was heard last
-  Wrench carried_;  // what acts on it while it is heard
+  Wrench began_;    // on the hand when it engaged, or at its last update
+  Wrench carried_;  // what acts on it while its updates are received
   double since_ = 0.0;
   double last_ = 0.0;
   double share_ = 1.0;  // of the allowances, left
@@ -141,7 +141,7 @@ class Engagement {
   double turning_stored_ = 0.0;
   glm::dvec3 offset_{0.0};               // hand less what it holds with, m
   glm::dquat turn_{1.0, 0.0, 0.0, 0.0};  // what it holds with in the hand's frame, so that both turn alike
-  glm::dvec3 slip_{0.0};                 // of the hand against the grip when it took hold, m/s
+  glm::dvec3 slip_{0.0};                 // of the hand against the grip when it engaged, m/s
   glm::dvec3 slip_turn_{0.0};            // rad/s
   glm::dvec3 speed_{0.0};                // of what it holds with, towards the hand, m/s
   glm::dvec3 turning_{0.0};              // rad/s

@@ -94,7 +94,7 @@ SheetKey sheet_key(const Scene& scene, const Body& body, double spacing) {
   return {body.mesh, boundary_spacing(scene, body, spacing)};
 }
 
-// The share of the work that the surfaces are, each sheet counted once.
+// The share of the work that the surfaces are, each boundary layer counted once.
 class Work {
  public:
   Work(const Scene& scene, double spacing, const std::function<void(double)>& tell)

@@ -32,11 +32,11 @@ struct SampleReport {
 Result<SampledScene> sample_scene(const Scene& scene, double spacing, SampleReport* report = nullptr,
                                   const std::function<void(double)>& tell = {});
 
-/// How far apart the samples of a body's surface are, m. Sheets of particles have bumps, which brake what
-/// slides along them: fluid that turns slowly in a glass without friction loses a quarter of that in 0.4 s.
-/// Of fixed bodies that slip they are finer than `spacing`, and the bumps are gone
-/// (tests/notebook/2026-11-25-free-slip-walls.md). Bodies that move keep the spacing, as do models that
-/// do not correct gradients.
+/// How far apart the samples of a body's surface are, m. Boundary particle layers have bumps, which brake
+/// what slides along them: fluid that turns slowly in a glass without friction loses a quarter of that in 0.4
+/// s. Of fixed bodies that slip they are finer than `spacing`, and the bumps are gone
+/// (tests/notebook/2026-11-25-free-slip-walls.md). Bodies that move keep the spacing, as do models that do
+/// not correct gradients.
 double boundary_spacing(const Scene& scene, const Body& body, double spacing);
 
 /// A quick estimate for choosing a spacing, without sampling: fluid volume / spacing³ and area / spacing².

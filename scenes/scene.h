@@ -112,7 +112,7 @@ enum class ParticleModel : std::uint8_t {
   kConsistent,      ///< density and pressure from one kernel, walls counted in both
   kPaper,           ///< Eq 2 with poly6 and without body particles, Eq 5 as printed, constant body pressure
   kCorrected,       ///< consistent, gradients corrected for uneven neighbours (Bonet & Lok 1999): the default
-  kIncompressible,  ///< corrected, with pressures that are solved for in place of Eq 7's
+  kIncompressible,  ///< corrected, with pressure projection in place of Eq 7
 };
 
 /// Whether a model presses by corrected gradients.

@@ -66,7 +66,7 @@ enum class Pack : std::uint8_t {
   ROW(pyz,       float,         kStep,    false, false,  kCorrected,     kPushB,         0)                     \
   ROW(pzz,       float,         kStep,    false, false,  kCorrected,     kPushB,         1)                     \
   ROW(ux,        float,         kStep,    false, false,  kCorrected,     kPushB,         2)    /* Pa·m, what pairs */ \
-  ROW(uy,        float,         kStep,    false, false,  kCorrected,     kPushB,         3)    /* drag by */    \
+  ROW(uy,        float,         kStep,    false, false,  kCorrected,     kPushB,         3)    /* viscous */    \
   ROW(uz,        float,         kStep,    false, false,  kCorrected,     kDrag,          0)                     \
   ROW(fx,        float,         kStep,    false, false,  kAlways,        kForce,         0)    /* N, from the force pass */ \
   ROW(fy,        float,         kStep,    false, false,  kAlways,        kForce,         1)                     \

@@ -36,7 +36,7 @@ void FluidModels::after_step(const World& world, const BodySnapshot& now, std::s
       body.watched = false;
       continue;
     }
-    // A viscosity that is set while it runs brings the drag, or takes it away.
+    // A viscosity that is set while it runs switches viscous forces on or off.
     if (!body.watched || body.with_drag != !drags.empty()) {
       const double spacing = world.plan().spacing;
       body.watched = true;

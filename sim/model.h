@@ -20,8 +20,8 @@ struct ModelParts<ParticleModel::kPaper> {
   static constexpr DragRule kDrag = DragRule::kAlongVelocity;
   static constexpr bool kWallsCount = false;      ///< in the density
   static constexpr bool kPressureEnergy = false;  ///< `pressure` is V²P, and feels bulk damping
-  static constexpr bool kCorrected = false;       ///< pressure is a tensor, and jostling is damped
-  static constexpr bool kSolved = false;          ///< and solved for
+  static constexpr bool kCorrected = false;       ///< pressure is a tensor, with artificial viscosity
+  static constexpr bool kSolved = false;          ///< by pressure projection
 };
 
 template <>

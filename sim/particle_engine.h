@@ -42,8 +42,7 @@ class ParticleEngine {
 
   /// Takes over changed viscosities, passes and gravity; the rest is as it was.
   virtual void set_constants(const RunConstants& constants) = 0;
-  /// Takes over what the corrected model presses by, from the next forces() on. set_constants() takes it
-  /// back.
+  /// Sets the corrected model's constants from the next forces() on. set_constants() takes it back.
   virtual void set_correction(const CorrectionConstants& correction) = 0;
 
   /// All particles, in the engine's order, and what bodies have still to be given. False when the GPU failed.

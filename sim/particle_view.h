@@ -17,7 +17,7 @@ struct ParticleView {
   // The corrected model's:
   Symmetric<Real> push;  ///< what it presses with, N·m⁴ (passes/density/gradient_correction.h)
   Real ux, uy,
-      uz;  ///< what it drags by, Pa·m: viscosity times velocity, and noise (viscosity/artificial_viscosity.h)
+      uz;  ///< Pa·m: viscosity times velocity, and times fluctuation (viscosity/artificial_viscosity.h)
 };
 
 template <class Real>

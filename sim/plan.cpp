@@ -88,23 +88,23 @@ void decide(const Scene& scene, Plan& plan, PassSet which) {
 }
 
 // From this many times the explicit step on a solve is worth it: a step with one takes 1.05 to 1.8 times as
-// long there, up to four times in honey (tests/notebook/2026-11-27-implicit-viscosity.md). At a wider
-// support Eq 9, which is what is solved for, passes on 6 % too little in a lattice, and stresses, which are
-// stepped, do not.
+// long there, up to four times in honey (tests/notebook/2026-11-27-implicit-viscosity.md). At a wider support
+// the implicit solve's Eq 9 gives 6 % too little shear stress in a lattice; the explicit particle stress does
+// not.
 constexpr double kWorthSolving = 2.0, kWorthSolvingWide = 4.0;
 constexpr double kWide = 2.2;  // radius over spacing
 double worth_solving(const Plan& plan) {
   return plan.support_radius > kWide * plan.spacing ? kWorthSolvingWide : kWorthSolving;
 }
 
-// A probe's velocity is its body's, which is solved for later. The other models stay as they are, to compare
+// A probe's velocity is its body's, which is known only later. The other models stay as they are, to compare
 // with.
 bool suits_implicit_viscosity(const Scene& scene, const Plan& plan) {
   return plan.viscous() && corrects_gradients(plan.model) && !any_probe(scene);
 }
 
-// A thin fluid's own viscosity is next to nothing beside the artificial one. As thick as the corrected model
-// asks for in the incompressible one too, so that both are one fluid.
+// In thin fluid artificial viscosity far exceeds the fluid's own. The threshold is the corrected model's in
+// the incompressible one too, so that both treat a fluid alike.
 bool suits_stress(const FluidExtremes& fluids, const Plan& plan) {
   return plan.viscous() && corrects_gradients(plan.model) && !plan.implicit_viscosity &&
          fluids.most_viscous > kThin * weakly_compressible_artificial_viscosity(plan, fluids.lightest);

@@ -77,7 +77,8 @@ struct Plan {
 
   bool has(PassId id) const { return runs.has(id); }
   bool has_fluid() const { return runs.has(PassId::kSortFluid); }
-  /// Particles are kept from passing walls (walls/wall_guard.h). The paper has no such thing.
+  /// Penetration clamp: particles are kept from passing walls (walls/wall_guard.h). The paper has no such
+  /// thing.
   bool guards_walls() const { return has(PassId::kWalls) && model != ParticleModel::kPaper; }
   /// Nothing passes a wall: what leaves the domain went over an edge.
   bool walls_hold() const { return !has(PassId::kWalls) || guards_walls(); }
@@ -86,7 +87,7 @@ struct Plan {
            (guards_walls() && waits_for_bodies);
   }
   bool viscous() const { return runs.has_any_of({PassId::kOneViscosity, PassId::kPairViscosity}); }
-  /// Drag is among the forces that a sub-step begins with.
+  /// Viscosity is among the explicit forces that a sub-step begins with.
   bool explicit_viscosity() const { return viscous() && !has(PassId::kImplicitViscosity); }
 };
 

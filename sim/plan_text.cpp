@@ -12,7 +12,7 @@ std::string describe(const Plan& plan) {
   text += format("spacing         %.4g mm\n", plan.spacing * 1e3);
   text += format("support radius  %.4g mm\n", plan.support_radius * 1e3);
   if (plan.has(PassId::kPressureSolve)) {
-    text += format("stiffness       none: pressures are solved for (jostling is damped as by %.4g m²/s²)\n",
+    text += format("stiffness       none: pressure projection (artificial viscosity as of %.4g m²/s²)\n",
                    plan.stiffness);
   } else {
     text +=

@@ -85,8 +85,8 @@ ParticleKind make_kind(const Scene& scene, double rest_density, double viscosity
           static_cast<float>(pressing_density(scene, rest_density)), probe};
 }
 
-// `noise`: Pa·s, what jostling would need; `thinnest`: Pa·s, of the fluids that there are. The finer layers
-// of walls that slip are right with one layer.
+// `noise`: Pa·s, the artificial viscosity; `thinnest`: Pa·s, of the fluids that there are. The finer layers
+// of free-slip walls are right with one layer.
 float wall_layer_of(const Scene& scene, float noise, double thinnest) {
   const bool slips = std::any_of(scene.bodies.begin(), scene.bodies.end(),
                                  [](const Body& body) { return body.dynamic_viscosity == kFreeSlip; });

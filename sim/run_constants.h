@@ -67,7 +67,7 @@ struct ParticleStart {
 /// One entry a fluid of the scene, and one a probe behind those.
 std::vector<ParticleKind> particle_kinds(const Scene& scene, double spacing);
 
-/// Whether any of them needs drag on jostling (viscosity/artificial_viscosity.h) beside its own. `noise`:
+/// Whether any of them needs artificial viscosity (viscosity/artificial_viscosity.h) beside its own. `noise`:
 /// Pa·s, what one without viscosity needs.
 bool any_artificial_viscosity(std::span<const ParticleKind> kinds, float noise);
 

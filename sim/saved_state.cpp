@@ -265,7 +265,7 @@ void write_state(const StateFrame& frame, const RunConstants& constants, const S
   for (const GripState& grip : state.grips) grip_state(s, grip);
   for (const HandleInput& input : state.last_input) {
     s.raw(static_cast<std::uint8_t>(input.engaged));
-    // What a hand that is let go reads is never used, and need not even be a number.
+    // What a disengaged hand reads is never used, and need not even be a number.
     const HandleInput nothing;
     hand_state(s, input.engaged ? input : nothing);
   }

@@ -35,7 +35,7 @@ struct SavedState {
   std::uint64_t tick = 0;
   std::uint32_t status = 0;
   double gravity_scale = 1.0;
-  double age = 0.0;                     ///< s, settling counted (passes/rest_density/rest_density.h)
+  double age = 0.0;  ///< s since the start, settling counted (passes/rest_density/rest_density.h)
   std::vector<double> viscosities;      ///< Pa·s, one a fluid
   std::vector<RigidBody> bodies;        ///< only what moves is read back
   std::vector<Wrench> wrenches;         ///< by the fluid, one a body

@@ -17,7 +17,7 @@ std::string status_text(std::uint32_t status) {
        "fluid is squeezed to twice its density: stiffness_m2_s2 100 to 400 held in trials"},
       {kStatusDeviceLost, "the GPU failed and the fluid stands still: run again with the CPU backend"},
       {kStatusGuarded, "fluid was pressed at a wall so hard that particles had to be held back"},
-      {kStatusViscosityCut, "the fluid is so viscous that its drag was not solved to the end"},
+      {kStatusViscosityCut, "implicit viscosity did not converge: the fluid is too viscous for its step"},
       {kStatusBodyGone, "a body left the world for good and was taken out of the motion"},
   }};
   std::string text;

@@ -20,13 +20,12 @@ namespace {
 constexpr double kCourant = 0.8;
 // The same for a change while the world runs, between what a plan keeps to and what was measured to hold.
 constexpr double kLiveCourant = 1.0;
-// Where pressures are solved for there is no sound: dt ≤ factor · support radius / speed. Half as long again,
-// and a dam break has particles slowed and crushed.
+// Pressure projection has no sound: dt ≤ factor · support radius / speed. Half as long again slows and
+// crushes particles in a dam break.
 constexpr double kSolvedCourant = 0.4;
 constexpr double kFarShorter = 0.25;  // of the step that the flow asks for: density_time()
-// Free bodies above this share of the fluid layer around them need no shorter step. With 0.05 a ball let go
-// in water rattled from there on (tests/notebook/2026-11-26-light-bodies-and-stacks.md); in a hand
-// or in honey it was calm.
+// Free bodies above this share of the fluid layer around them need no shorter step. At 0.05 a released ball
+// rattled in water (tests/notebook/2026-11-26-light-bodies-and-stacks.md).
 constexpr double kLightBody = 0.1;
 
 // m/s in the lightest fluid.
@@ -129,7 +128,7 @@ void limit_by_drag(const Scene& scene, const Plan& plan, const FluidExtremes& fl
   if (plan.has(PassId::kImplicitViscosity)) {
     if (corrects_gradients(plan.model))
       limit.lower_to(artificial_viscosity_step(scene, plan, fluids),
-                     "what drags on jostling particles, explicit");
+                     "explicit artificial viscosity on velocity fluctuations");
     limit.lower_to(kMaxImplicit * viscous_step(scene, plan, fluids),
                    format("implicit viscosity of %.3g Pa·s: %g explicit steps in one", fluids.most_viscous,
                           kMaxImplicit));
@@ -261,7 +260,7 @@ std::optional<Error> refuse_endless(const Scene& scene, const Plan& plan) {
 double most_gravity_allowed(const Scene& scene, const Plan& plan) {
   const double g = glm::length(scene.gravity);
   if (!plan.has_fluid() || g <= 0.0) return std::numeric_limits<double>::infinity();
-  // Where pressures are solved for, by the same margin over what the plan keeps to.
+  // With pressure projection, by the same margin over what the plan keeps to.
   const double speed = plan.has(PassId::kPressureSolve)
                            ? kLiveCourant / kCourant * kSolvedCourant * plan.support_radius / plan.time_step
                            : kLiveCourant * plan.sound_share * plan.support_radius / plan.time_step -

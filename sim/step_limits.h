@@ -42,10 +42,9 @@ struct StepLimit {
 /// Fills the plan's depth, drop, driven speed and sound_share on the way. Needs the scene's meshes.
 StepLimit step_limit(const Scene& scene, Plan& plan);
 
-/// s, where pressures are solved for: how soon they take back what a particle is compressed by. A step, but
-/// where that is less than a quarter of what the flow asks for (most viscous fluid, stepped by what its drag
-/// can be solved for) as long as the flow does: a rounding's compression taken back in 0.03 ms is a speed.
-/// `gravity`, m/s²; `dt`, s.
+/// s: how soon pressure projection undoes a particle's compression. One step, but the flow's own step where
+/// that is more than four times as long (most viscous fluid): a rounding's compression undone in 0.03 ms is a
+/// speed. `gravity`, m/s²; `dt`, s.
 double density_time(const Plan& plan, double gravity, double dt);
 
 /// s: a plan with a shorter sub-step is refused by make_world. At 1 cm it is some 5000 Pa·s.

@@ -25,7 +25,7 @@ constexpr double kMaxGripStiffness = 4.0;
 struct HandleInput {
   Pose pose;             ///< world
   Twist twist;           ///< world
-  bool engaged = false;  ///< false: the grip is let go, no coupling
+  bool engaged = false;  ///< false: the grip is disengaged, no coupling
   double scale = 1.0;    ///< 0–1, ramps the coupling in on engaging
 };
 
@@ -66,7 +66,7 @@ struct Diagnostics {
                                     ///< in the next
 };
 
-/// Pa·s (World::settle). Half a second after it was let go from its lattice, half a spacing off every wall,
+/// Pa·s (World::settle). Half a second after its release from its lattice, half a spacing off every wall,
 /// fluid of 50, 200 and 1000 Pa·s had not closed that gap around a ball of 1.5 spacings, and a hand that
 /// turned the ball felt 4, 20 and 31 % too little.
 inline constexpr double kMaxSettlingViscosity = 5.0;

@@ -67,7 +67,7 @@ struct World::Impl {
   StepTimes times;
   double gravity_scale = 1.0;
   double age;           // s, as passes/rest_density/rest_density.h counts it; no further than kSettlingTime
-  bool packed = false;  // the engine has what that age needs, and it needs nothing else any more
+  bool packed = false;  // the engine has the relaxed rest density, which stays
   StateFrame frame;
 };
 

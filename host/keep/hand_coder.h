@@ -17,8 +17,8 @@ class HandCoder {
  public:
   explicit HandCoder(std::size_t hands) : tracks_(hands) {}
 
-  /// Appends one tick; nothing when all hands are as expected, and false then. What a hand that is let go
-  /// reads is left out.
+  /// Appends one tick; nothing when all hands are as expected, and false then. What a disengaged hand reads
+  /// is left out.
   bool encode(std::span<const HandleInput> hands, Bytes& out);
   /// Takes one tick off the front of `in`; false when it is cut short or malformed.
   bool decode(ByteView& in, std::vector<HandleInput>& hands);

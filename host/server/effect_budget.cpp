@@ -26,7 +26,7 @@ constexpr Kind kKindTable[] = {{"paused the world or let it go on as often", 0.5
                                {"changed viscosities as much", 1.0, 12.0, 2.0, 0.05},
                                {"changed the stiffness of grips as much", 1.0, 13.0, 4.0, 0.05}};
 constexpr double kSettled = 1.0;         // s until the world has what it was asked for
-constexpr double kMinViscosity = 1e-4;   // Pa·s: thinner fluids feel alike
+constexpr double kMinViscosity = 1e-4;   // Pa·s: less viscous fluids feel alike
 constexpr double kMaxOfViscosity = 4.0;  // what one change counts at most: the world may refuse it
 constexpr std::size_t kMaxAtEase = 64;   // guests before those whose budgets are full are forgotten
 constexpr double kFullAgain = 60.0;      // s

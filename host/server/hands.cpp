@@ -185,8 +185,8 @@ bool HandTable::sample(const wire::PoseSample& sample, std::int64_t now_ns, bool
   return true;
 }
 
-/// Whoever holds the body carries it: a stand beside them is a hand that never lets go. Who has taken a grip
-/// there and is not felt yet keeps theirs, and so does who may come back.
+/// Whoever holds the body carries it: a stand beside them is a hand that never disengages. Who has taken a
+/// grip there and is not felt yet keeps theirs, and so does who may come back.
 void HandTable::end_stands_beside(std::size_t grip, std::int64_t now_ns) {
   for (std::size_t i = 0; i < grips_.size(); ++i) {
     const GripHand& other = grips_[i];

@@ -28,13 +28,14 @@ class HandTable {
   /// Puts every grip without a holder on its stand: at the start and after a reset.
   void stand_all(std::int64_t now_ns);
   /// A new holder, whose samples number anew. The stand holds on until its first engaged sample that is felt;
-  /// then the world is told that it is another hand (PoseMessage::hold), and lets it in as net/engagement.h
+  /// then the world is told that it is another hand (PoseMessage::hold), and engages it as net/engagement.h
   /// has it.
   void taken(std::size_t grip, std::int64_t now_ns);
-  /// Not held any more: the host lets go gently. A stand stays, unless `also_stand`.
+  /// Not held any more: the host disengages gently. A stand stays, unless `also_stand`.
   void let_go(std::size_t grip, std::int64_t now_ns, bool also_stand = false);
-  /// Contact with the holder is lost. Where another hand of the same body is heard, it carries on alone: as
-  /// let_go(). Else the host holds the grip where the hand was, since nobody would catch what falls.
+  /// Contact with the holder is lost. Where updates of another hand of the same body come, it carries on
+  /// alone: as let_go(). Else the host holds the grip where the hand was, since nobody would catch what
+  /// falls.
   void lose(std::size_t grip, std::int64_t now_ns);
   /// After a restart of the host: what was held stands where the hand was, until its holder is back.
   /// `awaited`: whether somebody may come back to it, one a grip; who is missing there may.

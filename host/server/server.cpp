@@ -266,7 +266,8 @@ void Server::check_patience() {
     const bool quiet = now() - peer->heard_ns > to_nanoseconds(options_.silence);
     if (quiet && !peer->silent && !seat.grips.empty()) {
       peer->silent = true;
-      // The world's gate knows by itself: a silent hand comes to rest, and gives way to those that are heard.
+      // The world's gate knows by itself: a silent hand comes to rest, and gives way to those whose updates
+      // come.
       hide_hands(seat);
       notice_all(seat.name + " is not heard any more; what they hold waits for them", false, peer.get());
     } else if (!quiet && peer->silent) {

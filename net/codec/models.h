@@ -1,4 +1,4 @@
-// The fixed tables of the entropy coder. Made once, from integers alone: both ends have bitwise identical.
+// The fixed tables of the entropy coder. Made once, from integers alone: bitwise identical at both ends.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // Where a block's particles are expected next, from where they were in its last two frames. Integers alone:
-// both ends must agree bitwise whatever machine and compiler they have.
+// both ends must get bitwise identical results whatever machine and compiler they have.
 #pragma once
 
 #include <cstdint>

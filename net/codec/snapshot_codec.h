@@ -5,8 +5,8 @@
 // of each the particles are ordered anew by cell, cut into blocks and sent intra, all of them (a key frame);
 // up to the next, a block is the same particles, so that frame k is coded as what differs from k−1 and k−2.
 // Where only the shell is sent, particles that come to the surface within an epoch come in as new blocks
-// behind its last one, and those that have gone inside retire. Both codings give the same lattice points to
-// the bit, so that a block that a peer missed is mended for that peer alone by its intra coding, and goes on
+// behind its last one, and those that have gone inside retire. Both codings give bitwise identical lattice
+// points, so that a block that a peer missed is mended for that peer alone by its intra coding, and goes on
 // temporal.
 #pragma once
 

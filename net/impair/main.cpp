@@ -55,15 +55,15 @@ int main(int argc, char** argv) {
   app.add_option("--delay-ms", delay_ms, "one way")->check(CLI::Range(0.0, 10000.0));
   app.add_option("--jitter-ms", jitter_ms, "0 to this much more delay, in order")
       ->check(CLI::Range(0.0, 10000.0));
-  app.add_option("--loss", impairment.loss, "chance from 0 to 1")->check(CLI::Range(0.0, 1.0));
+  app.add_option("--loss", impairment.loss, "probability from 0 to 1")->check(CLI::Range(0.0, 1.0));
   app.add_option("--burst", impairment.burst, "packets lost in a row, on average")
       ->check(CLI::Range(1.0, 1e4));
-  app.add_option("--duplicate", impairment.duplicate, "chance from 0 to 1")->check(CLI::Range(0.0, 1.0));
-  app.add_option("--reorder", impairment.reorder, "chance from 0 to 1")->check(CLI::Range(0.0, 1.0));
+  app.add_option("--duplicate", impairment.duplicate, "probability from 0 to 1")->check(CLI::Range(0.0, 1.0));
+  app.add_option("--reorder", impairment.reorder, "probability from 0 to 1")->check(CLI::Range(0.0, 1.0));
   app.add_option("--reorder-ms", reorder_ms, "how late those come")->check(CLI::Range(0.0, 10000.0));
   app.add_option("--rate-kbit", rate_kbit, "kbit/s each way; 0 = no limit")->check(CLI::Range(0.0, 1e8));
   app.add_option("--queue-kb", queue_kb, "kB that wait for the rate")->check(CLI::Range(0.0, 1e6));
-  app.add_option("--seed", options.seed, "of all chances");
+  app.add_option("--seed", options.seed, "of all random numbers");
   app.add_flag("--up-only", up_only, "impair only what peers send");
   app.add_flag("--down-only", down_only, "impair only what the host sends")->excludes("--up-only");
   CLI11_PARSE(app, argc, argv);

@@ -14,14 +14,14 @@
 
 namespace slosh {
 
-/// What one direction does to packets. The chances are from 0 to 1, drawn anew for every packet.
+/// What one direction does to packets. Probabilities are from 0 to 1, drawn anew for every packet.
 struct Impairment {
   double delay = 0.0;           ///< s, on top of the real network's
   double jitter = 0.0;          ///< s, 0 to this much is added; the order stays
-  double loss = 0.0;            ///< chance
+  double loss = 0.0;            ///< probability
   double burst = 1.0;           ///< packets that are lost in a row, on average; at least 1
-  double duplicate = 0.0;       ///< chance
-  double reorder = 0.0;         ///< chance of coming late by `reorder_delay`, behind others
+  double duplicate = 0.0;       ///< probability
+  double reorder = 0.0;         ///< probability of coming late by `reorder_delay`, behind others
   double reorder_delay = 0.01;  ///< s
   double rate = 0.0;            ///< bytes a s; 0 = no limit
   double queue = 256e3;         ///< bytes that may wait for the rate; more are lost
@@ -32,7 +32,7 @@ struct RelayOptions {
   std::string to;  ///< the host
   Impairment up;   ///< peer → host
   Impairment down;
-  std::uint64_t seed = 1;  ///< of all chances: the same packets at the same times fare the same
+  std::uint64_t seed = 1;  ///< of all random numbers: the same packets at the same times fare the same
 };
 
 struct RelayStats {

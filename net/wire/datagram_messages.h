@@ -59,8 +59,8 @@ struct PoseSample {
   Pose pose;
   Twist twist;
   HoldsOn engaged = HoldsOn::kNo;
-  // Behind kCouplings: J that the person and the hold that was let in (engagement.h) put in since this
-  // hand began, cumulative, so that a loss spoils nothing.
+  // Behind kCouplings: J that the person and the engagement ramp (engagement.h) put in since this hand began,
+  // cumulative, so that a loss spoils nothing.
   double energy = 0.0;
 };
 template <class V>

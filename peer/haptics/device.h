@@ -20,7 +20,7 @@ struct DeviceReport {
   std::uint32_t buttons = 0;
   bool engaged = true;  ///< the hand holds on
   /// False: the device said nothing (its cable is out). The rest counts for nothing then, and the hand is
-  /// taken for silent: its force fades, and it takes hold anew when it is back.
+  /// taken for silent: its force fades, and it re-engages when it is back.
   bool heard = true;
   /// The handle as the device itself has it, in its own frame, before scale, clutch and camera. Nothing where
   /// `pose` is that, or the device has no place of its own.

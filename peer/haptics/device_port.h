@@ -44,7 +44,7 @@ class DevicePort {
 
   /// A wrench of zero, the last thing that the device is sent. Returns when it was, or after kStopWait for a
   /// device that does not answer: its thread then writes zero, closes and frees it when it comes back, if
-  /// ever. By the thread that owns the port, once the loop has let go of it.
+  /// ever. By the thread that owns the port, once the loop has released it.
   void stop() noexcept;
 
   /// The share (0–1) of its wrench that the device had left when it was written to last: less than 1 after

@@ -1,4 +1,4 @@
-// The last guard before a device: magnitude, rate and jerk of the wrench within what device and hand take.
+// The last limit before a device: magnitude, rate and jerk of the wrench within what device and hand take.
 #pragma once
 
 #include <algorithm>

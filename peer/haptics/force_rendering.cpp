@@ -8,7 +8,7 @@
 namespace slosh {
 namespace {
 
-// A fall of what is believed in one tick that is no fading: the world stopped, or this process was.
+// A fall of the freshness in one tick that is no fading: the world stopped, or this process was.
 constexpr double kSudden = 0.05;
 
 bool is_finite(const Wrench& w) {
@@ -48,7 +48,7 @@ Wrench ForceRendering::couple(const StateFreshness& world, const DeviceReport& h
   // A host that keeps its stand takes the hand as it is from here on, and the grip as it is then.
   if (now.stands && !(reaches && felt_)) engagement_.take_hold_anew();
   felt_ = reaches;
-  // Who takes hold begins without force; a silence took as much of it as it lasted.
+  // A hand that engages begins without force; a silence took as much of it as it lasted.
   const bool begins = world.anew || now.leapt || (hand.engaged && !held_on_);
   held_on_ = hand.engaged;
   if (gentle_ && begins) share_ = 0.0;
@@ -61,7 +61,7 @@ Wrench ForceRendering::couple(const StateFreshness& world, const DeviceReport& h
   gains.damping = std::min(gains.damping, now.pace * most_damping_);
   gains.rotational_damping = std::min(gains.rotational_damping, now.pace * most_turning_);
   const Twist twist = sped_up(hand.twist, now.pace);
-  // As the world takes hold of it, whatever the device holds: else one slips where the other does not.
+  // Engages by the world's coupling, whatever the device bears: else one slips where the other does not.
   held_ = engagement_.update(hand.engaged, now.time, hand.pose, twist, of_world_, grip,
                              now.shared ? Company::kShared : Company::kAlone);
   const Wrench full = gives_way_

@@ -1,4 +1,5 @@
-// What one hand feels: the coupling to its grip, and nothing that only the link or a pause would add.
+// Force rendering for one hand: the coupling to its grip, and nothing that only the link or a pause would
+// add.
 #pragma once
 
 #include <algorithm>
@@ -15,14 +16,14 @@ namespace slosh {
 
 /// One rule for silence, pauses and resets, of the world and of the device: the force never jumps, and never
 /// grows by them.
-///  - While words are late the force is at most what it was with the last that was in time, and it fades as
-///    freshness() has it.
+///  - While updates are late the force is at most what it was with the last that was in time, and it fades
+///    by freshness().
 ///  - A hand that had no force gets it over DeviceLimits::engagement_time: with a new device, after a pause,
-///    a reset or a silence, when it takes hold again, when it suddenly is elsewhere. A silence that took a
+///    a reset or a silence, when it re-engages, when it suddenly is elsewhere. A silence that took a
 ///    part of the force takes as large a part of that time. Meanwhile its own motion is damped. Where nobody
 ///    feels it, what a silence took comes back over kFadeStale.
-///  - No force begins before world and device are both believed wholly. Who feels none begins with all of it.
-///    A host that keeps its stand until then is told by felt(), and the hand takes hold where it is by then.
+///  - No force begins before world and device are both fresh. A hand that feels none begins with all of it.
+///    A host that keeps its stand until then is told by felt(), and the hand engages where it is by then.
 ///  - Where the force would jump all the same, because the world stopped or the hand's hold is another one,
 ///    the difference is worked off over kBridge.
 /// A hand that gives way to the force (Device::gives_way) feels the coupling as this end has it, so that its
@@ -35,7 +36,7 @@ class ForceRendering {
   explicit ForceRendering(const CouplingGains& of_world) : gains_(of_world), of_world_(of_world) {}
 
   /// Another device: its limits, and no hold yet. `of_world`: the coupling as the world has it, by which the
-  /// hand takes hold, here as there; it is felt within the limits.
+  /// hand engages, here as there; it is felt within the limits.
   void restart(const CouplingGains& of_world, const DeviceLimits& limits, bool gives_way) {
     *this = ForceRendering(of_world);
     gains_ = within(of_world, limits);
@@ -67,7 +68,7 @@ class ForceRendering {
   struct Moment {
     double time = 0.0;          ///< simulated s, never falling but when the world was reset
     double period = 0.001;      ///< s since the call before
-    double device_share = 1.0;  ///< freshness of the device's own word
+    double device_share = 1.0;  ///< freshness of the device's own readings
     bool leapt = false;         ///< the hand is suddenly elsewhere (net/leap.h)
     bool shared = false;        ///< another hand holds the same body
     bool stands = false;        ///< BodyMessage::stands_until_felt
@@ -92,9 +93,8 @@ class ForceRendering {
   /// The hand as its coupling used it in the last feel(), and whether it held on.
   const Engagement::Held& held() const { return held_; }
   bool holds() const { return engagement_.engaged(); }
-  /// J that the last feel() gave the world's coupling because the hold was let in, towards the hand that
-  /// stays; less than 0 where it slipped: it is no motion of the hand's, and a body is lifted by it all the
-  /// same.
+  /// J that the last feel() gave the world's coupling by the engagement ramp, towards a hand that stays; less
+  /// than 0 where it slipped: it is no motion of the hand's, but a body is lifted by it all the same.
   double ramp_work() const { return engagement_.given(); }
 
   /// Whether what the hand does is felt by its person, as of the last feel(): their force has begun and no
@@ -108,7 +108,7 @@ class ForceRendering {
   /// N·s/m and N·m·s/rad, twice the most that damps a hand that is about to get force.
   static constexpr double kMaxRampDamping = 10.0;
   static constexpr double kMaxRampTurning = 0.02;
-  /// s over which a jump is worked off: a hand of 15 N is let go of at 150 N/s.
+  /// s over which a jump is worked off: 15 N on a hand are released at 150 N/s.
   static constexpr double kBridge = 0.1;
 
  private:
@@ -119,7 +119,7 @@ class ForceRendering {
 
   CouplingGains gains_;                   // as it is felt
   CouplingGains of_world_;                // as the hold goes by it
-  ForceLimiter limiter_{DeviceLimits{}};  // lets nothing through before restart()
+  ForceLimiter limiter_{DeviceLimits{}};  // gives nothing before restart()
   Engagement engagement_;
   Engagement::Held held_;
   bool jumps_ = false;  // in this call
@@ -133,9 +133,9 @@ class ForceRendering {
   double most_turning_ = 0.0;
   double share_ = 1.0;
   double believed_ = 1.0;  // at the call before
-  bool begun_ = false;  // world and device were both believed since the device came, or the world was reset
+  bool begun_ = false;     // world and device were both fresh since the device came, or the world was reset
   bool felt_ = false;
-  bool hold_anew_ = false;   // words had stopped
+  bool hold_anew_ = false;   // updates had stopped
   bool held_on_ = false;     // the hand, at the call before
   bool current_ = true;      // the world was, at the call before
   double most_force_ = 0.0;  // N, with the last state that was in time

@@ -14,8 +14,8 @@ constexpr double kShareRise = 0.5;  // s over which the replica comes in, or goe
 /// N·s/m: more would shake a hand of 1 kg that is felt each ms, whatever its device holds.
 constexpr double kMaxDamping = 100.0;
 constexpr double kLongestTick = 0.02;  // s: a loop that was stopped goes on from where it was
-/// s of missed ticks that are caught up with, at most: who was gone for longer takes hold anew, as after any
-/// silence. A quick host's words would be stale by then; one of few steps is waited for longer than this
+/// s of missed ticks that are caught up with, at most: after a longer gap hands re-engage, as after any
+/// silence. A quick host's updates would be stale by then; one of few steps is waited for longer than this
 /// (freshness()).
 constexpr double kMaxCaughtUp = kHoldAnew;
 /// s of simulated time by which a host carries a pose on at most (host/input_gate.h).
@@ -182,7 +182,7 @@ void HeldBodies::read(std::size_t i, const Pose& before, const Pose& now) noexce
 void HeldBodies::catch_up(std::int64_t now_ns, double period, double pace, double elapsed) noexcept {
   caught_up_ = 0.0;
   const double missed = advanced_ns_ == 0 ? 0.0 : to_seconds(now_ns - advanced_ns_);
-  // A replica that began with the newest word is where it should be.
+  // A replica that began with the newest update is where it should be.
   const bool late = missed > 0.5 * period && missed <= kMaxCaughtUp && !began_;
   if (late) {
     caught_up_ = std::clamp(elapsed - pace * period, 0.0, pace * missed);

@@ -1,4 +1,4 @@
-// The bodies that hands of this site hold: between body states as they come and the device loop.
+// The bodies that hands of this site hold, between body states as they are received and the device loop.
 #pragma once
 
 #include <cstdint>
@@ -33,7 +33,7 @@ class HeldBodies {
   /// Once a tick: the newest state and whether it came since the tick before.
   void hear(const BodyMessage& newest, bool fresh, std::int64_t now_ns) noexcept;
 
-  /// Whether the body of grip `i` was begun anew in the last hear(): its hands take hold anew.
+  /// Whether the body of grip `i` was restarted in the last hear(): its hands re-engage.
   bool anew(std::size_t i) const noexcept;
   /// The device of grip `i` was read here, and at the reading before there.
   void read(std::size_t i, const Pose& before, const Pose& now) noexcept;
@@ -47,8 +47,8 @@ class HeldBodies {
   Wrench guard(std::size_t i, const Wrench& wanted, const Pose& hand, const Twist& twist, double dt,
                double most_damping, double pace) noexcept;
   /// What the device of grip `i` was sent, and what its coupling used of the hand, by the world's time;
-  /// `ramp_work`: J that its hold gave by being let in (ForceRendering::ramp_work). `with_world`: the hand
-  /// itself goes by that (Device::goes_with_world).
+  /// `ramp_work`: J that its engagement ramp gave (ForceRendering::ramp_work). `with_world`: the hand itself
+  /// goes by that (Device::goes_with_world).
   void sent(std::size_t i, const Wrench& wrench, bool engaged, const Pose& held, const Twist& twist,
             double ramp_work, bool with_world) noexcept;
   /// The coupling of grip `i` is that from now on, at the host and here.
@@ -97,12 +97,12 @@ class HeldBodies {
   std::deque<Entry> bodies_;
   std::uint32_t run_ = 0;
   double rate_ = 0.0;
-  double interval_ = 0.0;  // s between words
+  double interval_ = 0.0;  // s between updates
   bool here_ = true;       // the host is in this process
   std::int64_t heard_ns_ = 0;
   std::int64_t advanced_ns_ = 0;
   double caught_up_ = 0.0;  // simulated s of this tick that were caught up with
-  bool began_ = false;      // replicas did, with this tick's word
+  bool began_ = false;      // replicas did, with this tick's update
 };
 
 }  // namespace slosh

@@ -9,7 +9,7 @@
 namespace slosh {
 namespace {
 
-/// s between two words of a world that waits: a host repeats them ten times a second, and one may be lost.
+/// s between two updates of a world that waits: a host repeats them ten times a second, and one may be lost.
 constexpr double kStandingInterval = 0.05;
 /// s by which poses may be later than usual before what they stretch counts as the link's, besides three
 /// times what the lag usually varies by.
@@ -31,7 +31,8 @@ double LinkFreshness::follow_poses(const BodyMessage& message, bool& current) no
     }
     resuming_ = usual_known_ = false;
   }
-  // A host that never heard us may never have: no force begins before it has, so that none is left to end.
+  // A host that has not received us yet may never do so: no force begins before it has, so that none is left
+  // to end.
   if (message.heard_pose_ns <= 0) {
     current = false;
     return 0.0;
@@ -42,7 +43,7 @@ double LinkFreshness::follow_poses(const BodyMessage& message, bool& current) no
     lag_spread_ = 0.0;
     usual_known_ = true;
   }
-  // A silence is no measure of itself: what is usual is as it was when a pose was last heard.
+  // A silence is no measure of itself: what is usual is as it was when a pose was last received.
   if (message.heard_pose_ns != followed_ns_) {
     followed_ns_ = message.heard_pose_ns;
     latest_ = usual_lag_ + kSpread * lag_spread_;

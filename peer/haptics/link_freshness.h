@@ -1,4 +1,5 @@
-// Whether the world and its hands hear one another: what a device loop may believe, and when it speaks.
+// Staleness of the link in both directions: how far a device loop may use body states, and when it sends
+// poses.
 #pragma once
 
 #include <cstdint>
@@ -12,18 +13,18 @@ struct StateFreshness {
   double share = 0.0;    ///< 0–1, by how long ago it came; 0 while the world has stopped
   bool current = false;  ///< no later than a world at its pace would have it
   bool resumed = false;  ///< the state came after the one before had been late
-  bool anew = false;     ///< the world was reset: whoever holds on takes hold anew
+  bool anew = false;     ///< the world was reset: hands that hold on re-engage
 };
 
 /// Body states come one way and poses go the other, and each may fail alone.
-///  - States that are late are believed as freshness() has it; a world in this process that waits for its
-///    first step, as long as it says so; one that stopped, or that waits far away, not at all.
-///  - Nothing is believed before the first state that follows a pose of ours: on a link that takes a round
-///    trip, and until then nobody can tell a host that will never hear us from one that is far away.
-///  - States that no longer follow our poses come from a host that does not hear us: the body stands where
-///    our hand was, and a spring to it would be the link's. Late poses count as late states do.
-///  - Who hears nothing says nothing. So the host takes the hand for silent too, and when contact is back
-///    both ends take hold anew (net/engagement.h), the loop when the host has.
+///  - States that are late count by freshness(); those of a world in this process that waits for its first
+///    step, as long as it says so; those of one that stopped, or that waits far away, not at all.
+///  - No state counts before the first that follows a pose of ours: on a link that takes a round trip, and
+///    until then a host that never receives us looks like one that is far away.
+///  - States that no longer follow our poses come from a host that does not receive them: the body stands
+///    where our hand was, and a spring to it would be the link's. Late poses count as late states do.
+///  - Without states no poses are sent. So the host takes the hand for silent too, and when contact is back
+///    both ends re-engage (net/engagement.h), the loop when the host has.
 /// Reads no clock; one thread; no allocation.
 class LinkFreshness {
  public:
@@ -45,9 +46,9 @@ class LinkFreshness {
   std::uint32_t run_ = 0;
   std::int64_t heard_ns_ = 0;  // when the newest state came
   bool speaks_ = true;
-  bool resuming_ = false;      // speaks again, and the host has not answered to it yet
-  std::int64_t again_ns_ = 0;  // when it was heard again after a silence; 0 = it is not
-  std::int64_t since_ns_ = 0;  // when it spoke first after it
+  bool resuming_ = false;      // sends again, and the host has not answered yet
+  std::int64_t again_ns_ = 0;  // when states came again after a silence; 0 = none did
+  std::int64_t since_ns_ = 0;  // when it sent first after it
   double usual_lag_ = 0.0;     // s from our pose to a state that follows it, with the state's own delay
   double lag_spread_ = 0.0;    // s, its mean deviation
   bool usual_known_ = false;

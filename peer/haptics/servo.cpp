@@ -113,7 +113,7 @@ DevicePort* Servo::claim_device(Hand& hand) noexcept {
 }
 
 /// Whether what it was given is still to go, as gently as its device asks for, before it is parted with:
-/// somebody has let go of its grip.
+/// somebody has released its grip.
 bool Servo::parts(const Hand& hand, const DevicePort* wanted) const noexcept {
   const bool felt = hand.given.force != glm::dvec3(0.0) || hand.given.torque != glm::dvec3(0.0);
   return wanted == nullptr && hand.port != nullptr && felt && hand.port->device().gives_way();

@@ -35,15 +35,15 @@ struct ServoOptions {
 /// one reader. set_device() and what asks about devices belong to one other thread.
 ///
 /// A rising BodyMessage::run means that the world was reset: simulated time starts anew for the devices, and
-/// couplings are let in as if every hand had just taken hold. The time of samples goes on instead, so that
-/// files and plots of a run never step back.
+/// couplings ramp up as if every hand had just engaged. The time of samples goes on instead, so that files
+/// and plots of a run never step back.
 class Servo {
  public:
   /// The channel must outlive the servo. One device a grip; null where the hand is not ours: then its pose in
   /// the channel is left alone. A device that set_device() would refuse is left out.
   Servo(const Scene& scene, std::vector<std::unique_ptr<Device>> devices, Channel& channel,
         ServoOptions options);
-  /// Lets go. After the device loop has stopped.
+  /// Disengages all hands. After the device loop has stopped.
   ~Servo();
   Servo(const Servo&) = delete;
   Servo& operator=(const Servo&) = delete;
@@ -55,10 +55,10 @@ class Servo {
   /// at its end, or by anybody once it is over.
   void let_go() noexcept;
 
-  /// Hands `device`, already open, to grip `i` from the next tick on; null takes away what is there,
-  /// once its force has gone by its limits; until then it is said not to hold on. What was there is sent
-  /// zero, closed and freed as soon as the loop has let go of it: at a later call, or at the end. Errors:
-  /// limits that are not sound (check_limits); then nothing changes.
+  /// Hands `device`, already open, to grip `i` from the next tick on; null takes away what is there, once its
+  /// force has gone by its limits; until then it is said not to hold on. What was there is sent zero, closed
+  /// and freed as soon as the loop has released it: at a later call, or at the end. Errors: limits that are
+  /// not sound (check_limits); then nothing changes.
   Result<bool> set_device(std::size_t i, std::unique_ptr<Device> device);
 
   /// The springs of grip `i` are so many times the scene's (World::set_grip_stiffness): the loop goes over to

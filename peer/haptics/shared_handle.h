@@ -8,7 +8,7 @@
 
 namespace slosh {
 
-/// What a window and a device loop say to each other of one hand that is lent.
+/// What a window and a device loop exchange about one hand that both may move.
 struct SharedHandle {
   struct Wish {
     bool taken = false;  ///< false: the script has it
@@ -23,7 +23,8 @@ struct SharedHandle {
 /// Plays its script until somebody takes it. Taken, it follows where it is wanted as a critically damped
 /// second-order system in the world's own time, so that it is as fast for the fluid in slow motion as at full
 /// pace and stands in a world that stands; it is no faster than a careful hand. Given back, it goes home to
-/// the script's motion, in no less than a second. As long as nobody takes it, it is its script bitwise.
+/// the script's motion, in no less than a second. As long as nobody takes it, its motion is bitwise the
+/// script's.
 class SharedHandleDevice final : public Device {
  public:
   /// `script` must be immediate().

@@ -153,7 +153,7 @@ void bind_world(py::module_& m) {
       "the CPU, 0: all\n"
       "cores. hands: {grip: what hold() takes}; grips that are not in it follow the scene's script. settle: "
       "rest first\n"
-      "where the scene asks for it. The same inputs give the same state bitwise whatever the threads.\n\n"
+      "where the scene asks for it. The same inputs give a bitwise identical state whatever the threads.\n\n"
       "One thread at a time: step, run and settle let other Python threads go on meanwhile, and those that "
       "touch this\n"
       "world then get slosh.Error. Functions that run calls may read the world and change parameters.\n"

@@ -71,7 +71,7 @@ class BodyInbox {
   /// Joins the next state that is given out.
   void take(const wire::FluidWrench& model);
 
-  /// The world stands still, by word of the host: the last state is handed out once more with a pace of 0.
+  /// The world stands still, as the host said: the last state is handed out once more with a pace of 0.
   void set_paused(bool paused) { paused_ = paused; }
 
   /// What this host's states say of its stands (BodyMessage::stands_until_felt), from the next one on.

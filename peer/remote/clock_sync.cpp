@@ -13,7 +13,7 @@ constexpr std::int64_t kRange_ns = std::int64_t{1} << 60;  // stamps beyond are 
 constexpr std::size_t kRecent = 48;
 constexpr double kRecentSeconds = 12.0;
 constexpr double kDriftBound = 1e-4;    // two ordinary crystals differ by less
-constexpr double kLargestDrift = 5e-4;  // what is not believed of an estimate
+constexpr double kLargestDrift = 5e-4;  // what exceeds this in an estimate is ignored
 constexpr double kCoarseSeconds = 2.0;
 constexpr std::size_t kCoarse = 30;
 constexpr double kWorkOff = 1.0;         // s over which a small correction is worked off
@@ -54,7 +54,7 @@ bool ClockSync::add(std::int64_t sent_ns, std::int64_t host_received_ns, std::in
     recent_ = {sample};
     return true;
   }
-  // Does it contradict what is believed, beyond what its round trip and the drift since explain?
+  // Does it contradict the estimate in use, beyond what its round trip and the drift since explain?
   const double apart = std::abs(offset_from_base(sample, received_ns) - mapped_offset(received_ns));
   const double explained = 0.5 * sample.round_trip + error_bound(received_ns) + kContradiction;
   if (apart > explained) {

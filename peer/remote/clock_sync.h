@@ -12,7 +12,7 @@ constexpr double kMaxClockSlew = 0.005;
 
 /// Four stamps a ping, as NTP has them. The delay there and the delay back cannot be told apart, so the
 /// offset of a ping is off by half of what they differ by, at most by half of its round trip: of the pings of
-/// the last seconds the one with the shortest is believed. Reads no clock; one thread.
+/// the last seconds the one with the shortest is used. Reads no clock; one thread.
 class ClockSync {
  public:
   /// One answered ping: sent and received on the peer's clock, in between on the host's, all ns. What cannot
@@ -32,7 +32,7 @@ class ClockSync {
   std::int64_t to_host(std::int64_t peer_ns) const;
   std::int64_t to_peer(std::int64_t host_ns) const;
 
-  /// By how much to_host may be wrong at `peer_ns`, s: half the round trip of the believed ping, what the
+  /// By how much to_host may be wrong at `peer_ns`, s: half the round trip of the ping in use, what the
   /// clocks may have drifted since, and what has not been worked off yet.
   double error_bound(std::int64_t peer_ns) const;
   double round_trip() const { return last_round_trip_; }  ///< s, of the newest ping

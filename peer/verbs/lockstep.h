@@ -12,7 +12,7 @@
 namespace slosh {
 
 /// In place of a DeviceLoop. The host's clock is simulated then (HostOptions::paced), so a run is the same
-/// again bitwise, whatever the machine does. Waits for who draws, so that no snapshot is lost.
+/// again, bitwise identical, whatever the machine does. Waits for who draws, so that no snapshot is lost.
 class Lockstep final : public HostTap {
  public:
   /// Both must outlive it.

@@ -88,7 +88,7 @@ void add_play(CLI::App& app, VerbRun& chosen) {
       ->allow_extra_args(false);
   verb->add_option("--record", o->record, "Keep the run's inputs and states in a file, for `slosh replay`");
   verb->add_flag("--unpaced", o->unpaced,
-                 "As fast as the machine goes, the same again bitwise; headless, for measuring");
+                 "As fast as the machine goes, bitwise identical each time; headless, for measuring");
   verb->add_option(
           "--step-rate", o->step_rate,
           "Steps a simulated second in which hands and world meet, each of as many of the scene's own as it\n"

@@ -54,7 +54,7 @@ struct PlayOptions : ShowOptions {
   std::string record;            ///< file for a recording; empty = none
   bool agreed = false;           ///< --yes: a run may take as long as it takes
   double step_rate = 0.0;  ///< steps a simulated s that hands meet, of as many of the plan's; 0 = the plan's
-  bool unpaced = false;    ///< as fast as it goes, the same again bitwise
+  bool unpaced = false;    ///< as fast as it goes, bitwise identical each time
 };
 
 }  // namespace slosh

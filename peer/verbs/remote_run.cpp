@@ -106,7 +106,7 @@ Rates RemoteRun::note_rates() {
 }
 
 /// Simulated time that has passed for this person, whatever the world's own did in between. The world's time
-/// is carried on from the newest word of it and falls back when that was too far: only what is beyond the
+/// is carried on from its newest update and falls back when that was too far: only what is beyond the
 /// furthest counts, else a host that is slow and uneven would seem to run many times as long as it did.
 void RemoteRun::follow_time() {
   if (!status_.moment.known) return;

@@ -60,7 +60,7 @@ std::vector<LivePanel::Row> LivePanel::rows_of(const LiveValues& now) const {
     rows.push_back({id, std::move(label), pattern, least, most, logarithmic, value, wish});
   };
   if (now.may_pace) add(0, "pace", "\xC3\x97 %.2f", kSlowest, 1.0f, true, now.pace, {Kind::kPace, 0, 0.0});
-  add(1, "surface filter", "%.0f turns", 0.0f, kMaxFilter, false, now.filter, {Kind::kFilter, 0, 0.0});
+  add(1, "surface filter", "%.0f iterations", 0.0f, kMaxFilter, false, now.filter, {Kind::kFilter, 0, 0.0});
   if (now.may_change) {
     add(2, "gravity", "\xC3\x97 %.2f", 0.0f, 2.0f, false, now.gravity_scale, {Kind::kGravityScale, 0, 0.0});
     for (std::size_t i = 0; i < now.viscosities.size() && i < fluid_names_.size(); ++i)

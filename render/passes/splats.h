@@ -46,8 +46,8 @@ struct Splats {
 void prepare_splats(const Frame& frame, const RenderOptions& options, Splats& out);
 
 /// Drops from `splats.spheres` those that no pixel of the front depth can show, and puts into `splats.back`
-/// those that the back depth may show: inner particles are most of a fluid. The pictures stay the same to the
-/// bit. Worth its while where a CPU draws.
+/// those that the back depth may show: inner particles are most of a fluid. The pictures stay bitwise
+/// identical. Worth its while where a CPU draws.
 void leave_out_hidden(const Frame& frame, const RenderOptions& options, Splats& splats);
 
 }  // namespace slosh

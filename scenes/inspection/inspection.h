@@ -18,8 +18,8 @@ void look_at_motion(const gltf::Document& document, std::vector<Finding>& warnin
 /// coarse meshes that are shaded as if they were round.
 void look_at_scene(const gltf::Document& document, const Scene& scene, std::vector<Finding>& warnings);
 
-/// What is where nothing can act on it: hands out of reach or faster than is let in, fluid over nothing,
-/// places that floats are too coarse for, sizes and weights that look like another unit's.
+/// What is where nothing can act on it: hands out of reach or faster than the host accepts, fluid over
+/// nothing, places that floats are too coarse for, sizes and weights that look like another unit's.
 void look_at_reach(const gltf::Document& document, const Scene& scene, std::vector<Finding>& warnings);
 
 /// Blender's world, z up, of a place in ours.

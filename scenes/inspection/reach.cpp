@@ -35,7 +35,7 @@ void look_at_hands(const gltf::Document& document, const Scene& scene, std::vect
           {"hand-out-of-reach",
            {where,
             format("is at %.3g s more than %.3g m outside the scene's domain, at ", out->time, kHandleReach) +
-                place_text(out->pose.position) + ": it is not let in there, and holds where it was last",
+                place_text(out->pose.position) + ": it is not accepted there, and holds where it was last",
             "Keep it nearer, or widen the scene's domain_min_m and domain_max_m"}});
     const auto fast = std::adjacent_find(keys.begin(), keys.end(), [](const PoseKey& a, const PoseKey& b) {
       return glm::distance(a.pose.position, b.pose.position) > kHandleSpeed * (b.time - a.time);
@@ -44,7 +44,7 @@ void look_at_hands(const gltf::Document& document, const Scene& scene, std::vect
       warnings.push_back(
           {"hand-too-fast",
            {where,
-            format("moves at %.3g m/s at %.3g s, and hands faster than %.3g m/s are not let in",
+            format("moves at %.3g m/s at %.3g s, and hands faster than %.3g m/s are not accepted",
                    glm::distance(fast->pose.position, (fast + 1)->pose.position) /
                        ((fast + 1)->time - fast->time),
                    fast->time, kHandleSpeed),

@@ -43,7 +43,7 @@ class BodySystem {
   /// The velocities that the bodies end the sub-step with, by couplings and contacts as far as the plan has
   /// them. Returns StatusBits.
   std::uint32_t solve(const Plan& plan, const BodyForces& forces, const SubStep& step);
-  /// Every body as implicit drag has to know it, one a body: as solve() will find it under the same forces,
+  /// Every body as implicit viscosity needs it, one a body: as solve() will find it under the same forces,
   /// with what contacts gave in the last sub-step for what they will give now.
   void predict(const Plan& plan, const BodyForces& forces, const SubStep& step, std::span<ViscousBody> out);
   /// By how much they differ from those that it began with, one a body.

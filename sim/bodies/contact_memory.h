@@ -1,5 +1,6 @@
 // What contacts gave in the last sub-step: where the next solve begins. A weight passes through a stack of n
-// bodies in some n² turns of the solve; begun anew each step, a stack of ten never gets there and topples.
+// bodies in some n² iterations of the solve; begun anew each step, a stack of ten never gets there and
+// topples.
 #pragma once
 
 #include <span>

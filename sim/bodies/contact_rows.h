@@ -149,8 +149,8 @@ SLOSH_HD inline glm::dvec3 impulse_on_a(const ContactRows& rows) {
   return rows.normal.impulse * rows.n + rows.tangent_u.impulse * rows.u + rows.tangent_v.impulse * rows.v;
 }
 
-/// One turn of Gauss–Seidel on one contact: the normal, then friction in the circle that it allows. Returns
-/// the largest change of an impulse, N·s.
+/// One iteration of Gauss–Seidel on one contact: the normal, then friction in the circle that it allows.
+/// Returns the largest change of an impulse, N·s.
 SLOSH_HD inline double solve_once(ContactRows& rows, double target, Vector6& a, Vector6& b) {
   Constraint& n = rows.normal;
   const double wanted = n.impulse + n.effective_mass * (target - speed_along(n, a, b));

@@ -7,13 +7,14 @@ namespace slosh {
 
 namespace {
 
-// Turns of Gauss–Seidel, there and back: until no impulse changes by more than a share of the largest, or the
-// most that a step may cost.
+// Iterations of Gauss–Seidel, there and back: until no impulse changes by more than a share of the largest,
+// or the most that a step may cost.
 constexpr int kMaxTurns = 150;
 constexpr double kSettled = 1e-7;
 
-/// Projected Gauss–Seidel with each turn's steps made conjugate to the last one's (Silcowitz-Hansen 2010). A
-/// stack of n bodies bends like a beam: alone, Gauss–Seidel takes some n⁴ turns for that, with this some n².
+/// Projected Gauss–Seidel with each iteration's steps made conjugate to the last one's (Silcowitz-Hansen
+/// 2010). A stack of n bodies bends like a beam: alone, Gauss–Seidel takes some n⁴ iterations for that, with
+/// this some n².
 class Iteration {
  public:
   Iteration(const std::vector<Contact>& contacts, double rows::Targets::* target, Vector6 BodySolve::* speed,
@@ -28,7 +29,7 @@ class Iteration {
     for (int turn = 1;; ++turn) {
       for (std::size_t i = 0; i < all_.size(); ++i) before[i] = impulse(i);
       const bool settled = there_and_back();
-      // The last is a whole turn: what is made conjugate may pull.
+      // The last is a whole iteration: what is made conjugate may pull.
       if (settled || turn == kMaxTurns) return;
       double square = 0.0;
       for (std::size_t i = 0; i < all_.size(); ++i) {
@@ -38,7 +39,7 @@ class Iteration {
       const double beta = last_square > 0.0 ? square / last_square : 0.0;
       last_square = square;
       for (std::size_t i = 0; i < all_.size(); ++i) {
-        // Steps that grow have come upon a contact that opened or slipped: begin again.
+        // Steps that grow have come upon a contact that opened or slipped: restart.
         const glm::dvec3 more = beta <= 1.0 ? beta * along[i] : glm::dvec3(0.0);
         rows::apply(all_[i].normal, more.x, a(i), b(i));
         rows::apply(all_[i].tangent_u, more.y, a(i), b(i));

@@ -153,14 +153,14 @@ Meeting meet(const DistanceFieldView& field, const glm::vec3& start, const glm::
   return meeting;
 }
 
-// The gap between two flat faces that lie on each other, along `out`, the normal, turned round, of the one
-// that the point at `at` is of; `there` is what the other's field says at it. Within a cell of an edge, and a
-// cell above it, the interpolated distance is bent: too small inside, where its gradient dwindles, and round
-// the edge outside. So it is read a cell above the face, where it is straight unless the edge is near, and
-// from there further and further in from the edge until it rises straight off the face: bent by
-// ten-thousandths of a cell a stack of ten cubes of 2 cm leaned by 0.1 to 0.5 mm, or fell (at 9.9 and 7.5 mm,
-// where its edges do not lie on the field's nodes). Where no place is straight the first look still knows
-// better than a field that is clearly bent at the point itself. Nothing where faces do not face each other.
+// The gap between two flat faces that lie on each other, along `out`, the reversed normal of the one that the
+// point at `at` is of; `there` is what the other's field says at it. Within a cell of an edge, and a cell
+// above it, the interpolated distance is bent: too small inside, where its gradient dwindles, and round the
+// edge outside. So it is read a cell above the face, where it is straight unless the edge is near, and from
+// there further and further in from the edge until it rises straight off the face: bent by ten-thousandths of
+// a cell a stack of ten cubes of 2 cm leaned by 0.1 to 0.5 mm, or fell (at 9.9 and 7.5 mm, where its edges do
+// not lie on the field's nodes). Where no place is straight the first look still knows better than a field
+// that is clearly bent at the point itself. Nothing where faces do not face each other.
 std::optional<float> gap_between_faces(const DistanceFieldView& field, const glm::vec3& at,
                                        const DistanceSample& there, const glm::vec3& out) {
   constexpr float kParallel = 1e-3f;  // rad

@@ -1,4 +1,4 @@
-// Pairs of particles written down once a sub-step: a turn of a solve asks for them again and again.
+// Pairs of particles written down once a sub-step, for all iterations of a solve.
 #pragma once
 
 #include <algorithm>
@@ -23,10 +23,10 @@ struct alignas(32) PressureTensor {
   float xy, yz, xz, viscosity;
 };
 
-/// For each of a set of particles its pairs, a weight each: who presses on whom (s = −W'/r without the
-/// kernel's constant, so that g = s d), who drags whom (q, kg/m²: q d (d · v)); d is from the other to the
-/// particle and comes from where the two are. 8 bytes a pair. Particles go by fours, a pair of each side by
-/// side: no row has a sum over lanes of its own.
+/// For each of a set of particles its pairs, a weight each: pressure pairs (s = −W'/r without the kernel's
+/// constant, so that g = s d), viscous pairs (q, kg/m²: q d (d · v)); d is from the other to the particle and
+/// comes from where the two are. 8 bytes a pair. Particles go by fours, a pair of each side by side: no row
+/// has a sum over lanes of its own.
 class PairRows {
   struct Chunk;
 
@@ -184,11 +184,11 @@ class PairRows {
       const Sixteen reach = h - r_squared * inverse_r;
       return (reach * (shape.growth * reach + shape.level)) * (inverse_r * inverse_r);
     }
-    /// The sum of q d (d · (v − one's own)), v each other's of `velocities`, in rows of who drags whom.
+    /// The sum of q d (d · (v − one's own)), v each other's of `velocities`, in rows of viscous pairs.
     Sixteen dragged(const Vector4* places, const Vector4* velocities) const {
       const Sixteen own = of_group<4>(&velocities[first].x);
-      // A pair's two drags are opposite bitwise, so momentum is kept to what sums round: that is carried
-      // along.
+      // A pair's two viscous forces are exactly opposite, so momentum is conserved to what sums round: that
+      // is carried along.
       Sixteen sum = {}, lost = {};
       for_each_way(places, [&](Sixteen d, const Pair* four) {
         const Sixteen along = sums(d * (of_others<4>(&velocities->x, four) - own));

@@ -48,19 +48,20 @@ class BodySurface {
 };
 
 /// Eq 2 and 7: density (kPaper: from fluid particles only, section 4.1), then pressure and volume. With
-/// kPressureSolve or kImplicitViscosity `press` gets who presses on whom: the same walk over the neighbours
+/// kPressureSolve or kImplicitViscosity `press` gets the pressure pairs: the same loop over the neighbours
 /// finds it.
 void compute_density(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
                      const BoundaryParticles& fixed, const BoundaryParticles& moving, FluidPress& press);
 
-/// The same for the corrected model (density.cpp calls it), and with it what each presses and drags by.
+/// The same for the corrected model (density.cpp calls it), and with it each one's pressure tensor and
+/// damping.
 void compute_corrected_density(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
                                const BoundaryParticles& fixed, const BoundaryParticles& moving,
                                FluidPress& press);
 
-/// Eq 5, 6 and 9 on fluid particles, by fluid and by body particles. With kImplicitViscosity without drag,
-/// and `drag` gets who drags whom over `dt` s (drag_rows.cpp): both by `press`, which is from the density
-/// pass.
+/// Eq 5, 6 and 9 on fluid particles, by fluid and by body particles. With kImplicitViscosity without the
+/// viscous force, and `drag` gets the viscous pairs over `dt` s (drag_rows.cpp): both by `press`, which is
+/// from the density pass.
 void compute_fluid_forces(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
                           const BoundaryParticles& fixed, const BoundaryParticles& moving, double dt,
                           FluidViscosity& drag, const FluidPress& press);
@@ -85,11 +86,12 @@ void sum_body_wrenches(PassContext& context, ThreadTeam& team, const FluidPartic
                        const std::vector<char>& wanted, SurfaceSums& scratch, std::span<Wrench> wrenches,
                        std::span<BodyDrag> drags);
 
-/// Adds to the forces on the fluid the drag of moving body particles by the velocities that they have now.
+/// Adds to the forces on the fluid the viscous force of moving body particles by the velocities that they
+/// have now.
 void drag_fluid(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
                 const BoundaryParticles& moving);
 
-/// Whom particles are guarded against in a sub-step, and what that takes from them.
+/// The bodies of the penetration clamp in a sub-step, and what it takes from particles.
 struct WallGuards {
   std::span<const GuardedBody> bodies;
   std::span<const glm::dvec3> centers;  ///< m, world, of mass as the sub-step ends, one a body

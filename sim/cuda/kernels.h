@@ -46,7 +46,7 @@ struct MovingPacks {
   Store<float4> v{};           ///< velocity, m/s, half a step behind x; w: volume, m³, from the density pass
   Store<std::uint32_t> id{};   ///< fixed for the run
   Store<std::uint8_t> kind{};  ///< into the table of kinds
-  Store<float> solved{};       ///< Pa, that the last step found; there only where pressures are solved for
+  Store<float> solved{};       ///< Pa, that the last step found; there only with pressure projection
   Store<std::uint32_t> key{};  ///< cell, or retired
 };
 
@@ -92,13 +92,13 @@ struct SortedFluid {
       nullptr;  ///< position, and in w the pressure (kConsistent: V²P; corrects_gradients(): the volume)
   float4* push_a =
       nullptr;  ///< kCorrected: xx, xy, xz, yy of the pressure tensor, N·m⁴; kIncompressible: of 1 Pa's
-  float4* push_b = nullptr;    ///< kCorrected: yz, zz of it; x, y of what pairs drag by, Pa·m
+  float4* push_b = nullptr;    ///< kCorrected: yz, zz of it; x, y of viscosity times velocity, Pa·m
   float* drag_z = nullptr;     ///< kCorrected: z of that
   float* expansion = nullptr;  ///< kIncompressible: wanted ρ⁰/ρ − 1
   float* viscosity = nullptr;  ///< Pa·s; there and written only where pairs differ
   // kFluidStress:
-  float4* passed_x = nullptr;  ///< the rows of what each presses others with (kCorrected) and stresses
-  float4* passed_y = nullptr;  ///< them with, N·m⁴; in w what pairs drag by, Pa·m
+  float4* passed_x = nullptr;  ///< the rows of each one's pressure and stress tensor (kCorrected),
+  float4* passed_y = nullptr;  ///< N·m⁴; in w viscosity times velocity, Pa·m
   float4* passed_z = nullptr;
   float* left = nullptr;    ///< viscosity for Eq 9 with fluid, Pa·s
   float4* force = nullptr;  ///< N; w: 1 where bodies are in the cells around, else 0
@@ -148,7 +148,7 @@ struct DeviceBody {
   glm::dvec3 position{0.0};  ///< of the centre of mass, m, world
 };
 
-/// A body that particles are guarded against in a sub-step.
+/// A body of the penetration clamp in a sub-step.
 struct DeviceGuard {
   GuardedBody body;
   glm::dvec3 center{0.0};  ///< of mass as the sub-step ends, m, world
@@ -216,9 +216,9 @@ struct ProbeOutput {
   float4* forces = nullptr;
   std::uint32_t* slots = nullptr;
 };
-/// Whom particles are guarded against in a sub-step, and what that takes from them.
+/// The bodies of the penetration clamp in a sub-step, and what it takes from particles.
 struct GuardView {
-  std::uint32_t count = 0;  ///< of bodies; 0: nothing is guarded
+  std::uint32_t count = 0;  ///< of bodies; 0: no clamp
   std::uint32_t any_fast = 0;
   const DeviceGuard* bodies = nullptr;
   unsigned long long* impulses = nullptr;  ///< as ImpulseSums; added to

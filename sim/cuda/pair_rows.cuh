@@ -33,7 +33,7 @@ __device__ inline NeighborColumns columns(const SortedSurface& surface) {
   return {surface.x, surface.v, surface.viscosity, nullptr, nullptr, nullptr, nullptr, surface.reach};
 }
 
-/// What the corrected model's fluid presses and drags by.
+/// Pressure tensor and damping of the corrected model's fluid.
 __device__ inline void read_corrected(const NeighborColumns& n, std::uint32_t j, ParticleView<float>& p) {
   const float4 a = __ldg(n.push_a + j);
   const float4 b = __ldg(n.push_b + j);
@@ -43,7 +43,7 @@ __device__ inline void read_corrected(const NeighborColumns& n, std::uint32_t j,
   p.uz = __ldg(n.drag_z + j);
 }
 
-/// Where fluid passes on stresses: what j presses and stresses others with; to `p` what it drags by.
+/// With particle stresses: j's pressure and stress tensor; to `p` its viscosity times velocity.
 __device__ inline Matrix3<float> read_passed(const NeighborColumns& n, std::uint32_t j,
                                              ParticleView<float>& p) {
   const float4 x = __ldg(n.passed_x + j), y = __ldg(n.passed_y + j), z = __ldg(n.passed_z + j);
@@ -83,7 +83,7 @@ __device__ inline void add_forces(const StepConstants& c, const ParticleView<flo
                                   const NeighborColumns& n, const CellTable& cells, std::uint32_t cell,
                                   float h, Sum& sum, float of_fluid = 1.0f) {
   constexpr bool kOfFluid = is_corrected_fluid(rule) || is_corrected_body(rule);
-  // What pairs of one viscosity drag by is in u already.
+  // With one viscosity, viscosity times velocity is in u already.
   constexpr bool kViscous =
       is_corrected_fluid(rule) ? viscosity == Viscosity::kPair : viscosity != Viscosity::kNone;
   for_neighbors<Team>(c.grid, cells, cell, [&](std::uint32_t j) {
@@ -124,7 +124,7 @@ __device__ inline ParticleView<float> view(const float4& x, const float4& v, flo
   return {x.x, x.y, x.z, v.x, v.y, v.z, x.w, v.w, viscosity, {}, 0.0f, 0.0f, 0.0f};
 }
 
-/// Calls f(i, reach) for the neighbours of p as drag between them sees them, or the thread's share of them.
+/// Calls f(i, reach) for the neighbours of p as the viscous force sees them, or the thread's share of them.
 /// `h`: within which p meets fluid, m.
 template <class Team, Viscosity viscosity, Neighbours neighbours, class F>
 __device__ inline void for_each_dragged(const StepConstants& c, const ParticleView<float>& p,

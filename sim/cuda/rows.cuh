@@ -7,7 +7,7 @@
 namespace slosh::cuda {
 
 inline constexpr int kThreads = 128;
-/// How many blocks a multiprocessor holds at least of kernels that pass on stresses: 64 registers a thread.
+/// How many blocks a multiprocessor holds at least of kernels with particle stresses: 64 registers a thread.
 /// By itself the compiler takes 71 to 80, and a step of a million particles a fifth longer
 /// (tests/bench/results/2026-11-27-passed-steps-h100.csv).
 inline constexpr int kBlocksWithStress = 8;

@@ -1,4 +1,4 @@
-// What a solve of one launch has of its pairs: written down once a sub-step, asked for turn after turn.
+// The pairs of a solve in one launch: written down once a sub-step, read in each iteration.
 #pragma once
 
 #include <span>
@@ -13,7 +13,7 @@ inline constexpr int kSolveThreads = 256;  // entries that one partial sum is ov
 /// The pairs in which each entry meets another, a vector each, and in its last four bytes the other's entry.
 /// Row k of entry e lies where the rows k of a warp's 32 entries are one run of memory.
 struct PairRows {
-  std::uint32_t room = 0;  ///< pairs of an entry; who has more walks the neighbours anew each turn
+  std::uint32_t room = 0;  ///< pairs of an entry; who has more walks the neighbours anew each iteration
   float4* pairs = nullptr;
   std::uint32_t* counts = nullptr;  ///< of pairs, written or not
 

@@ -11,10 +11,10 @@ namespace slosh::cuda {
 
 class WallGuards {
  public:
-  /// Takes the distance fields over, where the plan guards walls.
+  /// Takes the distance fields over, where the plan has the penetration clamp.
   void plan(const RunConstants& constants, const ParticleStart& start, std::size_t body_count,
             CallCheck& check);
-  /// How many bodies; 0: nothing is guarded.
+  /// How many bodies; 0: no clamp.
   std::size_t size() const { return guards_.size(); }
 
   /// The bodies' ways in this sub-step, to the GPU, unless it has them: bodies that stand still are sent

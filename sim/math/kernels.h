@@ -62,8 +62,8 @@ struct PairKernel {
   Real laplacian;
 };
 
-/// How a pair's drag falls off within the support radius h, in place of the kernel's ∇²W (h − r, without its
-/// constant): (h − r) (level + growth (h − r)). {1, 0} is ∇²W itself, bitwise.
+/// How a pair's viscous force falls off within the support radius h, in place of the kernel's ∇²W (h − r,
+/// without its constant): (h − r) (level + growth (h − r)). {1, 0} is ∇²W itself, bitwise.
 template <class Real>
 struct DragShape {
   Real level;

@@ -20,7 +20,7 @@ static_assert(
     kFarthestHandle > 1.74 * (kFarthestPlace + kHandleReach),
     "a hand can be wherever a scene and its domain may be (the diagonal of a cube is 1.733 of its edge)");
 
-/// The box within which hands are let in, m, by a scene's domain: a domain may be larger than anything that
+/// The box within which hands are accepted, m, by a scene's domain: a domain may be larger than anything that
 /// is in it.
 inline glm::dvec3 lowest_handle(const glm::dvec3& domain_min) {
   return glm::max(domain_min, glm::dvec3(-kFarthestPlace)) - kHandleReach;

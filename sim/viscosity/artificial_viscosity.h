@@ -1,10 +1,10 @@
-// What takes the noise of particles out and leaves the flow: drag on what a velocity differs from its
-// neighbours' mean, carried to where the particle is along their flow (neighbour_flow.h).
+// Artificial viscosity on velocity fluctuations: it damps the difference between a particle's velocity and
+// its neighbours' mean, extrapolated to the particle along their flow (neighbour_flow.h).
 //
-// The corrected pressure keeps no energy: particles that jostle gain some. Plain viscosity that would hold it
-// would also be a hundred times water's. Against the mean of the neighbours, a flow that is smooth over a
-// support radius is not seen (the drag goes with the fourth power of the wave number, not the second), and
-// the artificial is damped as by some Pa·s.
+// Gradient correction does not conserve energy: velocity fluctuations gain some. Plain viscosity that damps
+// them would be a hundred times water's. The difference to the neighbours' mean leaves a flow that is smooth
+// over a support radius alone (damping goes with the fourth power of the wave number, not the second), and
+// fluctuations are damped as by some Pa·s.
 #pragma once
 
 #include <cmath>
@@ -14,35 +14,33 @@
 
 namespace slosh {
 
-/// The viscosity that artificial feels: this · density · support radius · speed of sound.
+/// The artificial viscosity: this · density · support radius · speed of sound.
 inline constexpr double kArtificialViscosity = 0.01;
 
-/// The share of it that is enough where pressures are solved for: a projection feeds artificial less.
+/// The share of it that is enough with pressure projection, which excites fluctuations less.
 inline constexpr double kProjectedShare = 1.0 / 3.0;
 
-/// Pa·s, what a fluid without viscosity needs whose pressures are not solved for.
+/// Pa·s, what an inviscid fluid needs without pressure projection.
 inline double weakly_compressible_artificial_viscosity(const Plan& plan, double density) {
   return kArtificialViscosity * density * plan.support_radius * std::sqrt(plan.stiffness);
 }
-/// Pa·s, what a fluid without viscosity needs.
+/// Pa·s, what an inviscid fluid needs.
 inline double artificial_viscosity(const Plan& plan, double density) {
   const double share = plan.model == ParticleModel::kIncompressible ? kProjectedShare : 1.0;
   return share * weakly_compressible_artificial_viscosity(plan, density);
 }
 
-/// Fluid of less than this share of that is thin: its own drag is next to nothing beside the drag on
-/// artificial.
+/// Fluid of less than this share of that is thin: its own viscosity hardly counts beside the artificial one.
 inline constexpr double kThin = 0.25;
 
-/// Up to this share of it a fluid gets all of the drag on artificial beside its own, and from the second on
+/// Up to this share of it a fluid gets all of the artificial viscosity beside its own, and from the second on
 /// none. A step's length counts all of it at any viscosity (viscosity/stability.cpp).
 inline constexpr double kAllOfIt = 0.75;
 inline constexpr double kNoneOfIt = 1.25;
 
-/// What is left to damp in a fluid of `viscosity`, Pa·s, of the `noise` that one without needs: nothing where
-/// its own drag is stronger. The two shares were chosen while, at walls and surfaces, the flow felt it
-/// (neighbour_flow.h): torque between cylinders of 1 Pa·s, three spacings apart, had +13 % with all of 0.66
-/// Pa·s.
+/// The artificial viscosity of a fluid of `viscosity`, Pa·s, of the `noise` that an inviscid one needs: none
+/// where its own is larger. The two shares were chosen before neighbour_flow.h, for the torque between
+/// cylinders of 1 Pa·s.
 SLOSH_HD inline float artificial_viscosity_left(float noise, float viscosity) {
   constexpr auto kNone = static_cast<float>(kNoneOfIt);
   constexpr auto kWay = static_cast<float>(kNoneOfIt - kAllOfIt);
@@ -50,12 +48,11 @@ SLOSH_HD inline float artificial_viscosity_left(float noise, float viscosity) {
   return left > noise ? noise : RealOps<float>::positive_part(left);
 }
 
-/// In an impact it is more: what differs from its neighbours' mean by more than this share of the speed of
-/// sound is damped the more the faster it is, by this factor more for each speed of sound beyond it, as Von
-/// Neumann and Richtmyer's viscosity (1950) grows with the speed at which fluid meets. Calm fluid is slower
-/// than that and bitwise identical. Without it water that fell on a shallow layer sprang back from
-/// it particle by particle (tests/notebook/2026-11-23-impacts-and-boundary-share.md). Not where
-/// pressures are solved for: little springs back there.
+/// In an impact it is more: fluctuations of more than this share of the speed of sound are damped by this
+/// factor more for each speed of sound beyond it, as Von Neumann and Richtmyer's viscosity (1950) grows with
+/// the speed at which fluid meets. Slower fluctuations stay bitwise identical. Without it water rebounds from
+/// a shallow layer (tests/notebook/2026-11-23-impacts-and-boundary-share.md). Not with pressure projection:
+/// little rebounds there.
 inline constexpr double kImpactSpeed = 0.05;
 inline constexpr double kImpactGrowth = 50.0;
 
@@ -64,10 +61,9 @@ inline double impact_growth(const Plan& plan) {
   return plan.model == ParticleModel::kIncompressible ? 0.0 : kImpactGrowth / std::sqrt(plan.stiffness);
 }
 
-/// The viscosity that artificial feels at `speed` m/s, Pa·s, of a fluid whose artificial feels `artificial`
-/// while it is calm: `noise` where it is thin, nothing where it is thick, which meets as hard. `growth`: s/m;
-/// `most`: what a step holds of all that drags a particle explicitly, of which the fluid's own `viscosity` is
-/// a part.
+/// The artificial viscosity, Pa·s, of a fluctuation of `speed` m/s, in a fluid whose own is `artificial`
+/// below the impact speed: `noise` in thin fluid, nothing in thick. `growth`: s/m; `most`: the explicit
+/// viscosity that a step bears, of which the fluid's own `viscosity` is a part.
 SLOSH_HD inline float artificial_viscosity_in_impact(float artificial, float noise, float growth, float speed,
                                                      float viscosity, float most) {
   constexpr auto kQuietPart = static_cast<float>(kImpactGrowth * kImpactSpeed);
@@ -89,7 +85,7 @@ SLOSH_HD inline void add_fluctuation(const Neighborhood<float>& n, float own, fl
   u[2] += f * (n.fluid_number * v[2] - n.vz);
 }
 
-/// Takes out of that what the neighbours' flow makes a particle differ from their mean by (neighbour_flow.h).
+/// Subtracts from that the part that the neighbours' flow explains (neighbour_flow.h).
 SLOSH_HD inline void follow_fluctuation(const Neighborhood<float>& n, float own, float factor,
                                         float (&u)[3]) {
   const float others = n.fluid_number - own;

@@ -7,7 +7,7 @@ namespace {
 // shape times r².
 constexpr double kGrowth = 1.29;  // times the support radius
 
-constexpr double kSlides = 1.04;  // what layers that slide over each other lack, 1/0.96
+constexpr double kSlides = 1.04;  // what sliding layers lack of the viscous stress, 1/0.96
 
 }  // namespace
 

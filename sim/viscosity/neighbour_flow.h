@@ -1,10 +1,9 @@
-// How a particle's fluid neighbours flow, to first order: so that what it moves otherwise than they do
-// (artificial_viscosity.h) is nothing in a fluid that turns or shears as one, at a wall and at a surface too.
+// How a particle's fluid neighbours flow, to first order: so that the velocity fluctuation
+// (artificial_viscosity.h) is zero in rigid rotation and linear shear, at a wall and at a surface too.
 //
 // There all neighbours lie on one side, and their mean velocity is that of a place some tenths of a spacing
-// off. Drag against that mean was drag on the flow: a fluid of 0.5 Pa·s in a glass that turned at 16 rad/s
-// turned by 4 % faster than the glass (10 mm), and a cylinder that suddenly turned in it was braked by 6 %
-// too much (tests/notebook/2026-11-26-artificial-viscosity-follows-the-flow.md).
+// off. Damping against that mean would act on the flow itself
+// (tests/notebook/2026-11-26-artificial-viscosity-follows-the-flow.md).
 #pragma once
 
 #include "sim/math/symmetric.h"
@@ -47,7 +46,7 @@ SLOSH_HD inline FlowAround flow_around(const FlowSums<float>& sum, const float (
   return {{sum.offset[0], sum.offset[1], sum.offset[2]}, {row(0), row(1), row(2)}};
 }
 
-/// Σ d ⊗ d (−W'/r) by fluid alone, over the rest lattice's, turned round.
+/// Σ d ⊗ d (−W'/r) by fluid alone, over the rest lattice's, and its inverse.
 struct InverseMoment {
   Symmetric<float> whole;    ///< the moment itself
   Symmetric<float> inverse;  ///< of what unflattened() makes of it
@@ -62,9 +61,8 @@ SLOSH_HD inline InverseMoment inverse_moment(const Symmetric<float>& moment, flo
 }
 
 /// What Σ W v over the neighbours gains on the way from their middle to the particle, along G = Σ (v_p − v_i)
-/// ⊗ d (−W'/r) M⁻¹: exact where they flow linearly. Where M is too flat to be turned round (a layer, a
-/// thread, a drop of a few) it is as much less. `rest_moment`: Σ x² (−W'/r) over the rest lattice. To n.fx,
-/// fy, fz.
+/// ⊗ d (−W'/r) M⁻¹: exact where they flow linearly. Where M is near singular (a layer, a thread, a drop of a
+/// few) it is as much less. `rest_moment`: Σ x² (−W'/r) over the rest lattice. To n.fx, fy, fz.
 SLOSH_HD inline void follow_flow(const FlowAround& flow, const InverseMoment& moment, float rest_moment,
                                  Neighborhood<float>& n) {
   const float scale = moment.kept / rest_moment;

@@ -1,4 +1,4 @@
-// How long a step may be with the drag of Eq 6 and 9 explicit.
+// How long a step may be with Eq 6 and 9 explicit.
 #pragma once
 
 #include "sim/fluid_extremes.h"
@@ -10,14 +10,14 @@ namespace slosh {
 /// Pa·s, the most of any body, where the most viscous fluid has so much.
 double most_viscous_body(const Scene& scene, double most_viscous_fluid);
 
-/// s, the longest step at which the drag stays stable.
+/// s, the longest step at which explicit viscosity stays stable.
 double viscous_step(const Scene& scene, const Plan& plan, const FluidExtremes& fluids);
 
-/// s, the longest step at which what drags on jostling stays stable where nothing else drags explicitly.
+/// s, the longest step at which artificial viscosity stays stable where nothing else is explicit.
 double artificial_viscosity_step(const Scene& scene, const Plan& plan, const FluidExtremes& fluids);
 
-/// Pa·s of all that drags a particle explicitly, up to which the plan's step takes no more than 0.8 of its
-/// velocity among neighbours that stand still. Infinite without fluid.
+/// The explicit viscosity, Pa·s, up to which the plan's step takes no more than 0.8 of a particle's velocity
+/// among neighbours that stand still. Infinite without fluid.
 double max_explicit_viscosity(const Scene& scene, const Plan& plan);
 
 /// The largest viscosity of a fluid, Pa·s, at which the plan's step stays stable where walls drag by `layer`.

@@ -93,7 +93,7 @@ WallDrag computed(ParticleModel model, double ratio, DragLayer layer) {
   return drag;
 }
 
-// What a particle and those of a mirrored layer take from each other, of which its height over the wall and
+// The viscous power between a particle and those of a mirrored layer, of which its height over the wall and
 // the layer's behind it are `height` together: Σ shape (d̂ · Δv)², the flow being a unit stretch along the
 // wall and as much pressing together across it.
 template <class Kernel>

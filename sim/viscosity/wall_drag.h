@@ -1,4 +1,4 @@
-// How strongly a wall must drag for fluid to stand still at the surface.
+// How strong the viscous force of a no-slip wall must be for fluid to stand still at the surface.
 #pragma once
 
 #include "scenes/scene.h"
@@ -15,12 +15,11 @@ enum class DragLayer {
   kSurface,  ///< others, on the surface itself
 };
 
-/// The corrected model's walls drag from the surface itself: drag goes along the line between two particles,
-/// and from behind the surface that line is mostly across it. (One layer behind it has to drag six
-/// times as strongly to hold flat fluid, damps four times as fast across the surface as along it, and lets go
-/// of strongly curved ones: a ball of 1.5 spacings lost 31 to 41 % of its drag.) Where all fluids and bodies
-/// are thin (artificial_viscosity.h), drag on jostling is more than theirs and the second layer not worth its
-/// time; so too in the other models. `scene`: as it starts, since the sheets stay for the run.
+/// The corrected model's walls drag from the surface itself: the viscous pair force is central, and from
+/// behind the surface that line is mostly across it (tests/notebook/2026-11-25-viscous-force-at-walls.md).
+/// Where all fluids and bodies are thin (artificial_viscosity.h), artificial viscosity exceeds theirs and the
+/// second layer is not worth its time; so too in the other models. `scene`: as it starts, since boundary
+/// layers stay for the run.
 DragLayer drag_layer(const Scene& scene, const Plan& plan);
 
 /// Of a flat wall at the spacing against a lattice of fluid, in units of the damping rate that a particle has
@@ -32,7 +31,7 @@ struct WallDrag {
   /// The share of the fluid that lies evenly at a flat wall and at a ball of a few spacings, 0 to 1.
   double evenly_flat = 0.0, evenly_at_balls = 0.0;
 
-  /// What the volume of a dragging particle, its area times the spacing, counts. `convexity`: the surface's
+  /// What the volume of a boundary particle, its area times the spacing, counts. `convexity`: the surface's
   /// mean curvature times the spacing, 0 (flat or concave) and above.
   double factor(double convexity) const;
 };
@@ -40,8 +39,8 @@ struct WallDrag {
 /// Factors are such that in a linear shear, u = γ · (distance from the surface), the fluid within reach of
 /// the layer passes on the stress that layers of fluid pass on to each other. Fluid at a flat wall lies
 /// mostly in layers, at a ball of a few spacings more of it evenly; from behind the surface layers alone
-/// count. Nothing but the support ratio, drag_shape(), the surface and whether pressures are solved for
-/// decide it. Models that do not correct gradients keep 1.
+/// count. Only the support ratio, drag_shape(), the surface and pressure projection decide it. Models that do
+/// not correct gradients keep 1.
 WallDrag wall_drag(ParticleModel model, double support_ratio, DragLayer layer);
 
 /// What the volume of a particle on a surface along which fluid slides counts (mirror_drag.h): such that

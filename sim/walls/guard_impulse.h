@@ -1,4 +1,4 @@
-// What a guarded wall took from particles, summed so that the order does not matter.
+// What the penetration clamp took from particles, summed so that the order does not matter.
 #pragma once
 
 #include <cmath>

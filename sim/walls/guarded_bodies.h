@@ -1,4 +1,4 @@
-// The bodies that particles are guarded against, sub-step by sub-step.
+// The bodies of the penetration clamp, sub-step by sub-step.
 #pragma once
 
 #include <span>
@@ -18,8 +18,8 @@ inline constexpr double kGuardDepth = 0.35;
 /// it out.
 inline constexpr double kMaxGuardDepth = 0.6;
 
-/// The fields of the bodies that particles are guarded against, one a body; empty for those that have none,
-/// and for all where the plan guards nothing. Fixed bodies that touch have them as one solid (close_joints).
+/// The fields of the bodies of the penetration clamp, one a body; empty for those that have none, and for all
+/// where the plan has no clamp. Fixed bodies that touch have them as one solid (close_joints).
 std::vector<DistanceField> guarded_fields(const Scene& scene, const SampledScene& sampled, const Plan& plan);
 
 /// The bodies on their way from `before` to `after` (one a body each), with the views of `fields`. One entry

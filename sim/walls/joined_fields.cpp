@@ -6,7 +6,7 @@
 namespace slosh {
 namespace {
 
-constexpr float kDeepest = 2.0f;  // spacings: a guard holds what is less deep than one
+constexpr float kDeepest = 2.0f;  // spacings: the clamp keeps what is less deep than one
 constexpr float kBefore = 2.0f;   // cells: whatever is within one of a face is read from nodes within this
 
 // Whether a node at p of the solid's mesh, where its field is d, m, lies between it and one of those that it

@@ -1,5 +1,5 @@
 // The distance fields of fixed bodies that touch, as of one solid: each for itself knows a face between two
-// as a way out, and what the guard lets into one of them goes on between the two to the other side.
+// as a way out, and what the clamp lets into one of them goes on between the two to the other side.
 #pragma once
 
 #include <span>

@@ -1,4 +1,4 @@
-// The plane in which a wall along which fluid slides mirrors it, at each of its surface's samples.
+// The plane in which a free-slip wall mirrors fluid, at each of its surface's samples.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -1,4 +1,4 @@
-// The layer of particles that a wall presses with, and what each of them stands for.
+// The boundary particle layer of a wall, and what each of its particles stands for.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -10,7 +10,7 @@
 
 namespace slosh {
 
-/// One of the particles that a wall presses with.
+/// One particle of that layer.
 struct LayerParticle {
   glm::vec3 position{0.0f};  ///< m
   glm::vec3 surface{0.0f};   ///< m, where on the mesh it belongs

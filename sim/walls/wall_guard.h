@@ -1,4 +1,5 @@
-// Nothing passes a wall: the last look at a particle's way, in the frame of a body that moves itself.
+// Penetration clamp: continuous collision detection of a particle's way, in the frame of a body that moves
+// itself.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +27,7 @@ namespace wall_guard {
 inline constexpr float kRest = 0.95f;      ///< of the depth: where a particle is put back to
 inline constexpr float kStride = 0.7f;     ///< of the depth, between two looks along the way
 inline constexpr int kMaxLooks = 64;       ///< along one way
-inline constexpr int kMaxTurns = 4;        ///< by walls of one body in one sub-step
+inline constexpr int kMaxTurns = 4;        ///< clamps by walls of one body in one sub-step
 inline constexpr float kNoSlope = 0.3f;    ///< a gradient shorter than this is that of the middle of a wall
 inline constexpr float kShallow = 0.35f;   ///< of the depth: at edges there may be no slope above
 inline constexpr float kMaxLifted = 3.0f;  ///< depths from which a particle is still put back
@@ -45,7 +46,7 @@ SLOSH_HD inline Look look(const DistanceFieldView& field, const glm::vec3& at) {
   return {at, slope > 0.0f ? s.gradient / slope : glm::vec3(0.0f), s.distance, slope};
 }
 
-/// In a solid whose way out has turned round since the look before: past the middle of a wall. Just within a
+/// In a solid whose way out is reversed since the look before: past the middle of a wall. Just within a
 /// convex edge the field, which is coarse, has no slope either, but is not deep; nor is anybody kept who is
 /// less deep than before.
 SLOSH_HD inline bool past_middle(const Look& before, const Look& now, float depth) {
@@ -117,8 +118,8 @@ SLOSH_HD inline bool guard_particle(const GuardedBody& body, const glm::vec3& fr
   return caught;
 }
 
-/// The same against all bodies, in turns until no way is bent any more: in a corner between two, one sends it
-/// to the other. `body_at(i)` is the i-th. `near`: there were body particles in the cells around it as the
+/// The same against all bodies, again until no way is bent any more: in a corner between two, one sends it to
+/// the other. `body_at(i)` is the i-th. `near`: there were body particles in the cells around it as the
 /// sub-step began; else only fast bodies are looked at. Calls taken(body, from, before) whenever one has bent
 /// it: where (m) and how fast (m/s) it would have been. True when one did.
 template <class BodyAt, class Taken>

@@ -19,8 +19,8 @@ namespace {
 // Where walls count in the density, the force on fluid is the gradient of an energy only if each wall
 // particle acts once (V_p² P_p). One lattice layer then yields under the pressure of a fluid, which acts
 // twice (P_p and P_i), so a wall particle stands for two, and sits so far behind the surface that the fluid's
-// first layer rests half a spacing off the mesh. Measured on a tank: share 1 leaks, 1.5 to 3 hold;
-// tests/physics checks level and weight. It sits wall_inset() behind the surface.
+// first layer rests half a spacing off the mesh. Share 1 leaks, 1.5 to 3 do not; tests/physics checks level
+// and weight. It sits wall_inset() behind the surface.
 
 float solid_depth(const DistanceFieldView& field, const glm::vec3& p) {
   return field.distance ? -sample_distance(field, p).distance : std::numeric_limits<float>::infinity();
@@ -162,10 +162,9 @@ struct Depths {
   }
 };
 
-// Of samples that are `apart` m from each other. In thick fluid concave walls are as deep as they were when
-// what drags was chosen: less deep a cylinder of 1 Pa·s that suddenly turns takes 6 % too much for 3. So are
-// all where drag and pressures are solved for: a dam of 100 000 Pa·s had its momentum off by 3.6e-5 a step
-// for 8e-6.
+// Of samples that are `apart` m from each other. In thick fluid concave layers keep the depth that
+// wall_drag() was fitted with: less deep, drag on a turning cylinder is 6 % too large, not 3. So do all with
+// implicit viscosity and pressure projection: less deep, momentum errors are four times as large.
 Depths depths_of(const Scene& scene, const Plan& plan, float apart, DragLayer layer) {
   constexpr double kWhole = 0.99;  // of a spacing
   const double behind = wall_inset(plan.model, scene.support_ratio);
@@ -290,8 +289,8 @@ struct DraggingLayer {
   std::vector<glm::vec3> positions, normals;
 };
 
-// Where the bodies whose motion is `motion` drag, body by body: the samples of their surfaces but for those
-// that another fixed body hides.
+// Where the bodies whose motion is `motion` exert viscous forces, body by body: the samples of their surfaces
+// but for those that another fixed body hides.
 std::vector<DraggingLayer> dragging_layers(const Scene& scene, const SampledScene& sampled, const Plan& plan,
                                            BodyMotion motion) {
   std::vector<DraggingLayer> layers(scene.bodies.size());
@@ -315,9 +314,9 @@ std::vector<DraggingLayer> dragging_layers(const Scene& scene, const SampledScen
   return layers;
 }
 
-// The planes in which a body mirrors the fluid, one a particle of its layer: where it is fixed and slips. A
-// moving one only lets fluid slide. None where fluid passes on stresses of its own: one that nobody takes up
-// beyond a wall that slips is the wall's, as it is a free surface's.
+// The planes in which a body mirrors the fluid, one a particle of its layer: where it is fixed and free-slip.
+// A moving one only lets fluid slide. None with particle stresses: beyond a free-slip wall, as beyond a free
+// surface, no particle takes a stress up.
 std::vector<MirrorPlane> mirrors_of(const Body& body, const DraggingLayer& layer, const Plan& plan) {
   if (plan.passes_stress || body.motion != BodyMotion::kFixed || body.dynamic_viscosity != kFreeSlip)
     return {};
@@ -338,7 +337,7 @@ std::vector<SurfaceParticle> surface_particles(const Scene& scene, const Sampled
   std::vector<SurfaceParticle> particles;
   if (!plan.has(PassId::kWalls)) return particles;
   const DragLayer layer = drag_layer(scene, plan);
-  const bool apart = layer == DragLayer::kSurface;  // what presses and what drags
+  const bool apart = layer == DragLayer::kSurface;  // pressure and viscosity act from different layers
   const float lattice_volume = static_cast<float>(std::pow(plan.spacing, 3));
   const WallDrag drag = wall_drag(plan.model, scene.support_ratio, layer);
   const auto flat_drag = static_cast<float>(drag.factor(0.0));

@@ -17,11 +17,11 @@ struct SurfaceParticle {
   std::uint16_t body;  ///< index into Scene::bodies
   float pressure;      ///< kPaper: Pa, Eq 7 at the body's constant density; kConsistent: how many lattice
                        ///< particles it stands for, about two
-  float volume;        ///< m³, what it drags with (WallDrag::factor is in it)
+  float volume;        ///< m³, of its viscous force (WallDrag::factor is in it)
   float viscosity;     ///< Pa·s
   float reach;         ///< m, within which it meets fluid: the support radius, less LayerParticle::lacks
   MirrorPlane
-      mirror;  ///< world axes: of a fixed body that slips, where surfaces drag (passes/walls/mirror_drag.h)
+      mirror;  ///< world axes: of a fixed free-slip body, where surfaces drag (passes/walls/mirror_drag.h)
 };
 
 /// The particles of the bodies whose motion is `motion`, body by body; none when the plan has no boundary

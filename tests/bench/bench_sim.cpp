@@ -1,6 +1,6 @@
-// What the simulation costs: a whole step of `pool` at several sizes, what viscosity that is solved for adds
-// to one, and the shipped bucket in two hands, with what they feel against its weight. Known answers and
-// passes: `slosh report`.
+// What the simulation costs: a whole step of `pool` at several sizes, what implicit viscosity adds to one,
+// and the shipped bucket in two hands, with what they feel against its weight. Known answers and passes:
+// `slosh report`.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -188,8 +188,8 @@ double thread_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// (b) The same column without viscosity and with 50 Pa·s solved for, step by step in turns, so that what
-/// else the machine does meets both: the steps in which it is set in motion, and those after. One thread.
+/// (b) The same column without viscosity and with 50 Pa·s implicit, step by step in turns, so that what else
+/// the machine does meets both: the steps in which it is set in motion, and those after. One thread.
 bool bench_drag(Table& table, const std::vector<std::size_t>& counts, int steps, const Models& models) {
   constexpr int kFirst = 12;
   for (const std::size_t count : counts) {
@@ -201,7 +201,7 @@ bool bench_drag(Table& table, const std::vector<std::size_t>& counts, int steps,
         tank.scene.model = model;
         const Plan plan = make_plan(tank.scene, tank.sampled.spacing);
         if (plan.has(PassId::kImplicitViscosity) != (viscosity > 0.0))
-          return std::fprintf(stderr, "the plan does not solve drag\n"), false;
+          return std::fprintf(stderr, "the plan has no implicit viscosity\n"), false;
         worlds.emplace_back(tank.scene, tank.sampled, plan, WorldOptions{1, Backend::kCpu});
       }
       for (const bool first : {true, false}) {

@@ -78,7 +78,7 @@ bool measure(Backend backend, ParticleModel model, Drag drag, double particles, 
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() / length.steps;
   const Diagnostics after = world.diagnostics();
   const double count = static_cast<double>(world.fluid_count());
-  // Solves take as many turns as they need: what is typical says little there.
+  // Solves take as many iterations as they need: what is typical says little there.
   const auto of = [&](const std::vector<double>& times) {
     const bool solved = drag != Drag::kResting || model == ParticleModel::kIncompressible;
     return solved ? mean(times) : median(times);

@@ -46,9 +46,9 @@ void compare_restored(const char* name, const Tank& tank, double hand_height, do
 /// viscous_worlds.cpp: implicit viscosity; one step of it.
 void compare_viscous();
 void compare_viscous_step();
-/// slipping_worlds.cpp: walls that slip.
+/// slipping_worlds.cpp: free-slip walls.
 void compare_slipping();
-/// pressed_worlds.cpp: pressures that are solved for; single steps of it.
+/// pressed_worlds.cpp: pressure projection; single steps of it.
 void compare_pressed();
 void compare_pressed_steps();
 

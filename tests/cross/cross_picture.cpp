@@ -1,5 +1,5 @@
-// Particles of a world on the GPU, drawn from where CUDA has them and from main memory: the pictures are the
-// same bitwise, frame by frame while the world goes on; what cannot be opened is said and drawn all the
+// Particles of a world on the GPU, drawn from where CUDA has them and from main memory: the pictures are
+// bitwise identical, frame by frame while the world goes on; what cannot be opened is said and drawn all the
 // same. With times. Usage: cross_picture [PARTICLES]: of a pool, 30000 unless said. Exits 1 when a picture
 // differs, 77 where there is no GPU.
 #include <algorithm>

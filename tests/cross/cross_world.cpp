@@ -1,7 +1,7 @@
 // The same worlds on the CPU and on the GPU (tests/cross/README.md). Prints every comparison with its
-// tolerance; exits 1 when one fails, 77 where there is no GPU.
-// Usage: cross_world [viscous|pressed|others|quick]: implicit viscosity alone, or pressures that are solved
-// for, or all but these, or single steps of each
+// tolerance; exits 1 when one fails, 77 where there is no GPU. Usage: cross_world
+// [viscous|pressed|others|quick]: implicit viscosity alone, or pressure projection, or all but these, or
+// single steps of each
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -1,5 +1,5 @@
-// Pressures that are solved for, on both backends: with a body that a hand holds and one that nobody does,
-// drag stepped and solved for beside them, a probe, more neighbours than a row has room for.
+// Pressure projection on both backends: with a body that a hand holds and one that nobody does, explicit and
+// implicit viscosity, a probe, more neighbours than a row has room for.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -12,16 +12,17 @@ namespace slosh::testing {
 
 namespace {
 
-// A solve ends by its tolerance: rounding may give one of the two a turn more, and then they differ by what
-// the tolerance leaves.
+// A solve ends by its tolerance: rounding may give one of the two an iteration more, and then they differ by
+// what the tolerance leaves.
 constexpr double kOneStep = 1e-5;
 constexpr double kTenSteps = 1e-3;
 // Of 150 steps behind one another of the stirred tank, each taken over from an H100 by a CPU, one parts them
-// by 2.9e-5 spacings, by such a turn as we guess, and the others by 8e-7 to 1.1e-6.
+// by 2.9e-5 spacings, by such an iteration as we guess, and the others by 8e-7 to 1.1e-6.
 constexpr double kOneStepOfMany = 1e-4;
 
-// Of 50 and 500 Pa·s one of the two ends its drag a turn sooner in the first step, and they end 3e-4 spacings
-// apart; with a thousandth of the drag's tolerance 8e-7, as 40, 45, 55, 60, 70 and 80 Pa·s with this one.
+// Of 50 and 500 Pa·s one of the two ends implicit viscosity an iteration sooner in the first step, and they
+// end 3e-4 spacings apart; with a thousandth of the drag's tolerance 8e-7, as 40, 45, 55, 60, 70 and 80 Pa·s
+// with this one.
 Tank in_two_honeys() {
   return thick_tank(60.0, 600.0);
 }
@@ -71,15 +72,15 @@ void compare_held(const char* name, const Tank& tank, int steps, double apart) {
 }  // namespace
 
 void compare_pressed_steps() {
-  compare_steps("pressures solved for, two fluids, paddle",
+  compare_steps("pressure projection, two fluids, paddle",
                 shaken(pressed(stirred_tank(ParticleModel::kCorrected))), 1, kOneStep);
   const Tank thick = shaken(pressed(in_two_honeys()));
-  compare_steps("pressures and drag solved for, held paddle and free box", thick, 1, kOneStep);
+  compare_steps("pressure projection and implicit viscosity, held paddle and free box", thick, 1, kOneStep);
   compare_momenta(thick, pressing_plan(thick), 3, 2e-6);
-  // Shaken: as it is one of the two takes a turn more in the first step, and they end 7e-4 spacings apart;
-  // with a tenth of the pressures' tolerance they agree.
+  // Shaken: as it is one of the two takes an iteration more in the first step, and they end 7e-4 spacings
+  // apart; with a tenth of the pressures' tolerance they agree.
   const Tank probed = shaken(pressed(probed_tank()));
-  compare_steps("pressures solved for, probe", probed, 1, kOneStep);
+  compare_steps("pressure projection, probe", probed, 1, kOneStep);
 }
 
 void compare_pressed() {
@@ -92,11 +93,12 @@ void compare_pressed() {
   // elsewhere ten end 0.55 to 0.57 mm from the unmoved one, two within 0.02.
   constexpr double kTwoWays = 7e-4;
   for (const Case& c :
-       {Case{"pressures solved for, two fluids, paddle", pressed(stirred_tank(ParticleModel::kCorrected))},
-        Case{"pressures solved for, light paddle in honey",
+       {Case{"pressure projection, two fluids, paddle", pressed(stirred_tank(ParticleModel::kCorrected))},
+        Case{"pressure projection, light paddle in honey",
              pressed(paddle_in_honey(ParticleModel::kCorrected))},
-        Case{"pressures solved for, held paddle and free box", pressed(thick_tank(0.1, 0.1)), kTwoWays},
-        Case{"pressures and drag solved for, held paddle and free box", pressed(in_two_honeys())}}) {
+        Case{"pressure projection, held paddle and free box", pressed(thick_tank(0.1, 0.1)), kTwoWays},
+        Case{"pressure projection and implicit viscosity, held paddle and free box",
+             pressed(in_two_honeys())}}) {
     const Tank tank = shaken(c.tank);
     compare_steps(c.name, tank, 1, kOneStep);
     compare_steps(c.name, tank, 10, kTenSteps);
@@ -104,22 +106,22 @@ void compare_pressed() {
     compare_momenta(tank, pressing_plan(tank), 50, 2e-6);
     repeat(c.name, c.tank, kPaddleHeight, 100);
   }
-  // Shaken: as it is one of the two takes a turn more in the first step, and they end 7e-4 spacings apart;
-  // with a tenth of the pressures' tolerance they agree.
+  // Shaken: as it is one of the two takes an iteration more in the first step, and they end 7e-4 spacings
+  // apart; with a tenth of the pressures' tolerance they agree.
   const Tank probed = shaken(pressed(probed_tank()));
-  compare_steps("pressures solved for, probe", probed, 1, kOneStep);
-  repeat("pressures solved for, probe", probed, 0.05, 100);
-  compare_restored("pressures solved for, two fluids, paddle",
+  compare_steps("pressure projection, probe", probed, 1, kOneStep);
+  repeat("pressure projection, probe", probed, 0.05, 100);
+  compare_restored("pressure projection, two fluids, paddle",
                    pressed(stirred_tank(ParticleModel::kCorrected)), kPaddleHeight, kOneStepOfMany);
   Tank squeezed = pressed(thick_tank(0.1, 0.1));
   for (glm::vec3& x : squeezed.sampled.fluid_positions) x = x * 0.7f;
-  compare_steps("pressures solved for, more neighbours than a row has room for", squeezed, 1, kOneStep);
-  // Of 300 000 one particle ends 1.7e-4 of a spacing from itself on a GPU since drag on jostling follows the
-  // neighbours' flow, for less than 5e-6 before and of 290 000: a pressure at the edge of being cut off, we
-  // guess.
+  compare_steps("pressure projection, more neighbours than a row has room for", squeezed, 1, kOneStep);
+  // Of 300 000 one particle ends 1.7e-4 of a spacing from itself on a GPU since artificial viscosity follows
+  // the neighbours' flow, for less than 5e-6 before and of 290 000: a pressure at the edge of being cut off,
+  // we guess.
   Tank large = shaken(pressed(pool(290000)));
-  compare_steps("large pool, pressures solved for", large, 1, kOneStep);
-  repeat("large pool, pressures solved for", large, 0.09, 20);
+  compare_steps("large pool, pressure projection", large, 1, kOneStep);
+  repeat("large pool, pressure projection", large, 0.09, 20);
 }
 
 }  // namespace slosh::testing

@@ -1,4 +1,4 @@
-// Walls along which thick fluid slides, on both backends: drag as it is and solved for, of one and of two
+// Free-slip walls in thick fluid, on both backends: explicit and implicit viscosity, of one and of two
 // viscosities.
 #include "sim/viscosity/wall_drag.h"
 #include "tests/cross/compare.h"
@@ -32,14 +32,14 @@ void compare_slipping() {
     double below, above;  // Pa·s
     bool solved;
   };
-  for (const Case& c : {Case{"walls that slip, 2 Pa·s", 2.0, 2.0, false},
-                        Case{"walls that slip, 2 Pa·s under 5", 2.0, 5.0, false},
-                        Case{"walls that slip, implicit viscosity, 50 Pa·s", 50.0, 50.0, true},
-                        Case{"walls that slip, implicit viscosity, 50 Pa·s under 500", 50.0, 500.0, true}}) {
+  for (const Case& c : {Case{"free-slip walls, 2 Pa·s", 2.0, 2.0, false},
+                        Case{"free-slip walls, 2 Pa·s under 5", 2.0, 5.0, false},
+                        Case{"free-slip walls, implicit viscosity, 50 Pa·s", 50.0, 50.0, true},
+                        Case{"free-slip walls, implicit viscosity, 50 Pa·s under 500", 50.0, 500.0, true}}) {
     const Tank tank = shaken(slipping_tank(c.below, c.above));
     const Plan plan = make_plan(tank.scene, tank.sampled.spacing, c.solved);
     expect_true("walls mirror what is beside them", drag_layer(tank.scene, plan) == DragLayer::kSurface);
-    expect_true("drag is solved for or not, as asked", plan.has(PassId::kImplicitViscosity) == c.solved);
+    expect_true("implicit viscosity or not, as asked", plan.has(PassId::kImplicitViscosity) == c.solved);
     compare_steps(c.name, tank, plan, 1, kOneStep);
     compare_steps(c.name, tank, plan, 10, kTenSteps);
   }

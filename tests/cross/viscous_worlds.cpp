@@ -18,7 +18,7 @@ constexpr double kTenSteps = 1e-3;
 
 Plan solving_plan(const Tank& tank) {
   const Plan plan = make_plan(tank.scene, tank.sampled.spacing);
-  expect_true("the plan solves drag", plan.has(PassId::kImplicitViscosity));
+  expect_true("the plan has implicit viscosity", plan.has(PassId::kImplicitViscosity));
   return plan;
 }
 

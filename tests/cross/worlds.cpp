@@ -80,7 +80,7 @@ Tank thrown_tank() {
   Body& walls = tank.scene.bodies[0];
   walls.motion = BodyMotion::kFree;
   walls.mass = {3.0, glm::dvec3(0.0), glm::dmat3(0.03)};
-  // The sheets sit half a spacing behind the inner faces already; walls 5 cm thick, no lid.
+  // The boundary layers sit half a spacing behind the inner faces already; walls 5 cm thick, no lid.
   const glm::vec3 low(-0.1f, 0.0f, -0.1f), high(0.1f, 1.0f, 0.1f), wall(0.05f);
   const auto distance_to_box = [](const glm::vec3& p, const glm::vec3& lower, const glm::vec3& upper) {
     const glm::vec3 q = glm::max(lower - p, p - upper);

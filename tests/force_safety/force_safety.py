@@ -31,7 +31,7 @@ GRIPS = ("left_hand", "right_hand")
 STARTS = ((-0.143, 0.355, 0.0), (0.143, 0.355, 0.0))  # of the shipped bucket's grips
 FACTOR = 1.5        # times the control's peak
 SLEW = 20.0         # N in a millisecond: a device's 2·10⁴ N/s
-# What chance alone does to a control that hardly moves: a bound is never below these.
+# Repeatability of a control that hardly moves: a bound is never below these.
 LEAST = {"force_n": 25.0, "torque_nm": 3.0, "change_n": 5.0, "rise_m": 0.05, "way_m": 0.1, "speed_m_s": 0.5,
          "spin_rad_s": 3.0}
 

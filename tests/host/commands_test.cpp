@@ -143,7 +143,7 @@ TEST(HostCommands, ARestoredWorldGoesOnAndResetsToItsOwnStart) {
   };
   const auto rest = carry_on();
   rest->run();
-  // The hand's coupling is let in anew, so only the world's time and the run's number are told from this.
+  // The hand's coupling re-engages, so only the world's time and the run's number are told from this.
   EXPECT_EQ(rest->host.progress().tick, whole.host.progress().tick);
   EXPECT_EQ(rest->host.progress().run, 4u);
   EXPECT_NEAR(rest->host.report().simulated, 0.1, 2 * small_world().plan.time_step);

@@ -397,7 +397,7 @@ TEST(InputGate, AfterAResetHandsHoldAtTheStartUntilTheyReportAnew) {
   EXPECT_TRUE(gate.accept(m, 2'000'000)) << "wherever the hand is";
   start.time = 0.002;
   input = gate.take(channel, start, 2'000'000)[0];
-  EXPECT_LT(std::abs(input.pose.position.x), 0.02) << "far from the body: it is let in anew";
+  EXPECT_LT(std::abs(input.pose.position.x), 0.02) << "far from the body: it re-engages";
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // What somebody may send: messages that are valid and of any content, damaged ones, and bytes that are
-// nothing. All chances come from one seed.
+// nothing. All random numbers come from one seed.
 #pragma once
 
 #include <random>
@@ -63,7 +63,7 @@ class Mischief {
   }
   /// `message`, valid, whose text of kMark is replaced by text(), which no Writer would write.
   template <class M>
-  wire::Bytes with_text(M message, std::string M::*field, std::size_t most) {
+  wire::Bytes with_text(M message, std::string M::* field, std::size_t most) {
     const std::string bad = text(most);
     (message.*field).assign(bad.size(), kMark);
     wire::Bytes bytes = wire::control(message);

@@ -72,7 +72,7 @@ TEST(Engagement, TheDistanceIsGivenUpAtABoundedSpeedAndWholly) {
     if (there == 0.0 && e.distance() == 0.0) there = t;
   }
   EXPECT_NEAR(fastest, kRampSpeed, 1e-3);
-  EXPECT_EQ(x, 0.3) << "in the end the hand holds where it is, bitwise";
+  EXPECT_EQ(x, 0.3) << "in the end the hand holds exactly where it is";
   EXPECT_EQ(told, 0.0);
   EXPECT_GT(there, 0.3 / kRampSpeed);
   EXPECT_LT(there, 0.3 / kRampSpeed + 5.0);
@@ -250,7 +250,7 @@ TEST(Engagement, AStiffenedSpringKeepsItsForceAndPutsNothingIn) {
   for (int i = 0; i < 10; ++i) turn();
   scale = 4.0;
   const Wrench wrench = turn();
-  EXPECT_NEAR(-wrench.force.x, 20.0, 0.6) << "80 by the stretch; what it is let in by";
+  EXPECT_NEAR(-wrench.force.x, 20.0, 0.6) << "80 by the stretch; the ramp's share";
   EXPECT_NEAR(-wrench.torque.z, 1.0, 0.1);
   EXPECT_LT(e.given(), 0.0) << "a stiffer spring holds less of the same force";
   Wrench last = wrench;

@@ -54,8 +54,8 @@ TEST(CouplingAtADistance, FluidCarriedByManyIsSteadyWithJitterAndLossApartAndTog
   EXPECT_EQ(tried, 36);
 }
 
-/// Where a guard acts the force goes and comes slowly: a bucket whose weight two hands take over where the
-/// balance is empty. 24 and 80 steps when each packet's worth was given at once.
+/// Where a passivity controller acts the force goes and comes slowly: a bucket whose weight two hands take
+/// over where the balance is empty. 24 and 80 steps when each packet's worth was given at once.
 TEST(CouplingAtADistance, AGuardThatActsDoesNotRattle) {
   for (Case c : known_breakers()) {
     if (c.load != Load::kCarried) continue;

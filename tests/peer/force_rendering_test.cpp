@@ -1,4 +1,4 @@
-// What a hold gives that is let in towards a hand which stays.
+// What an engagement ramp gives towards a hand which stays.
 #include "peer/haptics/force_rendering.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@ namespace slosh {
 namespace {
 
 constexpr CouplingGains kSprings{1000.0, 0.0, 10.0, 0.0};
-constexpr double kCarried = 15.0;  // N on the hand, as it takes hold
+constexpr double kCarried = 15.0;  // N on the hand, as it engages
 
 class EngagementRamp : public ::testing::Test {
  protected:
@@ -58,8 +58,8 @@ TEST_F(EngagementRamp, IsNothingOfAHandThatHoldsWhereItIsOrNotAtAll) {
   EXPECT_EQ(run(0.001, hand), 0.0) << "nor as it takes hold";
 }
 
-/// A guard (HeldBody) is before the limits: where it cuts a force at once, and lets it through again, the
-/// device sees no more than its rate. What has no such limit sees all of it: a simulated person by
+/// A passivity controller (HeldBody) is before the limits: where it cuts a force at once, and lets it through
+/// again, the device sees no more than its rate. What has no such limit sees all of it: a simulated person by
 /// default, 4.9 N in 2 ms where one is lowered.
 TEST(ForceRendering, AGuardThatCutsIsNoStepAtTheDevice) {
   DeviceLimits limits = limits_without_a_hand();

@@ -99,10 +99,10 @@ TEST(HeldBody, AnotherHandThatPutNothingInMovesNobody) {
   }
 }
 
-/// 400 ms from its host, whose body goes with the hand and weighs 10 N. The guard fired for long (another's
-/// count said that more came out there than there was) and the damped spring to the host's word has taken
-/// over; then the balance is whole again. A body that only follows late is no spring that is stretched: at
-/// 0.25 m/s that was 84 N.
+/// 400 ms from its host, whose body goes with the hand and weighs 10 N. The passivity controller fired for
+/// long (another's count said that more came out there than there was) and the damped spring to the host's
+/// update has taken over; then the balance is whole again. A body that only follows late is no spring that is
+/// stretched: at 0.25 m/s that was 84 N.
 TEST(HeldBody, TheSpringToALateWordIsNotStretchedByTheDelay) {
   const CouplingGains gains{1000.0, 30.0, 10.0, 0.3};
   constexpr double kRoundTrip = 0.4, kWeight = 10.0, kHolds = 20.0;
@@ -270,8 +270,8 @@ std::vector<double> swung_with(double rounds) {
   return {felt.end() - 1000, felt.end()};
 }
 
-/// What is doubted of a load is taken out of the motion, however little is: 3 mN for the 3 N of a contact
-/// were felt as up to 2.8 N.
+/// Model uncertainty of a load is taken out of the motion, however little it is: 3 mN for the 3 N of a
+/// contact were felt as up to 2.8 N.
 TEST(HeldBody, WhatWordsRoundIsNoContact) {
   const std::vector<double> right = swung_with(0.0);
   for (const double rounds : {0.003, 0.02}) {

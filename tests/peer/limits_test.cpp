@@ -32,7 +32,7 @@ TEST(DeviceLimits, ANumberThatIsMissingOrNoneIsRefusedWithItsName) {
   EXPECT_FALSE(check_limits(DeviceLimits{}, "forgetful")) << "a driver that says nothing gets nothing";
   struct Field {
     const char* name;
-    double DeviceLimits::*value;
+    double DeviceLimits::* value;
   };
   for (const Field& field :
        {Field{"max_force", &DeviceLimits::max_force}, Field{"max_torque", &DeviceLimits::max_torque},
@@ -84,7 +84,7 @@ TEST(DeviceLimits, AServoRefusesADeviceAtOnceAndKeepsWhatItHad) {
 
 TEST(DeviceLimits, AHostsStiffnessIsClampedToWhatTheDeviceHolds) {
   DeviceLimits limits = touch();
-  limits.max_force = 1e6;  // the gains, and not the last guard, are what holds here
+  limits.max_force = 1e6;  // the gains, and not the force limiter, are what holds here
   limits.max_torque = 1e6;
   limits.max_force_rate = limits.max_torque_rate = limits.max_force_jerk = limits.max_torque_jerk = 1e12;
   limits.engagement_time = 0.0;

@@ -1,4 +1,4 @@
-// What a device loop believes when states come late and poses are not followed, and when it speaks.
+// Freshness in a device loop when states come late and poses are not followed, and when it sends.
 #include "peer/haptics/link_freshness.h"
 
 #include <gtest/gtest.h>
@@ -56,7 +56,7 @@ TEST(LinkFreshness, BelievesAWorldAtItsPace) {
 }
 
 /// Over a long link the first state that can follow us is a round trip away: until then there is nothing to
-/// feel, and so nothing to fade where none ever comes. From then on it is believed at once.
+/// feel, and so nothing to fade where none ever comes. From then on it is fresh at once.
 TEST(LinkFreshness, BelievesNothingBeforeTheFirstAnswer) {
   Link link;
   link.up = false;
@@ -71,7 +71,7 @@ TEST(LinkFreshness, BelievesNothingBeforeTheFirstAnswer) {
   EXPECT_TRUE(link.belief.current);
 }
 
-/// A world far away that waits for its first step follows nobody: it may hear us or not.
+/// A world far away that waits for its first step follows nobody: it may receive us or not.
 TEST(LinkFreshness, AWorldFarAwayThatWaitsIsNotBelieved) {
   Link link;
   link.message.rate = 0.0;

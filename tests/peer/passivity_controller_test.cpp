@@ -1,5 +1,5 @@
-// The guard of a hand that holds a body far away: no more comes out than there is, and how the force goes
-// where that runs out.
+// The passivity controller of a hand that holds a body far away: no more comes out than there is, and how the
+// force goes where that runs out.
 #include "peer/haptics/replica/passivity_controller.h"
 
 #include <gtest/gtest.h>
@@ -127,9 +127,9 @@ TEST(HeldBody, AHandAtRestIsNotPushedOff) {
   }
 }
 
-/// What others put in is heard of in packets. A force that is let through until each is used up would rattle
-/// at the packets' rate: it finds what the balance carries, and comes back slowly where there is more; now
-/// and then it has to find it again.
+/// What others put in comes in packets. A force that is let through until each is used up would rattle at the
+/// packets' rate: it finds what the balance carries, and comes back slowly where there is more; now and then
+/// it has to find it again.
 TEST(HeldBody, WhereTheBalanceIsOutTheForceDoesNotRattle) {
   PassivityController guard;
   guard.restart({});
@@ -164,8 +164,9 @@ TEST(HeldBody, WhereTheBalanceIsOutTheForceDoesNotRattle) {
   EXPECT_GT(out, 0.8 * credit) << "what is there is given";
 }
 
-/// A hand that is lowered with a weight while what the other one lifts is not heard of yet: what there is
-/// runs out, also by what others use up while the hand hardly moves. The force went by 13 N in one tick.
+/// A hand that is lowered with a weight while the update of what the other one lifts has not come yet: what
+/// there is runs out, also by what others use up while the hand hardly moves. The force went by 13 N in one
+/// tick.
 TEST(HeldBody, BeforeTheBalanceIsOutTheForceGoesGently) {
   for (const double drained : {0.0, 0.3, 1.0}) {   // W
     for (const double speed : {0.03, 0.1, 0.3}) {  // m/s

@@ -156,7 +156,7 @@ TEST(LoadWork, IsWhatActsBesidesGave) {
   }
 }
 
-/// A load that is not believed gives nothing: what it drove is taken out of the motion.
+/// A load that is not trusted gives nothing: what it drove is taken out of the motion.
 TEST(Replica, ALoadThatIsNotBelievedDrivesNothing) {
   for (const double believed : {1.0, 0.0}) {
     BodyReplica replica(replica_bucket(), replica_grips());
@@ -174,7 +174,7 @@ TEST(Replica, ALoadThatIsNotBelievedDrivesNothing) {
     } else {
       EXPECT_LT(speed, 0.1);
     }
-    // The host's own count is believed in any case.
+    // The host's own count is trusted in any case.
     replica.hear({replica.motion(), to_nanoseconds(0.4), 0.7});
     replica.advance(nobody, kTick, to_nanoseconds(0.501));
     EXPECT_EQ(replica.work_heard(), 0.7);

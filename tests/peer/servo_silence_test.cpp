@@ -38,7 +38,7 @@ TEST(Servo, FadesOutWhenBodyStatesStop) {
   }
 }
 
-/// A host far away whose states come and that has not heard us: there is no force that would have to end,
+/// A host far away whose states come and that has not received us: there is no force that would have to end,
 /// however long that lasts. From its first answer on there is: at once for who feels none, over their time
 /// for a hand.
 TEST(Servo, NoForceBeginsBeforeTheHostHasHeardTheHand) {
@@ -65,7 +65,7 @@ TEST(Servo, NoForceBeginsBeforeTheHostHasHeardTheHand) {
     run(2.1, true);
     EXPECT_NEAR(kit.device->last.force.x, -10.0, 1e-6);
     EXPECT_LT(most, 0.01) << "no step";
-    // It hears us no more: poses stop at `now`, and what is on its way still comes.
+    // It receives us no more: poses stop at `now`, and what is on its way still comes.
     const double fault = now - 0.1;
     for (const double end = now + 0.301; now < end; now += 0.001) {
       kit.publish(now, {}, {}, 1.0, fault);
@@ -102,7 +102,7 @@ TEST(Servo, TakesHoldWhereTheHandIsWhenItsForceBegins) {
       continue;
     }
     EXPECT_NEAR(kit.device->last.force.x, 0.0, 0.1);
-    // A silence takes its force, and it takes hold anew after that, too.
+    // A silence takes its force, and it re-engages after that, too.
     now += 1.0;
     said = run(0.1, false);
     EXPECT_EQ(kit.device->last.force.x, 0.0);
@@ -139,7 +139,7 @@ TEST(Servo, SilenceStretchesNoSpring) {
   for (int ms = 1; ms <= 400; ++ms) {
     kit.device->next.pose = at(0.01 + 0.0005 * ms);  // the hand goes on, and nobody says where the grip is
     kit.tick(kTick + 0.001 * ms);
-    // What two ticks and a period carry the hand on by is still believed.
+    // What two ticks and a period carry the hand on by still counts as fresh.
     most = std::max(most, std::abs(kit.device->last.force.x));
   }
   EXPECT_LT(most, 10.0 + 1000.0 * 0.0005 * 5.0 + 0.1);

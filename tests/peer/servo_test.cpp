@@ -276,7 +276,7 @@ TEST(Servo, AResetWorldStartsTimeAnewAndTheRecordGoesOn) {
     kit.tick(1.002 + 0.002 * i);
     if (i == 0) {
       EXPECT_NEAR(kit.device->last_time, 0.0, 1e-9) << "devices follow the world's time";
-      EXPECT_EQ(kit.device->last.force.x, 0.0) << "a hand far from the grip is let in again";
+      EXPECT_EQ(kit.device->last.force.x, 0.0) << "a hand far from the grip re-engages";
     }
   }
   EXPECT_NEAR(kit.device->last.force.x, -50.0, 1e-6);

@@ -104,7 +104,8 @@ TEST(Signals, AreAsTheHandHadThemStageByStage) {
     EXPECT_NEAR(row.at("period_ms"), i == 0 ? 0.0 : 1.0, 1e-4);
     EXPECT_EQ(row.at("age_ms"), 0.0);
     EXPECT_EQ(row.at("device_z_m"), 0.3);
-    EXPECT_EQ(row.at("guarded_fx_n"), row.at("coupled_fx_n")) << "alone on a fixed body no guard acts";
+    EXPECT_EQ(row.at("guarded_fx_n"), row.at("coupled_fx_n"))
+        << "alone on a fixed body no passivity controller acts";
     if (i > 0) {
       EXPECT_LE(std::abs(row.at("sent_fx_n") - rows[i - 1].at("sent_fx_n")), 0.1 + 1e-6) << "N a ms";
       EXPECT_NEAR(row.at("rendered_fx_n"), 0.5 * rows[i - 1].at("sent_fx_n"), 1e-6);

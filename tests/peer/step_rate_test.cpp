@@ -57,8 +57,8 @@ Felt stir(double step_rate, const std::function<double(int)>& takes, double gap 
 }
 
 /// The middle one of three spacings a hundredth apart, each number for itself: of 72 runs at four spacings,
-/// before and since drag on jostling followed the flow, five felt more at most than their like: two before by
-/// 0.07 N, three since by 0.15, 0.15 and 0.45 N (what the spoon meets was not looked into).
+/// before and since artificial viscosity followed the flow, five felt more at most than their like: two
+/// before by 0.07 N, three since by 0.15, 0.15 and 0.45 N (what the spoon meets was not looked into).
 Felt stir_thrice(double step_rate, const std::function<double(int)>& takes, double gap = 0.0) {
   std::array<double, 3> peaks, changes;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -85,21 +85,19 @@ TEST(StepRate, FewAndLateStepsAreNotFelt) {
 TEST(StepRate, MissedTicksAreNotFelt) {
   for (const double rate : {300.0, 15.0}) {
     for (const double gap : {0.012, 0.03}) {
-      const Felt felt = stir_thrice(
-          rate, [=](int) { return 0.3 / rate; }, gap);
+      const Felt felt = stir_thrice(rate, [=](int) { return 0.3 / rate; }, gap);
       EXPECT_LE(felt.peak, 0.92) << rate << " Hz, " << gap << " s";
       EXPECT_LE(felt.change, 0.77) << rate << " Hz, " << gap << " s";
     }
   }
 }
 
-/// Nor does one that was not let run for longer, up to what a host of few steps is waited for: it takes hold
-/// anew. Once it was neither caught up with nor begun anew, and struck by 52 N.
+/// Nor does one that was not let run for longer, up to what a host of few steps is waited for: it re-engages.
+/// Once it was neither caught up with nor begun anew, and struck by 52 N.
 TEST(StepRate, AfterALongerGapTheHandTakesHoldAnew) {
   for (const auto& [rate, gap] : {std::pair{15.0, 0.12}, {15.0, 0.15}, {15.0, 0.18}, {8.0, 0.15}}) {
     const double takes = 0.3 / rate;
-    const Felt felt = stir(
-        rate, [=](int) { return takes; }, gap);
+    const Felt felt = stir(rate, [=](int) { return takes; }, gap);
     EXPECT_LE(felt.peak, 2.6) << rate << " Hz, " << gap << " s";
     EXPECT_LE(felt.change, 2.75) << rate << " Hz, " << gap << " s";
   }

@@ -48,7 +48,7 @@ TEST(WaterAtADistance, APersonWhoGivesWayFeelsWhatIsRightForWhereTheyWent) {
 }
 
 /// One with a loose arm, who lets the bucket tip: 17 of 23 N pour out within a second, which no model
-/// foresees. Off by as much as if the whole force were known late; 38 % where weight was believed over a
+/// foresees. Off by as much as if the whole force were known late; 38 % where weight was trusted over a
 /// second.
 TEST(WaterAtADistance, AnArmWhoseBucketPoursFeelsItGoLighter) {
   WaterCase c;

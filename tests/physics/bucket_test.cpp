@@ -66,7 +66,7 @@ TEST(Bucket, hands_carry_bucket_and_fluid) {
   const double weight = (scene.bodies[bucket].mass.mass + hands.fluid_mass) * kGravity;
   EXPECT_LT(std::abs(report("held bucket, both hands", hands.force[0].y + hands.force[1].y, weight, "N")),
             0.02);
-  // The bucket is symmetric: the hands share, but for the lattice's chance.
+  // The bucket is symmetric: the hands share, but for the lattice's asymmetry.
   EXPECT_LT(std::abs(report("held bucket, left hand", hands.force[0].y, 0.5 * weight, "N")), 0.03);
   EXPECT_EQ(e.world().diagnostics().retired, 0u);
   EXPECT_EQ(e.world().take_status(), 0u);

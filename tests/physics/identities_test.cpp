@@ -62,7 +62,7 @@ TEST_P(Corrected, momentum_of_fluid_and_free_body_together) {
   b.scene = tank.scene;
   const int box = b.add_free("box", make::box({-0.03, -0.03, -0.03}, {0.03, 0.03, 0.03}), 0.15,
                              {{0.0, 0.13, 0.0}, {1, 0, 0, 0}});
-  // Sampled on its own and joined to the tank's sheets, which come without a mesh.
+  // Sampled on its own and joined to the tank's boundary layers, which come without a mesh.
   SceneBuilder alone;
   alone.scene.bodies.push_back(b.scene.bodies[box]);
   alone.scene.meshes.push_back(b.scene.meshes[b.scene.bodies[box].mesh]);

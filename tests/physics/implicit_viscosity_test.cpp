@@ -57,7 +57,8 @@ TEST(ImplicitViscosity, DragsLikeExplicitStepsASixthAsLong) {
   EXPECT_GT(of_walls, 0.5 * -a.x) << "the tank feels what the plate does to the honey";
 }
 
-// What models of the fluid's wrench go by (bodies/wrench_identifier.h) is there however the drag is taken.
+// What models of the fluid's wrench go by (bodies/wrench_identifier.h) is there with explicit and implicit
+// viscosity.
 TEST(ImplicitViscosity, GivesTheDragMatrixOfExplicitSteps) {
   const Stirred s(50.0);
   Experiment solved(s.b.scene, 0.01), stepped(s.b.scene, 0.01, Experiment::Explicit{});

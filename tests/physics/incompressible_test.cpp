@@ -24,7 +24,7 @@ double number_at(const glm::vec3& x, const Points& points, double h) {
 }
 
 // Fluid at rest, further from walls and surface than they reach: its density is the rest lattice's. The
-// corrected model's is off by 1 and 3 %. At one moment the largest error is 0.2 to 0.5 %, by chance.
+// corrected model's is off by 1 and 3 %. At one moment the largest error is 0.2 to 0.5 %, from run to run.
 TEST(Incompressible, keeps_its_density_inside_a_tank_at_rest) {
   constexpr double kIncompressibleSpacing = 0.01, kHalf = 0.1, kFill = 0.1,
                    kSupport = 2.0 * kIncompressibleSpacing, kOff = 0.025;

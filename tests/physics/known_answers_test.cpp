@@ -86,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(
         // Without passes/rest_density/rest_density.h the level is 9, 5, 4.5 and 4.3 % too low.
         still_tank(0.02, 0.045, 0.06, 0.155), still_tank(0.0125, 0.016, 0.02, 0.06),
         still_tank(0.01, 0.012, 0.022, 0.035), still_tank(0.008, 0.014, 0.017, 0.015),
-        // 0.10 held while drag on jostling turned the fluid by 4 % faster than its glass
+        // 0.10 held while artificial viscosity turned the fluid by 4 % faster than its glass
         // (viscosity/neighbour_flow.h); fluid of 2 Pa·s, which has none of it, lacks 12 to 14 %, too: it
         // stands low where its surface meets the wall steeply, by 6 % at 4 mm and 2 % at 2 mm.
         std::vector<Known>{{"paraboloid", 0.0075, "rise over r²", 0.15}},
@@ -98,8 +98,8 @@ INSTANTIATE_TEST_SUITE_P(
         std::vector<Known>{{"thin_walls", 0.008, "level in a glass", 0.017},
                            {"thin_walls", 0.008, "lift of a plate", 0.015}},
         // Five slabs: as one solid they lose nothing; each for itself 46 particles, its floor +30 %. While
-        // chance decided whose the particles in an edge are, and sheets bent round the ends of hidden faces,
-        // the floor had +2 to +6 %, walls -6 to +2 and the centre -1 to +6, by the spacing.
+        // rounding decided whose the particles in an edge are, and boundary layers bent round the ends of
+        // hidden faces, the floor had +2 to +6 %, walls -6 to +2 and the centre -1 to +6, by the spacing.
         std::vector<Known>{{"tank_faces", 0.02, "floor", 0.018},
                            {"tank_faces", 0.02, "side walls, mean", 0.005},
                            {"tank_faces", 0.02, "centre of pressure above the floor", 0.03}},
@@ -115,7 +115,7 @@ INSTANTIATE_TEST_SUITE_P(
         std::vector<Known>{{"buoyancy_box", 0.016, "buoyancy", 0.015}},
         std::vector<Known>{{"buoyancy_box", 0.01, "buoyancy", 0.01}},
         std::vector<Known>{{"buoyancy_box", 0.008, "buoyancy", 0.01}},
-        // A ball of 2.5 spacings was −3.7 % while its sheet lay as deep as a flat one's.
+        // A ball of 2.5 spacings was −3.7 % while its boundary layer lay as deep as a flat one's.
         std::vector<Known>{{"buoyancy_sphere", 0.01, "buoyancy", 0.01}},
         std::vector<Known>{{"buoyancy_sphere", 0.00714, "buoyancy", 0.015}},
         std::vector<Known>{{"draft", 0.013, "draft", 0.025}},
@@ -145,9 +145,9 @@ INSTANTIATE_TEST_SUITE_P(
                            {"couette_start", 0.005, "torque at 80 ms", 0.055}},
         std::vector<Known>{{"poiseuille", 0.005, "flow", 0.025},
                            {"poiseuille", 0.005, "flow at 40 ms", 0.025}},
-        // While walls that slip held nothing across them, and had the bumps of a sheet at the spacing, the
-        // second was 24 to 37 % too little, and of a slow turn 70 % were kept. Of close spacings +5.4 ± 2.9,
-        // +1 ± 8.
+        // While free-slip walls had no viscous force across them, and the bumps of a boundary layer at the
+        // spacing, the second was 24 to 37 % too little, and of a slow turn 70 % were kept. Of close spacings
+        // +5.4 ± 2.9, +1 ± 8.
         std::vector<Known>{{"taylor_green", 0.005, "rate of decay", 0.09},
                            {"taylor_green", 0.005, "left of 2 cm/s after a decay's time", 0.15}},
         std::vector<Known>{{"smooth_glass", 0.005, "kept, 10 cm/s at the rim", 0.02},
@@ -182,8 +182,9 @@ INSTANTIATE_TEST_SUITE_P(
         std::vector<Known>{{"bounce", 0.015, "rebound", 1e-3}}),
     named);
 
-// A wider kernel, which a scene may have. Its walls' sheets lie deeper (walls/wall_inset.h): as deep as at a
-// ratio of 2 a ball was lifted by 12 % too much, and a slab floated 15 % too high. The level is lower for it.
+// A wider kernel, which a scene may have. Its boundary layers lie deeper (walls/wall_inset.h): as deep as at
+// a ratio of 2 a ball was lifted by 12 % too much, and a slab floated 15 % too high. The level is lower for
+// it.
 INSTANTIATE_TEST_SUITE_P(
     wide, KnownAnswer,
     ::testing::Values(
@@ -199,14 +200,13 @@ INSTANTIATE_TEST_SUITE_P(
         // spacings behind. By g++ 0.107, by clang, which rounds otherwise, 0.129: the torque is no surer than
         // that.
         std::vector<Known>{{"couette", 0.00667, "torque", 0.14, ParticleModel::kCorrected, 2.5}},
-        // 8.5 % while pairs dragged: its faces lack neighbours as deep as the kernel is wide.
+        // 8.5 % by Eq 9 between pairs: its faces lack neighbours as deep as the kernel is wide.
         std::vector<Known>{{"shear_wave", 0.01, "rate of decay", 0.014, ParticleModel::kCorrected, 2.5}},
         std::vector<Known>{{"sloshing", 0.016, "swing kept a period", 0.08, ParticleModel::kCorrected, 2.5},
                            {"sloshing", 0.016, "period", 0.02}}),
     named);
 
-// Where pressures are solved for: closer than the default in calm fluid. Its runs differ more from build to
-// build.
+// Pressure projection: closer than the default in fluid near rest. Its runs differ more from build to build.
 constexpr ParticleModel kSolved = ParticleModel::kIncompressible;
 INSTANTIATE_TEST_SUITE_P(
     incompressible, KnownAnswer,

@@ -79,7 +79,7 @@ TEST(RestDensity, a_particle_counts_less_than_the_room_that_it_takes) {
   EXPECT_LT(std::abs(report("what is counted of it", v.counted, rest * v.taken, "m3")), 0.01);
 }
 
-// Where pressures are solved for there is no such rest.
+// Pressure projection has no such rest density.
 TEST(RestDensity, where_pressures_are_solved_for_all_of_it_counts) {
   const auto [rest, v] = settled_syrup(ParticleModel::kIncompressible);
   EXPECT_EQ(rest, 1.0);

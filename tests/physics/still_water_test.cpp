@@ -23,7 +23,7 @@ Turnover turnover(const SceneBuilder& b) {
 }
 
 // The corrected model's water rises along the axis and sinks near the walls, whose first layer bears more
-// than its weight and whose second less; jostling does the rest
+// than its weight and whose second less; velocity fluctuations do the rest
 // (tests/notebook/2026-11-23-still-water-turns-over.md). 16 and 15 mm/s are reached.
 TEST(StillWater, turns_over_by_itself) {
   const Turnover corrected = turnover(tank_of_water(ParticleModel::kCorrected));

@@ -9,9 +9,9 @@
 namespace slosh::lab {
 namespace {
 
-// 0.5 Pa·s at 16 rad/s, of which jostling would need 0.9 at 10 mm. While a particle was dragged on by what it
-// differs from its neighbours' mean by, which at walls and surfaces is the flow itself, fluid within three
-// quarters of the radius turned by 4.2 % faster than the glass (viscosity/neighbour_flow.h).
+// 0.5 Pa·s at 16 rad/s; the artificial viscosity is 0.9 at 10 mm. While it damped the difference to the
+// neighbours' mean, which at walls and surfaces is the flow itself, fluid within three quarters of the radius
+// turned by 4.2 % faster than the glass (viscosity/neighbour_flow.h).
 TEST(TurningGlass, is_not_overtaken_by_its_fluid) {
   constexpr double kRadius = report::TurningGlass::kRadius, kTurning = report::TurningGlass::kTurning;
   report::Setting setting;

@@ -170,9 +170,9 @@ TEST(Filling, WhatIsMissingGoesUp) {
 TEST(Filling, StaysOutOfAMergedPartition) {
   const make::Solid water = make::box({-0.2, 0.02, -0.05}, {0.2, 0.08, 0.05});
   for (const double half : {0.008, 0.005}) {
-    for (const double ramp_work : {0.02, 0.0}) {
+    for (const double overlap : {0.02, 0.0}) {
       const make::Solid partition =
-          make::box({-half, 0.02 - ramp_work, -0.05 - ramp_work}, {half, 0.09, 0.05 + ramp_work});
+          make::box({-half, 0.02 - overlap, -0.05 - overlap}, {half, 0.09, 0.05 + overlap});
       const make::Solid tank = make::merged(make::tank({0.4, 0.1, 0.1}, 0.02), partition);
       for (const double spacing : {0.005, 0.008, 0.01}) {
         const auto sampled = sample_scene(filled(&tank, water), spacing);
@@ -184,11 +184,11 @@ TEST(Filling, StaysOutOfAMergedPartition) {
         const double wanted = (0.4 - 2.0 * half) * 0.06 * 0.1;
         const double have =
             static_cast<double>(sampled.value().fluid_positions.size()) * std::pow(spacing, 3);
-        std::printf("  partition of %.0f mm let in by %.0f at %.0f mm: volume off by %+.2f %%\n", 2e3 * half,
-                    1e3 * ramp_work, 1e3 * spacing, 100.0 * (have / wanted - 1.0));
-        EXPECT_EQ(inside, 0u) << half << " let in by " << ramp_work << " at " << spacing;
+        std::printf("  partition of %.0f mm overlapping by %.0f at %.0f mm: volume off by %+.2f %%\n",
+                    2e3 * half, 1e3 * overlap, 1e3 * spacing, 100.0 * (have / wanted - 1.0));
+        EXPECT_EQ(inside, 0u) << half << " overlapping by " << overlap << " at " << spacing;
         EXPECT_LT(std::abs(have / wanted - 1.0), 0.005)
-            << half << " let in by " << ramp_work << " at " << spacing;
+            << half << " overlapping by " << overlap << " at " << spacing;
       }
     }
   }

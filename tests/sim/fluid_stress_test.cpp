@@ -1,5 +1,5 @@
-// What a particle's own stress pushes with: it is exact in a linear flow, turns nothing, gives no power, and
-// walls that hold leave Eq 9 in its place.
+// Forces by a particle's viscous stress: exact in a linear flow, without net torque or power, and replaced by
+// Eq 9 beside no-slip walls.
 #include "sim/passes/fluid_stress/fluid_stress.h"
 
 #include <gtest/gtest.h>
@@ -125,9 +125,9 @@ TEST(FluidStress, IsNothingInRigidRotation) {
   }
 }
 
-// Whatever the velocities are and however flat the neighbourhood: the pushes of one particle turn nothing
-// together, and what its fluid loses by them is V τ : G, never below 0.
-TEST(FluidStress, TurnsNothingAndGivesNoPower) {
+// Whatever the velocities are and however flat the neighbourhood: the forces of one particle exert no net
+// torque, and the power that its fluid loses by them is V τ : G, never below 0.
+TEST(FluidStress, ExertsNoTorqueAndGivesNoPower) {
   std::mt19937 random(9);
   std::uniform_real_distribution<float> speed(-0.3f, 0.3f);
   for (const Where where : {Where::kInside, Where::kSurface, Where::kLayer}) {

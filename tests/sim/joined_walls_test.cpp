@@ -116,7 +116,7 @@ TEST(JoinedWalls, AWallOnAFloorIsOneSolid) {
   expect_one_sheet(in_the_middle(joined_layers(solids, kSpacing), {Pose{}, Pose{}}));
 }
 
-// Along walls that slip layers are finer (boundary_spacing), and so is what fills their edges. With a floor
+// Along free-slip walls layers are finer (boundary_spacing), and so is what fills their edges. With a floor
 // along which fluid slides and a wall at which it stands each has its own.
 TEST(JoinedWalls, FinerSheetsMeetAsWell) {
   constexpr float kFine = 0.7f * kSpacing;
@@ -145,7 +145,7 @@ TEST(JoinedWalls, OverlappingOnesToo) {
 }
 
 // Round the edge between floor and wall each place is as near to the one face as to the other. As that was
-// told by discs around samples, chance decided whose a whole edge was: side walls read 3 % more or less.
+// told by discs around samples, rounding decided whose a whole edge was: side walls read 3 % more or less.
 TEST(JoinedWalls, WhatFillsAnEdgeIsOfTheFaceItIsFartherBehind) {
   int found[2] = {};
   for (const float apart : {1.0f, 0.97f, 0.93f, 0.9f, 0.83f}) {

@@ -51,7 +51,7 @@ void follow(Sums& s, const glm::vec3& v) {
 }
 
 // m/s that it differs from its neighbours by.
-glm::vec3 jostling(const Sums& s, const glm::vec3& v) {
+glm::vec3 fluctuation(const Sums& s, const glm::vec3& v) {
   float u[3] = {};
   add_fluctuation(s.around, s.own, 1.0f, {v.x, v.y, v.z}, u);
   follow_fluctuation(s.around, s.own, 1.0f, u);
@@ -83,11 +83,11 @@ TEST(NeighbourFlow, LeavesNothingOfALinearFlowAtASurface) {
     std::vector<glm::vec3> velocities;
     for (const glm::vec3& x : places) velocities.push_back(v + gradient * x);
     Sums s = sums_of(v, places, velocities);
-    by_mean = std::max(by_mean, glm::length(jostling(s, v)));
+    by_mean = std::max(by_mean, glm::length(fluctuation(s, v)));
     follow(s, v);
-    EXPECT_LT(glm::length(jostling(s, v)), 2e-5f);
+    EXPECT_LT(glm::length(fluctuation(s, v)), 2e-5f);
   }
-  EXPECT_GT(by_mean, 0.05f) << "against the mean, the flow itself is jostling";
+  EXPECT_GT(by_mean, 0.05f) << "against the mean, the flow itself counts as fluctuation";
 }
 
 // What a particle alone does is seen whole, however its neighbours lie: it is in G too, but by no more than
@@ -99,7 +99,7 @@ TEST(NeighbourFlow, SeesWhatAParticleDoesAlone) {
     const glm::vec3 v(1.0f, 0.0f, 0.0f);
     Sums s = sums_of(v, places, std::vector<glm::vec3>(places.size(), glm::vec3(0.0f)));
     follow(s, v);
-    const glm::vec3 u = jostling(s, v);
+    const glm::vec3 u = fluctuation(s, v);
     EXPECT_GT(u.x, 0.1f);
     EXPECT_LE(u.x, 1.0f);
     EXPECT_LT(std::abs(u.y) + std::abs(u.z), 1e-6f);

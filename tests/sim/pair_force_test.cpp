@@ -93,7 +93,7 @@ TEST(PairForce, TheCorrectedVirialIsThePressureWhateverTheNeighbours) {
       }
   double worst_corrected = 0.0, worst_plain = 0.0;
   for (int repeat = 0; repeat < 200; ++repeat) {
-    // A sheared and jostled lattice: 20 % longer one way, shorter the others.
+    // A sheared and jittered lattice: 20 % longer one way, shorter the others.
     Symmetric<double> moment{};
     for (int x = -3; x <= 3; ++x)
       for (int y = -3; y <= 3; ++y)
@@ -123,8 +123,8 @@ TEST(PairForce, TheCorrectedVirialIsThePressureWhateverTheNeighbours) {
   EXPECT_GT(worst_plain, 0.2);
 }
 
-// A particle over a wall, among fluid and wall particles at random: what it does to all of them together
-// turns nothing, though a wall counts in its moment as one layer, or 1.1, and is pressed on as more.
+// A particle over a wall, among fluid and wall particles at random: it exerts no net torque on all of them,
+// though a wall counts in its moment as one layer, or 1.1, and is pressed on as more.
 TEST(PairForce, FluidAtAWallExertsNoTorque) {
   std::mt19937 random(16);
   std::uniform_real_distribution<double> jitter(-0.3, 0.3);
@@ -205,8 +205,8 @@ TEST(PairForce, NothingIsCorrectedInAnImpactOrInSpray) {
   EXPECT_LT(flat.zz, 20.0f);
 }
 
-// Who has nine tenths of the settled moment is whole where the fluid needs no drag on jostling, and in part a
-// surface where it lives by that; who has none is a surface everywhere.
+// Who has nine tenths of the settled moment is whole where the fluid needs no artificial viscosity, and in
+// part a surface where it needs it; who has none is a surface everywhere.
 TEST(PairForce, AViscousFluidIsWholeFromNineTenthsOn) {
   CorrectionConstants c;
   c.artificial_viscosity = 0.6f;
@@ -222,8 +222,8 @@ TEST(PairForce, AViscousFluidIsWholeFromNineTenthsOn) {
   EXPECT_FLOAT_EQ(pressure_directions({0, 0, 0, 0, 0, 0}, 1.0f, 1.3f, 0.9f).xx, 1.0f);
 }
 
-// A wall's particle counts in the moment of thin fluid as half of what it presses with, bitwise, and in
-// that of fluid that needs no drag on jostling as a tenth more, the more the wider the support.
+// A wall's particle counts in the moment of thin fluid as exactly half of what it presses with, and in that
+// of fluid that needs no artificial viscosity as a tenth more, the more the wider the support.
 TEST(PairForce, AWallIsMoreThanALayerToThickFluid) {
   for (const double ratio : {1.5, 2.0, 2.6}) {
     EXPECT_EQ(wall_layer(0.6f, 0.0f, ratio), 0.5f);
@@ -260,26 +260,27 @@ TEST(Noise, IsWhatAParticleDoesNotShareWithItsNeighbours) {
   EXPECT_EQ(alone[0], 0.0f);
 }
 
-// In an impact it is damped by more, up to what the step holds; calm fluid by bitwise identical.
+// In an impact artificial viscosity grows, up to what the step bears; in slower fluid it is bitwise
+// identical.
 TEST(Noise, GrowsWithTheSpeedOfAnImpactUpToWhatTheStepHolds) {
-  constexpr float kJostling = 0.8f, kSound = 5.0f, kMax = 6.0f;
+  constexpr float kArtificial = 0.8f, kSound = 5.0f, kMax = 6.0f;
   constexpr auto kGrowth = static_cast<float>(kImpactGrowth) / kSound;
   const auto at = [&](float speed, float viscosity) {
-    return artificial_viscosity_in_impact(kJostling, kJostling, kGrowth, speed, viscosity, kMax);
+    return artificial_viscosity_in_impact(kArtificial, kArtificial, kGrowth, speed, viscosity, kMax);
   };
-  EXPECT_EQ(at(0.0f, 0.0f), kJostling);
-  EXPECT_EQ(at(0.99f * static_cast<float>(kImpactSpeed) * kSound, 0.0f), kJostling);
+  EXPECT_EQ(at(0.0f, 0.0f), kArtificial);
+  EXPECT_EQ(at(0.99f * static_cast<float>(kImpactSpeed) * kSound, 0.0f), kArtificial);
   // A tenth of the speed of sound is 0.05 beyond: 50 · 0.05 times as much more.
-  EXPECT_FLOAT_EQ(at(0.1f * kSound, 0.0f), kJostling * 3.5f);
+  EXPECT_FLOAT_EQ(at(0.1f * kSound, 0.0f), kArtificial * 3.5f);
   EXPECT_FLOAT_EQ(at(kSound, 0.0f), kMax);
   EXPECT_FLOAT_EQ(at(kSound, 2.0f), kMax - 2.0f);
-  // Where the fluid's own drag is all that the step holds it is what it would be in calm.
-  EXPECT_EQ(at(kSound, kMax), kJostling);
-  // Thick fluid, whose jostling feels nothing or less in calm, gains as much as thin.
+  // Where the fluid's own viscosity is all that the step bears, it is what it would be without an impact.
+  EXPECT_EQ(at(kSound, kMax), kArtificial);
+  // Thick fluid, which has none or less without an impact, gains as much as thin.
   for (const float calm : {0.0f, 0.3f}) {
-    EXPECT_EQ(artificial_viscosity_in_impact(calm, kJostling, kGrowth, 0.04f * kSound, 1.0f, kMax), calm);
-    EXPECT_FLOAT_EQ(artificial_viscosity_in_impact(calm, kJostling, kGrowth, 0.1f * kSound, 1.0f, kMax),
-                    calm + kJostling * 2.5f);
+    EXPECT_EQ(artificial_viscosity_in_impact(calm, kArtificial, kGrowth, 0.04f * kSound, 1.0f, kMax), calm);
+    EXPECT_FLOAT_EQ(artificial_viscosity_in_impact(calm, kArtificial, kGrowth, 0.1f * kSound, 1.0f, kMax),
+                    calm + kArtificial * 2.5f);
   }
 }
 

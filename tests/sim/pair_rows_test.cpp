@@ -245,7 +245,7 @@ TEST_P(PairRowsOf, PushAndFlowAsADoubleLoop) {
       });
 }
 
-// Who drags whom: a double loop, and the momentum of all.
+// Viscous pairs: a double loop, and the momentum of all.
 TEST_P(PairRowsOf, DragAsADoubleLoopAndKeepMomentumToRounding) {
   const Crowd crowd(GetParam());
   PairRows rows;
@@ -319,7 +319,7 @@ glm::dvec3 pushed(const Passed& t, const glm::dvec3& d) {
 }
 
 // What a force pass finds over rows: `forces` against a double loop over what others push with, `push(i, d)`,
-// the drag on jostling and Eq 9 of each one's own viscosity.
+// the artificial viscosity and Eq 9 of each one's own viscosity.
 template <class Forces, class Push, class Viscosity>
 void expect_forces(const Crowd& crowd, Forces&& forces, Push&& push, Viscosity&& viscosity) {
   const FluidPress& press = crowd.press;

@@ -49,10 +49,10 @@ TEST(Sheet, AThinWallCountsAsAThickOneDoes) {
     EXPECT_NEAR(density_over_plate(spacings * kSpacing) / thick, 1.0, 0.05) << spacings << " spacings";
 }
 
-// Along its edges a box's sheet lies as deep as behind its faces, whatever its size: where the distance field
-// alone told where, 11 of 385 particles of such a box stayed on its surface, and what it was lifted by
-// scattered with the spacing. With a reach of 1.5 spacings in convex_edges.cpp one of some thousand still
-// did: on a corner of which no sample within reach shows the third face.
+// Along its edges a box's boundary layer lies as deep as behind its faces, whatever its size: where the
+// distance field alone told where, 11 of 385 particles of such a box stayed on its surface, and what it was
+// lifted by scattered with the spacing. With a reach of 1.5 spacings in convex_edges.cpp one of some thousand
+// still did: on a corner of which no sample within reach shows the third face.
 TEST(Sheet, HasNoParticleProudOfABoxsEdges) {
   constexpr double kDeep = 0.675;  // spacings: 0.67 behind a flat face, 0.682 near an edge
   int proud = 0, all = 0;

@@ -1,4 +1,4 @@
-// How deep a wall's sheet lies.
+// How deep a wall's boundary layer lies.
 #include "sim/walls/wall_inset.h"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,8 @@ TEST(WallInset, IsWhereTheFirstLayerHasALatticesDensity) {
     const double inset = wall_inset(ParticleModel::kCorrected, ratio);
     EXPECT_NEAR(first_layers_density(ratio, inset + stands), 1.0, 0.004) << ratio;
   }
-  EXPECT_GT(first_layers_density(2.5, kWallInset + stands), 1.05) << "where the sheet lay at every ratio";
+  EXPECT_GT(first_layers_density(2.5, kWallInset + stands), 1.05)
+      << "where the boundary layer lay at every ratio";
 }
 
 TEST(WallInset, IsTheSameToTheBitAtARatioOfTwoAndInTheOtherModels) {

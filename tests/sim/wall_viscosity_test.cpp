@@ -94,9 +94,9 @@ TEST(WallViscosity, AWallThatSlipsDragsNothing) {
   }
 }
 
-// Where drag is solved for, fluid that runs into it meets its mirror image: a drag that grows with its
-// viscosity. (By less than that goes: over a step the fluid is slowed.) Where it is stepped a stress that
-// nobody beyond takes up is the wall's, and there is no mirror.
+// With implicit viscosity fluid that runs into it meets its mirror image: a drag that grows with its
+// viscosity. (By less than that goes: over a step the fluid is slowed.) With explicit viscosity the wall
+// takes up the particle stress, and there is no mirror.
 TEST(WallViscosity, AWallThatSlipsDragsWhatRunsIntoIt) {
   const auto solved = [](double upper) { return pull(sliding(kFreeSlip, upper, 0.06, 20.0), true); };
   const Pulled thin = solved(20.0), thick = solved(40.0), stepped = pull(sliding(kFreeSlip));

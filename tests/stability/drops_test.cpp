@@ -67,8 +67,8 @@ TEST(Drops, none_stays_in_a_wide_table) {
   for (const glm::vec3& p : snapshot.positions)
     if (std::max(std::abs(p.x), std::abs(p.z)) < 0.45f) deepest = std::min(deepest, p.y);
   std::printf("the deepest lies %.2f spacings over the table\n", deepest / kSpacing);
-  // -0.32 (-0.14 until drag on jostling followed the flow). They still move: from 0.3 to 0.8 s the deepest
-  // was between -0.11 and -0.38 then (-0.07 and -0.45 while sums went over candidates).
+  // -0.32 (-0.14 until artificial viscosity followed the flow). They still move: from 0.3 to 0.8 s the
+  // deepest was between -0.11 and -0.38 then (-0.07 and -0.45 while sums went over candidates).
   EXPECT_GT(deepest, -0.4 * kSpacing);
 }
 

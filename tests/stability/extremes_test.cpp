@@ -177,8 +177,8 @@ TEST_P(SpacingRange, tank_at_rest_carries_its_weight) {
   e.run(5.0 * time, [&] { down.add(-e.bodies().bodies[0].fluid.force.y); });
   ASSERT_TRUE(all_finite(e.world()));
   const double weight = e.fluid_mass() * kGravity;
-  // The walls of the smallest tank stand 5 cm outside its mesh bounds only on paper: the sheet is what
-  // counts.
+  // The walls of the smallest tank stand 5 cm outside its mesh bounds only on paper: the boundary layer is
+  // what counts.
   EXPECT_NEAR(down.mean(), weight, 0.02 * weight);
   EXPECT_EQ(e.world().diagnostics().retired, 0u);
 }
@@ -189,8 +189,8 @@ INSTANTIATE_TEST_SUITE_P(metres, SpacingRange, ::testing::Values(0.001, 0.01, 0.
 constexpr double kOfTheDepth = 24.525;
 
 // Against a wall at 2 m/s. At the depth's stiffness this is an impact at Mach 0.4 and more: the fluid is
-// crushed, and the status says so. (Until impacts were damped the walls' guard had to hold it back besides.)
-// The plan counts the start velocity, and it is not crushed. Nothing passes a wall.
+// crushed, and the status says so. (Until impacts were damped the penetration clamp had to hold it back
+// besides.) The plan counts the start velocity, and it is not crushed. Nothing passes a wall.
 TEST(Extremes, fluid_thrown_at_a_wall) {
   for (const double stiffness : {kOfTheDepth, 0.0, 400.0}) {
     Experiment e = dam(0.05, 0.5, 2.0, stiffness);

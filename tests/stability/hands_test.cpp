@@ -215,7 +215,7 @@ TEST(Hands, long_stir_loses_nothing) {
   EXPECT_LT(fluid.max_speed, 1.0);
 }
 
-// Where two walls meet, what they drag by adds up: with the flat walls' step alone the glass of 40 Pa·s
+// Where two walls meet, their viscous forces add up: with the flat walls' step alone the glass of 40 Pa·s
 // around its syrup of 2 hummed by 0.4 N from step to step before anything had moved.
 TEST(Hands, feel_no_hum_of_glasses_more_viscous_than_their_syrup) {
   const Scene scene = load_scene(find_scene("spin").value()).value();
@@ -235,7 +235,7 @@ TEST(Hands, feel_no_hum_of_glasses_more_viscous_than_their_syrup) {
   for (std::size_t g = 0; g < e.grips(); ++g) {
     const double hum = std::sqrt(squares[g] / (steps - 1));
     report_value("hum of glass " + std::to_string(g) + ", rms from step to step", 1e3 * hum, "mN");
-    // 1.3 to 1.4 mN, of a step 2.7 times as long as when walls dragged by one sheet (then below 1), alike in
+    // 1.3 to 1.4 mN, of a step 2.7 times as long as when walls dragged by one layer (then below 1), alike in
     // the glass of the syrup's own viscosity: it is the fluid that settles.
     EXPECT_LT(hum, 2e-3) << "glass " << g;
     EXPECT_LT(last[g], -5.0) << "the hand carries a glass of syrup";

@@ -11,8 +11,8 @@ namespace slosh {
 namespace {
 
 // Water hurled at 4 m/s into the edges of a closed box of six slabs, far too soft for that (10 m²/s²):
-// crushed as it is, only the guard holds it. While that knew each slab for itself, the joint between two was
-// a way out: after 0.3 s 305 of 864 particles were outside.
+// crushed as it is, only the penetration clamp holds it. While that knew each slab for itself, the joint
+// between two was a way out: after 0.3 s 305 of 864 particles were outside.
 TEST(Slabs, nothing_gets_out_between_two) {
   constexpr double kSpacing = 0.01, kThick = 0.05, kHalf = 0.06, kHigh = 0.1;
   constexpr double kOut = kHalf + kThick;

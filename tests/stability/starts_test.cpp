@@ -44,7 +44,9 @@ TEST_P(Few, particles_stay_in_the_tank) {
   e.run(1.0, [&] {
     for (const glm::vec3& p : e.picture().positions) {
       highest = std::max<double>(highest, p.y);
-      EXPECT_GT(p.y, -0.01f);  // between surface and sheet: a lone particle has little pressure to stand on
+      EXPECT_GT(
+          p.y,
+          -0.01f);  // between surface and boundary layer: a lone particle has little pressure to stand on
     }
   });
   report_value(std::to_string(GetParam()) + " particles dropped from 50 mm, highest after 3 s", 1e3 * highest,
@@ -112,14 +114,14 @@ TEST(Start, not_a_number_is_retired_and_the_rest_lives) {
 }
 
 // Fluid that starts two spacings inside the floor and a wall, built past the sampler, which refuses it: what
-// lies behind the sheet is outside and falls; the rest must neither explode nor follow.
+// lies behind the boundary layer is outside and falls; the rest must neither explode nor follow.
 TEST(Start, overlapping_a_wall) {
   testing::TankOptions options;
   testing::Tank tank = testing::make_tank(options);
   for (glm::vec3& p : tank.sampled.fluid_positions) p += glm::vec3(0.015f, -0.015f, 0.0f);
   Experiment e(tank.scene, tank.sampled);
   const std::size_t count = e.world().fluid_count();
-  // Up to the walls' sheet, 0.7 spacings behind their surface.
+  // Up to the boundary layer, 0.7 spacings behind their surface.
   const report::Room room{{-0.107, -0.007, -0.107}, {0.107, 0.15, 0.107}, true};
   const std::size_t outside_at_start = report::count_outside(e.picture(), Pose{}, room);
   e.run(1.5);
@@ -131,7 +133,7 @@ TEST(Start, overlapping_a_wall) {
   const std::size_t outside = report::count_outside(e.picture(), Pose{}, room);
   const double kept = static_cast<double>(count - outside) / static_cast<double>(count - outside_at_start);
   report_value("start in a wall, share of what began inside that is there", kept, "");
-  EXPECT_GT(outside_at_start, count / 20) << "some of it does start behind the sheet";
+  EXPECT_GT(outside_at_start, count / 20) << "some of it does start behind the boundary layer";
   EXPECT_GT(kept, 0.97);
   EXPECT_LT(kept, 1.05);
 }

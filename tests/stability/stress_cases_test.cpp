@@ -33,7 +33,7 @@ constexpr Expected kExpected[] = {
     {"far_away", Verdict::kLimited, 0.001},
     {"not_a_number", Verdict::kLimited, 0.002},
     {"step_10", Verdict::kLimited, 0.02},
-    // One particle that the walls' guard holds back, or none; one that is squeezed to twice its density.
+    // One particle that the penetration clamp holds back, or none; one that is squeezed to twice its density.
     {"stiff", Verdict::kLimited, 0.0, kMaxMomentumError, true},
     {"honey_20", Verdict::kLimited, 0.0, kMaxMomentumError, true},
     // Drops that spurt past the lid and over the rim; none passes a wall (Walls.press_crushes_fluid).
@@ -54,7 +54,7 @@ constexpr Expected kExpectedIncompressible[] = {
     {"not_a_number", Verdict::kLimited, 0.002},
     {"step_10", Verdict::kLimited, 0.0},
     {"heavy_20", Verdict::kLimited, 0.0},
-    // One particle that gets too fast or that the guard holds back, or none.
+    // One particle that gets too fast or that the clamp holds back, or none.
     {"honey_20", Verdict::kLimited, 0.0, kMaxMomentumError, true},
     {"light_5", Verdict::kLimited, 0.0, kMaxMomentumError, true},
     {"thrown_2", Verdict::kLimited, 0.0, kMaxMomentumError, true},
@@ -98,7 +98,7 @@ TEST_P(Stressed, ends_as_written) {
   expect_as_written(GetParam(), ParticleModel::kCorrected, kExpected);
 }
 
-// Where pressures are solved for; without a fluid that is the same world.
+// With pressure projection; without a fluid that is the same world.
 TEST_P(Stressed, ends_as_written_incompressible) {
   if (!GetParam().fluid) GTEST_SKIP() << "no fluid in it: its particle model makes no difference";
   expect_as_written(GetParam(), ParticleModel::kIncompressible, kExpectedIncompressible);

@@ -23,7 +23,7 @@ class Randomizer {
   explicit Randomizer(std::uint64_t seed, std::size_t least_list = 0, std::size_t most_list = 4)
       : random_(seed), least_list_(least_list), most_list_(most_list) {}
 
-  /// A natural from least to most: an end, or of any size with equal chances.
+  /// A natural from least to most: an end, or of any size with equal probability.
   std::uint64_t pick(std::uint64_t least, std::uint64_t most) {
     const std::uint64_t kind = random_() % 4;
     if (kind == 0 || least == most) return least;

@@ -79,8 +79,8 @@ Tank make_tank(const TankOptions& o) {
   tank.scene.bodies.push_back(walls);
   SurfaceSamples samples;
   const glm::dvec3 x(o.inner.x, 0, 0), y(0, o.inner.y, 0), z(0, 0, o.inner.z);
-  // The sheets sit half a spacing behind these planes, so floor and end walls reach one spacing further: the
-  // edges between them would be open otherwise.
+  // The boundary layers sit half a spacing behind these planes, so floor and end walls reach one spacing
+  // further: the edges between them would be open otherwise.
   const glm::dvec3 more_x(o.spacing, 0, 0), more_z(0, 0, o.spacing);
   add_plane(samples, -half - more_x - more_z, z + 2.0 * more_z, x + 2.0 * more_x, o.spacing);
   add_plane(samples, -half - more_z, y, z + 2.0 * more_z, o.spacing);

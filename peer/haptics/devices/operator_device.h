@@ -22,9 +22,9 @@ struct OperatorSettings {
 /// apart by commas; empty is "tight". Errors: another word, a number out of its range.
 Result<OperatorSettings> parse_operator(const std::string& options);
 
-/// Moves by simulated time along `track`, as far as the force lets it. What it carries when it takes hold it
-/// carries from then on, as who lifts a bucket does. No clock, no chance: the same forces give the same
-/// motion bitwise.
+/// Moves by simulated time along `track`, as far as the force lets it. What it carries when it engages it
+/// carries from then on, as who lifts a bucket does. Neither clock nor random numbers: the same forces give
+/// the same motion bitwise.
 class OperatorDevice final : public Device {
  public:
   OperatorDevice(PoseTrack track, const OperatorSettings& settings);

@@ -48,7 +48,7 @@ void BodyReplica::hear(const HostMotion& host) noexcept {
   has_word_ = true;
 }
 
-/// The host's word may be of a moment that is still to come here, where the way to it is short.
+/// The host's update may be of a moment that is still to come here, where the way to it is short.
 void BodyReplica::compare(std::int64_t now_ns) noexcept {
   if (!has_word_ || word_.ack_ns > now_ns) return;
   has_word_ = false;
@@ -171,8 +171,8 @@ Matrix6 BodyReplica::mass_matrix() const noexcept {
   return m;
 }
 
-/// The couplings' own pace ω₀ against the delay: at a body that answers faster than others are heard of, they
-/// pull less.
+/// The couplings' own pace ω₀ against the delay: at a body that answers faster than updates of others come,
+/// they pull less.
 void BodyReplica::soften(const std::vector<ReplicaHand>& hands) noexcept {
   double stiffness = 0.0, turning = 0.0, others = 0.0;
   for (std::size_t g = 0; g < grips_.size() && g < hands.size(); ++g) {

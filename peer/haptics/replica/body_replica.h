@@ -37,7 +37,7 @@ struct ReplicaHand {
   double energy = 0.0;  ///< J that its person put in so far, by their own count
 };
 
-/// The host's word on the body.
+/// The host's update of the body.
 struct HostMotion {
   RigidMotion motion;
   std::int64_t ack_ns = 0;  ///< when the newest of our readings that it follows was read; 0 = none
@@ -92,14 +92,14 @@ class BodyReplica {
   double shared() const noexcept { return shared_; }
   /// J that the hands of other sites gave here beyond what their persons put in, worst of them.
   double excess() const noexcept { return excess_; }
-  /// J that the load put into the body since restart(): the host's count as far as that is heard, and from
+  /// J that the load put into the body since restart(): the host's count as far as updates came, and from
   /// there on what it gave here.
   double work() const noexcept { return work_; }
   double work_heard() const noexcept { return work_heard_; }  ///< J: of that the host's count alone
-  /// Share, 0–1, of what the load gives here since the host's word that is believed; the rest is taken out of
+  /// Share, 0–1, of the load's work here since the host's update that is trusted; the rest is taken out of
   /// the motion.
   void believe_load(double share) noexcept { believed_ = share; }
-  /// J of the load's work that is believed; of what came since the host's word the own hands' part alone, as
+  /// J of the load's work that is trusted; of what came since the host's update the own hands' part alone, as
   /// nobody knows yet what the others did about theirs.
   double work_believed() const noexcept {
     const double own = 1.0 - shared_, slosh = own * slosh_since(),
@@ -111,7 +111,7 @@ class BodyReplica {
   double stored() const noexcept { return stored_; }
 
  private:
-  /// J that what swings gave here since the host's word: what it had, so none of it is in doubt.
+  /// J that what swings gave here since the host's update: what it had, so none of it is uncertain.
   double slosh_since() const noexcept { return slosh_work_ - slosh_heard_; }
   Matrix6 mass_matrix() const noexcept;
   void compare(std::int64_t now_ns) noexcept;
@@ -134,10 +134,10 @@ class BodyReplica {
   RigidMotion now_;
   HostMotion word_;  // of the host, not compared yet
   bool has_word_ = false;
-  MotionError pending_;               // of the host's newest word, not taken over yet
-  std::array<SloshState, 3> swings_;  // of load_.swings
-  glm::dvec3 pace_{0.0};              // m/s² of the body in the last step, without what was corrected
-  std::array<SloshState, 3> swings_pending_;  // of what the host's word says of them, not taken over yet
+  MotionError pending_;                       // of the host's newest update, not taken over yet
+  std::array<SloshState, 3> swings_;          // of load_.swings
+  glm::dvec3 pace_{0.0};                      // m/s² of the body in the last step, without what was corrected
+  std::array<SloshState, 3> swings_pending_;  // of the host's update of them, not taken over yet
   ReplicaHistory history_;
   struct Ledger {
     double given = 0.0;  // J that this hand gave here
@@ -152,7 +152,7 @@ class BodyReplica {
   double work_ = 0.0;
   double work_heard_ = 0.0;
   double slosh_work_ = 0.0;   // J that what swings gave here
-  double slosh_heard_ = 0.0;  // of it by the moment that the host's word is of
+  double slosh_heard_ = 0.0;  // of it by the moment of the host's update
   double believed_ = 1.0;
   double stored_ = 0.0;
   bool started_ = false;

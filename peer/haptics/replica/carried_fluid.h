@@ -1,4 +1,4 @@
-// What is known of the fluid on a held body from the host's words: what of it swings, what that lifts, what
+// What is known of the fluid on a held body from the host's updates: its slosh modes, their weight, what
 // lasts.
 #pragma once
 
@@ -10,10 +10,10 @@
 
 namespace slosh {
 
-/// What acts on the body besides couplings, over the time between two words of the host.
+/// What acts on the body besides couplings, over the time between two updates of the host.
 struct Acting {
   double elapsed = 0.0;       ///< s; 0: nothing came before, and there is no acceleration
-  glm::dvec3 before{0.0};     ///< m/s, of the centre of mass, at the word before
+  glm::dvec3 before{0.0};     ///< m/s, of the centre of mass, at the update before
   glm::dvec3 now{0.0};        ///< at this
   glm::dvec3 force{0.0};      ///< N: all that acts, the mean
   bool tells_fluid = false;   ///< the host says what of that is the fluid's:
@@ -35,7 +35,7 @@ class CarriedFluid {
   /// Puts what swings in the place of the line in `load`, as far as it explains more, times `share` (0–1),
   /// and takes it out of `rest`: the wrench that acts besides couplings, to which the answer to `pace`
   /// (linear and angular acceleration) is added. What no model explains of the fluid is left in it as what is
-  /// late, and foreseen for when words that are `round_trip` s old are felt.
+  /// late, and foreseen for when updates that are `round_trip` s old are felt.
   void put_into(FluidLoad& load, Vector6& rest, const Vector6& pace, const Acting& acting, double share,
                 double round_trip) noexcept;
 
@@ -60,7 +60,7 @@ class CarriedFluid {
   double lifts_square_ = 0.0, lifts_answer_ = 0.0;  // N²·s
   std::array<ResidueFollower, 3> residue_;          // what no model explains, along x, y, z
   glm::dvec3 passing_{0.0};                         // N: of it, what does not last, the bowl not taken off
-  glm::dvec3 dragged_{0.0};                         // N: by the damper, of the word before
+  glm::dvec3 dragged_{0.0};                         // N: by the damper, of the update before
   double round_trip_ = 0.0;                         // s
   double mass_force_ = 0.0, mass_square_ = 0.0;     // N·m/s², m²/s⁴: means
   double carried_ = 0.0;                            // kg; 0: nothing

@@ -11,16 +11,16 @@ namespace {
 /// s for which another site's hand, and the host's body for a spring to it, are carried on by their twists.
 constexpr double kCarriedOn = 0.02;
 constexpr double kTwistForesees = 0.01;  // s for which a hand goes about as it went
-/// s over which the share of ticks with a guard firing is averaged, the share that is too much, and s of calm
-/// after which the replica is tried again.
+/// s over which the share of ticks with a passivity controller firing is averaged, the share that is too
+/// much, and s of quiet time after which the replica is tried again.
 constexpr double kFiringMemory = 0.5;
 constexpr double kFiresTooOften = 0.5;
 constexpr double kQuietTime = 3.0;
 constexpr double kChange = 0.5;  // s over which one goes over into the other
-/// s for which the fluid's model holds without a word, and over which it then goes.
+/// s for which the fluid's model holds without an update, and over which it then goes.
 constexpr double kLoadHolds = 0.1;
 constexpr double kLoadFades = 0.3;
-/// s of the body's time between two words beyond which they say nothing of its acceleration.
+/// s of the body's time between two updates beyond which they say nothing of its acceleration.
 constexpr double kLongestStep = 0.1;
 /// N of a change that is not foreseen at which the whole damping acts, and s for which that is remembered.
 constexpr double kDisturbance = 15.0;
@@ -36,12 +36,12 @@ constexpr double kKept = 2e-3;
 constexpr double kLoadRoundTrips = 2.0;  // after which a table that is met counts as told of
 constexpr double kForesees = 2.0;
 constexpr double kFullUncertainty = 3.0;
-/// N that words' forces may be off by for what a word rounds: no contact. Whatever is doubted is a friction,
-/// however little of it (tests/notebook/2026-11-27-rounding-is-no-contact.md).
+/// N that updates' forces may be off by as they are rounded: no contact. Model uncertainty acts as friction,
+/// however small it is (tests/notebook/2026-11-27-rounding-is-no-contact.md).
 constexpr double kRounding = 0.1;
 constexpr double kForgets = 1.0;
 constexpr double kForgetsRoundTrips = 4.0;
-constexpr double kForgives = 1.0;  // s, in which a debt that others made is let go of
+constexpr double kForgives = 1.0;  // s, in which a debt that others made is forgiven
 
 /// What of `load` acts whatever the body does; `damped`: but for what its damper answers.
 glm::dvec3 still_force(const FluidLoad& load, bool damped) {
@@ -317,7 +317,7 @@ void HeldBody::forget_surplus(double dt) noexcept {
 }
 
 /// What the host's step took for the load beyond all that there was it made itself: it carries hands on, and
-/// what it gives their couplings by that nobody put in. No hand is to stand for it; but what comes back of it
+/// what it gives their couplings by that nobody put in. No hand is to pay for it; but what comes back of it
 /// is no gift.
 void HeldBody::lend() noexcept {
   const double gave = replica_.work_heard() - work_heard_;
@@ -331,7 +331,7 @@ void HeldBody::lend() noexcept {
   lent_ += short_of - kept;
 }
 
-/// A guard that fires all the time says that the replica is wrong about the body.
+/// A passivity controller that fires all the time says that the replica is wrong about the body.
 void HeldBody::watch(double dt) noexcept {
   firing_ += (1.0 - std::exp(-dt / kFiringMemory)) * ((fires_ ? 1.0 : 0.0) - firing_);
   quiet_ = fires_ ? 0.0 : quiet_ + dt;

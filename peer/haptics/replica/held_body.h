@@ -1,4 +1,5 @@
-// A body that hands of this site hold, wherever the host is: its replica, and a guard for each hand.
+// A body that hands of this site hold, wherever the host is: its replica, and a passivity controller for each
+// hand.
 #pragma once
 
 #include <cstdint>
@@ -39,7 +40,7 @@ class HeldBody {
  public:
   HeldBody(const ReplicaBody& body, std::vector<ReplicaGrip> grips, const ReplicaTuning& tuning = {});
 
-  /// The next word is taken as it is: at first, after a reset, a pause, a silence.
+  /// The next update is taken as it is: at first, after a reset, a pause, a silence.
   void restart() noexcept;
   bool started() const noexcept { return started_; }
   void hear(const HostUpdate& word) noexcept;
@@ -74,9 +75,9 @@ class HeldBody {
   LoopDelay delay() const noexcept { return delay_.delay(); }  ///< by the clock on the wall
   const BodyReplica& replica() const noexcept { return replica_; }
   const SloshFinder& slosh(std::size_t axis) const noexcept { return carried_.finder(axis); }
-  /// The guards have fired so often that the replica is not followed: a damped spring to the host's word is.
+  /// The passivity controllers fired so often that a damped spring to the host's update replaces the replica.
   bool fallen_back() const noexcept { return fallen_back_; }
-  std::uint64_t fired() const noexcept { return fired_; }  ///< ticks in which a guard did
+  std::uint64_t fired() const noexcept { return fired_; }  ///< ticks in which a controller did
 
  private:
   void watch(double dt) noexcept;
@@ -105,27 +106,26 @@ class HeldBody {
   std::int64_t heard_ns_ = 0;
   double pace_ = 1.0;         // HostUpdate::pace
   double since_heard_ = 0.0;  // s
-  double ahead_ =
-      0.0;  // s until the moment that the word was of, when it came: a slow host's is of a step's end
+  double ahead_ = 0.0;  // s until the moment of the update, when it came: a slow host's is of a step's end
   bool started_ = false;
   double disturbance_ = 0.0;        // 0–1
   double model_uncertainty_ = 0.0;  // 0–1
   double quiet_load_ = 0.0;         // s since this began or something acted that was not foreseen
   bool fires_ = false;              // in this tick
   double firing_ = 0.0;             // share of ticks lately
-  double quiet_ = 0.0;              // s since a guard fired
+  double quiet_ = 0.0;              // s since a controller fired
   bool fallen_back_ = false;
   double spring_ = 0.0;  // share of the damped spring, 0–1
   LoadWork load_work_;
   bool follows_slosh_;
   double slosh_share_ = 0.0;  // 0–1: how far what swings is followed at all
   CarriedFluid carried_;
-  bool tells_fluid_ = false;      // the newest word did
-  glm::dvec3 fluid_force_{0.0};   // N, of the word before
+  bool tells_fluid_ = false;      // the newest update did
+  glm::dvec3 fluid_force_{0.0};   // N, of the update before
   glm::dvec3 met_{0.0};           // N: what acts besides couplings and fluid, weight and contacts
   glm::dvec3 met_late_{0.0};      // N: the same as late as the replica follows it
-  std::vector<Wrench> on_hands_;  // of the word before
-  std::vector<Pose> used_;        // own hands as the host used them, of the newest word; where none was
+  std::vector<Wrench> on_hands_;  // of the update before
+  std::vector<Pose> used_;        // own hands as the host used them, of the newest update; where none was
                                   // engaged, the grip
   double stored_ = 0.0;           // J in the couplings when this began, less what had been counted by then
   double forgotten_ = 0.0;        // J of the balance that nothing here holds any more

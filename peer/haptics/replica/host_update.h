@@ -20,11 +20,11 @@ struct HostHand {
   double energy = 0.0;      ///< … the J that its person put in
 };
 
-/// The host's word on the body after one step, as soon as it comes.
+/// The authoritative state update of the body after one step, as soon as it comes.
 struct HostUpdate {
   std::int64_t now_ns = 0;  ///< when it came
   double time = 0.0;        ///< s, the body's time that the state belongs to
-  double time_step = 0.0;   ///< s of one step of the host's; 0: not known, and each word is taken for one
+  double time_step = 0.0;   ///< s of one step of the host's; 0: not known, and each update is taken for one
   RigidMotion motion;
   std::span<const HostHand> hands;  ///< one a grip of the body
   double pace = 1.0;                ///< s of the body's time a s of `now_ns`' clock, 0–1

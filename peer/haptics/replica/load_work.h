@@ -1,4 +1,4 @@
-// What fluid, weight and contacts gave a held body at the host, from the host's words alone.
+// The work of fluid, weight and contacts on a held body at the host, from the host's updates alone.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace slosh {
 
-/// The balance of each stretch between two words: what acts besides couplings gave what the body's motion
+/// The balance of each interval between two updates: what acts besides couplings gave what the body's motion
 /// gained and what its couplings were given. Of steps that were missed the coupling's forces are taken to
 /// have gone over evenly, and velocities with them. Allocates when made; one thread.
 class LoadWork {
@@ -20,7 +20,7 @@ class LoadWork {
     before_.resize(grips.size());
   }
 
-  /// The next word begins anew, at 0.
+  /// The next update restarts at 0.
   void restart() noexcept {
     known_ = false;
     work_ = 0.0;
@@ -62,7 +62,7 @@ class LoadWork {
     known_ = true;
   }
   double work() const noexcept { return work_; }        ///< J since restart()
-  double kinetic() const noexcept { return kinetic_; }  ///< J of the newest word's motion
+  double kinetic() const noexcept { return kinetic_; }  ///< J of the newest update's motion
 
  private:
   double kinetic_energy(const RigidMotion& m) const noexcept {

@@ -25,7 +25,7 @@ class PassivityController {
   static constexpr double kWary = 1.0;
   /// N/s, of a torque at kArm: so gently a force goes before what is left is out.
   static constexpr double kGently = 1000.0;
-  /// s over which it is seen how fast others use up what there is: some of a host's words.
+  /// s over which it is seen how fast others use up what there is: some of a host's updates.
   static constexpr double kDrain = 0.02;
   static constexpr double kMaxDrain = 20.0;  ///< W: more at once is another way of counting
   /// s over which a force that was cut comes back, and over which a damper for what is owed comes and goes.

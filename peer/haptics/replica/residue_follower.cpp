@@ -52,7 +52,7 @@ void ResidueFollower::learn(double elapsed, double told, double horizon) noexcep
         both_[i][j] += take * (then.steps[i] * then.steps[j] - both_[i][j]);
     }
   }
-  // Each in turn as the others leave it: within 0 and 1 it has one answer, and the last word's is near.
+  // Each in turn as the others leave it: within 0 and 1 it has one answer, and the last update's is near.
   for (int sweep = 0; sweep < kSweeps; ++sweep)
     for (std::size_t i = 0; i < kSteps; ++i) {
       double left = answer_[i];

@@ -29,11 +29,11 @@ class ResidueFollower {
   /// `most`: N, ≥ 0, by which it goes on beyond what was told.
   void hear(double elapsed, double told, double horizon, double most) noexcept;
   bool known() const noexcept { return known_; }
-  double foreseen() const noexcept { return foreseen_; }  ///< N, a horizon after the last word
+  double foreseen() const noexcept { return foreseen_; }  ///< N, a horizon after the last update
   double lasting() const noexcept { return low_[0]; }     ///< N: over a second
 
  private:
-  static constexpr std::size_t kRemembered = 1024;  // words
+  static constexpr std::size_t kRemembered = 1024;  // updates
   static constexpr std::size_t kLows = 4;
   static constexpr std::size_t kSteps = 4;  // from one to the next of them, and on
   using Steps = std::array<double, kSteps>;

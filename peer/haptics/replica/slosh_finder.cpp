@@ -9,8 +9,8 @@ constexpr double kSlowest = 0.6, kFastest = 5.0;  // Hz
 constexpr std::array<double, 5> kDampingsOfBank{0.01, 0.03, 0.08, 0.16, 0.32};
 constexpr double kMinKnown = 0.6;  // of the memory, s, before anything is followed
 constexpr double kLowPass = 0.02;  // s, each of two
-constexpr double kSweep = 0.05;    // s in which the whole bank is looked at, a few rows a word
-constexpr double kTry = 0.0005;    // s a try of the search, a few a word
+constexpr double kSweep = 0.05;    // s in which the whole bank is looked at, a few rows an update
+constexpr double kTry = 0.0005;    // s a try of the search, a few an update
 constexpr std::size_t kMaxTries = 5;
 constexpr double kAdopted = 0.1;       // s over which what is found is taken over …
 constexpr double kSoonAdopted = 0.02;  // … and where it explains nearly all
@@ -117,7 +117,7 @@ void SloshFinder::observe(double dt, double before, double now, double force) no
   state_.place += std::min(2.0 * dt / kObserved, 0.5) * off;
 }
 
-/// A few rows of the bank and a few tries of the search a word, so that no tick has much to do.
+/// A few rows of the bank and a few tries of the search an update, so that no tick has much to do.
 void SloshFinder::look_on(double dt) noexcept {
   prior_.unexplained = search_.unexplained();
   const auto of = [](double each, std::size_t most) {

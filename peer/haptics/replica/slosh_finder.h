@@ -39,7 +39,7 @@ class SloshFinder {
   void hear(double dt, double before, double now, double force) noexcept;
 
   const SloshMode& mode() const noexcept { return mode_; }
-  const SloshState& state() const noexcept { return state_; }  ///< at the newest word
+  const SloshState& state() const noexcept { return state_; }  ///< at the newest update
   double rigid() const noexcept { return rigid_; }             ///< kg
   double drag() const noexcept { return drag_; }               ///< N·s/m
   /// How far all that is to be followed, 0–1: by how much the mode explains of what neither rigid mass nor

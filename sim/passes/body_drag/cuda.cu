@@ -1,4 +1,5 @@
-// What the fluid is dragged by when bodies end a step with another velocity than they began it with.
+// The change of the viscous force on the fluid when bodies end a step with another velocity than they began
+// it with.
 #include "sim/cuda/pair_rows.cuh"
 
 namespace slosh::cuda {

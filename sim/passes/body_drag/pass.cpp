@@ -10,11 +10,12 @@ constinit const PassEntry body_drag_pass{
     .need = [](const SceneFacts& f) -> PassNeed {
       if (f.viscous && f.plan.waits_for_bodies && !f.implicit)
         return needed(
-            "free bodies in viscous fluid: drag by the velocity at the step's end, in the bodies' own solve");
+            "free bodies in viscous fluid: drag implicit in the body's velocity, as part of the bodies' "
+            "solve");
       return left_out(!f.viscous                          ? "nothing is viscous"
-                      : f.implicit                        ? "bodies are in the implicit solve"
+                      : f.implicit                        ? "bodies are part of the implicit viscosity solve"
                       : !f.plan.has(PassId::kPlaceBodies) ? "no free body with a surface meets fluid"
-                                                          : "beside a probe drag stays explicit");
+                                                          : "a probe needs explicit viscosity");
     },
 };
 

@@ -1,5 +1,5 @@
-// From a particle's neighbourhood to what it presses and drags by: the corrected model's end of the density
-// pass.
+// From a particle's neighbourhood to its pressure tensor and damping: the corrected model's end of the
+// density pass.
 #pragma once
 
 #include <cmath>
@@ -34,12 +34,10 @@ struct CorrectedState {
   float u[3];             ///< Pa·m
 };
 
-/// From which share of the settled moment on nobody is missing. Settled particles have 0.95 to 1.1 of it, 0.9
-/// where they lie unevenly or beside a wall, which is one layer in it; who is taken for a surface presses in
-/// part as the consistent model does, and yields. A fluid that needs no drag on artificial lets nine tenths
-/// pass for all. One that lives by that drag asks for all: with nine tenths water turned over by itself at 22
-/// mm/s for 16, and the surface of a turning glass stood 3 % lower
-/// (tests/notebook/2026-11-25-slow-flow-yields.md). `viscosity`: Pa·s.
+/// From which share of the settled moment on no neighbour is missing. Settled particles have 0.95 to 1.1 of
+/// it, 0.9 where they lie unevenly or beside a wall, which is one layer in it; particles taken for a surface
+/// press in part as the consistent model's, and yield. A fluid without artificial viscosity counts nine
+/// tenths as all; one with it needs all (tests/notebook/2026-11-25-slow-flow-yields.md). `viscosity`: Pa·s.
 inline constexpr float kPassedOver = 0.1f;
 SLOSH_HD inline float whole_from(const CorrectionConstants& c, float viscosity) {
   const float artificial =
@@ -56,7 +54,8 @@ SLOSH_HD inline Symmetric<float> directions_of(const Neighborhood<float>& n, con
   return pressure_directions(moment, corrected_share(compression), virial, whole_from(c, viscosity));
 }
 
-/// What it drags by, Pa·m. What an impact adds goes by the mean: fluid that meets a wall flows linearly, too.
+/// Viscosity times velocity fluctuation, Pa·m. What an impact adds goes by the mean: fluid that meets a wall
+/// flows linearly, too.
 SLOSH_HD inline void set_drag(const Neighborhood<float>& n, const CorrectionConstants& c, float viscosity,
                               float in_u, const float (&v)[3], float (&u)[3]) {
   for (int k = 0; k < 3; ++k) u[k] = in_u * v[k];
@@ -73,8 +72,8 @@ SLOSH_HD inline void set_drag(const Neighborhood<float>& n, const CorrectionCons
   follow_fluctuation(n, c.own_number, calm, u);
 }
 
-/// `viscosity`: the fluid's own, Pa·s. `in_u`: the same where u is to carry it (all fluids share it and drag
-/// is explicit, Eq 6), else 0. `v`: m/s.
+/// `viscosity`: the fluid's own, Pa·s. `in_u`: the same where u is to carry it (all fluids share it and
+/// viscosity is explicit, Eq 6), else 0. `v`: m/s.
 SLOSH_HD inline CorrectedState corrected_state(const Neighborhood<float>& n, const CorrectionConstants& c,
                                                float pressing_density, float viscosity, float in_u,
                                                float last_volume, const float (&v)[3]) {

@@ -1,5 +1,5 @@
-// Eq 2 and 7 for the corrected model, with what pressure and noise need of the neighbours besides their
-// number.
+// Eq 2 and 7 for the corrected model, with what pressure and artificial viscosity need of the neighbours
+// besides their number.
 #include <algorithm>
 #include <cstring>
 
@@ -117,7 +117,7 @@ PairRows::Walk weigh(const Work& w, PairRows::Writer& writer, GroupSums& sum) {
 struct WallSums {
   Neighborhood<FloatBatch> sum;
   Vector3<FloatBatch> slope;  // Σ d (−W'/r), walls with their share
-  FloatBatch no_slip;         // Σ d² (−W'/r) V of those that hold
+  FloatBatch no_slip;         // Σ d² (−W'/r) V of no-slip walls
 };
 template <bool stresses>
 void add_walls(const Work& w, std::uint32_t p, const BoundaryParticles& walls, const RowList& rows,
@@ -150,7 +150,7 @@ struct OwnSums {
   const float *even, *odd, *slope, *velocity, *offset, *carried, *carried_odd, *carried_back;
 };
 
-// From what one particle's neighbours add up to to what it presses and drags by.
+// From the sums over one particle's neighbours to its pressure tensor and damping.
 template <bool flows, bool stresses>
 class Finish {
  public:
@@ -269,7 +269,8 @@ class Finish {
   using Kernel = ModelParts<ParticleModel::kCorrected>::DensityKernel;
 
   const Work& w_;
-  // W(0) as pairs have it, with their floor: the pressure of a calm fluid hangs on the density's sixth digit.
+  // W(0) as pairs have it, with their floor: the pressure of a fluid at rest depends on the density's sixth
+  // digit.
   const float own_ = Kernel::shape_of(Kernel::pair(0.0f, w_.context.support_radius, 1.0f));
   const bool solved_ = w_.context.plan.has(PassId::kPressureSolve);
   const bool one_explicit_ = w_.context.plan.explicit_viscosity() &&

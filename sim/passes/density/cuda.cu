@@ -62,8 +62,8 @@ __device__ void sum_over_team(Symmetric<float>& moment, FlowSums<float>& s) {
             s.carried[1][2], s.carried[2][0], s.carried[2][1], s.carried[2][2]);
 }
 
-// What a particle passes on where that is a stress, too. `pressed`: what it presses with, N·m⁴; `u`: what it
-// drags by, Pa·m; `scale`: the force kernel's constant.
+// The row of a particle with a viscous stress. `pressed`: its pressure tensor, N·m⁴; `u`: viscosity times
+// velocity, Pa·m; `scale`: the force kernel's constant.
 __device__ void keep_passed(const SortedFluid& fluid, std::uint32_t p, const Symmetric<float>& pressed,
                             const FluidStress& found, const float (&u)[3], float scale) {
   const Matrix3<float>& t = found.push;
@@ -78,7 +78,7 @@ __device__ void keep_passed(const SortedFluid& fluid, std::uint32_t p, const Sym
 }
 
 // The corrected model's and, `solved`, the incompressible one's: sim/passes/density/cpu_corrected.cpp.
-// `flows`: drag on jostling is needed, or `stresses` are passed on.
+// `flows`: artificial viscosity is needed, or `stresses`, the particle stress.
 template <class Team, bool solved, bool flows, bool stresses>
 __global__ __launch_bounds__(kThreads, stresses ? kBlocksWithStress : 0) void corrected_density_kernel(
     StepConstants c, const ParticleKind* kinds, SortedFluid fluid, SortedSurface fixed, SortedSurface moving,
@@ -104,7 +104,7 @@ __global__ __launch_bounds__(kThreads, stresses ? kBlocksWithStress : 0) void co
     if constexpr (flows) add_flow<Kernel>({dx, dy, dz}, {v[0], v[1], v[2]}, h, flow);
   });
   Symmetric<float> by_fluid = sum.moment;
-  float no_slip = 0.0f;  // Σ d² (−W'/r) V of walls that hold
+  float no_slip = 0.0f;  // Σ d² (−W'/r) V of no-slip walls
   const auto add_walls = [&](const SortedSurface& walls) {
     if (walls.count == 0) return;
     for_neighbors<Team>(c.grid, walls.cells, cell, [&](std::uint32_t j) {

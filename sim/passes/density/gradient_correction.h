@@ -3,12 +3,12 @@
 //
 // Between two particles the force is −(T_p + T_i) ∇W, T = V V⁰ P L, L the inverse of M = V⁰ Σ d ⊗ d (−W'/r)
 // (Bonet & Lok 1999). A particle's virial, Σ V⁰ d ⊗ T ∇W, is then −V P · 1 whatever way its neighbours lie:
-// it pushes alike in all directions and carries no shear. With L = 1 the lattice that particles under
-// pressure settle into has a shear modulus of some tenths of P, and the fluid yields like sand. Forces are
-// equal and opposite; since L M = 1 is symmetric, they exert no torque together where all of it is made.
+// its pressure is isotropic and carries no shear. With L = 1 the lattice that particles under pressure settle
+// into has a shear modulus of some tenths of P, and the fluid yields like sand. Forces are equal and
+// opposite; since L M = 1 is symmetric, they exert no net torque where the correction is whole.
 //
-// The price: the force is no energy's gradient. viscosity/artificial_viscosity.h takes out what jostling
-// gains by that.
+// The price: the force is no energy's gradient. viscosity/artificial_viscosity.h damps the velocity
+// fluctuations that gain by it.
 #pragma once
 
 #include "sim/math/kernels.h"
@@ -16,13 +16,13 @@
 
 namespace slosh {
 
-/// Fluid compressed by less is calm: all of the correction is made. A default stiffness keeps a fluid's own
-/// weight below a third of it. From there the correction goes away, and by the second there is none: in an
-/// impact the gradient of an energy gives back no more than it took. (Without this single drops rose to 12 cm
-/// of the 7 they fell, and fluid put into a wall threw itself out; tests/stability.)
+/// Below this compression all of the correction is made. A default stiffness keeps a fluid's own weight below
+/// a third of it. From there the correction fades, and by the second there is none: in an impact the gradient
+/// of an energy gives back no more than it took (tests/stability: drops rebound higher than they fell without
+/// this).
 inline constexpr float kQuietCompression = 0.1f;
 inline constexpr float kImpact = 0.2f;
-/// Below this determinant a neighbourhood is too flat to be turned round, and L goes to 1.
+/// Below this determinant a neighbourhood's moment matrix is near singular, and L goes to 1.
 inline constexpr float kFlattest = 0.1f;
 
 /// What a particle's neighbours (itself included) add up to. Lengths in m, without the kernels' constants.
@@ -72,7 +72,7 @@ SLOSH_HD void add_wall_neighbor(Real dx, Real dy, Real dz, Real share, Real laye
   add_moment(dx, dy, dz, {kernel.inverse_r, layer * kernel.slope_over_r, kernel.laplacian}, sum.moment);
 }
 
-/// Where a moment is too flat to be turned round, as much of 1 goes in as that takes. Returns the share of it
+/// Regularises a moment matrix that is near singular with as much of 1 as that takes. Returns the share of it
 /// that is left.
 SLOSH_HD inline float unflattened(Symmetric<float>& moment) {
   const float flat = determinant(moment) / kFlattest;
@@ -89,7 +89,7 @@ SLOSH_HD inline float corrected_share(float compression) {
 }
 
 /// What V² P is multiplied by, from a moment that is 1 on the rest lattice: `share` of its inverse, `virial`
-/// times as strong, and for the rest 1, the gradient of an energy as the consistent model has it. Where
+/// times as strong, and for the rest 1, the gradient of an energy as in the consistent model. Where
 /// neighbours are missing (a free surface, spray) they are taken to lie evenly, and the share goes with them;
 /// none are from `whole_from` of the moment on.
 SLOSH_HD inline Symmetric<float> pressure_directions(const Symmetric<float>& moment, float share,

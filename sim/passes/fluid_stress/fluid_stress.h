@@ -1,5 +1,5 @@
-// What thick fluid passes on far from walls that hold: each particle the stress of its own neighbourhood's
-// flow, in place of Eq 9 between pairs, which passes on what the packing lets it
+// Viscous stress of thick fluid away from no-slip walls: each particle has the stress of its neighbourhood's
+// flow, in place of Eq 9 between pairs, whose effective viscosity depends on the packing
 // (tests/notebook/2026-11-27-particle-stress.md).
 //
 // G is the least-squares gradient of the velocity by fluid neighbours alone, τ = μ (G + Gᵀ), g = d (−W'/r)
@@ -7,13 +7,12 @@
 //
 //     f_p = Σ (T_p + T_i) g,    T = −V τ M⁻¹,    M = Σ d ⊗ g,    G = Σ (v_p − v_i) ⊗ g M⁻¹
 //
-// T is the adjoint of G: what is lost is V τ : G, so that no flow gains by it. Pairs push with equal and
-// opposite forces, and since T M = −V τ is symmetric a particle's pushes turn nothing together (T itself is
-// not symmetric).
+// T is the adjoint of G: the dissipated power is V τ : G, so that no flow gains energy. Pair forces are equal
+// and opposite, and since T M = −V τ is symmetric a particle's forces exert no net torque (T itself is not
+// symmetric).
 //
-// Beside walls that hold nobody sees the first layer's own velocity, and Eq 9 stays: each particle's half of
-// it is as much as the particle lacks of a stress of its own. What is no part of the flow is braked as
-// jostling is.
+// Beside no-slip walls the velocity gradient by fluid neighbours misses the wall, and Eq 9 stays: each
+// particle's half of it is weighted by what its own stress lacks. Velocity fluctuations are damped besides.
 #pragma once
 
 #include "sim/math/symmetric.h"
@@ -22,13 +21,13 @@
 
 namespace slosh {
 
-/// Of the fluid's viscosity, for what a velocity differs by from the flow around it. Half of it drives a
+/// Of the fluid's viscosity, for the velocity's fluctuation about the flow around it. Half of it drives a
 /// vortex by 4 to 6 % at 3 mm and finer, twice is unstable.
 inline constexpr float kResidualDamping = 0.25f;
-/// Of Eq 9 between fluid beside walls: a ball that goes along a tube meets 1 to 2 % more with it.
+/// Of Eq 9 between fluid beside walls: 1 to 2 % more drag on a ball in a tube.
 inline constexpr float kNearNoSlipWalls = 1.03f;
-/// Where walls that hold add up to this share of the rest lattice's Σ x² (−W'/r), and nearer, a particle
-/// passes on no stress of its own: up to nearly two spacings off.
+/// From this share of no-slip walls in the rest lattice's Σ x² (−W'/r) on a particle has no stress of its
+/// own: up to nearly two spacings off.
 inline constexpr float kNoSlipReach = 0.02f;
 
 /// Sums over the fluid neighbours at x_i = x_p − d, without the kernels' constants.
@@ -41,19 +40,19 @@ struct StressSums {
 struct FluidStress {
   Matrix3<float> push;  ///< T, without the kernel's constant: T d (−W'/r) of the same kernel is N
   float left;           ///< Pa·s, its side of Eq 9 with fluid
-  Vector3<float> rest;  ///< Pa·m, what it drags by besides, as on jostling
+  Vector3<float> rest;  ///< Pa·m, damping of its fluctuation, as by artificial viscosity
 };
 
 /// The share of a stress of its own that a particle passes on, 0 to 1. `no_slip`: Σ d² (−W'/r) V/V⁰ over
-/// walls that hold.
+/// no-slip walls.
 SLOSH_HD inline float share_of_stress(float no_slip, float rest_moment) {
   return RealOps<float>::positive_part(1.0f - no_slip / (kNoSlipReach * rest_moment));
 }
 
 /// `moment`: M by fluid alone; `by_walls`: share_of_stress(). `rest_moment`: Σ x² (−W'/r) over the rest
-/// lattice. `volume`: m³; `viscosity`: the fluid's own, Pa·s. Where M is too flat to be turned round (a
-/// layer, a thread, drops) Eq 9 takes over by as much; M_u is taken for M and both G and T lose K = M_u⁻¹ M
-/// besides, so that each is the other's adjoint and T M symmetric still.
+/// lattice. `volume`: m³; `viscosity`: the fluid's own, Pa·s. Where M is near singular (a layer, a thread,
+/// drops) Eq 9 takes over by as much; M_u is taken for M and G and T get a factor K = M_u⁻¹ M, so that they
+/// stay adjoint and T M symmetric.
 SLOSH_HD inline FluidStress fluid_stress(const StressSums& sums, const InverseMoment& moment, float by_walls,
                                          float rest_moment, float volume, float viscosity) {
   const float share = by_walls * moment.kept;

@@ -6,7 +6,7 @@ namespace slosh::passes {
 
 extern const PassEntry fluid_stress_pass;
 constinit const PassEntry fluid_stress_pass{
-    .words = "stresses in the fluid",
+    .words = "viscous stress of particles",
     .reads = "positions, velocities, viscosity; no-slip walls",
     .writes = "each particle's stress, what is left for Eq 9",
     .need = [](const SceneFacts& f) -> PassNeed {
@@ -17,7 +17,7 @@ constinit const PassEntry fluid_stress_pass{
                    f.fluids.most_viscous));
       return left_out(!f.viscous                          ? "nothing is viscous"
                       : !corrects_gradients(f.plan.model) ? "the corrected and the incompressible model's"
-                      : f.implicit                        ? "implicit viscosity solves Eq 9"
+                      : f.implicit                        ? "implicit viscosity uses Eq 9"
                                    : "thin fluid: artificial viscosity exceeds its own");
     },
     .time = &StepTimes::density,

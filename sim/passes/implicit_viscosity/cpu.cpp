@@ -216,7 +216,7 @@ double ViscousSolver::multiply(const Work& work) {
   return sum;
 }
 
-// One turn's way along the direction, and what is left made ready for the next.
+// One iteration's step along the direction, and the residual made ready for the next.
 ViscousSolver::Sums ViscousSolver::advance(const Work& work, double length) {
   const FluidParticles& fluid = work.sides.fluid;
   const float a = static_cast<float>(length);

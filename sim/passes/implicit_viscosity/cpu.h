@@ -10,7 +10,7 @@
 
 namespace slosh {
 
-/// Whom drag acts between, in the order of their cells.
+/// Whom viscosity acts between, in the order of their cells.
 struct DragSides {
   FluidParticles& fluid;
   const BoundaryParticles& fixed;
@@ -22,10 +22,9 @@ struct DragSides {
 /// Conjugate gradients over the fluid and the bodies that move. Keeps its memory from one solve to the next.
 class ViscousSolver {
  public:
-  /// `fluid.fx…` hold all other forces, N, without gravity, and get what drag adds to them over `dt` s;
+  /// `fluid.fx…` hold all other forces, N, without gravity, and get the viscous force over `dt` s;
   /// `wrenches`, one a body, get the drag on those that move, about their centres of mass, and on the fixed
-  /// ones that `measured` marks. The same bitwise whatever the threads. For models with
-  /// DragRule::kCentral.
+  /// ones that `measured` marks. Bitwise identical whatever the threads. For models with DragRule::kCentral.
   ViscousReport solve(const PassContext& context, ThreadTeam& team, const DragSides& sides, double dt,
                       std::span<const ViscousBody> bodies, const std::vector<char>& measured,
                       std::span<Wrench> wrenches);

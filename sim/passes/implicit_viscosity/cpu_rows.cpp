@@ -1,4 +1,4 @@
-// Which pairs drag, as conjugate gradients ask for them (viscous_solve.h).
+// The viscous pairs, as conjugate gradients use them (viscous_solve.h).
 #include "sim/passes/implicit_viscosity/cpu.h"
 #include "sim/passes/pair_viscosity/row_viscosity.h"
 #include "sim/passes/walls/row_mirror.h"
@@ -9,7 +9,8 @@ namespace {
 
 constexpr std::size_t kRunsPerChunk = 16;
 
-// Drag is solved for in this model and the incompressible one, which drags alike (Plan::implicit_viscosity).
+// Implicit viscosity is for this model and the incompressible one, whose viscous force is the same
+// (Plan::implicit_viscosity).
 using Parts = ModelParts<ParticleModel::kCorrected>;
 static_assert(Parts::kDrag == DragRule::kCentral);
 
@@ -78,7 +79,7 @@ void ViscousSolver::find_blocks(const Work& work) {
   }
 }
 
-// The drag on fixed bodies that are measured, by the velocities that the turns found.
+// The drag on fixed bodies that are measured, by the velocities that the iterations found.
 void ViscousSolver::add_fixed(const Work& work, std::span<Wrench> wrenches) {
   const BoundaryParticles& fixed = work.sides.fixed;
   const auto asked = [&](int body) { return work.measured[body] && !work.sides.bodies[body].free; };

@@ -12,7 +12,7 @@ void ViscousSolver::plan(const Plan& plan, const ParticleStart& start, std::size
   sums_ = &sums;
   check.ok(cudaEventCreateWithFlags(&ready_, cudaEventDisableTiming), "cudaEventCreate");
   if (check.failed()) return;
-  check.ok(most_solve_blocks(blocks_), "looking how many blocks the drag's solve may have");
+  check.ok(most_solve_blocks(blocks_), "looking how many blocks implicit viscosity may have");
   view_.fluid = static_cast<std::uint32_t>(start.particles.kind.size());
   view_.surface = static_cast<std::uint32_t>(start.moving.size());
   view_.rows.room = row_room(plan);
@@ -71,7 +71,7 @@ void ViscousSolver::write_rows(const SolveSides& sides, float dt, CallCheck& che
   if (check.failed()) return;
   launch_viscous_rows(sides.constants, sides.plan, sides.kinds.data(), sides.first_viscosity, dt, sides.fluid,
                       sides.fixed.sorted(), sides.moving.sorted(), sides.moving.local(), view_, stream);
-  check.launched("who drags whom");
+  check.launched("viscous pairs");
   sums_->sum_drags({sides.fixed, sides.moving}, sides.bodies, found_drags(), check, stream);
 }
 
@@ -82,7 +82,7 @@ void ViscousSolver::send(std::span<const ViscousBody> bodies, std::span<const Ri
   for (std::size_t b = 0; b < bodies.size(); ++b)
     sent_[b] = {bodies[b], before[b].position, placed_[b].begin, placed_[b].end, drag_of_[b]};
   check.ok(cudaMemcpyAsync(bodies_.data(), sent_.data(), bodies_.bytes(), cudaMemcpyHostToDevice, stream),
-           "sending bodies for the drag's solve");
+           "sending bodies for implicit viscosity");
 }
 
 void ViscousSolver::solve(const SolveSides& sides, float dt, std::span<const ViscousBody> bodies,
@@ -93,7 +93,7 @@ void ViscousSolver::solve(const SolveSides& sides, float dt, std::span<const Vis
   check.ok(launch_viscous_solve(sides.constants, sides.plan, sides.kinds.data(), sides.first_viscosity, dt,
                                 sides.fluid, sides.moving.sorted(), sides.moving.local(), view_, blocks_,
                                 status, stream),
-           "the drag's solve");
+           "implicit viscosity");
   if (sums_->bodies().empty()) return;
   if (sums_->fixed_measured()) {
     launch_drag_on_fixed(sides.constants, sides.plan, sides.first_viscosity, sides.fluid,
@@ -103,9 +103,9 @@ void ViscousSolver::solve(const SolveSides& sides, float dt, std::span<const Vis
   }
   if (check.failed()) return;
   check.ok(cudaMemcpyAsync(got_.data(), back_.data(), back_.bytes(), cudaMemcpyDeviceToHost, stream),
-           "fetching the drag's solve");
+           "fetching implicit viscosity");
   check.ok(cudaEventRecord(ready_, stream), "cudaEventRecord");
-  check.ok(cudaEventSynchronize(ready_), "waiting for the drag's solve");
+  check.ok(cudaEventSynchronize(ready_), "waiting for implicit viscosity");
   if (check.failed()) return;
   moved_.assign(bodies.size(), 0);
   for (std::size_t b = 0; b < bodies.size(); ++b) moved_[b] = view_.bodies > 0 && bodies[b].moves;

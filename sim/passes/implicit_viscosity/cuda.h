@@ -19,11 +19,11 @@ class ViscousSolver {
   ViscousSolver(const ViscousSolver&) = delete;
   ViscousSolver& operator=(const ViscousSolver&) = delete;
 
-  /// Makes room where the plan solves drag. `sums` must outlive this.
+  /// Makes room where the plan has implicit viscosity. `sums` must outlive this.
   void plan(const Plan& plan, const ParticleStart& start, std::size_t body_count, const WrenchSums& sums,
             CallCheck& check);
 
-  /// Writes down who drags whom over `dt` s; needs the densities only.
+  /// Writes the viscous pairs over `dt` s down; needs the densities only.
   void write_rows(const SolveSides& sides, float dt, CallCheck& check, cudaStream_t stream);
   /// After write_rows(): adds to the forces on the fluid, and to `wrenches` where bodies are measured or
   /// free: then it waits for the GPU. `before`: the bodies as they were placed.

@@ -1,5 +1,5 @@
-// The bodies' share of a turn of conjugate gradients: one block sums what was found for a body's particles,
-// its first thread does the body's 6×6 in double.
+// The bodies' share of an iteration of conjugate gradients: one block sums what was found for a body's
+// particles, its first thread does the body's 6×6 in double.
 #pragma once
 
 #include "sim/cuda/solve_sums.cuh"
@@ -7,7 +7,7 @@
 
 namespace slosh::cuda {
 
-/// What the parts of a turn need beside the view.
+/// What the parts of an iteration need beside the view.
 struct Solve {
   StepConstants c;
   const ParticleKind* kinds;

@@ -1,6 +1,6 @@
-// Conjugate gradients in one launch: every block stays on the GPU, they wait for each other between a turn's
-// parts, and each of them sums the parts of a sum by itself, in one fixed shape, so that all decide alike
-// whether to go on. Nothing depends on how many blocks there are.
+// Conjugate gradients in one launch: every block stays on the GPU, they wait for each other between an
+// iteration's parts, and each of them sums the parts of a sum by itself, in one fixed shape, so that all
+// decide alike whether to go on. Nothing depends on how many blocks there are.
 #include <cooperative_groups.h>
 
 #include "sim/passes/implicit_viscosity/cuda_bodies.cuh"
@@ -169,7 +169,7 @@ __device__ void multiply(const Solve& s) {
   });
 }
 
-// One turn's way along the direction, and what is left made ready for the next.
+// One iteration's step along the direction, and the residual made ready for the next.
 __device__ void advance(const Solve& s, float length) {
   const ViscousView& view = s.view;
   for_each_group(view, [&](std::uint32_t e, std::uint32_t g) {

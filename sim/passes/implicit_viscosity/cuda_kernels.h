@@ -1,5 +1,5 @@
-// Implicit viscosity on the GPU (passes/implicit_viscosity/implicit.h): who drags whom, written down once a
-// sub-step, and the conjugate gradients that ask for it turn after turn, all turns in one launch.
+// Implicit viscosity on the GPU (passes/implicit_viscosity/implicit.h): the viscous pairs, written down once
+// a sub-step, and the conjugate gradients that read them, all iterations in one launch.
 //
 // The unknowns are entries: the fluid's particles in the order of their cells, [0, fluid), and behind them
 // the particles of the bodies that may move, in theirs. The latter move with their bodies' twists.
@@ -28,7 +28,7 @@ struct DeviceViscousBody {
 struct ViscousUnknown {
   Matrix6 factor;  // Cholesky of inertia + dt · drag
   Vector6 change, residual, product;
-  Vector6 direction[2];  // by turns, so that a turn can read the last one's while the next is written
+  Vector6 direction[2];  // of even and odd iterations: one is read while the next is written
 };
 
 /// What one solve leaves behind for the host.
@@ -61,7 +61,7 @@ struct ViscousView {
   const DeviceViscousBody* body = nullptr;
   ViscousUnknown* unknown = nullptr;
   const BodyDrag* drags = nullptr;
-  Wrench* wrenches = nullptr;  ///< what drag puts on those that move, one a body
+  Wrench* wrenches = nullptr;  ///< the drag on those that move, one a body
   ViscousParts parts;
   ViscousOutcome* outcome = nullptr;
 };
@@ -75,7 +75,7 @@ void launch_viscous_rows(const StepConstants& constants, const Plan& plan, const
 
 /// viscous_iterations.cu: how many blocks of the solve can be on the GPU at a time, > 0, or an error.
 cudaError_t most_solve_blocks(int& blocks);
-/// The solve: adds to fluid.force what drag gives over `dt` s, fills view.wrenches and view.outcome, sets
+/// The solve: adds to fluid.force the viscous force over `dt` s, fills view.wrenches and view.outcome, sets
 /// kStatusViscosityCut. `blocks`: at most most_solve_blocks(); the result does not depend on it.
 cudaError_t launch_viscous_solve(const StepConstants& constants, const Plan& plan, const ParticleKind* kinds,
                                  float first_viscosity, float dt, const SortedFluid& fluid,
@@ -83,8 +83,8 @@ cudaError_t launch_viscous_solve(const StepConstants& constants, const Plan& pla
                                  const ViscousView& view, int blocks, std::uint32_t* status,
                                  cudaStream_t stream);
 
-/// viscous_rows.cu: what the velocities that the solve found drag on the particles of `fixed` whose body is
-/// wanted, to `local`'s force, N.
+/// viscous_rows.cu: the viscous force by the velocities that the solve found on the particles of `fixed`
+/// whose body is wanted, to `local`'s force, N.
 void launch_drag_on_fixed(const StepConstants& constants, const Plan& plan, float first_viscosity,
                           const SortedFluid& fluid, const SortedSurface& fixed, const std::uint8_t* wanted,
                           const LocalSurface& local, const ViscousView& view, cudaStream_t stream);

@@ -1,4 +1,4 @@
-// Which pairs drag, and how strongly: the same for writing rows down and for walking the neighbours anew.
+// Viscous pairs, and how strong each is: the same for writing rows down and for walking the neighbours anew.
 #pragma once
 
 #include "sim/cuda/pair_rows.cuh"
@@ -6,7 +6,7 @@
 
 namespace slosh::cuda {
 
-/// Drag is solved for in this model alone (Plan::implicit_viscosity).
+/// Implicit viscosity is for this model alone (Plan::implicit_viscosity).
 using SolvedParts = ModelParts<ParticleModel::kCorrected>;
 static_assert(SolvedParts::kDrag == DragRule::kCentral);
 
@@ -35,7 +35,7 @@ __device__ inline void set_tensor(const TensorColumn& column, std::uint32_t at, 
 }
 
 /// Calls f(j, w) for the pairs of p with those of one kind. `factor`: kCentralDrag, the kernel's constant and
-/// the time, s, that drag acts for.
+/// the time, s, that the force acts for.
 template <Viscosity viscosity, Neighbours neighbours, class F>
 __device__ inline void for_each_pair(const StepConstants& c, const ParticleView<float>& p,
                                      const NeighborColumns& n, const CellTable& cells, std::uint32_t cell,
@@ -57,7 +57,7 @@ __device__ inline void for_each_pair(const StepConstants& c, const ParticleView<
   });
 }
 
-/// A fluid particle as drag sees it.
+/// A fluid particle as the viscous force sees it.
 __device__ inline ParticleView<float> dragged(const SortedFluid& fluid, const ParticleKind* kinds,
                                               std::uint32_t p) {
   const float4 x = fluid.pressed[p];
@@ -79,7 +79,7 @@ __device__ inline ParticleView<float> dragged(const SortedSurface& surface, std:
               viscosity == Viscosity::kOne ? 0.5f * (wall.own + wall.of_fluid * first_viscosity) : wall.own);
 }
 
-/// Calls f(entry, w) for the pairs of entry `e` that turn after turn drag it: of a fluid particle those with
+/// Calls f(entry, w) for the pairs of entry `e` that each iteration reads: of a fluid particle those with
 /// fluid and with bodies that may move, of such a body's particle those with fluid.
 template <Viscosity viscosity, class F>
 __device__ inline void for_each_pair_of(const StepConstants& c, const ParticleKind* kinds,

@@ -1,4 +1,4 @@
-// Writing down who drags whom, and the drag on bodies that stand still.
+// Writes the viscous pairs down; the drag on bodies that stand still.
 #include "sim/passes/implicit_viscosity/cuda_pairs.cuh"
 #include "sim/passes/walls/pair_mirrors.cuh"
 

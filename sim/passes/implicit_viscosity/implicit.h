@@ -1,17 +1,17 @@
-// Drag by the velocities that a sub-step ends with: one linear system over the fluid and the free bodies.
+// Implicit viscosity: the viscous force by the velocities that a sub-step ends with, one linear system over
+// the fluid and the free bodies.
 //
-// Explicit drag needs a step of some density · spacing² / viscosity: 0.2 ms for honey at 1 cm. Here the end
-// velocities u solve
+// Explicit viscosity needs a step of some density · spacing² / viscosity: 0.2 ms for honey at 1 cm. Here the
+// end velocities u solve
 //
-//     M u + dt D u = p,    p: the momentum that everything but drag gives
+//     M u + dt D u = p,    p: the momentum that everything but viscosity gives
 //
 // where M holds the particles' masses and, for each free body, its inertia with what its couplings take
 // (solve_body), and D is Eq 9 between all of them. Both are symmetric and positive, so conjugate gradients
-// solve it without ever writing D down: one walk over the neighbours a turn (Weiler 2018, with bodies
-// inside).
+// solve it without assembling D: one loop over the neighbours an iteration (Weiler 2018, with bodies inside).
 //
-// What is left over when the turns end is given to each particle by its own mass, not thrown away: what the
-// fluid gets is then to rounding what bodies and walls lose, however early the turns end.
+// The residual of the last iteration is given to each particle by its own mass: momentum is then conserved to
+// rounding, however early the iterations end.
 #pragma once
 
 #include <cstdint>
@@ -40,10 +40,11 @@ struct ViscousReport {
   bool converged = true;
 };
 
-/// The turns end when what is left would change the velocities by less than this share of what drag changed.
+/// Iterations end when the residual would change the velocities by less than this share of what viscosity
+/// changed.
 inline constexpr double kViscousTolerance = 0.01;
-/// Or by less than this share of gravity's own change in a sub-step: what a hand feels then varies from step
-/// to step by a fiftieth more than after an exact solve.
+/// Or by less than this share of gravity's change in a sub-step: the force on a hand then varies from step to
+/// step by a fiftieth more than after an exact solve.
 inline constexpr double kViscousFloor = 3e-3;
 /// And here whatever is left (kStatusViscosityCut).
 inline constexpr int kMaxViscosityIterations = 100;

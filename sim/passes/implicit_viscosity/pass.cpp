@@ -19,7 +19,7 @@ constinit const PassEntry implicit_viscosity_pass{
                    1e3 * viscous_step(f.scene, f.plan, f.fluids)));
       return left_out(!f.viscous                          ? "nothing is viscous"
                       : !corrects_gradients(f.plan.model) ? "the corrected and the incompressible model's"
-                      : f.probes > 0                      ? "beside a probe viscosity stays explicit"
+                      : f.probes > 0                      ? "a probe needs explicit viscosity"
                                                           : "explicit viscosity costs less here");
     },
     .run =

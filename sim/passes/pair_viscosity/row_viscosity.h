@@ -1,4 +1,4 @@
-// Who drags a particle, batch by batch, and as the solve for drag asks for it.
+// The viscous pairs of a particle, batch by batch, and as implicit viscosity uses them.
 #pragma once
 
 #include <cstring>
@@ -17,8 +17,8 @@ inline Symmetric<float> summed(const Symmetric<FloatBatch>& s) {
   return {lane_sum(s.xx), lane_sum(s.xy), lane_sum(s.xz), lane_sum(s.yy), lane_sum(s.yz), lane_sum(s.zz)};
 }
 
-/// A batch of candidates: d from each to the particle, m, and q, kg/m²: over the sub-step it drags the
-/// particle by q d (d · v), N·s, v their velocity less the particle's. q is 0 out of reach.
+/// A batch of candidates: d from each to the particle, m, and q, kg/m²: over the sub-step it exerts a viscous
+/// impulse on the particle by q d (d · v), N·s, v their velocity less the particle's. q is 0 out of reach.
 struct PairBatch {
   FloatBatch x, y, z;  // d
   FloatBatch r_squared;
@@ -65,7 +65,7 @@ void with_solved_viscosity(const Plan& plan, F&& f) {
 }
 
 /// Of p with the batch that begins at j. `factor`: kCentralDrag, the kernel's constant and the time, s, that
-/// drag acts for.
+/// the force acts for.
 template <class Parts, Viscosity viscosity, Neighbours neighbours>
 PairBatch drag_pairs(const ParticleView<FloatBatch>& p, const NeighborColumns& n, std::uint32_t j,
                      FloatBatch weight, FloatBatch h, const DragShape<FloatBatch>& shape, FloatBatch factor,
@@ -79,13 +79,13 @@ PairBatch drag_pairs(const ParticleView<FloatBatch>& p, const NeighborColumns& n
   pairs.z = p.z - FloatBatch::load_unaligned(n.z + j);
   pairs.r_squared = pairs.x * pairs.x + pairs.y * pairs.y + pairs.z * pairs.z;
   const auto kernel = Parts::ForceKernel::pair(pairs.r_squared, h, weight);
-  // Eq 9's factor, so that both sides of a pair find bitwise identical.
+  // Eq 9's factor, so that both sides of a pair get a bitwise identical one.
   const FloatBatch of_both = (FloatBatch(0.5f) * (p.viscosity + i.viscosity)) * (p.volume * i.volume);
   pairs.q = of_both * (factor * (shape(kernel.laplacian) * (kernel.inverse_r * kernel.inverse_r)));
   return pairs;
 }
 
-/// What the force pass (drag_rows.cpp) writes down of fluid particles where drag is solved for (implicit.h).
+/// What the force pass (drag_rows.cpp) writes down of fluid particles with implicit viscosity (implicit.h).
 struct FluidViscosity {
   PairRows rows;  ///< with fluid, and behind it with moving bodies' particles
   std::vector<Symmetric<float>>

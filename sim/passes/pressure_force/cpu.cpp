@@ -25,7 +25,7 @@ struct FluidWalk {
 };
 
 // One chunk of runs. All of a pair in one loop: left to itself the compiler calls functions and hands batches
-// over in memory. For the models that go by rows (forces_by_rows) only what walls drag by is left.
+// over in memory. For the models that go by rows (forces_by_rows) only the viscous force of walls is left.
 template <class Parts, Viscosity viscosity>
 __attribute__((flatten)) void find_forces_of(const FluidWalk& walk, std::size_t begin, std::size_t end) {
   // Body particles have viscosities of their own, so against them Eq 9 holds even where one fluid has Eq 6.
@@ -80,8 +80,8 @@ void find_forces(const FluidWalk& walk) {
   });
 }
 
-// By fluid, and what one's own pressure pushes by, walls among those that bear it. Where pressures are solved
-// for they push later. Pairs of one viscosity drag by u alone, but where fluid passes on stresses of its own.
+// By fluid, and what one's own pressure pushes by, walls among those that bear it. With pressure projection
+// pressures push later. Pairs of one viscosity need u alone, but where fluid has a particle stress.
 template <class Parts, Viscosity viscosity, bool stresses>
 void forces_by_rows(const FluidWalk& walk, const FluidPress& press) {
   constexpr bool kPresses = !Parts::kSolved;

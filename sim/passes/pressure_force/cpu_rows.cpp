@@ -1,5 +1,5 @@
-// The force pass where drag is solved for: it goes by who presses on whom, which the density pass found among
-// all candidates, and writes down who drags whom beside the forces.
+// The force pass with implicit viscosity: it goes by the pressure pairs, which the density pass found among
+// all candidates, and writes the viscous pairs down beside the forces.
 #include <algorithm>
 #include <cstring>
 
@@ -13,7 +13,8 @@ namespace slosh {
 
 namespace {
 
-// Drag is solved for in this model and the incompressible one, which drags alike (Plan::implicit_viscosity).
+// Implicit viscosity is for this model and the incompressible one, whose viscous force is the same
+// (Plan::implicit_viscosity).
 using Parts = ModelParts<ParticleModel::kCorrected>;
 
 // What all rows of a sub-step go through.
@@ -23,10 +24,10 @@ struct DragWalk {
   const BoundaryParticles &fixed, &moving;
   const FluidPress& press;
   FluidViscosity& drag;
-  float factor;  // kCentralDrag, the kernel's constant and the time, s, that drag acts for
+  float factor;  // kCentralDrag, the kernel's constant and the time, s, that the force acts for
 };
 
-// Writes a group's pairs with fluid down as drag has them.
+// Writes a group's viscous pairs with fluid down.
 template <bool presses, bool artificial>
 GroupForces write_fluid_pairs(const DragWalk& w, const PairRows::Walk& walk, PairRows::Writer& writer) {
   const float* const own = &w.press.tensors[walk.first].xx;
@@ -35,7 +36,7 @@ GroupForces write_fluid_pairs(const DragWalk& w, const PairRows::Walk& walk, Pai
   return walk_forces<presses, artificial, false>(
       w.press, walk, w.context.support_radius, w.context.drag_shape,
       [&](const PairRows::Pair* four, const Sixteen& shape, const Sixteen& even, const Sixteen& odd) {
-        // As drag_pairs(): both sides of a pair find bitwise identical.
+        // As drag_pairs(): both sides of a pair get a bitwise identical q.
         const Sixteen of_both = (0.5f * (viscosity + fourths(odd))) * (volume * fourths(even));
         const PairRows::Others others{four[0].other, four[1].other, four[2].other, four[3].other};
         put_pairs(of_both * (w.factor * shape), others.data(), to);
@@ -65,7 +66,7 @@ void write_body_pairs(const DragWalk& w, std::uint32_t p, const RowList& fixed_r
     by_walls.zz += found.q * found.z * found.z;
   });
   if (!w.fixed.mirror.empty()) {
-    // Wall particles stand still, so that what they drag by is of the fluid's own velocity alone.
+    // Wall particles stand still, so that their viscous force depends on the fluid's own velocity alone.
     const FloatBatch each(w.factor / kCentralDrag);
     add_mirror_rates<Parts>(self, w.fixed, fixed_rows, h, shape, by_walls, each);
   }
@@ -121,7 +122,7 @@ void compute_forces_by_rows(PassContext& context, ThreadTeam& team, FluidParticl
   drag.clear(fluid.index.particles(), press.rows.chunks());
   const float factor = kCentralDrag * static_cast<float>(dt) * context.force_scale;
   const DragWalk walk{context, fluid, fixed, moving, press, drag, factor};
-  // Where pressures are solved for they push later (PressureSolver::push_by_last).
+  // With pressure projection pressures push later (PressureSolver::push_by_last).
   const bool presses = !context.plan.has(PassId::kPressureSolve);
   const bool artificial = any_artificial_viscosity(context.kinds, context.correction.artificial_viscosity);
   const auto run = [&]<bool pressing, bool artificial>() {

@@ -5,8 +5,8 @@ namespace slosh::cuda {
 
 namespace {
 
-// Of fluid by fluid where that passes on stresses: as add_forces(), with what presses and stresses as one
-// tensor, and Eq 9 by what viscosity is left.
+// Of fluid by fluid with particle stresses: as add_forces(), with pressure and stress as one tensor, and Eq 9
+// by what viscosity is left.
 template <class Team, class Parts>
 __device__ void add_passed_forces(const StepConstants& c, ParticleView<float> p, std::uint32_t self,
                                   const NeighborColumns& n, const CellTable& cells, std::uint32_t cell,
@@ -15,7 +15,7 @@ __device__ void add_passed_forces(const StepConstants& c, ParticleView<float> p,
   const float h = c.support_radius;
   const Matrix3<float> own = read_passed(n, self, p);
   const Vector3<float> own_u{p.ux, p.uy, p.uz};
-  p.ux = p.uy = p.uz = 0.0f;  // pairs drag by what the other has more
+  p.ux = p.uy = p.uz = 0.0f;  // pairs need only the difference
   Vector3<float> slope{};     // Σ d (−W'/r)
   for_neighbors<Team>(c.grid, cells, cell, [&](std::uint32_t j) {
     const float4 x = __ldg(n.x + j);

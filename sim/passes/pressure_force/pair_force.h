@@ -10,7 +10,7 @@ namespace slosh {
 /// Adds one neighbour's (or one batch of neighbours') part of the pressure force and, with `viscous`, of Eq 9
 /// to `sum`. The force on p is Kernel::scale(h) times the sum. The pair (p, i) and the pair (i, p) give
 /// opposite forces to rounding: every factor is symmetric but d and dv. Coincident particles (and p itself)
-/// add nothing. `shape`: of all that drags. `weight` is 1 where the neighbour counts, else 0. `Sum`:
+/// add nothing. `shape`: of all viscous forces. `weight` is 1 where the neighbour counts, else 0. `Sum`:
 /// ForceSum, or SurfaceSum where p is a wall's.
 template <class Kernel, PairRule rule, DragRule drag_rule, bool viscous, class Real, class Sum>
 SLOSH_HD void add_pair_force(const ParticleView<Real>& p, const ParticleView<Real>& i, Real h,
@@ -31,7 +31,7 @@ SLOSH_HD void add_pair_force(const ParticleView<Real>& p, const ParticleView<Rea
     sum.z += tz;
     // Fluid presses without a torque on all that its moment counts, and of a wall that is less than presses:
     // what is beyond it has its reaction on the body where the fluid is, not where the wall's particle is. A
-    // body takes a force anywhere, so the pair turns nothing.
+    // body takes a force anywhere, so the pair exerts no net torque.
     if constexpr (is_corrected_body(rule) && requires { sum.cx; }) {
       sum.cx += sum.beyond * (ty * dz - tz * dy);
       sum.cy += sum.beyond * (tz * dx - tx * dz);

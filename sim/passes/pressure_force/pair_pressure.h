@@ -5,7 +5,7 @@
 
 namespace slosh {
 
-/// How many lattice particles one wall particle on a flat sheet at the spacing stands for.
+/// How many lattice particles one wall particle of a flat boundary layer at the spacing stands for.
 inline constexpr float kWallShare = 2.0f;
 
 /// How two particles press on each other. The force on p is −(coefficient) · ∇W:
@@ -17,8 +17,8 @@ enum class PairRule {
   kCorrected,      ///< (T_p + T_i) ∇W of two tensors `push`.
   kCorrectedWall,  ///< fluid p against wall particle i: T_p times the wall's share.
   kCorrectedBody,  ///< the other side of it: wall particle p against fluid i.
-  // Where pressures are solved for:
-  kSolved,      ///< of fluid on fluid: the solve presses, and only drag is left here
+  // With pressure projection:
+  kSolved,      ///< fluid on fluid: the solve gives pressures, only viscosity is left
   kSolvedWall,  ///< of walls on fluid, likewise
   kSolvedBody,  ///< kCorrectedBody, where `push` is the tensor of 1 Pa, m⁶, and `pressure` the fluid's, Pa
 };
@@ -27,7 +27,7 @@ constexpr bool presses_by_tensor(PairRule rule) {
   return rule == PairRule::kCorrected || rule == PairRule::kCorrectedWall ||
          rule == PairRule::kCorrectedBody || rule == PairRule::kSolvedBody;
 }
-/// Between fluid particles, which drag on jostling besides.
+/// Between fluid particles, which have artificial viscosity besides.
 constexpr bool is_corrected_fluid(PairRule rule) {
   return rule == PairRule::kCorrected || rule == PairRule::kSolved;
 }

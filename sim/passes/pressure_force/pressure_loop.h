@@ -1,4 +1,4 @@
-// What a group of fluid particles is pushed and dragged by, over the rows of who presses on whom.
+// Pressure loop: pressure and viscous forces on a group of fluid particles, over the rows of pressure pairs.
 #pragma once
 
 #include "sim/passes/pressure_solve/cpu_pairs.h"
@@ -8,12 +8,11 @@ namespace slosh {
 /// Of up to four particles.
 struct GroupForces {
   Sixteen pressed = {};  ///< N, by what others press with and by their stresses
-  Sixteen dragged =
-      {};  ///< Σ V shape/r² d (d · what others drag by, less one's own), without Eq 9's constants
+  Sixteen dragged = {};  ///< Σ V shape/r² d (d · (u of others − one's own)), without Eq 9's constants
 };
 
 /// `presses`: by the tensors; `artificial`: by `drags`, Pa·m; `drags`: besides by Eq 9 of each one's own
-/// viscosity, all as `drag` falls off. Calls also(four, shape, even, odd) for a pair of each: drag's shape/r²
+/// viscosity, all by the shape `drag`. Calls also(four, shape, even, odd) for a pair of each: drag's shape/r²
 /// (0 where it fills a row up) and the others' tensors. `h`: the support radius, m.
 template <bool presses, bool artificial, bool drags, class Also>
 GroupForces walk_forces(const FluidPress& press, const PairRows::Walk& walk, float h,
@@ -47,7 +46,7 @@ GroupForces walk_forces(const FluidPress& press, const PairRows::Walk& walk, flo
   return {straight + turning + turned_back(back), dragged};
 }
 
-/// All of that by what each passes on where that is a stress, too.
+/// All of that with particle stresses, too.
 inline GroupForces walk_passed(const FluidPress& press, const PairRows::Walk& walk, float h,
                                const DragShape<float>& drag) {
   constexpr std::size_t kFloats = sizeof(Passed) / sizeof(float);

@@ -78,7 +78,7 @@ template <class Parts, PairRule rule, Viscosity viscosity, Neighbours neighbours
 void add_row_forces(const ParticleView<FloatBatch>& p, const NeighborColumns& n, const RowList& rows,
                     FloatBatch h, const DragShape<FloatBatch>& shape, Sum& sum,
                     FloatBatch of_fluid = FloatBatch(1.0f)) {
-  // What pairs of one viscosity drag by is in u already.
+  // With one viscosity, viscosity times velocity is in u already.
   constexpr bool kViscous =
       is_corrected_fluid(rule) ? viscosity == Viscosity::kPair : viscosity != Viscosity::kNone;
   constexpr bool kVolume = kViscous || rule == PairRule::kPaper || is_corrected_fluid(rule);
@@ -112,7 +112,7 @@ void add_row_forces(const ParticleView<FloatBatch>& p, const NeighborColumns& n,
   for_each_batch(rows, add);
 }
 
-/// Calls f(i, reach, weight) for the batches of neighbours of p as drag between them sees them. `h`: within
+/// Calls f(i, reach, weight) for the batches of neighbours of p as the viscous force sees them. `h`: within
 /// which p meets fluid, m.
 template <Viscosity viscosity, Neighbours neighbours, class F>
 void for_each_dragged(const ParticleView<FloatBatch>& p, const NeighborColumns& n, const RowList& rows,

@@ -230,7 +230,7 @@ double PressureSolver::multiply(const Work& work) {
   });
 }
 
-// One turn's way along the direction, no pressure below 0, and what is left.
+// One iteration's step along the direction, no pressure below 0, and the residual.
 PressureSolver::Sums PressureSolver::advance(const Work& work, double length) {
   const float a = static_cast<float>(length);
   sums_.assign(chunk_count(work.fluid, kParticlesPerChunk), Sums{});

@@ -27,7 +27,7 @@ class PressureSolver {
   void push_by_last(const PassContext& context, ThreadTeam& team, const PressedSides& sides);
   /// `fluid.fx…` hold all forces, N, without gravity, with those of push_by_last(), and get what the
   /// pressures found over `dt` s differ by; so do `fluid.solved` and `wrenches`, one a body, of the bodies in
-  /// `moving`, about their centres of mass. The same bitwise whatever the threads.
+  /// `moving`, about their centres of mass. Bitwise identical whatever the threads.
   PressureReport solve(const PassContext& context, ThreadTeam& team, const PressedSides& sides, double dt,
                        std::span<const ViscousBody> bodies, std::span<Wrench> wrenches);
 

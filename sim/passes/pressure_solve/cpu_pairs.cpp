@@ -1,4 +1,4 @@
-// Where pressures that are solved for meet bodies.
+// Where the pressure projection meets bodies.
 #include "sim/model.h"
 #include "sim/passes/pressure_solve/cpu.h"
 

@@ -1,4 +1,4 @@
-// Who presses on whom, as forces and the solves for pressures and for drag ask for it.
+// Pressure pairs, as forces, pressure projection and implicit viscosity use them.
 #pragma once
 
 #include <vector>
@@ -7,9 +7,8 @@
 
 namespace slosh {
 
-/// What pairs take of a particle that passes on a stress, all in one line of the cache. What it pushes with
-/// (its stress, and its pressure where that is not solved for) is a tensor as a walk over rows takes it, with
-/// the kernel's constant.
+/// What pairs need of a particle with a viscous stress, all in one line of the cache. Its stress, and without
+/// pressure projection its pressure, is a tensor as a loop over rows takes it, with the kernel's constant.
 struct alignas(64) Passed {
   Vector4 straight;  ///< xx, yy, zz; volume, m³
   Vector4 turning;   ///< xy, yz, zx; viscosity that is left for Eq 9, Pa·s
@@ -23,13 +22,13 @@ struct FluidPress {
   PairRows rows;
   std::vector<Vector4> places;      ///< m, with 0 for a fourth
   std::vector<Vector4> velocities;  ///< m/s, with 1 for a fourth
-  /// What each presses by, with the kernel's constant: at 1 Pa where pressures are solved for; and its
+  /// Each one's pressure tensor, with the kernel's constant: at 1 Pa with pressure projection; and its
   /// volume, m³, and viscosity, Pa·s.
   std::vector<PressureTensor> tensors;
-  /// What its own pressure pushes each by, N (where pressures are solved for, of 1 Pa, m²), with 0 for a
-  /// fourth: by fluid, walls and bodies.
+  /// What its own pressure pushes each by, N (with pressure projection, of 1 Pa, m²), with 0 for a fourth: by
+  /// fluid, walls and bodies.
   std::vector<Vector4> own;
-  std::vector<Vector4> drags;  ///< what each drags by, Pa·m, and in the fourth its volume, m³
+  std::vector<Vector4> drags;  ///< viscosity times velocity, Pa·m, and in the fourth its volume, m³
   // There with kFluidStress:
   std::vector<Passed> passed;
   std::vector<Vector4> own_stress;  ///< what its own stress pushes each by, N, with 0 for a fourth

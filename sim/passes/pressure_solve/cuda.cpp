@@ -11,7 +11,7 @@ void PressureSolver::plan(const Plan& plan, const ParticleStart& start, std::siz
   sums_ = &sums;
   check.ok(cudaEventCreateWithFlags(&ready_, cudaEventDisableTiming), "cudaEventCreate");
   if (check.failed()) return;
-  check.ok(most_pressure_blocks(blocks_), "looking how many blocks the solve for pressures may have");
+  check.ok(most_pressure_blocks(blocks_), "looking how many blocks the pressure projection may have");
   view_.fluid = static_cast<std::uint32_t>(start.particles.kind.size());
   view_.surface = static_cast<std::uint32_t>(start.moving.size());
   view_.rows.room = row_room(plan);
@@ -71,7 +71,7 @@ void PressureSolver::push_by_last(const SolveSides& sides, CallCheck& check, cud
   if (check.failed()) return;
   launch_pressure_rows(sides.constants, sides.kinds.data(), sides.fluid, sides.fixed.sorted(),
                        sides.moving.sorted(), view_, stream);
-  check.launched("who presses on whom");
+  check.launched("pressure pairs");
   launch_push_by_last(sides.constants, sides.fluid, sides.moving.sorted(), view_, stream);
   check.launched("the last pressures");
 }
@@ -83,7 +83,7 @@ void PressureSolver::send(std::span<const ViscousBody> bodies, std::span<const R
   for (std::size_t b = 0; b < bodies.size(); ++b)
     sent_[b] = {bodies[b], before[b].position, placed_[b].begin, placed_[b].end};
   check.ok(cudaMemcpyAsync(bodies_.data(), sent_.data(), bodies_.bytes(), cudaMemcpyHostToDevice, stream),
-           "sending bodies for the solve for pressures");
+           "sending bodies for the pressure projection");
 }
 
 void PressureSolver::measure_fixed(const SolveSides& sides, CallCheck& check, cudaStream_t stream) {
@@ -105,13 +105,13 @@ void PressureSolver::solve(const SolveSides& sides, double dt, std::span<const V
   check.ok(launch_pressure_solve(sides.constants, sides.kinds.data(), static_cast<float>(dt),
                                  static_cast<float>(back_in), sides.fluid, sides.moving.sorted(),
                                  sides.moving.local(), view_, blocks_, stream),
-           "the solve for pressures");
+           "the pressure projection");
   if (sums_->fixed_measured()) measure_fixed(sides, check, stream);
   if (view_.bodies == 0 && !sums_->fixed_measured() && probes.empty()) return;
   check.ok(cudaMemcpyAsync(got_.data(), back_.data(), back_.bytes(), cudaMemcpyDeviceToHost, stream),
            "fetching what pressures do to bodies");
   check.ok(cudaEventRecord(ready_, stream), "cudaEventRecord");
-  check.ok(cudaEventSynchronize(ready_), "waiting for the solve for pressures");
+  check.ok(cudaEventSynchronize(ready_), "waiting for the pressure projection");
   if (!check.failed()) read(before, probes, wrenches);
 }
 

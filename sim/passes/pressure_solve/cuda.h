@@ -1,4 +1,4 @@
-// Pressures that are solved for, on the GPU: their memory, and what goes there and comes back.
+// Pressure projection on the GPU: its memory, and what goes there and comes back.
 #pragma once
 
 #include <span>
@@ -22,7 +22,7 @@ class PressureSolver {
   void plan(const Plan& plan, const ParticleStart& start, std::size_t body_count, const WrenchSums& sums,
             CallCheck& check);
 
-  /// After the force pass: writes down who presses on whom, and adds what the last step's pressures push by.
+  /// After the force pass: writes the pressure pairs down, and adds what the last step's pressures push by.
   void push_by_last(const SolveSides& sides, CallCheck& check, cudaStream_t stream);
   /// After push_by_last(): adds to the forces on the fluid what the pressures over `dt` s differ by from the
   /// last step's, and to `wrenches` that on bodies in `moving`, all of it on the fixed ones that are

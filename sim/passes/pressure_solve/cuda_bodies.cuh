@@ -1,5 +1,5 @@
-// What a solve for pressures asks of the pairs turn after turn, and the bodies' share of it: one block sums
-// what was found for a body's particles, its first thread does the body's 6×6 in double.
+// What an iteration of the pressure projection needs of the pairs, and the bodies' share of it: one block
+// sums what was found for a body's particles, its first thread does the body's 6×6 in double.
 #pragma once
 
 #include "sim/cuda/solve_sums.cuh"
@@ -7,7 +7,7 @@
 
 namespace slosh::cuda {
 
-/// What the parts of a turn need beside the view.
+/// What the parts of an iteration need beside the view.
 struct Press {
   StepConstants c;
   const ParticleKind* kinds;

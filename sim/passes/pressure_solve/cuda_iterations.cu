@@ -173,7 +173,7 @@ __device__ void multiply(const Press& s) {
   });
 }
 
-// One turn's way along the direction, no pressure below 0, and what is left.
+// One iteration's step along the direction, no pressure below 0, and the residual.
 __device__ void advance(const PressureView& view, float length) {
   for_each_group(view.fluid, [&](std::uint32_t p, std::uint32_t g) {
     Left left;

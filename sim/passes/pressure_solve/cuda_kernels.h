@@ -1,6 +1,5 @@
-// Pressures that are solved for, on the GPU (passes/pressure_solve/solved_state.h has the system): who
-// presses on whom, written down once a sub-step, and the conjugate gradients that ask for it turn after turn,
-// all turns in one launch.
+// Pressure projection on the GPU (passes/pressure_solve/solved_state.h has the system): the pressure pairs,
+// written down once a sub-step, and the conjugate gradients that read them, all iterations in one launch.
 //
 // The unknowns are the fluid's pressures. Entries are the fluid's particles in the order of their cells,
 // [0, fluid), and behind them the particles of the bodies that may move, in theirs: those have rows too, by

@@ -1,4 +1,4 @@
-// Writing down who presses on whom.
+// Writes the pressure pairs down.
 #include "sim/passes/pressure_solve/cuda_pairs.cuh"
 
 namespace slosh::cuda {

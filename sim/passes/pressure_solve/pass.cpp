@@ -7,7 +7,7 @@ namespace slosh::passes {
 
 extern const PassEntry pressure_solve_pass;
 constinit const PassEntry pressure_solve_pass{
-    .words = "solve for pressures",
+    .words = "pressure projection",
     .reads = "the same, the last step's pressures",
     .writes = "pressures; their force on fluid and bodies",
     .need = [](const SceneFacts& f) -> PassNeed {
@@ -15,9 +15,7 @@ constinit const PassEntry pressure_solve_pass{
       if (f.plan.model != ParticleModel::kIncompressible)
         return left_out("Eq 7 gives the pressures: the incompressible model solves for them");
       return needed(
-          format("in place of Eq 7: pressures that keep fluid from being compressed, at most %d "
-                 "iterations",
-                 kMaxPressureIterations));
+          format("in place of Eq 7: pressure projection, %d iterations at most", kMaxPressureIterations));
     },
 };
 

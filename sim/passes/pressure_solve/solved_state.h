@@ -1,5 +1,5 @@
-// From a particle's neighbourhood to what a pressure that is solved for presses by: the incompressible
-// model's end of the density pass.
+// From a particle's neighbourhood to the coefficients of the pressure projection: the incompressible model's
+// end of the density pass.
 //
 // Pairs press by the corrected tensors, T = P K, with a P that keeps particles from being compressed. Such
 // forces are Qᵀ P; Q v is then V⁰ times the corrected divergence of v, walls with their own velocities, and

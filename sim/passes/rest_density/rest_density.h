@@ -1,16 +1,13 @@
-// What the corrected model takes for rest density, against the lattice that fluid is sampled on.
+// Rest-density calibration of the corrected model, against the lattice that fluid is sampled on.
 //
-// A fluid under its own weight is denser than rest, by half of what it is at the floor in the mean: so much
-// lower a pool stands, and what follows from its depth is off with it. And particles that have settled lie
-// otherwise than on the cubic lattice that they start from: at the same density their moment is 5 % smaller,
-// and measured against the lattice's they are taken for a surface, where less of the correction is made. So
-// pressure is none at a smaller sum, and the moment that directions of pressure are measured against is that
-// of settled particles. A tank 10 cm deep at 10 mm, before and with it: level −4.5, −1.6 %; pressure 3 and
-// 7 cm down −12, −3.5 and −2.9, −0.1 %; a wave keeps 91.7 and 93.6 % of its swing each period.
+// A fluid under its own weight is denser than rest, in the mean by half of what it is at the floor, and its
+// level is lower by as much. Settled particles have a moment matrix 5 % smaller than the cubic lattice's at
+// the same density, and against the lattice's they would be taken for a surface. So pressure is zero at a
+// smaller sum, and the reference moment is that of settled particles.
+// (tests/notebook/2026-11-27-thinner-rest-density.md)
 //
-// A lattice let go is then under pressure, as much as half its depth makes: let go at once it throws its
-// surfaces off (the front of a dam break 20 % ahead of the reading instead of 14). So it expands over
-// kSettlingTime.
+// The starting lattice is then under pressure, as much as half its depth makes, and would throw its surfaces
+// off. So the rest density relaxes over kSettlingTime.
 #pragma once
 
 #include <algorithm>
@@ -24,10 +21,10 @@ namespace slosh {
 inline constexpr double kPackedMoment = 0.05;
 /// Of the compression under the fluid's weight, at most: a softer fluid is one that shall give.
 inline constexpr double kMaxLoad = 0.02;
-inline constexpr double kSettlingTime = 0.2;  ///< s, settling before the run counted
+inline constexpr double kSettlingTime = 0.2;  ///< s, relaxation time; settling before the run counts
 
-/// `lattice` as a fluid needs it after `age` s. `load`: its compression by its own weight, mean over its
-/// depth.
+/// `lattice` as a fluid needs it `age` s after its start. `load`: its compression by its own weight, mean
+/// over its depth.
 inline CorrectionConstants settled(const CorrectionConstants& lattice, double load, double age) {
   const double share = std::clamp(age / kSettlingTime, 0.0, 1.0);
   const double thinner = std::min(load, kMaxLoad);

@@ -1,11 +1,11 @@
-// What a wall along which fluid slides drags by: nothing along itself, and across itself what the fluid's
-// mirror image behind it would.
+// The viscous force of a free-slip wall: none along itself, and across itself that of the fluid's mirror
+// image behind it.
 //
 // Free slip is symmetry: the same fluid behind the wall, mirrored. Pressures have the wall's particles for
-// it, but drag had nobody, and fluid that stretches or is pressed together across a wall met half as much
-// resistance there as it should (tests/notebook/2026-11-26-convergence-of-a-vortex.md). A particle of the
-// wall's surface drags fluid along the normal at the fluid's own foot, against what that has across the wall.
-// So nothing brakes what slides, along a bent wall neither.
+// it; without this the viscous force would be half as large as it should across a wall
+// (tests/notebook/2026-11-26-convergence-of-a-vortex.md). A particle of the wall's surface drags fluid along
+// the normal at the fluid's own foot, against what that has across the wall. So nothing brakes what slides,
+// along a bent wall neither.
 #pragma once
 
 #include "sim/math/kernels.h"

@@ -1,4 +1,4 @@
-// Fluid and walls along which it slides (passes/walls/mirror_drag.h), as sim/passes/walls/row_mirror.h.
+// Fluid and free-slip walls (passes/walls/mirror_drag.h), as sim/passes/walls/row_mirror.h.
 #pragma once
 
 #include "sim/cuda/pair_rows.cuh"

@@ -1,4 +1,4 @@
-// Fluid and walls along which it slides, batch by batch (passes/walls/mirror_drag.h).
+// Fluid and free-slip walls, batch by batch (passes/walls/mirror_drag.h).
 #pragma once
 
 #include "sim/passes/pressure_force/row_force.h"

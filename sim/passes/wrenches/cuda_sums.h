@@ -39,7 +39,7 @@ class WrenchSums {
   const std::uint8_t* wanted() const { return wanted_.data(); }
 
   /// Forces on the particles, `with_drag` with what those on free ones lose for their velocity; on fixed ones
-  /// where no pressures are solved for.
+  /// without pressure projection.
   void find_forces(const StepConstants& constants, const Plan& plan, float first_viscosity,
                    const SortedFluid& fluid, const SurfaceSides& sides, bool with_drag, CallCheck& check,
                    cudaStream_t stream) const;

@@ -201,7 +201,7 @@ Result<std::vector<Row>> measure_cells(const std::vector<Case>& cases, const std
   const bool begun = !kept.empty();
   std::vector<std::size_t> left;
   std::size_t again =
-      cells.size();  // a kept one that is measured anew, one in which a guard acted if there is
+      cells.size();  // a kept one that is measured anew, one in which a controller acted if there is
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const auto line = kept.find(key_of(cells[i].c, cells[i].scheme));
     if (line == kept.end()) {

@@ -33,8 +33,9 @@ std::size_t row_at(const Felt& felt, double time);
 /// has them hold, and what a bucket that sank gave: the most at any moment, 0 or more. A hand counts from
 /// when its force begins: until then a raise costs its person nothing, and takes nothing off what the other's
 /// sinking end gives. (Where it did, 0.144 J were found of which none was made.) A spring that such a raise
-/// stretched is credited to nobody. Not seen: what the water swings by and what is spilled; and where a guard
-/// holds a force back its spring counts as if it held less, by 0.06 J at most. Both have rows.
+/// stretched is credited to nobody. Not seen: what the water swings by and what is spilled; and where a
+/// passivity controller holds a force back its spring counts as if it held less, by 0.06 J at most. Both have
+/// rows.
 double generated_by(const std::array<Felt, 2>& people);
 
 /// Of force, against the same grip's over a round trip of nothing, from 3 s on; 1 = 100 %. NaN without a

@@ -16,7 +16,7 @@ struct LinkCase {
   Scheme scheme = Scheme::kReplica;  ///< kReplica or kPeerSpring
   double round_trip = 0.0;           ///< s
   double jitter = 0.0;               ///< s, 0 to this much on top of each way
-  double loss = 0.0;                 ///< chance, each way
+  double loss = 0.0;                 ///< probability, each way
 };
 
 /// What one person felt.

@@ -37,7 +37,7 @@ struct Case {
   std::string grip = "tight";                      ///< parse_operator's words
   double round_trip = 0.1;                         ///< s, the network's
   double jitter = 0.0;                             ///< s, 0 to this much on top of each way
-  double loss = 0.0;                               ///< chance, each way
+  double loss = 0.0;                               ///< probability, each way
   double pose_rate = 500.0;                        ///< Hz
   double host_rate = 500.0;                        ///< Hz, steps and states
   double replica_mass = 1.0;                       ///< times the body's: how wrong the replica is
@@ -62,7 +62,7 @@ struct Outcome {
                              ///< most at any moment
   double peak = 0.0;         ///< N, largest force on a hand
   double swing = 0.0;        ///< m/s, rms over all hands in the last second
-  double fired = 0.0;        ///< share of ticks in which a site's guard acted
+  double fired = 0.0;        ///< share of ticks in which a site's passivity controller acted
   bool fell_back = false;    ///< a site went over to the damped spring
   int steps = 0;             ///< times that a hand's force changed by over 1 N within 2 ms, over all hands
   std::vector<Wrench> felt;  ///< each tick's, hand by hand

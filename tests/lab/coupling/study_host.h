@@ -10,7 +10,7 @@
 
 namespace slosh::coupling {
 
-/// A hand's newest word at the host.
+/// A hand's newest update at the host.
 struct HandWord {
   double stamp = -1.0;  ///< s, when it was read
   Pose pose;

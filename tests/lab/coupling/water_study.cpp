@@ -105,7 +105,7 @@ class Host {
   std::vector<FluidWrenchModel> out_;
 };
 
-/// A site's end: a replica, a guard, no limits.
+/// A site's end: a replica, a passivity controller, no limits.
 class Site {
  public:
   Site(const WaterRun& run, const ReplicaTuning& tuning)

@@ -27,7 +27,7 @@ constexpr double kWaterEnds = 10.5;   // s
 struct WaterCase {
   double spacing = 0.014;  ///< m between particles
   std::string grip;        ///< parse_operator's words; empty: the hand goes its way whatever the force
-  int way = 0;             ///< 0: as WaterWay has it; others 15 to 35 mm at 0.8 to 1.8 Hz, by chance
+  int way = 0;             ///< 0: as WaterWay has it; others 15 to 35 mm at 0.8 to 1.8 Hz, at random
   double nudge = 0.0;      ///< m by which it reaches further
 };
 WaterWay way_of(const WaterCase& c);

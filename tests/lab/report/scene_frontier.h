@@ -1,7 +1,7 @@
 // Where a setting stands in a shipped scene: the cases that tell what its hands and eyes get, judged
 // together.
 //
-// One number of one case is met by chance where an error goes from −6 to +30 % as the spacing falls. So a
+// One number of one case is met by accident where an error goes from −6 to +30 % as the spacing falls. So a
 // scene's cases count with all their readings, each in units of the error that it may have, and the largest
 // of them is what a setting misses by.
 #pragma once

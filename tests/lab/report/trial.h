@@ -27,7 +27,7 @@ struct Setting {
   double spacing = 0.01;        ///< m
   double support_ratio = 2.0;   ///< as Scene's
   double step_share = 1.0;      ///< of the plan's time step, > 0
-  bool solve_viscosity = true;  ///< where the plan finds it worth it; else drag stays explicit
+  bool solve_viscosity = true;  ///< where the plan finds it worth it; else viscosity stays explicit
   Backend backend = Backend::kCpu;
   int threads = 0;              ///< of the CPU backend; 0 = all cores
   bool (*stopped)() = nullptr;  ///< asked each step; true ends the run: Trial throws Stopped

@@ -133,8 +133,8 @@ void add_report(CLI::App& app, VerbRun& chosen) {
       ->add_flag(
           "--water", *water,
           "In place of it one hand on the shipped bucket's real water: how far off its force is by way of "
-          "the hand and round trip, and what chance and the best models would leave; six minutes of a core "
-          "(--quick: three ways and a person). Writes coupling_water.csv and .png")
+          "the hand and round trip, and what repeatability and the best models would leave; six minutes "
+          "of a core (--quick: three ways and a person). Writes coupling_water.csv and .png")
       ->excludes(over_link);
   coupling->footer(
       "In virtual time, so that it is the same again on every machine of a kind: simulated operators hold a "

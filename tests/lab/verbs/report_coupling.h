@@ -15,7 +15,8 @@ namespace slosh {
 int report_coupling_link(const ReportOptions& options);
 
 /// One hand on the shipped bucket's real water, in virtual time: how far off its force is by way of the hand
-/// and round trip, and what chance between two runs and the best models leave: coupling_water.csv and .png.
+/// and round trip, and what the repeatability between two runs and the best models leave: coupling_water.csv
+/// and .png.
 int report_coupling_water(const ReportOptions& options);
 
 /// coupling::bucket_cases() by the replica: bucket.csv, and `map` for its picture. `run` as for the other

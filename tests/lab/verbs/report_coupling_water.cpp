@@ -113,7 +113,7 @@ ChartPanel panel_of(const std::vector<WaterRow>& rows, bool person) {
   for (const WaterRow& row : rows) {
     if (row.c.grip.empty() == person) continue;
     ChartSeries series;
-    series.name = name_of(row) + format(" (%.1f N; chance %.0f %%)", row.force, 1e2 * row.chaos);
+    series.name = name_of(row) + format(" (%.1f N; repeatability %.0f %%)", row.force, 1e2 * row.chaos);
     series.color = kColors[color++ % std::size(kColors)];
     series.width = 1.5;
     for (const WaterFelt& f : row.felt)
@@ -169,7 +169,7 @@ int report_coupling_water(const ReportOptions& options) {
       "way,reach_mm,pace_hz,hand,force_n,chance,rigid_leaves,modes_leave,lifts_leave,round_trip_ms,force_"
       "error,error_to_1500ms,"
       "error_moving,error_after,error_by_line,error_for_the_same_motion,hand_elsewhere_mm,error_known_late\n";
-  std::printf("%-30s force   chance  a model leaves: rigid, modes, lift   force off at", "a hand's way");
+  std::printf("%-30s force   repeats a model leaves: rigid, modes, lift   force off at", "a hand's way");
   for (const double round_trip : round_trips) std::printf(" %.0f", 1e3 * round_trip);
   std::printf(" ms\n");
   for (const WaterRow& row : rows) {

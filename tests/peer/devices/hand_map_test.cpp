@@ -111,7 +111,7 @@ TEST(HandMap, TheClutchLetsTheDeviceGoBackWithoutTheHand) {
   EXPECT_NEAR(clutched.pose.position.x, 0.04, 1e-12);
   EXPECT_EQ(clutched.twist.linear.x, 0.0);
   map.to_world(at({-0.04, 0, 0}, 2));
-  EXPECT_NEAR(map.to_world(at({-0.04, 0, 0})).pose.position.x, 0.04, 1e-12) << "no leap when it is let in";
+  EXPECT_NEAR(map.to_world(at({-0.04, 0, 0})).pose.position.x, 0.04, 1e-12) << "no leap when it engages";
   EXPECT_NEAR(map.to_world(at({0.04, 0, 0})).pose.position.x, 0.12, 1e-12);
 }
 

@@ -28,7 +28,8 @@ TEST_F(DistantHands, CarryABeamOver200Milliseconds) {
 }
 
 /// A hand's own motion is felt in the tick that reads it, whatever the distance: 0.5 mm at 2000 N/m. From 2 s
-/// after taking hold on: until then the beam still settles into the hands, and a guard may be shut.
+/// after taking hold on: until then the beam still settles into the hands, and a passivity controller may
+/// cut.
 TEST_F(DistantHands, OwnMotionIsFeltInItsTick) {
   for (const double round_trip : {0.001, 0.2, 0.3, 0.4, 0.5}) {
     for (const double held : {2.0, 3.0, 6.0}) {

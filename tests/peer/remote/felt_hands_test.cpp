@@ -79,9 +79,9 @@ TEST_F(FeltHands, MoveNothingBefore) {
       EXPECT_LT(peak(), 2.5 * kShare);
       forget();
       lift_for(2.0);
-      if (bad) continue;  // there a guard cuts now and then, whenever somebody lifted
-      // Their holds lifted it, and that is no energy which they would have to give back: no guard cuts off
-      // the force.
+      if (bad) continue;  // there a passivity controller cuts now and then, whenever somebody lifted
+      // Their holds lifted it, and that is no energy which they would have to give back: no controller cuts
+      // off the force.
       EXPECT_GT(host->now.grips[0].pose.position.y, start + 0.7 * kLift);
       EXPECT_NEAR(felt(0) + felt(1), 2.0 * kShare, 0.5) << "all of it is carried,";
       EXPECT_LT(step(), 0.05) << "and held";

@@ -21,9 +21,9 @@ using test::sample_of;
 using test::world_at_rest;
 using test::world_of;
 
-// The springs' ends go at kRampSpeed at most, gained over kRampRise and lost with the time constant
-// kRampEnd: at most kRampSpeed / kRampEnd = 0.6 m/s² of the body, twice that when the springs swing with
-// it. Half the body's mass hangs at each hand: 1.8 N. As much again for the hands' not being let in evenly.
+// The springs' ends go at kRampSpeed at most, gained over kRampRise and lost with the time constant kRampEnd:
+// at most kRampSpeed / kRampEnd = 0.6 m/s² of the body, twice that when the springs swing with it. Half the
+// body's mass hangs at each hand: 1.8 N. As much again for uneven engagement ramps.
 constexpr double kRamp = 2.0 * 0.5 * kMass * 2.0 * kRampSpeed / kRampEnd;
 
 /// One person at a grip of their own, with what reaches them.
@@ -204,7 +204,7 @@ TEST_F(HoldAnew, WhoIsLeftAloneBeforeTheirHoldIsFirmCarriesItAll) {
     run(0.01);
     lowest = std::min(lowest, host->now.grips[1].pose.position.y);
   }
-  print("left alone 0.3 s after both took hold anew");
+  print("left alone 0.3 s after both re-engaged");
   std::printf("the grip sank by %.0f mm\n", 1e3 * (height - lowest));
   EXPECT_LT(height - lowest, 0.02);
   EXPECT_LT(glm::distance(people[1]->device->next.pose.position, host->now.grips[1].pose.position), 0.03)

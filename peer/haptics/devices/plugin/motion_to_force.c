@@ -16,7 +16,7 @@
 #define MOST_JUMPS 20000
 static const double kWay = 0.002;      /* m */
 static const double kSpeed = 0.2;      /* m/s */
-static const double kFirst = 6.0;      /* s: taking hold is over by then, over a long way too */
+static const double kFirst = 6.0;      /* s: the engagement ramp is over by then, over a long way too */
 static const double kApart = 0.1;      /* s from one beginning to the next, */
 static const double kChance = 0.05;    /* and up to so much more */
 static const double kAnswer = 0.1;     /* N that the force changes against the way */

@@ -127,7 +127,7 @@ std::vector<Reading> stokes(const Setting& setting, Cost& cost) {
 
 // That ball is turned about the tube's axis: 8πμa³Ω times the wall's factor. As light as a hundredth of the
 // fluid and 20 times as heavy, in fluid that is stepped and, where the model has that, in fluid that is
-// solved for: 1000 Pa·s by steps are a hundred times as many.
+// implicit viscosity: explicit steps at 1000 Pa·s are a hundred times as many.
 std::vector<Reading> turned_ball(const Setting& setting, Cost& cost) {
   constexpr double kBall = 0.012, kTube = 0.04, kFill = 0.096, kTurning = 2.0;
   constexpr double kWallFactor = 1.0 + 0.7968 * 0.027;  // at a radius ratio of 0.3 (Brenner & Sonshine 1964)

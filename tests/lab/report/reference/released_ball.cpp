@@ -7,8 +7,8 @@
 namespace slosh::report {
 
 double added_mass(const ReleasedBall& ball) {
-  // Images in x and z: a tank's width apart, alike. In y: at the floor turned round, at the free surface
-  // turned round twice.
+  // Images in x and z: a tank's width apart, alike. In y: at the floor reversed, at the free surface reversed
+  // twice.
   constexpr int kAcross = 60, kUp = 8;
   const double depth = ball.to_floor + ball.to_level;
   double stream = 0.0;  // of the ball's velocity, along it
