@@ -25,7 +25,7 @@ struct SceneFacts {
   bool fluid = false;     ///< there are particles
   bool viscous = false;   ///< a fluid or a body has a viscosity
   bool one = false;       ///< all have the same
-  bool implicit = false;  ///< viscosity is solved for
+  bool implicit = false;  ///< implicit viscosity
 };
 
 /// Whether a scene needs a pass, and why, or why not, with the numbers that decided it.

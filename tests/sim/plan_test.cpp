@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "scenes/load.h"
+#include "sim/passes/pass.h"
 #include "sim/world.h"
 #include "tests/support/places.h"
 #include "tests/support/tank.h"
@@ -71,6 +72,29 @@ TEST_P(GoldenPlan, OfTheIncompressibleModelIsAsCommitted) {
 
 INSTANTIATE_TEST_SUITE_P(Shipped, GoldenPlan,
                          ::testing::Values("bucket", "spoon", "pour", "spin", "pool", "probe"));
+
+// sim/PASSES.md as the table of passes has it; SLOSH_UPDATE_GOLDEN=1 writes it.
+TEST(Passes, ThePageIsTheTable) {
+  std::ostringstream page;
+  page << "# The passes of a sub-step\n\n"
+          "Written from `passes/list.h` and each folder's `pass.cpp` (`SLOSH_UPDATE_GOLDEN=1 test_sim "
+          "--gtest_filter=Passes.*`).\nIn the order in which they run. *In*: the pass whose loop over the "
+          "neighbours "
+          "does it.\n\n| id | what | reads | writes | in |\n|---|---|---|---|---|\n";
+  for (std::size_t i = 0; i < kPassCount; ++i) {
+    const PassId id = static_cast<PassId>(i);
+    const PassEntry& pass = entry(id);
+    page << "| `" << name(id) << "` | " << pass.words << " | " << pass.reads << " | " << pass.writes << " | "
+         << (runs_in(id) == id ? std::string("–") : "`" + std::string(name(runs_in(id))) + "`") << " |\n";
+    EXPECT_TRUE(std::filesystem::exists(test::source_dir() / "sim/passes" / name(id) / "pass.cpp"))
+        << name(id);
+  }
+  const std::filesystem::path file = test::source_dir() / "sim/PASSES.md";
+  if (std::getenv("SLOSH_UPDATE_GOLDEN")) std::ofstream(file) << page.str();
+  std::stringstream committed;
+  committed << std::ifstream(file).rdbuf();
+  EXPECT_EQ(page.str(), committed.str());
+}
 
 // A pass is either run or left out, and the prose has a line for each.
 TEST(Plan, DescribesEveryPassOnce) {
