@@ -1,5 +1,5 @@
-// A body that hands of this site hold, wherever the host is: its replica, and a passivity controller for each
-// hand.
+// A body that hands of this site hold, wherever the host is: its replica, what acts on it by the host's
+// updates, a passivity controller for each hand, and what they fall back on.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,10 @@
 
 #include "peer/devices/velocity_window.h"
 #include "peer/replica/body_replica.h"
-#include "peer/replica/carried_fluid.h"
+#include "peer/replica/energy_balance.h"
+#include "peer/replica/fallback.h"
 #include "peer/replica/host_update.h"
+#include "peer/replica/load_estimator.h"
 #include "peer/replica/load_work.h"
 #include "peer/replica/passivity_controller.h"
 
@@ -46,7 +48,7 @@ class HeldBody {
   void hear(const HostUpdate& word) noexcept;
   /// How the fluid answers to the body, before hear() of the same state or a newer one: its derivatives, its
   /// added mass and the trust in them count. What acts besides them is worked out from how the body moves.
-  void set_fluid(const FluidLoad& model) noexcept { fluid_ = made_safe(model); }
+  void set_fluid(const FluidLoad& model) noexcept { load_.fluid = made_safe(model); }
 
   /// Where an own hand's coupling goes to, at the moment of the last advance().
   GripState grip(std::size_t g) const noexcept;
@@ -74,26 +76,17 @@ class HeldBody {
   double balance() const noexcept;
   LoopDelay delay() const noexcept { return delay_.delay(); }  ///< by the clock on the wall
   const BodyReplica& replica() const noexcept { return replica_; }
-  const SloshFinder& slosh(std::size_t axis) const noexcept { return carried_.finder(axis); }
+  const SloshFinder& slosh(std::size_t axis) const noexcept { return load_.carried.finder(axis); }
   /// The passivity controllers fired so often that a damped spring to the host's update replaces the replica.
-  bool fallen_back() const noexcept { return fallen_back_; }
-  std::uint64_t fired() const noexcept { return fired_; }  ///< ticks in which a controller did
+  bool fallen_back() const noexcept { return fallback_.fallen_back; }
+  std::uint64_t fired() const noexcept { return fallback_.fired; }  ///< ticks in which a controller did
 
  private:
-  void watch(double dt) noexcept;
-  void forget_surplus(double dt) noexcept;
-  void lend() noexcept;
   void begin_count(const HostUpdate& word) noexcept;
-  void note_disturbance(const FluidLoad& load, double elapsed) noexcept;
   /// Where the damped spring goes to.
   GripState late_grip(std::size_t g) const noexcept;
-  /// What acts on the body besides couplings and the fluid's answer to its acceleration: fluid, weight,
-  /// contacts.
-  FluidLoad load_of(const HostUpdate& word) noexcept;
-
   ReplicaBody body_;
   BodyReplica replica_;
-  FluidLoad fluid_;
   std::vector<Pose> grips_;  // in the mesh frame
   std::vector<CouplingGains> gains_;
   std::vector<ReplicaHand> hands_;
@@ -108,31 +101,13 @@ class HeldBody {
   double since_heard_ = 0.0;  // s
   double ahead_ = 0.0;  // s until the moment of the update, when it came: a slow host's is of a step's end
   bool started_ = false;
-  double disturbance_ = 0.0;        // 0–1
-  double model_uncertainty_ = 0.0;  // 0–1
-  double quiet_load_ = 0.0;         // s since this began or something acted that was not foreseen
-  bool fires_ = false;              // in this tick
-  double firing_ = 0.0;             // share of ticks lately
-  double quiet_ = 0.0;              // s since a controller fired
-  bool fallen_back_ = false;
-  double spring_ = 0.0;  // share of the damped spring, 0–1
   LoadWork load_work_;
-  bool follows_slosh_;
-  double slosh_share_ = 0.0;  // 0–1: how far what swings is followed at all
-  CarriedFluid carried_;
-  bool tells_fluid_ = false;      // the newest update did
-  glm::dvec3 fluid_force_{0.0};   // N, of the update before
-  glm::dvec3 met_{0.0};           // N: what acts besides couplings and fluid, weight and contacts
-  glm::dvec3 met_late_{0.0};      // N: the same as late as the replica follows it
-  std::vector<Wrench> on_hands_;  // of the update before
-  std::vector<Pose> used_;        // own hands as the host used them, of the newest update; where none was
-                                  // engaged, the grip
-  double stored_ = 0.0;           // J in the couplings when this began, less what had been counted by then
-  double forgotten_ = 0.0;        // J of the balance that nothing here holds any more
-  double work_heard_ = 0.0;       // J: BodyReplica::work_heard() at the tick before
-  double lent_ = 0.0;             // J that loads took and nobody had put in
-  double step_ = 0.0;             // s of the host's step
-  std::uint64_t fired_ = 0;
+  LoadEstimator load_;
+  EnergyBalance energy_;
+  Fallback fallback_;
+  std::vector<Pose> used_;  // own hands as the host used them, of the newest update; where none was
+                            // engaged, the grip
+  double step_ = 0.0;       // s of the host's step
 };
 
 }  // namespace slosh
