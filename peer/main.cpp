@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "peer/verbs/program.h"
+#include "peer/app/program.h"
 
 namespace slosh {
 namespace {

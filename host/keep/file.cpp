@@ -37,7 +37,7 @@ bool sync_folder(const std::filesystem::path& path) {
 }  // namespace
 
 Result<File> open_to_read(const std::filesystem::path& path) {
-  struct stat facts {};
+  struct stat facts{};
   File file(std::fopen(path.c_str(), "rbe"));
   if (!file) return Error{path.string(), std::string("cannot be read: ") + std::strerror(errno), ""};
   if (::fstat(::fileno(file.get()), &facts) != 0 || !S_ISREG(facts.st_mode))
@@ -48,7 +48,7 @@ Result<File> open_to_read(const std::filesystem::path& path) {
 Result<File> open_to_write(const std::filesystem::path& path) {
   const int handle = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
   if (handle < 0) return failed(path, "cannot be written");
-  struct stat facts {};
+  struct stat facts{};
   // One that was there keeps its mode on opening, and its owner could go on reading it.
   if (::fstat(handle, &facts) == 0 && S_ISREG(facts.st_mode) &&
       (::fchmod(handle, 0600) != 0 || ::ftruncate(handle, 0) != 0)) {

@@ -10,9 +10,7 @@ namespace slosh {
 namespace {
 
 template <class M>
-constexpr bool kIsRequest = requires(const M& m) {
-  m.request;
-};
+constexpr bool kIsRequest = requires(const M& m) { m.request; };
 
 }  // namespace
 

@@ -6,14 +6,14 @@
 #include <vector>
 
 #include "net/channel.h"
-#include "peer/haptics/replica/held_body.h"
+#include "peer/replica/held_body.h"
 #include "scenes/scene.h"
 
 namespace slosh {
 
 /// What a hand that gives way to the force is coupled to.
 enum class Coupling {
-  kReplica,  ///< this site's replica of the body (peer/haptics/replica)
+  kReplica,  ///< this site's replica of the body (peer/replica)
   kSpring,   ///< the host's body as it comes: steady over short links only
 };
 

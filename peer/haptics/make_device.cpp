@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "net/grip_start.h"
-#include "peer/haptics/devices/controller_device.h"
-#include "peer/haptics/devices/hardware.h"
-#include "peer/haptics/devices/room_tie.h"
+#include "peer/devices/controller_device.h"
+#include "peer/devices/hardware.h"
+#include "peer/devices/room_tie.h"
 #include "peer/haptics/script_device.h"
 
 namespace slosh {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "peer/devices/headset_link.h"
 #include "peer/haptics/device.h"
-#include "peer/haptics/devices/headset_link.h"
 #include "peer/haptics/mouse_device.h"
 #include "peer/haptics/shared_handle.h"
 #include "scenes/scene.h"

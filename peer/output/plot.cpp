@@ -10,7 +10,7 @@
 #include "net/text/clean.h"
 #include "peer/output/gnuplot.h"
 #include "peer/output/recorder.h"
-#include "peer/palette.h"
+#include "peer/view/palette.h"
 #include "sim/math/format.h"
 
 namespace slosh {

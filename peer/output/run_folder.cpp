@@ -30,7 +30,7 @@ std::string earlier_file(const fs::path& folder) {
   return {};
 }
 
-/// Whether a name is one that an exporter gives (peer/export).
+/// Whether a name is one that an exporter gives (peer/output/export).
 bool is_frame(const std::string& name) {
   return name == "frames.csv" || name == "particles.pvd" || name.starts_with("particles_") ||
          name.starts_with("surface_");

@@ -231,9 +231,7 @@ void bind_remote(py::module_& m) {
            "1.2 m/s and 4.5 rad/s; Keys, by the host's simulated time; None: the scene's own motion.")
       .def(
           "handle",
-          [](RemoteProgram& r, const py::object& which) {
-            return HandPose{r.handle(r.grip(which)), {}, {}};
-          },
+          [](RemoteProgram& r, const py::object& which) { return HandPose{r.handle(r.grip(which)), {}, {}}; },
           py::arg("grip"), "Pose where that hand is now.")
       .def(
           "take", [](RemoteProgram& r, const py::object& which) { r.take(which, true); }, py::arg("grip"),

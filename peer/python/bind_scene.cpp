@@ -77,11 +77,7 @@ void bind_parts(py::module_& m) {
           "free", [](const Body& b) { return b.motion == BodyMotion::kFree; }, "False: it is fixed")
       .def_readonly("point_probe", &Body::point_probe, "True: a point that feels fluid and cannot turn")
       .def_property_readonly(
-          "pose",
-          [](const Body& b) {
-            return HandPose{b.pose, {}, {}};
-          },
-          "Pose of the mesh frame")
+          "pose", [](const Body& b) { return HandPose{b.pose, {}, {}}; }, "Pose of the mesh frame")
       .def_property_readonly(
           "mass", [](const Body& b) { return b.mass.mass; }, "kg; meaningful where free")
       .def_property_readonly(

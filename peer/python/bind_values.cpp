@@ -111,10 +111,7 @@ void bind_values(py::module_& m) {
           "angular_velocity", [](const HandPose& p) { return optional_vector(p.angular_velocity); },
           "(3,) rad/s or None")
       .def(
-          "inverse",
-          [](const HandPose& p) {
-            return HandPose{inverse(p.pose), {}, {}};
-          },
+          "inverse", [](const HandPose& p) { return HandPose{inverse(p.pose), {}, {}}; },
           "The pose that undoes this.")
       .def(
           "transform",
@@ -158,11 +155,7 @@ void bind_values(py::module_& m) {
 
   py::class_<BodyState>(m, "BodyState", "A body at one moment. A copy.")
       .def_property_readonly(
-          "pose",
-          [](const BodyState& b) {
-            return HandPose{b.pose, {}, {}};
-          },
-          "Pose of the mesh frame")
+          "pose", [](const BodyState& b) { return HandPose{b.pose, {}, {}}; }, "Pose of the mesh frame")
       .def_property_readonly(
           "velocity", [](const BodyState& b) { return from_vector(b.twist.linear); },
           "(3,) m/s, of the centre of mass")
@@ -180,16 +173,10 @@ void bind_values(py::module_& m) {
 
   py::class_<GripState>(m, "GripState", "A grip and its hand at one moment. A copy.")
       .def_property_readonly(
-          "pose",
-          [](const GripState& g) {
-            return HandPose{g.pose, g.twist.linear, g.twist.angular};
-          },
+          "pose", [](const GripState& g) { return HandPose{g.pose, g.twist.linear, g.twist.angular}; },
           "Pose of the grip on its body, with its velocities")
       .def_property_readonly(
-          "handle",
-          [](const GripState& g) {
-            return HandPose{g.handle, {}, {}};
-          },
+          "handle", [](const GripState& g) { return HandPose{g.handle, {}, {}}; },
           "Pose of the hand that the last step used")
       .def_property_readonly(
           "force", [](const GripState& g) { return from_vector(g.on_hand.force); },

@@ -244,8 +244,7 @@ void WorldProgram::settle(std::optional<double> seconds) {
     std::vector<HandleInput> hands(inputs().begin(), inputs().end());
     for (HandleInput& hand : hands) hand.twist = Twist{};
     settling = &interrupts;
-    world_->settle(
-        length, hands, [] { return settling->pending(); }, seconds ? 0.0 : scene_->settle_longest);
+    world_->settle(length, hands, [] { return settling->pending(); }, seconds ? 0.0 : scene_->settle_longest);
     settling = nullptr;
     interrupts.check();
   });

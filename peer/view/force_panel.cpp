@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "peer/palette.h"
+#include "peer/view/palette.h"
 #include "sim/math/format.h"
 
 namespace slosh {

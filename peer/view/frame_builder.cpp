@@ -6,7 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "net/text/clean.h"
-#include "peer/palette.h"
+#include "peer/view/palette.h"
 #include "scenes/images/decode.h"
 
 namespace slosh {

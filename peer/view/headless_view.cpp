@@ -28,9 +28,8 @@ Result<std::unique_ptr<HeadlessView>> HeadlessView::start(const Scene& scene, co
   std::unique_ptr<HeadlessView> view(new HeadlessView());
   const auto ready = std::make_shared<std::promise<Result<bool>>>();
   std::future<Result<bool>> answer = ready->get_future();
-  view->thread_ = std::thread([&, facts, ready, v = view.get()] {
-    v->run({scene, facts, queue, rates, options, ready});
-  });
+  view->thread_ = std::thread(
+      [&, facts, ready, v = view.get()] { v->run({scene, facts, queue, rates, options, ready}); });
   const Result<bool> outcome = answer.get();
   if (!outcome) {
     view->wait();

@@ -10,7 +10,7 @@
 
 #include "net/histogram.h"
 #include "net/snapshot_queue.h"
-#include "peer/hud/hud.h"
+#include "peer/view/hud/hud.h"
 #include "render/image.h"
 #include "render/renderer.h"
 #include "scenes/scene.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "peer/haptics/devices/headset_link.h"
+#include "peer/devices/headset_link.h"
 #include "render/headset.h"
 #include "scenes/scene.h"
 

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "peer/hud/panels.h"
+#include "peer/view/hud/panels.h"
 #include "render/frame.h"
 #include "scenes/scene.h"
 #include "sim/snapshot.h"

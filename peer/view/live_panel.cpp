@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "peer/hud/hud_layout.h"
+#include "peer/view/hud/hud_layout.h"
 #include "sim/math/format.h"
 
 namespace slosh {

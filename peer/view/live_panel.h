@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "peer/hud/panels.h"
+#include "peer/view/hud/panels.h"
 
 namespace slosh {
 

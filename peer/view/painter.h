@@ -7,10 +7,10 @@
 #include <span>
 #include <string>
 
-#include "peer/hud/hud.h"
 #include "peer/view/foam.h"
 #include "peer/view/frame_builder.h"
 #include "peer/view/held_rects.h"
+#include "peer/view/hud/hud.h"
 #include "peer/view/orbit_camera.h"
 #include "peer/view/stereo_views.h"
 #include "render/headset.h"

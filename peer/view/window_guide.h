@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "peer/hud/panels.h"
 #include "peer/settings/key_bindings.h"
+#include "peer/view/hud/panels.h"
 
 namespace slosh {
 

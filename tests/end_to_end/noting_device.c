@@ -5,7 +5,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "peer/haptics/devices/plugin/slosh_device.h"
+#include "peer/devices/plugin/slosh_device.h"
 
 #define FLUSHED_EACH 50 /* writes: a process that is killed loses no more */
 

@@ -16,8 +16,9 @@ scenes     | sim/math/ net/text/
 sim        | sim/math/ scenes/scene.h
 net        | sim/snapshot.h sim/math/ scenes/scene.h
 host       | scenes/ sim/ net/
+host/app   | scenes/ sim/ net/ peer/ render/
 peer       | scenes/ sim/snapshot.h sim/math/ net/ render/
-peer/verbs | scenes/ sim/ net/ render/ host/
+peer/app | scenes/ sim/ net/ render/ host/
 peer/python | scenes/ sim/ net/ host/
 peer/install | sim/backend.h
 render     | sim/math/ net/text/
@@ -30,14 +31,14 @@ toolkits='
 ^<(epoxy|GL|EGL|GLFW)/        | render tests/xr | GL only in render and in the runtime that tests show pictures to
 ^<(openxr|X11)/               | render/xr tests/xr | OpenXR only behind render/headset.h
 ^<(ngtcp2|gnutls)/            | net/quic | QUIC and TLS only behind net/quic/endpoint.h
-^<(hidapi|libusb|libevdev)    | peer/haptics/devices | HID, USB and input events only in the drivers
+^<(hidapi|libusb|libevdev)    | peer/devices | HID, USB and input events only in the drivers
 ^<pybind11/                   | peer/python | Python only in its module
 ^"peer/python/                | peer/python | nothing that ships knows the Python module
-^<(openvdb|tbb)/              | peer/export/fluid_surface.cpp | OpenVDB takes long to compile: it is in one source file
+^<(openvdb|tbb)/              | peer/output/export/fluid_surface.cpp | OpenVDB takes long to compile: it is in one source file
 ^<toml\+\+/                   | peer/settings | TOML only where settings are read
 ^<unicode/                    | net/text | ICU only behind net/text
 ^"net/impair/                 | net/impair tests | a bad network is for tests and for the program slosh-impair
-^"peer/verbs/                 | peer/verbs peer/main.cpp tests | only the program joins host and peer
+^"(peer|host)/app/            | peer/app host/app peer/main.cpp tests | only the program joins host and peer
 ^"tests/                      | tests | nothing that ships needs a test'"'"'s kit or the laboratory
 '
 

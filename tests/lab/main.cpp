@@ -1,5 +1,5 @@
 // The program `slosh-lab`: the verbs that measure. `slosh report` and `slosh sweep` become it.
-#include "peer/verbs/program.h"
+#include "peer/app/program.h"
 
 int main(int argc, char** argv) {
   constexpr slosh::AddVerb kVerbs[] = {slosh::add_sweep, slosh::add_report};

@@ -1,5 +1,5 @@
 // What a body carries, by what it weighs, swings and lifts.
-#include "peer/haptics/replica/carried_fluid.h"
+#include "peer/replica/carried_fluid.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "peer/haptics/devices/hand_map.h"
+#include "peer/devices/hand_map.h"
 #include "servo_kit.h"
 
 namespace slosh {

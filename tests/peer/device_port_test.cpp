@@ -13,7 +13,7 @@
 
 #include "other_hand.h"
 #include "peer/haptics/device_loop.h"
-#include "peer/verbs/hand_trouble.h"
+#include "peer/app/hand_trouble.h"
 
 namespace slosh {
 namespace {

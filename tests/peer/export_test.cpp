@@ -10,10 +10,10 @@
 #include <random>
 #include <sstream>
 
-#include "peer/export/exporter.h"
-#include "peer/export/fluid_surface.h"
-#include "peer/export/particle_files.h"
-#include "peer/export/surface_files.h"
+#include "peer/output/export/exporter.h"
+#include "peer/output/export/fluid_surface.h"
+#include "peer/output/export/particle_files.h"
+#include "peer/output/export/surface_files.h"
 #include "tests/support/places.h"
 
 namespace slosh {

@@ -2,7 +2,7 @@
 // alone.
 #include <gtest/gtest.h>
 
-#include "peer/export/export_options.h"
+#include "peer/output/export/export_options.h"
 
 namespace slosh {
 namespace {

@@ -13,7 +13,7 @@
 #include "host/pace_line.h"
 #include "host/pacer.h"
 #include "net/grip_start.h"
-#include "peer/haptics/devices/operator_device.h"
+#include "peer/devices/operator_device.h"
 #include "peer/haptics/servo.h"
 #include "scenes/sample.h"
 #include "sim/fluid_models.h"

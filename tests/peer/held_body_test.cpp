@@ -1,6 +1,6 @@
 // A hand that holds a body far away: what another's motion, a late word and what dampers and loads took can
 // do to it, and when it gives up the replica.
-#include "peer/haptics/replica/held_body.h"
+#include "peer/replica/held_body.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "net/clock.h"
-#include "peer/haptics/devices/operator_arm.h"
+#include "peer/devices/operator_arm.h"
 
 namespace slosh {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "hud_kit.h"
-#include "peer/hud/hud.h"
+#include "peer/view/hud/hud.h"
 #include "peer/view/live_panel.h"
 #include "peer/view/window_guide.h"
 #include "render/passes/hud_pass.h"

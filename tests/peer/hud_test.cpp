@@ -1,5 +1,5 @@
 // The numbers over the picture, drawn by Dear ImGui without a GPU and looked at as triangles.
-#include "peer/hud/hud.h"
+#include "peer/view/hud/hud.h"
 
 #include <gtest/gtest.h>
 #include <imgui.h>

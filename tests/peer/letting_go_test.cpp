@@ -14,7 +14,7 @@
 #include <thread>
 
 #include "peer/haptics/device_loop.h"
-#include "peer/verbs/interrupt.h"
+#include "peer/app/interrupt.h"
 #include "servo_kit.h"
 
 namespace slosh {

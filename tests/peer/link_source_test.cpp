@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "peer/verbs/host_links.h"
+#include "host/app/host_links.h"
 #include "tests/support/places.h"
 #include "tests/support/process.h"
 

@@ -8,8 +8,8 @@
 #include <mutex>
 #include <thread>
 
-#include "peer/haptics/devices/operator_device.h"
-#include "peer/haptics/devices/plugin_device.h"
+#include "peer/devices/operator_device.h"
+#include "peer/devices/plugin_device.h"
 #include "peer/haptics/mouse_device.h"
 #include "peer/haptics/script_device.h"
 #include "peer/haptics/shared_handle.h"

@@ -1,6 +1,6 @@
 // The passivity controller of a hand that holds a body far away: no more comes out than there is, and how the
 // force goes where that runs out.
-#include "peer/haptics/replica/passivity_controller.h"
+#include "peer/replica/passivity_controller.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "peer/haptics/devices/operator_arm.h"
+#include "peer/devices/operator_arm.h"
 
 namespace slosh {
 namespace {

@@ -11,7 +11,7 @@
 #include "net/text/clean.h"
 #include "peer/output/child_process.h"
 #include "peer/output/recorder.h"
-#include "peer/palette.h"
+#include "peer/view/palette.h"
 #include "render/image.h"
 
 namespace slosh {

@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "net/clock.h"
-#include "peer/haptics/replica/body_replica.h"
-#include "peer/haptics/replica/load_work.h"
+#include "peer/replica/body_replica.h"
+#include "peer/replica/load_work.h"
 #include "sim/bodies/body_solve.h"
 
 namespace slosh {

@@ -1,5 +1,5 @@
 // What no model explains of a fluid's force, as it is foreseen over a delay.
-#include "peer/haptics/replica/residue_follower.h"
+#include "peer/replica/residue_follower.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Which slosh mode a held body's motion and forces are taken for.
-#include "peer/haptics/replica/slosh_finder.h"
+#include "peer/replica/slosh_finder.h"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,7 @@
 #include "peer/haptics/make_device.h"
 #include "peer/haptics/script_device.h"
 #include "peer/haptics/servo.h"
-#include "peer/verbs/wrench_tap.h"
+#include "peer/app/wrench_tap.h"
 #include "scenes/sample.h"
 #include "tests/physics/lab.h"
 

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "peer/verbs/host_supervisor.h"
+#include "host/app/host_supervisor.h"
 
 namespace slosh {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "net/channel.h"
 #include "peer/haptics/device.h"
-#include "peer/haptics/replica/slosh_mode.h"
+#include "peer/replica/slosh_mode.h"
 #include "scenes/scene.h"
 #include "servo_kit.h"
 

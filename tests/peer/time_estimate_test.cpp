@@ -1,5 +1,5 @@
 // What is told of a run before it takes long.
-#include "peer/verbs/time_estimate.h"
+#include "peer/app/time_estimate.h"
 
 #include <gtest/gtest.h>
 

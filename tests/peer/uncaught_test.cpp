@@ -1,5 +1,5 @@
 // A library that throws what a stranger wrote: the terminal is shown text.
-#include "peer/verbs/uncaught.h"
+#include "peer/app/uncaught.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>

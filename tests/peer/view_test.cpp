@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "peer/hud/hud.h"
-#include "peer/hud/rates.h"
+#include "peer/view/hud/hud.h"
+#include "peer/view/hud/rates.h"
 #include "peer/view/frame_builder.h"
 #include "peer/view/held_rects.h"
 #include "peer/view/mouse_hand.h"

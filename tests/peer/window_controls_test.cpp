@@ -1,5 +1,5 @@
 // What keys do, in the order in which they came, and what is read off the picture.
-#include "peer/verbs/window_controls.h"
+#include "peer/app/window_controls.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -9,7 +9,7 @@
 #include <iterator>
 #include <sstream>
 
-#include "peer/verbs/pressure_tap.h"
+#include "peer/app/pressure_tap.h"
 #include "peer/view/force_panel.h"
 #include "peer/view/measures.h"
 

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <thread>
 
-#include "peer/haptics/devices/shared_space.h"
+#include "peer/devices/shared_space.h"
 #include "render/headset.h"
 #include "tests/support/places.h"
 #include "tests/xr/runtime_kit.h"

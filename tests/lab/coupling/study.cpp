@@ -8,8 +8,8 @@
 #include <random>
 
 #include "net/clock.h"
-#include "peer/haptics/devices/operator_device.h"
-#include "peer/haptics/replica/held_body.h"
+#include "peer/devices/operator_device.h"
+#include "peer/replica/held_body.h"
 #include "tests/lab/coupling/particle_host.h"
 #include "tests/lab/coupling/virtual_host.h"
 

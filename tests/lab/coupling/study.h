@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "peer/haptics/replica/body_replica.h"
+#include "peer/replica/body_replica.h"
 #include "sim/math/pose.h"
 
 namespace slosh::coupling {
@@ -15,7 +15,7 @@ enum class Scheme {
   kZeroDelay,   ///< what the others are measured against: host and hands at one place, at 1 kHz
   kHostForce,   ///< the host's coupling force, held: the published scheme, whose host has the devices
   kPeerSpring,  ///< a spring and damper to the host's newest body
-  kReplica,     ///< peer/haptics/replica
+  kReplica,     ///< peer/replica
 };
 /// How the hands want to go: all alike, the first alone, every other one the other way, or the first alone,
 /// which lets go at its fastest.

@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "peer/haptics/replica/body_replica.h"
-#include "peer/haptics/replica/fluid_load.h"
-#include "peer/haptics/replica/replica_history.h"
+#include "peer/replica/body_replica.h"
+#include "peer/replica/fluid_load.h"
+#include "peer/replica/replica_history.h"
 #include "sim/math/pose.h"
 
 namespace slosh::coupling {

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "net/clock.h"
-#include "peer/haptics/devices/operator_device.h"
+#include "peer/devices/operator_device.h"
 #include "peer/haptics/script_device.h"
 #include "scenes/load.h"
 #include "scenes/sample.h"

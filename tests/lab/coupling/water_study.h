@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "peer/haptics/device.h"
-#include "peer/haptics/replica/held_body.h"
+#include "peer/replica/held_body.h"
 #include "sim/math/fluid_wrench.h"
 #include "sim/math/result.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "peer/palette.h"
+#include "peer/view/palette.h"
 #include "sim/math/format.h"
 
 namespace slosh::figure {

@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "peer/output/chart.h"
-#include "peer/verbs/interrupt.h"
+#include "peer/app/interrupt.h"
 #include "sim/math/format.h"
 #include "tests/lab/coupling/response.h"
 #include "tests/lab/report/csv.h"

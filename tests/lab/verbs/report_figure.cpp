@@ -5,9 +5,9 @@
 
 #include "peer/output/gnuplot.h"
 #include "peer/output/whole_file.h"
-#include "peer/verbs/interrupt.h"
-#include "peer/verbs/prepare.h"
-#include "peer/verbs/verbs.h"
+#include "peer/app/interrupt.h"
+#include "peer/app/prepare.h"
+#include "peer/app/verbs.h"
 #include "sim/math/format.h"
 #include "tests/lab/verbs/figures.h"
 #include "tests/lab/verbs/report.h"

@@ -4,9 +4,9 @@
 #include <fstream>
 
 #include "peer/output/summary.h"
-#include "peer/verbs/interrupt.h"
-#include "peer/verbs/prepare.h"
-#include "peer/verbs/verbs.h"
+#include "peer/app/interrupt.h"
+#include "peer/app/prepare.h"
+#include "peer/app/verbs.h"
 #include "scenes/load.h"
 #include "sim/math/format.h"
 #include "tests/lab/report/passes.h"

@@ -8,8 +8,8 @@
 #include <tuple>
 
 #include "peer/output/whole_file.h"
-#include "peer/verbs/interrupt.h"
-#include "peer/verbs/verbs.h"
+#include "peer/app/interrupt.h"
+#include "peer/app/verbs.h"
 #include "peer/view/frame_builder.h"
 #include "peer/view/orbit_camera.h"
 #include "render/color/display_transform.h"

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "peer/haptics/devices/admittance_motion.h"
-#include "peer/haptics/devices/passive_gains.h"
+#include "peer/devices/admittance_motion.h"
+#include "peer/devices/passive_gains.h"
 
 namespace slosh {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "peer/haptics/devices/controller_device.h"
+#include "peer/devices/controller_device.h"
 #include "peer/haptics/make_device.h"
 
 namespace slosh {

@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "peer/haptics/devices/hardware.h"
-#include "peer/haptics/devices/spacemouse_models.h"
+#include "peer/devices/hardware.h"
+#include "peer/devices/spacemouse_models.h"
 #include "tests/peer/devices/mocked_falcon.h"
 #include "tests/peer/devices/mocked_gamepad.h"
 #include "tests/peer/devices/mocked_spacemouse.h"

@@ -1,12 +1,12 @@
 // Settings of a device: values, ranges, and errors that name the line.
-#include "peer/haptics/devices/device_file.h"
+#include "peer/devices/device_file.h"
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
 
-#include "peer/haptics/devices/spacemouse_settings.h"
+#include "peer/devices/spacemouse_settings.h"
 #include "tests/peer/devices/own_folder.h"
 
 namespace slosh {

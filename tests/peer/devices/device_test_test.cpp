@@ -1,9 +1,9 @@
 // The slow push along a device's axes finds the arm that the simulated operator has.
-#include "peer/haptics/devices/device_test.h"
+#include "peer/devices/device_test.h"
 
 #include <gtest/gtest.h>
 
-#include "peer/haptics/devices/operator_device.h"
+#include "peer/devices/operator_device.h"
 
 namespace slosh {
 namespace {

@@ -4,9 +4,9 @@
 #include <csignal>
 #include <filesystem>
 
-#include "peer/haptics/devices/falcon_usb.h"
-#include "peer/haptics/devices/hardware.h"
-#include "peer/haptics/devices/spacemouse_models.h"
+#include "peer/devices/falcon_usb.h"
+#include "peer/devices/hardware.h"
+#include "peer/devices/spacemouse_models.h"
 #include "tests/peer/devices/mocked_falcon.h"
 #include "tests/peer/devices/mocked_spacemouse.h"
 #include "tests/peer/devices/own_folder.h"

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "peer/haptics/devices/falcon_kinematics.h"
-#include "peer/haptics/devices/falcon_protocol.h"
+#include "peer/devices/falcon_kinematics.h"
+#include "peer/devices/falcon_protocol.h"
 
 namespace slosh::test {
 

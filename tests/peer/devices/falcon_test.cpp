@@ -6,7 +6,7 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "peer/haptics/devices/falcon_device.h"
+#include "peer/devices/falcon_device.h"
 #include "tests/peer/devices/fake_falcon.h"
 #include "tests/peer/devices/own_folder.h"
 

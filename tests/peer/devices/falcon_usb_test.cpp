@@ -1,5 +1,5 @@
 // The Falcon's driver, unmodified down to libusb, on a USB device that umockdev makes.
-#include "peer/haptics/devices/falcon_usb.h"
+#include "peer/devices/falcon_usb.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 
 #include "net/clock.h"
 #include "net/histogram.h"
-#include "peer/haptics/devices/falcon_device.h"
+#include "peer/devices/falcon_device.h"
 #include "peer/haptics/real_time.h"
 #include "tests/peer/devices/mocked_falcon.h"
 #include "tests/peer/devices/own_folder.h"

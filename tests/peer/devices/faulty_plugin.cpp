@@ -9,7 +9,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "peer/haptics/devices/plugin/slosh_device.h"
+#include "peer/devices/plugin/slosh_device.h"
 
 namespace {
 [[maybe_unused]] int reads = 0;

@@ -8,8 +8,8 @@
 #include <functional>
 #include <thread>
 
-#include "peer/haptics/devices/gamepad_device.h"
-#include "peer/haptics/devices/hardware.h"
+#include "peer/devices/gamepad_device.h"
+#include "peer/devices/hardware.h"
 #include "tests/peer/devices/mocked_gamepad.h"
 #include "tests/peer/devices/own_folder.h"
 

@@ -1,12 +1,12 @@
 // A device's frame and reach against the world's: motion, force, power, gains, the clutch.
-#include "peer/haptics/devices/hand_map.h"
+#include "peer/devices/hand_map.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "peer/haptics/devices/velocity_window.h"
+#include "peer/devices/velocity_window.h"
 
 namespace slosh {
 namespace {

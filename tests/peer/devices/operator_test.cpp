@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "peer/haptics/devices/operator_device.h"
+#include "peer/devices/operator_device.h"
 
 namespace slosh {
 namespace {

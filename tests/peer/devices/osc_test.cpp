@@ -15,8 +15,8 @@
 #include <set>
 #include <thread>
 
-#include "peer/haptics/devices/hardware.h"
-#include "peer/haptics/devices/plugin_device.h"
+#include "peer/devices/hardware.h"
+#include "peer/devices/plugin_device.h"
 #include "tests/peer/devices/own_folder.h"
 #include "tests/support/comes.h"
 #include "tests/support/places.h"

@@ -1,11 +1,11 @@
 // Gains from a device's own damping, against a simulation of what they promise.
-#include "peer/haptics/devices/passive_gains.h"
+#include "peer/devices/passive_gains.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "peer/haptics/devices/hand_map.h"
+#include "peer/devices/hand_map.h"
 
 namespace slosh {
 namespace {

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "peer/haptics/devices/plugin_device.h"
+#include "peer/devices/plugin_device.h"
 #include "tests/peer/devices/own_folder.h"
 #include "tests/support/places.h"
 

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "peer/haptics/device_loop.h"
-#include "peer/haptics/devices/plugin_device.h"
+#include "peer/devices/plugin_device.h"
 #include "plugin_kit.h"
 #include "tests/peer/servo_kit.h"
 

@@ -1,15 +1,15 @@
 // A device and a headset in one space: the fit, what is refused, what is kept, how places are touched, and
 // the hand after it.
-#include "peer/haptics/devices/shared_space.h"
+#include "peer/devices/shared_space.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <fstream>
 
-#include "peer/haptics/devices/device_file.h"
-#include "peer/haptics/devices/hand_map.h"
-#include "peer/haptics/devices/room_tie.h"
+#include "peer/devices/device_file.h"
+#include "peer/devices/hand_map.h"
+#include "peer/devices/room_tie.h"
 #include "tests/peer/devices/own_folder.h"
 
 namespace slosh {

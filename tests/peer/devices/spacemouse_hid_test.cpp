@@ -8,8 +8,8 @@
 #include <functional>
 #include <thread>
 
-#include "peer/haptics/devices/hardware.h"
-#include "peer/haptics/devices/spacemouse_device.h"
+#include "peer/devices/hardware.h"
+#include "peer/devices/spacemouse_device.h"
 #include "tests/peer/devices/mocked_spacemouse.h"
 #include "tests/peer/devices/own_folder.h"
 #include "tests/peer/servo_kit.h"

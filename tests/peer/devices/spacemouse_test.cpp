@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "peer/haptics/devices/node_access.h"
-#include "peer/haptics/devices/spacemouse_models.h"
-#include "peer/haptics/devices/spacemouse_motion.h"
+#include "peer/devices/node_access.h"
+#include "peer/devices/spacemouse_models.h"
+#include "peer/devices/spacemouse_motion.h"
 #include "tests/peer/devices/own_folder.h"
 
 namespace slosh {

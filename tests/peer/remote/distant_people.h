@@ -14,7 +14,7 @@
 #include "held_beam.h"
 #include "host/server/body_parts.h"
 #include "net/grip_start.h"
-#include "peer/haptics/devices/operator_device.h"
+#include "peer/devices/operator_device.h"
 #include "peer/haptics/servo.h"
 #include "peer/remote/body_inbox.h"
 #include "peer/remote/pose_uplink.h"

@@ -1,0 +1,88 @@
+// A run of somebody else's world: the peer's own parts around a RemoteVisit.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "peer/app/hand_trouble.h"
+#include "peer/app/live_run.h"
+#include "peer/app/prepare.h"
+#include "peer/haptics/device_loop.h"
+#include "peer/haptics/make_device.h"
+#include "peer/output/recorder.h"
+#include "peer/remote/remote_visit.h"
+
+namespace slosh {
+
+struct RemoteRunOptions {
+  std::vector<std::string> devices;  ///< none (script), one for all, or one for each grip in order of taking
+  Coupling coupling = Coupling::kReplica;
+  bool has_window = false;
+  std::shared_ptr<HeadsetLink> controllers;      ///< null without a headset
+  std::string host;                              ///< address, for the summary
+  std::int64_t begin_ns = 0;                     ///< when the program began
+  std::function<void(const std::string&)> tell;  ///< a line for the person
+};
+
+class RemoteRun final : public LiveRun {
+ public:
+  /// `stage` and `visit`, which is live, must outlive it. Errors: a file cannot be written, a device of a
+  /// grip that is held already cannot be used.
+  static Result<std::unique_ptr<RemoteRun>> create(const Stage& stage, RemoteVisit& visit,
+                                                   RemoteRunOptions options);
+  ~RemoteRun() override;
+
+  void start() override;
+  void request_stop() override { stopping_ = true; }
+  bool running() override;
+  void stop() override;
+  SnapshotQueue& snapshots() override { return visit_.world().channel->snapshots(); }
+  SnapshotPointer newest_snapshot() override;
+  HudFacts facts(double picture_rate) const override;
+  Rates note_rates() override;
+  RateLog& rates() override { return rates_; }
+  void pause(bool paused) override;
+  bool paused() const override { return status_.world.paused; }
+  bool start_again() override;
+  void change_grip() override;
+  bool hears() const override { return true; }
+  std::string hear(const std::string& line) override;
+  MouseTarget* mouse_target(std::size_t i) override { return mice_[i].get(); }
+  SharedHandle* lent_hand(std::size_t i) override { return lent_[i].get(); }
+  LiveValues live_values() const override;
+  void change(const LiveWish& wish) override;
+  void look_from(const glm::dquat& axes) override { servo_->look_from(axes); }
+  std::string trouble() const override { return run_trouble(recorder_->problem(), *servo_, stage_.scene); }
+  void report(RunSummary& summary) const override;
+
+ private:
+  RemoteRun(const Stage& stage, RemoteVisit& visit, RemoteRunOptions options);
+  Result<bool> follow_grips();
+  void let_go(std::size_t grip, const Error& why);
+  void follow_time();
+
+  const Stage& stage_;
+  RemoteVisit& visit_;
+  RemoteRunOptions options_;
+  RemoteStatus status_;
+  std::unique_ptr<Servo> servo_;
+  std::unique_ptr<DeviceLoop> loop_;
+  std::unique_ptr<Recorder> recorder_;
+  RateLog rates_;
+  std::vector<std::shared_ptr<MouseTarget>> mice_;
+  std::vector<std::shared_ptr<SharedHandle>> lent_;
+  std::vector<bool> device_on_;  // grips that have a device now
+  std::size_t grips_taken_ = 0;  // ever
+  SnapshotPointer last_snapshot_;
+  std::vector<std::string> grip_names_;
+  double elapsed_ = 0.0;    // simulated s since the start
+  double last_time_ = 0.0;  // simulated s, the furthest of this run
+  std::uint32_t last_run_ = 0;
+  std::int64_t start_ns_ = 0;
+  std::int64_t stop_ns_ = 0;
+  bool stopping_ = false;
+};
+
+}  // namespace slosh
