@@ -8,8 +8,6 @@
 namespace slosh {
 namespace {
 
-/// s of the body's time between two updates beyond which they say nothing of its acceleration.
-constexpr double kLongestStep = 0.1;
 /// s for which another site's hand, and the host's body for a spring to it, are carried on by their twists.
 constexpr double kCarriedOn = 0.02;
 constexpr double kTwistForesees = 0.01;  // s for which a hand goes about as it went
@@ -61,7 +59,7 @@ void HeldBody::hear(const HostUpdate& word) noexcept {
   heard_ = word.motion;
   heard_ns_ = word.now_ns;
   pace_ = word.pace;
-  step_ = std::min(word.time_step, kLongestStep);
+  step_ = std::min(word.time_step, LoadEstimator::kLongestStep);
   since_heard_ = 0.0;
   std::int64_t ack_ns = 0;
   counted_ = true;

@@ -8,8 +8,6 @@
 namespace slosh {
 namespace {
 
-/// s of the body's time between two updates beyond which they say nothing of its acceleration.
-constexpr double kLongestStep = 0.1;
 /// N of a change that is not foreseen at which the whole damping acts, and s for which that is remembered.
 constexpr double kDisturbance = 15.0;
 constexpr double kDisturbanceMemory = 5.0;

@@ -2,6 +2,7 @@
 // be believed.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "peer/replica/body_replica.h"
@@ -51,6 +52,9 @@ struct LoadEstimator {
   double disturbance = 0.0;        ///< 0–1
   double model_uncertainty = 0.0;  ///< 0–1
   double quiet_load = 0.0;         ///< s since this began or something acted that was not foreseen
+
+  /// s of the body's time between two updates beyond which they say nothing of its acceleration.
+  static constexpr double kLongestStep = 0.1;
 
  private:
   ReplicaBody body_;
