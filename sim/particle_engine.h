@@ -40,8 +40,8 @@ class ParticleEngine {
   /// With kBodyDrag after wrenches(), with kImplicitViscosity after solve_viscosity(): the drag on each free
   /// body by the same forces(); the others get none.
   virtual void body_drags(std::span<BodyDrag> out) const = 0;
-  /// Adds to the forces on the fluid what they lack when bodies drag by a twist that differs by `changes`
-  /// (one a body, about its centre of mass) from the one that they had in prepare().
+  /// Adds to the viscous forces on the fluid what they lack when bodies' twists differ by `changes` (one a
+  /// body, about its centre of mass) from the one that they had in prepare().
   virtual void drag(std::span<const Twist> changes) = 0;
   /// With kImplicitViscosity, after wrenches(), one entry a body: adds to the forces on the fluid the drag
   /// over `dt` s by the velocities that this ends with (viscosity/implicit.h), and to `wrenches` that on the
