@@ -41,7 +41,7 @@ void read_wall_viscosity(Extras& extras, Body& body) {
   if (!slips) return;
   if (body.dynamic_viscosity > 0.0) {
     extras.fail("slip", "is true, and viscosity_pa_s is not 0",
-                "Keep slip for a wall that the fluid slides along, viscosity_pa_s for one that drags");
+                "Keep slip for a free-slip wall, viscosity_pa_s for a no-slip one");
   }
   body.dynamic_viscosity = kFreeSlip;
 }

@@ -20,8 +20,8 @@ double artificial_viscosity_step(const Scene& scene, const Plan& plan, const Flu
 /// among neighbours that stand still. Infinite without fluid.
 double max_explicit_viscosity(const Scene& scene, const Plan& plan);
 
-/// The largest viscosity of a fluid, Pa·s, at which the plan's step stays stable where walls drag by `layer`.
-/// Needs no mesh.
+/// The largest viscosity of a fluid, Pa·s, at which the plan's step stays stable with walls' viscous force
+/// from `layer`. Needs no mesh.
 double max_viscosity_allowed(const Scene& scene, const Plan& plan, DragLayer layer);
 
 }  // namespace slosh

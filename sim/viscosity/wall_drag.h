@@ -9,7 +9,7 @@ namespace slosh {
 /// Where the fluid's first layer stands off it.
 inline constexpr double kFirstLayer = 0.5;
 
-/// Which of a wall's particles drag.
+/// Which of a wall's particles exert viscous forces.
 enum class DragLayer {
   kBehind,   ///< those that press, behind the surface (walls/wall_inset.h)
   kSurface,  ///< others, on the surface itself

@@ -34,7 +34,7 @@ SLOSH_HD void add_pair_viscosity_rate(const ParticleView<Real>& p, const Particl
   }
 }
 
-/// Adds the drag on p of a neighbour that moves by (i.vx, i.vy, i.vz) m/s more than it did.
+/// Adds the viscous force on p of a neighbour that moves by (i.vx, i.vy, i.vz) m/s more than it did.
 template <class Kernel, DragRule rule, class Real>
 SLOSH_HD void add_pair_viscosity(const ParticleView<Real>& p, const ParticleView<Real>& i, Real h,
                                  const DragShape<Real>& shape, Real weight, ForceSum<Real>& sum) {

@@ -22,12 +22,12 @@
 
 namespace slosh {
 
-/// A body in the system. One that does not move drags with `twist`, as it is.
+/// A body in the system. One that does not move exerts viscous forces by `twist`, as it is.
 struct ViscousBody {
   bool moves = false;
   Twist twist;         ///< about the centre of mass, as the sub-step begins
   Matrix6 inertia{};   ///< what each unit of its twist costs: its mass, and couplings over the sub-step
-  Vector6 momentum{};  ///< inertia · the twist that it would end with if nothing dragged
+  Vector6 momentum{};  ///< inertia · the twist that it would end with without viscosity
 };
 
 /// A sub-step is at most so many times as long as the explicit one: beyond, single precision has too little

@@ -17,7 +17,8 @@ enum class DragRule { kAlongVelocity, kCentral };
 inline constexpr float kCentralDrag = 5.0f;
 
 /// Both sides of Eq 9's mean (own + of_fluid · the fluid's)/2 for a wall's particle. Below 0
-/// (kFluidsViscosity) it has the fluid's viscosity, whichever fluid it is; at kFreeSlip nothing is dragged.
+/// (kFluidsViscosity) it has the fluid's viscosity, whichever fluid it is; at kFreeSlip there is no viscous
+/// force.
 struct WallViscosity {
   float own, of_fluid;
 };

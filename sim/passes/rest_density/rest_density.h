@@ -17,7 +17,7 @@
 namespace slosh {
 
 /// The share of the lattice's moment that settled particles lack. At 0, 3, 5 % (expansion alone is 2) a wave
-/// keeps 89, 93, 94 % of its swing, a ball of 1.5 spacings in a tube is dragged by 24, 29, 31 % too little.
+/// keeps 89, 93, 94 % of its swing, drag on a ball of 1.5 spacings in a tube is 24, 29, 31 % too small.
 inline constexpr double kPackedMoment = 0.05;
 /// Of the compression under the fluid's weight, at most: a softer fluid is one that shall give.
 inline constexpr double kMaxLoad = 0.02;
