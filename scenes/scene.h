@@ -6,7 +6,9 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sim/math/distance_field.h"
@@ -108,23 +110,35 @@ struct MassProperties {
 };
 
 /// Which particle model a scene runs. sim/pressure/README.md compares them.
+/// The numbers are the wire's. 0 was `consistent`, which `corrected` took the place of.
 enum class ParticleModel : std::uint8_t {
-  kConsistent,      ///< density and pressure from one kernel, walls counted in both
-  kPaper,           ///< Eq 2 with poly6 and without body particles, Eq 5 as printed, constant body pressure
-  kCorrected,       ///< consistent, gradients corrected for uneven neighbours (Bonet & Lok 1999): the default
-  kIncompressible,  ///< corrected, with pressure projection in place of Eq 7
+  kPaper = 1,      ///< Eq 2 with poly6 and without body particles, Eq 5 as printed, constant body pressure
+  kCorrected = 2,  ///< density and pressure from one kernel, walls counted in both, gradients corrected for
+                   ///< uneven neighbours (Bonet & Lok 1999): the default
+  kIncompressible = 3,  ///< corrected, with pressure projection in place of Eq 7
 };
 
 /// Whether a model presses by corrected gradients.
 constexpr bool corrects_gradients(ParticleModel model) {
-  return model == ParticleModel::kCorrected || model == ParticleModel::kIncompressible;
+  return model != ParticleModel::kPaper;
 }
 
-/// Their names in scene files and on the wire, in the order of the values.
-inline constexpr std::array kParticleModelNames{"consistent", "paper", "corrected", "incompressible"};
+inline constexpr ParticleModel kFirstParticleModel = ParticleModel::kPaper;
+/// Their names in scene files and on the wire, in the order of the values from kFirstParticleModel on.
+inline constexpr std::array kParticleModelNames{"paper", "corrected", "incompressible"};
 inline const char* name(ParticleModel model) {
-  return kParticleModelNames[static_cast<std::size_t>(model)];
+  return kParticleModelNames[static_cast<std::size_t>(model) - static_cast<std::size_t>(kFirstParticleModel)];
 }
+/// None where no model is called so.
+inline std::optional<ParticleModel> model_named(std::string_view name) {
+  for (std::size_t i = 0; i < kParticleModelNames.size(); ++i) {
+    if (name == kParticleModelNames[i])
+      return static_cast<ParticleModel>(static_cast<std::size_t>(kFirstParticleModel) + i);
+  }
+  return std::nullopt;
+}
+/// What the model was called that is no more.
+inline constexpr std::string_view kGoneModel = "consistent";
 
 /// A body's viscosity where it is that of whatever fluid touches it, so that Eq 9's mean is the fluid's own
 /// and the fluid sticks to the body.

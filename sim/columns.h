@@ -57,7 +57,7 @@ enum class Pack : std::uint8_t {
   ROW(kind,      std::uint8_t,  kCarried, false, false,  kAlways,        kKind,          0)    /* RunConstants::kinds; follows from id */ \
   ROW(key,       std::uint32_t, kKey,     true,  false,  kAlways,        kKey,           0)    /* cell, or retired */ \
   ROW(solved,    float,         kCarried, true,  false,  kSolved,        kSolved,        0)    /* Pa, that the last step found */ \
-  ROW(pressure,  float,         kStep,    false, false,  kAlways,        kPressed,       3)    /* Pa; kConsistent: V²P, N·m⁴; kIncompressible: wanted ρ⁰/ρ − 1 */ \
+  ROW(pressure,  float,         kStep,    false, false,  kAlways,        kPressed,       3)    /* Pa; kCorrected: V²P, N·m⁴; kIncompressible: wanted ρ⁰/ρ − 1 */ \
   ROW(viscosity, float,         kStep,    false, false,  kPairViscosity, kViscosity,     0)    /* Pa·s */       \
   ROW(pxx,       float,         kStep,    false, false,  kCorrected,     kPushA,         0)    /* N·m⁴, the corrected */ \
   ROW(pxy,       float,         kStep,    false, false,  kCorrected,     kPushA,         1)    /* model's pressure */ \

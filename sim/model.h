@@ -18,32 +18,21 @@ struct ModelParts<ParticleModel::kPaper> {
   static constexpr PairRule kWalls = PairRule::kPaper;
   static constexpr PairRule kOnBodies = PairRule::kPaper;  ///< kWalls seen from the body's particle
   static constexpr DragRule kDrag = DragRule::kAlongVelocity;
-  static constexpr bool kWallsCount = false;      ///< in the density
-  static constexpr bool kPressureEnergy = false;  ///< `pressure` is V²P, and feels bulk damping
-  static constexpr bool kCorrected = false;       ///< pressure is a tensor, with artificial viscosity
-  static constexpr bool kSolved = false;          ///< by pressure projection
+  static constexpr bool kCorrected = false;  ///< walls count in the density, pressure is a tensor and feels
+                                             ///< bulk damping, with artificial viscosity
+  static constexpr bool kSolved = false;     ///< by pressure projection
 };
 
 template <>
-struct ModelParts<ParticleModel::kConsistent> {
+struct ModelParts<ParticleModel::kCorrected> {
   using DensityKernel = Spiky;
   using ForceKernel = Spiky;
-  static constexpr PairRule kFluids = PairRule::kConsistent;
-  static constexpr PairRule kWalls = PairRule::kWall;
-  static constexpr PairRule kOnBodies = PairRule::kWall;
-  static constexpr DragRule kDrag = DragRule::kCentral;
-  static constexpr bool kWallsCount = true;
-  static constexpr bool kPressureEnergy = true;
-  static constexpr bool kCorrected = false;
-  static constexpr bool kSolved = false;
-};
-
-template <>
-struct ModelParts<ParticleModel::kCorrected> : ModelParts<ParticleModel::kConsistent> {
   static constexpr PairRule kFluids = PairRule::kCorrected;
   static constexpr PairRule kWalls = PairRule::kCorrectedWall;
   static constexpr PairRule kOnBodies = PairRule::kCorrectedBody;
+  static constexpr DragRule kDrag = DragRule::kCentral;
   static constexpr bool kCorrected = true;
+  static constexpr bool kSolved = false;
 };
 
 template <>
@@ -58,11 +47,9 @@ struct ModelParts<ParticleModel::kIncompressible> : ModelParts<ParticleModel::kC
 template <class F>
 auto with_model(ParticleModel model, F&& f) {
   if (model == ParticleModel::kPaper) return f.template operator()<ModelParts<ParticleModel::kPaper>>();
-  if (model == ParticleModel::kCorrected)
-    return f.template operator()<ModelParts<ParticleModel::kCorrected>>();
   if (model == ParticleModel::kIncompressible)
     return f.template operator()<ModelParts<ParticleModel::kIncompressible>>();
-  return f.template operator()<ModelParts<ParticleModel::kConsistent>>();
+  return f.template operator()<ModelParts<ParticleModel::kCorrected>>();
 }
 
 /// Calls f.template operator()<Parts, Viscosity>() for what the plan has: what it does not need is not

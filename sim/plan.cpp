@@ -97,7 +97,7 @@ double worth_solving(const Plan& plan) {
   return plan.support_radius > kWide * plan.spacing ? kWorthSolvingWide : kWorthSolving;
 }
 
-// A probe's velocity is its body's, which is known only later. The other models stay as they are, to compare
+// A probe's velocity is its body's, which is known only later. The published model stays as it is, to compare
 // with.
 bool suits_implicit_viscosity(const Scene& scene, const Plan& plan) {
   return plan.viscous() && corrects_gradients(plan.model) && !any_probe(scene);

@@ -14,9 +14,9 @@ namespace slosh {
 
 namespace {
 
-// dt ≤ factor · support radius / (sound speed + speed). A tank at rest stays at rest up to 1.2 with the
-// consistent model (tests/stability); Eq 5 as printed has half the pressure gradient and so more room, but
-// loses it at walls.
+// dt ≤ factor · support radius / (sound speed + speed). A tank at rest stays at rest up to 1.2 where
+// an energy's gradient presses (tests/stability); Eq 5 as printed has half the pressure gradient and so more
+// room, but loses it at walls.
 constexpr double kCourant = 0.8;
 // The same for a change while the world runs, between what a plan keeps to and what was measured to hold.
 constexpr double kLiveCourant = 1.0;

@@ -76,13 +76,15 @@ void Describer::stamp(std::string_view name, std::int64_t&) {
   add({"", "int64", "", "±(2^61 − 1)", "N ns is out of range"}, name, 8, 8);
 }
 
-void Describer::add_choice(std::string_view name, std::uint64_t count, const char* const* names) {
+void Describer::add_choice(std::string_view name, std::uint64_t first, std::uint64_t count,
+                           const char* const* names, std::string_view gone) {
   std::string range = names ? "" : "0 to " + std::to_string(count - 1);
   for (std::uint64_t i = 0; names && i < count; ++i) {
-    range += (i == 0 ? "" : ", ") + std::to_string(i) + " " + names[i];
+    range += (i == 0 ? "" : ", ") + std::to_string(first + i) + " " + names[i];
   }
-  add({"", "varint", "", range, "N is none of the " + std::to_string(count) + " choices"}, name, 1,
-      varint_bytes(count - 1));
+  std::string refused = "N is none of the " + std::to_string(count) + " choices";
+  if (first > 0) refused = "N " + std::string(gone) + "; " + refused;
+  add({"", "varint", "", range, refused}, name, 1, varint_bytes(first + count - 1));
 }
 
 void Describer::flag(std::string_view name, bool&) {

@@ -45,11 +45,16 @@ class Describer {
   void stamp(std::string_view name, std::int64_t&);
   template <class T>
   void choice(std::string_view name, T&, std::uint64_t count) {
-    add_choice(name, count, nullptr);
+    add_choice(name, 0, count, nullptr, "");
   }
   template <class T, std::size_t N>
   void choice(std::string_view name, T&, const std::array<const char*, N>& names) {
-    add_choice(name, N, names.data());
+    add_choice(name, 0, N, names.data(), "");
+  }
+  template <class T, std::size_t N>
+  void choice_from(std::string_view name, T&, T first, const std::array<const char*, N>& names,
+                   std::string_view gone) {
+    add_choice(name, static_cast<std::uint64_t>(first), N, names.data(), gone);
   }
   void flag(std::string_view name, bool&);
   void real64(std::string_view name, double&, double least, double most) { add_real(name, 8, least, most); }
@@ -99,7 +104,8 @@ class Describer {
   void add(FieldRow row, std::string_view name, std::uint64_t least, std::uint64_t most);
   void add_natural(std::string_view name, std::uint64_t least, std::uint64_t most);
   void add_below(std::string_view name, std::uint64_t most, std::string_view of);
-  void add_choice(std::string_view name, std::uint64_t count, const char* const* names);
+  void add_choice(std::string_view name, std::uint64_t first, std::uint64_t count, const char* const* names,
+                  std::string_view gone);
   void add_real(std::string_view name, int size, double least, double most);
   void add_vector(std::string_view name, int size, double limit);
   void add_unit(std::string_view name, const char* coding, int size, const char* tolerance);

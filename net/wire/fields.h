@@ -17,6 +17,8 @@
 //   bits64(name, value)                          8 bytes, any: hashes
 //   stamp(name, value)                           8 bytes, ns of a clock, within ±kMaxStamp
 //   choice(name, value, names | count)           varint, one of an enum's values
+//   choice_from(name, value, first, names, gone) the same of values from `first` on; `gone` says what those
+//                                                below were
 //   flag(name, bool)                             a byte, 0 or 1
 //   real64, real32(name, value, least, most)     8 or 4 bytes, finite
 //   vec3, vec3_exact(name, value, limit)         three real32 or real64, each within ±limit

@@ -62,11 +62,25 @@ class Reader {
     if (raw < count)
       value = static_cast<T>(raw);
     else
-      fail(name, std::to_string(raw) + " is none of the " + std::to_string(count) + " choices");
+      fail(name, no_choice(raw, count));
   }
   template <class T, std::size_t N>
   void choice(std::string_view name, T& value, const std::array<const char*, N>&) {
     choice(name, value, N);
+  }
+  template <class T, std::size_t N>
+  void choice_from(std::string_view name, T& value, T first, const std::array<const char*, N>& names,
+                   std::string_view gone) {
+    const auto least = static_cast<std::uint64_t>(first);
+    std::uint64_t raw = 0;
+    if (!varint(name, raw)) return;
+    if (raw < least) {
+      std::string problem = std::to_string(raw) + " " + std::string(gone) + "; there are ";
+      for (std::size_t i = 0; i < N; ++i) problem += (i == 0 ? "" : ", ") + std::string(names[i]);
+      return fail(name, std::move(problem));
+    }
+    if (raw >= least + N) return fail(name, no_choice(raw, N));
+    value = static_cast<T>(raw);
   }
   void flag(std::string_view name, bool& value) {
     std::uint8_t raw = 0;
@@ -187,6 +201,9 @@ class Reader {
   void out_of_range(std::string_view name, std::uint64_t raw, std::uint64_t least, std::uint64_t most);
   void out_of_range(std::string_view name, double raw, double least, double most);
   static std::string not_below(std::uint64_t raw, std::string_view of, std::uint64_t bound);
+  static std::string no_choice(std::uint64_t raw, std::uint64_t count) {
+    return std::to_string(raw) + " is none of the " + std::to_string(count) + " choices";
+  }
 
   ByteView in_;
   Capabilities agreed_;

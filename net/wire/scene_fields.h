@@ -200,7 +200,8 @@ void visit(V& v, Scene& m) {
   v.real64("spacing_max", m.spacing_max, 1e-5, 10.0);
   v.rule("spacing_min", m.spacing_min <= m.spacing_max, "is above spacing_max");
   v.real64("support_ratio", m.support_ratio, 1.5, 4.0);
-  v.choice("model", m.model, kParticleModelNames);
+  v.choice_from("model", m.model, kFirstParticleModel, kParticleModelNames,
+                "is the model `consistent`, which is no more: `corrected` took its place");
   v.real64("stiffness", m.stiffness, 0.0, 1e12);
   v.real64("tension", m.tension, 0.0, 1.0);
   v.real64("duration", m.duration, 1e-6, kMaxTime);

@@ -71,6 +71,14 @@ class Writer {
   void choice(std::string_view name, T& value, const std::array<const char*, N>&) {
     choice(name, value, N);
   }
+  template <class T, std::size_t N>
+  void choice_from(std::string_view name, T& value, T first, const std::array<const char*, N>&,
+                   std::string_view) {
+    const auto raw = static_cast<std::uint64_t>(value), least = static_cast<std::uint64_t>(first);
+    const bool fine = raw >= least && raw < least + N;
+    if (!fine) note(name, std::to_string(raw) + " is no choice");
+    varint(fine ? raw : least);
+  }
   void flag(std::string_view, bool& value) { out_.push_back(value ? 1 : 0); }
   void real64(std::string_view name, double& value, double least, double most) {
     fixed(in_range(name, value, least, most));

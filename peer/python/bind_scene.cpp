@@ -141,7 +141,7 @@ void bind_scene(py::module_& m) {
       .def_readonly("settle", &Scene::settle, "s of rest before a run")
       .def_property_readonly(
           "model", [](const Scene& s) { return std::string(name(s.model)); },
-          "'corrected', 'incompressible', 'consistent' or 'paper'")
+          "'corrected', 'incompressible' or 'paper'")
       .def_property_readonly(
           "domain",
           [](const Scene& s) { return py::make_tuple(from_vector(s.domain_min), from_vector(s.domain_max)); },

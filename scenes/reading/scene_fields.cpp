@@ -37,13 +37,13 @@ Problem read_scene_fields(Reading& reading) {
   scene.stiffness = extras.number("stiffness_m2_s2", 0.0, gltf::kNotNegative);
   scene.tension = extras.number("tension", 0.0, gltf::Range{0.0, 1.0});
   const std::string model = extras.text("model", name(scene.model));
-  const auto known = std::find(kParticleModelNames.begin(), kParticleModelNames.end(), model);
-  if (known == kParticleModelNames.end()) {
-    extras.fail("model", "is '" + model + "'",
-                "Give \"corrected\", \"incompressible\", \"consistent\" or \"paper\" (sim/pressure/README.md "
-                "compares them)");
+  if (const std::optional<ParticleModel> known = model_named(model)) {
+    scene.model = *known;
   } else {
-    scene.model = static_cast<ParticleModel>(known - kParticleModelNames.begin());
+    const bool gone = model == kGoneModel;
+    extras.fail("model", "is '" + model + (gone ? "', a model that is no more" : "'"),
+                std::string("Give \"corrected\"") + (gone ? ", which took its place" : "") +
+                    ", \"incompressible\" or \"paper\" (sim/pressure/README.md compares them)");
   }
   scene.duration = extras.number("duration_s", scene.duration, gltf::Range{0.0, 86400.0, true});
   scene.settle = extras.number("settle_s", 0.0, gltf::Range{0.0, 60.0});

@@ -41,9 +41,9 @@ struct MirrorColumns {
 struct BoundaryParticles {
   Column<float> x, y, z;     ///< m, world
   Column<float> vx, vy, vz;  ///< m/s (Eq 14)
-  Column<float> pressure;  ///< kPaper: Pa, Eq 7 at the body's constant density; kConsistent: how many lattice
-                           ///< particles it stands for, about kWallShare
-  Column<float> volume;    ///< m³
+  Column<float> pressure;    ///< kPaper: Pa, Eq 7 at the body's constant density; corrects_gradients(): how
+                           ///< many lattice particles it stands for, about kWallShare
+  Column<float> volume;        ///< m³
   Column<float> viscosity;     ///< Pa·s
   Column<float> reach;         ///< m, SurfaceParticle::reach
   Column<std::uint16_t> body;  ///< index into Scene::bodies

@@ -88,8 +88,7 @@ using FluidView = MovingPacks<DevicePointer>;
 struct SortedFluid {
   std::uint32_t count = 0;  ///< retired ones, at the end, included
   FluidView state;
-  float4* pressed =
-      nullptr;  ///< position, and in w the pressure (kConsistent: V²P; corrects_gradients(): the volume)
+  float4* pressed = nullptr;  ///< position, and in w the pressure (corrects_gradients(): the volume)
   float4* push_a =
       nullptr;  ///< kCorrected: xx, xy, xz, yy of the pressure tensor, N·m⁴; kIncompressible: of 1 Pa's
   float4* push_b = nullptr;    ///< kCorrected: yz, zz of it; x, y of viscosity times velocity, Pa·m

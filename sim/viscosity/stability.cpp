@@ -15,8 +15,8 @@ namespace {
 
 // Explicit viscosity is stable below 2/λ; λ of the roughest mode is about twice the lattice sum.
 constexpr double kViscousFactor = 0.8;
-// What is left of that sum for the fluid's first layer, and what a wall adds to it in the models whose
-// boundary layer counts as one lattice layer.
+// What is left of that sum for the fluid's first layer, and what a wall adds to it in the published model,
+// whose boundary layer counts as one lattice layer.
 constexpr double kHalfLattice = 0.5;
 constexpr double kOneLayer = 0.85;
 // Where two walls meet a particle has a quarter of a lattice and both walls. Rounding and packing leave less
@@ -59,7 +59,7 @@ double wall_part(const Scene& scene, const Plan& plan, DragLayer layer) {
                                         : kOneLayer;
 }
 
-// The other models' boundary layers have less, and their steps stay as they are, to compare with.
+// The published model's boundary layer has less, and its steps stay as they are, to compare with.
 double of_an_edge(const Plan& plan) {
   return corrects_gradients(plan.model) ? kOfAnEdge : 0.0;
 }

@@ -64,7 +64,7 @@ WallDrag computed(ParticleModel model, double ratio, DragLayer layer) {
   const DragShape<double> shape = drag_shape(layer, ratio);
   const LiesEvenly& lies = model == ParticleModel::kIncompressible ? kSolved : kCompressible;
   const int reach = static_cast<int>(std::ceil(ratio));
-  const double behind = layer == DragLayer::kBehind ? wall_inset(model, ratio) : 0.0;
+  const double behind = layer == DragLayer::kBehind ? wall_inset(ratio) : 0.0;
   double stress = 0.0, by_layers = 0.0, evenly = 0.0, whole = layer_drag<Kernel>(0.0, ratio, shape).along;
   for (int n = 1; n <= reach; ++n) {
     const LayerDrag layer = layer_drag<Kernel>(n, ratio, shape);

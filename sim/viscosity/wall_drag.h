@@ -18,7 +18,7 @@ enum class DragLayer {
 /// The corrected model's walls drag from the surface itself: the viscous pair force is central, and from
 /// behind the surface that line is mostly across it (tests/notebook/2026-11-25-viscous-force-at-walls.md).
 /// Where all fluids and bodies are thin (artificial_viscosity.h), artificial viscosity exceeds theirs and the
-/// second layer is not worth its time; so too in the other models. `scene`: as it starts, since boundary
+/// second layer is not worth its time; so too in the published model. `scene`: as it starts, since boundary
 /// layers stay for the run.
 DragLayer drag_layer(const Scene& scene, const Plan& plan);
 

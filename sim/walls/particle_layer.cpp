@@ -36,7 +36,6 @@ class ParticleLayer {
       : particles_(particles),
         spacing_(plan.spacing),
         h_(static_cast<float>(plan.support_radius)),
-        by_sides_(corrects_gradients(plan.model)),
         near_(h_) {
     for (const LayerParticle& p : particles) near_.add(p.position);
   }
@@ -75,8 +74,6 @@ class ParticleLayer {
     return own / (own + other) * meant / found;
   }
 
-  bool by_sides() const { return by_sides_; }
-
  private:
   template <class F>
   void around(const glm::vec3& at, F&& f) const {
@@ -86,13 +83,12 @@ class ParticleLayer {
     });
   }
   bool opposed(std::uint32_t p, std::uint32_t q) const {
-    return by_sides_ && glm::dot(particles_[p].normal, particles_[q].normal) < kOpposed;
+    return glm::dot(particles_[p].normal, particles_[q].normal) < kOpposed;
   }
 
   std::span<const LayerParticle> particles_;
   double spacing_;
   float h_;
-  bool by_sides_;
   PointBuckets near_;
 };
 
@@ -105,7 +101,6 @@ std::vector<float> layer_shares(std::span<const LayerParticle> particles, const 
   crowded.reserve(particles.size());
   for (std::uint32_t p = 0; p < particles.size(); ++p)
     crowded.push_back(static_cast<float>(kWallShare * flat / layer.own(p)));
-  if (!layer.by_sides()) return crowded;
   std::vector<float> shares = crowded;
   for (std::uint32_t p = 0; p < particles.size(); ++p)
     shares[p] *= static_cast<float>(layer.behind_thin_wall(p, crowded));

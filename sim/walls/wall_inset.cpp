@@ -40,9 +40,9 @@ double boundary_to_fluid_layer(double ratio) {
 
 }  // namespace
 
-double wall_inset(ParticleModel model, double support_ratio) {
+double wall_inset(double support_ratio) {
   constexpr double kReadAt = 2.0;
-  if (!corrects_gradients(model) || support_ratio == kReadAt) return kWallInset;
+  if (support_ratio == kReadAt) return kWallInset;
   return kWallInset + boundary_to_fluid_layer(support_ratio) - boundary_to_fluid_layer(kReadAt);
 }
 

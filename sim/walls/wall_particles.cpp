@@ -167,9 +167,9 @@ struct Depths {
 // implicit viscosity and pressure projection: less deep, momentum errors are four times as large.
 Depths depths_of(const Scene& scene, const Plan& plan, float apart, DragLayer layer) {
   constexpr double kWhole = 0.99;  // of a spacing
-  const double behind = wall_inset(plan.model, scene.support_ratio);
+  const double behind = wall_inset(scene.support_ratio);
   const bool both_solved = plan.implicit_viscosity && plan.model == ParticleModel::kIncompressible;
-  const bool hollow = corrects_gradients(plan.model) && apart > kWhole * plan.spacing && !both_solved;
+  const bool hollow = apart > kWhole * plan.spacing && !both_solved;
   const double flat = hollow ? behind - kOverHollows : behind;
   const double concave = layer == DragLayer::kBehind ? flat : behind;
   return {static_cast<float>(flat), static_cast<float>(concave), static_cast<float>(behind)};
@@ -249,8 +249,7 @@ std::vector<LayerParticle> own_layer(const SurfaceSamples& surface, const Distan
         on_level_set(at, normal, depth, two_sided ? thick[i] : kTwoSides * depth, thin_near, field);
     layer.push_back({place.at, at, two_sided ? normal : glm::vec3(0.0f), depth, place.lacks});
   }
-  if (field.distance && plan.model != ParticleModel::kPaper)
-    close_gaps(field, deep.flat * spacing, spacing, surface.apart, layer);
+  if (level) close_gaps(field, deep.flat * spacing, spacing, surface.apart, layer);
   return layer;
 }
 

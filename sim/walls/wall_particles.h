@@ -15,8 +15,8 @@ namespace slosh {
 struct SurfaceParticle {
   glm::vec3 position;  ///< m, mesh frame
   std::uint16_t body;  ///< index into Scene::bodies
-  float pressure;      ///< kPaper: Pa, Eq 7 at the body's constant density; kConsistent: how many lattice
-                       ///< particles it stands for, about two
+  float pressure;      ///< kPaper: Pa, Eq 7 at the body's constant density; corrects_gradients(): how many
+                       ///< lattice particles it stands for, about two
   float volume;        ///< m³, of its viscous force (WallDrag::factor is in it)
   float viscosity;     ///< Pa·s
   float reach;         ///< m, within which it meets fluid: the support radius, less LayerParticle::lacks

@@ -272,11 +272,10 @@ int main(int argc, char** argv) {
   app.add_option("--only", only, "one part")->check(CLI::IsMember({"speed", "drag", "error"}));
   app.add_option("--steps", steps, "steps that are timed for each row")->check(CLI::Range(1, 100000));
   app.add_option("--counts", counts, "particle counts of the speed and drag parts");
-  Models models{ParticleModel::kCorrected, ParticleModel::kConsistent, ParticleModel::kPaper,
-                ParticleModel::kIncompressible};
+  Models models{ParticleModel::kCorrected, ParticleModel::kPaper, ParticleModel::kIncompressible};
   std::string only_model;
   app.add_option("--model", only_model, "one model in the speed and drag parts")
-      ->check(CLI::IsMember({"corrected", "consistent", "paper", "incompressible"}));
+      ->check(CLI::IsMember({"corrected", "paper", "incompressible"}));
   CLI11_PARSE(app, argc, argv);
   if (!only_model.empty())
     std::erase_if(models, [&](ParticleModel model) { return name(model) != only_model; });

@@ -1,12 +1,13 @@
 // A pool of fluid at growing counts, step after step: CSV on standard output.
 // Usage: bench_cuda [drag] [MODEL] [cuda|cpu] [particles…]
-// MODEL: paper, consistent, corrected or incompressible; the default one unless named. At rest; or with
+// MODEL: paper, corrected or incompressible; the default one unless named. At rest; or with
 // `drag` turning, without viscosity, at 50 Pa·s by explicit steps and at 50 Pa·s solved.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -99,13 +100,13 @@ int main(int argc, char** argv) {
   ParticleModel model = Scene{}.model;
   std::vector<double> sizes;
   for (const std::string& word : std::vector<std::string>(argv + 1, argv + argc)) {
-    const auto* const named = std::find(std::begin(kParticleModelNames), std::end(kParticleModelNames), word);
+    const std::optional<ParticleModel> named = model_named(word);
     if (word == "drag") {
       drag = true;
     } else if (word == "cuda" || word == "cpu") {
       backend = word == "cpu" ? Backend::kCpu : Backend::kCuda;
-    } else if (named != std::end(kParticleModelNames)) {
-      model = static_cast<ParticleModel>(named - std::begin(kParticleModelNames));
+    } else if (named) {
+      model = *named;
     } else if (std::atof(word.c_str()) >= 1.0) {
       sizes.push_back(std::atof(word.c_str()));
     } else {

@@ -196,8 +196,7 @@ void compare_guarded() {
   }
 }
 
-constexpr ParticleModel kModels[] = {ParticleModel::kCorrected, ParticleModel::kConsistent,
-                                     ParticleModel::kPaper};
+constexpr ParticleModel kModels[] = {ParticleModel::kCorrected, ParticleModel::kPaper};
 
 void compare_single_steps() {
   for (const ParticleModel model : kModels) {
@@ -256,7 +255,6 @@ int main(int argc, char** argv) {
   compare_second("tank at rest", make_tank({}), 0.5, 2e-3, 1e-4);
   compare_second("two fluids stirred by a paddle", stirred_tank(ParticleModel::kCorrected), 0.0, 2e-2, 1e-2);
   repeat("two fluids, paddle", stirred_tank(ParticleModel::kCorrected), 0.09);
-  repeat("consistent model", stirred_tank(ParticleModel::kConsistent), 0.09);
   repeat("paper model", stirred_tank(ParticleModel::kPaper), 0.09);
   repeat("probe", probed_tank(), 0.05);
   compare_probe();

@@ -49,8 +49,8 @@ TEST_P(EachModel, fluid_gains_what_gravity_and_walls_give) {
 }
 
 INSTANTIATE_TEST_SUITE_P(models, EachModel,
-                         ::testing::Values(ParticleModel::kCorrected, ParticleModel::kConsistent,
-                                           ParticleModel::kPaper, ParticleModel::kIncompressible),
+                         ::testing::Values(ParticleModel::kCorrected, ParticleModel::kPaper,
+                                           ParticleModel::kIncompressible),
                          [](const auto& p) { return name(p.param); });
 
 // The same with a free box that falls into the fluid: box and fluid together.
@@ -146,17 +146,14 @@ double angular_momentum_drift(ParticleModel model) {
 
 // Central forces keep angular momentum. Eq 9 drags along the velocity difference, off the line between the
 // particles, and loses most of it: both are shown, or the test would not notice a broken measurement.
-TEST(AngularMomentum, consistent_model_keeps_it_and_eq_9_does_not) {
-  const double consistent = angular_momentum_drift(ParticleModel::kConsistent);
+TEST(AngularMomentum, central_forces_keep_it_and_eq_9_does_not) {
   const double paper = angular_momentum_drift(ParticleModel::kPaper);
   const double corrected = angular_momentum_drift(ParticleModel::kCorrected);
   const double incompressible = angular_momentum_drift(ParticleModel::kIncompressible);
   report_value("angular momentum lost in 100 steps, incompressible", 100.0 * incompressible, "%");
   EXPECT_LT(incompressible, 1e-3);
-  report_value("angular momentum lost in 100 steps, consistent", 100.0 * consistent, "%");
   report_value("angular momentum lost in 100 steps, corrected", 100.0 * corrected, "%");
   report_value("angular momentum lost in 100 steps, paper's Eq 9", 100.0 * paper, "%");
-  EXPECT_LT(consistent, 1e-3);
   EXPECT_LT(corrected, 1e-3);
   EXPECT_GT(paper, 0.02);
 }
@@ -302,8 +299,7 @@ TEST_P(Honey, box_gives_what_the_fluid_takes) {
 
 INSTANTIATE_TEST_SUITE_P(
     Models, Honey,
-    ::testing::Values(HoneyCase{"consistent", ParticleModel::kConsistent, 20.0, false, 1e-5},
-                      HoneyCase{"corrected", ParticleModel::kCorrected, 20.0, false, 1e-5},
+    ::testing::Values(HoneyCase{"corrected", ParticleModel::kCorrected, 20.0, false, 1e-5},
                       HoneyCase{"incompressible", ParticleModel::kIncompressible, 20.0, false, 1e-5},
                       HoneyCase{"incompressible_solved", ParticleModel::kIncompressible, 50.0, true, 1e-5},
                       HoneyCase{"solved", ParticleModel::kCorrected, 50.0, true, 1e-5}),
@@ -322,7 +318,7 @@ TEST(GuardedWalls, give_their_body_what_they_take_from_particles) {
   b.add_volume(make::box(glm::dvec3(-kHalf), {kHalf, 0.0, 0.03}));
   b.scene.gravity = {0.0, 0.0, 0.0};
   b.scene.stiffness = 9.0;
-  b.scene.model = ParticleModel::kConsistent;
+  b.scene.model = ParticleModel::kCorrected;
   b.set_domain(glm::dvec3(-1.0), glm::dvec3(1.0));
   SampledScene sampled = sample_scene(b.scene, 0.01).value();
   for (glm::vec3& v : sampled.fluid_velocities) v = {1.8f, 0.3f, 0.1f};

@@ -230,18 +230,6 @@ INSTANTIATE_TEST_SUITE_P(
                       std::vector<Known>{{"stokes", 0.008, "drag", 7.1, ParticleModel::kPaper}}),
     named);
 
-// What the corrected model is for, seen by the same instrument: the lattice of the consistent one holds the
-// ball with a fifth of its buoyancy.
-TEST(Lattice, is_seen_by_the_instrument) {
-  report::Setting setting;
-  setting.spacing = 0.008;
-  setting.model = ParticleModel::kConsistent;
-  setting.threads = 1;
-  report::Cost cost;
-  const std::vector<report::Reading> readings = report::find_error_case("slow_ball")->run(setting, cost);
-  EXPECT_GT(readings[0].error(), 0.10) << readings[0].quantity;
-}
-
 TEST(ErrorCases, have_ids_and_spacings_from_coarse_to_fine) {
   for (const report::ErrorCase& each : report::error_cases()) {
     EXPECT_EQ(std::string(each.id).find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_"),

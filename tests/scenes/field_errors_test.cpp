@@ -244,7 +244,7 @@ TEST(FieldValues, ScaleIsBakedAndPosesStayRigid) {
   EXPECT_NEAR(rotation_between({1, 0, 0, 0}, s.bodies[0].pose.orientation).x, 0.0, 1e-9);
 }
 
-TEST(FieldValues, ModelIsOneOfTwo) {
+TEST(FieldValues, ModelIsOneOfThree) {
   const auto with_model = [](const char* model) {
     return test::load_edited([=](json& j) { j["scenes"][0]["extras"]["model"] = model; });
   };
@@ -255,6 +255,11 @@ TEST(FieldValues, ModelIsOneOfTwo) {
   ASSERT_FALSE(unknown);
   EXPECT_NE(unknown.error().text().find("'pbf'"), std::string::npos);
   EXPECT_NE(unknown.error().text().find("model"), std::string::npos);
+  const auto gone = with_model("consistent");
+  ASSERT_FALSE(gone);
+  for (const char* word : {"'consistent', a model that is no more", "\"corrected\", which took its place",
+                           "\"incompressible\"", "\"paper\""})
+    EXPECT_NE(gone.error().text().find(word), std::string::npos) << word << ": " << gone.error().text();
 }
 
 TEST(FieldValues, SettlesWhereNothingIsSaidAndNothingMoves) {

@@ -49,8 +49,8 @@ TEST(Backend, AskingForCudaGivesCudaOrAnError) {
 
 // No model is one backend's alone.
 TEST(Backend, AutoTakesTheSameForEveryModel) {
-  for (const ParticleModel model : {ParticleModel::kPaper, ParticleModel::kConsistent,
-                                    ParticleModel::kCorrected, ParticleModel::kIncompressible}) {
+  for (const ParticleModel model :
+       {ParticleModel::kPaper, ParticleModel::kCorrected, ParticleModel::kIncompressible}) {
     Tank tank = make_tank({});
     tank.scene.model = model;
     Result<World> world = make_world(tank.scene, tank.sampled, make_plan(tank.scene, tank.sampled.spacing),

@@ -87,8 +87,7 @@ TEST_P(PressureOf, still_water_grows_with_depth) {
 }
 
 INSTANTIATE_TEST_SUITE_P(models, PressureOf,
-                         ::testing::Values(ParticleModel::kPaper, ParticleModel::kConsistent,
-                                           ParticleModel::kCorrected),
+                         ::testing::Values(ParticleModel::kPaper, ParticleModel::kCorrected),
                          [](const auto& p) { return std::string(name(p.param)); });
 
 TEST(Pressures, OfWhatHasLeftTheWorldAreNone) {

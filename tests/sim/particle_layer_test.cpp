@@ -20,9 +20,8 @@ constexpr double kFirstLayer = 0.48;  // spacings off a wall, where fluid is to 
 
 // What a plate's particles add to the density half a spacing over the middle of its upper face: the kernel's
 // shape, mean over the places, in units of the rest lattice's for one particle in its middle.
-double density_over_plate(double thick, ParticleModel model = ParticleModel::kCorrected) {
+double density_over_plate(double thick) {
   lab::SceneBuilder b;
-  b.scene.model = model;
   b.add_fluid(1000.0, 0.05);
   b.add_fixed("plate", make::box({-0.06, -thick, -0.06}, {0.06, 0.0, 0.06}));
   b.add_volume(make::box({-0.06, 0.02, -0.06}, {0.06, 0.05, 0.06}));
@@ -80,12 +79,6 @@ TEST(Sheet, HasNoParticleProudOfABoxsEdges) {
   }
   ASSERT_GT(all, 1000);
   EXPECT_EQ(proud, 0) << "of " << all;
-}
-
-// The model without a correction is as it was, to compare with.
-TEST(Sheet, TheConsistentModelKeepsItsWalls) {
-  const double thick = density_over_plate(0.1, ParticleModel::kConsistent);
-  EXPECT_GT(density_over_plate(1.02 * kSpacing, ParticleModel::kConsistent) / thick, 1.5);
 }
 
 }  // namespace

@@ -157,7 +157,7 @@ TEST(Plan, SolvesDragWhereExplicitStepsWouldBeManyTimesShorter) {
   EXPECT_NEAR(solved.time_step, thin.time_step, 1e-9) << solved.time_step_reason;
   EXPECT_FALSE(without.has(PassId::kImplicitViscosity));
   EXPECT_LT(without.time_step, 0.25 * solved.time_step);
-  tank.scene.model = ParticleModel::kConsistent;
+  tank.scene.model = ParticleModel::kPaper;
   EXPECT_FALSE(make_plan(tank.scene, 0.01).implicit_viscosity);
   EXPECT_TRUE(can_solve_drag(Backend::kCuda));
   EXPECT_TRUE(can_solve_drag(Backend::kCpu));

@@ -33,19 +33,17 @@ double first_layers_density(double ratio, double from_sheet) {
 TEST(WallInset, IsWhereTheFirstLayerHasALatticesDensity) {
   const double stands = 0.483;  // by the same at a ratio of 2
   for (const double ratio : {1.75, 2.0, 2.25, 2.5, 2.6}) {
-    const double inset = wall_inset(ParticleModel::kCorrected, ratio);
+    const double inset = wall_inset(ratio);
     EXPECT_NEAR(first_layers_density(ratio, inset + stands), 1.0, 0.004) << ratio;
   }
   EXPECT_GT(first_layers_density(2.5, kWallInset + stands), 1.05)
       << "where the boundary layer lay at every ratio";
 }
 
-TEST(WallInset, IsTheSameToTheBitAtARatioOfTwoAndInTheOtherModels) {
-  EXPECT_EQ(wall_inset(ParticleModel::kCorrected, 2.0), 0.7);
-  EXPECT_EQ(wall_inset(ParticleModel::kIncompressible, 2.0), 0.7);
-  EXPECT_EQ(wall_inset(ParticleModel::kConsistent, 2.5), 0.7);
-  EXPECT_NEAR(wall_inset(ParticleModel::kIncompressible, 2.5), 0.799, 0.001);
-  EXPECT_NEAR(wall_inset(ParticleModel::kCorrected, 1.5), 0.603, 0.001);
+TEST(WallInset, IsWhereItWasReadAtARatioOfTwo) {
+  EXPECT_EQ(wall_inset(2.0), 0.7);
+  EXPECT_NEAR(wall_inset(2.5), 0.799, 0.001);
+  EXPECT_NEAR(wall_inset(1.5), 0.603, 0.001);
 }
 
 }  // namespace

@@ -71,8 +71,8 @@ bool print_shipped(const std::string& name, int steps) {
   const auto sampled = sample_scene(scene, scene.spacing_max);
   if (!sampled) throw std::runtime_error(sampled.error().text());
   bool same = true;
-  for (const ParticleModel model : {ParticleModel::kCorrected, ParticleModel::kConsistent,
-                                    ParticleModel::kPaper, ParticleModel::kIncompressible}) {
+  for (const ParticleModel model :
+       {ParticleModel::kCorrected, ParticleModel::kPaper, ParticleModel::kIncompressible}) {
     scene.model = model;
     same &= print(name + " " + slosh::name(model), scene, sampled.value(), steps);
   }
@@ -81,8 +81,8 @@ bool print_shipped(const std::string& name, int steps) {
 
 bool print_small(int steps) {
   bool same = true;
-  for (const ParticleModel model : {ParticleModel::kCorrected, ParticleModel::kConsistent,
-                                    ParticleModel::kPaper, ParticleModel::kIncompressible}) {
+  for (const ParticleModel model :
+       {ParticleModel::kCorrected, ParticleModel::kPaper, ParticleModel::kIncompressible}) {
     const std::string word = std::string(" ") + slosh::name(model);
     testing::Tank tank = testing::stirred_tank(0.1);
     tank.scene.model = model;

@@ -53,8 +53,8 @@ TEST(World, IncompressibleModelIsTheSameWhateverTheThreads) {
 
 // What the walls and the paddle do to the fluid, the fluid does to them: all momentum is accounted for.
 TEST(World, EveryStepBalancesMomentum) {
-  for (const ParticleModel model : {ParticleModel::kCorrected, ParticleModel::kConsistent,
-                                    ParticleModel::kPaper, ParticleModel::kIncompressible}) {
+  for (const ParticleModel model :
+       {ParticleModel::kCorrected, ParticleModel::kPaper, ParticleModel::kIncompressible}) {
     Tank tank = stirred_tank();
     tank.scene.model = model;
     World world = world_of(tank);

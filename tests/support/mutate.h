@@ -62,6 +62,15 @@ class Mutator {
   void choice(std::string_view name, T& value, const std::array<const char*, N>&) {
     choice(name, value, N);
   }
+  template <class T, std::size_t N>
+  void choice_from(std::string_view name, T& value, T first, const std::array<const char*, N>&,
+                   std::string_view) {
+    const auto least = static_cast<std::uint64_t>(first);
+    if (here(name, "a choice that is gone")) return varint(least - 1);
+    if (here(name, "no choice")) return varint(least + N);
+    if (here(name, "a huge choice")) return varint(~std::uint64_t{0});
+    number(name, static_cast<std::uint64_t>(value));
+  }
   void flag(std::string_view name, bool& value) {
     if (here(name, "2")) return byte(2);
     if (here(name, "255")) return byte(255);

@@ -58,6 +58,10 @@ class Randomizer {
   void choice(std::string_view name, T& value, const std::array<const char*, N>&) {
     choice(name, value, N);
   }
+  template <class T, std::size_t N>
+  void choice_from(std::string_view, T& value, T first, const std::array<const char*, N>&, std::string_view) {
+    value = static_cast<T>(static_cast<std::uint64_t>(first) + random_() % N);
+  }
   void flag(std::string_view, bool& value) { value = random_() % 2 == 0; }
   void real64(std::string_view, double& value, double least, double most) { value = real(least, most); }
   template <class T>

@@ -76,7 +76,7 @@ FIELDS = {
         ("gravity_m_s2", "m/s2", (0.0, -9.81, 0.0), -1000.0, 1000.0, "Axes y up: down is (0, -9.81, 0)"),
         ("domain_min_m", "m", (-1.0, -0.5, -1.0), None, None, "What leaves it is gone; axes y up"),
         ("domain_max_m", "m", (1.0, 1.5, 1.0), None, None, "Its other corner"),
-        ("model", "", ["corrected", "incompressible", "consistent", "paper"], None, None, "Of the particles; sim/pressure/README.md compares them"),
+        ("model", "", ["corrected", "incompressible", "paper"], None, None, "Of the particles; sim/pressure/README.md compares them"),
         ("support_ratio", "", 2.0, 1.5, 2.6, "Support radius over spacing"),
         ("stiffness_m2_s2", "m2/s2", 0.0, 0.0, None, "Eq 7's k; 0: the plan chooses"),
         ("tension", "", 0.0, 0.0, 1.0, "Share of Eq 7's negative pressure kept"),

@@ -36,7 +36,7 @@ struct CorrectedState {
 
 /// From which share of the settled moment on no neighbour is missing. Settled particles have 0.95 to 1.1 of
 /// it, 0.9 where they lie unevenly or beside a wall, which is one layer in it; particles taken for a surface
-/// press in part as the consistent model's, and yield. A fluid without artificial viscosity counts nine
+/// press in part by an energy's gradient, and yield. A fluid without artificial viscosity counts nine
 /// tenths as all; one with it needs all (tests/notebook/2026-11-25-slow-flow-yields.md). `viscosity`: Pa·s.
 inline constexpr float kPassedOver = 0.1f;
 SLOSH_HD inline float whole_from(const CorrectionConstants& c, float viscosity) {

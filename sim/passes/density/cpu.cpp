@@ -14,19 +14,17 @@ namespace {
 
 constexpr std::size_t kRunsPerChunk = 32;
 
-// Σ shape over rows; with a share, each neighbour counts by it (wall particles).
-template <class Kernel, bool shared>
-FloatBatch sum_rows(const float* xs, const float* ys, const float* zs, const float* shares,
-                    const RowList& rows, const FluidParticles& fluid, std::uint32_t p, float support_radius) {
+// Σ shape over rows.
+template <class Kernel>
+FloatBatch sum_fluid(const RowList& rows, const FluidParticles& fluid, std::uint32_t p,
+                     float support_radius) {
   const FloatBatch x(fluid.x[p]), y(fluid.y[p]), z(fluid.z[p]);
   const Support<FloatBatch> support{FloatBatch(support_radius), FloatBatch(support_radius * support_radius)};
   const auto shape = [&](std::uint32_t j) {
-    const FloatBatch dx = x - FloatBatch::load_unaligned(xs + j);
-    const FloatBatch dy = y - FloatBatch::load_unaligned(ys + j);
-    const FloatBatch dz = z - FloatBatch::load_unaligned(zs + j);
-    const FloatBatch w = Kernel::shape(dx * dx + dy * dy + dz * dz, support);
-    if constexpr (shared) return w * FloatBatch::load_unaligned(shares + j);
-    return w;
+    const FloatBatch dx = x - FloatBatch::load_unaligned(fluid.x.data() + j);
+    const FloatBatch dy = y - FloatBatch::load_unaligned(fluid.y.data() + j);
+    const FloatBatch dz = z - FloatBatch::load_unaligned(fluid.z.data() + j);
+    return Kernel::shape(dx * dx + dy * dy + dz * dz, support);
   };
   FloatBatch sum(0.0f);
   for (int row = 0; row < rows.count; ++row) {
@@ -38,21 +36,9 @@ FloatBatch sum_rows(const float* xs, const float* ys, const float* zs, const flo
   return sum;
 }
 
-template <class Kernel>
-FloatBatch sum_fluid(const RowList& rows, const FluidParticles& fluid, std::uint32_t p, float h) {
-  return sum_rows<Kernel, false>(fluid.x.data(), fluid.y.data(), fluid.z.data(), nullptr, rows, fluid, p, h);
-}
-
-template <class Kernel>
-FloatBatch sum_walls(const BoundaryParticles& walls, const RowList& rows, const FluidParticles& fluid,
-                     std::uint32_t p, float h) {
-  return sum_rows<Kernel, true>(walls.x.data(), walls.y.data(), walls.z.data(), walls.pressure.data(), rows,
-                                fluid, p, h);
-}
-
+// The published model's: bodies do not count.
 template <class Parts>
-void compute_density_of(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
-                        const BoundaryParticles& fixed, const BoundaryParticles& moving) {
+void compute_density_of(PassContext& context, ThreadTeam& team, FluidParticles& fluid) {
   using Kernel = typename Parts::DensityKernel;
   const std::vector<CellRun>& runs = fluid.index.runs();
   const float h = context.support_radius;
@@ -63,21 +49,12 @@ void compute_density_of(PassContext& context, ThreadTeam& team, FluidParticles& 
     float densest = 0.0f;
     for (std::size_t r = begin; r < end; ++r) {
       const RowList rows = fluid.index.rows(context.grid, runs[r].cell);
-      RowList fixed_rows, moving_rows;
-      if constexpr (Parts::kWallsCount) {
-        fixed_rows = fixed.index.rows(context.grid, runs[r].cell);
-        moving_rows = moving.index.rows(context.grid, runs[r].cell);
-      }
       for (std::uint32_t p = runs[r].particles.begin; p < runs[r].particles.end; ++p) {
-        FloatBatch sum = sum_fluid<Kernel>(rows, fluid, p, h);
-        if constexpr (Parts::kWallsCount) {
-          if (fixed_rows.count) sum += sum_walls<Kernel>(fixed, fixed_rows, fluid, p, h);
-          if (moving_rows.count) sum += sum_walls<Kernel>(moving, moving_rows, fluid, p, h);
-        }
+        const FloatBatch sum = sum_fluid<Kernel>(rows, fluid, p, h);
         const ParticleKind& kind = context.kinds[fluid.kind[p]];
-        const PressureState state = pressure_state(lane_sum(sum), context.rest_number_density,
-                                                   context.rest_volume, kind.pressing_density, stiffness,
-                                                   tension, fluid.volume[p], Parts::kPressureEnergy);
+        const PressureState state =
+            pressure_state(lane_sum(sum), context.rest_number_density, context.rest_volume,
+                           kind.pressing_density, stiffness, tension, fluid.volume[p], false);
         densest = std::max(densest, state.compression);
         fluid.pressure[p] = state.pressure;
         fluid.volume[p] = state.volume;
@@ -96,7 +73,7 @@ void compute_density(PassContext& context, ThreadTeam& team, FluidParticles& flu
     if constexpr (Parts::kCorrected) {
       compute_corrected_density(context, team, fluid, fixed, moving, press);
     } else {
-      compute_density_of<Parts>(context, team, fluid, fixed, moving);
+      compute_density_of<Parts>(context, team, fluid);
     }
   });
 }

@@ -10,10 +10,10 @@ namespace slosh::cuda {
 
 namespace {
 
+// The published model's: bodies do not count.
 template <class Team, class Parts>
 __global__ __launch_bounds__(kThreads) void density_kernel(StepConstants c, const ParticleKind* kinds,
-                                                           SortedFluid fluid, SortedSurface fixed,
-                                                           SortedSurface moving, bool viscosities,
+                                                           SortedFluid fluid, bool viscosities,
                                                            std::uint32_t* status) {
   const std::uint32_t p = Team::particle();
   if (p >= fluid.count) return;
@@ -32,23 +32,11 @@ __global__ __launch_bounds__(kThreads) void density_kernel(StepConstants c, cons
   for_neighbors<Team>(c.grid, fluid.cells, cell, [&](std::uint32_t j) {
     sum += Kernel::shape(r_squared(__ldg(fluid.state.x + j)), support);
   });
-  if constexpr (Parts::kWallsCount) {
-    const auto add_walls = [&](const SortedSurface& walls) {
-      if (walls.count == 0) return;
-      for_neighbors<Team>(c.grid, walls.cells, cell, [&](std::uint32_t j) {
-        const float4 wall = __ldg(walls.x + j);
-        sum += Kernel::shape(r_squared(wall), support) * wall.w;
-      });
-    };
-    add_walls(fixed);
-    add_walls(moving);
-  }
   Team::sum(sum);
   if (Team::lane() != 0) return;
   const ParticleKind kind = kinds[fluid.state.kind[p]];
-  const PressureState state =
-      pressure_state(sum, c.rest_number_density, c.rest_volume, kind.pressing_density, c.stiffness, c.tension,
-                     fluid.state.v[p].w, Parts::kPressureEnergy);
+  const PressureState state = pressure_state(sum, c.rest_number_density, c.rest_volume, kind.pressing_density,
+                                             c.stiffness, c.tension, fluid.state.v[p].w, false);
   fluid.pressed[p] = make_float4(x.x, x.y, x.z, state.pressure);
   fluid.state.v[p].w = state.volume;
   if (viscosities) fluid.viscosity[p] = kind.viscosity;
@@ -193,7 +181,7 @@ void launch_density(const StepConstants& constants, const Plan& plan, const Part
     } else {
       with_team<kDensityTeams>(fluid.count, [&]<class Team>() {
         density_kernel<Team, Parts><<<blocks_for(fluid.count * Team::kLanes), kThreads, 0, stream>>>(
-            constants, kinds, fluid, fixed, moving, viscosities, status);
+            constants, kinds, fluid, viscosities, status);
       });
     }
   });

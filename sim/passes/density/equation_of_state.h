@@ -16,12 +16,12 @@ SLOSH_HD Real effective_compression(Real compression, Real tension) {
 
 /// What a particle has after the density pass.
 struct PressureState {
-  float pressure;     ///< Pa; kConsistent: V²P, N·m⁴
+  float pressure;     ///< Pa; kCorrected: V²P, N·m⁴
   float volume;       ///< m³
   float compression;  ///< ρ/ρ⁰ − 1
 };
 
-/// Bulk damping of the consistent model: this times the compression gained since the last step is felt on top
+/// Bulk damping of the corrected model: this times the compression gained since the last step is felt on top
 /// of the compression itself. It takes the ring out of sound and the bounce out of a drop that meets a wall,
 /// which without it comes back with up to twice its speed (a contact lasts about three steps); shear does not
 /// feel it. Explicit, so with ω the stiffest mode (1 + 2 · this) ω²Δt² must stay below 4.
@@ -32,17 +32,17 @@ inline constexpr float kBulkDamping = 0.25f;
 /// volume one step ago, the rest volume at the start.
 SLOSH_HD inline PressureState pressure_state(float sum, float rest_sum, float rest_volume, float density,
                                              float stiffness, float tension, float last_volume,
-                                             bool consistent) {
+                                             bool corrected) {
   const float compression = sum / rest_sum - 1.0f;
   const float effective = effective_compression(compression, tension);
   float felt = effective;
-  if (consistent && effective > 0.0f) {
+  if (corrected && effective > 0.0f) {
     const float gained = effective - (rest_volume / last_volume - 1.0f);
     felt = RealOps<float>::positive_part(effective + kBulkDamping * gained);
   }
   const float pressure = stiffness * density * felt;
   const float volume = rest_volume / (1.0f + effective);
-  return {consistent ? volume * volume * pressure : pressure, volume, compression};
+  return {corrected ? volume * volume * pressure : pressure, volume, compression};
 }
 
 }  // namespace slosh

@@ -89,7 +89,7 @@ SLOSH_HD inline float corrected_share(float compression) {
 }
 
 /// What V² P is multiplied by, from a moment that is 1 on the rest lattice: `share` of its inverse, `virial`
-/// times as strong, and for the rest 1, the gradient of an energy as in the consistent model. Where
+/// times as strong, and for the rest 1, the gradient of an energy of the densities. Where
 /// neighbours are missing (a free surface, spray) they are taken to lie evenly, and the share goes with them;
 /// none are from `whole_from` of the moment on.
 SLOSH_HD inline Symmetric<float> pressure_directions(const Symmetric<float>& moment, float share,

@@ -10,7 +10,7 @@ namespace slosh {
 enum class Viscosity { kNone, kOne, kPair };
 
 /// Eq 9 acts along the velocity difference: such pairs exert a torque on each other, and a glass of fluid
-/// that turns like a rigid body still brakes its glass. The consistent model keeps only the part along d
+/// that turns like a rigid body still brakes its glass. The corrected models keep only the part along d
 /// (Monaghan 2005), which conserves angular momentum and is nothing in rigid rotation; five times that has
 /// the same viscosity in 3-D (the mean of d̂ d̂ᵀ against a linear velocity field is a fifth of Eq 9's).
 enum class DragRule { kAlongVelocity, kCentral };

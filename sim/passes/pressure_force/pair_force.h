@@ -37,8 +37,8 @@ SLOSH_HD void add_pair_force(const ParticleView<Real>& p, const ParticleView<Rea
       sum.cy += sum.beyond * (tz * dx - tx * dz);
       sum.cz += sum.beyond * (tx * dy - ty * dx);
     }
-  } else if constexpr (presses(rule)) {
-    along = pressure_coefficient<rule>(p, i) * kernel.slope_over_r;
+  } else if constexpr (rule == PairRule::kPaper) {
+    along = pressure_coefficient(p, i) * kernel.slope_over_r;
   }
   if constexpr (is_corrected_fluid(rule)) {
     const Real dragged = (i.ux - p.ux) * dx + (i.uy - p.uy) * dy + (i.uz - p.uz) * dz;

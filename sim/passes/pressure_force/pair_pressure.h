@@ -10,12 +10,10 @@ inline constexpr float kWallShare = 2.0f;
 
 /// How two particles press on each other. The force on p is −(coefficient) · ∇W:
 enum class PairRule {
-  kPaper,       ///< Eq 5: V_p V_i (P_p + P_i)/2. `pressure` is P.
-  kConsistent,  ///< V_p² P_p + V_i² P_i, the gradient of an energy of the densities. `pressure` is V²P.
-  kWall,  ///< fluid against a wall particle that counts in its density: V² P of the fluid, times the wall's
-          ///< share (how many lattice particles it stands for), which is the wall's `pressure`.
+  kPaper,          ///< Eq 5: V_p V_i (P_p + P_i)/2. `pressure` is P.
   kCorrected,      ///< (T_p + T_i) ∇W of two tensors `push`.
-  kCorrectedWall,  ///< fluid p against wall particle i: T_p times the wall's share.
+  kCorrectedWall,  ///< fluid p against wall particle i: T_p times the wall's share (how many lattice
+                   ///< particles it stands for), which is the wall's `pressure`.
   kCorrectedBody,  ///< the other side of it: wall particle p against fluid i.
   // With pressure projection:
   kSolved,      ///< fluid on fluid: the solve gives pressures, only viscosity is left
@@ -54,15 +52,10 @@ SLOSH_HD Symmetric<Real> pressure_tensor(const ParticleView<Real>& p, const Part
   }
 }
 
-template <PairRule rule, class Real>
+/// What it presses with as published.
+template <class Real>
 SLOSH_HD Real pressure_coefficient(const ParticleView<Real>& p, const ParticleView<Real>& i) {
-  if constexpr (rule == PairRule::kPaper) {
-    return Real(0.5f) * (p.volume * i.volume) * (p.pressure + i.pressure);
-  } else if constexpr (rule == PairRule::kConsistent) {
-    return p.pressure + i.pressure;
-  } else {
-    return p.pressure * i.pressure;
-  }
+  return Real(0.5f) * (p.volume * i.volume) * (p.pressure + i.pressure);
 }
 
 }  // namespace slosh

@@ -11,7 +11,7 @@ constinit const PassEntry pressure_force_pass{
       return f.fluid ? needed(f.plan.model == ParticleModel::kPaper ? "Eq 5"
                               : f.plan.model == ParticleModel::kIncompressible
                                   ? "Eq 5 by corrected gradients and the last step's pressures"
-                                  : "Eq 5 as the gradient of an energy")
+                                  : "Eq 5 by corrected gradients")
                      : left_out("no fluid");
     },
 };

@@ -65,7 +65,7 @@ TEST(SceneFrontier, WhatIsBeatenInTimeAndMissIsNotOnIt) {
   std::vector<ErrorRow> rows{row_of("sloshing", "period", 0.01, 1.0, 0.03),
                              row_of("couette", "torque", 0.004, 1.0, 0.0)};
   for (ErrorRow worse : {rows[0], rows[1]}) {
-    worse.model = "consistent";
+    worse.model = "paper";
     worse.wall_s = 2.0;
     worse.measured += 0.1;
     rows.push_back(worse);

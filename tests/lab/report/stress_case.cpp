@@ -91,6 +91,7 @@ Result<std::vector<StressRow>> read_stresses(const std::filesystem::path& file) 
     StressRow r;
     r.case_id = f[0];
     r.model = f[1];
+    if (!model_named(r.model)) return;
     r.backend = f[2];
     const auto verdict = std::find(kVerdictNames.begin(), kVerdictNames.end(), std::string_view(f[3]));
     if (verdict == kVerdictNames.end()) throw std::invalid_argument("verdict");

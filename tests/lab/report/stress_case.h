@@ -59,7 +59,8 @@ constexpr const char* kStressHeader =
     "case,model,backend,verdict,energy_ratio,momentum_error,lost_share,particles,steps,time_step_s,"
     "simulated_s,wall_s,status,why";
 std::string csv_line(const StressRow& row);
-/// Errors: it cannot be read, another header, a row that is none.
+/// Rows of models that are no more are passed over. Errors: it cannot be read, another header, a row that is
+/// none.
 Result<std::vector<StressRow>> read_stresses(const std::filesystem::path& file);
 
 /// The bounds that every case has.

@@ -43,8 +43,8 @@ ErrorRow row_of(const ErrorCase& which, const Setting& setting, const Cost& cost
 std::vector<Setting> base_settings(const SweepOptions& options) {
   std::vector<Setting> settings;
   for (const Backend backend : options.backends) {
-    for (const ParticleModel model : {ParticleModel::kPaper, ParticleModel::kConsistent,
-                                      ParticleModel::kCorrected, ParticleModel::kIncompressible}) {
+    for (const ParticleModel model :
+         {ParticleModel::kPaper, ParticleModel::kCorrected, ParticleModel::kIncompressible}) {
       if (!wanted(options.models, name(model))) continue;
       Setting setting;
       setting.model = model;
@@ -129,6 +129,7 @@ Result<std::vector<ErrorRow>> read_errors(const std::filesystem::path& file) {
     r.unit = f[2];
     r.plotted = f[3] == "1";
     r.model = f[4];
+    if (!model_named(r.model)) return;
     r.backend = f[5];
     r.threads = std::stoi(f[6]);
     double* const numbers[] = {&r.spacing,  &r.support_ratio, &r.step_share,  &r.particles,

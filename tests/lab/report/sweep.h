@@ -74,7 +74,8 @@ constexpr const char* kErrorHeader =
     "case,quantity,unit,plotted,model,backend,threads,spacing_m,support_ratio,step_share,particles,steps,"
     "time_step_s,simulated_s,wall_s,measured,expected,scale,error,lost,status,refused";
 std::string csv_line(const ErrorRow& row);
-/// Errors: it cannot be read, another header, a row that is none.
+/// Rows of models that are no more are passed over. Errors: it cannot be read, another header, a row that is
+/// none.
 Result<std::vector<ErrorRow>> read_errors(const std::filesystem::path& file);
 
 }  // namespace slosh::report

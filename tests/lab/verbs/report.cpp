@@ -36,7 +36,7 @@ void add_case_options(CLI::App& verb, ReportOptions& options, const std::string&
           "Only this particle model; may be given more than once (paper: the published one but for what\n"
           "sim/pressure/README.md lists: neighbours counted, no negative pressure, body particles' volumes "
           "from areas)")
-      ->check(CLI::IsMember({"paper", "consistent", "corrected", "incompressible"}));
+      ->check(CLI::IsMember({"paper", "corrected", "incompressible"}));
   verb.add_option(
           "--from", options.from,
           "Draw these " + table + " of earlier reports, of any machine, and run nothing; again for more")

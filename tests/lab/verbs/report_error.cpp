@@ -30,7 +30,7 @@ using report::Setting;
 
 constexpr const char* kErrorTable = "errors.csv";
 
-constexpr const char* kModels[] = {"paper", "consistent", "corrected", "incompressible"};
+constexpr const char* kModels[] = {"paper", "corrected", "incompressible"};
 
 /// One picture's and one table line's rows: of one case and one quantity of it.
 struct Group {
@@ -158,10 +158,10 @@ std::string markdown(const std::vector<Group>& groups, const std::string& machin
       "plan's time step. Bold: nothing in the report has less error for as little time. \"+1.1 ± 1.9 (5)\" "
       "is the "
       "mean of five spacings close by, and the root mean square of what they differ by from it.\n\n"
-      "| case | reads | spacing, mm | paper | consistent | corrected | incompressible | CUDA, corrected | "
+      "| case | reads | spacing, mm | paper | corrected | incompressible | CUDA, corrected | "
       "CUDA, "
       "incompressible |\n"
-      "|---|---|---|---|---|---|---|---|---|\n";
+      "|---|---|---|---|---|---|---|---|\n";
   for (const Group& group : groups) {
     const std::vector<glm::dvec2> best = frontier_of(group.rows);
     std::vector<double> spacings;
@@ -172,7 +172,6 @@ std::string markdown(const std::vector<Group>& groups, const std::string& machin
     for (const double spacing : spacings) {
       text += format("| %s | %s | %.3g |", title.c_str(), group.quantity.c_str(), 1e3 * spacing);
       for (const auto& [model, backend] : {std::pair{"paper", "cpu"},
-                                           {"consistent", "cpu"},
                                            {"corrected", "cpu"},
                                            {"incompressible", "cpu"},
                                            {"corrected", "cuda"},

@@ -14,7 +14,7 @@ using report::ErrorRow;
 using report::ScenePoint;
 
 constexpr std::pair<const char*, const char*> kColors[] = {
-    {"paper", "#8c6d31"}, {"consistent", "#1f5fbf"}, {"corrected", "#c8322b"}, {"incompressible", "#2e8b57"}};
+    {"paper", "#8c6d31"}, {"corrected", "#c8322b"}, {"incompressible", "#2e8b57"}};
 
 /// Wall s a simulated s of the table; two cores keep real time with what one core takes the second for.
 constexpr double kBudgets[] = {1.0, 2.0, 4.0, 8.0};

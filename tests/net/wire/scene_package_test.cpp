@@ -77,6 +77,19 @@ TEST(ScenePackage, FieldsRoundTripAndEveryCutAndDamageIsRefused) {
   EXPECT_GT(test::expect_damages_refused(scene), 1000u);
 }
 
+TEST(ScenePackage, TellsWhatTookTheGoneModelsPlace) {
+  const wire::PackedScene scene{test::small_scene(), 0.01};
+  wire::Damaged damaged;
+  for (std::size_t which = 0; damaged.damage != "a choice that is gone"; ++which) {
+    damaged = wire::damaged_message(scene, which);
+    ASSERT_FALSE(damaged.field.empty());
+  }
+  wire::PackedScene back;
+  EXPECT_EQ(wire::decode(damaged.bytes, back).text(),
+            "model: 0 is the model `consistent`, which is no more: `corrected` took its place; there are "
+            "paper, corrected, incompressible");
+}
+
 TEST(ScenePackage, InstrumentsTravelOnlyWhereTheyAreNeeded) {
   Scene scene = test::small_scene();
   EXPECT_EQ(packed(scene)[0], 1) << "as programs from before read it";
