@@ -60,8 +60,8 @@ void compute_corrected_density(PassContext& context, ThreadTeam& team, FluidPart
                                FluidPress& press);
 
 /// Eq 5, 6 and 9 on fluid particles, by fluid and by body particles. With kImplicitViscosity without the
-/// viscous force, and `drag` gets the viscous pairs over `dt` s (passes/pressure_force/cpu_rows.cpp): both by `press`, which is
-/// from the density pass.
+/// viscous force, and `drag` gets the viscous pairs over `dt` s (pressure_force/cpu_rows.cpp): both by
+/// `press`, which is from the density pass.
 void compute_fluid_forces(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
                           const BoundaryParticles& fixed, const BoundaryParticles& moving, double dt,
                           FluidViscosity& drag, const FluidPress& press);

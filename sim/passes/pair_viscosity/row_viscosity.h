@@ -85,7 +85,8 @@ PairBatch drag_pairs(const ParticleView<FloatBatch>& p, const NeighborColumns& n
   return pairs;
 }
 
-/// What the force pass (passes/pressure_force/cpu_rows.cpp) writes down of fluid particles with implicit viscosity (implicit.h).
+/// What the force pass (pressure_force/cpu_rows.cpp) writes down of fluid particles with implicit viscosity
+/// (implicit.h).
 struct FluidViscosity {
   PairRows rows;  ///< with fluid, and behind it with moving bodies' particles
   std::vector<Symmetric<float>>
