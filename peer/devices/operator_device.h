@@ -18,8 +18,8 @@ struct OperatorSettings {
   double correction = 2.0;               ///< 1/s: how fast what is seen to be off is made good; 0 = blind
 };
 
-/// "tight" or "loose", then any of mass=, damping=, stiffness= (of the arm), tremor=, delay=, correction=,
-/// apart by commas; empty is "tight". Errors: another word, a number out of its range.
+/// "tight" or "loose", then any of mass=, damping=, stiffness= (of the arm), wrist= (N·m/rad), tremor=,
+/// delay=, correction=, apart by commas; empty is "tight". Errors: another word, a number out of its range.
 Result<OperatorSettings> parse_operator(const std::string& options);
 
 /// Moves by simulated time along `track`, as far as the force lets it. What it carries when it engages it

@@ -167,5 +167,13 @@ TEST(Operator, WhatItCannotHaveIsNamed) {
   EXPECT_EQ(parse_operator("loose,mass=2").value().arm.stiffness, 120.0);
 }
 
+TEST(Operator, AWristAsStiffAsIsSaidIsAsWellDamped) {
+  const ArmImpedance usual = OperatorSettings{}.wrist, stiff = parse_operator("wrist=40").value().wrist;
+  EXPECT_EQ(stiff.stiffness, 40.0);
+  EXPECT_NEAR(stiff.damping / std::sqrt(stiff.stiffness * stiff.mass),
+              usual.damping / std::sqrt(usual.stiffness * usual.mass), 1e-12);
+  EXPECT_FALSE(parse_operator("wrist=0"));
+}
+
 }  // namespace
 }  // namespace slosh
