@@ -11,39 +11,6 @@ namespace slosh {
 namespace {
 
 constexpr double kStatusMemory = 0.5;  // simulated s that a status stays on show
-constexpr double kRateWindow = 0.25;   // wall s over which the shown rates are averaged
-
-/// Rates over the last window.
-class RateMeter {
- public:
-  void restart(std::int64_t now_ns) {
-    window_ns_ = now_ns;
-    window_steps_ = 0;
-    window_step_time_ = 0.0;
-  }
-
-  /// True when a window is over; then the rates are new.
-  bool add(double step_time, std::int64_t now_ns) {
-    window_steps_ += 1;
-    window_step_time_ += step_time;
-    const double elapsed = to_seconds(now_ns - window_ns_);
-    if (elapsed < kRateWindow) return false;
-    step_rate = static_cast<double>(window_steps_) / elapsed;
-    step_ms = 1e3 * window_step_time_ / static_cast<double>(window_steps_);
-    window_ns_ = now_ns;
-    window_steps_ = 0;
-    window_step_time_ = 0.0;
-    return true;
-  }
-
-  double step_rate = 0.0;
-  double step_ms = 0.0;
-
- private:
-  std::int64_t window_ns_ = 0;
-  std::uint64_t window_steps_ = 0;
-  double window_step_time_ = 0.0;
-};
 
 }  // namespace
 
@@ -61,6 +28,7 @@ Host::Host(World world, const Scene& scene, Channel& channel, HostOptions option
       channel_(channel),
       options_(std::move(options)),
       gate_(scene),
+      schedule_(world_.plan().time_step),
       fluid_models_(scene) {
   for (const Grip& grip : scene.grips) grip_bodies_.push_back(grip.body);
   for (const Body& body : scene.bodies) body_names_.push_back(body.name);
@@ -213,16 +181,36 @@ void Host::show_state() {
   shown_paused_.store(paused_, std::memory_order_relaxed);
 }
 
-void Host::run() {
-  const double time_step = world_.plan().time_step;
-  Pacer pacer(time_step);
-  RateMeter meter;
-  std::int64_t begin_ns = steady_now_ns();
-  PaceLine line;
+void Host::Schedule::restart() {
+  begin_ns = steady_now_ns();
   pacer.restart(begin_ns);
   line.restart(begin_ns);
   meter.restart(begin_ns);
-  simulated_ns_ = begin_ns;
+}
+
+void Host::run() {
+  begin_run();
+  while (!stop_.load(std::memory_order_relaxed) &&
+         world_.time() + 0.5 * world_.plan().time_step < options_.until) {
+    if (options_.pulse != nullptr) options_.pulse->fetch_add(1, std::memory_order_relaxed);
+    if (has_orders_.load(std::memory_order_acquire)) run_commands();
+    // One step of a world that stands, or it stands on.
+    const bool single = paused_ && take_asked_step();
+    if (paused_ && !single) {
+      stand();
+      continue;
+    }
+    const Turn turn = wait_for_turn(single);
+    const double seconds = step(take_inputs());
+    publish(turn, single);
+    count(seconds);
+  }
+  end_run();
+}
+
+void Host::begin_run() {
+  schedule_.restart();
+  simulated_ns_ = schedule_.begin_ns;
   next_snapshot_ = world_.time();
   for (HostTap* tap : taps_) tap->on_start(world_, state());
   // The first snapshot of a run comes whether somebody looks or not: those who count runs need it.
@@ -232,85 +220,92 @@ void Host::run() {
   // from making it to here is the machine's.
   if (!options_.paced) publish_bodies(0.0, clock_ns());
   tell_published();
+}
 
-  while (!stop_.load(std::memory_order_relaxed) && world_.time() + 0.5 * time_step < options_.until) {
-    if (options_.pulse != nullptr) options_.pulse->fetch_add(1, std::memory_order_relaxed);
-    if (has_orders_.load(std::memory_order_acquire)) run_commands();
-    // One step of a world that stands, or it stands on.
-    const bool single = paused_ && take_asked_step();
-    if (paused_ && !single) {
-      report_.wall += to_seconds(steady_now_ns() - begin_ns);
-      stand_still();
-      begin_ns = steady_now_ns();
-      pacer.restart(begin_ns);
-      line.restart(begin_ns);
-      meter.restart(begin_ns);
-      continue;
-    }
-    if (!single) steps_asked_.store(0, std::memory_order_relaxed);
-    Pacer::Turn turn;
-    const double pace = options_.paced ? pace_.load(std::memory_order_relaxed) : 1.0;
-    if (options_.paced && !single) {
-      pacer.set_period(time_step / pace, steady_now_ns());
-      turn = pacer.next(steady_now_ns());
-      if (turn.slipped) note_status(kStatusTimeSlipped);
-      sleep_until_ns(turn.deadline_ns);
-    }
-    const std::uint64_t rejected_before = gate_.rejected();
-    const std::span<const HandleInput> input = gate_.take(channel_, latest_, clock_ns());
-    if (gate_.rejected() != rejected_before) {
-      note_status(kStatusInputRejected);
-      tell_refused();
-    }
+void Host::stand() {
+  report_.wall += to_seconds(steady_now_ns() - schedule_.begin_ns);
+  stand_still();
+  schedule_.restart();
+}
 
-    for (HostTap* tap : taps_) tap->before_step(world_, {input, gate_.poses()});
-    const std::int64_t step_begin_ns = steady_now_ns();
-    world_.step(input);
-    const std::int64_t step_end_ns = steady_now_ns();
-    simulated_ns_ += to_nanoseconds(time_step);
+Host::Turn Host::wait_for_turn(bool single) {
+  if (!single) steps_asked_.store(0, std::memory_order_relaxed);
+  Turn turn{{}, options_.paced ? pace_.load(std::memory_order_relaxed) : 1.0};
+  if (!options_.paced || single) return turn;
+  schedule_.pacer.set_period(world_.plan().time_step / turn.pace, steady_now_ns());
+  turn.at = schedule_.pacer.next(steady_now_ns());
+  if (turn.at.slipped) note_status(kStatusTimeSlipped);
+  sleep_until_ns(turn.at.deadline_ns);
+  return turn;
+}
 
-    const std::uint32_t status = world_.take_status();
-    note_status(status);
-    if ((status & kStatusNonFinite) != 0) show_lost();
-    world_.fill(latest_);
-    tell_gone();
-    model_fluid(input);
-    for (HostTap* tap : taps_) tap->after_step(world_);
-    if (single) {
-      publish_bodies(0.0, clock_ns());
-      publish_snapshot();
-      next_snapshot_ = std::max(next_snapshot_, world_.time());
-    } else {
-      const PaceLine::Moment moment = options_.paced ? line.after_step(time_step, pace, turn, step_end_ns)
-                                                     : PaceLine::Moment{simulated_ns_, pace};
-      publish_bodies(moment.rate, moment.stamp_ns);
-      publish_snapshot_if_due();
-    }
-    tell_published();
-
-    const double step_time = to_seconds(step_end_ns - step_begin_ns);
-    report_.steps += 1;
-    report_.step_time.add(step_time);
-    const StepTimes& parts = world_.times();
-    report_.total.sort += parts.sort;
-    report_.total.density += parts.density;
-    report_.total.force += parts.force;
-    report_.total.body += parts.body;
-    report_.total.total += parts.total;
-    show_state();
-    shown_status_.store(recent_status(), std::memory_order_relaxed);
-    if (meter.add(step_time, step_end_ns)) {
-      shown_rate_.store(meter.step_rate * time_step, std::memory_order_relaxed);
-      shown_step_rate_.store(meter.step_rate, std::memory_order_relaxed);
-      shown_step_ms_.store(meter.step_ms, std::memory_order_relaxed);
-    }
+std::span<const HandleInput> Host::take_inputs() {
+  const std::uint64_t rejected_before = gate_.rejected();
+  const std::span<const HandleInput> input = gate_.take(channel_, latest_, clock_ns());
+  if (gate_.rejected() != rejected_before) {
+    note_status(kStatusInputRejected);
+    tell_refused();
   }
+  return input;
+}
 
+double Host::step(std::span<const HandleInput> input) {
+  for (HostTap* tap : taps_) tap->before_step(world_, {input, gate_.poses()});
+  const std::int64_t begin_ns = steady_now_ns();
+  world_.step(input);
+  schedule_.stepped_ns = steady_now_ns();
+  simulated_ns_ += to_nanoseconds(world_.plan().time_step);
+
+  const std::uint32_t status = world_.take_status();
+  note_status(status);
+  if ((status & kStatusNonFinite) != 0) show_lost();
+  world_.fill(latest_);
+  tell_gone();
+  model_fluid(input);
+  for (HostTap* tap : taps_) tap->after_step(world_);
+  return to_seconds(schedule_.stepped_ns - begin_ns);
+}
+
+void Host::publish(const Turn& turn, bool single) {
+  if (single) {
+    publish_bodies(0.0, clock_ns());
+    publish_snapshot();
+    next_snapshot_ = std::max(next_snapshot_, world_.time());
+  } else {
+    const PaceLine::Moment moment =
+        options_.paced
+            ? schedule_.line.after_step(world_.plan().time_step, turn.pace, turn.at, schedule_.stepped_ns)
+            : PaceLine::Moment{simulated_ns_, turn.pace};
+    publish_bodies(moment.rate, moment.stamp_ns);
+    publish_snapshot_if_due();
+  }
+  tell_published();
+}
+
+void Host::count(double seconds) {
+  report_.steps += 1;
+  report_.step_time.add(seconds);
+  const StepTimes& parts = world_.times();
+  report_.total.sort += parts.sort;
+  report_.total.density += parts.density;
+  report_.total.force += parts.force;
+  report_.total.body += parts.body;
+  report_.total.total += parts.total;
+  show_state();
+  shown_status_.store(recent_status(), std::memory_order_relaxed);
+  if (schedule_.meter.add(seconds, schedule_.stepped_ns)) {
+    shown_rate_.store(schedule_.meter.step_rate * world_.plan().time_step, std::memory_order_relaxed);
+    shown_step_rate_.store(schedule_.meter.step_rate, std::memory_order_relaxed);
+    shown_step_ms_.store(schedule_.meter.step_ms, std::memory_order_relaxed);
+  }
+}
+
+void Host::end_run() {
   if (options_.pulse != nullptr) options_.pulse->store(0, std::memory_order_relaxed);
-  report_.wall += to_seconds(steady_now_ns() - begin_ns);
-  report_.simulated = static_cast<double>(report_.steps) * time_step;
-  report_.slips = pacer.slips();
-  report_.slipped = pacer.slipped_seconds();
+  report_.wall += to_seconds(steady_now_ns() - schedule_.begin_ns);
+  report_.simulated = static_cast<double>(report_.steps) * world_.plan().time_step;
+  report_.slips = schedule_.pacer.slips();
+  report_.slipped = schedule_.pacer.slipped_seconds();
   report_.rejected_poses = gate_.rejected();
   report_.diagnostics = world_.diagnostics();
   publish_bodies(0.0, clock_ns());

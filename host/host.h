@@ -16,6 +16,8 @@
 #include "host/fluid_demand.h"
 #include "host/gone_bodies.h"
 #include "host/input_gate.h"
+#include "host/pace_line.h"
+#include "host/rate_meter.h"
 #include "host/snapshot_demand.h"
 #include "host/tap.h"
 #include "net/channel.h"
@@ -131,12 +133,38 @@ class Host {
   HostState state() const;
 
  private:
+  /// When steps are due, and how fast they go.
+  struct Schedule {
+    explicit Schedule(double time_step) : pacer(time_step) {}
+    /// A run begins, or goes on after a pause.
+    void restart();
+
+    Pacer pacer;
+    PaceLine line;
+    RateMeter meter;
+    std::int64_t begin_ns = 0;    ///< since when the wall time counts
+    std::int64_t stepped_ns = 0;  ///< when the last step ended
+  };
+  struct Turn {
+    Pacer::Turn at;
+    double pace = 1.0;  ///< simulated s a s, as asked for
+  };
+
   struct Order {
     HostCommand command;
     HostAnswer answer;
   };
 
   void run();
+  void begin_run();
+  void stand();
+  Turn wait_for_turn(bool single);
+  std::span<const HandleInput> take_inputs();
+  /// Returns s that the world took.
+  double step(std::span<const HandleInput> input);
+  void publish(const Turn& turn, bool single);
+  void count(double seconds);
+  void end_run();
   std::int64_t clock_ns() const;
   void run_commands();
   void end_commands();
@@ -160,6 +188,7 @@ class Host {
   Channel& channel_;
   HostOptions options_;
   InputGate gate_;
+  Schedule schedule_;
   HostReport report_;
   BodySnapshot latest_;  // what the gate compares new hands with
   FluidModels fluid_models_;
