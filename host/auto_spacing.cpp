@@ -57,9 +57,8 @@ std::string sentence(const SpacingChoice& c, double margin) {
 Result<StepTiming> time_steps(const Scene& scene, double spacing, const SpacingOptions& options) {
   Result<SampledScene> sampled = sample_scene(scene, spacing);
   if (!sampled) return sampled.error();
-  Result<World> made =
-      make_world(scene, sampled.value(), make_plan(scene, spacing, can_solve_drag(options.backend)),
-                 WorldOptions{options.threads, options.backend});
+  Result<World> made = make_world(scene, sampled.value(), make_plan(scene, spacing),
+                                  WorldOptions{options.threads, options.backend});
   if (!made) return made.error();
   World& world = made.value();
 
@@ -108,12 +107,11 @@ SpacingChoice choose_spacing(std::span<const StepTiming> timings,
   return best;
 }
 
-std::vector<SpacingCandidate> spacing_candidates(const Scene& scene, bool may_be_implicit) {
+std::vector<SpacingCandidate> spacing_candidates(const Scene& scene) {
   std::vector<SpacingCandidate> candidates;
   const auto add = [&](double spacing) {
     const ParticleEstimate estimate = estimate_particles(scene, spacing);
-    candidates.push_back(
-        {spacing, estimate.fluid + estimate.surface, make_plan(scene, spacing, may_be_implicit).time_step});
+    candidates.push_back({spacing, estimate.fluid + estimate.surface, make_plan(scene, spacing).time_step});
   };
   add(scene.spacing_max);
   for (double spacing = scene.spacing_max / 1.04; spacing >= scene.spacing_min; spacing /= 1.04) {
@@ -124,7 +122,6 @@ std::vector<SpacingCandidate> spacing_candidates(const Scene& scene, bool may_be
 }
 
 Result<SpacingChoice> measure_spacing(const Scene& scene, const SpacingOptions& options) {
-  const bool may_be_implicit = can_solve_drag(options.backend);
   std::vector<StepTiming> timings;
   const double coarse = scene.spacing_max;
   const double finer = std::max(scene.spacing_min, 0.75 * scene.spacing_max);
@@ -142,10 +139,10 @@ Result<SpacingChoice> measure_spacing(const Scene& scene, const SpacingOptions& 
     }
     if (finer >= coarse) break;
     // When the coarsest is hopeless already, a finer measurement would only cost time.
-    if (timing && timing.value().step > 4.0 * make_plan(scene, spacing, may_be_implicit).time_step) break;
+    if (timing && timing.value().step > 4.0 * make_plan(scene, spacing).time_step) break;
   }
   // The estimate misses what sampling leaves out near walls; the measured count puts it right.
-  std::vector<SpacingCandidate> candidates = spacing_candidates(scene, may_be_implicit);
+  std::vector<SpacingCandidate> candidates = spacing_candidates(scene);
   const double estimated = candidates.front().particles;
   const double correction = estimated > 0.0 ? timings.front().particles / estimated : 1.0;
   for (SpacingCandidate& candidate : candidates) candidate.particles *= correction;

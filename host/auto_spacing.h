@@ -44,7 +44,7 @@ SpacingChoice choose_spacing(std::span<const StepTiming> timings,
                              std::span<const SpacingCandidate> candidates, double margin = kSpacingMargin);
 
 /// Spacings from the scene's coarsest to its finest, about 4 % apart, in tenths of a millimetre.
-std::vector<SpacingCandidate> spacing_candidates(const Scene& scene, bool may_be_implicit);
+std::vector<SpacingCandidate> spacing_candidates(const Scene& scene);
 
 struct SpacingOptions {
   int threads = 0;  ///< what the run will use, 0 = all cores

@@ -31,7 +31,4 @@ CudaDevice find_cuda_device();
 /// True where kCuda would work; `reason`, when given, receives why not.
 bool cuda_available(std::string* reason = nullptr);
 
-/// Whether the backend has implicit viscosity, for make_plan. Every one has.
-bool can_solve_drag(Backend backend);
-
 }  // namespace slosh

@@ -30,10 +30,6 @@ bool cuda_available(std::string* reason) {
   return device.available;
 }
 
-bool can_solve_drag(Backend) {
-  return true;
-}
-
 Result<std::unique_ptr<ParticleEngine>> make_particle_engine(const RunConstants& constants,
                                                              const ParticleStart& start,
                                                              std::span<const RigidBody> bodies,

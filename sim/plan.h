@@ -96,8 +96,8 @@ inline double speed_limit(const Plan& plan, double time_step) {
   return 0.5 * plan.support_radius / time_step;
 }
 
-/// Works out the plan for particles at `spacing` (m, > 0). `may_be_implicit`: whether whoever carries it out
-/// has implicit viscosity (can_solve_drag); without, steps are shorter where a fluid is very viscous.
+/// Works out the plan for particles at `spacing` (m, > 0). `may_be_implicit`: without
+/// implicit viscosity steps are shorter where a fluid is very viscous, as those of older saved worlds were.
 Plan make_plan(const Scene& scene, double spacing, bool may_be_implicit = true);
 
 /// Takes over changed viscosities of the scene's fluids: which viscous passes run. The time step stays. Needs

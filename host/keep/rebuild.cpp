@@ -16,10 +16,9 @@ Result<RebuiltWorld> rebuild_world(const Scene& scene, double spacing, std::span
 
 Result<RebuiltWorld> rebuild_world(const Scene& scene, SampledScene sampled,
                                    std::span<const std::uint8_t> state, const WorldOptions& options) {
-  // Where a GPU's plan and the CPU's differ, what was saved fits the one that it was made by; the CPU can go
-  // on from both.
+  // What was saved by a GPU before it had implicit viscosity fits a plan without.
   std::optional<Error> refused;
-  for (const bool may_be_implicit : {can_solve_drag(options.backend), false}) {
+  for (const bool may_be_implicit : {true, false}) {
     Result<World> world =
         make_world(scene, sampled, make_plan(scene, sampled.spacing, may_be_implicit), options);
     if (!world) return world.error();

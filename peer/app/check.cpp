@@ -48,7 +48,7 @@ Result<Counted> count(const Scene& scene, const CheckOptions& options, Progress&
   Counted counted;
   const double asked = options.spacing;
   counted.spacing = asked > 0.0 ? asked : scene.spacing > 0.0 ? scene.spacing : scene.spacing_max;
-  const Plan plan = make_plan(scene, counted.spacing, can_solve_drag(Backend::kAuto));
+  const Plan plan = make_plan(scene, counted.spacing);
   if (const std::optional<Error> endless = refuse_endless(scene, plan)) return *endless;
   const Result<SampledScene> sampled = sample_told(scene, counted.spacing, progress, &counted.filling);
   if (!sampled) return sampled.error();

@@ -32,7 +32,7 @@ int print_plan(const std::string& name, double spacing) {
   if (!loaded) return fail(loaded.error());
   const Scene& scene = loaded.value();
   if (spacing <= 0.0) spacing = scene.spacing > 0.0 ? scene.spacing : scene.spacing_max;
-  const Plan plan = make_plan(scene, spacing, can_solve_drag(Backend::kAuto));
+  const Plan plan = make_plan(scene, spacing);
   const ParticleEstimate count = estimate_particles(scene, spacing);
   std::printf("%s%s\nThe numbers behind it\n%s", describe(plan).c_str(), picture_in_words(scene).c_str(),
               plan_numbers(scene, plan, count.fluid, count.surface).c_str());

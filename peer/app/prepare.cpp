@@ -241,7 +241,7 @@ Result<Prepared> prepare(const PlayOptions& options, bool headless, Progress& pr
   Result<SampledScene> sampled = sample_told(p.scene, spacing.value().metres, progress);
   if (!sampled) return sampled.error();
   p.sampled = std::move(sampled.value());
-  p.plan = make_plan(p.scene, spacing.value().metres, can_solve_drag(p.backend));
+  p.plan = make_plan(p.scene, spacing.value().metres);
   if (options.step_rate > 0.0) step_at(p.plan, options.step_rate);
   return p;
 }

@@ -88,7 +88,7 @@ WorldProgram::WorldProgram(std::shared_ptr<const Scene> scene, const WorldProgra
   const WorldOptions made{options.threads, backend_};
   without_lock(interrupts, [&] {
     sampled_ = take(sample_scene(*scene_, spacing, nullptr, [&](double) { interrupts.check(); }));
-    world_ = take(make_world(*scene_, sampled_, make_plan(*scene_, spacing, can_solve_drag(backend_)), made));
+    world_ = take(make_world(*scene_, sampled_, make_plan(*scene_, spacing), made));
   });
   if (options.settle) settle(std::nullopt);
   if (start_.empty()) take(world_->save(start_));

@@ -59,7 +59,7 @@ World world_on(Backend backend, const Tank& tank, Plan plan) {
 }
 
 World world_on(Backend backend, const Tank& tank) {
-  return world_on(backend, tank, make_plan(tank.scene, tank.sampled.spacing, can_solve_drag(Backend::kCuda)));
+  return world_on(backend, tank, make_plan(tank.scene, tank.sampled.spacing));
 }
 
 void step(World& world, double hand_height) {

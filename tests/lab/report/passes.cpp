@@ -65,7 +65,7 @@ double farthest(const Snapshot& a, const Snapshot& b) {
 
 std::vector<PassRow> measure_passes(const Scene& scene, const SampledScene& sampled,
                                     const PassOptions& options) {
-  const Plan planned = make_plan(scene, sampled.spacing, can_solve_drag(options.backend));
+  const Plan planned = make_plan(scene, sampled.spacing);
   std::vector<Variant> variants;
   const auto add = [&](const std::string& what, const Plan& plan,
                        std::function<void(const World&)> after = {}) {

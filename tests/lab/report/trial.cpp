@@ -46,7 +46,7 @@ Trial::~Trial() {
 }
 
 void Trial::start(const Scene& scene, const Setting& setting, bool settled) {
-  Plan plan = make_plan(scene, sampled_.spacing, setting.solve_viscosity && can_solve_drag(setting.backend));
+  Plan plan = make_plan(scene, sampled_.spacing, setting.solve_viscosity);
   plan.time_step *= setting.step_share;
   plan.max_speed = speed_limit(plan, plan.time_step);
   Result<World> made = make_world(scene, sampled_, plan, {setting.threads, setting.backend, settled});

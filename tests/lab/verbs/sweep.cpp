@@ -6,15 +6,15 @@
 #include <map>
 #include <memory>
 
+#include "peer/app/common_options.h"
+#include "peer/app/interrupt.h"
+#include "peer/app/prepare.h"
+#include "peer/app/verbs.h"
 #include "peer/output/chart.h"
 #include "peer/output/field_words.h"
 #include "peer/output/gnuplot.h"
 #include "peer/output/later_table.h"
 #include "peer/view/palette.h"
-#include "peer/app/common_options.h"
-#include "peer/app/interrupt.h"
-#include "peer/app/prepare.h"
-#include "peer/app/verbs.h"
 #include "scenes/load.h"
 #include "scenes/sample.h"
 #include "scenes/vary.h"
@@ -111,8 +111,7 @@ std::optional<Error> refused(const SweepVerbOptions& options, const std::vector<
   std::vector<double> sampled;
   for (const Member& member : family) {
     const double spacing = spacing_of(options, member.scene);
-    if (std::optional<Error> endless =
-            refuse_endless(member.scene, make_plan(member.scene, spacing, can_solve_drag(backend))))
+    if (std::optional<Error> endless = refuse_endless(member.scene, make_plan(member.scene, spacing)))
       return endless;
     if (std::find(sampled.begin(), sampled.end(), spacing) != sampled.end()) continue;
     const Result<SampledScene> there = sample_scene(member.scene, spacing);

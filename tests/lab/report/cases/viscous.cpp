@@ -133,8 +133,7 @@ std::vector<Reading> turned_ball(const Setting& setting, Cost& cost) {
   constexpr double kWallFactor = 1.0 + 0.7968 * 0.027;  // at a radius ratio of 0.3 (Brenner & Sonshine 1964)
   const make::Solid solid = make::sphere(kBall, 24, 48);
   constexpr double kStepped = 5.0;
-  const bool solves =
-      setting.solve_viscosity && can_solve_drag(setting.backend) && corrects_gradients(setting.model);
+  const bool solves = setting.solve_viscosity && corrects_gradients(setting.model);
   const auto torque_of = [&](double viscosity, double density) {
     SceneBuilder b;
     b.add_fluid(1000.0, viscosity);
