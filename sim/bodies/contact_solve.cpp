@@ -9,7 +9,7 @@ namespace {
 
 // Iterations of Gauss–Seidel, there and back: until no impulse changes by more than a share of the largest,
 // or the most that a step may cost.
-constexpr int kMaxTurns = 150;
+constexpr int kMaxIterations = 150;
 constexpr double kSettled = 1e-7;
 
 /// Projected Gauss–Seidel with each iteration's steps made conjugate to the last one's (Silcowitz-Hansen
@@ -30,7 +30,7 @@ class Iteration {
       for (std::size_t i = 0; i < all_.size(); ++i) before[i] = impulse(i);
       const bool settled = there_and_back();
       // The last is a whole iteration: what is made conjugate may pull.
-      if (settled || turn == kMaxTurns) return;
+      if (settled || turn == kMaxIterations) return;
       double square = 0.0;
       for (std::size_t i = 0; i < all_.size(); ++i) {
         before[i] = impulse(i) - before[i];

@@ -11,7 +11,7 @@ constexpr float kReach = 1.75f;
 // Of the reach. What is farther before a face than that belongs to a face that meets it in a concave edge.
 constexpr float kConcave = 0.033f;
 constexpr float kSameFace = 0.85f;   // cosine between normals
-constexpr int kMaxTurns = 20;        // iterations over all faces; two at right angles take one
+constexpr int kMaxIterations = 20;        // iterations over all faces; two at right angles take one
 constexpr float kSatisfied = 0.02f;  // of the depth
 
 }  // namespace
@@ -36,7 +36,7 @@ std::optional<glm::vec3> ConvexEdges::behind(std::size_t i, float depth) const {
   });
   if (concave || faces.size() == 1) return std::nullopt;
   glm::vec3 p = own.at - depth * own.normal;
-  for (int turn = 0; turn < kMaxTurns; ++turn) {
+  for (int turn = 0; turn < kMaxIterations; ++turn) {
     float most = 0.0f;
     for (const Face& f : faces) {
       const float missing = depth - glm::dot(f.normal, f.at - p);

@@ -27,7 +27,7 @@ namespace wall_guard {
 inline constexpr float kRest = 0.95f;      ///< of the depth: where a particle is put back to
 inline constexpr float kStride = 0.7f;     ///< of the depth, between two looks along the way
 inline constexpr int kMaxLooks = 64;       ///< along one way
-inline constexpr int kMaxTurns = 4;        ///< clamps by walls of one body in one sub-step
+inline constexpr int kMaxIterations = 4;        ///< clamps by walls of one body in one sub-step
 inline constexpr float kNoSlope = 0.3f;    ///< a gradient shorter than this is that of the middle of a wall
 inline constexpr float kShallow = 0.35f;   ///< of the depth: at edges there may be no slope above
 inline constexpr float kMaxLifted = 3.0f;  ///< depths from which a particle is still put back
@@ -102,14 +102,14 @@ SLOSH_HD inline bool guard_particle(const GuardedBody& body, const glm::vec3& fr
     if (ahead >= good.distance) return false;  // on its way out
     good = look(body.field, good.at + good.normal * (rest - good.distance));
   }
-  for (int turn = 0; turn < kMaxTurns; ++turn) {
+  for (int turn = 0; turn < kMaxIterations; ++turn) {
     if (follow(body.field, body.depth, end, good, bad)) break;
     caught = true;
     // The wall that it met, or past its middle the side that it came from.
     const Look& wall = bad.slope < kNoSlope || past_middle(good, bad, body.depth) ? good : bad;
     const float lacks = rest - (wall.distance + glm::dot(end - wall.at, wall.normal));
     end = lacks > 0.0f ? end + wall.normal * lacks : wall.at + wall.normal * (rest - wall.distance);
-    if (turn + 1 == kMaxTurns) end = good.at;
+    if (turn + 1 == kMaxIterations) end = good.at;
     const glm::vec3 normal = body.after.turn * wall.normal;
     const float into = glm::dot(v - body.after.velocity_at(body.after.place(end)), normal);
     if (into < 0.0f) v -= into * normal;

@@ -12,7 +12,7 @@
 namespace slosh::reference {
 namespace {
 
-constexpr int kMaxTurns = 32;
+constexpr int kMaxIterations = 32;
 constexpr float kApart = 2e-5f;           // m that a new ray starts off a surface
 constexpr float kPhotonsInReach = 50.0f;  // of unfocused light
 constexpr float kMargin = 1e-3f;          // m, round the fluids
@@ -53,7 +53,7 @@ FocusedLight::FocusedLight(const RayScene& scene, std::span<const FluidLook> loo
     glm::vec3 flux = step.x * step.y * source.arriving(from);
     int fluid = -1;
     bool met = false;
-    for (int turn = 0; turn < kMaxTurns; ++turn) {
+    for (int turn = 0; turn < kMaxIterations; ++turn) {
       if (!(flux.x + flux.y + flux.z > 0.0f)) return;
       const Hit hit = scene.nearest(from, way);
       if (!hit.there()) return;
