@@ -11,7 +11,7 @@ constexpr float kReach = 1.75f;
 // Of the reach. What is farther before a face than that belongs to a face that meets it in a concave edge.
 constexpr float kConcave = 0.033f;
 constexpr float kSameFace = 0.85f;   // cosine between normals
-constexpr int kMaxIterations = 20;        // iterations over all faces; two at right angles take one
+constexpr int kMaxIterations = 20;   // iterations over all faces; two at right angles take one
 constexpr float kSatisfied = 0.02f;  // of the depth
 
 }  // namespace

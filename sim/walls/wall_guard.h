@@ -27,7 +27,7 @@ namespace wall_guard {
 inline constexpr float kRest = 0.95f;      ///< of the depth: where a particle is put back to
 inline constexpr float kStride = 0.7f;     ///< of the depth, between two looks along the way
 inline constexpr int kMaxLooks = 64;       ///< along one way
-inline constexpr int kMaxIterations = 4;        ///< clamps by walls of one body in one sub-step
+inline constexpr int kMaxIterations = 4;   ///< clamps by walls of one body in one sub-step
 inline constexpr float kNoSlope = 0.3f;    ///< a gradient shorter than this is that of the middle of a wall
 inline constexpr float kShallow = 0.35f;   ///< of the depth: at edges there may be no slope above
 inline constexpr float kMaxLifted = 3.0f;  ///< depths from which a particle is still put back
