@@ -30,6 +30,9 @@ Result<std::vector<std::string>> console_words(std::string_view typed) {
     std::size_t end = line.find(until, begin);
     if (end == std::string::npos) end = line.size();
     words.push_back(line.substr(begin, end - begin));
+    // What stood on the space before it stands on nothing now.
+    const std::string apart = wire::text_problem(words.back());
+    if (!apart.empty()) return Error{"", "word " + std::to_string(words.size()) + " " + apart, kMend};
     at = quoted ? end + 1 : end;
   }
   return words;

@@ -27,7 +27,7 @@ std::vector<std::vector<std::uint8_t>> slosh_fuzz_seeds() {
   std::vector<std::vector<std::uint8_t>> seeds;
   for (const std::string line : {"help", "who", "links", "link \"Ana Maria\" watch for 1h30m", "revoke bako",
                                  "expire bako never", "release 'left'", "kick Ana", "pause", "continue",
-                                 "reset", "set viscosity honey 1e1", "set gravity 0.5", "status", "quit\r\n"})
+                                 "reset", "set viscosity honey 1e1", "set gravity 0.5", "status", "quit\r\n", "link \xdc\xbentc2"})
     seeds.emplace_back(line.begin(), line.end());
   return seeds;
 }

@@ -92,6 +92,7 @@ TEST(Console, WhatIsWrongIsSaidInWords) {
                            "release",
                            "quit now",
                            "link aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa",
+                           "link \xdc\xbentc2",  // a mark, which stood on the space
                            "\x1b[2J",
                            "a\x01",
                            "\xff"}) {
