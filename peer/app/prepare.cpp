@@ -83,10 +83,10 @@ Result<RunFolder> take_folder(const ShowOptions& options, const Scene& scene, bo
 
 /// Steps of 1/`rate` s, of as many sub-steps no longer than the plan's own steps.
 void step_at(Plan& plan, double rate) {
-  constexpr double kRounding = 1e-9;
+  constexpr double kSameStep = 1e-9;
   const double own = plan.time_step / plan.sub_steps;
   plan.time_step = 1.0 / rate;
-  plan.sub_steps = std::max(1, static_cast<int>(std::ceil(plan.time_step / own - kRounding)));
+  plan.sub_steps = std::max(1, static_cast<int>(std::ceil(plan.time_step / own - kSameStep)));
   plan.max_speed = speed_limit(plan, plan.time_step / plan.sub_steps);
 }
 
