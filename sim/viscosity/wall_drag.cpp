@@ -67,10 +67,10 @@ WallDrag computed(ParticleModel model, double ratio, DragLayer layer) {
   const double behind = layer == DragLayer::kBehind ? wall_inset(ratio) : 0.0;
   double stress = 0.0, by_layers = 0.0, evenly = 0.0, whole = layer_drag<Kernel>(0.0, ratio, shape).along;
   for (int n = 1; n <= reach; ++n) {
-    const LayerDrag layer = layer_drag<Kernel>(n, ratio, shape);
+    const LayerDrag apart = layer_drag<Kernel>(n, ratio, shape);
     stress +=
-        n * n * layer.along;  // n pairs of layers that far apart lie across a plane, n spacings of shear each
-    whole += 2.0 * layer.along;
+        n * n * apart.along;  // n pairs of layers that far apart lie across a plane, n spacings of shear each
+    whole += 2.0 * apart.along;
   }
   const auto passed = [&](double height) {
     return height * layer_drag<Kernel>(behind + height, ratio, shape).along;
