@@ -66,7 +66,7 @@ def main(folder, budget_file, targets):
     print(f"slowest objects, of {whole:.0f} object-seconds:")
     for path, seconds in worst:
         print(f"  {seconds:6.1f} s  {path}")
-    print(f"{len(budgets)} budgets, {faults} passed")
+    print(f"{len(budgets)} budgets, {faults} faults")
     return 1 if faults else 0
 
 
