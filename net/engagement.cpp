@@ -126,6 +126,8 @@ Engagement::Held Engagement::update(bool engaged, double time, const Pose& hand,
     keep_force(hand, gains, grip);
   }
   gains_ = gains;
+  // Whoever joins finds a hand that carries what acts by then, not what it began with.
+  if (company == Company::kShared && company_ == Company::kAlone && !took_hold_) began_ = grip.on_hand;
   meet(company, time);
 
   const Pose before = place(hand);

@@ -173,6 +173,27 @@ TEST(Engagement, WhereAnotherHandHoldsTooItSlipsAndBearsMoreEachSecond) {
   }
 }
 
+/// One hand came to carry all, and another joins: the body does not fall into its hands.
+TEST(Engagement, WhatItCarriesWhenAnotherHandJoinsItCarriesOn) {
+  Engagement e;
+  GripState grip;
+  Twist moving;
+  moving.linear.z = moving.angular.z = 0.1;  // no quiet hold
+  e.update(true, 0.0, at(0.5), moving, kGains, grip);
+  double t = kTick;
+  for (; t < 1.0; t += kTick) {  // it sinks by 0.1 m and 0.3 rad
+    grip.pose.position.y -= 0.1 * kTick;
+    grip.pose.orientation = rotate_by(grip.pose.orientation, {0.0, 0.0, 0.3 * kTick});
+    grip.on_hand = wrench_of(e.update(true, t, at(0.5), {}, kGains, grip), grip);
+  }
+  ASSERT_GT(glm::length(grip.on_hand.force), 80.0);
+  ASSERT_GT(glm::length(grip.on_hand.torque), 2.0);
+  ASSERT_GT(e.distance(), 0.1) << "still on its way to the hand";
+  const Wrench after = wrench_of(e.update(true, t, at(0.5), {}, kGains, grip, Company::kShared), grip);
+  EXPECT_LT(glm::length(after.force - grip.on_hand.force), 2.0 * kHoldForce + 0.1);
+  EXPECT_LT(glm::length(after.torque - grip.on_hand.torque), 2.0 * kHoldTorque + 0.01);
+}
+
 /// A body that a hold drives on: it would be a rocket where the hold followed it with what pulled when it
 /// began.
 TEST(Engagement, AHoldThatSlipsGivesTheBodyNoMoreThanItsAllowance) {
