@@ -53,7 +53,7 @@ struct SubStep;
 
 struct PassEntry {
   const char* words;  ///< for people
-  const char* reads;  ///< columns and state, for sim/README.md's table
+  const char* reads;  ///< columns and state, for sim/PASSES.md
   const char* writes;
   PassNeed (*need)(const SceneFacts&);
   /// Its part of StepTimes.
@@ -64,11 +64,7 @@ struct PassEntry {
 
 /// The table's row.
 const PassEntry& entry(PassId id);
-/// The id as golden files and recordings have it: the folder's name.
-const char* name(PassId id);
 /// The pass whose loop runs it; itself where it has its own.
 PassId runs_in(PassId id);
-/// Whether the engine has a function for it.
-bool is_own(PassId id);
 
 }  // namespace slosh

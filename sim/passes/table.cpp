@@ -19,17 +19,14 @@ struct Row {
   const PassEntry* entry;
   const char* name;
   PassId runs_in;
-  bool own;
 };
 
 const Row& row(PassId id) {
-#define SLOSH_OWN(id, name) Row{&passes::name##_pass, #name, PassId::id, true},
-#define SLOSH_FUSED(id, name, into) Row{&passes::name##_pass, #name, PassId::into, false},
-#define SLOSH_WORLD(id, name) Row{&passes::name##_pass, #name, PassId::id, false},
-  static constexpr std::array<Row, kPassCount> kRows{{SLOSH_PASSES(SLOSH_OWN, SLOSH_FUSED, SLOSH_WORLD)}};
+#define SLOSH_OWN(id, name) Row{&passes::name##_pass, #name, PassId::id},
+#define SLOSH_FUSED(id, name, into) Row{&passes::name##_pass, #name, PassId::into},
+  static constexpr std::array<Row, kPassCount> kRows{{SLOSH_PASSES(SLOSH_OWN, SLOSH_FUSED, SLOSH_OWN)}};
 #undef SLOSH_OWN
 #undef SLOSH_FUSED
-#undef SLOSH_WORLD
   return kRows[static_cast<std::size_t>(id)];
 }
 
@@ -44,8 +41,4 @@ const char* name(PassId id) {
 PassId runs_in(PassId id) {
   return row(id).runs_in;
 }
-bool is_own(PassId id) {
-  return row(id).own;
-}
-
 }  // namespace slosh
