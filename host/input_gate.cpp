@@ -128,6 +128,13 @@ void InputGate::reset(const BodySnapshot& now, std::int64_t clock_ns) {
     hand.received_ns = clock_ns;
     hand.engagement = Engagement{};
     hand.lost_scale = 0.0;
+    // The start was settled into all hands: one that is not there now gives its share over, as a stand does.
+    if (settled && !hand.good.engaged) {
+      hand.lost_at = now.time;
+      hand.lost_scale = 1.0;
+      hand.lost_fade = kHandOver;
+      hand.last_pose = hand.last_held = hand.good.pose;
+    }
     hand.anew = true;
   }
 }

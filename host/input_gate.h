@@ -46,7 +46,8 @@ class InputGate {
   /// Takes in one message; false (and the fault kept in last_fault()) when it is not used.
   bool accept(const PoseMessage& message, std::int64_t clock_ns = steady_now_ns());
 
-  /// The world went back to its start, as `now` has it: hands that hold on hold there until they report anew.
+  /// The world went back to its start, as `now` has it: hands that hold on hold there until they report
+  /// anew, and what grips that nobody holds carried in a settled start is given over within kHandOver.
   void reset(const BodySnapshot& now, std::int64_t clock_ns);
 
   /// The world stood still for a while, and hands may have moved: who holds on re-engages. So does a hand

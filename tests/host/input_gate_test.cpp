@@ -104,5 +104,30 @@ TEST(InputGate, EachDeviceKeepsItsPlace) {
   EXPECT_EQ(input[2].pose.position.x, 0.5);
 }
 
+/// The start was settled into both: who holds one of them alone gets all of the weight, and not at once.
+TEST(InputGate, AfterAResetAGripThatNobodyHoldsGivesItsShareOver) {
+  const Scene scene = scene_with_grips(2);
+  Channel channel(2, BodyMessage{}, 1000);
+  InputGate gate(scene);
+  BodySnapshot now = snapshot_with_grips(2);
+  ASSERT_TRUE(gate.accept(message(0), 0));
+  EXPECT_FALSE(gate.take(channel, now, 0)[1].engaged);
+  for (GripState& grip : now.grips) grip.on_hand.force = {0.0, -10.0, 0.0};
+  gate.reset(now, 0);
+  double before = 1.0 + 1e-9;
+  for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+    now.time = share * kHandOver;
+    const HandleInput beside = gate.take(channel, now, 0)[1];
+    EXPECT_EQ(beside.engaged, share < 1.0) << share;
+    EXPECT_NEAR(beside.scale, 1.0 - share, 1e-9);
+    EXPECT_LT(beside.scale, before);
+    before = beside.scale;
+  }
+  // What carried nothing in it holds nothing.
+  now.grips[1].on_hand = {};
+  gate.reset(now, 0);
+  EXPECT_FALSE(gate.take(channel, now, 0)[1].engaged);
+}
+
 }  // namespace
 }  // namespace slosh
