@@ -98,6 +98,7 @@ void OperatorDevice::begin(double time) noexcept {
   begun_ = true;
   took_weight_ = false;
   last_ = time;
+  lived_ = 0.0;
   goal_ = track_.at(time);
   arm_ = wrist_ = ArmState{};
   lift_ = brace_ = glm::dvec3(0.0);
@@ -106,18 +107,18 @@ void OperatorDevice::begin(double time) noexcept {
 }
 
 /// Notes how far off the goal the hand is by now.
-void OperatorDevice::see(double time) noexcept {
-  if (count_ > 0 && time < seen_[newest_].time + kSeenApart - 1e-9) return;
+void OperatorDevice::see() noexcept {
+  if (count_ > 0 && lived_ < seen_[newest_].time + kSeenApart - 1e-9) return;
   newest_ = (newest_ + 1) % kSeen;
   count_ = std::min(count_ + 1, kSeen);
-  seen_[newest_] = {time, arm_.place + lift_, wrist_.place + brace_};
+  seen_[newest_] = {lived_, arm_.place + lift_, wrist_.place + brace_};
 }
 
 /// Wants the hand elsewhere by what was off `delay` ago.
-void OperatorDevice::correct(double time, double seconds) noexcept {
+void OperatorDevice::correct(double seconds) noexcept {
   for (std::size_t back = 0; back < count_; ++back) {
     const Seen& seen = seen_[(newest_ + kSeen - back) % kSeen];
-    if (seen.time > time - settings_.delay) continue;
+    if (seen.time > lived_ - settings_.delay) continue;
     const glm::dvec3 lift = bounded(lift_ - settings_.correction * seconds * seen.place, kMaxLift);
     const glm::dvec3 brace = bounded(brace_ - settings_.correction * seconds * seen.turn, kMaxBrace);
     // The hand stays where it is; what is wanted moves.
@@ -129,19 +130,26 @@ void OperatorDevice::correct(double time, double seconds) noexcept {
   }
 }
 
+void OperatorDevice::live(double seconds) noexcept {
+  lived_ += seconds;
+  arm_ = arm_after(settings_.arm, arm_, felt_.force, seconds);
+  wrist_ = arm_after(settings_.wrist, wrist_, felt_.torque, seconds);
+  see();
+  correct(seconds);
+}
+
 DeviceReport OperatorDevice::read(const DeviceMoment& moment) noexcept {
   if (!begun_ || moment.time < last_) begin(moment.time);
-  const double seconds = std::min(moment.time - last_, kMaxElapsed);
+  const double on = moment.time - last_;
+  const double seconds = moment.stands ? std::max(on, moment.period) : on;
   last_ = moment.time;
-  if (seconds > 0.0) {
+  if (on > 0.0)
     goal_ = track_.at(moment.time);
-    arm_ = arm_after(settings_.arm, arm_, felt_.force, seconds);
-    wrist_ = arm_after(settings_.wrist, wrist_, felt_.torque, seconds);
-    see(moment.time);
-    correct(moment.time, seconds);
-  }
+  else if (moment.stands)
+    goal_.twist = Twist{};
+  if (seconds > 0.0) live(std::min(seconds, kMaxElapsed));
   DeviceReport report;
-  const ArmState tremor = tremor_at(moment.time, settings_.tremor);
+  const ArmState tremor = tremor_at(lived_, settings_.tremor);
   report.pose.position = goal_.pose.position + lift_ + arm_.place + tremor.place;
   report.pose.orientation = rotate_by(goal_.pose.orientation, brace_ + wrist_.place);
   report.twist.linear = goal_.twist.linear + arm_.velocity + tremor.velocity;

@@ -22,9 +22,10 @@ struct OperatorSettings {
 /// delay=, correction=, apart by commas; empty is "tight". Errors: another word, a number out of its range.
 Result<OperatorSettings> parse_operator(const std::string& options);
 
-/// Moves by simulated time along `track`, as far as the force lets it. What it carries when it engages it
-/// carries from then on, as who lifts a bucket does. Neither clock nor random numbers: the same forces give
-/// the same motion bitwise.
+/// Moves by simulated time along `track`, as far as the force lets it; where that stands (a pause, a silence)
+/// the arm lives on, as a person's does, and what it is told meanwhile moves it. What it carries when it
+/// engages it carries from then on, as who lifts a bucket does. Neither clock nor random numbers: the same
+/// forces give the same motion bitwise.
 class OperatorDevice final : public Device {
  public:
   OperatorDevice(PoseTrack track, const OperatorSettings& settings);
@@ -38,8 +39,9 @@ class OperatorDevice final : public Device {
 
  private:
   void begin(double time) noexcept;
-  void see(double time) noexcept;
-  void correct(double time, double seconds) noexcept;
+  void live(double seconds) noexcept;
+  void see() noexcept;
+  void correct(double seconds) noexcept;
 
   /// What is off where it should be, as it was seen.
   struct Seen {
@@ -57,7 +59,8 @@ class OperatorDevice final : public Device {
   glm::dvec3 lift_{0.0};  // what the person holds against: m off the goal at which the arm is wanted
   glm::dvec3 brace_{0.0};
   Wrench felt_;
-  double last_ = 0.0;
+  double last_ = 0.0;   // simulated s
+  double lived_ = 0.0;  // s that the arm has lived since it began
   bool begun_ = false;
   bool took_weight_ = false;
   std::array<Seen, kSeen> seen_{};

@@ -34,6 +34,7 @@ struct DeviceReport {
 struct DeviceMoment {
   double time = 0.0;      ///< simulated s
   double period = 0.001;  ///< wall s since the reading before, nominal
+  bool stands = false;    ///< the world does: it is paused, or its states stopped coming
 };
 
 /// open() and limits() on any thread before the device is handed over; read() and write() by one thread after

@@ -189,7 +189,7 @@ void Servo::follow_time(double now, double most, std::int64_t now_ns) noexcept {
 }
 
 bool Servo::read_device(Hand& hand, std::int64_t now_ns) noexcept {
-  const DeviceReading& reading = hand.port->read({time_, options_.period}, now_ns);
+  const DeviceReading& reading = hand.port->read({time_, options_.period, stands_}, now_ns);
   if (reading.number == hand.readings) {
     // Nothing new: the hand is where it was, and not known to move.
     if (to_seconds(now_ns - hand.read_ns) > kHoldStale) hand.good.twist = Twist{};
@@ -286,6 +286,7 @@ void Servo::tick(std::int64_t now_ns, bool fresh) noexcept {
   const double ahead = std::clamp(time_ - bodies.time, -longest, longest);
 
   const bool stopped = message.rate <= 0.0 && bodies.tick > 0;
+  stands_ = stopped || (bodies.tick > 0 && belief.share < 1.0);
   const bool samples = sample_due(stopped);
   if (ticks_ == 0) first_tick_ns_ = tick_before_ns_ = now_ns;
   for (std::size_t i = 0; i < hands_.size(); ++i) {
