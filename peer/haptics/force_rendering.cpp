@@ -29,6 +29,20 @@ Wrench ForceRendering::capped(const Wrench& full, bool current) noexcept {
   return {limit_length(full.force, most_force_, limited), limit_length(full.torque, most_torque_, limited)};
 }
 
+/// The ramp is for what a hand takes over: what it felt until it re-engaged it goes on feeling.
+Wrench ForceRendering::ramped(const Wrench& full) const noexcept {
+  const auto part = [&](const glm::dvec3& whole, double kept) {
+    const double length = glm::length(whole);
+    const double share = length > kept ? kept / length : 1.0;
+    return std::max(engagement_.felt(), share) * whole;
+  };
+  return {part(full.force, kept_force_), part(full.torque, kept_torque_)};
+}
+
+double ForceRendering::shaped_share() const noexcept {
+  return gentle_ ? share_ * share_ * (3.0 - 2.0 * share_) : share_;
+}
+
 Wrench ForceRendering::couple(const StateFreshness& world, const DeviceReport& hand, const GripState& grip,
                               const Moment& now) noexcept {
   double believed = std::min(world.share, now.device_share);
@@ -45,6 +59,7 @@ Wrench ForceRendering::couple(const StateFreshness& world, const DeviceReport& h
     engagement_.take_hold_anew();
     jumps_ = true;
   }
+  if (jumps_) over_ = world.anew ? kFadeStale : kBridge;
   // A host that keeps its stand takes the hand as it is from here on, and the grip as it is then.
   if (now.stands && !(reaches && felt_)) engagement_.take_hold_anew();
   felt_ = reaches;
@@ -67,14 +82,18 @@ Wrench ForceRendering::couple(const StateFreshness& world, const DeviceReport& h
   const Wrench full = gives_way_
                           ? coupling_wrench_on_hand(gains, held_.pose, held_.twist, grip.pose, grip.twist)
                           : grip.on_hand;
-  const double felt = gives_way_ || !engagement_.engaged() ? engagement_.felt() : 1.0;
-  return {felt * full.force, felt * full.torque};
+  if (engagement_.took_hold()) {
+    kept_force_ = glm::length(last_.force);
+    kept_torque_ = glm::length(last_.torque);
+  }
+  if (!engagement_.engaged()) kept_force_ = kept_torque_ = 0.0;
+  return gives_way_ || !engagement_.engaged() ? ramped(full) : full;
 }
 
 ForceLimiter::Outcome ForceRendering::finish(Wrench wanted, const Twist& twist, const Moment& now) noexcept {
   if (is_finite(wanted)) {
     wanted = begun_ ? capped(wanted, current_) : Wrench{};
-    const double share = gentle_ ? share_ * share_ * (3.0 - 2.0 * share_) : share_;
+    const double share = shaped_share();
     const double damped = begun_ && engagement_.engaged() ? believed_ * (1.0 - share) : 0.0;
     wanted = {share * wanted.force - damped * damping_ * twist.linear,
               share * wanted.torque - damped * rotational_damping_ * twist.angular};
@@ -83,7 +102,7 @@ ForceLimiter::Outcome ForceRendering::finish(Wrench wanted, const Twist& twist, 
       left_ = 1.0;
     }
     wanted = {wanted.force + left_ * bridge_.force, wanted.torque + left_ * bridge_.torque};
-    left_ = std::max(left_ - now.period / kBridge, 0.0);
+    left_ = std::max(left_ - now.period / over_, 0.0);
   }
   const ForceLimiter::Outcome outcome = limiter_.limit(wanted, now.period);
   const bool plain = !gives_way_ && engagement_.engaged() && !outcome.limited && !outcome.non_finite;

@@ -18,14 +18,15 @@ namespace slosh {
 /// grows by them.
 ///  - While updates are late the force is at most what it was with the last that was in time, and it fades
 ///    by freshness().
+///  - A hand that re-engages goes on feeling as much of it as it felt still.
 ///  - A hand that had no force gets it over DeviceLimits::engagement_time: with a new device, after a pause,
 ///    a reset or a silence, when it re-engages, when it suddenly is elsewhere. A silence that took a
 ///    part of the force takes as large a part of that time. Meanwhile its own motion is damped. Where nobody
 ///    feels it, what a silence took comes back over kFadeStale.
 ///  - No force begins before world and device are both fresh. A hand that feels none begins with all of it.
 ///    A host that keeps its stand until then is told by felt(), and the hand engages where it is by then.
-///  - Where the force would jump all the same, because the world stopped or the hand's hold is another one,
-///    the difference is worked off over kBridge.
+///  - Where the force would jump all the same, because the hand's hold is another one, the difference is
+///    worked off over kBridge; where the world was reset, over kFadeStale, which an arm can follow.
 /// A hand that gives way to the force (Device::gives_way) feels the coupling as this end has it, so that its
 /// own newest motion acts at once. Any other feels what the world put on it (GripState::on_hand): there hand
 /// and grip are compared at one time. Here they are not, as the grip's newest velocity answers a handle of
@@ -116,6 +117,8 @@ class ForceRendering {
                 const Moment& now) noexcept;
   ForceLimiter::Outcome finish(Wrench wanted, const Twist& twist, const Moment& now) noexcept;
   Wrench capped(const Wrench& full, bool current) noexcept;
+  Wrench ramped(const Wrench& full) const noexcept;
+  double shaped_share() const noexcept;
 
   CouplingGains gains_;                   // as it is felt
   CouplingGains of_world_;                // as the hold goes by it
@@ -132,17 +135,20 @@ class ForceRendering {
   double most_damping_ = 0.0;  // N·s/m and N·m·s/rad that the device holds
   double most_turning_ = 0.0;
   double share_ = 1.0;
-  double believed_ = 1.0;  // at the call before
-  bool begun_ = false;     // world and device were both fresh since the device came, or the world was reset
+  double kept_force_ = 0.0;   // N and
+  double kept_torque_ = 0.0;  // N·m that the hand felt when it re-engaged
+  double believed_ = 1.0;     // at the call before
+  bool begun_ = false;  // world and device were both fresh since the device came, or the world was reset
   bool felt_ = false;
   bool hold_anew_ = false;   // updates had stopped
   bool held_on_ = false;     // the hand, at the call before
   bool current_ = true;      // the world was, at the call before
   double most_force_ = 0.0;  // N, with the last state that was in time
   double most_torque_ = 0.0;
-  Wrench last_;        // of the call before
-  Wrench bridge_;      // what is left of a jump,
-  double left_ = 0.0;  // and the share of it, 0–1
+  Wrench last_;            // of the call before
+  Wrench bridge_;          // what is left of a jump,
+  double left_ = 0.0;      // the share of it, 0–1,
+  double over_ = kBridge;  // and s over which it goes
 };
 
 }  // namespace slosh

@@ -58,6 +58,11 @@ double LinkFreshness::follow_poses(const BodyMessage& message, bool& current) no
   return freshness(late, period_, latest_);
 }
 
+double LinkFreshness::stopped_share(std::int64_t now_ns) noexcept {
+  if (stopped_ns_ == 0) stopped_ns_ = now_ns;
+  return std::max(running_share_ - to_seconds(now_ns - stopped_ns_) / kFadeStale, 0.0);
+}
+
 /// What we said before the silence may have been kept back with it: ours counts from when the link is back.
 void LinkFreshness::turn_to_speak(bool heard, std::int64_t now_ns) noexcept {
   if (!heard) {
@@ -82,11 +87,13 @@ StateFreshness LinkFreshness::hear(const BodyMessage& message, bool fresh, std::
     const double share = freshness(since_heard, kStandingInterval);
     // After the first step a pace of 0 means that the world stopped: it holds nothing up any more. Before it
     // no world far away follows anybody's poses.
-    if (message.bodies.tick == 0 && message.heard_pose_ns == kPoseNotTold) belief.share = share;
-    belief.current = belief.share >= 1.0;
+    const bool waits_here = message.bodies.tick == 0 && message.heard_pose_ns == kPoseNotTold;
+    belief.share = waits_here ? share : std::min(share, stopped_share(now_ns));
+    belief.current = waits_here && belief.share >= 1.0;
     turn_to_speak(share >= 1.0, now_ns);
     return belief;
   }
+  stopped_ns_ = 0;
   const double age = to_seconds(now_ns - message.stamp_ns);  // negative while the state is still to come
   const double interval = message.time_step / message.rate;
   // What it takes one way is a half of what it takes both.
@@ -96,7 +103,7 @@ StateFreshness LinkFreshness::hear(const BodyMessage& message, bool fresh, std::
   belief.current = age <= 2.0 * interval + period_;
   belief.resumed = fresh && late_;
   late_ = !belief.current;
-  belief.share = std::min(states, follow_poses(message, belief.current));
+  belief.share = running_share_ = std::min(states, follow_poses(message, belief.current));
   return belief;
 }
 

@@ -125,9 +125,9 @@ TEST_F(GentleForce, AResetAndALeapGiveItUpAndBeginAnew) {
       kit.device->next.pose = at(0.01);
     }
     steepest = sharpest = 0.0;
-    on(0.2);
+    on(0.3);
     EXPECT_LT(std::abs(force()), 1.0) << reset;
-    on(0.8);
+    on(0.7);
     EXPECT_LT(std::abs(force()), 8.0) << reset;
     on(4.0);
     EXPECT_GT(std::abs(force()), 9.0) << reset;

@@ -85,6 +85,23 @@ TEST(LinkFreshness, AWorldFarAwayThatWaitsIsNotBelieved) {
 
 /// Where poses stop, nobody can know before an answer is due: the force is over 400 ms after the last pose
 /// that was heard, or where the link takes longer than 200 ms both ways, 200 ms after the answer to it.
+/// A pause takes the force away no faster than an arm can follow, a short one only a part of it.
+TEST(LinkFreshness, APauseTakesTheForceAwayAsASilenceDoes) {
+  Link link;
+  link.run(500);
+  link.message.rate = 0.0;
+  link.run(91);
+  EXPECT_NEAR(link.belief.share, 1.0 - 0.09 / kFadeStale, 1e-9);
+  EXPECT_FALSE(link.belief.current);
+  link.message.rate = 1.0;
+  link.run(1);
+  EXPECT_EQ(link.belief.share, 1.0);
+  link.message.rate = 0.0;
+  link.run(static_cast<int>(1e3 * kFadeStale) + 2);
+  EXPECT_EQ(link.belief.share, 0.0);
+  EXPECT_TRUE(link.hearing.speaks());
+}
+
 TEST(LinkFreshness, PosesThatStopEndTheForceWithin400MillisecondsOfTheFault) {
   for (const auto& [lag, after] : {std::pair{0.02, 400}, {0.1, 400}, {0.2, 400}, {0.3, 500}, {0.5, 700}}) {
     Link link;

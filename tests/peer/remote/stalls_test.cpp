@@ -220,7 +220,9 @@ TEST_P(Stalls, APartnerWhoFallsSilentThrowsNothing) {
 TEST_P(Stalls, SpringsThatAreChangedWhileStrainedThrowNothing) {
   // A soft grip leaves the weight to the other, and sags.
   const Worst soft = of(5.0, [](Carrying& run, double t) {
-    if (t > 1.0 && t < 1.0005) ASSERT_TRUE(run.host().world.set_grip_stiffness(0, 0.05));
+    if (t > 1.0 && t < 1.0005) {
+      ASSERT_TRUE(run.host().world.set_grip_stiffness(0, 0.05));
+    }
   });
   for (const double every : {0.06, 0.25, 0.7}) {
     double next = 1.0;
