@@ -103,9 +103,9 @@ def measure(folder, people):
     """The worst of a run over all hands and bodies, by the names of LEAST."""
     worst = dict.fromkeys(LEAST, 0.0)
     for i in range(len(people)):
-        if people[i] not in ("script", "operator"):
+        if people[i] in MOTIONS:
             continue  # what a broken partner feels is theirs
-        felt = people[i] == "operator"  # nobody feels a script's, which has no limit of its change
+        felt = people[i] != "script"  # nobody feels a script's, which has no limit of its change
         before = None
         for row in table(os.path.join(folder, f"peer{i}", "out", "wrenches.csv")):
             force = [float(row[a]) for a in ("fx_n", "fy_n", "fz_n")]
@@ -175,10 +175,13 @@ def run(slosh, people, events, folder):
 def bounds(kind, control, alone):
     found = {name: max(FACTOR * control[name], LEAST[name]) for name in LEAST}
     if kind.alone:
-        found = {name: max(found[name], 1.1 * alone[name]) for name in LEAST}
+        found = {name: max(found[name], kind.alone * alone[name]) for name in LEAST}
     found["change_n"] = max(found["change_n"], SLEW)
-    found["way_m"] += kind.sags
+    found["rise_m"] += kind.gives
+    found["way_m"] += kind.sags + kind.gives
+    found["speed_m_s"] += math.sqrt(2.0 * 9.81 * 0.25 * kind.gives)
     found["speed_m_s"] += math.sqrt(2.0 * 9.81 * 0.25 * kind.sags)  # half of the way down and a spring's share of that
+    found["spin_rad_s"] += 5.0 * kind.sags  # the turning spring is softened, too
     return found
 
 

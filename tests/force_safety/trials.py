@@ -10,11 +10,12 @@ class Kind:
     """One way to disturb. `people`: a device a grip. `disturb(random)`: [(s, what, who, ...)], sorted by time.
 
     Its control is the run of the same people and `steady` commands without `disturb`. `sags`: m that what is held may
-    hang lower, on a spring that was softened. `alone`: one hand may come to carry all, as in a run without the other."""
+    hang lower, on a spring that was softened. `alone`: one hand may come to carry all: times a run without the other.
+    `gives`: m over which a silent hand may go on with the force of a weight that was taken away (kHoldWay)."""
 
-    def __init__(self, name, people, disturb, steady=(), sags=0.0, alone=False):
+    def __init__(self, name, people, disturb, steady=(), sags=0.0, alone=0.0, gives=0.0):
         self.name, self.people, self.disturb, self.steady = name, people, disturb, list(steady)
-        self.sags, self.alone = sags, alone
+        self.sags, self.alone, self.gives = sags, alone, gives
 
     @property
     def control(self):
@@ -100,32 +101,39 @@ def far(t, start):  # a broken tracker: 100 m away for half a second
 MOTIONS = {"shaking": shaking, "jumping": jumping, "far": far}
 
 ALONE, PAIR = ("script",), ("script", "script")
-ARM, ARMS = ("operator",), ("operator", "operator")
+BRACED = "operator:wrist=40"  # N·m/rad: a loose wrist is bent by 50° here, and springs back whenever a force goes
+ARM, ARMS = (BRACED,), (BRACED, BRACED)
+CARRIES_ALL = 1.1
+# Two arms lean against each other, and any split of the weight between them is a rest: each has a lone arm's bound.
+ANY_SPLIT = 1.5
 
 
 def kinds():
     found = []
     for name, people in (("alone", ALONE), ("arm", ARM), ("pair", PAIR), ("arms", ARMS)):
         peers = [f"peer{i}" for i in range(len(people))]
+        split = ANY_SPLIT if name == "arms" else 0.0
         found += [
-            Kind(f"{name}: host stops", people, stops("host")),
-            Kind(f"{name}: peer stops", people, stops(*peers)),
-            Kind(f"{name}: everything stops", people, stops("host", *peers, count=(3, 6))),
-            Kind(f"{name}: host at a quota", people, quota("host")),
-            Kind(f"{name}: peer at a quota", people, quota(*peers)),
-            Kind(f"{name}: stiffness", people, stiffness("left_hand"), sags=0.4, alone=True),
-            Kind(f"{name}: pauses", people, lambda rng: pauses(rng)),
-            Kind(f"{name}: resets", people, lambda rng: resets(rng)),
+            Kind(f"{name}: host stops", people, stops("host"), alone=split),
+            Kind(f"{name}: peer stops", people, stops(*peers), alone=split),
+            Kind(f"{name}: everything stops", people, stops("host", *peers, count=(3, 6)), alone=split),
+            Kind(f"{name}: host at a quota", people, quota("host"), alone=split),
+            Kind(f"{name}: peer at a quota", people, quota(*peers), alone=split),
+            Kind(f"{name}: stiffness", people, stiffness("left_hand"), sags=0.4, alone=split or CARRIES_ALL),
+            Kind(f"{name}: pauses", people, lambda rng: pauses(rng), alone=split),
+            Kind(f"{name}: resets", people, lambda rng: resets(rng), alone=split),
         ]
     for name, people in (("pair", PAIR), ("arms", ARMS)):
+        whole = ANY_SPLIT if name == "arms" else CARRIES_ALL
         found += [
-            Kind(f"{name}: let go and taken again", people, release("peer0", "left_hand"), alone=True),
-            Kind(f"{name}: let go, taken, and stops", people, both(release("peer0", "left_hand"), stops("host", "peer1")), alone=True),
-            Kind(f"{name}: a partner falls silent", people, stops("peer1", count=(1, 1), seconds=(1.5, 2.5)), alone=True),
+            Kind(f"{name}: let go and taken again", people, release("peer0", "left_hand"), alone=whole),
+            Kind(f"{name}: let go, taken, and stops", people, both(release("peer0", "left_hand"), stops("host", "peer1")), alone=whole),
+            Kind(f"{name}: a partner falls silent", people, stops("peer1", count=(1, 1), seconds=(1.5, 2.5)), alone=whole),
         ]
     for motion in MOTIONS:
-        for name, person in (("pair", "script"), ("arms", "operator")):
-            found.append(Kind(f"{name}: {motion} partner, stops", (person, motion), stops("host", "peer0", "peer1")))
-    found += [Kind("pair: gravity 0 and 2, stops", PAIR, stops("host", "peer0", "peer1"), GRAVITY),
+        for name, person in (("pair", "script"), ("arms", BRACED)):
+            found.append(Kind(f"{name}: {motion} partner, stops", (person, motion), stops("host", "peer0", "peer1"),
+                              alone=ANY_SPLIT if person == BRACED else 0.0))
+    found += [Kind("pair: gravity 0 and 2, stops", PAIR, stops("host", "peer0", "peer1"), GRAVITY, gives=0.2),
               Kind("pair: viscosity, stops", PAIR, stops("host", "peer0", "peer1"), VISCOSITY)]
     return found
